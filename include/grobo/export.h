@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: MIT */
+/**
+ * @file export.h
+ * @brief Visibility and linkage of public names.
+ *
+ * The library is compiled with hidden visibility: what carries GROBO_API is the whole of its
+ * binary interface. On Windows define GROBO_STATIC when linking the static library.
+ */
+#ifndef GROBO_EXPORT_H
+#define GROBO_EXPORT_H
+
+#ifdef __cplusplus
+#define GROBO_BEGIN_DECLS extern "C" {
+#define GROBO_END_DECLS }
+#else
+#define GROBO_BEGIN_DECLS
+#define GROBO_END_DECLS
+#endif
+
+#if defined(_WIN32) && !defined(GROBO_STATIC)
+#ifdef GROBO_BUILDING
+#define GROBO_API __declspec(dllexport)
+#else
+#define GROBO_API __declspec(dllimport)
+#endif
+#elif defined(__GNUC__)
+#define GROBO_API __attribute__((visibility("default")))
+#else
+#define GROBO_API
+#endif
+
+#endif

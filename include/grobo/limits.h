@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: MIT */
+/**
+ * @file limits.h
+ * @brief Everything that grows has a cap, and the cap has a name here.
+ *
+ * A cap in an #ifndef may be lowered with -D when the core is built for a small machine; library
+ * and users must then be compiled with the same value.
+ */
+#ifndef GROBO_LIMITS_H
+#define GROBO_LIMITS_H
+
+/** Joints a posture can hold; at most 64 (a grobo_joint_mask has 64 bits). */
+#ifndef GROBO_JOINTS_MAX
+#define GROBO_JOINTS_MAX 64
+#endif
+
+/** Longest servo packet inside a relay frame of the board: the length field's 7 bits (protocol 2). */
+#define GROBO_RELAY_MAX_BYTES 127
+
+/** Longest frame we send: relay header, payload. */
+#define GROBO_FRAME_MAX_BYTES (2 + GROBO_RELAY_MAX_BYTES)
+
+/** Longest return packet: No.0..139 of the memory map with header and sum (protocol 3, 4). */
+#define GROBO_REPLY_MAX_BYTES 148
+
+/** Registers of an RS30x servo: No.0..139 (protocol 3: FLAGS 0F reads 0..139). */
+#define GROBO_REGISTERS 140
+
+/** Highest servo id; 255 addresses all (protocol 3). */
+#define GROBO_SERVO_ID_MAX 127
+
+/** Motions that may wait behind the one being played. */
+#ifndef GROBO_QUEUE_MAX
+#define GROBO_QUEUE_MAX 8
+#endif
+
+/** Motion files: bytes read at most. */
+#define GROBO_FILE_MAX_BYTES (1024L * 1024L * 1024L)
+/** Motion files: nesting of the YAML document. */
+#define GROBO_YAML_DEPTH_MAX 32
+/** Motion files: aliases followed in one document. */
+#define GROBO_YAML_ALIASES_MAX 1024
+/** Motion files: bytes of one mapping key. */
+#define GROBO_YAML_KEY_MAX_BYTES 128
+/** Motion files: bytes of one scalar that is kept (names, unknown values). */
+#define GROBO_YAML_SCALAR_MAX_BYTES 65536
+/** Motion files: postures or frames of one motion. */
+#define GROBO_MOTION_FRAMES_MAX 10000000
+/** Motion files: ikLinks of one key pose. */
+#define GROBO_IK_LINKS_MAX 16
+/** Names of joints, links, motions: bytes with the final NUL. */
+#define GROBO_NAME_MAX_BYTES 64
+/** Motion files: diagnostics kept of one file; more are counted only. */
+#define GROBO_DIAGNOSTICS_MAX 1000
+
+#endif

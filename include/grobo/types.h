@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: MIT */
+/**
+ * @file types.h
+ * @brief Small types that every layer shares.
+ *
+ * Units are in the names: _us _ms _s _deg _rad _ddeg (0.1 degree, the wire's unit) _ma _mv _bps
+ * _bytes _pct. A time is int64_t microseconds of one monotonic clock of the caller's choice.
+ */
+#ifndef GROBO_TYPES_H
+#define GROBO_TYPES_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <grobo/error.h>
+#include <grobo/limits.h>
+
+/** No deadline: later than any time. */
+#define GROBO_NEVER_US INT64_MAX
+
+/** One bit a joint, bit j for joint j. */
+typedef uint64_t grobo_joint_mask;
+
+/** The bit of joint j, 0 <= j < 64. */
+#define GROBO_JOINT_BIT(j) ((grobo_joint_mask)1 << (j))
+
+/** The bits of joints 0..n-1, 0 <= n <= 64. */
+#define GROBO_JOINTS_ALL(n)                                                                        \
+    ((n) >= 64 ? ~(grobo_joint_mask)0 : ((grobo_joint_mask)1 << (n)) - 1)
+
+/** Torque of a servo; the values are those of register No.36 (protocol 4). */
+typedef enum grobo_torque {
+    GROBO_TORQUE_OFF = 0,  /**< free */
+    GROBO_TORQUE_ON = 1,   /**< holds and follows its goal */
+    GROBO_TORQUE_BRAKE = 2 /**< damped, does not follow */
+} grobo_torque;
+
+/** What the servos do when a program ends or dies. */
+typedef enum grobo_exit_policy {
+    GROBO_EXIT_DEFAULT = 0, /**< the driver's choice; GR001: hold */
+    GROBO_EXIT_OFF = 1,     /**< torque off */
+    GROBO_EXIT_HOLD = 2,    /**< stop smoothly, keep torque where it is */
+    GROBO_EXIT_SIT = 3      /**< go to the driver's resting posture, then torque off */
+} grobo_exit_policy;
+
+/** How the servos are reached. */
+typedef enum grobo_wiring {
+    GROBO_WIRING_BOARD = 0, /**< through GR001's controller board (relay frames) */
+    GROBO_WIRING_BUS = 1    /**< straight on an RS-485 or TTL bus */
+} grobo_wiring;
+
+#endif

@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: MIT */
+/**
+ * @file version.h
+ * @brief The version of the headers, and of the library a program is linked with.
+ */
+#ifndef GROBO_VERSION_H
+#define GROBO_VERSION_H
+
+#include <grobo/export.h>
+
+#define GROBO_VERSION_MAJOR 0
+#define GROBO_VERSION_MINOR 1
+#define GROBO_VERSION_PATCH 0
+#define GROBO_VERSION_STRING "0.1.0"
+
+/** major * 10000 + minor * 100 + patch, to compare with. */
+#define GROBO_VERSION_NUMBER                                                                       \
+    (GROBO_VERSION_MAJOR * 10000 + GROBO_VERSION_MINOR * 100 + GROBO_VERSION_PATCH)
+
+GROBO_BEGIN_DECLS
+
+/** GROBO_VERSION_STRING of the library at run time. Static string. Thread safe. */
+GROBO_API const char *grobo_version(void);
+
+/** GROBO_VERSION_NUMBER of the library at run time. Thread safe. */
+GROBO_API int grobo_version_number(void);
+
+GROBO_END_DECLS
+
+#endif
