@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: MIT */
+/**
+ * @file model.h
+ * @brief What a robot is made of: joints, motors, groups, limits. Tables of constants.
+ *
+ * A model is data: a robot of one's own is a table of its own. Joint order (0..n-1) is the order
+ * of postures and of Choreonoid's files; motor numbers are the ids on the wire.
+ */
+#ifndef GROBO_MODEL_H
+#define GROBO_MODEL_H
+
+#include <grobo/types.h>
+
+GROBO_BEGIN_DECLS
+
+/** One joint and the servo that moves it. */
+typedef struct grobo_joint {
+    const char *name;         /**< "R_KNEE_P" */
+    double min_rad;           /**< lower limit of the angle */
+    double max_rad;           /**< upper limit of the angle */
+    double max_speed_rad_s;   /**< what the servo can do without load */
+    double init_rad;          /**< angle in the initial posture */
+    uint16_t servo_model;     /**< register No.0-1 of the servo, 0 where it does not matter */
+    uint16_t free_current_ma; /**< free (teaching) mode brakes above this current, 0: never */
+    uint8_t motor;            /**< id on the wire, 1..127 */
+    uint8_t mirror;           /**< joint that takes this one's place in the mirror, or itself */
+    int8_t mirror_sign;       /**< +1 or -1: sign of the angle in the mirror */
+} grobo_joint;
+
+/** A named set of joints. */
+typedef struct grobo_group {
+    const char *name;        /**< "right_arm" */
+    grobo_joint_mask joints; /**< its joints */
+} grobo_group;
+
+/** A robot's table. Borrowed by whatever is given one: it must outlive its users. */
+typedef struct grobo_model {
+    const char *name;          /**< "GR001" */
+    const grobo_joint *joints; /**< n_joints of them, in joint order */
+    const grobo_group *groups; /**< n_groups of them; the index is the seed's group number */
+    uint8_t n_joints;          /**< 1..GROBO_JOINTS_MAX */
+    uint8_t n_groups;          /**< may be 0 */
+} grobo_model;
+
+/**
+ * Checks a table: counts within caps, names present and unique, motors unique and within 1..127,
+ * limits finite with min <= init <= max, speed > 0, mirrors pairing up with equal signs.
+ * @return 0, or GROBO_ERR_ARG. Pure; thread safe.
+ */
+GROBO_API int grobo_model_check(const grobo_model *model);
+
+/** Joint moved by a motor. @return joint 0..n-1, or GROBO_ERR_NOTFOUND. Thread safe. */
+GROBO_API int grobo_model_joint_of_motor(const grobo_model *model, int motor);
+
+/** Motor of a joint. @return motor id 1..127, or GROBO_ERR_ARG. Thread safe. */
+GROBO_API int grobo_model_motor_of_joint(const grobo_model *model, int joint);
+
+/**
+ * Joint called name[0..length-1]: its name in any case ("r_knee_p"), its motor ("m12") or its
+ * joint id ("j3").
+ * @return joint 0..n-1, or GROBO_ERR_NOTFOUND. The text is not changed. Thread safe.
+ */
+GROBO_API int grobo_model_find_joint(const grobo_model *model, const char *name, size_t length);
+
+/**
+ * Joints called name[0..length-1]: a group's name in any case, a group's number ("0".."7" for
+ * GR001), or anything grobo_model_find_joint() takes.
+ * @param[out] joints the set found; untouched on error.
+ * @return number of joints in it, or GROBO_ERR_NOTFOUND. Thread safe.
+ */
+GROBO_API int grobo_model_find_joints(const grobo_model *model, const char *name, size_t length,
+                                      grobo_joint_mask *joints);
+
+/** HPI GR001: 20 joints, groups all body right_arm left_arm arms right_leg left_leg legs. */
+GROBO_API extern const grobo_model grobo_gr001_model;
+
+GROBO_END_DECLS
+
+#endif
