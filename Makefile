@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: MIT
+# The only build file. `make help` lists the targets; it reads the ## comments below.
+
+.DEFAULT_GOAL := all
+.DELETE_ON_ERROR:
+.SUFFIXES:
+
+# ---- what a caller may set -----------------------------------------------------------------
+
+BUILD ?= build
+PREFIX ?= /usr/local
+LIBDIR ?= $(PREFIX)/lib
+INCLUDEDIR ?= $(PREFIX)/include
+BINDIR ?= $(PREFIX)/bin
+DESTDIR ?=
+CROSS_COMPILE ?=
+SAN ?=
+RING ?= unit engine link fault port cli fuzz examples
+CFLAGS ?= -O2 -g
+PKG_CONFIG ?= $(CROSS_COMPILE)pkg-config
+WERROR ?= -Werror
+ifeq ($(origin CC),default)
+CC := $(CROSS_COMPILE)gcc
+endif
+ifeq ($(origin AR),default)
+AR := $(CROSS_COMPILE)ar
+endif
+Q := $(if $(filter 1,$(V)),,@)
+say = $(if $(filter 1,$(V)),@:,@printf '  %-5s %s\n')
+
+# ---- flags ---------------------------------------------------------------------------------
+
+WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow \
+    -Wstrict-prototypes -Wmissing-prototypes -Wswitch-enum $(WERROR)
+SAN_FLAGS := $(if $(SAN),-fsanitize=$(SAN) -fno-sanitize-recover=all -fno-omit-frame-pointer)
+ALL_CPPFLAGS = -Iinclude $(CPPFLAGS)
+ALL_CFLAGS = -std=c11 $(WARNINGS) -fvisibility=hidden -fPIC $(SAN_FLAGS) $(COV_FLAGS) $(CFLAGS)
+ALL_LDFLAGS = $(SAN_FLAGS) $(COV_FLAGS) $(LDFLAGS)
+# The layers that talk to an operating system see its functions; the others see C11 alone.
+OS_FLAGS := -D_DEFAULT_SOURCE -D_XOPEN_SOURCE=700 -pthread
+
+# Asked for when a recipe needs it and only once: set-up may install a library after make began.
+package = $(or $(shell $(PKG_CONFIG) $(1) || echo missing-package),)
+YAML_CFLAGS = $(eval YAML_CFLAGS := $$(call package,--cflags yaml-0.1))$(YAML_CFLAGS)
+EVENT_CFLAGS = $(eval EVENT_CFLAGS := $$(call package,--cflags libevent_core))$(EVENT_CFLAGS)
+CMOCKA_CFLAGS = $(eval CMOCKA_CFLAGS := $$(call package,--cflags cmocka))$(CMOCKA_CFLAGS)
+CMOCKA_LIBS = $(eval CMOCKA_LIBS := $$(call package,--libs cmocka))$(CMOCKA_LIBS)
+LIBS = $(eval LIBS := $$(call package,--libs yaml-0.1 libevent_core) -lm -pthread)$(LIBS)
+
+# ---- sources, by folder: a folder may be empty or missing ----------------------------------
+
+CORE_SRCS := $(sort $(wildcard src/core/*.c src/sim/*.c))
+OTHER_SRCS := $(sort $(wildcard src/motion/*.c src/body/*.c src/link/*.c ports/posix/*.c))
+TOOL_SRCS := $(if $(wildcard tools/grctl/main.c),$(sort $(wildcard tools/grctl/*.c)))
+SUPPORT_SRCS := $(sort $(filter-out %/replay_main.c,$(wildcard tests/support/*.c)))
+TEST_SRCS := $(sort $(foreach ring,unit engine link fault port,$(wildcard tests/$(ring)/test_*.c)))
+FUZZ_SRCS := $(sort $(wildcard tests/fuzz/fuzz_*.c))
+EXAMPLE_SRCS := $(sort $(wildcard docs/examples/*.c))
+
+objects = $(patsubst %.c,$(BUILD)/%.o,$(1))
+CORE_OBJS := $(call objects,$(CORE_SRCS))
+LIB_OBJS := $(CORE_OBJS) $(call objects,$(OTHER_SRCS))
+TOOL_OBJS := $(call objects,$(TOOL_SRCS))
+SUPPORT_OBJS := $(call objects,$(SUPPORT_SRCS))
+TEST_PROGRAMS := $(patsubst %.c,$(BUILD)/%,$(TEST_SRCS))
+FUZZ_REPLAYS := $(patsubst %.c,$(BUILD)/%,$(FUZZ_SRCS))
+EXAMPLES := $(patsubst %.c,$(BUILD)/%,$(EXAMPLE_SRCS))
+
+STATIC_LIB := $(BUILD)/libgrobo.a
+CORE_LIB := $(BUILD)/libgrobo-core.a
+SONAME := libgrobo.so.0
+SHARED_LIB := $(BUILD)/$(SONAME)
+PC_FILE := $(BUILD)/grobo.pc
+GRCTL := $(if $(TOOL_SRCS),$(BUILD)/grctl)
+SUPPORT_LIB := $(BUILD)/libsupport.a
+
+VERSION = $(shell sed -n 's/.*GROBO_VERSION_STRING "\(.*\)"/\1/p' include/grobo/version.h)
+
+# ---- targets -------------------------------------------------------------------------------
+
+.PHONY: help all check test check-san check-memcheck install uninstall clean FORCE
+
+help: ## this list
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-15s %s\n", $$1, $$2 }' Makefile
+	@echo 'Variables: BUILD=build CC= AR= CROSS_COMPILE= CFLAGS= SAN=address,undefined'
+	@echo '  RING="unit engine" (for test) PREFIX=/usr/local DESTDIR= V=1'
+
+all: $(STATIC_LIB) $(CORE_LIB) $(SHARED_LIB) $(PC_FILE) $(GRCTL) ## libraries and grctl, in $(BUILD)
+
+check: ## set up what is missing, build, lint, run every test
+	@tools/setup.sh --check
+	@$(MAKE) --no-print-directory all
+	@$(MAKE) --no-print-directory test
+
+test: $(TEST_PROGRAMS) $(FUZZ_REPLAYS) $(EXAMPLES) $(GRCTL) ## run the tests only; RING="unit engine" chooses
+	@GRCTL="$(abspath $(GRCTL))" BUILD="$(BUILD)" TEST_LOGS="$(BUILD)/logs" tests/run.sh \
+	    $(foreach ring,$(RING),$(filter $(BUILD)/tests/$(ring)/test_%,$(TEST_PROGRAMS))) \
+	    $(if $(GRCTL),$(if $(filter cli,$(RING)),$(sort $(wildcard tests/cli/*.sh)))) \
+	    $(if $(filter fuzz,$(RING)),$(foreach f,$(FUZZ_REPLAYS),$(f)@tests/fuzz/corpus/$(patsubst fuzz_%,%,$(notdir $(f)))))
+
+check-san: ## tests under AddressSanitizer and UBSan
+	@$(MAKE) --no-print-directory test BUILD=$(BUILD)/san SAN=address,undefined CFLAGS='-O1 -g' \
+	    RING='$(RING)'
+
+check-memcheck: ## tests under valgrind
+	@TEST_WRAPPER='valgrind -q --leak-check=full --error-exitcode=99' \
+	    $(MAKE) --no-print-directory test RING='$(filter-out cli examples,$(RING))'
+
+install: all ## into $(DESTDIR)$(PREFIX)
+	install -d $(DESTDIR)$(LIBDIR)/pkgconfig $(DESTDIR)$(INCLUDEDIR)/grobo $(DESTDIR)$(BINDIR)
+	install -m 644 include/grobo/*.h $(DESTDIR)$(INCLUDEDIR)/grobo
+	install -m 644 $(STATIC_LIB) $(CORE_LIB) $(DESTDIR)$(LIBDIR)
+	install -m 755 $(SHARED_LIB) $(DESTDIR)$(LIBDIR)
+	ln -sf $(SONAME) $(DESTDIR)$(LIBDIR)/libgrobo.so
+	install -m 644 $(PC_FILE) $(DESTDIR)$(LIBDIR)/pkgconfig
+	$(if $(GRCTL),install -m 755 $(GRCTL) $(DESTDIR)$(BINDIR))
+
+uninstall: ## take out what install put in
+	rm -rf $(DESTDIR)$(INCLUDEDIR)/grobo
+	rm -f $(addprefix $(DESTDIR)$(LIBDIR)/,libgrobo.a libgrobo-core.a libgrobo.so $(SONAME) \
+	    pkgconfig/grobo.pc) $(DESTDIR)$(BINDIR)/grctl
+
+clean: ## remove $(BUILD)
+	rm -rf $(BUILD)
+
+# ---- rules ---------------------------------------------------------------------------------
+
+# Objects depend on the compiler and the flags they were built with.
+$(BUILD)/.flags: FORCE
+	@mkdir -p $(@D)
+	@echo '$(CC) $(ALL_CPPFLAGS) $(ALL_CFLAGS) $(ALL_LDFLAGS)' | cmp -s - $@ || \
+	    echo '$(CC) $(ALL_CPPFLAGS) $(ALL_CFLAGS) $(ALL_LDFLAGS)' > $@
+
+# $(call compile,FOLDER,VARIABLE...): how the files of a folder are compiled.
+define compile
+$(BUILD)/$(1)/%.o: $(1)/%.c $(BUILD)/.flags
+	$$(say) CC $$<
+	@mkdir -p $$(@D)
+	$$(Q)$$(CC) $$(ALL_CPPFLAGS) $(foreach v,$(2),$$($(v))) $$(ALL_CFLAGS) -MMD -MP -c -o $$@ $$<
+endef
+
+SRC_INCLUDE := -Isrc -I.
+TEST_INCLUDE := -Isrc -I. -Itests/support
+$(eval $(call compile,src/core,SRC_INCLUDE))
+$(eval $(call compile,src/sim,SRC_INCLUDE))
+$(eval $(call compile,src/body,SRC_INCLUDE))
+$(eval $(call compile,src/motion,SRC_INCLUDE YAML_CFLAGS))
+$(eval $(call compile,src/link,SRC_INCLUDE OS_FLAGS EVENT_CFLAGS))
+$(eval $(call compile,ports/posix,SRC_INCLUDE OS_FLAGS))
+$(eval $(call compile,tools/grctl,OS_FLAGS EVENT_CFLAGS))
+$(eval $(call compile,docs/examples,OS_FLAGS EVENT_CFLAGS))
+$(eval $(call compile,tests,TEST_INCLUDE OS_FLAGS EVENT_CFLAGS YAML_CFLAGS CMOCKA_CFLAGS))
+
+$(STATIC_LIB): $(LIB_OBJS)
+$(CORE_LIB): $(CORE_OBJS)
+$(SUPPORT_LIB): $(SUPPORT_OBJS)
+$(STATIC_LIB) $(CORE_LIB) $(SUPPORT_LIB): $(BUILD)/.flags
+	$(say) AR $@
+	@rm -f $@
+	$(Q)$(AR) rcs $@ $(filter %.o,$^)
+
+$(SHARED_LIB): $(LIB_OBJS)
+	$(say) LD $@
+	$(Q)$(CC) -shared -Wl,-soname,$(SONAME) $(if $(SAN),,-Wl,-z,defs) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
+	@ln -sf $(SONAME) $(BUILD)/libgrobo.so
+
+$(BUILD)/grctl: $(TOOL_OBJS) $(STATIC_LIB)
+	$(say) LD $@
+	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(TOOL_LIBS) $(LIBS)
+
+$(TEST_PROGRAMS): $(BUILD)/%: $(BUILD)/%.o $(SUPPORT_LIB) $(STATIC_LIB)
+	$(say) LD $@
+	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(CMOCKA_LIBS) $(LIBS)
+
+$(FUZZ_REPLAYS): $(BUILD)/%: $(BUILD)/%.o $(BUILD)/tests/support/replay_main.o $(STATIC_LIB)
+	$(say) LD $@
+	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
+
+$(EXAMPLES): $(BUILD)/%: $(BUILD)/%.o $(STATIC_LIB)
+	$(say) LD $@
+	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
+
+$(PC_FILE): include/grobo/version.h Makefile $(BUILD)/.flags
+	@printf '%s\n' 'prefix=$(PREFIX)' 'libdir=$(LIBDIR)' 'includedir=$(INCLUDEDIR)' '' \
+	    'Name: grobo' 'Description: Drives serial command-servo robots' 'Version: $(VERSION)' \
+	    'Requires.private: libevent_core yaml-0.1' 'Cflags: -I$${includedir}' \
+	    'Libs: -L$${libdir} -lgrobo' 'Libs.private: -lm -pthread' > $@
+
+-include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

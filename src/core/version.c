@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: MIT */
+#include <grobo/version.h>
+
+const char *grobo_version(void)
+{
+    return GROBO_VERSION_STRING;
+}
+
+int grobo_version_number(void)
+{
+    return GROBO_VERSION_NUMBER;
+}
