@@ -15,6 +15,7 @@ BINDIR ?= $(PREFIX)/bin
 DESTDIR ?=
 CROSS_COMPILE ?=
 SAN ?=
+PORT ?= posix
 RING ?= unit engine link fault port cli fuzz examples
 CFLAGS ?= -O2 -g
 PKG_CONFIG ?= $(CROSS_COMPILE)pkg-config
@@ -33,7 +34,7 @@ say = $(if $(filter 1,$(V)),@:,@printf '  %-5s %s\n')
 WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow \
     -Wstrict-prototypes -Wmissing-prototypes -Wswitch-enum $(WERROR)
 SAN_FLAGS := $(if $(SAN),-fsanitize=$(SAN) -fno-sanitize-recover=all -fno-omit-frame-pointer)
-ALL_CPPFLAGS = -Iinclude $(CPPFLAGS)
+ALL_CPPFLAGS = -Iinclude -Iports/$(PORT)/include $(CPPFLAGS)
 ALL_CFLAGS = -std=c11 $(WARNINGS) -fvisibility=hidden -fPIC $(SAN_FLAGS) $(COV_FLAGS) $(CFLAGS)
 ALL_LDFLAGS = $(SAN_FLAGS) $(COV_FLAGS) $(LDFLAGS)
 # The layers that talk to an operating system see its functions; the others see C11 alone.
@@ -50,7 +51,7 @@ LIBS = $(eval LIBS := $$(call package,--libs yaml-0.1 libevent_core) -lm -pthrea
 # ---- sources, by folder: a folder may be empty or missing ----------------------------------
 
 CORE_SRCS := $(sort $(wildcard src/core/*.c src/sim/*.c))
-OTHER_SRCS := $(sort $(wildcard src/motion/*.c src/body/*.c src/link/*.c ports/posix/*.c))
+OTHER_SRCS := $(sort $(wildcard src/motion/*.c src/body/*.c src/link/*.c ports/$(PORT)/*.c))
 TOOL_SRCS := $(if $(wildcard tools/grctl/main.c),$(sort $(wildcard tools/grctl/*.c)))
 SUPPORT_SRCS := $(sort $(filter-out %/replay_main.c,$(wildcard tests/support/*.c)))
 TEST_SRCS := $(sort $(foreach ring,unit engine link fault port,$(wildcard tests/$(ring)/test_*.c)))
@@ -108,7 +109,7 @@ check-memcheck: ## tests under valgrind
 
 install: all ## into $(DESTDIR)$(PREFIX)
 	install -d $(DESTDIR)$(LIBDIR)/pkgconfig $(DESTDIR)$(INCLUDEDIR)/grobo $(DESTDIR)$(BINDIR)
-	install -m 644 include/grobo/*.h $(DESTDIR)$(INCLUDEDIR)/grobo
+	install -m 644 include/grobo/*.h ports/$(PORT)/include/grobo/*.h $(DESTDIR)$(INCLUDEDIR)/grobo
 	install -m 644 $(STATIC_LIB) $(CORE_LIB) $(DESTDIR)$(LIBDIR)
 	install -m 755 $(SHARED_LIB) $(DESTDIR)$(LIBDIR)
 	ln -sf $(SONAME) $(DESTDIR)$(LIBDIR)/libgrobo.so
@@ -146,7 +147,7 @@ $(eval $(call compile,src/sim,SRC_INCLUDE))
 $(eval $(call compile,src/body,SRC_INCLUDE))
 $(eval $(call compile,src/motion,SRC_INCLUDE YAML_CFLAGS))
 $(eval $(call compile,src/link,SRC_INCLUDE OS_FLAGS EVENT_CFLAGS))
-$(eval $(call compile,ports/posix,SRC_INCLUDE OS_FLAGS))
+$(eval $(call compile,ports/$(PORT),SRC_INCLUDE OS_FLAGS))
 $(eval $(call compile,tools/grctl,OS_FLAGS EVENT_CFLAGS))
 $(eval $(call compile,docs/examples,OS_FLAGS EVENT_CFLAGS))
 $(eval $(call compile,tests,TEST_INCLUDE OS_FLAGS EVENT_CFLAGS YAML_CFLAGS CMOCKA_CFLAGS))

@@ -34,6 +34,11 @@
 #define GROBO_QUEUE_MAX 8
 #endif
 
+/** Bytes that may wait to be sent on a serial port. */
+#ifndef GROBO_SERIAL_QUEUE_BYTES
+#define GROBO_SERIAL_QUEUE_BYTES 4096
+#endif
+
 /** Motion files: bytes read at most. */
 #define GROBO_FILE_MAX_BYTES (1024L * 1024L * 1024L)
 /** Motion files: nesting of the YAML document. */

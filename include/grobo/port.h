@@ -1,0 +1,234 @@
+/* SPDX-License-Identifier: MIT */
+/**
+ * @file port.h
+ * @brief What the library asks of an operating system: clock, thread, lock, byte ports.
+ *
+ * A port is a folder (ports/posix, ports/win32) that brings grobo/port_os.h with the types and
+ * implements everything declared here. ports/README.md tells how to write another one.
+ *
+ * Nothing here knows an event loop. A byte port hands out a socket that a loop can wait on: on
+ * POSIX the descriptor itself, on Win32 one end of a socket pair that a thread of the port pumps
+ * from and to the COM handle by overlapped I/O.
+ */
+#ifndef GROBO_PORT_H
+#define GROBO_PORT_H
+
+#include <grobo/port_os.h>
+#include <grobo/types.h>
+
+GROBO_BEGIN_DECLS
+
+/** Longest device name, with its NUL. */
+#define GROBO_DEVICE_MAX_BYTES 256
+/** Longest text of a cause, with its NUL. */
+#define GROBO_CAUSE_MAX_BYTES 192
+
+/* ---- the operating system's cause --------------------------------------------------------- */
+
+/** Why the operating system refused; kept beside the GROBO_ERR_* it was turned into. */
+typedef struct grobo_os_cause {
+    int code;                         /**< errno or GetLastError(); 0 where the OS gave none */
+    char text[GROBO_CAUSE_MAX_BYTES]; /**< one phrase for a person: "held by minicom (pid 812)" */
+} grobo_os_cause;
+
+/* ---- clock -------------------------------------------------------------------------------- */
+
+/**
+ * Now, in microseconds of a monotonic clock with an arbitrary start. Never negative, never goes
+ * back, goes on while the system's date is changed. Thread safe.
+ */
+GROBO_API int64_t grobo_now_us(void);
+
+/* ---- threads and locks -------------------------------------------------------------------- */
+
+/** The function a thread runs: `GROBO_THREAD_FUNC run(void *arg) { ...; GROBO_THREAD_RETURN; }` */
+typedef GROBO_THREAD_FUNC (*grobo_thread_fn)(void *arg);
+
+/**
+ * Starts a thread. It takes no signals: they stay with the threads the program made itself.
+ * @param[out] thread to be joined by grobo_thread_join(), exactly once.
+ * @param arg borrowed, handed to fn.
+ * @return GROBO_OK, GROBO_ERR_ARG (a NULL), GROBO_ERR_NOMEM (the system has no more threads).
+ */
+GROBO_API int grobo_thread_start(grobo_thread *thread, grobo_thread_fn fn, void *arg);
+
+/**
+ * Waits until the thread's function has returned, and frees the thread.
+ * @return GROBO_OK; GROBO_ERR_STATE when called by the thread itself or for no thread.
+ */
+GROBO_API int grobo_thread_join(grobo_thread thread);
+
+/** True when the calling thread is `thread`. */
+GROBO_API bool grobo_thread_is_self(grobo_thread thread);
+
+/** Makes a lock in caller's storage. @return GROBO_OK, GROBO_ERR_NOMEM. */
+GROBO_API int grobo_mutex_init(grobo_mutex *mutex);
+
+/** Takes the lock, waits for it. Not recursive: taking it twice in one thread is a fault. */
+GROBO_API void grobo_mutex_lock(grobo_mutex *mutex);
+
+/** Gives the lock back; the thread that took it must call. */
+GROBO_API void grobo_mutex_unlock(grobo_mutex *mutex);
+
+/** Ends a lock that nobody holds. */
+GROBO_API void grobo_mutex_deinit(grobo_mutex *mutex);
+
+/* ---- byte ports --------------------------------------------------------------------------- */
+
+/** An open byte port: storage of grobo_port_ops.size_bytes that the caller provides. */
+typedef struct grobo_port grobo_port;
+
+/**
+ * A kind of byte port. A table of these functions is all that src/link knows of a line, so a test
+ * or a program may hand in its own (grobo_serial_config.ops).
+ *
+ * No function blocks and none is called again by a signal's interruption (EINTR is taken care of
+ * inside). `cause` is filled when a function fails, and is never NULL. A port belongs to the
+ * thread that uses it. Reading, writing and ready() return GROBO_ERR_UNPLUGGED when the other end
+ * or the device is gone, GROBO_ERR_IO for any other failure; after either only close() may follow.
+ */
+typedef struct grobo_port_ops {
+    const char *name;  /**< "serial", "tcp" */
+    size_t size_bytes; /**< size of a grobo_port of this kind, for malloc-like alignment */
+
+    /**
+     * Opens a device: raw, 8 data bits, no parity, 1 stop bit, no flow control, for this process
+     * alone, what was received before is dropped. The storage needs no preparation.
+     * @return GROBO_OK; or one of these, and there is nothing to close: GROBO_ERR_NOENT,
+     *   GROBO_ERR_PERM, GROBO_ERR_BUSY (cause names the holder where the system tells),
+     *   GROBO_ERR_ISDIR, GROBO_ERR_TYPE (no serial port), GROBO_ERR_UNSUPPORTED (baud rate),
+     *   GROBO_ERR_ARG (malformed name), GROBO_ERR_UNPLUGGED (the node is there, the device not),
+     *   GROBO_ERR_IO.
+     */
+    int (*open)(grobo_port *port, const char *device, int baud_bps, grobo_os_cause *cause);
+
+    /** Closes; the storage may be used for another open() then. */
+    void (*close)(grobo_port *port);
+
+    /**
+     * Whether open() has been completed: a connection may still be on its way. While 0, wait
+     * until socket() is writable and ask again.
+     * @return 1 usable, 0 not yet, or an error (GROBO_ERR_UNPLUGGED: nobody there).
+     */
+    int (*ready)(grobo_port *port, grobo_os_cause *cause);
+
+    /** Takes what has been received, at most `size` bytes. @return count; 0 nothing now. */
+    int (*read)(grobo_port *port, void *buf, size_t size, grobo_os_cause *cause);
+
+    /** Hands over what the system takes at once. @return count, may be short; 0 none now. */
+    int (*write)(grobo_port *port, const void *buf, size_t size, grobo_os_cause *cause);
+
+    /** Bytes received and not yet read; the system may cap the number. */
+    int (*waiting)(grobo_port *port, grobo_os_cause *cause);
+
+    /**
+     * Drops what was written and has not left yet. Where the system cannot, nothing happens.
+     * (To drop what was received, read it: then its count is known.)
+     */
+    void (*discard_output)(grobo_port *port);
+
+    /**
+     * Changes the speed of an open port, reads it back and compares.
+     * @return the rate in effect, within 2 % of what was asked for (a UART's tolerance);
+     *   GROBO_ERR_UNSUPPORTED when the device runs at another one (the old one is set again);
+     *   for a kind without a speed: baud_bps.
+     */
+    int (*set_baud)(grobo_port *port, int baud_bps, grobo_os_cause *cause);
+
+    /**
+     * Asks the driver to hand over received bytes at once (FTDI: latency timer 1 ms for 16).
+     * @return GROBO_OK, GROBO_ERR_UNSUPPORTED where the driver knows no such thing,
+     *   GROBO_ERR_PERM where it may not be set.
+     */
+    int (*set_low_latency)(grobo_port *port, grobo_os_cause *cause);
+
+    /** What an event loop or grobo_port_wait() waits on; valid until close(). */
+    grobo_socket (*socket)(const grobo_port *port);
+
+    /** The operating system's handle; belongs to the port, valid until close(). */
+    grobo_handle (*handle)(const grobo_port *port);
+} grobo_port_ops;
+
+/**
+ * Serial ports: a path (/dev/ttyUSB0, a link in /dev/serial/by-id, a pty's slave), or on Win32
+ * COM1, COM10, \\.\COM10. Static, thread safe.
+ */
+GROBO_API const grobo_port_ops *grobo_port_serial_ops(void);
+
+/**
+ * Raw TCP, as ser2net serves a serial port: the device is "tcp:HOST:PORT", HOST being a numeric
+ * IPv4 address, a numeric IPv6 address in [], or localhost: nothing here may block, and a look-up
+ * of names does (grobo_port_resolve() does it beforehand). Static, thread safe.
+ */
+GROBO_API const grobo_port_ops *grobo_port_tcp_ops(void);
+
+/**
+ * Turns "tcp:HOST:PORT" with a name for HOST into the numeric form; any other device is copied as
+ * it is. BLOCKS while the system looks the name up: call it before a loop runs. Thread safe.
+ * @param[out] numeric NUL-terminated on success.
+ * @return GROBO_OK, GROBO_ERR_ARG (malformed), GROBO_ERR_NOENT (no such host),
+ *   GROBO_ERR_SPACE (numeric_bytes too small; GROBO_DEVICE_MAX_BYTES is always enough).
+ */
+GROBO_API int grobo_port_resolve(const char *device, char *numeric, size_t numeric_bytes,
+                                 grobo_os_cause *cause);
+
+/** Wait for bytes to read. */
+#define GROBO_PORT_READABLE 1u
+/** Wait for room to write. */
+#define GROBO_PORT_WRITABLE 2u
+
+/**
+ * Waits, without using the processor, until a port's socket is ready or timeout_us have passed
+ * (0 asks only, negative is taken for 0). For calls that wait; a loop never calls it.
+ * @param what GROBO_PORT_READABLE, GROBO_PORT_WRITABLE or both.
+ * @return the ready ones of `what` (an error or hang-up counts as ready: the next read or write
+ *   tells), 0 when the time has passed or a signal came, GROBO_ERR_IO.
+ */
+GROBO_API int grobo_port_wait(grobo_socket socket, unsigned what, int64_t timeout_us);
+
+/* ---- list of ports ------------------------------------------------------------------------ */
+
+/** One serial port of this machine. Texts that are not known are empty. */
+typedef struct grobo_port_info {
+    char path[GROBO_DEVICE_MAX_BYTES];  /**< what to open: /dev/ttyUSB0, COM3 */
+    char by_id[GROBO_DEVICE_MAX_BYTES]; /**< the name that stays when it is plugged in elsewhere */
+    char driver[64];                    /**< ftdi_sio, cdc_acm, serial8250 */
+    char manufacturer[64];              /**< as the USB device says */
+    char product[64];                   /**< as the USB device says */
+    char serial_number[64];             /**< as the USB device says */
+    int usb_vendor;                     /**< USB vendor id, -1 for no USB device */
+    int usb_product;                    /**< USB product id, -1 for no USB device */
+    int latency_ms;                     /**< the FTDI driver's latency timer, -1 unknown */
+    int owner_pid;                      /**< a process that has it open, 0 none or not known */
+    char owner_name[64];                /**< the name of that process */
+    int open_result; /**< GROBO_OK: may be opened; else GROBO_ERR_PERM, GROBO_ERR_BUSY, ... */
+} grobo_port_info;
+
+/**
+ * Visits every serial port of this machine, without opening any (opening moves modem lines).
+ * @param visit called for each, in the order of their names; `info` is valid during the call;
+ *   a result other than 0 ends the visit and is returned.
+ * @return the number of ports, or what visit returned; GROBO_ERR_UNSUPPORTED where the system
+ *   has no list. Blocks for as long as the system takes to list (milliseconds). Thread safe.
+ */
+GROBO_API int grobo_port_list(int (*visit)(void *ctx, const grobo_port_info *info), void *ctx);
+
+/**
+ * The name of a device that stays the same when it is unplugged and comes back elsewhere: its
+ * link in /dev/serial/by-id; for a device without one, its own name.
+ * @param[out] name NUL-terminated on success.
+ * @return GROBO_OK, GROBO_ERR_ARG, GROBO_ERR_SPACE.
+ */
+GROBO_API int grobo_port_identity(const char *device, char *name, size_t name_bytes);
+
+/**
+ * A process that has a device open: who holds the lock of it, else the first found that has it
+ * open and is not the caller.
+ * @param[out] name the process's name, NUL-terminated, cut to size; untouched where none.
+ * @return its pid, 0 where there is none or the system does not tell.
+ */
+GROBO_API int grobo_port_owner(const char *device, char *name, size_t name_bytes);
+
+GROBO_END_DECLS
+
+#endif
