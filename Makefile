@@ -46,6 +46,8 @@ YAML_CFLAGS = $(eval YAML_CFLAGS := $$(call package,--cflags yaml-0.1))$(YAML_CF
 EVENT_CFLAGS = $(eval EVENT_CFLAGS := $$(call package,--cflags libevent_core))$(EVENT_CFLAGS)
 CMOCKA_CFLAGS = $(eval CMOCKA_CFLAGS := $$(call package,--cflags cmocka))$(CMOCKA_CFLAGS)
 CMOCKA_LIBS = $(eval CMOCKA_LIBS := $$(call package,--libs cmocka))$(CMOCKA_LIBS)
+JSON_CFLAGS = $(eval JSON_CFLAGS := $$(call package,--cflags jansson))$(JSON_CFLAGS)
+TOOL_LIBS = $(eval TOOL_LIBS := $$(call package,--libs jansson))$(TOOL_LIBS)
 LIBS = $(eval LIBS := $$(call package,--libs yaml-0.1 libevent_core) -lm -pthread)$(LIBS)
 
 # ---- sources, by folder: a folder may be empty or missing ----------------------------------
@@ -148,7 +150,7 @@ $(eval $(call compile,src/body,SRC_INCLUDE))
 $(eval $(call compile,src/motion,SRC_INCLUDE YAML_CFLAGS))
 $(eval $(call compile,src/link,SRC_INCLUDE OS_FLAGS EVENT_CFLAGS))
 $(eval $(call compile,ports/$(PORT),SRC_INCLUDE OS_FLAGS))
-$(eval $(call compile,tools/grctl,OS_FLAGS EVENT_CFLAGS))
+$(eval $(call compile,tools/grctl,OS_FLAGS EVENT_CFLAGS JSON_CFLAGS))
 $(eval $(call compile,docs/examples,OS_FLAGS EVENT_CFLAGS))
 $(eval $(call compile,tests,TEST_INCLUDE OS_FLAGS EVENT_CFLAGS YAML_CFLAGS CMOCKA_CFLAGS))
 

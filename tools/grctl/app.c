@@ -1,0 +1,147 @@
+/* SPDX-License-Identifier: MIT */
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "app.h"
+
+static bool wants_color(const app *a, bool tty)
+{
+    const cli_value *v = app_global(a, GLOBAL_COLOR);
+    const char *no_color = getenv("NO_COLOR");
+    const char *term = getenv("TERM");
+    if (v->given && v->choice == 1) /* always */
+        return true;
+    if (v->given && v->choice == 2) /* never */
+        return false;
+    if (no_color && *no_color)
+        return false;
+    return tty && !(term && strcmp(term, "dumb") == 0);
+}
+
+void app_settle(app *a)
+{
+    a->json = app_global(a, GLOBAL_JSON)->given > 0;
+    a->verbosity =
+        app_global(a, GLOBAL_QUIET)->given ? -1 : app_global(a, GLOBAL_VERBOSE)->given;
+    a->tty_out = isatty(STDOUT_FILENO) == 1;
+    a->tty_err = isatty(STDERR_FILENO) == 1;
+    a->color_out = wants_color(a, a->tty_out);
+    a->color_err = wants_color(a, a->tty_err);
+}
+
+const cli_value *app_option(const app *a, int i)
+{
+    return &a->line.option[i];
+}
+
+const cli_value *app_global(const app *a, int i)
+{
+    return &a->line.global[i];
+}
+
+double app_number(const app *a, int i, double otherwise)
+{
+    return a->line.option[i].given ? a->line.option[i].number : otherwise;
+}
+
+/* A file name may hold anything; what is said of it stays one line. */
+static void make_one_line(char *text)
+{
+    for (; *text; text++)
+        if ((unsigned char)*text < 0x20 || *text == 0x7f)
+            *text = '?';
+}
+
+int app_fail(app *a, int status, const char *code, const char *format, ...)
+{
+    char text[1024];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(text, sizeof text, format, list);
+    va_end(list);
+    make_one_line(text);
+    fflush(stdout);
+    fprintf(stderr, "%sgrctl:%s %s\n", a->color_err ? "\033[1;31m" : "",
+            a->color_err ? "\033[0m" : "", text);
+    if (a->json)
+        app_print_json(json_pack("{s:{s:s,s:o}}", "error", "code", code, "message",
+                                 app_json_text(text)));
+    return status;
+}
+
+int app_status_of(int error)
+{
+    switch (error) {
+    case GROBO_ERR_LIMIT:
+    case GROBO_ERR_SPEED:
+    case GROBO_ERR_LATCHED:
+        return EXIT_SAFETY;
+    case GROBO_ERR_ARG:
+        return EXIT_USAGE;
+    case GROBO_ERR_SYNTAX:
+        return EXIT_FILE;
+    }
+    return EXIT_ROBOT;
+}
+
+static void say(const char *format, va_list list)
+{
+    char text[1024];
+    vsnprintf(text, sizeof text, format, list);
+    make_one_line(text);
+    fprintf(stderr, "%s\n", text);
+}
+
+void app_note(const app *a, const char *format, ...)
+{
+    va_list list;
+    if (a->verbosity < 0)
+        return;
+    va_start(list, format);
+    say(format, list);
+    va_end(list);
+}
+
+void app_detail(const app *a, const char *format, ...)
+{
+    va_list list;
+    if (a->verbosity < 1)
+        return;
+    va_start(list, format);
+    say(format, list);
+    va_end(list);
+}
+
+void app_print_json(json_t *object)
+{
+    json_dumpf(object, stdout, JSON_COMPACT | JSON_REAL_PRECISION(12));
+    putchar('\n');
+    fflush(stdout);
+    json_decref(object);
+}
+
+json_t *app_json_text(const char *text)
+{
+    json_t *string = json_string(text);
+    if (!string) { /* not UTF-8: keep what can be shown */
+        char *copy = strdup(text);
+        for (char *c = copy; c && *c; c++)
+            if ((unsigned char)*c >= 0x80)
+                *c = '?';
+        string = json_string(copy ? copy : "?");
+        free(copy);
+    }
+    return string;
+}
+
+json_t *app_json_number(double number, int decimals)
+{
+    double scale = pow(10, decimals);
+    double rounded = round(number * scale) / scale;
+    if (!isfinite(rounded))
+        return json_null();
+    return json_real(rounded == 0 ? 0 : rounded); /* no -0.0 */
+}

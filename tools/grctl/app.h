@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What every command has at hand: the parsed command line and the one way to speak, as text or
+ * as JSON. Results go to standard output, everything said to a person to standard error.
+ */
+#ifndef GRCTL_APP_H
+#define GRCTL_APP_H
+
+#include <jansson.h>
+
+#include <grobo/types.h>
+
+#include "cli.h"
+
+typedef struct app {
+    cli_line line;
+    bool json;
+    int verbosity; /* -1 quiet, 0, 1, 2 */
+    bool color_out, color_err;
+    bool tty_out, tty_err;
+} app;
+
+/* Sets what follows from the parsed line: verbosity, colours, terminals. */
+void app_settle(app *a);
+
+/* The value of the command's own option number i; of a global option. */
+const cli_value *app_option(const app *a, int i);
+const cli_value *app_global(const app *a, int i);
+/* Number of an option, or `otherwise` when it was not given. */
+double app_number(const app *a, int i, double otherwise);
+
+/*
+ * Says one line of what went wrong ("grctl: ...") and returns the exit status it was given. With
+ * --json the same goes to standard output as {"error": {"code": ..., "message": ...}}.
+ * code: a stable word, such as grobo_error_name() gives.
+ */
+int app_fail(app *a, int status, const char *code, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+/* The exit status that fits a library error. */
+int app_status_of(int error);
+
+/* A line for a person on standard error, unless quiet; only from -v on. */
+void app_note(const app *a, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void app_detail(const app *a, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* One JSON object on a line of its own; takes the reference. */
+void app_print_json(json_t *object);
+/* A JSON string of bytes that may be no UTF-8. */
+json_t *app_json_text(const char *text);
+/* A JSON number rounded to so many decimals. */
+json_t *app_json_number(double number, int decimals);
+
+#endif

@@ -1,0 +1,120 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The command line as data: one table of commands and one of options make the parser, the help
+ * and whatever else must agree with them.
+ */
+#ifndef GRCTL_CLI_H
+#define GRCTL_CLI_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+
+/* Exit statuses promised to users. */
+enum {
+    EXIT_DONE = 0,
+    EXIT_ROBOT = 1,  /* the robot or the link failed */
+    EXIT_USAGE = 2,  /* the command line is wrong */
+    EXIT_FILE = 3,   /* a file is bad */
+    EXIT_SAFETY = 4, /* refused for safety */
+    EXIT_SIGNAL = 128 /* plus the number of the signal */
+};
+
+enum { CLI_OPTIONS_MAX = 16, CLI_ARGUMENTS_MAX = 256 };
+
+typedef enum cli_kind {
+    CLI_FLAG,   /* no value; may be counted (-vv) */
+    CLI_NUMBER, /* a number within min..max; whole numbers unless `real` */
+    CLI_TEXT,   /* any text */
+    CLI_CHOICE  /* one of the words of `value`, split by | */
+} cli_kind;
+
+typedef struct cli_option {
+    const char *name;  /* "time": --time */
+    char letter;       /* 't': -t, 0 for none */
+    cli_kind kind;
+    const char *value; /* name of the value in help, or the words of a choice */
+    const char *help;
+    double min, max; /* of a number, both included */
+    bool real;       /* a number may have a fraction */
+} cli_option;
+
+typedef struct cli_value {
+    int given;        /* how often */
+    const char *text; /* as typed */
+    double number;
+    int choice; /* index of the word */
+} cli_value;
+
+/* What the arguments of a command are: for completion and manual. */
+typedef enum cli_argument {
+    CLI_ARG_NONE,
+    CLI_ARG_COMMAND,
+    CLI_ARG_JOINT,
+    CLI_ARG_FILE,
+    CLI_ARG_WORD
+} cli_argument;
+
+struct app;
+typedef struct cli_command {
+    const char *name;
+    const char *arguments; /* "JOINT DEG [MS]" */
+    const char *summary;   /* one line, no full stop */
+    const char *details;   /* paragraphs for help and manual */
+    const char *example;   /* one command line a line, or NULL */
+    const cli_option *options;
+    size_t n_options;
+    int min_arguments, max_arguments;
+    cli_argument argument;
+    int (*run)(struct app *app);
+} cli_command;
+
+/* Global options, in the order of cli_global_options[]. */
+enum {
+    GLOBAL_DEVICE,
+    GLOBAL_BAUD,
+    GLOBAL_WIRING,
+    GLOBAL_JSON,
+    GLOBAL_QUIET,
+    GLOBAL_VERBOSE,
+    GLOBAL_TIMEOUT,
+    GLOBAL_RETRIES,
+    GLOBAL_ON_EXIT,
+    GLOBAL_YES,
+    GLOBAL_COLOR,
+    GLOBAL_HELP,
+    GLOBAL_VERSION,
+    GLOBAL_COUNT
+};
+extern const cli_option cli_global_options[GLOBAL_COUNT];
+
+extern const cli_command *const cli_commands[];
+extern const size_t cli_n_commands;
+
+typedef struct cli_line {
+    const cli_command *command; /* NULL: none was given */
+    cli_value global[GLOBAL_COUNT];
+    cli_value option[CLI_OPTIONS_MAX]; /* in the order of the command's own table */
+    const char *argument[CLI_ARGUMENTS_MAX];
+    int n_arguments;
+} cli_line;
+
+/*
+ * Parses a command line. Strings of argv are borrowed.
+ * Returns true, or false with one line of complaint (no newline) in `complaint`.
+ */
+bool cli_parse(cli_line *line, int argc, char *const *argv, char *complaint, size_t capacity);
+
+/* The command of that name, or NULL. */
+const cli_command *cli_find_command(const char *name);
+
+/* The known name that is nearest to a mistyped one, or NULL if none is near. */
+const char *cli_nearest_command(const char *name);
+
+/* Reads a whole text as a finite number; false if it is none. Knows no locale. */
+bool cli_read_number(const char *text, double *number);
+
+void cli_print_overview(FILE *to);
+void cli_print_command(FILE *to, const cli_command *command);
+
+#endif

@@ -1,0 +1,260 @@
+/* SPDX-License-Identifier: MIT */
+/* Parsing of command lines against the tables of cli.h. */
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli.h"
+
+typedef struct parser {
+    cli_line *line;
+    char *const *argv;
+    int argc, at;
+    bool only_arguments; /* after "--" */
+    char *complaint;
+    size_t capacity;
+} parser;
+
+static bool complain(parser *p, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+static bool complain(parser *p, const char *format, ...)
+{
+    va_list list;
+    va_start(list, format);
+    vsnprintf(p->complaint, p->capacity, format, list);
+    va_end(list);
+    return false;
+}
+
+bool cli_read_number(const char *text, double *number)
+{
+    char *end = NULL;
+    double value;
+    if (strspn(text, "0123456789+-.eE") != strlen(text) || *text == '\0')
+        return false;
+    value = strtod(text, &end);
+    if (end == text || *end != '\0' || !isfinite(value))
+        return false;
+    *number = value;
+    return true;
+}
+
+const cli_command *cli_find_command(const char *name)
+{
+    for (size_t i = 0; i < cli_n_commands; i++)
+        if (strcmp(cli_commands[i]->name, name) == 0)
+            return cli_commands[i];
+    return NULL;
+}
+
+/* Edits (insert, delete, replace, swap of neighbours) that turn a into b; names are short. */
+static int distance(const char *a, const char *b)
+{
+    enum { MOST = 24 };
+    int d[MOST + 1][MOST + 1];
+    int n = (int)strnlen(a, MOST), m = (int)strnlen(b, MOST);
+    for (int i = 0; i <= n; i++)
+        d[i][0] = i;
+    for (int j = 0; j <= m; j++)
+        d[0][j] = j;
+    for (int i = 1; i <= n; i++) {
+        for (int j = 1; j <= m; j++) {
+            int best = d[i - 1][j - 1] + (a[i - 1] != b[j - 1]);
+            if (d[i - 1][j] + 1 < best)
+                best = d[i - 1][j] + 1;
+            if (d[i][j - 1] + 1 < best)
+                best = d[i][j - 1] + 1;
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] &&
+                d[i - 2][j - 2] + 1 < best)
+                best = d[i - 2][j - 2] + 1;
+            d[i][j] = best;
+        }
+    }
+    return d[n][m];
+}
+
+const char *cli_nearest_command(const char *name)
+{
+    const char *nearest = NULL;
+    int best = 3; /* more than two edits is another word */
+    for (size_t i = 0; i < cli_n_commands; i++) {
+        int d = distance(name, cli_commands[i]->name);
+        if (d < best && d < (int)strlen(cli_commands[i]->name)) {
+            best = d;
+            nearest = cli_commands[i]->name;
+        }
+    }
+    return nearest;
+}
+
+/* Index of a word in "a|b|c", or -1. */
+static int choice_index(const char *words, const char *word)
+{
+    size_t length = strlen(word);
+    for (int i = 0;; i++) {
+        size_t n = strcspn(words, "|");
+        if (n == length && strncmp(words, word, n) == 0)
+            return i;
+        if (words[n] == '\0')
+            return -1;
+        words += n + 1;
+    }
+}
+
+static bool take_number(parser *p, const cli_option *o, cli_value *v, const char *text)
+{
+    double number;
+    if (!cli_read_number(text, &number) || (!o->real && number != floor(number)) ||
+        number < o->min || number > o->max)
+        return complain(p, "--%s: '%s' is not a %s from %.10g to %.10g", o->name, text,
+                        o->real ? "number" : "whole number", o->min, o->max);
+    v->number = number;
+    return true;
+}
+
+static bool take_value(parser *p, const cli_option *o, cli_value *v, const char *text)
+{
+    v->given++;
+    v->text = text;
+    switch (o->kind) {
+    case CLI_FLAG:
+    case CLI_TEXT:
+        return true;
+    case CLI_NUMBER:
+        return take_number(p, o, v, text);
+    case CLI_CHOICE:
+        v->choice = choice_index(o->value, text);
+        if (v->choice < 0)
+            return complain(p, "--%s: '%s' is none of %s", o->name, text, o->value);
+        return true;
+    }
+    return false;
+}
+
+/* Finds an option among the command's own, then the global ones. */
+static const cli_option *find_option(parser *p, const char *name, size_t length, char letter,
+                                     cli_value **value)
+{
+    const cli_command *command = p->line->command;
+    for (size_t i = 0; command && i < command->n_options; i++) {
+        const cli_option *o = &command->options[i];
+        if (letter ? o->letter == letter
+                   : strlen(o->name) == length && strncmp(o->name, name, length) == 0) {
+            *value = &p->line->option[i];
+            return o;
+        }
+    }
+    for (size_t i = 0; i < GLOBAL_COUNT; i++) {
+        const cli_option *o = &cli_global_options[i];
+        if (letter ? o->letter == letter
+                   : strlen(o->name) == length && strncmp(o->name, name, length) == 0) {
+            *value = &p->line->global[i];
+            return o;
+        }
+    }
+    return NULL;
+}
+
+/* --name, --name=value, --name value */
+static bool parse_long(parser *p, const char *token)
+{
+    const char *name = token + 2;
+    size_t length = strcspn(name, "=");
+    const char *text = name[length] == '=' ? name + length + 1 : NULL;
+    cli_value *value = NULL;
+    const cli_option *o = find_option(p, name, length, 0, &value);
+    if (!o)
+        return complain(p, "unknown option --%.*s", (int)length, name);
+    if (o->kind == CLI_FLAG)
+        return text ? complain(p, "--%s takes no value", o->name)
+                    : take_value(p, o, value, "");
+    if (!text) {
+        if (p->at >= p->argc)
+            return complain(p, "--%s needs a value: %s", o->name, o->value);
+        text = p->argv[p->at++];
+    }
+    return take_value(p, o, value, text);
+}
+
+/* -abc, -d value, -dvalue */
+static bool parse_short(parser *p, const char *token)
+{
+    for (const char *c = token + 1; *c; c++) {
+        cli_value *value = NULL;
+        const cli_option *o = find_option(p, "", 0, *c, &value);
+        if (!o)
+            return complain(p, "unknown option -%c", *c);
+        if (o->kind == CLI_FLAG) {
+            if (!take_value(p, o, value, ""))
+                return false;
+            continue;
+        }
+        if (c[1])
+            return take_value(p, o, value, c + 1);
+        if (p->at >= p->argc)
+            return complain(p, "-%c needs a value: %s", *c, o->value);
+        return take_value(p, o, value, p->argv[p->at++]);
+    }
+    return true;
+}
+
+static bool parse_argument(parser *p, const char *token)
+{
+    cli_line *line = p->line;
+    if (!line->command) {
+        const char *nearest;
+        line->command = cli_find_command(token);
+        if (line->command)
+            return true;
+        nearest = cli_nearest_command(token);
+        return nearest ? complain(p, "no command '%s'; did you mean '%s'?", token, nearest)
+                       : complain(p, "no command '%s'", token);
+    }
+    if (line->n_arguments >= CLI_ARGUMENTS_MAX)
+        return complain(p, "more than %d arguments", CLI_ARGUMENTS_MAX);
+    line->argument[line->n_arguments++] = token;
+    return true;
+}
+
+/* A token such as -40 or -.5 is a number, not an option. */
+static bool is_option(const char *token)
+{
+    return token[0] == '-' && token[1] != '\0' && !strchr("0123456789.", token[1]);
+}
+
+static bool check_count(parser *p)
+{
+    const cli_command *command = p->line->command;
+    int n = p->line->n_arguments;
+    if (!command || p->line->global[GLOBAL_HELP].given)
+        return true;
+    if (n < command->min_arguments)
+        return complain(p, "%s needs %s", command->name, command->arguments);
+    if (command->max_arguments >= 0 && n > command->max_arguments)
+        return complain(p, "%s: '%s' is one argument too many", command->name,
+                        p->line->argument[command->max_arguments]);
+    return true;
+}
+
+bool cli_parse(cli_line *line, int argc, char *const *argv, char *complaint, size_t capacity)
+{
+    parser p = {.line = line, .argv = argv, .argc = argc, .at = 1, .complaint = complaint,
+                .capacity = capacity};
+    memset(line, 0, sizeof *line);
+    while (p.at < argc) {
+        const char *token = argv[p.at++];
+        bool ok;
+        if (!p.only_arguments && strcmp(token, "--") == 0) {
+            p.only_arguments = true;
+            continue;
+        }
+        if (p.only_arguments || !is_option(token))
+            ok = parse_argument(&p, token);
+        else
+            ok = token[1] == '-' ? parse_long(&p, token) : parse_short(&p, token);
+        if (!ok)
+            return false;
+    }
+    return check_count(&p);
+}

@@ -1,0 +1,68 @@
+/* SPDX-License-Identifier: MIT */
+#include <stdlib.h>
+
+#include <grobo/version.h>
+
+#include "app.h"
+#include "commands.h"
+
+const cli_option cli_global_options[GLOBAL_COUNT] = {
+    [GLOBAL_DEVICE] = {.name = "device", .letter = 'd', .kind = CLI_TEXT, .value = "DEV",
+                       .help = "a port's path, auto, sim or tcp:HOST:PORT; else $GRCTL_DEVICE"},
+    [GLOBAL_BAUD] = {.name = "baud", .letter = 'b', .kind = CLI_NUMBER, .value = "N",
+                     .help = "bits per second of the line (115200)", .min = 9600, .max = 4000000},
+    [GLOBAL_WIRING] = {.name = "wiring", .kind = CLI_CHOICE, .value = "board|bus",
+                       .help = "through GR001's board, or servos straight on a bus"},
+    [GLOBAL_JSON] = {.name = "json", .kind = CLI_FLAG,
+                     .help = "results as JSON, one object a line"},
+    [GLOBAL_QUIET] = {.name = "quiet", .letter = 'q', .kind = CLI_FLAG, .help = "errors only"},
+    [GLOBAL_VERBOSE] = {.name = "verbose", .letter = 'v', .kind = CLI_FLAG,
+                        .help = "more; twice for every step"},
+    [GLOBAL_TIMEOUT] = {.name = "timeout", .kind = CLI_NUMBER, .value = "MS",
+                        .help = "wait so long for a reply (computed from the baud rate)",
+                        .min = 1, .max = 60000},
+    [GLOBAL_RETRIES] = {.name = "retries", .kind = CLI_NUMBER, .value = "N",
+                        .help = "ask again so often (2)", .min = 0, .max = 20},
+    [GLOBAL_ON_EXIT] = {.name = "on-exit", .kind = CLI_CHOICE, .value = "off|hold|sit",
+                        .help = "what the servos do when the command ends or dies (hold)"},
+    [GLOBAL_YES] = {.name = "yes", .letter = 'y', .kind = CLI_FLAG, .help = "no questions"},
+    [GLOBAL_COLOR] = {.name = "color", .kind = CLI_CHOICE, .value = "auto|always|never",
+                      .help = "colours; NO_COLOR is honoured"},
+    [GLOBAL_HELP] = {.name = "help", .letter = 'h', .kind = CLI_FLAG, .help = "this help"},
+    [GLOBAL_VERSION] = {.name = "version", .letter = 'V', .kind = CLI_FLAG,
+                        .help = "the version"},
+};
+
+/* In the order of the overview: finding a robot, its state, moving it, files, the simulator. */
+const cli_command *const cli_commands[] = {
+    &cmd_help,
+    &cmd_version,
+};
+const size_t cli_n_commands = sizeof cli_commands / sizeof cli_commands[0];
+
+int main(int argc, char **argv)
+{
+    static app a;
+    char complaint[512];
+    const cli_command *command;
+    bool ok = cli_parse(&a.line, argc, argv, complaint, sizeof complaint);
+    app_settle(&a);
+    command = a.line.command;
+    if (!ok)
+        return app_fail(&a, EXIT_USAGE, "USAGE", "%s; see 'grctl help%s%s'", complaint,
+                        command ? " " : "", command ? command->name : "");
+    if (app_global(&a, GLOBAL_VERSION)->given)
+        return cmd_version.run(&a);
+    if (app_global(&a, GLOBAL_HELP)->given) {
+        if (command)
+            cli_print_command(stdout, command);
+        else
+            cli_print_overview(stdout);
+        return EXIT_DONE;
+    }
+    if (!command) {
+        cli_print_overview(stderr);
+        return EXIT_USAGE;
+    }
+    return command->run(&a);
+}
