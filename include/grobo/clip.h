@@ -25,8 +25,9 @@ typedef struct grobo_clip {
      */
     int (*key)(void *ctx, size_t i, grobo_posture *posture, int64_t *at_us);
     /**
-     * The posture at time t_us, 0 <= t_us <= length_us; outside it is the nearest end. NULL where
-     * a clip can only be played by keys. @return 0 or an error.
+     * The posture at time t_us, 0 <= t_us <= length_us; outside it is the nearest end. Of a
+     * relative clip: the way from where it starts (its increments added up). NULL where a clip can
+     * only be played by keys. @return 0 or an error.
      */
     int (*sample)(void *ctx, int64_t t_us, grobo_posture *posture);
     void *ctx;         /**< handed back to both */
