@@ -39,6 +39,11 @@
 #define GROBO_SERIAL_QUEUE_BYTES 4096
 #endif
 
+/** Transactions that may wait in one bus. */
+#ifndef GROBO_BUS_QUEUE_MAX
+#define GROBO_BUS_QUEUE_MAX 64
+#endif
+
 /** Motion files: bytes read at most. */
 #define GROBO_FILE_MAX_BYTES (1024L * 1024L * 1024L)
 /** Motion files: nesting of the YAML document. */

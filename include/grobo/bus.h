@@ -1,0 +1,263 @@
+/* SPDX-License-Identifier: MIT */
+/**
+ * @file bus.h
+ * @brief Bounded transactions on a half-duplex line, sans I/O.
+ *
+ * A transaction is a frame and the reply to it. The bus keeps the transactions that wait, by
+ * priority, and has one on the wire at a time. It gives bytes to send, takes bytes received, and
+ * says when it wants to be called next; it has no descriptor, clock or allocation.
+ *
+ * A pump does, whenever bytes came or the deadline passed, always in this order:
+ * @code
+ *   grobo_bus_rx(&bus, now, bytes, n);              // what has arrived, first
+ *   grobo_bus_step(&bus, now);                      // timeouts, replies that need none
+ *   n = grobo_bus_tx(&bus, now, buf, sizeof buf);   // > 0: write buf, all of it, in order
+ *   wake_up_at(grobo_bus_deadline(&bus, now));      // <= now: again at once
+ * @endcode
+ *
+ * Rules it keeps:
+ * - Order: stop, then motion, then a user's request, then sensing; first come first served within
+ *   a priority. While a stop or a motion frame waits, a lower transaction on the wire gets no more
+ *   time than its reply needs, and is tried again afterwards if its budget allows.
+ * - A transaction ends exactly once, by its callback. Timeouts, wrong sums and broken echoes are
+ *   retried within its budget; a refusal (NACK, or GROBO_RS30X_STATUS_REFUSED in a return packet)
+ *   is never retried.
+ * - A deadline is computed: wire time of the request at the baud rate, forwarding by the board,
+ *   return delay, wire time of the reply, plus a margin learnt from the replies so far.
+ * - A reply is believed when header, id, flags, address, length and sum are those expected, and
+ *   it came after its request was sent. After a failure the line must be quiet for a moment before
+ *   the next request that wants a reply. An ACK is one byte without a name: it must be the first
+ *   byte after the request. And for hold_us after an attempt that got no reply, no other
+ *   transaction that the same reply would satisfy is sent, unless a reply to a later request has
+ *   come meanwhile (the line keeps the order, so the lost one cannot come any more).
+ *
+ * The bus is not thread safe: one thread, or the caller's lock. Callbacks run inside rx, step and
+ * the cancel functions; in a callback submit, cancel, reserve and the questions are allowed, also
+ * freeing or resubmitting the transaction that ended; rx, step and tx are not.
+ */
+#ifndef GROBO_BUS_H
+#define GROBO_BUS_H
+
+#include <grobo/board.h>
+
+GROBO_BEGIN_DECLS
+
+/** Who goes first. */
+typedef enum grobo_priority {
+    GROBO_PRIORITY_STOP = 0,   /**< emergency stop and what makes the robot safe */
+    GROBO_PRIORITY_MOTION = 1, /**< motion frames, on time */
+    GROBO_PRIORITY_USER = 2,   /**< what a person asked for */
+    GROBO_PRIORITY_SENSE = 3   /**< reading along */
+} grobo_priority;
+
+/** Number of priorities. */
+#define GROBO_PRIORITIES 4
+
+typedef struct grobo_txn grobo_txn;
+
+/**
+ * The end of a transaction. It is the caller's again: it may be freed or submitted here.
+ * @param ctx    txn->ctx
+ * @param txn    the transaction, no longer known to the bus
+ * @param result GROBO_OK; GROBO_ERR_TIMEOUT (nothing came), GROBO_ERR_SHORT (some bytes came),
+ *               GROBO_ERR_CHECKSUM, GROBO_ERR_MISMATCH (the echo was broken, or an ACK came
+ *               among other bytes), GROBO_ERR_NACK, GROBO_ERR_STALE (start_by_us passed), or what
+ *               the cancel function was given
+ * @param reply  the return packet or ACK that ended it, valid during the call; NULL when there is
+ *               none. GROBO_ERR_NACK comes with it: its flags say why.
+ */
+typedef void (*grobo_txn_done)(void *ctx, grobo_txn *txn, int result,
+                               const grobo_rs30x_packet *reply);
+
+/**
+ * A transaction. The caller owns the struct and the frame's bytes; both must stay until done.
+ * Start from grobo_txn_init, then set what differs.
+ */
+struct grobo_txn {
+    const uint8_t *frame;    /**< borrowed: what is sent */
+    uint8_t frame_bytes;     /**< 1..GROBO_RS30X_PACKET_MAX_BYTES */
+    uint8_t retries;         /**< attempts after the first, 0 none */
+    grobo_priority priority; /**< who goes first */
+    grobo_reply reply;       /**< what must come back */
+    uint32_t timeout_us;     /**< time from the first byte sent to the reply; 0: computed */
+    int64_t start_by_us;     /**< not worth sending after this time; 0: always */
+    grobo_txn_done done;     /**< may be NULL */
+    void *ctx;               /**< handed back to done */
+    int64_t sent_us;         /**< out: when the last attempt was given out; -1: never */
+    /* private */
+    grobo_txn *next_;
+    uint8_t attempt_; /* attempts begun */
+    uint8_t state_;
+    int16_t error_; /* of the last attempt that failed */
+};
+
+/** The line's physics. Zero means default. */
+typedef struct grobo_bus_config {
+    grobo_wiring wiring;       /**< default: through the board */
+    uint32_t baud_bps;         /**< of the host's line; default 115200 */
+    uint32_t servo_baud_bps;   /**< of the bus behind the board; default 115200 */
+    uint32_t return_delay_us;  /**< of the servos, GROBO_RS30X_DELAY_US(n); default 100 */
+    uint32_t margin_us;        /**< time given above the wire time, fixed; default: learnt, between
+                                    GROBO_BUS_MARGIN_MIN_US and GROBO_BUS_MARGIN_MAX_US */
+    uint32_t quiet_us;         /**< silence after a failure; default GROBO_BUS_QUIET_US */
+    uint32_t hold_us;          /**< see above; default GROBO_BUS_HOLD_US */
+    bool echo;                 /**< the adapter returns what is sent: check and remove it */
+    bool overlap;              /**< the board takes a frame while it still forwards the one before;
+                                    nobody documented that, so by default it is not relied upon */
+} grobo_bus_config;
+
+/** Learnt margin: lower bound. */
+#define GROBO_BUS_MARGIN_MIN_US 3000
+/** Learnt margin: upper bound, and of a retry, whose margin doubles. */
+#define GROBO_BUS_MARGIN_MAX_US 40000
+/** Learnt margin: before the first reply. An FTDI adapter holds bytes back for 16 ms. */
+#define GROBO_BUS_MARGIN_FIRST_US 20000
+/** Silence after a failure, before a request that wants a reply. */
+#define GROBO_BUS_QUIET_US 1000
+/** A babbling line is not waited for longer than this. */
+#define GROBO_BUS_QUIET_MAX_US 50000
+/** How long a reply may be late and still be told apart. */
+#define GROBO_BUS_HOLD_US 100000
+/** Lost replies that are remembered at a time; the oldest is forgotten first. */
+#define GROBO_BUS_HOLDS 4
+
+/** What the bus met; monotonic, wraps. */
+typedef struct grobo_bus_stats {
+    uint32_t tx_frames;    /**< frames given out, retries included */
+    uint32_t tx_bytes;     /**< their bytes */
+    uint32_t rx_bytes;     /**< bytes taken */
+    uint32_t rx_frames;    /**< whole packets and ACKs among them */
+    uint32_t replies;      /**< of these, those that ended a transaction well */
+    uint32_t refusals;     /**< NACK or refused */
+    uint32_t timeouts;     /**< attempts without a whole reply in time */
+    uint32_t retries;      /**< attempts after the first */
+    uint32_t bad_sums;     /**< replies whose sum was wrong */
+    uint32_t resync_bytes; /**< rubbish skipped while a reply was awaited */
+    uint32_t late_frames;  /**< whole replies that fitted nothing awaited */
+    uint32_t late_bytes;   /**< their bytes, and bytes that came when nothing was awaited */
+    uint32_t bad_echoes;   /**< frames whose echo was broken */
+    uint32_t failed;       /**< transactions that ended badly after their retries */
+    uint32_t canceled;     /**< transactions taken back */
+} grobo_bus_stats;
+
+/** A bus. The struct is open so that it needs no heap; read stats, leave the rest. */
+typedef struct grobo_bus {
+    grobo_bus_stats stats; /**< read freely */
+    /* private */
+    grobo_bus_config config;
+    grobo_rs30x_parser parser;
+    grobo_txn *head[GROBO_PRIORITIES];
+    grobo_txn *tail[GROBO_PRIORITIES];
+    grobo_txn *active;   /* on the wire */
+    int64_t over_us;     /* when the active one is over if all goes well */
+    int64_t limit_us;    /* when it has failed */
+    int64_t free_us;     /* when the line is free for the next frame */
+    int64_t servo_us;    /* when the bus behind the board is free */
+    int64_t quiet_us;    /* when the silence after a failure is long enough */
+    int64_t quiet_by_us; /* when it is long enough in any case */
+    int64_t reserve_us;
+    int64_t reserve_end_us;
+    struct {
+        int64_t until_us;
+        grobo_reply reply;
+    } hold[GROBO_BUS_HOLDS];
+    int32_t overhead_us;  /* smoothed: how much later than computed replies come */
+    int32_t deviation_us; /* smoothed deviation of that */
+    uint32_t bad_sums_before;
+    uint16_t waiting;   /* transactions in the queues */
+    uint16_t got_bytes; /* since the active frame was sent */
+    uint8_t echo_bytes; /* of its echo seen so far */
+    uint8_t next_hold;
+    bool learnt;
+} grobo_bus;
+
+/**
+ * Makes a bus ready; nothing is sent. config is copied; NULL: all defaults.
+ * @return GROBO_OK or GROBO_ERR_ARG (echo through the board, a baud rate below 1200)
+ */
+GROBO_API int grobo_bus_init(grobo_bus *bus, const grobo_bus_config *config);
+
+/** Fills a transaction with a frame for this wiring and the reply that the frame calls for.
+ *  Priority user, two retries, computed timeout, no callback.
+ *  @return GROBO_OK or the errors of grobo_frame_reply */
+GROBO_API int grobo_txn_init(grobo_txn *txn, grobo_wiring wiring, const uint8_t *frame,
+                             size_t n);
+
+/**
+ * Puts a transaction at the end of its priority's queue.
+ * @return GROBO_OK; GROBO_ERR_FULL when GROBO_BUS_QUEUE_MAX wait (a stop is always taken),
+ *         GROBO_ERR_ARG (no frame, unknown priority), GROBO_ERR_BUSY (it is submitted already)
+ */
+GROBO_API int grobo_bus_submit(grobo_bus *bus, grobo_txn *txn);
+
+/** True while a transaction belongs to a bus: between submit and its callback. */
+GROBO_API bool grobo_txn_is_pending(const grobo_txn *txn);
+
+/**
+ * Takes a transaction back; its callback gets GROBO_ERR_CANCELED before this returns. If it is on
+ * the wire the line stays occupied until it would have been over.
+ * @return GROBO_OK, or GROBO_ERR_NOTFOUND when the bus does not have it
+ */
+GROBO_API int grobo_bus_cancel(grobo_bus *bus, grobo_txn *txn);
+
+/** Bit of a priority, for grobo_bus_cancel_all. */
+#define GROBO_PRIORITY_BIT(priority) (1u << (unsigned)(priority))
+/** Bits of all priorities. */
+#define GROBO_PRIORITY_ALL ((1u << GROBO_PRIORITIES) - 1u)
+
+/**
+ * Ends every transaction of these priorities with this result (< 0: GROBO_ERR_CANCELED,
+ * GROBO_ERR_UNPLUGGED...). Those submitted again by a callback stay.
+ * @return how many were ended
+ */
+GROBO_API int grobo_bus_cancel_all(grobo_bus *bus, unsigned priority_bits, int result);
+
+/** Takes n bytes that arrived; callbacks may run. now_us must not run backwards. */
+GROBO_API void grobo_bus_rx(grobo_bus *bus, int64_t now_us, const uint8_t *bytes, size_t n);
+
+/** Lets time pass: ends what is over or too late; callbacks may run. */
+GROBO_API void grobo_bus_step(grobo_bus *bus, int64_t now_us);
+
+/**
+ * Gives the next frame to send, if one may start now. It counts as sent at now_us.
+ * @return bytes put into buf, all of one frame; 0 when nothing may start now; GROBO_ERR_SPACE when
+ *         the frame is longer than cap (GROBO_RS30X_PACKET_MAX_BYTES is always enough)
+ */
+GROBO_API int grobo_bus_tx(grobo_bus *bus, int64_t now_us, uint8_t *buf, size_t cap);
+
+/** When to call step and tx next, though no byte comes; GROBO_NEVER_US: no need. */
+GROBO_API int64_t grobo_bus_deadline(const grobo_bus *bus, int64_t now_us);
+
+/**
+ * Keeps [at_us, at_us + duration_us) free for a motion frame: no user's request and no sensing is
+ * started that would not be over before at_us, nor inside the span. One span at a time; a new call
+ * replaces it; GROBO_NEVER_US takes it away.
+ */
+GROBO_API void grobo_bus_reserve(grobo_bus *bus, int64_t at_us, uint32_t duration_us);
+
+/** True if this transaction, started at now_us, would be over before the reserved span. */
+GROBO_API bool grobo_bus_fits(const grobo_bus *bus, int64_t now_us, const grobo_txn *txn);
+
+/** When the line will be free for the next frame, as far as is known: now_us if it is. */
+GROBO_API int64_t grobo_bus_free_at(const grobo_bus *bus, int64_t now_us);
+
+/** Transactions that wait or are on the wire. */
+GROBO_API int grobo_bus_pending(const grobo_bus *bus);
+
+/** Wire time of one transaction, computed. */
+typedef struct grobo_bus_cost {
+    uint32_t request_us; /**< host's line, request */
+    uint32_t servo_us;   /**< servo bus behind the board: request, return delay and reply; 0 when
+                              there is no board */
+    uint32_t reply_us;   /**< host's line, reply (without a board: return delay included) */
+    uint32_t total_us;   /**< from the first byte of the request until the line is free again */
+    uint32_t timeout_us; /**< after how long a first attempt has failed, as things are now */
+} grobo_bus_cost;
+
+/** What a transaction costs on this bus, whether submitted or not. */
+GROBO_API void grobo_bus_cost_of(const grobo_bus *bus, const grobo_txn *txn,
+                                 grobo_bus_cost *cost);
+
+GROBO_END_DECLS
+
+#endif

@@ -1,0 +1,410 @@
+/* SPDX-License-Identifier: MIT */
+/**
+ * @file rs30x.h
+ * @brief Packets and memory map of Futaba RS30x command servos.
+ *
+ * Both ends of the wire: a host builds commands and parses returns, a servo (firmware, simulator)
+ * parses commands and builds returns. Everything works on the caller's bytes; no allocation, no
+ * clock, no global state. Functions are re-entrant; one parser must not be used by two threads at
+ * the same time.
+ *
+ * Sources of the constants: Futaba RS301CR/RS302CD manual v1.0 (packets p.11-15, memory map
+ * p.17-29), RS204MD manual p.23-24 (NACK, second spelling of the factory reset).
+ */
+#ifndef GROBO_RS30X_H
+#define GROBO_RS30X_H
+
+#include <grobo/types.h>
+
+GROBO_BEGIN_DECLS
+
+/** Bytes of a packet beside its data: header, id, flags, address, length, count, sum. */
+#define GROBO_RS30X_OVERHEAD_BYTES 8
+
+/** Longest packet built or parsed, in both directions (28 servos with goal and time fit in it). */
+#define GROBO_RS30X_PACKET_MAX_BYTES GROBO_REPLY_MAX_BYTES
+
+/** Address of every servo; nobody replies to it. */
+#define GROBO_RS30X_ID_ALL 255
+
+/** The byte that says "done". */
+#define GROBO_RS30X_ACK 0x07
+/** The byte that says "refused" (documented for RS204MD only). */
+#define GROBO_RS30X_NACK 0x08
+
+/* ---- flags of a command --------------------------------------------------------------------- */
+
+/** Write No.4-29 to flash: takes a second or more, power must stay on. */
+#define GROBO_RS30X_FLASH 0x40
+/** Reboot: allow two seconds. With GROBO_RS30X_FLASH in one packet on RS301/302 only. */
+#define GROBO_RS30X_REBOOT 0x20
+/** Factory reset of No.4-29; the id becomes 1. */
+#define GROBO_RS30X_FACTORY 0x10
+
+/** Low nibble of the flags: what comes back. */
+typedef enum grobo_rs30x_want {
+    GROBO_RS30X_WANT_NOTHING = 0x0, /**< no reply */
+    GROBO_RS30X_WANT_ACK = 0x1,     /**< one byte, ACK */
+    GROBO_RS30X_WANT_0_29 = 0x3,    /**< No.0-29 */
+    GROBO_RS30X_WANT_30_59 = 0x5,   /**< No.30-59 */
+    GROBO_RS30X_WANT_20_29 = 0x7,   /**< No.20-29 */
+    GROBO_RS30X_WANT_42_59 = 0x9,   /**< No.42-59, the present values */
+    GROBO_RS30X_WANT_30_41 = 0xB,   /**< No.30-41 */
+    GROBO_RS30X_WANT_60_127 = 0xD,  /**< No.60-127, not on RS301/302 */
+    GROBO_RS30X_WANT_GIVEN = 0xF    /**< the address and length given in the command */
+} grobo_rs30x_want;
+
+/* ---- flags of a return packet --------------------------------------------------------------- */
+
+/** Temperature limit reached, torque was cut; resume by writing No.36. */
+#define GROBO_RS30X_STATUS_OVERHEATED 0x80
+/** Temperature alarm. */
+#define GROBO_RS30X_STATUS_HOT 0x20
+/** Writing to flash failed. */
+#define GROBO_RS30X_STATUS_FLASH_ERROR 0x08
+/** The command could not be processed. */
+#define GROBO_RS30X_STATUS_REFUSED 0x02
+
+/* ---- memory map ----------------------------------------------------------------------------- */
+
+/**
+ * Every register:
+ * X(NAME, text name, address, bytes, is signed, access, unit, minimum, maximum, kept by).
+ * Access is R or RW. Kept by: ROM fixed, FLASH survives power-off after a flash write, RAM does
+ * not. A unit that starts with a number is what one count is worth. Where the manuals give no
+ * range it is that of the register's width. SILENCE_TORQUE and WARM_UP_TIME are not on RS301/302.
+ */
+#define GROBO_RS30X_REGISTER_LIST(X)                                                               \
+    X(MODEL, "model", 0, 2, 0, R, "", 0, 65535, ROM)                                               \
+    X(FIRMWARE, "firmware", 2, 1, 0, R, "", 0, 255, ROM)                                           \
+    X(ID, "id", 4, 1, 0, RW, "", 1, 127, FLASH)                                                    \
+    X(REVERSE, "reverse", 5, 1, 0, RW, "", 0, 1, FLASH)                                            \
+    X(BAUD, "baud", 6, 1, 0, RW, "code", 0, 10, FLASH)                                             \
+    X(DELAY, "delay", 7, 1, 0, RW, "50 us", 0, 127, FLASH)                                         \
+    X(CW_LIMIT, "cw_limit", 8, 2, 1, RW, "0.1 deg", -1500, 1500, FLASH)                            \
+    X(CCW_LIMIT, "ccw_limit", 10, 2, 1, RW, "0.1 deg", -1500, 1500, FLASH)                         \
+    X(TEMPERATURE_LIMIT, "temperature_limit", 14, 2, 1, R, "deg C", -32768, 32767, FLASH)          \
+    X(SILENCE_TORQUE, "silence_torque", 22, 1, 0, RW, "", 0, 255, FLASH)                           \
+    X(WARM_UP_TIME, "warm_up_time", 23, 1, 0, RW, "", 0, 255, FLASH)                               \
+    X(CW_MARGIN, "cw_margin", 24, 1, 0, RW, "0.1 deg", 0, 255, FLASH)                              \
+    X(CCW_MARGIN, "ccw_margin", 25, 1, 0, RW, "0.1 deg", 0, 255, FLASH)                            \
+    X(CW_SLOPE, "cw_slope", 26, 1, 0, RW, "1 deg", 0, 255, FLASH)                                  \
+    X(CCW_SLOPE, "ccw_slope", 27, 1, 0, RW, "1 deg", 0, 255, FLASH)                                \
+    X(PUNCH, "punch", 28, 2, 0, RW, "0.01 %", 0, 10000, FLASH)                                     \
+    X(GOAL, "goal", 30, 2, 1, RW, "0.1 deg", -1500, 1500, RAM)                                     \
+    X(GOAL_TIME, "goal_time", 32, 2, 0, RW, "10 ms", 0, 16383, RAM)                                \
+    X(MAX_TORQUE, "max_torque", 35, 1, 0, RW, "1 %", 0, 100, RAM)                                  \
+    X(TORQUE, "torque", 36, 1, 0, RW, "", 0, 2, RAM)                                               \
+    X(POSITION, "position", 42, 2, 1, R, "0.1 deg", -32768, 32767, RAM)                            \
+    X(TIME, "time", 44, 2, 0, R, "10 ms", 0, 65535, RAM)                                           \
+    X(SPEED, "speed", 46, 2, 1, R, "deg/s", -32768, 32767, RAM)                                    \
+    X(CURRENT, "current", 48, 2, 0, R, "mA", 0, 65535, RAM)                                        \
+    X(TEMPERATURE, "temperature", 50, 2, 1, R, "deg C", -32768, 32767, RAM)                        \
+    X(VOLTAGE, "voltage", 52, 2, 0, R, "10 mV", 0, 65535, RAM)
+
+/** Addresses: GROBO_RS30X_MODEL, GROBO_RS30X_GOAL, ... */
+typedef enum grobo_rs30x_address {
+#define GROBO_RS30X_ADDRESS_ENUM(name, text, address, bytes, sign, access, unit, min, max, kept)   \
+    GROBO_RS30X_##name = (address),
+    GROBO_RS30X_REGISTER_LIST(GROBO_RS30X_ADDRESS_ENUM)
+#undef GROBO_RS30X_ADDRESS_ENUM
+    GROBO_RS30X_ADDRESS_END = GROBO_REGISTERS /**< one past the last address */
+} grobo_rs30x_address;
+
+/** Who may write a register. */
+typedef enum grobo_rs30x_access {
+    GROBO_RS30X_ACCESS_R, /**< read only */
+    GROBO_RS30X_ACCESS_RW /**< read and write */
+} grobo_rs30x_access;
+
+/** What a register's value survives. */
+typedef enum grobo_rs30x_kept {
+    GROBO_RS30X_KEPT_ROM,   /**< fixed */
+    GROBO_RS30X_KEPT_FLASH, /**< survives power-off after a flash write */
+    GROBO_RS30X_KEPT_RAM    /**< lost at power-off */
+} grobo_rs30x_kept;
+
+/** One register, a row of GROBO_RS30X_REGISTER_LIST. */
+typedef struct grobo_rs30x_register {
+    const char *name;          /**< "goal_time": the name on the command line */
+    const char *unit;          /**< what one count is worth: "0.1 deg"; "" for plain numbers */
+    int32_t min, max;          /**< range of counts */
+    uint8_t address;           /**< number in the memory map */
+    uint8_t bytes;             /**< 1 or 2, little endian */
+    bool is_signed;            /**< two's complement */
+    grobo_rs30x_access access; /**< R or RW */
+    grobo_rs30x_kept kept;     /**< what it survives */
+} grobo_rs30x_register;
+
+/** Number of registers in the table. */
+GROBO_API size_t grobo_rs30x_register_count(void);
+
+/** Row index of the table, by rising address; NULL when there is no such row. Static storage. */
+GROBO_API const grobo_rs30x_register *grobo_rs30x_register_row(size_t index);
+
+/** The register of this text name (exact), NULL when there is none. Static storage. */
+GROBO_API const grobo_rs30x_register *grobo_rs30x_register_named(const char *name);
+
+/** The register that holds this address, its high byte too; NULL for reserved addresses. */
+GROBO_API const grobo_rs30x_register *grobo_rs30x_register_at(uint8_t address);
+
+/** Value of a register from its bytes (reg->bytes of them), in counts. */
+GROBO_API int32_t grobo_rs30x_register_get(const grobo_rs30x_register *reg, const uint8_t *bytes);
+
+/**
+ * Puts a value into reg->bytes bytes.
+ * @return bytes written, or GROBO_ERR_LIMIT outside reg->min..max (nothing is written)
+ */
+GROBO_API int grobo_rs30x_register_put(const grobo_rs30x_register *reg, int32_t value,
+                                       uint8_t *bytes);
+
+/** Models, as register MODEL gives them. */
+typedef enum grobo_rs30x_model {
+    GROBO_RS30X_RS301CR = 0x3010,
+    GROBO_RS30X_RS302CD = 0x3020,
+    GROBO_RS30X_RS303MR = 0x3030,
+    GROBO_RS30X_RS304MD = 0x3040
+} grobo_rs30x_model;
+
+/** "RS301CR" for 0x3010; NULL for a number that is no known model. Static string. */
+GROBO_API const char *grobo_rs30x_model_name(uint16_t model);
+
+/** Highest code of register BAUD. */
+#define GROBO_RS30X_BAUD_CODE_MAX 10
+/** The factory's code of register BAUD: 115200 bps. */
+#define GROBO_RS30X_BAUD_CODE_DEFAULT 7
+
+/** Line speed of a code of register BAUD in bps; GROBO_ERR_ARG above 10. */
+GROBO_API int32_t grobo_rs30x_baud_bps(uint8_t code);
+
+/** Code of register BAUD for a line speed in bps; GROBO_ERR_UNSUPPORTED for other speeds. */
+GROBO_API int grobo_rs30x_baud_code(uint32_t baud_bps);
+
+/** Time a servo waits before it returns, in us, for a value of register DELAY: 100 + 50 n. */
+#define GROBO_RS30X_DELAY_US(n) (100 + 50 * (n))
+
+/* ---- packets -------------------------------------------------------------------------------- */
+
+/** What a packet is. */
+typedef enum grobo_rs30x_kind {
+    GROBO_RS30X_SHORT,    /**< FA AF, one servo (or all, with id 255) */
+    GROBO_RS30X_LONG,     /**< FA AF with id 0: other data for each of several servos */
+    GROBO_RS30X_RETURN,   /**< FD DF */
+    GROBO_RS30X_ACK_BYTE, /**< the single byte 07 */
+    GROBO_RS30X_NACK_BYTE /**< the single byte 08 */
+} grobo_rs30x_kind;
+
+/** A packet taken apart, or to be put together. Fields as on the wire. */
+typedef struct grobo_rs30x_packet {
+    grobo_rs30x_kind kind;
+    uint8_t id;          /**< SHORT 1..127 or 255; LONG 0; RETURN 1..127 */
+    uint8_t flags;       /**< of a command or of a return */
+    uint8_t address;     /**< first register */
+    uint8_t length;      /**< SHORT, RETURN: data bytes; LONG: bytes per servo, its id included */
+    uint8_t count;       /**< SHORT: 1 with data, 0 for a read; LONG: servos; RETURN: 1 */
+    const uint8_t *data; /**< borrowed; LONG: {id data}... */
+    size_t data_bytes;   /**< number of them */
+} grobo_rs30x_packet;
+
+/**
+ * Puts a packet together. packet->data may lie in buf where the data goes (offset 7).
+ * @return size, or GROBO_ERR_ARG (field out of range, data_bytes not what length and count say),
+ *         GROBO_ERR_CAP (longer than GROBO_RS30X_PACKET_MAX_BYTES), GROBO_ERR_SPACE
+ */
+GROBO_API int grobo_rs30x_build(const grobo_rs30x_packet *packet, uint8_t *buf, size_t cap);
+
+/** Read of length bytes from address: flags 0F. Errors as grobo_rs30x_build. */
+GROBO_API int grobo_rs30x_read(uint8_t id, uint8_t address, uint8_t length, uint8_t *buf,
+                               size_t cap);
+
+/** Request of one of the fixed blocks by its nibble (address 0, length 0, count 1). */
+GROBO_API int grobo_rs30x_read_block(uint8_t id, grobo_rs30x_want want, uint8_t *buf, size_t cap);
+
+/** Write of one byte; flags may ask for a reply or for flash and reboot. */
+GROBO_API int grobo_rs30x_write_u8(uint8_t id, uint8_t flags, uint8_t address, uint8_t value,
+                                   uint8_t *buf, size_t cap);
+
+/** Write of 16 bits; a negative value is given as its two's complement. */
+GROBO_API int grobo_rs30x_write_u16(uint8_t id, uint8_t flags, uint8_t address, uint16_t value,
+                                    uint8_t *buf, size_t cap);
+
+/** A goal of one servo. */
+typedef struct grobo_rs30x_goal {
+    uint8_t id;       /**< 1..127 */
+    int16_t pos_ddeg; /**< -1500..1500 */
+    uint16_t time_cs; /**< duration of the move in 10 ms, 0..16383; 0 at full speed */
+} grobo_rs30x_goal;
+
+/** Goal and time of one servo (short packet; id 255: all). GROBO_ERR_LIMIT outside the ranges. */
+GROBO_API int grobo_rs30x_write_goal(const grobo_rs30x_goal *goal, uint8_t *buf, size_t cap);
+
+/** Goals and times of n servos in one long packet. GROBO_ERR_LIMIT outside the ranges. */
+GROBO_API int grobo_rs30x_write_goals(const grobo_rs30x_goal *goals, size_t n, uint8_t *buf,
+                                      size_t cap);
+
+/** One byte for one servo, in a long packet. */
+typedef struct grobo_rs30x_byte {
+    uint8_t id;    /**< 1..127 */
+    uint8_t value; /**< what is written */
+} grobo_rs30x_byte;
+
+/** The register at address of n servos in one long packet: torques, torque limits. */
+GROBO_API int grobo_rs30x_write_bytes(uint8_t address, const grobo_rs30x_byte *bytes, size_t n,
+                                      uint8_t *buf, size_t cap);
+
+/** GROBO_RS30X_FLASH, GROBO_RS30X_REBOOT or both, with nothing else (address FF). */
+GROBO_API int grobo_rs30x_control(uint8_t id, uint8_t flags, uint8_t *buf, size_t cap);
+
+/** The two spellings of a factory reset that the manuals print. */
+typedef enum grobo_rs30x_reset_form {
+    GROBO_RS30X_RESET_WITH_DATA, /**< RS301CR/RS302CD manual: 9 bytes, data FF */
+    GROBO_RS30X_RESET_BARE       /**< RS204MD manual: 8 bytes */
+} grobo_rs30x_reset_form;
+
+/** Factory reset of No.4-29. */
+GROBO_API int grobo_rs30x_factory_reset(uint8_t id, grobo_rs30x_reset_form form, uint8_t *buf,
+                                        size_t cap);
+
+/** The spellings of an ACK request without data seen in drivers: address, length, count. */
+typedef enum grobo_rs30x_ping_form {
+    GROBO_RS30X_PING_FF_0_0,
+    GROBO_RS30X_PING_0_0_0,
+    GROBO_RS30X_PING_FF_1_0
+} grobo_rs30x_ping_form;
+
+/** ACK request without data: is this servo there? */
+GROBO_API int grobo_rs30x_ping(uint8_t id, grobo_rs30x_ping_form form, uint8_t *buf, size_t cap);
+
+/* ---- replies -------------------------------------------------------------------------------- */
+
+/** What a command is answered by. */
+typedef enum grobo_reply_kind {
+    GROBO_REPLY_NONE = 0,  /**< nothing */
+    GROBO_REPLY_ACK = 1,   /**< the byte 07 (or 08) */
+    GROBO_REPLY_RETURN = 2 /**< a return packet of this id, address and length */
+} grobo_reply_kind;
+
+/** The reply to expect. id, address and length count for GROBO_REPLY_RETURN only. */
+typedef struct grobo_reply {
+    grobo_reply_kind kind;
+    uint8_t id;
+    uint8_t address;
+    uint8_t length; /**< data bytes */
+} grobo_reply;
+
+/** Bytes of a reply on the wire: 0, 1, or length + 8. */
+GROBO_API size_t grobo_reply_bytes(const grobo_reply *reply);
+
+/**
+ * What a command packet (n bytes, one whole packet) will be answered by.
+ * @return bytes of the reply (0: none); GROBO_ERR_FRAME or GROBO_ERR_CHECKSUM when the bytes are
+ *         no whole command packet, GROBO_ERR_ARG when it asks for registers that do not exist
+ */
+GROBO_API int grobo_rs30x_reply_to(const uint8_t *packet, size_t n, grobo_reply *reply);
+
+/* ---- parser --------------------------------------------------------------------------------- */
+
+/** What a framer met since it was initialised. Bytes in = bytes of frames + dropped + buffered. */
+typedef struct grobo_framer_stats {
+    uint32_t frames;        /**< good ones handed out */
+    uint32_t frame_bytes;   /**< their bytes */
+    uint32_t dropped_bytes; /**< rubbish skipped while looking for a frame */
+    uint32_t bad_sums;      /**< frames whole in form whose sum was wrong */
+} grobo_framer_stats;
+
+/** The buffer behind every push parser. All fields are private but stats. */
+typedef struct grobo_framer {
+    grobo_framer_stats stats; /**< read freely */
+    /* private */
+    uint16_t used;  /* bytes in buf */
+    uint16_t taken; /* of them, those of the frame handed out last */
+    bool ending;    /* what is incomplete now will never be completed */
+    uint8_t buf[GROBO_RS30X_PACKET_MAX_BYTES];
+} grobo_framer;
+
+/** What a parser believes in; or-ed. What it does not, it drops as rubbish. */
+#define GROBO_RS30X_ACCEPT_COMMANDS 0x1u
+#define GROBO_RS30X_ACCEPT_RETURNS 0x2u
+/** Single bytes 07 and 08 between packets. */
+#define GROBO_RS30X_ACCEPT_ACKS 0x4u
+
+/**
+ * A push parser of packets: takes any bytes in any split, hands out packets whose header, id,
+ * flags, address, length, count and sum are right, and finds the next one after rubbish by going
+ * back to the byte after the false start. All fields are private but framer.stats.
+ */
+typedef struct grobo_rs30x_parser {
+    grobo_framer framer;
+    unsigned accept;
+} grobo_rs30x_parser;
+
+/** Makes a parser ready; accept: GROBO_RS30X_ACCEPT_... or-ed. Counters start at zero. */
+GROBO_API void grobo_rs30x_parser_init(grobo_rs30x_parser *parser, unsigned accept);
+
+/**
+ * Takes bytes. After a call of feed, call next until it gives 0, then feed the rest:
+ * @code
+ *   while (n > 0) {
+ *       size_t took = grobo_rs30x_parser_feed(&parser, bytes, n);
+ *       bytes += took, n -= took;
+ *       while (grobo_rs30x_parser_next(&parser, &packet) > 0) use(&packet);
+ *   }
+ * @endcode
+ * @return bytes taken; at least 1 of n > 0 when next gave 0 before
+ */
+GROBO_API size_t grobo_rs30x_parser_feed(grobo_rs30x_parser *parser, const uint8_t *bytes,
+                                         size_t n);
+
+/**
+ * Hands out the next packet. packet->data points into the parser and is valid until the next call
+ * of next, feed or reset.
+ * @return 1 with a packet, 0 when more bytes are needed (packet untouched)
+ */
+GROBO_API int grobo_rs30x_parser_next(grobo_rs30x_parser *parser, grobo_rs30x_packet *packet);
+
+/**
+ * Says that the line fell silent (or the file ended): what is incomplete now stays so. The calls
+ * of next that follow hand out what is whole behind a false start and drop the rest. The mark
+ * goes with the first 0 from next.
+ */
+GROBO_API void grobo_rs30x_parser_end(grobo_rs30x_parser *parser);
+
+/** Forgets what is buffered (it counts as dropped); counters stay. */
+GROBO_API void grobo_rs30x_parser_reset(grobo_rs30x_parser *parser);
+
+/** Bytes taken and neither handed out nor dropped yet. */
+GROBO_API size_t grobo_rs30x_parser_pending(const grobo_rs30x_parser *parser);
+
+/* ---- state of a servo ----------------------------------------------------------------------- */
+
+/** Which fields of a grobo_rs30x_state were in the block that was read; or-ed. */
+#define GROBO_RS30X_HAS_TORQUE 0x01u
+#define GROBO_RS30X_HAS_POSITION 0x02u
+#define GROBO_RS30X_HAS_TIME 0x04u
+#define GROBO_RS30X_HAS_SPEED 0x08u
+#define GROBO_RS30X_HAS_CURRENT 0x10u
+#define GROBO_RS30X_HAS_TEMPERATURE 0x20u
+#define GROBO_RS30X_HAS_VOLTAGE 0x40u
+
+/** The present values of a servo, No.36 and No.42-53. Fields that were not read are 0. */
+typedef struct grobo_rs30x_state {
+    uint32_t voltage_mv;   /**< supply */
+    uint16_t time_cs;      /**< since the move began, 10 ms */
+    uint16_t current_ma;   /**< motor current */
+    int16_t pos_ddeg;      /**< present position */
+    int16_t speed_dps;     /**< present speed, deg/s */
+    int16_t temperature_c; /**< of the circuit */
+    uint8_t torque;        /**< a grobo_torque */
+    uint8_t has;           /**< GROBO_RS30X_HAS_... */
+} grobo_rs30x_state;
+
+/**
+ * Takes apart a block of n registers from address: No.36-53, No.42-59, a few of them.
+ * @return number of fields found, 0 when the block holds none of them whole
+ */
+GROBO_API int grobo_rs30x_state_decode(uint8_t address, const uint8_t *data, size_t n,
+                                       grobo_rs30x_state *state);
+
+GROBO_END_DECLS
+
+#endif
