@@ -32,7 +32,7 @@ say = $(if $(filter 1,$(V)),@:,@printf '  %-5s %s\n')
 # ---- flags ---------------------------------------------------------------------------------
 
 WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow \
-    -Wstrict-prototypes -Wmissing-prototypes -Wswitch-enum $(WERROR)
+    -Wstrict-prototypes -Wmissing-prototypes -Wswitch-enum -Wvla $(WERROR)
 SAN_FLAGS := $(if $(SAN),-fsanitize=$(SAN) -fno-sanitize-recover=all -fno-omit-frame-pointer)
 ALL_CPPFLAGS = -Iinclude -Iports/$(PORT)/include $(CPPFLAGS)
 ALL_CFLAGS = -std=c11 $(WARNINGS) -fvisibility=hidden -fPIC $(SAN_FLAGS) $(COV_FLAGS) $(CFLAGS)
@@ -52,6 +52,7 @@ LIBS = $(eval LIBS := $$(call package,--libs yaml-0.1 libevent_core) -lm -pthrea
 
 # ---- sources, by folder: a folder may be empty or missing ----------------------------------
 
+PUBLIC_HEADERS := $(wildcard include/grobo/*.h ports/$(PORT)/include/grobo/*.h)
 CORE_SRCS := $(sort $(wildcard src/core/*.c src/sim/*.c))
 OTHER_SRCS := $(sort $(wildcard src/motion/*.c src/body/*.c src/link/*.c ports/$(PORT)/*.c))
 TOOL_SRCS := $(if $(wildcard tools/grctl/main.c),$(sort $(wildcard tools/grctl/*.c)))
@@ -81,7 +82,8 @@ VERSION = $(shell sed -n 's/.*GROBO_VERSION_STRING "\(.*\)"/\1/p' include/grobo/
 
 # ---- targets -------------------------------------------------------------------------------
 
-.PHONY: help all check test check-san check-memcheck install uninstall clean FORCE
+.PHONY: help all check lint lint-quick format test check-san check-memcheck install uninstall clean
+.PHONY: FORCE
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-15s %s\n", $$1, $$2 }' Makefile
@@ -93,7 +95,17 @@ all: $(STATIC_LIB) $(CORE_LIB) $(SHARED_LIB) $(PC_FILE) $(GRCTL) ## libraries an
 check: ## set up what is missing, build, lint, run every test
 	@tools/setup.sh --check
 	@$(MAKE) --no-print-directory all
+	@$(MAKE) --no-print-directory lint
 	@$(MAKE) --no-print-directory test
+
+lint: all ## check the rules of the house: sources, objects, headers, symbols
+	@tools/lint/run.sh --all $(BUILD)
+
+lint-quick: ## the rules that sources alone can break; takes a second
+	@tools/lint/run.sh --quick
+
+format: ## write sources as clang-format 14 does
+	@tools/lint/format.sh --fix $(shell find include src ports tools tests docs -name '*.[ch]')
 
 test: $(TEST_PROGRAMS) $(FUZZ_REPLAYS) $(EXAMPLES) $(GRCTL) ## run the tests only; RING="unit engine" chooses
 	@GRCTL="$(abspath $(GRCTL))" BUILD="$(BUILD)" TEST_LOGS="$(BUILD)/logs" tests/run.sh \

@@ -73,7 +73,8 @@ xargs -P "$jobs" -n 1 sh "$0" --one "$logs" <"$logs/programs"
 awk -v logs="$logs" -v limit_s="$limit_s" '
 function problem(text) { failed++; bad = 1; notes = notes "  " text "\n" }
 
-# A result line: "ok 3 - name", "not ok 3 - name", "ok 3 # SKIP why", "not ok 3 # SKIP name" (cmocka).
+# A result line: "ok 3 - name", "not ok 3 - name", "ok 3 # SKIP why", and of cmocka
+# "not ok 3 # SKIP name".
 function result(line,    name) {
     results++
     if (line ~ /# *[Ss][Kk][Ii][Pp]/) {

@@ -1,3 +1,174 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-exit 0
+# Installs what is missing to build libgrobo, with the system's package manager.
+#
+# usage: tools/setup.sh [--demo | --check | --ci] [--dry-run]
+#   --demo     what a build and the demo need (default)
+#   --check    that, and what `make check` needs
+#   --ci       that, and the tools that `make check` does without where they are missing
+#   --dry-run  say what would be installed, touch nothing
+#
+# Silent and quick where nothing is missing. Never asks when nobody is there to answer.
+set -u
+
+level=1
+dry_run=
+for argument in "$@"; do
+    case $argument in
+    --demo) level=1 ;;
+    --check) level=2 ;;
+    --ci) level=3 ;;
+    --dry-run) dry_run=1 ;;
+    *)
+        echo "usage: tools/setup.sh [--demo | --check | --ci] [--dry-run]" >&2
+        exit 2
+        ;;
+    esac
+done
+
+say() {
+    printf 'setup: %s\n' "$1" >&2
+}
+
+die() {
+    say "$1"
+    exit 1
+}
+
+manager=
+for candidate in apt-get dnf pacman apk zypper; do
+    if command -v $candidate >/dev/null 2>&1; then
+        manager=$candidate
+        break
+    fi
+done
+
+have_command() {
+    command -v "$1" >/dev/null 2>&1
+}
+
+have_cc() {
+    [ -n "${CC:-}" ] || have_command gcc
+}
+
+have_library() {
+    have_command pkg-config && pkg-config --exists "$1"
+}
+
+have_c_headers() {
+    [ -e /usr/include/stdio.h ]
+}
+
+# need WHAT FOR TEST... -- APT DNF PACMAN APK ZYPPER: notes a package when TEST fails.
+packages=
+reasons=
+need() {
+    what=$1
+    purpose=$2
+    shift 2
+    check=
+    while [ "$1" != -- ]; do
+        check="$check $1"
+        shift
+    done
+    shift
+    $check && return
+    case $manager in
+    apt-get) package=$1 ;;
+    dnf) package=$2 ;;
+    pacman) package=$3 ;;
+    apk) package=$4 ;;
+    zypper) package=$5 ;;
+    *) package=$1 ;;
+    esac
+    case " $packages " in
+    *" $package "*) ;;
+    *) packages="${packages:+$packages }$package" ;;
+    esac
+    reasons="${reasons:+$reasons, }$what ($purpose)"
+}
+
+look() {
+    packages=
+    reasons=
+    need 'a C compiler' 'to build' have_cc -- gcc gcc gcc gcc gcc
+    need "the C library's headers" 'to build' have_c_headers -- \
+        libc6-dev glibc-devel glibc musl-dev glibc-devel
+    need make 'to build' have_command make -- make make make make make
+    need pkg-config 'to find libraries' have_command pkg-config -- \
+        pkg-config pkgconf-pkg-config pkgconf pkgconf pkgconf-pkg-config
+    need libevent "for the robot's event loop" have_library libevent_core -- \
+        libevent-dev libevent-devel libevent libevent-dev libevent-devel
+    need libyaml 'to read motion files' have_library yaml-0.1 -- \
+        libyaml-dev libyaml-devel libyaml yaml-dev libyaml-devel
+    need jansson 'for the JSON of grctl' have_library jansson -- \
+        libjansson-dev jansson-devel jansson jansson-dev libjansson-devel
+    [ $level -ge 2 ] || return
+    need cmocka 'for the tests' have_library cmocka -- \
+        libcmocka-dev libcmocka-devel cmocka cmocka-dev libcmocka-devel
+    need 'a C++ compiler' 'to check the headers' have_command "${CXX:-g++}" -- \
+        g++ gcc-c++ gcc g++ gcc-c++
+    [ $level -ge 3 ] || return
+    need clang-format 'to check the formatting' have_command clang-format-14 -- \
+        clang-format-14 clang-tools-extra clang clang-extra-tools clang-tools
+    need valgrind 'to check memory' have_command valgrind -- \
+        valgrind valgrind valgrind valgrind valgrind
+}
+
+install_command() {
+    case $manager in
+    apt-get) echo "apt-get install -y --no-install-recommends $packages" ;;
+    dnf) echo "dnf install -y $packages" ;;
+    pacman) echo "pacman -S --noconfirm --needed $packages" ;;
+    apk) echo "apk add $packages" ;;
+    zypper) echo "zypper --non-interactive install $packages" ;;
+    esac
+}
+
+# How to become root: nothing, sudo, or sudo that fails rather than asks.
+choose_root() {
+    if [ "$(id -u)" -eq 0 ]; then
+        as_root=
+        return
+    fi
+    have_command sudo || die "missing $packages; install as root: $(install_command)"
+    as_root=sudo
+    if ! [ -t 0 ] || ! [ -t 2 ]; then
+        as_root='sudo -n'
+        $as_root true 2>/dev/null ||
+            die "missing $packages, sudo wants a password; install as root: $(install_command)"
+    fi
+}
+
+run_quietly() {
+    # $as_root and the command are lists of words on purpose.
+    # shellcheck disable=SC2086
+    $as_root env DEBIAN_FRONTEND=noninteractive "$@" >"$log" 2>&1 </dev/null
+}
+
+refresh_lists() {
+    case $manager in
+    apt-get) run_quietly apt-get -o DPkg::Lock::Timeout=120 update ;;
+    pacman) run_quietly pacman -Sy ;;
+    apk) run_quietly apk update ;;
+    esac
+}
+
+[ -z "${CC:-}" ] || have_command "${CC%% *}" || die "CC=$CC: no such compiler"
+look
+[ -n "$packages" ] || exit 0
+say "missing $reasons"
+[ -n "$manager" ] || die "no known package manager here; install: $packages"
+say "$(install_command)"
+[ -z "$dry_run" ] || exit 0
+choose_root
+
+log=$(mktemp) || exit 1
+trap 'rm -f "$log"' EXIT
+# A fresh machine has no lists or stale ones. Without a network the packages may still be cached.
+refresh_lists || say 'the package lists could not be refreshed; trying with those at hand'
+# shellcheck disable=SC2046
+run_quietly $(install_command) ||
+    die "could not install $packages: $(grep -E '^(E:|error|ERROR)' "$log" | head -n 1)"
+look
+[ -z "$packages" ] || die "installed, but still not found: $packages"

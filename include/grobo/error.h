@@ -54,7 +54,6 @@ typedef enum grobo_error {
 #define GROBO_ERROR_ENUM(name, value, text) GROBO_ERR_##name = (value),
     GROBO_ERROR_LIST(GROBO_ERROR_ENUM)
 #undef GROBO_ERROR_ENUM
-    GROBO_ERR_LIST_END_ = -1000 /**< never returned; keeps the enum's list closed */
 } grobo_error;
 
 /**

@@ -14,7 +14,7 @@
 #define GROBO_JOINTS_MAX 64
 #endif
 
-/** Longest servo packet inside a relay frame of the board: the length field's 7 bits (protocol 2). */
+/** Longest packet inside a relay frame of the board: its length has 7 bits (protocol 2). */
 #define GROBO_RELAY_MAX_BYTES 127
 
 /** Longest frame we send: relay header, payload. */

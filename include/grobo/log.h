@@ -21,7 +21,7 @@ typedef enum grobo_log_level {
 /** A sink of log lines. line: one line without its newline, valid during the call only. */
 typedef struct grobo_log {
     void (*write)(void *ctx, grobo_log_level level, const char *line); /**< NULL: silence */
-    void *ctx;                                                        /**< handed back to write */
+    void *ctx;                                                         /**< handed back to write */
 } grobo_log;
 
 GROBO_END_DECLS

@@ -99,7 +99,7 @@ GROBO_API int grobo_posture_mirror(grobo_posture *posture, const grobo_model *mo
  */
 GROBO_API int grobo_posture_check(const grobo_posture *posture, const grobo_model *model,
                                   int *joint);
-/** Moves every set angle into its limits. @return number of joints changed, or GROBO_ERR_ARG/NAN. */
+/** Moves every set angle into its limits. @return joints changed, or GROBO_ERR_ARG, _NAN. */
 GROBO_API int grobo_posture_clamp(grobo_posture *posture, const grobo_model *model);
 
 /**

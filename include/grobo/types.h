@@ -26,8 +26,7 @@ typedef uint64_t grobo_joint_mask;
 #define GROBO_JOINT_BIT(j) ((grobo_joint_mask)1 << (j))
 
 /** The bits of joints 0..n-1, 0 <= n <= 64. */
-#define GROBO_JOINTS_ALL(n)                                                                        \
-    ((n) >= 64 ? ~(grobo_joint_mask)0 : ((grobo_joint_mask)1 << (n)) - 1)
+#define GROBO_JOINTS_ALL(n) ((n) >= 64 ? ~(grobo_joint_mask)0 : ((grobo_joint_mask)1 << (n)) - 1)
 
 /** Torque of a servo; the values are those of register No.36 (protocol 4). */
 typedef enum grobo_torque {

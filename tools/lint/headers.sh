@@ -1,0 +1,49 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Gate: each header compiles alone; a public one as C11 and as C++11.
+#
+# usage: headers.sh        (CC, CXX and CPPFLAGS from the environment; run at the top)
+set -u
+
+cc=${CC:-gcc}
+cxx=${CXX:-g++}
+flags="-Iinclude -Iports/posix/include ${CPPFLAGS:-}"
+warnings='-Wall -Wextra -Wpedantic -Werror'
+bad=0
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+
+# try HEADER LANGUAGE COMPILER...: a file that includes it and nothing else must compile.
+try() {
+    header=$1
+    language=$2
+    shift 2
+    printf '#include "%s"\ntypedef int not_empty;\n' "$header" >"$work/alone"
+    if ! "$@" -fsyntax-only - <"$work/alone" 2>"$work/errors"; then
+        echo "$header:1: headers: does not compile alone as $language"
+        sed 's/^/    /' "$work/errors" | head -n 8
+        bad=1
+    fi
+}
+
+# The lists of flags are meant to be split.
+# shellcheck disable=SC2086
+for header in include/grobo/*.h ports/posix/include/grobo/*.h; do
+    [ -f "$header" ] || continue
+    try "$header" C11 $cc -x c -std=c11 $warnings -Wstrict-prototypes $flags -I.
+    if command -v "${cxx%% *}" >/dev/null 2>&1; then
+        try "$header" C++11 $cxx -x c++ -std=c++11 $warnings $flags -I.
+    fi
+done
+# shellcheck disable=SC2086
+for header in $(find src ports tools tests -name '*.h' ! -path '*/include/grobo/*'); do
+    folder=$(dirname "$header")
+    system=
+    case $header in
+    src/core/* | src/sim/* | src/body/* | src/motion/*) ;;
+    *) system='-D_DEFAULT_SOURCE -D_XOPEN_SOURCE=700' ;;
+    esac
+    try "$header" C11 $cc -x c -std=c11 $warnings $system $flags -Isrc -I. -Itests/support \
+        -I"$folder"
+done
+exit $bad

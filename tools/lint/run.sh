@@ -1,0 +1,79 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Runs the gates over the tree and says which rule is broken where, one line each.
+#
+# usage: run.sh --quick          the gates that read sources only (a second)
+#        run.sh --all BUILD      all gates; BUILD holds the objects and the shared library
+# environment: CC, CXX, NM, CPPFLAGS
+set -u
+
+gates=$(dirname "$0")
+failed=
+
+# The names of the project's files have no blanks; the lists below are split on purpose.
+# shellcheck disable=SC2046
+sources() {
+    find $(ls -d include src ports tools tests docs/examples 2>/dev/null) -type f -name '*.[ch]' |
+        sort
+}
+
+texts() {
+    sources
+    find tools tests .ci -type f \( -name '*.sh' -o -name '*.awk' -o -name run \) | sort
+    ls Makefile ./*.md docs/*.md 2>/dev/null | sed 's,^\./,,'
+}
+
+# gate NAME COMMAND...
+gate() {
+    name=$1
+    shift
+    "$@" || failed="$failed $name"
+}
+
+scan() {
+    rules=$1
+    shift
+    awk -f "$gates/strip.awk" -f "$gates/$rules.awk" "$@"
+}
+
+# Files whose last byte is not a newline.
+final_newline() {
+    status=0
+    for file in "$@"; do
+        if [ -n "$(tail -c 1 "$file")" ]; then
+            echo "$file:1: text: no newline at the end"
+            status=1
+        fi
+    done
+    return $status
+}
+
+all=$(sources)
+headers=$(printf '%s\n' "$all" | grep '\.h$')
+library=$(printf '%s\n' "$all" | grep -E '^(include|src|ports)/')
+everything=$(texts)
+
+# shellcheck disable=SC2086
+{
+    gate text awk -f "$gates/text.awk" $everything
+    gate text final_newline $everything
+    gate format sh "$gates/format.sh" $all
+    gate banned scan banned $all
+    gate platform scan platform $all
+    gate size scan size $all
+    gate switch scan switch $library $library
+    gate units scan units $headers
+    gate help sh "$gates/help.sh"
+    gate tree sh "$gates/tree.sh"
+}
+if [ "$1" = --all ]; then
+    gate headers sh "$gates/headers.sh"
+    gate layers sh "$gates/layers.sh" "$2"
+    gate symbols sh "$gates/symbols.sh" "$2/libgrobo.so.0"
+fi
+
+if [ -n "$failed" ]; then
+    echo "lint: failed:$(printf '%s\n' $failed | sort -u | tr '\n' ' ' | sed 's/^/ /; s/ $//')" >&2
+    exit 1
+fi
+echo 'lint: clean'

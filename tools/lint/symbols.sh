@@ -1,0 +1,53 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Gate: the shared library exports exactly what headers declare with GROBO_API.
+#
+# usage: symbols.sh LIBRARY      compare
+#        symbols.sh --declared   print the declared names, one a line
+set -u
+
+nm=${NM:-nm}
+
+# A declaration may go over several lines; its name stands before the first bracket that is not an
+# attribute's, or before [ or ; for data.
+declared() {
+    cat include/grobo/*.h ports/posix/include/grobo/*.h 2>/dev/null | awk '
+    /^GROBO_API/ { text = ""; open = 1 }
+    open { text = text " " $0 }
+    open && /;/ {
+        open = 0
+        sub(/GROBO_API/, "", text)
+        while (sub(/__attribute__ *\(\([^()]*(\([^()]*\))?[^()]*\)\)/, "", text)) {
+        }
+        sub(/[(;[].*/, "", text)
+        sub(/ *$/, "", text)
+        sub(/.*[^A-Za-z0-9_]/, "", text)
+        print text
+    }' | sort -u
+}
+
+if [ "${1:-}" = --declared ]; then
+    declared
+    exit 0
+fi
+
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+declared >"$work/declared"
+# The sanitizers and gcov add names of their own; the library that is checked has none of them.
+"$nm" -D --defined-only "$1" | awk 'NF == 3 { print $3 }' | sort -u >"$work/exported"
+bad=0
+for name in $(comm -13 "$work/declared" "$work/exported"); do
+    echo "$1:1: symbols: exports $name, which no header declares with GROBO_API"
+    bad=1
+done
+for name in $(comm -23 "$work/declared" "$work/exported"); do
+    echo "$(grep -lE "(^|[^A-Za-z0-9_])$name *[(;[]" include/grobo/*.h | head -n 1):1: symbols:" \
+        "declares $name, which nobody defines"
+    bad=1
+done
+for name in $(grep -v '^grobo_' "$work/exported"); do
+    echo "$1:1: symbols: $name does not begin with grobo_"
+    bad=1
+done
+exit $bad
