@@ -108,7 +108,7 @@ typedef struct grobo_port_ops {
     /**
      * Whether open() has been completed: a connection may still be on its way. While 0, wait
      * until socket() is writable and ask again.
-     * @return 1 usable, 0 not yet, or an error (GROBO_ERR_UNPLUGGED: nobody there).
+     * @return 1 usable, 0 not yet, or an error (GROBO_ERR_NOENT: nobody there).
      */
     int (*ready)(grobo_port *port, grobo_os_cause *cause);
 

@@ -1,0 +1,99 @@
+/* SPDX-License-Identifier: MIT */
+/* Clock, threads, locks, waiting for a descriptor. */
+#include <errno.h>
+#include <limits.h>
+#include <poll.h>
+#include <signal.h>
+#include <time.h>
+
+#include "ports/posix/posix.h"
+
+int64_t grobo_now_us(void)
+{
+    struct timespec now;
+
+    /* Cannot fail: POSIX systems without CLOCK_MONOTONIC do not compile this. */
+    (void)clock_gettime(CLOCK_MONOTONIC, &now);
+    return (int64_t)now.tv_sec * 1000000 + now.tv_nsec / 1000;
+}
+
+int grobo_thread_start(grobo_thread *thread, grobo_thread_fn fn, void *arg)
+{
+    sigset_t all;
+    sigset_t before;
+    grobo_thread made;
+    int r;
+
+    if (thread == NULL || fn == NULL) {
+        return GROBO_ERR_ARG;
+    }
+    sigfillset(&all);
+    /* A new thread inherits the mask: with all blocked, signals stay with the program's own. */
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    r = pthread_create(&made, NULL, fn, arg);
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    if (r != 0) {
+        return GROBO_ERR_NOMEM;
+    }
+    *thread = made;
+    return GROBO_OK;
+}
+
+int grobo_thread_join(grobo_thread thread)
+{
+    if (grobo_thread_is_self(thread)) {
+        return GROBO_ERR_STATE;
+    }
+    return pthread_join(thread, NULL) == 0 ? GROBO_OK : GROBO_ERR_STATE;
+}
+
+bool grobo_thread_is_self(grobo_thread thread)
+{
+    return pthread_equal(thread, pthread_self()) != 0;
+}
+
+int grobo_mutex_init(grobo_mutex *mutex)
+{
+    return pthread_mutex_init(mutex, NULL) == 0 ? GROBO_OK : GROBO_ERR_NOMEM;
+}
+
+void grobo_mutex_lock(grobo_mutex *mutex)
+{
+    (void)pthread_mutex_lock(mutex);
+}
+
+void grobo_mutex_unlock(grobo_mutex *mutex)
+{
+    (void)pthread_mutex_unlock(mutex);
+}
+
+void grobo_mutex_deinit(grobo_mutex *mutex)
+{
+    (void)pthread_mutex_destroy(mutex);
+}
+
+int grobo_port_wait(grobo_socket socket, unsigned what, int64_t timeout_us)
+{
+    struct pollfd one = {.fd = socket, .events = 0};
+    int64_t ms = timeout_us <= 0 ? 0 : (timeout_us - 1) / 1000 + 1;
+    int ready;
+
+    if ((what & GROBO_PORT_READABLE) != 0) {
+        one.events |= POLLIN;
+    }
+    if ((what & GROBO_PORT_WRITABLE) != 0) {
+        one.events |= POLLOUT;
+    }
+    ready = poll(&one, 1, ms > INT_MAX ? INT_MAX : (int)ms);
+    if (ready < 0) {
+        return errno == EINTR ? 0 : GROBO_ERR_IO;
+    }
+    if (ready == 0) {
+        return 0;
+    }
+    if ((one.revents & (POLLERR | POLLHUP | POLLNVAL)) != 0) {
+        return (int)what;
+    }
+    return ((one.revents & POLLIN) != 0 ? (int)GROBO_PORT_READABLE : 0) |
+           ((one.revents & POLLOUT) != 0 ? (int)GROBO_PORT_WRITABLE : 0);
+}

@@ -1,0 +1,156 @@
+/* SPDX-License-Identifier: MIT */
+/* Linux: who has a device open, by /proc. The other systems' answer is at the end. */
+#include <stdio.h>
+
+#include "ports/posix/posix.h"
+
+#ifdef __linux__
+
+#include <dirent.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
+#include <unistd.h>
+
+/* /proc/locks is readable by all, and says who has the flock: "1: FLOCK ADVISORY WRITE pid
+ * major:minor:inode 0 EOF". */
+static int lock_holder(const struct stat *node)
+{
+    FILE *locks = fopen("/proc/locks", "re");
+    char line[160];
+    int holder = 0;
+
+    if (locks == NULL) {
+        return 0;
+    }
+    while (holder == 0 && fgets(line, sizeof line, locks) != NULL) {
+        unsigned major_no;
+        unsigned minor_no;
+        uint64_t inode;
+        int pid;
+
+        if (sscanf(line, "%*d: FLOCK %*s %*s %d %x:%x:%" SCNu64, &pid, &major_no, &minor_no,
+                   &inode) == 4 &&
+            pid > 0 && major_no == major(node->st_dev) && minor_no == minor(node->st_dev) &&
+            inode == (uint64_t)node->st_ino) {
+            holder = pid;
+        }
+    }
+    (void)fclose(locks);
+    return holder;
+}
+
+static bool has_open(int pid, const struct stat *node)
+{
+    char path[64];
+    DIR *fds;
+    const struct dirent *entry;
+    bool found = false;
+
+    snprintf(path, sizeof path, "/proc/%d/fd", pid);
+    fds = opendir(path);
+    if (fds == NULL) {
+        return false;
+    }
+    while (!found && (entry = readdir(fds)) != NULL) {
+        struct stat st;
+
+        found = fstatat(dirfd(fds), entry->d_name, &st, 0) == 0 && S_ISCHR(st.st_mode) &&
+                st.st_rdev == node->st_rdev && st.st_ino == node->st_ino;
+    }
+    (void)closedir(fds);
+    return found;
+}
+
+/* The first process that has the device open, of those that this user may look into. */
+static int user_of(const struct stat *node)
+{
+    DIR *proc = opendir("/proc");
+    const struct dirent *entry;
+    int user = 0;
+
+    if (proc == NULL) {
+        return 0;
+    }
+    while (user == 0 && (entry = readdir(proc)) != NULL) {
+        char *end;
+        long pid = strtol(entry->d_name, &end, 10);
+
+        if (*end == '\0' && pid > 0 && pid != getpid() && has_open((int)pid, node)) {
+            user = (int)pid;
+        }
+    }
+    (void)closedir(proc);
+    return user;
+}
+
+static void name_of(int pid, char *name, size_t name_bytes)
+{
+    char path[64];
+    FILE *comm;
+
+    snprintf(path, sizeof path, "/proc/%d/comm", pid);
+    comm = fopen(path, "re");
+    if (comm == NULL || fgets(name, (int)name_bytes, comm) == NULL) {
+        snprintf(name, name_bytes, "?");
+    }
+    if (comm != NULL) {
+        (void)fclose(comm);
+    }
+    name[strcspn(name, "\n")] = '\0';
+}
+
+int grobo_i_posix_owner(const char *device, char *name, size_t name_bytes, bool *locked)
+{
+    struct stat node;
+    int pid;
+
+    *locked = false;
+    if (stat(device, &node) != 0 || !S_ISCHR(node.st_mode)) {
+        return 0;
+    }
+    pid = lock_holder(&node);
+    *locked = pid != 0;
+    if (pid == 0) {
+        pid = user_of(&node);
+    }
+    if (pid != 0 && name_bytes > 0) {
+        name_of(pid, name, name_bytes);
+    }
+    return pid;
+}
+
+bool grobo_i_posix_exclusive_sticks(dev_t device)
+{
+    /* Unix 98 pty slaves: Documentation/admin-guide/devices.txt of the kernel. */
+    return major(device) >= 136 && major(device) <= 143;
+}
+
+#else
+
+int grobo_i_posix_owner(const char *device, char *name, size_t name_bytes, bool *locked)
+{
+    (void)device;
+    (void)name;
+    (void)name_bytes;
+    *locked = false;
+    return 0;
+}
+
+bool grobo_i_posix_exclusive_sticks(dev_t device)
+{
+    (void)device;
+    return false;
+}
+
+#endif
+
+int grobo_port_owner(const char *device, char *name, size_t name_bytes)
+{
+    bool locked;
+
+    return grobo_i_posix_owner(device, name, name_bytes, &locked);
+}

@@ -1,0 +1,182 @@
+/* SPDX-License-Identifier: MIT */
+/* Serial ports by termios. */
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/ioctl.h>
+#include <sys/stat.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include "ports/posix/posix.h"
+
+static int refuse_busy(const char *device, grobo_os_cause *cause)
+{
+    char name[64];
+    int pid = grobo_port_owner(device, name, sizeof name);
+
+    if (pid == 0) {
+        return grobo_i_posix_refuse(cause, GROBO_ERR_BUSY, "held by another program");
+    }
+    cause->code = EBUSY;
+    snprintf(cause->text, sizeof cause->text, "held by %s (pid %d)", name, pid);
+    return GROBO_ERR_BUSY;
+}
+
+/* Looks before opening: to open something that is no terminal may have consequences. */
+static int check_kind(const char *device, struct stat *st, grobo_os_cause *cause)
+{
+    if (stat(device, st) != 0) {
+        return grobo_i_posix_fail(cause, errno, "stat");
+    }
+    if (S_ISDIR(st->st_mode)) {
+        return grobo_i_posix_refuse(cause, GROBO_ERR_ISDIR, "a directory");
+    }
+    if (!S_ISCHR(st->st_mode)) {
+        return grobo_i_posix_refuse(cause, GROBO_ERR_TYPE, "not a character device");
+    }
+    return GROBO_OK;
+}
+
+/* flock keeps out programs that ask for it, root's too; TIOCEXCL the others, but not root's. */
+static int take(int fd, const char *device, const struct stat *st, grobo_os_cause *cause)
+{
+    if (isatty(fd) == 0) {
+        return errno == EIO ? grobo_i_posix_fail(cause, EIO, "isatty")
+                            : grobo_i_posix_refuse(cause, GROBO_ERR_TYPE, "not a serial port");
+    }
+    if (flock(fd, LOCK_EX | LOCK_NB) != 0) {
+        return errno == EWOULDBLOCK ? refuse_busy(device, cause)
+                                    : grobo_i_posix_fail(cause, errno, "flock");
+    }
+    if (!grobo_i_posix_exclusive_sticks(st->st_rdev) && ioctl(fd, TIOCEXCL) != 0) {
+        return grobo_i_posix_fail(cause, errno, "TIOCEXCL");
+    }
+    return GROBO_OK;
+}
+
+static int make_raw(int fd, grobo_os_cause *cause)
+{
+    struct termios tio;
+
+    if (tcgetattr(fd, &tio) != 0) {
+        return grobo_i_posix_fail(cause, errno, "tcgetattr");
+    }
+    tio.c_iflag = IGNBRK;
+    tio.c_oflag = 0;
+    tio.c_lflag = 0;
+    tio.c_cflag &= (tcflag_t) ~(CSIZE | CSTOPB | PARENB | CRTSCTS);
+    tio.c_cflag |= CS8 | CREAD | CLOCAL;
+    /* With O_NONBLOCK and VMIN 0 a read of nothing would look like a hang-up. */
+    tio.c_cc[VMIN] = 1;
+    tio.c_cc[VTIME] = 0;
+    return tcsetattr(fd, TCSANOW, &tio) == 0 ? GROBO_OK
+                                             : grobo_i_posix_fail(cause, errno, "tcsetattr");
+}
+
+static int serial_open(grobo_port *port, const char *device, int baud_bps, grobo_os_cause *cause)
+{
+    struct stat st;
+    int fd;
+    int r = check_kind(device, &st, cause);
+
+    if (r < 0) {
+        return r;
+    }
+    do {
+        fd = open(device, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+    } while (fd < 0 && errno == EINTR);
+    if (fd < 0) {
+        return errno == EBUSY ? refuse_busy(device, cause)
+                              : grobo_i_posix_fail(cause, errno, "open");
+    }
+    r = take(fd, device, &st, cause);
+    if (r >= 0) {
+        r = make_raw(fd, cause);
+    }
+    if (r >= 0) {
+        r = grobo_i_posix_set_baud(fd, baud_bps, cause);
+    }
+    /* What came while nobody had it open is of no use to the one who opens it. */
+    if (r >= 0 && tcflush(fd, TCIFLUSH) != 0) {
+        r = grobo_i_posix_fail(cause, errno, "tcflush");
+    }
+    if (r < 0) {
+        (void)close(fd);
+        return r;
+    }
+    port->fd = fd;
+    return GROBO_OK;
+}
+
+static void serial_close(grobo_port *port)
+{
+    /* The lock goes with the descriptor, TIOCEXCL only with the last one of the terminal. */
+    (void)ioctl(port->fd, TIOCNXCL);
+    grobo_i_posix_close(port);
+}
+
+static int serial_ready(grobo_port *port, grobo_os_cause *cause)
+{
+    (void)port;
+    (void)cause;
+    return 1;
+}
+
+static int serial_read(grobo_port *port, void *buf, size_t size, grobo_os_cause *cause)
+{
+    ssize_t got;
+
+    do {
+        got = read(port->fd, buf, size);
+    } while (got < 0 && errno == EINTR);
+    return grobo_i_posix_received(got, cause);
+}
+
+static int serial_write(grobo_port *port, const void *buf, size_t size, grobo_os_cause *cause)
+{
+    ssize_t put;
+
+    do {
+        put = write(port->fd, buf, size);
+    } while (put < 0 && errno == EINTR);
+    return grobo_i_posix_sent(put, cause);
+}
+
+static void serial_discard_output(grobo_port *port)
+{
+    (void)tcflush(port->fd, TCOFLUSH);
+}
+
+static int serial_set_baud(grobo_port *port, int baud_bps, grobo_os_cause *cause)
+{
+    return grobo_i_posix_set_baud(port->fd, baud_bps, cause);
+}
+
+static int serial_set_low_latency(grobo_port *port, grobo_os_cause *cause)
+{
+    return grobo_i_posix_set_low_latency(port->fd, cause);
+}
+
+const grobo_port_ops *grobo_port_serial_ops(void)
+{
+    static const grobo_port_ops ops = {
+        .name = "serial",
+        .size_bytes = sizeof(grobo_port),
+        .open = serial_open,
+        .close = serial_close,
+        .ready = serial_ready,
+        .read = serial_read,
+        .write = serial_write,
+        .waiting = grobo_i_posix_waiting,
+        .discard_output = serial_discard_output,
+        .set_baud = serial_set_baud,
+        .set_low_latency = serial_set_low_latency,
+        .socket = grobo_i_posix_socket,
+        .handle = grobo_i_posix_handle,
+    };
+
+    return &ops;
+}

@@ -1,0 +1,249 @@
+/* SPDX-License-Identifier: MIT */
+/* Raw TCP to a serial server: "tcp:HOST:PORT". */
+#include <errno.h>
+#include <fcntl.h>
+#include <netdb.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "ports/posix/posix.h"
+
+/* Systems without it have SO_NOSIGPIPE, set where a socket is made. */
+#ifndef MSG_NOSIGNAL
+#define MSG_NOSIGNAL 0
+#endif
+
+typedef struct {
+    char host[GROBO_DEVICE_MAX_BYTES];
+    char port[8];
+} address;
+
+/* Takes "tcp:HOST:PORT" or "tcp:[HOST]:PORT" apart. */
+static int split(const char *device, address *to)
+{
+    const char *host = device + strlen("tcp:");
+    const char *colon = strrchr(device, ':');
+    size_t host_size;
+    size_t port_size;
+
+    if (strncmp(device, "tcp:", 4) != 0 || colon < host) {
+        return GROBO_ERR_ARG;
+    }
+    host_size = (size_t)(colon - host);
+    port_size = strlen(colon + 1);
+    if (host_size >= 2 && host[0] == '[' && host[host_size - 1] == ']') {
+        host++;
+        host_size -= 2;
+    }
+    if (host_size == 0 || host_size >= sizeof to->host || port_size == 0 ||
+        port_size >= sizeof to->port || strspn(colon + 1, "0123456789") != port_size) {
+        return GROBO_ERR_ARG;
+    }
+    memcpy(to->host, host, host_size);
+    to->host[host_size] = '\0';
+    memcpy(to->port, colon + 1, port_size + 1);
+    return GROBO_OK;
+}
+
+static int look_up(const char *device, int flags, struct addrinfo **found, grobo_os_cause *cause)
+{
+    const struct addrinfo hints = {
+        .ai_flags = flags | AI_NUMERICSERV, .ai_family = AF_UNSPEC, .ai_socktype = SOCK_STREAM};
+    address to;
+    const char *host = to.host;
+    int r = split(device, &to);
+
+    if (r < 0) {
+        return grobo_i_posix_refuse(cause, r, "not of the form tcp:HOST:PORT");
+    }
+    if ((flags & AI_NUMERICHOST) != 0 && strcmp(to.host, "localhost") == 0) {
+        host = "127.0.0.1";
+    }
+    r = getaddrinfo(host, to.port, &hints, found);
+    return r == 0 ? GROBO_OK : grobo_i_posix_refuse(cause, GROBO_ERR_NOENT, gai_strerror(r));
+}
+
+/* Makes the socket of a connection: non-blocking, not inherited, without Nagle's delay. */
+static int make_socket(int family, grobo_os_cause *cause)
+{
+    int one = 1;
+    int fd = socket(family, SOCK_STREAM, 0);
+
+    if (fd < 0) {
+        return grobo_i_posix_fail(cause, errno, "socket");
+    }
+    if (fcntl(fd, F_SETFL, O_NONBLOCK) != 0 || fcntl(fd, F_SETFD, FD_CLOEXEC) != 0) {
+        int r = grobo_i_posix_fail(cause, errno, "fcntl");
+
+        (void)close(fd);
+        return r;
+    }
+    /* These three make it better and are no reason to fail. */
+    (void)setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &one, sizeof one);
+    (void)setsockopt(fd, SOL_SOCKET, SO_KEEPALIVE, &one, sizeof one);
+#ifdef SO_NOSIGPIPE
+    (void)setsockopt(fd, SOL_SOCKET, SO_NOSIGPIPE, &one, sizeof one);
+#endif
+    return fd;
+}
+
+/* A refused connection means: no such device; a lost one is another matter (error_of). */
+static int fail_connect(int code, grobo_os_cause *cause)
+{
+    int r = grobo_i_posix_fail(cause, code, "connect");
+
+    switch (code) {
+    case ECONNREFUSED:
+    case EHOSTUNREACH:
+    case ENETUNREACH:
+    case EADDRNOTAVAIL:
+        return GROBO_ERR_NOENT;
+    case ETIMEDOUT:
+        return GROBO_ERR_TIMEOUT;
+    default:
+        return r;
+    }
+}
+
+static int tcp_open(grobo_port *port, const char *device, int baud_bps, grobo_os_cause *cause)
+{
+    struct addrinfo *found;
+    int fd;
+    int r = look_up(device, AI_NUMERICHOST, &found, cause);
+
+    (void)baud_bps;
+    if (r < 0) {
+        return r;
+    }
+    fd = make_socket(found->ai_family, cause);
+    r = fd;
+    if (fd >= 0) {
+        r = connect(fd, found->ai_addr, found->ai_addrlen) == 0 || errno == EINPROGRESS ||
+                    errno == EINTR
+                ? GROBO_OK
+                : fail_connect(errno, cause);
+    }
+    freeaddrinfo(found);
+    if (r < 0) {
+        if (fd >= 0) {
+            (void)close(fd);
+        }
+        return r;
+    }
+    port->fd = fd;
+    return GROBO_OK;
+}
+
+static int tcp_ready(grobo_port *port, grobo_os_cause *cause)
+{
+    struct pollfd one = {.fd = port->fd, .events = POLLOUT};
+    int error = 0;
+    socklen_t size = sizeof error;
+
+    if (poll(&one, 1, 0) <= 0) {
+        return 0;
+    }
+    if (getsockopt(port->fd, SOL_SOCKET, SO_ERROR, &error, &size) != 0) {
+        error = errno;
+    }
+    return error == 0 ? 1 : fail_connect(error, cause);
+}
+
+static int tcp_read(grobo_port *port, void *buf, size_t size, grobo_os_cause *cause)
+{
+    ssize_t got;
+
+    do {
+        got = recv(port->fd, buf, size, 0);
+    } while (got < 0 && errno == EINTR);
+    return grobo_i_posix_received(got, cause);
+}
+
+static int tcp_write(grobo_port *port, const void *buf, size_t size, grobo_os_cause *cause)
+{
+    ssize_t put;
+
+    do {
+        put = send(port->fd, buf, size, MSG_NOSIGNAL);
+    } while (put < 0 && errno == EINTR);
+    return grobo_i_posix_sent(put, cause);
+}
+
+/* What a connection was given will arrive. */
+static void tcp_discard_output(grobo_port *port)
+{
+    (void)port;
+}
+
+/* The server has a speed of its own, raw TCP has no way to ask for another. */
+static int tcp_set_baud(grobo_port *port, int baud_bps, grobo_os_cause *cause)
+{
+    (void)port;
+    (void)cause;
+    return baud_bps;
+}
+
+static int tcp_set_low_latency(grobo_port *port, grobo_os_cause *cause)
+{
+    (void)port;
+    return grobo_i_posix_refuse(cause, GROBO_ERR_UNSUPPORTED, "a connection, not a serial port");
+}
+
+const grobo_port_ops *grobo_port_tcp_ops(void)
+{
+    static const grobo_port_ops ops = {
+        .name = "tcp",
+        .size_bytes = sizeof(grobo_port),
+        .open = tcp_open,
+        .close = grobo_i_posix_close,
+        .ready = tcp_ready,
+        .read = tcp_read,
+        .write = tcp_write,
+        .waiting = grobo_i_posix_waiting,
+        .discard_output = tcp_discard_output,
+        .set_baud = tcp_set_baud,
+        .set_low_latency = tcp_set_low_latency,
+        .socket = grobo_i_posix_socket,
+        .handle = grobo_i_posix_handle,
+    };
+
+    return &ops;
+}
+
+int grobo_port_resolve(const char *device, char *numeric, size_t numeric_bytes,
+                       grobo_os_cause *cause)
+{
+    struct addrinfo *found;
+    char text[GROBO_DEVICE_MAX_BYTES];
+    char host[INET6_ADDRSTRLEN + 32];
+    char port[8];
+    int n;
+    int r;
+
+    if (strncmp(device, "tcp:", 4) != 0) {
+        n = snprintf(text, sizeof text, "%s", device);
+    } else {
+        r = look_up(device, 0, &found, cause);
+        if (r < 0) {
+            return r;
+        }
+        r = getnameinfo(found->ai_addr, found->ai_addrlen, host, sizeof host, port, sizeof port,
+                        NI_NUMERICHOST | NI_NUMERICSERV);
+        n = snprintf(text, sizeof text, found->ai_family == AF_INET6 ? "tcp:[%s]:%s" : "tcp:%s:%s",
+                     host, port);
+        freeaddrinfo(found);
+        if (r != 0) {
+            return grobo_i_posix_refuse(cause, GROBO_ERR_NOENT, gai_strerror(r));
+        }
+    }
+    if (n < 0 || (size_t)n >= sizeof text || (size_t)n >= numeric_bytes) {
+        return grobo_i_posix_refuse(cause, GROBO_ERR_SPACE, "device name too long");
+    }
+    memcpy(numeric, text, (size_t)n + 1);
+    return GROBO_OK;
+}
