@@ -6,7 +6,11 @@
  * A motion keeps numbers as its file gave them (absolute times in seconds, radians), so that what
  * is read and written back is the same to the bit; durations are a view. Key poses carry, beside
  * angles, what Choreonoid's files have: link targets, ZMP, stationary joints, unknown keys.
- * A motion belongs to one thread at a time; const calls on an unchanged motion are safe from many.
+ *
+ * Postures are counted from 0. A call that fails (GROBO_ERR_NOMEM included) leaves the motion as
+ * it was. A motion belongs to one thread at a time; const calls on an unchanged motion are safe
+ * from many. Storage is chunked: appending costs amortised constant time, a key with n joints
+ * takes 28 + 8 n bytes, and what a key has besides is allocated only where it has some.
  */
 #ifndef GROBO_MOTION_H
 #define GROBO_MOTION_H
@@ -15,6 +19,12 @@
 #include <grobo/mem.h>
 
 GROBO_BEGIN_DECLS
+
+/** Time of a step that gives none, where the caller names no other (the original records so). */
+#define GROBO_MOTION_DEFAULT_US 250000
+
+/** A step of this or more means 'the default motion time' in .m and .mseq files. */
+#define GROBO_MOTION_STEP_MAX_US 10000000
 
 /** What the postures of a motion mean and how its times count. */
 typedef enum grobo_motion_kind {
@@ -28,14 +38,294 @@ typedef enum grobo_motion_kind {
 typedef struct grobo_ik_link {
     double translation_m[3];
     double rotation[9];
-    double parting_direction[3]; /**< meaningful with has_parting_direction */
-    int index;                   /**< link index in the body, -1 where the file gives none */
-    char name[GROBO_NAME_MAX_BYTES];
-    bool is_base, is_stationary, is_touching, is_slave, has_parting_direction;
+    double parting_direction[3];     /**< meaningful with has_parting_direction */
+    int index;                       /**< link index in the body, -1 where the file gives none */
+    char name[GROBO_NAME_MAX_BYTES]; /**< empty where the file gives none */
+    bool is_base;                    /**< isBaseLink */
+    bool is_stationary;              /**< isStationaryPoint */
+    bool is_touching;                /**< isTouching */
+    bool is_slave;                   /**< isSlave */
+    bool has_parting_direction;
 } grobo_ik_link;
+
+/** What a key has beside its posture, its links and its kept keys. All zero: nothing. */
+typedef struct grobo_key_info {
+    double max_transition_s;     /**< maxTransitionTime; 0: none */
+    double zmp_m[3];             /**< meaningful with has_zmp */
+    grobo_joint_mask stationary; /**< spJoints: joints with zero velocity at this key */
+    bool has_zmp;
+    bool zmp_stationary; /**< isZmpStationaryPoint */
+} grobo_key_info;
+
+/** Where a kept key stands in a file. */
+typedef enum grobo_kept_level {
+    GROBO_KEPT_TOP = 0,  /**< in the document's mapping; the only one a motion itself has */
+    GROBO_KEPT_REF = 1,  /**< beside `time` and `refer` */
+    GROBO_KEPT_POSE = 2, /**< in the mapping of `refer` */
+    GROBO_KEPT_LINK = 3  /**< in an entry of `ikLinks` */
+} grobo_kept_level;
+
+/** A key that a file had and this library gives no meaning: kept to be written back. */
+typedef struct grobo_kept {
+    const char *key;        /**< plain text */
+    const char *value;      /**< YAML in flow style on one line: `{ a: 1, b: [ 2 ] }` */
+    grobo_kept_level level; /**< where it stands */
+    uint8_t link;           /**< GROBO_KEPT_LINK: index of its entry in ikLinks */
+} grobo_kept;
+
+/** In place of a key's number: the motion itself. */
+#define GROBO_MOTION_TOP SIZE_MAX
 
 /** A motion. Opaque: made by grobo_motion_new(), freed by grobo_motion_free(). */
 typedef struct grobo_motion grobo_motion;
+
+/* ---- making and freeing ------------------------------------------------------------------- */
+
+/**
+ * Makes an empty motion.
+ * @param[out] motion owned by the caller: grobo_motion_free().
+ * @param n_joints 0..GROBO_JOINTS_MAX; see grobo_motion_set_joints()
+ * @param mem borrowed for the motion's life; NULL: the C library's
+ * @return 0, GROBO_ERR_ARG, GROBO_ERR_CAP or GROBO_ERR_NOMEM.
+ */
+GROBO_API int grobo_motion_new(grobo_motion **motion, grobo_motion_kind kind, int n_joints,
+                               const grobo_mem *mem);
+/** Frees a motion and all it has; NULL is nothing. */
+GROBO_API void grobo_motion_free(grobo_motion *motion);
+/** A deep copy, with the same allocator. @return 0 or GROBO_ERR_NOMEM. */
+GROBO_API int grobo_motion_dup(const grobo_motion *motion, grobo_motion **copy);
+/** Deletes all postures; names, rate, joints and the motion's own kept keys stay. */
+GROBO_API void grobo_motion_clear(grobo_motion *motion);
+
+/* ---- the motion itself -------------------------------------------------------------------- */
+
+/** Number of postures. */
+GROBO_API size_t grobo_motion_size(const grobo_motion *motion);
+/** What its postures mean. */
+GROBO_API grobo_motion_kind grobo_motion_get_kind(const grobo_motion *motion);
+/** Number of joints of its postures. */
+GROBO_API int grobo_motion_joints(const grobo_motion *motion);
+/**
+ * Sets the number of joints, 0..GROBO_JOINTS_MAX. New joints are not set in the postures there
+ * are; angles of joints taken away are lost. Constant time to grow.
+ * @return n_joints, GROBO_ERR_CAP or GROBO_ERR_ARG.
+ */
+GROBO_API int grobo_motion_set_joints(grobo_motion *motion, int n_joints);
+/** The motion's name, "" where it has none. Valid until it is changed or freed. */
+GROBO_API const char *grobo_motion_name(const grobo_motion *motion);
+/** Sets the name (copied). @return 0, GROBO_ERR_ARG (not UTF-8), GROBO_ERR_CAP, GROBO_ERR_NOMEM. */
+GROBO_API int grobo_motion_set_name(grobo_motion *motion, const char *name);
+/** The body it was made for, "" where it names none. Valid until it is changed or freed. */
+GROBO_API const char *grobo_motion_target_body(const grobo_motion *motion);
+/** Sets the target body; as grobo_motion_set_name(). */
+GROBO_API int grobo_motion_set_target_body(grobo_motion *motion, const char *name);
+/** Frames a second of GROBO_MOTION_FRAMES, 0 where none was set and for the other kinds. */
+GROBO_API double grobo_motion_frame_rate(const grobo_motion *motion);
+/** Sets the frame rate: finite, > 0. @return 0 or GROBO_ERR_ARG (also for the other kinds). */
+GROBO_API int grobo_motion_set_frame_rate(grobo_motion *motion, double rate_hz);
+/** True if each frame has a time of its own; false: frame i stands at i / rate. */
+GROBO_API bool grobo_motion_has_frame_times(const grobo_motion *motion);
+/** Gives each frame a time of its own, starting at i / rate, or takes it. @return 0 or ARG. */
+GROBO_API int grobo_motion_set_frame_times(grobo_motion *motion, bool own);
+
+/* ---- postures ----------------------------------------------------------------------------- */
+
+/**
+ * Posture n from the front. time_us is the step from the posture before (the first: from 0), 0
+ * where that means the default motion time, see grobo_motion_step_us().
+ * @return 0, or GROBO_ERR_ARG (n too large; the posture is untouched).
+ */
+GROBO_API int grobo_motion_get(const grobo_motion *motion, size_t n, grobo_posture *posture);
+/**
+ * Posture n from the back, counted as the original does: get(size - n), so 1 is the last and
+ * size the first. @return 0, or GROBO_ERR_ARG for 0 and above size.
+ */
+GROBO_API int grobo_motion_rget(const grobo_motion *motion, size_t n, grobo_posture *posture);
+/** Time of posture n as the file gives it, in seconds. @return 0 or GROBO_ERR_ARG. */
+GROBO_API int grobo_motion_time_s(const grobo_motion *motion, size_t n, double *time_s);
+/**
+ * Time from the posture before (the first: from 0) to posture n. For .m and .mseq 0 where the
+ * times mean 'default' (a step <= 0 or >= 10 s); for the others 0 where times are equal or go back.
+ * @return >= 0, or GROBO_ERR_ARG.
+ */
+GROBO_API int64_t grobo_motion_step_us(const grobo_motion *motion, size_t n);
+/**
+ * When the last posture is reached, with default_us for each step that gives no time (negative:
+ * GROBO_MOTION_DEFAULT_US). For key poses and frames the time of the last. 0 for an empty motion.
+ */
+GROBO_API int64_t grobo_motion_length_us(const grobo_motion *motion, int64_t default_us);
+
+/**
+ * Appends a posture, reached posture->time_us after the last one (frames at a rate: the next
+ * frame). Its joints must fit the motion's: grobo_motion_set_joints() makes room.
+ * @return 0, GROBO_ERR_ARG (more joints than the motion, time negative or above INT64_MAX / 4),
+ *   GROBO_ERR_NAN, GROBO_ERR_CAP (GROBO_MOTION_FRAMES_MAX), GROBO_ERR_NOMEM.
+ */
+GROBO_API int grobo_motion_append(grobo_motion *motion, const grobo_posture *posture);
+/** Appends a posture at an absolute time as files have it. Errors as grobo_motion_append(). */
+GROBO_API int grobo_motion_append_at(grobo_motion *motion, double time_s,
+                                     const grobo_posture *posture);
+/**
+ * Inserts a posture before posture n (n = size appends). Durations stay: what comes after is
+ * reached posture->time_us later. Errors as grobo_motion_append().
+ */
+GROBO_API int grobo_motion_insert(grobo_motion *motion, size_t n, const grobo_posture *posture);
+/**
+ * Inserts a posture at an absolute time, behind those that are not later; all other times stay.
+ * For key poses and frames with times. @return its number, or as grobo_motion_append();
+ * GROBO_ERR_TYPE for the other kinds. (The number is at most GROBO_MOTION_FRAMES_MAX.)
+ */
+GROBO_API int grobo_motion_insert_at(grobo_motion *motion, double time_s,
+                                     const grobo_posture *posture);
+/** Deletes posture n and its step: what comes after is reached earlier. @return 0 or ARG. */
+GROBO_API int grobo_motion_delete(grobo_motion *motion, size_t n);
+/** Deletes posture n; the times of all others stay. @return 0 or GROBO_ERR_ARG. */
+GROBO_API int grobo_motion_delete_keep_times(grobo_motion *motion, size_t n);
+/** Replaces joints and angles of posture n; its time stays. Errors as grobo_motion_append(). */
+GROBO_API int grobo_motion_set(grobo_motion *motion, size_t n, const grobo_posture *posture);
+/** Sets the time of posture n: finite. @return 0, GROBO_ERR_ARG, GROBO_ERR_NAN. */
+GROBO_API int grobo_motion_set_time_s(grobo_motion *motion, size_t n, double time_s);
+
+/* ---- what key poses have besides ---------------------------------------------------------- */
+
+/** What key n has besides; all zero where nothing. @return 0 or GROBO_ERR_ARG. */
+GROBO_API int grobo_motion_get_key(const grobo_motion *motion, size_t n, grobo_key_info *info);
+/** Sets it. @return 0, GROBO_ERR_ARG (no such key, time negative), GROBO_ERR_NAN, NOMEM. */
+GROBO_API int grobo_motion_set_key(grobo_motion *motion, size_t n, const grobo_key_info *info);
+/** Name of key n, "" where it has none (or there is no key n). Valid until it is changed. */
+GROBO_API const char *grobo_motion_key_name(const grobo_motion *motion, size_t n);
+/** Names key n; errors as grobo_motion_set_name(). */
+GROBO_API int grobo_motion_set_key_name(grobo_motion *motion, size_t n, const char *name);
+/** Link targets of key n, *count of them. @return them, valid until a change, or NULL. */
+GROBO_API const grobo_ik_link *grobo_motion_ik_links(const grobo_motion *motion, size_t n,
+                                                     size_t *count);
+/**
+ * Replaces the link targets of key n (copied); count 0 takes them away. Kept keys of links go.
+ * @return 0, GROBO_ERR_ARG, GROBO_ERR_NAN, GROBO_ERR_CAP (GROBO_IK_LINKS_MAX), GROBO_ERR_NOMEM.
+ */
+GROBO_API int grobo_motion_set_ik_links(grobo_motion *motion, size_t n, const grobo_ik_link *links,
+                                        size_t count);
+/** Number of kept keys of key n, or of the motion itself (GROBO_MOTION_TOP). */
+GROBO_API size_t grobo_motion_kept_count(const grobo_motion *motion, size_t n);
+/** Kept key i of key n. @return 0 or GROBO_ERR_ARG. The texts are valid until a change. */
+GROBO_API int grobo_motion_get_kept(const grobo_motion *motion, size_t n, size_t i,
+                                    grobo_kept *kept);
+/**
+ * Adds a kept key to key n or to the motion itself; its texts are copied. The value must be YAML
+ * in flow style on one line: it is written as it is.
+ * @return 0, GROBO_ERR_ARG, GROBO_ERR_EXISTS, GROBO_ERR_CAP, GROBO_ERR_NOMEM.
+ */
+GROBO_API int grobo_motion_keep(grobo_motion *motion, size_t n, const grobo_kept *kept);
+/** Line of the file that key n was read from, counted from 1; 0 where it was not read. */
+GROBO_API uint32_t grobo_motion_line(const grobo_motion *motion, size_t n);
+/**
+ * Where in its file the angle of a joint of key n stands, for a motion read with keep_positions.
+ * @return true and line and column counted from 1, or false and both untouched.
+ */
+GROBO_API bool grobo_motion_position(const grobo_motion *motion, size_t n, int joint,
+                                     uint32_t *line, uint32_t *column);
+
+/* ---- walking through ---------------------------------------------------------------------- */
+
+/** Sets the direction of grobo_motion_next(); the place stays. @return reverse. */
+GROBO_API bool grobo_motion_set_reverse(grobo_motion *motion, bool reverse);
+/** The direction. */
+GROBO_API bool grobo_motion_is_reverse(const grobo_motion *motion);
+/** Goes to the first posture, in reverse to the last. */
+GROBO_API void grobo_motion_reset(grobo_motion *motion);
+/** Number of the posture that next gives; size or above (SIZE_MAX in reverse) behind the end. */
+GROBO_API size_t grobo_motion_current(const grobo_motion *motion);
+/** Gives the current posture and goes on. @return 1, or 0 behind the end (posture untouched). */
+GROBO_API int grobo_motion_next(grobo_motion *motion, grobo_posture *posture);
+
+/* ---- comparing and editing whole motions -------------------------------------------------- */
+
+/** True if kind, joints, times, postures, details and links are the same to the bit. */
+GROBO_API bool grobo_motion_equal(const grobo_motion *a, const grobo_motion *b);
+/** True if kind, size and set joints agree and every angle and time differs by less than these. */
+GROBO_API bool grobo_motion_near(const grobo_motion *a, const grobo_motion *b, double delta_rad,
+                                 double delta_s);
+
+/**
+ * Appends a deep copy of another motion of the same kind, its steps as they are.
+ * @return 0, GROBO_ERR_TYPE (other kind, other frame rate), GROBO_ERR_ARG (more joints),
+ *   GROBO_ERR_CAP or GROBO_ERR_NOMEM.
+ */
+GROBO_API int grobo_motion_append_motion(grobo_motion *motion, const grobo_motion *other);
+/**
+ * Appends another motion with blend_us from the last posture to its first: key poses are
+ * interpolated, postures are one step, frames at a rate get blended frames between (smooth start
+ * and end). Errors as grobo_motion_append_motion(), GROBO_ERR_ARG for a negative blend.
+ */
+GROBO_API int grobo_motion_concat(grobo_motion *motion, const grobo_motion *other,
+                                  int64_t blend_us);
+/**
+ * Swaps left and right by the model's table: joints, link targets (by name and index), ZMP.
+ * @return 0, GROBO_ERR_ARG (other number of joints), GROBO_ERR_NOTFOUND (a link target that is
+ *   neither a link of the model nor unsided by its name).
+ */
+GROBO_API int grobo_motion_mirror(grobo_motion *motion, const grobo_model *model);
+/**
+ * Turns time around. Waits that maxTransitionTime makes become keys of their own before, so that
+ * the same curve is run backwards. @return 0, GROBO_ERR_CAP or GROBO_ERR_NOMEM.
+ */
+GROBO_API int grobo_motion_reverse(grobo_motion *motion);
+/**
+ * Makes it take factor times as long (> 0). Steps that mean the default time stay so.
+ * @return 0, GROBO_ERR_ARG, or GROBO_ERR_CAP if a step of a .m or .mseq would reach 10 s.
+ */
+GROBO_API int grobo_motion_scale_time(grobo_motion *motion, double factor);
+/**
+ * Keeps what lies between two times of the motion, which then starts at 0. Where key poses or
+ * .m postures are cut between two, the posture there becomes a key. Steps that give no time count
+ * as GROBO_MOTION_DEFAULT_US. @return 0, GROBO_ERR_ARG (from negative or above to), NOMEM.
+ */
+GROBO_API int grobo_motion_crop(grobo_motion *motion, int64_t from_us, int64_t to_us);
+
+/* ---- playing ------------------------------------------------------------------------------ */
+
+/** How the time between two key postures is filled. */
+typedef enum grobo_motion_style {
+    GROBO_STYLE_CHOREONOID = 0, /**< key poses: Choreonoid's interpolation, joint by joint */
+    GROBO_STYLE_SEED = 1        /**< as the original: each posture a copy of the one before with
+                                     the listed joints set, straight lines between (the servo's) */
+} grobo_motion_style;
+
+/** Options of grobo_motion_clip(). All zero: the defaults. */
+typedef struct grobo_clip_options {
+    grobo_motion_style style;   /**< key poses only; the other kinds have straight lines */
+    int64_t default_us;         /**< for steps without time; 0: GROBO_MOTION_DEFAULT_US */
+    const grobo_posture *start; /**< the sensed posture, used during the call: what .mseq counts
+                                     from; may be NULL */
+} grobo_clip_options;
+
+/**
+ * A playable view. Key mode: every posture with the joints it lists. Sampled: key poses by the
+ * style; .m straight from posture to posture, the first held until its time; frames straight from
+ * frame to frame. Steps without a time take default_us in both. .mseq with a start becomes
+ * absolute postures; without one it stays relative and can be played by keys only.
+ *
+ * Everything is prepared here, with the motion's allocator: playing allocates nothing.
+ * @param options may be NULL.
+ * @param[out] clip reads the motion, which must outlive it unchanged: grobo_motion_clip_free().
+ * @return 0, GROBO_ERR_ARG (start has other joints), GROBO_ERR_STATE (frames without a rate),
+ *   GROBO_ERR_NOMEM.
+ */
+GROBO_API int grobo_motion_clip(const grobo_motion *motion, const grobo_clip_options *options,
+                                grobo_clip *clip);
+/** Frees what grobo_motion_clip() made; the clip is zeroed. For clips of that call only. */
+GROBO_API void grobo_motion_clip_free(grobo_clip *clip);
+
+/**
+ * Frames at a rate: (int)(rate * length) + 1 of them at i / rate, of any clip that can be sampled.
+ * Joints that are set nowhere stay unset.
+ * @param rate_hz finite, > 0
+ * @param[out] frames a new motion of kind GROBO_MOTION_FRAMES, owned by the caller.
+ * @return 0, GROBO_ERR_ARG, GROBO_ERR_UNSUPPORTED (no sample), GROBO_ERR_CAP, GROBO_ERR_NOMEM, or
+ *   what the clip's sample() gave.
+ */
+GROBO_API int grobo_motion_resample(const grobo_clip *clip, double rate_hz, const grobo_mem *mem,
+                                    grobo_motion **frames);
 
 GROBO_END_DECLS
 
