@@ -44,6 +44,21 @@
 #define GROBO_BUS_QUEUE_MAX 64
 #endif
 
+/** Servos a simulator has; at least the joints of its model. */
+#ifndef GROBO_SIM_SERVOS_MAX
+#define GROBO_SIM_SERVOS_MAX GROBO_JOINTS_MAX
+#endif
+/** Bytes on a simulated wire, in each direction; at most 32767. */
+#ifndef GROBO_SIM_WIRE_BYTES
+#define GROBO_SIM_WIRE_BYTES 1024
+#endif
+/** Bytes the simulated board keeps while it is busy; at most 32767. */
+#ifndef GROBO_SIM_FIFO_BYTES
+#define GROBO_SIM_FIFO_BYTES 512
+#endif
+/** Replies under way at the same time on the simulated servos' bus. */
+#define GROBO_SIM_TALKS_MAX 8
+
 /** Motion files: bytes read at most. */
 #define GROBO_FILE_MAX_BYTES (1024L * 1024L * 1024L)
 /** Motion files: nesting of the YAML document. */

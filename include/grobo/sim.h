@@ -1,0 +1,371 @@
+/* SPDX-License-Identifier: MIT */
+/**
+ * @file sim.h
+ * @brief A robot that is not there: board and servos at register level, on a wire that takes time.
+ *
+ * Bytes and the time go in, bytes and the next deadline come out: no descriptor, clock, thread,
+ * malloc or printf. The same object runs under virtual time in tests, behind a pty and in a
+ * microcontroller. What it models, and which of that is assumption, is in docs/simulator.md.
+ *
+ * A servo is named by its index 0..n-1, the joint of the model it moves: ids may change, and two
+ * servos may have one id. Times never go back: a call with an earlier time counts as one at the
+ * latest time seen. Inspection shows the state at that latest time.
+ *
+ * Nothing here is re-entrant; one simulator belongs to one thread. The hook may inspect, but must
+ * not call grobo_sim_init, _rx, _tx, _step, _plug or any _set_ function of its simulator.
+ */
+#ifndef GROBO_SIM_H
+#define GROBO_SIM_H
+
+#include <grobo/board.h>
+#include <grobo/model.h>
+#include <grobo/rs30x.h>
+
+GROBO_BEGIN_DECLS
+
+/* ---- faults --------------------------------------------------------------------------------- */
+
+/**
+ * Every fault: X(NAME, name, what it hits, what happens). A rate is the probability, 0..1, that
+ * one of what it hits is hit: a byte of the host's line in either direction, a frame from the
+ * host that reached the board (bus wiring: a packet), a reply on its way to the host, a servo
+ * that is spoken to.
+ */
+#define GROBO_SIM_FAULT_LIST(X)                                                                    \
+    X(DROP, "drop", "byte", "is lost")                                                             \
+    X(FLIP, "flip", "byte", "has one bit inverted")                                                \
+    X(DUPLICATE, "duplicate", "reply", "is sent twice")                                            \
+    X(DELAY, "delay", "reply", "is held back by up to GROBO_SIM_DELAY_MAX_US")                     \
+    X(SPLIT, "split", "reply", "pauses inside for up to GROBO_SIM_SPLIT_MAX_US")                   \
+    X(RUBBISH, "rubbish", "reply", "has 1 to 8 random bytes in front")                             \
+    X(SILENT, "silent", "servo", "does not hear this packet")                                      \
+    X(DUPLICATE_ID, "dupid", "servo", "replies together with a ghost of the same id")              \
+    X(HANG_UP, "hangup", "frame", "is the last: the port is gone until plugged in again")          \
+    X(BROWN_OUT, "brownout", "frame", "comes with a dip of the supply: all servos reboot")
+
+/** The faults: GROBO_SIM_FAULT_DROP, ... */
+typedef enum grobo_sim_fault {
+#define GROBO_SIM_FAULT_ENUM(name, text, hits, does) GROBO_SIM_FAULT_##name,
+    GROBO_SIM_FAULT_LIST(GROBO_SIM_FAULT_ENUM)
+#undef GROBO_SIM_FAULT_ENUM
+        GROBO_SIM_FAULTS /**< number of them */
+} grobo_sim_fault;
+
+/** Longest time a delayed reply is held back. */
+#define GROBO_SIM_DELAY_MAX_US 20000
+/** Longest pause inside a split reply. */
+#define GROBO_SIM_SPLIT_MAX_US 5000
+
+/** "drop" of GROBO_SIM_FAULT_DROP; NULL for a number that is no fault. Static string. */
+GROBO_API const char *grobo_sim_fault_name(int fault);
+/** The fault called name[0..length-1], or GROBO_ERR_NOTFOUND. */
+GROBO_API int grobo_sim_fault_find(const char *name, size_t length);
+
+/* ---- events --------------------------------------------------------------------------------- */
+
+/** What a hook is told about. `servo` is -1 where none is meant. */
+typedef enum grobo_sim_event_kind {
+    GROBO_SIM_FRAME,     /**< board: a whole frame; value: grobo_board_kind, bytes: its packet */
+    GROBO_SIM_PACKET,    /**< a whole command packet on the servos' bus; bytes: the packet */
+    GROBO_SIM_REPLY,     /**< a reply starts for the host; bytes: before any fault */
+    GROBO_SIM_GOAL,      /**< a goal was written; value: 0.1 degree (clamped), value2: 10 ms */
+    GROBO_SIM_TORQUE,    /**< torque changed, by whatever cause; value: new grobo_torque */
+    GROBO_SIM_REGISTER,  /**< another register was written; value: address, value2: its value */
+    GROBO_SIM_REBOOT,    /**< a servo restarts: command, brown-out, plugged in again */
+    GROBO_SIM_SAVED,     /**< registers No.4-29 went to flash */
+    GROBO_SIM_OVERHEAT,  /**< a servo cut its torque; value: deg C */
+    GROBO_SIM_REFUSED,   /**< a servo could not process a packet */
+    GROBO_SIM_SLOT,      /**< the board was told to play a motion; value: its number */
+    GROBO_SIM_SCENARIO,  /**< the board was told to play a scenario; value: its number */
+    GROBO_SIM_COLLISION, /**< two talked at once on the servos' bus */
+    GROBO_SIM_INJECTED   /**< a fault struck; value: grobo_sim_fault */
+} grobo_sim_event_kind;
+
+/** One event. Borrowed bytes, valid during the call of the hook. */
+typedef struct grobo_sim_event {
+    grobo_sim_event_kind kind;
+    int64_t time_us;      /**< when it happened */
+    int servo;            /**< index of the servo, or -1 */
+    int32_t value;        /**< see grobo_sim_event_kind */
+    int32_t value2;       /**< see grobo_sim_event_kind */
+    const uint8_t *bytes; /**< or NULL */
+    size_t n_bytes;
+} grobo_sim_event;
+
+/**
+ * Called at each event. What comes over the wires is told in order of time; what a servo does on
+ * its own (overheating, end of a flash write) when somebody next speaks to it or looks at it.
+ */
+typedef void (*grobo_sim_hook)(const grobo_sim_event *event, void *ctx);
+
+/* ---- configuration -------------------------------------------------------------------------- */
+
+/** Where the limp joints are at power-up. */
+typedef enum grobo_sim_start {
+    GROBO_SIM_START_INIT = 0, /**< the model's initial posture */
+    GROBO_SIM_START_ZERO,     /**< all at 0, or at the limit nearest to it */
+    GROBO_SIM_START_LIMP      /**< anywhere within the limits, by the seed */
+} grobo_sim_start;
+
+/** Zero in a field means its default. */
+typedef struct grobo_sim_config {
+    const grobo_model *model;  /**< NULL: GR001. Borrowed for the life of the simulator */
+    grobo_wiring wiring;       /**< default: board */
+    uint32_t baud_bps;         /**< board: its host port; bus: the servos' line. 115200 */
+    bool unpaced;              /**< bytes take no time on any wire */
+    uint32_t seed;             /**< of every random choice */
+    grobo_sim_start start;     /**< posture at power-up */
+    uint32_t board_silence_us; /**< board gives up a reply after this much silence. 2000 */
+    uint32_t board_stall_us;   /**< board forgets a frame that stalls. GROBO_BOARD_STALL_US */
+    uint32_t supply_mv;        /**< battery. 7400 */
+    int32_t ambient_c;         /**< -40..60; 25 */
+    bool nack;                 /**< a servo that cannot process an ACK request answers 08 */
+    bool jump_on_torque;       /**< torque on runs to the goal register instead of holding */
+    grobo_sim_hook hook;       /**< or NULL */
+    void *hook_ctx;            /**< given to the hook */
+} grobo_sim_config;
+
+/* ---- inspection ----------------------------------------------------------------------------- */
+
+/** Monotonic counters; read freely. */
+typedef struct grobo_sim_stats {
+    uint32_t rx_bytes;      /**< bytes of the host that arrived */
+    uint32_t tx_bytes;      /**< bytes handed out to the host */
+    uint32_t frames;        /**< board: whole frames of the host */
+    uint32_t packets;       /**< whole command packets on the servos' bus */
+    uint32_t replies;       /**< replies that entered the line to the host */
+    uint32_t short_replies; /**< board: replies with fewer bytes than asked for */
+    uint32_t overflows;     /**< bytes lost to a full buffer: board's, or towards the host */
+    uint32_t stalls;        /**< packets on the servos' bus forgotten because they stalled */
+    uint32_t collisions;    /**< bytes on the servos' bus with two talkers */
+    uint32_t stray_bytes;   /**< bytes of servos that nobody listened to */
+    uint32_t slots;         /**< slots played */
+    uint32_t scenarios;     /**< scenarios played */
+    uint8_t last_slot;      /**< number of the last one */
+    uint8_t last_scenario;  /**< number of the last one */
+    uint32_t injected[GROBO_SIM_FAULTS]; /**< faults that struck */
+} grobo_sim_stats;
+
+/** How a servo is connected. */
+typedef enum grobo_sim_cable {
+    GROBO_SIM_CABLE_IN = 0, /**< as it should be */
+    GROBO_SIM_CABLE_MUTE,   /**< powered, holds, but neither hears nor speaks */
+    GROBO_SIM_CABLE_OUT     /**< no power: limp */
+} grobo_sim_cable;
+
+/** What a servo does now. Angles are the shaft's: the sign of register REVERSE is not in them. */
+typedef struct grobo_sim_view {
+    int32_t angle_mdeg;    /**< where the shaft is, 0.001 degree */
+    int32_t target_mdeg;   /**< where its present move ends */
+    int32_t speed_dps;     /**< magnitude, degrees a second */
+    int32_t current_ma;    /**< of its motor and circuit */
+    double temperature_c;  /**< of its case */
+    grobo_torque torque;   /**< what it does, also while it is rebooting */
+    grobo_sim_cable cable; /**< as set */
+    bool moving;           /**< on its way to target_mdeg */
+    bool stalled;          /**< wants to go where it cannot */
+    bool deaf;             /**< writing flash, rebooting, without power, or its cable is not in */
+    uint8_t id;            /**< register ID */
+    uint32_t baud_bps;     /**< what it listens at */
+} grobo_sim_view;
+
+/* ---- the simulator -------------------------------------------------------------------------- */
+
+/** Registers No.4-29, those that flash keeps. */
+#define GROBO_SIM_FLASH_BYTES 26
+
+/** One servo. Private: use the functions. */
+typedef struct grobo_sim_servo {
+    /* private */
+    double temperature_c;                 /* at settled_us */
+    int64_t settled_us;                   /* what it did on its own is known up to here */
+    int64_t start_us, move_us;            /* the present move: when it began, how long it takes */
+    int64_t due_us;                       /* when the goal time of the last goal is over */
+    int64_t deaf_until_us;                /* end of a flash write or a reboot */
+    int64_t saved_us;                     /* end of a flash write under way, or GROBO_NEVER_US */
+    int32_t from_mdeg, to_mdeg;           /* the present move, of the shaft */
+    int32_t stop_min_mdeg, stop_max_mdeg; /* mechanical stops */
+    int32_t load_ma;                      /* extra current of a hand or a weight */
+    uint8_t reg[GROBO_REGISTERS];         /* present values are filled in when read */
+    uint8_t flash[GROBO_SIM_FLASH_BYTES];
+    uint8_t status; /* flags of the next return packet */
+    uint8_t cable;  /* grobo_sim_cable */
+    bool powered, blocked, stalled, reboots_after_save;
+} grobo_sim_servo;
+
+/** Bytes on a wire, each with the time at which it is over. Private. */
+typedef struct grobo_sim_wire {
+    /* private */
+    int64_t at_ns[GROBO_SIM_WIRE_BYTES];
+    uint8_t byte[GROBO_SIM_WIRE_BYTES];
+    uint16_t head, used;
+    int64_t free_ns; /* the last byte's end */
+} grobo_sim_wire;
+
+/** Bytes that servos say in one go, from start_ns on without a pause. Private. */
+typedef struct grobo_sim_talk {
+    /* private */
+    int64_t start_ns;
+    uint16_t used, said;
+    uint8_t byte[GROBO_REPLY_MAX_BYTES];
+} grobo_sim_talk;
+
+/** What the board is doing. Private. */
+typedef enum grobo_sim_board_state {
+    GROBO_SIM_BOARD_IDLE,    /* takes bytes of the host */
+    GROBO_SIM_BOARD_SENDING, /* relays a payload to the servos */
+    GROBO_SIM_BOARD_WAITING, /* for the bytes of a reply */
+    GROBO_SIM_BOARD_REPLYING /* sends a reply to the host */
+} grobo_sim_board_state;
+
+/**
+ * A simulated robot in the caller's storage. It holds no resource: there is nothing to deinit.
+ * Fields are private but stats.
+ */
+typedef struct grobo_sim {
+    grobo_sim_stats stats; /**< read freely */
+    /* private */
+    grobo_sim_config config;
+    int64_t now_us;
+    int64_t line_byte_ns, bus_byte_ns; /* 10 bits at the baud rate; 0 unpaced */
+    uint32_t line_bps, bus_bps;        /* the host's rate; the servos' bus's */
+    uint32_t supply_mv;
+    uint32_t fault_below[GROBO_SIM_FAULTS]; /* a fault strikes when its generator gives less */
+    uint32_t random[GROBO_SIM_FAULTS + 1];  /* one generator a fault, one for the rest */
+    bool gone;                              /* hung up */
+    uint8_t n_servos;
+    grobo_sim_servo servo[GROBO_SIM_SERVOS_MAX];
+    grobo_sim_wire in, out; /* from the host, to the host */
+
+    grobo_board_parser board;
+    grobo_sim_board_state board_state;
+    int64_t board_at_ns;                /* end of the byte it sends, of its reply, of silence */
+    uint8_t fifo[GROBO_SIM_FIFO_BYTES]; /* bytes that arrived while it was busy */
+    uint16_t fifo_head, fifo_used;
+    uint8_t send[GROBO_RELAY_MAX_BYTES]; /* the payload being relayed */
+    uint8_t send_used, sent;
+    uint8_t want;           /* bytes asked for by T; 0 for S */
+    uint8_t got[UINT8_MAX]; /* of the reply */
+    uint8_t got_used;
+
+    grobo_rs30x_parser bus; /* what the servos hear: one for all, as they hear the same */
+    int64_t bus_heard_ns;   /* end of the last byte they heard */
+    grobo_sim_talk talk[GROBO_SIM_TALKS_MAX]; /* used 0: free */
+} grobo_sim;
+
+/**
+ * Powers a simulated robot up: torque off everywhere, goals 0, flash as the factory left it but
+ * for the ids of the model.
+ * @param config NULL: all defaults. Copied; the model is borrowed.
+ * @return 0; GROBO_ERR_ARG for a bad model, ambient temperature or baud rate below 300 or (bus
+ *         wiring) not one of the servos'; GROBO_ERR_CAP for more than GROBO_SIM_SERVOS_MAX joints
+ */
+GROBO_API int grobo_sim_init(grobo_sim *sim, const grobo_sim_config *config, int64_t now_us);
+
+/**
+ * The host writes. With pacing the bytes take their time on the wire, one after another, before
+ * the board has them.
+ * @return bytes taken: fewer than n when the wire's queue is full (write the rest later, as after
+ *         a short write; deadline tells when); n when the port is gone (they are lost)
+ */
+GROBO_API size_t grobo_sim_rx(grobo_sim *sim, const uint8_t *bytes, size_t n, int64_t now_us);
+
+/**
+ * The host reads: bytes whose time on the wire is over by now.
+ * @return bytes put into buf, 0 when there are none yet
+ */
+GROBO_API size_t grobo_sim_tx(grobo_sim *sim, uint8_t *buf, size_t cap, int64_t now_us);
+
+/** Lets everything happen that is due by now. _rx and _tx do it too. */
+GROBO_API void grobo_sim_step(grobo_sim *sim, int64_t now_us);
+
+/**
+ * When to call again: a byte is ready for the host (at or before the latest time when it is ready
+ * already), or a step has something to do. Moves, temperatures and reboots need no step: they are
+ * functions of time.
+ * @return GROBO_NEVER_US when nothing will happen without the host
+ */
+GROBO_API int64_t grobo_sim_deadline(const grobo_sim *sim);
+
+/** Room for bytes of the host: what grobo_sim_rx would take now. */
+GROBO_API size_t grobo_sim_rx_room(const grobo_sim *sim);
+
+/** True from a hang-up to the next grobo_sim_plug(): whoever serves the port closes it. */
+GROBO_API bool grobo_sim_hung_up(const grobo_sim *sim);
+
+/**
+ * Takes the host's cable out (in = false) or puts it back. Out: bytes on the line are lost, the
+ * servos go on; in: the line and the board start afresh.
+ */
+GROBO_API void grobo_sim_plug(grobo_sim *sim, bool in, int64_t now_us);
+
+/**
+ * The host speaks at another rate from now on. Board wiring: at another rate than config.baud_bps
+ * the board hears rubbish. Bus wiring: the line has the host's rate, and servos whose register
+ * BAUD says another do not understand it.
+ * @return 0, or GROBO_ERR_ARG below 300 bps
+ */
+GROBO_API int grobo_sim_set_line_bps(grobo_sim *sim, uint32_t line_bps);
+
+/** Number of servos. */
+GROBO_API int grobo_sim_servos(const grobo_sim *sim);
+
+/** First servo whose register ID is id, or GROBO_ERR_NOTFOUND. */
+GROBO_API int grobo_sim_find(const grobo_sim *sim, int id);
+
+/** What a servo does at the latest time. @return 0 or GROBO_ERR_ARG (no such servo). */
+GROBO_API int grobo_sim_look(grobo_sim *sim, int servo, grobo_sim_view *view);
+
+/**
+ * Reads a register, present values as a read packet would give them.
+ * @return 0, or GROBO_ERR_ARG (no such servo, or no register begins at this address)
+ */
+GROBO_API int grobo_sim_get_register(grobo_sim *sim, int servo, int address, int32_t *value);
+
+/**
+ * Writes a register as a write packet would, with all that follows from it; read-only registers
+ * of kind ROM and FLASH may be written here, present values may not.
+ * @return 0, GROBO_ERR_ARG (no such servo or register, present value), GROBO_ERR_LIMIT (range)
+ */
+GROBO_API int grobo_sim_set_register(grobo_sim *sim, int servo, int address, int32_t value);
+
+/**
+ * Somebody turns a shaft: from where it is to angle_mdeg (kept within the mechanical stops) in
+ * time_us, at once for 0. With torque on the servo drives back to its goal at the end of it.
+ * @return 0 or GROBO_ERR_ARG (no such servo, time_us < 0)
+ */
+GROBO_API int grobo_sim_set_angle(grobo_sim *sim, int servo, int32_t angle_mdeg, int64_t time_us);
+
+/** Holds a shaft fast, or lets it go. @return 0 or GROBO_ERR_ARG. */
+GROBO_API int grobo_sim_set_blocked(grobo_sim *sim, int servo, bool blocked);
+
+/** Extra current while torque is on, as a hand or a weight causes: 0..5000 mA. @return 0/ARG. */
+GROBO_API int grobo_sim_set_load(grobo_sim *sim, int servo, int32_t load_ma);
+
+/** Sets the temperature of a servo, -40..150. @return 0 or GROBO_ERR_ARG. */
+GROBO_API int grobo_sim_set_temperature(grobo_sim *sim, int servo, double temperature_c);
+
+/** Connects or disconnects a servo. @return 0 or GROBO_ERR_ARG. */
+GROBO_API int grobo_sim_set_cable(grobo_sim *sim, int servo, grobo_sim_cable cable);
+
+/**
+ * Sets the battery's voltage. Speeds follow it; below GROBO_SIM_BROWN_OUT_MV the servos are
+ * without power, and they boot when it comes back. The board lives from the host's cable.
+ */
+GROBO_API void grobo_sim_set_supply(grobo_sim *sim, uint32_t supply_mv);
+
+/** Below this servos reset. An assumption. */
+#define GROBO_SIM_BROWN_OUT_MV 4500
+
+/** Sets the rate of a fault from now on. @return 0, or GROBO_ERR_ARG (no fault, rate not 0..1). */
+GROBO_API int grobo_sim_set_fault(grobo_sim *sim, int fault, double rate);
+
+/**
+ * Sets rates by a list "drop=0.01,flip=0.02"; "all=R" means all but hang-up.
+ * @return number of rates set; GROBO_ERR_NOTFOUND (name) or GROBO_ERR_ARG (number): none was set
+ */
+GROBO_API int grobo_sim_set_faults(grobo_sim *sim, const char *list, size_t length);
+
+GROBO_END_DECLS
+
+#endif
