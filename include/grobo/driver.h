@@ -1,0 +1,202 @@
+/* SPDX-License-Identifier: MIT */
+/**
+ * @file driver.h
+ * @brief What a robot of one's own fills in: a const table of functions and data.
+ *
+ * The engine (robot.h) decides what is sent and when; the driver says how it looks on the wire.
+ * Every function is pure apart from `ctx`: no I/O, no waiting, no allocation. They run inside the
+ * engine's calls, so they must not call the engine back.
+ *
+ * A robot of RS30x servos needs data only: grobo_rs30x_driver_init() fills a whole table from a
+ * model and a wiring, and single functions may then be replaced. Another kind of servo or board
+ * replaces all of them; its frames may be any bytes, its replies are an ACK byte or a return
+ * packet (rs30x.h).
+ */
+#ifndef GROBO_DRIVER_H
+#define GROBO_DRIVER_H
+
+#include <grobo/board.h>
+#include <grobo/posture.h>
+
+GROBO_BEGIN_DECLS
+
+/* ---- what goes over the wire ------------------------------------------------------------- */
+
+/** What a read asks of a joint. */
+typedef enum grobo_sense_kind {
+    GROBO_SENSE_FULL = 0,    /**< everything the servo reports */
+    GROBO_SENSE_POSITION = 1 /**< the angle only, as cheaply as the wire allows */
+} grobo_sense_kind;
+
+/** One frame to send and the reply it waits for. Plain data. */
+typedef struct grobo_exchange {
+    uint8_t frame[GROBO_RS30X_PACKET_MAX_BYTES]; /**< what is sent */
+    uint8_t frame_bytes;                         /**< how much of it */
+    grobo_reply reply;                           /**< what must come back */
+    int64_t settle_us; /**< silence the device needs afterwards, 0: none */
+} grobo_exchange;
+
+/* ---- what a joint reports ------------------------------------------------------------------ */
+
+/** Fields of a grobo_joint_state, as bits of grobo_joint_state.valid. */
+typedef enum grobo_field {
+    GROBO_FIELD_ANGLE = 1 << 0,
+    GROBO_FIELD_TIME = 1 << 1,
+    GROBO_FIELD_SPEED = 1 << 2,
+    GROBO_FIELD_CURRENT = 1 << 3,
+    GROBO_FIELD_TEMPERATURE = 1 << 4,
+    GROBO_FIELD_VOLTAGE = 1 << 5,
+    GROBO_FIELD_TORQUE = 1 << 6
+} grobo_field;
+
+/** One reading of one joint. Plain data; a field means something only where `valid` has its bit. */
+typedef struct grobo_joint_state {
+    double angle_rad;      /**< present angle */
+    int64_t time_us;       /**< since its present move began */
+    int32_t speed_dps;     /**< degrees a second */
+    int32_t current_ma;    /**< motor current */
+    int32_t voltage_mv;    /**< supply */
+    int16_t temperature_c; /**< degrees Celsius */
+    uint16_t valid;        /**< GROBO_FIELD_... bits */
+    grobo_torque torque;   /**< as read, not as asked */
+    uint8_t flags;         /**< of the reply: GROBO_RS30X_STATUS_... */
+} grobo_joint_state;
+
+/* ---- the table ----------------------------------------------------------------------------- */
+
+/** Where joints go, and in which time each: what the engine asks a driver to put in frames. */
+typedef struct grobo_target {
+    grobo_posture posture;                   /**< checked: finite, within limits */
+    int64_t joint_time_us[GROBO_JOINTS_MAX]; /**< by joint, multiples of the driver's time step */
+} grobo_target;
+
+/** A motion kept in the robot itself. */
+typedef enum grobo_stored_kind {
+    GROBO_STORED_SLOT = 0,    /**< one motion (GR001: 50 4D k) */
+    GROBO_STORED_SCENARIO = 1 /**< a sequence of motions (GR001: 50 53 k) */
+} grobo_stored_kind;
+
+/** A register transfer of one servo. */
+typedef struct grobo_register_io {
+    uint8_t id;          /**< servo id, 1..127 */
+    uint8_t address;     /**< first register */
+    uint8_t length;      /**< bytes, 1..GROBO_REGISTERS - address */
+    const uint8_t *data; /**< bytes to write, or NULL to read */
+} grobo_register_io;
+
+/** What a servo does with itself. */
+typedef enum grobo_servo_command {
+    GROBO_SERVO_FLASH = 0,        /**< write No.4-29 to flash (1 s) */
+    GROBO_SERVO_REBOOT = 1,       /**< restart (2 s) */
+    GROBO_SERVO_FACTORY_RESET = 2 /**< factory settings; the id becomes 1 */
+} grobo_servo_command;
+
+/** Safety limits; where the engine's configuration is silent, its driver's hold. */
+typedef struct grobo_safety_limits {
+    int16_t temperature_c; /**< stop above this; 0: no limit */
+    int16_t lost_replies;  /**< stop after so many readings lost in a row of one joint; 0: none */
+    int32_t current_ma;    /**< stop when above it for current_us; 0: no limit */
+    int32_t voltage_mv;    /**< stop when below; 0: no limit */
+    int64_t current_us;    /**< how long a current may stand above its limit */
+    double approach_rad_s; /**< speed of the first move from a sensed posture, > 0 */
+} grobo_safety_limits;
+
+/** A correction of one joint's reading. */
+typedef struct grobo_readback {
+    double add_rad; /**< added to the angle read */
+    uint8_t joint;  /**< joint id */
+} grobo_readback;
+
+typedef struct grobo_driver grobo_driver;
+
+/**
+ * A robot's table. Borrowed by the engine: it must outlive it. A function that is NULL makes the
+ * engine refuse what needs it with GROBO_ERR_UNSUPPORTED; `posture`, `sense` and `parse` must be
+ * there.
+ *
+ * Functions with a `part` may give several frames: they are called with part 0, 1, 2... They
+ * return 1 with *exchange filled, 0 when part is past the last frame, or an error. *exchange
+ * comes zeroed.
+ */
+struct grobo_driver {
+    const char *name;           /**< "GR001" */
+    const grobo_model *model;   /**< joints, motors, limits */
+    grobo_wiring wiring;        /**< how the generic RS30x functions reach the servos */
+    int64_t time_step_us;       /**< unit of a goal time on the wire, > 0 (RS30x: 10 ms) */
+    grobo_safety_limits limits; /**< safety limits of this robot */
+    grobo_exit_policy on_exit;  /**< what GROBO_EXIT_DEFAULT stands for; not DEFAULT itself */
+    const double *rest_rad; /**< resting posture by joint for GROBO_EXIT_SIT; NULL: initial one */
+    const grobo_readback *readback; /**< n_readback corrections, used if the engine is told to */
+    uint8_t n_readback;
+
+    /** Is the robot there? Parts are tried one after the other until one is answered. */
+    int (*check)(const grobo_driver *self, void *ctx, int part, grobo_exchange *exchange);
+    /** Moves the joints that target->posture sets; several frames where one does not hold them. */
+    int (*posture)(const grobo_driver *self, void *ctx, const grobo_target *target, int part,
+                   grobo_exchange *exchange);
+    /** Sets the torque of `joints`. */
+    int (*torque)(const grobo_driver *self, void *ctx, grobo_joint_mask joints, grobo_torque mode,
+                  int part, grobo_exchange *exchange);
+    /** Asks one joint for its state. @return 0 or an error. */
+    int (*sense)(const grobo_driver *self, void *ctx, int joint, grobo_sense_kind kind,
+                 grobo_exchange *exchange);
+    /**
+     * Reads what a joint returned; the packet has been checked against the exchange's reply.
+     * Sets the fields it finds and their bits in state->valid. @return 0 or an error.
+     */
+    int (*parse)(const grobo_driver *self, void *ctx, int joint, const grobo_rs30x_packet *reply,
+                 grobo_joint_state *state);
+    /** Reads or writes registers of one servo. @return 0 or an error. */
+    int (*registers)(const grobo_driver *self, void *ctx, const grobo_register_io *io,
+                     grobo_exchange *exchange);
+    /** Flash, reboot, factory reset; sets exchange->settle_us. @return 0 or an error. */
+    int (*command)(const grobo_driver *self, void *ctx, int id, grobo_servo_command command,
+                   grobo_exchange *exchange);
+    /** Plays a motion kept in the robot. @return 0 or an error. */
+    int (*stored)(const grobo_driver *self, void *ctx, grobo_stored_kind kind, int number,
+                  grobo_exchange *exchange);
+    /**
+     * Reads the wish out of a frame that a user hands in raw, so that the engine can check it as
+     * it checks its own: sets *target for joints the frame moves (times too) and *torqued for
+     * joints whose torque it switches on.
+     * @return 0, or GROBO_ERR_UNSUPPORTED for a frame that cannot be understood.
+     */
+    int (*inspect)(const grobo_driver *self, void *ctx, const uint8_t *frame, size_t size,
+                   grobo_target *target, grobo_joint_mask *torqued);
+    /**
+     * The stabilizer: may change the angles of a target before it is checked and sent, knowing
+     * the posture sensed last (joints not sensed are not set in it). NULL: nothing to correct.
+     * @return 0; an error stops the motion with it.
+     */
+    int (*stabilize)(const grobo_driver *self, void *ctx, const grobo_posture *sensed,
+                     grobo_posture *target);
+};
+
+/**
+ * Checks a table: functions that must be there, time step, limits, exit policy, the model
+ * (grobo_model_check()), joints of `readback`.
+ * @return 0, or GROBO_ERR_ARG. Pure; thread safe.
+ */
+GROBO_API int grobo_driver_check(const grobo_driver *driver);
+
+/**
+ * Fills a table for a robot of RS30x servos: every function but `stabilize`, and `stored` only
+ * for GROBO_WIRING_BOARD. Limits: 70 deg C, 5 lost replies, 60 deg/s for the first move, no limit
+ * of current and voltage; exit policy hold.
+ * @param[out] driver the caller's table; change what is different in it afterwards.
+ * @param model borrowed.
+ * @return 0, or GROBO_ERR_ARG for a bad model or wiring.
+ */
+GROBO_API int grobo_rs30x_driver_init(grobo_driver *driver, const grobo_model *model,
+                                      grobo_wiring wiring);
+
+/**
+ * The table of HPI's GR001.
+ * @param wiring through its board, or its servos straight on a bus.
+ * @return a static table, or NULL for an unknown wiring. Thread safe.
+ */
+GROBO_API const grobo_driver *grobo_gr001_driver(grobo_wiring wiring);
+
+GROBO_END_DECLS
+
+#endif

@@ -1,0 +1,515 @@
+/* SPDX-License-Identifier: MIT */
+/**
+ * @file robot.h
+ * @brief The robot engine: bytes and the time go in, bytes and the next deadline come out.
+ *
+ * No descriptor, clock, thread or allocation in here. Whoever owns the line pumps the engine,
+ * whenever bytes came, a request was made or the deadline is reached, always in this order:
+ * @code
+ *   grobo_robot_rx(&robot, bytes, n, now);                // what has arrived, first
+ *   grobo_robot_step(&robot, now);                        // timeouts, frames that are due
+ *   n = grobo_robot_tx(&robot, buf, sizeof buf, now);     // > 0: write buf, all of it
+ *   wake_up_at(grobo_robot_deadline(&robot, now));        // <= now: again at once
+ * @endcode
+ * session.h does that on an event_base, a test in virtual time.
+ *
+ * What the engine does is asked for by requests and told by one callback, grobo_event. Requests
+ * return at once. Most are jobs: one runs at a time (a second is refused with GROBO_ERR_STATE),
+ * each has a number > 0, and each ends with exactly one GROBO_EVENT_JOB of that number.
+ * Playing is not a job: grobo_robot_play() prepares as a job, then the sequencer runs beside the
+ * jobs until GROBO_EVENT_PLAY tells its end.
+ *
+ * Safety, on every path before bytes leave:
+ * - Every target is finite and within the joint's limits (refused, or clamped if so configured).
+ * - No joint is asked to move faster than its limit: times are stretched, and counted.
+ * - Nothing moves a joint whose posture was not sensed; the first move from there is slow.
+ * - Before torque comes on, the goal is set to the present angle, and torque is read back after.
+ * - Heat, current, low voltage, lost replies, torque lost in motion: stop, latched until
+ *   grobo_robot_reset().
+ * - A stalled host skips what is late; after a long stall the motion ends (GROBO_TRIP_HOST_STALL).
+ * - grobo_robot_estop() is ahead of everything, read back joint by joint, latched.
+ *
+ * Not thread safe: one thread at a time per robot. Requests may be made from the callback.
+ */
+#ifndef GROBO_ROBOT_H
+#define GROBO_ROBOT_H
+
+#include <grobo/bus.h>
+#include <grobo/driver.h>
+#include <grobo/sequencer.h>
+
+GROBO_BEGIN_DECLS
+
+/* ---- configuration -------------------------------------------------------------------------- */
+
+/** What happens to a target outside a joint's limits. */
+typedef enum grobo_limit_policy {
+    GROBO_LIMIT_REFUSE = 0, /**< refused with joint and value; a motion being played stops */
+    GROBO_LIMIT_CLAMP = 1   /**< moved to the limit and counted */
+} grobo_limit_policy;
+
+/** Torque after an emergency stop. */
+typedef enum grobo_estop_torque {
+    GROBO_ESTOP_BRAKE = 0, /**< damped: a standing robot sinks instead of dropping */
+    GROBO_ESTOP_OFF = 1    /**< free */
+} grobo_estop_torque;
+
+/** Sense interval: no reading in the background. */
+#define GROBO_SENSE_NEVER (-1)
+
+/** Configuration. All zero is the default; a negative number where 0 means a limit: no limit. */
+typedef struct grobo_robot_config {
+    grobo_limit_policy limit_policy; /**< targets outside limits; default refuse */
+    int speed_limit_pct;             /**< 1..100 of each joint's speed; default 100 */
+    double approach_dps;             /**< deg/s of the first move, > 0; default the driver's */
+    int64_t sense_interval_us;       /**< background: each joint once in this time; 1 is as fast as
+                                          the wire allows; default 1 s; GROBO_SENSE_NEVER */
+    bool sense_position_only;        /**< background reads angles only (cheaper, watches less) */
+    bool manual_torque;              /**< move and play refuse joints without torque; default: they
+                                          switch it on, safely */
+    bool readback_correction;        /**< add the driver's read-back corrections */
+    bool accept_unknown_raw;         /**< send raw frames the driver cannot check; default refuse */
+    int temperature_c;               /**< trip above; default the driver's */
+    int current_ma;                  /**< trip above for long; default the driver's */
+    int voltage_mv;                  /**< trip below; default the driver's */
+    int lost_replies;                /**< trip after so many in a row; default the driver's */
+    int64_t stall_us;                /**< host may be late by this, then a motion ends; default
+                                          250 ms */
+    int64_t default_time_us;         /**< time of postures whose time is 0; default 100 ms */
+    int64_t exit_bound_us;           /**< longest an exit may take; default 10 s */
+    grobo_exit_policy on_exit;       /**< default the driver's */
+    grobo_estop_torque estop_torque; /**< default brake */
+    grobo_bus_config bus;            /**< the line's physics; `wiring` is taken from the driver */
+    uint32_t timeout_us;             /**< reply timeout; default computed, see bus.h */
+    int retries;                     /**< of a lost or broken reply; default 2; -1 none */
+} grobo_robot_config;
+
+/* ---- events --------------------------------------------------------------------------------- */
+
+/** Kinds of job. */
+typedef enum grobo_job_kind {
+    GROBO_JOB_NONE = 0,
+    GROBO_JOB_CHECK,
+    GROBO_JOB_SENSE,
+    GROBO_JOB_TORQUE,
+    GROBO_JOB_MOVE,
+    GROBO_JOB_PLAY, /**< the preparation of a play: sensing, torque */
+    GROBO_JOB_RAW,
+    GROBO_JOB_REGISTERS,
+    GROBO_JOB_COMMAND,
+    GROBO_JOB_STORED,
+    GROBO_JOB_EXIT,
+    GROBO_JOB_ESTOP
+} grobo_job_kind;
+
+/** Why the engine stopped by itself. */
+typedef enum grobo_trip {
+    GROBO_TRIP_NONE = 0,
+    GROBO_TRIP_TEMPERATURE,  /**< value: deg C */
+    GROBO_TRIP_OVERHEATED,   /**< a servo cut its torque for heat; value: deg C */
+    GROBO_TRIP_CURRENT,      /**< value: mA */
+    GROBO_TRIP_VOLTAGE,      /**< value: mV */
+    GROBO_TRIP_LOST_REPLIES, /**< in motion; value: readings lost in a row */
+    GROBO_TRIP_TORQUE_LOST,  /**< a joint that held has no torque any more (brown-out) */
+    GROBO_TRIP_LIMIT,        /**< a played target outside limits; value: degrees. Not latched */
+    GROBO_TRIP_NUMBER,       /**< a played target not finite. Not latched */
+    GROBO_TRIP_HOST_STALL,   /**< value: ms late. Not latched */
+    GROBO_TRIP_ESTOP         /**< grobo_robot_estop() */
+} grobo_trip;
+
+/** Short lower-case name of a trip: "over-temperature". @return static string. Thread safe. */
+GROBO_API const char *grobo_trip_name(grobo_trip trip);
+
+/** Kinds of event. */
+typedef enum grobo_event_kind {
+    GROBO_EVENT_JOB = 0,   /**< a job ended: job */
+    GROBO_EVENT_JOINT,     /**< a joint was read, or could not be: joint */
+    GROBO_EVENT_ROUND,     /**< every joint of a background round was asked once */
+    GROBO_EVENT_PLAY,      /**< the sequencer changed its state: play */
+    GROBO_EVENT_TRIP,      /**< stopped for safety: trip */
+    GROBO_EVENT_LINK_DOWN, /**< the line is gone */
+    GROBO_EVENT_LINK_UP    /**< the line is there */
+} grobo_event_kind;
+
+/** GROBO_EVENT_JOB. */
+typedef struct grobo_event_job {
+    int number;              /**< what the request returned */
+    grobo_job_kind kind;     /**< what it was */
+    int result;              /**< GROBO_OK or the first error */
+    int joint;               /**< joint the error is about, or -1 */
+    double value;            /**< value at fault (LIMIT: degrees; NAN), else 0 */
+    grobo_joint_mask failed; /**< joints for which it failed; the others are done */
+    const uint8_t *data;     /**< reply of RAW, registers of REGISTERS; valid in the call only */
+    size_t size;             /**< bytes at data */
+} grobo_event_job;
+
+/** GROBO_EVENT_JOINT: see grobo_robot_joint() for the values. */
+typedef struct grobo_event_joint {
+    int joint;
+    int result; /**< GROBO_OK, or why there is no reading */
+} grobo_event_joint;
+
+/** GROBO_EVENT_PLAY: the sequencer took another state. More by grobo_robot_progress(). */
+typedef struct grobo_event_play {
+    grobo_sequencer_state from;
+    grobo_sequencer_state to;
+    int error; /**< why FAILED, else 0 */
+} grobo_event_play;
+
+/** GROBO_EVENT_TRIP, and grobo_robot_tripped(). */
+typedef struct grobo_trip_info {
+    grobo_trip trip; /**< why, GROBO_TRIP_NONE if not tripped */
+    int joint;       /**< which joint, or -1 */
+    double value;    /**< the value at fault, unit as the reason says */
+    int64_t at_us;   /**< when */
+    bool latched;    /**< until grobo_robot_reset() */
+} grobo_trip_info;
+
+/** What grobo_robot.on_event gets. Borrowed: valid during the call only. */
+typedef struct grobo_event {
+    grobo_event_kind kind;
+    int64_t now_us; /**< time of the call into the engine that made it */
+    union {
+        grobo_event_job job;
+        grobo_event_joint joint;
+        grobo_event_play play;
+        grobo_trip_info trip;
+    } u; /**< as kind says */
+} grobo_event;
+
+/** The one callback. Requests may be made from within it; the robot must not be deinitialised. */
+typedef void (*grobo_event_fn)(void *ctx, const grobo_event *event);
+
+/* ---- state that may be asked for ------------------------------------------------------------- */
+
+/** One joint as the engine knows it. */
+typedef struct grobo_joint_info {
+    grobo_joint_state state; /**< last values; `valid` says which were ever read */
+    int64_t angle_age_us;    /**< age of the angle, GROBO_NEVER_US if never read */
+    int64_t full_age_us;     /**< age of the last full reading, GROBO_NEVER_US if never */
+    double target_rad;       /**< last angle asked for, if has_target */
+    int status;              /**< last reading: GROBO_OK, its error, or GROBO_ERR_EMPTY: none yet */
+    bool has_target;         /**< false: nothing was asked of it since the link came up */
+    bool torque_known;       /**< state.torque was read back or switched since the link came up */
+} grobo_joint_info;
+
+/** Monotonic counters since grobo_robot_init(); those of the wire are in grobo_bus_stats. */
+typedef struct grobo_robot_counters {
+    uint64_t motion_frames; /**< frames that moved joints */
+    uint64_t late_frames;   /**< played postures skipped, or sent too late */
+    uint64_t clamped;       /**< targets moved to a limit */
+    uint64_t stretched;     /**< targets given more time, being too fast for a joint */
+    uint64_t stalls;        /**< times the host came later than stall_us */
+    uint64_t trips;         /**< safety stops */
+    uint64_t lost_events;   /**< GROBO_EVENT_JOINT left out, too many in one call */
+} grobo_robot_counters;
+
+/** How late motion frames left, in microseconds: quantiles of a histogram of fixed bins. */
+typedef struct grobo_jitter {
+    uint64_t frames;
+    int64_t p50_us;
+    int64_t p99_us;
+    int64_t max_us;
+} grobo_jitter;
+
+/* ---- the engine ------------------------------------------------------------------------------ */
+
+/** Frames that the engine may have under way at a time. */
+#define GROBO_ROBOT_SLOTS 12
+/** Events that may wait for the callback at a time. */
+#define GROBO_ROBOT_EVENTS 32
+/** Bins of the jitter histogram: four an octave, from 1 us to 65 ms. */
+#define GROBO_ROBOT_JITTER_BINS 64
+
+/* private */
+typedef struct grobo_robot_slot {
+    grobo_txn txn;
+    grobo_exchange exchange;
+    struct grobo_robot *robot;
+    int64_t due_us;
+    uint8_t use;
+    uint8_t joint;
+} grobo_robot_slot;
+
+/* private */
+typedef struct grobo_robot_axis {
+    grobo_joint_state state;
+    int64_t angle_us, full_us; /* when read; GROBO_NEVER_US: never */
+    int64_t asked_us;          /* when asked last in the background */
+    int64_t current_since_us;  /* above its limit since; GROBO_NEVER_US: it is not */
+    double from_rad, to_rad;   /* where it was sent from and to */
+    int64_t from_us, to_us;    /* and when */
+    int status;
+    uint16_t lost;       /* readings lost in a row */
+    uint8_t low_voltage; /* readings in a row */
+    bool has_target;
+    bool torque_known;
+    bool held; /* goal was set to the present angle, torque may come on */
+} grobo_robot_axis;
+
+/* private */
+typedef struct grobo_robot_task {
+    int number;
+    grobo_job_kind kind;
+    int phase;
+    int result;
+    int joint;
+    double value;
+    grobo_joint_mask joints; /* what was asked for */
+    grobo_joint_mask todo;   /* of the present activity */
+    grobo_joint_mask failed;
+    grobo_joint_mask torqued; /* joints to switch */
+    grobo_sense_kind sense;
+    grobo_torque torque;
+    grobo_exit_policy policy;
+    grobo_posture target;
+    grobo_clip clip;
+    grobo_play_options options;
+    grobo_exchange exchange;
+    grobo_register_io io;
+    grobo_servo_command command;
+    grobo_priority priority;
+    int64_t until_us; /* end of waiting */
+    int64_t bound_us; /* end of patience */
+    int part;
+    int rounds;
+    uint8_t activity;
+    uint8_t data[GROBO_REGISTERS];
+} grobo_robot_task;
+
+/** A robot engine. Caller storage; read it through the functions below. */
+typedef struct grobo_robot {
+    /* private */
+    const grobo_driver *driver;
+    void *driver_ctx;
+    grobo_robot_config config;
+    grobo_event_fn on_event;
+    void *event_ctx;
+    grobo_bus bus;
+    grobo_sequencer sequencer;
+    grobo_sequencer_state told_state;
+    grobo_robot_task job;
+    grobo_robot_axis axes[GROBO_JOINTS_MAX];
+    grobo_robot_slot slots[GROBO_ROBOT_SLOTS];
+    grobo_event events[GROBO_ROBOT_EVENTS];
+    unsigned events_head, events_n;
+    grobo_robot_counters counters;
+    grobo_trip_info trip;
+    uint64_t jitter[GROBO_ROBOT_JITTER_BINS];
+    int64_t jitter_max_us;
+    int64_t now_us;
+    int64_t sense_us;
+    grobo_joint_mask round;
+    grobo_joint_mask free_joints;
+    uint8_t reply[GROBO_REGISTERS];
+    double fault_deg;
+    int fault_joint;
+    int last_number;
+    unsigned depth;
+    bool link;
+    bool soft;
+} grobo_robot;
+
+/**
+ * Makes an engine in the caller's storage. The link counts as down until grobo_robot_link_up().
+ * @param driver borrowed, checked with grobo_driver_check().
+ * @param driver_ctx handed to the driver's functions; may be NULL.
+ * @param config copied; NULL for all defaults.
+ * @return 0, or GROBO_ERR_ARG (driver or a field of config out of its range).
+ */
+GROBO_API int grobo_robot_init(grobo_robot *robot, const grobo_driver *driver, void *driver_ctx,
+                               const grobo_robot_config *config, int64_t now_us);
+
+/** Who is told of events; on_event may be NULL. */
+GROBO_API void grobo_robot_on_event(grobo_robot *robot, grobo_event_fn on_event, void *ctx);
+
+/**
+ * Changes the configuration; what is under way goes on under the new one.
+ * @return 0 or GROBO_ERR_ARG, then nothing changed.
+ */
+GROBO_API int grobo_robot_configure(grobo_robot *robot, const grobo_robot_config *config);
+
+/** Bytes came from the line. */
+GROBO_API void grobo_robot_rx(grobo_robot *robot, const uint8_t *bytes, size_t size,
+                              int64_t now_us);
+
+/**
+ * Takes the next frame for the line, whole; it counts as sent at now_us.
+ * @param capacity GROBO_RS30X_PACKET_MAX_BYTES is always enough.
+ * @return number of bytes, 0 for nothing now, GROBO_ERR_SPACE.
+ */
+GROBO_API int grobo_robot_tx(grobo_robot *robot, uint8_t *buf, size_t capacity, int64_t now_us);
+
+/** Lets time pass: timeouts, frames that are due, sensing. Call at grobo_robot_deadline(). */
+GROBO_API void grobo_robot_step(grobo_robot *robot, int64_t now_us);
+
+/**
+ * When grobo_robot_step() and then grobo_robot_tx() are next wanted; GROBO_NEVER_US for not before
+ * something else happens. After every call that may change anything, ask again.
+ */
+GROBO_API int64_t grobo_robot_deadline(const grobo_robot *robot, int64_t now_us);
+
+/** The line is open: nothing moves; after a link_down the posture is sensed again. */
+GROBO_API void grobo_robot_link_up(grobo_robot *robot, int64_t now_us);
+
+/** The line is gone: the job ends with GROBO_ERR_UNPLUGGED, a motion stops, knowledge is dropped. */
+GROBO_API void grobo_robot_link_down(grobo_robot *robot, int64_t now_us);
+
+/* ---- requests --------------------------------------------------------------------------------
+ * All return a job number > 0 or an error: GROBO_ERR_CLOSED (link down), GROBO_ERR_STATE (a job
+ * is running), GROBO_ERR_LATCHED (tripped, for what would move or switch torque on),
+ * GROBO_ERR_UNSUPPORTED (not in the driver), and what is said at each. */
+
+/** Is the robot there? Result GROBO_ERR_TIMEOUT if nothing answers. */
+GROBO_API int grobo_robot_check(grobo_robot *robot, int64_t now_us);
+
+/** Reads joints; those that stay silent are in `failed`, the others are delivered. */
+GROBO_API int grobo_robot_sense(grobo_robot *robot, grobo_joint_mask joints, grobo_sense_kind kind,
+                                int64_t now_us);
+
+/**
+ * Switches torque and reads it back. ON: senses first, sets goal := present, then switches; a
+ * joint that cannot be sensed stays as it is and is in `failed`.
+ */
+GROBO_API int grobo_robot_torque(grobo_robot *robot, grobo_joint_mask joints, grobo_torque mode,
+                                 int64_t now_us);
+
+/**
+ * Moves the joints that `target` sets, in target->time_us or as much longer as is safe, then reads
+ * them. Ends when they are there. Errors at once: GROBO_ERR_LIMIT, GROBO_ERR_NAN (see
+ * grobo_robot_fault()), GROBO_ERR_ARG; also GROBO_ERR_STATE while a motion is played.
+ */
+GROBO_API int grobo_robot_move(grobo_robot *robot, const grobo_posture *target, int64_t now_us);
+
+/**
+ * Sends a frame of the caller's as it is and waits for the reply it calls for, if any. The driver
+ * reads its meaning first and it is checked as any other target; what the driver cannot read is
+ * refused with GROBO_ERR_UNSUPPORTED unless accept_unknown_raw.
+ */
+GROBO_API int grobo_robot_raw(grobo_robot *robot, const uint8_t *frame, size_t size,
+                              int64_t now_us);
+
+/** Reads (data NULL) or writes registers of a servo. Goal and torque registers are refused. */
+GROBO_API int grobo_robot_registers(grobo_robot *robot, const grobo_register_io *io,
+                                    int64_t now_us);
+
+/** Flash, reboot or factory reset of one servo, with the silence it needs afterwards. */
+GROBO_API int grobo_robot_command(grobo_robot *robot, int id, grobo_servo_command command,
+                                  int64_t now_us);
+
+/** Starts a motion kept in the robot. Its targets are the robot's own: nothing checks them. */
+GROBO_API int grobo_robot_stored(grobo_robot *robot, grobo_stored_kind kind, int number,
+                                 int64_t now_us);
+
+/**
+ * What servos do when a program ends: stops a motion, carries the policy out and reads it back,
+ * within exit_bound_us. Takes the place of a job that runs (that one ends with
+ * GROBO_ERR_CANCELED). Works when tripped; then GROBO_EXIT_SIT is carried out as GROBO_EXIT_HOLD.
+ * @param policy GROBO_EXIT_DEFAULT: the configuration's.
+ */
+GROBO_API int grobo_robot_exit(grobo_robot *robot, grobo_exit_policy policy, int64_t now_us);
+
+/**
+ * Emergency stop: drops everything that waits, sends torque off or brake ahead of all else, reads
+ * every joint back and repeats what did not take. Latched until grobo_robot_reset(). Never
+ * refused but for GROBO_ERR_CLOSED, where it is latched all the same.
+ */
+GROBO_API int grobo_robot_estop(grobo_robot *robot, int64_t now_us);
+
+/**
+ * Takes back a latched stop. Nothing moves; the next move or play senses first.
+ * @return 0, or GROBO_ERR_STATE while the emergency stop is still being carried out.
+ */
+GROBO_API int grobo_robot_reset(grobo_robot *robot, int64_t now_us);
+
+/** Ends the job with GROBO_ERR_CANCELED; nothing is left half sent. @return 0 or GROBO_ERR_STATE. */
+GROBO_API int grobo_robot_cancel(grobo_robot *robot, int64_t now_us);
+
+/* ---- playing --------------------------------------------------------------------------------- */
+
+/**
+ * Plays a clip: senses, switches torque on (unless manual_torque), goes softly to its first
+ * posture, plays. The job GROBO_JOB_PLAY ends when playing begins or could not.
+ * @param clip copied; what its ctx points to must live until GROBO_EVENT_PLAY tells the end.
+ * @param options copied; NULL for all defaults. approach_deg_s 0 is the configuration's.
+ */
+GROBO_API int grobo_robot_play(grobo_robot *robot, const grobo_clip *clip,
+                               const grobo_play_options *options, int64_t now_us);
+
+/**
+ * Puts a clip behind the one being played; see grobo_sequencer_enqueue().
+ * @return clips that wait, or its errors.
+ */
+GROBO_API int grobo_robot_enqueue(grobo_robot *robot, const grobo_clip *clip,
+                                  const grobo_play_options *options, int64_t now_us);
+
+/** @name While playing: return 0, or GROBO_ERR_STATE if there is nothing to do that to. */
+/**@{*/
+GROBO_API int grobo_robot_pause(grobo_robot *robot, int64_t now_us);
+GROBO_API int grobo_robot_resume(grobo_robot *robot, int64_t now_us);
+/** Ends the motion: smoothly, or at the present posture at once. */
+GROBO_API int grobo_robot_stop(grobo_robot *robot, bool at_once, int64_t now_us);
+GROBO_API int grobo_robot_seek(grobo_robot *robot, int64_t clip_us, int64_t now_us);
+/** @param speed_pct 1..1000 */
+GROBO_API int grobo_robot_speed(grobo_robot *robot, int speed_pct, int64_t now_us);
+/**@}*/
+
+/* ---- free (teaching) mode ----------------------------------------------------------------------
+ * A person moves the joints: after each reading a joint whose current is above its
+ * grobo_joint.free_current_ma is braked, one slower than 8 deg/s holds again (protocol 5). */
+
+/** @return 0, or an error as for requests. Off leaves the joints holding where they are. */
+GROBO_API int grobo_robot_free(grobo_robot *robot, grobo_joint_mask joints, bool on,
+                               int64_t now_us);
+
+/* ---- queries ------------------------------------------------------------------------------- */
+
+/** What is known of a joint. @return 0 or GROBO_ERR_ARG. */
+GROBO_API int grobo_robot_joint(const grobo_robot *robot, int joint, int64_t now_us,
+                                grobo_joint_info *info);
+
+/**
+ * The posture sensed last; joints whose angle is older than max_age_us are not set.
+ * @param max_age_us GROBO_NEVER_US: any age.
+ * @return number of joints set.
+ */
+GROBO_API int grobo_robot_posture(const grobo_robot *robot, int64_t now_us, int64_t max_age_us,
+                                  grobo_posture *posture);
+
+/** The posture asked for last; joints never asked for are not set. @return joints set. */
+GROBO_API int grobo_robot_target(const grobo_robot *robot, grobo_posture *posture);
+
+/** True from the request that starts a motion until its last posture's time is over. */
+GROBO_API bool grobo_robot_moving(const grobo_robot *robot, int64_t now_us);
+
+/** Kind of the job that runs, GROBO_JOB_NONE for none. */
+GROBO_API grobo_job_kind grobo_robot_job(const grobo_robot *robot);
+
+/** The latched stop, or trip GROBO_TRIP_NONE. */
+GROBO_API void grobo_robot_tripped(const grobo_robot *robot, grobo_trip_info *info);
+
+/** Joint and value that made the last request fail with LIMIT or NAN. @return joint or -1. */
+GROBO_API int grobo_robot_fault(const grobo_robot *robot, double *value_deg);
+
+/** The engine's counters. Borrowed, lives with the robot. */
+GROBO_API const grobo_robot_counters *grobo_robot_get_counters(const grobo_robot *robot);
+
+/** The wire's counters. Borrowed, lives with the robot. */
+GROBO_API const grobo_bus_stats *grobo_robot_get_bus_stats(const grobo_robot *robot);
+
+/** State of the sequencer. */
+GROBO_API grobo_sequencer_state grobo_robot_play_state(const grobo_robot *robot);
+
+/** Where the motion is. */
+GROBO_API void grobo_robot_progress(const grobo_robot *robot, int64_t now_us,
+                                    grobo_play_progress *progress);
+
+/** Lateness of motion frames since the last play began. */
+GROBO_API void grobo_robot_jitter(const grobo_robot *robot, grobo_jitter *jitter);
+
+/** The driver, and through it the model. */
+GROBO_API const grobo_driver *grobo_robot_driver(const grobo_robot *robot);
+
+GROBO_END_DECLS
+
+#endif
