@@ -16,7 +16,7 @@ DESTDIR ?=
 CROSS_COMPILE ?=
 SAN ?=
 PORT ?= posix
-RING ?= unit engine link fault port cli fuzz examples
+RING ?= unit engine link fault port cli fuzz lint export
 CFLAGS ?= -O2 -g
 PKG_CONFIG ?= $(CROSS_COMPILE)pkg-config
 WERROR ?= -Werror
@@ -40,15 +40,18 @@ ALL_LDFLAGS = $(SAN_FLAGS) $(COV_FLAGS) $(LDFLAGS)
 # The layers that talk to an operating system see its functions; the others see C11 alone.
 OS_FLAGS := -D_DEFAULT_SOURCE -D_XOPEN_SOURCE=700 -pthread
 
-# Asked for when a recipe needs it and only once: set-up may install a library after make began.
-package = $(or $(shell $(PKG_CONFIG) $(1) || echo missing-package),)
-YAML_CFLAGS = $(eval YAML_CFLAGS := $$(call package,--cflags yaml-0.1))$(YAML_CFLAGS)
-EVENT_CFLAGS = $(eval EVENT_CFLAGS := $$(call package,--cflags libevent_core))$(EVENT_CFLAGS)
-CMOCKA_CFLAGS = $(eval CMOCKA_CFLAGS := $$(call package,--cflags cmocka))$(CMOCKA_CFLAGS)
-CMOCKA_LIBS = $(eval CMOCKA_LIBS := $$(call package,--libs cmocka))$(CMOCKA_LIBS)
-JSON_CFLAGS = $(eval JSON_CFLAGS := $$(call package,--cflags jansson))$(JSON_CFLAGS)
-TOOL_LIBS = $(eval TOOL_LIBS := $$(call package,--libs jansson))$(TOOL_LIBS)
-LIBS = $(eval LIBS := $$(call package,--libs yaml-0.1 libevent_core) -lm -pthread)$(LIBS)
+# pkg-config is asked when a recipe needs the answer, and then once: set-up may install a library
+# after make began.
+once = $(eval $(1) := $(2))$($(1))
+flags = $(if $(shell $(PKG_CONFIG) --exists $(2) && echo yes),$(shell $(PKG_CONFIG) $(1) $(2)),$(error \
+    not all of "$(2)" is here; tools/setup.sh installs what is missing))
+YAML_CFLAGS = $(call once,YAML_CFLAGS,$(call flags,--cflags,yaml-0.1))
+EVENT_CFLAGS = $(call once,EVENT_CFLAGS,$(call flags,--cflags,libevent_core))
+CMOCKA_CFLAGS = $(call once,CMOCKA_CFLAGS,$(call flags,--cflags,cmocka))
+CMOCKA_LIBS = $(call once,CMOCKA_LIBS,$(call flags,--libs,cmocka))
+JSON_CFLAGS = $(call once,JSON_CFLAGS,$(call flags,--cflags,jansson))
+TOOL_LIBS = $(call once,TOOL_LIBS,$(call flags,--libs,jansson))
+LIBS = $(call once,LIBS,$(call flags,--libs,yaml-0.1 libevent_core) -lm -pthread)
 
 # ---- sources, by folder: a folder may be empty or missing ----------------------------------
 
@@ -58,6 +61,7 @@ OTHER_SRCS := $(sort $(wildcard src/motion/*.c src/body/*.c src/link/*.c ports/$
 TOOL_SRCS := $(if $(wildcard tools/grctl/main.c),$(sort $(wildcard tools/grctl/*.c)))
 SUPPORT_SRCS := $(sort $(filter-out %/replay_main.c,$(wildcard tests/support/*.c)))
 TEST_SRCS := $(sort $(foreach ring,unit engine link fault port,$(wildcard tests/$(ring)/test_*.c)))
+TEST_SCRIPTS := $(sort $(foreach ring,cli lint export,$(wildcard tests/$(ring)/*.sh)))
 FUZZ_SRCS := $(sort $(wildcard tests/fuzz/fuzz_*.c))
 EXAMPLE_SRCS := $(sort $(wildcard docs/examples/*.c))
 
@@ -90,7 +94,7 @@ help: ## this list
 	@echo 'Variables: BUILD=build CC= AR= CROSS_COMPILE= CFLAGS= SAN=address,undefined'
 	@echo '  RING="unit engine" (for test) PREFIX=/usr/local DESTDIR= V=1'
 
-all: $(STATIC_LIB) $(CORE_LIB) $(SHARED_LIB) $(PC_FILE) $(GRCTL) ## libraries and grctl, in $(BUILD)
+all: $(STATIC_LIB) $(CORE_LIB) $(SHARED_LIB) $(PC_FILE) $(GRCTL) ## libraries and grctl, in build/
 
 check: ## set up what is missing, build, lint, run every test
 	@tools/setup.sh --check
@@ -104,22 +108,25 @@ lint: all ## check the rules of the house: sources, objects, headers, symbols
 lint-quick: ## the rules that sources alone can break; takes a second
 	@tools/lint/run.sh --quick
 
-format: ## write sources as clang-format 14 does
-	@tools/lint/format.sh --fix $(shell find include src ports tools tests docs -name '*.[ch]')
+format: ## write sources as clang-format 14 does; FILES="src/core/bus.c" chooses
+	@tools/lint/format.sh --fix $(or $(FILES),$(shell find include src ports tools tests docs -name '*.[ch]'))
 
-test: $(TEST_PROGRAMS) $(FUZZ_REPLAYS) $(EXAMPLES) $(GRCTL) ## run the tests only; RING="unit engine" chooses
-	@GRCTL="$(abspath $(GRCTL))" BUILD="$(BUILD)" TEST_LOGS="$(BUILD)/logs" tests/run.sh \
-	    $(foreach ring,$(RING),$(filter $(BUILD)/tests/$(ring)/test_%,$(TEST_PROGRAMS))) \
-	    $(if $(GRCTL),$(if $(filter cli,$(RING)),$(sort $(wildcard tests/cli/*.sh)))) \
-	    $(if $(filter fuzz,$(RING)),$(foreach f,$(FUZZ_REPLAYS),$(f)@tests/fuzz/corpus/$(patsubst fuzz_%,%,$(notdir $(f)))))
+# The programs and scripts of the chosen rings, as tests/run.sh wants them.
+in_rings = $(foreach ring,$(RING),$(filter $(1)tests/$(ring)/%,$(2)))
+corpora = $(foreach f,$(FUZZ_REPLAYS),$(f)@tests/fuzz/corpus/$(patsubst fuzz_%,%,$(notdir $(f))))
 
-check-san: ## tests under AddressSanitizer and UBSan
+test: all $(TEST_PROGRAMS) $(FUZZ_REPLAYS) $(EXAMPLES) ## the tests alone; RING="unit engine" chooses
+	@GRCTL="$(abspath $(GRCTL))" BUILD="$(BUILD)" CC="$(CC)" TEST_LOGS="$(BUILD)/logs" tests/run.sh \
+	    $(call in_rings,$(BUILD)/,$(TEST_PROGRAMS)) $(call in_rings,,$(TEST_SCRIPTS)) \
+	    $(if $(filter fuzz,$(RING)),$(corpora))
+
+check-san: ## the tests of our own code under AddressSanitizer and UBSan
 	@$(MAKE) --no-print-directory test BUILD=$(BUILD)/san SAN=address,undefined CFLAGS='-O1 -g' \
-	    RING='$(RING)'
+	    RING='$(filter-out lint export,$(RING))'
 
-check-memcheck: ## tests under valgrind
+check-memcheck: ## the same under valgrind
 	@TEST_WRAPPER='valgrind -q --leak-check=full --error-exitcode=99' \
-	    $(MAKE) --no-print-directory test RING='$(filter-out cli examples,$(RING))'
+	    $(MAKE) --no-print-directory test RING='$(filter-out cli lint export,$(RING))'
 
 install: all ## into $(DESTDIR)$(PREFIX)
 	install -d $(DESTDIR)$(LIBDIR)/pkgconfig $(DESTDIR)$(INCLUDEDIR)/grobo $(DESTDIR)$(BINDIR)
@@ -195,10 +202,12 @@ $(EXAMPLES): $(BUILD)/%: $(BUILD)/%.o $(STATIC_LIB)
 	$(say) LD $@
 	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
 
-$(PC_FILE): include/grobo/version.h Makefile $(BUILD)/.flags
+$(PC_FILE): FORCE
+	@mkdir -p $(@D)
 	@printf '%s\n' 'prefix=$(PREFIX)' 'libdir=$(LIBDIR)' 'includedir=$(INCLUDEDIR)' '' \
 	    'Name: grobo' 'Description: Drives serial command-servo robots' 'Version: $(VERSION)' \
 	    'Requires.private: libevent_core yaml-0.1' 'Cflags: -I$${includedir}' \
-	    'Libs: -L$${libdir} -lgrobo' 'Libs.private: -lm -pthread' > $@
+	    'Libs: -L$${libdir} -lgrobo' 'Libs.private: -lm -pthread' > $@.new
+	@if cmp -s $@.new $@; then rm $@.new; else mv $@.new $@; fi
 
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

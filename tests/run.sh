@@ -63,6 +63,13 @@ else
     trap 'exit 143' TERM
 fi
 
+# With an empty list xargs would run itself once, and a run of nothing must not look like success.
+if [ $# -eq 0 ]; then
+    echo 'tests/run.sh: nothing to run'
+    echo '0 passed, 0 failed, 0 skipped'
+    exit 1
+fi
+
 count=0
 for program in "$@"; do
     count=$((count + 1))

@@ -1,0 +1,366 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# A gate that never fails is none: each is fed a sample that breaks its rule and must name the line,
+# and a sample that keeps it and must pass.
+set -u
+
+. tests/support/tap.sh
+gates=$(pwd)/tools/lint
+cc=${CC:-gcc}
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+
+# sample PATH: writes standard input to a fresh tree that holds nothing else, and goes there.
+fresh() {
+    rm -rf "$work/tree"
+    mkdir -p "$work/tree"
+    cd "$work/tree" || exit 1
+}
+
+sample() {
+    mkdir -p "$(dirname "$1")"
+    cat >"$1"
+}
+
+scan() {
+    rules=$1
+    shift
+    awk -f "$gates/strip.awk" -f "$gates/$rules.awk" "$@"
+}
+
+# refuses TEXT COMMAND...: the command fails and says TEXT.
+refuses() {
+    expected=$1
+    shift
+    if "$@" >"$work/said" 2>&1; then
+        echo "passed, but should have said: $expected"
+        return 1
+    fi
+    grep -Fq -- "$expected" "$work/said" && return
+    echo "expected: $expected"
+    cat "$work/said"
+    return 1
+}
+
+# compile SOURCE: to where the build puts its object.
+compile() {
+    mkdir -p "build/$(dirname "$1")"
+    $cc -std=c11 -O2 -c -o "build/${1%.c}.o" "$1"
+}
+
+# ---- layers --------------------------------------------------------------------------------
+
+fresh
+sample src/core/a.c <<'C'
+#include <math.h>
+#include <string.h>
+double grobo_a(double *p, const double *q, double x);
+double grobo_a(double *p, const double *q, double x)
+{
+    memcpy(p, q, 3000);
+    return sin(x) + atan2(x, 2.0) + hypot(x, 3.0);
+}
+C
+compile src/core/a.c
+check 'layers: core may use mem* and math' sh "$gates/layers.sh" build
+sample src/core/b.c <<'C'
+#include <stdlib.h>
+void *grobo_b(void);
+void *grobo_b(void)
+{
+    return malloc(3);
+}
+C
+compile src/core/b.c
+check 'layers: core may not use malloc' \
+    refuses 'src/core/b.c:1: layers: src/core may not use malloc' sh "$gates/layers.sh" build
+
+fresh
+sample src/core/a.c <<'C'
+int grobo_i_link(void);
+int grobo_a(void);
+int grobo_a(void)
+{
+    return grobo_i_link();
+}
+C
+sample src/link/b.c <<'C'
+int grobo_i_link(void);
+int grobo_i_link(void)
+{
+    return 0;
+}
+C
+sample src/link/c.c <<'C'
+int grobo_a(void);
+int grobo_c(void);
+int grobo_c(void)
+{
+    return grobo_a();
+}
+C
+compile src/core/a.c
+compile src/link/b.c
+compile src/link/c.c
+check 'layers: a layer does not reach up' \
+    refuses 'src/core/a.c:1: layers: grobo_i_link' sh "$gates/layers.sh" build
+rm build/src/core/a.o
+sample src/core/a.c <<'C'
+int grobo_a(void);
+int grobo_a(void)
+{
+    return 1;
+}
+C
+compile src/core/a.c
+check 'layers: a layer may reach down' sh "$gates/layers.sh" build
+
+fresh
+sample src/motion/a.c <<'C'
+#include <stdio.h>
+int grobo_a(void);
+int grobo_a(void)
+{
+    return printf("%d\n", 3);
+}
+C
+compile src/motion/a.c
+check 'layers: the library does not print' \
+    refuses 'src/motion/a.c:1: layers: src/motion may not use printf' sh "$gates/layers.sh" build
+
+fresh
+sample include/grobo/a.h <<'C'
+GROBO_API int grobo_a(void);
+C
+sample tools/grctl/main.c <<'C'
+int grobo_a(void);
+int grobo_i_secret(void);
+int main(void)
+{
+    return grobo_a() + grobo_i_secret();
+}
+C
+compile tools/grctl/main.c
+check 'layers: grctl is a user like any other' \
+    refuses 'not a public function: grobo_i_secret' sh "$gates/layers.sh" build
+
+# ---- symbols -------------------------------------------------------------------------------
+
+fresh
+sample include/grobo/a.h <<'C'
+GROBO_API int grobo_a(int x,
+                      int (*f)(int));
+/** A word about grobo_other(). */
+GROBO_API const char *grobo_text(void) __attribute__((format(printf, 1, 2)));
+typedef int (*grobo_fn)(void);
+C
+sample lib.c <<'C'
+int grobo_a(void) { return 0; }
+int grobo_text(void) { return 0; }
+C
+$cc -shared -fPIC -o good.so lib.c
+check 'symbols: what headers declare' sh "$gates/symbols.sh" good.so
+echo 'int grobo_extra(void) { return 0; }' >>lib.c
+$cc -shared -fPIC -o extra.so lib.c
+check 'symbols: an export that no header declares' \
+    refuses 'exports grobo_extra' sh "$gates/symbols.sh" extra.so
+echo 'int grobo_a(void) { return 0; }' >lib.c
+$cc -shared -fPIC -o less.so lib.c
+check 'symbols: a declaration that nobody defines' \
+    refuses 'include/grobo/a.h:1: symbols: declares grobo_text' sh "$gates/symbols.sh" less.so
+echo 'int helper(void) { return 0; }' >>lib.c
+$cc -shared -fPIC -o alien.so lib.c
+check 'symbols: a name without grobo_' \
+    refuses 'helper does not begin with grobo_' sh "$gates/symbols.sh" alien.so
+
+# ---- headers -------------------------------------------------------------------------------
+
+fresh
+sample include/grobo/a.h <<'C'
+#include <stdint.h>
+static inline int64_t grobo_a(void) { return 0; }
+C
+check 'headers: one that compiles alone' sh "$gates/headers.sh"
+sample include/grobo/a.h <<'C'
+int64_t grobo_a(void);
+C
+check 'headers: one that lacks an include' \
+    refuses 'include/grobo/a.h:1: headers: does not compile alone as C11' sh "$gates/headers.sh"
+sample include/grobo/a.h <<'C'
+int grobo_a(int class);
+C
+if command -v "${CXX:-g++}" >/dev/null; then
+    check 'headers: one that C++ does not take' refuses 'alone as C++11' sh "$gates/headers.sh"
+else
+    skip 'headers: one that C++ does not take' 'no C++ compiler'
+fi
+rm include/grobo/a.h
+sample src/core/private.h <<'C'
+struct a { size_t n; };
+C
+check 'headers: a private one' \
+    refuses 'src/core/private.h:1: headers' sh "$gates/headers.sh"
+
+# ---- banned --------------------------------------------------------------------------------
+
+fresh
+sample src/link/a.c <<'C'
+/* strcpy(a, b) in a comment, over
+   two lines: malloc(3); */
+#include <setjmp.h>
+static const char *text = "sprintf(x) \" gets(y)";
+static int my_strcpy(int x) { return x; }
+static void f(struct mem *m) { m->free(m); my_strcpy('"'); snprintf(b, 3, "%d", 1); }
+C
+check 'banned: words in comments, strings, members and longer names' scan banned src/link/a.c
+for call in 'strcpy(a, b)' 'atoi (a)' 'malloc(3)' 'usleep(3)' 'fputs(a, stderr)' 'exit(1)'; do
+    echo "void f(void) { $call; }" | sample src/link/a.c
+    check "banned: $call in src" refuses 'src/link/a.c:1: banned' scan banned src/link/a.c
+done
+echo 'void f(void) { malloc(3); printf("x"); }' | sample tools/grctl/a.c
+check 'banned: what only the library may not' scan banned tools/grctl/a.c
+echo 'void f(void) { usleep(3); }' | sample tests/unit/a.c
+check 'banned: a test that sleeps' refuses 'tests/unit/a.c:1: banned' scan banned tests/unit/a.c
+
+# ---- platform ------------------------------------------------------------------------------
+
+fresh
+printf '#if defined(_WIN32)\n#endif\n' | tee a.c | sample src/core/a.c
+check 'platform: a conditional in src' \
+    refuses 'src/core/a.c:1: platform' scan platform src/core/a.c
+sample ports/posix/a.c <a.c
+sample include/grobo/export.h <a.c
+check 'platform: where it may stand' scan platform ports/posix/a.c include/grobo/export.h
+echo '#  elif __linux__ /* why */' | sample src/core/a.c
+check 'platform: in any spelling' refuses 'src/core/a.c:1: platform' scan platform src/core/a.c
+
+# ---- size ----------------------------------------------------------------------------------
+
+# body N LINE: a function whose body is N times LINE.
+body() {
+    printf 'static int f(int a, int b)\n{\n'
+    awk -v n="$1" -v line="$2" 'BEGIN { while (n-- > 0) print line }'
+    printf '}\n'
+}
+
+fresh
+body 57 '    a++;' >long.c
+check 'size: a function of 60 lines' scan size long.c
+body 58 '    a++;' >long.c
+check 'size: a function of 61 lines' refuses 'long.c:1: size: f has 61 lines' scan size long.c
+body 14 '    if (a) b++; /* if for while && */ x = "? && ||";' >branches.c
+check 'size: complexity 15' scan size branches.c
+body 15 '    if (a) b++;' >branches.c
+check 'size: complexity 16' refuses 'f has complexity 16' scan size branches.c
+body 5 '    a = b && a || b ? 1 : 2;' >branches.c
+check 'size: operators count' refuses 'f has complexity 16' scan size branches.c
+body 40 '    case 3: a = 1; break;' >branches.c
+check 'size: a case costs nothing' scan size branches.c
+printf 'int f(int a, int b, int c,\n      int (*d)(int, int), int e, int f)\n{\n}\n' >many.c
+check 'size: six parameters' scan size many.c
+printf 'int f(int a, int b, int c,\n      int d, int e, int f, int g)\n{\n}\n' >many.c
+check 'size: seven parameters' refuses 'many.c:1: size: f has 7 parameters' scan size many.c
+awk 'BEGIN { for (i = 0; i < 601; i++) print "int x;" }' >file.c
+check 'size: a file of 601 lines' refuses 'file.c:601: size: file of 601' scan size file.c long.c
+
+# ---- switch --------------------------------------------------------------------------------
+
+fresh
+cat >a.h <<'C'
+typedef enum state {
+    STATE_IDLE, /**< not STATE_NAMED_IN_COMMENT */
+    STATE_BUSY = 3
+} state;
+enum { HEADER_BYTE = 0xFA };
+C
+cat >a.c <<'C'
+int f(state s, int byte)
+{
+    switch (byte) {
+    case HEADER_BYTE:
+        return 1;
+    default:
+        break;
+    }
+    switch (s) {
+    case STATE_IDLE: {
+        break;
+    }
+    case STATE_BUSY:
+        break;
+    }
+    return 0;
+}
+C
+check 'switch: default over bytes, none over an enum' scan switch a.h a.c a.h a.c
+sed 's/    case STATE_BUSY:/    default:/' a.c >b.c
+check 'switch: default over an enum' refuses 'b.c:13: switch' scan switch a.h b.c a.h b.c
+
+# ---- units ---------------------------------------------------------------------------------
+
+fresh
+cat >a.h <<'C'
+struct a {
+    int64_t delay_us; /* delay; */
+    double angles_rad[20];
+    uint16_t voltage_mv, count;
+    int timeouts;
+};
+int64_t grobo_present_time(void);
+int grobo_set_speed(int speed_dps);
+C
+check 'units: names with units' scan units a.h
+for line in '    int64_t delay;' '    double goal_angles[20];' 'void f(int timeout, int n);' \
+    'void f(uint16_t voltage);'; do
+    echo "$line" >a.h
+    check "units: $line" refuses 'a.h:1: units' scan units a.h
+done
+
+# ---- text, format, help, tree --------------------------------------------------------------
+
+fresh
+licence='/* SPDX-License-Identifier: MIT */'
+printf '%s\nint x;\n' "$licence" >a.c
+check 'text: clean' awk -f "$gates/text.awk" a.c
+printf '%s\n\tint x;\n' "$licence" >a.c
+check 'text: tab' refuses 'a.c:2: text: tab' awk -f "$gates/text.awk" a.c
+printf '%s\nint x; \n' "$licence" >a.c
+check 'text: trailing blank' refuses 'a.c:2: text: trailing' awk -f "$gates/text.awk" a.c
+printf 'int x;\n' >a.c
+check 'text: licence' refuses 'a.c:1: text: first line' awk -f "$gates/text.awk" a.c
+printf '#!/bin/sh\n' >a.sh
+printf 'echo\n' >>a.sh
+check 'text: licence of a script' refuses 'no SPDX' awk -f "$gates/text.awk" a.sh
+printf '%s\n%0101d\n' "$licence" 0 >a.c
+check 'text: columns' refuses 'a.c:2: text: longer' awk -f "$gates/text.awk" a.c
+
+printf 'BasedOnStyle: LLVM\n' >.clang-format
+printf 'int x ;\n' >a.c
+if command -v clang-format-14 >/dev/null; then
+    check 'format: not formatted' refuses 'a.c:1: format' sh "$gates/format.sh" a.c
+    printf 'int x;\n' >a.c
+    check 'format: formatted' sh "$gates/format.sh" a.c
+else
+    skip 'format' 'no clang-format 14; tools/setup.sh --ci installs it'
+fi
+
+printf '.PHONY: all check \\\n  clean\nall: ## x\ncheck: ## y\nclean:\n' >Makefile
+check 'help: a target without a comment' refuses 'target clean has no' sh "$gates/help.sh"
+printf '.PHONY: all\nall: x ## x\ndist: y ## y\n' >Makefile
+check 'help: a target that is not phony' refuses 'target dist is not' sh "$gates/help.sh"
+printf '.PHONY: all FORCE\nall: x ## x\n' >Makefile
+check 'help: clean' sh "$gates/help.sh"
+
+fresh
+mkdir docs
+printf '## The tree\n\n| name | is |\n| `docs/` | x |\n| `src/` | y |\n' >docs/design.md
+echo x | sample src/a.c
+check 'tree: as told' sh "$gates/tree.sh"
+echo x | sample src/a.cpp
+check 'tree: C++' refuses 'src/a.cpp:1: tree: C++' sh "$gates/tree.sh"
+rm src/a.cpp
+echo x >notes.txt
+check 'tree: a stray file' refuses 'notes.txt stands at the top' sh "$gates/tree.sh"
+rm -r notes.txt src
+check 'tree: a name too many' refuses 'names src, which is not' sh "$gates/tree.sh"
+done_testing

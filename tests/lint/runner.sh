@@ -1,0 +1,95 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# The runner must not call anything passed that did not pass.
+set -u
+
+. tests/support/tap.sh
+runner=$(pwd)/tests/run.sh
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+
+# program NAME: an executable whose text comes from standard input.
+program() {
+    { echo '#!/bin/sh' && cat; } >"$1"
+    chmod +x "$1"
+}
+
+# ends STATUS LAST_LINE TEXT PROGRAM...: what the runner does with the programs.
+ends() {
+    status=$1
+    last=$2
+    text=$3
+    shift 3
+    said=$(TEST_LOGS= TEST_WRAPPER= TEST_TIMEOUT_S=1 sh "$runner" "$@")
+    got=$?
+    printf '%s\n' "$said"
+    [ "$got" = "$status" ] && [ "$(printf '%s\n' "$said" | tail -n 1)" = "$last" ] &&
+        case $said in *"$text"*) true ;; *) false ;; esac
+}
+
+program good <<'S'
+printf '1..2\nok 1 - a\nok 2 - b\n'
+S
+program bad <<'S'
+printf '1..2\nok 1 - a\nsaid before\nnot ok 2 - b\n# 1 != 2\n'
+exit 1
+S
+program skips <<'S'
+printf '1..2\nok 1 - a\nno robot here\nnot ok 2 # SKIP with_a_robot\n'
+S
+program skips_all <<'S'
+echo '1..0 # SKIP no tool'
+S
+program empty <<'S'
+S
+program empty_group <<'S'
+echo 1..0
+S
+program crash <<'S'
+printf '1..2\nok 1 - a\n'
+kill -SEGV $$
+S
+program hang <<'S'
+printf '1..1\n'
+exec sleep 30
+S
+program short <<'S'
+printf '1..3\nok 1 - a\nok 2 - b\n'
+S
+program status <<'S'
+printf '1..1\nok 1 - a\n'
+exit 3
+S
+program half_line <<'S'
+printf '1..1\nok 1 - a\n# no newline at the end'
+S
+program two_groups <<'S'
+printf '1..1\nok 1 - a\n1..2\nok 1 - a\nok 2 - b\n'
+S
+program files <<'S'
+echo "1..$#"
+for f in "$@"; do echo "ok 1 - $f"; done
+S
+mkdir corpus && touch corpus/a 'corpus/b c'
+printf 'echo 1..1\necho ok 1 - from a script\n' >script.sh
+
+check 'all pass' ends 0 '5 passed, 0 failed, 0 skipped' 'pass' ./good ./two_groups
+check 'a failure shows what was printed' ends 1 '3 passed, 1 failed, 0 skipped' '# 1 != 2' ./bad ./good
+check 'a skip is told with its reason' \
+    ends 0 '1 passed, 0 failed, 1 skipped' 'with_a_robot: no robot here' ./skips
+check 'a program may skip whole' ends 0 '0 passed, 0 failed, 1 skipped' 'no tool' ./skips_all
+check 'no output is a failure' ends 1 '0 passed, 1 failed, 0 skipped' 'holds no test' ./empty
+check 'no test is a failure' ends 1 '0 passed, 1 failed, 0 skipped' 'holds no test' ./empty_group
+check 'a crash is a failure' ends 1 '1 passed, 1 failed, 0 skipped' 'killed by signal 11' ./crash
+check 'no end is a failure' ends 1 '0 passed, 1 failed, 0 skipped' 'no end within 1 s' ./hang
+check 'fewer tests than planned is a failure' \
+    ends 1 '2 passed, 1 failed, 0 skipped' '2 results for 3 planned' ./short
+check 'an exit status is a failure' ends 1 '1 passed, 1 failed, 0 skipped' 'exit status 3' ./status
+check 'a last line without newline' ends 0 '1 passed, 0 failed, 0 skipped' pass ./half_line
+check 'a missing program is a failure' ends 1 '0 passed, 1 failed, 0 skipped' status ./nothing
+check 'a corpus goes to the program' ends 0 '2 passed, 0 failed, 0 skipped' pass ./files@corpus
+check 'an empty corpus is a failure' ends 1 '0 passed, 1 failed, 0 skipped' 'holds no' ./files@no
+check 'a shell script' ends 0 '1 passed, 0 failed, 0 skipped' pass script.sh
+check 'nothing to run is a failure' ends 1 '0 passed, 0 failed, 0 skipped' 'nothing to run'
+done_testing

@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: MIT
+# For shell tests: `. tests/support/tap.sh`, then `check NAME COMMAND...` and at the end `done_testing`.
+
+tap_count=0
+
+# Passes when the command succeeds; what it printed is shown when it fails.
+check() {
+    tap_name=$1
+    shift
+    tap_count=$((tap_count + 1))
+    if tap_output=$("$@" 2>&1); then
+        echo "ok $tap_count - $tap_name"
+    else
+        echo "not ok $tap_count - $tap_name"
+        printf '%s\n' "$tap_output" | sed 's/^/# /'
+    fi
+}
+
+skip() {
+    tap_count=$((tap_count + 1))
+    echo "ok $tap_count - $1 # SKIP $2"
+}
+
+done_testing() {
+    echo "1..$tap_count"
+}
