@@ -82,7 +82,7 @@ GROBO_API int grobo_posture_copy(grobo_posture *dst, const grobo_posture *src, i
 /** Takes over those angles of `over` that are set; n_joints and time stay. */
 GROBO_API void grobo_posture_merge(grobo_posture *posture, const grobo_posture *over);
 
-/** True if joints, set and angles are the same to the bit (times are not compared). */
+/** True if the same joints are set to exactly the same angles (times are not compared). */
 GROBO_API bool grobo_posture_equal(const grobo_posture *a, const grobo_posture *b);
 /** True if the same joints are set and every angle differs by less than delta_rad. */
 GROBO_API bool grobo_posture_near(const grobo_posture *a, const grobo_posture *b,

@@ -96,15 +96,15 @@ typedef struct grobo_play_frame {
 /** Where a sequencer is. */
 typedef struct grobo_play_progress {
     grobo_sequencer_state state;
-    int error;         /**< why FAILED, else 0 */
-    uint32_t item;     /**< clips started since grobo_sequencer_init(), the present one included */
-    int32_t pass;      /**< 1..passes */
-    int32_t passes;    /**< of the present clip */
-    int64_t t_us;      /**< position in this pass */
-    int64_t total_us;  /**< length of a pass */
-    uint64_t step;     /**< frames of this pass handed out or skipped */
-    uint64_t steps;    /**< frames of a whole pass: keys, or frames at the rate */
-    unsigned queued;   /**< clips that wait */
+    int error;        /**< why FAILED, else 0 */
+    uint32_t item;    /**< clips started since grobo_sequencer_init(), the present one included */
+    int32_t pass;     /**< 1..passes */
+    int32_t passes;   /**< of the present clip */
+    int64_t t_us;     /**< position in this pass */
+    int64_t total_us; /**< length of a pass */
+    uint64_t step;    /**< frames of this pass handed out or skipped */
+    uint64_t steps;   /**< frames of a whole pass: keys, or frames at the rate */
+    unsigned queued;  /**< clips that wait */
 } grobo_play_progress;
 
 /** Counters; they only grow. */
@@ -129,32 +129,32 @@ typedef struct grobo_sequencer {
     int error;
     grobo_play_stats stats;
     uint32_t n_items;
-    grobo_play_item item;                    /* being played */
-    grobo_play_item queue[GROBO_QUEUE_MAX];  /* ring */
+    grobo_play_item item;                   /* being played */
+    grobo_play_item queue[GROBO_QUEUE_MAX]; /* ring */
     unsigned queue_head, queue_n;
-    grobo_posture base;                      /* where a relative clip starts */
-    grobo_posture from;                      /* where the present move starts; known joints */
-    grobo_posture to;                        /* its goal; joints the clip has set so far */
-    int64_t from_us, to_us;                  /* real times of its ends */
-    int64_t due_us, last_due_us;             /* of the next frame; of the last one */
-    int64_t anchor_us, anchor_pos_us;        /* real time and position that belong together */
-    int64_t grid_us;                         /* RATE: real time of frame 0 */
-    uint64_t index;                          /* RATE: next frame on the grid */
+    grobo_posture base;               /* where a relative clip starts */
+    grobo_posture from;               /* where the present move starts; known joints */
+    grobo_posture to;                 /* its goal; joints the clip has set so far */
+    int64_t from_us, to_us;           /* real times of its ends */
+    int64_t due_us, last_due_us;      /* of the next frame; of the last one */
+    int64_t anchor_us, anchor_pos_us; /* real time and position that belong together */
+    int64_t grid_us;                  /* RATE: real time of frame 0 */
+    uint64_t index;                   /* RATE: next frame on the grid */
     uint64_t step;
-    int64_t span_us;                         /* length of a pass */
-    int64_t hold_time_us;                    /* time of the hold frame */
+    int64_t span_us;      /* length of a pass */
+    int64_t hold_time_us; /* time of the hold frame */
     int32_t pass, passes;
     uint32_t skipped;
-    bool pending;                            /* a frame of the present move is to be handed out */
+    bool pending; /* a frame of the present move is to be handed out */
     bool reverse;
     struct {
-        size_t i;          /* key that `to` stands for */
-        int64_t at_us;     /* its time with defaults added */
-        int64_t first_us;  /* that of key 0 */
-        int64_t last_us;   /* that of the last key */
-        size_t defaults;   /* keys 0..i without a time of their own */
-        bool is_default;   /* key i is one of them */
-        bool is_empty;     /* key i sets no joint */
+        size_t i;         /* key that `to` stands for */
+        int64_t at_us;    /* its time with defaults added */
+        int64_t first_us; /* that of key 0 */
+        int64_t last_us;  /* that of the last key */
+        size_t defaults;  /* keys 0..i without a time of their own */
+        bool is_default;  /* key i is one of them */
+        bool is_empty;    /* key i sets no joint */
     } key;
 } grobo_sequencer;
 

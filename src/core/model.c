@@ -1,0 +1,167 @@
+/* SPDX-License-Identifier: MIT */
+#include <grobo/model.h>
+
+#include <math.h>
+#include <string.h>
+
+static char lower(char c)
+{
+    return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
+}
+
+/* True if name is text[0..length-1] but for case. */
+static bool is_name(const char *name, const char *text, size_t length)
+{
+    for (size_t i = 0; i < length; i++) {
+        if (name[i] == '\0' || lower(name[i]) != lower(text[i])) {
+            return false;
+        }
+    }
+    return name[length] == '\0';
+}
+
+/* A number of one to three digits, or -1. */
+static int small_number(const char *text, size_t length)
+{
+    int value = 0;
+    if (length < 1 || length > 3) {
+        return -1;
+    }
+    for (size_t i = 0; i < length; i++) {
+        if (text[i] < '0' || text[i] > '9') {
+            return -1;
+        }
+        value = value * 10 + (text[i] - '0');
+    }
+    return value;
+}
+
+static bool is_joint_good(const grobo_model *model, int j)
+{
+    const grobo_joint *joint = &model->joints[j];
+    if (joint->name == NULL || joint->name[0] == '\0' || joint->motor < 1 ||
+        joint->motor > GROBO_SERVO_ID_MAX) {
+        return false;
+    }
+    if (!isfinite(joint->min_rad) || !isfinite(joint->max_rad) ||
+        !(joint->min_rad <= joint->init_rad && joint->init_rad <= joint->max_rad) ||
+        !(joint->max_speed_rad_s > 0.0 && isfinite(joint->max_speed_rad_s))) {
+        return false;
+    }
+    if (joint->mirror >= model->n_joints || model->joints[joint->mirror].mirror != j ||
+        (joint->mirror_sign != 1 && joint->mirror_sign != -1)) {
+        return false;
+    }
+    return model->joints[joint->mirror].mirror_sign == joint->mirror_sign;
+}
+
+static bool is_joint_unique(const grobo_model *model, int j)
+{
+    const grobo_joint *joint = &model->joints[j];
+    for (int i = 0; i < j; i++) {
+        if (model->joints[i].motor == joint->motor ||
+            is_name(model->joints[i].name, joint->name, strlen(joint->name))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool is_group_good(const grobo_model *model, int g)
+{
+    const grobo_group *group = &model->groups[g];
+    if (group->name == NULL || group->name[0] == '\0' ||
+        (group->joints & ~GROBO_JOINTS_ALL(model->n_joints)) != 0) {
+        return false;
+    }
+    for (int i = 0; i < g; i++) {
+        if (is_name(model->groups[i].name, group->name, strlen(group->name))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+int grobo_model_check(const grobo_model *model)
+{
+    if (model == NULL || model->name == NULL || model->joints == NULL || model->n_joints < 1 ||
+        model->n_joints > GROBO_JOINTS_MAX || (model->groups == NULL && model->n_groups > 0)) {
+        return GROBO_ERR_ARG;
+    }
+    for (int j = 0; j < model->n_joints; j++) {
+        if (!is_joint_good(model, j) || !is_joint_unique(model, j)) {
+            return GROBO_ERR_ARG;
+        }
+    }
+    for (int g = 0; g < model->n_groups; g++) {
+        if (!is_group_good(model, g)) {
+            return GROBO_ERR_ARG;
+        }
+    }
+    return 0;
+}
+
+int grobo_model_joint_of_motor(const grobo_model *model, int motor)
+{
+    for (int j = 0; j < model->n_joints; j++) {
+        if (model->joints[j].motor == motor) {
+            return j;
+        }
+    }
+    return GROBO_ERR_NOTFOUND;
+}
+
+int grobo_model_motor_of_joint(const grobo_model *model, int joint)
+{
+    if (joint < 0 || joint >= model->n_joints) {
+        return GROBO_ERR_ARG;
+    }
+    return model->joints[joint].motor;
+}
+
+int grobo_model_find_joint(const grobo_model *model, const char *name, size_t length)
+{
+    for (int j = 0; j < model->n_joints; j++) {
+        if (is_name(model->joints[j].name, name, length)) {
+            return j;
+        }
+    }
+    if (length < 2) {
+        return GROBO_ERR_NOTFOUND;
+    }
+    int number = small_number(name + 1, length - 1);
+    if (lower(name[0]) == 'm' && number >= 0) {
+        return grobo_model_joint_of_motor(model, number);
+    }
+    if (lower(name[0]) == 'j' && number >= 0 && number < model->n_joints) {
+        return number;
+    }
+    return GROBO_ERR_NOTFOUND;
+}
+
+static int count(grobo_joint_mask mask)
+{
+    int n = 0;
+    for (; mask != 0; mask &= mask - 1) {
+        n++;
+    }
+    return n;
+}
+
+int grobo_model_find_joints(const grobo_model *model, const char *name, size_t length,
+                            grobo_joint_mask *joints)
+{
+    int number = small_number(name, length);
+    for (int g = 0; g < model->n_groups; g++) {
+        if (g == number || is_name(model->groups[g].name, name, length)) {
+            *joints = model->groups[g].joints;
+            return count(*joints);
+        }
+    }
+    int joint = grobo_model_find_joint(model, name, length);
+    if (joint < 0) {
+        return joint;
+    }
+    *joints = GROBO_JOINT_BIT(joint);
+    return 1;
+}

@@ -1,0 +1,350 @@
+/* SPDX-License-Identifier: MIT */
+#include <grobo/posture.h>
+
+#include <math.h>
+#include <string.h>
+
+#define PI 3.14159265358979323846
+
+/* What register No.32-33 can hold: 16383 x 10 ms. */
+#define TIME_MAX_MS 163830.0
+
+double grobo_deg_from_rad(double angle_rad)
+{
+    return angle_rad * 180.0 / PI;
+}
+
+double grobo_rad_from_deg(double angle_deg)
+{
+    return angle_deg * PI / 180.0;
+}
+
+int16_t grobo_ddeg_from_rad(double angle_rad)
+{
+    double ddeg = round(angle_rad * 1800.0 / PI);
+    if (isnan(ddeg)) {
+        return 0;
+    }
+    if (ddeg >= INT16_MAX) {
+        return INT16_MAX;
+    }
+    return ddeg <= INT16_MIN ? INT16_MIN : (int16_t)ddeg;
+}
+
+double grobo_rad_from_ddeg(int angle_ddeg)
+{
+    return angle_ddeg * PI / 1800.0;
+}
+
+int grobo_posture_init(grobo_posture *posture, int n_joints)
+{
+    if (n_joints < 0 || n_joints > GROBO_JOINTS_MAX) {
+        return GROBO_ERR_CAP;
+    }
+    memset(posture, 0, sizeof *posture);
+    posture->time_us = GROBO_POSTURE_TIME_US;
+    posture->n_joints = (uint8_t)n_joints;
+    return 0;
+}
+
+void grobo_posture_init_pose(grobo_posture *posture, const grobo_model *model)
+{
+    (void)grobo_posture_init(posture, model->n_joints);
+    for (int j = 0; j < model->n_joints; j++) {
+        posture->angle_rad[j] = model->joints[j].init_rad;
+    }
+    posture->set = GROBO_JOINTS_ALL(model->n_joints);
+}
+
+static bool has_joint(const grobo_posture *posture, int joint)
+{
+    return joint >= 0 && joint < posture->n_joints;
+}
+
+static bool is_set(const grobo_posture *posture, int joint)
+{
+    return (posture->set & GROBO_JOINT_BIT(joint)) != 0;
+}
+
+int grobo_posture_set_rad(grobo_posture *posture, int joint, double angle_rad)
+{
+    if (!has_joint(posture, joint)) {
+        return GROBO_ERR_ARG;
+    }
+    if (!isfinite(angle_rad)) {
+        return GROBO_ERR_NAN;
+    }
+    posture->angle_rad[joint] = angle_rad;
+    posture->set |= GROBO_JOINT_BIT(joint);
+    return 0;
+}
+
+int grobo_posture_set_deg(grobo_posture *posture, int joint, double angle_deg)
+{
+    return grobo_posture_set_rad(posture, joint, grobo_rad_from_deg(angle_deg));
+}
+
+int grobo_posture_get_rad(const grobo_posture *posture, int joint, double *angle_rad)
+{
+    if (!has_joint(posture, joint)) {
+        return GROBO_ERR_ARG;
+    }
+    if (!is_set(posture, joint)) {
+        return GROBO_ERR_EMPTY;
+    }
+    *angle_rad = posture->angle_rad[joint];
+    return 0;
+}
+
+int grobo_posture_get_deg(const grobo_posture *posture, int joint, double *angle_deg)
+{
+    double angle_rad;
+    int result = grobo_posture_get_rad(posture, joint, &angle_rad);
+    if (result == 0) {
+        *angle_deg = grobo_deg_from_rad(angle_rad);
+    }
+    return result;
+}
+
+int grobo_posture_all_rad(const grobo_posture *posture, double *angle_rad, size_t capacity)
+{
+    if (capacity < posture->n_joints) {
+        return GROBO_ERR_SPACE;
+    }
+    for (int j = 0; j < posture->n_joints; j++) {
+        angle_rad[j] = is_set(posture, j) ? posture->angle_rad[j] : (double)NAN;
+    }
+    return posture->n_joints;
+}
+
+int grobo_posture_all_deg(const grobo_posture *posture, double *angle_deg, size_t capacity)
+{
+    int n = grobo_posture_all_rad(posture, angle_deg, capacity);
+    for (int j = 0; j < n; j++) {
+        angle_deg[j] = grobo_deg_from_rad(angle_deg[j]);
+    }
+    return n;
+}
+
+int grobo_posture_set_time_ms(grobo_posture *posture, double time_ms)
+{
+    if (!(time_ms >= 0.0 && time_ms <= TIME_MAX_MS)) {
+        return GROBO_ERR_ARG;
+    }
+    posture->time_us = (int64_t)round(time_ms * 1000.0);
+    return 0;
+}
+
+int grobo_posture_copy(grobo_posture *dst, const grobo_posture *src, int offset)
+{
+    if (offset < 0 || offset > src->n_joints) {
+        return GROBO_ERR_ARG;
+    }
+    int n = src->n_joints - offset;
+    if (n > dst->n_joints) {
+        n = dst->n_joints;
+    }
+    /* memmove: src may be dst. */
+    grobo_joint_mask moved = (src->set >> offset) & GROBO_JOINTS_ALL(n);
+    memmove(dst->angle_rad, src->angle_rad + offset, (size_t)n * sizeof dst->angle_rad[0]);
+    dst->set = (dst->set & ~GROBO_JOINTS_ALL(n)) | moved;
+    dst->time_us = src->time_us;
+    return n;
+}
+
+void grobo_posture_merge(grobo_posture *posture, const grobo_posture *over)
+{
+    int n = over->n_joints < posture->n_joints ? over->n_joints : posture->n_joints;
+    for (int j = 0; j < n; j++) {
+        if (is_set(over, j)) {
+            posture->angle_rad[j] = over->angle_rad[j];
+        }
+    }
+    posture->set |= over->set & GROBO_JOINTS_ALL(n);
+}
+
+static bool same_joints(const grobo_posture *a, const grobo_posture *b)
+{
+    return a->n_joints == b->n_joints && a->set == b->set;
+}
+
+bool grobo_posture_equal(const grobo_posture *a, const grobo_posture *b)
+{
+    if (!same_joints(a, b)) {
+        return false;
+    }
+    for (int j = 0; j < a->n_joints; j++) {
+        if (is_set(a, j) && !(a->angle_rad[j] == b->angle_rad[j])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+bool grobo_posture_near(const grobo_posture *a, const grobo_posture *b, double delta_rad)
+{
+    if (!same_joints(a, b)) {
+        return false;
+    }
+    for (int j = 0; j < a->n_joints; j++) {
+        if (is_set(a, j) && !(fabs(a->angle_rad[j] - b->angle_rad[j]) < delta_rad)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+int grobo_posture_mirror(grobo_posture *posture, const grobo_model *model)
+{
+    if (posture->n_joints != model->n_joints) {
+        return GROBO_ERR_ARG;
+    }
+    grobo_posture before = *posture;
+    posture->set = 0;
+    for (int j = 0; j < model->n_joints; j++) {
+        const grobo_joint *joint = &model->joints[j];
+        if (is_set(&before, joint->mirror)) {
+            posture->angle_rad[j] = joint->mirror_sign * before.angle_rad[joint->mirror];
+            posture->set |= GROBO_JOINT_BIT(j);
+        }
+    }
+    return 0;
+}
+
+/* On the wire's grid: a limit read from a file in degrees is kept however it was rounded. */
+static bool within_limits(const grobo_joint *joint, double angle_rad)
+{
+    int16_t ddeg = grobo_ddeg_from_rad(angle_rad);
+    return ddeg >= grobo_ddeg_from_rad(joint->min_rad) &&
+           ddeg <= grobo_ddeg_from_rad(joint->max_rad);
+}
+
+int grobo_posture_check(const grobo_posture *posture, const grobo_model *model, int *joint)
+{
+    if (posture->n_joints != model->n_joints) {
+        return GROBO_ERR_ARG;
+    }
+    for (int j = 0; j < model->n_joints; j++) {
+        if (!is_set(posture, j)) {
+            continue;
+        }
+        int result = 0;
+        if (!isfinite(posture->angle_rad[j])) {
+            result = GROBO_ERR_NAN;
+        } else if (!within_limits(&model->joints[j], posture->angle_rad[j])) {
+            result = GROBO_ERR_LIMIT;
+        }
+        if (result < 0) {
+            if (joint != NULL) {
+                *joint = j;
+            }
+            return result;
+        }
+    }
+    return 0;
+}
+
+int grobo_posture_clamp(grobo_posture *posture, const grobo_model *model)
+{
+    int result = grobo_posture_check(posture, model, NULL);
+    if (result == GROBO_ERR_ARG) {
+        return result;
+    }
+    for (int j = 0; j < model->n_joints; j++) {
+        if (is_set(posture, j) && !isfinite(posture->angle_rad[j])) {
+            return GROBO_ERR_NAN;
+        }
+    }
+    int changed = 0;
+    for (int j = 0; j < model->n_joints; j++) {
+        const grobo_joint *joint = &model->joints[j];
+        if (is_set(posture, j) && !within_limits(joint, posture->angle_rad[j])) {
+            bool low = posture->angle_rad[j] < joint->min_rad;
+            posture->angle_rad[j] = low ? joint->min_rad : joint->max_rad;
+            changed++;
+        }
+    }
+    return changed;
+}
+
+/* ---- the line form ---- */
+
+typedef struct cursor {
+    const char *at;
+    const char *end;
+} cursor;
+
+static bool is_blank(char c)
+{
+    return c == ' ' || c == '\t' || c == '\r' || c == '\n';
+}
+
+static bool skip_blanks(cursor *c)
+{
+    while (c->at < c->end && is_blank(*c->at)) {
+        c->at++;
+    }
+    return c->at < c->end;
+}
+
+/* A decimal integer within +-limit that ends at a blank or at the end. */
+static bool read_integer(cursor *c, int32_t limit, int32_t *value)
+{
+    bool negative = *c->at == '-';
+    if (negative || *c->at == '+') {
+        c->at++;
+    }
+    const char *first = c->at;
+    int32_t sum = 0;
+    while (c->at < c->end && *c->at >= '0' && *c->at <= '9' && sum <= limit) {
+        sum = sum * 10 + (*c->at++ - '0');
+    }
+    if (c->at == first || sum > limit || (c->at < c->end && !is_blank(*c->at))) {
+        return false;
+    }
+    *value = negative ? -sum : sum;
+    return true;
+}
+
+/* The joint whose motor comes after this one in motor order, or -1. */
+static int next_by_motor(const grobo_model *model, int motor)
+{
+    int found = -1;
+    for (int j = 0; j < model->n_joints; j++) {
+        if (model->joints[j].motor > motor &&
+            (found < 0 || model->joints[j].motor < model->joints[found].motor)) {
+            found = j;
+        }
+    }
+    return found;
+}
+
+int grobo_posture_parse(grobo_posture *posture, const grobo_model *model, const char *text,
+                        size_t length)
+{
+    cursor c = {text, text + length};
+    grobo_posture parsed;
+    int32_t number;
+    int n = 0;
+    int motor = 0;
+
+    (void)grobo_posture_init(&parsed, model->n_joints);
+    if (!skip_blanks(&c) || !read_integer(&c, (int32_t)TIME_MAX_MS, &number) || number < 0) {
+        return GROBO_ERR_SYNTAX;
+    }
+    parsed.time_us = (int64_t)number * 1000;
+    for (; skip_blanks(&c); n++) {
+        if (!read_integer(&c, INT16_MAX, &number)) {
+            return GROBO_ERR_SYNTAX;
+        }
+        int joint = next_by_motor(model, motor);
+        if (joint < 0) {
+            return GROBO_ERR_CAP;
+        }
+        motor = model->joints[joint].motor;
+        parsed.angle_rad[joint] = grobo_rad_from_ddeg(number);
+        parsed.set |= GROBO_JOINT_BIT(joint);
+    }
+    *posture = parsed;
+    return n;
+}

@@ -1,0 +1,265 @@
+/* SPDX-License-Identifier: MIT */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include <grobo/posture.h>
+
+static const grobo_model *const gr001 = &grobo_gr001_model;
+
+/* GR001 as its sheet gives it, in joint order; typed anew, so that one table checks the other. */
+static const struct {
+    const char *name;
+    int motor, min_deg, max_deg, init_deg;
+} sheet[] = {
+    {"R_HIP_Y", 9, -150, 30, 0},        {"R_HIP_R", 11, -90, 90, 0},
+    {"R_HIP_P", 10, -40, 120, 20},      {"R_KNEE_P", 12, -130, 0, -40},
+    {"R_ANKLE_P", 13, -95, 60, -20},    {"R_ANKLE_R", 14, -45, 90, 0},
+    {"L_HIP_Y", 15, -30, 150, 0},       {"L_HIP_R", 17, -90, 90, 0},
+    {"L_HIP_P", 16, -120, 40, -20},     {"L_KNEE_P", 18, 0, 130, 40},
+    {"L_ANKLE_P", 19, -60, 95, 20},     {"L_ANKLE_R", 20, -90, 45, 0},
+    {"CHEST_P", 1, -95, 0, 0},          {"NECK_Y", 2, -50, 50, 0},
+    {"R_SHOULDER_P", 3, -150, 150, 20}, {"R_SHOULDER_R", 4, -150, 40, 0},
+    {"R_ELBOW_P", 5, -130, 50, -20},    {"L_SHOULDER_P", 6, -150, 150, -20},
+    {"L_SHOULDER_R", 7, -40, 150, 0},   {"L_ELBOW_P", 8, -50, 130, 20},
+};
+
+/* By motor 1..20: the initial posture (0.1 degree) and the free mode currents (mA). */
+static const int init_ddeg[] = {0, 0,    200,  0, -200, -200, 0, 200, 0,   200,
+                                0, -400, -200, 0, 0,    -200, 0, 400, 200, 0};
+static const int free_ma[] = {150, 50,  50,  50,  50,  50,  50,  50,  100, 180,
+                              170, 200, 150, 160, 100, 180, 170, 200, 150, 160};
+
+static int joint_of(int motor)
+{
+    return grobo_model_joint_of_motor(gr001, motor);
+}
+
+static void gr001_is_as_its_sheet_says(void **state)
+{
+    (void)state;
+    assert_int_equal(grobo_model_check(gr001), 0);
+    assert_string_equal(gr001->name, "GR001");
+    assert_int_equal(gr001->n_joints, 20);
+    for (int j = 0; j < 20; j++) {
+        const grobo_joint *joint = &gr001->joints[j];
+        assert_string_equal(joint->name, sheet[j].name);
+        assert_int_equal(joint->motor, sheet[j].motor);
+        assert_true(joint->min_rad == grobo_rad_from_deg(sheet[j].min_deg));
+        assert_true(joint->max_rad == grobo_rad_from_deg(sheet[j].max_deg));
+        assert_true(joint->init_rad == grobo_rad_from_deg(sheet[j].init_deg));
+    }
+}
+
+static void the_standard_pose_is_the_initial_posture_of_the_wire(void **state)
+{
+    (void)state;
+    for (int motor = 1; motor <= 20; motor++) {
+        const grobo_joint *joint = &gr001->joints[joint_of(motor)];
+        assert_int_equal(grobo_ddeg_from_rad(joint->init_rad), init_ddeg[motor - 1]);
+        assert_int_equal(joint->free_current_ma, free_ma[motor - 1]);
+    }
+    grobo_posture pose;
+    grobo_posture_init_pose(&pose, gr001);
+    assert_true(pose.set == GROBO_JOINTS_ALL(20));
+    assert_int_equal(pose.time_us, GROBO_POSTURE_TIME_US);
+    assert_int_equal(grobo_posture_check(&pose, gr001, NULL), 0);
+}
+
+static void servos_are_eleven_of_one_kind_and_nine_of_the_other(void **state)
+{
+    (void)state;
+    int rs301 = 0;
+    for (int j = 0; j < 20; j++) {
+        const grobo_joint *joint = &gr001->joints[j];
+        double deg_s = grobo_deg_from_rad(joint->max_speed_rad_s);
+        bool is_301 = joint->servo_model == 0x3010;
+        assert_true(is_301 || joint->servo_model == 0x3020);
+        assert_true(fabs(deg_s - (is_301 ? 60.0 / 0.11 : 60.0 / 0.16)) < 1e-9);
+        rs301 += is_301;
+    }
+    assert_int_equal(rs301, 11);
+}
+
+static void the_mirror_fits_names_limits_and_pose(void **state)
+{
+    (void)state;
+    for (int j = 0; j < 20; j++) {
+        const grobo_joint *joint = &gr001->joints[j];
+        const grobo_joint *other = &gr001->joints[joint->mirror];
+        if (joint->mirror != j) {
+            assert_string_equal(joint->name + 1, other->name + 1);
+            assert_int_not_equal(joint->name[0], other->name[0]);
+            assert_int_equal(joint->mirror_sign, -1);
+            assert_true(joint->min_rad == -other->max_rad);
+        }
+        assert_true(joint->init_rad == joint->mirror_sign * other->init_rad);
+        assert_int_equal(joint->free_current_ma, other->free_current_ma);
+        assert_int_equal(joint->servo_model, other->servo_model);
+    }
+    assert_int_equal(gr001->joints[12].mirror_sign, 1);
+    assert_int_equal(gr001->joints[13].mirror_sign, -1);
+}
+
+static void motors_and_joints_lead_to_each_other(void **state)
+{
+    (void)state;
+    for (int motor = 1; motor <= 20; motor++) {
+        assert_int_equal(grobo_model_motor_of_joint(gr001, joint_of(motor)), motor);
+    }
+    assert_int_equal(joint_of(0), GROBO_ERR_NOTFOUND);
+    assert_int_equal(joint_of(21), GROBO_ERR_NOTFOUND);
+    assert_int_equal(joint_of(-1), GROBO_ERR_NOTFOUND);
+    assert_int_equal(grobo_model_motor_of_joint(gr001, 20), GROBO_ERR_ARG);
+    assert_int_equal(grobo_model_motor_of_joint(gr001, -1), GROBO_ERR_ARG);
+}
+
+static int find(const char *name)
+{
+    return grobo_model_find_joint(gr001, name, strlen(name));
+}
+
+static void joints_are_found_by_name_motor_and_id(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name;
+        int joint;
+    } rows[] = {
+        {"R_KNEE_P", 3}, {"r_knee_p", 3},   {"R_Knee_p", 3}, {"m12", 3},  {"M12", 3},
+        {"m1", 12},      {"j3", 3},         {"J0", 0},       {"j19", 19}, {"m012", 3},
+        {"R_KNEE", -1},  {"R_KNEE_PP", -1}, {"m0", -1},      {"m21", -1}, {"m", -1},
+        {"j20", -1},     {"j-1", -1},       {"", -1},        {"12", -1},  {"x12", -1},
+        {"m12 ", -1},    {"m99999999", -1}, {"j 3", -1},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        int expected = rows[i].joint < 0 ? GROBO_ERR_NOTFOUND : rows[i].joint;
+        assert_int_equal(find(rows[i].name), expected);
+    }
+    assert_int_equal(grobo_model_find_joint(gr001, "NECK_Y=30", 6), 13);
+}
+
+static void groups_are_those_of_the_reference_library(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name;
+        int first, last, first2, last2; /* motors */
+    } rows[] = {
+        {"all", 1, 20, 0, -1},       {"body", 1, 2, 0, -1},   {"right_arm", 3, 5, 0, -1},
+        {"left_arm", 6, 8, 0, -1},   {"arms", 3, 5, 6, 8},    {"right_leg", 9, 14, 0, -1},
+        {"left_leg", 15, 20, 0, -1}, {"legs", 9, 14, 15, 20},
+    };
+    assert_int_equal(gr001->n_groups, 8);
+    for (size_t g = 0; g < 8; g++) {
+        grobo_joint_mask expected = 0, by_name = 0, by_number = 0;
+        char number[] = {(char)('0' + g), '\0'};
+        int n = 0;
+        for (int m = 1; m <= 20; m++) {
+            if ((m >= rows[g].first && m <= rows[g].last) ||
+                (m >= rows[g].first2 && m <= rows[g].last2)) {
+                expected |= GROBO_JOINT_BIT(joint_of(m));
+                n++;
+            }
+        }
+        assert_int_equal(
+            grobo_model_find_joints(gr001, rows[g].name, strlen(rows[g].name), &by_name), n);
+        assert_int_equal(grobo_model_find_joints(gr001, number, 1, &by_number), n);
+        assert_true(by_name == expected);
+        assert_true(by_number == expected);
+    }
+}
+
+static void sets_are_found_by_joint_too(void **state)
+{
+    (void)state;
+    grobo_joint_mask joints = 5;
+    assert_int_equal(grobo_model_find_joints(gr001, "m2", 2, &joints), 1);
+    assert_true(joints == GROBO_JOINT_BIT(13));
+    assert_int_equal(grobo_model_find_joints(gr001, "LEGS", 4, &joints), 12);
+    joints = 5;
+    assert_int_equal(grobo_model_find_joints(gr001, "8", 1, &joints), GROBO_ERR_NOTFOUND);
+    assert_int_equal(grobo_model_find_joints(gr001, "tail", 4, &joints), GROBO_ERR_NOTFOUND);
+    assert_int_equal(grobo_model_find_joints(gr001, "", 0, &joints), GROBO_ERR_NOTFOUND);
+    assert_true(joints == 5);
+}
+
+/* One fault at a time in a table that is good otherwise. */
+static grobo_joint arm[2];
+static grobo_group arm_groups[2];
+static grobo_model two;
+
+static void make_two(void)
+{
+    arm[0] = (grobo_joint){"LEFT", -1, 1, 5, 0, 0, 0, 1, 1, -1};
+    arm[1] = (grobo_joint){"RIGHT", -1, 1, 5, 0, 0, 0, 2, 0, -1};
+    arm_groups[0] = (grobo_group){"both", 3};
+    arm_groups[1] = (grobo_group){"one", 1};
+    two = (grobo_model){"TWO", arm, arm_groups, 2, 2};
+}
+
+#define assert_refused(fault)                                                                      \
+    do {                                                                                           \
+        make_two();                                                                                \
+        assert_int_equal(grobo_model_check(&two), 0);                                              \
+        fault;                                                                                     \
+        assert_int_equal(grobo_model_check(&two), GROBO_ERR_ARG);                                  \
+    } while (0)
+
+static void a_faulty_joint_is_refused(void **state)
+{
+    (void)state;
+    assert_refused(arm[0].name = NULL);
+    assert_refused(arm[0].name = "");
+    assert_refused(arm[0].name = "right");
+    assert_refused(arm[0].motor = 0);
+    assert_refused(arm[0].motor = 128);
+    assert_refused(arm[0].motor = 2);
+    assert_refused(arm[1].min_rad = (double)NAN);
+    assert_refused(arm[1].max_rad = (double)INFINITY);
+    assert_refused(arm[1].min_rad = 0.5);
+    assert_refused(arm[1].init_rad = 1.5);
+    assert_refused(arm[1].init_rad = (double)NAN);
+    assert_refused(arm[1].max_speed_rad_s = 0);
+    assert_refused(arm[1].max_speed_rad_s = (double)INFINITY);
+    assert_refused(arm[1].mirror = 1);
+    assert_refused(arm[1].mirror = 2);
+    assert_refused(arm[1].mirror_sign = 0);
+    assert_refused(arm[1].mirror_sign = 1);
+}
+
+static void a_faulty_table_is_refused(void **state)
+{
+    (void)state;
+    assert_int_equal(grobo_model_check(NULL), GROBO_ERR_ARG);
+    assert_refused(two.name = NULL);
+    assert_refused(two.joints = NULL);
+    assert_refused(two.groups = NULL);
+    assert_refused(two.n_joints = 0);
+    assert_refused(two.n_joints = GROBO_JOINTS_MAX + 1);
+    assert_refused(arm_groups[1].name = "BOTH");
+    assert_refused(arm_groups[1].name = NULL);
+    assert_refused(arm_groups[1].joints = 4);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(gr001_is_as_its_sheet_says),
+        cmocka_unit_test(the_standard_pose_is_the_initial_posture_of_the_wire),
+        cmocka_unit_test(servos_are_eleven_of_one_kind_and_nine_of_the_other),
+        cmocka_unit_test(the_mirror_fits_names_limits_and_pose),
+        cmocka_unit_test(motors_and_joints_lead_to_each_other),
+        cmocka_unit_test(joints_are_found_by_name_motor_and_id),
+        cmocka_unit_test(groups_are_those_of_the_reference_library),
+        cmocka_unit_test(sets_are_found_by_joint_too),
+        cmocka_unit_test(a_faulty_joint_is_refused),
+        cmocka_unit_test(a_faulty_table_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
