@@ -6,6 +6,7 @@
 #include "cli.h"
 
 extern const cli_command cmd_help;
+extern const cli_command cmd_ports;
 extern const cli_command cmd_version;
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include <stdlib.h>
+#include <locale.h>
 
 #include <grobo/version.h>
 
@@ -37,6 +37,7 @@ const cli_option cli_global_options[GLOBAL_COUNT] = {
 const cli_command *const cli_commands[] = {
     &cmd_help,
     &cmd_version,
+    &cmd_ports,
 };
 const size_t cli_n_commands = sizeof cli_commands / sizeof cli_commands[0];
 
@@ -45,7 +46,9 @@ int main(int argc, char **argv)
     static app a;
     char complaint[512];
     const cli_command *command;
-    bool ok = cli_parse(&a.line, argc, argv, complaint, sizeof complaint);
+    bool ok;
+    setlocale(LC_CTYPE, "");
+    ok = cli_parse(&a.line, argc, argv, complaint, sizeof complaint);
     app_settle(&a);
     command = a.line.command;
     if (!ok)

@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: MIT */
+#include <langinfo.h>
+#include <string.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include "progress.h"
+
+enum { BAR_MOST = 40, LINE_BYTES = 512 };
+
+static int terminal_width(void)
+{
+    struct winsize size;
+    if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0)
+        return size.ws_col;
+    return 80;
+}
+
+void progress_start(progress *p, const app *a)
+{
+    memset(p, 0, sizeof *p);
+    p->shown = a->tty_err && !a->json && a->verbosity >= 0;
+    p->blocks = strcmp(nl_langinfo(CODESET), "UTF-8") == 0;
+    p->width = terminal_width();
+}
+
+static size_t append(char *line, size_t at, const char *text)
+{
+    size_t n = strlen(text);
+    if (at + n >= LINE_BYTES)
+        return at;
+    memcpy(line + at, text, n + 1);
+    return at + n;
+}
+
+void progress_draw(progress *p, double fraction, const char *text)
+{
+    char line[LINE_BYTES] = "";
+    size_t at = 0;
+    int room, bar, full;
+    if (!p->shown)
+        return;
+    room = p->width - 1;
+    bar = room - 3 - (int)strlen(text);
+    bar = bar > BAR_MOST ? BAR_MOST : bar;
+    if (bar >= 8) {
+        full = (int)(fraction * bar + 0.5);
+        full = full < 0 ? 0 : full > bar ? bar : full;
+        at = append(line, at, p->blocks ? "" : "[");
+        for (int i = 0; i < bar; i++)
+            at = append(line, at, p->blocks ? (i < full ? "█" : "░") : i < full ? "#" : "-");
+        at = append(line, at, p->blocks ? "  " : "] ");
+    }
+    fprintf(stderr, "\r%s%.*s\033[K", line, room, text);
+    fflush(stderr);
+    p->drawn = true;
+}
+
+void progress_clear(progress *p)
+{
+    if (p->drawn)
+        fputs("\r\033[K", stderr);
+    p->drawn = false;
+}
