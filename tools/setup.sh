@@ -131,12 +131,12 @@ choose_root() {
         as_root=
         return
     fi
-    have_command sudo || die "missing $packages; install as root: $(install_command)"
+    have_command sudo || die "missing $reasons; as root: $(install_command)"
     as_root=sudo
     if ! [ -t 0 ] || ! [ -t 2 ]; then
         as_root='sudo -n'
         $as_root true 2>/dev/null ||
-            die "missing $packages, sudo wants a password; install as root: $(install_command)"
+            die "missing $reasons, and sudo wants a password; as root: $(install_command)"
     fi
 }
 
@@ -157,11 +157,11 @@ refresh_lists() {
 [ -z "${CC:-}" ] || have_command "${CC%% *}" || die "CC=$CC: no such compiler"
 look
 [ -n "$packages" ] || exit 0
+[ -n "$manager" ] || die "missing $reasons, and no known package manager is here"
+[ -n "$dry_run" ] || choose_root
 say "missing $reasons"
-[ -n "$manager" ] || die "no known package manager here; install: $packages"
 say "$(install_command)"
 [ -z "$dry_run" ] || exit 0
-choose_root
 
 log=$(mktemp) || exit 1
 trap 'rm -f "$log"' EXIT

@@ -75,7 +75,8 @@ mkdir corpus && touch corpus/a 'corpus/b c'
 printf 'echo 1..1\necho ok 1 - from a script\n' >script.sh
 
 check 'all pass' ends 0 '5 passed, 0 failed, 0 skipped' 'pass' ./good ./two_groups
-check 'a failure shows what was printed' ends 1 '3 passed, 1 failed, 0 skipped' '# 1 != 2' ./bad ./good
+check 'a failure shows what was printed' \
+    ends 1 '3 passed, 1 failed, 0 skipped' '# 1 != 2' ./bad ./good
 check 'a skip is told with its reason' \
     ends 0 '1 passed, 0 failed, 1 skipped' 'with_a_robot: no robot here' ./skips
 check 'a program may skip whole' ends 0 '0 passed, 0 failed, 1 skipped' 'no tool' ./skips_all

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# For shell tests: `. tests/support/tap.sh`, then `check NAME COMMAND...` and at the end `done_testing`.
+# For shell tests: `. tests/support/tap.sh`, `check NAME COMMAND...`, and at the end `done_testing`.
 
 tap_count=0
 

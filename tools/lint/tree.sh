@@ -8,7 +8,7 @@ bad=0
 if git rev-parse --git-dir >/dev/null 2>&1; then
     files=$(git ls-files)
 else
-    files=$(find . -type f ! -path './build*' | sed 's,^\./,,')
+    files=$(find . -type f ! -path './build*' ! -path './.git/*' | sed 's,^\./,,')
 fi
 top=$(printf '%s\n' "$files" | sed 's,/.*,,' | sort -u)
 told=$(awk '

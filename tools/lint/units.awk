@@ -5,7 +5,7 @@
 BEGIN {
     number = "(double|float|int|long|short|unsigned|size_t|u?int(8|16|32|64)_t)"
     words = "(time|times|timeout|deadline|delay|period|interval|duration|age|angle|angles|speed|" \
-        "velocity|voltage|volts|current|temperature|baud|bitrate|latency|jitter)"
+        "velocity|voltage|volts|current|temperature|baud|bitrate|latency)"
 }
 
 {
