@@ -1,0 +1,210 @@
+/* SPDX-License-Identifier: MIT */
+/* Frames of GR001's controller board: builders, and the device-side parser. */
+#include <grobo/board.h>
+
+#include <string.h>
+
+#include "core/framer.h"
+
+enum {
+    CHECK = 0x41,
+    SEND = 0x53,
+    ASK = 0x54,
+    PLAY = 0x50,
+    PLAY_SLOT = 0x4D,
+    PLAY_SCENARIO = 0x53,
+    CHECK_BYTES = 2,
+    PLAY_BYTES = 3,
+    PACKET_MIN_BYTES = 2 /* enough to see how a packet starts */
+};
+
+int grobo_board_check(uint8_t *buf, size_t cap)
+{
+    if (cap < CHECK_BYTES) {
+        return GROBO_ERR_SPACE;
+    }
+    buf[0] = CHECK;
+    buf[1] = 0;
+    return CHECK_BYTES;
+}
+
+static int build_play(uint8_t what, uint8_t k, uint8_t *buf, size_t cap)
+{
+    if (cap < PLAY_BYTES) {
+        return GROBO_ERR_SPACE;
+    }
+    buf[0] = PLAY;
+    buf[1] = what;
+    buf[2] = k;
+    return PLAY_BYTES;
+}
+
+int grobo_board_slot(uint8_t k, uint8_t *buf, size_t cap)
+{
+    return build_play(PLAY_SLOT, k, buf, cap);
+}
+
+int grobo_board_scenario(uint8_t k, uint8_t *buf, size_t cap)
+{
+    return build_play(PLAY_SCENARIO, k, buf, cap);
+}
+
+/* r is the byte behind the packet, or < 0 for none. */
+static int build_relay(const uint8_t *packet, size_t n, int r, uint8_t *buf, size_t cap)
+{
+    size_t counted = n + (r < 0 ? 0 : 1);
+    if (n == 0 || r == 0) {
+        return GROBO_ERR_ARG;
+    }
+    if (counted > GROBO_RELAY_MAX_BYTES) {
+        return GROBO_ERR_CAP;
+    }
+    if (GROBO_BOARD_HEADER_BYTES + counted > cap) {
+        return GROBO_ERR_SPACE;
+    }
+    memmove(buf + GROBO_BOARD_HEADER_BYTES, packet, n);
+    buf[0] = r < 0 ? SEND : ASK;
+    buf[1] = (uint8_t)counted;
+    if (r > 0) {
+        buf[GROBO_BOARD_HEADER_BYTES + n] = (uint8_t)r;
+    }
+    return (int)(GROBO_BOARD_HEADER_BYTES + counted);
+}
+
+int grobo_board_send(const uint8_t *packet, size_t n, uint8_t *buf, size_t cap)
+{
+    return build_relay(packet, n, -1, buf, cap);
+}
+
+int grobo_board_ask(const uint8_t *packet, size_t n, uint8_t r, uint8_t *buf, size_t cap)
+{
+    return build_relay(packet, n, r, buf, cap);
+}
+
+int grobo_board_relay(const uint8_t *packet, size_t n, uint8_t *buf, size_t cap)
+{
+    grobo_reply reply;
+    int r = grobo_rs30x_reply_to(packet, n, &reply);
+    return r < 0 ? r : build_relay(packet, n, r == 0 ? -1 : r, buf, cap);
+}
+
+static int measure_relay(const uint8_t *bytes, size_t n)
+{
+    size_t trailer = bytes[0] == ASK ? 1 : 0;
+    if (n < GROBO_BOARD_HEADER_BYTES) {
+        return 0;
+    }
+    size_t counted = bytes[1];
+    if (counted < PACKET_MIN_BYTES + trailer || counted > GROBO_RELAY_MAX_BYTES) {
+        return GROBO_ERR_FRAME;
+    }
+    const uint8_t *packet = bytes + GROBO_BOARD_HEADER_BYTES;
+    size_t have = n - GROBO_BOARD_HEADER_BYTES;
+    if ((have >= 1 && packet[0] != 0xFA) || (have >= 2 && packet[1] != 0xAF)) {
+        return GROBO_ERR_FRAME;
+    }
+    return have < counted ? 0 : (int)(GROBO_BOARD_HEADER_BYTES + counted);
+}
+
+/* A grobo_i_measure. */
+static int measure(const uint8_t *bytes, size_t n, unsigned accept)
+{
+    (void)accept;
+    switch (bytes[0]) {
+    case CHECK:
+        if (n < CHECK_BYTES) {
+            return 0;
+        }
+        return bytes[1] == 0 ? CHECK_BYTES : GROBO_ERR_FRAME;
+    case PLAY:
+        if (n >= 2 && bytes[1] != PLAY_SLOT && bytes[1] != PLAY_SCENARIO) {
+            return GROBO_ERR_FRAME;
+        }
+        return n < PLAY_BYTES ? 0 : PLAY_BYTES;
+    case SEND:
+    case ASK:
+        return measure_relay(bytes, n);
+    default:
+        return GROBO_ERR_FRAME;
+    }
+}
+
+/* Takes a whole frame of n bytes apart. */
+static void unpack(const uint8_t *bytes, size_t n, grobo_board_frame *frame)
+{
+    static const grobo_board_frame empty;
+    *frame = empty;
+    if (bytes[0] == CHECK) {
+        frame->kind = GROBO_BOARD_CHECK;
+    } else if (bytes[0] == PLAY) {
+        frame->kind = bytes[1] == PLAY_SLOT ? GROBO_BOARD_SLOT : GROBO_BOARD_SCENARIO;
+        frame->number = bytes[2];
+    } else {
+        bool ask = bytes[0] == ASK;
+        frame->kind = ask ? GROBO_BOARD_ASK : GROBO_BOARD_SEND;
+        frame->reply_bytes = ask ? bytes[n - 1] : 0;
+        frame->packet = bytes + GROBO_BOARD_HEADER_BYTES;
+        frame->packet_bytes = n - GROBO_BOARD_HEADER_BYTES - (ask ? 1 : 0);
+    }
+}
+
+int grobo_board_parse(const uint8_t *bytes, size_t n, grobo_board_frame *frame)
+{
+    int size = n > 0 ? measure(bytes, n, 0) : 0;
+    if (size <= 0 || (size_t)size != n) {
+        return GROBO_ERR_FRAME;
+    }
+    unpack(bytes, n, frame);
+    return GROBO_OK;
+}
+
+void grobo_board_parser_init(grobo_board_parser *parser, uint32_t stall_us)
+{
+    grobo_i_framer_init(&parser->framer);
+    parser->stalls = 0;
+    parser->stall_us = stall_us != 0 ? stall_us : GROBO_BOARD_STALL_US;
+    parser->last_us = 0;
+}
+
+static void abandon_what_stands_still(grobo_board_parser *parser, int64_t now_us)
+{
+    if (!parser->framer.ending && now_us >= grobo_board_parser_deadline(parser)) {
+        parser->stalls++;
+        grobo_i_framer_end(&parser->framer);
+    }
+}
+
+size_t grobo_board_parser_feed(grobo_board_parser *parser, int64_t now_us, const uint8_t *bytes,
+                               size_t n)
+{
+    abandon_what_stands_still(parser, now_us);
+    size_t took = grobo_i_framer_feed(&parser->framer, bytes, n);
+    if (took > 0) {
+        parser->last_us = now_us;
+    }
+    return took;
+}
+
+int grobo_board_parser_next(grobo_board_parser *parser, int64_t now_us, grobo_board_frame *frame)
+{
+    abandon_what_stands_still(parser, now_us);
+    size_t size = grobo_i_framer_next(&parser->framer, measure, 0);
+    if (size == 0) {
+        return 0;
+    }
+    unpack(parser->framer.buf, size, frame);
+    return 1;
+}
+
+int64_t grobo_board_parser_deadline(const grobo_board_parser *parser)
+{
+    if (grobo_i_framer_pending(&parser->framer) == 0) {
+        return GROBO_NEVER_US;
+    }
+    return parser->last_us + parser->stall_us;
+}
+
+void grobo_board_parser_reset(grobo_board_parser *parser)
+{
+    grobo_i_framer_reset(&parser->framer);
+}

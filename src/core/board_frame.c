@@ -1,0 +1,127 @@
+/* SPDX-License-Identifier: MIT */
+/* The frames that a driver sends, for either wiring. */
+#include <grobo/board.h>
+
+#include <string.h>
+
+int grobo_frame_wrap(grobo_wiring wiring, const uint8_t *packet, size_t n, uint8_t *buf, size_t cap)
+{
+    if (wiring == GROBO_WIRING_BOARD) {
+        return grobo_board_relay(packet, n, buf, cap);
+    }
+    grobo_reply reply;
+    int result = grobo_rs30x_reply_to(packet, n, &reply);
+    if (result < 0) {
+        return result;
+    }
+    if (n > cap) {
+        return GROBO_ERR_SPACE;
+    }
+    memmove(buf, packet, n);
+    return (int)n;
+}
+
+int grobo_frame_reply(grobo_wiring wiring, const uint8_t *frame, size_t n, grobo_reply *reply)
+{
+    if (wiring == GROBO_WIRING_BUS) {
+        return grobo_rs30x_reply_to(frame, n, reply);
+    }
+    grobo_board_frame parsed;
+    grobo_reply found = {GROBO_REPLY_NONE, 0, 0, 0};
+    int bytes = grobo_board_parse(frame, n, &parsed);
+    if (bytes < 0) {
+        return bytes;
+    }
+    switch (parsed.kind) {
+    case GROBO_BOARD_CHECK:
+        found.kind = GROBO_REPLY_ACK;
+        bytes = 1;
+        break;
+    case GROBO_BOARD_SLOT:
+    case GROBO_BOARD_SCENARIO:
+        break;
+    case GROBO_BOARD_SEND:
+    case GROBO_BOARD_ASK:
+        bytes = grobo_rs30x_reply_to(parsed.packet, parsed.packet_bytes, &found);
+        break;
+    }
+    if (bytes < 0) {
+        return bytes;
+    }
+    if (parsed.kind == GROBO_BOARD_ASK && parsed.reply_bytes != bytes) {
+        return GROBO_ERR_FRAME;
+    }
+    if (parsed.kind == GROBO_BOARD_SEND) {
+        found.kind = GROBO_REPLY_NONE;
+        bytes = 0;
+    }
+    *reply = found;
+    return bytes;
+}
+
+/* Where in a frame the packet is built, so that wrapping it moves nothing. */
+static size_t packet_offset(grobo_wiring wiring, size_t cap)
+{
+    return wiring == GROBO_WIRING_BOARD && cap >= GROBO_BOARD_HEADER_BYTES
+               ? GROBO_BOARD_HEADER_BYTES
+               : 0;
+}
+
+/* Wraps what a builder has put at that offset. */
+static int wrap_built(grobo_wiring wiring, int built, uint8_t *buf, size_t cap)
+{
+    if (built < 0) {
+        return built;
+    }
+    return grobo_frame_wrap(wiring, buf + packet_offset(wiring, cap), (size_t)built, buf, cap);
+}
+
+int grobo_frame_goal(grobo_wiring wiring, const grobo_rs30x_goal *goal, uint8_t *buf, size_t cap)
+{
+    size_t at = packet_offset(wiring, cap);
+    return wrap_built(wiring, grobo_rs30x_write_goal(goal, buf + at, cap - at), buf, cap);
+}
+
+int grobo_frame_goals(grobo_wiring wiring, const grobo_rs30x_goal *goals, size_t n, uint8_t *buf,
+                      size_t cap)
+{
+    size_t at = packet_offset(wiring, cap);
+    return wrap_built(wiring, grobo_rs30x_write_goals(goals, n, buf + at, cap - at), buf, cap);
+}
+
+static bool is_torque(unsigned value)
+{
+    return value <= GROBO_TORQUE_BRAKE;
+}
+
+int grobo_frame_torque(grobo_wiring wiring, uint8_t id, grobo_torque torque, uint8_t *buf,
+                       size_t cap)
+{
+    if (!is_torque(torque)) {
+        return GROBO_ERR_ARG;
+    }
+    size_t at = packet_offset(wiring, cap);
+    int built = grobo_rs30x_write_u8(id, GROBO_RS30X_WANT_NOTHING, GROBO_RS30X_TORQUE,
+                                     (uint8_t)torque, buf + at, cap - at);
+    return wrap_built(wiring, built, buf, cap);
+}
+
+int grobo_frame_torques(grobo_wiring wiring, const grobo_rs30x_byte *torques, size_t n,
+                        uint8_t *buf, size_t cap)
+{
+    for (size_t i = 0; i < n; i++) {
+        if (!is_torque(torques[i].value)) {
+            return GROBO_ERR_ARG;
+        }
+    }
+    size_t at = packet_offset(wiring, cap);
+    int built = grobo_rs30x_write_bytes(GROBO_RS30X_TORQUE, torques, n, buf + at, cap - at);
+    return wrap_built(wiring, built, buf, cap);
+}
+
+int grobo_frame_read(grobo_wiring wiring, uint8_t id, uint8_t address, uint8_t length, uint8_t *buf,
+                     size_t cap)
+{
+    size_t at = packet_offset(wiring, cap);
+    return wrap_built(wiring, grobo_rs30x_read(id, address, length, buf + at, cap - at), buf, cap);
+}

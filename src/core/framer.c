@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: MIT */
+#include "core/framer.h"
+
+#include <string.h>
+
+static const grobo_framer_stats no_stats;
+
+void grobo_i_framer_init(grobo_framer *framer)
+{
+    framer->stats = no_stats;
+    framer->used = 0;
+    framer->taken = 0;
+    framer->ending = false;
+}
+
+static void discard(grobo_framer *framer, size_t n)
+{
+    size_t left = framer->used - n;
+    memmove(framer->buf, framer->buf + n, left);
+    framer->used = (uint16_t)left;
+}
+
+static void release_taken(grobo_framer *framer)
+{
+    discard(framer, framer->taken);
+    framer->taken = 0;
+}
+
+size_t grobo_i_framer_feed(grobo_framer *framer, const uint8_t *bytes, size_t n)
+{
+    if (framer->ending || n == 0) {
+        return 0;
+    }
+    release_taken(framer);
+    size_t room = sizeof framer->buf - framer->used;
+    size_t took = n < room ? n : room;
+    memcpy(framer->buf + framer->used, bytes, took);
+    framer->used = (uint16_t)(framer->used + took);
+    return took;
+}
+
+size_t grobo_i_framer_next(grobo_framer *framer, grobo_i_measure measure, unsigned accept)
+{
+    release_taken(framer);
+    size_t skip = 0;
+    int size = 0;
+    while (skip < framer->used) {
+        size = measure(framer->buf + skip, framer->used - skip, accept);
+        if (size > 0 || (size == 0 && !framer->ending)) {
+            break;
+        }
+        if (size == GROBO_ERR_CHECKSUM) {
+            framer->stats.bad_sums++;
+        }
+        size = 0;
+        skip++;
+    }
+    framer->stats.dropped_bytes += (uint32_t)skip;
+    discard(framer, skip);
+    if (size == 0) {
+        framer->ending = false;
+        return 0;
+    }
+    framer->taken = (uint16_t)size;
+    framer->stats.frames++;
+    framer->stats.frame_bytes += (uint32_t)size;
+    return (size_t)size;
+}
+
+void grobo_i_framer_end(grobo_framer *framer)
+{
+    framer->ending = grobo_i_framer_pending(framer) > 0;
+}
+
+void grobo_i_framer_reset(grobo_framer *framer)
+{
+    framer->stats.dropped_bytes += (uint32_t)grobo_i_framer_pending(framer);
+    framer->used = 0;
+    framer->taken = 0;
+    framer->ending = false;
+}
+
+size_t grobo_i_framer_pending(const grobo_framer *framer)
+{
+    return (size_t)(framer->used - framer->taken);
+}

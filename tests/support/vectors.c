@@ -1,0 +1,118 @@
+/* SPDX-License-Identifier: MIT */
+#include "vectors.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { FILE_MAX_BYTES = 1 << 18, STRING_MAX_BYTES = 1024 };
+
+static int hex_digit(char c)
+{
+    const char *digits = "0123456789ABCDEF";
+    const char *found = c != '\0' ? strchr(digits, toupper((unsigned char)c)) : NULL;
+    return found != NULL ? (int)(found - digits) : -1;
+}
+
+int vector_from_hex(const char *hex, uint8_t *bytes, size_t cap)
+{
+    size_t n = 0;
+    while (*hex != '\0') {
+        int high = hex_digit(hex[0]);
+        int low = high >= 0 ? hex_digit(hex[1]) : -1;
+        if (low < 0 || n == cap) {
+            return -1;
+        }
+        bytes[n++] = (uint8_t)(high * 16 + low);
+        hex += 2;
+        while (*hex == ' ') {
+            hex++;
+        }
+    }
+    return (int)n;
+}
+
+/* Copies the string that starts behind its quote; returns what follows its end, NULL if none. */
+static const char *read_string(const char *p, char *text)
+{
+    size_t n = 0;
+    for (; *p != '"'; p++) {
+        if (*p == '\\') {
+            p++;
+        }
+        if (*p == '\0' || n + 1 == STRING_MAX_BYTES) {
+            return NULL;
+        }
+        text[n++] = *p;
+    }
+    text[n] = '\0';
+    return p + 1;
+}
+
+static int set_field(vector *v, const char *key, const char *value)
+{
+    char *text = strcmp(key, "name") == 0    ? v->name
+                 : strcmp(key, "kind") == 0  ? v->kind
+                 : strcmp(key, "layer") == 0 ? v->layer
+                                             : NULL;
+    if (text != NULL) {
+        int n = snprintf(text, VECTOR_TEXT_MAX, "%s", value);
+        return n < VECTOR_TEXT_MAX ? 0 : -1;
+    }
+    if (strcmp(key, "bytes") == 0) {
+        int n = vector_from_hex(value, v->bytes, sizeof v->bytes);
+        v->n = n > 0 ? (size_t)n : 0;
+        return n > 0 ? 0 : -1;
+    }
+    return 0;
+}
+
+/* An array of flat objects whose values are strings, or the words true and false. */
+static int scan(const char *p, void (*use)(const vector *v, void *ctx), void *ctx)
+{
+    static char key[STRING_MAX_BYTES], value[STRING_MAX_BYTES];
+    vector v;
+    int count = 0;
+    bool is_value = false;
+    while (*p != '\0') {
+        char c = *p++;
+        if (c == '{') {
+            memset(&v, 0, sizeof v);
+            v.valid = true;
+            is_value = false;
+        } else if (c == '"') {
+            p = read_string(p, is_value ? value : key);
+            if (p == NULL || (is_value && set_field(&v, key, value) < 0)) {
+                return -1;
+            }
+        } else if (c == ':') {
+            is_value = true;
+        } else if (c == ',') {
+            is_value = false;
+        } else if (c == 'f' && strcmp(key, "valid") == 0) {
+            v.valid = false;
+        } else if (c == '}') {
+            use(&v, ctx);
+            count++;
+        }
+    }
+    return count;
+}
+
+int vectors_each(void (*use)(const vector *v, void *ctx), void *ctx)
+{
+    static char text[FILE_MAX_BYTES];
+    char path[512];
+    const char *shared = getenv("GROBO_SHARED");
+    snprintf(path, sizeof path, "%s/vectors/rs30x.json", shared != NULL ? shared : "../shared");
+    FILE *file = fopen(path, "rb");
+    if (file == NULL) {
+        printf("# no %s beside the checkout\n", path);
+        return 0;
+    }
+    size_t n = fread(text, 1, sizeof text - 1, file);
+    fclose(file);
+    text[n] = '\0';
+    return scan(text, use, ctx);
+}
