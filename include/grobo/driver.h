@@ -24,8 +24,10 @@ GROBO_BEGIN_DECLS
 
 /** What a read asks of a joint. */
 typedef enum grobo_sense_kind {
-    GROBO_SENSE_FULL = 0,    /**< everything the servo reports */
-    GROBO_SENSE_POSITION = 1 /**< the angle only, as cheaply as the wire allows */
+    GROBO_SENSE_FULL = 0,     /**< everything measured (RS30x: No.36-53, 26 bytes back) */
+    GROBO_SENSE_POSITION = 1, /**< the angle only (No.42-43, 10 bytes) */
+    GROBO_SENSE_GOAL = 2,     /**< goal, torque and angle, to check what was sent (No.30-43) */
+    GROBO_SENSE_ALL = 3       /**< full and goal (No.30-53, 32 bytes) */
 } grobo_sense_kind;
 
 /** One frame to send and the reply it waits for. Plain data. */
@@ -46,12 +48,14 @@ typedef enum grobo_field {
     GROBO_FIELD_CURRENT = 1 << 3,
     GROBO_FIELD_TEMPERATURE = 1 << 4,
     GROBO_FIELD_VOLTAGE = 1 << 5,
-    GROBO_FIELD_TORQUE = 1 << 6
+    GROBO_FIELD_TORQUE = 1 << 6,
+    GROBO_FIELD_GOAL = 1 << 7
 } grobo_field;
 
 /** One reading of one joint. Plain data; a field means something only where `valid` has its bit. */
 typedef struct grobo_joint_state {
     double angle_rad;      /**< present angle */
+    double goal_rad;       /**< where the servo was told to go */
     int64_t time_us;       /**< since its present move began */
     int32_t speed_dps;     /**< degrees a second */
     int32_t current_ma;    /**< motor current */

@@ -221,59 +221,66 @@ typedef struct grobo_jitter {
 /** Bins of the jitter histogram: four an octave, from 1 us to 65 ms. */
 #define GROBO_ROBOT_JITTER_BINS 64
 
-/* private */
+struct grobo_robot;
+
+/** A step of a job. Private. */
+typedef int (*grobo_robot_step_fn)(struct grobo_robot *robot);
+
+/** A frame under way. Private. */
 typedef struct grobo_robot_slot {
+    /* private */
     grobo_txn txn;
     grobo_exchange exchange;
     struct grobo_robot *robot;
-    int64_t due_us;
-    uint8_t use;
+    int64_t due_us; /* when it should leave; GROBO_NEVER_US: as soon as may be */
+    int job;        /* number of the job it belongs to */
+    uint8_t use;    /* 0: free */
     uint8_t joint;
 } grobo_robot_slot;
 
-/* private */
+/** What is known of a joint. Private. */
 typedef struct grobo_robot_axis {
+    /* private */
     grobo_joint_state state;
     int64_t angle_us, full_us; /* when read; GROBO_NEVER_US: never */
-    int64_t asked_us;          /* when asked last in the background */
     int64_t current_since_us;  /* above its limit since; GROBO_NEVER_US: it is not */
-    double from_rad, to_rad;   /* where it was sent from and to */
-    int64_t from_us, to_us;    /* and when */
-    int status;
-    uint16_t lost;       /* readings lost in a row */
-    uint8_t low_voltage; /* readings in a row */
-    bool has_target;
+    double from_rad, to_rad;   /* the move it was sent on */
+    int64_t from_us, to_us;    /* and its time */
+    int status;                /* of the last reading */
+    uint16_t lost;             /* readings lost in a row */
+    uint8_t low_readings;      /* of the voltage, in a row */
+    bool has_target;           /* sent somewhere since the link came up */
     bool torque_known;
-    bool held; /* goal was set to the present angle, torque may come on */
+    bool wants_torque; /* we switched it on: to be without is a fault */
+    bool held;         /* goal read back to be the present angle: torque may come on */
 } grobo_robot_axis;
 
-/* private */
+/** The job that runs. Private. */
 typedef struct grobo_robot_task {
+    /* private */
+    const grobo_robot_step_fn *script;
     int number;
     grobo_job_kind kind;
-    int phase;
-    int result;
-    int joint;
-    double value;
-    grobo_joint_mask joints; /* what was asked for */
-    grobo_joint_mask todo;   /* of the present activity */
+    unsigned at;             /* step of the script that comes next */
+    uint8_t activity;        /* what the step before began */
+    int result;              /* first error */
+    int joint;               /* and its joint */
+    double value;            /* and its value */
+    grobo_joint_mask joints; /* asked for */
+    grobo_joint_mask todo;   /* of the activity */
     grobo_joint_mask failed;
-    grobo_joint_mask torqued; /* joints to switch */
-    grobo_sense_kind sense;
+    grobo_sense_kind sense; /* of the activity */
     grobo_torque torque;
-    grobo_exit_policy policy;
+    grobo_priority priority;
     grobo_posture target;
     grobo_clip clip;
     grobo_play_options options;
     grobo_exchange exchange;
-    grobo_register_io io;
-    grobo_servo_command command;
-    grobo_priority priority;
+    int part;
+    int rounds;       /* of repeating what was not taken */
     int64_t until_us; /* end of waiting */
     int64_t bound_us; /* end of patience */
-    int part;
-    int rounds;
-    uint8_t activity;
+    grobo_register_io io;
     uint8_t data[GROBO_REGISTERS];
 } grobo_robot_task;
 
@@ -282,32 +289,33 @@ typedef struct grobo_robot {
     /* private */
     const grobo_driver *driver;
     void *driver_ctx;
-    grobo_robot_config config;
+    grobo_robot_config config; /* defaults filled in */
     grobo_event_fn on_event;
     void *event_ctx;
     grobo_bus bus;
     grobo_sequencer sequencer;
-    grobo_sequencer_state told_state;
+    grobo_sequencer_state told_state; /* of the sequencer, to the callback */
     grobo_robot_task job;
     grobo_robot_axis axes[GROBO_JOINTS_MAX];
     grobo_robot_slot slots[GROBO_ROBOT_SLOTS];
-    grobo_event events[GROBO_ROBOT_EVENTS];
+    grobo_event events[GROBO_ROBOT_EVENTS]; /* ring */
     unsigned events_head, events_n;
     grobo_robot_counters counters;
     grobo_trip_info trip;
-    uint64_t jitter[GROBO_ROBOT_JITTER_BINS];
-    int64_t jitter_max_us;
-    int64_t now_us;
-    int64_t sense_us;
-    grobo_joint_mask round;
+    uint64_t late_bins[GROBO_ROBOT_JITTER_BINS];
+    int64_t late_max_us;
+    int64_t now_us;         /* of the call that runs */
+    int64_t sense_us;       /* when the background reads next */
+    uint32_t motion_us;     /* wire time of the last motion frames */
+    grobo_joint_mask round; /* joints still to be read in this background round */
     grobo_joint_mask free_joints;
     uint8_t reply[GROBO_REGISTERS];
     double fault_deg;
     int fault_joint;
     int last_number;
-    unsigned depth;
+    unsigned depth; /* calls into the engine, one inside another */
     bool link;
-    bool soft;
+    bool soft; /* the next move is the first from a sensed posture */
 } grobo_robot;
 
 /**
@@ -352,7 +360,7 @@ GROBO_API int64_t grobo_robot_deadline(const grobo_robot *robot, int64_t now_us)
 /** The line is open: nothing moves; after a link_down the posture is sensed again. */
 GROBO_API void grobo_robot_link_up(grobo_robot *robot, int64_t now_us);
 
-/** The line is gone: the job ends with GROBO_ERR_UNPLUGGED, a motion stops, knowledge is dropped. */
+/** The line is gone: the job ends with GROBO_ERR_UNPLUGGED, a motion fails with it too. */
 GROBO_API void grobo_robot_link_down(grobo_robot *robot, int64_t now_us);
 
 /* ---- requests --------------------------------------------------------------------------------
@@ -422,7 +430,10 @@ GROBO_API int grobo_robot_estop(grobo_robot *robot, int64_t now_us);
  */
 GROBO_API int grobo_robot_reset(grobo_robot *robot, int64_t now_us);
 
-/** Ends the job with GROBO_ERR_CANCELED; nothing is left half sent. @return 0 or GROBO_ERR_STATE. */
+/**
+ * Ends the job with GROBO_ERR_CANCELED; a move stops where it is. An emergency stop cannot be
+ * canceled. @return 0, or GROBO_ERR_STATE.
+ */
 GROBO_API int grobo_robot_cancel(grobo_robot *robot, int64_t now_us);
 
 /* ---- playing --------------------------------------------------------------------------------- */

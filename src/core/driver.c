@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: MIT */
+/* What a driver table must have. */
+#include <grobo/driver.h>
+
+#include <math.h>
+
+static bool functions_present(const grobo_driver *driver)
+{
+    return driver->posture != NULL && driver->sense != NULL && driver->parse != NULL;
+}
+
+static bool limits_sound(const grobo_safety_limits *limits)
+{
+    return isfinite(limits->approach_rad_s) && limits->approach_rad_s > 0 &&
+           limits->lost_replies >= 0 && limits->current_ma >= 0 && limits->voltage_mv >= 0 &&
+           limits->current_us >= 0;
+}
+
+static bool rest_sound(const grobo_driver *driver)
+{
+    if (driver->rest_rad == NULL) {
+        return true;
+    }
+    for (int j = 0; j < driver->model->n_joints; j++) {
+        const grobo_joint *joint = &driver->model->joints[j];
+        if (!(driver->rest_rad[j] >= joint->min_rad && driver->rest_rad[j] <= joint->max_rad)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool readback_sound(const grobo_driver *driver)
+{
+    if (driver->n_readback > 0 && driver->readback == NULL) {
+        return false;
+    }
+    for (int i = 0; i < driver->n_readback; i++) {
+        if (driver->readback[i].joint >= driver->model->n_joints ||
+            !isfinite(driver->readback[i].add_rad)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+int grobo_driver_check(const grobo_driver *driver)
+{
+    if (driver == NULL || driver->name == NULL || driver->model == NULL ||
+        grobo_model_check(driver->model) < 0) {
+        return GROBO_ERR_ARG;
+    }
+    bool policy = driver->on_exit == GROBO_EXIT_OFF || driver->on_exit == GROBO_EXIT_HOLD ||
+                  driver->on_exit == GROBO_EXIT_SIT;
+    bool wiring = driver->wiring == GROBO_WIRING_BOARD || driver->wiring == GROBO_WIRING_BUS;
+    if (!policy || !wiring || driver->time_step_us <= 0 || !functions_present(driver) ||
+        !limits_sound(&driver->limits) || !rest_sound(driver) || !readback_sound(driver)) {
+        return GROBO_ERR_ARG;
+    }
+    return GROBO_OK;
+}
