@@ -144,6 +144,9 @@ int grobo_posture_copy(grobo_posture *dst, const grobo_posture *src, int offset)
     if (n > dst->n_joints) {
         n = dst->n_joints;
     }
+    if (n == 0) {
+        offset = 0; /* it may be 64, and a shift by all bits is undefined */
+    }
     /* memmove: src may be dst. */
     grobo_joint_mask moved = (src->set >> offset) & GROBO_JOINTS_ALL(n);
     memmove(dst->angle_rad, src->angle_rad + offset, (size_t)n * sizeof dst->angle_rad[0]);
