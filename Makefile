@@ -87,7 +87,7 @@ VERSION = $(shell sed -n 's/.*GROBO_VERSION_STRING "\(.*\)"/\1/p' include/grobo/
 # ---- targets -------------------------------------------------------------------------------
 
 .PHONY: help all check lint lint-quick format test check-san check-memcheck install uninstall clean
-.PHONY: FORCE
+.PHONY: cov dist FORCE
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-15s %s\n", $$1, $$2 }' Makefile
@@ -127,6 +127,20 @@ check-san: ## the tests of our own code under AddressSanitizer and UBSan
 check-memcheck: ## the same under valgrind
 	@TEST_WRAPPER='valgrind -q --leak-check=full --error-exitcode=99' \
 	    $(MAKE) --no-print-directory test RING='$(filter-out cli lint export,$(RING))'
+
+cov: ## which lines the tests reach, by file
+	@$(MAKE) --no-print-directory test BUILD=$(BUILD)/cov COV_FLAGS=--coverage CFLAGS='-O0 -g' \
+	    RING='$(filter-out lint export,$(RING))'
+	@find $(BUILD)/cov/src $(BUILD)/cov/ports -name '*.gcda' | xargs $(CROSS_COMPILE)gcov -n -r | \
+	    awk '/^File / { file = substr($$2, 2, length($$2) - 2) } \
+	        /^Lines executed:/ && file ~ /^(src|ports)/ { \
+	            sub(/Lines executed:/, ""); sub(/%/, ""); n[file] = $$3; hit[file] = $$1 * $$3 / 100; file = "" } \
+	        END { for (f in n) { printf "%6.1f %% of %4d  %s\n", 100 * hit[f] / n[f], n[f], f; all += n[f]; reached += hit[f] } \
+	            printf "%6.1f %% of %4d  all\n", 100 * reached / all, all }' | sort -k 5
+
+dist: ## a tarball of the last commit, in build/
+	@mkdir -p $(BUILD)
+	git archive --prefix=libgrobo-$(VERSION)/ HEAD | gzip -n > $(BUILD)/libgrobo-$(VERSION).tar.gz
 
 install: all ## into $(DESTDIR)$(PREFIX)
 	install -d $(DESTDIR)$(LIBDIR)/pkgconfig $(DESTDIR)$(INCLUDEDIR)/grobo $(DESTDIR)$(BINDIR)
