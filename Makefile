@@ -36,6 +36,7 @@ WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow \
 SAN_FLAGS := $(if $(SAN),-fsanitize=$(SAN) -fno-sanitize-recover=all -fno-omit-frame-pointer)
 ALL_CPPFLAGS = -Iinclude -Iports/$(PORT)/include $(CPPFLAGS)
 ALL_CFLAGS = -std=c11 $(WARNINGS) -fvisibility=hidden -fPIC $(SAN_FLAGS) $(COV_FLAGS) $(CFLAGS)
+FUZZ_FLAGS := $(if $(findstring fuzzer,$(SAN)),-fsanitize=fuzzer)
 ALL_LDFLAGS = $(SAN_FLAGS) $(COV_FLAGS) $(LDFLAGS)
 # The layers that talk to an operating system see its functions; the others see C11 alone.
 OS_FLAGS := -D_DEFAULT_SOURCE -D_XOPEN_SOURCE=700 -pthread

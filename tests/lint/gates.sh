@@ -294,6 +294,18 @@ int f(state s, int byte)
 C
 check 'switch: default over bytes, none over an enum' scan switch a.h a.c a.h a.c
 sed 's/    case STATE_BUSY:/    default:/' a.c >b.c
+cat >c.c <<'C'
+const char *f(uint16_t value)
+{
+    switch (value) {
+    case STATE_BUSY:
+        return "busy";
+    default:
+        return NULL;
+    }
+}
+C
+check 'switch: default over a number that may hold anything' scan switch a.h c.c a.h c.c
 check 'switch: default over an enum' refuses 'b.c:13: switch' scan switch a.h b.c a.h b.c
 
 # ---- units ---------------------------------------------------------------------------------

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 # Gate: a switch over an enum of ours lists every enumerator (-Wswitch-enum) and has no default,
 # so that a new enumerator is noticed by the compiler. Anonymous enums are constants and do not
-# count. The files are given twice: the first time enumerators are collected.
+# count, nor does a switch over a variable that the function declares as a plain number: a register
+# may hold what no enumerator names. The files are given twice: first enumerators are collected.
 
 FNR == 1 && seen[FILENAME]++ { pass = 2 }
 
@@ -21,7 +22,22 @@ pass != 2 && in_enum {
 pass != 2 { next }
 
 FNR == 1 { depth = top = 0 }
-code ~ /(^|[^A-Za-z0-9_])switch *\(/ { pending = 1 }
+code ~ /^}/ { split("", plain) }
+{
+    text = code
+    while (match(text, /(char|int|long|short|unsigned|u?int(8|16|32|64)_t) +[a-z_][a-z0-9_]*/)) {
+        declared = substr(text, RSTART, RLENGTH)
+        text = substr(text, RSTART + RLENGTH)
+        sub(/.* /, "", declared)
+        plain[declared] = 1
+    }
+}
+code ~ /(^|[^A-Za-z0-9_])switch *\(/ {
+    pending = 1
+    subject = code
+    sub(/.*switch *\(/, "", subject)
+    sub(/\) *[{].*/, "", subject)
+}
 code ~ /^ *case / {
     label = code
     sub(/^ *case */, "", label)
@@ -41,11 +57,12 @@ code ~ /^ *default *:/ && top > 0 { default_line[top] = FNR }
                 top++
                 level[top] = depth
                 over_enum[top] = ""
+                number[top] = subject in plain
                 default_line[top] = 0
             }
         } else if (c == "}") {
             if (top > 0 && level[top] == depth) {
-                if (over_enum[top] != "" && default_line[top]) {
+                if (over_enum[top] != "" && default_line[top] && !number[top]) {
                     printf "%s:%d: switch: default in a switch over an enum (%s)\n", FILENAME,
                         default_line[top], over_enum[top]
                     complaints++
