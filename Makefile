@@ -19,6 +19,8 @@ PORT ?= posix
 RING ?= unit engine link fault port cli fuzz lint export
 CFLAGS ?= -O2 -g
 PKG_CONFIG ?= $(CROSS_COMPILE)pkg-config
+FUZZ_CC ?= clang
+FUZZ_S ?= 60
 WERROR ?= -Werror
 ifeq ($(origin CC),default)
 CC := $(CROSS_COMPILE)gcc
@@ -36,7 +38,6 @@ WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow \
 SAN_FLAGS := $(if $(SAN),-fsanitize=$(SAN) -fno-sanitize-recover=all -fno-omit-frame-pointer)
 ALL_CPPFLAGS = -Iinclude -Iports/$(PORT)/include $(CPPFLAGS)
 ALL_CFLAGS = -std=c11 $(WARNINGS) -fvisibility=hidden -fPIC $(SAN_FLAGS) $(COV_FLAGS) $(CFLAGS)
-FUZZ_FLAGS := $(if $(findstring fuzzer,$(SAN)),-fsanitize=fuzzer)
 ALL_LDFLAGS = $(SAN_FLAGS) $(COV_FLAGS) $(LDFLAGS)
 # The layers that talk to an operating system see its functions; the others see C11 alone.
 OS_FLAGS := -D_DEFAULT_SOURCE -D_XOPEN_SOURCE=700 -pthread
@@ -73,6 +74,7 @@ TOOL_OBJS := $(call objects,$(TOOL_SRCS))
 SUPPORT_OBJS := $(call objects,$(SUPPORT_SRCS))
 TEST_PROGRAMS := $(patsubst %.c,$(BUILD)/%,$(TEST_SRCS))
 FUZZ_REPLAYS := $(patsubst %.c,$(BUILD)/%,$(FUZZ_SRCS))
+FUZZERS := $(patsubst %.c,$(BUILD)/%.fuzzer,$(FUZZ_SRCS))
 EXAMPLES := $(patsubst %.c,$(BUILD)/%,$(EXAMPLE_SRCS))
 
 STATIC_LIB := $(BUILD)/libgrobo.a
@@ -88,7 +90,7 @@ VERSION = $(shell sed -n 's/.*GROBO_VERSION_STRING "\(.*\)"/\1/p' include/grobo/
 # ---- targets -------------------------------------------------------------------------------
 
 .PHONY: help all check lint lint-quick format test check-san check-memcheck install uninstall clean
-.PHONY: cov dist FORCE
+.PHONY: fuzz cov dist FORCE
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-15s %s\n", $$1, $$2 }' Makefile
@@ -128,6 +130,18 @@ check-san: ## the tests of our own code under AddressSanitizer and UBSan
 check-memcheck: ## the same under valgrind
 	@TEST_WRAPPER='valgrind -q --leak-check=full --error-exitcode=99' \
 	    $(MAKE) --no-print-directory test RING='$(filter-out cli lint export,$(RING))'
+
+fuzz: ## libFuzzer on each target for FUZZ_S=60 seconds; finds stay in build/fuzz
+	@command -v $(FUZZ_CC) >/dev/null || \
+	    { echo 'fuzz: needs clang with libFuzzer (Debian: clang and libclang-rt-14-dev)' >&2; exit 1; }
+	@$(MAKE) --no-print-directory $(patsubst $(BUILD)/%,$(BUILD)/fuzz/%,$(FUZZERS)) BUILD=$(BUILD)/fuzz \
+	    CC=$(FUZZ_CC) SAN=address,undefined,fuzzer-no-link CFLAGS='-O1 -g'
+	@set -e; for name in $(patsubst fuzz_%.fuzzer,%,$(notdir $(FUZZERS))); do \
+	    echo "== $$name"; mkdir -p $(BUILD)/fuzz/corpus/$$name; \
+	    $(BUILD)/fuzz/tests/fuzz/fuzz_$$name.fuzzer -max_total_time=$(FUZZ_S) -print_final_stats=1 \
+	        -verbosity=0 -artifact_prefix=$(BUILD)/fuzz/$$name- $(BUILD)/fuzz/corpus/$$name \
+	        tests/fuzz/corpus/$$name; \
+	done
 
 cov: ## which lines the tests reach, by file
 	@$(MAKE) --no-print-directory test BUILD=$(BUILD)/cov COV_FLAGS=--coverage CFLAGS='-O0 -g' \
@@ -212,6 +226,10 @@ $(TEST_PROGRAMS): $(BUILD)/%: $(BUILD)/%.o $(SUPPORT_LIB) $(STATIC_LIB)
 $(FUZZ_REPLAYS): $(BUILD)/%: $(BUILD)/%.o $(BUILD)/tests/support/replay_main.o $(STATIC_LIB)
 	$(say) LD $@
 	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
+
+$(FUZZERS): %.fuzzer: %.o $(STATIC_LIB)
+	$(say) LD $@
+	$(Q)$(CC) $(ALL_LDFLAGS) -fsanitize=fuzzer -o $@ $^ $(LIBS)
 
 $(EXAMPLES): $(BUILD)/%: $(BUILD)/%.o $(STATIC_LIB)
 	$(say) LD $@

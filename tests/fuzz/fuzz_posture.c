@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: MIT */
+/* A line of an .m file, "time a1 .. an": any text is refused with nothing changed, or gives a
+ * posture that fits the model and has finite angles only. */
+#include <math.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <grobo/model.h>
+#include <grobo/posture.h>
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+static void check_accepted(const grobo_posture *posture, const grobo_model *model, int n)
+{
+    if (n > model->n_joints || (posture->set & ~GROBO_JOINTS_ALL(model->n_joints)) != 0) {
+        abort();
+    }
+    for (int j = 0; j < model->n_joints; j++) {
+        if ((posture->set & GROBO_JOINT_BIT(j)) != 0 && !isfinite(posture->angle_rad[j])) {
+            abort();
+        }
+    }
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    const grobo_model *model = &grobo_gr001_model;
+    grobo_posture posture;
+    grobo_posture before;
+    memset(&posture, 0, sizeof posture);
+    if (grobo_posture_init(&posture, model->n_joints) < 0) {
+        abort();
+    }
+    before = posture;
+    int result = grobo_posture_parse(&posture, model, (const char *)data, size);
+    if (result >= 0) {
+        check_accepted(&posture, model, result);
+    } else if (!grobo_posture_equal(&posture, &before) || posture.time_us != before.time_us) {
+        abort();
+    }
+    return 0;
+}
