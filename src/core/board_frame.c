@@ -23,40 +23,39 @@ int grobo_frame_wrap(grobo_wiring wiring, const uint8_t *packet, size_t n, uint8
 
 int grobo_frame_reply(grobo_wiring wiring, const uint8_t *frame, size_t n, grobo_reply *reply)
 {
+    static const grobo_reply nothing = {GROBO_REPLY_NONE, 0, 0, 0};
     if (wiring == GROBO_WIRING_BUS) {
         return grobo_rs30x_reply_to(frame, n, reply);
     }
     grobo_board_frame parsed;
-    grobo_reply found = {GROBO_REPLY_NONE, 0, 0, 0};
+    grobo_reply found = nothing;
     int bytes = grobo_board_parse(frame, n, &parsed);
+    if (bytes < 0) {
+        return bytes;
+    }
+    if (parsed.packet_bytes > 0) {
+        bytes = grobo_rs30x_reply_to(parsed.packet, parsed.packet_bytes, &found);
+    }
     if (bytes < 0) {
         return bytes;
     }
     switch (parsed.kind) {
     case GROBO_BOARD_CHECK:
         found.kind = GROBO_REPLY_ACK;
-        bytes = 1;
-        break;
-    case GROBO_BOARD_SLOT:
-    case GROBO_BOARD_SCENARIO:
         break;
     case GROBO_BOARD_SEND:
+    case GROBO_BOARD_SLOT:
+    case GROBO_BOARD_SCENARIO:
+        found = nothing;
+        break;
     case GROBO_BOARD_ASK:
-        bytes = grobo_rs30x_reply_to(parsed.packet, parsed.packet_bytes, &found);
+        if (parsed.reply_bytes != bytes) {
+            return GROBO_ERR_FRAME;
+        }
         break;
     }
-    if (bytes < 0) {
-        return bytes;
-    }
-    if (parsed.kind == GROBO_BOARD_ASK && parsed.reply_bytes != bytes) {
-        return GROBO_ERR_FRAME;
-    }
-    if (parsed.kind == GROBO_BOARD_SEND) {
-        found.kind = GROBO_REPLY_NONE;
-        bytes = 0;
-    }
     *reply = found;
-    return bytes;
+    return (int)grobo_reply_bytes(&found);
 }
 
 /* Where in a frame the packet is built, so that wrapping it moves nothing. */
