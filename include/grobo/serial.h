@@ -58,15 +58,15 @@ typedef enum grobo_direction {
 
 /** What a port has done since it was made. Monotonic. */
 typedef struct grobo_serial_counters {
-    uint64_t rx_bytes;    /**< received */
-    uint64_t tx_bytes;    /**< handed over to the operating system */
-    uint64_t reads;       /**< reads that gave bytes */
-    uint64_t writes;      /**< writes that took bytes */
-    uint64_t short_writes; /**< writes that took fewer than given */
-    uint64_t full;        /**< sends refused because the queue was full */
+    uint64_t rx_bytes;      /**< received */
+    uint64_t tx_bytes;      /**< handed over to the operating system */
+    uint64_t reads;         /**< reads that gave bytes */
+    uint64_t writes;        /**< writes that took bytes */
+    uint64_t short_writes;  /**< writes that took fewer than given */
+    uint64_t full;          /**< sends refused because the queue was full */
     uint64_t dropped_bytes; /**< received bytes thrown away by discard and by broken receives */
-    uint64_t opens;       /**< successful opens */
-    uint64_t unplugs;     /**< times the device was lost */
+    uint64_t opens;         /**< successful opens */
+    uint64_t unplugs;       /**< times the device was lost */
 } grobo_serial_counters;
 
 /** A serial port. */
@@ -94,9 +94,9 @@ typedef struct grobo_serial_config {
     int baud_bps;            /**< 0: GROBO_BAUD_DEFAULT_BPS; any positive rate, standard or not */
     int silence_ms;          /**< of grobo_serial_receive(); 0: GROBO_SILENCE_DEFAULT_MS */
     struct event_base *base; /**< borrowed; NULL: synchronous mode only */
-    grobo_serial_mode mode;  /**< ASYNC needs a base */
+    grobo_serial_mode mode;  /**< ASYNC needs base and on_data */
     size_t tx_queue_bytes;   /**< 0: GROBO_SERIAL_QUEUE_BYTES, which is the most as well */
-    grobo_serial_data_fn on_data;   /**< NULL: bytes stay until grobo_serial_read() */
+    grobo_serial_data_fn on_data;   /**< needed in ASYNC mode */
     grobo_serial_event_fn on_event; /**< NULL: not told */
     grobo_serial_tap_fn on_tap;     /**< NULL: no trace */
     void *ctx;                      /**< borrowed, handed to the callbacks */
@@ -107,8 +107,8 @@ typedef struct grobo_serial_config {
 /**
  * Makes a port, closed. config is copied, NULL stands for all zero.
  * @param[out] serial freed with grobo_serial_free().
- * @return GROBO_OK, GROBO_ERR_ARG (negative number, ASYNC without base), GROBO_ERR_CAP (device
- *   name or queue too long), GROBO_ERR_NOMEM.
+ * @return GROBO_OK, GROBO_ERR_ARG (negative number, ASYNC without base or on_data),
+ *   GROBO_ERR_CAP (device name or queue too long), GROBO_ERR_NOMEM.
  */
 GROBO_API int grobo_serial_new(const grobo_serial_config *config, grobo_serial **serial);
 
@@ -128,7 +128,8 @@ GROBO_API const char *grobo_serial_device(const grobo_serial *serial);
 
 /**
  * Sets the mode of a closed port.
- * @return GROBO_OK, GROBO_ERR_STATE (open: the mode stays), GROBO_ERR_ARG (ASYNC without base).
+ * @return GROBO_OK, GROBO_ERR_STATE (open: the mode stays), GROBO_ERR_ARG (ASYNC without base or
+ *   on_data).
  */
 GROBO_API int grobo_serial_set_mode(grobo_serial *serial, grobo_serial_mode mode);
 
@@ -199,7 +200,7 @@ GROBO_API int grobo_serial_write(grobo_serial *serial, const void *bytes, size_t
 
 /**
  * Receives exactly `size` bytes (synchronous mode). After the silence time without a byte, what
- * came is dropped, what the system still holds too.
+ * came is dropped.
  * @param[out] buf undefined on error.
  * @return size, GROBO_ERR_TIMEOUT (nothing came), GROBO_ERR_SHORT (fewer came), GROBO_ERR_STATE
  *   (asynchronous mode), GROBO_ERR_CLOSED, GROBO_ERR_UNPLUGGED, GROBO_ERR_IO.

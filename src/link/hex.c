@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: MIT */
+#include <grobo/serial.h>
+
+static const char digits[] = "0123456789ABCDEF";
+
+int grobo_hex(char *text, size_t text_bytes, const void *bytes, size_t size)
+{
+    const uint8_t *from = bytes;
+    char *to = text;
+
+    if (text_bytes == 0 || size > text_bytes / 3) {
+        return GROBO_ERR_SPACE;
+    }
+    for (size_t i = 0; i < size; i++) {
+        if (i > 0) {
+            *to++ = ' ';
+        }
+        *to++ = digits[from[i] >> 4];
+        *to++ = digits[from[i] & 15];
+    }
+    *to = '\0';
+    return (int)(to - text);
+}
+
+int grobo_hex_print(FILE *stream, const void *bytes, size_t size)
+{
+    const uint8_t *from = bytes;
+
+    for (size_t i = 0; i < size; i++) {
+        const char text[] = {' ', digits[from[i] >> 4], digits[from[i] & 15]};
+        size_t skip = i == 0 ? 1 : 0;
+
+        if (fwrite(text + skip, 1, sizeof text - skip, stream) != sizeof text - skip) {
+            return GROBO_ERR_IO;
+        }
+    }
+    return fputc('\n', stream) == '\n' ? GROBO_OK : GROBO_ERR_IO;
+}
