@@ -85,8 +85,8 @@ typedef void (*grobo_serial_event_fn)(grobo_serial *serial, grobo_serial_event e
                                       void *ctx);
 
 /** Every byte that goes in or out, for a trace, in either mode; must not call this header. */
-typedef void (*grobo_serial_tap_fn)(grobo_direction direction, int64_t now_us,
-                                    const uint8_t *bytes, size_t size, void *ctx);
+typedef void (*grobo_serial_tap_fn)(grobo_direction direction, int64_t now_us, const uint8_t *bytes,
+                                    size_t size, void *ctx);
 
 /** What a port is made of. All zero is a valid one: synchronous, no device yet. */
 typedef struct grobo_serial_config {

@@ -303,9 +303,8 @@ int grobo_serial_baud(const grobo_serial *serial)
 
 int grobo_serial_set_low_latency(grobo_serial *serial)
 {
-    return grobo_serial_is_open(serial)
-               ? serial->ops->set_low_latency(serial->port, &serial->cause)
-               : GROBO_ERR_CLOSED;
+    return grobo_serial_is_open(serial) ? serial->ops->set_low_latency(serial->port, &serial->cause)
+                                        : GROBO_ERR_CLOSED;
 }
 
 /* ---- opening and closing ------------------------------------------------------------------ */
@@ -315,8 +314,7 @@ static const grobo_port_ops *choose_ops(const grobo_serial *serial)
     if (serial->config.ops != NULL) {
         return serial->config.ops;
     }
-    return strncmp(serial->device, "tcp:", 4) == 0 ? grobo_port_tcp_ops()
-                                                   : grobo_port_serial_ops();
+    return strncmp(serial->device, "tcp:", 4) == 0 ? grobo_port_tcp_ops() : grobo_port_serial_ops();
 }
 
 static int open_port(grobo_serial *serial)

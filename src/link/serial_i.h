@@ -17,11 +17,7 @@
 #define READ_BYTES 4096
 
 /* What is still to be told by on_event, one bit each; told in the order of the bits. */
-enum {
-    TELL_OPENED = 1,
-    TELL_DRAINED = 2,
-    TELL_LOST = 4
-};
+enum { TELL_OPENED = 1, TELL_DRAINED = 2, TELL_LOST = 4 };
 
 struct grobo_serial {
     grobo_serial_config config; /* device and ops: see below */

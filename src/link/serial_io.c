@@ -158,8 +158,7 @@ static int send_sync(grobo_serial *serial, const uint8_t *bytes, size_t size)
     size_t sent = 0;
 
     while (sent < size) {
-        int done =
-            put_until(serial, bytes + sent, size - sent, grobo_now_us() + SEND_TIMEOUT_US);
+        int done = put_until(serial, bytes + sent, size - sent, grobo_now_us() + SEND_TIMEOUT_US);
 
         if (done <= 0) {
             return done < 0 ? done : GROBO_ERR_TIMEOUT;
