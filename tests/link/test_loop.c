@@ -1,0 +1,154 @@
+/* SPDX-License-Identifier: MIT */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <event2/event.h>
+
+#include <grobo/loop.h>
+#include <grobo/port.h>
+
+typedef struct {
+    struct event_base *base;
+    grobo_timer *timer;
+    int calls;
+    int wanted;
+    int64_t next_us;
+    int64_t earliest_us; /* least (now - deadline) seen */
+} ticker;
+
+static void on_tick(grobo_timer *timer, int64_t late_us, void *ctx)
+{
+    ticker *t = ctx;
+    int64_t since_us = grobo_now_us() - t->next_us;
+
+    assert_true(late_us >= 0);
+    assert_int_equal(grobo_timer_deadline(timer), GROBO_NEVER_US);
+    if (since_us < t->earliest_us) {
+        t->earliest_us = since_us;
+    }
+    t->calls++;
+    if (t->calls < t->wanted) {
+        t->next_us += 2000;
+        assert_int_equal(grobo_timer_set(timer, t->next_us), GROBO_OK);
+    } else {
+        event_base_loopbreak(t->base);
+    }
+}
+
+static void run_ticks(struct event_base *base)
+{
+    ticker t = {.base = base, .wanted = 50, .earliest_us = INT64_MAX};
+    int64_t start_us = grobo_now_us();
+    int64_t took_us;
+
+    assert_int_equal(grobo_timer_new(base, on_tick, &t, NULL, &t.timer), GROBO_OK);
+    t.next_us = start_us + 2000;
+    assert_int_equal(grobo_timer_set(t.timer, t.next_us), GROBO_OK);
+    event_base_dispatch(base);
+    took_us = grobo_now_us() - start_us;
+    assert_int_equal(t.calls, 50);
+    assert_true(t.earliest_us >= 0);
+    /* 50 periods of 2 ms: each late by itself, none late for ever. The slack is for a busy host. */
+    assert_true(took_us >= 100000);
+    assert_true(took_us < 100000 + 100000);
+    grobo_timer_free(t.timer);
+    event_base_free(base);
+}
+
+static void a_period_is_kept_and_never_early(void **state)
+{
+    struct event_base *base = grobo_loop_new();
+
+    (void)state;
+    assert_non_null(base);
+    run_ticks(base);
+}
+
+static void a_base_with_a_coarse_clock_is_never_early_either(void **state)
+{
+    struct event_base *base = event_base_new();
+
+    (void)state;
+    assert_non_null(base);
+    run_ticks(base);
+}
+
+static void free_in_callback(grobo_timer *timer, int64_t late_us, void *ctx)
+{
+    (void)late_us;
+    ++*(int *)ctx;
+    grobo_timer_free(timer);
+}
+
+static void a_past_deadline_is_called_from_the_loop_and_may_free(void **state)
+{
+    struct event_base *base = grobo_loop_new();
+    grobo_timer *timer;
+    int calls = 0;
+
+    (void)state;
+    assert_int_equal(grobo_timer_new(base, free_in_callback, &calls, NULL, &timer), GROBO_OK);
+    assert_int_equal(grobo_timer_set(timer, 0), GROBO_OK);
+    assert_int_equal(calls, 0);
+    event_base_dispatch(base);
+    assert_int_equal(calls, 1);
+    event_base_free(base);
+}
+
+static void never_disarms(void **state)
+{
+    struct event_base *base = grobo_loop_new();
+    grobo_timer *timer;
+    int calls = 0;
+
+    (void)state;
+    assert_int_equal(grobo_timer_new(base, free_in_callback, &calls, NULL, &timer), GROBO_OK);
+    assert_int_equal(grobo_timer_set(timer, grobo_now_us() - 1), GROBO_OK);
+    assert_int_equal(grobo_timer_set(timer, GROBO_NEVER_US), GROBO_OK);
+    /* 1: no event is left to wait for. */
+    assert_int_equal(event_base_dispatch(base), 1);
+    assert_int_equal(calls, 0);
+    assert_int_equal(grobo_timer_deadline(timer), GROBO_NEVER_US);
+    grobo_timer_free(timer);
+    grobo_timer_free(NULL);
+    event_base_free(base);
+}
+
+static void *no_memory(void *ctx, void *ptr, size_t old_bytes, size_t new_bytes)
+{
+    (void)ctx;
+    (void)ptr;
+    (void)old_bytes;
+    (void)new_bytes;
+    return NULL;
+}
+
+static void refusals(void **state)
+{
+    static const grobo_mem none = {no_memory, NULL};
+    struct event_base *base = grobo_loop_new();
+    grobo_timer *timer = NULL;
+
+    (void)state;
+    assert_int_equal(grobo_timer_new(NULL, on_tick, NULL, NULL, &timer), GROBO_ERR_ARG);
+    assert_int_equal(grobo_timer_new(base, NULL, NULL, NULL, &timer), GROBO_ERR_ARG);
+    assert_int_equal(grobo_timer_new(base, on_tick, NULL, &none, &timer), GROBO_ERR_NOMEM);
+    assert_null(timer);
+    event_base_free(base);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_period_is_kept_and_never_early),
+        cmocka_unit_test(a_base_with_a_coarse_clock_is_never_early_either),
+        cmocka_unit_test(a_past_deadline_is_called_from_the_loop_and_may_free),
+        cmocka_unit_test(never_disarms),
+        cmocka_unit_test(refusals),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

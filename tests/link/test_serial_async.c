@@ -1,0 +1,415 @@
+/* SPDX-License-Identifier: MIT */
+/* The serial port on an event loop, on a pty. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <sys/resource.h>
+
+#include <cmocka.h>
+#include <event2/event.h>
+
+#include <grobo/serial.h>
+
+#include "line.h"
+
+static test_line line;
+static struct event_base *base;
+static grobo_serial *serial;
+
+/* What the callbacks saw. */
+static struct {
+    uint8_t bytes[65536];
+    size_t size;
+    size_t stop_at;  /* leave the loop when so many bytes came */
+    int events[4];   /* by grobo_serial_event */
+    int stop_events; /* bits of events that end the loop */
+    int error;       /* of the last event */
+    bool free_on_data, free_on_event, reopen_on_event;
+    size_t tapped[2]; /* by grobo_direction */
+} seen;
+
+static void on_data(grobo_serial *from, const uint8_t *bytes, size_t size, void *ctx)
+{
+    assert_ptr_equal(ctx, &seen);
+    assert_true(size > 0 && size <= sizeof seen.bytes - seen.size);
+    memcpy(seen.bytes + seen.size, bytes, size);
+    seen.size += size;
+    if (seen.free_on_data) {
+        grobo_serial_free(from);
+        serial = NULL;
+    }
+    if (seen.size >= seen.stop_at) {
+        event_base_loopbreak(base);
+    }
+}
+
+static void on_event(grobo_serial *from, grobo_serial_event event, int error, void *ctx)
+{
+    assert_ptr_equal(ctx, &seen);
+    seen.events[event]++;
+    seen.error = error;
+    if (seen.free_on_event) {
+        grobo_serial_free(from);
+        serial = NULL;
+    }
+    if (seen.reopen_on_event && event == GROBO_SERIAL_UNPLUGGED) {
+        assert_int_equal(grobo_serial_set_device(from, line.device), GROBO_OK);
+        assert_int_equal(grobo_serial_open(from), GROBO_OK);
+    }
+    if ((seen.stop_events & (1 << event)) != 0) {
+        event_base_loopbreak(base);
+    }
+}
+
+static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes, size_t size,
+                   void *ctx)
+{
+    assert_ptr_equal(ctx, &seen);
+    assert_true(now_us > 0);
+    assert_non_null(bytes);
+    seen.tapped[direction] += size;
+}
+
+static void break_loop(grobo_timer *timer, int64_t late_us, void *ctx)
+{
+    (void)timer;
+    (void)late_us;
+    *(bool *)ctx = true;
+    event_base_loopbreak(base);
+}
+
+/* Runs the loop until a callback ends it; true when span_us passed instead. */
+static bool run_for(int64_t span_us)
+{
+    grobo_timer *timer;
+    bool passed = false;
+
+    assert_int_equal(grobo_timer_new(base, break_loop, &passed, NULL, &timer), GROBO_OK);
+    assert_int_equal(grobo_timer_set(timer, grobo_now_us() + span_us), GROBO_OK);
+    event_base_dispatch(base);
+    grobo_timer_free(timer);
+    return passed;
+}
+
+static void run_until_bytes(size_t size)
+{
+    seen.stop_at = size;
+    if (seen.size < size) {
+        assert_false(run_for(5000000));
+    }
+    assert_int_equal(seen.size, size);
+}
+
+static void run_until_event(grobo_serial_event event)
+{
+    seen.stop_events = 1 << event;
+    assert_false(run_for(5000000));
+}
+
+static int set_up(void **state)
+{
+    const grobo_serial_config config = {
+        .device = line.device,
+        .mode = GROBO_SERIAL_ASYNC,
+        .on_data = on_data,
+        .on_event = on_event,
+        .on_tap = on_tap,
+        .ctx = &seen,
+    };
+    grobo_serial_config with_base = config;
+
+    (void)state;
+    memset(&seen, 0, sizeof seen);
+    seen.stop_at = SIZE_MAX;
+    test_line_open(&line);
+    base = grobo_loop_new();
+    with_base.base = base;
+    assert_non_null(base);
+    assert_int_equal(grobo_serial_new(&with_base, &serial), GROBO_OK);
+    assert_int_equal(grobo_serial_open(serial), GROBO_OK);
+    assert_int_equal(seen.events[GROBO_SERIAL_OPENED], 0);
+    run_until_event(GROBO_SERIAL_OPENED);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    grobo_serial_free(serial);
+    event_base_free(base);
+    test_line_close(&line);
+    return 0;
+}
+
+static void bytes_come_by_callback_and_leave_by_send(void **state)
+{
+    uint8_t back[3];
+
+    (void)state;
+    test_line_write(&line, "hello", 5);
+    run_until_bytes(5);
+    assert_memory_equal(seen.bytes, "hello", 5);
+    assert_int_equal(grobo_serial_send(serial, "abc", 3), 3);
+    test_line_read(&line, back, 3);
+    assert_memory_equal(back, "abc", 3);
+    assert_int_equal(seen.tapped[GROBO_DIR_RX], 5);
+    assert_int_equal(seen.tapped[GROBO_DIR_TX], 3);
+    assert_int_equal(grobo_serial_pending(serial), 0);
+}
+
+static void nothing_waits_in_this_mode(void **state)
+{
+    uint8_t byte;
+    int64_t start_us = grobo_now_us();
+
+    (void)state;
+    assert_int_equal(grobo_serial_receive(serial, &byte, 1), GROBO_ERR_STATE);
+    assert_int_equal(grobo_serial_read(serial, &byte, 1), 0);
+    assert_int_equal(grobo_serial_set_mode(serial, GROBO_SERIAL_SYNC), GROBO_ERR_STATE);
+    assert_int_equal(grobo_serial_get_mode(serial), GROBO_SERIAL_ASYNC);
+    assert_true(grobo_now_us() - start_us < 100000);
+}
+
+/* Fills the pty and the queue; returns how many bytes of a counting pattern were taken. */
+static size_t fill(size_t block_bytes)
+{
+    uint8_t block[512];
+    size_t total = 0;
+
+    for (;;) {
+        int r;
+
+        for (size_t i = 0; i < block_bytes; i++) {
+            block[i] = (uint8_t)((total + i) % 251);
+        }
+        r = grobo_serial_send(serial, block, block_bytes);
+        if (r == GROBO_ERR_FULL) {
+            return total;
+        }
+        assert_int_equal(r, block_bytes);
+        total += block_bytes;
+        assert_true(total < 1000000);
+    }
+}
+
+static void on_master(evutil_socket_t fd, short what, void *arg)
+{
+    (void)fd;
+    (void)what;
+    (void)arg;
+    seen.size += test_line_read_some(&line, seen.bytes + seen.size, 1000);
+}
+
+static void a_full_queue_refuses_and_drains_in_order(void **state)
+{
+    size_t total = fill(500);
+    grobo_serial_counters counters;
+    struct event *reader;
+
+    (void)state;
+    assert_true(grobo_serial_pending(serial) > 0);
+    assert_true(grobo_serial_pending(serial) <= GROBO_SERIAL_QUEUE_BYTES);
+    assert_int_equal(grobo_serial_write(serial, "x", 1), 0);
+    grobo_serial_get_counters(serial, &counters);
+    assert_int_equal(counters.full, 1);
+    assert_true(counters.short_writes > 0);
+
+    reader = event_new(base, line.fd, EV_READ | EV_PERSIST, on_master, NULL);
+    assert_non_null(reader);
+    assert_int_equal(event_add(reader, NULL), 0);
+    run_until_event(GROBO_SERIAL_DRAINED);
+    assert_int_equal(seen.events[GROBO_SERIAL_DRAINED], 1);
+    assert_int_equal(grobo_serial_pending(serial), 0);
+    event_free(reader);
+    test_line_read(&line, seen.bytes + seen.size, total - seen.size);
+    for (size_t i = 0; i < total; i++) {
+        assert_int_equal(seen.bytes[i], i % 251);
+    }
+}
+
+static void queued_bytes_can_be_dropped(void **state)
+{
+    (void)state;
+    (void)fill(500);
+    grobo_serial_discard_output(serial);
+    assert_int_equal(grobo_serial_pending(serial), 0);
+    assert_true(run_for(20000));
+    assert_int_equal(seen.events[GROBO_SERIAL_DRAINED], 0);
+}
+
+static int64_t cpu_us(void)
+{
+    struct rusage usage;
+
+    assert_int_equal(getrusage(RUSAGE_SELF, &usage), 0);
+    return (int64_t)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) * 1000000 +
+           usage.ru_utime.tv_usec + usage.ru_stime.tv_usec;
+}
+
+static void a_hang_up_is_one_event_and_then_silence(void **state)
+{
+    int64_t hung_up_us;
+    int64_t cpu_before_us;
+
+    (void)state;
+    test_line_close(&line);
+    hung_up_us = grobo_now_us();
+    run_until_event(GROBO_SERIAL_UNPLUGGED);
+    assert_true(grobo_now_us() - hung_up_us < 500000);
+    assert_int_equal(seen.error, GROBO_ERR_UNPLUGGED);
+    assert_false(grobo_serial_is_open(serial));
+    assert_true(strlen(grobo_serial_cause(serial)->text) > 0);
+
+    cpu_before_us = cpu_us();
+    assert_true(run_for(200000));
+    /* A spinning loop would use all of the 200 ms. */
+    assert_true(cpu_us() - cpu_before_us < 50000);
+    assert_int_equal(seen.events[GROBO_SERIAL_UNPLUGGED], 1);
+    assert_int_equal(grobo_serial_send(serial, "x", 1), GROBO_ERR_CLOSED);
+}
+
+static void a_hang_up_with_bytes_queued_is_one_event(void **state)
+{
+    (void)state;
+    (void)fill(500);
+    test_line_close(&line);
+    run_until_event(GROBO_SERIAL_UNPLUGGED);
+    assert_true(run_for(20000));
+    assert_int_equal(seen.events[GROBO_SERIAL_UNPLUGGED], 1);
+    assert_int_equal(seen.events[GROBO_SERIAL_DRAINED], 0);
+    assert_int_equal(grobo_serial_pending(serial), 0);
+}
+
+static void a_hang_up_found_by_send_is_told_from_the_loop(void **state)
+{
+    (void)state;
+    test_line_close(&line);
+    assert_int_equal(grobo_serial_send(serial, "x", 1), GROBO_ERR_UNPLUGGED);
+    assert_int_equal(seen.events[GROBO_SERIAL_UNPLUGGED], 0);
+    run_until_event(GROBO_SERIAL_UNPLUGGED);
+    assert_int_equal(seen.events[GROBO_SERIAL_UNPLUGGED], 1);
+}
+
+static void closing_drops_what_was_not_told_yet(void **state)
+{
+    (void)state;
+    test_line_close(&line);
+    assert_int_equal(grobo_serial_send(serial, "x", 1), GROBO_ERR_UNPLUGGED);
+    grobo_serial_close(serial);
+    assert_true(run_for(20000));
+    assert_int_equal(seen.events[GROBO_SERIAL_UNPLUGGED], 0);
+}
+
+static void a_lost_port_may_be_opened_again_in_its_event(void **state)
+{
+    test_line old = line;
+
+    (void)state;
+    test_line_open(&line);
+    seen.reopen_on_event = true;
+    test_line_close(&old);
+    run_until_event(GROBO_SERIAL_OPENED);
+    assert_int_equal(seen.events[GROBO_SERIAL_UNPLUGGED], 1);
+    assert_int_equal(seen.events[GROBO_SERIAL_OPENED], 2);
+    test_line_write(&line, "back", 4);
+    run_until_bytes(4);
+    assert_memory_equal(seen.bytes, "back", 4);
+}
+
+static void it_may_be_freed_in_on_data(void **state)
+{
+    (void)state;
+    seen.free_on_data = true;
+    test_line_write(&line, "x", 1);
+    run_until_bytes(1);
+    assert_null(serial);
+    assert_true(run_for(10000));
+}
+
+static void it_may_be_freed_in_on_event(void **state)
+{
+    (void)state;
+    seen.free_on_event = true;
+    test_line_close(&line);
+    run_until_event(GROBO_SERIAL_UNPLUGGED);
+    assert_null(serial);
+    assert_true(run_for(10000));
+}
+
+/* An allocator whose n-th allocation fails. */
+static int allocations_left;
+static int blocks;
+
+static void *count_down(void *ctx, void *ptr, size_t old_bytes, size_t new_bytes)
+{
+    const grobo_mem *mem = grobo_mem_default();
+    void *made = NULL;
+
+    (void)ctx;
+    if (new_bytes == 0) {
+        blocks -= ptr != NULL ? 1 : 0;
+        return mem->resize(mem->ctx, ptr, old_bytes, 0);
+    }
+    if (allocations_left > 0) {
+        allocations_left--;
+        made = mem->resize(mem->ctx, ptr, old_bytes, new_bytes);
+        blocks += made != NULL && ptr == NULL ? 1 : 0;
+    }
+    return made;
+}
+
+static void each_lack_of_memory_is_told_and_leaks_nothing(void **state)
+{
+    static const grobo_mem mem = {count_down, NULL};
+    const grobo_serial_config config = {.device = line.device,
+                                        .base = base,
+                                        .mode = GROBO_SERIAL_ASYNC,
+                                        .on_data = on_data,
+                                        .mem = &mem};
+    int failures = 0;
+    int r = GROBO_ERR_NOMEM;
+
+    (void)state;
+    grobo_serial_close(serial);
+    for (int n = 0; r == GROBO_ERR_NOMEM; n++) {
+        grobo_serial *made = NULL;
+
+        assert_true(n < 20);
+        allocations_left = n;
+        r = grobo_serial_new(&config, &made);
+        if (r == GROBO_OK) {
+            r = grobo_serial_open(made);
+            grobo_serial_free(made);
+        } else {
+            assert_null(made);
+        }
+        failures += r == GROBO_ERR_NOMEM ? 1 : 0;
+        assert_int_equal(blocks, 0);
+    }
+    assert_int_equal(r, GROBO_OK);
+    assert_int_equal(failures, 3);
+}
+
+int main(void)
+{
+#define ON_PTY(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
+    const struct CMUnitTest tests[] = {
+        ON_PTY(bytes_come_by_callback_and_leave_by_send),
+        ON_PTY(nothing_waits_in_this_mode),
+        ON_PTY(a_full_queue_refuses_and_drains_in_order),
+        ON_PTY(queued_bytes_can_be_dropped),
+        ON_PTY(a_hang_up_is_one_event_and_then_silence),
+        ON_PTY(a_hang_up_with_bytes_queued_is_one_event),
+        ON_PTY(a_hang_up_found_by_send_is_told_from_the_loop),
+        ON_PTY(closing_drops_what_was_not_told_yet),
+        ON_PTY(a_lost_port_may_be_opened_again_in_its_event),
+        ON_PTY(it_may_be_freed_in_on_data),
+        ON_PTY(it_may_be_freed_in_on_event),
+        ON_PTY(each_lack_of_memory_is_told_and_leaks_nothing),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

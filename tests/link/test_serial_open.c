@@ -1,0 +1,207 @@
+/* SPDX-License-Identifier: MIT */
+/* What can and what cannot be opened, and who has it. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <signal.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include <grobo/serial.h>
+
+#include "line.h"
+
+/* Opens a device; returns the result, leaves the cause's text. */
+static int try_open(const char *device, char *text, size_t text_bytes)
+{
+    const grobo_serial_config config = {.device = device};
+    grobo_serial *serial;
+    int r;
+
+    assert_int_equal(grobo_serial_new(&config, &serial), GROBO_OK);
+    r = grobo_serial_open(serial);
+    if (r < 0) {
+        assert_false(grobo_serial_is_open(serial));
+    }
+    snprintf(text, text_bytes, "%s", grobo_serial_cause(serial)->text);
+    grobo_serial_free(serial);
+    return r;
+}
+
+static void what_is_no_serial_port_is_refused(void **state)
+{
+    char folder[] = "/tmp/grobo-test-XXXXXX";
+    char file[64];
+    char text[GROBO_CAUSE_MAX_BYTES];
+    FILE *made;
+
+    (void)state;
+    assert_non_null(mkdtemp(folder));
+    snprintf(file, sizeof file, "%s/file", folder);
+    assert_int_equal(try_open(file, text, sizeof text), GROBO_ERR_NOENT);
+    assert_string_equal(text, "stat: No such file or directory");
+    made = fopen(file, "w");
+    assert_non_null(made);
+    assert_int_equal(fclose(made), 0);
+    assert_int_equal(try_open(file, text, sizeof text), GROBO_ERR_TYPE);
+    assert_int_equal(try_open(folder, text, sizeof text), GROBO_ERR_ISDIR);
+    assert_int_equal(try_open("/dev/null", text, sizeof text), GROBO_ERR_TYPE);
+    assert_int_equal(try_open("", text, sizeof text), GROBO_ERR_NOENT);
+    assert_int_equal(remove(file), 0);
+    assert_int_equal(rmdir(folder), 0);
+}
+
+/* A child that opens the device and keeps it until it is killed. */
+static pid_t start_holder(const char *device)
+{
+    int ends[2];
+    char byte = 0;
+    pid_t pid;
+
+    assert_int_equal(pipe(ends), 0);
+    pid = fork();
+    assert_true(pid >= 0);
+    if (pid == 0) {
+        const grobo_serial_config config = {.device = device};
+        grobo_serial *serial;
+
+        if (grobo_serial_new(&config, &serial) == GROBO_OK &&
+            grobo_serial_open(serial) == GROBO_OK && write(ends[1], "o", 1) == 1) {
+            pause();
+        }
+        _exit(1);
+    }
+    assert_int_equal(close(ends[1]), 0);
+    assert_int_equal(read(ends[0], &byte, 1), 1);
+    assert_int_equal(close(ends[0]), 0);
+    return pid;
+}
+
+static void stop_holder(pid_t pid)
+{
+    int status;
+
+    assert_int_equal(kill(pid, SIGKILL), 0);
+    assert_int_equal(waitpid(pid, &status, 0), pid);
+}
+
+static void a_second_open_is_refused_and_names_the_holder(void **state)
+{
+    test_line line;
+    char text[GROBO_CAUSE_MAX_BYTES];
+    char wanted[GROBO_CAUSE_MAX_BYTES];
+    char name[64];
+    pid_t pid;
+
+    (void)state;
+    test_line_open(&line);
+    pid = start_holder(line.device);
+    assert_int_equal(try_open(line.device, text, sizeof text), GROBO_ERR_BUSY);
+    if (grobo_port_owner(line.device, name, sizeof name) == 0) {
+        print_message("the system does not tell who holds a lock: the name is not tested\n");
+    } else {
+        assert_int_equal(grobo_port_owner(line.device, name, sizeof name), pid);
+        snprintf(wanted, sizeof wanted, "held by %s (pid %d)", name, (int)pid);
+        assert_string_equal(text, wanted);
+    }
+    stop_holder(pid);
+    /* A holder that was killed leaves nothing behind. */
+    assert_int_equal(try_open(line.device, text, sizeof text), GROBO_OK);
+    assert_int_equal(grobo_port_owner(line.device, name, sizeof name), 0);
+    test_line_close(&line);
+}
+
+/* Runs try_open() as a user without rights; returns its result, or 1 when it cannot be one. */
+static int try_open_as_nobody(const char *device)
+{
+    int status;
+    pid_t pid = fork();
+
+    assert_true(pid >= 0);
+    if (pid == 0) {
+        char text[GROBO_CAUSE_MAX_BYTES];
+
+        _exit(setgid(65534) == 0 && setuid(65534) == 0 ? -try_open(device, text, sizeof text)
+                                                       : 100);
+    }
+    assert_int_equal(waitpid(pid, &status, 0), pid);
+    assert_true(WIFEXITED(status));
+    return -WEXITSTATUS(status);
+}
+
+static void without_permission_it_is_refused(void **state)
+{
+    test_line line;
+
+    (void)state;
+    if (geteuid() != 0) {
+        print_message("only root can become another user\n");
+        skip();
+    }
+    test_line_open(&line);
+    assert_int_equal(chmod(line.device, 0600), 0);
+    assert_int_equal(try_open_as_nobody(line.device), GROBO_ERR_PERM);
+    assert_int_equal(chmod(line.device, 0666), 0);
+    assert_int_equal(try_open_as_nobody(line.device), GROBO_OK);
+    test_line_close(&line);
+}
+
+static void a_killed_holder_does_not_lock_other_users_out(void **state)
+{
+    test_line line;
+
+    (void)state;
+    if (geteuid() != 0) {
+        print_message("only root can become another user\n");
+        skip();
+    }
+    test_line_open(&line);
+    assert_int_equal(chmod(line.device, 0666), 0);
+    stop_holder(start_holder(line.device));
+    assert_int_equal(try_open_as_nobody(line.device), GROBO_OK);
+    test_line_close(&line);
+}
+
+static void the_line_is_raw_8n1(void **state)
+{
+    test_line line;
+    grobo_serial *serial;
+    struct termios tio;
+    grobo_serial_config config = {.device = line.device};
+
+    (void)state;
+    test_line_open(&line);
+    assert_int_equal(grobo_serial_new(&config, &serial), GROBO_OK);
+    assert_int_equal(grobo_serial_open(serial), GROBO_OK);
+    assert_int_equal(tcgetattr(grobo_serial_handle(serial), &tio), 0);
+    assert_int_equal(tio.c_cflag & CSIZE, CS8);
+    assert_int_equal(tio.c_cflag & (CSTOPB | PARENB | CRTSCTS), 0);
+    assert_int_equal(tio.c_lflag & (ICANON | ECHO | ISIG), 0);
+    assert_int_equal(tio.c_iflag & (IXON | IXOFF | ICRNL | INLCR | ISTRIP), 0);
+    assert_int_equal(tio.c_oflag & OPOST, 0);
+    assert_int_equal(cfgetospeed(&tio), B115200);
+    grobo_serial_free(serial);
+    test_line_close(&line);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_is_no_serial_port_is_refused),
+        cmocka_unit_test(a_second_open_is_refused_and_names_the_holder),
+        cmocka_unit_test(without_permission_it_is_refused),
+        cmocka_unit_test(a_killed_holder_does_not_lock_other_users_out),
+        cmocka_unit_test(the_line_is_raw_8n1),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

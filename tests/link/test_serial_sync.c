@@ -1,0 +1,357 @@
+/* SPDX-License-Identifier: MIT */
+/* The serial port without a loop: rows SC01..SC22 of the original, on a pty. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <signal.h>
+#include <sys/ioctl.h>
+#include <sys/time.h>
+
+#include <cmocka.h>
+
+#include <grobo/serial.h>
+
+#include "line.h"
+
+static test_line line;
+static grobo_serial *serial;
+
+static int set_up(void **state)
+{
+    const grobo_serial_config config = {.device = line.device, .silence_ms = 30};
+
+    (void)state;
+    test_line_open(&line);
+    assert_int_equal(grobo_serial_new(&config, &serial), GROBO_OK);
+    assert_int_equal(grobo_serial_open(serial), GROBO_OK);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    grobo_serial_free(serial);
+    test_line_close(&line);
+    return 0;
+}
+
+static void a_port_without_a_device_waits_for_one(void **state)
+{
+    grobo_serial *made;
+    char name[] = "/dev/somewhere";
+
+    (void)state;
+    assert_int_equal(grobo_serial_new(NULL, &made), GROBO_OK);
+    assert_null(grobo_serial_device(made));
+    assert_int_equal(grobo_serial_baud(made), 115200);
+    assert_int_equal(grobo_serial_get_mode(made), GROBO_SERIAL_SYNC);
+    assert_int_equal(grobo_serial_handle(made), GROBO_HANDLE_NULL);
+    assert_false(grobo_serial_is_open(made));
+    assert_int_equal(grobo_serial_open(made), GROBO_ERR_ARG);
+    assert_int_equal(grobo_serial_set_device(made, name), GROBO_OK);
+    name[5] = 'X'; /* it is a copy */
+    assert_string_equal(grobo_serial_device(made), "/dev/somewhere");
+    assert_int_equal(grobo_serial_set_device(made, NULL), GROBO_OK);
+    assert_null(grobo_serial_device(made));
+    grobo_serial_free(made);
+    grobo_serial_free(NULL);
+}
+
+static void bad_configurations_are_refused(void **state)
+{
+    char long_name[GROBO_DEVICE_MAX_BYTES + 1];
+    grobo_serial_config config = {.baud_bps = -1};
+    grobo_serial *made = NULL;
+
+    (void)state;
+    memset(long_name, 'x', sizeof long_name - 1);
+    long_name[sizeof long_name - 1] = '\0';
+    assert_int_equal(grobo_serial_new(&config, &made), GROBO_ERR_ARG);
+    config = (grobo_serial_config){.silence_ms = -1};
+    assert_int_equal(grobo_serial_new(&config, &made), GROBO_ERR_ARG);
+    config = (grobo_serial_config){.mode = GROBO_SERIAL_ASYNC};
+    assert_int_equal(grobo_serial_new(&config, &made), GROBO_ERR_ARG);
+    config = (grobo_serial_config){.tx_queue_bytes = GROBO_SERIAL_QUEUE_BYTES + 1};
+    assert_int_equal(grobo_serial_new(&config, &made), GROBO_ERR_CAP);
+    config = (grobo_serial_config){.device = long_name};
+    assert_int_equal(grobo_serial_new(&config, &made), GROBO_ERR_CAP);
+    assert_int_equal(grobo_serial_new(NULL, NULL), GROBO_ERR_ARG);
+    assert_null(made);
+}
+
+static void a_closed_port_says_so(void **state)
+{
+    uint8_t byte = 0;
+
+    (void)state;
+    grobo_serial_close(serial);
+    grobo_serial_close(serial);
+    assert_false(grobo_serial_is_open(serial));
+    assert_int_equal(grobo_serial_handle(serial), GROBO_HANDLE_NULL);
+    assert_int_equal(grobo_serial_read(serial, &byte, 1), GROBO_ERR_CLOSED);
+    assert_int_equal(grobo_serial_write(serial, &byte, 1), GROBO_ERR_CLOSED);
+    assert_int_equal(grobo_serial_receive(serial, &byte, 1), GROBO_ERR_CLOSED);
+    assert_int_equal(grobo_serial_send(serial, &byte, 1), GROBO_ERR_CLOSED);
+    assert_int_equal(grobo_serial_waiting(serial), GROBO_ERR_CLOSED);
+    assert_int_equal(grobo_serial_discard(serial), GROBO_ERR_CLOSED);
+    assert_int_equal(grobo_serial_set_low_latency(serial), GROBO_ERR_CLOSED);
+    assert_int_equal(grobo_serial_open(serial), GROBO_OK);
+    assert_true(grobo_serial_is_open(serial));
+    assert_true(grobo_serial_handle(serial) >= 0);
+    assert_int_equal(grobo_serial_open(serial), GROBO_ERR_STATE);
+}
+
+static void an_open_port_keeps_device_and_mode(void **state)
+{
+    (void)state;
+    assert_int_equal(grobo_serial_set_device(serial, "/dev/other"), GROBO_ERR_STATE);
+    assert_string_equal(grobo_serial_device(serial), line.device);
+    assert_int_equal(grobo_serial_set_mode(serial, GROBO_SERIAL_SYNC), GROBO_ERR_STATE);
+    grobo_serial_close(serial);
+    assert_int_equal(grobo_serial_set_mode(serial, GROBO_SERIAL_SYNC), GROBO_OK);
+    assert_int_equal(grobo_serial_set_mode(serial, GROBO_SERIAL_ASYNC), GROBO_ERR_ARG);
+    assert_int_equal(grobo_serial_get_mode(serial), GROBO_SERIAL_SYNC);
+}
+
+static void every_byte_passes_both_ways(void **state)
+{
+    uint8_t out[256];
+    uint8_t in[256];
+    grobo_serial_counters counters;
+
+    (void)state;
+    for (size_t i = 0; i < sizeof out; i++) {
+        out[i] = (uint8_t)i;
+    }
+    assert_int_equal(grobo_serial_send(serial, out, sizeof out), sizeof out);
+    test_line_read(&line, in, sizeof in);
+    assert_memory_equal(in, out, sizeof out);
+    memset(in, 0, sizeof in);
+    test_line_write(&line, out, sizeof out);
+    assert_int_equal(grobo_serial_receive(serial, in, sizeof in), sizeof in);
+    assert_memory_equal(in, out, sizeof out);
+    grobo_serial_get_counters(serial, &counters);
+    assert_int_equal(counters.tx_bytes, sizeof out);
+    assert_int_equal(counters.rx_bytes, sizeof in);
+    assert_int_equal(counters.opens, 1);
+    assert_int_equal(grobo_serial_send(serial, out, 0), 0);
+    assert_int_equal(grobo_serial_receive(serial, in, 0), 0);
+}
+
+static void receive_takes_exactly_what_is_asked_for(void **state)
+{
+    uint8_t buf[4];
+
+    (void)state;
+    test_line_write(&line,
+                    "\x07"
+                    "abcd",
+                    5);
+    assert_int_equal(grobo_serial_receive(serial, buf, 1), 1);
+    assert_int_equal(buf[0], 7);
+    assert_int_equal(grobo_serial_receive(serial, buf, 4), 4);
+    assert_memory_equal(buf, "abcd", 4);
+}
+
+static void silence_ends_a_receive_and_drops_what_came(void **state)
+{
+    int64_t start_us = grobo_now_us();
+    uint8_t buf[26];
+    grobo_serial_counters counters;
+
+    (void)state;
+    assert_int_equal(grobo_serial_receive(serial, buf, sizeof buf), GROBO_ERR_TIMEOUT);
+    assert_true(grobo_now_us() - start_us >= 30000);
+    test_line_write(&line, "0123456789", 10);
+    assert_int_equal(grobo_serial_receive(serial, buf, sizeof buf), GROBO_ERR_SHORT);
+    assert_int_equal(grobo_serial_waiting(serial), 0);
+    grobo_serial_get_counters(serial, &counters);
+    assert_int_equal(counters.dropped_bytes, 10);
+    test_line_write(&line, "ABCDEFGHIJKLMNOPQRSTUVWXYZ", 26);
+    assert_int_equal(grobo_serial_receive(serial, buf, sizeof buf), 26);
+    assert_memory_equal(buf, "ABCDEFGHIJKLMNOPQRSTUVWXYZ", 26);
+}
+
+static void low_level_read_and_write_take_what_there_is(void **state)
+{
+    uint8_t buf[16];
+
+    (void)state;
+    assert_int_equal(grobo_serial_read(serial, buf, sizeof buf), 0);
+    test_line_write(&line, "abc", 3);
+    assert_int_equal(grobo_serial_read(serial, buf, sizeof buf), 3);
+    assert_memory_equal(buf, "abc", 3);
+    assert_int_equal(grobo_serial_write(serial, "xyz", 3), 3);
+    test_line_read(&line, buf, 3);
+    assert_memory_equal(buf, "xyz", 3);
+}
+
+static void waiting_bytes_are_counted_and_dropped(void **state)
+{
+    (void)state;
+    assert_int_equal(grobo_serial_waiting(serial), 0);
+    assert_int_equal(grobo_serial_discard(serial), 0);
+    test_line_write(&line, "abcde", 5);
+    assert_int_equal(grobo_port_wait(grobo_serial_handle(serial), GROBO_PORT_READABLE, 1000000),
+                     GROBO_PORT_READABLE);
+    assert_int_equal(grobo_serial_waiting(serial), 5);
+    assert_int_equal(grobo_serial_discard(serial), 5);
+    assert_int_equal(grobo_serial_waiting(serial), 0);
+}
+
+static void bytes_from_before_open_are_gone(void **state)
+{
+    uint8_t byte = 0;
+
+    (void)state;
+    grobo_serial_close(serial);
+    test_line_write(&line, "old", 3);
+    assert_int_equal(grobo_serial_open(serial), GROBO_OK);
+    test_line_write(&line, "n", 1);
+    assert_int_equal(grobo_serial_receive(serial, &byte, 1), 1);
+    assert_int_equal(byte, 'n');
+}
+
+static void a_line_that_takes_nothing_ends_a_send(void **state)
+{
+    static uint8_t much[100000];
+    int64_t start_us = grobo_now_us();
+    grobo_serial_counters counters;
+
+    (void)state;
+    assert_int_equal(grobo_serial_send(serial, much, sizeof much), GROBO_ERR_TIMEOUT);
+    assert_true(grobo_now_us() - start_us >= 1000000);
+    grobo_serial_get_counters(serial, &counters);
+    assert_true(counters.short_writes > 0);
+    assert_true(counters.tx_bytes > 0 && counters.tx_bytes < sizeof much);
+}
+
+static void speed_changes_on_an_open_port(void **state)
+{
+    static const int rates[] = {9600, 14400, 19200, 76800, 115200, 153600, 230400, 460800, 250000};
+
+    (void)state;
+    for (size_t i = 0; i < sizeof rates / sizeof rates[0]; i++) {
+        assert_int_equal(grobo_serial_set_baud(serial, rates[i]), rates[i]);
+        assert_int_equal(grobo_serial_baud(serial), rates[i]);
+    }
+    assert_int_equal(grobo_serial_set_baud(serial, 0), GROBO_ERR_ARG);
+    assert_int_equal(grobo_serial_baud(serial), 250000);
+    grobo_serial_close(serial);
+    assert_int_equal(grobo_serial_set_baud(serial, 57600), 57600);
+    assert_int_equal(grobo_serial_open(serial), GROBO_OK);
+    assert_int_equal(grobo_serial_baud(serial), 57600);
+    assert_int_equal(grobo_serial_set_baud(serial, 115200), 115200);
+}
+
+static void low_latency_is_reported_where_there_is_none(void **state)
+{
+    (void)state;
+    assert_int_equal(grobo_serial_set_low_latency(serial), GROBO_ERR_UNSUPPORTED);
+    assert_true(strlen(grobo_serial_cause(serial)->text) > 0);
+}
+
+static void a_hang_up_is_told_once_and_closes(void **state)
+{
+    uint8_t byte = 0;
+    grobo_serial_counters counters;
+
+    (void)state;
+    test_line_close(&line);
+    assert_int_equal(grobo_serial_receive(serial, &byte, 1), GROBO_ERR_UNPLUGGED);
+    assert_false(grobo_serial_is_open(serial));
+    assert_int_equal(grobo_serial_receive(serial, &byte, 1), GROBO_ERR_CLOSED);
+    grobo_serial_get_counters(serial, &counters);
+    assert_int_equal(counters.unplugs, 1);
+}
+
+static void a_hang_up_is_found_by_sending_too(void **state)
+{
+    (void)state;
+    test_line_close(&line);
+    assert_int_equal(grobo_serial_send(serial, "x", 1), GROBO_ERR_UNPLUGGED);
+    assert_false(grobo_serial_is_open(serial));
+}
+
+static volatile sig_atomic_t alarms;
+
+static void on_alarm(int number)
+{
+    (void)number;
+    alarms++;
+}
+
+static void signals_do_not_cut_a_wait_short(void **state)
+{
+    const struct itimerval every_ms = {{0, 1000}, {0, 1000}};
+    const struct itimerval off = {{0, 0}, {0, 0}};
+    struct sigaction act = {0};
+    struct sigaction before;
+    int64_t start_us = grobo_now_us();
+    uint8_t byte = 0;
+    int r;
+
+    (void)state;
+    act.sa_handler = on_alarm; /* without SA_RESTART */
+    assert_int_equal(sigaction(SIGALRM, &act, &before), 0);
+    assert_int_equal(setitimer(ITIMER_REAL, &every_ms, NULL), 0);
+    r = grobo_serial_receive(serial, &byte, 1);
+    assert_int_equal(setitimer(ITIMER_REAL, &off, NULL), 0);
+    assert_int_equal(sigaction(SIGALRM, &before, NULL), 0);
+    assert_int_equal(r, GROBO_ERR_TIMEOUT);
+    assert_true(grobo_now_us() - start_us >= 30000);
+    assert_true(alarms > 0);
+}
+
+static void hex_is_written_to_buffer_and_stream(void **state)
+{
+    static const uint8_t packet[] = {0xFA, 0xAF, 0x03};
+    char text[9] = "unchange";
+    char read_back[32] = "";
+    FILE *stream = tmpfile();
+
+    (void)state;
+    assert_int_equal(grobo_hex(text, 8, packet, sizeof packet), GROBO_ERR_SPACE);
+    assert_string_equal(text, "unchange");
+    assert_int_equal(grobo_hex(text, sizeof text, packet, sizeof packet), 8);
+    assert_string_equal(text, "FA AF 03");
+    assert_int_equal(grobo_hex(text, 1, packet, 0), 0);
+    assert_string_equal(text, "");
+    assert_non_null(stream);
+    assert_int_equal(grobo_hex_print(stream, packet, sizeof packet), GROBO_OK);
+    rewind(stream);
+    assert_non_null(fgets(read_back, sizeof read_back, stream));
+    assert_string_equal(read_back, "FA AF 03\n");
+    assert_int_equal(fclose(stream), 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_port_without_a_device_waits_for_one),
+        cmocka_unit_test(bad_configurations_are_refused),
+        cmocka_unit_test_setup_teardown(a_closed_port_says_so, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(an_open_port_keeps_device_and_mode, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(every_byte_passes_both_ways, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(receive_takes_exactly_what_is_asked_for, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(silence_ends_a_receive_and_drops_what_came, set_up,
+                                        tear_down),
+        cmocka_unit_test_setup_teardown(low_level_read_and_write_take_what_there_is, set_up,
+                                        tear_down),
+        cmocka_unit_test_setup_teardown(waiting_bytes_are_counted_and_dropped, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(bytes_from_before_open_are_gone, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_line_that_takes_nothing_ends_a_send, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(speed_changes_on_an_open_port, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(low_latency_is_reported_where_there_is_none, set_up,
+                                        tear_down),
+        cmocka_unit_test_setup_teardown(a_hang_up_is_told_once_and_closes, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_hang_up_is_found_by_sending_too, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(signals_do_not_cut_a_wait_short, set_up, tear_down),
+        cmocka_unit_test(hex_is_written_to_buffer_and_stream),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,221 @@
+/* SPDX-License-Identifier: MIT */
+/* The list of ports, on a made-up /sys and /dev; the real ones are only looked through. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "line.h"
+#include "ports/posix/posix.h"
+
+static char root[] = "/tmp/grobo-list-XXXXXX";
+static test_line line;
+
+/* Runs a shell command in the made-up root. */
+static void shell(const char *command)
+{
+    char whole[2048];
+
+    assert_true(snprintf(whole, sizeof whole, "cd %s && %s", root, command) < (int)sizeof whole);
+    assert_int_equal(system(whole), 0);
+}
+
+static int set_up(void **state)
+{
+    char command[256];
+
+    (void)state;
+    assert_non_null(mkdtemp(root));
+    test_line_open(&line);
+    /* An FTDI adapter as ttyUSB0, a chip as ttyS0, a node without a chip, a virtual console. */
+    shell("mkdir -p class/tty dev/serial/by-id drivers/ftdi_sio drivers/serial8250 "
+          "devices/usb1/1-1/1-1:1.0/ttyUSB0/tty/ttyUSB0 devices/serial0/tty/ttyS0 "
+          "devices/serial0/tty/ttyS1 devices/virtual/tty/tty1");
+    shell("cd devices/usb1/1-1 && echo 0403 >idVendor && echo 6001 >idProduct && "
+          "echo FTDI >manufacturer && echo 'FT232R USB UART' >product && echo A1B2C3 >serial");
+    shell("cd devices/usb1/1-1/1-1:1.0/ttyUSB0 && echo 16 >latency_timer && "
+          "ln -s ../../../../../drivers/ftdi_sio driver && ln -s ../.. tty/ttyUSB0/device");
+    shell("cd devices/serial0 && ln -s ../../drivers/serial8250 driver && "
+          "ln -s ../.. tty/ttyS0/device && ln -s ../.. tty/ttyS1/device && "
+          "echo 4 >tty/ttyS0/type && echo 0 >tty/ttyS1/type");
+    shell("cd class/tty && ln -s ../../devices/usb1/1-1/1-1:1.0/ttyUSB0/tty/ttyUSB0 && "
+          "ln -s ../../devices/serial0/tty/ttyS0 && ln -s ../../devices/serial0/tty/ttyS1 && "
+          "ln -s ../../devices/virtual/tty/tty1");
+    snprintf(command, sizeof command, "ln -s %s dev/ttyUSB0", line.device);
+    shell(command);
+    shell("ln -s ../../ttyUSB0 dev/serial/by-id/usb-FTDI_FT232R_USB_UART_A1B2C3-if00-port0");
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    char command[64];
+
+    (void)state;
+    test_line_close(&line);
+    snprintf(command, sizeof command, "rm -r %s", root);
+    return system(command);
+}
+
+typedef struct {
+    grobo_port_info info[8];
+    int count;
+    int stop; /* returned at the first */
+} found;
+
+static int collect(void *ctx, const grobo_port_info *info)
+{
+    found *f = ctx;
+
+    assert_true(f->count < 8);
+    f->info[f->count++] = *info;
+    return f->stop;
+}
+
+static int list(found *f)
+{
+    char sys_tty[64];
+    char dev[64];
+
+    snprintf(sys_tty, sizeof sys_tty, "%s/class/tty", root);
+    snprintf(dev, sizeof dev, "%s/dev", root);
+    return grobo_i_posix_list(sys_tty, dev, collect, f);
+}
+
+static void each_port_with_a_device_is_described(void **state)
+{
+    found f = {.count = 0};
+    char path[64];
+
+    (void)state;
+    assert_int_equal(list(&f), 2);
+    snprintf(path, sizeof path, "%s/dev/ttyS0", root);
+    assert_string_equal(f.info[0].path, path);
+    assert_string_equal(f.info[0].driver, "serial8250");
+    assert_string_equal(f.info[0].by_id, "");
+    assert_int_equal(f.info[0].usb_vendor, -1);
+    assert_int_equal(f.info[0].latency_ms, -1);
+    assert_int_equal(f.info[0].open_result, GROBO_ERR_NOENT);
+
+    snprintf(path, sizeof path, "%s/dev/ttyUSB0", root);
+    assert_string_equal(f.info[1].path, path);
+    assert_string_equal(f.info[1].driver, "ftdi_sio");
+    assert_string_equal(strrchr(f.info[1].by_id, '/'),
+                        "/usb-FTDI_FT232R_USB_UART_A1B2C3-if00-port0");
+    assert_int_equal(f.info[1].usb_vendor, 0x0403);
+    assert_int_equal(f.info[1].usb_product, 0x6001);
+    assert_string_equal(f.info[1].manufacturer, "FTDI");
+    assert_string_equal(f.info[1].product, "FT232R USB UART");
+    assert_string_equal(f.info[1].serial_number, "A1B2C3");
+    assert_int_equal(f.info[1].latency_ms, 16);
+    assert_int_equal(f.info[1].owner_pid, 0);
+    assert_int_equal(f.info[1].open_result, GROBO_OK);
+}
+
+static void a_visit_can_be_ended(void **state)
+{
+    found f = {.stop = 7};
+
+    (void)state;
+    assert_int_equal(list(&f), 7);
+    assert_int_equal(f.count, 1);
+}
+
+static void a_port_in_use_names_its_owner(void **state)
+{
+    const grobo_port_ops *ops = grobo_port_serial_ops();
+    grobo_port port;
+    grobo_os_cause cause;
+    found f = {.count = 0};
+
+    (void)state;
+    assert_int_equal(ops->open(&port, line.device, 115200, &cause), GROBO_OK);
+    assert_int_equal(list(&f), 2);
+    assert_int_equal(f.info[1].owner_pid, getpid());
+    assert_int_equal(strncmp(f.info[1].owner_name, "test_posix_list", 15), 0);
+    assert_int_equal(f.info[1].open_result, GROBO_ERR_BUSY);
+    ops->close(&port);
+}
+
+static void a_port_of_somebody_else_is_not_to_be_opened(void **state)
+{
+    int status;
+    pid_t pid;
+
+    (void)state;
+    if (geteuid() != 0) {
+        print_message("only root can become another user\n");
+        skip();
+    }
+    assert_int_equal(chmod(root, 0755), 0);
+    assert_int_equal(chmod(line.device, 0600), 0);
+    pid = fork();
+    assert_true(pid >= 0);
+    if (pid == 0) {
+        found f = {.count = 0};
+
+        _exit(setgid(65534) == 0 && setuid(65534) == 0 && list(&f) == 2 ? -f.info[1].open_result
+                                                                        : 100);
+    }
+    assert_int_equal(waitpid(pid, &status, 0), pid);
+    assert_true(WIFEXITED(status));
+    assert_int_equal(-WEXITSTATUS(status), GROBO_ERR_PERM);
+}
+
+static void a_device_without_a_link_is_its_own_identity(void **state)
+{
+    char name[GROBO_DEVICE_MAX_BYTES] = "";
+
+    (void)state;
+    assert_int_equal(grobo_port_identity(line.device, name, sizeof name), GROBO_OK);
+    assert_string_equal(name, line.device);
+    assert_int_equal(grobo_port_identity(line.device, name, 3), GROBO_ERR_SPACE);
+    assert_int_equal(grobo_port_identity(NULL, name, sizeof name), GROBO_ERR_ARG);
+}
+
+static void this_machines_ports_can_be_listed(void **state)
+{
+    found f = {.stop = 1};
+    int r = grobo_port_list(collect, &f);
+
+    (void)state;
+    assert_true(r >= 0);
+    for (int i = 0; i < f.count; i++) {
+        assert_int_equal(access(f.info[i].path, F_OK), 0);
+    }
+}
+
+static void a_tolerance_of_two_percent(void **state)
+{
+    (void)state;
+    assert_true(grobo_i_posix_baud_fits(115200, 115200));
+    assert_true(grobo_i_posix_baud_fits(115200, 117504));
+    assert_false(grobo_i_posix_baud_fits(115200, 117600));
+    assert_true(grobo_i_posix_baud_fits(76800, 76923));
+    assert_false(grobo_i_posix_baud_fits(115200, 0));
+    assert_false(grobo_i_posix_baud_fits(2000000, 115200));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(each_port_with_a_device_is_described),
+        cmocka_unit_test(a_visit_can_be_ended),
+        cmocka_unit_test(a_port_in_use_names_its_owner),
+        cmocka_unit_test(a_port_of_somebody_else_is_not_to_be_opened),
+        cmocka_unit_test(a_device_without_a_link_is_its_own_identity),
+        cmocka_unit_test(this_machines_ports_can_be_listed),
+        cmocka_unit_test(a_tolerance_of_two_percent),
+    };
+
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}

@@ -1,0 +1,83 @@
+/* SPDX-License-Identifier: MIT */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <errno.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "line.h"
+
+void test_line_open(test_line *line)
+{
+    const char *name;
+
+    line->fd = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK);
+    assert_true(line->fd >= 0);
+    assert_int_equal(fcntl(line->fd, F_SETFD, FD_CLOEXEC), 0);
+    assert_int_equal(grantpt(line->fd), 0);
+    assert_int_equal(unlockpt(line->fd), 0);
+    name = ptsname(line->fd);
+    assert_non_null(name);
+    assert_true(strlen(name) < sizeof line->device);
+    memcpy(line->device, name, strlen(name) + 1);
+}
+
+void test_line_close(test_line *line)
+{
+    if (line->fd >= 0) {
+        assert_int_equal(close(line->fd), 0);
+        line->fd = -1;
+    }
+}
+
+static void await(const test_line *line, short events)
+{
+    struct pollfd one = {.fd = line->fd, .events = events};
+
+    assert_int_equal(poll(&one, 1, 5000), 1);
+}
+
+void test_line_write(test_line *line, const void *bytes, size_t size)
+{
+    const char *from = bytes;
+
+    while (size > 0) {
+        ssize_t done = write(line->fd, from, size);
+
+        if (done < 0) {
+            assert_int_equal(errno, EAGAIN);
+            await(line, POLLOUT);
+        } else {
+            from += done;
+            size -= (size_t)done;
+        }
+    }
+}
+
+size_t test_line_read_some(test_line *line, void *bytes, size_t size)
+{
+    ssize_t got = read(line->fd, bytes, size);
+
+    return got > 0 ? (size_t)got : 0;
+}
+
+void test_line_read(test_line *line, void *bytes, size_t size)
+{
+    char *to = bytes;
+
+    while (size > 0) {
+        size_t got;
+
+        await(line, POLLIN);
+        got = test_line_read_some(line, to, size);
+        to += got;
+        size -= got;
+    }
+}
