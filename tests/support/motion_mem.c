@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: MIT */
+#include <stdlib.h>
+
+#include "motion_mem.h"
+
+static void *resize(void *ctx, void *ptr, size_t old_bytes, size_t new_bytes)
+{
+    motion_mem *counter = ctx;
+
+    if (new_bytes > 0 && ++counter->calls == counter->fail_at) {
+        counter->failed = true;
+        return NULL;
+    }
+    counter->bytes += new_bytes - old_bytes;
+    if (counter->bytes > counter->bytes_peak) {
+        counter->bytes_peak = counter->bytes;
+    }
+    if (new_bytes == 0) {
+        free(ptr);
+        return NULL;
+    }
+    return realloc(ptr, new_bytes);
+}
+
+grobo_mem motion_mem_of(motion_mem *counter)
+{
+    return (grobo_mem){resize, counter};
+}
