@@ -20,6 +20,7 @@ RING ?= unit engine link fault port cli fuzz lint export
 CFLAGS ?= -O2 -g
 PKG_CONFIG ?= $(CROSS_COMPILE)pkg-config
 FUZZ_CC ?= clang
+TIDY ?= clang-tidy-14
 FUZZ_S ?= 60
 WERROR ?= -Werror
 ifeq ($(origin CC),default)
@@ -90,7 +91,7 @@ VERSION = $(shell sed -n 's/.*GROBO_VERSION_STRING "\(.*\)"/\1/p' include/grobo/
 # ---- targets -------------------------------------------------------------------------------
 
 .PHONY: help all check lint lint-quick format test check-san check-memcheck install uninstall clean
-.PHONY: fuzz cov dist FORCE
+.PHONY: tidy fuzz cov dist FORCE
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-15s %s\n", $$1, $$2 }' Makefile
@@ -130,6 +131,12 @@ check-san: ## the tests of our own code under AddressSanitizer and UBSan
 check-memcheck: ## the same under valgrind
 	@TEST_WRAPPER='valgrind -q --leak-check=full --error-exitcode=99' \
 	    $(MAKE) --no-print-directory test RING='$(filter-out cli lint export,$(RING))'
+
+tidy: ## clang-tidy over the library and the command; advice, not a gate
+	@status=0; for file in $(CORE_SRCS) $(OTHER_SRCS) $(TOOL_SRCS); do \
+	    $(TIDY) --quiet $$file -- -std=c11 -Iinclude -Iports/$(PORT)/include -Isrc -I. $(OS_FLAGS) \
+	        2>/dev/null || status=1; \
+	done; exit $$status
 
 fuzz: ## libFuzzer on each target for FUZZ_S=60 seconds; finds stay in build/fuzz
 	@command -v $(FUZZ_CC) >/dev/null || \
