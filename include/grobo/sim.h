@@ -177,20 +177,21 @@ typedef struct grobo_sim_view {
 /** One servo. Private: use the functions. */
 typedef struct grobo_sim_servo {
     /* private */
-    double temperature_c;                 /* at settled_us */
-    int64_t settled_us;                   /* what it did on its own is known up to here */
-    int64_t start_us, move_us;            /* the present move: when it began, how long it takes */
-    int64_t due_us;                       /* when the goal time of the last goal is over */
-    int64_t deaf_until_us;                /* end of a flash write or a reboot */
-    int64_t saved_us;                     /* end of a flash write under way, or GROBO_NEVER_US */
-    int32_t from_mdeg, to_mdeg;           /* the present move, of the shaft */
+    double temperature_c;       /* at settled_us */
+    int64_t settled_us;         /* what it did on its own is known up to here */
+    int64_t start_us, move_us;  /* the present move: when it began, how long it takes */
+    int64_t begun_us;           /* when the goal was written that the present move follows */
+    int64_t due_us;             /* when the goal time of the last goal is over */
+    int64_t deaf_until_us;      /* end of a flash write or a reboot */
+    int64_t saved_us;           /* end of a flash write under way, or GROBO_NEVER_US */
+    int32_t from_mdeg, to_mdeg; /* the present move, of the shaft */
     int32_t stop_min_mdeg, stop_max_mdeg; /* mechanical stops */
     int32_t load_ma;                      /* extra current of a hand or a weight */
     uint8_t reg[GROBO_REGISTERS];         /* present values are filled in when read */
     uint8_t flash[GROBO_SIM_FLASH_BYTES];
     uint8_t status; /* flags of the next return packet */
     uint8_t cable;  /* grobo_sim_cable */
-    bool powered, blocked, stalled, reboots_after_save;
+    bool powered, blocked, stalled, by_hand, reboots_after_save;
 } grobo_sim_servo;
 
 /** Bytes on a wire, each with the time at which it is over. Private. */
@@ -226,7 +227,7 @@ typedef struct grobo_sim {
     grobo_sim_stats stats; /**< read freely */
     /* private */
     grobo_sim_config config;
-    int64_t now_us;
+    int64_t now_us, now_ns;            /* of what happens; the latest time outside of calls */
     int64_t line_byte_ns, bus_byte_ns; /* 10 bits at the baud rate; 0 unpaced */
     uint32_t line_bps, bus_bps;        /* the host's rate; the servos' bus's */
     uint32_t supply_mv;

@@ -1,0 +1,163 @@
+/* SPDX-License-Identifier: MIT */
+/* The controller board: takes a frame, relays its payload, waits, returns what came. */
+#include <string.h>
+
+#include "sim_private.h"
+
+void grobo_i_sim_frame_faults(grobo_sim *sim)
+{
+    if (grobo_i_sim_strikes(sim, GROBO_SIM_FAULT_BROWN_OUT, -1)) {
+        grobo_i_sim_brown_out(sim);
+    }
+    if (grobo_i_sim_strikes(sim, GROBO_SIM_FAULT_HANG_UP, -1)) {
+        grobo_i_sim_cut(sim);
+    }
+}
+
+/* ---- replying ------------------------------------------------------------------------------ */
+
+static void emit(grobo_sim *sim, const uint8_t *bytes, size_t n, int64_t start_ns)
+{
+    int64_t at_ns = start_ns > sim->out.free_ns ? start_ns : sim->out.free_ns;
+    for (size_t i = 0; i < n; i++) {
+        at_ns += sim->line_byte_ns;
+        grobo_i_sim_to_host(sim, bytes[i], at_ns);
+    }
+}
+
+static void reply(grobo_sim *sim, const uint8_t *bytes, size_t n, int64_t t_ns)
+{
+    const grobo_sim_event event = {
+        .kind = GROBO_SIM_REPLY, .time_us = sim->now_us, .servo = -1, .bytes = bytes, .n_bytes = n};
+    if (n > 0) {
+        grobo_i_sim_reply(sim, &event, t_ns, emit);
+    }
+    sim->board_state = GROBO_SIM_BOARD_REPLYING;
+    sim->board_at_ns = sim->out.free_ns > t_ns ? sim->out.free_ns : t_ns;
+}
+
+/* ---- frames -------------------------------------------------------------------------------- */
+
+static void relay(grobo_sim *sim, const grobo_board_frame *frame, int64_t t_ns)
+{
+    memcpy(sim->send, frame->packet, frame->packet_bytes);
+    sim->send_used = (uint8_t)frame->packet_bytes;
+    sim->sent = 0;
+    sim->want = frame->kind == GROBO_BOARD_ASK ? frame->reply_bytes : 0;
+    sim->got_used = 0;
+    sim->board_state = GROBO_SIM_BOARD_SENDING;
+    sim->board_at_ns = t_ns + sim->bus_byte_ns;
+}
+
+static void take_frame(grobo_sim *sim, const grobo_board_frame *frame, int64_t t_ns)
+{
+    static const uint8_t here = GROBO_RS30X_ACK;
+    sim->stats.frames++;
+    grobo_i_sim_tell(sim, &(grobo_sim_event){.kind = GROBO_SIM_FRAME,
+                                             .time_us = sim->now_us,
+                                             .servo = -1,
+                                             .value = (int32_t)frame->kind,
+                                             .bytes = frame->packet,
+                                             .n_bytes = frame->packet_bytes});
+    switch (frame->kind) {
+    case GROBO_BOARD_CHECK:
+        reply(sim, &here, 1, t_ns);
+        break;
+    case GROBO_BOARD_SEND:
+    case GROBO_BOARD_ASK:
+        relay(sim, frame, t_ns);
+        break;
+    case GROBO_BOARD_SLOT:
+        sim->stats.slots++;
+        sim->stats.last_slot = frame->number;
+        grobo_i_sim_note(sim, GROBO_SIM_SLOT, -1, frame->number);
+        break;
+    case GROBO_BOARD_SCENARIO:
+        sim->stats.scenarios++;
+        sim->stats.last_scenario = frame->number;
+        grobo_i_sim_note(sim, GROBO_SIM_SCENARIO, -1, frame->number);
+        break;
+    }
+    grobo_i_sim_frame_faults(sim);
+}
+
+/* Takes frames, and bytes that have waited, until it has something to do. */
+static void listen(grobo_sim *sim, int64_t t_ns)
+{
+    grobo_board_frame frame;
+    while (sim->board_state == GROBO_SIM_BOARD_IDLE) {
+        if (grobo_board_parser_next(&sim->board, sim->now_us, &frame) > 0) {
+            take_frame(sim, &frame, t_ns);
+        } else if (sim->fifo_used > 0) {
+            (void)grobo_board_parser_feed(&sim->board, sim->now_us, &sim->fifo[sim->fifo_head], 1);
+            sim->fifo_head = (uint16_t)((sim->fifo_head + 1) % GROBO_SIM_FIFO_BYTES);
+            sim->fifo_used--;
+        } else {
+            return;
+        }
+    }
+}
+
+/* ---- bytes --------------------------------------------------------------------------------- */
+
+void grobo_i_sim_board_hear(grobo_sim *sim, uint8_t byte, int64_t t_ns)
+{
+    if (sim->fifo_used == GROBO_SIM_FIFO_BYTES) {
+        sim->stats.overflows++;
+        return;
+    }
+    sim->fifo[(sim->fifo_head + sim->fifo_used++) % GROBO_SIM_FIFO_BYTES] = byte;
+    listen(sim, t_ns);
+}
+
+void grobo_i_sim_board_got(grobo_sim *sim, uint8_t byte, int64_t t_ns)
+{
+    if (sim->board_state != GROBO_SIM_BOARD_WAITING) {
+        sim->stats.stray_bytes++;
+        return;
+    }
+    sim->got[sim->got_used++] = byte;
+    sim->board_at_ns = t_ns + (int64_t)sim->config.board_silence_us * 1000;
+    if (sim->got_used == sim->want) {
+        reply(sim, sim->got, sim->got_used, t_ns);
+    }
+}
+
+/* ---- time ---------------------------------------------------------------------------------- */
+
+int64_t grobo_i_sim_board_next(const grobo_sim *sim)
+{
+    if (sim->board_state != GROBO_SIM_BOARD_IDLE) {
+        return sim->board_at_ns;
+    }
+    int64_t stall_us = grobo_board_parser_deadline(&sim->board);
+    return stall_us == GROBO_NEVER_US ? GROBO_NEVER_US : stall_us * 1000;
+}
+
+void grobo_i_sim_board_act(grobo_sim *sim, int64_t t_ns)
+{
+    switch (sim->board_state) {
+    case GROBO_SIM_BOARD_IDLE:
+        break;
+    case GROBO_SIM_BOARD_SENDING:
+        grobo_i_sim_bus_hear(sim, sim->send[sim->sent], t_ns);
+        sim->sent++;
+        if (sim->sent < sim->send_used) {
+            sim->board_at_ns = t_ns + sim->bus_byte_ns;
+        } else if (sim->want > 0) {
+            sim->board_state = GROBO_SIM_BOARD_WAITING;
+            sim->board_at_ns = t_ns + (int64_t)sim->config.board_silence_us * 1000;
+        } else {
+            sim->board_state = GROBO_SIM_BOARD_IDLE;
+        }
+        break;
+    case GROBO_SIM_BOARD_WAITING:
+        sim->stats.short_replies++;
+        reply(sim, sim->got, sim->got_used, t_ns);
+        break;
+    case GROBO_SIM_BOARD_REPLYING:
+        sim->board_state = GROBO_SIM_BOARD_IDLE;
+        break;
+    }
+    listen(sim, t_ns);
+}

@@ -1,0 +1,176 @@
+/* SPDX-License-Identifier: MIT */
+/* What a test, or a person at the simulator, sees and changes behind the robot's back. */
+#include "sim_private.h"
+
+/* The servo, settled; NULL when there is none of this index. */
+static grobo_sim_servo *servo_at(grobo_sim *sim, int index)
+{
+    if (index < 0 || index >= sim->n_servos) {
+        return NULL;
+    }
+    grobo_i_sim_settle(sim, index);
+    return &sim->servo[index];
+}
+
+/* ---- looking --------------------------------------------------------------------------------- */
+
+int grobo_sim_servos(const grobo_sim *sim)
+{
+    return sim->n_servos;
+}
+
+int grobo_sim_find(const grobo_sim *sim, int id)
+{
+    for (int i = 0; i < sim->n_servos; i++) {
+        if (sim->servo[i].reg[GROBO_RS30X_ID] == id) {
+            return i;
+        }
+    }
+    return GROBO_ERR_NOTFOUND;
+}
+
+int grobo_sim_look(grobo_sim *sim, int index, grobo_sim_view *view)
+{
+    const grobo_sim_servo *servo = servo_at(sim, index);
+    if (servo == NULL) {
+        return GROBO_ERR_ARG;
+    }
+    int32_t bps = grobo_rs30x_baud_bps(servo->reg[GROBO_RS30X_BAUD]);
+    *view = (grobo_sim_view){
+        .angle_mdeg = grobo_i_sim_angle_mdeg(servo, sim->now_us),
+        .target_mdeg = servo->to_mdeg,
+        .speed_dps = grobo_i_sim_speed_dps(servo, sim->now_us),
+        .current_ma = grobo_i_sim_current_ma(servo, sim->now_us),
+        .temperature_c = servo->temperature_c,
+        .torque = (grobo_torque)servo->reg[GROBO_RS30X_TORQUE],
+        .cable = (grobo_sim_cable)servo->cable,
+        .moving = grobo_i_sim_moving(servo, sim->now_us),
+        .stalled = servo->stalled && !grobo_i_sim_moving(servo, sim->now_us),
+        .deaf = grobo_i_sim_deaf(sim, index),
+        .id = servo->reg[GROBO_RS30X_ID],
+        .baud_bps = bps < 0 ? 0 : (uint32_t)bps,
+    };
+    return 0;
+}
+
+static const grobo_rs30x_register *register_from(int address)
+{
+    if (address < 0 || address >= GROBO_REGISTERS) {
+        return NULL;
+    }
+    const grobo_rs30x_register *reg = grobo_rs30x_register_at((uint8_t)address);
+    return reg != NULL && reg->address == address ? reg : NULL;
+}
+
+int grobo_sim_get_register(grobo_sim *sim, int index, int address, int32_t *value)
+{
+    const grobo_rs30x_register *reg = register_from(address);
+    if (servo_at(sim, index) == NULL || reg == NULL) {
+        return GROBO_ERR_ARG;
+    }
+    grobo_i_sim_refresh(sim, index);
+    *value = grobo_i_sim_value(&sim->servo[index], reg->address);
+    return 0;
+}
+
+/* ---- changing -------------------------------------------------------------------------------- */
+
+int grobo_sim_set_register(grobo_sim *sim, int index, int address, int32_t value)
+{
+    const grobo_rs30x_register *reg = register_from(address);
+    if (servo_at(sim, index) == NULL || reg == NULL ||
+        (reg->access == GROBO_RS30X_ACCESS_R && reg->kept == GROBO_RS30X_KEPT_RAM)) {
+        return GROBO_ERR_ARG;
+    }
+    uint8_t bytes[2];
+    int n = grobo_rs30x_register_put(reg, value, bytes);
+    if (n < 0) {
+        return n;
+    }
+    grobo_i_sim_store(sim, index, address, bytes, (size_t)n);
+    return 0;
+}
+
+/* What the servo does goes on from where it is, under what has changed. */
+static void go_on(grobo_sim *sim, int index)
+{
+    const grobo_sim_servo *servo = &sim->servo[index];
+    if (servo->powered && !servo->by_hand && servo->reg[GROBO_RS30X_TORQUE] == GROBO_TORQUE_ON) {
+        grobo_i_sim_drive(sim, index);
+    }
+}
+
+int grobo_sim_set_angle(grobo_sim *sim, int index, int32_t angle_mdeg, int64_t time_us)
+{
+    grobo_sim_servo *servo = servo_at(sim, index);
+    if (servo == NULL || time_us < 0) {
+        return GROBO_ERR_ARG;
+    }
+    grobo_i_sim_halt(sim, index);
+    servo->to_mdeg = angle_mdeg < servo->stop_min_mdeg   ? servo->stop_min_mdeg
+                     : angle_mdeg > servo->stop_max_mdeg ? servo->stop_max_mdeg
+                                                         : angle_mdeg;
+    servo->move_us = time_us;
+    servo->by_hand = true;
+    grobo_i_sim_settle(sim, index);
+    return 0;
+}
+
+int grobo_sim_set_blocked(grobo_sim *sim, int index, bool blocked)
+{
+    grobo_sim_servo *servo = servo_at(sim, index);
+    if (servo == NULL) {
+        return GROBO_ERR_ARG;
+    }
+    servo->blocked = blocked;
+    go_on(sim, index);
+    return 0;
+}
+
+int grobo_sim_set_load(grobo_sim *sim, int index, int32_t load_ma)
+{
+    grobo_sim_servo *servo = servo_at(sim, index);
+    if (servo == NULL || load_ma < 0 || load_ma > 5000) {
+        return GROBO_ERR_ARG;
+    }
+    servo->load_ma = load_ma;
+    return 0;
+}
+
+int grobo_sim_set_temperature(grobo_sim *sim, int index, double temperature_c)
+{
+    grobo_sim_servo *servo = servo_at(sim, index);
+    if (servo == NULL || !(temperature_c >= -40 && temperature_c <= 150)) {
+        return GROBO_ERR_ARG;
+    }
+    servo->temperature_c = temperature_c;
+    return 0;
+}
+
+static bool has_power(const grobo_sim *sim, const grobo_sim_servo *servo)
+{
+    return sim->supply_mv >= GROBO_SIM_BROWN_OUT_MV && servo->cable != GROBO_SIM_CABLE_OUT;
+}
+
+int grobo_sim_set_cable(grobo_sim *sim, int index, grobo_sim_cable cable)
+{
+    grobo_sim_servo *servo = servo_at(sim, index);
+    if (servo == NULL || (unsigned)cable > GROBO_SIM_CABLE_OUT) {
+        return GROBO_ERR_ARG;
+    }
+    servo->cable = (uint8_t)cable;
+    grobo_i_sim_power(sim, index, has_power(sim, servo));
+    return 0;
+}
+
+void grobo_sim_set_supply(grobo_sim *sim, uint32_t supply_mv)
+{
+    for (int i = 0; i < sim->n_servos; i++) {
+        grobo_i_sim_settle(sim, i);
+    }
+    sim->supply_mv = supply_mv;
+    for (int i = 0; i < sim->n_servos; i++) {
+        grobo_i_sim_power(sim, i, has_power(sim, &sim->servo[i]));
+        go_on(sim, i);
+    }
+}

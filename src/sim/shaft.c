@@ -1,0 +1,235 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Where a shaft is, what it draws, how warm it is: functions of the time since the last goal.
+ * Nothing is integrated in steps, so virtual time may jump by hours.
+ */
+#include <math.h>
+
+#include "sim_private.h"
+
+/* Assumptions (docs/simulator.md): mA of the circuit, of holding, of moving at full speed. */
+#define IDLE_MA 6
+#define HOLD_MA 40
+#define MOVE_MA 260
+/* Copper loss: degrees above ambient for a current that lasts, and how fast they come. */
+#define HEAT_C_PER_MA2 8.5e-5
+#define HEAT_TAU_US 300e6
+
+#define MDEG_PER_RAD (180000.0 / 3.14159265358979323846)
+
+/* Speeds: 0.11 and 0.16 s for 60 degrees (RS301CR/RS302CD manual). */
+static const grobo_i_sim_type types[] = {
+    {GROBO_RS30X_RS301CR, 1200, 545455, 180, 10, 100},
+    {GROBO_RS30X_RS302CD, 900, 375000, 200, 15, 77},
+    {GROBO_RS30X_RS303MR, 1200, 545455, 180, 10, 100},
+    {GROBO_RS30X_RS304MD, 900, 375000, 200, 15, 77},
+};
+
+const grobo_i_sim_type *grobo_i_sim_type_of(const grobo_sim_servo *servo)
+{
+    int32_t model = grobo_i_sim_value(servo, GROBO_RS30X_MODEL);
+    for (size_t i = 1; i < sizeof types / sizeof *types; i++) {
+        if (types[i].model == model) {
+            return &types[i];
+        }
+    }
+    return &types[0];
+}
+
+/* ---- position ------------------------------------------------------------------------------ */
+
+static int32_t round_div(int64_t n, int64_t d)
+{
+    return (int32_t)((n < 0 ? n - d / 2 : n + d / 2) / d);
+}
+
+int32_t grobo_i_sim_mdeg_of_rad(double angle_rad)
+{
+    return (int32_t)lround(angle_rad * MDEG_PER_RAD);
+}
+
+int32_t grobo_i_sim_ddeg(const grobo_sim_servo *servo, int32_t mdeg)
+{
+    int32_t ddeg = round_div(mdeg, 100);
+    return servo->reg[GROBO_RS30X_REVERSE] ? -ddeg : ddeg;
+}
+
+int32_t grobo_i_sim_mdeg(const grobo_sim_servo *servo, int32_t ddeg)
+{
+    return (servo->reg[GROBO_RS30X_REVERSE] ? -ddeg : ddeg) * 100;
+}
+
+bool grobo_i_sim_moving(const grobo_sim_servo *servo, int64_t t_us)
+{
+    return t_us < servo->start_us + servo->move_us;
+}
+
+int32_t grobo_i_sim_angle_mdeg(const grobo_sim_servo *servo, int64_t t_us)
+{
+    if (!grobo_i_sim_moving(servo, t_us)) {
+        return servo->to_mdeg;
+    }
+    int64_t way = servo->to_mdeg - servo->from_mdeg;
+    int64_t done_us = t_us > servo->start_us ? t_us - servo->start_us : 0;
+    return servo->from_mdeg + round_div(way * done_us, servo->move_us);
+}
+
+int32_t grobo_i_sim_speed_dps(const grobo_sim_servo *servo, int64_t t_us)
+{
+    if (!grobo_i_sim_moving(servo, t_us)) {
+        return 0;
+    }
+    int64_t way = servo->to_mdeg - servo->from_mdeg;
+    return round_div((way < 0 ? -way : way) * 1000, servo->move_us);
+}
+
+int64_t grobo_i_sim_move_age_us(const grobo_sim_servo *servo, int64_t t_us)
+{
+    int64_t end_us = servo->start_us + servo->move_us;
+    int64_t age_us = (t_us < end_us ? t_us : end_us) - servo->begun_us;
+    return age_us > 0 ? age_us : 0;
+}
+
+static int32_t clamp(int32_t x, int32_t min, int32_t max)
+{
+    return x < min ? min : x > max ? max : x;
+}
+
+void grobo_i_sim_halt(grobo_sim *sim, int index)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    servo->to_mdeg = servo->from_mdeg = grobo_i_sim_angle_mdeg(servo, sim->now_us);
+    servo->start_us = sim->now_us;
+    servo->move_us = 0;
+    servo->stalled = servo->by_hand = false;
+}
+
+void grobo_i_sim_drive(grobo_sim *sim, int index)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    grobo_i_sim_halt(sim, index);
+    int32_t goal_mdeg = grobo_i_sim_mdeg(servo, grobo_i_sim_value(servo, GROBO_RS30X_GOAL));
+    if (!servo->blocked) {
+        servo->to_mdeg = clamp(goal_mdeg, servo->stop_min_mdeg, servo->stop_max_mdeg);
+    }
+    servo->stalled = servo->to_mdeg != goal_mdeg;
+    int64_t way = servo->to_mdeg - servo->from_mdeg;
+    int64_t speed = (int64_t)grobo_i_sim_type_of(servo)->speed_mdeg_s * sim->supply_mv / 7400;
+    int64_t least_us = speed > 0 ? (way < 0 ? -way : way) * 1000000 / speed : 0;
+    int64_t wanted_us = way == 0 ? 0 : servo->due_us - sim->now_us;
+    servo->move_us = wanted_us > least_us ? wanted_us : least_us;
+}
+
+/* ---- torque -------------------------------------------------------------------------------- */
+
+void grobo_i_sim_torque(grobo_sim *sim, int index, grobo_torque before)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    grobo_torque torque = (grobo_torque)servo->reg[GROBO_RS30X_TORQUE];
+    if (torque == before) {
+        return;
+    }
+    if (torque == GROBO_TORQUE_ON && sim->config.jump_on_torque) {
+        servo->begun_us = servo->due_us = sim->now_us;
+        grobo_i_sim_drive(sim, index);
+    } else {
+        grobo_i_sim_halt(sim, index);
+        if (torque == GROBO_TORQUE_ON) {
+            int32_t here_ddeg = grobo_i_sim_ddeg(servo, servo->to_mdeg);
+            const grobo_rs30x_register *goal = grobo_rs30x_register_at(GROBO_RS30X_GOAL);
+            (void)grobo_rs30x_register_put(goal, clamp(here_ddeg, goal->min, goal->max),
+                                           &servo->reg[GROBO_RS30X_GOAL]);
+        }
+    }
+    grobo_i_sim_note(sim, GROBO_SIM_TORQUE, index, (int32_t)torque);
+}
+
+/* ---- current and temperature --------------------------------------------------------------- */
+
+int32_t grobo_i_sim_current_ma(const grobo_sim_servo *servo, int64_t t_us)
+{
+    if (!servo->powered) {
+        return 0;
+    }
+    if (servo->reg[GROBO_RS30X_TORQUE] != GROBO_TORQUE_ON) {
+        return IDLE_MA;
+    }
+    const grobo_i_sim_type *type = grobo_i_sim_type_of(servo);
+    int32_t most_ma = type->stall_ma * servo->reg[GROBO_RS30X_MAX_TORQUE] / 100;
+    int32_t ma = HOLD_MA + servo->load_ma;
+    if (grobo_i_sim_moving(servo, t_us)) {
+        ma += (int32_t)((int64_t)MOVE_MA * grobo_i_sim_speed_dps(servo, t_us) * 1000 /
+                        type->speed_mdeg_s);
+    } else if (servo->stalled) {
+        ma = most_ma;
+    }
+    return clamp(ma, IDLE_MA, most_ma < IDLE_MA ? IDLE_MA : most_ma);
+}
+
+static void overheat(grobo_sim *sim, int index)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    servo->reg[GROBO_RS30X_TORQUE] = GROBO_TORQUE_OFF;
+    servo->status |= GROBO_RS30X_STATUS_OVERHEATED;
+    grobo_i_sim_note(sim, GROBO_SIM_OVERHEAT, index, (int32_t)lround(servo->temperature_c));
+    grobo_i_sim_torque(sim, index, GROBO_TORQUE_ON);
+}
+
+/* Warms or cools for at most until_us; stops early where the current changes or the torque goes. */
+static void warm_once(grobo_sim *sim, int index, int64_t until_us)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    int64_t from_us = servo->settled_us, end_us = servo->start_us + servo->move_us;
+    int64_t to_us = from_us < end_us && end_us < until_us ? end_us : until_us;
+    double ma = grobo_i_sim_current_ma(servo, from_us);
+    double last_c = sim->config.ambient_c + HEAT_C_PER_MA2 * ma * ma;
+    double limit_c = grobo_i_sim_value(servo, GROBO_RS30X_TEMPERATURE_LIMIT);
+    bool on = servo->powered && servo->reg[GROBO_RS30X_TORQUE] != GROBO_TORQUE_OFF;
+    bool cut = on && servo->temperature_c >= limit_c;
+    if (on && !cut && last_c > limit_c) {
+        double left_us = HEAT_TAU_US * log((last_c - servo->temperature_c) / (last_c - limit_c));
+        cut = left_us < (double)(to_us - from_us);
+        to_us = cut ? from_us + (int64_t)ceil(left_us) : to_us;
+    } else if (cut) {
+        to_us = from_us;
+    }
+    servo->temperature_c =
+        last_c + (servo->temperature_c - last_c) * exp((double)(from_us - to_us) / HEAT_TAU_US);
+    servo->settled_us = sim->now_us = to_us;
+    if (cut) {
+        overheat(sim, index);
+    }
+}
+
+static void warm(grobo_sim *sim, int index, int64_t until_us)
+{
+    while (sim->servo[index].settled_us < until_us) {
+        warm_once(sim, index, until_us);
+    }
+}
+
+void grobo_i_sim_settle(grobo_sim *sim, int index)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    const int64_t now_us = sim->now_us;
+    for (;;) {
+        int64_t hand_us = servo->by_hand ? servo->start_us + servo->move_us : GROBO_NEVER_US;
+        bool saved = servo->saved_us <= hand_us;
+        int64_t t_us = saved ? servo->saved_us : hand_us;
+        if (t_us > now_us) {
+            break;
+        }
+        warm(sim, index, t_us);
+        sim->now_us = t_us;
+        if (saved) {
+            grobo_i_sim_saved(sim, index);
+        } else {
+            grobo_i_sim_halt(sim, index);
+            if (servo->powered && servo->reg[GROBO_RS30X_TORQUE] == GROBO_TORQUE_ON) {
+                grobo_i_sim_drive(sim, index);
+            }
+        }
+    }
+    warm(sim, index, now_us);
+    sim->now_us = now_us;
+}

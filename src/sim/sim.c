@@ -1,0 +1,295 @@
+/* SPDX-License-Identifier: MIT */
+/* The simulator's pump: what is due next on any wire happens next. */
+#include <string.h>
+
+#include "sim_private.h"
+
+#define LOWEST_BPS 300
+/* Frames are at least about this long: input is looked at that many bytes late at most. */
+#define LOOKAHEAD_BYTES 8
+
+/* ---- telling ------------------------------------------------------------------------------- */
+
+void grobo_i_sim_tell(grobo_sim *sim, const grobo_sim_event *event)
+{
+    if (sim->config.hook != NULL) {
+        sim->config.hook(event, sim->config.hook_ctx);
+    }
+}
+
+void grobo_i_sim_note(grobo_sim *sim, grobo_sim_event_kind kind, int servo, int32_t value)
+{
+    grobo_i_sim_tell(
+        sim,
+        &(grobo_sim_event){.kind = kind, .time_us = sim->now_us, .servo = servo, .value = value});
+}
+
+/* ---- wires --------------------------------------------------------------------------------- */
+
+/* A byte that is over at at_ns; false when there is no room for it. */
+static bool put(grobo_sim_wire *wire, uint8_t byte, int64_t at_ns)
+{
+    wire->free_ns = at_ns;
+    if (wire->used == GROBO_SIM_WIRE_BYTES) {
+        return false;
+    }
+    size_t at = (size_t)(wire->head + wire->used++) % GROBO_SIM_WIRE_BYTES;
+    wire->byte[at] = byte;
+    wire->at_ns[at] = at_ns;
+    return true;
+}
+
+static uint8_t take(grobo_sim_wire *wire)
+{
+    uint8_t byte = wire->byte[wire->head];
+    wire->head = (uint16_t)((wire->head + 1) % GROBO_SIM_WIRE_BYTES);
+    wire->used--;
+    return byte;
+}
+
+static int64_t next_end_ns(const grobo_sim_wire *wire)
+{
+    return wire->used > 0 ? wire->at_ns[wire->head] : GROBO_NEVER_US;
+}
+
+static int64_t byte_ns(const grobo_sim *sim, uint32_t bps)
+{
+    return sim->config.unpaced ? 1 : 10000000000 / bps;
+}
+
+/* A byte as it arrives at another rate than it was sent. */
+static void misread(grobo_sim *sim, uint8_t *byte)
+{
+    if (sim->config.wiring == GROBO_WIRING_BOARD && sim->line_bps != sim->config.baud_bps) {
+        *byte = (uint8_t)grobo_i_sim_random(sim, GROBO_I_SIM_CHANCE, 256);
+    }
+}
+
+void grobo_i_sim_to_host(grobo_sim *sim, uint8_t byte, int64_t at_ns)
+{
+    if (sim->gone) {
+        return;
+    }
+    misread(sim, &byte);
+    sim->out.free_ns = at_ns;
+    if (grobo_i_sim_crosses(sim, &byte) && !put(&sim->out, byte, at_ns)) {
+        sim->stats.overflows++;
+    }
+}
+
+static void arrive(grobo_sim *sim, int64_t t_ns)
+{
+    uint8_t byte = take(&sim->in);
+    sim->stats.rx_bytes++;
+    misread(sim, &byte);
+    if (!grobo_i_sim_crosses(sim, &byte)) {
+        return;
+    }
+    if (sim->config.wiring == GROBO_WIRING_BUS) {
+        grobo_i_sim_bus_hear(sim, byte, t_ns);
+    } else {
+        grobo_i_sim_board_hear(sim, byte, t_ns);
+    }
+}
+
+/* ---- time ---------------------------------------------------------------------------------- */
+
+static int64_t earlier(int64_t a, int64_t b)
+{
+    return a < b ? a : b;
+}
+
+/* Does what is due first, if it is due by limit_ns. */
+static bool step_once(grobo_sim *sim, int64_t limit_ns)
+{
+    int64_t talk_ns = grobo_i_sim_talk_next(sim), in_ns = next_end_ns(&sim->in);
+    int64_t board_ns = grobo_i_sim_board_next(sim);
+    int64_t t_ns = earlier(talk_ns, earlier(in_ns, board_ns));
+    if (t_ns > limit_ns) {
+        return false;
+    }
+    sim->now_ns = t_ns;
+    sim->now_us = grobo_i_sim_us(t_ns);
+    if (talk_ns == t_ns) {
+        grobo_i_sim_talk_act(sim, t_ns);
+    } else if (in_ns == t_ns) {
+        arrive(sim, t_ns);
+    } else {
+        grobo_i_sim_board_act(sim, t_ns);
+    }
+    return true;
+}
+
+void grobo_sim_step(grobo_sim *sim, int64_t now_us)
+{
+    now_us = now_us > sim->now_us ? now_us : sim->now_us;
+    while (step_once(sim, now_us * 1000)) {
+    }
+    sim->now_us = now_us;
+    sim->now_ns = now_us * 1000;
+}
+
+int64_t grobo_sim_deadline(const grobo_sim *sim)
+{
+    const grobo_sim_wire *in = &sim->in;
+    int64_t at_ns = earlier(next_end_ns(&sim->out), grobo_i_sim_board_next(sim));
+    if (sim->board_state == GROBO_SIM_BOARD_SENDING) {
+        at_ns = earlier(next_end_ns(&sim->out),
+                        sim->board_at_ns + (sim->send_used - sim->sent - 1) * sim->bus_byte_ns);
+    }
+    if (sim->config.wiring == GROBO_WIRING_BUS) {
+        at_ns = earlier(at_ns, grobo_i_sim_talk_next(sim));
+    } else {
+        at_ns = earlier(at_ns, grobo_i_sim_talks_end(sim));
+    }
+    if (in->used > 0 && (sim->board_state == GROBO_SIM_BOARD_IDLE)) {
+        size_t ahead = in->used < LOOKAHEAD_BYTES ? in->used : LOOKAHEAD_BYTES;
+        at_ns = earlier(at_ns, in->at_ns[(in->head + ahead - 1) % GROBO_SIM_WIRE_BYTES]);
+    }
+    return at_ns == GROBO_NEVER_US ? GROBO_NEVER_US : grobo_i_sim_us(at_ns);
+}
+
+/* ---- the host's end ------------------------------------------------------------------------ */
+
+size_t grobo_sim_rx_room(const grobo_sim *sim)
+{
+    return GROBO_SIM_WIRE_BYTES - (size_t)sim->in.used;
+}
+
+size_t grobo_sim_rx(grobo_sim *sim, const uint8_t *bytes, size_t n, int64_t now_us)
+{
+    grobo_sim_step(sim, now_us);
+    if (sim->gone) {
+        return n;
+    }
+    size_t room = grobo_sim_rx_room(sim);
+    n = n < room ? n : room;
+    int64_t at_ns = sim->in.free_ns > sim->now_ns ? sim->in.free_ns : sim->now_ns;
+    for (size_t i = 0; i < n; i++) {
+        at_ns += sim->line_byte_ns;
+        (void)put(&sim->in, bytes[i], at_ns);
+    }
+    return n;
+}
+
+size_t grobo_sim_tx(grobo_sim *sim, uint8_t *buf, size_t cap, int64_t now_us)
+{
+    grobo_sim_step(sim, now_us);
+    size_t n = 0;
+    while (n < cap && next_end_ns(&sim->out) <= sim->now_ns) {
+        buf[n++] = take(&sim->out);
+    }
+    sim->stats.tx_bytes += (uint32_t)n;
+    return n;
+}
+
+/* ---- the host's cable ---------------------------------------------------------------------- */
+
+void grobo_i_sim_cut(grobo_sim *sim)
+{
+    sim->gone = true;
+    sim->in.used = sim->out.used = 0;
+    sim->in.free_ns = sim->out.free_ns = sim->now_ns;
+    sim->fifo_used = 0;
+    grobo_board_parser_reset(&sim->board);
+}
+
+void grobo_sim_plug(grobo_sim *sim, bool in, int64_t now_us)
+{
+    grobo_sim_step(sim, now_us);
+    grobo_i_sim_cut(sim);
+    sim->gone = !in;
+}
+
+bool grobo_sim_hung_up(const grobo_sim *sim)
+{
+    return sim->gone;
+}
+
+int grobo_sim_set_line_bps(grobo_sim *sim, uint32_t line_bps)
+{
+    if (line_bps < LOWEST_BPS) {
+        return GROBO_ERR_ARG;
+    }
+    sim->line_bps = line_bps;
+    sim->line_byte_ns = byte_ns(sim, line_bps);
+    if (sim->config.wiring == GROBO_WIRING_BUS) {
+        sim->bus_bps = line_bps;
+        sim->bus_byte_ns = sim->line_byte_ns;
+    }
+    return 0;
+}
+
+/* ---- power-up ------------------------------------------------------------------------------ */
+
+static int32_t start_mdeg(grobo_sim *sim, const grobo_sim_servo *servo, double init_rad)
+{
+    int32_t span_mdeg = servo->stop_max_mdeg - servo->stop_min_mdeg;
+    switch (sim->config.start) {
+    case GROBO_SIM_START_INIT:
+        return grobo_i_sim_mdeg_of_rad(init_rad);
+    case GROBO_SIM_START_ZERO:
+        return servo->stop_min_mdeg > 0   ? servo->stop_min_mdeg
+               : servo->stop_max_mdeg < 0 ? servo->stop_max_mdeg
+                                          : 0;
+    case GROBO_SIM_START_LIMP:
+        break;
+    }
+    return servo->stop_min_mdeg +
+           (int32_t)grobo_i_sim_random(sim, GROBO_I_SIM_CHANCE, (uint32_t)span_mdeg + 1);
+}
+
+static void init_servo(grobo_sim *sim, int index)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    const grobo_joint *joint = &sim->config.model->joints[index];
+    servo->stop_min_mdeg = grobo_i_sim_mdeg_of_rad(joint->min_rad);
+    servo->stop_max_mdeg = grobo_i_sim_mdeg_of_rad(joint->max_rad);
+    servo->from_mdeg = servo->to_mdeg = start_mdeg(sim, servo, joint->init_rad);
+    servo->start_us = servo->due_us = servo->settled_us = sim->now_us;
+    servo->saved_us = GROBO_NEVER_US;
+    servo->temperature_c = sim->config.ambient_c;
+    grobo_i_sim_factory(servo, joint->servo_model, joint->motor);
+    grobo_i_sim_boot(sim, index, 0);
+}
+
+static void use_defaults(grobo_sim_config *config)
+{
+    config->model = config->model == NULL ? &grobo_gr001_model : config->model;
+    config->baud_bps = config->baud_bps == 0 ? 115200 : config->baud_bps;
+    config->supply_mv = config->supply_mv == 0 ? GROBO_I_SIM_SUPPLY_MV : config->supply_mv;
+    config->ambient_c = config->ambient_c == 0 ? GROBO_I_SIM_AMBIENT_C : config->ambient_c;
+    if (config->board_silence_us == 0) {
+        config->board_silence_us = GROBO_I_SIM_SILENCE_US;
+    }
+}
+
+int grobo_sim_init(grobo_sim *sim, const grobo_sim_config *config, int64_t now_us)
+{
+    grobo_sim_config with = config == NULL ? (grobo_sim_config){0} : *config;
+    use_defaults(&with);
+    if (grobo_model_check(with.model) < 0 || with.baud_bps < LOWEST_BPS || with.ambient_c < -40 ||
+        with.ambient_c > 60) {
+        return GROBO_ERR_ARG;
+    }
+    if (with.model->n_joints > GROBO_SIM_SERVOS_MAX) {
+        return GROBO_ERR_CAP;
+    }
+    memset(sim, 0, sizeof *sim);
+    sim->config = with;
+    sim->now_us = now_us;
+    sim->now_ns = now_us * 1000;
+    sim->in.free_ns = sim->out.free_ns = sim->bus_heard_ns = sim->now_ns;
+    sim->supply_mv = with.supply_mv;
+    sim->n_servos = with.model->n_joints;
+    sim->bus_bps = GROBO_I_SIM_BUS_BPS;
+    sim->bus_byte_ns = byte_ns(sim, sim->bus_bps);
+    (void)grobo_sim_set_line_bps(sim, with.baud_bps);
+    grobo_board_parser_init(&sim->board, with.board_stall_us);
+    grobo_rs30x_parser_init(&sim->bus, GROBO_RS30X_ACCEPT_COMMANDS);
+    grobo_i_sim_seed(sim);
+    for (int i = 0; i < sim->n_servos; i++) {
+        init_servo(sim, i);
+    }
+    return 0;
+}
