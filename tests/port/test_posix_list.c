@@ -130,18 +130,31 @@ static void a_visit_can_be_ended(void **state)
     assert_int_equal(f.count, 1);
 }
 
+/* The name the system knows this process by; under valgrind it is not the program's. */
+static void own_name(char *name, size_t name_bytes)
+{
+    FILE *comm = fopen("/proc/self/comm", "r");
+
+    assert_non_null(comm);
+    assert_non_null(fgets(name, (int)name_bytes, comm));
+    assert_int_equal(fclose(comm), 0);
+    name[strcspn(name, "\n")] = '\0';
+}
+
 static void a_port_in_use_names_its_owner(void **state)
 {
+    char name[64];
     const grobo_port_ops *ops = grobo_port_serial_ops();
     grobo_port port;
     grobo_os_cause cause;
     found f = {.count = 0};
 
     (void)state;
+    own_name(name, sizeof name);
     assert_int_equal(ops->open(&port, line.device, 115200, &cause), GROBO_OK);
     assert_int_equal(list(&f), 2);
     assert_int_equal(f.info[1].owner_pid, getpid());
-    assert_int_equal(strncmp(f.info[1].owner_name, "test_posix_list", 15), 0);
+    assert_string_equal(f.info[1].owner_name, name);
     assert_int_equal(f.info[1].open_result, GROBO_ERR_BUSY);
     ops->close(&port);
 }

@@ -1,0 +1,162 @@
+/* SPDX-License-Identifier: MIT */
+/**
+ * @file session.h
+ * @brief A robot on an event loop: the engine of robot.h, pumped over a line.
+ *
+ * The line is a serial port, a connection, or a simulator in the same process. The session opens
+ * it, asks whether a robot answers, moves bytes both ways, calls the engine at its deadlines, and
+ * where so configured comes back when the line was lost. It adds nothing to what the engine
+ * decides: requests are the engine's, with the present time filled in.
+ *
+ * A session belongs to the thread that runs its loop. Every function may be called in its
+ * callbacks; closing and freeing take effect when the callback has returned.
+ */
+#ifndef GROBO_SESSION_H
+#define GROBO_SESSION_H
+
+#include <grobo/robot.h>
+#include <grobo/serial.h>
+#include <grobo/sim.h>
+
+GROBO_BEGIN_DECLS
+
+/** The device that is a simulator in the same process, in real time. */
+#define GROBO_DEVICE_SIM "sim"
+/** The device that is the first serial port on which a robot answers. */
+#define GROBO_DEVICE_AUTO "auto"
+
+/** Serial ports that GROBO_DEVICE_AUTO tries at most; USB adapters come first. */
+#define GROBO_SCAN_PORTS_MAX 32
+
+/** First and longest pause between two attempts to open a lost line again; they double. */
+#define GROBO_RECONNECT_FIRST_US 20000
+#define GROBO_RECONNECT_MAX_US 100000
+
+/** Where a session is. */
+typedef enum grobo_session_state {
+    GROBO_SESSION_CLOSED = 0, /**< nothing open */
+    GROBO_SESSION_OPENING,    /**< waits for a connection to stand */
+    GROBO_SESSION_CHECKING,   /**< waits for the robot's answer */
+    GROBO_SESSION_UP,         /**< a robot is there */
+    GROBO_SESSION_WAITING     /**< the line is lost, the next attempt has its time */
+} grobo_session_state;
+
+/** What is told of a session. */
+typedef enum grobo_session_event {
+    GROBO_SESSION_EVENT_UP,    /**< a robot is there, for the first time or again */
+    GROBO_SESSION_EVENT_LOST,  /**< the line was up and is gone; error says how */
+    GROBO_SESSION_EVENT_FAILED /**< grobo_session_open() came to nothing; error says why */
+} grobo_session_event;
+
+/** A robot on a loop. */
+typedef struct grobo_session grobo_session;
+
+/**
+ * Something happened to the line; always from the loop. After LOST without `reconnect`, and after
+ * FAILED, the session is closed. grobo_session_cause() says more.
+ */
+typedef void (*grobo_session_event_fn)(grobo_session *session, grobo_session_event event, int error,
+                                       void *ctx);
+
+/** What a session is made of. Zero means default. */
+typedef struct grobo_session_config {
+    struct event_base *base;         /**< borrowed; needed */
+    const char *device;              /**< copied; needed: a serial port, "tcp:HOST:PORT",
+                                          GROBO_DEVICE_SIM or GROBO_DEVICE_AUTO */
+    int baud_bps;                    /**< 0: GROBO_BAUD_DEFAULT_BPS */
+    const grobo_driver *driver;      /**< borrowed; NULL: GR001 through its board */
+    void *driver_ctx;                /**< borrowed, handed to the driver */
+    const grobo_robot_config *robot; /**< copied; NULL: defaults; baud_bps 0: the session's */
+    const grobo_sim_config *sim;     /**< copied; NULL: of the driver's model, wiring and baud */
+    bool skip_check;                 /**< up as soon as the line is open, whoever is there */
+    bool reconnect;                  /**< open a lost line again, until closed */
+    grobo_session_event_fn on_event; /**< the line's events, or NULL */
+    grobo_event_fn on_robot;         /**< the engine's events while up, or NULL */
+    grobo_serial_tap_fn on_tap;      /**< every byte, for a trace, or NULL */
+    void *ctx;                       /**< borrowed, handed to the callbacks */
+    const grobo_mem *mem;            /**< borrowed allocator; NULL: the C library's */
+} grobo_session_config;
+
+/**
+ * Makes a session, closed.
+ * @param[out] session freed with grobo_session_free().
+ * @return GROBO_OK, GROBO_ERR_ARG (what is needed is missing, driver or robot configuration bad),
+ *   GROBO_ERR_CAP (device name too long), GROBO_ERR_NOMEM.
+ */
+GROBO_API int grobo_session_new(const grobo_session_config *config, grobo_session **session);
+
+/** Closes and frees; NULL is fine. No exit policy is carried out: grobo_session_exit() before. */
+GROBO_API void grobo_session_free(grobo_session *session);
+
+/**
+ * Opens the device. GROBO_SESSION_EVENT_UP or _FAILED follows from the loop, unless an error is
+ * returned. FAILED comes with GROBO_ERR_TIMEOUT where nobody answers, for GROBO_DEVICE_AUTO with
+ * GROBO_ERR_NOTFOUND, and within 2 s a port.
+ * @return GROBO_OK, GROBO_ERR_STATE (not closed), GROBO_ERR_NOTFOUND (GROBO_DEVICE_AUTO: no
+ *   serial port to try), GROBO_ERR_NOMEM, or what grobo_serial_open() says.
+ */
+GROBO_API int grobo_session_open(grobo_session *session);
+
+/** Closes: a job ends with GROBO_ERR_UNPLUGGED. A simulator keeps its state for the next open. */
+GROBO_API void grobo_session_close(grobo_session *session);
+
+/** Where it is. */
+GROBO_API grobo_session_state grobo_session_get_state(const grobo_session *session);
+
+/** The device in use: what was configured; for GROBO_DEVICE_AUTO the port that is open. */
+GROBO_API const char *grobo_session_device(const grobo_session *session);
+
+/** What the operating system said of the last failure. Never NULL; valid until the next call. */
+GROBO_API const grobo_os_cause *grobo_session_cause(const grobo_session *session);
+
+/** The engine, to be asked; requests made of it directly need grobo_session_pump() after. */
+GROBO_API grobo_robot *grobo_session_robot(grobo_session *session);
+
+/** The simulator of GROBO_DEVICE_SIM, from the first open on; else NULL. */
+GROBO_API grobo_sim *grobo_session_sim(grobo_session *session);
+
+/** The serial port, which is closed for GROBO_DEVICE_SIM. It belongs to the session. */
+GROBO_API grobo_serial *grobo_session_serial(grobo_session *session);
+
+/** Lets the engine send what it has to, and asks it for its next deadline. */
+GROBO_API void grobo_session_pump(grobo_session *session);
+
+/** Bytes of both directions, in either kind of line, since the session was made. */
+GROBO_API void grobo_session_bytes(const grobo_session *session, uint64_t *tx_bytes,
+                                   uint64_t *rx_bytes);
+
+/* ---- requests ------------------------------------------------------------------------------
+ * Each is the function of robot.h of the same name, now, followed by grobo_session_pump(). All
+ * return GROBO_ERR_CLOSED while the session is not up. */
+
+/** @name See robot.h. */
+/**@{*/
+GROBO_API int grobo_session_check(grobo_session *session);
+GROBO_API int grobo_session_sense(grobo_session *session, grobo_joint_mask joints,
+                                  grobo_sense_kind kind);
+GROBO_API int grobo_session_torque(grobo_session *session, grobo_joint_mask joints,
+                                   grobo_torque mode);
+GROBO_API int grobo_session_move(grobo_session *session, const grobo_posture *target);
+GROBO_API int grobo_session_raw(grobo_session *session, const uint8_t *frame, size_t size);
+GROBO_API int grobo_session_registers(grobo_session *session, const grobo_register_io *io);
+GROBO_API int grobo_session_command(grobo_session *session, int id, grobo_servo_command command);
+GROBO_API int grobo_session_stored(grobo_session *session, grobo_stored_kind kind, int number);
+GROBO_API int grobo_session_exit(grobo_session *session, grobo_exit_policy policy);
+GROBO_API int grobo_session_estop(grobo_session *session);
+GROBO_API int grobo_session_reset(grobo_session *session);
+GROBO_API int grobo_session_cancel(grobo_session *session);
+GROBO_API int grobo_session_play(grobo_session *session, const grobo_clip *clip,
+                                 const grobo_play_options *options);
+GROBO_API int grobo_session_enqueue(grobo_session *session, const grobo_clip *clip,
+                                    const grobo_play_options *options);
+GROBO_API int grobo_session_pause(grobo_session *session);
+GROBO_API int grobo_session_resume(grobo_session *session);
+GROBO_API int grobo_session_stop(grobo_session *session, bool at_once);
+GROBO_API int grobo_session_seek(grobo_session *session, int64_t clip_us);
+GROBO_API int grobo_session_speed(grobo_session *session, int speed_pct);
+GROBO_API int grobo_session_free_mode(grobo_session *session, grobo_joint_mask joints, bool on);
+/**@}*/
+
+GROBO_END_DECLS
+
+#endif
