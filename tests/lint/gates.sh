@@ -45,7 +45,7 @@ refuses() {
 # compile SOURCE: to where the build puts its object.
 compile() {
     mkdir -p "build/$(dirname "$1")"
-    $cc -std=c11 -O2 -c -o "build/${1%.c}.o" "$1"
+    $cc -std=c11 -O2 ${2:-} -c -o "build/${1%.c}.o" "$1"
 }
 
 # ---- layers --------------------------------------------------------------------------------
@@ -143,6 +143,20 @@ C
 compile tools/grctl/main.c
 check 'layers: grctl is a user like any other' \
     refuses 'not a public function: grobo_i_secret' sh "$gates/layers.sh" build
+
+fresh
+sample src/core/a.c <<'C'
+#include <string.h>
+void grobo_a(char *p, const char *q, size_t n);
+void grobo_a(char *p, const char *q, size_t n)
+{
+    char text[20];
+    memcpy(text, q, n);
+    memcpy(p, text, sizeof text);
+}
+C
+compile src/core/a.c '-U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2'
+check 'layers: a fortified memcpy is a memcpy' sh "$gates/layers.sh" build
 
 # ---- symbols -------------------------------------------------------------------------------
 
