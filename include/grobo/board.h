@@ -60,8 +60,7 @@ GROBO_API int grobo_board_send(const uint8_t *packet, size_t n, uint8_t *buf, si
  * @return size; GROBO_ERR_ARG for n = 0 or r = 0, GROBO_ERR_CAP when n + 1 is above
  *         GROBO_RELAY_MAX_BYTES
  */
-GROBO_API int grobo_board_ask(const uint8_t *packet, size_t n, uint8_t r, uint8_t *buf,
-                              size_t cap);
+GROBO_API int grobo_board_ask(const uint8_t *packet, size_t n, uint8_t r, uint8_t *buf, size_t cap);
 
 /**
  * Relays a whole command packet by SEND or ASK, whichever its flags call for.
@@ -140,8 +139,8 @@ GROBO_API int grobo_frame_goals(grobo_wiring wiring, const grobo_rs30x_goal *goa
                                 uint8_t *buf, size_t cap);
 
 /** Torque of one servo, or of all with id 255 (11 bytes through the board). */
-GROBO_API int grobo_frame_torque(grobo_wiring wiring, uint8_t id, grobo_torque torque,
-                                 uint8_t *buf, size_t cap);
+GROBO_API int grobo_frame_torque(grobo_wiring wiring, uint8_t id, grobo_torque torque, uint8_t *buf,
+                                 size_t cap);
 
 /** Torques (values of grobo_torque) of n servos in one frame (50 bytes for 20). */
 GROBO_API int grobo_frame_torques(grobo_wiring wiring, const grobo_rs30x_byte *torques, size_t n,

@@ -29,7 +29,8 @@
  *   the next request that wants a reply. An ACK is one byte without a name: it must be the first
  *   byte after the request. And for hold_us after an attempt that got no reply, no other
  *   transaction that the same reply would satisfy is sent, unless a reply to a later request has
- *   come meanwhile (the line keeps the order, so the lost one cannot come any more).
+ *   come meanwhile (the line keeps the order, so the lost one cannot come any more). Retries of
+ *   the same transaction do not wait: a late reply to its first attempt is a reply to it.
  *
  * The bus is not thread safe: one thread, or the caller's lock. Callbacks run inside rx, step and
  * the cancel functions; in a callback submit, cancel, reserve and the questions are allowed, also
@@ -86,23 +87,22 @@ struct grobo_txn {
     int64_t sent_us;         /**< out: when the last attempt was given out; -1: never */
     /* private */
     grobo_txn *next_;
-    uint8_t attempt_; /* attempts begun */
-    uint8_t state_;
-    int16_t error_; /* of the last attempt that failed */
+    uint8_t attempts_; /* begun */
+    bool pending_;     /* belongs to a bus */
 };
 
 /** The line's physics. Zero means default. */
 typedef struct grobo_bus_config {
-    grobo_wiring wiring;       /**< default: through the board */
-    uint32_t baud_bps;         /**< of the host's line; default 115200 */
-    uint32_t servo_baud_bps;   /**< of the bus behind the board; default 115200 */
-    uint32_t return_delay_us;  /**< of the servos, GROBO_RS30X_DELAY_US(n); default 100 */
-    uint32_t margin_us;        /**< time given above the wire time, fixed; default: learnt, between
+    grobo_wiring wiring;      /**< default: through the board */
+    uint32_t baud_bps;        /**< of the host's line; default 115200 */
+    uint32_t servo_baud_bps;  /**< of the bus behind the board; default 115200 */
+    uint32_t return_delay_us; /**< of the servos, GROBO_RS30X_DELAY_US(n); default 100 */
+    uint32_t margin_us;       /**< time given above the wire time, fixed; default: learnt, between
                                     GROBO_BUS_MARGIN_MIN_US and GROBO_BUS_MARGIN_MAX_US */
-    uint32_t quiet_us;         /**< silence after a failure; default GROBO_BUS_QUIET_US */
-    uint32_t hold_us;          /**< see above; default GROBO_BUS_HOLD_US */
-    bool echo;                 /**< the adapter returns what is sent: check and remove it */
-    bool overlap;              /**< the board takes a frame while it still forwards the one before;
+    uint32_t quiet_us;        /**< silence after a failure; default GROBO_BUS_QUIET_US */
+    uint32_t hold_us;         /**< see above; default GROBO_BUS_HOLD_US */
+    bool echo;                /**< the adapter returns what is sent: check and remove it */
+    bool overlap;             /**< the board takes a frame while it still forwards the one before;
                                     nobody documented that, so by default it is not relied upon */
 } grobo_bus_config;
 
@@ -140,35 +140,49 @@ typedef struct grobo_bus_stats {
     uint32_t canceled;     /**< transactions taken back */
 } grobo_bus_stats;
 
+/** What a bus is doing. */
+typedef enum grobo_bus_phase {
+    GROBO_BUS_IDLE,    /**< nothing on the wire */
+    GROBO_BUS_GOING,   /**< a frame on its way that nothing will answer */
+    GROBO_BUS_ECHOING, /**< waits for the echo of its frame */
+    GROBO_BUS_AWAITING /**< waits for a reply */
+} grobo_bus_phase;
+
+/** A reply that was lost and may yet come. */
+typedef struct grobo_bus_hold {
+    int64_t until_us; /**< after this time it is taken for granted that it will not */
+    grobo_reply reply;
+} grobo_bus_hold;
+
 /** A bus. The struct is open so that it needs no heap; read stats, leave the rest. */
 typedef struct grobo_bus {
     grobo_bus_stats stats; /**< read freely */
     /* private */
-    grobo_bus_config config;
+    grobo_bus_config config; /* no zeros left in it, but margin_us */
     grobo_rs30x_parser parser;
     grobo_txn *head[GROBO_PRIORITIES];
     grobo_txn *tail[GROBO_PRIORITIES];
-    grobo_txn *active;   /* on the wire */
+    grobo_txn *active; /* on the wire; NULL when idle */
+    grobo_bus_phase phase;
     int64_t over_us;     /* when the active one is over if all goes well */
-    int64_t limit_us;    /* when it has failed */
+    int64_t limit_us;    /* when it has failed; when it is over if nothing answers it */
     int64_t free_us;     /* when the line is free for the next frame */
     int64_t servo_us;    /* when the bus behind the board is free */
     int64_t quiet_us;    /* when the silence after a failure is long enough */
     int64_t quiet_by_us; /* when it is long enough in any case */
     int64_t reserve_us;
     int64_t reserve_end_us;
-    struct {
-        int64_t until_us;
-        grobo_reply reply;
-    } hold[GROBO_BUS_HOLDS];
-    int32_t overhead_us;  /* smoothed: how much later than computed replies come */
-    int32_t deviation_us; /* smoothed deviation of that */
-    uint32_t bad_sums_before;
-    uint16_t waiting;   /* transactions in the queues */
-    uint16_t got_bytes; /* since the active frame was sent */
+    grobo_bus_hold hold[GROBO_BUS_HOLDS];
+    int32_t overhead_us;      /* smoothed: how much later than computed replies come */
+    int32_t deviation_us;     /* smoothed deviation of that */
+    uint32_t bad_sums_before; /* the parser's counters when the active frame was sent */
+    uint32_t dropped_before;
+    uint16_t waiting; /* transactions in the queues */
+    uint16_t
+        got_bytes; /* since the active frame was sent, echo and strangers' replies not counted */
     uint8_t echo_bytes; /* of its echo seen so far */
     uint8_t next_hold;
-    bool learnt;
+    bool learnt; /* overhead_us and deviation_us come from a reply */
 } grobo_bus;
 
 /**
@@ -180,8 +194,7 @@ GROBO_API int grobo_bus_init(grobo_bus *bus, const grobo_bus_config *config);
 /** Fills a transaction with a frame for this wiring and the reply that the frame calls for.
  *  Priority user, two retries, computed timeout, no callback.
  *  @return GROBO_OK or the errors of grobo_frame_reply */
-GROBO_API int grobo_txn_init(grobo_txn *txn, grobo_wiring wiring, const uint8_t *frame,
-                             size_t n);
+GROBO_API int grobo_txn_init(grobo_txn *txn, grobo_wiring wiring, const uint8_t *frame, size_t n);
 
 /**
  * Puts a transaction at the end of its priority's queue.
@@ -255,8 +268,7 @@ typedef struct grobo_bus_cost {
 } grobo_bus_cost;
 
 /** What a transaction costs on this bus, whether submitted or not. */
-GROBO_API void grobo_bus_cost_of(const grobo_bus *bus, const grobo_txn *txn,
-                                 grobo_bus_cost *cost);
+GROBO_API void grobo_bus_cost_of(const grobo_bus *bus, const grobo_txn *txn, grobo_bus_cost *cost);
 
 GROBO_END_DECLS
 

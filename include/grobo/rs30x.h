@@ -108,7 +108,7 @@ typedef enum grobo_rs30x_address {
     GROBO_RS30X_##name = (address),
     GROBO_RS30X_REGISTER_LIST(GROBO_RS30X_ADDRESS_ENUM)
 #undef GROBO_RS30X_ADDRESS_ENUM
-    GROBO_RS30X_ADDRESS_END = GROBO_REGISTERS /**< one past the last address */
+        GROBO_RS30X_ADDRESS_END = GROBO_REGISTERS /**< one past the last address */
 } grobo_rs30x_address;
 
 /** Who may write a register. */

@@ -119,8 +119,8 @@ int grobo_rs30x_ping(uint8_t id, grobo_rs30x_ping_form form, uint8_t *buf, size_
 static int build_write(const uint8_t *target, const uint8_t *data, size_t n, uint8_t *buf,
                        size_t cap)
 {
-    grobo_rs30x_packet packet = {
-        GROBO_RS30X_SHORT, target[0], target[1], target[2], (uint8_t)n, 1, data, n};
+    grobo_rs30x_packet packet = {GROBO_RS30X_SHORT, target[0], target[1], target[2],
+                                 (uint8_t)n,        1,         data,      n};
     if (packet.address + n > GROBO_REGISTERS) {
         return GROBO_ERR_ARG;
     }
@@ -147,8 +147,9 @@ int grobo_rs30x_factory_reset(uint8_t id, grobo_rs30x_reset_form form, uint8_t *
 {
     static const uint8_t data = 0xFF;
     bool bare = form == GROBO_RS30X_RESET_BARE;
-    grobo_rs30x_packet packet = {GROBO_RS30X_SHORT, id, GROBO_RS30X_FACTORY, 0xFF,
-                                 0xFF,              0,  bare ? NULL : &data, bare ? 0 : 1};
+    grobo_rs30x_packet packet = {
+        GROBO_RS30X_SHORT,   id,          GROBO_RS30X_FACTORY, 0xFF, 0xFF, 0,
+        bare ? NULL : &data, bare ? 0 : 1};
     return grobo_rs30x_build(&packet, buf, cap);
 }
 
@@ -186,14 +187,9 @@ static int check_long(size_t n, size_t each, size_t cap)
 /* Completes a long packet whose data lies in place. */
 static int finish_long(uint8_t address, size_t each, size_t n, uint8_t *buf, size_t cap)
 {
-    grobo_rs30x_packet packet = {GROBO_RS30X_LONG,
-                                 0,
-                                 0,
-                                 address,
-                                 (uint8_t)each,
-                                 (uint8_t)n,
-                                 buf + GROBO_I_AT_DATA,
-                                 n * each};
+    grobo_rs30x_packet packet = {
+        GROBO_RS30X_LONG,      0,       0, address, (uint8_t)each, (uint8_t)n,
+        buf + GROBO_I_AT_DATA, n * each};
     return grobo_rs30x_build(&packet, buf, cap);
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The memory map as a table, and the codes in it. In a file of its own: firmware need not link it. */
+/* The memory map as a table, and its codes. A file of its own: firmware need not link it. */
 #include <string.h>
 
 #include <grobo/rs30x.h>
@@ -7,14 +7,21 @@
 #include "core/bytes.h"
 
 #define ROW(name, text, address, bytes, sign, access, unit, min, max, kept)                        \
-    {text, unit,      (min), (max), (address), (bytes), (sign) != 0, GROBO_RS30X_ACCESS_##access,  \
+    {text,                                                                                         \
+     unit,                                                                                         \
+     (min),                                                                                        \
+     (max),                                                                                        \
+     (address),                                                                                    \
+     (bytes),                                                                                      \
+     (sign) != 0,                                                                                  \
+     GROBO_RS30X_ACCESS_##access,                                                                  \
      GROBO_RS30X_KEPT_##kept},
 
 static const grobo_rs30x_register rows[] = {GROBO_RS30X_REGISTER_LIST(ROW)};
 
 #undef ROW
 
-static const int32_t bauds_bps[] = {9600,   14400,  19200,  28800,  38400, 57600,
+static const int32_t bauds_bps[] = {9600,  14400,  19200,  28800,  38400, 57600,
                                     76800, 115200, 153600, 230400, 460800};
 
 size_t grobo_rs30x_register_count(void)

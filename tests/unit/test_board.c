@@ -56,7 +56,7 @@ static void single_joint_frames(void **state)
 static void all_joints_in_one_frame(void **state)
 {
     (void)state;
-    static const int16_t init_ddeg[JOINTS] = {0, 0,   200, 0,    -200, -200, 0, 200,  0,   200,
+    static const int16_t init_ddeg[JOINTS] = {0, 0,    200,  0, -200, -200, 0, 200, 0,   200,
                                               0, -400, -200, 0, 0,    -200, 0, 400, 200, 0};
     uint8_t b[MAX];
     grobo_rs30x_goal goals[JOINTS];

@@ -84,8 +84,7 @@ static void special_commands_are_those_of_the_manuals(void **state)
                  "FA AF 01 01 FF 01 00 FE");
     expect_bytes(grobo_rs30x_ping(1, GROBO_RS30X_PING_FF_0_0, b, MAX), b,
                  "FA AF 01 01 FF 00 00 FF");
-    expect_bytes(grobo_rs30x_ping(1, GROBO_RS30X_PING_0_0_0, b, MAX), b,
-                 "FA AF 01 01 00 00 00 00");
+    expect_bytes(grobo_rs30x_ping(1, GROBO_RS30X_PING_0_0_0, b, MAX), b, "FA AF 01 01 00 00 00 00");
 }
 
 static void returns_and_acks_are_built_for_the_other_end(void **state)
@@ -94,7 +93,8 @@ static void returns_and_acks_are_built_for_the_other_end(void **state)
     static const uint8_t data[] = {0x28, 0xFF, 0x00, 0x00, 0x3E, 0x00, 0x0C, 0x00};
     uint8_t b[MAX];
     grobo_rs30x_packet p = {GROBO_RS30X_RETURN, 1, 0, 42, sizeof data, 1, data, sizeof data};
-    expect_bytes(grobo_rs30x_build(&p, b, MAX), b, "FD DF 01 00 2A 08 01 28 FF 00 00 3E 00 0C 00 C7");
+    expect_bytes(grobo_rs30x_build(&p, b, MAX), b,
+                 "FD DF 01 00 2A 08 01 28 FF 00 00 3E 00 0C 00 C7");
     p.kind = GROBO_RS30X_ACK_BYTE;
     expect_bytes(grobo_rs30x_build(&p, b, MAX), b, "07");
     assert_int_equal(grobo_rs30x_build(&p, b, 0), GROBO_ERR_SPACE);

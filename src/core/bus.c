@@ -1,0 +1,528 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Transactions on a half-duplex line. One is active at a time, in one of three phases; it leaves
+ * by finish(), which hands it back, or by fail(), which may put it in front of its queue again.
+ */
+#include <grobo/bus.h>
+
+#include <string.h>
+
+#include "core/bus_time.h"
+
+enum {
+    BAUD_DEFAULT_BPS = 115200,
+    BAUD_MIN_BPS = 1200,
+    RETURN_DELAY_US = GROBO_RS30X_DELAY_US(0),
+    RETRIES_DEFAULT = 2
+};
+
+/* ---- queues -------------------------------------------------------------------------------- */
+
+static void put_last(grobo_bus *bus, grobo_txn *txn)
+{
+    txn->next_ = NULL;
+    if (bus->tail[txn->priority] == NULL) {
+        bus->head[txn->priority] = txn;
+    } else {
+        bus->tail[txn->priority]->next_ = txn;
+    }
+    bus->tail[txn->priority] = txn;
+    bus->waiting++;
+}
+
+static void put_first(grobo_bus *bus, grobo_txn *txn)
+{
+    txn->next_ = bus->head[txn->priority];
+    bus->head[txn->priority] = txn;
+    if (bus->tail[txn->priority] == NULL) {
+        bus->tail[txn->priority] = txn;
+    }
+    bus->waiting++;
+}
+
+/* True if it was there. */
+static bool take_out(grobo_bus *bus, grobo_txn *txn)
+{
+    grobo_txn *before = NULL;
+    grobo_txn *at = bus->head[txn->priority];
+    while (at != NULL && at != txn) {
+        before = at;
+        at = at->next_;
+    }
+    if (at == NULL) {
+        return false;
+    }
+    if (before == NULL) {
+        bus->head[txn->priority] = txn->next_;
+    } else {
+        before->next_ = txn->next_;
+    }
+    if (bus->tail[txn->priority] == txn) {
+        bus->tail[txn->priority] = before;
+    }
+    bus->waiting--;
+    return true;
+}
+
+/* ---- ends of a transaction ----------------------------------------------------------------- */
+
+/* The last touch: after the callback the transaction may not exist any more. */
+static void finish(grobo_bus *bus, grobo_txn *txn, int result, const grobo_rs30x_packet *reply)
+{
+    if (bus->active == txn) {
+        bus->active = NULL;
+        bus->phase = GROBO_BUS_IDLE;
+    }
+    txn->pending_ = false;
+    if (txn->done != NULL) {
+        txn->done(txn->ctx, txn, result, reply);
+    }
+}
+
+/*
+ * The line has talked out of turn, or has failed: it must be quiet before it is asked again. Where
+ * it babbles on, a request goes out all the same when the longest silence asked for is over.
+ */
+static void ask_for_quiet(grobo_bus *bus, int64_t now_us)
+{
+    bool kept_quiet = now_us >= bus->quiet_us && bus->quiet_us < bus->quiet_by_us;
+    if (bus->quiet_by_us == 0 || kept_quiet) {
+        bus->quiet_by_us = now_us + GROBO_BUS_QUIET_MAX_US;
+    }
+    bus->quiet_us = grobo_i_sooner(now_us + bus->config.quiet_us, bus->quiet_by_us);
+}
+
+/* An attempt of the active transaction has failed. */
+static void fail(grobo_bus *bus, int64_t now_us, int error)
+{
+    grobo_txn *txn = bus->active;
+    if (error == GROBO_ERR_TIMEOUT || error == GROBO_ERR_SHORT) {
+        bus->stats.timeouts++;
+    }
+    if (error != GROBO_ERR_CHECKSUM) {
+        grobo_i_bus_hold(bus, &txn->reply, now_us);
+    }
+    ask_for_quiet(bus, now_us);
+    if (txn->attempts_ <= txn->retries) {
+        bus->active = NULL;
+        bus->phase = GROBO_BUS_IDLE;
+        put_first(bus, txn);
+    } else {
+        bus->stats.failed++;
+        finish(bus, txn, error, NULL);
+    }
+}
+
+/* ---- receiving ----------------------------------------------------------------------------- */
+
+static void count_late(grobo_bus *bus, int64_t now_us, size_t n)
+{
+    bus->stats.late_bytes += (uint32_t)n;
+    ask_for_quiet(bus, now_us);
+}
+
+static void succeed(grobo_bus *bus, int64_t now_us, const grobo_rs30x_packet *reply)
+{
+    grobo_txn *txn = bus->active;
+    bus->stats.replies++;
+    if (txn->attempts_ == 1) {
+        grobo_i_bus_learn(bus, now_us);
+        grobo_i_bus_release_holds(bus);
+    } else {
+        /* This may have been the late reply to an earlier attempt: one more may come. */
+        grobo_i_bus_hold(bus, &txn->reply, now_us);
+    }
+    finish(bus, txn, GROBO_OK, reply);
+}
+
+static void refuse(grobo_bus *bus, const grobo_rs30x_packet *reply)
+{
+    bus->stats.refusals++;
+    bus->stats.failed++;
+    finish(bus, bus->active, GROBO_ERR_NACK, reply);
+}
+
+static void take_return(grobo_bus *bus, int64_t now_us, const grobo_rs30x_packet *p)
+{
+    const grobo_reply *want = &bus->active->reply;
+    bool from_whom = want->kind == GROBO_REPLY_RETURN && p->id == want->id;
+    if (from_whom && (p->flags & GROBO_RS30X_STATUS_REFUSED) != 0) {
+        refuse(bus, p);
+    } else if (from_whom && p->address == want->address && p->length == want->length) {
+        succeed(bus, now_us, p);
+    } else {
+        size_t size = p->data_bytes + GROBO_RS30X_OVERHEAD_BYTES;
+        bus->stats.late_frames++;
+        bus->stats.late_bytes += (uint32_t)size;
+        bus->got_bytes = (uint16_t)(bus->got_bytes - size);
+    }
+}
+
+/* One byte without a name is believed only when no rubbish came before it. */
+static void take_ack(grobo_bus *bus, int64_t now_us, const grobo_rs30x_packet *p)
+{
+    if (bus->parser.framer.stats.dropped_bytes != bus->dropped_before) {
+        fail(bus, now_us, GROBO_ERR_MISMATCH);
+    } else if (p->kind == GROBO_RS30X_ACK_BYTE) {
+        succeed(bus, now_us, p);
+    } else {
+        refuse(bus, p);
+    }
+}
+
+/* As many bytes as the reply has were received and none of them can belong to it any more. */
+static void give_up_on_rubbish(grobo_bus *bus, int64_t now_us)
+{
+    if (bus->got_bytes < grobo_reply_bytes(&bus->active->reply) ||
+        grobo_rs30x_parser_pending(&bus->parser) > 0) {
+        return;
+    }
+    bool bad_sum = bus->parser.framer.stats.bad_sums != bus->bad_sums_before;
+    fail(bus, now_us, bad_sum ? GROBO_ERR_CHECKSUM : GROBO_ERR_MISMATCH);
+}
+
+/* Bytes taken: all, or those up to the end of the transaction. */
+static size_t take_reply(grobo_bus *bus, int64_t now_us, const uint8_t *bytes, size_t n)
+{
+    grobo_rs30x_packet p;
+    size_t took = grobo_rs30x_parser_feed(&bus->parser, bytes, n);
+    bus->got_bytes = (uint16_t)(bus->got_bytes + took);
+    while (bus->phase == GROBO_BUS_AWAITING && grobo_rs30x_parser_next(&bus->parser, &p) > 0) {
+        bus->stats.rx_frames++;
+        if (p.kind == GROBO_RS30X_RETURN) {
+            take_return(bus, now_us, &p);
+        } else {
+            take_ack(bus, now_us, &p);
+        }
+    }
+    if (bus->phase == GROBO_BUS_AWAITING) {
+        give_up_on_rubbish(bus, now_us);
+    }
+    if (bus->phase != GROBO_BUS_AWAITING) {
+        grobo_rs30x_parser_reset(&bus->parser);
+    }
+    bus->stats.bad_sums = bus->parser.framer.stats.bad_sums;
+    bus->stats.resync_bytes = bus->parser.framer.stats.dropped_bytes;
+    return took;
+}
+
+static size_t take_echo(grobo_bus *bus, int64_t now_us, const uint8_t *bytes, size_t n)
+{
+    grobo_txn *txn = bus->active;
+    size_t left = (size_t)(txn->frame_bytes - bus->echo_bytes);
+    size_t took = n < left ? n : left;
+    if (memcmp(bytes, txn->frame + bus->echo_bytes, took) != 0) {
+        bus->stats.bad_echoes++;
+        fail(bus, now_us, GROBO_ERR_MISMATCH);
+        return 0;
+    }
+    bus->echo_bytes = (uint8_t)(bus->echo_bytes + took);
+    if (bus->echo_bytes == txn->frame_bytes) {
+        if (txn->reply.kind == GROBO_REPLY_NONE) {
+            finish(bus, txn, GROBO_OK, NULL);
+        } else {
+            bus->phase = GROBO_BUS_AWAITING;
+        }
+    }
+    return took;
+}
+
+void grobo_bus_rx(grobo_bus *bus, int64_t now_us, const uint8_t *bytes, size_t n)
+{
+    bus->stats.rx_bytes += (uint32_t)n;
+    while (n > 0) {
+        size_t took = n;
+        switch (bus->phase) {
+        case GROBO_BUS_IDLE:
+        case GROBO_BUS_GOING:
+            count_late(bus, now_us, n);
+            break;
+        case GROBO_BUS_ECHOING:
+            took = take_echo(bus, now_us, bytes, n);
+            break;
+        case GROBO_BUS_AWAITING:
+            took = take_reply(bus, now_us, bytes, n);
+            break;
+        }
+        bytes += took;
+        n -= took;
+    }
+}
+
+/* ---- time ---------------------------------------------------------------------------------- */
+
+/* While something urgent waits, the active one gets no more time than its reply needs. */
+static int64_t limit_of_active(const grobo_bus *bus)
+{
+    for (int p = GROBO_PRIORITY_STOP; p <= GROBO_PRIORITY_MOTION; p++) {
+        if (bus->head[p] != NULL && (int)bus->active->priority > p) {
+            return grobo_i_sooner(bus->limit_us, bus->over_us + bus->overhead_us);
+        }
+    }
+    return bus->limit_us;
+}
+
+static bool is_stale(const grobo_txn *txn, int64_t now_us)
+{
+    return txn->start_by_us != 0 && now_us > txn->start_by_us;
+}
+
+static void end_stale(grobo_bus *bus, int64_t now_us)
+{
+    for (int p = 0; p < GROBO_PRIORITIES; p++) {
+        grobo_txn *txn = bus->head[p];
+        while (txn != NULL && is_stale(txn, now_us)) {
+            take_out(bus, txn);
+            bus->stats.failed++;
+            finish(bus, txn, GROBO_ERR_STALE, NULL);
+            txn = bus->head[p];
+        }
+    }
+}
+
+void grobo_bus_step(grobo_bus *bus, int64_t now_us)
+{
+    switch (bus->phase) {
+    case GROBO_BUS_IDLE:
+        break;
+    case GROBO_BUS_GOING:
+        if (now_us >= bus->limit_us) {
+            finish(bus, bus->active, GROBO_OK, NULL);
+        }
+        break;
+    case GROBO_BUS_ECHOING:
+    case GROBO_BUS_AWAITING:
+        if (now_us >= limit_of_active(bus)) {
+            bool some = bus->got_bytes > 0 || bus->echo_bytes > 0;
+            fail(bus, now_us, some ? GROBO_ERR_SHORT : GROBO_ERR_TIMEOUT);
+        }
+        break;
+    }
+    end_stale(bus, now_us);
+}
+
+int64_t grobo_bus_deadline(const grobo_bus *bus, int64_t now_us)
+{
+    int64_t at_us = bus->phase == GROBO_BUS_IDLE    ? GROBO_NEVER_US
+                    : bus->phase == GROBO_BUS_GOING ? bus->limit_us
+                                                    : limit_of_active(bus);
+    for (int p = 0; p < GROBO_PRIORITIES; p++) {
+        const grobo_txn *txn = bus->head[p];
+        if (txn == NULL) {
+            continue;
+        }
+        if (txn->start_by_us != 0) {
+            at_us = grobo_i_sooner(at_us, txn->start_by_us + 1);
+        }
+        if (bus->phase == GROBO_BUS_IDLE) {
+            at_us = grobo_i_sooner(at_us, grobo_i_bus_start_at(bus, now_us, txn));
+        }
+    }
+    return at_us;
+}
+
+/* ---- sending ------------------------------------------------------------------------------- */
+
+static void start_clock(grobo_bus *bus, const grobo_txn *txn, int64_t now_us)
+{
+    grobo_bus_cost cost;
+    grobo_bus_cost_of(bus, txn, &cost);
+    bus->over_us = grobo_i_bus_over_at(bus, now_us, &cost);
+    bool passing = txn->reply.kind == GROBO_REPLY_NONE && bus->config.overlap;
+    bus->free_us = passing ? now_us + cost.request_us : bus->over_us;
+    if (cost.servo_us > 0) {
+        bus->servo_us = bus->over_us - cost.reply_us;
+    }
+    if (bus->phase == GROBO_BUS_GOING) {
+        bus->limit_us = bus->free_us;
+    } else if (txn->timeout_us != 0) {
+        bus->limit_us = now_us + txn->timeout_us;
+    } else {
+        bus->limit_us = bus->over_us + grobo_i_bus_margin_us(bus, txn->attempts_);
+    }
+}
+
+static void start(grobo_bus *bus, grobo_txn *txn, int64_t now_us)
+{
+    bool wants_reply = txn->reply.kind != GROBO_REPLY_NONE;
+    bus->active = txn;
+    bus->phase = bus->config.echo ? GROBO_BUS_ECHOING
+                 : wants_reply    ? GROBO_BUS_AWAITING
+                                  : GROBO_BUS_GOING;
+    if (txn->attempts_ > 0) {
+        bus->stats.retries++;
+    }
+    txn->attempts_++;
+    txn->sent_us = now_us;
+    bus->parser.accept = GROBO_RS30X_ACCEPT_RETURNS;
+    if (txn->reply.kind == GROBO_REPLY_ACK) {
+        bus->parser.accept |= GROBO_RS30X_ACCEPT_ACKS;
+    }
+    bus->bad_sums_before = bus->parser.framer.stats.bad_sums;
+    bus->dropped_before = bus->parser.framer.stats.dropped_bytes;
+    bus->got_bytes = 0;
+    bus->echo_bytes = 0;
+    bus->quiet_by_us = 0;
+    bus->stats.tx_frames++;
+    bus->stats.tx_bytes += txn->frame_bytes;
+    start_clock(bus, txn, now_us);
+}
+
+/* The first of the highest priority that may start now. */
+static grobo_txn *choose(const grobo_bus *bus, int64_t now_us)
+{
+    for (int p = 0; p < GROBO_PRIORITIES; p++) {
+        grobo_txn *txn = bus->head[p];
+        if (txn != NULL && !is_stale(txn, now_us) &&
+            grobo_i_bus_start_at(bus, now_us, txn) <= now_us) {
+            return txn;
+        }
+    }
+    return NULL;
+}
+
+int grobo_bus_tx(grobo_bus *bus, int64_t now_us, uint8_t *buf, size_t cap)
+{
+    grobo_txn *txn = bus->phase == GROBO_BUS_IDLE ? choose(bus, now_us) : NULL;
+    if (txn == NULL) {
+        return 0;
+    }
+    if (txn->frame_bytes > cap) {
+        return GROBO_ERR_SPACE;
+    }
+    take_out(bus, txn);
+    memcpy(buf, txn->frame, txn->frame_bytes);
+    start(bus, txn, now_us);
+    return txn->frame_bytes;
+}
+
+/* ---- the caller's side --------------------------------------------------------------------- */
+
+static uint32_t or_default(uint32_t value, uint32_t fallback)
+{
+    return value != 0 ? value : fallback;
+}
+
+int grobo_bus_init(grobo_bus *bus, const grobo_bus_config *config)
+{
+    static const grobo_bus_config all_defaults;
+    grobo_bus_config c = config != NULL ? *config : all_defaults;
+    c.baud_bps = or_default(c.baud_bps, BAUD_DEFAULT_BPS);
+    c.servo_baud_bps = or_default(c.servo_baud_bps, BAUD_DEFAULT_BPS);
+    c.return_delay_us = or_default(c.return_delay_us, RETURN_DELAY_US);
+    c.quiet_us = or_default(c.quiet_us, GROBO_BUS_QUIET_US);
+    c.hold_us = or_default(c.hold_us, GROBO_BUS_HOLD_US);
+    if (c.baud_bps < BAUD_MIN_BPS || c.servo_baud_bps < BAUD_MIN_BPS ||
+        (c.echo && c.wiring == GROBO_WIRING_BOARD)) {
+        return GROBO_ERR_ARG;
+    }
+    memset(bus, 0, sizeof *bus);
+    bus->config = c;
+    bus->phase = GROBO_BUS_IDLE;
+    bus->reserve_us = GROBO_NEVER_US;
+    bus->reserve_end_us = GROBO_NEVER_US;
+    grobo_rs30x_parser_init(&bus->parser, 0);
+    return GROBO_OK;
+}
+
+int grobo_txn_init(grobo_txn *txn, grobo_wiring wiring, const uint8_t *frame, size_t n)
+{
+    grobo_reply reply;
+    int result = grobo_frame_reply(wiring, frame, n, &reply);
+    if (result < 0) {
+        return result;
+    }
+    memset(txn, 0, sizeof *txn);
+    txn->frame = frame;
+    txn->frame_bytes = (uint8_t)n;
+    txn->retries = RETRIES_DEFAULT;
+    txn->priority = GROBO_PRIORITY_USER;
+    txn->reply = reply;
+    txn->sent_us = -1;
+    return GROBO_OK;
+}
+
+int grobo_bus_submit(grobo_bus *bus, grobo_txn *txn)
+{
+    if (txn->pending_) {
+        return GROBO_ERR_BUSY;
+    }
+    if (txn->frame == NULL || txn->frame_bytes == 0 ||
+        txn->frame_bytes > GROBO_RS30X_PACKET_MAX_BYTES ||
+        (unsigned)txn->priority >= GROBO_PRIORITIES) {
+        return GROBO_ERR_ARG;
+    }
+    if (bus->waiting >= GROBO_BUS_QUEUE_MAX && txn->priority != GROBO_PRIORITY_STOP) {
+        return GROBO_ERR_FULL;
+    }
+    txn->pending_ = true;
+    txn->attempts_ = 0;
+    txn->sent_us = -1;
+    put_last(bus, txn);
+    return GROBO_OK;
+}
+
+bool grobo_txn_is_pending(const grobo_txn *txn)
+{
+    return txn->pending_;
+}
+
+/* Takes away the active transaction; its reply may come and must find nobody. */
+static void abandon_active(grobo_bus *bus, int result)
+{
+    grobo_txn *txn = bus->active;
+    if (bus->phase == GROBO_BUS_AWAITING || bus->phase == GROBO_BUS_ECHOING) {
+        grobo_i_bus_hold(bus, &txn->reply, bus->over_us);
+    }
+    bus->stats.canceled++;
+    finish(bus, txn, result, NULL);
+}
+
+int grobo_bus_cancel(grobo_bus *bus, grobo_txn *txn)
+{
+    if (bus->active == txn) {
+        abandon_active(bus, GROBO_ERR_CANCELED);
+        return GROBO_OK;
+    }
+    if (!txn->pending_ || !take_out(bus, txn)) {
+        return GROBO_ERR_NOTFOUND;
+    }
+    bus->stats.canceled++;
+    finish(bus, txn, GROBO_ERR_CANCELED, NULL);
+    return GROBO_OK;
+}
+
+static int length_of(const grobo_txn *txn)
+{
+    int n = 0;
+    for (; txn != NULL; txn = txn->next_) {
+        n++;
+    }
+    return n;
+}
+
+int grobo_bus_cancel_all(grobo_bus *bus, unsigned priority_bits, int result)
+{
+    int ended = 0;
+    if (bus->active != NULL && (priority_bits & GROBO_PRIORITY_BIT(bus->active->priority)) != 0) {
+        abandon_active(bus, result);
+        ended++;
+    }
+    for (int p = 0; p < GROBO_PRIORITIES; p++) {
+        /* Counted first: what a callback submits again goes to the end, and stays. */
+        int n = (priority_bits & GROBO_PRIORITY_BIT(p)) != 0 ? length_of(bus->head[p]) : 0;
+        for (; n > 0 && bus->head[p] != NULL; n--) {
+            grobo_txn *txn = bus->head[p];
+            take_out(bus, txn);
+            bus->stats.canceled++;
+            finish(bus, txn, result, NULL);
+            ended++;
+        }
+    }
+    return ended;
+}
+
+int grobo_bus_pending(const grobo_bus *bus)
+{
+    return bus->waiting + (bus->active != NULL ? 1 : 0);
+}

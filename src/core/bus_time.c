@@ -1,0 +1,174 @@
+/* SPDX-License-Identifier: MIT */
+#include "core/bus_time.h"
+
+enum {
+    BITS_PER_BYTE = 10, /* 8N1 */
+    US_PER_S = 1000000,
+    ASK = 0x54,
+    SEND = 0x53
+};
+
+/* At most 429 bytes, so that the product fits 32 bits: no 64-bit division on small machines. */
+static uint32_t wire_us(size_t bytes, uint32_t baud_bps)
+{
+    uint32_t bits = (uint32_t)bytes * BITS_PER_BYTE;
+    return (bits * US_PER_S + baud_bps - 1) / baud_bps;
+}
+
+/* Bytes that the board puts on the servo bus for this frame. */
+static size_t relayed_bytes(const grobo_txn *txn)
+{
+    if (txn->frame_bytes < GROBO_BOARD_HEADER_BYTES) {
+        return 0;
+    }
+    size_t counted = txn->frame[1];
+    if (txn->frame[0] == SEND) {
+        return counted;
+    }
+    return txn->frame[0] == ASK && counted > 0 ? counted - 1 : 0;
+}
+
+void grobo_bus_cost_of(const grobo_bus *bus, const grobo_txn *txn, grobo_bus_cost *cost)
+{
+    const grobo_bus_config *c = &bus->config;
+    size_t reply = grobo_reply_bytes(&txn->reply);
+    uint32_t delay_us = reply > 0 ? c->return_delay_us : 0;
+    grobo_bus_cost found = {0, 0, 0, 0, 0};
+    found.request_us = wire_us(txn->frame_bytes, c->baud_bps);
+    found.reply_us = wire_us(reply, c->baud_bps);
+    if (c->wiring == GROBO_WIRING_BUS) {
+        found.reply_us += delay_us;
+    } else {
+        size_t relayed = relayed_bytes(txn);
+        if (relayed > 0) {
+            found.servo_us =
+                wire_us(relayed, c->servo_baud_bps) + delay_us + wire_us(reply, c->servo_baud_bps);
+        }
+    }
+    found.total_us = found.request_us + found.servo_us + found.reply_us;
+    if (txn->timeout_us != 0) {
+        found.timeout_us = txn->timeout_us;
+    } else {
+        found.timeout_us = found.total_us + grobo_i_bus_margin_us(bus, 1);
+    }
+    *cost = found;
+}
+
+int64_t grobo_i_bus_over_at(const grobo_bus *bus, int64_t start_us, const grobo_bus_cost *cost)
+{
+    int64_t at_us = start_us + cost->request_us;
+    if (cost->servo_us > 0) {
+        at_us = grobo_i_later(at_us, bus->servo_us) + cost->servo_us;
+    }
+    return at_us + cost->reply_us;
+}
+
+uint32_t grobo_i_bus_margin_us(const grobo_bus *bus, unsigned attempts)
+{
+    if (bus->config.margin_us != 0) {
+        return bus->config.margin_us;
+    }
+    int32_t margin_us = GROBO_BUS_MARGIN_FIRST_US;
+    if (bus->learnt) {
+        margin_us = bus->overhead_us + 4 * bus->deviation_us;
+    }
+    if (margin_us < GROBO_BUS_MARGIN_MIN_US) {
+        margin_us = GROBO_BUS_MARGIN_MIN_US;
+    }
+    for (; attempts > 1 && margin_us < GROBO_BUS_MARGIN_MAX_US; attempts--) {
+        margin_us *= 2;
+    }
+    return margin_us < GROBO_BUS_MARGIN_MAX_US ? (uint32_t)margin_us : GROBO_BUS_MARGIN_MAX_US;
+}
+
+/* As TCP does it: mean with weight 1/8, deviation with weight 1/4. A retried request teaches
+ * nothing, since nobody knows which of its attempts was answered. */
+void grobo_i_bus_learn(grobo_bus *bus, int64_t now_us)
+{
+    int64_t late_us = now_us - bus->over_us;
+    int32_t sample_us = late_us < 0                         ? 0
+                        : late_us > GROBO_BUS_MARGIN_MAX_US ? GROBO_BUS_MARGIN_MAX_US
+                                                            : (int32_t)late_us;
+    if (!bus->learnt) {
+        bus->learnt = true;
+        bus->overhead_us = sample_us;
+        bus->deviation_us = sample_us / 2;
+        return;
+    }
+    int32_t error_us = sample_us - bus->overhead_us;
+    bus->overhead_us += error_us / 8;
+    bus->deviation_us += ((error_us < 0 ? -error_us : error_us) - bus->deviation_us) / 4;
+}
+
+void grobo_i_bus_hold(grobo_bus *bus, const grobo_reply *reply, int64_t from_us)
+{
+    if (reply->kind == GROBO_REPLY_NONE) {
+        return;
+    }
+    grobo_bus_hold *hold = &bus->hold[bus->next_hold];
+    hold->reply = *reply;
+    hold->until_us = from_us + bus->config.hold_us;
+    bus->next_hold = (uint8_t)((bus->next_hold + 1u) % GROBO_BUS_HOLDS);
+}
+
+void grobo_i_bus_release_holds(grobo_bus *bus)
+{
+    for (int i = 0; i < GROBO_BUS_HOLDS; i++) {
+        bus->hold[i].reply.kind = GROBO_REPLY_NONE;
+    }
+}
+
+/* True if the one reply would be taken for the other. */
+static bool same_reply(const grobo_reply *a, const grobo_reply *b)
+{
+    if (a->kind != GROBO_REPLY_RETURN || b->kind != GROBO_REPLY_RETURN) {
+        return a->kind == b->kind && a->kind == GROBO_REPLY_ACK;
+    }
+    return a->id == b->id && a->address == b->address && a->length == b->length;
+}
+
+static int64_t held_until(const grobo_bus *bus, const grobo_txn *txn)
+{
+    int64_t until_us = 0;
+    for (int i = 0; i < GROBO_BUS_HOLDS && txn->attempts_ == 0; i++) {
+        if (same_reply(&bus->hold[i].reply, &txn->reply)) {
+            until_us = grobo_i_later(until_us, bus->hold[i].until_us);
+        }
+    }
+    return until_us;
+}
+
+bool grobo_bus_fits(const grobo_bus *bus, int64_t now_us, const grobo_txn *txn)
+{
+    grobo_bus_cost cost;
+    if (bus->reserve_us == GROBO_NEVER_US || now_us >= bus->reserve_end_us) {
+        return true;
+    }
+    grobo_bus_cost_of(bus, txn, &cost);
+    uint32_t overhead_us = txn->reply.kind != GROBO_REPLY_NONE ? (uint32_t)bus->overhead_us : 0;
+    return grobo_i_bus_over_at(bus, now_us, &cost) + overhead_us <= bus->reserve_us;
+}
+
+int64_t grobo_i_bus_start_at(const grobo_bus *bus, int64_t now_us, const grobo_txn *txn)
+{
+    int64_t at_us = grobo_i_later(now_us, bus->free_us);
+    if (txn->reply.kind != GROBO_REPLY_NONE || bus->config.wiring == GROBO_WIRING_BUS) {
+        at_us = grobo_i_later(at_us, bus->quiet_us);
+        at_us = grobo_i_later(at_us, held_until(bus, txn));
+    }
+    if (txn->priority >= GROBO_PRIORITY_USER && !grobo_bus_fits(bus, at_us, txn)) {
+        at_us = bus->reserve_end_us;
+    }
+    return at_us;
+}
+
+void grobo_bus_reserve(grobo_bus *bus, int64_t at_us, uint32_t duration_us)
+{
+    bus->reserve_us = at_us;
+    bus->reserve_end_us = at_us == GROBO_NEVER_US ? at_us : at_us + duration_us;
+}
+
+int64_t grobo_bus_free_at(const grobo_bus *bus, int64_t now_us)
+{
+    return grobo_i_later(now_us, bus->free_us);
+}
