@@ -85,8 +85,7 @@ GROBO_API void grobo_posture_merge(grobo_posture *posture, const grobo_posture *
 /** True if the same joints are set to exactly the same angles (times are not compared). */
 GROBO_API bool grobo_posture_equal(const grobo_posture *a, const grobo_posture *b);
 /** True if the same joints are set and every angle differs by less than delta_rad. */
-GROBO_API bool grobo_posture_near(const grobo_posture *a, const grobo_posture *b,
-                                  double delta_rad);
+GROBO_API bool grobo_posture_near(const grobo_posture *a, const grobo_posture *b, double delta_rad);
 
 /** Mirrors left and right by the model's table. @return 0, or GROBO_ERR_ARG if n_joints differ. */
 GROBO_API int grobo_posture_mirror(grobo_posture *posture, const grobo_model *model);

@@ -1,0 +1,333 @@
+/* SPDX-License-Identifier: MIT */
+#include "sequencer_i.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Half of the wire's 0.1 degree: nearer than this is there. */
+#define THERE_DEG 0.05
+
+/* ---- one posture of a clip ---- */
+
+static int check_posture(grobo_posture *posture, const grobo_clip *clip)
+{
+    if (posture->n_joints != clip->n_joints || posture->time_us < 0) {
+        return GROBO_ERR_ARG;
+    }
+    posture->set &= GROBO_JOINTS_ALL(clip->n_joints);
+    for (int j = 0; j < clip->n_joints; j++) {
+        if ((posture->set & GROBO_JOINT_BIT(j)) != 0 && !isfinite(posture->angle_rad[j])) {
+            return GROBO_ERR_NAN;
+        }
+    }
+    return 0;
+}
+
+static int finish_read(const grobo_play_item *item, const grobo_model *model,
+                       grobo_posture *posture)
+{
+    int result = check_posture(posture, &item->clip);
+    if (result == 0 && item->options.mirror) {
+        result = grobo_posture_mirror(posture, model);
+    }
+    return result;
+}
+
+static int read_key(const grobo_play_item *item, const grobo_model *model, size_t i,
+                    grobo_posture *posture, int64_t *at_us)
+{
+    int result = item->clip.key(item->clip.ctx, i, posture, at_us);
+    return result < 0 ? result : finish_read(item, model, posture);
+}
+
+static int read_sample(const grobo_play_item *item, const grobo_model *model, int64_t t_us,
+                       grobo_posture *posture)
+{
+    int result = item->clip.sample(item->clip.ctx, t_us, posture);
+    return result < 0 ? result : finish_read(item, model, posture);
+}
+
+/* ---- time of keys ---- */
+
+static void count_key(grobo_play_key *key, const grobo_play_item *item, size_t i,
+                      const grobo_posture *posture, int64_t at_us)
+{
+    key->i = i;
+    key->is_default = posture->time_us == 0;
+    key->is_empty = posture->set == 0;
+    key->defaults += key->is_default;
+    key->at_us = at_us + (int64_t)key->defaults * item->options.default_time_us;
+}
+
+/* Reads all keys: the item's times, and the joints they set. */
+static int scan_keys(grobo_play_item *item, const grobo_model *model, grobo_joint_mask *set)
+{
+    grobo_play_key key = {0};
+    for (size_t i = 0; i < item->clip.n_keys; i++) {
+        grobo_posture posture;
+        int64_t at_us;
+        int64_t before_us = key.at_us;
+        int result = read_key(item, model, i, &posture, &at_us);
+        if (result < 0) {
+            return result;
+        }
+        count_key(&key, item, i, &posture, at_us);
+        if (at_us < 0 || (i > 0 && key.at_us <= before_us)) {
+            return GROBO_ERR_ARG;
+        }
+        item->first_key_us = i == 0 ? key.at_us : item->first_key_us;
+        *set |= posture.set;
+    }
+    item->span_us = key.at_us - item->first_key_us;
+    return 0;
+}
+
+/* ---- items ---- */
+
+static int64_t or_default(int64_t value, int64_t otherwise)
+{
+    return value != 0 ? value : otherwise;
+}
+
+static void fill_options(grobo_play_options *o)
+{
+    int64_t passes = o->repeat < 0 ? -(int64_t)o->repeat : o->repeat;
+    o->reverse = o->reverse || o->repeat < 0;
+    o->repeat = (int32_t)(passes > INT32_MAX ? INT32_MAX : or_default(passes, 1));
+    o->speed_pct = (uint16_t)or_default(o->speed_pct, 100);
+    o->rate_hz = (uint16_t)or_default(o->rate_hz, GROBO_PLAY_RATE_HZ);
+    o->approach_deg_s = (uint16_t)or_default(o->approach_deg_s, GROBO_PLAY_APPROACH_DEG_S);
+    o->default_time_us = or_default(o->default_time_us, GROBO_POSTURE_TIME_US);
+    o->stop_us = or_default(o->stop_us, GROBO_PLAY_STOP_US);
+    o->late_us = or_default(o->late_us, GROBO_PLAY_LATE_US);
+}
+
+static bool are_options_good(const grobo_play_options *o)
+{
+    return (o->mode == GROBO_PLAY_KEY || o->mode == GROBO_PLAY_RATE) && o->from_us >= 0 &&
+           o->speed_pct <= GROBO_PLAY_SPEED_MAX_PCT && o->rate_hz <= GROBO_PLAY_RATE_MAX_HZ &&
+           o->default_time_us > 0 && o->default_time_us <= GROBO_PLAY_TIME_MAX_US &&
+           o->stop_us > 0 && o->stop_us <= GROBO_PLAY_TIME_MAX_US && o->late_us > 0;
+}
+
+static int check_clip(const grobo_play_item *item, const grobo_model *model)
+{
+    const grobo_clip *clip = &item->clip;
+    if (clip->n_keys == 0 || clip->n_joints == 0) {
+        return GROBO_ERR_EMPTY;
+    }
+    if (clip->n_joints > GROBO_JOINTS_MAX || clip->length_us < 0 || clip->key == NULL ||
+        (model != NULL && clip->n_joints != model->n_joints)) {
+        return GROBO_ERR_ARG;
+    }
+    if ((item->options.mode == GROBO_PLAY_RATE && clip->sample == NULL) ||
+        (item->options.mirror && model == NULL)) {
+        return GROBO_ERR_UNSUPPORTED;
+    }
+    return 0;
+}
+
+/* Reads what the mode will read: the item's times, and the joints it sets. */
+static int look_through(grobo_play_item *item, const grobo_model *model, grobo_joint_mask *set)
+{
+    if (item->options.mode == GROBO_PLAY_KEY) {
+        return scan_keys(item, model, set);
+    }
+    grobo_posture posture;
+    int result = read_sample(item, model, 0, &posture);
+    if (result == 0) {
+        item->span_us = item->clip.length_us;
+        *set = posture.set;
+    }
+    return result;
+}
+
+int grobo_i_item_make(grobo_play_item *item, const grobo_model *model, const grobo_clip *clip,
+                      const grobo_play_options *options, const grobo_posture *start)
+{
+    grobo_play_item made = {.clip = *clip};
+    grobo_joint_mask set = 0;
+
+    if (options != NULL) {
+        made.options = *options;
+    }
+    fill_options(&made.options);
+    if (!are_options_good(&made.options)) {
+        return GROBO_ERR_ARG;
+    }
+    int result = check_clip(&made, model);
+    if (result == 0) {
+        result = look_through(&made, model, &set);
+    }
+    if (result < 0) {
+        return result;
+    }
+    if (made.options.from_us > made.span_us ||
+        (start != NULL && start->n_joints != clip->n_joints)) {
+        return GROBO_ERR_ARG;
+    }
+    if (clip->relative && start != NULL && (set & ~start->set) != 0) {
+        return GROBO_ERR_EMPTY;
+    }
+    *item = made;
+    return 0;
+}
+
+void grobo_i_item_load(grobo_sequencer *seq, const grobo_play_item *item)
+{
+    seq->item = *item;
+    seq->pass = 1;
+    seq->base = seq->from;
+    seq->n_items++;
+}
+
+/* ---- postures of an item ---- */
+
+/* Puts a posture of the clip over `to`; increments go onto what is there, or onto the base. */
+static int put_over(grobo_sequencer *seq, grobo_posture *posture)
+{
+    for (int j = 0; seq->item.clip.relative && j < posture->n_joints; j++) {
+        grobo_joint_mask bit = GROBO_JOINT_BIT(j);
+        const grobo_posture *ground = (seq->to.set & bit) != 0 ? &seq->to : &seq->base;
+        if ((posture->set & bit) == 0) {
+            continue;
+        }
+        if ((ground->set & bit) == 0) {
+            return GROBO_ERR_EMPTY;
+        }
+        posture->angle_rad[j] += ground->angle_rad[j];
+    }
+    grobo_posture_merge(&seq->to, posture);
+    return 0;
+}
+
+static void clear_to(grobo_sequencer *seq)
+{
+    (void)grobo_posture_init(&seq->to, seq->item.clip.n_joints);
+}
+
+int grobo_i_sample(grobo_sequencer *seq, int64_t pos_us)
+{
+    grobo_posture posture;
+    int64_t t_us = seq->item.options.reverse ? seq->item.span_us - pos_us : pos_us;
+    int result = read_sample(&seq->item, seq->model, t_us, &posture);
+    if (result < 0) {
+        return result;
+    }
+    clear_to(seq);
+    return put_over(seq, &posture);
+}
+
+/* Adds key i, the one behind the last added, to `to` and to the count of time. */
+static int add_key(grobo_sequencer *seq, size_t i)
+{
+    grobo_posture posture;
+    int64_t at_us;
+    int result = read_key(&seq->item, seq->model, i, &posture, &at_us);
+    if (result == 0) {
+        result = put_over(seq, &posture);
+    }
+    if (result == 0) {
+        count_key(&seq->key, &seq->item, i, &posture, at_us);
+    }
+    return result;
+}
+
+int grobo_i_key_load(grobo_sequencer *seq, size_t i)
+{
+    seq->key = (grobo_play_key){0};
+    clear_to(seq);
+    int result = 0;
+    for (size_t k = 0; k <= i && result == 0; k++) {
+        result = add_key(seq, k);
+    }
+    return result;
+}
+
+int64_t grobo_i_key_pos(const grobo_sequencer *seq)
+{
+    int64_t pos_us = seq->key.at_us - seq->item.first_key_us;
+    return seq->item.options.reverse ? seq->item.span_us - pos_us : pos_us;
+}
+
+bool grobo_i_key_has_next(const grobo_sequencer *seq)
+{
+    return seq->item.options.reverse ? seq->key.i > 0 : seq->key.i + 1 < seq->item.clip.n_keys;
+}
+
+int grobo_i_key_next(grobo_sequencer *seq)
+{
+    if (!seq->item.options.reverse) {
+        int result = add_key(seq, seq->key.i + 1);
+        seq->silent = seq->key.is_empty;
+        return result;
+    }
+    /* Backwards a key is taken away: what was before it is found from the beginning. */
+    seq->silent = seq->key.is_empty;
+    return grobo_i_key_load(seq, seq->key.i - 1);
+}
+
+int grobo_i_key_seek(grobo_sequencer *seq, int64_t pos_us)
+{
+    int result = grobo_i_key_load(seq, seq->item.options.reverse ? seq->item.clip.n_keys - 1 : 0);
+    while (result == 0 && grobo_i_key_pos(seq) < pos_us) {
+        grobo_play_key key = seq->key;
+        grobo_posture before = seq->to;
+        int64_t before_us = grobo_i_key_pos(seq);
+        result = grobo_i_key_next(seq);
+        if (result == 0 && grobo_i_key_pos(seq) > pos_us) {
+            grobo_posture after = seq->to;
+            double part = (double)(pos_us - before_us) / (double)(grobo_i_key_pos(seq) - before_us);
+            grobo_i_between(&seq->to, &before, &after, part);
+            seq->key = key;
+            break;
+        }
+    }
+    return result;
+}
+
+int64_t grobo_i_key_first_time(const grobo_sequencer *seq)
+{
+    return seq->item.options.reverse ? seq->item.options.default_time_us : seq->item.first_key_us;
+}
+
+void grobo_i_between(grobo_posture *posture, const grobo_posture *a, const grobo_posture *b,
+                     double part)
+{
+    (void)grobo_posture_init(posture, b->n_joints);
+    for (int j = 0; j < b->n_joints; j++) {
+        grobo_joint_mask bit = GROBO_JOINT_BIT(j);
+        if ((b->set & bit) != 0 && part >= 1.0) {
+            posture->angle_rad[j] = b->angle_rad[j];
+            posture->set |= bit;
+        } else if ((b->set & a->set & bit) != 0) {
+            posture->angle_rad[j] = a->angle_rad[j] + (b->angle_rad[j] - a->angle_rad[j]) * part;
+            posture->set |= bit;
+        }
+    }
+}
+
+int64_t grobo_i_approach_time(const grobo_sequencer *seq)
+{
+    double far_rad = 0.0;
+    for (int j = 0; j < seq->to.n_joints; j++) {
+        grobo_joint_mask bit = GROBO_JOINT_BIT(j);
+        double way_rad = 0.0;
+        if ((seq->to.set & seq->from.set & bit) != 0) {
+            way_rad = fabs(seq->to.angle_rad[j] - seq->from.angle_rad[j]);
+        } else if ((seq->to.set & bit) != 0) {
+            way_rad = grobo_rad_from_deg(GROBO_PLAY_UNKNOWN_DEG);
+        }
+        far_rad = way_rad > far_rad ? way_rad : far_rad;
+    }
+    double far_deg = grobo_deg_from_rad(far_rad);
+    if (far_deg < THERE_DEG) {
+        return 0;
+    }
+    double time_us = far_deg * 1e6 / seq->item.options.approach_deg_s;
+    /* A posture out of all reason takes the longest time there is; limits are checked elsewhere. */
+    if (time_us > (double)GROBO_PLAY_TIME_MAX_US) {
+        return GROBO_PLAY_TIME_MAX_US;
+    }
+    return (int64_t)ceil(time_us / GROBO_PLAY_TIME_UNIT_US) * GROBO_PLAY_TIME_UNIT_US;
+}
