@@ -1,0 +1,172 @@
+/* SPDX-License-Identifier: MIT */
+/* Agreement with the joint angles Choreonoid's own code computes, frame by frame: reference
+ * material beside the checkout. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "body_pseq.h"
+
+#define RATE_HZ 30.0
+
+static const struct grobo_body_options plain = {
+    .ik = GROBO_BODY_IK_NUMERIC, .rate_hz = RATE_HZ};
+static const struct grobo_body_options plain_grobot = {
+    .ik = GROBO_BODY_IK_EXACT, .rate_hz = RATE_HZ};
+static const struct grobo_body_options as_the_gui = {.ik = GROBO_BODY_IK_NUMERIC,
+                                                     .step = GROBO_BODY_STEP_STEALTHY,
+                                                     .zmp = GROBO_BODY_ZMP_AUTO,
+                                                     .rate_hz = RATE_HZ};
+static const struct grobo_body_options balancer = {.ik = GROBO_BODY_IK_NUMERIC,
+                                                   .step = GROBO_BODY_STEP_STEALTHY,
+                                                   .zmp = GROBO_BODY_ZMP_AUTO,
+                                                   .balance = GROBO_BODY_BALANCE_ON,
+                                                   .rate_hz = RATE_HZ};
+static const struct grobo_body_options compat11 = {.ik = GROBO_BODY_IK_NUMERIC,
+                                                   .zmp = GROBO_BODY_ZMP_AUTO,
+                                                   .balance = GROBO_BODY_BALANCE_COMPAT11,
+                                                   .rate_hz = RATE_HZ};
+
+static void path_in_shared(char *path, size_t bytes, const char *name)
+{
+    const char *shared = getenv("GROBO_SHARED");
+
+    snprintf(path, bytes, "%s/data/%s", shared != NULL ? shared : "../shared", name);
+}
+
+/* Largest difference to the frames of an open file; every frame must be there, none beyond. */
+static double compare(grobo_body *body, FILE *golden)
+{
+    char line[4096];
+    double q[GROBO_JOINTS_MAX];
+    double worst = 0;
+    int frame = 0;
+
+    while (fgets(line, (int)sizeof line, golden) != NULL) {
+        char *at = line;
+
+        assert_int_equal(grobo_body_frame(body, frame++, q, NULL), 0);
+        for (int j = 0; j < grobo_gr001_body.n_joints; j++) {
+            const double difference = fabs(strtod(at, &at) - q[j]);
+
+            assert_true(isfinite(difference));
+            worst = fmax(worst, difference);
+            at += *at == ',';
+        }
+    }
+    assert_int_equal(frame, grobo_body_frame_count(body));
+    return worst;
+}
+
+static void agree(const char *motion, const char *frames, const grobo_body_options *options,
+                  double tolerance_rad)
+{
+    char path[512];
+    struct body_pseq pseq;
+    grobo_body *body;
+    size_t bytes;
+    void *workspace;
+    FILE *golden;
+    double worst;
+
+    path_in_shared(path, sizeof path, frames);
+    golden = fopen(path, "r");
+    if (golden == NULL) {
+        print_message("no %s: reference material is not beside the checkout\n", path);
+        skip();
+    }
+    path_in_shared(path, sizeof path, motion);
+    assert_true(body_pseq_read(&pseq, path, &grobo_gr001_body));
+    const grobo_body_setup setup = {&grobo_gr001_body, pseq.keys, pseq.n_keys, *options};
+
+    assert_int_equal(grobo_body_workspace_bytes(&setup, &bytes), 0);
+    workspace = malloc(bytes);
+    assert_int_equal(grobo_body_init(&body, &setup, workspace, bytes), 0);
+    worst = compare(body, golden);
+    if (worst > tolerance_rad) {
+        print_error("%s: %g rad\n", frames, worst);
+    }
+    assert_true(worst <= tolerance_rad);
+    free(workspace);
+    body_pseq_free(&pseq);
+    fclose(golden);
+}
+
+#define SAMPLE "choreonoid/GR001-SampleMotion1.pseq"
+
+/* The analytic reference solves its offsets approximately: 9e-5 rad off the exact answer. */
+static void exact_ik_agrees_with_the_analytic_reference(void **state)
+{
+    (void)state;
+    agree(SAMPLE, "golden/SampleMotion1.r30.plain_grobot.csv", &plain_grobot, 1e-4);
+    agree("golden/walk.pseq", "golden/walk.r30.plain_grobot.csv", &plain_grobot, 1e-4);
+    agree("golden/misc.pseq", "golden/misc.r30.plain_grobot.csv", &plain_grobot, 1e-8);
+    agree("golden/nowaist.pseq", "golden/nowaist.r30.plain_grobot.csv", &plain_grobot, 1e-8);
+}
+
+static void exact_ik_leaves_unreachable_targets_alone(void **state)
+{
+    (void)state;
+    agree("golden/unreachable.pseq", "golden/unreachable.r30.plain_grobot.csv", &plain_grobot,
+          1e-4);
+}
+
+/* The frames have nine digits: 5e-9 rad is their rounding. */
+static void numeric_ik_agrees(void **state)
+{
+    (void)state;
+    agree(SAMPLE, "golden/SampleMotion1.r30.plain.csv", &plain, 1e-8);
+    agree("golden/walk.pseq", "golden/walk.r30.plain.csv", &plain, 1e-8);
+    agree("golden/misc.pseq", "golden/misc.r30.plain.csv", &plain, 1e-8);
+    agree("golden/nowaist.pseq", "golden/nowaist.r30.plain.csv", &plain, 1e-8);
+}
+
+static void numeric_ik_leaves_unreachable_targets_alone(void **state)
+{
+    (void)state;
+    agree("golden/unreachable.pseq", "golden/unreachable.r30.plain.csv", &plain, 1e-8);
+}
+
+static void stealthy_step_and_automatic_zmp_agree(void **state)
+{
+    (void)state;
+    agree(SAMPLE, "golden/SampleMotion1.r30.default.csv", &as_the_gui, 1e-8);
+    agree("golden/walk.pseq", "golden/walk.r30.default.csv", &as_the_gui, 1e-8);
+    agree("golden/misc.pseq", "golden/misc.r30.default.csv", &as_the_gui, 1e-8);
+    agree("golden/nowaist.pseq", "golden/nowaist.r30.default.csv", &as_the_gui, 1e-8);
+    agree("golden/unreachable.pseq", "golden/unreachable.r30.default.csv", &as_the_gui, 1e-8);
+}
+
+static void the_balancer_agrees(void **state)
+{
+    (void)state;
+    agree(SAMPLE, "golden/SampleMotion1.r30.balancer.csv", &balancer, 1e-7);
+}
+
+static void the_balancer_of_1_1_agrees(void **state)
+{
+    (void)state;
+    agree(SAMPLE, "golden/SampleMotion1.r30.compat11.csv", &compat11, 1e-7);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(exact_ik_agrees_with_the_analytic_reference),
+        cmocka_unit_test(exact_ik_leaves_unreachable_targets_alone),
+        cmocka_unit_test(numeric_ik_agrees),
+        cmocka_unit_test(numeric_ik_leaves_unreachable_targets_alone),
+        cmocka_unit_test(stealthy_step_and_automatic_zmp_agree),
+        cmocka_unit_test(the_balancer_agrees),
+        cmocka_unit_test(the_balancer_of_1_1_agrees),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
