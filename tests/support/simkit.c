@@ -42,13 +42,18 @@ static void read_all(simkit *kit)
     }
 }
 
+static void send_bytes(simkit *kit, const uint8_t *bytes, size_t n)
+{
+    kit->n_got = 0;
+    assert_int_equal(grobo_sim_rx(&kit->sim, bytes, n, kit->now_us), n);
+}
+
 void simkit_send(simkit *kit, const char *hex)
 {
     uint8_t bytes[VECTOR_MAX_BYTES];
     int n = vector_from_hex(hex, bytes, sizeof bytes);
     assert_true(n > 0);
-    kit->n_got = 0;
-    assert_int_equal(grobo_sim_rx(&kit->sim, bytes, (size_t)n, kit->now_us), n);
+    send_bytes(kit, bytes, (size_t)n);
 }
 
 /* Goes to the next deadline, or to end_us; false when there is nothing up to then. */
@@ -72,12 +77,39 @@ void simkit_run(simkit *kit, int64_t us)
     read_all(kit);
 }
 
-void simkit_ask(simkit *kit, const char *hex, int64_t at_most_us)
+static void wait_idle(simkit *kit, int64_t at_most_us)
 {
-    simkit_send(kit, hex);
     int64_t end_us = kit->now_us + at_most_us;
     while (go_on(kit, end_us)) {
     }
+}
+
+void simkit_ask(simkit *kit, const char *hex, int64_t at_most_us)
+{
+    simkit_send(kit, hex);
+    wait_idle(kit, at_most_us);
+}
+
+void simkit_packet(simkit *kit, const char *hex, uint8_t r)
+{
+    uint8_t frame[VECTOR_MAX_BYTES];
+    int n = vector_from_hex(hex, frame + 2, sizeof frame - 4);
+    assert_true(n >= 7);
+    uint8_t sum = 0;
+    for (int i = 2; i < n; i++) {
+        sum = (uint8_t)(sum ^ frame[2 + i]);
+    }
+    frame[2 + n] = sum;
+    n++;
+    if (kit->sim.config.wiring == GROBO_WIRING_BUS) {
+        send_bytes(kit, frame + 2, (size_t)n);
+    } else {
+        frame[0] = r > 0 ? 0x54 : 0x53;
+        frame[1] = (uint8_t)(n + (r > 0));
+        frame[2 + n] = r;
+        send_bytes(kit, frame, (size_t)(2 + n + (r > 0)));
+    }
+    wait_idle(kit, 50000);
 }
 
 void simkit_expect(const simkit *kit, const char *hex)

@@ -28,6 +28,11 @@ void simkit_send(simkit *kit, const char *hex);
 void simkit_run(simkit *kit, int64_t us);
 /* simkit_send, then time until the simulator is idle, or for at_most_us. */
 void simkit_ask(simkit *kit, const char *hex, int64_t at_most_us);
+/*
+ * A servo packet without its sum, "FA AF 01 0F 2A 02 00": adds the sum, wraps it for the wiring
+ * (53 without a reply, 54 for r > 0 bytes), lets it be carried out, and 50 ms go by at most.
+ */
+void simkit_packet(simkit *kit, const char *hex, uint8_t r);
 /* The bytes that came are exactly those of hex. */
 void simkit_expect(const simkit *kit, const char *hex);
 /* Events of this kind noted since the last simkit_forget; the last of them where not NULL. */

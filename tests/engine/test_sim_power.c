@@ -1,0 +1,278 @@
+/* SPDX-License-Identifier: MIT */
+/* What servos remember: flash, reboot, factory reset, baud, supply and cables. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "simkit.h"
+
+static simkit kit;
+
+enum { CHEST = 12, R_HIP_P = 2 };
+
+static bool answers(const char *ping)
+{
+    simkit_packet(&kit, ping, 1);
+    return kit.n_got == 1 && kit.got[0] == 0x07;
+}
+
+/* ---- power-up ------------------------------------------------------------------------------ */
+
+static void power_up_is_limp_with_goals_at_zero(void **state)
+{
+    (void)state;
+    simkit_start(&kit, NULL);
+    assert_int_equal(grobo_sim_servos(&kit.sim), 20);
+    for (int i = 0; i < 20; i++) {
+        grobo_sim_view view = simkit_look(&kit, i);
+        assert_int_equal(view.torque, GROBO_TORQUE_OFF);
+        assert_int_equal(simkit_register(&kit, i, GROBO_RS30X_GOAL), 0);
+        assert_int_equal(simkit_register(&kit, i, GROBO_RS30X_ID),
+                         grobo_gr001_model.joints[i].motor);
+        assert_int_equal(simkit_register(&kit, i, GROBO_RS30X_MODEL),
+                         grobo_gr001_model.joints[i].servo_model);
+        assert_false(view.moving || view.stalled || view.deaf);
+    }
+    assert_int_equal(simkit_register(&kit, R_HIP_P, GROBO_RS30X_POSITION), 200);
+}
+
+static void limp_start_is_within_stops_and_of_the_seed(void **state)
+{
+    (void)state;
+    static simkit other;
+    const grobo_sim_config config = {.start = GROBO_SIM_START_LIMP, .seed = 7};
+    const grobo_sim_config third = {.start = GROBO_SIM_START_LIMP, .seed = 8};
+    simkit_start(&kit, &config);
+    simkit_start(&other, &config);
+    int differ = 0;
+    for (int i = 0; i < 20; i++) {
+        const grobo_joint *joint = &grobo_gr001_model.joints[i];
+        int32_t mdeg = simkit_look(&kit, i).angle_mdeg;
+        assert_int_equal(mdeg, simkit_look(&other, i).angle_mdeg);
+        assert_true(mdeg >= joint->min_rad * 57295.8 - 1 && mdeg <= joint->max_rad * 57295.8 + 1);
+    }
+    simkit_start(&other, &third);
+    for (int i = 0; i < 20; i++) {
+        differ += simkit_look(&kit, i).angle_mdeg != simkit_look(&other, i).angle_mdeg;
+    }
+    assert_true(differ > 10);
+}
+
+static void bad_configurations_are_refused(void **state)
+{
+    (void)state;
+    static grobo_sim sim;
+    const grobo_model none = {.name = "none"};
+    const grobo_sim_config bad_model = {.model = &none};
+    const grobo_sim_config slow = {.baud_bps = 10};
+    const grobo_sim_config hot = {.ambient_c = 100};
+    assert_int_equal(grobo_sim_init(&sim, &bad_model, 0), GROBO_ERR_ARG);
+    assert_int_equal(grobo_sim_init(&sim, &slow, 0), GROBO_ERR_ARG);
+    assert_int_equal(grobo_sim_init(&sim, &hot, 0), GROBO_ERR_ARG);
+}
+
+/* ---- flash and reboot ---------------------------------------------------------------------- */
+
+static void reboot_forgets_what_is_not_in_flash(void **state)
+{
+    (void)state;
+    simkit_start(&kit, NULL);
+    simkit_packet(&kit, "FA AF 01 00 18 02 01 05 06", 0);
+    simkit_packet(&kit, "FA AF 01 00 23 02 01 32 01", 0);
+    simkit_ask(&kit, "53 08 FA AF 01 20 FF 00 00 DE", 10000);
+    assert_int_equal(simkit_look(&kit, CHEST).torque, GROBO_TORQUE_OFF);
+    assert_true(simkit_look(&kit, CHEST).deaf);
+    assert_false(answers("FA AF 01 01 FF 00 00"));
+    simkit_run(&kit, 500000);
+    assert_true(answers("FA AF 01 01 FF 00 00"));
+    assert_int_equal(simkit_register(&kit, CHEST, GROBO_RS30X_CW_MARGIN), 2);
+    assert_int_equal(simkit_register(&kit, CHEST, GROBO_RS30X_MAX_TORQUE), 100);
+    assert_int_equal(simkit_events(&kit, GROBO_SIM_REBOOT, NULL), 1);
+    assert_int_equal(simkit_events(&kit, GROBO_SIM_TORQUE, NULL), 2);
+}
+
+static void flash_takes_a_second_and_lasts(void **state)
+{
+    (void)state;
+    simkit_start(&kit, NULL);
+    simkit_packet(&kit, "FA AF 02 00 18 02 01 05 06", 0);
+    simkit_packet(&kit, "FA AF 02 40 FF 00 00", 0);
+    simkit_run(&kit, 900000);
+    assert_false(answers("FA AF 02 01 FF 00 00"));
+    simkit_run(&kit, 100000);
+    assert_true(answers("FA AF 02 01 FF 00 00"));
+    assert_int_equal(simkit_events(&kit, GROBO_SIM_SAVED, NULL), 1);
+    simkit_packet(&kit, "FA AF 02 20 FF 00 00", 0);
+    simkit_run(&kit, 600000);
+    int neck = simkit_servo(&kit, 2);
+    assert_int_equal(simkit_register(&kit, neck, GROBO_RS30X_CW_MARGIN), 5);
+    assert_int_equal(simkit_register(&kit, neck, GROBO_RS30X_CCW_MARGIN), 6);
+}
+
+static void flash_and_reboot_in_one_packet(void **state)
+{
+    (void)state;
+    simkit_start(&kit, NULL);
+    simkit_ask(&kit, "53 09 FA AF 01 60 07 01 01 12 74", 10000);
+    int64_t t0 = kit.now_us;
+    simkit_run(&kit, 1400000);
+    assert_false(answers("FA AF 01 01 FF 00 00"));
+    simkit_run(&kit, 100000);
+    assert_true(answers("FA AF 01 01 FF 00 00"));
+    assert_int_equal(simkit_register(&kit, CHEST, GROBO_RS30X_DELAY), 18);
+    grobo_sim_event saved, reboot;
+    assert_int_equal(simkit_events(&kit, GROBO_SIM_SAVED, &saved), 1);
+    assert_int_equal(simkit_events(&kit, GROBO_SIM_REBOOT, &reboot), 1);
+    assert_int_equal(saved.time_us, t0 + 1000000);
+    assert_int_equal(reboot.time_us, saved.time_us);
+}
+
+static void power_lost_while_saving_is_a_flash_error(void **state)
+{
+    (void)state;
+    simkit_start(&kit, NULL);
+    simkit_packet(&kit, "FA AF 01 00 18 01 01 09", 0);
+    simkit_packet(&kit, "FA AF 01 40 FF 00 00", 0);
+    simkit_run(&kit, 500000);
+    grobo_sim_step(&kit.sim, kit.now_us);
+    grobo_sim_set_supply(&kit.sim, 0);
+    simkit_run(&kit, 100000);
+    grobo_sim_set_supply(&kit.sim, 7400);
+    simkit_run(&kit, 600000);
+    simkit_packet(&kit, "FA AF 01 0F 18 01 00", 9);
+    simkit_expect(&kit, "FD DF 01 08 18 01 01 02 13");
+    simkit_packet(&kit, "FA AF 01 40 FF 00 00", 0);
+    simkit_run(&kit, 1100000);
+    simkit_packet(&kit, "FA AF 01 0F 18 01 00", 9);
+    simkit_expect(&kit, "FD DF 01 00 18 01 01 02 1B");
+}
+
+static void factory_reset_in_both_spellings(void **state)
+{
+    (void)state;
+    static const char *const spellings[] = {"FA AF 0A 10 FF FF 00", "FA AF 0A 10 FF FF 00 FF"};
+    for (int i = 0; i < 2; i++) {
+        simkit_start(&kit, NULL);
+        simkit_packet(&kit, "FA AF 0A 00 08 02 01 64 00", 0);
+        simkit_packet(&kit, spellings[i], 0);
+        simkit_run(&kit, 1000000);
+        assert_int_equal(simkit_register(&kit, R_HIP_P, GROBO_RS30X_ID), 1);
+        assert_int_equal(simkit_register(&kit, R_HIP_P, GROBO_RS30X_CW_LIMIT), 1500);
+        simkit_packet(&kit, "FA AF 01 20 FF 00 00", 0);
+        simkit_run(&kit, 600000);
+        assert_int_equal(simkit_register(&kit, R_HIP_P, GROBO_RS30X_ID), 1);
+        assert_int_equal(simkit_register(&kit, CHEST, GROBO_RS30X_ID), 1);
+    }
+}
+
+/* ---- baud ---------------------------------------------------------------------------------- */
+
+static void another_rate_is_not_understood_until_the_line_has_it(void **state)
+{
+    (void)state;
+    const grobo_sim_config config = {.wiring = GROBO_WIRING_BUS};
+    simkit_start(&kit, &config);
+    assert_true(answers("FA AF 01 01 FF 00 00"));
+    simkit_packet(&kit, "FA AF 01 00 06 01 01 0A", 0);
+    assert_int_equal(simkit_look(&kit, CHEST).baud_bps, 460800);
+    assert_false(answers("FA AF 01 01 FF 00 00"));
+    assert_true(answers("FA AF 02 01 FF 00 00"));
+    assert_int_equal(grobo_sim_set_line_bps(&kit.sim, 460800), 0);
+    assert_false(answers("FA AF 02 01 FF 00 00"));
+    assert_true(answers("FA AF 01 01 FF 00 00"));
+    int64_t t0 = kit.now_us;
+    simkit_packet(&kit, "FA AF 01 0F 24 12 00", 26);
+    assert_int_equal(kit.n_got, 26);
+    assert_int_equal(kit.got_us[25] - t0, 100 + (34 * 10000000 + 460799) / 460800);
+    assert_int_equal(grobo_sim_set_line_bps(&kit.sim, 0), GROBO_ERR_ARG);
+}
+
+static void the_board_loses_a_servo_of_another_rate(void **state)
+{
+    (void)state;
+    simkit_start(&kit, NULL);
+    simkit_ask(&kit, "53 09 FA AF 01 00 06 01 01 0A 0D", 10000);
+    assert_false(answers("FA AF 01 01 FF 00 00"));
+    assert_true(answers("FA AF 02 01 FF 00 00"));
+}
+
+static void the_board_hears_rubbish_at_another_rate(void **state)
+{
+    (void)state;
+    simkit_start(&kit, NULL);
+    assert_int_equal(grobo_sim_set_line_bps(&kit.sim, 9600), 0);
+    simkit_ask(&kit, "41 00", 100000);
+    simkit_expect(&kit, "");
+    assert_int_equal(grobo_sim_set_line_bps(&kit.sim, 115200), 0);
+    simkit_run(&kit, 100000);
+    simkit_ask(&kit, "41 00", 100000);
+    simkit_expect(&kit, "07");
+}
+
+/* ---- supply and cables --------------------------------------------------------------------- */
+
+static void a_brown_out_makes_servos_limp(void **state)
+{
+    (void)state;
+    simkit_start(&kit, NULL);
+    simkit_packet(&kit, "FA AF FF 00 24 01 01 01", 0);
+    grobo_sim_set_supply(&kit.sim, 4000);
+    for (int i = 0; i < 20; i++) {
+        assert_int_equal(simkit_look(&kit, i).torque, GROBO_TORQUE_OFF);
+        assert_int_equal(simkit_look(&kit, i).current_ma, 0);
+    }
+    simkit_ask(&kit, "41 00", 100000);
+    simkit_expect(&kit, "07");
+    assert_false(answers("FA AF 01 01 FF 00 00"));
+    grobo_sim_set_supply(&kit.sim, 7400);
+    assert_false(answers("FA AF 01 01 FF 00 00"));
+    simkit_run(&kit, 500000);
+    assert_true(answers("FA AF 01 01 FF 00 00"));
+    assert_int_equal(simkit_events(&kit, GROBO_SIM_REBOOT, NULL), 20);
+    assert_int_equal(simkit_events(&kit, GROBO_SIM_TORQUE, NULL), 40);
+}
+
+static void a_mute_servo_holds_and_one_without_cable_is_limp(void **state)
+{
+    (void)state;
+    simkit_start(&kit, NULL);
+    simkit_packet(&kit, "FA AF FF 00 24 01 01 01", 0);
+    assert_int_equal(grobo_sim_set_cable(&kit.sim, CHEST, GROBO_SIM_CABLE_MUTE), 0);
+    assert_int_equal(grobo_sim_set_cable(&kit.sim, R_HIP_P, GROBO_SIM_CABLE_OUT), 0);
+    assert_int_equal(grobo_sim_set_cable(&kit.sim, 20, GROBO_SIM_CABLE_OUT), GROBO_ERR_ARG);
+    assert_false(answers("FA AF 01 01 FF 00 00"));
+    assert_false(answers("FA AF 0A 01 FF 00 00"));
+    assert_int_equal(simkit_look(&kit, CHEST).torque, GROBO_TORQUE_ON);
+    assert_int_equal(simkit_look(&kit, R_HIP_P).torque, GROBO_TORQUE_OFF);
+    assert_int_equal(grobo_sim_set_cable(&kit.sim, CHEST, GROBO_SIM_CABLE_IN), 0);
+    assert_int_equal(grobo_sim_set_cable(&kit.sim, R_HIP_P, GROBO_SIM_CABLE_IN), 0);
+    assert_true(answers("FA AF 01 01 FF 00 00"));
+    simkit_run(&kit, 500000);
+    assert_true(answers("FA AF 0A 01 FF 00 00"));
+    assert_int_equal(simkit_look(&kit, CHEST).torque, GROBO_TORQUE_ON);
+    assert_int_equal(simkit_look(&kit, R_HIP_P).torque, GROBO_TORQUE_OFF);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(power_up_is_limp_with_goals_at_zero),
+        cmocka_unit_test(limp_start_is_within_stops_and_of_the_seed),
+        cmocka_unit_test(bad_configurations_are_refused),
+        cmocka_unit_test(reboot_forgets_what_is_not_in_flash),
+        cmocka_unit_test(flash_takes_a_second_and_lasts),
+        cmocka_unit_test(flash_and_reboot_in_one_packet),
+        cmocka_unit_test(power_lost_while_saving_is_a_flash_error),
+        cmocka_unit_test(factory_reset_in_both_spellings),
+        cmocka_unit_test(another_rate_is_not_understood_until_the_line_has_it),
+        cmocka_unit_test(the_board_loses_a_servo_of_another_rate),
+        cmocka_unit_test(the_board_hears_rubbish_at_another_rate),
+        cmocka_unit_test(a_brown_out_makes_servos_limp),
+        cmocka_unit_test(a_mute_servo_holds_and_one_without_cable_is_limp),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

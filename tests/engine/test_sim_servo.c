@@ -1,0 +1,359 @@
+/* SPDX-License-Identifier: MIT */
+/* Registers and packets: who may write what, what comes back, what a packet does. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "simkit.h"
+#include "vectors.h"
+
+static simkit kit;
+
+/* Index of motor 1, CHEST_P; of motor 10, R_HIP_P. Both are RS301CR; motor 2 is an RS302CD. */
+enum { CHEST = 12, R_HIP_P = 2 };
+
+/* ---- every vector -------------------------------------------------------------------------- */
+
+typedef struct heard {
+    uint8_t bytes[160];
+    size_t n;
+    int packets;
+} heard;
+
+static void hear(const grobo_sim_event *event, void *ctx)
+{
+    heard *last = ctx;
+    if (event->kind == GROBO_SIM_PACKET) {
+        memcpy(last->bytes, event->bytes, event->n_bytes);
+        last->n = event->n_bytes;
+        last->packets++;
+    }
+}
+
+/* What a servo packet asks for, by the table of flags; written here from the manual's text. */
+static size_t reply_bytes(const uint8_t *p)
+{
+    static const uint8_t by_nibble[16] = {0, 1, 0, 38, 0, 38, 0, 18, 0, 26, 0, 20, 0, 0, 0, 0};
+    bool silent = p[2] == 0 || p[2] == 0xFF;
+    return silent ? 0 : (p[3] & 0xF) == 0xF ? p[5] + 8u : by_nibble[p[3] & 0xF];
+}
+
+static void send_vector(const vector *v, void *ctx)
+{
+    static grobo_sim sim;
+    static heard last;
+    bool servo = strcmp(v->layer, "servo") == 0 &&
+                 (strcmp(v->kind, "short") == 0 || strcmp(v->kind, "long") == 0);
+    bool relay = strcmp(v->layer, "controller") == 0 && v->n > 3 && v->bytes[0] != 0x50;
+    if (!servo && !relay) {
+        return;
+    }
+    memset(&last, 0, sizeof last);
+    const grobo_sim_config config = {
+        .wiring = servo ? GROBO_WIRING_BUS : GROBO_WIRING_BOARD, .hook = hear, .hook_ctx = &last};
+    assert_int_equal(grobo_sim_init(&sim, &config, 0), 0);
+    assert_int_equal(grobo_sim_rx(&sim, v->bytes, v->n, 0), v->n);
+    uint8_t got[256];
+    size_t n = grobo_sim_tx(&sim, got, sizeof got, 100000);
+    const uint8_t *packet = v->bytes + (servo ? 0 : 2);
+    if (!v->valid) {
+        assert_int_equal(last.packets, 0);
+        assert_int_equal(n, 0);
+    } else {
+        assert_int_equal(last.packets, 1);
+        assert_memory_equal(last.bytes, packet, last.n);
+        assert_int_equal(n, relay && v->bytes[0] == 0x53 ? 0 : reply_bytes(packet));
+    }
+    ++*(int *)ctx;
+}
+
+static void every_vector_is_understood(void **state)
+{
+    (void)state;
+    int sent = 0;
+    int count = vectors_each(send_vector, &sent);
+    assert_true(count >= 0);
+    if (count == 0) {
+        skip();
+    }
+    assert_true(sent > 40);
+}
+
+/* ---- reading ------------------------------------------------------------------------------- */
+
+static void blocks_come_as_their_nibble_says(void **state)
+{
+    (void)state;
+    simkit_start(&kit, NULL);
+    simkit_packet(&kit, "FA AF 0A 03 00 00 01", 38);
+    assert_int_equal(kit.n_got, 38);
+    static const uint8_t head[] = {0xFD, 0xDF, 0x0A, 0x00, 0x00, 0x1E, 0x01, 0x10, 0x30};
+    assert_memory_equal(kit.got, head, sizeof head);
+    assert_int_equal(kit.got[7 + 4], 10);
+    assert_int_equal(kit.got[7 + 6], 7);
+    assert_int_equal(simkit_i16(&kit, 7 + 8), 1500);
+    assert_int_equal(simkit_i16(&kit, 7 + 10), -1500);
+    assert_int_equal(simkit_i16(&kit, 7 + 28), 180);
+    simkit_packet(&kit, "FA AF 0A 05 00 00 01", 38);
+    assert_int_equal(kit.n_got, 38);
+    assert_int_equal(kit.got[7 + 5], 100);
+    simkit_packet(&kit, "FA AF 0A 07 00 00 01", 18);
+    assert_int_equal(kit.n_got, 18);
+    simkit_packet(&kit, "FA AF 0A 09 00 00 01", 26);
+    assert_int_equal(kit.n_got, 26);
+    assert_int_equal(simkit_i16(&kit, 7), 200);
+    simkit_packet(&kit, "FA AF 0A 0B 00 00 01", 20);
+    assert_int_equal(kit.n_got, 20);
+}
+
+static void every_reply_has_its_sum(void **state)
+{
+    (void)state;
+    simkit_start(&kit, NULL);
+    simkit_packet(&kit, "FA AF 02 0F 00 8C 00", 148);
+    assert_int_equal(kit.n_got, 148);
+    uint8_t sum = 0;
+    for (size_t i = 2; i < 147; i++) {
+        sum = (uint8_t)(sum ^ kit.got[i]);
+    }
+    assert_int_equal(kit.got[147], sum);
+    assert_int_equal(simkit_i16(&kit, 7), 0x3020);
+    assert_int_equal(kit.got[7 + 26], 15);
+    assert_int_equal(kit.got[7 + 35], 77);
+}
+
+static void what_cannot_be_read_is_refused(void **state)
+{
+    (void)state;
+    simkit_start(&kit, NULL);
+    simkit_packet(&kit, "FA AF 01 0D 00 00 01", 76);
+    simkit_expect(&kit, "");
+    simkit_packet(&kit, "FA AF 01 0F 8B 02 00", 10);
+    simkit_expect(&kit, "");
+    assert_int_equal(simkit_events(&kit, GROBO_SIM_REFUSED, NULL), 2);
+    simkit_packet(&kit, "FA AF 01 0F 24 01 00", 9);
+    simkit_expect(&kit, "FD DF 01 02 24 01 01 00 27");
+    simkit_packet(&kit, "FA AF 01 0F 24 01 00", 9);
+    simkit_expect(&kit, "FD DF 01 00 24 01 01 00 25");
+}
+
+/* ---- writing ------------------------------------------------------------------------------- */
+
+static void read_only_registers_stay(void **state)
+{
+    (void)state;
+    static const char *const writes[] = {
+        "FA AF 01 00 00 01 01 55", "FA AF 01 00 0E 01 01 55", "FA AF 01 00 2A 02 01 01 00",
+        "FA AF 01 00 34 02 01 01 00",
+        "FA AF 01 00 1D 0E 01 00 00 00 00 00 00 00 00 00 00 00 00 00 "
+        "00"};
+    simkit_start(&kit, NULL);
+    for (size_t i = 0; i < sizeof writes / sizeof *writes; i++) {
+        uint8_t before[GROBO_REGISTERS];
+        memcpy(before, kit.sim.servo[CHEST].reg, sizeof before);
+        simkit_forget(&kit);
+        simkit_packet(&kit, writes[i], 0);
+        assert_int_equal(simkit_events(&kit, GROBO_SIM_REFUSED, NULL), 1);
+        assert_memory_equal(before, kit.sim.servo[CHEST].reg, sizeof before);
+    }
+}
+
+static void values_out_of_range_are_refused(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *packet;
+        int address;
+        int32_t stays;
+    } rows[] = {
+        {"FA AF 01 00 04 01 01 00", GROBO_RS30X_ID, 1},
+        {"FA AF 01 00 04 01 01 80", GROBO_RS30X_ID, 1},
+        {"FA AF 01 00 05 01 01 02", GROBO_RS30X_REVERSE, 0},
+        {"FA AF 01 00 06 01 01 0B", GROBO_RS30X_BAUD, 7},
+        {"FA AF 01 00 07 01 01 80", GROBO_RS30X_DELAY, 0},
+        {"FA AF 01 00 08 02 01 DD 05", GROBO_RS30X_CW_LIMIT, 1500},
+        {"FA AF 01 00 20 02 01 00 40", GROBO_RS30X_GOAL_TIME, 0},
+        {"FA AF 01 00 23 01 01 65", GROBO_RS30X_MAX_TORQUE, 100},
+        {"FA AF 01 00 24 01 01 03", GROBO_RS30X_TORQUE, 0},
+        {"FA AF 01 00 1E 07 01 64 00 00 00 00 50 03", GROBO_RS30X_GOAL, 0},
+    };
+    simkit_start(&kit, NULL);
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        simkit_forget(&kit);
+        simkit_packet(&kit, rows[i].packet, 0);
+        assert_int_equal(simkit_events(&kit, GROBO_SIM_REFUSED, NULL), 1);
+        assert_int_equal(simkit_register(&kit, CHEST, rows[i].address), rows[i].stays);
+    }
+}
+
+static void goals_are_clamped_to_the_limits(void **state)
+{
+    (void)state;
+    simkit_start(&kit, NULL);
+    simkit_packet(&kit, "FA AF 01 00 08 04 01 2C 01 38 FF", 0);
+    assert_int_equal(simkit_register(&kit, CHEST, GROBO_RS30X_CW_LIMIT), 300);
+    assert_int_equal(simkit_register(&kit, CHEST, GROBO_RS30X_CCW_LIMIT), -200);
+    simkit_packet(&kit, "FA AF 01 00 1E 02 01 84 03", 0);
+    assert_int_equal(simkit_register(&kit, CHEST, GROBO_RS30X_GOAL), 300);
+    simkit_packet(&kit, "FA AF 01 00 1E 02 01 00 80", 0);
+    assert_int_equal(simkit_register(&kit, CHEST, GROBO_RS30X_GOAL), -200);
+}
+
+static void reserved_registers_take_nothing(void **state)
+{
+    (void)state;
+    simkit_start(&kit, NULL);
+    simkit_packet(&kit, "FA AF 01 00 3C 02 01 11 22", 0);
+    simkit_packet(&kit, "FA AF 01 00 16 02 01 01 01", 0);
+    assert_int_equal(simkit_events(&kit, GROBO_SIM_REFUSED, NULL), 0);
+    simkit_packet(&kit, "FA AF 01 0F 3C 02 00", 10);
+    assert_int_equal(simkit_i16(&kit, 7), 0);
+    simkit_packet(&kit, "FA AF 01 0F 16 02 00", 10);
+    assert_int_equal(simkit_i16(&kit, 7), 0);
+}
+
+static void acks_come_when_asked_for(void **state)
+{
+    (void)state;
+    simkit_start(&kit, NULL);
+    simkit_ask(&kit, "54 0A FA AF 01 01 24 01 01 01 25 01", 100000);
+    simkit_expect(&kit, "07");
+    assert_int_equal(simkit_register(&kit, CHEST, GROBO_RS30X_TORQUE), GROBO_TORQUE_ON);
+    simkit_packet(&kit, "FA AF 01 01 FF 00 00", 1);
+    simkit_expect(&kit, "07");
+    simkit_packet(&kit, "FA AF 01 01 00 00 00", 1);
+    simkit_expect(&kit, "07");
+    simkit_packet(&kit, "FA AF 01 01 FF 01 00", 1);
+    simkit_expect(&kit, "07");
+    simkit_packet(&kit, "FA AF 01 01 24 01 01 09", 1);
+    simkit_expect(&kit, "");
+    const grobo_sim_config nack = {.nack = true};
+    simkit_start(&kit, &nack);
+    simkit_packet(&kit, "FA AF 01 01 24 01 01 09", 1);
+    simkit_expect(&kit, "08");
+}
+
+static void a_write_may_carry_a_request(void **state)
+{
+    (void)state;
+    simkit_start(&kit, NULL);
+    simkit_packet(&kit, "FA AF 0A 0B 24 01 01 01", 20);
+    assert_int_equal(kit.n_got, 20);
+    assert_int_equal(kit.got[3], 0);
+    assert_int_equal(kit.got[7 + 6], 1);
+    simkit_packet(&kit, "FA AF 0A 0B 24 01 01 07", 20);
+    assert_int_equal(kit.got[3], GROBO_RS30X_STATUS_REFUSED);
+    assert_int_equal(kit.got[7 + 6], 1);
+}
+
+/* ---- who is meant -------------------------------------------------------------------------- */
+
+static void all_are_meant_by_255_and_none_replies(void **state)
+{
+    (void)state;
+    simkit_start(&kit, NULL);
+    simkit_ask(&kit, "53 09 FA AF FF 00 24 01 01 01 DA", 100000);
+    for (int i = 0; i < 20; i++) {
+        assert_int_equal(simkit_register(&kit, i, GROBO_RS30X_TORQUE), GROBO_TORQUE_ON);
+    }
+    simkit_packet(&kit, "FA AF FF 0F 2A 02 00", 10);
+    simkit_expect(&kit, "");
+}
+
+static void long_packets_reach_those_named(void **state)
+{
+    (void)state;
+    simkit_start(&kit, NULL);
+    simkit_packet(&kit, "FA AF 00 00 1E 05 03 01 64 00 64 00 02 9C FF 64 00 05 F4 01 64 00", 0);
+    assert_int_equal(simkit_register(&kit, simkit_servo(&kit, 1), GROBO_RS30X_GOAL), 100);
+    assert_int_equal(simkit_register(&kit, simkit_servo(&kit, 2), GROBO_RS30X_GOAL), -100);
+    assert_int_equal(simkit_register(&kit, simkit_servo(&kit, 5), GROBO_RS30X_GOAL), 500);
+    assert_int_equal(simkit_register(&kit, simkit_servo(&kit, 5), GROBO_RS30X_GOAL_TIME), 100);
+    assert_int_equal(simkit_register(&kit, simkit_servo(&kit, 3), GROBO_RS30X_GOAL), 0);
+    assert_int_equal(simkit_events(&kit, GROBO_SIM_GOAL, NULL), 3);
+}
+
+static void an_id_changes_at_once(void **state)
+{
+    (void)state;
+    simkit_start(&kit, NULL);
+    simkit_packet(&kit, "FA AF 01 00 04 01 01 1E", 0);
+    assert_int_equal(grobo_sim_find(&kit.sim, 1), GROBO_ERR_NOTFOUND);
+    assert_int_equal(grobo_sim_find(&kit.sim, 30), CHEST);
+    simkit_packet(&kit, "FA AF 01 0F 2A 02 00", 10);
+    simkit_expect(&kit, "");
+    simkit_packet(&kit, "FA AF 1E 0F 2A 02 00", 10);
+    assert_int_equal(kit.n_got, 10);
+    assert_int_equal(kit.got[2], 30);
+}
+
+static void two_with_one_id_collide(void **state)
+{
+    (void)state;
+    simkit_start(&kit, NULL);
+    assert_int_equal(grobo_sim_set_register(&kit.sim, CHEST, GROBO_RS30X_ID, 10), 0);
+    simkit_packet(&kit, "FA AF 0A 0F 2A 02 00", 10);
+    assert_int_equal(kit.n_got, 10);
+    /* 20.0 deg is C8 00, 0 is 00 00; the sums EF and 27. */
+    simkit_expect(&kit, "FD DF 0A 00 2A 02 01 00 00 23");
+    assert_true(simkit_events(&kit, GROBO_SIM_COLLISION, NULL) > 0);
+}
+
+static void wrong_sums_are_ignored(void **state)
+{
+    (void)state;
+    simkit_start(&kit, NULL);
+    simkit_ask(&kit, "53 09 FA AF 01 00 24 01 01 01 25", 100000);
+    assert_int_equal(simkit_register(&kit, CHEST, GROBO_RS30X_TORQUE), GROBO_TORQUE_OFF);
+    simkit_ask(&kit, "53 09 FA AF 01 00 24 01 01 01 24", 100000);
+    assert_int_equal(simkit_register(&kit, CHEST, GROBO_RS30X_TORQUE), GROBO_TORQUE_ON);
+}
+
+/* ---- reverse ------------------------------------------------------------------------------- */
+
+static void reverse_turns_signs_and_limits(void **state)
+{
+    (void)state;
+    simkit_start(&kit, NULL);
+    simkit_packet(&kit, "FA AF 0A 00 05 01 01 01", 0);
+    simkit_packet(&kit, "FA AF 0A 0F 2A 02 00", 10);
+    assert_int_equal(simkit_i16(&kit, 7), -200);
+    simkit_packet(&kit, "FA AF 0A 00 08 02 01 64 00", 0);
+    simkit_packet(&kit, "FA AF 0A 00 24 01 01 01", 0);
+    simkit_packet(&kit, "FA AF 0A 00 1E 02 01 2C 01", 0);
+    simkit_run(&kit, 1000000);
+    assert_int_equal(simkit_look(&kit, R_HIP_P).angle_mdeg, -10000);
+    assert_int_equal(simkit_register(&kit, R_HIP_P, GROBO_RS30X_POSITION), 100);
+    simkit_packet(&kit, "FA AF 0A 00 05 01 01 00", 0);
+    simkit_run(&kit, 1000000);
+    assert_int_equal(simkit_look(&kit, R_HIP_P).angle_mdeg, -10000);
+    assert_int_equal(simkit_register(&kit, R_HIP_P, GROBO_RS30X_GOAL), -100);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_vector_is_understood),
+        cmocka_unit_test(blocks_come_as_their_nibble_says),
+        cmocka_unit_test(every_reply_has_its_sum),
+        cmocka_unit_test(what_cannot_be_read_is_refused),
+        cmocka_unit_test(read_only_registers_stay),
+        cmocka_unit_test(values_out_of_range_are_refused),
+        cmocka_unit_test(goals_are_clamped_to_the_limits),
+        cmocka_unit_test(reserved_registers_take_nothing),
+        cmocka_unit_test(acks_come_when_asked_for),
+        cmocka_unit_test(a_write_may_carry_a_request),
+        cmocka_unit_test(all_are_meant_by_255_and_none_replies),
+        cmocka_unit_test(long_packets_reach_those_named),
+        cmocka_unit_test(an_id_changes_at_once),
+        cmocka_unit_test(two_with_one_id_collide),
+        cmocka_unit_test(wrong_sums_are_ignored),
+        cmocka_unit_test(reverse_turns_signs_and_limits),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
