@@ -75,6 +75,230 @@ static void pose_frame_is_stored_and_forwarded(void **state)
     assert_int_equal(kit.n_got, 0);
 }
 
+/* ---- the board ----------------------------------------------------------------------------- */
+
+static void frames_that_come_while_it_relays_wait(void **state)
+{
+    (void)state;
+    simkit_start(&kit, NULL);
+    int64_t t0 = kit.now_us;
+    simkit_ask(&kit,
+               "54 09 FA AF 01 0F 24 12 00 38 1A 54 09 FA AF 02 0F 24 12 00 3B 1A 41 00 "
+               "53 09 FA AF 03 00 24 01 01 01 26",
+               1000000);
+    assert_int_equal(kit.n_got, 53);
+    assert_int_equal(kit.got[2], 1);
+    assert_int_equal(kit.got[28], 2);
+    assert_int_equal(kit.got[52], 7);
+    /* The first reply is out after 71 bytes; the second frame has waited and costs 60 more. */
+    assert_int_equal(kit.got_us[25] - t0, 6264);
+    assert_in_range(kit.got_us[51] - t0, 200 + bytes_us(131, 115200), 201 + bytes_us(131, 115200));
+    assert_in_range(kit.got_us[52] - t0, 200 + bytes_us(132, 115200), 201 + bytes_us(132, 115200));
+    assert_int_equal(simkit_look(&kit, 14).torque, GROBO_TORQUE_ON);
+}
+
+static void a_flooded_board_loses_bytes_and_counts_them(void **state)
+{
+    (void)state;
+    simkit_start(&kit, NULL);
+    uint8_t flood[GROBO_SIM_WIRE_BYTES + 100];
+    memset(flood, 0x41, sizeof flood);
+    /* A read from a servo that is away keeps the board busy while the flood comes. */
+    const grobo_sim_config patient = {.board_silence_us = 1000000};
+    simkit_start(&kit, &patient);
+    assert_int_equal(grobo_sim_set_cable(&kit.sim, 12, GROBO_SIM_CABLE_OUT), 0);
+    simkit_send(&kit, "54 09 FA AF 01 0F 24 12 00 38 1A");
+    assert_int_equal(grobo_sim_rx_room(&kit.sim), GROBO_SIM_WIRE_BYTES - 11);
+    size_t took = grobo_sim_rx(&kit.sim, flood, sizeof flood, kit.now_us);
+    assert_int_equal(took, GROBO_SIM_WIRE_BYTES - 11);
+    assert_int_equal(grobo_sim_rx(&kit.sim, flood, 1, kit.now_us), 0);
+    simkit_run(&kit, 500000);
+    assert_int_equal(kit.sim.stats.rx_bytes, GROBO_SIM_WIRE_BYTES);
+    assert_int_equal(kit.sim.stats.overflows, took - GROBO_SIM_FIFO_BYTES);
+    simkit_run(&kit, 1000000);
+    simkit_ask(&kit, "41 00", 100000);
+    simkit_expect(&kit, "07");
+}
+
+static void a_silent_servo_makes_a_reply_short(void **state)
+{
+    (void)state;
+    const grobo_sim_config config = {.board_silence_us = 3000};
+    simkit_start(&kit, &config);
+    assert_int_equal(grobo_sim_set_cable(&kit.sim, 12, GROBO_SIM_CABLE_MUTE), 0);
+    int64_t t0 = kit.now_us;
+    simkit_ask(&kit, "54 09 FA AF 01 0F 24 12 00 38 1A 41 00", 100000);
+    simkit_expect(&kit, "07");
+    assert_int_equal(kit.sim.stats.short_replies, 1);
+    assert_int_equal(kit.got_us[0] - t0, 3000 + bytes_us(20, 115200));
+}
+
+static void asking_for_more_waits_and_for_less_cuts(void **state)
+{
+    (void)state;
+    simkit_start(&kit, NULL);
+    int64_t t0 = kit.now_us;
+    simkit_ask(&kit, "54 09 FA AF 01 0F 30 02 00 3C 1A", 100000);
+    assert_int_equal(kit.n_got, 10);
+    assert_int_equal(kit.got_us[9] - t0, 100 + 2000 + bytes_us(39, 115200));
+    assert_int_equal(kit.sim.stats.short_replies, 1);
+    simkit_ask(&kit, "54 09 FA AF 01 0F 24 12 00 38 0A", 100000);
+    assert_int_equal(kit.n_got, 10);
+    assert_int_equal(kit.got[5], 18);
+    simkit_run(&kit, 100000);
+    assert_int_equal(kit.sim.stats.stray_bytes, 16);
+}
+
+static void a_reply_nobody_asked_for_goes_nowhere(void **state)
+{
+    (void)state;
+    simkit_start(&kit, NULL);
+    simkit_ask(&kit, "53 08 FA AF 01 0F 24 12 00 38", 100000);
+    simkit_expect(&kit, "");
+    simkit_run(&kit, 100000);
+    assert_int_equal(kit.sim.stats.stray_bytes, 26);
+}
+
+static void slots_and_scenarios_are_noted(void **state)
+{
+    (void)state;
+    simkit_start(&kit, NULL);
+    simkit_ask(&kit, "50 4D 03", 100000);
+    simkit_ask(&kit, "50 53 00", 100000);
+    simkit_ask(&kit, "50 53 09", 100000);
+    simkit_expect(&kit, "");
+    assert_int_equal(kit.sim.stats.slots, 1);
+    assert_int_equal(kit.sim.stats.last_slot, 3);
+    assert_int_equal(kit.sim.stats.scenarios, 2);
+    assert_int_equal(kit.sim.stats.last_scenario, 9);
+    grobo_sim_event event;
+    assert_int_equal(simkit_events(&kit, GROBO_SIM_SLOT, &event), 1);
+    assert_int_equal(event.value, 3);
+}
+
+static void a_stalled_frame_is_forgotten(void **state)
+{
+    (void)state;
+    const grobo_sim_config config = {.board_stall_us = 10000};
+    simkit_start(&kit, &config);
+    simkit_ask(&kit, "53 09 FA AF 01 00", 5000);
+    simkit_run(&kit, 9000);
+    simkit_ask(&kit, "24 01 01 01 24", 100000);
+    assert_int_equal(simkit_look(&kit, 12).torque, GROBO_TORQUE_ON);
+    simkit_ask(&kit, "53 09 FA AF 01 00", 5000);
+    simkit_run(&kit, 20000);
+    simkit_ask(&kit, "41 00", 100000);
+    simkit_expect(&kit, "07");
+}
+
+/* ---- servos straight on the line ----------------------------------------------------------- */
+
+static void bus_read_costs_34_bytes_and_the_delay(void **state)
+{
+    (void)state;
+    static const uint32_t rates[] = {9600, 38400, 115200, 460800};
+    for (size_t i = 0; i < sizeof rates / sizeof *rates; i++) {
+        const grobo_sim_config config = {.wiring = GROBO_WIRING_BUS, .baud_bps = rates[i]};
+        simkit_start(&kit, &config);
+        int code = grobo_rs30x_baud_code(rates[i]);
+        assert_int_equal(grobo_sim_set_register(&kit.sim, 12, GROBO_RS30X_BAUD, code), 0);
+        int64_t t0 = kit.now_us;
+        simkit_packet(&kit, "FA AF 01 0F 24 12 00", 26);
+        assert_int_equal(kit.n_got, 26);
+        assert_int_equal(kit.got_us[0] - t0, 100 + bytes_us(9, rates[i]));
+        assert_int_equal(kit.got_us[25] - t0, 100 + bytes_us(34, rates[i]));
+    }
+}
+
+static void board_frames_mean_nothing_to_servos(void **state)
+{
+    (void)state;
+    const grobo_sim_config config = {.wiring = GROBO_WIRING_BUS};
+    simkit_start(&kit, &config);
+    simkit_ask(&kit, "41 00", 100000);
+    simkit_expect(&kit, "");
+    simkit_ask(&kit, "53 09 FA AF 01 00 24 01 01 01 24", 100000);
+    assert_int_equal(simkit_look(&kit, 12).torque, GROBO_TORQUE_ON);
+}
+
+static void talking_over_a_reply_spoils_both(void **state)
+{
+    (void)state;
+    const grobo_sim_config config = {.wiring = GROBO_WIRING_BUS};
+    simkit_start(&kit, &config);
+    simkit_send(&kit, "FA AF 01 0F 24 12 00 38");
+    simkit_run(&kit, bytes_us(8, 115200) + 500);
+    simkit_send(&kit, "FA AF 02 00 24 01 01 01 27");
+    simkit_run(&kit, 100000);
+    assert_true(simkit_events(&kit, GROBO_SIM_COLLISION, NULL) >= 8);
+    assert_int_equal(kit.sim.stats.packets, 1);
+    assert_int_equal(simkit_look(&kit, simkit_servo(&kit, 2)).torque, GROBO_TORQUE_OFF);
+    simkit_packet(&kit, "FA AF 02 00 24 01 01 01", 0);
+    assert_int_equal(simkit_look(&kit, simkit_servo(&kit, 2)).torque, GROBO_TORQUE_ON);
+}
+
+/* Byte by byte on the wire: overlapping replies of different delays become their AND. */
+static void replies_that_overlap_spoil_each_other(void **state)
+{
+    (void)state;
+    const grobo_sim_config config = {.wiring = GROBO_WIRING_BUS};
+    simkit_start(&kit, &config);
+    assert_int_equal(grobo_sim_set_register(&kit.sim, 12, GROBO_RS30X_ID, 2), 0);
+    assert_int_equal(grobo_sim_set_register(&kit.sim, 12, GROBO_RS30X_DELAY, 2), 0);
+    simkit_packet(&kit, "FA AF 02 0F 24 01 00", 9);
+    assert_true(kit.n_got >= 9);
+    assert_true(simkit_events(&kit, GROBO_SIM_COLLISION, NULL) >= 7);
+    static const uint8_t clean[] = {0xFD, 0xDF, 0x02, 0x00, 0x24, 0x01, 0x01, 0x00, 0x26};
+    assert_memory_not_equal(kit.got, clean, sizeof clean);
+}
+
+/* ---- pacing and the cable ------------------------------------------------------------------ */
+
+static void unpaced_takes_only_the_return_delay(void **state)
+{
+    (void)state;
+    const grobo_sim_config config = {.unpaced = true};
+    simkit_start(&kit, &config);
+    int64_t t0 = kit.now_us;
+    simkit_ask(&kit, "54 09 FA AF 01 0F 24 12 00 38 1A", 100000);
+    assert_int_equal(kit.n_got, 26);
+    assert_in_range(kit.got_us[25] - t0, 100, 102);
+}
+
+static void time_going_back_counts_as_standing_still(void **state)
+{
+    (void)state;
+    simkit_start(&kit, NULL);
+    simkit_send(&kit, "41 00");
+    uint8_t byte;
+    assert_int_equal(grobo_sim_tx(&kit.sim, &byte, 1, kit.now_us + 1000), 1);
+    const uint8_t check[] = {0x41, 0x00};
+    assert_int_equal(grobo_sim_rx(&kit.sim, check, 2, kit.now_us), 2);
+    assert_int_equal(grobo_sim_tx(&kit.sim, &byte, 1, kit.now_us + 1000), 0);
+    assert_int_equal(grobo_sim_deadline(&kit.sim), kit.now_us + 1000 + bytes_us(2, 115200));
+}
+
+static void an_unplugged_cable_loses_what_is_on_the_line(void **state)
+{
+    (void)state;
+    simkit_start(&kit, NULL);
+    simkit_packet(&kit, "FA AF 03 00 24 01 01 01", 0);
+    simkit_packet(&kit, "FA AF 03 00 1E 04 01 84 03 64 00", 0);
+    simkit_send(&kit, "54 09 FA AF 01 0F 24 12 00 38 1A");
+    simkit_run(&kit, 4000);
+    grobo_sim_plug(&kit.sim, false, kit.now_us);
+    assert_true(grobo_sim_hung_up(&kit.sim));
+    simkit_run(&kit, 500000);
+    simkit_ask(&kit, "41 00", 100000);
+    simkit_expect(&kit, "");
+    grobo_sim_plug(&kit.sim, true, kit.now_us);
+    assert_false(grobo_sim_hung_up(&kit.sim));
+    simkit_ask(&kit, "41 00", 100000);
+    simkit_expect(&kit, "07");
+    simkit_run(&kit, 1000000);
+    assert_int_equal(simkit_look(&kit, 14).angle_mdeg, 90000);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -82,6 +306,20 @@ int main(void)
         cmocka_unit_test(read_costs_71_bytes_and_the_delay),
         cmocka_unit_test(return_delay_is_waited),
         cmocka_unit_test(pose_frame_is_stored_and_forwarded),
+        cmocka_unit_test(frames_that_come_while_it_relays_wait),
+        cmocka_unit_test(a_flooded_board_loses_bytes_and_counts_them),
+        cmocka_unit_test(a_silent_servo_makes_a_reply_short),
+        cmocka_unit_test(asking_for_more_waits_and_for_less_cuts),
+        cmocka_unit_test(a_reply_nobody_asked_for_goes_nowhere),
+        cmocka_unit_test(slots_and_scenarios_are_noted),
+        cmocka_unit_test(a_stalled_frame_is_forgotten),
+        cmocka_unit_test(bus_read_costs_34_bytes_and_the_delay),
+        cmocka_unit_test(board_frames_mean_nothing_to_servos),
+        cmocka_unit_test(talking_over_a_reply_spoils_both),
+        cmocka_unit_test(replies_that_overlap_spoil_each_other),
+        cmocka_unit_test(unpaced_takes_only_the_return_delay),
+        cmocka_unit_test(time_going_back_counts_as_standing_still),
+        cmocka_unit_test(an_unplugged_cable_loses_what_is_on_the_line),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
