@@ -248,8 +248,8 @@ typedef struct grobo_robot_axis {
     int64_t from_us, to_us;    /* and its time */
     int status;                /* of the last reading */
     uint16_t lost;             /* readings lost in a row */
-    uint8_t low_readings;      /* of the voltage, in a row */
-    bool has_target;           /* sent somewhere since the link came up */
+    bool sensed;               /* since the link came up */
+    bool has_target;           /* sent somewhere since then */
     bool torque_known;
     bool wants_torque; /* we switched it on: to be without is a fault */
     bool held;         /* goal read back to be the present angle: torque may come on */
@@ -261,13 +261,14 @@ typedef struct grobo_robot_task {
     const grobo_robot_step_fn *script;
     int number;
     grobo_job_kind kind;
-    unsigned at;             /* step of the script that comes next */
-    uint8_t activity;        /* what the step before began */
-    int result;              /* first error */
-    int joint;               /* and its joint */
-    double value;            /* and its value */
-    grobo_joint_mask joints; /* asked for */
-    grobo_joint_mask todo;   /* of the activity */
+    unsigned at;              /* step of the script that comes next */
+    uint8_t activity;         /* what the step before began */
+    int result;               /* first error */
+    int joint;                /* and its joint */
+    double value;             /* and its value */
+    grobo_joint_mask joints;  /* asked for */
+    grobo_joint_mask todo;    /* of the activity */
+    grobo_joint_mask pending; /* not yet as it was asked for */
     grobo_joint_mask failed;
     grobo_sense_kind sense; /* of the activity */
     grobo_torque torque;
@@ -277,7 +278,8 @@ typedef struct grobo_robot_task {
     grobo_play_options options;
     grobo_exchange exchange;
     int part;
-    int rounds;       /* of repeating what was not taken */
+    int rounds; /* of repeating what was not taken */
+    size_t reply_bytes;
     int64_t until_us; /* end of waiting */
     int64_t bound_us; /* end of patience */
     grobo_register_io io;
@@ -313,7 +315,8 @@ typedef struct grobo_robot {
     double fault_deg;
     int fault_joint;
     int last_number;
-    unsigned depth; /* calls into the engine, one inside another */
+    unsigned low_readings; /* of the voltage, in a row */
+    unsigned depth;        /* calls into the engine, one inside another */
     bool link;
     bool soft; /* the next move is the first from a sensed posture */
 } grobo_robot;
@@ -469,7 +472,10 @@ GROBO_API int grobo_robot_speed(grobo_robot *robot, int speed_pct, int64_t now_u
  * A person moves the joints: after each reading a joint whose current is above its
  * grobo_joint.free_current_ma is braked, one slower than 8 deg/s holds again (protocol 5). */
 
-/** @return 0, or an error as for requests. Off leaves the joints holding where they are. */
+/**
+ * Puts joints into free mode, or back: off is a job that makes them hold where they are.
+ * @return 0 for on, a job number for off, or an error as for requests.
+ */
 GROBO_API int grobo_robot_free(grobo_robot *robot, grobo_joint_mask joints, bool on,
                                int64_t now_us);
 

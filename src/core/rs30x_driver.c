@@ -262,7 +262,7 @@ int grobo_i_rs30x_stored(const grobo_driver *self, void *ctx, grobo_stored_kind 
     return finish(self, size, exchange);
 }
 
-/* ---- reading the wish out of a raw frame ------------------------------------------------------ */
+/* ---- reading the wish out of a raw frame ----------------------------------------------------- */
 
 /* One servo's share of a write: its data from `address` on. */
 typedef struct share {
@@ -364,7 +364,7 @@ int grobo_i_rs30x_inspect(const grobo_driver *self, void *ctx, const uint8_t *fr
     return inspect_packet(self, &packet, target, torqued);
 }
 
-/* ---- the table --------------------------------------------------------------------------------- */
+/* ---- the table ------------------------------------------------------------------------------- */
 
 int grobo_rs30x_driver_init(grobo_driver *driver, const grobo_model *model, grobo_wiring wiring)
 {

@@ -1,0 +1,238 @@
+/* SPDX-License-Identifier: MIT */
+/* The sequencer's frames, on time. */
+#include "core/robot.h"
+
+#include <math.h>
+#include <string.h>
+
+bool grobo_i_playing(const grobo_robot *robot)
+{
+    switch (grobo_sequencer_get_state(&robot->sequencer)) {
+    case GROBO_SEQUENCER_APPROACHING:
+    case GROBO_SEQUENCER_PLAYING:
+    case GROBO_SEQUENCER_PAUSED:
+    case GROBO_SEQUENCER_STOPPING:
+        return true;
+    case GROBO_SEQUENCER_IDLE:
+    case GROBO_SEQUENCER_FINISHED:
+    case GROBO_SEQUENCER_FAILED:
+        return false;
+    }
+    return false;
+}
+
+void grobo_i_play_tell(grobo_robot *robot)
+{
+    grobo_sequencer_state state = grobo_sequencer_get_state(&robot->sequencer);
+    if (state == robot->told_state) {
+        return;
+    }
+    grobo_play_progress progress;
+    grobo_sequencer_progress(&robot->sequencer, robot->now_us, &progress);
+    grobo_event event = {.kind = GROBO_EVENT_PLAY};
+    event.u.play.from = robot->told_state;
+    event.u.play.to = state;
+    event.u.play.error = progress.error;
+    robot->told_state = state;
+    grobo_i_tell(robot, &event);
+}
+
+int grobo_i_play_start(grobo_robot *robot)
+{
+    grobo_robot_task *job = &robot->job;
+    if (grobo_sequencer_get_state(&robot->sequencer) == GROBO_SEQUENCER_FAILED) {
+        grobo_sequencer_reset(&robot->sequencer);
+    }
+    grobo_posture here;
+    (void)grobo_robot_posture(robot, robot->now_us, GROBO_NEVER_US, &here);
+    memset(robot->late_bins, 0, sizeof robot->late_bins);
+    robot->late_max_us = 0;
+    return grobo_sequencer_play(&robot->sequencer, &job->clip, &job->options, &here, robot->now_us);
+}
+
+/* ---- lateness -------------------------------------------------------------------------------- */
+
+static void note_lateness(grobo_robot *robot, int64_t late_us)
+{
+    int bin = late_us <= 1 ? 0 : (int)(4 * log2((double)late_us));
+    if (bin >= GROBO_ROBOT_JITTER_BINS) {
+        bin = GROBO_ROBOT_JITTER_BINS - 1;
+    }
+    robot->late_bins[bin]++;
+    if (late_us > robot->late_max_us) {
+        robot->late_max_us = late_us;
+    }
+}
+
+static int64_t quantile(const grobo_robot *robot, uint64_t frames, unsigned pct)
+{
+    uint64_t below = 0;
+    for (int bin = 0; bin < GROBO_ROBOT_JITTER_BINS; bin++) {
+        below += robot->late_bins[bin];
+        if (below * 100 >= frames * pct) {
+            int64_t edge_us = (int64_t)ceil(exp2((bin + 1) / 4.0));
+            return edge_us < robot->late_max_us ? edge_us : robot->late_max_us;
+        }
+    }
+    return robot->late_max_us;
+}
+
+void grobo_robot_jitter(const grobo_robot *robot, grobo_jitter *jitter)
+{
+    uint64_t frames = 0;
+    for (int bin = 0; bin < GROBO_ROBOT_JITTER_BINS; bin++) {
+        frames += robot->late_bins[bin];
+    }
+    jitter->frames = frames;
+    jitter->p50_us = frames == 0 ? 0 : quantile(robot, frames, 50);
+    jitter->p99_us = frames == 0 ? 0 : quantile(robot, frames, 99);
+    jitter->max_us = robot->late_max_us;
+}
+
+void grobo_i_play_done(grobo_robot_slot *slot, int result)
+{
+    if (slot->due_us == GROBO_NEVER_US) {
+        return;
+    }
+    if (result >= 0) {
+        note_lateness(slot->robot, slot->txn.sent_us - slot->due_us);
+    } else {
+        slot->robot->counters.late_frames++; /* a later one took its place */
+    }
+}
+
+/* ---- frames ---------------------------------------------------------------------------------- */
+
+/* A played frame that still waits for the line when the next one is due has missed its time. */
+static void drop_overtaken(grobo_robot *robot)
+{
+    for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
+        grobo_robot_slot *slot = &robot->slots[i];
+        if (slot->use == GROBO_I_USE_MOTION && slot->due_us != GROBO_NEVER_US &&
+            slot->txn.sent_us < 0) {
+            (void)grobo_bus_cancel(&robot->bus, &slot->txn);
+        }
+    }
+}
+
+static void give_up(grobo_robot *robot, int error)
+{
+    (void)grobo_sequencer_fail(&robot->sequencer, error);
+    if (error == GROBO_ERR_LIMIT || error == GROBO_ERR_NAN) {
+        grobo_i_trip(robot, error == GROBO_ERR_LIMIT ? GROBO_TRIP_LIMIT : GROBO_TRIP_NUMBER,
+                     robot->fault_joint, robot->fault_deg, false);
+    }
+    grobo_i_gate_halt(robot);
+}
+
+static bool send_frame(grobo_robot *robot, const grobo_play_frame *frame)
+{
+    bool approach = frame->phase == GROBO_SEQUENCER_APPROACHING;
+    grobo_i_motion how = {GROBO_PRIORITY_MOTION, frame->due_us, !approach, false};
+    drop_overtaken(robot);
+    int result = grobo_i_gate_send(robot, &frame->posture, &how, NULL);
+    if (result < 0) {
+        give_up(robot, result);
+        return false;
+    }
+    robot->soft = false;
+    return true;
+}
+
+static void watch_host(grobo_robot *robot)
+{
+    int64_t due_us = grobo_sequencer_deadline(&robot->sequencer);
+    if (due_us == GROBO_NEVER_US || robot->now_us - due_us <= robot->config.stall_us) {
+        return;
+    }
+    robot->counters.stalls++;
+    grobo_i_trip(robot, GROBO_TRIP_HOST_STALL, -1, (double)(robot->now_us - due_us) / 1000.0,
+                 false);
+}
+
+/* No reading is begun that would not be over when the next frame is due. */
+static void reserve(grobo_robot *robot)
+{
+    int64_t due_us = grobo_sequencer_deadline(&robot->sequencer);
+    grobo_bus_reserve(&robot->bus, due_us, due_us == GROBO_NEVER_US ? 0 : robot->motion_us);
+}
+
+void grobo_i_play_step(grobo_robot *robot)
+{
+    if (!grobo_i_playing(robot)) {
+        return;
+    }
+    watch_host(robot);
+    const grobo_play_stats *stats = grobo_sequencer_stats(&robot->sequencer);
+    uint64_t late_before = stats->late_frames;
+    grobo_play_frame frame;
+    int more;
+    while ((more = grobo_sequencer_next(&robot->sequencer, robot->now_us, &frame)) > 0) {
+        if (!send_frame(robot, &frame)) {
+            break;
+        }
+    }
+    if (more < 0) {
+        grobo_i_gate_halt(robot);
+    }
+    robot->counters.late_frames += stats->late_frames - late_before;
+    reserve(robot);
+}
+
+/* ---- controls -------------------------------------------------------------------------------- */
+
+int grobo_robot_pause(grobo_robot *robot, int64_t now_us)
+{
+    grobo_i_enter(robot, now_us);
+    int result = grobo_sequencer_pause(&robot->sequencer, robot->now_us);
+    grobo_i_leave(robot);
+    return result;
+}
+
+int grobo_robot_resume(grobo_robot *robot, int64_t now_us)
+{
+    grobo_i_enter(robot, now_us);
+    int result = robot->trip.latched ? GROBO_ERR_LATCHED
+                                     : grobo_sequencer_resume(&robot->sequencer, robot->now_us);
+    grobo_i_leave(robot);
+    return result;
+}
+
+int grobo_robot_stop(grobo_robot *robot, bool at_once, int64_t now_us)
+{
+    grobo_i_enter(robot, now_us);
+    int result = grobo_sequencer_stop(&robot->sequencer, at_once, robot->now_us);
+    if (robot->job.kind == GROBO_JOB_MOVE || robot->job.kind == GROBO_JOB_PLAY) {
+        grobo_i_job_end(robot, GROBO_ERR_CANCELED);
+        grobo_i_gate_halt(robot);
+        result = GROBO_OK;
+    }
+    grobo_i_leave(robot);
+    return result;
+}
+
+int grobo_robot_seek(grobo_robot *robot, int64_t clip_us, int64_t now_us)
+{
+    grobo_i_enter(robot, now_us);
+    int result = grobo_sequencer_seek(&robot->sequencer, clip_us, robot->now_us);
+    grobo_i_leave(robot);
+    return result;
+}
+
+int grobo_robot_speed(grobo_robot *robot, int speed_pct, int64_t now_us)
+{
+    grobo_i_enter(robot, now_us);
+    int result = grobo_sequencer_set_speed(&robot->sequencer, speed_pct, robot->now_us);
+    grobo_i_leave(robot);
+    return result;
+}
+
+int grobo_robot_enqueue(grobo_robot *robot, const grobo_clip *clip,
+                        const grobo_play_options *options, int64_t now_us)
+{
+    grobo_i_enter(robot, now_us);
+    int result = robot->trip.latched ? GROBO_ERR_LATCHED
+                                     : grobo_sequencer_enqueue(&robot->sequencer, clip, options);
+    grobo_i_leave(robot);
+    return result;
+}

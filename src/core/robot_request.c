@@ -1,0 +1,424 @@
+/* SPDX-License-Identifier: MIT */
+/* The public requests: what is asked is checked here, then a script is started. */
+#include "core/robot.h"
+
+#include <math.h>
+#include <string.h>
+
+/* May a job begin now? */
+static int admit(const grobo_robot *robot, bool moves)
+{
+    if (!robot->link) {
+        return GROBO_ERR_CLOSED;
+    }
+    if (robot->job.kind != GROBO_JOB_NONE) {
+        return GROBO_ERR_STATE;
+    }
+    return moves && robot->trip.latched ? GROBO_ERR_LATCHED : GROBO_OK;
+}
+
+/* Runs a job just begun as far as it goes, and leaves. */
+static int begin(grobo_robot *robot, int number)
+{
+    grobo_i_job_run(robot);
+    grobo_i_leave(robot);
+    return number;
+}
+
+static int refuse(grobo_robot *robot, int error)
+{
+    grobo_i_leave(robot);
+    return error;
+}
+
+int grobo_robot_check(grobo_robot *robot, int64_t now_us)
+{
+    grobo_i_enter(robot, now_us);
+    int result = admit(robot, false);
+    if (result >= 0 && robot->driver->check == NULL) {
+        result = GROBO_ERR_UNSUPPORTED;
+    }
+    if (result < 0) {
+        return refuse(robot, result);
+    }
+    return begin(robot, grobo_i_job_start(robot, GROBO_JOB_CHECK, grobo_i_script_check));
+}
+
+static bool joints_sound(const grobo_robot *robot, grobo_joint_mask joints)
+{
+    return joints != 0 && (joints & ~grobo_i_all_joints(robot)) == 0;
+}
+
+int grobo_robot_sense(grobo_robot *robot, grobo_joint_mask joints, grobo_sense_kind kind,
+                      int64_t now_us)
+{
+    grobo_i_enter(robot, now_us);
+    int result = admit(robot, false);
+    if (!joints_sound(robot, joints) || (unsigned)kind > GROBO_SENSE_ALL) {
+        result = GROBO_ERR_ARG;
+    }
+    if (result < 0) {
+        return refuse(robot, result);
+    }
+    int number = grobo_i_job_start(robot, GROBO_JOB_SENSE, grobo_i_script_sense);
+    robot->job.joints = joints;
+    robot->job.sense = kind;
+    return begin(robot, number);
+}
+
+int grobo_robot_torque(grobo_robot *robot, grobo_joint_mask joints, grobo_torque mode,
+                       int64_t now_us)
+{
+    grobo_i_enter(robot, now_us);
+    int result = admit(robot, mode == GROBO_TORQUE_ON);
+    if (result >= 0 && robot->driver->torque == NULL) {
+        result = GROBO_ERR_UNSUPPORTED;
+    }
+    if (!joints_sound(robot, joints) || (unsigned)mode > GROBO_TORQUE_BRAKE) {
+        result = GROBO_ERR_ARG;
+    }
+    if (result < 0) {
+        return refuse(robot, result);
+    }
+    int number = grobo_i_job_start(robot, GROBO_JOB_TORQUE,
+                                   mode == GROBO_TORQUE_ON ? grobo_i_script_torque_on
+                                                           : grobo_i_script_torque_off);
+    robot->job.joints = joints;
+    robot->job.torque = mode;
+    robot->free_joints &= ~joints;
+    return begin(robot, number);
+}
+
+int grobo_robot_move(grobo_robot *robot, const grobo_posture *target, int64_t now_us)
+{
+    grobo_i_enter(robot, now_us);
+    grobo_posture checked = *target;
+    int result = admit(robot, true);
+    if (result >= 0 && grobo_i_playing(robot)) {
+        result = GROBO_ERR_STATE;
+    }
+    if (result >= 0) {
+        result = target->set == 0 ? GROBO_ERR_ARG : grobo_i_gate_target(robot, &checked);
+    }
+    if (result < 0) {
+        return refuse(robot, result);
+    }
+    int number = grobo_i_job_start(robot, GROBO_JOB_MOVE, grobo_i_script_move);
+    robot->job.joints = checked.set;
+    robot->job.target = checked;
+    robot->free_joints &= ~checked.set;
+    return begin(robot, number);
+}
+
+/* Every joint that a clip sets: by keys all of them are looked at, at a rate its ends. */
+static int joints_of_clip(const grobo_clip *clip, const grobo_play_options *options,
+                          grobo_joint_mask *joints)
+{
+    grobo_posture posture;
+    int64_t at_us;
+    int result = GROBO_OK;
+    *joints = 0;
+    if (options->mode == GROBO_PLAY_RATE && clip->sample != NULL) {
+        result = clip->sample(clip->ctx, 0, &posture);
+        *joints = result < 0 ? 0 : posture.set;
+        if (result >= 0) {
+            result = clip->sample(clip->ctx, clip->length_us, &posture);
+        }
+        *joints |= result < 0 ? 0 : posture.set;
+        return result;
+    }
+    for (size_t i = 0; i < clip->n_keys && result >= 0; i++) {
+        result = clip->key(clip->ctx, i, &posture, &at_us);
+        *joints |= result < 0 ? 0 : posture.set;
+    }
+    return result;
+}
+
+/* May this clip be played now? *joints: those it moves. */
+static int admit_clip(grobo_robot *robot, const grobo_clip *clip, const grobo_play_options *options,
+                      grobo_joint_mask *joints)
+{
+    int result = admit(robot, true);
+    if (result >= 0 && grobo_i_playing(robot)) {
+        result = GROBO_ERR_STATE;
+    }
+    if (result >= 0 && clip->n_joints != robot->driver->model->n_joints) {
+        result = GROBO_ERR_ARG;
+    }
+    if (result >= 0) {
+        result = joints_of_clip(clip, options, joints);
+    }
+    if (result >= 0 && !joints_sound(robot, *joints)) {
+        result = *joints == 0 ? GROBO_ERR_EMPTY : GROBO_ERR_ARG;
+    }
+    return result;
+}
+
+static uint16_t approach_of(const grobo_robot *robot)
+{
+    double approach_dps = fmin(fmax(robot->config.approach_dps, 1), UINT16_MAX);
+    return (uint16_t)approach_dps;
+}
+
+int grobo_robot_play(grobo_robot *robot, const grobo_clip *clip, const grobo_play_options *options,
+                     int64_t now_us)
+{
+    grobo_i_enter(robot, now_us);
+    grobo_play_options chosen = {0};
+    grobo_joint_mask joints = 0;
+    if (options != NULL) {
+        chosen = *options;
+    }
+    int result = admit_clip(robot, clip, &chosen, &joints);
+    if (result < 0) {
+        return refuse(robot, result);
+    }
+    if (chosen.approach_deg_s == 0) {
+        chosen.approach_deg_s = approach_of(robot);
+    }
+    if (chosen.default_time_us == 0) {
+        chosen.default_time_us = robot->config.default_time_us;
+    }
+    int number = grobo_i_job_start(robot, GROBO_JOB_PLAY, grobo_i_script_play);
+    robot->job.joints = chosen.mirror ? grobo_i_all_joints(robot) : joints;
+    robot->job.clip = *clip;
+    robot->job.options = chosen;
+    robot->free_joints = 0;
+    return begin(robot, number);
+}
+
+/* ---- frames of other kinds ------------------------------------------------------------------- */
+
+static int begin_exchange(grobo_robot *robot, grobo_job_kind kind, const grobo_exchange *exchange)
+{
+    int number = grobo_i_job_start(robot, kind, grobo_i_script_ask);
+    robot->job.exchange = *exchange;
+    return begin(robot, number);
+}
+
+int grobo_robot_raw(grobo_robot *robot, const uint8_t *frame, size_t size, int64_t now_us)
+{
+    grobo_exchange exchange = {0};
+    grobo_i_enter(robot, now_us);
+    int result = admit(robot, false);
+    if (size == 0 || size > sizeof exchange.frame) {
+        result = GROBO_ERR_ARG;
+    }
+    if (result >= 0) {
+        result = grobo_i_gate_raw(robot, frame, size);
+    }
+    if (result < 0) {
+        return refuse(robot, result);
+    }
+    memcpy(exchange.frame, frame, size);
+    exchange.frame_bytes = (uint8_t)size;
+    if (grobo_frame_reply(robot->driver->wiring, frame, size, &exchange.reply) < 0) {
+        exchange.reply.kind = GROBO_REPLY_NONE;
+    }
+    return begin_exchange(robot, GROBO_JOB_RAW, &exchange);
+}
+
+static bool touches(const grobo_register_io *io, int address, int bytes)
+{
+    return io->address < address + bytes && io->address + io->length > address;
+}
+
+int grobo_robot_registers(grobo_robot *robot, const grobo_register_io *io, int64_t now_us)
+{
+    grobo_exchange exchange = {0};
+    grobo_i_enter(robot, now_us);
+    int result = admit(robot, false);
+    if (io->id < 1 || io->id > GROBO_SERVO_ID_MAX || io->length < 1 ||
+        io->address + io->length > GROBO_REGISTERS) {
+        result = GROBO_ERR_ARG;
+    }
+    bool motor = touches(io, GROBO_RS30X_GOAL, 4) || touches(io, GROBO_RS30X_TORQUE, 1);
+    if (result >= 0 && (robot->driver->registers == NULL || (io->data != NULL && motor))) {
+        result = GROBO_ERR_UNSUPPORTED;
+    }
+    if (result >= 0) {
+        result = robot->driver->registers(robot->driver, robot->driver_ctx, io, &exchange);
+    }
+    if (result < 0) {
+        return refuse(robot, result);
+    }
+    return begin_exchange(robot, GROBO_JOB_REGISTERS, &exchange);
+}
+
+/* After these the servo is without torque, whatever it was before. */
+static void expect_no_torque(grobo_robot *robot, int id)
+{
+    int joint = grobo_model_joint_of_motor(robot->driver->model, id);
+    if (joint >= 0) {
+        robot->axes[joint].wants_torque = robot->axes[joint].held = false;
+        robot->axes[joint].torque_known = robot->axes[joint].has_target = false;
+    }
+}
+
+int grobo_robot_command(grobo_robot *robot, int id, grobo_servo_command command, int64_t now_us)
+{
+    grobo_exchange exchange = {0};
+    grobo_i_enter(robot, now_us);
+    int result = admit(robot, false);
+    if (id < 1 || id > GROBO_SERVO_ID_MAX || (unsigned)command > GROBO_SERVO_FACTORY_RESET) {
+        result = GROBO_ERR_ARG;
+    }
+    if (result >= 0 && robot->driver->command == NULL) {
+        result = GROBO_ERR_UNSUPPORTED;
+    }
+    if (result >= 0) {
+        result = robot->driver->command(robot->driver, robot->driver_ctx, id, command, &exchange);
+    }
+    if (result < 0) {
+        return refuse(robot, result);
+    }
+    if (command != GROBO_SERVO_FLASH) {
+        expect_no_torque(robot, id);
+    }
+    return begin_exchange(robot, GROBO_JOB_COMMAND, &exchange);
+}
+
+int grobo_robot_stored(grobo_robot *robot, grobo_stored_kind kind, int number, int64_t now_us)
+{
+    grobo_exchange exchange = {0};
+    grobo_i_enter(robot, now_us);
+    int result = admit(robot, true);
+    if (result >= 0 && grobo_i_playing(robot)) {
+        result = GROBO_ERR_STATE;
+    }
+    if (result >= 0 && robot->driver->stored == NULL) {
+        result = GROBO_ERR_UNSUPPORTED;
+    }
+    if (result >= 0) {
+        result = robot->driver->stored(robot->driver, robot->driver_ctx, kind, number, &exchange);
+    }
+    if (result < 0) {
+        return refuse(robot, result);
+    }
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        robot->axes[j].has_target = false; /* its own targets are not known to us */
+    }
+    robot->soft = true;
+    return begin_exchange(robot, GROBO_JOB_STORED, &exchange);
+}
+
+/* ---- ends ------------------------------------------------------------------------------------ */
+
+/* Ends the job that runs to make place for another; what it moves is stopped. */
+static void displace(grobo_robot *robot)
+{
+    bool moved = robot->job.kind == GROBO_JOB_MOVE;
+    if (robot->job.kind != GROBO_JOB_NONE) {
+        grobo_i_job_end(robot, GROBO_ERR_CANCELED);
+    }
+    if (moved) {
+        grobo_i_gate_halt(robot);
+    }
+}
+
+int grobo_robot_cancel(grobo_robot *robot, int64_t now_us)
+{
+    grobo_i_enter(robot, now_us);
+    int result = GROBO_OK;
+    if (robot->job.kind == GROBO_JOB_NONE || robot->job.kind == GROBO_JOB_ESTOP) {
+        result = GROBO_ERR_STATE;
+    } else {
+        displace(robot);
+    }
+    grobo_i_leave(robot);
+    return result;
+}
+
+static const grobo_robot_step_fn *exit_script(const grobo_robot *robot, grobo_exit_policy policy)
+{
+    switch (policy == GROBO_EXIT_DEFAULT ? robot->config.on_exit : policy) {
+    case GROBO_EXIT_OFF:
+        return grobo_i_script_exit_off;
+    case GROBO_EXIT_SIT:
+        return robot->trip.latched ? grobo_i_script_exit_hold : grobo_i_script_exit_sit;
+    case GROBO_EXIT_DEFAULT:
+    case GROBO_EXIT_HOLD:
+        return grobo_i_script_exit_hold;
+    }
+    return grobo_i_script_exit_hold;
+}
+
+int grobo_robot_exit(grobo_robot *robot, grobo_exit_policy policy, int64_t now_us)
+{
+    grobo_i_enter(robot, now_us);
+    if (!robot->link || (unsigned)policy > GROBO_EXIT_SIT || robot->job.kind == GROBO_JOB_ESTOP) {
+        return refuse(robot, !robot->link                        ? GROBO_ERR_CLOSED
+                             : (unsigned)policy > GROBO_EXIT_SIT ? GROBO_ERR_ARG
+                                                                 : GROBO_ERR_STATE);
+    }
+    displace(robot);
+    if (grobo_i_playing(robot)) {
+        (void)grobo_sequencer_stop(&robot->sequencer, false, robot->now_us);
+    }
+    int number = grobo_i_job_start(robot, GROBO_JOB_EXIT, exit_script(robot, policy));
+    robot->job.joints = grobo_i_all_joints(robot);
+    robot->job.torque = GROBO_TORQUE_OFF;
+    robot->job.bound_us = robot->now_us + robot->config.exit_bound_us;
+    robot->free_joints = 0;
+    return begin(robot, number);
+}
+
+int grobo_robot_estop(grobo_robot *robot, int64_t now_us)
+{
+    grobo_i_enter(robot, now_us);
+    if (robot->job.kind != GROBO_JOB_NONE) {
+        grobo_i_job_end(robot, GROBO_ERR_CANCELED);
+    }
+    grobo_sequencer_reset(&robot->sequencer);
+    grobo_bus_reserve(&robot->bus, GROBO_NEVER_US, 0);
+    (void)grobo_bus_cancel_all(&robot->bus, GROBO_PRIORITY_ALL, GROBO_ERR_CANCELED);
+    grobo_i_trip(robot, GROBO_TRIP_ESTOP, -1, 0, true);
+    if (!robot->link || robot->driver->torque == NULL) {
+        return refuse(robot, robot->link ? GROBO_ERR_UNSUPPORTED : GROBO_ERR_CLOSED);
+    }
+    int number = grobo_i_job_start(robot, GROBO_JOB_ESTOP, grobo_i_script_torque_off);
+    robot->job.joints = grobo_i_all_joints(robot);
+    robot->job.torque =
+        robot->config.estop_torque == GROBO_ESTOP_OFF ? GROBO_TORQUE_OFF : GROBO_TORQUE_BRAKE;
+    robot->job.priority = GROBO_PRIORITY_STOP;
+    return begin(robot, number);
+}
+
+int grobo_robot_reset(grobo_robot *robot, int64_t now_us)
+{
+    grobo_i_enter(robot, now_us);
+    int result = robot->job.kind == GROBO_JOB_ESTOP ? GROBO_ERR_STATE : GROBO_OK;
+    if (result >= 0) {
+        robot->trip = (grobo_trip_info){.joint = -1};
+        robot->soft = true;
+        robot->low_readings = 0;
+    }
+    grobo_i_leave(robot);
+    return result;
+}
+
+/* ---- free mode ------------------------------------------------------------------------------- */
+
+int grobo_robot_free(grobo_robot *robot, grobo_joint_mask joints, bool on, int64_t now_us)
+{
+    if (!on) {
+        return grobo_robot_torque(robot, joints, GROBO_TORQUE_ON, now_us);
+    }
+    grobo_i_enter(robot, now_us);
+    int result = admit(robot, true);
+    if (result >= 0 && grobo_i_playing(robot)) {
+        result = GROBO_ERR_STATE;
+    }
+    if (!joints_sound(robot, joints)) {
+        result = GROBO_ERR_ARG;
+    }
+    if (result >= 0 && robot->driver->torque == NULL) {
+        result = GROBO_ERR_UNSUPPORTED;
+    }
+    if (result >= 0) {
+        robot->free_joints |= joints;
+        robot->sense_us = robot->now_us;
+    }
+    grobo_i_leave(robot);
+    return result < 0 ? result : GROBO_OK;
+}

@@ -1,0 +1,389 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The steps of which the scripts of jobs are made. Commands of servos are not answered through
+ * the board, so whatever was written is read back, and written again where it did not take; a
+ * budget of rounds ends that.
+ */
+#include "core/robot.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Rounds of writing again; a line that loses a byte in a hundred needs some. */
+#define ROUNDS 10
+#define ROUNDS_ESTOP 20
+/* A servo starts when its frame has passed board and bus, and settles. */
+#define ARRIVAL_US 40000
+/* How often a quieting robot is looked at. */
+#define QUIET_US 5000
+/* A goal is the one that was written if it is the same in the wire's unit. */
+#define SAME_GOAL_RAD (0.06 * 0.017453292519943295)
+
+static bool is_set(grobo_joint_mask joints, int joint)
+{
+    return (joints & GROBO_JOINT_BIT(joint)) != 0;
+}
+
+static grobo_i_chunk chunk_of(const grobo_robot *robot)
+{
+    return robot->job.rounds == 0 ? GROBO_I_WHOLE : GROBO_I_SMALL;
+}
+
+static bool near_rad(double a_rad, double b_rad, double within_rad)
+{
+    return fabs(a_rad - b_rad) <= within_rad;
+}
+
+/* What did not take gets another round from `step` on; without rounds left it has failed. */
+static int again(grobo_robot *robot, grobo_joint_mask bad, grobo_robot_step_fn step)
+{
+    grobo_robot_task *job = &robot->job;
+    int rounds = job->kind == GROBO_JOB_ESTOP ? ROUNDS_ESTOP : ROUNDS;
+    if (bad == 0) {
+        return GROBO_I_NEXT;
+    }
+    if (job->rounds++ < rounds) {
+        job->failed &= ~bad;
+        job->result = job->failed == 0 ? GROBO_OK : job->result;
+        grobo_i_job_goto(robot, step);
+        return GROBO_I_NEXT;
+    }
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if (is_set(bad & ~job->failed, j)) {
+            grobo_i_job_fail_joint(robot, j, GROBO_ERR_MISMATCH, 0);
+        }
+    }
+    job->pending &= ~bad;
+    return GROBO_I_NEXT;
+}
+
+/* ---- asking ---------------------------------------------------------------------------------- */
+
+static int ask(grobo_robot *robot, const grobo_exchange *exchange)
+{
+    grobo_robot_slot *slot = grobo_i_slot_take(robot, GROBO_I_USE_JOB);
+    if (slot == NULL) {
+        return GROBO_ERR_FULL;
+    }
+    slot->exchange = *exchange;
+    int result = grobo_i_slot_send(slot, robot->job.priority);
+    return result < 0 ? result : GROBO_I_ASK;
+}
+
+static int step_ask(grobo_robot *robot)
+{
+    return ask(robot, &robot->job.exchange);
+}
+
+/* Flash and reboot need silence after them. */
+static int step_settle(grobo_robot *robot)
+{
+    if (robot->job.result < 0 || robot->job.exchange.settle_us == 0) {
+        return robot->job.result;
+    }
+    robot->job.until_us = robot->now_us + robot->job.exchange.settle_us;
+    return GROBO_I_WAIT;
+}
+
+static int step_check(grobo_robot *robot)
+{
+    const grobo_driver *driver = robot->driver;
+    grobo_robot_task *job = &robot->job;
+    memset(&job->exchange, 0, sizeof job->exchange);
+    int more = driver->check(driver, robot->driver_ctx, job->part, &job->exchange);
+    if (more == 0) {
+        return job->part == 0 ? GROBO_ERR_UNSUPPORTED : job->result;
+    }
+    return more < 0 ? more : ask(robot, &job->exchange);
+}
+
+static int step_check_next(grobo_robot *robot)
+{
+    if (robot->job.result < 0) {
+        robot->job.part++;
+        grobo_i_job_goto(robot, step_check);
+    }
+    return GROBO_I_NEXT;
+}
+
+/* ---- reading --------------------------------------------------------------------------------- */
+
+static int step_read(grobo_robot *robot)
+{
+    robot->job.todo = robot->job.joints;
+    return GROBO_I_READ;
+}
+
+static int step_read_again(grobo_robot *robot)
+{
+    grobo_robot_task *job = &robot->job;
+    job->todo = job->failed;
+    job->failed = 0;
+    job->result = GROBO_OK;
+    return GROBO_I_READ;
+}
+
+static int step_read_pending(grobo_robot *robot)
+{
+    robot->job.todo = robot->job.pending;
+    robot->job.sense = GROBO_SENSE_GOAL;
+    return GROBO_I_READ;
+}
+
+/* From here on every joint is needed. */
+static int step_require(grobo_robot *robot)
+{
+    return robot->job.failed == 0 ? GROBO_I_NEXT : robot->job.result;
+}
+
+/* Motions begin where the joints were just seen, not where they were told to be. */
+static int step_from_here(grobo_robot *robot)
+{
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if (is_set(robot->job.joints & ~robot->job.failed, j)) {
+            grobo_i_axis_rest(&robot->axes[j], robot->now_us);
+        }
+    }
+    return GROBO_I_NEXT;
+}
+
+/* ---- torque ---------------------------------------------------------------------------------- */
+
+static grobo_joint_mask joints_with(const grobo_robot *robot, grobo_joint_mask joints,
+                                    grobo_torque mode)
+{
+    grobo_joint_mask found = 0;
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if (is_set(joints, j) && robot->axes[j].state.torque == mode) {
+            found |= GROBO_JOINT_BIT(j);
+        }
+    }
+    return found;
+}
+
+static int step_pick_off(grobo_robot *robot)
+{
+    grobo_robot_task *job = &robot->job;
+    grobo_joint_mask read = job->joints & ~job->failed;
+    job->pending = read & ~joints_with(robot, read, GROBO_TORQUE_ON);
+    job->torque = GROBO_TORQUE_ON;
+    job->rounds = 0;
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        robot->axes[j].held = is_set(job->pending, j) ? false : robot->axes[j].held;
+        if (is_set(read & ~job->pending, j)) {
+            robot->axes[j].wants_torque = true;
+        }
+    }
+    bool may = !robot->config.manual_torque || job->kind == GROBO_JOB_TORQUE;
+    return job->pending == 0 || may ? GROBO_I_NEXT : GROBO_ERR_STATE;
+}
+
+/* A joint that stands outside its limits beyond what a hold may draw it in by. */
+static bool stands_outside(const grobo_robot *robot, int joint)
+{
+    const grobo_joint *limits = &robot->driver->model->joints[joint];
+    double outside_rad = grobo_rad_from_deg(GROBO_I_HOLD_OUTSIDE_DEG);
+    double angle_rad = robot->axes[joint].state.angle_rad;
+    return angle_rad < limits->min_rad - outside_rad || angle_rad > limits->max_rad + outside_rad;
+}
+
+static int step_hold(grobo_robot *robot)
+{
+    grobo_robot_task *job = &robot->job;
+    grobo_joint_mask loose = 0;
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if (is_set(job->pending, j) && stands_outside(robot, j)) {
+            grobo_i_job_fail_joint(robot, j, GROBO_ERR_LIMIT,
+                                   grobo_deg_from_rad(robot->axes[j].state.angle_rad));
+            job->pending &= ~GROBO_JOINT_BIT(j);
+        } else if (is_set(job->pending, j) && !robot->axes[j].held) {
+            loose |= GROBO_JOINT_BIT(j);
+        }
+    }
+    int result = grobo_i_gate_hold(robot, loose, chunk_of(robot));
+    return result < 0 && result != GROBO_ERR_FULL ? result : GROBO_I_DRAIN;
+}
+
+/* True if the goal read back is where the joint is, or the limit it is drawn in to. */
+static bool goal_holds(const grobo_robot *robot, int joint)
+{
+    const grobo_joint_state *state = &robot->axes[joint].state;
+    const grobo_joint *limits = &robot->driver->model->joints[joint];
+    double hold_rad = fmin(fmax(state->angle_rad, limits->min_rad), limits->max_rad);
+    return near_rad(state->goal_rad, hold_rad, grobo_rad_from_deg(GROBO_I_HOLD_NEAR_DEG));
+}
+
+static int step_hold_check(grobo_robot *robot)
+{
+    grobo_robot_task *job = &robot->job;
+    grobo_joint_mask bad = 0;
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if (is_set(job->pending, j)) {
+            robot->axes[j].held = !is_set(job->failed, j) && goal_holds(robot, j);
+            bad |= robot->axes[j].held ? 0 : GROBO_JOINT_BIT(j);
+        }
+    }
+    return again(robot, bad, step_hold);
+}
+
+static int step_torque(grobo_robot *robot)
+{
+    grobo_robot_task *job = &robot->job;
+    int result = grobo_i_gate_torque(robot, job->pending, job->torque, chunk_of(robot));
+    return result < 0 && result != GROBO_ERR_FULL ? result : GROBO_I_DRAIN;
+}
+
+static bool torque_taken(const grobo_robot *robot, int joint)
+{
+    grobo_torque has = robot->axes[joint].state.torque;
+    return has == robot->job.torque ||
+           (robot->job.kind == GROBO_JOB_ESTOP && has == GROBO_TORQUE_OFF);
+}
+
+static int step_torque_check(grobo_robot *robot)
+{
+    grobo_robot_task *job = &robot->job;
+    grobo_joint_mask bad = 0;
+    bool on = job->torque == GROBO_TORQUE_ON;
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if (!is_set(job->pending, j)) {
+            continue;
+        }
+        if (is_set(job->failed, j) || !torque_taken(robot, j)) {
+            bad |= GROBO_JOINT_BIT(j);
+            robot->axes[j].held = false;
+        } else {
+            robot->axes[j].wants_torque = on;
+            robot->axes[j].has_target = on;
+            grobo_i_axis_rest(&robot->axes[j], robot->now_us);
+        }
+    }
+    job->pending = bad;
+    return again(robot, bad, on ? step_hold : step_torque);
+}
+
+static int step_pick_all(grobo_robot *robot)
+{
+    robot->job.pending = robot->job.joints;
+    robot->job.rounds = 0;
+    robot->job.failed = 0;
+    robot->job.result = GROBO_OK;
+    return GROBO_I_NEXT;
+}
+
+/* ---- moving ---------------------------------------------------------------------------------- */
+
+static int step_aim(grobo_robot *robot)
+{
+    robot->job.pending = robot->job.target.set;
+    robot->job.rounds = 0;
+    return GROBO_I_NEXT;
+}
+
+static int step_send(grobo_robot *robot)
+{
+    grobo_robot_task *job = &robot->job;
+    grobo_i_motion how = {job->priority, GROBO_NEVER_US, false, false};
+    grobo_joint_mask left = job->pending;
+    int64_t longest_us = 0;
+    while (left != 0) {
+        int64_t time_us = 0;
+        grobo_posture part = job->target;
+        part.set = grobo_i_take_chunk(&left, chunk_of(robot));
+        int result = grobo_i_gate_send(robot, &part, &how, &time_us);
+        if (result == GROBO_ERR_FULL && longest_us > 0) {
+            break; /* the rest in the next round */
+        }
+        if (result < 0) {
+            job->joint = robot->fault_joint;
+            job->value = robot->fault_deg;
+            return result;
+        }
+        longest_us = time_us > longest_us ? time_us : longest_us;
+    }
+    job->until_us = robot->now_us + longest_us + ARRIVAL_US;
+    return GROBO_I_WAIT;
+}
+
+static int step_arrived(grobo_robot *robot)
+{
+    grobo_robot_task *job = &robot->job;
+    grobo_joint_mask bad = 0;
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        const grobo_robot_axis *axis = &robot->axes[j];
+        bool there =
+            !is_set(job->failed, j) && near_rad(axis->state.goal_rad, axis->to_rad, SAME_GOAL_RAD);
+        if (is_set(job->pending, j) && !there) {
+            bad |= GROBO_JOINT_BIT(j);
+            grobo_i_axis_rest(&robot->axes[j], robot->now_us); /* the way is long again */
+        }
+    }
+    job->pending = bad;
+    int result = again(robot, bad, step_send);
+    robot->soft = result == GROBO_I_NEXT && bad == 0 ? false : robot->soft;
+    return result;
+}
+
+static int step_play(grobo_robot *robot)
+{
+    return grobo_i_play_start(robot);
+}
+
+/* ---- leaving --------------------------------------------------------------------------------- */
+
+static int step_quiet(grobo_robot *robot)
+{
+    int64_t still_us = robot->now_us;
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        int64_t to_us = robot->axes[j].to_us;
+        still_us = to_us > still_us ? to_us : still_us;
+    }
+    if (!grobo_i_playing(robot) && still_us <= robot->now_us) {
+        return GROBO_I_NEXT;
+    }
+    grobo_i_job_goto(robot, step_quiet);
+    robot->job.until_us = robot->now_us + QUIET_US;
+    return GROBO_I_WAIT;
+}
+
+/* Sits down with the joints that hold; a robot that is limp stays so. */
+static int step_aim_rest(grobo_robot *robot)
+{
+    const grobo_driver *driver = robot->driver;
+    grobo_robot_task *job = &robot->job;
+    grobo_posture_init_pose(&job->target, driver->model);
+    for (int j = 0; driver->rest_rad != NULL && j < driver->model->n_joints; j++) {
+        job->target.angle_rad[j] = driver->rest_rad[j];
+    }
+    job->target.set = joints_with(robot, job->joints, GROBO_TORQUE_ON);
+    robot->soft = true;
+    if (job->target.set == 0) {
+        grobo_i_job_goto(robot, step_pick_all);
+    }
+    return step_aim(robot);
+}
+
+/* ---- scripts --------------------------------------------------------------------------------- */
+
+#define SWITCH_ON                                                                                  \
+    step_pick_off, step_hold, step_read_pending, step_hold_check, step_torque, step_read_pending,  \
+        step_torque_check
+#define SWITCH step_pick_all, step_torque, step_read_pending, step_torque_check
+#define MOVE step_send, step_read_pending, step_arrived
+
+const grobo_robot_step_fn grobo_i_script_check[] = {step_check, step_check_next, NULL};
+const grobo_robot_step_fn grobo_i_script_sense[] = {step_read, NULL};
+const grobo_robot_step_fn grobo_i_script_torque_on[] = {step_read, SWITCH_ON, NULL};
+const grobo_robot_step_fn grobo_i_script_torque_off[] = {SWITCH, NULL};
+const grobo_robot_step_fn grobo_i_script_move[] = {
+    step_read,      step_read_again, step_require, SWITCH_ON, step_require,
+    step_from_here, step_aim,        MOVE,         NULL};
+const grobo_robot_step_fn grobo_i_script_play[] = {
+    step_read,    step_read_again, step_require, SWITCH_ON,
+    step_require, step_from_here,  step_play,    NULL};
+const grobo_robot_step_fn grobo_i_script_ask[] = {step_ask, step_settle, NULL};
+const grobo_robot_step_fn grobo_i_script_exit_off[] = {step_quiet, SWITCH, NULL};
+const grobo_robot_step_fn grobo_i_script_exit_hold[] = {step_quiet, step_read, NULL};
+const grobo_robot_step_fn grobo_i_script_exit_sit[] = {
+    step_quiet,    step_read, step_read_again, step_require, step_from_here,
+    step_aim_rest, MOVE,      step_require,    SWITCH,       NULL};

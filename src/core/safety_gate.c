@@ -1,0 +1,377 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The only way to motors. Every target goes through grobo_i_gate_send() or grobo_i_gate_hold(),
+ * every torque through grobo_i_gate_torque(): these three call the driver's functions that build
+ * motor frames, and nothing else does. A user's raw frame is read and judged by the same rules.
+ */
+#include "core/robot.h"
+
+#include <math.h>
+
+/* ---- where a joint is ------------------------------------------------------------------------ */
+
+double grobo_i_axis_commanded(const grobo_robot_axis *axis, int64_t now_us)
+{
+    if (now_us >= axis->to_us || axis->to_us <= axis->from_us) {
+        return axis->to_rad;
+    }
+    if (now_us <= axis->from_us) {
+        return axis->from_rad;
+    }
+    double part = (double)(now_us - axis->from_us) / (double)(axis->to_us - axis->from_us);
+    return axis->from_rad + (axis->to_rad - axis->from_rad) * part;
+}
+
+void grobo_i_axis_rest(grobo_robot_axis *axis, int64_t now_us)
+{
+    axis->from_rad = axis->to_rad = axis->state.angle_rad;
+    axis->from_us = axis->to_us = now_us;
+}
+
+static void axis_send(grobo_robot_axis *axis, double to_rad, int64_t time_us, int64_t now_us)
+{
+    axis->from_rad = grobo_i_axis_commanded(axis, now_us);
+    axis->to_rad = to_rad;
+    axis->from_us = now_us;
+    axis->to_us = now_us + time_us;
+    axis->has_target = true;
+}
+
+/* ---- numbers and limits ---------------------------------------------------------------------- */
+
+int grobo_i_gate_target(grobo_robot *robot, grobo_posture *target)
+{
+    const grobo_model *model = robot->driver->model;
+    int joint = -1;
+    int result = grobo_posture_check(target, model, &joint);
+    if (result == GROBO_ERR_LIMIT && robot->config.limit_policy == GROBO_LIMIT_CLAMP) {
+        int clamped = grobo_posture_clamp(target, model);
+        if (clamped >= 0) {
+            robot->counters.clamped += (unsigned)clamped;
+            return GROBO_OK;
+        }
+        result = clamped; /* a joint behind the first one has no number at all */
+        joint = -1;
+    }
+    robot->fault_joint = result < 0 ? joint : -1;
+    robot->fault_deg = joint >= 0 ? grobo_deg_from_rad(target->angle_rad[joint]) : 0;
+    return result;
+}
+
+/* ---- speed ----------------------------------------------------------------------------------- */
+
+static double speed_limit(const grobo_robot *robot, int joint)
+{
+    double most = robot->driver->model->joints[joint].max_speed_rad_s;
+    double limit_rad_s = most * robot->config.speed_limit_pct / 100;
+    double approach_rad_s = grobo_rad_from_deg(robot->config.approach_dps);
+    return robot->soft && approach_rad_s < limit_rad_s ? approach_rad_s : limit_rad_s;
+}
+
+/* Angles are rounded to 0.1 degree on the wire: that much further is not faster. */
+#define ROUNDING_RAD (0.1 * 0.017453292519943295)
+
+static int64_t time_needed(const grobo_robot *robot, int joint, double to_rad)
+{
+    int64_t step_us = robot->driver->time_step_us;
+    double from_rad = grobo_i_axis_commanded(&robot->axes[joint], robot->now_us);
+    double way_rad = fabs(to_rad - from_rad) - ROUNDING_RAD;
+    if (way_rad <= 0) {
+        return step_us;
+    }
+    double steps = ceil(way_rad / speed_limit(robot, joint) * 1e6 / (double)step_us);
+    return (int64_t)steps * step_us;
+}
+
+static int64_t time_asked(const grobo_robot *robot, const grobo_posture *posture)
+{
+    int64_t step_us = robot->driver->time_step_us;
+    int64_t time_us = posture->time_us > 0 ? posture->time_us : robot->config.default_time_us;
+    int64_t steps = (time_us + step_us / 2) / step_us;
+    return (steps < 1 ? 1 : steps) * step_us;
+}
+
+/* Gives every joint its time; returns the longest. */
+static int64_t give_time(grobo_robot *robot, grobo_target *target, bool each)
+{
+    int64_t asked_us = time_asked(robot, &target->posture);
+    int64_t longest_us = asked_us;
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        target->joint_time_us[j] = asked_us;
+        if ((target->posture.set & GROBO_JOINT_BIT(j)) != 0) {
+            int64_t needed_us = time_needed(robot, j, target->posture.angle_rad[j]);
+            target->joint_time_us[j] = needed_us > asked_us ? needed_us : asked_us;
+            longest_us = needed_us > longest_us ? needed_us : longest_us;
+        }
+    }
+    if (longest_us > asked_us) {
+        robot->counters.stretched++;
+    }
+    for (int j = 0; !each && j < robot->driver->model->n_joints; j++) {
+        target->joint_time_us[j] = longest_us;
+    }
+    return longest_us;
+}
+
+/* ---- frames ---------------------------------------------------------------------------------- */
+
+static int send_frames(grobo_robot *robot, const grobo_target *target, grobo_i_use use,
+                       grobo_priority priority, int64_t due_us)
+{
+    const grobo_driver *driver = robot->driver;
+    for (int part = 0;; part++) {
+        grobo_robot_slot *slot = grobo_i_slot_take(robot, use);
+        if (slot == NULL) {
+            return GROBO_ERR_FULL;
+        }
+        int more = driver->posture(driver, robot->driver_ctx, target, part, &slot->exchange);
+        if (more <= 0) {
+            grobo_i_slot_drop(slot);
+            return more;
+        }
+        slot->due_us = due_us;
+        int result = grobo_i_slot_send(slot, priority);
+        if (result < 0) {
+            return result;
+        }
+        grobo_bus_cost cost;
+        grobo_bus_cost_of(&robot->bus, &slot->txn, &cost);
+        robot->motion_us = part == 0 ? cost.total_us : robot->motion_us + cost.total_us;
+    }
+}
+
+static bool all_sensed(const grobo_robot *robot, grobo_joint_mask joints, int *joint)
+{
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if ((joints & GROBO_JOINT_BIT(j)) != 0 && !robot->axes[j].sensed) {
+            *joint = j;
+            return false;
+        }
+    }
+    return true;
+}
+
+static int stabilize(grobo_robot *robot, grobo_posture *target)
+{
+    const grobo_driver *driver = robot->driver;
+    if (driver->stabilize == NULL) {
+        return GROBO_OK;
+    }
+    grobo_posture sensed;
+    (void)grobo_robot_posture(robot, robot->now_us, GROBO_NEVER_US, &sensed);
+    return driver->stabilize(driver, robot->driver_ctx, &sensed, target);
+}
+
+int grobo_i_gate_send(grobo_robot *robot, const grobo_posture *wanted, const grobo_i_motion *how,
+                      int64_t *time_us)
+{
+    grobo_target target = {.posture = *wanted};
+    int result = how->as_is ? GROBO_OK : stabilize(robot, &target.posture);
+    if (result >= 0) {
+        result = grobo_i_gate_target(robot, &target.posture);
+    }
+    if (result >= 0 && !all_sensed(robot, target.posture.set, &robot->fault_joint)) {
+        result = GROBO_ERR_STALE;
+    }
+    if (result < 0) {
+        return result;
+    }
+    int64_t longest_us = give_time(robot, &target, how->each);
+    result = send_frames(robot, &target, GROBO_I_USE_MOTION, how->priority, how->due_us);
+    if (result < 0) {
+        return result;
+    }
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if ((target.posture.set & GROBO_JOINT_BIT(j)) != 0) {
+            axis_send(&robot->axes[j], target.posture.angle_rad[j], target.joint_time_us[j],
+                      robot->now_us);
+        }
+    }
+    robot->counters.motion_frames++;
+    if (time_us != NULL) {
+        *time_us = longest_us;
+    }
+    return GROBO_OK;
+}
+
+/* ---- halting --------------------------------------------------------------------------------- */
+
+/* Goes on for this long at half the speed, so that no joint is thrown back. */
+#define HALT_AHEAD_US 50000
+#define HALT_TIME_US 100000
+
+void grobo_i_gate_halt(grobo_robot *robot)
+{
+    grobo_posture target;
+    (void)grobo_posture_init(&target, robot->driver->model->n_joints);
+    grobo_i_slots_cancel(robot, GROBO_I_USE_MOTION);
+    for (int j = 0; j < target.n_joints; j++) {
+        const grobo_robot_axis *axis = &robot->axes[j];
+        if (axis->has_target && axis->to_us > robot->now_us) {
+            target.angle_rad[j] = grobo_i_axis_commanded(axis, robot->now_us + HALT_AHEAD_US);
+            target.set |= GROBO_JOINT_BIT(j);
+        }
+    }
+    if (target.set != 0) {
+        target.time_us = HALT_TIME_US;
+        grobo_i_motion how = {GROBO_PRIORITY_STOP, GROBO_NEVER_US, true, true};
+        (void)grobo_i_gate_send(robot, &target, &how, NULL);
+    }
+}
+
+/* ---- torque ---------------------------------------------------------------------------------- */
+
+grobo_joint_mask grobo_i_take_chunk(grobo_joint_mask *joints, grobo_i_chunk chunk)
+{
+    grobo_joint_mask taken = 0;
+    int n = 0;
+    for (int j = 0; j < GROBO_JOINTS_MAX && n < (int)chunk; j++) {
+        if ((*joints & GROBO_JOINT_BIT(j)) != 0) {
+            taken |= GROBO_JOINT_BIT(j);
+            n++;
+        }
+    }
+    *joints &= ~taken;
+    return taken;
+}
+
+/* The goal that holds a joint where it stands; false if that is too far outside its limits. */
+static bool hold_goal(const grobo_robot *robot, int joint, double *goal_rad)
+{
+    const grobo_joint *limits = &robot->driver->model->joints[joint];
+    double outside_rad = grobo_rad_from_deg(GROBO_I_HOLD_OUTSIDE_DEG);
+    double angle_rad = robot->axes[joint].state.angle_rad;
+    if (!(angle_rad >= limits->min_rad - outside_rad &&
+          angle_rad <= limits->max_rad + outside_rad)) {
+        return false;
+    }
+    *goal_rad = fmin(fmax(angle_rad, limits->min_rad), limits->max_rad);
+    return true;
+}
+
+int grobo_i_gate_hold(grobo_robot *robot, grobo_joint_mask joints, grobo_i_chunk chunk)
+{
+    int result = GROBO_OK;
+    while (joints != 0 && result >= 0) {
+        grobo_target target;
+        (void)grobo_posture_init(&target.posture, robot->driver->model->n_joints);
+        grobo_joint_mask taken = grobo_i_take_chunk(&joints, chunk);
+        for (int j = 0; j < target.posture.n_joints; j++) {
+            grobo_robot_axis *axis = &robot->axes[j];
+            target.joint_time_us[j] = robot->driver->time_step_us;
+            if ((taken & GROBO_JOINT_BIT(j)) != 0 && axis->sensed &&
+                hold_goal(robot, j, &target.posture.angle_rad[j])) {
+                target.posture.set |= GROBO_JOINT_BIT(j);
+                axis->from_rad = axis->to_rad = target.posture.angle_rad[j];
+                axis->from_us = axis->to_us = robot->now_us;
+                axis->held = false;
+            }
+        }
+        if (target.posture.set != 0) {
+            result =
+                send_frames(robot, &target, GROBO_I_USE_PLAIN, GROBO_PRIORITY_USER, GROBO_NEVER_US);
+        }
+    }
+    return result;
+}
+
+static bool may_switch_on(const grobo_robot *robot, grobo_joint_mask joints)
+{
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        const grobo_robot_axis *axis = &robot->axes[j];
+        bool is_on = axis->torque_known && axis->state.torque == GROBO_TORQUE_ON;
+        if ((joints & GROBO_JOINT_BIT(j)) != 0 && !axis->held && !is_on) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static int send_torque(grobo_robot *robot, grobo_joint_mask joints, grobo_torque mode)
+{
+    const grobo_driver *driver = robot->driver;
+    grobo_priority priority =
+        robot->job.kind == GROBO_JOB_NONE ? GROBO_PRIORITY_USER : robot->job.priority;
+    for (int part = 0;; part++) {
+        grobo_robot_slot *slot = grobo_i_slot_take(robot, GROBO_I_USE_PLAIN);
+        if (slot == NULL) {
+            return GROBO_ERR_FULL;
+        }
+        int more = driver->torque(driver, robot->driver_ctx, joints, mode, part, &slot->exchange);
+        if (more <= 0) {
+            grobo_i_slot_drop(slot);
+            return more;
+        }
+        int result = grobo_i_slot_send(slot, priority);
+        if (result < 0) {
+            return result;
+        }
+    }
+}
+
+int grobo_i_gate_torque(grobo_robot *robot, grobo_joint_mask joints, grobo_torque mode,
+                        grobo_i_chunk chunk)
+{
+    if (mode == GROBO_TORQUE_ON && !may_switch_on(robot, joints)) {
+        return GROBO_ERR_STATE;
+    }
+    if (robot->driver->torque == NULL) {
+        return GROBO_ERR_UNSUPPORTED;
+    }
+    int result = GROBO_OK;
+    while (joints != 0 && result >= 0) {
+        grobo_joint_mask taken = grobo_i_take_chunk(&joints, chunk);
+        for (int j = 0; mode != GROBO_TORQUE_ON && j < robot->driver->model->n_joints; j++) {
+            if ((taken & GROBO_JOINT_BIT(j)) != 0) {
+                robot->axes[j].wants_torque = robot->axes[j].held = false;
+            }
+        }
+        result = send_torque(robot, taken, mode);
+    }
+    return result;
+}
+
+/* ---- raw frames ------------------------------------------------------------------------------ */
+
+int grobo_i_gate_raw(grobo_robot *robot, const uint8_t *frame, size_t size)
+{
+    const grobo_driver *driver = robot->driver;
+    grobo_target target;
+    grobo_joint_mask torqued = 0;
+    (void)grobo_posture_init(&target.posture, driver->model->n_joints);
+    int result = driver->inspect == NULL
+                     ? GROBO_ERR_UNSUPPORTED
+                     : driver->inspect(driver, robot->driver_ctx, frame, size, &target, &torqued);
+    if (result == GROBO_ERR_UNSUPPORTED && robot->config.accept_unknown_raw) {
+        return GROBO_OK;
+    }
+    if (result >= 0) {
+        result = grobo_posture_check(&target.posture, driver->model, &robot->fault_joint);
+    }
+    if (result < 0) {
+        return result;
+    }
+    if ((target.posture.set | torqued) != 0 && robot->trip.latched) {
+        return GROBO_ERR_LATCHED;
+    }
+    if (!all_sensed(robot, target.posture.set | torqued, &robot->fault_joint)) {
+        return GROBO_ERR_STALE;
+    }
+    if (!may_switch_on(robot, torqued)) {
+        return GROBO_ERR_STATE;
+    }
+    for (int j = 0; j < driver->model->n_joints; j++) {
+        if ((target.posture.set & GROBO_JOINT_BIT(j)) != 0 &&
+            target.joint_time_us[j] < time_needed(robot, j, target.posture.angle_rad[j])) {
+            robot->fault_joint = j;
+            return GROBO_ERR_SPEED;
+        }
+    }
+    for (int j = 0; j < driver->model->n_joints; j++) {
+        if ((target.posture.set & GROBO_JOINT_BIT(j)) != 0) {
+            axis_send(&robot->axes[j], target.posture.angle_rad[j], target.joint_time_us[j],
+                      robot->now_us);
+        }
+    }
+    return GROBO_OK;
+}

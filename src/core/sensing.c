@@ -1,0 +1,210 @@
+/* SPDX-License-Identifier: MIT */
+/* Readings: what they tell of a joint, when the background takes them, and free mode. */
+#include "core/robot.h"
+
+#include <stdlib.h>
+
+/* Free mode: a joint slower than this holds again (protocol 5). */
+#define FREE_SLOW_DPS 8
+
+/* ---- taking a reading ------------------------------------------------------------------------ */
+
+static void merge(grobo_robot_axis *axis, const grobo_joint_state *got)
+{
+    grobo_joint_state *state = &axis->state;
+    uint16_t valid = (uint16_t)(state->valid | got->valid);
+    grobo_joint_state old = *state;
+    *state = *got;
+    state->valid = valid;
+#define KEEP(bit, field)                                                                           \
+    if ((got->valid & (bit)) == 0) {                                                               \
+        state->field = old.field;                                                                  \
+    }
+    KEEP(GROBO_FIELD_ANGLE, angle_rad)
+    KEEP(GROBO_FIELD_GOAL, goal_rad)
+    KEEP(GROBO_FIELD_TIME, time_us)
+    KEEP(GROBO_FIELD_SPEED, speed_dps)
+    KEEP(GROBO_FIELD_CURRENT, current_ma)
+    KEEP(GROBO_FIELD_TEMPERATURE, temperature_c)
+    KEEP(GROBO_FIELD_VOLTAGE, voltage_mv)
+    KEEP(GROBO_FIELD_TORQUE, torque)
+#undef KEEP
+}
+
+static void correct(const grobo_robot *robot, int joint, grobo_joint_state *got)
+{
+    const grobo_driver *driver = robot->driver;
+    for (int i = 0; robot->config.readback_correction && i < driver->n_readback; i++) {
+        if (driver->readback[i].joint == joint && (got->valid & GROBO_FIELD_ANGLE) != 0) {
+            got->angle_rad += driver->readback[i].add_rad;
+        }
+    }
+}
+
+static void take_reading(grobo_robot *robot, int joint, grobo_joint_state *got)
+{
+    grobo_robot_axis *axis = &robot->axes[joint];
+    correct(robot, joint, got);
+    merge(axis, got);
+    axis->status = GROBO_OK;
+    axis->lost = 0;
+    if ((got->valid & GROBO_FIELD_ANGLE) != 0) {
+        axis->angle_us = robot->now_us;
+        axis->sensed = true;
+        if (!axis->has_target) {
+            grobo_i_axis_rest(axis, robot->now_us);
+        }
+    }
+    if ((got->valid & GROBO_FIELD_CURRENT) != 0) {
+        axis->full_us = robot->now_us;
+    }
+    if ((got->valid & GROBO_FIELD_TORQUE) != 0) {
+        axis->torque_known = true;
+    }
+    grobo_i_watch_reading(robot, joint, got);
+}
+
+static bool is_loss(int result)
+{
+    return result == GROBO_ERR_TIMEOUT || result == GROBO_ERR_SHORT ||
+           result == GROBO_ERR_CHECKSUM || result == GROBO_ERR_MISMATCH;
+}
+
+int grobo_i_sense_take(grobo_robot *robot, int joint, int result, const grobo_rs30x_packet *reply)
+{
+    const grobo_driver *driver = robot->driver;
+    grobo_joint_state got = {0};
+    if (result >= 0 && reply == NULL) {
+        result = GROBO_ERR_MISMATCH;
+    }
+    if (result >= 0) {
+        result = driver->parse(driver, robot->driver_ctx, joint, reply, &got);
+    }
+    if (result >= 0) {
+        result = GROBO_OK;
+        take_reading(robot, joint, &got);
+    } else {
+        robot->axes[joint].status = result;
+        if (is_loss(result)) {
+            robot->axes[joint].lost++;
+            grobo_i_watch_lost(robot, joint);
+        }
+    }
+    grobo_event event = {.kind = GROBO_EVENT_JOINT};
+    event.u.joint.joint = joint;
+    event.u.joint.result = result;
+    grobo_i_tell(robot, &event);
+    return result;
+}
+
+/* ---- free mode ------------------------------------------------------------------------------- */
+
+static bool goal_is_here(const grobo_joint_state *state)
+{
+    double apart_rad = state->goal_rad - state->angle_rad;
+    double near_rad = grobo_rad_from_deg(GROBO_I_HOLD_NEAR_DEG);
+    return apart_rad <= near_rad && apart_rad >= -near_rad;
+}
+
+/* After each reading (protocol 5): above the joint's current, brake; slow, hold. To hold, the goal
+ * is set to the present angle first; the next reading shows that it took. */
+static void free_joint(grobo_robot *robot, int joint)
+{
+    grobo_robot_axis *axis = &robot->axes[joint];
+    const grobo_joint_state *state = &axis->state;
+    int limit_ma = robot->driver->model->joints[joint].free_current_ma;
+    if (limit_ma > 0 && state->current_ma > limit_ma) {
+        if (state->torque != GROBO_TORQUE_BRAKE) {
+            (void)grobo_i_gate_torque(robot, GROBO_JOINT_BIT(joint), GROBO_TORQUE_BRAKE,
+                                      GROBO_I_WHOLE);
+        }
+    } else if (state->torque != GROBO_TORQUE_ON && abs(state->speed_dps) < FREE_SLOW_DPS) {
+        axis->held = goal_is_here(state);
+        (void)(axis->held ? grobo_i_gate_torque(robot, GROBO_JOINT_BIT(joint), GROBO_TORQUE_ON,
+                                                GROBO_I_WHOLE)
+                          : grobo_i_gate_hold(robot, GROBO_JOINT_BIT(joint), GROBO_I_WHOLE));
+    }
+}
+
+/* ---- the background -------------------------------------------------------------------------- */
+
+static int64_t pause_between(const grobo_robot *robot)
+{
+    return robot->free_joints != 0
+               ? 0
+               : robot->config.sense_interval_us / robot->driver->model->n_joints;
+}
+
+static grobo_sense_kind background_kind(const grobo_robot *robot)
+{
+    if (robot->free_joints != 0) {
+        return GROBO_SENSE_ALL;
+    }
+    return robot->config.sense_position_only ? GROBO_SENSE_POSITION : GROBO_SENSE_FULL;
+}
+
+static bool background_wanted(const grobo_robot *robot)
+{
+    return robot->config.sense_interval_us != GROBO_SENSE_NEVER || robot->free_joints != 0;
+}
+
+static int next_of_round(grobo_robot *robot)
+{
+    if (robot->round == 0) {
+        robot->round = grobo_i_all_joints(robot);
+    }
+    int joint = 0;
+    while ((robot->round & GROBO_JOINT_BIT(joint)) == 0) {
+        joint++;
+    }
+    return joint;
+}
+
+void grobo_i_sense_step(grobo_robot *robot)
+{
+    const grobo_driver *driver = robot->driver;
+    if (!background_wanted(robot) || robot->now_us < robot->sense_us ||
+        grobo_i_slots_busy(robot, GROBO_I_USE_SENSE)) {
+        return;
+    }
+    grobo_robot_slot *slot = grobo_i_slot_take(robot, GROBO_I_USE_SENSE);
+    if (slot == NULL) {
+        return;
+    }
+    slot->joint = (uint8_t)next_of_round(robot);
+    robot->round &= ~GROBO_JOINT_BIT(slot->joint);
+    robot->sense_us += pause_between(robot);
+    if (robot->sense_us < robot->now_us) {
+        robot->sense_us = robot->now_us; /* the wire was too slow: no burst to catch up */
+    }
+    if (driver->sense(driver, robot->driver_ctx, slot->joint, background_kind(robot),
+                      &slot->exchange) < 0) {
+        grobo_i_slot_drop(slot);
+        return;
+    }
+    (void)grobo_i_slot_send(slot, GROBO_PRIORITY_SENSE);
+}
+
+void grobo_i_sense_done(grobo_robot_slot *slot, int result, const grobo_rs30x_packet *reply)
+{
+    grobo_robot *robot = slot->robot;
+    int joint = slot->joint;
+    if (result == GROBO_ERR_CANCELED || result == GROBO_ERR_UNPLUGGED) {
+        return;
+    }
+    result = grobo_i_sense_take(robot, joint, result, reply);
+    if (result >= 0 && (robot->free_joints & GROBO_JOINT_BIT(joint)) != 0) {
+        free_joint(robot, joint);
+    }
+    if (robot->round == 0) {
+        grobo_event event = {.kind = GROBO_EVENT_ROUND};
+        grobo_i_tell(robot, &event);
+    }
+    grobo_i_sense_step(robot);
+}
+
+int64_t grobo_i_sense_deadline(const grobo_robot *robot)
+{
+    bool waits = background_wanted(robot) && !grobo_i_slots_busy(robot, GROBO_I_USE_SENSE);
+    return waits ? robot->sense_us : GROBO_NEVER_US;
+}
