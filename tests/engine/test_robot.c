@@ -1,0 +1,165 @@
+/* SPDX-License-Identifier: MIT */
+/* The engine's jobs on a robot without faults. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <math.h>
+#include <string.h>
+
+#include "rig.h"
+
+static grobo_test_rig rig;
+static const grobo_robot_config quiet = {.sense_interval_us = GROBO_SENSE_NEVER};
+
+static void check_is_answered(void **state)
+{
+    (void)state;
+    rig_start(&rig, &quiet, NULL);
+    rig_expect(&rig, grobo_robot_check(&rig.robot, rig.now_us), GROBO_OK);
+    assert_int_equal(rig.n_sent, 1);
+    assert_memory_equal(rig.sent[0].bytes, "\x41\x00", 2);
+}
+
+static void one_job_at_a_time(void **state)
+{
+    (void)state;
+    rig_start(&rig, &quiet, NULL);
+    int number = grobo_robot_check(&rig.robot, rig.now_us);
+    assert_int_equal(grobo_robot_job(&rig.robot), GROBO_JOB_CHECK);
+    assert_int_equal(grobo_robot_check(&rig.robot, rig.now_us), GROBO_ERR_STATE);
+    rig_expect(&rig, number, GROBO_OK);
+    assert_int_equal(grobo_robot_job(&rig.robot), GROBO_JOB_NONE);
+}
+
+static void all_joints_are_sensed(void **state)
+{
+    (void)state;
+    grobo_sim_config limp = {.start = GROBO_SIM_START_LIMP, .seed = 7};
+    rig_start(&rig, &quiet, &limp);
+    int number = grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL, rig.now_us);
+    const grobo_event_job *job = rig_expect(&rig, number, GROBO_OK);
+    assert_true(job->failed == 0);
+    assert_int_equal(rig_count(&rig, GROBO_EVENT_JOINT), 20);
+    for (int j = 0; j < 20; j++) {
+        grobo_joint_info info;
+        assert_int_equal(grobo_robot_joint(&rig.robot, j, rig.now_us, &info), 0);
+        assert_int_equal(info.status, GROBO_OK);
+        assert_true(fabs(grobo_deg_from_rad(info.state.angle_rad) - rig_angle_deg(&rig, j)) <
+                    0.051);
+        assert_true(info.torque_known && info.state.torque == GROBO_TORQUE_OFF);
+        assert_in_range(info.state.voltage_mv, 7000, 7500);
+        assert_in_range(info.angle_age_us, 0, 300000);
+        assert_false(info.has_target);
+    }
+}
+
+static void torque_comes_on_where_the_joints_are(void **state)
+{
+    (void)state;
+    grobo_sim_config limp = {.start = GROBO_SIM_START_LIMP, .seed = 3, .jump_on_torque = true};
+    double before_deg[20];
+    rig_start(&rig, &quiet, &limp);
+    for (int j = 0; j < 20; j++) {
+        before_deg[j] = rig_angle_deg(&rig, j);
+    }
+    rig_power(&rig);
+    rig_run(&rig, 500000);
+    for (int j = 0; j < 20; j++) {
+        assert_int_equal(rig_torque(&rig, j), GROBO_TORQUE_ON);
+        assert_true(fabs(rig_angle_deg(&rig, j) - before_deg[j]) < 0.1);
+    }
+    assert_int_equal(rig.torque_on, 20);
+}
+
+static void torque_goes_off_and_brakes_by_group(void **state)
+{
+    (void)state;
+    rig_start(&rig, &quiet, NULL);
+    rig_power(&rig);
+    rig_expect(&rig, grobo_robot_torque(&rig.robot, 0x3, GROBO_TORQUE_OFF, rig.now_us), 0);
+    rig_expect(&rig, grobo_robot_torque(&rig.robot, 0x4, GROBO_TORQUE_BRAKE, rig.now_us), 0);
+    assert_int_equal(rig_torque(&rig, 0), GROBO_TORQUE_OFF);
+    assert_int_equal(rig_torque(&rig, 1), GROBO_TORQUE_OFF);
+    assert_int_equal(rig_torque(&rig, 2), GROBO_TORQUE_BRAKE);
+    assert_int_equal(rig_torque(&rig, 3), GROBO_TORQUE_ON);
+    assert_null(rig_last(&rig, GROBO_EVENT_TRIP));
+}
+
+static void move_arrives_in_its_time(void **state)
+{
+    (void)state;
+    rig_start(&rig, &quiet, NULL);
+    rig_power(&rig);
+    grobo_posture first = rig_posture(&rig, 13, 0, 100);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &first, rig.now_us), GROBO_OK);
+    rig_forget(&rig);
+    grobo_posture target = rig_posture(&rig, 13, 30, 500);
+    int64_t begun_us = rig.now_us;
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
+    assert_in_range(rig.now_us - begun_us, 500000, 620000);
+    assert_true(fabs(rig_angle_deg(&rig, 13) - 30) < 0.1);
+    assert_true(rig_was_sent(&rig,
+                             (const uint8_t *)"\x53\x0C\xFA\xAF\x02\x00\x1E\x04\x01\x2C\x01"
+                                              "\x32\x00\x06",
+                             14));
+    grobo_joint_info info;
+    assert_int_equal(grobo_robot_joint(&rig.robot, 13, rig.now_us, &info), 0);
+    assert_true(info.has_target && fabs(grobo_deg_from_rad(info.target_rad) - 30) < 1e-9);
+}
+
+static void move_switches_torque_on(void **state)
+{
+    (void)state;
+    rig_start(&rig, &quiet, NULL);
+    grobo_posture target;
+    grobo_posture_init_pose(&target, rig.driver->model);
+    target.time_us = 300000;
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
+    for (int j = 0; j < 20; j++) {
+        assert_int_equal(rig_torque(&rig, j), GROBO_TORQUE_ON);
+        double want_deg = grobo_deg_from_rad(rig.driver->model->joints[j].init_rad);
+        assert_true(fabs(rig_angle_deg(&rig, j) - want_deg) < 0.1);
+    }
+}
+
+static void manual_torque_is_left_to_the_caller(void **state)
+{
+    (void)state;
+    grobo_robot_config config = quiet;
+    config.manual_torque = true;
+    rig_start(&rig, &config, NULL);
+    grobo_posture target = rig_posture(&rig, 13, 5, 500);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_ERR_STATE);
+    assert_int_equal(rig_torque(&rig, 13), GROBO_TORQUE_OFF);
+    rig_power(&rig);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
+}
+
+static void bus_wiring_does_the_same(void **state)
+{
+    (void)state;
+    rig_start_driver(&rig, grobo_gr001_driver(GROBO_WIRING_BUS), &quiet, NULL);
+    rig_expect(&rig, grobo_robot_check(&rig.robot, rig.now_us), GROBO_OK);
+    grobo_posture target = rig_posture(&rig, 19, 40, 300);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
+    assert_true(fabs(rig_angle_deg(&rig, 19) - 40) < 0.1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(check_is_answered),
+        cmocka_unit_test(one_job_at_a_time),
+        cmocka_unit_test(all_joints_are_sensed),
+        cmocka_unit_test(torque_comes_on_where_the_joints_are),
+        cmocka_unit_test(torque_goes_off_and_brakes_by_group),
+        cmocka_unit_test(move_arrives_in_its_time),
+        cmocka_unit_test(move_switches_torque_on),
+        cmocka_unit_test(manual_torque_is_left_to_the_caller),
+        cmocka_unit_test(bus_wiring_does_the_same),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,73 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The engine against the simulator in virtual time: bytes go between them at the very
+ * microsecond, and what must always hold is checked at every frame and every event.
+ */
+#ifndef GROBO_TEST_RIG_H
+#define GROBO_TEST_RIG_H
+
+#include <grobo/robot.h>
+#include <grobo/sim.h>
+
+enum { RIG_EVENTS = 4096, RIG_SENT = 4096 };
+
+/* A frame as it left the engine. */
+typedef struct rig_frame {
+    int64_t at_us;
+    uint8_t size;
+    uint8_t bytes[GROBO_RS30X_PACKET_MAX_BYTES];
+} rig_frame;
+
+typedef struct grobo_test_rig {
+    grobo_robot robot;
+    grobo_sim sim;
+    const grobo_driver *driver;
+    int64_t now_us;
+    int64_t wake_us;  /* a stalled host does not pump the engine before */
+    bool check_hold;  /* torque must come on at the present angle (default) */
+    bool check_speed; /* no goal faster than the joint (default) */
+    grobo_event events[RIG_EVENTS];
+    size_t n_events;
+    rig_frame sent[RIG_SENT];
+    size_t n_sent;
+    void (*on_event)(struct grobo_test_rig *rig, const grobo_event *event); /* or NULL */
+    double to_deg[GROBO_JOINTS_MAX]; /* what the frames asked for, to check speeds by */
+    double from_deg[GROBO_JOINTS_MAX];
+    int64_t from_us[GROBO_JOINTS_MAX], to_us[GROBO_JOINTS_MAX];
+    unsigned torque_on; /* torques switched on */
+} grobo_test_rig;
+
+/* GR001 behind its board, all defaults, link up at 1 s. config, sim NULL: defaults. */
+void rig_start(grobo_test_rig *rig, const grobo_robot_config *config, const grobo_sim_config *sim);
+/* The same with a driver of one's own. */
+void rig_start_driver(grobo_test_rig *rig, const grobo_driver *driver,
+                      const grobo_robot_config *config, const grobo_sim_config *sim);
+/* Lets time pass up to now + us. */
+void rig_run(grobo_test_rig *rig, int64_t us);
+/* Lets time pass until a job ends, 60 s at most. */
+const grobo_event_job *rig_wait(grobo_test_rig *rig, int number);
+/* rig_wait, and the result is this. */
+const grobo_event_job *rig_expect(grobo_test_rig *rig, int number, int result);
+/* Lets time pass until playing is in this state. */
+void rig_wait_play(grobo_test_rig *rig, grobo_sequencer_state state);
+/* The host does nothing for this time, while the robot goes on. */
+void rig_stall(grobo_test_rig *rig, int64_t us);
+/* Last event of a kind since the last rig_forget(), or NULL. */
+const grobo_event *rig_last(const grobo_test_rig *rig, grobo_event_kind kind);
+/* Number of events of a kind. */
+size_t rig_count(const grobo_test_rig *rig, grobo_event_kind kind);
+/* Forgets events and frames. */
+void rig_forget(grobo_test_rig *rig);
+/* A joint's angle as the simulator has it, degrees. */
+double rig_angle_deg(grobo_test_rig *rig, int joint);
+grobo_torque rig_torque(grobo_test_rig *rig, int joint);
+/* All joints of the model. */
+grobo_joint_mask rig_all(const grobo_test_rig *rig);
+/* Switches everything on, and asserts that it worked. */
+void rig_power(grobo_test_rig *rig);
+/* A posture of one joint. */
+grobo_posture rig_posture(const grobo_test_rig *rig, int joint, double angle_deg, int time_ms);
+/* True if this frame is among those sent since the last rig_forget(). */
+bool rig_was_sent(const grobo_test_rig *rig, const uint8_t *bytes, size_t size);
+
+#endif
