@@ -186,6 +186,48 @@ GROBO_API int grobo_port_resolve(const char *device, char *numeric, size_t numer
  */
 GROBO_API int grobo_port_wait(grobo_socket socket, unsigned what, int64_t timeout_us);
 
+/* ---- far ends: what a simulator serves ---------------------------------------------------- */
+
+/**
+ * Pseudo-terminals: open() makes one, and the port is its far end; programs open the other one,
+ * which is raw and at baud_bps until they set it. The device's name is that of a symbolic link to
+ * it, "" for none; a symbolic link that is there is replaced, anything else refused with
+ * GROBO_ERR_EXISTS; close() removes it. Programs may come and go: the port stays, and does not
+ * notice.
+ * @return static table; NULL on systems without pseudo-terminals (Win32).
+ */
+GROBO_API const grobo_port_ops *grobo_port_pty_ops(void);
+
+/**
+ * The path under which programs open an open pseudo-terminal.
+ * @param[out] path NUL-terminated on success.
+ * @return GROBO_OK, GROBO_ERR_SPACE, GROBO_ERR_UNSUPPORTED.
+ */
+GROBO_API int grobo_port_pty_path(const grobo_port *port, char *path, size_t path_bytes);
+
+/** The speed that a program has set on an open pseudo-terminal, 0 not known. */
+GROBO_API int grobo_port_pty_baud(const grobo_port *port);
+
+/**
+ * Listens for connections.
+ * @param device "tcp:HOST:PORT", HOST numeric or localhost; PORT 0 takes a free one.
+ * @param[out] listener to be waited on until readable; closed by grobo_port_listen_close().
+ * @param[out] tcp_port the port taken.
+ * @return GROBO_OK, GROBO_ERR_ARG, GROBO_ERR_NOENT (no such address), GROBO_ERR_BUSY (port in
+ *   use), GROBO_ERR_PERM, GROBO_ERR_IO.
+ */
+GROBO_API int grobo_port_listen(const char *device, grobo_socket *listener, int *tcp_port,
+                                grobo_os_cause *cause);
+
+/** Ends listening; connections stay. */
+GROBO_API void grobo_port_listen_close(grobo_socket listener);
+
+/**
+ * Takes a connection; it is a port of grobo_port_tcp_ops() then. Does not wait.
+ * @return GROBO_OK, GROBO_ERR_EMPTY (none is there), GROBO_ERR_IO.
+ */
+GROBO_API int grobo_port_accept(grobo_socket listener, grobo_port *port, grobo_os_cause *cause);
+
 /* ---- list of ports ------------------------------------------------------------------------ */
 
 /** One serial port of this machine. Texts that are not known are empty. */

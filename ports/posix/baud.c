@@ -98,8 +98,7 @@ static int apply(int fd, int baud_bps, grobo_os_cause *cause)
     return GROBO_OK;
 }
 
-/* The rate a descriptor runs at, 0 for one that nobody knows. */
-static int rate_in_effect(int fd, grobo_os_cause *cause)
+int grobo_i_posix_get_baud(int fd, grobo_os_cause *cause)
 {
     struct termios tio;
     speed_t code;
@@ -118,14 +117,14 @@ static int rate_in_effect(int fd, grobo_os_cause *cause)
 
 int grobo_i_posix_set_baud(int fd, int baud_bps, grobo_os_cause *cause)
 {
-    int before = rate_in_effect(fd, cause);
+    int before = grobo_i_posix_get_baud(fd, cause);
     int actual;
     int r = before < 0 ? before : apply(fd, baud_bps, cause);
 
     if (r < 0) {
         return r;
     }
-    actual = rate_in_effect(fd, cause);
+    actual = grobo_i_posix_get_baud(fd, cause);
     if (actual >= 0 && !grobo_i_posix_baud_fits(baud_bps, actual)) {
         (void)apply(fd, before, cause);
         cause->code = 0;

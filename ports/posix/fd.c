@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* What serial port and connection do alike with their descriptor. */
 #include <errno.h>
+#include <fcntl.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -28,6 +29,44 @@ int grobo_i_posix_sent(ssize_t put, grobo_os_cause *cause)
         return (int)put;
     }
     return nothing_now(errno) ? 0 : grobo_i_posix_fail(cause, errno, "write");
+}
+
+int grobo_i_posix_prepare(int fd, grobo_os_cause *cause)
+{
+    int flags = fcntl(fd, F_GETFL);
+
+    if (flags < 0 || fcntl(fd, F_SETFL, flags | O_NONBLOCK) != 0 ||
+        fcntl(fd, F_SETFD, FD_CLOEXEC) != 0) {
+        return grobo_i_posix_fail(cause, errno, "fcntl");
+    }
+    return GROBO_OK;
+}
+
+int grobo_i_posix_ready(grobo_port *port, grobo_os_cause *cause)
+{
+    (void)port;
+    (void)cause;
+    return 1;
+}
+
+int grobo_i_posix_read(grobo_port *port, void *buf, size_t size, grobo_os_cause *cause)
+{
+    ssize_t got;
+
+    do {
+        got = read(port->fd, buf, size);
+    } while (got < 0 && errno == EINTR);
+    return grobo_i_posix_received(got, cause);
+}
+
+int grobo_i_posix_write(grobo_port *port, const void *buf, size_t size, grobo_os_cause *cause)
+{
+    ssize_t put;
+
+    do {
+        put = write(port->fd, buf, size);
+    } while (put < 0 && errno == EINTR);
+    return grobo_i_posix_sent(put, cause);
 }
 
 void grobo_i_posix_close(grobo_port *port)

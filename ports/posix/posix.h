@@ -7,9 +7,13 @@
 
 #include <grobo/port.h>
 
-/* An open byte port of either kind. */
+/* An open byte port of any kind. */
 struct grobo_port {
     int fd;
+    /* of a pseudo-terminal only */
+    int slave;                         /* held open, so that programs may come and go */
+    char path[64];                     /* of the slave */
+    char link[GROBO_DEVICE_MAX_BYTES]; /* to it, or empty */
 };
 
 /* Fills cause from an errno, with `what` saying what was tried; returns the GROBO_ERR_* for it. */
@@ -18,11 +22,26 @@ int grobo_i_posix_fail(grobo_os_cause *cause, int code, const char *what);
 /* Fills cause with a text of our own, returns `error`. */
 int grobo_i_posix_refuse(grobo_os_cause *cause, int error, const char *text);
 
+/* Makes a descriptor non-blocking and closed on exec. */
+int grobo_i_posix_prepare(int fd, grobo_os_cause *cause);
+
 /* What read() or recv() returned, in terms of grobo_port_ops.read. */
 int grobo_i_posix_received(ssize_t got, grobo_os_cause *cause);
 
 /* What write() or send() returned, in terms of grobo_port_ops.write. */
 int grobo_i_posix_sent(ssize_t put, grobo_os_cause *cause);
+
+struct addrinfo;
+
+/* Finds the address of "tcp:HOST:PORT"; flags as of getaddrinfo(), freed by freeaddrinfo(). */
+int grobo_i_posix_look_up(const char *device, int flags, struct addrinfo **found,
+                          grobo_os_cause *cause);
+
+/* Makes a socket for an address; an error leaves none behind. */
+int grobo_i_posix_make_socket(const struct addrinfo *to, grobo_os_cause *cause);
+
+/* Sets a socket non-blocking, not inherited, without Nagle's delay, looking for dead peers. */
+int grobo_i_posix_prepare_tcp(int fd, grobo_os_cause *cause);
 
 /* Calls that serial port and connection have in common. */
 void grobo_i_posix_close(grobo_port *port);
@@ -32,6 +51,19 @@ grobo_handle grobo_i_posix_handle(const grobo_port *port);
 
 /* Sets a speed, reads it back; returns the rate in effect or GROBO_ERR_*. */
 int grobo_i_posix_set_baud(int fd, int baud_bps, grobo_os_cause *cause);
+
+/* The rate a descriptor runs at, 0 for one that nobody knows, or GROBO_ERR_*. */
+int grobo_i_posix_get_baud(int fd, grobo_os_cause *cause);
+
+/* Sets a terminal raw: 8 data bits, no parity, 1 stop bit, no flow control. */
+int grobo_i_posix_make_raw(int fd, grobo_os_cause *cause);
+
+/* Reads and writes a descriptor: grobo_port_ops.read and .write. */
+int grobo_i_posix_read(grobo_port *port, void *buf, size_t size, grobo_os_cause *cause);
+int grobo_i_posix_write(grobo_port *port, const void *buf, size_t size, grobo_os_cause *cause);
+
+/* A port without a connection to wait for: grobo_port_ops.ready. */
+int grobo_i_posix_ready(grobo_port *port, grobo_os_cause *cause);
 
 /* The same for a rate without a B constant; systems without such rates refuse. */
 int grobo_i_posix_set_custom_baud(int fd, int baud_bps, grobo_os_cause *cause);

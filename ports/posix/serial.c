@@ -57,7 +57,7 @@ static int take(int fd, const char *device, const struct stat *st, grobo_os_caus
     return GROBO_OK;
 }
 
-static int make_raw(int fd, grobo_os_cause *cause)
+int grobo_i_posix_make_raw(int fd, grobo_os_cause *cause)
 {
     struct termios tio;
 
@@ -94,7 +94,7 @@ static int serial_open(grobo_port *port, const char *device, int baud_bps, grobo
     }
     r = take(fd, device, &st, cause);
     if (r >= 0) {
-        r = make_raw(fd, cause);
+        r = grobo_i_posix_make_raw(fd, cause);
     }
     if (r >= 0) {
         r = grobo_i_posix_set_baud(fd, baud_bps, cause);
@@ -116,33 +116,6 @@ static void serial_close(grobo_port *port)
     /* The lock goes with the descriptor, TIOCEXCL only with the last one of the terminal. */
     (void)ioctl(port->fd, TIOCNXCL);
     grobo_i_posix_close(port);
-}
-
-static int serial_ready(grobo_port *port, grobo_os_cause *cause)
-{
-    (void)port;
-    (void)cause;
-    return 1;
-}
-
-static int serial_read(grobo_port *port, void *buf, size_t size, grobo_os_cause *cause)
-{
-    ssize_t got;
-
-    do {
-        got = read(port->fd, buf, size);
-    } while (got < 0 && errno == EINTR);
-    return grobo_i_posix_received(got, cause);
-}
-
-static int serial_write(grobo_port *port, const void *buf, size_t size, grobo_os_cause *cause)
-{
-    ssize_t put;
-
-    do {
-        put = write(port->fd, buf, size);
-    } while (put < 0 && errno == EINTR);
-    return grobo_i_posix_sent(put, cause);
 }
 
 static void serial_discard_output(grobo_port *port)
@@ -167,9 +140,9 @@ const grobo_port_ops *grobo_port_serial_ops(void)
         .size_bytes = sizeof(grobo_port),
         .open = serial_open,
         .close = serial_close,
-        .ready = serial_ready,
-        .read = serial_read,
-        .write = serial_write,
+        .ready = grobo_i_posix_ready,
+        .read = grobo_i_posix_read,
+        .write = grobo_i_posix_write,
         .waiting = grobo_i_posix_waiting,
         .discard_output = serial_discard_output,
         .set_baud = serial_set_baud,

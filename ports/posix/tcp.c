@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Raw TCP to a serial server: "tcp:HOST:PORT". */
 #include <errno.h>
-#include <fcntl.h>
 #include <netdb.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
@@ -50,7 +49,8 @@ static int split(const char *device, address *to)
     return GROBO_OK;
 }
 
-static int look_up(const char *device, int flags, struct addrinfo **found, grobo_os_cause *cause)
+int grobo_i_posix_look_up(const char *device, int flags, struct addrinfo **found,
+                          grobo_os_cause *cause)
 {
     const struct addrinfo hints = {
         .ai_flags = flags | AI_NUMERICSERV, .ai_family = AF_UNSPEC, .ai_socktype = SOCK_STREAM};
@@ -68,27 +68,32 @@ static int look_up(const char *device, int flags, struct addrinfo **found, grobo
     return r == 0 ? GROBO_OK : grobo_i_posix_refuse(cause, GROBO_ERR_NOENT, gai_strerror(r));
 }
 
-/* Makes the socket of a connection: non-blocking, not inherited, without Nagle's delay. */
-static int make_socket(int family, grobo_os_cause *cause)
+int grobo_i_posix_prepare_tcp(int fd, grobo_os_cause *cause)
 {
     int one = 1;
-    int fd = socket(family, SOCK_STREAM, 0);
 
-    if (fd < 0) {
-        return grobo_i_posix_fail(cause, errno, "socket");
-    }
-    if (fcntl(fd, F_SETFL, O_NONBLOCK) != 0 || fcntl(fd, F_SETFD, FD_CLOEXEC) != 0) {
-        int r = grobo_i_posix_fail(cause, errno, "fcntl");
-
-        (void)close(fd);
-        return r;
-    }
-    /* These three make it better and are no reason to fail. */
+    /* These make it better and are no reason to fail. */
     (void)setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &one, sizeof one);
     (void)setsockopt(fd, SOL_SOCKET, SO_KEEPALIVE, &one, sizeof one);
 #ifdef SO_NOSIGPIPE
     (void)setsockopt(fd, SOL_SOCKET, SO_NOSIGPIPE, &one, sizeof one);
 #endif
+    return grobo_i_posix_prepare(fd, cause);
+}
+
+int grobo_i_posix_make_socket(const struct addrinfo *to, grobo_os_cause *cause)
+{
+    int fd = socket(to->ai_family, SOCK_STREAM, 0);
+    int r;
+
+    if (fd < 0) {
+        return grobo_i_posix_fail(cause, errno, "socket");
+    }
+    r = grobo_i_posix_prepare_tcp(fd, cause);
+    if (r < 0) {
+        (void)close(fd);
+        return r;
+    }
     return fd;
 }
 
@@ -114,26 +119,22 @@ static int tcp_open(grobo_port *port, const char *device, int baud_bps, grobo_os
 {
     struct addrinfo *found;
     int fd;
-    int r = look_up(device, AI_NUMERICHOST, &found, cause);
+    int r = grobo_i_posix_look_up(device, AI_NUMERICHOST, &found, cause);
 
     (void)baud_bps;
     if (r < 0) {
         return r;
     }
-    fd = make_socket(found->ai_family, cause);
-    r = fd;
-    if (fd >= 0) {
-        r = connect(fd, found->ai_addr, found->ai_addrlen) == 0 || errno == EINPROGRESS ||
-                    errno == EINTR
-                ? GROBO_OK
-                : fail_connect(errno, cause);
+    fd = grobo_i_posix_make_socket(found, cause);
+    if (fd >= 0 && connect(fd, found->ai_addr, found->ai_addrlen) != 0 && errno != EINPROGRESS &&
+        errno != EINTR) {
+        r = fail_connect(errno, cause);
+        (void)close(fd);
+        fd = r;
     }
     freeaddrinfo(found);
-    if (r < 0) {
-        if (fd >= 0) {
-            (void)close(fd);
-        }
-        return r;
+    if (fd < 0) {
+        return fd;
     }
     port->fd = fd;
     return GROBO_OK;
@@ -228,7 +229,7 @@ int grobo_port_resolve(const char *device, char *numeric, size_t numeric_bytes,
     if (strncmp(device, "tcp:", 4) != 0) {
         n = snprintf(text, sizeof text, "%s", device);
     } else {
-        r = look_up(device, 0, &found, cause);
+        r = grobo_i_posix_look_up(device, 0, &found, cause);
         if (r < 0) {
             return r;
         }

@@ -1,0 +1,149 @@
+/* SPDX-License-Identifier: MIT */
+/* The far end of a pseudo-terminal, for a simulator. */
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include "ports/posix/posix.h"
+
+static int make_link(grobo_port *port, const char *link, grobo_os_cause *cause)
+{
+    struct stat st;
+
+    if (strlen(link) >= sizeof port->link) {
+        return grobo_i_posix_refuse(cause, GROBO_ERR_CAP, "name of the link too long");
+    }
+    if (link[0] != '\0') {
+        if (lstat(link, &st) == 0 && !S_ISLNK(st.st_mode)) {
+            return grobo_i_posix_refuse(cause, GROBO_ERR_EXISTS, "there, and no symbolic link");
+        }
+        if ((unlink(link) != 0 && errno != ENOENT) || symlink(port->path, link) != 0) {
+            return grobo_i_posix_fail(cause, errno, "symlink");
+        }
+    }
+    memcpy(port->link, link, strlen(link) + 1);
+    return GROBO_OK;
+}
+
+static int open_slave(grobo_port *port, int baud_bps, grobo_os_cause *cause)
+{
+    const char *path;
+    int r;
+
+    if (grantpt(port->fd) != 0 || unlockpt(port->fd) != 0 || (path = ptsname(port->fd)) == NULL) {
+        return grobo_i_posix_fail(cause, errno, "unlockpt");
+    }
+    if (strlen(path) >= sizeof port->path) {
+        return grobo_i_posix_refuse(cause, GROBO_ERR_SPACE, "name of the terminal too long");
+    }
+    memcpy(port->path, path, strlen(path) + 1);
+    port->slave = open(port->path, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+    if (port->slave < 0) {
+        return grobo_i_posix_fail(cause, errno, "open");
+    }
+    r = grobo_i_posix_make_raw(port->slave, cause);
+    return r < 0 ? r : grobo_i_posix_set_baud(port->slave, baud_bps, cause);
+}
+
+/* Removes the link, unless it leads elsewhere by now. */
+static void remove_link(const grobo_port *port)
+{
+    char target[sizeof port->path];
+    ssize_t size = port->link[0] != '\0' ? readlink(port->link, target, sizeof target) : -1;
+
+    if (size >= 0 && (size_t)size == strlen(port->path) &&
+        memcmp(target, port->path, (size_t)size) == 0) {
+        (void)unlink(port->link);
+    }
+}
+
+static void pty_close(grobo_port *port)
+{
+    remove_link(port);
+    if (port->slave >= 0) {
+        (void)close(port->slave);
+    }
+    grobo_i_posix_close(port);
+}
+
+static int pty_open(grobo_port *port, const char *device, int baud_bps, grobo_os_cause *cause)
+{
+    int r;
+
+    port->slave = GROBO_HANDLE_NULL;
+    port->link[0] = '\0';
+    port->fd = posix_openpt(O_RDWR | O_NOCTTY);
+    if (port->fd < 0) {
+        return grobo_i_posix_fail(cause, errno, "posix_openpt");
+    }
+    r = grobo_i_posix_prepare(port->fd, cause);
+    if (r >= 0) {
+        r = open_slave(port, baud_bps, cause);
+    }
+    if (r >= 0) {
+        r = make_link(port, device, cause);
+    }
+    if (r < 0) {
+        pty_close(port);
+        return r;
+    }
+    return GROBO_OK;
+}
+
+static void pty_discard_output(grobo_port *port)
+{
+    (void)tcflush(port->slave, TCIFLUSH);
+}
+
+static int pty_set_baud(grobo_port *port, int baud_bps, grobo_os_cause *cause)
+{
+    return grobo_i_posix_set_baud(port->slave, baud_bps, cause);
+}
+
+static int pty_set_low_latency(grobo_port *port, grobo_os_cause *cause)
+{
+    (void)port;
+    return grobo_i_posix_refuse(cause, GROBO_ERR_UNSUPPORTED, "a pseudo-terminal");
+}
+
+const grobo_port_ops *grobo_port_pty_ops(void)
+{
+    static const grobo_port_ops ops = {
+        .name = "pty",
+        .size_bytes = sizeof(grobo_port),
+        .open = pty_open,
+        .close = pty_close,
+        .ready = grobo_i_posix_ready,
+        .read = grobo_i_posix_read,
+        .write = grobo_i_posix_write,
+        .waiting = grobo_i_posix_waiting,
+        .discard_output = pty_discard_output,
+        .set_baud = pty_set_baud,
+        .set_low_latency = pty_set_low_latency,
+        .socket = grobo_i_posix_socket,
+        .handle = grobo_i_posix_handle,
+    };
+
+    return &ops;
+}
+
+int grobo_port_pty_path(const grobo_port *port, char *path, size_t path_bytes)
+{
+    if (strlen(port->path) >= path_bytes) {
+        return GROBO_ERR_SPACE;
+    }
+    memcpy(path, port->path, strlen(port->path) + 1);
+    return GROBO_OK;
+}
+
+int grobo_port_pty_baud(const grobo_port *port)
+{
+    grobo_os_cause cause;
+    int baud_bps = grobo_i_posix_get_baud(port->slave, &cause);
+
+    return baud_bps > 0 ? baud_bps : 0;
+}

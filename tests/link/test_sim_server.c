@@ -1,0 +1,450 @@
+/* SPDX-License-Identifier: MIT */
+/* The simulated robot behind a pseudo-terminal and TCP, with clients on the same loop. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+#include <event2/event.h>
+
+#include <grobo/sim_server.h>
+
+/* Frames of the original: check, torque of servo 1 on, state of servo 1. */
+static const uint8_t check[] = {0x41, 0x00};
+static const uint8_t torque_on[] = {0x53, 0x09, 0xFA, 0xAF, 0x01, 0x00,
+                                    0x24, 0x01, 0x01, 0x01, 0x24};
+static const uint8_t ask_state[] = {0x54, 0x09, 0xFA, 0xAF, 0x01, 0x0F,
+                                    0x24, 0x12, 0x00, 0x38, 0x1A};
+#define STATE_BYTES 26
+
+static struct event_base *base;
+
+/* ---- a client ----------------------------------------------------------------------------- */
+
+typedef struct {
+    grobo_serial *serial;
+    uint8_t bytes[256];
+    size_t size;
+    size_t wanted;
+    int events[4];
+} client;
+
+static void on_data(grobo_serial *serial, const uint8_t *bytes, size_t size, void *ctx)
+{
+    client *c = ctx;
+
+    (void)serial;
+    assert_true(size <= sizeof c->bytes - c->size);
+    memcpy(c->bytes + c->size, bytes, size);
+    c->size += size;
+    if (c->size >= c->wanted) {
+        event_base_loopbreak(base);
+    }
+}
+
+static void on_event(grobo_serial *serial, grobo_serial_event event, int error, void *ctx)
+{
+    client *c = ctx;
+
+    (void)serial;
+    (void)error;
+    c->events[event]++;
+    event_base_loopbreak(base);
+}
+
+static void on_end_of_wait(grobo_timer *timer, int64_t late_us, void *ctx)
+{
+    (void)timer;
+    (void)late_us;
+    *(bool *)ctx = true;
+    event_base_loopbreak(base);
+}
+
+/* Runs the loop until a callback ends it; true when span_us passed instead. */
+static bool run_for(int64_t span_us)
+{
+    grobo_timer *timer;
+    bool passed = false;
+
+    assert_int_equal(grobo_timer_new(base, on_end_of_wait, &passed, NULL, &timer), GROBO_OK);
+    assert_int_equal(grobo_timer_set(timer, grobo_now_us() + span_us), GROBO_OK);
+    event_base_dispatch(base);
+    grobo_timer_free(timer);
+    return passed;
+}
+
+static void client_open(client *c, const char *device, int baud_bps)
+{
+    const grobo_serial_config config = {.device = device,
+                                        .baud_bps = baud_bps,
+                                        .base = base,
+                                        .mode = GROBO_SERIAL_ASYNC,
+                                        .on_data = on_data,
+                                        .on_event = on_event,
+                                        .ctx = c};
+
+    memset(c, 0, sizeof *c);
+    assert_int_equal(grobo_serial_new(&config, &c->serial), GROBO_OK);
+    assert_int_equal(grobo_serial_open(c->serial), GROBO_OK);
+    assert_false(run_for(5000000));
+    assert_int_equal(c->events[GROBO_SERIAL_OPENED], 1);
+}
+
+/* Sends a frame and waits for so many bytes; false when they do not come. */
+static bool ask(client *c, const uint8_t *frame, size_t size, size_t reply_bytes,
+                int64_t timeout_us)
+{
+    c->size = 0;
+    c->wanted = reply_bytes > 0 ? reply_bytes : sizeof c->bytes;
+    assert_int_equal(grobo_serial_send(c->serial, frame, size), size);
+    return !run_for(timeout_us) && c->size == reply_bytes;
+}
+
+static void assert_answers(client *c)
+{
+    assert_true(ask(c, check, sizeof check, 1, 5000000));
+    assert_int_equal(c->bytes[0], 0x07);
+}
+
+static int torque_of_servo_1(client *c)
+{
+    assert_true(ask(c, ask_state, sizeof ask_state, STATE_BYTES, 5000000));
+    assert_int_equal(c->bytes[0], 0xFD);
+    assert_int_equal(c->bytes[1], 0xDF);
+    return c->bytes[7];
+}
+
+/* ---- set-up ------------------------------------------------------------------------------- */
+
+static int set_up(void **state)
+{
+    (void)state;
+    base = grobo_loop_new();
+    assert_non_null(base);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    event_base_free(base);
+    return 0;
+}
+
+static grobo_sim_server *serve(grobo_sim_server_config config)
+{
+    grobo_sim_server *server = NULL;
+    grobo_os_cause cause = {0};
+
+    config.base = base;
+    assert_int_equal(grobo_sim_server_new(&config, &server, &cause), GROBO_OK);
+    return server;
+}
+
+/* ---- tests -------------------------------------------------------------------------------- */
+
+static void the_board_answers_in_its_own_time(void **state)
+{
+    grobo_sim_server *server = serve((grobo_sim_server_config){0});
+    client c;
+    int64_t start_us;
+    int64_t took_us;
+
+    (void)state;
+    client_open(&c, grobo_sim_server_device(server), 0);
+    assert_answers(&c);
+    start_us = grobo_now_us();
+    assert_int_equal(torque_of_servo_1(&c), 0);
+    took_us = grobo_now_us() - start_us;
+    /* 11 B to the board, 8 B to the servo, 100 us, 26 B back, 26 B to the host, 10 bits each. */
+    assert_true(took_us >= 71 * 10 * INT64_C(1000000) / 115200);
+    assert_true(took_us < 1000000);
+    grobo_serial_free(c.serial);
+    grobo_sim_server_free(server);
+}
+
+static void programs_come_and_go_and_the_robot_stays(void **state)
+{
+    grobo_sim_server *server = serve((grobo_sim_server_config){0});
+    client c;
+
+    (void)state;
+    client_open(&c, grobo_sim_server_device(server), 0);
+    assert_int_equal(torque_of_servo_1(&c), 0);
+    assert_false(ask(&c, torque_on, sizeof torque_on, 0, 20000));
+    grobo_serial_free(c.serial);
+    assert_true(run_for(20000));
+    for (int i = 0; i < 3; i++) {
+        client_open(&c, grobo_sim_server_device(server), 0);
+        assert_int_equal(torque_of_servo_1(&c), 1);
+        grobo_serial_free(c.serial);
+    }
+    grobo_sim_server_free(server);
+}
+
+static void a_program_at_another_speed_is_not_understood(void **state)
+{
+    grobo_sim_server *server = serve((grobo_sim_server_config){0});
+    client c;
+
+    (void)state;
+    client_open(&c, grobo_sim_server_device(server), 9600);
+    assert_false(ask(&c, check, sizeof check, 1, 50000));
+    assert_int_equal(grobo_serial_set_baud(c.serial, 115200), 115200);
+    assert_answers(&c);
+    grobo_serial_free(c.serial);
+    grobo_sim_server_free(server);
+}
+
+static void many_robots_live_in_one_process(void **state)
+{
+    grobo_sim_server *one = serve((grobo_sim_server_config){0});
+    grobo_sim_server *two = serve((grobo_sim_server_config){0});
+    client a;
+    client b;
+
+    (void)state;
+    assert_string_not_equal(grobo_sim_server_device(one), grobo_sim_server_device(two));
+    client_open(&a, grobo_sim_server_device(one), 0);
+    client_open(&b, grobo_sim_server_device(two), 0);
+    assert_false(ask(&a, torque_on, sizeof torque_on, 0, 20000));
+    assert_int_equal(torque_of_servo_1(&a), 1);
+    assert_int_equal(torque_of_servo_1(&b), 0);
+    grobo_serial_free(a.serial);
+    grobo_serial_free(b.serial);
+    grobo_sim_server_free(one);
+    grobo_sim_server_free(two);
+}
+
+static void the_link_follows_the_terminal(void **state)
+{
+    char folder[] = "/tmp/grobo-sim-XXXXXX";
+    char link[64];
+    char target[64] = "";
+    grobo_sim_server_config config = {.base = base, .link = link};
+    grobo_sim_server *server;
+    grobo_os_cause cause = {0};
+    client c;
+    struct stat st;
+
+    (void)state;
+    assert_non_null(mkdtemp(folder));
+    snprintf(link, sizeof link, "%s/gr001", folder);
+    assert_int_equal(symlink("/nowhere", link), 0);
+    server = serve(config);
+    assert_true(readlink(link, target, sizeof target - 1) > 0);
+    assert_string_equal(target, grobo_sim_server_device(server));
+    client_open(&c, link, 0);
+    assert_false(ask(&c, torque_on, sizeof torque_on, 0, 20000));
+
+    assert_int_equal(grobo_sim_server_plug(server, false), GROBO_OK);
+    assert_string_equal(grobo_sim_server_device(server), "");
+    assert_int_not_equal(lstat(link, &st), 0);
+    assert_false(run_for(5000000));
+    assert_int_equal(c.events[GROBO_SERIAL_UNPLUGGED], 1);
+    grobo_serial_free(c.serial);
+
+    assert_int_equal(grobo_sim_server_plug(server, true), GROBO_OK);
+    client_open(&c, link, 0);
+    assert_int_equal(torque_of_servo_1(&c), 1);
+    grobo_serial_free(c.serial);
+    grobo_sim_server_free(server);
+    assert_int_not_equal(lstat(link, &st), 0);
+
+    /* Anything but a link is left alone. */
+    assert_int_equal(mkdir(link, 0700), 0);
+    server = NULL;
+    assert_int_equal(grobo_sim_server_new(&config, &server, &cause), GROBO_ERR_EXISTS);
+    assert_null(server);
+    assert_int_equal(rmdir(link), 0);
+    assert_int_equal(rmdir(folder), 0);
+}
+
+static void a_fault_hangs_up_and_the_port_comes_back(void **state)
+{
+    grobo_sim_server *server = serve((grobo_sim_server_config){.replug_ms = 30});
+    client c;
+
+    (void)state;
+    client_open(&c, grobo_sim_server_device(server), 0);
+    assert_int_equal(grobo_sim_set_fault(grobo_sim_server_sim(server), GROBO_SIM_FAULT_HANG_UP, 1),
+                     0);
+    assert_false(ask(&c, check, sizeof check, 1, 5000000));
+    assert_int_equal(c.events[GROBO_SERIAL_UNPLUGGED], 1);
+    grobo_serial_free(c.serial);
+    assert_int_equal(grobo_sim_set_fault(grobo_sim_server_sim(server), GROBO_SIM_FAULT_HANG_UP, 0),
+                     0);
+    for (int i = 0; i < 100 && grobo_sim_server_device(server)[0] == '\0'; i++) {
+        assert_true(run_for(10000));
+    }
+    client_open(&c, grobo_sim_server_device(server), 0);
+    assert_answers(&c);
+    grobo_serial_free(c.serial);
+    grobo_sim_server_free(server);
+}
+
+static void tcp_serves_one_caller_at_a_time(void **state)
+{
+    grobo_sim_server *server =
+        serve((grobo_sim_server_config){.tcp = "tcp:127.0.0.1:0", .no_pty = true});
+    client a;
+    client b;
+
+    (void)state;
+    assert_true(grobo_sim_server_tcp_port(server) > 0);
+    client_open(&a, grobo_sim_server_device(server), 0);
+    assert_answers(&a);
+    client_open(&b, grobo_sim_server_device(server), 0);
+    assert_false(ask(&b, check, sizeof check, 1, 30000));
+    assert_answers(&a);
+    grobo_serial_free(a.serial);
+    /* The first one has left: the second one's frame is heard now. */
+    b.wanted = 1;
+    assert_false(run_for(5000000));
+    assert_int_equal(b.size, 1);
+    assert_int_equal(b.bytes[0], 0x07);
+    grobo_serial_free(b.serial);
+    grobo_sim_server_free(server);
+}
+
+static void both_ends_reach_one_board(void **state)
+{
+    grobo_sim_server *server = serve((grobo_sim_server_config){.tcp = "tcp:localhost:0"});
+    char tcp[64];
+    client a;
+    client b;
+
+    (void)state;
+    snprintf(tcp, sizeof tcp, "tcp:localhost:%d", grobo_sim_server_tcp_port(server));
+    client_open(&a, grobo_sim_server_device(server), 0);
+    client_open(&b, tcp, 0);
+    assert_false(ask(&a, torque_on, sizeof torque_on, 0, 20000));
+    assert_int_equal(torque_of_servo_1(&b), 1);
+    assert_int_equal(a.size, 0);
+    assert_int_equal(torque_of_servo_1(&a), 1);
+    grobo_serial_free(a.serial);
+    grobo_serial_free(b.serial);
+    grobo_sim_server_free(server);
+}
+
+static int64_t cpu_us(void)
+{
+    struct rusage usage;
+
+    assert_int_equal(getrusage(RUSAGE_SELF, &usage), 0);
+    return (int64_t)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) * 1000000 +
+           usage.ru_utime.tv_usec + usage.ru_stime.tv_usec;
+}
+
+static void a_flood_is_taken_at_the_wires_pace_and_idle_is_idle(void **state)
+{
+    static uint8_t flood[4096];
+    grobo_sim_server *server = serve((grobo_sim_server_config){0});
+    client c;
+    int64_t start_us = grobo_now_us();
+    int64_t cpu_before_us;
+
+    (void)state;
+    client_open(&c, grobo_sim_server_device(server), 0);
+    memset(flood, 0x55, sizeof flood);
+    assert_int_equal(grobo_serial_send(c.serial, flood, sizeof flood), sizeof flood);
+    for (int i = 0; i < 500 && grobo_sim_server_sim(server)->stats.rx_bytes < sizeof flood; i++) {
+        (void)run_for(10000);
+        grobo_sim_step(grobo_sim_server_sim(server), grobo_now_us());
+    }
+    assert_int_equal(grobo_sim_server_sim(server)->stats.rx_bytes, sizeof flood);
+    assert_true(grobo_now_us() - start_us >= (int64_t)sizeof flood * 10 * 1000000 / 115200);
+    (void)run_for(50000);
+    cpu_before_us = cpu_us();
+    assert_true(run_for(200000));
+    assert_true(cpu_us() - cpu_before_us < 50000);
+    assert_answers(&c);
+    grobo_serial_free(c.serial);
+    grobo_sim_server_free(server);
+}
+
+/* An allocator whose n-th allocation fails. */
+static int allocations_left;
+static int blocks;
+
+static void *count_down(void *ctx, void *ptr, size_t old_bytes, size_t new_bytes)
+{
+    const grobo_mem *mem = grobo_mem_default();
+    void *made = NULL;
+
+    (void)ctx;
+    if (new_bytes == 0) {
+        blocks -= ptr != NULL ? 1 : 0;
+        return mem->resize(mem->ctx, ptr, old_bytes, 0);
+    }
+    if (allocations_left > 0) {
+        allocations_left--;
+        made = mem->resize(mem->ctx, ptr, old_bytes, new_bytes);
+        blocks += made != NULL && ptr == NULL ? 1 : 0;
+    }
+    return made;
+}
+
+static void refusals_leave_nothing_behind(void **state)
+{
+    static const grobo_mem mem = {count_down, NULL};
+    const grobo_sim_config bad_sim = {.baud_bps = 1};
+    grobo_sim_server_config config = {.base = base, .mem = &mem};
+    grobo_sim_server *server = NULL;
+    grobo_os_cause cause = {0};
+    int r = GROBO_ERR_NOMEM;
+    int failures = -1;
+
+    (void)state;
+    while (r == GROBO_ERR_NOMEM) {
+        failures++;
+        allocations_left = failures;
+        r = grobo_sim_server_new(&config, &server, &cause);
+        if (r < 0) {
+            assert_null(server);
+            assert_int_equal(blocks, 0);
+        }
+    }
+    assert_int_equal(r, GROBO_OK);
+    assert_int_equal(failures, 4);
+    grobo_sim_server_free(server);
+    grobo_sim_server_free(NULL);
+    assert_int_equal(blocks, 0);
+
+    allocations_left = 100;
+    config.no_pty = true;
+    assert_int_equal(grobo_sim_server_new(&config, &server, NULL), GROBO_ERR_ARG);
+    config.tcp = "tcp:nowhere";
+    assert_int_equal(grobo_sim_server_new(&config, &server, NULL), GROBO_ERR_ARG);
+    config.tcp = "tcp:127.0.0.1:0";
+    config.sim = &bad_sim;
+    assert_int_equal(grobo_sim_server_new(&config, &server, &cause), GROBO_ERR_ARG);
+    assert_int_equal(blocks, 0);
+}
+
+int main(void)
+{
+#define ON_LOOP(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
+    const struct CMUnitTest tests[] = {
+        ON_LOOP(the_board_answers_in_its_own_time),
+        ON_LOOP(programs_come_and_go_and_the_robot_stays),
+        ON_LOOP(a_program_at_another_speed_is_not_understood),
+        ON_LOOP(many_robots_live_in_one_process),
+        ON_LOOP(the_link_follows_the_terminal),
+        ON_LOOP(a_fault_hangs_up_and_the_port_comes_back),
+        ON_LOOP(tcp_serves_one_caller_at_a_time),
+        ON_LOOP(both_ends_reach_one_board),
+        ON_LOOP(a_flood_is_taken_at_the_wires_pace_and_idle_is_idle),
+        ON_LOOP(refusals_leave_nothing_behind),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
