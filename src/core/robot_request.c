@@ -157,7 +157,7 @@ static int admit_clip(grobo_robot *robot, const grobo_clip *clip, const grobo_pl
 static uint16_t approach_of(const grobo_robot *robot)
 {
     double approach_dps = fmin(fmax(robot->config.approach_dps, 1), UINT16_MAX);
-    return (uint16_t)approach_dps;
+    return (uint16_t)lround(approach_dps);
 }
 
 int grobo_robot_play(grobo_robot *robot, const grobo_clip *clip, const grobo_play_options *options,

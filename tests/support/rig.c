@@ -117,7 +117,7 @@ static void note_event(void *ctx, const grobo_event *event)
     }
 }
 
-/* ---- the pump ---------------------------------------------------------------------------------- */
+/* ---- the pump ---------------------------------- */
 
 void rig_start_driver(grobo_test_rig *rig, const grobo_driver *driver,
                       const grobo_robot_config *config, const grobo_sim_config *sim)
@@ -207,7 +207,7 @@ void rig_stall(grobo_test_rig *rig, int64_t us)
     rig_run(rig, us);
 }
 
-/* ---- waiting and looking ----------------------------------------------------------------------- */
+/* ---- waiting and looking ---------------------------------- */
 
 static const grobo_event_job *find_job(const grobo_test_rig *rig, int number)
 {
@@ -316,4 +316,50 @@ bool rig_was_sent(const grobo_test_rig *rig, const uint8_t *bytes, size_t size)
         }
     }
     return false;
+}
+
+/* ---- clips ---------------------------------- */
+
+static int clip_key(void *ctx, size_t i, grobo_posture *posture, int64_t *at_us)
+{
+    const rig_clip *clip = ctx;
+    const rig_key *key = &clip->keys[i];
+    grobo_posture_init_pose(posture, &grobo_gr001_model);
+    for (int k = 0; k < 3 && (k == 0 || key->to[k].joint != 0 || key->to[k].angle_deg != 0); k++) {
+        posture->angle_rad[key->to[k].joint] = grobo_rad_from_deg(key->to[k].angle_deg);
+    }
+    *at_us = key->at_ms * 1000;
+    posture->time_us = i == 0 ? 0 : *at_us - clip->keys[i - 1].at_ms * 1000;
+    return 0;
+}
+
+static int clip_sample(void *ctx, int64_t t_us, grobo_posture *posture)
+{
+    const rig_clip *clip = ctx;
+    size_t i = 1;
+    while (i + 1 < clip->clip.n_keys && clip->keys[i].at_ms * 1000 < t_us) {
+        i++;
+    }
+    grobo_posture a;
+    int64_t from_us;
+    int64_t to_us;
+    (void)clip_key(ctx, i - 1, &a, &from_us);
+    (void)clip_key(ctx, i, posture, &to_us);
+    double part = fmin(fmax((double)(t_us - from_us) / (double)(to_us - from_us), 0), 1);
+    for (int j = 0; j < posture->n_joints; j++) {
+        posture->angle_rad[j] = a.angle_rad[j] + (posture->angle_rad[j] - a.angle_rad[j]) * part;
+    }
+    return 0;
+}
+
+void rig_clip_init(rig_clip *clip, const rig_key *keys, size_t n)
+{
+    memset(clip, 0, sizeof *clip);
+    clip->keys = keys;
+    clip->clip.key = clip_key;
+    clip->clip.sample = clip_sample;
+    clip->clip.ctx = clip;
+    clip->clip.n_keys = n;
+    clip->clip.n_joints = grobo_gr001_model.n_joints;
+    clip->clip.length_us = keys[n - 1].at_ms * 1000;
 }

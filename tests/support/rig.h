@@ -70,4 +70,21 @@ grobo_posture rig_posture(const grobo_test_rig *rig, int joint, double angle_deg
 /* True if this frame is among those sent since the last rig_forget(). */
 bool rig_was_sent(const grobo_test_rig *rig, const uint8_t *bytes, size_t size);
 
+/* A clip of GR001: key postures that differ from the initial one in a few joints, straight lines
+ * between them when sampled. */
+typedef struct rig_key {
+    int64_t at_ms;
+    struct {
+        int joint;
+        double angle_deg;
+    } to[3]; /* joints after the first with joint 0 and angle 0 are none */
+} rig_key;
+
+typedef struct rig_clip {
+    grobo_clip clip;
+    const rig_key *keys;
+} rig_clip;
+
+void rig_clip_init(rig_clip *clip, const rig_key *keys, size_t n);
+
 #endif

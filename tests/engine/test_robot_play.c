@@ -1,0 +1,318 @@
+/* SPDX-License-Identifier: MIT */
+/* Playing: the frames on the wire, their times, and what a motion may be told on its way. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <math.h>
+#include <string.h>
+
+#include "rig.h"
+
+enum { NECK = 13, R_KNEE = 3, SHOULDER = 14 };
+
+static grobo_test_rig rig;
+static rig_clip clip;
+static const grobo_robot_config quiet = {.sense_interval_us = GROBO_SENSE_NEVER};
+static const rig_key nod[] = {
+    {0, {{NECK, 0}}},     {500, {{NECK, 30}}},  {1000, {{NECK, -30}, {SHOULDER, 60}}},
+    {1700, {{NECK, 10}}}, {2000, {{NECK, 20}}},
+};
+
+static void start(const grobo_robot_config *config)
+{
+    rig_start(&rig, config, NULL);
+    rig_clip_init(&clip, nod, sizeof nod / sizeof nod[0]);
+}
+
+/* Frames that move all 20 joints, after the approach, which is the first. */
+static size_t motion_frames(rig_frame *frames, size_t capacity)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < rig.n_sent; i++) {
+        if (rig.sent[i].size == 110 && n < capacity) {
+            frames[n++] = rig.sent[i];
+        }
+    }
+    return n;
+}
+
+/* Of a 110-byte frame (protocol 5). */
+static int angle_ddeg(const rig_frame *frame, int motor)
+{
+    const uint8_t *p = &frame->bytes[5 * (motor - 1) + 10];
+    return (int16_t)(p[0] | p[1] << 8);
+}
+
+static int time_cs(const rig_frame *frame, int motor)
+{
+    const uint8_t *p = &frame->bytes[5 * (motor - 1) + 12];
+    return p[0] | p[1] << 8;
+}
+
+static void play(const grobo_play_options *options)
+{
+    rig_power(&rig);
+    rig_forget(&rig);
+    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, options, rig.now_us), GROBO_OK);
+}
+
+static void keys_are_frames_with_their_times(void **state)
+{
+    (void)state;
+    static rig_frame frames[64];
+    start(&quiet);
+    play(NULL);
+    rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
+    size_t n = motion_frames(frames, 64);
+    assert_int_equal(n, 5);
+    static const int neck_ddeg[] = {0, 300, -300, 100, 200};
+    static const int cs[] = {0, 50, 50, 70, 30};
+    for (size_t i = 1; i < n; i++) {
+        assert_int_equal(angle_ddeg(&frames[i], 2), neck_ddeg[i]);
+        assert_int_equal(time_cs(&frames[i], 2), cs[i]);
+    }
+    assert_int_equal(frames[2].at_us - frames[1].at_us, 500000);
+    assert_int_equal(frames[3].at_us - frames[2].at_us, 500000);
+    assert_int_equal(frames[4].at_us - frames[3].at_us, 700000);
+    rig_run(&rig, 100000);
+    assert_true(fabs(rig_angle_deg(&rig, NECK) - 20) < 0.1);
+    assert_int_equal(grobo_robot_get_counters(&rig.robot)->late_frames, 0);
+    const grobo_event *end = rig_last(&rig, GROBO_EVENT_PLAY);
+    assert_int_equal(end->u.play.to, GROBO_SEQUENCER_FINISHED);
+}
+
+static void frames_at_a_rate_leave_on_their_grid(void **state)
+{
+    (void)state;
+    static rig_frame frames[256];
+    grobo_play_options options = {.mode = GROBO_PLAY_RATE, .rate_hz = 30};
+    start(NULL);
+    play(&options);
+    rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
+    size_t n = motion_frames(frames, 256);
+    assert_in_range(n, 60, 63);
+    for (size_t i = 3; i < n; i++) {
+        int64_t off_us = frames[i].at_us - frames[2].at_us - ((int64_t)(i - 2) * 1000000) / 30;
+        assert_true(off_us >= -1 && off_us <= 1);
+    }
+    rig_run(&rig, 200000);
+    assert_true(fabs(rig_angle_deg(&rig, NECK) - 20) < 0.1);
+    grobo_jitter jitter;
+    grobo_robot_jitter(&rig.robot, &jitter);
+    assert_int_equal(jitter.max_us, 0);
+    assert_in_range(jitter.frames, 60, 63);
+    assert_int_equal(grobo_robot_get_counters(&rig.robot)->late_frames, 0);
+}
+
+static void gaps_between_frames_are_read_in(void **state)
+{
+    (void)state;
+    grobo_play_options options = {.mode = GROBO_PLAY_RATE, .rate_hz = 30, .repeat = 5};
+    grobo_robot_config busy = {.sense_interval_us = 1};
+    start(&busy);
+    play(&options);
+    rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
+    rig_forget(&rig);
+    rig_run(&rig, 1000000);
+    assert_in_range(rig_count(&rig, GROBO_EVENT_JOINT), 30, 120);
+    rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
+    grobo_jitter jitter;
+    grobo_robot_jitter(&rig.robot, &jitter);
+    assert_int_equal(jitter.max_us, 0);
+    assert_int_equal(grobo_robot_get_counters(&rig.robot)->late_frames, 0);
+}
+
+static void first_move_is_slow_and_from_where_the_robot_is(void **state)
+{
+    (void)state;
+    static rig_frame frames[16];
+    grobo_sim_config limp = {.start = GROBO_SIM_START_LIMP, .seed = 5};
+    rig_start(&rig, &quiet, &limp);
+    rig_clip_init(&clip, nod, sizeof nod / sizeof nod[0]);
+    double most_deg = 0;
+    for (int j = 0; j < 20; j++) {
+        double init_deg = grobo_deg_from_rad(rig.driver->model->joints[j].init_rad);
+        most_deg = fmax(most_deg, fabs(rig_angle_deg(&rig, j) - init_deg));
+    }
+    play(NULL);
+    rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
+    assert_true(motion_frames(frames, 16) >= 1);
+    int64_t least_us = (int64_t)(most_deg / 60 * 1e6);
+    assert_in_range(time_cs(&frames[0], 2) * 10000LL, least_us - 10000, least_us + 20000);
+    for (int motor = 1; motor <= 20; motor++) {
+        assert_int_equal(time_cs(&frames[0], motor), time_cs(&frames[0], 2));
+    }
+}
+
+static void targets_outside_limits_end_the_motion(void **state)
+{
+    (void)state;
+    static const rig_key wild[] = {
+        {0, {{NECK, 0}}}, {500, {{NECK, 20}}}, {1000, {{NECK, 51}}}, {2000, {{NECK, 0}}}};
+    start(&quiet);
+    rig_clip_init(&clip, wild, 4);
+    play(NULL);
+    rig_wait_play(&rig, GROBO_SEQUENCER_FAILED);
+    const grobo_event *trip = rig_last(&rig, GROBO_EVENT_TRIP);
+    assert_int_equal(trip->u.trip.trip, GROBO_TRIP_LIMIT);
+    assert_int_equal(trip->u.trip.joint, NECK);
+    assert_true(fabs(trip->u.trip.value - 51) < 1e-9 && !trip->u.trip.latched);
+    assert_int_equal(rig_last(&rig, GROBO_EVENT_PLAY)->u.play.error, GROBO_ERR_LIMIT);
+    rig_run(&rig, 500000);
+    assert_true(rig_angle_deg(&rig, NECK) < 20.1);
+}
+
+static void targets_outside_limits_are_clamped_if_told_so(void **state)
+{
+    (void)state;
+    static const rig_key wild[] = {{0, {{NECK, 0}}}, {1000, {{NECK, 70}}}};
+    grobo_robot_config config = quiet;
+    config.limit_policy = GROBO_LIMIT_CLAMP;
+    start(&config);
+    rig_clip_init(&clip, wild, 2);
+    play(NULL);
+    rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
+    rig_run(&rig, 100000);
+    assert_true(fabs(rig_angle_deg(&rig, NECK) - 50) < 0.1);
+    assert_int_equal(grobo_robot_get_counters(&rig.robot)->clamped, 1);
+}
+
+static void too_fast_a_target_gets_more_time(void **state)
+{
+    (void)state;
+    static const rig_key jerk[] = {{0, {{NECK, -40}}}, {100, {{NECK, 40}, {SHOULDER, 25}}}};
+    static rig_frame frames[16];
+    start(&quiet);
+    rig_clip_init(&clip, jerk, 2);
+    play(NULL);
+    rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
+    assert_int_equal(motion_frames(frames, 16), 2);
+    /* 80 degrees at 375 deg/s need 0.22 s; the shoulder keeps its 0.1 s. */
+    assert_int_equal(time_cs(&frames[1], 2), 22);
+    assert_int_equal(time_cs(&frames[1], 3), 10);
+    assert_in_range(grobo_robot_get_counters(&rig.robot)->stretched, 1, 2);
+}
+
+static void speed_limit_is_kept(void **state)
+{
+    (void)state;
+    static rig_frame frames[16];
+    grobo_robot_config slow = quiet;
+    slow.speed_limit_pct = 20; /* 75 deg/s for the neck */
+    start(&slow);
+    play(NULL);
+    rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
+    assert_int_equal(motion_frames(frames, 16), 5);
+    assert_int_equal(time_cs(&frames[1], 2), 50);
+    assert_in_range(time_cs(&frames[2], 2), 79, 81); /* 60 degrees */
+}
+
+static void pause_resume_and_stop(void **state)
+{
+    (void)state;
+    start(&quiet);
+    play(NULL);
+    rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
+    rig_run(&rig, 300000);
+    assert_int_equal(grobo_robot_pause(&rig.robot, rig.now_us), GROBO_OK);
+    rig_run(&rig, 1000000);
+    assert_int_equal(grobo_robot_play_state(&rig.robot), GROBO_SEQUENCER_PAUSED);
+    double held_deg = rig_angle_deg(&rig, NECK);
+    rig_run(&rig, 1000000);
+    assert_true(fabs(rig_angle_deg(&rig, NECK) - held_deg) < 0.01);
+    assert_int_equal(grobo_robot_resume(&rig.robot, rig.now_us), GROBO_OK);
+    rig_run(&rig, 500000);
+    assert_int_equal(grobo_robot_play_state(&rig.robot), GROBO_SEQUENCER_PLAYING);
+    assert_int_equal(grobo_robot_stop(&rig.robot, false, rig.now_us), GROBO_OK);
+    rig_run(&rig, 400000);
+    assert_int_equal(grobo_robot_play_state(&rig.robot), GROBO_SEQUENCER_IDLE);
+    assert_false(grobo_robot_moving(&rig.robot, rig.now_us));
+    assert_int_equal(grobo_robot_stop(&rig.robot, false, rig.now_us), GROBO_ERR_STATE);
+}
+
+static void only_one_motion_at_a_time(void **state)
+{
+    (void)state;
+    start(&quiet);
+    play(NULL);
+    grobo_posture target = rig_posture(&rig, NECK, 0, 100);
+    assert_int_equal(grobo_robot_play(&rig.robot, &clip.clip, NULL, rig.now_us), GROBO_ERR_STATE);
+    assert_int_equal(grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_ERR_STATE);
+    assert_int_equal(grobo_robot_enqueue(&rig.robot, &clip.clip, NULL, rig.now_us), 1);
+    rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
+}
+
+static void a_short_stall_skips_a_long_one_stops(void **state)
+{
+    (void)state;
+    static rig_frame frames[256];
+    grobo_play_options options = {.mode = GROBO_PLAY_RATE, .rate_hz = 50};
+    start(&quiet);
+    play(&options);
+    rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
+    rig_run(&rig, 305000);
+    rig_forget(&rig);
+    rig_stall(&rig, 100000);
+    assert_int_equal(motion_frames(frames, 256), 1); /* the present one, no burst */
+    assert_in_range(grobo_robot_get_counters(&rig.robot)->late_frames, 4, 6);
+    assert_int_equal(grobo_robot_play_state(&rig.robot), GROBO_SEQUENCER_PLAYING);
+    rig_run(&rig, 100000);
+    rig_stall(&rig, 400000);
+    rig_run(&rig, 400000);
+    const grobo_event *trip = rig_last(&rig, GROBO_EVENT_TRIP);
+    assert_non_null(trip);
+    assert_int_equal(trip->u.trip.trip, GROBO_TRIP_HOST_STALL);
+    assert_false(trip->u.trip.latched);
+    assert_int_equal(grobo_robot_play_state(&rig.robot), GROBO_SEQUENCER_IDLE);
+    assert_int_equal(grobo_robot_get_counters(&rig.robot)->stalls, 1);
+}
+
+static int lean(const grobo_driver *self, void *ctx, const grobo_posture *sensed,
+                grobo_posture *target)
+{
+    (void)self;
+    (void)ctx;
+    assert_true(sensed->set == GROBO_JOINTS_ALL(20));
+    target->angle_rad[R_KNEE] -= grobo_rad_from_deg(5);
+    return 0;
+}
+
+static void the_stabilizer_corrects_and_is_checked(void **state)
+{
+    (void)state;
+    static rig_frame frames[16];
+    static const rig_key low[] = {{0, {{R_KNEE, -100}}}, {1000, {{R_KNEE, -127}}}};
+    grobo_driver driver = *grobo_gr001_driver(GROBO_WIRING_BOARD);
+    driver.stabilize = lean;
+    rig_start_driver(&rig, &driver, &quiet, NULL);
+    rig_clip_init(&clip, low, 2);
+    play(NULL);
+    rig_wait_play(&rig, GROBO_SEQUENCER_FAILED);
+    assert_true(motion_frames(frames, 16) >= 1);
+    assert_int_equal(angle_ddeg(&frames[0], 12), -1050);
+    const grobo_event *trip = rig_last(&rig, GROBO_EVENT_TRIP);
+    assert_int_equal(trip->u.trip.joint, R_KNEE);
+    assert_true(fabs(trip->u.trip.value + 132) < 1e-9);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(keys_are_frames_with_their_times),
+        cmocka_unit_test(frames_at_a_rate_leave_on_their_grid),
+        cmocka_unit_test(gaps_between_frames_are_read_in),
+        cmocka_unit_test(first_move_is_slow_and_from_where_the_robot_is),
+        cmocka_unit_test(targets_outside_limits_end_the_motion),
+        cmocka_unit_test(targets_outside_limits_are_clamped_if_told_so),
+        cmocka_unit_test(too_fast_a_target_gets_more_time),
+        cmocka_unit_test(speed_limit_is_kept),
+        cmocka_unit_test(pause_resume_and_stop),
+        cmocka_unit_test(only_one_motion_at_a_time),
+        cmocka_unit_test(a_short_stall_skips_a_long_one_stops),
+        cmocka_unit_test(the_stabilizer_corrects_and_is_checked),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
