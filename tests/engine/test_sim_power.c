@@ -62,6 +62,41 @@ static void limp_start_is_within_stops_and_of_the_seed(void **state)
     assert_true(differ > 10);
 }
 
+static void a_start_at_zero_keeps_the_stops(void **state)
+{
+    (void)state;
+    static grobo_joint joints[3];
+    static const grobo_model bent = {.name = "bent", .joints = joints, .n_joints = 3};
+    static const char *const joint_names[] = {"below", "across", "above"};
+    static const double min_rad[] = {-2, -1, 0.5}, max_rad[] = {-0.5, 1, 2};
+    for (uint8_t i = 0; i < 3; i++) {
+        joints[i] = (grobo_joint){.name = joint_names[i],
+                                  .min_rad = min_rad[i],
+                                  .max_rad = max_rad[i],
+                                  .max_speed_rad_s = 5,
+                                  .init_rad = min_rad[i],
+                                  .motor = (uint8_t)(i + 1),
+                                  .mirror = i,
+                                  .mirror_sign = 1};
+    }
+    const grobo_sim_config config = {.model = &bent, .start = GROBO_SIM_START_ZERO};
+    simkit_start(&kit, &config);
+    assert_int_equal(simkit_look(&kit, 0).angle_mdeg, -28648);
+    assert_int_equal(simkit_look(&kit, 1).angle_mdeg, 0);
+    assert_int_equal(simkit_look(&kit, 2).angle_mdeg, 28648);
+}
+
+static void there_is_no_servo_beyond_the_last(void **state)
+{
+    (void)state;
+    grobo_sim_view view;
+    simkit_start(&kit, NULL);
+    assert_int_equal(grobo_sim_look(&kit.sim, 20, &view), GROBO_ERR_ARG);
+    assert_int_equal(grobo_sim_look(&kit.sim, -1, &view), GROBO_ERR_ARG);
+    assert_int_equal(grobo_sim_set_blocked(&kit.sim, 20, true), GROBO_ERR_ARG);
+    assert_int_equal(grobo_sim_find(&kit.sim, 21), GROBO_ERR_NOTFOUND);
+}
+
 static void bad_configurations_are_refused(void **state)
 {
     (void)state;
@@ -262,6 +297,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(power_up_is_limp_with_goals_at_zero),
         cmocka_unit_test(limp_start_is_within_stops_and_of_the_seed),
+        cmocka_unit_test(a_start_at_zero_keeps_the_stops),
+        cmocka_unit_test(there_is_no_servo_beyond_the_last),
         cmocka_unit_test(bad_configurations_are_refused),
         cmocka_unit_test(reboot_forgets_what_is_not_in_flash),
         cmocka_unit_test(flash_takes_a_second_and_lasts),

@@ -142,6 +142,46 @@ static void what_cannot_be_read_is_refused(void **state)
     simkit_expect(&kit, "FD DF 01 00 24 01 01 00 25");
 }
 
+/* A robot of another make: one RS303MR, which has the blocks that the early models lack. */
+static const grobo_joint late_joint = {.name = "ONE",
+                                       .min_rad = -1,
+                                       .max_rad = 1,
+                                       .max_speed_rad_s = 9,
+                                       .servo_model = GROBO_RS30X_RS303MR,
+                                       .motor = 7,
+                                       .mirror_sign = 1};
+static const grobo_model late_robot = {.name = "late", .joints = &late_joint, .n_joints = 1};
+
+static void later_models_have_more(void **state)
+{
+    (void)state;
+    const grobo_sim_config config = {.model = &late_robot};
+    simkit_start(&kit, &config);
+    simkit_packet(&kit, "FA AF 07 0D 00 00 01", 76);
+    assert_int_equal(kit.n_got, 76);
+    simkit_packet(&kit, "FA AF 07 00 16 02 01 03 04", 0);
+    assert_int_equal(simkit_register(&kit, 0, GROBO_RS30X_SILENCE_TORQUE), 3);
+    assert_int_equal(simkit_register(&kit, 0, GROBO_RS30X_WARM_UP_TIME), 4);
+    assert_int_equal(simkit_register(&kit, 0, GROBO_RS30X_MODEL), 0x3030);
+}
+
+static void behind_the_robots_back_the_map_holds_too(void **state)
+{
+    (void)state;
+    simkit_start(&kit, NULL);
+    int32_t value = 77;
+    assert_int_equal(grobo_sim_get_register(&kit.sim, 20, 4, &value), GROBO_ERR_ARG);
+    assert_int_equal(grobo_sim_get_register(&kit.sim, 0, 31, &value), GROBO_ERR_ARG);
+    assert_int_equal(grobo_sim_get_register(&kit.sim, 0, 140, &value), GROBO_ERR_ARG);
+    assert_int_equal(value, 77);
+    assert_int_equal(grobo_sim_set_register(&kit.sim, 0, GROBO_RS30X_POSITION, 0), GROBO_ERR_ARG);
+    assert_int_equal(grobo_sim_set_register(&kit.sim, 0, GROBO_RS30X_ID, 128), GROBO_ERR_LIMIT);
+    assert_int_equal(grobo_sim_set_register(&kit.sim, 0, GROBO_RS30X_TEMPERATURE_LIMIT, 60), 0);
+    assert_int_equal(grobo_sim_set_register(&kit.sim, 0, GROBO_RS30X_TORQUE, 1), 0);
+    assert_int_equal(simkit_events(&kit, GROBO_SIM_TORQUE, NULL), 1);
+    assert_int_equal(simkit_register(&kit, 0, GROBO_RS30X_TEMPERATURE_LIMIT), 60);
+}
+
 /* ---- writing ------------------------------------------------------------------------------- */
 
 static void read_only_registers_stay(void **state)
@@ -342,6 +382,8 @@ int main(void)
         cmocka_unit_test(blocks_come_as_their_nibble_says),
         cmocka_unit_test(every_reply_has_its_sum),
         cmocka_unit_test(what_cannot_be_read_is_refused),
+        cmocka_unit_test(later_models_have_more),
+        cmocka_unit_test(behind_the_robots_back_the_map_holds_too),
         cmocka_unit_test(read_only_registers_stay),
         cmocka_unit_test(values_out_of_range_are_refused),
         cmocka_unit_test(goals_are_clamped_to_the_limits),

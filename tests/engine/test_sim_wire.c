@@ -221,6 +221,22 @@ static void board_frames_mean_nothing_to_servos(void **state)
     assert_int_equal(simkit_look(&kit, 12).torque, GROBO_TORQUE_ON);
 }
 
+static void a_stalled_packet_is_forgotten(void **state)
+{
+    (void)state;
+    const grobo_sim_config config = {.wiring = GROBO_WIRING_BUS};
+    simkit_start(&kit, &config);
+    simkit_ask(&kit, "FA AF 01 00 24", 5000);
+    simkit_run(&kit, 5000);
+    simkit_ask(&kit, "01 01 01 24", 100000);
+    assert_int_equal(simkit_look(&kit, 12).torque, GROBO_TORQUE_ON);
+    simkit_ask(&kit, "FA AF 01 00 24", 5000);
+    simkit_run(&kit, 15000);
+    simkit_ask(&kit, "FA AF 01 00 24 01 01 00 25", 100000);
+    assert_int_equal(simkit_look(&kit, 12).torque, GROBO_TORQUE_OFF);
+    assert_int_equal(kit.sim.stats.stalls, 1);
+}
+
 static void talking_over_a_reply_spoils_both(void **state)
 {
     (void)state;
@@ -252,6 +268,33 @@ static void replies_that_overlap_spoil_each_other(void **state)
     assert_memory_not_equal(kit.got, clean, sizeof clean);
 }
 
+/* The second payload follows the first at once, right into the reply that S has nobody wait for. */
+static void the_board_too_may_talk_over_a_reply(void **state)
+{
+    (void)state;
+    simkit_start(&kit, NULL);
+    simkit_ask(&kit, "53 08 FA AF 01 0F 24 12 00 38 53 09 FA AF 02 00 24 01 01 01 27", 100000);
+    assert_true(simkit_events(&kit, GROBO_SIM_COLLISION, NULL) >= 8);
+    assert_int_equal(kit.sim.stats.frames, 2);
+    assert_int_equal(kit.sim.stats.packets, 1);
+    assert_int_equal(simkit_look(&kit, simkit_servo(&kit, 2)).torque, GROBO_TORQUE_OFF);
+}
+
+static void a_crowd_of_one_id_is_only_heard_in_part(void **state)
+{
+    (void)state;
+    const grobo_sim_config config = {.wiring = GROBO_WIRING_BUS};
+    simkit_start(&kit, &config);
+    for (int i = 0; i < 20; i++) {
+        assert_int_equal(grobo_sim_set_register(&kit.sim, i, GROBO_RS30X_ID, 5), 0);
+        assert_int_equal(grobo_sim_set_register(&kit.sim, i, GROBO_RS30X_DELAY, i), 0);
+    }
+    simkit_forget(&kit);
+    simkit_packet(&kit, "FA AF 05 0F 24 12 00", 26);
+    assert_int_equal(kit.n_got, GROBO_SIM_TALKS_MAX * 26);
+    assert_int_equal(kit.sim.stats.overflows, (20 - GROBO_SIM_TALKS_MAX) * 26);
+}
+
 /* ---- pacing and the cable ------------------------------------------------------------------ */
 
 static void unpaced_takes_only_the_return_delay(void **state)
@@ -263,6 +306,23 @@ static void unpaced_takes_only_the_return_delay(void **state)
     simkit_ask(&kit, "54 09 FA AF 01 0F 24 12 00 38 1A", 100000);
     assert_int_equal(kit.n_got, 26);
     assert_in_range(kit.got_us[25] - t0, 100, 102);
+}
+
+static void a_host_that_never_reads_loses_bytes(void **state)
+{
+    (void)state;
+    simkit_start(&kit, NULL);
+    const uint8_t check[] = {0x41, 0x00};
+    for (int i = 0; i < GROBO_SIM_WIRE_BYTES + 5; i++) {
+        kit.now_us += 1000;
+        assert_int_equal(grobo_sim_rx(&kit.sim, check, 2, kit.now_us), 2);
+    }
+    grobo_sim_step(&kit.sim, kit.now_us + 1000);
+    assert_int_equal(kit.sim.stats.overflows, 5);
+    assert_true(grobo_sim_deadline(&kit.sim) <= kit.now_us);
+    uint8_t got[GROBO_SIM_WIRE_BYTES + 5];
+    assert_int_equal(grobo_sim_tx(&kit.sim, got, sizeof got, kit.now_us), GROBO_SIM_WIRE_BYTES);
+    assert_int_equal(kit.sim.stats.tx_bytes, GROBO_SIM_WIRE_BYTES);
 }
 
 static void time_going_back_counts_as_standing_still(void **state)
@@ -315,9 +375,13 @@ int main(void)
         cmocka_unit_test(a_stalled_frame_is_forgotten),
         cmocka_unit_test(bus_read_costs_34_bytes_and_the_delay),
         cmocka_unit_test(board_frames_mean_nothing_to_servos),
+        cmocka_unit_test(a_stalled_packet_is_forgotten),
         cmocka_unit_test(talking_over_a_reply_spoils_both),
         cmocka_unit_test(replies_that_overlap_spoil_each_other),
+        cmocka_unit_test(the_board_too_may_talk_over_a_reply),
+        cmocka_unit_test(a_crowd_of_one_id_is_only_heard_in_part),
         cmocka_unit_test(unpaced_takes_only_the_return_delay),
+        cmocka_unit_test(a_host_that_never_reads_loses_bytes),
         cmocka_unit_test(time_going_back_counts_as_standing_still),
         cmocka_unit_test(an_unplugged_cable_loses_what_is_on_the_line),
     };
