@@ -111,6 +111,8 @@ grobo_i_extra *grobo_i_extra_dup(const grobo_mem *mem, const grobo_i_extra *from
 void grobo_i_extra_free(const grobo_mem *mem, grobo_i_extra *extra);
 int grobo_i_kept_add(const grobo_mem *mem, grobo_i_kept **list, const grobo_kept *kept);
 int grobo_i_kept_dup(const grobo_mem *mem, const grobo_i_kept *from, grobo_i_kept **list);
+/* Takes the kept keys of a level out of a list. */
+void grobo_i_drop_kept(const grobo_mem *mem, grobo_i_kept **list, grobo_kept_level level);
 void grobo_i_kept_free(const grobo_mem *mem, grobo_i_kept *list);
 bool grobo_i_kept_equal(const grobo_i_kept *a, const grobo_i_kept *b);
 bool grobo_i_extra_equal(const grobo_i_extra *a, const grobo_i_extra *b);

@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -161,6 +160,20 @@ const char *grobo_severity_name(grobo_severity severity)
     return names[severity];
 }
 
+void grobo_i_format_message(char *message, size_t size, const char *format, va_list args)
+{
+    (void)vsnprintf(message, size, format, args);
+    for (char *p = message; *p != '\0'; p++) {
+        if ((unsigned char)*p < 0x20 || *p == 0x7F) {
+            *p = '?';
+        }
+    }
+    bool well_formed = grobo_i_utf8_ok(message, strlen(message));
+    for (char *p = message; *p != '\0' && !well_formed; p++) {
+        *p = (unsigned char)*p < 0x80 ? *p : '?';
+    }
+}
+
 void grobo_i_say(grobo_diagnostics *list, const grobo_i_said *said, const char *format, ...)
 {
     char message[MESSAGE_BYTES];
@@ -170,14 +183,8 @@ void grobo_i_say(grobo_diagnostics *list, const grobo_i_said *said, const char *
         return;
     }
     va_start(args, format);
-    (void)vsnprintf(message, sizeof message, format, args);
+    grobo_i_format_message(message, sizeof message, format, args);
     va_end(args);
-    for (char *p = message; *p != '\0'; p++) {
-        /* A message is one line, whatever the file's texts are. */
-        if ((unsigned char)*p < 0x20 || *p == 0x7F) {
-            *p = '?';
-        }
-    }
     grobo_diagnostics_add(list, &(grobo_diagnostic){said->file, said->code, message, said->line,
                                                     said->column, said->severity});
 }

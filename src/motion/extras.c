@@ -310,12 +310,11 @@ const grobo_ik_link *grobo_motion_ik_links(const grobo_motion *motion, size_t n,
     return (*row.extra)->links;
 }
 
-/* Takes the kept keys of links out of a list. */
-static void drop_link_kept(const grobo_mem *mem, grobo_i_kept **list)
+void grobo_i_drop_kept(const grobo_mem *mem, grobo_i_kept **list, grobo_kept_level level)
 {
     while (*list != NULL) {
         grobo_i_kept *kept = *list;
-        if (kept->level == GROBO_KEPT_LINK) {
+        if (kept->level == level) {
             *list = kept->next;
             kept->next = NULL;
             grobo_i_kept_free(mem, kept);
@@ -363,7 +362,7 @@ int grobo_motion_set_ik_links(grobo_motion *motion, size_t n, const grobo_ik_lin
         return GROBO_ERR_NOMEM;
     }
     grobo_i_free(motion->mem, extra->links, extra->n_links * sizeof *extra->links);
-    drop_link_kept(motion->mem, &extra->kept);
+    grobo_i_drop_kept(motion->mem, &extra->kept, GROBO_KEPT_LINK);
     extra->links = copy;
     extra->n_links = (uint8_t)count;
     return 0;

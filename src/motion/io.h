@@ -3,6 +3,8 @@
 #ifndef GROBO_MOTION_IO_PRIVATE_H
 #define GROBO_MOTION_IO_PRIVATE_H
 
+#include <stdarg.h>
+
 #include <grobo/motion_io.h>
 
 #if defined(__GNUC__)
@@ -22,5 +24,9 @@ typedef struct grobo_i_said {
 /* Adds a diagnostic; numbers with a point are formatted by number.h, not here. */
 void grobo_i_say(grobo_diagnostics *list, const grobo_i_said *said, const char *format, ...)
     GROBO_I_FORMAT(3, 4);
+
+/* One line of text, cut to size: whatever is formatted into it, it has no control characters. */
+void grobo_i_format_message(char *message, size_t size, const char *format, va_list args)
+    GROBO_I_FORMAT(3, 0);
 
 #endif
