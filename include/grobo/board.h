@@ -74,6 +74,13 @@ GROBO_API int grobo_board_relay(const uint8_t *packet, size_t n, uint8_t *buf, s
  */
 GROBO_API int grobo_board_parse(const uint8_t *bytes, size_t n, grobo_board_frame *frame);
 
+/**
+ * Looks at the frame that n bytes start with, without a parser; frame->packet points into bytes.
+ * @return size of the frame; 0 when more bytes are needed, GROBO_ERR_FRAME when none starts here
+ *         (then nothing is written)
+ */
+GROBO_API int grobo_board_peek(const uint8_t *bytes, size_t n, grobo_board_frame *frame);
+
 /* ---- device side ----------------------------------------------------------------------------- */
 
 /** A frame that stands still for this long is abandoned, unless told otherwise. */

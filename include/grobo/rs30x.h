@@ -375,6 +375,17 @@ GROBO_API void grobo_rs30x_parser_reset(grobo_rs30x_parser *parser);
 /** Bytes taken and neither handed out nor dropped yet. */
 GROBO_API size_t grobo_rs30x_parser_pending(const grobo_rs30x_parser *parser);
 
+/**
+ * Looks at the packet that n bytes start with, without a parser: for what shows the packets of
+ * others, those with a wrong sum too. packet->data points into bytes.
+ * @param accept GROBO_RS30X_ACCEPT_... or-ed
+ * @param[out] sum_ok whether the sum is right; true for ACK and NACK
+ * @return size of the packet; 0 when more bytes are needed, GROBO_ERR_FRAME when none starts here
+ *         (then nothing is written)
+ */
+GROBO_API int grobo_rs30x_peek(const uint8_t *bytes, size_t n, unsigned accept,
+                               grobo_rs30x_packet *packet, bool *sum_ok);
+
 /* ---- state of a servo ----------------------------------------------------------------------- */
 
 /** Which fields of a grobo_rs30x_state were in the block that was read; or-ed. */

@@ -148,13 +148,23 @@ static void unpack(const uint8_t *bytes, size_t n, grobo_board_frame *frame)
     }
 }
 
-int grobo_board_parse(const uint8_t *bytes, size_t n, grobo_board_frame *frame)
+int grobo_board_peek(const uint8_t *bytes, size_t n, grobo_board_frame *frame)
 {
     int size = n > 0 ? measure(bytes, n, 0) : 0;
+    if (size > 0) {
+        unpack(bytes, (size_t)size, frame);
+    }
+    return size;
+}
+
+int grobo_board_parse(const uint8_t *bytes, size_t n, grobo_board_frame *frame)
+{
+    grobo_board_frame found;
+    int size = grobo_board_peek(bytes, n, &found);
     if (size <= 0 || (size_t)size != n) {
         return GROBO_ERR_FRAME;
     }
-    unpack(bytes, n, frame);
+    *frame = found;
     return GROBO_OK;
 }
 

@@ -79,7 +79,8 @@ static int measure_start(const uint8_t *bytes, size_t n, unsigned accept)
     return 0;
 }
 
-int grobo_i_rs30x_measure(const uint8_t *bytes, size_t n, unsigned accept)
+/* As grobo_i_rs30x_measure, whatever the sum. */
+static int measure_form(const uint8_t *bytes, size_t n, unsigned accept)
 {
     if (bytes[0] == GROBO_RS30X_ACK || bytes[0] == GROBO_RS30X_NACK) {
         return (accept & GROBO_RS30X_ACCEPT_ACKS) != 0 ? 1 : GROBO_ERR_FRAME;
@@ -103,8 +104,20 @@ int grobo_i_rs30x_measure(const uint8_t *bytes, size_t n, unsigned accept)
             return 0;
         }
     }
-    uint8_t sum = grobo_i_xor(bytes + GROBO_I_AT_ID, size - GROBO_I_AT_ID - 1);
-    return sum == bytes[size - 1] ? (int)size : GROBO_ERR_CHECKSUM;
+    return (int)size;
+}
+
+/* Of a packet of the right form; a single byte has no sum. */
+static bool has_good_sum(const uint8_t *bytes, int size)
+{
+    return size < GROBO_RS30X_OVERHEAD_BYTES ||
+           grobo_i_xor(bytes + GROBO_I_AT_ID, (size_t)size - GROBO_I_AT_ID - 1) == bytes[size - 1];
+}
+
+int grobo_i_rs30x_measure(const uint8_t *bytes, size_t n, unsigned accept)
+{
+    int size = measure_form(bytes, n, accept);
+    return size <= 0 || has_good_sum(bytes, size) ? size : GROBO_ERR_CHECKSUM;
 }
 
 static grobo_rs30x_kind kind_of(const uint8_t *bytes)
@@ -136,6 +149,17 @@ void grobo_i_rs30x_unpack(const uint8_t *bytes, size_t n, grobo_rs30x_packet *pa
     packet->count = bytes[GROBO_I_AT_COUNT];
     packet->data = bytes + GROBO_I_AT_DATA;
     packet->data_bytes = n - GROBO_RS30X_OVERHEAD_BYTES;
+}
+
+int grobo_rs30x_peek(const uint8_t *bytes, size_t n, unsigned accept, grobo_rs30x_packet *packet,
+                     bool *sum_ok)
+{
+    int size = n > 0 ? measure_form(bytes, n, accept) : 0;
+    if (size > 0) {
+        grobo_i_rs30x_unpack(bytes, (size_t)size, packet);
+        *sum_ok = has_good_sum(bytes, size);
+    }
+    return size;
 }
 
 void grobo_rs30x_parser_init(grobo_rs30x_parser *parser, unsigned accept)
