@@ -37,7 +37,7 @@ bool grobo_sequencer_may_go(grobo_sequencer_state from, grobo_sequencer_state to
     return (goals[from] & (1u << to)) != 0;
 }
 
-/* Frames of the grid before a position. */
+/* Frames of the grid before a position, counted from the beginning of the pass. */
 static uint64_t frames_until(const grobo_play_options *options, int64_t pos_us)
 {
     int64_t speed = 1000000LL * options->speed_pct;
@@ -50,14 +50,16 @@ static void count_steps(const grobo_sequencer *seq, grobo_play_progress *progres
     size_t n = seq->item.clip.n_keys;
     if (options->mode == GROBO_PLAY_RATE) {
         progress->steps = frames_until(options, seq->item.span_us) + 1;
-        progress->step = frames_until(options, progress->t_us);
+        /* The frame of this very position is out. */
+        int64_t after_us = seq->state == GROBO_SEQUENCER_PLAYING ? 1 : 0;
+        progress->step = frames_until(options, progress->t_us + after_us);
     } else {
         progress->steps = n;
         progress->step = options->reverse ? n - seq->key.i : seq->key.i + 1;
         progress->step -= seq->waits && (seq->state == GROBO_SEQUENCER_APPROACHING ||
                                          seq->state == GROBO_SEQUENCER_PLAYING);
     }
-    if (seq->state == GROBO_SEQUENCER_FINISHED) {
+    if (seq->state == GROBO_SEQUENCER_FINISHED || progress->step > progress->steps) {
         progress->step = progress->steps;
     }
 }

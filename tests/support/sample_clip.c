@@ -110,7 +110,7 @@ static void check_frame(sample_pump *pump, const grobo_play_frame *frame)
     pump->last_due_us = frame->due_us;
 }
 
-static void check_state(sample_pump *pump)
+void sample_pump_look(sample_pump *pump)
 {
     grobo_sequencer_state state = grobo_sequencer_get_state(&pump->seq);
     assert_true(state == pump->state || grobo_sequencer_may_go(pump->state, state));
@@ -124,15 +124,15 @@ int sample_pump_take(sample_pump *pump)
     int result;
     int taken = 0;
 
-    check_state(pump); /* what a command has done */
+    sample_pump_look(pump);
     while ((result = grobo_sequencer_next(&pump->seq, pump->now_us, &frame)) > 0) {
-        check_state(pump);
+        sample_pump_look(pump);
         check_frame(pump, &frame);
         assert_true(pump->n < SAMPLE_FRAMES_MAX);
         pump->frames[pump->n++] = (sample_frame){frame, pump->now_us};
         assert_int_equal(++taken, 1);
     }
-    check_state(pump);
+    sample_pump_look(pump);
     assert_true(grobo_sequencer_deadline(&pump->seq) > pump->now_us);
     return result;
 }

@@ -46,6 +46,9 @@ typedef struct sample_pump {
 
 void sample_pump_init(sample_pump *pump, const grobo_model *model);
 
+/* Looks at what a command has done to the state. */
+void sample_pump_look(sample_pump *pump);
+
 /*
  * Takes what is due now, as often as the sequencer wants, and asserts what must always hold:
  * legal transitions, due times that rise and have come, one frame at most, a deadline ahead.

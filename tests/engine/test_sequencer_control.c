@@ -1,0 +1,558 @@
+/* SPDX-License-Identifier: MIT */
+/* Commands, states and refusals of the sequencer, in virtual time. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "sample_clip.h"
+
+#define MS 1000LL
+
+enum { ALL = 7 };
+
+static sample_pump pump;
+static sample_clip clip;
+static sample_clip other;
+
+/* LEFT goes 1 rad in 1 s, back in 2 s. */
+static const sample_key keys[] = {
+    {0, ALL, {0.0, 0, 0}}, {1000 * MS, ALL, {1.0, 0, 0}}, {2000 * MS, ALL, {0.0, 0, 0}}};
+
+static const grobo_play_options by_key = {.default_time_us = 100 * MS};
+static const grobo_play_options at_rate = {.mode = GROBO_PLAY_RATE};
+
+static void start(const grobo_play_options *options, double left_rad)
+{
+    grobo_posture from = sample_posture(left_rad, 0, 0);
+    sample_pump_init(&pump, &sample_model);
+    sample_clip_init(&clip, keys, 3);
+    sample_clip_init(&other, keys, 3);
+    assert_int_equal(grobo_sequencer_play(&pump.seq, &clip.clip, options, &from, 0), 0);
+    sample_pump_look(&pump);
+}
+
+static const grobo_play_frame *last_frame(void)
+{
+    assert_true(pump.n > 0);
+    return &pump.frames[pump.n - 1].frame;
+}
+
+static void expect_last(int64_t due_ms, int64_t time_ms, double left_rad)
+{
+    assert_int_equal(last_frame()->due_us, due_ms * MS);
+    assert_int_equal(last_frame()->posture.time_us, time_ms * MS);
+    assert_true(fabs(last_frame()->posture.angle_rad[0] - left_rad) < 1e-9);
+}
+
+/* ---- holding ---- */
+
+static void a_pause_by_keys_rests_a_little_ahead_and_goes_on(void **state)
+{
+    (void)state;
+    start(&by_key, 0.0);
+    sample_pump_run(&pump, 500 * MS); /* 400 of 1000 ms on the way */
+    assert_int_equal(grobo_sequencer_pause(&pump.seq, pump.now_us), 0);
+    sample_pump_run(&pump, 5000 * MS);
+    assert_int_equal(pump.n, 3);
+    expect_last(500, 200, 0.5); /* 100 ms further */
+    assert_int_equal(grobo_sequencer_resume(&pump.seq, pump.now_us), 0);
+    sample_pump_run(&pump, 5001 * MS);
+    expect_last(5000, 500, 1.0); /* the 500 ms that are left */
+    sample_pump_run(&pump, 9000 * MS);
+    assert_int_equal(pump.n, 5);
+    expect_last(5500, 2000, 0.0);
+    assert_int_equal(pump.state_us, 7500 * MS);
+}
+
+static void a_hold_never_passes_the_key(void **state)
+{
+    (void)state;
+    start(&by_key, 0.0);
+    sample_pump_run(&pump, 1050 * MS);
+    assert_int_equal(grobo_sequencer_pause(&pump.seq, pump.now_us), 0);
+    sample_pump_run(&pump, 2000 * MS);
+    expect_last(1050, 200, 1.0);
+    assert_int_equal(grobo_sequencer_resume(&pump.seq, pump.now_us), 0);
+    sample_pump_run(&pump, 2001 * MS);
+    expect_last(2000, 2000, 0.0);
+}
+
+static void a_pause_in_an_approach_approaches_again(void **state)
+{
+    (void)state;
+    start(&by_key, 1.2); /* 1.146 s at 60 deg/s: 1150 ms */
+    sample_pump_run(&pump, 475 * MS);
+    expect_last(0, 1150, 0.0);
+    assert_int_equal(grobo_sequencer_pause(&pump.seq, pump.now_us), 0);
+    sample_pump_run(&pump, 5000 * MS);
+    expect_last(475, 200, 0.6);
+    assert_int_equal(grobo_sequencer_resume(&pump.seq, pump.now_us), 0);
+    sample_pump_run(&pump, 5001 * MS);
+    expect_last(5000, 580, 0.0);
+    assert_int_equal(pump.state, GROBO_SEQUENCER_APPROACHING);
+}
+
+static void a_pause_before_anything_was_sent_moves_nothing(void **state)
+{
+    (void)state;
+    start(&by_key, 1.2);
+    assert_int_equal(grobo_sequencer_pause(&pump.seq, 0), 0);
+    sample_pump_run(&pump, 5000 * MS);
+    assert_int_equal(pump.n, 1);
+    expect_last(0, 200, 1.2);
+}
+
+/* Stops a play at 500 ms; returns when it was idle, after the command. */
+static int64_t stop_at_500(const grobo_play_options *options, bool at_once)
+{
+    start(options, 0.0);
+    assert_int_equal(grobo_sequencer_enqueue(&pump.seq, &other.clip, NULL), 1);
+    sample_pump_run(&pump, 500 * MS);
+    assert_int_equal(grobo_sequencer_stop(&pump.seq, at_once, pump.now_us), 0);
+    sample_pump_run(&pump, 9000 * MS);
+    assert_int_equal(pump.state, GROBO_SEQUENCER_IDLE);
+    assert_int_equal(last_frame()->phase, GROBO_SEQUENCER_STOPPING);
+    assert_int_equal(last_frame()->due_us, 500 * MS);
+    return pump.state_us - 500 * MS;
+}
+
+static void stopping_keeps_its_bound_and_empties_the_queue(void **state)
+{
+    (void)state;
+    assert_int_equal(stop_at_500(&by_key, false), 200 * MS);
+    expect_last(500, 200, 0.5);
+    assert_int_equal(stop_at_500(&by_key, true), 10 * MS);
+    expect_last(500, 10, 0.4);
+    assert_int_equal(stop_at_500(&at_rate, false), 200 * MS);
+    expect_last(500, 200, 0.6);
+    assert_int_equal(stop_at_500(&at_rate, true), 10 * MS);
+    expect_last(500, 10, 0.5);
+    const grobo_play_options gentle = {.mode = GROBO_PLAY_RATE, .stop_us = 600 * MS};
+    assert_int_equal(stop_at_500(&gentle, false), 600 * MS);
+    expect_last(500, 600, 0.8);
+}
+
+static void a_smooth_stop_can_be_cut_short(void **state)
+{
+    (void)state;
+    start(&by_key, 0.0);
+    sample_pump_run(&pump, 500 * MS);
+    assert_int_equal(grobo_sequencer_stop(&pump.seq, false, pump.now_us), 0);
+    sample_pump_run(&pump, 600 * MS);
+    assert_int_equal(grobo_sequencer_stop(&pump.seq, false, pump.now_us), 0); /* nothing new */
+    assert_int_equal(grobo_sequencer_stop(&pump.seq, true, pump.now_us), 0);
+    sample_pump_run(&pump, 9000 * MS);
+    assert_int_equal(pump.n, 4);
+    expect_last(600, 10, 0.45);
+    assert_int_equal(pump.state_us, 610 * MS);
+}
+
+static void stopping_while_paused_stays_there(void **state)
+{
+    (void)state;
+    start(&at_rate, 0.0);
+    sample_pump_run(&pump, 500 * MS);
+    assert_int_equal(grobo_sequencer_pause(&pump.seq, pump.now_us), 0);
+    sample_pump_run(&pump, 5000 * MS);
+    assert_int_equal(grobo_sequencer_stop(&pump.seq, false, pump.now_us), 0);
+    sample_pump_run(&pump, 9000 * MS);
+    expect_last(5000, 200, 0.6);
+    assert_int_equal(pump.state_us, 5200 * MS);
+}
+
+/* A stalled caller stops where the robot can be, not where the motion would be by now. */
+static void stopping_after_a_stall_does_not_leap(void **state)
+{
+    (void)state;
+    start(&at_rate, 0.0);
+    sample_pump_run(&pump, 200 * MS);
+    pump.now_us = 900 * MS;
+    assert_int_equal(grobo_sequencer_stop(&pump.seq, true, pump.now_us), 0);
+    sample_pump_run(&pump, 9000 * MS);
+    expect_last(900, 10, 0.22);
+}
+
+/* ---- seeking ---- */
+
+static void seeking_goes_there_softly(void **state)
+{
+    (void)state;
+    start(&by_key, 0.0);
+    sample_pump_run(&pump, 200 * MS); /* at 0.1 rad */
+    assert_int_equal(grobo_sequencer_seek(&pump.seq, 2000 * MS, pump.now_us), 0);
+    sample_pump_run(&pump, 201 * MS);
+    expect_last(200, 390, 0.5); /* 0.4 rad at 60 deg/s: 382 ms */
+    assert_int_equal(pump.state, GROBO_SEQUENCER_APPROACHING);
+    sample_pump_run(&pump, 9000 * MS);
+    assert_int_equal(pump.n, 4);
+    expect_last(590, 1000, 0.0);
+    assert_int_equal(pump.state_us, 1590 * MS);
+
+    start(&at_rate, 0.0);
+    sample_pump_run(&pump, 100 * MS);
+    assert_int_equal(grobo_sequencer_seek(&pump.seq, 3000 * MS, pump.now_us), 0);
+    sample_pump_run(&pump, 9000 * MS);
+    assert_true(last_frame()->posture.angle_rad[0] == 0.0);
+    assert_int_equal(pump.state, GROBO_SEQUENCER_FINISHED);
+    assert_int_equal(pump.n, 6 + 1 + 1); /* played, approach, the end */
+}
+
+static void seeking_while_paused_waits_for_resume(void **state)
+{
+    (void)state;
+    start(&by_key, 0.0);
+    sample_pump_run(&pump, 500 * MS);
+    assert_int_equal(grobo_sequencer_pause(&pump.seq, pump.now_us), 0);
+    sample_pump_run(&pump, 1000 * MS);
+    size_t n = pump.n;
+    assert_int_equal(grobo_sequencer_seek(&pump.seq, 2000 * MS, pump.now_us), 0);
+    sample_pump_run(&pump, 2000 * MS);
+    assert_int_equal(pump.n, n);
+    assert_int_equal(grobo_sequencer_resume(&pump.seq, pump.now_us), 0);
+    sample_pump_run(&pump, 9000 * MS);
+    expect_last(2000, 1000, 0.0); /* it rested at 0.5 rad already */
+    assert_int_equal(grobo_sequencer_seek(&pump.seq, 0, pump.now_us), GROBO_ERR_STATE);
+    start(&by_key, 0.0);
+    assert_int_equal(grobo_sequencer_seek(&pump.seq, -1, 0), GROBO_ERR_ARG);
+    assert_int_equal(grobo_sequencer_seek(&pump.seq, 3000 * MS + 1, 0), GROBO_ERR_ARG);
+}
+
+/* ---- queue ---- */
+
+static void queued_clips_follow_by_way_of_an_approach(void **state)
+{
+    (void)state;
+    static const sample_key elsewhere[] = {{50 * MS, ALL, {0.5, 0, 0}},
+                                           {500 * MS, ALL, {0.7, 0, 0}}};
+    grobo_play_progress p;
+    start(&by_key, 0.0);
+    sample_clip_init(&other, elsewhere, 2);
+    assert_int_equal(grobo_sequencer_enqueue(&pump.seq, &other.clip, &at_rate), 1);
+    assert_int_equal(grobo_sequencer_enqueue(&pump.seq, &clip.clip, NULL), 2);
+    sample_pump_run(&pump, 3100 * MS);
+    expect_last(3100, 480, 0.5); /* 0.5 rad at 60 deg/s: 477.5 ms */
+    grobo_sequencer_progress(&pump.seq, pump.now_us, &p);
+    assert_int_equal(p.item, 2);
+    assert_int_equal(p.queued, 1);
+    sample_pump_run(&pump, 3580 * MS);
+    expect_last(3580, 20, 0.5);
+    sample_pump_run(&pump, 4140 * MS);
+    expect_last(4140, 20, 0.7); /* 550 ms long */
+    sample_pump_run(&pump, 9000 * MS);
+    assert_int_equal(pump.state, GROBO_SEQUENCER_FINISHED);
+    assert_int_equal(pump.state_us, (4160 + 670 + 3000) * MS);
+}
+
+static void the_queue_has_a_cap(void **state)
+{
+    (void)state;
+    start(&by_key, 0.0);
+    for (int i = 1; i <= GROBO_QUEUE_MAX; i++) {
+        assert_int_equal(grobo_sequencer_enqueue(&pump.seq, &other.clip, NULL), i);
+    }
+    assert_int_equal(grobo_sequencer_enqueue(&pump.seq, &other.clip, NULL), GROBO_ERR_FULL);
+    other.clip.n_joints = 2;
+    sample_pump_run(&pump, 4000 * MS); /* the first of them has left the queue */
+    assert_int_equal(grobo_sequencer_enqueue(&pump.seq, &other.clip, NULL), GROBO_ERR_ARG);
+    other.clip.n_joints = SAMPLE_JOINTS;
+    assert_int_equal(grobo_sequencer_enqueue(&pump.seq, &other.clip, NULL), GROBO_QUEUE_MAX);
+    sample_pump_run(&pump, 600000 * MS);
+    assert_int_equal(pump.n, 3 * (GROBO_QUEUE_MAX + 2));
+}
+
+/* ---- refusals and failures ---- */
+
+static int play_with(grobo_play_options options)
+{
+    grobo_posture from = sample_posture(0, 0, 0);
+    return grobo_sequencer_play(&pump.seq, &clip.clip, &options, &from, pump.now_us);
+}
+
+static void options_out_of_range_are_refused(void **state)
+{
+    (void)state;
+    static const grobo_play_options bad[] = {{.mode = (grobo_play_mode)2},
+                                             {.speed_pct = 1001},
+                                             {.rate_hz = 1001},
+                                             {.from_us = -1},
+                                             {.from_us = 3000 * MS + 1},
+                                             {.default_time_us = -1},
+                                             {.stop_us = -1},
+                                             {.late_us = -1},
+                                             {.stop_us = INT64_MAX},
+                                             {.default_time_us = INT64_MAX}};
+    start(&by_key, 0.0);
+    grobo_sequencer_reset(&pump.seq);
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        assert_int_equal(play_with(bad[i]), GROBO_ERR_ARG);
+    }
+    clip.clip.sample = NULL;
+    assert_int_equal(play_with(at_rate), GROBO_ERR_UNSUPPORTED);
+    pump.seq.model = NULL;
+    assert_int_equal(play_with((grobo_play_options){.mirror = true}), GROBO_ERR_UNSUPPORTED);
+    assert_int_equal(grobo_sequencer_get_state(&pump.seq), GROBO_SEQUENCER_IDLE);
+    assert_int_equal(play_with((grobo_play_options){.from_us = 3000 * MS}), 0);
+}
+
+static int play_keys(const sample_key *list, size_t n)
+{
+    sample_clip_init(&clip, list, n);
+    return play_with((grobo_play_options){0});
+}
+
+static void bad_clips_never_start(void **state)
+{
+    (void)state;
+    static const sample_key no_number[] = {{0, ALL, {0, 0, 0}}, {0, ALL, {0, (double)NAN, 0}}};
+    static const sample_key backwards[] = {{0, ALL, {0, 0, 0}}, {-5 * MS, ALL, {0, 0, 0}}};
+    static const sample_key hidden[] = {{0, 1, {0, (double)NAN, 0}}};
+    start(&by_key, 0.0);
+    grobo_sequencer_reset(&pump.seq);
+    assert_int_equal(play_keys(keys, 0), GROBO_ERR_EMPTY);
+    assert_int_equal(play_keys(no_number, 2), GROBO_ERR_NAN);
+    assert_int_equal(play_keys(backwards, 2), GROBO_ERR_ARG);
+    sample_clip_init(&clip, keys, 3);
+    clip.fail_at = 2;
+    assert_int_equal(play_with(by_key), GROBO_ERR_UNREACHABLE);
+    clip.sample_error = GROBO_ERR_STALE;
+    assert_int_equal(play_with(at_rate), GROBO_ERR_STALE);
+    clip.clip.key = NULL;
+    assert_int_equal(play_with(by_key), GROBO_ERR_ARG);
+    sample_clip_init(&clip, keys, 3);
+    clip.clip.n_joints = 4;
+    assert_int_equal(play_with(by_key), GROBO_ERR_ARG); /* neither the model's nor the start's */
+    assert_int_equal(grobo_sequencer_get_state(&pump.seq), GROBO_SEQUENCER_IDLE);
+    assert_int_equal(grobo_sequencer_stats(&pump.seq)->frames, 0);
+    assert_int_equal(play_keys(hidden, 1), 0); /* what is not set means nothing */
+}
+
+static void a_clip_that_fails_in_mid_motion_says_so_once(void **state)
+{
+    (void)state;
+    grobo_play_progress p;
+    start(&by_key, 0.0);
+    clip.fail_at = 2;
+    sample_pump_run(&pump, 1000 * MS);
+    pump.now_us = 1100 * MS;
+    assert_int_equal(sample_pump_take(&pump), GROBO_ERR_UNREACHABLE);
+    assert_int_equal(sample_pump_take(&pump), 0);
+    assert_int_equal(pump.state, GROBO_SEQUENCER_FAILED);
+    grobo_sequencer_progress(&pump.seq, pump.now_us, &p);
+    assert_int_equal(p.error, GROBO_ERR_UNREACHABLE);
+    assert_int_equal(play_with(by_key), GROBO_ERR_STATE);
+    grobo_sequencer_reset(&pump.seq);
+    clip.fail_at = SIZE_MAX;
+    assert_int_equal(play_with(by_key), 0);
+
+    start(&at_rate, 0.0);
+    sample_pump_run(&pump, 100 * MS);
+    clip.sample_error = GROBO_ERR_UNREACHABLE;
+    pump.now_us = 120 * MS;
+    assert_int_equal(sample_pump_take(&pump), GROBO_ERR_UNREACHABLE);
+    assert_int_equal(pump.state, GROBO_SEQUENCER_FAILED);
+}
+
+/* ---- transitions ---- */
+
+static void transitions_are_those_of_the_table(void **state)
+{
+    (void)state;
+    /* Typed anew: from a row's state to a column's. */
+    static const char *const table[GROBO_SEQUENCER_STATES] = {
+        /*               I A P p S F X */
+        /* idle */ ".A....X",
+        /* approaching */ "I.PpSFX",
+        /* playing */ "IA.pSFX",
+        /* paused */ "IA..S.X",
+        /* stopping */ "I.....X",
+        /* finished */ "IA....X",
+        /* failed */ "I......",
+    };
+    for (int from = -1; from <= GROBO_SEQUENCER_STATES; from++) {
+        for (int to = -1; to <= GROBO_SEQUENCER_STATES; to++) {
+            bool inside = from >= 0 && from < GROBO_SEQUENCER_STATES && to >= 0 &&
+                          to < GROBO_SEQUENCER_STATES;
+            bool expected = inside && table[from][to] != '.';
+            assert_int_equal(
+                grobo_sequencer_may_go((grobo_sequencer_state)from, (grobo_sequencer_state)to),
+                expected);
+        }
+    }
+    assert_string_equal(grobo_sequencer_state_name(GROBO_SEQUENCER_IDLE), "idle");
+    assert_string_equal(grobo_sequencer_state_name(GROBO_SEQUENCER_FAILED), "failed");
+    assert_string_equal(grobo_sequencer_state_name((grobo_sequencer_state)7), "unknown");
+}
+
+enum { PLAY, ENQUEUE, PAUSE, RESUME, STOP, STOP_AT_ONCE, SEEK, SET_SPEED, FAIL, COMMANDS };
+
+static int give(int command)
+{
+    switch (command) {
+    case PLAY:
+        return play_with(by_key);
+    case ENQUEUE:
+        return grobo_sequencer_enqueue(&pump.seq, &other.clip, NULL);
+    case PAUSE:
+        return grobo_sequencer_pause(&pump.seq, pump.now_us);
+    case RESUME:
+        return grobo_sequencer_resume(&pump.seq, pump.now_us);
+    case STOP:
+    case STOP_AT_ONCE:
+        return grobo_sequencer_stop(&pump.seq, command == STOP_AT_ONCE, pump.now_us);
+    case SEEK:
+        return grobo_sequencer_seek(&pump.seq, 500 * MS, pump.now_us);
+    case SET_SPEED:
+        return grobo_sequencer_set_speed(&pump.seq, 150, pump.now_us);
+    default:
+        return grobo_sequencer_fail(&pump.seq, GROBO_ERR_IO);
+    }
+}
+
+static void bring_to(grobo_sequencer_state goal, const grobo_play_options *options)
+{
+    start(options, 1.0);
+    sample_pump_run(&pump, 100 * MS); /* approaching: 1 rad is far */
+    if (goal == GROBO_SEQUENCER_PLAYING || goal == GROBO_SEQUENCER_FINISHED) {
+        sample_pump_run(&pump, goal == GROBO_SEQUENCER_PLAYING ? 2000 * MS : 9000 * MS);
+    } else if (goal == GROBO_SEQUENCER_PAUSED) {
+        (void)give(PAUSE);
+    } else if (goal == GROBO_SEQUENCER_STOPPING) {
+        (void)give(STOP);
+    } else if (goal == GROBO_SEQUENCER_FAILED) {
+        (void)give(FAIL);
+    } else if (goal == GROBO_SEQUENCER_IDLE) {
+        grobo_sequencer_reset(&pump.seq);
+    }
+    (void)sample_pump_take(&pump);
+    assert_int_equal(pump.state, goal);
+}
+
+static void each_command_is_taken_in_its_states_only(void **state)
+{
+    (void)state;
+    /* Rows as the states; columns as the commands. */
+    static const char *const taken[GROBO_SEQUENCER_STATES] = {
+        /*               P E p R S s k v X */
+        /* idle */ "P........",
+        /* approaching */ ".Ep.SskvX",
+        /* playing */ ".Ep.SskvX",
+        /* paused */ ".E.RSskvX",
+        /* stopping */ "....Ss..X",
+        /* finished */ "P........",
+        /* failed */ ".........",
+    };
+    for (int mode = 0; mode < 2; mode++) {
+        for (int s = 0; s < GROBO_SEQUENCER_STATES; s++) {
+            for (int command = 0; command < COMMANDS; command++) {
+                bring_to((grobo_sequencer_state)s, mode == 0 ? &by_key : &at_rate);
+                int result = give(command);
+                if (taken[s][command] == '.') {
+                    assert_int_equal(result, GROBO_ERR_STATE);
+                    assert_int_equal(grobo_sequencer_get_state(&pump.seq), s);
+                } else {
+                    assert_true(result >= 0);
+                }
+                sample_pump_run(&pump, 60000 * MS); /* with all that the pump asserts */
+                grobo_sequencer_reset(&pump.seq);
+                (void)sample_pump_take(&pump);
+                assert_int_equal(pump.state, GROBO_SEQUENCER_IDLE);
+            }
+        }
+    }
+}
+
+static void arguments_of_commands_are_checked(void **state)
+{
+    (void)state;
+    start(&by_key, 0.0);
+    assert_int_equal(grobo_sequencer_set_speed(&pump.seq, 0, 0), GROBO_ERR_ARG);
+    assert_int_equal(grobo_sequencer_set_speed(&pump.seq, 1001, 0), GROBO_ERR_ARG);
+    assert_int_equal(grobo_sequencer_fail(&pump.seq, 0), GROBO_ERR_ARG);
+    assert_int_equal(grobo_sequencer_get_state(&pump.seq), GROBO_SEQUENCER_APPROACHING);
+}
+
+/* ---- anything in any order ---- */
+
+static uint32_t next_random(uint32_t *seed)
+{
+    *seed = *seed * 1664525u + 1013904223u; /* Numerical Recipes */
+    return *seed >> 8;
+}
+
+static void random_option(grobo_play_options *options, uint32_t *seed)
+{
+    memset(options, 0, sizeof *options);
+    options->mode = next_random(seed) % 2 ? GROBO_PLAY_KEY : GROBO_PLAY_RATE;
+    options->reverse = next_random(seed) % 2;
+    options->mirror = next_random(seed) % 2;
+    options->repeat = (int32_t)(next_random(seed) % 5) - 2;
+    options->speed_pct = (uint16_t)(next_random(seed) % 500);
+    options->rate_hz = (uint16_t)(next_random(seed) % 200);
+    options->from_us = next_random(seed) % 3000000;
+}
+
+/*
+ * Commands, stalls and service in any order. The pump asserts what always holds; here: what is
+ * sent lies between what the clip and the start have, as everything in between is a mixture.
+ */
+static void whatever_happens_frames_stay_in_bounds(void **state)
+{
+    (void)state;
+    uint32_t seed = 20;
+    for (int round = 0; round < 300; round++) {
+        grobo_play_options options;
+        grobo_posture from = sample_posture(0.5, 0.5, 0.5);
+        start(&by_key, 0.0);
+        grobo_sequencer_reset(&pump.seq);
+        (void)sample_pump_take(&pump);
+        random_option(&options, &seed);
+        assert_int_equal(grobo_sequencer_play(&pump.seq, &clip.clip, &options, &from, 0), 0);
+        for (int i = 0; i < 40; i++) {
+            uint32_t what = next_random(&seed) % (3 * COMMANDS);
+            (void)sample_pump_take(&pump);
+            if (what < COMMANDS && what != FAIL && what != PLAY) {
+                (void)give((int)what);
+            } else if (what % 3 == 0) {
+                pump.now_us += next_random(&seed) % 900000;
+            } else {
+                sample_pump_run(&pump, pump.now_us + next_random(&seed) % 300000);
+            }
+        }
+        for (size_t i = 0; i < pump.n; i++) {
+            for (int j = 0; j < SAMPLE_JOINTS; j++) {
+                assert_true(fabs(pump.frames[i].frame.posture.angle_rad[j]) <= 1.0 + 1e-9);
+            }
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_pause_by_keys_rests_a_little_ahead_and_goes_on),
+        cmocka_unit_test(a_hold_never_passes_the_key),
+        cmocka_unit_test(a_pause_in_an_approach_approaches_again),
+        cmocka_unit_test(a_pause_before_anything_was_sent_moves_nothing),
+        cmocka_unit_test(stopping_keeps_its_bound_and_empties_the_queue),
+        cmocka_unit_test(a_smooth_stop_can_be_cut_short),
+        cmocka_unit_test(stopping_while_paused_stays_there),
+        cmocka_unit_test(stopping_after_a_stall_does_not_leap),
+        cmocka_unit_test(seeking_goes_there_softly),
+        cmocka_unit_test(seeking_while_paused_waits_for_resume),
+        cmocka_unit_test(queued_clips_follow_by_way_of_an_approach),
+        cmocka_unit_test(the_queue_has_a_cap),
+        cmocka_unit_test(options_out_of_range_are_refused),
+        cmocka_unit_test(bad_clips_never_start),
+        cmocka_unit_test(a_clip_that_fails_in_mid_motion_says_so_once),
+        cmocka_unit_test(transitions_are_those_of_the_table),
+        cmocka_unit_test(each_command_is_taken_in_its_states_only),
+        cmocka_unit_test(arguments_of_commands_are_checked),
+        cmocka_unit_test(whatever_happens_frames_stay_in_bounds),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
