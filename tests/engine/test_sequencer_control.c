@@ -355,6 +355,37 @@ static void a_clip_that_fails_in_mid_motion_says_so_once(void **state)
     pump.now_us = 120 * MS;
     assert_int_equal(sample_pump_take(&pump), GROBO_ERR_UNREACHABLE);
     assert_int_equal(pump.state, GROBO_SEQUENCER_FAILED);
+
+    start(&at_rate, 0.0);
+    sample_pump_run(&pump, 100 * MS);
+    clip.sample_error = GROBO_ERR_UNREACHABLE;
+    assert_int_equal(grobo_sequencer_pause(&pump.seq, pump.now_us), GROBO_ERR_UNREACHABLE);
+    assert_int_equal(sample_pump_take(&pump), 0);
+    assert_int_equal(pump.state, GROBO_SEQUENCER_FAILED);
+}
+
+static void a_queued_clip_without_ground_fails_when_its_turn_comes(void **state)
+{
+    (void)state;
+    static const sample_key left[] = {{100 * MS, 1, {0.1, 0, 0}}};
+    sample_pump_init(&pump, NULL);
+    sample_clip_init(&clip, left, 1);
+    sample_clip_init(&other, keys, 3);
+    other.clip.relative = true; /* increments for joints that nobody knows anything of */
+    assert_int_equal(grobo_sequencer_play(&pump.seq, &clip.clip, NULL, NULL, 0), 0);
+    assert_int_equal(grobo_sequencer_enqueue(&pump.seq, &other.clip, NULL), 1);
+    sample_pump_run(&pump, 0);
+    pump.now_us = 100 * MS;
+    assert_int_equal(sample_pump_take(&pump), GROBO_ERR_EMPTY);
+    assert_int_equal(pump.state, GROBO_SEQUENCER_FAILED);
+}
+
+static void a_posture_out_of_all_reason_takes_the_longest_time(void **state)
+{
+    (void)state;
+    start(&by_key, 1e9);
+    sample_pump_run(&pump, 0);
+    expect_last(0, 163830, 0.0);
 }
 
 /* ---- transitions ---- */
@@ -549,6 +580,8 @@ int main(void)
         cmocka_unit_test(options_out_of_range_are_refused),
         cmocka_unit_test(bad_clips_never_start),
         cmocka_unit_test(a_clip_that_fails_in_mid_motion_says_so_once),
+        cmocka_unit_test(a_queued_clip_without_ground_fails_when_its_turn_comes),
+        cmocka_unit_test(a_posture_out_of_all_reason_takes_the_longest_time),
         cmocka_unit_test(transitions_are_those_of_the_table),
         cmocka_unit_test(each_command_is_taken_in_its_states_only),
         cmocka_unit_test(arguments_of_commands_are_checked),
