@@ -118,46 +118,45 @@ typedef struct grobo_play_stats {
 /** A clip with its options, as it waits. */
 typedef struct grobo_play_item {
     /* private */
-    grobo_clip clip;
     grobo_play_options options; /* defaults filled in */
     int64_t span_us;            /* length of a pass */
     int64_t first_key_us;       /* KEY: time of key 0 in the clip */
+    grobo_clip clip;
 } grobo_play_item;
 
 /** Where among its keys a clip is. */
 typedef struct grobo_play_key {
     /* private */
     size_t i;        /* key */
-    int64_t at_us;   /* its time in the clip, times of keys without one added */
     size_t defaults; /* keys 0..i without a time of their own */
-    bool is_default; /* key i is one of them */
-    bool is_empty;   /* key i sets no joint */
+    int64_t at_us;   /* its time in the clip, times of keys without one added */
+    bool is_empty;   /* it sets no joint */
 } grobo_play_key;
 
 /** A sequencer. Caller storage; read it through the functions below. */
 typedef struct grobo_sequencer {
-    /* private */
-    const grobo_model *model;
+    /* private; small members first, where a Cortex-M0 reaches them in one instruction */
     grobo_sequencer_state state;
     int error;
-    grobo_play_stats stats;
-    uint32_t n_items;
-    grobo_play_item item;                   /* being played */
-    grobo_play_item queue[GROBO_QUEUE_MAX]; /* ring */
-    unsigned queue_head, queue_n;
-    int32_t pass;
-    grobo_play_key key;               /* KEY: what `to` stands for, or where it lies behind */
-    grobo_posture base;               /* where a relative clip starts */
-    grobo_posture from;               /* where the move began: all joints that are known */
-    grobo_posture to;                 /* where it ends: joints the clip has set so far */
-    int64_t from_us, to_us;           /* real times of both */
+    bool waits;  /* a frame of the present move is still to be handed out */
+    bool silent; /* KEY: the present move sets no joint, there is no frame */
+    uint32_t skipped;
+    int64_t from_us, to_us;           /* real times at which the present move begins and ends */
+    int64_t due_us;                   /* of the frame that waits */
     int64_t anchor_us, anchor_pos_us; /* a real time and the position that belongs to it */
     int64_t grid_us;                  /* RATE: real time of frame 0 */
     int64_t index;                    /* RATE: next frame on the grid */
-    int64_t due_us;                   /* of the frame that waits */
-    bool waits;                       /* a frame of the present move is still to be handed out */
-    bool silent;                      /* KEY: the present move sets no joint, there is no frame */
-    uint32_t skipped;
+    int32_t pass;
+    uint32_t n_items;
+    unsigned queue_head, queue_n;
+    const grobo_model *model;
+    grobo_play_item item; /* being played */
+    grobo_play_key key;   /* KEY: what `to` stands for, or where it lies behind */
+    grobo_play_stats stats;
+    grobo_posture from;                     /* where the move began: all joints that are known */
+    grobo_posture to;                       /* where it ends: joints the clip has set so far */
+    grobo_posture base;                     /* where a relative clip starts */
+    grobo_play_item queue[GROBO_QUEUE_MAX]; /* ring */
 } grobo_sequencer;
 
 /**

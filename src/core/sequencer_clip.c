@@ -4,19 +4,29 @@
 #include <math.h>
 #include <string.h>
 
+#define DEG_PER_RAD (180.0 / 3.14159265358979323846)
+
 /* Half of the wire's 0.1 degree: nearer than this is there. */
-#define THERE_DEG 0.05
+#define THERE_RAD (0.05 / DEG_PER_RAD)
+#define UNKNOWN_RAD (GROBO_PLAY_UNKNOWN_DEG / DEG_PER_RAD)
+
+/* Longest time of a frame, in units. */
+#define TIME_MAX_UNITS (GROBO_PLAY_TIME_MAX_US / GROBO_PLAY_TIME_UNIT_US)
+
+static bool has(const grobo_posture *posture, int joint)
+{
+    return (posture->set >> joint & 1u) != 0;
+}
 
 /* ---- one posture of a clip ---- */
 
-static int check_posture(grobo_posture *posture, const grobo_clip *clip)
+static int check_posture(const grobo_posture *posture, const grobo_clip *clip)
 {
     if (posture->n_joints != clip->n_joints || posture->time_us < 0) {
         return GROBO_ERR_ARG;
     }
-    posture->set &= GROBO_JOINTS_ALL(clip->n_joints);
     for (int j = 0; j < clip->n_joints; j++) {
-        if ((posture->set & GROBO_JOINT_BIT(j)) != 0 && !isfinite(posture->angle_rad[j])) {
+        if (has(posture, j) && !isfinite(posture->angle_rad[j])) {
             return GROBO_ERR_NAN;
         }
     }
@@ -27,6 +37,7 @@ static int finish_read(const grobo_play_item *item, const grobo_model *model,
                        grobo_posture *posture)
 {
     int result = check_posture(posture, &item->clip);
+    posture->set &= GROBO_JOINTS_ALL(item->clip.n_joints);
     if (result == 0 && item->options.mirror) {
         result = grobo_posture_mirror(posture, model);
     }
@@ -53,9 +64,8 @@ static void count_key(grobo_play_key *key, const grobo_play_item *item, size_t i
                       const grobo_posture *posture, int64_t at_us)
 {
     key->i = i;
-    key->is_default = posture->time_us == 0;
     key->is_empty = posture->set == 0;
-    key->defaults += key->is_default;
+    key->defaults += posture->time_us == 0;
     key->at_us = at_us + (int64_t)key->defaults * item->options.default_time_us;
 }
 
@@ -84,30 +94,45 @@ static int scan_keys(grobo_play_item *item, const grobo_model *model, grobo_join
 
 /* ---- items ---- */
 
-static int64_t or_default(int64_t value, int64_t otherwise)
+static void fill_time(int64_t *time_us, int64_t default_us)
 {
-    return value != 0 ? value : otherwise;
+    if (*time_us == 0) {
+        *time_us = default_us;
+    }
+}
+
+static void fill_number(uint16_t *number, uint16_t otherwise)
+{
+    if (*number == 0) {
+        *number = otherwise;
+    }
 }
 
 static void fill_options(grobo_play_options *o)
 {
-    int64_t passes = o->repeat < 0 ? -(int64_t)o->repeat : o->repeat;
-    o->reverse = o->reverse || o->repeat < 0;
-    o->repeat = (int32_t)(passes > INT32_MAX ? INT32_MAX : or_default(passes, 1));
-    o->speed_pct = (uint16_t)or_default(o->speed_pct, 100);
-    o->rate_hz = (uint16_t)or_default(o->rate_hz, GROBO_PLAY_RATE_HZ);
-    o->approach_deg_s = (uint16_t)or_default(o->approach_deg_s, GROBO_PLAY_APPROACH_DEG_S);
-    o->default_time_us = or_default(o->default_time_us, GROBO_POSTURE_TIME_US);
-    o->stop_us = or_default(o->stop_us, GROBO_PLAY_STOP_US);
-    o->late_us = or_default(o->late_us, GROBO_PLAY_LATE_US);
+    if (o->repeat < 0) {
+        o->reverse = true;
+        o->repeat = o->repeat < -INT32_MAX ? INT32_MAX : -o->repeat;
+    }
+    o->repeat += o->repeat == 0;
+    fill_number(&o->speed_pct, 100);
+    fill_number(&o->rate_hz, GROBO_PLAY_RATE_HZ);
+    fill_number(&o->approach_deg_s, GROBO_PLAY_APPROACH_DEG_S);
+    fill_time(&o->default_time_us, GROBO_POSTURE_TIME_US);
+    fill_time(&o->stop_us, GROBO_PLAY_STOP_US);
+    fill_time(&o->late_us, GROBO_PLAY_LATE_US);
+}
+
+static bool is_time_good(int64_t time_us)
+{
+    return time_us > 0 && time_us <= GROBO_PLAY_TIME_MAX_US;
 }
 
 static bool are_options_good(const grobo_play_options *o)
 {
     return (o->mode == GROBO_PLAY_KEY || o->mode == GROBO_PLAY_RATE) && o->from_us >= 0 &&
            o->speed_pct <= GROBO_PLAY_SPEED_MAX_PCT && o->rate_hz <= GROBO_PLAY_RATE_MAX_HZ &&
-           o->default_time_us > 0 && o->default_time_us <= GROBO_PLAY_TIME_MAX_US &&
-           o->stop_us > 0 && o->stop_us <= GROBO_PLAY_TIME_MAX_US && o->late_us > 0;
+           is_time_good(o->default_time_us) && is_time_good(o->stop_us) && is_time_good(o->late_us);
 }
 
 static int check_clip(const grobo_play_item *item, const grobo_model *model)
@@ -162,12 +187,17 @@ int grobo_i_item_make(grobo_play_item *item, const grobo_model *model, const gro
     if (result < 0) {
         return result;
     }
-    if (made.options.from_us > made.span_us ||
-        (start != NULL && start->n_joints != clip->n_joints)) {
+    if (made.options.from_us > made.span_us) {
         return GROBO_ERR_ARG;
     }
-    if (clip->relative && start != NULL && (set & ~start->set) != 0) {
-        return GROBO_ERR_EMPTY;
+    if (start != NULL) {
+        result = check_posture(start, clip);
+        if (result == 0 && clip->relative && (set & ~start->set) != 0) {
+            result = GROBO_ERR_EMPTY;
+        }
+        if (result < 0) {
+            return result;
+        }
     }
     *item = made;
     return 0;
@@ -187,12 +217,8 @@ void grobo_i_item_load(grobo_sequencer *seq, const grobo_play_item *item)
 static int put_over(grobo_sequencer *seq, grobo_posture *posture)
 {
     for (int j = 0; seq->item.clip.relative && j < posture->n_joints; j++) {
-        grobo_joint_mask bit = GROBO_JOINT_BIT(j);
-        const grobo_posture *ground = (seq->to.set & bit) != 0 ? &seq->to : &seq->base;
-        if ((posture->set & bit) == 0) {
-            continue;
-        }
-        if ((ground->set & bit) == 0) {
+        const grobo_posture *ground = has(&seq->to, j) ? &seq->to : &seq->base;
+        if (has(posture, j) && !has(ground, j)) {
             return GROBO_ERR_EMPTY;
         }
         posture->angle_rad[j] += ground->angle_rad[j];
@@ -294,16 +320,14 @@ int64_t grobo_i_key_first_time(const grobo_sequencer *seq)
 void grobo_i_between(grobo_posture *posture, const grobo_posture *a, const grobo_posture *b,
                      double part)
 {
-    (void)grobo_posture_init(posture, b->n_joints);
-    for (int j = 0; j < b->n_joints; j++) {
-        grobo_joint_mask bit = GROBO_JOINT_BIT(j);
-        if ((b->set & bit) != 0 && part >= 1.0) {
-            posture->angle_rad[j] = b->angle_rad[j];
-            posture->set |= bit;
-        } else if ((b->set & a->set & bit) != 0) {
-            posture->angle_rad[j] = a->angle_rad[j] + (b->angle_rad[j] - a->angle_rad[j]) * part;
-            posture->set |= bit;
-        }
+    bool there = part >= 1.0;
+    *posture = *b;
+    for (int j = 0; j < b->n_joints && !there; j++) {
+        double start_rad = a->angle_rad[j];
+        posture->angle_rad[j] = start_rad + (b->angle_rad[j] - start_rad) * part;
+    }
+    if (!there) {
+        posture->set &= a->set;
     }
 }
 
@@ -311,23 +335,21 @@ int64_t grobo_i_approach_time(const grobo_sequencer *seq)
 {
     double far_rad = 0.0;
     for (int j = 0; j < seq->to.n_joints; j++) {
-        grobo_joint_mask bit = GROBO_JOINT_BIT(j);
-        double way_rad = 0.0;
-        if ((seq->to.set & seq->from.set & bit) != 0) {
+        double way_rad = UNKNOWN_RAD;
+        if (!has(&seq->to, j)) {
+            continue;
+        }
+        if (has(&seq->from, j)) {
             way_rad = fabs(seq->to.angle_rad[j] - seq->from.angle_rad[j]);
-        } else if ((seq->to.set & bit) != 0) {
-            way_rad = grobo_rad_from_deg(GROBO_PLAY_UNKNOWN_DEG);
         }
         far_rad = way_rad > far_rad ? way_rad : far_rad;
     }
-    double far_deg = grobo_deg_from_rad(far_rad);
-    if (far_deg < THERE_DEG) {
+    if (far_rad < THERE_RAD) {
         return 0;
     }
-    double time_us = far_deg * 1e6 / seq->item.options.approach_deg_s;
+    double units = ceil(far_rad * (DEG_PER_RAD * 1e6 / GROBO_PLAY_TIME_UNIT_US) /
+                        seq->item.options.approach_deg_s);
     /* A posture out of all reason takes the longest time there is; limits are checked elsewhere. */
-    if (time_us > (double)GROBO_PLAY_TIME_MAX_US) {
-        return GROBO_PLAY_TIME_MAX_US;
-    }
-    return (int64_t)ceil(time_us / GROBO_PLAY_TIME_UNIT_US) * GROBO_PLAY_TIME_UNIT_US;
+    units = units < (double)TIME_MAX_UNITS ? units : (double)TIME_MAX_UNITS;
+    return (int64_t)(int32_t)units * GROBO_PLAY_TIME_UNIT_US;
 }
