@@ -1,0 +1,601 @@
+/* SPDX-License-Identifier: MIT */
+/* A robot on a loop: over the simulator in process, over a pty, over TCP; lost and back. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+#include <event2/event.h>
+
+#include <grobo/session.h>
+#include <grobo/sim_server.h>
+
+#include "line.h"
+
+static struct event_base *base;
+static grobo_session *session;
+
+/* What the callbacks saw. */
+static struct {
+    int ups, losts, fails;
+    int error;     /* of the last line event */
+    int64_t at_us; /* when it came */
+    int robot;     /* engine's events */
+    int job;       /* number of the last job that ended */
+    int result;    /* and its result */
+    size_t tapped[2];
+    bool free_on_event, free_on_robot, close_on_event, open_on_event;
+} seen;
+
+static void on_event(grobo_session *from, grobo_session_event event, int error, void *ctx)
+{
+    assert_ptr_equal(ctx, &seen);
+    seen.error = error;
+    seen.at_us = grobo_now_us();
+    switch (event) {
+    case GROBO_SESSION_EVENT_UP:
+        seen.ups++;
+        break;
+    case GROBO_SESSION_EVENT_LOST:
+        seen.losts++;
+        break;
+    case GROBO_SESSION_EVENT_FAILED:
+        seen.fails++;
+        break;
+    }
+    if (seen.free_on_event) {
+        grobo_session_free(from);
+        session = NULL;
+    } else if (seen.close_on_event) {
+        grobo_session_close(from);
+    } else if (seen.open_on_event) {
+        seen.open_on_event = false;
+        assert_int_equal(grobo_session_open(from), GROBO_OK);
+    }
+    event_base_loopbreak(base);
+}
+
+static void on_robot(void *ctx, const grobo_event *event)
+{
+    assert_ptr_equal(ctx, &seen);
+    seen.robot++;
+    if (event->kind == GROBO_EVENT_JOB) {
+        seen.job = event->u.job.number;
+        seen.result = event->u.job.result;
+        event_base_loopbreak(base);
+    }
+    if (seen.free_on_robot) {
+        grobo_session_free(session);
+        session = NULL;
+        seen.free_on_robot = false;
+        event_base_loopbreak(base);
+    }
+}
+
+static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes, size_t size,
+                   void *ctx)
+{
+    assert_ptr_equal(ctx, &seen);
+    assert_true(now_us > 0);
+    assert_non_null(bytes);
+    seen.tapped[direction] += size;
+}
+
+/* ---- running ------------------------------------------------------------------------------ */
+
+static void on_end_of_wait(grobo_timer *timer, int64_t late_us, void *ctx)
+{
+    (void)timer;
+    (void)late_us;
+    *(bool *)ctx = true;
+    event_base_loopbreak(base);
+}
+
+/* Runs the loop until a callback ends it; true when span_us passed instead. */
+static bool run_for(int64_t span_us)
+{
+    grobo_timer *timer;
+    bool passed = false;
+
+    assert_int_equal(grobo_timer_new(base, on_end_of_wait, &passed, NULL, &timer), GROBO_OK);
+    assert_int_equal(grobo_timer_set(timer, grobo_now_us() + span_us), GROBO_OK);
+    event_base_dispatch(base);
+    grobo_timer_free(timer);
+    return passed;
+}
+
+static void run_until(const int *count, int wanted)
+{
+    int64_t end_us = grobo_now_us() + 5000000;
+
+    while (*count < wanted) {
+        assert_true(grobo_now_us() < end_us);
+        (void)run_for(end_us - grobo_now_us());
+    }
+}
+
+/* Waits for a job that a request returned; its result. */
+static int await(int job)
+{
+    assert_true(job > 0);
+    run_until(&seen.job, job);
+    assert_int_equal(seen.job, job);
+    return seen.result;
+}
+
+/* ---- set-up ------------------------------------------------------------------------------- */
+
+static int set_up(void **state)
+{
+    (void)state;
+    memset(&seen, 0, sizeof seen);
+    session = NULL;
+    base = grobo_loop_new();
+    assert_non_null(base);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    grobo_session_free(session);
+    event_base_free(base);
+    return 0;
+}
+
+static void make(grobo_session_config config)
+{
+    config.base = base;
+    config.on_event = on_event;
+    config.on_robot = on_robot;
+    config.on_tap = on_tap;
+    config.ctx = &seen;
+    assert_int_equal(grobo_session_new(&config, &session), GROBO_OK);
+}
+
+static grobo_sim_server *serve(grobo_sim_server_config config)
+{
+    grobo_sim_server *server;
+    grobo_os_cause cause;
+
+    config.base = base;
+    assert_int_equal(grobo_sim_server_new(&config, &server, &cause), GROBO_OK);
+    return server;
+}
+
+static void come_up(void)
+{
+    int before = seen.ups;
+
+    assert_int_equal(grobo_session_open(session), GROBO_OK);
+    assert_int_equal(seen.ups, before);
+    run_until(&seen.ups, before + 1);
+    assert_int_equal(grobo_session_get_state(session), GROBO_SESSION_UP);
+}
+
+/* Senses all joints, moves one, and finds it where it was sent. */
+static void assert_it_works(void)
+{
+    const grobo_model *model = grobo_robot_driver(grobo_session_robot(session))->model;
+    grobo_joint_mask all = GROBO_JOINTS_ALL(model->n_joints);
+    grobo_posture target;
+    grobo_posture now;
+    uint64_t tx_bytes;
+    uint64_t rx_bytes;
+    double angle_deg;
+
+    assert_int_equal(await(grobo_session_sense(session, all, GROBO_SENSE_FULL)), GROBO_OK);
+    assert_int_equal(
+        grobo_robot_posture(grobo_session_robot(session), grobo_now_us(), GROBO_NEVER_US, &now),
+        model->n_joints);
+    assert_int_equal(grobo_posture_init(&target, model->n_joints), GROBO_OK);
+    assert_int_equal(grobo_posture_set_deg(&target, 13, 5.0), GROBO_OK);
+    target.time_us = 100000;
+    assert_int_equal(await(grobo_session_move(session, &target)), GROBO_OK);
+    assert_int_equal(await(grobo_session_sense(session, all, GROBO_SENSE_FULL)), GROBO_OK);
+    grobo_robot_posture(grobo_session_robot(session), grobo_now_us(), GROBO_NEVER_US, &now);
+    assert_int_equal(grobo_posture_get_deg(&now, 13, &angle_deg), GROBO_OK);
+    assert_true(angle_deg > 4.89 && angle_deg < 5.11);
+    grobo_session_bytes(session, &tx_bytes, &rx_bytes);
+    assert_int_equal(tx_bytes, seen.tapped[GROBO_DIR_TX]);
+    assert_int_equal(rx_bytes, seen.tapped[GROBO_DIR_RX]);
+    assert_true(rx_bytes >= 2 * 20 * 26);
+}
+
+/* ---- lines that work ---------------------------------------------------------------------- */
+
+static void a_simulator_in_the_process(void **state)
+{
+    (void)state;
+    make((grobo_session_config){.device = "sim"});
+    assert_null(grobo_session_sim(session));
+    come_up();
+    assert_non_null(grobo_session_sim(session));
+    assert_string_equal(grobo_session_device(session), "sim");
+    assert_int_equal(grobo_session_open(session), GROBO_ERR_STATE);
+    assert_it_works();
+}
+
+static void a_simulator_keeps_its_state_while_closed(void **state)
+{
+    grobo_sim_view view;
+
+    (void)state;
+    make((grobo_session_config){.device = "sim"});
+    come_up();
+    assert_int_equal(await(grobo_session_torque(session, GROBO_JOINT_BIT(3), GROBO_TORQUE_ON)),
+                     GROBO_OK);
+    grobo_session_close(session);
+    assert_int_equal(grobo_session_get_state(session), GROBO_SESSION_CLOSED);
+    come_up();
+    assert_int_equal(grobo_sim_look(grobo_session_sim(session), 3, &view), 0);
+    assert_int_equal(view.torque, GROBO_TORQUE_ON);
+}
+
+static void a_pseudo_terminal(void **state)
+{
+    grobo_sim_server *server = serve((grobo_sim_server_config){0});
+
+    (void)state;
+    make((grobo_session_config){.device = grobo_sim_server_device(server)});
+    come_up();
+    assert_string_equal(grobo_session_device(session), grobo_sim_server_device(server));
+    assert_it_works();
+    grobo_sim_server_free(server);
+}
+
+static void a_connection(void **state)
+{
+    grobo_sim_server *server =
+        serve((grobo_sim_server_config){.no_pty = true, .tcp = "tcp:127.0.0.1:0"});
+
+    (void)state;
+    make((grobo_session_config){.device = grobo_sim_server_device(server)});
+    come_up();
+    assert_it_works();
+    grobo_sim_server_free(server);
+}
+
+static void auto_takes_the_first_port_that_answers(void **state)
+{
+    grobo_sim_server *server = serve((grobo_sim_server_config){0});
+    test_line silent;
+    const char *scan[4] = {"/dev/no-such-port", NULL, NULL, NULL};
+
+    (void)state;
+    test_line_open(&silent);
+    scan[1] = silent.device;
+    scan[2] = grobo_sim_server_device(server);
+    make((grobo_session_config){.device = "auto", .scan = scan});
+    come_up();
+    assert_string_equal(grobo_session_device(session), grobo_sim_server_device(server));
+    assert_it_works();
+    grobo_session_close(session);
+    come_up();
+    test_line_close(&silent);
+    grobo_sim_server_free(server);
+}
+
+/* ---- lines that do not -------------------------------------------------------------------- */
+
+static void what_cannot_be_opened_is_told_at_once(void **state)
+{
+    const char *none[1] = {NULL};
+
+    (void)state;
+    make((grobo_session_config){.device = "/dev/no-such-port"});
+    assert_int_equal(grobo_session_open(session), GROBO_ERR_NOENT);
+    assert_true(strlen(grobo_session_cause(session)->text) > 0);
+    assert_int_equal(grobo_session_get_state(session), GROBO_SESSION_CLOSED);
+    grobo_session_free(session);
+    make((grobo_session_config){.device = "auto", .scan = none});
+    assert_int_equal(grobo_session_open(session), GROBO_ERR_NOTFOUND);
+    assert_int_equal(grobo_session_get_state(session), GROBO_SESSION_CLOSED);
+    assert_true(run_for(10000));
+    assert_int_equal(seen.fails, 0);
+}
+
+static void nobody_answers(void **state)
+{
+    test_line silent;
+    int64_t start_us = grobo_now_us();
+    const char *scan[2] = {silent.device, NULL};
+
+    (void)state;
+    test_line_open(&silent);
+    make((grobo_session_config){.device = silent.device, .reconnect = true});
+    assert_int_equal(grobo_session_open(session), GROBO_OK);
+    run_until(&seen.fails, 1);
+    assert_int_equal(seen.error, GROBO_ERR_TIMEOUT);
+    assert_string_equal(grobo_session_cause(session)->text, "no answer to the check");
+    assert_true(grobo_now_us() - start_us < 2000000);
+    assert_int_equal(grobo_session_get_state(session), GROBO_SESSION_CLOSED);
+    assert_int_equal(seen.robot, 0);
+    grobo_session_free(session);
+
+    make((grobo_session_config){.device = "auto", .scan = scan});
+    assert_int_equal(grobo_session_open(session), GROBO_OK);
+    run_until(&seen.fails, 2);
+    assert_int_equal(seen.error, GROBO_ERR_NOTFOUND);
+    assert_string_equal(grobo_session_cause(session)->text, "no robot on any of 1 serial ports");
+    assert_int_equal(seen.ups + seen.losts, 0);
+    test_line_close(&silent);
+}
+
+static void only_the_check_is_sent_before_somebody_answers(void **state)
+{
+    test_line silent;
+    uint8_t bytes[256];
+    size_t size;
+
+    (void)state;
+    test_line_open(&silent);
+    make((grobo_session_config){.device = silent.device});
+    assert_int_equal(grobo_session_open(session), GROBO_OK);
+    run_until(&seen.fails, 1);
+    size = test_line_read_some(&silent, bytes, sizeof bytes);
+    assert_true(size >= 2 && size % 2 == 0);
+    for (size_t i = 0; i < size; i += 2) {
+        assert_int_equal(bytes[i], 0x41);
+        assert_int_equal(bytes[i + 1], 0x00);
+    }
+    test_line_close(&silent);
+}
+
+static void nobody_needs_to_answer_if_so_configured(void **state)
+{
+    test_line silent;
+
+    (void)state;
+    test_line_open(&silent);
+    make((grobo_session_config){.device = silent.device, .skip_check = true});
+    come_up();
+    test_line_close(&silent);
+    run_until(&seen.losts, 1);
+    assert_int_equal(seen.error, GROBO_ERR_UNPLUGGED);
+}
+
+static void requests_need_a_robot(void **state)
+{
+    grobo_trip_info trip;
+
+    (void)state;
+    make((grobo_session_config){.device = "sim"});
+    assert_int_equal(grobo_session_check(session), GROBO_ERR_CLOSED);
+    assert_int_equal(grobo_session_sense(session, 1, GROBO_SENSE_FULL), GROBO_ERR_CLOSED);
+    assert_int_equal(grobo_session_exit(session, GROBO_EXIT_HOLD), GROBO_ERR_CLOSED);
+    /* A stop is latched all the same. */
+    assert_int_equal(grobo_session_estop(session), GROBO_ERR_CLOSED);
+    grobo_robot_tripped(grobo_session_robot(session), &trip);
+    assert_int_equal(trip.trip, GROBO_TRIP_ESTOP);
+    come_up();
+    assert_int_equal(grobo_session_torque(session, 1, GROBO_TORQUE_ON), GROBO_ERR_LATCHED);
+    assert_int_equal(grobo_session_reset(session), GROBO_OK);
+    assert_int_equal(await(grobo_session_torque(session, 1, GROBO_TORQUE_ON)), GROBO_OK);
+}
+
+/* ---- lost and back ------------------------------------------------------------------------ */
+
+static int64_t cpu_us(void)
+{
+    struct rusage usage;
+
+    assert_int_equal(getrusage(RUSAGE_SELF, &usage), 0);
+    return (int64_t)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) * 1000000 +
+           usage.ru_utime.tv_usec + usage.ru_stime.tv_usec;
+}
+
+static void a_lost_port_is_found_again(void **state)
+{
+    char folder[] = "/tmp/grobo-session-XXXXXX";
+    char link[64];
+    grobo_sim_server *server;
+    int64_t cpu_before_us;
+    int64_t plugged_us;
+    int sense;
+
+    (void)state;
+    assert_non_null(mkdtemp(folder));
+    snprintf(link, sizeof link, "%s/gr001", folder);
+    server = serve((grobo_sim_server_config){.link = link});
+    make((grobo_session_config){.device = link, .reconnect = true});
+    come_up();
+    assert_int_equal(await(grobo_session_torque(session, 1, GROBO_TORQUE_ON)), GROBO_OK);
+
+    /* A job that runs ends with the line. */
+    sense = grobo_session_sense(session, 0xfffff, GROBO_SENSE_FULL);
+    assert_int_equal(grobo_sim_server_plug(server, false), GROBO_OK);
+    assert_int_equal(await(sense), GROBO_ERR_UNPLUGGED);
+    run_until(&seen.losts, 1);
+    assert_int_equal(seen.error, GROBO_ERR_UNPLUGGED);
+    assert_int_equal(grobo_session_get_state(session), GROBO_SESSION_WAITING);
+    assert_int_equal(grobo_session_check(session), GROBO_ERR_CLOSED);
+
+    cpu_before_us = cpu_us();
+    assert_true(run_for(300000));
+    assert_true(cpu_us() - cpu_before_us < 50000);
+    assert_int_equal(seen.losts, 1);
+
+    plugged_us = grobo_now_us();
+    assert_int_equal(grobo_sim_server_plug(server, true), GROBO_OK);
+    run_until(&seen.ups, 2);
+    assert_true(seen.at_us - plugged_us < 250000);
+    assert_int_equal(seen.fails, 0);
+    assert_it_works();
+    grobo_sim_server_free(server);
+    assert_int_equal(rmdir(folder), 0);
+}
+
+static void a_simulator_that_hung_up_is_plugged_in_again(void **state)
+{
+    (void)state;
+    make((grobo_session_config){.device = "sim", .reconnect = true});
+    come_up();
+    grobo_sim_plug(grobo_session_sim(session), false, grobo_now_us());
+    /* The engine finds out when it next looks. */
+    assert_true(grobo_session_sense(session, 1, GROBO_SENSE_FULL) > 0);
+    run_until(&seen.losts, 1);
+    run_until(&seen.ups, 2);
+    assert_it_works();
+}
+
+static void without_reconnect_a_lost_port_is_closed(void **state)
+{
+    grobo_sim_server *server = serve((grobo_sim_server_config){0});
+
+    (void)state;
+    make((grobo_session_config){.device = grobo_sim_server_device(server)});
+    come_up();
+    assert_int_equal(grobo_sim_server_plug(server, false), GROBO_OK);
+    run_until(&seen.losts, 1);
+    assert_int_equal(grobo_session_get_state(session), GROBO_SESSION_CLOSED);
+    assert_true(run_for(150000));
+    assert_int_equal(seen.ups, 1);
+    grobo_sim_server_free(server);
+}
+
+/* ---- inside callbacks --------------------------------------------------------------------- */
+
+static void it_may_be_freed_in_its_event(void **state)
+{
+    (void)state;
+    make((grobo_session_config){.device = "sim"});
+    seen.free_on_event = true;
+    assert_int_equal(grobo_session_open(session), GROBO_OK);
+    run_until(&seen.ups, 1);
+    assert_null(session);
+    assert_true(run_for(10000));
+}
+
+static void it_may_be_freed_in_an_event_of_the_engine(void **state)
+{
+    (void)state;
+    make((grobo_session_config){.device = "sim"});
+    come_up();
+    seen.free_on_robot = true;
+    assert_true(grobo_session_sense(session, 3, GROBO_SENSE_FULL) > 0);
+    assert_false(run_for(5000000));
+    assert_null(session);
+    assert_int_equal(seen.robot, 1);
+}
+
+static void it_may_be_closed_in_its_event(void **state)
+{
+    (void)state;
+    make((grobo_session_config){.device = "sim"});
+    seen.close_on_event = true;
+    assert_int_equal(grobo_session_open(session), GROBO_OK);
+    run_until(&seen.ups, 1);
+    assert_int_equal(grobo_session_get_state(session), GROBO_SESSION_CLOSED);
+    assert_true(run_for(10000));
+    seen.close_on_event = false;
+    come_up();
+}
+
+static void it_may_be_opened_again_when_lost(void **state)
+{
+    (void)state;
+    make((grobo_session_config){.device = "sim"});
+    come_up();
+    seen.open_on_event = true;
+    grobo_sim_plug(grobo_session_sim(session), false, grobo_now_us());
+    assert_true(grobo_session_check(session) > 0);
+    run_until(&seen.losts, 1);
+    run_until(&seen.ups, 2);
+    assert_it_works();
+}
+
+/* ---- refusals ----------------------------------------------------------------------------- */
+
+/* An allocator whose n-th allocation fails. */
+static int allocations_left;
+static int blocks;
+
+static void *count_down(void *ctx, void *ptr, size_t old_bytes, size_t new_bytes)
+{
+    const grobo_mem *mem = grobo_mem_default();
+    void *made = NULL;
+
+    (void)ctx;
+    if (new_bytes == 0) {
+        blocks -= ptr != NULL ? 1 : 0;
+        return mem->resize(mem->ctx, ptr, old_bytes, 0);
+    }
+    if (allocations_left > 0) {
+        allocations_left--;
+        made = mem->resize(mem->ctx, ptr, old_bytes, new_bytes);
+        blocks += made != NULL && ptr == NULL ? 1 : 0;
+    }
+    return made;
+}
+
+static void bad_configurations_and_lack_of_memory(void **state)
+{
+    static const grobo_mem mem = {count_down, NULL};
+    static const grobo_robot_config bad_robot = {.speed_limit_pct = 200};
+    grobo_session_config config = {.base = base, .device = "sim", .mem = &mem};
+    grobo_session *made = NULL;
+    int failures = -1;
+    int r = GROBO_ERR_NOMEM;
+
+    (void)state;
+    while (r == GROBO_ERR_NOMEM) {
+        allocations_left = ++failures;
+        r = grobo_session_new(&config, &made);
+        if (r >= 0) {
+            r = grobo_session_open(made);
+            grobo_session_free(made);
+            made = NULL;
+        }
+        assert_null(made);
+        assert_int_equal(blocks, 0);
+    }
+    assert_int_equal(r, GROBO_OK);
+    assert_int_equal(failures, 5);
+
+    allocations_left = 100;
+    config.robot = &bad_robot;
+    assert_int_equal(grobo_session_new(&config, &made), GROBO_ERR_ARG);
+    config.robot = NULL;
+    config.base = NULL;
+    assert_int_equal(grobo_session_new(&config, &made), GROBO_ERR_ARG);
+    config.base = base;
+    config.device = NULL;
+    assert_int_equal(grobo_session_new(&config, &made), GROBO_ERR_ARG);
+    assert_int_equal(grobo_session_new(NULL, &made), GROBO_ERR_ARG);
+    assert_int_equal(blocks, 0);
+}
+
+int main(void)
+{
+#define ON_LOOP(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
+    const struct CMUnitTest tests[] = {
+        ON_LOOP(a_simulator_in_the_process),
+        ON_LOOP(a_simulator_keeps_its_state_while_closed),
+        ON_LOOP(a_pseudo_terminal),
+        ON_LOOP(a_connection),
+        ON_LOOP(auto_takes_the_first_port_that_answers),
+        ON_LOOP(what_cannot_be_opened_is_told_at_once),
+        ON_LOOP(nobody_answers),
+        ON_LOOP(only_the_check_is_sent_before_somebody_answers),
+        ON_LOOP(nobody_needs_to_answer_if_so_configured),
+        ON_LOOP(requests_need_a_robot),
+        ON_LOOP(a_lost_port_is_found_again),
+        ON_LOOP(a_simulator_that_hung_up_is_plugged_in_again),
+        ON_LOOP(without_reconnect_a_lost_port_is_closed),
+        ON_LOOP(it_may_be_freed_in_its_event),
+        ON_LOOP(it_may_be_freed_in_an_event_of_the_engine),
+        ON_LOOP(it_may_be_closed_in_its_event),
+        ON_LOOP(it_may_be_opened_again_when_lost),
+        ON_LOOP(bad_configurations_and_lack_of_memory),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
