@@ -18,12 +18,13 @@ static const grobo_readback readback[] = {
     {RAD(-2.0), 9}, /* motor 18, L_KNEE_P */
 };
 
-/* 65 deg C is below the servos' own limit; 6.0 V is an empty battery of two lithium cells; no
- * joint needs 1.5 A for a second unless it is stuck. Chosen by us, none is documented. */
+/* Chosen by us, none is documented: 65 deg C is below the servos' own limit; 6.0 V is an empty
+ * battery of two lithium cells; joints that move freely draw about half of 600 mA, stuck ones more
+ * than that. */
 #define GR001_LIMITS                                                                               \
     .limits = {.temperature_c = 65,                                                                \
                .lost_replies = 5,                                                                  \
-               .current_ma = 1500,                                                                 \
+               .current_ma = 600,                                                                  \
                .voltage_mv = 6000,                                                                 \
                .current_us = 1000000,                                                              \
                .approach_rad_s = RAD(GROBO_PLAY_APPROACH_DEG_S)}

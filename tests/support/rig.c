@@ -127,7 +127,9 @@ void rig_start_driver(grobo_test_rig *rig, const grobo_driver *driver,
     if (sim != NULL) {
         sim_config = *sim;
     }
-    sim_config.model = driver->model;
+    if (sim_config.model == NULL) {
+        sim_config.model = driver->model;
+    }
     sim_config.wiring = driver->wiring;
     rig->driver = driver;
     rig->now_us = rig->wake_us = 1000000;

@@ -1,0 +1,352 @@
+/* SPDX-License-Identifier: MIT */
+/* Each safety rule on its own, under the fault it is for. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <math.h>
+#include <string.h>
+
+#include "rig.h"
+
+enum { NECK = 13, R_KNEE = 3, L_ELBOW = 19 };
+
+static grobo_test_rig rig;
+static rig_clip clip;
+static const grobo_robot_config quiet = {.sense_interval_us = GROBO_SENSE_NEVER};
+static const grobo_robot_config watching = {.sense_interval_us = 200000};
+static const rig_key sway[] = {
+    {0, {{NECK, 0}}}, {1000, {{NECK, 30}}}, {3000, {{NECK, -30}}}, {4000, {{NECK, 0}}}};
+
+static void start_playing(const grobo_robot_config *config)
+{
+    rig_start(&rig, config, NULL);
+    rig_clip_init(&clip, sway, 4);
+    grobo_play_options options = {.repeat = 100};
+    rig_power(&rig);
+    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options, rig.now_us), GROBO_OK);
+    rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
+    rig_run(&rig, 700000);
+    rig_forget(&rig);
+}
+
+static const grobo_trip_info *expect_trip(grobo_trip reason, int64_t within_us)
+{
+    int64_t until_us = rig.now_us + within_us;
+    while (rig_last(&rig, GROBO_EVENT_TRIP) == NULL && rig.now_us < until_us) {
+        rig_run(&rig, 10000);
+    }
+    const grobo_event *event = rig_last(&rig, GROBO_EVENT_TRIP);
+    assert_non_null(event);
+    if (event->u.trip.trip != reason) {
+        fail_msg("tripped by %s, not %s", grobo_trip_name(event->u.trip.trip),
+                 grobo_trip_name(reason));
+    }
+    return &event->u.trip;
+}
+
+/* Stopped, latched, refuses to move, and moves again after a reset. */
+static void expect_latched(grobo_trip reason)
+{
+    grobo_trip_info info;
+    grobo_robot_tripped(&rig.robot, &info);
+    assert_true(info.latched && info.trip == reason);
+    rig_run(&rig, 500000);
+    assert_int_equal(grobo_robot_play_state(&rig.robot), GROBO_SEQUENCER_IDLE);
+    assert_false(grobo_robot_moving(&rig.robot, rig.now_us));
+    double here_deg = rig_angle_deg(&rig, NECK);
+    rig_run(&rig, 1000000);
+    assert_true(fabs(rig_angle_deg(&rig, NECK) - here_deg) < 0.01);
+    grobo_posture target = rig_posture(&rig, NECK, 10, 500);
+    assert_int_equal(grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_ERR_LATCHED);
+    assert_int_equal(grobo_robot_play(&rig.robot, &clip.clip, NULL, rig.now_us), GROBO_ERR_LATCHED);
+    assert_int_equal(grobo_robot_torque(&rig.robot, 1, GROBO_TORQUE_ON, rig.now_us),
+                     GROBO_ERR_LATCHED);
+    rig_expect(&rig, grobo_robot_sense(&rig.robot, 1, GROBO_SENSE_FULL, rig.now_us), GROBO_OK);
+}
+
+static void expect_reset_works(void)
+{
+    assert_int_equal(grobo_robot_reset(&rig.robot, rig.now_us), GROBO_OK);
+    grobo_posture target = rig_posture(&rig, NECK, 10, 500);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
+    assert_true(fabs(rig_angle_deg(&rig, NECK) - 10) < 0.1);
+}
+
+static void bad_targets_are_refused_at_once(void **state)
+{
+    (void)state;
+    double value = 0;
+    rig_start(&rig, &quiet, NULL);
+    grobo_posture target = rig_posture(&rig, NECK, 50.1, 500);
+    assert_int_equal(grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_ERR_LIMIT);
+    assert_int_equal(grobo_robot_fault(&rig.robot, &value), NECK);
+    assert_true(fabs(value - 50.1) < 1e-9);
+    target.angle_rad[NECK] = NAN;
+    assert_int_equal(grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_ERR_NAN);
+    target.angle_rad[NECK] = INFINITY;
+    assert_true(grobo_robot_move(&rig.robot, &target, rig.now_us) < 0);
+    target.n_joints = 19;
+    assert_int_equal(grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_ERR_ARG);
+    target = rig_posture(&rig, NECK, 50, 500);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
+}
+
+static void a_joint_that_cannot_be_sensed_is_not_moved(void **state)
+{
+    (void)state;
+    rig_start(&rig, &quiet, NULL);
+    assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_MUTE), 0);
+    rig_run(&rig, 10000);
+    grobo_posture target = rig_posture(&rig, NECK, 10, 500);
+    const grobo_event_job *job =
+        rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_ERR_TIMEOUT);
+    assert_int_equal(job->joint, NECK);
+    assert_int_equal(rig_angle_deg(&rig, NECK), 0);
+    rig_clip_init(&clip, sway, 4);
+    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL, rig.now_us), GROBO_ERR_TIMEOUT);
+    assert_int_equal(grobo_robot_play_state(&rig.robot), GROBO_SEQUENCER_IDLE);
+}
+
+static void torque_of_the_others_comes_on(void **state)
+{
+    (void)state;
+    rig_start(&rig, &quiet, NULL);
+    assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_MUTE), 0);
+    rig_run(&rig, 10000);
+    const grobo_event_job *job =
+        rig_expect(&rig, grobo_robot_torque(&rig.robot, rig_all(&rig), GROBO_TORQUE_ON, rig.now_us),
+                   GROBO_ERR_TIMEOUT);
+    assert_true(job->failed == GROBO_JOINT_BIT(NECK));
+    for (int j = 0; j < 20; j++) {
+        assert_int_equal(rig_torque(&rig, j), j == NECK ? GROBO_TORQUE_OFF : GROBO_TORQUE_ON);
+    }
+}
+
+/* A driver that allows the neck less than the simulated servo's stops do. */
+static void a_joint_outside_its_limits_is_not_switched_on(void **state)
+{
+    (void)state;
+    static grobo_joint joints[20];
+    static grobo_model model;
+    grobo_driver driver = *grobo_gr001_driver(GROBO_WIRING_BOARD);
+    grobo_sim_config sim = {.model = &grobo_gr001_model};
+    model = grobo_gr001_model;
+    memcpy(joints, model.joints, sizeof joints);
+    joints[NECK].max_rad = grobo_rad_from_deg(20);
+    model.joints = joints;
+    driver.model = &model;
+    rig_start_driver(&rig, &driver, &quiet, &sim);
+
+    assert_int_equal(grobo_sim_set_angle(&rig.sim, NECK, 25000, 0), 0);
+    const grobo_event_job *job =
+        rig_expect(&rig, grobo_robot_torque(&rig.robot, rig_all(&rig), GROBO_TORQUE_ON, rig.now_us),
+                   GROBO_ERR_LIMIT);
+    assert_true(job->failed == GROBO_JOINT_BIT(NECK) && job->joint == NECK);
+    assert_true(fabs(job->value - 25) < 0.1);
+    assert_int_equal(rig_torque(&rig, NECK), GROBO_TORQUE_OFF);
+
+    assert_int_equal(grobo_sim_set_angle(&rig.sim, NECK, 21900, 0), 0); /* a little is drawn in */
+    rig_power(&rig);
+    assert_int_equal(rig_torque(&rig, NECK), GROBO_TORQUE_ON);
+}
+
+static void over_temperature_stops(void **state)
+{
+    (void)state;
+    start_playing(&watching);
+    assert_int_equal(grobo_sim_set_temperature(&rig.sim, L_ELBOW, 67), 0);
+    const grobo_trip_info *trip = expect_trip(GROBO_TRIP_TEMPERATURE, 1000000);
+    assert_int_equal(trip->joint, L_ELBOW);
+    assert_true(trip->value >= 66);
+    expect_latched(GROBO_TRIP_TEMPERATURE);
+    assert_int_equal(grobo_sim_set_temperature(&rig.sim, L_ELBOW, 30), 0);
+    expect_reset_works();
+}
+
+static void sustained_over_current_stops(void **state)
+{
+    (void)state;
+    start_playing(&watching);
+    assert_int_equal(grobo_sim_set_load(&rig.sim, R_KNEE, 800), 0);
+    rig_run(&rig, 400000);
+    assert_int_equal(grobo_sim_set_load(&rig.sim, R_KNEE, 0), 0);
+    rig_run(&rig, 2000000);
+    assert_null(rig_last(&rig, GROBO_EVENT_TRIP)); /* a peak is none */
+    assert_int_equal(grobo_sim_set_load(&rig.sim, R_KNEE, 800), 0);
+    const grobo_trip_info *trip = expect_trip(GROBO_TRIP_CURRENT, 2500000);
+    assert_int_equal(trip->joint, R_KNEE);
+    assert_true(trip->value >= 800);
+    expect_latched(GROBO_TRIP_CURRENT);
+}
+
+static void low_voltage_stops(void **state)
+{
+    (void)state;
+    start_playing(&watching);
+    grobo_sim_set_supply(&rig.sim, 5800);
+    const grobo_trip_info *trip = expect_trip(GROBO_TRIP_VOLTAGE, 1000000);
+    assert_true(trip->value < 6000 && trip->value > 5000);
+    expect_latched(GROBO_TRIP_VOLTAGE);
+}
+
+static void lost_replies_stop(void **state)
+{
+    (void)state;
+    start_playing(&watching);
+    assert_int_equal(grobo_sim_set_cable(&rig.sim, R_KNEE, GROBO_SIM_CABLE_MUTE), 0);
+    const grobo_trip_info *trip = expect_trip(GROBO_TRIP_LOST_REPLIES, 5000000);
+    assert_int_equal(trip->joint, R_KNEE);
+    assert_true(trip->value >= 5);
+    expect_latched(GROBO_TRIP_LOST_REPLIES);
+}
+
+static void a_silent_servo_of_a_resting_robot_trips_nothing(void **state)
+{
+    (void)state;
+    rig_start(&rig, &watching, NULL);
+    assert_int_equal(grobo_sim_set_cable(&rig.sim, R_KNEE, GROBO_SIM_CABLE_MUTE), 0);
+    rig_run(&rig, 5000000);
+    assert_null(rig_last(&rig, GROBO_EVENT_TRIP));
+    grobo_joint_info info;
+    assert_int_equal(grobo_robot_joint(&rig.robot, R_KNEE, rig.now_us, &info), 0);
+    assert_int_equal(info.status, GROBO_ERR_TIMEOUT);
+}
+
+static void a_brown_out_stops(void **state)
+{
+    (void)state;
+    start_playing(&watching);
+    grobo_sim_set_supply(&rig.sim, 3000);
+    rig_run(&rig, 100000);
+    grobo_sim_set_supply(&rig.sim, 7400);
+    expect_trip(GROBO_TRIP_TORQUE_LOST, 5000000);
+    expect_latched(GROBO_TRIP_TORQUE_LOST);
+    expect_reset_works();
+}
+
+static void emergency_stop_is_first_verified_and_latched(void **state)
+{
+    (void)state;
+    start_playing(&watching);
+    int64_t asked_us = rig.now_us;
+    int number = grobo_robot_estop(&rig.robot, rig.now_us);
+    assert_true(number > 0);
+    const grobo_event_job *job = rig_expect(&rig, number, GROBO_OK);
+    assert_true(job->failed == 0 && job->kind == GROBO_JOB_ESTOP);
+    assert_true(rig.n_sent > 0 && rig.sent[0].size == 50 && rig.sent[0].bytes[6] == 0x24);
+    assert_in_range(rig.sent[0].at_us - asked_us, 0, 40000);
+    assert_in_range(rig.now_us - asked_us, 0, 400000);
+    for (int j = 0; j < 20; j++) {
+        assert_int_equal(rig_torque(&rig, j), GROBO_TORQUE_BRAKE);
+    }
+    expect_latched(GROBO_TRIP_ESTOP);
+    expect_reset_works();
+}
+
+static void emergency_stop_repeats_until_it_took(void **state)
+{
+    (void)state;
+    grobo_robot_config config = quiet;
+    config.estop_torque = GROBO_ESTOP_OFF;
+    start_playing(&config);
+    assert_int_equal(grobo_sim_set_fault(&rig.sim, GROBO_SIM_FAULT_SILENT, 0.3), 0);
+    const grobo_event_job *job =
+        rig_expect(&rig, grobo_robot_estop(&rig.robot, rig.now_us), GROBO_OK);
+    assert_true(job->failed == 0);
+    for (int j = 0; j < 20; j++) {
+        assert_int_equal(rig_torque(&rig, j), GROBO_TORQUE_OFF);
+    }
+}
+
+static void emergency_stop_takes_the_place_of_a_job(void **state)
+{
+    (void)state;
+    rig_start(&rig, &quiet, NULL);
+    rig_power(&rig);
+    grobo_posture target = rig_posture(&rig, NECK, 40, 2000);
+    int move = grobo_robot_move(&rig.robot, &target, rig.now_us);
+    rig_run(&rig, 800000);
+    int stop = grobo_robot_estop(&rig.robot, rig.now_us);
+    assert_int_equal(grobo_robot_reset(&rig.robot, rig.now_us), GROBO_ERR_STATE);
+    assert_int_equal(grobo_robot_cancel(&rig.robot, rig.now_us), GROBO_ERR_STATE);
+    rig_expect(&rig, move, GROBO_ERR_CANCELED);
+    rig_expect(&rig, stop, GROBO_OK);
+}
+
+static void exit_holds_sits_or_lets_go(void **state)
+{
+    (void)state;
+    start_playing(&quiet);
+    rig_expect(&rig, grobo_robot_exit(&rig.robot, GROBO_EXIT_DEFAULT, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_play_state(&rig.robot), GROBO_SEQUENCER_IDLE);
+    assert_int_equal(rig_torque(&rig, NECK), GROBO_TORQUE_ON);
+    assert_false(grobo_robot_moving(&rig.robot, rig.now_us));
+
+    int64_t asked_us = rig.now_us;
+    rig_expect(&rig, grobo_robot_exit(&rig.robot, GROBO_EXIT_SIT, rig.now_us), GROBO_OK);
+    assert_in_range(rig.now_us - asked_us, 1000000, 10000000);
+    assert_true(fabs(rig_angle_deg(&rig, R_KNEE) + 120) < 0.1);
+    for (int j = 0; j < 20; j++) {
+        assert_int_equal(rig_torque(&rig, j), GROBO_TORQUE_OFF);
+    }
+
+    start_playing(&quiet);
+    rig_expect(&rig, grobo_robot_exit(&rig.robot, GROBO_EXIT_OFF, rig.now_us), GROBO_OK);
+    assert_int_equal(rig_torque(&rig, NECK), GROBO_TORQUE_OFF);
+    assert_int_equal(rig_torque(&rig, R_KNEE), GROBO_TORQUE_OFF);
+}
+
+static void exit_takes_the_place_of_a_job_and_is_bounded(void **state)
+{
+    (void)state;
+    grobo_robot_config config = quiet;
+    config.exit_bound_us = 300000;
+    rig_start(&rig, &config, NULL);
+    rig_power(&rig);
+    grobo_posture target = rig_posture(&rig, NECK, 40, 2000);
+    int move = grobo_robot_move(&rig.robot, &target, rig.now_us);
+    rig_run(&rig, 800000);
+    for (int j = 0; j < 20; j++) {
+        assert_int_equal(grobo_sim_set_cable(&rig.sim, j, GROBO_SIM_CABLE_MUTE), 0);
+    }
+    int64_t asked_us = rig.now_us;
+    int number = grobo_robot_exit(&rig.robot, GROBO_EXIT_OFF, rig.now_us);
+    rig_expect(&rig, number, GROBO_ERR_TIMEOUT);
+    assert_in_range(rig.now_us - asked_us, 250000, 320000);
+    rig_expect(&rig, move, GROBO_ERR_CANCELED);
+}
+
+static void a_limp_robot_is_not_made_to_sit(void **state)
+{
+    (void)state;
+    rig_start(&rig, &quiet, NULL);
+    rig_expect(&rig, grobo_robot_exit(&rig.robot, GROBO_EXIT_SIT, rig.now_us), GROBO_OK);
+    assert_int_equal(rig.torque_on, 0);
+    assert_true(fabs(rig_angle_deg(&rig, R_KNEE) + 40) < 0.1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(bad_targets_are_refused_at_once),
+        cmocka_unit_test(a_joint_that_cannot_be_sensed_is_not_moved),
+        cmocka_unit_test(torque_of_the_others_comes_on),
+        cmocka_unit_test(a_joint_outside_its_limits_is_not_switched_on),
+        cmocka_unit_test(over_temperature_stops),
+        cmocka_unit_test(sustained_over_current_stops),
+        cmocka_unit_test(low_voltage_stops),
+        cmocka_unit_test(lost_replies_stop),
+        cmocka_unit_test(a_silent_servo_of_a_resting_robot_trips_nothing),
+        cmocka_unit_test(a_brown_out_stops),
+        cmocka_unit_test(emergency_stop_is_first_verified_and_latched),
+        cmocka_unit_test(emergency_stop_repeats_until_it_took),
+        cmocka_unit_test(emergency_stop_takes_the_place_of_a_job),
+        cmocka_unit_test(exit_holds_sits_or_lets_go),
+        cmocka_unit_test(exit_takes_the_place_of_a_job_and_is_bounded),
+        cmocka_unit_test(a_limp_robot_is_not_made_to_sit),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
