@@ -256,7 +256,7 @@ typedef struct grobo_sim {
 
 /**
  * Powers a simulated robot up: torque off everywhere, goals 0, flash as the factory left it but
- * for the ids of the model.
+ * for the ids of the model and, on bus wiring, the rate of the line. The hook hears nothing of it.
  * @param config NULL: all defaults. Copied; the model is borrowed.
  * @return 0; GROBO_ERR_ARG for a bad model, ambient temperature or baud rate below 300 or (bus
  *         wiring) not one of the servos'; GROBO_ERR_CAP for more than GROBO_SIM_SERVOS_MAX joints

@@ -30,7 +30,7 @@ static bool clash(grobo_sim *sim, grobo_sim_talk *talk, int64_t from_ns, uint8_t
     return clashed;
 }
 
-/* The byte that the master is sending at from_ns, which is not over yet. */
+/* The byte that the master began before to_ns and that is not over yet. */
 static bool clash_with_master(const grobo_sim *sim, int64_t to_ns, uint8_t *byte)
 {
     if (sim->config.wiring == GROBO_WIRING_BUS) {

@@ -35,12 +35,13 @@ static void to_flash(grobo_sim_servo *servo)
     memcpy(servo->flash, &servo->reg[GROBO_RS30X_ID], sizeof servo->flash);
 }
 
-void grobo_i_sim_factory(grobo_sim_servo *servo, uint16_t model, uint8_t id)
+void grobo_i_sim_factory(grobo_sim_servo *servo, uint16_t model, uint8_t id, uint32_t baud_bps)
 {
     put(servo->reg, GROBO_RS30X_MODEL, model == 0 ? GROBO_RS30X_RS301CR : model);
     put(servo->reg, GROBO_RS30X_FIRMWARE, FIRMWARE);
     factory_block(servo);
     put(servo->reg, GROBO_RS30X_ID, id);
+    put(servo->reg, GROBO_RS30X_BAUD, grobo_rs30x_baud_code(baud_bps));
     to_flash(servo);
 }
 

@@ -249,7 +249,7 @@ static void init_servo(grobo_sim *sim, int index)
     servo->start_us = servo->due_us = servo->settled_us = sim->now_us;
     servo->saved_us = GROBO_NEVER_US;
     servo->temperature_c = sim->config.ambient_c;
-    grobo_i_sim_factory(servo, joint->servo_model, joint->motor);
+    grobo_i_sim_factory(servo, joint->servo_model, joint->motor, sim->bus_bps);
     grobo_i_sim_boot(sim, index, 0);
 }
 
@@ -269,7 +269,8 @@ int grobo_sim_init(grobo_sim *sim, const grobo_sim_config *config, int64_t now_u
     grobo_sim_config with = config == NULL ? (grobo_sim_config){0} : *config;
     use_defaults(&with);
     if (grobo_model_check(with.model) < 0 || with.baud_bps < LOWEST_BPS || with.ambient_c < -40 ||
-        with.ambient_c > 60) {
+        with.ambient_c > 60 ||
+        (with.wiring == GROBO_WIRING_BUS && grobo_rs30x_baud_code(with.baud_bps) < 0)) {
         return GROBO_ERR_ARG;
     }
     if (with.model->n_joints > GROBO_SIM_SERVOS_MAX) {
@@ -277,6 +278,7 @@ int grobo_sim_init(grobo_sim *sim, const grobo_sim_config *config, int64_t now_u
     }
     memset(sim, 0, sizeof *sim);
     sim->config = with;
+    sim->config.hook = NULL;
     sim->now_us = now_us;
     sim->now_ns = now_us * 1000;
     sim->in.free_ns = sim->out.free_ns = sim->bus_heard_ns = sim->now_ns;
@@ -291,5 +293,7 @@ int grobo_sim_init(grobo_sim *sim, const grobo_sim_config *config, int64_t now_u
     for (int i = 0; i < sim->n_servos; i++) {
         init_servo(sim, i);
     }
+    grobo_sim_set_supply(sim, with.supply_mv);
+    sim->config.hook = with.hook;
     return 0;
 }

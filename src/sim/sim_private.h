@@ -97,7 +97,8 @@ int32_t grobo_i_sim_value(const grobo_sim_servo *servo, uint8_t address);
 
 /* ---- power.c: flash, reboot, supply ---- */
 
-void grobo_i_sim_factory(grobo_sim_servo *servo, uint16_t model, uint8_t id);
+/* From the factory, with an id and a rate that were set and saved since. */
+void grobo_i_sim_factory(grobo_sim_servo *servo, uint16_t model, uint8_t id, uint32_t baud_bps);
 void grobo_i_sim_boot(grobo_sim *sim, int servo, int64_t deaf_us);
 void grobo_i_sim_reboot(grobo_sim *sim, int servo);
 void grobo_i_sim_save(grobo_sim *sim, int servo, bool reboot_after);

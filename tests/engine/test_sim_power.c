@@ -105,9 +105,11 @@ static void bad_configurations_are_refused(void **state)
     const grobo_sim_config bad_model = {.model = &none};
     const grobo_sim_config slow = {.baud_bps = 10};
     const grobo_sim_config hot = {.ambient_c = 100};
+    const grobo_sim_config odd = {.wiring = GROBO_WIRING_BUS, .baud_bps = 100000};
     assert_int_equal(grobo_sim_init(&sim, &bad_model, 0), GROBO_ERR_ARG);
     assert_int_equal(grobo_sim_init(&sim, &slow, 0), GROBO_ERR_ARG);
     assert_int_equal(grobo_sim_init(&sim, &hot, 0), GROBO_ERR_ARG);
+    assert_int_equal(grobo_sim_init(&sim, &odd, 0), GROBO_ERR_ARG);
 }
 
 /* ---- flash and reboot ---------------------------------------------------------------------- */
@@ -271,6 +273,15 @@ static void a_brown_out_makes_servos_limp(void **state)
     assert_int_equal(simkit_events(&kit, GROBO_SIM_TORQUE, NULL), 40);
 }
 
+static void an_empty_battery_powers_nothing_up(void **state)
+{
+    (void)state;
+    const grobo_sim_config config = {.supply_mv = 4000};
+    simkit_start(&kit, &config);
+    assert_true(simkit_look(&kit, CHEST).deaf);
+    assert_false(answers("FA AF 01 01 FF 00 00"));
+}
+
 static void a_mute_servo_holds_and_one_without_cable_is_limp(void **state)
 {
     (void)state;
@@ -309,6 +320,7 @@ int main(void)
         cmocka_unit_test(the_board_loses_a_servo_of_another_rate),
         cmocka_unit_test(the_board_hears_rubbish_at_another_rate),
         cmocka_unit_test(a_brown_out_makes_servos_limp),
+        cmocka_unit_test(an_empty_battery_powers_nothing_up),
         cmocka_unit_test(a_mute_servo_holds_and_one_without_cable_is_limp),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

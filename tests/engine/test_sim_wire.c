@@ -200,8 +200,6 @@ static void bus_read_costs_34_bytes_and_the_delay(void **state)
     for (size_t i = 0; i < sizeof rates / sizeof *rates; i++) {
         const grobo_sim_config config = {.wiring = GROBO_WIRING_BUS, .baud_bps = rates[i]};
         simkit_start(&kit, &config);
-        int code = grobo_rs30x_baud_code(rates[i]);
-        assert_int_equal(grobo_sim_set_register(&kit.sim, 12, GROBO_RS30X_BAUD, code), 0);
         int64_t t0 = kit.now_us;
         simkit_packet(&kit, "FA AF 01 0F 24 12 00", 26);
         assert_int_equal(kit.n_got, 26);
