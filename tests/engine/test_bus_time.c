@@ -1,0 +1,373 @@
+/* SPDX-License-Identifier: MIT */
+/* The bus and time: costs, deadlines, learnt margins, room for motion frames. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include <grobo/bus.h>
+
+#include "bus_peer.h"
+
+enum { MS = 1000, S = 1000000, FRAME = GROBO_FRAME_MAX_BYTES, JOINTS = 20 };
+
+typedef struct request {
+    grobo_txn txn;
+    uint8_t frame[FRAME];
+} request;
+
+static void make_read(peer *p, request *r, uint8_t id, uint8_t length)
+{
+    int n = grobo_frame_read(p->bus.config.wiring, id, 42, length, r->frame, FRAME);
+    peer_txn(p, &r->txn, r->frame, n, GROBO_PRIORITY_SENSE);
+}
+
+static void make_pose(peer *p, request *r)
+{
+    grobo_rs30x_goal goals[JOINTS];
+    for (int i = 0; i < JOINTS; i++) {
+        goals[i] = (grobo_rs30x_goal){(uint8_t)(i + 1), 0, 2};
+    }
+    int n = grobo_frame_goals(p->bus.config.wiring, goals, JOINTS, r->frame, FRAME);
+    peer_txn(p, &r->txn, r->frame, n, GROBO_PRIORITY_MOTION);
+}
+
+/* 11 + 8 + 26 + 26 bytes and 100 us, as the wire's description reckons: about 6.3 ms. */
+static void a_full_read_through_the_board_costs_71_bytes(void **state)
+{
+    (void)state;
+    peer p;
+    request r;
+    grobo_bus_cost cost;
+    peer_init(&p, NULL);
+    make_read(&p, &r, 1, 18);
+    grobo_bus_cost_of(&p.bus, &r.txn, &cost);
+    assert_int_equal(cost.request_us, 955);
+    assert_int_equal(cost.servo_us, 695 + 100 + 2257);
+    assert_int_equal(cost.reply_us, 2257);
+    assert_int_equal(cost.total_us, 6264);
+    assert_int_equal(cost.timeout_us, 6264 + GROBO_BUS_MARGIN_FIRST_US);
+    r.txn.timeout_us = 50 * MS;
+    grobo_bus_cost_of(&p.bus, &r.txn, &cost);
+    assert_int_equal(cost.timeout_us, 50 * MS);
+}
+
+static void other_costs_follow_the_same_rule(void **state)
+{
+    (void)state;
+    peer p;
+    request r;
+    grobo_bus_cost cost;
+    peer_init(&p, NULL);
+    make_pose(&p, &r);
+    grobo_bus_cost_of(&p.bus, &r.txn, &cost);
+    assert_int_equal(cost.request_us, 9549);
+    assert_int_equal(cost.servo_us, 9375);
+    assert_int_equal(cost.reply_us, 0);
+    int n = grobo_board_check(r.frame, FRAME);
+    peer_txn(&p, &r.txn, r.frame, n, GROBO_PRIORITY_USER);
+    grobo_bus_cost_of(&p.bus, &r.txn, &cost);
+    assert_int_equal(cost.total_us, 174 + 87); /* nothing goes to the servos */
+    n = grobo_board_slot(1, r.frame, FRAME);
+    peer_txn(&p, &r.txn, r.frame, n, GROBO_PRIORITY_USER);
+    grobo_bus_cost_of(&p.bus, &r.txn, &cost);
+    assert_int_equal(cost.total_us, 261);
+
+    const grobo_bus_config fast = {
+        .wiring = GROBO_WIRING_BUS, .baud_bps = 460800, .return_delay_us = 1000};
+    peer_init(&p, &fast);
+    make_read(&p, &r, 1, 18);
+    grobo_bus_cost_of(&p.bus, &r.txn, &cost);
+    assert_int_equal(cost.request_us, 174);
+    assert_int_equal(cost.servo_us, 0);
+    assert_int_equal(cost.reply_us, 1000 + 565);
+
+    const grobo_bus_config mixed = {.baud_bps = 460800, .servo_baud_bps = 9600};
+    peer_init(&p, &mixed);
+    make_read(&p, &r, 1, 2);
+    grobo_bus_cost_of(&p.bus, &r.txn, &cost);
+    assert_int_equal(cost.request_us, 239);
+    assert_int_equal(cost.servo_us, 8334 + 100 + 10417);
+    assert_int_equal(cost.reply_us, 218);
+}
+
+static void a_write_keeps_the_line_until_the_servos_have_it(void **state)
+{
+    (void)state;
+    peer p;
+    request a, b;
+    peer_init(&p, NULL);
+    make_pose(&p, &a);
+    make_pose(&p, &b);
+    assert_int_equal(grobo_bus_submit(&p.bus, &a.txn), GROBO_OK);
+    assert_int_equal(grobo_bus_submit(&p.bus, &b.txn), GROBO_OK);
+    peer_run(&p, 1);
+    assert_int_equal(grobo_bus_free_at(&p.bus, p.now_us), 18924);
+    peer_run(&p, S);
+    assert_int_equal(p.sent[1].at_us, 18924);
+    assert_int_equal(p.ended[0].at_us, 18924);
+    assert_int_equal(p.ended[0].result, GROBO_OK);
+    assert_int_equal(grobo_bus_free_at(&p.bus, p.now_us), p.now_us);
+}
+
+/* A board known to take the next frame while it forwards: the servo bus is the bottleneck. */
+static void an_overlapping_board_takes_the_next_frame_earlier(void **state)
+{
+    (void)state;
+    peer p;
+    request a, b;
+    const grobo_bus_config config = {.overlap = true};
+    peer_init(&p, &config);
+    make_pose(&p, &a);
+    make_read(&p, &b, 1, 18);
+    assert_int_equal(grobo_bus_submit(&p.bus, &a.txn), GROBO_OK);
+    assert_int_equal(grobo_bus_submit(&p.bus, &b.txn), GROBO_OK);
+    peer_run(&p, 9549);
+    assert_int_equal(p.sent_count, 2);
+    assert_int_equal(p.sent[1].at_us, 9549);
+    assert_int_equal(p.ended[0].at_us, 9549);
+    assert_int_equal(p.bus.over_us, 18924 + 695 + 100 + 2257 + 2257);
+}
+
+static void deadlines_say_when_to_come_back(void **state)
+{
+    (void)state;
+    peer p;
+    request r;
+    uint8_t buf[FRAME];
+    const grobo_bus_config config = {.margin_us = 4 * MS};
+    peer_init(&p, &config);
+    assert_int_equal(grobo_bus_deadline(&p.bus, 0), GROBO_NEVER_US);
+    make_read(&p, &r, 1, 18);
+    assert_int_equal(grobo_bus_submit(&p.bus, &r.txn), GROBO_OK);
+    assert_int_equal(grobo_bus_deadline(&p.bus, 5 * MS), 5 * MS);
+    assert_int_equal(grobo_bus_tx(&p.bus, 5 * MS, buf, FRAME), 11);
+    assert_int_equal(grobo_bus_deadline(&p.bus, 5 * MS), 5 * MS + 6264 + 4 * MS);
+    grobo_bus_step(&p.bus, 5 * MS + 6264 + 4 * MS - 1);
+    assert_int_equal(p.bus.stats.timeouts, 0);
+    grobo_bus_step(&p.bus, 5 * MS + 6264 + 4 * MS);
+    assert_int_equal(p.bus.stats.timeouts, 1);
+    assert_int_equal(grobo_bus_deadline(&p.bus, 15264), 15264 + GROBO_BUS_QUIET_US);
+    assert_int_equal(grobo_bus_tx(&p.bus, 15264, buf, FRAME), 0);
+    r.txn.timeout_us = 7 * MS;
+    assert_int_equal(grobo_bus_tx(&p.bus, 20 * MS, buf, FRAME), 11);
+    assert_int_equal(grobo_bus_deadline(&p.bus, 20 * MS), 27 * MS);
+}
+
+/* A process that slept past the deadline finds the reply in its buffer: it is taken, not lost. */
+static void a_late_pump_still_takes_what_came_in_time(void **state)
+{
+    (void)state;
+    peer p;
+    request r;
+    uint8_t buf[FRAME];
+    peer_init(&p, NULL);
+    make_read(&p, &r, 1, 2);
+    assert_int_equal(grobo_bus_submit(&p.bus, &r.txn), GROBO_OK);
+    assert_int_equal(grobo_bus_tx(&p.bus, 0, buf, FRAME), 11);
+    peer_position_at(&p, 0, 1, 42);
+    p.now_us = S;
+    peer_run(&p, S);
+    assert_int_equal(p.ended[0].result, GROBO_OK);
+    assert_int_equal(p.bus.stats.timeouts, 0);
+}
+
+static uint32_t timeout_after(peer *p, int replies, int64_t reply_after_us)
+{
+    request r;
+    grobo_bus_cost cost;
+    p->reply_after_us = reply_after_us;
+    for (int i = 0; i < replies; i++) {
+        p->ended_count = 0;
+        p->sent_count = 0;
+        make_read(p, &r, 1, 2);
+        assert_int_equal(grobo_bus_submit(&p->bus, &r.txn), GROBO_OK);
+        peer_run(p, p->now_us + S);
+        assert_int_equal(p->ended[0].result, GROBO_OK);
+    }
+    make_read(p, &r, 1, 2);
+    grobo_bus_cost_of(&p->bus, &r.txn, &cost);
+    return cost.timeout_us - cost.total_us;
+}
+
+/* From the adapter nobody knows to the one that is there: a few ms, and back when it slows down. */
+static void the_margin_is_learnt_from_the_replies(void **state)
+{
+    (void)state;
+    peer p;
+    peer_init(&p, NULL);
+    p.obliging = true;
+    assert_int_equal(timeout_after(&p, 0, 0), GROBO_BUS_MARGIN_FIRST_US);
+    assert_int_equal(timeout_after(&p, 1, 200), GROBO_BUS_MARGIN_MIN_US);
+    assert_int_equal(timeout_after(&p, 50, 200), GROBO_BUS_MARGIN_MIN_US);
+    for (int64_t slow_us = 400; slow_us <= 16 * MS; slow_us += 400) {
+        uint32_t margin_us = timeout_after(&p, 10, slow_us);
+        assert_true(margin_us >= slow_us);
+    }
+    assert_true(timeout_after(&p, 1, 16 * MS) <= GROBO_BUS_MARGIN_MAX_US);
+    assert_int_equal(timeout_after(&p, 100, 200), GROBO_BUS_MARGIN_MIN_US);
+}
+
+static void the_margin_doubles_with_every_retry(void **state)
+{
+    (void)state;
+    peer p;
+    request r;
+    peer_init(&p, NULL);
+    p.obliging = true;
+    timeout_after(&p, 1, 0);
+    p.obliging = false;
+    int64_t from_us = p.now_us;
+    make_read(&p, &r, 1, 2);
+    r.txn.retries = 5;
+    p.ended_count = p.sent_count = 0;
+    assert_int_equal(grobo_bus_submit(&p.bus, &r.txn), GROBO_OK);
+    peer_run(&p, from_us + S);
+    static const int margins_ms[] = {3, 6, 12, 24, 40};
+    for (int i = 0; i < 5; i++) {
+        int64_t took_us = p.sent[i + 1].at_us - p.sent[i].at_us;
+        assert_int_equal(took_us, 3488 + margins_ms[i] * MS + GROBO_BUS_QUIET_US);
+    }
+    assert_int_equal(p.ended[0].at_us, p.sent[5].at_us + 3488 + 40 * MS);
+}
+
+static void no_read_starts_that_would_reach_into_the_reserved_span(void **state)
+{
+    (void)state;
+    peer p;
+    request r[3];
+    peer_init(&p, NULL);
+    p.obliging = true;
+    for (int i = 0; i < 3; i++) {
+        make_read(&p, &r[i], (uint8_t)(i + 1), 2);
+        assert_int_equal(grobo_bus_submit(&p.bus, &r[i].txn), GROBO_OK);
+    }
+    grobo_bus_reserve(&p.bus, 7 * MS, 2 * MS);
+    assert_true(grobo_bus_fits(&p.bus, 7 * MS - 3488, &r[0].txn));
+    assert_false(grobo_bus_fits(&p.bus, 7 * MS - 3487, &r[0].txn));
+    assert_false(grobo_bus_fits(&p.bus, 9 * MS - 1, &r[0].txn));
+    assert_true(grobo_bus_fits(&p.bus, 9 * MS, &r[0].txn));
+    peer_run(&p, S);
+    assert_int_equal(p.sent[0].at_us, 0);
+    assert_int_equal(p.sent[1].at_us, 3488);
+    assert_int_equal(p.sent[2].at_us, 9 * MS);
+    grobo_bus_reserve(&p.bus, S + MS, S);
+    make_read(&p, &r[0], 1, 2);
+    assert_int_equal(grobo_bus_submit(&p.bus, &r[0].txn), GROBO_OK);
+    peer_run(&p, S + 2 * MS);
+    assert_int_equal(p.sent_count, 3);
+    grobo_bus_reserve(&p.bus, GROBO_NEVER_US, 0); /* taken away again */
+    peer_run(&p, S + 3 * MS);
+    assert_int_equal(p.sent_count, 4);
+}
+
+static void a_short_request_goes_where_a_long_one_does_not_fit(void **state)
+{
+    (void)state;
+    peer p;
+    request longer, shorter;
+    peer_init(&p, NULL);
+    p.obliging = true;
+    make_read(&p, &longer, 1, 18);
+    longer.txn.priority = GROBO_PRIORITY_USER;
+    make_read(&p, &shorter, 2, 2);
+    grobo_bus_reserve(&p.bus, 5 * MS, MS);
+    assert_int_equal(grobo_bus_submit(&p.bus, &longer.txn), GROBO_OK);
+    assert_int_equal(grobo_bus_submit(&p.bus, &shorter.txn), GROBO_OK);
+    peer_run(&p, 10 * MS);
+    assert_int_equal(p.sent[0].id, 2);
+    assert_int_equal(p.sent[1].id, 1);
+    assert_int_equal(p.sent[1].at_us, 6 * MS);
+}
+
+typedef struct played {
+    int reads;
+    int64_t worst_us; /* lateness of a motion frame */
+} played;
+
+/* Motion frames of 20 joints at a period, reads of one joint after the other in between. */
+static played play(peer *p, int64_t period_us, int frames, uint8_t silent_id)
+{
+    played result = {0, 0};
+    request pose, reads[JOINTS];
+    p->obliging = true;
+    p->silent_id = silent_id;
+    for (uint8_t i = 0; i < JOINTS; i++) {
+        make_read(p, &reads[i], (uint8_t)(i + 1), 2);
+        reads[i].txn.retries = 0;
+        assert_int_equal(grobo_bus_submit(&p->bus, &reads[i].txn), GROBO_OK);
+    }
+    for (int k = 0; k < frames; k++) {
+        int64_t at_us = (int64_t)k * period_us;
+        p->sent_count = p->ended_count = 0;
+        make_pose(p, &pose);
+        assert_int_equal(grobo_bus_submit(&p->bus, &pose.txn), GROBO_OK);
+        grobo_bus_reserve(&p->bus, at_us + period_us, 18924);
+        peer_run(p, at_us + period_us - 1);
+        int64_t late_us = pose.txn.sent_us - at_us;
+        result.worst_us = late_us > result.worst_us ? late_us : result.worst_us;
+        for (int i = 0; i < p->ended_count; i++) {
+            if (p->ended[i].txn != &pose.txn) {
+                result.reads++;
+                assert_int_equal(grobo_bus_submit(&p->bus, p->ended[i].txn), GROBO_OK);
+            }
+        }
+        p->now_us = at_us + period_us;
+    }
+    grobo_bus_cancel_all(&p->bus, GROBO_PRIORITY_ALL, GROBO_ERR_CANCELED);
+    return result;
+}
+
+/* 50 ms less 18.924 for the pose leaves 31.076: eight reads of 3.488 ms, and each of them is made. */
+static void the_gaps_are_filled_and_the_frames_are_on_time(void **state)
+{
+    (void)state;
+    peer p;
+    peer_init(&p, NULL);
+    played all = play(&p, 50 * MS, 200, 0);
+    assert_int_equal(all.worst_us, 0);
+    assert_int_equal(all.reads, 200 * 8);
+    assert_int_equal(p.bus.stats.timeouts, 0);
+}
+
+/* With one servo silent a frame may wait for the reply that might come, not for its time-out. */
+static void a_silent_servo_does_not_delay_the_frames(void **state)
+{
+    (void)state;
+    peer p;
+    peer_init(&p, NULL);
+    played all = play(&p, 50 * MS, 200, 7);
+    assert_int_equal(all.worst_us, 0);
+    assert_true(p.bus.stats.timeouts > 50);
+    assert_true(all.reads > 200 * 7);
+}
+
+static void the_bus_is_small(void **state)
+{
+    (void)state;
+    assert_true(sizeof(grobo_bus) <= 640);
+    assert_true(sizeof(grobo_txn) <= 80);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_full_read_through_the_board_costs_71_bytes),
+        cmocka_unit_test(other_costs_follow_the_same_rule),
+        cmocka_unit_test(a_write_keeps_the_line_until_the_servos_have_it),
+        cmocka_unit_test(an_overlapping_board_takes_the_next_frame_earlier),
+        cmocka_unit_test(deadlines_say_when_to_come_back),
+        cmocka_unit_test(a_late_pump_still_takes_what_came_in_time),
+        cmocka_unit_test(the_margin_is_learnt_from_the_replies),
+        cmocka_unit_test(the_margin_doubles_with_every_retry),
+        cmocka_unit_test(no_read_starts_that_would_reach_into_the_reserved_span),
+        cmocka_unit_test(a_short_request_goes_where_a_long_one_does_not_fit),
+        cmocka_unit_test(the_gaps_are_filled_and_the_frames_are_on_time),
+        cmocka_unit_test(a_silent_servo_does_not_delay_the_frames),
+        cmocka_unit_test(the_bus_is_small),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

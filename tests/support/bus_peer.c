@@ -1,0 +1,114 @@
+/* SPDX-License-Identifier: MIT */
+#include "bus_peer.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+void peer_init(peer *p, const grobo_bus_config *config)
+{
+    memset(p, 0, sizeof *p);
+    assert_int_equal(grobo_bus_init(&p->bus, config), GROBO_OK);
+}
+
+static void written_down(void *ctx, grobo_txn *txn, int result, const grobo_rs30x_packet *reply)
+{
+    peer *p = ctx;
+    assert_true(p->ended_count < PEER_LOG_MAX);
+    assert_false(grobo_txn_is_pending(txn));
+    peer_ended *e = &p->ended[p->ended_count++];
+    *e = (peer_ended){p->now_us, txn, result, 0, reply != NULL};
+    if (reply != NULL && reply->data_bytes >= 2) {
+        e->value = (int16_t)(reply->data[0] | reply->data[1] << 8);
+    }
+    if (p->on_done != NULL) {
+        p->on_done(p, txn, result);
+    }
+}
+
+void peer_txn(peer *p, grobo_txn *txn, const uint8_t *frame, int n, grobo_priority priority)
+{
+    assert_true(n > 0);
+    grobo_wiring wiring = p->bus.config.wiring;
+    assert_int_equal(grobo_txn_init(txn, wiring, frame, (size_t)n), GROBO_OK);
+    txn->priority = priority;
+    txn->done = written_down;
+    txn->ctx = p;
+}
+
+void peer_bytes_at(peer *p, int64_t at_us, const uint8_t *bytes, size_t n)
+{
+    int i = p->chunk_count++;
+    assert_true(i < PEER_CHUNKS_MAX && n <= PEER_CHUNK_BYTES);
+    for (; i > 0 && p->chunks[i - 1].at_us > at_us; i--) {
+        p->chunks[i] = p->chunks[i - 1];
+    }
+    p->chunks[i].at_us = at_us;
+    p->chunks[i].n = n;
+    memcpy(p->chunks[i].bytes, bytes, n);
+}
+
+void peer_position_at(peer *p, int64_t at_us, uint8_t id, int16_t value)
+{
+    uint8_t data[2] = {(uint8_t)(value & 0xFF), (uint8_t)(value >> 8 & 0xFF)};
+    uint8_t b[16];
+    const grobo_rs30x_packet packet = {GROBO_RS30X_RETURN, id, 0, 42, 2, 1, data, 2};
+    int n = grobo_rs30x_build(&packet, b, sizeof b);
+    peer_bytes_at(p, at_us, b, (size_t)n);
+}
+
+static void answer(peer *p, uint8_t id)
+{
+    if (!p->obliging || id == p->silent_id || p->bus.phase != GROBO_BUS_AWAITING) {
+        return;
+    }
+    peer_position_at(p, p->bus.over_us + p->reply_after_us, id, (int16_t)(100 * id));
+}
+
+static void send_next(peer *p)
+{
+    uint8_t b[GROBO_RS30X_PACKET_MAX_BYTES];
+    int n = grobo_bus_tx(&p->bus, p->now_us, b, sizeof b);
+    assert_true(n >= 0);
+    if (n == 0) {
+        return;
+    }
+    assert_true(p->sent_count < PEER_LOG_MAX);
+    bool board = p->bus.config.wiring == GROBO_WIRING_BOARD;
+    uint8_t id = board ? (n > 4 ? b[4] : 0) : b[2];
+    p->sent[p->sent_count++] = (peer_sent){p->now_us, id, b[0]};
+    answer(p, id);
+}
+
+static void receive(peer *p)
+{
+    while (p->chunk_count > 0 && p->chunks[0].at_us <= p->now_us) {
+        peer_chunk chunk = p->chunks[0];
+        p->chunk_count--;
+        memmove(p->chunks, p->chunks + 1, (size_t)p->chunk_count * sizeof chunk);
+        grobo_bus_rx(&p->bus, p->now_us, chunk.bytes, chunk.n);
+    }
+}
+
+void peer_run(peer *p, int64_t until_us)
+{
+    for (int spins = 0; p->now_us <= until_us; spins++) {
+        assert_true(spins < 100000); /* a deadline that stays in the past would spin for ever */
+        receive(p);
+        grobo_bus_step(&p->bus, p->now_us);
+        send_next(p);
+        int64_t next_us = grobo_bus_deadline(&p->bus, p->now_us);
+        if (p->chunk_count > 0 && p->chunks[0].at_us < next_us) {
+            next_us = p->chunks[0].at_us;
+        }
+        if (next_us > until_us) {
+            p->now_us = until_us;
+            return;
+        }
+        if (next_us > p->now_us) {
+            p->now_us = next_us;
+        }
+    }
+}
