@@ -71,8 +71,8 @@ typedef void (*grobo_txn_done)(void *ctx, grobo_txn *txn, int result,
                                const grobo_rs30x_packet *reply);
 
 /**
- * A transaction. The caller owns the struct and the frame's bytes; both must stay until done.
- * Start from grobo_txn_init, then set what differs.
+ * A transaction. The caller owns the struct and the frame's bytes; both must stay as they are until
+ * done. Start from grobo_txn_init, then set what differs.
  */
 struct grobo_txn {
     const uint8_t *frame;    /**< borrowed: what is sent */
@@ -118,8 +118,8 @@ typedef struct grobo_bus_config {
 #define GROBO_BUS_QUIET_MAX_US 50000
 /** How long a reply may be late and still be told apart. */
 #define GROBO_BUS_HOLD_US 100000
-/** Lost replies that are remembered at a time; the oldest is forgotten first. */
-#define GROBO_BUS_HOLDS 4
+/** Lost replies that are remembered at a time: the ACKs, and of the others the latest. */
+#define GROBO_BUS_HOLDS 8
 
 /** What the bus met; monotonic, wraps. */
 typedef struct grobo_bus_stats {
@@ -150,7 +150,8 @@ typedef enum grobo_bus_phase {
 
 /** A reply that was lost and may yet come. */
 typedef struct grobo_bus_hold {
-    int64_t until_us; /**< after this time it is taken for granted that it will not */
+    int64_t until_us;       /**< after this time it is taken for granted that it will not */
+    const grobo_txn *owner; /**< whose; only compared, it may be gone */
     grobo_reply reply;
 } grobo_bus_hold;
 
@@ -181,8 +182,8 @@ typedef struct grobo_bus {
     uint16_t
         got_bytes; /* since the active frame was sent, echo and strangers' replies not counted */
     uint8_t echo_bytes; /* of its echo seen so far */
-    uint8_t next_hold;
-    bool learnt; /* overhead_us and deviation_us come from a reply */
+    uint8_t next_hold;  /* the slot used last, of 1.. */
+    bool learnt;        /* overhead_us and deviation_us come from a reply */
 } grobo_bus;
 
 /**

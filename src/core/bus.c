@@ -99,9 +99,8 @@ static void fail(grobo_bus *bus, int64_t now_us, int error)
     if (error == GROBO_ERR_TIMEOUT || error == GROBO_ERR_SHORT) {
         bus->stats.timeouts++;
     }
-    if (error != GROBO_ERR_CHECKSUM) {
-        grobo_i_bus_hold(bus, &txn->reply, now_us);
-    }
+    /* Also after a wrong sum: those bytes may have been an older reply, and this one's yet to come. */
+    grobo_i_bus_hold(bus, txn, now_us);
     ask_for_quiet(bus, now_us);
     if (txn->attempts_ <= txn->retries) {
         bus->active = NULL;
@@ -130,16 +129,20 @@ static void succeed(grobo_bus *bus, int64_t now_us, const grobo_rs30x_packet *re
         grobo_i_bus_release_holds(bus);
     } else {
         /* This may have been the late reply to an earlier attempt: one more may come. */
-        grobo_i_bus_hold(bus, &txn->reply, now_us);
+        grobo_i_bus_hold(bus, txn, now_us);
     }
     finish(bus, txn, GROBO_OK, reply);
 }
 
-static void refuse(grobo_bus *bus, const grobo_rs30x_packet *reply)
+static void refuse(grobo_bus *bus, int64_t now_us, const grobo_rs30x_packet *reply)
 {
+    grobo_txn *txn = bus->active;
     bus->stats.refusals++;
     bus->stats.failed++;
-    finish(bus, bus->active, GROBO_ERR_NACK, reply);
+    if (txn->attempts_ > 1) {
+        grobo_i_bus_hold(bus, txn, now_us);
+    }
+    finish(bus, txn, GROBO_ERR_NACK, reply);
 }
 
 static void take_return(grobo_bus *bus, int64_t now_us, const grobo_rs30x_packet *p)
@@ -147,7 +150,7 @@ static void take_return(grobo_bus *bus, int64_t now_us, const grobo_rs30x_packet
     const grobo_reply *want = &bus->active->reply;
     bool from_whom = want->kind == GROBO_REPLY_RETURN && p->id == want->id;
     if (from_whom && (p->flags & GROBO_RS30X_STATUS_REFUSED) != 0) {
-        refuse(bus, p);
+        refuse(bus, now_us, p);
     } else if (from_whom && p->address == want->address && p->length == want->length) {
         succeed(bus, now_us, p);
     } else {
@@ -162,11 +165,13 @@ static void take_return(grobo_bus *bus, int64_t now_us, const grobo_rs30x_packet
 static void take_ack(grobo_bus *bus, int64_t now_us, const grobo_rs30x_packet *p)
 {
     if (bus->parser.framer.stats.dropped_bytes != bus->dropped_before) {
+        bus->stats.late_frames++;
+        bus->stats.late_bytes++;
         fail(bus, now_us, GROBO_ERR_MISMATCH);
     } else if (p->kind == GROBO_RS30X_ACK_BYTE) {
         succeed(bus, now_us, p);
     } else {
-        refuse(bus, p);
+        refuse(bus, now_us, p);
     }
 }
 
@@ -472,7 +477,7 @@ static void abandon_active(grobo_bus *bus, int result)
 {
     grobo_txn *txn = bus->active;
     if (bus->phase == GROBO_BUS_AWAITING || bus->phase == GROBO_BUS_ECHOING) {
-        grobo_i_bus_hold(bus, &txn->reply, bus->over_us);
+        grobo_i_bus_hold(bus, txn, bus->over_us);
     }
     bus->stats.canceled++;
     finish(bus, txn, result, NULL);

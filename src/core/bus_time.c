@@ -100,24 +100,6 @@ void grobo_i_bus_learn(grobo_bus *bus, int64_t now_us)
     bus->deviation_us += ((error_us < 0 ? -error_us : error_us) - bus->deviation_us) / 4;
 }
 
-void grobo_i_bus_hold(grobo_bus *bus, const grobo_reply *reply, int64_t from_us)
-{
-    if (reply->kind == GROBO_REPLY_NONE) {
-        return;
-    }
-    grobo_bus_hold *hold = &bus->hold[bus->next_hold];
-    hold->reply = *reply;
-    hold->until_us = from_us + bus->config.hold_us;
-    bus->next_hold = (uint8_t)((bus->next_hold + 1u) % GROBO_BUS_HOLDS);
-}
-
-void grobo_i_bus_release_holds(grobo_bus *bus)
-{
-    for (int i = 0; i < GROBO_BUS_HOLDS; i++) {
-        bus->hold[i].reply.kind = GROBO_REPLY_NONE;
-    }
-}
-
 /* True if the one reply would be taken for the other. */
 static bool same_reply(const grobo_reply *a, const grobo_reply *b)
 {
@@ -127,12 +109,47 @@ static bool same_reply(const grobo_reply *a, const grobo_reply *b)
     return a->id == b->id && a->address == b->address && a->length == b->length;
 }
 
+/* The first slot is for ACKs alone: theirs is the confusion that could name a wrong motor. */
+static grobo_bus_hold *slot_for(grobo_bus *bus, const grobo_reply *reply)
+{
+    if (reply->kind == GROBO_REPLY_ACK) {
+        return &bus->hold[0];
+    }
+    for (int i = 1; i < GROBO_BUS_HOLDS; i++) {
+        if (same_reply(&bus->hold[i].reply, reply)) {
+            return &bus->hold[i];
+        }
+    }
+    bus->next_hold = (uint8_t)(bus->next_hold % (GROBO_BUS_HOLDS - 1) + 1);
+    return &bus->hold[bus->next_hold];
+}
+
+void grobo_i_bus_hold(grobo_bus *bus, const grobo_txn *txn, int64_t from_us)
+{
+    if (txn->reply.kind == GROBO_REPLY_NONE) {
+        return;
+    }
+    grobo_bus_hold *hold = slot_for(bus, &txn->reply);
+    hold->reply = txn->reply;
+    hold->owner = txn;
+    hold->until_us = from_us + bus->config.hold_us;
+}
+
+void grobo_i_bus_release_holds(grobo_bus *bus)
+{
+    for (int i = 0; i < GROBO_BUS_HOLDS; i++) {
+        bus->hold[i].reply.kind = GROBO_REPLY_NONE;
+    }
+}
+
 static int64_t held_until(const grobo_bus *bus, const grobo_txn *txn)
 {
     int64_t until_us = 0;
-    for (int i = 0; i < GROBO_BUS_HOLDS && txn->attempts_ == 0; i++) {
-        if (same_reply(&bus->hold[i].reply, &txn->reply)) {
-            until_us = grobo_i_later(until_us, bus->hold[i].until_us);
+    for (int i = 0; i < GROBO_BUS_HOLDS; i++) {
+        const grobo_bus_hold *hold = &bus->hold[i];
+        bool own_retry = hold->owner == txn && txn->attempts_ > 0;
+        if (!own_retry && same_reply(&hold->reply, &txn->reply)) {
+            until_us = grobo_i_later(until_us, hold->until_us);
         }
     }
     return until_us;

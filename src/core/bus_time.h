@@ -24,8 +24,8 @@ int64_t grobo_i_bus_over_at(const grobo_bus *bus, int64_t start_us, const grobo_
 /* The active transaction's reply has come, in its first attempt. */
 void grobo_i_bus_learn(grobo_bus *bus, int64_t now_us);
 
-/* Remembers that this reply did not come and may yet, counted from from_us. */
-void grobo_i_bus_hold(grobo_bus *bus, const grobo_reply *reply, int64_t from_us);
+/* Remembers that a reply to this transaction may yet come, counted from from_us. */
+void grobo_i_bus_hold(grobo_bus *bus, const grobo_txn *txn, int64_t from_us);
 
 /* The line keeps the order: what was lost before the reply that came now will not come. */
 void grobo_i_bus_release_holds(grobo_bus *bus);

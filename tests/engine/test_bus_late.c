@@ -1,0 +1,381 @@
+/* SPDX-License-Identifier: MIT */
+/* Bytes that come when they should not: late replies, rubbish, ACKs without a name, echoes. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include <grobo/bus.h>
+
+#include "bus_peer.h"
+
+enum { MS = 1000, S = 1000000, FRAME = GROBO_FRAME_MAX_BYTES, MARGIN = 2 * MS };
+
+/* When a first attempt that starts at 0 has failed: a position read, an ACK request. */
+enum { READ_FAILED = 3488 + MARGIN, PING_FAILED = 955 + 695 + 100 + 87 + 87 + MARGIN };
+
+typedef struct request {
+    grobo_txn txn;
+    uint8_t frame[FRAME];
+} request;
+
+static const uint8_t ack = GROBO_RS30X_ACK;
+
+static void start(peer *p)
+{
+    const grobo_bus_config config = {.margin_us = MARGIN};
+    peer_init(p, &config);
+}
+
+static void submit_read(peer *p, request *r, uint8_t id, uint8_t retries)
+{
+    int n = grobo_frame_read(p->bus.config.wiring, id, 42, 2, r->frame, FRAME);
+    peer_txn(p, &r->txn, r->frame, n, GROBO_PRIORITY_USER);
+    r->txn.retries = retries;
+    assert_int_equal(grobo_bus_submit(&p->bus, &r->txn), GROBO_OK);
+}
+
+static void submit_ping(peer *p, request *r, uint8_t id, uint8_t retries)
+{
+    uint8_t packet[16];
+    int n = grobo_rs30x_ping(id, GROBO_RS30X_PING_FF_0_0, packet, sizeof packet);
+    n = grobo_frame_wrap(p->bus.config.wiring, packet, (size_t)n, r->frame, FRAME);
+    peer_txn(p, &r->txn, r->frame, n, GROBO_PRIORITY_USER);
+    r->txn.retries = retries;
+    assert_int_equal(grobo_bus_submit(&p->bus, &r->txn), GROBO_OK);
+}
+
+static void bytes_that_nobody_awaits_are_late(void **state)
+{
+    (void)state;
+    peer p;
+    start(&p);
+    peer_position_at(&p, MS, 1, 5);
+    peer_run(&p, S);
+    assert_int_equal(p.bus.stats.late_bytes, 10);
+    assert_int_equal(p.bus.stats.rx_bytes, 10);
+    assert_int_equal(p.bus.stats.resync_bytes, 0);
+}
+
+static void the_reply_of_a_dead_read_is_not_taken_for_another_motors(void **state)
+{
+    (void)state;
+    peer p;
+    request a, b;
+    start(&p);
+    submit_read(&p, &a, 1, 0);
+    submit_read(&p, &b, 2, 0);
+    int64_t second_us = READ_FAILED + GROBO_BUS_QUIET_US;
+    peer_position_at(&p, second_us + MS, 1, 11);
+    peer_position_at(&p, second_us + 3488, 2, 22);
+    peer_run(&p, S);
+    assert_int_equal(p.ended[0].result, GROBO_ERR_TIMEOUT);
+    assert_int_equal(p.ended[1].result, GROBO_OK);
+    assert_int_equal(p.ended[1].value, 22);
+    assert_int_equal(p.bus.stats.late_frames, 1);
+    assert_int_equal(p.bus.stats.late_bytes, 10);
+}
+
+/* The same registers of the same motor: only time, or another reply, tells the two apart. */
+static void the_same_read_again_waits_until_the_lost_reply_cannot_come(void **state)
+{
+    (void)state;
+    peer p;
+    request a, b;
+    start(&p);
+    submit_read(&p, &a, 1, 0);
+    submit_read(&p, &b, 1, 0);
+    peer_position_at(&p, 60 * MS, 1, 11);
+    int64_t second_us = READ_FAILED + GROBO_BUS_HOLD_US;
+    peer_position_at(&p, second_us + 3488, 1, 22);
+    peer_run(&p, S);
+    assert_int_equal(p.sent[1].at_us, second_us);
+    assert_int_equal(p.ended[1].value, 22);
+    assert_int_equal(p.bus.stats.late_bytes, 10);
+}
+
+static void another_reply_proves_that_the_lost_one_is_lost(void **state)
+{
+    (void)state;
+    peer p;
+    request a, b, c;
+    start(&p);
+    submit_read(&p, &a, 1, 0);
+    submit_read(&p, &b, 2, 0);
+    submit_read(&p, &c, 1, 0);
+    int64_t second_us = READ_FAILED + GROBO_BUS_QUIET_US;
+    peer_position_at(&p, second_us + 3488, 2, 22);
+    peer_position_at(&p, second_us + 2 * 3488, 1, 33);
+    peer_run(&p, S);
+    assert_int_equal(p.sent[2].at_us, second_us + 3488);
+    assert_int_equal(p.ended[2].value, 33);
+}
+
+/* The first attempt's reply answers the second; the second's must not answer the next read. */
+static void a_retry_that_succeeds_may_leave_a_reply_behind(void **state)
+{
+    (void)state;
+    peer p;
+    request a, b;
+    start(&p);
+    submit_read(&p, &a, 1, 1);
+    submit_read(&p, &b, 1, 0);
+    int64_t second_us = READ_FAILED + GROBO_BUS_QUIET_US;
+    peer_position_at(&p, second_us + MS, 1, 11);
+    peer_position_at(&p, second_us + 3488 + MS, 1, 22);
+    peer_position_at(&p, second_us + MS + GROBO_BUS_HOLD_US + 3488, 1, 33);
+    peer_run(&p, S);
+    assert_int_equal(p.ended[0].value, 11);
+    assert_int_equal(p.ended[1].value, 33);
+    assert_int_equal(p.bus.stats.late_bytes, 10);
+}
+
+static void a_late_ack_is_not_taken_for_another_motors(void **state)
+{
+    (void)state;
+    peer p;
+    request a, b, c;
+    start(&p);
+    submit_ping(&p, &a, 1, 0);
+    submit_ping(&p, &b, 2, 0);
+    peer_bytes_at(&p, PING_FAILED + 20 * MS, &ack, 1); /* motor 1's, when motor 2 could be asked */
+    peer_run(&p, PING_FAILED + GROBO_BUS_HOLD_US - 1);
+    assert_int_equal(p.sent_count, 1);
+    peer_run(&p, S);
+    assert_int_equal(p.sent[1].at_us, PING_FAILED + GROBO_BUS_HOLD_US);
+    assert_int_equal(p.ended[0].result, GROBO_ERR_TIMEOUT);
+    assert_int_equal(p.ended[1].result, GROBO_ERR_TIMEOUT);
+    assert_int_equal(p.bus.stats.late_bytes, 1);
+
+    submit_ping(&p, &a, 1, 0); /* 100 ms later an ACK is believed again */
+    peer_bytes_at(&p, S + 2 * MS, &ack, 1);
+    submit_read(&p, &c, 3, 0);
+    peer_run(&p, 2 * S);
+    assert_int_equal(p.ended[2].result, GROBO_OK);
+}
+
+static void reads_go_on_while_an_ack_is_outstanding_and_clear_it(void **state)
+{
+    (void)state;
+    peer p;
+    request a, b, c;
+    start(&p);
+    submit_ping(&p, &a, 1, 0);
+    submit_ping(&p, &b, 2, 0);
+    int n = grobo_frame_read(GROBO_WIRING_BOARD, 3, 42, 2, c.frame, FRAME);
+    peer_txn(&p, &c.txn, c.frame, n, GROBO_PRIORITY_SENSE);
+    assert_int_equal(grobo_bus_submit(&p.bus, &c.txn), GROBO_OK);
+    int64_t read_us = PING_FAILED + GROBO_BUS_QUIET_US;
+    peer_position_at(&p, read_us + 3488, 3, 33);
+    peer_bytes_at(&p, read_us + 3488 + 1924, &ack, 1);
+    peer_run(&p, S);
+    assert_int_equal(p.sent[1].id, 3);
+    assert_int_equal(p.sent[1].at_us, read_us);
+    assert_int_equal(p.sent[2].id, 2);
+    assert_int_equal(p.sent[2].at_us, read_us + 3488);
+    assert_ptr_equal(p.ended[2].txn, &b.txn);
+    assert_int_equal(p.ended[2].result, GROBO_OK);
+}
+
+static void an_ack_among_rubbish_is_not_believed(void **state)
+{
+    (void)state;
+    static const uint8_t rubbish[] = {0x55, GROBO_RS30X_ACK};
+    peer p;
+    request r;
+    start(&p);
+    submit_ping(&p, &r, 1, 0);
+    peer_bytes_at(&p, MS, rubbish, sizeof rubbish);
+    peer_run(&p, S);
+    assert_int_equal(p.ended[0].result, GROBO_ERR_MISMATCH);
+    assert_int_equal(p.bus.stats.replies, 0);
+}
+
+/* 07 is an ACK byte, and the low byte of 7 mA, 7 deg... */
+static void an_ack_inside_a_late_reply_is_not_believed(void **state)
+{
+    (void)state;
+    peer p;
+    request r;
+    start(&p);
+    submit_ping(&p, &r, 1, 0);
+    peer_position_at(&p, MS, 9, 0x0707);
+    peer_bytes_at(&p, 1924, &ack, 1);
+    peer_run(&p, S);
+    assert_int_equal(p.ended[0].result, GROBO_OK);
+    assert_int_equal(p.ended[0].at_us, 1924);
+    assert_int_equal(p.bus.stats.late_frames, 1);
+}
+
+static void an_ack_is_no_answer_to_a_read(void **state)
+{
+    (void)state;
+    peer p;
+    request r;
+    start(&p);
+    submit_read(&p, &r, 1, 0);
+    peer_bytes_at(&p, MS, &ack, 1);
+    peer_position_at(&p, 3488, 1, 11);
+    peer_run(&p, S);
+    assert_int_equal(p.ended[0].result, GROBO_OK);
+    assert_int_equal(p.bus.stats.resync_bytes, 1);
+}
+
+static void replies_that_fit_in_part_are_not_believed(void **state)
+{
+    (void)state;
+    static const struct {
+        uint8_t id, address, length;
+    } wrong[] = {{2, 42, 2}, {1, 44, 2}, {1, 42, 4}};
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        static const uint8_t data[4] = {1, 1, 1, 1};
+        uint8_t b[FRAME];
+        peer p;
+        request r;
+        start(&p);
+        submit_read(&p, &r, 1, 0);
+        const grobo_rs30x_packet packet = {GROBO_RS30X_RETURN, wrong[i].id, 0,    wrong[i].address,
+                                           wrong[i].length,    1,           data, wrong[i].length};
+        int n = grobo_rs30x_build(&packet, b, FRAME);
+        peer_bytes_at(&p, 3488, b, (size_t)n);
+        peer_run(&p, S);
+        assert_int_equal(p.ended_count, 1);
+        assert_int_equal(p.ended[0].result, GROBO_ERR_TIMEOUT);
+        assert_int_equal(p.bus.stats.late_frames, 1);
+    }
+}
+
+/* Every byte pushes the next request back, but not for ever. */
+static void a_babbling_line_is_waited_for_with_patience_and_no_more(void **state)
+{
+    (void)state;
+    peer p;
+    request r;
+    start(&p);
+    submit_read(&p, &r, 1, 0);
+    peer_run(&p, READ_FAILED);
+    submit_read(&p, &r, 2, 0);
+    int64_t babble_us = READ_FAILED;
+    for (int i = 0; i < 60 && p.sent_count < 2; i++, babble_us += 900) {
+        static const uint8_t rubbish = 0x55;
+        peer_bytes_at(&p, babble_us + 900, &rubbish, 1);
+        peer_run(&p, babble_us + 900);
+    }
+    assert_int_equal(p.sent_count, 2);
+    assert_in_range(p.sent[1].at_us, READ_FAILED + GROBO_BUS_QUIET_MAX_US,
+                    READ_FAILED + GROBO_BUS_QUIET_MAX_US + 900);
+}
+
+static void motion_does_not_wait_for_quiet(void **state)
+{
+    (void)state;
+    peer p;
+    request a, b;
+    const grobo_rs30x_goal goal = {2, 0, 0};
+    start(&p);
+    submit_read(&p, &a, 1, 0);
+    int n = grobo_frame_goal(GROBO_WIRING_BOARD, &goal, b.frame, FRAME);
+    peer_run(&p, 4 * MS);
+    peer_txn(&p, &b.txn, b.frame, n, GROBO_PRIORITY_MOTION);
+    assert_int_equal(grobo_bus_submit(&p.bus, &b.txn), GROBO_OK);
+    peer_run(&p, S);
+    assert_int_equal(p.sent[1].at_us, 4 * MS);
+}
+
+/* ---- echo ---- */
+
+static void start_echo(peer *p)
+{
+    const grobo_bus_config config = {.wiring = GROBO_WIRING_BUS, .margin_us = MARGIN, .echo = true};
+    peer_init(p, &config);
+}
+
+static void an_echo_is_removed(void **state)
+{
+    (void)state;
+    peer p;
+    request a, b;
+    start_echo(&p);
+    submit_ping(&p, &a, 7, 0); /* its frame holds a 07, which is no ACK */
+    peer_bytes_at(&p, 300, a.frame, 4);
+    peer_bytes_at(&p, 700, a.frame + 4, 4);
+    peer_bytes_at(&p, MS, &ack, 1);
+    peer_run(&p, 2 * MS);
+    assert_int_equal(p.ended[0].result, GROBO_OK);
+    assert_int_equal(p.ended[0].at_us, MS);
+
+    submit_read(&p, &b, 1, 0);
+    uint8_t all[18]; /* echo and reply in one piece */
+    memcpy(all, b.frame, 8);
+    memcpy(all + 8, "\xFD\xDF\x01\x00\x2A\x02\x01\x64\x00\x4C", 10);
+    peer_bytes_at(&p, 4 * MS, all, sizeof all);
+    peer_run(&p, S);
+    assert_int_equal(p.ended[1].result, GROBO_OK);
+    assert_int_equal(p.ended[1].value, 100);
+    assert_int_equal(p.bus.stats.resync_bytes, 0);
+    assert_int_equal(p.bus.stats.late_bytes, 0);
+}
+
+static void a_write_is_over_when_its_echo_is_there(void **state)
+{
+    (void)state;
+    peer p;
+    request r;
+    const grobo_rs30x_goal goal = {2, 0, 0};
+    start_echo(&p);
+    int n = grobo_frame_goal(GROBO_WIRING_BUS, &goal, r.frame, FRAME);
+    peer_txn(&p, &r.txn, r.frame, n, GROBO_PRIORITY_MOTION);
+    r.txn.retries = 1;
+    assert_int_equal(grobo_bus_submit(&p.bus, &r.txn), GROBO_OK);
+    uint8_t hit[FRAME];
+    memcpy(hit, r.frame, (size_t)n);
+    hit[8] ^= 0x40; /* another sender was on the line */
+    peer_bytes_at(&p, 1100, hit, (size_t)n);
+    peer_bytes_at(&p, 4 * MS, r.frame, (size_t)n);
+    peer_run(&p, S);
+    assert_int_equal(p.bus.stats.bad_echoes, 1);
+    assert_int_equal(p.sent_count, 2);
+    assert_int_equal(p.ended[0].result, GROBO_OK);
+    assert_int_equal(p.ended[0].at_us, 4 * MS);
+}
+
+static void an_adapter_without_echo_is_found_out(void **state)
+{
+    (void)state;
+    peer p;
+    request r;
+    start_echo(&p);
+    submit_read(&p, &r, 1, 0);
+    peer_position_at(&p, 2 * MS, 1, 5);
+    peer_run(&p, S);
+    assert_int_equal(p.ended[0].result, GROBO_ERR_MISMATCH);
+    submit_read(&p, &r, 1, 0);
+    peer_run(&p, 2 * S);
+    assert_int_equal(p.ended[1].result, GROBO_ERR_TIMEOUT);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(bytes_that_nobody_awaits_are_late),
+        cmocka_unit_test(the_reply_of_a_dead_read_is_not_taken_for_another_motors),
+        cmocka_unit_test(the_same_read_again_waits_until_the_lost_reply_cannot_come),
+        cmocka_unit_test(another_reply_proves_that_the_lost_one_is_lost),
+        cmocka_unit_test(a_retry_that_succeeds_may_leave_a_reply_behind),
+        cmocka_unit_test(a_late_ack_is_not_taken_for_another_motors),
+        cmocka_unit_test(reads_go_on_while_an_ack_is_outstanding_and_clear_it),
+        cmocka_unit_test(an_ack_among_rubbish_is_not_believed),
+        cmocka_unit_test(an_ack_inside_a_late_reply_is_not_believed),
+        cmocka_unit_test(an_ack_is_no_answer_to_a_read),
+        cmocka_unit_test(replies_that_fit_in_part_are_not_believed),
+        cmocka_unit_test(a_babbling_line_is_waited_for_with_patience_and_no_more),
+        cmocka_unit_test(motion_does_not_wait_for_quiet),
+        cmocka_unit_test(an_echo_is_removed),
+        cmocka_unit_test(a_write_is_over_when_its_echo_is_there),
+        cmocka_unit_test(an_adapter_without_echo_is_found_out),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
