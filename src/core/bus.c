@@ -99,7 +99,7 @@ static void fail(grobo_bus *bus, int64_t now_us, int error)
     if (error == GROBO_ERR_TIMEOUT || error == GROBO_ERR_SHORT) {
         bus->stats.timeouts++;
     }
-    /* Also after a wrong sum: those bytes may have been an older reply, and this one's yet to come. */
+    /* After a wrong sum too: that may have been an older reply, and this one's is yet to come. */
     grobo_i_bus_hold(bus, txn, now_us);
     ask_for_quiet(bus, now_us);
     if (txn->attempts_ <= txn->retries) {

@@ -19,7 +19,7 @@
 enum {
     MS = 1000,
     FRAME = GROBO_FRAME_MAX_BYTES,
-    SEEDS = 40,
+    SEEDS = 100,
     RUN_US = 20000000,
     MOTION_EVERY_US = 40 * MS,
     REQUESTS = 12,
