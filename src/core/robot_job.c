@@ -193,7 +193,8 @@ static void take_answer(grobo_robot *robot, int result, const grobo_rs30x_packet
 {
     grobo_robot_task *job = &robot->job;
     job->reply_bytes = 0;
-    if (reply != NULL && reply->data_bytes <= sizeof robot->reply) {
+    /* An ACK has no data, and then no place of it. */
+    if (reply != NULL && reply->data_bytes > 0 && reply->data_bytes <= sizeof robot->reply) {
         memcpy(robot->reply, reply->data, reply->data_bytes);
         job->reply_bytes = reply->data_bytes;
     }
