@@ -6,14 +6,13 @@
 #include <stdint.h>
 #include <string.h>
 
-#include <sys/resource.h>
-
 #include <cmocka.h>
 #include <event2/event.h>
 
 #include <grobo/serial.h>
 
 #include "line.h"
+#include "resources.h"
 
 static test_line line;
 static struct event_base *base;
@@ -240,15 +239,6 @@ static void queued_bytes_can_be_dropped(void **state)
     assert_int_equal(seen.events[GROBO_SERIAL_DRAINED], 0);
 }
 
-static int64_t cpu_us(void)
-{
-    struct rusage usage;
-
-    assert_int_equal(getrusage(RUSAGE_SELF, &usage), 0);
-    return (int64_t)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) * 1000000 +
-           usage.ru_utime.tv_usec + usage.ru_stime.tv_usec;
-}
-
 static void a_hang_up_is_one_event_and_then_silence(void **state)
 {
     int64_t hung_up_us;
@@ -263,10 +253,10 @@ static void a_hang_up_is_one_event_and_then_silence(void **state)
     assert_false(grobo_serial_is_open(serial));
     assert_true(strlen(grobo_serial_cause(serial)->text) > 0);
 
-    cpu_before_us = cpu_us();
+    cpu_before_us = test_cpu_us();
     assert_true(run_for(200000));
     /* A spinning loop would use all of the 200 ms. */
-    assert_true(cpu_us() - cpu_before_us < 50000);
+    assert_true(test_cpu_us() - cpu_before_us < 50000);
     assert_int_equal(seen.events[GROBO_SERIAL_UNPLUGGED], 1);
     assert_int_equal(grobo_serial_send(serial, "x", 1), GROBO_ERR_CLOSED);
 }
@@ -339,46 +329,25 @@ static void it_may_be_freed_in_on_event(void **state)
     assert_true(run_for(10000));
 }
 
-/* An allocator whose n-th allocation fails. */
-static int allocations_left;
-static int blocks;
-
-static void *count_down(void *ctx, void *ptr, size_t old_bytes, size_t new_bytes)
-{
-    const grobo_mem *mem = grobo_mem_default();
-    void *made = NULL;
-
-    (void)ctx;
-    if (new_bytes == 0) {
-        blocks -= ptr != NULL ? 1 : 0;
-        return mem->resize(mem->ctx, ptr, old_bytes, 0);
-    }
-    if (allocations_left > 0) {
-        allocations_left--;
-        made = mem->resize(mem->ctx, ptr, old_bytes, new_bytes);
-        blocks += made != NULL && ptr == NULL ? 1 : 0;
-    }
-    return made;
-}
-
 static void each_lack_of_memory_is_told_and_leaks_nothing(void **state)
 {
-    static const grobo_mem mem = {count_down, NULL};
+    test_mem mem;
     const grobo_serial_config config = {.device = line.device,
                                         .base = base,
                                         .mode = GROBO_SERIAL_ASYNC,
                                         .on_data = on_data,
-                                        .mem = &mem};
+                                        .mem = &mem.mem};
     int failures = 0;
     int r = GROBO_ERR_NOMEM;
 
     (void)state;
+    test_mem_init(&mem, 0);
     grobo_serial_close(serial);
     for (int n = 0; r == GROBO_ERR_NOMEM; n++) {
         grobo_serial *made = NULL;
 
         assert_true(n < 20);
-        allocations_left = n;
+        mem.allocations_left = n;
         r = grobo_serial_new(&config, &made);
         if (r == GROBO_OK) {
             r = grobo_serial_open(made);
@@ -387,7 +356,7 @@ static void each_lack_of_memory_is_told_and_leaks_nothing(void **state)
             assert_null(made);
         }
         failures += r == GROBO_ERR_NOMEM ? 1 : 0;
-        assert_int_equal(blocks, 0);
+        assert_int_equal(mem.blocks, 0);
     }
     assert_int_equal(r, GROBO_OK);
     assert_int_equal(failures, 3);

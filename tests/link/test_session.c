@@ -8,7 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <cmocka.h>
@@ -18,6 +17,7 @@
 #include <grobo/sim_server.h>
 
 #include "line.h"
+#include "resources.h"
 
 static struct event_base *base;
 static grobo_session *session;
@@ -383,15 +383,6 @@ static void requests_need_a_robot(void **state)
 
 /* ---- lost and back ------------------------------------------------------------------------ */
 
-static int64_t cpu_us(void)
-{
-    struct rusage usage;
-
-    assert_int_equal(getrusage(RUSAGE_SELF, &usage), 0);
-    return (int64_t)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) * 1000000 +
-           usage.ru_utime.tv_usec + usage.ru_stime.tv_usec;
-}
-
 static void a_lost_port_is_found_again(void **state)
 {
     char folder[] = "/tmp/grobo-session-XXXXXX";
@@ -418,9 +409,9 @@ static void a_lost_port_is_found_again(void **state)
     assert_int_equal(grobo_session_get_state(session), GROBO_SESSION_WAITING);
     assert_int_equal(grobo_session_check(session), GROBO_ERR_CLOSED);
 
-    cpu_before_us = cpu_us();
+    cpu_before_us = test_cpu_us();
     assert_true(run_for(300000));
-    assert_true(cpu_us() - cpu_before_us < 50000);
+    assert_true(test_cpu_us() - cpu_before_us < 50000);
     assert_int_equal(seen.losts, 1);
 
     plugged_us = grobo_now_us();
@@ -514,40 +505,19 @@ static void it_may_be_opened_again_when_lost(void **state)
 
 /* ---- refusals ----------------------------------------------------------------------------- */
 
-/* An allocator whose n-th allocation fails. */
-static int allocations_left;
-static int blocks;
-
-static void *count_down(void *ctx, void *ptr, size_t old_bytes, size_t new_bytes)
-{
-    const grobo_mem *mem = grobo_mem_default();
-    void *made = NULL;
-
-    (void)ctx;
-    if (new_bytes == 0) {
-        blocks -= ptr != NULL ? 1 : 0;
-        return mem->resize(mem->ctx, ptr, old_bytes, 0);
-    }
-    if (allocations_left > 0) {
-        allocations_left--;
-        made = mem->resize(mem->ctx, ptr, old_bytes, new_bytes);
-        blocks += made != NULL && ptr == NULL ? 1 : 0;
-    }
-    return made;
-}
-
 static void bad_configurations_and_lack_of_memory(void **state)
 {
-    static const grobo_mem mem = {count_down, NULL};
+    test_mem mem;
     static const grobo_robot_config bad_robot = {.speed_limit_pct = 200};
-    grobo_session_config config = {.base = base, .device = "sim", .mem = &mem};
+    grobo_session_config config = {.base = base, .device = "sim", .mem = &mem.mem};
     grobo_session *made = NULL;
     int failures = -1;
     int r = GROBO_ERR_NOMEM;
 
     (void)state;
+    test_mem_init(&mem, 0);
     while (r == GROBO_ERR_NOMEM) {
-        allocations_left = ++failures;
+        mem.allocations_left = ++failures;
         r = grobo_session_new(&config, &made);
         if (r >= 0) {
             r = grobo_session_open(made);
@@ -555,12 +525,12 @@ static void bad_configurations_and_lack_of_memory(void **state)
             made = NULL;
         }
         assert_null(made);
-        assert_int_equal(blocks, 0);
+        assert_int_equal(mem.blocks, 0);
     }
     assert_int_equal(r, GROBO_OK);
     assert_int_equal(failures, 5);
 
-    allocations_left = 100;
+    mem.allocations_left = 100;
     config.robot = &bad_robot;
     assert_int_equal(grobo_session_new(&config, &made), GROBO_ERR_ARG);
     config.robot = NULL;
@@ -570,7 +540,7 @@ static void bad_configurations_and_lack_of_memory(void **state)
     config.device = NULL;
     assert_int_equal(grobo_session_new(&config, &made), GROBO_ERR_ARG);
     assert_int_equal(grobo_session_new(NULL, &made), GROBO_ERR_ARG);
-    assert_int_equal(blocks, 0);
+    assert_int_equal(mem.blocks, 0);
 }
 
 int main(void)

@@ -8,7 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -16,6 +15,8 @@
 #include <event2/event.h>
 
 #include <grobo/sim_server.h>
+
+#include "resources.h"
 
 /* Frames of the original: check, torque of servo 1 on, state of servo 1. */
 static const uint8_t check[] = {0x41, 0x00};
@@ -335,15 +336,6 @@ static void both_ends_reach_one_board(void **state)
     grobo_sim_server_free(server);
 }
 
-static int64_t cpu_us(void)
-{
-    struct rusage usage;
-
-    assert_int_equal(getrusage(RUSAGE_SELF, &usage), 0);
-    return (int64_t)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) * 1000000 +
-           usage.ru_utime.tv_usec + usage.ru_stime.tv_usec;
-}
-
 static void a_flood_is_taken_at_the_wires_pace_and_idle_is_idle(void **state)
 {
     static uint8_t flood[4096];
@@ -363,63 +355,42 @@ static void a_flood_is_taken_at_the_wires_pace_and_idle_is_idle(void **state)
     assert_int_equal(grobo_sim_server_sim(server)->stats.rx_bytes, sizeof flood);
     assert_true(grobo_now_us() - start_us >= (int64_t)sizeof flood * 10 * 1000000 / 115200);
     (void)run_for(50000);
-    cpu_before_us = cpu_us();
+    cpu_before_us = test_cpu_us();
     assert_true(run_for(200000));
-    assert_true(cpu_us() - cpu_before_us < 50000);
+    assert_true(test_cpu_us() - cpu_before_us < 50000);
     assert_answers(&c);
     grobo_serial_free(c.serial);
     grobo_sim_server_free(server);
 }
 
-/* An allocator whose n-th allocation fails. */
-static int allocations_left;
-static int blocks;
-
-static void *count_down(void *ctx, void *ptr, size_t old_bytes, size_t new_bytes)
-{
-    const grobo_mem *mem = grobo_mem_default();
-    void *made = NULL;
-
-    (void)ctx;
-    if (new_bytes == 0) {
-        blocks -= ptr != NULL ? 1 : 0;
-        return mem->resize(mem->ctx, ptr, old_bytes, 0);
-    }
-    if (allocations_left > 0) {
-        allocations_left--;
-        made = mem->resize(mem->ctx, ptr, old_bytes, new_bytes);
-        blocks += made != NULL && ptr == NULL ? 1 : 0;
-    }
-    return made;
-}
-
 static void refusals_leave_nothing_behind(void **state)
 {
-    static const grobo_mem mem = {count_down, NULL};
+    test_mem mem;
     const grobo_sim_config bad_sim = {.baud_bps = 1};
-    grobo_sim_server_config config = {.base = base, .mem = &mem};
+    grobo_sim_server_config config = {.base = base, .mem = &mem.mem};
     grobo_sim_server *server = NULL;
     grobo_os_cause cause = {0};
     int r = GROBO_ERR_NOMEM;
     int failures = -1;
 
     (void)state;
+    test_mem_init(&mem, 0);
     while (r == GROBO_ERR_NOMEM) {
         failures++;
-        allocations_left = failures;
+        mem.allocations_left = failures;
         r = grobo_sim_server_new(&config, &server, &cause);
         if (r < 0) {
             assert_null(server);
-            assert_int_equal(blocks, 0);
+            assert_int_equal(mem.blocks, 0);
         }
     }
     assert_int_equal(r, GROBO_OK);
     assert_int_equal(failures, 4);
     grobo_sim_server_free(server);
     grobo_sim_server_free(NULL);
-    assert_int_equal(blocks, 0);
+    assert_int_equal(mem.blocks, 0);
 
-    allocations_left = 100;
+    mem.allocations_left = 100;
     config.no_pty = true;
     assert_int_equal(grobo_sim_server_new(&config, &server, NULL), GROBO_ERR_ARG);
     config.tcp = "tcp:nowhere";
@@ -427,7 +398,7 @@ static void refusals_leave_nothing_behind(void **state)
     config.tcp = "tcp:127.0.0.1:0";
     config.sim = &bad_sim;
     assert_int_equal(grobo_sim_server_new(&config, &server, &cause), GROBO_ERR_ARG);
-    assert_int_equal(blocks, 0);
+    assert_int_equal(mem.blocks, 0);
 }
 
 int main(void)
