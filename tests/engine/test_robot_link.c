@@ -1,0 +1,253 @@
+/* SPDX-License-Identifier: MIT */
+/* The line goes and comes; silent and lying lines; requests from within the callback. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <math.h>
+#include <string.h>
+
+#include "rig.h"
+
+enum { NECK = 13, R_KNEE = 3 };
+
+static grobo_test_rig rig;
+static rig_clip clip;
+static const grobo_robot_config quiet = {.sense_interval_us = GROBO_SENSE_NEVER};
+static const rig_key sway[] = {{0, {{NECK, 0}}}, {1000, {{NECK, 30}}}, {3000, {{NECK, -30}}}};
+
+static void unplug(void)
+{
+    grobo_sim_plug(&rig.sim, false, rig.now_us);
+    grobo_robot_link_down(&rig.robot, rig.now_us);
+}
+
+static void plug(void)
+{
+    grobo_sim_plug(&rig.sim, true, rig.now_us);
+    grobo_robot_link_up(&rig.robot, rig.now_us);
+}
+
+static void nothing_is_asked_of_a_line_that_is_down(void **state)
+{
+    (void)state;
+    grobo_posture target;
+    rig_start(&rig, &quiet, NULL);
+    unplug();
+    target = rig_posture(&rig, NECK, 1, 100);
+    assert_int_equal(grobo_robot_check(&rig.robot, rig.now_us), GROBO_ERR_CLOSED);
+    assert_int_equal(grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_ERR_CLOSED);
+    assert_int_equal(grobo_robot_exit(&rig.robot, GROBO_EXIT_OFF, rig.now_us), GROBO_ERR_CLOSED);
+    assert_int_equal(grobo_robot_estop(&rig.robot, rig.now_us), GROBO_ERR_CLOSED);
+    assert_true(grobo_robot_deadline(&rig.robot, rig.now_us) == GROBO_NEVER_US);
+    rig_run(&rig, 1000000);
+    assert_int_equal(rig.n_sent, 0);
+    grobo_trip_info trip;
+    grobo_robot_tripped(&rig.robot, &trip);
+    assert_true(trip.latched && trip.trip == GROBO_TRIP_ESTOP); /* latched all the same */
+}
+
+static void a_job_ends_when_the_line_goes(void **state)
+{
+    (void)state;
+    rig_start(&rig, &quiet, NULL);
+    int number = grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL, rig.now_us);
+    rig_run(&rig, 30000);
+    unplug();
+    const grobo_event_job *job = rig_expect(&rig, number, GROBO_ERR_UNPLUGGED);
+    assert_int_equal(job->kind, GROBO_JOB_SENSE);
+    assert_int_equal(rig_count(&rig, GROBO_EVENT_LINK_DOWN), 1);
+    grobo_joint_info info;
+    assert_int_equal(grobo_robot_joint(&rig.robot, 0, rig.now_us, &info), 0);
+    assert_int_equal(info.status, GROBO_ERR_UNPLUGGED);
+    assert_false(info.torque_known);
+}
+
+static void a_motion_ends_when_the_line_goes_and_does_not_come_back(void **state)
+{
+    (void)state;
+    rig_start(&rig, NULL, NULL);
+    rig_clip_init(&clip, sway, 3);
+    rig_power(&rig);
+    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL, rig.now_us), GROBO_OK);
+    rig_run(&rig, 500000);
+    unplug();
+    assert_int_equal(grobo_robot_play_state(&rig.robot), GROBO_SEQUENCER_FAILED);
+    assert_int_equal(rig_last(&rig, GROBO_EVENT_PLAY)->u.play.error, GROBO_ERR_UNPLUGGED);
+    rig_run(&rig, 5000000);
+    double here_deg = rig_angle_deg(&rig, NECK);
+    rig_forget(&rig);
+    plug();
+    assert_int_equal(rig_count(&rig, GROBO_EVENT_LINK_UP), 1);
+    rig_run(&rig, 1500000);
+    assert_true(rig_count(&rig, GROBO_EVENT_JOINT) >= 20); /* sensed again */
+    assert_true(fabs(rig_angle_deg(&rig, NECK) - here_deg) < 0.01);
+    for (size_t i = 0; i < rig.n_sent; i++) {
+        assert_int_equal(rig.sent[i].bytes[0], 0x54); /* reads, nothing else */
+    }
+    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL, rig.now_us), GROBO_OK);
+    rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
+}
+
+static void nineteen_of_twenty_are_delivered(void **state)
+{
+    (void)state;
+    rig_start(&rig, &quiet, NULL);
+    rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL, rig.now_us),
+               GROBO_OK);
+    int64_t begun_us = rig.now_us;
+    rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL, rig.now_us),
+               GROBO_OK);
+    int64_t usual_us = rig.now_us - begun_us;
+    assert_int_equal(grobo_sim_set_cable(&rig.sim, R_KNEE, GROBO_SIM_CABLE_MUTE), 0);
+    begun_us = rig.now_us;
+    const grobo_event_job *job =
+        rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL, rig.now_us),
+                   GROBO_ERR_TIMEOUT);
+    assert_true(job->failed == GROBO_JOINT_BIT(R_KNEE));
+    assert_int_equal(job->joint, R_KNEE);
+    /* Its own timeouts, three attempts, and no more. */
+    assert_in_range(rig.now_us - begun_us, usual_us, usual_us + 70000);
+    for (int j = 0; j < 20; j++) {
+        grobo_joint_info info;
+        assert_int_equal(grobo_robot_joint(&rig.robot, j, rig.now_us, &info), 0);
+        assert_int_equal(info.status, j == R_KNEE ? GROBO_ERR_TIMEOUT : GROBO_OK);
+        assert_true(j == R_KNEE ? info.angle_age_us > usual_us : info.angle_age_us < 250000);
+    }
+}
+
+static void a_stale_angle_is_not_in_a_fresh_posture(void **state)
+{
+    (void)state;
+    grobo_posture posture;
+    rig_start(&rig, &quiet, NULL);
+    assert_int_equal(grobo_robot_posture(&rig.robot, rig.now_us, GROBO_NEVER_US, &posture), 0);
+    rig_expect(&rig, grobo_robot_sense(&rig.robot, 0x7, GROBO_SENSE_POSITION, rig.now_us), 0);
+    rig_run(&rig, 500000);
+    rig_expect(&rig, grobo_robot_sense(&rig.robot, 0x3, GROBO_SENSE_POSITION, rig.now_us), 0);
+    assert_int_equal(grobo_robot_posture(&rig.robot, rig.now_us, GROBO_NEVER_US, &posture), 3);
+    assert_int_equal(grobo_robot_posture(&rig.robot, rig.now_us, 100000, &posture), 2);
+    assert_true(posture.set == 0x3);
+}
+
+static void broken_replies_are_retried_and_never_believed(void **state)
+{
+    (void)state;
+    static const double stands_deg[] = {10, -20, 30};
+    rig_start(&rig, &quiet, NULL);
+    for (int j = 0; j < 3; j++) {
+        assert_int_equal(grobo_sim_set_angle(&rig.sim, j, (int32_t)(stands_deg[j] * 1000), 0), 0);
+    }
+    assert_int_equal(grobo_sim_set_fault(&rig.sim, GROBO_SIM_FAULT_FLIP, 0.005), 0);
+    assert_int_equal(grobo_sim_set_fault(&rig.sim, GROBO_SIM_FAULT_DELAY, 0.1), 0);
+    assert_int_equal(grobo_sim_set_fault(&rig.sim, GROBO_SIM_FAULT_RUBBISH, 0.1), 0);
+    int good = 0;
+    for (int i = 0; i < 100; i++) {
+        const grobo_event_job *job =
+            rig_wait(&rig, grobo_robot_sense(&rig.robot, 0x7, GROBO_SENSE_POSITION, rig.now_us));
+        for (int j = 0; j < 3; j++) {
+            grobo_joint_info info;
+            assert_int_equal(grobo_robot_joint(&rig.robot, j, rig.now_us, &info), 0);
+            if ((job->failed & GROBO_JOINT_BIT(j)) == 0) {
+                double deg = grobo_deg_from_rad(info.state.angle_rad);
+                assert_true(fabs(deg - stands_deg[j]) < 0.06);
+                good++;
+            }
+        }
+        rig_forget(&rig);
+    }
+    assert_true(good > 280);
+    assert_true(grobo_robot_get_bus_stats(&rig.robot)->retries > 10);
+}
+
+static void the_background_uses_the_wire(void **state)
+{
+    (void)state;
+    static const struct {
+        bool position_only;
+        int bytes; /* of request, servo's bus both ways, reply (protocol 2) */
+    } cases[] = {{false, 71}, {true, 11 + 8 + 10 + 10}};
+    for (int i = 0; i < 2; i++) {
+        grobo_robot_config config = {.sense_interval_us = 1,
+                                     .sense_position_only = cases[i].position_only};
+        rig_start(&rig, &config, NULL);
+        rig_run(&rig, 1000000);
+        uint32_t before = grobo_robot_get_bus_stats(&rig.robot)->replies;
+        rig_run(&rig, 1000000);
+        uint32_t replies = grobo_robot_get_bus_stats(&rig.robot)->replies - before;
+        double most = 1e6 / (cases[i].bytes * 10e6 / 115200 + 100);
+        assert_true(replies > 0.95 * most);
+        assert_true(replies <= 1.01 * most);
+    }
+}
+
+/* ---- requests from within the callback -------------------------------------- */
+
+static int chain;
+static int last_number;
+
+static void on_chain(grobo_test_rig *r, const grobo_event *event)
+{
+    if (event->kind != GROBO_EVENT_JOB || event->u.job.number != last_number) {
+        return;
+    }
+    chain++;
+    if (chain == 1) {
+        last_number = grobo_robot_torque(&r->robot, 0x3, GROBO_TORQUE_ON, event->now_us);
+    } else if (chain == 2) {
+        grobo_posture target = rig_posture(r, NECK, 10, 300);
+        last_number = grobo_robot_move(&r->robot, &target, event->now_us);
+    } else if (chain == 3) {
+        last_number = grobo_robot_estop(&r->robot, event->now_us);
+    }
+    assert_true(last_number > 0);
+}
+
+static void requests_may_come_from_the_callback(void **state)
+{
+    (void)state;
+    rig_start(&rig, NULL, NULL);
+    chain = 0;
+    rig.on_event = on_chain;
+    last_number = grobo_robot_check(&rig.robot, rig.now_us);
+    rig_run(&rig, 3000000);
+    assert_int_equal(chain, 4);
+    assert_int_equal(rig_torque(&rig, NECK), GROBO_TORQUE_BRAKE);
+}
+
+static void on_joint_stop(grobo_test_rig *r, const grobo_event *event)
+{
+    if (event->kind == GROBO_EVENT_JOINT && event->u.joint.joint == 5 && chain == 0) {
+        chain = grobo_robot_estop(&r->robot, event->now_us);
+    }
+}
+
+static void a_job_may_be_displaced_from_its_own_events(void **state)
+{
+    (void)state;
+    rig_start(&rig, &quiet, NULL);
+    chain = 0;
+    rig.on_event = on_joint_stop;
+    int number = grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL, rig.now_us);
+    rig_expect(&rig, number, GROBO_ERR_CANCELED);
+    assert_true(chain > number);
+    rig_expect(&rig, chain, GROBO_OK);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(nothing_is_asked_of_a_line_that_is_down),
+        cmocka_unit_test(a_job_ends_when_the_line_goes),
+        cmocka_unit_test(a_motion_ends_when_the_line_goes_and_does_not_come_back),
+        cmocka_unit_test(nineteen_of_twenty_are_delivered),
+        cmocka_unit_test(a_stale_angle_is_not_in_a_fresh_posture),
+        cmocka_unit_test(broken_replies_are_retried_and_never_believed),
+        cmocka_unit_test(the_background_uses_the_wire),
+        cmocka_unit_test(requests_may_come_from_the_callback),
+        cmocka_unit_test(a_job_may_be_displaced_from_its_own_events),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
