@@ -305,7 +305,7 @@ static int holding(grobo_sequencer *seq, int64_t now_us, grobo_play_frame *frame
     if (seq->waits && now_us >= seq->due_us) {
         return hand_out(seq, now_us, in_units(seq->to_us - seq->from_us), frame);
     }
-    if (seq->state == GROBO_SEQUENCER_STOPPING && !seq->waits && now_us >= seq->to_us) {
+    if (seq->state == GROBO_SEQUENCER_STOPPING && now_us >= seq->to_us) {
         seq->state = GROBO_SEQUENCER_IDLE;
     }
     return 0;
@@ -516,7 +516,7 @@ static void change_speed(grobo_sequencer *seq, uint16_t speed_pct, int64_t now_u
     int64_t end_us = by_key ? grobo_i_key_pos(seq) : seq->item.span_us;
 
     seq->anchor_pos_us = pos_us > end_us ? end_us : pos_us;
-    seq->anchor_us = now_us > seq->anchor_us ? now_us : seq->anchor_us;
+    seq->anchor_us = now_us;
     seq->item.options.speed_pct = speed_pct;
     if (by_key) {
         grobo_posture here;

@@ -22,7 +22,7 @@ static bool has(const grobo_posture *posture, int joint)
 
 static int check_posture(const grobo_posture *posture, const grobo_clip *clip)
 {
-    if (posture->n_joints != clip->n_joints || posture->time_us < 0) {
+    if (posture->n_joints != clip->n_joints) {
         return GROBO_ERR_ARG;
     }
     for (int j = 0; j < clip->n_joints; j++) {
@@ -37,7 +37,6 @@ static int finish_read(const grobo_play_item *item, const grobo_model *model,
                        grobo_posture *posture)
 {
     int result = check_posture(posture, &item->clip);
-    posture->set &= GROBO_JOINTS_ALL(item->clip.n_joints);
     if (result == 0 && item->options.mirror) {
         result = grobo_posture_mirror(posture, model);
     }

@@ -107,6 +107,33 @@ static void a_pause_before_anything_was_sent_moves_nothing(void **state)
     expect_last(0, 200, 1.2);
 }
 
+static void commands_that_meet_keep_posture_and_position_together(void **state)
+{
+    (void)state;
+    start(&by_key, 0.0);
+    sample_pump_run(&pump, 500 * MS);
+    /* The frame for the new speed is not out when the pause comes: it rests where it is. */
+    assert_int_equal(grobo_sequencer_set_speed(&pump.seq, 50, pump.now_us), 0);
+    assert_int_equal(grobo_sequencer_pause(&pump.seq, pump.now_us), 0);
+    sample_pump_run(&pump, 1000 * MS);
+    expect_last(500, 200, 0.4);
+    assert_int_equal(grobo_sequencer_resume(&pump.seq, pump.now_us), 0);
+    sample_pump_run(&pump, 1001 * MS);
+    expect_last(1000, 1200, 1.0);
+}
+
+static void speed_after_a_stall_begins_at_the_key_that_is_reached(void **state)
+{
+    (void)state;
+    start(&by_key, 0.0);
+    sample_pump_run(&pump, 500 * MS);
+    pump.now_us = 1500 * MS; /* key 1 was reached at 1100 */
+    assert_int_equal(grobo_sequencer_set_speed(&pump.seq, 50, pump.now_us), 0);
+    sample_pump_run(&pump, 1501 * MS);
+    expect_last(1500, 4000, 0.0);
+    assert_int_equal(last_frame()->skipped, 0);
+}
+
 /* Stops a play at 500 ms; returns when it was idle, after the command. */
 static int64_t stop_at_500(const grobo_play_options *options, bool at_once)
 {
@@ -310,12 +337,14 @@ static void bad_clips_never_start(void **state)
     (void)state;
     static const sample_key no_number[] = {{0, ALL, {0, 0, 0}}, {0, ALL, {0, (double)NAN, 0}}};
     static const sample_key backwards[] = {{0, ALL, {0, 0, 0}}, {-5 * MS, ALL, {0, 0, 0}}};
+    static const sample_key too_early[] = {{-5 * MS, ALL, {0, 0, 0}}};
     static const sample_key hidden[] = {{0, 1, {0, (double)NAN, 0}}};
     start(&by_key, 0.0);
     grobo_sequencer_reset(&pump.seq);
     assert_int_equal(play_keys(keys, 0), GROBO_ERR_EMPTY);
     assert_int_equal(play_keys(no_number, 2), GROBO_ERR_NAN);
     assert_int_equal(play_keys(backwards, 2), GROBO_ERR_ARG);
+    assert_int_equal(play_keys(too_early, 1), GROBO_ERR_ARG);
     sample_clip_init(&clip, keys, 3);
     clip.fail_at = 2;
     assert_int_equal(play_with(by_key), GROBO_ERR_UNREACHABLE);
@@ -324,6 +353,11 @@ static void bad_clips_never_start(void **state)
     clip.clip.key = NULL;
     assert_int_equal(play_with(by_key), GROBO_ERR_ARG);
     sample_clip_init(&clip, keys, 3);
+    clip.clip.length_us = -1;
+    assert_int_equal(play_with(by_key), GROBO_ERR_ARG);
+    sample_clip_init(&clip, keys, 3);
+    clip.clip.n_joints = 0;
+    assert_int_equal(play_with(by_key), GROBO_ERR_EMPTY);
     clip.clip.n_joints = 4;
     assert_int_equal(play_with(by_key), GROBO_ERR_ARG); /* neither the model's nor the start's */
     assert_int_equal(grobo_sequencer_get_state(&pump.seq), GROBO_SEQUENCER_IDLE);
@@ -411,6 +445,8 @@ int main(void)
         cmocka_unit_test(a_hold_never_passes_the_key),
         cmocka_unit_test(a_pause_in_an_approach_approaches_again),
         cmocka_unit_test(a_pause_before_anything_was_sent_moves_nothing),
+        cmocka_unit_test(commands_that_meet_keep_posture_and_position_together),
+        cmocka_unit_test(speed_after_a_stall_begins_at_the_key_that_is_reached),
         cmocka_unit_test(stopping_keeps_its_bound_and_empties_the_queue),
         cmocka_unit_test(a_smooth_stop_can_be_cut_short),
         cmocka_unit_test(stopping_while_paused_stays_there),

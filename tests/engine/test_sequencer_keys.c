@@ -203,8 +203,11 @@ static void repeats_run_again_by_way_of_an_approach(void **state)
            {1330, 580, {0.3, 0.1, -0.3}}, {1910, 250, {0.2, 0.0, 0.3}},
            {2160, 500, {0.1, 0.2, 0.3}});
     expect_finished_at(2660);
-    play_all(three, 3, (grobo_play_options){.repeat = INT32_MIN + 1, .reverse = true});
-    assert_true(pump.n > 3000);
+    play_all(three, 3, (grobo_play_options){.repeat = INT32_MIN});
+    assert_true(pump.n > 8000);
+    grobo_play_progress p;
+    grobo_sequencer_progress(&pump.seq, pump.now_us, &p);
+    assert_int_equal(p.passes, INT32_MAX);
 }
 
 static void the_mirror_swaps_left_and_right(void **state)
@@ -265,6 +268,12 @@ static void playing_from_the_middle_begins_between_keys(void **state)
     assert_int_equal(start(three, 3, &options, &from), 0);
     sample_pump_run(&pump, 9000 * MS);
     EXPECT({0, 200, {0.2, 0.0, 0.3}}, {200, 250, {0.3, 0.1, -0.3}});
+    /* On a key. */
+    const grobo_play_options on_key = {.from_us = 500 * MS};
+    assert_int_equal(start(three, 3, &on_key, &from), 0);
+    sample_pump_run(&pump, 9000 * MS);
+    EXPECT({0, 80, {0.2, 0.0, 0.3}}, {80, 250, {0.3, 0.1, -0.3}});
+    assert_int_equal(grobo_sequencer_stats(&pump.seq)->skipped_frames, 0);
 }
 
 static void a_stall_skips_keys_and_keeps_their_joints(void **state)
@@ -302,6 +311,16 @@ static void a_stall_past_the_end_still_sends_the_last_key(void **state)
     expect_finished_at(60510);
 }
 
+/* Plays the clip once more, to the end. Returns when it began, ms. */
+static int64_t again(const grobo_play_options *options, const grobo_posture *from)
+{
+    int64_t at_us = pump.now_us;
+    pump.n = 0;
+    assert_int_equal(grobo_sequencer_play(&pump.seq, &clip.clip, options, from, at_us), 0);
+    sample_pump_run(&pump, at_us + 9000 * MS);
+    return at_us / MS;
+}
+
 static void increments_go_onto_where_the_clip_starts(void **state)
 {
     (void)state;
@@ -326,12 +345,13 @@ static void increments_go_onto_where_the_clip_starts(void **state)
            {200, 100, {1.3, 1.8, (double)NAN}}, {300, 200, {1.1, (double)NAN, (double)NAN}},
            {500, 100, {1.3, 1.9, (double)NAN}}, {600, 100, {1.3, 1.8, (double)NAN}});
     options = (grobo_play_options){.reverse = true};
-    assert_int_equal(grobo_sequencer_play(&pump.seq, &clip.clip, &options, &from, pump.now_us), 0);
-    pump.n = 0;
-    int64_t at = pump.now_us / MS;
-    sample_pump_run(&pump, pump.now_us + 9000 * MS);
+    int64_t at = again(&options, &from);
     EXPECT({at, 290, {1.3, 1.8, (double)NAN}}, {at + 290, 100, {1.3, 1.9, (double)NAN}},
            {at + 390, 100, {1.1, (double)NAN, (double)NAN}});
+    options = (grobo_play_options){.from_us = 50 * MS};
+    at = again(&options, &from);
+    EXPECT({at, 200, {1.2, (double)NAN, (double)NAN}}, {at + 200, 50, {1.3, 1.9, (double)NAN}},
+           {at + 250, 100, {1.3, 1.8, (double)NAN}});
 }
 
 static void progress_counts_keys(void **state)

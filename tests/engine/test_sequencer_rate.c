@@ -124,6 +124,8 @@ static void a_stall_past_the_end_still_sends_the_last_posture(void **state)
     sample_pump_stall(&pump, 60000 * MS);
     assert_int_equal(pump.n, 52);
     assert_true(frame_at(51)->posture.angle_rad[0] == 0.205);
+    assert_int_equal(frame_at(51)->due_us, 2060 * MS);
+    assert_int_equal(frame_at(51)->skipped, 52); /* 1020 .. 2040 ms */
     /* The next pass is not hurried for it: it begins when the posture is reached, softly. */
     sample_pump_run(&pump, 61019 * MS);
     assert_int_equal(pump.n, 52);
@@ -206,6 +208,19 @@ static void speed_changes_keep_grid_and_position(void **state)
     assert_int_equal(pump.state, GROBO_SEQUENCER_FINISHED);
 }
 
+static void speed_may_change_behind_the_end(void **state)
+{
+    (void)state;
+    start(brief, (grobo_play_options){0}, 0.0);
+    sample_pump_run(&pump, 2055 * MS); /* the motion is over, its last frame is not out yet */
+    assert_int_equal(grobo_sequencer_set_speed(&pump.seq, 300, pump.now_us), 0);
+    sample_pump_run(&pump, 10000 * MS);
+    assert_int_equal(pump.n, 104);
+    assert_int_equal(frame_at(103)->due_us, 2060 * MS);
+    assert_true(frame_at(103)->posture.angle_rad[0] == 0.205);
+    assert_int_equal(stats()->skipped_frames, 0);
+}
+
 static void reverse_mirror_and_from_work_together(void **state)
 {
     (void)state;
@@ -235,6 +250,7 @@ static void progress_counts_frames(void **state)
     assert_int_equal(p.steps, 1801);
     sample_pump_run(&pump, 100000 * MS);
     grobo_sequencer_progress(&pump.seq, pump.now_us, &p);
+    assert_int_equal(p.passes, 1);
     assert_int_equal(p.t_us, 60000 * MS);
     assert_int_equal(p.step, 1801);
 }
@@ -288,6 +304,7 @@ int main(void)
         cmocka_unit_test(the_first_move_is_soft),
         cmocka_unit_test(a_pause_keeps_the_phase),
         cmocka_unit_test(speed_changes_keep_grid_and_position),
+        cmocka_unit_test(speed_may_change_behind_the_end),
         cmocka_unit_test(reverse_mirror_and_from_work_together),
         cmocka_unit_test(progress_counts_frames),
         cmocka_unit_test(a_clip_of_one_posture_is_one_frame),
