@@ -1,0 +1,302 @@
+/* SPDX-License-Identifier: MIT */
+/* Registers, flash and reboot, raw frames, stored motions, free mode, configuration. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <math.h>
+#include <string.h>
+
+#include "rig.h"
+
+enum { NECK = 13, R_KNEE = 3, NECK_ID = 2, R_KNEE_ID = 12 };
+
+static grobo_test_rig rig;
+static const grobo_robot_config quiet = {.sense_interval_us = GROBO_SENSE_NEVER};
+
+static uint8_t reply[GROBO_REGISTERS];
+static size_t reply_bytes;
+
+static void keep_reply(grobo_test_rig *r, const grobo_event *event)
+{
+    (void)r;
+    if (event->kind == GROBO_EVENT_JOB) {
+        reply_bytes = event->u.job.size;
+        memcpy(reply, event->u.job.data, reply_bytes);
+    }
+}
+
+/* ---- registers -------------------------------------------------------------- */
+
+static int io(uint8_t id, uint8_t address, uint8_t length, const uint8_t *data)
+{
+    grobo_register_io request = {id, address, length, data};
+    return grobo_robot_registers(&rig.robot, &request, rig.now_us);
+}
+
+static void registers_are_read_and_written(void **state)
+{
+    (void)state;
+    static const grobo_wiring wirings[] = {GROBO_WIRING_BOARD, GROBO_WIRING_BUS};
+    for (int w = 0; w < 2; w++) {
+        rig_start_driver(&rig, grobo_gr001_driver(wirings[w]), &quiet, NULL);
+        rig.on_event = keep_reply;
+        rig_expect(&rig, io(NECK_ID, GROBO_RS30X_MODEL, 2, NULL), GROBO_OK);
+        assert_int_equal(reply_bytes, 2);
+        assert_int_equal(reply[0] | reply[1] << 8, GROBO_RS30X_RS302CD);
+        uint8_t delay = 5;
+        rig_expect(&rig, io(NECK_ID, GROBO_RS30X_DELAY, 1, &delay), GROBO_OK);
+        int32_t value = 0;
+        assert_int_equal(grobo_sim_get_register(&rig.sim, NECK, GROBO_RS30X_DELAY, &value), 0);
+        assert_int_equal(value, 5);
+    }
+}
+
+static void motor_registers_are_not_written_this_way(void **state)
+{
+    (void)state;
+    const uint8_t data[10] = {0};
+    rig_start(&rig, &quiet, NULL);
+    assert_int_equal(io(NECK_ID, GROBO_RS30X_GOAL, 2, data), GROBO_ERR_UNSUPPORTED);
+    assert_int_equal(io(NECK_ID, GROBO_RS30X_TORQUE, 1, data), GROBO_ERR_UNSUPPORTED);
+    assert_int_equal(io(NECK_ID, 28, 4, data), GROBO_ERR_UNSUPPORTED);
+    assert_int_equal(io(0, 4, 1, data), GROBO_ERR_ARG);
+    assert_int_equal(io(NECK_ID, 139, 2, NULL), GROBO_ERR_ARG);
+    assert_int_equal(rig.n_sent, 0);
+}
+
+static void flash_and_reboot_wait(void **state)
+{
+    (void)state;
+    rig_start(&rig, &quiet, NULL);
+    uint8_t margin = 7;
+    rig_expect(&rig, io(NECK_ID, GROBO_RS30X_CW_MARGIN, 1, &margin), GROBO_OK);
+    int64_t begun_us = rig.now_us;
+    rig_expect(&rig, grobo_robot_command(&rig.robot, NECK_ID, GROBO_SERVO_FLASH, rig.now_us), 0);
+    assert_true(rig.now_us - begun_us >= 1000000);
+    begun_us = rig.now_us;
+    rig_expect(&rig, grobo_robot_command(&rig.robot, NECK_ID, GROBO_SERVO_REBOOT, rig.now_us), 0);
+    assert_true(rig.now_us - begun_us >= 2000000);
+    rig.on_event = keep_reply;
+    rig_expect(&rig, io(NECK_ID, GROBO_RS30X_CW_MARGIN, 1, NULL), GROBO_OK);
+    assert_int_equal(reply[0], 7);
+}
+
+static void a_reboot_that_was_asked_for_is_no_loss_of_torque(void **state)
+{
+    (void)state;
+    grobo_robot_config config = {.sense_interval_us = 200000};
+    rig_start(&rig, &config, NULL);
+    rig_power(&rig);
+    rig_expect(&rig, grobo_robot_command(&rig.robot, NECK_ID, GROBO_SERVO_REBOOT, rig.now_us), 0);
+    rig_run(&rig, 1000000);
+    assert_int_equal(rig_torque(&rig, NECK), GROBO_TORQUE_OFF);
+    assert_null(rig_last(&rig, GROBO_EVENT_TRIP));
+}
+
+/* ---- raw frames ------------------------------------------------------------- */
+
+static int raw(const char *bytes, size_t size)
+{
+    return grobo_robot_raw(&rig.robot, (const uint8_t *)bytes, size, rig.now_us);
+}
+
+static void raw_reads_bring_their_reply(void **state)
+{
+    (void)state;
+    rig_start(&rig, &quiet, NULL);
+    rig.on_event = keep_reply;
+    rig_expect(&rig, raw("\x54\x09\xFA\xAF\x01\x0F\x24\x12\x00\x38\x1A", 11), GROBO_OK);
+    assert_int_equal(reply_bytes, 18);
+    rig_expect(&rig, raw("\x41\x00", 2), GROBO_OK);
+}
+
+static void raw_targets_pass_the_same_gate(void **state)
+{
+    (void)state;
+    rig_start(&rig, &quiet, NULL);
+    /* Motor 2 to 10.0 degrees in 1 s, to 60.0, to 10.0 at full speed; torque of it on. */
+    const char *soft = "\x53\x0C\xFA\xAF\x02\x00\x1E\x04\x01\x64\x00\x64\x00\x19";
+    const char *far = "\x53\x0C\xFA\xAF\x02\x00\x1E\x04\x01\x58\x02\x64\x00\x27";
+    const char *hard = "\x53\x0C\xFA\xAF\x02\x00\x1E\x04\x01\x64\x00\x00\x00\x7D";
+    const char *on = "\x53\x09\xFA\xAF\x02\x00\x24\x01\x01\x01\x27";
+    assert_int_equal(raw(soft, 14), GROBO_ERR_STALE);
+    rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), 0, rig.now_us), GROBO_OK);
+    assert_int_equal(raw(far, 14), GROBO_ERR_LIMIT);
+    assert_int_equal(raw(hard, 14), GROBO_ERR_SPEED);
+    assert_int_equal(raw(on, 11), GROBO_ERR_STATE);
+    rig_power(&rig);
+    rig_expect(&rig, raw(soft, 14), GROBO_OK);
+    rig_run(&rig, 1100000);
+    assert_true(fabs(rig_angle_deg(&rig, NECK) - 10) < 0.1);
+    rig_expect(&rig, raw(on, 11), GROBO_OK);
+    rig_expect(&rig, grobo_robot_estop(&rig.robot, rig.now_us), GROBO_OK);
+    assert_int_equal(raw(soft, 14), GROBO_ERR_LATCHED);
+}
+
+static void raw_bytes_without_meaning_are_refused_unless_told(void **state)
+{
+    (void)state;
+    grobo_robot_config config = quiet;
+    rig_start(&rig, &quiet, NULL);
+    assert_int_equal(raw("\x50\x4D\x01", 3), GROBO_ERR_UNSUPPORTED);
+    assert_int_equal(raw("hello", 5), GROBO_ERR_UNSUPPORTED);
+    /* A sum that is wrong, a goal of which only one byte is written. */
+    assert_int_equal(raw("\x53\x0C\xFA\xAF\x02\x00\x1E\x04\x01\x64\x00\x64\x00\x18", 14),
+                     GROBO_ERR_UNSUPPORTED);
+    assert_int_equal(raw("\x53\x09\xFA\xAF\x02\x00\x1E\x01\x01\x05\x19", 11),
+                     GROBO_ERR_UNSUPPORTED);
+    assert_int_equal(rig.n_sent, 0);
+    config.accept_unknown_raw = true;
+    assert_int_equal(grobo_robot_configure(&rig.robot, &config), GROBO_OK);
+    rig_expect(&rig, raw("\x50\x4D\x01", 3), GROBO_OK);
+    assert_int_equal(rig.sim.stats.last_slot, 1);
+}
+
+static void stored_motions_are_started(void **state)
+{
+    (void)state;
+    rig_start(&rig, &quiet, NULL);
+    rig_expect(&rig, grobo_robot_stored(&rig.robot, GROBO_STORED_SLOT, 3, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_stored(&rig.robot, GROBO_STORED_SCENARIO, 4, rig.now_us), 0);
+    rig_run(&rig, 10000);
+    assert_int_equal(rig.sim.stats.slots, 1);
+    assert_int_equal(rig.sim.stats.last_slot, 3);
+    assert_int_equal(rig.sim.stats.last_scenario, 4);
+    assert_int_equal(grobo_robot_stored(&rig.robot, GROBO_STORED_SLOT, 256, rig.now_us),
+                     GROBO_ERR_ARG);
+    rig_start_driver(&rig, grobo_gr001_driver(GROBO_WIRING_BUS), &quiet, NULL);
+    assert_int_equal(grobo_robot_stored(&rig.robot, GROBO_STORED_SLOT, 3, rig.now_us),
+                     GROBO_ERR_UNSUPPORTED);
+}
+
+/* ---- free mode -------------------------------------------------------------- */
+
+static void free_mode_gives_way_and_holds(void **state)
+{
+    (void)state;
+    rig_start(&rig, &quiet, NULL);
+    rig_power(&rig);
+    assert_int_equal(grobo_robot_free(&rig.robot, rig_all(&rig), true, rig.now_us), GROBO_OK);
+    rig_run(&rig, 500000);
+    assert_int_equal(rig_torque(&rig, NECK), GROBO_TORQUE_ON);
+    assert_int_equal(grobo_sim_set_load(&rig.sim, NECK, 200), 0); /* a hand pushes */
+    rig_run(&rig, 400000);
+    assert_int_equal(rig_torque(&rig, NECK), GROBO_TORQUE_BRAKE);
+    assert_int_equal(rig_torque(&rig, R_KNEE), GROBO_TORQUE_ON);
+    assert_int_equal(grobo_sim_set_angle(&rig.sim, NECK, 25000, 500000), 0);
+    rig_run(&rig, 450000);
+    assert_int_equal(rig_torque(&rig, NECK), GROBO_TORQUE_BRAKE); /* still turning */
+    assert_int_equal(grobo_sim_set_load(&rig.sim, NECK, 0), 0);
+    rig_run(&rig, 1000000);
+    assert_int_equal(rig_torque(&rig, NECK), GROBO_TORQUE_ON);
+    assert_true(fabs(rig_angle_deg(&rig, NECK) - 25) < 1);
+    rig_expect(&rig, grobo_robot_free(&rig.robot, rig_all(&rig), false, rig.now_us), GROBO_OK);
+    rig_forget(&rig);
+    rig_run(&rig, 500000);
+    assert_int_equal(rig.n_sent, 0);
+}
+
+static void limp_joints_hold_in_free_mode_where_they_are(void **state)
+{
+    (void)state;
+    grobo_sim_config limp = {.start = GROBO_SIM_START_LIMP, .seed = 9, .jump_on_torque = true};
+    rig_start(&rig, &quiet, &limp);
+    assert_int_equal(grobo_robot_free(&rig.robot, rig_all(&rig), true, rig.now_us), GROBO_OK);
+    rig_run(&rig, 1500000);
+    assert_int_equal(rig.torque_on, 20); /* and the rig saw that each was at its goal */
+}
+
+/* ---- configuration ---------------------------------------------------------- */
+
+static void configurations_are_checked(void **state)
+{
+    (void)state;
+    static const grobo_robot_config bad[] = {
+        {.speed_limit_pct = 101},   {.speed_limit_pct = -1},
+        {.approach_dps = -1},       {.retries = -2},
+        {.stall_us = -1},           {.sense_interval_us = -2},
+        {.retries = 256},           {.on_exit = (grobo_exit_policy)9},
+        {.default_time_us = -1},    {.exit_bound_us = -1},
+        {.approach_dps = INFINITY},
+    };
+    const grobo_driver *driver = grobo_gr001_driver(GROBO_WIRING_BOARD);
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        assert_int_equal(grobo_robot_init(&rig.robot, driver, NULL, &bad[i], 0), GROBO_ERR_ARG);
+    }
+    grobo_driver none = *driver;
+    none.sense = NULL;
+    assert_int_equal(grobo_robot_init(&rig.robot, &none, NULL, NULL, 0), GROBO_ERR_ARG);
+    rig_start(&rig, NULL, NULL);
+    assert_int_equal(grobo_robot_configure(&rig.robot, &bad[0]), GROBO_ERR_ARG);
+}
+
+static void limits_may_be_switched_off(void **state)
+{
+    (void)state;
+    grobo_robot_config config = {.sense_interval_us = 200000, .temperature_c = -1};
+    rig_start(&rig, &config, NULL);
+    rig_power(&rig);
+    assert_int_equal(grobo_sim_set_temperature(&rig.sim, NECK, 68), 0);
+    rig_run(&rig, 1000000);
+    assert_null(rig_last(&rig, GROBO_EVENT_TRIP));
+}
+
+static void read_back_correction_is_an_option(void **state)
+{
+    (void)state;
+    grobo_robot_config config = quiet;
+    grobo_joint_info info;
+    rig_start(&rig, &quiet, NULL);
+    rig_expect(&rig, grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(R_KNEE), 0, rig.now_us), 0);
+    assert_int_equal(grobo_robot_joint(&rig.robot, R_KNEE, rig.now_us, &info), 0);
+    assert_true(fabs(grobo_deg_from_rad(info.state.angle_rad) + 40) < 0.06);
+    config.readback_correction = true;
+    assert_int_equal(grobo_robot_configure(&rig.robot, &config), GROBO_OK);
+    rig_expect(&rig, grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(R_KNEE), 0, rig.now_us), 0);
+    assert_int_equal(grobo_robot_joint(&rig.robot, R_KNEE, rig.now_us, &info), 0);
+    assert_true(fabs(grobo_deg_from_rad(info.state.angle_rad) + 38) < 0.06);
+}
+
+static void cancel_stops_a_move_where_it_is(void **state)
+{
+    (void)state;
+    rig_start(&rig, &quiet, NULL);
+    rig_power(&rig);
+    assert_int_equal(grobo_robot_cancel(&rig.robot, rig.now_us), GROBO_ERR_STATE);
+    grobo_posture target = rig_posture(&rig, NECK, 40, 2000);
+    int number = grobo_robot_move(&rig.robot, &target, rig.now_us);
+    rig_run(&rig, 1000000);
+    assert_true(grobo_robot_moving(&rig.robot, rig.now_us));
+    assert_int_equal(grobo_robot_cancel(&rig.robot, rig.now_us), GROBO_OK);
+    rig_expect(&rig, number, GROBO_ERR_CANCELED);
+    rig_run(&rig, 200000);
+    assert_false(grobo_robot_moving(&rig.robot, rig.now_us));
+    double here_deg = rig_angle_deg(&rig, NECK);
+    assert_true(here_deg > 5 && here_deg < 25);
+    rig_run(&rig, 1000000);
+    assert_true(fabs(rig_angle_deg(&rig, NECK) - here_deg) < 0.01);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(registers_are_read_and_written),
+        cmocka_unit_test(motor_registers_are_not_written_this_way),
+        cmocka_unit_test(flash_and_reboot_wait),
+        cmocka_unit_test(a_reboot_that_was_asked_for_is_no_loss_of_torque),
+        cmocka_unit_test(raw_reads_bring_their_reply),
+        cmocka_unit_test(raw_targets_pass_the_same_gate),
+        cmocka_unit_test(raw_bytes_without_meaning_are_refused_unless_told),
+        cmocka_unit_test(stored_motions_are_started),
+        cmocka_unit_test(free_mode_gives_way_and_holds),
+        cmocka_unit_test(limp_joints_hold_in_free_mode_where_they_are),
+        cmocka_unit_test(configurations_are_checked),
+        cmocka_unit_test(limits_may_be_switched_off),
+        cmocka_unit_test(read_back_correction_is_an_option),
+        cmocka_unit_test(cancel_stops_a_move_where_it_is),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
