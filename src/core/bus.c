@@ -186,6 +186,12 @@ static void give_up_on_rubbish(grobo_bus *bus, int64_t now_us)
     fail(bus, now_us, bad_sum ? GROBO_ERR_CHECKSUM : GROBO_ERR_MISMATCH);
 }
 
+static void copy_counters(grobo_bus *bus)
+{
+    bus->stats.bad_sums = bus->parser.framer.stats.bad_sums;
+    bus->stats.resync_bytes = bus->parser.framer.stats.dropped_bytes;
+}
+
 /* Bytes taken: all, or those up to the end of the transaction. */
 static size_t take_reply(grobo_bus *bus, int64_t now_us, const uint8_t *bytes, size_t n)
 {
@@ -206,8 +212,7 @@ static size_t take_reply(grobo_bus *bus, int64_t now_us, const uint8_t *bytes, s
     if (bus->phase != GROBO_BUS_AWAITING) {
         grobo_rs30x_parser_reset(&bus->parser);
     }
-    bus->stats.bad_sums = bus->parser.framer.stats.bad_sums;
-    bus->stats.resync_bytes = bus->parser.framer.stats.dropped_bytes;
+    copy_counters(bus);
     return took;
 }
 
@@ -359,6 +364,9 @@ static void start(grobo_bus *bus, grobo_txn *txn, int64_t now_us)
     }
     txn->attempts_++;
     txn->sent_us = now_us;
+    /* The stump of an earlier reply must not become the head of this one. */
+    grobo_rs30x_parser_reset(&bus->parser);
+    copy_counters(bus);
     bus->parser.accept = GROBO_RS30X_ACCEPT_RETURNS;
     if (txn->reply.kind == GROBO_REPLY_ACK) {
         bus->parser.accept |= GROBO_RS30X_ACCEPT_ACKS;

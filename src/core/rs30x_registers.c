@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* The memory map as a table, and its codes. A file of its own: firmware need not link it. */
-#include <string.h>
-
 #include <grobo/rs30x.h>
 
 #include "core/bytes.h"
@@ -34,10 +32,17 @@ const grobo_rs30x_register *grobo_rs30x_register_row(size_t index)
     return index < grobo_rs30x_register_count() ? &rows[index] : NULL;
 }
 
+static bool same_text(const char *a, const char *b)
+{
+    for (; *a != '\0' && *a == *b; a++, b++) {
+    }
+    return *a == *b;
+}
+
 const grobo_rs30x_register *grobo_rs30x_register_named(const char *name)
 {
     for (size_t i = 0; i < grobo_rs30x_register_count(); i++) {
-        if (strcmp(rows[i].name, name) == 0) {
+        if (same_text(rows[i].name, name)) {
             return &rows[i];
         }
     }

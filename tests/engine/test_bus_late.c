@@ -210,6 +210,25 @@ static void an_ack_inside_a_late_reply_is_not_believed(void **state)
     assert_int_equal(p.bus.stats.late_frames, 1);
 }
 
+/* The stump announces 18 bytes of data: it must not swallow the reply of the next attempt. */
+static void a_stump_does_not_swallow_the_next_reply(void **state)
+{
+    (void)state;
+    static const uint8_t stump[] = {0xFD, 0xDF, 0x01, 0x00, 0x2A, 0x12, 0x01};
+    peer p;
+    request r;
+    start(&p);
+    submit_read(&p, &r, 1, 1);
+    peer_bytes_at(&p, 3 * MS, stump, sizeof stump);
+    int64_t second_us = READ_FAILED + GROBO_BUS_QUIET_US;
+    peer_position_at(&p, second_us + 3488, 1, 22);
+    peer_run(&p, S);
+    assert_int_equal(p.ended[0].result, GROBO_OK);
+    assert_int_equal(p.ended[0].value, 22);
+    assert_int_equal(p.ended[0].at_us, second_us + 3488);
+    assert_int_equal(p.bus.stats.resync_bytes, sizeof stump);
+}
+
 static void an_ack_is_no_answer_to_a_read(void **state)
 {
     (void)state;
@@ -369,6 +388,7 @@ int main(void)
         cmocka_unit_test(reads_go_on_while_an_ack_is_outstanding_and_clear_it),
         cmocka_unit_test(an_ack_among_rubbish_is_not_believed),
         cmocka_unit_test(an_ack_inside_a_late_reply_is_not_believed),
+        cmocka_unit_test(a_stump_does_not_swallow_the_next_reply),
         cmocka_unit_test(an_ack_is_no_answer_to_a_read),
         cmocka_unit_test(replies_that_fit_in_part_are_not_believed),
         cmocka_unit_test(a_babbling_line_is_waited_for_with_patience_and_no_more),

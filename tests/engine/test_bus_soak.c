@@ -3,8 +3,8 @@
  * The bus against a peer with every fault, for many seeds: a reply may be dropped, cut, flipped,
  * late, doubled, or come behind rubbish. The peer keeps the order of its replies, as a line does.
  *
- * Every chunk of bytes knows whose reply it is, and every transaction its number: nobody may be
- * ended well by another's bytes.
+ * Every transaction has a number, which its replies carry as data; of an ACK it is known in whose
+ * bytes it came. Nobody may be ended well by another's reply.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -19,7 +19,7 @@
 enum {
     MS = 1000,
     FRAME = GROBO_FRAME_MAX_BYTES,
-    SEEDS = 100,
+    SEEDS = 200,
     RUN_US = 20000000,
     MOTION_EVERY_US = 40 * MS,
     REQUESTS = 12,
@@ -70,9 +70,10 @@ static void put_chunk(soak *s, int64_t at_us, uint32_t owner, const uint8_t *byt
     memcpy(c->bytes, bytes, n);
 }
 
-static size_t make_reply(const grobo_reply *want, uint8_t *b)
+static size_t make_reply(const request *r, uint8_t *b)
 {
-    static const uint8_t data[18] = {7, 8, 0xFD, 0xDF, 1, 7};
+    const grobo_reply *want = &r->txn.reply;
+    const uint8_t data[18] = {(uint8_t)(r->number & 0xFF), (uint8_t)(r->number >> 8), 7, 8, 0xFD};
     grobo_rs30x_packet packet = {GROBO_RS30X_RETURN, want->id, 0,    want->address,
                                  want->length,       1,        data, want->length};
     if (want->kind == GROBO_REPLY_ACK) {
@@ -81,20 +82,27 @@ static size_t make_reply(const grobo_reply *want, uint8_t *b)
     return (size_t)grobo_rs30x_build(&packet, b, 40);
 }
 
+/* The length stays: wrong, it splices packets, which a sum of 8 bits finds 255 times in 256 only. */
+static void flip_a_bit(soak *s, uint8_t *b, size_t n)
+{
+    size_t at = draw(s, (uint32_t)n);
+    b[at == 5 ? 4 : at] ^= (uint8_t)(1u << draw(s, 8));
+}
+
 static void answer(soak *s, const request *r)
 {
     uint8_t b[40];
     int64_t at_us = s->bus.over_us + draw(s, 300);
-    size_t n = make_reply(&r->txn.reply, b);
+    size_t n = make_reply(r, b);
     uint8_t rubbish = (uint8_t)(0x10 + draw(s, 0xA0)); /* no ACK, no header */
     switch (draw(s, 20)) {
     case 0: /* dropped */
         return;
-    case 1: /* cut */
-        n -= 1 + draw(s, (uint32_t)n);
+    case 1: /* cut, by more than the byte of rubbish that might take the sum's place */
+        n = n > 2 ? 1 + draw(s, (uint32_t)n - 2) : 0;
         break;
-    case 2: /* one bit flipped: what the sum is sure to find */
-        b[draw(s, (uint32_t)n)] ^= (uint8_t)(1u << draw(s, 8));
+    case 2: /* one bit flipped */
+        flip_a_bit(s, b, n);
         break;
     case 3: /* late */
         at_us += draw(s, DELAY_MAX_US);
@@ -126,7 +134,11 @@ static void ended(void *ctx, grobo_txn *txn, int result, const grobo_rs30x_packe
     assert_false(grobo_txn_is_pending(txn));
     if (reply != NULL) {
         assert_int_equal(result, GROBO_OK);
-        assert_int_equal(s->owner, r->number);
+        if (txn->reply.kind == GROBO_REPLY_ACK) {
+            assert_int_equal(s->owner, r->number);
+        } else {
+            assert_int_equal(reply->data[0] | reply->data[1] << 8, r->number & 0xFFFF);
+        }
         s->believed_bytes += grobo_reply_bytes(&txn->reply);
     }
     if (r != &s->pose && draw(s, 8) != 0) {

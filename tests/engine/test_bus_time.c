@@ -321,7 +321,7 @@ static played play(peer *p, int64_t period_us, int frames, uint8_t silent_id)
     return result;
 }
 
-/* With one servo silent a frame may wait for a reply that can come, not for its time-out. */
+/* 50 ms less 18.924 for the pose leaves 31.076: eight reads of 3.488 ms, and all are made. */
 static void the_gaps_are_filled_and_the_frames_are_on_time(void **state)
 {
     (void)state;
