@@ -33,21 +33,21 @@ typedef struct grobo_transform {
 
 /** One rigid body and the revolute joint that ties it to its parent. */
 typedef struct grobo_body_link {
-    const char *name;      /**< "R_KNEE_P" */
-    int parent;            /**< index of an earlier link; -1: the root */
-    int joint;             /**< joint index; -1: the root, which floats */
-    double axis[3];        /**< unit vector of the joint, the same in the parent and the link */
-    double offset_m[3];    /**< origin in the parent's frame; of the root: in the world */
-    double mass_kg;        /**< 0 or more */
-    double com_m[3];       /**< centre of mass in the link's frame */
+    const char *name;       /**< "R_KNEE_P" */
+    int parent;             /**< index of an earlier link; -1: the root */
+    int joint;              /**< joint index; -1: the root, which floats */
+    double axis[3];         /**< unit vector of the joint, the same in the parent and the link */
+    double offset_m[3];     /**< origin in the parent's frame; of the root: in the world */
+    double mass_kg;         /**< 0 or more */
+    double com_m[3];        /**< centre of mass in the link's frame */
     double inertia_kgm2[9]; /**< about the centre of mass, axes of the link's frame */
 } grobo_body_link;
 
 /** A foot: the last link of a leg, and its sole. */
 typedef struct grobo_body_foot {
-    int link;          /**< link index */
-    double sole_m[3];  /**< centre of the sole in the link's frame */
-    double half_m[2];  /**< half length (x) and half width (y) of the sole's rectangle */
+    int link;         /**< link index */
+    double sole_m[3]; /**< centre of the sole in the link's frame */
+    double half_m[2]; /**< half length (x) and half width (y) of the sole's rectangle */
 } grobo_body_foot;
 
 /**
@@ -89,10 +89,10 @@ GROBO_API void grobo_body_forward(const grobo_body_model *model, const grobo_tra
 GROBO_API double grobo_body_com(const grobo_body_model *model, const grobo_transform *links,
                                 double com_m[3]);
 
-/** How a body moves: of the root the velocity of its origin and the angular velocity, world axes. */
+/** How a body moves; the root's velocities are those of its origin, along the world's axes. */
 typedef struct grobo_body_velocity {
-    double linear_m_s[3];     /**< of the root's origin */
-    double angular_rad_s[3];  /**< of the root */
+    double linear_m_s[3];      /**< of the root's origin */
+    double angular_rad_s[3];   /**< of the root */
     const double *joint_rad_s; /**< n_joints speeds */
 } grobo_body_velocity;
 
@@ -248,6 +248,68 @@ GROBO_API int grobo_body_frame(grobo_body *body, int frame, double *q_rad,
  */
 GROBO_API int grobo_body_sample(grobo_body *body, double time_s, double *q_rad,
                                 grobo_body_report *report);
+
+/* ---- the lint of a walk ------------------------------------------------------------------ */
+
+/** What can be wrong with a whole-body motion. */
+typedef enum grobo_body_problem {
+    GROBO_BODY_UNREACHABLE = 0, /**< a target IK does not reach; index: its link */
+    GROBO_BODY_ZMP_MARGIN = 1,  /**< the ZMP is nearer to the soles' edge than asked, or outside */
+    GROBO_BODY_NO_SUPPORT = 2,  /**< no foot stands */
+    GROBO_BODY_FOOT_SLIP = 3,   /**< a standing foot moves; index: its link */
+    GROBO_BODY_JOINT_LIMIT = 4, /**< an angle beyond its limit after IK; index: the joint */
+    GROBO_BODY_JOINT_SPEED = 5  /**< faster than the servo after IK; index: the joint */
+} grobo_body_problem;
+
+/** A problem that lasts from one frame to another. */
+typedef struct grobo_body_finding {
+    grobo_body_problem problem;
+    int index;      /**< link or joint, see grobo_body_problem; 0 where there is none */
+    double begin_s; /**< first frame that has it */
+    double end_s;   /**< last frame that has it */
+    double worst_s; /**< the frame where it is worst */
+    /**
+     * How bad it is there: ZMP_MARGIN: metres inside the edge, negative outside; FOOT_SLIP: metres
+     * from where the sole came to stand; JOINT_LIMIT: radians beyond; JOINT_SPEED: radians a
+     * second; otherwise 0.
+     */
+    double worst;
+} grobo_body_finding;
+
+/** Balance of one frame, what a picture of a walk is drawn from. */
+typedef struct grobo_body_balance_frame {
+    double time_s;
+    double com_m[3];        /**< centre of mass */
+    double zmp_m[3];        /**< of the moving body, in the plane of the standing soles */
+    double desired_m[3];    /**< the motion's own ZMP; meaningful with has_desired */
+    double margin_m;        /**< ZMP inside the soles' hull, negative outside; with standing feet */
+    double sole_m[2][4][3]; /**< corners of the right and the left sole */
+    bool has_desired;
+    bool standing[2]; /**< right, left */
+} grobo_body_balance_frame;
+
+/** What is looked for, and who is told. All zero: balance only, tolerances as given, nobody. */
+typedef struct grobo_body_check_options {
+    const grobo_model *robot; /**< limits and speeds of the joints; NULL: not checked */
+    double margin_m;          /**< the ZMP shall be so far inside; 0: anywhere inside */
+    double slip_m;            /**< how far a standing foot may move; 0: 0.001 */
+    /** Told of each frame in order; may be NULL. The frame is valid during the call. */
+    void (*frame)(void *ctx, const grobo_body_balance_frame *frame);
+    /** Told of each problem when it has ended; may be NULL. Valid during the call. */
+    void (*finding)(void *ctx, const grobo_body_finding *finding);
+    void *ctx; /**< handed back */
+} grobo_body_check_options;
+
+/**
+ * Solves every frame and tells whether the robot will fall. Feet without targets have no support to
+ * be checked against; then limits and speeds alone are. The ZMP is that of the motion started from
+ * rest, by differences between frames: frames 0.01 s apart or more are sensible.
+ * @return number of findings, or GROBO_ERR_ARG (robot has other joints than the body's model).
+ */
+GROBO_API int grobo_body_check(grobo_body *body, const grobo_body_check_options *options);
+
+/** Name of a problem, for text and JSON: "zmp-margin". Static string, never NULL. Thread safe. */
+GROBO_API const char *grobo_body_problem_name(grobo_body_problem problem);
 
 GROBO_END_DECLS
 

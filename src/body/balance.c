@@ -19,7 +19,7 @@
 /* Whole-motion arrays: a row a frame. */
 struct balancing {
     grobo_body *body;
-    int n;             /* frames */
+    int n; /* frames */
     double dt_s;
     double (*shift_m)[2];
     double (*error_m)[2];  /* desired - computed ZMP; the solver's right side */
@@ -117,8 +117,7 @@ static void speeds(const struct balancing *now, const struct pose *from, const s
     mat_t_mul(turn, from->report.root.r, to->report.root.r);
     grobo_i_omega(velocity->angular_rad_s, turn);
     for (int k = 0; k < 3; k++) {
-        velocity->linear_m_s[k] =
-            (to->report.root.p_m[k] - from->report.root.p_m[k]) / now->dt_s;
+        velocity->linear_m_s[k] = (to->report.root.p_m[k] - from->report.root.p_m[k]) / now->dt_s;
         velocity->angular_rad_s[k] /= now->dt_s;
     }
 }
@@ -248,8 +247,8 @@ void grobo_i_balance(grobo_body *body)
     const size_t n = (size_t)body->n_frames;
 
     now.dt_s = 1 / body->options.rate_hz;
-    now.shift_m = (double (*)[2])memory;
-    now.error_m = (double (*)[2])(memory + 2 * n);
+    now.shift_m = (double(*)[2])memory;
+    now.error_m = (double(*)[2])(memory + 2 * n);
     now.a = memory + 4 * n;
     now.factor = memory + 5 * n;
     if (body->zmp.n == 0) {

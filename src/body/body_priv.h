@@ -30,6 +30,12 @@ struct grobo_i_numeric {
     bool compat11; /* the loop of Choreonoid 1.1 */
 };
 
+/* The path from start at some angles: its end, and the Jacobian, columns [axis x (p_end - p_joint);
+ * axis] of the joints hip to foot in the world. The axis is negated for joints walked upwards. */
+void grobo_i_leg_jacobian(const struct grobo_i_numeric *problem, const grobo_transform *start,
+                          const double *q_rad, double jacobian[6][GROBO_BODY_LEG_JOINTS],
+                          grobo_transform *end);
+
 /* Iterates from q_rad (hip to ankle), which is changed only on success. */
 bool grobo_i_leg_numeric(const struct grobo_i_numeric *problem, const grobo_transform *start,
                          const grobo_transform *goal, double q_rad[GROBO_BODY_LEG_JOINTS]);
@@ -37,9 +43,12 @@ bool grobo_i_leg_numeric(const struct grobo_i_numeric *problem, const grobo_tran
 /* w(R), the rotation vector of R as Choreonoid computes it: 0 where the angle is below 1.4e-3. */
 void grobo_i_omega(double out[3], const double r[9]);
 
+/* The rotation vector of R, accurate however small the angle, up to near half a turn. */
+void grobo_i_rotation_vector(double out[3], const double r[9]);
+
 /* Child from parent and parent from child across one joint. */
-void grobo_i_step_down(const grobo_body_link *link, double angle_rad,
-                       const grobo_transform *parent, grobo_transform *out);
+void grobo_i_step_down(const grobo_body_link *link, double angle_rad, const grobo_transform *parent,
+                       grobo_transform *out);
 void grobo_i_step_up(const grobo_body_link *link, double angle_rad, const grobo_transform *child,
                      grobo_transform *out);
 
@@ -56,15 +65,15 @@ struct grobo_body {
     const grobo_body_model *model;
     grobo_body_options options;
     struct grobo_i_leg leg[2];
-    double end_s;   /* time of the last key */
+    double end_s; /* time of the last key */
     int n_frames;
-    struct grobo_i_track *joints;                  /* one a joint, in joint order */
-    struct grobo_i_track target[GROBO_I_TARGETS];  /* x y z roll pitch yaw in the world */
-    struct grobo_i_track height[2];                /* z of the feet, of the stealthy step */
-    struct grobo_i_track zmp;                      /* x y z */
-    double *q_rad;                                 /* the state: the frame solved last */
-    uint32_t *order;  /* keys by time, while being set up */
-    double *balance;  /* the balancer's arrays, first its x, y a frame; NULL: no balancer */
+    struct grobo_i_track *joints;                 /* one a joint, in joint order */
+    struct grobo_i_track target[GROBO_I_TARGETS]; /* x y z roll pitch yaw in the world */
+    struct grobo_i_track height[2];               /* z of the feet, of the stealthy step */
+    struct grobo_i_track zmp;                     /* x y z */
+    double *q_rad;                                /* the state: the frame solved last */
+    uint32_t *order;                              /* keys by time, while being set up */
+    double *balance; /* the balancer's arrays, first its x, y a frame; NULL: no balancer */
 };
 
 /* Solves the pose at a time with the waist shifted in x and y. */

@@ -9,6 +9,7 @@
         xx, xy, xz, xy, yy, yz, xz, yz, zz                                                         \
     }
 
+/* clang-format off */
 static const grobo_body_link links[] = {
     {"WAIST", -1, -1, {0, 0, 0}, {0.0, 0.0, 0.1605}, 0.16852,
      {0.014070775509439625, -0.0010642631392533723, 0.018082091556018958},
@@ -95,6 +96,7 @@ static const grobo_body_link links[] = {
      SYMMETRIC(1.0789525167996373e-05, 1.1003152501217637e-05, 3.259107193487409e-06,
                -3.9905699607782306e-09, 1.7978343823012256e-06, 4.0040500729103886e-08)},
 };
+/* clang-format on */
 
 /* sole_center of the model file's foot_links. It gives no outline of the sole: the half lengths are
  * those of a uniform plate with the foot's inertia (0.087 m x 0.055 m), less a tenth for safety. */

@@ -65,41 +65,36 @@ static void turn_back_x(double out[9], const double r[9], double angle_rad)
 
 /* Hip yaw and roll. The foot's x axis r lies across n: n r = 0; and the ankle lies as far along n
  * as the hip does: n (p - o1) = c2 o2y + s2 o2z. Both are c2 (...) + s2 (...) = 0; together they
- * leave A s1 + B c1 = C with two answers th1, the better one turns the foot's y axis less. */
+ * leave A s1 + B c1 = C with two answers th1: in one the toes point ahead of the line from hip to
+ * ankle, as a walker's do, in the other behind it. False: no answer, or a foot turned over. */
 static bool hip_yaw_roll(const double offset2[3], const double p[3], const double r[9],
-                         double th[GROBO_BODY_LEG_JOINTS])
+                         bool toes_ahead, double th[GROBO_BODY_LEG_JOINTS])
 {
     const double foot_x[3] = {r[0], r[3], r[6]};
     const double foot_y[3] = {r[1], r[4], r[7]};
     const double z = p[2] - offset2[2];
     const double a = foot_x[0] * z - p[0] * foot_x[2];
     const double b = p[1] * foot_x[2] - foot_x[1] * z;
+    const double c = offset2[1] * foot_x[2];
     const double lever = hypot(a, b);
-    double best = -2;
 
-    if (lever < LEVER_MIN || fabs(offset2[1] * foot_x[2]) > lever) {
+    if (lever < LEVER_MIN || fabs(c) > lever * (1 + COSINE_TOLERANCE)) {
         return false;
     }
-    for (int k = 0; k < 2; k++) {
-        const double part = asin(offset2[1] * foot_x[2] / lever);
-        const double th1 = (k == 0 ? part : BODY_PI - part) - atan2(b, a);
-        const double s1 = sin(th1), c1 = cos(th1);
-        const double by_place[2] = {z, s1 * p[0] - c1 * p[1] + offset2[1]};
-        const double by_foot[2] = {foot_x[2], s1 * foot_x[0] - c1 * foot_x[1]};
-        const bool place =
-            hypot(by_place[0], by_place[1]) >= hypot(by_foot[0], by_foot[1]) * fabs(z);
-        const double *row = place ? by_place : by_foot;
-        /* c2 >= 0: legs do not fold sideways beyond the horizontal */
-        const double th2 = row[0] < 0 ? atan2(-row[1], -row[0]) : atan2(row[1], row[0]);
-        const double n[3] = {-s1 * cos(th2), c1 * cos(th2), sin(th2)};
+    const double part = asin(fmin(1, fmax(-1, c / lever)));
+    const double th1 = (toes_ahead ? BODY_PI - part : part) - atan2(b, a);
+    const double s1 = sin(th1), c1 = cos(th1);
+    const double by_place[2] = {z, s1 * p[0] - c1 * p[1] + offset2[1]};
+    const double by_foot[2] = {foot_x[2], s1 * foot_x[0] - c1 * foot_x[1]};
+    const bool place = hypot(by_place[0], by_place[1]) >= hypot(by_foot[0], by_foot[1]) * fabs(z);
+    const double *row = place ? by_place : by_foot;
 
-        if (vec_dot(n, foot_y) > best) {
-            best = vec_dot(n, foot_y);
-            th[YAW] = wrapped(th1);
-            th[HIP_ROLL] = th2;
-        }
-    }
-    return best > 0;
+    th[YAW] = wrapped(th1);
+    /* c2 >= 0: legs do not fold sideways beyond the horizontal */
+    th[HIP_ROLL] = row[0] < 0 ? atan2(-row[1], -row[0]) : atan2(row[1], row[0]);
+    const double n[3] = {-s1 * cos(th[HIP_ROLL]), c1 * cos(th[HIP_ROLL]), sin(th[HIP_ROLL])};
+
+    return vec_dot(n, foot_y) > 0;
 }
 
 /* Thigh (x4, z4) and shank (x5, z5) in the plane across n reach v, in the frame of N:
@@ -109,8 +104,8 @@ static bool hip_pitch_knee(const double thigh[3], const double shank[3], const d
 {
     const double along = thigh[0] * shank[0] + thigh[2] * shank[2];
     const double across = thigh[0] * shank[2] - thigh[2] * shank[0];
-    const double squares = thigh[0] * thigh[0] + thigh[2] * thigh[2] + shank[0] * shank[0] +
-                           shank[2] * shank[2];
+    const double squares =
+        thigh[0] * thigh[0] + thigh[2] * thigh[2] + shank[0] * shank[0] + shank[2] * shank[2];
     double cosine = (v[0] * v[0] + v[2] * v[2] - squares) / (2 * hypot(along, across));
 
     if (fabs(cosine) > 1 + COSINE_TOLERANCE) {
@@ -128,12 +123,12 @@ static bool hip_pitch_knee(const double thigh[3], const double shank[3], const d
 
 /* th1..th6 of a foot at p (from o1), r. */
 static bool leg_angles(const double *const offset[GROBO_BODY_LEG_JOINTS], const double p[3],
-                       const double r[9], double th[GROBO_BODY_LEG_JOINTS])
+                       const double r[9], bool toes_ahead, double th[GROBO_BODY_LEG_JOINTS])
 {
     static const double x_axis[3] = {1, 0, 0}, z_axis[3] = {0, 0, 1};
     double yaw[9], roll[9], hip[9], ankle[9], turn[9], n[3], local[3], v[3], part[3];
 
-    if (!hip_yaw_roll(offset[HIP_ROLL], p, r, th)) {
+    if (!hip_yaw_roll(offset[HIP_ROLL], p, r, toes_ahead, th)) {
         return false;
     }
     mat_axis_angle(yaw, z_axis, th[YAW]);
@@ -160,21 +155,32 @@ static bool leg_angles(const double *const offset[GROBO_BODY_LEG_JOINTS], const 
     return true;
 }
 
+/* How much the leg leaves its plane; of two answers a walker's is the one that does less. */
+static double twist(const double th[GROBO_BODY_LEG_JOINTS])
+{
+    return th[YAW] * th[YAW] + th[HIP_ROLL] * th[HIP_ROLL] + th[ANKLE_ROLL] * th[ANKLE_ROLL];
+}
+
 bool grobo_i_leg_exact(const grobo_body_model *model, const struct grobo_i_leg *leg,
                        const grobo_transform *target, double q_rad[GROBO_BODY_LEG_JOINTS])
 {
     const double *offset[GROBO_BODY_LEG_JOINTS];
-    double th[GROBO_BODY_LEG_JOINTS], p[3];
+    double th[2][GROBO_BODY_LEG_JOINTS], p[3];
+    bool ahead, behind;
 
     for (int i = 0; i < GROBO_BODY_LEG_JOINTS; i++) {
         offset[i] = model->links[leg->link[i]].offset_m;
     }
     vec_add_scaled(p, target->p_m, -1, offset[YAW]);
-    if (!leg_angles(offset, p, target->r, th)) {
+    ahead = leg_angles(offset, p, target->r, true, th[0]);
+    behind = leg_angles(offset, p, target->r, false, th[1]);
+    if (!ahead && !behind) {
         return false;
     }
+    const double *best = !behind || (ahead && twist(th[0]) <= twist(th[1])) ? th[0] : th[1];
+
     for (int i = 0; i < GROBO_BODY_LEG_JOINTS; i++) {
-        q_rad[i] = leg->sign[i] * th[i];
+        q_rad[i] = leg->sign[i] * best[i];
     }
     return true;
 }

@@ -10,7 +10,7 @@
 enum { DOF = GROBO_BODY_LEG_JOINTS };
 
 #define ROUNDS_MAX 50
-#define ERROR_MAX 1e-14          /* of |e|^2 */
+#define ERROR_MAX 1e-14 /* of |e|^2 */
 #define ERROR_MAX_COMPAT11 1e-12
 #define GAIN_MIN 1e-14
 #define ROUNDS_WITHOUT_GAIN 3
@@ -35,9 +35,7 @@ void grobo_i_omega(double out[3], const double r[9])
     out[2] = k * (r[1] - r[3]);
 }
 
-/* The path at some angles: columns of the Jacobian [axis x (p_end - p_joint); axis], of joints hip
- * to foot, and the end. The axis is negated for joints walked upwards. */
-static void path_jacobian(const struct grobo_i_numeric *problem, const grobo_transform *start,
+void grobo_i_leg_jacobian(const struct grobo_i_numeric *problem, const grobo_transform *start,
                           const double *q_rad, double jacobian[6][DOF], grobo_transform *end)
 {
     double axis[DOF][3], at[DOF][3];
@@ -166,7 +164,7 @@ bool grobo_i_leg_numeric(const struct grobo_i_numeric *problem, const grobo_tran
     for (int round = 0; round < ROUNDS_MAX; round++) {
         grobo_transform end;
 
-        path_jacobian(problem, start, q, jacobian, &end);
+        grobo_i_leg_jacobian(problem, start, q, jacobian, &end);
         const double error = path_error(&end, goal, e);
 
         if (error < error_max) {

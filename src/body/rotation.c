@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Roll, pitch, yaw: choreonoid-whole-body.md, section "Keys". */
+/* Attitudes. Roll, pitch, yaw: choreonoid-whole-body.md, section "Keys". */
 #include "body_priv.h"
 #include "vec.h"
 
@@ -33,4 +33,16 @@ void grobo_i_rpy_of_rotation(double rpy[3], const double r[9])
     }
     rpy[0] = atan2(r[7], r[8]);
     rpy[2] = atan2(r[3], r[0]);
+}
+
+void grobo_i_rotation_vector(double out[3], const double r[9])
+{
+    const double v[3] = {0.5 * (r[7] - r[5]), 0.5 * (r[2] - r[6]), 0.5 * (r[3] - r[1])};
+    const double sine = sqrt(vec_dot(v, v));
+    const double theta = atan2(sine, 0.5 * (r[0] + r[4] + r[8] - 1));
+    const double k = sine > 0 ? theta / sine : 1;
+
+    for (int i = 0; i < 3; i++) {
+        out[i] = k * v[i];
+    }
 }

@@ -103,9 +103,8 @@ static bool options_ok(const grobo_body_options *options)
         return false; /* the balancer moves the waist over standing feet */
     }
     return options->ik <= GROBO_BODY_IK_OFF && options->step <= GROBO_BODY_STEP_STEALTHY &&
-           options->zmp <= GROBO_BODY_ZMP_AUTO &&
-           options->balance <= GROBO_BODY_BALANCE_COMPAT11 && options->rate_hz >= 0 &&
-           options->rate_hz <= RATE_MAX_HZ;
+           options->zmp <= GROBO_BODY_ZMP_AUTO && options->balance <= GROBO_BODY_BALANCE_COMPAT11 &&
+           options->rate_hz >= 0 && options->rate_hz <= RATE_MAX_HZ;
 }
 
 static int count_keys(const grobo_body_setup *setup, struct counts *counts)
@@ -180,8 +179,7 @@ static void lay_out(struct arena *arena, grobo_body *body, const grobo_body_setu
     body->q_rad = take(arena, n_joints, sizeof *body->q_rad);
     body->order = take(arena, setup->n_keys, sizeof *body->order);
     if (setup->options.balance != GROBO_BODY_BALANCE_OFF) {
-        body->balance =
-            take(arena, grobo_i_balance_doubles(body->n_frames), sizeof *body->balance);
+        body->balance = take(arena, grobo_i_balance_doubles(body->n_frames), sizeof *body->balance);
     }
 }
 
@@ -205,8 +203,7 @@ static int measure(const grobo_body_setup *setup, struct counts *counts, grobo_b
     memset(body, 0, sizeof *body);
     body->model = setup->model;
     body->options = setup->options;
-    body->options.rate_hz =
-        setup->options.rate_hz > 0 ? setup->options.rate_hz : RATE_DEFAULT_HZ;
+    body->options.rate_hz = setup->options.rate_hz > 0 ? setup->options.rate_hz : RATE_DEFAULT_HZ;
     body->end_s = counts->end_s;
     body->n_frames = (int)fmax(frames, 1);
     for (int foot = 0; foot < 2; foot++) {
@@ -273,10 +270,9 @@ static void append_target(grobo_body *body, const grobo_body_key *key,
                           const grobo_body_target *from)
 {
     const int target = target_of_link(body->model, from->link);
-    const unsigned flags =
-        (from->base ? TRACK_BASE : 0u) | (from->touching ? TRACK_TOUCH : 0u) |
-        (from->slave && !from->touching ? TRACK_SLAVE : 0u) |
-        (from->stationary || from->touching ? TRACK_END : 0u);
+    const unsigned flags = (from->base ? TRACK_BASE : 0u) | (from->touching ? TRACK_TOUCH : 0u) |
+                           (from->slave && !from->touching ? TRACK_SLAVE : 0u) |
+                           (from->stationary || from->touching ? TRACK_END : 0u);
     double v[6];
 
     if (target < 0) {

@@ -204,8 +204,7 @@ static void solve_target(struct solving *now, int base, int target)
     for (int i = 0; i < GROBO_BODY_LEG_JOINTS && solved; i++) {
         const int j = body->model->links[leg->link[i]].joint;
 
-        body->q_rad[j] =
-            body->joints[j].n > 0 ? beta * now->key_rad[j] + (1 - beta) * q[i] : q[i];
+        body->q_rad[j] = body->joints[j].n > 0 ? beta * now->key_rad[j] + (1 - beta) * q[i] : q[i];
     }
 }
 

@@ -69,7 +69,7 @@ static void unwrap(double *angle_rad, double near_rad)
     *angle_rad -= 2 * BODY_PI * floor((*angle_rad - near_rad + BODY_PI) / (2 * BODY_PI));
 }
 
-void grobo_i_track_slopes(struct grobo_i_track *track, int angle)
+void grobo_i_track_slopes(struct grobo_i_track *track, int first_turn)
 {
     const int dim = track->dim;
 
@@ -78,7 +78,7 @@ void grobo_i_track_slopes(struct grobo_i_track *track, int angle)
         const bool level = i == 0 || i == track->n - 1 || (track->flags[i] & TRACK_END) != 0;
         double *slope = track->slope + (size_t)i * (size_t)dim;
 
-        for (int k = angle; k < dim && i + 1 < track->n; k++) {
+        for (int k = first_turn; k < dim && i + 1 < track->n; k++) {
             unwrap(&grobo_i_track_row(track, i + 1)[k], v[k]);
         }
         if ((track->flags[i] & TRACK_SLOPE) != 0) {

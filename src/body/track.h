@@ -23,11 +23,11 @@ enum {
 
 /* Storage belongs to the body's workspace. Keys are in the order of time. */
 struct grobo_i_track {
-    double *t_s;     /* n of them */
-    double *v;       /* n rows of dim values */
-    double *slope;   /* n rows of dim values a second, by grobo_i_track_slopes() */
-    uint8_t *flags;  /* n of them */
-    int dim;         /* 1, 3 or 6 */
+    double *t_s;    /* n of them */
+    double *v;      /* n rows of dim values */
+    double *slope;  /* n rows of dim values a second, by grobo_i_track_slopes() */
+    uint8_t *flags; /* n of them */
+    int dim;        /* 1, 3 or 6 */
     int n;
     int capacity;
     bool overflow; /* a key was dropped: the maker's count was wrong */
@@ -44,8 +44,8 @@ void grobo_i_track_add(struct grobo_i_track *track, double t_s, const double *v,
  * than max_transition_s (0: none), that one is repeated at t_s - max_transition_s, both level. */
 void grobo_i_track_hold(struct grobo_i_track *track, int at, double t_s, double max_transition_s);
 
-/* Computes the slopes; components from `angle` on are angles and are first shifted by turns. */
-void grobo_i_track_slopes(struct grobo_i_track *track, int angle);
+/* Computes the slopes; components from first_turn on are angles, first shifted by whole turns. */
+void grobo_i_track_slopes(struct grobo_i_track *track, int first_turn);
 
 /* Last key at or before t_s, -1 if there is none. */
 int grobo_i_track_find(const struct grobo_i_track *track, double t_s);

@@ -63,8 +63,8 @@ int grobo_body_model_check(const grobo_body_model *model)
     return mass_kg > 0 && model->feet[0].link != model->feet[1].link ? 0 : GROBO_ERR_ARG;
 }
 
-void grobo_i_step_down(const grobo_body_link *link, double angle_rad,
-                       const grobo_transform *parent, grobo_transform *out)
+void grobo_i_step_down(const grobo_body_link *link, double angle_rad, const grobo_transform *parent,
+                       grobo_transform *out)
 {
     double turn[9], offset[3];
 
@@ -103,8 +103,7 @@ void grobo_body_forward(const grobo_body_model *model, const grobo_transform *ro
     }
 }
 
-double grobo_body_com(const grobo_body_model *model, const grobo_transform *links,
-                      double com_m[3])
+double grobo_body_com(const grobo_body_model *model, const grobo_transform *links, double com_m[3])
 {
     double sum[3] = {0, 0, 0};
     double mass_kg = 0;

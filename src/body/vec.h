@@ -48,8 +48,7 @@ static inline void mat_mul(double out[9], const double a[9], const double b[9])
 {
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++) {
-            out[3 * i + j] =
-                a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j];
+            out[3 * i + j] = a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j];
         }
     }
 }

@@ -19,9 +19,9 @@ enum { RIGHT = 0, LEFT = 1, BOTH = 2, NEITHER = 3 };
 struct stepping {
     grobo_body *body;
     bool compat11;
-    double t0_s;     /* the foot event before */
-    double double_s; /* b0: begin of the double support */
-    int phase;       /* which foot stands since t0 */
+    double t0_s;      /* the foot event before */
+    double double_s;  /* b0: begin of the double support */
+    int phase;        /* which foot stands since t0 */
     int phase_single; /* which stood before the double support, NEITHER: none */
 };
 
@@ -57,8 +57,7 @@ static int phase_at(const struct stepping *now, double t_s)
     return stands[RIGHT] ? RIGHT : stands[LEFT] ? LEFT : NEITHER;
 }
 
-void grobo_i_sole(const grobo_body_model *model, int foot, const double target[6],
-                  double sole_m[3])
+void grobo_i_sole(const grobo_body_model *model, int foot, const double target[6], double sole_m[3])
 {
     double r[9], arm[3];
 
@@ -93,7 +92,7 @@ static bool between_soles(const struct stepping *now, double t_s, double left_pa
         return false;
     }
     for (int k = 0; k < 3; k++) {
-        at_m[k] = !has_right ? left[k]
+        at_m[k] = !has_right  ? left[k]
                   : !has_left ? right[k]
                               : (1 - left_part) * right[k] + left_part * left[k];
     }
@@ -191,8 +190,7 @@ static void lift(const struct stepping *now, int support, double t1_s)
     const double s0_s = track->t_s[k0];
 
     if (!centred && s0_s - zmp->t_s[z0] < TRANSFER_S) {
-        const double a_s =
-            fmin(zmp->t_s[z0] + TRANSFER_S, 0.5 * (s0_s + track->t_s[k1]));
+        const double a_s = fmin(zmp->t_s[z0] + TRANSFER_S, 0.5 * (s0_s + track->t_s[k1]));
 
         add_zmp(now, a_s, sole_m);
         add_rest(now, swing, k0, a_s);
@@ -225,8 +223,7 @@ static void land(const struct stepping *now, int support, double t1_s)
         return;
     }
     if (zmp->t_s[z1] - t1_s < TRANSFER_S) {
-        const double a_s =
-            fmax(zmp->t_s[z1] - TRANSFER_S, 0.5 * (track->t_s[k1 - 1] + t1_s));
+        const double a_s = fmax(zmp->t_s[z1] - TRANSFER_S, 0.5 * (track->t_s[k1 - 1] + t1_s));
 
         add_zmp(now, a_s, sole_m);
         add_rest(now, swing, k1, a_s);

@@ -16,10 +16,9 @@
 
 #define RATE_HZ 30.0
 
-static const struct grobo_body_options plain = {
-    .ik = GROBO_BODY_IK_NUMERIC, .rate_hz = RATE_HZ};
-static const struct grobo_body_options plain_grobot = {
-    .ik = GROBO_BODY_IK_EXACT, .rate_hz = RATE_HZ};
+static const struct grobo_body_options plain = {.ik = GROBO_BODY_IK_NUMERIC, .rate_hz = RATE_HZ};
+static const struct grobo_body_options plain_grobot = {.ik = GROBO_BODY_IK_EXACT,
+                                                       .rate_hz = RATE_HZ};
 static const struct grobo_body_options as_the_gui = {.ik = GROBO_BODY_IK_NUMERIC,
                                                      .step = GROBO_BODY_STEP_STEALTHY,
                                                      .zmp = GROBO_BODY_ZMP_AUTO,

@@ -1,0 +1,177 @@
+/* SPDX-License-Identifier: MIT */
+/* Balance, and the lint that tells whether a motion falls. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "body/polygon.h"
+#include "body_script.h"
+
+struct watch {
+    int frames;
+    int findings[6];
+    grobo_body_finding last[6];
+    double worst_error_m; /* ZMP less desired ZMP, away from both ends */
+    double least_margin_m;
+    double end_s;
+};
+
+static void see_frame(void *ctx, const grobo_body_balance_frame *frame)
+{
+    struct watch *watch = ctx;
+
+    watch->frames++;
+    if (frame->time_s > 0.6 && frame->time_s < watch->end_s) {
+        watch->worst_error_m =
+            fmax(watch->worst_error_m, hypot(frame->zmp_m[0] - frame->desired_m[0],
+                                             frame->zmp_m[1] - frame->desired_m[1]));
+        watch->least_margin_m = fmin(watch->least_margin_m, frame->margin_m);
+    }
+}
+
+static void see_finding(void *ctx, const grobo_body_finding *finding)
+{
+    struct watch *watch = ctx;
+
+    watch->findings[finding->problem]++;
+    watch->last[finding->problem] = *finding;
+}
+
+static int check(const struct script *script, const grobo_body_options *options,
+                 struct watch *watch)
+{
+    struct run run;
+    grobo_body_check_options checks = {
+        .robot = &grobo_gr001_model, .frame = see_frame, .finding = see_finding, .ctx = watch};
+    int found;
+
+    memset(watch, 0, sizeof *watch);
+    watch->end_s = script->keys[script->n_keys - 1].time_s;
+    watch->least_margin_m = 1;
+    run_start(&run, &grobo_gr001_body, script, options);
+    found = grobo_body_check(run.body, &checks);
+    assert_int_equal(watch->frames, grobo_body_frame_count(run.body));
+    run_finish(&run);
+    return found;
+}
+
+/* A slow step, long enough for the balancer's ends. */
+static void script_slow_step(struct script *script)
+{
+    script_step(script);
+    for (size_t i = 0; i < script->n_keys; i++) {
+        script->keys[i].time_s = 0.8 + 2 * script->keys[i].time_s;
+        script->keys[i].max_transition_s = 0;
+    }
+    script->keys[0].time_s = 0;
+}
+
+static void the_balancer_brings_the_zmp_to_the_desired_one(void **state)
+{
+    grobo_body_options options = {.zmp = GROBO_BODY_ZMP_AUTO, .rate_hz = 100};
+    struct script script;
+    struct watch off, on;
+
+    (void)state;
+    script_slow_step(&script);
+    (void)check(&script, &options, &off);
+    options.balance = GROBO_BODY_BALANCE_ON;
+    (void)check(&script, &options, &on);
+    assert_true(off.worst_error_m > 0.01);
+    assert_true(on.worst_error_m < 0.25 * off.worst_error_m);
+    assert_true(on.least_margin_m > 0.01);
+}
+
+/* A body that stands has its ZMP under its centre of mass; bent far over, it falls, and the lint
+ * says when. */
+static void the_lint_tells_a_fall(void **state)
+{
+    const grobo_body_options options = {.rate_hz = 100};
+    struct script script;
+    struct watch watch;
+
+    (void)state;
+    memset(&script, 0, sizeof script);
+    script_key(&script, 0);
+    script_stand(&script, 0.01, 0, 0.145);
+    script_key(&script, 2);
+    script_target(&script, WAIST, 0.01, 0, 0.145);
+    assert_int_equal(check(&script, &options, &watch), 0);
+    assert_true(watch.least_margin_m > 0.015);
+    script_key(&script, 4);
+    script_target(&script, WAIST, -0.07, 0, 0.12);
+    assert_int_equal(check(&script, &options, &watch), 1);
+    assert_int_equal(watch.findings[GROBO_BODY_ZMP_MARGIN], 1);
+    assert_true(watch.last[GROBO_BODY_ZMP_MARGIN].begin_s > 2);
+    assert_true(watch.last[GROBO_BODY_ZMP_MARGIN].end_s > 3.99);
+    assert_true(watch.last[GROBO_BODY_ZMP_MARGIN].worst < -0.005);
+}
+
+static void the_lint_tells_what_else_is_wrong(void **state)
+{
+    const grobo_body_options options = {.rate_hz = 100};
+    struct script script;
+    struct watch watch;
+
+    (void)state;
+    memset(&script, 0, sizeof script);
+    script_key(&script, 0);
+    script_joint(&script, 13, 0);
+    script_joint(&script, 12, 0);
+    script_stand(&script, 0.01, 0, 0.145);
+    script_key(&script, 1);
+    script_joint(&script, 12, 0.2); /* beyond its limit 0 */
+    script_target(&script, RIGHT, FOOT_X + 0.004, -FOOT_Y, FOOT_Z)->touching = true; /* slides */
+    script_key(&script, 1.02);
+    script_joint(&script, 13, 0.8); /* 40 rad/s */
+    script_target(&script, WAIST, 0.01, 0, 0.145);
+    script_key(&script, 2);
+    script_target(&script, WAIST, 0.01, 0, 0.19); /* too high */
+    script_target(&script, RIGHT, FOOT_X, -FOOT_Y, FOOT_Z + 0.03);
+    script_target(&script, LEFT, FOOT_X, FOOT_Y, FOOT_Z)->touching = false;
+    script.keys[2].max_transition_s = 0.02;
+    (void)check(&script, &options, &watch);
+    assert_int_equal(watch.findings[GROBO_BODY_FOOT_SLIP], 1);
+    assert_int_equal(watch.last[GROBO_BODY_FOOT_SLIP].index, RIGHT);
+    assert_true(fabs(watch.last[GROBO_BODY_FOOT_SLIP].worst - 0.004) < 1e-4);
+    assert_int_equal(watch.findings[GROBO_BODY_JOINT_LIMIT], 1);
+    assert_int_equal(watch.last[GROBO_BODY_JOINT_LIMIT].index, 12);
+    assert_true(fabs(watch.last[GROBO_BODY_JOINT_LIMIT].worst - 0.2) < 1e-9);
+    assert_true(watch.findings[GROBO_BODY_JOINT_SPEED] >= 1);
+    assert_true(watch.findings[GROBO_BODY_NO_SUPPORT] == 1);
+    assert_true(watch.last[GROBO_BODY_NO_SUPPORT].begin_s > 0.99);
+    assert_true(watch.findings[GROBO_BODY_UNREACHABLE] >= 1);
+    assert_string_equal(grobo_body_problem_name(GROBO_BODY_FOOT_SLIP), "foot-slip");
+}
+
+/* A unit square with a point inside and one on an edge. */
+static void margins_of_a_hull(void **state)
+{
+    double points[6][2] = {{1, 1}, {0, 0}, {0.4, 0.3}, {1, 0}, {0, 1}, {0.5, 0}};
+    double hull[13][2];
+    const double inside[2] = {0.2, 0.5}, outside[2] = {2, 2}, beside[2] = {0.5, -0.25};
+    const int n = grobo_i_convex_hull(points, 6, hull);
+
+    (void)state;
+    assert_int_equal(n, 4);
+    assert_true(fabs(grobo_i_polygon_margin(hull, n, inside) - 0.2) < 1e-15);
+    assert_true(fabs(grobo_i_polygon_margin(hull, n, outside) + sqrt(2)) < 1e-15);
+    assert_true(fabs(grobo_i_polygon_margin(hull, n, beside) + 0.25) < 1e-15);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_balancer_brings_the_zmp_to_the_desired_one),
+        cmocka_unit_test(the_lint_tells_a_fall),
+        cmocka_unit_test(the_lint_tells_what_else_is_wrong),
+        cmocka_unit_test(margins_of_a_hull),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
