@@ -60,31 +60,6 @@ static void end_close(end *e)
     }
 }
 
-static void on_readable(evutil_socket_t fd, short what, void *arg)
-{
-    end *e = arg;
-
-    (void)fd;
-    (void)what;
-    grobo_sim_server_pump(e->server);
-}
-
-/* Listens to a port that has just been opened. */
-static int end_begin(end *e)
-{
-    e->readable = event_new(e->server->config.base, e->ops->socket(e->port), EV_READ | EV_PERSIST,
-                            on_readable, e);
-    if (e->readable == NULL) {
-        e->ops->close(e->port);
-        return GROBO_ERR_NOMEM;
-    }
-    if (event_add(e->readable, NULL) != 0) {
-        end_close(e);
-        return GROBO_ERR_NOMEM;
-    }
-    return GROBO_OK;
-}
-
 /* What a program sets at its end of the pseudo-terminal, the simulated line has too. */
 static void follow_baud(grobo_sim_server *server, const end *e)
 {
@@ -126,6 +101,32 @@ static void end_read(end *e)
         e->paused = room == 0;
         (void)(e->paused ? event_del(e->readable) : event_add(e->readable, NULL));
     }
+}
+
+static void on_readable(evutil_socket_t fd, short what, void *arg)
+{
+    end *e = arg;
+
+    (void)fd;
+    (void)what;
+    end_read(e);
+    grobo_sim_server_pump(e->server);
+}
+
+/* Listens to a port that has just been opened. */
+static int end_begin(end *e)
+{
+    e->readable = event_new(e->server->config.base, e->ops->socket(e->port), EV_READ | EV_PERSIST,
+                            on_readable, e);
+    if (e->readable == NULL) {
+        e->ops->close(e->port);
+        return GROBO_ERR_NOMEM;
+    }
+    if (event_add(e->readable, NULL) != 0) {
+        end_close(e);
+        return GROBO_ERR_NOMEM;
+    }
+    return GROBO_OK;
 }
 
 /* Gives programs what has come out of the wire. */
@@ -269,10 +270,12 @@ void grobo_sim_server_pump(grobo_sim_server *server)
 {
     int64_t sim_us;
 
-    for (int i = 0; i < ENDS; i++) {
-        end_read(&server->ends[i]);
-    }
     answer(server);
+    for (int i = 0; i < ENDS; i++) {
+        if (server->ends[i].paused) {
+            end_read(&server->ends[i]);
+        }
+    }
     if (grobo_sim_hung_up(&server->sim) && is_plugged(server)) {
         hang_up(server);
     }
