@@ -82,7 +82,7 @@ static size_t make_reply(const request *r, uint8_t *b)
     return (size_t)grobo_rs30x_build(&packet, b, 40);
 }
 
-/* The length stays: wrong, it splices packets, which a sum of 8 bits finds 255 times in 256 only. */
+/* The length stays: a wrong one splices packets, which 8 bits of sum miss once in 256 times. */
 static void flip_a_bit(soak *s, uint8_t *b, size_t n)
 {
     size_t at = draw(s, (uint32_t)n);

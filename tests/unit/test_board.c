@@ -212,7 +212,9 @@ static void hear(grobo_board_parser *parser, int64_t now_us, heard *h)
 {
     while (grobo_board_parser_next(parser, now_us, &h->frame) > 0) {
         h->frames++;
-        memcpy(h->packet, h->frame.packet, h->frame.packet_bytes);
+        if (h->frame.packet_bytes > 0) {
+            memcpy(h->packet, h->frame.packet, h->frame.packet_bytes);
+        }
     }
 }
 
