@@ -230,6 +230,9 @@ GROBO_API int grobo_body_init(grobo_body **body, const grobo_body_setup *setup, 
 /** Number of frames, at least 1. With the balancer they last one second beyond the last key. */
 GROBO_API int grobo_body_frame_count(const grobo_body *body);
 
+/** Joints that the motion moves: those with keys, and of legs between waist and foot targets. */
+GROBO_API grobo_joint_mask grobo_body_joints(const grobo_body *body);
+
 /**
  * Solves one frame. Frames may be asked for in any order; joints that the motion gives no key and
  * legs out of reach stay as the frame solved before left them, as they do in Choreonoid, so that

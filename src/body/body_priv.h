@@ -4,6 +4,7 @@
 #define GROBO_SRC_BODY_BODY_PRIV_H
 
 #include <grobo/body.h>
+#include <grobo/mem.h>
 
 #include "track.h"
 
@@ -73,7 +74,12 @@ struct grobo_body {
     struct grobo_i_track zmp;                     /* x y z */
     double *q_rad;                                /* the state: the frame solved last */
     uint32_t *order;                              /* keys by time, while being set up */
-    double *balance; /* the balancer's arrays, first its x, y a frame; NULL: no balancer */
+    double *time_s;                               /* times of the keys, each once */
+    size_t n_poses;
+    double *balance;       /* the balancer's arrays, first its x, y a frame; NULL: no balancer */
+    const grobo_mem *mem;  /* of a body on the heap */
+    size_t bytes;          /* of it */
+    bool stop_unreachable; /* its clip gives an error where a leg does not reach */
 };
 
 /* Solves the pose at a time with the waist shifted in x and y. */

@@ -10,6 +10,24 @@ int grobo_body_frame_count(const grobo_body *body)
     return body->n_frames;
 }
 
+grobo_joint_mask grobo_body_joints(const grobo_body *body)
+{
+    const bool waist = body->options.ik != GROBO_BODY_IK_OFF && body->target[GROBO_I_WAIST].n > 0;
+    grobo_joint_mask joints = 0;
+
+    for (int j = 0; j < body->model->n_joints; j++) {
+        joints |= body->joints[j].n > 0 ? GROBO_JOINT_BIT(j) : 0;
+    }
+    for (int foot = 0; foot < 2; foot++) {
+        for (int i = 0; i < GROBO_BODY_LEG_JOINTS; i++) {
+            if (waist && body->target[GROBO_I_RIGHT + foot].n > 0) {
+                joints |= GROBO_JOINT_BIT(body->model->links[body->leg[foot].link[i]].joint);
+            }
+        }
+    }
+    return joints;
+}
+
 /* The balancer's shift at a time, straight between its frames. */
 static void shift_at(const grobo_body *body, double time_s, double shift_m[2])
 {

@@ -178,6 +178,7 @@ static void lay_out(struct arena *arena, grobo_body *body, const grobo_body_setu
     take_track(arena, &body->zmp, 3, 2 * (counts->zmp + 3 * foot_keys + 2));
     body->q_rad = take(arena, n_joints, sizeof *body->q_rad);
     body->order = take(arena, setup->n_keys, sizeof *body->order);
+    body->time_s = take(arena, setup->n_keys, sizeof *body->time_s);
     if (setup->options.balance != GROBO_BODY_BALANCE_OFF) {
         body->balance = take(arena, grobo_i_balance_doubles(body->n_frames), sizeof *body->balance);
     }
@@ -245,6 +246,17 @@ static void sort_keys(const grobo_body_setup *setup, uint32_t *order)
         }
         memmove(order + low + 1, order + low, (i - low) * sizeof *order);
         order[low] = (uint32_t)i;
+    }
+}
+
+static void list_times(grobo_body *body, const grobo_body_setup *setup)
+{
+    for (size_t i = 0; i < setup->n_keys; i++) {
+        const double time_s = setup->keys[body->order[i]].time_s;
+
+        if (body->n_poses == 0 || time_s > body->time_s[body->n_poses - 1]) {
+            body->time_s[body->n_poses++] = time_s;
+        }
     }
 }
 
@@ -407,6 +419,7 @@ int grobo_body_init(grobo_body **body, const grobo_body_setup *setup, void *work
     lay_out(&arena, &made, setup, &counts);
     *at = made;
     sort_keys(setup, at->order);
+    list_times(at, setup);
     fill_tracks(at, setup);
     add_keys(at, setup);
     if (overflowed(at)) {

@@ -12,7 +12,8 @@
 
 #include <cmocka.h>
 
-#include "body_pseq.h"
+#include <grobo/body_motion.h>
+#include <grobo/motion_io.h>
 
 #define RATE_HZ 30.0
 
@@ -68,10 +69,8 @@ static void agree(const char *motion, const char *frames, const grobo_body_optio
                   double tolerance_rad)
 {
     char path[512];
-    struct body_pseq pseq;
-    grobo_body *body;
-    size_t bytes;
-    void *workspace;
+    grobo_motion *keys = NULL;
+    grobo_body *body = NULL;
     FILE *golden;
     double worst;
 
@@ -82,19 +81,15 @@ static void agree(const char *motion, const char *frames, const grobo_body_optio
         skip();
     }
     path_in_shared(path, sizeof path, motion);
-    assert_true(body_pseq_read(&pseq, path, &grobo_gr001_body));
-    const grobo_body_setup setup = {&grobo_gr001_body, pseq.keys, pseq.n_keys, *options};
-
-    assert_int_equal(grobo_body_workspace_bytes(&setup, &bytes), 0);
-    workspace = malloc(bytes);
-    assert_int_equal(grobo_body_init(&body, &setup, workspace, bytes), 0);
+    assert_int_equal(grobo_motion_read_file(path, NULL, NULL, &keys), 0);
+    assert_int_equal(grobo_body_new(&body, &grobo_gr001_body, keys, options, NULL), 0);
+    grobo_motion_free(keys);
     worst = compare(body, golden);
     if (worst > tolerance_rad) {
         print_error("%s: %g rad\n", frames, worst);
     }
     assert_true(worst <= tolerance_rad);
-    free(workspace);
-    body_pseq_free(&pseq);
+    grobo_body_free(body);
     fclose(golden);
 }
 
