@@ -85,8 +85,8 @@ GROBO_API grobo_motion_format grobo_motion_kind_format(grobo_motion_kind kind);
 /** Options of reading. All zero (or NULL): the defaults. */
 typedef struct grobo_read_options {
     grobo_motion_format format; /**< AUTO: by extension, else by content */
-    const grobo_model *model;   /**< motor order of .m; NULL, or another number of joints in the
-                                     file: .m is taken in joint order */
+    const grobo_model *model;   /**< order of .m: its motors; NULL, or more angles in the file
+                                     than it has motors: joint order */
     const grobo_mem *mem;       /**< of the motion and of reading; NULL: the C library's */
     const char *name;           /**< the file's name in diagnostics and for AUTO; NULL: the path, or
                                      "" where there is none */
@@ -187,13 +187,13 @@ GROBO_API int grobo_motion_write(const grobo_motion *motion, grobo_motion_format
 /**
  * Writes a motion to a file: to a temporary one beside it, which takes its place when all is
  * safely stored. An old file is replaced whole or stays as it was.
+ * The format is that of the path's extension, else the one that holds the motion's kind.
  * @param files the system's: grobo_files_os()
- * @param format AUTO: by the path's extension, else the one that holds the motion's kind
  * @return 0, GROBO_ERR_NOENT, GROBO_ERR_PERM, GROBO_ERR_ISDIR, GROBO_ERR_IO, or as above.
  */
 GROBO_API int grobo_motion_save(const grobo_motion *motion, const grobo_files *files,
-                                const char *path, grobo_motion_format format,
-                                const grobo_write_options *options, grobo_diagnostics *list);
+                                const char *path, const grobo_write_options *options,
+                                grobo_diagnostics *list);
 /**
  * Writes a motion as .m to the first of Motion1.m, Motion2.m, ... that is not there yet in a
  * directory; nobody else's file is replaced, even when two programs do so at once.

@@ -88,10 +88,26 @@ static int sort_keys(grobo_i_clip *clip)
     return 0;
 }
 
+/*
+ * When each posture is reached: as the file says, moved on by a constant from each step that means
+ * the default time. (Not summed up: without such steps the times are the file's to the bit.)
+ */
+static void time_postures(grobo_i_clip *clip)
+{
+    double offset_s = 0, before_s = 0;
+
+    for (size_t n = 0; n < clip->size; n++) {
+        double time_s = grobo_i_time_s(clip->motion, n);
+        if (grobo_motion_step_us(clip->motion, n) == 0) {
+            offset_s = before_s + (double)clip->default_us / 1e6 - time_s;
+        }
+        before_s = clip->at_s[n] = time_s + offset_s;
+    }
+}
+
 static int set_times(grobo_i_clip *clip)
 {
     const grobo_motion *motion = clip->motion;
-    int64_t at_us = 0;
 
     if (grobo_i_at_rate(motion) || clip->size == 0) {
         return 0;
@@ -100,16 +116,14 @@ static int set_times(grobo_i_clip *clip)
     if (clip->at_s == NULL) {
         return GROBO_ERR_NOMEM;
     }
-    for (size_t n = 0; n < clip->size; n++) {
-        if (counts_steps(motion)) {
-            int64_t step_us = grobo_motion_step_us(motion, n);
-            at_us += step_us > 0 ? step_us : clip->default_us;
-            clip->at_s[n] = (double)at_us / 1e6;
-        } else {
-            clip->at_s[n] = grobo_i_time_s(motion, n);
-        }
+    if (counts_steps(motion)) {
+        time_postures(clip);
+        return 0;
     }
-    return counts_steps(motion) || in_order(motion) ? 0 : sort_keys(clip);
+    for (size_t n = 0; n < clip->size; n++) {
+        clip->at_s[n] = grobo_i_time_s(motion, n);
+    }
+    return in_order(motion) ? 0 : sort_keys(clip);
 }
 
 /* ---- increments --------------------------------------------------------------------------- */

@@ -1,0 +1,288 @@
+/* SPDX-License-Identifier: MIT */
+/* grobo/files.h: files that are replaced whole, and paths that stay in a directory. */
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <grobo/files.h>
+
+enum { TEMPORARIES_MAX = 100 }; /* names tried for one */
+
+static int error_of(int code)
+{
+    switch (code) {
+    case ENOENT:
+    case ENOTDIR:
+        return GROBO_ERR_NOENT;
+    case EACCES:
+    case EPERM:
+    case EROFS:
+        return GROBO_ERR_PERM;
+    case EISDIR:
+        return GROBO_ERR_ISDIR;
+    case EEXIST:
+        return GROBO_ERR_EXISTS;
+    case ENAMETOOLONG:
+        return GROBO_ERR_SPACE;
+    default:
+        return GROBO_ERR_IO;
+    }
+}
+
+static int copy_path(char *to, size_t size, const char *path)
+{
+    size_t length = strlen(path);
+
+    if (length >= size) {
+        return GROBO_ERR_SPACE;
+    }
+    memcpy(to, path, length + 1);
+    return 0;
+}
+
+/* ---- writing ------------------------------------------------------------------------------ */
+
+/* A new file beside path, with the mode that any new file gets. */
+static int open_temporary(grobo_file *file)
+{
+    for (int n = 0; n < TEMPORARIES_MAX; n++) {
+        int length = snprintf(file->temporary, sizeof file->temporary, "%s.%ld-%d~", file->path,
+                              (long)getpid(), n);
+        if (length < 0 || (size_t)length >= sizeof file->temporary) {
+            return GROBO_ERR_SPACE;
+        }
+        int fd = open(file->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (fd >= 0) {
+            file->handle = fd;
+            return 0;
+        }
+        if (errno != EEXIST) {
+            return error_of(errno);
+        }
+    }
+    return GROBO_ERR_EXISTS;
+}
+
+static int open_direct(grobo_file *file)
+{
+    int fd = open(file->path, O_WRONLY | O_CLOEXEC);
+
+    if (fd < 0) {
+        return error_of(errno);
+    }
+    file->handle = fd;
+    file->direct = true;
+    return 0;
+}
+
+/* Gives the new file the mode, and if possible the owner, of the one that it will replace. */
+static void take_over(int fd, const struct stat *old)
+{
+    if (fchown(fd, old->st_uid, old->st_gid) != 0) {
+        /* Only root may give files away; then it is ours, as any file we make. */
+        errno = 0;
+    }
+    (void)fchmod(fd, old->st_mode & 07777);
+}
+
+/* file->path: what path leads to, if it is there. */
+static int set_path(grobo_file *file, const char *path, bool exclusive)
+{
+    char *real = exclusive ? NULL : realpath(path, NULL);
+    int result = copy_path(file->path, sizeof file->path, real != NULL ? real : path);
+
+    free(real);
+    return result;
+}
+
+static int create(grobo_file *file, const char *path, bool exclusive)
+{
+    struct stat old;
+
+    file->handle = -1;
+    file->exclusive = exclusive;
+    file->direct = false;
+    int result = set_path(file, path, exclusive);
+    if (result < 0) {
+        return result;
+    }
+    bool there = lstat(file->path, &old) == 0;
+    if (there && exclusive) {
+        return GROBO_ERR_EXISTS;
+    }
+    if (there && S_ISDIR(old.st_mode)) {
+        return GROBO_ERR_ISDIR;
+    }
+    if (there && !S_ISREG(old.st_mode) && !S_ISLNK(old.st_mode)) {
+        return open_direct(file);
+    }
+    /* A directory's permission would be enough to replace it; that is not what its owner meant. */
+    if (there && S_ISREG(old.st_mode) && access(file->path, W_OK) != 0) {
+        return error_of(errno);
+    }
+    result = open_temporary(file);
+    if (result == 0 && there && S_ISREG(old.st_mode)) {
+        take_over((int)file->handle, &old);
+    }
+    return result;
+}
+
+static int write_all(grobo_file *file, const void *data, size_t size)
+{
+    const char *from = data;
+
+    while (size > 0) {
+        ssize_t put = write((int)file->handle, from, size);
+        if (put < 0 && errno != EINTR) {
+            return error_of(errno);
+        }
+        if (put > 0) {
+            from += put;
+            size -= (size_t)put;
+        }
+    }
+    return 0;
+}
+
+/* The name of a file is safe when its directory is; some file systems have no such call. */
+static void sync_directory(const char *path)
+{
+    char folder[GROBO_PATH_MAX_BYTES];
+
+    if (copy_path(folder, sizeof folder, path) < 0) {
+        return;
+    }
+    char *slash = strrchr(folder, '/');
+    if (slash == folder) {
+        slash++;
+    }
+    if (slash != NULL) {
+        *slash = '\0';
+    }
+    int fd = open(slash != NULL ? folder : ".", O_RDONLY | O_CLOEXEC);
+    if (fd >= 0) {
+        (void)fsync(fd);
+        (void)close(fd);
+    }
+}
+
+/* Gives the temporary file its name, if nothing else has it. */
+static int put_in_free_place(grobo_file *file)
+{
+    if (link(file->temporary, file->path) == 0) {
+        (void)unlink(file->temporary);
+        return 0;
+    }
+    if (errno == EEXIST) {
+        return GROBO_ERR_EXISTS;
+    }
+    /* No links here: hold the place with an empty file. */
+    int fd = open(file->path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (fd < 0) {
+        return error_of(errno);
+    }
+    (void)close(fd);
+    return rename(file->temporary, file->path) == 0 ? 0 : error_of(errno);
+}
+
+static int put_in_place(grobo_file *file)
+{
+    if (file->exclusive) {
+        return put_in_free_place(file);
+    }
+    return rename(file->temporary, file->path) == 0 ? 0 : error_of(errno);
+}
+
+static void discard(grobo_file *file)
+{
+    if (file->handle >= 0) {
+        (void)close((int)file->handle);
+        file->handle = -1;
+    }
+    if (!file->direct) {
+        (void)unlink(file->temporary);
+    }
+}
+
+static int commit(grobo_file *file)
+{
+    int result = 0;
+
+    /* A pipe or a terminal cannot be synced. */
+    if (fsync((int)file->handle) != 0 && !file->direct) {
+        result = error_of(errno);
+    }
+    if (close((int)file->handle) != 0 && result == 0) {
+        result = error_of(errno);
+    }
+    file->handle = -1;
+    if (file->direct) {
+        return result;
+    }
+    if (result == 0) {
+        result = put_in_place(file);
+    }
+    if (result < 0) {
+        discard(file);
+        return result;
+    }
+    sync_directory(file->path);
+    return 0;
+}
+
+/* ---- paths -------------------------------------------------------------------------------- */
+
+/* path lies in folder or below; both are true paths. */
+static bool lies_in(const char *path, const char *folder)
+{
+    size_t length = strlen(folder);
+
+    if (length > 0 && folder[length - 1] == '/') {
+        return strncmp(path, folder, length) == 0;
+    }
+    return strncmp(path, folder, length) == 0 && path[length] == '/';
+}
+
+static int check_file(const char *real, const char *folder, char *path, size_t path_bytes)
+{
+    struct stat status;
+
+    if (!lies_in(real, folder)) {
+        return GROBO_ERR_PERM;
+    }
+    if (stat(real, &status) != 0) {
+        return error_of(errno);
+    }
+    return S_ISDIR(status.st_mode) ? GROBO_ERR_ISDIR : copy_path(path, path_bytes, real);
+}
+
+static int inside(const char *directory, const char *name, char *path, size_t path_bytes)
+{
+    char joined[GROBO_PATH_MAX_BYTES];
+    char *folder = realpath(directory, NULL);
+
+    if (folder == NULL) {
+        return error_of(errno);
+    }
+    int length = snprintf(joined, sizeof joined, "%s/%s", folder, name);
+    int result = GROBO_ERR_SPACE;
+    if (length > 0 && (size_t)length < sizeof joined) {
+        char *real = realpath(joined, NULL);
+        result = real != NULL ? check_file(real, folder, path, path_bytes) : error_of(errno);
+        free(real);
+    }
+    free(folder);
+    return result;
+}
+
+const grobo_files *grobo_files_os(void)
+{
+    static const grobo_files files = {create, write_all, commit, discard, inside};
+
+    return &files;
+}

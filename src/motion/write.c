@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: MIT */
+#include <string.h>
+
+#include "motion/write.h"
+
+void grobo_i_put_kept(grobo_i_out *out, const grobo_i_kept *kept, grobo_kept_level level, int link,
+                      int indent)
+{
+    for (; kept != NULL; kept = kept->next) {
+        if (kept->level != level || (level == GROBO_KEPT_LINK && kept->link != link)) {
+            continue;
+        }
+        for (int i = 0; i < indent; i++) {
+            grobo_i_put(out, " ", 1);
+        }
+        grobo_i_put_scalar(out, kept->text, kept->key_bytes - 1);
+        grobo_i_put_text(out, ": ");
+        grobo_i_put(out, kept->text + kept->key_bytes, kept->value_bytes - 1);
+        grobo_i_put_text(out, "\n");
+    }
+}
+
+int grobo_motion_write(const grobo_motion *motion, grobo_motion_format format,
+                       const grobo_write_options *options, const grobo_sink *sink,
+                       grobo_diagnostics *list)
+{
+    static const grobo_write_options defaults;
+    grobo_i_out out;
+    grobo_i_writing writing = {options != NULL ? options : &defaults, list, &out};
+    grobo_motion *converted = NULL;
+
+    if (format < GROBO_FORMAT_AUTO || format > GROBO_FORMAT_YAML) {
+        return GROBO_ERR_ARG;
+    }
+    if (format == GROBO_FORMAT_AUTO) {
+        format = grobo_motion_kind_format(motion->kind);
+    }
+    grobo_motion_kind kind = grobo_motion_format_kind(format);
+    if (kind != motion->kind || (kind == GROBO_MOTION_FRAMES && writing.options->rate_hz > 0)) {
+        int result = grobo_motion_convert(motion, kind, writing.options, list, &converted);
+        if (result < 0) {
+            return result;
+        }
+        motion = converted;
+    }
+    if (kind == GROBO_MOTION_FRAMES && !(motion->frame_rate_hz > 0)) {
+        grobo_motion_free(converted);
+        return GROBO_ERR_STATE;
+    }
+    grobo_i_out_begin(&out, sink);
+    if (kind == GROBO_MOTION_POSTURES) {
+        grobo_i_write_m(&writing, motion);
+    } else if (kind == GROBO_MOTION_FRAMES) {
+        grobo_i_write_yaml(&writing, motion);
+    } else {
+        grobo_i_write_pseq(&writing, motion);
+    }
+    grobo_motion_free(converted);
+    return grobo_i_out_end(&out);
+}

@@ -1,0 +1,128 @@
+/* SPDX-License-Identifier: MIT */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "motion_files.h"
+
+grobo_motion *motion_of(const char *text, grobo_motion_format format)
+{
+    grobo_read_options options = {.format = format, .model = &grobo_gr001_model, .name = "text"};
+    grobo_motion *motion = NULL;
+    grobo_diagnostics *list = NULL;
+
+    assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
+    int result = grobo_motion_read_memory(text, strlen(text), &options, list, &motion);
+    grobo_diagnostic first;
+    if (result < 0 && grobo_diagnostics_get(list, 0, &first) == 0) {
+        print_error("%u:%u: %s\n", first.line, first.column, first.message);
+    }
+    grobo_diagnostics_free(list);
+    assert_int_equal(result, 0);
+    return motion;
+}
+
+int read_result(const char *text, const grobo_read_options *options, grobo_diagnostics *list)
+{
+    grobo_motion *motion = NULL;
+    int result = grobo_motion_read_memory(text, strlen(text), options, list, &motion);
+
+    assert_true((result == 0) == (motion != NULL));
+    grobo_motion_free(motion);
+    return result;
+}
+
+typedef struct text_sink {
+    char *data;
+    size_t size;
+} text_sink;
+
+static int write_text(void *ctx, const void *data, size_t size)
+{
+    text_sink *text = ctx;
+    char *grown = realloc(text->data, text->size + size + 1);
+
+    assert_non_null(grown);
+    text->data = grown;
+    memcpy(text->data + text->size, data, size);
+    text->size += size;
+    text->data[text->size] = '\0';
+    return 0;
+}
+
+char *written_as(const grobo_motion *motion, grobo_motion_format format,
+                 const grobo_write_options *options, size_t *size)
+{
+    text_sink text = {NULL, 0};
+
+    (void)write_text(&text, "", 0);
+    assert_int_equal(
+        grobo_motion_write(motion, format, options, &(grobo_sink){write_text, &text}, NULL), 0);
+    if (size != NULL) {
+        *size = text.size;
+    }
+    return text.data;
+}
+
+bool has_diagnostic(const grobo_diagnostics *list, const char *code, unsigned line, unsigned column)
+{
+    for (size_t i = 0; i < grobo_diagnostics_count(list); i++) {
+        grobo_diagnostic found;
+        assert_int_equal(grobo_diagnostics_get(list, i, &found), 0);
+        if (strcmp(found.code, code) == 0 && found.line == line &&
+            (column == 0 || found.column == column)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+double angle_of(const grobo_motion *motion, size_t n, int joint)
+{
+    grobo_posture posture;
+    double angle_rad = NAN;
+
+    assert_int_equal(grobo_motion_get(motion, n, &posture), 0);
+    (void)grobo_posture_get_rad(&posture, joint, &angle_rad);
+    return angle_rad;
+}
+
+char *file_text(const char *path, size_t *size)
+{
+    FILE *file = fopen(path, "rb");
+    text_sink text = {NULL, 0};
+    char block[65536];
+    size_t got;
+
+    if (file == NULL) {
+        return NULL;
+    }
+    (void)write_text(&text, "", 0);
+    while ((got = fread(block, 1, sizeof block, file)) > 0) {
+        (void)write_text(&text, block, got);
+    }
+    fclose(file);
+    *size = text.size;
+    return text.data;
+}
+
+const char *shared_file(const char *name)
+{
+    static char path[4096];
+    const char *root = getenv("GROBO_SHARED");
+
+    (void)snprintf(path, sizeof path, "%s/%s", root != NULL ? root : "../shared", name);
+    FILE *file = fopen(path, "rb");
+    if (file == NULL) {
+        print_message("%s is missing: reference material beside the checkout\n", path);
+        skip();
+    }
+    fclose(file);
+    return path;
+}
