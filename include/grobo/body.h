@@ -206,7 +206,7 @@ typedef struct grobo_body_report {
     double zmp_m[3];      /**< desired; meaningful with has_zmp */
     bool has_zmp;
     bool touching[2];     /**< whether the right and the left foot are meant to stand */
-    uint64_t unreachable; /**< bit of each link whose target could not be reached */
+    uint64_t unreachable; /**< bit of the foot's link of each leg that does not reach its target */
 } grobo_body_report;
 
 /**
@@ -256,7 +256,7 @@ GROBO_API int grobo_body_sample(grobo_body *body, double time_s, double *q_rad,
 
 /** What can be wrong with a whole-body motion. */
 typedef enum grobo_body_problem {
-    GROBO_BODY_UNREACHABLE = 0, /**< a target IK does not reach; index: its link */
+    GROBO_BODY_UNREACHABLE = 0, /**< a leg does not reach its target; index: its foot's link */
     GROBO_BODY_ZMP_MARGIN = 1,  /**< the ZMP is nearer to the soles' edge than asked, or outside */
     GROBO_BODY_NO_SUPPORT = 2,  /**< no foot stands */
     GROBO_BODY_FOOT_SLIP = 3,   /**< a standing foot moves; index: its link */

@@ -10,11 +10,11 @@
 /* A limit is kept when the angle rounded to the wire's 0.1 degree keeps it. */
 #define LIMIT_TOLERANCE_RAD (0.05 * BODY_PI / 180)
 
-/* One finding may be open for each of these: two feet and the waist out of reach, the ZMP, no
- * support, two feet slipping, and limit and speed of each joint. */
+/* One finding may be open for each of these: two legs out of reach, the ZMP, no support, two feet
+ * slipping, and limit and speed of each joint. */
 enum {
     OPEN_UNREACHABLE = 0,
-    OPEN_ZMP = OPEN_UNREACHABLE + GROBO_I_TARGETS,
+    OPEN_ZMP = OPEN_UNREACHABLE + 2,
     OPEN_NO_SUPPORT,
     OPEN_SLIP,
     OPEN_LIMIT = OPEN_SLIP + 2,
@@ -91,14 +91,11 @@ static grobo_body_finding finding_at(grobo_body_problem problem, int index, doub
 
 static void check_reach(struct checking *now, const grobo_body_report *report)
 {
-    const int links[GROBO_I_TARGETS] = {0, now->body->model->feet[0].link,
-                                        now->body->model->feet[1].link};
+    for (int foot = 0; foot < 2; foot++) {
+        const int link = now->body->model->feet[foot].link;
+        const grobo_body_finding seen = finding_at(GROBO_BODY_UNREACHABLE, link, report->time_s, 0);
 
-    for (int i = 0; i < GROBO_I_TARGETS; i++) {
-        const grobo_body_finding seen =
-            finding_at(GROBO_BODY_UNREACHABLE, links[i], report->time_s, 0);
-
-        look(now, OPEN_UNREACHABLE + i, (report->unreachable >> links[i] & 1) != 0, &seen, 0);
+        look(now, OPEN_UNREACHABLE + foot, (report->unreachable >> link & 1) != 0, &seen, 0);
     }
 }
 

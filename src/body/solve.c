@@ -20,11 +20,6 @@ struct solving {
     uint64_t unreachable;
 };
 
-static int target_link(const grobo_body_model *model, int target)
-{
-    return target == GROBO_I_WAIST ? 0 : model->feet[target - GROBO_I_RIGHT].link;
-}
-
 /* Nearest key that its author made: from i on, backwards (step -1) or forwards (+1); -1: none. */
 static int authored(const struct grobo_i_track *track, int i, int step)
 {
@@ -198,7 +193,7 @@ static void solve_target(struct solving *now, int base, int target)
     }
     solved = solve_leg(now, foot, up, &now->at[base], &now->at[target], q);
     if (!solved) {
-        now->unreachable |= (uint64_t)1 << target_link(body->model, target);
+        now->unreachable |= (uint64_t)1 << body->model->feet[foot].link;
         solved = solve_with_less_shift(now, foot, up, &now->at[base], &now->at[target], q);
     }
     for (int i = 0; i < GROBO_BODY_LEG_JOINTS && solved; i++) {
@@ -249,8 +244,12 @@ static void solve_targets(struct solving *now, grobo_transform *root)
     }
 }
 
-static bool stands(const struct grobo_i_track *track, double t_s)
+/* A foot stands between two touching keys. With the stealthy step the keys of its height say so:
+ * those of its place begin to touch before it is down. */
+static bool stands(const grobo_body *body, int foot, double t_s)
 {
+    const struct grobo_i_track *track =
+        body->height[foot].n > 0 ? &body->height[foot] : &body->target[GROBO_I_RIGHT + foot];
     const int key = grobo_i_track_find(track, t_s);
 
     return key >= 0 && (track->flags[key] & TRACK_TOUCH) != 0 &&
@@ -274,6 +273,6 @@ void grobo_i_solve(grobo_body *body, double time_s, const double shift_m[2],
         grobo_i_track_value(&body->zmp, time_s, report->zmp_m);
     }
     for (int foot = 0; foot < 2; foot++) {
-        report->touching[foot] = stands(&body->target[GROBO_I_RIGHT + foot], time_s);
+        report->touching[foot] = stands(body, foot, time_s);
     }
 }

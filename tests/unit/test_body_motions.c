@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: MIT */
+/* The motions this project brings along stand by its own lint: within limits and speeds, no foot
+ * slips, and the ZMP well inside the soles, however they are played. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <grobo/body_motion.h>
+#include <grobo/motion_io.h>
+
+#define MARGIN_M 0.015
+
+static void say(void *ctx, const grobo_body_finding *finding)
+{
+    (void)ctx;
+    print_error("%s %d: %.3f to %.3f s, at worst %g\n", grobo_body_problem_name(finding->problem),
+                finding->index, finding->begin_s, finding->end_s, finding->worst);
+}
+
+static void stands(const char *path)
+{
+    static const grobo_body_options options[] = {
+        {.rate_hz = 100},
+        {.step = GROBO_BODY_STEP_STEALTHY, .zmp = GROBO_BODY_ZMP_AUTO, .rate_hz = 50},
+        {.balance = GROBO_BODY_BALANCE_ON, .rate_hz = 100},
+    };
+    const grobo_body_check_options checks = {
+        .robot = &grobo_gr001_model, .margin_m = MARGIN_M, .finding = say};
+    grobo_motion *motion = NULL;
+
+    assert_int_equal(grobo_motion_read_file(path, NULL, NULL, &motion), 0);
+    for (size_t i = 0; i < sizeof options / sizeof options[0]; i++) {
+        grobo_body *body = NULL;
+
+        assert_int_equal(grobo_body_new(&body, &grobo_gr001_body, motion, &options[i], NULL), 0);
+        assert_int_equal(grobo_body_check(body, &checks), 0);
+        grobo_body_free(body);
+    }
+    grobo_motion_free(motion);
+}
+
+static void a_step_in_place_stands(void **state)
+{
+    (void)state;
+    stands("motions/step.pseq");
+}
+
+static void a_bow_with_the_knees_stands(void **state)
+{
+    (void)state;
+    stands("motions/kneebow.pseq");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_step_in_place_stands),
+        cmocka_unit_test(a_bow_with_the_knees_stands),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
