@@ -66,6 +66,7 @@ SUPPORT_SRCS := $(sort $(filter-out %/replay_main.c,$(wildcard tests/support/*.c
 TEST_SRCS := $(sort $(foreach ring,unit engine link fault port,$(wildcard tests/$(ring)/test_*.c)))
 TEST_SCRIPTS := $(sort $(foreach ring,cli lint export,$(wildcard tests/$(ring)/*.sh)))
 FUZZ_SRCS := $(sort $(wildcard tests/fuzz/fuzz_*.c))
+BENCH_SRCS := $(sort $(wildcard tests/bench/bench_*.c))
 EXAMPLE_SRCS := $(sort $(wildcard docs/examples/*.c))
 
 objects = $(patsubst %.c,$(BUILD)/%.o,$(1))
@@ -76,6 +77,7 @@ SUPPORT_OBJS := $(call objects,$(SUPPORT_SRCS))
 TEST_PROGRAMS := $(patsubst %.c,$(BUILD)/%,$(TEST_SRCS))
 FUZZ_REPLAYS := $(patsubst %.c,$(BUILD)/%,$(FUZZ_SRCS))
 FUZZERS := $(patsubst %.c,$(BUILD)/%.fuzzer,$(FUZZ_SRCS))
+BENCHES := $(patsubst %.c,$(BUILD)/%,$(BENCH_SRCS))
 EXAMPLES := $(patsubst %.c,$(BUILD)/%,$(EXAMPLE_SRCS))
 
 STATIC_LIB := $(BUILD)/libgrobo.a
@@ -91,7 +93,7 @@ VERSION = $(shell sed -n 's/.*GROBO_VERSION_STRING "\(.*\)"/\1/p' include/grobo/
 # ---- targets -------------------------------------------------------------------------------
 
 .PHONY: help all check lint lint-quick format test check-san check-memcheck install uninstall clean
-.PHONY: tidy fuzz cov dist FORCE
+.PHONY: tidy fuzz cov dist bench FORCE
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-15s %s\n", $$1, $$2 }' Makefile
@@ -131,6 +133,9 @@ check-san: ## the tests of our own code under AddressSanitizer and UBSan
 check-memcheck: ## the same under valgrind
 	@TEST_WRAPPER='valgrind -q --leak-check=full --error-exitcode=99' \
 	    $(MAKE) --no-print-directory test RING='$(filter-out cli lint export,$(RING))'
+
+bench: $(BENCHES) ## processor time of what has to be fast; fails where a promise is not kept
+	@status=0; for program in $(BENCHES); do $$program || status=1; done; exit $$status
 
 tidy: ## clang-tidy over the library and the command; advice, not a gate
 	@status=0; for file in $(CORE_SRCS) $(OTHER_SRCS) $(TOOL_SRCS); do \
@@ -238,7 +243,7 @@ $(FUZZERS): %.fuzzer: %.o $(STATIC_LIB)
 	$(say) LD $@
 	$(Q)$(CC) $(ALL_LDFLAGS) -fsanitize=fuzzer -o $@ $^ $(LIBS)
 
-$(EXAMPLES): $(BUILD)/%: $(BUILD)/%.o $(STATIC_LIB)
+$(EXAMPLES) $(BENCHES): $(BUILD)/%: $(BUILD)/%.o $(STATIC_LIB)
 	$(say) LD $@
 	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
 

@@ -1,0 +1,124 @@
+/* SPDX-License-Identifier: MIT */
+/* Processor time of whole-body playback: our step in place, slowed down to ten seconds, at 100 Hz,
+ * beside a plain resample of its joints. Ends with 1 where it takes longer than promised. */
+#include <stdbool.h>
+#include <stdio.h>
+#include <time.h>
+
+#include <grobo/body_motion.h>
+#include <grobo/motion_io.h>
+
+#define MOTION "motions/step.pseq"
+#define LENGTH_S 10.0
+#define RATE_HZ 100.0
+#define ROUNDS 7
+
+struct row {
+    const char *name;
+    double allowed_ms; /* 0: no promise */
+    grobo_body_options options;
+};
+
+static const struct row rows[] = {
+    {"exact IK", 5, {.rate_hz = RATE_HZ}},
+    {"numeric IK", 0, {.ik = GROBO_BODY_IK_NUMERIC, .rate_hz = RATE_HZ}},
+    {"exact IK, balancer", 100, {.balance = GROBO_BODY_BALANCE_ON, .rate_hz = RATE_HZ}},
+    {"numeric IK, balancer of 1.1",
+     0,
+     {.ik = GROBO_BODY_IK_NUMERIC, .balance = GROBO_BODY_BALANCE_COMPAT11, .rate_hz = RATE_HZ}},
+};
+
+static double now_ms(void)
+{
+    return (double)clock() * 1000.0 / (double)CLOCKS_PER_SEC;
+}
+
+/* The same motion at a length. False: no memory. */
+static bool stretch(grobo_motion *motion, double length_s)
+{
+    const size_t size = grobo_motion_size(motion);
+    double last_s = 0, time_s = 0;
+
+    (void)grobo_motion_time_s(motion, size - 1, &last_s);
+    for (size_t i = size; i > 0; i--) {
+        (void)grobo_motion_time_s(motion, i - 1, &time_s);
+        if (grobo_motion_set_time_s(motion, i - 1, time_s * length_s / last_s) < 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Solving all frames, the set-up included. Negative: failed. */
+static double body_ms(const grobo_motion *motion, const grobo_body_options *options)
+{
+    double least_ms = -1;
+
+    for (int round = 0; round < ROUNDS; round++) {
+        const double begin_ms = now_ms();
+        grobo_body *body = NULL;
+        double q_rad[GROBO_JOINTS_MAX];
+
+        if (grobo_body_new(&body, &grobo_gr001_body, motion, options, NULL) < 0) {
+            return -1;
+        }
+        for (int i = 0; i < grobo_body_frame_count(body); i++) {
+            (void)grobo_body_frame(body, i, q_rad, NULL);
+        }
+        grobo_body_free(body);
+        const double took_ms = now_ms() - begin_ms;
+
+        least_ms = least_ms < 0 || took_ms < least_ms ? took_ms : least_ms;
+    }
+    return least_ms;
+}
+
+static double resample_ms(const grobo_motion *motion)
+{
+    double least_ms = -1;
+
+    for (int round = 0; round < ROUNDS; round++) {
+        const double begin_ms = now_ms();
+        grobo_clip clip;
+        grobo_motion *frames = NULL;
+
+        if (grobo_motion_clip(motion, NULL, &clip) < 0 ||
+            grobo_motion_resample(&clip, RATE_HZ, NULL, &frames) < 0) {
+            return -1;
+        }
+        grobo_motion_free(frames);
+        grobo_motion_clip_free(&clip);
+        const double took_ms = now_ms() - begin_ms;
+
+        least_ms = least_ms < 0 || took_ms < least_ms ? took_ms : least_ms;
+    }
+    return least_ms;
+}
+
+int main(void)
+{
+    grobo_motion *motion = NULL;
+    double plain_ms;
+    bool kept = true;
+
+    if (grobo_motion_read_file(MOTION, NULL, NULL, &motion) < 0 || !stretch(motion, LENGTH_S)) {
+        fprintf(stderr, "bench_body: cannot read %s; run it in the top folder\n", MOTION);
+        return 1;
+    }
+    plain_ms = resample_ms(motion);
+    printf("body: %.0f s of GR001 at %.0f Hz, least of %d rounds\n", LENGTH_S, RATE_HZ, ROUNDS);
+    printf("  %-28s %8.2f ms\n", "joints alone, resampled", plain_ms);
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        const double took_ms = body_ms(motion, &rows[i].options);
+        const bool good = took_ms >= 0 && (rows[i].allowed_ms <= 0 || took_ms < rows[i].allowed_ms);
+
+        printf("  %-28s %8.2f ms  %5.1f times that", rows[i].name, took_ms, took_ms / plain_ms);
+        if (rows[i].allowed_ms > 0) {
+            printf("  %s %.0f ms", good ? "under" : "NOT under", rows[i].allowed_ms);
+        }
+        printf("\n");
+        kept = kept && good;
+    }
+    grobo_motion_free(motion);
+    return kept ? 0 : 1;
+}
