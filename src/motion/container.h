@@ -85,6 +85,8 @@ bool grobo_i_row_at(const grobo_motion *motion, size_t n, grobo_i_row *row);
 int grobo_i_row_wide(grobo_motion *motion, size_t n, grobo_i_row *row);
 /* Inserts a row before row n: time 0, nothing set, no extra. */
 int grobo_i_row_insert(grobo_motion *motion, size_t n, grobo_i_row *row);
+/* Moves time, angles and extra of a row to a fresh row of another motion of the same allocator. */
+void grobo_i_move_row(const grobo_i_row *to, const grobo_i_row *from, int n_joints);
 void grobo_i_row_remove(grobo_motion *motion, size_t n);
 /* Time of row n as files have it, computed for frames at a rate. n must be there. */
 double grobo_i_time_s(const grobo_motion *motion, size_t n);
@@ -109,6 +111,8 @@ void grobo_i_swap(grobo_motion *a, grobo_motion *b);
 grobo_i_extra *grobo_i_extra_of(const grobo_mem *mem, const grobo_i_row *row);
 grobo_i_extra *grobo_i_extra_dup(const grobo_mem *mem, const grobo_i_extra *from);
 void grobo_i_extra_free(const grobo_mem *mem, grobo_i_extra *extra);
+/* Forgets where in its file a key's angles stood. */
+void grobo_i_forget_positions(const grobo_mem *mem, grobo_i_extra *extra);
 int grobo_i_kept_add(const grobo_mem *mem, grobo_i_kept **list, const grobo_kept *kept);
 int grobo_i_kept_dup(const grobo_mem *mem, const grobo_i_kept *from, grobo_i_kept **list);
 /* Takes the kept keys of a level out of a list. */

@@ -169,6 +169,18 @@ int grobo_motion_set_time_s(grobo_motion *motion, size_t n, double time_s)
     return result;
 }
 
+void grobo_i_move_row(const grobo_i_row *to, const grobo_i_row *from, int n_joints)
+{
+    *to->time_s = *from->time_s;
+    *to->line = *from->line;
+    *to->set = *from->set;
+    *to->extra = *from->extra;
+    *from->extra = NULL;
+    for (int j = 0; j < n_joints && j < from->width; j++) {
+        to->angle_rad[j] = from->angle_rad[j];
+    }
+}
+
 int grobo_i_copy_rows(grobo_motion *motion, const grobo_motion *from, size_t first, size_t last,
                       double shift_s)
 {

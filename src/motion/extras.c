@@ -20,13 +20,20 @@ grobo_i_extra *grobo_i_extra_of(const grobo_mem *mem, const grobo_i_row *row)
     return *row->extra;
 }
 
+void grobo_i_forget_positions(const grobo_mem *mem, grobo_i_extra *extra)
+{
+    grobo_i_free(mem, extra->positions, extra->n_positions * 2 * sizeof *extra->positions);
+    extra->positions = NULL;
+    extra->n_positions = 0;
+}
+
 void grobo_i_extra_free(const grobo_mem *mem, grobo_i_extra *extra)
 {
     if (extra == NULL) {
         return;
     }
     grobo_i_free(mem, extra->links, extra->n_links * sizeof *extra->links);
-    grobo_i_free(mem, extra->positions, extra->n_positions * 2 * sizeof *extra->positions);
+    grobo_i_forget_positions(mem, extra);
     grobo_i_free_text(mem, extra->name);
     grobo_i_kept_free(mem, extra->kept);
     grobo_i_free(mem, extra, sizeof *extra);

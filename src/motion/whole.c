@@ -39,3 +39,86 @@ int grobo_motion_append_motion(grobo_motion *motion, const grobo_motion *other)
 {
     return append_rows(motion, other, end_s(motion));
 }
+
+/* ---- concatenation ------------------------------------------------------------------------ */
+
+/* All joints that a posture lacks are taken from another. */
+static void complete(grobo_posture *posture, const grobo_posture *from)
+{
+    grobo_posture whole = *from;
+
+    grobo_posture_merge(&whole, posture);
+    whole.time_us = posture->time_us;
+    *posture = whole;
+}
+
+/* Frames between the last of motion and the first of other, easing in and out. */
+static int blend_frames(grobo_motion *motion, const grobo_motion *other, size_t count)
+{
+    grobo_posture from, to, between;
+
+    if (count == 0) {
+        return 0;
+    }
+    (void)grobo_motion_get(other, 0, &to);
+    (void)grobo_motion_get(motion, motion->size - 1, &from);
+    complete(&to, &from);
+    for (size_t i = 1; i <= count; i++) {
+        double part = (double)i / (double)(count + 1);
+        double eased = part * part * (3 - 2 * part);
+        between = from;
+        between.time_us = 0;
+        for (int j = 0; j < to.n_joints; j++) {
+            between.angle_rad[j] += eased * (to.angle_rad[j] - from.angle_rad[j]);
+        }
+        int result = grobo_motion_append(motion, &between);
+        if (result < 0) {
+            return result;
+        }
+    }
+    return 0;
+}
+
+/* The motion and, blend_s later, the other; into a motion that is thrown away on error. */
+static int concat_into(grobo_motion *made, const grobo_motion *other, double blend_s)
+{
+    double first_s = other->size > 0 ? grobo_i_time_s(other, 0) : 0;
+
+    if (made->kind == GROBO_MOTION_FRAMES) {
+        double rate_hz = made->frame_rate_hz;
+        double start_s = end_s(made);
+        /* The first frame of the other is itself one step behind the last one between. */
+        double steps = fmax(round(blend_s * rate_hz), 1);
+        if (!(steps < GROBO_MOTION_FRAMES_MAX)) {
+            return GROBO_ERR_CAP;
+        }
+        size_t between = made->size > 0 && other->size > 0 ? (size_t)steps - 1 : 0;
+        int result = blend_frames(made, other, between);
+        grobo_i_row row;
+        for (size_t n = made->size - between; result == 0 && grobo_i_row_at(made, n, &row); n++) {
+            start_s += 1 / rate_hz;
+            *row.time_s = start_s;
+        }
+        return result < 0 ? result : append_rows(made, other, start_s + 1 / rate_hz - first_s);
+    }
+    return append_rows(made, other, end_s(made) + blend_s - first_s);
+}
+
+int grobo_motion_concat(grobo_motion *motion, const grobo_motion *other, int64_t blend_us)
+{
+    grobo_motion *made;
+
+    if (blend_us < 0 || (motion->kind == GROBO_MOTION_FRAMES && !(motion->frame_rate_hz > 0))) {
+        return GROBO_ERR_ARG;
+    }
+    int result = grobo_motion_dup(motion, &made);
+    if (result < 0) {
+        return result;
+    }
+    result = concat_into(made, other, (double)blend_us / 1e6);
+    if (result == 0) {
+        grobo_i_swap(motion, made);
+    }
+    grobo_motion_free(made);
+    return result;
+}
