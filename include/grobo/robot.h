@@ -232,24 +232,35 @@ typedef struct grobo_robot_slot {
     grobo_txn txn;
     grobo_exchange exchange;
     struct grobo_robot *robot;
-    int64_t due_us; /* when it should leave; GROBO_NEVER_US: as soon as may be */
-    int job;        /* number of the job it belongs to */
-    uint8_t use;    /* 0: free */
+    int64_t due_us;  /* when it should leave; GROBO_NEVER_US: as soon as may be */
+    uint32_t motion; /* number of the target it carries */
+    int job;         /* number of the job it belongs to */
+    bool out;        /* given to the line */
+    uint8_t use;     /* 0: free */
     uint8_t joint;
 } grobo_robot_slot;
+
+/** A move of a joint, straight in time. Private. */
+typedef struct grobo_robot_way {
+    /* private */
+    double from_rad, to_rad;
+    int64_t from_us, to_us;
+} grobo_robot_way;
 
 /** What is known of a joint. Private. */
 typedef struct grobo_robot_axis {
     /* private */
     grobo_joint_state state;
-    int64_t angle_us, full_us; /* when read; GROBO_NEVER_US: never */
-    int64_t current_since_us;  /* above its limit since; GROBO_NEVER_US: it is not */
-    double from_rad, to_rad;   /* the move it was sent on */
-    int64_t from_us, to_us;    /* and its time */
-    int status;                /* of the last reading */
-    uint16_t lost;             /* readings lost in a row */
-    bool sensed;               /* since the link came up */
-    bool has_target;           /* sent somewhere since then */
+    int64_t goal_us;            /* when its goal was read back */
+    int64_t angle_us, full_us;  /* when read; GROBO_NEVER_US: never */
+    int64_t current_since_us;   /* above its limit since; GROBO_NEVER_US: it is not */
+    grobo_robot_way way;        /* the move it was sent on */
+    grobo_robot_way way_before; /* and the one before, should the frame never leave */
+    uint32_t motion;            /* number of the target that sent it there */
+    int status;                 /* of the last reading */
+    uint16_t lost;              /* readings lost in a row */
+    bool sensed;                /* since the link came up */
+    bool has_target;            /* sent somewhere since then */
     bool torque_known;
     bool wants_torque; /* we switched it on: to be without is a fault */
     bool held;         /* goal read back to be the present angle: torque may come on */
@@ -308,6 +319,7 @@ typedef struct grobo_robot {
     int64_t late_max_us;
     int64_t now_us;         /* of the call that runs */
     int64_t sense_us;       /* when the background reads next */
+    uint32_t motion;        /* number of the last target */
     uint32_t motion_us;     /* wire time of the last motion frames */
     grobo_joint_mask round; /* joints still to be read in this background round */
     grobo_joint_mask free_joints;

@@ -79,7 +79,8 @@ int grobo_robot_init(grobo_robot *robot, const grobo_driver *driver, void *drive
     grobo_sequencer_init(&robot->sequencer, driver->model);
     for (int j = 0; j < driver->model->n_joints; j++) {
         grobo_robot_axis *axis = &robot->axes[j];
-        axis->angle_us = axis->full_us = axis->current_since_us = GROBO_NEVER_US;
+        axis->angle_us = axis->full_us = axis->goal_us = GROBO_NEVER_US;
+        axis->current_since_us = GROBO_NEVER_US;
         axis->status = GROBO_ERR_EMPTY;
     }
     robot->trip.joint = robot->fault_joint = -1;
@@ -174,7 +175,11 @@ int grobo_robot_tx(grobo_robot *robot, uint8_t *buf, size_t capacity, int64_t no
     if (now_us > robot->now_us) {
         robot->now_us = now_us;
     }
-    return robot->link ? grobo_bus_tx(&robot->bus, robot->now_us, buf, capacity) : 0;
+    int size = robot->link ? grobo_bus_tx(&robot->bus, robot->now_us, buf, capacity) : 0;
+    if (size > 0) {
+        grobo_i_slots_sent(robot);
+    }
+    return size;
 }
 
 void grobo_robot_step(grobo_robot *robot, int64_t now_us)
@@ -230,7 +235,7 @@ static void forget(grobo_robot *robot)
         axis->status = GROBO_ERR_UNPLUGGED;
         axis->lost = 0;
         axis->current_since_us = GROBO_NEVER_US;
-        axis->to_us = robot->now_us;
+        axis->way.to_us = robot->now_us;
     }
     robot->free_joints = 0;
     robot->low_readings = 0;

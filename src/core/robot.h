@@ -48,6 +48,8 @@ int grobo_i_slot_send(grobo_robot_slot *slot, grobo_priority priority);
 void grobo_i_slot_drop(grobo_robot_slot *slot);
 /* Takes back every frame of this use. */
 void grobo_i_slots_cancel(grobo_robot *robot, grobo_i_use use);
+/* Notes the frames that the bus has just given out. */
+void grobo_i_slots_sent(grobo_robot *robot);
 /* True if a frame of this use is under way. */
 bool grobo_i_slots_busy(const grobo_robot *robot, grobo_i_use use);
 
@@ -139,6 +141,10 @@ grobo_joint_mask grobo_i_take_chunk(grobo_joint_mask *joints, grobo_i_chunk chun
 /* Sets goal := present for `joints`, which were just read; not for those that stand too far
  * outside their limits. */
 int grobo_i_gate_hold(grobo_robot *robot, grobo_joint_mask joints, grobo_i_chunk chunk);
+/* The frame with this target leaves now: its moves begin now. */
+void grobo_i_gate_sent(grobo_robot *robot, uint32_t motion);
+/* The frame with this target never left: the joints are still on the way they were on. */
+void grobo_i_gate_unsent(grobo_robot *robot, uint32_t motion);
 /* Stops joints that are being moved where they are, softly. */
 void grobo_i_gate_halt(grobo_robot *robot);
 /* Switches torque. ON is refused with GROBO_ERR_STATE for joints whose goal was not read back to

@@ -91,6 +91,9 @@ void grobo_robot_jitter(const grobo_robot *robot, grobo_jitter *jitter)
 
 void grobo_i_play_done(grobo_robot_slot *slot, int result)
 {
+    if (result < 0 && slot->txn.sent_us < 0) {
+        grobo_i_gate_unsent(slot->robot, slot->motion);
+    }
     if (slot->due_us == GROBO_NEVER_US) {
         return;
     }

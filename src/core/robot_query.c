@@ -16,7 +16,7 @@ int grobo_robot_joint(const grobo_robot *robot, int joint, int64_t now_us, grobo
     info->state = axis->state;
     info->angle_age_us = age(axis->angle_us, now_us);
     info->full_age_us = age(axis->full_us, now_us);
-    info->target_rad = axis->to_rad;
+    info->target_rad = axis->way.to_rad;
     info->status = axis->status;
     info->has_target = axis->has_target;
     info->torque_known = axis->torque_known;
@@ -51,7 +51,7 @@ int grobo_robot_target(const grobo_robot *robot, grobo_posture *posture)
     (void)grobo_posture_init(posture, robot->driver->model->n_joints);
     for (int j = 0; j < posture->n_joints; j++) {
         if (robot->axes[j].has_target) {
-            posture->angle_rad[j] = robot->axes[j].to_rad;
+            posture->angle_rad[j] = robot->axes[j].way.to_rad;
             posture->set |= GROBO_JOINT_BIT(j);
         }
     }
@@ -62,7 +62,7 @@ bool grobo_robot_moving(const grobo_robot *robot, int64_t now_us)
 {
     bool moving = grobo_i_in_motion(robot) || robot->job.kind == GROBO_JOB_PLAY;
     for (int j = 0; !moving && j < robot->driver->model->n_joints; j++) {
-        moving = robot->axes[j].has_target && robot->axes[j].to_us > now_us;
+        moving = robot->axes[j].has_target && robot->axes[j].way.to_us > now_us;
     }
     return moving;
 }

@@ -70,7 +70,11 @@ int grobo_robot_torque(grobo_robot *robot, grobo_joint_mask joints, grobo_torque
                        int64_t now_us)
 {
     grobo_i_enter(robot, now_us);
-    int result = admit(robot, mode == GROBO_TORQUE_ON);
+    bool on = mode == GROBO_TORQUE_ON;
+    int result = admit(robot, on);
+    if (result >= 0 && on && grobo_i_playing(robot)) {
+        result = GROBO_ERR_STATE; /* its frames would part goal and present angle again */
+    }
     if (result >= 0 && robot->driver->torque == NULL) {
         result = GROBO_ERR_UNSUPPORTED;
     }
@@ -81,8 +85,7 @@ int grobo_robot_torque(grobo_robot *robot, grobo_joint_mask joints, grobo_torque
         return refuse(robot, result);
     }
     int number = grobo_i_job_start(robot, GROBO_JOB_TORQUE,
-                                   mode == GROBO_TORQUE_ON ? grobo_i_script_torque_on
-                                                           : grobo_i_script_torque_off);
+                                   on ? grobo_i_script_torque_on : grobo_i_script_torque_off);
     robot->job.joints = joints;
     robot->job.torque = mode;
     robot->free_joints &= ~joints;

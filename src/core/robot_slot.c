@@ -75,6 +75,17 @@ void grobo_i_slots_cancel(grobo_robot *robot, grobo_i_use use)
     }
 }
 
+void grobo_i_slots_sent(grobo_robot *robot)
+{
+    for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
+        grobo_robot_slot *slot = &robot->slots[i];
+        if (slot->use == GROBO_I_USE_MOTION && !slot->out && slot->txn.sent_us >= 0) {
+            slot->out = true;
+            grobo_i_gate_sent(robot, slot->motion);
+        }
+    }
+}
+
 bool grobo_i_slots_busy(const grobo_robot *robot, grobo_i_use use)
 {
     for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {

@@ -311,8 +311,8 @@ static int step_arrived(grobo_robot *robot)
     grobo_joint_mask bad = 0;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
-        bool there =
-            !is_set(job->failed, j) && near_rad(axis->state.goal_rad, axis->to_rad, SAME_GOAL_RAD);
+        bool there = !is_set(job->failed, j) &&
+                     near_rad(axis->state.goal_rad, axis->way.to_rad, SAME_GOAL_RAD);
         if (is_set(job->pending, j) && !there) {
             bad |= GROBO_JOINT_BIT(j);
             grobo_i_axis_rest(&robot->axes[j], robot->now_us); /* the way is long again */
@@ -335,7 +335,7 @@ static int step_quiet(grobo_robot *robot)
 {
     int64_t still_us = robot->now_us;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        int64_t to_us = robot->axes[j].to_us;
+        int64_t to_us = robot->axes[j].way.to_us;
         still_us = to_us > still_us ? to_us : still_us;
     }
     if (!grobo_i_playing(robot) && still_us <= robot->now_us) {

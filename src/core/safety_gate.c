@@ -10,31 +10,67 @@
 
 /* ---- where a joint is ------------------------------------------------------------------------ */
 
+static double along(const grobo_robot_way *way, int64_t now_us)
+{
+    if (now_us >= way->to_us || way->to_us <= way->from_us) {
+        return way->to_rad;
+    }
+    if (now_us <= way->from_us) {
+        return way->from_rad;
+    }
+    double part = (double)(now_us - way->from_us) / (double)(way->to_us - way->from_us);
+    return way->from_rad + (way->to_rad - way->from_rad) * part;
+}
+
 double grobo_i_axis_commanded(const grobo_robot_axis *axis, int64_t now_us)
 {
-    if (now_us >= axis->to_us || axis->to_us <= axis->from_us) {
-        return axis->to_rad;
-    }
-    if (now_us <= axis->from_us) {
-        return axis->from_rad;
-    }
-    double part = (double)(now_us - axis->from_us) / (double)(axis->to_us - axis->from_us);
-    return axis->from_rad + (axis->to_rad - axis->from_rad) * part;
+    return along(&axis->way, now_us);
 }
 
 void grobo_i_axis_rest(grobo_robot_axis *axis, int64_t now_us)
 {
-    axis->from_rad = axis->to_rad = axis->state.angle_rad;
-    axis->from_us = axis->to_us = now_us;
+    double angle_rad = axis->state.angle_rad;
+    axis->way = axis->way_before = (grobo_robot_way){angle_rad, angle_rad, now_us, now_us};
 }
 
-static void axis_send(grobo_robot_axis *axis, double to_rad, int64_t time_us, int64_t now_us)
+/* Notes where the joints of a target are on their way to. */
+static void note_way(grobo_robot *robot, const grobo_target *target)
 {
-    axis->from_rad = grobo_i_axis_commanded(axis, now_us);
-    axis->to_rad = to_rad;
-    axis->from_us = now_us;
-    axis->to_us = now_us + time_us;
-    axis->has_target = true;
+    int64_t now_us = robot->now_us;
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if ((target->posture.set & GROBO_JOINT_BIT(j)) != 0) {
+            grobo_robot_axis *axis = &robot->axes[j];
+            double from_rad = grobo_i_axis_commanded(axis, now_us);
+            axis->way_before = axis->way;
+            axis->way = (grobo_robot_way){from_rad, target->posture.angle_rad[j], now_us,
+                                          now_us + target->joint_time_us[j]};
+            axis->motion = robot->motion;
+            axis->has_target = true;
+        }
+    }
+}
+
+void grobo_i_gate_sent(grobo_robot *robot, uint32_t motion)
+{
+    int64_t now_us = robot->now_us;
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        grobo_robot_axis *axis = &robot->axes[j];
+        if (axis->has_target && axis->motion == motion) {
+            axis->way.from_rad = along(&axis->way_before, now_us);
+            axis->way.to_us += now_us - axis->way.from_us;
+            axis->way.from_us = now_us;
+        }
+    }
+}
+
+void grobo_i_gate_unsent(grobo_robot *robot, uint32_t motion)
+{
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        grobo_robot_axis *axis = &robot->axes[j];
+        if (axis->has_target && axis->motion == motion) {
+            axis->way = axis->way_before;
+        }
+    }
 }
 
 /* ---- numbers and limits ---------------------------------------------------------------------- */
@@ -130,6 +166,7 @@ static int send_frames(grobo_robot *robot, const grobo_target *target, grobo_i_u
             return more;
         }
         slot->due_us = due_us;
+        slot->motion = robot->motion;
         int result = grobo_i_slot_send(slot, priority);
         if (result < 0) {
             return result;
@@ -177,16 +214,12 @@ int grobo_i_gate_send(grobo_robot *robot, const grobo_posture *wanted, const gro
         return result;
     }
     int64_t longest_us = give_time(robot, &target, how->each);
+    robot->motion++;
     result = send_frames(robot, &target, GROBO_I_USE_MOTION, how->priority, how->due_us);
     if (result < 0) {
         return result;
     }
-    for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if ((target.posture.set & GROBO_JOINT_BIT(j)) != 0) {
-            axis_send(&robot->axes[j], target.posture.angle_rad[j], target.joint_time_us[j],
-                      robot->now_us);
-        }
-    }
+    note_way(robot, &target);
     robot->counters.motion_frames++;
     if (time_us != NULL) {
         *time_us = longest_us;
@@ -207,7 +240,7 @@ void grobo_i_gate_halt(grobo_robot *robot)
     grobo_i_slots_cancel(robot, GROBO_I_USE_MOTION);
     for (int j = 0; j < target.n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
-        if (axis->has_target && axis->to_us > robot->now_us) {
+        if (axis->has_target && axis->way.to_us > robot->now_us) {
             target.angle_rad[j] = grobo_i_axis_commanded(axis, robot->now_us + HALT_AHEAD_US);
             target.set |= GROBO_JOINT_BIT(j);
         }
@@ -262,8 +295,7 @@ int grobo_i_gate_hold(grobo_robot *robot, grobo_joint_mask joints, grobo_i_chunk
             if ((taken & GROBO_JOINT_BIT(j)) != 0 && axis->sensed &&
                 hold_goal(robot, j, &target.posture.angle_rad[j])) {
                 target.posture.set |= GROBO_JOINT_BIT(j);
-                axis->from_rad = axis->to_rad = target.posture.angle_rad[j];
-                axis->from_us = axis->to_us = robot->now_us;
+                grobo_i_axis_rest(axis, robot->now_us);
                 axis->held = false;
             }
         }
@@ -367,11 +399,7 @@ int grobo_i_gate_raw(grobo_robot *robot, const uint8_t *frame, size_t size)
             return GROBO_ERR_SPEED;
         }
     }
-    for (int j = 0; j < driver->model->n_joints; j++) {
-        if ((target.posture.set & GROBO_JOINT_BIT(j)) != 0) {
-            axis_send(&robot->axes[j], target.posture.angle_rad[j], target.joint_time_us[j],
-                      robot->now_us);
-        }
-    }
+    robot->motion++;
+    note_way(robot, &target);
     return GROBO_OK;
 }

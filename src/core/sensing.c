@@ -58,6 +58,9 @@ static void take_reading(grobo_robot *robot, int joint, grobo_joint_state *got)
     if ((got->valid & GROBO_FIELD_CURRENT) != 0) {
         axis->full_us = robot->now_us;
     }
+    if ((got->valid & GROBO_FIELD_GOAL) != 0) {
+        axis->goal_us = robot->now_us;
+    }
     if ((got->valid & GROBO_FIELD_TORQUE) != 0) {
         axis->torque_known = true;
     }
@@ -113,6 +116,9 @@ static void free_joint(grobo_robot *robot, int joint)
     grobo_robot_axis *axis = &robot->axes[joint];
     const grobo_joint_state *state = &axis->state;
     int limit_ma = robot->driver->model->joints[joint].free_current_ma;
+    if (axis->goal_us != robot->now_us) {
+        return; /* a reading from before, without the goal */
+    }
     if (limit_ma > 0 && state->current_ma > limit_ma) {
         if (state->torque != GROBO_TORQUE_BRAKE) {
             (void)grobo_i_gate_torque(robot, GROBO_JOINT_BIT(joint), GROBO_TORQUE_BRAKE,

@@ -41,7 +41,8 @@ static void check_goal(grobo_test_rig *rig, int id, const uint8_t *data)
     bool holds = rig_torque(rig, j) != GROBO_TORQUE_ON;
     double from_deg = holds ? rig_angle_deg(rig, j) : along_deg(rig, j);
     double most_dps = grobo_deg_from_rad(joint->max_speed_rad_s);
-    double way_deg = fabs(deg - from_deg) - 0.2;
+    /* By what was asked, and by where the joint is: lost frames part the two. */
+    double way_deg = fmin(fabs(deg - from_deg), fabs(deg - rig_angle_deg(rig, j))) - 0.2;
     if (rig->check_speed && !holds && way_deg > most_dps * 1.02 * (double)time_us / 1e6) {
         fail_msg("%s sent %.1f deg in %lld us", joint->name, way_deg, (long long)time_us);
     }
@@ -62,7 +63,9 @@ static void check_torque(grobo_test_rig *rig, int id, int value)
     int32_t goal = 0;
     assert_int_equal(grobo_sim_get_register(&rig->sim, j, GROBO_RS30X_GOAL, &goal), 0);
     double apart_deg = fabs(goal / 10.0 - rig_angle_deg(rig, j));
-    if (rig->check_hold && apart_deg > 3.6) {
+    /* A servo that restarted since its goal was read back has forgotten it: nobody can know. */
+    bool restarted = rig->now_us - rig->reboot_us[j] < 1000000;
+    if (rig->check_hold && !restarted && apart_deg > 3.6) {
         fail_msg("torque of %s comes on %.1f deg from its goal", rig->driver->model->joints[j].name,
                  apart_deg);
     }
@@ -104,16 +107,47 @@ static void check_frame(grobo_test_rig *rig, const uint8_t *bytes, size_t n)
     }
 }
 
-/* No reading is believed that is not the joint's own: its model number is in no reading, but its
- * angle is, and every servo of the tests stands somewhere else. */
+void rig_mark_owners(grobo_test_rig *rig)
+{
+    rig->marked_us = rig->now_us;
+    for (int j = 0; j < rig->driver->model->n_joints; j++) {
+        assert_int_equal(grobo_sim_set_temperature(&rig->sim, j, 27 + 1.7 * j), 0);
+    }
+}
+
+static void check_owner(grobo_test_rig *rig, int joint)
+{
+    grobo_joint_info info;
+    grobo_sim_view view;
+    assert_int_equal(grobo_robot_joint(&rig->robot, joint, rig->now_us, &info), 0);
+    assert_int_equal(grobo_sim_look(&rig->sim, joint, &view), 0);
+    bool settled = rig->now_us - rig->marked_us > 200000; /* readings were under way */
+    if (settled && info.full_age_us == 0 &&
+        fabs(info.state.temperature_c - view.temperature_c) > 1.01) {
+        fail_msg("%s read as %d deg C, but is at %.1f", rig->driver->model->joints[joint].name,
+                 info.state.temperature_c, view.temperature_c);
+    }
+}
+
 static void note_event(void *ctx, const grobo_event *event)
 {
     grobo_test_rig *rig = ctx;
     if (rig->n_events < RIG_EVENTS) {
         rig->events[rig->n_events++] = *event;
     }
+    if (rig->check_owner && event->kind == GROBO_EVENT_JOINT && event->u.joint.result == GROBO_OK) {
+        check_owner(rig, event->u.joint.joint);
+    }
     if (rig->on_event != NULL) {
         rig->on_event(rig, event);
+    }
+}
+
+static void note_sim(const grobo_sim_event *event, void *ctx)
+{
+    grobo_test_rig *rig = ctx;
+    if (event->kind == GROBO_SIM_REBOOT && event->servo >= 0) {
+        rig->reboot_us[event->servo] = event->time_us;
     }
 }
 
@@ -131,6 +165,8 @@ void rig_start_driver(grobo_test_rig *rig, const grobo_driver *driver,
         sim_config.model = driver->model;
     }
     sim_config.wiring = driver->wiring;
+    sim_config.hook = note_sim;
+    sim_config.hook_ctx = rig;
     rig->driver = driver;
     rig->now_us = rig->wake_us = 1000000;
     rig->check_hold = rig->check_speed = true;
@@ -173,8 +209,13 @@ static void pump(grobo_test_rig *rig)
     while ((n = grobo_sim_tx(&rig->sim, buf, sizeof buf, rig->now_us)) > 0) {
         grobo_robot_rx(&rig->robot, buf, n, rig->now_us);
     }
-    if (grobo_sim_hung_up(&rig->sim)) {
+    if (grobo_sim_hung_up(&rig->sim) && rig->back_us == 0) {
         grobo_robot_link_down(&rig->robot, rig->now_us);
+        rig->back_us = rig->replug_us == 0 ? GROBO_NEVER_US : rig->now_us + rig->replug_us;
+    } else if (rig->back_us != 0 && rig->now_us >= rig->back_us) {
+        rig->back_us = 0;
+        grobo_sim_plug(&rig->sim, true, rig->now_us);
+        grobo_robot_link_up(&rig->robot, rig->now_us);
     }
     grobo_robot_step(&rig->robot, rig->now_us);
     send_all(rig);
@@ -185,6 +226,7 @@ static int64_t next_us(const grobo_test_rig *rig, int64_t until_us)
     int64_t at_us = grobo_robot_deadline(&rig->robot, rig->now_us);
     int64_t sim_us = grobo_sim_deadline(&rig->sim);
     at_us = sim_us < at_us ? sim_us : at_us;
+    at_us = rig->back_us != 0 && rig->back_us < at_us ? rig->back_us : at_us;
     at_us = at_us < rig->wake_us ? rig->wake_us : at_us;
     return at_us < until_us ? at_us : until_us;
 }

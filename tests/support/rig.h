@@ -23,9 +23,13 @@ typedef struct grobo_test_rig {
     grobo_sim sim;
     const grobo_driver *driver;
     int64_t now_us;
-    int64_t wake_us;  /* a stalled host does not pump the engine before */
-    bool check_hold;  /* torque must come on at the present angle (default) */
-    bool check_speed; /* no goal faster than the joint (default) */
+    int64_t wake_us;   /* a stalled host does not pump the engine before */
+    bool check_hold;   /* torque must come on at the present angle (default) */
+    bool check_speed;  /* no goal faster than the joint (default) */
+    bool check_owner;  /* no reading of another joint: call rig_mark_owners() first */
+    int64_t marked_us; /* when it was called */
+    int64_t replug_us; /* 0: a line that hung up stays so; else it is back after this time */
+    int64_t back_us;   /* when */
     grobo_event events[RIG_EVENTS];
     size_t n_events;
     rig_frame sent[RIG_SENT];
@@ -34,7 +38,8 @@ typedef struct grobo_test_rig {
     double to_deg[GROBO_JOINTS_MAX]; /* what the frames asked for, to check speeds by */
     double from_deg[GROBO_JOINTS_MAX];
     int64_t from_us[GROBO_JOINTS_MAX], to_us[GROBO_JOINTS_MAX];
-    unsigned torque_on; /* torques switched on */
+    int64_t reboot_us[GROBO_JOINTS_MAX]; /* when a servo last lost what it was told */
+    unsigned torque_on;                  /* torques switched on */
 } grobo_test_rig;
 
 /* GR001 behind its board, all defaults, link up at 1 s. config, sim NULL: defaults. */
@@ -67,6 +72,8 @@ grobo_joint_mask rig_all(const grobo_test_rig *rig);
 void rig_power(grobo_test_rig *rig);
 /* A posture of one joint. */
 grobo_posture rig_posture(const grobo_test_rig *rig, int joint, double angle_deg, int time_ms);
+/* Gives every servo a temperature of its own, by which its readings are known. */
+void rig_mark_owners(grobo_test_rig *rig);
 /* True if this frame is among those sent since the last rig_forget(). */
 bool rig_was_sent(const grobo_test_rig *rig, const uint8_t *bytes, size_t size);
 
