@@ -93,13 +93,15 @@ typedef enum grobo_job_kind {
     GROBO_JOB_SENSE,
     GROBO_JOB_TORQUE,
     GROBO_JOB_MOVE,
-    GROBO_JOB_PLAY, /**< the preparation of a play: sensing, torque */
+    GROBO_JOB_PLAY, /**< the preparation of a play: sensing, torque, the approach is taken */
     GROBO_JOB_RAW,
     GROBO_JOB_REGISTERS,
     GROBO_JOB_COMMAND,
     GROBO_JOB_STORED,
     GROBO_JOB_EXIT,
-    GROBO_JOB_ESTOP
+    GROBO_JOB_ESTOP,
+    GROBO_JOB_SETTLE /**< the engine's own, after a motion: its last posture is read back, and
+                          repeated where it was lost; makes way for any request, tells nothing */
 } grobo_job_kind;
 
 /** Why the engine stopped by itself. */
@@ -330,7 +332,8 @@ typedef struct grobo_robot {
     unsigned low_readings; /* of the voltage, in a row */
     unsigned depth;        /* calls into the engine, one inside another */
     bool link;
-    bool soft; /* the next move is the first from a sensed posture */
+    bool settling; /* a motion is over, its end not yet looked at */
+    bool soft;     /* the next move is the first from a sensed posture */
 } grobo_robot;
 
 /**
@@ -455,7 +458,8 @@ GROBO_API int grobo_robot_cancel(grobo_robot *robot, int64_t now_us);
 
 /**
  * Plays a clip: senses, switches torque on (unless manual_torque), goes softly to its first
- * posture, plays. The job GROBO_JOB_PLAY ends when playing begins or could not.
+ * posture, plays. The job GROBO_JOB_PLAY ends when the servos are known to be on their way there,
+ * or could not be brought on it.
  * @param clip copied; what its ctx points to must live until GROBO_EVENT_PLAY tells the end.
  * @param options copied; NULL for all defaults. approach_deg_s 0 is the configuration's.
  */

@@ -155,6 +155,7 @@ void grobo_i_leave(grobo_robot *robot)
             }
             grobo_i_play_tell(robot);
         }
+        grobo_i_play_settle(robot);
     }
     robot->depth--;
 }

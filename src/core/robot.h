@@ -87,6 +87,7 @@ extern const grobo_robot_step_fn grobo_i_script_torque_on[];
 extern const grobo_robot_step_fn grobo_i_script_torque_off[]; /* brake as well */
 extern const grobo_robot_step_fn grobo_i_script_move[];
 extern const grobo_robot_step_fn grobo_i_script_play[];
+extern const grobo_robot_step_fn grobo_i_script_settle[];
 extern const grobo_robot_step_fn grobo_i_script_ask[];
 extern const grobo_robot_step_fn grobo_i_script_exit_off[];
 extern const grobo_robot_step_fn grobo_i_script_exit_hold[];
@@ -103,7 +104,9 @@ void grobo_i_play_done(grobo_robot_slot *slot, int result);
 void grobo_i_play_tell(grobo_robot *robot);
 /* True while the sequencer has something to send or to wait for. */
 bool grobo_i_playing(const grobo_robot *robot);
-/* Begins what job.clip and job.options say. */
+/* After a motion, unless somebody asked for something else: its last posture is read back. */
+void grobo_i_play_settle(grobo_robot *robot);
+/* Begins what job.clip and job.options say, from where the joints are. */
 int grobo_i_play_start(grobo_robot *robot);
 
 /* ---- sensing.c ------------------------------------------------------------------------------- */

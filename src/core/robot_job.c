@@ -39,7 +39,9 @@ void grobo_i_job_end(grobo_robot *robot, int result)
     event.u.job.size = job->reply_bytes;
     job->kind = GROBO_JOB_NONE;
     grobo_i_slots_cancel(robot, GROBO_I_USE_JOB);
-    grobo_i_tell(robot, &event);
+    if (event.u.job.kind != GROBO_JOB_SETTLE) {
+        grobo_i_tell(robot, &event);
+    }
 }
 
 void grobo_i_job_fail_joint(grobo_robot *robot, int joint, int error, double value)

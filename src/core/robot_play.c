@@ -33,8 +33,20 @@ void grobo_i_play_tell(grobo_robot *robot)
     event.u.play.from = robot->told_state;
     event.u.play.to = state;
     event.u.play.error = progress.error;
+    robot->settling = state == GROBO_SEQUENCER_FINISHED;
     robot->told_state = state;
     grobo_i_tell(robot, &event);
+}
+
+void grobo_i_play_settle(grobo_robot *robot)
+{
+    if (!robot->settling || robot->job.kind != GROBO_JOB_NONE || !robot->link) {
+        return;
+    }
+    robot->settling = false;
+    (void)grobo_i_job_start(robot, GROBO_JOB_SETTLE, grobo_i_script_settle);
+    robot->job.joints = grobo_i_all_joints(robot);
+    grobo_i_job_run(robot);
 }
 
 int grobo_i_play_start(grobo_robot *robot)
@@ -205,10 +217,13 @@ int grobo_robot_stop(grobo_robot *robot, bool at_once, int64_t now_us)
 {
     grobo_i_enter(robot, now_us);
     int result = grobo_sequencer_stop(&robot->sequencer, at_once, robot->now_us);
-    if (robot->job.kind == GROBO_JOB_MOVE || robot->job.kind == GROBO_JOB_PLAY) {
+    bool moves = robot->job.kind == GROBO_JOB_MOVE;
+    if (moves || robot->job.kind == GROBO_JOB_PLAY) {
         grobo_i_job_end(robot, GROBO_ERR_CANCELED);
-        grobo_i_gate_halt(robot);
         result = GROBO_OK;
+    }
+    if (moves) {
+        grobo_i_gate_halt(robot);
     }
     grobo_i_leave(robot);
     return result;

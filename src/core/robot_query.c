@@ -69,7 +69,7 @@ bool grobo_robot_moving(const grobo_robot *robot, int64_t now_us)
 
 grobo_job_kind grobo_robot_job(const grobo_robot *robot)
 {
-    return robot->job.kind;
+    return robot->job.kind == GROBO_JOB_SETTLE ? GROBO_JOB_NONE : robot->job.kind;
 }
 
 void grobo_robot_tripped(const grobo_robot *robot, grobo_trip_info *info)

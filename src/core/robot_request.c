@@ -6,10 +6,14 @@
 #include <string.h>
 
 /* May a job begin now? */
-static int admit(const grobo_robot *robot, bool moves)
+static int admit(grobo_robot *robot, bool moves)
 {
     if (!robot->link) {
         return GROBO_ERR_CLOSED;
+    }
+    robot->settling = false;
+    if (robot->job.kind == GROBO_JOB_SETTLE) {
+        grobo_i_job_end(robot, GROBO_ERR_CANCELED); /* it makes way for anything */
     }
     if (robot->job.kind != GROBO_JOB_NONE) {
         return GROBO_ERR_STATE;
@@ -311,6 +315,9 @@ int grobo_robot_stored(grobo_robot *robot, grobo_stored_kind kind, int number, i
 static void displace(grobo_robot *robot)
 {
     bool moved = robot->job.kind == GROBO_JOB_MOVE;
+    if (robot->job.kind == GROBO_JOB_PLAY && grobo_i_playing(robot)) {
+        (void)grobo_sequencer_stop(&robot->sequencer, false, robot->now_us);
+    }
     if (robot->job.kind != GROBO_JOB_NONE) {
         grobo_i_job_end(robot, GROBO_ERR_CANCELED);
     }
@@ -323,7 +330,8 @@ int grobo_robot_cancel(grobo_robot *robot, int64_t now_us)
 {
     grobo_i_enter(robot, now_us);
     int result = GROBO_OK;
-    if (robot->job.kind == GROBO_JOB_NONE || robot->job.kind == GROBO_JOB_ESTOP) {
+    if (robot->job.kind == GROBO_JOB_NONE || robot->job.kind == GROBO_JOB_ESTOP ||
+        robot->job.kind == GROBO_JOB_SETTLE) {
         result = GROBO_ERR_STATE;
     } else {
         displace(robot);

@@ -305,16 +305,27 @@ static int step_send(grobo_robot *robot)
     return GROBO_I_WAIT;
 }
 
-static int step_arrived(grobo_robot *robot)
+/* Joints whose goal, just read back, is not the one they were sent to. */
+static grobo_joint_mask not_taken(const grobo_robot *robot, grobo_joint_mask joints)
 {
-    grobo_robot_task *job = &robot->job;
     grobo_joint_mask bad = 0;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
-        bool there = !is_set(job->failed, j) &&
-                     near_rad(axis->state.goal_rad, axis->way.to_rad, SAME_GOAL_RAD);
-        if (is_set(job->pending, j) && !there) {
+        if (is_set(joints, j) &&
+            (is_set(robot->job.failed, j) ||
+             !near_rad(axis->state.goal_rad, axis->way.to_rad, SAME_GOAL_RAD))) {
             bad |= GROBO_JOINT_BIT(j);
+        }
+    }
+    return bad;
+}
+
+static int step_arrived(grobo_robot *robot)
+{
+    grobo_robot_task *job = &robot->job;
+    grobo_joint_mask bad = not_taken(robot, job->pending);
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if (is_set(bad, j)) {
             grobo_i_axis_rest(&robot->axes[j], robot->now_us); /* the way is long again */
         }
     }
@@ -324,9 +335,49 @@ static int step_arrived(grobo_robot *robot)
     return result;
 }
 
+/* A joint that has so far to go to where playing begins is looked after. */
+#define FAR_RAD (3 * 0.017453292519943295)
+
 static int step_play(grobo_robot *robot)
 {
-    return grobo_i_play_start(robot);
+    grobo_robot_task *job = &robot->job;
+    int result = grobo_i_play_start(robot);
+    job->pending = 0;
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        const grobo_robot_way *way = &robot->axes[j].way;
+        if (robot->axes[j].has_target && !near_rad(way->from_rad, way->to_rad, FAR_RAD)) {
+            job->pending |= GROBO_JOINT_BIT(j);
+        }
+    }
+    return result;
+}
+
+/* The approach is one frame, and all that follows relies on it: if it was lost, once more. */
+static int step_approached(grobo_robot *robot)
+{
+    bool approaching = grobo_robot_play_state(robot) == GROBO_SEQUENCER_APPROACHING;
+    grobo_joint_mask bad = approaching ? not_taken(robot, robot->job.pending) : 0;
+    if (bad == 0) {
+        robot->job.failed = 0;
+        robot->job.result = GROBO_OK;
+        return GROBO_I_NEXT;
+    }
+    grobo_sequencer_reset(&robot->sequencer);
+    if (robot->job.rounds >= ROUNDS) {
+        grobo_i_gate_halt(robot);
+        return GROBO_ERR_MISMATCH;
+    }
+    return again(robot, bad, step_from_here);
+}
+
+/* The last posture of a motion: what was lost of it is sent once more, softly. */
+static int step_aim_last(grobo_robot *robot)
+{
+    grobo_robot_task *job = &robot->job;
+    (void)grobo_robot_target(robot, &job->target);
+    job->target.set &= job->joints;
+    robot->soft = true;
+    return step_aim(robot);
 }
 
 /* ---- leaving --------------------------------------------------------------------------------- */
@@ -379,8 +430,10 @@ const grobo_robot_step_fn grobo_i_script_move[] = {
     step_read,      step_read_again, step_require, SWITCH_ON, step_require,
     step_from_here, step_aim,        MOVE,         NULL};
 const grobo_robot_step_fn grobo_i_script_play[] = {
-    step_read,    step_read_again, step_require, SWITCH_ON,
-    step_require, step_from_here,  step_play,    NULL};
+    step_read,      step_read_again, step_require,      SWITCH_ON,       step_require,
+    step_from_here, step_play,       step_read_pending, step_approached, NULL};
+const grobo_robot_step_fn grobo_i_script_settle[] = {step_aim_last, step_read_pending, step_arrived,
+                                                     NULL};
 const grobo_robot_step_fn grobo_i_script_ask[] = {step_ask, step_settle, NULL};
 const grobo_robot_step_fn grobo_i_script_exit_off[] = {step_quiet, SWITCH, NULL};
 const grobo_robot_step_fn grobo_i_script_exit_hold[] = {step_quiet, step_read, NULL};

@@ -38,6 +38,7 @@ static bool job_must_end(const grobo_robot *robot)
     case GROBO_JOB_PLAY:
     case GROBO_JOB_STORED:
     case GROBO_JOB_RAW:
+    case GROBO_JOB_SETTLE:
         return true;
     case GROBO_JOB_TORQUE:
         return robot->job.torque == GROBO_TORQUE_ON;

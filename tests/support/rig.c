@@ -17,14 +17,27 @@ static int joint_of(const grobo_test_rig *rig, int id)
     return grobo_model_joint_of_motor(rig->driver->model, id);
 }
 
-static double along_deg(const grobo_test_rig *rig, int j)
+static double along_deg(const grobo_test_rig *rig, int j, double from_deg)
 {
     if (rig->now_us >= rig->to_us[j] || rig->to_us[j] <= rig->from_us[j]) {
         return rig->to_deg[j];
     }
     double part =
         (double)(rig->now_us - rig->from_us[j]) / (double)(rig->to_us[j] - rig->from_us[j]);
-    return rig->from_deg[j] + (rig->to_deg[j] - rig->from_deg[j]) * part;
+    return from_deg + (rig->to_deg[j] - from_deg) * part;
+}
+
+/* Where the joint may be taken to be: where it is, or on its way from where it was asked to go or
+ * from where it was read. Lost frames part the three. */
+static double least_way_deg(grobo_test_rig *rig, int j, double deg)
+{
+    double asked_deg = along_deg(rig, j, rig->asked_deg[j]);
+    double stood_deg = along_deg(rig, j, rig->stood_deg[j]);
+    double here_deg = rig_angle_deg(rig, j);
+    rig->asked_deg[j] = asked_deg;
+    rig->stood_deg[j] = rig->was_read[j] ? here_deg : stood_deg;
+    rig->was_read[j] = false;
+    return fmin(fabs(deg - here_deg), fmin(fabs(deg - asked_deg), fabs(deg - stood_deg)));
 }
 
 static void check_goal(grobo_test_rig *rig, int id, const uint8_t *data)
@@ -39,14 +52,11 @@ static void check_goal(grobo_test_rig *rig, int id, const uint8_t *data)
         fail_msg("%s sent to %.1f deg, outside its limits", joint->name, deg);
     }
     bool holds = rig_torque(rig, j) != GROBO_TORQUE_ON;
-    double from_deg = holds ? rig_angle_deg(rig, j) : along_deg(rig, j);
     double most_dps = grobo_deg_from_rad(joint->max_speed_rad_s);
-    /* By what was asked, and by where the joint is: lost frames part the two. */
-    double way_deg = fmin(fabs(deg - from_deg), fabs(deg - rig_angle_deg(rig, j))) - 0.2;
+    double way_deg = least_way_deg(rig, j, deg) - 0.2;
     if (rig->check_speed && !holds && way_deg > most_dps * 1.02 * (double)time_us / 1e6) {
         fail_msg("%s sent %.1f deg in %lld us", joint->name, way_deg, (long long)time_us);
     }
-    rig->from_deg[j] = from_deg;
     rig->to_deg[j] = deg;
     rig->from_us[j] = rig->now_us;
     rig->to_us[j] = rig->now_us + time_us;

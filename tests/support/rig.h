@@ -36,7 +36,8 @@ typedef struct grobo_test_rig {
     size_t n_sent;
     void (*on_event)(struct grobo_test_rig *rig, const grobo_event *event); /* or NULL */
     double to_deg[GROBO_JOINTS_MAX]; /* what the frames asked for, to check speeds by */
-    double from_deg[GROBO_JOINTS_MAX];
+    double asked_deg[GROBO_JOINTS_MAX], stood_deg[GROBO_JOINTS_MAX];
+    bool was_read[GROBO_JOINTS_MAX]; /* since it was last sent somewhere */
     int64_t from_us[GROBO_JOINTS_MAX], to_us[GROBO_JOINTS_MAX];
     int64_t reboot_us[GROBO_JOINTS_MAX]; /* when a servo last lost what it was told */
     unsigned torque_on;                  /* torques switched on */
