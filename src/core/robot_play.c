@@ -59,7 +59,15 @@ int grobo_i_play_start(grobo_robot *robot)
     (void)grobo_robot_posture(robot, robot->now_us, GROBO_NEVER_US, &here);
     memset(robot->late_bins, 0, sizeof robot->late_bins);
     robot->late_max_us = 0;
-    return grobo_sequencer_play(&robot->sequencer, &job->clip, &job->options, &here, robot->now_us);
+    int result =
+        grobo_sequencer_play(&robot->sequencer, &job->clip, &job->options, &here, robot->now_us);
+    if (result < 0) {
+        return result;
+    }
+    grobo_play_progress progress;
+    grobo_i_play_step(robot); /* the approach leaves at once */
+    grobo_sequencer_progress(&robot->sequencer, robot->now_us, &progress);
+    return progress.error;
 }
 
 /* ---- lateness -------------------------------------------------------------------------------- */
