@@ -20,6 +20,8 @@ GROBO_BEGIN_DECLS
 #define GROBO_BODY_LINKS_MAX 64
 /** Joints of a leg, waist to foot. */
 #define GROBO_BODY_LEG_JOINTS 6
+/** Largest number a key pose may hold, in metres, radians or seconds. */
+#define GROBO_BODY_NUMBER_MAX 1e6
 /** Acceleration of gravity of the balancer and of every ZMP (Choreonoid's value), m/s^2. */
 #define GROBO_BODY_GRAVITY_M_S2 9.8
 
@@ -107,7 +109,8 @@ GROBO_API void grobo_body_momentum(const grobo_body_model *model, const grobo_tr
                                    const grobo_body_velocity *velocity, grobo_momentum *momentum);
 
 /**
- * Zero-moment point: where in the plane of height zmp_m[2] the ground's force acts.
+ * Zero-moment point: where in the plane of height zmp_m[2] the ground's force acts. In free fall
+ * there is none; it is then far away.
  * @param com_m centre of mass @param mass_kg total mass
  * @param rate rate of change of momentum (N and Nm in the fields of grobo_momentum)
  * @param[in,out] zmp_m z is read, x and y are written
@@ -139,9 +142,12 @@ typedef struct grobo_body_target {
     bool slave;         /**< a foot: follows the joints' own keys unless touching */
 } grobo_body_target;
 
-/** A key pose. What it points to is read during the call it is given to only. */
+/**
+ * A key pose. What it points to is read during the call it is given to only. As in Choreonoid, a
+ * key whose time equals an earlier one's goes before it.
+ */
 typedef struct grobo_body_key {
-    double time_s;               /**< absolute, 0 or more; never less than the key's before */
+    double time_s;               /**< absolute; keys may come in any order */
     double max_transition_s;     /**< 0: none; otherwise the longest way from the key before */
     grobo_joint_mask joints;     /**< which joints this key gives */
     grobo_joint_mask stationary; /**< which of them have zero speed here */
@@ -212,8 +218,8 @@ typedef struct grobo_body_report {
 /**
  * Bytes of workspace grobo_body_init() needs.
  * @param[out] bytes untouched on error
- * @return 0, GROBO_ERR_ARG (model, options, times that go back), GROBO_ERR_NAN or GROBO_ERR_CAP
- * (more than GROBO_MOTION_FRAMES_MAX frames).
+ * @return 0, GROBO_ERR_ARG (model, options, a number beyond GROBO_BODY_NUMBER_MAX, balancer without
+ * IK), GROBO_ERR_NAN or GROBO_ERR_CAP (more than GROBO_MOTION_FRAMES_MAX frames).
  */
 GROBO_API int grobo_body_workspace_bytes(const grobo_body_setup *setup, size_t *bytes);
 

@@ -47,54 +47,71 @@ static int target_of_link(const grobo_body_model *model, int link)
     return -1;
 }
 
-static bool finite_target(const grobo_body_target *target)
+/* Numbers a robot can be asked for. A time that is too large is left to the cap of frames. */
+static int numbers_ok(const double *v, int n)
 {
-    bool good = true;
+    for (int i = 0; i < n; i++) {
+        if (!isfinite(v[i])) {
+            return GROBO_ERR_NAN;
+        }
+        if (fabs(v[i]) > GROBO_BODY_NUMBER_MAX) {
+            return GROBO_ERR_ARG;
+        }
+    }
+    return 0;
+}
 
-    for (int i = 0; i < 3; i++) {
-        good = good && isfinite(target->at.p_m[i]);
+static int count_joints(const grobo_body_model *model, const grobo_body_key *key,
+                        struct counts *counts)
+{
+    int result = 0;
+
+    for (int j = 0; j < model->n_joints && result == 0; j++) {
+        if ((key->joints & GROBO_JOINT_BIT(j)) != 0) {
+            counts->joint[j]++;
+            result = numbers_ok(&key->q_rad[j], 1);
+        }
     }
-    for (int i = 0; i < 9; i++) {
-        good = good && isfinite(target->at.r[i]);
+    return result;
+}
+
+static int count_targets(const grobo_body_model *model, const grobo_body_key *key,
+                         struct counts *counts)
+{
+    int result = 0;
+
+    for (size_t i = 0; i < key->n_targets && result == 0; i++) {
+        const int target = target_of_link(model, key->targets[i].link);
+
+        if (target >= 0) {
+            counts->target[target]++;
+            result = numbers_ok(key->targets[i].at.p_m, 3);
+            result = result < 0 ? result : numbers_ok(key->targets[i].at.r, 9);
+        }
     }
-    return good;
+    return result;
 }
 
 /* Checks one key pose and counts what it holds. */
 static int count_key(const grobo_body_model *model, const grobo_body_key *key,
                      struct counts *counts)
 {
+    int result = 0;
+
     if (!isfinite(key->time_s) || !isfinite(key->max_transition_s)) {
         return GROBO_ERR_NAN;
     }
-    for (int j = 0; j < model->n_joints; j++) {
-        if ((key->joints & GROBO_JOINT_BIT(j)) == 0) {
-            continue;
-        }
-        if (!isfinite(key->q_rad[j])) {
-            return GROBO_ERR_NAN;
-        }
-        counts->joint[j]++;
+    if (key->time_s < -GROBO_BODY_NUMBER_MAX) {
+        return GROBO_ERR_ARG;
     }
-    for (size_t i = 0; i < key->n_targets; i++) {
-        const int target = target_of_link(model, key->targets[i].link);
-
-        if (target < 0) {
-            continue;
-        }
-        if (!finite_target(&key->targets[i])) {
-            return GROBO_ERR_NAN;
-        }
-        counts->target[target]++;
-    }
-    if (key->has_zmp) {
-        if (!isfinite(key->zmp_m[0]) || !isfinite(key->zmp_m[1]) || !isfinite(key->zmp_m[2])) {
-            return GROBO_ERR_NAN;
-        }
+    result = count_joints(model, key, counts);
+    result = result < 0 ? result : count_targets(model, key, counts);
+    if (key->has_zmp && result == 0) {
         counts->zmp++;
+        result = numbers_ok(key->zmp_m, 3);
     }
     counts->end_s = fmax(counts->end_s, key->time_s);
-    return 0;
+    return result;
 }
 
 static bool options_ok(const grobo_body_options *options)

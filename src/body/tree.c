@@ -7,6 +7,9 @@
 #include "body_priv.h"
 #include "vec.h"
 
+/* Part of the weight below which the ground's force counts as none. */
+#define FREE_FALL 1e-6
+
 static bool finite_all(const double *v, int n)
 {
     for (int i = 0; i < n; i++) {
@@ -173,8 +176,11 @@ void grobo_body_zmp(const double com_m[3], double mass_kg, const grobo_momentum 
     const double weight = mass_kg * GROBO_BODY_GRAVITY_M_S2;
     const double *dp = rate->p_kgm_s;
     const double *dl = rate->l_kgm2_s;
-    const double force = dp[2] + weight;
+    double force = dp[2] + weight;
 
+    if (fabs(force) < FREE_FALL * weight) {
+        force = FREE_FALL * weight;
+    }
     zmp_m[0] = (dp[0] * zmp_m[2] - dl[1] + weight * com_m[0]) / force;
     zmp_m[1] = (dp[1] * zmp_m[2] + dl[0] + weight * com_m[1]) / force;
 }

@@ -227,6 +227,10 @@ static void zmp_of_rest_and_of_a_push(void **state)
     grobo_body_zmp(com, mass, &pushed, zmp);
     assert_true(fabs(zmp[0] - (com[0] - com[2] * push / GROBO_BODY_GRAVITY_M_S2)) < 1e-15);
     assert_true(fabs(zmp[1] - com[1]) < 1e-15);
+    const grobo_momentum fall = {{push, 0, -mass * GROBO_BODY_GRAVITY_M_S2}, {0, 0, 0}};
+
+    grobo_body_zmp(com, mass, &fall, zmp); /* no force, no point: far away, but a number */
+    assert_true(isfinite(zmp[0]) && isfinite(zmp[1]) && hypot(zmp[0], zmp[1]) > 1);
     zmp[2] = 0.05; /* a plane above the ground: the lever is shorter */
     grobo_body_zmp(com, mass, &pushed, zmp);
     assert_true(fabs(zmp[0] - (com[0] - 0.1 * push / GROBO_BODY_GRAVITY_M_S2)) < 1e-15);

@@ -486,6 +486,9 @@ static void bad_setups_are_refused(void **state)
     script.q_rad[0][7] = NAN;
     assert_int_equal(grobo_body_workspace_bytes(&setup, &bytes), GROBO_ERR_NAN);
     script.q_rad[0][7] = 0;
+    script.q_rad[0][7] = 2e6;
+    assert_int_equal(grobo_body_workspace_bytes(&setup, &bytes), GROBO_ERR_ARG);
+    script.q_rad[0][7] = 0;
     script.targets[3][1].at.r[4] = NAN;
     assert_int_equal(grobo_body_workspace_bytes(&setup, &bytes), GROBO_ERR_NAN);
     script.targets[3][1].at.r[4] = 1;
