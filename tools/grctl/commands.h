@@ -5,8 +5,16 @@
 
 #include "cli.h"
 
+extern const cli_command cmd_check;
+extern const cli_command cmd_convert;
 extern const cli_command cmd_help;
+extern const cli_command cmd_init;
+extern const cli_command cmd_move;
+extern const cli_command cmd_play;
 extern const cli_command cmd_ports;
+extern const cli_command cmd_servo;
+extern const cli_command cmd_show;
+extern const cli_command cmd_status;
 extern const cli_command cmd_version;
 
 #endif

@@ -1,0 +1,219 @@
+/* SPDX-License-Identifier: MIT */
+#include <event2/event.h>
+
+#include "commands.h"
+#include "play.h"
+#include "progress.h"
+#include "render.h"
+
+static const cli_option options[PLAY_OPTIONS] = {
+    [PLAY_REPEAT] = {.name = "repeat", .letter = 'n', .kind = CLI_NUMBER, .value = "N",
+                     .help = "play N times", .min = 1, .max = 1000000},
+    [PLAY_REVERSE] = {.name = "reverse", .letter = 'r', .kind = CLI_FLAG,
+                      .help = "from the end to the beginning"},
+    [PLAY_MIRROR] = {.name = "mirror", .letter = 'm', .kind = CLI_FLAG,
+                     .help = "left for right"},
+    [PLAY_SPEED] = {.name = "speed", .letter = 's', .kind = CLI_NUMBER, .value = "PCT",
+                    .help = "speed in percent (100)", .min = 1, .max = GROBO_PLAY_SPEED_MAX_PCT},
+    [PLAY_FROM] = {.name = "from", .letter = 'f', .kind = CLI_NUMBER, .value = "MS",
+                   .help = "begin so far into the first file", .min = 0, .max = 1e9, .real = true},
+    [PLAY_RATE] = {.name = "rate", .kind = CLI_NUMBER, .value = "HZ",
+                   .help = "interpolate, so many frames a second (pseq and yaml: 50)",
+                   .min = 1, .max = GROBO_PLAY_RATE_MAX_HZ},
+    [PLAY_KEY] = {.name = "key", .letter = 'k', .kind = CLI_FLAG,
+                  .help = "one frame a key pose, the servos interpolate (m and mseq)"},
+    [PLAY_DRY_RUN] = {.name = "dry-run", .kind = CLI_FLAG,
+                      .help = "print 'time_ms hex' a frame; touch no port"},
+    [PLAY_TABLE] = {.name = "table", .kind = CLI_FLAG,
+                    .help = "at the end, target, reached and error of every joint"},
+};
+
+enum { TICK_US = 100000, REPORT_EVERY = 10 /* ticks of a JSON line */ };
+
+typedef struct show {
+    playlist list;
+    progress bar;
+    struct event *tick;
+    int ticks;
+    bool started, over;
+    int error; /* why it failed, 0: it did not */
+} show;
+
+static void report_progress(conn *c, show *s)
+{
+    grobo_play_progress p;
+    char text[96];
+    grobo_robot_progress(c->robot, grobo_now_us(), &p);
+    if (c->a->json) {
+        if (s->ticks % REPORT_EVERY == 0)
+            app_print_json(json_pack("{s:I,s:I,s:I,s:I}", "t_ms", (json_int_t)(p.t_us / 1000),
+                                     "total_ms", (json_int_t)(p.total_us / 1000), "step",
+                                     (json_int_t)p.step, "steps", (json_int_t)p.steps));
+        return;
+    }
+    snprintf(text, sizeof text, "%s %.1f of %.1f s, frame %llu of %llu",
+             grobo_sequencer_state_name(p.state), (double)p.t_us / 1e6, (double)p.total_us / 1e6,
+             (unsigned long long)p.step, (unsigned long long)p.steps);
+    progress_draw(&s->bar, p.total_us ? (double)p.t_us / (double)p.total_us : 0, text);
+}
+
+static void on_tick(evutil_socket_t fd, short what, void *ctx)
+{
+    conn *c = ctx;
+    show *s = c->ctx;
+    (void)fd;
+    (void)what;
+    report_progress(c, s);
+    s->ticks++;
+}
+
+static void on_event(conn *c, const grobo_event *event)
+{
+    show *s = c->ctx;
+    if (event->kind == GROBO_EVENT_PLAY) {
+        grobo_sequencer_state to = event->u.play.to;
+        s->started = true;
+        s->over = to == GROBO_SEQUENCER_FINISHED || to == GROBO_SEQUENCER_IDLE ||
+                  to == GROBO_SEQUENCER_FAILED;
+        if (to == GROBO_SEQUENCER_FAILED)
+            s->error = event->u.play.error;
+    } else if (event->kind == GROBO_EVENT_TRIP) {
+        s->error = GROBO_ERR_LATCHED;
+    }
+}
+
+static bool is_over(conn *c)
+{
+    const show *s = c->ctx;
+    return s->over;
+}
+
+static json_t *summary_json(const conn *c, double worst, int joint)
+{
+    const grobo_robot_counters *n = grobo_robot_get_counters(c->robot);
+    grobo_jitter jitter;
+    grobo_robot_jitter(c->robot, &jitter);
+    return json_pack("{s:b,s:I,s:I,s:{s:I,s:I,s:I},s:o}", "done", 1, "frames",
+                     (json_int_t)n->motion_frames, "late_frames", (json_int_t)n->late_frames,
+                     "jitter_us", "p50", (json_int_t)jitter.p50_us, "p99",
+                     (json_int_t)jitter.p99_us, "max", (json_int_t)jitter.max_us,
+                     "max_error_deg", joint < 0 ? json_null() : app_json_number(worst, 2));
+}
+
+static void print_summary(const conn *c)
+{
+    const grobo_model *model = grobo_robot_driver(c->robot)->model;
+    const grobo_robot_counters *n = grobo_robot_get_counters(c->robot);
+    grobo_jitter jitter;
+    int64_t now_us = grobo_now_us();
+    int joint;
+    double worst = render_worst_error(c, now_us, &joint);
+    if (c->a->json) {
+        app_print_json(summary_json(c, worst, joint));
+        return;
+    }
+    grobo_robot_jitter(c->robot, &jitter);
+    if (app_option(c->a, PLAY_TABLE)->given)
+        render_reached(c, now_us);
+    printf("%llu frames, %llu late; jitter p50 %lld us, p99 %lld us, largest %lld us\n",
+           (unsigned long long)n->motion_frames, (unsigned long long)n->late_frames,
+           (long long)jitter.p50_us, (long long)jitter.p99_us, (long long)jitter.max_us);
+    if (n->stretched)
+        printf("%llu moves were too fast for a servo and got more time\n",
+               (unsigned long long)n->stretched);
+    if (joint >= 0)
+        printf("largest error at the end %.1f deg (%s)\n", worst, model->joints[joint].name);
+}
+
+static int start(conn *c, show *s)
+{
+    int error = conn_wait(c, grobo_session_play(c->session, &s->list.clip[0],
+                                                &s->list.options[0]));
+    for (int i = 1; i < s->list.n && error >= 0; i++)
+        error = grobo_session_enqueue(c->session, &s->list.clip[i], &s->list.options[i]);
+    return error < 0 ? error : 0;
+}
+
+/* Plays to the end, then reads where the joints are. */
+static int play(conn *c, show *s)
+{
+    struct timeval period = {0, TICK_US};
+    grobo_joint_mask all = GROBO_JOINTS_ALL(grobo_robot_driver(c->robot)->model->n_joints);
+    int error = start(c, s);
+    if (error)
+        return conn_fail(c, error, "play");
+    progress_start(&s->bar, c->a);
+    s->tick = event_new(c->base, -1, EV_PERSIST, on_tick, c);
+    if (s->tick)
+        event_add(s->tick, &period);
+    error = conn_wait_until(c, is_over);
+    if (s->tick)
+        event_free(s->tick);
+    progress_clear(&s->bar);
+    if (!error && s->error)
+        error = s->error;
+    if (error)
+        return conn_fail(c, error, "play");
+    c->moving = false;
+    error = conn_wait(c, grobo_session_sense(c->session, all, GROBO_SENSE_FULL));
+    if (error && c->job.failed == 0)
+        return conn_fail(c, error, "play");
+    print_summary(c);
+    return EXIT_DONE;
+}
+
+/* Increments count from where the robot is: sense first. */
+static int prepare(conn *c, show *s)
+{
+    grobo_joint_mask all = GROBO_JOINTS_ALL(grobo_robot_driver(c->robot)->model->n_joints);
+    grobo_posture sensed;
+    int error = conn_wait(c, grobo_session_sense(c->session, all, GROBO_SENSE_FULL));
+    if (error)
+        return conn_fail(c, error, "play");
+    grobo_robot_posture(c->robot, grobo_now_us(), GROBO_NEVER_US, &sensed);
+    return playlist_prepare(&s->list, c->a, &sensed);
+}
+
+static int run(app *a)
+{
+    static show s;
+    conn c;
+    int status = playlist_load(&s.list, a);
+    if (!status && app_option(a, PLAY_DRY_RUN)->given) {
+        status = play_dry_run(&s.list, a);
+    } else if (!status) {
+        status = conn_open(&c, a);
+        c.ctx = &s;
+        c.on_event = on_event;
+        if (!status)
+            status = prepare(&c, &s);
+        if (!status) {
+            c.moving = true;
+            status = play(&c, &s);
+        }
+        status = conn_close(&c, status);
+    }
+    playlist_free(&s.list);
+    return status;
+}
+
+const cli_command cmd_play = {
+    .name = "play",
+    .arguments = "FILE...",
+    .summary = "play motion files",
+    .details =
+        "Plays .m, .pseq, .mseq, .yaml and .seq files, one after the other. Every file is\n"
+        "checked before anything moves: an angle outside a joint's limits is refused with its\n"
+        "place in the file and exit status 4. Torque comes on where it is off, and the robot\n"
+        "goes slowly from where it is to where the motion begins. Ctrl-C stops smoothly and\n"
+        "carries out the exit policy.\n",
+    .example = "  grctl play motions/greet.pseq\n"
+               "  grctl play --speed 50 --mirror walk.pseq\n"
+               "  grctl play --dry-run --key greet.pseq | head\n",
+    .options = options,
+    .n_options = PLAY_OPTIONS,
+    .min_arguments = 1,
+    .max_arguments = -1,
+    .argument = CLI_ARG_FILE,
+    .run = run,
+};

@@ -1,0 +1,326 @@
+/* SPDX-License-Identifier: MIT */
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <grobo/port.h>
+
+#include "conn.h"
+
+/* A second is more than any servo needs to stop smoothly; the engine's own bound is 10 s. */
+static const int caught[CONN_SIGNALS] = {SIGINT, SIGTERM, SIGHUP};
+
+static const char *requested_device(const app *a)
+{
+    const char *fallback = getenv("GRCTL_DEVICE");
+    if (app_global(a, GLOBAL_DEVICE)->given)
+        return app_global(a, GLOBAL_DEVICE)->text;
+    return fallback && *fallback ? fallback : GROBO_DEVICE_AUTO;
+}
+
+const char *conn_device(const conn *c)
+{
+    return grobo_session_device(c->session);
+}
+
+/* ---- what comes from the loop --------------------------------------------------------------- */
+
+static void on_signal(evutil_socket_t number, short what, void *ctx)
+{
+    conn *c = ctx;
+    (void)what;
+    if (!c->signal)
+        c->signal = (int)number;
+}
+
+static void on_session(grobo_session *session, grobo_session_event event, int error, void *ctx)
+{
+    conn *c = ctx;
+    (void)session;
+    switch (event) {
+    case GROBO_SESSION_EVENT_UP:
+        c->up = true;
+        return;
+    case GROBO_SESSION_EVENT_LOST:
+    case GROBO_SESSION_EVENT_FAILED:
+        c->link_error = error ? error : GROBO_ERR_UNPLUGGED;
+        return;
+    }
+}
+
+static void on_robot(void *ctx, const grobo_event *event)
+{
+    conn *c = ctx;
+    if (event->kind == GROBO_EVENT_JOB && event->u.job.number == c->waiting_for) {
+        c->job = event->u.job;
+        c->waiting_for = 0;
+    }
+    if (event->kind == GROBO_EVENT_TRIP)
+        c->trip = event->u.trip;
+    if (c->on_event)
+        c->on_event(c, event);
+}
+
+/* ---- waiting ---------------------------------------------------------------------------------- */
+
+static bool job_done(conn *c)
+{
+    return c->waiting_for == 0;
+}
+
+int conn_wait_until(conn *c, bool (*done)(conn *c))
+{
+    while (!done(c)) {
+        if (c->signal && !c->leaving)
+            return GROBO_ERR_CANCELED;
+        if (c->link_error)
+            return c->link_error;
+        if (event_base_loop(c->base, EVLOOP_ONCE) != 0)
+            return GROBO_ERR_IO;
+    }
+    return GROBO_OK;
+}
+
+int conn_wait(conn *c, int job)
+{
+    int error;
+    memset(&c->job, 0, sizeof c->job);
+    if (job < 0)
+        return job;
+    c->waiting_for = job;
+    error = conn_wait_until(c, job_done);
+    c->waiting_for = 0;
+    return error ? error : c->job.result;
+}
+
+static void on_wake(evutil_socket_t fd, short what, void *ctx)
+{
+    bool *awake = ctx;
+    (void)fd;
+    (void)what;
+    *awake = true;
+}
+
+int conn_sleep_until(conn *c, int64_t at_us)
+{
+    bool awake = false;
+    int64_t rest_us = at_us - grobo_now_us();
+    struct timeval rest = {0};
+    struct event *timer;
+    int error = GROBO_OK;
+    if (rest_us > 0) {
+        rest.tv_sec = (time_t)(rest_us / 1000000);
+        rest.tv_usec = (suseconds_t)(rest_us % 1000000);
+    }
+    timer = evtimer_new(c->base, on_wake, &awake);
+    if (!timer)
+        return GROBO_ERR_NOMEM;
+    evtimer_add(timer, &rest);
+    while (!awake && !c->signal && !c->link_error && !error)
+        if (event_base_loop(c->base, EVLOOP_ONCE) != 0)
+            error = GROBO_ERR_IO;
+    event_free(timer);
+    return c->signal ? GROBO_ERR_CANCELED : c->link_error ? c->link_error : error;
+}
+
+/* ---- opening ---------------------------------------------------------------------------------- */
+
+static bool opened(conn *c)
+{
+    return c->up;
+}
+
+/* Why the device cannot be used, and what to do about it. */
+static const char *advice(int error)
+{
+    switch (error) {
+    case GROBO_ERR_NOENT:
+        return "; see 'grctl ports' for what there is";
+    case GROBO_ERR_PERM:
+        return "; may your user open it? it often takes membership of the group dialout";
+    case GROBO_ERR_TIMEOUT:
+        return "; is the robot switched on, and its baud rate right?";
+    case GROBO_ERR_NOTFOUND:
+        return "; is its cable in? see 'grctl ports', or try '-d sim'";
+    }
+    return "";
+}
+
+static int fail_open(conn *c, int error)
+{
+    const grobo_os_cause *cause = grobo_session_cause(c->session);
+    const char *what = grobo_error_text(error);
+    if (error == GROBO_ERR_NOTFOUND)
+        what = "no robot answers on any serial port";
+    else if (error == GROBO_ERR_TIMEOUT)
+        what = "no robot answers";
+    else if (error == GROBO_ERR_TYPE)
+        what = "is not a serial port";
+    return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error), "%s: %s%s%s%s%s",
+                    conn_device(c), what, *cause->text ? " (" : "", cause->text,
+                    *cause->text ? ")" : "", advice(error));
+}
+
+static grobo_robot_config robot_config(const app *a)
+{
+    grobo_robot_config config = {.sense_interval_us = GROBO_SENSE_NEVER};
+    const cli_value *timeout = app_global(a, GLOBAL_TIMEOUT);
+    const cli_value *retries = app_global(a, GLOBAL_RETRIES);
+    const cli_value *on_exit = app_global(a, GLOBAL_ON_EXIT);
+    if (timeout->given)
+        config.timeout_us = (uint32_t)(timeout->number * 1000);
+    if (retries->given)
+        config.retries = retries->number > 0 ? (int)retries->number : -1;
+    if (on_exit->given)
+        config.on_exit = (grobo_exit_policy)(on_exit->choice + GROBO_EXIT_OFF);
+    return config;
+}
+
+static int make_session(conn *c, const char *device)
+{
+    app *a = c->a;
+    grobo_wiring wiring = (grobo_wiring)app_global(a, GLOBAL_WIRING)->choice;
+    const cli_value *baud = app_global(a, GLOBAL_BAUD);
+    grobo_robot_config robot = robot_config(a);
+    grobo_session_config config = {.base = c->base,
+                                   .device = device,
+                                   .baud_bps = baud->given ? (int)baud->number : 0,
+                                   .driver = grobo_gr001_driver(wiring),
+                                   .robot = &robot,
+                                   .on_event = on_session,
+                                   .on_robot = on_robot,
+                                   .ctx = c};
+    return grobo_session_new(&config, &c->session);
+}
+
+static int watch_signals(conn *c)
+{
+    for (int i = 0; i < CONN_SIGNALS; i++) {
+        c->signals[i] = evsignal_new(c->base, caught[i], on_signal, c);
+        if (!c->signals[i] || evsignal_add(c->signals[i], NULL) != 0)
+            return GROBO_ERR_NOMEM;
+    }
+    return GROBO_OK;
+}
+
+int conn_open(conn *c, app *a)
+{
+    char device[GROBO_DEVICE_MAX_BYTES];
+    const char *asked = requested_device(a);
+    grobo_os_cause cause = {0};
+    int error;
+    memset(c, 0, sizeof *c);
+    c->a = a;
+    error = grobo_port_resolve(asked, device, sizeof device, &cause);
+    if (error)
+        return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s: %s", asked,
+                        *cause.text ? cause.text : grobo_error_text(error));
+    signal(SIGPIPE, SIG_IGN);
+    c->base = grobo_loop_new();
+    error = c->base ? watch_signals(c) : GROBO_ERR_NOMEM;
+    if (!error)
+        error = make_session(c, device);
+    if (error)
+        return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s: %s", device,
+                        grobo_error_text(error));
+    c->robot = grobo_session_robot(c->session);
+    error = grobo_session_open(c->session);
+    if (!error)
+        error = conn_wait_until(c, opened);
+    if (error && !c->signal)
+        return fail_open(c, error);
+    if (!error)
+        app_detail(a, "robot found on %s", conn_device(c));
+    return error ? EXIT_ROBOT : EXIT_DONE;
+}
+
+/* ---- failing ---------------------------------------------------------------------------------- */
+
+static int fail_trip(conn *c, const char *doing)
+{
+    const grobo_trip_info *t = &c->trip;
+    const grobo_model *model = grobo_robot_driver(c->robot)->model;
+    if (t->joint >= 0 && t->joint < model->n_joints)
+        return app_fail(c->a, EXIT_SAFETY, grobo_trip_name(t->trip),
+                        "%s: stopped for safety: %s (%.4g) at motor %d (%s)", doing,
+                        grobo_trip_name(t->trip), t->value, model->joints[t->joint].motor,
+                        model->joints[t->joint].name);
+    return app_fail(c->a, EXIT_SAFETY, grobo_trip_name(t->trip),
+                    "%s: stopped for safety: %s (%.4g)", doing, grobo_trip_name(t->trip),
+                    t->value);
+}
+
+int conn_fail(conn *c, int error, const char *doing)
+{
+    const grobo_model *model;
+    int joint = c->job.joint;
+    if (c->signal)
+        return EXIT_SIGNAL + c->signal;
+    if (c->link_error)
+        return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error), "%s: %s while busy with %s",
+                        conn_device(c), grobo_error_text(error), doing);
+    if (c->trip.trip != GROBO_TRIP_NONE)
+        return fail_trip(c, doing);
+    model = grobo_robot_driver(c->robot)->model;
+    if (c->job.kind != GROBO_JOB_NONE && joint >= 0 && joint < model->n_joints)
+        return app_fail(c->a, app_status_of(error), grobo_error_name(error),
+                        "%s: %s: %s from motor %d (%s); is its cable in?", conn_device(c), doing,
+                        grobo_error_text(error), model->joints[joint].motor,
+                        model->joints[joint].name);
+    return app_fail(c->a, app_status_of(error), grobo_error_name(error), "%s: %s: %s",
+                    conn_device(c), doing, grobo_error_text(error));
+}
+
+/* ---- leaving ---------------------------------------------------------------------------------- */
+
+/* What the servos are to do now, or GROBO_EXIT_DEFAULT for nothing. */
+static grobo_exit_policy policy_now(const conn *c, int status)
+{
+    const cli_value *asked = app_global(c->a, GLOBAL_ON_EXIT);
+    if (asked->given)
+        return (grobo_exit_policy)(asked->choice + GROBO_EXIT_OFF);
+    if (c->moving && (c->signal || status != EXIT_DONE))
+        return grobo_robot_driver(c->robot)->on_exit;
+    return GROBO_EXIT_DEFAULT;
+}
+
+static int carry_out_policy(conn *c, int status)
+{
+    grobo_exit_policy policy = policy_now(c, status);
+    int error;
+    if (policy == GROBO_EXIT_DEFAULT || !c->up || c->link_error)
+        return status;
+    c->leaving = true;
+    error = conn_wait(c, grobo_session_exit(c->session, policy));
+    if (error)
+        return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error),
+                        "%s: the servos could not be left as asked: %s", conn_device(c),
+                        grobo_error_text(error));
+    app_detail(c->a, "exit policy carried out");
+    return status;
+}
+
+int conn_close(conn *c, int status)
+{
+    if (c->session) {
+        status = carry_out_policy(c, status);
+        grobo_session_free(c->session);
+    }
+    if (c->signal)
+        status = EXIT_SIGNAL + c->signal;
+    for (int i = 0; i < CONN_SIGNALS; i++)
+        if (c->signals[i])
+            event_free(c->signals[i]);
+    if (c->base)
+        event_base_free(c->base);
+    return status;
+}
+
+json_t *conn_link_json(const conn *c)
+{
+    const grobo_bus_stats *n = grobo_robot_get_bus_stats(c->robot);
+    return json_pack("{s:I,s:I,s:I,s:I,s:I,s:I}", "tx_frames", (json_int_t)n->tx_frames,
+                     "rx_frames", (json_int_t)n->rx_frames, "timeouts", (json_int_t)n->timeouts,
+                     "retries", (json_int_t)n->retries, "bad_sums", (json_int_t)n->bad_sums,
+                     "resync_bytes", (json_int_t)n->resync_bytes);
+}

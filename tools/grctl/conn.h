@@ -1,0 +1,78 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * A robot on the command line: open it, ask it, wait for it, leave it as the exit policy says.
+ * Everything waits inside the event loop, so a signal or a lost port is noticed at once.
+ */
+#ifndef GRCTL_CONN_H
+#define GRCTL_CONN_H
+
+#include <event2/event.h>
+
+#include <grobo/session.h>
+
+#include "app.h"
+
+typedef struct conn conn;
+
+/* What a command wants to hear beside the end of its job. */
+typedef void (*conn_event_fn)(conn *c, const grobo_event *event);
+
+enum { CONN_SIGNALS = 3 };
+
+struct conn {
+    app *a;
+    struct event_base *base;
+    struct event *signals[CONN_SIGNALS];
+    grobo_session *session;
+    grobo_robot *robot; /* the session's */
+    conn_event_fn on_event;
+    void *ctx;            /* for on_event */
+    grobo_event_job job;  /* how the last job ended */
+    int waiting_for;      /* number of the job that is waited for, 0 none */
+    int signal;           /* the first signal that came, 0 none */
+    int link_error;       /* why the link is lost, 0 while it stands */
+    grobo_trip_info trip; /* why the engine stopped, if it did */
+    bool up;              /* the robot has answered */
+    bool moving;          /* a motion is or may be under way; the exit policy ends it */
+    bool leaving;         /* the exit policy is being carried out: signals wait */
+};
+
+/*
+ * Opens the device of the command line and checks that a robot answers. Returns 0, or the exit
+ * status with the reason said. conn_close() is called in either case.
+ */
+int conn_open(conn *c, app *a);
+
+/*
+ * Waits for the end of the job that a request returned (an error < 0 is handed through).
+ * Returns the job's result; GROBO_ERR_CANCELED when a signal came, GROBO_ERR_UNPLUGGED when the
+ * link is lost.
+ */
+int conn_wait(conn *c, int job);
+
+/* Runs the loop until `done` says so, a signal comes or the link is lost; as conn_wait(). */
+int conn_wait_until(conn *c, bool (*done)(conn *c));
+
+/* Waits for a moment of grobo_now_us(); as conn_wait(). */
+int conn_sleep_until(conn *c, int64_t at_us);
+
+/*
+ * Says why a job failed, naming joint and cause, and returns the exit status. `doing`: "move".
+ * A signal is not complained about: conn_close() gives its status.
+ */
+int conn_fail(conn *c, int error, const char *doing);
+
+/*
+ * Ends it: carries out the exit policy when one was asked for, a signal came or a motion was cut
+ * short, then closes. Returns the exit status: `status`, or that of the signal, or 1 when the
+ * policy could not be carried out.
+ */
+int conn_close(conn *c, int status);
+
+/* The name of the device in use, for messages. */
+const char *conn_device(const conn *c);
+
+/* The link's counters as JSON: {"tx_frames": ...}. */
+json_t *conn_link_json(const conn *c);
+
+#endif

@@ -1,0 +1,95 @@
+/* SPDX-License-Identifier: MIT */
+#include <string.h>
+
+#include "file.h"
+
+const char *file_error_text(int error)
+{
+    switch (error) {
+    case GROBO_ERR_NOENT:
+        return "no such file";
+    case GROBO_ERR_ISDIR:
+        return "is a directory, not a motion file";
+    case GROBO_ERR_EMPTY:
+        return "is empty";
+    }
+    return grobo_error_text(error);
+}
+
+void file_format(const grobo_diagnostic *d, bool with_code, char *text, size_t capacity)
+{
+    char place[32] = "";
+    if (d->line && d->column)
+        snprintf(place, sizeof place, "%u:%u:", d->line, d->column);
+    else if (d->line)
+        snprintf(place, sizeof place, "%u:", d->line);
+    snprintf(text, capacity, "%s:%s %s%s%s%s%s%s", d->file, place,
+             d->severity == GROBO_SEVERITY_ERROR ? "" : grobo_severity_name(d->severity),
+             d->severity == GROBO_SEVERITY_ERROR ? "" : ": ", d->message, with_code ? " [" : "",
+             with_code ? d->code : "", with_code ? "]" : "");
+}
+
+json_t *file_json(const grobo_diagnostic *d)
+{
+    return json_pack("{s:o,s:I,s:I,s:s,s:s,s:o}", "file", app_json_text(d->file), "line",
+                     (json_int_t)d->line, "column", (json_int_t)d->column, "severity",
+                     grobo_severity_name(d->severity), "code", d->code, "message",
+                     app_json_text(d->message));
+}
+
+void file_say(const app *a, const grobo_diagnostics *list, size_t from)
+{
+    char text[1024];
+    grobo_diagnostic d;
+    for (size_t i = from; grobo_diagnostics_get(list, i, &d) == 0; i++) {
+        file_format(&d, false, text, sizeof text);
+        if (d.severity == GROBO_SEVERITY_WARNING)
+            app_note(a, "%s", text);
+        else
+            app_detail(a, "%s", text);
+    }
+}
+
+/* The first error of the list, or what happened to the file as a whole. */
+static int complain(app *a, const char *path, int error, const grobo_diagnostics *list)
+{
+    char text[1024];
+    grobo_diagnostic d;
+    for (size_t i = 0; grobo_diagnostics_get(list, i, &d) == 0; i++) {
+        if (d.severity != GROBO_SEVERITY_ERROR)
+            continue;
+        file_format(&d, false, text, sizeof text);
+        return app_fail(a, EXIT_FILE, d.code, "%s", text);
+    }
+    return app_fail(a, EXIT_FILE, grobo_error_name(error), "%s: %s", path,
+                    file_error_text(error));
+}
+
+static int read_stream(void *ctx, void *buffer, size_t size)
+{
+    size_t n = fread(buffer, 1, size, ctx);
+    return n == 0 && ferror(ctx) ? GROBO_ERR_IO : (int)n;
+}
+
+int file_load(app *a, const char *path, const grobo_read_options *options,
+              grobo_motion **motion)
+{
+    grobo_diagnostics *list = NULL;
+    int error = grobo_diagnostics_new(&list, NULL);
+    if (error)
+        return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s", grobo_error_text(error));
+    if (strcmp(path, "-") == 0) {
+        grobo_source source = {.read = read_stream, .ctx = stdin};
+        grobo_read_options named = options ? *options : (grobo_read_options){0};
+        named.name = "(standard input)";
+        error = grobo_motion_read(&source, &named, list, motion);
+    } else {
+        error = grobo_motion_read_file(path, options, list, motion);
+    }
+    if (error)
+        error = complain(a, path, error, list);
+    else
+        file_say(a, list, 0);
+    grobo_diagnostics_free(list);
+    return error;
+}

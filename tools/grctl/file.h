@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: MIT */
+/* Motion files on the command line: reading them, and saying what is wrong with them. */
+#ifndef GRCTL_FILE_H
+#define GRCTL_FILE_H
+
+#include <grobo/motion_io.h>
+
+#include "app.h"
+
+/*
+ * Reads a motion; "-" is standard input. On failure says the first error ("walk.pseq:41:9: ...")
+ * and returns the exit status; on success 0, and warnings are said on standard error.
+ * The motion belongs to the caller.
+ */
+int file_load(app *a, const char *path, const grobo_read_options *options,
+              grobo_motion **motion);
+
+/* Says warnings and notes from entry `from` on, on standard error. */
+void file_say(const app *a, const grobo_diagnostics *list, size_t from);
+
+/* One line of a diagnostic: "file:line:column: warning: message [code]". */
+void file_format(const grobo_diagnostic *d, bool with_code, char *text, size_t capacity);
+
+/* A diagnostic as JSON. */
+json_t *file_json(const grobo_diagnostic *d);
+
+/* Words of --from, --to: CLI_CHOICE of these gives the format at choice + 1. */
+#define FILE_FORMATS "m|pseq|mseq|yaml"
+
+/* What went wrong with a file as a whole, for a person. */
+const char *file_error_text(int error);
+
+#endif

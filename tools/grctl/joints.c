@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: MIT */
+#include <string.h>
+
+#include "joints.h"
+
+static int unknown(app *a, const char *what, const char *name, size_t length)
+{
+    return app_fail(a, EXIT_USAGE, "NOTFOUND",
+                    "no %s called '%.*s'; joints are named as R_KNEE_P, m12 or j3, groups are all "
+                    "body right_arm left_arm arms right_leg left_leg legs",
+                    what, (int)length, name);
+}
+
+static int parse(app *a, const char *name, size_t length, grobo_joint_mask *joints)
+{
+    grobo_joint_mask found;
+    if (grobo_model_find_joints(&grobo_gr001_model, name, length, &found) < 0)
+        return unknown(a, "joint or group", name, length);
+    *joints |= found;
+    return 0;
+}
+
+int joints_parse(app *a, const char *name, grobo_joint_mask *joints)
+{
+    return parse(a, name, strlen(name), joints);
+}
+
+int joints_parse_list(app *a, const char *list, grobo_joint_mask *joints)
+{
+    for (;;) {
+        size_t length = strcspn(list, ",");
+        int status = parse(a, list, length, joints);
+        if (status)
+            return status;
+        if (list[length] == '\0')
+            return 0;
+        list += length + 1;
+    }
+}
+
+int joints_parse_one(app *a, const char *name, size_t length, int *status)
+{
+    int joint = grobo_model_find_joint(&grobo_gr001_model, name, length);
+    if (joint < 0) {
+        *status = unknown(a, "joint", name, length);
+        return -1;
+    }
+    return joint;
+}
+
+int joints_check_limits(app *a, const grobo_posture *posture, const char *doing)
+{
+    const grobo_joint *j;
+    int joint = 0;
+    int error = grobo_posture_check(posture, &grobo_gr001_model, &joint);
+    if (!error)
+        return 0;
+    j = &grobo_gr001_model.joints[joint];
+    return app_fail(a, EXIT_SAFETY, grobo_error_name(error),
+                    "%s: %s (motor %d) to %.1f deg is outside its limits %.0f to %.0f", doing,
+                    j->name, j->motor, grobo_deg_from_rad(posture->angle_rad[joint]),
+                    grobo_deg_from_rad(j->min_rad), grobo_deg_from_rad(j->max_rad));
+}

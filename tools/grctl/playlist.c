@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: MIT */
+#include <string.h>
+
+#include "file.h"
+#include "play.h"
+
+/* Says the first thing that would be refused in play, with its place in the file. */
+static int check_one(app *a, const playlist *list, int i)
+{
+    grobo_check_options how = {.name = list->path[i]};
+    grobo_diagnostics *found = NULL;
+    grobo_diagnostic d;
+    int status = 0;
+    int error = grobo_diagnostics_new(&found, NULL);
+    if (!error)
+        error = grobo_motion_check(list->motion[i], &grobo_gr001_model, &how, found);
+    if (error < 0) {
+        status = app_fail(a, EXIT_FILE, grobo_error_name(error), "%s: %s", list->path[i],
+                          grobo_error_text(error));
+    } else if (error > 0) {
+        char text[1024];
+        for (size_t k = 0; grobo_diagnostics_get(found, k, &d) == 0; k++)
+            if (d.severity == GROBO_SEVERITY_ERROR)
+                break;
+        file_format(&d, false, text, sizeof text);
+        status = app_fail(a, EXIT_SAFETY, d.code, "%s", text);
+    } else {
+        file_say(a, found, 0);
+    }
+    grobo_diagnostics_free(found);
+    return status;
+}
+
+static void set_options(grobo_play_options *o, const app *a, grobo_motion_kind kind)
+{
+    bool keyed = kind == GROBO_MOTION_POSTURES || kind == GROBO_MOTION_STEPS;
+    if (app_option(a, PLAY_KEY)->given)
+        keyed = true;
+    if (app_option(a, PLAY_RATE)->given)
+        keyed = false;
+    o->mode = keyed ? GROBO_PLAY_KEY : GROBO_PLAY_RATE;
+    o->rate_hz = (uint16_t)app_number(a, PLAY_RATE, 0);
+    o->reverse = app_option(a, PLAY_REVERSE)->given > 0;
+    o->mirror = app_option(a, PLAY_MIRROR)->given > 0;
+    o->repeat = (int32_t)app_number(a, PLAY_REPEAT, 1);
+    o->speed_pct = (uint16_t)app_number(a, PLAY_SPEED, 100);
+}
+
+int playlist_load(playlist *list, app *a)
+{
+    memset(list, 0, sizeof *list);
+    if (app_option(a, PLAY_RATE)->given && app_option(a, PLAY_KEY)->given)
+        return app_fail(a, EXIT_USAGE, "USAGE", "play: --rate and --key exclude each other");
+    if (a->line.n_arguments > PLAY_FILES_MAX)
+        return app_fail(a, EXIT_USAGE, "USAGE", "play: more than %d files", PLAY_FILES_MAX);
+    for (int i = 0; i < a->line.n_arguments; i++) {
+        grobo_read_options read = {.model = &grobo_gr001_model, .keep_positions = true};
+        int status;
+        list->path[i] = a->line.argument[i];
+        status = file_load(a, list->path[i], &read, &list->motion[i]);
+        if (status)
+            return status;
+        list->n = i + 1;
+        status = check_one(a, list, i);
+        if (status)
+            return status;
+        if (grobo_motion_size(list->motion[i]) == 0)
+            return app_fail(a, EXIT_FILE, "EMPTY", "%s: has no postures", list->path[i]);
+        set_options(&list->options[i], a, grobo_motion_get_kind(list->motion[i]));
+    }
+    list->options[0].from_us = (int64_t)(app_number(a, PLAY_FROM, 0) * 1000);
+    return 0;
+}
+
+int playlist_prepare(playlist *list, app *a, const grobo_posture *start)
+{
+    grobo_clip_options how = {.start = start};
+    for (int i = 0; i < list->n; i++) {
+        int error = grobo_motion_clip(list->motion[i], i == 0 ? &how : NULL, &list->clip[i]);
+        if (error)
+            return app_fail(a, EXIT_FILE, grobo_error_name(error), "%s: %s", list->path[i],
+                            grobo_error_text(error));
+        if (list->options[i].from_us > list->clip[i].length_us)
+            return app_fail(a, EXIT_USAGE, "USAGE", "play: --from is beyond the end of %s (%.0f ms)",
+                            list->path[i], (double)list->clip[i].length_us / 1e3);
+    }
+    return 0;
+}
+
+void playlist_free(playlist *list)
+{
+    for (int i = 0; i < list->n; i++) {
+        if (list->clip[i].key)
+            grobo_motion_clip_free(&list->clip[i]);
+        grobo_motion_free(list->motion[i]);
+    }
+    list->n = 0;
+}
