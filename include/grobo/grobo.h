@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: MIT */
+/**
+ * @file grobo.h
+ * @brief Everything. A program for a small machine includes the headers it needs instead.
+ */
+#ifndef GROBO_GROBO_H
+#define GROBO_GROBO_H
+
+#include <grobo/board.h>
+#include <grobo/bus.h>
+#include <grobo/clip.h>
+#include <grobo/driver.h>
+#include <grobo/error.h>
+#include <grobo/files.h>
+#include <grobo/interpolate.h>
+#include <grobo/limits.h>
+#include <grobo/log.h>
+#include <grobo/loop.h>
+#include <grobo/mem.h>
+#include <grobo/model.h>
+#include <grobo/motion.h>
+#include <grobo/motion_io.h>
+#include <grobo/port.h>
+#include <grobo/posture.h>
+#include <grobo/robot.h>
+#include <grobo/rs30x.h>
+#include <grobo/sequencer.h>
+#include <grobo/serial.h>
+#include <grobo/session.h>
+#include <grobo/sim.h>
+#include <grobo/types.h>
+#include <grobo/version.h>
+
+#endif
