@@ -14,6 +14,7 @@ extern const cli_command cmd_play;
 extern const cli_command cmd_ports;
 extern const cli_command cmd_servo;
 extern const cli_command cmd_show;
+extern const cli_command cmd_sim;
 extern const cli_command cmd_status;
 extern const cli_command cmd_version;
 

@@ -1,0 +1,177 @@
+/* SPDX-License-Identifier: MIT */
+#include <signal.h>
+#include <string.h>
+
+#include <event2/event.h>
+
+#include <grobo/sim_server.h>
+
+#include "commands.h"
+#include "app.h"
+
+enum { OPT_LINK, OPT_TCP, OPT_NO_PACING, OPT_ROBOTS, OPT_SEED, OPT_FAULT };
+enum { ROBOTS_MAX = 16, SIGNALS = 3 };
+
+static const cli_option options[] = {
+    [OPT_LINK] = {.name = "link", .letter = 'l', .kind = CLI_TEXT, .value = "PATH",
+                  .help = "keep a symbolic link to the pty; PATH1, PATH2... for more robots"},
+    [OPT_TCP] = {.name = "tcp", .kind = CLI_NUMBER, .value = "PORT",
+                 .help = "listen on 127.0.0.1 too; 0: any port; the next ones for more robots",
+                 .min = 0, .max = 65535},
+    [OPT_NO_PACING] = {.name = "no-pacing", .kind = CLI_FLAG,
+                       .help = "bytes take no time on the wire"},
+    [OPT_ROBOTS] = {.name = "robots", .letter = 'n', .kind = CLI_NUMBER, .value = "N",
+                    .help = "so many robots, each behind a pty of its own (1)",
+                    .min = 1, .max = ROBOTS_MAX},
+    [OPT_SEED] = {.name = "seed", .kind = CLI_NUMBER, .value = "N",
+                  .help = "of everything random", .min = 0, .max = 4294967295.0},
+    [OPT_FAULT] = {.name = "fault", .kind = CLI_TEXT, .value = "LIST",
+                   .help = "KIND=RATE,...: drop flip duplicate delay split rubbish silent dupid\n"
+                           "                              hangup brownout, or all; rates 0 to 1"},
+};
+
+typedef struct farm {
+    app *a;
+    struct event_base *base;
+    struct event *signals[SIGNALS];
+    grobo_sim_server *server[ROBOTS_MAX];
+    int n;
+    int signal;
+} farm;
+
+static void on_signal(evutil_socket_t number, short what, void *ctx)
+{
+    farm *f = ctx;
+    (void)what;
+    f->signal = (int)number;
+    event_base_loopbreak(f->base);
+}
+
+static int watch_signals(farm *f)
+{
+    static const int caught[SIGNALS] = {SIGINT, SIGTERM, SIGHUP};
+    for (int i = 0; i < SIGNALS; i++) {
+        f->signals[i] = evsignal_new(f->base, caught[i], on_signal, f);
+        if (!f->signals[i] || evsignal_add(f->signals[i], NULL) != 0)
+            return GROBO_ERR_NOMEM;
+    }
+    return GROBO_OK;
+}
+
+static grobo_sim_config sim_config(const app *a, int robot)
+{
+    const cli_value *baud = app_global(a, GLOBAL_BAUD);
+    grobo_sim_config config = {
+        .wiring = (grobo_wiring)app_global(a, GLOBAL_WIRING)->choice,
+        .baud_bps = baud->given ? (uint32_t)baud->number : 0,
+        .unpaced = app_option(a, OPT_NO_PACING)->given > 0,
+        .seed = (uint32_t)app_number(a, OPT_SEED, 0) + (uint32_t)robot,
+    };
+    return config;
+}
+
+static int add_robot(farm *f, int robot)
+{
+    const app *a = f->a;
+    const char *path = app_option(a, OPT_LINK)->text;
+    const char *faults = app_option(a, OPT_FAULT)->text;
+    grobo_sim_config sim = sim_config(a, robot);
+    grobo_sim_server_config config = {.base = f->base, .sim = &sim};
+    grobo_os_cause cause = {0};
+    char link[GROBO_DEVICE_MAX_BYTES], tcp[32];
+    int port = (int)app_number(a, OPT_TCP, 0);
+    int error;
+    if (path) {
+        int n = robot == 0 ? snprintf(link, sizeof link, "%s", path)
+                           : snprintf(link, sizeof link, "%s%d", path, robot + 1);
+        if (n < 0 || (size_t)n >= sizeof link)
+            return app_fail(f->a, EXIT_USAGE, "CAP", "sim: --link: the path is too long");
+        config.link = link;
+    }
+    if (app_option(a, OPT_TCP)->given) {
+        snprintf(tcp, sizeof tcp, "tcp:127.0.0.1:%d", port ? port + robot : 0);
+        config.tcp = tcp;
+    }
+    error = grobo_sim_server_new(&config, &f->server[robot], &cause);
+    if (error)
+        return app_fail(f->a, EXIT_ROBOT, grobo_error_name(error), "sim: %s: %s%s%s",
+                        path ? link : "pty", grobo_error_text(error), *cause.text ? ": " : "",
+                        cause.text);
+    f->n = robot + 1;
+    if (faults && grobo_sim_set_faults(grobo_sim_server_sim(f->server[robot]), faults,
+                                       strlen(faults)) < 0)
+        return app_fail(f->a, EXIT_USAGE, "USAGE",
+                        "sim: --fault: '%s' is no list such as drop=0.01,flip=0.02", faults);
+    return 0;
+}
+
+/* Standard output is data: the device alone, so that a script can read it. */
+static void announce(const farm *f)
+{
+    json_t *list = json_array();
+    for (int i = 0; i < f->n; i++) {
+        int port = grobo_sim_server_tcp_port(f->server[i]);
+        json_t *one = json_pack("{s:s}", "device", grobo_sim_server_device(f->server[i]));
+        if (port > 0)
+            json_object_set_new(one, "tcp_port", json_integer(port));
+        json_array_append_new(list, one);
+        if (!f->a->json)
+            puts(grobo_sim_server_device(f->server[i]));
+        if (port > 0)
+            app_note(f->a, "also at tcp:127.0.0.1:%d", port);
+    }
+    if (f->a->json)
+        app_print_json(json_pack("{s:b,s:o}", "simulated", 1, "robots", list));
+    else
+        json_decref(list);
+    app_note(f->a, "SIMULATED robot%s, no motor moves anywhere; Ctrl-C ends it",
+             f->n == 1 ? "" : "s");
+    fflush(stdout);
+}
+
+static void close_farm(farm *f)
+{
+    for (int i = 0; i < f->n; i++)
+        grobo_sim_server_free(f->server[i]);
+    for (int i = 0; i < SIGNALS; i++)
+        if (f->signals[i])
+            event_free(f->signals[i]);
+    if (f->base)
+        event_base_free(f->base);
+}
+
+static int run(app *a)
+{
+    static farm f;
+    int robots = (int)app_number(a, OPT_ROBOTS, 1);
+    int status = 0;
+    f.a = a;
+    signal(SIGPIPE, SIG_IGN);
+    f.base = grobo_loop_new();
+    if (!f.base || watch_signals(&f) != GROBO_OK)
+        status = app_fail(a, EXIT_ROBOT, "NOMEM", "sim: %s", grobo_error_text(GROBO_ERR_NOMEM));
+    for (int i = 0; i < robots && !status; i++)
+        status = add_robot(&f, i);
+    if (!status) {
+        announce(&f);
+        event_base_dispatch(f.base);
+        status = EXIT_SIGNAL + f.signal;
+    }
+    close_farm(&f);
+    return status;
+}
+
+const cli_command cmd_sim = {
+    .name = "sim",
+    .arguments = "",
+    .summary = "a simulated robot behind a pty, for any program",
+    .details =
+        "Runs a simulated GR001 until a signal. Prints the path of its pty, one line a robot,\n"
+        "when it can be opened. The robot is honest at register level and bytes take their time\n"
+        "on the wire; programs may come and go, it stays as they left it.\n",
+    .example = "  grctl sim --link /tmp/gr001\n"
+               "  grctl sim --wiring bus --fault drop=0.01,flip=0.001 --seed 7\n",
+    .options = options,
+    .n_options = sizeof options / sizeof options[0],
+    .run = run,
+};
