@@ -92,8 +92,8 @@ VERSION = $(shell sed -n 's/.*GROBO_VERSION_STRING "\(.*\)"/\1/p' include/grobo/
 
 # ---- targets -------------------------------------------------------------------------------
 
-.PHONY: help all check lint lint-quick format test check-san check-memcheck install uninstall clean
-.PHONY: tidy fuzz cov dist bench FORCE
+.PHONY: help all demo check lint lint-quick format test check-san check-memcheck install uninstall
+.PHONY: clean tidy fuzz cov dist bench FORCE
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-15s %s\n", $$1, $$2 }' Makefile
@@ -101,6 +101,12 @@ help: ## this list
 	@echo '  RING="unit engine" (for test) PREFIX=/usr/local DESTDIR= V=1'
 
 all: $(STATIC_LIB) $(CORE_LIB) $(SHARED_LIB) $(PC_FILE) $(GRCTL) ## libraries and grctl, in build/
+
+MOTION ?= motions/greet.pseq
+demo: ## play MOTION=motions/greet.pseq on a simulated robot behind a pty
+	@tools/setup.sh --demo
+	@$(MAKE) --no-print-directory $(BUILD)/grctl
+	@tools/demo.sh $(BUILD)/grctl $(MOTION)
 
 check: ## set up what is missing, build, lint, run every test
 	@tools/setup.sh --check
