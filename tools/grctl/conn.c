@@ -150,6 +150,9 @@ static int fail_open(conn *c, int error)
 {
     const grobo_os_cause *cause = grobo_session_cause(c->session);
     const char *what = grobo_error_text(error);
+    /* Of the others the system only says again what the error says. */
+    bool tells = *cause->text && (error == GROBO_ERR_BUSY || error == GROBO_ERR_IO ||
+                                  error == GROBO_ERR_UNSUPPORTED || error == GROBO_ERR_UNPLUGGED);
     if (error == GROBO_ERR_NOTFOUND)
         what = "no robot answers on any serial port";
     else if (error == GROBO_ERR_TIMEOUT)
@@ -157,8 +160,8 @@ static int fail_open(conn *c, int error)
     else if (error == GROBO_ERR_TYPE)
         what = "is not a serial port";
     return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error), "%s: %s%s%s%s%s",
-                    conn_device(c), what, *cause->text ? " (" : "", cause->text,
-                    *cause->text ? ")" : "", advice(error));
+                    error == GROBO_ERR_NOTFOUND ? "auto" : conn_device(c), what, tells ? " (" : "", tells ? cause->text : "",
+                    tells ? ")" : "", advice(error));
 }
 
 static grobo_robot_config robot_config(const app *a)
