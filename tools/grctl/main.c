@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include <locale.h>
+#include <string.h>
 
 #include <grobo/version.h>
 
@@ -40,6 +41,15 @@ const cli_command *const cli_commands[] = {
 };
 const size_t cli_n_commands = sizeof cli_commands / sizeof cli_commands[0];
 
+/* A mistake ends parsing, but not the wish for JSON that stands behind it. */
+static bool wants_json(int argc, char *const *argv)
+{
+    for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++)
+        if (strcmp(argv[i], "--json") == 0)
+            return true;
+    return false;
+}
+
 int main(int argc, char **argv)
 {
     static app a;
@@ -50,9 +60,11 @@ int main(int argc, char **argv)
     ok = cli_parse(&a.line, argc, argv, complaint, sizeof complaint);
     app_settle(&a);
     command = a.line.command;
-    if (!ok)
+    if (!ok) {
+        a.json = wants_json(argc, argv);
         return app_fail(&a, EXIT_USAGE, "USAGE", "%s; see 'grctl help%s%s'", complaint,
                         command ? " " : "", command ? command->name : "");
+    }
     if (app_global(&a, GLOBAL_VERSION)->given)
         return cmd_version.run(&a);
     if (app_global(&a, GLOBAL_HELP)->given) {

@@ -1,0 +1,52 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# The command line itself: help, versions, mistakes.
+. tests/support/cli.sh
+
+check "help lists commands" both exits 0 "$GRCTL" help --- says '^  play  '
+check "--help does too" both exits 0 "$GRCTL" --help --- says '^  play  '
+check "--version" both exits 0 "$GRCTL" --version --- says '^grctl [0-9]*\.[0-9]*\.[0-9]*$'
+check "version" both exits 0 "$GRCTL" version --- says '^grctl [0-9]*\.[0-9]*\.[0-9]*$'
+check_json "version as JSON" 'lines[0]["name"] == "grctl"' "$GRCTL" version --json
+check_json "help as JSON" 'any(c["name"] == "play" for c in lines[0]["commands"])' \
+    "$GRCTL" --json help
+
+# Every command of the overview has a help page that names it.
+"$GRCTL" help | sed -n '/^Commands:/,/^$/s/^  \([a-z-]*\) .*/\1/p' >"$work/commands"
+check "there are commands" [ -s "$work/commands" ]
+while read -r command; do
+    check "help $command" both exits 0 "$GRCTL" help "$command" --- says "usage: grctl $command"
+    check "$command --help" both exits 0 "$GRCTL" "$command" --help --- says "usage: grctl $command"
+done <"$work/commands"
+
+no_command() {
+    exits 2 "$GRCTL" || return 1
+    grep -q '^usage: grctl' "$work/err" && [ ! -s "$work/out" ]
+}
+check "no command at all: the overview, on standard error" no_command
+check "a command that is none" fails 2 "no command 'nonsense'" "$GRCTL" nonsense
+check "a near miss" fails 2 "did you mean 'status'" "$GRCTL" stauts
+check "help on a near miss" fails 2 "did you mean 'play'" "$GRCTL" help plya
+check "an option that is none" fails 2 'unknown option --nonsense' "$GRCTL" status --nonsense
+check "a letter that is none" fails 2 'unknown option -Z' "$GRCTL" -Z status
+check "a value missing" fails 2 'device needs a value' "$GRCTL" status --device
+check "a value too many" fails 2 'json takes no value' "$GRCTL" status --json=yes
+check "a number that is none" fails 2 "'fast' is not a whole number" "$GRCTL" -b fast status
+check "a number too large" fails 2 "'99999999' is not" "$GRCTL" -b 99999999 status
+check "a choice that is none" fails 2 "'string' is none of board|bus" \
+    "$GRCTL" --wiring string status
+check "an argument missing" fails 2 'move needs JOINT DEG' "$GRCTL" move R_KNEE_P
+check "an argument too many" fails 2 "'x' is one argument too many" "$GRCTL" version x
+check "a joint that is none" fails 2 "no joint called 'R_TAIL'" "$GRCTL" move R_TAIL 3
+check "an angle that is none" fails 2 "'up' is not an angle" "$GRCTL" move m3 up
+check "not a number as an angle" fails 2 "'nan' is not an angle" "$GRCTL" move m3 nan
+json_mistake() {
+    exits 2 "$GRCTL" status --nonsense --json || return 1
+    json 'lines[0]["error"]["code"] == "USAGE"'
+}
+if have_json; then
+    check "with --json a mistake is JSON too" json_mistake
+else
+    skip "with --json a mistake is JSON too" "no python3 to parse JSON with"
+fi
+done_testing

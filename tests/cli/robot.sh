@@ -1,0 +1,81 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Commands on a simulated robot behind a pty: status, servo, init, move; and on no robot at all.
+. tests/support/cli.sh
+
+on_robot() {
+    "$GRCTL" -d "$robot" "$@"
+}
+
+start_sim || { echo "Bail out! the simulator did not start"; exit 1; }
+check "sim keeps a link to its pty" [ "$(readlink "$robot")" = "$sim_pty" ]
+check "sim says that it is none" grep -q SIMULATED "$work/sim.log"
+
+check "status shows a joint" both exits 0 on_robot status --- says '^ *12  R_KNEE_P  *-40\.0  .*off'
+check "status of a group" both exits 0 on_robot status arms --- says 'L_ELBOW_P'
+check "status of a joint that is none" fails 2 'no joint or group' on_robot status tail
+check_json "status has 20 joints with their values" \
+    'len(lines[0]["joints"]) == 20 and all(j["status"] == "ok" and j["torque"] == "off" and
+     j["voltage_v"] > 7 and j["temperature_c"] == 25 for j in lines[0]["joints"])' \
+    on_robot --json status
+check_json "status counts frames" 'lines[0]["link"]["rx_frames"] == 2' on_robot --json status j3
+
+check "servo on" both exits 0 on_robot servo on right_arm --- true
+check_json "torque stays on" '[j["torque"] for j in lines[0]["joints"]] == ["on"] * 3' \
+    on_robot --json status 2
+check_json "the others stay off" 'all(j["torque"] == "off" for j in lines[0]["joints"])' \
+    on_robot --json status legs
+check_json "servo brake" 'lines[0]["joints"][0]["torque"] == "brake"' \
+    on_robot --json servo brake m5
+check_json "servo off" 'lines[0]["joints"][0]["torque"] == "off"' on_robot --json servo off R_ELBOW_P
+check "servo up" fails 2 "'up' is none of on, off, brake" on_robot servo up
+
+check_json "move gets there, and switches torque on" \
+    'abs(lines[0]["joints"][0]["angle_deg"] + 60) <= 0.1 and lines[0]["max_error_deg"] <= 0.1' \
+    on_robot --json move m5 -60 500
+check_json "where it was moved, it stays" \
+    'abs(lines[0]["joints"][0]["angle_deg"] + 60) <= 0.1 and
+     lines[0]["joints"][0]["torque"] == "on"' on_robot --json status m5
+check "outside limits" fails 4 'R_ELBOW_P (motor 5) to 51.0 deg is outside its limits -130 to 50' \
+    on_robot move R_ELBOW_P 51
+check_json "init" 'len(lines[0]["joints"]) == 20 and lines[0]["max_error_deg"] <= 0.1' \
+    on_robot --json init --time 500
+check_json "leaving with the torque off" 'len(lines[0]["joints"]) == 1' \
+    on_robot --json --on-exit off move m5 0 200
+check_json "it is off" 'all(j["torque"] == "off" for j in lines[0]["joints"])' \
+    on_robot --json status
+
+# interrupted SIGNAL STATUS: a slow move is stopped, the status tells, the joint stands still.
+interrupted() {
+    "$GRCTL" -d "$robot" -v move m5 -120 5000 >"$work/out" 2>"$work/err" &
+    interrupted_pid=$!
+    until on_robot_moves; do :; done
+    kill -s "$1" $interrupted_pid
+    wait $interrupted_pid
+    interrupted_got=$?
+    [ $interrupted_got -eq "$2" ] && grep -q 'exit policy carried out' "$work/err" && return
+    echo "status $interrupted_got, not $2"
+    cat "$work/err"
+    return 1
+}
+# The port is taken by then: a second program is refused, in one line that says by whom.
+on_robot_moves() {
+    on_robot status >/dev/null 2>"$work/busy"
+    [ $? -eq 1 ] && grep -q 'in use by another program' "$work/busy"
+}
+check "SIGINT: the exit policy, then 130" interrupted INT 130
+check "the port was in use by grctl" grep -q "grctl (pid" "$work/busy"
+check_json "the joint holds on its way" \
+    'lines[0]["joints"][0]["torque"] == "on" and lines[0]["joints"][0]["speed_dps"] == 0 and
+     -120 < lines[0]["joints"][0]["angle_deg"] < 0' on_robot --json status m5
+check "SIGTERM: 143" interrupted TERM 143
+check "SIGHUP: 129" interrupted HUP 129
+
+stop_sim
+check "no such device" fails 1 'nowhere: no such file or device' "$GRCTL" -d "$work/nowhere" status
+check "a directory" fails 1 'is a directory' "$GRCTL" -d "$work" status
+: >"$work/file"
+check "a file" fails 1 'is not a serial port' "$GRCTL" -d "$work/file" status
+check "nobody listens" fails 1 'device is gone' "$GRCTL" -d tcp:127.0.0.1:1 status
+check "a port without a robot" fails 1 'no robot answers' sh "$0" --silent
+done_testing

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: MIT
+# For tests of the command: tap.sh, a scratch directory, a simulator behind a pty, exit statuses.
+# $GRCTL is the command under test. What is started here is ended here, whatever happens.
+
+. tests/support/tap.sh
+
+work=$(mktemp -d)
+sim_pid=
+unset GRCTL_DEVICE
+
+end_cli_test() {
+    stop_sim
+    rm -rf "$work"
+}
+trap end_cli_test EXIT
+trap 'exit 1' INT TERM
+
+# start_sim [OPTIONS]: $robot is its pty when this returns.
+start_sim() {
+    robot=$work/robot
+    mkfifo "$work/ready"
+    "$GRCTL" sim --link "$robot" "$@" >"$work/ready" 2>"$work/sim.log" &
+    sim_pid=$!
+    read -r sim_pty <"$work/ready"
+    rm "$work/ready"
+    [ -n "$sim_pty" ]
+}
+
+stop_sim() {
+    [ -z "$sim_pid" ] && return
+    kill "$sim_pid" 2>/dev/null
+    wait "$sim_pid" 2>/dev/null
+    sim_pid=
+}
+
+# exits STATUS COMMAND...: what it printed is in $work/out and $work/err.
+exits() {
+    exits_want=$1
+    shift
+    "$@" >"$work/out" 2>"$work/err" </dev/null
+    exits_got=$?
+    [ $exits_got -eq "$exits_want" ] && return
+    echo "status $exits_got, not $exits_want: $*"
+    cat "$work/out" "$work/err"
+    return 1
+}
+
+# says PATTERN: the last command wrote a line like that on standard output.
+says() {
+    grep -q -e "$1" "$work/out" || { echo "no '$1' in:"; cat "$work/out"; return 1; }
+}
+
+# complains PATTERN: exactly one line on standard error, and it is like that.
+complains() {
+    [ "$(wc -l <"$work/err")" -eq 1 ] && grep -q -e "$1" "$work/err" && return
+    echo "not one line like '$1' but:"
+    cat "$work/err"
+    return 1
+}
+
+# fails STATUS PATTERN COMMAND...: that status, one line of complaint, nothing on standard output.
+fails() {
+    fails_status=$1
+    fails_pattern=$2
+    shift 2
+    exits "$fails_status" "$@" && complains "$fails_pattern" || return 1
+    [ ! -s "$work/out" ] || { echo "standard output is not empty:"; cat "$work/out"; return 1; }
+}
+
+# json EXPRESSION: each line on standard output is JSON, and the Python expression holds of the
+# list `lines` of them. Needs python3: see have_json.
+json() {
+    python3 -c '
+import json, sys
+lines = [json.loads(line) for line in open(sys.argv[1])]
+sys.exit(0 if eval(sys.argv[2]) else "does not hold: %s of %.2000s" % (sys.argv[2], lines))
+' "$work/out" "$1"
+}
+
+have_json() {
+    command -v python3 >/dev/null 2>&1
+}
+
+# check_json NAME EXPRESSION COMMAND...: status 0 and the expression holds; skipped without python3.
+check_json() {
+    check_json_name=$1
+    check_json_expression=$2
+    shift 2
+    if have_json; then
+        check "$check_json_name" both exits 0 "$@" --- json "$check_json_expression"
+    else
+        skip "$check_json_name" "no python3 to parse JSON with"
+    fi
+}
+
+# both COMMAND1... --- COMMAND2...: the one, then the other.
+both() {
+    both_n=0
+    for both_word in "$@"; do
+        [ "$both_word" = --- ] && break
+        both_n=$((both_n + 1))
+    done
+    both_first=
+    both_i=0
+    while [ $both_i -lt $both_n ]; do
+        both_first="$both_first \"\${$((both_i + 1))}\""
+        both_i=$((both_i + 1))
+    done
+    eval "$both_first" || return 1
+    shift $((both_n + 1))
+    "$@"
+}
