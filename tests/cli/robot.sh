@@ -76,6 +76,12 @@ check "no such device" fails 1 'nowhere: no such file or device' "$GRCTL" -d "$w
 check "a directory" fails 1 'is a directory' "$GRCTL" -d "$work" status
 : >"$work/file"
 check "a file" fails 1 'is not a serial port' "$GRCTL" -d "$work/file" status
-check "nobody listens" fails 1 'device is gone' "$GRCTL" -d tcp:127.0.0.1:1 status
-check "a port without a robot" fails 1 'no robot answers' sh "$0" --silent
+check "nobody listens" fails 1 'tcp:127.0.0.1:1: ' "$GRCTL" -d tcp:127.0.0.1:1 status
+
+start_sim --wiring bus
+check "somebody else on the port: servos without a board" \
+    fails 1 'no robot answers; is the robot switched on' on_robot status
+check "with the right wiring they answer" both exits 0 on_robot --wiring bus status m3 --- \
+    says R_SHOULDER_P
+stop_sim
 done_testing
