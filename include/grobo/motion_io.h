@@ -144,6 +144,8 @@ GROBO_API int grobo_motion_check(const grobo_motion *motion, const grobo_model *
 
 /** Options of converting and writing. All zero (or NULL): the defaults. */
 typedef struct grobo_write_options {
+    grobo_motion_format format; /**< of grobo_motion_save(); AUTO: by the path's extension, else the
+                                     one that holds the motion's kind */
     const grobo_model *model;   /**< motor order of .m (as in reading), and `start` if NULL below */
     const grobo_posture *start; /**< what increments count from; NULL: the model's initial
                                      posture; without a model: all 0 */
@@ -187,7 +189,6 @@ GROBO_API int grobo_motion_write(const grobo_motion *motion, grobo_motion_format
 /**
  * Writes a motion to a file: to a temporary one beside it, which takes its place when all is
  * safely stored. An old file is replaced whole or stays as it was.
- * The format is that of the path's extension, else the one that holds the motion's kind.
  * @param files the system's: grobo_files_os()
  * @return 0, GROBO_ERR_NOENT, GROBO_ERR_PERM, GROBO_ERR_ISDIR, GROBO_ERR_IO, or as above.
  */

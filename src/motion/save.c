@@ -26,7 +26,10 @@ static int save(const grobo_motion *motion, const grobo_files *files, const char
 {
     grobo_file file;
     file_sink sink = {files, &file};
-    grobo_motion_format format = exclusive ? GROBO_FORMAT_M : grobo_motion_format_of_path(path);
+    grobo_motion_format format = exclusive ? GROBO_FORMAT_M : options->format;
+    if (format == GROBO_FORMAT_AUTO) {
+        format = grobo_motion_format_of_path(path);
+    }
     int result = files->create(&file, path, exclusive);
 
     if (result < 0) {

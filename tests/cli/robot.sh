@@ -47,27 +47,25 @@ check_json "it is off" 'all(j["torque"] == "off" for j in lines[0]["joints"])' \
 
 # interrupted SIGNAL STATUS: a slow move is stopped, the status tells, the joint stands still.
 interrupted() {
-    "$GRCTL" -d "$robot" -v move m5 -120 5000 >"$work/out" 2>"$work/err" &
+    rm -f "$work/moving"
+    "$GRCTL" -d "$robot" -v move m5 -120 5000 >"$work/out" 2>"$work/moving" &
     interrupted_pid=$!
-    until on_robot_moves; do :; done
+    until grep -qs 'robot found' "$work/moving"; do :; done
+    on_robot status >/dev/null 2>"$work/busy"
     kill -s "$1" $interrupted_pid
     wait $interrupted_pid
     interrupted_got=$?
-    [ $interrupted_got -eq "$2" ] && grep -q 'exit policy carried out' "$work/err" && return
+    [ $interrupted_got -eq "$2" ] && grep -q 'exit policy carried out' "$work/moving" && return
     echo "status $interrupted_got, not $2"
-    cat "$work/err"
+    cat "$work/moving"
     return 1
 }
-# The port is taken by then: a second program is refused, in one line that says by whom.
-on_robot_moves() {
-    on_robot status >/dev/null 2>"$work/busy"
-    [ $? -eq 1 ] && grep -q 'in use by another program' "$work/busy"
-}
+check "torque on before" exits 0 on_robot servo on m5
 check "SIGINT: the exit policy, then 130" interrupted INT 130
-check "the port was in use by grctl" grep -q "grctl (pid" "$work/busy"
+check "a second program is told who has the port" grep -q 'in use by.*grctl (pid' "$work/busy"
 check_json "the joint holds on its way" \
     'lines[0]["joints"][0]["torque"] == "on" and lines[0]["joints"][0]["speed_dps"] == 0 and
-     -120 < lines[0]["joints"][0]["angle_deg"] < 0' on_robot --json status m5
+     -120 < lines[0]["joints"][0]["angle_deg"] <= 0' on_robot --json status m5
 check "SIGTERM: 143" interrupted TERM 143
 check "SIGHUP: 129" interrupted HUP 129
 

@@ -27,14 +27,14 @@ static int write_stream(void *ctx, const void *data, size_t size)
     return fwrite(data, 1, size, ctx) == size ? 0 : GROBO_ERR_IO;
 }
 
-static int write_out(const grobo_motion *motion, const char *path, grobo_motion_format format,
-                     const grobo_write_options *how, grobo_diagnostics *list)
+static int write_out(const grobo_motion *motion, const char *path, const grobo_write_options *how,
+                     grobo_diagnostics *list)
 {
     grobo_sink sink = {.write = write_stream, .ctx = stdout};
     int error;
     if (strcmp(path, "-") != 0)
-        return grobo_motion_save(motion, grobo_files_os(), path, format, how, list);
-    error = grobo_motion_write(motion, format, how, &sink, list);
+        return grobo_motion_save(motion, grobo_files_os(), path, how, list);
+    error = grobo_motion_write(motion, how->format, how, &sink, list);
     return !error && fflush(stdout) != 0 ? GROBO_ERR_IO : error;
 }
 
@@ -71,6 +71,7 @@ static int run(app *a)
     int error;
     if (to == GROBO_FORMAT_AUTO)
         to = grobo_motion_format_of_path(out);
+    how.format = to;
     if (to == GROBO_FORMAT_AUTO)
         return app_fail(a, EXIT_USAGE, "USAGE",
                         "%s: its name tells no format; give --to " FILE_FORMATS, out);
@@ -79,7 +80,7 @@ static int run(app *a)
         return error;
     error = grobo_diagnostics_new(&list, NULL);
     if (!error)
-        error = write_out(motion, out, to, &how, list);
+        error = write_out(motion, out, &how, list);
     if (error)
         error = app_fail(a, EXIT_FILE, grobo_error_name(error), "%s: cannot write: %s", out,
                          file_error_text(error));

@@ -72,8 +72,9 @@ json_t *render_joint_json(const conn *c, int joint, int64_t now_us)
 
 static void cell(bool known, int width, int decimals, double value)
 {
+    double unit = pow(10, -decimals);
     if (known)
-        printf("  %*.*f", width, decimals, value);
+        printf("  %*.*f", width, decimals, fabs(value) < unit / 2 ? 0.0 : value); /* no -0.0 */
     else
         printf("  %*s", width, "-");
 }
