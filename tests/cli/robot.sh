@@ -27,7 +27,8 @@ check_json "the others stay off" 'all(j["torque"] == "off" for j in lines[0]["jo
     on_robot --json status legs
 check_json "servo brake" 'lines[0]["joints"][0]["torque"] == "brake"' \
     on_robot --json servo brake m5
-check_json "servo off" 'lines[0]["joints"][0]["torque"] == "off"' on_robot --json servo off R_ELBOW_P
+check_json "servo off" 'lines[0]["joints"][0]["torque"] == "off"' \
+    on_robot --json servo off R_ELBOW_P
 check "servo up" fails 2 "'up' is none of on, off, brake" on_robot servo up
 
 check_json "move gets there, and switches torque on" \

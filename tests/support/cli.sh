@@ -73,7 +73,8 @@ json() {
     python3 -c '
 import json, sys
 lines = [json.loads(line) for line in open(sys.argv[1])]
-sys.exit(0 if eval("(" + sys.argv[2] + ")") else "does not hold: %s of %.2000s" % (sys.argv[2], lines))
+if not eval("(" + sys.argv[2] + ")"):
+    sys.exit("does not hold: %s of %.2000s" % (sys.argv[2], lines))
 ' "$work/out" "$1"
 }
 

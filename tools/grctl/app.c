@@ -24,8 +24,7 @@ static bool wants_color(const app *a, bool tty)
 void app_settle(app *a)
 {
     a->json = app_global(a, GLOBAL_JSON)->given > 0;
-    a->verbosity =
-        app_global(a, GLOBAL_QUIET)->given ? -1 : app_global(a, GLOBAL_VERBOSE)->given;
+    a->verbosity = app_global(a, GLOBAL_QUIET)->given ? -1 : app_global(a, GLOBAL_VERBOSE)->given;
     a->tty_out = isatty(STDOUT_FILENO) == 1;
     a->tty_err = isatty(STDERR_FILENO) == 1;
     a->color_out = wants_color(a, a->tty_out);
@@ -67,8 +66,8 @@ int app_fail(app *a, int status, const char *code, const char *format, ...)
     fprintf(stderr, "%sgrctl:%s %s\n", a->color_err ? "\033[1;31m" : "",
             a->color_err ? "\033[0m" : "", text);
     if (a->json)
-        app_print_json(json_pack("{s:{s:s,s:o}}", "error", "code", code, "message",
-                                 app_json_text(text)));
+        app_print_json(
+            json_pack("{s:{s:s,s:o}}", "error", "code", code, "message", app_json_text(text)));
     return status;
 }
 

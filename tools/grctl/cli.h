@@ -13,10 +13,10 @@
 /* Exit statuses promised to users. */
 enum {
     EXIT_DONE = 0,
-    EXIT_ROBOT = 1,  /* the robot or the link failed */
-    EXIT_USAGE = 2,  /* the command line is wrong */
-    EXIT_FILE = 3,   /* a file is bad */
-    EXIT_SAFETY = 4, /* refused for safety */
+    EXIT_ROBOT = 1,   /* the robot or the link failed */
+    EXIT_USAGE = 2,   /* the command line is wrong */
+    EXIT_FILE = 3,    /* a file is bad */
+    EXIT_SAFETY = 4,  /* refused for safety */
     EXIT_SIGNAL = 128 /* plus the number of the signal */
 };
 
@@ -30,8 +30,8 @@ typedef enum cli_kind {
 } cli_kind;
 
 typedef struct cli_option {
-    const char *name;  /* "time": --time */
-    char letter;       /* 't': -t, 0 for none */
+    const char *name; /* "time": --time */
+    char letter;      /* 't': -t, 0 for none */
     cli_kind kind;
     const char *value; /* name of the value in help, or the words of a choice */
     const char *help;

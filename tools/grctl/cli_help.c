@@ -46,8 +46,8 @@ void cli_print_overview(FILE *to)
 void cli_print_command(FILE *to, const cli_command *command)
 {
     fprintf(to, "grctl %s - %s\n\nusage: grctl %s%s%s%s\n\n%s", command->name, command->summary,
-            command->name, command->n_options ? " [OPTIONS]" : "",
-            *command->arguments ? " " : "", command->arguments, command->details);
+            command->name, command->n_options ? " [OPTIONS]" : "", *command->arguments ? " " : "",
+            command->arguments, command->details);
     if (command->n_options) {
         fputs("\nOptions:\n", to);
         for (size_t i = 0; i < command->n_options; i++)

@@ -167,8 +167,7 @@ static bool parse_long(parser *p, const char *token)
     if (!o)
         return complain(p, "unknown option --%.*s", (int)length, name);
     if (o->kind == CLI_FLAG)
-        return text ? complain(p, "--%s takes no value", o->name)
-                    : take_value(p, o, value, "");
+        return text ? complain(p, "--%s takes no value", o->name) : take_value(p, o, value, "");
     if (!text) {
         if (p->at >= p->argc)
             return complain(p, "--%s needs a value: %s", o->name, o->value);
@@ -239,7 +238,11 @@ static bool check_count(parser *p)
 
 bool cli_parse(cli_line *line, int argc, char *const *argv, char *complaint, size_t capacity)
 {
-    parser p = {.line = line, .argv = argv, .argc = argc, .at = 1, .complaint = complaint,
+    parser p = {.line = line,
+                .argv = argv,
+                .argc = argc,
+                .at = 1,
+                .complaint = complaint,
                 .capacity = capacity};
     memset(line, 0, sizeof *line);
     while (p.at < argc) {

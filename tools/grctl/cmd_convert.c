@@ -7,12 +7,21 @@
 enum { OPT_RATE, OPT_FROM, OPT_TO };
 
 static const cli_option options[] = {
-    [OPT_RATE] = {.name = "rate", .letter = 'r', .kind = CLI_NUMBER, .value = "HZ",
+    [OPT_RATE] = {.name = "rate",
+                  .letter = 'r',
+                  .kind = CLI_NUMBER,
+                  .value = "HZ",
                   .help = "to yaml: frames a second; else one frame a posture",
-                  .min = 0.1, .max = 1000, .real = true},
-    [OPT_FROM] = {.name = "from", .kind = CLI_CHOICE, .value = FILE_FORMATS,
+                  .min = 0.1,
+                  .max = 1000,
+                  .real = true},
+    [OPT_FROM] = {.name = "from",
+                  .kind = CLI_CHOICE,
+                  .value = FILE_FORMATS,
                   .help = "format of IN, whatever its name says"},
-    [OPT_TO] = {.name = "to", .kind = CLI_CHOICE, .value = FILE_FORMATS,
+    [OPT_TO] = {.name = "to",
+                .kind = CLI_CHOICE,
+                .value = FILE_FORMATS,
                 .help = "format of OUT, whatever its name says"},
 };
 

@@ -10,9 +10,13 @@ enum { OPT_INIT_TIME };
 enum { MOVE_MS = 1000, INIT_MS = 2000, LONGEST_MS = 163830 };
 
 static const cli_option init_options[] = {
-    [OPT_INIT_TIME] = {.name = "time", .letter = 't', .kind = CLI_NUMBER, .value = "MS",
+    [OPT_INIT_TIME] = {.name = "time",
+                       .letter = 't',
+                       .kind = CLI_NUMBER,
+                       .value = "MS",
                        .help = "time to get there; more where that is safer (2000)",
-                       .min = 0, .max = LONGEST_MS},
+                       .min = 0,
+                       .max = LONGEST_MS},
 };
 
 static void report(const conn *c, const grobo_posture *target)

@@ -7,24 +7,48 @@
 #include "render.h"
 
 static const cli_option options[PLAY_OPTIONS] = {
-    [PLAY_REPEAT] = {.name = "repeat", .letter = 'n', .kind = CLI_NUMBER, .value = "N",
-                     .help = "play N times", .min = 1, .max = 1000000},
-    [PLAY_REVERSE] = {.name = "reverse", .letter = 'r', .kind = CLI_FLAG,
+    [PLAY_REPEAT] = {.name = "repeat",
+                     .letter = 'n',
+                     .kind = CLI_NUMBER,
+                     .value = "N",
+                     .help = "play N times",
+                     .min = 1,
+                     .max = 1000000},
+    [PLAY_REVERSE] = {.name = "reverse",
+                      .letter = 'r',
+                      .kind = CLI_FLAG,
                       .help = "from the end to the beginning"},
-    [PLAY_MIRROR] = {.name = "mirror", .letter = 'm', .kind = CLI_FLAG,
-                     .help = "left for right"},
-    [PLAY_SPEED] = {.name = "speed", .letter = 's', .kind = CLI_NUMBER, .value = "PCT",
-                    .help = "speed in percent (100)", .min = 1, .max = GROBO_PLAY_SPEED_MAX_PCT},
-    [PLAY_FROM] = {.name = "from", .letter = 'f', .kind = CLI_NUMBER, .value = "MS",
-                   .help = "begin so far into the first file", .min = 0, .max = 1e9, .real = true},
-    [PLAY_RATE] = {.name = "rate", .kind = CLI_NUMBER, .value = "HZ",
+    [PLAY_MIRROR] = {.name = "mirror", .letter = 'm', .kind = CLI_FLAG, .help = "left for right"},
+    [PLAY_SPEED] = {.name = "speed",
+                    .letter = 's',
+                    .kind = CLI_NUMBER,
+                    .value = "PCT",
+                    .help = "speed in percent (100)",
+                    .min = 1,
+                    .max = GROBO_PLAY_SPEED_MAX_PCT},
+    [PLAY_FROM] = {.name = "from",
+                   .letter = 'f',
+                   .kind = CLI_NUMBER,
+                   .value = "MS",
+                   .help = "begin so far into the first file",
+                   .min = 0,
+                   .max = 1e9,
+                   .real = true},
+    [PLAY_RATE] = {.name = "rate",
+                   .kind = CLI_NUMBER,
+                   .value = "HZ",
                    .help = "interpolate, so many frames a second (pseq and yaml: 50)",
-                   .min = 1, .max = GROBO_PLAY_RATE_MAX_HZ},
-    [PLAY_KEY] = {.name = "key", .letter = 'k', .kind = CLI_FLAG,
+                   .min = 1,
+                   .max = GROBO_PLAY_RATE_MAX_HZ},
+    [PLAY_KEY] = {.name = "key",
+                  .letter = 'k',
+                  .kind = CLI_FLAG,
                   .help = "one frame a key pose, the servos interpolate (m and mseq)"},
-    [PLAY_DRY_RUN] = {.name = "dry-run", .kind = CLI_FLAG,
+    [PLAY_DRY_RUN] = {.name = "dry-run",
+                      .kind = CLI_FLAG,
                       .help = "print 'time_ms hex' a frame; touch no port"},
-    [PLAY_TABLE] = {.name = "table", .kind = CLI_FLAG,
+    [PLAY_TABLE] = {.name = "table",
+                    .kind = CLI_FLAG,
                     .help = "at the end, target, reached and error of every joint"},
 };
 
@@ -96,8 +120,8 @@ static json_t *summary_json(const conn *c, double worst, int joint)
     return json_pack("{s:b,s:I,s:I,s:{s:I,s:I,s:I},s:o}", "done", 1, "frames",
                      (json_int_t)n->motion_frames, "late_frames", (json_int_t)n->late_frames,
                      "jitter_us", "p50", (json_int_t)jitter.p50_us, "p99",
-                     (json_int_t)jitter.p99_us, "max", (json_int_t)jitter.max_us,
-                     "max_error_deg", joint < 0 ? json_null() : app_json_number(worst, 2));
+                     (json_int_t)jitter.p99_us, "max", (json_int_t)jitter.max_us, "max_error_deg",
+                     joint < 0 ? json_null() : app_json_number(worst, 2));
 }
 
 static void print_summary(const conn *c)
@@ -127,8 +151,7 @@ static void print_summary(const conn *c)
 
 static int start(conn *c, show *s)
 {
-    int error = conn_wait(c, grobo_session_play(c->session, &s->list.clip[0],
-                                                &s->list.options[0]));
+    int error = conn_wait(c, grobo_session_play(c->session, &s->list.clip[0], &s->list.options[0]));
     for (int i = 1; i < s->list.n && error >= 0; i++)
         error = grobo_session_enqueue(c->session, &s->list.clip[i], &s->list.options[i]);
     return error < 0 ? error : 0;

@@ -11,12 +11,11 @@ static json_t *text_or_null(const char *text)
 
 static json_t *port_json(const grobo_port_info *info)
 {
-    json_t *port = json_pack("{s:o,s:o,s:o,s:o,s:o,s:o}", "path", app_json_text(info->path),
-                             "by_id", text_or_null(info->by_id), "driver",
-                             text_or_null(info->driver), "manufacturer",
-                             text_or_null(info->manufacturer), "product",
-                             text_or_null(info->product), "serial_number",
-                             text_or_null(info->serial_number));
+    json_t *port =
+        json_pack("{s:o,s:o,s:o,s:o,s:o,s:o}", "path", app_json_text(info->path), "by_id",
+                  text_or_null(info->by_id), "driver", text_or_null(info->driver), "manufacturer",
+                  text_or_null(info->manufacturer), "product", text_or_null(info->product),
+                  "serial_number", text_or_null(info->serial_number));
     if (info->usb_vendor >= 0) {
         char ids[16];
         snprintf(ids, sizeof ids, "%04x:%04x", (unsigned)info->usb_vendor & 0xffff,

@@ -28,9 +28,8 @@ static void print_json(const conn *c, grobo_joint_mask joints)
             grobo_robot_joint(c->robot, j, grobo_now_us(), &i) < 0)
             continue;
         json_array_append_new(list, json_pack("{s:i,s:i,s:s,s:s}", "id", j, "motor",
-                                              model->joints[j].motor, "name",
-                                              model->joints[j].name, "torque",
-                                              render_torque(&i)));
+                                              model->joints[j].motor, "name", model->joints[j].name,
+                                              "torque", render_torque(&i)));
     }
     app_print_json(json_pack("{s:o}", "joints", list));
 }

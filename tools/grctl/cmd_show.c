@@ -11,7 +11,10 @@
 enum { OPT_JOINTS };
 
 static const cli_option options[] = {
-    [OPT_JOINTS] = {.name = "joints", .letter = 'j', .kind = CLI_TEXT, .value = "LIST",
+    [OPT_JOINTS] = {.name = "joints",
+                    .letter = 'j',
+                    .kind = CLI_TEXT,
+                    .value = "LIST",
                     .help = "only these joints or groups, split by commas"},
 };
 
@@ -89,8 +92,7 @@ static json_t *key_json(const table *t, size_t i, const grobo_posture *posture)
         json_array_append_new(angles, grobo_posture_get_deg(posture, t->joint[c], &deg) == 0
                                           ? app_json_number(deg, 6)
                                           : json_null());
-    return json_pack("{s:o,s:o}", "time_ms", app_json_number(time_s * 1e3, 6), "angle_deg",
-                     angles);
+    return json_pack("{s:o,s:o}", "time_ms", app_json_number(time_s * 1e3, 6), "angle_deg", angles);
 }
 
 static void print_json(const table *t, const char *path, const char *format)
@@ -102,12 +104,11 @@ static void print_json(const table *t, const char *path, const char *format)
         json_array_append_new(names, json_string(joint_name(t, c, buffer, sizeof buffer)));
     for (size_t i = 0; grobo_motion_get(t->motion, i, &posture) == 0; i++)
         json_array_append_new(keys, key_json(t, i, &posture));
-    app_print_json(json_pack("{s:o,s:s,s:o,s:o,s:o,s:o}", "file", app_json_text(path), "format",
-                             format, "name", app_json_text(grobo_motion_name(t->motion)),
-                             "length_ms",
-                             app_json_number((double)grobo_motion_length_us(t->motion, -1) / 1e3,
-                                             3),
-                             "joints", names, "keys", keys));
+    app_print_json(
+        json_pack("{s:o,s:s,s:o,s:o,s:o,s:o}", "file", app_json_text(path), "format", format,
+                  "name", app_json_text(grobo_motion_name(t->motion)), "length_ms",
+                  app_json_number((double)grobo_motion_length_us(t->motion, -1) / 1e3, 3), "joints",
+                  names, "keys", keys));
 }
 
 static void print_head(const table *t, const char *path, const char *format)

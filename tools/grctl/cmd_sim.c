@@ -6,26 +6,43 @@
 
 #include <grobo/sim_server.h>
 
-#include "commands.h"
 #include "app.h"
+#include "commands.h"
 
 enum { OPT_LINK, OPT_TCP, OPT_NO_PACING, OPT_ROBOTS, OPT_SEED, OPT_FAULT };
 enum { ROBOTS_MAX = 16, SIGNALS = 3 };
 
 static const cli_option options[] = {
-    [OPT_LINK] = {.name = "link", .letter = 'l', .kind = CLI_TEXT, .value = "PATH",
+    [OPT_LINK] = {.name = "link",
+                  .letter = 'l',
+                  .kind = CLI_TEXT,
+                  .value = "PATH",
                   .help = "keep a symbolic link to the pty; PATH1, PATH2... for more robots"},
-    [OPT_TCP] = {.name = "tcp", .kind = CLI_NUMBER, .value = "PORT",
+    [OPT_TCP] = {.name = "tcp",
+                 .kind = CLI_NUMBER,
+                 .value = "PORT",
                  .help = "listen on 127.0.0.1 too; 0: any port; the next ones for more robots",
-                 .min = 0, .max = 65535},
-    [OPT_NO_PACING] = {.name = "no-pacing", .kind = CLI_FLAG,
+                 .min = 0,
+                 .max = 65535},
+    [OPT_NO_PACING] = {.name = "no-pacing",
+                       .kind = CLI_FLAG,
                        .help = "bytes take no time on the wire"},
-    [OPT_ROBOTS] = {.name = "robots", .letter = 'n', .kind = CLI_NUMBER, .value = "N",
+    [OPT_ROBOTS] = {.name = "robots",
+                    .letter = 'n',
+                    .kind = CLI_NUMBER,
+                    .value = "N",
                     .help = "so many robots, each behind a pty of its own (1)",
-                    .min = 1, .max = ROBOTS_MAX},
-    [OPT_SEED] = {.name = "seed", .kind = CLI_NUMBER, .value = "N",
-                  .help = "of everything random", .min = 0, .max = 4294967295.0},
-    [OPT_FAULT] = {.name = "fault", .kind = CLI_TEXT, .value = "LIST",
+                    .min = 1,
+                    .max = ROBOTS_MAX},
+    [OPT_SEED] = {.name = "seed",
+                  .kind = CLI_NUMBER,
+                  .value = "N",
+                  .help = "of everything random",
+                  .min = 0,
+                  .max = 4294967295.0},
+    [OPT_FAULT] = {.name = "fault",
+                   .kind = CLI_TEXT,
+                   .value = "LIST",
                    .help = "KIND=RATE,...: drop flip duplicate delay split rubbish silent dupid\n"
                            "                              hangup brownout, or all; rates 0 to 1"},
 };
@@ -98,8 +115,8 @@ static int add_robot(farm *f, int robot)
                         path ? link : "pty", grobo_error_text(error), *cause.text ? ": " : "",
                         cause.text);
     f->n = robot + 1;
-    if (faults && grobo_sim_set_faults(grobo_sim_server_sim(f->server[robot]), faults,
-                                       strlen(faults)) < 0)
+    if (faults &&
+        grobo_sim_set_faults(grobo_sim_server_sim(f->server[robot]), faults, strlen(faults)) < 0)
         return app_fail(f->a, EXIT_USAGE, "USAGE",
                         "sim: --fault: '%s' is no list such as drop=0.01,flip=0.02", faults);
     return 0;

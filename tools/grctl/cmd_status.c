@@ -6,11 +6,17 @@
 enum { OPT_WATCH, OPT_INTERVAL };
 
 static const cli_option options[] = {
-    [OPT_WATCH] = {.name = "watch", .letter = 'w', .kind = CLI_FLAG,
+    [OPT_WATCH] = {.name = "watch",
+                   .letter = 'w',
+                   .kind = CLI_FLAG,
                    .help = "again and again, until a signal"},
-    [OPT_INTERVAL] = {.name = "interval", .letter = 'i', .kind = CLI_NUMBER, .value = "MS",
+    [OPT_INTERVAL] = {.name = "interval",
+                      .letter = 'i',
+                      .kind = CLI_NUMBER,
+                      .value = "MS",
                       .help = "time between two rounds of --watch (1000)",
-                      .min = 20, .max = 3600000},
+                      .min = 20,
+                      .max = 3600000},
 };
 
 static void show(conn *c, grobo_joint_mask joints)

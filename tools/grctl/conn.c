@@ -61,7 +61,7 @@ static void on_robot(void *ctx, const grobo_event *event)
         c->on_event(c, event);
 }
 
-/* ---- waiting ---------------------------------------------------------------------------------- */
+/* ---- waiting -------------------------------------------------------------------------------- */
 
 static bool job_done(conn *c)
 {
@@ -123,7 +123,7 @@ int conn_sleep_until(conn *c, int64_t at_us)
     return c->signal ? GROBO_ERR_CANCELED : c->link_error ? c->link_error : error;
 }
 
-/* ---- opening ---------------------------------------------------------------------------------- */
+/* ---- opening -------------------------------------------------------------------------------- */
 
 static bool opened(conn *c)
 {
@@ -160,8 +160,8 @@ static int fail_open(conn *c, int error)
     else if (error == GROBO_ERR_TYPE)
         what = "is not a serial port";
     return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error), "%s: %s%s%s%s%s",
-                    error == GROBO_ERR_NOTFOUND ? "auto" : conn_device(c), what, tells ? " (" : "", tells ? cause->text : "",
-                    tells ? ")" : "", advice(error));
+                    error == GROBO_ERR_NOTFOUND ? "auto" : conn_device(c), what, tells ? " (" : "",
+                    tells ? cause->text : "", tells ? ")" : "", advice(error));
 }
 
 static grobo_robot_config robot_config(const app *a)
@@ -237,7 +237,7 @@ int conn_open(conn *c, app *a)
     return error ? EXIT_ROBOT : EXIT_DONE;
 }
 
-/* ---- failing ---------------------------------------------------------------------------------- */
+/* ---- failing -------------------------------------------------------------------------------- */
 
 static int fail_trip(conn *c, const char *doing)
 {
@@ -249,8 +249,7 @@ static int fail_trip(conn *c, const char *doing)
                         grobo_trip_name(t->trip), t->value, model->joints[t->joint].motor,
                         model->joints[t->joint].name);
     return app_fail(c->a, EXIT_SAFETY, grobo_trip_name(t->trip),
-                    "%s: stopped for safety: %s (%.4g)", doing, grobo_trip_name(t->trip),
-                    t->value);
+                    "%s: stopped for safety: %s (%.4g)", doing, grobo_trip_name(t->trip), t->value);
 }
 
 int conn_fail(conn *c, int error, const char *doing)
@@ -274,7 +273,7 @@ int conn_fail(conn *c, int error, const char *doing)
                     conn_device(c), doing, grobo_error_text(error));
 }
 
-/* ---- leaving ---------------------------------------------------------------------------------- */
+/* ---- leaving -------------------------------------------------------------------------------- */
 
 /* What the servos are to do now, or GROBO_EXIT_DEFAULT for nothing. */
 static grobo_exit_policy policy_now(const conn *c, int status)

@@ -61,8 +61,7 @@ static int complain(app *a, const char *path, int error, const grobo_diagnostics
         file_format(&d, false, text, sizeof text);
         return app_fail(a, EXIT_FILE, d.code, "%s", text);
     }
-    return app_fail(a, EXIT_FILE, grobo_error_name(error), "%s: %s", path,
-                    file_error_text(error));
+    return app_fail(a, EXIT_FILE, grobo_error_name(error), "%s: %s", path, file_error_text(error));
 }
 
 static int read_stream(void *ctx, void *buffer, size_t size)
@@ -71,8 +70,7 @@ static int read_stream(void *ctx, void *buffer, size_t size)
     return n == 0 && ferror(ctx) ? GROBO_ERR_IO : (int)n;
 }
 
-int file_load(app *a, const char *path, const grobo_read_options *options,
-              grobo_motion **motion)
+int file_load(app *a, const char *path, const grobo_read_options *options, grobo_motion **motion)
 {
     grobo_diagnostics *list = NULL;
     int error = grobo_diagnostics_new(&list, NULL);

@@ -12,8 +12,7 @@
  * and returns the exit status; on success 0, and warnings are said on standard error.
  * The motion belongs to the caller.
  */
-int file_load(app *a, const char *path, const grobo_read_options *options,
-              grobo_motion **motion);
+int file_load(app *a, const char *path, const grobo_read_options *options, grobo_motion **motion);
 
 /* Says warnings and notes from entry `from` on, on standard error. */
 void file_say(const app *a, const grobo_diagnostics *list, size_t from);

@@ -116,8 +116,7 @@ int play_dry_run(playlist *list, app *a)
     static rehearsal r;
     grobo_wiring wiring = (grobo_wiring)app_global(a, GLOBAL_WIRING)->choice;
     grobo_sim_config sim = {.wiring = wiring};
-    grobo_robot_config config = {.sense_interval_us = GROBO_SENSE_NEVER,
-                                 .bus = {.wiring = wiring}};
+    grobo_robot_config config = {.sense_interval_us = GROBO_SENSE_NEVER, .bus = {.wiring = wiring}};
     grobo_posture start;
     int error, status;
     r.a = a;

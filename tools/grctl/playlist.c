@@ -81,8 +81,9 @@ int playlist_prepare(playlist *list, app *a, const grobo_posture *start)
             return app_fail(a, EXIT_FILE, grobo_error_name(error), "%s: %s", list->path[i],
                             grobo_error_text(error));
         if (list->options[i].from_us > list->clip[i].length_us)
-            return app_fail(a, EXIT_USAGE, "USAGE", "play: --from is beyond the end of %s (%.0f ms)",
-                            list->path[i], (double)list->clip[i].length_us / 1e3);
+            return app_fail(a, EXIT_USAGE, "USAGE",
+                            "play: --from is beyond the end of %s (%.0f ms)", list->path[i],
+                            (double)list->clip[i].length_us / 1e3);
     }
     return 0;
 }

@@ -53,8 +53,7 @@ json_t *render_joint_json(const conn *c, int joint, int64_t now_us)
     json_object_set_new(o, "target_deg",
                         i.has_target ? app_json_number(grobo_deg_from_rad(i.target_rad), 1)
                                      : json_null());
-    json_object_set_new(o, "torque", i.torque_known ? json_string(render_torque(&i))
-                                                    : json_null());
+    json_object_set_new(o, "torque", i.torque_known ? json_string(render_torque(&i)) : json_null());
     json_object_set_new(o, "speed_dps",
                         integer_or_null(has(&i, GROBO_FIELD_SPEED), i.state.speed_dps));
     json_object_set_new(o, "current_ma",
