@@ -178,7 +178,10 @@ typedef enum grobo_body_zmp_source {
     GROBO_BODY_ZMP_AUTO = 1  /**< keys are added where steps need them */
 } grobo_body_zmp_source;
 
-/** Whether the waist is moved so that the body balances on the desired ZMP. */
+/**
+ * Whether the waist is moved so that the body balances on the desired ZMP. A motion without any
+ * (no key has one, none is added) is left as it is.
+ */
 typedef enum grobo_body_balance {
     GROBO_BODY_BALANCE_OFF = 0,
     GROBO_BODY_BALANCE_ON = 1,

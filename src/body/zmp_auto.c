@@ -164,7 +164,7 @@ static bool centre_zmp(const struct stepping *now, int support)
     } else if (same) {
         const double part = length_s < CENTRED_FULL_S ? 0.5 * length_s / CENTRED_FULL_S : 0.5;
 
-        if (between_soles(now, now->double_s, support == RIGHT ? part : 1 - part, at_m)) {
+        if (between_soles(now, now->double_s, support == RIGHT ? 1 - part : part, at_m)) {
             add_zmp(now, now->double_s + 0.5 * length_s, at_m);
         }
     }

@@ -414,6 +414,12 @@ static void roll_pitch_yaw_come_back(void **state)
         for (int k = 0; k < 3; k++) {
             assert_true(fabs(back[k] - rpy[k]) < 1e-9);
         }
+        /* near to it they are still told apart */
+        const double steep[3] = {rpy[0], BODY_PI / 2 - 1e-4, rpy[2]};
+
+        grobo_i_rotation_of_rpy(r, steep);
+        grobo_i_rpy_of_rotation(back, r);
+        assert_true(fabs(back[0] - rpy[0]) < 1e-6 && fabs(back[2] - rpy[2]) < 1e-6);
         /* straight up: roll and yaw are one turn, which goes to roll */
         const double up[3] = {rpy[0], BODY_PI / 2, rpy[2]};
 
