@@ -2,6 +2,7 @@
 /* Runs the script of a job: one step after the other, waiting where a step says so. */
 #include "core/robot.h"
 
+#include <assert.h>
 #include <string.h>
 
 int grobo_i_job_start(grobo_robot *robot, grobo_job_kind kind, const grobo_robot_step_fn *script)
@@ -58,9 +59,10 @@ void grobo_i_job_fail_joint(grobo_robot *robot, int joint, int error, double val
 void grobo_i_job_goto(grobo_robot *robot, grobo_robot_step_fn step)
 {
     unsigned at = 0;
-    while (robot->job.script[at] != step) {
+    while (robot->job.script[at] != NULL && robot->job.script[at] != step) {
         at++;
     }
+    assert(robot->job.script[at] == step);
     robot->job.at = at;
 }
 

@@ -286,6 +286,9 @@ static int step_send(grobo_robot *robot)
     grobo_i_motion how = {job->priority, GROBO_NEVER_US, false, false};
     grobo_joint_mask left = job->pending;
     int64_t longest_us = 0;
+    if (left == 0) {
+        return GROBO_I_NEXT;
+    }
     while (left != 0) {
         int64_t time_us = 0;
         grobo_posture part = job->target;
@@ -320,16 +323,23 @@ static grobo_joint_mask not_taken(const grobo_robot *robot, grobo_joint_mask joi
     return bad;
 }
 
-static int step_arrived(grobo_robot *robot)
+/* Joints that are not where they were sent begin anew from where they were read. */
+static int step_missed(grobo_robot *robot)
 {
-    grobo_robot_task *job = &robot->job;
-    grobo_joint_mask bad = not_taken(robot, job->pending);
+    grobo_joint_mask bad = not_taken(robot, robot->job.pending);
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         if (is_set(bad, j)) {
-            grobo_i_axis_rest(&robot->axes[j], robot->now_us); /* the way is long again */
+            grobo_i_axis_rest(&robot->axes[j], robot->now_us);
         }
     }
-    job->pending = bad;
+    robot->job.pending = bad;
+    return GROBO_I_NEXT;
+}
+
+static int step_arrived(grobo_robot *robot)
+{
+    (void)step_missed(robot);
+    grobo_joint_mask bad = robot->job.pending;
     int result = again(robot, bad, step_send);
     robot->soft = result == GROBO_I_NEXT && bad == 0 ? false : robot->soft;
     return result;
@@ -432,8 +442,8 @@ const grobo_robot_step_fn grobo_i_script_move[] = {
 const grobo_robot_step_fn grobo_i_script_play[] = {
     step_read,      step_read_again, step_require,      SWITCH_ON,       step_require,
     step_from_here, step_play,       step_read_pending, step_approached, NULL};
-const grobo_robot_step_fn grobo_i_script_settle[] = {step_aim_last, step_read_pending, step_arrived,
-                                                     NULL};
+const grobo_robot_step_fn grobo_i_script_settle[] = {step_aim_last, step_read_pending, step_missed,
+                                                     MOVE, NULL};
 const grobo_robot_step_fn grobo_i_script_ask[] = {step_ask, step_settle, NULL};
 const grobo_robot_step_fn grobo_i_script_exit_off[] = {step_quiet, SWITCH, NULL};
 const grobo_robot_step_fn grobo_i_script_exit_hold[] = {step_quiet, step_read, NULL};

@@ -270,6 +270,62 @@ static void a_short_stall_skips_a_long_one_stops(void **state)
     assert_int_equal(grobo_robot_get_counters(&rig.robot)->stalls, 1);
 }
 
+static void mute_all(grobo_sim_cable cable)
+{
+    for (int j = 0; j < 20; j++) {
+        assert_int_equal(grobo_sim_set_cable(&rig.sim, j, cable), 0);
+    }
+}
+
+static void a_lost_last_posture_is_repeated(void **state)
+{
+    (void)state;
+    start(&quiet);
+    play(NULL);
+    rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
+    rig_run(&rig, 1650000);
+    mute_all(GROBO_SIM_CABLE_MUTE);
+    rig_run(&rig, 150000); /* the last frame left at 1.7 s */
+    mute_all(GROBO_SIM_CABLE_IN);
+    rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
+    assert_true(fabs(rig_angle_deg(&rig, NECK) - 20) > 5);
+    assert_int_equal(grobo_robot_job(&rig.robot), GROBO_JOB_NONE); /* it is the engine's own */
+    rig_run(&rig, 1500000);
+    assert_true(fabs(rig_angle_deg(&rig, NECK) - 20) < 0.1);
+    assert_null(rig_last(&rig, GROBO_EVENT_TRIP));
+}
+
+static void what_the_engine_does_afterwards_makes_way(void **state)
+{
+    (void)state;
+    start(&quiet);
+    play(NULL);
+    rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
+    grobo_posture target = rig_posture(&rig, NECK, 0, 500);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
+    assert_true(fabs(rig_angle_deg(&rig, NECK)) < 0.1);
+}
+
+static void a_lost_approach_is_repeated(void **state)
+{
+    (void)state;
+    static const rig_key far[] = {{0, {{NECK, 40}}}, {500, {{NECK, 30}}}};
+    start(&quiet);
+    rig_clip_init(&clip, far, 2);
+    rig_power(&rig);
+    rig_forget(&rig);
+    int number = grobo_robot_play(&rig.robot, &clip.clip, NULL, rig.now_us);
+    while (grobo_robot_play_state(&rig.robot) == GROBO_SEQUENCER_IDLE) {
+        rig_run(&rig, 1000);
+    }
+    mute_all(GROBO_SIM_CABLE_MUTE);
+    rig_run(&rig, 20000);
+    mute_all(GROBO_SIM_CABLE_IN);
+    rig_expect(&rig, number, GROBO_OK);
+    rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
+    assert_true(fabs(rig_angle_deg(&rig, NECK) - 40) < 2);
+}
+
 static int lean(const grobo_driver *self, void *ctx, const grobo_posture *sensed,
                 grobo_posture *target)
 {
@@ -312,6 +368,9 @@ int main(void)
         cmocka_unit_test(pause_resume_and_stop),
         cmocka_unit_test(only_one_motion_at_a_time),
         cmocka_unit_test(a_short_stall_skips_a_long_one_stops),
+        cmocka_unit_test(a_lost_last_posture_is_repeated),
+        cmocka_unit_test(what_the_engine_does_afterwards_makes_way),
+        cmocka_unit_test(a_lost_approach_is_repeated),
         cmocka_unit_test(the_stabilizer_corrects_and_is_checked),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
