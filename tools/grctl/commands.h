@@ -11,6 +11,7 @@ extern const cli_command cmd_help;
 extern const cli_command cmd_init;
 extern const cli_command cmd_move;
 extern const cli_command cmd_play;
+extern const cli_command cmd_plot;
 extern const cli_command cmd_ports;
 extern const cli_command cmd_servo;
 extern const cli_command cmd_show;

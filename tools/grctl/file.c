@@ -16,6 +16,14 @@ const char *file_error_text(int error)
     return grobo_error_text(error);
 }
 
+const grobo_model *file_model(const grobo_motion *motion)
+{
+    const char *body = grobo_motion_target_body(motion);
+    bool ours = *body ? strcmp(body, grobo_gr001_model.name) == 0
+                      : grobo_motion_joints(motion) <= grobo_gr001_model.n_joints;
+    return ours ? &grobo_gr001_model : NULL;
+}
+
 void file_format(const grobo_diagnostic *d, bool with_code, char *text, size_t capacity)
 {
     char place[32] = "";

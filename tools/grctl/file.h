@@ -14,6 +14,12 @@
  */
 int file_load(app *a, const char *path, const grobo_read_options *options, grobo_motion **motion);
 
+/*
+ * The model whose joints a motion's are: GR001's, unless the motion names another body or, naming
+ * none, has more joints. NULL: none we know.
+ */
+const grobo_model *file_model(const grobo_motion *motion);
+
 /* Says warnings and notes from entry `from` on, on standard error. */
 void file_say(const app *a, const grobo_diagnostics *list, size_t from);
 

@@ -38,6 +38,42 @@ int joints_parse_list(app *a, const char *list, grobo_joint_mask *joints)
     }
 }
 
+/* The number behind the j of "j12", or -1. */
+static int joint_number(const char *name, size_t length)
+{
+    int number = 0;
+    if (length < 2 || length > 3 || (name[0] != 'j' && name[0] != 'J'))
+        return -1;
+    for (size_t i = 1; i < length; i++) {
+        if (name[i] < '0' || name[i] > '9')
+            return -1;
+        number = number * 10 + (name[i] - '0');
+    }
+    return number;
+}
+
+int joints_parse_motion(app *a, const char *list, const grobo_model *model, int n_joints,
+                        grobo_joint_mask *joints)
+{
+    for (;; list++) {
+        size_t length = strcspn(list, ",");
+        int number = joint_number(list, length);
+        grobo_joint_mask found = 0;
+        if (number >= 0 && number < n_joints)
+            found = GROBO_JOINT_BIT(number);
+        else if (model && grobo_model_find_joints(model, list, length, &found) < 0)
+            return unknown(a, "joint or group", list, length);
+        else if (!model)
+            return app_fail(a, EXIT_USAGE, "NOTFOUND",
+                            "no joint called '%.*s'; those of a body we do not know are j0 to j%d",
+                            (int)length, list, n_joints - 1);
+        *joints |= found & GROBO_JOINTS_ALL(n_joints);
+        list += length;
+        if (*list == '\0')
+            return 0;
+    }
+}
+
 int joints_parse_one(app *a, const char *name, size_t length, int *status)
 {
     int joint = grobo_model_find_joint(&grobo_gr001_model, name, length);

@@ -11,6 +11,12 @@
 int joints_parse(app *a, const char *name, grobo_joint_mask *joints);
 /* Names split by commas. */
 int joints_parse_list(app *a, const char *list, grobo_joint_mask *joints);
+/*
+ * Names split by commas, of a motion's joints: j0, j1 .. always, other names by its model (NULL:
+ * none). As joints_parse().
+ */
+int joints_parse_motion(app *a, const char *list, const grobo_model *model, int n_joints,
+                        grobo_joint_mask *joints);
 /* One joint alone. Returns the joint, or -1 with *status set and said. */
 int joints_parse_one(app *a, const char *name, size_t length, int *status);
 /* Refuses a posture with an angle outside its limits: says which, returns the exit status, or 0. */
