@@ -234,11 +234,12 @@ typedef struct grobo_robot_slot {
     grobo_txn txn;
     grobo_exchange exchange;
     struct grobo_robot *robot;
-    int64_t due_us;  /* when it should leave; GROBO_NEVER_US: as soon as may be */
-    uint32_t motion; /* number of the target it carries */
-    int job;         /* number of the job it belongs to */
-    bool out;        /* given to the line */
-    uint8_t use;     /* 0: free */
+    int64_t due_us;   /* when it should leave; GROBO_NEVER_US: as soon as may be */
+    int64_t given_us; /* when the bus got it */
+    uint32_t motion;  /* number of the target it carries */
+    int job;          /* number of the job it belongs to */
+    bool out;         /* given to the line */
+    uint8_t use;      /* 0: free */
     uint8_t joint;
 } grobo_robot_slot;
 
@@ -320,6 +321,7 @@ typedef struct grobo_robot {
     uint64_t late_bins[GROBO_ROBOT_JITTER_BINS];
     int64_t late_max_us;
     int64_t now_us;         /* of the call that runs */
+    int64_t soft_us;        /* grobo_robot_send(): when its first target is reached */
     int64_t sense_us;       /* when the background reads next */
     uint32_t motion;        /* number of the last target */
     uint32_t motion_us;     /* wire time of the last motion frames */
@@ -406,6 +408,16 @@ GROBO_API int grobo_robot_torque(grobo_robot *robot, grobo_joint_mask joints, gr
  * grobo_robot_fault()), GROBO_ERR_ARG; also GROBO_ERR_STATE while a motion is played.
  */
 GROBO_API int grobo_robot_move(grobo_robot *robot, const grobo_posture *target, int64_t now_us);
+
+/**
+ * Sends a target once and lets go: no job, no event, nothing read before or after. For a control
+ * loop of the caller's own, which calls it once a period; a target that still waits for the line
+ * is replaced. The first ones go there at the approach speed. Joints must have been sensed and
+ * hold (a sense and a torque job, once). The target is checked and timed as any other.
+ * @return 0, or an error: GROBO_ERR_STATE while something else moves the robot or a joint has no
+ *         torque, GROBO_ERR_STALE for a joint not sensed, and those of grobo_robot_move().
+ */
+GROBO_API int grobo_robot_send(grobo_robot *robot, const grobo_posture *target, int64_t now_us);
 
 /**
  * Sends a frame of the caller's as it is and waits for the reply it calls for, if any. The driver

@@ -85,7 +85,7 @@ int grobo_robot_init(grobo_robot *robot, const grobo_driver *driver, void *drive
     }
     robot->trip.joint = robot->fault_joint = -1;
     robot->now_us = robot->sense_us = now_us;
-    robot->soft = true;
+    grobo_i_gate_soften(robot);
     return GROBO_OK;
 }
 
@@ -218,7 +218,7 @@ void grobo_robot_link_up(grobo_robot *robot, int64_t now_us)
     grobo_i_enter(robot, now_us);
     if (!robot->link) {
         robot->link = true;
-        robot->soft = true;
+        grobo_i_gate_soften(robot);
         robot->sense_us = robot->now_us;
         robot->round = grobo_i_all_joints(robot);
         tell_kind(robot, GROBO_EVENT_LINK_UP);

@@ -98,6 +98,8 @@ extern const grobo_robot_step_fn grobo_i_script_exit_sit[];
 /* Sends what the sequencer has due, watches the host's lateness, keeps the line free for what
  * comes next, tells new states. */
 void grobo_i_play_step(grobo_robot *robot);
+/* Takes back targets that still wait for the line when the next one is there. */
+void grobo_i_play_overtake(grobo_robot *robot);
 /* A motion frame is over. */
 void grobo_i_play_done(grobo_robot_slot *slot, int result);
 /* Tells a new state of the sequencer. */
@@ -139,6 +141,8 @@ int grobo_i_gate_send(grobo_robot *robot, const grobo_posture *target, const gro
                       int64_t *time_us);
 /* Joints in a frame; small frames get through a line that loses bytes. */
 typedef enum grobo_i_chunk { GROBO_I_WHOLE = GROBO_JOINTS_MAX, GROBO_I_SMALL = 4 } grobo_i_chunk;
+/* The next move is the first from a sensed posture: a slow one. */
+void grobo_i_gate_soften(grobo_robot *robot);
 /* Takes up to `chunk` joints out of *joints. */
 grobo_joint_mask grobo_i_take_chunk(grobo_joint_mask *joints, grobo_i_chunk chunk);
 /* Sets goal := present for `joints`, which were just read; not for those that stand too far

@@ -118,7 +118,12 @@ void grobo_i_play_done(grobo_robot_slot *slot, int result)
         return;
     }
     if (result >= 0) {
-        note_lateness(slot->robot, slot->txn.sent_us - slot->due_us);
+        int64_t late_us = slot->txn.sent_us - slot->due_us;
+        note_lateness(slot->robot, late_us);
+        /* Late because of the line; the sequencer counted what came late to it. */
+        if (late_us > GROBO_PLAY_LATE_US && slot->given_us - slot->due_us <= GROBO_PLAY_LATE_US) {
+            slot->robot->counters.late_frames++;
+        }
     } else {
         slot->robot->counters.late_frames++; /* a later one took its place */
     }
@@ -126,13 +131,11 @@ void grobo_i_play_done(grobo_robot_slot *slot, int result)
 
 /* ---- frames ---------------------------------------------------------------------------------- */
 
-/* A played frame that still waits for the line when the next one is due has missed its time. */
-static void drop_overtaken(grobo_robot *robot)
+void grobo_i_play_overtake(grobo_robot *robot)
 {
     for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
         grobo_robot_slot *slot = &robot->slots[i];
-        if (slot->use == GROBO_I_USE_MOTION && slot->due_us != GROBO_NEVER_US &&
-            slot->txn.sent_us < 0) {
+        if (slot->use == GROBO_I_USE_MOTION && slot->txn.sent_us < 0) {
             (void)grobo_bus_cancel(&robot->bus, &slot->txn);
         }
     }
@@ -152,7 +155,7 @@ static bool send_frame(grobo_robot *robot, const grobo_play_frame *frame)
 {
     bool approach = frame->phase == GROBO_SEQUENCER_APPROACHING;
     grobo_i_motion how = {GROBO_PRIORITY_MOTION, frame->due_us, !approach, false};
-    drop_overtaken(robot);
+    grobo_i_play_overtake(robot);
     int result = grobo_i_gate_send(robot, &frame->posture, &how, NULL);
     if (result < 0) {
         give_up(robot, result);

@@ -117,6 +117,54 @@ int grobo_robot_move(grobo_robot *robot, const grobo_posture *target, int64_t no
     return begin(robot, number);
 }
 
+static bool all_hold(const grobo_robot *robot, grobo_joint_mask joints)
+{
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        const grobo_robot_axis *axis = &robot->axes[j];
+        if ((joints & GROBO_JOINT_BIT(j)) != 0 && axis->sensed &&
+            !(axis->torque_known && axis->state.torque == GROBO_TORQUE_ON)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static int admit_target(const grobo_robot *robot, const grobo_posture *target)
+{
+    if (!robot->link) {
+        return GROBO_ERR_CLOSED;
+    }
+    if (robot->trip.latched) {
+        return GROBO_ERR_LATCHED;
+    }
+    if (target->set == 0) {
+        return GROBO_ERR_ARG;
+    }
+    bool busy = grobo_i_in_motion(robot) || robot->job.kind == GROBO_JOB_PLAY ||
+                robot->job.kind == GROBO_JOB_EXIT;
+    return busy || !all_hold(robot, target->set) ? GROBO_ERR_STATE : GROBO_OK;
+}
+
+int grobo_robot_send(grobo_robot *robot, const grobo_posture *target, int64_t now_us)
+{
+    grobo_i_enter(robot, now_us);
+    grobo_i_motion how = {GROBO_PRIORITY_MOTION, GROBO_NEVER_US, true, false};
+    int64_t time_us = 0;
+    int result = admit_target(robot, target);
+    if (result >= 0) {
+        if (robot->now_us >= robot->soft_us) {
+            robot->soft = false; /* where the first target was, it is by now */
+        }
+        grobo_i_play_overtake(robot);
+        result = grobo_i_gate_send(robot, target, &how, &time_us);
+    }
+    if (result >= 0 && robot->soft && robot->soft_us == GROBO_NEVER_US) {
+        robot->soft_us = robot->now_us + time_us;
+    }
+    grobo_i_leave(robot);
+    return result < 0 ? result : GROBO_OK;
+}
+
 /* Every joint that a clip sets: by keys all of them are looked at, at a rate its ends. */
 static int joints_of_clip(const grobo_clip *clip, const grobo_play_options *options,
                           grobo_joint_mask *joints)
@@ -305,7 +353,7 @@ int grobo_robot_stored(grobo_robot *robot, grobo_stored_kind kind, int number, i
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         robot->axes[j].has_target = false; /* its own targets are not known to us */
     }
-    robot->soft = true;
+    grobo_i_gate_soften(robot);
     return begin_exchange(robot, GROBO_JOB_STORED, &exchange);
 }
 
@@ -401,7 +449,7 @@ int grobo_robot_reset(grobo_robot *robot, int64_t now_us)
     int result = robot->job.kind == GROBO_JOB_ESTOP ? GROBO_ERR_STATE : GROBO_OK;
     if (result >= 0) {
         robot->trip = (grobo_trip_info){.joint = -1};
-        robot->soft = true;
+        grobo_i_gate_soften(robot);
         robot->low_readings = 0;
     }
     grobo_i_leave(robot);

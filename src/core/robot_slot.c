@@ -57,6 +57,7 @@ int grobo_i_slot_send(grobo_robot_slot *slot, grobo_priority priority)
     slot->txn.retries = silent ? 0 : (uint8_t)config->retries; /* it had its chance */
     slot->txn.timeout_us = config->timeout_us;
     slot->txn.sent_us = -1;
+    slot->given_us = slot->robot->now_us;
     slot->txn.done = on_done;
     slot->txn.ctx = slot;
     int result = grobo_bus_submit(&slot->robot->bus, &slot->txn);

@@ -386,7 +386,7 @@ static int step_aim_last(grobo_robot *robot)
     grobo_robot_task *job = &robot->job;
     (void)grobo_robot_target(robot, &job->target);
     job->target.set &= job->joints;
-    robot->soft = true;
+    grobo_i_gate_soften(robot);
     return step_aim(robot);
 }
 
@@ -417,7 +417,7 @@ static int step_aim_rest(grobo_robot *robot)
         job->target.angle_rad[j] = driver->rest_rad[j];
     }
     job->target.set = joints_with(robot, job->joints, GROBO_TORQUE_ON);
-    robot->soft = true;
+    grobo_i_gate_soften(robot);
     if (job->target.set == 0) {
         grobo_i_job_goto(robot, step_pick_all);
     }

@@ -96,6 +96,12 @@ int grobo_i_gate_target(grobo_robot *robot, grobo_posture *target)
 
 /* ---- speed ----------------------------------------------------------------------------------- */
 
+void grobo_i_gate_soften(grobo_robot *robot)
+{
+    robot->soft = true;
+    robot->soft_us = GROBO_NEVER_US;
+}
+
 static double speed_limit(const grobo_robot *robot, int joint)
 {
     double most = robot->driver->model->joints[joint].max_speed_rad_s;

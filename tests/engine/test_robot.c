@@ -138,6 +138,34 @@ static void manual_torque_is_left_to_the_caller(void **state)
     rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
 }
 
+static void a_loop_of_ones_own_sends_targets(void **state)
+{
+    (void)state;
+    rig_start(&rig, &quiet, NULL);
+    grobo_posture target = rig_posture(&rig, 13, 30, 20);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_ERR_STALE);
+    rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), 0, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_ERR_STATE);
+    rig_power(&rig);
+    rig_forget(&rig);
+    for (int i = 0; i < 50; i++) { /* 30 degrees at 60 deg/s, whatever is asked */
+        assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+        rig_run(&rig, 20000);
+        assert_true(rig_angle_deg(&rig, 13) < (i + 1) * 0.02 * 60 + 0.3);
+    }
+    rig_run(&rig, 20000);
+    assert_true(fabs(rig_angle_deg(&rig, 13) - 30) < 0.5);
+    target = rig_posture(&rig, 13, -30, 20); /* from now on as fast as the servo */
+    for (int i = 0; i < 12; i++) {
+        assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+        rig_run(&rig, 20000);
+    }
+    assert_true(fabs(rig_angle_deg(&rig, 13) + 30) < 0.5);
+    assert_int_equal(rig_count(&rig, GROBO_EVENT_JOB), 0);
+    target = rig_posture(&rig, 13, -60, 20);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_ERR_LIMIT);
+}
+
 static void bus_wiring_does_the_same(void **state)
 {
     (void)state;
@@ -159,6 +187,7 @@ int main(void)
         cmocka_unit_test(move_arrives_in_its_time),
         cmocka_unit_test(move_switches_torque_on),
         cmocka_unit_test(manual_torque_is_left_to_the_caller),
+        cmocka_unit_test(a_loop_of_ones_own_sends_targets),
         cmocka_unit_test(bus_wiring_does_the_same),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
