@@ -199,6 +199,7 @@ int grobo_i_copy_rows(grobo_motion *motion, const grobo_motion *from, size_t fir
             grobo_i_extra_free(motion->mem, extra);
             return result;
         }
+        (void)grobo_i_row_at(from, n, &old); /* it may have moved: a motion copied to itself */
         *row.extra = extra;
         *row.line = *old.line;
         *row.time_s = grobo_i_time_s(from, n) + shift_s;

@@ -357,6 +357,7 @@ static int advance(grobo_i_events *events, bool follow)
 
 int grobo_i_peek(grobo_i_events *events, const grobo_i_event **event)
 {
+    *event = &events->event;
     if (!events->have) {
         int result = advance(events, true);
         if (result < 0) {
@@ -364,7 +365,6 @@ int grobo_i_peek(grobo_i_events *events, const grobo_i_event **event)
         }
         events->have = true;
     }
-    *event = &events->event;
     return 0;
 }
 

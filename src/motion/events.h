@@ -85,7 +85,10 @@ typedef struct grobo_i_events {
 /* Begins: everything up to the document's first event. After an error there is nothing to end. */
 int grobo_i_events_begin(grobo_i_events *events, grobo_i_reader *reader);
 void grobo_i_events_end(grobo_i_events *events);
-/* Looks at the next event without taking it. @return 0 or an error, said already. */
+/*
+ * Looks at the next event without taking it. @return 0 or an error, said already; even then *event
+ * points to an event, of which only the place may be looked at.
+ */
 int grobo_i_peek(grobo_i_events *events, const grobo_i_event **event);
 /* Takes it. */
 int grobo_i_next(grobo_i_events *events, const grobo_i_event **event);

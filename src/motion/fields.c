@@ -487,6 +487,7 @@ int grobo_i_capture(grobo_i_events *events, grobo_i_text *text)
     do {
         const grobo_i_event *event;
         int result = grobo_i_next(events, &event);
+        result = result < 0 ? result : out.result;
         if (result < 0) {
             return result;
         }

@@ -277,7 +277,7 @@ static int expand_waits(grobo_motion *motion)
 static int sorted_keys(const grobo_motion *motion, grobo_motion **sorted)
 {
     grobo_motion *made;
-    grobo_clip view;
+    grobo_clip view = {0};
     int result = grobo_i_new_like(motion, &made);
 
     if (result < 0) {

@@ -1,0 +1,250 @@
+/* SPDX-License-Identifier: MIT */
+/* Checking motions against GR001: what is said, where, and what is not. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "motion_files.h"
+
+typedef struct checked {
+    grobo_diagnostics *list;
+    int errors;
+    size_t warnings, notes;
+} checked;
+
+static checked check(const char *text, bool positions)
+{
+    grobo_read_options options = {.model = &grobo_gr001_model, .keep_positions = positions};
+    checked found;
+    grobo_motion *motion = NULL;
+
+    assert_int_equal(grobo_diagnostics_new(&found.list, NULL), 0);
+    assert_int_equal(grobo_motion_read_memory(text, strlen(text), &options, found.list, &motion),
+                     0);
+    found.errors = grobo_motion_check(motion, &grobo_gr001_model, NULL, found.list);
+    assert_true((size_t)found.errors == grobo_diagnostics_total(found.list, GROBO_SEVERITY_ERROR));
+    found.warnings = grobo_diagnostics_total(found.list, GROBO_SEVERITY_WARNING);
+    found.notes = grobo_diagnostics_total(found.list, GROBO_SEVERITY_NOTE);
+    grobo_motion_free(motion);
+    return found;
+}
+
+static bool says(const checked *found, const char *words)
+{
+    grobo_diagnostic said;
+
+    for (size_t i = 0; grobo_diagnostics_get(found->list, i, &said) == 0; i++) {
+        if (strstr(said.message, words) != NULL) {
+            return true;
+        }
+    }
+    return false;
+}
+
+#define TOP "type: PoseSeq\nname: t\ntargetBody: GR001\nrefs:\n"
+
+static void test_clean(void **state)
+{
+    (void)state;
+    checked found = check(TOP "- { time: 0, refer: { type: Pose, joints: [ 13 ], q: [ 0 ] } }\n"
+                              "- { time: 1, refer: { type: Pose, joints: [ 13 ], q: [ 0.5 ] } }\n"
+                              "- { time: 2, refer: { type: Pose, joints: [ 13 ], q: [ 0 ] } }\n",
+                          true);
+
+    assert_int_equal(found.errors, 0);
+    assert_int_equal(grobo_diagnostics_count(found.list), 0);
+    grobo_diagnostics_free(found.list);
+}
+
+static void test_limits(void **state)
+{
+    (void)state;
+    static const char text[] =
+        TOP "- { time: 0, refer: { type: Pose, joints: [ 13, 3 ], q: [ 0.8731, 0.01 ] } }\n";
+    checked found = check(text, true);
+
+    /* 50.02 degrees are 50.0 on the wire, within; the knee does not bend forwards. */
+    assert_int_equal(found.errors, 1);
+    assert_true(has_diagnostic(found.list, "limit", 5, 67));
+    assert_true(says(&found, "R_KNEE_P: 0.6 degrees, outside -130..0"));
+    grobo_diagnostics_free(found.list);
+    found = check(text, false);
+    assert_true(has_diagnostic(found.list, "limit", 5, 0));
+    grobo_diagnostics_free(found.list);
+}
+
+static void test_too_fast(void **state)
+{
+    (void)state;
+    checked found =
+        check(TOP "- { time: 0, refer: { type: Pose, joints: [ 14, 13 ], q: [ 0, 0 ] } }\n"
+                  "- { time: 0.1, refer: { type: Pose, joints: [ 14 ], q: [ 1.5 ] } }\n"
+                  "- { time: 9, maxTransitionTime: 0.05, refer: { type: Pose, joints: [ 14 ],"
+                  " q: [ 0 ] } }\n"
+                  "- { time: 9, refer: { type: Pose, joints: [ 13 ], q: [ 0.8 ] } }\n",
+              true);
+
+    assert_int_equal(found.errors, 2);
+    assert_true(has_diagnostic(found.list, "too-fast", 6, 58));
+    assert_true(has_diagnostic(found.list, "too-fast", 7, 81));
+    assert_true(says(&found, "R_SHOULDER_P: 85.9 degrees in 100 ms, the servo needs 230 ms") ||
+                says(&found, "R_SHOULDER_P: 85.9 degrees in 100 ms, the servo needs 158 ms"));
+    grobo_diagnostics_free(found.list);
+}
+
+/* The curve is steeper than its ends say, and swings further than its keys. */
+static void test_curve(void **state)
+{
+    (void)state;
+    checked found =
+        check(TOP "- { time: 0, refer: { type: Pose, joints: [ 14 ], q: [ 0 ] } }\n"
+                  "- { time: 0.25, refer: { type: Pose, joints: [ 14 ], q: [ 1.5 ] } }\n",
+              true);
+
+    assert_int_equal(found.errors, 0);
+    assert_true(has_diagnostic(found.list, "peak-speed", 6, 0));
+    grobo_diagnostics_free(found.list);
+    found = check(TOP "- { time: 0, refer: { type: Pose, joints: [ 13 ], q: [ 0 ] } }\n"
+                      "- { time: 0.3, refer: { type: Pose, joints: [ 13 ], q: [ 0.87 ] } }\n"
+                      "- { time: 2.3, refer: { type: Pose, joints: [ 13 ], q: [ 0.8715 ] } }\n",
+                  true);
+    assert_int_equal(found.errors, 1);
+    assert_true(has_diagnostic(found.list, "limit-between", 7, 0));
+    grobo_diagnostics_free(found.list);
+}
+
+static void test_postures(void **state)
+{
+    (void)state;
+    /* Motor 2 is the neck: 40 degrees in 20 ms; a restart that takes the default time. */
+    checked found = check("500 0 0\n520 0 400\n100 0 390\n", true);
+
+    assert_int_equal(found.errors, 1);
+    assert_true(has_diagnostic(found.list, "too-fast", 2, 7));
+    assert_true(has_diagnostic(found.list, "step-default", 3, 0));
+    grobo_diagnostics_free(found.list);
+}
+
+static void test_increments(void **state)
+{
+    (void)state;
+    checked found = check("type: MotionSeq\nname: t\nrefs:\n"
+                          "- { time: 0.5, refer: { type: Motion, joints: [ 13 ], q: [ 0.5 ] } }\n"
+                          "- { time: 1, refer: { type: Motion, joints: [ 13 ], q: [ 0.5 ] } }\n",
+                          true);
+
+    assert_int_equal(found.errors, 1); /* 57 degrees in the end */
+    assert_true(has_diagnostic(found.list, "limit", 5, 58));
+    grobo_diagnostics_free(found.list);
+}
+
+static void test_frames(void **state)
+{
+    (void)state;
+    /* A fault that lasts is said once, and again when it comes back. */
+    checked found = check("type: BodyMotion\ntargetBody: Other\ncomponents:\n"
+                          "- { type: MultiValueSeq, content: JointPosition, frameRate: 1,\n"
+                          "    frames: [\n[ 0 ],\n[ 1 ],\n[ 1 ],\n[ 0 ],\n[ 1 ] ] }\n",
+                          true);
+
+    assert_int_equal(found.errors, 2);
+    assert_true(has_diagnostic(found.list, "limit", 7, 3));
+    assert_true(has_diagnostic(found.list, "limit", 10, 3));
+    assert_true(has_diagnostic(found.list, "target-body", 0, 0));
+    assert_true(has_diagnostic(found.list, "joint-missing", 0, 0));
+    grobo_diagnostics_free(found.list);
+}
+
+static void test_warnings(void **state)
+{
+    (void)state;
+#define LINK "translation: [ 0, 0, 0 ], rotation: [ 1, 0, 0, 0, 1, 0, 0, 0, 1 ] }"
+    checked found = check(
+        TOP "- { time: 1, refer: { type: Pose, joints: [ 13, 25, 26 ], q: [ 0, 0, 0 ] } }\n"
+            "- { time: 0, refer: { type: Pose, ikLinks: [ { name: NOPE, index: 99, " LINK ",\n"
+            "  { name: L_ANKLE_R, index: 6, " LINK ", { name: WAIST, index: 0, " LINK ",\n"
+            "  { index: 6, " LINK ", { name: R_ANKLE_R, index: 6, " LINK " ] } }\n",
+        true);
+#undef LINK
+
+    assert_int_equal(found.errors, 0);
+    assert_true(has_diagnostic(found.list, "joint-unknown", 5, 67));
+    assert_true(has_diagnostic(found.list, "time-back", 6, 0));
+    assert_true(has_diagnostic(found.list, "legs-by-ik", 6, 0));
+    assert_true(has_diagnostic(found.list, "link-unknown", 6, 0));
+    assert_true(says(&found, "link 'NOPE' with index 99"));
+    assert_true(says(&found, "link 'L_ANKLE_R' with index 6"));
+    assert_int_equal(found.warnings, 5);
+    grobo_diagnostics_free(found.list);
+}
+
+static void test_empty(void **state)
+{
+    (void)state;
+    checked found = check("type: PoseSeq\nname: t\n", true);
+
+    assert_int_equal(found.errors, 0);
+    assert_true(has_diagnostic(found.list, "empty", 0, 0));
+    grobo_diagnostics_free(found.list);
+}
+
+/* The list keeps so many and counts the rest; names of several files stay apart. */
+static void test_list_is_bounded(void **state)
+{
+    (void)state;
+    grobo_diagnostics *list = NULL;
+    grobo_diagnostic said = {.file = "a", .code = "x", .message = "m", .line = 1};
+
+    assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
+    for (int i = 0; i < GROBO_DIAGNOSTICS_MAX + 10; i++) {
+        said.file = i % 2 ? "a" : "b";
+        said.line = (uint32_t)i + 1;
+        grobo_diagnostics_add(list, &said);
+    }
+    assert_int_equal(grobo_diagnostics_count(list), GROBO_DIAGNOSTICS_MAX);
+    assert_int_equal(grobo_diagnostics_total(list, GROBO_SEVERITY_ERROR),
+                     GROBO_DIAGNOSTICS_MAX + 10);
+    assert_int_equal(grobo_diagnostics_get(list, 3, &said), 0);
+    assert_string_equal(said.file, "a");
+    assert_int_equal(said.line, 4);
+    assert_int_equal(grobo_diagnostics_get(list, GROBO_DIAGNOSTICS_MAX, &said), GROBO_ERR_ARG);
+    grobo_diagnostics_add(NULL, &said);
+    assert_int_equal(grobo_diagnostics_count(NULL), 0);
+    assert_string_equal(grobo_severity_name(GROBO_SEVERITY_WARNING), "warning");
+    grobo_diagnostics_free(list);
+}
+
+/* The real motion is within limits and speeds, and says what its legs need. */
+static void test_real_motion(void **state)
+{
+    (void)state;
+    size_t size;
+    char *text = file_text(shared_file("data/choreonoid/GR001-SampleMotion1.pseq"), &size);
+    checked found = check(text, true);
+
+    assert_int_equal(found.errors, 0);
+    assert_int_equal(found.warnings, 1);
+    assert_true(has_diagnostic(found.list, "legs-by-ik", 51, 0));
+    grobo_diagnostics_free(found.list);
+    free(text);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_clean),       cmocka_unit_test(test_limits),
+        cmocka_unit_test(test_too_fast),    cmocka_unit_test(test_curve),
+        cmocka_unit_test(test_postures),    cmocka_unit_test(test_increments),
+        cmocka_unit_test(test_frames),      cmocka_unit_test(test_warnings),
+        cmocka_unit_test(test_empty),       cmocka_unit_test(test_list_is_bounded),
+        cmocka_unit_test(test_real_motion),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

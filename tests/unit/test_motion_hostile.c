@@ -1,0 +1,242 @@
+/* SPDX-License-Identifier: MIT */
+/* Files that mean harm, memory that runs out, and the odd ones of the reference material. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "motion_files.h"
+#include "motion_mem.h"
+
+/* One of everything that a key pose may have. */
+static const char pose[] = "type: PoseSeq\nname: \"a \\\"b\\\"\"\ntargetBody: GR001\n"
+                           "author: { who: me, 'two words': [ ] }\n"
+                           "refs:\n"
+                           "  - time: 0.25\n"
+                           "    maxTransitionTime: 0.125\n"
+                           "    comment: \"first: one\"\n"
+                           "    refer:\n"
+                           "      type: Pose\n"
+                           "      name: bow\n"
+                           "      joints: [ 3, 0 ]\n"
+                           "      q: [ .5, -1e-019 ]\n"
+                           "      spJoints: [ 3 ]\n"
+                           "      weight: 7\n"
+                           "      ikLinks:\n"
+                           "        - name: R_ANKLE_R\n"
+                           "          index: 6\n"
+                           "          isTouching: true\n"
+                           "          isSlave: true\n"
+                           "          contactPoints: [ [ 0, 0, 1 ] ]\n"
+                           "          partingDirection: [ 0, 0, 1 ]\n"
+                           "          translation: [ 1, 2, 3 ]\n"
+                           "          rotation: [ 1, 0, 0, 0, 1, 0, 0, 0, 1 ]\n"
+                           "      zmp: [ 0.1, 0.2, 0 ]\n"
+                           "      isZmpStationaryPoint: true\n"
+                           "  - { time: 1, refer: bow }\n";
+
+/* ---- caps and quadratic inputs ------------------------------------------------------------ */
+
+/* A source of one text and then another one for ever, up to a total. */
+typedef struct endless {
+    const char *first, *then;
+    size_t given, total;
+} endless;
+
+static int read_endless(void *ctx, void *buffer, size_t size)
+{
+    endless *text = ctx;
+    size_t head = strlen(text->first), tail = strlen(text->then);
+    char *to = buffer;
+    size_t n = 0;
+
+    for (; n < size && text->given < text->total; n++, text->given++) {
+        to[n] =
+            text->given < head ? text->first[text->given] : text->then[(text->given - head) % tail];
+    }
+    return (int)n;
+}
+
+/* Refused after little of it was read: nothing costs more than what was read. */
+static void assert_refused_early(const char *first, const char *then)
+{
+    endless text = {first, then, 0, (size_t)100 << 20};
+    grobo_motion *motion = NULL;
+    int result = grobo_motion_read(&(grobo_source){read_endless, &text}, NULL, NULL, &motion);
+
+    if (result >= 0 || text.given > (size_t)1 << 20) {
+        fail_msg("%s%s...: %s after %zu bytes", first, then, grobo_error_name(result), text.given);
+    }
+    assert_null(motion);
+}
+
+static void test_caps(void **state)
+{
+    (void)state;
+    assert_refused_early("", "[");
+    assert_refused_early("", "[\n");
+    assert_refused_early("", "{");
+    assert_refused_early("", "- ");
+    assert_refused_early("", "? ");
+    assert_refused_early("", "[ a, ");
+    assert_refused_early("a: ", "[ ");
+    assert_refused_early("", "#");
+    assert_refused_early("", "\n");
+    assert_refused_early("a: ", " ");
+    assert_refused_early("a: ", "x");
+    assert_refused_early("a: \"", "x");
+    assert_refused_early("a: |\n", " x\n");
+    assert_refused_early("", "x");
+    assert_refused_early("", "%TAG !a! b\n");
+    assert_refused_early("a: [ ", "1, ");
+    assert_refused_early("refs: [ { a: &x [ ", "1, ");
+    assert_refused_early("refs: [ { time: 0, refer: { joints: [ ", "1, ");
+    assert_refused_early("refs: [ { time: 0, refer: { ikLinks: [ ",
+                         "{ index: 1, translation: [ 0, 0, 0 ], rotation: [ 1, 0, 0, 0, 1, 0, 0, "
+                         "0, 1 ] }, ");
+}
+
+static void test_many_keys(void **state)
+{
+    (void)state;
+    char text[20000] = "type: PoseSeq\n";
+    size_t used = strlen(text);
+
+    for (int i = 0; i < 1000; i++) {
+        used += (size_t)snprintf(text + used, sizeof text - used, "key%d: %d\n", i, i);
+    }
+    assert_int_equal(read_result(text, NULL, NULL), GROBO_ERR_CAP);
+}
+
+/* Aliases of aliases: a small file that would be a large one. */
+static void test_billion_laughs(void **state)
+{
+    (void)state;
+    char text[4000] = "a0: &a0 [ x, x, x, x, x, x, x, x ]\n";
+    size_t used = strlen(text);
+
+    for (int i = 1; i < 12; i++) {
+        used += (size_t)snprintf(text + used, sizeof text - used,
+                                 "a%d: &a%d [ *a%d, *a%d, *a%d, *a%d, *a%d, *a%d, *a%d, *a%d ]\n",
+                                 i, i, i - 1, i - 1, i - 1, i - 1, i - 1, i - 1, i - 1, i - 1);
+    }
+    assert_int_equal(read_result(text, NULL, NULL), GROBO_ERR_CAP);
+}
+
+/* ---- memory ------------------------------------------------------------------------------- */
+
+static const char *const samples[] = {
+    "500 1 2\n600 3 4\n", pose,
+    "type: MotionSeq\nname:\nrefs:\n- { time: 0, refer: &a { type: Motion, joints: [ 0 ], q: [ 1 ]"
+    " } }\n- { time: 0, refer: *a }\n",
+    "type: BodyMotion\ncomponents:\n- { type: MultiValueSeq, content: JointPosition, frameRate: "
+    "10, frames: [ [ 1 ], [ 2 ] ] }\n"};
+
+/* Every allocation of every reader fails in turn. */
+static void test_allocations_fail(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof samples / sizeof samples[0]; i++) {
+        int result = GROBO_ERR_NOMEM;
+        for (size_t n = 1; result < 0; n++) {
+            motion_mem counter = {.fail_at = n};
+            grobo_mem mem = motion_mem_of(&counter);
+            grobo_diagnostics *list = NULL;
+            grobo_read_options options = {
+                .mem = &mem, .keep_positions = true, .model = &grobo_gr001_model};
+            result = grobo_diagnostics_new(&list, &mem);
+            if (result == 0) {
+                result = read_result(samples[i], &options, list);
+            }
+            grobo_diagnostics_free(list);
+            assert_true(result == GROBO_ERR_NOMEM || result == 0);
+            assert_int_equal(counter.bytes, 0);
+        }
+    }
+}
+
+/* Cut at every byte: a motion or an error with a place, and nothing left behind. */
+static void test_cut_anywhere(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof samples / sizeof samples[0]; i++) {
+        size_t size = strlen(samples[i]);
+        for (size_t cut = 0; cut < size; cut++) {
+            motion_mem counter = {0};
+            grobo_mem mem = motion_mem_of(&counter);
+            grobo_diagnostics *list = NULL;
+            grobo_read_options options = {.mem = &mem};
+            grobo_motion *motion = NULL;
+            char *exact = malloc(cut > 0 ? cut : 1);
+            memcpy(exact, samples[i], cut);
+            assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
+            int result = grobo_motion_read_memory(exact, cut, &options, list, &motion);
+            assert_true(result == 0 || grobo_diagnostics_total(list, GROBO_SEVERITY_ERROR) > 0);
+            grobo_motion_free(motion);
+            grobo_diagnostics_free(list);
+            free(exact);
+            assert_int_equal(counter.bytes, 0);
+        }
+    }
+}
+
+/* ---- the reference material --------------------------------------------------------------- */
+
+/* Every file of the list does what its last column says. */
+static void test_edge_files(void **state)
+{
+    (void)state;
+    size_t size, files = 0;
+    char *table = file_text(shared_file("data/edge/expected.tsv"), &size);
+    char *next = NULL;
+
+    assert_non_null(table);
+    for (char *line = strtok_r(table, "\n", &next); line != NULL;
+         line = strtok_r(NULL, "\n", &next)) {
+        char name[128], path[4096];
+        const char *tab = strchr(line, '\t');
+        if (line[0] == '#' || tab == NULL || strchr(tab + 1, '\t') == NULL) {
+            continue;
+        }
+        const char *expected = strchr(tab + 1, '\t') + 1;
+        (void)snprintf(name, sizeof name, "data/edge/%.*s", (int)(tab - line), line);
+        (void)snprintf(path, sizeof path, "%s", shared_file(name));
+        grobo_diagnostics *list = NULL;
+        grobo_motion *motion = NULL;
+        assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
+        int result = grobo_motion_read_file(path, NULL, list, &motion);
+        bool refuse = strncmp(expected, "refuse", 6) == 0;
+        bool warn = strstr(expected, "warn") != NULL;
+        if (result == 0 && warn) {
+            (void)grobo_motion_check(motion, &grobo_gr001_model, NULL, list);
+        }
+        grobo_diagnostic first;
+        bool placed =
+            grobo_diagnostics_get(list, 0, &first) == 0 && first.line > 0 && first.column > 0;
+        if (refuse != (result < 0) || (refuse && !placed) ||
+            (!refuse && warn != (grobo_diagnostics_total(list, GROBO_SEVERITY_WARNING) > 0))) {
+            fail_msg("%s: %s, expected: %s", path, grobo_error_name(result), expected);
+        }
+        grobo_motion_free(motion);
+        grobo_diagnostics_free(list);
+        files++;
+    }
+    assert_true(files > 50);
+    free(table);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_caps),           cmocka_unit_test(test_many_keys),
+        cmocka_unit_test(test_billion_laughs), cmocka_unit_test(test_allocations_fail),
+        cmocka_unit_test(test_cut_anywhere),   cmocka_unit_test(test_edge_files),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,442 @@
+/* SPDX-License-Identifier: MIT */
+/* Reading: what each format gives, and what is wrong with a file, where. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "motion_files.h"
+
+/* ---- .m ----------------------------------------------------------------------------------- */
+
+static void test_m(void **state)
+{
+    (void)state;
+    grobo_motion *motion =
+        motion_of("# recorded\n500  10 -20 30\r\n1000.5\t0 1.5 0\n\n\n", GROBO_FORMAT_AUTO);
+    const grobo_model *model = &grobo_gr001_model;
+    double time_s;
+
+    assert_int_equal(grobo_motion_get_kind(motion), GROBO_MOTION_POSTURES);
+    assert_int_equal(grobo_motion_size(motion), 2);
+    assert_int_equal(grobo_motion_joints(motion), 20);
+    assert_int_equal(grobo_motion_time_s(motion, 1, &time_s), 0);
+    assert_true(time_s == 1.0005);
+    assert_true(angle_of(motion, 0, grobo_model_joint_of_motor(model, 2)) ==
+                grobo_rad_from_ddeg(-20));
+    assert_true(isnan(angle_of(motion, 0, grobo_model_joint_of_motor(model, 4))));
+    assert_int_equal(grobo_motion_line(motion, 0), 2);
+    assert_int_equal(grobo_motion_line(motion, 1), 3);
+    grobo_motion_free(motion);
+}
+
+static void test_m_of_other_robots(void **state)
+{
+    (void)state;
+    grobo_read_options options = {.format = GROBO_FORMAT_M};
+    grobo_motion *motion = NULL;
+    char text[1000] = "10";
+    size_t used = 2;
+
+    for (int j = 0; j < GROBO_JOINTS_MAX; j++) {
+        used += (size_t)snprintf(text + used, sizeof text - used, " 5");
+    }
+    assert_int_equal(grobo_motion_read_memory(text, strlen(text), &options, NULL, &motion), 0);
+    assert_int_equal(grobo_motion_joints(motion), GROBO_JOINTS_MAX);
+    assert_true(angle_of(motion, 0, GROBO_JOINTS_MAX - 1) == grobo_rad_from_ddeg(5));
+    grobo_motion_free(motion);
+    (void)snprintf(text + used, sizeof text - used, " 5");
+    assert_int_equal(read_result(text, &options, NULL), GROBO_ERR_CAP);
+}
+
+static void test_m_refused(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *code;
+        unsigned line, column;
+    } bad[] = {{"500 1 2\nx 1 2\n", "number", 2, 1},
+               {"500 1 2\n600 1\n", "columns", 2, 5},
+               {"500 1 2\n600 1 2 3\n", "columns", 2, 9},
+               {"500\n", "columns", 1, 1},
+               {"500 1 2\n\n600 1 2\n", "blank-line", 2, 0},
+               {"500 1 nan\n", "number", 1, 7},
+               {"1e300 1\n", "time-range", 1, 1}};
+
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        grobo_diagnostics *list = NULL;
+        grobo_read_options options = {.format = GROBO_FORMAT_M};
+        assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
+        assert_int_equal(read_result(bad[i].text, &options, list), GROBO_ERR_SYNTAX);
+        assert_true(has_diagnostic(list, bad[i].code, bad[i].line, bad[i].column));
+        grobo_diagnostics_free(list);
+    }
+}
+
+static void test_m_line_too_long(void **state)
+{
+    (void)state;
+    size_t size = 100000;
+    char *text = malloc(size + 1);
+
+    memset(text, '1', size);
+    text[size] = '\0';
+    assert_int_equal(read_result(text, &(grobo_read_options){.format = GROBO_FORMAT_M}, NULL),
+                     GROBO_ERR_CAP);
+    free(text);
+}
+
+/* ---- key poses ---------------------------------------------------------------------------- */
+
+static const char pose[] = "type: PoseSeq\nname: \"a \\\"b\\\"\"\ntargetBody: GR001\n"
+                           "author: { who: me, 'two words': [ ] }\n"
+                           "refs:\n"
+                           "  - time: 0.25\n"
+                           "    maxTransitionTime: 0.125\n"
+                           "    comment: \"first: one\"\n"
+                           "    refer:\n"
+                           "      type: Pose\n"
+                           "      name: bow\n"
+                           "      joints: [ 3, 0 ]\n"
+                           "      q: [ .5, -1e-019 ]\n"
+                           "      spJoints: [ 3 ]\n"
+                           "      weight: 7\n"
+                           "      ikLinks:\n"
+                           "        - name: R_ANKLE_R\n"
+                           "          index: 6\n"
+                           "          isTouching: true\n"
+                           "          isSlave: true\n"
+                           "          contactPoints: [ [ 0, 0, 1 ] ]\n"
+                           "          partingDirection: [ 0, 0, 1 ]\n"
+                           "          translation: [ 1, 2, 3 ]\n"
+                           "          rotation: [ 1, 0, 0, 0, 1, 0, 0, 0, 1 ]\n"
+                           "      zmp: [ 0.1, 0.2, 0 ]\n"
+                           "      isZmpStationaryPoint: true\n"
+                           "  - { time: 1, refer: bow }\n";
+
+static void test_pose(void **state)
+{
+    (void)state;
+    grobo_motion *motion = motion_of(pose, GROBO_FORMAT_AUTO);
+    grobo_key_info info;
+    grobo_kept kept;
+    size_t count;
+
+    assert_int_equal(grobo_motion_get_kind(motion), GROBO_MOTION_KEYS);
+    assert_string_equal(grobo_motion_name(motion), "a \"b\"");
+    assert_string_equal(grobo_motion_target_body(motion), "GR001");
+    assert_int_equal(grobo_motion_joints(motion), 4);
+    assert_true(angle_of(motion, 0, 3) == 0.5 && angle_of(motion, 0, 0) == -1e-19);
+    assert_int_equal(grobo_motion_get_key(motion, 0, &info), 0);
+    assert_true(info.max_transition_s == 0.125 && info.stationary == 8);
+    assert_true(info.has_zmp && info.zmp_stationary && info.zmp_m[1] == 0.2);
+    assert_string_equal(grobo_motion_key_name(motion, 0), "bow");
+    const grobo_ik_link *link = grobo_motion_ik_links(motion, 0, &count);
+    assert_int_equal(count, 1);
+    assert_string_equal(link->name, "R_ANKLE_R");
+    assert_true(link->index == 6 && link->is_touching && link->is_slave && !link->is_base);
+    assert_true(link->has_parting_direction && link->translation_m[2] == 3.0);
+    assert_int_equal(grobo_motion_get_kept(motion, GROBO_MOTION_TOP, 0, &kept), 0);
+    assert_string_equal(kept.value, "{ who: me, \"two words\": [ ] }");
+    assert_int_equal(grobo_motion_kept_count(motion, 0), 3);
+    assert_int_equal(grobo_motion_get_kept(motion, 0, 0, &kept), 0);
+    assert_string_equal(kept.key, "comment");
+    assert_string_equal(kept.value, "\"first: one\"");
+    assert_int_equal(kept.level, GROBO_KEPT_REF);
+    /* The second ref is the same pose, without what the first ref itself says. */
+    assert_true(angle_of(motion, 1, 3) == 0.5);
+    assert_int_equal(grobo_motion_get_key(motion, 1, &info), 0);
+    assert_true(info.max_transition_s == 0 && info.stationary == 8);
+    assert_int_equal(grobo_motion_kept_count(motion, 1), 2);
+    grobo_motion_free(motion);
+}
+
+static void test_positions(void **state)
+{
+    (void)state;
+    grobo_read_options options = {.keep_positions = true};
+    grobo_motion *motion = NULL;
+    uint32_t line = 0, column = 0;
+
+    assert_int_equal(grobo_motion_read_memory(pose, strlen(pose), &options, NULL, &motion), 0);
+    assert_true(grobo_motion_position(motion, 0, 3, &line, &column));
+    assert_true(line == 13 && column == 12);
+    assert_false(grobo_motion_position(motion, 0, 1, &line, &column));
+    assert_false(grobo_motion_position(motion, 9, 0, &line, &column));
+    assert_int_equal(grobo_motion_line(motion, 0), 6);
+    grobo_motion_free(motion);
+}
+
+/* Each key that must be there is missed, each wrong value named, with its place. */
+#define TOP "type: PoseSeq\nname: t\nrefs:\n"
+static const struct bad_file {
+    const char *text;
+    int result;
+    const char *code;
+    unsigned line, column;
+} bad_poses[] = {
+    {TOP "- { refer: { type: Pose } }", GROBO_ERR_SYNTAX, "key-missing", 4, 3},
+    {TOP "- { time: 0 }", GROBO_ERR_SYNTAX, "key-missing", 4, 3},
+    {TOP "- { time: 0, refer: { name: a } }", GROBO_ERR_SYNTAX, "key-missing", 4, 21},
+    {TOP "- { time: 0, refer: { type: Pose, q: [ 1 ] } }", GROBO_ERR_SYNTAX, "key-missing", 4, 21},
+    {TOP "- { time: [ 0 ], refer: { type: Pose } }", GROBO_ERR_SYNTAX, "type", 4, 11},
+    {TOP "- { time: 1e10, refer: { type: Pose } }", GROBO_ERR_SYNTAX, "time-range", 4, 11},
+    {TOP "- { time: .inf, refer: { type: Pose } }", GROBO_ERR_NAN, "not-finite", 4, 11},
+    {TOP "- { time: 0, refer: [ ] }", GROBO_ERR_SYNTAX, "type", 4, 21},
+    {TOP "- { time: 0, refer: unknown }", GROBO_ERR_SYNTAX, "refer", 4, 21},
+    {TOP "- 5", GROBO_ERR_SYNTAX, "type", 4, 3},
+    {TOP "- { time: 0, refer: { type: Pose, joints: 5, q: [ ] } }", GROBO_ERR_SYNTAX, "type", 4,
+     43},
+    {TOP "- { time: 0, refer: { type: Pose, joints: [ 0, 0 ], q: [ 1, 2 ] } }", GROBO_ERR_SYNTAX,
+     "joint-twice", 4, 48},
+    {TOP "- { time: 0, refer: { type: Pose, joints: [ 64 ], q: [ 1 ] } }", GROBO_ERR_CAP, "joints",
+     4, 45},
+    {TOP "- { time: 0, refer: { type: Pose, joints: [ -1 ], q: [ 1 ] } }", GROBO_ERR_SYNTAX, "type",
+     4, 45},
+    {TOP "- { time: 0, refer: { type: Pose, ikLinks: [ { name: a } ] } }", GROBO_ERR_SYNTAX,
+     "key-missing", 4, 46},
+    {TOP "- { time: 0, refer: { type: Pose, isZmpStationaryPoint: 3 } }", GROBO_ERR_SYNTAX, "type",
+     4, 57},
+    {TOP "- { time: 0, refer: { type: Pose, a: 1, a: 2 } }", GROBO_ERR_SYNTAX, "key-twice", 4, 41},
+    {"type: Other\n", GROBO_ERR_TYPE, "top-type", 1, 7},
+    {"type: PoseSeq\ncomponents: [ ]\n", GROBO_ERR_TYPE, "top-type", 1, 7},
+    {"type: [ PoseSeq", GROBO_ERR_SYNTAX, "type", 1, 7},
+    {"? [ a ]\n: b\n", GROBO_ERR_SYNTAX, "key", 1, 3},
+    {TOP "- *a", GROBO_ERR_SYNTAX, "alias", 4, 3},
+    {TOP "- &a { time: 0, x: *a }", GROBO_ERR_SYNTAX, "alias", 4, 20},
+    {TOP "- { <<: 5 }", GROBO_ERR_SYNTAX, "merge", 4, 9},
+    {"a\0b", GROBO_ERR_TYPE, "top-type", 1, 1},
+    {"\xFF\xFE", GROBO_ERR_SYNTAX, "empty", 1, 1},
+    {"name: \xC3\x28", GROBO_ERR_SYNTAX, "encoding", 1, 0},
+    {TOP "- { time: 0, refer: { type: Pose, joints: [ 1", GROBO_ERR_SYNTAX, "yaml", 5, 1},
+};
+#undef TOP
+
+static void test_pose_refused(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof bad_poses / sizeof bad_poses[0]; i++) {
+        grobo_diagnostics *list = NULL;
+        assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
+        int result = read_result(bad_poses[i].text, NULL, list);
+        if (result != bad_poses[i].result ||
+            !has_diagnostic(list, bad_poses[i].code, bad_poses[i].line, bad_poses[i].column)) {
+            grobo_diagnostic found = {.code = "nothing", .message = ""};
+            (void)grobo_diagnostics_get(list, 0, &found);
+            fail_msg("%s\ngives %s, %s at %u:%u: %s", bad_poses[i].text, grobo_error_name(result),
+                     found.code, found.line, found.column, found.message);
+        }
+        grobo_diagnostics_free(list);
+    }
+}
+
+/* With keep_going one run says it all. */
+static void test_keep_going(void **state)
+{
+    (void)state;
+    static const char text[] =
+        "type: PoseSeq\nname: t\nrefs:\n"
+        "- { time: x, refer: { type: Pose, joints: [ 0, 1 ], q: [ y, z ] } }\n"
+        "- { time: 0 }\n"
+        "- { time: 0, refer: { type: Pose, joints: [ 0 ], q: [ 1, 2 ] } }\n"
+        "- 7\n";
+    grobo_diagnostics *list = NULL;
+
+    assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
+    assert_int_equal(read_result(text, &(grobo_read_options){.keep_going = true}, list),
+                     GROBO_ERR_SYNTAX);
+    assert_int_equal(grobo_diagnostics_total(list, GROBO_SEVERITY_ERROR), 6);
+    assert_true(has_diagnostic(list, "type", 4, 11) && has_diagnostic(list, "type", 4, 58) &&
+                has_diagnostic(list, "type", 4, 61) && has_diagnostic(list, "key-missing", 5, 3) &&
+                has_diagnostic(list, "q-length", 6, 53) && has_diagnostic(list, "type", 7, 3));
+    grobo_diagnostics_clear(list);
+    assert_int_equal(read_result(text, NULL, list), GROBO_ERR_SYNTAX);
+    assert_int_equal(grobo_diagnostics_count(list), 1);
+    grobo_diagnostics_free(list);
+}
+
+static void test_merge_and_alias(void **state)
+{
+    (void)state;
+    grobo_motion *motion =
+        motion_of("type: PoseSeq\nname: t\nrefs:\n"
+                  "  - { time: 0, refer: &a { type: Pose, joints: [ 0 ], q: [ 1 ], mine: &s 5 } }\n"
+                  "  - { time: 1, refer: { <<: *a, q: [ 2 ], other: *s } }\n"
+                  "  - { time: 2, refer: &b { q: [ 3 ], <<: [ *a ] } }\n"
+                  "  - { time: 3, refer: { <<: *b, joints: [ 1 ] } }\n",
+                  GROBO_FORMAT_AUTO);
+    grobo_kept kept;
+
+    assert_true(angle_of(motion, 1, 0) == 2.0);
+    assert_true(angle_of(motion, 2, 0) == 3.0);
+    assert_true(angle_of(motion, 3, 1) == 3.0 && isnan(angle_of(motion, 3, 0)));
+    assert_int_equal(grobo_motion_get_kept(motion, 1, 0, &kept), 0);
+    assert_string_equal(kept.key, "other");
+    assert_string_equal(kept.value, "5");
+    assert_int_equal(grobo_motion_get_kept(motion, 3, 0, &kept), 0);
+    assert_string_equal(kept.key, "mine");
+    grobo_motion_free(motion);
+}
+
+static void test_type_behind_refs(void **state)
+{
+    (void)state;
+    static const char text[] =
+        "refs: [ { time: 0, refer: { type: Motion, joints: [ 0 ], q: [ 1 ] } } ]\n";
+    char whole[200];
+    grobo_motion *motion = motion_of(text, GROBO_FORMAT_AUTO);
+
+    assert_int_equal(grobo_motion_get_kind(motion), GROBO_MOTION_STEPS);
+    grobo_motion_free(motion);
+    (void)snprintf(whole, sizeof whole, "%stype: MotionSeq\n", text);
+    motion = motion_of(whole, GROBO_FORMAT_MSEQ);
+    assert_int_equal(grobo_motion_size(motion), 1);
+    grobo_motion_free(motion);
+    (void)snprintf(whole, sizeof whole, "%stype: PoseSeq\n", text);
+    assert_int_equal(read_result(whole, NULL, NULL), GROBO_ERR_TYPE);
+}
+
+/* ---- body motion -------------------------------------------------------------------------- */
+
+static void test_body_motion_keys_behind(void **state)
+{
+    (void)state;
+    grobo_motion *motion =
+        motion_of("components:\n"
+                  "- { frames: [ [ 0, 1, 2 ], [ 0.5, 3, 4 ] ], hasFrameTime: true, numParts: 2,\n"
+                  "    content: JointPosition, type: MultiValueSeq }\n"
+                  "type: BodyMotion\nframeRate: 20\n",
+                  GROBO_FORMAT_AUTO);
+    double time_s;
+
+    assert_int_equal(grobo_motion_joints(motion), 2);
+    assert_true(grobo_motion_frame_rate(motion) == 20.0);
+    assert_true(grobo_motion_has_frame_times(motion));
+    assert_int_equal(grobo_motion_time_s(motion, 1, &time_s), 0);
+    assert_true(time_s == 0.5 && angle_of(motion, 1, 0) == 3.0 && angle_of(motion, 1, 1) == 4.0);
+    grobo_motion_free(motion);
+}
+
+static void test_body_motion_refused(void **state)
+{
+    (void)state;
+#define PART "type: BodyMotion\nframeRate: 10\ncomponents:\n- { type: MultiValueSeq, "
+    static const struct {
+        const char *text, *code;
+        unsigned line, column;
+    } bad[] = {
+        {PART "content: JointPosition, frames: [ [ 1 ], 5 ] }", "type", 4, 67},
+        {PART "content: JointPosition, frames: [ [ 1 ], [ 1, 2 ] ] }", "frame-length", 4, 67},
+        {PART "content: JointPosition, frames: [ [ ] ] }", "frame-length", 4, 60},
+        {PART "content: JointPosition, frames: [ [ [ 1 ] ] ] }", "type", 4, 62},
+        {PART "content: JointPosition }", "no-frames", 4, 3},
+        {PART "content: JointPosition, numParts: 2, frames: [ [ 1 ] ] }", "frame-length", 4, 73},
+        {PART "content: Other, frames: [ [ 1 ] ] }", "no-joints", 1, 7},
+        {PART "content: JointPosition, frameRate: x, frames: [ [ 1 ] ] }", "type", 4, 61},
+        {PART "content: JointPosition, frameRate: -1, frames: [ [ 1 ] ] }", "frame-rate", 4, 61},
+    };
+#undef PART
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        grobo_diagnostics *list = NULL;
+        assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
+        int result = read_result(bad[i].text, NULL, list);
+        if (result != GROBO_ERR_SYNTAX ||
+            !has_diagnostic(list, bad[i].code, bad[i].line, bad[i].column)) {
+            grobo_diagnostic found = {.code = "nothing", .message = ""};
+            (void)grobo_diagnostics_get(list, 0, &found);
+            fail_msg("%s\ngives %s, %s at %u:%u: %s", bad[i].text, grobo_error_name(result),
+                     found.code, found.line, found.column, found.message);
+        }
+        grobo_diagnostics_free(list);
+    }
+}
+
+/* ---- formats ------------------------------------------------------------------------------ */
+
+static void test_format_by_content_and_name(void **state)
+{
+    (void)state;
+    static const char key_poses[] = "type: PoseSeq\nname: t\n";
+    grobo_diagnostics *list = NULL;
+
+    assert_int_equal(grobo_motion_format_of_path("a/b.PSEQ"), GROBO_FORMAT_PSEQ);
+    assert_int_equal(grobo_motion_format_of_path("walk.seq"), GROBO_FORMAT_YAML);
+    assert_int_equal(grobo_motion_format_of_path("m"), GROBO_FORMAT_AUTO);
+    assert_int_equal(grobo_motion_format_of_path("x.auto"), GROBO_FORMAT_AUTO);
+    assert_int_equal(grobo_motion_format_find("nope"), GROBO_ERR_NOTFOUND);
+    assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
+    assert_int_equal(read_result(key_poses, &(grobo_read_options){.name = "a.yaml"}, list), 0);
+    assert_true(has_diagnostic(list, "format", 1, 7));
+    assert_int_equal(
+        read_result(key_poses, &(grobo_read_options){.format = GROBO_FORMAT_YAML}, list),
+        GROBO_ERR_TYPE);
+    assert_int_equal(read_result("100 1 2\n", &(grobo_read_options){.name = "a.txt"}, list), 0);
+    assert_int_equal(read_result("", &(grobo_read_options){.name = "a.m"}, list), 0);
+    assert_int_equal(read_result("", NULL, list), GROBO_ERR_SYNTAX);
+    grobo_diagnostics_free(list);
+}
+
+static void test_files_refused(void **state)
+{
+    (void)state;
+    grobo_motion *motion = NULL;
+
+    assert_int_equal(grobo_motion_read_file("/no/such.pseq", NULL, NULL, &motion), GROBO_ERR_NOENT);
+    assert_int_equal(grobo_motion_read_file("/", NULL, NULL, &motion), GROBO_ERR_ISDIR);
+    assert_null(motion);
+}
+
+static int failing_read(void *ctx, void *buffer, size_t size)
+{
+    int *left = ctx;
+
+    (void)size;
+    if ((*left)-- == 0) {
+        return GROBO_ERR_UNPLUGGED;
+    }
+    memset(buffer, '#', 1);
+    return 1;
+}
+
+static void test_source_fails(void **state)
+{
+    (void)state;
+    for (int format = GROBO_FORMAT_AUTO; format <= GROBO_FORMAT_YAML; format++) {
+        int left = 3;
+        grobo_motion *motion = NULL;
+        grobo_read_options options = {.format = (grobo_motion_format)format};
+        assert_int_equal(
+            grobo_motion_read(&(grobo_source){failing_read, &left}, &options, NULL, &motion),
+            GROBO_ERR_UNPLUGGED);
+        assert_null(motion);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_m),
+        cmocka_unit_test(test_m_of_other_robots),
+        cmocka_unit_test(test_m_refused),
+        cmocka_unit_test(test_m_line_too_long),
+        cmocka_unit_test(test_pose),
+        cmocka_unit_test(test_positions),
+        cmocka_unit_test(test_pose_refused),
+        cmocka_unit_test(test_keep_going),
+        cmocka_unit_test(test_merge_and_alias),
+        cmocka_unit_test(test_type_behind_refs),
+        cmocka_unit_test(test_body_motion_keys_behind),
+        cmocka_unit_test(test_body_motion_refused),
+        cmocka_unit_test(test_format_by_content_and_name),
+        cmocka_unit_test(test_files_refused),
+        cmocka_unit_test(test_source_fails),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,411 @@
+/* SPDX-License-Identifier: MIT */
+/* Editing and comparing whole motions. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "motion_files.h"
+#include "motion_mem.h"
+
+static const char keys[] =
+    "type: PoseSeq\nname: t\nrefs:\n"
+    "- { time: 0, refer: { type: Pose, joints: [ 0, 1 ], q: [ 0, 0.5 ], zmp: [ 0, 0.25, 0 ] } }\n"
+    "- { time: 1, refer: { type: Pose, joints: [ 0 ], q: [ 1 ], spJoints: [ 0 ] } }\n"
+    "- { time: 4, maxTransitionTime: 1, refer: { type: Pose, joints: [ 0, 1 ], q: [ 2, 0 ],"
+    " zmp: [ 0, 0, 0 ] } }\n";
+
+static grobo_motion *frames_of(double rate_hz, int count, double first_rad)
+{
+    grobo_motion *motion = NULL;
+    grobo_posture posture;
+
+    assert_int_equal(grobo_motion_new(&motion, GROBO_MOTION_FRAMES, 1, NULL), 0);
+    assert_int_equal(grobo_motion_set_frame_rate(motion, rate_hz), 0);
+    (void)grobo_posture_init(&posture, 1);
+    for (int i = 0; i < count; i++) {
+        (void)grobo_posture_set_rad(&posture, 0, first_rad + i);
+        assert_int_equal(grobo_motion_append(motion, &posture), 0);
+    }
+    return motion;
+}
+
+static double time_of(const grobo_motion *motion, size_t n)
+{
+    double time_s = NAN;
+
+    assert_int_equal(grobo_motion_time_s(motion, n, &time_s), 0);
+    return time_s;
+}
+
+static double sample(const grobo_motion *motion, double t_s, int joint)
+{
+    grobo_clip clip;
+    grobo_posture posture;
+    double angle_rad = NAN;
+
+    assert_int_equal(grobo_motion_clip(motion, NULL, &clip), 0);
+    assert_int_equal(clip.sample(clip.ctx, llround(t_s * 1e6), &posture), 0);
+    (void)grobo_posture_get_rad(&posture, joint, &angle_rad);
+    grobo_motion_clip_free(&clip);
+    return angle_rad;
+}
+
+static void test_equal_and_near(void **state)
+{
+    (void)state;
+    grobo_motion *a = motion_of(keys, GROBO_FORMAT_AUTO), *b = NULL;
+    grobo_posture posture;
+
+    assert_int_equal(grobo_motion_dup(a, &b), 0);
+    assert_true(grobo_motion_equal(a, b));
+    assert_int_equal(grobo_motion_get(b, 1, &posture), 0);
+    posture.angle_rad[0] += 0.01;
+    assert_int_equal(grobo_motion_set(b, 1, &posture), 0);
+    assert_false(grobo_motion_equal(a, b));
+    assert_true(grobo_motion_near(a, b, 0.011, 1e-6));
+    assert_false(grobo_motion_near(a, b, 0.009, 1e-6));
+    assert_int_equal(grobo_motion_set_time_s(b, 2, 4.1), 0);
+    assert_false(grobo_motion_near(a, b, 0.011, 0.05));
+    assert_true(grobo_motion_near(a, b, 0.011, 0.2));
+    assert_int_equal(grobo_motion_delete(b, 2), 0);
+    assert_false(grobo_motion_near(a, b, 1, 10));
+    grobo_motion_free(a);
+    grobo_motion_free(b);
+}
+
+static void test_append_motion(void **state)
+{
+    (void)state;
+    grobo_motion *motion = motion_of(keys, GROBO_FORMAT_AUTO);
+    grobo_motion *other = motion_of("100 1 2\n", GROBO_FORMAT_M);
+
+    assert_int_equal(grobo_motion_append_motion(motion, other), GROBO_ERR_TYPE);
+    assert_int_equal(grobo_motion_append_motion(motion, motion), 0);
+    assert_int_equal(grobo_motion_size(motion), 6);
+    assert_true(time_of(motion, 5) == 8.0);
+    assert_int_equal(grobo_motion_step_us(motion, 3), 0);
+    assert_true(angle_of(motion, 5, 0) == 2.0);
+    grobo_motion_free(motion);
+    grobo_motion_free(other);
+}
+
+static void test_concat_keys(void **state)
+{
+    (void)state;
+    grobo_motion *motion = motion_of(keys, GROBO_FORMAT_AUTO);
+    grobo_motion *other = NULL;
+
+    assert_int_equal(grobo_motion_dup(motion, &other), 0);
+    assert_int_equal(grobo_motion_concat(motion, other, -1), GROBO_ERR_ARG);
+    assert_int_equal(grobo_motion_concat(motion, other, 500000), 0);
+    assert_int_equal(grobo_motion_size(motion), 6);
+    assert_true(time_of(motion, 3) == 4.5);
+    assert_true(time_of(motion, 5) == 8.5);
+    grobo_motion_free(motion);
+    grobo_motion_free(other);
+}
+
+static void test_concat_frames(void **state)
+{
+    (void)state;
+    grobo_motion *motion = frames_of(10, 2, 0), *other = frames_of(10, 2, 5);
+    grobo_motion *slow = frames_of(5, 2, 5);
+
+    assert_int_equal(grobo_motion_concat(motion, slow, 0), GROBO_ERR_TYPE);
+    assert_int_equal(grobo_motion_concat(motion, other, 400000), 0);
+    /* 0 1 | three between, eased | 5 6 */
+    assert_int_equal(grobo_motion_size(motion), 7);
+    assert_true(fabs(angle_of(motion, 3, 0) - 3) < 1e-12);
+    assert_true(fabs(angle_of(motion, 2, 0) - (1 + 4 * 0.15625)) < 1e-12);
+    assert_true(angle_of(motion, 5, 0) == 5.0);
+    assert_true(time_of(motion, 5) == 0.5);
+    assert_int_equal(grobo_motion_concat(other, other, 0), 0);
+    assert_int_equal(grobo_motion_size(other), 4);
+    grobo_motion_free(motion);
+    grobo_motion_free(other);
+    grobo_motion_free(slow);
+}
+
+static void test_concat_postures(void **state)
+{
+    (void)state;
+    grobo_motion *motion = motion_of("500 0\n900 1\n", GROBO_FORMAT_M);
+    grobo_motion *other = motion_of("700 2\n1000 3\n", GROBO_FORMAT_M);
+
+    assert_int_equal(grobo_motion_concat(motion, other, 250000), 0);
+    assert_int_equal(grobo_motion_step_us(motion, 2), 250000);
+    assert_int_equal(grobo_motion_step_us(motion, 3), 300000);
+    grobo_motion_free(motion);
+    grobo_motion_free(other);
+}
+
+static void test_mirror(void **state)
+{
+    (void)state;
+    grobo_motion *motion = NULL, *back = NULL;
+    grobo_posture posture;
+    grobo_ik_link links[2] = {{.index = 6,
+                               .name = "R_ANKLE_R",
+                               .translation_m = {0.1, -0.2, 0.3},
+                               .rotation = {1, 2, 3, 4, 5, 6, 7, 8, 9}},
+                              {.index = 0, .name = "WAIST", .is_base = true}};
+    int right = grobo_model_find_joint(&grobo_gr001_model, "R_KNEE_P", 8);
+    int left = grobo_model_find_joint(&grobo_gr001_model, "L_KNEE_P", 8);
+    int neck = grobo_model_find_joint(&grobo_gr001_model, "NECK_Y", 6);
+    size_t count;
+
+    assert_int_equal(grobo_motion_new(&motion, GROBO_MOTION_KEYS, 20, NULL), 0);
+    (void)grobo_posture_init(&posture, 20);
+    (void)grobo_posture_set_rad(&posture, right, -0.5);
+    (void)grobo_posture_set_rad(&posture, neck, 0.25);
+    assert_int_equal(grobo_motion_append(motion, &posture), 0);
+    assert_int_equal(grobo_motion_set_ik_links(motion, 0, links, 2), 0);
+    assert_int_equal(
+        grobo_motion_set_key(motion, 0, &(grobo_key_info){.stationary = GROBO_JOINT_BIT(right)}),
+        0);
+    assert_int_equal(grobo_motion_dup(motion, &back), 0);
+    assert_int_equal(grobo_motion_mirror(motion, &grobo_gr001_model), 0);
+    assert_true(angle_of(motion, 0, left) == 0.5);
+    assert_true(isnan(angle_of(motion, 0, right)));
+    assert_true(angle_of(motion, 0, neck) == -0.25);
+    const grobo_ik_link *mirrored = grobo_motion_ik_links(motion, 0, &count);
+    static const double turned[9] = {1, -2, 3, -4, 5, -6, 7, -8, 9};
+    assert_string_equal(mirrored[0].name, "L_ANKLE_R");
+    assert_int_equal(mirrored[0].index, 12);
+    assert_true(mirrored[0].translation_m[1] == 0.2);
+    assert_memory_equal(mirrored[0].rotation, turned, sizeof turned);
+    assert_string_equal(mirrored[1].name, "WAIST");
+    assert_int_equal(mirrored[1].index, 0);
+    grobo_key_info info;
+    assert_int_equal(grobo_motion_get_key(motion, 0, &info), 0);
+    assert_true(info.stationary == GROBO_JOINT_BIT(left));
+    assert_int_equal(grobo_motion_mirror(motion, &grobo_gr001_model), 0);
+    assert_true(grobo_motion_equal(motion, back));
+    /* A side that no table knows. */
+    memcpy(links[0].name, "R_TOE", 6);
+    assert_int_equal(grobo_motion_set_ik_links(motion, 0, links, 2), 0);
+    assert_int_equal(grobo_motion_mirror(motion, &grobo_gr001_model), GROBO_ERR_NOTFOUND);
+    assert_true(angle_of(motion, 0, right) == -0.5); /* untouched */
+    grobo_motion_free(motion);
+    grobo_motion_free(back);
+}
+
+/* Backwards the same curve is run, waits included, and twice backwards is the same again. */
+static void test_reverse_keys(void **state)
+{
+    (void)state;
+    grobo_motion *motion = motion_of(keys, GROBO_FORMAT_AUTO), *forward = NULL;
+    grobo_key_info info;
+
+    assert_int_equal(grobo_motion_dup(motion, &forward), 0);
+    assert_int_equal(grobo_motion_reverse(motion), 0);
+    assert_int_equal(grobo_motion_size(motion), 4); /* and the wait */
+    for (int i = 0; i <= 40; i++) {
+        for (int j = 0; j < 2; j++) {
+            assert_true(fabs(sample(forward, 0.1 * i, j) - sample(motion, 4 - 0.1 * i, j)) < 1e-9);
+        }
+    }
+    assert_int_equal(grobo_motion_get_key(motion, 1, &info), 0);
+    assert_true(info.has_zmp && info.zmp_stationary && info.zmp_m[1] == 0.25);
+    assert_int_equal(grobo_motion_reverse(motion), 0);
+    for (int i = 0; i <= 40; i++) {
+        assert_true(fabs(sample(forward, 0.1 * i, 1) - sample(motion, 0.1 * i, 1)) < 1e-9);
+    }
+    grobo_motion_free(motion);
+    grobo_motion_free(forward);
+}
+
+static void test_reverse_keys_with_links(void **state)
+{
+    (void)state;
+    grobo_motion *motion = motion_of(keys, GROBO_FORMAT_AUTO);
+    grobo_ik_link link = {.index = 6, .name = "R_ANKLE_R", .translation_m = {1, 2, 3}};
+    size_t count;
+
+    assert_int_equal(grobo_motion_set_ik_links(motion, 0, &link, 1), 0);
+    link.translation_m[0] = 9;
+    assert_int_equal(grobo_motion_set_ik_links(motion, 2, &link, 1), 0);
+    assert_int_equal(grobo_motion_reverse(motion), 0);
+    const grobo_ik_link *held = grobo_motion_ik_links(motion, 1, &count);
+    assert_int_equal(count, 1);
+    assert_true(held->translation_m[0] == 1.0 && held->is_stationary);
+    held = grobo_motion_ik_links(motion, 3, &count);
+    assert_true(count == 1 && held->is_stationary);
+    grobo_motion_free(motion);
+}
+
+static void test_reverse_postures_and_steps(void **state)
+{
+    (void)state;
+    grobo_motion *motion = motion_of("500 0\n900 1\n900 2\n1500 3\n", GROBO_FORMAT_M);
+    static const int64_t steps_us[] = {500000, 600000, 0, 400000};
+    int joint = grobo_model_joint_of_motor(&grobo_gr001_model, 1);
+
+    assert_int_equal(grobo_motion_reverse(motion), 0);
+    for (size_t n = 0; n < 4; n++) {
+        assert_int_equal(grobo_motion_step_us(motion, n), steps_us[n]);
+        assert_true(fabs(angle_of(motion, n, joint) - (3 - (double)n) * atan(1) / 450) < 1e-15);
+    }
+    grobo_motion_free(motion);
+    motion = motion_of("type: MotionSeq\nname: t\nrefs:\n"
+                       "- { time: 0.5, refer: { type: Motion, joints: [ 0 ], q: [ 1 ] } }\n"
+                       "- { time: 0.75, refer: { type: Motion, joints: [ 0 ], q: [ 3 ] } }\n",
+                       GROBO_FORMAT_AUTO);
+    assert_int_equal(grobo_motion_reverse(motion), 0);
+    assert_true(angle_of(motion, 0, 0) == -3.0 && angle_of(motion, 1, 0) == -1.0);
+    assert_int_equal(grobo_motion_step_us(motion, 0), 250000);
+    assert_int_equal(grobo_motion_step_us(motion, 1), 500000);
+    grobo_motion_free(motion);
+    motion = frames_of(10, 3, 0);
+    assert_int_equal(grobo_motion_reverse(motion), 0);
+    assert_true(angle_of(motion, 0, 0) == 2.0 && time_of(motion, 2) == 0.2);
+    grobo_motion_free(motion);
+}
+
+static void test_scale_time(void **state)
+{
+    (void)state;
+    grobo_motion *motion = motion_of(keys, GROBO_FORMAT_AUTO);
+    grobo_key_info info;
+
+    assert_int_equal(grobo_motion_scale_time(motion, 0), GROBO_ERR_ARG);
+    assert_int_equal(grobo_motion_scale_time(motion, NAN), GROBO_ERR_ARG);
+    assert_int_equal(grobo_motion_scale_time(motion, 1e9), GROBO_ERR_ARG);
+    assert_int_equal(grobo_motion_scale_time(motion, 2), 0);
+    assert_true(time_of(motion, 2) == 8.0);
+    assert_int_equal(grobo_motion_get_key(motion, 2, &info), 0);
+    assert_true(info.max_transition_s == 2.0);
+    grobo_motion_free(motion);
+
+    motion = motion_of("500 0\n900 1\n400 2\n9000 3\n", GROBO_FORMAT_M);
+    assert_int_equal(grobo_motion_scale_time(motion, 2), GROBO_ERR_CAP);
+    assert_int_equal(grobo_motion_scale_time(motion, 0.5), 0);
+    assert_int_equal(grobo_motion_step_us(motion, 0), 250000);
+    assert_int_equal(grobo_motion_step_us(motion, 1), 200000);
+    assert_int_equal(grobo_motion_step_us(motion, 2), 0);
+    assert_int_equal(grobo_motion_step_us(motion, 3), 4300000);
+    grobo_motion_free(motion);
+
+    motion = frames_of(10, 3, 0);
+    assert_int_equal(grobo_motion_scale_time(motion, 4), 0);
+    assert_true(grobo_motion_frame_rate(motion) == 2.5);
+    grobo_motion_free(motion);
+}
+
+static void test_crop_keys(void **state)
+{
+    (void)state;
+    grobo_motion *motion = motion_of(keys, GROBO_FORMAT_AUTO), *whole = NULL;
+
+    assert_int_equal(grobo_motion_dup(motion, &whole), 0);
+    assert_int_equal(grobo_motion_crop(motion, -1, 5), GROBO_ERR_ARG);
+    assert_int_equal(grobo_motion_crop(motion, 5, 4), GROBO_ERR_ARG);
+    assert_int_equal(grobo_motion_crop(motion, 500000, 2000000), 0);
+    assert_int_equal(grobo_motion_size(motion), 3);
+    assert_true(time_of(motion, 1) == 0.5 && time_of(motion, 2) == 1.5);
+    assert_true(fabs(angle_of(motion, 0, 0) - sample(whole, 0.5, 0)) < 1e-12);
+    assert_true(angle_of(motion, 1, 0) == 1.0 && angle_of(motion, 2, 0) == 1.0);
+    /* All of it; behind it; a single moment. */
+    grobo_motion_free(motion);
+    assert_int_equal(grobo_motion_dup(whole, &motion), 0);
+    assert_int_equal(grobo_motion_crop(motion, 0, 99000000), 0);
+    assert_true(grobo_motion_equal(motion, whole));
+    assert_int_equal(grobo_motion_crop(motion, 4000000, 4000000), 0);
+    assert_int_equal(grobo_motion_size(motion), 1);
+    assert_true(angle_of(motion, 0, 0) == 2.0);
+    assert_int_equal(grobo_motion_crop(whole, 50000000, 60000000), 0);
+    assert_int_equal(grobo_motion_size(whole), 1);
+    assert_true(time_of(whole, 0) == 0.0 && angle_of(whole, 0, 0) == 2.0);
+    grobo_motion_free(motion);
+    grobo_motion_free(whole);
+}
+
+static void test_crop_steps_and_frames(void **state)
+{
+    (void)state;
+    grobo_motion *motion =
+        motion_of("type: MotionSeq\nname: t\nrefs:\n"
+                  "- { time: 1, refer: { type: Motion, joints: [ 0 ], q: [ 1 ] } }\n"
+                  "- { time: 2, refer: { type: Motion, joints: [ 0 ], q: [ 4 ] } }\n",
+                  GROBO_FORMAT_AUTO);
+
+    assert_int_equal(grobo_motion_crop(motion, 500000, 1250000), 0);
+    assert_int_equal(grobo_motion_size(motion), 2);
+    assert_true(angle_of(motion, 0, 0) == 0.5 && angle_of(motion, 1, 0) == 1.0);
+    assert_true(time_of(motion, 0) == 0.5 && time_of(motion, 1) == 0.75);
+    grobo_motion_free(motion);
+    motion = frames_of(30, 10, 0);
+    assert_int_equal(grobo_motion_crop(motion, 100000, 200000), 0);
+    assert_int_equal(grobo_motion_size(motion), 4);
+    assert_true(angle_of(motion, 0, 0) == 3.0 && angle_of(motion, 3, 0) == 6.0);
+    grobo_motion_free(motion);
+}
+
+/* Whatever fails for want of memory leaves the motion as it was. */
+static int edit(grobo_motion *motion, int what)
+{
+    switch (what) {
+    case 0:
+        return grobo_motion_reverse(motion);
+    case 1:
+        return grobo_motion_crop(motion, 500000, 3000000);
+    case 2:
+        return grobo_motion_concat(motion, motion, 100000);
+    case 3:
+        return grobo_motion_append_motion(motion, motion);
+    default:
+        return grobo_motion_mirror(motion, &grobo_gr001_model);
+    }
+}
+
+static void test_allocations_fail(void **state)
+{
+    (void)state;
+    for (int what = 0; what < 5; what++) {
+        int result = GROBO_ERR_NOMEM;
+        for (size_t n = 1; result < 0; n++) {
+            motion_mem counter = {0};
+            grobo_mem mem = motion_mem_of(&counter);
+            grobo_read_options options = {.mem = &mem};
+            grobo_motion *motion = NULL, *before = NULL;
+            assert_int_equal(grobo_motion_read_memory(keys, strlen(keys), &options, NULL, &motion),
+                             0);
+            assert_int_equal(grobo_motion_set_joints(motion, 20), 20);
+            assert_int_equal(grobo_motion_dup(motion, &before), 0);
+            counter.fail_at = counter.calls + n;
+            result = edit(motion, what);
+            assert_true(result == 0 || result == GROBO_ERR_NOMEM);
+            assert_true(result == 0 || grobo_motion_equal(motion, before));
+            grobo_motion_free(motion);
+            grobo_motion_free(before);
+            assert_int_equal(counter.bytes, 0);
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_equal_and_near),
+        cmocka_unit_test(test_append_motion),
+        cmocka_unit_test(test_concat_keys),
+        cmocka_unit_test(test_concat_frames),
+        cmocka_unit_test(test_concat_postures),
+        cmocka_unit_test(test_mirror),
+        cmocka_unit_test(test_reverse_keys),
+        cmocka_unit_test(test_reverse_keys_with_links),
+        cmocka_unit_test(test_reverse_postures_and_steps),
+        cmocka_unit_test(test_scale_time),
+        cmocka_unit_test(test_crop_keys),
+        cmocka_unit_test(test_crop_steps_and_frames),
+        cmocka_unit_test(test_allocations_fail),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,418 @@
+/* SPDX-License-Identifier: MIT */
+/* Writing and converting motions. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "motion_files.h"
+#include "motion_mem.h"
+
+/* ---- layout ------------------------------------------------------------------------------- */
+
+/* What Choreonoid writes, to the blank at the end of a line. */
+static const char pose_file[] =
+    "# Body pose sequence format version 1.0 defined by cnoid-Robotics\n"
+    "\n"
+    "type: PoseSeq\n"
+    "name: \"a \\\"b\\\" \\x07 \\u2028\"\n"
+    "targetBody: \"GR001\"\n"
+    "author: { who: me }\n"
+    "refs: \n"
+    "  - \n"
+    "    time: 0\n"
+    "    note: \"a: b\"\n"
+    "    refer: \n"
+    "      type: Pose\n"
+    "      name: \"\"\n"
+    "      joints: [ \n"
+    "        0, 1, 2, 3, 4, 5, 6, 7, 8, \n"
+    "        9, 10, 11 ]\n"
+    "      q: [ \n"
+    "        0, 1, 2, 3, 4, 5, 6, 7, 8, \n"
+    "        9, -1.80616593e-19, 0.10000000000000002 ]\n"
+    "      spJoints: [ \n"
+    "        1 ]\n"
+    "      ikLinks: \n"
+    "        - \n"
+    "          name: WAIST\n"
+    "          index: 0\n"
+    "          isBaseLink: true\n"
+    "          isStationaryPoint: true\n"
+    "          translation: [ 1, 2, 3 ]\n"
+    "          rotation: [ \n"
+    "            1, 0, 0, \n"
+    "            0, 1, 0, \n"
+    "            0, 0, 1 ]\n"
+    "          isTouching: true\n"
+    "          partingDirection: [ 0, 0, 1 ]\n"
+    "          contactPoints: [ [ 0, 0, 0 ] ]\n"
+    "          isSlave: true\n"
+    "      zmp: [ 0.5, 0, 0 ]\n"
+    "      isZmpStationaryPoint: true\n"
+    "  - \n"
+    "    time: 1.5\n"
+    "    maxTransitionTime: 0.541666667\n"
+    "    refer: \n"
+    "      type: Pose\n"
+    "      name: \"two\"\n";
+
+static void test_pseq_layout(void **state)
+{
+    (void)state;
+    grobo_motion *motion = motion_of(pose_file, GROBO_FORMAT_PSEQ);
+    char *text = written_as(motion, GROBO_FORMAT_AUTO, NULL, NULL);
+
+    assert_string_equal(text, pose_file);
+    free(text);
+    grobo_motion_free(motion);
+}
+
+static void test_yaml_layout(void **state)
+{
+    (void)state;
+    static const char file[] = "type: BodyMotion\n"
+                               "components: \n"
+                               "  - \n"
+                               "    type: MultiValueSeq\n"
+                               "    content: JointPosition\n"
+                               "    purpose: JointPosition\n"
+                               "    frameRate: 30\n"
+                               "    numFrames: 2\n"
+                               "    numParts: 2\n"
+                               "    frames: \n"
+                               "      - [ 0, 1 ]\n"
+                               "      - [ 0.5, -7.779e-05 ]\n";
+    static const char timed[] = "type: CompositeSeq\n"
+                                "content: BodyMotion\n"
+                                "format_version: 4\n"
+                                "name: \"t\"\n"
+                                "frame_rate: 30\n"
+                                "num_frames: 1\n"
+                                "components: \n"
+                                "  - \n"
+                                "    type: MultiValueSeq\n"
+                                "    content: JointDisplacement\n"
+                                "    frame_rate: 30\n"
+                                "    num_frames: 1\n"
+                                "    num_parts: 1\n"
+                                "    has_frame_time: true\n"
+                                "    frames: \n"
+                                "      - [ 0.25, 1 ]\n";
+    static const char *const files[] = {file, timed};
+
+    for (int i = 0; i < 2; i++) {
+        grobo_motion *motion = motion_of(files[i], GROBO_FORMAT_YAML);
+        char *text = written_as(motion, GROBO_FORMAT_YAML, NULL, NULL);
+        assert_string_equal(text, files[i]);
+        free(text);
+        grobo_motion_free(motion);
+    }
+}
+
+static void test_m_layout(void **state)
+{
+    (void)state;
+    static const char file[] = "500  10 -20.5 0\n1000  1 2 3\n";
+    grobo_write_options options = {.model = &grobo_gr001_model};
+    grobo_motion *motion = motion_of(file, GROBO_FORMAT_M);
+    char *text = written_as(motion, GROBO_FORMAT_M, &options, NULL);
+
+    assert_string_equal(text, file);
+    free(text);
+    options.integers = true;
+    text = written_as(motion, GROBO_FORMAT_M, &options, NULL);
+    assert_string_equal(text, "500  10 -21 0\n1000  1 2 3\n");
+    free(text);
+    grobo_motion_free(motion);
+}
+
+static void test_print(void **state)
+{
+    (void)state;
+    char text[256] = "";
+    FILE *stream = tmpfile();
+    grobo_motion *motion = motion_of("500  10 -20\n", GROBO_FORMAT_M);
+    grobo_posture posture;
+
+    assert_non_null(stream);
+    assert_int_equal(grobo_motion_print(motion, &grobo_gr001_model, stream), 0);
+    (void)grobo_posture_init(&posture, 3);
+    (void)grobo_posture_set_deg(&posture, 0, -0.04);
+    (void)grobo_posture_set_deg(&posture, 2, -12.34);
+    assert_int_equal(grobo_posture_print(&posture, stream), 0);
+    rewind(stream);
+    size_t size = fread(text, 1, sizeof text - 1, stream);
+    text[size] = '\0';
+    assert_string_equal(text, "500  10 -20\n0.0 - -12.3\n");
+    fclose(stream);
+    grobo_motion_free(motion);
+}
+
+static int failing_write(void *ctx, const void *data, size_t size)
+{
+    size_t *left = ctx;
+
+    (void)data;
+    if (size > *left) {
+        return GROBO_ERR_IO;
+    }
+    *left -= size;
+    return 0;
+}
+
+static void test_sink_fails(void **state)
+{
+    (void)state;
+    grobo_motion *motion = motion_of(pose_file, GROBO_FORMAT_PSEQ);
+
+    for (int format = GROBO_FORMAT_M; format <= GROBO_FORMAT_YAML; format++) {
+        size_t left = 0;
+        assert_int_equal(grobo_motion_write(motion, (grobo_motion_format)format, NULL,
+                                            &(grobo_sink){failing_write, &left}, NULL),
+                         GROBO_ERR_IO);
+    }
+    grobo_motion_free(motion);
+}
+
+/* ---- conversions -------------------------------------------------------------------------- */
+
+static grobo_motion *converted(const grobo_motion *motion, grobo_motion_kind kind,
+                               const grobo_write_options *options, grobo_diagnostics *list)
+{
+    grobo_motion *made = NULL;
+
+    assert_int_equal(grobo_motion_convert(motion, kind, options, list, &made), 0);
+    assert_int_equal(grobo_motion_get_kind(made), kind);
+    return made;
+}
+
+/* There and back again: every pair of kinds keeps sizes, times and angles. */
+static void test_every_pair(void **state)
+{
+    (void)state;
+    static const char *const files[] = {
+        "0  10 -20 30\n400  15 -20 31\n1000  40 0 0\n",
+        "type: PoseSeq\nname: t\nrefs:\n"
+        "- { time: 0, refer: { type: Pose, joints: [ 0, 1 ], q: [ 0.1, 0.2 ] } }\n"
+        "- { time: 0.7, refer: { type: Pose, joints: [ 0, 1 ], q: [ 0.3, 0.123456789012345 ] } }\n",
+        "type: MotionSeq\nname: t\nrefs:\n"
+        "- { time: 0, refer: { type: Motion, joints: [ 0, 1 ], q: [ 0.1, 0.2 ] } }\n"
+        "- { time: 0.5, refer: { type: Motion, joints: [ 0, 1 ], q: [ 0.3, 0.7 ] } }\n",
+        "type: BodyMotion\ncomponents:\n- { type: MultiValueSeq, content: JointPosition,"
+        " frameRate: 30, frames: [ [ 0.1, 0.2 ], [ 0.3, 0.33333333333333331 ], [ 1, 2 ] ] }\n"};
+
+    for (int from = 0; from < 4; from++) {
+        grobo_motion *motion = NULL;
+        assert_int_equal(
+            grobo_motion_read_memory(files[from], strlen(files[from]), NULL, NULL, &motion), 0);
+        for (int to = 0; to < 4; to++) {
+            grobo_motion *there = converted(motion, (grobo_motion_kind)to, NULL, NULL);
+            grobo_motion *back = converted(there, (grobo_motion_kind)from, NULL, NULL);
+            assert_true(grobo_motion_near(motion, back, 1e-15, 1e-12));
+            grobo_motion_free(there);
+            grobo_motion_free(back);
+        }
+        grobo_motion_free(motion);
+    }
+}
+
+static void test_conversion_says_what_is_dropped(void **state)
+{
+    (void)state;
+    grobo_motion *motion = motion_of(pose_file, GROBO_FORMAT_PSEQ);
+    grobo_diagnostics *list = NULL;
+
+    assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
+    grobo_motion_free(converted(motion, GROBO_MOTION_POSTURES, NULL, list));
+    static const char *const codes[] = {"ik-links-dropped", "zmp-dropped", "sp-joints-dropped",
+                                        "keys-dropped"};
+    for (size_t i = 0; i < sizeof codes / sizeof codes[0]; i++) {
+        assert_true(has_diagnostic(list, codes[i], 8 + 1, 0));
+    }
+    assert_true(has_diagnostic(list, "transition-dropped", 40, 0));
+    assert_true(has_diagnostic(list, "name-dropped", 40, 0));
+    assert_int_equal(grobo_diagnostics_total(list, GROBO_SEVERITY_ERROR), 0);
+    assert_int_equal(grobo_diagnostics_total(list, GROBO_SEVERITY_WARNING), 0);
+    grobo_diagnostics_clear(list);
+    grobo_motion_free(converted(motion, GROBO_MOTION_STEPS, NULL, list));
+    assert_int_equal(grobo_diagnostics_count(list), 0);
+    grobo_diagnostics_free(list);
+    grobo_motion_free(motion);
+}
+
+/* Joints that a pose does not list: as before, at first as in their first pose. */
+static void test_conversion_fills_joints(void **state)
+{
+    (void)state;
+    grobo_motion *motion =
+        motion_of("type: PoseSeq\nname: t\nrefs:\n"
+                  "- { time: 0, refer: { type: Pose, joints: [ 0 ], q: [ 1 ] } }\n"
+                  "- { time: 12, refer: { type: Pose, joints: [ 1 ], q: [ 2 ] } }\n"
+                  "- { time: 12, refer: { type: Pose, joints: [ 3 ], q: [ 3 ] } }\n",
+                  GROBO_FORMAT_PSEQ);
+    grobo_diagnostics *list = NULL;
+    grobo_posture start;
+
+    assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
+    (void)grobo_posture_init(&start, 4);
+    (void)grobo_posture_set_rad(&start, 2, 7);
+    grobo_motion *postures =
+        converted(motion, GROBO_MOTION_POSTURES, &(grobo_write_options){.start = &start}, list);
+    assert_true(angle_of(postures, 0, 1) == 2.0 && angle_of(postures, 2, 0) == 1.0);
+    assert_true(angle_of(postures, 0, 2) == 7.0);
+    assert_true(has_diagnostic(list, "joints-unset", 0, 0));
+    assert_true(has_diagnostic(list, "step-default", 5, 0));
+    grobo_motion *frames = converted(motion, GROBO_MOTION_FRAMES, NULL, list);
+    assert_true(angle_of(frames, 0, 2) == 0.0);
+    assert_true(grobo_motion_has_frame_times(frames));
+    grobo_motion_free(postures);
+    grobo_motion_free(frames);
+    grobo_motion_free(motion);
+    grobo_diagnostics_free(list);
+}
+
+static void test_conversion_at_a_rate(void **state)
+{
+    (void)state;
+    grobo_motion *motion = motion_of("0  0\n1000  100\n", GROBO_FORMAT_M);
+    grobo_write_options options = {.rate_hz = 10};
+    grobo_motion *frames = converted(motion, GROBO_MOTION_FRAMES, &options, NULL);
+
+    /* The first posture takes the default time. */
+    assert_int_equal(grobo_motion_size(frames), 13);
+    assert_true(grobo_motion_frame_rate(frames) == 10.0);
+    grobo_motion *finer =
+        converted(frames, GROBO_MOTION_FRAMES, &(grobo_write_options){.rate_hz = 20}, NULL);
+    assert_int_equal(grobo_motion_size(finer), 25);
+    grobo_motion *bad = NULL;
+    assert_int_equal(grobo_motion_convert(motion, GROBO_MOTION_FRAMES,
+                                          &(grobo_write_options){.rate_hz = -1}, NULL, &bad),
+                     GROBO_ERR_ARG);
+    assert_null(bad);
+    grobo_motion_free(motion);
+    grobo_motion_free(frames);
+    grobo_motion_free(finer);
+}
+
+static void test_allocations_fail(void **state)
+{
+    (void)state;
+    for (int kind = GROBO_MOTION_POSTURES; kind <= GROBO_MOTION_FRAMES; kind++) {
+        int result = GROBO_ERR_NOMEM;
+        for (size_t n = 1; result < 0; n++) {
+            motion_mem counter = {0};
+            grobo_mem mem = motion_mem_of(&counter);
+            grobo_read_options options = {.mem = &mem};
+            grobo_motion *motion = NULL, *made = NULL;
+            assert_int_equal(
+                grobo_motion_read_memory(pose_file, strlen(pose_file), &options, NULL, &motion), 0);
+            counter.fail_at = counter.calls + n;
+            result = grobo_motion_convert(motion, (grobo_motion_kind)kind, NULL, NULL, &made);
+            assert_true(result == 0 || (result == GROBO_ERR_NOMEM && made == NULL));
+            grobo_motion_free(made);
+            grobo_motion_free(motion);
+            assert_int_equal(counter.bytes, 0);
+        }
+    }
+}
+
+/* ---- the reference material --------------------------------------------------------------- */
+
+static const char *const real_names[] = {
+    "data/choreonoid/GR001-SampleMotion1.pseq", "data/choreonoid/SR1WalkPattern2.pseq",
+    "data/choreonoid/SR1WalkPattern3.yaml", "data/choreonoid/SR1WalkPattern3.seq"};
+
+/* What Choreonoid wrote comes out as it wrote it. */
+static void test_real_key_poses_byte_for_byte(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        size_t size, written;
+        char *file = file_text(shared_file(real_names[i]), &size);
+        grobo_motion *motion = motion_of(file, GROBO_FORMAT_PSEQ);
+        char *text = written_as(motion, GROBO_FORMAT_PSEQ, NULL, &written);
+        assert_int_equal(size, written);
+        assert_memory_equal(file, text, size);
+        free(text);
+        free(file);
+        grobo_motion_free(motion);
+    }
+}
+
+/* Read, written to each format and read, and back: the same sizes, times and angles. */
+static void test_real_files_there_and_back(void **state)
+{
+    (void)state;
+    grobo_write_options options = {.model = &grobo_gr001_model};
+
+    for (size_t i = 0; i < sizeof real_names / sizeof real_names[0]; i++) {
+        grobo_motion *motion = NULL;
+        assert_int_equal(grobo_motion_read_file(shared_file(real_names[i]), NULL, NULL, &motion),
+                         0);
+        grobo_motion_kind kind = grobo_motion_get_kind(motion);
+        for (int format = GROBO_FORMAT_M; format <= GROBO_FORMAT_YAML; format++) {
+            bool fills = format == GROBO_FORMAT_M || format == GROBO_FORMAT_YAML;
+            char *text = written_as(motion, (grobo_motion_format)format, &options, NULL);
+            grobo_motion *there = motion_of(text, (grobo_motion_format)format);
+            grobo_motion *back = converted(there, kind, &options, NULL);
+            assert_int_equal(grobo_motion_size(back), grobo_motion_size(motion));
+            for (size_t n = 0; n < grobo_motion_size(motion); n++) {
+                double time_s, back_s;
+                (void)grobo_motion_time_s(motion, n, &time_s);
+                (void)grobo_motion_time_s(back, n, &back_s);
+                assert_true(fabs(time_s - back_s) < 1e-12);
+                for (int j = 0; j < grobo_motion_joints(motion); j++) {
+                    double angle_rad = angle_of(motion, n, j);
+                    bool set = !isnan(angle_rad);
+                    assert_true(set || fills || isnan(angle_of(back, n, j)));
+                    assert_true(!set || fabs(angle_rad - angle_of(back, n, j)) < 1e-15);
+                }
+            }
+            free(text);
+            grobo_motion_free(there);
+            grobo_motion_free(back);
+        }
+        grobo_motion_free(motion);
+    }
+}
+
+/* The walk in two versions of the format is the same walk. */
+static void test_versions_agree(void **state)
+{
+    (void)state;
+    grobo_motion *a = NULL, *b = NULL;
+
+    assert_int_equal(grobo_motion_read_file(shared_file(real_names[2]), NULL, NULL, &a), 0);
+    assert_int_equal(grobo_motion_read_file(shared_file(real_names[3]), NULL, NULL, &b), 0);
+    assert_true(grobo_motion_equal(a, b));
+    grobo_motion_free(a);
+    grobo_motion_free(b);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_pseq_layout),
+        cmocka_unit_test(test_yaml_layout),
+        cmocka_unit_test(test_m_layout),
+        cmocka_unit_test(test_print),
+        cmocka_unit_test(test_sink_fails),
+        cmocka_unit_test(test_every_pair),
+        cmocka_unit_test(test_conversion_says_what_is_dropped),
+        cmocka_unit_test(test_conversion_fills_joints),
+        cmocka_unit_test(test_conversion_at_a_rate),
+        cmocka_unit_test(test_allocations_fail),
+        cmocka_unit_test(test_real_key_poses_byte_for_byte),
+        cmocka_unit_test(test_real_files_there_and_back),
+        cmocka_unit_test(test_versions_agree),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
