@@ -25,6 +25,7 @@ void app_settle(app *a)
 {
     a->json = app_global(a, GLOBAL_JSON)->given > 0;
     a->verbosity = app_global(a, GLOBAL_QUIET)->given ? -1 : app_global(a, GLOBAL_VERBOSE)->given;
+    a->tty_in = isatty(STDIN_FILENO) == 1;
     a->tty_out = isatty(STDOUT_FILENO) == 1;
     a->tty_err = isatty(STDERR_FILENO) == 1;
     a->color_out = wants_color(a, a->tty_out);

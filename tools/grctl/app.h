@@ -17,7 +17,7 @@ typedef struct app {
     bool json;
     int verbosity; /* -1 quiet, 0, 1, 2 */
     bool color_out, color_err;
-    bool tty_out, tty_err;
+    bool tty_in, tty_out, tty_err;
 } app;
 
 /* Sets what follows from the parsed line: verbosity, colours, terminals. */

@@ -205,7 +205,7 @@ static int run(app *a)
     if (!status && app_option(a, PLAY_DRY_RUN)->given) {
         status = play_dry_run(&s.list, a);
     } else if (!status) {
-        status = conn_open(&c, a);
+        status = conn_open_to_move(&c, a);
         c.ctx = &s;
         c.on_event = on_event;
         if (!status)

@@ -66,7 +66,7 @@ static int run(app *a)
         return status;
     if (!joints)
         joints = GROBO_JOINTS_ALL(grobo_gr001_model.n_joints);
-    status = conn_open(&c, a);
+    status = mode == GROBO_TORQUE_ON ? conn_open_to_move(&c, a) : conn_open(&c, a);
     if (!status)
         status = switch_torque(&c, joints, mode, word);
     return conn_close(&c, status);

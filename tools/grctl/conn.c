@@ -6,6 +6,7 @@
 #include <grobo/port.h>
 
 #include "conn.h"
+#include "latch.h"
 
 /* A second is more than any servo needs to stop smoothly; the engine's own bound is 10 s. */
 static const int caught[CONN_SIGNALS] = {SIGINT, SIGTERM, SIGHUP};
@@ -54,6 +55,8 @@ static void on_robot(void *ctx, const grobo_event *event)
     if (event->kind == GROBO_EVENT_JOB && event->u.job.number == c->waiting_for) {
         c->job = event->u.job;
         c->waiting_for = 0;
+        if (c->data && c->job.size)
+            memcpy(c->data, c->job.data, c->job.size < c->data_bytes ? c->job.size : c->data_bytes);
     }
     if (event->kind == GROBO_EVENT_TRIP)
         c->trip = event->u.trip;
@@ -164,7 +167,7 @@ static int fail_open(conn *c, int error)
                     tells ? cause->text : "", tells ? ")" : "", advice(error));
 }
 
-static grobo_robot_config robot_config(const app *a)
+grobo_robot_config conn_robot_config(const app *a)
 {
     grobo_robot_config config = {.sense_interval_us = GROBO_SENSE_NEVER};
     const cli_value *timeout = app_global(a, GLOBAL_TIMEOUT);
@@ -179,17 +182,18 @@ static grobo_robot_config robot_config(const app *a)
     return config;
 }
 
-static int make_session(conn *c, const char *device)
+static int make_session(conn *c, const char *device, bool check)
 {
     app *a = c->a;
     grobo_wiring wiring = (grobo_wiring)app_global(a, GLOBAL_WIRING)->choice;
     const cli_value *baud = app_global(a, GLOBAL_BAUD);
-    grobo_robot_config robot = robot_config(a);
+    grobo_robot_config robot = conn_robot_config(a);
     grobo_session_config config = {.base = c->base,
                                    .device = device,
                                    .baud_bps = baud->given ? (int)baud->number : 0,
                                    .driver = grobo_gr001_driver(wiring),
                                    .robot = &robot,
+                                   .skip_check = !check,
                                    .on_event = on_session,
                                    .on_robot = on_robot,
                                    .ctx = c};
@@ -206,7 +210,7 @@ static int watch_signals(conn *c)
     return GROBO_OK;
 }
 
-int conn_open(conn *c, app *a)
+static int open_device(conn *c, app *a, bool check)
 {
     char device[GROBO_DEVICE_MAX_BYTES];
     const char *asked = requested_device(a);
@@ -222,7 +226,7 @@ int conn_open(conn *c, app *a)
     c->base = grobo_loop_new();
     error = c->base ? watch_signals(c) : GROBO_ERR_NOMEM;
     if (!error)
-        error = make_session(c, device);
+        error = make_session(c, device, check);
     if (error)
         return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s: %s", device,
                         grobo_error_text(error));
@@ -235,6 +239,26 @@ int conn_open(conn *c, app *a)
     if (!error)
         app_detail(a, "robot found on %s", conn_device(c));
     return error ? EXIT_ROBOT : EXIT_DONE;
+}
+
+int conn_open(conn *c, app *a)
+{
+    return open_device(c, a, true);
+}
+
+int conn_open_unchecked(conn *c, app *a)
+{
+    return open_device(c, a, false);
+}
+
+int conn_open_to_move(conn *c, app *a)
+{
+    int status = conn_open(c, a);
+    if (!status && latch_is_set(conn_device(c)))
+        return app_fail(a, EXIT_SAFETY, grobo_error_name(GROBO_ERR_LATCHED),
+                        "%s: stopped by 'grctl estop'; 'grctl estop --reset' takes it back",
+                        conn_device(c));
+    return status;
 }
 
 /* ---- failing -------------------------------------------------------------------------------- */
@@ -271,6 +295,14 @@ int conn_fail(conn *c, int error, const char *doing)
                         model->joints[joint].name);
     return app_fail(c->a, app_status_of(error), grobo_error_name(error), "%s: %s: %s",
                     conn_device(c), doing, grobo_error_text(error));
+}
+
+int conn_fail_servo(conn *c, int error, int id)
+{
+    if (c->signal || c->link_error)
+        return conn_fail(c, error, "servo");
+    return app_fail(c->a, app_status_of(error), grobo_error_name(error), "%s: servo %d: %s",
+                    conn_device(c), id, grobo_error_text(error));
 }
 
 /* ---- leaving -------------------------------------------------------------------------------- */

@@ -26,8 +26,10 @@ struct conn {
     grobo_session *session;
     grobo_robot *robot; /* the session's */
     conn_event_fn on_event;
-    void *ctx;            /* for on_event */
-    grobo_event_job job;  /* how the last job ended */
+    void *ctx;           /* for on_event */
+    grobo_event_job job; /* how the last job ended */
+    uint8_t *data;       /* where the job's data is copied to, at most data_bytes of it */
+    size_t data_bytes;
     int waiting_for;      /* number of the job that is waited for, 0 none */
     int signal;           /* the first signal that came, 0 none */
     int link_error;       /* why the link is lost, 0 while it stands */
@@ -42,6 +44,12 @@ struct conn {
  * status with the reason said. conn_close() is called in either case.
  */
 int conn_open(conn *c, app *a);
+
+/* The same, but nobody needs to answer: for scans. */
+int conn_open_unchecked(conn *c, app *a);
+
+/* The same for a command that moves the robot: refused after an emergency stop. */
+int conn_open_to_move(conn *c, app *a);
 
 /*
  * Waits for the end of the job that a request returned (an error < 0 is handed through).
@@ -61,6 +69,12 @@ int conn_sleep_until(conn *c, int64_t at_us);
  * A signal is not complained about: conn_close() gives its status.
  */
 int conn_fail(conn *c, int error, const char *doing);
+
+/* The same for one servo by its id, whether it is a joint's or not. */
+int conn_fail_servo(conn *c, int error, int id);
+
+/* The engine's configuration that the global options ask for. */
+grobo_robot_config conn_robot_config(const app *a);
 
 /*
  * Ends it: carries out the exit policy when one was asked for, a signal came or a motion was cut

@@ -59,8 +59,7 @@ const cli_option cli_global_options[GLOBAL_COUNT] = {
 
 /* In the order of the overview: finding a robot, its state, moving it, files, the simulator. */
 const cli_command *const cli_commands[] = {
-    &cmd_ports, &cmd_status, &cmd_servo,   &cmd_init, &cmd_move, &cmd_play,    &cmd_check,
-    &cmd_show,  &cmd_plot,   &cmd_convert, &cmd_sim,  &cmd_help, &cmd_version,
+    &cmd_ports, &cmd_help,
 };
 const size_t cli_n_commands = sizeof cli_commands / sizeof cli_commands[0];
 

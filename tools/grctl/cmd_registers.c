@@ -1,0 +1,252 @@
+/* SPDX-License-Identifier: MIT */
+/* servo-get and servo-set: the registers of one servo, by name. */
+#include <ctype.h>
+#include <string.h>
+
+#include "commands.h"
+#include "servos.h"
+
+enum { OPT_FLASH };
+
+static const cli_option set_options[] = {
+    [OPT_FLASH] = {.name = "flash",
+                   .kind = CLI_FLAG,
+                   .help = "keep it over power-off too; takes a second"},
+};
+
+static const grobo_rs30x_register *find_register(app *a, const char *name, int *status)
+{
+    const grobo_rs30x_register *reg = grobo_rs30x_register_named(name);
+    char known[1024] = "";
+    size_t at = 0;
+    if (reg)
+        return reg;
+    for (size_t i = 0; (reg = grobo_rs30x_register_row(i)) != NULL; i++) {
+        int n = snprintf(known + at, sizeof known - at, " %s", reg->name);
+        at += n > 0 && (size_t)n < sizeof known - at ? (size_t)n : 0;
+    }
+    *status = app_fail(a, EXIT_USAGE, "NOTFOUND", "no register '%s'; there are:%s", name, known);
+    return NULL;
+}
+
+/* "0.1 deg" says that a count is worth 0.1; "50 us" that it is worth 50; "deg C" that it is 1. */
+static void print_value(const grobo_rs30x_register *reg, int32_t value)
+{
+    double worth = 1;
+    const char *unit = reg->unit;
+    int used = 0;
+    if (isdigit((unsigned char)*unit) && sscanf(unit, "%lf %n", &worth, &used) == 1)
+        unit += used;
+    printf("%3d  %-18s %6d", reg->address, reg->name, value);
+    if (*reg->unit && strcmp(unit, "code") != 0)
+        printf("  %10.6g %s", value * worth, unit);
+    if (reg->address == GROBO_RS30X_BAUD)
+        printf("  %10d bps", grobo_rs30x_baud_bps((uint8_t)value));
+    putchar('\n');
+}
+
+static json_t *value_json(const grobo_rs30x_register *reg, int32_t value)
+{
+    return json_pack("{s:s,s:i,s:i,s:s}", "name", reg->name, "address", reg->address, "value",
+                     value, "unit", reg->unit);
+}
+
+/* Reads the memory in the two halves that every model returns, No.0-59. */
+static int read_all(conn *c, int id, uint8_t *memory)
+{
+    int error = servos_read(c, id, 0, 30, memory);
+    return error ? error : servos_read(c, id, 30, 30, memory + 30);
+}
+
+static int get(conn *c, int id, const grobo_rs30x_register *only)
+{
+    uint8_t memory[GROBO_REGISTERS] = {0};
+    const grobo_rs30x_register *reg;
+    json_t *list = json_array();
+    int error = only ? servos_read(c, id, only->address, only->bytes, memory + only->address)
+                     : read_all(c, id, memory);
+    if (error) {
+        json_decref(list);
+        return conn_fail_servo(c, error, id);
+    }
+    for (size_t i = 0; (reg = grobo_rs30x_register_row(i)) != NULL; i++) {
+        int32_t value = grobo_rs30x_register_get(reg, memory + reg->address);
+        if (only && reg != only)
+            continue;
+        if (c->a->json)
+            json_array_append_new(list, value_json(reg, value));
+        else
+            print_value(reg, value);
+    }
+    if (c->a->json)
+        app_print_json(json_pack("{s:i,s:O}", "id", id, "registers", list));
+    json_decref(list);
+    return EXIT_DONE;
+}
+
+static int run_get(app *a)
+{
+    conn c;
+    int status = 0;
+    const grobo_rs30x_register *only = NULL;
+    int id = servos_parse_id(a, a->line.argument[0], &status);
+    if (id < 0)
+        return status;
+    if (a->line.n_arguments > 1 && !(only = find_register(a, a->line.argument[1], &status)))
+        return status;
+    status = conn_open(&c, a);
+    if (!status)
+        status = get(&c, id, only);
+    return conn_close(&c, status);
+}
+
+/* ---- servo-set ------------------------------------------------------------------------------ */
+
+typedef struct change {
+    int id;
+    const grobo_rs30x_register *reg;
+    int32_t value;
+    bool flash;
+} change;
+
+/* What is asked on a terminal before flash is written; true to go on. */
+static bool confirmed(conn *c, const change *what, int32_t before)
+{
+    char answer[8];
+    if (!what->flash)
+        return true;
+    app_note(c->a, "servo %d: %s %d -> %d, and No.4-29 go to flash: keep its power on", what->id,
+             what->reg->name, before, what->value);
+    if (app_global(c->a, GLOBAL_YES)->given || !c->a->tty_in)
+        return true;
+    fputs("Write it? [y/N] ", stderr);
+    return fgets(answer, sizeof answer, stdin) && (answer[0] == 'y' || answer[0] == 'Y');
+}
+
+static int write_it(conn *c, const change *what)
+{
+    uint8_t bytes[2] = {0};
+    grobo_register_io io = {.id = (uint8_t)what->id,
+                            .address = what->reg->address,
+                            .length = what->reg->bytes,
+                            .data = bytes};
+    int id = what->reg->address == GROBO_RS30X_ID ? (int)what->value : what->id;
+    int error;
+    grobo_rs30x_register_put(what->reg, what->value, bytes);
+    error = conn_wait(c, grobo_session_registers(c->session, &io));
+    if (!error && what->flash)
+        error = conn_wait(c, grobo_session_command(c->session, id, GROBO_SERVO_FLASH));
+    return error;
+}
+
+static int set(conn *c, const change *what)
+{
+    uint8_t bytes[2] = {0};
+    int32_t before;
+    int id = what->reg->address == GROBO_RS30X_ID ? (int)what->value : what->id;
+    int error = servos_read(c, what->id, what->reg->address, what->reg->bytes, bytes);
+    if (error)
+        return conn_fail_servo(c, error, what->id);
+    before = grobo_rs30x_register_get(what->reg, bytes);
+    if (!confirmed(c, what, before))
+        return app_fail(c->a, EXIT_USAGE, "CANCELED", "servo-set: nothing was written");
+    error = write_it(c, what);
+    /* A servo with another baud rate cannot be heard any more: nothing to read back. */
+    if (!error && what->reg->address != GROBO_RS30X_BAUD)
+        error = servos_read(c, id, what->reg->address, what->reg->bytes, bytes);
+    if (error)
+        return conn_fail_servo(c, error, id);
+    if (what->reg->address != GROBO_RS30X_BAUD &&
+        grobo_rs30x_register_get(what->reg, bytes) != what->value)
+        return app_fail(c->a, EXIT_ROBOT, "MISMATCH", "servo %d: %s is %d, not %d, after writing",
+                        id, what->reg->name, grobo_rs30x_register_get(what->reg, bytes),
+                        what->value);
+    if (c->a->json)
+        app_print_json(json_pack("{s:i,s:s,s:i,s:i,s:b}", "id", id, "name", what->reg->name,
+                                 "before", before, "value", what->value, "flash", what->flash));
+    else
+        app_note(c->a, "servo %d: %s %d -> %d%s", id, what->reg->name, before, what->value,
+                 what->flash ? ", kept in flash" : "; lost at power-off without --flash");
+    return EXIT_DONE;
+}
+
+/* These go through the engine's gate only, by other commands. */
+static bool moves_motor(const grobo_rs30x_register *reg)
+{
+    return reg->address == GROBO_RS30X_GOAL || reg->address == GROBO_RS30X_GOAL_TIME ||
+           reg->address == GROBO_RS30X_TORQUE;
+}
+
+static int parse_change(app *a, change *what)
+{
+    double value;
+    int status = 0;
+    what->id = servos_parse_id(a, a->line.argument[0], &status);
+    if (what->id < 0)
+        return status;
+    what->reg = find_register(a, a->line.argument[1], &status);
+    if (!what->reg)
+        return status;
+    if (what->reg->access == GROBO_RS30X_ACCESS_R)
+        return app_fail(a, EXIT_USAGE, "USAGE", "servo-set: register %s is read only",
+                        what->reg->name);
+    if (moves_motor(what->reg))
+        return app_fail(a, EXIT_SAFETY, "USAGE", "servo-set: %s moves the motor; use 'grctl %s'",
+                        what->reg->name,
+                        what->reg->address == GROBO_RS30X_TORQUE ? "servo" : "move");
+    if (!cli_read_number(a->line.argument[2], &value) || value != (double)(int32_t)value ||
+        value < what->reg->min || value > what->reg->max)
+        return app_fail(a, EXIT_USAGE, "LIMIT", "servo-set: %s takes %d to %d (counts of %s)",
+                        what->reg->name, what->reg->min, what->reg->max,
+                        *what->reg->unit ? what->reg->unit : "1");
+    if (what->reg->kept == GROBO_RS30X_KEPT_RAM && app_option(a, OPT_FLASH)->given)
+        return app_fail(a, EXIT_USAGE, "USAGE", "servo-set: flash does not keep register %s",
+                        what->reg->name);
+    what->value = (int32_t)value;
+    what->flash = app_option(a, OPT_FLASH)->given > 0;
+    return 0;
+}
+
+static int run_set(app *a)
+{
+    conn c;
+    change what = {0};
+    int status = parse_change(a, &what);
+    if (status)
+        return status;
+    status = conn_open(&c, a);
+    if (!status)
+        status = set(&c, &what);
+    return conn_close(&c, status);
+}
+
+const cli_command cmd_servo_get = {
+    .name = "servo-get",
+    .arguments = "ID [KEY]",
+    .summary = "read a servo's registers by name",
+    .details =
+        "Prints every register of a servo, or one: address, name, value as it is stored and\n"
+        "what that means. ID is the servo's id or the name of a joint.\n",
+    .example = "  grctl servo-get 12\n  grctl servo-get R_KNEE_P delay\n",
+    .min_arguments = 1,
+    .max_arguments = 2,
+    .argument = CLI_ARG_JOINT,
+    .run = run_get,
+};
+
+const cli_command cmd_servo_set = {
+    .name = "servo-set",
+    .arguments = "ID KEY VALUE",
+    .summary = "write a servo's register by name",
+    .details = "Writes one register and reads it back. The value is what the register stores (see\n"
+               "servo-get). With --flash the servo also keeps its settings over power-off; that\n"
+               "is shown first and, on a terminal, asked for. Goal and torque are refused: move\n"
+               "and servo set them safely.\n",
+    .example = "  grctl servo-set 12 delay 2 --flash\n  grctl servo-set 1 id 21\n",
+    .options = set_options,
+    .n_options = sizeof set_options / sizeof set_options[0],
+    .min_arguments = 3,
+    .max_arguments = 3,
+    .argument = CLI_ARG_JOINT,
+    .run = run_set,
+};

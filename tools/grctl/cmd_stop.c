@@ -1,0 +1,90 @@
+/* SPDX-License-Identifier: MIT */
+/* stop and estop. */
+#include "commands.h"
+#include "latch.h"
+#include "render.h"
+
+enum { OPT_RESET };
+
+static const cli_option estop_options[] = {
+    [OPT_RESET] = {.name = "reset",
+                   .kind = CLI_FLAG,
+                   .help = "take the emergency stop back; nothing moves"},
+};
+
+static void report(const conn *c, const char *text)
+{
+    if (c->a->json)
+        app_print_json(json_pack("{s:b}", "done", 1));
+    else
+        app_note(c->a, "%s", text);
+}
+
+static int run_stop(app *a)
+{
+    conn c;
+    int status = conn_open(&c, a);
+    if (!status) {
+        int error = conn_wait(&c, grobo_session_exit(c.session, GROBO_EXIT_HOLD));
+        if (error)
+            status = conn_fail(&c, error, "stop");
+        else
+            report(&c, "stopped; joints with torque hold where they are");
+    }
+    return conn_close(&c, status);
+}
+
+static int reset(conn *c)
+{
+    int error = latch_clear(conn_device(c));
+    if (error)
+        return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error),
+                        "%s: cannot take the emergency stop back: %s", conn_device(c),
+                        grobo_error_text(error));
+    report(c, "emergency stop taken back; torque stays as it is");
+    return EXIT_DONE;
+}
+
+/* The latch is set first: whatever happens here, nothing else moves the robot until the reset. */
+static int stop_now(conn *c)
+{
+    int latched = latch_set(conn_device(c));
+    int error = conn_wait(c, grobo_session_estop(c->session));
+    if (error)
+        return conn_fail(c, error, "estop");
+    if (latched < 0)
+        app_note(c->a, "stopped, but other commands cannot be told: %s", grobo_error_text(latched));
+    report(c, "stopped and verified; 'grctl estop --reset' takes it back");
+    return EXIT_DONE;
+}
+
+static int run_estop(app *a)
+{
+    conn c;
+    int status = conn_open(&c, a);
+    if (!status)
+        status = app_option(a, OPT_RESET)->given ? reset(&c) : stop_now(&c);
+    return conn_close(&c, status);
+}
+
+const cli_command cmd_stop = {
+    .name = "stop",
+    .arguments = "",
+    .summary = "stop smoothly and hold",
+    .details = "Makes every joint that has torque hold where it is. A motion that another grctl\n"
+               "plays is stopped by a signal to it (Ctrl-C): it has the port.\n",
+    .run = run_stop,
+};
+
+const cli_command cmd_estop = {
+    .name = "estop",
+    .arguments = "",
+    .summary = "emergency stop, verified",
+    .details = "Brakes every joint ahead of all else, reads each one back, and repeats what did\n"
+               "not take. From then on grctl refuses to move this robot with exit status 4, until\n"
+               "--reset. A robot that stands may sink: hold it.\n",
+    .example = "  grctl estop\n  grctl estop --reset\n",
+    .options = estop_options,
+    .n_options = sizeof estop_options / sizeof estop_options[0],
+    .run = run_estop,
+};

@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: MIT */
+#include <string.h>
+
+#include "joints.h"
+#include "servos.h"
+
+/* Beyond the wire's time: a USB adapter that is set for low latency, and this machine. */
+enum { HURRY_MARGIN_US = 4000 };
+
+int servos_read(conn *c, int id, int address, int length, uint8_t *data)
+{
+    grobo_register_io io = {
+        .id = (uint8_t)id, .address = (uint8_t)address, .length = (uint8_t)length};
+    c->data = data;
+    c->data_bytes = (size_t)length;
+    return conn_wait(c, grobo_session_registers(c->session, &io));
+}
+
+int servos_hurry_at(conn *c, int baud_bps)
+{
+    const cli_value *timeout = app_global(c->a, GLOBAL_TIMEOUT);
+    grobo_robot_config config = conn_robot_config(c->a);
+    config.retries = -1;
+    config.bus.baud_bps = (uint32_t)baud_bps;
+    if (!timeout->given)
+        config.bus.margin_us = HURRY_MARGIN_US;
+    return grobo_robot_configure(c->robot, &config);
+}
+
+int servos_parse_id(app *a, const char *text, int *status)
+{
+    double number;
+    int joint;
+    if (cli_read_number(text, &number)) {
+        if (number >= 1 && number <= GROBO_SERVO_ID_MAX && number == (double)(int)number)
+            return (int)number;
+        *status = app_fail(a, EXIT_USAGE, "USAGE", "'%s' is not an id from 1 to %d", text,
+                           GROBO_SERVO_ID_MAX);
+        return -1;
+    }
+    joint = joints_parse_one(a, text, strlen(text), status);
+    return joint < 0 ? -1 : grobo_model_motor_of_joint(&grobo_gr001_model, joint);
+}
