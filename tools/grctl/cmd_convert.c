@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
 
+#include "body_options.h"
 #include "commands.h"
 #include "file.h"
 
-enum { OPT_RATE, OPT_FROM, OPT_TO };
+enum { OPT_RATE, OPT_FROM, OPT_TO, OPT_INTEGERS, OPT_BODY };
 
 static const cli_option options[] = {
     [OPT_RATE] = {.name = "rate",
@@ -23,6 +24,10 @@ static const cli_option options[] = {
                 .kind = CLI_CHOICE,
                 .value = FILE_FORMATS,
                 .help = "format of OUT, whatever its name says"},
+    [OPT_INTEGERS] = {.name = "integers",
+                      .kind = CLI_FLAG,
+                      .help = "to m: whole ms and 0.1 degrees, which the original reads"},
+    BODY_OPTION_ROWS(OPT_BODY),
 };
 
 static grobo_motion_format format_of(const app *a, int option)
@@ -45,6 +50,26 @@ static int write_out(const grobo_motion *motion, const char *path, const grobo_w
         return grobo_motion_save(motion, grobo_files_os(), path, how, list);
     error = grobo_motion_write(motion, how->format, how, &sink, list);
     return !error && fflush(stdout) != 0 ? GROBO_ERR_IO : error;
+}
+
+/* Key poses keep their link targets; any other format gets the angles that they lead to. */
+static int solve_legs(app *a, const char *path, const grobo_write_options *how,
+                      grobo_motion **motion)
+{
+    grobo_body *body = NULL;
+    grobo_motion *solved = NULL;
+    int status;
+    if (how->format == GROBO_FORMAT_PSEQ && !body_options_given(a, OPT_BODY))
+        return 0;
+    status = body_make(a, OPT_BODY, path, *motion, how->rate_hz, &body);
+    if (!status && body)
+        status = body_motion(a, path, body, how->rate_hz, &solved);
+    grobo_body_free(body);
+    if (solved) {
+        grobo_motion_free(*motion);
+        *motion = solved;
+    }
+    return status;
 }
 
 static void report(app *a, const grobo_motion *motion, const char *out,
@@ -74,7 +99,9 @@ static int run(app *a)
     const char *in = a->line.argument[0], *out = a->line.argument[1];
     grobo_motion_format to = format_of(a, OPT_TO);
     grobo_read_options read = {.model = &grobo_gr001_model, .format = format_of(a, OPT_FROM)};
-    grobo_write_options how = {.model = &grobo_gr001_model, .rate_hz = app_number(a, OPT_RATE, 0)};
+    grobo_write_options how = {.model = &grobo_gr001_model,
+                               .rate_hz = app_number(a, OPT_RATE, 0),
+                               .integers = app_option(a, OPT_INTEGERS)->given > 0};
     grobo_diagnostics *list = NULL;
     grobo_motion *motion = NULL;
     int error;
@@ -85,8 +112,12 @@ static int run(app *a)
         return app_fail(a, EXIT_USAGE, "USAGE",
                         "%s: its name tells no format; give --to " FILE_FORMATS, out);
     error = file_load(a, in, &read, &motion);
-    if (error)
+    if (!error)
+        error = solve_legs(a, in, &how, &motion);
+    if (error) {
+        grobo_motion_free(motion);
         return error;
+    }
     error = grobo_diagnostics_new(&list, NULL);
     if (!error)
         error = write_out(motion, out, &how, list);

@@ -50,6 +50,7 @@ static const cli_option options[PLAY_OPTIONS] = {
     [PLAY_TABLE] = {.name = "table",
                     .kind = CLI_FLAG,
                     .help = "at the end, target, reached and error of every joint"},
+    BODY_OPTION_ROWS(PLAY_BODY),
 };
 
 enum { TICK_US = 100000, REPORT_EVERY = 10 /* ticks of a JSON line */ };

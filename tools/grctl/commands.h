@@ -1,31 +1,37 @@
 /* SPDX-License-Identifier: MIT */
-/* Every command, each in a file of its name. */
+/* Every command: each stands in a file of its name, or of its family's. */
 #ifndef GRCTL_COMMANDS_H
 #define GRCTL_COMMANDS_H
 
 #include "cli.h"
 
-extern const cli_command cmd_check;
-extern const cli_command cmd_convert;
-extern const cli_command cmd_estop;
-extern const cli_command cmd_help;
-extern const cli_command cmd_info;
-extern const cli_command cmd_init;
-extern const cli_command cmd_move;
-extern const cli_command cmd_play;
-extern const cli_command cmd_plot;
-extern const cli_command cmd_ports;
-extern const cli_command cmd_pose;
-extern const cli_command cmd_scan;
-extern const cli_command cmd_scenario;
-extern const cli_command cmd_servo;
-extern const cli_command cmd_servo_get;
-extern const cli_command cmd_servo_set;
-extern const cli_command cmd_show;
-extern const cli_command cmd_sim;
-extern const cli_command cmd_slot;
-extern const cli_command cmd_status;
-extern const cli_command cmd_stop;
-extern const cli_command cmd_version;
+/* In the order of the overview: finding a robot, its state, moving it, files, servos, the rest. */
+#define GRCTL_COMMANDS(X)                                                                          \
+    X(ports)                                                                                       \
+    X(scan)                                                                                        \
+    X(info)                                                                                        \
+    X(status)                                                                                      \
+    X(servo)                                                                                       \
+    X(init)                                                                                        \
+    X(move)                                                                                        \
+    X(pose)                                                                                        \
+    X(play)                                                                                        \
+    X(stop)                                                                                        \
+    X(estop)                                                                                       \
+    X(check)                                                                                       \
+    X(show)                                                                                        \
+    X(plot)                                                                                        \
+    X(convert)                                                                                     \
+    X(slot)                                                                                        \
+    X(scenario)                                                                                    \
+    X(servo_get)                                                                                   \
+    X(servo_set)                                                                                   \
+    X(sim)                                                                                         \
+    X(help)                                                                                        \
+    X(version)
+
+#define GRCTL_DECLARE(name) extern const cli_command cmd_##name;
+GRCTL_COMMANDS(GRCTL_DECLARE)
+#undef GRCTL_DECLARE
 
 #endif

@@ -45,17 +45,22 @@ json_t *file_json(const grobo_diagnostic *d)
                      app_json_text(d->message));
 }
 
-void file_say(const app *a, const grobo_diagnostics *list, size_t from)
+void file_say_one(const app *a, const grobo_diagnostic *d)
 {
     char text[1024];
+    file_format(d, false, text, sizeof text);
+    if (d->severity == GROBO_SEVERITY_WARNING)
+        app_note(a, "%s", text);
+    else
+        app_detail(a, "%s", text);
+}
+
+/* Warnings and notes of reading, on standard error. */
+static void say_all(const app *a, const grobo_diagnostics *list)
+{
     grobo_diagnostic d;
-    for (size_t i = from; grobo_diagnostics_get(list, i, &d) == 0; i++) {
-        file_format(&d, false, text, sizeof text);
-        if (d.severity == GROBO_SEVERITY_WARNING)
-            app_note(a, "%s", text);
-        else
-            app_detail(a, "%s", text);
-    }
+    for (size_t i = 0; grobo_diagnostics_get(list, i, &d) == 0; i++)
+        file_say_one(a, &d);
 }
 
 /* The first error of the list, or what happened to the file as a whole. */
@@ -95,7 +100,7 @@ int file_load(app *a, const char *path, const grobo_read_options *options, grobo
     if (error)
         error = complain(a, path, error, list);
     else
-        file_say(a, list, 0);
+        say_all(a, list);
     grobo_diagnostics_free(list);
     return error;
 }

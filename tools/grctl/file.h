@@ -20,8 +20,8 @@ int file_load(app *a, const char *path, const grobo_read_options *options, grobo
  */
 const grobo_model *file_model(const grobo_motion *motion);
 
-/* Says warnings and notes from entry `from` on, on standard error. */
-void file_say(const app *a, const grobo_diagnostics *list, size_t from);
+/* Says a warning on standard error, a note only with -v. */
+void file_say_one(const app *a, const grobo_diagnostic *d);
 
 /* One line of a diagnostic: "file:line:column: warning: message [code]". */
 void file_format(const grobo_diagnostic *d, bool with_code, char *text, size_t capacity);

@@ -57,10 +57,9 @@ const cli_option cli_global_options[GLOBAL_COUNT] = {
     [GLOBAL_VERSION] = {.name = "version", .letter = 'V', .kind = CLI_FLAG, .help = "the version"},
 };
 
-/* In the order of the overview: finding a robot, its state, moving it, files, the simulator. */
-const cli_command *const cli_commands[] = {
-    &cmd_ports, &cmd_help,
-};
+#define POINTER(name) &cmd_##name,
+const cli_command *const cli_commands[] = {GRCTL_COMMANDS(POINTER)};
+#undef POINTER
 const size_t cli_n_commands = sizeof cli_commands / sizeof cli_commands[0];
 
 /* A mistake ends parsing, but not the wish for JSON that stands behind it. */

@@ -6,7 +6,7 @@
 #include <grobo/motion_io.h>
 #include <grobo/sequencer.h>
 
-#include "app.h"
+#include "body_options.h"
 
 enum { PLAY_FILES_MAX = 1 + GROBO_QUEUE_MAX };
 
@@ -14,6 +14,7 @@ typedef struct playlist {
     int n;
     const char *path[PLAY_FILES_MAX];
     grobo_motion *motion[PLAY_FILES_MAX];
+    grobo_body *body[PLAY_FILES_MAX]; /* where legs are solved, else NULL */
     grobo_clip clip[PLAY_FILES_MAX];
     grobo_play_options options[PLAY_FILES_MAX];
 } playlist;
@@ -29,7 +30,8 @@ enum {
     PLAY_KEY,
     PLAY_DRY_RUN,
     PLAY_TABLE,
-    PLAY_OPTIONS
+    PLAY_BODY,
+    PLAY_OPTIONS = PLAY_BODY + BODY_OPTIONS
 };
 
 /*

@@ -4,6 +4,15 @@
 #include "file.h"
 #include "play.h"
 
+/* Legs given by ikLinks are no matter for a warning where they are solved. */
+static void say_warnings(const app *a, const grobo_diagnostics *found, bool legs_solved)
+{
+    grobo_diagnostic d;
+    for (size_t k = 0; grobo_diagnostics_get(found, k, &d) == 0; k++)
+        if (!legs_solved || strcmp(d.code, "legs-by-ik") != 0)
+            file_say_one(a, &d);
+}
+
 /* Says the first thing that would be refused in play, with its place in the file. */
 static int check_one(app *a, const playlist *list, int i)
 {
@@ -25,7 +34,7 @@ static int check_one(app *a, const playlist *list, int i)
         file_format(&d, false, text, sizeof text);
         status = app_fail(a, EXIT_SAFETY, d.code, "%s", text);
     } else {
-        file_say(a, found, 0);
+        say_warnings(a, found, list->body[i] != NULL);
     }
     grobo_diagnostics_free(found);
     return status;
@@ -46,6 +55,13 @@ static void set_options(grobo_play_options *o, const app *a, grobo_motion_kind k
     o->speed_pct = (uint16_t)app_number(a, PLAY_SPEED, 100);
 }
 
+static int solve_legs(app *a, playlist *list, int i)
+{
+    double rate_hz = list->options[i].rate_hz ? list->options[i].rate_hz : GROBO_PLAY_RATE_HZ;
+    int status = body_make(a, PLAY_BODY, list->path[i], list->motion[i], rate_hz, &list->body[i]);
+    return status || !list->body[i] ? status : body_refuse(a, list->path[i], list->body[i]);
+}
+
 int playlist_load(playlist *list, app *a)
 {
     memset(list, 0, sizeof *list);
@@ -61,12 +77,14 @@ int playlist_load(playlist *list, app *a)
         if (status)
             return status;
         list->n = i + 1;
-        status = check_one(a, list, i);
-        if (status)
-            return status;
         if (grobo_motion_size(list->motion[i]) == 0)
             return app_fail(a, EXIT_FILE, "EMPTY", "%s: has no postures", list->path[i]);
         set_options(&list->options[i], a, grobo_motion_get_kind(list->motion[i]));
+        status = solve_legs(a, list, i);
+        if (!status)
+            status = check_one(a, list, i);
+        if (status)
+            return status;
     }
     list->options[0].from_us = (int64_t)(app_number(a, PLAY_FROM, 0) * 1000);
     return 0;
@@ -76,7 +94,11 @@ int playlist_prepare(playlist *list, app *a, const grobo_posture *start)
 {
     grobo_clip_options how = {.start = start};
     for (int i = 0; i < list->n; i++) {
-        int error = grobo_motion_clip(list->motion[i], i == 0 ? &how : NULL, &list->clip[i]);
+        int error = 0;
+        if (list->body[i])
+            grobo_body_clip(list->body[i], true, &list->clip[i]);
+        else
+            error = grobo_motion_clip(list->motion[i], i == 0 ? &how : NULL, &list->clip[i]);
         if (error)
             return app_fail(a, EXIT_FILE, grobo_error_name(error), "%s: %s", list->path[i],
                             grobo_error_text(error));
@@ -91,8 +113,9 @@ int playlist_prepare(playlist *list, app *a, const grobo_posture *start)
 void playlist_free(playlist *list)
 {
     for (int i = 0; i < list->n; i++) {
-        if (list->clip[i].key)
+        if (list->clip[i].key && !list->body[i])
             grobo_motion_clip_free(&list->clip[i]);
+        grobo_body_free(list->body[i]);
         grobo_motion_free(list->motion[i]);
     }
     list->n = 0;

@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: MIT */
+/* BODY OPTIONS: how legs that a key-pose file gives by ikLinks are solved. */
+#ifndef GRCTL_BODY_OPTIONS_H
+#define GRCTL_BODY_OPTIONS_H
+
+#include <grobo/body_motion.h>
+
+#include "app.h"
+
+enum { BODY_IK, BODY_STEP, BODY_ZMP, BODY_BALANCE, BODY_OPTIONS };
+
+/* The rows of a command's table, from row `base` on. */
+#define BODY_OPTION_ROWS(base)                                                                     \
+    [(base) + BODY_IK] = {.name = "ik",                                                            \
+                          .kind = CLI_CHOICE,                                                      \
+                          .value = "exact|numeric|off",                                            \
+                          .help = "legs given by ikLinks: solved how (exact), or left out"},       \
+              [(base) + BODY_STEP] = {.name = "step",                                              \
+                                      .kind = CLI_CHOICE,                                          \
+                                      .value = "none|stealthy",                                    \
+                                      .help = "soften lift and landing of feet (none)"},           \
+              [(base) + BODY_ZMP] = {.name = "zmp",                                                \
+                                     .kind = CLI_CHOICE,                                           \
+                                     .value = "auto|file",                                         \
+                                     .help = "where the balance is wanted (file)"},                \
+              [(base) + BODY_BALANCE] = {.name = "balance",                                        \
+                                         .kind = CLI_CHOICE,                                       \
+                                         .value = "off|on|compat11",                               \
+                                         .help = "shift the waist to keep it (off); compat11 as "  \
+                                                 "Choreonoid 1.1"}
+
+/* True if any of them was given. */
+bool body_options_given(const app *a, int base);
+
+/*
+ * Makes a body for a motion whose legs are given by ikLinks; *body stays NULL for any other motion
+ * and with --ik off. Returns 0, or the exit status with the reason said. grobo_body_free() after.
+ */
+int body_make(app *a, int base, const char *path, const grobo_motion *motion, double rate_hz,
+              grobo_body **body);
+
+/* Refuses what a robot cannot do: legs that do not reach, angles beyond limits. 0 or the status. */
+int body_refuse(app *a, const char *path, grobo_body *body);
+
+/*
+ * The motion with its legs solved: frames at a rate, or (0) a posture a key time. The motion
+ * belongs to the caller. 0 or the status.
+ */
+int body_motion(app *a, const char *path, grobo_body *body, double rate_hz, grobo_motion **out);
+
+#endif
