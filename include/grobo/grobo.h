@@ -12,6 +12,7 @@
 #include <grobo/driver.h>
 #include <grobo/error.h>
 #include <grobo/files.h>
+#include <grobo/hrpsys.h>
 #include <grobo/interpolate.h>
 #include <grobo/limits.h>
 #include <grobo/log.h>
