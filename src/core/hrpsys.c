@@ -28,11 +28,20 @@ int grobo_hrpsys_servo(grobo_hrpsys *hrpsys, int joint, bool on, int64_t now_us)
     return grobo_robot_torque(hrpsys->robot, GROBO_JOINT_BIT(joint), torque_of(on), now_us);
 }
 
+static bool same_text(const char *a, const char *b)
+{
+    while (*a != '\0' && *a == *b) {
+        a++;
+        b++;
+    }
+    return *a == *b;
+}
+
 /* Joints of an added group, a group of the model or a joint. */
 static int find_joints(const grobo_hrpsys *hrpsys, const char *name, grobo_joint_mask *joints)
 {
     for (unsigned i = 0; i < hrpsys->n_groups; i++) {
-        if (strcmp(hrpsys->groups[i].name, name) == 0) {
+        if (same_text(hrpsys->groups[i].name, name)) {
             *joints = hrpsys->groups[i].joints;
             return GROBO_OK;
         }
