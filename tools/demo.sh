@@ -16,7 +16,7 @@ trap 'exit 130' INT
 trap 'exit 143' TERM
 
 mkfifo "$dir/ready"
-"$grctl" sim --link "$dir/gr001" >"$dir/ready" &
+"$grctl" --quiet sim --link "$dir/gr001" >"$dir/ready" &
 sim=$!
 # The simulator prints its path when it can be opened; nothing comes if it could not start.
 read -r path <"$dir/ready" || { echo "demo: the simulator did not start" >&2; exit 1; }

@@ -22,30 +22,36 @@ typedef struct {
     char port[8];
 } address;
 
+/* A TCP port, 0 to 65535, in digits. */
+static bool is_port(const char *text)
+{
+    size_t size = strlen(text);
+
+    return size > 0 && strspn(text, "0123456789") == size && size <= 5 &&
+           (size < 5 || strcmp(text, "65535") <= 0);
+}
+
 /* Takes "tcp:HOST:PORT" or "tcp:[HOST]:PORT" apart. */
 static int split(const char *device, address *to)
 {
     const char *host = device + strlen("tcp:");
     const char *colon = strrchr(device, ':');
     size_t host_size;
-    size_t port_size;
 
     if (strncmp(device, "tcp:", 4) != 0 || colon < host) {
         return GROBO_ERR_ARG;
     }
     host_size = (size_t)(colon - host);
-    port_size = strlen(colon + 1);
     if (host_size >= 2 && host[0] == '[' && host[host_size - 1] == ']') {
         host++;
         host_size -= 2;
     }
-    if (host_size == 0 || host_size >= sizeof to->host || port_size == 0 ||
-        port_size >= sizeof to->port || strspn(colon + 1, "0123456789") != port_size) {
+    if (host_size == 0 || host_size >= sizeof to->host || !is_port(colon + 1)) {
         return GROBO_ERR_ARG;
     }
     memcpy(to->host, host, host_size);
     to->host[host_size] = '\0';
-    memcpy(to->port, colon + 1, port_size + 1);
+    memcpy(to->port, colon + 1, strlen(colon + 1) + 1);
     return GROBO_OK;
 }
 

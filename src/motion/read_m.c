@@ -218,8 +218,5 @@ int grobo_i_read_m(grobo_i_reader *reader)
                                   grobo_error_text(result));
         }
     }
-    if (result == 0 && reader->motion->size == 0) {
-        grobo_i_warn(reader, "empty", (grobo_i_place){0, 0}, "no postures");
-    }
     return result;
 }

@@ -166,13 +166,9 @@ static void a_synchronous_port_waits_for_its_connection(void **state)
 
 static void malformed_names_are_refused(void **state)
 {
-    static const char *const names[] = {"tcp:",
-                                        "tcp:host",
-                                        "tcp::80",
-                                        "tcp:1.2.3.4:",
-                                        "tcp:1.2.3.4:x",
-                                        "tcp:[]:80",
-                                        "tcp:1.2.3.4:12345678901"};
+    static const char *const names[] = {
+        "tcp:",          "tcp:host",  "tcp::80",           "tcp:1.2.3.4:",
+        "tcp:1.2.3.4:x", "tcp:[]:80", "tcp:1.2.3.4:65536", "tcp:1.2.3.4:12345678901"};
 
     (void)state;
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "app.h"
+#include "output.h"
 
 static bool wants_color(const app *a, bool tty)
 {
@@ -63,7 +64,7 @@ int app_fail(app *a, int status, const char *code, const char *format, ...)
     vsnprintf(text, sizeof text, format, list);
     va_end(list);
     make_one_line(text);
-    fflush(stdout);
+    output_flush();
     fprintf(stderr, "%sgrctl:%s %s\n", a->color_err ? "\033[1;31m" : "",
             a->color_err ? "\033[0m" : "", text);
     if (a->json)
@@ -119,7 +120,7 @@ void app_print_json(json_t *object)
 {
     json_dumpf(object, stdout, JSON_COMPACT | JSON_REAL_PRECISION(12));
     putchar('\n');
-    fflush(stdout);
+    output_flush();
     json_decref(object);
 }
 

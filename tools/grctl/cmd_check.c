@@ -14,7 +14,7 @@ static void check_file(const char *path, grobo_diagnostics *list)
     grobo_check_options check = {.name = path};
     grobo_motion *motion = NULL;
     size_t before = grobo_diagnostics_total(list, GROBO_SEVERITY_ERROR);
-    int error = grobo_motion_read_file(path, &read, list, &motion);
+    int error = file_read(path, &read, list, &motion);
     if (!error) {
         error = grobo_motion_check(motion, &grobo_gr001_model, &check, list);
         grobo_motion_free(motion);

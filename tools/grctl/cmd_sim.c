@@ -8,8 +8,9 @@
 
 #include "app.h"
 #include "commands.h"
+#include "output.h"
 
-enum { OPT_LINK, OPT_TCP, OPT_NO_PACING, OPT_ROBOTS, OPT_SEED, OPT_FAULT };
+enum { OPT_LINK, OPT_TCP, OPT_NO_PACING, OPT_ROBOTS, OPT_SEED, OPT_START, OPT_FAULT };
 enum { ROBOTS_MAX = 16, SIGNALS = 3 };
 
 static const cli_option options[] = {
@@ -40,6 +41,10 @@ static const cli_option options[] = {
                   .help = "of everything random",
                   .min = 0,
                   .max = 4294967295.0},
+    [OPT_START] = {.name = "start",
+                   .kind = CLI_CHOICE,
+                   .value = "init|zero|limp",
+                   .help = "where the joints are at power-up; limp: anywhere (init)"},
     [OPT_FAULT] = {.name = "fault",
                    .kind = CLI_TEXT,
                    .value = "LIST",
@@ -83,6 +88,7 @@ static grobo_sim_config sim_config(const app *a, int robot)
         .baud_bps = baud->given ? (uint32_t)baud->number : 0,
         .unpaced = app_option(a, OPT_NO_PACING)->given > 0,
         .seed = (uint32_t)app_number(a, OPT_SEED, 0) + (uint32_t)robot,
+        .start = (grobo_sim_start)app_option(a, OPT_START)->choice,
     };
     return config;
 }
@@ -122,8 +128,11 @@ static int add_robot(farm *f, int robot)
     return 0;
 }
 
-/* Standard output is data: the device alone, so that a script can read it. */
-static void announce(const farm *f)
+/*
+ * Standard output is data: the device alone, so that a script can read it. False when it cannot be
+ * told: nobody would find the robot.
+ */
+static bool announce(const farm *f)
 {
     json_t *list = json_array();
     for (int i = 0; i < f->n; i++) {
@@ -134,16 +143,20 @@ static void announce(const farm *f)
         json_array_append_new(list, one);
         if (!f->a->json)
             puts(grobo_sim_server_device(f->server[i]));
-        if (port > 0)
+        if (port > 0) {
+            output_flush();
             app_note(f->a, "also at tcp:127.0.0.1:%d", port);
+        }
     }
     if (f->a->json)
         app_print_json(json_pack("{s:b,s:o}", "simulated", 1, "robots", list));
     else
         json_decref(list);
+    if (!output_flush())
+        return false;
     app_note(f->a, "SIMULATED robot%s, no motor moves anywhere; Ctrl-C ends it",
              f->n == 1 ? "" : "s");
-    fflush(stdout);
+    return true;
 }
 
 static void close_farm(farm *f)
@@ -169,8 +182,7 @@ static int run(app *a)
         status = app_fail(a, EXIT_ROBOT, "NOMEM", "sim: %s", grobo_error_text(GROBO_ERR_NOMEM));
     for (int i = 0; i < robots && !status; i++)
         status = add_robot(&f, i);
-    if (!status) {
-        announce(&f);
+    if (!status && announce(&f)) {
         event_base_dispatch(f.base);
         status = EXIT_SIGNAL + f.signal;
     }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "commands.h"
 #include "joints.h"
+#include "output.h"
 #include "render.h"
 
 enum { OPT_WATCH, OPT_INTERVAL };
@@ -28,7 +29,7 @@ static void show(conn *c, grobo_joint_mask joints)
         if (c->a->tty_out && app_option(c->a, OPT_WATCH)->given)
             fputs("\033[H\033[J", stdout);
         render_status(c, joints, now_us);
-        fflush(stdout);
+        output_flush();
         return;
     }
     list = json_array();

@@ -133,12 +133,18 @@ static bool opened(conn *c)
     return c->up;
 }
 
+static bool is_tcp(const char *device)
+{
+    return strncmp(device, "tcp:", 4) == 0;
+}
+
 /* Why the device cannot be used, and what to do about it. */
-static const char *advice(int error)
+static const char *advice(int error, const char *device)
 {
     switch (error) {
     case GROBO_ERR_NOENT:
-        return "; see 'grctl ports' for what there is";
+        return is_tcp(device) ? "; does a serial server listen there?"
+                              : "; see 'grctl ports' for what there is";
     case GROBO_ERR_PERM:
         return "; may your user open it? it often takes membership of the group dialout";
     case GROBO_ERR_TIMEOUT:
@@ -162,9 +168,11 @@ static int fail_open(conn *c, int error)
         what = "no robot answers";
     else if (error == GROBO_ERR_TYPE)
         what = "is not a serial port";
+    else if (error == GROBO_ERR_NOENT && is_tcp(conn_device(c)) && *cause->text)
+        what = cause->text; /* which way it cannot be reached */
     return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error), "%s: %s%s%s%s%s",
                     error == GROBO_ERR_NOTFOUND ? "auto" : conn_device(c), what, tells ? " (" : "",
-                    tells ? cause->text : "", tells ? ")" : "", advice(error));
+                    tells ? cause->text : "", tells ? ")" : "", advice(error, conn_device(c)));
 }
 
 grobo_robot_config conn_robot_config(const app *a)
@@ -218,6 +226,8 @@ static int open_device(conn *c, app *a, bool check)
     int error;
     memset(c, 0, sizeof *c);
     c->a = a;
+    if (!*asked)
+        return app_fail(a, EXIT_USAGE, "USAGE", "--device: an empty name; see 'grctl ports'");
     error = grobo_port_resolve(asked, device, sizeof device, &cause);
     if (error)
         return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s: %s", asked,

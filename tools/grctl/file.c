@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "file.h"
+#include "pipe.h"
 
 const char *file_error_text(int error)
 {
@@ -69,7 +70,7 @@ static int complain(app *a, const char *path, int error, const grobo_diagnostics
     char text[1024];
     grobo_diagnostic d;
     for (size_t i = 0; grobo_diagnostics_get(list, i, &d) == 0; i++) {
-        if (d.severity != GROBO_SEVERITY_ERROR)
+        if (d.severity != GROBO_SEVERITY_ERROR || strcmp(d.code, "open") == 0)
             continue;
         file_format(&d, false, text, sizeof text);
         return app_fail(a, EXIT_FILE, d.code, "%s", text);
@@ -81,6 +82,13 @@ static int read_stream(void *ctx, void *buffer, size_t size)
 {
     size_t n = fread(buffer, 1, size, ctx);
     return n == 0 && ferror(ctx) ? GROBO_ERR_IO : (int)n;
+}
+
+int file_read(const char *path, const grobo_read_options *options, grobo_diagnostics *list,
+              grobo_motion **motion)
+{
+    return pipe_is(path) ? pipe_read(path, options, list, motion)
+                         : grobo_motion_read_file(path, options, list, motion);
 }
 
 int file_load(app *a, const char *path, const grobo_read_options *options, grobo_motion **motion)
@@ -95,7 +103,7 @@ int file_load(app *a, const char *path, const grobo_read_options *options, grobo
         named.name = "(standard input)";
         error = grobo_motion_read(&source, &named, list, motion);
     } else {
-        error = grobo_motion_read_file(path, options, list, motion);
+        error = file_read(path, options, list, motion);
     }
     if (error)
         error = complain(a, path, error, list);

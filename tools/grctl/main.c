@@ -6,6 +6,7 @@
 
 #include "app.h"
 #include "commands.h"
+#include "output.h"
 
 const cli_option cli_global_options[GLOBAL_COUNT] = {
     [GLOBAL_DEVICE] = {.name = "device",
@@ -71,24 +72,20 @@ static bool wants_json(int argc, char *const *argv)
     return false;
 }
 
-int main(int argc, char **argv)
+static int run(app *a, int argc, char **argv)
 {
-    static app a;
     char complaint[512];
-    const cli_command *command;
-    bool ok;
-    setlocale(LC_CTYPE, "");
-    ok = cli_parse(&a.line, argc, argv, complaint, sizeof complaint);
-    app_settle(&a);
-    command = a.line.command;
+    bool ok = cli_parse(&a->line, argc, argv, complaint, sizeof complaint);
+    const cli_command *command = a->line.command;
+    app_settle(a);
     if (!ok) {
-        a.json = wants_json(argc, argv);
-        return app_fail(&a, EXIT_USAGE, "USAGE", "%s; see 'grctl help%s%s'", complaint,
+        a->json = wants_json(argc, argv);
+        return app_fail(a, EXIT_USAGE, "USAGE", "%s; see 'grctl help%s%s'", complaint,
                         command ? " " : "", command ? command->name : "");
     }
-    if (app_global(&a, GLOBAL_VERSION)->given)
-        return cmd_version.run(&a);
-    if (app_global(&a, GLOBAL_HELP)->given) {
+    if (app_global(a, GLOBAL_VERSION)->given)
+        return cmd_version.run(a);
+    if (app_global(a, GLOBAL_HELP)->given) {
         if (command)
             cli_print_command(stdout, command);
         else
@@ -99,5 +96,13 @@ int main(int argc, char **argv)
         cli_print_overview(stderr);
         return EXIT_USAGE;
     }
-    return command->run(&a);
+    return command->run(a);
+}
+
+int main(int argc, char **argv)
+{
+    static app a;
+    output_guard();
+    setlocale(LC_CTYPE, "");
+    return output_finish(&a, run(&a, argc, argv));
 }
