@@ -22,6 +22,7 @@
     X(show)                                                                                        \
     X(plot)                                                                                        \
     X(convert)                                                                                     \
+    X(budget)                                                                                      \
     X(slot)                                                                                        \
     X(scenario)                                                                                    \
     X(servo_get)                                                                                   \
