@@ -29,6 +29,7 @@
 #include <grobo/serial.h>
 #include <grobo/session.h>
 #include <grobo/sim.h>
+#include <grobo/thread.h>
 #include <grobo/types.h>
 #include <grobo/version.h>
 

@@ -1,0 +1,389 @@
+/* SPDX-License-Identifier: MIT */
+/**
+ * @file thread.h
+ * @brief A robot with a control thread: a session that any thread may call.
+ *
+ * A grobo_control owns a session and the event_base it runs on, and beside them what a program
+ * wants kept for it: the current motion, the target and initial postures, a command buffer, how
+ * to play. grobo_control_start_thread() starts a thread that runs the loop; until then, and after
+ * grobo_control_stop_thread(), a call that needs the loop runs it itself for as long as it waits.
+ * So everything works with and without the thread; only what happens between calls (background
+ * reading, playing, coming back after a loss) needs it, or the caller's own rounds of
+ * grobo_control_svc().
+ *
+ * Every function may be called from any thread at any time, grobo_control_free() being the
+ * exception. They come in three kinds, told at each:
+ * - **At once**: kept under a lock for a few instructions. Also in callbacks.
+ * - **Handed over**: done by the thread that runs the loop, between two of its events; the caller
+ *   waits for that, at most GROBO_CONTROL_TIMEOUT_US: then GROBO_ERR_TIMEOUT, and nothing was
+ *   done. Also in callbacks, where it is done at once.
+ * - **Waits**: handed over, then waits for the robot's answer, at most the timeout given (0:
+ *   GROBO_CONTROL_TIMEOUT_US, GROBO_NEVER_US: for ever). GROBO_ERR_TIMEOUT of such a call gives
+ *   up waiting; what the robot has begun goes on. Requests of several threads that need the
+ *   robot's attention queue and are served in the order of their calls. In a callback waiting
+ *   would be for ever: GROBO_ERR_STATE, and nothing is done.
+ *
+ * Besides what is said at each, handed-over and waiting calls may return GROBO_ERR_FULL
+ * (GROBO_CONTROL_CALLS_MAX are under way), GROBO_ERR_CLOSED (the robot is not connected) and
+ * GROBO_ERR_UNPLUGGED (the line was lost while the call waited: nobody waits for a robot that is
+ * gone). Callbacks run on the thread that runs the loop, without any lock held.
+ *
+ * Joints count from 0 in joint order. The exit policy of the robot's configuration is carried out,
+ * within its bound, before the loop is left alone: at the end of the control thread, by
+ * grobo_control_close_port() and by grobo_control_free(), unless skip_exit. The library installs
+ * no atexit() or signal handler: a program calls grobo_control_free() on its way out (it may be
+ * called by the program's own atexit() handler). Where the thread that owns the robot may die
+ * without that, owner_timeout_us is the dead-man's handle.
+ */
+#ifndef GROBO_THREAD_H
+#define GROBO_THREAD_H
+
+#include <grobo/motion_io.h>
+#include <grobo/port.h>
+#include <grobo/session.h>
+
+GROBO_BEGIN_DECLS
+
+/** Calls that may wait for the loop at a time. */
+#define GROBO_CONTROL_CALLS_MAX 32
+/** Timeout where none is given. */
+#define GROBO_CONTROL_TIMEOUT_US INT64_C(5000000)
+/** Control period where none is given. */
+#define GROBO_CONTROL_PERIOD_US 10000
+/** Bytes of the command buffer, and of the buffer of received bytes. */
+#define GROBO_CONTROL_COMMAND_BYTES GROBO_FRAME_MAX_BYTES
+#define GROBO_CONTROL_RECEIVE_BYTES 512
+
+/** A robot that any thread may call. */
+typedef struct grobo_control grobo_control;
+
+/** Something to be done on the loop. @return what grobo_control_call() shall return. */
+typedef int (*grobo_control_fn)(grobo_control *control, void *arg);
+
+/** What a control is made of. Zero means default. */
+typedef struct grobo_control_config {
+    /** The session; `device` is needed, `base` must be NULL. Its callbacks are called on the thread
+     *  that runs the loop; its allocator must be safe to call from every thread. */
+    grobo_session_config session;
+    const char *name;          /**< copied; NULL: the driver's */
+    const char *motion_dir;    /**< copied; NULL: "." */
+    int64_t control_period_us; /**< 0: GROBO_CONTROL_PERIOD_US; at least 1000 */
+    int64_t owner_timeout_us;  /**< > 0: when no thread but the loop's own has called for so long,
+                                    the exit policy is carried out, once until the next call */
+    bool skip_exit;            /**< leave the robot as it is */
+    grobo_control_fn on_svc;   /**< called once each control period while the loop runs, arg being
+                                    session.ctx; its result is ignored; or NULL */
+} grobo_control_config;
+
+/* ---- making and freeing ------------------------------------------------------------------- */
+
+/**
+ * Makes a control, closed, without a thread, with an empty motion. Any thread.
+ * @param[out] control freed with grobo_control_free().
+ * @return GROBO_OK, GROBO_ERR_ARG (base given, a number out of range), GROBO_ERR_CAP (a name too
+ *   long), GROBO_ERR_NOMEM, or as grobo_session_new().
+ */
+GROBO_API int grobo_control_new(const grobo_control_config *config, grobo_control **control);
+
+/**
+ * Stops the thread, carries out the exit policy, closes, frees; NULL is fine. Waits for the exit.
+ * What was posted is done before. No other thread may be in a call, or call later.
+ * @return GROBO_OK; GROBO_ERR_STATE in a callback: then nothing was done.
+ */
+GROBO_API int grobo_control_free(grobo_control *control);
+
+/* ---- the control thread ------------------------------------------------------------------- */
+
+/**
+ * Starts the control thread: grobo_control_run() on a thread of the port layer. At once.
+ * @return GROBO_OK, GROBO_ERR_STATE (there is one), GROBO_ERR_NOMEM.
+ */
+GROBO_API int grobo_control_start_thread(grobo_control *control);
+
+/**
+ * Ends the control thread and waits for that: it carries out the exit policy first. The port
+ * stays open. In a callback: the thread ends after it, without being waited for.
+ * @return GROBO_OK, GROBO_ERR_STATE (none runs).
+ */
+GROBO_API int grobo_control_stop_thread(grobo_control *control);
+
+/** True from a start of the thread until it is told to stop. At once. */
+GROBO_API bool grobo_control_is_active(grobo_control *control);
+
+/**
+ * The handle of the control thread, to compare or to set its priority; it must not be joined. At
+ * once. @return GROBO_OK, GROBO_ERR_STATE (no thread, or one of the caller's that runs
+ * grobo_control_run()).
+ */
+GROBO_API int grobo_control_thread(grobo_control *control, grobo_thread *thread);
+
+/**
+ * One round of the control loop: waits for the next event, at most until the control period is
+ * over, and does what is due. What the control thread does all the time; for a program that has
+ * a loop of its own. Any thread; when another one runs the loop, waits for a period instead.
+ * @return 1, or 0 when another thread ran the loop; GROBO_ERR_STATE in a callback.
+ */
+GROBO_API int grobo_control_svc(grobo_control *control);
+
+/**
+ * Rounds until grobo_control_stop_thread() is called: the body of the control thread, for a
+ * program that makes its threads itself. Carries out the exit policy at the end.
+ * @return GROBO_OK, GROBO_ERR_STATE (a control thread runs; in a callback).
+ */
+GROBO_API int grobo_control_run(grobo_control *control);
+
+/* ---- exclusion ---------------------------------------------------------------------------- */
+
+/**
+ * Calls fn on the loop and gives back its result: nothing else happens to the port, the session
+ * or the motion meanwhile. It must not wait. For several steps that belong together, and for all
+ * that session.h and robot.h can do beyond this header. Handed over.
+ */
+GROBO_API int grobo_control_call(grobo_control *control, grobo_control_fn fn, void *arg);
+
+/**
+ * Has fn called on the loop, and returns at once. It is called exactly once, at the latest by
+ * grobo_control_free(). At once.
+ * @return GROBO_OK, GROBO_ERR_FULL, GROBO_ERR_ARG.
+ */
+GROBO_API int grobo_control_post(grobo_control *control, grobo_control_fn fn, void *arg);
+
+/** The session. It belongs to the loop: use it in callbacks and in grobo_control_call() only. */
+GROBO_API grobo_session *grobo_control_session(grobo_control *control);
+
+/** The serial port; as grobo_control_session(). */
+GROBO_API grobo_serial *grobo_control_serial(grobo_control *control);
+
+/* ---- facts and settings: all at once unless said otherwise ---------------------------------- */
+
+/** The robot's name. Valid as long as the control. */
+GROBO_API const char *grobo_control_name(const grobo_control *control);
+/** Number of joints. */
+GROBO_API int grobo_control_joints(const grobo_control *control);
+/** Sets the folder of motion files (copied). @return GROBO_OK, _ARG, GROBO_ERR_CAP (too long). */
+GROBO_API int grobo_control_set_motion_dir(grobo_control *control, const char *dir);
+/** Copies the folder's name. @return its length, GROBO_ERR_SPACE. */
+GROBO_API int grobo_control_get_motion_dir(grobo_control *control, char *dir, size_t dir_bytes);
+/**
+ * Sets the time of postures whose own is 0: 10 ms..GROBO_PLAY_TIME_MAX_US. Handed over.
+ * @return GROBO_OK, GROBO_ERR_ARG.
+ */
+GROBO_API int grobo_control_set_default_time_us(grobo_control *control, int64_t time_us);
+/** Reads it; as long as none was set: the configuration's, else GROBO_POSTURE_TIME_US. */
+GROBO_API int64_t grobo_control_get_default_time_us(grobo_control *control);
+/**
+ * Sets how often the background reads each joint, > 0 or GROBO_SENSE_NEVER. Handed over.
+ * @return GROBO_OK, GROBO_ERR_ARG.
+ */
+GROBO_API int grobo_control_set_sense_interval_us(grobo_control *control, int64_t interval_us);
+/** Reads it. */
+GROBO_API int64_t grobo_control_get_sense_interval_us(grobo_control *control);
+/** Sets the control period, at least 1000. Handed over. @return GROBO_OK, GROBO_ERR_ARG. */
+GROBO_API int grobo_control_set_period_us(grobo_control *control, int64_t period_us);
+/** Reads it. */
+GROBO_API int64_t grobo_control_get_period_us(grobo_control *control);
+/** Sets how often it is played: 0 and 1 once, n times, -n times in reverse. @return count. */
+GROBO_API int grobo_control_set_motion_count(grobo_control *control, int count);
+/** Reads it. */
+GROBO_API int grobo_control_get_motion_count(grobo_control *control);
+/** Has the motion played from its end to its beginning. */
+GROBO_API void grobo_control_set_reverse(grobo_control *control, bool reverse);
+/** True when it is played in reverse: so set, or by a negative count. */
+GROBO_API bool grobo_control_is_reverse(grobo_control *control);
+
+/* ---- the line ------------------------------------------------------------------------------- */
+
+/** Sets the device. Handed over. @return GROBO_OK, GROBO_ERR_STATE (open), _CAP, GROBO_ERR_ARG. */
+GROBO_API int grobo_control_set_device(grobo_control *control, const char *device);
+/** Copies the name of the device in use. Handed over. @return its length, GROBO_ERR_SPACE. */
+GROBO_API int grobo_control_get_device(grobo_control *control, char *device, size_t device_bytes);
+/** Opens the port; the loop goes on to check who is there. Handed over. @return as
+ *  grobo_session_open(). */
+GROBO_API int grobo_control_open_port(grobo_control *control);
+/**
+ * Carries out the exit policy where a robot is connected, then closes. Waits.
+ * @return GROBO_OK (also when closed already), or how the exit failed: closed all the same.
+ */
+GROBO_API int grobo_control_close_port(grobo_control *control, int64_t timeout_us);
+/** Opens the port unless it is open, and waits until the robot has answered. Waits. @return
+ *  GROBO_OK, or as grobo_session_open() and GROBO_SESSION_EVENT_FAILED. */
+GROBO_API int grobo_control_connect(grobo_control *control, int64_t timeout_us);
+/** Asks whether the robot is there, by the driver's check. Waits. @return GROBO_OK or why not. */
+GROBO_API int grobo_control_check_connection(grobo_control *control, int64_t timeout_us);
+/** True while a robot is connected. At once. */
+GROBO_API bool grobo_control_is_connected(grobo_control *control);
+/** What the operating system said of the line's last failure. Handed over. @return GROBO_OK. */
+GROBO_API int grobo_control_get_cause(grobo_control *control, grobo_os_cause *cause);
+
+/* ---- servos --------------------------------------------------------------------------------- */
+
+/** Torque of a joint as last known. Handed over. @return a grobo_torque, GROBO_ERR_EMPTY (not
+ *  known), GROBO_ERR_ARG. */
+GROBO_API int grobo_control_get_servo_state(grobo_control *control, int joint);
+/** Torque of all joints: as grobo_control_get_servo_state() for each. Handed over. @return
+ *  number of joints, GROBO_ERR_SPACE. */
+GROBO_API int grobo_control_get_servo_states(grobo_control *control, int *states, size_t capacity);
+/** Switches the torque of a joint, and reads it back. Waits. @return the state, or as
+ *  grobo_robot_torque(). */
+GROBO_API int grobo_control_set_servo_state(grobo_control *control, int joint, grobo_torque state,
+                                            int64_t timeout_us);
+/** Switches the torque of several joints, and reads it back. Waits. @return GROBO_OK, or as
+ *  grobo_robot_torque(). */
+GROBO_API int grobo_control_set_servo_states(grobo_control *control, grobo_joint_mask joints,
+                                             grobo_torque state, int64_t timeout_us);
+
+/* ---- postures ------------------------------------------------------------------------------- */
+
+/** The posture sensed last; joints never sensed are not set. Handed over. @return joints set. */
+GROBO_API int grobo_control_get_current_posture(grobo_control *control, grobo_posture *posture);
+/** Reads all joints. Those that stay silent are not set. Waits. @return joints read; when none
+ *  was, why. */
+GROBO_API int grobo_control_read_posture(grobo_control *control, grobo_posture *posture,
+                                         int64_t timeout_us);
+/** Reads one joint. Waits. @return GROBO_OK, or an error and *angle_rad is as it was. */
+GROBO_API int grobo_control_read_angle(grobo_control *control, int joint, double *angle_rad,
+                                       int64_t timeout_us);
+/** Sets the initial posture (copied); all 0 before. At once. @return GROBO_OK, GROBO_ERR_LIMIT,
+ *  GROBO_ERR_NAN, GROBO_ERR_ARG (other number of joints). */
+GROBO_API int grobo_control_set_init_posture(grobo_control *control, const grobo_posture *posture);
+/** The initial posture. At once. */
+GROBO_API void grobo_control_get_init_posture(grobo_control *control, grobo_posture *posture);
+/** Sets the target posture (copied); no joint is set before. At once. Errors as
+ *  grobo_control_set_init_posture(). */
+GROBO_API int grobo_control_set_target_posture(grobo_control *control,
+                                               const grobo_posture *posture);
+/** The target posture. At once. */
+GROBO_API void grobo_control_get_target_posture(grobo_control *control, grobo_posture *posture);
+/** Sets one joint of the target posture. At once. Errors as grobo_control_set_init_posture(). */
+GROBO_API int grobo_control_set_joint(grobo_control *control, int joint, double angle_rad);
+/** Sets the time to reach the target posture; 0: the default time. At once. @return GROBO_OK,
+ *  GROBO_ERR_ARG (negative, above GROBO_PLAY_TIME_MAX_US). */
+GROBO_API int grobo_control_set_motion_time_us(grobo_control *control, int64_t time_us);
+
+/**
+ * Has the target posture sent, once: the loop takes the target as it is then, as soon as the
+ * robot has done what it is doing. How it ends is told by grobo_control_wait() and by the job
+ * event. At once.
+ * @return GROBO_OK, GROBO_ERR_CLOSED, GROBO_ERR_EMPTY (no joint is set).
+ */
+GROBO_API int grobo_control_start_motion(grobo_control *control);
+/** Makes the initial posture the target, and grobo_control_start_motion(). At once. */
+GROBO_API int grobo_control_init_position(grobo_control *control);
+/** Postures still to be sent: 1 for a target that waits, and those of the motion that the present
+ *  pass has not handed out. Handed over. @return the number. */
+GROBO_API int grobo_control_command_count(grobo_control *control);
+/** Whether postures are still to be sent or under way. Handed over. @return 1 or 0. */
+GROBO_API int grobo_control_is_moving(grobo_control *control);
+/** Waits until nothing moves and nothing is asked of the robot. @return how the last motion or
+ *  target ended: GROBO_OK, GROBO_ERR_CANCELED (stopped), or why it failed. */
+GROBO_API int grobo_control_wait(grobo_control *control, int64_t timeout_us);
+
+/* ---- the current motion --------------------------------------------------------------------- */
+
+/** Replaces the motion by a copy. At once. @return postures, GROBO_ERR_ARG (more joints than the
+ *  robot), GROBO_ERR_NOMEM. */
+GROBO_API int grobo_control_set_motion(grobo_control *control, const grobo_motion *motion);
+/** A copy of the motion. At once. @param[out] motion owned by the caller. @return postures,
+ *  GROBO_ERR_NOMEM. */
+GROBO_API int grobo_control_get_motion(grobo_control *control, grobo_motion **motion);
+/** Number of postures of the motion. At once. */
+GROBO_API size_t grobo_control_motion_size(grobo_control *control);
+/** Empties the motion. What is being played goes on. At once. */
+GROBO_API void grobo_control_clear_motion(grobo_control *control);
+/** Appends the posture sensed last, with the default time. Handed over. @return postures,
+ *  GROBO_ERR_STALE (nothing was sensed), or as grobo_motion_append(). */
+GROBO_API int grobo_control_append_current_posture(grobo_control *control);
+/** Appends the posture sensed last, with a time >= 0. As above. */
+GROBO_API int grobo_control_append_current_posture_us(grobo_control *control, int64_t time_us);
+/**
+ * Loads a motion of the motion folder: NAME.m, .yaml, .pseq, .mseq, whichever is there first, or
+ * NAME itself where it has an extension. At once but for the reading, which is the caller's time.
+ * @param list diagnostics of the file are added to it, or NULL.
+ * @return postures; or, and then the motion is empty, as grobo_motion_find() and
+ *   grobo_motion_read_file(), GROBO_ERR_ARG (a motion for more joints).
+ */
+GROBO_API int grobo_control_load_motion(grobo_control *control, const char *name,
+                                        grobo_diagnostics *list);
+/** As above, but one format: NAME with its extension, or NAME as it is where it has one. */
+GROBO_API int grobo_control_load_motion_format(grobo_control *control, grobo_motion_format format,
+                                               const char *name, grobo_diagnostics *list);
+/**
+ * Saves the motion in the motion folder in a format, converted where it has to be. In the caller's
+ * time.
+ * @param name a plain file name; the extension is added where it has none. NULL, for
+ *   GROBO_FORMAT_M: the first MotionN.m that is not there.
+ * @param[out] path of the file, or NULL.
+ * @return postures, GROBO_ERR_PERM (a name that leaves the folder), GROBO_ERR_ARG,
+ *   GROBO_ERR_SPACE, or as grobo_motion_save().
+ */
+GROBO_API int grobo_control_save_motion(grobo_control *control, grobo_motion_format format,
+                                        const char *name, char *path, size_t path_bytes);
+
+/** Posture n of the motion in playing direction, counted from 0. At once. @return GROBO_OK;
+ *  GROBO_ERR_EMPTY where there is none. */
+GROBO_API int grobo_control_get_nth_posture(grobo_control *control, size_t n,
+                                            grobo_posture *posture);
+/** The posture that is played first; as above. */
+GROBO_API int grobo_control_get_first_posture(grobo_control *control, grobo_posture *posture);
+/** The posture that is played last; as above. */
+GROBO_API int grobo_control_get_last_posture(grobo_control *control, grobo_posture *posture);
+/** Makes posture n in playing direction the target, in the default time, and starts it. At once.
+ *  @return as grobo_control_get_nth_posture(), grobo_control_set_target_posture() and
+ *  grobo_control_start_motion(); GROBO_ERR_TYPE for a motion of increments. */
+GROBO_API int grobo_control_do_nth_motion(grobo_control *control, size_t n);
+
+/**
+ * Has the motion as it is now played, as soon as the robot has done what it is doing, with the
+ * count, direction and default time that are set. How it ends is told by grobo_control_wait()
+ * and by events. At once.
+ * @param options the rest (mode, rate, speed, mirror, ...), copied; NULL: by keys, as it is.
+ * @return GROBO_OK, GROBO_ERR_CLOSED, GROBO_ERR_EMPTY (no posture), GROBO_ERR_STATE (a motion
+ *   waits or is played), GROBO_ERR_NOMEM, or as grobo_motion_clip().
+ */
+GROBO_API int grobo_control_play_motion(grobo_control *control, const grobo_play_options *options);
+/** Ends a motion or a move, and forgets what has not begun. Handed over. @param at_once false:
+ *  smoothly. @return GROBO_OK; GROBO_ERR_STATE where there is nothing to stop. */
+GROBO_API int grobo_control_stop_motion(grobo_control *control, bool at_once);
+/** Whether a motion is played or about to be. At once. */
+GROBO_API bool grobo_control_is_playing(grobo_control *control);
+
+/* ---- raw commands --------------------------------------------------------------------------- */
+
+/** Copies a packet into the command buffer. At once. @return size, GROBO_ERR_CAP (more than
+ *  GROBO_CONTROL_COMMAND_BYTES; the buffer is as it was). */
+GROBO_API int grobo_control_set_command(grobo_control *control, const void *packet, size_t size);
+/** Copies the command buffer. At once. @return its size, GROBO_ERR_SPACE. */
+GROBO_API int grobo_control_get_command(grobo_control *control, void *packet, size_t capacity);
+/**
+ * Sends a packet as grobo_robot_raw() does, with all its checks, and waits for the reply it calls
+ * for; what comes can be taken by grobo_control_receive(). Connects first where closed. Waits.
+ * @param packet NULL: what is in the command buffer.
+ * @return size, GROBO_ERR_EMPTY (nothing to send), GROBO_ERR_CAP, as grobo_control_connect() and
+ *   as grobo_robot_raw().
+ */
+GROBO_API int grobo_control_send_command(grobo_control *control, const void *packet, size_t size,
+                                         int64_t timeout_us);
+/**
+ * Takes exactly `size` of the bytes that came in reply to sent commands, as they were on the wire.
+ * Where fewer are there after GROBO_SILENCE_DEFAULT_MS without a new one, they are dropped. Waits.
+ * @return size, GROBO_ERR_TIMEOUT (nothing came), GROBO_ERR_SHORT (fewer came), GROBO_ERR_CAP
+ *   (more than GROBO_CONTROL_RECEIVE_BYTES).
+ */
+GROBO_API int grobo_control_receive(grobo_control *control, void *bytes, size_t size);
+
+/* ---- safety --------------------------------------------------------------------------------- */
+
+/** Emergency stop, ahead of everything: see grobo_robot_estop(). What has not begun is forgotten.
+ *  Handed over; grobo_control_wait() waits until it is verified. @return GROBO_OK,
+ *  GROBO_ERR_CLOSED (latched all the same). */
+GROBO_API int grobo_control_estop(grobo_control *control);
+/** Takes back a latched stop: see grobo_robot_reset(). Handed over. @return GROBO_OK,
+ *  GROBO_ERR_STATE. */
+GROBO_API int grobo_control_reset(grobo_control *control);
+/** Carries out an exit policy now. Waits. @return GROBO_OK, or as grobo_robot_exit(). */
+GROBO_API int grobo_control_exit(grobo_control *control, grobo_exit_policy policy,
+                                 int64_t timeout_us);
+
+GROBO_END_DECLS
+
+#endif
