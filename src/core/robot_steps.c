@@ -418,9 +418,6 @@ static int step_aim_rest(grobo_robot *robot)
     }
     job->target.set = joints_with(robot, job->joints, GROBO_TORQUE_ON);
     grobo_i_gate_soften(robot);
-    if (job->target.set == 0) {
-        grobo_i_job_goto(robot, step_pick_all);
-    }
     return step_aim(robot);
 }
 

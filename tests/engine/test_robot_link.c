@@ -183,6 +183,22 @@ static void the_background_uses_the_wire(void **state)
     }
 }
 
+static void a_servo_that_stays_silent_is_asked_once_a_round(void **state)
+{
+    (void)state;
+    grobo_robot_config config = {.sense_interval_us = 200000};
+    rig_start(&rig, &config, NULL);
+    assert_int_equal(grobo_sim_set_cable(&rig.sim, R_KNEE, GROBO_SIM_CABLE_MUTE), 0);
+    rig_run(&rig, 1000000);
+    rig_forget(&rig);
+    rig_run(&rig, 2000000);
+    int asked = 0;
+    for (size_t i = 0; i < rig.n_sent; i++) {
+        asked += rig.sent[i].bytes[4] == 12; /* R_KNEE_P's motor */
+    }
+    assert_in_range(asked, 9, 11);
+}
+
 /* ---- requests from within the callback -------------------------------------- */
 
 static int chain;
@@ -246,6 +262,7 @@ int main(void)
         cmocka_unit_test(a_stale_angle_is_not_in_a_fresh_posture),
         cmocka_unit_test(broken_replies_are_retried_and_never_believed),
         cmocka_unit_test(the_background_uses_the_wire),
+        cmocka_unit_test(a_servo_that_stays_silent_is_asked_once_a_round),
         cmocka_unit_test(requests_may_come_from_the_callback),
         cmocka_unit_test(a_job_may_be_displaced_from_its_own_events),
     };

@@ -209,6 +209,26 @@ static void limp_joints_hold_in_free_mode_where_they_are(void **state)
     assert_int_equal(rig.torque_on, 20); /* and the rig saw that each was at its goal */
 }
 
+static void free_mode_believes_no_goal_read_before(void **state)
+{
+    (void)state;
+    grobo_robot_config config = {.sense_interval_us = 1};
+    grobo_sim_config jumpy = {.jump_on_torque = true};
+    for (int i = 0; i < 20; i++) { /* whatever reading is under way when it begins */
+        rig_start(&rig, &config, &jumpy);
+        rig_power(&rig);
+        grobo_sim_set_supply(&rig.sim, 3000); /* the servos forget their goals */
+        rig_run(&rig, 100000);
+        grobo_sim_set_supply(&rig.sim, 7400);
+        rig_run(&rig, 4000000 + 6300 * i);
+        assert_int_equal(grobo_robot_reset(&rig.robot, rig.now_us), GROBO_OK);
+        assert_int_equal(grobo_robot_free(&rig.robot, rig_all(&rig), true, rig.now_us), 0);
+        rig_run(&rig, 1000000);
+        assert_int_equal(rig_torque(&rig, R_KNEE), GROBO_TORQUE_ON);
+        assert_true(fabs(rig_angle_deg(&rig, R_KNEE) + 40) < 1);
+    }
+}
+
 /* ---- configuration ---------------------------------------------------------- */
 
 static void configurations_are_checked(void **state)
@@ -293,6 +313,7 @@ int main(void)
         cmocka_unit_test(stored_motions_are_started),
         cmocka_unit_test(free_mode_gives_way_and_holds),
         cmocka_unit_test(limp_joints_hold_in_free_mode_where_they_are),
+        cmocka_unit_test(free_mode_believes_no_goal_read_before),
         cmocka_unit_test(configurations_are_checked),
         cmocka_unit_test(limits_may_be_switched_off),
         cmocka_unit_test(read_back_correction_is_an_option),

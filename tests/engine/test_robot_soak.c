@@ -161,8 +161,8 @@ static const char *const lines[] = {
     "dupid=0.01",
     "hangup=0.001",
     "brownout=0.001",
-    "duplicate=0.01,delay=0.01,split=0.01,rubbish=0.01,silent=0.01,dupid=0.01,"
-    "hangup=0.001,brownout=0.001",
+    ("duplicate=0.01,delay=0.01,split=0.01,rubbish=0.01,silent=0.01,dupid=0.01,"
+     "hangup=0.001,brownout=0.001"),
     "all=0.01,hangup=0.001",
     "all=0.001",
 };

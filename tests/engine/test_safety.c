@@ -166,6 +166,72 @@ static void over_temperature_stops(void **state)
     expect_reset_works();
 }
 
+static void a_servo_that_cut_its_torque_stops(void **state)
+{
+    (void)state;
+    grobo_robot_config config = watching;
+    config.temperature_c = -1; /* not ours: the servo's own limit */
+    start_playing(&config);
+    assert_int_equal(grobo_sim_set_temperature(&rig.sim, L_ELBOW, 120), 0);
+    const grobo_trip_info *trip = expect_trip(GROBO_TRIP_OVERHEATED, 1000000);
+    assert_int_equal(trip->joint, L_ELBOW);
+    assert_true(trip->value >= 100);
+    expect_latched(GROBO_TRIP_OVERHEATED);
+}
+
+static void the_first_reason_stays(void **state)
+{
+    (void)state;
+    start_playing(&watching);
+    assert_int_equal(grobo_sim_set_temperature(&rig.sim, L_ELBOW, 67), 0);
+    expect_trip(GROBO_TRIP_TEMPERATURE, 1000000);
+    grobo_sim_set_supply(&rig.sim, 5500);
+    rig_run(&rig, 1000000);
+    assert_int_equal(rig_count(&rig, GROBO_EVENT_TRIP), 1);
+    expect_latched(GROBO_TRIP_TEMPERATURE);
+    rig_expect(&rig, grobo_robot_estop(&rig.robot, rig.now_us), GROBO_OK);
+    grobo_trip_info info;
+    grobo_robot_tripped(&rig.robot, &info);
+    assert_int_equal(info.trip, GROBO_TRIP_ESTOP); /* but for what a person said */
+}
+
+static void a_trip_ends_a_move_where_it_is(void **state)
+{
+    (void)state;
+    rig_start(&rig, &watching, NULL);
+    rig_power(&rig);
+    grobo_posture target = rig_posture(&rig, NECK, 45, 5000);
+    int number = grobo_robot_move(&rig.robot, &target, rig.now_us);
+    rig_run(&rig, 1000000);
+    assert_int_equal(grobo_sim_set_temperature(&rig.sim, L_ELBOW, 67), 0);
+    rig_expect(&rig, number, GROBO_ERR_LATCHED);
+    rig_clip_init(&clip, sway, 4);
+    assert_true(rig_angle_deg(&rig, NECK) < 25);
+    expect_latched(GROBO_TRIP_TEMPERATURE);
+}
+
+static void a_tripped_robot_holds_instead_of_sitting_down(void **state)
+{
+    (void)state;
+    start_playing(&watching);
+    assert_int_equal(grobo_sim_set_temperature(&rig.sim, L_ELBOW, 67), 0);
+    expect_trip(GROBO_TRIP_TEMPERATURE, 1000000);
+    rig_expect(&rig, grobo_robot_exit(&rig.robot, GROBO_EXIT_SIT, rig.now_us), GROBO_OK);
+    assert_true(fabs(rig_angle_deg(&rig, R_KNEE) + 40) < 0.1);
+    assert_int_equal(rig_torque(&rig, R_KNEE), GROBO_TORQUE_ON);
+    rig_expect(&rig, grobo_robot_exit(&rig.robot, GROBO_EXIT_OFF, rig.now_us), GROBO_OK);
+    assert_int_equal(rig_torque(&rig, R_KNEE), GROBO_TORQUE_OFF);
+}
+
+static void torque_does_not_come_on_in_a_motion(void **state)
+{
+    (void)state;
+    start_playing(&quiet);
+    rig_expect(&rig, grobo_robot_torque(&rig.robot, 1, GROBO_TORQUE_OFF, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_torque(&rig.robot, 1, GROBO_TORQUE_ON, rig.now_us),
+                     GROBO_ERR_STATE);
+}
+
 static void sustained_over_current_stops(void **state)
 {
     (void)state;
@@ -244,6 +310,43 @@ static void emergency_stop_is_first_verified_and_latched(void **state)
     }
     expect_latched(GROBO_TRIP_ESTOP);
     expect_reset_works();
+}
+
+static void emergency_stop_waits_for_no_silent_servo(void **state)
+{
+    (void)state;
+    rig_start(&rig, &quiet, NULL);
+    assert_int_equal(grobo_sim_set_cable(&rig.sim, 0, GROBO_SIM_CABLE_MUTE), 0);
+    (void)grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL, rig.now_us);
+    rig_run(&rig, 1000); /* the first reading waits 20 ms and more for its reply */
+    rig_forget(&rig);
+    int64_t asked_us = rig.now_us;
+    (void)grobo_robot_estop(&rig.robot, rig.now_us);
+    rig_run(&rig, 15000);
+    assert_true(rig.n_sent >= 1 && rig.sent[0].size == 50);
+    assert_true(rig.sent[0].at_us - asked_us < 10000);
+}
+
+static void nothing_queued_follows_an_emergency_stop(void **state)
+{
+    (void)state;
+    grobo_play_options options = {.mode = GROBO_PLAY_RATE, .rate_hz = 60}; /* too much */
+    rig_start(&rig, &watching, NULL);
+    rig_clip_init(&clip, sway, 4);
+    rig_power(&rig);
+    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options, rig.now_us), GROBO_OK);
+    rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
+    for (int i = 0; i < 10; i++) { /* whatever waits just then */
+        rig_run(&rig, 503000 + 1700 * i);
+        rig_forget(&rig);
+        rig_expect(&rig, grobo_robot_estop(&rig.robot, rig.now_us), GROBO_OK);
+        rig_run(&rig, 200000);
+        for (size_t k = 0; k < rig.n_sent; k++) {
+            assert_int_not_equal(rig.sent[k].size, 110);
+        }
+        assert_int_equal(grobo_robot_reset(&rig.robot, rig.now_us), GROBO_OK);
+        rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options, rig.now_us), 0);
+    }
 }
 
 static void emergency_stop_repeats_until_it_took(void **state)
@@ -336,12 +439,19 @@ int main(void)
         cmocka_unit_test(torque_of_the_others_comes_on),
         cmocka_unit_test(a_joint_outside_its_limits_is_not_switched_on),
         cmocka_unit_test(over_temperature_stops),
+        cmocka_unit_test(a_servo_that_cut_its_torque_stops),
+        cmocka_unit_test(the_first_reason_stays),
+        cmocka_unit_test(a_trip_ends_a_move_where_it_is),
+        cmocka_unit_test(a_tripped_robot_holds_instead_of_sitting_down),
+        cmocka_unit_test(torque_does_not_come_on_in_a_motion),
         cmocka_unit_test(sustained_over_current_stops),
         cmocka_unit_test(low_voltage_stops),
         cmocka_unit_test(lost_replies_stop),
         cmocka_unit_test(a_silent_servo_of_a_resting_robot_trips_nothing),
         cmocka_unit_test(a_brown_out_stops),
         cmocka_unit_test(emergency_stop_is_first_verified_and_latched),
+        cmocka_unit_test(emergency_stop_waits_for_no_silent_servo),
+        cmocka_unit_test(nothing_queued_follows_an_emergency_stop),
         cmocka_unit_test(emergency_stop_repeats_until_it_took),
         cmocka_unit_test(emergency_stop_takes_the_place_of_a_job),
         cmocka_unit_test(exit_holds_sits_or_lets_go),
