@@ -7,6 +7,8 @@
 #define GROBO_GROBO_H
 
 #include <grobo/board.h>
+#include <grobo/body.h>
+#include <grobo/body_motion.h>
 #include <grobo/bus.h>
 #include <grobo/clip.h>
 #include <grobo/driver.h>
@@ -15,7 +17,6 @@
 #include <grobo/hrpsys.h>
 #include <grobo/interpolate.h>
 #include <grobo/limits.h>
-#include <grobo/log.h>
 #include <grobo/loop.h>
 #include <grobo/mem.h>
 #include <grobo/model.h>
@@ -29,6 +30,7 @@
 #include <grobo/serial.h>
 #include <grobo/session.h>
 #include <grobo/sim.h>
+#include <grobo/sim_server.h>
 #include <grobo/thread.h>
 #include <grobo/types.h>
 #include <grobo/version.h>

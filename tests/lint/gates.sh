@@ -208,7 +208,12 @@ if command -v "${CXX:-g++}" >/dev/null; then
 else
     skip 'headers: one that C++ does not take' 'no C++ compiler'
 fi
-rm include/grobo/a.h
+sample include/grobo/grobo.h <<'C'
+#include <stdint.h>
+C
+check 'headers: an umbrella with a hole' \
+    refuses 'grobo.h:1: headers: does not include <grobo/a.h>' sh "$gates/headers.sh"
+rm include/grobo/a.h include/grobo/grobo.h
 sample src/core/private.h <<'C'
 struct a { size_t n; };
 C

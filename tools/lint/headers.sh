@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Gate: each header compiles alone; a public one as C11 and as C++11.
+# Gate: each header compiles alone, a public one as C11 and as C++11; grobo.h includes them all.
 #
 # usage: headers.sh        (CC, CXX and CPPFLAGS from the environment; run at the top)
 set -u
@@ -35,6 +35,16 @@ for header in include/grobo/*.h ports/posix/include/grobo/*.h; do
         try "$header" C++11 $cxx -x c++ -std=c++11 $warnings $flags -I.
     fi
 done
+# The umbrella is for those who do not want to know which header; export.h comes with any of them.
+if [ -f include/grobo/grobo.h ]; then
+    for header in include/grobo/*.h; do
+        name=${header##*/}
+        case $name in grobo.h | export.h) continue ;; esac
+        grep -q "<grobo/$name>" include/grobo/grobo.h && continue
+        echo "include/grobo/grobo.h:1: headers: does not include <grobo/$name>"
+        bad=1
+    done
+fi
 # shellcheck disable=SC2086
 for header in $(find src ports tools tests -name '*.h' ! -path '*/include/grobo/*'); do
     folder=$(dirname "$header")
