@@ -275,6 +275,12 @@ static int take_live(grobo_i_events *events)
 
     events->event.place = place_of(live->start_mark);
     events->event.length = 0;
+    /* By far the most frequent: a scalar and nothing else to be done. */
+    if (live->type == YAML_SCALAR_EVENT && live->data.scalar.anchor == NULL &&
+        events->store.n_open == 0) {
+        events->event.kind = GROBO_I_SCALAR;
+        return take_scalar(events);
+    }
     switch (live->type) {
     case YAML_SCALAR_EVENT:
         events->event.kind = GROBO_I_SCALAR;

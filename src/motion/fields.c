@@ -91,8 +91,8 @@ static bool is_not_finite(const grobo_i_event *event)
     return false;
 }
 
-int grobo_i_take_number(grobo_i_events *events, const grobo_i_event *event, const char *what,
-                        double *value)
+static int take_number(grobo_i_events *events, const grobo_i_event *event, const char *what,
+                       double *value)
 {
     if (grobo_i_parse_number(event->text, event->length, value)) {
         return 0;
@@ -109,7 +109,7 @@ int grobo_i_read_double(grobo_i_events *events, const char *what, double *value)
     const grobo_i_event *event;
     int result = next_scalar(events, what, "a number", &event);
 
-    return result < 0 || event == NULL ? result : grobo_i_take_number(events, event, what, value);
+    return result < 0 || event == NULL ? result : take_number(events, event, what, value);
 }
 
 int grobo_i_read_long(grobo_i_events *events, const char *what, long low, long high, long *value)
@@ -193,25 +193,80 @@ int grobo_i_read_list(grobo_i_events *events, const char *what,
     return result < 0 ? result : grobo_i_next(events, &event);
 }
 
-typedef struct numbers {
-    const char *what;
-    double *values;
-    size_t count, cap;
-} numbers;
-
-static int read_number(grobo_i_events *events, void *target)
+/* The rest of a node, of which so many lists and mappings have begun. */
+static int skip_rest(grobo_i_events *events, int depth)
 {
-    numbers *list = target;
-    double ignored;
-    double *value = list->count < list->cap ? &list->values[list->count] : &ignored;
-
-    list->count++;
-    return grobo_i_read_double(events, list->what, value);
+    while (depth > 0) {
+        const grobo_i_event *event;
+        int result = grobo_i_next(events, &event);
+        if (result < 0) {
+            return result;
+        }
+        depth += event->kind == GROBO_I_LIST || event->kind == GROBO_I_MAP;
+        depth -= event->kind == GROBO_I_LIST_END || event->kind == GROBO_I_MAP_END;
+    }
+    return 0;
 }
 
-int grobo_i_read_doubles(grobo_i_events *events, const char *what, double *values, size_t count)
+int grobo_i_skip(grobo_i_events *events)
 {
-    numbers list = {what, values, 0, count};
+    const grobo_i_event *event;
+    int result = grobo_i_next(events, &event);
+    bool begins = event->kind == GROBO_I_LIST || event->kind == GROBO_I_MAP;
+
+    return result < 0 || !begins ? result : skip_rest(events, 1);
+}
+
+/* An entry that has been taken and is no end of a list. */
+static int add_number(grobo_i_events *events, const char *what, grobo_i_numbers *list,
+                      const grobo_i_event *event)
+{
+    if (list->count == list->cap) {
+        return grobo_i_refuse(events->reader, GROBO_ERR_CAP, "list-length", event->place,
+                              "more than %d numbers in %s", list->cap, what);
+    }
+    double *value = &list->values[list->count];
+    *value = 0;
+    if (list->places != NULL) {
+        list->places[list->count] = event->place;
+    }
+    list->count++;
+    if (event->kind == GROBO_I_SCALAR) {
+        return take_number(events, event, what, value);
+    }
+    int result = grobo_i_complain(events->reader, GROBO_ERR_SYNTAX, "type", event->place,
+                                  "%s: %s where a number belongs", what, kind_name(event));
+    return result < 0 ? result : skip_rest(events, 1);
+}
+
+int grobo_i_read_numbers(grobo_i_events *events, const char *what, grobo_i_numbers *list)
+{
+    const grobo_i_event *event;
+    int result = grobo_i_peek(events, &event);
+
+    list->count = 0;
+    if (result < 0) {
+        return result;
+    }
+    if (event->kind != GROBO_I_LIST && !grobo_i_is_null(event)) {
+        return complain_kind(events, what, "a list of numbers");
+    }
+    bool more = event->kind == GROBO_I_LIST;
+    result = grobo_i_next(events, &event);
+    while (more && result == 0) {
+        result = grobo_i_next(events, &event);
+        if (result < 0 || event->kind == GROBO_I_LIST_END) {
+            break;
+        }
+        result = add_number(events, what, list, event);
+    }
+    return result;
+}
+
+int grobo_i_read_doubles(grobo_i_events *events, const char *what, double *values, int count)
+{
+    double found[16];
+    grobo_i_numbers list = {found, NULL, 0, sizeof found / sizeof found[0]};
     const grobo_i_event *event;
     int result = grobo_i_peek(events, &event);
 
@@ -223,40 +278,15 @@ int grobo_i_read_doubles(grobo_i_events *events, const char *what, double *value
     if (!is_list) {
         return complain_kind(events, what, "a list of numbers");
     }
-    result = grobo_i_read_list(events, what, read_number, &list);
+    result = grobo_i_read_numbers(events, what, &list);
     if (result == 0 && list.count != count) {
-        result = grobo_i_complain(events->reader, GROBO_ERR_SYNTAX, "list-length", place,
-                                  "%s has %zu numbers, not %zu", what, list.count, count);
+        return grobo_i_complain(events->reader, GROBO_ERR_SYNTAX, "list-length", place,
+                                "%s has %d numbers, not %d", what, list.count, count);
+    }
+    if (result == 0) {
+        memcpy(values, found, (size_t)count * sizeof *values);
     }
     return result;
-}
-
-int grobo_i_skip(grobo_i_events *events)
-{
-    const grobo_i_event *event;
-    int depth = 0;
-
-    do {
-        int result = grobo_i_next(events, &event);
-        if (result < 0) {
-            return result;
-        }
-        switch (event->kind) {
-        case GROBO_I_LIST:
-        case GROBO_I_MAP:
-            depth++;
-            break;
-        case GROBO_I_LIST_END:
-        case GROBO_I_MAP_END:
-            depth--;
-            break;
-        case GROBO_I_SCALAR:
-        case GROBO_I_ALIAS:
-        case GROBO_I_DOCUMENT_END:
-            break;
-        }
-    } while (depth > 0);
-    return 0;
 }
 
 /* ---- mappings ----------------------------------------------------------------------------- */

@@ -39,8 +39,15 @@ int grobo_i_skip(grobo_i_events *events);
 int grobo_i_read_double(grobo_i_events *events, const char *what, double *value);
 int grobo_i_read_long(grobo_i_events *events, const char *what, long low, long high, long *value);
 int grobo_i_read_bool(grobo_i_events *events, const char *what, bool *value);
-/* Exactly count numbers. */
-int grobo_i_read_doubles(grobo_i_events *events, const char *what, double *values, size_t count);
+/* A list of numbers, each with its place where places are asked for. */
+typedef struct grobo_i_numbers {
+    double *values;
+    grobo_i_place *places; /* or NULL */
+    int count, cap;        /* more than cap are refused */
+} grobo_i_numbers;
+int grobo_i_read_numbers(grobo_i_events *events, const char *what, grobo_i_numbers *list);
+/* Exactly count numbers, at most 9. */
+int grobo_i_read_doubles(grobo_i_events *events, const char *what, double *values, int count);
 /* A copy of a scalar, null being ""; freed by grobo_i_free_text(). An old *value is freed. */
 int grobo_i_read_string(grobo_i_events *events, const char *what, char **value);
 /* True for a plain scalar that means nothing: empty, ~, null. */
@@ -48,9 +55,5 @@ bool grobo_i_is_null(const grobo_i_event *event);
 bool grobo_i_is_text(const grobo_i_event *event, const char *text);
 /* One node as flow-style text on one line. */
 int grobo_i_capture(grobo_i_events *events, grobo_i_text *text);
-
-/* A number that is complained about if it is none. */
-int grobo_i_take_number(grobo_i_events *events, const grobo_i_event *event, const char *what,
-                        double *value);
 
 #endif

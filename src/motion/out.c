@@ -41,11 +41,17 @@ void grobo_i_put_text(grobo_i_out *out, const char *text)
     grobo_i_put(out, text, strlen(text));
 }
 
+char *grobo_i_reserve(grobo_i_out *out, size_t length)
+{
+    if (length > sizeof out->buffer - out->used) {
+        flush(out);
+    }
+    return out->buffer + out->used;
+}
+
 void grobo_i_put_number(grobo_i_out *out, double value)
 {
-    char text[GROBO_I_NUMBER_BYTES];
-
-    grobo_i_put(out, text, grobo_i_format_number(value, text));
+    out->used += grobo_i_format_number(value, grobo_i_reserve(out, GROBO_I_NUMBER_BYTES));
 }
 
 void grobo_i_put_int(grobo_i_out *out, long value)

@@ -15,6 +15,8 @@ typedef struct grobo_i_out {
 void grobo_i_out_begin(grobo_i_out *out, const grobo_sink *sink);
 void grobo_i_put(grobo_i_out *out, const char *text, size_t length);
 void grobo_i_put_text(grobo_i_out *out, const char *text);
+/* Room for length bytes, at most 64, to be written and added to `used` by the caller. */
+char *grobo_i_reserve(grobo_i_out *out, size_t length);
 /* As grobo_i_format_number(). */
 void grobo_i_put_number(grobo_i_out *out, double value);
 void grobo_i_put_int(grobo_i_out *out, long value);

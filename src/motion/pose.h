@@ -12,18 +12,13 @@ typedef enum grobo_i_pose_type {
     GROBO_I_OTHER
 } grobo_i_pose_type;
 
-/* An angle or a joint's number, and where it stands. */
-typedef struct grobo_i_pose_entry {
-    double value;
-    grobo_i_place place;
-} grobo_i_pose_entry;
-
 /* A list of joints or angles. */
 typedef struct grobo_i_pose_list {
     grobo_i_place place;
     int count;
     bool given;
-    grobo_i_pose_entry entries[GROBO_JOINTS_MAX];
+    double values[GROBO_JOINTS_MAX];
+    grobo_i_place places[GROBO_JOINTS_MAX];
 } grobo_i_pose_list;
 
 /* One ref while it is read. */
@@ -34,13 +29,14 @@ typedef struct grobo_i_pose_ref {
     grobo_key_info info;
     grobo_i_pose_type type;
     char type_text[32];
-    grobo_i_pose_list joints, q;
-    grobo_ik_link links[GROBO_IK_LINKS_MAX];
     uint8_t n_links;
     grobo_i_kept *kept;
     char *name;
     size_t same_as; /* number + 1 of the pose referred to by name */
     bool has_time, has_refer, failed;
+    /* what is above is cleared for each ref; of what follows, counts say what is valid */
+    grobo_i_pose_list joints, q;
+    grobo_ik_link links[GROBO_IK_LINKS_MAX];
 } grobo_i_pose_ref;
 
 /* Number + 1 of the latest pose of this name, 0: none. */

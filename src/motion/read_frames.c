@@ -155,24 +155,6 @@ static int skip_unknown(grobo_i_events *events, void *target, const char *key)
 
 /* ---- frames ------------------------------------------------------------------------------- */
 
-static int read_value(grobo_i_events *events, void *target)
-{
-    component *part = target;
-    const grobo_i_event *event;
-    int result = grobo_i_peek(events, &event);
-
-    if (result < 0) {
-        return result;
-    }
-    if (part->count == 1 + GROBO_JOINTS_MAX) {
-        return grobo_i_refuse(events->reader, GROBO_ERR_CAP, "joints", event->place,
-                              "more than %d joints in a frame", GROBO_JOINTS_MAX);
-    }
-    part->places[part->count] = event->place;
-    part->values[part->count] = 0;
-    return grobo_i_read_double(events, "frames", &part->values[part->count++]);
-}
-
 /* How many numbers the frames have: from numParts if that is known, else from the first. */
 static int set_columns(component *part)
 {
@@ -243,13 +225,14 @@ static int read_frame(grobo_i_events *events, void *target)
         return result;
     }
     part->row_place = event->place;
-    part->count = 0;
     if (event->kind != GROBO_I_LIST) {
         result = grobo_i_complain(events->reader, GROBO_ERR_SYNTAX, "type", event->place,
                                   "frames: a frame that is no list");
         return result < 0 ? result : grobo_i_skip(events);
     }
-    result = grobo_i_read_list(events, "a frame", read_value, part);
+    grobo_i_numbers numbers = {part->values, part->places, 0, 1 + GROBO_JOINTS_MAX};
+    result = grobo_i_read_numbers(events, "frames", &numbers);
+    part->count = numbers.count;
     return result < 0 ? result : add_frame(part);
 }
 

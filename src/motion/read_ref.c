@@ -135,8 +135,8 @@ static bool belongs(grobo_i_pose_ref *ref)
 static void widen_motion(grobo_motion *motion, const grobo_i_pose_list *joints)
 {
     for (int i = 0; i < joints->count; i++) {
-        if ((int)joints->entries[i].value >= motion->n_joints) {
-            motion->n_joints = (uint8_t)(joints->entries[i].value + 1);
+        if ((int)joints->values[i] >= motion->n_joints) {
+            motion->n_joints = (uint8_t)(joints->values[i] + 1);
         }
     }
 }
@@ -147,20 +147,19 @@ static int put_angles(grobo_i_pose_ref *ref, const grobo_i_row *row)
     grobo_i_reader *reader = ref->document->reader;
 
     for (int i = 0; i < ref->joints.count; i++) {
-        const grobo_i_pose_entry *entry = &ref->joints.entries[i];
-        int joint = (int)entry->value;
+        int joint = (int)ref->joints.values[i];
         if (joint < 0) {
             continue; /* complained about */
         }
         int result = 0;
         if ((*row->set & GROBO_JOINT_BIT(joint)) != 0) {
-            result = grobo_i_complain(reader, GROBO_ERR_SYNTAX, "joint-twice", entry->place,
-                                      "joint %d is there twice", joint);
+            result = grobo_i_complain(reader, GROBO_ERR_SYNTAX, "joint-twice",
+                                      ref->joints.places[i], "joint %d is there twice", joint);
         }
-        row->angle_rad[joint] = ref->q.entries[i].value;
+        row->angle_rad[joint] = ref->q.values[i];
         *row->set |= GROBO_JOINT_BIT(joint);
         if (result == 0) {
-            result = grobo_i_keep_position(reader, row, joint, ref->q.entries[i].place);
+            result = grobo_i_keep_position(reader, row, joint, ref->q.places[i]);
         }
         if (result < 0) {
             return result;
@@ -276,7 +275,9 @@ static int read_ref(grobo_i_events *events, void *target)
     }
     grobo_i_document *document = ref->document;
     bool is_map = event->kind == GROBO_I_MAP;
-    memset(ref, 0, sizeof *ref);
+    memset(ref, 0, offsetof(grobo_i_pose_ref, joints));
+    ref->joints.given = ref->q.given = false;
+    ref->joints.count = ref->q.count = 0;
     ref->document = document;
     ref->place = event->place;
     result = grobo_i_read_map(events, &fields, ref, &seen);

@@ -4,85 +4,60 @@
 
 #include "motion/pose.h"
 
-static int read_entry(grobo_i_events *events, grobo_i_pose_list *list, const char *what)
+static int read_list(grobo_i_events *events, const char *what, grobo_i_pose_list *list)
 {
-    const grobo_i_event *event;
-    int result = grobo_i_peek(events, &event);
-
-    if (result < 0) {
-        return result;
-    }
-    if (list->count == GROBO_JOINTS_MAX) {
-        return grobo_i_refuse(events->reader, GROBO_ERR_CAP, "joints", event->place,
-                              "more than %d in %s", GROBO_JOINTS_MAX, what);
-    }
-    grobo_i_pose_entry *entry = &list->entries[list->count++];
-    entry->place = event->place;
-    entry->value = 0;
-    if (strcmp(what, "q") == 0) {
-        return grobo_i_read_double(events, "q", &entry->value);
-    }
-    long joint = -1;
-    result = grobo_i_read_long(events, what, 0, 1000000, &joint);
-    if (result == 0 && joint >= GROBO_JOINTS_MAX) {
-        result = grobo_i_complain(events->reader, GROBO_ERR_CAP, "joints", entry->place,
-                                  "joint %ld is beyond the last possible, %d", joint,
-                                  GROBO_JOINTS_MAX - 1);
-        joint = -1;
-    }
-    entry->value = (double)joint;
-    return result;
-}
-
-static int read_joint(grobo_i_events *events, void *target)
-{
-    return read_entry(events, target, "joints");
-}
-
-static int read_q_value(grobo_i_events *events, void *target)
-{
-    return read_entry(events, target, "q");
-}
-
-static int begin_list(grobo_i_events *events, grobo_i_pose_list *list)
-{
+    grobo_i_numbers numbers = {list->values, list->places, 0, GROBO_JOINTS_MAX};
     const grobo_i_event *event;
     int result = grobo_i_peek(events, &event);
 
     list->place = event->place;
     list->given = result == 0 && !grobo_i_is_null(event);
+    if (result == 0) {
+        result = grobo_i_read_numbers(events, what, &numbers);
+    }
+    list->count = numbers.count;
+    return result;
+}
+
+/* A list of joints: one that cannot be becomes -1. */
+static int read_joint_list(grobo_i_events *events, const char *what, grobo_i_pose_list *list)
+{
+    int result = read_list(events, what, list);
+
+    for (int i = 0; i < list->count && result == 0; i++) {
+        double joint = list->values[i];
+        if (joint >= 0 && joint < GROBO_JOINTS_MAX && joint == (int)joint) {
+            continue;
+        }
+        list->values[i] = -1;
+        bool large = joint >= GROBO_JOINTS_MAX;
+        result = grobo_i_complain(
+            events->reader, large ? GROBO_ERR_CAP : GROBO_ERR_SYNTAX, "joints", list->places[i],
+            large ? "%s: joints go up to %d" : "%s: a joint is a whole number from 0 to %d", what,
+            GROBO_JOINTS_MAX - 1);
+    }
     return result;
 }
 
 static int read_joints(grobo_i_events *events, void *target)
 {
-    grobo_i_pose_list *list = &((grobo_i_pose_ref *)target)->joints;
-    int result = begin_list(events, list);
-
-    return result < 0 ? result : grobo_i_read_list(events, "joints", read_joint, list);
+    return read_joint_list(events, "joints", &((grobo_i_pose_ref *)target)->joints);
 }
 
 static int read_q(grobo_i_events *events, void *target)
 {
-    grobo_i_pose_list *list = &((grobo_i_pose_ref *)target)->q;
-    int result = begin_list(events, list);
-
-    return result < 0 ? result : grobo_i_read_list(events, "q", read_q_value, list);
+    return read_list(events, "q", &((grobo_i_pose_ref *)target)->q);
 }
 
 static int read_sp_joints(grobo_i_events *events, void *target)
 {
     grobo_i_pose_ref *ref = target;
     grobo_i_pose_list list;
+    int result = read_joint_list(events, "spJoints", &list);
 
-    list.count = 0;
-    int result = begin_list(events, &list);
-    if (result == 0) {
-        result = grobo_i_read_list(events, "spJoints", read_joint, &list);
-    }
     for (int i = 0; i < list.count; i++) {
-        if (list.entries[i].value >= 0) {
-            ref->info.stationary |= GROBO_JOINT_BIT((unsigned)list.entries[i].value);
+        if (list.values[i] >= 0) {
+            ref->info.stationary |= GROBO_JOINT_BIT((unsigned)list.values[i]);
         }
     }
     return result;

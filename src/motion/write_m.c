@@ -15,9 +15,8 @@ typedef struct rounding {
 
 static void put_scaled(grobo_i_out *out, double value, double unit, double units)
 {
-    char text[GROBO_I_NUMBER_BYTES];
-
-    grobo_i_put(out, text, grobo_i_format_scaled(value, unit, units, text));
+    out->used +=
+        grobo_i_format_scaled(value, unit, units, grobo_i_reserve(out, GROBO_I_NUMBER_BYTES));
 }
 
 static void put_whole(grobo_i_out *out, double value, double *change)
@@ -59,18 +58,18 @@ static void put_line(const grobo_i_writing *writing, const grobo_i_row *row, con
     } else {
         put_scaled(out, *row->time_s, GROBO_I_M_SECOND, GROBO_I_M_SECOND_UNITS);
     }
-    grobo_i_put_text(out, " ");
+    grobo_i_put(out, " ", 1);
     for (int c = 0; c < columns; c++) {
         int j = joints[c];
         double angle_rad = (*row->set & GROBO_JOINT_BIT(j)) != 0 ? row->angle_rad[j] : 0;
-        grobo_i_put_text(out, " ");
+        grobo_i_put(out, " ", 1);
         if (integers) {
             put_whole(out, angle_rad * GROBO_I_M_ANGLE_UNITS / GROBO_I_M_ANGLE, &changes->ddeg);
         } else {
             put_scaled(out, angle_rad, GROBO_I_M_ANGLE, GROBO_I_M_ANGLE_UNITS);
         }
     }
-    grobo_i_put_text(out, "\n");
+    grobo_i_put(out, "\n", 1);
 }
 
 void grobo_i_write_m(const grobo_i_writing *writing, const grobo_motion *motion)

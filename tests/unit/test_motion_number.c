@@ -81,6 +81,40 @@ static void test_number_round_trip(void **state)
     }
 }
 
+/* Of any digits and exponent the nearest double, as the C library finds it. */
+static void test_numbers_are_rounded_right(void **state)
+{
+    (void)state;
+    uint64_t bits = 88172645463325252U;
+
+    for (int i = 0; i < 300000; i++) {
+        char text[64];
+        double value = 0;
+        bits ^= bits << 13;
+        bits ^= bits >> 7;
+        bits ^= bits << 17;
+        /* 1 to 20 digits, most of them wide; exponents where the quick way ends and beyond. */
+        uint64_t digits = bits >> (i % 5 == 0 ? (bits & 63) : (bits & 7));
+        int exponent = (int)(bits >> 40 & 63) - 40;
+        int length = snprintf(text, sizeof text, "%llue%d", (unsigned long long)digits, exponent);
+        assert_true(grobo_i_parse_number(text, (size_t)length, &value));
+        if (value != strtod(text, NULL)) {
+            fail_msg("%s gives %.17g", text, value);
+        }
+    }
+    /* Just beside half of a last place, and on it. */
+    static const char *const halves[] = {
+        "9007199254740993",    "9007199254740992.5",
+        "9007199254740993.01", "1.00000000000000011102230246251565",
+        "18014398509481982e1", "4503599627370496.5",
+        "4503599627370497.5",  "450359962737049650e-2"};
+    for (size_t i = 0; i < sizeof halves / sizeof halves[0]; i++) {
+        double value = 0;
+        assert_true(grobo_i_parse_number(halves[i], strlen(halves[i]), &value));
+        assert_true(value == strtod(halves[i], NULL));
+    }
+}
+
 static void test_locale(void **state)
 {
     (void)state;
@@ -109,6 +143,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_numbers),
         cmocka_unit_test(test_number_round_trip),
+        cmocka_unit_test(test_numbers_are_rounded_right),
         cmocka_unit_test(test_locale),
     };
 
