@@ -139,6 +139,31 @@ for path in "$data"/choreonoid/*.pseq "$data"/choreonoid/*.yaml "$data"/choreono
     fi
 done
 
+# ---- the whole body -------------------------------------------------------------------------
+
+walk_json='lines[0]["balance"]["stands_always"] and lines[0]["balance"]["problems"] == 0 and
+    15 < lines[0]["balance"]["margin_mm"] < 39 and not lines[0]["balance"]["assumed"]'
+check_json "--balance in numbers" "$walk_json" \
+    "$GRCTL" plot --json --balance -o "$work/plot.svg" motions/step.pseq
+check "and as a picture" drawn "$work/plot.svg" 'From above' 'class="sole right"' \
+    'at least [0-9.]* mm inside' 'Right foot stands' 'legs by inverse kinematics'
+check "the legs move" drawn "$work/plot.svg" '<title>R_KNEE_P .* at 1.700 s</title>'
+still() {
+    exits 0 "$GRCTL" plot --ik off -j R_HIP_Y,R_KNEE_P -o "$work/plot.svg" motions/step.pseq &&
+        ! grep -q 'inverse kinematics' "$work/plot.svg"
+}
+check "--ik off draws their own angles" still
+flat_json='lines[0]["balance"]["assumed"] and lines[0]["balance"]["margin_mm"] > 25 and
+    lines[0]["balance"]["problems"] == 0'
+check_json "a motion of angles stands on both feet" "$flat_json" \
+    "$GRCTL" plot --json --balance -o "$work/plot.svg" motions/squat.pseq
+check "which is said" drawn "$work/plot.svg" 'both feet are taken to stand'
+long_json='lines[0]["length_ms"] > 5500 and lines[0]["balance"]["margin_mm"] > 15'
+check_json "with the balancer it lasts a second longer" "$long_json" \
+    "$GRCTL" plot --json --balance on -o "$work/plot.svg" motions/step.pseq
+check "of another robot nothing is known" fails 3 "no motion of GR001's" \
+    "$GRCTL" plot --balance "$work/many.yaml"
+
 # ---- where it goes --------------------------------------------------------------------------
 
 check "without -o to standard output" both exits 0 "$GRCTL" plot $greet --- says '^<svg '

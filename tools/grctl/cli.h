@@ -37,13 +37,14 @@ typedef struct cli_option {
     const char *help;
     double min, max; /* of a number, both included */
     bool real;       /* a number may have a fraction */
+    bool optional;   /* the word of a choice may be missing: taken if the next word is one */
 } cli_option;
 
 typedef struct cli_value {
     int given;        /* how often */
     const char *text; /* as typed */
     double number;
-    int choice; /* index of the word */
+    int choice; /* index of the word; 0 where an optional one is missing */
 } cli_value;
 
 /* What the arguments of a command are: for completion and manual. */

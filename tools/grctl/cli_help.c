@@ -15,7 +15,7 @@ static void print_option(FILE *to, const cli_option *o)
     else
         n = snprintf(left, sizeof left, "    --%s", o->name);
     if (o->kind != CLI_FLAG && n > 0 && (size_t)n < sizeof left)
-        snprintf(left + n, sizeof left - (size_t)n, " %s", o->value);
+        snprintf(left + n, sizeof left - (size_t)n, o->optional ? " [%s]" : " %s", o->value);
     if (strlen(left) < COLUMN)
         fprintf(to, "  %-*s  %s\n", COLUMN, left, o->help);
     else

@@ -156,6 +156,12 @@ static const cli_option *find_option(parser *p, const char *name, size_t length,
     return NULL;
 }
 
+/* True if what follows is no value of an option that can do without. */
+static bool stands_alone(const parser *p, const cli_option *o)
+{
+    return o->optional && (p->at >= p->argc || choice_index(o->value, p->argv[p->at]) < 0);
+}
+
 /* --name, --name=value, --name value */
 static bool parse_long(parser *p, const char *token)
 {
@@ -168,6 +174,10 @@ static bool parse_long(parser *p, const char *token)
         return complain(p, "unknown option --%.*s", (int)length, name);
     if (o->kind == CLI_FLAG)
         return text ? complain(p, "--%s takes no value", o->name) : take_value(p, o, value, "");
+    if (!text && stands_alone(p, o)) {
+        value->given++;
+        return true;
+    }
     if (!text) {
         if (p->at >= p->argc)
             return complain(p, "--%s needs a value: %s", o->name, o->value);

@@ -1,14 +1,29 @@
 /* SPDX-License-Identifier: MIT */
+#include "check_whole.h"
 #include "commands.h"
 #include "file.h"
+
+enum { OPT_BODY, OPT_BALANCE = OPT_BODY + WHOLE_BALANCE };
+
+static const cli_option options[] = {
+    [OPT_BODY + WHOLE_IK] = WHOLE_IK_OPTION,
+    [OPT_BODY + WHOLE_STEP] = WHOLE_STEP_OPTION,
+    [OPT_BODY + WHOLE_ZMP] = WHOLE_ZMP_OPTION,
+    [OPT_BALANCE] = {.name = "balance",
+                     .kind = CLI_CHOICE,
+                     .value = "off|on|compat11",
+                     .optional = true,
+                     .help = "would it fall, do feet slip; on: with the waist moved"},
+};
 
 typedef struct tally {
     size_t errors, warnings;
 } tally;
 
 /* Everything about one file goes to the list: reading it, then playing it on the model. */
-static void check_file(const char *path, grobo_diagnostics *list)
+static void check_file(const app *a, const char *path, grobo_diagnostics *list)
 {
+    grobo_body_options body;
     grobo_read_options read = {
         .model = &grobo_gr001_model, .keep_positions = true, .keep_going = true};
     grobo_check_options check = {.name = path};
@@ -17,6 +32,9 @@ static void check_file(const char *path, grobo_diagnostics *list)
     int error = file_read(path, &read, list, &motion);
     if (!error) {
         error = grobo_motion_check(motion, &grobo_gr001_model, &check, list);
+        whole_options(a, OPT_BODY, &body);
+        if (error >= 0)
+            error = check_whole(path, motion, &body, app_option(a, OPT_BALANCE)->given, list);
         grobo_motion_free(motion);
     }
     if (error < 0 && grobo_diagnostics_total(list, GROBO_SEVERITY_ERROR) == before) {
@@ -66,7 +84,7 @@ static int run(app *a)
     if (error)
         return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s", grobo_error_text(error));
     for (int i = 0; i < a->line.n_arguments; i++)
-        check_file(a->line.argument[i], list);
+        check_file(a, a->line.argument[i], list);
     t.errors = grobo_diagnostics_total(list, GROBO_SEVERITY_ERROR);
     t.warnings = grobo_diagnostics_total(list, GROBO_SEVERITY_WARNING);
     if (a->json)
@@ -91,8 +109,14 @@ const cli_command cmd_check = {
                "line and column: what is malformed, angles outside a joint's limits, moves too\n"
                "fast for the servo (and the time they would need), times going back, joints that\n"
                "GR001 does not have, legs that only ikLinks give. Exit status 3 if there is an\n"
-               "error; warnings alone leave it 0. Notes are shown with -v.\n",
-    .example = "  grctl check motions/*\n  grctl check --json walk.pseq\n",
+               "error; warnings alone leave it 0. Notes are shown with -v.\n\n"
+               "Legs given by ikLinks are solved, and what they come to is checked too. --balance\n"
+               "adds where the ZMP leaves the soles, no foot stands, or a standing foot slips; a\n"
+               "motion that gives no feet is taken to stand on both.\n",
+    .example = "  grctl check motions/*\n  grctl check --json walk.pseq\n"
+               "  grctl check --balance walk.pseq\n",
+    .options = options,
+    .n_options = sizeof options / sizeof options[0],
     .min_arguments = 1,
     .max_arguments = -1,
     .argument = CLI_ARG_FILE,

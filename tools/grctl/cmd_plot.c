@@ -6,8 +6,9 @@
 #include "joints.h"
 #include "picture.h"
 #include "plot.h"
+#include "whole.h"
 
-enum { OPT_OUT, OPT_JOINTS, OPT_RATE };
+enum { OPT_OUT, OPT_JOINTS, OPT_RATE, OPT_BODY, OPT_BALANCE = OPT_BODY + WHOLE_BALANCE };
 
 static const cli_option options[] = {
     [OPT_OUT] = {.name = "output",
@@ -28,6 +29,14 @@ static const cli_option options[] = {
                   .min = 0.1,
                   .max = 1000,
                   .real = true},
+    [OPT_BODY + WHOLE_IK] = WHOLE_IK_OPTION,
+    [OPT_BODY + WHOLE_STEP] = WHOLE_STEP_OPTION,
+    [OPT_BODY + WHOLE_ZMP] = WHOLE_ZMP_OPTION,
+    [OPT_BALANCE] = {.name = "balance",
+                     .kind = CLI_CHOICE,
+                     .value = "off|on|compat11",
+                     .optional = true,
+                     .help = "draw whether it will fall; on: with the waist moved"},
 };
 
 typedef struct order {
@@ -79,14 +88,14 @@ static int settle(app *a, order *o)
     return 0;
 }
 
-static int choose_joints(app *a, const grobo_motion *motion, const grobo_model *model,
-                         grobo_joint_mask *joints)
+static int choose_joints(app *a, const plot_subject *of, grobo_joint_mask *joints)
 {
     const cli_value *list = app_option(a, OPT_JOINTS);
     grobo_posture posture;
     if (list->given)
-        return joints_parse_motion(a, list->text, model, grobo_motion_joints(motion), joints);
-    for (size_t i = 0; grobo_motion_get(motion, i, &posture) == 0; i++)
+        return joints_parse_motion(a, list->text, of->model, of->clip->n_joints, joints);
+    *joints |= of->solved;
+    for (size_t i = 0; grobo_motion_get(of->motion, i, &posture) == 0; i++)
         *joints |= posture.set;
     return 0;
 }
@@ -124,9 +133,20 @@ static json_t *joint_json(const plot_curve *curve)
     return o;
 }
 
+static json_t *balance_json(const plot_balance *b)
+{
+    json_t *o = json_pack("{s:b,s:b,s:i}", "stands_always", b->stands_always, "assumed", b->assumed,
+                          "problems", b->n_problems);
+    if (b->stands_ever) {
+        json_object_set_new(o, "margin_mm", app_json_number(b->points[b->worst].margin_m * 1e3, 2));
+        json_object_set_new(o, "at_ms", app_json_number(b->points[b->worst].t_s * 1e3, 3));
+    }
+    return o;
+}
+
 static void report(const app *a, const order *o, const plot_data *data)
 {
-    json_t *joints;
+    json_t *joints, *all;
     if (!a->json) {
         if (strcmp(o->out, "-") != 0)
             app_note(a, "wrote %s", o->out);
@@ -135,35 +155,92 @@ static void report(const app *a, const order *o, const plot_data *data)
     joints = json_array();
     for (int i = 0; i < data->n_curves; i++)
         json_array_append_new(joints, joint_json(&data->curves[i]));
-    app_print_json(json_pack("{s:o,s:o,s:I,s:o,s:o}", "file", app_json_text(o->in), "output",
-                             app_json_text(o->out), "postures", (json_int_t)data->clip.n_keys,
-                             "length_ms", app_json_number(data->length_s * 1e3, 3), "joints",
-                             joints));
+    all = json_pack("{s:o,s:o,s:I,s:o,s:o}", "file", app_json_text(o->in), "output",
+                    app_json_text(o->out), "postures", (json_int_t)plot_keys(data), "length_ms",
+                    app_json_number(data->length_s * 1e3, 3), "joints", joints);
+    if (data->of.balance)
+        json_object_set_new(all, "balance", balance_json(data->of.balance));
+    app_print_json(all);
 }
 
-static int draw(app *a, const order *o, const grobo_motion *motion)
+/* What increments count from: the initial posture, joints we do not know at 0. */
+static void initial_posture(const grobo_motion *motion, const grobo_model *model,
+                            grobo_posture *start)
 {
-    const grobo_model *model = file_model(motion);
-    plot_options how = {.rate_hz = app_number(a, OPT_RATE, 0)};
-    static plot_data data;
+    grobo_posture_init(start, grobo_motion_joints(motion));
+    start->set = GROBO_JOINTS_ALL(start->n_joints);
+    for (int j = 0; model && j < model->n_joints && j < start->n_joints; j++)
+        start->angle_rad[j] = model->joints[j].init_rad;
+}
+
+/* What a picture needs besides the motion. */
+typedef struct work {
+    whole played;
+    grobo_body *checked;
+    plot_balance balance;
+    plot_data data;
+} work;
+
+static int solve(const app *a, work *w, const grobo_motion *motion, plot_subject *subject)
+{
+    grobo_posture start;
+    grobo_clip_options plain = {.start = &start};
+    grobo_body_options body;
+    bool standing;
+    int error;
+    initial_posture(motion, subject->model, &start);
+    whole_options(a, OPT_BODY, &body);
+    error = whole_open(&w->played, motion, &plain, &body);
+    subject->clip = &w->played.clip;
+    if (w->played.body)
+        subject->solved = whole_joints();
+    if (error || !app_option(a, OPT_BALANCE)->given)
+        return error;
+    body.rate_hz = plot_balance_rate((double)subject->clip->length_us / 1e6);
+    error = whole_body(&w->checked, motion, &body, &standing);
+    if (!error)
+        error = plot_balance_collect(&w->balance, w->checked, standing);
+    subject->balance = &w->balance;
+    return error;
+}
+
+static int draw(app *a, const order *o, const plot_data *data)
+{
     svg drawing;
-    int error, status = choose_joints(a, motion, model, &how.joints);
-    if (status)
-        return status;
-    how.columns = plot_columns(how.joints);
-    error = plot_collect(&data, motion, model, &how);
-    if (error)
-        return app_fail(a, EXIT_FILE, grobo_error_name(error), "%s: %s", o->in,
-                        file_error_text(error));
-    if (plot_draw(&drawing, &data, o->shown)) {
-        status = picture_save(a, &drawing, o->out, o->format);
-        if (!status)
-            report(a, o, &data);
-        svg_free(&drawing);
-    } else {
-        status = app_fail(a, EXIT_ROBOT, "NOMEM", "%s", grobo_error_text(GROBO_ERR_NOMEM));
+    int status;
+    if (!plot_draw(&drawing, data, o->shown))
+        return app_fail(a, EXIT_ROBOT, "NOMEM", "%s", grobo_error_text(GROBO_ERR_NOMEM));
+    status = picture_save(a, &drawing, o->out, o->format);
+    if (!status)
+        report(a, o, data);
+    svg_free(&drawing);
+    return status;
+}
+
+static int plot(app *a, const order *o, const grobo_motion *motion)
+{
+    static work w;
+    plot_subject subject = {.motion = motion, .model = file_model(motion)};
+    plot_options how = {.rate_hz = app_number(a, OPT_RATE, 0)};
+    int error = solve(a, &w, motion, &subject), status = 0;
+    if (!error) {
+        status = choose_joints(a, &subject, &how.joints);
+        how.columns = plot_columns(how.joints);
     }
-    plot_free(&data);
+    if (!error && !status)
+        error = plot_collect(&w.data, &subject, &how);
+    if (error == GROBO_ERR_TYPE)
+        status = app_fail(a, EXIT_FILE, "TYPE", "%s: no motion of GR001's: its balance is unknown",
+                          o->in);
+    else if (error)
+        status = app_fail(a, EXIT_FILE, grobo_error_name(error), "%s: %s", o->in,
+                          file_error_text(error));
+    if (!error && !status)
+        status = draw(a, o, &w.data);
+    plot_free(&w.data);
+    plot_balance_free(&w.balance);
+    grobo_body_free(w.checked);
+    whole_close(&w.played);
     return status;
 }
 
@@ -176,7 +253,7 @@ static int run(app *a)
     if (!status)
         status = file_load(a, o.in, &read, &motion);
     if (!status)
-        status = draw(a, &o, motion);
+        status = plot(a, &o, motion);
     grobo_motion_free(motion);
     return status;
 }
@@ -187,13 +264,17 @@ const cli_command cmd_plot = {
     .summary = "a picture of a motion file: angle over time",
     .details =
         "Draws every joint of a motion over time, as it is played: key poses by Choreonoid's\n"
-        "curve, .m and .mseq straight from posture to posture, frames as they are. Limits of\n"
-        "joints, key poses and stretches that are too fast for a servo are marked.\n\n"
+        "curve with legs from ikLinks, .m and .mseq straight from posture to posture, frames as\n"
+        "they are. Limits of joints, key poses and stretches too fast for a servo are marked.\n\n"
+        "--balance adds a picture of whether the robot will fall: soles, ZMP and centre of mass\n"
+        "from above, and how far the ZMP is inside the soles over time. A motion that gives no\n"
+        "feet is taken to stand on both.\n\n"
         "Without -o the SVG goes to standard output; on a terminal, and with --json, to a file\n"
         "of FILE's name in this directory, unless that would replace something that is no\n"
         "plot. PNG is made by rsvg-convert, inkscape or ImageMagick, whichever is there.\n",
     .example = "  grctl plot motions/greet.pseq\n"
-               "  grctl plot -o greet.png -j right_arm,NECK_Y motions/greet.pseq\n",
+               "  grctl plot -o greet.png -j right_arm,NECK_Y motions/greet.pseq\n"
+               "  grctl plot --balance -o step.svg motions/step.pseq\n",
     .options = options,
     .n_options = sizeof options / sizeof options[0],
     .min_arguments = 1,

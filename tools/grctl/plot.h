@@ -5,6 +5,7 @@
 
 #include <grobo/motion.h>
 
+#include "plot_balance.h"
 #include "svg.h"
 
 typedef struct plot_point {
@@ -28,10 +29,17 @@ typedef struct plot_curve {
     size_t n_fast;
 } plot_curve;
 
+/* A motion and what plays it: borrowed. */
+typedef struct plot_subject {
+    const grobo_motion *motion;
+    const grobo_model *model;    /* NULL: the motion is none of its */
+    const grobo_clip *clip;      /* of the motion's own keys, unless joints are solved */
+    grobo_joint_mask solved;     /* joints that inverse kinematics moves: 0 for none */
+    const plot_balance *balance; /* NULL: not asked for */
+} plot_subject;
+
 typedef struct plot_data {
-    const grobo_motion *motion; /* borrowed */
-    const grobo_model *model;   /* NULL: the motion is none of its */
-    grobo_clip clip;
+    plot_subject of;
     double length_s;
     int n_curves;
     plot_curve curves[GROBO_JOINTS_MAX];
@@ -44,9 +52,13 @@ typedef struct plot_options {
 } plot_options;
 
 /* Follows every joint through the motion. Returns 0 or a library error. */
-int plot_collect(plot_data *data, const grobo_motion *motion, const grobo_model *model,
-                 const plot_options *options);
+int plot_collect(plot_data *data, const plot_subject *subject, const plot_options *options);
 void plot_free(plot_data *data);
+
+/* Number of postures, as the file has them. */
+size_t plot_keys(const plot_data *data);
+/* Posture i of them as it is played, and when. Joints it sets are those it is a key of. */
+int plot_key(const plot_data *data, size_t i, grobo_posture *posture, double *t_s);
 
 /* A joint's name: the model's, else "j12". */
 void plot_joint_name(const grobo_model *model, int joint, char *name, size_t capacity);

@@ -36,8 +36,8 @@ typedef struct walk {
 
 static walk begin_walk(const plot_data *data, double rate_hz)
 {
-    bool curved = grobo_motion_get_kind(data->motion) == GROBO_MOTION_KEYS;
-    walk w = {.clip = &data->clip, .keys = rate_hz <= 0};
+    bool curved = grobo_motion_get_kind(data->of.motion) == GROBO_MOTION_KEYS;
+    walk w = {.clip = data->of.clip, .keys = rate_hz <= 0};
     if (rate_hz > 0)
         w.grid_us = 1e6 / rate_hz;
     else if (curved)
@@ -148,7 +148,7 @@ static int follow(collector *c, double rate_hz)
     if (data->length_s * rate_hz > GROBO_MOTION_FRAMES_MAX)
         return GROBO_ERR_CAP;
     for (int64_t t_us = next_time(&w, -1); t_us >= 0; t_us = next_time(&w, t_us)) {
-        int error = data->clip.sample(data->clip.ctx, t_us, &posture);
+        int error = data->of.clip->sample(data->of.clip->ctx, t_us, &posture);
         if (error)
             return error;
         for (int i = 0; i < data->n_curves; i++) {
@@ -187,40 +187,59 @@ static int add_curve(plot_data *data, int joint, int columns)
 {
     plot_curve *curve = &data->curves[data->n_curves++];
     curve->joint = joint;
-    plot_joint_name(data->model, joint, curve->name, sizeof curve->name);
-    if (data->model && joint < data->model->n_joints)
-        curve->limits = &data->model->joints[joint];
+    plot_joint_name(data->of.model, joint, curve->name, sizeof curve->name);
+    if (data->of.model && joint < data->of.model->n_joints)
+        curve->limits = &data->of.model->joints[joint];
     curve->points = calloc((size_t)(columns + 1) * POINTS_A_COLUMN, sizeof *curve->points);
     curve->fast = calloc((size_t)columns + 2, sizeof *curve->fast);
     return curve->points && curve->fast ? 0 : GROBO_ERR_NOMEM;
 }
 
-/* Increments are shown as they play from the initial posture. */
-static int make_clip(plot_data *data)
+size_t plot_keys(const plot_data *data)
 {
-    grobo_posture start;
-    grobo_clip_options options = {.start = &start};
-    grobo_posture_init(&start, grobo_motion_joints(data->motion));
-    start.set = GROBO_JOINTS_ALL(start.n_joints);
-    for (int j = 0; data->model && j < data->model->n_joints && j < start.n_joints; j++)
-        start.angle_rad[j] = data->model->joints[j].init_rad;
-    return grobo_motion_clip(data->motion, &options, &data->clip);
+    return grobo_motion_size(data->of.motion);
 }
 
-int plot_collect(plot_data *data, const grobo_motion *motion, const grobo_model *model,
-                 const plot_options *options)
+/* A pose with link targets is a key of the joints they move, at the angles they come to. */
+static int solved_key(const plot_data *data, size_t i, grobo_posture *posture, double *t_s)
+{
+    grobo_joint_mask set;
+    size_t links = 0;
+    int error = grobo_motion_get(data->of.motion, i, posture);
+    if (!error)
+        error = grobo_motion_time_s(data->of.motion, i, t_s);
+    if (error)
+        return error;
+    set = posture->set;
+    if (grobo_motion_ik_links(data->of.motion, i, &links) && links)
+        set |= data->of.solved;
+    error = data->of.clip->sample(data->of.clip->ctx, (int64_t)round(*t_s * 1e6), posture);
+    posture->set &= set;
+    return error;
+}
+
+int plot_key(const plot_data *data, size_t i, grobo_posture *posture, double *t_s)
+{
+    int64_t at_us = 0;
+    int error;
+    if (data->of.solved)
+        return solved_key(data, i, posture, t_s);
+    error = data->of.clip->key(data->of.clip->ctx, i, posture, &at_us);
+    *t_s = (double)at_us / 1e6;
+    return error;
+}
+
+int plot_collect(plot_data *data, const plot_subject *subject, const plot_options *options)
 {
     collector c = {.data = data, .columns = options->columns};
-    int error;
+    int error = 0;
     memset(data, 0, sizeof *data);
-    data->motion = motion;
-    data->model = model;
-    error = make_clip(data);
-    data->length_s = (double)data->clip.length_us / 1e6;
+    data->of = *subject;
+    data->length_s = (double)subject->clip->length_us / 1e6;
     for (int j = 0; j < GROBO_JOINTS_MAX && !error; j++)
         if (options->joints & GROBO_JOINT_BIT(j))
             error = add_curve(data, j, c.columns);
-    if (!error && data->clip.n_keys)
+    if (!error && subject->clip->n_keys)
         error = follow(&c, options->rate_hz);
     if (error)
         plot_free(data);
@@ -233,7 +252,5 @@ void plot_free(plot_data *data)
         free(data->curves[i].points);
         free(data->curves[i].fast);
     }
-    if (data->clip.key)
-        grobo_motion_clip_free(&data->clip);
     memset(data, 0, sizeof *data);
 }

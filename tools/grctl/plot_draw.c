@@ -31,8 +31,13 @@ static const char style[] =
     ".curve{fill:none;stroke-width:1.6;stroke-linejoin:round;stroke-linecap:round}\n"
     ".fast{fill:none;stroke:#f08c00;stroke-width:5;stroke-linejoin:round}\n"
     ".key{fill:#fff;stroke-width:1.4}\n"
+    ".sole{fill-opacity:.12;stroke-width:1.2}\n.com{fill:none;stroke:#d97706;stroke-width:1.2}\n"
+    ".zmp{fill:none;stroke:#6b4aa0;stroke-width:1.6;stroke-linejoin:round}\n"
+    ".least{fill:#6b4aa0}\n.worst{fill:#c81e2c}\n.ruler{stroke:#52606d;stroke-width:2}\n"
+    ".stance{stroke:none}\n"
     ".plain{stroke:#52606d}\n.right{stroke:#1d5fa8}\n"
     ".left{stroke:#0b7a63}\n.middle{stroke:#6b4aa0}\n"
+    ".sole.right,.stance.right{fill:#1d5fa8}\n.sole.left,.stance.left{fill:#0b7a63}\n"
     "text.right{stroke:none;fill:#1d5fa8}\ntext.left{stroke:none;fill:#0b7a63}\n"
     "text.middle{stroke:none;fill:#6b4aa0}\n";
 
@@ -118,30 +123,27 @@ static void draw_curve(const pen *p, const plot_panel *panel, const plot_scale *
 
 static double mark_radius(const plot_data *data)
 {
-    bool frames = grobo_motion_get_kind(data->motion) == GROBO_MOTION_FRAMES;
-    if (data->clip.n_keys > MARKS_MOST || (frames && data->clip.n_keys > BIG_MARKS_MOST))
+    bool frames = grobo_motion_get_kind(data->of.motion) == GROBO_MOTION_FRAMES;
+    if (plot_keys(data) > MARKS_MOST || (frames && plot_keys(data) > BIG_MARKS_MOST))
         return 0;
-    return data->clip.n_keys > BIG_MARKS_MOST ? 1.2 : 2.6;
+    return plot_keys(data) > BIG_MARKS_MOST ? 1.2 : 2.6;
 }
 
 static void draw_marks(const pen *p, const plot_panel *panel, const plot_scale *angle)
 {
-    const grobo_clip *clip = &p->data->clip;
-    double radius = mark_radius(p->data);
+    const size_t n = plot_keys(p->data);
+    double radius = mark_radius(p->data), t_s, deg;
     char style_class[32], tip[TEXT_BYTES], angle_text[64];
     snprintf(style_class, sizeof style_class, "key %s", panel->side);
-    for (size_t i = 0; radius > 0 && i < clip->n_keys; i++) {
+    for (size_t i = 0; radius > 0 && i < n; i++) {
         grobo_posture posture;
-        int64_t at_us;
-        double deg;
-        if (clip->key(clip->ctx, i, &posture, &at_us) < 0 ||
+        if (plot_key(p->data, i, &posture, &t_s) < 0 ||
             grobo_posture_get_deg(&posture, panel->curve->joint, &deg) < 0)
             continue;
         plot_degrees(deg, "°", angle_text, sizeof angle_text);
-        snprintf(tip, sizeof tip, "%s %s at %.3f s", panel->curve->name, angle_text,
-                 (double)at_us / 1e6);
-        svg_circle(p->s, style_class, x_at(p, panel, (double)at_us / 1e6), y_at(panel, angle, deg),
-                   radius, clip->n_keys <= TIPS_MOST ? tip : NULL);
+        snprintf(tip, sizeof tip, "%s %s at %.3f s", panel->curve->name, angle_text, t_s);
+        svg_circle(p->s, style_class, x_at(p, panel, t_s), y_at(panel, angle, deg), radius,
+                   n <= TIPS_MOST ? tip : NULL);
     }
 }
 
@@ -238,7 +240,7 @@ static void shorten(const char *text, size_t most, char *out, size_t capacity)
 
 static const char *key_word(const plot_data *data)
 {
-    switch (grobo_motion_get_kind(data->motion)) {
+    switch (grobo_motion_get_kind(data->of.motion)) {
     case GROBO_MOTION_KEYS:
         return "key pose";
     case GROBO_MOTION_STEPS:
@@ -255,20 +257,21 @@ static const char *key_word(const plot_data *data)
 static void write_about(const pen *p, const char *file)
 {
     const plot_data *data = p->data;
-    grobo_motion_kind kind = grobo_motion_get_kind(data->motion);
-    const char *body = grobo_motion_target_body(data->motion);
-    double rate_hz = grobo_motion_frame_rate(data->motion);
+    grobo_motion_kind kind = grobo_motion_get_kind(data->of.motion);
+    const char *body = grobo_motion_target_body(data->of.motion);
+    double rate_hz = grobo_motion_frame_rate(data->of.motion);
     char text[3 * TEXT_BYTES], rate[48] = "", name[TEXT_BYTES] = "", robot[TEXT_BYTES];
-    size_t n = data->clip.n_keys;
-    if (*grobo_motion_name(data->motion))
+    size_t n = plot_keys(data);
+    if (*grobo_motion_name(data->of.motion))
         shorten(file, 60, name, sizeof name);
     shorten(body, 30, robot, sizeof robot);
-    if (rate_hz > 0 && !grobo_motion_has_frame_times(data->motion))
+    if (rate_hz > 0 && !grobo_motion_has_frame_times(data->of.motion))
         snprintf(rate, sizeof rate, " at %.5g Hz", rate_hz);
-    snprintf(text, sizeof text, "%s%s%s%s%s, %zu %s%s%s, %.3f s%s", name, *name ? ": " : "",
+    snprintf(text, sizeof text, "%s%s%s%s%s, %zu %s%s%s, %.3f s%s%s", name, *name ? ": " : "",
              grobo_motion_format_name(grobo_motion_kind_format(kind)), *body ? " for " : "", robot,
              n, key_word(data), n == 1 ? "" : "s", rate, data->length_s,
-             kind == GROBO_MOTION_STEPS ? " (counted from the initial posture)" : "");
+             kind == GROBO_MOTION_STEPS ? " (counted from the initial posture)" : "",
+             data->of.solved ? ", legs by inverse kinematics" : "");
     svg_text(p->s, "about", PLOT_MARGIN, 62, "start", text);
 }
 
@@ -326,7 +329,7 @@ static void draw_legend(const pen *p)
 
 static void draw_head(const pen *p, const char *file)
 {
-    const char *name = grobo_motion_name(p->data->motion);
+    const char *name = grobo_motion_name(p->data->of.motion);
     char text[TEXT_BYTES];
     shorten(*name ? name : file, 60, text, sizeof text);
     svg_describe(p->s, "title", text);
@@ -339,7 +342,7 @@ static void draw_head(const pen *p, const char *file)
         draw_legend(p);
     else
         svg_text(p->s, "about", PLOT_MARGIN, 90, "start",
-                 p->data->clip.n_keys ? "No posture sets a joint." : "No postures.");
+                 plot_keys(p->data) ? "No posture sets a joint." : "No postures.");
 }
 
 bool plot_draw(svg *s, const plot_data *data, const char *file)
@@ -350,6 +353,8 @@ bool plot_draw(svg *s, const plot_data *data, const char *file)
     p.time = plot_time_scale(data->length_s, layout.n_sections ? layout.sections[0].plot_w : 1);
     svg_open(s, PLOT_WIDTH, layout.height, style);
     draw_head(&p, file);
+    if (data->of.balance)
+        plot_balance_draw(s, data->of.balance, data->length_s, PLOT_HEAD);
     for (int i = 0; i < layout.n_sections; i++)
         draw_section(&p, &layout.sections[i]);
     for (int i = 0; i < layout.n_panels; i++)

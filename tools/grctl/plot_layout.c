@@ -68,11 +68,11 @@ static void spread(column columns[2])
 
 static void fill(column columns[2], const block *b, const plot_data *data)
 {
-    grobo_joint_mask limbs = limbs_of(data->model);
+    grobo_joint_mask limbs = limbs_of(data->of.model);
     for (int side = 0; side < 2; side++) {
         columns[side] = (column){.title = b->title[side], .side = b->side[side]};
         if (b->group[side])
-            choose(&columns[side], data, group_of(data->model, b->group[side]));
+            choose(&columns[side], data, group_of(data->of.model, b->group[side]));
         else if (side == 0)
             choose(&columns[side], data, ~limbs);
     }
@@ -148,7 +148,7 @@ void plot_arrange(plot_layout *layout, const plot_data *data)
     double tall = data->n_curves == 1 ? TALL_OF_ONE : data->n_curves <= FEW ? TALL_OF_FEW : TALL;
     column columns[2];
     memset(layout, 0, sizeof *layout);
-    layout->height = PLOT_HEAD;
+    layout->height = PLOT_HEAD + (data->of.balance ? PLOT_BALANCE_HEIGHT : 0);
     for (int b = 0; b < BLOCKS; b++) {
         fill(columns, &blocks[b], data);
         if (columns[0].n || columns[1].n)

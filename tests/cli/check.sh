@@ -1,0 +1,141 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# grctl check: what is wrong with motion files.
+. tests/support/cli.sh
+
+data=${GROBO_SHARED:-../shared}/data
+
+check "our own motions are right" fails 0 '^[0-9]* files, nothing wrong$' "$GRCTL" check motions/*.*
+for path in motions/*.*; do
+    check "${path##*/} does not fall" fails 0 'nothing wrong' "$GRCTL" check --balance "$path"
+done
+
+# found STATUS PATTERN FILE [OPTIONS]: check exits so and prints exactly one line, like that.
+found() {
+    found_status=$1
+    found_pattern=$2
+    shift 2
+    exits "$found_status" "$GRCTL" check "$@" || return 1
+    [ "$(wc -l <"$work/out")" -eq 1 ] && grep -q -e "$found_pattern" "$work/out" && return
+    echo "not one line like '$found_pattern' but:"
+    cat "$work/out"
+    return 1
+}
+
+# pose TIME JOINTS Q: a key pose.
+pose() {
+    printf '  - time: %s\n    refer:\n      type: Pose\n      name: ""\n' "$1"
+    printf '      joints: [ %s ]\n      q: [ %s ]\n' "$2" "$3"
+}
+# motion NAME: standard input as the poses of $work/NAME.pseq.
+motion() {
+    printf 'type: PoseSeq\nname: %s\ntargetBody: GR001\nrefs:\n' "$1"
+    cat
+}
+
+{ pose 0 '13' 0 && pose 1 '13, 3' '0.9, -0.5'; } | motion outside >"$work/outside.pseq"
+check "an angle outside its limits, to the column" \
+    found 3 "outside.pseq:16:12: NECK_Y: 51.6 degrees, outside -50..50 \[limit\]" \
+    "$work/outside.pseq"
+{ pose 0 '13' 0 && pose 0.1 '13' 0.8; } | motion fast >"$work/fast.pseq"
+check "a move too fast, with the time it needs" \
+    found 3 "fast.pseq:16:12: NECK_Y: 45.8 degrees in 100 ms, the servo needs 123 ms \[too-fast\]" \
+    "$work/fast.pseq"
+{ pose 1 '13' 0 && pose 0.5 '13' 0.1; } | motion back >"$work/back.pseq"
+check "times that go back: a warning" found 0 "back.pseq:11.*warning.*\[time-back\]" \
+    "$work/back.pseq"
+pose 0 '13, 25' '0, 0' | motion joint >"$work/joint.pseq"
+check "a joint that GR001 does not have" found 0 "joint.pseq:10:.*warning: joint 25.*GR001" \
+    "$work/joint.pseq"
+: | motion empty >"$work/empty.pseq"
+check "no postures" found 0 'empty.pseq: warning: no postures' "$work/empty.pseq"
+printf '%s\n' '0 0' '100 0 x' '200 y' >"$work/bad.m"
+every_error() {
+    exits 3 "$GRCTL" check "$work/bad.m" && says 'bad.m:2:' && says 'bad.m:3:' &&
+        grep -q '^2 errors, 1 warning$' "$work/err"
+}
+check "every error of a file in one run" every_error
+check "a file that is not there" found 3 'nowhere.m: no such file' "$work/nowhere.m"
+check "quiet" both exits 0 "$GRCTL" -q check motions/greet.m --- [ ! -s "$work/err" ]
+json_list='not lines[0]["ok"] and [(d["file"][-12:], d["line"], d["column"], d["severity"],
+    d["code"]) for d in lines[0]["diagnostics"]] == [("outside.pseq", 16, 12, "error", "limit")]'
+as_json() {
+    exits 3 "$GRCTL" check --json "$work/outside.pseq" && json "$json_list"
+}
+check_json "nothing as JSON" 'lines == [{"ok": True, "diagnostics": []}]' \
+    "$GRCTL" check --json motions/greet.pseq
+if have_json; then
+    check "a diagnostic as JSON" as_json
+else
+    skip "a diagnostic as JSON" "no python3 to parse JSON with"
+fi
+
+# ---- the whole body -------------------------------------------------------------------------
+
+# Bends so far forward that it falls; without balance nothing is wrong with it.
+stand='0, 0, 0.35, -0.7, -0.35, 0, 0, 0, -0.35, 0.7, 0.35, 0, 0, 0, 0.35, 0, -0.35, -0.35, 0, 0.35'
+all='0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19'
+{
+    pose 0 "$all" "$stand"
+    pose 2 '2, 4, 8, 10, 12' '0.35, -1.2, -0.35, 1.2, -1.5'
+} | motion falls >"$work/falls.pseq"
+check "what falls is right as far as joints go" exits 0 "$GRCTL" check "$work/falls.pseq"
+falls() {
+    exits 3 "$GRCTL" check --balance "$work/falls.pseq" &&
+        says 'falls.pseq:[0-9]*: the ZMP is [0-9.]* mm outside the soles, at .*\[zmp-margin\]'
+}
+check "with --balance it is not" falls
+slips() {
+    { pose 0 "$all" "$stand" && pose 2 '6' '0.5'; } | motion slips >"$work/slips.pseq"
+    exits 0 "$GRCTL" check --balance "$work/slips.pseq" &&
+        says 'warning: L_ANKLE_R: the standing foot slips [0-9.]* mm, at .*\[foot-slip\]'
+}
+check "a foot that turns on the ground" slips
+# Legs by targets: the step of ours with one foot put too far away.
+reaches() {
+    sed 's/translation: \[ 0.0252, -0.0196, 0.02115 \]/translation: [ 0.2252, -0.0196, 0.02115 ]/' \
+        motions/step.pseq >"$work/far.pseq"
+    exits 3 "$GRCTL" check "$work/far.pseq" || return 1
+    says 'far.pseq:[0-9]*: R_ANKLE_R: the leg does not reach its target, at .*\[unreachable\]' ||
+        return 1
+    exits 0 "$GRCTL" check --ik off "$work/far.pseq"
+}
+check "a target out of reach" reaches
+: | motion nothing >"$work/nothing.pseq"
+check "nothing to balance" both exits 0 "$GRCTL" check --balance "$work/nothing.pseq" \
+    --- says 'balance-unknown'
+check "a balancer that is none is a file" found 3 '^sideways: no such file' --balance sideways
+check "unless it is told apart" fails 2 "'sideways' is none of off|on|compat11" \
+    "$GRCTL" check --balance=sideways motions/step.pseq
+check "with the balancer" fails 0 'nothing wrong' "$GRCTL" check --balance on motions/step.pseq
+
+# ---- reference material ---------------------------------------------------------------------
+
+# edge NAME VERDICT: as expected.tsv says of reading it.
+edge() {
+    edge_path=$data/edge/$1
+    case $2 in
+    refuse*)
+        exits 3 "$GRCTL" check "$edge_path" && says "$1:[0-9]*:[0-9]*: " &&
+            exits 3 "$GRCTL" show "$edge_path"
+        ;;
+    *)
+        exits 0 "$GRCTL" show "$edge_path" || return 1
+        "$GRCTL" check "$edge_path" >"$work/out" 2>"$work/err"
+        case $2 in *warn*) says "$1:.*warning: " ;; esac
+        ;;
+    esac
+}
+if [ -f "$data/edge/expected.tsv" ]; then
+    tab=$(printf '\t')
+    grep -v '^#' "$data/edge/expected.tsv" >"$work/expected"
+    while IFS=$tab read -r name choreonoid verdict; do
+        check "$name: $verdict (Choreonoid: $choreonoid)" edge "$name" "$verdict"
+    done <"$work/expected"
+    check "SampleMotion1 stands" exits 0 \
+        "$GRCTL" check --balance "$data/choreonoid/GR001-SampleMotion1.pseq"
+    check "its legs are given by links" says 'legs by ikLinks'
+else
+    skip "files at the edge" "no reference material beside the checkout"
+fi
+done_testing
