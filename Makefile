@@ -73,6 +73,7 @@ objects = $(patsubst %.c,$(BUILD)/%.o,$(1))
 CORE_OBJS := $(call objects,$(CORE_SRCS))
 LIB_OBJS := $(CORE_OBJS) $(call objects,$(OTHER_SRCS))
 TOOL_OBJS := $(call objects,$(TOOL_SRCS))
+TOOL_LIB := $(BUILD)/libgrctl.a
 SUPPORT_OBJS := $(call objects,$(SUPPORT_SRCS))
 TEST_PROGRAMS := $(patsubst %.c,$(BUILD)/%,$(TEST_SRCS))
 FUZZ_REPLAYS := $(patsubst %.c,$(BUILD)/%,$(FUZZ_SRCS))
@@ -223,7 +224,9 @@ $(eval $(call compile,tests,TEST_INCLUDE OS_FLAGS EVENT_CFLAGS YAML_CFLAGS CMOCK
 $(STATIC_LIB): $(LIB_OBJS)
 $(CORE_LIB): $(CORE_OBJS)
 $(SUPPORT_LIB): $(SUPPORT_OBJS)
-$(STATIC_LIB) $(CORE_LIB) $(SUPPORT_LIB): $(BUILD)/.flags
+# The command without its main: tests link parts of it.
+$(TOOL_LIB): $(filter-out %/main.o,$(TOOL_OBJS))
+$(STATIC_LIB) $(CORE_LIB) $(SUPPORT_LIB) $(TOOL_LIB): $(BUILD)/.flags
 	$(say) AR $@
 	@rm -f $@
 	$(Q)$(AR) rcs $@ $(filter %.o,$^)
@@ -233,11 +236,11 @@ $(SHARED_LIB): $(LIB_OBJS)
 	$(Q)$(CC) -shared -Wl,-soname,$(SONAME) $(if $(SAN),,-Wl,-z,defs) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
 	@ln -sf $(SONAME) $(BUILD)/libgrobo.so
 
-$(BUILD)/grctl: $(TOOL_OBJS) $(STATIC_LIB)
+$(BUILD)/grctl: $(filter %/main.o,$(TOOL_OBJS)) $(TOOL_LIB) $(STATIC_LIB)
 	$(say) LD $@
 	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(TOOL_LIBS) $(LIBS)
 
-$(TEST_PROGRAMS): $(BUILD)/%: $(BUILD)/%.o $(SUPPORT_LIB) $(STATIC_LIB)
+$(TEST_PROGRAMS): $(BUILD)/%: $(BUILD)/%.o $(SUPPORT_LIB) $(TOOL_LIB) $(STATIC_LIB)
 	$(say) LD $@
 	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(CMOCKA_LIBS) $(LIBS)
 
