@@ -27,6 +27,8 @@
     X(scenario)                                                                                    \
     X(servo_get)                                                                                   \
     X(servo_set)                                                                                   \
+    X(decode)                                                                                      \
+    X(replay)                                                                                      \
     X(sim)                                                                                         \
     X(help)                                                                                        \
     X(version)

@@ -64,6 +64,15 @@ static void on_robot(void *ctx, const grobo_event *event)
         c->on_event(c, event);
 }
 
+static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes, size_t size,
+                   void *ctx)
+{
+    conn *c = ctx;
+    trace_bytes(&c->trace, direction, now_us, bytes, size);
+    if (c->on_bytes)
+        c->on_bytes(c, direction, now_us, bytes, size);
+}
+
 /* ---- waiting -------------------------------------------------------------------------------- */
 
 static bool job_done(conn *c)
@@ -204,8 +213,18 @@ static int make_session(conn *c, const char *device, bool check)
                                    .skip_check = !check,
                                    .on_event = on_session,
                                    .on_robot = on_robot,
+                                   .on_tap = on_tap,
                                    .ctx = c};
     return grobo_session_new(&config, &c->session);
+}
+
+static int open_trace(conn *c, const char *device)
+{
+    const cli_value *baud = app_global(c->a, GLOBAL_BAUD);
+    trace_line line = {.device = device,
+                       .wiring = (grobo_wiring)app_global(c->a, GLOBAL_WIRING)->choice,
+                       .baud_bps = baud->given ? (int)baud->number : 0};
+    return trace_open(&c->trace, c->a, &line, grobo_now_us());
 }
 
 static int watch_signals(conn *c)
@@ -233,6 +252,9 @@ static int open_device(conn *c, app *a, bool check)
         return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s: %s", asked,
                         *cause.text ? cause.text : grobo_error_text(error));
     signal(SIGPIPE, SIG_IGN);
+    error = open_trace(c, device);
+    if (error)
+        return error;
     c->base = grobo_loop_new();
     error = c->base ? watch_signals(c) : GROBO_ERR_NOMEM;
     if (!error)
@@ -357,7 +379,7 @@ int conn_close(conn *c, int status)
             event_free(c->signals[i]);
     if (c->base)
         event_base_free(c->base);
-    return status;
+    return trace_close(&c->trace, c->a, status);
 }
 
 json_t *conn_link_json(const conn *c)

@@ -11,11 +11,16 @@
 #include <grobo/session.h>
 
 #include "app.h"
+#include "trace.h"
 
 typedef struct conn conn;
 
 /* What a command wants to hear beside the end of its job. */
 typedef void (*conn_event_fn)(conn *c, const grobo_event *event);
+
+/* Every byte of the line, beside --trace. */
+typedef void (*conn_bytes_fn)(conn *c, grobo_direction direction, int64_t now_us,
+                              const uint8_t *bytes, size_t size);
 
 enum { CONN_SIGNALS = 3 };
 
@@ -25,8 +30,10 @@ struct conn {
     struct event *signals[CONN_SIGNALS];
     grobo_session *session;
     grobo_robot *robot; /* the session's */
+    trace trace;        /* of --trace */
     conn_event_fn on_event;
-    void *ctx;           /* for on_event */
+    conn_bytes_fn on_bytes;
+    void *ctx;           /* for on_event, on_bytes */
     grobo_event_job job; /* how the last job ended */
     uint8_t *data;       /* where the job's data is copied to, at most data_bytes of it */
     size_t data_bytes;

@@ -1,0 +1,194 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# grctl decode: hex and text in, words and JSON out. (Traces: tests/cli/trace.sh.)
+. tests/support/cli.sh
+
+# A line that ends in a backslash goes on in the next, behind its blanks.
+joined() {
+    sed -e ':again' -e '/\\$/{' -e N -e 's/\\\n *//' -e 'b again' -e '}'
+}
+
+# decodes ARGUMENTS... <<TEXT: exactly that on standard output, status 0.
+decodes() {
+    joined >"$work/expected"
+    "$GRCTL" decode "$@" >"$work/got" 2>"$work/err" || return 1
+    diff "$work/expected" "$work/got"
+}
+
+# reads FILE <<TEXT: the same of a file that is given on standard input.
+reads() {
+    joined >"$work/expected"
+    "$GRCTL" decode <"$1" >"$work/got" 2>"$work/err" || return 1
+    diff "$work/expected" "$work/got"
+}
+
+# refuses STATUS COMPLAINT ARGUMENTS...: that status, one line with that in it.
+refuses() {
+    refuses_status=$1
+    refuses_complaint=$2
+    shift 2
+    fails "$refuses_status" "$refuses_complaint" "$GRCTL" decode "$@"
+}
+
+# ---- frames in words
+
+check 'a goal, byte by byte' decodes 53 0C FA AF 03 00 1E 04 01 F6 FF 00 00 11 <<'TEXT'
+relay 12: write servo 3 (R_SHOULDER_P): goal -1.0 deg, goal_time 0 ms (full speed); \
+    sum 11 right; no reply
+TEXT
+check 'a goal in one word' decodes 530cfaaf03001e040184030a0095 <<'TEXT'
+relay 12: write servo 3 (R_SHOULDER_P): goal 90.0 deg, goal_time 100 ms; sum 95 right; no reply
+TEXT
+check 'prefixes and commas' decodes 0x41,0x00 <<'TEXT'
+check the board; reply: ACK
+TEXT
+check 'a read and its reply' \
+    decodes '54 09 FA AF 01 0F 2A 02 00 26 0A' FD DF 01 00 2A 02 01 F6 FF 21 <<'TEXT'
+relay 8, return 10: read No.42-43 of servo 1 (CHEST_P); sum 26 right; reply: 10 bytes
+servo 1 (CHEST_P) returns No.42-43: position -1.0 deg; sum 21 right
+TEXT
+check 'a board that is told another number of bytes than the servo returns' \
+    decodes 54 09 FA AF 01 0F 24 12 00 38 0A <<'TEXT'
+relay 8, return 10: read No.36-53 of servo 1 (CHEST_P); sum 38 right; \
+    but the packet is answered by 26 bytes
+TEXT
+check 'a wrong sum, and what it should be' decodes FA AF 03 00 24 01 01 01 27 <<'TEXT'
+write servo 3 (R_SHOULDER_P): torque on; sum 27 wrong, should be 26
+TEXT
+check 'the other frames of the board' decodes 4100 504D07 505303 <<'TEXT'
+check the board; reply: ACK
+play motion slot 7; no reply
+play scenario 3; no reply
+TEXT
+check 'a long packet, a servo a line' \
+    decodes 53 0E FA AF 00 00 24 02 03 01 00 02 01 03 02 26 <<'TEXT'
+relay 14: write 3 servos: torque; sum 26 right; no reply
+    servo 1 (CHEST_P): torque off
+    servo 2 (NECK_Y): torque on
+    servo 3 (R_SHOULDER_P): torque brake
+TEXT
+check 'what servos do to themselves' \
+    decodes FAAF0540FF0000BA FAAF0520FF0000DA FAAF0560FF00009A FAAF0510FFFF0015 <<'TEXT'
+flash servo 5 (R_ELBOW_P); sum BA right; no reply
+reboot servo 5 (R_ELBOW_P); sum DA right; no reply
+flash and reboot servo 5 (R_ELBOW_P); sum 9A right; no reply
+factory reset servo 5 (R_ELBOW_P); sum 15 right; no reply
+TEXT
+check 'requests of blocks and of an ACK' \
+    decodes FA AF 7F 09 00 00 01 77 FAAF0101FF0000FF FAAF010B0000010B <<'TEXT'
+read No.42-59 of servo 127; sum 77 right; reply: 26 bytes
+ping servo 1 (CHEST_P); sum FF right; reply: ACK
+read No.30-41 of servo 1 (CHEST_P); sum 0B right; reply: 20 bytes
+TEXT
+check 'a servo in trouble' decodes FD DF 63 A2 32 04 01 46 00 E2 02 50 <<'TEXT'
+servo 99 returns No.50-53: temperature 70 deg C, voltage 7.38 V; \
+    too hot, torque was cut, temperature alarm, the command could not be processed; sum 50 right
+TEXT
+check 'settings in their units, half of a value' \
+    decodes FA AF 03 00 04 05 01 05 01 07 02 64 66 <<'TEXT'
+write servo 3 (R_SHOULDER_P): id 5, reverse 1, baud 115200 bps, delay 200 us, \
+    No.8 = 64 (half of cw_limit); sum 66 right; no reply
+TEXT
+check 'registers that do not exist' decodes FA AF 01 0F 8B F0 00 75 <<'TEXT'
+read No.139-378 of servo 1 (CHEST_P); sum 75 right; asks for registers that do not exist
+TEXT
+check 'rubbish and what is cut off are shown, and what follows is found' \
+    decodes 12 34 41 00 FD DF 01 00 24 01 01 24 FD DF 01 00 24 01 01 01 24 08 53 0C FA <<'TEXT'
+rubbish: 12 34
+check the board; reply: ACK
+cut off: FD DF 01 00 24 01 01 24
+servo 1 (CHEST_P) returns No.36: torque on; sum 24 right; nobody asked for it
+NACK: refused
+cut off: 53 0C FA
+TEXT
+check '--wiring: a board takes no bare packet' \
+    decodes --wiring board FA AF 01 01 FF 00 00 FF <<'TEXT'
+rubbish: FA AF 01 01 FF 00 00 FF
+TEXT
+check '-v shows the bytes' decodes -v 41 00 <<'TEXT'
+check the board; reply: ACK
+    41 00
+TEXT
+
+# ---- text
+
+{
+    printf '# a goal over two lines, and a check\n53 0C FA AF 03 00\n'
+    printf '1E 04 01 84 03 0A 00 95 # end\n\n41:00\r\n'
+} >"$work/lines"
+check 'a file of lines' decodes "$work/lines" <<'TEXT'
+relay 12: write servo 3 (R_SHOULDER_P): goal 90.0 deg, goal_time 100 ms; sum 95 right; no reply
+check the board; reply: ACK
+TEXT
+check 'standard input' reads "$work/lines" <<'TEXT'
+relay 12: write servo 3 (R_SHOULDER_P): goal 90.0 deg, goal_time 100 ms; sum 95 right; no reply
+check the board; reply: ACK
+TEXT
+printf '0 41 00\n20 07\n40 54 09 FA AF 01 0F 2A 02 00 26 0A\n' >"$work/timed"
+check 'lines with times' decodes "$work/timed" <<'TEXT'
+     0.000  host     check the board; reply: ACK
+    20.000  robot    ACK; 20.000 ms after its request
+    40.000  host     relay 8, return 10: read No.42-43 of servo 1 (CHEST_P); sum 26 right; \
+    reply: 10 bytes
+TEXT
+printf '20 41 00\n40.5 07\n' >"$work/cut-out"
+check 'lines with times whose first could be a byte' decodes "$work/cut-out" <<'TEXT'
+     0.000  host     check the board; reply: ACK
+    20.500  robot    ACK; 20.500 ms after its request
+TEXT
+# Times are as exact as their text: whole milliseconds here, fractions in JSON.
+check 'what play --dry-run prints' sh -c '
+    "$GRCTL" play --dry-run motions/greet.pseq >"$1/dry" && "$GRCTL" decode "$1/dry" >"$1/got" &&
+    [ "$(grep -c "write 20 servos: goal, goal_time; sum .. right" "$1/got")" -eq \
+        "$(wc -l <"$1/dry")" ] && ! grep -Eq "rubbish|cut|wrong" "$1/got"' sh "$work"
+check 'what play --dry-run --json prints is the same' sh -c '
+    "$GRCTL" play --dry-run --json motions/greet.pseq | "$GRCTL" decode 2>/dev/null |
+        sed "s/^ *[0-9.]*//" >"$1/other"
+    [ -s "$1/got" ] && sed "s/^ *[0-9.]*//" "$1/got" | cmp - "$1/other"' sh "$work"
+check 'a summary for people' sh -c '
+    "$GRCTL" decode "$1/timed" 2>&1 >/dev/null |
+        grep -q "^3 frames, 0 with a wrong sum, 0 cut off, 0 bytes of rubbish; of 2 requests 1"' \
+    sh "$work"
+check '-q says no summary' sh -c '[ -z "$("$GRCTL" decode -q "$1/timed" 2>&1 >/dev/null)" ]' \
+    sh "$work"
+
+# ---- JSON
+
+check 'a frame as JSON' decodes --json 53 0C FA AF 03 00 1E 04 01 84 03 0A 00 95 <<'TEXT'
+{"from":"host","kind":"relay","bytes":14,"hex":"53 0C FA AF 03 00 1E 04 01 84 03 0A 00 95",\
+    "packet":{"kind":"short","action":"write","id":3,"flags":0,"address":30,"length":4,\
+    "count":1,"sum":149,"sum_ok":true,"servos":[{"id":3,"name":"R_SHOULDER_P",\
+    "registers":{"goal_deg":90.0,"goal_time_ms":100}}]},"reply":{"kind":"none","bytes":0}}
+TEXT
+check 'a wrong sum as JSON' decodes --json FA AF 03 00 24 01 01 01 27 <<'TEXT'
+{"from":"host","kind":"packet","bytes":9,"hex":"FA AF 03 00 24 01 01 01 27",\
+    "packet":{"kind":"short","action":"write","id":3,"flags":0,"address":36,"length":1,\
+    "count":1,"sum":39,"sum_ok":false,"right_sum":38,"servos":[{"id":3,\
+    "name":"R_SHOULDER_P","registers":{"torque":"on"}}]},"reply":{"error":"CHECKSUM"}}
+TEXT
+check 'a file as JSON ends in a summary' sh -c '
+    "$GRCTL" decode --json "$1/timed" 2>/dev/null | tail -n 1 | grep -qxF "$2"' sh "$work" \
+    '{"done":true,"frames":3,"bad_sums":0,"cut":0,"rubbish_bytes":0,"answered":1,'\
+'"unanswered":1,"unasked":0}'
+check 'JSON is read again' sh -c '
+    "$GRCTL" decode --json "$1/timed" >"$1/json" && "$GRCTL" decode "$1/json" >"$1/got" 2>/dev/null
+    "$GRCTL" decode "$1/timed" 2>/dev/null | diff - "$1/got"' sh "$work"
+
+# ---- what is wrong
+
+check 'no hex' refuses 2 "'G0' is neither a byte in hex nor a file" FA G0
+check 'an odd number of digits' refuses 2 "'F' is neither a byte in hex nor a file" FA F
+check 'no such file' refuses 3 './none: No such file or directory' ./none
+check 'a folder' refuses 3 'Is a directory' "$work"
+printf 'FA AF\n03 0x1G\n' >"$work/bad"
+check 'bad hex in a file, behind what is good' both exits 3 "$GRCTL" decode "$work/bad" --- \
+    both complains "$work/bad:2:6: '1G' is no byte in hex" --- says 'FA AF'
+printf '\177ELF\1\2\3' >"$work/binary"
+check 'a binary' refuses 3 "$work/binary:1:1: neither hex nor a pcapng trace" "$work/binary"
+printf '{"hex": "41 0"}\n' >"$work/bad-json"
+check 'bad hex in JSON' refuses 3 "$work/bad-json:1:1: '0' is no byte in hex" "$work/bad-json"
+printf '{"hex": \n' >"$work/worse-json"
+check 'malformed JSON' refuses 3 'malformed JSON' "$work/worse-json"
+check 'an error as JSON' sh -c '"$GRCTL" decode --json XY 2>/dev/null |
+    grep -q "^{\"error\":{\"code\":\"SYNTAX\""'
+done_testing

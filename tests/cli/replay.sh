@@ -1,0 +1,152 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# grctl replay: traces run again, on the simulator and on a robot.
+. tests/support/cli.sh
+. tests/support/traces.sh
+
+# same COUNT COMMAND...: the command's trace is replayed to the same replies, COUNT of them.
+same() {
+    same_count=$1
+    shift
+    "$GRCTL" -q -d sim --trace "$work/trace" "$@" >"$work/out" 2>"$work/err" || return 1
+    exits 0 "$GRCTL" replay "$work/trace" && says " $same_count equal, 0 differ, 0 missing, 0 extra"
+}
+check 'status' same 21 status
+check 'a move' same 5 move R_KNEE_P -80 200
+check 'a motion' same '[0-9]*' play motions/greet.pseq
+check 'servos on a bus' same 21 --wiring bus status
+check 'another baud rate' same 21 -b 57600 status
+check 'everything again, in less time than it took' \
+    timeout 2 "$GRCTL" -q replay "$work/trace"
+
+# ---- what differs
+
+READ1='54 09 FA AF 01 0F 2A 02 00 26 0A' # position of servo 1, which is 0.0 deg
+READ3='54 09 FA AF 03 0F 2A 02 00 24 0A' # of servo 3, 20.0 deg
+make_trace >"$work/others" <<LINES
+out 0 41 00
+in 1000 07
+out 10000 $READ1
+in 15000 FD DF 01 00 2A 02 01 F6 FF 21
+out 20000 $READ3
+in 25000 FD DF 03 00 2A 02 01 C8 00 E2
+out 30000 54 09 FA AF 63 0F 2A 02 00 44 0A
+in 35000 FD DF 63 00 2A 02 01 00 00 4A
+out 40000 54 09 FA AF 02 0F 2A 02 00 25 0A
+out 60000 54 09 FA AF 64 0F 2A 02 00 43 0A
+in 90000 12 34 FD DF 63 00 2A 02 01 00 00 4A
+LINES
+cat >"$work/expected" <<'TEXT'
+request 2 at 10.000 ms: differ
+    asked     relay 8, return 10: read No.42-43 of servo 1 (CHEST_P); sum 26 right; reply: 10 bytes
+    recorded  servo 1 (CHEST_P) returns No.42-43: position -1.0 deg; sum 21 right
+    replayed  servo 1 (CHEST_P) returns No.42-43: position 0.0 deg; sum 28 right
+request 4 at 30.000 ms: missing
+    asked     relay 8, return 10: read No.42-43 of servo 99; sum 44 right; reply: 10 bytes
+    recorded  servo 99 returns No.42-43: position 0.0 deg; sum 4A right
+    replayed  nothing
+request 5 at 40.000 ms: extra
+    asked     relay 8, return 10: read No.42-43 of servo 2 (NECK_Y); sum 25 right; reply: 10 bytes
+    recorded  nothing
+    replayed  servo 2 (NECK_Y) returns No.42-43: position 0.0 deg; sum 2B right
+6 frames sent, 6 call for a reply: 2 equal, 1 differ, 1 missing, 1 extra, 1 silent both times
+recorded: 1 replies nobody asked for, 2 bytes that are no reply
+TEXT
+differs() {
+    exits 1 "$GRCTL" replay "$work/others" && diff "$work/expected" "$work/out"
+}
+check 'what differs, is missing, is extra' differs
+check_json_of_others() {
+    exits 1 "$GRCTL" replay --json "$work/others" && json '
+        [l["verdict"] for l in lines[:3]] == ["differ", "missing", "extra"] and
+        lines[0]["recorded"]["packet"]["servos"][0]["registers"]["position_deg"] == -1.0 and
+        lines[1]["replayed"] is None and lines[3]["ok"] is False and lines[3]["equal"] == 2 and
+        lines[3]["strays"] == {"recorded": 1, "replayed": 0} and
+        lines[3]["rubbish_bytes"] == {"recorded": 2, "replayed": 0}'
+}
+if have_json; then
+    check 'the same as JSON' check_json_of_others
+else
+    skip 'the same as JSON' 'no python3 to parse JSON with'
+fi
+
+many_differ() {
+    for at in 1 2 3 4 5 6 7; do
+        echo "out ${at}0000 $READ1"
+        echo "in ${at}5000 FD DF 01 00 2A 02 01 F6 FF 21"
+    done | make_trace >"$work/many"
+    exits 1 "$GRCTL" replay "$work/many" && [ "$(grep -c differ$ "$work/out")" -eq 5 ] &&
+        exits 1 "$GRCTL" replay -v "$work/many" && [ "$(grep -c differ$ "$work/out")" -eq 7 ]
+}
+check 'the first five differences, with -v all' many_differ
+
+# ---- bad files
+
+check 'no such file' fails 3 'none: No such file or directory' "$GRCTL" replay "$work/none"
+check 'no trace' fails 3 'is no pcapng file' "$GRCTL" replay tests/cli/replay.sh
+make_trace </dev/null >"$work/empty"
+check 'nothing in it' fails 3 'nothing went over the line' "$GRCTL" replay "$work/empty"
+head -c 199 "$work/others" >"$work/cut"
+check 'cut off' fails 3 'cut off in the middle of a block' "$GRCTL" replay "$work/cut"
+check 'standard input' fails 2 'name a file' "$GRCTL" replay -
+
+# ---- to a robot
+
+start_sim || { echo "Bail out! the simulator did not start"; exit 1; }
+
+on_robot() {
+    "$GRCTL" -d "$robot" --timeout 500 "$@" # patience on a busy machine
+}
+
+is_untouched() {
+    on_robot --trace "$work/after" status >"$work/out" || return 1
+    ! says ' on ' >/dev/null && says ' off '
+}
+
+exits 0 on_robot --trace "$work/reads" status
+check 'reads go to a robot without a question' both exits 0 on_robot replay "$work/reads" --- \
+    says ' equal, 0 differ, 0 missing, 0 extra'
+check 'the replay of a replay' both exits 0 on_robot --trace "$work/again" replay "$work/reads" \
+    --- both exits 0 "$GRCTL" replay "$work/again" --- says ' equal, 0 differ, 0 missing, 0 extra'
+"$GRCTL" -d sim -q --trace "$work/moves" move R_KNEE_P -45 500
+check 'moves are not sent unasked' fails 4 'frames move joints of a real robot; say --yes' \
+    on_robot replay "$work/moves"
+check 'and nothing moved' is_untouched
+# Torque was switched on safely before, which two readings show.
+check 'moves are sent with --yes' both exits 1 on_robot replay --yes "$work/moves" --- \
+    both says '3 equal, 2 differ, 0 missing, 0 extra' --- says 'recorded .* torque off,'
+check 'and the joint has moved' both exits 0 on_robot status R_KNEE_P --- says '-45.0 .* on '
+
+stopped() {
+    exits 0 on_robot estop || return 1
+    fails 4 "stopped by 'grctl estop'" on_robot --yes replay "$work/moves" || return 1
+    exits 0 on_robot estop --reset
+}
+check 'an emergency stop holds for a replay' stopped
+
+# is_refused PATTERN HEX...: even with --yes, before anything is sent.
+is_refused() {
+    pattern=$1
+    shift
+    printf 'out 0 %s\nout 1000 %s\n' "$READ1" "$*" | make_trace >"$work/refused"
+    fails 4 "at 1.000 ms: not to a real robot: .*$pattern" on_robot --yes \
+        --trace "$work/sent" replay "$work/refused" && [ ! -e "$work/sent" ]
+}
+check 'settings are refused' is_refused 'write servo 3 .*: id 5' \
+    53 09 FA AF 03 00 04 01 01 05 02
+check 'flash is refused' is_refused 'flash servo 5' 53 08 FA AF 05 40 FF 00 00 BA
+check 'stored motions are refused' is_refused 'play motion slot 7' 50 4D 07
+check 'a wrong sum is refused' is_refused 'sum 27 wrong' 53 09 FA AF 03 00 24 01 01 01 27
+out_of_limits() {
+    printf 'out 0 53 0C FA AF 0C 00 1E 04 01 64 00 F4 01 86\n' | make_trace >"$work/far"
+    fails 4 'outside a joint.s limits' on_robot --yes replay "$work/far" &&
+        exits 0 on_robot status R_KNEE_P && says '-45.0'
+}
+check 'a goal outside limits is refused by the engine' out_of_limits
+too_fast() {
+    printf 'out 0 53 0C FA AF 0C 00 1E 04 01 00 00 01 00 16\n' | make_trace >"$work/fast"
+    fails 4 'faster than the servo can move' on_robot --yes replay "$work/fast" &&
+        exits 0 on_robot status R_KNEE_P && says '-45.0'
+}
+check 'a goal too fast for the joint is refused by the engine' too_fast
+done_testing

@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: MIT */
+#include <errno.h>
+#include <string.h>
+#include <time.h>
+
+#include <grobo/version.h>
+
+#include "trace.h"
+
+/* By grobo_wiring. */
+static const char *const descriptions[] = {"GR001 through its board", "servos on a bus"};
+
+static int64_t wall_us(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_REALTIME, &now);
+    return (int64_t)now.tv_sec * 1000000 + now.tv_nsec / 1000;
+}
+
+/* The command line, as far as it says what was done. */
+static void describe(const app *a, char *text, size_t capacity)
+{
+    size_t used = (size_t)snprintf(text, capacity, "grctl %s", a->line.command->name);
+    for (int i = 0; i < a->line.n_arguments && used < capacity; i++)
+        used += (size_t)snprintf(text + used, capacity - used, " %s", a->line.argument[i]);
+}
+
+static int fail(app *a, const trace *t, int cause)
+{
+    return app_fail(a, EXIT_FILE, "TRACE", "%s: the trace cannot be written: %s", t->path,
+                    strerror(cause));
+}
+
+int trace_open(trace *t, app *a, const trace_line *line, int64_t now_us)
+{
+    pcapng_interface interface = {.link_type = PCAPNG_LINK_USER0};
+    char comment[PCAPNG_TEXT_BYTES];
+    memset(t, 0, sizeof *t);
+    if (!app_global(a, GLOBAL_TRACE)->given)
+        return 0;
+    t->path = app_global(a, GLOBAL_TRACE)->text;
+    t->to_wall_us = wall_us() - now_us;
+    t->file = fopen(t->path, "wb");
+    if (!t->file)
+        return fail(a, t, errno);
+    snprintf(interface.name, sizeof interface.name, "%s", line->device);
+    snprintf(interface.description, sizeof interface.description, "%s", descriptions[line->wiring]);
+    interface.speed_bps = (uint64_t)(line->baud_bps ? line->baud_bps : GROBO_BAUD_DEFAULT_BPS);
+    describe(a, comment, sizeof comment);
+    if (pcapng_write_head(t->file, "grctl " GROBO_VERSION_STRING, comment, &interface) < 0 ||
+        fflush(t->file) != 0) {
+        int cause = errno;
+        fclose(t->file);
+        t->file = NULL;
+        return fail(a, t, cause);
+    }
+    return 0;
+}
+
+void trace_bytes(trace *t, grobo_direction direction, int64_t now_us, const uint8_t *bytes,
+                 size_t size)
+{
+    pcapng_direction way = direction == GROBO_DIR_TX ? PCAPNG_OUT : PCAPNG_IN;
+    while (t->file && !t->error && size > 0) {
+        size_t n = size < PCAPNG_CHUNK_BYTES ? size : PCAPNG_CHUNK_BYTES;
+        /* Flushed: a program that is killed has its trace, and a watcher behind a pipe sees it. */
+        if (pcapng_write_chunk(t->file, now_us + t->to_wall_us, way, bytes, n) < 0 ||
+            fflush(t->file) != 0)
+            t->error = errno;
+        bytes += n;
+        size -= n;
+    }
+}
+
+int trace_close(trace *t, app *a, int status)
+{
+    int error = t->error;
+    if (!t->file)
+        return status;
+    if (fclose(t->file) != 0 && !error)
+        error = errno;
+    t->file = NULL;
+    if (!error)
+        return status;
+    error = fail(a, t, error);
+    return status == EXIT_DONE ? error : status;
+}
+
+bool trace_wiring(const pcapng_interface *interface, grobo_wiring *wiring)
+{
+    for (int i = 0; i < (int)(sizeof descriptions / sizeof descriptions[0]); i++) {
+        if (strcmp(interface->description, descriptions[i]) == 0) {
+            *wiring = (grobo_wiring)i;
+            return true;
+        }
+    }
+    return false;
+}
