@@ -113,6 +113,8 @@ look() {
         clang-format-14 clang-tools-extra clang clang-extra-tools clang-tools
     need valgrind 'to check memory' have_command valgrind -- \
         valgrind valgrind valgrind valgrind valgrind
+    need tshark 'to check the dissector' have_command tshark -- \
+        tshark wireshark-cli wireshark-cli tshark wireshark
 }
 
 install_command() {
