@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "body_options.h"
+#include "whole.h"
 
 bool body_options_given(const app *a, int base)
 {
@@ -15,25 +16,31 @@ static int fail(app *a, const char *path, int error)
                     grobo_error_text(error));
 }
 
-int body_make(app *a, int base, const char *path, const grobo_motion *motion, double rate_hz,
-              grobo_body **body)
+grobo_body_options body_options_read(const app *a, int base, double rate_hz)
 {
-    const grobo_body_model *model = &grobo_gr001_body;
+    static const grobo_body_ik iks[] = {GROBO_BODY_IK_EXACT, GROBO_BODY_IK_NUMERIC,
+                                        GROBO_BODY_IK_OFF};
+    static const grobo_body_balance balances[] = {GROBO_BODY_BALANCE_OFF, GROBO_BODY_BALANCE_ON,
+                                                  GROBO_BODY_BALANCE_COMPAT11};
     const cli_value *zmp = app_option(a, base + BODY_ZMP);
-    int ik = app_option(a, base + BODY_IK)->choice;
-    grobo_body_options options = {
-        .ik = ik == 1 ? GROBO_BODY_IK_NUMERIC : GROBO_BODY_IK_EXACT,
+    return (grobo_body_options){
+        .ik = iks[app_option(a, base + BODY_IK)->choice],
         .step = app_option(a, base + BODY_STEP)->choice == 1 ? GROBO_BODY_STEP_STEALTHY
                                                              : GROBO_BODY_STEP_NONE,
         .zmp = zmp->given && zmp->choice == 0 ? GROBO_BODY_ZMP_AUTO : GROBO_BODY_ZMP_FILE,
-        .balance = (grobo_body_balance)app_option(a, base + BODY_BALANCE)->choice,
+        .balance = balances[app_option(a, base + BODY_BALANCE)->choice],
         .rate_hz = rate_hz,
     };
+}
+
+int body_make(app *a, int base, const char *path, const grobo_motion *motion, double rate_hz,
+              grobo_body **body)
+{
+    grobo_body_options options = body_options_read(a, base, rate_hz);
     int error;
-    if (ik == 2 || grobo_motion_get_kind(motion) != GROBO_MOTION_KEYS ||
-        grobo_motion_size(motion) == 0 || !grobo_body_wanted(model, motion))
+    if (!whole_applies(motion, &options))
         return 0;
-    error = grobo_body_new(body, model, motion, &options, NULL);
+    error = grobo_body_new(body, &grobo_gr001_body, motion, &options, NULL);
     return error ? fail(a, path, error) : 0;
 }
 

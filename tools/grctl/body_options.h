@@ -9,8 +9,8 @@
 
 enum { BODY_IK, BODY_STEP, BODY_ZMP, BODY_BALANCE, BODY_OPTIONS };
 
-/* The rows of a command's table, from row `base` on. */
-#define BODY_OPTION_ROWS(base)                                                                     \
+/* The rows of a command's table, from row `base` on: how legs are solved, */
+#define BODY_LEG_ROWS(base)                                                                        \
     [(base) + BODY_IK] = {.name = "ik",                                                            \
                           .kind = CLI_CHOICE,                                                      \
                           .value = "exact|numeric|off",                                            \
@@ -22,13 +22,28 @@ enum { BODY_IK, BODY_STEP, BODY_ZMP, BODY_BALANCE, BODY_OPTIONS };
               [(base) + BODY_ZMP] = {.name = "zmp",                                                \
                                      .kind = CLI_CHOICE,                                           \
                                      .value = "auto|file",                                         \
-                                     .help = "where the balance is wanted (file)"},                \
-              [(base) + BODY_BALANCE] = {.name = "balance",                                        \
-                                         .kind = CLI_CHOICE,                                       \
-                                         .value = "off|on|compat11",                               \
-                                         .help = "shift the waist to keep it (off); compat11 as "  \
-                                                 "Choreonoid 1.1"}
+                                     .help = "where the balance is wanted (file)"}
 
+/* and whether the waist is moved; for play and convert, */
+#define BODY_OPTION_ROWS(base)                                                                     \
+    BODY_LEG_ROWS(base),                                                                           \
+        [(base) + BODY_BALANCE] = {                                                                \
+            .name = "balance",                                                                     \
+            .kind = CLI_CHOICE,                                                                    \
+            .value = "off|on|compat11",                                                            \
+            .help = "shift the waist to keep it (off); compat11 as Choreonoid 1.1"}
+
+/* for check and plot, which look at the balance when the option is given, even without a word. */
+#define BODY_LOOK_ROWS(base)                                                                       \
+    BODY_LEG_ROWS(base),                                                                           \
+        [(base) + BODY_BALANCE] = {.name = "balance",                                              \
+                                   .kind = CLI_CHOICE,                                             \
+                                   .value = "off|on|compat11",                                     \
+                                   .optional = true,                                               \
+                                   .help = "would it fall? on: with the waist shifted to keep it"}
+
+/* The options as given, at a rate (0: the default). */
+grobo_body_options body_options_read(const app *a, int base, double rate_hz);
 /* True if any of them was given. */
 bool body_options_given(const app *a, int base);
 

@@ -1,19 +1,13 @@
 /* SPDX-License-Identifier: MIT */
+#include "body_options.h"
 #include "check_whole.h"
 #include "commands.h"
 #include "file.h"
 
-enum { OPT_BODY, OPT_BALANCE = OPT_BODY + WHOLE_BALANCE };
+enum { OPT_BODY, OPT_BALANCE = OPT_BODY + BODY_BALANCE };
 
 static const cli_option options[] = {
-    [OPT_BODY + WHOLE_IK] = WHOLE_IK_OPTION,
-    [OPT_BODY + WHOLE_STEP] = WHOLE_STEP_OPTION,
-    [OPT_BODY + WHOLE_ZMP] = WHOLE_ZMP_OPTION,
-    [OPT_BALANCE] = {.name = "balance",
-                     .kind = CLI_CHOICE,
-                     .value = "off|on|compat11",
-                     .optional = true,
-                     .help = "would it fall, do feet slip; on: with the waist moved"},
+    BODY_LOOK_ROWS(OPT_BODY),
 };
 
 typedef struct tally {
@@ -23,7 +17,7 @@ typedef struct tally {
 /* Everything about one file goes to the list: reading it, then playing it on the model. */
 static void check_file(const app *a, const char *path, grobo_diagnostics *list)
 {
-    grobo_body_options body;
+    grobo_body_options body = body_options_read(a, OPT_BODY, 0);
     grobo_read_options read = {
         .model = &grobo_gr001_model, .keep_positions = true, .keep_going = true};
     grobo_check_options check = {.name = path};
@@ -32,7 +26,6 @@ static void check_file(const app *a, const char *path, grobo_diagnostics *list)
     int error = file_read(path, &read, list, &motion);
     if (!error) {
         error = grobo_motion_check(motion, &grobo_gr001_model, &check, list);
-        whole_options(a, OPT_BODY, &body);
         if (error >= 0)
             error = check_whole(path, motion, &body, app_option(a, OPT_BALANCE)->given, list);
         grobo_motion_free(motion);

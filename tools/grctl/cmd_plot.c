@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
 
+#include "body_options.h"
 #include "commands.h"
 #include "file.h"
 #include "joints.h"
@@ -8,7 +9,7 @@
 #include "plot.h"
 #include "whole.h"
 
-enum { OPT_OUT, OPT_JOINTS, OPT_RATE, OPT_BODY, OPT_BALANCE = OPT_BODY + WHOLE_BALANCE };
+enum { OPT_OUT, OPT_JOINTS, OPT_RATE, OPT_BODY, OPT_BALANCE = OPT_BODY + BODY_BALANCE };
 
 static const cli_option options[] = {
     [OPT_OUT] = {.name = "output",
@@ -29,14 +30,7 @@ static const cli_option options[] = {
                   .min = 0.1,
                   .max = 1000,
                   .real = true},
-    [OPT_BODY + WHOLE_IK] = WHOLE_IK_OPTION,
-    [OPT_BODY + WHOLE_STEP] = WHOLE_STEP_OPTION,
-    [OPT_BODY + WHOLE_ZMP] = WHOLE_ZMP_OPTION,
-    [OPT_BALANCE] = {.name = "balance",
-                     .kind = CLI_CHOICE,
-                     .value = "off|on|compat11",
-                     .optional = true,
-                     .help = "draw whether it will fall; on: with the waist moved"},
+    BODY_LOOK_ROWS(OPT_BODY),
 };
 
 typedef struct order {
@@ -185,11 +179,10 @@ static int solve(const app *a, work *w, const grobo_motion *motion, plot_subject
 {
     grobo_posture start;
     grobo_clip_options plain = {.start = &start};
-    grobo_body_options body;
+    grobo_body_options body = body_options_read(a, OPT_BODY, 0);
     bool standing;
     int error;
     initial_posture(motion, subject->model, &start);
-    whole_options(a, OPT_BODY, &body);
     error = whole_open(&w->played, motion, &plain, &body);
     subject->clip = &w->played.clip;
     if (w->played.body)

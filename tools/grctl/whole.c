@@ -4,23 +4,6 @@
 #include "file.h"
 #include "whole.h"
 
-void whole_options(const app *a, int first, grobo_body_options *options)
-{
-    const cli_value *ik = app_option(a, first + WHOLE_IK);
-    const cli_value *step = app_option(a, first + WHOLE_STEP);
-    const cli_value *zmp = app_option(a, first + WHOLE_ZMP);
-    const cli_value *balance = app_option(a, first + WHOLE_BALANCE);
-    static const grobo_body_ik iks[] = {GROBO_BODY_IK_EXACT, GROBO_BODY_IK_NUMERIC,
-                                        GROBO_BODY_IK_OFF};
-    static const grobo_body_balance balances[] = {GROBO_BODY_BALANCE_OFF, GROBO_BODY_BALANCE_ON,
-                                                  GROBO_BODY_BALANCE_COMPAT11};
-    memset(options, 0, sizeof *options);
-    options->ik = iks[ik->choice];
-    options->step = step->choice ? GROBO_BODY_STEP_STEALTHY : GROBO_BODY_STEP_NONE;
-    options->zmp = zmp->given && zmp->choice == 0 ? GROBO_BODY_ZMP_AUTO : GROBO_BODY_ZMP_FILE;
-    options->balance = balances[balance->choice];
-}
-
 bool whole_applies(const grobo_motion *motion, const grobo_body_options *options)
 {
     return options->ik != GROBO_BODY_IK_OFF && grobo_motion_get_kind(motion) == GROBO_MOTION_KEYS &&

@@ -1,43 +1,16 @@
 /* SPDX-License-Identifier: MIT */
-/* Key poses that give the legs by ikLinks, played with the whole body: the BODY OPTIONS. */
+/* Motions with the whole body: as a clip, and as a body that can be checked for balance. */
 #ifndef GRCTL_WHOLE_H
 #define GRCTL_WHOLE_H
 
 #include <grobo/body_motion.h>
-
-#include "app.h"
-
-/* Four options of a command, from `first` of its table on. */
-enum { WHOLE_IK, WHOLE_STEP, WHOLE_ZMP, WHOLE_BALANCE, WHOLE_OPTIONS };
-#define WHOLE_IK_OPTION                                                                            \
-    {                                                                                              \
-        .name = "ik", .kind = CLI_CHOICE, .value = "exact|numeric|off",                            \
-        .help = "how ikLinks become leg angles (exact)"                                            \
-    }
-#define WHOLE_STEP_OPTION                                                                          \
-    {                                                                                              \
-        .name = "step", .kind = CLI_CHOICE, .value = "none|stealthy",                              \
-        .help = "feet straight up and softly down (none)"                                          \
-    }
-#define WHOLE_ZMP_OPTION                                                                           \
-    {                                                                                              \
-        .name = "zmp", .kind = CLI_CHOICE, .value = "auto|file",                                   \
-        .help = "where the weight shall be: by rule, or as drawn (file)"                           \
-    }
-#define WHOLE_BALANCE_OPTION                                                                       \
-    {                                                                                              \
-        .name = "balance", .kind = CLI_CHOICE, .value = "off|on|compat11",                         \
-        .help = "move the waist so that the weight is there (off)"                                 \
-    }
 
 typedef struct whole {
     grobo_body *body; /* NULL: the motion's own angles are played */
     grobo_clip clip;
 } whole;
 
-/* The options as given, from option `first` of the command on. */
-void whole_options(const app *a, int first, grobo_body_options *options);
-/* True if the motion is one of GR001's that gives the legs by ikLinks, and IK is on. */
+/* True if the motion has poses of GR001 that give the legs by ikLinks, and IK is on. */
 bool whole_applies(const grobo_motion *motion, const grobo_body_options *options);
 /*
  * Makes the clip that plays a motion, with the whole body where that applies. The motion must
