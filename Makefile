@@ -12,6 +12,7 @@ PREFIX ?= /usr/local
 LIBDIR ?= $(PREFIX)/lib
 INCLUDEDIR ?= $(PREFIX)/include
 BINDIR ?= $(PREFIX)/bin
+DATADIR ?= $(PREFIX)/share
 DESTDIR ?=
 CROSS_COMPILE ?=
 SAN ?=
@@ -176,6 +177,18 @@ dist: ## a tarball of the last commit, in build/
 	@mkdir -p $(BUILD)
 	git archive --prefix=libgrobo-$(VERSION)/ HEAD | gzip -n > $(BUILD)/libgrobo-$(VERSION).tar.gz
 
+# What grctl prints of itself: FILE=ARGUMENTS. It takes a grctl that runs on this machine.
+GRCTL_HERE ?= $(if $(CROSS_COMPILE),,$(GRCTL))
+PAGES := man/man1/grctl.1=help,--man bash-completion/completions/grctl=completion,bash \
+    zsh/site-functions/_grctl=completion,zsh fish/vendor_completions.d/grctl.fish=completion,fish
+comma := ,
+define install_page
+install -d $(DESTDIR)$(DATADIR)/$(dir $(firstword $(subst =, ,$(page))))
+	$(GRCTL_HERE) $(subst $(comma), ,$(lastword $(subst =, ,$(page)))) \
+	    >$(DESTDIR)$(DATADIR)/$(firstword $(subst =, ,$(page)))
+
+endef
+
 install: all ## into $(DESTDIR)$(PREFIX)
 	install -d $(DESTDIR)$(LIBDIR)/pkgconfig $(DESTDIR)$(INCLUDEDIR)/grobo $(DESTDIR)$(BINDIR)
 	install -m 644 include/grobo/*.h ports/$(PORT)/include/grobo/*.h $(DESTDIR)$(INCLUDEDIR)/grobo
@@ -184,11 +197,13 @@ install: all ## into $(DESTDIR)$(PREFIX)
 	ln -sf $(SONAME) $(DESTDIR)$(LIBDIR)/libgrobo.so
 	install -m 644 $(PC_FILE) $(DESTDIR)$(LIBDIR)/pkgconfig
 	$(if $(GRCTL),install -m 755 $(GRCTL) $(DESTDIR)$(BINDIR))
+	$(if $(GRCTL_HERE),$(foreach page,$(PAGES),$(install_page)))
 
 uninstall: ## take out what install put in
 	rm -rf $(DESTDIR)$(INCLUDEDIR)/grobo
 	rm -f $(addprefix $(DESTDIR)$(LIBDIR)/,libgrobo.a libgrobo-core.a libgrobo.so $(SONAME) \
 	    pkgconfig/grobo.pc) $(DESTDIR)$(BINDIR)/grctl
+	rm -f $(foreach page,$(PAGES),$(DESTDIR)$(DATADIR)/$(firstword $(subst =, ,$(page))))
 
 clean: ## remove $(BUILD)
 	rm -rf $(BUILD)

@@ -111,6 +111,8 @@ look() {
     [ $level -ge 3 ] || return
     need clang-format 'to check the formatting' have_command clang-format-14 -- \
         clang-format-14 clang-tools-extra clang clang-extra-tools clang-tools
+    need mandoc 'to check the man page' have_command mandoc -- \
+        mandoc mandoc mandoc mandoc mandoc
     need valgrind 'to check memory' have_command valgrind -- \
         valgrind valgrind valgrind valgrind valgrind
     need tshark 'to check the dissector' have_command tshark -- \

@@ -55,6 +55,11 @@ every_header() {
 }
 
 check 'install' make_target install
+share=$tree/opt/grobo/share
+check 'the man page is there' grep -q '^\.Dt GRCTL 1' "$share/man/man1/grctl.1"
+check 'completion for bash' grep -q '^complete ' "$share/bash-completion/completions/grctl"
+check 'completion for zsh' grep -q '^#compdef' "$share/zsh/site-functions/_grctl"
+check 'completion for fish' grep -q '^complete ' "$share/fish/vendor_completions.d/grctl.fish"
 check 'pkg-config tells the version of the headers' same_version
 check 'C, shared: builds' builds "$cc" tests/export/consumer.c
 check 'C, shared: runs' runs

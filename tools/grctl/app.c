@@ -138,6 +138,21 @@ json_t *app_json_text(const char *text)
     return string;
 }
 
+json_t *app_json_printed(void (*print)(FILE *to))
+{
+    char *text = NULL;
+    size_t size = 0;
+    json_t *string;
+    FILE *memory = open_memstream(&text, &size);
+    if (!memory)
+        return json_null();
+    print(memory);
+    fclose(memory);
+    string = text ? json_stringn(text, size) : json_null();
+    free(text);
+    return string;
+}
+
 json_t *app_json_number(double number, int decimals)
 {
     double scale = pow(10, decimals);

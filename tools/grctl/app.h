@@ -47,6 +47,8 @@ void app_detail(const app *a, const char *format, ...) __attribute__((format(pri
 void app_print_json(json_t *object);
 /* A JSON string of bytes that may be no UTF-8. */
 json_t *app_json_text(const char *text);
+/* A JSON string of what a function prints. */
+json_t *app_json_printed(void (*print)(FILE *to));
 /* A JSON number rounded to so many decimals. */
 json_t *app_json_number(double number, int decimals);
 

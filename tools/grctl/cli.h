@@ -53,7 +53,8 @@ typedef enum cli_argument {
     CLI_ARG_COMMAND,
     CLI_ARG_JOINT,
     CLI_ARG_FILE,
-    CLI_ARG_WORD
+    CLI_ARG_WORD,
+    CLI_ARG_DEVICE
 } cli_argument;
 
 struct app;
@@ -116,7 +117,29 @@ const char *cli_nearest_command(const char *name);
 /* Reads a whole text as a finite number; false if it is none. Knows no locale. */
 bool cli_read_number(const char *text, double *number);
 
+/* ---- what may stand where: for completion ---------------------------------------------------- */
+
+/*
+ * Goes through the words of "a|b|c": gives the next one and its length, moves *words behind it.
+ * Returns NULL at the end. A text without | is one word.
+ */
+const char *cli_next_word(const char **words, size_t *length);
+
+/* What the value of an option is, told by its name in the table: FILE, DEV, LIST (of joints). */
+cli_argument cli_option_argument(const cli_option *option);
+
+/* The words that the first argument of a command is one of ("on|off|brake"), or NULL. Of length. */
+const char *cli_first_argument(const cli_command *command, size_t *length);
+
+/* ---- texts made from the tables -------------------------------------------------------------- */
+
 void cli_print_overview(FILE *to);
 void cli_print_command(FILE *to, const cli_command *command);
+/* The man page grctl(1), in mdoc. */
+void cli_print_manual(FILE *to);
+/* Completion for a shell. */
+void cli_print_bash(FILE *to);
+void cli_print_zsh(FILE *to);
+void cli_print_fish(FILE *to);
 
 #endif

@@ -4,6 +4,12 @@
 #include "app.h"
 #include "commands.h"
 
+enum { OPT_MAN };
+
+static const cli_option options[] = {
+    [OPT_MAN] = {.name = "man", .kind = CLI_FLAG, .help = "print the man page grctl(1), as mdoc"},
+};
+
 static json_t *option_json(const cli_option *o)
 {
     json_t *object = json_pack("{s:s,s:s}", "name", o->name, "help", o->help);
@@ -16,11 +22,11 @@ static json_t *option_json(const cli_option *o)
 
 static json_t *command_json(const cli_command *command)
 {
-    json_t *options = json_array();
+    json_t *list = json_array();
     for (size_t i = 0; i < command->n_options; i++)
-        json_array_append_new(options, option_json(&command->options[i]));
+        json_array_append_new(list, option_json(&command->options[i]));
     return json_pack("{s:s,s:s,s:s,s:o}", "name", command->name, "arguments", command->arguments,
-                     "summary", command->summary, "options", options);
+                     "summary", command->summary, "options", list);
 }
 
 static int run(app *a)
@@ -36,12 +42,16 @@ static int run(app *a)
         if (!about)
             return app_fail(a, EXIT_USAGE, "USAGE", "no command '%s'; see 'grctl help'", name);
     }
-    if (a->json) {
+    if (a->json && app_option(a, OPT_MAN)->given) {
+        app_print_json(json_pack("{s:o}", "manual", app_json_printed(cli_print_manual)));
+    } else if (a->json) {
         json_t *list = json_array();
         for (size_t i = 0; i < cli_n_commands; i++)
             if (!about || about == cli_commands[i])
                 json_array_append_new(list, command_json(cli_commands[i]));
         app_print_json(json_pack("{s:o}", "commands", list));
+    } else if (app_option(a, OPT_MAN)->given) {
+        cli_print_manual(stdout);
     } else if (about) {
         cli_print_command(stdout, about);
     } else {
@@ -55,7 +65,9 @@ const cli_command cmd_help = {
     .arguments = "[COMMAND]",
     .summary = "what grctl can do, or what a command does",
     .details = "Prints the list of commands, or everything about one of them.\n",
-    .example = "  grctl help play\n",
+    .example = "  grctl help play\n  grctl help --man | man -l -\n",
+    .options = options,
+    .n_options = sizeof options / sizeof options[0],
     .max_arguments = 1,
     .argument = CLI_ARG_COMMAND,
     .run = run,

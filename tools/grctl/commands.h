@@ -30,6 +30,7 @@
     X(decode)                                                                                      \
     X(replay)                                                                                      \
     X(sim)                                                                                         \
+    X(completion)                                                                                  \
     X(help)                                                                                        \
     X(version)
 
