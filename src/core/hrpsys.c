@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <grobo/hrpsys.h>
 
+#include <math.h>
 #include <string.h>
 
 static const grobo_model *model_of(const grobo_hrpsys *hrpsys)
@@ -15,122 +16,79 @@ void grobo_hrpsys_init(grobo_hrpsys *hrpsys, grobo_robot *robot)
     (void)grobo_posture_init(&hrpsys->command, model_of(hrpsys)->n_joints);
 }
 
-static grobo_torque torque_of(bool on)
+/* ---- names ---------------------------------------------------------------------------------- */
+
+static char lower(char c)
 {
-    return on ? GROBO_TORQUE_ON : GROBO_TORQUE_OFF;
+    return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
 }
 
-int grobo_hrpsys_servo(grobo_hrpsys *hrpsys, int joint, bool on, int64_t now_us)
+static bool is_same(const char *a, const char *b)
 {
-    if (joint < 0 || joint >= model_of(hrpsys)->n_joints) {
-        return GROBO_ERR_ARG;
-    }
-    return grobo_robot_torque(hrpsys->robot, GROBO_JOINT_BIT(joint), torque_of(on), now_us);
-}
-
-static bool same_text(const char *a, const char *b)
-{
-    while (*a != '\0' && *a == *b) {
+    while (*a != '\0' && lower(*a) == lower(*b)) {
         a++;
         b++;
     }
-    return *a == *b;
+    return *a == '\0' && *b == '\0';
 }
 
-/* Joints of an added group, a group of the model or a joint. */
-static int find_joints(const grobo_hrpsys *hrpsys, const char *name, grobo_joint_mask *joints)
+static bool is_number(const char *text)
 {
+    while (*text >= '0' && *text <= '9') {
+        text++;
+    }
+    return *text == '\0';
+}
+
+static int count(grobo_joint_mask joints)
+{
+    int n = 0;
+    for (; joints != 0; joints &= joints - 1) {
+        n++;
+    }
+    return n;
+}
+
+int grobo_hrpsys_find(const grobo_hrpsys *hrpsys, const char *name, grobo_joint_mask *joints)
+{
+    const grobo_model *model = model_of(hrpsys);
+    if (is_same(name, "all")) { /* whether or not the model has a group of that name */
+        *joints = GROBO_JOINTS_ALL(model->n_joints);
+        return model->n_joints;
+    }
     for (unsigned i = 0; i < hrpsys->n_groups; i++) {
-        if (same_text(hrpsys->groups[i].name, name)) {
+        if (is_same(hrpsys->groups[i].name, name)) {
             *joints = hrpsys->groups[i].joints;
-            return GROBO_OK;
+            return count(*joints);
         }
     }
-    return grobo_model_find_joints(model_of(hrpsys), name, strlen(name), joints);
-}
-
-int grobo_hrpsys_servo_name(grobo_hrpsys *hrpsys, const char *name, bool on, int64_t now_us)
-{
-    grobo_joint_mask joints = 0;
-    int found = find_joints(hrpsys, name, &joints);
-    return found < 0 ? found : grobo_robot_torque(hrpsys->robot, joints, torque_of(on), now_us);
-}
-
-int grobo_hrpsys_read_joint_angles(const grobo_hrpsys *hrpsys, double *angle_rad, size_t capacity,
-                                   int64_t now_us)
-{
-    grobo_posture posture;
-    int known = grobo_robot_posture(hrpsys->robot, now_us, GROBO_NEVER_US, &posture);
-    int written = grobo_posture_all_rad(&posture, angle_rad, capacity);
-    return written < 0 ? written : known;
-}
-
-int grobo_hrpsys_write_joint_commands(grobo_hrpsys *hrpsys, const double *angle_rad, size_t n)
-{
-    grobo_posture command = hrpsys->command;
-    if (n != command.n_joints) {
-        return GROBO_ERR_ARG;
+    if (is_number(name)) { /* the model would take it for a group's */
+        return GROBO_ERR_NOTFOUND;
     }
-    memcpy(command.angle_rad, angle_rad, n * sizeof angle_rad[0]);
-    command.set = GROBO_JOINTS_ALL(n);
-    int result = grobo_posture_check(&command, model_of(hrpsys), NULL);
-    if (result >= 0) {
-        hrpsys->command = command;
-    }
-    return result;
-}
-
-int grobo_hrpsys_set_period_us(grobo_hrpsys *hrpsys, int64_t period_us)
-{
-    if (period_us < 1 || period_us > GROBO_PLAY_TIME_MAX_US) {
-        return GROBO_ERR_ARG;
-    }
-    hrpsys->command.time_us = period_us;
-    return GROBO_OK;
-}
-
-int grobo_hrpsys_one_step(grobo_hrpsys *hrpsys, int64_t now_us)
-{
-    if (hrpsys->command.set == 0) {
-        return GROBO_ERR_EMPTY;
-    }
-    return grobo_robot_send(hrpsys->robot, &hrpsys->command, now_us);
-}
-
-int grobo_hrpsys_check_emergency(const grobo_hrpsys *hrpsys, grobo_trip_info *reason)
-{
-    grobo_trip_info info;
-    grobo_robot_tripped(hrpsys->robot, &info);
-    if (info.trip == GROBO_TRIP_NONE) {
-        return 0;
-    }
-    if (reason != NULL) {
-        *reason = info;
-    }
-    return 1;
+    return grobo_model_find_joints(model, name, strlen(name), joints);
 }
 
 int grobo_hrpsys_add_joint_group(grobo_hrpsys *hrpsys, const char *name, const char *const *joints,
                                  size_t n)
 {
-    grobo_joint_mask taken = 0;
+    grobo_joint_mask found = 0;
     grobo_joint_mask group = 0;
     size_t length = strlen(name);
-    if (length == 0 || n == 0) {
+    if (is_number(name) || n == 0) { /* no digits at all are a number too */
         return GROBO_ERR_ARG;
     }
     if (length >= GROBO_NAME_MAX_BYTES) {
         return GROBO_ERR_CAP;
     }
-    if (find_joints(hrpsys, name, &taken) >= 0) {
+    if (grobo_hrpsys_find(hrpsys, name, &found) >= 0) {
         return GROBO_ERR_EXISTS;
     }
     for (size_t i = 0; i < n; i++) {
-        int joint = grobo_model_find_joint(model_of(hrpsys), joints[i], strlen(joints[i]));
-        if (joint < 0) {
-            return joint;
+        int result = grobo_hrpsys_find(hrpsys, joints[i], &found);
+        if (result < 0) {
+            return result;
         }
-        group |= GROBO_JOINT_BIT(joint);
+        group |= found;
     }
     if (hrpsys->n_groups == GROBO_HRPSYS_GROUPS) {
         return GROBO_ERR_FULL;
@@ -138,7 +96,7 @@ int grobo_hrpsys_add_joint_group(grobo_hrpsys *hrpsys, const char *name, const c
     memcpy(hrpsys->groups[hrpsys->n_groups].name, name, length + 1);
     hrpsys->groups[hrpsys->n_groups].joints = group;
     hrpsys->n_groups++;
-    return GROBO_OK;
+    return count(group);
 }
 
 int grobo_hrpsys_names_to_ids(const grobo_hrpsys *hrpsys, const char *const *names, size_t n,
@@ -154,4 +112,176 @@ int grobo_hrpsys_names_to_ids(const grobo_hrpsys *hrpsys, const char *const *nam
         ids[i] = grobo_model_find_joint(model, names[i], strlen(names[i]));
     }
     return (int)n;
+}
+
+int grobo_hrpsys_names_to_motors(const grobo_hrpsys *hrpsys, const char *const *names, size_t n,
+                                 int *motors)
+{
+    int result = grobo_hrpsys_names_to_ids(hrpsys, names, n, motors);
+    for (int i = 0; i < result; i++) {
+        motors[i] = grobo_model_motor_of_joint(model_of(hrpsys), motors[i]);
+    }
+    return result;
+}
+
+/* ---- servo ---------------------------------------------------------------------------------- */
+
+static int switch_joints(grobo_hrpsys *hrpsys, grobo_joint_mask joints, bool on, int64_t now_us)
+{
+    grobo_torque mode = on ? GROBO_TORQUE_ON : GROBO_TORQUE_OFF;
+    int number = grobo_robot_torque(hrpsys->robot, joints, mode, now_us);
+    if (number > 0) {
+        hrpsys->command.set &= ~joints;
+    }
+    return number;
+}
+
+int grobo_hrpsys_servo(grobo_hrpsys *hrpsys, int joint, bool on, int64_t now_us)
+{
+    if (joint < 0 || joint >= model_of(hrpsys)->n_joints) {
+        return GROBO_ERR_ARG;
+    }
+    return switch_joints(hrpsys, GROBO_JOINT_BIT(joint), on, now_us);
+}
+
+int grobo_hrpsys_servo_name(grobo_hrpsys *hrpsys, const char *name, bool on, int64_t now_us)
+{
+    grobo_joint_mask joints = 0;
+    int found = grobo_hrpsys_find(hrpsys, name, &joints);
+    return found < 0 ? found : switch_joints(hrpsys, joints, on, now_us);
+}
+
+/* ---- angles --------------------------------------------------------------------------------- */
+
+int grobo_hrpsys_read_joint_angles(const grobo_hrpsys *hrpsys, double *angle_rad, size_t capacity,
+                                   int64_t max_age_us, int64_t now_us)
+{
+    grobo_posture posture;
+    int known = grobo_robot_posture(hrpsys->robot, now_us, max_age_us, &posture);
+    int written = grobo_posture_all_rad(&posture, angle_rad, capacity);
+    return written < 0 ? written : known;
+}
+
+int grobo_hrpsys_write_joint_commands(grobo_hrpsys *hrpsys, const double *angle_rad, size_t n)
+{
+    if (n != hrpsys->command.n_joints) {
+        return GROBO_ERR_ARG;
+    }
+    for (size_t j = 0; j < n; j++) {
+        if (!isfinite(angle_rad[j])) {
+            return GROBO_ERR_NAN;
+        }
+    }
+    memcpy(hrpsys->command.angle_rad, angle_rad, n * sizeof angle_rad[0]);
+    hrpsys->command.set = GROBO_JOINTS_ALL(n);
+    return GROBO_OK;
+}
+
+int grobo_hrpsys_set_period_us(grobo_hrpsys *hrpsys, int64_t period_us)
+{
+    if (period_us < 1 || period_us > GROBO_PLAY_TIME_MAX_US) {
+        return GROBO_ERR_ARG;
+    }
+    hrpsys->command.time_us = period_us;
+    return GROBO_OK;
+}
+
+/* Joints that are known to hold. */
+static grobo_joint_mask holding(const grobo_hrpsys *hrpsys, int64_t now_us)
+{
+    grobo_joint_mask joints = 0;
+    for (int j = 0; j < hrpsys->command.n_joints; j++) {
+        grobo_joint_info info;
+        (void)grobo_robot_joint(hrpsys->robot, j, now_us, &info);
+        if (info.torque_known && info.state.torque == GROBO_TORQUE_ON) {
+            joints |= GROBO_JOINT_BIT(j);
+        }
+    }
+    return joints;
+}
+
+int grobo_hrpsys_one_step(grobo_hrpsys *hrpsys, int64_t now_us)
+{
+    grobo_posture target = hrpsys->command;
+    grobo_trip_info trip;
+    if (target.set == 0) {
+        return GROBO_ERR_EMPTY;
+    }
+    grobo_robot_tripped(hrpsys->robot, &trip);
+    if (trip.latched) { /* the better reason, where it took the torque too */
+        return GROBO_ERR_LATCHED;
+    }
+    target.set &= holding(hrpsys, now_us);
+    return target.set == 0 ? GROBO_ERR_STATE : grobo_robot_send(hrpsys->robot, &target, now_us);
+}
+
+/* ---- emergency ------------------------------------------------------------------------------ */
+
+/* A text being put together in a bounded buffer; what does not fit is counted all the same. */
+typedef struct writing {
+    char text[GROBO_HRPSYS_REASON_MAX_BYTES];
+    size_t used;
+} writing;
+
+static void put(writing *w, const char *text, size_t most)
+{
+    for (; *text != '\0' && most > 0 && w->used + 1 < sizeof w->text; most--) {
+        w->text[w->used++] = *text++;
+    }
+}
+
+static void put_number(writing *w, double value)
+{
+    char digits[12];
+    size_t at = sizeof digits - 1;
+    long rest = lround(fmin(fabs(value), 1e9));
+    digits[at] = '\0';
+    do {
+        digits[--at] = (char)('0' + rest % 10);
+        rest /= 10;
+    } while (rest > 0);
+    put(w, value < 0 ? "-" : "", 1);
+    put(w, &digits[at], sizeof digits);
+}
+
+/* What stands before and behind the value of a trip; NULL where it has none. */
+typedef struct telling {
+    const char *before, *behind;
+} telling;
+
+static const telling tellings[] = {
+    [GROBO_TRIP_TEMPERATURE] = {" at ", " deg C"},   [GROBO_TRIP_OVERHEATED] = {" at ", " deg C"},
+    [GROBO_TRIP_CURRENT] = {" at ", " mA"},          [GROBO_TRIP_VOLTAGE] = {" at ", " mV"},
+    [GROBO_TRIP_LOST_REPLIES] = {", ", " in a row"}, [GROBO_TRIP_ESTOP] = {NULL, NULL},
+};
+
+int grobo_hrpsys_check_emergency(const grobo_hrpsys *hrpsys, char *reason, size_t reason_bytes,
+                                 int *joint)
+{
+    grobo_trip_info trip;
+    writing w = {.used = 0};
+    grobo_robot_tripped(hrpsys->robot, &trip);
+    if (trip.trip == GROBO_TRIP_NONE) {
+        return 0;
+    }
+    put(&w, grobo_trip_name(trip.trip), sizeof w.text);
+    if (trip.joint >= 0) {
+        put(&w, ": ", 2);
+        put(&w, model_of(hrpsys)->joints[trip.joint].name, GROBO_NAME_MAX_BYTES);
+    }
+    const telling *how = &tellings[trip.trip];
+    if (how->before != NULL && trip.value != 0) { /* an overheated servo may not say how hot */
+        put(&w, how->before, sizeof w.text);
+        put_number(&w, trip.value);
+        put(&w, how->behind, sizeof w.text);
+    }
+    if (w.used >= reason_bytes) {
+        return GROBO_ERR_SPACE;
+    }
+    memcpy(reason, w.text, w.used);
+    reason[w.used] = '\0';
+    if (joint != NULL) {
+        *joint = trip.joint;
+    }
+    return 1;
 }
