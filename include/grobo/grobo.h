@@ -14,6 +14,7 @@
 #include <grobo/driver.h>
 #include <grobo/error.h>
 #include <grobo/files.h>
+#include <grobo/gr001.h>
 #include <grobo/hrpsys.h>
 #include <grobo/interpolate.h>
 #include <grobo/limits.h>
