@@ -5,6 +5,7 @@
 #include "play.h"
 #include "progress.h"
 #include "render.h"
+#include "wire.h"
 
 static const cli_option options[PLAY_OPTIONS] = {
     [PLAY_REPEAT] = {.name = "repeat",
@@ -37,7 +38,7 @@ static const cli_option options[PLAY_OPTIONS] = {
     [PLAY_RATE] = {.name = "rate",
                    .kind = CLI_NUMBER,
                    .value = "HZ",
-                   .help = "interpolate, so many frames a second (pseq and yaml: 50)",
+                   .help = "interpolate, so many frames a second (pseq and yaml: 30)",
                    .min = 1,
                    .max = GROBO_PLAY_RATE_MAX_HZ},
     [PLAY_KEY] = {.name = "key",
@@ -150,6 +151,21 @@ static void print_summary(const conn *c)
         printf("largest error at the end %.1f deg (%s)\n", worst, model->joints[joint].name);
 }
 
+/* Frames that the line cannot carry would be left out: better said before. */
+static void warn_of_rate(const conn *c, const grobo_play_options *o)
+{
+    wire_cost costs[WIRE_COSTS];
+    const cli_value *baud = app_global(c->a, GLOBAL_BAUD);
+    int baud_bps = baud->given ? (int)baud->number : GROBO_BAUD_DEFAULT_BPS;
+    if (o->mode != GROBO_PLAY_RATE ||
+        wire_measure(grobo_robot_driver(c->robot), baud_bps, costs) < 0)
+        return;
+    if ((double)o->rate_hz * costs[WIRE_MOTION].total_us > 1e6)
+        app_note(c->a,
+                 "%d frames a second are more than the line carries (%.0f): some will be left out",
+                 o->rate_hz, 1e6 / costs[WIRE_MOTION].total_us);
+}
+
 static int start(conn *c, show *s)
 {
     int error = conn_wait(c, grobo_session_play(c->session, &s->list.clip[0], &s->list.options[0]));
@@ -163,7 +179,9 @@ static int play(conn *c, show *s)
 {
     struct timeval period = {0, TICK_US};
     grobo_joint_mask all = GROBO_JOINTS_ALL(grobo_robot_driver(c->robot)->model->n_joints);
-    int error = start(c, s);
+    int error;
+    warn_of_rate(c, &s->list.options[0]);
+    error = start(c, s);
     if (error)
         return conn_fail(c, error, "play");
     progress_start(&s->bar, c->a);

@@ -10,6 +10,12 @@
 
 enum { PLAY_FILES_MAX = 1 + GROBO_QUEUE_MAX };
 
+/*
+ * Frames a second where nothing else is asked for. At 115200 bps through the board, 50 of them
+ * would fill the line, and nobody could look after heat and current while the robot moves.
+ */
+enum { PLAY_RATE_HZ = 30 };
+
 typedef struct playlist {
     int n;
     const char *path[PLAY_FILES_MAX];

@@ -48,7 +48,7 @@ static void set_options(grobo_play_options *o, const app *a, grobo_motion_kind k
     if (app_option(a, PLAY_RATE)->given)
         keyed = false;
     o->mode = keyed ? GROBO_PLAY_KEY : GROBO_PLAY_RATE;
-    o->rate_hz = (uint16_t)app_number(a, PLAY_RATE, 0);
+    o->rate_hz = (uint16_t)app_number(a, PLAY_RATE, PLAY_RATE_HZ);
     o->reverse = app_option(a, PLAY_REVERSE)->given > 0;
     o->mirror = app_option(a, PLAY_MIRROR)->given > 0;
     o->repeat = (int32_t)app_number(a, PLAY_REPEAT, 1);
@@ -57,8 +57,8 @@ static void set_options(grobo_play_options *o, const app *a, grobo_motion_kind k
 
 static int solve_legs(app *a, playlist *list, int i)
 {
-    double rate_hz = list->options[i].rate_hz ? list->options[i].rate_hz : GROBO_PLAY_RATE_HZ;
-    int status = body_make(a, PLAY_BODY, list->path[i], list->motion[i], rate_hz, &list->body[i]);
+    int status = body_make(a, PLAY_BODY, list->path[i], list->motion[i], list->options[i].rate_hz,
+                           &list->body[i]);
     return status || !list->body[i] ? status : body_refuse(a, list->path[i], list->body[i]);
 }
 

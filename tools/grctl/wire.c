@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: MIT */
+#include <grobo/bus.h>
+
+#include "wire.h"
+
+static void measure(const grobo_bus *bus, grobo_wiring wiring, const grobo_exchange *exchange,
+                    wire_cost *to)
+{
+    grobo_txn txn;
+    grobo_bus_cost found = {0};
+    if (grobo_txn_init(&txn, wiring, exchange->frame, exchange->frame_bytes) < 0)
+        return;
+    grobo_bus_cost_of(bus, &txn, &found);
+    to->frame_bytes += exchange->frame_bytes;
+    to->reply_bytes += (int)grobo_reply_bytes(&txn.reply);
+    to->total_us += found.total_us;
+}
+
+/* Every joint to its initial angle; as many frames as the driver needs for that. */
+static void measure_motion(const grobo_bus *bus, const grobo_driver *driver, wire_cost *to)
+{
+    grobo_target target = {0};
+    grobo_posture_init_pose(&target.posture, driver->model);
+    for (int part = 0;; part++) {
+        grobo_exchange exchange = {0};
+        if (driver->posture(driver, NULL, &target, part, &exchange) != 1)
+            return;
+        measure(bus, driver->wiring, &exchange, to);
+    }
+}
+
+static void measure_read(const grobo_bus *bus, const grobo_driver *driver, grobo_sense_kind kind,
+                         wire_cost *to)
+{
+    grobo_exchange exchange = {0};
+    if (driver->sense(driver, NULL, 0, kind, &exchange) >= 0)
+        measure(bus, driver->wiring, &exchange, to);
+}
+
+int wire_measure(const grobo_driver *driver, int baud_bps, wire_cost *costs)
+{
+    grobo_bus_config config = {.wiring = driver->wiring, .baud_bps = (uint32_t)baud_bps};
+    grobo_bus bus;
+    int error = grobo_bus_init(&bus, &config);
+    if (error)
+        return error;
+    costs[WIRE_MOTION] = (wire_cost){.name = "motion, 20 joints"};
+    costs[WIRE_READ_FULL] = (wire_cost){.name = "one joint, full"};
+    costs[WIRE_READ_ANGLE] = (wire_cost){.name = "one joint, angle only"};
+    measure_motion(&bus, driver, &costs[WIRE_MOTION]);
+    measure_read(&bus, driver, GROBO_SENSE_FULL, &costs[WIRE_READ_FULL]);
+    measure_read(&bus, driver, GROBO_SENSE_POSITION, &costs[WIRE_READ_ANGLE]);
+    return GROBO_OK;
+}

@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: MIT */
+/* What frames cost on the wire, by the same figures that the bus plans with. */
+#ifndef GRCTL_WIRE_H
+#define GRCTL_WIRE_H
+
+#include <grobo/driver.h>
+
+typedef struct wire_cost {
+    const char *name;
+    int frame_bytes, reply_bytes;
+    uint32_t total_us; /* from the first byte until the line is free again */
+} wire_cost;
+
+enum { WIRE_MOTION, WIRE_READ_FULL, WIRE_READ_ANGLE, WIRE_COSTS };
+
+/* Fills all WIRE_COSTS of them. Returns 0 or GROBO_ERR_ARG for a baud rate that is none. */
+int wire_measure(const grobo_driver *driver, int baud_bps, wire_cost *costs);
+
+#endif
