@@ -95,7 +95,7 @@ VERSION = $(shell sed -n 's/.*GROBO_VERSION_STRING "\(.*\)"/\1/p' include/grobo/
 # ---- targets -------------------------------------------------------------------------------
 
 .PHONY: help all demo check lint lint-quick format test check-san check-memcheck install uninstall
-.PHONY: clean tidy fuzz cov dist bench FORCE
+.PHONY: clean tidy fuzz cov dist bench plots FORCE
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-15s %s\n", $$1, $$2 }' Makefile
@@ -144,6 +144,9 @@ check-memcheck: ## the same under valgrind
 
 bench: $(BENCHES) ## processor time of what has to be fast; fails where a promise is not kept
 	@status=0; for program in $(BENCHES); do $$program || status=1; done; exit $$status
+
+plots: $(BUILD)/grctl ## draw motions/plots/*.svg again
+	@tools/plots.sh $(abspath $(BUILD)/grctl)
 
 tidy: ## clang-tidy over the library and the command; advice, not a gate
 	@status=0; for file in $(CORE_SRCS) $(OTHER_SRCS) $(TOOL_SRCS); do \

@@ -5,8 +5,16 @@
 
 data=${GROBO_SHARED:-../shared}/data
 
-check "our own motions are right" fails 0 '^[0-9]* files, nothing wrong$' "$GRCTL" check motions/*.*
-for path in motions/*.*; do
+calls_itself() {
+    cp motions/README.md "$work/readme.pseq"
+    exits 3 "$GRCTL" check motions/* "$work/readme.pseq"
+}
+check "our own motions are right" fails 0 '^10 files, nothing wrong$' "$GRCTL" check motions/*
+check "what is no motion is passed by" both exits 0 "$GRCTL" check -v motions/* \
+    --- says '^motions/README.md: note: .*skipped'
+check "but not alone" exits 3 "$GRCTL" check motions/README.md
+check "nor when it is called a motion" calls_itself
+for path in motions/*.*seq motions/*.m motions/*.yaml; do
     check "${path##*/} does not fall" fails 0 'nothing wrong' "$GRCTL" check --balance "$path"
 done
 

@@ -164,6 +164,20 @@ check_json "with the balancer it lasts a second longer" "$long_json" \
 check "of another robot nothing is known" fails 3 "no motion of GR001's" \
     "$GRCTL" plot --balance "$work/many.yaml"
 
+# ---- our own --------------------------------------------------------------------------------
+
+check "motions/plots are what is drawn now" tools/plots.sh "$GRCTL" --check
+shown() {
+    for path in motions/*.pseq; do
+        name=$(basename "$path" .pseq)
+        grep -q "plots/$name.svg" motions/README.md && grep -q "^| \[$name\]" motions/README.md || {
+            echo "$name is not in motions/README.md"
+            return 1
+        }
+    done
+}
+check "motions/README.md shows each" shown
+
 # ---- where it goes --------------------------------------------------------------------------
 
 check "without -o to standard output" both exits 0 "$GRCTL" plot $greet --- says '^<svg '

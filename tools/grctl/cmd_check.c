@@ -12,7 +12,27 @@ static const cli_option options[] = {
 
 typedef struct tally {
     size_t errors, warnings;
+    int files;
 } tally;
+
+/* Of several files (a shell pattern) those that neither name nor content make a motion. */
+static bool is_passed_by(const app *a, const char *path, grobo_diagnostics *list)
+{
+    grobo_motion *motion = NULL;
+    grobo_diagnostic d = {.file = path,
+                          .code = "skipped",
+                          .message = "no motion file by name or content: skipped",
+                          .severity = GROBO_SEVERITY_NOTE};
+    int error;
+    if (a->line.n_arguments < 2 || grobo_motion_format_of_path(path) != GROBO_FORMAT_AUTO)
+        return false;
+    error = grobo_motion_read_file(path, NULL, NULL, &motion);
+    grobo_motion_free(motion);
+    if (error != GROBO_ERR_SYNTAX && error != GROBO_ERR_TYPE && error != GROBO_ERR_ISDIR)
+        return false;
+    grobo_diagnostics_add(list, &d);
+    return true;
+}
 
 /* Everything about one file goes to the list: reading it, then playing it on the model. */
 static void check_file(const app *a, const char *path, grobo_diagnostics *list)
@@ -72,12 +92,16 @@ static void print_json(const grobo_diagnostics *list, bool ok)
 static int run(app *a)
 {
     grobo_diagnostics *list = NULL;
-    tally t;
+    tally t = {0};
     int error = grobo_diagnostics_new(&list, NULL);
     if (error)
         return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s", grobo_error_text(error));
-    for (int i = 0; i < a->line.n_arguments; i++)
+    for (int i = 0; i < a->line.n_arguments; i++) {
+        if (is_passed_by(a, a->line.argument[i], list))
+            continue;
         check_file(a, a->line.argument[i], list);
+        t.files++;
+    }
     t.errors = grobo_diagnostics_total(list, GROBO_SEVERITY_ERROR);
     t.warnings = grobo_diagnostics_total(list, GROBO_SEVERITY_WARNING);
     if (a->json)
@@ -89,8 +113,7 @@ static int run(app *a)
         app_note(a, "%zu error%s, %zu warning%s", t.errors, t.errors == 1 ? "" : "s", t.warnings,
                  t.warnings == 1 ? "" : "s");
     else if (!a->json)
-        app_note(a, "%d file%s, nothing wrong", a->line.n_arguments,
-                 a->line.n_arguments == 1 ? "" : "s");
+        app_note(a, "%d file%s, nothing wrong", t.files, t.files == 1 ? "" : "s");
     return t.errors ? EXIT_FILE : EXIT_DONE;
 }
 
@@ -98,14 +121,16 @@ const cli_command cmd_check = {
     .name = "check",
     .arguments = "FILE...",
     .summary = "what is wrong with motion files",
-    .details = "Reads motion files (.m .pseq .mseq .yaml .seq) and says every problem with its\n"
-               "line and column: what is malformed, angles outside a joint's limits, moves too\n"
-               "fast for the servo (and the time they would need), times going back, joints that\n"
-               "GR001 does not have, legs that only ikLinks give. Exit status 3 if there is an\n"
-               "error; warnings alone leave it 0. Notes are shown with -v.\n\n"
-               "Legs given by ikLinks are solved, and what they come to is checked too. --balance\n"
-               "adds where the ZMP leaves the soles, no foot stands, or a standing foot slips; a\n"
-               "motion that gives no feet is taken to stand on both.\n",
+    .details =
+        "Reads motion files (.m .pseq .mseq .yaml .seq) and says every problem with its\n"
+        "line and column: what is malformed, angles outside a joint's limits, moves too\n"
+        "fast for the servo (and the time they would need), times going back, joints that\n"
+        "GR001 does not have, legs that only ikLinks give. Exit status 3 if there is an\n"
+        "error; warnings alone leave it 0. Notes are shown with -v. Of several files those that\n"
+        "neither name nor content make a motion are passed by.\n\n"
+        "Legs given by ikLinks are solved, and what they come to is checked too. --balance\n"
+        "adds where the ZMP leaves the soles, no foot stands, or a standing foot slips; a\n"
+        "motion that gives no feet is taken to stand on both.\n",
     .example = "  grctl check motions/*\n  grctl check --json walk.pseq\n"
                "  grctl check --balance walk.pseq\n",
     .options = options,
