@@ -181,6 +181,7 @@ static int play(conn *c, show *s)
     grobo_joint_mask all = GROBO_JOINTS_ALL(grobo_robot_driver(c->robot)->model->n_joints);
     int error;
     warn_of_rate(c, &s->list.options[0]);
+    conn_watch(c, true);
     error = start(c, s);
     if (error)
         return conn_fail(c, error, "play");
@@ -197,6 +198,7 @@ static int play(conn *c, show *s)
     if (error)
         return conn_fail(c, error, "play");
     c->moving = false;
+    conn_watch(c, false);
     error = conn_wait(c, grobo_session_sense(c->session, all, GROBO_SENSE_FULL));
     if (error && c->job.failed == 0)
         return conn_fail(c, error, "play");

@@ -285,16 +285,20 @@ int conn_open_unchecked(conn *c, app *a)
 
 int conn_open_to_move(conn *c, app *a)
 {
-    grobo_robot_config config = conn_robot_config(a);
     int status = conn_open(c, a);
     if (!status && latch_is_set(conn_device(c)))
         return app_fail(a, EXIT_SAFETY, grobo_error_name(GROBO_ERR_LATCHED),
                         "%s: stopped by 'grctl estop'; 'grctl estop --reset' takes it back",
                         conn_device(c));
-    config.sense_interval_us = 0; /* who moves is watched: heat, current, voltage, silence */
-    if (!status)
-        (void)grobo_robot_configure(c->robot, &config);
     return status;
+}
+
+void conn_watch(conn *c, bool on)
+{
+    grobo_robot_config config = conn_robot_config(c->a);
+    if (on)
+        config.sense_interval_us = 0; /* the engine's default */
+    (void)grobo_robot_configure(c->robot, &config);
 }
 
 /* ---- failing -------------------------------------------------------------------------------- */

@@ -58,6 +58,9 @@ int conn_open_unchecked(conn *c, app *a);
 /* The same for a command that moves the robot: refused after an emergency stop. */
 int conn_open_to_move(conn *c, app *a);
 
+/* Reads the joints in the background while a motion is played: heat, current, voltage, silence. */
+void conn_watch(conn *c, bool on);
+
 /*
  * Waits for the end of the job that a request returned (an error < 0 is handed through).
  * Returns the job's result; GROBO_ERR_CANCELED when a signal came, GROBO_ERR_UNPLUGGED when the
