@@ -54,7 +54,7 @@ static void put_options(FILE *to, const char *command, const cli_option *options
             fprintf(to, " -s %c", o->letter);
         fprintf(to, " -l %s", o->name);
         if (o->kind == CLI_CHOICE) {
-            fputs(" -x", to);
+            fputs(o->optional ? "" : " -x", to);
             put_words(to, o->value, strlen(o->value));
         } else if (o->kind != CLI_FLAG) {
             fprintf(to, " -r%s", source(cli_option_argument(o)));

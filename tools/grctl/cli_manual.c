@@ -87,7 +87,7 @@ static void put_options(FILE *to, const cli_option *options, size_t n)
         fputs("Fl \\-", to);
         put(to, o->name, strlen(o->name), true);
         if (o->kind != CLI_FLAG) {
-            fputs(" Ar ", to);
+            fputs(o->optional ? " Op Ar " : " Ar ", to);
             put_argument(to, o->value);
         }
         putc('\n', to);

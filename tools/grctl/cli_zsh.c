@@ -58,7 +58,7 @@ static void put_options(FILE *to, const cli_option *options, size_t n, const cha
         put(to, o->help);
         putc(']', to);
         if (o->kind == CLI_CHOICE) {
-            fputs(":word:", to);
+            fputs(o->optional ? "::word:" : ":word:", to);
             put_choice(to, o->value, strlen(o->value));
         } else if (o->kind != CLI_FLAG) {
             putc(':', to);
