@@ -114,6 +114,7 @@ void grobo_i_play_done(grobo_robot_slot *slot, int result)
     if (result < 0 && slot->txn.sent_us < 0) {
         grobo_i_gate_unsent(slot->robot, slot->motion);
     }
+    slot->robot->counters.motion_frames += result >= 0;
     if (slot->due_us == GROBO_NEVER_US) {
         return;
     }

@@ -226,7 +226,6 @@ int grobo_i_gate_send(grobo_robot *robot, const grobo_posture *wanted, const gro
         return result;
     }
     note_way(robot, &target);
-    robot->counters.motion_frames++;
     if (time_us != NULL) {
         *time_us = longest_us;
     }
