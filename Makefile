@@ -238,7 +238,7 @@ $(eval $(call compile,src/link,SRC_INCLUDE OS_FLAGS EVENT_CFLAGS))
 $(eval $(call compile,ports/$(PORT),SRC_INCLUDE OS_FLAGS))
 $(eval $(call compile,tools/grctl,OS_FLAGS EVENT_CFLAGS JSON_CFLAGS))
 $(eval $(call compile,docs/examples,OS_FLAGS EVENT_CFLAGS))
-$(eval $(call compile,tests,TEST_INCLUDE OS_FLAGS EVENT_CFLAGS YAML_CFLAGS CMOCKA_CFLAGS))
+$(eval $(call compile,tests,TEST_INCLUDE OS_FLAGS EVENT_CFLAGS YAML_CFLAGS CMOCKA_CFLAGS JSON_CFLAGS))
 
 $(STATIC_LIB): $(LIB_OBJS)
 $(CORE_LIB): $(CORE_OBJS)
@@ -263,13 +263,14 @@ $(TEST_PROGRAMS): $(BUILD)/%: $(BUILD)/%.o $(SUPPORT_LIB) $(TOOL_LIB) $(STATIC_L
 	$(say) LD $@
 	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(CMOCKA_LIBS) $(LIBS)
 
-$(FUZZ_REPLAYS): $(BUILD)/%: $(BUILD)/%.o $(BUILD)/tests/support/replay_main.o $(STATIC_LIB)
+$(FUZZ_REPLAYS): $(BUILD)/%: $(BUILD)/%.o $(BUILD)/tests/support/replay_main.o $(TOOL_LIB) \
+    $(STATIC_LIB)
 	$(say) LD $@
-	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
+	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(TOOL_LIBS) $(LIBS)
 
-$(FUZZERS): %.fuzzer: %.o $(STATIC_LIB)
+$(FUZZERS): %.fuzzer: %.o $(TOOL_LIB) $(STATIC_LIB)
 	$(say) LD $@
-	$(Q)$(CC) $(ALL_LDFLAGS) -fsanitize=fuzzer -o $@ $^ $(LIBS)
+	$(Q)$(CC) $(ALL_LDFLAGS) -fsanitize=fuzzer -o $@ $^ $(TOOL_LIBS) $(LIBS)
 
 $(EXAMPLES): $(BUILD)/%: $(BUILD)/%.o $(STATIC_LIB)
 $(BENCHES): $(BUILD)/%: $(BUILD)/%.o $(SUPPORT_LIB) $(STATIC_LIB)
