@@ -106,6 +106,30 @@ killed() {
 }
 check 'killed: the trace is whole up to then' killed
 
+sim_is_traced() {
+    stop_sim
+    start_sim --trace "$work/sim" || return 1
+    "$GRCTL" -d "$robot" --timeout 500 --trace "$work/host" status m12 >/dev/null || return 1
+    stop_sim
+    for side in host sim; do
+        "$GRCTL" decode -q "$work/$side" |
+            sed 's/^ *[0-9.]*//; s/; [0-9.]* ms after.*//' >"$work/$side.text"
+    done
+    [ -s "$work/sim.text" ] && diff "$work/host.text" "$work/sim.text"
+}
+check 'sim --trace: what the host sees' sim_is_traced
+
+dry_run() {
+    "$GRCTL" play --dry-run --trace "$work/dry" motions/greet.pseq >"$work/out" || return 1
+    [ "$(frames "$work/dry" 'write 20 servos: goal, goal_time')" -ge "$(wc -l <"$work/out")" ] ||
+        return 1
+    "$GRCTL" replay "$work/dry" >"$work/out"
+    says ' equal, 0 differ, 0 missing' # it may end between a question and its answer
+}
+check 'play --dry-run --trace: all that would go over the line' dry_run
+check 'a command that talks to no robot says so' both exits 0 "$GRCTL" --trace "$work/not" \
+    decode 4100 --- both complains 'nothing was traced' --- test ! -e "$work/not"
+
 cut_trace() {
     head -c 1001 "$work/status" >"$work/cut"
     "$GRCTL" decode -q "$work/cut" >"$work/text" 2>"$work/err"

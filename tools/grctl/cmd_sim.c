@@ -9,6 +9,7 @@
 #include "app.h"
 #include "commands.h"
 #include "output.h"
+#include "trace.h"
 
 enum { OPT_LINK, OPT_TCP, OPT_NO_PACING, OPT_ROBOTS, OPT_SEED, OPT_START, OPT_FAULT };
 enum { ROBOTS_MAX = 16, SIGNALS = 3 };
@@ -57,9 +58,17 @@ typedef struct farm {
     struct event_base *base;
     struct event *signals[SIGNALS];
     grobo_sim_server *server[ROBOTS_MAX];
+    trace trace[ROBOTS_MAX];
     int n;
     int signal;
 } farm;
+
+/* A trace is told as the host sees it: what the robot receives, the host has sent. */
+static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes, size_t size,
+                   void *ctx)
+{
+    trace_bytes(ctx, direction == GROBO_DIR_RX ? GROBO_DIR_TX : GROBO_DIR_RX, now_us, bytes, size);
+}
 
 static void on_signal(evutil_socket_t number, short what, void *ctx)
 {
@@ -93,13 +102,24 @@ static grobo_sim_config sim_config(const app *a, int robot)
     return config;
 }
 
+static int open_trace(farm *f, int robot)
+{
+    grobo_sim_config sim = sim_config(f->a, robot);
+    trace_line line = {.device = grobo_sim_server_device(f->server[robot]),
+                       .wiring = sim.wiring,
+                       .baud_bps = (int)sim.baud_bps,
+                       .number = robot + 1};
+    return trace_open(&f->trace[robot], f->a, &line, grobo_now_us());
+}
+
 static int add_robot(farm *f, int robot)
 {
     const app *a = f->a;
     const char *path = app_option(a, OPT_LINK)->text;
     const char *faults = app_option(a, OPT_FAULT)->text;
     grobo_sim_config sim = sim_config(a, robot);
-    grobo_sim_server_config config = {.base = f->base, .sim = &sim};
+    grobo_sim_server_config config = {
+        .base = f->base, .sim = &sim, .on_tap = on_tap, .ctx = &f->trace[robot]};
     grobo_os_cause cause = {0};
     char link[GROBO_DEVICE_MAX_BYTES], tcp[32];
     int port = (int)app_number(a, OPT_TCP, 0);
@@ -125,7 +145,7 @@ static int add_robot(farm *f, int robot)
         grobo_sim_set_faults(grobo_sim_server_sim(f->server[robot]), faults, strlen(faults)) < 0)
         return app_fail(f->a, EXIT_USAGE, "USAGE",
                         "sim: --fault: '%s' is no list such as drop=0.01,flip=0.02", faults);
-    return 0;
+    return open_trace(f, robot);
 }
 
 /*
@@ -159,15 +179,18 @@ static bool announce(const farm *f)
     return true;
 }
 
-static void close_farm(farm *f)
+static int close_farm(farm *f, int status)
 {
-    for (int i = 0; i < f->n; i++)
+    for (int i = 0; i < f->n; i++) {
         grobo_sim_server_free(f->server[i]);
+        status = trace_close(&f->trace[i], f->a, status);
+    }
     for (int i = 0; i < SIGNALS; i++)
         if (f->signals[i])
             event_free(f->signals[i]);
     if (f->base)
         event_base_free(f->base);
+    return status;
 }
 
 static int run(app *a)
@@ -186,8 +209,7 @@ static int run(app *a)
         event_base_dispatch(f.base);
         status = EXIT_SIGNAL + f.signal;
     }
-    close_farm(&f);
-    return status;
+    return close_farm(&f, status);
 }
 
 const cli_command cmd_sim = {

@@ -7,6 +7,7 @@
 #include "app.h"
 #include "commands.h"
 #include "output.h"
+#include "trace.h"
 
 const cli_option cli_global_options[GLOBAL_COUNT] = {
     [GLOBAL_DEVICE] = {.name = "device",
@@ -81,6 +82,7 @@ static int run(app *a, int argc, char **argv)
     char complaint[512];
     bool ok = cli_parse(&a->line, argc, argv, complaint, sizeof complaint);
     const cli_command *command = a->line.command;
+    int status;
     app_settle(a);
     if (!ok) {
         a->json = wants_json(argc, argv);
@@ -100,7 +102,10 @@ static int run(app *a, int argc, char **argv)
         cli_print_overview(stderr);
         return EXIT_USAGE;
     }
-    return command->run(a);
+    status = command->run(a);
+    if (app_global(a, GLOBAL_TRACE)->given && !trace_was_tried())
+        app_note(a, "nothing was traced: no robot was spoken to");
+    return status;
 }
 
 int main(int argc, char **argv)

@@ -5,15 +5,16 @@
  */
 #include <math.h>
 
-#include <grobo/robot.h>
-#include <grobo/sim.h>
+#include <grobo/session.h>
 
 #include "play.h"
+#include "trace.h"
 
 typedef struct rehearsal {
     app *a;
     grobo_robot robot;
     grobo_sim sim;
+    trace trace;
     int64_t now_us;
     int64_t start_us; /* of the first frame, -1: none yet */
     int job_result;   /* of the last job; 1 while it runs */
@@ -66,10 +67,12 @@ static bool turn(rehearsal *r)
     size_t n = grobo_sim_tx(&r->sim, buf, sizeof buf, r->now_us);
     int sent;
     int64_t next, other;
+    trace_bytes(&r->trace, GROBO_DIR_RX, r->now_us, buf, n);
     if (n)
         grobo_robot_rx(&r->robot, buf, n, r->now_us);
     grobo_robot_step(&r->robot, r->now_us);
     while ((sent = grobo_robot_tx(&r->robot, buf, sizeof buf, r->now_us)) > 0) {
+        trace_bytes(&r->trace, GROBO_DIR_TX, r->now_us, buf, (size_t)sent);
         print_frame(r, buf, sent);
         grobo_sim_rx(&r->sim, buf, (size_t)sent, r->now_us);
     }
@@ -117,12 +120,15 @@ int play_dry_run(playlist *list, app *a)
     grobo_wiring wiring = (grobo_wiring)app_global(a, GLOBAL_WIRING)->choice;
     grobo_sim_config sim = {.wiring = wiring};
     grobo_robot_config config = {.sense_interval_us = GROBO_SENSE_NEVER, .bus = {.wiring = wiring}};
+    trace_line line = {.device = GROBO_DEVICE_SIM, .wiring = wiring};
     grobo_posture start;
     int error, status;
     r.a = a;
     r.start_us = -1;
     grobo_posture_init_pose(&start, &grobo_gr001_model);
     status = playlist_prepare(list, a, &start);
+    if (!status)
+        status = trace_open(&r.trace, a, &line, 0);
     if (status)
         return status;
     error = grobo_sim_init(&r.sim, &sim, 0);
@@ -135,7 +141,7 @@ int play_dry_run(playlist *list, app *a)
         error = play(&r, list);
     }
     if (error < 0)
-        return app_fail(a, app_status_of(error), grobo_error_name(error), "play: %s",
-                        grobo_error_text(error));
-    return EXIT_DONE;
+        status = app_fail(a, app_status_of(error), grobo_error_name(error), "play: %s",
+                          grobo_error_text(error));
+    return trace_close(&r.trace, a, status);
 }

@@ -25,6 +25,13 @@ static void describe(const app *a, char *text, size_t capacity)
         used += (size_t)snprintf(text + used, capacity - used, " %s", a->line.argument[i]);
 }
 
+static bool tried;
+
+bool trace_was_tried(void)
+{
+    return tried;
+}
+
 static int fail(app *a, const trace *t, int cause)
 {
     return app_fail(a, EXIT_FILE, "TRACE", "%s: the trace cannot be written: %s", t->path,
@@ -35,10 +42,16 @@ int trace_open(trace *t, app *a, const trace_line *line, int64_t now_us)
 {
     pcapng_interface interface = {.link_type = PCAPNG_LINK_USER0};
     char comment[PCAPNG_TEXT_BYTES];
+    const char *path = app_global(a, GLOBAL_TRACE)->text;
+    int n;
     memset(t, 0, sizeof *t);
-    if (!app_global(a, GLOBAL_TRACE)->given)
+    if (!path)
         return 0;
-    t->path = app_global(a, GLOBAL_TRACE)->text;
+    tried = true;
+    n = line->number > 1 ? snprintf(t->path, sizeof t->path, "%s%d", path, line->number)
+                         : snprintf(t->path, sizeof t->path, "%s", path);
+    if (n < 0 || (size_t)n >= sizeof t->path)
+        return fail(a, t, ENAMETOOLONG);
     t->to_wall_us = wall_us() - now_us;
     t->file = fopen(t->path, "wb");
     if (!t->file)

@@ -11,7 +11,7 @@
 typedef struct trace {
     /* private */
     FILE *file; /* NULL: no trace */
-    const char *path;
+    char path[1024];
     int64_t to_wall_us; /* from our clock to that of the world */
     int error;          /* errno of the first failure, 0 none */
 } trace;
@@ -21,6 +21,7 @@ typedef struct trace_line {
     const char *device;
     grobo_wiring wiring;
     int baud_bps; /* 0: the default */
+    int number;   /* of the robot, where there are several: from 2 on it ends the file's name */
 } trace_line;
 
 /*
@@ -35,6 +36,9 @@ void trace_bytes(trace *t, grobo_direction direction, int64_t now_us, const uint
 
 /* Ends it. Returns `status`, or the exit status of a trace that could not be written. */
 int trace_close(trace *t, app *a, int status);
+
+/* True once a trace was begun, or could not be: false says that there was no line to trace. */
+bool trace_was_tried(void);
 
 /* The wiring that a trace's interface tells. False: it does not. */
 bool trace_wiring(const pcapng_interface *interface, grobo_wiring *wiring);
