@@ -13,4 +13,24 @@ WRIST    motor 14   -50.0 deg'
 }
 check "a robot of one's own: reaches, with the gripper level" own_robot
 
+# Each C block of the guide stands in the program, word for word.
+guide_is_true() {
+    awk '
+    FILENAME ~ /\.c$/ { program = program $0 "\n"; next }
+    /^```c$/ { block = ""; first = FNR + 1; inside = 1; next }
+    /^```$/ && inside {
+        inside = 0
+        blocks++
+        if (index(program, block) == 0) {
+            print FILENAME ":" first ": not in the program"
+            bad = 1
+        }
+        next
+    }
+    inside { block = block $0 "\n" }
+    END { exit bad || blocks == 0 }
+    ' docs/examples/own_robot.c docs/guide/own-robot.md
+}
+check "a robot of one's own: the guide shows what is built" guide_is_true
+
 done_testing
