@@ -126,6 +126,27 @@ static void times_are_what_a_register_can_hold(void **state)
     assert_int_equal(p.time_us, 163830000);
 }
 
+static void a_copy_stands_alone(void **state)
+{
+    (void)state;
+    grobo_posture copy;
+    {
+        grobo_posture posture = make(4);
+        assert_int_equal(grobo_posture_set_deg(&posture, 2, 30), 0);
+        posture.time_us = 5000;
+        copy = posture;
+        assert_int_equal(grobo_posture_set_deg(&posture, 2, 50), 0);
+        assert_int_equal(grobo_posture_set_deg(&posture, 3, 50), 0);
+        posture.time_us = 0;
+    } /* nothing to free, and the copy outlives it */
+    double value_deg = 0;
+    assert_int_equal(copy.n_joints, 4);
+    assert_int_equal(copy.time_us, 5000);
+    assert_true(copy.set == GROBO_JOINT_BIT(2));
+    assert_int_equal(grobo_posture_get_deg(&copy, 2, &value_deg), 0);
+    assert_near(value_deg, 30, 1e-12);
+}
+
 static void copying_keeps_the_copys_own_number_of_joints(void **state)
 {
     (void)state;
@@ -351,6 +372,7 @@ int main(void)
         cmocka_unit_test(degrees_and_radians_are_one_truth),
         cmocka_unit_test(all_angles_come_with_nan_for_those_not_set),
         cmocka_unit_test(times_are_what_a_register_can_hold),
+        cmocka_unit_test(a_copy_stands_alone),
         cmocka_unit_test(copying_keeps_the_copys_own_number_of_joints),
         cmocka_unit_test(copying_reaches_the_last_joint_there_can_be),
         cmocka_unit_test(merging_takes_over_what_is_set),
