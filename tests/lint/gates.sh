@@ -220,6 +220,79 @@ C
 check 'headers: a private one' \
     refuses 'src/core/private.h:1: headers' sh "$gates/headers.sh"
 
+# ---- seed map ------------------------------------------------------------------------------
+
+# A map whose 190 rows are alike, a header and a test that bear it out.
+seed_rows() {
+    awk 'BEGIN {
+        n = split("SC 22 FN 3 RP 20 RM 29 SR 73 GR 43", part, " ")
+        for (i = 1; i < n; i += 2) {
+            for (k = 1; k <= part[i + 1]; k++) {
+                printf "| %s%02d | x | `grobo_a`, `grobo_b.size` | ", part[i], k
+                print "a note | `unit/test_a.c:works` |"
+            }
+        }
+    }'
+}
+
+fresh
+GROBO_SHARED=$work/tree/shared
+export GROBO_SHARED
+mkdir -p docs
+sample include/grobo/a.h <<'C'
+/** Not grobo_told() in a comment. */
+typedef struct grobo_b {
+    struct {
+        int depth_m; /**< deep */
+    } inner;
+    int size; /**< of it */
+} grobo_b;
+int grobo_a(void);
+C
+sample tests/unit/test_a.c <<'C'
+static void works(void **state)
+{
+    assert_int_equal(grobo_a(), 0);
+}
+static void idle(void **state)
+{
+}
+int main(void) { return run(works); }
+C
+printf '%s\n' "check 'it plays' grctl" | sample tests/cli/a.sh
+seed_rows >docs/seed-map.md
+check 'seed map: a whole one' sh "$gates/seed_map.sh"
+
+# seed_refuses TEXT SED-COMMAND: the map changed so is refused with this.
+seed_refuses() {
+    seed_rows | sed "$2" >docs/seed-map.md
+    refuses "$1" sh "$gates/seed_map.sh"
+}
+check 'seed map: a member missing' seed_refuses 'SR70 is missing' '/SR70/d'
+check 'seed map: a member twice' seed_refuses 'RM10 stands here again' 's/RM09/RM10/'
+check 'seed map: no such member' seed_refuses 'GR44 is no member' '/GR43/{p;s/GR43/GR44/;}'
+check 'seed map: a name in a comment only' \
+    seed_refuses 'SC03: no public header declares grobo_told' '/SC03/s/grobo_a/grobo_told/'
+check 'seed map: no such field' \
+    seed_refuses 'no public header declares grobo_b.sized' '/SC03/s/size/sized/'
+check 'seed map: no test' seed_refuses 'SC03 names no test' '/SC03/s/| [^|]*|$/| |/'
+check 'seed map: no such program' \
+    seed_refuses 'no such test program: unit/test_b.c:works' '/SC03/s/test_a/test_b/'
+check 'seed map: no such test' \
+    seed_refuses 'SC03: no such test: unit/test_a.c:work' '/SC03/s/works/work/'
+check 'seed map: a test that is not run' \
+    seed_refuses 'SC03: no such test: unit/test_a.c:idle' '/SC03/s/works/idle/'
+check 'seed map: a test of something else' \
+    seed_refuses 'uses none of the symbols of its row' '/SC03/s/`grobo_a`, //'
+check 'seed map: no such check' \
+    seed_refuses 'no check called so: cli/a.sh:it stops' '/SC03/s,unit/.*works,cli/a.sh:it stops,'
+seed_rows | sed '/SC03/s,unit/.*works,cli/a.sh:it plays,' >docs/seed-map.md
+check 'seed map: a check of a script' sh "$gates/seed_map.sh"
+printf '# ids\nSC03\ty\twhat it must do\n' | sample shared/seed/members.tsv
+check 'seed map: another member than the reference' \
+    refuses 'SC03 is y, not x' sh "$gates/seed_map.sh"
+unset GROBO_SHARED
+
 # ---- banned --------------------------------------------------------------------------------
 
 fresh
