@@ -43,8 +43,8 @@ static void deviations(const spy_frame *frames, size_t n, double *deviation_us)
 int main(void)
 {
     /* Five seconds made sixty. The posture of the torque comes first, then the motion. */
-    const char *const arguments[] = {"-q", "--json", "play", "--speed", "8", "motions/greet.pseq",
-                                     NULL};
+    const char *const arguments[] = {
+        "-q", "--json", "play", "--rate=50", "--speed=8", "motions/greet.pseq", NULL};
     static double deviation_us[SPY_FRAMES], size_us[SPY_FRAMES];
     double drift_us, median_us;
     size_t n;

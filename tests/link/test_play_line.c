@@ -155,7 +155,7 @@ static void expect_no_burst(void)
 static void test_rate(void **state)
 {
     (void)state;
-    assert_int_equal(play("--speed", "200", greet), 0);
+    assert_int_equal(play("--rate=50", "--speed=200", greet), 0);
     assert_in_range(s.n_poses, 100, 127); /* the goals, 2.5 s, less what a busy machine skips */
     assert_int_equal(s.n_poses - 1, (size_t)said("frames"));
     expect_no_burst();
@@ -196,7 +196,7 @@ static int play_with_a_stall(int64_t length_us)
     s.on_pose = on_pose;
     stall_us = length_us;
     wake = NULL;
-    status = play("--speed", "200", greet);
+    status = play("--rate=50", "--speed=200", greet);
     grobo_timer_free(wake);
     return status;
 }
