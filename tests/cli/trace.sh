@@ -162,4 +162,13 @@ TEXT
         diff "$work/expected" -
 }
 check 'frames split over chunks, rubbish, a reply that never ends' hand_made
+# The blocks of the guide marked sh are run, line by line.
+guide() {
+    mkdir "$work/guide" "$work/bin" && ln -s "$(realpath "$GRCTL")" "$work/bin/grctl" || return 1
+    ln -s "$PWD/motions" "$work/guide/motions"
+    awk '/^```/ { open = $0 == "```sh"; next } open' docs/guide/trace.md >"$work/guide.sh"
+    [ "$(wc -l <"$work/guide.sh")" -ge 7 ] || return 1
+    (cd "$work/guide" && PATH=$work/bin:$PATH sh -eux "$work/guide.sh")
+}
+check "the guide's commands" guide
 done_testing
