@@ -103,7 +103,7 @@ static int run(app *a, int argc, char **argv)
         return EXIT_USAGE;
     }
     status = command->run(a);
-    if (app_global(a, GLOBAL_TRACE)->given && !trace_was_tried())
+    if (status == EXIT_DONE && app_global(a, GLOBAL_TRACE)->given && !trace_was_tried())
         app_note(a, "nothing was traced: no robot was spoken to");
     return status;
 }
