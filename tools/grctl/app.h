@@ -12,8 +12,11 @@
 
 #include "cli.h"
 
+struct conn_link;
+
 typedef struct app {
     cli_line line;
+    struct conn_link *link; /* the shell's, NULL: every command opens and closes its own */
     bool json;
     int verbosity; /* -1 quiet, 0, 1, 2 */
     bool color_out, color_err;

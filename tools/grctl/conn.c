@@ -28,30 +28,37 @@ const char *conn_device(const conn *c)
 
 static void on_signal(evutil_socket_t number, short what, void *ctx)
 {
-    conn *c = ctx;
+    conn_link *link = ctx;
+    int *signal = link->user ? &link->user->signal : &link->signal;
     (void)what;
-    if (!c->signal)
-        c->signal = (int)number;
+    if (!*signal)
+        *signal = (int)number;
 }
 
 static void on_session(grobo_session *session, grobo_session_event event, int error, void *ctx)
 {
-    conn *c = ctx;
+    conn_link *link = ctx;
     (void)session;
     switch (event) {
     case GROBO_SESSION_EVENT_UP:
-        c->up = true;
-        return;
+        link->up = true;
+        break;
     case GROBO_SESSION_EVENT_LOST:
     case GROBO_SESSION_EVENT_FAILED:
-        c->link_error = error ? error : GROBO_ERR_UNPLUGGED;
-        return;
+        link->link_error = error ? error : GROBO_ERR_UNPLUGGED;
+        break;
+    }
+    if (link->user) {
+        link->user->up = link->up;
+        link->user->link_error = link->link_error;
     }
 }
 
 static void on_robot(void *ctx, const grobo_event *event)
 {
-    conn *c = ctx;
+    conn *c = ((conn_link *)ctx)->user;
+    if (!c)
+        return;
     if (event->kind == GROBO_EVENT_JOB && event->u.job.number == c->waiting_for) {
         c->job = event->u.job;
         c->waiting_for = 0;
@@ -67,7 +74,9 @@ static void on_robot(void *ctx, const grobo_event *event)
 static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes, size_t size,
                    void *ctx)
 {
-    conn *c = ctx;
+    conn *c = ((conn_link *)ctx)->user;
+    if (!c)
+        return;
     trace_bytes(&c->trace, direction, now_us, bytes, size);
     if (c->on_bytes)
         c->on_bytes(c, direction, now_us, bytes, size);
@@ -205,7 +214,7 @@ static int make_session(conn *c, const char *device, bool check)
     grobo_wiring wiring = (grobo_wiring)app_global(a, GLOBAL_WIRING)->choice;
     const cli_value *baud = app_global(a, GLOBAL_BAUD);
     grobo_robot_config robot = conn_robot_config(a);
-    grobo_session_config config = {.base = c->base,
+    grobo_session_config config = {.base = c->link->base,
                                    .device = device,
                                    .baud_bps = baud->given ? (int)baud->number : 0,
                                    .driver = grobo_gr001_driver(wiring),
@@ -214,8 +223,8 @@ static int make_session(conn *c, const char *device, bool check)
                                    .on_event = on_session,
                                    .on_robot = on_robot,
                                    .on_tap = on_tap,
-                                   .ctx = c};
-    return grobo_session_new(&config, &c->session);
+                                   .ctx = c->link};
+    return grobo_session_new(&config, &c->link->session);
 }
 
 static int open_trace(conn *c, const char *device)
@@ -227,14 +236,45 @@ static int open_trace(conn *c, const char *device)
     return trace_open(&c->trace, c->a, &line, grobo_now_us());
 }
 
-static int watch_signals(conn *c)
+/* The command takes the link, and with it the signals. */
+static void take(conn *c, app *a)
 {
-    for (int i = 0; i < CONN_SIGNALS; i++) {
-        c->signals[i] = evsignal_new(c->base, caught[i], on_signal, c);
-        if (!c->signals[i] || evsignal_add(c->signals[i], NULL) != 0)
-            return GROBO_ERR_NOMEM;
+    memset(c, 0, sizeof *c);
+    c->a = a;
+    c->link = a->link ? a->link : &c->own;
+    if (c->link->session && c->link->link_error) { /* lost: the next command opens it again */
+        grobo_session_free(c->link->session);
+        c->link->session = NULL;
     }
-    return GROBO_OK;
+    if (!c->link->session) {
+        c->link->link_error = 0;
+        c->link->up = c->link->answered = false;
+    }
+    c->link->user = c;
+    c->base = c->link->base;
+    c->session = c->link->session;
+    c->robot = c->session ? grobo_session_robot(c->session) : NULL;
+    c->up = c->link->up;
+}
+
+/* The open link of a shell, with what this command's options say. */
+static int take_over(conn *c, bool check)
+{
+    grobo_robot_config config = conn_robot_config(c->a);
+    const cli_value *baud = app_global(c->a, GLOBAL_BAUD);
+    int status = open_trace(c, conn_device(c));
+    int error;
+    if (status)
+        return status;
+    conn_link_watch(c->link);
+    config.bus.baud_bps = baud->given ? (uint32_t)baud->number : GROBO_BAUD_DEFAULT_BPS;
+    error = grobo_robot_configure(c->robot, &config);
+    if (!error && check && !c->link->answered)
+        error = conn_wait(c, grobo_session_check(c->session));
+    if (error && !c->signal)
+        return fail_open(c, error);
+    c->link->answered |= check;
+    return error ? EXIT_ROBOT : EXIT_DONE;
 }
 
 static int open_device(conn *c, app *a, bool check)
@@ -243,31 +283,34 @@ static int open_device(conn *c, app *a, bool check)
     const char *asked = requested_device(a);
     grobo_os_cause cause = {0};
     int error;
-    memset(c, 0, sizeof *c);
-    c->a = a;
+    take(c, a);
+    if (c->session)
+        return take_over(c, check);
     if (!*asked)
         return app_fail(a, EXIT_USAGE, "USAGE", "--device: an empty name; see 'grctl ports'");
     error = grobo_port_resolve(asked, device, sizeof device, &cause);
     if (error)
         return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s: %s", asked,
                         *cause.text ? cause.text : grobo_error_text(error));
-    signal(SIGPIPE, SIG_IGN);
     error = open_trace(c, device);
     if (error)
         return error;
-    c->base = grobo_loop_new();
-    error = c->base ? watch_signals(c) : GROBO_ERR_NOMEM;
+    error = conn_link_init(c->link);
     if (!error)
         error = make_session(c, device, check);
     if (error)
         return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s: %s", device,
                         grobo_error_text(error));
+    c->base = c->link->base;
+    c->session = c->link->session;
     c->robot = grobo_session_robot(c->session);
+    conn_link_watch(c->link);
     error = grobo_session_open(c->session);
     if (!error)
         error = conn_wait_until(c, opened);
     if (error && !c->signal)
         return fail_open(c, error);
+    c->link->answered = check && !error;
     if (!error)
         app_detail(a, "robot found on %s", conn_device(c));
     return error ? EXIT_ROBOT : EXIT_DONE;
@@ -374,20 +417,94 @@ static int carry_out_policy(conn *c, int status)
     return status;
 }
 
+/* A shell's link is left as the next command wants to find it. */
+static void give_back(conn *c)
+{
+    grobo_serial *serial = c->session ? grobo_session_serial(c->session) : NULL;
+    const cli_value *baud = app_global(c->a, GLOBAL_BAUD);
+    int baud_bps = baud->given ? (int)baud->number : GROBO_BAUD_DEFAULT_BPS;
+    conn_link_unwatch(c->link);
+    c->link->user = NULL;
+    if (!c->up || c->link_error) { /* never came, or is gone */
+        grobo_session_free(c->session);
+        c->link->session = NULL;
+        return;
+    }
+    if (grobo_robot_job(c->robot) != GROBO_JOB_NONE)
+        grobo_session_cancel(c->session);
+    if (serial && grobo_serial_baud(serial) != baud_bps)
+        grobo_serial_set_baud(serial, baud_bps);
+}
+
 int conn_close(conn *c, int status)
 {
-    if (c->session) {
+    if (c->session)
         status = carry_out_policy(c, status);
-        grobo_session_free(c->session);
-    }
     if (c->signal)
         status = EXIT_SIGNAL + c->signal;
-    for (int i = 0; i < CONN_SIGNALS; i++)
-        if (c->signals[i])
-            event_free(c->signals[i]);
-    if (c->base)
-        event_base_free(c->base);
+    if (c->link->kept) {
+        give_back(c);
+    } else {
+        grobo_session_free(c->session);
+        c->link->session = NULL;
+        conn_link_deinit(c->link);
+    }
     return trace_close(&c->trace, c->a, status);
+}
+
+/* ---- of a shell ------------------------------------------------------------------------------ */
+
+int conn_link_init(conn_link *link)
+{
+    if (link->base)
+        return GROBO_OK;
+    signal(SIGPIPE, SIG_IGN);
+    link->base = grobo_loop_new();
+    for (int i = 0; link->base && i < CONN_SIGNALS; i++) {
+        link->signals[i] = evsignal_new(link->base, caught[i], on_signal, link);
+        if (!link->signals[i])
+            return GROBO_ERR_NOMEM;
+    }
+    return link->base ? GROBO_OK : GROBO_ERR_NOMEM;
+}
+
+void conn_link_watch(conn_link *link)
+{
+    for (int i = 0; i < CONN_SIGNALS; i++)
+        event_add(link->signals[i], NULL);
+}
+
+void conn_link_unwatch(conn_link *link)
+{
+    for (int i = 0; i < CONN_SIGNALS; i++)
+        if (link->signals[i])
+            event_del(link->signals[i]);
+}
+
+int conn_link_close(conn_link *link, app *a, int status)
+{
+    conn c;
+    take(&c, a);
+    c.signal = link->signal;
+    if (c.session) {
+        conn_link_watch(link);
+        status = carry_out_policy(&c, status);
+        conn_link_unwatch(link);
+    }
+    grobo_session_free(c.session);
+    link->session = NULL;
+    link->user = NULL;
+    return c.signal ? EXIT_SIGNAL + c.signal : status;
+}
+
+void conn_link_deinit(conn_link *link)
+{
+    for (int i = 0; i < CONN_SIGNALS; i++)
+        if (link->signals[i])
+            event_free(link->signals[i]);
+    if (link->base)
+        event_base_free(link->base);
+    memset(link, 0, sizeof *link);
 }
 
 json_t *conn_link_json(const conn *c)

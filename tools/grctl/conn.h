@@ -24,13 +24,31 @@ typedef void (*conn_bytes_fn)(conn *c, grobo_direction direction, int64_t now_us
 
 enum { CONN_SIGNALS = 3 };
 
-struct conn {
-    app *a;
+/*
+ * What stands behind a connection: the loop, the signals it hears, the session. A command makes
+ * one for itself; a shell keeps one open and lends it to its commands (app.link).
+ */
+typedef struct conn_link {
+    /* private */
     struct event_base *base;
     struct event *signals[CONN_SIGNALS];
     grobo_session *session;
-    grobo_robot *robot; /* the session's */
-    trace trace;        /* of --trace */
+    conn *user;     /* the command that has it now, NULL between two */
+    int signal;     /* the first signal that came between two commands, 0 none */
+    int link_error; /* why the link is lost, 0 while it stands */
+    bool up;        /* the line is open */
+    bool answered;  /* the robot has answered */
+    bool kept;      /* conn_close() leaves it open */
+} conn_link;
+
+struct conn {
+    app *a;
+    conn_link *link; /* &own, or the shell's */
+    conn_link own;
+    struct event_base *base; /* the link's */
+    grobo_session *session;  /* the link's */
+    grobo_robot *robot;      /* the session's */
+    trace trace;             /* of --trace */
     conn_event_fn on_event;
     conn_bytes_fn on_bytes;
     void *ctx;           /* for on_event, on_bytes */
@@ -41,7 +59,7 @@ struct conn {
     int signal;           /* the first signal that came, 0 none */
     int link_error;       /* why the link is lost, 0 while it stands */
     grobo_trip_info trip; /* why the engine stopped, if it did */
-    bool up;              /* the robot has answered */
+    bool up;              /* the line is open, and the robot has answered where that was asked */
     bool moving;          /* a motion is or may be under way; the exit policy ends it */
     bool leaving;         /* the exit policy is being carried out: signals wait */
 };
@@ -92,6 +110,23 @@ grobo_robot_config conn_robot_config(const app *a);
  * policy could not be carried out.
  */
 int conn_close(conn *c, int status);
+
+/*
+ * A link for a shell: app.link points to it while its commands run. Nothing is opened before a
+ * command needs it. conn_link_deinit() in either case.
+ */
+int conn_link_init(conn_link *link);
+
+/*
+ * Closes what is open: carries out the exit policy that was asked for. What came between two
+ * commands is its signal. Returns as conn_close(). The link may be used again.
+ */
+int conn_link_close(conn_link *link, app *a, int status);
+void conn_link_deinit(conn_link *link);
+
+/* The signals are caught while a command has the link, and between these two. */
+void conn_link_watch(conn_link *link);
+void conn_link_unwatch(conn_link *link);
 
 /* The name of the device in use, for messages. */
 const char *conn_device(const conn *c);
