@@ -157,16 +157,6 @@ static void report(const app *a, const order *o, const plot_data *data)
     app_print_json(all);
 }
 
-/* What increments count from: the initial posture, joints we do not know at 0. */
-static void initial_posture(const grobo_motion *motion, const grobo_model *model,
-                            grobo_posture *start)
-{
-    grobo_posture_init(start, grobo_motion_joints(motion));
-    start->set = GROBO_JOINTS_ALL(start->n_joints);
-    for (int j = 0; model && j < model->n_joints && j < start->n_joints; j++)
-        start->angle_rad[j] = model->joints[j].init_rad;
-}
-
 /* What a picture needs besides the motion. */
 typedef struct work {
     whole played;
@@ -182,7 +172,7 @@ static int solve(const app *a, work *w, const grobo_motion *motion, plot_subject
     grobo_body_options body = body_options_read(a, OPT_BODY, 0);
     bool standing;
     int error;
-    initial_posture(motion, subject->model, &start);
+    whole_start(motion, subject->model, &start);
     error = whole_open(&w->played, motion, &plain, &body);
     subject->clip = &w->played.clip;
     if (w->played.body)
