@@ -181,7 +181,8 @@ typedef struct grobo_sink {
  * Writes a motion, converted first where its kind is not the format's. .pseq and .yaml are laid
  * out as Choreonoid does, numbers as %.9g where that gives the same number, else %.17g.
  * @param format AUTO: the one that holds the motion's kind
- * @return 0, what the sink gave, or as grobo_motion_convert().
+ * @return 0, what the sink gave, GROBO_ERR_EMPTY (a body motion without frames, postures without
+ *   joints), or as grobo_motion_convert().
  */
 GROBO_API int grobo_motion_write(const grobo_motion *motion, grobo_motion_format format,
                                  const grobo_write_options *options, const grobo_sink *sink,

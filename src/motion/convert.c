@@ -217,6 +217,9 @@ static double find_rate(const grobo_motion *motion)
     double rate_hz = (double)last / *row.time_s;
     double whole_hz = round(rate_hz);
     rate_hz = fabs(rate_hz - whole_hz) < 1e-6 * rate_hz ? whole_hz : rate_hz;
+    if (rate_hz < 0.1) {
+        return 0; /* even steps, but no frames */
+    }
     for (size_t n = 0; grobo_i_row_at(motion, n, &row); n++) {
         if (!(fabs(*row.time_s * rate_hz - (double)n) < 1e-6)) {
             return 0;

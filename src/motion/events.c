@@ -333,7 +333,9 @@ static int take_stored(grobo_i_events *events)
                               "aliases make it too large");
     }
     events->event = stored->event;
-    events->event.text = events->store.text + stored->offset;
+    if (stored->event.kind == GROBO_I_SCALAR) {
+        events->event.text = events->store.text + stored->offset;
+    }
     return count_depth(events);
 }
 

@@ -87,6 +87,11 @@ void grobo_i_kept_free(const grobo_mem *mem, grobo_i_kept *list)
     }
 }
 
+static bool comes_before(const grobo_kept *a, const grobo_i_kept *b)
+{
+    return a->level < b->level || (a->level == b->level && a->link < b->link);
+}
+
 int grobo_i_kept_add(const grobo_mem *mem, grobo_i_kept **list, const grobo_kept *kept)
 {
     size_t key_bytes = strlen(kept->key) + 1;
@@ -95,7 +100,8 @@ int grobo_i_kept_add(const grobo_mem *mem, grobo_i_kept **list, const grobo_kept
     if (key_bytes > GROBO_YAML_KEY_MAX_BYTES || value_bytes > KEPT_MAX_BYTES) {
         return GROBO_ERR_CAP;
     }
-    while (*list != NULL) {
+    /* By level and link, so that equal keys are equal lists, wherever a file has them. */
+    while (*list != NULL && !comes_before(kept, *list)) {
         const grobo_i_kept *old = *list;
         if (old->level == kept->level && old->link == kept->link &&
             strcmp(old->text, kept->key) == 0) {
@@ -107,7 +113,7 @@ int grobo_i_kept_add(const grobo_mem *mem, grobo_i_kept **list, const grobo_kept
     if (made == NULL) {
         return GROBO_ERR_NOMEM;
     }
-    made->next = NULL;
+    made->next = *list;
     made->key_bytes = key_bytes;
     made->value_bytes = value_bytes;
     made->level = kept->level;

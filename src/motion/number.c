@@ -287,7 +287,7 @@ static bool scaled_digits(double value, int shift, uint64_t least, uint64_t *dig
     }
     double whole = floor(high);
     double part = (high - whole) + low;
-    *digits = (uint64_t)whole + (uint64_t)floor(part + 0.5);
+    *digits = (uint64_t)((int64_t)whole + (int64_t)floor(part + 0.5));
     return *digits >= least && *digits < 10 * least;
 }
 
@@ -396,7 +396,7 @@ size_t grobo_i_format_scaled(double value, double numerator, double denominator,
 
     if (fabs(guess) < 1e9) {
         int32_t whole = (int32_t)(guess < 0 ? guess - 0.5 : guess + 0.5);
-        if (whole * numerator / denominator == value) {
+        if (whole * numerator / denominator == value && (value != 0 || !signbit(value))) {
             return put_whole(whole, text);
         }
     }

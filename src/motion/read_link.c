@@ -105,7 +105,7 @@ static const grobo_i_field link_fields[] = {
     {"isSlave", NULL, read_is_slave},
     {"partingDirection", NULL, read_parting_direction},
 };
-enum { LINK_NEEDS = 0x3 /* translation and rotation */, LINK_NAMED = 0xC /* name or index */ };
+enum { LINK_NEEDS = 0x3 /* translation and rotation */ };
 
 int grobo_i_read_link(grobo_i_events *events, void *target)
 {
@@ -115,7 +115,7 @@ int grobo_i_read_link(grobo_i_events *events, void *target)
     grobo_i_pose_ref *ref = target;
     link_entry entry = {ref, &ref->links[ref->n_links]};
     const grobo_i_event *event;
-    uint32_t seen = LINK_NEEDS | LINK_NAMED;
+    uint32_t seen = LINK_NEEDS;
     int result = grobo_i_peek(events, &event);
     grobo_i_place place = event->place;
 
@@ -125,10 +125,12 @@ int grobo_i_read_link(grobo_i_events *events, void *target)
     }
     memset(entry.link, 0, sizeof *entry.link);
     entry.link->index = -1;
+    bool is_map = result == 0 && event->kind == GROBO_I_MAP;
     if (result == 0) {
         result = grobo_i_read_map(events, &fields, &entry, &seen);
     }
-    if (result == 0 && ((seen & LINK_NEEDS) != LINK_NEEDS || (seen & LINK_NAMED) == 0)) {
+    bool named = entry.link->name[0] != '\0' || entry.link->index >= 0;
+    if (result == 0 && is_map && ((seen & LINK_NEEDS) != LINK_NEEDS || !named)) {
         result = grobo_i_complain(events->reader, GROBO_ERR_SYNTAX, "key-missing", place,
                                   "a link needs a name or index, translation and rotation");
     }

@@ -20,6 +20,21 @@ void grobo_i_put_kept(grobo_i_out *out, const grobo_i_kept *kept, grobo_kept_lev
     }
 }
 
+/* Postures without joints are no lines, and no frames are no body motion. */
+static int check_writable(const grobo_motion *motion, const grobo_i_writing *writing)
+{
+    bool frames = motion->kind == GROBO_MOTION_FRAMES;
+    const char *name = writing->options->name != NULL ? writing->options->name : "";
+
+    if ((frames && motion->size == 0) || ((frames || motion->kind == GROBO_MOTION_POSTURES) &&
+                                          motion->size > 0 && motion->n_joints == 0)) {
+        grobo_i_say(writing->list, &(grobo_i_said){name, "empty", 0, 0, GROBO_SEVERITY_ERROR},
+                    motion->size == 0 ? "a body motion needs frames" : "no posture sets any joint");
+        return GROBO_ERR_EMPTY;
+    }
+    return frames && !(motion->frame_rate_hz > 0) ? GROBO_ERR_STATE : 0;
+}
+
 int grobo_motion_write(const grobo_motion *motion, grobo_motion_format format,
                        const grobo_write_options *options, const grobo_sink *sink,
                        grobo_diagnostics *list)
@@ -43,9 +58,10 @@ int grobo_motion_write(const grobo_motion *motion, grobo_motion_format format,
         }
         motion = converted;
     }
-    if (kind == GROBO_MOTION_FRAMES && !(motion->frame_rate_hz > 0)) {
+    int result = check_writable(motion, &writing);
+    if (result < 0) {
         grobo_motion_free(converted);
-        return GROBO_ERR_STATE;
+        return result;
     }
     grobo_i_out_begin(&out, sink);
     if (kind == GROBO_MOTION_POSTURES) {
