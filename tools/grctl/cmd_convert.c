@@ -66,6 +66,8 @@ static int solve_legs(app *a, const char *path, const grobo_write_options *how,
         status = body_motion(a, path, body, how->rate_hz, &solved);
     grobo_body_free(body);
     if (solved) {
+        (void)grobo_motion_set_name(solved, grobo_motion_name(*motion));
+        (void)grobo_motion_set_target_body(solved, grobo_motion_target_body(*motion));
         grobo_motion_free(*motion);
         *motion = solved;
     }
