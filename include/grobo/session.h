@@ -102,6 +102,19 @@ GROBO_API int grobo_session_open(grobo_session *session);
 /** Closes: a job ends with GROBO_ERR_UNPLUGGED. A simulator keeps its state for the next open. */
 GROBO_API void grobo_session_close(grobo_session *session);
 
+/**
+ * Sets the device for the next open, as in the configuration (copied).
+ * @return GROBO_OK, GROBO_ERR_STATE (not closed), GROBO_ERR_CAP (name too long).
+ */
+GROBO_API int grobo_session_set_device(grobo_session *session, const char *device);
+
+/**
+ * Changes the engine's configuration (copied), from now on and for every time the line comes up;
+ * the line's physics stay as they are.
+ * @return GROBO_OK, or GROBO_ERR_ARG: then nothing changed.
+ */
+GROBO_API int grobo_session_configure(grobo_session *session, const grobo_robot_config *config);
+
 /** Where it is. */
 GROBO_API grobo_session_state grobo_session_get_state(const grobo_session *session);
 

@@ -333,17 +333,26 @@ static void on_time(grobo_timer *timer, int64_t late_us, void *ctx)
 
 /* ---- the public functions ----------------------------------------------------------------- */
 
+static int set_device(grobo_session *session, const char *device)
+{
+    if (strlen(device) >= sizeof session->device) {
+        return GROBO_ERR_CAP;
+    }
+    memmove(session->device, device, strlen(device) + 1);
+    memcpy(session->used, session->device, sizeof session->used);
+    session->is_sim = strcmp(session->device, GROBO_DEVICE_SIM) == 0;
+    return GROBO_OK;
+}
+
 static int fill(grobo_session *session, const grobo_session_config *config)
 {
     const grobo_driver *driver = config->driver;
     int baud_bps = config->baud_bps > 0 ? config->baud_bps : GROBO_BAUD_DEFAULT_BPS;
+    int r = set_device(session, config->device);
 
-    if (strlen(config->device) >= sizeof session->device) {
-        return GROBO_ERR_CAP;
+    if (r < 0) {
+        return r;
     }
-    memcpy(session->device, config->device, strlen(config->device) + 1);
-    memcpy(session->used, session->device, sizeof session->used);
-    session->is_sim = strcmp(session->device, GROBO_DEVICE_SIM) == 0;
     if (driver == NULL) {
         driver = grobo_gr001_driver(GROBO_WIRING_BOARD);
     }
@@ -458,6 +467,26 @@ void grobo_session_close(grobo_session *session)
     grobo_i_session_enter(session);
     session->closing = true;
     grobo_i_session_leave(session);
+}
+
+int grobo_session_set_device(grobo_session *session, const char *device)
+{
+    return session->state != GROBO_SESSION_CLOSED ? GROBO_ERR_STATE : set_device(session, device);
+}
+
+int grobo_session_configure(grobo_session *session, const grobo_robot_config *config)
+{
+    int r = grobo_robot_configure(&session->robot, config);
+
+    if (r >= 0) {
+        grobo_bus_config bus = session->robot_config.bus;
+
+        session->robot_config = *config;
+        session->robot_config.bus = bus;
+        configure(session, session->state == GROBO_SESSION_UP);
+        grobo_session_pump(session);
+    }
+    return r;
 }
 
 grobo_session_state grobo_session_get_state(const grobo_session *session)

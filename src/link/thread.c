@@ -1,0 +1,518 @@
+/* SPDX-License-Identifier: MIT */
+/* The life of a control, its thread, its rounds. */
+#include <string.h>
+
+#include "src/link/link.h"
+#include "src/link/thread_i.h"
+
+/* Longest and shortest control period. */
+#define PERIOD_MIN_US 1000
+#define PERIOD_MAX_US 1000000
+
+/* How long the exit policy may take beyond the engine's own bound for it. */
+#define EXIT_SPARE_US INT64_C(5000000)
+/* That bound where none is configured (robot.h). */
+#define EXIT_BOUND_US INT64_C(10000000)
+
+/* The rounds that a thread is in, one inside another, of different controls. */
+typedef struct round_frame {
+    const grobo_control *control;
+    const struct round_frame *outer;
+} round_frame;
+
+static _Thread_local const round_frame *rounds;
+
+bool grobo_i_control_inside(const grobo_control *control)
+{
+    const round_frame *frame = rounds;
+
+    while (frame != NULL && frame->control != control) {
+        frame = frame->outer;
+    }
+    return frame != NULL;
+}
+
+/* ---- a round ------------------------------------------------------------------------------ */
+
+/* The exit policy, when nobody has called for too long: who should is gone. */
+static void look_for_owner(grobo_control *control, int64_t now_us)
+{
+    bool lost = false;
+
+    if (control->owner_timeout_us <= 0) {
+        return;
+    }
+    grobo_i_control_lock(control);
+    for (size_t i = 0; i < CONTROL_SLOTS; i++) {
+        if (control->slot[i].sleeping) {
+            control->called_us = now_us; /* who waits is there */
+        }
+    }
+    if (!control->owner_lost && now_us - control->called_us >= control->owner_timeout_us) {
+        control->owner_lost = lost = true;
+    }
+    grobo_i_control_unlock(control);
+    if (lost && !grobo_i_control_has_exited(control)) {
+        (void)grobo_i_control_forget(control, GROBO_ERR_CANCELED);
+        (void)grobo_session_exit(control->session, GROBO_EXIT_DEFAULT);
+    }
+}
+
+static int64_t period_of(grobo_control *control)
+{
+    int64_t period_us;
+
+    grobo_i_control_lock(control);
+    period_us = control->period_us;
+    grobo_i_control_unlock(control);
+    return period_us;
+}
+
+static void on_time(grobo_timer *timer, int64_t late_us, void *ctx)
+{
+    grobo_control *control = ctx;
+    int64_t now_us = grobo_now_us();
+
+    (void)timer;
+    (void)late_us;
+    if (now_us < control->tick_us) {
+        return; /* the end of somebody's patience */
+    }
+    control->tick_us += period_of(control);
+    if (control->tick_us <= now_us) {
+        control->tick_us = now_us + period_of(control); /* late: skipped, not made up for */
+    }
+    look_for_owner(control, now_us);
+    if (control->on_svc != NULL) {
+        (void)control->on_svc(control, control->user.ctx);
+    }
+}
+
+static void on_wake(evutil_socket_t socket, short what, void *ctx)
+{
+    grobo_control *control = ctx;
+
+    (void)what;
+    grobo_i_control_drain(socket);
+    grobo_i_control_lock(control);
+    control->woken = false;
+    grobo_i_control_unlock(control);
+}
+
+void grobo_i_control_round(grobo_control *control, int64_t end_us)
+{
+    const round_frame frame = {control, rounds};
+
+    rounds = &frame;
+    if (control->tick_us == GROBO_NEVER_US) {
+        control->tick_us = grobo_now_us() + period_of(control);
+    }
+    /* Cannot fail: the timer's event has been added before, or adding takes no memory. */
+    (void)grobo_timer_set(control->timer, end_us < control->tick_us ? end_us : control->tick_us);
+    (void)event_base_loop(control->base, EVLOOP_ONCE);
+    grobo_i_control_look_at_play(control);
+    grobo_i_control_serve(control);
+    rounds = frame.outer;
+}
+
+/* ---- the thread --------------------------------------------------------------------------- */
+
+static int exit_job(grobo_control *control, control_job *job)
+{
+    (void)job;
+    /* A robot that is gone, or has been left, needs nothing. */
+    if (grobo_session_get_state(control->session) != GROBO_SESSION_UP ||
+        grobo_i_control_has_exited(control)) {
+        return GROBO_OK;
+    }
+    (void)grobo_i_control_forget(control, GROBO_ERR_CANCELED);
+    return grobo_session_exit(control->session, GROBO_EXIT_DEFAULT);
+}
+
+int grobo_i_control_leave(grobo_control *control, int64_t timeout_us)
+{
+    control_job job = {.start = exit_job};
+
+    return control->skip_exit ? GROBO_OK : grobo_i_control_job(control, &job, NULL, timeout_us);
+}
+
+static int64_t exit_timeout(grobo_control *control)
+{
+    int64_t bound_us;
+
+    grobo_i_control_lock(control);
+    bound_us = control->robot_config.exit_bound_us;
+    grobo_i_control_unlock(control);
+    return (bound_us > 0 ? bound_us : EXIT_BOUND_US) + EXIT_SPARE_US;
+}
+
+/* The body of the control thread; `running` is set. */
+static void run(grobo_control *control)
+{
+    grobo_mutex_lock(&control->lock);
+    while (control->looping && !control->stopping) {
+        /* Whoever is in a round gives the turn to us after it. */
+        grobo_i_control_sleep(control, &control->runner, GROBO_NEVER_US);
+    }
+    if (!control->looping) {
+        control->looping = true;
+        while (!control->stopping) {
+            grobo_mutex_unlock(&control->lock);
+            grobo_i_control_round(control, GROBO_NEVER_US);
+            grobo_mutex_lock(&control->lock);
+        }
+        control->looping = false;
+    }
+    control->running = false;
+    control->ending = true;
+    grobo_i_control_tell_all(control);
+    grobo_mutex_unlock(&control->lock);
+    /* Told to nobody: a robot that cannot be left well has been told of by its events. */
+    (void)grobo_i_control_leave(control, exit_timeout(control));
+    grobo_mutex_lock(&control->lock);
+    control->ending = false;
+    grobo_i_control_tell_all(control);
+    grobo_mutex_unlock(&control->lock);
+}
+
+static GROBO_THREAD_FUNC thread_execution(void *arg)
+{
+    run(arg);
+    GROBO_THREAD_RETURN;
+}
+
+/* With the lock, which is given back meanwhile: joins a thread that has ended. */
+static void join(grobo_control *control)
+{
+    if (control->has_thread) {
+        grobo_thread thread = control->thread;
+
+        control->has_thread = false;
+        grobo_mutex_unlock(&control->lock);
+        (void)grobo_thread_join(thread);
+        grobo_mutex_lock(&control->lock);
+    }
+}
+
+int grobo_control_start_thread(grobo_control *control)
+{
+    int r = GROBO_ERR_STATE;
+
+    grobo_i_control_lock(control);
+    if (!control->running && !control->ending) {
+        control->running = true;
+        control->stopping = false;
+        join(control); /* one that was stopped in a callback */
+        r = grobo_thread_start(&control->thread, thread_execution, control);
+        control->has_thread = r >= 0;
+        control->running = r >= 0;
+        if (r < 0) {
+            grobo_i_control_tell_all(control); /* whoever waits for its end already */
+        }
+    }
+    grobo_i_control_unlock(control);
+    return r;
+}
+
+int grobo_control_run(grobo_control *control)
+{
+    bool mine;
+
+    if (grobo_i_control_inside(control)) {
+        return GROBO_ERR_STATE;
+    }
+    grobo_i_control_lock(control);
+    mine = !control->running && !control->ending;
+    if (mine) {
+        control->running = true;
+        control->stopping = false;
+    }
+    grobo_i_control_unlock(control);
+    if (mine) {
+        run(control);
+    }
+    return mine ? GROBO_OK : GROBO_ERR_STATE;
+}
+
+/* With the lock: waits until the thread has ended. */
+static int await_end(grobo_control *control)
+{
+    control_slot *slot = grobo_i_control_take(control, CONTROL_SLOTS);
+
+    if (slot == NULL) {
+        return GROBO_ERR_FULL;
+    }
+    while (control->running || control->ending) {
+        grobo_i_control_sleep(control, slot, GROBO_NEVER_US);
+    }
+    slot->state = CALL_FREE;
+    join(control);
+    return GROBO_OK;
+}
+
+int grobo_control_stop_thread(grobo_control *control)
+{
+    int r = GROBO_ERR_STATE;
+
+    grobo_i_control_lock(control);
+    if (control->running || control->ending) {
+        control->stopping = true;
+        grobo_i_control_tell_all(control);
+        grobo_i_control_wake(control);
+        r = grobo_i_control_inside(control) ? GROBO_OK : await_end(control);
+    }
+    grobo_i_control_unlock(control);
+    return r;
+}
+
+bool grobo_control_is_active(grobo_control *control)
+{
+    bool active;
+
+    grobo_i_control_lock(control);
+    active = control->running && !control->stopping;
+    grobo_i_control_unlock(control);
+    return active;
+}
+
+int grobo_control_thread(grobo_control *control, grobo_thread *thread)
+{
+    int r = GROBO_ERR_STATE;
+
+    grobo_i_control_lock(control);
+    if (control->has_thread && control->running) {
+        *thread = control->thread;
+        r = GROBO_OK;
+    }
+    grobo_i_control_unlock(control);
+    return r;
+}
+
+int grobo_control_svc(grobo_control *control)
+{
+    int64_t end_us = grobo_now_us() + period_of(control);
+    control_slot *slot;
+    bool mine = false;
+
+    if (grobo_i_control_inside(control)) {
+        return GROBO_ERR_STATE;
+    }
+    grobo_i_control_lock(control);
+    slot = grobo_i_control_take(control, GROBO_CONTROL_CALLS_MAX);
+    while (slot != NULL && (control->looping || control->running) && grobo_now_us() < end_us) {
+        grobo_i_control_sleep(control, slot, end_us);
+    }
+    if (slot != NULL) {
+        slot->state = CALL_FREE;
+        mine = !control->looping && !control->running;
+    }
+    if (mine) {
+        control->looping = true;
+        grobo_mutex_unlock(&control->lock);
+        grobo_i_control_round(control, end_us);
+        grobo_mutex_lock(&control->lock);
+        control->looping = false;
+        grobo_i_control_tell_all(control);
+    }
+    grobo_i_control_unlock(control);
+    return slot != NULL ? mine : GROBO_ERR_FULL;
+}
+
+/* ---- making and freeing ------------------------------------------------------------------- */
+
+static int copy_names(grobo_control *control, const grobo_control_config *config)
+{
+    const char *name = config->name != NULL ? config->name : control->driver->name;
+    const char *dir = config->motion_dir != NULL ? config->motion_dir : ".";
+
+    if (strlen(name) >= sizeof control->name || strlen(dir) >= sizeof control->motion_dir) {
+        return GROBO_ERR_CAP;
+    }
+    memcpy(control->name, name, strlen(name) + 1);
+    memcpy(control->motion_dir, dir, strlen(dir) + 1);
+    return GROBO_OK;
+}
+
+/* The initial posture: all joints at 0, or at the limit that is nearest. */
+static void set_postures(grobo_control *control)
+{
+    const grobo_model *model = control->driver->model;
+
+    /* Cannot fail: the model's number of joints was checked with the driver. */
+    (void)grobo_posture_init(&control->target, model->n_joints);
+    control->target.time_us = 0;
+    control->init = control->target;
+    control->init.set = GROBO_JOINTS_ALL(model->n_joints);
+    (void)grobo_posture_clamp(&control->init, model);
+}
+
+static int make_loop(grobo_control *control)
+{
+    int r = grobo_i_control_pair(control->wake_socket);
+
+    if (r >= 0) {
+        r = grobo_i_control_pair(control->runner.socket);
+    }
+    control->base = r >= 0 ? grobo_loop_new() : NULL;
+    if (control->base == NULL) {
+        return GROBO_ERR_NOMEM;
+    }
+    control->wake =
+        event_new(control->base, control->wake_socket[0], EV_READ | EV_PERSIST, on_wake, control);
+    if (control->wake == NULL || event_add(control->wake, NULL) != 0) {
+        return GROBO_ERR_NOMEM;
+    }
+    return grobo_timer_new(control->base, on_time, control, control->mem, &control->timer);
+}
+
+static int make_session(grobo_control *control)
+{
+    grobo_session_config config = control->user;
+
+    config.base = control->base;
+    config.driver = control->driver;
+    config.robot = &control->robot_config;
+    config.on_event = grobo_i_control_on_event;
+    config.on_robot = grobo_i_control_on_robot;
+    config.on_tap = grobo_i_control_on_tap;
+    config.ctx = control;
+    return grobo_session_new(&config, &control->session);
+}
+
+static int make_parts(grobo_control *control, const grobo_control_config *config)
+{
+    int r = make_loop(control);
+
+    if (r >= 0) {
+        r = make_session(control); /* checks the driver */
+    }
+    if (r >= 0) {
+        r = copy_names(control, config);
+    }
+    if (r >= 0) {
+        set_postures(control);
+        r = grobo_motion_new(&control->motion, GROBO_MOTION_POSTURES,
+                             control->driver->model->n_joints, control->mem);
+    }
+    return r;
+}
+
+static void fill(grobo_control *control, const grobo_control_config *config)
+{
+    control->user = config->session;
+    control->mem = config->session.mem;
+    control->driver = config->session.driver != NULL ? config->session.driver
+                                                     : grobo_gr001_driver(GROBO_WIRING_BOARD);
+    if (config->session.robot != NULL) {
+        control->robot_config = *config->session.robot;
+    }
+    control->on_svc = config->on_svc;
+    control->owner_timeout_us = config->owner_timeout_us;
+    control->skip_exit = config->skip_exit;
+    control->period_us =
+        config->control_period_us != 0 ? config->control_period_us : GROBO_CONTROL_PERIOD_US;
+    control->tick_us = GROBO_NEVER_US;
+    control->called_us = grobo_now_us();
+    control->runner.socket[0] = control->runner.socket[1] = GROBO_SOCKET_NULL;
+    control->wake_socket[0] = control->wake_socket[1] = GROBO_SOCKET_NULL;
+    for (size_t i = 0; i < CONTROL_SLOTS; i++) {
+        control->slot[i].socket[0] = control->slot[i].socket[1] = GROBO_SOCKET_NULL;
+    }
+}
+
+static void destroy(grobo_control *control)
+{
+    grobo_session_free(control->session);
+    grobo_timer_free(control->timer);
+    if (control->wake != NULL) {
+        event_free(control->wake);
+    }
+    if (control->base != NULL) {
+        event_base_free(control->base);
+    }
+    grobo_i_control_unpair(control->wake_socket);
+    grobo_i_control_unpair(control->runner.socket);
+    for (size_t i = 0; i < CONTROL_SLOTS; i++) {
+        grobo_i_control_unpair(control->slot[i].socket);
+    }
+    grobo_i_control_release_clip(control);
+    grobo_motion_free(control->motion);
+    grobo_mutex_deinit(&control->lock);
+    grobo_i_link_free(control->mem, control, sizeof *control);
+}
+
+static bool is_period(int64_t period_us)
+{
+    return period_us >= PERIOD_MIN_US && period_us <= PERIOD_MAX_US;
+}
+
+int grobo_control_new(const grobo_control_config *config, grobo_control **control)
+{
+    grobo_control *made;
+    int r;
+
+    if (config == NULL || control == NULL || config->session.base != NULL ||
+        config->owner_timeout_us < 0 ||
+        (config->control_period_us != 0 && !is_period(config->control_period_us))) {
+        return GROBO_ERR_ARG;
+    }
+    made = grobo_i_link_new(config->session.mem, sizeof *made);
+    if (made == NULL) {
+        return GROBO_ERR_NOMEM;
+    }
+    if (grobo_mutex_init(&made->lock) < 0) {
+        grobo_i_link_free(config->session.mem, made, sizeof *made);
+        return GROBO_ERR_NOMEM;
+    }
+    fill(made, config);
+    r = make_parts(made, config);
+    made->user.device = NULL;
+    made->user.robot = NULL;
+    made->user.sim = NULL;
+    if (r < 0) {
+        destroy(made);
+        return r;
+    }
+    *control = made;
+    return GROBO_OK;
+}
+
+/* What was posted and has not had its turn. */
+static void do_posted(grobo_control *control)
+{
+    const round_frame frame = {control, rounds};
+
+    rounds = &frame;
+    (void)grobo_i_control_forget(control, GROBO_ERR_CANCELED);
+    grobo_i_control_serve(control);
+    rounds = frame.outer;
+}
+
+int grobo_control_free(grobo_control *control)
+{
+    if (control == NULL) {
+        return GROBO_OK;
+    }
+    if (grobo_i_control_inside(control)) {
+        return GROBO_ERR_STATE;
+    }
+    (void)grobo_control_stop_thread(control);
+    grobo_i_control_lock(control);
+    join(control); /* one that was stopped in a callback */
+    grobo_i_control_unlock(control);
+    (void)grobo_i_control_leave(control, exit_timeout(control));
+    do_posted(control);
+    destroy(control);
+    return GROBO_OK;
+}
+
+int grobo_control_set_period_us(grobo_control *control, int64_t period_us)
+{
+    if (!is_period(period_us)) {
+        return GROBO_ERR_ARG;
+    }
+    grobo_i_control_lock(control);
+    control->period_us = period_us;
+    grobo_i_control_unlock(control);
+    return GROBO_OK;
+}

@@ -1,0 +1,227 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The inside of a grobo_control: thread.c has its life and its rounds, thread_call.c how threads
+ * hand calls to the loop, thread_events.c what the loop is told, the others the functions.
+ *
+ * `lock` guards what several threads touch; it is never held while anything is called that may
+ * call back. What is marked 'loop' belongs to the thread that is in a round (`looping`), and goes
+ * from one to the next with that mark.
+ */
+#ifndef GROBO_LINK_THREAD_I_H
+#define GROBO_LINK_THREAD_I_H
+
+#include <limits.h>
+
+#include <event2/event.h>
+
+#include <grobo/thread.h>
+
+/* What a call's function returns while it is not over. */
+#define CALL_PENDING INT_MIN
+
+/* One more than there are calls, so that nothing keeps a thread from being stopped. */
+#define CONTROL_SLOTS (GROBO_CONTROL_CALLS_MAX + 1)
+
+typedef enum call_state {
+    CALL_FREE = 0,
+    CALL_WAITER,  /* a thread that waits for its turn, without a call */
+    CALL_OPEN,    /* handed over, not over */
+    CALL_RUNNING, /* its function runs */
+    CALL_DONE
+} call_state;
+
+/* A job of the engine that a thread waits for. */
+typedef struct control_job {
+    int (*start)(grobo_control *control, struct control_job *job);
+    int number;           /* 0: not begun */
+    bool ended;           /* then: */
+    int result;           /* how */
+    uint64_t seen_losses; /* of the line, when the call was made */
+    int64_t begun_us;
+    grobo_joint_mask joints; /* what `start` needs */
+    grobo_sense_kind sense;
+    grobo_torque torque;
+    grobo_exit_policy policy;
+    grobo_posture *posture; /* SENSE: where the reading goes */
+    size_t size;
+    uint8_t frame[GROBO_CONTROL_COMMAND_BYTES];
+} control_job;
+
+/* A thread that waits for the loop, or something posted. */
+typedef struct control_slot {
+    call_state state;
+    uint64_t ticket;     /* the order of the calls */
+    grobo_control_fn fn; /* returns CALL_PENDING to be called again */
+    void *arg;
+    control_job *job; /* what fn waits for, if a job */
+    int result;
+    bool posted;            /* nobody waits */
+    bool sleeping;          /* somebody does, at the socket */
+    bool impatient;         /* and wants to know when fn comes back */
+    grobo_socket socket[2]; /* a byte from 1 to 0 wakes who waits */
+} control_slot;
+
+/* What is played. */
+typedef enum play_stage { PLAY_NONE = 0, PLAY_WANTED, PLAY_BEGUN } play_stage;
+
+struct grobo_control {
+    const grobo_mem *mem;
+    grobo_mutex lock;
+    const grobo_driver *driver;
+    grobo_control_fn on_svc;
+    grobo_session_config user; /* its callbacks */
+    int64_t owner_timeout_us;
+    bool skip_exit;
+    char name[GROBO_NAME_MAX_BYTES];
+
+    /* under lock: whose turn it is */
+    control_slot slot[CONTROL_SLOTS];
+    control_slot runner; /* of the control thread */
+    uint64_t tickets;
+    bool looping;    /* a thread is in a round */
+    bool running;    /* the control thread, or somebody in grobo_control_run() */
+    bool ending;     /* it carries out the exit policy */
+    bool stopping;   /* it shall end */
+    bool has_thread; /* to be joined */
+    bool woken;      /* a byte is on its way to the loop */
+    grobo_thread thread;
+    int64_t called_us; /* when another thread called last */
+    bool owner_lost;
+
+    /* under lock: settings and postures */
+    char motion_dir[GROBO_PATH_MAX_BYTES];
+    grobo_robot_config robot_config;
+    int64_t period_us;
+    int motion_count;
+    bool reverse;
+    grobo_posture init, target;
+    grobo_motion *motion;
+    uint8_t command[GROBO_CONTROL_COMMAND_BYTES];
+    size_t command_bytes;
+
+    /* under lock, written on the loop or by who asks */
+    bool up;
+    uint64_t losses; /* times the line was lost or closed */
+    bool move_wanted;
+    play_stage play;
+    int motion_result; /* of the last target or motion */
+
+    /* loop */
+    struct event_base *base;
+    struct event *wake;
+    grobo_socket wake_socket[2];
+    grobo_timer *timer;
+    int64_t tick_us; /* end of the control period */
+    grobo_session *session;
+    int line_error;            /* of the last event of the line */
+    int last_job, last_result; /* the job that ended last */
+    int move_job;              /* number, 0 none */
+    int play_job, play_error;
+    grobo_motion *playing;           /* what the clip reads; under lock while PLAY_WANTED */
+    grobo_play_options play_options; /* as `playing` */
+    grobo_clip clip;
+    bool exited;                              /* the exit policy is carried out */
+    uint64_t exit_frames;                     /* and nothing was sent since these */
+    uint8_t raw[GROBO_CONTROL_COMMAND_BYTES]; /* the command that is under way */
+    size_t raw_bytes;                         /* 0: none */
+    bool recording;                           /* it is on the wire: what comes is its reply */
+    uint8_t received[GROBO_CONTROL_RECEIVE_BYTES];
+    size_t received_bytes;
+    int64_t received_us;
+};
+
+/* ---- thread.c ---- */
+
+/* A round of the loop, at most until end_us. Whoever calls has `looping`. */
+void grobo_i_control_round(grobo_control *control, int64_t end_us);
+
+/* True on the thread that is in a round of this control. */
+bool grobo_i_control_inside(const grobo_control *control);
+
+/* Carries out the exit policy where there is a robot. Waits. */
+int grobo_i_control_leave(grobo_control *control, int64_t timeout_us);
+
+/* ---- thread_call.c ---- */
+
+/* Takes the lock, and takes note that somebody is there. */
+void grobo_i_control_lock(grobo_control *control);
+void grobo_i_control_unlock(grobo_control *control);
+
+/* Makes and ends what a slot waits with. */
+int grobo_i_control_pair(grobo_socket pair[2]);
+void grobo_i_control_unpair(grobo_socket pair[2]);
+
+/* Takes a byte or more out of a socket; puts one in. */
+void grobo_i_control_drain(grobo_socket socket);
+void grobo_i_control_ring(grobo_socket socket);
+
+/* With the lock: has the loop look at its calls. */
+void grobo_i_control_wake(grobo_control *control);
+
+/* With the lock: takes a slot to wait in, NULL for none. */
+control_slot *grobo_i_control_take(grobo_control *control, size_t most);
+
+/* With the lock, which is given back meanwhile: sleeps until told, or end_us. */
+void grobo_i_control_sleep(grobo_control *control, control_slot *slot, int64_t end_us);
+
+/* With the lock: tells everybody who sleeps that the turn is free. */
+void grobo_i_control_tell_all(grobo_control *control);
+
+/* On the loop: calls what is open, in the order of the calls. */
+void grobo_i_control_serve(grobo_control *control);
+
+/* Hands over. */
+int grobo_i_control_call(grobo_control *control, grobo_control_fn fn, void *arg);
+
+/* Hands over and waits; refused in a callback. */
+int grobo_i_control_wait(grobo_control *control, grobo_control_fn fn, void *arg,
+                         int64_t timeout_us);
+
+/* With the lock: hands over without waiting. */
+int grobo_i_control_post(grobo_control *control, grobo_control_fn fn, void *arg);
+
+/* Hands over a job, after those before it, and waits for its end. `fn` NULL: nothing besides. */
+int grobo_i_control_job(grobo_control *control, control_job *job, grobo_control_fn fn,
+                        int64_t timeout_us);
+
+/* On the loop: the function of a job. */
+int grobo_i_control_poll_job(grobo_control *control, void *arg);
+
+/* ---- thread_events.c ---- */
+
+/* The session's callbacks; their ctx is the control. */
+void grobo_i_control_on_event(grobo_session *session, grobo_session_event event, int error,
+                              void *ctx);
+void grobo_i_control_on_robot(void *ctx, const grobo_event *event);
+void grobo_i_control_on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes,
+                            size_t size, void *ctx);
+
+/* On the loop: the line is down. */
+void grobo_i_control_down(grobo_control *control, int error);
+
+/* On the loop: true if the exit policy is carried out and nothing was done since. */
+bool grobo_i_control_has_exited(grobo_control *control);
+
+/* ---- thread_play.c ---- */
+
+/* On the loop: true while the sequencer is at work. */
+bool grobo_i_control_sequencing(grobo_control *control);
+
+/* On the loop: looks whether what is played is over. */
+void grobo_i_control_look_at_play(grobo_control *control);
+
+/* On the loop: forgets what has not begun. @return true if there was something. */
+bool grobo_i_control_forget(grobo_control *control, int result);
+
+/* Frees what was played. */
+void grobo_i_control_release_clip(grobo_control *control);
+
+/* With the lock: posts the sending of the target. */
+int grobo_i_control_want_move(grobo_control *control);
+
+/* ---- thread_state.c ---- */
+
+/* With the lock: may this be a target? */
+int grobo_i_control_check_posture(const grobo_control *control, const grobo_posture *posture);
+
+#endif

@@ -1,0 +1,348 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Every function of a control, over the simulator, from a thread that is not the loop's: once
+ * while a control thread runs the loop, and once without, where the calls run it themselves.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <unistd.h>
+
+#include <cmocka.h>
+#include <event2/event.h>
+
+#include "control_kit.h"
+#include "resources.h"
+
+/* ---- facts and settings ------------------------------------------------------------------- */
+
+static void name_and_joints(void **state)
+{
+    (void)state;
+    assert_string_equal(grobo_control_name(control), "GR001");
+    assert_int_equal(grobo_control_joints(control), 20);
+}
+
+static void settings_are_kept(void **state)
+{
+    char dir[sizeof control_folder];
+    char longer[GROBO_PATH_MAX_BYTES + 1];
+
+    (void)state;
+    assert_int_equal(grobo_control_get_motion_dir(control, dir, sizeof dir),
+                     (int)strlen(control_folder));
+    assert_string_equal(dir, control_folder);
+    assert_int_equal(grobo_control_get_motion_dir(control, dir, strlen(control_folder)),
+                     GROBO_ERR_SPACE);
+    memset(longer, 'x', sizeof longer - 1);
+    longer[sizeof longer - 1] = '\0';
+    assert_int_equal(grobo_control_set_motion_dir(control, longer), GROBO_ERR_CAP);
+    assert_int_equal(grobo_control_set_motion_dir(control, NULL), GROBO_ERR_ARG);
+
+    assert_int_equal(grobo_control_get_default_time_us(control), 100000);
+    assert_int_equal(grobo_control_set_default_time_us(control, 250000), GROBO_OK);
+    assert_int_equal(grobo_control_get_default_time_us(control), 250000);
+    assert_int_equal(grobo_control_set_default_time_us(control, 0), GROBO_ERR_ARG);
+
+    assert_int_equal(grobo_control_get_sense_interval_us(control), 1000000);
+    assert_int_equal(grobo_control_set_sense_interval_us(control, 50000), GROBO_OK);
+    assert_int_equal(grobo_control_get_sense_interval_us(control), 50000);
+    assert_int_equal(grobo_control_get_default_time_us(control), 250000);
+    assert_int_equal(grobo_control_set_sense_interval_us(control, 0), GROBO_ERR_ARG);
+    assert_int_equal(grobo_control_set_sense_interval_us(control, GROBO_SENSE_NEVER), GROBO_OK);
+
+    assert_int_equal(grobo_control_get_period_us(control), GROBO_CONTROL_PERIOD_US);
+    assert_int_equal(grobo_control_set_period_us(control, 20000), GROBO_OK);
+    assert_int_equal(grobo_control_get_period_us(control), 20000);
+    assert_int_equal(grobo_control_set_period_us(control, 999), GROBO_ERR_ARG);
+
+    assert_int_equal(grobo_control_get_motion_count(control), 0);
+    assert_int_equal(grobo_control_set_motion_count(control, 3), 3);
+    assert_int_equal(grobo_control_get_motion_count(control), 3);
+    assert_false(grobo_control_is_reverse(control));
+    assert_int_equal(grobo_control_set_motion_count(control, -3), -3);
+    assert_true(grobo_control_is_reverse(control));
+    assert_int_equal(grobo_control_set_motion_count(control, 1), 1);
+    grobo_control_set_reverse(control, true);
+    assert_true(grobo_control_is_reverse(control));
+    grobo_control_set_reverse(control, false);
+    assert_false(grobo_control_is_reverse(control));
+}
+
+static void postures_are_kept(void **state)
+{
+    grobo_posture posture;
+    grobo_posture got;
+
+    (void)state;
+    grobo_control_get_init_posture(control, &got);
+    assert_int_equal(got.n_joints, 20);
+    assert_true(got.set == EVERY_JOINT);
+    for (int j = 0; j < 20; j++) {
+        assert_true(got.angle_rad[j] == 0);
+    }
+    assert_int_equal(grobo_posture_set_deg(&got, ELBOW, 1000), GROBO_OK);
+    assert_int_equal(grobo_control_set_init_posture(control, &got), GROBO_ERR_LIMIT);
+    assert_int_equal(grobo_posture_set_deg(&got, ELBOW, 7), GROBO_OK);
+    assert_int_equal(grobo_control_set_init_posture(control, &got), GROBO_OK);
+    grobo_control_get_init_posture(control, &posture);
+    assert_true(grobo_posture_equal(&posture, &got));
+
+    grobo_control_get_target_posture(control, &posture);
+    assert_true(posture.set == 0);
+    assert_int_equal(grobo_control_set_joint(control, ELBOW, grobo_rad_from_deg(8)), GROBO_OK);
+    assert_int_equal(grobo_control_set_joint(control, 20, 0), GROBO_ERR_ARG);
+    assert_int_equal(grobo_control_set_joint(control, -1, 0), GROBO_ERR_ARG);
+    assert_int_equal(grobo_control_set_joint(control, ELBOW, 99), GROBO_ERR_LIMIT);
+    assert_int_equal(grobo_control_set_joint(control, ELBOW, 0.0 / (double)(control == NULL)),
+                     GROBO_ERR_NAN);
+    assert_int_equal(grobo_control_set_motion_time_us(control, 300000), GROBO_OK);
+    assert_int_equal(grobo_control_set_motion_time_us(control, -1), GROBO_ERR_ARG);
+    grobo_control_get_target_posture(control, &posture);
+    assert_true(posture.set == GROBO_JOINT_BIT(ELBOW));
+    assert_true(posture.angle_rad[ELBOW] == grobo_rad_from_deg(8));
+    assert_int_equal(posture.time_us, 300000);
+    assert_int_equal(grobo_control_set_target_posture(control, &got), GROBO_OK);
+    got.n_joints = 3;
+    assert_int_equal(grobo_control_set_target_posture(control, &got), GROBO_ERR_ARG);
+    grobo_control_get_target_posture(control, &posture);
+    assert_int_equal(posture.n_joints, 20);
+}
+
+/* ---- the line ----------------------------------------------------------------------------- */
+
+static int serial_is_closed(grobo_control *from, void *arg)
+{
+    assert_ptr_equal(from, control);
+    assert_null(arg);
+    assert_ptr_equal(grobo_session_serial(grobo_control_session(from)), grobo_control_serial(from));
+    return grobo_serial_is_open(grobo_control_serial(from)) ? 0 : 77;
+}
+
+static void the_line_opens_and_closes(void **state)
+{
+    char device[GROBO_DEVICE_MAX_BYTES];
+    char longer[GROBO_DEVICE_MAX_BYTES + 1];
+    grobo_os_cause cause;
+
+    (void)state;
+    assert_false(grobo_control_is_connected(control));
+    assert_int_equal(grobo_control_check_connection(control, 0), GROBO_ERR_CLOSED);
+    assert_int_equal(grobo_control_start_motion(control), GROBO_ERR_CLOSED);
+
+    assert_int_equal(grobo_control_set_device(control, "/nowhere/tty"), GROBO_OK);
+    assert_int_equal(grobo_control_get_device(control, device, sizeof device), 12);
+    assert_string_equal(device, "/nowhere/tty");
+    assert_int_equal(grobo_control_get_device(control, device, 12), GROBO_ERR_SPACE);
+    memset(longer, 'x', sizeof longer - 1);
+    longer[sizeof longer - 1] = '\0';
+    assert_int_equal(grobo_control_set_device(control, longer), GROBO_ERR_CAP);
+    assert_int_equal(grobo_control_set_device(control, NULL), GROBO_ERR_ARG);
+    assert_int_equal(grobo_control_open_port(control), GROBO_ERR_NOENT);
+    assert_int_equal(grobo_control_connect(control, 0), GROBO_ERR_NOENT);
+    assert_int_equal(grobo_control_get_cause(control, &cause), GROBO_OK);
+    assert_true(strlen(cause.text) > 0);
+
+    assert_int_equal(grobo_control_set_device(control, GROBO_DEVICE_SIM), GROBO_OK);
+    assert_int_equal(grobo_control_open_port(control), GROBO_OK);
+    assert_int_equal(grobo_control_open_port(control), GROBO_ERR_STATE);
+    assert_int_equal(grobo_control_connect(control, 0), GROBO_OK);
+    assert_int_equal(grobo_control_connect(control, 0), GROBO_OK);
+    assert_int_equal(grobo_control_set_device(control, "/nowhere/tty"), GROBO_ERR_STATE);
+    assert_int_equal(grobo_control_check_connection(control, 0), GROBO_OK);
+    assert_int_equal(grobo_control_call(control, serial_is_closed, NULL), 77);
+
+    assert_int_equal(grobo_control_close_port(control, 0), GROBO_OK);
+    assert_false(grobo_control_is_connected(control));
+    assert_int_equal(grobo_control_close_port(control, 0), GROBO_OK);
+    assert_int_equal(grobo_control_check_connection(control, 0), GROBO_ERR_CLOSED);
+    control_come_up();
+}
+
+/* ---- servos, postures --------------------------------------------------------------------- */
+
+static void servo_states(void **state)
+{
+    int states[20];
+
+    (void)state;
+    assert_int_equal(grobo_control_set_servo_state(control, ELBOW, GROBO_TORQUE_ON, 0),
+                     GROBO_ERR_CLOSED);
+    control_come_up();
+    assert_int_equal(grobo_control_get_servo_states(control, states, 19), GROBO_ERR_SPACE);
+    assert_int_equal(grobo_control_set_servo_states(control, EVERY_JOINT, GROBO_TORQUE_BRAKE, 0),
+                     GROBO_OK);
+    assert_int_equal(grobo_control_set_servo_state(control, ELBOW, GROBO_TORQUE_ON, 0),
+                     GROBO_TORQUE_ON);
+    assert_int_equal(grobo_control_get_servo_state(control, ELBOW), GROBO_TORQUE_ON);
+    assert_int_equal(grobo_control_get_servo_states(control, states, 20), 20);
+    for (int j = 0; j < 20; j++) {
+        assert_int_equal(states[j], j == ELBOW ? GROBO_TORQUE_ON : GROBO_TORQUE_BRAKE);
+    }
+    assert_int_equal(grobo_control_set_servo_state(control, ELBOW, GROBO_TORQUE_OFF, 0),
+                     GROBO_TORQUE_OFF);
+    assert_int_equal(grobo_control_get_servo_state(control, ELBOW), GROBO_TORQUE_OFF);
+    assert_int_equal(grobo_control_set_servo_state(control, 20, GROBO_TORQUE_ON, 0), GROBO_ERR_ARG);
+    assert_int_equal(grobo_control_get_servo_state(control, 20), GROBO_ERR_ARG);
+}
+
+static int turn_elbow(grobo_control *from, void *arg)
+{
+    const int32_t *angle_mdeg = arg;
+
+    return grobo_sim_set_angle(grobo_session_sim(grobo_control_session(from)), ELBOW, *angle_mdeg,
+                               0);
+}
+
+static int cut_elbow(grobo_control *from, void *arg)
+{
+    (void)arg;
+    return grobo_sim_set_cable(grobo_session_sim(grobo_control_session(from)), ELBOW,
+                               GROBO_SIM_CABLE_MUTE);
+}
+
+static void readings(void **state)
+{
+    grobo_posture posture;
+    double angle_rad = -99;
+    int32_t angle_mdeg = 12000;
+
+    (void)state;
+    assert_int_equal(grobo_control_read_posture(control, &posture, 0), GROBO_ERR_CLOSED);
+    assert_int_equal(grobo_control_get_current_posture(control, &posture), 0);
+    control_come_up();
+    assert_int_equal(grobo_control_call(control, turn_elbow, &angle_mdeg), GROBO_OK);
+    assert_int_equal(grobo_control_read_posture(control, &posture, 0), 20);
+    assert_true(grobo_deg_from_rad(posture.angle_rad[ELBOW]) > 11.9);
+    assert_int_equal(grobo_control_get_current_posture(control, &posture), 20);
+    control_assert_elbow_at(12);
+    assert_int_equal(grobo_control_read_angle(control, 20, &angle_rad, 0), GROBO_ERR_ARG);
+
+    /* A servo that does not answer: nobody takes anything for its angle, the others are read. */
+    assert_int_equal(grobo_control_call(control, cut_elbow, NULL), GROBO_OK);
+    assert_int_equal(grobo_control_read_angle(control, ELBOW, &angle_rad, 0), GROBO_ERR_TIMEOUT);
+    assert_true(angle_rad == -99);
+    assert_int_equal(grobo_control_read_posture(control, &posture, 0), 19);
+    assert_true(posture.set == (EVERY_JOINT & ~GROBO_JOINT_BIT(ELBOW)));
+}
+
+/* ---- raw commands ------------------------------------------------------------------------- */
+
+static void raw_commands(void **state)
+{
+    static const uint8_t check[] = {0x41, 0x00};
+    uint8_t longer[GROBO_CONTROL_COMMAND_BYTES + 1] = {0};
+    uint8_t got[GROBO_CONTROL_RECEIVE_BYTES + 1];
+
+    (void)state;
+    assert_int_equal(grobo_control_send_command(control, NULL, 0, 0), GROBO_ERR_EMPTY);
+    assert_int_equal(grobo_control_set_command(control, check, sizeof check), 2);
+    assert_int_equal(grobo_control_set_command(control, longer, sizeof longer), GROBO_ERR_CAP);
+    assert_int_equal(grobo_control_get_command(control, got, 1), GROBO_ERR_SPACE);
+    assert_int_equal(grobo_control_get_command(control, got, sizeof got), 2);
+    assert_memory_equal(got, check, 2);
+
+    /* The port is opened where it is not; the answer of the board is 07. */
+    assert_int_equal(grobo_control_send_command(control, NULL, 0, 0), 2);
+    assert_true(grobo_control_is_connected(control));
+    assert_int_equal(grobo_control_receive(control, got, 1), 1);
+    assert_int_equal(got[0], 0x07);
+    assert_int_equal(grobo_control_send_command(control, check, 2, 0), 2);
+    assert_int_equal(grobo_control_receive(control, got, 2), GROBO_ERR_SHORT);
+    assert_int_equal(grobo_control_receive(control, got, 2), GROBO_ERR_TIMEOUT);
+    assert_int_equal(grobo_control_receive(control, got, sizeof got), GROBO_ERR_CAP);
+    assert_int_equal(grobo_control_send_command(control, longer, sizeof longer, 0), GROBO_ERR_CAP);
+    assert_true(grobo_control_send_command(control, "rubbish", 7, 0) < 0);
+}
+
+/* ---- safety ------------------------------------------------------------------------------- */
+
+static void stops_are_latched_until_reset(void **state)
+{
+    (void)state;
+    assert_int_equal(grobo_control_exit(control, GROBO_EXIT_OFF, 0), GROBO_ERR_CLOSED);
+    control_come_up();
+    assert_int_equal(grobo_control_set_servo_states(control, EVERY_JOINT, GROBO_TORQUE_ON, 0),
+                     GROBO_OK);
+    assert_int_equal(grobo_control_estop(control), GROBO_OK);
+    (void)grobo_control_wait(control, 0);
+    assert_int_equal(grobo_control_get_servo_state(control, ELBOW), GROBO_TORQUE_BRAKE);
+    assert_int_equal(grobo_control_set_servo_state(control, ELBOW, GROBO_TORQUE_ON, 0),
+                     GROBO_ERR_LATCHED);
+    assert_int_equal(grobo_control_init_position(control), GROBO_OK);
+    assert_int_equal(grobo_control_wait(control, 0), GROBO_ERR_LATCHED);
+    assert_int_equal(grobo_control_reset(control), GROBO_OK);
+    assert_int_equal(grobo_control_set_servo_state(control, ELBOW, GROBO_TORQUE_ON, 0),
+                     GROBO_TORQUE_ON);
+    assert_int_equal(grobo_control_exit(control, GROBO_EXIT_OFF, 0), GROBO_OK);
+    assert_int_equal(grobo_control_get_servo_state(control, ELBOW), GROBO_TORQUE_OFF);
+}
+
+/* ---- making ------------------------------------------------------------------------------- */
+
+static void bad_configurations_and_lack_of_memory(void **state)
+{
+    struct event_base *base = grobo_loop_new();
+    grobo_control_config config = {0};
+    grobo_control *made = NULL;
+    char longer[GROBO_NAME_MAX_BYTES + 1];
+    test_mem mem;
+    int r = GROBO_ERR_NOMEM;
+
+    (void)state;
+    assert_int_equal(grobo_control_new(NULL, &made), GROBO_ERR_ARG);
+    assert_int_equal(grobo_control_new(&config, &made), GROBO_ERR_ARG);
+    config.session.device = GROBO_DEVICE_SIM;
+    assert_int_equal(grobo_control_new(&config, NULL), GROBO_ERR_ARG);
+    config.session.base = base;
+    assert_int_equal(grobo_control_new(&config, &made), GROBO_ERR_ARG);
+    config.session.base = NULL;
+    config.control_period_us = 999;
+    assert_int_equal(grobo_control_new(&config, &made), GROBO_ERR_ARG);
+    config.control_period_us = 0;
+    memset(longer, 'x', sizeof longer - 1);
+    longer[sizeof longer - 1] = '\0';
+    config.name = longer;
+    assert_int_equal(grobo_control_new(&config, &made), GROBO_ERR_CAP);
+    assert_null(made);
+    config.name = "Robin";
+    config.session.mem = &mem.mem;
+    test_mem_init(&mem, 0);
+    for (int left = 0; r == GROBO_ERR_NOMEM; left++) {
+        assert_true(left < 20);
+        mem.allocations_left = left;
+        r = grobo_control_new(&config, &made);
+        if (r < 0) {
+            assert_null(made);
+            assert_int_equal(mem.blocks, 0);
+        }
+    }
+    assert_int_equal(r, GROBO_OK);
+    assert_string_equal(grobo_control_name(made), "Robin");
+    assert_int_equal(grobo_control_free(made), GROBO_OK);
+    assert_int_equal(mem.blocks, 0);
+    assert_int_equal(grobo_control_free(NULL), GROBO_OK);
+    event_base_free(base);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        WITH_AND_WITHOUT_THREAD(name_and_joints),
+        WITH_AND_WITHOUT_THREAD(settings_are_kept),
+        WITH_AND_WITHOUT_THREAD(postures_are_kept),
+        WITH_AND_WITHOUT_THREAD(the_line_opens_and_closes),
+        WITH_AND_WITHOUT_THREAD(servo_states),
+        WITH_AND_WITHOUT_THREAD(readings),
+        WITH_AND_WITHOUT_THREAD(raw_commands),
+        WITH_AND_WITHOUT_THREAD(stops_are_latched_until_reset),
+        cmocka_unit_test(bad_configurations_and_lack_of_memory),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,93 @@
+/* SPDX-License-Identifier: MIT */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "control_kit.h"
+
+grobo_control *control;
+char control_folder[64];
+
+static void make(grobo_control_config config)
+{
+    config.session.device = GROBO_DEVICE_SIM;
+    if (config.session.baud_bps == 0) {
+        config.session.baud_bps = 1000000;
+    }
+    assert_int_equal(grobo_control_new(&config, &control), GROBO_OK);
+}
+
+int control_set_up(void **state)
+{
+    grobo_control_config config = {.motion_dir = "/nowhere"};
+
+    (void)state;
+    memcpy(control_folder, "/tmp/grobo-thread-XXXXXX", 25);
+    assert_non_null(mkdtemp(control_folder));
+    make(config);
+    assert_int_equal(grobo_control_set_motion_dir(control, control_folder), GROBO_OK);
+    return 0;
+}
+
+int control_set_up_threaded(void **state)
+{
+    (void)control_set_up(state);
+    assert_int_equal(grobo_control_start_thread(control), GROBO_OK);
+    return 0;
+}
+
+int control_tear_down(void **state)
+{
+    static const char *const files[] = {"Motion1.m", "Motion2.m", "a.m",   "a.yaml",
+                                        "a.pseq",    "a.mseq",    "bad.m", "b.yaml"};
+    char path[128];
+
+    (void)state;
+    assert_int_equal(grobo_control_free(control), GROBO_OK);
+    for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
+        (void)snprintf(path, sizeof path, "%s/%s", control_folder, files[i]);
+        (void)unlink(path);
+    }
+    assert_int_equal(rmdir(control_folder), 0);
+    return 0;
+}
+
+void control_come_up(void)
+{
+    assert_int_equal(grobo_control_connect(control, 0), GROBO_OK);
+    assert_true(grobo_control_is_connected(control));
+}
+
+void control_have_motion(int n)
+{
+    grobo_motion *motion;
+    grobo_posture posture;
+
+    assert_int_equal(grobo_motion_new(&motion, GROBO_MOTION_POSTURES, 20, NULL), GROBO_OK);
+    assert_int_equal(grobo_posture_init(&posture, 20), GROBO_OK);
+    posture.set = EVERY_JOINT;
+    posture.time_us = 40000;
+    for (int i = 1; i <= n; i++) {
+        assert_int_equal(grobo_posture_set_deg(&posture, ELBOW, 2.0 * i), GROBO_OK);
+        assert_int_equal(grobo_motion_append(motion, &posture), GROBO_OK);
+    }
+    assert_int_equal(grobo_control_set_motion(control, motion), n);
+    grobo_motion_free(motion);
+}
+
+void control_assert_elbow_at(double angle_deg)
+{
+    double angle_rad = -99;
+
+    assert_int_equal(grobo_control_read_angle(control, ELBOW, &angle_rad, 0), GROBO_OK);
+    assert_true(grobo_deg_from_rad(angle_rad) > angle_deg - 0.6);
+    assert_true(grobo_deg_from_rad(angle_rad) < angle_deg + 0.6);
+}
