@@ -113,6 +113,8 @@ look() {
         clang-format-14 clang-tools-extra clang clang-extra-tools clang-tools
     need mandoc 'to check the man page' have_command mandoc -- \
         mandoc mandoc mandoc mandoc mandoc
+    need rsvg-convert 'to check PNG plots' have_command rsvg-convert -- \
+        librsvg2-bin librsvg2-tools librsvg rsvg-convert rsvg-convert
     need valgrind 'to check memory' have_command valgrind -- \
         valgrind valgrind valgrind valgrind valgrind
     need tshark 'to check the dissector' have_command tshark -- \

@@ -62,6 +62,13 @@ static int solve_legs(app *a, playlist *list, int i)
     return status || !list->body[i] ? status : body_refuse(a, list->path[i], list->body[i]);
 }
 
+/* A file has the joints that it lists, the robot all: the others are not set. */
+static void widen(grobo_motion *motion)
+{
+    if (grobo_motion_joints(motion) < grobo_gr001_model.n_joints)
+        (void)grobo_motion_set_joints(motion, grobo_gr001_model.n_joints);
+}
+
 int playlist_load(playlist *list, app *a)
 {
     memset(list, 0, sizeof *list);
@@ -77,6 +84,7 @@ int playlist_load(playlist *list, app *a)
         if (status)
             return status;
         list->n = i + 1;
+        widen(list->motion[i]);
         if (grobo_motion_size(list->motion[i]) == 0)
             return app_fail(a, EXIT_FILE, "EMPTY", "%s: has no postures", list->path[i]);
         set_options(&list->options[i], a, grobo_motion_get_kind(list->motion[i]));

@@ -1,0 +1,32 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# The commands of docs/guide/motions.md do what it says, on files that it shows.
+. tests/support/cli.sh
+
+here=$(pwd)
+mkdir "$work/bin" "$work/desk"
+ln -s "$GRCTL" "$work/bin/grctl"
+ln -s "$here/motions" "$work/desk/motions"
+
+# Files after "<!-- file NAME -->" and commands after "<!-- run -->", in the order of the guide.
+awk -v desk="$work/desk" -v commands="$work/commands" '
+    /^<!-- file / { file = desk "/" $3 }
+    /^<!-- run -->/ { file = commands }
+    /^```/ { open = !open && file != ""; if (!open) { close(file); file = "" }; next }
+    open { print >>file }' docs/guide/motions.md
+
+check "the guide has commands and a file" [ -s "$work/commands" ] && [ -s "$work/desk/no.pseq" ]
+PATH=$work/bin:$PATH
+export PATH
+run() {
+    cd "$work/desk" && eval "$1" </dev/null
+}
+while read -r command; do
+    check "$command" run "$command" 3<&-
+done <"$work/commands"
+drawn() {
+    [ -s "$work/desk/greet.svg" ] && [ -s "$work/desk/no.svg" ] && [ -s "$work/desk/step.svg" ] &&
+        [ -s "$work/desk/greet.m" ]
+}
+check "its files are there" drawn
+done_testing
