@@ -1,0 +1,138 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# grctl play: what it sends by its options, what it says, how it leaves.
+. tests/support/cli.sh
+
+greet=motions/greet.pseq
+
+# The frames of a dry run, as "TIME ANGLE..." with angles in 0.1 degree by motor, hex to numbers by
+# the reference's table: motor m at byte 5 (m - 1) + 10, low byte first.
+frames() {
+    exits 0 "$GRCTL" play --dry-run "$@" || return 1
+    awk 'function byte(hex) { return 16 * (index(digits, substr(hex, 1, 1)) - 1) + \
+                                     index(digits, substr(hex, 2, 1)) - 1 }
+        BEGIN { digits = "0123456789ABCDEF" }
+        NF != 111 || $2 != "53" || $3 != "6C" { print "no frame: " $0; exit 1 }
+        { line = $1
+          for (m = 1; m <= 20; m++) {
+              a = byte($(5 * (m - 1) + 12)) + 256 * byte($(5 * (m - 1) + 13))
+              line = line " " (a > 32767 ? a - 65536 : a) }
+          print line }' "$work/out" >"$work/frames"
+}
+
+# plays LINES LAST-MS ARGUMENTS...: so many frames, the last one then.
+plays() {
+    plays_n=$1
+    plays_ms=$2
+    shift 2
+    frames "$@" || return 1
+    set -- "$(wc -l <"$work/frames")" "$(sed -n '$s/ .*//p' "$work/frames")"
+    [ "$1" -eq "$plays_n" ] && [ "$2" = "$plays_ms" ] && return
+    echo "$1 frames, the last at $2 ms"
+    return 1
+}
+
+# angle N MOTOR DDEG: of the last dry run.
+angle() {
+    angle_got=$(sed -n "$1p" "$work/frames" | cut -d ' ' -f $(($2 + 1)))
+    [ "$angle_got" = "$3" ] || { echo "frame $1, motor $2: $angle_got, not $3"; return 1; }
+}
+
+# ---- what is sent ---------------------------------------------------------------------------
+
+# Ten key poses in 5 s, the last two keys 4.2 and 5 s. The first frame is the approach, 100 ms.
+check "a frame a key pose, as it begins" plays 10 4300 --key "$greet"
+check "its angles: motor 2, NECK_Y, to 20 degrees" angle 2 2 200
+check "its angles: motor 1, CHEST_P, to -20 degrees" angle 8 1 -200
+check "50 Hz for 5 s" plays 251 5000 --rate 50 "$greet"
+check "10 Hz for 5 s" plays 51 5000 --rate 10 "$greet"
+check "half the speed" plays 101 10000 --rate 10 --speed 50 "$greet"
+check "twice" plays 20 9400 --key --repeat 2 "$greet"
+check "two files" plays 20 9400 --key "$greet" "$greet"
+check "reversed" plays 10 4300 --key --reverse "$greet"
+check "reversed: CHEST_P first" angle 2 1 -200
+check "mirrored" plays 10 4300 --key --mirror "$greet"
+check "mirrored: NECK_Y the other way" angle 2 2 -200
+check "mirrored: the left shoulder, the other way" angle 2 7 1200
+from() {
+    frames --key --from 4500 "$greet" && [ "$(wc -l <"$work/frames")" -lt 4 ]
+}
+check "from the last key pose on" from
+check "from beyond the end" fails 2 'beyond the end' "$GRCTL" play --dry-run --from 6000 "$greet"
+check "--rate and --key" fails 2 'exclude each other' "$GRCTL" play --key --rate 9 "$greet"
+
+# The same motion in each format: a .m and an .mseq frame a line; a .yaml at its own rate.
+for format in m mseq yaml; do
+    check "convert to .$format" exits 0 "$GRCTL" convert --rate 50 "$greet" "$work/greet.$format"
+done
+check "play .m" plays 10 4450 "$work/greet.m"
+check "its last posture is the initial one" angle 10 12 -400
+check "play .mseq" plays 10 4450 "$work/greet.mseq"
+check "increments lead to the initial posture" angle 10 12 -400
+check "play .yaml" plays 251 5000 --rate 50 "$work/greet.yaml"
+check "one after the other" plays 40 19900 --key "$greet" "$work/greet.m" "$greet" "$work/greet.m"
+check_json "a dry run as JSON" \
+    'len(lines) == 10 and all(len(l["hex"].split()) == 110 for l in lines)' \
+    "$GRCTL" --json play --dry-run --key "$greet"
+
+# ---- what is said ---------------------------------------------------------------------------
+
+start_sim
+check_json "JSON: a line a second, then the end" \
+    '[sorted(l) for l in lines[:-1]] == [["step", "steps", "t_ms", "total_ms"]] * (len(lines) - 1)
+     and 2 <= len(lines) - 1 <= 5 and lines[0]["total_ms"] == 5000 and
+     lines[-1]["done"] is True and lines[-1]["frames"] > 100 and
+     lines[-1]["late_frames"] >= 0 and
+     sorted(lines[-1]["jitter_us"]) == ["max", "p50", "p99"] and
+     0 <= lines[-1]["max_error_deg"] <= 0.1' \
+    "$GRCTL" -d "$robot" --json play --rate 50 --speed 200 "$greet"
+quiet_where_no_terminal() {
+    exits 0 "$GRCTL" -d "$robot" play --speed 500 "$greet" && [ ! -s "$work/err" ] || return 1
+    says '^[0-9]* frames, [0-9]* late; jitter p50 ' && says '^largest error at the end 0\.[01] deg'
+}
+check "no terminal: no progress bar, nothing on standard error" quiet_where_no_terminal
+check "a table at the end" both exits 0 "$GRCTL" -d "$robot" play --speed 500 --table "$greet" --- \
+    says '^ *12  R_KNEE_P  *-40\.0  *-40\.0  *-*0\.0'
+check "it ends where the motion ends" both exits 0 "$GRCTL" -d "$robot" status m12 --- \
+    says 'R_KNEE_P  *-40\.0  *-  on '
+
+# ---- how it leaves --------------------------------------------------------------------------
+
+# interrupted STATUS POLICY SIGNAL...: in mid-motion; the status tells, the policy was carried out.
+interrupted() {
+    interrupted_want=$1
+    interrupted_policy=$2
+    shift 2
+    rm -f "$work/out" "$work/leaving"
+    "$GRCTL" -d "$robot" -v --json --on-exit "$interrupted_policy" play --speed 50 "$greet" \
+        >"$work/out" 2>"$work/leaving" &
+    interrupted_pid=$!
+    until grep -qs '"t_ms":[1-9]' "$work/out"; do :; done
+    for interrupted_signal in "$@"; do
+        kill -s "$interrupted_signal" $interrupted_pid
+    done
+    wait $interrupted_pid
+    interrupted_got=$?
+    [ $interrupted_got -eq "$interrupted_want" ] &&
+        grep -q 'exit policy carried out' "$work/leaving" && return
+    echo "status $interrupted_got, not $interrupted_want"
+    cat "$work/out" "$work/leaving"
+    return 1
+}
+check "SIGINT, to hold: 130" interrupted 130 hold INT
+check_json "all hold, at a standstill" \
+    'all(j["torque"] == "on" and j["speed_dps"] == 0 for j in lines[0]["joints"])' \
+    "$GRCTL" -d "$robot" --json status
+check "SIGTERM, torque off: 143" interrupted 143 off TERM
+check_json "all are off" 'all(j["torque"] == "off" for j in lines[0]["joints"])' \
+    "$GRCTL" -d "$robot" --json status
+check "SIGHUP, to hold: 129" interrupted 129 hold HUP
+check "SIGINT again while it leaves changes nothing" interrupted 130 off INT INT INT
+check_json "all are off again" 'all(j["torque"] == "off" for j in lines[0]["joints"])' \
+    "$GRCTL" -d "$robot" --json status
+check "SIGINT, to sit down: 130" interrupted 130 sit INT
+check_json "the knees are bent, the torque is off" \
+    '[abs(j["angle_deg"]) > 60 for j in lines[0]["joints"] if "KNEE" in j["name"]] == [True] * 2
+     and all(j["torque"] == "off" for j in lines[0]["joints"])' "$GRCTL" -d "$robot" --json status
+stop_sim
+done_testing

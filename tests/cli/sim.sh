@@ -1,0 +1,99 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# grctl sim: a robot for other programs, where they find it, as it was asked for.
+. tests/support/cli.sh
+
+# ---- where it is ----------------------------------------------------------------------------
+
+start_sim
+check "the path is a terminal's" [ -c "$sim_pty" ]
+check "two programs, one after the other" both exits 0 "$GRCTL" -d "$robot" move m2 20 200 --- \
+    exits 0 "$GRCTL" -d "$robot" status m2
+check "the robot stays as it was left" says 'NECK_Y  *20\.0  *-  on '
+ends() {
+    kill -s "$1" "$sim_pid"
+    wait "$sim_pid"
+    ends_got=$?
+    sim_pid=
+    [ $ends_got -eq "$2" ] && [ ! -e "$robot" ] && [ ! -L "$robot" ] && return
+    echo "status $ends_got, not $2; $(ls -l "$robot" 2>&1)"
+    return 1
+}
+end_sim() {
+    ends TERM 143 >"$work/ends" && ends_result=0 || ends_result=1
+}
+end_sim
+check "SIGTERM: 143, and the link is gone" [ $ends_result -eq 0 ]
+
+: >"$work/mine"
+check "a file in the link's place is not replaced" fails 1 "$work/mine" timeout 5 "$GRCTL" sim \
+    --link "$work/mine"
+check "it is still there" [ -f "$work/mine" ]
+check "no such folder" fails 1 "$work/none/robot" timeout 5 "$GRCTL" sim --link "$work/none/robot"
+ln -s /dev/pts/none "$work/robot"
+start_sim
+check "a dangling link of an earlier one is replaced" exits 0 "$GRCTL" -d "$robot" status m1
+stop_sim
+
+start_sim --tcp 0
+tcp=$(sed -n 's/^also at //p' "$work/sim.log")
+check "by TCP too" both exits 0 "$GRCTL" -d "$tcp" status m12 --- says 'R_KNEE_P  *-40\.0'
+check "one robot, whichever way" both exits 0 "$GRCTL" -d "$tcp" servo on m12 --- \
+    exits 0 "$GRCTL" -d "$robot" status m12
+check "its torque is on" says ' on '
+stop_sim
+
+many() {
+    mkfifo "$work/many"
+    "$GRCTL" --json sim --robots 3 --link "$work/many-" >"$work/many" 2>/dev/null &
+    sim_pid=$!
+    read -r many_line <"$work/many"
+    echo "$many_line" >"$work/out"
+}
+many
+if have_json; then
+    check "three robots, in JSON" json \
+        'lines[0]["simulated"] is True and len({r["device"] for r in lines[0]["robots"]}) == 3'
+else
+    skip "three robots, in JSON" "no python3 to parse JSON with"
+fi
+for link in many- many-2 many-3; do
+    check "$link answers" exits 0 "$GRCTL" -d "$work/$link" status m1
+done
+stop_sim
+
+# ---- what it is -----------------------------------------------------------------------------
+
+start_sim --start zero
+check "--start zero" both exits 0 "$GRCTL" -d "$robot" status m12 --- says 'R_KNEE_P  *0\.0 '
+stop_sim
+limp() {
+    start_sim --start limp --seed "$1" && "$GRCTL" -d "$robot" status | cut -c 1-26 >"$work/limp$2"
+    stop_sim
+}
+limp 7 a && limp 7 b && limp 8 c
+check "--start limp: the seed tells where" cmp "$work/limpa" "$work/limpb"
+check "another seed, elsewhere" eval '! cmp -s "$work/limpa" "$work/limpc"'
+start_sim --start limp --seed 7
+check_json "init from anywhere: all there" \
+    'lines[0]["max_error_deg"] <= 0.1 and len(lines[0]["joints"]) == 20' \
+    "$GRCTL" -d "$robot" --json init
+stop_sim
+start_sim --no-pacing
+check "--no-pacing" exits 0 "$GRCTL" -d "$robot" status
+stop_sim
+start_sim --wiring bus -b 460800
+check "a bus at another rate" both \
+    exits 0 "$GRCTL" -d "$robot" --wiring bus -b 460800 status m3 --- says R_SHOULDER_P
+stop_sim
+start_sim --fault drop=0.002,flip=0.002,delay=0.01 --seed 3
+check "a poor line is made up for" exits 0 "$GRCTL" -d "$robot" play --speed 500 \
+    motions/greet.pseq
+stop_sim
+
+check "a fault that is none" fails 2 "'gremlin=1' is no list" timeout 5 "$GRCTL" sim \
+    --fault gremlin=1
+check "a rate above 1" fails 2 "is no list" timeout 5 "$GRCTL" sim --fault drop=2
+check "a start that is none" fails 2 'none of init|zero|limp' timeout 5 "$GRCTL" sim --start high
+check "too many robots" fails 2 'from 1 to 16' timeout 5 "$GRCTL" sim --robots 17
+done_testing
