@@ -65,12 +65,30 @@
 #define GROBO_YAML_DEPTH_MAX 32
 /** Motion files: aliases followed in one document. */
 #define GROBO_YAML_ALIASES_MAX 1024
+/** Motion files: nodes with an anchor in one document. */
+#define GROBO_YAML_ANCHORS_MAX 1024
+/** Motion files: YAML events remembered of nodes with an anchor. */
+#define GROBO_YAML_ANCHORED_EVENTS_MAX 65536
+/** Motion files: bytes of texts remembered of nodes with an anchor. */
+#define GROBO_YAML_ANCHORED_MAX_BYTES (1024L * 1024L)
+/** Motion files: YAML events that following aliases makes. */
+#define GROBO_YAML_REPLAYED_EVENTS_MAX 4000000
+/** Motion files: bytes between two YAML events: a long comment, or a text that is refused. */
+#define GROBO_YAML_GAP_MAX_BYTES 131072
+/** Motion files: keys of one mapping that have no meaning here. */
+#define GROBO_YAML_UNKNOWN_KEYS_MAX 256
+/** Motion files: anchors that one mapping merges (<<). */
+#define GROBO_YAML_MERGES_MAX 16
 /** Motion files: bytes of one mapping key. */
 #define GROBO_YAML_KEY_MAX_BYTES 128
 /** Motion files: bytes of one scalar that is kept (names, unknown values). */
 #define GROBO_YAML_SCALAR_MAX_BYTES 65536
 /** Motion files: postures or frames of one motion. */
 #define GROBO_MOTION_FRAMES_MAX 10000000
+/** Motion files: components of a body motion whose rates are compared with that of the joints. */
+#define GROBO_MOTION_COMPONENTS_MAX 64
+/** Motion files: bytes of one line of a .m file. */
+#define GROBO_M_LINE_MAX_BYTES 16384
 /** Motion files: ikLinks of one key pose. */
 #define GROBO_IK_LINKS_MAX 16
 /** Names of joints, links, motions: bytes with the final NUL. */

@@ -5,8 +5,6 @@
 
 #include "motion/fields.h"
 
-enum { GROBO_I_COMPONENTS_MAX = 64 };
-
 /* What a component of a body motion may inherit from the top. 0 or false: not given. */
 typedef struct grobo_i_frame_info {
     double rate_hz;
@@ -47,7 +45,7 @@ typedef struct grobo_i_document {
     struct {
         double rate_hz;
         grobo_i_place place;
-    } others[GROBO_I_COMPONENTS_MAX];
+    } others[GROBO_MOTION_COMPONENTS_MAX];
 } grobo_i_document;
 
 /* The document an event stream belongs to. */

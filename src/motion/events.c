@@ -3,9 +3,6 @@
 
 #include "motion/events.h"
 
-/* Bytes between two events: a long comment or one scalar; and what libyaml reads ahead. */
-enum { GAP_MAX_BYTES = 2 * GROBO_YAML_SCALAR_MAX_BYTES };
-
 static grobo_i_place place_of(yaml_mark_t mark)
 {
     return (grobo_i_place){(uint32_t)mark.line + 1, (uint32_t)mark.column + 1};
@@ -28,7 +25,8 @@ static int on_read(void *data, unsigned char *buffer, size_t size, size_t *size_
     }
     size_t count = input->last - input->first;
     count = count < size ? count : size;
-    if (input->total_bytes - (input->last - input->first) > events->event_bytes + GAP_MAX_BYTES) {
+    if (input->total_bytes - (input->last - input->first) >
+        events->event_bytes + GROBO_YAML_GAP_MAX_BYTES) {
         events->gap_too_long = true;
         return 0;
     }
@@ -48,7 +46,7 @@ static int refuse_parser(grobo_i_events *events)
     }
     if (events->gap_too_long) {
         return grobo_i_refuse(events->reader, GROBO_ERR_CAP, "length", place_of(parser->mark),
-                              "no end of this within %d bytes", GAP_MAX_BYTES);
+                              "no end of this within %d bytes", GROBO_YAML_GAP_MAX_BYTES);
     }
     if (result < 0) {
         return grobo_i_refuse(events->reader, result, "read", place_of(parser->mark), "%s",
@@ -120,8 +118,8 @@ static int store_event(grobo_i_events *events)
     const grobo_i_event *event = &events->event;
     size_t bytes = event->kind == GROBO_I_SCALAR ? event->length + 1 : 0;
 
-    if (store->n_events >= GROBO_I_ANCHORED_EVENTS_MAX ||
-        store->text_bytes + bytes > GROBO_I_ANCHORED_TEXT_MAX) {
+    if (store->n_events >= GROBO_YAML_ANCHORED_EVENTS_MAX ||
+        store->text_bytes + bytes > GROBO_YAML_ANCHORED_MAX_BYTES) {
         return grobo_i_refuse(events->reader, GROBO_ERR_CAP, "anchor-size", event->place,
                               "too much in nodes with an anchor");
     }
@@ -145,9 +143,9 @@ static int add_anchor(grobo_i_events *events, const char *name)
     grobo_i_store *store = &events->store;
     const grobo_mem *mem = events->reader->mem;
 
-    if (store->n_anchors >= GROBO_I_ANCHORS_MAX) {
+    if (store->n_anchors >= GROBO_YAML_ANCHORS_MAX) {
         return grobo_i_refuse(events->reader, GROBO_ERR_CAP, "anchors", events->event.place,
-                              "more than %d anchors", GROBO_I_ANCHORS_MAX);
+                              "more than %d anchors", GROBO_YAML_ANCHORS_MAX);
     }
     grobo_i_anchor *anchors =
         grow(mem, store->anchors, &store->anchor_room, store->n_anchors + 1, sizeof *anchors);
@@ -328,7 +326,7 @@ static int take_stored(grobo_i_events *events)
     const grobo_i_stored *stored =
         &events->store.events[events->replays[events->n_replays - 1].next++];
 
-    if (++events->n_replayed > GROBO_I_REPLAYED_EVENTS_MAX) {
+    if (++events->n_replayed > GROBO_YAML_REPLAYED_EVENTS_MAX) {
         return grobo_i_refuse(events->reader, GROBO_ERR_CAP, "aliases", stored->event.place,
                               "aliases make it too large");
     }

@@ -33,13 +33,6 @@ typedef struct grobo_i_event {
     bool plain; /* a scalar without quotes */
 } grobo_i_event;
 
-enum {
-    GROBO_I_ANCHORS_MAX = GROBO_YAML_ALIASES_MAX,
-    GROBO_I_ANCHORED_EVENTS_MAX = 65536,      /* remembered of anchored nodes */
-    GROBO_I_ANCHORED_TEXT_MAX = 1024 * 1024,  /* bytes of their scalars */
-    GROBO_I_REPLAYED_EVENTS_MAX = 4 * 1048576 /* made by following aliases */
-};
-
 /* An event remembered because it lies in an anchored node. */
 typedef struct grobo_i_stored {
     grobo_i_event event; /* its text NULL: see offset */

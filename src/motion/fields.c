@@ -4,11 +4,6 @@
 #include "motion/fields.h"
 #include "motion/number.h"
 
-enum {
-    UNKNOWN_MAX = 256, /* keys of one mapping that have no field */
-    MERGES_MAX = 16    /* anchors that one mapping takes over */
-};
-
 /* ---- single values ------------------------------------------------------------------------ */
 
 bool grobo_i_is_text(const grobo_i_event *event, const char *text)
@@ -281,7 +276,8 @@ int grobo_i_read_doubles(grobo_i_events *events, const char *what, double *value
     result = grobo_i_read_numbers(events, what, &list);
     if (result == 0 && list.count != count) {
         return grobo_i_complain(events->reader, GROBO_ERR_SYNTAX, "list-length", place,
-                                "%s has %d numbers, not %d", what, list.count, count);
+                                "%s has %d number%s, not %d", what, list.count,
+                                list.count == 1 ? "" : "s", count);
     }
     if (result == 0) {
         memcpy(values, found, (size_t)count * sizeof *values);
@@ -297,8 +293,8 @@ typedef struct map_state {
     void *target;
     uint32_t seen;
     int n_unknown, n_merges;
-    uint64_t unknown[UNKNOWN_MAX]; /* hashes of the other keys */
-    int merges[MERGES_MAX];        /* anchors */
+    uint64_t unknown[GROBO_YAML_UNKNOWN_KEYS_MAX]; /* hashes of the other keys */
+    int merges[GROBO_YAML_MERGES_MAX];             /* anchors */
     grobo_i_place merge_place;
 } map_state;
 
@@ -325,14 +321,15 @@ static int read_merge(grobo_i_events *events, map_state *map)
         }
         if (event->kind == GROBO_I_LIST && !list) {
             list = true;
-        } else if (event->kind == GROBO_I_ALIAS && map->n_merges < MERGES_MAX) {
+        } else if (event->kind == GROBO_I_ALIAS && map->n_merges < GROBO_YAML_MERGES_MAX) {
             map->merges[map->n_merges++] = event->anchor;
             map->merge_place = event->place;
         } else if (event->kind == GROBO_I_LIST_END && list) {
             list = false;
         } else {
             return grobo_i_refuse(events->reader, GROBO_ERR_SYNTAX, "merge", event->place,
-                                  "<< takes an alias or a list of at most %d", MERGES_MAX);
+                                  "<< takes an alias or a list of at most %d",
+                                  GROBO_YAML_MERGES_MAX);
         }
     } while (list);
     return 0;
@@ -357,9 +354,10 @@ static int read_unknown(grobo_i_events *events, map_state *map, const char *key,
             return merged ? grobo_i_skip(events) : complain_twice(events, map, key, place);
         }
     }
-    if (map->n_unknown == UNKNOWN_MAX) {
+    if (map->n_unknown == GROBO_YAML_UNKNOWN_KEYS_MAX) {
         return grobo_i_refuse(events->reader, GROBO_ERR_CAP, "keys", place,
-                              "more than %d unknown keys in %s", UNKNOWN_MAX, map->fields->what);
+                              "more than %d unknown keys in %s", GROBO_YAML_UNKNOWN_KEYS_MAX,
+                              map->fields->what);
     }
     map->unknown[map->n_unknown++] = hash;
     return map->fields->unknown(events, map->target, key);

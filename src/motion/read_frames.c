@@ -287,7 +287,7 @@ static int pass_over(component *part)
         grobo_i_note(document->reader, "component-skipped", part->place,
                      "a %.40s (%.40s) is skipped", part->type, content);
     }
-    if (document->n_others < GROBO_I_COMPONENTS_MAX && part->info.rate_hz > 0) {
+    if (document->n_others < GROBO_MOTION_COMPONENTS_MAX && part->info.rate_hz > 0) {
         document->others[document->n_others].rate_hz = part->info.rate_hz;
         document->others[document->n_others++].place = part->info.rate_place;
     }

@@ -7,8 +7,7 @@
 #include "motion/reader.h"
 #include "motion/units.h"
 
-/* The longest line: the most numbers, each far longer than any that is written. */
-enum { LINE_MAX_BYTES = 16 * 1024, COLUMNS_MAX = GROBO_JOINTS_MAX };
+enum { COLUMNS_MAX = GROBO_JOINTS_MAX };
 
 typedef struct m_file {
     grobo_i_reader *reader;
@@ -186,10 +185,10 @@ static int read_lines(m_file *file, grobo_i_input *input)
         size_t there = input->last - input->first;
         const unsigned char *newline = memchr(text, '\n', there);
         size_t length = newline != NULL ? (size_t)(newline - text) : there;
-        if (length > LINE_MAX_BYTES) {
+        if (length > GROBO_M_LINE_MAX_BYTES) {
             return grobo_i_refuse(file->reader, GROBO_ERR_CAP, "line-length",
                                   (grobo_i_place){file->line + 1, 0}, "longer than %d bytes",
-                                  LINE_MAX_BYTES);
+                                  GROBO_M_LINE_MAX_BYTES);
         }
         if (newline == NULL && !input->ended) {
             return 0;

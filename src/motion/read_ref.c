@@ -90,8 +90,9 @@ static int check_ref(grobo_i_pose_ref *ref)
     }
     if (joints->count != q->count) {
         ref->failed = true;
-        return grobo_i_complain(reader, GROBO_ERR_SYNTAX, "q-length", q->place,
-                                "q has %d numbers for %d joints", q->count, joints->count);
+        return grobo_i_complain(
+            reader, GROBO_ERR_SYNTAX, "q-length", q->place, "q has %d number%s for %d joint%s",
+            q->count, q->count == 1 ? "" : "s", joints->count, joints->count == 1 ? "" : "s");
     }
     return 0;
 }

@@ -185,6 +185,111 @@ static void test_cut_anywhere(void **state)
     }
 }
 
+/* ---- malformed in every place -------------------------------------------------------------- */
+
+/* Reads it: a motion, or an error with a place; nothing left behind. @return true if refused. */
+static bool refused(const char *text)
+{
+    motion_mem counter = {0};
+    grobo_mem mem = motion_mem_of(&counter);
+    grobo_read_options options = {.mem = &mem};
+    grobo_motion *motion = NULL;
+    grobo_diagnostics *list = NULL;
+    grobo_diagnostic first;
+
+    assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
+    int result = grobo_motion_read_memory(text, strlen(text), &options, list, &motion);
+    if (result < 0) {
+        assert_int_equal(grobo_diagnostics_get(list, 0, &first), 0);
+        assert_true(first.line > 0 && first.column > 0);
+    }
+    grobo_motion_free(motion);
+    grobo_diagnostics_free(list);
+    assert_int_equal(counter.bytes, 0);
+    return result < 0;
+}
+
+/* A line of its own for each key, so that lines can be taken away and values replaced. */
+static const char *const keyed[] = {
+    "type: PoseSeq\nname: t\nrefs:\n"
+    "  -\n    time: 1\n    maxTransitionTime: 0.5\n    refer:\n      type: Pose\n"
+    "      name: a\n      joints: [ 0 ]\n      q: [ 1 ]\n      spJoints: [ 0 ]\n      ikLinks:\n"
+    "        -\n          name: WAIST\n          index: 0\n          isBaseLink: true\n"
+    "          isStationaryPoint: true\n          translation: [ 0, 0, 0 ]\n"
+    "          rotation: [ 1, 0, 0, 0, 1, 0, 0, 0, 1 ]\n          isTouching: true\n"
+    "          partingDirection: [ 0, 0, 1 ]\n          isSlave: true\n"
+    "      zmp: [ 0, 0, 0 ]\n      isZmpStationaryPoint: true\n",
+    "type: CompositeSeq\ncontent: BodyMotion\nformat_version: 4\ncomponents:\n"
+    "  -\n    type: MultiValueSeq\n    content: JointDisplacement\n    frame_rate: 30\n"
+    "    num_frames: 1\n    num_parts: 1\n    has_frame_time: true\n    frames: [ [ 0, 1 ] ]\n"};
+
+/* Keys that may be missing; all others are missed. */
+static bool may_miss(const char *line)
+{
+    static const char *const keys[] = {
+        "name: ",        "maxTransitionTime: ",    "spJoints: ",
+        "index: ",       "isBaseLink: ",           "isStationaryPoint: ",
+        "isTouching: ",  "partingDirection: ",     "isSlave: ",
+        "zmp: ",         "isZmpStationaryPoint: ", "num_frames: ",
+        "num_parts: ",   "content: BodyMotion",    "has_frame_time: ",
+        "type: PoseSeq", "format_version: "};
+
+    line += strspn(line, " ");
+    for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++) {
+        if (strncmp(line, keys[i], strlen(keys[i])) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static void test_each_key_missing(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof keyed / sizeof keyed[0]; i++) {
+        for (const char *line = keyed[i]; *line != '\0'; line = strchr(line, '\n') + 1) {
+            char text[2000];
+            const char *end = strchr(line, '\n') + 1;
+            if (end[-2] == ':' || end[-2] == '-') {
+                continue; /* what hangs on it would hang on something else */
+            }
+            (void)snprintf(text, sizeof text, "%.*s%s", (int)(line - keyed[i]), keyed[i], end);
+            if (refused(text) == may_miss(line)) {
+                fail_msg("without %.*s it is %s", (int)(end - line), line,
+                         may_miss(line) ? "refused" : "taken");
+            }
+        }
+    }
+}
+
+/* A value of another kind in each place: refused, but where a text may be any text. */
+static void test_each_value_of_the_wrong_kind(void **state)
+{
+    (void)state;
+    static const char *const wrong[] = {"{ a: b }", "[ [ x ] ]", "x y", ".nan", "-1e400", "*no"};
+    for (size_t i = 0; i < sizeof keyed / sizeof keyed[0]; i++) {
+        for (const char *line = keyed[i]; *line != '\0'; line = strchr(line, '\n') + 1) {
+            const char *end = strchr(line, '\n');
+            const char *value = strstr(line, ": ");
+            const char *key = line + strspn(line, " ");
+            /* A ref of an unknown type is skipped, with a warning. */
+            bool any_text = strncmp(key, "name: ", 6) == 0 || strncmp(key, "type: Pose\n", 11) == 0;
+            if (value == NULL || value > end) {
+                continue;
+            }
+            for (size_t k = 0; k < sizeof wrong / sizeof wrong[0]; k++) {
+                char text[2000];
+                bool is_text = k >= 2 && k <= 4;
+                (void)snprintf(text, sizeof text, "%.*s%s%s", (int)(value + 2 - keyed[i]), keyed[i],
+                               wrong[k], end);
+                if (!refused(text) && !(any_text && is_text)) {
+                    fail_msg("%.*s as %s is taken", (int)(end - line), line, wrong[k]);
+                }
+            }
+        }
+    }
+}
+
 /* ---- the reference material --------------------------------------------------------------- */
 
 /* Every file of the list does what its last column says. */
@@ -233,9 +338,14 @@ static void test_edge_files(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_caps),           cmocka_unit_test(test_many_keys),
-        cmocka_unit_test(test_billion_laughs), cmocka_unit_test(test_allocations_fail),
-        cmocka_unit_test(test_cut_anywhere),   cmocka_unit_test(test_edge_files),
+        cmocka_unit_test(test_caps),
+        cmocka_unit_test(test_many_keys),
+        cmocka_unit_test(test_billion_laughs),
+        cmocka_unit_test(test_allocations_fail),
+        cmocka_unit_test(test_cut_anywhere),
+        cmocka_unit_test(test_each_key_missing),
+        cmocka_unit_test(test_each_value_of_the_wrong_kind),
+        cmocka_unit_test(test_edge_files),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
