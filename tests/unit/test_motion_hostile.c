@@ -227,12 +227,12 @@ static const char *const keyed[] = {
 static bool may_miss(const char *line)
 {
     static const char *const keys[] = {
-        "name: ",        "maxTransitionTime: ",    "spJoints: ",
-        "index: ",       "isBaseLink: ",           "isStationaryPoint: ",
-        "isTouching: ",  "partingDirection: ",     "isSlave: ",
-        "zmp: ",         "isZmpStationaryPoint: ", "num_frames: ",
-        "num_parts: ",   "content: BodyMotion",    "has_frame_time: ",
-        "type: PoseSeq", "format_version: "};
+        "name: ",          "maxTransitionTime: ",    "spJoints: ",
+        "index: ",         "isBaseLink: ",           "isStationaryPoint: ",
+        "isTouching: ",    "partingDirection: ",     "isSlave: ",
+        "zmp: ",           "isZmpStationaryPoint: ", "num_frames: ",
+        "num_parts: ",     "content: BodyMotion",    "type: PoseSeq",
+        "format_version: "};
 
     line += strspn(line, " ");
     for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++) {
