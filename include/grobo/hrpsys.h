@@ -5,8 +5,9 @@
  *
  * For programs that were written for hrpsys (members GR36..GR43 of the reference document). A view
  * on an engine (robot.h), so it works wherever the engine does: whoever pumps the engine does so
- * after each call that takes now_us (on a session: grobo_session_pump()). Nothing here waits; what
- * takes time is a job of the engine. A control loop:
+ * after each call that takes now_us (on a session: grobo_session_pump(); with a control thread all
+ * of it inside grobo_control_call()). Nothing here waits; what takes time is a job of the engine.
+ * A control loop:
  * @code
  *   grobo_hrpsys_servo_name(&h, "all", true, now);          // a job: wait for its end
  *   for (each period) {

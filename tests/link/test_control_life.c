@@ -1,0 +1,212 @@
+/* SPDX-License-Identifier: MIT */
+/* The life of a control: its thread or the caller's, its rounds, its end; one caller at a time. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <grobo/thread.h>
+
+enum { CALLS = 200 };
+
+static grobo_control *control;
+
+/* Under `control`'s exclusion, or asked for when nothing runs. */
+static int rounds; /* of on_svc */
+static int exits;  /* exit policies that were carried out */
+static int inside, together, calls;
+
+static int on_svc(grobo_control *from, void *arg)
+{
+    assert_ptr_equal(from, control);
+    assert_ptr_equal(arg, &rounds);
+    rounds++;
+    return 0;
+}
+
+static void on_robot(void *ctx, const grobo_event *event)
+{
+    assert_ptr_equal(ctx, &rounds);
+    if (event->kind == GROBO_EVENT_JOB && event->u.job.kind == GROBO_JOB_EXIT) {
+        assert_int_equal(event->u.job.result, GROBO_OK);
+        exits++;
+    }
+}
+
+static void make(void)
+{
+    static const grobo_robot_config robot = {.on_exit = GROBO_EXIT_OFF};
+    const grobo_control_config config = {.session = {.device = GROBO_DEVICE_SIM,
+                                                     .baud_bps = 1000000,
+                                                     .robot = &robot,
+                                                     .on_robot = on_robot,
+                                                     .ctx = &rounds},
+                                         .control_period_us = 2000,
+                                         .on_svc = on_svc};
+    rounds = exits = inside = together = calls = 0;
+    assert_int_equal(grobo_control_new(&config, &control), GROBO_OK);
+}
+
+static int rounds_so_far(grobo_control *from, void *arg)
+{
+    (void)from;
+    (void)arg;
+    return rounds;
+}
+
+/* Waits until the loop has gone round n times. */
+static void await_rounds(int n)
+{
+    int64_t end_us = grobo_now_us() + 5000000;
+    while (grobo_control_call(control, rounds_so_far, NULL) < n) {
+        assert_true(grobo_now_us() < end_us);
+    }
+}
+
+static int torque_on(void)
+{
+    return grobo_control_set_servo_states(control, GROBO_JOINTS_ALL(20), GROBO_TORQUE_ON, 0);
+}
+
+static void the_thread_runs_until_it_is_told_to_stop(void **state)
+{
+    grobo_thread thread;
+
+    (void)state;
+    make();
+    assert_false(grobo_control_is_active(control));
+    assert_int_equal(grobo_control_stop_thread(control), GROBO_ERR_STATE);
+    assert_int_equal(grobo_control_thread(control, &thread), GROBO_ERR_STATE);
+    assert_int_equal(grobo_control_start_thread(control), GROBO_OK);
+    assert_true(grobo_control_is_active(control));
+    assert_int_equal(grobo_control_start_thread(control), GROBO_ERR_STATE);
+    assert_int_equal(grobo_control_thread(control, &thread), GROBO_OK);
+    assert_false(grobo_thread_is_self(thread));
+    await_rounds(5);
+
+    assert_int_equal(grobo_control_connect(control, 0), GROBO_OK);
+    assert_int_equal(torque_on(), GROBO_OK);
+    assert_int_equal(grobo_control_stop_thread(control), GROBO_OK);
+    assert_false(grobo_control_is_active(control));
+    assert_int_equal(exits, 1); /* and the port stayed open */
+    assert_int_equal(grobo_control_get_servo_state(control, 0), GROBO_TORQUE_OFF);
+    assert_true(grobo_control_is_connected(control));
+    assert_int_equal(grobo_control_start_thread(control), GROBO_OK); /* again */
+    assert_int_equal(grobo_control_free(control), GROBO_OK);
+}
+
+static void freeing_lets_the_robot_go_first(void **state)
+{
+    (void)state;
+    for (int threaded = 0; threaded < 2; threaded++) {
+        make();
+        if (threaded) {
+            assert_int_equal(grobo_control_start_thread(control), GROBO_OK);
+        }
+        assert_int_equal(grobo_control_connect(control, 0), GROBO_OK);
+        assert_int_equal(torque_on(), GROBO_OK);
+        assert_int_equal(grobo_control_free(control), GROBO_OK);
+        assert_int_equal(exits, 1);
+    }
+}
+
+static void rounds_are_made_by_whoever_asks(void **state)
+{
+    (void)state;
+    make();
+    int64_t end_us = grobo_now_us() + 5000000;
+    while (rounds < 5) {
+        assert_int_equal(grobo_control_svc(control), 1);
+        assert_true(grobo_now_us() < end_us);
+    }
+    assert_int_equal(grobo_control_start_thread(control), GROBO_OK);
+    assert_int_equal(grobo_control_svc(control), 0); /* the thread makes them */
+    assert_int_equal(grobo_control_free(control), GROBO_OK);
+}
+
+static int run_result;
+
+static GROBO_THREAD_FUNC run_it(void *arg)
+{
+    run_result = grobo_control_run(arg);
+    GROBO_THREAD_RETURN;
+}
+
+static void the_loop_runs_on_a_thread_of_ones_own(void **state)
+{
+    grobo_thread mine;
+    grobo_thread none;
+
+    (void)state;
+    make();
+    assert_int_equal(grobo_thread_start(&mine, run_it, control), GROBO_OK);
+    int64_t end_us = grobo_now_us() + 5000000;
+    while (!grobo_control_is_active(control)) {
+        assert_true(grobo_now_us() < end_us);
+    }
+    await_rounds(5);
+    assert_int_equal(grobo_control_run(control), GROBO_ERR_STATE);
+    assert_int_equal(grobo_control_thread(control, &none), GROBO_ERR_STATE);
+    assert_int_equal(grobo_control_stop_thread(control), GROBO_OK);
+    assert_int_equal(grobo_thread_join(mine), GROBO_OK);
+    assert_int_equal(run_result, GROBO_OK);
+    assert_int_equal(grobo_control_free(control), GROBO_OK);
+}
+
+/* Would be entered by two at a time if callers were not kept apart. */
+static int count_call(grobo_control *from, void *arg)
+{
+    (void)from;
+    (void)arg;
+    together += inside;
+    inside++;
+    calls++;
+    inside--;
+    return calls;
+}
+
+static GROBO_THREAD_FUNC call_often(void *arg)
+{
+    int *failed = arg;
+    for (int i = 0; i < CALLS; i++) {
+        *failed += grobo_control_call(control, count_call, NULL) < 1;
+    }
+    GROBO_THREAD_RETURN;
+}
+
+static void callers_are_kept_apart(void **state)
+{
+    (void)state;
+    for (int threaded = 0; threaded < 2; threaded++) {
+        grobo_thread thread[3];
+        int failed[3] = {0, 0, 0};
+        make();
+        if (threaded) {
+            assert_int_equal(grobo_control_start_thread(control), GROBO_OK);
+        }
+        for (int i = 0; i < 3; i++) {
+            assert_int_equal(grobo_thread_start(&thread[i], call_often, &failed[i]), GROBO_OK);
+        }
+        for (int i = 0; i < 3; i++) {
+            assert_int_equal(grobo_thread_join(thread[i]), GROBO_OK);
+            assert_int_equal(failed[i], 0);
+        }
+        assert_int_equal(calls, 3 * CALLS);
+        assert_int_equal(together, 0);
+        assert_int_equal(grobo_control_free(control), GROBO_OK);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_thread_runs_until_it_is_told_to_stop),
+        cmocka_unit_test(freeing_lets_the_robot_go_first),
+        cmocka_unit_test(rounds_are_made_by_whoever_asks),
+        cmocka_unit_test(the_loop_runs_on_a_thread_of_ones_own),
+        cmocka_unit_test(callers_are_kept_apart),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,122 @@
+/* SPDX-License-Identifier: MIT */
+/* The views of the engine, gr001.h and hrpsys.h, on a robot that runs: on its control thread. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include <grobo/gr001.h>
+#include <grobo/hrpsys.h>
+#include <grobo/thread.h>
+
+enum { NECK = 13, NECK_ID = 2 };
+
+static grobo_control *control;
+static grobo_hrpsys hrpsys;
+
+static int set_up(void **state)
+{
+    static const grobo_robot_config robot = {.sense_interval_us = GROBO_SENSE_NEVER};
+    static const grobo_control_config config = {.session = {.device = "sim", .robot = &robot}};
+    (void)state;
+    assert_int_equal(grobo_control_new(&config, &control), GROBO_OK);
+    assert_int_equal(grobo_control_start_thread(control), GROBO_OK);
+    assert_int_equal(grobo_control_connect(control, 0), GROBO_OK);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    assert_int_equal(grobo_control_free(control), GROBO_OK);
+    return 0;
+}
+
+/* Does something with the engine on the thread that runs it, and waits until it is done. */
+typedef int (*engine_fn)(grobo_robot *robot, int64_t now_us);
+
+static int on_engine(grobo_control *from, void *arg)
+{
+    grobo_session *session = grobo_control_session(from);
+    const engine_fn *fn = arg;
+    int result = (*fn)(grobo_session_robot(session), grobo_now_us());
+    grobo_session_pump(session);
+    return result;
+}
+
+static int engine(engine_fn fn)
+{
+    int result = grobo_control_call(control, on_engine, &fn);
+    assert_int_equal(grobo_control_wait(control, 0), GROBO_OK);
+    return result;
+}
+
+/* Reads until the neck is there: the last frame takes its time on the line. */
+static void assert_neck_comes_to(int angle_ddeg)
+{
+    double angle_rad = -99;
+    for (int i = 0; i < 200 && !(grobo_ddeg_from_rad(angle_rad) >= angle_ddeg - 5); i++) {
+        assert_int_equal(grobo_control_read_angle(control, NECK, &angle_rad, 0), GROBO_OK);
+    }
+    assert_in_range(grobo_ddeg_from_rad(angle_rad), angle_ddeg - 5, angle_ddeg + 5);
+}
+
+static int arms_on(grobo_robot *robot, int64_t now_us)
+{
+    return grobo_gr001_servo(robot, GROBO_GR001_ARMS, GROBO_TORQUE_ON, now_us);
+}
+
+static int neck_to_twelve(grobo_robot *robot, int64_t now_us)
+{
+    return grobo_gr001_move(robot, NECK_ID, 120, 20, now_us);
+}
+
+static void a_motor_moves_by_its_number(void **state)
+{
+    (void)state;
+    grobo_posture posture;
+    assert_true(engine(arms_on) > 0);
+    assert_int_equal(grobo_control_read_posture(control, &posture, 0), 20);
+    assert_int_equal(grobo_control_get_servo_state(control, 14), GROBO_TORQUE_ON);
+    assert_int_equal(grobo_control_get_servo_state(control, NECK), GROBO_TORQUE_OFF);
+    assert_true(engine(neck_to_twelve) > 0);
+    assert_neck_comes_to(120);
+}
+
+static int hrpsys_on(grobo_robot *robot, int64_t now_us)
+{
+    grobo_hrpsys_init(&hrpsys, robot);
+    assert_int_equal(grobo_hrpsys_set_period_us(&hrpsys, 100000), GROBO_OK);
+    return grobo_hrpsys_servo_name(&hrpsys, "all", true, now_us);
+}
+
+static int hrpsys_step(grobo_robot *robot, int64_t now_us)
+{
+    double angle_rad[20];
+    (void)robot;
+    int known = grobo_hrpsys_read_joint_angles(&hrpsys, angle_rad, 20, GROBO_NEVER_US, now_us);
+    assert_int_equal(known, 20);
+    angle_rad[NECK] = grobo_rad_from_deg(5);
+    assert_int_equal(grobo_hrpsys_write_joint_commands(&hrpsys, angle_rad, 20), GROBO_OK);
+    return grobo_hrpsys_one_step(&hrpsys, now_us);
+}
+
+static void a_step_moves_as_hrpsys_does(void **state)
+{
+    (void)state;
+    assert_true(engine(hrpsys_on) > 0);
+    assert_int_equal(engine(hrpsys_step), GROBO_OK);
+    assert_neck_comes_to(50);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(a_motor_moves_by_its_number, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_step_moves_as_hrpsys_does, set_up, tear_down),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
