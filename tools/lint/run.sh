@@ -65,6 +65,7 @@ everything=$(texts)
     gate units scan units $headers
     gate help sh "$gates/help.sh"
     gate tree sh "$gates/tree.sh"
+    gate seed-map sh "$gates/seed_map.sh"
 }
 if [ "$1" = --all ]; then
     gate headers sh "$gates/headers.sh"
