@@ -96,6 +96,22 @@ check "a table at the end" both exits 0 "$GRCTL" -d "$robot" play --speed 500 --
 check "it ends where the motion ends" both exits 0 "$GRCTL" -d "$robot" status m12 --- \
     says 'R_KNEE_P  *-40\.0  *-  on '
 
+# On a terminal, which script makes: a bar that fits into the line and is cleared away.
+bar() {
+    LC_ALL=$1 TERM=xterm script -qec "stty cols 60; '$GRCTL' -d '$robot' play --speed 400 $greet" \
+        /dev/null </dev/null >"$work/screen" || return 1
+    tr '\r' '\n' <"$work/screen" | grep 'playing' >"$work/bars"
+    grep -q "$2" "$work/bars" || { echo "no bar like '$2'"; cat -v "$work/screen"; return 1; }
+    awk '{ sub(/\033\[K$/, ""); if (length > 57) exit 1 }' "$work/bars" && return
+    echo "longer than the line"
+    return 1
+}
+if command -v script >/dev/null 2>&1 && script -qec true /dev/null </dev/null >/dev/null 2>&1; then
+    check "a bar of plain letters" bar C '^\[#[#-]*\] playing [0-9.]* of 5.0 s, frame'
+else
+    skip "a bar of plain letters" "no script(1) to make a terminal"
+fi
+
 # ---- how it leaves --------------------------------------------------------------------------
 
 # interrupted STATUS POLICY SIGNAL...: in mid-motion; the status tells, the policy was carried out.
@@ -114,7 +130,7 @@ interrupted() {
     wait $interrupted_pid
     interrupted_got=$?
     [ $interrupted_got -eq "$interrupted_want" ] &&
-        grep -q 'exit policy carried out' "$work/leaving" && return
+        grep -q '^interrupted: the servos ' "$work/leaving" && return
     echo "status $interrupted_got, not $interrupted_want"
     cat "$work/out" "$work/leaving"
     return 1
@@ -134,5 +150,19 @@ check "SIGINT, to sit down: 130" interrupted 130 sit INT
 check_json "the knees are bent, the torque is off" \
     '[abs(j["angle_deg"]) > 60 for j in lines[0]["joints"] if "KNEE" in j["name"]] == [True] * 2
      and all(j["torque"] == "off" for j in lines[0]["joints"])' "$GRCTL" -d "$robot" --json status
+
+# A robot that has fallen silent: nobody knows what its servos do, and the status says so.
+silent() {
+    "$GRCTL" -d "$robot" -v --json play --speed 50 "$greet" >"$work/out" 2>"$work/leaving" &
+    silent_pid=$!
+    until grep -qs '"t_ms":[1-9]' "$work/out"; do :; done
+    kill -s STOP "$sim_pid"
+    kill -s INT $silent_pid
+    wait $silent_pid
+    silent_got=$?
+    kill -s CONT "$sim_pid"
+    [ $silent_got -eq 1 ] && grep -q 'could not be left as asked' "$work/leaving"
+}
+check "SIGINT, and nobody answers: 1" silent
 stop_sim
 done_testing

@@ -401,20 +401,37 @@ static grobo_exit_policy policy_now(const conn *c, int status)
     return GROBO_EXIT_DEFAULT;
 }
 
+static const char *policy_words(grobo_exit_policy policy)
+{
+    switch (policy) {
+    case GROBO_EXIT_OFF:
+        return "are off";
+    case GROBO_EXIT_SIT:
+        return "sat the robot down and are off";
+    case GROBO_EXIT_HOLD:
+    case GROBO_EXIT_DEFAULT:
+        break;
+    }
+    return "hold where they are";
+}
+
+/* Returns 0, or the exit status when it could not be done; that is said. */
 static int carry_out_policy(conn *c, int status)
 {
     grobo_exit_policy policy = policy_now(c, status);
     int error;
     if (policy == GROBO_EXIT_DEFAULT || !c->up || c->link_error)
-        return status;
+        return EXIT_DONE;
     c->leaving = true;
     error = conn_wait(c, grobo_session_exit(c->session, policy));
     if (error)
         return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error),
                         "%s: the servos could not be left as asked: %s", conn_device(c),
                         grobo_error_text(error));
+    if (c->signal)
+        app_note(c->a, "interrupted: the servos %s", policy_words(policy));
     app_detail(c->a, "exit policy carried out");
-    return status;
+    return EXIT_DONE;
 }
 
 /* A shell's link is left as the next command wants to find it. */
@@ -438,9 +455,10 @@ static void give_back(conn *c)
 
 int conn_close(conn *c, int status)
 {
-    if (c->session)
-        status = carry_out_policy(c, status);
-    if (c->signal)
+    int failed = c->session ? carry_out_policy(c, status) : EXIT_DONE;
+    if (failed)
+        status = failed;
+    else if (c->signal)
         status = EXIT_SIGNAL + c->signal;
     if (c->link->kept) {
         give_back(c);

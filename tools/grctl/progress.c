@@ -6,7 +6,8 @@
 
 #include "progress.h"
 
-enum { BAR_MOST = 40, LINE_BYTES = 512 };
+/* The last columns stay free for the ^C that a terminal shows. */
+enum { BAR_MOST = 40, LINE_BYTES = 512, FREE = 3 };
 
 static int terminal_width(void)
 {
@@ -21,7 +22,6 @@ void progress_start(progress *p, const app *a)
     memset(p, 0, sizeof *p);
     p->shown = a->tty_err && !a->json && a->verbosity >= 0;
     p->blocks = strcmp(nl_langinfo(CODESET), "UTF-8") == 0;
-    p->width = terminal_width();
 }
 
 static size_t append(char *line, size_t at, const char *text)
@@ -40,7 +40,7 @@ void progress_draw(progress *p, double fraction, const char *text)
     int room, bar, full;
     if (!p->shown)
         return;
-    room = p->width - 1;
+    room = terminal_width() - FREE; /* it may have changed */
     bar = room - 3 - (int)strlen(text);
     bar = bar > BAR_MOST ? BAR_MOST : bar;
     if (bar >= 8) {
@@ -51,7 +51,7 @@ void progress_draw(progress *p, double fraction, const char *text)
             at = append(line, at, p->blocks ? (i < full ? "█" : "░") : i < full ? "#" : "-");
         at = append(line, at, p->blocks ? "  " : "] ");
     }
-    fprintf(stderr, "\r%s%.*s\033[K", line, room, text);
+    fprintf(stderr, "\r%s%.*s\033[K", line, room > 0 ? room : 0, text);
     fflush(stderr);
     p->drawn = true;
 }

@@ -9,7 +9,6 @@ typedef struct progress {
     bool shown;  /* false: no terminal, quiet or JSON; nothing is ever drawn */
     bool drawn;  /* something is on the line now */
     bool blocks; /* the terminal knows UTF-8 */
-    int width;
 } progress;
 
 void progress_start(progress *p, const app *a);
