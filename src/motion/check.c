@@ -106,7 +106,8 @@ static void check_times(check *c)
     }
     if (defaults > 0) {
         grobo_i_said said = at_row(c, first, "step-default", GROBO_SEVERITY_NOTE);
-        grobo_i_say(c->list, &said, "%zu steps give no time and take the default", defaults);
+        grobo_i_say(c->list, &said, "%lu steps give no time and take the default",
+                    (unsigned long)defaults);
     }
 }
 
@@ -192,9 +193,9 @@ static void check_legs(check *c)
     if (legs != 0 && by_links > 0) {
         grobo_i_said said = at_row(c, first, "legs-by-ik", GROBO_SEVERITY_WARNING);
         grobo_i_say(c->list, &said,
-                    "%zu of %zu poses give legs by ikLinks: without inverse kinematics the leg "
-                    "joints move to the %zu poses that list them, the others move as listed",
-                    by_links, c->motion->size, listed);
+                    "%lu of %lu poses give legs by ikLinks: without inverse kinematics the leg "
+                    "joints move to the %lu poses that list them, the others move as listed",
+                    (unsigned long)by_links, (unsigned long)c->motion->size, (unsigned long)listed);
     }
 }
 

@@ -25,7 +25,8 @@ static void note(const conversion *conv, const char *code, uint32_t line, const 
     const char *name = conv->options->name != NULL ? conv->options->name : "";
 
     grobo_i_say(conv->list, &(grobo_i_said){name, code, line, 0, GROBO_SEVERITY_NOTE},
-                "%s (%zu of %zu postures)", text, count, conv->from->size);
+                "%s (%lu of %lu postures)", text, (unsigned long)count,
+                (unsigned long)conv->from->size);
 }
 
 /* ---- what is lost ------------------------------------------------------------------------- */

@@ -21,7 +21,7 @@ typedef struct grobo_i_said {
     grobo_severity severity;
 } grobo_i_said;
 
-/* Adds a diagnostic; numbers with a point are formatted by number.h, not here. */
+/* Adds a diagnostic; numbers with a point are formatted by number.h, sizes as unsigned long. */
 void grobo_i_say(grobo_diagnostics *list, const grobo_i_said *said, const char *format, ...)
     GROBO_I_FORMAT(3, 4);
 

@@ -341,7 +341,8 @@ static int take_frames(component *part)
     }
     if (part->info.n_frames >= 0 && (size_t)part->info.n_frames != reader->motion->size) {
         grobo_i_warn(reader, "num-frames", part->info.n_frames_place,
-                     "numFrames is %ld, there are %zu", part->info.n_frames, reader->motion->size);
+                     "numFrames is %ld, there are %lu", part->info.n_frames,
+                     (unsigned long)reader->motion->size);
     }
     return result;
 }
