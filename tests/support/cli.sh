@@ -26,6 +26,30 @@ start_sim() {
     [ -n "$sim_pty" ]
 }
 
+# start_told_sim [OPTIONS]: as start_sim, and what is written to descriptor 5 it is told.
+start_told_sim() {
+    robot=$work/robot
+    mkfifo "$work/ready" "$work/tell"
+    "$GRCTL" sim --link "$robot" "$@" <"$work/tell" >"$work/ready" 2>"$work/sim.log" &
+    sim_pid=$!
+    exec 5>"$work/tell"
+    read -r sim_pty <"$work/ready"
+    rm "$work/ready" "$work/tell"
+    [ -n "$sim_pty" ]
+}
+
+# tell WORD...: returns when the simulator has said something to it.
+tell() {
+    tell_lines=$(wc -l <"$work/sim.log")
+    echo "$*" >&5
+    tell_tries=0
+    until [ "$(wc -l <"$work/sim.log")" -gt "$tell_lines" ]; do
+        kill -0 "$sim_pid" || return 1
+        tell_tries=$((tell_tries + 1))
+        [ $tell_tries -lt 5000 ] || return 1
+    done
+}
+
 stop_sim() {
     [ -z "$sim_pid" ] && return
     kill "$sim_pid" 2>/dev/null

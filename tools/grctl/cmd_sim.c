@@ -9,6 +9,7 @@
 #include "app.h"
 #include "commands.h"
 #include "output.h"
+#include "sim_console.h"
 #include "trace.h"
 
 enum { OPT_LINK, OPT_TCP, OPT_NO_PACING, OPT_ROBOTS, OPT_SEED, OPT_START, OPT_FAULT };
@@ -59,6 +60,7 @@ typedef struct farm {
     struct event *signals[SIGNALS];
     grobo_sim_server *server[ROBOTS_MAX];
     trace trace[ROBOTS_MAX];
+    sim_console console;
     int n;
     int signal;
 } farm;
@@ -193,6 +195,16 @@ static int close_farm(farm *f, int status)
     return status;
 }
 
+/* Until a signal, or until somebody says quit. */
+static int serve(farm *f)
+{
+    f->console = (sim_console){.a = f->a, .base = f->base, .server = f->server, .n = f->n};
+    sim_console_start(&f->console);
+    event_base_dispatch(f->base);
+    sim_console_stop(&f->console);
+    return f->signal ? EXIT_SIGNAL + f->signal : EXIT_DONE;
+}
+
 static int run(app *a)
 {
     static farm f;
@@ -205,10 +217,8 @@ static int run(app *a)
         status = app_fail(a, EXIT_ROBOT, "NOMEM", "sim: %s", grobo_error_text(GROBO_ERR_NOMEM));
     for (int i = 0; i < robots && !status; i++)
         status = add_robot(&f, i);
-    if (!status && announce(&f)) {
-        event_base_dispatch(f.base);
-        status = EXIT_SIGNAL + f.signal;
-    }
+    if (!status && announce(&f))
+        status = serve(&f);
     return close_farm(&f, status);
 }
 
@@ -219,7 +229,11 @@ const cli_command cmd_sim = {
     .details =
         "Runs a simulated GR001 until a signal. Prints the path of its pty, one line a robot,\n"
         "when it can be opened. The robot is honest at register level and bytes take their time\n"
-        "on the wire; programs may come and go, it stays as they left it.\n",
+        "on the wire; programs may come and go, it stays as they left it.\n"
+        "\n"
+        "While it runs it takes commands on standard input, when that is a terminal or a pipe.\n"
+        "SERVO is a motor's number, a joint or a group; angles are the shaft's.\n"
+        "\n" SIM_CONSOLE_HELP,
     .example = "  grctl sim --link /tmp/gr001\n"
                "  grctl sim --wiring bus --fault drop=0.01,flip=0.001 --seed 7\n",
     .options = options,
