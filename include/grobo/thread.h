@@ -24,9 +24,10 @@
  *   would be for ever: GROBO_ERR_STATE, and nothing is done.
  *
  * Besides what is said at each, handed-over and waiting calls may return GROBO_ERR_FULL
- * (GROBO_CONTROL_CALLS_MAX are under way), GROBO_ERR_CLOSED (the robot is not connected) and
- * GROBO_ERR_UNPLUGGED (the line was lost while the call waited: nobody waits for a robot that is
- * gone). Callbacks run on the thread that runs the loop, without any lock held.
+ * (GROBO_CONTROL_CALLS_MAX are under way; never an emergency stop or an exit), GROBO_ERR_CLOSED
+ * (the robot is not connected) and GROBO_ERR_UNPLUGGED (the line was lost while the call waited:
+ * nobody waits for a robot that is gone). Callbacks run on the thread that runs the loop, without
+ * any lock held.
  *
  * Joints count from 0 in joint order. The exit policy of the robot's configuration is carried out,
  * within its bound, before the loop is left alone: at the end of the control thread, by

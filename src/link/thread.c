@@ -99,7 +99,8 @@ static void on_wake(evutil_socket_t socket, short what, void *ctx)
     grobo_i_control_unlock(control);
 }
 
-void grobo_i_control_round(grobo_control *control, int64_t end_us)
+/* Whoever calls has `looping`. */
+static void do_round(grobo_control *control, int64_t end_us)
 {
     const round_frame frame = {control, rounds};
 
@@ -113,6 +114,16 @@ void grobo_i_control_round(grobo_control *control, int64_t end_us)
     grobo_i_control_look_at_play(control);
     grobo_i_control_serve(control);
     rounds = frame.outer;
+}
+
+void grobo_i_control_take_turn(grobo_control *control, int64_t end_us)
+{
+    control->looping = true;
+    grobo_mutex_unlock(&control->lock);
+    do_round(control, end_us);
+    grobo_mutex_lock(&control->lock);
+    control->looping = false;
+    grobo_i_control_tell_all(control);
 }
 
 /* ---- the thread --------------------------------------------------------------------------- */
@@ -133,7 +144,7 @@ int grobo_i_control_leave(grobo_control *control, int64_t timeout_us)
 {
     control_job job = {.start = exit_job};
 
-    return control->skip_exit ? GROBO_OK : grobo_i_control_job(control, &job, NULL, timeout_us);
+    return control->skip_exit ? GROBO_OK : grobo_i_control_urgent_job(control, &job, timeout_us);
 }
 
 static int64_t exit_timeout(grobo_control *control)
@@ -158,7 +169,7 @@ static void run(grobo_control *control)
         control->looping = true;
         while (!control->stopping) {
             grobo_mutex_unlock(&control->lock);
-            grobo_i_control_round(control, GROBO_NEVER_US);
+            do_round(control, GROBO_NEVER_US);
             grobo_mutex_lock(&control->lock);
         }
         control->looping = false;
@@ -288,34 +299,39 @@ int grobo_control_thread(grobo_control *control, grobo_thread *thread)
     return r;
 }
 
+/* With the lock: sleeps until nobody runs the loop, or end_us. */
+static int await_turn(grobo_control *control, int64_t end_us)
+{
+    control_slot *slot = grobo_i_control_take(control, GROBO_CONTROL_CALLS_MAX);
+
+    if (slot == NULL) {
+        return GROBO_ERR_FULL;
+    }
+    while ((control->looping || control->running) && grobo_now_us() < end_us) {
+        grobo_i_control_sleep(control, slot, end_us);
+    }
+    slot->state = CALL_FREE;
+    return 0;
+}
+
 int grobo_control_svc(grobo_control *control)
 {
     int64_t end_us = grobo_now_us() + period_of(control);
-    control_slot *slot;
-    bool mine = false;
+    int r = 0;
 
     if (grobo_i_control_inside(control)) {
         return GROBO_ERR_STATE;
     }
     grobo_i_control_lock(control);
-    slot = grobo_i_control_take(control, GROBO_CONTROL_CALLS_MAX);
-    while (slot != NULL && (control->looping || control->running) && grobo_now_us() < end_us) {
-        grobo_i_control_sleep(control, slot, end_us);
+    if (control->looping || control->running) {
+        r = await_turn(control, end_us);
     }
-    if (slot != NULL) {
-        slot->state = CALL_FREE;
-        mine = !control->looping && !control->running;
-    }
-    if (mine) {
-        control->looping = true;
-        grobo_mutex_unlock(&control->lock);
-        grobo_i_control_round(control, end_us);
-        grobo_mutex_lock(&control->lock);
-        control->looping = false;
-        grobo_i_control_tell_all(control);
+    if (r >= 0 && !control->looping && !control->running) {
+        grobo_i_control_take_turn(control, end_us);
+        r = 1;
     }
     grobo_i_control_unlock(control);
-    return slot != NULL ? mine : GROBO_ERR_FULL;
+    return r;
 }
 
 /* ---- making and freeing ------------------------------------------------------------------- */

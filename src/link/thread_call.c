@@ -227,12 +227,7 @@ static int wait_for(grobo_control *control, control_slot *slot, int64_t end_us)
             slot->impatient = slot->state == CALL_RUNNING;
             grobo_i_control_sleep(control, slot, slot->impatient ? GROBO_NEVER_US : end_us);
         } else {
-            control->looping = true;
-            grobo_mutex_unlock(&control->lock);
-            grobo_i_control_round(control, end_us);
-            grobo_mutex_lock(&control->lock);
-            control->looping = false;
-            grobo_i_control_tell_all(control);
+            grobo_i_control_take_turn(control, end_us);
         }
     }
     if (slot->state == CALL_DONE) {
@@ -253,20 +248,28 @@ static int64_t end_of(int64_t timeout_us)
     return timeout_us > GROBO_NEVER_US - now_us ? GROBO_NEVER_US : now_us + timeout_us;
 }
 
-static int call_and_wait(grobo_control *control, grobo_control_fn fn, void *arg, control_job *job,
-                         int64_t timeout_us)
+/* A call as its caller has it. */
+typedef struct call_wish {
+    grobo_control_fn fn;
+    void *arg;
+    control_job *job; /* arg, where fn waits for a job */
+    int64_t timeout_us;
+    bool urgent;
+} call_wish;
+
+static int call_and_wait(grobo_control *control, const call_wish *wish)
 {
-    int64_t end_us = end_of(timeout_us);
+    int64_t end_us = end_of(wish->timeout_us);
     control_slot *slot;
     int result = GROBO_ERR_FULL;
 
     grobo_i_control_lock(control);
-    slot = grobo_i_control_take(control, GROBO_CONTROL_CALLS_MAX);
+    slot = grobo_i_control_take(control, wish->urgent ? CONTROL_SLOTS : GROBO_CONTROL_CALLS_MAX);
     if (slot != NULL) {
-        hand_over(control, slot, fn, arg);
-        if (job != NULL) {
-            job->seen_losses = control->losses;
-            slot->job = job;
+        hand_over(control, slot, wish->fn, wish->arg);
+        slot->job = wish->job;
+        if (wish->job != NULL) {
+            wish->job->seen_losses = control->losses;
         }
         result = wait_for(control, slot, end_us);
     }
@@ -276,14 +279,23 @@ static int call_and_wait(grobo_control *control, grobo_control_fn fn, void *arg,
 
 int grobo_i_control_call(grobo_control *control, grobo_control_fn fn, void *arg)
 {
-    return grobo_i_control_inside(control) ? fn(control, arg)
-                                           : call_and_wait(control, fn, arg, NULL, 0);
+    const call_wish wish = {.fn = fn, .arg = arg};
+
+    return grobo_i_control_inside(control) ? fn(control, arg) : call_and_wait(control, &wish);
+}
+
+int grobo_i_control_urgent_call(grobo_control *control, grobo_control_fn fn, void *arg)
+{
+    const call_wish wish = {.fn = fn, .arg = arg, .urgent = true};
+
+    return grobo_i_control_inside(control) ? fn(control, arg) : call_and_wait(control, &wish);
 }
 
 int grobo_i_control_wait(grobo_control *control, grobo_control_fn fn, void *arg, int64_t timeout_us)
 {
-    return grobo_i_control_inside(control) ? GROBO_ERR_STATE
-                                           : call_and_wait(control, fn, arg, NULL, timeout_us);
+    const call_wish wish = {.fn = fn, .arg = arg, .timeout_us = timeout_us};
+
+    return grobo_i_control_inside(control) ? GROBO_ERR_STATE : call_and_wait(control, &wish);
 }
 
 /* ---- jobs --------------------------------------------------------------------------------- */
@@ -316,10 +328,23 @@ int grobo_i_control_poll_job(grobo_control *control, void *arg)
 int grobo_i_control_job(grobo_control *control, control_job *job, grobo_control_fn fn,
                         int64_t timeout_us)
 {
-    if (grobo_i_control_inside(control)) {
-        return GROBO_ERR_STATE;
-    }
-    return call_and_wait(control, fn != NULL ? fn : grobo_i_control_poll_job, job, job, timeout_us);
+    const call_wish wish = {.fn = fn != NULL ? fn : grobo_i_control_poll_job,
+                            .arg = job,
+                            .job = job,
+                            .timeout_us = timeout_us};
+
+    return grobo_i_control_inside(control) ? GROBO_ERR_STATE : call_and_wait(control, &wish);
+}
+
+int grobo_i_control_urgent_job(grobo_control *control, control_job *job, int64_t timeout_us)
+{
+    const call_wish wish = {.fn = grobo_i_control_poll_job,
+                            .arg = job,
+                            .job = job,
+                            .timeout_us = timeout_us,
+                            .urgent = true};
+
+    return grobo_i_control_inside(control) ? GROBO_ERR_STATE : call_and_wait(control, &wish);
 }
 
 /* ---- the public functions ----------------------------------------------------------------- */

@@ -19,8 +19,8 @@
 /* What a call's function returns while it is not over. */
 #define CALL_PENDING INT_MIN
 
-/* One more than there are calls, so that nothing keeps a thread from being stopped. */
-#define CONTROL_SLOTS (GROBO_CONTROL_CALLS_MAX + 1)
+/* Some more than there are calls, so that nothing keeps a robot from being stopped or left. */
+#define CONTROL_SLOTS (GROBO_CONTROL_CALLS_MAX + 4)
 
 typedef enum call_state {
     CALL_FREE = 0,
@@ -132,8 +132,9 @@ struct grobo_control {
 
 /* ---- thread.c ---- */
 
-/* A round of the loop, at most until end_us. Whoever calls has `looping`. */
-void grobo_i_control_round(grobo_control *control, int64_t end_us);
+/* With the lock, which is given back meanwhile: a round of the loop, at most until end_us, for a
+ * thread that found nobody in one. */
+void grobo_i_control_take_turn(grobo_control *control, int64_t end_us);
 
 /* True on the thread that is in a round of this control. */
 bool grobo_i_control_inside(const grobo_control *control);
@@ -173,6 +174,9 @@ void grobo_i_control_serve(grobo_control *control);
 /* Hands over. */
 int grobo_i_control_call(grobo_control *control, grobo_control_fn fn, void *arg);
 
+/* The same, for what must not be refused because too much is under way. */
+int grobo_i_control_urgent_call(grobo_control *control, grobo_control_fn fn, void *arg);
+
 /* Hands over and waits; refused in a callback. */
 int grobo_i_control_wait(grobo_control *control, grobo_control_fn fn, void *arg,
                          int64_t timeout_us);
@@ -183,6 +187,9 @@ int grobo_i_control_post(grobo_control *control, grobo_control_fn fn, void *arg)
 /* Hands over a job, after those before it, and waits for its end. `fn` NULL: nothing besides. */
 int grobo_i_control_job(grobo_control *control, control_job *job, grobo_control_fn fn,
                         int64_t timeout_us);
+
+/* The same, for what must not be refused because too much is under way. */
+int grobo_i_control_urgent_job(grobo_control *control, control_job *job, int64_t timeout_us);
 
 /* On the loop: the function of a job. */
 int grobo_i_control_poll_job(grobo_control *control, void *arg);

@@ -432,7 +432,7 @@ static int estop(grobo_control *control, void *arg)
 
 int grobo_control_estop(grobo_control *control)
 {
-    return grobo_i_control_call(control, estop, NULL);
+    return grobo_i_control_urgent_call(control, estop, NULL);
 }
 
 static int reset(grobo_control *control, void *arg)
@@ -456,5 +456,5 @@ int grobo_control_exit(grobo_control *control, grobo_exit_policy policy, int64_t
 {
     control_job job = {.start = exit_job, .policy = policy};
 
-    return grobo_i_control_job(control, &job, NULL, timeout_us);
+    return grobo_i_control_urgent_job(control, &job, timeout_us);
 }

@@ -1,0 +1,442 @@
+/* SPDX-License-Identifier: MIT */
+/* A control called by many threads at once, in its callbacks, while it starts, stops and goes. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "control_kit.h"
+
+/* What threads of a test count of their calls; each has its own. */
+typedef struct worker {
+    grobo_thread thread;
+    grobo_control *control;
+    int number;
+    int calls;
+    int wrong; /* the first result that should not be, 0 none */
+} worker;
+
+static void expect(worker *self, bool as_it_should, int result)
+{
+    self->calls++;
+    if (!as_it_should && self->wrong == 0) {
+        self->wrong = result != 0 ? result : 1;
+    }
+}
+
+static void run_together(grobo_thread_fn fn, worker *workers, int n)
+{
+    for (int i = 0; i < n; i++) {
+        workers[i].control = control;
+        workers[i].number = i;
+        assert_int_equal(grobo_thread_start(&workers[i].thread, fn, &workers[i]), GROBO_OK);
+    }
+    for (int i = 0; i < n; i++) {
+        assert_int_equal(grobo_thread_join(workers[i].thread), GROBO_OK);
+        assert_int_equal(workers[i].wrong, 0);
+        assert_true(workers[i].calls > 0);
+    }
+}
+
+/* ---- many threads ------------------------------------------------------------------------- */
+
+static void ask(worker *self)
+{
+    grobo_posture posture;
+    double angle_rad;
+    int states[GROBO_JOINTS_MAX];
+    int r = grobo_control_read_angle(self->control, self->number, &angle_rad, 0);
+
+    expect(self, r == GROBO_OK, r);
+    r = grobo_control_get_current_posture(self->control, &posture);
+    expect(self, r > 0, r);
+    r = grobo_control_get_servo_states(self->control, states, GROBO_JOINTS_MAX);
+    expect(self, r == 20, r);
+    r = grobo_control_check_connection(self->control, 0);
+    expect(self, r == GROBO_OK, r);
+    r = grobo_control_command_count(self->control);
+    expect(self, r >= 0, r);
+    r = grobo_control_send_command(self->control, "\x41\x00", 2, 0);
+    expect(self, r == 2, r);
+}
+
+static void change(worker *self, int i)
+{
+    grobo_posture posture;
+    int r = grobo_control_set_joint(self->control, ELBOW, grobo_rad_from_deg(i % 5));
+
+    expect(self, r == GROBO_OK, r);
+    r = grobo_control_set_default_time_us(self->control, 20000 + 10000 * (i % 3));
+    expect(self, r == GROBO_OK, r);
+    r = grobo_control_append_current_posture(self->control);
+    expect(self, r > 0 || r == GROBO_ERR_STALE, r);
+    r = grobo_control_get_last_posture(self->control, &posture);
+    expect(self, r == GROBO_OK || r == GROBO_ERR_EMPTY, r);
+    if (i % 4 == 3) {
+        grobo_control_clear_motion(self->control);
+    }
+    r = grobo_control_set_command(self->control, "\x41\x00", 2);
+    expect(self, r == 2, r);
+    r = grobo_control_start_motion(self->control);
+    expect(self, r == GROBO_OK, r);
+}
+
+static GROBO_THREAD_FUNC hammer(void *arg)
+{
+    worker *self = arg;
+
+    for (int i = 0; i < 12; i++) {
+        if (self->number < 2) {
+            ask(self);
+        } else {
+            change(self, i);
+        }
+    }
+    GROBO_THREAD_RETURN;
+}
+
+static void many_threads_call_at_once(void **state)
+{
+    worker workers[4] = {0};
+
+    (void)state;
+    control_come_up();
+    run_together(hammer, workers, 4);
+    assert_int_equal(grobo_control_wait(control, 0), GROBO_OK);
+}
+
+static GROBO_THREAD_FUNC cycle(void *arg)
+{
+    worker *self = arg;
+
+    for (int i = 0; i < 15; i++) {
+        int r = self->number == 0 ? grobo_control_start_thread(self->control)
+                                  : grobo_control_stop_thread(self->control);
+
+        expect(self, r == GROBO_OK || r == GROBO_ERR_STATE, r);
+        r = grobo_control_check_connection(self->control, 0);
+        expect(self, r == GROBO_OK || r == GROBO_ERR_CANCELED, r);
+    }
+    GROBO_THREAD_RETURN;
+}
+
+static void the_thread_is_started_and_stopped_while_others_call(void **state)
+{
+    worker workers[3] = {0};
+
+    (void)state;
+    control_come_up();
+    run_together(cycle, workers, 3);
+}
+
+static void the_thread_starts_and_stops(void **state)
+{
+    grobo_thread thread;
+    double angle_rad;
+
+    (void)state;
+    control_come_up();
+    assert_int_equal(grobo_control_stop_thread(control), GROBO_ERR_STATE);
+    for (int i = 0; i < 10; i++) {
+        assert_false(grobo_control_is_active(control));
+        assert_int_equal(grobo_control_thread(control, &thread), GROBO_ERR_STATE);
+        assert_int_equal(grobo_control_start_thread(control), GROBO_OK);
+        assert_true(grobo_control_is_active(control));
+        assert_int_equal(grobo_control_start_thread(control), GROBO_ERR_STATE);
+        assert_int_equal(grobo_control_run(control), GROBO_ERR_STATE);
+        assert_int_equal(grobo_control_thread(control, &thread), GROBO_OK);
+        assert_false(grobo_thread_is_self(thread));
+        assert_int_equal(grobo_control_svc(control), 0);
+        assert_int_equal(grobo_control_read_angle(control, ELBOW, &angle_rad, 0), GROBO_OK);
+        assert_int_equal(grobo_control_stop_thread(control), GROBO_OK);
+    }
+}
+
+static GROBO_THREAD_FUNC run_it(void *arg)
+{
+    worker *self = arg;
+    int r = grobo_control_run(self->control);
+
+    expect(self, r == GROBO_OK, r);
+    GROBO_THREAD_RETURN;
+}
+
+static void a_thread_of_the_callers_may_be_the_control_thread(void **state)
+{
+    worker self = {.control = control};
+    grobo_thread thread;
+    double angle_rad;
+
+    (void)state;
+    control_come_up();
+    assert_int_equal(grobo_thread_start(&self.thread, run_it, &self), GROBO_OK);
+    while (!grobo_control_is_active(control)) {
+        assert_true(grobo_control_svc(control) >= 0);
+    }
+    assert_int_equal(grobo_control_start_thread(control), GROBO_ERR_STATE);
+    assert_int_equal(grobo_control_thread(control, &thread), GROBO_ERR_STATE);
+    assert_int_equal(grobo_control_read_angle(control, ELBOW, &angle_rad, 0), GROBO_OK);
+    assert_int_equal(grobo_control_stop_thread(control), GROBO_OK);
+    assert_int_equal(grobo_thread_join(self.thread), GROBO_OK);
+    assert_int_equal(self.wrong, 0);
+    assert_int_equal(self.calls, 1);
+}
+
+/* ---- the loop by hand --------------------------------------------------------------------- */
+
+static int count(grobo_control *from, void *arg)
+{
+    int *n = arg;
+
+    (void)from;
+    return ++*n;
+}
+
+static void rounds_may_be_the_callers(void **state)
+{
+    int64_t end_us = grobo_now_us() + 5000000;
+
+    (void)state;
+    assert_int_equal(grobo_control_open_port(control), GROBO_OK);
+    while (!grobo_control_is_connected(control)) {
+        assert_int_equal(grobo_control_svc(control), 1);
+        assert_true(grobo_now_us() < end_us);
+    }
+}
+
+static void what_is_posted_is_done_once(void **state)
+{
+    grobo_posture posture;
+    int n = 0;
+
+    (void)state;
+    assert_int_equal(grobo_control_post(control, NULL, &n), GROBO_ERR_ARG);
+    assert_int_equal(grobo_control_call(control, NULL, &n), GROBO_ERR_ARG);
+    for (int i = 0; i < GROBO_CONTROL_CALLS_MAX; i++) {
+        assert_int_equal(grobo_control_post(control, count, &n), GROBO_OK);
+    }
+    assert_int_equal(n, 0);
+    /* The table is full: nothing waits for a place, and nothing that is there is lost. */
+    assert_int_equal(grobo_control_post(control, count, &n), GROBO_ERR_FULL);
+    assert_int_equal(grobo_control_get_current_posture(control, &posture), GROBO_ERR_FULL);
+    assert_int_equal(grobo_control_connect(control, 0), GROBO_ERR_FULL);
+    assert_int_equal(grobo_control_start_thread(control), GROBO_OK);
+    assert_int_equal(grobo_control_stop_thread(control), GROBO_OK);
+    while (n < GROBO_CONTROL_CALLS_MAX) {
+        assert_true(grobo_control_svc(control) == 1);
+    }
+    assert_int_equal(grobo_control_call(control, count, &n), GROBO_CONTROL_CALLS_MAX + 1);
+}
+
+static void what_is_posted_last_is_done_by_free(void **state)
+{
+    grobo_control_config config = {.session.device = GROBO_DEVICE_SIM};
+    grobo_control *other;
+    int n = 0;
+
+    (void)state;
+    assert_int_equal(grobo_control_new(&config, &other), GROBO_OK);
+    assert_int_equal(grobo_control_post(other, count, &n), GROBO_OK);
+    assert_int_equal(grobo_control_free(other), GROBO_OK);
+    assert_int_equal(n, 1);
+}
+
+static void a_call_gives_up_in_its_time(void **state)
+{
+    grobo_posture posture = {.n_joints = 7};
+    double angle_rad;
+
+    (void)state;
+    control_come_up();
+    for (int i = 0; i < 20; i++) {
+        assert_int_equal(grobo_control_read_posture(control, &posture, 1), GROBO_ERR_TIMEOUT);
+    }
+    assert_int_equal(posture.n_joints, 7);
+    assert_int_equal(grobo_control_read_angle(control, ELBOW, &angle_rad, 0), GROBO_OK);
+}
+
+/* ---- in callbacks ------------------------------------------------------------------------- */
+
+/* What a callback found; told to the test through grobo_control_call(). */
+static struct {
+    int rounds, events, ups;
+    int wrong; /* number of the check that failed first */
+    bool stop;
+} seen;
+
+static void check(int number, bool as_it_should)
+{
+    if (!as_it_should && seen.wrong == 0) {
+        seen.wrong = number;
+    }
+}
+
+static void call_back(grobo_control *from, int at)
+{
+    grobo_posture posture;
+    double angle_rad;
+    int n = 0;
+    int states[20];
+
+    check(at + 1, grobo_control_set_joint(from, ELBOW, 0.01) == GROBO_OK);
+    check(at + 2, grobo_control_get_current_posture(from, &posture) >= 0);
+    check(at + 3, grobo_control_get_servo_states(from, states, 20) == 20);
+    check(at + 4, grobo_control_call(from, count, &n) == 1);
+    check(at + 5, grobo_control_read_angle(from, ELBOW, &angle_rad, 0) == GROBO_ERR_STATE);
+    check(at + 6, grobo_control_connect(from, 0) == GROBO_ERR_STATE);
+    check(at + 7, grobo_control_wait(from, GROBO_NEVER_US) == GROBO_ERR_STATE);
+    check(at + 8, grobo_control_close_port(from, 0) == GROBO_ERR_STATE);
+    check(at + 9, grobo_control_free(from) == GROBO_ERR_STATE);
+    check(at + 10, grobo_control_svc(from) == GROBO_ERR_STATE);
+    check(at + 11, grobo_control_run(from) == GROBO_ERR_STATE);
+    check(at + 12, grobo_control_receive(from, states, 1) == GROBO_ERR_STATE);
+    check(at + 13, grobo_control_set_default_time_us(from, 50000) == GROBO_OK);
+}
+
+static int on_svc(grobo_control *from, void *ctx)
+{
+    check(1, ctx == &seen);
+    seen.rounds++;
+    call_back(from, 100);
+    if (seen.stop) {
+        check(2, grobo_control_stop_thread(from) == GROBO_OK);
+        check(3, !grobo_control_is_active(from));
+    }
+    return 0;
+}
+
+static void on_robot(void *ctx, const grobo_event *event)
+{
+    check(4, ctx == &seen);
+    (void)event;
+    seen.events++;
+    call_back(control, 200);
+}
+
+static void on_event(grobo_session *session, grobo_session_event event, int error, void *ctx)
+{
+    check(5, ctx == &seen);
+    check(6, session == grobo_control_session(control));
+    check(7, error <= 0);
+    seen.ups += event == GROBO_SESSION_EVENT_UP;
+    call_back(control, 300);
+}
+
+static int copy_seen(grobo_control *from, void *arg)
+{
+    (void)from;
+    memcpy(arg, &seen, sizeof seen);
+    return 0;
+}
+
+static int order_stop(grobo_control *from, void *arg)
+{
+    (void)arg;
+    (void)from;
+    seen.stop = true;
+    return 0;
+}
+
+static void callbacks_may_call(void **state)
+{
+    grobo_control_config config = {
+        .session = {.device = GROBO_DEVICE_SIM,
+                    .baud_bps = 1000000,
+                    .on_event = on_event,
+                    .on_robot = on_robot,
+                    .ctx = &seen},
+        .control_period_us = 2000,
+        .on_svc = on_svc,
+    };
+    grobo_posture posture;
+
+    (void)state;
+    for (int threaded = 0; threaded < 2; threaded++) {
+        memset(&seen, 0, sizeof seen);
+        assert_int_equal(grobo_control_new(&config, &control), GROBO_OK);
+        if (threaded) {
+            assert_int_equal(grobo_control_start_thread(control), GROBO_OK);
+        }
+        control_come_up();
+        assert_int_equal(grobo_control_read_posture(control, &posture, 0), 20);
+        assert_int_equal(grobo_control_call(control, copy_seen, &seen), 0);
+        if (threaded) {
+            assert_int_equal(grobo_control_call(control, order_stop, NULL), 0);
+        }
+        while (threaded && grobo_control_is_active(control)) {
+            assert_true(grobo_control_svc(control) >= 0);
+        }
+        assert_int_equal(grobo_control_free(control), GROBO_OK);
+        assert_int_equal(seen.wrong, 0);
+        assert_int_equal(seen.ups, 1);
+        assert_true(seen.rounds > 0);
+        assert_true(seen.events > 20);
+    }
+}
+
+/* The other control's callback: its own way out is barred, and so is that of the first. */
+static int on_inner(grobo_control *inner, void *ctx)
+{
+    grobo_control *outer = *(grobo_control **)ctx;
+    double angle_rad;
+    char device[GROBO_DEVICE_MAX_BYTES];
+
+    check(11, grobo_control_read_angle(inner, 0, &angle_rad, 0) == GROBO_ERR_STATE);
+    check(12, grobo_control_read_angle(outer, 0, &angle_rad, 0) == GROBO_ERR_STATE);
+    check(13, grobo_control_get_device(outer, device, sizeof device) == 3);
+    seen.events++;
+    return 0;
+}
+
+static int ask_other(grobo_control *outer, void *arg)
+{
+    grobo_control *inner = arg;
+    double angle_rad;
+
+    (void)outer;
+    return grobo_control_read_angle(inner, 0, &angle_rad, 0);
+}
+
+static void a_callback_may_wait_for_another_robot(void **state)
+{
+    grobo_control *other;
+    grobo_control_config config = {
+        .session = {.device = GROBO_DEVICE_SIM, .baud_bps = 1000000, .ctx = &control},
+        .control_period_us = 1000,
+        .on_svc = on_inner,
+    };
+
+    (void)state;
+    memset(&seen, 0, sizeof seen);
+    assert_int_equal(grobo_control_new(&config, &other), GROBO_OK);
+    assert_int_equal(grobo_control_connect(other, 0), GROBO_OK);
+    memset(&seen, 0, sizeof seen); /* only what was inside of both counts */
+    for (int i = 0; i < 20; i++) {
+        assert_int_equal(grobo_control_call(control, ask_other, other), GROBO_OK);
+    }
+    assert_int_equal(seen.wrong, 0);
+    assert_true(seen.events > 0);
+    assert_int_equal(grobo_control_free(other), GROBO_OK);
+}
+
+int main(void)
+{
+#define ALONE(test) cmocka_unit_test_setup_teardown(test, control_set_up, control_tear_down)
+    const struct CMUnitTest tests[] = {
+        WITH_AND_WITHOUT_THREAD(many_threads_call_at_once),
+        WITH_AND_WITHOUT_THREAD(a_call_gives_up_in_its_time),
+        WITH_AND_WITHOUT_THREAD(a_callback_may_wait_for_another_robot),
+        ALONE(the_thread_is_started_and_stopped_while_others_call),
+        ALONE(the_thread_starts_and_stops),
+        ALONE(a_thread_of_the_callers_may_be_the_control_thread),
+        ALONE(rounds_may_be_the_callers),
+        ALONE(what_is_posted_is_done_once),
+        cmocka_unit_test(what_is_posted_last_is_done_by_free),
+        cmocka_unit_test(callbacks_may_call),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
