@@ -1,0 +1,310 @@
+/* SPDX-License-Identifier: MIT */
+/* A control over a line that is lost, and how it leaves a robot: by a pty, served by a thread. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+#include <event2/event.h>
+
+#include "control_kit.h"
+#include "far_robot.h"
+
+static const grobo_robot_config leave_off = {.on_exit = GROBO_EXIT_OFF};
+static far_robot robot;
+static char dir[64];
+static char device[80];
+
+static int set_up(void **state)
+{
+    (void)state;
+    memcpy(dir, "/tmp/grobo-line-XXXXXX", 23);
+    assert_non_null(mkdtemp(dir));
+    (void)snprintf(device, sizeof device, "%s/robot", dir);
+    far_robot_start(&robot, device);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    far_robot_end(&robot);
+    assert_int_equal(rmdir(dir), 0);
+    return 0;
+}
+
+static void make(grobo_control_config config, bool threaded)
+{
+    config.session.device = device;
+    config.session.baud_bps = 1000000;
+    if (config.session.robot == NULL) {
+        config.session.robot = &leave_off;
+    }
+    assert_int_equal(grobo_control_new(&config, &control), GROBO_OK);
+    if (threaded) {
+        assert_int_equal(grobo_control_start_thread(control), GROBO_OK);
+    }
+    control_come_up();
+}
+
+static void have_torque(void)
+{
+    assert_int_equal(grobo_control_set_servo_states(control, EVERY_JOINT, GROBO_TORQUE_ON, 0),
+                     GROBO_OK);
+    assert_int_equal(far_robot_torqued(&robot), 20);
+}
+
+/* ---- losing the line ---------------------------------------------------------------------- */
+
+/* A thread that waits for the robot until it is told that it is gone. */
+typedef struct waiter {
+    grobo_thread thread;
+    int number;
+    int answers;
+    int result;
+} waiter;
+
+static int wait_once(int number)
+{
+    grobo_posture posture;
+    double angle_rad;
+
+    switch (number) {
+    case 0:
+        return grobo_control_wait(control, GROBO_NEVER_US);
+    case 1:
+        return grobo_control_read_posture(control, &posture, GROBO_NEVER_US);
+    case 2:
+        return grobo_control_read_angle(control, ELBOW, &angle_rad, GROBO_NEVER_US);
+    default:
+        return grobo_control_check_connection(control, GROBO_NEVER_US);
+    }
+}
+
+static GROBO_THREAD_FUNC wait_for_loss(void *arg)
+{
+    waiter *self = arg;
+
+    /* The adapter answers no more before it is found gone: that is a silent robot, not a loss. */
+    do {
+        self->result = wait_once(self->number);
+        self->answers++;
+    } while (self->result >= 0 || self->result == GROBO_ERR_TIMEOUT);
+    GROBO_THREAD_RETURN;
+}
+
+static void nobody_waits_for_a_robot_that_is_gone(void **state)
+{
+    waiter waiters[4] = {0};
+    int unplugged = 0;
+
+    (void)state;
+    for (int threaded = 0; threaded < 2; threaded++) {
+        int64_t begin_us;
+
+        make((grobo_control_config){.skip_exit = false}, threaded != 0);
+        control_have_motion(4);
+        (void)grobo_control_set_motion_count(control, 1000000);
+        assert_int_equal(grobo_control_play_motion(control, NULL), GROBO_OK);
+        for (int i = 0; i < 4; i++) {
+            waiters[i].number = i;
+            assert_int_equal(grobo_thread_start(&waiters[i].thread, wait_for_loss, &waiters[i]),
+                             GROBO_OK);
+        }
+        /* They are at it when a few readings of our own, in turn with theirs, are done. */
+        for (int i = 0; i < 3; i++) {
+            (void)wait_once(2);
+        }
+        begin_us = grobo_now_us();
+        far_robot_plug(&robot, false);
+        for (int i = 0; i < 4; i++) {
+            assert_int_equal(grobo_thread_join(waiters[i].thread), GROBO_OK);
+            /* Who asked when it was gone already has been told that it is closed. */
+            assert_true(waiters[i].result == GROBO_ERR_UNPLUGGED ||
+                        (i > 0 && waiters[i].result == GROBO_ERR_CLOSED));
+            unplugged += waiters[i].result == GROBO_ERR_UNPLUGGED;
+        }
+        assert_true(grobo_now_us() - begin_us < 2000000);
+        assert_false(grobo_control_is_connected(control));
+        assert_false(grobo_control_is_playing(control));
+        assert_int_equal(grobo_control_start_motion(control), GROBO_ERR_CLOSED);
+        assert_int_equal(grobo_control_wait(control, 0), GROBO_ERR_UNPLUGGED);
+        assert_int_equal(grobo_control_free(control), GROBO_OK);
+        far_robot_plug(&robot, true);
+    }
+    assert_true(unplugged >= 2);
+}
+
+static GROBO_THREAD_FUNC connect_again(void *arg)
+{
+    waiter *self = arg;
+
+    self->result = grobo_control_connect(control, GROBO_NEVER_US);
+    GROBO_THREAD_RETURN;
+}
+
+static void who_waits_for_its_return_is_told(void **state)
+{
+    waiter self = {0};
+
+    (void)state;
+    make((grobo_control_config){.session.reconnect = true}, true);
+    far_robot_plug(&robot, false);
+    while (grobo_control_is_connected(control)) {
+        (void)grobo_control_svc(control);
+    }
+    assert_int_equal(grobo_thread_start(&self.thread, connect_again, &self), GROBO_OK);
+    far_robot_plug(&robot, true);
+    assert_int_equal(grobo_thread_join(self.thread), GROBO_OK);
+    assert_int_equal(self.result, GROBO_OK);
+    assert_int_equal(grobo_control_check_connection(control, 0), GROBO_OK);
+    assert_int_equal(grobo_control_free(control), GROBO_OK);
+}
+
+/* ---- leaving the robot -------------------------------------------------------------------- */
+
+static void every_way_out_leaves_the_robot_well(void **state)
+{
+    (void)state;
+    make((grobo_control_config){0}, true);
+    have_torque();
+    assert_int_equal(grobo_control_stop_thread(control), GROBO_OK);
+    assert_int_equal(far_robot_torqued(&robot), 0);
+    assert_true(grobo_control_is_connected(control));
+    have_torque();
+    assert_int_equal(grobo_control_close_port(control, 0), GROBO_OK);
+    assert_int_equal(far_robot_torqued(&robot), 0);
+    control_come_up();
+    have_torque();
+    assert_int_equal(grobo_control_free(control), GROBO_OK);
+    assert_int_equal(far_robot_torqued(&robot), 0);
+
+    make((grobo_control_config){0}, true);
+    have_torque();
+    assert_int_equal(grobo_control_free(control), GROBO_OK);
+    assert_int_equal(far_robot_torqued(&robot), 0);
+}
+
+static void a_robot_is_left_as_it_is_if_so_configured(void **state)
+{
+    (void)state;
+    make((grobo_control_config){.skip_exit = true}, true);
+    have_torque();
+    assert_int_equal(grobo_control_stop_thread(control), GROBO_OK);
+    assert_int_equal(grobo_control_close_port(control, 0), GROBO_OK);
+    assert_int_equal(grobo_control_free(control), GROBO_OK);
+    assert_int_equal(far_robot_torqued(&robot), 20);
+}
+
+/* Tells a job's end to a test that must not call meanwhile. */
+static void on_robot(void *ctx, const grobo_event *event)
+{
+    const int *to = ctx;
+
+    if (event->kind == GROBO_EVENT_JOB && event->u.job.kind == GROBO_JOB_EXIT) {
+        (void)!write(*to, "", 1);
+    }
+}
+
+static void a_robot_whose_owner_is_gone_is_left_well(void **state)
+{
+    evutil_socket_t pair[2];
+    char told;
+
+    (void)state;
+    assert_int_equal(evutil_socketpair(AF_UNIX, SOCK_STREAM, 0, pair), 0);
+    make(
+        (grobo_control_config){
+            .session = {.on_robot = on_robot, .ctx = &pair[1]},
+            .owner_timeout_us = 200000,
+        },
+        true);
+    have_torque();
+    /* Whoever waits is there. */
+    control_have_motion(1);
+    (void)grobo_control_set_motion_count(control, 1000000);
+    assert_int_equal(grobo_control_play_motion(control, NULL), GROBO_OK);
+    assert_int_equal(grobo_control_wait(control, 600000), GROBO_ERR_TIMEOUT);
+    assert_int_equal(grobo_port_wait(pair[0], GROBO_PORT_READABLE, 0), 0);
+    assert_true(grobo_control_is_playing(control));
+    /* And now nobody. */
+    assert_int_equal(grobo_port_wait(pair[0], GROBO_PORT_READABLE, 5000000), GROBO_PORT_READABLE);
+    assert_int_equal(read(pair[0], &told, 1), 1);
+    assert_int_equal(far_robot_torqued(&robot), 0);
+    assert_false(grobo_control_is_playing(control));
+    /* It comes back. */
+    have_torque();
+    assert_int_equal(grobo_control_free(control), GROBO_OK);
+    assert_int_equal(close(pair[0]), 0);
+    assert_int_equal(close(pair[1]), 0);
+}
+
+/* ---- at the end of a program -------------------------------------------------------------- */
+
+static void free_it(void)
+{
+    (void)grobo_control_free(control);
+}
+
+/* A program that ends without a word, but for its own atexit() handler. */
+static void be_a_program(int until)
+{
+    grobo_control_config config = {
+        .session = {.device = device, .baud_bps = 1000000, .robot = &leave_off}};
+    char go;
+    bool well = read(until, &go, 1) == 1 && atexit(free_it) == 0 &&
+                grobo_control_new(&config, &control) >= 0 &&
+                grobo_control_start_thread(control) >= 0 &&
+                grobo_control_connect(control, 0) >= 0 &&
+                grobo_control_set_servo_states(control, EVERY_JOINT, GROBO_TORQUE_ON, 0) >= 0;
+
+    exit(well ? 0 : 1);
+}
+
+static void a_program_may_free_it_at_exit(void **state)
+{
+    int start[2];
+    int status = -1;
+    pid_t child;
+
+    (void)state;
+    memcpy(dir, "/tmp/grobo-line-XXXXXX", 23);
+    assert_non_null(mkdtemp(dir));
+    (void)snprintf(device, sizeof device, "%s/robot", dir);
+    assert_int_equal(pipe(start), 0);
+    child = fork(); /* before there are threads */
+    assert_true(child >= 0);
+    if (child == 0) {
+        be_a_program(start[0]);
+    }
+    far_robot_start(&robot, device);
+    assert_int_equal(write(start[1], "", 1), 1);
+    assert_int_equal(waitpid(child, &status, 0), child);
+    assert_int_equal(status, 0);
+    assert_int_equal(far_robot_torqued(&robot), 0);
+    assert_int_equal(close(start[0]), 0);
+    assert_int_equal(close(start[1]), 0);
+    (void)tear_down(state);
+}
+
+int main(void)
+{
+#define ON_LINE(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_program_may_free_it_at_exit), /* first: it forks */
+        ON_LINE(nobody_waits_for_a_robot_that_is_gone),
+        ON_LINE(who_waits_for_its_return_is_told),
+        ON_LINE(every_way_out_leaves_the_robot_well),
+        ON_LINE(a_robot_is_left_as_it_is_if_so_configured),
+        ON_LINE(a_robot_whose_owner_is_gone_is_left_well),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
