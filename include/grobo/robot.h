@@ -527,6 +527,12 @@ GROBO_API int grobo_robot_target(const grobo_robot *robot, grobo_posture *postur
 /** True from the request that starts a motion until its last posture's time is over. */
 GROBO_API bool grobo_robot_moving(const grobo_robot *robot, int64_t now_us);
 
+/**
+ * True from a motion's end until its last posture has been read back, and repeated where it was
+ * lost. Any request ends that: wait for it where the robot has to be where it was sent.
+ */
+GROBO_API bool grobo_robot_settling(const grobo_robot *robot);
+
 /** Kind of the job that runs, GROBO_JOB_NONE for none. */
 GROBO_API grobo_job_kind grobo_robot_job(const grobo_robot *robot);
 

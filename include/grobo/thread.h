@@ -275,8 +275,9 @@ GROBO_API int grobo_control_init_position(grobo_control *control);
 GROBO_API int grobo_control_command_count(grobo_control *control);
 /** Whether postures are still to be sent or under way. Handed over. @return 1 or 0. */
 GROBO_API int grobo_control_is_moving(grobo_control *control);
-/** Waits until nothing moves and nothing is asked of the robot. @return how the last motion or
- *  target ended: GROBO_OK, GROBO_ERR_CANCELED (stopped), or why it failed. */
+/** Waits until nothing moves, nothing is asked of the robot, and the last posture of a motion has
+ *  been read back. @return how the last motion or target ended: GROBO_OK, GROBO_ERR_CANCELED
+ *  (stopped), or why it failed. */
 GROBO_API int grobo_control_wait(grobo_control *control, int64_t timeout_us);
 
 /* ---- the current motion --------------------------------------------------------------------- */

@@ -67,6 +67,11 @@ bool grobo_robot_moving(const grobo_robot *robot, int64_t now_us)
     return moving;
 }
 
+bool grobo_robot_settling(const grobo_robot *robot)
+{
+    return robot->link && (robot->settling || robot->job.kind == GROBO_JOB_SETTLE);
+}
+
 grobo_job_kind grobo_robot_job(const grobo_robot *robot)
 {
     return robot->job.kind == GROBO_JOB_SETTLE ? GROBO_JOB_NONE : robot->job.kind;

@@ -357,7 +357,8 @@ static int await_rest(grobo_control *control, void *arg)
 {
     int result;
 
-    if (is_moving(control, arg) || grobo_robot_job(robot_of(control)) != GROBO_JOB_NONE) {
+    if (is_moving(control, arg) || grobo_robot_settling(robot_of(control)) ||
+        grobo_robot_job(robot_of(control)) != GROBO_JOB_NONE) {
         return CALL_PENDING;
     }
     grobo_i_control_lock(control);
