@@ -202,12 +202,15 @@ install: all ## into $(DESTDIR)$(PREFIX)
 	install -m 644 $(PC_FILE) $(DESTDIR)$(LIBDIR)/pkgconfig
 	$(if $(GRCTL),install -m 755 $(GRCTL) $(DESTDIR)$(BINDIR))
 	$(if $(GRCTL_HERE),$(foreach page,$(PAGES),$(install_page)))
+	install -d $(DESTDIR)$(DATADIR)/grobo/udev
+	install -m 644 tools/udev/60-grobo.rules $(DESTDIR)$(DATADIR)/grobo/udev
 
 uninstall: ## take out what install put in
 	rm -rf $(DESTDIR)$(INCLUDEDIR)/grobo
 	rm -f $(addprefix $(DESTDIR)$(LIBDIR)/,libgrobo.a libgrobo-core.a libgrobo.so $(SONAME) \
 	    pkgconfig/grobo.pc) $(DESTDIR)$(BINDIR)/grctl
 	rm -f $(foreach page,$(PAGES),$(DESTDIR)$(DATADIR)/$(firstword $(subst =, ,$(page))))
+	rm -rf $(DESTDIR)$(DATADIR)/grobo
 
 clean: ## remove $(BUILD)
 	rm -rf $(BUILD)

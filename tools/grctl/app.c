@@ -58,12 +58,16 @@ static void make_one_line(char *text)
 
 int app_fail(app *a, int status, const char *code, const char *format, ...)
 {
-    char text[1024];
+    char text[APP_LINE_BYTES];
     va_list list;
     va_start(list, format);
     vsnprintf(text, sizeof text, format, list);
     va_end(list);
     make_one_line(text);
+    if (a->hushed) {
+        memcpy(a->hushed, text, sizeof text);
+        return status;
+    }
     output_flush();
     fprintf(stderr, "%sgrctl:%s %s\n", a->color_err ? "\033[1;31m" : "",
             a->color_err ? "\033[0m" : "", text);
@@ -90,7 +94,7 @@ int app_status_of(int error)
 
 static void say(const char *format, va_list list)
 {
-    char text[1024];
+    char text[APP_LINE_BYTES];
     vsnprintf(text, sizeof text, format, list);
     make_one_line(text);
     fprintf(stderr, "%s\n", text);

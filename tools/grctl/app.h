@@ -12,6 +12,8 @@
 
 #include "cli.h"
 
+enum { APP_LINE_BYTES = 1024 };
+
 struct conn_link;
 
 typedef struct app {
@@ -21,6 +23,7 @@ typedef struct app {
     int verbosity; /* -1 quiet, 0, 1, 2 */
     bool color_out, color_err;
     bool tty_in, tty_out, tty_err;
+    char *hushed; /* not NULL: app_fail() puts its line here, APP_LINE_BYTES, and says nothing */
 } app;
 
 /* Sets what follows from the parsed line: verbosity, colours, terminals. */

@@ -8,6 +8,7 @@
 /* In the order of the overview: finding a robot, its state, moving it, files, servos, the rest. */
 #define GRCTL_COMMANDS(X)                                                                          \
     X(ports)                                                                                       \
+    X(doctor)                                                                                      \
     X(scan)                                                                                        \
     X(info)                                                                                        \
     X(status)                                                                                      \
