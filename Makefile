@@ -54,7 +54,11 @@ EVENT_CFLAGS = $(call once,EVENT_CFLAGS,$(call flags,--cflags,libevent_core))
 CMOCKA_CFLAGS = $(call once,CMOCKA_CFLAGS,$(call flags,--cflags,cmocka))
 CMOCKA_LIBS = $(call once,CMOCKA_LIBS,$(call flags,--libs,cmocka))
 JSON_CFLAGS = $(call once,JSON_CFLAGS,$(call flags,--cflags,jansson))
-TOOL_LIBS = $(call once,TOOL_LIBS,$(call flags,--libs,jansson))
+TOOL_LIBS = $(call once,TOOL_LIBS,$(call flags,--libs,jansson) $(EDIT_LIBS))
+# The shell edits lines where libedit is there, else it reads them plainly.
+EDIT := $(if $(shell $(PKG_CONFIG) --exists libedit 2>/dev/null && echo yes),libedit,plain)
+EDIT_CFLAGS = $(if $(filter libedit,$(EDIT)),$(call once,EDIT_CFLAGS_FOUND,$(call flags,--cflags,libedit)))
+EDIT_LIBS = $(if $(filter libedit,$(EDIT)),$(call flags,--libs,libedit))
 LIBS = $(call once,LIBS,$(call flags,--libs,yaml-0.1 libevent_core) -lm -pthread)
 
 # ---- sources, by folder: a folder may be empty or missing ----------------------------------
@@ -62,7 +66,8 @@ LIBS = $(call once,LIBS,$(call flags,--libs,yaml-0.1 libevent_core) -lm -pthread
 PUBLIC_HEADERS := $(wildcard include/grobo/*.h ports/$(PORT)/include/grobo/*.h)
 CORE_SRCS := $(sort $(wildcard src/core/*.c src/sim/*.c))
 OTHER_SRCS := $(sort $(wildcard src/motion/*.c src/body/*.c src/link/*.c ports/$(PORT)/*.c))
-TOOL_SRCS := $(if $(wildcard tools/grctl/main.c),$(sort $(wildcard tools/grctl/*.c)))
+TOOL_SRCS := $(if $(wildcard tools/grctl/main.c),$(sort $(wildcard tools/grctl/*.c)) \
+    tools/grctl/edit/$(EDIT).c)
 SUPPORT_SRCS := $(sort $(filter-out %/replay_main.c,$(wildcard tests/support/*.c)))
 TEST_SRCS := $(sort $(foreach ring,unit engine link fault port,$(wildcard tests/$(ring)/test_*.c)))
 TEST_SCRIPTS := $(sort $(foreach ring,cli lint export,$(wildcard tests/$(ring)/*.sh)))
@@ -239,7 +244,7 @@ $(eval $(call compile,src/body,SRC_INCLUDE))
 $(eval $(call compile,src/motion,SRC_INCLUDE YAML_CFLAGS))
 $(eval $(call compile,src/link,SRC_INCLUDE OS_FLAGS EVENT_CFLAGS))
 $(eval $(call compile,ports/$(PORT),SRC_INCLUDE OS_FLAGS))
-$(eval $(call compile,tools/grctl,OS_FLAGS EVENT_CFLAGS JSON_CFLAGS))
+$(eval $(call compile,tools/grctl,OS_FLAGS EVENT_CFLAGS JSON_CFLAGS EDIT_CFLAGS))
 $(eval $(call compile,docs/examples,OS_FLAGS EVENT_CFLAGS))
 $(eval $(call compile,tests,TEST_INCLUDE OS_FLAGS EVENT_CFLAGS YAML_CFLAGS CMOCKA_CFLAGS JSON_CFLAGS))
 

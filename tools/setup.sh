@@ -103,6 +103,8 @@ look() {
         libyaml-dev libyaml-devel libyaml yaml-dev libyaml-devel
     need jansson 'for the JSON of grctl' have_library jansson -- \
         libjansson-dev jansson-devel jansson jansson-dev libjansson-devel
+    need libedit 'to edit lines in grctl shell' have_library libedit -- \
+        libedit-dev libedit-devel libedit libedit-dev libedit-devel
     [ $level -ge 2 ] || return
     need cmocka 'for the tests' have_library cmocka -- \
         libcmocka-dev libcmocka-devel cmocka cmocka-dev libcmocka-devel

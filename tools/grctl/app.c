@@ -60,8 +60,10 @@ int app_fail(app *a, int status, const char *code, const char *format, ...)
 {
     char text[APP_LINE_BYTES];
     va_list list;
+    int n;
     va_start(list, format);
-    vsnprintf(text, sizeof text, format, list);
+    n = snprintf(text, sizeof text, "%s", a->place);
+    vsnprintf(text + n, sizeof text - (size_t)n, format, list);
     va_end(list);
     make_one_line(text);
     if (a->hushed) {

@@ -19,6 +19,8 @@ struct conn_link;
 typedef struct app {
     cli_line line;
     struct conn_link *link; /* the shell's, NULL: every command opens and closes its own */
+    const struct grobo_motion *record; /* the shell's @record, or NULL */
+    char place[128];                   /* "FILE:LINE: " of a script, for messages */
     bool json;
     int verbosity; /* -1 quiet, 0, 1, 2 */
     bool color_out, color_err;

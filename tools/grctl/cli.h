@@ -117,7 +117,7 @@ const char *cli_nearest_command(const char *name);
 /* Reads a whole text as a finite number; false if it is none. Knows no locale. */
 bool cli_read_number(const char *text, double *number);
 
-/* ---- what may stand where: for completion ---------------------------------------------------- */
+/* ---- what may stand where: for completion --------------------------------------------------- */
 
 /*
  * Goes through the words of "a|b|c": gives the next one and its length, moves *words behind it.
@@ -131,7 +131,7 @@ cli_argument cli_option_argument(const cli_option *option);
 /* The words that the first argument of a command is one of ("on|off|brake"), or NULL. Of length. */
 const char *cli_first_argument(const cli_command *command, size_t *length);
 
-/* ---- texts made from the tables -------------------------------------------------------------- */
+/* ---- texts made from the tables ------------------------------------------------------------- */
 
 void cli_print_overview(FILE *to);
 void cli_print_command(FILE *to, const cli_command *command);

@@ -95,7 +95,7 @@ static int run_move(app *a)
     return status ? status : go(a, &target, "move");
 }
 
-/* ---- pose ------------------------------------------------------------------------------------ */
+/* ---- pose ----------------------------------------------------------------------------------- */
 
 /* "@greet.pseq:3": posture 3, counted from 1; without a number the first. */
 static int pose_of_file(app *a, const char *spec, grobo_posture *target)

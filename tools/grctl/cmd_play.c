@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: MIT */
+#include <string.h>
+
 #include <event2/event.h>
 
 #include "commands.h"
@@ -116,11 +118,12 @@ static bool is_over(conn *c)
 
 static json_t *summary_json(const conn *c, double worst, int joint)
 {
-    const grobo_robot_counters *n = grobo_robot_get_counters(c->robot);
+    grobo_robot_counters n;
     grobo_jitter jitter;
+    conn_counters(c, &n);
     grobo_robot_jitter(c->robot, &jitter);
     return json_pack("{s:b,s:I,s:I,s:{s:I,s:I,s:I},s:o}", "done", 1, "frames",
-                     (json_int_t)n->motion_frames, "late_frames", (json_int_t)n->late_frames,
+                     (json_int_t)n.motion_frames, "late_frames", (json_int_t)n.late_frames,
                      "jitter_us", "p50", (json_int_t)jitter.p50_us, "p99",
                      (json_int_t)jitter.p99_us, "max", (json_int_t)jitter.max_us, "max_error_deg",
                      joint < 0 ? json_null() : app_json_number(worst, 2));
@@ -129,7 +132,7 @@ static json_t *summary_json(const conn *c, double worst, int joint)
 static void print_summary(const conn *c)
 {
     const grobo_model *model = grobo_robot_driver(c->robot)->model;
-    const grobo_robot_counters *n = grobo_robot_get_counters(c->robot);
+    grobo_robot_counters n;
     grobo_jitter jitter;
     int64_t now_us = grobo_now_us();
     int joint;
@@ -138,15 +141,16 @@ static void print_summary(const conn *c)
         app_print_json(summary_json(c, worst, joint));
         return;
     }
+    conn_counters(c, &n);
     grobo_robot_jitter(c->robot, &jitter);
     if (app_option(c->a, PLAY_TABLE)->given)
         render_reached(c, now_us);
     printf("%llu frames, %llu late; jitter p50 %lld us, p99 %lld us, largest %lld us\n",
-           (unsigned long long)n->motion_frames, (unsigned long long)n->late_frames,
+           (unsigned long long)n.motion_frames, (unsigned long long)n.late_frames,
            (long long)jitter.p50_us, (long long)jitter.p99_us, (long long)jitter.max_us);
-    if (n->stretched)
+    if (n.stretched)
         printf("%llu moves were too fast for a servo and got more time\n",
-               (unsigned long long)n->stretched);
+               (unsigned long long)n.stretched);
     if (joint >= 0)
         printf("largest error at the end %.1f deg (%s)\n", worst, model->joints[joint].name);
 }
@@ -222,7 +226,9 @@ static int run(app *a)
 {
     static show s;
     conn c;
-    int status = playlist_load(&s.list, a);
+    int status;
+    memset(&s, 0, sizeof s);
+    status = playlist_load(&s.list, a);
     if (!status && app_option(a, PLAY_DRY_RUN)->given) {
         status = play_dry_run(&s.list, a);
     } else if (!status) {

@@ -232,7 +232,9 @@ static int run(app *a)
     static order o;
     grobo_read_options read = {.model = &grobo_gr001_model};
     grobo_motion *motion = NULL;
-    int status = settle(a, &o);
+    int status;
+    memset(&o, 0, sizeof o);
+    status = settle(a, &o);
     if (!status)
         status = file_load(a, o.in, &read, &motion);
     if (!status)

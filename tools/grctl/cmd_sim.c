@@ -210,6 +210,7 @@ static int run(app *a)
     static farm f;
     int robots = (int)app_number(a, OPT_ROBOTS, 1);
     int status = 0;
+    memset(&f, 0, sizeof f);
     f.a = a;
     signal(SIGPIPE, SIG_IGN);
     f.base = grobo_loop_new();

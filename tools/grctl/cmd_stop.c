@@ -36,7 +36,11 @@ static int run_stop(app *a)
 
 static int reset(conn *c)
 {
+    grobo_trip_info trip;
     int error = latch_clear(conn_device(c));
+    grobo_robot_tripped(c->robot, &trip);
+    if (!error && trip.trip != GROBO_TRIP_NONE) /* in a shell the engine itself is stopped */
+        error = grobo_session_reset(c->session);
     if (error)
         return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error),
                         "%s: cannot take the emergency stop back: %s", conn_device(c),

@@ -31,6 +31,7 @@
     X(decode)                                                                                      \
     X(replay)                                                                                      \
     X(sim)                                                                                         \
+    X(shell)                                                                                       \
     X(completion)                                                                                  \
     X(help)                                                                                        \
     X(version)

@@ -11,6 +11,9 @@
 /* A second is more than any servo needs to stop smoothly; the engine's own bound is 10 s. */
 static const int caught[CONN_SIGNALS] = {SIGINT, SIGTERM, SIGHUP};
 
+/* How often joints in free mode are read. */
+enum { SENSE_FREE_US = 100000 };
+
 static const char *requested_device(const app *a)
 {
     const char *fallback = getenv("GRCTL_DEVICE");
@@ -74,7 +77,9 @@ static void on_robot(void *ctx, const grobo_event *event)
 static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes, size_t size,
                    void *ctx)
 {
-    conn *c = ((conn_link *)ctx)->user;
+    conn_link *link = ctx;
+    conn *c = link->user;
+    trace_bytes(&link->trace, direction, now_us, bytes, size);
     if (!c)
         return;
     trace_bytes(&c->trace, direction, now_us, bytes, size);
@@ -193,6 +198,12 @@ static int fail_open(conn *c, int error)
                     tells ? cause->text : "", tells ? ")" : "", advice(error, conn_device(c)));
 }
 
+uint32_t conn_baud(const app *a)
+{
+    const cli_value *baud = app_global(a, GLOBAL_BAUD);
+    return baud->given ? (uint32_t)baud->number : GROBO_BAUD_DEFAULT_BPS;
+}
+
 grobo_robot_config conn_robot_config(const app *a)
 {
     grobo_robot_config config = {.sense_interval_us = GROBO_SENSE_NEVER};
@@ -227,13 +238,21 @@ static int make_session(conn *c, const char *device, bool check)
     return grobo_session_new(&config, &c->link->session);
 }
 
-static int open_trace(conn *c, const char *device)
+static int open_trace(conn *c, app *a, trace *t, const char *device)
 {
-    const cli_value *baud = app_global(c->a, GLOBAL_BAUD);
     trace_line line = {.device = device,
                        .wiring = (grobo_wiring)app_global(c->a, GLOBAL_WIRING)->choice,
-                       .baud_bps = baud->given ? (int)baud->number : 0};
-    return trace_open(&c->trace, c->a, &line, grobo_now_us());
+                       .baud_bps = (int)conn_baud(c->a)};
+    return trace_open(t, a, &line, grobo_now_us());
+}
+
+/* That of the command, and that of the shell it runs in. */
+static int open_traces(conn *c, const char *device)
+{
+    int status = open_trace(c, c->a, &c->trace, device);
+    if (!status && c->link->owner)
+        status = open_trace(c, c->link->owner, &c->link->trace, device);
+    return status;
 }
 
 /* The command takes the link, and with it the signals. */
@@ -261,13 +280,15 @@ static void take(conn *c, app *a)
 static int take_over(conn *c, bool check)
 {
     grobo_robot_config config = conn_robot_config(c->a);
-    const cli_value *baud = app_global(c->a, GLOBAL_BAUD);
-    int status = open_trace(c, conn_device(c));
+    int status = open_trace(c, c->a, &c->trace, conn_device(c));
     int error;
     if (status)
         return status;
     conn_link_watch(c->link);
-    config.bus.baud_bps = baud->given ? (uint32_t)baud->number : GROBO_BAUD_DEFAULT_BPS;
+    config.bus.baud_bps = conn_baud(c->a);
+    if (c->link->free_joints)
+        config.sense_interval_us = SENSE_FREE_US;
+    c->before = *grobo_robot_get_counters(c->robot);
     error = grobo_robot_configure(c->robot, &config);
     if (!error && check && !c->link->answered)
         error = conn_wait(c, grobo_session_check(c->session));
@@ -292,7 +313,7 @@ static int open_device(conn *c, app *a, bool check)
     if (error)
         return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s: %s", asked,
                         *cause.text ? cause.text : grobo_error_text(error));
-    error = open_trace(c, device);
+    error = open_traces(c, device);
     if (error)
         return error;
     error = conn_link_init(c->link);
@@ -438,8 +459,7 @@ static int carry_out_policy(conn *c, int status)
 static void give_back(conn *c)
 {
     grobo_serial *serial = c->session ? grobo_session_serial(c->session) : NULL;
-    const cli_value *baud = app_global(c->a, GLOBAL_BAUD);
-    int baud_bps = baud->given ? (int)baud->number : GROBO_BAUD_DEFAULT_BPS;
+    int baud_bps = (int)conn_baud(c->a);
     conn_link_unwatch(c->link);
     c->link->user = NULL;
     if (!c->up || c->link_error) { /* never came, or is gone */
@@ -470,7 +490,7 @@ int conn_close(conn *c, int status)
     return trace_close(&c->trace, c->a, status);
 }
 
-/* ---- of a shell ------------------------------------------------------------------------------ */
+/* ---- of a shell ----------------------------------------------------------------------------- */
 
 int conn_link_init(conn_link *link)
 {
@@ -502,17 +522,24 @@ void conn_link_unwatch(conn_link *link)
 int conn_link_close(conn_link *link, app *a, int status)
 {
     conn c;
+    int failed = EXIT_DONE;
     take(&c, a);
     c.signal = link->signal;
     if (c.session) {
         conn_link_watch(link);
-        status = carry_out_policy(&c, status);
+        failed = carry_out_policy(&c, status);
         conn_link_unwatch(link);
     }
+    if (failed)
+        status = failed;
+    else if (c.signal)
+        status = EXIT_SIGNAL + c.signal;
     grobo_session_free(c.session);
     link->session = NULL;
     link->user = NULL;
-    return c.signal ? EXIT_SIGNAL + c.signal : status;
+    status = trace_close(&link->trace, a, status);
+    memset(&link->trace, 0, sizeof link->trace);
+    return status;
 }
 
 void conn_link_deinit(conn_link *link)
@@ -523,6 +550,14 @@ void conn_link_deinit(conn_link *link)
     if (link->base)
         event_base_free(link->base);
     memset(link, 0, sizeof *link);
+}
+
+void conn_counters(const conn *c, grobo_robot_counters *counters)
+{
+    *counters = *grobo_robot_get_counters(c->robot);
+    counters->motion_frames -= c->before.motion_frames;
+    counters->late_frames -= c->before.late_frames;
+    counters->stretched -= c->before.stretched;
 }
 
 json_t *conn_link_json(const conn *c)

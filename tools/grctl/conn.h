@@ -38,17 +38,22 @@ typedef struct conn_link {
     int link_error; /* why the link is lost, 0 while it stands */
     bool up;        /* the line is open */
     bool answered;  /* the robot has answered */
-    bool kept;      /* conn_close() leaves it open */
+    trace trace;    /* of the shell's --trace */
+    /* set by a shell */
+    grobo_joint_mask free_joints; /* in free mode: read in the background */
+    app *owner;                   /* of the shell */
+    bool kept;                    /* conn_close() leaves it open */
 } conn_link;
 
 struct conn {
     app *a;
     conn_link *link; /* &own, or the shell's */
     conn_link own;
-    struct event_base *base; /* the link's */
-    grobo_session *session;  /* the link's */
-    grobo_robot *robot;      /* the session's */
-    trace trace;             /* of --trace */
+    struct event_base *base;     /* the link's */
+    grobo_session *session;      /* the link's */
+    grobo_robot *robot;          /* the session's */
+    trace trace;                 /* of --trace */
+    grobo_robot_counters before; /* the engine's, when the command began */
     conn_event_fn on_event;
     conn_bytes_fn on_bytes;
     void *ctx;           /* for on_event, on_bytes */
@@ -100,6 +105,15 @@ int conn_fail(conn *c, int error, const char *doing);
 
 /* The same for one servo by its id, whether it is a joint's or not. */
 int conn_fail_servo(conn *c, int error, int id);
+
+/* The baud rate that the global options ask for, or the default. */
+uint32_t conn_baud(const app *a);
+
+/*
+ * The engine's counters since this command began, for a command that may be one of a shell's: the
+ * engine itself counts from when the link was opened.
+ */
+void conn_counters(const conn *c, grobo_robot_counters *counters);
 
 /* The engine's configuration that the global options ask for. */
 grobo_robot_config conn_robot_config(const app *a);

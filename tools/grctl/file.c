@@ -91,10 +91,22 @@ int file_read(const char *path, const grobo_read_options *options, grobo_diagnos
                          : grobo_motion_read_file(path, options, list, motion);
 }
 
+/* A copy of what the shell has recorded. */
+static int load_record(app *a, grobo_motion **motion)
+{
+    int error = a->record ? grobo_motion_dup(a->record, motion) : GROBO_ERR_EMPTY;
+    return error ? app_fail(a, EXIT_FILE, grobo_error_name(error), "@record: %s",
+                            a->link ? file_error_text(error) : "only a shell has a record")
+                 : 0;
+}
+
 int file_load(app *a, const char *path, const grobo_read_options *options, grobo_motion **motion)
 {
     grobo_diagnostics *list = NULL;
-    int error = grobo_diagnostics_new(&list, NULL);
+    int error;
+    if (strcmp(path, "@record") == 0)
+        return load_record(a, motion);
+    error = grobo_diagnostics_new(&list, NULL);
     if (error)
         return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s", grobo_error_text(error));
     if (strcmp(path, "-") == 0) {

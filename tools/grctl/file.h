@@ -8,9 +8,9 @@
 #include "app.h"
 
 /*
- * Reads a motion; "-" is standard input. On failure says the first error ("walk.pseq:41:9: ...")
- * and returns the exit status; on success 0, and warnings are said on standard error.
- * The motion belongs to the caller.
+ * Reads a motion; "-" is standard input, "@record" what a shell has recorded. On failure says the
+ * first error ("walk.pseq:41:9: ...") and returns the exit status; on success 0, and warnings are
+ * said on standard error. The motion belongs to the caller.
  */
 int file_load(app *a, const char *path, const grobo_read_options *options, grobo_motion **motion);
 

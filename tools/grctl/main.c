@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 #include <locale.h>
-#include <string.h>
 
 #include <grobo/version.h>
 
 #include "app.h"
 #include "commands.h"
 #include "output.h"
-#include "trace.h"
+#include "run.h"
 
 const cli_option cli_global_options[GLOBAL_COUNT] = {
     [GLOBAL_DEVICE] = {.name = "device",
@@ -68,50 +67,10 @@ const cli_command *const cli_commands[] = {GRCTL_COMMANDS(POINTER)};
 #undef POINTER
 const size_t cli_n_commands = sizeof cli_commands / sizeof cli_commands[0];
 
-/* A mistake ends parsing, but not the wish for JSON that stands behind it. */
-static bool wants_json(int argc, char *const *argv)
-{
-    for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++)
-        if (strcmp(argv[i], "--json") == 0)
-            return true;
-    return false;
-}
-
-static int run(app *a, int argc, char **argv)
-{
-    char complaint[512];
-    bool ok = cli_parse(&a->line, argc, argv, complaint, sizeof complaint);
-    const cli_command *command = a->line.command;
-    int status;
-    app_settle(a);
-    if (!ok) {
-        a->json = wants_json(argc, argv);
-        return app_fail(a, EXIT_USAGE, "USAGE", "%s; see 'grctl help%s%s'", complaint,
-                        command ? " " : "", command ? command->name : "");
-    }
-    if (app_global(a, GLOBAL_VERSION)->given)
-        return cmd_version.run(a);
-    if (app_global(a, GLOBAL_HELP)->given) {
-        if (command)
-            cli_print_command(stdout, command);
-        else
-            cli_print_overview(stdout);
-        return EXIT_DONE;
-    }
-    if (!command) {
-        cli_print_overview(stderr);
-        return EXIT_USAGE;
-    }
-    status = command->run(a);
-    if (status == EXIT_DONE && app_global(a, GLOBAL_TRACE)->given && !trace_was_tried())
-        app_note(a, "nothing was traced: no robot was spoken to");
-    return status;
-}
-
 int main(int argc, char **argv)
 {
     static app a;
     output_guard();
     setlocale(LC_CTYPE, "");
-    return output_finish(&a, run(&a, argc, argv));
+    return output_finish(&a, run_line(&a, argc, argv, NULL, NULL));
 }

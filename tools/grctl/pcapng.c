@@ -31,7 +31,7 @@ enum {
     DIRECTION_MASK = 3
 };
 
-/* ---- writing --------------------------------------------------------------------------------- */
+/* ---- writing -------------------------------------------------------------------------------- */
 
 /* A block under construction; the caps of the texts keep it in bounds. */
 typedef struct block {
@@ -150,7 +150,7 @@ int pcapng_write_chunk(FILE *to, int64_t time_us, pcapng_direction direction, co
     return GROBO_OK;
 }
 
-/* ---- reading --------------------------------------------------------------------------------- */
+/* ---- reading -------------------------------------------------------------------------------- */
 
 static int fail(pcapng_reader *r, int error, const char *format, ...)
     __attribute__((format(printf, 3, 4)));

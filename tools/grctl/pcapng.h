@@ -53,7 +53,7 @@ int pcapng_write_head(FILE *to, const char *program, const char *comment,
 int pcapng_write_chunk(FILE *to, int64_t time_us, pcapng_direction direction, const uint8_t *bytes,
                        size_t size);
 
-/* ---- reading --------------------------------------------------------------------------------- */
+/* ---- reading -------------------------------------------------------------------------------- */
 
 /* As fread: gives fewer than `size` bytes at the end only. */
 typedef size_t (*pcapng_source)(void *ctx, void *buffer, size_t size);

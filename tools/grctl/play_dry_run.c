@@ -3,6 +3,8 @@
  * Playing without a port: the same engine that drives a robot drives the simulator in virtual
  * time, and what it would send is printed. The simulated robot stands in the first posture.
  */
+#include <string.h>
+
 #include <math.h>
 
 #include <grobo/session.h>
@@ -123,6 +125,7 @@ int play_dry_run(playlist *list, app *a)
     trace_line line = {.device = GROBO_DEVICE_SIM, .wiring = wiring};
     grobo_posture start;
     int error, status;
+    memset(&r, 0, sizeof r);
     r.a = a;
     r.start_us = -1;
     grobo_posture_init_pose(&start, &grobo_gr001_model);

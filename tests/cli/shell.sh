@@ -1,0 +1,249 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# grctl shell: scripts, the original programs' letters and words, and a person at a terminal.
+. tests/support/cli.sh
+
+XDG_STATE_HOME=$work/state
+export XDG_STATE_HOME
+grctl=$GRCTL
+
+# script STATUS TEXT [OPTION...]: runs the lines of TEXT from a pipe, on a simulator.
+script() {
+    script_want=$1
+    script_text=$2
+    shift 2
+    printf '%s' "$script_text" | "$grctl" -d sim shell "$@" >"$work/out" 2>"$work/err"
+    script_got=$?
+    [ $script_got -eq "$script_want" ] && return
+    echo "status $script_got, not $script_want"
+    cat "$work/out" "$work/err"
+    return 1
+}
+
+# told PATTERN: a line like that on standard error.
+told() {
+    grep -q -e "$1" "$work/err" || { echo "no '$1' in:"; cat "$work/err"; return 1; }
+}
+
+check "commands of grctl" both script 0 'status m3
+version
+' --- says '^    3  R_SHOULDER_P'
+check "both of them" says '^grctl [0-9]'
+check "the last line needs no end" both script 0 'version' --- says '^grctl'
+check "comments, blanks, quotes" both script 0 '
+  # nothing
+ status "m3" # that one
+' --- says R_SHOULDER_P
+check "nothing at all" script 0 ''
+check "a mistake ends it, with its status" both script 2 'version
+nonsense
+status m3
+' --- told '^grctl: standard input:2: no command .nonsense.'
+ended() {
+    says '^grctl' && ! grep -q R_SHOULDER_P "$work/out"
+}
+check "and what stands behind is not run" ended
+check "-k goes on" both script 2 'nonsense
+move m5 99
+version
+' -k --- says '^grctl'
+check "and tells each" told 'standard input:2: move: R_ELBOW_P'
+check "an open quote" both script 2 'status "m3' --- told 'a quote is not closed'
+check "refused for safety: status 4" both script 4 'm m5 99' --- told 'input:1: .*outside its'
+check "a letter without what it needs" both script 2 'm m5' --- told 'm needs JOINT DEG'
+check "another device is for connect" both script 2 'status -d sim' --- told 'connect DEV'
+check "no shell in a shell" both script 2 shell --- told 'a shell already'
+from_file() {
+    printf 'version\nnonsense\n' >"$work/lines"
+    fails_out=$("$GRCTL" -d sim shell "$work/lines" 2>&1 >/dev/null)
+    [ $? -eq 2 ] && printf '%s' "$fails_out" | grep -q "lines:2: no command"
+}
+check "a script in a file" from_file
+check "one that is not there" fails 3 'no such file\|No such file' "$GRCTL" shell "$work/none"
+
+# ---- one connection --------------------------------------------------------------------------
+
+one_connection() {
+    script 0 'S m5
+m m5 -30 200
+status m5
+r
+p m5
+' -v || return 1
+    [ "$(grep -c 'robot found' "$work/err")" -eq 1 ] || { cat "$work/err"; return 1; }
+    says 'R_ELBOW_P  *-30\.0  *-30\.0  on'
+}
+check "one connection, and the robot remembers" one_connection
+twice() {
+    script 0 'status m3
+close
+connect
+status m3' -v && [ "$(grep -c 'robot found' "$work/err")" -eq 2 ]
+}
+check "closed and opened again" twice
+policy() {
+    script 0 'S m5
+status m5
+version' -v --on-exit off || return 1
+    says 'R_ELBOW_P .* on' && [ "$(grep -c 'exit policy carried out' "$work/err")" -eq 1 ]
+}
+check "the exit policy is carried out once, at the end" policy
+latched() {
+    script 4 'estop
+m m5 0
+' && told 'standard input:2: '
+}
+check "an emergency stop holds" latched
+check "until its reset" script 0 'estop
+estop --reset
+m m5 0 200
+'
+traced() {
+    script 0 'status m3
+status m4
+' --trace "$work/trace" && "$GRCTL" decode "$work/trace" >"$work/out" && says 'R_SHOULDER_R'
+}
+check "--trace holds all commands" traced
+
+# ---- letters and words ---------------------------------------------------------------------
+
+letters='S arms
+S m2
+s m2
+b m2
+Break m2
+On m2
+Off m2
+f m5
+e
+Free m5
+End
+i --time 300
+Init --time 300
+t 200
+m m5 -45
+r
+m m5 0
+Push 250
+PrintRecord
+R --key
+DoRecord --key
+Start --key
+Reverse
+Start --key
+Reverse
+Save saved.pseq
+Save
+c
+a
+Clear
+l saved
+a saved.pseq
+Rec 300
+p m5
+C m5
+connect
+close
+wait 10
+q
+nonsense
+'
+words() {
+    mkdir -p "$work/here" && cd "$work/here" && script 0 "$letters" -v
+}
+check "every letter and word" words
+check "the record was saved" grep -q PoseSeq "$work/here/saved.pseq"
+check "and by number" grep -q '^200 ' "$work/here/Motion1.m"
+check "loaded and appended" told '^4 postures in the record'
+check "captured every 100 ms" told '^[78] postures in the record'
+check "Reverse is told" told 'backwards'
+check "PrintRecord" says '@record: .*2 postures'
+for word in q i S s f b m t r R c e C p l a On Off Break Free Init Clear Push DoRecord PrintRecord \
+    Save Rec End Start Reverse connect close; do
+    check "help shell has $word" sh -c '"$0" help shell | grep -q -e "^ .*\<$1\>"' "$GRCTL" "$word"
+done
+if have_json; then
+    lines_of_json() {
+        script 0 'status m3
+r
+Reverse
+t 300
+version
+' --json && json 'len(lines) == 5 and lines[1]["postures"] == 1 and lines[3]["time_ms"] == 300'
+    }
+    check "with --json a line a command" lines_of_json
+    json_error() {
+        script 2 'nonsense' --json && json '"standard input:1: " in lines[0]["error"]["message"]'
+    }
+    check "mistakes too" json_error
+else
+    skip "--json" "no python3 to parse JSON with"
+fi
+check "elsewhere there is no record" fails 3 '@record: only a shell has' "$GRCTL" show @record
+
+# ---- a person at a terminal -------------------------------------------------------------------
+
+if ! command -v tmux >/dev/null 2>&1; then
+    skip "a person at a terminal" "no tmux here"
+    done_testing
+    exit
+fi
+screen() {
+    tmux -S "$work/tmux" "$@"
+}
+type_keys() {
+    screen send-keys "$@"
+}
+# shows PATTERN: within ten seconds the screen has a line like that.
+shows() {
+    shows_i=0
+    until screen capture-pane -p -S - 2>/dev/null | grep -q -e "$1"; do
+        shows_i=$((shows_i + 1))
+        if [ $shows_i -gt 2000 ]; then
+            screen capture-pane -p -S -
+            return 1
+        fi
+    done
+}
+gone() {
+    gone_i=0
+    while screen has-session 2>/dev/null; do
+        gone_i=$((gone_i + 1))
+        [ $gone_i -lt 2000 ] || return 1
+    done
+}
+screen -f /dev/null new-session -d -x 100 -y 30 "'$GRCTL' -d sim shell 2>$work/shell.err"
+check "a prompt" shows '^grctl>'
+type_keys 'version' Enter
+check "a command" shows '^grctl [0-9]'
+if ldd "$GRCTL" 2>/dev/null | grep -q libedit; then
+    type_keys 'serv' Tab Tab
+    check "TAB lists" shows 'servo  servo-get  servo-set'
+    type_keys C-u 'stat' Tab 'R_KN' Tab
+    check "TAB completes commands and joints" shows '^grctl> status R_KNEE_P'
+    type_keys Enter
+    check "and Enter runs" shows 'R_KNEE_P .* -40\.0'
+    type_keys 'garbage' C-c
+    type_keys 'status m2' Enter
+    check "Ctrl-C clears the line" shows '^ *2  NECK_Y'
+    type_keys Up Up Enter
+    check "history" shows '^grctl> status R_KNEE_P'
+else
+    skip "editing" "built without libedit"
+fi
+type_keys 'm m5 -100 20000' Enter
+moving() {
+    until [ -n "$(screen capture-pane -p | grep 'm m5')" ]; do :; done
+}
+check "a long move" moving
+type_keys C-c
+check "Ctrl-C stops the command" timeout 10 sh -c \
+    'until grep -q interrupted "$0"; do :; done' "$work/shell.err"
+type_keys 'version --json' Enter
+check "not the shell" shows '^{"name":"grctl"'
+type_keys C-d
+check "Ctrl-D ends it" gone
+if [ -e "$work/state/grctl/history" ]; then
+    check "history is kept, for nobody else" test -n "$(find "$work/state/grctl/history" -perm 600)"
+fi
+done_testing

@@ -1,0 +1,240 @@
+/* SPDX-License-Identifier: MIT */
+/* shell: many commands over one connection. */
+#include <errno.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "commands.h"
+#include "output.h"
+#include "run.h"
+#include "shell.h"
+
+enum { OPT_KEEP_GOING };
+
+static const cli_option options[] = {
+    [OPT_KEEP_GOING] = {.name = "keep-going",
+                        .letter = 'k',
+                        .kind = CLI_FLAG,
+                        .help = "go on behind a command that fails; its exit status stays"},
+};
+
+/* While no command has the robot, a signal is only noted: it ends the shell, or a script. */
+static volatile sig_atomic_t noted;
+
+static void on_signal(int number)
+{
+    noted = number;
+}
+
+static void note_signals(void)
+{
+    static const int numbers[] = {SIGINT, SIGTERM, SIGHUP};
+    struct sigaction action = {.sa_handler = on_signal};
+    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
+        sigaction(numbers[i], &action, NULL);
+}
+
+/* ---- one line ------------------------------------------------------------------------------- */
+
+void shell_inherit(shell *s)
+{
+    for (int i = 0; i < GLOBAL_COUNT; i++) {
+        bool own = i == GLOBAL_ON_EXIT || i == GLOBAL_TRACE || i == GLOBAL_HELP ||
+                   i == GLOBAL_VERSION || s->one.line.global[i].given;
+        if (!own)
+            s->one.line.global[i] = s->a->line.global[i];
+    }
+    if (*s->device)
+        s->one.line.global[GLOBAL_DEVICE] = (cli_value){.given = 1, .text = s->device};
+    s->one.tty_in = s->a->tty_in && !s->file;
+}
+
+static void begin_line(shell *s)
+{
+    memset(&s->one, 0, sizeof s->one);
+    s->one.link = &s->link;
+    s->one.record = s->record;
+    s->one.json = s->a->json;
+    if (s->file)
+        snprintf(s->one.place, sizeof s->one.place, "%s:%d: ", s->file, s->line);
+}
+
+static int prepare(void *ctx, app *a)
+{
+    static const int lines[] = {GLOBAL_DEVICE, GLOBAL_BAUD, GLOBAL_WIRING};
+    shell *s = ctx;
+    bool touches = false;
+    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++)
+        touches |= app_global(a, lines[i])->given > 0;
+    shell_inherit(s);
+    app_settle(a);
+    a->tty_in = a->tty_in && !s->file;
+    if (touches)
+        return app_fail(a, EXIT_USAGE, "USAGE",
+                        "a shell has one line; 'connect DEV' takes another device");
+    if (a->line.command == &cmd_shell)
+        return app_fail(a, EXIT_USAGE, "USAGE", "this is a shell already");
+    return 0;
+}
+
+int shell_run(shell *s, int n, char **words)
+{
+    char *argv[SHELL_WORDS_MAX + 1] = {"grctl"};
+    begin_line(s);
+    for (int i = 0; i < n && i < SHELL_WORDS_MAX; i++)
+        argv[i + 1] = words[i];
+    return run_line(&s->one, n + 1, argv, prepare, s);
+}
+
+/* A letter or word of the original programs that is a command: its words, then the line's. */
+static int run_command_of(shell *s, const shell_word *w, int n, char **words)
+{
+    char text[64];
+    char *all[SHELL_WORDS_MAX];
+    int m;
+    snprintf(text, sizeof text, "%s", w->command);
+    m = shell_split(text, all, 4);
+    for (int i = 1; i < n && m < SHELL_WORDS_MAX; i++)
+        all[m++] = words[i];
+    return shell_run(s, m, all);
+}
+
+static int run_words(shell *s, int n, char **words)
+{
+    const shell_word *w = shell_word_find(words[0]);
+    if (!w)
+        return shell_run(s, n, words);
+    if (w->command)
+        return run_command_of(s, w, n, words);
+    begin_line(s);
+    shell_inherit(s);
+    app_settle(&s->one);
+    s->one.tty_in = s->one.tty_in && !s->file;
+    return w->run(s, n, words);
+}
+
+static int run_text(shell *s, char *line)
+{
+    char *words[SHELL_WORDS_MAX];
+    int n = shell_split(line, words, SHELL_WORDS_MAX - 4);
+    int status;
+    if (n < 0) {
+        begin_line(s);
+        app_settle(&s->one);
+        return app_fail(&s->one, EXIT_USAGE, "USAGE", "a quote is not closed");
+    }
+    if (n == 0)
+        return EXIT_DONE;
+    status = run_words(s, n, words);
+    output_flush();
+    return status;
+}
+
+/* ---- many lines ----------------------------------------------------------------------------- */
+
+static bool ends(const shell *s, int status)
+{
+    return s->over || status == EXIT_SIGNAL + SIGTERM || status == EXIT_SIGNAL + SIGHUP;
+}
+
+static int run_script(shell *s, FILE *from)
+{
+    bool go_on = app_option(s->a, OPT_KEEP_GOING)->given > 0;
+    char *line = NULL;
+    size_t capacity = 0;
+    int first = EXIT_DONE;
+    while (!s->over && !noted && getline(&line, &capacity, from) >= 0) {
+        int status;
+        s->line++;
+        status = run_text(s, line);
+        if (status && !first)
+            first = status;
+        if ((status && !go_on) || ends(s, status) || status == EXIT_SIGNAL + SIGINT)
+            break;
+    }
+    free(line);
+    return noted ? EXIT_SIGNAL + noted : first;
+}
+
+static int run_prompt(shell *s)
+{
+    char line[SHELL_LINE_BYTES];
+    line_reader *reader = line_open(&s->link);
+    int status = EXIT_DONE, n;
+    if (!reader)
+        return app_fail(s->a, EXIT_ROBOT, "NOMEM", "shell: %s", grobo_error_text(GROBO_ERR_NOMEM));
+    while (!ends(s, status)) {
+        n = line_read(reader, "grctl> ", line, sizeof line);
+        if (n == LINE_END)
+            break;
+        if (n == LINE_INTERRUPTED && s->link.signal == SIGINT) {
+            s->link.signal = 0;
+            continue;
+        }
+        if (n == LINE_INTERRUPTED)
+            break;
+        noted = 0;
+        status = run_text(s, line);
+        if (status == EXIT_SIGNAL + SIGINT)
+            fputc('\n', stderr); /* behind the terminal's ^C */
+        if (noted == SIGTERM || noted == SIGHUP)
+            status = EXIT_SIGNAL + noted;
+    }
+    line_close(reader);
+    return ends(s, status) && !s->over ? status : EXIT_DONE;
+}
+
+static int run_shell(shell *s)
+{
+    const char *path = s->a->line.n_arguments ? s->a->line.argument[0] : NULL;
+    FILE *from = stdin;
+    int status;
+    if (!path && s->a->tty_in)
+        return run_prompt(s);
+    s->file = path ? path : "standard input";
+    if (path)
+        from = fopen(path, "r");
+    if (!from)
+        return app_fail(s->a, EXIT_FILE, "NOENT", "%s: %s", path, strerror(errno));
+    status = run_script(s, from);
+    if (path)
+        fclose(from);
+    return status;
+}
+
+static int run(app *a)
+{
+    static shell s;
+    int status;
+    memset(&s, 0, sizeof s);
+    s.a = a;
+    s.time_ms = 1000;
+    s.link.kept = true;
+    s.link.owner = a;
+    a->link = &s.link;
+    note_signals();
+    if (conn_link_init(&s.link) != GROBO_OK)
+        status = app_fail(a, EXIT_ROBOT, "NOMEM", "shell: %s", grobo_error_text(GROBO_ERR_NOMEM));
+    else
+        status = run_shell(&s);
+    status = conn_link_close(&s.link, a, status);
+    conn_link_deinit(&s.link);
+    grobo_motion_free(s.record);
+    return status;
+}
+
+const cli_command cmd_shell = {
+    .name = "shell",
+    .arguments = "[FILE]",
+    .summary = "many commands over one connection, typed or from a script",
+    .details = shell_details,
+    .example = "  grctl shell\n  printf 'init\\nm R_ELBOW_P -45\\n' | grctl -d sim shell\n"
+               "  grctl shell -k morning.txt\n",
+    .options = options,
+    .n_options = sizeof options / sizeof options[0],
+    .max_arguments = 1,
+    .argument = CLI_ARG_FILE,
+    .run = run,
+};

@@ -1,0 +1,233 @@
+/* SPDX-License-Identifier: MIT */
+/* Lines edited with libedit, with a history that outlives the shell. */
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <wchar.h>
+
+#include <histedit.h>
+
+#include "../shell.h"
+
+enum { HISTORY_LINES = 1000, CANDIDATES_MAX = 256, WORD_BYTES = 256, PATH_BYTES = 1024 };
+
+struct line_reader {
+    conn_link *link;
+    EditLine *edit;
+    History *history;
+    const char *prompt;
+    bool interrupted;
+    char path[PATH_BYTES]; /* of the history, "": it is not kept */
+};
+
+/* ---- reading -------------------------------------------------------------------------------- */
+
+static char *give_prompt(EditLine *edit)
+{
+    static char text[64];
+    line_reader *reader = NULL;
+    el_get(edit, EL_CLIENTDATA, &reader);
+    snprintf(text, sizeof text, "%s", reader->prompt);
+    return text;
+}
+
+/* A character, once the loop says that there is one. */
+static int get_character(EditLine *edit, wchar_t *out)
+{
+    line_reader *reader = NULL;
+    mbstate_t state = {0};
+    el_get(edit, EL_CLIENTDATA, &reader);
+    for (;;) {
+        char byte;
+        size_t n;
+        if (!line_wait(reader->link, STDIN_FILENO)) {
+            reader->interrupted = true;
+            return -1;
+        }
+        if (read(STDIN_FILENO, &byte, 1) <= 0)
+            return 0;
+        n = mbrtowc(out, &byte, 1, &state);
+        if (n == (size_t)-1) {
+            *out = L'?';
+            return 1;
+        }
+        if (n != (size_t)-2)
+            return 1;
+    }
+}
+
+/* ---- completion ----------------------------------------------------------------------------- */
+
+typedef struct candidates {
+    int n;
+    bool whole; /* the last one found */
+    char word[CANDIDATES_MAX][WORD_BYTES];
+} candidates;
+
+static void take_candidate(void *ctx, const char *word, bool whole)
+{
+    candidates *c = ctx;
+    if (c->n >= CANDIDATES_MAX)
+        return;
+    snprintf(c->word[c->n++], WORD_BYTES, "%s", word);
+    c->whole = whole;
+}
+
+/* What all candidates begin with. */
+static size_t common(const candidates *c)
+{
+    size_t n = strlen(c->word[0]);
+    for (int i = 1; i < c->n; i++)
+        for (size_t k = 0; k < n; k++)
+            if (c->word[i][k] != c->word[0][k])
+                n = k;
+    return n;
+}
+
+static int compare(const void *a, const void *b)
+{
+    return strcmp(a, b);
+}
+
+static void list_candidates(candidates *c)
+{
+    qsort(c->word, (size_t)c->n, WORD_BYTES, compare);
+    putchar('\n');
+    for (int i = 0; i < c->n; i++)
+        printf("%s%s", c->word[i], i + 1 < c->n ? "  " : "\n");
+    fflush(stdout);
+}
+
+static unsigned char complete(EditLine *edit, int key)
+{
+    static candidates found;
+    char text[WORD_BYTES + 1];
+    const LineInfo *info = el_line(edit);
+    size_t length = (size_t)(info->cursor - info->buffer), replaced, n;
+    (void)key;
+    found.n = 0;
+    replaced = shell_complete(info->buffer, length, take_candidate, &found);
+    if (found.n == 0)
+        return CC_REFRESH_BEEP;
+    n = common(&found);
+    if (found.n > 1 && n <= replaced) {
+        list_candidates(&found);
+        return CC_REDISPLAY;
+    }
+    snprintf(text, sizeof text, "%.*s%s", (int)n, found.word[0],
+             found.n == 1 && found.whole ? " " : "");
+    el_deletestr(edit, (int)replaced);
+    if (el_insertstr(edit, text) < 0)
+        return CC_ERROR;
+    return CC_REFRESH;
+}
+
+/* ---- history -------------------------------------------------------------------------------- */
+
+/* $XDG_STATE_HOME/grctl/history, its folders made where they are missing. */
+static void find_history(line_reader *reader)
+{
+    const char *state = getenv("XDG_STATE_HOME"), *home = getenv("HOME");
+    int n = state && *state == '/'
+                ? snprintf(reader->path, sizeof reader->path, "%s/grctl/history", state)
+                : snprintf(reader->path, sizeof reader->path, "%s/.local/state/grctl/history",
+                           home ? home : "");
+    if (n < 0 || (size_t)n >= sizeof reader->path || *reader->path != '/' ||
+        (!(state && *state == '/') && !(home && *home))) {
+        *reader->path = '\0';
+        return;
+    }
+    for (char *slash = strchr(reader->path + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
+        *slash = '\0';
+        if (mkdir(reader->path, 0700) < 0 && errno != EEXIST) {
+            *reader->path = '\0';
+            return;
+        }
+        *slash = '/';
+    }
+}
+
+static void open_history(line_reader *reader)
+{
+    HistEvent event;
+    reader->history = history_init();
+    if (!reader->history)
+        return;
+    history(reader->history, &event, H_SETSIZE, HISTORY_LINES);
+    history(reader->history, &event, H_SETUNIQUE, 1);
+    find_history(reader);
+    if (*reader->path)
+        history(reader->history, &event, H_LOAD, reader->path);
+    el_set(reader->edit, EL_HIST, history, reader->history);
+}
+
+static void remember(line_reader *reader, const char *line)
+{
+    HistEvent event;
+    mode_t mask;
+    if (!reader->history || line[strspn(line, " \t\n")] == '\0')
+        return;
+    history(reader->history, &event, H_ENTER, line);
+    if (!*reader->path)
+        return;
+    mask = umask(0077); /* what was typed is nobody else's */
+    history(reader->history, &event, H_SAVE, reader->path);
+    umask(mask);
+}
+
+/* ---- the reader ----------------------------------------------------------------------------- */
+
+line_reader *line_open(conn_link *link)
+{
+    line_reader *reader = calloc(1, sizeof *reader);
+    if (!reader)
+        return NULL;
+    reader->link = link;
+    reader->prompt = "";
+    reader->edit = el_init("grctl", stdin, stdout, stderr);
+    if (!reader->edit) {
+        free(reader);
+        return NULL;
+    }
+    el_set(reader->edit, EL_CLIENTDATA, reader);
+    el_set(reader->edit, EL_EDITOR, "emacs");
+    el_set(reader->edit, EL_PROMPT, give_prompt);
+    el_set(reader->edit, EL_GETCFN, get_character);
+    el_set(reader->edit, EL_ADDFN, "grctl-complete", "Complete a word", complete);
+    el_set(reader->edit, EL_BIND, "^I", "grctl-complete", NULL);
+    el_set(reader->edit, EL_BIND, "^R", "em-inc-search-prev", NULL);
+    open_history(reader);
+    el_source(reader->edit, NULL);
+    return reader;
+}
+
+int line_read(line_reader *reader, const char *prompt, char *line, size_t capacity)
+{
+    const char *text;
+    int n = 0;
+    reader->prompt = prompt;
+    reader->interrupted = false;
+    text = el_gets(reader->edit, &n);
+    if (reader->interrupted) {
+        el_reset(reader->edit);
+        fputs("\n", stdout);
+        return LINE_INTERRUPTED;
+    }
+    if (!text || n <= 0) {
+        fputs("\n", stdout);
+        return LINE_END;
+    }
+    remember(reader, text);
+    snprintf(line, capacity, "%.*s", (int)strcspn(text, "\n"), text);
+    return (int)strlen(line);
+}
+
+void line_close(line_reader *reader)
+{
+    if (reader->history)
+        history_end(reader->history);
+    el_end(reader->edit);
+    free(reader);
+}

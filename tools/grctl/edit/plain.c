@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: MIT */
+/* Lines without editing, where libedit was not there when grctl was built. */
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "../shell.h"
+
+struct line_reader {
+    conn_link *link;
+};
+
+line_reader *line_open(conn_link *link)
+{
+    line_reader *reader = malloc(sizeof *reader);
+    if (reader)
+        reader->link = link;
+    return reader;
+}
+
+int line_read(line_reader *reader, const char *prompt, char *line, size_t capacity)
+{
+    size_t n = 0;
+    fputs(prompt, stderr);
+    for (;;) {
+        char c;
+        ssize_t got;
+        if (!line_wait(reader->link, STDIN_FILENO)) {
+            fputc('\n', stderr);
+            return LINE_INTERRUPTED;
+        }
+        got = read(STDIN_FILENO, &c, 1);
+        if (got <= 0)
+            return LINE_END;
+        if (c == '\n')
+            break;
+        if (n + 1 < capacity)
+            line[n++] = c;
+    }
+    line[n] = '\0';
+    return (int)n;
+}
+
+void line_close(line_reader *reader)
+{
+    free(reader);
+}
