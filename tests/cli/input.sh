@@ -135,7 +135,7 @@ start_sim
 in_use() {
     "$GRCTL" -v -d "$robot" --on-exit hold play "$greet" >/dev/null 2>"$work/holder" &
     holder=$!
-    until grep -qs 'robot found' "$work/holder"; do :; done
+    written "$work/holder" 'robot found' || return 1
     fails 1 "$robot: in use by another program (held by .*$holder" grctl -d "$robot" play "$greet"
     in_use_result=$?
     kill -TERM $holder

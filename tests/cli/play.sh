@@ -120,10 +120,10 @@ interrupted() {
     interrupted_policy=$2
     shift 2
     rm -f "$work/out" "$work/leaving"
-    "$GRCTL" -d "$robot" -v --json --on-exit "$interrupted_policy" play --speed 50 "$greet" \
+    "$GRCTL" -d "$robot" -v --json --retries 10 --on-exit "$interrupted_policy" play --speed 50 "$greet" \
         >"$work/out" 2>"$work/leaving" &
     interrupted_pid=$!
-    until grep -qs '"t_ms":[1-9]' "$work/out"; do :; done
+    written "$work/out" '"t_ms":[1-9]' || { cat "$work/leaving"; return 1; }
     for interrupted_signal in "$@"; do
         kill -s "$interrupted_signal" $interrupted_pid
     done
@@ -155,7 +155,7 @@ check_json "the knees are bent, the torque is off" \
 silent() {
     "$GRCTL" -d "$robot" -v --json play --speed 50 "$greet" >"$work/out" 2>"$work/leaving" &
     silent_pid=$!
-    until grep -qs '"t_ms":[1-9]' "$work/out"; do :; done
+    written "$work/out" '"t_ms":[1-9]' || { cat "$work/leaving"; return 1; }
     kill -s STOP "$sim_pid"
     kill -s INT $silent_pid
     wait $silent_pid

@@ -51,7 +51,7 @@ interrupted() {
     rm -f "$work/moving"
     "$GRCTL" -d "$robot" -v move m5 -120 5000 >"$work/out" 2>"$work/moving" &
     interrupted_pid=$!
-    until grep -qs 'robot found' "$work/moving"; do :; done
+    written "$work/moving" 'robot found' || return 1
     on_robot status >/dev/null 2>"$work/busy"
     kill -s "$1" $interrupted_pid
     wait $interrupted_pid

@@ -57,6 +57,17 @@ stop_sim() {
     sim_pid=
 }
 
+# written FILE PATTERN: waits until a program in the background has written such a line; half a
+# minute at most, for it may have ended instead.
+written() {
+    written_left=600
+    until grep -qs -e "$2" "$1"; do
+        written_left=$((written_left - 1))
+        [ $written_left -gt 0 ] || { echo "no '$2' in $1"; return 1; }
+        sleep 0.05
+    done
+}
+
 # exits STATUS COMMAND...: what it printed is in $work/out and $work/err.
 exits() {
     exits_want=$1
