@@ -115,18 +115,23 @@ static int create(grobo_file *file, const char *path, bool exclusive)
     if (there && exclusive) {
         return GROBO_ERR_EXISTS;
     }
+    /* A link without a true path: to what is open, as /dev/stdout to a pipe, or to nothing. */
+    bool link = there && S_ISLNK(old.st_mode);
+    if (link && stat(file->path, &old) != 0) {
+        return error_of(errno);
+    }
     if (there && S_ISDIR(old.st_mode)) {
         return GROBO_ERR_ISDIR;
     }
-    if (there && !S_ISREG(old.st_mode) && !S_ISLNK(old.st_mode)) {
+    if (link || (there && !S_ISREG(old.st_mode))) {
         return open_direct(file);
     }
     /* A directory's permission would be enough to replace it; that is not what its owner meant. */
-    if (there && S_ISREG(old.st_mode) && access(file->path, W_OK) != 0) {
+    if (there && access(file->path, W_OK) != 0) {
         return error_of(errno);
     }
     result = open_temporary(file);
-    if (result == 0 && there && S_ISREG(old.st_mode)) {
+    if (result == 0 && there) {
         take_over((int)file->handle, &old);
     }
     return result;

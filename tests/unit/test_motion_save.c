@@ -41,9 +41,9 @@ static const char *in_folder(const char *name)
 static int remove_folder(void **state)
 {
     (void)state;
-    static const char *const names[] = {"a.m",       "b.m",       "link.m",     "Motion1.m",
-                                        "Motion2.m", "Motion3.m", "sub/c.yaml", "out",
-                                        "walk.m",    "walk.pseq", "readonly.m"};
+    static const char *const names[] = {
+        "a.m", "b.m",    "link.m",    "Motion1.m",  "Motion2.m", "Motion3.m", "sub/c.yaml",
+        "out", "walk.m", "walk.pseq", "readonly.m", "open.m",    "astray.m"};
 
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         (void)unlink(in_folder(names[i]));
@@ -146,6 +146,36 @@ static void test_save_through_a_link(void **state)
     grobo_motion_free(motion);
 }
 
+/* /dev/stdout is such a link: to a pipe, by no path. It stays, and so does one to nothing. */
+static void test_save_through_a_link_to_no_file(void **state)
+{
+    (void)state;
+    grobo_motion *motion = motion_of("500  10\n", GROBO_FORMAT_M);
+    grobo_write_options options = {.model = &grobo_gr001_model};
+    struct stat status;
+    char open_end[32], text[16] = "";
+    int ends[2];
+
+    assert_int_equal(pipe(ends), 0);
+    (void)snprintf(open_end, sizeof open_end, "/dev/fd/%d", ends[1]);
+    assert_int_equal(symlink(open_end, in_folder("open.m")), 0);
+    assert_int_equal(
+        grobo_motion_save(motion, grobo_files_os(), in_folder("open.m"), &options, NULL), 0);
+    (void)close(ends[1]);
+    assert_int_equal(read(ends[0], text, sizeof text), 8);
+    assert_string_equal(text, "500  10\n");
+    assert_int_equal(lstat(in_folder("open.m"), &status), 0);
+    assert_true(S_ISLNK(status.st_mode));
+    (void)close(ends[0]);
+    assert_int_equal(symlink(in_folder("nothing.m"), in_folder("astray.m")), 0);
+    assert_int_equal(
+        grobo_motion_save(motion, grobo_files_os(), in_folder("astray.m"), &options, NULL),
+        GROBO_ERR_NOENT);
+    assert_int_equal(lstat(in_folder("astray.m"), &status), 0);
+    assert_true(S_ISLNK(status.st_mode));
+    grobo_motion_free(motion);
+}
+
 static void test_save_next(void **state)
 {
     (void)state;
@@ -212,6 +242,7 @@ int main(void)
         cmocka_unit_test(test_save_refused),
         cmocka_unit_test(test_save_never_destroys),
         cmocka_unit_test(test_save_through_a_link),
+        cmocka_unit_test(test_save_through_a_link_to_no_file),
         cmocka_unit_test(test_save_next),
         cmocka_unit_test(test_find),
     };
