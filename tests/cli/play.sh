@@ -120,8 +120,8 @@ interrupted() {
     interrupted_policy=$2
     shift 2
     rm -f "$work/out" "$work/leaving"
-    "$GRCTL" -d "$robot" -v --json --retries 10 --on-exit "$interrupted_policy" play --speed 50 "$greet" \
-        >"$work/out" 2>"$work/leaving" &
+    "$GRCTL" -d "$robot" -v --json --retries 10 --on-exit "$interrupted_policy" \
+        play --speed 50 "$greet" >"$work/out" 2>"$work/leaving" &
     interrupted_pid=$!
     written "$work/out" '"t_ms":[1-9]' || { cat "$work/leaving"; return 1; }
     for interrupted_signal in "$@"; do

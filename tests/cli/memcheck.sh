@@ -1,0 +1,38 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# The command under valgrind: no error, no leak, whatever way it ends.
+. tests/support/cli.sh
+
+why=
+command -v valgrind >/dev/null 2>&1 || why="no valgrind"
+grep -q __asan_init "$GRCTL" && why="built with a sanitizer"
+
+# clean STATUS ARGUMENTS...
+clean() {
+    clean_status=$1
+    shift
+    exits "$clean_status" timeout 100 valgrind -q --leak-check=full --error-exitcode=99 "$GRCTL" \
+        "$@" || return 1
+    ! grep '^==' "$work/err"
+}
+
+while read -r status line; do
+    if [ -n "$why" ]; then
+        skip "grctl $line" "$why"
+    else
+        # $line is a command line, to be split.
+        # shellcheck disable=SC2086
+        check "grctl $line" clean $status $line
+    fi
+done <<END
+0 -d sim status
+0 -d sim --json init --time 300
+0 -d sim --on-exit sit play --key --speed 500 motions/step.pseq
+0 play --dry-run --rate 10 motions/greet.pseq
+0 convert --to m motions/greet.pseq -
+1 -d /dev/none status
+2 -d sim move m5
+3 play /dev/none
+4 -d sim move m5 120
+END
+done_testing
