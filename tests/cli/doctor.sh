@@ -69,7 +69,7 @@ if [ "$(id -u)" -eq 0 ] && command -v setpriv >/dev/null 2>&1; then
     chmod 755 "$work" "$work/grctl"
     as_nobody() {
         exits 1 setpriv --reuid 65534 --clear-groups "$work/grctl" -d "$robot" doctor &&
-            says '^BAD  permission .*mode 600: .* may not open it' && says ' -> sudo'
+            says '^BAD   permission .*mode 600: .* may not open it' && says ' -> sudo'
     }
     check "no permission" as_nobody
 else

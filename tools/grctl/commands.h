@@ -19,6 +19,7 @@
     X(play)                                                                                        \
     X(stop)                                                                                        \
     X(estop)                                                                                       \
+    X(record)                                                                                      \
     X(check)                                                                                       \
     X(show)                                                                                        \
     X(plot)                                                                                        \

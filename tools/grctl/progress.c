@@ -41,7 +41,7 @@ void progress_draw(progress *p, double fraction, const char *text)
     if (!p->shown)
         return;
     room = terminal_width() - FREE; /* it may have changed */
-    bar = room - 3 - (int)strlen(text);
+    bar = fraction < 0 ? 0 : room - 3 - (int)strlen(text);
     bar = bar > BAR_MOST ? BAR_MOST : bar;
     if (bar >= 8) {
         full = (int)(fraction * bar + 0.5);

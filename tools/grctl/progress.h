@@ -12,7 +12,7 @@ typedef struct progress {
 } progress;
 
 void progress_start(progress *p, const app *a);
-/* fraction 0..1; the text stands right of the bar. */
+/* fraction 0..1; the text stands right of the bar. Below 0: no bar, the text alone. */
 void progress_draw(progress *p, double fraction, const char *text);
 /* Clears the line, so that something else can be said. */
 void progress_clear(progress *p);
