@@ -1,0 +1,76 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# With --json every command writes JSON, one object a line, whether it succeeds or not.
+. tests/support/cli.sh
+
+if ! have_json; then
+    skip "every command" "no python3 to parse JSON with"
+    done_testing
+    exit
+fi
+
+# Status, what the lines must be, the command line. A command has a row for each way it goes.
+cat >"$work/rows" <<'END'
+0|"ports" in lines[0]|ports
+0|lines[0]["ok"] and lines[0]["checks"]|-d sim doctor
+0|len(lines[0]["servos"]) == 20|-d sim scan
+0|lines[0]["robot"] == "GR001"|-d sim info
+0|len(lines[0]["joints"]) == 20 and "tx_frames" in lines[0]["link"]|-d sim status
+0|{j["torque"] for j in lines[0]["joints"]} == {"on"}|-d sim servo on arms
+0|lines[0]["max_error_deg"] <= 0.1|-d sim init --time 300
+0|lines[0]["joints"][0]["name"] == "R_ELBOW_P"|-d sim move m5 -30
+0|lines[0]["joints"][0]["motor"] == 5|-d sim pose m5=-30
+0|lines[-1]["done"]|-d sim play --speed 500 motions/greet.pseq
+0|len(lines) == 10|play --dry-run --key motions/greet.pseq
+0|lines[0]["done"]|-d sim stop
+0|lines[0]["done"]|-d sim estop
+0|lines[0]["ok"] and lines[0]["diagnostics"] == []|check motions/greet.pseq
+3|not lines[0]["ok"] and lines[0]["diagnostics"][0]["code"]|check /dev/null
+0|lines[0]["length_ms"] == 5000|show motions/greet.pseq
+0|lines[0]["output"]|plot motions/greet.pseq -o WORK/greet.svg
+0|lines[0]["postures"] == 10|convert motions/greet.pseq WORK/greet.m
+0|lines[0]["baud_bps"] == 115200|budget
+0|lines[0]["slot"] == 1|-d sim slot 1
+0|lines[0]["scenario"] == 1|-d sim scenario 1
+0|lines[0]["id"] == 5|-d sim servo-get 5 baud
+0|lines[0]["id"] == 5|-d sim servo-set 5 delay 1
+0|lines[0]["kind"] == "check"|decode 4100
+0|lines|replay WORK/trace
+0|len(lines[0]["commands"]) > 10|help
+0|lines[0]["version"]|version
+1|lines[0]["error"]["code"] == "NOENT"|-d /dev/none status
+2|lines[0]["error"]["code"] == "USAGE"|status --nonsense
+3|lines[0]["error"]["message"]|play /dev/null
+4|lines[0]["error"]["code"] == "LIMIT"|-d sim move m5 120
+END
+"$GRCTL" --trace "$work/trace" -d sim status >/dev/null
+
+rows() {
+    while IFS='|' read -r status expression line; do
+        case $1 in
+        run)
+            line=$(printf '%s\n' "$line" | sed "s|WORK|$work|")
+            # $line is a command line, to be split.
+            # shellcheck disable=SC2086
+            check "--json ${line%%"$work"*}" both exits "$status" timeout 30 "$GRCTL" --json $line \
+                --- json "$expression"
+            ;;
+        names) for word in $line; do echo "$word"; done ;;
+        esac
+    done <"$work/rows"
+}
+rows run
+
+# Not here: what speaks until it is ended (sim.sh has it), with a person, or in a shell's language.
+elsewhere="sim shell monitor record completion"
+rows names | sort -u >"$work/names"
+every_command() {
+    for command in $("$GRCTL" help | sed -n '/^Commands:/,/^$/s/^  \([a-z-]*\) .*/\1/p'); do
+        case " $elsewhere " in
+        *" $command "*) ;;
+        *) grep -qx -e "$command" "$work/names" || { echo "$command has no row"; return 1; } ;;
+        esac
+    done
+}
+check "every command has a row" every_command
+done_testing
