@@ -290,7 +290,9 @@ static void a_lost_last_posture_is_repeated(void **state)
     rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
     assert_true(fabs(rig_angle_deg(&rig, NECK) - 20) > 5);
     assert_int_equal(grobo_robot_job(&rig.robot), GROBO_JOB_NONE); /* it is the engine's own */
+    assert_true(grobo_robot_settling(&rig.robot));
     rig_run(&rig, 1500000);
+    assert_false(grobo_robot_settling(&rig.robot));
     assert_true(fabs(rig_angle_deg(&rig, NECK) - 20) < 0.1);
     assert_null(rig_last(&rig, GROBO_EVENT_TRIP));
 }
@@ -303,6 +305,7 @@ static void what_the_engine_does_afterwards_makes_way(void **state)
     rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
     grobo_posture target = rig_posture(&rig, NECK, 0, 500);
     rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
+    assert_false(grobo_robot_settling(&rig.robot));
     assert_true(fabs(rig_angle_deg(&rig, NECK)) < 0.1);
 }
 

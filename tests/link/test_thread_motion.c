@@ -43,10 +43,10 @@ static int ask_behind_a_reading(grobo_control *from, void *arg)
     int r = grobo_session_sense(grobo_control_session(from), EVERY_JOINT, GROBO_SENSE_FULL);
 
     (void)arg;
-    assert_true(r > 0);
-    assert_int_equal(grobo_control_start_motion(from), GROBO_OK);
-    assert_int_equal(grobo_control_start_motion(from), GROBO_OK);
-    return grobo_control_command_count(from);
+    for (int i = 0; i < 2 && r >= 0; i++) {
+        r = grobo_control_start_motion(from);
+    }
+    return r < 0 ? r : grobo_control_command_count(from);
 }
 
 static void a_target_that_waits_is_counted(void **state)

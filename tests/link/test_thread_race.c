@@ -302,6 +302,7 @@ static int on_svc(grobo_control *from, void *ctx)
     seen.rounds++;
     call_back(from, 100);
     if (seen.stop) {
+        seen.stop = false;
         check(2, grobo_control_stop_thread(from) == GROBO_OK);
         check(3, !grobo_control_is_active(from));
     }
