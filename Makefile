@@ -99,7 +99,7 @@ VERSION = $(shell sed -n 's/.*GROBO_VERSION_STRING "\(.*\)"/\1/p' include/grobo/
 
 # ---- targets -------------------------------------------------------------------------------
 
-.PHONY: help all demo check lint lint-quick format test check-san check-memcheck install uninstall
+.PHONY: help all demo check lint lint-quick format test check-san check-tsan check-memcheck install uninstall
 .PHONY: clean tidy fuzz cov dist bench plots FORCE
 
 help: ## this list
@@ -142,6 +142,9 @@ test: all $(TEST_PROGRAMS) $(FUZZ_REPLAYS) $(EXAMPLES) ## the tests alone; RING=
 check-san: ## the tests of our own code under AddressSanitizer and UBSan
 	@$(MAKE) --no-print-directory test BUILD=$(BUILD)/san SAN=address,undefined CFLAGS='-O1 -g' \
 	    RING='$(filter-out lint export,$(RING))'
+
+check-tsan: ## the tests of what threads share under ThreadSanitizer
+	@$(MAKE) --no-print-directory test BUILD=$(BUILD)/tsan SAN=thread CFLAGS='-O1 -g' RING=link
 
 check-memcheck: ## the same under valgrind
 	@TEST_WRAPPER='valgrind -q --leak-check=full --error-exitcode=99' \
