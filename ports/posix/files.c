@@ -100,9 +100,30 @@ static int set_path(grobo_file *file, const char *path, bool exclusive)
     return result;
 }
 
+/*
+ * What stands at a path: 1, and 0 for nothing. A link that is left in a true path leads to what is
+ * open, as /dev/stdout to a pipe, or to nothing.
+ */
+static int look(const char *path, struct stat *status, bool *direct)
+{
+    if (lstat(path, status) != 0) {
+        return 0;
+    }
+    bool link = S_ISLNK(status->st_mode);
+    if (link && stat(path, status) != 0) {
+        return error_of(errno);
+    }
+    if (S_ISDIR(status->st_mode)) {
+        return GROBO_ERR_ISDIR;
+    }
+    *direct = link || !S_ISREG(status->st_mode);
+    return 1;
+}
+
 static int create(grobo_file *file, const char *path, bool exclusive)
 {
     struct stat old;
+    bool direct = false;
 
     file->handle = -1;
     file->exclusive = exclusive;
@@ -111,20 +132,12 @@ static int create(grobo_file *file, const char *path, bool exclusive)
     if (result < 0) {
         return result;
     }
-    bool there = lstat(file->path, &old) == 0;
-    if (there && exclusive) {
+    int there = look(file->path, &old, &direct);
+    if (exclusive && there != 0) {
         return GROBO_ERR_EXISTS;
     }
-    /* A link without a true path: to what is open, as /dev/stdout to a pipe, or to nothing. */
-    bool link = there && S_ISLNK(old.st_mode);
-    if (link && stat(file->path, &old) != 0) {
-        return error_of(errno);
-    }
-    if (there && S_ISDIR(old.st_mode)) {
-        return GROBO_ERR_ISDIR;
-    }
-    if (link || (there && !S_ISREG(old.st_mode))) {
-        return open_direct(file);
+    if (there < 0 || direct) {
+        return direct ? open_direct(file) : there;
     }
     /* A directory's permission would be enough to replace it; that is not what its owner meant. */
     if (there && access(file->path, W_OK) != 0) {
