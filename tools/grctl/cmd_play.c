@@ -110,10 +110,11 @@ static void on_event(conn *c, const grobo_event *event)
     }
 }
 
+/* Over when the last posture has been read back too, and repeated if it was lost. */
 static bool is_over(conn *c)
 {
     const show *s = c->ctx;
-    return s->over;
+    return s->over && !grobo_robot_settling(c->robot);
 }
 
 static json_t *summary_json(const conn *c, double worst, int joint)
