@@ -247,7 +247,7 @@ $(eval $(call compile,src/body,SRC_INCLUDE))
 $(eval $(call compile,src/motion,SRC_INCLUDE YAML_CFLAGS))
 $(eval $(call compile,src/link,SRC_INCLUDE OS_FLAGS EVENT_CFLAGS))
 $(eval $(call compile,ports/$(PORT),SRC_INCLUDE OS_FLAGS))
-$(eval $(call compile,tools/grctl,OS_FLAGS EVENT_CFLAGS JSON_CFLAGS EDIT_CFLAGS))
+$(eval $(call compile,tools/grctl,OS_FLAGS EVENT_CFLAGS YAML_CFLAGS JSON_CFLAGS EDIT_CFLAGS))
 $(eval $(call compile,docs/examples,OS_FLAGS EVENT_CFLAGS))
 $(eval $(call compile,tests,TEST_INCLUDE OS_FLAGS EVENT_CFLAGS YAML_CFLAGS CMOCKA_CFLAGS JSON_CFLAGS))
 

@@ -38,11 +38,16 @@ cat >"$work/rows" <<'END'
 0|lines|replay WORK/trace
 0|len(lines[0]["commands"]) > 10|help
 0|lines[0]["version"]|version
+0|lines[0]["shell"] == "bash"|completion bash
+0|lines[0]["manual"]|help --man
+0|lines[0]["joints"][5]["trim_deg"] == 1.5|-d here calibrate R_ANKLE_R 1.5
 1|lines[0]["error"]["code"] == "NOENT"|-d /dev/none status
 2|lines[0]["error"]["code"] == "USAGE"|status --nonsense
 3|lines[0]["error"]["message"]|play /dev/null
 4|lines[0]["error"]["code"] == "LIMIT"|-d sim move m5 120
 END
+mkdir -p "$work/config/grctl"
+echo 'robots: {here: {device: sim}}' >"$work/config/grctl/config.yaml"
 "$GRCTL" --trace "$work/trace" -d sim status >/dev/null
 
 rows() {
@@ -62,7 +67,7 @@ rows() {
 rows run
 
 # Not here: what speaks until it is ended (sim.sh has it), with a person, or in a shell's language.
-elsewhere="sim shell monitor record completion"
+elsewhere="sim shell monitor record"
 rows names | sort -u >"$work/names"
 every_command() {
     for command in $("$GRCTL" help | sed -n '/^Commands:/,/^$/s/^  \([a-z-]*\) .*/\1/p'); do

@@ -3,8 +3,6 @@
 # grctl shell: scripts, the original programs' letters and words, and a person at a terminal.
 . tests/support/cli.sh
 
-XDG_STATE_HOME=$work/state
-export XDG_STATE_HOME
 grctl=$GRCTL
 
 # script STATUS TEXT [OPTION...]: runs the lines of TEXT from a pipe, on a simulator.

@@ -7,6 +7,9 @@
 work=$(mktemp -d)
 sim_pid=
 unset GRCTL_DEVICE
+XDG_CONFIG_HOME=$work/config # not that of whoever runs the tests
+XDG_STATE_HOME=$work/state
+export XDG_CONFIG_HOME XDG_STATE_HOME
 
 end_cli_test() {
     stop_sim

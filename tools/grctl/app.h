@@ -14,12 +14,14 @@
 
 enum { APP_LINE_BYTES = 1024 };
 
+struct config_robot;
 struct conn_link;
 
 typedef struct app {
     cli_line line;
     struct conn_link *link; /* the shell's, NULL: every command opens and closes its own */
     const struct grobo_motion *record; /* the shell's @record, or NULL */
+    const struct config_robot *robot;  /* the configured one, or NULL */
     char place[128];                   /* "FILE:LINE: " of a script, for messages */
     bool json;
     int verbosity; /* -1 quiet, 0, 1, 2 */

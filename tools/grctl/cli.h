@@ -114,6 +114,10 @@ const cli_command *cli_find_command(const char *name);
 /* The known name that is nearest to a mistyped one, or NULL if none is near. */
 const char *cli_nearest_command(const char *name);
 
+/* Takes the value of an option as the parser does. False with a line of complaint. */
+bool cli_take_value(const cli_option *option, cli_value *value, const char *text, char *complaint,
+                    size_t capacity);
+
 /* Reads a whole text as a finite number; false if it is none. Knows no locale. */
 bool cli_read_number(const char *text, double *number);
 

@@ -153,7 +153,7 @@ static const char tail[] =
     ".Sh ENVIRONMENT\n"
     ".Bl -tag -width GRCTL_DEVICE\n"
     ".It Ev GRCTL_DEVICE\n"
-    "the device, where\n"
+    "the device, or the name of a configured robot, where\n"
     ".Fl d\n"
     "does not name one\n"
     ".It Ev NO_COLOR\n"

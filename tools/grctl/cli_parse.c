@@ -132,6 +132,13 @@ static bool take_value(parser *p, const cli_option *o, cli_value *v, const char 
     return false;
 }
 
+bool cli_take_value(const cli_option *option, cli_value *value, const char *text, char *complaint,
+                    size_t capacity)
+{
+    parser p = {.complaint = complaint, .capacity = capacity};
+    return take_value(&p, option, value, text);
+}
+
 /* Finds an option among the command's own, then the global ones. */
 static const cli_option *find_option(parser *p, const char *name, size_t length, char letter,
                                      cli_value **value)

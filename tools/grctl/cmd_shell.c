@@ -46,8 +46,7 @@ void shell_inherit(shell *s)
         if (!own)
             s->one.line.global[i] = s->a->line.global[i];
     }
-    if (*s->device)
-        s->one.line.global[GLOBAL_DEVICE] = (cli_value){.given = 1, .text = s->device};
+    s->one.robot = s->a->robot;
     s->one.tty_in = s->a->tty_in && !s->file;
 }
 

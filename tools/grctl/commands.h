@@ -32,6 +32,7 @@
     X(decode)                                                                                      \
     X(replay)                                                                                      \
     X(sim)                                                                                         \
+    X(calibrate)                                                                                   \
     X(shell)                                                                                       \
     X(completion)                                                                                  \
     X(help)                                                                                        \

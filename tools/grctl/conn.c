@@ -206,7 +206,8 @@ uint32_t conn_baud(const app *a)
 
 grobo_robot_config conn_robot_config(const app *a)
 {
-    grobo_robot_config config = {.sense_interval_us = GROBO_SENSE_NEVER};
+    grobo_robot_config config = {.readback_correction = a->robot && a->robot->offsets,
+                                 .sense_interval_us = GROBO_SENSE_NEVER};
     const cli_value *timeout = app_global(a, GLOBAL_TIMEOUT);
     const cli_value *retries = app_global(a, GLOBAL_RETRIES);
     const cli_value *on_exit = app_global(a, GLOBAL_ON_EXIT);
@@ -225,10 +226,14 @@ static int make_session(conn *c, const char *device, bool check)
     grobo_wiring wiring = (grobo_wiring)app_global(a, GLOBAL_WIRING)->choice;
     const cli_value *baud = app_global(a, GLOBAL_BAUD);
     grobo_robot_config robot = conn_robot_config(a);
+    const grobo_driver *driver = grobo_gr001_driver(wiring);
+    if (a->robot)
+        driver = trims_driver(&c->link->trims, driver, a->robot);
     grobo_session_config config = {.base = c->link->base,
                                    .device = device,
                                    .baud_bps = baud->given ? (int)baud->number : 0,
-                                   .driver = grobo_gr001_driver(wiring),
+                                   .driver = driver,
+                                   .driver_ctx = a->robot ? &c->link->trims : NULL,
                                    .robot = &robot,
                                    .skip_check = !check,
                                    .on_event = on_session,

@@ -12,6 +12,7 @@
 
 #include "app.h"
 #include "trace.h"
+#include "trims.h"
 
 typedef struct conn conn;
 
@@ -33,6 +34,7 @@ typedef struct conn_link {
     struct event_base *base;
     struct event *signals[CONN_SIGNALS];
     grobo_session *session;
+    trims trims;    /* its driver, for a configured robot */
     conn *user;     /* the command that has it now, NULL between two */
     int signal;     /* the first signal that came between two commands, 0 none */
     int link_error; /* why the link is lost, 0 while it stands */

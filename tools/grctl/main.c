@@ -9,11 +9,12 @@
 #include "run.h"
 
 const cli_option cli_global_options[GLOBAL_COUNT] = {
-    [GLOBAL_DEVICE] = {.name = "device",
-                       .letter = 'd',
-                       .kind = CLI_TEXT,
-                       .value = "DEV",
-                       .help = "a port's path, auto, sim or tcp:HOST:PORT; else $GRCTL_DEVICE"},
+    [GLOBAL_DEVICE] =
+        {.name = "device",
+         .letter = 'd',
+         .kind = CLI_TEXT,
+         .value = "DEV",
+         .help = "a port, auto, sim, tcp:HOST:PORT or a configured name; else $GRCTL_DEVICE"},
     [GLOBAL_BAUD] = {.name = "baud",
                      .letter = 'b',
                      .kind = CLI_NUMBER,

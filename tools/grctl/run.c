@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "commands.h"
+#include "config.h"
 #include "run.h"
 #include "trace.h"
 
@@ -12,6 +13,15 @@ static bool wants_json(int argc, char *const *argv)
         if (strcmp(argv[i], "--json") == 0)
             return true;
     return false;
+}
+
+static int help(const cli_command *command)
+{
+    if (command)
+        cli_print_command(stdout, command);
+    else
+        cli_print_overview(stdout);
+    return EXIT_DONE;
 }
 
 int run_line(app *a, int argc, char **argv, int (*prepare)(void *ctx, app *a), void *ctx)
@@ -29,17 +39,14 @@ int run_line(app *a, int argc, char **argv, int (*prepare)(void *ctx, app *a), v
     }
     if (app_global(a, GLOBAL_VERSION)->given)
         return cmd_version.run(a);
-    if (app_global(a, GLOBAL_HELP)->given) {
-        if (command)
-            cli_print_command(stdout, command);
-        else
-            cli_print_overview(stdout);
-        return EXIT_DONE;
-    }
+    if (app_global(a, GLOBAL_HELP)->given)
+        return help(command);
     if (!command) {
         cli_print_overview(stderr);
         return EXIT_USAGE;
     }
+    if (!a->link && (status = config_apply(a)) != 0)
+        return status;
     if (prepare && (status = prepare(ctx, a)) != 0)
         return status;
     status = command->run(a);

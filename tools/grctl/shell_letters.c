@@ -6,6 +6,7 @@
 
 #include <grobo/port.h>
 
+#include "config.h"
 #include "file.h"
 #include "joints.h"
 #include "shell.h"
@@ -342,6 +343,14 @@ static int do_connect(shell *s, int n, char **words)
         return n > 2 ? usage(s, "'%s' is one argument too many", words[2]) : status;
     if (n == 2 && (size_t)snprintf(s->device, sizeof s->device, "%s", words[1]) >= sizeof s->device)
         return usage(s, "%s: the name is too long", words[1]);
+    if (n == 2) {
+        s->a->line.global[GLOBAL_DEVICE] = (cli_value){.given = 1, .text = s->device};
+        s->a->robot = NULL;
+        status = config_apply(s->a);
+    }
+    if (status)
+        return status;
+    s->one.line.global[GLOBAL_DEVICE].given = 0;
     shell_inherit(s);
     status = conn_open(&c, &s->one);
     if (!status)

@@ -1,0 +1,144 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Named robots, their trims, and grctl calibrate.
+. tests/support/cli.sh
+
+mkdir -p "$work/config/grctl"
+config=$work/config/grctl/config.yaml
+
+written() {
+    cat >"$config"
+}
+start_sim || { echo "Bail out! the simulator did not start"; exit 1; }
+
+written <<EOF
+# the robots of this house
+default: kitchen
+robots:
+  kitchen:   # the first one
+    device: $robot
+    wiring: board
+    baud: 115200
+    on_exit: hold
+  cellar: {device: $work/none, wiring: bus, trim: {m5: 1}}
+EOF
+check "the default robot" both exits 0 "$GRCTL" -v status m3 --- says R_SHOULDER_P
+check "a named one" both exits 0 "$GRCTL" -d kitchen status m3 --- says R_SHOULDER_P
+in_environment() {
+    exits 0 env GRCTL_DEVICE=kitchen "$GRCTL" status m3 && says R_SHOULDER_P
+}
+check "in the environment" in_environment
+check "another one" fails 1 'none: no such file' "$GRCTL" -d cellar status
+check "what is no name is a device" fails 1 'attic: no such file' "$GRCTL" -d attic status
+
+# ---- trims ------------------------------------------------------------------------------------
+
+check "calibrate sets a trim" both exits 0 "$GRCTL" -d kitchen calibrate R_ELBOW_P 2.5 --- \
+    says 'R_ELBOW_P  *0\.0 ->  *2\.5'
+kept() {
+    grep -q '^# the robots of this house' "$config" && grep -q '# the first one' "$config" &&
+        grep -q 'trim: {R_ELBOW_P: 2\.5}' "$config" && grep -q 'cellar' "$config"
+}
+check "and keeps the rest of the file" kept
+exits 0 "$GRCTL" -d kitchen move m5 -60 300
+check "a trimmed joint is where it was sent" both exits 0 "$GRCTL" -d kitchen status m5 --- \
+    says 'R_ELBOW_P  *-60\.0'
+check "and 2.5 deg beside it for the servo" both exits 0 "$GRCTL" -d "$robot" status m5 --- \
+    says 'R_ELBOW_P  *-57\.5'
+check "limits hold behind the trim" exits 4 "$GRCTL" -d kitchen move m5 49
+check "and before it" exits 4 "$GRCTL" -d kitchen move m5 51
+check "up to it" exits 0 "$GRCTL" -d kitchen move m5 47.5 500
+check "where the servo is at its limit" both exits 0 "$GRCTL" -d "$robot" status m5 --- \
+    says 'R_ELBOW_P  *50\.0'
+check "another trim beside it" exits 0 "$GRCTL" calibrate m12 -1
+check "both are there" grep -q 'trim: {R_KNEE_P: -1\.0, R_ELBOW_P: 2\.5}' "$config"
+check "a robot in braces" both exits 0 "$GRCTL" -d cellar calibrate m5 3 --- \
+    grep -q 'trim: {R_ELBOW_P: 3\.0}}$' "$config"
+check "not more than a tooth" fails 4 'does its horn sit right' "$GRCTL" calibrate m5 30
+dry() {
+    cp "$config" "$work/before"
+    exits 0 "$GRCTL" calibrate m5 7 --dry-run && cmp "$config" "$work/before"
+}
+check "--dry-run writes nothing" dry
+
+# By measuring: the robot stands in its initial posture but for one joint.
+exits 0 "$GRCTL" -d "$robot" init --time 500
+exits 0 "$GRCTL" -d "$robot" move R_KNEE_P -37 500
+check_json "calibrate measures" \
+    '[j["trim_deg"] for j in lines[0]["joints"] if j["trim_deg"]] == [3] and lines[0]["written"]' \
+    "$GRCTL" calibrate --json
+check_json "then the posture is the initial one" \
+    'lines[0]["joints"][0]["angle_deg"] == -40' "$GRCTL" status R_KNEE_P --json
+check "calibrate without a robot" fails 2 'must name a robot' "$GRCTL" -d "$robot" calibrate
+check "a joint without degrees" fails 2 'needs JOINT DEG' "$GRCTL" calibrate m5
+
+offset() {
+    sed "s/baud: .*/offset: {m12: 2}/" "$config" >"$work/new" && cp "$work/new" "$config"
+    exits 0 "$GRCTL" status R_KNEE_P && says 'R_KNEE_P  *-38\.0'
+}
+check "an offset is added to what is read" offset
+
+# ---- the shell --------------------------------------------------------------------------------
+
+in_shell() {
+    printf 'connect kitchen\nstatus m12\n' | "$GRCTL" -d sim shell >"$work/out" 2>"$work/err" ||
+        { cat "$work/err"; return 1; }
+    says 'R_KNEE_P  *-38\.0'
+}
+check "connect knows names" in_shell
+
+# ---- mistakes ---------------------------------------------------------------------------------
+
+# bad PLACE-AND-MESSAGE: the file on standard input is refused there.
+bad() {
+    written
+    fails 3 "config\.yaml:$1" "$GRCTL" -d kitchen status
+}
+check "no YAML" bad '[0-9]*:[0-9]*: ' <<'EOF'
+robots: [
+EOF
+check "an unknown key" bad "1:1: no key 'robot'" <<'EOF'
+robot: {}
+EOF
+check "an unknown key of a robot" bad "3:5: no key 'colour'" <<'EOF'
+robots:
+  kitchen:
+    colour: red
+EOF
+check "an unknown joint" bad "4:12: no joint called 'TAIL'" <<'EOF'
+robots:
+  kitchen:
+    device: x
+    trim: {TAIL: 3}
+EOF
+check "a trim that is none" bad '2:46: degrees' <<'EOF'
+robots:
+  kitchen: {device: /dev/x, trim: {R_KNEE_P: far}}
+EOF
+check "a wiring that is none" bad "2:37: .*none of board" <<'EOF'
+robots:
+  kitchen: {device: /dev/x, wiring: string}
+EOF
+check "a baud rate that is none" bad "2:35: .*'9' is not" <<'EOF'
+robots:
+  kitchen: {device: /dev/x, baud: 9}
+EOF
+check "no device" bad '2:3: robot kitchen has no device' <<'EOF'
+robots:
+  kitchen: {wiring: bus}
+EOF
+check "an alias" bad '3:12: aliases' <<'EOF'
+robots:
+  kitchen: &a {device: /dev/x}
+  cellar:  *a
+EOF
+check "it does not keep others from working" exits 0 "$GRCTL" check motions/greet.pseq
+written <<'EOF'
+default: attic
+EOF
+check "a default that is none" fails 3 "default 'attic' is no robot" "$GRCTL" status
+written <<'EOF'
+# nothing yet
+EOF
+check "an empty file" fails 1 'attic: no such file' "$GRCTL" -d attic status
+done_testing
