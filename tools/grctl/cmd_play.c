@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: MIT */
+#include <math.h>
 #include <string.h>
 
 #include <event2/event.h>
 
 #include "commands.h"
+#include "keys.h"
 #include "play.h"
+#include "play_keys.h"
 #include "progress.h"
 #include "render.h"
 #include "wire.h"
@@ -61,6 +64,8 @@ enum { TICK_US = 100000, REPORT_EVERY = 10 /* ticks of a JSON line */ };
 typedef struct show {
     playlist list;
     progress bar;
+    keys input;
+    play_keys keys;
     struct event *tick;
     int ticks;
     bool started, over;
@@ -79,9 +84,9 @@ static void report_progress(conn *c, show *s)
                                      (json_int_t)p.step, "steps", (json_int_t)p.steps));
         return;
     }
-    snprintf(text, sizeof text, "%s %.1f of %.1f s, frame %llu of %llu",
+    snprintf(text, sizeof text, "%s %.1f of %.1f s, %.0f s left at %d %%",
              grobo_sequencer_state_name(p.state), (double)p.t_us / 1e6, (double)p.total_us / 1e6,
-             (unsigned long long)p.step, (unsigned long long)p.steps);
+             ceil((double)(p.total_us - p.t_us) / 1e4 / s->keys.speed_pct), s->keys.speed_pct);
     progress_draw(&s->bar, p.total_us ? (double)p.t_us / (double)p.total_us : 0, text);
 }
 
@@ -93,6 +98,14 @@ static void on_tick(evutil_socket_t fd, short what, void *ctx)
     (void)what;
     report_progress(c, s);
     s->ticks++;
+}
+
+static void on_key(void *ctx, int key)
+{
+    conn *c = ctx;
+    show *s = c->ctx;
+    if (play_keys_take(&s->keys, key))
+        report_progress(c, s);
 }
 
 static void on_event(conn *c, const grobo_event *event)
@@ -179,10 +192,46 @@ static int start(conn *c, show *s)
     return error < 0 ? error : 0;
 }
 
+/* Shows how it goes, and takes keys, until it is over. */
+static int watch_it(conn *c, show *s)
+{
+    struct timeval period = {0, TICK_US};
+    int error;
+    progress_start(&s->bar, c->a);
+    s->keys = (play_keys){.c = c, .speed_pct = (int)app_number(c->a, PLAY_SPEED, 100)};
+    if (keys_start(&s->input, c->base, false, on_key, c) && s->bar.shown)
+        app_note(c->a, "space: pause   + -: speed   s: stop   e: EMERGENCY STOP");
+    s->tick = event_new(c->base, -1, EV_PERSIST, on_tick, c);
+    if (s->tick)
+        event_add(s->tick, &period);
+    error = conn_wait_until(c, is_over);
+    if (s->tick)
+        event_free(s->tick);
+    keys_stop(&s->input);
+    progress_clear(&s->bar);
+    return error;
+}
+
+static bool is_idle(conn *c)
+{
+    return grobo_robot_job(c->robot) == GROBO_JOB_NONE;
+}
+
+/* The stop is verified joint by joint before anything else is said. */
+static int after_estop(conn *c, int error)
+{
+    c->moving = false;
+    if (!error)
+        error = conn_wait_until(c, is_idle);
+    if (error)
+        return conn_fail(c, error, "estop");
+    return app_fail(c->a, EXIT_SAFETY, grobo_trip_name(GROBO_TRIP_ESTOP),
+                    "play: emergency stop; 'grctl estop --reset' takes it back");
+}
+
 /* Plays to the end, then reads where the joints are. */
 static int play(conn *c, show *s)
 {
-    struct timeval period = {0, TICK_US};
     grobo_joint_mask all = GROBO_JOINTS_ALL(grobo_robot_driver(c->robot)->model->n_joints);
     int error;
     warn_of_rate(c, &s->list.options[0]);
@@ -190,14 +239,9 @@ static int play(conn *c, show *s)
     error = start(c, s);
     if (error)
         return conn_fail(c, error, "play");
-    progress_start(&s->bar, c->a);
-    s->tick = event_new(c->base, -1, EV_PERSIST, on_tick, c);
-    if (s->tick)
-        event_add(s->tick, &period);
-    error = conn_wait_until(c, is_over);
-    if (s->tick)
-        event_free(s->tick);
-    progress_clear(&s->bar);
+    error = watch_it(c, s);
+    if (s->keys.estop)
+        return after_estop(c, error);
     if (!error && s->error)
         error = s->error;
     if (error)
@@ -257,7 +301,10 @@ const cli_command cmd_play = {
         "checked before anything moves: an angle outside a joint's limits is refused with its\n"
         "place in the file and exit status 4. Torque comes on where it is off, and the robot\n"
         "goes slowly from where it is to where the motion begins. Ctrl-C stops smoothly and\n"
-        "carries out the exit policy.\n",
+        "carries out the exit policy.\n"
+        "\n"
+        "On a terminal it takes keys:\n"
+        "\n" PLAY_KEYS_HELP,
     .example = "  grctl play motions/greet.pseq\n"
                "  grctl play --speed 50 --mirror walk.pseq\n"
                "  grctl play --dry-run --key greet.pseq | head\n",
