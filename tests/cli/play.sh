@@ -107,7 +107,7 @@ bar() {
     return 1
 }
 if command -v script >/dev/null 2>&1 && script -qec true /dev/null </dev/null >/dev/null 2>&1; then
-    check "a bar of plain letters" bar C '^\[#[#-]*\] playing [0-9.]* of 5.0 s, frame'
+    check "a bar of plain letters" bar C '^\[#[#-]*\] playing [0-9.]* of 5.0 s, .* s left'
 else
     skip "a bar of plain letters" "no script(1) to make a terminal"
 fi
