@@ -372,19 +372,6 @@ void conn_watch(conn *c, bool on)
 
 /* ---- failing -------------------------------------------------------------------------------- */
 
-static int fail_trip(conn *c, const char *doing)
-{
-    const grobo_trip_info *t = &c->trip;
-    const grobo_model *model = grobo_robot_driver(c->robot)->model;
-    if (t->joint >= 0 && t->joint < model->n_joints)
-        return app_fail(c->a, EXIT_SAFETY, grobo_trip_name(t->trip),
-                        "%s: stopped for safety: %s (%.4g) at motor %d (%s)", doing,
-                        grobo_trip_name(t->trip), t->value, model->joints[t->joint].motor,
-                        model->joints[t->joint].name);
-    return app_fail(c->a, EXIT_SAFETY, grobo_trip_name(t->trip),
-                    "%s: stopped for safety: %s (%.4g)", doing, grobo_trip_name(t->trip), t->value);
-}
-
 int conn_fail(conn *c, int error, const char *doing)
 {
     const grobo_model *model;
@@ -395,7 +382,7 @@ int conn_fail(conn *c, int error, const char *doing)
         return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error), "%s: %s while busy with %s",
                         conn_device(c), grobo_error_text(error), doing);
     if (c->trip.trip != GROBO_TRIP_NONE)
-        return fail_trip(c, doing);
+        return conn_fail_trip(c, doing);
     model = grobo_robot_driver(c->robot)->model;
     if (c->job.kind != GROBO_JOB_NONE && joint >= 0 && joint < model->n_joints)
         return app_fail(c->a, app_status_of(error), grobo_error_name(error),

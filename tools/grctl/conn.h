@@ -105,6 +105,9 @@ int conn_sleep_until(conn *c, int64_t at_us);
  */
 int conn_fail(conn *c, int error, const char *doing);
 
+/* Of conn_fail(): the engine has stopped by itself, c->trip says why. */
+int conn_fail_trip(conn *c, const char *doing);
+
 /* The same for one servo by its id, whether it is a joint's or not. */
 int conn_fail_servo(conn *c, int error, int id);
 
