@@ -36,6 +36,22 @@ static int on_read(void *data, unsigned char *buffer, size_t size, size_t *size_
     return 1;
 }
 
+/* Where reading failed: behind what is decoded and not yet scanned. */
+static grobo_i_place read_place(const yaml_parser_t *parser)
+{
+    grobo_i_place place = place_of(parser->mark);
+
+    for (const yaml_char_t *c = parser->buffer.pointer; c < parser->buffer.last; c++) {
+        if (*c == '\n') {
+            place.line++;
+            place.column = 1;
+        } else if ((*c & 0xC0) != 0x80) { /* not for the rest of a character */
+            place.column++;
+        }
+    }
+    return place;
+}
+
 static int refuse_parser(grobo_i_events *events)
 {
     const yaml_parser_t *parser = &events->parser;
@@ -54,7 +70,7 @@ static int refuse_parser(grobo_i_events *events)
     }
     bool reading = parser->error == YAML_READER_ERROR;
     return grobo_i_refuse(events->reader, GROBO_ERR_SYNTAX, reading ? "encoding" : "yaml",
-                          place_of(reading ? parser->mark : parser->problem_mark), "%s",
+                          reading ? read_place(parser) : place_of(parser->problem_mark), "%s",
                           parser->problem != NULL ? parser->problem : "malformed YAML");
 }
 

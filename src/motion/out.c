@@ -125,6 +125,36 @@ void grobo_i_put_scalar(grobo_i_out *out, const char *text, size_t length)
     }
 }
 
+/* What YAML takes for nothing or for true or false, however its letters are. */
+static bool is_reserved(const char *text, size_t length)
+{
+    static const char *const words[] = {"null", "true", "false", "yes", "no", "on", "off"};
+
+    for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
+        size_t n = 0;
+        while (n < length && (text[n] | 0x20) == words[i][n]) {
+            n++;
+        }
+        if (n == length && words[i][n] == '\0') {
+            return true;
+        }
+    }
+    return false;
+}
+
+void grobo_i_put_name(grobo_i_out *out, const char *text, size_t length)
+{
+    char first = length > 0 ? text[0] : '\0';
+    bool lettered =
+        (first >= 'A' && first <= 'Z') || (first >= 'a' && first <= 'z') || first == '_';
+
+    if (lettered && !is_reserved(text, length)) {
+        grobo_i_put_scalar(out, text, length);
+    } else {
+        grobo_i_put_quoted(out, text, length);
+    }
+}
+
 int grobo_i_out_end(grobo_i_out *out)
 {
     flush(out);

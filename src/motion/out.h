@@ -24,6 +24,8 @@ void grobo_i_put_int(grobo_i_out *out, long value);
 void grobo_i_put_quoted(grobo_i_out *out, const char *text, size_t length);
 /* Plain if that is one word that stays itself in a flow list, else quoted. */
 void grobo_i_put_scalar(grobo_i_out *out, const char *text, size_t length);
+/* A key or name: as a scalar, but quoted if it would read as a number, as nothing or as a flag. */
+void grobo_i_put_name(grobo_i_out *out, const char *text, size_t length);
 /* Sends what is left. @return the first error, or 0. */
 int grobo_i_out_end(grobo_i_out *out);
 

@@ -99,7 +99,8 @@ static component_kind kind_of(const component *part)
 {
     static const char *const contents[] = {"JointPosition", "JointDisplacement",
                                            "MultiJointDisplacementSeq", NULL};
-    const char *content = part->content != NULL ? part->content : part->purpose;
+    bool nothing = part->content == NULL || part->content[0] == '\0';
+    const char *content = nothing ? part->purpose : part->content;
 
     if ((part->type != NULL && strcmp(part->type, "MultiValueSeq") != 0) ||
         (content != NULL && !is_one_of(content, contents))) {

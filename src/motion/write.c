@@ -13,7 +13,7 @@ void grobo_i_put_kept(grobo_i_out *out, const grobo_i_kept *kept, grobo_kept_lev
         for (int i = 0; i < indent; i++) {
             grobo_i_put(out, " ", 1);
         }
-        grobo_i_put_scalar(out, kept->text, kept->key_bytes - 1);
+        grobo_i_put_name(out, kept->text, kept->key_bytes - 1);
         grobo_i_put_text(out, ": ");
         grobo_i_put(out, kept->text + kept->key_bytes, kept->value_bytes - 1);
         grobo_i_put_text(out, "\n");

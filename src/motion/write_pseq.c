@@ -87,7 +87,7 @@ static void put_link(grobo_i_out *out, const grobo_i_extra *extra, int i)
     put_lead(out, LINK_INDENT - 2, "- \n");
     if (link->name[0] != '\0') {
         put_lead(out, LINK_INDENT, "name: ");
-        grobo_i_put_scalar(out, link->name, strlen(link->name));
+        grobo_i_put_name(out, link->name, strlen(link->name));
         grobo_i_put_text(out, "\n");
     }
     if (link->index >= 0) {

@@ -213,7 +213,8 @@ static const struct bad_file {
     {TOP "- { <<: 5 }", GROBO_ERR_SYNTAX, "merge", 4, 9},
     {"a\0b", GROBO_ERR_TYPE, "top-type", 1, 1},
     {"\xFF\xFE", GROBO_ERR_SYNTAX, "empty", 1, 1},
-    {"name: \xC3\x28", GROBO_ERR_SYNTAX, "encoding", 1, 0},
+    {"name: \xC3\x28", GROBO_ERR_SYNTAX, "encoding", 1, 7},
+    {TOP "- \xC3\xA9 \x01", GROBO_ERR_SYNTAX, "encoding", 4, 5},
     {TOP "- { time: 0, refer: { type: Pose, joints: [ 1", GROBO_ERR_SYNTAX, "yaml", 5, 1},
 };
 #undef TOP

@@ -74,6 +74,31 @@ static void test_pseq_layout(void **state)
     grobo_motion_free(motion);
 }
 
+/* Names that are not words to YAML stay names. */
+static void test_pseq_odd_names(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"null", "~", "NULL", "7", "True", "off", "-1", ".5", "- a"};
+
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        char text[400], link[40];
+        (void)snprintf(link, sizeof link, "          name: \"%s\"\n", names[i]);
+        (void)snprintf(text, sizeof text,
+                       "type: PoseSeq\nname: t\n\"%s\": 1\nrefs:\n- { time: 0, refer: { type: "
+                       "Pose, ikLinks: [ { name: \"%s\", translation: [ 0, 0, 0 ], rotation: [ 1, "
+                       "0, 0, 0, 1, 0, 0, 0, 1 ] } ] } }\n",
+                       names[i], names[i]);
+        grobo_motion *motion = motion_of(text, GROBO_FORMAT_PSEQ);
+        char *written = written_as(motion, GROBO_FORMAT_PSEQ, NULL, NULL);
+        grobo_motion *back = motion_of(written, GROBO_FORMAT_PSEQ);
+        assert_non_null(strstr(written, link));
+        assert_true(grobo_motion_equal(motion, back));
+        grobo_motion_free(back);
+        free(written);
+        grobo_motion_free(motion);
+    }
+}
+
 static void test_yaml_layout(void **state)
 {
     (void)state;
@@ -400,6 +425,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_pseq_layout),
+        cmocka_unit_test(test_pseq_odd_names),
         cmocka_unit_test(test_yaml_layout),
         cmocka_unit_test(test_m_layout),
         cmocka_unit_test(test_print),
