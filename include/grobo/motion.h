@@ -59,10 +59,11 @@ typedef struct grobo_key_info {
 
 /** Where a kept key stands in a file. */
 typedef enum grobo_kept_level {
-    GROBO_KEPT_TOP = 0,  /**< in the document's mapping; the only one a motion itself has */
-    GROBO_KEPT_REF = 1,  /**< beside `time` and `refer` */
-    GROBO_KEPT_POSE = 2, /**< in the mapping of `refer` */
-    GROBO_KEPT_LINK = 3  /**< in an entry of `ikLinks` */
+    GROBO_KEPT_TOP = 0,      /**< in the document's mapping: of the motion itself */
+    GROBO_KEPT_REF = 1,      /**< beside `time` and `refer` */
+    GROBO_KEPT_POSE = 2,     /**< in the mapping of `refer` */
+    GROBO_KEPT_LINK = 3,     /**< in an entry of `ikLinks` */
+    GROBO_KEPT_COMPONENT = 4 /**< in the component with the joints' frames: of the motion itself */
 } grobo_kept_level;
 
 /** A key that a file had and this library gives no meaning: kept to be written back. */

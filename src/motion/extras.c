@@ -205,9 +205,10 @@ int grobo_motion_get_kept(const grobo_motion *motion, size_t n, size_t i, grobo_
 int grobo_motion_keep(grobo_motion *motion, size_t n, const grobo_kept *kept)
 {
     bool top = n == GROBO_MOTION_TOP;
+    bool of_top = kept->level == GROBO_KEPT_TOP || kept->level == GROBO_KEPT_COMPONENT;
     grobo_i_row row;
 
-    if (kept->key == NULL || kept->value == NULL || top != (kept->level == GROBO_KEPT_TOP) ||
+    if (kept->key == NULL || kept->value == NULL || top != of_top ||
         !grobo_i_utf8_ok(kept->key, strlen(kept->key)) ||
         !grobo_i_utf8_ok(kept->value, strlen(kept->value))) {
         return GROBO_ERR_ARG;

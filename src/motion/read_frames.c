@@ -147,11 +147,16 @@ static int read_frame_time(grobo_i_events *events, void *target)
     return grobo_i_read_has_frame_time(events, &((component *)target)->info);
 }
 
-static int skip_unknown(grobo_i_events *events, void *target, const char *key)
+/* Keys of a component that is skipped, or may be yet, are skipped too: they can be large. */
+static int read_unknown(grobo_i_events *events, void *target, const char *key)
 {
-    (void)target;
-    (void)key;
-    return grobo_i_skip(events);
+    component *part = target;
+
+    if (kind_of(part) != COMPONENT_JOINTS || part->document->has_joints) {
+        return grobo_i_skip(events);
+    }
+    return grobo_i_keep_value(events, &events->reader->motion->kept,
+                              &(grobo_kept){.key = key, .level = GROBO_KEPT_COMPONENT});
 }
 
 /* ---- frames ------------------------------------------------------------------------------- */
@@ -368,7 +373,7 @@ static int read_component(grobo_i_events *events, void *target)
 {
     static const grobo_i_fields fields = {"a component", component_fields,
                                           sizeof component_fields / sizeof component_fields[0],
-                                          skip_unknown};
+                                          read_unknown};
     component part;
     const grobo_i_event *event;
     uint32_t seen = 0;

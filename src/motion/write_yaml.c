@@ -47,6 +47,7 @@ static void put_head(grobo_i_out *out, const grobo_motion *motion)
     if (times) {
         grobo_i_put_text(out, "    has_frame_time: true\n");
     }
+    grobo_i_put_kept(out, motion->kept, GROBO_KEPT_COMPONENT, 0, 4);
     grobo_i_put_text(out, "    frames: \n");
 }
 

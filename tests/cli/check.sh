@@ -41,6 +41,18 @@ motion() {
     cat
 }
 
+streamed() {
+    pose 0 '13' 1 | motion streamed | "$GRCTL" check - >"$work/out"
+    grep '^(standard input):10:12: NECK_Y: 57.3 ' "$work/out"
+}
+check "- is standard input" streamed
+named_oddly() {
+    odd=$(printf 'odd\n\033[31m.pseq')
+    : | motion odd >"$work/$odd"
+    found 0 'odd??\[31m.pseq: warning: no postures' "$work/$odd"
+}
+check "an odd name stays one line without its escape codes" named_oddly
+
 { pose 0 '13' 0 && pose 1 '13, 3' '0.9, -0.5'; } | motion outside >"$work/outside.pseq"
 check "an angle outside its limits, to the column" \
     found 3 "outside.pseq:16:12: NECK_Y: 51.6 degrees, outside -50..50 \[limit\]" \

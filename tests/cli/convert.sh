@@ -85,6 +85,13 @@ check "nothing is left beside" nothing_beside
 
 check "what .m cannot hold is said" both convert --ik off motions/step.pseq "$work/step.m" \
     --- grep -q 'note: ikLinks are dropped' "$work/err"
+skipped() {
+    zmp='{ type: Vector3Seq, content: ZMP, frameRate: 50, frames: [ [ 0, 0, 0 ] ] }'
+    { cat motions/greet.yaml && echo "  - $zmp"; } >"$work/zmp.yaml"
+    convert "$work/zmp.yaml" "$work/nozmp.yaml" &&
+        grep -q 'zmp.yaml:[0-9]*:5: note: a Vector3Seq (ZMP) is skipped$' "$work/err"
+}
+check "so is what reading skips" skipped
 solved() {
     convert --rate 20 motions/step.pseq "$work/step.yaml" || return 1
     "$GRCTL" show --rate 20 --ik exact -j legs motions/step.pseq | sed 1,2d >"$work/first"

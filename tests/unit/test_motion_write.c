@@ -74,6 +74,27 @@ static void test_pseq_layout(void **state)
     grobo_motion_free(motion);
 }
 
+/* Keys without a meaning here, of the file and of the component, and a content that is nothing. */
+static void test_yaml_keeps_keys(void **state)
+{
+    (void)state;
+    grobo_motion *motion =
+        motion_of("type: BodyMotion\nauthor: me\ncomponents:\n"
+                  "  - { type: MultiVector3Seq, content: ZMP, mine: 1, frames: [ ] }\n"
+                  "  - { type: MultiValueSeq, content: ~, purpose: JointPosition, mine: { a: 2 }, "
+                  "frameRate: 50, frames: [ [ 1, 2 ] ] }\n",
+                  GROBO_FORMAT_YAML);
+    char *written = written_as(motion, GROBO_FORMAT_YAML, NULL, NULL);
+
+    assert_non_null(strstr(written, "\nauthor: me\n"));
+    assert_non_null(strstr(written, "\n    mine: { a: 2 }\n    frames: \n"));
+    grobo_motion *back = motion_of(written, GROBO_FORMAT_YAML);
+    assert_true(grobo_motion_equal(motion, back));
+    grobo_motion_free(back);
+    free(written);
+    grobo_motion_free(motion);
+}
+
 /* Names that are not words to YAML stay names. */
 static void test_pseq_odd_names(void **state)
 {
@@ -425,6 +446,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_pseq_layout),
+        cmocka_unit_test(test_yaml_keeps_keys),
         cmocka_unit_test(test_pseq_odd_names),
         cmocka_unit_test(test_yaml_layout),
         cmocka_unit_test(test_m_layout),

@@ -48,8 +48,7 @@ double app_number(const app *a, int i, double otherwise)
     return a->line.option[i].given ? a->line.option[i].number : otherwise;
 }
 
-/* A file name may hold anything; what is said of it stays one line. */
-static void make_one_line(char *text)
+void app_make_one_line(char *text)
 {
     for (; *text; text++)
         if ((unsigned char)*text < 0x20 || *text == 0x7f)
@@ -65,7 +64,7 @@ int app_fail(app *a, int status, const char *code, const char *format, ...)
     n = snprintf(text, sizeof text, "%s", a->place);
     vsnprintf(text + n, sizeof text - (size_t)n, format, list);
     va_end(list);
-    make_one_line(text);
+    app_make_one_line(text);
     if (a->hushed) {
         memcpy(a->hushed, text, sizeof text);
         return status;
@@ -98,7 +97,7 @@ static void say(const char *format, va_list list)
 {
     char text[APP_LINE_BYTES];
     vsnprintf(text, sizeof text, format, list);
-    make_one_line(text);
+    app_make_one_line(text);
     fprintf(stderr, "%s\n", text);
 }
 

@@ -50,6 +50,8 @@ int app_fail(app *a, int status, const char *code, const char *format, ...)
 int app_status_of(int error);
 
 /* A line for a person on standard error, unless quiet; only from -v on. */
+/* A file name may hold anything; what is said of it stays one line without control characters. */
+void app_make_one_line(char *text);
 void app_note(const app *a, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void app_detail(const app *a, const char *format, ...) __attribute__((format(printf, 2, 3)));
 

@@ -40,18 +40,19 @@ static void check_file(const app *a, const char *path, grobo_diagnostics *list)
     grobo_body_options body = body_options_read(a, OPT_BODY, 0);
     grobo_read_options read = {
         .model = &grobo_gr001_model, .keep_positions = true, .keep_going = true};
-    grobo_check_options check = {.name = path};
+    const char *name = file_shown_name(path);
+    grobo_check_options check = {.name = name};
     grobo_motion *motion = NULL;
     size_t before = grobo_diagnostics_total(list, GROBO_SEVERITY_ERROR);
     int error = file_read(path, &read, list, &motion);
     if (!error) {
         error = grobo_motion_check(motion, &grobo_gr001_model, &check, list);
         if (error >= 0)
-            error = check_whole(path, motion, &body, app_option(a, OPT_BALANCE)->given, list);
+            error = check_whole(name, motion, &body, app_option(a, OPT_BALANCE)->given, list);
         grobo_motion_free(motion);
     }
     if (error < 0 && grobo_diagnostics_total(list, GROBO_SEVERITY_ERROR) == before) {
-        grobo_diagnostic d = {.file = path,
+        grobo_diagnostic d = {.file = name,
                               .code = grobo_error_name(error),
                               .message = file_error_text(error),
                               .severity = GROBO_SEVERITY_ERROR};

@@ -113,16 +113,18 @@ static int run(app *a)
     if (to == GROBO_FORMAT_AUTO)
         return app_fail(a, EXIT_USAGE, "USAGE",
                         "%s: its name tells no format; give --to " FILE_FORMATS, out);
-    error = file_load(a, in, &read, &motion);
+    error = grobo_diagnostics_new(&list, NULL);
+    if (error)
+        return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s", grobo_error_text(error));
+    error = file_load_listed(a, in, &read, list, &motion);
     if (!error)
         error = solve_legs(a, in, &how, &motion);
     if (error) {
+        grobo_diagnostics_free(list);
         grobo_motion_free(motion);
         return error;
     }
-    error = grobo_diagnostics_new(&list, NULL);
-    if (!error)
-        error = write_out(motion, out, &how, list);
+    error = write_out(motion, out, &how, list);
     if (error)
         error = app_fail(a, EXIT_FILE, grobo_error_name(error), "%s: cannot write: %s", out,
                          file_error_text(error));

@@ -36,6 +36,7 @@ void file_format(const grobo_diagnostic *d, bool with_code, char *text, size_t c
              d->severity == GROBO_SEVERITY_ERROR ? "" : grobo_severity_name(d->severity),
              d->severity == GROBO_SEVERITY_ERROR ? "" : ": ", d->message, with_code ? " [" : "",
              with_code ? d->code : "", with_code ? "]" : "");
+    app_make_one_line(text);
 }
 
 json_t *file_json(const grobo_diagnostic *d)
@@ -84,11 +85,21 @@ static int read_stream(void *ctx, void *buffer, size_t size)
     return n == 0 && ferror(ctx) ? GROBO_ERR_IO : (int)n;
 }
 
+const char *file_shown_name(const char *path)
+{
+    return strcmp(path, "-") == 0 ? "(standard input)" : path;
+}
+
 int file_read(const char *path, const grobo_read_options *options, grobo_diagnostics *list,
               grobo_motion **motion)
 {
-    return pipe_is(path) ? pipe_read(path, options, list, motion)
-                         : grobo_motion_read_file(path, options, list, motion);
+    grobo_source source = {.read = read_stream, .ctx = stdin};
+    grobo_read_options named = options ? *options : (grobo_read_options){0};
+    if (strcmp(path, "-") != 0)
+        return pipe_is(path) ? pipe_read(path, options, list, motion)
+                             : grobo_motion_read_file(path, options, list, motion);
+    named.name = file_shown_name(path);
+    return grobo_motion_read(&source, &named, list, motion);
 }
 
 /* A copy of what the shell has recorded. */
@@ -100,26 +111,24 @@ static int load_record(app *a, grobo_motion **motion)
                  : 0;
 }
 
-int file_load(app *a, const char *path, const grobo_read_options *options, grobo_motion **motion)
+int file_load_listed(app *a, const char *path, const grobo_read_options *options,
+                     grobo_diagnostics *list, grobo_motion **motion)
 {
-    grobo_diagnostics *list = NULL;
     int error;
     if (strcmp(path, "@record") == 0)
         return load_record(a, motion);
-    error = grobo_diagnostics_new(&list, NULL);
+    error = file_read(path, options, list, motion);
+    return error ? complain(a, path, error, list) : EXIT_DONE;
+}
+
+int file_load(app *a, const char *path, const grobo_read_options *options, grobo_motion **motion)
+{
+    grobo_diagnostics *list = NULL;
+    int error = grobo_diagnostics_new(&list, NULL);
     if (error)
         return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s", grobo_error_text(error));
-    if (strcmp(path, "-") == 0) {
-        grobo_source source = {.read = read_stream, .ctx = stdin};
-        grobo_read_options named = options ? *options : (grobo_read_options){0};
-        named.name = "(standard input)";
-        error = grobo_motion_read(&source, &named, list, motion);
-    } else {
-        error = file_read(path, options, list, motion);
-    }
-    if (error)
-        error = complain(a, path, error, list);
-    else
+    error = file_load_listed(a, path, options, list, motion);
+    if (!error)
         say_all(a, list);
     grobo_diagnostics_free(list);
     return error;

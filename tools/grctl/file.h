@@ -23,9 +23,19 @@ const grobo_model *file_model(const grobo_motion *motion);
 /* Says a warning on standard error, a note only with -v. */
 void file_say_one(const app *a, const grobo_diagnostic *d);
 
-/* As grobo_motion_read_file(), but a pipe that nobody writes to is waited for a second only. */
+/*
+ * As grobo_motion_read_file(), but "-" is standard input, and a pipe that nobody writes to is
+ * waited for a second only.
+ */
 int file_read(const char *path, const grobo_read_options *options, grobo_diagnostics *list,
               grobo_motion **motion);
+
+/* As file_load(), but what there is to say beside an error goes to the caller's list. */
+int file_load_listed(app *a, const char *path, const grobo_read_options *options,
+                     grobo_diagnostics *list, grobo_motion **motion);
+
+/* What a file is called in messages: "-" is standard input. */
+const char *file_shown_name(const char *path);
 
 /* One line of a diagnostic: "file:line:column: warning: message [code]". */
 void file_format(const grobo_diagnostic *d, bool with_code, char *text, size_t capacity);
