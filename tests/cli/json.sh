@@ -4,8 +4,7 @@
 . tests/support/cli.sh
 
 if ! have_json; then
-    skip "every command" "no python3 to parse JSON with"
-    done_testing
+    echo "1..0 # SKIP no python3 to parse JSON with"
     exit
 fi
 
