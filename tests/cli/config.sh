@@ -66,7 +66,7 @@ exits 0 "$GRCTL" -d "$robot" init --time 500
 exits 0 "$GRCTL" -d "$robot" move R_KNEE_P -37 500
 check_json "calibrate measures" \
     '[j["trim_deg"] for j in lines[0]["joints"] if j["trim_deg"]] == [3] and lines[0]["written"]' \
-    "$GRCTL" calibrate --json
+    "$GRCTL" calibrate --json --timeout 500
 check_json "then the posture is the initial one" \
     'lines[0]["joints"][0]["angle_deg"] == -40' "$GRCTL" status R_KNEE_P --json
 check "calibrate without a robot" fails 2 'must name a robot' "$GRCTL" -d "$robot" calibrate

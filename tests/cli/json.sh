@@ -49,6 +49,44 @@ mkdir -p "$work/config/grctl"
 echo 'robots: {here: {device: sim}}' >"$work/config/grctl/config.yaml"
 "$GRCTL" --trace "$work/trace" -d sim status >/dev/null
 
+# fits COMMAND: every line of the last output is as docs/grctl.schema.json says.
+cat >"$work/fits.py" <<'END'
+import json, sys
+schema = json.load(open("docs/grctl.schema.json"))
+kinds = {"object": dict, "array": list, "string": str, "boolean": bool, "null": type(None)}
+
+def fits(value, rule):
+    if "$ref" in rule:
+        return fits(value, schema["$defs"][rule["$ref"].split("/")[-1]])
+    if "anyOf" in rule:
+        return any(fits(value, one) for one in rule["anyOf"])
+    if "enum" in rule:
+        return value in rule["enum"]
+    types = rule.get("type", [])
+    types = [types] if isinstance(types, str) else types
+    number = isinstance(value, (int, float)) and not isinstance(value, bool)
+    if types and not any(number and (t == "number" or isinstance(value, int))
+                         if t in ("number", "integer") else isinstance(value, kinds[t])
+                         for t in types):
+        return False
+    if isinstance(value, dict):
+        return all(k in value for k in rule.get("required", [])) and all(
+            fits(value[k], r) for k, r in rule.get("properties", {}).items() if k in value)
+    return not isinstance(value, list) or all(fits(v, rule.get("items", {})) for v in value)
+
+for text in open(sys.argv[2]):
+    line = json.loads(text)
+    name = "error" if "error" in line else sys.argv[1]
+    if not fits(line, schema["$defs"][name]):
+        sys.exit("not as $defs/%s: %.1000s" % (name, text))
+END
+command_of() {
+    for word in $1; do
+        grep -q "^  \"$word\": {" "$work/defs" && { echo "$word"; return; }
+    done
+}
+grep '^  "' docs/grctl.schema.json >"$work/defs"
+
 rows() {
     while IFS='|' read -r status expression line; do
         case $1 in
@@ -58,6 +96,7 @@ rows() {
             # shellcheck disable=SC2086
             check "--json ${line%%"$work"*}" both exits "$status" timeout 30 "$GRCTL" --json $line \
                 --- json "$expression"
+            check "as the schema says" python3 "$work/fits.py" "$(command_of "$line")" "$work/out"
             ;;
         names) for word in $line; do echo "$word"; done ;;
         esac
