@@ -117,6 +117,8 @@ look() {
         mandoc mandoc mandoc mandoc mandoc
     need rsvg-convert 'to check PNG plots' have_command rsvg-convert -- \
         librsvg2-bin librsvg2-tools librsvg rsvg-convert rsvg-convert
+    need tmux 'to check the shell at a terminal' have_command tmux -- \
+        tmux tmux tmux tmux tmux
     need valgrind 'to check memory' have_command valgrind -- \
         valgrind valgrind valgrind valgrind valgrind
     need tshark 'to check the dissector' have_command tshark -- \
