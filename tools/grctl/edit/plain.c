@@ -21,12 +21,13 @@ line_reader *line_open(conn_link *link)
 int line_read(line_reader *reader, const char *prompt, char *line, size_t capacity)
 {
     size_t n = 0;
-    fputs(prompt, stderr);
+    fputs(prompt, stdout);
+    fflush(stdout);
     for (;;) {
         char c;
         ssize_t got;
         if (!line_wait(reader->link, STDIN_FILENO)) {
-            fputc('\n', stderr);
+            putchar('\n');
             return LINE_INTERRUPTED;
         }
         got = read(STDIN_FILENO, &c, 1);
