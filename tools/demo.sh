@@ -16,10 +16,12 @@ trap 'exit 130' INT
 trap 'exit 143' TERM
 
 mkfifo "$dir/ready"
+# In the background of a script it has no ears for Ctrl-C: the robot outlives who plays on it.
 "$grctl" --quiet sim --link "$dir/gr001" >"$dir/ready" &
 sim=$!
 # The simulator prints its path when it can be opened; nothing comes if it could not start.
 read -r path <"$dir/ready" || { echo "demo: the simulator did not start" >&2; exit 1; }
 
-echo "A simulated GR001 stands behind $path, paced at 115200 bps. Playing $motion:"
+echo "A simulated GR001 stands behind $path, paced at 115200 bps."
+echo "Playing $motion:"
 "$grctl" --device "$dir/gr001" --on-exit off play --table "$@" "$motion"

@@ -10,6 +10,9 @@ check "the path is a terminal's" [ -c "$sim_pty" ]
 check "two programs, one after the other" both exits 0 "$GRCTL" -d "$robot" move m2 20 200 --- \
     exits 0 "$GRCTL" -d "$robot" status m2
 check "the robot stays as it was left" says 'NECK_Y  *20\.0  *-  on '
+kill -s INT "$sim_pid"
+check "SIGINT, ignored when it began as a shell does for &: it stays" \
+    exits 0 "$GRCTL" -d "$robot" status m2
 ends() {
     kill -s "$1" "$sim_pid"
     wait "$sim_pid"
@@ -24,6 +27,7 @@ end_sim() {
 }
 end_sim
 check "SIGTERM: 143, and the link is gone" [ $ends_result -eq 0 ]
+check "SIGINT: 130" exits 130 timeout --preserve-status -s INT 1 "$GRCTL" sim
 
 : >"$work/mine"
 check "a file in the link's place is not replaced" fails 1 "$work/mine" timeout 5 "$GRCTL" sim \

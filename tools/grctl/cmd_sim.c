@@ -80,10 +80,23 @@ static void on_signal(evutil_socket_t number, short what, void *ctx)
     event_base_loopbreak(f->base);
 }
 
+/*
+ * What was ignored when it was started stays so: a shell does that to SIGINT for what a script runs
+ * in the background, nohup to SIGHUP. The Ctrl-C is for the program that plays, which needs the
+ * robot to leave it in good order.
+ */
+static bool ignored(int number)
+{
+    struct sigaction old;
+    return sigaction(number, NULL, &old) == 0 && old.sa_handler == SIG_IGN;
+}
+
 static int watch_signals(farm *f)
 {
     static const int caught[SIGNALS] = {SIGINT, SIGTERM, SIGHUP};
     for (int i = 0; i < SIGNALS; i++) {
+        if (ignored(caught[i]))
+            continue;
         f->signals[i] = evsignal_new(f->base, caught[i], on_signal, f);
         if (!f->signals[i] || evsignal_add(f->signals[i], NULL) != 0)
             return GROBO_ERR_NOMEM;
