@@ -132,6 +132,10 @@ static int take_apart(m_file *file, const unsigned char *text, size_t length, m_
         if (line->count == 0 && text[first] == '#') {
             return 0;
         }
+        if (first > 0 && text[first - 1] == '\r') { /* two lines of an old Macintosh, not one */
+            return grobo_i_complain(file->reader, GROBO_ERR_SYNTAX, "line-end", place,
+                                    "a line must end with LF or CRLF, not CR alone");
+        }
         if (line->count > COLUMNS_MAX) {
             return grobo_i_refuse(file->reader, GROBO_ERR_CAP, "columns", place,
                                   "more than %d angles", COLUMNS_MAX);

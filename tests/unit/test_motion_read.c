@@ -61,13 +61,10 @@ static void test_m_refused(void **state)
     static const struct {
         const char *text, *code;
         unsigned line, column;
-    } bad[] = {{"500 1 2\nx 1 2\n", "number", 2, 1},
-               {"500 1 2\n600 1\n", "columns", 2, 5},
-               {"500 1 2\n600 1 2 3\n", "columns", 2, 9},
-               {"500\n", "columns", 1, 1},
-               {"500 1 2\n\n600 1 2\n", "blank-line", 2, 0},
-               {"500 1 nan\n", "number", 1, 7},
-               {"1e300 1\n", "time-range", 1, 1}};
+    } bad[] = {{"500 1 2\nx 1 2\n", "number", 2, 1},         {"500 1 2\n600 1\n", "columns", 2, 5},
+               {"500 1 2\n600 1 2 3\n", "columns", 2, 9},    {"500\n", "columns", 1, 1},
+               {"500 1 2\n\n600 1 2\n", "blank-line", 2, 0}, {"500 1 nan\n", "number", 1, 7},
+               {"500 1 2\r600 1 2\r", "line-end", 1, 9},     {"1e300 1\n", "time-range", 1, 1}};
 
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         grobo_diagnostics *list = NULL;
