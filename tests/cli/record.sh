@@ -80,7 +80,7 @@ kill -INT $record_pid
 finish
 check "Ctrl-C is told by the status" [ $ended -eq 130 ]
 check "what was recorded is kept" counts "$(wc -l <"$work/all.m")" "$work/all.m"
-check "it plays" exits 0 "$GRCTL" play --dry-run "$work/all.m"
+check "it is a motion" exits 0 "$GRCTL" show "$work/all.m"
 
 start_record -o lost.m
 tell plug out

@@ -11,7 +11,7 @@
 
 typedef struct reader {
     app *a;
-    const char *path;
+    char path[CONFIG_PATH_BYTES]; /* of the file being read, or read last */
     yaml_parser_t parser;
     yaml_event_t event; /* the last one read */
     bool has_event;
@@ -225,19 +225,17 @@ static bool path_of(int i, char *path, size_t capacity)
 /* Reads both files; the user's comes first. Returns 0 whether or not the robot was found. */
 static int find(reader *r)
 {
-    char path[CONFIG_PATH_BYTES];
     for (int i = 0; i < 2 && !r->status && !*r->robot->name; i++) {
         /* `default` may stand behind `robots`: then the file is read again for its robot. */
         for (int round = 0; round < 2 && !r->status && !*r->robot->name; round++) {
             bool knew = *r->wanted != '\0';
             FILE *file;
             errno = 0;
-            file = path_of(i, path, sizeof path) ? fopen(path, "r") : NULL;
+            file = path_of(i, r->path, sizeof r->path) ? fopen(r->path, "r") : NULL;
             if (!file && errno == EACCES)
-                return app_fail(r->a, EXIT_FILE, "CONFIG", "%s: %s", path, strerror(errno));
+                return app_fail(r->a, EXIT_FILE, "CONFIG", "%s: %s", r->path, strerror(errno));
             if (!file)
                 break;
-            r->path = path;
             read_file(r, file);
             fclose(file);
             if (knew)
