@@ -59,7 +59,8 @@ static bool has_open(int pid, const struct stat *node)
         struct stat st;
 
         found = fstatat(dirfd(fds), entry->d_name, &st, 0) == 0 && S_ISCHR(st.st_mode) &&
-                st.st_rdev == node->st_rdev && st.st_ino == node->st_ino;
+                st.st_rdev == node->st_rdev && st.st_ino == node->st_ino &&
+                st.st_dev == node->st_dev;
     }
     (void)closedir(fds);
     return found;
