@@ -53,9 +53,9 @@ static int go(app *a, const grobo_posture *target, const char *doing)
     conn c;
     int status = conn_open_to_move(&c, a);
     if (!status) {
-        int error;
-        c.moving = true;
-        error = conn_wait(&c, grobo_session_move(c.session, target));
+        int error, job = grobo_session_move(c.session, target);
+        c.moving = job > 0; /* refused at once: nothing moves, nothing is to be left */
+        error = conn_wait(&c, job);
         if (error)
             status = conn_fail(&c, error, doing);
         else
