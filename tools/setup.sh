@@ -105,6 +105,8 @@ look() {
         libjansson-dev jansson-devel jansson jansson-dev libjansson-devel
     need libedit 'to edit lines in grctl shell' have_library libedit -- \
         libedit-dev libedit-devel libedit libedit-dev libedit-devel
+    need ncurses 'to draw in grctl monitor' have_library ncursesw -- \
+        libncurses-dev ncurses-devel ncurses ncurses-dev ncurses-devel
     [ $level -ge 2 ] || return
     need cmocka 'for the tests' have_library cmocka -- \
         libcmocka-dev libcmocka-devel cmocka cmocka-dev libcmocka-devel

@@ -38,7 +38,7 @@ check "the terminal is as it was" until_screen ' icanon'
 type_line "$play"
 until_screen 'playing'
 keys C-c
-check "Ctrl-C is a signal still" until_screen '^status 130'
+check "Ctrl-C is a signal still" until_screen 'status 130'
 check "the terminal is as it was then too" until_screen ' icanon'
 
 type_line "$play"

@@ -27,7 +27,8 @@ typedef struct app {
     int verbosity; /* -1 quiet, 0, 1, 2 */
     bool color_out, color_err;
     bool tty_in, tty_out, tty_err;
-    char *hushed; /* not NULL: app_fail() puts its line here, APP_LINE_BYTES, and says nothing */
+    bool reconnects; /* a lost line is opened again, and is no failure */
+    char *hushed;    /* not NULL: app_fail() puts its line here, APP_LINE_BYTES, and says nothing */
 } app;
 
 /* Sets what follows from the parsed line: verbosity, colours, terminals. */

@@ -12,6 +12,7 @@
     X(scan)                                                                                        \
     X(info)                                                                                        \
     X(status)                                                                                      \
+    X(monitor)                                                                                     \
     X(servo)                                                                                       \
     X(init)                                                                                        \
     X(move)                                                                                        \

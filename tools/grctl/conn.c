@@ -47,6 +47,10 @@ static void on_session(grobo_session *session, grobo_session_event event, int er
         link->up = true;
         break;
     case GROBO_SESSION_EVENT_LOST:
+        link->up = false;
+        if (!link->user || !link->user->a->reconnects || link->kept)
+            link->link_error = error ? error : GROBO_ERR_UNPLUGGED;
+        break;
     case GROBO_SESSION_EVENT_FAILED:
         link->link_error = error ? error : GROBO_ERR_UNPLUGGED;
         break;
@@ -236,6 +240,7 @@ static int make_session(conn *c, const char *device, bool check)
                                    .driver_ctx = a->robot ? &c->link->trims : NULL,
                                    .robot = &robot,
                                    .skip_check = !check,
+                                   .reconnect = a->reconnects,
                                    .on_event = on_session,
                                    .on_robot = on_robot,
                                    .on_tap = on_tap,

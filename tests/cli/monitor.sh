@@ -1,0 +1,115 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# `grctl monitor` in a real terminal: what it shows, the keys it takes, a lost line, a new size.
+. tests/support/cli.sh
+. tests/support/terminal.sh
+
+start_told_sim || { echo "Bail out! the simulator did not start"; exit 1; }
+
+# Where no full screen can be, it is a table: that ends with a signal.
+plain() {
+    timeout 3 "$@" >"$work/out" 2>"$work/err" </dev/null
+    grep -q "this is 'grctl status --watch'" "$work/err" && says '^ *12  R_KNEE_P'
+}
+check "no terminal: the table" plain "$GRCTL" -d "$robot" monitor
+json_lines() {
+    timeout 3 "$GRCTL" -d "$robot" monitor --json >"$work/out" 2>"$work/err"
+    json 'len(lines) >= 2 and all(len(line["joints"]) == 20 for line in lines)'
+}
+if have_json; then
+    check "as JSON: an object a round" json_lines
+else
+    skip "as JSON: an object a round" "no python3 to parse JSON with"
+fi
+
+if ! have_terminal; then
+    skip "the full screen" "no tmux"
+    done_testing
+    exit
+fi
+
+monitor="'$GRCTL' -d '$work/robot' monitor motions/greet.pseq; echo status \$?; stty -a"
+open_screen
+type_line "TERM=dumb $monitor"
+check "a dumb terminal: the table" until_screen 'R_KNEE_P  *-40.0'
+keys C-c
+until_screen 'status 130'
+
+type_line "$monitor"
+check "the robot and its line" until_screen '^GR001  .*/robot'
+check "a joint of either leg" until_screen '12 KNEE_P  *-40.0 .* off .*18 KNEE_P  *40.0 .* off'
+check "battery and link" until_screen '^ 7.3[0-9] V  [0-9]* replies'
+check "the keys" until_screen 'e EMERGENCY STOP'
+check "the first joint is chosen" until_screen ' 2>NECK_Y'
+keys Down
+check "down: the next one" until_screen ' 3>SHOULDER_P'
+keys Right
+check "right: the other side" until_screen ' 6>SHOULDER_P'
+keys -l ']'
+check "limp joints are not nudged" until_screen 'no torque there'
+keys 2
+check "a group" until_screen '^ 4>SHOULDER_R'
+keys t
+check "torque of the group" until_screen '^ 5>ELBOW_P  *-20.0 .* on '
+check "of no other" until_screen ' 8 ELBOW_P  *20.0 .* off'
+keys -l '}'
+check "a nudge" until_screen '^ 5>ELBOW_P  *-15.0 .* on '
+keys -l '['
+check "a small one back" until_screen '^ 5>ELBOW_P  *-16.0 '
+keys b
+check "brake" until_screen '^ 5>ELBOW_P .* bra '
+keys i
+check "the initial posture" until_screen '^ 5>ELBOW_P  *-20.0 .* on .* 8 ELBOW_P  *20.0 .* on '
+keys p
+check "playing" until_screen 'playing [0-9.]* of 5.0 s at 100 %'
+keys Space
+check "pause" until_screen 'paused'
+keys Space -
+check "slower" until_screen 'playing .* at 90 %'
+keys s
+check "stop" until_screen 'idle'
+
+tell temperature 13 60
+check "a warm servo" until_screen '^13 ANKLE_P .* \(59\|60\) '
+tell silent 12 on
+check "a silent one" until_screen '^12 KNEE_P  *no reply'
+tell silent 12 off
+keys R
+check "it answers again" until_screen '^12 KNEE_P .* on '
+tell plug out
+check "the line is lost" until_screen 'LINE LOST for'
+tell plug in
+check "the line comes back" until_screen '^ 5>ELBOW_P .* on '
+check "and is told of" until_screen 'line lost 1 times'
+
+on_screen resize-window -x 50 -y 12
+check "too small a window" until_screen 'a larger window, please'
+on_screen resize-window -x 120 -y 40
+check "a large one: longer bars" until_screen 'NECK_Y  *[-0-9.]* .\{25,\} on '
+
+keys e
+check "emergency stop" until_screen 'EMERGENCY STOP: R takes it back'
+check "all are braked" until_screen '^ 5>ELBOW_P .* bra .* 8 ELBOW_P .* bra '
+keys i
+check "nothing moves then" until_screen 'an emergency stop stands'
+keys R
+check "it is taken back" until_screen 'stop taken back'
+keys q
+check "q quits" until_screen '^status 0'
+check "the terminal is as it was" until_screen ' icanon'
+
+type_line "$monitor"
+until_screen '^GR001'
+keys C-c
+check "Ctrl-C is told by the status" until_screen 'status 130'
+check "the terminal is as it was then too" until_screen ' icanon'
+
+type_line "NO_COLOR=1 LC_ALL=C $monitor"
+check "plain letters where nothing else is known" until_screen 'NECK_Y .* -*#-* '
+keys q
+until_screen '^status 0'
+type_line "'$GRCTL' -d '$work/none' monitor"
+check "no such device" until_screen 'none: no such file'
+on_screen kill-server
+stop_sim
+done_testing

@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: MIT */
+/* The live view of `monitor`: what it knows, and how that is drawn. */
+#ifndef GRCTL_MONITOR_H
+#define GRCTL_MONITOR_H
+
+#include "conn.h"
+#include "keys.h"
+#include "play.h"
+#include "play_keys.h"
+
+enum { MONITOR_TEXT_BYTES = 256 };
+
+typedef struct monitor {
+    conn c;
+    const grobo_model *model;
+    playlist list; /* what p plays; n 0: nothing was named */
+    bool prepared; /* the clips of the list are made */
+    play_keys keys;
+    grobo_joint_mask chosen; /* what torque and nudges are for */
+    int cursor;              /* place of the joint among monitor_places */
+    char said[APP_LINE_BYTES];
+    bool bad; /* what was said is a complaint */
+    bool over;
+    bool blocks;    /* the terminal knows UTF-8 */
+    int64_t up_us;  /* since when the line stands or is lost */
+    unsigned drops; /* of the line */
+} monitor;
+
+/* Where joints stand on the screen: the robot's right side left, as one sees who faces us. */
+typedef struct monitor_place {
+    const char *joint;
+    int row;    /* below the title */
+    int column; /* 0, 1 */
+} monitor_place;
+
+enum { MONITOR_PLACES = 20 };
+extern const monitor_place monitor_places[MONITOR_PLACES];
+
+/* The joint at a place. */
+int monitor_joint(const monitor *m, int place);
+
+void monitor_draw(const monitor *m);
+
+#endif
