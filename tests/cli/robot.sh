@@ -20,6 +20,17 @@ check_json "status has 20 joints with their values" \
     on_robot --json status
 check_json "status counts frames" 'lines[0]["link"]["rx_frames"] == 2' on_robot --json status j3
 
+# Who has seen enough of a stream closes the pipe: that ends it.
+left_alone() {
+    timeout 20 "$GRCTL" -d "$robot" status --watch --interval 20 2>/dev/null |
+        head -n 3 >"$work/out"
+    says '^ *9  R_HIP_Y'
+}
+watch_ends() {
+    left_alone && ! "$GRCTL" -d "$robot" status 2>&1 | grep -q 'in use'
+}
+check "status --watch ends with its reader" watch_ends
+
 check "servo on" both exits 0 on_robot servo on right_arm --- true
 check_json "torque stays on" '[j["torque"] for j in lines[0]["joints"]] == ["on"] * 3' \
     on_robot --json status 2

@@ -60,7 +60,8 @@ static int watch(conn *c, grobo_joint_mask joints)
         next_us += interval_us;
         if (next_us < grobo_now_us())
             next_us = grobo_now_us();
-    } while (!c->signal && !c->link_error && conn_sleep_until(c, next_us) == GROBO_OK);
+    } while (output_flush() && !c->signal && !c->link_error &&
+             conn_sleep_until(c, next_us) == GROBO_OK);
     return status;
 }
 
