@@ -12,6 +12,7 @@
 #include <grobo/serial.h>
 
 #include "line.h"
+#include "loop.h"
 #include "resources.h"
 
 static test_line line;
@@ -72,32 +73,11 @@ static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *byt
     seen.tapped[direction] += size;
 }
 
-static void break_loop(grobo_timer *timer, int64_t late_us, void *ctx)
-{
-    (void)timer;
-    (void)late_us;
-    *(bool *)ctx = true;
-    event_base_loopbreak(base);
-}
-
-/* Runs the loop until a callback ends it; true when span_us passed instead. */
-static bool run_for(int64_t span_us)
-{
-    grobo_timer *timer;
-    bool passed = false;
-
-    assert_int_equal(grobo_timer_new(base, break_loop, &passed, NULL, &timer), GROBO_OK);
-    assert_int_equal(grobo_timer_set(timer, grobo_now_us() + span_us), GROBO_OK);
-    event_base_dispatch(base);
-    grobo_timer_free(timer);
-    return passed;
-}
-
 static void run_until_bytes(size_t size)
 {
     seen.stop_at = size;
     if (seen.size < size) {
-        assert_false(run_for(5000000));
+        assert_false(loop_run(base, 5000000));
     }
     assert_int_equal(seen.size, size);
 }
@@ -105,7 +85,7 @@ static void run_until_bytes(size_t size)
 static void run_until_event(grobo_serial_event event)
 {
     seen.stop_events = 1 << event;
-    assert_false(run_for(5000000));
+    assert_false(loop_run(base, 5000000));
 }
 
 static int set_up(void **state)
@@ -235,7 +215,7 @@ static void queued_bytes_can_be_dropped(void **state)
     (void)fill(500);
     grobo_serial_discard_output(serial);
     assert_int_equal(grobo_serial_pending(serial), 0);
-    assert_true(run_for(20000));
+    assert_true(loop_run(base, 20000));
     assert_int_equal(seen.events[GROBO_SERIAL_DRAINED], 0);
 }
 
@@ -254,7 +234,7 @@ static void a_hang_up_is_one_event_and_then_silence(void **state)
     assert_true(strlen(grobo_serial_cause(serial)->text) > 0);
 
     cpu_before_us = test_cpu_us();
-    assert_true(run_for(200000));
+    assert_true(loop_run(base, 200000));
     /* A spinning loop would use all of the 200 ms. */
     assert_true(test_cpu_us() - cpu_before_us < 50000);
     assert_int_equal(seen.events[GROBO_SERIAL_UNPLUGGED], 1);
@@ -267,7 +247,7 @@ static void a_hang_up_with_bytes_queued_is_one_event(void **state)
     (void)fill(500);
     test_line_close(&line);
     run_until_event(GROBO_SERIAL_UNPLUGGED);
-    assert_true(run_for(20000));
+    assert_true(loop_run(base, 20000));
     assert_int_equal(seen.events[GROBO_SERIAL_UNPLUGGED], 1);
     assert_int_equal(seen.events[GROBO_SERIAL_DRAINED], 0);
     assert_int_equal(grobo_serial_pending(serial), 0);
@@ -289,7 +269,7 @@ static void closing_drops_what_was_not_told_yet(void **state)
     test_line_close(&line);
     assert_int_equal(grobo_serial_send(serial, "x", 1), GROBO_ERR_UNPLUGGED);
     grobo_serial_close(serial);
-    assert_true(run_for(20000));
+    assert_true(loop_run(base, 20000));
     assert_int_equal(seen.events[GROBO_SERIAL_UNPLUGGED], 0);
 }
 
@@ -316,7 +296,7 @@ static void it_may_be_freed_in_on_data(void **state)
     test_line_write(&line, "x", 1);
     run_until_bytes(1);
     assert_null(serial);
-    assert_true(run_for(10000));
+    assert_true(loop_run(base, 10000));
 }
 
 static void it_may_be_freed_in_on_event(void **state)
@@ -326,7 +306,7 @@ static void it_may_be_freed_in_on_event(void **state)
     test_line_close(&line);
     run_until_event(GROBO_SERIAL_UNPLUGGED);
     assert_null(serial);
-    assert_true(run_for(10000));
+    assert_true(loop_run(base, 10000));
 }
 
 static void each_lack_of_memory_is_told_and_leaks_nothing(void **state)

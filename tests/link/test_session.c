@@ -17,6 +17,7 @@
 #include <grobo/sim_server.h>
 
 #include "line.h"
+#include "loop.h"
 #include "resources.h"
 
 static struct event_base *base;
@@ -90,34 +91,13 @@ static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *byt
 
 /* ---- running ------------------------------------------------------------------------------ */
 
-static void on_end_of_wait(grobo_timer *timer, int64_t late_us, void *ctx)
-{
-    (void)timer;
-    (void)late_us;
-    *(bool *)ctx = true;
-    event_base_loopbreak(base);
-}
-
-/* Runs the loop until a callback ends it; true when span_us passed instead. */
-static bool run_for(int64_t span_us)
-{
-    grobo_timer *timer;
-    bool passed = false;
-
-    assert_int_equal(grobo_timer_new(base, on_end_of_wait, &passed, NULL, &timer), GROBO_OK);
-    assert_int_equal(grobo_timer_set(timer, grobo_now_us() + span_us), GROBO_OK);
-    event_base_dispatch(base);
-    grobo_timer_free(timer);
-    return passed;
-}
-
 static void run_until(const int *count, int wanted)
 {
     int64_t end_us = grobo_now_us() + 5000000;
 
     while (*count < wanted) {
         assert_true(grobo_now_us() < end_us);
-        (void)run_for(end_us - grobo_now_us());
+        (void)loop_run(base, end_us - grobo_now_us());
     }
 }
 
@@ -298,7 +278,7 @@ static void what_cannot_be_opened_is_told_at_once(void **state)
     make((grobo_session_config){.device = "auto", .scan = none});
     assert_int_equal(grobo_session_open(session), GROBO_ERR_NOTFOUND);
     assert_int_equal(grobo_session_get_state(session), GROBO_SESSION_CLOSED);
-    assert_true(run_for(10000));
+    assert_true(loop_run(base, 10000));
     assert_int_equal(seen.fails, 0);
 }
 
@@ -410,7 +390,7 @@ static void a_lost_port_is_found_again(void **state)
     assert_int_equal(grobo_session_check(session), GROBO_ERR_CLOSED);
 
     cpu_before_us = test_cpu_us();
-    assert_true(run_for(300000));
+    assert_true(loop_run(base, 300000));
     assert_true(test_cpu_us() - cpu_before_us < 50000);
     assert_int_equal(seen.losts, 1);
 
@@ -447,7 +427,7 @@ static void without_reconnect_a_lost_port_is_closed(void **state)
     assert_int_equal(grobo_sim_server_plug(server, false), GROBO_OK);
     run_until(&seen.losts, 1);
     assert_int_equal(grobo_session_get_state(session), GROBO_SESSION_CLOSED);
-    assert_true(run_for(150000));
+    assert_true(loop_run(base, 150000));
     assert_int_equal(seen.ups, 1);
     grobo_sim_server_free(server);
 }
@@ -462,7 +442,7 @@ static void it_may_be_freed_in_its_event(void **state)
     assert_int_equal(grobo_session_open(session), GROBO_OK);
     run_until(&seen.ups, 1);
     assert_null(session);
-    assert_true(run_for(10000));
+    assert_true(loop_run(base, 10000));
 }
 
 static void it_may_be_freed_in_an_event_of_the_engine(void **state)
@@ -472,7 +452,7 @@ static void it_may_be_freed_in_an_event_of_the_engine(void **state)
     come_up();
     seen.free_on_robot = true;
     assert_true(grobo_session_sense(session, 3, GROBO_SENSE_FULL) > 0);
-    assert_false(run_for(5000000));
+    assert_false(loop_run(base, 5000000));
     assert_null(session);
     assert_int_equal(seen.robot, 1);
 }
@@ -485,7 +465,7 @@ static void it_may_be_closed_in_its_event(void **state)
     assert_int_equal(grobo_session_open(session), GROBO_OK);
     run_until(&seen.ups, 1);
     assert_int_equal(grobo_session_get_state(session), GROBO_SESSION_CLOSED);
-    assert_true(run_for(10000));
+    assert_true(loop_run(base, 10000));
     seen.close_on_event = false;
     come_up();
 }

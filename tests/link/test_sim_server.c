@@ -16,6 +16,7 @@
 
 #include <grobo/sim_server.h>
 
+#include "loop.h"
 #include "resources.h"
 
 /* Frames of the original: check, torque of servo 1 on, state of servo 1. */
@@ -61,27 +62,6 @@ static void on_event(grobo_serial *serial, grobo_serial_event event, int error, 
     event_base_loopbreak(base);
 }
 
-static void on_end_of_wait(grobo_timer *timer, int64_t late_us, void *ctx)
-{
-    (void)timer;
-    (void)late_us;
-    *(bool *)ctx = true;
-    event_base_loopbreak(base);
-}
-
-/* Runs the loop until a callback ends it; true when span_us passed instead. */
-static bool run_for(int64_t span_us)
-{
-    grobo_timer *timer;
-    bool passed = false;
-
-    assert_int_equal(grobo_timer_new(base, on_end_of_wait, &passed, NULL, &timer), GROBO_OK);
-    assert_int_equal(grobo_timer_set(timer, grobo_now_us() + span_us), GROBO_OK);
-    event_base_dispatch(base);
-    grobo_timer_free(timer);
-    return passed;
-}
-
 static void client_open(client *c, const char *device, int baud_bps)
 {
     const grobo_serial_config config = {.device = device,
@@ -95,7 +75,7 @@ static void client_open(client *c, const char *device, int baud_bps)
     memset(c, 0, sizeof *c);
     assert_int_equal(grobo_serial_new(&config, &c->serial), GROBO_OK);
     assert_int_equal(grobo_serial_open(c->serial), GROBO_OK);
-    assert_false(run_for(5000000));
+    assert_false(loop_run(base, 5000000));
     assert_int_equal(c->events[GROBO_SERIAL_OPENED], 1);
 }
 
@@ -106,7 +86,7 @@ static bool ask(client *c, const uint8_t *frame, size_t size, size_t reply_bytes
     c->size = 0;
     c->wanted = reply_bytes > 0 ? reply_bytes : sizeof c->bytes;
     assert_int_equal(grobo_serial_send(c->serial, frame, size), size);
-    return !run_for(timeout_us) && c->size == reply_bytes;
+    return !loop_run(base, timeout_us) && c->size == reply_bytes;
 }
 
 static void assert_answers(client *c)
@@ -182,7 +162,7 @@ static void programs_come_and_go_and_the_robot_stays(void **state)
     assert_int_equal(torque_of_servo_1(&c), 0);
     assert_false(ask(&c, torque_on, sizeof torque_on, 0, 20000));
     grobo_serial_free(c.serial);
-    assert_true(run_for(20000));
+    assert_true(loop_run(base, 20000));
     for (int i = 0; i < 3; i++) {
         client_open(&c, grobo_sim_server_device(server), 0);
         assert_int_equal(torque_of_servo_1(&c), 1);
@@ -249,7 +229,7 @@ static void the_link_follows_the_terminal(void **state)
     assert_int_equal(grobo_sim_server_plug(server, false), GROBO_OK);
     assert_string_equal(grobo_sim_server_device(server), "");
     assert_int_not_equal(lstat(link, &st), 0);
-    assert_false(run_for(5000000));
+    assert_false(loop_run(base, 5000000));
     assert_int_equal(c.events[GROBO_SERIAL_UNPLUGGED], 1);
     grobo_serial_free(c.serial);
 
@@ -284,7 +264,7 @@ static void a_fault_hangs_up_and_the_port_comes_back(void **state)
     assert_int_equal(grobo_sim_set_fault(grobo_sim_server_sim(server), GROBO_SIM_FAULT_HANG_UP, 0),
                      0);
     for (int i = 0; i < 100 && grobo_sim_server_device(server)[0] == '\0'; i++) {
-        assert_true(run_for(10000));
+        assert_true(loop_run(base, 10000));
     }
     client_open(&c, grobo_sim_server_device(server), 0);
     assert_answers(&c);
@@ -309,7 +289,7 @@ static void tcp_serves_one_caller_at_a_time(void **state)
     grobo_serial_free(a.serial);
     /* The first one has left: the second one's frame is heard now. */
     b.wanted = 1;
-    assert_false(run_for(5000000));
+    assert_false(loop_run(base, 5000000));
     assert_int_equal(b.size, 1);
     assert_int_equal(b.bytes[0], 0x07);
     grobo_serial_free(b.serial);
@@ -349,14 +329,14 @@ static void a_flood_is_taken_at_the_wires_pace_and_idle_is_idle(void **state)
     memset(flood, 0x55, sizeof flood);
     assert_int_equal(grobo_serial_send(c.serial, flood, sizeof flood), sizeof flood);
     for (int i = 0; i < 500 && grobo_sim_server_sim(server)->stats.rx_bytes < sizeof flood; i++) {
-        (void)run_for(10000);
+        (void)loop_run(base, 10000);
         grobo_sim_step(grobo_sim_server_sim(server), grobo_now_us());
     }
     assert_int_equal(grobo_sim_server_sim(server)->stats.rx_bytes, sizeof flood);
     assert_true(grobo_now_us() - start_us >= (int64_t)sizeof flood * 10 * 1000000 / 115200);
-    (void)run_for(50000);
+    (void)loop_run(base, 50000);
     cpu_before_us = test_cpu_us();
-    assert_true(run_for(200000));
+    assert_true(loop_run(base, 200000));
     assert_true(test_cpu_us() - cpu_before_us < 50000);
     assert_answers(&c);
     grobo_serial_free(c.serial);

@@ -11,6 +11,32 @@
 
 #include "motion_files.h"
 
+const char full_pose[] = "type: PoseSeq\nname: \"a \\\"b\\\"\"\ntargetBody: GR001\n"
+                         "author: { who: me, 'two words': [ ] }\n"
+                         "refs:\n"
+                         "  - time: 0.25\n"
+                         "    maxTransitionTime: 0.125\n"
+                         "    comment: \"first: one\"\n"
+                         "    refer:\n"
+                         "      type: Pose\n"
+                         "      name: bow\n"
+                         "      joints: [ 3, 0 ]\n"
+                         "      q: [ .5, -1e-019 ]\n"
+                         "      spJoints: [ 3 ]\n"
+                         "      weight: 7\n"
+                         "      ikLinks:\n"
+                         "        - name: R_ANKLE_R\n"
+                         "          index: 6\n"
+                         "          isTouching: true\n"
+                         "          isSlave: true\n"
+                         "          contactPoints: [ [ 0, 0, 1 ] ]\n"
+                         "          partingDirection: [ 0, 0, 1 ]\n"
+                         "          translation: [ 1, 2, 3 ]\n"
+                         "          rotation: [ 1, 0, 0, 0, 1, 0, 0, 0, 1 ]\n"
+                         "      zmp: [ 0.1, 0.2, 0 ]\n"
+                         "      isZmpStationaryPoint: true\n"
+                         "  - { time: 1, refer: bow }\n";
+
 grobo_motion *motion_of(const char *text, grobo_motion_format format)
 {
     grobo_read_options options = {.format = format, .model = &grobo_gr001_model, .name = "text"};

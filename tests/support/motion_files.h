@@ -8,6 +8,9 @@
 
 #include <grobo/motion_io.h>
 
+/* One of everything that a key pose may have. */
+extern const char full_pose[];
+
 /* Reads a motion from a text; fails the test if that fails. */
 grobo_motion *motion_of(const char *text, grobo_motion_format format);
 /* Reads a text with these options and gives the result; what was read is freed. */

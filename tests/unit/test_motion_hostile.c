@@ -13,33 +13,6 @@
 #include "motion_files.h"
 #include "motion_mem.h"
 
-/* One of everything that a key pose may have. */
-static const char pose[] = "type: PoseSeq\nname: \"a \\\"b\\\"\"\ntargetBody: GR001\n"
-                           "author: { who: me, 'two words': [ ] }\n"
-                           "refs:\n"
-                           "  - time: 0.25\n"
-                           "    maxTransitionTime: 0.125\n"
-                           "    comment: \"first: one\"\n"
-                           "    refer:\n"
-                           "      type: Pose\n"
-                           "      name: bow\n"
-                           "      joints: [ 3, 0 ]\n"
-                           "      q: [ .5, -1e-019 ]\n"
-                           "      spJoints: [ 3 ]\n"
-                           "      weight: 7\n"
-                           "      ikLinks:\n"
-                           "        - name: R_ANKLE_R\n"
-                           "          index: 6\n"
-                           "          isTouching: true\n"
-                           "          isSlave: true\n"
-                           "          contactPoints: [ [ 0, 0, 1 ] ]\n"
-                           "          partingDirection: [ 0, 0, 1 ]\n"
-                           "          translation: [ 1, 2, 3 ]\n"
-                           "          rotation: [ 1, 0, 0, 0, 1, 0, 0, 0, 1 ]\n"
-                           "      zmp: [ 0.1, 0.2, 0 ]\n"
-                           "      isZmpStationaryPoint: true\n"
-                           "  - { time: 1, refer: bow }\n";
-
 /* ---- caps and quadratic inputs ------------------------------------------------------------ */
 
 /* A source of one text and then another one for ever, up to a total. */
@@ -131,7 +104,7 @@ static void test_billion_laughs(void **state)
 /* ---- memory ------------------------------------------------------------------------------- */
 
 static const char *const samples[] = {
-    "500 1 2\n600 3 4\n", pose,
+    "500 1 2\n600 3 4\n", full_pose,
     "type: MotionSeq\nname:\nrefs:\n- { time: 0, refer: &a { type: Motion, joints: [ 0 ], q: [ 1 ]"
     " } }\n- { time: 0, refer: *a }\n",
     "type: BodyMotion\ncomponents:\n- { type: MultiValueSeq, content: JointPosition, frameRate: "

@@ -91,36 +91,10 @@ static void test_m_line_too_long(void **state)
 
 /* ---- key poses ---------------------------------------------------------------------------- */
 
-static const char pose[] = "type: PoseSeq\nname: \"a \\\"b\\\"\"\ntargetBody: GR001\n"
-                           "author: { who: me, 'two words': [ ] }\n"
-                           "refs:\n"
-                           "  - time: 0.25\n"
-                           "    maxTransitionTime: 0.125\n"
-                           "    comment: \"first: one\"\n"
-                           "    refer:\n"
-                           "      type: Pose\n"
-                           "      name: bow\n"
-                           "      joints: [ 3, 0 ]\n"
-                           "      q: [ .5, -1e-019 ]\n"
-                           "      spJoints: [ 3 ]\n"
-                           "      weight: 7\n"
-                           "      ikLinks:\n"
-                           "        - name: R_ANKLE_R\n"
-                           "          index: 6\n"
-                           "          isTouching: true\n"
-                           "          isSlave: true\n"
-                           "          contactPoints: [ [ 0, 0, 1 ] ]\n"
-                           "          partingDirection: [ 0, 0, 1 ]\n"
-                           "          translation: [ 1, 2, 3 ]\n"
-                           "          rotation: [ 1, 0, 0, 0, 1, 0, 0, 0, 1 ]\n"
-                           "      zmp: [ 0.1, 0.2, 0 ]\n"
-                           "      isZmpStationaryPoint: true\n"
-                           "  - { time: 1, refer: bow }\n";
-
 static void test_pose(void **state)
 {
     (void)state;
-    grobo_motion *motion = motion_of(pose, GROBO_FORMAT_AUTO);
+    grobo_motion *motion = motion_of(full_pose, GROBO_FORMAT_AUTO);
     grobo_key_info info;
     grobo_kept kept;
     size_t count;
@@ -161,7 +135,8 @@ static void test_positions(void **state)
     grobo_motion *motion = NULL;
     uint32_t line = 0, column = 0;
 
-    assert_int_equal(grobo_motion_read_memory(pose, strlen(pose), &options, NULL, &motion), 0);
+    assert_int_equal(
+        grobo_motion_read_memory(full_pose, strlen(full_pose), &options, NULL, &motion), 0);
     assert_true(grobo_motion_position(motion, 0, 3, &line, &column));
     assert_true(line == 13 && column == 12);
     assert_false(grobo_motion_position(motion, 0, 1, &line, &column));

@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: MIT */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <event2/event.h>
+
+#include <grobo/loop.h>
+#include <grobo/port.h>
+
+#include "loop.h"
+
+typedef struct bounded_wait {
+    struct event_base *base;
+    bool passed;
+} bounded_wait;
+
+static void on_end_of_wait(grobo_timer *timer, int64_t late_us, void *ctx)
+{
+    bounded_wait *w = ctx;
+
+    (void)timer;
+    (void)late_us;
+    w->passed = true;
+    event_base_loopbreak(w->base);
+}
+
+bool loop_run(struct event_base *base, int64_t span_us)
+{
+    bounded_wait w = {.base = base};
+    grobo_timer *timer;
+
+    assert_int_equal(grobo_timer_new(base, on_end_of_wait, &w, NULL, &timer), GROBO_OK);
+    assert_int_equal(grobo_timer_set(timer, grobo_now_us() + span_us), GROBO_OK);
+    event_base_dispatch(base);
+    grobo_timer_free(timer);
+    return w.passed;
+}

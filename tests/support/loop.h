@@ -1,0 +1,14 @@
+/* SPDX-License-Identifier: MIT */
+/* An event loop run for a bounded time. */
+#ifndef TESTS_SUPPORT_LOOP_H
+#define TESTS_SUPPORT_LOOP_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+struct event_base;
+
+/* Runs the loop until a callback breaks it; true when span_us passed instead. */
+bool loop_run(struct event_base *base, int64_t span_us);
+
+#endif
