@@ -51,15 +51,25 @@ keys 2
 check "a group" until_screen '^ 4>SHOULDER_R'
 keys t
 check "torque of the group" until_screen '^ 5>ELBOW_P  *-20.0 .* on '
+check "its end is told" until_screen '^torque on: done'
 check "of no other" until_screen ' 8 ELBOW_P  *20.0 .* off'
 keys -l '}'
 check "a nudge" until_screen '^ 5>ELBOW_P  *-15.0 .* on '
+until_screen '^nudge: done'
 keys -l '['
 check "a small one back" until_screen '^ 5>ELBOW_P  *-16.0 '
+until_screen '^nudge: done'
 keys b
 check "brake" until_screen '^ 5>ELBOW_P .* bra '
+until_screen '^brake: done'
+keys Space
+check "no pause where nothing plays" until_screen '^nothing is playing'
 keys i
+check "what is under way is shown" until_screen '^[█░]*  move to the initial posture'
+keys p
+check "and told to who comes too early" until_screen '^play: not now.*: move to the initial posture'
 check "the initial posture" until_screen '^ 5>ELBOW_P  *-20.0 .* on .* 8 ELBOW_P  *20.0 .* on '
+check "is told of when it is over" until_screen '^move to the initial posture: done'
 keys p
 check "playing" until_screen 'playing [0-9.]* of 5.0 s at 100 %'
 keys Space
@@ -67,7 +77,11 @@ check "pause" until_screen 'paused'
 keys Space -
 check "slower" until_screen 'playing .* at 90 %'
 keys s
-check "stop" until_screen 'idle'
+check "stop" until_screen '^play: stopped'
+keys i
+until_screen '^move to the initial posture *$'
+keys s
+check "a move is stopped too" until_screen '^move to the initial posture: stopped'
 
 tell temperature 13 60
 check "a warm servo" until_screen '^13 ANKLE_P .* \(59\|60\) '

@@ -21,15 +21,37 @@ __attribute__((format(printf, 3, 4))) static void say(monitor *m, bool bad, cons
     m->bad = bad;
 }
 
-/* What a request came to: its job's end is told by on_event(). */
+static bool is_playing(const monitor *m)
+{
+    grobo_sequencer_state state = grobo_robot_play_state(m->c.robot);
+    return state == GROBO_SEQUENCER_APPROACHING || state == GROBO_SEQUENCER_PLAYING ||
+           state == GROBO_SEQUENCER_PAUSED || state == GROBO_SEQUENCER_STOPPING;
+}
+
+const char *monitor_busy(const monitor *m)
+{
+    grobo_job_kind kind = grobo_robot_job(m->c.robot);
+    if (kind == GROBO_JOB_ESTOP)
+        return "emergency stop";
+    if (m->job)
+        return m->doing;
+    return is_playing(m) ? grobo_sequencer_state_name(grobo_robot_play_state(m->c.robot)) : NULL;
+}
+
+/* What a request came to: a number > 0 is that of a job, whose end is told by on_event(). */
 static void say_request(monitor *m, int result, const char *doing)
 {
+    const char *busy = monitor_busy(m);
     if (result == GROBO_ERR_STATE)
-        say(m, true, "%s: not now, something else is under way", doing);
+        say(m, true, "%s: not now, the robot is busy: %s", doing, busy ? busy : "moving");
     else if (result < 0)
         say(m, true, "%s: %s", doing, grobo_error_text(result));
     else
         say(m, false, "%s", doing);
+    if (result > 0) {
+        m->job = result;
+        m->doing = doing;
+    }
 }
 
 /* An emergency stop of another command stands here too. */
@@ -115,7 +137,7 @@ static void nudge(monitor *m, double by_deg)
     }
     grobo_posture_clamp(&target, m->model);
     grobo_posture_set_time_ms(&target, NUDGE_MS);
-    say_request(m, grobo_session_move(m->c.session, &target), "nudged");
+    say_request(m, grobo_session_move(m->c.session, &target), "nudge");
 }
 
 static void go_init(monitor *m)
@@ -125,13 +147,13 @@ static void go_init(monitor *m)
         return;
     grobo_posture_init_pose(&target, m->model);
     grobo_posture_set_time_ms(&target, INIT_MS);
-    say_request(m, grobo_session_move(m->c.session, &target), "to the initial posture");
+    say_request(m, grobo_session_move(m->c.session, &target), "move to the initial posture");
 }
 
 static void start_play(monitor *m)
 {
     grobo_posture sensed;
-    int error = 0;
+    int job, error;
     if (!m->list.n) {
         say(m, true, "nothing to play: grctl monitor FILE...");
         return;
@@ -142,12 +164,14 @@ static void start_play(monitor *m)
     if (!m->prepared && playlist_prepare(&m->list, m->c.a, &sensed) != EXIT_DONE)
         return; /* it has said why */
     m->prepared = true;
-    error = grobo_session_play(m->c.session, &m->list.clip[0], &m->list.options[0]);
-    for (int i = 1; i < m->list.n && error >= 0; i++)
+    job = grobo_session_play(m->c.session, &m->list.clip[0], &m->list.options[0]);
+    for (int i = 1; i < m->list.n && job > 0; i++) {
         error = grobo_session_enqueue(m->c.session, &m->list.clip[i], &m->list.options[i]);
-    m->c.moving = true;
-    m->keys.speed_pct = 100;
-    say_request(m, error, "play");
+        job = error < 0 ? error : job;
+    }
+    if (job > 0)
+        m->keys.speed_pct = 100;
+    say_request(m, job, "play");
 }
 
 static void reset(monitor *m)
@@ -182,6 +206,17 @@ static bool take_nudge(monitor *m, int key)
     return found != NULL;
 }
 
+/* Of a motion; s ends any other move too. */
+static void take_play_key(monitor *m, int key)
+{
+    const char *busy = monitor_busy(m);
+    if (is_playing(m) || (key == 's' && busy))
+        play_keys_take(&m->keys, key);
+    else if (key > 0 && key < 128 && strchr(" +=-s", key))
+        say(m, true, "nothing is playing%s%s", busy ? "; the robot is busy: " : "",
+            busy ? busy : "");
+}
+
 static void take_key(monitor *m, int key)
 {
     if (key == 'q') {
@@ -212,7 +247,7 @@ static void take_key(monitor *m, int key)
     else if (key == 'R')
         reset(m);
     else
-        play_keys_take(&m->keys, key);
+        take_play_key(m, key);
 }
 
 /* ---- what comes from the loop ---------------------------------------------------------------- */
@@ -235,22 +270,42 @@ static void on_draw(evutil_socket_t fd, short what, void *ctx)
     monitor_draw(ctx);
 }
 
+/* How the job ended that was asked for last; an end by our own hand is no complaint. */
+static void say_end(monitor *m, const grobo_event_job *job)
+{
+    const char *joint = job->joint >= 0 ? m->model->joints[job->joint].name : "";
+    if (job->number != m->job)
+        return;
+    m->job = 0;
+    if (job->result == GROBO_ERR_CANCELED)
+        say(m, false, "%s: stopped", m->doing);
+    else if (job->result < 0)
+        say(m, true, "%s: %s%s%s", m->doing, joint, *joint ? ": " : "",
+            grobo_error_text(job->result));
+    else if (job->kind != GROBO_JOB_PLAY)
+        say(m, false, "%s: done", m->doing);
+}
+
+static void say_play(monitor *m, grobo_sequencer_state to)
+{
+    if (to == GROBO_SEQUENCER_FINISHED)
+        say(m, false, "played");
+    else if (to == GROBO_SEQUENCER_IDLE)
+        say(m, false, "play: stopped");
+}
+
 static void on_event(conn *c, const grobo_event *event)
 {
     monitor *m = c->ctx;
-    const grobo_event_job *job = &event->u.job;
     if (event->kind == GROBO_EVENT_LINK_DOWN) {
         m->up_us = event->now_us;
         m->drops++;
     } else if (event->kind == GROBO_EVENT_TRIP) {
         say(m, true, "stopped for safety: %s", grobo_trip_name(event->u.trip.trip));
-    } else if (event->kind == GROBO_EVENT_PLAY && event->u.play.to == GROBO_SEQUENCER_FINISHED) {
-        c->moving = false;
-        say(m, false, "played");
-    } else if (event->kind == GROBO_EVENT_JOB && job->result < 0 &&
-               job->result != GROBO_ERR_CANCELED) {
-        say(m, true, "%s%s%s", job->joint >= 0 ? m->model->joints[job->joint].name : "",
-            job->joint >= 0 ? ": " : "", grobo_error_text(job->result));
+    } else if (event->kind == GROBO_EVENT_PLAY) {
+        say_play(m, event->u.play.to);
+    } else if (event->kind == GROBO_EVENT_JOB) {
+        say_end(m, &event->u.job);
     }
 }
 
@@ -297,7 +352,8 @@ static int sense_often(conn *c)
 static int leave(monitor *m, int error)
 {
     conn *c = &m->c;
-    if (!error && c->up && grobo_robot_moving(c->robot, grobo_now_us()))
+    c->moving = c->up && grobo_robot_moving(c->robot, grobo_now_us());
+    if (!error && c->moving)
         error = conn_wait(c, grobo_session_exit(c->session, GROBO_EXIT_HOLD));
     return error ? conn_fail(c, error, "monitor") : EXIT_DONE;
 }

@@ -19,7 +19,9 @@ typedef struct monitor {
     grobo_joint_mask chosen; /* what torque and nudges are for */
     int cursor;              /* place of the joint among monitor_places */
     char said[APP_LINE_BYTES];
-    bool bad; /* what was said is a complaint */
+    bool bad;          /* what was said is a complaint */
+    const char *doing; /* what the last job is, for people */
+    int job;           /* its number, 0 when it is over */
     bool over;
     bool blocks;    /* the terminal knows UTF-8 */
     int64_t up_us;  /* since when the line stands or is lost */
@@ -38,6 +40,9 @@ extern const monitor_place monitor_places[MONITOR_PLACES];
 
 /* The joint at a place. */
 int monitor_joint(const monitor *m, int place);
+
+/* What the robot is busy with, for people; NULL where it would take any request. */
+const char *monitor_busy(const monitor *m);
 
 void monitor_draw(const monitor *m);
 

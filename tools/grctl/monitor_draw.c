@@ -159,13 +159,17 @@ static void draw_link(const monitor *m)
     screen_put(ROW_LINK, 9, n->timeouts || n->bad_sums ? SCREEN_WARN : SCREEN_PLAIN, text);
 }
 
+/* Of the motion; beside it, or where there is none, what else the robot is busy with. */
 static void draw_play(const monitor *m, int columns)
 {
     grobo_play_progress p;
     char text[MONITOR_TEXT_BYTES];
     int width = columns / 3, full;
-    if (!m->list.n)
+    const char *busy = m->job ? monitor_busy(m) : NULL;
+    if (!m->list.n) {
+        screen_put(ROW_PLAY, 0, SCREEN_WARN, busy ? busy : "");
         return;
+    }
     grobo_robot_progress(m->c.robot, grobo_now_us(), &p);
     full = p.total_us ? (int)((double)p.t_us / (double)p.total_us * width + 0.5) : 0;
     for (int k = 0; k < width; k++)
@@ -176,7 +180,7 @@ static void draw_play(const monitor *m, int columns)
     snprintf(text, sizeof text, "%s %.1f of %.1f s at %d %%  %s",
              grobo_sequencer_state_name(p.state), (double)p.t_us / 1e6, (double)p.total_us / 1e6,
              m->keys.speed_pct, m->list.path[0]);
-    screen_put(ROW_PLAY, width + GAP, SCREEN_PLAIN, text);
+    screen_put(ROW_PLAY, width + GAP, busy ? SCREEN_WARN : SCREEN_PLAIN, busy ? busy : text);
 }
 
 static void draw_help(const monitor *m, int rows)
