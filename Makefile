@@ -7,6 +7,12 @@
 
 # ---- what a caller may set -----------------------------------------------------------------
 
+# CROSS=arm64 takes the tools, libraries and emulator of tools/cross/arm64.mk; `make cross` and
+# `make check-cross` set it after they brought what that needs.
+CROSS ?=
+CROSS_DIR ?= build/cross/$(CROSS)
+$(if $(CROSS),$(eval include tools/cross/$(CROSS).mk))
+
 BUILD ?= build
 PREFIX ?= /usr/local
 LIBDIR ?= $(PREFIX)/lib
@@ -17,6 +23,8 @@ DESTDIR ?=
 CROSS_COMPILE ?=
 SAN ?=
 PORT ?= posix
+EXE ?=
+EMULATOR ?=
 RING ?= unit engine link fault port cli fuzz lint export
 CFLAGS ?= -O2 -g
 PKG_CONFIG ?= $(CROSS_COMPILE)pkg-config
@@ -24,6 +32,10 @@ FUZZ_CC ?= clang
 TIDY ?= clang-tidy-14
 FUZZ_S ?= 60
 WERROR ?= -Werror
+SONAME ?= libgrobo.so.0
+SHARED_FLAGS ?= -Wl,-soname,$(SONAME) $(if $(SAN),,-Wl,-z,defs)
+OS_FLAGS ?= -D_DEFAULT_SOURCE -D_XOPEN_SOURCE=700 -pthread
+OS_LIBS ?= -lm -pthread
 ifeq ($(origin CC),default)
 CC := $(CROSS_COMPILE)gcc
 endif
@@ -41,8 +53,6 @@ SAN_FLAGS := $(if $(SAN),-fsanitize=$(SAN) -fno-sanitize-recover=all -fno-omit-f
 ALL_CPPFLAGS = -Iinclude -Iports/$(PORT)/include $(CPPFLAGS)
 ALL_CFLAGS = -std=c11 $(WARNINGS) -fvisibility=hidden -fPIC $(SAN_FLAGS) $(COV_FLAGS) $(CFLAGS)
 ALL_LDFLAGS = $(SAN_FLAGS) $(COV_FLAGS) $(LDFLAGS)
-# The layers that talk to an operating system see its functions; the others see C11 alone.
-OS_FLAGS := -D_DEFAULT_SOURCE -D_XOPEN_SOURCE=700 -pthread
 
 # pkg-config is asked when a recipe needs the answer, and then once: set-up may install a library
 # after make began.
@@ -63,7 +73,7 @@ EDIT_LIBS = $(if $(filter libedit,$(EDIT)),$(call flags,--libs,libedit))
 SCREEN := $(if $(shell $(PKG_CONFIG) --exists ncursesw 2>/dev/null && echo yes),ncurses,none)
 SCREEN_CFLAGS = $(if $(filter ncurses,$(SCREEN)),$(call once,SCREEN_CFLAGS_FOUND,$(filter -I%,$(call flags,--cflags,ncursesw))))
 SCREEN_LIBS = $(if $(filter ncurses,$(SCREEN)),$(call flags,--libs,ncursesw))
-LIBS = $(call once,LIBS,$(call flags,--libs,yaml-0.1 libevent_core) -lm -pthread)
+LIBS = $(call once,LIBS,$(call flags,--libs,yaml-0.1 libevent_core) $(OS_LIBS))
 
 # ---- sources, by folder: a folder may be empty or missing ----------------------------------
 
@@ -85,18 +95,19 @@ LIB_OBJS := $(CORE_OBJS) $(call objects,$(OTHER_SRCS))
 TOOL_OBJS := $(call objects,$(TOOL_SRCS))
 TOOL_LIB := $(BUILD)/libgrctl.a
 SUPPORT_OBJS := $(call objects,$(SUPPORT_SRCS))
-TEST_PROGRAMS := $(patsubst %.c,$(BUILD)/%,$(TEST_SRCS))
-FUZZ_REPLAYS := $(patsubst %.c,$(BUILD)/%,$(FUZZ_SRCS))
+TEST_PROGRAMS := $(patsubst %.c,$(BUILD)/%$(EXE),$(TEST_SRCS))
+FUZZ_REPLAYS := $(patsubst %.c,$(BUILD)/%$(EXE),$(FUZZ_SRCS))
 FUZZERS := $(patsubst %.c,$(BUILD)/%.fuzzer,$(FUZZ_SRCS))
-BENCHES := $(patsubst %.c,$(BUILD)/%,$(BENCH_SRCS))
-EXAMPLES := $(patsubst %.c,$(BUILD)/%,$(EXAMPLE_SRCS))
+BENCHES := $(patsubst %.c,$(BUILD)/%$(EXE),$(BENCH_SRCS))
+EXAMPLES := $(patsubst %.c,$(BUILD)/%$(EXE),$(EXAMPLE_SRCS))
 
 STATIC_LIB := $(BUILD)/libgrobo.a
 CORE_LIB := $(BUILD)/libgrobo-core.a
-SONAME := libgrobo.so.0
 SHARED_LIB := $(BUILD)/$(SONAME)
 PC_FILE := $(BUILD)/grobo.pc
-GRCTL := $(if $(TOOL_SRCS),$(BUILD)/grctl)
+GRCTL := $(if $(TOOL_SRCS),$(BUILD)/grctl$(EXE))
+# What runs on this machine: grctl, or a script that gives it to the emulator.
+GRCTL_RUN := $(if $(EMULATOR),$(BUILD)/run/grctl,$(GRCTL))
 SUPPORT_LIB := $(BUILD)/libsupport.a
 
 VERSION = $(shell sed -n 's/.*GROBO_VERSION_STRING "\(.*\)"/\1/p' include/grobo/version.h)
@@ -104,14 +115,15 @@ VERSION = $(shell sed -n 's/.*GROBO_VERSION_STRING "\(.*\)"/\1/p' include/grobo/
 # ---- targets -------------------------------------------------------------------------------
 
 .PHONY: help all demo check lint lint-quick format test check-san check-tsan check-memcheck install uninstall
-.PHONY: clean tidy fuzz cov dist bench plots FORCE
+.PHONY: clean tidy fuzz cov dist bench plots cross check-cross FORCE
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-15s %s\n", $$1, $$2 }' Makefile
 	@echo 'Variables: BUILD=build CC= AR= CROSS_COMPILE= CFLAGS= SAN=address,undefined'
 	@echo '  RING="unit engine" (for test) PREFIX=/usr/local DESTDIR= V=1'
+	@echo '  TARGET=one of $(TARGETS) (for cross)'
 
-all: $(STATIC_LIB) $(CORE_LIB) $(SHARED_LIB) $(PC_FILE) $(GRCTL) ## libraries and grctl, in build/
+all: $(STATIC_LIB) $(CORE_LIB) $(SHARED_LIB) $(PC_FILE) $(GRCTL) $(GRCTL_RUN) ## libraries and grctl, in build/
 
 MOTION ?= motions/greet.pseq
 demo: ## play MOTION=motions/greet.pseq on a simulated robot behind a pty
@@ -139,7 +151,8 @@ in_rings = $(foreach ring,$(RING),$(filter $(1)tests/$(ring)/%,$(2)))
 corpora = $(foreach f,$(FUZZ_REPLAYS),$(f)@tests/fuzz/corpus/$(patsubst fuzz_%,%,$(notdir $(f))))
 
 test: all $(TEST_PROGRAMS) $(FUZZ_REPLAYS) $(EXAMPLES) ## the tests alone; RING="unit engine" chooses
-	@GRCTL="$(abspath $(GRCTL))" BUILD="$(BUILD)" CC="$(CC)" TEST_LOGS="$(BUILD)/logs" tests/run.sh \
+	@GRCTL="$(abspath $(GRCTL_RUN))" BUILD="$(BUILD)" CC="$(CC)" TEST_LOGS="$(BUILD)/logs" \
+	    $(if $(EMULATOR),TEST_WRAPPER="$(EMULATOR)") tests/run.sh \
 	    $(call in_rings,$(BUILD)/,$(TEST_PROGRAMS)) $(call in_rings,,$(TEST_SCRIPTS)) \
 	    $(if $(filter fuzz,$(RING)),$(corpora))
 
@@ -153,6 +166,16 @@ check-tsan: ## the tests of what threads share under ThreadSanitizer
 check-memcheck: ## the same under valgrind
 	@TEST_WRAPPER='valgrind -q --leak-check=full --error-exitcode=99' \
 	    $(MAKE) --no-print-directory test RING='$(filter-out cli lint export,$(RING))'
+
+TARGETS := $(filter-out linux,$(patsubst tools/cross/%.mk,%,$(wildcard tools/cross/*.mk)))
+cross_make = $(if $(filter $(TARGETS),$(TARGET)),,$(error TARGET= is one of $(TARGETS)))$(MAKE) \
+    --no-print-directory CROSS=$(TARGET) BUILD=$(BUILD)/$(TARGET)
+cross: ## build for another machine, in build/arm64 for TARGET=arm64
+	@$(if $(filter $(TARGETS),$(TARGET)),tools/cross/libs.sh $(TARGET))
+	@$(cross_make) all
+
+check-cross: cross ## the tests of that build, under an emulator; RING= chooses
+	@$(cross_make) test
 
 bench: $(BENCHES) $(GRCTL) ## speed and punctuality; fails where a promise is not kept
 	@status=0; for program in $(BENCHES); do \
@@ -194,7 +217,7 @@ dist: ## a tarball of the last commit, in build/
 	git archive --prefix=libgrobo-$(VERSION)/ HEAD | gzip -n > $(BUILD)/libgrobo-$(VERSION).tar.gz
 
 # What grctl prints of itself: FILE=ARGUMENTS. It takes a grctl that runs on this machine.
-GRCTL_HERE ?= $(if $(CROSS_COMPILE),,$(GRCTL))
+GRCTL_HERE ?= $(if $(CROSS_COMPILE),,$(GRCTL_RUN))
 PAGES := man/man1/grctl.1=help,--man bash-completion/completions/grctl=completion,bash \
     zsh/site-functions/_grctl=completion,zsh fish/vendor_completions.d/grctl.fish=completion,fish
 comma := ,
@@ -267,18 +290,23 @@ $(STATIC_LIB) $(CORE_LIB) $(SUPPORT_LIB) $(TOOL_LIB): $(BUILD)/.flags
 
 $(SHARED_LIB): $(LIB_OBJS)
 	$(say) LD $@
-	$(Q)$(CC) -shared -Wl,-soname,$(SONAME) $(if $(SAN),,-Wl,-z,defs) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
+	$(Q)$(CC) -shared $(SHARED_FLAGS) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
 	@ln -sf $(SONAME) $(BUILD)/libgrobo.so
 
-$(BUILD)/grctl: $(filter %/main.o,$(TOOL_OBJS)) $(TOOL_LIB) $(STATIC_LIB)
+$(BUILD)/grctl$(EXE): $(filter %/main.o,$(TOOL_OBJS)) $(TOOL_LIB) $(STATIC_LIB)
 	$(say) LD $@
 	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(TOOL_LIBS) $(LIBS)
 
-$(TEST_PROGRAMS): $(BUILD)/%: $(BUILD)/%.o $(SUPPORT_LIB) $(TOOL_LIB) $(STATIC_LIB)
+$(BUILD)/run/grctl: $(GRCTL)
+	@mkdir -p $(@D)
+	@printf '#!/bin/sh\nexec %s "$$@"\n' '$(EMULATOR) $(abspath $<)' >$@
+	@chmod +x $@
+
+$(TEST_PROGRAMS): $(BUILD)/%$(EXE): $(BUILD)/%.o $(SUPPORT_LIB) $(TOOL_LIB) $(STATIC_LIB)
 	$(say) LD $@
 	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(CMOCKA_LIBS) $(LIBS)
 
-$(FUZZ_REPLAYS): $(BUILD)/%: $(BUILD)/%.o $(BUILD)/tests/support/replay_main.o $(TOOL_LIB) \
+$(FUZZ_REPLAYS): $(BUILD)/%$(EXE): $(BUILD)/%.o $(BUILD)/tests/support/replay_main.o $(TOOL_LIB) \
     $(STATIC_LIB)
 	$(say) LD $@
 	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(TOOL_LIBS) $(LIBS)
@@ -287,8 +315,8 @@ $(FUZZERS): %.fuzzer: %.o $(TOOL_LIB) $(STATIC_LIB)
 	$(say) LD $@
 	$(Q)$(CC) $(ALL_LDFLAGS) -fsanitize=fuzzer -o $@ $^ $(TOOL_LIBS) $(LIBS)
 
-$(EXAMPLES): $(BUILD)/%: $(BUILD)/%.o $(STATIC_LIB)
-$(BENCHES): $(BUILD)/%: $(BUILD)/%.o $(SUPPORT_LIB) $(STATIC_LIB)
+$(EXAMPLES): $(BUILD)/%$(EXE): $(BUILD)/%.o $(STATIC_LIB)
+$(BENCHES): $(BUILD)/%$(EXE): $(BUILD)/%.o $(SUPPORT_LIB) $(STATIC_LIB)
 $(EXAMPLES) $(BENCHES):
 	$(say) LD $@
 	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
@@ -301,4 +329,4 @@ $(PC_FILE): FORCE
 	    'Libs: -L$${libdir} -lgrobo' 'Libs.private: -lm -pthread' > $@.new
 	@if cmp -s $@.new $@; then rm $@.new; else mv $@.new $@; fi
 
--include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
+-include $(shell find $(addprefix $(BUILD)/,src ports tools tests docs) -name '*.d' 2>/dev/null)

@@ -2,28 +2,37 @@
 # SPDX-License-Identifier: MIT
 # Installs what is missing to build libgrobo, with the system's package manager.
 #
-# usage: tools/setup.sh [--demo | --check | --ci] [--dry-run]
+# usage: tools/setup.sh [--demo | --check | --ci | --cross TARGET | --ports] [--dry-run]
 #   --demo     what a build and the demo need (default)
 #   --check    that, and what `make check` needs
 #   --ci       that, and the tools that `make check` does without where they are missing
+#   --cross    what `make cross TARGET=...` needs (Debian only)
+#   --ports    what --check needs, and every target of `make check-ports`
 #   --dry-run  say what would be installed, touch nothing
 #
 # Silent and quick where nothing is missing. Never asks when nobody is there to answer.
 set -u
 
 level=1
+targets=
 dry_run=
-for argument in "$@"; do
-    case $argument in
+while [ $# -gt 0 ]; do
+    case $1 in
     --demo) level=1 ;;
     --check) level=2 ;;
     --ci) level=3 ;;
+    --ports) level=2 targets='arm64 armhf riscv64 s390x' ;;
+    --cross)
+        level=0 targets=${2:-}
+        [ $# -lt 2 ] || shift
+        ;;
     --dry-run) dry_run=1 ;;
     *)
-        echo "usage: tools/setup.sh [--demo | --check | --ci] [--dry-run]" >&2
+        sed -n 's/^# usage/usage/p' "$0" >&2
         exit 2
         ;;
     esac
+    shift
 done
 
 say() {
@@ -81,6 +90,8 @@ need() {
     zypper) package=$5 ;;
     *) package=$1 ;;
     esac
+    [ -n "$package" ] ||
+        die "$what is missing ($purpose), and only Debian's package of it is known"
     case " $packages " in
     *" $package "*) ;;
     *) packages="${packages:+$packages }$package" ;;
@@ -88,9 +99,35 @@ need() {
     reasons="${reasons:+$reasons, }$what ($purpose)"
 }
 
+need_debian() {
+    need "$@" '' '' '' ''
+}
+
+# What a build for another machine needs here; its libraries are tools/cross/libs.sh's business.
+look_cross() {
+    need make 'to build' have_command make -- make make make make make
+    need pkg-config 'to find libraries' have_command pkg-config -- \
+        pkg-config pkgconf-pkg-config pkgconf pkgconf pkgconf-pkg-config
+    case $1 in
+    arm64) need_foreign aarch64-linux-gnu qemu-aarch64 ;;
+    armhf) need_foreign arm-linux-gnueabihf qemu-arm ;;
+    riscv64) need_foreign riscv64-linux-gnu qemu-riscv64 ;;
+    s390x) need_foreign s390x-linux-gnu qemu-s390x ;;
+    esac
+}
+
+need_foreign() {
+    need_debian "a compiler for $1" 'to build' have_command "$1-gcc" -- "gcc-$1"
+    need_debian "$2" 'to run the tests' have_command "$2" -- qemu-user
+}
+
 look() {
     packages=
     reasons=
+    for target in $targets; do
+        look_cross "$target"
+    done
+    [ $level -ge 1 ] || return
     need 'a C compiler' 'to build' have_cc -- gcc gcc gcc gcc gcc
     need "the C library's headers" 'to build' have_c_headers -- \
         libc6-dev glibc-devel glibc musl-dev glibc-devel

@@ -1,0 +1,33 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Brings what a build for another machine needs: compilers and emulators (tools/setup.sh), and the
+# libraries, below build/cross/TARGET. Silent and quick where nothing is missing.
+#
+# usage: tools/cross/libs.sh TARGET
+#   TARGET is one of tools/cross/*.mk.
+set -u
+cd "$(dirname "$0")/../.." || exit 1
+
+usage() {
+    echo 'usage: tools/cross/libs.sh TARGET' >&2
+    exit 2
+}
+
+die() {
+    echo "cross: $1" >&2
+    exit 1
+}
+
+[ $# -eq 1 ] || usage
+target=$1
+top=$(pwd)
+work=$top/build/cross/$target
+
+. tools/cross/distribution.sh
+
+tools/setup.sh --cross "$target" || exit 1
+case $target in
+arm64 | armhf | s390x) sysroot "$target" "$codename" ;;
+riscv64) sysroot riscv64 trixie ;; # Debian has had it since 13
+*) usage ;;
+esac

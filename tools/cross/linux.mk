@@ -1,0 +1,13 @@
+# SPDX-License-Identifier: MIT
+# Linux with glibc on another processor: the distribution's compiler, its libraries in a sysroot,
+# and qemu-user to run the tests. Asks for TRIPLET and QEMU.
+
+SYSROOT := $(abspath $(CROSS_DIR))/root
+# What the sysroot has goes before what a cross package may have put on this machine.
+CC := $(TRIPLET)-gcc --sysroot=$(SYSROOT) -B$(SYSROOT)/usr/lib/$(TRIPLET) \
+    -L$(SYSROOT)/usr/lib/$(TRIPLET) -isystem $(SYSROOT)/usr/include/$(TRIPLET) \
+    -isystem $(SYSROOT)/usr/include
+AR := $(TRIPLET)-ar
+PKG_CONFIG := PKG_CONFIG_SYSROOT_DIR=$(SYSROOT) \
+    PKG_CONFIG_LIBDIR=$(SYSROOT)/usr/lib/$(TRIPLET)/pkgconfig pkg-config
+EMULATOR := $(QEMU) -L $(SYSROOT)
