@@ -220,6 +220,7 @@ dist: ## a tarball of the last commit, in build/
 GRCTL_HERE ?= $(if $(CROSS_COMPILE),,$(GRCTL_RUN))
 PAGES := man/man1/grctl.1=help,--man bash-completion/completions/grctl=completion,bash \
     zsh/site-functions/_grctl=completion,zsh fish/vendor_completions.d/grctl.fish=completion,fish
+JSON_PAGE := $(BUILD)/grctl-json.5
 comma := ,
 define install_page
 install -d $(DESTDIR)$(DATADIR)/$(dir $(firstword $(subst =, ,$(page))))
@@ -228,7 +229,11 @@ install -d $(DESTDIR)$(DATADIR)/$(dir $(firstword $(subst =, ,$(page))))
 
 endef
 
-install: all ## into $(DESTDIR)$(PREFIX)
+$(JSON_PAGE): docs/grctl-json.md tools/json_page.awk
+	@mkdir -p $(@D)
+	@awk -f tools/json_page.awk $< >$@
+
+install: all $(JSON_PAGE) ## into $(DESTDIR)$(PREFIX)
 	install -d $(DESTDIR)$(LIBDIR)/pkgconfig $(DESTDIR)$(INCLUDEDIR)/grobo $(DESTDIR)$(BINDIR)
 	install -m 644 include/grobo/*.h ports/$(PORT)/include/grobo/*.h $(DESTDIR)$(INCLUDEDIR)/grobo
 	install -m 644 $(STATIC_LIB) $(CORE_LIB) $(DESTDIR)$(LIBDIR)
@@ -237,7 +242,9 @@ install: all ## into $(DESTDIR)$(PREFIX)
 	install -m 644 $(PC_FILE) $(DESTDIR)$(LIBDIR)/pkgconfig
 	$(if $(GRCTL),install -m 755 $(GRCTL) $(DESTDIR)$(BINDIR))
 	$(if $(GRCTL_HERE),$(foreach page,$(PAGES),$(install_page)))
-	install -d $(DESTDIR)$(DATADIR)/grobo/udev
+	install -d $(DESTDIR)$(DATADIR)/man/man5 $(DESTDIR)$(DATADIR)/grobo/udev
+	install -m 644 $(JSON_PAGE) $(DESTDIR)$(DATADIR)/man/man5
+	install -m 644 docs/grctl.schema.json $(DESTDIR)$(DATADIR)/grobo
 	install -m 644 tools/udev/60-grobo.rules $(DESTDIR)$(DATADIR)/grobo/udev
 
 uninstall: ## take out what install put in
@@ -245,6 +252,7 @@ uninstall: ## take out what install put in
 	rm -f $(addprefix $(DESTDIR)$(LIBDIR)/,libgrobo.a libgrobo-core.a libgrobo.so $(SONAME) \
 	    pkgconfig/grobo.pc) $(DESTDIR)$(BINDIR)/grctl
 	rm -f $(foreach page,$(PAGES),$(DESTDIR)$(DATADIR)/$(firstword $(subst =, ,$(page))))
+	rm -f $(DESTDIR)$(DATADIR)/man/man5/grctl-json.5
 	rm -rf $(DESTDIR)$(DATADIR)/grobo
 
 clean: ## remove $(BUILD)

@@ -164,7 +164,7 @@ check 'a wrong sum as JSON' decodes --json FA AF 03 00 24 01 01 01 27 <<'TEXT'
 {"from":"host","kind":"packet","bytes":9,"hex":"FA AF 03 00 24 01 01 01 27",\
     "packet":{"kind":"short","action":"write","id":3,"flags":0,"address":36,"length":1,\
     "count":1,"sum":39,"sum_ok":false,"right_sum":38,"servos":[{"id":3,\
-    "name":"R_SHOULDER_P","registers":{"torque":"on"}}]},"reply":{"error":"CHECKSUM"}}
+    "name":"R_SHOULDER_P","registers":{"torque":"on"}}]},"reply":{"error":"checksum"}}
 TEXT
 check 'a file as JSON ends in a summary' sh -c '
     "$GRCTL" decode --json "$1/timed" 2>/dev/null | tail -n 1 | grep -qxF "$2"' sh "$work" \
@@ -190,5 +190,5 @@ check 'bad hex in JSON' refuses 3 "$work/bad-json:1:1: '0' is no byte in hex" "$
 printf '{"hex": \n' >"$work/worse-json"
 check 'malformed JSON' refuses 3 'malformed JSON' "$work/worse-json"
 check 'an error as JSON' sh -c '"$GRCTL" decode --json XY 2>/dev/null |
-    grep -q "^{\"error\":{\"code\":\"SYNTAX\""'
+    grep -q "^{\"error\":{\"code\":\"syntax\""'
 done_testing

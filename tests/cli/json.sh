@@ -32,56 +32,96 @@ cat >"$work/rows" <<'END'
 0|lines[0]["slot"] == 1|-d sim slot 1
 0|lines[0]["scenario"] == 1|-d sim scenario 1
 0|lines[0]["id"] == 5|-d sim servo-get 5 baud
+0|lines[0]["registers"][0]["baud_bps"] == 115200|-d sim servo-get 5 baud
+0|lines[0]["registers"][0]["word"] == "RS302CD"|-d sim servo-get 5
 0|lines[0]["id"] == 5|-d sim servo-set 5 delay 1
 0|lines[0]["kind"] == "check"|decode 4100
+0|lines[0]["packet"]["action"]|decode 53 0C FA AF 03 00 1E 04 01 F6 FF 00 00 11
+0|"trace" in lines[0] and len(lines) > 20|decode WORK/trace
 0|lines|replay WORK/trace
 0|len(lines[0]["commands"]) > 10|help
 0|lines[0]["version"]|version
 0|lines[0]["shell"] == "bash"|completion bash
 0|lines[0]["manual"]|help --man
 0|lines[0]["joints"][5]["trim_deg"] == 1.5|-d here calibrate R_ANKLE_R 1.5
-1|lines[0]["error"]["code"] == "NOENT"|-d /dev/none status
-2|lines[0]["error"]["code"] == "USAGE"|status --nonsense
+1|lines[0]["error"]["code"] == "noent"|-d /dev/none status
+2|lines[0]["error"]["code"] == "usage"|status --nonsense
 3|lines[0]["error"]["message"]|play /dev/null
-4|lines[0]["error"]["code"] == "LIMIT"|-d sim move m5 120
+4|lines[0]["error"]["code"] == "limit"|-d sim move m5 120
 END
 mkdir -p "$work/config/grctl"
 echo 'robots: {here: {device: sim}}' >"$work/config/grctl/config.yaml"
 "$GRCTL" --trace "$work/trace" -d sim status >/dev/null
 
-# fits COMMAND: every line of the last output is as docs/grctl.schema.json says.
-cat >"$work/fits.py" <<'END'
-import json, sys
+# fits COMMAND: every line of the last output is as docs/grctl.schema.json says, which knows every
+# key. table: the page's row of a command, made from the schema.
+cat >"$work/schema.py" <<'END'
+import json, re, sys
 schema = json.load(open("docs/grctl.schema.json"))
 kinds = {"object": dict, "array": list, "string": str, "boolean": bool, "null": type(None)}
 
+def referred(rule):
+    return rule["$ref"].split("/")[-1]
+
+def fits_object(value, rule):
+    known = rule.get("properties")
+    if known is None:
+        return True
+    patterns = rule.get("patternProperties", {})
+    def of(key):
+        return known.get(key) or next((r for p, r in patterns.items() if re.search(p, key)), None)
+    return all(key in value for key in rule["required"]) and all(
+        of(key) and fits(value[key], of(key)) for key in value)
+
 def fits(value, rule):
     if "$ref" in rule:
-        return fits(value, schema["$defs"][rule["$ref"].split("/")[-1]])
+        return fits(value, schema["$defs"][referred(rule)])
     if "anyOf" in rule:
         return any(fits(value, one) for one in rule["anyOf"])
     if "enum" in rule:
         return value in rule["enum"]
-    types = rule.get("type", [])
-    types = [types] if isinstance(types, str) else types
+    types = rule["type"] if isinstance(rule["type"], list) else [rule["type"]]
     number = isinstance(value, (int, float)) and not isinstance(value, bool)
-    if types and not any(number and (t == "number" or isinstance(value, int))
-                         if t in ("number", "integer") else isinstance(value, kinds[t])
-                         for t in types):
+    if not any(number and (t == "number" or isinstance(value, int))
+               if t in ("number", "integer") else isinstance(value, kinds[t]) for t in types):
         return False
     if isinstance(value, dict):
-        return all(k in value for k in rule.get("required", [])) and all(
-            fits(value[k], r) for k, r in rule.get("properties", {}).items() if k in value)
-    return not isinstance(value, list) or all(fits(v, rule.get("items", {})) for v in value)
+        return fits_object(value, rule)
+    return not isinstance(value, list) or all(fits(v, rule["items"]) for v in value)
 
+def inside(rule, each):
+    if "$ref" in rule:
+        return " (%s *%s*)" % (each, referred(rule))
+    if rule.get("type") == "array":
+        return inside(rule["items"], "each a")
+    if "anyOf" in rule:
+        return inside(rule["anyOf"][0], each)
+    return " (%s)" % keys(rule) if rule.get("properties") else ""
+
+def keys(rule):
+    if "anyOf" in rule:
+        return "; or ".join(keys(one) for one in rule["anyOf"])
+    if "$ref" in rule:
+        return "a *%s*" % referred(rule)
+    return ", ".join("`%s`%s%s" % (key, inside(of, "a"), "" if key in rule["required"] else "?")
+                     for key, of in rule["properties"].items())
+
+if sys.argv[1] == "table":
+    for name, rule in schema["$defs"].items():
+        print("| %s | %s |" % (name, keys(rule)))
+    sys.exit()
 for text in open(sys.argv[2]):
     line = json.loads(text)
-    name = "error" if "error" in line else sys.argv[1]
-    if not fits(line, schema["$defs"][name]):
-        sys.exit("not as $defs/%s: %.1000s" % (name, text))
+    names = ["error"] if "error" in line else sys.argv[1].split(",")
+    if not any(fits(line, schema["$defs"][name]) for name in names):
+        sys.exit("not as $defs/%s: %.1000s" % (" ".join(names), text))
 END
+fits() {
+    python3 "$work/schema.py" "$1" "$work/out"
+}
+# The first word that is a command, behind a device.
 command_of() {
-    for word in $1; do
+    for word in ${1#*-d * }; do
         grep -q "^  \"$word\": {" "$work/defs" && { echo "$word"; return; }
     done
 }
@@ -96,7 +136,7 @@ rows() {
             # shellcheck disable=SC2086
             check "--json ${line%%"$work"*}" both exits "$status" timeout 30 "$GRCTL" --json $line \
                 --- json "$expression"
-            check "as the schema says" python3 "$work/fits.py" "$(command_of "$line")" "$work/out"
+            check "as the schema says" fits "$(command_of "$line")"
             ;;
         names) for word in $line; do echo "$word"; done ;;
         esac
@@ -104,16 +144,73 @@ rows() {
 }
 rows run
 
-# Not here: what speaks until it is ended (sim.sh has it), with a person, or in a shell's language.
-elsewhere="sim shell monitor record"
+# ---- what speaks until it is ended, and what a person leads --------------------------------------
+
+# speaks SIGNAL STATUS ARGUMENTS...: ended when it has said two lines, or has asked for keys.
+speaks() {
+    speaks_signal=$1
+    speaks_status=$2
+    shift 2
+    rm -f "$work/out" "$work/err"
+    timeout 30 "$GRCTL" --json "$@" </dev/null >"$work/out" 2>"$work/err" &
+    speaks_pid=$!
+    written "$work/$speaks_file" "$speaks_pattern" || return 1
+    kill -"$speaks_signal" $speaks_pid
+    wait $speaks_pid
+    [ $? -eq "$speaks_status" ] || { cat "$work/out" "$work/err"; return 1; }
+}
+speaks_file=out
+speaks_pattern='^{'
+check "--json monitor" both speaks INT 130 -d sim monitor --- \
+    json 'len(lines) > 0 and len(lines[0]["joints"]) == 20'
+check "as the schema says" fits monitor
+check "--json status --watch" both speaks INT 130 -d sim status --watch --- json 'lines[0]["link"]'
+check "as the schema says" fits status
+check "--json sim" both speaks TERM 143 sim --tcp 0 --- json 'lines[0]["simulated"]'
+check "as the schema says" fits sim
+records() {
+    printf ' s' | exits_with_keys "$GRCTL" --json -d sim record --key -o "$work/taught.m" &&
+        json 'lines[0]["postures"] == 1'
+}
+exits_with_keys() {
+    "$@" >"$work/out" 2>"$work/err" || { cat "$work/err"; return 1; }
+}
+check "--json record" records
+check "as the schema says" fits record
+in_shell() {
+    printf 'Clear\nPush\nt 500\nReverse\nversion\n' |
+        exits_with_keys "$GRCTL" --json -d sim shell
+}
+check "--json shell" both in_shell --- json 'len(lines) == 5'
+check "as the schema says" fits shell,version
+
 rows names | sort -u >"$work/names"
 every_command() {
     for command in $("$GRCTL" help | sed -n '/^Commands:/,/^$/s/^  \([a-z-]*\) .*/\1/p'); do
-        case " $elsewhere " in
-        *" $command "*) ;;
+        case " sim shell monitor record " in
+        *" $command "*) ;; # above
         *) grep -qx -e "$command" "$work/names" || { echo "$command has no row"; return 1; } ;;
         esac
+        grep -q "^  \"$command\": {" "$work/defs" || { echo "$command: no schema"; return 1; }
     done
 }
-check "every command has a row" every_command
+check "every command has a row, and a schema" every_command
+
+# ---- the page ------------------------------------------------------------------------------------
+
+page_has_schema() {
+    python3 "$work/schema.py" table >"$work/table"
+    while IFS= read -r row; do
+        sed -n 's/^| [`*]\([a-z_-]*\)[`*] | /| \1 | /p' docs/grctl-json.md | grep -qF -e "$row" ||
+            { echo "docs/grctl-json.md has no row: $row"; return 1; }
+    done <"$work/table"
+}
+check "docs/grctl-json.md has the schema's keys" page_has_schema
+awk -f tools/json_page.awk docs/grctl-json.md >"$work/grctl-json.5"
+check "grctl-json(5) is made of it" grep -q '^\.It doctor$' "$work/grctl-json.5"
+if command -v mandoc >/dev/null 2>&1; then
+    check "mandoc has nothing to say of it" mandoc -Tlint -Wwarning "$work/grctl-json.5"
+else
+    skip "mandoc on grctl-json(5)" "no mandoc here"
+fi
 done_testing

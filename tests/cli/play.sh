@@ -153,7 +153,8 @@ check_json "the knees are bent, the torque is off" \
 
 # A robot that has fallen silent: nobody knows what its servos do, and the status says so.
 silent() {
-    "$GRCTL" -d "$robot" -v --json play --speed 50 "$greet" >"$work/out" 2>"$work/leaving" &
+    "$GRCTL" -d "$robot" -v --json --retries 10 play --speed 50 "$greet" \
+        >"$work/out" 2>"$work/leaving" &
     silent_pid=$!
     written "$work/out" '"t_ms":[1-9]' || { cat "$work/leaving"; return 1; }
     kill -s STOP "$sim_pid"

@@ -73,8 +73,8 @@ int app_fail(app *a, int status, const char *code, const char *format, ...)
     fprintf(stderr, "%sgrctl:%s %s\n", a->color_err ? "\033[1;31m" : "",
             a->color_err ? "\033[0m" : "", text);
     if (a->json)
-        app_print_json(
-            json_pack("{s:{s:s,s:o}}", "error", "code", code, "message", app_json_text(text)));
+        app_print_json(json_pack("{s:{s:o,s:o}}", "error", "code", app_json_code(code), "message",
+                                 app_json_text(text)));
     return status;
 }
 
@@ -141,6 +141,15 @@ json_t *app_json_text(const char *text)
         free(copy);
     }
     return string;
+}
+
+json_t *app_json_code(const char *name)
+{
+    char code[32];
+    size_t n = 0;
+    for (; name[n] && n < sizeof code; n++)
+        code[n] = (char)(name[n] >= 'A' && name[n] <= 'Z' ? name[n] - 'A' + 'a' : name[n]);
+    return json_stringn(code, n);
 }
 
 json_t *app_json_printed(void (*print)(FILE *to))

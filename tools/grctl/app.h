@@ -43,7 +43,7 @@ double app_number(const app *a, int i, double otherwise);
 /*
  * Says one line of what went wrong ("grctl: ...") and returns the exit status it was given. With
  * --json the same goes to standard output as {"error": {"code": ..., "message": ...}}.
- * code: a stable word, such as grobo_error_name() gives.
+ * code: a stable word, such as grobo_error_name() gives; capitals are told as small letters.
  */
 int app_fail(app *a, int status, const char *code, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
@@ -60,6 +60,8 @@ void app_detail(const app *a, const char *format, ...) __attribute__((format(pri
 void app_print_json(json_t *object);
 /* A JSON string of bytes that may be no UTF-8. */
 json_t *app_json_text(const char *text);
+/* A stable word, as every code is spelled: in small letters. */
+json_t *app_json_code(const char *name);
 /* A JSON string of what a function prints. */
 json_t *app_json_printed(void (*print)(FILE *to));
 /* A JSON number rounded to so many decimals. */

@@ -173,7 +173,9 @@ static const char tail[] =
     "refused for safety\n"
     ".It 129, 130, 143\n"
     "ended by SIGHUP, SIGINT or SIGTERM, after the exit policy was carried out\n"
-    ".El\n";
+    ".El\n"
+    ".Sh SEE ALSO\n"
+    ".Xr grctl\\-json 5\n";
 
 void cli_print_manual(FILE *to)
 {

@@ -53,7 +53,7 @@ static void check_file(const app *a, const char *path, grobo_diagnostics *list)
     }
     if (error < 0 && grobo_diagnostics_total(list, GROBO_SEVERITY_ERROR) == before) {
         grobo_diagnostic d = {.file = name,
-                              .code = grobo_error_name(error),
+                              .code = "file",
                               .message = file_error_text(error),
                               .severity = GROBO_SEVERITY_ERROR};
         grobo_diagnostics_add(list, &d);

@@ -34,7 +34,7 @@ static json_t *port_json(const grobo_port_info *info)
     json_object_set_new(port, "reason",
                         info->open_result == GROBO_OK
                             ? json_null()
-                            : json_string(grobo_error_name(info->open_result)));
+                            : app_json_code(grobo_error_name(info->open_result)));
     return port;
 }
 

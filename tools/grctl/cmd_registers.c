@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* servo-get and servo-set: the registers of one servo, by name. */
-#include <ctype.h>
+#include <math.h>
 #include <string.h>
 
 #include "commands.h"
+#include "registers.h"
 #include "servos.h"
 
 enum { OPT_FLASH };
@@ -29,26 +30,32 @@ static const grobo_rs30x_register *find_register(app *a, const char *name, int *
     return NULL;
 }
 
-/* "0.1 deg" says that a count is worth 0.1; "50 us" that it is worth 50; "deg C" that it is 1. */
+/* The counts of the register, which servo-set takes, and what they mean. */
 static void print_value(const grobo_rs30x_register *reg, int32_t value)
 {
-    double worth = 1;
-    const char *unit = reg->unit;
-    int used = 0;
-    if (isdigit((unsigned char)*unit) && sscanf(unit, "%lf %n", &worth, &used) == 1)
-        unit += used;
-    printf("%3d  %-18s %6d", reg->address, reg->name, value);
-    if (*reg->unit && strcmp(unit, "code") != 0)
-        printf("  %10.6g %s", value * worth, unit);
-    if (reg->address == GROBO_RS30X_BAUD)
-        printf("  %10d bps", grobo_rs30x_baud_bps((uint8_t)value));
+    char counts[REGISTERS_TEXT_BYTES], text[REGISTERS_TEXT_BYTES];
+    snprintf(counts, sizeof counts, "%d", value);
+    registers_text(reg, value, text, sizeof text);
+    printf("%3d  %-18s %6s", reg->address, reg->name, counts);
+    if (strcmp(text, counts) != 0)
+        printf("  %12s", text);
     putchar('\n');
 }
 
+/* Beside the counts what they mean: under a key with its unit, or as a word. */
 static json_t *value_json(const grobo_rs30x_register *reg, int32_t value)
 {
-    return json_pack("{s:s,s:i,s:i,s:s}", "name", reg->name, "address", reg->address, "value",
-                     value, "unit", reg->unit);
+    char key[REGISTERS_TEXT_BYTES];
+    json_t *o = json_pack("{s:s,s:i,s:i,s:s}", "name", reg->name, "address", reg->address, "value",
+                          value, "unit", reg->unit);
+    json_t *meaning = registers_json(reg, value);
+    registers_key(reg, key, sizeof key);
+    if (strcmp(key, reg->name) != 0)
+        json_object_set(o, key, meaning);
+    else if (json_is_string(meaning))
+        json_object_set(o, "word", meaning);
+    json_decref(meaning);
+    return o;
 }
 
 /* Reads the memory in the two halves that every model returns, No.0-59. */
@@ -109,14 +116,27 @@ typedef struct change {
     bool flash;
 } change;
 
+/* "delay 1 (150 us) -> 2 (200 us)" */
+static void change_text(const change *what, int32_t before, char *text, size_t capacity)
+{
+    char was[REGISTERS_TEXT_BYTES], is[REGISTERS_TEXT_BYTES];
+    registers_text(what->reg, before, was, sizeof was);
+    registers_text(what->reg, what->value, is, sizeof is);
+    if (*what->reg->unit)
+        snprintf(text, capacity, "%s %d (%s) -> %d (%s)", what->reg->name, before, was, what->value,
+                 is);
+    else
+        snprintf(text, capacity, "%s %d -> %d", what->reg->name, before, what->value);
+}
+
 /* What is asked on a terminal before flash is written; true to go on. */
 static bool confirmed(conn *c, const change *what, int32_t before)
 {
-    char answer[8];
+    char answer[8], text[4 * REGISTERS_TEXT_BYTES];
     if (!what->flash)
         return true;
-    app_note(c->a, "servo %d: %s %d -> %d, and No.4-29 go to flash: keep its power on", what->id,
-             what->reg->name, before, what->value);
+    change_text(what, before, text, sizeof text);
+    app_note(c->a, "servo %d: %s, and No.4-29 go to flash: keep its power on", what->id, text);
     if (app_global(c->a, GLOBAL_YES)->given || !c->a->tty_in)
         return true;
     fputs("Write it? [y/N] ", stderr);
@@ -137,6 +157,18 @@ static int write_it(conn *c, const change *what)
     if (!error && what->flash)
         error = conn_wait(c, grobo_session_command(c->session, id, GROBO_SERVO_FLASH));
     return error;
+}
+
+static void report(const conn *c, int id, const change *what, int32_t before)
+{
+    char text[4 * REGISTERS_TEXT_BYTES];
+    change_text(what, before, text, sizeof text);
+    if (c->a->json)
+        app_print_json(json_pack("{s:i,s:s,s:i,s:i,s:b}", "id", id, "name", what->reg->name,
+                                 "before", before, "value", what->value, "flash", what->flash));
+    else
+        app_note(c->a, "servo %d: %s%s", id, text,
+                 what->flash ? ", kept in flash" : "; lost at power-off without --flash");
 }
 
 static int set(conn *c, const change *what)
@@ -161,12 +193,7 @@ static int set(conn *c, const change *what)
         return app_fail(c->a, EXIT_ROBOT, "MISMATCH", "servo %d: %s is %d, not %d, after writing",
                         id, what->reg->name, grobo_rs30x_register_get(what->reg, bytes),
                         what->value);
-    if (c->a->json)
-        app_print_json(json_pack("{s:i,s:s,s:i,s:i,s:b}", "id", id, "name", what->reg->name,
-                                 "before", before, "value", what->value, "flash", what->flash));
-    else
-        app_note(c->a, "servo %d: %s %d -> %d%s", id, what->reg->name, before, what->value,
-                 what->flash ? ", kept in flash" : "; lost at power-off without --flash");
+    report(c, id, what, before);
     return EXIT_DONE;
 }
 
@@ -177,9 +204,24 @@ static bool moves_motor(const grobo_rs30x_register *reg)
            reg->address == GROBO_RS30X_TORQUE;
 }
 
-static int parse_change(app *a, change *what)
+/* In counts of the register; a baud rate may be given as it is, too. */
+static bool read_value(const grobo_rs30x_register *reg, const char *text, int32_t *counts)
 {
     double value;
+    if (!cli_read_number(text, &value))
+        return false;
+    for (uint8_t code = 0; reg->address == GROBO_RS30X_BAUD && code <= GROBO_RS30X_BAUD_CODE_MAX;
+         code++)
+        if (value == grobo_rs30x_baud_bps(code))
+            value = code;
+    if (value < reg->min || value > reg->max || value != floor(value))
+        return false;
+    *counts = (int32_t)value;
+    return true;
+}
+
+static int parse_change(app *a, change *what)
+{
     int status = 0;
     what->id = servos_parse_id(a, a->line.argument[0], &status);
     if (what->id < 0)
@@ -191,18 +233,16 @@ static int parse_change(app *a, change *what)
         return app_fail(a, EXIT_USAGE, "USAGE", "servo-set: register %s is read only",
                         what->reg->name);
     if (moves_motor(what->reg))
-        return app_fail(a, EXIT_SAFETY, "USAGE", "servo-set: %s moves the motor; use 'grctl %s'",
+        return app_fail(a, EXIT_SAFETY, "REFUSED", "servo-set: %s moves the motor; use 'grctl %s'",
                         what->reg->name,
                         what->reg->address == GROBO_RS30X_TORQUE ? "servo" : "move");
-    if (!cli_read_number(a->line.argument[2], &value) || value != (double)(int32_t)value ||
-        value < what->reg->min || value > what->reg->max)
-        return app_fail(a, EXIT_USAGE, "LIMIT", "servo-set: %s takes %d to %d (counts of %s)",
-                        what->reg->name, what->reg->min, what->reg->max,
+    if (!read_value(what->reg, a->line.argument[2], &what->value))
+        return app_fail(a, EXIT_USAGE, "LIMIT", "servo-set: '%s': %s takes %d to %d (counts of %s)",
+                        a->line.argument[2], what->reg->name, what->reg->min, what->reg->max,
                         *what->reg->unit ? what->reg->unit : "1");
     if (what->reg->kept == GROBO_RS30X_KEPT_RAM && app_option(a, OPT_FLASH)->given)
         return app_fail(a, EXIT_USAGE, "USAGE", "servo-set: flash does not keep register %s",
                         what->reg->name);
-    what->value = (int32_t)value;
     what->flash = app_option(a, OPT_FLASH)->given > 0;
     return 0;
 }
@@ -239,9 +279,9 @@ const cli_command cmd_servo_set = {
     .arguments = "ID KEY VALUE",
     .summary = "write a servo's register by name",
     .details = "Writes one register and reads it back. The value is what the register stores (see\n"
-               "servo-get). With --flash the servo also keeps its settings over power-off; that\n"
-               "is shown first and, on a terminal, asked for. Goal and torque are refused: move\n"
-               "and servo set them safely.\n",
+               "servo-get); a baud rate may be given as it is. With --flash the servo also keeps\n"
+               "its settings over power-off; that is shown first and, on a terminal, asked for.\n"
+               "Goal and torque are refused: move and servo set them safely.\n",
     .example = "  grctl servo-set 12 delay 2 --flash\n  grctl servo-set 1 id 21\n",
     .options = set_options,
     .n_options = sizeof set_options / sizeof set_options[0],

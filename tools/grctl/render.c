@@ -28,11 +28,6 @@ const char *render_torque(const grobo_joint_info *info)
     return "?";
 }
 
-static const char *status_word(const grobo_joint_info *info)
-{
-    return info->status == GROBO_OK ? "ok" : grobo_error_name(info->status);
-}
-
 static json_t *integer_or_null(bool known, long value)
 {
     return known ? json_integer(value) : json_null();
@@ -65,7 +60,7 @@ json_t *render_joint_json(const conn *c, int joint, int64_t now_us)
                                                      : json_null());
     json_object_set_new(o, "age_ms",
                         integer_or_null(fresh, fresh ? (long)(i.angle_age_us / 1000) : 0));
-    json_object_set_new(o, "status", json_string(status_word(&i)));
+    json_object_set_new(o, "status", app_json_code(grobo_error_name(i.status)));
     return o;
 }
 

@@ -86,7 +86,7 @@ static json_t *reply_json(const frame *f, const grobo_reply *reply, int known)
     static const char *const kinds[] = {"none", "ack", "return"};
     json_t *o;
     if (known < 0 && known != GROBO_ERR_MISMATCH)
-        return json_pack("{s:s}", "error", grobo_error_name(known));
+        return json_pack("{s:o}", "error", app_json_code(grobo_error_name(known)));
     o = json_pack("{s:s,s:I}", "kind", kinds[reply->kind], "bytes",
                   (json_int_t)grobo_reply_bytes(reply));
     if (reply->kind == GROBO_REPLY_RETURN) {
