@@ -161,9 +161,10 @@ struct grobo_driver {
                   grobo_exchange *exchange);
     /**
      * Reads the wish out of a frame that a user hands in raw, so that the engine can check it as
-     * it checks its own: sets *target for joints the frame moves (times too) and *torqued for
-     * joints whose torque it switches on.
-     * @return 0, or GROBO_ERR_UNSUPPORTED for a frame that cannot be understood.
+     * it checks its own: sets *target for joints the frame moves (times too), and adds the joints
+     * whose torque it sets to torqued[], which has a mask for each grobo_torque and comes zeroed.
+     * @return 0, or GROBO_ERR_UNSUPPORTED for a frame that cannot be understood, or that moves what
+     *         is no joint, or changes what goals mean (ids, directions, limits).
      */
     int (*inspect)(const grobo_driver *self, void *ctx, const uint8_t *frame, size_t size,
                    grobo_target *target, grobo_joint_mask *torqued);

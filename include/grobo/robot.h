@@ -22,7 +22,8 @@
  * Safety, on every path before bytes leave:
  * - Every target is finite and within the joint's limits (refused, or clamped if so configured).
  * - No joint is asked to move faster than its limit: times are stretched, and counted.
- * - Nothing moves a joint whose posture was not sensed; the first move from there is slow.
+ * - Nothing moves a joint whose posture was not sensed; the first move from there is slow, and so
+ *   is the first after torque came on: a hand may have moved the joint.
  * - Before torque comes on, the goal is set to the present angle, and torque is read back after.
  * - Heat, current, low voltage, lost replies, torque lost in motion: stop, latched until
  *   grobo_robot_reset().
@@ -405,7 +406,8 @@ GROBO_API int grobo_robot_torque(grobo_robot *robot, grobo_joint_mask joints, gr
 /**
  * Moves the joints that `target` sets, in target->time_us or as much longer as is safe, then reads
  * them. Ends when they are there. Errors at once: GROBO_ERR_LIMIT, GROBO_ERR_NAN (see
- * grobo_robot_fault()), GROBO_ERR_ARG; also GROBO_ERR_STATE while a motion is played.
+ * grobo_robot_fault()), GROBO_ERR_ARG; later GROBO_ERR_SPEED: the wire has no time that is long
+ * enough; also GROBO_ERR_STATE while a motion is played.
  */
 GROBO_API int grobo_robot_move(grobo_robot *robot, const grobo_posture *target, int64_t now_us);
 
@@ -422,16 +424,25 @@ GROBO_API int grobo_robot_send(grobo_robot *robot, const grobo_posture *target, 
 /**
  * Sends a frame of the caller's as it is and waits for the reply it calls for, if any. The driver
  * reads its meaning first and it is checked as any other target; what the driver cannot read is
- * refused with GROBO_ERR_UNSUPPORTED unless accept_unknown_raw.
+ * refused with GROBO_ERR_UNSUPPORTED unless accept_unknown_raw: other motors than the model's, ids,
+ * directions, limits, flash and restarts, motions of the board's own. After one that was accepted
+ * all joints must be read anew.
  */
 GROBO_API int grobo_robot_raw(grobo_robot *robot, const uint8_t *frame, size_t size,
                               int64_t now_us);
 
-/** Reads (data NULL) or writes registers of a servo. Goal and torque registers are refused. */
+/**
+ * Reads (data NULL) or writes registers of a servo. Goal and torque registers are refused, and id,
+ * direction and limits where the servo would jump: GROBO_ERR_STATE for a joint that holds,
+ * GROBO_ERR_STALE for one not sensed.
+ */
 GROBO_API int grobo_robot_registers(grobo_robot *robot, const grobo_register_io *io,
                                     int64_t now_us);
 
-/** Flash, reboot or factory reset of one servo, with the silence it needs afterwards. */
+/**
+ * Flash, reboot or factory reset of one servo, with the silence it needs afterwards: nothing is
+ * read in the background, and GROBO_ERR_STATE while anything moves.
+ */
 GROBO_API int grobo_robot_command(grobo_robot *robot, int id, grobo_servo_command command,
                                   int64_t now_us);
 
@@ -489,7 +500,8 @@ GROBO_API int grobo_robot_enqueue(grobo_robot *robot, const grobo_clip *clip,
 /**@{*/
 GROBO_API int grobo_robot_pause(grobo_robot *robot, int64_t now_us);
 GROBO_API int grobo_robot_resume(grobo_robot *robot, int64_t now_us);
-/** Ends the motion: smoothly, or at the present posture at once. */
+/** Ends the motion: smoothly, or at the present posture at once. Also a move, and what was only
+ *  sent. */
 GROBO_API int grobo_robot_stop(grobo_robot *robot, bool at_once, int64_t now_us);
 GROBO_API int grobo_robot_seek(grobo_robot *robot, int64_t clip_us, int64_t now_us);
 /** @param speed_pct 1..1000 */

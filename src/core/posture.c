@@ -224,7 +224,8 @@ static bool within_limits(const grobo_joint *joint, double angle_rad)
 
 int grobo_posture_check(const grobo_posture *posture, const grobo_model *model, int *joint)
 {
-    if (posture->n_joints != model->n_joints) {
+    if (posture->n_joints != model->n_joints ||
+        (posture->set & ~GROBO_JOINTS_ALL(model->n_joints)) != 0) {
         return GROBO_ERR_ARG;
     }
     for (int j = 0; j < model->n_joints; j++) {

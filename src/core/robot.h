@@ -108,6 +108,9 @@ void grobo_i_play_tell(grobo_robot *robot);
 bool grobo_i_playing(const grobo_robot *robot);
 /* After a motion, unless somebody asked for something else: its last posture is read back. */
 void grobo_i_play_settle(grobo_robot *robot);
+/* What a caller leaves open is as the robot is configured. */
+void grobo_i_play_options(const grobo_robot *robot, const grobo_play_options *options,
+                          grobo_play_options *chosen);
 /* Begins what job.clip and job.options say, from where the joints are. */
 int grobo_i_play_start(grobo_robot *robot);
 
@@ -152,6 +155,10 @@ int grobo_i_gate_hold(grobo_robot *robot, grobo_joint_mask joints, grobo_i_chunk
 void grobo_i_gate_sent(grobo_robot *robot, uint32_t motion);
 /* The frame with this target never left: the joints are still on the way they were on. */
 void grobo_i_gate_unsent(grobo_robot *robot, uint32_t motion);
+/* True while a joint is on the way it was sent on. */
+bool grobo_i_gate_moving(const grobo_robot *robot);
+/* Where these joints are is not known any more: read first, then moved softly. */
+void grobo_i_gate_forget(grobo_robot *robot, grobo_joint_mask joints);
 /* Stops joints that are being moved where they are, softly. */
 void grobo_i_gate_halt(grobo_robot *robot);
 /* Switches torque. ON is refused with GROBO_ERR_STATE for joints whose goal was not read back to

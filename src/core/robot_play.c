@@ -49,6 +49,22 @@ void grobo_i_play_settle(grobo_robot *robot)
     grobo_i_job_run(robot);
 }
 
+void grobo_i_play_options(const grobo_robot *robot, const grobo_play_options *options,
+                          grobo_play_options *chosen)
+{
+    *chosen = (grobo_play_options){0};
+    if (options != NULL) {
+        *chosen = *options;
+    }
+    if (chosen->approach_deg_s == 0) {
+        chosen->approach_deg_s =
+            (uint16_t)lround(fmin(fmax(robot->config.approach_dps, 1), UINT16_MAX));
+    }
+    if (chosen->default_time_us == 0) {
+        chosen->default_time_us = robot->config.default_time_us;
+    }
+}
+
 int grobo_i_play_start(grobo_robot *robot)
 {
     grobo_robot_task *job = &robot->job;
@@ -111,9 +127,6 @@ void grobo_robot_jitter(const grobo_robot *robot, grobo_jitter *jitter)
 
 void grobo_i_play_done(grobo_robot_slot *slot, int result)
 {
-    if (result < 0 && slot->txn.sent_us < 0) {
-        grobo_i_gate_unsent(slot->robot, slot->motion);
-    }
     slot->robot->counters.motion_frames += result >= 0;
     if (slot->due_us == GROBO_NEVER_US) {
         return;
@@ -234,8 +247,9 @@ int grobo_robot_stop(grobo_robot *robot, bool at_once, int64_t now_us)
         grobo_i_job_end(robot, GROBO_ERR_CANCELED);
         result = GROBO_OK;
     }
-    if (moves) {
+    if (moves || (result < 0 && grobo_i_gate_moving(robot))) {
         grobo_i_gate_halt(robot);
+        result = GROBO_OK;
     }
     grobo_i_leave(robot);
     return result;
@@ -261,8 +275,10 @@ int grobo_robot_enqueue(grobo_robot *robot, const grobo_clip *clip,
                         const grobo_play_options *options, int64_t now_us)
 {
     grobo_i_enter(robot, now_us);
+    grobo_play_options chosen;
+    grobo_i_play_options(robot, options, &chosen);
     int result = robot->trip.latched ? GROBO_ERR_LATCHED
-                                     : grobo_sequencer_enqueue(&robot->sequencer, clip, options);
+                                     : grobo_sequencer_enqueue(&robot->sequencer, clip, &chosen);
     grobo_i_leave(robot);
     return result;
 }

@@ -141,7 +141,7 @@ static int admit_target(const grobo_robot *robot, const grobo_posture *target)
         return GROBO_ERR_ARG;
     }
     bool busy = grobo_i_in_motion(robot) || robot->job.kind == GROBO_JOB_PLAY ||
-                robot->job.kind == GROBO_JOB_EXIT;
+                robot->job.kind == GROBO_JOB_EXIT || robot->job.kind == GROBO_JOB_COMMAND;
     return busy || !all_hold(robot, target->set) ? GROBO_ERR_STATE : GROBO_OK;
 }
 
@@ -209,30 +209,16 @@ static int admit_clip(grobo_robot *robot, const grobo_clip *clip, const grobo_pl
     return result;
 }
 
-static uint16_t approach_of(const grobo_robot *robot)
-{
-    double approach_dps = fmin(fmax(robot->config.approach_dps, 1), UINT16_MAX);
-    return (uint16_t)lround(approach_dps);
-}
-
 int grobo_robot_play(grobo_robot *robot, const grobo_clip *clip, const grobo_play_options *options,
                      int64_t now_us)
 {
     grobo_i_enter(robot, now_us);
-    grobo_play_options chosen = {0};
+    grobo_play_options chosen;
     grobo_joint_mask joints = 0;
-    if (options != NULL) {
-        chosen = *options;
-    }
+    grobo_i_play_options(robot, options, &chosen);
     int result = admit_clip(robot, clip, &chosen, &joints);
     if (result < 0) {
         return refuse(robot, result);
-    }
-    if (chosen.approach_deg_s == 0) {
-        chosen.approach_deg_s = approach_of(robot);
-    }
-    if (chosen.default_time_us == 0) {
-        chosen.default_time_us = robot->config.default_time_us;
     }
     int number = grobo_i_job_start(robot, GROBO_JOB_PLAY, grobo_i_script_play);
     robot->job.joints = chosen.mirror ? grobo_i_all_joints(robot) : joints;
@@ -278,6 +264,38 @@ static bool touches(const grobo_register_io *io, int address, int bytes)
     return io->address < address + bytes && io->address + io->length > address;
 }
 
+/* Settings that change what a goal means: a servo that holds would jump. */
+static bool changes_goal(const grobo_register_io *io)
+{
+    return touches(io, GROBO_RS30X_ID, 2) || touches(io, GROBO_RS30X_CW_LIMIT, 4);
+}
+
+static int admit_write(const grobo_robot *robot, const grobo_register_io *io)
+{
+    if (touches(io, GROBO_RS30X_GOAL, 4) || touches(io, GROBO_RS30X_TORQUE, 1)) {
+        return GROBO_ERR_UNSUPPORTED;
+    }
+    int joint = grobo_model_joint_of_motor(robot->driver->model, io->id);
+    if (joint < 0 || !changes_goal(io)) {
+        return GROBO_OK;
+    }
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    if (!axis->torque_known) {
+        return GROBO_ERR_STALE;
+    }
+    return axis->state.torque == GROBO_TORQUE_ON ? GROBO_ERR_STATE : GROBO_OK;
+}
+
+/* After these the servo is without torque, whatever it was before, and must be read anew. */
+static void expect_no_torque(grobo_robot *robot, int id)
+{
+    int joint = grobo_model_joint_of_motor(robot->driver->model, id);
+    if (joint >= 0) {
+        robot->axes[joint].wants_torque = robot->axes[joint].torque_known = false;
+        grobo_i_gate_forget(robot, GROBO_JOINT_BIT(joint));
+    }
+}
+
 int grobo_robot_registers(grobo_robot *robot, const grobo_register_io *io, int64_t now_us)
 {
     grobo_exchange exchange = {0};
@@ -287,9 +305,11 @@ int grobo_robot_registers(grobo_robot *robot, const grobo_register_io *io, int64
         io->address + io->length > GROBO_REGISTERS) {
         result = GROBO_ERR_ARG;
     }
-    bool motor = touches(io, GROBO_RS30X_GOAL, 4) || touches(io, GROBO_RS30X_TORQUE, 1);
-    if (result >= 0 && (robot->driver->registers == NULL || (io->data != NULL && motor))) {
+    if (result >= 0 && robot->driver->registers == NULL) {
         result = GROBO_ERR_UNSUPPORTED;
+    }
+    if (result >= 0 && io->data != NULL) {
+        result = admit_write(robot, io);
     }
     if (result >= 0) {
         result = robot->driver->registers(robot->driver, robot->driver_ctx, io, &exchange);
@@ -297,17 +317,10 @@ int grobo_robot_registers(grobo_robot *robot, const grobo_register_io *io, int64
     if (result < 0) {
         return refuse(robot, result);
     }
-    return begin_exchange(robot, GROBO_JOB_REGISTERS, &exchange);
-}
-
-/* After these the servo is without torque, whatever it was before. */
-static void expect_no_torque(grobo_robot *robot, int id)
-{
-    int joint = grobo_model_joint_of_motor(robot->driver->model, id);
-    if (joint >= 0) {
-        robot->axes[joint].wants_torque = robot->axes[joint].held = false;
-        robot->axes[joint].torque_known = robot->axes[joint].has_target = false;
+    if (io->data != NULL && changes_goal(io)) {
+        expect_no_torque(robot, io->id); /* nor is it where it was read */
     }
+    return begin_exchange(robot, GROBO_JOB_REGISTERS, &exchange);
 }
 
 int grobo_robot_command(grobo_robot *robot, int id, grobo_servo_command command, int64_t now_us)
@@ -315,6 +328,9 @@ int grobo_robot_command(grobo_robot *robot, int id, grobo_servo_command command,
     grobo_exchange exchange = {0};
     grobo_i_enter(robot, now_us);
     int result = admit(robot, false);
+    if (result >= 0 && (grobo_i_playing(robot) || grobo_i_gate_moving(robot))) {
+        result = GROBO_ERR_STATE; /* it needs silence, and the others would go on without it */
+    }
     if (id < 1 || id > GROBO_SERVO_ID_MAX || (unsigned)command > GROBO_SERVO_FACTORY_RESET) {
         result = GROBO_ERR_ARG;
     }
@@ -350,26 +366,23 @@ int grobo_robot_stored(grobo_robot *robot, grobo_stored_kind kind, int number, i
     if (result < 0) {
         return refuse(robot, result);
     }
-    for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        robot->axes[j].has_target = false; /* its own targets are not known to us */
-    }
-    grobo_i_gate_soften(robot);
+    grobo_i_gate_forget(robot, grobo_i_all_joints(robot)); /* its own targets are not known to us */
     return begin_exchange(robot, GROBO_JOB_STORED, &exchange);
 }
 
 /* ---- ends ------------------------------------------------------------------------------------ */
 
-/* Ends the job that runs to make place for another; what it moves is stopped. */
-static void displace(grobo_robot *robot)
+/* Ends the job that runs to make place for another; what it moves is stopped, or all that moves. */
+static void displace(grobo_robot *robot, bool all)
 {
-    bool moved = robot->job.kind == GROBO_JOB_MOVE;
+    bool moved = all || robot->job.kind == GROBO_JOB_MOVE;
     if (robot->job.kind == GROBO_JOB_PLAY && grobo_i_playing(robot)) {
         (void)grobo_sequencer_stop(&robot->sequencer, false, robot->now_us);
     }
     if (robot->job.kind != GROBO_JOB_NONE) {
         grobo_i_job_end(robot, GROBO_ERR_CANCELED);
     }
-    if (moved) {
+    if (moved && !grobo_i_playing(robot)) {
         grobo_i_gate_halt(robot);
     }
 }
@@ -382,7 +395,7 @@ int grobo_robot_cancel(grobo_robot *robot, int64_t now_us)
         robot->job.kind == GROBO_JOB_SETTLE) {
         result = GROBO_ERR_STATE;
     } else {
-        displace(robot);
+        displace(robot, false);
     }
     grobo_i_leave(robot);
     return result;
@@ -410,7 +423,7 @@ int grobo_robot_exit(grobo_robot *robot, grobo_exit_policy policy, int64_t now_u
                              : (unsigned)policy > GROBO_EXIT_SIT ? GROBO_ERR_ARG
                                                                  : GROBO_ERR_STATE);
     }
-    displace(robot);
+    displace(robot, true);
     if (grobo_i_playing(robot)) {
         (void)grobo_sequencer_stop(&robot->sequencer, false, robot->now_us);
     }

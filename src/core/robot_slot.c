@@ -30,6 +30,9 @@ static void on_done(void *ctx, grobo_txn *txn, int result, const grobo_rs30x_pac
     grobo_robot_slot slot = *(grobo_robot_slot *)ctx;
     slot.txn.sent_us = txn->sent_us;
     grobo_i_slot_drop(ctx);
+    if (result < 0 && txn->sent_us < 0 && slot.motion != 0) {
+        grobo_i_gate_unsent(slot.robot, slot.motion);
+    }
     switch ((grobo_i_use)slot.use) {
     case GROBO_I_USE_FREE:
     case GROBO_I_USE_PLAIN:
@@ -80,7 +83,8 @@ void grobo_i_slots_sent(grobo_robot *robot)
 {
     for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
         grobo_robot_slot *slot = &robot->slots[i];
-        if (slot->use == GROBO_I_USE_MOTION && !slot->out && slot->txn.sent_us >= 0) {
+        bool moves = slot->use != GROBO_I_USE_FREE && slot->motion != 0;
+        if (moves && !slot->out && slot->txn.sent_us >= 0) {
             slot->out = true;
             grobo_i_gate_sent(robot, slot->motion);
         }

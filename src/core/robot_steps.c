@@ -66,6 +66,7 @@ static int ask(grobo_robot *robot, const grobo_exchange *exchange)
         return GROBO_ERR_FULL;
     }
     slot->exchange = *exchange;
+    slot->motion = robot->job.kind == GROBO_JOB_RAW ? robot->motion : 0;
     int result = grobo_i_slot_send(slot, robot->job.priority);
     return result < 0 ? result : GROBO_I_ASK;
 }

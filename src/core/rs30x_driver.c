@@ -273,6 +273,9 @@ int grobo_i_rs30x_stored(const grobo_driver *self, void *ctx, grobo_stored_kind 
 
 /* ---- reading the wish out of a raw frame ----------------------------------------------------- */
 
+/* Flags by which a servo does something with itself. */
+#define ACTS (GROBO_RS30X_FLASH | GROBO_RS30X_REBOOT | GROBO_RS30X_FACTORY)
+
 /* One servo's share of a write: its data from `address` on. */
 typedef struct share {
     uint8_t id, address, bytes;
@@ -287,12 +290,13 @@ static const uint8_t *at_register(const share *s, int address, int bytes)
 
 static bool overlaps(const share *s, int first, int last)
 {
-    return s->address <= last && s->address + s->bytes > first;
+    return s->bytes > 0 && s->address <= last && s->address + s->bytes > first;
 }
 
 static int inspect_joint(const grobo_driver *self, const share *s, int joint, grobo_target *target,
                          grobo_joint_mask *torqued)
 {
+    grobo_joint_mask bit = GROBO_JOINT_BIT(joint);
     const uint8_t *goal = at_register(s, GROBO_RS30X_GOAL, 2);
     const uint8_t *time = at_register(s, GROBO_RS30X_GOAL_TIME, 2);
     const uint8_t *torque = at_register(s, GROBO_RS30X_TORQUE, 1);
@@ -300,15 +304,19 @@ static int inspect_joint(const grobo_driver *self, const share *s, int joint, gr
         overlaps(s, GROBO_RS30X_GOAL_TIME, GROBO_RS30X_GOAL_TIME + 1) != (time != NULL)) {
         return GROBO_ERR_UNSUPPORTED; /* half of a value */
     }
+    if ((torque != NULL && *torque > GROBO_TORQUE_BRAKE) ||
+        (goal != NULL && (target->posture.set & bit) != 0)) {
+        return GROBO_ERR_UNSUPPORTED; /* a torque that there is not, or two goals */
+    }
     if (goal != NULL) {
         int ddeg = (int)grobo_rs30x_register_get(grobo_rs30x_register_at(GROBO_RS30X_GOAL), goal);
         int64_t units = time == NULL ? 0 : time[0] + 256 * time[1];
         target->posture.angle_rad[joint] = grobo_rad_from_ddeg(ddeg);
-        target->posture.set |= GROBO_JOINT_BIT(joint);
+        target->posture.set |= bit;
         target->joint_time_us[joint] = units * self->time_step_us;
     }
-    if (torque != NULL && *torque == GROBO_TORQUE_ON) {
-        *torqued |= GROBO_JOINT_BIT(joint);
+    if (torque != NULL) {
+        torqued[*torque] |= bit;
     }
     return GROBO_OK;
 }
@@ -316,6 +324,13 @@ static int inspect_joint(const grobo_driver *self, const share *s, int joint, gr
 static int inspect_share(const grobo_driver *self, const share *s, grobo_target *target,
                          grobo_joint_mask *torqued)
 {
+    bool motor = overlaps(s, GROBO_RS30X_GOAL, GROBO_RS30X_GOAL_TIME + 1) ||
+                 overlaps(s, GROBO_RS30X_TORQUE, GROBO_RS30X_TORQUE);
+    bool known = s->id == GROBO_RS30X_ID_ALL || grobo_model_joint_of_motor(self->model, s->id) >= 0;
+    /* Id, direction, speed, limits: afterwards a goal means something else. */
+    if (overlaps(s, GROBO_RS30X_ID, GROBO_RS30X_CCW_LIMIT + 1) || (motor && !known)) {
+        return GROBO_ERR_UNSUPPORTED;
+    }
     for (int j = 0; j < self->model->n_joints; j++) {
         if (s->id == GROBO_RS30X_ID_ALL || s->id == self->model->joints[j].motor) {
             int result = inspect_joint(self, s, j, target, torqued);
@@ -330,6 +345,9 @@ static int inspect_share(const grobo_driver *self, const share *s, grobo_target 
 static int inspect_packet(const grobo_driver *self, const grobo_rs30x_packet *packet,
                           grobo_target *target, grobo_joint_mask *torqued)
 {
+    if ((packet->flags & ACTS) != 0) {
+        return GROBO_ERR_UNSUPPORTED; /* grobo_robot_command() does it */
+    }
     if (packet->kind == GROBO_RS30X_SHORT) {
         share s = {packet->id, packet->address, (uint8_t)packet->data_bytes, packet->data};
         return inspect_share(self, &s, target, torqued);

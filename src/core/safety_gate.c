@@ -33,6 +33,26 @@ void grobo_i_axis_rest(grobo_robot_axis *axis, int64_t now_us)
     axis->way = axis->way_before = (grobo_robot_way){angle_rad, angle_rad, now_us, now_us};
 }
 
+bool grobo_i_gate_moving(const grobo_robot *robot)
+{
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if (robot->axes[j].has_target && robot->axes[j].way.to_us > robot->now_us) {
+            return true;
+        }
+    }
+    return false;
+}
+
+void grobo_i_gate_forget(grobo_robot *robot, grobo_joint_mask joints)
+{
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if ((joints & GROBO_JOINT_BIT(j)) != 0) {
+            robot->axes[j].sensed = robot->axes[j].has_target = robot->axes[j].held = false;
+        }
+    }
+    grobo_i_gate_soften(robot);
+}
+
 /* Notes where the joints of a target are on their way to. */
 static void note_way(grobo_robot *robot, const grobo_target *target)
 {
@@ -122,18 +142,21 @@ static int64_t time_needed(const grobo_robot *robot, int joint, double to_rad)
         return step_us;
     }
     double steps = ceil(way_rad / speed_limit(robot, joint) * 1e6 / (double)step_us);
-    return (int64_t)steps * step_us;
+    double most = (double)(GROBO_PLAY_TIME_MAX_US / step_us);
+    return steps > most ? GROBO_NEVER_US : (int64_t)steps * step_us;
 }
 
 static int64_t time_asked(const grobo_robot *robot, const grobo_posture *posture)
 {
     int64_t step_us = robot->driver->time_step_us;
     int64_t time_us = posture->time_us > 0 ? posture->time_us : robot->config.default_time_us;
+    time_us = time_us < GROBO_PLAY_TIME_MAX_US ? time_us : GROBO_PLAY_TIME_MAX_US;
     int64_t steps = (time_us + step_us / 2) / step_us;
     return (steps < 1 ? 1 : steps) * step_us;
 }
 
-/* Gives every joint its time; returns the longest. */
+/* Gives every joint its time; returns the longest, or GROBO_ERR_SPEED where no time on the wire is
+ * long enough. */
 static int64_t give_time(grobo_robot *robot, grobo_target *target, bool each)
 {
     int64_t asked_us = time_asked(robot, &target->posture);
@@ -142,6 +165,10 @@ static int64_t give_time(grobo_robot *robot, grobo_target *target, bool each)
         target->joint_time_us[j] = asked_us;
         if ((target->posture.set & GROBO_JOINT_BIT(j)) != 0) {
             int64_t needed_us = time_needed(robot, j, target->posture.angle_rad[j]);
+            if (needed_us == GROBO_NEVER_US) {
+                robot->fault_joint = j;
+                return GROBO_ERR_SPEED;
+            }
             target->joint_time_us[j] = needed_us > asked_us ? needed_us : asked_us;
             longest_us = needed_us > longest_us ? needed_us : longest_us;
         }
@@ -172,7 +199,7 @@ static int send_frames(grobo_robot *robot, const grobo_target *target, grobo_i_u
             return more;
         }
         slot->due_us = due_us;
-        slot->motion = robot->motion;
+        slot->motion = use == GROBO_I_USE_MOTION ? robot->motion : 0;
         int result = grobo_i_slot_send(slot, priority);
         if (result < 0) {
             return result;
@@ -220,6 +247,9 @@ int grobo_i_gate_send(grobo_robot *robot, const grobo_posture *wanted, const gro
         return result;
     }
     int64_t longest_us = give_time(robot, &target, how->each);
+    if (longest_us < 0) {
+        return (int)longest_us;
+    }
     robot->motion++;
     result = send_frames(robot, &target, GROBO_I_USE_MOTION, how->priority, how->due_us);
     if (result < 0) {
@@ -251,6 +281,7 @@ void grobo_i_gate_halt(grobo_robot *robot)
         }
     }
     if (target.set != 0) {
+        (void)grobo_posture_clamp(&target, robot->driver->model); /* one may stand outside */
         target.time_us = HALT_TIME_US;
         grobo_i_motion how = {GROBO_PRIORITY_STOP, GROBO_NEVER_US, true, true};
         (void)grobo_i_gate_send(robot, &target, &how, NULL);
@@ -312,12 +343,16 @@ int grobo_i_gate_hold(grobo_robot *robot, grobo_joint_mask joints, grobo_i_chunk
     return result;
 }
 
+static bool is_on(const grobo_robot_axis *axis)
+{
+    return axis->torque_known && axis->state.torque == GROBO_TORQUE_ON;
+}
+
 static bool may_switch_on(const grobo_robot *robot, grobo_joint_mask joints)
 {
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
-        bool is_on = axis->torque_known && axis->state.torque == GROBO_TORQUE_ON;
-        if ((joints & GROBO_JOINT_BIT(j)) != 0 && !axis->held && !is_on) {
+        if ((joints & GROBO_JOINT_BIT(j)) != 0 && !axis->held && !is_on(axis)) {
             return false;
         }
     }
@@ -355,6 +390,9 @@ int grobo_i_gate_torque(grobo_robot *robot, grobo_joint_mask joints, grobo_torqu
     if (robot->driver->torque == NULL) {
         return GROBO_ERR_UNSUPPORTED;
     }
+    if (mode == GROBO_TORQUE_ON && joints != 0) {
+        grobo_i_gate_soften(robot); /* a hand may have moved them as long as it was off */
+    }
     int result = GROBO_OK;
     while (joints != 0 && result >= 0) {
         grobo_joint_mask taken = grobo_i_take_chunk(&joints, chunk);
@@ -370,41 +408,82 @@ int grobo_i_gate_torque(grobo_robot *robot, grobo_joint_mask joints, grobo_torqu
 
 /* ---- raw frames ------------------------------------------------------------------------------ */
 
-int grobo_i_gate_raw(grobo_robot *robot, const uint8_t *frame, size_t size)
+/* What a frame says of torque is taken for done; a later reading shows. */
+static void note_torque(grobo_robot *robot, grobo_joint_mask off)
 {
-    const grobo_driver *driver = robot->driver;
-    grobo_target target;
-    grobo_joint_mask torqued = 0;
-    (void)grobo_posture_init(&target.posture, driver->model->n_joints);
-    int result = driver->inspect == NULL
-                     ? GROBO_ERR_UNSUPPORTED
-                     : driver->inspect(driver, robot->driver_ctx, frame, size, &target, &torqued);
-    if (result == GROBO_ERR_UNSUPPORTED && robot->config.accept_unknown_raw) {
-        return GROBO_OK;
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if ((off & GROBO_JOINT_BIT(j)) != 0) {
+            grobo_robot_axis *axis = &robot->axes[j];
+            axis->wants_torque = axis->held = axis->has_target = axis->torque_known = false;
+        }
     }
-    if (result >= 0) {
-        result = grobo_posture_check(&target.posture, driver->model, &robot->fault_joint);
+}
+
+static bool all_on(const grobo_robot *robot, grobo_joint_mask joints)
+{
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if ((joints & GROBO_JOINT_BIT(j)) != 0 && !is_on(&robot->axes[j])) {
+            return false;
+        }
     }
+    return true;
+}
+
+/* Nobody knows what it does: not after a latched stop, and then joints are looked for anew. */
+static int take_unknown(grobo_robot *robot)
+{
+    if (robot->trip.latched) {
+        return GROBO_ERR_LATCHED;
+    }
+    grobo_i_gate_forget(robot, grobo_i_all_joints(robot));
+    return GROBO_OK;
+}
+
+static int judge_raw(grobo_robot *robot, const grobo_target *target, grobo_joint_mask on)
+{
+    const grobo_model *model = robot->driver->model;
+    int result = grobo_posture_check(&target->posture, model, &robot->fault_joint);
     if (result < 0) {
         return result;
     }
-    if ((target.posture.set | torqued) != 0 && robot->trip.latched) {
+    if ((target->posture.set | on) != 0 && robot->trip.latched) {
         return GROBO_ERR_LATCHED;
     }
-    if (!all_sensed(robot, target.posture.set | torqued, &robot->fault_joint)) {
+    if (!all_sensed(robot, target->posture.set | on, &robot->fault_joint)) {
         return GROBO_ERR_STALE;
     }
-    if (!may_switch_on(robot, torqued)) {
-        return GROBO_ERR_STATE;
+    if (!all_on(robot, on)) {
+        return GROBO_ERR_STATE; /* a torque job does it safely */
     }
-    for (int j = 0; j < driver->model->n_joints; j++) {
-        if ((target.posture.set & GROBO_JOINT_BIT(j)) != 0 &&
-            target.joint_time_us[j] < time_needed(robot, j, target.posture.angle_rad[j])) {
+    for (int j = 0; j < model->n_joints; j++) {
+        if ((target->posture.set & GROBO_JOINT_BIT(j)) != 0 &&
+            target->joint_time_us[j] < time_needed(robot, j, target->posture.angle_rad[j])) {
             robot->fault_joint = j;
             return GROBO_ERR_SPEED;
         }
     }
-    robot->motion++;
-    note_way(robot, &target);
     return GROBO_OK;
+}
+
+int grobo_i_gate_raw(grobo_robot *robot, const uint8_t *frame, size_t size)
+{
+    const grobo_driver *driver = robot->driver;
+    grobo_target target;
+    grobo_joint_mask torqued[GROBO_TORQUE_BRAKE + 1] = {0};
+    (void)grobo_posture_init(&target.posture, driver->model->n_joints);
+    robot->motion++;
+    int result = driver->inspect == NULL
+                     ? GROBO_ERR_UNSUPPORTED
+                     : driver->inspect(driver, robot->driver_ctx, frame, size, &target, torqued);
+    if (result == GROBO_ERR_UNSUPPORTED && robot->config.accept_unknown_raw) {
+        return take_unknown(robot);
+    }
+    if (result >= 0) {
+        result = judge_raw(robot, &target, torqued[GROBO_TORQUE_ON]);
+    }
+    if (result >= 0) {
+        note_torque(robot, torqued[GROBO_TORQUE_OFF] | torqued[GROBO_TORQUE_BRAKE]);
+        note_way(robot, &target);
+    }
+    return result;
 }

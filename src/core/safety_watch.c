@@ -72,9 +72,11 @@ void grobo_i_trip(grobo_robot *robot, grobo_trip reason, int joint, double value
     }
     if (latched && job_must_end(robot)) {
         grobo_i_job_end(robot, GROBO_ERR_LATCHED);
-        if (!grobo_i_playing(robot)) {
-            grobo_i_gate_halt(robot);
-        }
+    }
+    /* Before an emergency stop nothing goes out, and who leaves is on the way already. */
+    if (latched && reason != GROBO_TRIP_ESTOP && !grobo_i_playing(robot) &&
+        robot->job.kind != GROBO_JOB_EXIT) {
+        grobo_i_gate_halt(robot);
     }
 }
 
@@ -144,7 +146,8 @@ void grobo_i_watch_lost(grobo_robot *robot, int joint)
 {
     int limit = robot->config.lost_replies;
     int lost = robot->axes[joint].lost;
-    if (limit > 0 && lost >= limit && grobo_i_in_motion(robot)) {
+    bool moves = grobo_i_in_motion(robot) || grobo_i_gate_moving(robot);
+    if (limit > 0 && lost >= limit && moves) {
         grobo_i_trip(robot, GROBO_TRIP_LOST_REPLIES, joint, lost, true);
     }
 }

@@ -149,8 +149,12 @@ static grobo_sense_kind background_kind(const grobo_robot *robot)
     return robot->config.sense_position_only ? GROBO_SENSE_POSITION : GROBO_SENSE_FULL;
 }
 
+/* Not in the silence after a flash write or a restart. */
 static bool background_wanted(const grobo_robot *robot)
 {
+    if (robot->job.kind == GROBO_JOB_COMMAND) {
+        return false;
+    }
     return robot->config.sense_interval_us != GROBO_SENSE_NEVER || robot->free_joints != 0;
 }
 

@@ -171,12 +171,45 @@ static void report(const conn *c, int id, const change *what, int32_t before)
                  what->flash ? ", kept in flash" : "; lost at power-off without --flash");
 }
 
+/* After these a goal means another angle: a servo that holds would go there at once. */
+static bool changes_goal(const grobo_rs30x_register *reg)
+{
+    return reg->address == GROBO_RS30X_ID || reg->address == GROBO_RS30X_REVERSE ||
+           reg->address == GROBO_RS30X_CW_LIMIT || reg->address == GROBO_RS30X_CCW_LIMIT;
+}
+
+/* Such a register is written to a servo without torque only. The engine refuses it to a joint too,
+ * and to one that it has not read. */
+static int expect_loose(conn *c, const change *what)
+{
+    int joint = grobo_model_joint_of_motor(grobo_robot_driver(c->robot)->model, what->id);
+    uint8_t torque = GROBO_TORQUE_OFF;
+    int error;
+    if (!changes_goal(what->reg))
+        return EXIT_DONE;
+    error = servos_read(c, what->id, GROBO_RS30X_TORQUE, 1, &torque);
+    if (!error && joint >= 0)
+        error =
+            conn_wait(c, grobo_session_sense(c->session, GROBO_JOINT_BIT(joint), GROBO_SENSE_FULL));
+    if (error)
+        return conn_fail_servo(c, error, what->id);
+    if (torque != GROBO_TORQUE_ON)
+        return EXIT_DONE;
+    return app_fail(c->a, EXIT_SAFETY, "STATE",
+                    "servo-set: servo %d holds, and would jump with another %s; first: grctl servo "
+                    "off m%d",
+                    what->id, what->reg->name, what->id);
+}
+
 static int set(conn *c, const change *what)
 {
     uint8_t bytes[2] = {0};
     int32_t before;
     int id = what->reg->address == GROBO_RS30X_ID ? (int)what->value : what->id;
-    int error = servos_read(c, what->id, what->reg->address, what->reg->bytes, bytes);
+    int error = expect_loose(c, what);
+    if (error)
+        return error;
+    error = servos_read(c, what->id, what->reg->address, what->reg->bytes, bytes);
     if (error)
         return conn_fail_servo(c, error, what->id);
     before = grobo_rs30x_register_get(what->reg, bytes);
@@ -278,10 +311,12 @@ const cli_command cmd_servo_set = {
     .name = "servo-set",
     .arguments = "ID KEY VALUE",
     .summary = "write a servo's register by name",
-    .details = "Writes one register and reads it back. The value is what the register stores (see\n"
-               "servo-get); a baud rate may be given as it is. With --flash the servo also keeps\n"
-               "its settings over power-off; that is shown first and, on a terminal, asked for.\n"
-               "Goal and torque are refused: move and servo set them safely.\n",
+    .details =
+        "Writes one register and reads it back. The value is what the register stores (see\n"
+        "servo-get); a baud rate may be given as it is. With --flash the servo also keeps\n"
+        "its settings over power-off; that is shown first and, on a terminal, asked for.\n"
+        "Goal and torque are refused: move and servo set them safely; id, reverse and limits\n"
+        "are refused while the servo holds.\n",
     .example = "  grctl servo-set 12 delay 2 --flash\n  grctl servo-set 1 id 21\n",
     .options = set_options,
     .n_options = sizeof set_options / sizeof set_options[0],

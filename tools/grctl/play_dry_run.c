@@ -45,9 +45,9 @@ static void print_frame(rehearsal *r, const uint8_t *frame, int size)
     const grobo_driver *driver = grobo_robot_driver(&r->robot);
     char hex[3 * GROBO_RS30X_PACKET_MAX_BYTES + 1] = "";
     grobo_target target = {0};
-    grobo_joint_mask torqued = 0;
+    grobo_joint_mask torqued[GROBO_TORQUE_BRAKE + 1] = {0};
     double time_ms;
-    if (!r->playing || driver->inspect(driver, NULL, frame, (size_t)size, &target, &torqued) < 0 ||
+    if (!r->playing || driver->inspect(driver, NULL, frame, (size_t)size, &target, torqued) < 0 ||
         target.posture.set == 0)
         return;
     if (r->start_us < 0)

@@ -57,10 +57,10 @@ static void note_torque(plan *p, const frame *f)
 {
     const grobo_driver *driver = grobo_gr001_driver(p->r->wiring);
     grobo_target target = {0};
-    grobo_joint_mask torqued = 0;
+    grobo_joint_mask torqued[GROBO_TORQUE_BRAKE + 1] = {0};
     grobo_posture_init(&target.posture, driver->model->n_joints);
-    if (driver->inspect(driver, NULL, f->bytes, f->size, &target, &torqued) >= 0)
-        p->torqued |= torqued;
+    if (driver->inspect(driver, NULL, f->bytes, f->size, &target, torqued) >= 0)
+        p->torqued |= torqued[GROBO_TORQUE_ON];
 }
 
 static void judge_frame(void *ctx, const frame *f)

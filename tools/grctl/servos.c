@@ -13,7 +13,9 @@ int servos_read(conn *c, int id, int address, int length, uint8_t *data)
         .id = (uint8_t)id, .address = (uint8_t)address, .length = (uint8_t)length};
     c->data = data;
     c->data_bytes = (size_t)length;
-    return conn_wait(c, grobo_session_registers(c->session, &io));
+    int error = conn_wait(c, grobo_session_registers(c->session, &io));
+    c->data = NULL; /* it is the caller's */
+    return error;
 }
 
 int servos_hurry_at(conn *c, int baud_bps)
