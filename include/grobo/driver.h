@@ -26,7 +26,7 @@ GROBO_BEGIN_DECLS
 typedef enum grobo_sense_kind {
     GROBO_SENSE_FULL = 0,     /**< everything measured (RS30x: No.36-53, 26 bytes back) */
     GROBO_SENSE_POSITION = 1, /**< the angle only (No.42-43, 10 bytes) */
-    GROBO_SENSE_GOAL = 2,     /**< goal, torque and angle, to check what was sent (No.30-43) */
+    GROBO_SENSE_GOAL = 2,     /**< goal, torque and way to it, to check what was sent (No.30-47) */
     GROBO_SENSE_ALL = 3       /**< full and goal (No.30-53, 32 bytes) */
 } grobo_sense_kind;
 
@@ -56,6 +56,7 @@ typedef enum grobo_field {
 typedef struct grobo_joint_state {
     double angle_rad;      /**< present angle */
     double goal_rad;       /**< where the servo was told to go */
+    int64_t goal_time_us;  /**< and in which time; 0: as fast as it can. Valid with goal_rad */
     int64_t time_us;       /**< since its present move began */
     int32_t speed_dps;     /**< degrees a second */
     int32_t current_ma;    /**< motor current */

@@ -256,6 +256,7 @@ typedef struct grobo_robot_axis {
     /* private */
     grobo_joint_state state;
     int64_t goal_us;            /* when its goal was read back */
+    int64_t own_until_us;       /* when the move that the servo told of is over */
     int64_t angle_us, full_us;  /* when read; GROBO_NEVER_US: never */
     int64_t current_since_us;   /* above its limit since; GROBO_NEVER_US: it is not */
     grobo_robot_way way;        /* the move it was sent on */
@@ -268,6 +269,7 @@ typedef struct grobo_robot_axis {
     bool torque_known;
     bool wants_torque; /* we switched it on: to be without is a fault */
     bool held;         /* goal read back to be the present angle: torque may come on */
+    bool adrift;       /* moves though we sent it nowhere, and did not tell where to */
 } grobo_robot_axis;
 
 /** The job that runs. Private. */
@@ -416,8 +418,9 @@ GROBO_API int grobo_robot_move(grobo_robot *robot, const grobo_posture *target, 
  * loop of the caller's own, which calls it once a period; a target that still waits for the line
  * is replaced. The first ones go there at the approach speed. Joints must have been sensed and
  * hold (a sense and a torque job, once). The target is checked and timed as any other.
- * @return 0, or an error: GROBO_ERR_STATE while something else moves the robot or a joint has no
- *         torque, GROBO_ERR_STALE for a joint not sensed, and those of grobo_robot_move().
+ * @return 0, or an error: GROBO_ERR_STATE while something else moves the robot (such as a move
+ *         from before the line was there) or a joint has no torque, GROBO_ERR_STALE for a joint
+ *         not sensed, and those of grobo_robot_move().
  */
 GROBO_API int grobo_robot_send(grobo_robot *robot, const grobo_posture *target, int64_t now_us);
 

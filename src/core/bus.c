@@ -127,6 +127,7 @@ static void succeed(grobo_bus *bus, int64_t now_us, const grobo_rs30x_packet *re
     if (txn->attempts_ == 1) {
         grobo_i_bus_learn(bus, now_us);
         grobo_i_bus_release_holds(bus);
+        bus->free_us = grobo_i_sooner(bus->free_us, now_us); /* its last byte is here */
     } else {
         /* This may have been the late reply to an earlier attempt: one more may come. */
         grobo_i_bus_hold(bus, txn, now_us);

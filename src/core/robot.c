@@ -232,7 +232,8 @@ static void forget(grobo_robot *robot)
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         grobo_robot_axis *axis = &robot->axes[j];
         axis->sensed = axis->has_target = axis->torque_known = false;
-        axis->wants_torque = axis->held = false;
+        axis->wants_torque = axis->held = axis->adrift = false;
+        axis->own_until_us = 0;
         axis->status = GROBO_ERR_UNPLUGGED;
         axis->lost = 0;
         axis->current_since_us = GROBO_NEVER_US;

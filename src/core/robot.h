@@ -171,6 +171,10 @@ int grobo_i_gate_raw(grobo_robot *robot, const uint8_t *frame, size_t size);
 double grobo_i_axis_commanded(const grobo_robot_axis *axis, int64_t now_us);
 /* Takes the sensed angle for where a joint is, nothing being asked of it. */
 void grobo_i_axis_rest(grobo_robot_axis *axis, int64_t now_us);
+/* Takes what was read for where a joint is: at the angle, or on the move the servo told of. */
+void grobo_i_axis_here(grobo_robot_axis *axis, int64_t now_us);
+/* True if one of these moves though nothing was asked of it, nobody knows where to. */
+bool grobo_i_adrift(const grobo_robot *robot, grobo_joint_mask joints);
 /* Holds a goal this far from the angle to be the angle, for switching torque on. */
 #define GROBO_I_HOLD_NEAR_DEG 2.0
 /* How far outside its limits a joint may stand to be switched on; it is drawn to the limit. */

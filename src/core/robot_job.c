@@ -18,7 +18,7 @@ int grobo_i_job_start(grobo_robot *robot, grobo_job_kind kind, const grobo_robot
     job->joint = -1;
     job->value = 0;
     job->failed = job->pending = 0;
-    job->sense = GROBO_SENSE_FULL;
+    job->sense = GROBO_SENSE_ALL;
     job->priority = GROBO_PRIORITY_USER;
     job->part = job->rounds = 0;
     job->reply_bytes = 0;

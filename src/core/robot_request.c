@@ -142,7 +142,8 @@ static int admit_target(const grobo_robot *robot, const grobo_posture *target)
     }
     bool busy = grobo_i_in_motion(robot) || robot->job.kind == GROBO_JOB_PLAY ||
                 robot->job.kind == GROBO_JOB_EXIT || robot->job.kind == GROBO_JOB_COMMAND;
-    return busy || !all_hold(robot, target->set) ? GROBO_ERR_STATE : GROBO_OK;
+    bool ready = all_hold(robot, target->set) && !grobo_i_adrift(robot, target->set);
+    return busy || !ready ? GROBO_ERR_STATE : GROBO_OK;
 }
 
 int grobo_robot_send(grobo_robot *robot, const grobo_posture *target, int64_t now_us)

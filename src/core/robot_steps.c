@@ -142,7 +142,7 @@ static int step_from_here(grobo_robot *robot)
 {
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         if (is_set(robot->job.joints & ~robot->job.failed, j)) {
-            grobo_i_axis_rest(&robot->axes[j], robot->now_us);
+            grobo_i_axis_here(&robot->axes[j], robot->now_us);
         }
     }
     return GROBO_I_NEXT;
@@ -330,7 +330,7 @@ static int step_missed(grobo_robot *robot)
     grobo_joint_mask bad = not_taken(robot, robot->job.pending);
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         if (is_set(bad, j)) {
-            grobo_i_axis_rest(&robot->axes[j], robot->now_us);
+            grobo_i_axis_here(&robot->axes[j], robot->now_us);
         }
     }
     robot->job.pending = bad;

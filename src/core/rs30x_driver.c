@@ -130,7 +130,7 @@ static const struct {
 } blocks[] = {
     [GROBO_SENSE_FULL] = {GROBO_STATE_ADDRESS, GROBO_STATE_BYTES},
     [GROBO_SENSE_POSITION] = {GROBO_RS30X_POSITION, 2},
-    [GROBO_SENSE_GOAL] = {GROBO_RS30X_GOAL, GROBO_RS30X_POSITION + 2 - GROBO_RS30X_GOAL},
+    [GROBO_SENSE_GOAL] = {GROBO_RS30X_GOAL, GROBO_RS30X_SPEED + 2 - GROBO_RS30X_GOAL},
     [GROBO_SENSE_ALL] = {GROBO_RS30X_GOAL, GROBO_RS30X_VOLTAGE + 2 - GROBO_RS30X_GOAL},
 };
 
@@ -191,9 +191,12 @@ int grobo_i_rs30x_parse(const grobo_driver *self, void *ctx, int joint,
             state->valid = (uint16_t)(state->valid | fields[i].field);
         }
     }
-    const grobo_rs30x_register *goal = grobo_rs30x_register_at(GROBO_RS30X_GOAL);
-    if (reply->address == GROBO_RS30X_GOAL && reply->data_bytes >= goal->bytes) {
+    if (reply->address == GROBO_RS30X_GOAL && reply->data_bytes >= 4) {
+        const grobo_rs30x_register *goal = grobo_rs30x_register_at(GROBO_RS30X_GOAL);
+        const grobo_rs30x_register *time = grobo_rs30x_register_at(GROBO_RS30X_GOAL_TIME);
         state->goal_rad = grobo_rad_from_ddeg(grobo_rs30x_register_get(goal, reply->data));
+        state->goal_time_us =
+            (int64_t)grobo_rs30x_register_get(time, reply->data + 2) * GROBO_PLAY_TIME_UNIT_US;
         state->valid |= GROBO_FIELD_GOAL;
     }
     return GROBO_OK;

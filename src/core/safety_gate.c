@@ -33,10 +33,30 @@ void grobo_i_axis_rest(grobo_robot_axis *axis, int64_t now_us)
     axis->way = axis->way_before = (grobo_robot_way){angle_rad, angle_rad, now_us, now_us};
 }
 
+void grobo_i_axis_here(grobo_robot_axis *axis, int64_t now_us)
+{
+    grobo_i_axis_rest(axis, now_us);
+    if (axis->own_until_us > now_us) {
+        axis->way = (grobo_robot_way){axis->state.angle_rad, axis->state.goal_rad, axis->angle_us,
+                                      axis->own_until_us};
+        axis->way_before = axis->way;
+    }
+}
+
 bool grobo_i_gate_moving(const grobo_robot *robot)
 {
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         if (robot->axes[j].has_target && robot->axes[j].way.to_us > robot->now_us) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool grobo_i_adrift(const grobo_robot *robot, grobo_joint_mask joints)
+{
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if ((joints & GROBO_JOINT_BIT(j)) != 0 && robot->axes[j].adrift) {
             return true;
         }
     }
@@ -48,6 +68,7 @@ void grobo_i_gate_forget(grobo_robot *robot, grobo_joint_mask joints)
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         if ((joints & GROBO_JOINT_BIT(j)) != 0) {
             robot->axes[j].sensed = robot->axes[j].has_target = robot->axes[j].held = false;
+            robot->axes[j].own_until_us = 0;
         }
     }
     grobo_i_gate_soften(robot);
@@ -65,7 +86,9 @@ static void note_way(grobo_robot *robot, const grobo_target *target)
             axis->way = (grobo_robot_way){from_rad, target->posture.angle_rad[j], now_us,
                                           now_us + target->joint_time_us[j]};
             axis->motion = robot->motion;
+            axis->own_until_us = 0;
             axis->has_target = true;
+            axis->adrift = false;
         }
     }
 }
@@ -130,18 +153,23 @@ static double speed_limit(const grobo_robot *robot, int joint)
     return robot->soft && approach_rad_s < limit_rad_s ? approach_rad_s : limit_rad_s;
 }
 
+/* A halt: goes on for this long at half the speed, so that no joint is thrown back. */
+#define HALT_AHEAD_US 50000
+#define HALT_TIME_US 100000
 /* Angles are rounded to 0.1 degree on the wire: that much further is not faster. */
 #define ROUNDING_RAD (0.1 * 0.017453292519943295)
 
 static int64_t time_needed(const grobo_robot *robot, int joint, double to_rad)
 {
     int64_t step_us = robot->driver->time_step_us;
-    double from_rad = grobo_i_axis_commanded(&robot->axes[joint], robot->now_us);
-    double way_rad = fabs(to_rad - from_rad) - ROUNDING_RAD;
-    if (way_rad <= 0) {
-        return step_us;
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    double from_rad = grobo_i_axis_commanded(axis, robot->now_us);
+    double way_rad = fmax(fabs(to_rad - from_rad) - ROUNDING_RAD, 0);
+    double needed_us = way_rad / speed_limit(robot, joint) * 1e6;
+    if (robot->soft && axis->way.to_us > robot->now_us) {
+        needed_us = fmax(needed_us, HALT_TIME_US); /* it goes on until the frame is there */
     }
-    double steps = ceil(way_rad / speed_limit(robot, joint) * 1e6 / (double)step_us);
+    double steps = fmax(ceil(needed_us / (double)step_us), 1);
     double most = (double)(GROBO_PLAY_TIME_MAX_US / step_us);
     return steps > most ? GROBO_NEVER_US : (int64_t)steps * step_us;
 }
@@ -264,10 +292,6 @@ int grobo_i_gate_send(grobo_robot *robot, const grobo_posture *wanted, const gro
 
 /* ---- halting --------------------------------------------------------------------------------- */
 
-/* Goes on for this long at half the speed, so that no joint is thrown back. */
-#define HALT_AHEAD_US 50000
-#define HALT_TIME_US 100000
-
 void grobo_i_gate_halt(grobo_robot *robot)
 {
     grobo_posture target;
@@ -332,6 +356,7 @@ int grobo_i_gate_hold(grobo_robot *robot, grobo_joint_mask joints, grobo_i_chunk
                 hold_goal(robot, j, &target.posture.angle_rad[j])) {
                 target.posture.set |= GROBO_JOINT_BIT(j);
                 grobo_i_axis_rest(axis, robot->now_us);
+                axis->own_until_us = 0;
                 axis->held = false;
             }
         }
@@ -452,8 +477,8 @@ static int judge_raw(grobo_robot *robot, const grobo_target *target, grobo_joint
     if (!all_sensed(robot, target->posture.set | on, &robot->fault_joint)) {
         return GROBO_ERR_STALE;
     }
-    if (!all_on(robot, on)) {
-        return GROBO_ERR_STATE; /* a torque job does it safely */
+    if (!all_on(robot, on) || grobo_i_adrift(robot, target->posture.set)) {
+        return GROBO_ERR_STATE; /* a torque job does it safely; somebody else moves it */
     }
     for (int j = 0; j < model->n_joints; j++) {
         if ((target->posture.set & GROBO_JOINT_BIT(j)) != 0 &&

@@ -2,10 +2,11 @@
 /* Readings: what they tell of a joint, when the background takes them, and free mode. */
 #include "core/robot.h"
 
+#include <math.h>
 #include <stdlib.h>
 
-/* Free mode: a joint slower than this holds again (protocol 5). */
-#define FREE_SLOW_DPS 8
+/* Free mode: a joint slower than this holds again (protocol 5). Else: it is at rest. */
+#define SLOW_DPS 8
 
 /* ---- taking a reading ------------------------------------------------------------------------ */
 
@@ -22,6 +23,7 @@ static void merge(grobo_robot_axis *axis, const grobo_joint_state *got)
     }
     KEEP(GROBO_FIELD_ANGLE, angle_rad)
     KEEP(GROBO_FIELD_GOAL, goal_rad)
+    KEEP(GROBO_FIELD_GOAL, goal_time_us)
     KEEP(GROBO_FIELD_TIME, time_us)
     KEEP(GROBO_FIELD_SPEED, speed_dps)
     KEEP(GROBO_FIELD_CURRENT, current_ma)
@@ -41,6 +43,26 @@ static void correct(const grobo_robot *robot, int joint, grobo_joint_state *got)
     }
 }
 
+/* Where a servo is going, if it told. A host that was away, or another one, may have sent it. */
+static void take_move(grobo_robot *robot, int joint, const grobo_joint_state *got)
+{
+    const unsigned move = GROBO_FIELD_ANGLE | GROBO_FIELD_GOAL | GROBO_FIELD_TIME;
+    const unsigned pace = GROBO_FIELD_SPEED | GROBO_FIELD_TORQUE;
+    grobo_robot_axis *axis = &robot->axes[joint];
+    if ((got->valid & pace) != pace) {
+        return;
+    }
+    bool moves = got->torque == GROBO_TORQUE_ON && abs(got->speed_dps) >= SLOW_DPS;
+    if ((got->valid & move) == move) {
+        double most_rad_s = robot->driver->model->joints[joint].max_speed_rad_s;
+        int64_t least_us = (int64_t)(fabs(got->goal_rad - got->angle_rad) / most_rad_s * 1e6);
+        int64_t left_us = got->goal_time_us - got->time_us;
+        left_us = left_us > least_us ? left_us : least_us;
+        axis->own_until_us = robot->now_us + (moves ? left_us : 0);
+    }
+    axis->adrift = moves && !axis->has_target && axis->own_until_us <= robot->now_us;
+}
+
 static void take_reading(grobo_robot *robot, int joint, grobo_joint_state *got)
 {
     grobo_robot_axis *axis = &robot->axes[joint];
@@ -51,8 +73,9 @@ static void take_reading(grobo_robot *robot, int joint, grobo_joint_state *got)
     if ((got->valid & GROBO_FIELD_ANGLE) != 0) {
         axis->angle_us = robot->now_us;
         axis->sensed = true;
+        take_move(robot, joint, got);
         if (!axis->has_target) {
-            grobo_i_axis_rest(axis, robot->now_us);
+            grobo_i_axis_here(axis, robot->now_us);
         }
     }
     if ((got->valid & GROBO_FIELD_CURRENT) != 0) {
@@ -124,7 +147,7 @@ static void free_joint(grobo_robot *robot, int joint)
             (void)grobo_i_gate_torque(robot, GROBO_JOINT_BIT(joint), GROBO_TORQUE_BRAKE,
                                       GROBO_I_WHOLE);
         }
-    } else if (state->torque != GROBO_TORQUE_ON && abs(state->speed_dps) < FREE_SLOW_DPS) {
+    } else if (state->torque != GROBO_TORQUE_ON && abs(state->speed_dps) < SLOW_DPS) {
         axis->held = goal_is_here(state);
         (void)(axis->held ? grobo_i_gate_torque(robot, GROBO_JOINT_BIT(joint), GROBO_TORQUE_ON,
                                                 GROBO_I_WHOLE)

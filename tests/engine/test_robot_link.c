@@ -11,7 +11,7 @@
 
 #include "rig.h"
 
-enum { NECK = 13, R_KNEE = 3 };
+enum { NECK = 13, HIP = 0, R_KNEE = 3 };
 
 static grobo_test_rig rig;
 static rig_clip clip;
@@ -89,6 +89,87 @@ static void a_motion_ends_when_the_line_goes_and_does_not_come_back(void **state
     }
     rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL, rig.now_us), GROBO_OK);
     rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
+}
+
+/* Lets a job end; returns the fastest a joint went meanwhile, in degrees a second. */
+static double fastest_dps(int number, int joint)
+{
+    double most_dps = 0;
+    double before_deg = rig_angle_deg(&rig, joint);
+    int64_t until_us = rig.now_us + 10000000;
+    bool over = false;
+    while (!over && rig.now_us < until_us) {
+        rig_run(&rig, 2000);
+        double deg = rig_angle_deg(&rig, joint);
+        most_dps = fmax(most_dps, fabs(deg - before_deg) / 0.002);
+        before_deg = deg;
+        const grobo_event *last = rig_last(&rig, GROBO_EVENT_JOB);
+        over = last != NULL && last->u.job.number == number;
+    }
+    rig_expect(&rig, number, GROBO_OK);
+    return most_dps;
+}
+
+/* A hip on its way at 107 deg/s, the line gone and back. */
+static void replug_under_way(void)
+{
+    rig_start(&rig, NULL, NULL);
+    rig_power(&rig);
+    grobo_posture target = rig_posture(&rig, HIP, -140, 100);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
+    target = rig_posture(&rig, HIP, 20, 1500);
+    assert_true(grobo_robot_move(&rig.robot, &target, rig.now_us) > 0);
+    rig_run(&rig, 500000);
+    unplug();
+    rig_run(&rig, 50000);
+    plug();
+}
+
+/* Nobody stopped the servos when the line went. A joint still on its way has gone on since it was
+ * read, and is not to be thrown back to where it was. */
+static void a_move_after_a_replug_throws_no_joint_back(void **state)
+{
+    (void)state;
+    for (int to_deg = -140; to_deg <= 30; to_deg += 5) {
+        replug_under_way();
+        grobo_posture target = rig_posture(&rig, HIP, to_deg, 10);
+        for (int j = 1; j < 12; j++) { /* more to read: more time between reading and moving */
+            assert_int_equal(grobo_posture_set_deg(&target, j, rig_angle_deg(&rig, j)), 0);
+        }
+        double most_dps = fastest_dps(grobo_robot_move(&rig.robot, &target, rig.now_us), HIP);
+        assert_true(most_dps < 120);
+        assert_true(fabs(rig_angle_deg(&rig, HIP) - to_deg) < 0.2);
+    }
+}
+
+static void a_play_after_a_replug_throws_no_joint_back(void **state)
+{
+    (void)state;
+    for (int to_deg = -140; to_deg <= 30; to_deg += 5) {
+        replug_under_way();
+        const rig_key keys[] = {{0, {{HIP, to_deg}}}, {1000, {{HIP, to_deg}}}};
+        rig_clip_init(&clip, keys, 2);
+        double most_dps =
+            fastest_dps(grobo_robot_play(&rig.robot, &clip.clip, NULL, rig.now_us), HIP);
+        assert_true(most_dps < 120);
+        rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
+        assert_true(fabs(rig_angle_deg(&rig, HIP) - to_deg) < 0.2);
+    }
+}
+
+/* A single target has no reading before it that would tell where the joint is going. */
+static void nothing_is_sent_to_a_joint_that_moves_by_itself(void **state)
+{
+    (void)state;
+    replug_under_way();
+    rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL, rig.now_us),
+               GROBO_OK);
+    grobo_posture target = rig_posture(&rig, HIP, 0, 100);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_ERR_STATE);
+    rig_run(&rig, 1500000); /* it has arrived */
+    rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL, rig.now_us),
+               GROBO_OK);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
 }
 
 static void nineteen_of_twenty_are_delivered(void **state)
@@ -258,6 +339,9 @@ int main(void)
         cmocka_unit_test(nothing_is_asked_of_a_line_that_is_down),
         cmocka_unit_test(a_job_ends_when_the_line_goes),
         cmocka_unit_test(a_motion_ends_when_the_line_goes_and_does_not_come_back),
+        cmocka_unit_test(a_move_after_a_replug_throws_no_joint_back),
+        cmocka_unit_test(a_play_after_a_replug_throws_no_joint_back),
+        cmocka_unit_test(nothing_is_sent_to_a_joint_that_moves_by_itself),
         cmocka_unit_test(nineteen_of_twenty_are_delivered),
         cmocka_unit_test(a_stale_angle_is_not_in_a_fresh_posture),
         cmocka_unit_test(broken_replies_are_retried_and_never_believed),

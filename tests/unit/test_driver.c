@@ -149,7 +149,7 @@ static void more_joints_than_a_frame_holds_make_more_frames(void **state)
 static void senses_ask_for_what_they_say(void **state)
 {
     (void)state;
-    static const uint8_t blocks[][2] = {{36, 18}, {42, 2}, {30, 14}, {30, 24}};
+    static const uint8_t blocks[][2] = {{36, 18}, {42, 2}, {30, 18}, {30, 24}};
     for (int kind = 0; kind < 4; kind++) {
         const grobo_driver *driver = fresh(GROBO_WIRING_BOARD);
         assert_int_equal(driver->sense(driver, NULL, 12, (grobo_sense_kind)kind, &exchange), 0);
