@@ -87,6 +87,13 @@ in_shell() {
 }
 check "connect knows names" in_shell
 
+# The knee bends to -120 at rest; a trim leaves it -110, which the offset makes -108 when read.
+sits() {
+    exits 0 "$GRCTL" calibrate m12 -20 && exits 0 "$GRCTL" --on-exit sit init --time 1500 &&
+        exits 0 "$GRCTL" status legs && says 'R_KNEE_P  *-108\.0.* off'
+}
+check "a trim leaves room for the resting posture" sits
+
 # ---- mistakes ---------------------------------------------------------------------------------
 
 # bad PLACE-AND-MESSAGE: the file on standard input is refused there.

@@ -61,6 +61,16 @@ static void narrow(trims *t, int joint)
     j->init_rad = clamp(j->init_rad, j->min_rad, j->max_rad);
 }
 
+/* Where the narrowed limits cut the resting posture off, it ends there. */
+static void narrow_rest(trims *t)
+{
+    if (!t->inner->rest_rad)
+        return;
+    for (int j = 0; j < t->model.n_joints; j++)
+        t->rest_rad[j] = clamp(t->inner->rest_rad[j], t->joints[j].min_rad, t->joints[j].max_rad);
+    t->driver.rest_rad = t->rest_rad;
+}
+
 /* In place of the driver's own corrections. */
 static void take_offsets(trims *t, const config_robot *robot)
 {
@@ -90,6 +100,7 @@ const grobo_driver *trims_driver(trims *t, const grobo_driver *inner, const conf
         t->trim_rad[j] = wire_rad(robot->trim_deg[j]);
         narrow(t, j);
     }
+    narrow_rest(t);
     if (robot->offsets)
         take_offsets(t, robot);
     return &t->driver;

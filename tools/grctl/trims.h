@@ -13,6 +13,7 @@ typedef struct trims {
     grobo_readback readback[GROBO_JOINTS_MAX];
     const grobo_driver *inner;
     double trim_rad[GROBO_JOINTS_MAX];
+    double rest_rad[GROBO_JOINTS_MAX];
 } trims;
 
 /*
