@@ -337,8 +337,9 @@ typedef struct grobo_robot {
     unsigned low_readings; /* of the voltage, in a row */
     unsigned depth;        /* calls into the engine, one inside another */
     bool link;
-    bool settling; /* a motion is over, its end not yet looked at */
-    bool soft;     /* the next move is the first from a sensed posture */
+    bool settling;  /* a motion is over, its end not yet looked at */
+    bool soft;      /* the next move is the first from a sensed posture */
+    bool stop_owed; /* an emergency stop that no line has carried yet */
 } grobo_robot;
 
 /**
@@ -464,7 +465,8 @@ GROBO_API int grobo_robot_exit(grobo_robot *robot, grobo_exit_policy policy, int
 /**
  * Emergency stop: drops everything that waits, sends torque off or brake ahead of all else, reads
  * every joint back and repeats what did not take. Latched until grobo_robot_reset(). Never
- * refused but for GROBO_ERR_CLOSED, where it is latched all the same.
+ * refused but for GROBO_ERR_CLOSED, where it is latched all the same, and carried out as soon as
+ * the line is there: so is one that the line was lost under.
  */
 GROBO_API int grobo_robot_estop(grobo_robot *robot, int64_t now_us);
 

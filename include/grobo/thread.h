@@ -377,7 +377,7 @@ GROBO_API int grobo_control_receive(grobo_control *control, void *bytes, size_t 
 
 /** Emergency stop, ahead of everything: see grobo_robot_estop(). What has not begun is forgotten.
  *  Handed over; grobo_control_wait() waits until it is verified. @return GROBO_OK,
- *  GROBO_ERR_CLOSED (latched all the same). */
+ *  GROBO_ERR_CLOSED (latched all the same, and carried out when the line is there). */
 GROBO_API int grobo_control_estop(grobo_control *control);
 /** Takes back a latched stop: see grobo_robot_reset(). Handed over. @return GROBO_OK,
  *  GROBO_ERR_STATE. */

@@ -222,6 +222,9 @@ void grobo_robot_link_up(grobo_robot *robot, int64_t now_us)
         robot->sense_us = robot->now_us;
         robot->round = grobo_i_all_joints(robot);
         tell_kind(robot, GROBO_EVENT_LINK_UP);
+        if (robot->stop_owed) {
+            (void)grobo_i_estop_start(robot);
+        }
     }
     grobo_i_leave(robot);
 }

@@ -93,6 +93,11 @@ extern const grobo_robot_step_fn grobo_i_script_exit_off[];
 extern const grobo_robot_step_fn grobo_i_script_exit_hold[];
 extern const grobo_robot_step_fn grobo_i_script_exit_sit[];
 
+/* ---- robot_request.c ------------------------------------------------------------------------- */
+
+/* Begins to carry an emergency stop out; the link is up. @return the job's number. */
+int grobo_i_estop_start(grobo_robot *robot);
+
 /* ---- robot_play.c ---------------------------------------------------------------------------- */
 
 /* Sends what the sequencer has due, watches the host's lateness, keeps the line free for what

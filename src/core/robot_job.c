@@ -38,6 +38,9 @@ void grobo_i_job_end(grobo_robot *robot, int result)
     event.u.job.failed = job->failed;
     event.u.job.data = robot->reply;
     event.u.job.size = job->reply_bytes;
+    if (job->kind == GROBO_JOB_ESTOP && result != GROBO_ERR_UNPLUGGED) {
+        robot->stop_owed = false;
+    }
     job->kind = GROBO_JOB_NONE;
     grobo_i_slots_cancel(robot, GROBO_I_USE_JOB);
     if (event.u.job.kind != GROBO_JOB_SETTLE) {

@@ -436,6 +436,17 @@ int grobo_robot_exit(grobo_robot *robot, grobo_exit_policy policy, int64_t now_u
     return begin(robot, number);
 }
 
+int grobo_i_estop_start(grobo_robot *robot)
+{
+    int number = grobo_i_job_start(robot, GROBO_JOB_ESTOP, grobo_i_script_torque_off);
+    robot->job.joints = grobo_i_all_joints(robot);
+    robot->job.torque =
+        robot->config.estop_torque == GROBO_ESTOP_OFF ? GROBO_TORQUE_OFF : GROBO_TORQUE_BRAKE;
+    robot->job.priority = GROBO_PRIORITY_STOP;
+    grobo_i_job_run(robot);
+    return number;
+}
+
 int grobo_robot_estop(grobo_robot *robot, int64_t now_us)
 {
     grobo_i_enter(robot, now_us);
@@ -446,15 +457,13 @@ int grobo_robot_estop(grobo_robot *robot, int64_t now_us)
     grobo_bus_reserve(&robot->bus, GROBO_NEVER_US, 0);
     (void)grobo_bus_cancel_all(&robot->bus, GROBO_PRIORITY_ALL, GROBO_ERR_CANCELED);
     grobo_i_trip(robot, GROBO_TRIP_ESTOP, -1, 0, true);
-    if (!robot->link || robot->driver->torque == NULL) {
-        return refuse(robot, robot->link ? GROBO_ERR_UNSUPPORTED : GROBO_ERR_CLOSED);
+    if (robot->driver->torque == NULL) {
+        return refuse(robot, GROBO_ERR_UNSUPPORTED);
     }
-    int number = grobo_i_job_start(robot, GROBO_JOB_ESTOP, grobo_i_script_torque_off);
-    robot->job.joints = grobo_i_all_joints(robot);
-    robot->job.torque =
-        robot->config.estop_torque == GROBO_ESTOP_OFF ? GROBO_TORQUE_OFF : GROBO_TORQUE_BRAKE;
-    robot->job.priority = GROBO_PRIORITY_STOP;
-    return begin(robot, number);
+    robot->stop_owed = true;
+    int number = robot->link ? grobo_i_estop_start(robot) : GROBO_ERR_CLOSED;
+    grobo_i_leave(robot);
+    return number;
 }
 
 int grobo_robot_reset(grobo_robot *robot, int64_t now_us)
@@ -465,6 +474,7 @@ int grobo_robot_reset(grobo_robot *robot, int64_t now_us)
         robot->trip = (grobo_trip_info){.joint = -1};
         grobo_i_gate_soften(robot);
         robot->low_readings = 0;
+        robot->stop_owed = false;
     }
     grobo_i_leave(robot);
     return result;

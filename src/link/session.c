@@ -144,22 +144,27 @@ static void be_up(grobo_session *session)
     tell(session, GROBO_SESSION_EVENT_UP, GROBO_OK);
 }
 
-/* The line is open: who is there? */
-static void start_check(grobo_session *session)
+/* Who is there? Asked anew behind an emergency stop, which goes before everything. */
+static void ask_who(grobo_session *session)
 {
-    int64_t now_us = grobo_now_us();
-
-    session->state = GROBO_SESSION_CHECKING;
-    session->check_ended = false;
-    grobo_robot_link_up(&session->robot, now_us);
-    session->check_job = session->config.skip_check ? GROBO_ERR_UNSUPPORTED
-                                                    : grobo_robot_check(&session->robot, now_us);
-    if (session->check_job < 0) {
+    session->check_job = session->config.skip_check
+                             ? GROBO_ERR_UNSUPPORTED
+                             : grobo_robot_check(&session->robot, grobo_now_us());
+    if (session->check_job < 0 && grobo_robot_job(&session->robot) != GROBO_JOB_ESTOP) {
         /* A driver without a check takes who is there for its robot. */
         session->check_result =
             session->check_job == GROBO_ERR_UNSUPPORTED ? GROBO_OK : session->check_job;
         session->check_ended = true;
     }
+}
+
+/* The line is open. */
+static void start_check(grobo_session *session)
+{
+    session->state = GROBO_SESSION_CHECKING;
+    session->check_ended = false;
+    grobo_robot_link_up(&session->robot, grobo_now_us());
+    ask_who(session);
 }
 
 static void end_check(grobo_session *session)
@@ -184,12 +189,19 @@ static void on_robot(void *ctx, const grobo_event *event)
     if (session->freed) {
         return;
     }
-    if (session->state == GROBO_SESSION_CHECKING) {
-        if (event->kind == GROBO_EVENT_JOB && event->u.job.number == session->check_job) {
-            session->check_result = event->u.job.result;
-            session->check_ended = true;
-        }
-    } else if (session->config.on_robot != NULL) {
+    bool checking = session->state == GROBO_SESSION_CHECKING;
+    bool job = event->kind == GROBO_EVENT_JOB;
+    bool stop = event->kind == GROBO_EVENT_TRIP || (job && event->u.job.kind == GROBO_JOB_ESTOP);
+
+    if (checking && job && event->u.job.number == session->check_job) {
+        /* Only an emergency stop takes its place. */
+        session->check_ended = event->u.job.result != GROBO_ERR_CANCELED;
+        session->check_result = event->u.job.result;
+    }
+    if (checking && job && stop) {
+        ask_who(session);
+    }
+    if ((!checking || stop) && session->config.on_robot != NULL) {
         session->config.on_robot(session->config.ctx, event);
     }
 }

@@ -333,6 +333,57 @@ static void a_job_may_be_displaced_from_its_own_events(void **state)
     rig_expect(&rig, chain, GROBO_OK);
 }
 
+/* The line went while a person stopped the robot, or before. */
+static void an_emergency_stop_that_found_no_line_is_made_up_for(void **state)
+{
+    (void)state;
+    for (int under_way = 0; under_way < 2; under_way++) {
+        rig_start(&rig, &quiet, NULL);
+        rig_power(&rig);
+        if (under_way) {
+            int number = grobo_robot_estop(&rig.robot, rig.now_us);
+            grobo_robot_link_down(&rig.robot, rig.now_us);
+            rig_expect(&rig, number, GROBO_ERR_UNPLUGGED);
+        } else {
+            grobo_robot_link_down(&rig.robot, rig.now_us);
+            assert_int_equal(grobo_robot_estop(&rig.robot, rig.now_us), GROBO_ERR_CLOSED);
+        }
+        rig_run(&rig, 1000000);
+        assert_int_equal(rig_torque(&rig, NECK), GROBO_TORQUE_ON);
+        rig_forget(&rig);
+        grobo_robot_link_up(&rig.robot, rig.now_us);
+        assert_int_equal(grobo_robot_job(&rig.robot), GROBO_JOB_ESTOP);
+        assert_int_equal(grobo_robot_check(&rig.robot, rig.now_us), GROBO_ERR_STATE);
+        rig_run(&rig, 1000000);
+        assert_int_equal(rig.sent[0].size, 50); /* torque of all, before anything else */
+        assert_int_equal(rig_last(&rig, GROBO_EVENT_JOB)->u.job.result, GROBO_OK);
+        for (int j = 0; j < 20; j++) {
+            assert_int_equal(rig_torque(&rig, j), GROBO_TORQUE_BRAKE);
+        }
+        grobo_trip_info info;
+        grobo_robot_tripped(&rig.robot, &info);
+        assert_int_equal(info.trip, GROBO_TRIP_ESTOP);
+        rig_forget(&rig); /* once */
+        grobo_robot_link_down(&rig.robot, rig.now_us);
+        grobo_robot_link_up(&rig.robot, rig.now_us);
+        rig_run(&rig, 1000000);
+        assert_int_equal(rig.n_sent, 0);
+    }
+}
+
+static void an_emergency_stop_taken_back_is_not_made_up_for(void **state)
+{
+    (void)state;
+    rig_start(&rig, &quiet, NULL);
+    rig_power(&rig);
+    grobo_robot_link_down(&rig.robot, rig.now_us);
+    assert_int_equal(grobo_robot_estop(&rig.robot, rig.now_us), GROBO_ERR_CLOSED);
+    assert_int_equal(grobo_robot_reset(&rig.robot, rig.now_us), GROBO_OK);
+    grobo_robot_link_up(&rig.robot, rig.now_us);
+    rig_run(&rig, 1000000);
+    assert_int_equal(rig_torque(&rig, NECK), GROBO_TORQUE_ON);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -342,6 +393,8 @@ int main(void)
         cmocka_unit_test(a_move_after_a_replug_throws_no_joint_back),
         cmocka_unit_test(a_play_after_a_replug_throws_no_joint_back),
         cmocka_unit_test(nothing_is_sent_to_a_joint_that_moves_by_itself),
+        cmocka_unit_test(an_emergency_stop_that_found_no_line_is_made_up_for),
+        cmocka_unit_test(an_emergency_stop_taken_back_is_not_made_up_for),
         cmocka_unit_test(nineteen_of_twenty_are_delivered),
         cmocka_unit_test(a_stale_angle_is_not_in_a_fresh_posture),
         cmocka_unit_test(broken_replies_are_retried_and_never_believed),

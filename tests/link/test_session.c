@@ -417,6 +417,45 @@ static void a_simulator_that_hung_up_is_plugged_in_again(void **state)
     assert_it_works();
 }
 
+static grobo_torque torque_of(int servo)
+{
+    grobo_sim_view view;
+
+    assert_int_equal(grobo_sim_look(grobo_session_sim(session), servo, &view), 0);
+    return view.torque;
+}
+
+/* Whatever the session was about when a person stopped the robot. */
+static void an_emergency_stop_reaches_a_robot_that_is_lost_or_just_found(void **state)
+{
+    (void)state;
+    make((grobo_session_config){.device = "sim", .reconnect = true});
+    come_up();
+    assert_int_equal(await(grobo_session_torque(session, GROBO_JOINTS_ALL(20), GROBO_TORQUE_ON)),
+                     GROBO_OK);
+    grobo_sim_plug(grobo_session_sim(session), false, grobo_now_us());
+    assert_true(grobo_session_sense(session, 1, GROBO_SENSE_FULL) > 0);
+    run_until(&seen.losts, 1);
+    assert_int_equal(grobo_session_estop(session), GROBO_ERR_CLOSED);
+    run_until(&seen.ups, 2);
+    assert_int_equal(torque_of(0), GROBO_TORQUE_BRAKE);
+    assert_int_equal(torque_of(19), GROBO_TORQUE_BRAKE);
+    assert_int_equal(grobo_session_reset(session), GROBO_OK);
+
+    assert_int_equal(await(grobo_session_torque(session, GROBO_JOINTS_ALL(20), GROBO_TORQUE_ON)),
+                     GROBO_OK);
+    grobo_session_close(session);
+    assert_int_equal(grobo_session_open(session), GROBO_OK);
+    while (grobo_session_get_state(session) != GROBO_SESSION_CHECKING) {
+        assert_int_equal(event_base_loop(base, EVLOOP_ONCE), 0);
+    }
+    assert_int_equal(await(grobo_session_estop(session)), GROBO_OK);
+    run_until(&seen.ups, 3); /* who is there was asked afterwards */
+    assert_int_equal(torque_of(0), GROBO_TORQUE_BRAKE);
+    assert_int_equal(torque_of(19), GROBO_TORQUE_BRAKE);
+    assert_int_equal(seen.fails, 0);
+}
+
 static void without_reconnect_a_lost_port_is_closed(void **state)
 {
     grobo_sim_server *server = serve((grobo_sim_server_config){0});
@@ -539,6 +578,7 @@ int main(void)
         ON_LOOP(requests_need_a_robot),
         ON_LOOP(a_lost_port_is_found_again),
         ON_LOOP(a_simulator_that_hung_up_is_plugged_in_again),
+        ON_LOOP(an_emergency_stop_reaches_a_robot_that_is_lost_or_just_found),
         ON_LOOP(without_reconnect_a_lost_port_is_closed),
         ON_LOOP(it_may_be_freed_in_its_event),
         ON_LOOP(it_may_be_freed_in_an_event_of_the_engine),
