@@ -148,11 +148,13 @@ format: ## write sources as clang-format 14 does; FILES="src/core/bus.c" chooses
 
 # The programs and scripts of the chosen rings, as tests/run.sh wants them.
 in_rings = $(foreach ring,$(RING),$(filter $(1)tests/$(ring)/%,$(2)))
+# What tests of a build for another machine must know.
+cross_env = $(if $(CROSS),$(foreach v,CROSS EMULATOR SYSROOT CXX,$(v)="$($(v))") TEST_WRAPPER="$(EMULATOR)")
 corpora = $(foreach f,$(FUZZ_REPLAYS),$(f)@tests/fuzz/corpus/$(patsubst fuzz_%,%,$(notdir $(f))))
 
 test: all $(TEST_PROGRAMS) $(FUZZ_REPLAYS) $(EXAMPLES) ## the tests alone; RING="unit engine" chooses
-	@GRCTL="$(abspath $(GRCTL_RUN))" BUILD="$(BUILD)" CC="$(CC)" TEST_LOGS="$(BUILD)/logs" \
-	    $(if $(EMULATOR),TEST_WRAPPER="$(EMULATOR)") tests/run.sh \
+	@GRCTL="$(abspath $(GRCTL_RUN))" BUILD="$(BUILD)" CC="$(CC)" TEST_LOGS="$(BUILD)/logs" EDIT=$(EDIT) \
+	    $(cross_env) tests/run.sh \
 	    $(call in_rings,$(BUILD)/,$(TEST_PROGRAMS)) $(call in_rings,,$(TEST_SCRIPTS)) \
 	    $(if $(filter fuzz,$(RING)),$(corpora))
 
@@ -172,10 +174,10 @@ cross_make = $(if $(filter $(TARGETS),$(TARGET)),,$(error TARGET= is one of $(TA
     --no-print-directory CROSS=$(TARGET) BUILD=$(BUILD)/$(TARGET)
 cross: ## build for another machine, in build/arm64 for TARGET=arm64
 	@$(if $(filter $(TARGETS),$(TARGET)),tools/cross/libs.sh $(TARGET))
-	@$(cross_make) all
+	+@$(cross_make) all
 
 check-cross: cross ## the tests of that build, under an emulator; RING= chooses
-	@$(cross_make) test
+	+@$(cross_make) test
 
 bench: $(BENCHES) $(GRCTL) ## speed and punctuality; fails where a promise is not kept
 	@status=0; for program in $(BENCHES); do \

@@ -109,7 +109,11 @@ look_cross() {
     need pkg-config 'to find libraries' have_command pkg-config -- \
         pkg-config pkgconf-pkg-config pkgconf pkgconf pkgconf-pkg-config
     case $1 in
-    arm64) need_foreign aarch64-linux-gnu qemu-aarch64 ;;
+    arm64)
+        need_foreign aarch64-linux-gnu qemu-aarch64
+        need_debian 'a C++ compiler for arm64' 'to check the headers' \
+            have_command aarch64-linux-gnu-g++ -- g++-aarch64-linux-gnu
+        ;;
     armhf) need_foreign arm-linux-gnueabihf qemu-arm ;;
     riscv64) need_foreign riscv64-linux-gnu qemu-riscv64 ;;
     s390x) need_foreign s390x-linux-gnu qemu-s390x ;;

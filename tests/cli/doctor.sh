@@ -57,8 +57,10 @@ exits 0 "$GRCTL" -d "$robot" estop --reset
 
 "$GRCTL" -d "$robot" status --watch --interval 3600000 >"$work/watch" &
 holder=$!
+holder_name=${EMULATOR:-grctl}
+holder_name=${holder_name%% *}
 until [ -s "$work/watch" ]; do kill -0 $holder || break; done
-check "somebody else has the port" finds "grctl (pid $holder) holds it" "kill $holder"
+check "somebody else has the port" finds "$holder_name (pid $holder) holds it" "kill $holder"
 kill $holder
 wait $holder 2>/dev/null
 

@@ -8,6 +8,7 @@ all_skipped() {
     exit
 }
 command -v valgrind >/dev/null 2>&1 || all_skipped "no valgrind"
+[ -z "${EMULATOR:-}" ] || all_skipped "the command is of another machine"
 grep -q __asan_init "$GRCTL" && all_skipped "built with a sanitizer"
 
 # clean STATUS ARGUMENTS...

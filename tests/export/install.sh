@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # Installs into a tree of its own and builds a stranger's program against it: C and C++, shared and
-# static, with the flags that pkg-config tells and nothing else.
+# static, by each compiler that is here, with the flags that pkg-config tells and nothing else.
 set -u
 
 . tests/support/tap.sh
@@ -10,16 +10,24 @@ work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 tree=$work/tree
 library=$tree/opt/grobo/lib
+emulator=${EMULATOR:-} # for another machine: a command with its options
+c11='-std=c11 -Wall -Wextra -Wpedantic -Werror -x c'
+cxx11='-std=c++11 -Wall -Wextra -Wpedantic -Werror -x c++'
 PKG_CONFIG_SYSROOT_DIR=$tree
 PKG_CONFIG_PATH=$library/pkgconfig
 export PKG_CONFIG_SYSROOT_DIR PKG_CONFIG_PATH
-cc="${CC:-gcc} -std=c11 -Wall -Wextra -Wpedantic -Werror -x c"
-cxx="${CXX:-g++} -std=c++11 -Wall -Wextra -Wpedantic -Werror -x c++"
+mkdir "$tree"
+if [ -n "${SYSROOT:-}" ]; then
+    # What another machine has installed stands in the same tree.
+    ln -s "$SYSROOT/usr" "$tree/usr"
+    PKG_CONFIG_LIBDIR=$(find "$tree/usr/" -type d -name pkgconfig | paste -sd :)
+    export PKG_CONFIG_LIBDIR
+fi
 
 make_target() {
     env -u MAKEFLAGS -u MAKELEVEL -u PKG_CONFIG_SYSROOT_DIR -u PKG_CONFIG_PATH \
-        make --no-print-directory -C "$here" "$1" BUILD="${BUILD:-build}" PREFIX=/opt/grobo \
-        DESTDIR="$tree"
+        -u PKG_CONFIG_LIBDIR make --no-print-directory -C "$here" "$1" BUILD="${BUILD:-build}" PREFIX=/opt/grobo \
+        DESTDIR="$tree" CROSS="${CROSS:-}"
 }
 
 # builds COMPILER SOURCE PKG_CONFIG_OPTION...; flags are lists of words.
@@ -28,11 +36,12 @@ builds() {
     compiler=$1
     source=$2
     shift 2
+    rm -f "$work/program"
     $compiler "$source" -x none -o "$work/program" $(pkg-config --cflags --libs "$@" grobo)
 }
 
 runs() {
-    [ "$(LD_LIBRARY_PATH=$library "$work/program")" = 'no reply in time' ]
+    [ "$(LD_LIBRARY_PATH=$library $emulator "$work/program")" = 'no reply in time' ]
 }
 
 needs() {
@@ -54,6 +63,34 @@ every_header() {
         builds "$1" "$work/all.c"
 }
 
+# Each compiler, on a line: its name, and the command with the language.
+compilers() {
+    cc=${CC:-gcc}
+    cxx=${CXX:-g++}
+    echo "C, ${cc%% *}: $cc $c11"
+    echo "C++, ${cxx%% *}: $cxx $cxx11"
+    [ -n "$emulator" ] || [ "${cc%% *}" = clang ] || printf '%s\n' \
+        "C, clang: clang $c11" "C++, clang: clang++ $cxx11"
+}
+
+# by_each OPTION...: by each compiler a program, with these options for pkg-config.
+by_each() {
+    mode=${1:-shared}
+    while read -r line; do
+        name="${line%%: *}, ${mode#--}"
+        command=${line#*: }
+        if ! command -v "${command%% *}" >/dev/null; then
+            skip "$name" "no ${command%% *} here"
+            continue
+        fi
+        check "$name: builds" builds "$command" tests/export/consumer.c "$@"
+        check "$name: runs" runs
+        [ $# -gt 0 ] && continue
+        check "$name: asks for libgrobo.so.0" needs
+        check "$name: every installed header together" every_header "$command"
+    done <"$work/compilers"
+}
+
 check 'install' make_target install
 share=$tree/opt/grobo/share
 check 'the man page is there' grep -q '^\.Dt GRCTL 1' "$share/man/man1/grctl.1"
@@ -63,24 +100,10 @@ check 'completion for bash' grep -q '^complete ' "$share/bash-completion/complet
 check 'completion for zsh' grep -q '^#compdef' "$share/zsh/site-functions/_grctl"
 check 'completion for fish' grep -q '^complete ' "$share/fish/vendor_completions.d/grctl.fish"
 check 'pkg-config tells the version of the headers' same_version
-check 'C, shared: builds' builds "$cc" tests/export/consumer.c
-check 'C, shared: runs' runs
-check 'C, shared: asks for libgrobo.so.0' needs
-check 'C: every installed header together' every_header "$cc"
-if command -v "${CXX:-g++}" >/dev/null; then
-    check 'C++, shared: builds' builds "$cxx" tests/export/consumer.c
-    check 'C++, shared: runs' runs
-    check 'C++: every installed header together' every_header "$cxx"
-else
-    skip 'C++' 'no C++ compiler'
-fi
+compilers >"$work/compilers"
+by_each
 rm -f "$library"/libgrobo.so*
-check 'C, static: builds' builds "$cc" tests/export/consumer.c --static
-check 'C, static: runs' runs
-if command -v "${CXX:-g++}" >/dev/null; then
-    check 'C++, static: builds' builds "$cxx" tests/export/consumer.c --static
-    check 'C++, static: runs' runs
-fi
+by_each --static
 check 'uninstall' make_target uninstall
-check 'uninstall leaves no file' test -z "$(find "$tree" -type f -o -type l)"
+check 'uninstall leaves no file' test -z "$(find "$tree" -type f -o -type l ! -path "$tree/usr")"
 done_testing

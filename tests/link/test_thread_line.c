@@ -43,7 +43,7 @@ static int tear_down(void **state)
 static void make(grobo_control_config config, bool threaded)
 {
     config.session.device = device;
-    config.session.baud_bps = 1000000;
+    config.session.baud_bps = FAR_ROBOT_BPS;
     if (config.session.robot == NULL) {
         config.session.robot = &leave_off;
     }
@@ -257,7 +257,7 @@ static void free_it(void)
 static void be_a_program(int until)
 {
     grobo_control_config config = {
-        .session = {.device = device, .baud_bps = 1000000, .robot = &leave_off}};
+        .session = {.device = device, .baud_bps = FAR_ROBOT_BPS, .robot = &leave_off}};
     char go;
     bool well = read(until, &go, 1) == 1 && atexit(free_it) == 0 &&
                 grobo_control_new(&config, &control) >= 0 &&

@@ -6,6 +6,9 @@
 #include <grobo/port.h>
 #include <grobo/sim_server.h>
 
+/* Its line: the fastest that an emulator of another machine passes on. */
+enum { FAR_ROBOT_BPS = 460800 };
+
 typedef struct far_robot {
     char link[128]; /* the device to open */
     grobo_thread thread;

@@ -41,8 +41,7 @@ sysroot() {
     [ "$(cat "$work/made-of" 2>/dev/null)" = "$made_of" ] && return
     echo "cross: unpacking the libraries of $2 for $1" >&2
     rm -rf "$work"
-    mkdir -p "$work/root/usr/lib"
-    ln -s usr/lib "$work/root/lib" # packages before trixie have files in /lib
+    mkdir -p "$work/root"
     private_apt "$work/apt" "$1" "$2"
     # $apt and $packages are lists of words.
     # shellcheck disable=SC2086
@@ -53,6 +52,15 @@ sysroot() {
     for package in "$work"/apt/archives/*.deb; do
         quietly "$work/log" dpkg -x "$package" "$work/root"
     done
+    # Packages of trixie and later take for granted that /lib is /usr/lib.
+    [ -e "$work/root/lib" ] || ln -s usr/lib "$work/root/lib"
+    # A link to /lib/... would lead out of the root, and the linker to a static library instead.
+    find "$work/root" -type l -lname '/*' -exec sh -c '
+        root=$1
+        shift
+        for link in "$@"; do
+            ln -sfrT "$root$(readlink "$link")" "$link"
+        done' sh "$work/root" {} +
     rm -rf "$work/apt"
     echo "$made_of" >"$work/made-of"
 }

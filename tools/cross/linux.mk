@@ -4,9 +4,11 @@
 
 SYSROOT := $(abspath $(CROSS_DIR))/root
 # What the sysroot has goes before what a cross package may have put on this machine.
-CC := $(TRIPLET)-gcc --sysroot=$(SYSROOT) -B$(SYSROOT)/usr/lib/$(TRIPLET) \
+IN_SYSROOT := --sysroot=$(SYSROOT) -B$(SYSROOT)/usr/lib/$(TRIPLET) \
     -L$(SYSROOT)/usr/lib/$(TRIPLET) -isystem $(SYSROOT)/usr/include/$(TRIPLET) \
     -isystem $(SYSROOT)/usr/include
+CC := $(TRIPLET)-gcc $(IN_SYSROOT)
+CXX := $(TRIPLET)-g++ --sysroot=$(SYSROOT)
 AR := $(TRIPLET)-ar
 PKG_CONFIG := PKG_CONFIG_SYSROOT_DIR=$(SYSROOT) \
     PKG_CONFIG_LIBDIR=$(SYSROOT)/usr/lib/$(TRIPLET)/pkgconfig pkg-config
