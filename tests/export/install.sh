@@ -26,8 +26,8 @@ fi
 
 make_target() {
     env -u MAKEFLAGS -u MAKELEVEL -u PKG_CONFIG_SYSROOT_DIR -u PKG_CONFIG_PATH \
-        -u PKG_CONFIG_LIBDIR make --no-print-directory -C "$here" "$1" BUILD="${BUILD:-build}" PREFIX=/opt/grobo \
-        DESTDIR="$tree" CROSS="${CROSS:-}"
+        -u PKG_CONFIG_LIBDIR make --no-print-directory -C "$here" "$1" BUILD="${BUILD:-build}" \
+        PREFIX=/opt/grobo DESTDIR="$tree" CROSS="${CROSS:-}"
 }
 
 # builds COMPILER SOURCE PKG_CONFIG_OPTION...; flags are lists of words.
