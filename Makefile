@@ -51,7 +51,7 @@ WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow \
     -Wstrict-prototypes -Wmissing-prototypes -Wswitch-enum -Wvla $(WERROR)
 SAN_FLAGS := $(if $(SAN),-fsanitize=$(SAN) -fno-sanitize-recover=all -fno-omit-frame-pointer)
 ALL_CPPFLAGS = -Iinclude -Iports/$(PORT)/include $(CPPFLAGS)
-ALL_CFLAGS = -std=c11 $(WARNINGS) -fvisibility=hidden -fPIC $(SAN_FLAGS) $(COV_FLAGS) $(CFLAGS)
+ALL_CFLAGS = -std=c11 $(WARNINGS) $(TARGET_CFLAGS) -fvisibility=hidden -fPIC $(SAN_FLAGS) $(COV_FLAGS) $(CFLAGS)
 ALL_LDFLAGS = $(SAN_FLAGS) $(COV_FLAGS) $(LDFLAGS)
 
 # pkg-config is asked when a recipe needs the answer, and then once: set-up may install a library
@@ -79,9 +79,11 @@ LIBS = $(call once,LIBS,$(call flags,--libs,yaml-0.1 libevent_core) $(OS_LIBS))
 
 PUBLIC_HEADERS := $(wildcard include/grobo/*.h ports/$(PORT)/include/grobo/*.h)
 CORE_SRCS := $(sort $(wildcard src/core/*.c src/sim/*.c))
-OTHER_SRCS := $(sort $(wildcard src/motion/*.c src/body/*.c src/link/*.c ports/$(PORT)/*.c))
+OTHER_SRCS := $(sort $(wildcard src/motion/*.c src/body/*.c src/link/*.c ports/common/*.c \
+    ports/$(PORT)/*.c))
 TOOL_SRCS := $(if $(wildcard tools/grctl/main.c),$(sort $(wildcard tools/grctl/*.c)) \
-    tools/grctl/edit/$(EDIT).c tools/grctl/screen/$(SCREEN).c)
+    $(sort $(wildcard tools/grctl/os/$(PORT)/*.c)) tools/grctl/edit/$(EDIT).c \
+    tools/grctl/screen/$(SCREEN).c)
 SUPPORT_SRCS := $(sort $(filter-out %/replay_main.c,$(wildcard tests/support/*.c)))
 TEST_SRCS := $(sort $(foreach ring,unit engine link fault port,$(wildcard tests/$(ring)/test_*.c)))
 TEST_SCRIPTS := $(sort $(foreach ring,cli lint export,$(wildcard tests/$(ring)/*.sh)))
@@ -239,8 +241,9 @@ install: all $(JSON_PAGE) ## into $(DESTDIR)$(PREFIX)
 	install -d $(DESTDIR)$(LIBDIR)/pkgconfig $(DESTDIR)$(INCLUDEDIR)/grobo $(DESTDIR)$(BINDIR)
 	install -m 644 include/grobo/*.h ports/$(PORT)/include/grobo/*.h $(DESTDIR)$(INCLUDEDIR)/grobo
 	install -m 644 $(STATIC_LIB) $(CORE_LIB) $(DESTDIR)$(LIBDIR)
-	install -m 755 $(SHARED_LIB) $(DESTDIR)$(LIBDIR)
-	ln -sf $(SONAME) $(DESTDIR)$(LIBDIR)/libgrobo.so
+	install -m 755 $(SHARED_LIB) $(DESTDIR)$(if $(IMPORT_LIB),$(BINDIR),$(LIBDIR))
+	$(if $(IMPORT_LIB),install -m 644 $(BUILD)/$(IMPORT_LIB),ln -sf $(SONAME)) \
+	    $(DESTDIR)$(LIBDIR)/$(or $(IMPORT_LIB),libgrobo.so)
 	install -m 644 $(PC_FILE) $(DESTDIR)$(LIBDIR)/pkgconfig
 	$(if $(GRCTL),install -m 755 $(GRCTL) $(DESTDIR)$(BINDIR))
 	$(if $(GRCTL_HERE),$(foreach page,$(PAGES),$(install_page)))
@@ -251,8 +254,8 @@ install: all $(JSON_PAGE) ## into $(DESTDIR)$(PREFIX)
 
 uninstall: ## take out what install put in
 	rm -rf $(DESTDIR)$(INCLUDEDIR)/grobo
-	rm -f $(addprefix $(DESTDIR)$(LIBDIR)/,libgrobo.a libgrobo-core.a libgrobo.so $(SONAME) \
-	    pkgconfig/grobo.pc) $(DESTDIR)$(BINDIR)/grctl
+	rm -f $(addprefix $(DESTDIR)$(LIBDIR)/,libgrobo.a libgrobo-core.a libgrobo.so $(SONAME) $(IMPORT_LIB) \
+	    pkgconfig/grobo.pc) $(addprefix $(DESTDIR)$(BINDIR)/,grctl$(EXE) $(if $(IMPORT_LIB),$(SONAME)))
 	rm -f $(foreach page,$(PAGES),$(DESTDIR)$(DATADIR)/$(firstword $(subst =, ,$(page))))
 	rm -f $(DESTDIR)$(DATADIR)/man/man5/grctl-json.5
 	rm -rf $(DESTDIR)$(DATADIR)/grobo
@@ -276,16 +279,19 @@ $(BUILD)/$(1)/%.o: $(1)/%.c $(BUILD)/.flags
 	$$(Q)$$(CC) $$(ALL_CPPFLAGS) $(foreach v,$(2),$$($(v))) $$(ALL_CFLAGS) -MMD -MP -c -o $$@ $$<
 endef
 
-SRC_INCLUDE := -Isrc -I.
-TEST_INCLUDE := -Isrc -I. -Itests/support
+# Where an interface has two sides (Windows), the library is one and who links it whole the other.
+SRC_INCLUDE := -Isrc -I. -DGROBO_BUILDING
+WHOLE := -DGROBO_STATIC
+TEST_INCLUDE := -Isrc -I. -Itests/support $(WHOLE)
 $(eval $(call compile,src/core,SRC_INCLUDE))
 $(eval $(call compile,src/sim,SRC_INCLUDE))
 $(eval $(call compile,src/body,SRC_INCLUDE))
 $(eval $(call compile,src/motion,SRC_INCLUDE YAML_CFLAGS))
 $(eval $(call compile,src/link,SRC_INCLUDE OS_FLAGS EVENT_CFLAGS))
+$(eval $(call compile,ports/common,SRC_INCLUDE))
 $(eval $(call compile,ports/$(PORT),SRC_INCLUDE OS_FLAGS))
-$(eval $(call compile,tools/grctl,OS_FLAGS EVENT_CFLAGS YAML_CFLAGS JSON_CFLAGS EDIT_CFLAGS SCREEN_CFLAGS))
-$(eval $(call compile,docs/examples,OS_FLAGS EVENT_CFLAGS))
+$(eval $(call compile,tools/grctl,WHOLE OS_FLAGS EVENT_CFLAGS YAML_CFLAGS JSON_CFLAGS EDIT_CFLAGS SCREEN_CFLAGS))
+$(eval $(call compile,docs/examples,WHOLE OS_FLAGS EVENT_CFLAGS))
 $(eval $(call compile,tests,TEST_INCLUDE OS_FLAGS EVENT_CFLAGS YAML_CFLAGS CMOCKA_CFLAGS JSON_CFLAGS))
 
 $(STATIC_LIB): $(LIB_OBJS)
@@ -301,7 +307,7 @@ $(STATIC_LIB) $(CORE_LIB) $(SUPPORT_LIB) $(TOOL_LIB): $(BUILD)/.flags
 $(SHARED_LIB): $(LIB_OBJS)
 	$(say) LD $@
 	$(Q)$(CC) -shared $(SHARED_FLAGS) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
-	@ln -sf $(SONAME) $(BUILD)/libgrobo.so
+	$(if $(IMPORT_LIB),,@ln -sf $(SONAME) $(BUILD)/libgrobo.so)
 
 $(BUILD)/grctl$(EXE): $(filter %/main.o,$(TOOL_OBJS)) $(TOOL_LIB) $(STATIC_LIB)
 	$(say) LD $@
@@ -336,7 +342,7 @@ $(PC_FILE): FORCE
 	@printf '%s\n' 'prefix=$(PREFIX)' 'libdir=$(LIBDIR)' 'includedir=$(INCLUDEDIR)' '' \
 	    'Name: grobo' 'Description: Drives serial command-servo robots' 'Version: $(VERSION)' \
 	    'Requires.private: libevent_core yaml-0.1' 'Cflags: -I$${includedir}' \
-	    'Libs: -L$${libdir} -lgrobo' 'Libs.private: -lm -pthread' > $@.new
+	    'Libs: -L$${libdir} -lgrobo' 'Libs.private: $(OS_LIBS)' > $@.new
 	@if cmp -s $@.new $@; then rm $@.new; else mv $@.new $@; fi
 
 -include $(shell find $(addprefix $(BUILD)/,src ports tools tests docs) -name '*.d' 2>/dev/null)

@@ -31,6 +31,16 @@ typedef struct grobo_os_cause {
     char text[GROBO_CAUSE_MAX_BYTES]; /**< one phrase for a person: "held by minicom (pid 812)" */
 } grobo_os_cause;
 
+/* ---- start -------------------------------------------------------------------------------- */
+
+/**
+ * Prepares what the system wants prepared before its first socket is made (Win32: WSAStartup; on
+ * POSIX nothing). grobo_loop_new() and the opening of a port do it; a program that makes an event
+ * base of its own calls it first. Any number of times; thread safe.
+ * @return GROBO_OK, GROBO_ERR_IO.
+ */
+GROBO_API int grobo_port_start(void);
+
 /* ---- clock -------------------------------------------------------------------------------- */
 
 /**

@@ -73,13 +73,6 @@ static const rate *rate_of_bps(int bps)
     return NULL;
 }
 
-bool grobo_i_posix_baud_fits(int asked, int actual)
-{
-    int64_t off = (int64_t)asked - actual;
-
-    return (off < 0 ? -off : off) * 50 <= asked;
-}
-
 static int apply(int fd, int baud_bps, grobo_os_cause *cause)
 {
     const rate *standard = rate_of_bps(baud_bps);
@@ -125,7 +118,7 @@ int grobo_i_posix_set_baud(int fd, int baud_bps, grobo_os_cause *cause)
         return r;
     }
     actual = grobo_i_posix_get_baud(fd, cause);
-    if (actual >= 0 && !grobo_i_posix_baud_fits(baud_bps, actual)) {
+    if (actual >= 0 && !grobo_i_baud_fits(baud_bps, actual)) {
         (void)apply(fd, before, cause);
         cause->code = 0;
         snprintf(cause->text, sizeof cause->text, "device takes %d bps for %d", actual, baud_bps);

@@ -44,7 +44,7 @@ int grobo_i_posix_set_custom_baud(int fd, int baud_bps, grobo_os_cause *cause)
 {
     (void)fd;
     (void)baud_bps;
-    return grobo_i_posix_refuse(cause, GROBO_ERR_UNSUPPORTED, "standard speeds only here");
+    return grobo_i_port_refuse(cause, GROBO_ERR_UNSUPPORTED, "standard speeds only here");
 }
 
 int grobo_i_posix_custom_baud(int fd)

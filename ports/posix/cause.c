@@ -42,10 +42,3 @@ int grobo_i_posix_fail(grobo_os_cause *cause, int code, const char *what)
     snprintf(cause->text, sizeof cause->text, "%s: %s", what, words);
     return error_of(code);
 }
-
-int grobo_i_posix_refuse(grobo_os_cause *cause, int error, const char *text)
-{
-    cause->code = 0;
-    snprintf(cause->text, sizeof cause->text, "%s", text);
-    return error;
-}

@@ -18,7 +18,7 @@ int grobo_i_posix_received(ssize_t got, grobo_os_cause *cause)
         return (int)got;
     }
     if (got == 0) {
-        return grobo_i_posix_refuse(cause, GROBO_ERR_UNPLUGGED, "hung up");
+        return grobo_i_port_refuse(cause, GROBO_ERR_UNPLUGGED, "hung up");
     }
     return nothing_now(errno) ? 0 : grobo_i_posix_fail(cause, errno, "read");
 }

@@ -32,7 +32,7 @@ int grobo_i_posix_set_low_latency(int fd, grobo_os_cause *cause)
 int grobo_i_posix_set_low_latency(int fd, grobo_os_cause *cause)
 {
     (void)fd;
-    return grobo_i_posix_refuse(cause, GROBO_ERR_UNSUPPORTED, "not known on this system");
+    return grobo_i_port_refuse(cause, GROBO_ERR_UNSUPPORTED, "not known on this system");
 }
 
 #endif

@@ -8,6 +8,11 @@
 
 #include "ports/posix/posix.h"
 
+int grobo_port_start(void)
+{
+    return GROBO_OK;
+}
+
 int64_t grobo_now_us(void)
 {
     struct timespec now;

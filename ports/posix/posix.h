@@ -5,7 +5,7 @@
 
 #include <sys/types.h>
 
-#include <grobo/port.h>
+#include "ports/common/common.h"
 
 /* An open byte port of any kind. */
 struct grobo_port {
@@ -18,9 +18,6 @@ struct grobo_port {
 
 /* Fills cause from an errno, with `what` saying what was tried; returns the GROBO_ERR_* for it. */
 int grobo_i_posix_fail(grobo_os_cause *cause, int code, const char *what);
-
-/* Fills cause with a text of our own, returns `error`. */
-int grobo_i_posix_refuse(grobo_os_cause *cause, int error, const char *text);
 
 /* Makes a descriptor non-blocking and closed on exec. */
 int grobo_i_posix_prepare(int fd, grobo_os_cause *cause);
@@ -70,9 +67,6 @@ int grobo_i_posix_set_custom_baud(int fd, int baud_bps, grobo_os_cause *cause);
 
 /* The rate that is set, when it is one without a B constant; else 0. */
 int grobo_i_posix_custom_baud(int fd);
-
-/* True when `actual` is near enough to `asked` for a UART to understand: 2 %. */
-bool grobo_i_posix_baud_fits(int asked, int actual);
 
 /* grobo_port_ops.set_low_latency for a descriptor. */
 int grobo_i_posix_set_low_latency(int fd, grobo_os_cause *cause);

@@ -15,11 +15,11 @@ static int make_link(grobo_port *port, const char *link, grobo_os_cause *cause)
     struct stat st;
 
     if (strlen(link) >= sizeof port->link) {
-        return grobo_i_posix_refuse(cause, GROBO_ERR_CAP, "name of the link too long");
+        return grobo_i_port_refuse(cause, GROBO_ERR_CAP, "name of the link too long");
     }
     if (link[0] != '\0') {
         if (lstat(link, &st) == 0 && !S_ISLNK(st.st_mode)) {
-            return grobo_i_posix_refuse(cause, GROBO_ERR_EXISTS, "there, and no symbolic link");
+            return grobo_i_port_refuse(cause, GROBO_ERR_EXISTS, "there, and no symbolic link");
         }
         if ((unlink(link) != 0 && errno != ENOENT) || symlink(port->path, link) != 0) {
             return grobo_i_posix_fail(cause, errno, "symlink");
@@ -38,7 +38,7 @@ static int open_slave(grobo_port *port, int baud_bps, grobo_os_cause *cause)
         return grobo_i_posix_fail(cause, errno, "unlockpt");
     }
     if (strlen(path) >= sizeof port->path) {
-        return grobo_i_posix_refuse(cause, GROBO_ERR_SPACE, "name of the terminal too long");
+        return grobo_i_port_refuse(cause, GROBO_ERR_SPACE, "name of the terminal too long");
     }
     memcpy(port->path, path, strlen(path) + 1);
     port->slave = open(port->path, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
@@ -107,7 +107,7 @@ static int pty_set_baud(grobo_port *port, int baud_bps, grobo_os_cause *cause)
 static int pty_set_low_latency(grobo_port *port, grobo_os_cause *cause)
 {
     (void)port;
-    return grobo_i_posix_refuse(cause, GROBO_ERR_UNSUPPORTED, "a pseudo-terminal");
+    return grobo_i_port_refuse(cause, GROBO_ERR_UNSUPPORTED, "a pseudo-terminal");
 }
 
 const grobo_port_ops *grobo_port_pty_ops(void)

@@ -18,7 +18,7 @@ static int refuse_busy(const char *device, grobo_os_cause *cause)
     int pid = grobo_port_owner(device, name, sizeof name);
 
     if (pid == 0) {
-        return grobo_i_posix_refuse(cause, GROBO_ERR_BUSY, "held by another program");
+        return grobo_i_port_refuse(cause, GROBO_ERR_BUSY, "held by another program");
     }
     cause->code = EBUSY;
     snprintf(cause->text, sizeof cause->text, "held by %s (pid %d)", name, pid);
@@ -32,10 +32,10 @@ static int check_kind(const char *device, struct stat *st, grobo_os_cause *cause
         return grobo_i_posix_fail(cause, errno, "stat");
     }
     if (S_ISDIR(st->st_mode)) {
-        return grobo_i_posix_refuse(cause, GROBO_ERR_ISDIR, "a directory");
+        return grobo_i_port_refuse(cause, GROBO_ERR_ISDIR, "a directory");
     }
     if (!S_ISCHR(st->st_mode)) {
-        return grobo_i_posix_refuse(cause, GROBO_ERR_TYPE, "not a character device");
+        return grobo_i_port_refuse(cause, GROBO_ERR_TYPE, "not a character device");
     }
     return GROBO_OK;
 }
@@ -45,7 +45,7 @@ static int take(int fd, const char *device, const struct stat *st, grobo_os_caus
 {
     if (isatty(fd) == 0) {
         return errno == EIO ? grobo_i_posix_fail(cause, EIO, "isatty")
-                            : grobo_i_posix_refuse(cause, GROBO_ERR_TYPE, "not a serial port");
+                            : grobo_i_port_refuse(cause, GROBO_ERR_TYPE, "not a serial port");
     }
     if (flock(fd, LOCK_EX | LOCK_NB) != 0) {
         return errno == EWOULDBLOCK ? refuse_busy(device, cause)

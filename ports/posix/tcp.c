@@ -17,61 +17,23 @@
 #define MSG_NOSIGNAL 0
 #endif
 
-typedef struct {
-    char host[GROBO_DEVICE_MAX_BYTES];
-    char port[8];
-} address;
-
-/* A TCP port, 0 to 65535, in digits. */
-static bool is_port(const char *text)
-{
-    size_t size = strlen(text);
-
-    return size > 0 && strspn(text, "0123456789") == size && size <= 5 &&
-           (size < 5 || strcmp(text, "65535") <= 0);
-}
-
-/* Takes "tcp:HOST:PORT" or "tcp:[HOST]:PORT" apart. */
-static int split(const char *device, address *to)
-{
-    const char *host = device + strlen("tcp:");
-    const char *colon = strrchr(device, ':');
-    size_t host_size;
-
-    if (strncmp(device, "tcp:", 4) != 0 || colon < host) {
-        return GROBO_ERR_ARG;
-    }
-    host_size = (size_t)(colon - host);
-    if (host_size >= 2 && host[0] == '[' && host[host_size - 1] == ']') {
-        host++;
-        host_size -= 2;
-    }
-    if (host_size == 0 || host_size >= sizeof to->host || !is_port(colon + 1)) {
-        return GROBO_ERR_ARG;
-    }
-    memcpy(to->host, host, host_size);
-    to->host[host_size] = '\0';
-    memcpy(to->port, colon + 1, strlen(colon + 1) + 1);
-    return GROBO_OK;
-}
-
 int grobo_i_posix_look_up(const char *device, int flags, struct addrinfo **found,
                           grobo_os_cause *cause)
 {
     const struct addrinfo hints = {
         .ai_flags = flags | AI_NUMERICSERV, .ai_family = AF_UNSPEC, .ai_socktype = SOCK_STREAM};
-    address to;
+    grobo_i_tcp_name to;
     const char *host = to.host;
-    int r = split(device, &to);
+    int r = grobo_i_tcp_split(device, &to);
 
     if (r < 0) {
-        return grobo_i_posix_refuse(cause, r, "not of the form tcp:HOST:PORT");
+        return grobo_i_port_refuse(cause, r, "not of the form tcp:HOST:PORT");
     }
     if ((flags & AI_NUMERICHOST) != 0 && strcmp(to.host, "localhost") == 0) {
         host = "127.0.0.1";
     }
     r = getaddrinfo(host, to.port, &hints, found);
-    return r == 0 ? GROBO_OK : grobo_i_posix_refuse(cause, GROBO_ERR_NOENT, gai_strerror(r));
+    return r == 0 ? GROBO_OK : grobo_i_port_refuse(cause, GROBO_ERR_NOENT, gai_strerror(r));
 }
 
 int grobo_i_posix_prepare_tcp(int fd, grobo_os_cause *cause)
@@ -198,7 +160,7 @@ static int tcp_set_baud(grobo_port *port, int baud_bps, grobo_os_cause *cause)
 static int tcp_set_low_latency(grobo_port *port, grobo_os_cause *cause)
 {
     (void)port;
-    return grobo_i_posix_refuse(cause, GROBO_ERR_UNSUPPORTED, "a connection, not a serial port");
+    return grobo_i_port_refuse(cause, GROBO_ERR_UNSUPPORTED, "a connection, not a serial port");
 }
 
 const grobo_port_ops *grobo_port_tcp_ops(void)
@@ -245,11 +207,11 @@ int grobo_port_resolve(const char *device, char *numeric, size_t numeric_bytes,
                      host, port);
         freeaddrinfo(found);
         if (r != 0) {
-            return grobo_i_posix_refuse(cause, GROBO_ERR_NOENT, gai_strerror(r));
+            return grobo_i_port_refuse(cause, GROBO_ERR_NOENT, gai_strerror(r));
         }
     }
     if (n < 0 || (size_t)n >= sizeof text || (size_t)n >= numeric_bytes) {
-        return grobo_i_posix_refuse(cause, GROBO_ERR_SPACE, "device name too long");
+        return grobo_i_port_refuse(cause, GROBO_ERR_SPACE, "device name too long");
     }
     memcpy(numeric, text, (size_t)n + 1);
     return GROBO_OK;

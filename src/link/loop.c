@@ -44,15 +44,16 @@ struct timeval grobo_i_link_timeval(int64_t span_us)
     struct timeval tv = {0, 0};
 
     if (span_us > 0) {
-        tv.tv_sec = (time_t)(span_us / 1000000);
-        tv.tv_usec = (suseconds_t)(span_us % 1000000);
+        /* Systems do not agree on the types: int goes into all of them. */
+        tv.tv_sec = (int)(span_us / 1000000);
+        tv.tv_usec = (int)(span_us % 1000000);
     }
     return tv;
 }
 
 struct event_base *grobo_loop_new(void)
 {
-    struct event_config *config = event_config_new();
+    struct event_config *config = grobo_port_start() < 0 ? NULL : event_config_new();
     struct event_base *base = NULL;
 
     if (config == NULL) {

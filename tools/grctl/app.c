@@ -3,9 +3,9 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "app.h"
+#include "os.h"
 #include "output.h"
 
 static bool wants_color(const app *a, bool tty)
@@ -26,9 +26,9 @@ void app_settle(app *a)
 {
     a->json = app_global(a, GLOBAL_JSON)->given > 0;
     a->verbosity = app_global(a, GLOBAL_QUIET)->given ? -1 : app_global(a, GLOBAL_VERBOSE)->given;
-    a->tty_in = isatty(STDIN_FILENO) == 1;
-    a->tty_out = isatty(STDOUT_FILENO) == 1;
-    a->tty_err = isatty(STDERR_FILENO) == 1;
+    a->tty_in = os_is_terminal(stdin);
+    a->tty_out = os_is_terminal(stdout);
+    a->tty_err = os_is_terminal(stderr);
     a->color_out = wants_color(a, a->tty_out);
     a->color_err = wants_color(a, a->tty_err);
 }
@@ -154,15 +154,8 @@ json_t *app_json_code(const char *name)
 
 json_t *app_json_printed(void (*print)(FILE *to))
 {
-    char *text = NULL;
-    size_t size = 0;
-    json_t *string;
-    FILE *memory = open_memstream(&text, &size);
-    if (!memory)
-        return json_null();
-    print(memory);
-    fclose(memory);
-    string = text ? json_stringn(text, size) : json_null();
+    char *text = os_printed(print);
+    json_t *string = text ? json_string(text) : json_null();
     free(text);
     return string;
 }

@@ -23,10 +23,10 @@ static void print_head(const decoder *d, const pcapng_reader *r, const pcapng_ch
 {
     const pcapng_interface *i = first->interface;
     time_t seconds = (time_t)(first->time_us / 1000000);
-    struct tm utc;
+    const struct tm *utc = gmtime(&seconds);
     char started[40] = "";
-    if (gmtime_r(&seconds, &utc))
-        strftime(started, sizeof started, "%Y-%m-%dT%H:%M:%SZ", &utc);
+    if (utc)
+        strftime(started, sizeof started, "%Y-%m-%dT%H:%M:%SZ", utc);
     if (d->a->json) {
         app_print_json(json_pack("{s:{s:o,s:o,s:o,s:I,s:s}}", "trace", "comment",
                                  app_json_text(r->comment), "device", app_json_text(i->name),

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* monitor: everything at a glance, and the keys to act on it. */
-#include <langinfo.h>
 #include <math.h>
 #include <string.h>
 #include <unistd.h>
@@ -8,6 +7,7 @@
 #include "commands.h"
 #include "latch.h"
 #include "monitor.h"
+#include "os.h"
 #include "screen.h"
 
 enum { DRAW_US = 50000, SENSE_US = 300000, NUDGE_MS = 300, INIT_MS = 3000, GROUP_KEYS = 8 };
@@ -367,7 +367,7 @@ static int run_screen(monitor *m)
     c->on_event = on_event;
     m->model = grobo_robot_driver(c->robot)->model;
     m->keys = (play_keys){.c = c, .speed_pct = 100};
-    m->blocks = strcmp(nl_langinfo(CODESET), "UTF-8") == 0;
+    m->blocks = os_shows_utf8();
     choose_place(m, 0);
     error = sense_often(c);
     if (error)

@@ -188,7 +188,7 @@ static bool is_over(conn *c)
 
 static struct event *every(recorder *r, int64_t period_us, event_callback_fn fn)
 {
-    struct timeval period = {(time_t)(period_us / 1000000), (suseconds_t)(period_us % 1000000)};
+    struct timeval period = {(int)(period_us / 1000000), (int)(period_us % 1000000)};
     struct event *timer = event_new(r->c.base, -1, EV_PERSIST, fn, r);
     if (timer)
         event_add(timer, &period);

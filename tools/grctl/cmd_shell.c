@@ -4,7 +4,6 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "commands.h"
 #include "output.h"
@@ -26,14 +25,6 @@ static volatile sig_atomic_t noted;
 static void on_signal(int number)
 {
     noted = number;
-}
-
-static void note_signals(void)
-{
-    static const int numbers[] = {SIGINT, SIGTERM, SIGHUP};
-    struct sigaction action = {.sa_handler = on_signal};
-    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
-        sigaction(numbers[i], &action, NULL);
 }
 
 /* ---- one line ------------------------------------------------------------------------------- */
@@ -135,7 +126,29 @@ static int run_text(shell *s, char *line)
 
 static bool ends(const shell *s, int status)
 {
-    return s->over || status == EXIT_SIGNAL + SIGTERM || status == EXIT_SIGNAL + SIGHUP;
+    return s->over || status == EXIT_SIGNAL + os_endings[OS_TERMINATE] ||
+           status == EXIT_SIGNAL + os_endings[OS_HANGUP];
+}
+
+/* A line of any length, into memory that grows. False at the end, or when a signal came. */
+static bool read_line(FILE *from, char **line, size_t *capacity)
+{
+    size_t n = 0;
+    int c;
+    do {
+        if (n == *capacity) {
+            char *more = realloc(*line, *capacity + SHELL_LINE_BYTES);
+            if (!more)
+                return false;
+            *line = more;
+            *capacity += SHELL_LINE_BYTES;
+        }
+        c = getc(from);
+        (*line)[n] = (char)(c == EOF ? '\0' : c);
+        n += c != EOF;
+    } while (c != EOF && c != '\n' && c != '\0');
+    (*line)[c == EOF ? n : n - 1] = '\0';
+    return n > 0;
 }
 
 static int run_script(shell *s, FILE *from)
@@ -144,13 +157,14 @@ static int run_script(shell *s, FILE *from)
     char *line = NULL;
     size_t capacity = 0;
     int first = EXIT_DONE;
-    while (!s->over && !noted && getline(&line, &capacity, from) >= 0) {
+    while (!s->over && !noted && read_line(from, &line, &capacity)) {
         int status;
         s->line++;
         status = run_text(s, line);
         if (status && !first)
             first = status;
-        if ((status && !go_on) || ends(s, status) || status == EXIT_SIGNAL + SIGINT)
+        if ((status && !go_on) || ends(s, status) ||
+            status == EXIT_SIGNAL + os_endings[OS_INTERRUPT])
             break;
     }
     free(line);
@@ -168,7 +182,7 @@ static int run_prompt(shell *s)
         n = line_read(reader, "grctl> ", line, sizeof line);
         if (n == LINE_END)
             break;
-        if (n == LINE_INTERRUPTED && s->link.signal == SIGINT) {
+        if (n == LINE_INTERRUPTED && s->link.signal == os_endings[OS_INTERRUPT]) {
             s->link.signal = 0;
             continue;
         }
@@ -176,9 +190,9 @@ static int run_prompt(shell *s)
             break;
         noted = 0;
         status = run_text(s, line);
-        if (status == EXIT_SIGNAL + SIGINT)
+        if (status == EXIT_SIGNAL + os_endings[OS_INTERRUPT])
             fputc('\n', stderr); /* behind the terminal's ^C */
-        if (noted == SIGTERM || noted == SIGHUP)
+        if (noted && noted != os_endings[OS_INTERRUPT])
             status = EXIT_SIGNAL + noted;
     }
     line_close(reader);
@@ -213,7 +227,7 @@ static int run(app *a)
     s.link.kept = true;
     s.link.owner = a;
     a->link = &s.link;
-    note_signals();
+    os_catch_endings(on_signal);
     if (conn_link_init(&s.link) != GROBO_OK)
         status = app_fail(a, EXIT_ROBOT, "NOMEM", "shell: %s", grobo_error_text(GROBO_ERR_NOMEM));
     else

@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include <signal.h>
 #include <string.h>
 
 #include <event2/event.h>
@@ -8,12 +7,13 @@
 
 #include "app.h"
 #include "commands.h"
+#include "os.h"
 #include "output.h"
 #include "sim_console.h"
 #include "trace.h"
 
 enum { OPT_LINK, OPT_TCP, OPT_NO_PACING, OPT_ROBOTS, OPT_SEED, OPT_START, OPT_FAULT };
-enum { ROBOTS_MAX = 16, SIGNALS = 3 };
+enum { ROBOTS_MAX = 16 };
 
 static const cli_option options[] = {
     [OPT_LINK] = {.name = "link",
@@ -57,7 +57,7 @@ static const cli_option options[] = {
 typedef struct farm {
     app *a;
     struct event_base *base;
-    struct event *signals[SIGNALS];
+    struct event *signals[OS_ENDINGS];
     grobo_sim_server *server[ROBOTS_MAX];
     trace trace[ROBOTS_MAX];
     sim_console console;
@@ -85,19 +85,12 @@ static void on_signal(evutil_socket_t number, short what, void *ctx)
  * in the background, nohup to SIGHUP. The Ctrl-C is for the program that plays, which needs the
  * robot to leave it in good order.
  */
-static bool ignored(int number)
-{
-    struct sigaction old;
-    return sigaction(number, NULL, &old) == 0 && old.sa_handler == SIG_IGN;
-}
-
 static int watch_signals(farm *f)
 {
-    static const int caught[SIGNALS] = {SIGINT, SIGTERM, SIGHUP};
-    for (int i = 0; i < SIGNALS; i++) {
-        if (ignored(caught[i]))
+    for (int i = 0; i < OS_ENDINGS; i++) {
+        if (os_is_ignored(os_endings[i]))
             continue;
-        f->signals[i] = evsignal_new(f->base, caught[i], on_signal, f);
+        f->signals[i] = evsignal_new(f->base, os_endings[i], on_signal, f);
         if (!f->signals[i] || evsignal_add(f->signals[i], NULL) != 0)
             return GROBO_ERR_NOMEM;
     }
@@ -200,7 +193,7 @@ static int close_farm(farm *f, int status)
         grobo_sim_server_free(f->server[i]);
         status = trace_close(&f->trace[i], f->a, status);
     }
-    for (int i = 0; i < SIGNALS; i++)
+    for (int i = 0; i < OS_ENDINGS; i++)
         if (f->signals[i])
             event_free(f->signals[i]);
     if (f->base)
@@ -225,7 +218,7 @@ static int run(app *a)
     int status = 0;
     memset(&f, 0, sizeof f);
     f.a = a;
-    signal(SIGPIPE, SIG_IGN);
+    os_take_signals();
     f.base = grobo_loop_new();
     if (!f.base || watch_signals(&f) != GROBO_OK)
         status = app_fail(a, EXIT_ROBOT, "NOMEM", "sim: %s", grobo_error_text(GROBO_ERR_NOMEM));

@@ -8,6 +8,7 @@
 #include <grobo/model.h>
 
 #include "config.h"
+#include "os.h"
 
 typedef struct reader {
     app *a;
@@ -207,21 +208,6 @@ static int read_file(reader *r, FILE *file)
     return r->status;
 }
 
-static bool path_of(int i, char *path, size_t capacity)
-{
-    const char *config = getenv("XDG_CONFIG_HOME"), *home = getenv("HOME");
-    int n;
-    if (i == 1)
-        n = snprintf(path, capacity, "/etc/grctl/config.yaml");
-    else if (config && *config == '/')
-        n = snprintf(path, capacity, "%s/grctl/config.yaml", config);
-    else if (home && *home == '/')
-        n = snprintf(path, capacity, "%s/.config/grctl/config.yaml", home);
-    else
-        return false;
-    return n > 0 && (size_t)n < capacity;
-}
-
 /* Reads both files; the user's comes first. Returns 0 whether or not the robot was found. */
 static int find(reader *r)
 {
@@ -231,7 +217,7 @@ static int find(reader *r)
             bool knew = *r->wanted != '\0';
             FILE *file;
             errno = 0;
-            file = path_of(i, r->path, sizeof r->path) ? fopen(r->path, "r") : NULL;
+            file = os_config_path(i, r->path, sizeof r->path) ? fopen(r->path, "r") : NULL;
             if (!file && errno == EACCES)
                 return app_fail(r->a, EXIT_FILE, "CONFIG", "%s: %s", r->path, strerror(errno));
             if (!file)

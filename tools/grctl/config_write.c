@@ -1,19 +1,18 @@
 /* SPDX-License-Identifier: MIT */
 /* Writing trims into a configuration file that a person wrote: only they change. */
 #include <errno.h>
-#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
+#include <grobo/files.h>
 #include <grobo/model.h>
 
 #include "config.h"
+#include "file.h"
 
-static int fail(app *a, const char *path, int cause)
+static int fail(app *a, const char *path, const char *cause)
 {
-    return app_fail(a, EXIT_FILE, "IO", "%s: cannot be written: %s", path, strerror(cause));
+    return app_fail(a, EXIT_FILE, "IO", "%s: cannot be written: %s", path, cause);
 }
 
 /* libyaml counts characters, files bytes. */
@@ -42,72 +41,87 @@ static char *read_all(const char *path)
     return text;
 }
 
-static void put_trims(FILE *to, const config_robot *robot)
+/* Text that is put together; what has no room is missed, and `full` says so. */
+typedef struct draft {
+    char *text;
+    size_t used, capacity;
+    bool full;
+} draft;
+
+static void put(draft *to, const char *text, size_t size)
 {
-    const char *before = "";
-    putc('{', to);
+    to->full |= size > to->capacity - to->used;
+    if (to->full)
+        return;
+    memcpy(to->text + to->used, text, size);
+    to->used += size;
+}
+
+static void put_trims(draft *to, const config_robot *robot)
+{
+    const char *before = "{";
+    char one[64];
     for (int j = 0; j < grobo_gr001_model.n_joints; j++) {
         if (robot->trim_deg[j] == 0)
             continue;
-        fprintf(to, "%s%s: %.1f", before, grobo_gr001_model.joints[j].name, robot->trim_deg[j]);
+        snprintf(one, sizeof one, "%s%s: %.1f", before, grobo_gr001_model.joints[j].name,
+                 robot->trim_deg[j]);
+        put(to, one, strlen(one));
         before = ", ";
     }
-    putc('}', to);
+    put(to, "{}", *before == '{' ? 2 : 0);
+    put(to, "}", *before == '{' ? 0 : 1);
 }
 
-static void put_file(FILE *to, const char *text, const config_robot *robot)
+static void put_file(draft *to, const char *text, const config_robot *robot)
 {
     size_t at = byte_of(text, robot->trimmed ? robot->trim_at : robot->first_at);
     size_t end = byte_of(text, robot->trimmed ? robot->trim_end : robot->first_at);
-    fwrite(text, 1, at, to);
+    put(to, text, at);
     if (!robot->trimmed)
-        fputs("trim: ", to);
+        put(to, "trim: ", strlen("trim: "));
     put_trims(to, robot);
     if (!robot->trimmed && robot->flow)
-        fputs(", ", to);
+        put(to, ", ", strlen(", "));
     else if (!robot->trimmed)
-        fprintf(to, "\n%*s", (int)robot->first_column, "");
-    fputs(text + end, to);
+        put(to, "\n", 1);
+    for (size_t i = 0; !robot->trimmed && !robot->flow && i < robot->first_column; i++)
+        put(to, " ", 1);
+    put(to, text + end, strlen(text + end));
 }
 
 /* The file behind a symbolic link is replaced, not the link. */
-static int replace(app *a, const char *path, const char *text, const config_robot *robot)
+static int replace(const char *path, const draft *made)
 {
-    char temporary[CONFIG_PATH_BYTES + 16];
-    struct stat old;
-    int fd, cause = 0;
-    FILE *to;
-    snprintf(temporary, sizeof temporary, "%s.XXXXXX", path);
-    fd = mkstemp(temporary);
-    if (fd < 0)
-        return fail(a, path, errno);
-    if (stat(path, &old) == 0)
-        fchmod(fd, old.st_mode & 07777);
-    to = fdopen(fd, "w");
-    if (!to) {
-        cause = errno;
-        close(fd);
-    } else {
-        put_file(to, text, robot);
-        if (fflush(to) != 0 || fsync(fd) != 0)
-            cause = errno;
-        if (fclose(to) != 0 && !cause)
-            cause = errno;
-    }
-    if (!cause && rename(temporary, path) != 0)
-        cause = errno;
-    if (!cause)
-        return EXIT_DONE;
-    unlink(temporary);
-    return fail(a, path, cause);
+    const grobo_files *files = grobo_files_os();
+    grobo_file file;
+    int error = files->create(&file, path, false);
+    if (error)
+        return error;
+    error = files->write(&file, made->text, made->used);
+    if (!error)
+        return files->commit(&file);
+    files->discard(&file);
+    return error;
 }
 
 int config_write_trims(app *a, const config_robot *robot)
 {
-    char *real = realpath(robot->path, NULL);
-    char *text = real ? read_all(real) : NULL;
-    int status = text ? replace(a, real, text, robot) : fail(a, robot->path, errno);
+    draft made = {.capacity = CONFIG_FILE_MAX_BYTES};
+    char *text = read_all(robot->path);
+    int status, error;
+    if (!text)
+        return fail(a, robot->path, strerror(errno));
+    made.text = malloc(made.capacity);
+    if (made.text)
+        put_file(&made, text, robot);
+    if (!made.text || made.full) {
+        status = fail(a, robot->path, made.text ? "too long" : "not enough memory");
+    } else {
+        error = replace(robot->path, &made);
+        status = error ? fail(a, robot->path, file_error_text(error)) : EXIT_DONE;
+    }
+    free(made.text);
     free(text);
-    free(real);
     return status;
 }

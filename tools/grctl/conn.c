@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -7,9 +6,9 @@
 
 #include "conn.h"
 #include "latch.h"
+#include "os.h"
 
 /* A second is more than any servo needs to stop smoothly; the engine's own bound is 10 s. */
-static const int caught[CONN_SIGNALS] = {SIGINT, SIGTERM, SIGHUP};
 
 /* How often joints in free mode are read. */
 enum { SENSE_FREE_US = 100000 };
@@ -139,8 +138,8 @@ int conn_sleep_until(conn *c, int64_t at_us)
     struct event *timer;
     int error = GROBO_OK;
     if (rest_us > 0) {
-        rest.tv_sec = (time_t)(rest_us / 1000000);
-        rest.tv_usec = (suseconds_t)(rest_us % 1000000);
+        rest.tv_sec = (int)(rest_us / 1000000);
+        rest.tv_usec = (int)(rest_us % 1000000);
     }
     timer = evtimer_new(c->base, on_wake, &awake);
     if (!timer)
@@ -493,10 +492,10 @@ int conn_link_init(conn_link *link)
 {
     if (link->base)
         return GROBO_OK;
-    signal(SIGPIPE, SIG_IGN);
+    os_take_signals();
     link->base = grobo_loop_new();
-    for (int i = 0; link->base && i < CONN_SIGNALS; i++) {
-        link->signals[i] = evsignal_new(link->base, caught[i], on_signal, link);
+    for (int i = 0; link->base && i < OS_ENDINGS; i++) {
+        link->signals[i] = evsignal_new(link->base, os_endings[i], on_signal, link);
         if (!link->signals[i])
             return GROBO_ERR_NOMEM;
     }
@@ -505,13 +504,13 @@ int conn_link_init(conn_link *link)
 
 void conn_link_watch(conn_link *link)
 {
-    for (int i = 0; i < CONN_SIGNALS; i++)
+    for (int i = 0; i < OS_ENDINGS; i++)
         event_add(link->signals[i], NULL);
 }
 
 void conn_link_unwatch(conn_link *link)
 {
-    for (int i = 0; i < CONN_SIGNALS; i++)
+    for (int i = 0; i < OS_ENDINGS; i++)
         if (link->signals[i])
             event_del(link->signals[i]);
 }
@@ -541,7 +540,7 @@ int conn_link_close(conn_link *link, app *a, int status)
 
 void conn_link_deinit(conn_link *link)
 {
-    for (int i = 0; i < CONN_SIGNALS; i++)
+    for (int i = 0; i < OS_ENDINGS; i++)
         if (link->signals[i])
             event_free(link->signals[i]);
     if (link->base)

@@ -11,6 +11,7 @@
 #include <grobo/session.h>
 
 #include "app.h"
+#include "os.h"
 #include "trace.h"
 #include "trims.h"
 
@@ -23,8 +24,6 @@ typedef void (*conn_event_fn)(conn *c, const grobo_event *event);
 typedef void (*conn_bytes_fn)(conn *c, grobo_direction direction, int64_t now_us,
                               const uint8_t *bytes, size_t size);
 
-enum { CONN_SIGNALS = 3 };
-
 /*
  * What stands behind a connection: the loop, the signals it hears, the session. A command makes
  * one for itself; a shell keeps one open and lends it to its commands (app.link).
@@ -32,7 +31,7 @@ enum { CONN_SIGNALS = 3 };
 typedef struct conn_link {
     /* private */
     struct event_base *base;
-    struct event *signals[CONN_SIGNALS];
+    struct event *signals[OS_ENDINGS];
     grobo_session *session;
     trims trims;    /* its driver, for a configured robot */
     conn *user;     /* the command that has it now, NULL between two */

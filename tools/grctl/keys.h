@@ -6,6 +6,7 @@
 #include <event2/event.h>
 
 #include "app.h"
+#include "os.h"
 
 /* What keys_fn gets at the end of standard input. */
 enum { KEYS_END = -1 };

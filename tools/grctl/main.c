@@ -5,6 +5,7 @@
 
 #include "app.h"
 #include "commands.h"
+#include "os.h"
 #include "output.h"
 #include "run.h"
 
@@ -71,7 +72,7 @@ const size_t cli_n_commands = sizeof cli_commands / sizeof cli_commands[0];
 int main(int argc, char **argv)
 {
     static app a;
-    output_guard();
+    os_start();
     setlocale(LC_CTYPE, "");
     return output_finish(&a, run_line(&a, argc, argv, NULL, NULL));
 }

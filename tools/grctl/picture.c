@@ -1,18 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 #include <errno.h>
-#include <fcntl.h>
-#include <spawn.h>
 #include <string.h>
 #include <strings.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <grobo/files.h>
 
 #include "file.h"
+#include "os.h"
 #include "picture.h"
-
-extern char **environ;
 
 /* They read SVG from standard input and write PNG to standard output, two pixels for one. */
 static const char *const rasterisers[][8] = {
@@ -90,31 +86,6 @@ static int save_stream(app *a, const char *path, FILE *from)
 
 /* ---- PNG ----------------------------------------------------------------------------------- */
 
-/* Runs a program with these as its standard input and output. Returns its wait status, or -1. */
-static int run_program(const char *const *words, int in, int out)
-{
-    posix_spawn_file_actions_t actions;
-    char *arguments[8];
-    pid_t child;
-    int status = -1, error;
-    for (int i = 0; i < 8; i++)
-        arguments[i] = (char *)words[i]; /* posix_spawn() does not write to them */
-    if (posix_spawn_file_actions_init(&actions) != 0)
-        return -1;
-    error = posix_spawn_file_actions_adddup2(&actions, in, STDIN_FILENO);
-    if (!error)
-        error = posix_spawn_file_actions_adddup2(&actions, out, STDOUT_FILENO);
-    if (!error)
-        error = posix_spawnp(&child, words[0], &actions, NULL, arguments, environ);
-    posix_spawn_file_actions_destroy(&actions);
-    if (error)
-        return -1;
-    while (waitpid(child, &status, 0) < 0)
-        if (errno != EINTR)
-            return -1;
-    return status;
-}
-
 static bool is_png(FILE *file)
 {
     static const unsigned char magic[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
@@ -135,7 +106,7 @@ static const char *rasterise(const app *a, FILE *in, FILE *out, const char **tri
         if (ftruncate(fileno(out), 0) != 0 || lseek(fileno(in), 0, SEEK_SET) != 0)
             return NULL;
         rewind(out);
-        status = run_program(rasterisers[i], fileno(in), fileno(out));
+        status = os_run(rasterisers[i], in, out);
         if (status == 0 && is_png(out))
             return rasterisers[i][0];
         if (status < 0)

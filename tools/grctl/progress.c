@@ -1,27 +1,17 @@
 /* SPDX-License-Identifier: MIT */
-#include <langinfo.h>
 #include <string.h>
-#include <sys/ioctl.h>
-#include <unistd.h>
 
+#include "os.h"
 #include "progress.h"
 
 /* The last columns stay free for the ^C that a terminal shows. */
 enum { BAR_MOST = 40, LINE_BYTES = 512, FREE = 3 };
 
-static int terminal_width(void)
-{
-    struct winsize size;
-    if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0)
-        return size.ws_col;
-    return 80;
-}
-
 void progress_start(progress *p, const app *a)
 {
     memset(p, 0, sizeof *p);
     p->shown = a->tty_err && !a->json && a->verbosity >= 0;
-    p->blocks = strcmp(nl_langinfo(CODESET), "UTF-8") == 0;
+    p->blocks = os_shows_utf8();
 }
 
 static size_t append(char *line, size_t at, const char *text)
@@ -40,7 +30,7 @@ void progress_draw(progress *p, double fraction, const char *text)
     int room, bar, full;
     if (!p->shown)
         return;
-    room = terminal_width() - FREE; /* it may have changed */
+    room = os_columns(stderr) - FREE; /* it may have changed */
     bar = fraction < 0 ? 0 : room - 3 - (int)strlen(text);
     bar = bar > BAR_MOST ? BAR_MOST : bar;
     if (bar >= 8) {

@@ -4,7 +4,6 @@
  * go, goals and torque go through the engine's gate after a question, the rest is refused.
  */
 #include <string.h>
-#include <unistd.h>
 
 #include <grobo/driver.h>
 
@@ -100,7 +99,7 @@ static int ask(const plan *p)
     char answer[8] = "";
     if (p->moves == 0 || app_global(a, GLOBAL_YES)->given)
         return 0;
-    if (!a->tty_err || isatty(STDIN_FILENO) != 1)
+    if (!a->tty_err || !a->tty_in)
         return app_fail(a, EXIT_SAFETY, "REFUSED",
                         "replay: %llu frames move joints of a real robot; say --yes if it may",
                         (unsigned long long)p->moves);

@@ -69,8 +69,8 @@ line_reader *line_open(conn_link *link);
 int line_read(line_reader *reader, const char *prompt, char *line, size_t capacity);
 void line_close(line_reader *reader);
 
-/* Waits for a descriptor in the link's loop: 1 readable, 0 a signal came. */
-int line_wait(conn_link *link, int fd);
+/* Waits for standard input in the link's loop: 1 readable, 0 a signal came. */
+int line_wait(conn_link *link);
 
 /*
  * What may stand at the end of the `length` bytes of a line: found() is called for each; whole is

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* What the original programs' letters and words mean, and the record that they fill. */
-#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -257,7 +256,7 @@ static int capture(conn *c, shell *s, double every_ms, double for_ms)
         if (!status && conn_sleep_until(c, next_us) != GROBO_OK && c->link_error)
             status = conn_fail(c, c->link_error, "record");
     }
-    if (c->signal == SIGINT) {
+    if (c->signal == os_endings[OS_INTERRUPT]) {
         c->signal = 0;
         status = EXIT_DONE;
     }
@@ -391,7 +390,7 @@ static int do_connect(shell *s, int n, char **words)
     {letter, word, arguments, help, command, run},
 static const shell_word table[] = {SHELL_WORDS(ROW)};
 
-#define TEXT(letter, word, arguments, help, command, run)                                          \
+#define PARAGRAPH(letter, word, arguments, help, command, run)                                     \
     "  " letter " " word " " arguments "\n      " help "\n"
 const char shell_details[] =
     "Runs commands, one a line, over one connection that stays open between them: those of grctl\n"
@@ -402,7 +401,7 @@ const char shell_details[] =
     "command that runs; at the prompt it clears the line. What --on-exit asks for is carried out\n"
     "once, at the end.\n\n"
     "The record is a motion that grows by hand; every command takes it as the file @record.\n"
-    "\n" SHELL_WORDS(TEXT);
+    "\n" SHELL_WORDS(PARAGRAPH);
 
 const shell_word *shell_word_row(size_t i)
 {

@@ -9,10 +9,10 @@ static void on_readable(evutil_socket_t fd, short what, void *ctx)
     *readable = true;
 }
 
-int line_wait(conn_link *link, int fd)
+int line_wait(conn_link *link)
 {
     bool readable = false;
-    struct event *input = event_new(link->base, fd, EV_READ, on_readable, &readable);
+    struct event *input = event_new(link->base, os_input_await(), EV_READ, on_readable, &readable);
     if (!input)
         return 1; /* then the reading itself waits */
     if (event_add(input, NULL) != 0)

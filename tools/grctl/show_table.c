@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include <math.h>
 #include <string.h>
-#include <sys/ioctl.h>
-#include <unistd.h>
 
+#include "os.h"
 #include "show.h"
 
 /* On a terminal rows that do not fit its width are split, so many at a time. */
@@ -208,21 +207,13 @@ static void print_rows(const table *t, size_t first, size_t last, int from, int 
     }
 }
 
-static int terminal_width(const app *a)
-{
-    struct winsize size;
-    if (!a->tty_out)
-        return 0;
-    return ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
-}
-
 void show_table(const app *a, const show_rows *rows)
 {
     static table t;
     bool split;
     t.a = a;
     t.rows = rows;
-    t.terminal = terminal_width(a);
+    t.terminal = a->tty_out ? os_columns(stdout) : 0;
     measure(&t);
     split = fits(&t, 0) < rows->n_joints;
     for (size_t first = 0, last; first < rows->n; first = last) {

@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-#include <errno.h>
 #include <math.h>
-#include <signal.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "sim_console.h"
 
@@ -277,52 +273,18 @@ static void take(sim_console *console, char c)
     console->too_long = false;
 }
 
-static void on_input(evutil_socket_t fd, short what, void *ctx)
+static void on_input(void *ctx, const char *bytes, size_t size)
 {
-    sim_console *console = ctx;
-    char bytes[512];
-    ssize_t n = read(fd, bytes, sizeof bytes);
-    (void)what;
-    for (ssize_t i = 0; i < n; i++)
-        take(console, bytes[i]);
-    if (n == 0 || (n < 0 && errno != EAGAIN && errno != EINTR)) /* its end, or in the background */
-        event_del(console->input);
-}
-
-/* Reading a terminal from the background would stop the process. */
-static bool may_listen(void)
-{
-    struct stat s;
-    if (isatty(STDIN_FILENO))
-        return tcgetpgrp(STDIN_FILENO) == getpgrp();
-    return fstat(STDIN_FILENO, &s) == 0 && (S_ISFIFO(s.st_mode) || S_ISSOCK(s.st_mode));
-}
-
-static void on_resumed(evutil_socket_t number, short what, void *ctx)
-{
-    sim_console *console = ctx;
-    (void)number;
-    (void)what;
-    if (may_listen())
-        event_add(console->input, NULL);
+    for (size_t i = 0; i < size; i++)
+        take(ctx, bytes[i]);
 }
 
 void sim_console_start(sim_console *console)
 {
-    signal(SIGTTIN, SIG_IGN);
-    console->input =
-        event_new(console->base, STDIN_FILENO, EV_READ | EV_PERSIST, on_input, console);
-    console->resumed = evsignal_new(console->base, SIGCONT, on_resumed, console);
-    if (console->resumed)
-        event_add(console->resumed, NULL);
-    if (console->input && may_listen())
-        event_add(console->input, NULL);
+    os_input_start(&console->input, console->base, on_input, console);
 }
 
 void sim_console_stop(sim_console *console)
 {
-    if (console->input)
-        event_free(console->input);
-    if (console->resumed)
-        event_free(console->resumed);
+    os_input_stop(&console->input);
 }

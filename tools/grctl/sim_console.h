@@ -8,6 +8,7 @@
 #include <grobo/sim_server.h>
 
 #include "app.h"
+#include "os.h"
 
 enum { SIM_CONSOLE_BYTES = 256 };
 
@@ -18,7 +19,7 @@ typedef struct sim_console {
     int n;
     int robot; /* the one that commands are for, from 0 */
     /* private */
-    struct event *input, *resumed;
+    os_input input;
     char line[SIM_CONSOLE_BYTES];
     size_t used;
     bool too_long;

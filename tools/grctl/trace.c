@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include <errno.h>
 #include <string.h>
-#include <time.h>
+
+#include <event2/util.h>
 
 #include <grobo/version.h>
 
@@ -12,9 +13,9 @@ static const char *const descriptions[] = {"GR001 through its board", "servos on
 
 static int64_t wall_us(void)
 {
-    struct timespec now;
-    clock_gettime(CLOCK_REALTIME, &now);
-    return (int64_t)now.tv_sec * 1000000 + now.tv_nsec / 1000;
+    struct timeval now = {0, 0};
+    evutil_gettimeofday(&now, NULL);
+    return (int64_t)now.tv_sec * 1000000 + now.tv_usec;
 }
 
 /* The command line, as far as it says what was done. */

@@ -28,7 +28,7 @@ try() {
 
 # The lists of flags are meant to be split.
 # shellcheck disable=SC2086
-for header in include/grobo/*.h ports/posix/include/grobo/*.h; do
+for header in include/grobo/*.h ports/*/include/grobo/*.h; do
     [ -f "$header" ] || continue
     try "$header" C11 $cc -x c -std=c11 $warnings -Wstrict-prototypes $flags -I.
     if command -v "${cxx%% *}" >/dev/null 2>&1; then
@@ -52,6 +52,15 @@ for header in $(find src ports tools tests -name '*.h' ! -path '*/include/grobo/
     case $header in
     src/core/* | src/sim/* | src/body/* | src/motion/*) ;;
     *) system='-D_DEFAULT_SOURCE -D_XOPEN_SOURCE=700' ;;
+    esac
+    # A port's own headers want its system.
+    case $header in
+    ports/win32/*)
+        command -v x86_64-w64-mingw32-gcc >/dev/null 2>&1 || continue
+        try "$header" C11 x86_64-w64-mingw32-gcc -x c -std=c11 $warnings -Iinclude \
+            -Iports/win32/include -I.
+        continue
+        ;;
     esac
     try "$header" C11 $cc -x c -std=c11 $warnings $system $flags -Isrc -I. -Itests/support \
         -I"$folder"

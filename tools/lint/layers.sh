@@ -69,9 +69,12 @@ layer() {
 layer src/core '' "$freestanding" "$banned"
 layer src/sim 'src/core' "$freestanding" "$banned"
 layer src/body 'src/core src/motion' "$freestanding" "$banned"
-layer src/motion 'src/core' '' "$banned|$output|$system|event_.*|evutil_.*|bufferevent_.*"
-layer ports/posix 'src/core' '' "$banned|$output|event_.*|evutil_.*|bufferevent_.*|yaml_.*"
-layer src/link 'src/core src/sim src/motion src/body ports/posix' '' "$banned|$output|yaml_.*"
+loop='event_.*|evutil_.*|bufferevent_.*'
+layer src/motion 'src/core' '' "$banned|$output|$system|$loop"
+layer ports/common 'src/core' '' "$banned|$output|$system|$loop|yaml_.*"
+layer ports/posix 'src/core ports/common' '' "$banned|$output|$loop|yaml_.*"
+layer src/link 'src/core src/sim src/motion src/body ports/common ports/posix' '' \
+    "$banned|$output|yaml_.*"
 
 # The command is a user like any other: what it takes from the library is public.
 if [ -d "$build/tools/grctl" ]; then

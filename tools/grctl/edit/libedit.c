@@ -42,7 +42,7 @@ static int get_character(EditLine *edit, wchar_t *out)
     for (;;) {
         char byte;
         size_t n;
-        if (!line_wait(reader->link, STDIN_FILENO)) {
+        if (!line_wait(reader->link)) {
             reader->interrupted = true;
             return -1;
         }

@@ -2,7 +2,6 @@
 /* Lines without editing, where libedit was not there when grctl was built. */
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "../shell.h"
 
@@ -25,17 +24,17 @@ int line_read(line_reader *reader, const char *prompt, char *line, size_t capaci
     fflush(stdout);
     for (;;) {
         char c;
-        ssize_t got;
-        if (!line_wait(reader->link, STDIN_FILENO)) {
+        int got;
+        if (!line_wait(reader->link)) {
             putchar('\n');
             return LINE_INTERRUPTED;
         }
-        got = read(STDIN_FILENO, &c, 1);
-        if (got <= 0)
+        got = os_input_read(&c, 1);
+        if (got < 0)
             return LINE_END;
-        if (c == '\n')
+        if (got > 0 && c == '\n')
             break;
-        if (n + 1 < capacity)
+        if (got > 0 && c != '\r' && n + 1 < capacity)
             line[n++] = c;
     }
     line[n] = '\0';
