@@ -21,7 +21,7 @@ while [ $# -gt 0 ]; do
     --demo) level=1 ;;
     --check) level=2 ;;
     --ci) level=3 ;;
-    --ports) level=2 targets='arm64 armhf riscv64 s390x' ;;
+    --ports) level=2 targets='arm64 armhf riscv64 s390x win64' ;;
     --cross)
         level=0 targets=${2:-}
         [ $# -lt 2 ] || shift
@@ -117,7 +117,16 @@ look_cross() {
     armhf) need_foreign arm-linux-gnueabihf qemu-arm ;;
     riscv64) need_foreign riscv64-linux-gnu qemu-riscv64 ;;
     s390x) need_foreign s390x-linux-gnu qemu-s390x ;;
+    win64) need_windows x86_64-w64-mingw32 x86-64 ;;
     esac
+}
+
+need_windows() {
+    need_debian "a compiler for $1" 'to build' have_command "$1-gcc" -- "gcc-mingw-w64-$2-win32"
+    need_debian "a C++ compiler for $1" 'to check the headers' have_command "$1-g++" -- \
+        "g++-mingw-w64-$2-win32"
+    need_debian cmake 'to build libraries for Windows' have_command cmake -- cmake
+    need_debian wine 'to run the tests' have_command wine -- "wine wine64"
 }
 
 need_foreign() {

@@ -24,10 +24,12 @@ top=$(pwd)
 work=$top/build/cross/$target
 
 . tools/cross/distribution.sh
+. tools/cross/windows.sh
 
 tools/setup.sh --cross "$target" || exit 1
 case $target in
 arm64 | armhf | s390x) sysroot "$target" "$codename" ;;
+win64) windows_libraries x86_64-w64-mingw32 ;;
 riscv64) sysroot riscv64 trixie ;; # Debian has had it since 13
 *) usage ;;
 esac

@@ -1,0 +1,22 @@
+# SPDX-License-Identifier: MIT
+# 64-bit Windows: mingw-w64 with the threads of Windows, and wine to run the tests. Programs bring
+# the libraries with them (static), grobo.dll too.
+
+TRIPLET := x86_64-w64-mingw32
+PORT := win32
+EXE := .exe
+CC := $(TRIPLET)-gcc
+CXX := $(TRIPLET)-g++
+AR := $(TRIPLET)-ar
+PKG_CONFIG := PKG_CONFIG_LIBDIR=$(abspath $(CROSS_DIR))/root/lib/pkgconfig pkg-config
+# The C library of Windows prints no %zu and %lld; that of mingw does, and its headers choose it.
+# Its isfinite() is a macro that converts to float what is none, the compiler checks formats against
+# the other C library, and a SOCKET is unsigned where libevent's type of one is not.
+OS_FLAGS := -D__USE_MINGW_ANSI_STDIO=1 -DWIN32_LEAN_AND_MEAN
+TARGET_CFLAGS := -Wno-float-conversion -Wno-format -Wno-sign-conversion
+OS_LIBS := -lws2_32 -lsetupapi -lwinmm -lm
+LDFLAGS := -static
+SONAME := grobo.dll
+IMPORT_LIB := libgrobo.dll.a
+SHARED_FLAGS = -Wl,--out-implib,$(BUILD)/$(IMPORT_LIB)
+EMULATOR := $(abspath tools/cross/wine.sh)

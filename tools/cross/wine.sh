@@ -1,0 +1,30 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Runs a program for Windows under wine, in a prefix of the build's own and without a display.
+#
+# usage: tools/cross/wine.sh PROGRAM [ARGUMENT]...
+#        tools/cross/wine.sh --make     the prefix, where there is none
+#        tools/cross/wine.sh --end      what wine left running
+# environment: GROBO_WINE, the folder of the prefix (default build/cross/win64)
+folder=${GROBO_WINE:-$(dirname "$0")/../../build/cross/win64}
+[ -d "$folder" ] && folder=$(cd "$folder" && pwd)
+export WINEPREFIX="$folder/prefix"
+export WINEARCH=win64
+export WINEDEBUG=-all
+# No menus on the desktop, no .NET, no browser: none is needed, and each asks for a display.
+export WINEDLLOVERRIDES='winemenubuilder.exe,mscoree,mshtml='
+unset DISPLAY
+
+case ${1:-} in
+--make)
+    [ -f "$WINEPREFIX/system.reg" ] && exit 0
+    wine wineboot --init >/dev/null 2>&1 || exit 1
+    exec wineserver -w
+    ;;
+--end)
+    [ -d "$WINEPREFIX" ] || exit 0
+    wineserver -k 2>/dev/null
+    exit 0
+    ;;
+esac
+exec wine "$@"

@@ -1,0 +1,233 @@
+/* SPDX-License-Identifier: MIT */
+#include <windows.h>
+
+#include <fcntl.h>
+#include <io.h>
+#include <shlobj.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <timeapi.h>
+
+#include "../../os.h"
+
+/* ---- the process ---------------------------------------------------------------------------- */
+
+static HANDLE handle_of(FILE *stream)
+{
+    return (HANDLE)_get_osfhandle(_fileno(stream));
+}
+
+/* Characters that move and colour, as on any other terminal. */
+static void understand_escapes(FILE *stream)
+{
+    DWORD mode;
+    if (GetConsoleMode(handle_of(stream), &mode))
+        SetConsoleMode(handle_of(stream), mode | ENABLE_VIRTUAL_TERMINAL_PROCESSING);
+}
+
+static void end_tick(void)
+{
+    timeEndPeriod(1);
+}
+
+void os_start(void)
+{
+    FILE *streams[] = {stdin, stdout, stderr};
+    for (int i = 0; i < 3; i++) {
+        if (_fileno(streams[i]) < 0 && !freopen("NUL", i == 0 ? "r" : "w", streams[i]))
+            exit(EXIT_FAILURE);
+        _setmode(_fileno(streams[i]), _O_BINARY);
+    }
+    SetConsoleOutputCP(CP_UTF8);
+    understand_escapes(stdout);
+    understand_escapes(stderr);
+    /* A C library that knows no line buffering keeps what is said until the end. */
+    setvbuf(stderr, NULL, _IONBF, 0);
+    /* Also for a robot in the same process, where no port asks for it. */
+    if (timeBeginPeriod(1) == TIMERR_NOERROR)
+        atexit(end_tick);
+}
+
+bool os_is_terminal(FILE *stream)
+{
+    DWORD mode;
+    return GetConsoleMode(handle_of(stream), &mode);
+}
+
+int os_columns(FILE *stream)
+{
+    CONSOLE_SCREEN_BUFFER_INFO info;
+    if (!GetConsoleScreenBufferInfo(handle_of(stream), &info))
+        return 80;
+    return info.srWindow.Right - info.srWindow.Left + 1;
+}
+
+bool os_shows_utf8(void)
+{
+    return GetConsoleOutputCP() == CP_UTF8;
+}
+
+char *os_printed(void (*print)(FILE *to))
+{
+    FILE *file = tmpfile();
+    char *text = NULL;
+    long size = -1;
+    if (!file)
+        return NULL;
+    print(file);
+    if (fseek(file, 0, SEEK_END) == 0)
+        size = ftell(file);
+    rewind(file);
+    if (size >= 0)
+        text = calloc(1, (size_t)size + 1);
+    if (text && fread(text, 1, (size_t)size, file) != (size_t)size) {
+        free(text);
+        text = NULL;
+    }
+    fclose(file);
+    return text;
+}
+
+/* ---- programs ------------------------------------------------------------------------------- */
+
+/* No word of ours has a quote in it. */
+static bool join_words(const char *const *words, char *line, size_t capacity)
+{
+    size_t used = 0;
+    for (int i = 0; words[i] && used < capacity; i++)
+        used += (size_t)snprintf(line + used, capacity - used, "%s\"%s\"", i ? " " : "", words[i]);
+    return used < capacity;
+}
+
+/* A stream's handle as a child may have it. */
+static HANDLE lend(FILE *stream)
+{
+    HANDLE lent = NULL, self = GetCurrentProcess();
+    if (!DuplicateHandle(self, handle_of(stream), self, &lent, 0, TRUE, DUPLICATE_SAME_ACCESS))
+        return NULL;
+    return lent;
+}
+
+int os_run(const char *const *words, FILE *in, FILE *out)
+{
+    STARTUPINFOA start = {.cb = sizeof start, .dwFlags = STARTF_USESTDHANDLES};
+    PROCESS_INFORMATION child;
+    char line[1024];
+    DWORD status = 128;
+    BOOL begun = FALSE;
+    start.hStdInput = lend(in);
+    start.hStdOutput = lend(out);
+    start.hStdError = handle_of(stderr);
+    if (start.hStdInput && start.hStdOutput && join_words(words, line, sizeof line))
+        begun = CreateProcessA(NULL, line, NULL, NULL, TRUE, 0, NULL, NULL, &start, &child);
+    if (begun) {
+        WaitForSingleObject(child.hProcess, INFINITE);
+        GetExitCodeProcess(child.hProcess, &status);
+        CloseHandle(child.hThread);
+        CloseHandle(child.hProcess);
+    }
+    CloseHandle(start.hStdInput);
+    CloseHandle(start.hStdOutput);
+    return begun ? (int)(status & 0x7fffffff) : -1;
+}
+
+/* ---- signals -------------------------------------------------------------------------------- */
+
+/* Of Ctrl-C; of Ctrl-Break; of a console that is closed, a log-out and a shut-down. */
+const int os_endings[OS_ENDINGS] = {SIGINT, SIGTERM, SIGBREAK};
+
+static void (*on_ending)(int number);
+
+static BOOL WINAPI on_console(DWORD event)
+{
+    switch (event) {
+    case CTRL_C_EVENT:
+        raise(os_endings[OS_INTERRUPT]);
+        return TRUE;
+    case CTRL_BREAK_EVENT:
+        raise(os_endings[OS_TERMINATE]);
+        return TRUE;
+    default:
+        /* The process ends when this returns: not before main() has left the robot as it should. */
+        raise(os_endings[OS_HANGUP]);
+        Sleep(INFINITE);
+        return TRUE;
+    }
+}
+
+void os_take_signals(void)
+{
+    static bool taken;
+    if (!taken)
+        taken = SetConsoleCtrlHandler(on_console, TRUE);
+}
+
+/* The C library takes a handler back when it calls it. */
+static void again(int number)
+{
+    signal(number, again);
+    on_ending(number);
+}
+
+void os_catch_endings(void (*handler)(int number))
+{
+    on_ending = handler;
+    os_take_signals();
+    for (int i = 0; i < OS_ENDINGS; i++)
+        signal(os_endings[i], again);
+}
+
+bool os_is_ignored(int number)
+{
+    (void)number; /* nobody can say so */
+    return false;
+}
+
+/* ---- files ---------------------------------------------------------------------------------- */
+
+static bool known_folder(int which, char *path)
+{
+    return SHGetFolderPathA(NULL, which | CSIDL_FLAG_CREATE, NULL, SHGFP_TYPE_CURRENT, path) ==
+           S_OK;
+}
+
+bool os_config_path(int which, char *path, size_t capacity)
+{
+    char folder[MAX_PATH];
+    int n;
+    if (!known_folder(which == 1 ? CSIDL_COMMON_APPDATA : CSIDL_APPDATA, folder))
+        return false;
+    n = snprintf(path, capacity, "%s\\grctl\\config.yaml", folder);
+    return n > 0 && (size_t)n < capacity;
+}
+
+/* What is in a user's own AppData is nobody else's. */
+bool os_private_folder(char *path, size_t capacity)
+{
+    char folder[MAX_PATH];
+    int n;
+    if (!known_folder(CSIDL_LOCAL_APPDATA, folder))
+        return false;
+    n = snprintf(path, capacity, "%s\\grctl", folder);
+    if (n < 0 || (size_t)n >= capacity)
+        return false;
+    return CreateDirectoryA(path, NULL) || GetLastError() == ERROR_ALREADY_EXISTS;
+}
+
+bool os_mark(const char *path)
+{
+    HANDLE made = CreateFileA(path, GENERIC_WRITE, FILE_SHARE_READ | FILE_SHARE_WRITE, NULL,
+                              OPEN_ALWAYS, FILE_ATTRIBUTE_NORMAL, NULL);
+    return made != INVALID_HANDLE_VALUE && CloseHandle(made);
+}
+
+bool os_unmark(const char *path)
+{
+    return DeleteFileA(path) || GetLastError() == ERROR_FILE_NOT_FOUND;
+}
+
+bool os_is_marked(const char *path)
+{
+    return GetFileAttributesA(path) != INVALID_FILE_ATTRIBUTES;
+}
