@@ -157,14 +157,19 @@ typedef struct grobo_bus_hold {
 
 /** A bus. The struct is open so that it needs no heap; read stats, leave the rest. */
 typedef struct grobo_bus {
-    grobo_bus_stats stats; /**< read freely */
-    /* private */
-    grobo_bus_config config; /* no zeros left in it, but margin_us */
-    grobo_rs30x_parser parser;
-    grobo_txn *head[GROBO_PRIORITIES];
-    grobo_txn *tail[GROBO_PRIORITIES];
-    grobo_txn *active; /* on the wire; NULL when idle */
+    /* private; small and busy members first, where a Cortex-M0 reaches them in one instruction */
     grobo_bus_phase phase;
+    bool learnt;          /* overhead_us and deviation_us come from a reply */
+    uint8_t echo_bytes;   /* of the active frame's echo seen so far */
+    uint8_t next_hold;    /* the slot used last, of 1.. */
+    uint16_t waiting;     /* transactions in the queues */
+    uint16_t got_bytes;   /* for the active frame; echo and strangers' replies are not counted */
+    grobo_txn *active;    /* on the wire; NULL when idle */
+    int32_t overhead_us;  /* smoothed: how much later than computed replies come */
+    int32_t deviation_us; /* smoothed deviation of that */
+    uint32_t bad_sums_before; /* the parser's counters when the active frame was sent */
+    uint32_t dropped_before;
+    int64_t now_us;      /* of the rx or step that is running */
     int64_t over_us;     /* when the active one is over if all goes well */
     int64_t limit_us;    /* when it has failed; when it is over if nothing answers it */
     int64_t free_us;     /* when the line is free for the next frame */
@@ -173,17 +178,14 @@ typedef struct grobo_bus {
     int64_t quiet_by_us; /* when it is long enough in any case */
     int64_t reserve_us;
     int64_t reserve_end_us;
+    grobo_txn *head[GROBO_PRIORITIES];
+    grobo_txn *tail[GROBO_PRIORITIES];
+    /* public */
+    grobo_bus_stats stats; /**< read freely */
+    /* private */
+    grobo_bus_config config; /* no zeros left in it, but margin_us */
+    grobo_rs30x_parser parser;
     grobo_bus_hold hold[GROBO_BUS_HOLDS];
-    int32_t overhead_us;      /* smoothed: how much later than computed replies come */
-    int32_t deviation_us;     /* smoothed deviation of that */
-    uint32_t bad_sums_before; /* the parser's counters when the active frame was sent */
-    uint32_t dropped_before;
-    uint16_t waiting; /* transactions in the queues */
-    uint16_t
-        got_bytes; /* since the active frame was sent, echo and strangers' replies not counted */
-    uint8_t echo_bytes; /* of its echo seen so far */
-    uint8_t next_hold;  /* the slot used last, of 1.. */
-    bool learnt;        /* overhead_us and deviation_us come from a reply */
 } grobo_bus;
 
 /**

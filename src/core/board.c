@@ -132,8 +132,7 @@ static int measure(const uint8_t *bytes, size_t n, unsigned accept)
 /* Takes a whole frame of n bytes apart. */
 static void unpack(const uint8_t *bytes, size_t n, grobo_board_frame *frame)
 {
-    static const grobo_board_frame empty;
-    *frame = empty;
+    memset(frame, 0, sizeof *frame);
     if (bytes[0] == CHECK) {
         frame->kind = GROBO_BOARD_CHECK;
     } else if (bytes[0] == PLAY) {

@@ -83,25 +83,25 @@ static void finish(grobo_bus *bus, grobo_txn *txn, int result, const grobo_rs30x
  * The line has talked out of turn, or has failed: it must be quiet before it is asked again. Where
  * it babbles on, a request goes out all the same when the longest silence asked for is over.
  */
-static void ask_for_quiet(grobo_bus *bus, int64_t now_us)
+static void ask_for_quiet(grobo_bus *bus)
 {
-    bool kept_quiet = now_us >= bus->quiet_us && bus->quiet_us < bus->quiet_by_us;
+    bool kept_quiet = bus->now_us >= bus->quiet_us && bus->quiet_us < bus->quiet_by_us;
     if (bus->quiet_by_us == 0 || kept_quiet) {
-        bus->quiet_by_us = now_us + GROBO_BUS_QUIET_MAX_US;
+        bus->quiet_by_us = bus->now_us + GROBO_BUS_QUIET_MAX_US;
     }
-    bus->quiet_us = grobo_i_sooner(now_us + bus->config.quiet_us, bus->quiet_by_us);
+    bus->quiet_us = grobo_i_sooner(bus->now_us + bus->config.quiet_us, bus->quiet_by_us);
 }
 
 /* An attempt of the active transaction has failed. */
-static void fail(grobo_bus *bus, int64_t now_us, int error)
+static void fail(grobo_bus *bus, int error)
 {
     grobo_txn *txn = bus->active;
     if (error == GROBO_ERR_TIMEOUT || error == GROBO_ERR_SHORT) {
         bus->stats.timeouts++;
     }
     /* After a wrong sum too: that may have been an older reply, and this one's is yet to come. */
-    grobo_i_bus_hold(bus, txn, now_us);
-    ask_for_quiet(bus, now_us);
+    grobo_i_bus_hold(bus, txn, bus->now_us);
+    ask_for_quiet(bus);
     if (txn->attempts_ <= txn->retries) {
         bus->active = NULL;
         bus->phase = GROBO_BUS_IDLE;
@@ -114,46 +114,46 @@ static void fail(grobo_bus *bus, int64_t now_us, int error)
 
 /* ---- receiving ----------------------------------------------------------------------------- */
 
-static void count_late(grobo_bus *bus, int64_t now_us, size_t n)
+static void count_late(grobo_bus *bus, size_t n)
 {
     bus->stats.late_bytes += (uint32_t)n;
-    ask_for_quiet(bus, now_us);
+    ask_for_quiet(bus);
 }
 
-static void succeed(grobo_bus *bus, int64_t now_us, const grobo_rs30x_packet *reply)
+static void succeed(grobo_bus *bus, const grobo_rs30x_packet *reply)
 {
     grobo_txn *txn = bus->active;
     bus->stats.replies++;
     if (txn->attempts_ == 1) {
-        grobo_i_bus_learn(bus, now_us);
+        grobo_i_bus_learn(bus);
         grobo_i_bus_release_holds(bus);
-        bus->free_us = grobo_i_sooner(bus->free_us, now_us); /* its last byte is here */
+        bus->free_us = grobo_i_sooner(bus->free_us, bus->now_us); /* its last byte is here */
     } else {
         /* This may have been the late reply to an earlier attempt: one more may come. */
-        grobo_i_bus_hold(bus, txn, now_us);
+        grobo_i_bus_hold(bus, txn, bus->now_us);
     }
     finish(bus, txn, GROBO_OK, reply);
 }
 
-static void refuse(grobo_bus *bus, int64_t now_us, const grobo_rs30x_packet *reply)
+static void refuse(grobo_bus *bus, const grobo_rs30x_packet *reply)
 {
     grobo_txn *txn = bus->active;
     bus->stats.refusals++;
     bus->stats.failed++;
     if (txn->attempts_ > 1) {
-        grobo_i_bus_hold(bus, txn, now_us);
+        grobo_i_bus_hold(bus, txn, bus->now_us);
     }
     finish(bus, txn, GROBO_ERR_NACK, reply);
 }
 
-static void take_return(grobo_bus *bus, int64_t now_us, const grobo_rs30x_packet *p)
+static void take_return(grobo_bus *bus, const grobo_rs30x_packet *p)
 {
     const grobo_reply *want = &bus->active->reply;
     bool from_whom = want->kind == GROBO_REPLY_RETURN && p->id == want->id;
     if (from_whom && (p->flags & GROBO_RS30X_STATUS_REFUSED) != 0) {
-        refuse(bus, now_us, p);
+        refuse(bus, p);
     } else if (from_whom && p->address == want->address && p->length == want->length) {
-        succeed(bus, now_us, p);
+        succeed(bus, p);
     } else {
         size_t size = p->data_bytes + GROBO_RS30X_OVERHEAD_BYTES;
         bus->stats.late_frames++;
@@ -163,28 +163,28 @@ static void take_return(grobo_bus *bus, int64_t now_us, const grobo_rs30x_packet
 }
 
 /* One byte without a name is believed only when no rubbish came before it. */
-static void take_ack(grobo_bus *bus, int64_t now_us, const grobo_rs30x_packet *p)
+static void take_ack(grobo_bus *bus, const grobo_rs30x_packet *p)
 {
     if (bus->parser.framer.stats.dropped_bytes != bus->dropped_before) {
         bus->stats.late_frames++;
         bus->stats.late_bytes++;
-        fail(bus, now_us, GROBO_ERR_MISMATCH);
+        fail(bus, GROBO_ERR_MISMATCH);
     } else if (p->kind == GROBO_RS30X_ACK_BYTE) {
-        succeed(bus, now_us, p);
+        succeed(bus, p);
     } else {
-        refuse(bus, now_us, p);
+        refuse(bus, p);
     }
 }
 
 /* As many bytes as the reply has were received and none of them can belong to it any more. */
-static void give_up_on_rubbish(grobo_bus *bus, int64_t now_us)
+static void give_up_on_rubbish(grobo_bus *bus)
 {
     if (bus->got_bytes < grobo_reply_bytes(&bus->active->reply) ||
         grobo_rs30x_parser_pending(&bus->parser) > 0) {
         return;
     }
     bool bad_sum = bus->parser.framer.stats.bad_sums != bus->bad_sums_before;
-    fail(bus, now_us, bad_sum ? GROBO_ERR_CHECKSUM : GROBO_ERR_MISMATCH);
+    fail(bus, bad_sum ? GROBO_ERR_CHECKSUM : GROBO_ERR_MISMATCH);
 }
 
 static void copy_counters(grobo_bus *bus)
@@ -194,7 +194,7 @@ static void copy_counters(grobo_bus *bus)
 }
 
 /* Bytes taken: all, or those up to the end of the transaction. */
-static size_t take_reply(grobo_bus *bus, int64_t now_us, const uint8_t *bytes, size_t n)
+static size_t take_reply(grobo_bus *bus, const uint8_t *bytes, size_t n)
 {
     grobo_rs30x_packet p;
     size_t took = grobo_rs30x_parser_feed(&bus->parser, bytes, n);
@@ -202,13 +202,13 @@ static size_t take_reply(grobo_bus *bus, int64_t now_us, const uint8_t *bytes, s
     while (bus->phase == GROBO_BUS_AWAITING && grobo_rs30x_parser_next(&bus->parser, &p) > 0) {
         bus->stats.rx_frames++;
         if (p.kind == GROBO_RS30X_RETURN) {
-            take_return(bus, now_us, &p);
+            take_return(bus, &p);
         } else {
-            take_ack(bus, now_us, &p);
+            take_ack(bus, &p);
         }
     }
     if (bus->phase == GROBO_BUS_AWAITING) {
-        give_up_on_rubbish(bus, now_us);
+        give_up_on_rubbish(bus);
     }
     if (bus->phase != GROBO_BUS_AWAITING) {
         grobo_rs30x_parser_reset(&bus->parser);
@@ -217,14 +217,14 @@ static size_t take_reply(grobo_bus *bus, int64_t now_us, const uint8_t *bytes, s
     return took;
 }
 
-static size_t take_echo(grobo_bus *bus, int64_t now_us, const uint8_t *bytes, size_t n)
+static size_t take_echo(grobo_bus *bus, const uint8_t *bytes, size_t n)
 {
     grobo_txn *txn = bus->active;
     size_t left = (size_t)(txn->frame_bytes - bus->echo_bytes);
     size_t took = n < left ? n : left;
     if (memcmp(bytes, txn->frame + bus->echo_bytes, took) != 0) {
         bus->stats.bad_echoes++;
-        fail(bus, now_us, GROBO_ERR_MISMATCH);
+        fail(bus, GROBO_ERR_MISMATCH);
         return 0;
     }
     bus->echo_bytes = (uint8_t)(bus->echo_bytes + took);
@@ -240,19 +240,20 @@ static size_t take_echo(grobo_bus *bus, int64_t now_us, const uint8_t *bytes, si
 
 void grobo_bus_rx(grobo_bus *bus, int64_t now_us, const uint8_t *bytes, size_t n)
 {
+    bus->now_us = now_us;
     bus->stats.rx_bytes += (uint32_t)n;
     while (n > 0) {
         size_t took = n;
         switch (bus->phase) {
         case GROBO_BUS_IDLE:
         case GROBO_BUS_GOING:
-            count_late(bus, now_us, n);
+            count_late(bus, n);
             break;
         case GROBO_BUS_ECHOING:
-            took = take_echo(bus, now_us, bytes, n);
+            took = take_echo(bus, bytes, n);
             break;
         case GROBO_BUS_AWAITING:
-            took = take_reply(bus, now_us, bytes, n);
+            took = take_reply(bus, bytes, n);
             break;
         }
         bytes += took;
@@ -293,6 +294,7 @@ static void end_stale(grobo_bus *bus, int64_t now_us)
 
 void grobo_bus_step(grobo_bus *bus, int64_t now_us)
 {
+    bus->now_us = now_us;
     switch (bus->phase) {
     case GROBO_BUS_IDLE:
         break;
@@ -305,7 +307,7 @@ void grobo_bus_step(grobo_bus *bus, int64_t now_us)
     case GROBO_BUS_AWAITING:
         if (now_us >= limit_of_active(bus)) {
             bool some = bus->got_bytes > 0 || bus->echo_bytes > 0;
-            fail(bus, now_us, some ? GROBO_ERR_SHORT : GROBO_ERR_TIMEOUT);
+            fail(bus, some ? GROBO_ERR_SHORT : GROBO_ERR_TIMEOUT);
         }
         break;
     }
@@ -412,27 +414,33 @@ int grobo_bus_tx(grobo_bus *bus, int64_t now_us, uint8_t *buf, size_t cap)
 
 /* ---- the caller's side --------------------------------------------------------------------- */
 
-static uint32_t or_default(uint32_t value, uint32_t fallback)
+static bool is_too_slow(uint32_t baud_bps)
 {
-    return value != 0 ? value : fallback;
+    return baud_bps != 0 && baud_bps < BAUD_MIN_BPS;
+}
+
+static void fill(uint32_t *value, uint32_t fallback)
+{
+    if (*value == 0) {
+        *value = fallback;
+    }
 }
 
 int grobo_bus_init(grobo_bus *bus, const grobo_bus_config *config)
 {
-    static const grobo_bus_config all_defaults;
-    grobo_bus_config c = config != NULL ? *config : all_defaults;
-    c.baud_bps = or_default(c.baud_bps, BAUD_DEFAULT_BPS);
-    c.servo_baud_bps = or_default(c.servo_baud_bps, BAUD_DEFAULT_BPS);
-    c.return_delay_us = or_default(c.return_delay_us, RETURN_DELAY_US);
-    c.quiet_us = or_default(c.quiet_us, GROBO_BUS_QUIET_US);
-    c.hold_us = or_default(c.hold_us, GROBO_BUS_HOLD_US);
-    if (c.baud_bps < BAUD_MIN_BPS || c.servo_baud_bps < BAUD_MIN_BPS ||
-        (c.echo && c.wiring == GROBO_WIRING_BOARD)) {
+    if (config != NULL && (is_too_slow(config->baud_bps) || is_too_slow(config->servo_baud_bps) ||
+                           (config->echo && config->wiring == GROBO_WIRING_BOARD))) {
         return GROBO_ERR_ARG;
     }
     memset(bus, 0, sizeof *bus);
-    bus->config = c;
-    bus->phase = GROBO_BUS_IDLE;
+    if (config != NULL) {
+        bus->config = *config;
+    }
+    fill(&bus->config.baud_bps, BAUD_DEFAULT_BPS);
+    fill(&bus->config.servo_baud_bps, BAUD_DEFAULT_BPS);
+    fill(&bus->config.return_delay_us, RETURN_DELAY_US);
+    fill(&bus->config.quiet_us, GROBO_BUS_QUIET_US);
+    fill(&bus->config.hold_us, GROBO_BUS_HOLD_US);
     bus->reserve_us = GROBO_NEVER_US;
     bus->reserve_end_us = GROBO_NEVER_US;
     grobo_rs30x_parser_init(&bus->parser, 0);

@@ -33,25 +33,24 @@ void grobo_bus_cost_of(const grobo_bus *bus, const grobo_txn *txn, grobo_bus_cos
     const grobo_bus_config *c = &bus->config;
     size_t reply = grobo_reply_bytes(&txn->reply);
     uint32_t delay_us = reply > 0 ? c->return_delay_us : 0;
-    grobo_bus_cost found = {0, 0, 0, 0, 0};
-    found.request_us = wire_us(txn->frame_bytes, c->baud_bps);
-    found.reply_us = wire_us(reply, c->baud_bps);
+    cost->request_us = wire_us(txn->frame_bytes, c->baud_bps);
+    cost->servo_us = 0;
+    cost->reply_us = wire_us(reply, c->baud_bps);
     if (c->wiring == GROBO_WIRING_BUS) {
-        found.reply_us += delay_us;
+        cost->reply_us += delay_us;
     } else {
         size_t relayed = relayed_bytes(txn);
         if (relayed > 0) {
-            found.servo_us =
+            cost->servo_us =
                 wire_us(relayed, c->servo_baud_bps) + delay_us + wire_us(reply, c->servo_baud_bps);
         }
     }
-    found.total_us = found.request_us + found.servo_us + found.reply_us;
+    cost->total_us = cost->request_us + cost->servo_us + cost->reply_us;
     if (txn->timeout_us != 0) {
-        found.timeout_us = txn->timeout_us;
+        cost->timeout_us = txn->timeout_us;
     } else {
-        found.timeout_us = found.total_us + grobo_i_bus_margin_us(bus, 1);
+        cost->timeout_us = cost->total_us + grobo_i_bus_margin_us(bus, 1);
     }
-    *cost = found;
 }
 
 int64_t grobo_i_bus_over_at(const grobo_bus *bus, int64_t start_us, const grobo_bus_cost *cost)
@@ -83,9 +82,9 @@ uint32_t grobo_i_bus_margin_us(const grobo_bus *bus, unsigned attempts)
 
 /* As TCP does it: mean with weight 1/8, deviation with weight 1/4. A retried request teaches
  * nothing, since nobody knows which of its attempts was answered. */
-void grobo_i_bus_learn(grobo_bus *bus, int64_t now_us)
+void grobo_i_bus_learn(grobo_bus *bus)
 {
-    int64_t late_us = now_us - bus->over_us;
+    int64_t late_us = bus->now_us - bus->over_us;
     int32_t sample_us = late_us < 0                         ? 0
                         : late_us > GROBO_BUS_MARGIN_MAX_US ? GROBO_BUS_MARGIN_MAX_US
                                                             : (int32_t)late_us;

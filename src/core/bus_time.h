@@ -22,7 +22,7 @@ uint32_t grobo_i_bus_margin_us(const grobo_bus *bus, unsigned attempts);
 int64_t grobo_i_bus_over_at(const grobo_bus *bus, int64_t start_us, const grobo_bus_cost *cost);
 
 /* The active transaction's reply has come, in its first attempt. */
-void grobo_i_bus_learn(grobo_bus *bus, int64_t now_us);
+void grobo_i_bus_learn(grobo_bus *bus);
 
 /* Remembers that a reply to this transaction may yet come, counted from from_us. */
 void grobo_i_bus_hold(grobo_bus *bus, const grobo_txn *txn, int64_t from_us);

@@ -3,14 +3,9 @@
 
 #include <string.h>
 
-static const grobo_framer_stats no_stats;
-
 void grobo_i_framer_init(grobo_framer *framer)
 {
-    framer->stats = no_stats;
-    framer->used = 0;
-    framer->taken = 0;
-    framer->ending = false;
+    memset(framer, 0, offsetof(grobo_framer, buf));
 }
 
 static void discard(grobo_framer *framer, size_t n)

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Packets of RS30x servos: their form, the push parser, what a command is answered by. */
+#include <string.h>
+
 #include "core/bytes.h"
 #include "core/framer.h"
 #include "core/rs30x_packet.h"
@@ -136,8 +138,7 @@ static grobo_rs30x_kind kind_of(const uint8_t *bytes)
 
 void grobo_i_rs30x_unpack(const uint8_t *bytes, size_t n, grobo_rs30x_packet *packet)
 {
-    static const grobo_rs30x_packet empty;
-    *packet = empty;
+    memset(packet, 0, sizeof *packet);
     packet->kind = kind_of(bytes);
     if (n < GROBO_RS30X_OVERHEAD_BYTES) {
         return;

@@ -2,6 +2,8 @@
 /* The present values of a servo out of a block of its registers. */
 #include <grobo/rs30x.h>
 
+#include <string.h>
+
 #include "core/bytes.h"
 
 enum { VOLTAGE_UNIT_MV = 10 };
@@ -21,33 +23,35 @@ static const struct {
     [TEMPERATURE] = {GROBO_RS30X_TEMPERATURE, 2},
 };
 
+/* The registers that matter, those that were not read being 0. */
+enum { WINDOW_AT = GROBO_RS30X_TORQUE, WINDOW_BYTES = GROBO_RS30X_VOLTAGE + 2 - WINDOW_AT };
+
 int grobo_rs30x_state_decode(uint8_t address, const uint8_t *data, size_t n,
                              grobo_rs30x_state *state)
 {
-    static const uint8_t absent[2];
     const grobo_i_span block = {data, n};
-    const uint8_t *at[FIELDS];
+    uint8_t window[WINDOW_BYTES] = {0};
     int found = 0;
     unsigned has = 0;
     for (int i = 0; i < FIELDS; i++) {
-        at[i] = absent;
         const uint8_t *field = NULL;
         if (fields[i].address >= address) {
             field = grobo_i_span_at(block, (size_t)(fields[i].address - address), fields[i].bytes);
         }
         if (field != NULL) {
-            at[i] = field;
+            memcpy(window + fields[i].address - WINDOW_AT, field, fields[i].bytes);
             has |= 1u << i;
             found++;
         }
     }
-    state->torque = at[TORQUE][0];
-    state->pos_ddeg = grobo_i_get_i16(at[POSITION]);
-    state->time_cs = grobo_i_get_u16(at[TIME]);
-    state->speed_dps = grobo_i_get_i16(at[SPEED]);
-    state->current_ma = grobo_i_get_u16(at[CURRENT]);
-    state->temperature_c = grobo_i_get_i16(at[TEMPERATURE]);
-    state->voltage_mv = (uint32_t)grobo_i_get_u16(at[VOLTAGE]) * VOLTAGE_UNIT_MV;
+    state->torque = window[GROBO_RS30X_TORQUE - WINDOW_AT];
+    state->pos_ddeg = grobo_i_get_i16(window + GROBO_RS30X_POSITION - WINDOW_AT);
+    state->time_cs = grobo_i_get_u16(window + GROBO_RS30X_TIME - WINDOW_AT);
+    state->speed_dps = grobo_i_get_i16(window + GROBO_RS30X_SPEED - WINDOW_AT);
+    state->current_ma = grobo_i_get_u16(window + GROBO_RS30X_CURRENT - WINDOW_AT);
+    state->temperature_c = grobo_i_get_i16(window + GROBO_RS30X_TEMPERATURE - WINDOW_AT);
+    state->voltage_mv =
+        (uint32_t)grobo_i_get_u16(window + GROBO_RS30X_VOLTAGE - WINDOW_AT) * VOLTAGE_UNIT_MV;
     state->has = (uint8_t)has;
     return found;
 }
