@@ -20,13 +20,19 @@
 #define GROBO_NEVER_US INT64_MAX
 
 /** One bit a joint, bit j for joint j. */
+#if GROBO_JOINTS_MAX > 32
 typedef uint64_t grobo_joint_mask;
+#else
+typedef uint32_t grobo_joint_mask;
+#endif
 
-/** The bit of joint j, 0 <= j < 64. */
+/** The bit of joint j, 0 <= j < GROBO_JOINTS_MAX. */
 #define GROBO_JOINT_BIT(j) ((grobo_joint_mask)1 << (j))
 
-/** The bits of joints 0..n-1, 0 <= n <= 64. */
-#define GROBO_JOINTS_ALL(n) ((n) >= 64 ? ~(grobo_joint_mask)0 : ((grobo_joint_mask)1 << (n)) - 1)
+/** The bits of joints 0..n-1, 0 <= n <= GROBO_JOINTS_MAX. */
+#define GROBO_JOINTS_ALL(n)                                                                        \
+    ((n) >= (int)sizeof(grobo_joint_mask) * 8 ? ~(grobo_joint_mask)0                               \
+                                              : ((grobo_joint_mask)1 << (n)) - 1)
 
 /** Torque of a servo; the values are those of register No.36 (protocol 4). */
 typedef enum grobo_torque {
