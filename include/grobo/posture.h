@@ -19,10 +19,10 @@ GROBO_BEGIN_DECLS
 
 /** A posture. Plain data: copy it with =. Angles of joints outside `set` mean nothing. */
 typedef struct grobo_posture {
-    double angle_rad[GROBO_JOINTS_MAX]; /**< by joint, 0..n_joints-1 */
     grobo_joint_mask set;               /**< which joints this posture gives */
     int64_t time_us;                    /**< time to reach it; 0: the default time of the player */
     uint8_t n_joints;                   /**< 0..GROBO_JOINTS_MAX */
+    double angle_rad[GROBO_JOINTS_MAX]; /**< by joint, 0..n_joints-1 */
 } grobo_posture;
 
 /** Degrees of an angle in radians. */

@@ -107,11 +107,11 @@ typedef struct grobo_play_progress {
     unsigned queued;  /**< clips that wait */
 } grobo_play_progress;
 
-/** Counters; they only grow. */
+/** Counters; monotonic, wrap. */
 typedef struct grobo_play_stats {
-    uint64_t frames;         /**< handed out */
-    uint64_t late_frames;    /**< handed out late, or skipped */
-    uint64_t skipped_frames; /**< never handed out: their time had passed */
+    uint32_t frames;         /**< handed out */
+    uint32_t late_frames;    /**< handed out late, or skipped */
+    uint32_t skipped_frames; /**< never handed out: their time had passed */
     int64_t max_late_us;     /**< worst lateness of a frame handed out */
 } grobo_play_stats;
 
@@ -137,21 +137,23 @@ typedef struct grobo_play_key {
 typedef struct grobo_sequencer {
     /* private; small members first, where a Cortex-M0 reaches them in one instruction */
     grobo_sequencer_state state;
+    bool waits;                  /* a frame of the present move is still to be handed out */
+    bool late;                   /* that frame is being taken late */
+    bool silent;                 /* KEY: the present move sets no joint, there is no frame */
+    uint8_t queue_head, queue_n; /* GROBO_QUEUE_MAX is below 256 */
     int error;
-    bool waits;  /* a frame of the present move is still to be handed out */
-    bool silent; /* KEY: the present move sets no joint, there is no frame */
     uint32_t skipped;
+    int64_t now_us;                   /* of the call that is running */
     int64_t from_us, to_us;           /* real times at which the present move begins and ends */
     int64_t due_us;                   /* of the frame that waits */
     int64_t anchor_us, anchor_pos_us; /* a real time and the position that belongs to it */
-    int64_t grid_us;                  /* RATE: real time of frame 0 */
-    int64_t index;                    /* RATE: next frame on the grid */
+    int64_t grid_us;                  /* RATE: of the frame behind the one that waits */
+    uint32_t grid_rest; /* RATE: part of a microsecond that grid_us lacks, x rate_hz */
     int32_t pass;
-    uint32_t n_items;
-    unsigned queue_head, queue_n;
-    const grobo_model *model;
     grobo_play_item item; /* being played */
-    grobo_play_key key;   /* KEY: what `to` stands for, or where it lies behind */
+    const grobo_model *model;
+    uint32_t n_items;
+    grobo_play_key key; /* KEY: what `to` stands for, or where it lies behind */
     grobo_play_stats stats;
     grobo_posture from;                     /* where the move began: all joints that are known */
     grobo_posture to;                       /* where it ends: joints the clip has set so far */

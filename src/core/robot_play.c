@@ -209,7 +209,7 @@ void grobo_i_play_step(grobo_robot *robot)
     }
     watch_host(robot);
     const grobo_play_stats *stats = grobo_sequencer_stats(&robot->sequencer);
-    uint64_t late_before = stats->late_frames;
+    uint32_t late_before = stats->late_frames;
     grobo_play_frame frame;
     int more;
     while ((more = grobo_sequencer_next(&robot->sequencer, robot->now_us, &frame)) > 0) {
@@ -220,7 +220,7 @@ void grobo_i_play_step(grobo_robot *robot)
     if (more < 0) {
         grobo_i_gate_halt(robot);
     }
-    robot->counters.late_frames += stats->late_frames - late_before;
+    robot->counters.late_frames += (uint32_t)(stats->late_frames - late_before);
     reserve(robot);
 }
 

@@ -8,91 +8,87 @@
 
 #include <string.h>
 
-#define SECOND_US 1000000LL
+#define SECOND_US 1000000u
 
-/* What a state's function says besides 1 (a frame), 0 (nothing due) and errors: look again. */
-enum { AGAIN = 2 };
+_Static_assert(GROBO_QUEUE_MAX < 256, "queue_head and queue_n are bytes");
+
+static bool is_under_way(const grobo_sequencer *seq)
+{
+    return seq->state == GROBO_SEQUENCER_APPROACHING || seq->state == GROBO_SEQUENCER_PLAYING;
+}
 
 /* ---- real time and position ---- */
+
+static int64_t at_least(int64_t value, int64_t least)
+{
+    return value > least ? value : least;
+}
+
+static int32_t longer(int32_t a_us, int32_t b_us)
+{
+    return a_us > b_us ? a_us : b_us;
+}
+
+static int64_t at_most(int64_t value, int64_t most)
+{
+    return value < most ? value : most;
+}
 
 int64_t grobo_i_pos_at(const grobo_sequencer *seq, int64_t t_us)
 {
     int64_t pos_us =
         seq->anchor_pos_us + (t_us - seq->anchor_us) * seq->item.options.speed_pct / 100;
-    if (pos_us < seq->anchor_pos_us) {
-        return seq->anchor_pos_us;
+    return at_most(at_least(pos_us, seq->anchor_pos_us), seq->item.span_us);
+}
+
+/* RATE: the frame behind the one that waits is the one that waits. Whole microseconds and the rest
+ * are counted apart, which keeps rounding from adding up. */
+static void advance_grid(grobo_sequencer *seq)
+{
+    uint32_t rate_hz = seq->item.options.rate_hz;
+    seq->due_us = seq->grid_us;
+    seq->grid_us += SECOND_US / rate_hz;
+    seq->grid_rest += SECOND_US % rate_hz;
+    if (seq->grid_rest >= rate_hz) {
+        seq->grid_rest -= rate_hz;
+        seq->grid_us++;
     }
-    return pos_us > seq->item.span_us ? seq->item.span_us : pos_us;
 }
 
-static int64_t time_of(const grobo_sequencer *seq, int64_t pos_us)
+/* A real time in units of a frame's time, counted from the anchor. */
+static int64_t in_units(const grobo_sequencer *seq, int64_t t_us)
 {
-    int64_t speed_pct = seq->item.options.speed_pct;
-    return seq->anchor_us + ((pos_us - seq->anchor_pos_us) * 100 + speed_pct / 2) / speed_pct;
-}
-
-/* Real time of frame i; the one division keeps rounding from adding up. */
-static int64_t grid_time(const grobo_sequencer *seq, int64_t i)
-{
-    int64_t rate_hz = seq->item.options.rate_hz;
-    return seq->grid_us + (i * SECOND_US + rate_hz / 2) / rate_hz;
-}
-
-/* The last frame of the grid that is due at t_us, t_us >= grid_us. */
-static int64_t grid_index(const grobo_sequencer *seq, int64_t t_us)
-{
-    int64_t rate_hz = seq->item.options.rate_hz;
-    return ((t_us - seq->grid_us + 1) * rate_hz - 1 - rate_hz / 2) / SECOND_US;
-}
-
-/* The frame that carries the end of the pass. */
-static int64_t grid_last(const grobo_sequencer *seq)
-{
-    int64_t i = grid_index(seq, time_of(seq, seq->item.span_us));
-    while (grobo_i_pos_at(seq, grid_time(seq, i)) < seq->item.span_us) {
-        i++;
-    }
-    return i;
-}
-
-static int64_t in_units(int64_t time_us)
-{
-    return (time_us + GROBO_PLAY_TIME_UNIT_US / 2) / GROBO_PLAY_TIME_UNIT_US *
-           GROBO_PLAY_TIME_UNIT_US;
+    return (t_us - seq->anchor_us + GROBO_PLAY_TIME_UNIT_US / 2) / GROBO_PLAY_TIME_UNIT_US;
 }
 
 /* ---- frames ---- */
 
-static int hand_out(grobo_sequencer *seq, int64_t now_us, int64_t time_us, grobo_play_frame *frame)
+/* The time of a frame. That of a move comes from absolute times, so that neither lateness nor
+ * rounding adds up. */
+static int64_t time_of_frame(const grobo_sequencer *seq)
 {
-    int64_t late_us = now_us - seq->due_us;
-    if (time_us < GROBO_PLAY_TIME_UNIT_US) {
-        time_us = GROBO_PLAY_TIME_UNIT_US;
+    const grobo_play_options *options = &seq->item.options;
+    if (seq->state == GROBO_SEQUENCER_PLAYING && options->mode == GROBO_PLAY_RATE) {
+        return SECOND_US / options->rate_hz;
     }
+    return (in_units(seq, seq->to_us) - in_units(seq, seq->from_us)) * GROBO_PLAY_TIME_UNIT_US;
+}
+
+static int hand_out(grobo_sequencer *seq, grobo_play_frame *frame)
+{
+    int64_t time_us = at_least(time_of_frame(seq), GROBO_PLAY_TIME_UNIT_US);
     frame->posture = seq->to;
-    frame->posture.time_us = time_us > GROBO_PLAY_TIME_MAX_US ? GROBO_PLAY_TIME_MAX_US : time_us;
+    frame->posture.time_us = at_most(time_us, GROBO_PLAY_TIME_MAX_US);
     frame->due_us = seq->due_us;
     frame->skipped = seq->skipped;
     frame->phase = seq->state;
 
     seq->stats.frames++;
-    seq->stats.late_frames += late_us > seq->item.options.late_us;
-    seq->stats.max_late_us = late_us > seq->stats.max_late_us ? late_us : seq->stats.max_late_us;
+    seq->stats.late_frames += seq->late;
+    seq->stats.max_late_us = at_least(seq->now_us - seq->due_us, seq->stats.max_late_us);
     seq->skipped = 0;
     seq->waits = false;
     return 1;
-}
-
-static void skip_frames(grobo_sequencer *seq, int64_t n)
-{
-    seq->stats.skipped_frames += (uint64_t)n;
-    seq->stats.late_frames += (uint64_t)n;
-    seq->skipped += (uint32_t)n;
-}
-
-static bool is_late(const grobo_sequencer *seq, int64_t now_us)
-{
-    return now_us - seq->due_us > seq->item.options.late_us;
 }
 
 /* ---- moves ---- */
@@ -106,67 +102,81 @@ static int fail(grobo_sequencer *seq, int error)
     return error;
 }
 
-static void set_move(grobo_sequencer *seq, int64_t from_us, int64_t to_us, bool has_frame)
+/* Begins a move where and when the last one ended. */
+static void set_move(grobo_sequencer *seq, int64_t to_us, bool has_frame)
 {
-    seq->from_us = from_us;
+    seq->from_us = seq->to_us;
+    seq->due_us = seq->to_us;
     seq->to_us = to_us;
-    seq->due_us = from_us;
     seq->waits = has_frame;
 }
 
-/* What was the goal is where the robot is now. */
-static void arrive(grobo_sequencer *seq)
+/* The same, to a position at its time. */
+static void move_to(grobo_sequencer *seq, int64_t pos_us, bool has_frame)
 {
-    grobo_posture_merge(&seq->from, &seq->to);
+    int64_t way_us = (pos_us - seq->anchor_pos_us) * 100;
+    int32_t speed_pct = seq->item.options.speed_pct;
+    set_move(seq, seq->anchor_us + (way_us + speed_pct / 2) / speed_pct, has_frame);
 }
 
-/* How much of the present move is made. */
-static double part_at(const grobo_sequencer *seq, int64_t t_us)
+/* Makes one end of the present move what lies on the way at a time. */
+static void cut(grobo_sequencer *seq, grobo_posture *end, int64_t t_us)
 {
+    double part = 1.0;
     if (seq->waits || t_us <= seq->from_us) {
-        return 0.0;
+        part = 0.0;
+    } else if (t_us < seq->to_us) {
+        part = (double)(t_us - seq->from_us) / (double)(seq->to_us - seq->from_us);
     }
-    return t_us >= seq->to_us ? 1.0
-                              : (double)(t_us - seq->from_us) / (double)(seq->to_us - seq->from_us);
+    grobo_i_between(end, &seq->from, &seq->to, part);
 }
 
 /*
- * Begins to play at a position, by way of an approach; one of no length where the robot is there.
- * By keys the move to the first key has a time of its own, and a frame in any case.
+ * Begins to play at anchor_pos_us, by way of an approach from where the last move ended; one of no
+ * length where the robot is there. By keys the move to the first key has a time of its own, and a
+ * frame in any case.
  */
-static int begin_at(grobo_sequencer *seq, int64_t pos_us, int64_t t_us, bool soft)
+static int begin(grobo_sequencer *seq, bool soft)
 {
     bool by_key = seq->item.options.mode == GROBO_PLAY_KEY;
+    int64_t pos_us = seq->anchor_pos_us;
     int result = by_key ? grobo_i_key_seek(seq, pos_us) : grobo_i_sample(seq, pos_us);
     if (result < 0) {
         return fail(seq, result);
     }
-    int64_t time_us = soft ? grobo_i_approach_time(seq) : 0;
+    int32_t approach_us = soft ? grobo_i_approach_time(seq) : 0;
+    int64_t time_us = approach_us;
     if (by_key && pos_us == 0) {
-        int64_t own_us = grobo_i_key_first_time(seq) * 100 / seq->item.options.speed_pct;
-        own_us = own_us < GROBO_PLAY_TIME_UNIT_US ? GROBO_PLAY_TIME_UNIT_US : own_us;
-        time_us = own_us > time_us ? own_us : time_us;
+        time_us = grobo_i_key_first_time(seq) * 100 / seq->item.options.speed_pct;
+        time_us = at_least(time_us, longer(approach_us, GROBO_PLAY_TIME_UNIT_US));
     }
     seq->state = GROBO_SEQUENCER_APPROACHING;
-    seq->anchor_us = t_us;
-    seq->anchor_pos_us = pos_us;
-    set_move(seq, t_us, t_us + time_us, time_us > 0 && seq->to.set != 0);
+    seq->anchor_us = seq->to_us;
+    set_move(seq, seq->to_us + time_us, time_us > 0 && seq->to.set != 0);
     return 0;
+}
+
+/* Begins the first item of the queue. */
+static int begin_item(grobo_sequencer *seq, bool soft)
+{
+    grobo_i_item_load(seq, &seq->queue[seq->queue_head]);
+    seq->queue_head = (uint8_t)((seq->queue_head + 1) % GROBO_QUEUE_MAX);
+    seq->queue_n--;
+    seq->anchor_pos_us = seq->item.options.from_us;
+    return begin(seq, soft);
 }
 
 /* The pass is over: again, the next clip, or the end. */
 static int end_pass(grobo_sequencer *seq)
 {
-    arrive(seq);
+    grobo_i_arrive(seq);
     if (seq->pass < seq->item.options.repeat) {
         seq->pass++;
-        return begin_at(seq, 0, seq->to_us, true);
+        seq->anchor_pos_us = 0;
+        return begin(seq, true);
     }
     if (seq->queue_n > 0) {
-        grobo_i_item_load(seq, &seq->queue[seq->queue_head]);
-        seq->queue_head = (seq->queue_head + 1) % GROBO_QUEUE_MAX;
-        seq->queue_n--;
-        return begin_at(seq, seq->item.options.from_us, seq->to_us, true);
+        return begin_item(seq, true);
     }
     seq->state = GROBO_SEQUENCER_FINISHED;
     seq->anchor_pos_us = seq->item.span_us;
@@ -177,7 +187,7 @@ static int end_pass(grobo_sequencer *seq)
 /* KEY: begins the move to the next key, where the last one ended. */
 static int next_move(grobo_sequencer *seq)
 {
-    arrive(seq);
+    grobo_i_arrive(seq);
     if (!grobo_i_key_has_next(seq)) {
         return end_pass(seq);
     }
@@ -185,182 +195,135 @@ static int next_move(grobo_sequencer *seq)
     if (result < 0) {
         return fail(seq, result);
     }
-    set_move(seq, seq->to_us, time_of(seq, grobo_i_key_pos(seq)), !seq->silent);
+    move_to(seq, grobo_i_key_pos(seq), !seq->silent);
     return 0;
 }
 
-/* From anchor_pos_us on, at a real time. */
-static int start_playing(grobo_sequencer *seq, int64_t t_us)
+/* From anchor_pos_us on, where the approach ended. */
+static int start_playing(grobo_sequencer *seq)
 {
     seq->state = GROBO_SEQUENCER_PLAYING;
-    seq->anchor_us = t_us;
-    arrive(seq);
+    seq->anchor_us = seq->to_us;
+    grobo_i_arrive(seq);
     if (seq->item.options.mode == GROBO_PLAY_RATE) {
-        seq->grid_us = t_us;
-        seq->index = 0;
-        set_move(seq, t_us, t_us, true);
+        seq->grid_us = seq->to_us;
+        seq->grid_rest = seq->item.options.rate_hz / 2u;
+        advance_grid(seq);
+        move_to(seq, seq->item.span_us, true);
         return 0;
     }
     /* `to` may lie behind its key, on the way to the next. */
     int result = grobo_i_key_load(seq, seq->key.i);
-    if (result < 0) {
-        return fail(seq, result);
-    }
-    seq->to_us = t_us;
-    return next_move(seq);
+    return result < 0 ? fail(seq, result) : next_move(seq);
 }
 
-/* ---- a function a state ---- */
+/* ---- a function a state, called when its deadline is there: 1 a frame, 0 none, or error ---- */
 
-static int approaching(grobo_sequencer *seq, int64_t now_us, grobo_play_frame *frame)
+static int approaching(grobo_sequencer *seq, grobo_play_frame *frame)
 {
-    int64_t time_us = seq->to_us - seq->from_us;
     if (!seq->waits) {
-        if (now_us < seq->to_us) {
-            return 0;
-        }
-        int result = start_playing(seq, seq->to_us);
-        return result < 0 ? result : AGAIN;
+        return start_playing(seq);
     }
-    if (now_us < seq->due_us) {
-        return 0;
+    if (seq->late) { /* never faster for it */
+        seq->to_us += seq->now_us - seq->from_us;
+        seq->from_us = seq->now_us;
+        seq->anchor_us = seq->now_us;
     }
-    if (is_late(seq, now_us)) { /* never faster for it */
-        seq->from_us = now_us;
-        seq->to_us = now_us + time_us;
-    }
-    return hand_out(seq, now_us, in_units(time_us), frame);
+    return hand_out(seq, frame);
 }
 
-static int playing_keys(grobo_sequencer *seq, int64_t now_us, grobo_play_frame *frame)
+static int playing_keys(grobo_sequencer *seq, grobo_play_frame *frame)
 {
-    if (seq->waits && now_us < seq->due_us) {
-        return 0;
-    }
     bool is_last = !grobo_i_key_has_next(seq);
-    if (seq->waits && (now_us < seq->to_us || is_last)) {
-        /* From absolute times, so that neither lateness nor rounding adds up. */
-        bool late = is_late(seq, now_us);
-        int64_t start_us = late ? now_us : seq->from_us;
-        int64_t time_us =
-            in_units(seq->to_us - seq->anchor_us) - in_units(start_us - seq->anchor_us);
-        int result = hand_out(seq, now_us, time_us, frame);
-        if (late && is_last && seq->to_us < now_us + frame->posture.time_us) {
-            seq->to_us = now_us + frame->posture.time_us;
+    if (seq->waits && (seq->now_us < seq->to_us || is_last)) {
+        if (seq->late) {
+            seq->from_us = seq->now_us;
+        }
+        int result = hand_out(seq, frame);
+        if (is_last && seq->late) {
+            seq->to_us = at_least(seq->to_us, seq->now_us + frame->posture.time_us);
         }
         return result;
     }
-    if (now_us < seq->to_us) {
-        return 0;
-    }
     if (seq->waits) {
-        skip_frames(seq, 1);
+        grobo_i_count_skipped(seq);
     }
-    int result = next_move(seq);
-    return result < 0 ? result : AGAIN;
+    return next_move(seq);
 }
 
-static int playing_at_rate(grobo_sequencer *seq, int64_t now_us, grobo_play_frame *frame)
+/* The move is the whole pass; the frame at its end or behind it is the last. */
+static int playing_at_rate(grobo_sequencer *seq, grobo_play_frame *frame)
 {
     if (!seq->waits) {
-        if (now_us < seq->to_us) {
-            return 0;
-        }
-        int result = end_pass(seq);
-        return result < 0 ? result : AGAIN;
+        return end_pass(seq);
     }
-    if (now_us < seq->due_us) {
-        return 0;
-    }
-    int64_t last = grid_last(seq);
-    int64_t i = grid_index(seq, now_us);
-    i = i > last ? last : i;
-    i = i < seq->index ? seq->index : i;
-    skip_frames(seq, i - seq->index);
-    seq->due_us = grid_time(seq, i);
-    int result = grobo_i_sample(seq, grobo_i_pos_at(seq, seq->due_us));
+    bool is_last = seq->due_us >= seq->to_us;
+    int result =
+        grobo_i_sample(seq, is_last ? seq->item.span_us : grobo_i_pos_at(seq, seq->due_us));
     if (result < 0) {
         return fail(seq, result);
     }
-    int64_t period_us = SECOND_US / seq->item.options.rate_hz;
-    (void)hand_out(seq, now_us, period_us, frame);
-    arrive(seq);
-    seq->index = i + 1;
-    seq->waits = i < last;
-    /* The last one is given the time to get there. */
-    seq->to_us = (is_late(seq, now_us) ? now_us : seq->due_us) + frame->posture.time_us;
-    seq->due_us = grid_time(seq, seq->index);
+    (void)hand_out(seq, frame);
+    grobo_i_arrive(seq);
+    if (is_last) { /* it is given the time to get there */
+        seq->to_us = (seq->late ? seq->now_us : seq->due_us) + frame->posture.time_us;
+    } else {
+        advance_grid(seq);
+        seq->waits = true;
+    }
     return 1;
 }
 
-static int playing(grobo_sequencer *seq, int64_t now_us, grobo_play_frame *frame)
-{
-    return seq->item.options.mode == GROBO_PLAY_KEY ? playing_keys(seq, now_us, frame)
-                                                    : playing_at_rate(seq, now_us, frame);
-}
-
 /* PAUSED and STOPPING. */
-static int holding(grobo_sequencer *seq, int64_t now_us, grobo_play_frame *frame)
+static int holding(grobo_sequencer *seq, grobo_play_frame *frame)
 {
-    if (seq->waits && now_us >= seq->due_us) {
-        return hand_out(seq, now_us, in_units(seq->to_us - seq->from_us), frame);
+    if (seq->waits) {
+        return hand_out(seq, frame);
     }
-    if (seq->state == GROBO_SEQUENCER_STOPPING && now_us >= seq->to_us) {
-        seq->state = GROBO_SEQUENCER_IDLE;
-    }
+    seq->state = GROBO_SEQUENCER_IDLE;
     return 0;
 }
 
-static int look(grobo_sequencer *seq, int64_t now_us, grobo_play_frame *frame)
+/* What is due: by a rate only the latest frame, and none behind the end of the pass. */
+static int look(grobo_sequencer *seq, grobo_play_frame *frame)
 {
-    switch (seq->state) {
-    case GROBO_SEQUENCER_APPROACHING:
-        return approaching(seq, now_us, frame);
-    case GROBO_SEQUENCER_PLAYING:
-        return playing(seq, now_us, frame);
-    case GROBO_SEQUENCER_PAUSED:
-    case GROBO_SEQUENCER_STOPPING:
-        return holding(seq, now_us, frame);
-    case GROBO_SEQUENCER_IDLE:
-    case GROBO_SEQUENCER_FINISHED:
-    case GROBO_SEQUENCER_FAILED:
-        return 0;
+    bool plays = seq->state == GROBO_SEQUENCER_PLAYING;
+    bool at_rate = plays && seq->item.options.mode == GROBO_PLAY_RATE;
+    while (at_rate && seq->waits && seq->grid_us <= seq->now_us && seq->due_us < seq->to_us) {
+        advance_grid(seq);
+        grobo_i_count_skipped(seq);
     }
-    return 0;
+    grobo_i_see_if_late(seq);
+    if (at_rate) {
+        return playing_at_rate(seq, frame);
+    }
+    if (plays) {
+        return playing_keys(seq, frame);
+    }
+    return seq->state == GROBO_SEQUENCER_APPROACHING ? approaching(seq, frame)
+                                                     : holding(seq, frame);
 }
 
 int grobo_sequencer_next(grobo_sequencer *seq, int64_t now_us, grobo_play_frame *frame)
 {
-    int result;
-    do {
-        result = look(seq, now_us, frame);
-    } while (result == AGAIN);
+    int result = 0;
+    seq->now_us = now_us;
+    while (result == 0 && now_us >= grobo_sequencer_deadline(seq)) {
+        result = look(seq, frame);
+    }
     return result;
 }
 
 int64_t grobo_sequencer_deadline(const grobo_sequencer *seq)
 {
-    switch (seq->state) {
-    case GROBO_SEQUENCER_APPROACHING:
-    case GROBO_SEQUENCER_PLAYING:
-    case GROBO_SEQUENCER_STOPPING:
-        return seq->waits ? seq->due_us : seq->to_us;
-    case GROBO_SEQUENCER_PAUSED:
-        return seq->waits ? seq->due_us : GROBO_NEVER_US;
-    case GROBO_SEQUENCER_IDLE:
-    case GROBO_SEQUENCER_FINISHED:
-    case GROBO_SEQUENCER_FAILED:
-        return GROBO_NEVER_US;
+    if (seq->waits) {
+        return seq->due_us;
     }
-    return GROBO_NEVER_US;
+    return is_under_way(seq) || seq->state == GROBO_SEQUENCER_STOPPING ? seq->to_us
+                                                                       : GROBO_NEVER_US;
 }
 
 /* ---- commands ---- */
-
-static bool is_under_way(const grobo_sequencer *seq)
-{
-    return seq->state == GROBO_SEQUENCER_APPROACHING || seq->state == GROBO_SEQUENCER_PLAYING;
-}
 
 static bool is_active(const grobo_sequencer *seq)
 {
@@ -377,11 +340,10 @@ int grobo_sequencer_play(grobo_sequencer *seq, const grobo_clip *clip,
                          const grobo_play_options *options, const grobo_posture *start,
                          int64_t now_us)
 {
-    grobo_play_item item;
     if (seq->state != GROBO_SEQUENCER_IDLE && seq->state != GROBO_SEQUENCER_FINISHED) {
         return GROBO_ERR_STATE;
     }
-    int result = grobo_i_item_make(&item, seq->model, clip, options, start);
+    int result = grobo_i_item_make(&seq->queue[seq->queue_head], seq->model, clip, options, start);
     if (result < 0) {
         return result;
     }
@@ -395,8 +357,9 @@ int grobo_sequencer_play(grobo_sequencer *seq, const grobo_clip *clip,
     }
     seq->skipped = 0;
     seq->error = 0;
-    grobo_i_item_load(seq, &item);
-    return begin_at(seq, item.options.from_us, now_us, start != NULL);
+    seq->queue_n = 1;
+    seq->to_us = now_us;
+    return begin_item(seq, start != NULL);
 }
 
 int grobo_sequencer_enqueue(grobo_sequencer *seq, const grobo_clip *clip,
@@ -411,43 +374,45 @@ int grobo_sequencer_enqueue(grobo_sequencer *seq, const grobo_clip *clip,
     if (clip->n_joints != seq->item.clip.n_joints) {
         return GROBO_ERR_ARG;
     }
-    unsigned slot = (seq->queue_head + seq->queue_n) % GROBO_QUEUE_MAX;
+    int slot = (seq->queue_head + seq->queue_n) % GROBO_QUEUE_MAX;
     int result = grobo_i_item_make(&seq->queue[slot], seq->model, clip, options, NULL);
-    return result < 0 ? result : (int)++seq->queue_n;
+    return result < 0 ? result : ++seq->queue_n;
 }
 
 /*
  * Makes the present move one to rest: to the posture that lies half of time_us ahead, in time_us,
  * which is the way a joint goes while it slows down evenly. Never past the end of the move.
  */
-static int hold(grobo_sequencer *seq, int64_t time_us, int64_t now_us)
+static int hold(grobo_sequencer *seq, int32_t time_us)
 {
+    int64_t now_us = seq->now_us;
     if (seq->state == GROBO_SEQUENCER_PLAYING && seq->item.options.mode == GROBO_PLAY_RATE) {
         /* A stalled caller's robot has not gone further than to the frame that waits. */
-        int64_t t_us = now_us < seq->due_us || !seq->waits ? now_us : seq->due_us;
+        int64_t t_us = seq->waits ? at_most(now_us, seq->due_us) : now_us;
         seq->anchor_pos_us = grobo_i_pos_at(seq, t_us + time_us / 2);
         int result = grobo_i_sample(seq, seq->anchor_pos_us);
         if (result < 0) {
             return fail(seq, result);
         }
     } else {
-        grobo_posture here, rest;
-        int64_t rest_us = now_us + time_us / 2;
-        rest_us = rest_us > seq->to_us ? seq->to_us : rest_us;
-        rest_us = seq->waits ? seq->from_us : rest_us;
-        grobo_i_between(&here, &seq->from, &seq->to, part_at(seq, now_us));
-        grobo_i_between(&rest, &seq->from, &seq->to, part_at(seq, rest_us));
+        int64_t rest_us = seq->waits ? seq->from_us : at_most(now_us + time_us / 2, seq->to_us);
+        cut(seq, &seq->from, now_us);
+        seq->from_us = now_us;
+        cut(seq, &seq->to, rest_us);
         if (seq->state == GROBO_SEQUENCER_PLAYING) {
             seq->anchor_pos_us = grobo_i_pos_at(seq, rest_us);
         }
-        grobo_posture_merge(&seq->from, &here);
-        seq->to = rest;
     }
-    if (time_us < GROBO_PLAY_TIME_UNIT_US) {
-        time_us = GROBO_PLAY_TIME_UNIT_US;
-    }
-    set_move(seq, now_us, now_us + time_us, seq->to.set != 0);
+    seq->to_us = now_us;
+    seq->anchor_us = now_us;
+    set_move(seq, now_us + longer(time_us, GROBO_PLAY_TIME_UNIT_US), seq->to.set != 0);
     return 0;
+}
+
+/* GROBO_PLAY_TIME_MAX_US at most. */
+static int32_t stop_time(const grobo_sequencer *seq)
+{
+    return (int32_t)seq->item.options.stop_us;
 }
 
 int grobo_sequencer_pause(grobo_sequencer *seq, int64_t now_us)
@@ -455,7 +420,8 @@ int grobo_sequencer_pause(grobo_sequencer *seq, int64_t now_us)
     if (!is_under_way(seq)) {
         return GROBO_ERR_STATE;
     }
-    int result = hold(seq, seq->item.options.stop_us, now_us);
+    seq->now_us = now_us;
+    int result = hold(seq, stop_time(seq));
     if (result == 0) {
         seq->state = GROBO_SEQUENCER_PAUSED;
     }
@@ -467,8 +433,9 @@ int grobo_sequencer_resume(grobo_sequencer *seq, int64_t now_us)
     if (seq->state != GROBO_SEQUENCER_PAUSED) {
         return GROBO_ERR_STATE;
     }
-    arrive(seq);
-    return begin_at(seq, seq->anchor_pos_us, now_us, true);
+    grobo_i_arrive(seq);
+    seq->to_us = now_us;
+    return begin(seq, true);
 }
 
 int grobo_sequencer_stop(grobo_sequencer *seq, bool at_once, int64_t now_us)
@@ -481,7 +448,8 @@ int grobo_sequencer_stop(grobo_sequencer *seq, bool at_once, int64_t now_us)
     if (stopping && !at_once) {
         return 0;
     }
-    int result = hold(seq, at_once ? 0 : seq->item.options.stop_us, now_us);
+    seq->now_us = now_us;
+    int result = hold(seq, at_once ? 0 : stop_time(seq));
     if (result == 0) {
         seq->state = GROBO_SEQUENCER_STOPPING;
     }
@@ -500,30 +468,36 @@ int grobo_sequencer_seek(grobo_sequencer *seq, int64_t pos_us, int64_t now_us)
         seq->anchor_pos_us = pos_us;
         return 0;
     }
-    int result = hold(seq, 0, now_us);
+    seq->now_us = now_us;
+    int result = hold(seq, 0);
     if (result < 0) {
         return result;
     }
-    arrive(seq);
-    return begin_at(seq, pos_us, now_us, true);
+    grobo_i_arrive(seq);
+    seq->to_us = now_us;
+    seq->anchor_pos_us = pos_us;
+    return begin(seq, true);
 }
 
 /* While PLAYING. By keys it is the same move in another time, and its frame goes out once more. */
-static void change_speed(grobo_sequencer *seq, uint16_t speed_pct, int64_t now_us)
+static void change_speed(grobo_sequencer *seq, uint16_t speed_pct)
 {
-    int64_t pos_us = grobo_i_pos_at(seq, now_us);
     bool by_key = seq->item.options.mode == GROBO_PLAY_KEY;
     int64_t end_us = by_key ? grobo_i_key_pos(seq) : seq->item.span_us;
+    int64_t pos_us = grobo_i_pos_at(seq, seq->now_us);
+    int64_t due_us = seq->due_us;
 
-    seq->anchor_pos_us = pos_us > end_us ? end_us : pos_us;
-    seq->anchor_us = now_us;
+    seq->anchor_pos_us = at_most(pos_us, end_us);
+    seq->anchor_us = seq->now_us;
     seq->item.options.speed_pct = speed_pct;
     if (by_key) {
-        grobo_posture here;
         bool has_frame = seq->waits || (!seq->silent && seq->anchor_pos_us < end_us);
-        grobo_i_between(&here, &seq->from, &seq->to, part_at(seq, now_us));
-        grobo_posture_merge(&seq->from, &here);
-        set_move(seq, seq->anchor_us, time_of(seq, end_us), has_frame);
+        cut(seq, &seq->from, seq->now_us);
+        seq->to_us = seq->now_us;
+        move_to(seq, end_us, has_frame);
+    } else if (seq->waits) {
+        move_to(seq, end_us, true);
+        seq->due_us = due_us;
     }
 }
 
@@ -536,7 +510,8 @@ int grobo_sequencer_set_speed(grobo_sequencer *seq, int speed_pct, int64_t now_u
         return GROBO_ERR_ARG;
     }
     if (seq->state == GROBO_SEQUENCER_PLAYING) {
-        change_speed(seq, (uint16_t)speed_pct, now_us);
+        seq->now_us = now_us;
+        change_speed(seq, (uint16_t)speed_pct);
     }
     seq->item.options.speed_pct = (uint16_t)speed_pct;
     return 0;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "sequencer_i.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -26,8 +27,8 @@ static int check_posture(const grobo_posture *posture, const grobo_clip *clip)
         return GROBO_ERR_ARG;
     }
     for (int j = 0; j < clip->n_joints; j++) {
-        if (has(posture, j) && !isfinite(posture->angle_rad[j])) {
-            return GROBO_ERR_NAN;
+        if (has(posture, j) && !(fabs(posture->angle_rad[j]) <= DBL_MAX)) {
+            return GROBO_ERR_NAN; /* or infinite; NaN fails any comparison */
         }
     }
     return 0;
@@ -43,13 +44,6 @@ static int finish_read(const grobo_play_item *item, const grobo_model *model,
     return result;
 }
 
-static int read_key(const grobo_play_item *item, const grobo_model *model, size_t i,
-                    grobo_posture *posture, int64_t *at_us)
-{
-    int result = item->clip.key(item->clip.ctx, i, posture, at_us);
-    return result < 0 ? result : finish_read(item, model, posture);
-}
-
 static int read_sample(const grobo_play_item *item, const grobo_model *model, int64_t t_us,
                        grobo_posture *posture)
 {
@@ -57,33 +51,39 @@ static int read_sample(const grobo_play_item *item, const grobo_model *model, in
     return result < 0 ? result : finish_read(item, model, posture);
 }
 
-/* ---- time of keys ---- */
-
-static void count_key(grobo_play_key *key, const grobo_play_item *item, size_t i,
-                      const grobo_posture *posture, int64_t at_us)
+/* Reads key i, the one behind that of `key`, and adds it to the count of time. */
+static int read_key(const grobo_play_item *item, const grobo_model *model, size_t i,
+                    grobo_posture *posture, grobo_play_key *key)
 {
-    key->i = i;
-    key->is_empty = posture->set == 0;
-    key->defaults += posture->time_us == 0;
-    key->at_us = at_us + (int64_t)key->defaults * item->options.default_time_us;
+    int64_t at_us;
+    int result = item->clip.key(item->clip.ctx, i, posture, &at_us);
+    if (result >= 0) {
+        result = at_us < 0 ? GROBO_ERR_ARG : finish_read(item, model, posture);
+    }
+    if (result == 0) {
+        key->i = i;
+        key->is_empty = posture->set == 0;
+        key->defaults += posture->time_us == 0;
+        key->at_us = at_us + (int64_t)key->defaults * item->options.default_time_us;
+    }
+    return result;
 }
 
 /* Reads all keys: the item's times, and the joints they set. */
 static int scan_keys(grobo_play_item *item, const grobo_model *model, grobo_joint_mask *set)
 {
     grobo_play_key key = {0};
+    int64_t before_us = -1;
     for (size_t i = 0; i < item->clip.n_keys; i++) {
         grobo_posture posture;
-        int64_t at_us;
-        int64_t before_us = key.at_us;
-        int result = read_key(item, model, i, &posture, &at_us);
+        int result = read_key(item, model, i, &posture, &key);
         if (result < 0) {
             return result;
         }
-        count_key(&key, item, i, &posture, at_us);
-        if (at_us < 0 || (i > 0 && key.at_us <= before_us)) {
+        if (key.at_us <= before_us) {
             return GROBO_ERR_ARG;
         }
+        before_us = key.at_us;
         item->first_key_us = i == 0 ? key.at_us : item->first_key_us;
         *set |= posture.set;
     }
@@ -93,11 +93,23 @@ static int scan_keys(grobo_play_item *item, const grobo_model *model, grobo_join
 
 /* ---- items ---- */
 
-static void fill_time(int64_t *time_us, int64_t default_us)
+enum { OPTION_TIMES = 3 };
+
+/* Fills in the defaults of times. @return false if one is out of range */
+static bool settle_times(grobo_play_options *o)
 {
-    if (*time_us == 0) {
-        *time_us = default_us;
+    static const int32_t default_us[OPTION_TIMES] = {GROBO_POSTURE_TIME_US, GROBO_PLAY_STOP_US,
+                                                     GROBO_PLAY_LATE_US};
+    int64_t *const times_us[OPTION_TIMES] = {&o->default_time_us, &o->stop_us, &o->late_us};
+    for (int i = 0; i < OPTION_TIMES; i++) {
+        if (*times_us[i] == 0) {
+            *times_us[i] = default_us[i];
+        }
+        if (*times_us[i] < 0 || *times_us[i] > GROBO_PLAY_TIME_MAX_US) {
+            return false;
+        }
     }
+    return true;
 }
 
 static void fill_number(uint16_t *number, uint16_t otherwise)
@@ -107,7 +119,7 @@ static void fill_number(uint16_t *number, uint16_t otherwise)
     }
 }
 
-static void fill_options(grobo_play_options *o)
+static bool settle_options(grobo_play_options *o)
 {
     if (o->repeat < 0) {
         o->reverse = true;
@@ -117,21 +129,9 @@ static void fill_options(grobo_play_options *o)
     fill_number(&o->speed_pct, 100);
     fill_number(&o->rate_hz, GROBO_PLAY_RATE_HZ);
     fill_number(&o->approach_deg_s, GROBO_PLAY_APPROACH_DEG_S);
-    fill_time(&o->default_time_us, GROBO_POSTURE_TIME_US);
-    fill_time(&o->stop_us, GROBO_PLAY_STOP_US);
-    fill_time(&o->late_us, GROBO_PLAY_LATE_US);
-}
-
-static bool is_time_good(int64_t time_us)
-{
-    return time_us > 0 && time_us <= GROBO_PLAY_TIME_MAX_US;
-}
-
-static bool are_options_good(const grobo_play_options *o)
-{
     return (o->mode == GROBO_PLAY_KEY || o->mode == GROBO_PLAY_RATE) && o->from_us >= 0 &&
            o->speed_pct <= GROBO_PLAY_SPEED_MAX_PCT && o->rate_hz <= GROBO_PLAY_RATE_MAX_HZ &&
-           is_time_good(o->default_time_us) && is_time_good(o->stop_us) && is_time_good(o->late_us);
+           settle_times(o);
 }
 
 static int check_clip(const grobo_play_item *item, const grobo_model *model)
@@ -166,40 +166,39 @@ static int look_through(grobo_play_item *item, const grobo_model *model, grobo_j
     return result;
 }
 
+/* Where the robot is when the item begins. */
+static int check_start(const grobo_play_item *item, const grobo_posture *start,
+                       grobo_joint_mask set)
+{
+    int result = check_posture(start, &item->clip);
+    bool unknown = item->clip.relative && (set & ~start->set) != 0;
+    return result == 0 && unknown ? GROBO_ERR_EMPTY : result;
+}
+
 int grobo_i_item_make(grobo_play_item *item, const grobo_model *model, const grobo_clip *clip,
                       const grobo_play_options *options, const grobo_posture *start)
 {
-    grobo_play_item made = {.clip = *clip};
     grobo_joint_mask set = 0;
 
+    memset(item, 0, sizeof *item);
+    item->clip = *clip;
     if (options != NULL) {
-        made.options = *options;
+        item->options = *options;
     }
-    fill_options(&made.options);
-    if (!are_options_good(&made.options)) {
+    if (!settle_options(&item->options)) {
         return GROBO_ERR_ARG;
     }
-    int result = check_clip(&made, model);
+    int result = check_clip(item, model);
     if (result == 0) {
-        result = look_through(&made, model, &set);
+        result = look_through(item, model, &set);
     }
-    if (result < 0) {
-        return result;
+    if (result == 0 && item->options.from_us > item->span_us) {
+        result = GROBO_ERR_ARG;
     }
-    if (made.options.from_us > made.span_us) {
-        return GROBO_ERR_ARG;
+    if (result == 0 && start != NULL) {
+        result = check_start(item, start, set);
     }
-    if (start != NULL) {
-        result = check_posture(start, clip);
-        if (result == 0 && clip->relative && (set & ~start->set) != 0) {
-            result = GROBO_ERR_EMPTY;
-        }
-        if (result < 0) {
-            return result;
-        }
-    }
-    *item = made;
-    return 0;
+    return result;
 }
 
 void grobo_i_item_load(grobo_sequencer *seq, const grobo_play_item *item)
@@ -226,6 +225,11 @@ static int put_over(grobo_sequencer *seq, grobo_posture *posture)
     return 0;
 }
 
+void grobo_i_arrive(grobo_sequencer *seq)
+{
+    grobo_posture_merge(&seq->from, &seq->to);
+}
+
 static void clear_to(grobo_sequencer *seq)
 {
     (void)grobo_posture_init(&seq->to, seq->item.clip.n_joints);
@@ -247,15 +251,8 @@ int grobo_i_sample(grobo_sequencer *seq, int64_t pos_us)
 static int add_key(grobo_sequencer *seq, size_t i)
 {
     grobo_posture posture;
-    int64_t at_us;
-    int result = read_key(&seq->item, seq->model, i, &posture, &at_us);
-    if (result == 0) {
-        result = put_over(seq, &posture);
-    }
-    if (result == 0) {
-        count_key(&seq->key, &seq->item, i, &posture, at_us);
-    }
-    return result;
+    int result = read_key(&seq->item, seq->model, i, &posture, &seq->key);
+    return result < 0 ? result : put_over(seq, &posture);
 }
 
 int grobo_i_key_load(grobo_sequencer *seq, size_t i)
@@ -300,10 +297,11 @@ int grobo_i_key_seek(grobo_sequencer *seq, int64_t pos_us)
         grobo_posture before = seq->to;
         int64_t before_us = grobo_i_key_pos(seq);
         result = grobo_i_key_next(seq);
-        if (result == 0 && grobo_i_key_pos(seq) > pos_us) {
-            grobo_posture after = seq->to;
-            double part = (double)(pos_us - before_us) / (double)(grobo_i_key_pos(seq) - before_us);
-            grobo_i_between(&seq->to, &before, &after, part);
+        int64_t time_us = grobo_i_key_pos(seq) - before_us;
+        int64_t made_us = pos_us - before_us;
+        if (result == 0 && time_us > made_us) {
+            double part = (double)made_us / (double)time_us;
+            grobo_i_between(&seq->to, &before, &seq->to, part);
             seq->key = key;
             break;
         }
@@ -316,21 +314,21 @@ int64_t grobo_i_key_first_time(const grobo_sequencer *seq)
     return seq->item.options.reverse ? seq->item.options.default_time_us : seq->item.first_key_us;
 }
 
-void grobo_i_between(grobo_posture *posture, const grobo_posture *a, const grobo_posture *b,
+void grobo_i_between(grobo_posture *posture, const grobo_posture *from, const grobo_posture *to,
                      double part)
 {
     bool there = part >= 1.0;
-    *posture = *b;
-    for (int j = 0; j < b->n_joints && !there; j++) {
-        double start_rad = a->angle_rad[j];
-        posture->angle_rad[j] = start_rad + (b->angle_rad[j] - start_rad) * part;
+    for (int j = 0; j < to->n_joints; j++) {
+        double start_rad = from->angle_rad[j];
+        double way_rad = to->angle_rad[j] - start_rad;
+        if (has(to, j)) {
+            posture->angle_rad[j] = there ? to->angle_rad[j] : start_rad + way_rad * part;
+        }
     }
-    if (!there) {
-        posture->set &= a->set;
-    }
+    posture->set = there ? posture->set | to->set : posture->set & from->set;
 }
 
-int64_t grobo_i_approach_time(const grobo_sequencer *seq)
+int32_t grobo_i_approach_time(const grobo_sequencer *seq)
 {
     double far_rad = 0.0;
     for (int j = 0; j < seq->to.n_joints; j++) {
@@ -350,5 +348,5 @@ int64_t grobo_i_approach_time(const grobo_sequencer *seq)
                         seq->item.options.approach_deg_s);
     /* A posture out of all reason takes the longest time there is; limits are checked elsewhere. */
     units = units < (double)TIME_MAX_UNITS ? units : (double)TIME_MAX_UNITS;
-    return (int64_t)(int32_t)units * GROBO_PLAY_TIME_UNIT_US;
+    return (int32_t)units * GROBO_PLAY_TIME_UNIT_US;
 }

@@ -9,39 +9,23 @@ grobo_sequencer_state grobo_sequencer_get_state(const grobo_sequencer *seq)
     return seq->state;
 }
 
-const char *grobo_sequencer_state_name(grobo_sequencer_state state)
+void grobo_i_see_if_late(grobo_sequencer *seq)
 {
-    static const char *const names[GROBO_SEQUENCER_STATES] = {
-        "idle", "approaching", "playing", "paused", "stopping", "finished", "failed"};
-    return (unsigned)state < GROBO_SEQUENCER_STATES ? names[state] : "unknown";
+    seq->late = seq->now_us - seq->due_us > seq->item.options.late_us;
 }
 
-#define TO(state) (1u << GROBO_SEQUENCER_##state)
-
-bool grobo_sequencer_may_go(grobo_sequencer_state from, grobo_sequencer_state to)
+void grobo_i_count_skipped(grobo_sequencer *seq)
 {
-    static const uint8_t goals[GROBO_SEQUENCER_STATES] = {
-        [GROBO_SEQUENCER_IDLE] = TO(APPROACHING) | TO(FAILED),
-        [GROBO_SEQUENCER_APPROACHING] =
-            TO(PLAYING) | TO(PAUSED) | TO(STOPPING) | TO(FINISHED) | TO(FAILED) | TO(IDLE),
-        [GROBO_SEQUENCER_PLAYING] =
-            TO(APPROACHING) | TO(PAUSED) | TO(STOPPING) | TO(FINISHED) | TO(FAILED) | TO(IDLE),
-        [GROBO_SEQUENCER_PAUSED] = TO(APPROACHING) | TO(STOPPING) | TO(FAILED) | TO(IDLE),
-        [GROBO_SEQUENCER_STOPPING] = TO(FAILED) | TO(IDLE),
-        [GROBO_SEQUENCER_FINISHED] = TO(APPROACHING) | TO(FAILED) | TO(IDLE),
-        [GROBO_SEQUENCER_FAILED] = TO(IDLE),
-    };
-    if ((unsigned)from >= GROBO_SEQUENCER_STATES || (unsigned)to >= GROBO_SEQUENCER_STATES) {
-        return false;
-    }
-    return (goals[from] & (1u << to)) != 0;
+    seq->stats.skipped_frames++;
+    seq->stats.late_frames++;
+    seq->skipped++;
 }
 
 /* Frames of the grid before a position, counted from the beginning of the pass. */
 static uint64_t frames_until(const grobo_play_options *options, int64_t pos_us)
 {
-    int64_t speed = 1000000LL * options->speed_pct;
-    return (uint64_t)((pos_us * options->rate_hz * 100 + speed - 1) / speed);
+    int32_t speed = 10000 * options->speed_pct; /* x rate_hz: microseconds of motion a frame */
+    return (uint64_t)((pos_us * options->rate_hz + speed - 1) / speed);
 }
 
 static void count_steps(const grobo_sequencer *seq, grobo_play_progress *progress)
