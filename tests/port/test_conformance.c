@@ -66,6 +66,16 @@ static void close_far(line *l)
     }
 }
 
+/* Bytes of the test before may still be on their way through a cable. */
+static void await_silence(const grobo_port_ops *ops, grobo_port *port)
+{
+    uint8_t rest[4096];
+
+    while (grobo_port_wait(ops->socket(port), GROBO_PORT_READABLE, 20000) > 0) {
+        assert_true(ops->read(port, rest, sizeof rest, &cause) > 0);
+    }
+}
+
 static int set_up_serial(void **state)
 {
     const char *pair = getenv("GROBO_TEST_SERIAL");
@@ -95,6 +105,9 @@ static int set_up_serial(void **state)
         assert_int_equal(grobo_port_pty_path(l->far_port, l->device, sizeof l->device), GROBO_OK);
     }
     assert_int_equal(open_near(l), GROBO_OK);
+    if (pair != NULL) {
+        await_silence(l->far_ops, l->far_port);
+    }
     return 0;
 }
 
@@ -225,15 +238,19 @@ static void a_full_line_takes_less_and_never_waits(void **state)
     int64_t start_us = grobo_now_us();
     bool was_short = false;
 
-    for (int i = 0; i < 1000 && !was_short; i++) {
+    for (int i = 0; i < 1000 && !was_short && grobo_now_us() - start_us < 2000000; i++) {
         int done = l->near_ops->write(l->near_port, block, sizeof block, &cause);
 
         assert_true(done >= 0);
         was_short = (size_t)done < sizeof block;
     }
-    assert_true(was_short);
     assert_true(grobo_now_us() - start_us < 5000000);
     l->near_ops->discard_output(l->near_port);
+    if (!was_short && l->far_ops == grobo_port_serial_ops()) {
+        print_message("this line takes bytes faster than they can be written\n");
+        skip();
+    }
+    assert_true(was_short);
 }
 
 static void waiting_bytes_are_counted(void **state)
@@ -319,6 +336,11 @@ static void bytes_from_before_open_are_dropped(void **state)
 
     close_near(l);
     write_all(l->far_ops, l->far_port, (const uint8_t *)"old", 3);
+    if (l->far_ops == grobo_port_serial_ops()) {
+        /* They take their time through a cable; nothing comes back. */
+        assert_int_equal(
+            grobo_port_wait(l->far_ops->socket(l->far_port), GROBO_PORT_READABLE, 50000), 0);
+    }
     assert_int_equal(open_near(l), GROBO_OK);
     write_all(l->far_ops, l->far_port, (const uint8_t *)"n", 1);
     read_all(l->near_ops, l->near_port, &byte, 1);

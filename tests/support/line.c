@@ -8,16 +8,60 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include <cmocka.h>
 
 #include "line.h"
 
+/* Bytes of the test before may still be on their way. */
+static void await_silence(test_line *line)
+{
+    struct pollfd one = {.fd = line->fd, .events = POLLIN};
+    char rest[4096];
+
+    while (poll(&one, 1, 20) > 0) {
+        assert_true(read(line->fd, rest, sizeof rest) > 0);
+    }
+}
+
+static void open_cable(test_line *line, const char *pair)
+{
+    size_t size = strcspn(pair, ",");
+    struct termios tio;
+
+    assert_true(size < sizeof line->device && pair[size] == ',');
+    memcpy(line->device, pair, size);
+    line->device[size] = '\0';
+    line->fd = open(pair + size + 1, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+    assert_true(line->fd >= 0);
+    assert_int_equal(tcgetattr(line->fd, &tio), 0);
+    cfmakeraw(&tio);
+    tio.c_cflag |= CLOCAL | CREAD;
+    tio.c_cc[VMIN] = 1;
+    assert_int_equal(cfsetspeed(&tio, B115200), 0);
+    assert_int_equal(tcsetattr(line->fd, TCSANOW, &tio), 0);
+    await_silence(line);
+}
+
+void test_line_needs_pty(const char *what)
+{
+    if (getenv("GROBO_TEST_SERIAL") != NULL) {
+        print_message("%s: with pseudo-terminals only\n", what);
+        skip();
+    }
+}
+
 void test_line_open(test_line *line)
 {
+    const char *pair = getenv("GROBO_TEST_SERIAL");
     const char *name;
 
+    if (pair != NULL) {
+        open_cable(line, pair);
+        return;
+    }
     line->fd = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK);
     assert_true(line->fd >= 0);
     assert_int_equal(fcntl(line->fd, F_SETFD, FD_CLOEXEC), 0);
@@ -58,6 +102,16 @@ void test_line_write(test_line *line, const void *bytes, size_t size)
             from += done;
             size -= (size_t)done;
         }
+    }
+}
+
+void test_line_await_arrival(test_line *line)
+{
+    struct pollfd one = {.fd = line->fd, .events = POLLIN};
+
+    if (getenv("GROBO_TEST_SERIAL") != NULL) {
+        /* Nothing comes back: this is a time. */
+        assert_int_equal(poll(&one, 1, 50), 0);
     }
 }
 
