@@ -46,7 +46,8 @@ GROBO_BEGIN_DECLS
     X(EMPTY, -29, "nothing there")                                                                 \
     X(EXISTS, -30, "exists already")                                                               \
     X(ISDIR, -31, "is a directory")                                                                \
-    X(UNREACHABLE, -32, "target out of reach")
+    X(UNREACHABLE, -32, "target out of reach")                                                     \
+    X(DISK, -33, "no room left on the disk")
 
 /** The errors as an enum: GROBO_ERR_ARG, GROBO_ERR_NOMEM, ... */
 typedef enum grobo_error {

@@ -25,7 +25,8 @@ typedef struct grobo_file {
 
 /**
  * The functions. All return 0 or GROBO_ERR_NOENT, GROBO_ERR_PERM, GROBO_ERR_ISDIR,
- * GROBO_ERR_EXISTS, GROBO_ERR_SPACE (path too long), GROBO_ERR_IO. Thread safe for different files.
+ * GROBO_ERR_EXISTS, GROBO_ERR_SPACE (path too long), GROBO_ERR_DISK, GROBO_ERR_IO. Thread safe for
+ * different files.
  */
 typedef struct grobo_files {
     /**

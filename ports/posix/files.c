@@ -29,6 +29,9 @@ static int error_of(int code)
         return GROBO_ERR_EXISTS;
     case ENAMETOOLONG:
         return GROBO_ERR_SPACE;
+    case ENOSPC:
+    case EDQUOT:
+        return GROBO_ERR_DISK;
     default:
         return GROBO_ERR_IO;
     }

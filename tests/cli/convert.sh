@@ -109,6 +109,18 @@ links_kept() {
 }
 check "key poses keep their links" links_kept
 
+if [ -e /dev/full ]; then
+    on_full() {
+        ! "$GRCTL" convert --to m motions/greet.pseq - >/dev/full 2>"$work/err" || return 1
+        complains 'no room left on the disk'
+    }
+    check "a full disk" fails 3 '/dev/full: cannot write: no room left on the disk' \
+        "$GRCTL" convert --to m motions/greet.pseq /dev/full
+    check "a full disk behind standard output" on_full
+else
+    skip "a full disk" "no /dev/full here"
+fi
+
 # ---- reference material ---------------------------------------------------------------------
 
 # Every file to each format; key poses and frames back to what they were.

@@ -96,7 +96,7 @@ check "nothing was shown" grep -q 'nothing was recorded' "$work/err"
 check "a name without a format" fails 2 'its name tells no format' \
     "$GRCTL" -d "$robot" record -o wave
 check "a joint that is none" fails 2 'no joint or group' "$GRCTL" -d "$robot" record tail
-check "a folder that is none" fails 3 'nowhere/wave.m: cannot write' sh -c \
-    "printf ' s' | \"$GRCTL\" -q -d \"$robot\" record -o nowhere/wave.m"
+check "a folder that is none, before a joint is let go" fails 3 'nowhere/wave.m: cannot write' \
+    "$GRCTL" -d "$robot" record --key -o nowhere/wave.m
 stop_sim
 done_testing

@@ -60,15 +60,20 @@ stop_sim() {
     sim_pid=
 }
 
-# written FILE PATTERN: waits until a program in the background has written such a line; half a
-# minute at most, for it may have ended instead.
-written() {
-    written_left=600
-    until grep -qs -e "$2" "$1"; do
-        written_left=$((written_left - 1))
-        [ $written_left -gt 0 ] || { echo "no '$2' in $1"; return 1; }
+# wait_for COMMAND...: until it succeeds; half a minute at most.
+wait_for() {
+    wait_for_left=600
+    until "$@" >/dev/null 2>&1; do
+        wait_for_left=$((wait_for_left - 1))
+        [ $wait_for_left -gt 0 ] || return 1
         sleep 0.05
     done
+}
+
+# written FILE PATTERN: waits until a program in the background has written such a line; it may have
+# ended instead.
+written() {
+    wait_for grep -qs -e "$2" "$1" || { echo "no '$2' in $1"; return 1; }
 }
 
 # exits STATUS COMMAND...: what it printed is in $work/out and $work/err.

@@ -35,13 +35,3 @@ make_trace() {
             $(u32 $size) $(u32 $size) "$@" 02 00 04 00 $flags 00 00 00 00 00 00 00 $(u32 $total)
     done
 }
-
-# wait_for COMMAND...: until it succeeds, for ten seconds at most.
-wait_for() {
-    patience=200
-    until "$@" >/dev/null 2>&1; do
-        patience=$((patience - 1))
-        [ $patience -gt 0 ] || return 1
-        sleep 0.05
-    done
-}

@@ -42,6 +42,22 @@ enum { BODY_IK, BODY_STEP, BODY_ZMP, BODY_BALANCE, BODY_OPTIONS };
                                    .optional = true,                                               \
                                    .help = "would it fall? on: with the waist shifted to keep it"}
 
+/* Beside them, for show and plot: which joints, and the motion as it is sent. */
+#define MOTION_LOOK_ROWS(joints, rate, rate_help)                                                  \
+    [joints] = {.name = "joints",                                                                  \
+                .letter = 'j',                                                                     \
+                .kind = CLI_TEXT,                                                                  \
+                .value = "LIST",                                                                   \
+                .help = "only these joints or groups, split by commas"},                           \
+    [rate] = {.name = "rate",                                                                      \
+              .letter = 'r',                                                                       \
+              .kind = CLI_NUMBER,                                                                  \
+              .value = "HZ",                                                                       \
+              .help = (rate_help),                                                                 \
+              .min = 0.1,                                                                          \
+              .max = 1000,                                                                         \
+              .real = true}
+
 /* The options as given, at a rate (0: the default). */
 grobo_body_options body_options_read(const app *a, int base, double rate_hz);
 /* True if any of them was given. */

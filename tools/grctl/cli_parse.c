@@ -126,7 +126,7 @@ static bool take_value(parser *p, const cli_option *o, cli_value *v, const char 
     case CLI_CHOICE:
         v->choice = choice_index(o->value, text);
         if (v->choice < 0)
-            return complain(p, "--%s: '%s' is none of %s", o->name, text, o->value);
+            return complain(p, "--%s takes a word: '%s' is none of %s", o->name, text, o->value);
         return true;
     }
     return false;

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include <errno.h>
 #include <string.h>
 
 #include "body_options.h"
@@ -36,9 +37,14 @@ static grobo_motion_format format_of(const app *a, int option)
     return v->given ? (grobo_motion_format)(v->choice + 1) : GROBO_FORMAT_AUTO;
 }
 
+static int write_error(void)
+{
+    return errno == ENOSPC ? GROBO_ERR_DISK : GROBO_ERR_IO;
+}
+
 static int write_stream(void *ctx, const void *data, size_t size)
 {
-    return fwrite(data, 1, size, ctx) == size ? 0 : GROBO_ERR_IO;
+    return fwrite(data, 1, size, ctx) == size ? 0 : write_error();
 }
 
 static int write_out(const grobo_motion *motion, const char *path, const grobo_write_options *how,
@@ -49,7 +55,7 @@ static int write_out(const grobo_motion *motion, const char *path, const grobo_w
     if (strcmp(path, "-") != 0)
         return grobo_motion_save(motion, grobo_files_os(), path, how, list);
     error = grobo_motion_write(motion, how->format, how, &sink, list);
-    return !error && fflush(stdout) != 0 ? GROBO_ERR_IO : error;
+    return !error && fflush(stdout) != 0 ? write_error() : error;
 }
 
 /* Key poses keep their link targets; any other format gets the angles that they lead to. */

@@ -242,6 +242,26 @@ static int teach(recorder *r)
     return error ? error : r->error;
 }
 
+static int fail_to_write(app *a, int error)
+{
+    const char *out = app_option(a, OPT_OUT)->text;
+    return app_fail(a, EXIT_FILE, grobo_error_name(error), "%s: cannot write: %s",
+                    out ? out : "MotionN.m", file_error_text(error));
+}
+
+/* Whether the file will be writable: better known before somebody has taught for an hour. */
+static int try_to_write(app *a)
+{
+    const grobo_files *files = grobo_files_os();
+    const char *out = app_option(a, OPT_OUT)->text;
+    grobo_file file;
+    int error = files->create(&file, out ? out : "./Motion.m", false);
+    if (error < 0)
+        return fail_to_write(a, error);
+    files->discard(&file);
+    return 0;
+}
+
 static int save(recorder *r)
 {
     app *a = r->c.a;
@@ -259,8 +279,7 @@ static int save(recorder *r)
     error = out ? grobo_motion_save(r->motion, grobo_files_os(), out, &how, NULL)
                 : grobo_motion_save_next(r->motion, grobo_files_os(), ".", &how, path, sizeof path);
     if (error < 0)
-        return app_fail(a, EXIT_FILE, grobo_error_name(error), "%s: cannot write: %s",
-                        out ? out : "MotionN.m", file_error_text(error));
+        return fail_to_write(a, error);
     if (a->json)
         app_print_json(json_pack("{s:o,s:I,s:o}", "file", app_json_text(out ? out : name),
                                  "postures", (json_int_t)n, "length_ms",
@@ -295,6 +314,8 @@ static int prepare(recorder *r, app *a)
                         "record: -o %s: its name tells no format; .m, .pseq, .mseq or .yaml", out);
     for (int i = 0; i < a->line.n_arguments && !status; i++)
         status = joints_parse(a, a->line.argument[i], &r->joints);
+    if (!status)
+        status = try_to_write(a);
     if (status)
         return status;
     if (!r->joints)

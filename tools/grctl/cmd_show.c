@@ -10,19 +10,7 @@
 enum { OPT_JOINTS, OPT_RATE, OPT_BODY };
 
 static const cli_option options[] = {
-    [OPT_JOINTS] = {.name = "joints",
-                    .letter = 'j',
-                    .kind = CLI_TEXT,
-                    .value = "LIST",
-                    .help = "only these joints or groups, split by commas"},
-    [OPT_RATE] = {.name = "rate",
-                  .letter = 'r',
-                  .kind = CLI_NUMBER,
-                  .value = "HZ",
-                  .help = "as it is played, so many rows a second",
-                  .min = 0.1,
-                  .max = 1000,
-                  .real = true},
+    MOTION_LOOK_ROWS(OPT_JOINTS, OPT_RATE, "as it is played, so many rows a second"),
     BODY_OPTION_ROWS(OPT_BODY),
 };
 
