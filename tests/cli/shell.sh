@@ -225,6 +225,14 @@ check "a command" shows '^grctl [0-9]'
 if [ "${EDIT:-libedit}" = libedit ]; then
     type_keys 'serv' Tab Tab
     check "TAB lists" shows 'servo  servo-get  servo-set'
+    type_keys C-u 'l gre' Tab Enter
+    check "TAB completes names of motions" eval "shows '^grctl> l greet$' &&
+        grep -q '10 postures in the record' '$work/shell.err'"
+    cp motions/greet.m "$work/two words.m"
+    type_keys "show $work/tw" Tab Enter
+    check "and files with blanks" shows 'two words.m: m, 10 postures'
+    type_keys 'play --mi' Tab '--ik n' Tab
+    check "and options and their words" shows '^grctl> play --mirror --ik numeric'
     type_keys C-u 'stat' Tab 'R_KN' Tab
     check "TAB completes commands and joints" shows '^grctl> status R_KNEE_P'
     type_keys Enter

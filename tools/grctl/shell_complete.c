@@ -5,11 +5,12 @@
 #include <sys/stat.h>
 
 #include <grobo/model.h>
+#include <grobo/motion_io.h>
 
 #include "shell.h"
 
 typedef struct search {
-    const char *prefix; /* the word so far */
+    const char *prefix; /* the word so far, without its backslashes */
     size_t length;
     line_found_fn found;
     void *ctx;
@@ -51,6 +52,39 @@ static void offer_joints(const search *s)
         offer(s, model->joints[i].name, strlen(model->joints[i].name));
 }
 
+/* A name as it is typed: shell_split() takes the backslashes away. */
+static void found_name(const search *s, const char *name, bool whole)
+{
+    char text[2048];
+    size_t at = 0;
+    for (; *name && at + 2 < sizeof text; name++) {
+        if (strchr(" \t'\"\\#", *name))
+            text[at++] = '\\';
+        text[at++] = *name;
+    }
+    text[at] = '\0';
+    s->found(s->ctx, text, whole);
+}
+
+/* Motions that go by their names: those of the folder motions, see read_motion(). */
+static void offer_motions(const search *s)
+{
+    DIR *all = opendir("motions");
+    struct dirent *entry;
+    while (all && (entry = readdir(all)) != NULL) {
+        char name[256];
+        if (grobo_motion_format_of_path(entry->d_name) == GROBO_FORMAT_AUTO ||
+            strncmp(entry->d_name, s->prefix, s->length) != 0)
+            continue;
+        snprintf(name, sizeof name, "%.*s", (int)(strrchr(entry->d_name, '.') - entry->d_name),
+                 entry->d_name);
+        if (strlen(name) >= s->length)
+            found_name(s, name, true);
+    }
+    if (all)
+        closedir(all);
+}
+
 /* Files of the folder that the word names, what begins with a dot only where a dot is typed. */
 static void offer_files(const search *s)
 {
@@ -72,7 +106,7 @@ static void offer_files(const search *s)
         is_folder = stat(path, &status) == 0 && S_ISDIR(status.st_mode);
         if (is_folder)
             snprintf(path, sizeof path, "%s%s/", folder, entry->d_name);
-        s->found(s->ctx, path, !is_folder);
+        found_name(s, path, !is_folder);
     }
     if (all)
         closedir(all);
@@ -166,6 +200,8 @@ static void offer_argument(const search *s, const char *first, int n)
         offer_names(s, cli_global_options, GLOBAL_COUNT);
     } else if (w) {
         offer_kind(s, argument_of(w));
+        if (strstr(w->arguments, "NAME"))
+            offer_motions(s);
     } else if (command && n == 1 && (words = cli_first_argument(command, &length)) != NULL) {
         offer_words(s, words, length);
     } else if (command) {
@@ -173,22 +209,37 @@ static void offer_argument(const search *s, const char *first, int n)
     }
 }
 
+static bool is_escaped(const char *line, size_t at)
+{
+    return at > 0 && line[at - 1] == '\\';
+}
+
+/* Where the last word begins, and the word without its backslashes. */
+static size_t last_word(const char *line, size_t length, char *word)
+{
+    size_t begin = length, n = 0;
+    while (begin > 0 && (!strchr(" \t", line[begin - 1]) || is_escaped(line, begin - 1)))
+        begin--;
+    for (size_t i = begin; i < length; i++)
+        if (line[i] != '\\' || is_escaped(line, i))
+            word[n++] = line[i];
+    word[n] = '\0';
+    return begin;
+}
+
 size_t shell_complete(const char *line, size_t length, line_found_fn found, void *ctx)
 {
-    char text[SHELL_LINE_BYTES];
+    char text[SHELL_LINE_BYTES], word[SHELL_LINE_BYTES];
     char *words[SHELL_WORDS_MAX];
-    size_t begin = length;
-    search s = {.found = found, .ctx = ctx};
+    search s = {.prefix = word, .found = found, .ctx = ctx};
     const cli_option *o;
+    size_t begin;
     int n;
-    while (begin > 0 && !strchr(" \t", line[begin - 1]))
-        begin--;
     if (length >= sizeof text)
         return 0;
-    snprintf(text, sizeof text, "%.*s", (int)length, line);
-    s.length = length - begin;
-    s.prefix = line + begin;
-    text[begin] = '\0';
+    begin = last_word(line, length, word);
+    s.length = strlen(word);
+    snprintf(text, sizeof text, "%.*s", (int)begin, line);
     n = shell_split(text, words, SHELL_WORDS_MAX);
     if (n < 0)
         return 0;
@@ -201,5 +252,5 @@ size_t shell_complete(const char *line, size_t length, line_found_fn found, void
         offer_kind(&s, cli_option_argument(o));
     else
         offer_argument(&s, words[0], n);
-    return s.length;
+    return length - begin;
 }

@@ -69,6 +69,9 @@ typedef struct candidates {
 static void take_candidate(void *ctx, const char *word, bool whole)
 {
     candidates *c = ctx;
+    for (int i = 0; i < c->n; i++)
+        if (strcmp(c->word[i], word) == 0)
+            return;
     if (c->n >= CANDIDATES_MAX)
         return;
     snprintf(c->word[c->n++], WORD_BYTES, "%s", word);
