@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* init, move and pose: one posture, reached safely and read back. */
+#include <math.h>
 #include <string.h>
 
 #include "commands.h"
@@ -109,7 +110,7 @@ static int pose_of_file(app *a, const char *spec, grobo_posture *target)
     int status;
     if (colon && cli_read_number(colon + 1, &number))
         length = (size_t)(colon - spec);
-    if (length >= sizeof path || number < 1 || number != (double)(long)number)
+    if (length >= sizeof path || number < 1 || number > 1e9 || number != floor(number))
         return app_fail(a, EXIT_USAGE, "USAGE", "pose: '@%s' is not @FILE or @FILE:N", spec);
     memcpy(path, spec, length);
     path[length] = '\0';
@@ -142,6 +143,15 @@ static int pose_of_joint(app *a, const char *text, grobo_posture *target)
     return 0;
 }
 
+static bool all_numbers(const app *a)
+{
+    double number;
+    for (int i = 0; i < a->line.n_arguments; i++)
+        if (!cli_read_number(a->line.argument[i], &number))
+            return false;
+    return true;
+}
+
 /* Angles of all motors, in the order of their numbers, as a line of a .m file has them. */
 static int pose_of_motors(app *a, grobo_posture *target)
 {
@@ -166,6 +176,10 @@ static int run_pose(app *a)
         status = pose_of_file(a, first + 1, &target);
     else if (n == grobo_gr001_model.n_joints && !strchr(first, '='))
         status = pose_of_motors(a, &target);
+    else if (all_numbers(a))
+        return app_fail(a, EXIT_USAGE, "USAGE",
+                        "pose takes %d angles, in the order of the motors, not %d",
+                        grobo_gr001_model.n_joints, n);
     else
         for (int i = 0; i < n && !status; i++)
             status = pose_of_joint(a, a->line.argument[i], &target);

@@ -6,7 +6,7 @@
 #include "servos.h"
 
 enum { OPT_ALL_BAUD, OPT_FIRST, OPT_LAST };
-enum { IDENTITY_BYTES = 3 }; /* No.0-1 model, No.2 firmware */
+enum { IDENTITY_BYTES = 3, FEW = 4 }; /* No.0-1 model, No.2 firmware */
 
 static const cli_option options[] = {
     [OPT_ALL_BAUD] = {.name = "all-baud",
@@ -28,7 +28,8 @@ static const cli_option options[] = {
 
 typedef struct found {
     json_t *list; /* NULL: as text */
-    int n;
+    int n, silent;
+    int64_t took_us, wire_us; /* of asking */
 } found;
 
 static const char *model_name(const uint8_t *identity)
@@ -56,22 +57,72 @@ static void report(found *f, int id, int baud_bps, const uint8_t *identity)
                baud_bps, joint_name(id));
 }
 
-/* 0 when every id was asked; silence is an answer here. */
-static int scan_ids(conn *c, found *f, int baud_bps)
+/* ---- scan ------------------------------------------------------------------------------------ */
+
+/* One baud rate. */
+typedef struct pass {
+    bool there[GROBO_SERVO_ID_MAX + 1], strange[GROBO_SERVO_ID_MAX + 1];
+    uint8_t identity[GROBO_SERVO_ID_MAX + 1][IDENTITY_BYTES];
+    int first, last;
+} pass;
+
+/* Asks who has not answered; silence is an answer. 0 when all were asked. */
+static int ask_silent(conn *c, pass *p)
 {
-    int last = (int)app_number(c->a, OPT_LAST, GROBO_SERVO_ID_MAX);
-    for (int id = (int)app_number(c->a, OPT_FIRST, 1); id <= last; id++) {
-        uint8_t identity[IDENTITY_BYTES];
-        int error = servos_read(c, id, GROBO_RS30X_MODEL, IDENTITY_BYTES, identity);
+    for (int id = p->first; id <= p->last; id++) {
+        int error;
+        if (p->there[id] || p->strange[id])
+            continue;
+        error = servos_read(c, id, GROBO_RS30X_MODEL, IDENTITY_BYTES, p->identity[id]);
         if (c->signal || c->link_error)
             return error;
-        if (error == GROBO_OK)
-            report(f, id, baud_bps, identity);
-        else if (error != GROBO_ERR_TIMEOUT && error != GROBO_ERR_SHORT)
+        p->there[id] = error == GROBO_OK;
+        p->strange[id] = error && error != GROBO_ERR_TIMEOUT && error != GROBO_ERR_SHORT;
+        if (p->strange[id])
             app_note(c->a, "id %d answers, but: %s (two servos with one id?)", id,
                      grobo_error_text(error));
     }
     return GROBO_OK;
+}
+
+/*
+ * Who comes too late is no silent servo: then all that seem silent are asked again, with patience,
+ * and a few are asked so from the first.
+ */
+static int ask_all(conn *c, found *f, pass *p, int baud_bps)
+{
+    const grobo_bus_stats *stats = grobo_robot_get_bus_stats(c->robot);
+    uint32_t late = stats->late_bytes, wire_us;
+    int64_t began_us;
+    int error = servos_hurry_at(c, baud_bps, IDENTITY_BYTES, &wire_us);
+    if (!error && p->last - p->first < FEW)
+        error = servos_take_time(c);
+    if (error)
+        return error;
+    began_us = grobo_now_us();
+    error = ask_silent(c, p);
+    if (!error && stats->late_bytes != late) {
+        error = servos_take_time(c);
+        if (!error)
+            error = ask_silent(c, p);
+    }
+    f->took_us += grobo_now_us() - began_us;
+    f->wire_us += (int64_t)wire_us * (p->last - p->first + 1);
+    return error;
+}
+
+static int scan_ids(conn *c, found *f, int baud_bps)
+{
+    pass p = {.first = (int)app_number(c->a, OPT_FIRST, 1),
+              .last = (int)app_number(c->a, OPT_LAST, GROBO_SERVO_ID_MAX)};
+    int error = ask_all(c, f, &p, baud_bps);
+    for (int id = p.first; id <= p.last; id++) {
+        if (p.there[id])
+            report(f, id, baud_bps, p.identity[id]);
+        else
+            f->silent += !p.strange[id];
+    }
+    return error;
 }
 
 static int scan_all_bauds(conn *c, found *f)
@@ -84,9 +135,7 @@ static int scan_all_bauds(conn *c, found *f)
             app_note(c->a, "%d bps: %s", baud_bps, grobo_error_text(error));
             continue;
         }
-        error = servos_hurry_at(c, baud_bps);
-        if (!error)
-            error = scan_ids(c, f, baud_bps);
+        error = scan_ids(c, f, baud_bps);
         if (error)
             return error;
     }
@@ -99,17 +148,18 @@ static int scan(conn *c)
     int baud_bps = baud->given ? (int)baud->number : GROBO_BAUD_DEFAULT_BPS;
     bool all = app_option(c->a, OPT_ALL_BAUD)->given > 0;
     found f = {.list = c->a->json ? json_array() : NULL};
-    int error = servos_hurry_at(c, baud_bps);
-    if (!error)
-        error = all ? scan_all_bauds(c, &f) : scan_ids(c, &f, baud_bps);
+    int error = all ? scan_all_bauds(c, &f) : scan_ids(c, &f, baud_bps);
     if (error) {
         json_decref(f.list);
         return conn_fail(c, error, "scan");
     }
     if (c->a->json)
-        app_print_json(json_pack("{s:o}", "servos", f.list));
+        app_print_json(json_pack("{s:o,s:i,s:o,s:o}", "servos", f.list, "silent", f.silent,
+                                 "took_ms", app_json_number((double)f.took_us / 1e3, 1), "wire_ms",
+                                 app_json_number((double)f.wire_us / 1e3, 1)));
     else
-        app_note(c->a, "%d servo%s", f.n, f.n == 1 ? "" : "s");
+        app_note(c->a, "%d servo%s; %d silent; %.0f ms, of which the wire took %.0f", f.n,
+                 f.n == 1 ? "" : "s", f.silent, (double)f.took_us / 1e3, (double)f.wire_us / 1e3);
     return f.n ? EXIT_DONE : EXIT_ROBOT;
 }
 
@@ -123,7 +173,10 @@ static int run_scan(app *a)
     if (app_number(a, OPT_FIRST, 1) > app_number(a, OPT_LAST, GROBO_SERVO_ID_MAX))
         return app_fail(a, EXIT_USAGE, "USAGE", "scan: --first is behind --last");
     status = conn_open_unchecked(&c, a);
-    if (!status)
+    if (!status && app_option(a, OPT_ALL_BAUD)->given && grobo_session_sim(c.session))
+        status = app_fail(a, EXIT_USAGE, "USAGE",
+                          "scan: --all-baud needs a line; 'grctl sim --wiring bus' makes one");
+    else if (!status)
         status = scan(&c);
     return conn_close(&c, status);
 }
@@ -176,7 +229,9 @@ const cli_command cmd_scan = {
     .arguments = "",
     .summary = "which servo ids answer",
     .details = "Asks every id once for its model and prints those that answer. A silent id costs\n"
-               "a few milliseconds. Exit status 1 if none answers. Nothing moves.\n",
+               "4 ms beside the wire's time; replies that come later make it ask again, with more\n"
+               "patience. --timeout MS gives each more time. Exit status 1 if none answers.\n"
+               "Nothing moves.\n",
     .example = "  grctl scan --last 20\n  grctl scan --wiring bus --all-baud\n",
     .options = options,
     .n_options = sizeof options / sizeof options[0],

@@ -3,9 +3,10 @@
 
 #include "joints.h"
 #include "servos.h"
+#include "wire.h"
 
-/* Beyond the wire's time: a USB adapter that is set for low latency, and this machine. */
-enum { HURRY_MARGIN_US = 4000 };
+/* Behind a network a reply may take as long as it likes. */
+enum { TCP_MARGIN_US = 50000 };
 
 int servos_read(conn *c, int id, int address, int length, uint8_t *data)
 {
@@ -18,14 +19,22 @@ int servos_read(conn *c, int id, int address, int length, uint8_t *data)
     return error;
 }
 
-int servos_hurry_at(conn *c, int baud_bps)
+int servos_hurry_at(conn *c, int baud_bps, int length, uint32_t *wire_us)
 {
-    const cli_value *timeout = app_global(c->a, GLOBAL_TIMEOUT);
+    bool far = strncmp(conn_device(c), "tcp:", 4) == 0;
     grobo_robot_config config = conn_robot_config(c->a);
+    int error = wire_read_us(grobo_robot_driver(c->robot), baud_bps, length, wire_us);
+    if (error)
+        return error;
     config.retries = -1;
-    config.bus.baud_bps = (uint32_t)baud_bps;
-    if (!timeout->given)
-        config.bus.margin_us = HURRY_MARGIN_US;
+    if (!config.timeout_us)
+        config.timeout_us = *wire_us + (far ? TCP_MARGIN_US : WIRE_SILENT_MARGIN_US);
+    return grobo_robot_configure(c->robot, &config);
+}
+
+int servos_take_time(conn *c)
+{
+    grobo_robot_config config = conn_robot_config(c->a);
     return grobo_robot_configure(c->robot, &config);
 }
 

@@ -37,11 +37,32 @@ static void measure_read(const grobo_bus *bus, const grobo_driver *driver, grobo
         measure(bus, driver->wiring, &exchange, to);
 }
 
-int wire_measure(const grobo_driver *driver, int baud_bps, wire_cost *costs)
+static int make_bus(const grobo_driver *driver, int baud_bps, grobo_bus *bus)
 {
     grobo_bus_config config = {.wiring = driver->wiring, .baud_bps = (uint32_t)baud_bps};
+    return grobo_bus_init(bus, &config);
+}
+
+int wire_read_us(const grobo_driver *driver, int baud_bps, int length, uint32_t *time_us)
+{
+    grobo_register_io io = {.id = 1, .length = (uint8_t)length};
+    grobo_exchange exchange = {0};
+    wire_cost cost = {0};
     grobo_bus bus;
-    int error = grobo_bus_init(&bus, &config);
+    int error = make_bus(driver, baud_bps, &bus);
+    if (!error)
+        error = driver->registers(driver, NULL, &io, &exchange);
+    if (error < 0)
+        return error;
+    measure(&bus, driver->wiring, &exchange, &cost);
+    *time_us = cost.total_us;
+    return GROBO_OK;
+}
+
+int wire_measure(const grobo_driver *driver, int baud_bps, wire_cost *costs)
+{
+    grobo_bus bus;
+    int error = make_bus(driver, baud_bps, &bus);
     if (error)
         return error;
     costs[WIRE_MOTION] = (wire_cost){.name = "motion, 20 joints"};

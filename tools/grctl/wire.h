@@ -16,4 +16,16 @@ enum { WIRE_MOTION, WIRE_READ_FULL, WIRE_READ_ANGLE, WIRE_COSTS };
 /* Fills all WIRE_COSTS of them. Returns 0 or GROBO_ERR_ARG for a baud rate that is none. */
 int wire_measure(const grobo_driver *driver, int baud_bps, wire_cost *costs);
 
+/*
+ * Beyond the wire's time, until a servo is taken for silent: for an adapter that is set for low
+ * latency, and this machine. The bus keeps quiet for 1 ms more: it all stays below 4 ms.
+ */
+enum { WIRE_SILENT_MARGIN_US = 2500 };
+
+/*
+ * The time on the line of reading `length` registers of a servo, until its reply is whole.
+ * Returns 0 or GROBO_ERR_ARG.
+ */
+int wire_read_us(const grobo_driver *driver, int baud_bps, int length, uint32_t *time_us);
+
 #endif

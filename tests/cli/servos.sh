@@ -1,0 +1,114 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Servos one by one and the commands about the whole of the robot, by what they print.
+. tests/support/cli.sh
+
+on_robot() {
+    "$GRCTL" -d "$robot" "$@"
+}
+# said PATTERN: on standard error.
+said() {
+    grep -q -e "$1" "$work/err" || { echo "no '$1' in:"; cat "$work/err"; return 1; }
+}
+
+start_told_sim || { echo "Bail out! the simulator did not start"; exit 1; }
+
+# ---- scan, info ------------------------------------------------------------------------------
+
+check "scan finds 20" both exits 0 on_robot scan --- \
+    [ "$(on_robot scan 2>/dev/null | grep -c ' bps  ')" -eq 20 ]
+check "a row of it" says '^ 12  RS301CR   firmware   1  115200 bps  R_KNEE_P$'
+check "how long it took" said '^20 servos; 107 silent; [0-9]* ms, of which the wire took [0-9]*$'
+check "nobody there" exits 1 on_robot scan --first 21 --last 40
+check_json "as JSON" '[s["id"] for s in lines[0]["servos"]] == [12, 13] and
+    lines[0]["silent"] == 0 and lines[0]["wire_ms"] > 0' on_robot scan --json --first 12 --last 13
+tell fault delay=1
+check "who answers late is found" both exits 0 on_robot scan --first 10 --last 15 --- \
+    says '^ 12 .*R_KNEE_P'
+tell fault delay=0
+check "--first behind --last" fails 2 'first is behind' on_robot scan --first 5 --last 3
+check "--all-baud through the board" fails 2 'needs --wiring bus' on_robot scan --all-baud
+check "--all-baud without a line" fails 2 'needs a line' \
+    "$GRCTL" -d sim --wiring bus scan --all-baud
+check "info" both exits 0 on_robot info --- says '^ 20  RS301CR   firmware   1 .* L_ANKLE_R$'
+check "how it is reached" says '^GR001 on .*, through its board, which answers$'
+tell silent 12 on
+check "a silent servo is named" both exits 1 on_robot info --- \
+    said '^motor 12 (R_KNEE_P): no reply in time$'
+tell silent 12 off
+
+# ---- registers -------------------------------------------------------------------------------
+
+check "servo-get" both exits 0 on_robot servo-get R_KNEE_P --- says '^ 52  voltage  *738  *7.38 V$'
+check "a word" says '^  0  model  *12304  *RS301CR$'
+check "a code" both exits 0 on_robot servo-get 12 baud --- says '^  6  baud  *7  *115200 bps$'
+check "a register that is none" fails 2 "no register 'tail'; there are: model" \
+    on_robot servo-get 12 tail
+check "an id that is none" fails 2 "'128' is not an id from 1 to 127" on_robot servo-get 128
+check "an id where nobody is" fails 1 'servo 77: no reply in time' on_robot servo-get 77
+check "servo-set" both exits 0 on_robot servo-set 12 delay 2 --- \
+    said '^servo 12: delay 0 (100 us) -> 2 (200 us); lost at power-off without --flash$'
+check "is read back" both exits 0 on_robot servo-get 12 delay --- says '  200 us$'
+check_json "in JSON under its unit" 'lines[0]["registers"] == [
+    {"name": "delay", "address": 7, "value": 2, "unit": "50 us", "delay_us": 200}]' \
+    on_robot --json servo-get 12 delay
+check "--flash says what it will write" both exits 0 on_robot servo-set 12 delay 0 --flash --- \
+    said '^servo 12: delay 2 (200 us) -> 0 (100 us), and No.4-29 go to flash'
+check "a baud rate as it is" both exits 0 on_robot servo-set 12 baud 115200 --- \
+    said 'baud 7 (115200 bps) -> 7 (115200 bps)'
+for value in 128 -1 1.5 1e300 nan '' x; do
+    check "delay '$value'" fails 2 "servo-set: '$value': delay takes 0 to 127 (counts of 50 us)" \
+        on_robot servo-set 12 delay "$value"
+done
+check "a baud rate that is none" fails 2 'baud takes 0 to 10 ' on_robot servo-set 12 baud 115201
+check "read only" fails 2 'voltage is read only' on_robot servo-set 12 voltage 600
+check "what moves the motor" fails 4 "goal moves the motor; use 'grctl move'" \
+    on_robot servo-set 12 goal 100
+check "flash does not keep it" fails 2 'flash does not keep register max_torque' \
+    on_robot servo-set 12 max_torque 50 --flash
+
+# ---- poses -----------------------------------------------------------------------------------
+
+initial=$(awk '{ for (i = 3; i < 23; i++) print $i / 10; exit }' motions/greet.m)
+check "pose by joints" both exits 0 on_robot pose --time 300 m5=-30 L_ELBOW_P=30 --- \
+    said '^there; largest error 0\.[0-9] deg'
+# The angles are words.
+# shellcheck disable=SC2086
+check "pose by 20 angles" both exits 0 on_robot pose --time 300 $initial --- said '^there; '
+check "pose of a file" exits 0 on_robot pose @motions/greet.pseq:3
+check "pose of too few angles" fails 2 'pose takes 20 angles, .*, not 2' on_robot pose 10 20
+check "pose outside limits" fails 4 'R_ELBOW_P (motor 5) to 51.0 deg is outside' \
+    on_robot pose m5=51
+check "pose without a number" fails 2 "'m5=' is not" on_robot pose m5=
+check "pose of infinity" fails 2 "'m5=inf' is not" on_robot pose m5=inf
+
+# ---- the whole of it -------------------------------------------------------------------------
+
+check "slot" both exits 0 on_robot slot 3 --- said '^slot 3 was asked for'
+check "scenario" both exits 0 on_robot scenario 2 --- said '^scenario 2 was asked for'
+check "a slot that is none" fails 2 "'-1' is not" on_robot slot -1
+check "stop" both exits 0 on_robot stop --- said '^stopped; joints with torque hold'
+check "estop" both exits 0 on_robot estop --- said "verified; 'grctl estop --reset'"
+check "nothing moves then" fails 4 "stopped by 'grctl estop'" on_robot move m5 0
+check "brakes are on" both exits 0 on_robot status m5 --- says ' brake '
+check "estop --reset" both exits 0 on_robot estop --reset --- said '^emergency stop taken back'
+check "it moves again" exits 0 on_robot move m5 -20 300
+
+check "budget" both exits 0 "$GRCTL" budget --- says '^motion, 20 joints  *110 B  *0 B  *18.92 ms$'
+check "what does not fit" both exits 0 "$GRCTL" budget --rate 60 --- \
+    says '^motion at 60 Hz does not fit'
+check_json "budget as JSON" 'lines[0]["fits"] and lines[0]["costs"][0]["wire_us"] == 18924' \
+    "$GRCTL" budget --json --rate 50
+check "ports" exits 0 "$GRCTL" ports
+check_json "ports as JSON" 'all(p["path"].startswith("/dev/") for p in lines[0]["ports"])' \
+    "$GRCTL" ports --json
+stop_sim
+
+# ---- on a bus of servos ----------------------------------------------------------------------
+
+start_sim --wiring bus --baud 57600
+check "--all-baud finds the rate" both exits 0 on_robot --wiring bus scan --all-baud --first 3 \
+    --last 4 --- says '^  3 .*  57600 bps  R_SHOULDER_P$'
+check "and no other" [ "$(grep -c R_SHOULDER_P "$work/out")" -eq 1 ]
+stop_sim
+done_testing
