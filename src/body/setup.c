@@ -153,9 +153,7 @@ static double frames_of(const grobo_body_options *options, double end_s)
 
 static void take_track(struct arena *arena, struct grobo_i_track *track, int dim, size_t capacity)
 {
-    track->dim = dim;
-    track->n = 0;
-    track->capacity = (int)capacity;
+    *track = (struct grobo_i_track){.dim = dim, .capacity = (int)capacity};
     track->t_s = take(arena, capacity, sizeof *track->t_s);
     track->v = take(arena, capacity * (size_t)dim, sizeof *track->v);
     track->slope = take(arena, capacity * (size_t)dim, sizeof *track->slope);
