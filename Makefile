@@ -117,7 +117,7 @@ VERSION = $(shell sed -n 's/.*GROBO_VERSION_STRING "\(.*\)"/\1/p' include/grobo/
 # ---- targets -------------------------------------------------------------------------------
 
 .PHONY: help all demo check lint lint-quick format test check-san check-tsan check-memcheck install uninstall
-.PHONY: clean tidy fuzz cov dist bench plots cross check-cross FORCE
+.PHONY: clean tidy fuzz soak cov dist bench plots cross check-cross FORCE
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-15s %s\n", $$1, $$2 }' Makefile
@@ -205,6 +205,11 @@ fuzz: ## libFuzzer on each target for FUZZ_S=60 seconds; finds stay in build/fuz
 	        -verbosity=0 -artifact_prefix=$(BUILD)/fuzz/$$name- $(BUILD)/fuzz/corpus/$$name \
 	        tests/fuzz/corpus/$$name; \
 	done
+
+SEEDS ?= 10
+FROM ?= 0
+soak: $(BUILD)/tests/engine/test_robot_soak ## half an hour of virtual time on each bad line, for SEEDS=10 seeds
+	@GROBO_SOAK=$(SEEDS) GROBO_SOAK_FROM=$(FROM) $<
 
 cov: ## which lines the tests reach, by file
 	@$(MAKE) --no-print-directory test BUILD=$(BUILD)/cov COV_FLAGS=--coverage CFLAGS='-O0 -g' \

@@ -28,16 +28,28 @@ static double along_deg(const grobo_test_rig *rig, int j, double from_deg)
 }
 
 /* Where the joint may be taken to be: where it is, or on its way from where it was asked to go or
- * from where it was read. Lost frames part the three. */
+ * from where it was read. Lost frames part the three. Of a line that is back only the first is
+ * true: what was asked before it went may have been lost with it. */
 static double least_way_deg(grobo_test_rig *rig, int j, double deg)
 {
-    double asked_deg = along_deg(rig, j, rig->asked_deg[j]);
-    double stood_deg = along_deg(rig, j, rig->stood_deg[j]);
     double here_deg = rig_angle_deg(rig, j);
+    bool first = !rig->was_sent[j];
+    double asked_deg = first ? here_deg : along_deg(rig, j, rig->asked_deg[j]);
+    double stood_deg = first ? here_deg : along_deg(rig, j, rig->stood_deg[j]);
     rig->asked_deg[j] = asked_deg;
     rig->stood_deg[j] = rig->was_read[j] ? here_deg : stood_deg;
     rig->was_read[j] = false;
+    rig->was_sent[j] = true;
     return fmin(fabs(deg - here_deg), fmin(fabs(deg - asked_deg), fabs(deg - stood_deg)));
+}
+
+/* The line made up what this joint was told or said, and its sum was right: not the engine's
+ * fault what came of it. */
+static bool excused(grobo_test_rig *rig, int j)
+{
+    bool misled = (rig->witness.misled & GROBO_JOINT_BIT(j)) != 0;
+    rig->excused += misled;
+    return misled;
 }
 
 static void check_goal(grobo_test_rig *rig, int id, const uint8_t *data)
@@ -54,7 +66,7 @@ static void check_goal(grobo_test_rig *rig, int id, const uint8_t *data)
     bool holds = rig_torque(rig, j) != GROBO_TORQUE_ON;
     double most_dps = grobo_deg_from_rad(joint->max_speed_rad_s);
     double way_deg = least_way_deg(rig, j, deg) - 0.2;
-    if (rig->check_speed && !holds && way_deg > most_dps * 1.02 * (double)time_us / 1e6) {
+    if (!holds && way_deg > most_dps * 1.02 * (double)time_us / 1e6 && !excused(rig, j)) {
         fail_msg("%s sent %.1f deg in %lld us", joint->name, way_deg, (long long)time_us);
     }
     rig->to_deg[j] = deg;
@@ -73,20 +85,34 @@ static void check_torque(grobo_test_rig *rig, int id, int value)
     int32_t goal = 0;
     assert_int_equal(grobo_sim_get_register(&rig->sim, j, GROBO_RS30X_GOAL, &goal), 0);
     double apart_deg = fabs(goal / 10.0 - rig_angle_deg(rig, j));
-    /* A servo that restarted since its goal was read back has forgotten it: nobody can know. */
-    bool restarted = rig->now_us - rig->reboot_us[j] < 1000000;
-    if (rig->check_hold && !restarted && apart_deg > 3.6) {
+    if (apart_deg > 3.6 && !witness_restarted(&rig->witness, j) && !excused(rig, j)) {
         fail_msg("torque of %s comes on %.1f deg from its goal", rig->driver->model->joints[j].name,
                  apart_deg);
     }
 }
 
+/* After an emergency stop nothing moves and nothing is switched on, after a line is back not
+ * before somebody asks. */
+static void check_may_move(const grobo_test_rig *rig, bool switches_on)
+{
+    grobo_trip_info trip;
+    grobo_robot_tripped(&rig->robot, &trip);
+    assert_true(rig->asked);
+    assert_false(trip.trip == GROBO_TRIP_ESTOP);
+    assert_false(switches_on && trip.latched);
+}
+
 static void check_write(grobo_test_rig *rig, int id, int address, const uint8_t *data, int n)
 {
     if (address == GROBO_RS30X_GOAL && n >= 4) {
+        check_may_move(rig, false);
         check_goal(rig, id, data);
     } else if (address == GROBO_RS30X_TORQUE) {
+        if (data[0] == GROBO_TORQUE_ON) {
+            check_may_move(rig, true);
+        }
         check_torque(rig, id, data[0]);
+        rig->torque_us = rig->now_us;
     }
 }
 
@@ -98,6 +124,7 @@ static void check_packet(grobo_test_rig *rig, const uint8_t *p, size_t n)
         sum ^= p[i];
     }
     assert_int_equal(sum, 0);
+    witness_sent(&rig->witness, p, n, rig->now_us);
     if (p[2] == 0) {
         for (int i = 0; i < p[6]; i++) {
             const uint8_t *entry = p + 7 + i * p[5];
@@ -117,26 +144,20 @@ static void check_frame(grobo_test_rig *rig, const uint8_t *bytes, size_t n)
     }
 }
 
-void rig_mark_owners(grobo_test_rig *rig)
-{
-    rig->marked_us = rig->now_us;
-    for (int j = 0; j < rig->driver->model->n_joints; j++) {
-        assert_int_equal(grobo_sim_set_temperature(&rig->sim, j, 27 + 1.7 * j), 0);
-    }
-}
-
-static void check_owner(grobo_test_rig *rig, int joint)
+/* No reading is another joint's, another time's, or nobody's. */
+static void check_reading(grobo_test_rig *rig, const grobo_event_joint *event)
 {
     grobo_joint_info info;
-    grobo_sim_view view;
-    assert_int_equal(grobo_robot_joint(&rig->robot, joint, rig->now_us, &info), 0);
-    assert_int_equal(grobo_sim_look(&rig->sim, joint, &view), 0);
-    bool settled = rig->now_us - rig->marked_us > 200000; /* readings were under way */
-    if (settled && info.full_age_us == 0 &&
-        fabs(info.state.temperature_c - view.temperature_c) > 1.01) {
-        fail_msg("%s read as %d deg C, but is at %.1f", rig->driver->model->joints[joint].name,
-                 info.state.temperature_c, view.temperature_c);
+    if (rig->robot.config.readback_correction) {
+        return; /* then it is not what was said */
     }
+    if (event->result != GROBO_OK) {
+        witness_believed(&rig->witness, event->joint, NULL, rig->now_us);
+        return;
+    }
+    assert_int_equal(grobo_robot_joint(&rig->robot, event->joint, rig->now_us, &info), 0);
+    witness_believed(&rig->witness, event->joint, &info.state, rig->now_us);
+    rig->was_read[event->joint] = true;
 }
 
 static void note_event(void *ctx, const grobo_event *event)
@@ -145,8 +166,8 @@ static void note_event(void *ctx, const grobo_event *event)
     if (rig->n_events < RIG_EVENTS) {
         rig->events[rig->n_events++] = *event;
     }
-    if (rig->check_owner && event->kind == GROBO_EVENT_JOINT && event->u.joint.result == GROBO_OK) {
-        check_owner(rig, event->u.joint.joint);
+    if (event->kind == GROBO_EVENT_JOINT) {
+        check_reading(rig, &event->u.joint);
     }
     if (rig->on_event != NULL) {
         rig->on_event(rig, event);
@@ -156,9 +177,7 @@ static void note_event(void *ctx, const grobo_event *event)
 static void note_sim(const grobo_sim_event *event, void *ctx)
 {
     grobo_test_rig *rig = ctx;
-    if (event->kind == GROBO_SIM_REBOOT && event->servo >= 0) {
-        rig->reboot_us[event->servo] = event->time_us;
-    }
+    witness_heard(&rig->witness, event);
 }
 
 /* ---- the pump ---------------------------------- */
@@ -179,7 +198,8 @@ void rig_start_driver(grobo_test_rig *rig, const grobo_driver *driver,
     sim_config.hook_ctx = rig;
     rig->driver = driver;
     rig->now_us = rig->wake_us = 1000000;
-    rig->check_hold = rig->check_speed = true;
+    rig->asked = true;
+    witness_init(&rig->witness, driver->model, &rig->sim);
     assert_int_equal(grobo_sim_init(&rig->sim, &sim_config, rig->now_us), 0);
     assert_int_equal(grobo_robot_init(&rig->robot, driver, NULL, config, rig->now_us), 0);
     grobo_robot_on_event(&rig->robot, note_event, rig);
@@ -202,6 +222,7 @@ static void send_all(grobo_test_rig *rig)
             frame->size = (uint8_t)n;
             memcpy(frame->bytes, buf, (size_t)n);
         }
+        rig->frames++;
         check_frame(rig, buf, (size_t)n);
         assert_int_equal(grobo_sim_rx(&rig->sim, buf, (size_t)n, rig->now_us), n);
     }
@@ -217,6 +238,7 @@ static void pump(grobo_test_rig *rig)
         return;
     }
     while ((n = grobo_sim_tx(&rig->sim, buf, sizeof buf, rig->now_us)) > 0) {
+        witness_arrived(&rig->witness, buf, n, rig->now_us);
         grobo_robot_rx(&rig->robot, buf, n, rig->now_us);
     }
     if (grobo_sim_hung_up(&rig->sim) && rig->back_us == 0) {
@@ -224,6 +246,8 @@ static void pump(grobo_test_rig *rig)
         rig->back_us = rig->replug_us == 0 ? GROBO_NEVER_US : rig->now_us + rig->replug_us;
     } else if (rig->back_us != 0 && rig->now_us >= rig->back_us) {
         rig->back_us = 0;
+        rig->asked = false;
+        memset(rig->was_sent, 0, sizeof rig->was_sent);
         grobo_sim_plug(&rig->sim, true, rig->now_us);
         grobo_robot_link_up(&rig->robot, rig->now_us);
     }

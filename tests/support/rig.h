@@ -9,6 +9,8 @@
 #include <grobo/robot.h>
 #include <grobo/sim.h>
 
+#include "witness.h"
+
 enum { RIG_EVENTS = 4096, RIG_SENT = 4096 };
 
 /* A frame as it left the engine. */
@@ -24,12 +26,9 @@ typedef struct grobo_test_rig {
     const grobo_driver *driver;
     int64_t now_us;
     int64_t wake_us;   /* a stalled host does not pump the engine before */
-    bool check_hold;   /* torque must come on at the present angle (default) */
-    bool check_speed;  /* no goal faster than the joint (default) */
-    bool check_owner;  /* no reading of another joint: call rig_mark_owners() first */
-    int64_t marked_us; /* when it was called */
     int64_t replug_us; /* 0: a line that hung up stays so; else it is back after this time */
     int64_t back_us;   /* when */
+    bool asked;        /* false from then until the test says that somebody asked for something */
     grobo_event events[RIG_EVENTS];
     size_t n_events;
     rig_frame sent[RIG_SENT];
@@ -38,9 +37,13 @@ typedef struct grobo_test_rig {
     double to_deg[GROBO_JOINTS_MAX]; /* what the frames asked for, to check speeds by */
     double asked_deg[GROBO_JOINTS_MAX], stood_deg[GROBO_JOINTS_MAX];
     bool was_read[GROBO_JOINTS_MAX]; /* since it was last sent somewhere */
+    bool was_sent[GROBO_JOINTS_MAX]; /* since the line was last there */
     int64_t from_us[GROBO_JOINTS_MAX], to_us[GROBO_JOINTS_MAX];
-    int64_t reboot_us[GROBO_JOINTS_MAX]; /* when a servo last lost what it was told */
-    unsigned torque_on;                  /* torques switched on */
+    witness witness;    /* of what was truly said */
+    int64_t torque_us;  /* when a torque was last switched */
+    unsigned torque_on; /* torques switched on */
+    unsigned excused;   /* goals and torques that a made-up packet explains */
+    unsigned frames;    /* sent */
 } grobo_test_rig;
 
 /* GR001 behind its board, all defaults, link up at 1 s. config, sim NULL: defaults. */
@@ -73,8 +76,6 @@ grobo_joint_mask rig_all(const grobo_test_rig *rig);
 void rig_power(grobo_test_rig *rig);
 /* A posture of one joint. */
 grobo_posture rig_posture(const grobo_test_rig *rig, int joint, double angle_deg, int time_ms);
-/* Gives every servo a temperature of its own, by which its readings are known. */
-void rig_mark_owners(grobo_test_rig *rig);
 /* True if this frame is among those sent since the last rig_forget(). */
 bool rig_was_sent(const grobo_test_rig *rig, const uint8_t *bytes, size_t size);
 

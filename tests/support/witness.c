@@ -1,0 +1,256 @@
+/* SPDX-License-Identifier: MIT */
+#include "witness.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <string.h>
+
+/* A reply later than this is nobody's any more. */
+#define LATE_US 1000000
+/* Longest return packet that the engine asks for. */
+enum { REPLY_MAX = 40 };
+
+void witness_init(witness *w, const grobo_model *model, const grobo_sim *sim)
+{
+    memset(w, 0, sizeof *w);
+    w->model = model;
+    w->sim = sim;
+}
+
+static witness_packet *keep(witness_packet *ring, unsigned capacity, unsigned *count,
+                            const uint8_t *bytes, size_t n)
+{
+    witness_packet *packet = &ring[(*count)++ % capacity];
+    assert_true(n <= sizeof packet->bytes);
+    memset(packet, 0, sizeof *packet);
+    packet->n = (uint8_t)n;
+    memcpy(packet->bytes, bytes, n);
+    return packet;
+}
+
+static bool same(const witness_packet *packet, const uint8_t *bytes, size_t n)
+{
+    return packet->n == n && memcmp(packet->bytes, bytes, n) == 0;
+}
+
+/* ---- commands -------------------------------------------------------------------------------- */
+
+/* Calls with every servo that a command packet writes to, or reads. */
+static void each_servo(witness *w, const uint8_t *p, void (*take)(witness *w, int joint))
+{
+    int n = p[2] == 0 ? p[6] : 1;
+    for (int i = 0; i < n; i++) {
+        int id = p[2] == 0 ? p[7 + i * p[5]] : p[2];
+        int joint = grobo_model_joint_of_motor(w->model, id);
+        if (joint >= 0) {
+            take(w, joint);
+        }
+    }
+}
+
+static void mislead(witness *w, int joint)
+{
+    w->misled |= GROBO_JOINT_BIT(joint);
+}
+
+void witness_sent(witness *w, const uint8_t *packet, size_t n, int64_t now_us)
+{
+    keep(w->sent, WITNESS_SENT, &w->n_sent, packet, n)->at_us = now_us;
+    bool reads = packet[2] != 0 && packet[6] == 0;
+    int joint = grobo_model_joint_of_motor(w->model, packet[2]);
+    if (reads && joint >= 0 && w->asked_us[joint] == 0) {
+        w->asked_us[joint] = now_us;
+    }
+}
+
+static void hear_packet(witness *w, const grobo_sim_event *event)
+{
+    for (unsigned i = 0; i < WITNESS_SENT; i++) {
+        if (same(&w->sent[i], event->bytes, event->n_bytes)) {
+            return;
+        }
+    }
+    w->made_up_commands++;
+    each_servo(w, event->bytes, mislead);
+    bool writes = event->bytes[2] == 0 || event->bytes[6] != 0;
+    if (writes && (event->bytes[4] < GROBO_RS30X_GOAL || event->bytes[3] >= 0x10)) {
+        w->settings_hit = true;
+    }
+}
+
+/* ---- replies --------------------------------------------------------------------------------- */
+
+/* Two that talk at once make up a reply that neither gave: a servo's own is in its registers. */
+static bool is_given(const witness *w, const uint8_t *p, size_t n)
+{
+    int joint = n >= 8 ? grobo_model_joint_of_motor(w->model, p[2]) : -1;
+    return joint >= 0 && p[5] == n - 8 && p[4] + p[5] <= GROBO_REGISTERS &&
+           memcmp(p + 7, &w->sim->servo[joint].reg[p[4]], p[5]) == 0;
+}
+
+static void hear_reply(witness *w, const grobo_sim_event *event)
+{
+    witness_packet *said = keep(w->said, WITNESS_SAID, &w->n_said, event->bytes, event->n_bytes);
+    said->at_us = event->time_us;
+    said->sound = is_given(w, event->bytes, event->n_bytes);
+    said->said_number = w->n_said - 1;
+}
+
+void witness_heard(witness *w, const grobo_sim_event *event)
+{
+    if (event->kind == GROBO_SIM_PACKET) {
+        hear_packet(w, event);
+    } else if (event->kind == GROBO_SIM_REPLY) {
+        hear_reply(w, event);
+    } else if (event->kind == GROBO_SIM_REBOOT && event->servo >= 0) {
+        w->reboot_us[event->servo] = event->time_us;
+    }
+}
+
+static uint8_t tail_at(const witness *w, unsigned i)
+{
+    return w->tail[i % WITNESS_BYTES];
+}
+
+/* True if the last n bytes are a whole return packet. */
+static bool ends_packet(const witness *w, unsigned n)
+{
+    unsigned from = w->n_tail - n;
+    uint8_t sum = 0;
+    if (tail_at(w, from) != 0xFD || tail_at(w, from + 1) != 0xDF || tail_at(w, from + 5) != n - 8) {
+        return false;
+    }
+    for (unsigned i = 2; i < n; i++) {
+        sum ^= tail_at(w, from + i);
+    }
+    return sum == 0;
+}
+
+/* The reply that these bytes are. A servo at rest says the same again and again: of several alike
+ * the latest that was not believed yet, as those before it were lost. */
+static const witness_packet *find_said(const witness *w, const uint8_t *bytes, size_t n,
+                                       int64_t now_us)
+{
+    const witness_packet *found = NULL;
+    for (unsigned i = 0; i < WITNESS_SAID && i < w->n_said; i++) {
+        const witness_packet *said = &w->said[i];
+        if (said->sound && same(said, bytes, n) && now_us - said->at_us <= LATE_US &&
+            (found == NULL || (found->believed && !said->believed) ||
+             (found->believed == said->believed && said->at_us > found->at_us))) {
+            found = said;
+        }
+    }
+    return found;
+}
+
+static void see_packet(witness *w, unsigned n, int64_t now_us)
+{
+    uint8_t bytes[REPLY_MAX];
+    for (unsigned i = 0; i < n; i++) {
+        bytes[i] = tail_at(w, w->n_tail - n + i);
+    }
+    const witness_packet *said = find_said(w, bytes, n, now_us);
+    witness_packet *seen = keep(w->seen, WITNESS_SEEN, &w->n_seen, bytes, n);
+    seen->at_us = now_us;
+    seen->sound = said != NULL;
+    seen->said_number = said != NULL ? said->said_number : 0;
+    w->made_up_replies += said == NULL;
+}
+
+void witness_arrived(witness *w, const uint8_t *bytes, size_t n, int64_t now_us)
+{
+    for (size_t i = 0; i < n; i++) {
+        w->tail[w->n_tail++ % WITNESS_BYTES] = bytes[i];
+        for (unsigned size = 8; size <= REPLY_MAX && size <= w->n_tail; size++) {
+            if (ends_packet(w, size)) {
+                see_packet(w, size, now_us);
+            }
+        }
+    }
+}
+
+/* ---- belief ---------------------------------------------------------------------------------- */
+
+/* The register at an address as a return packet has it, and whether it does. */
+static bool has(const witness_packet *p, int address, int bytes, int *value)
+{
+    int at = address - p->bytes[4];
+    if (at < 0 || at + bytes > p->bytes[5]) {
+        return false;
+    }
+    const uint8_t *data = &p->bytes[7 + at];
+    *value = bytes == 1 ? data[0] : (int16_t)(data[0] | data[1] << 8);
+    return true;
+}
+
+static bool agrees(const witness_packet *p, const grobo_joint_state *state)
+{
+    int value;
+    return (!has(p, GROBO_RS30X_POSITION, 2, &value) ||
+            value == grobo_ddeg_from_rad(state->angle_rad)) &&
+           (!has(p, GROBO_RS30X_GOAL, 2, &value) ||
+            value == grobo_ddeg_from_rad(state->goal_rad)) &&
+           (!has(p, GROBO_RS30X_TORQUE, 1, &value) || value == (int)state->torque) &&
+           (!has(p, GROBO_RS30X_SPEED, 2, &value) || value == state->speed_dps) &&
+           (!has(p, GROBO_RS30X_CURRENT, 2, &value) || value == state->current_ma) &&
+           (!has(p, GROBO_RS30X_TEMPERATURE, 2, &value) || value == state->temperature_c) &&
+           (!has(p, GROBO_RS30X_VOLTAGE, 2, &value) || value * 10 == state->voltage_mv);
+}
+
+/* The packet that has just arrived and says this of the joint; one that was said rather. */
+static const witness_packet *find_seen(const witness *w, int joint, const grobo_joint_state *state,
+                                       int64_t now_us)
+{
+    const witness_packet *found = NULL;
+    for (unsigned i = 0; i < WITNESS_SEEN; i++) {
+        const witness_packet *seen = &w->seen[i];
+        if (seen->at_us == now_us && seen->bytes[2] == w->model->joints[joint].motor &&
+            agrees(seen, state) && (found == NULL || seen->sound)) {
+            found = seen;
+        }
+    }
+    return found;
+}
+
+static void believe_said(witness *w, int joint, const witness_packet *seen)
+{
+    const char *name = w->model->joints[joint].name;
+    witness_packet *said = &w->said[seen->said_number % WITNESS_SAID];
+    if (said->believed) {
+        fail_msg("a reply of %s was believed twice", name);
+    }
+    if (said->at_us < w->asked_us[joint]) {
+        fail_msg("a reply of %s was believed that is older than the question", name);
+    }
+    said->believed = true;
+    w->believed++;
+    if (said->bytes[4] == GROBO_RS30X_GOAL) {
+        w->goal_us[joint] = said->at_us;
+        w->misled &= ~GROBO_JOINT_BIT(joint);
+    }
+}
+
+void witness_believed(witness *w, int joint, const grobo_joint_state *state, int64_t now_us)
+{
+    if (state != NULL) {
+        const witness_packet *seen = find_seen(w, joint, state, now_us);
+        if (seen == NULL) {
+            fail_msg("nobody said what was believed of %s", w->model->joints[joint].name);
+        } else if (seen->sound) {
+            believe_said(w, joint, seen);
+        } else {
+            w->made_up_believed++;
+            mislead(w, joint);
+        }
+    }
+    w->asked_us[joint] = 0;
+}
+
+bool witness_restarted(const witness *w, int joint)
+{
+    return w->reboot_us[joint] > w->goal_us[joint];
+}
