@@ -284,7 +284,8 @@ static int step_aim(grobo_robot *robot)
 static int step_send(grobo_robot *robot)
 {
     grobo_robot_task *job = &robot->job;
-    grobo_i_motion how = {job->priority, GROBO_NEVER_US, false, false};
+    bool again_as_it_was = job->kind == GROBO_JOB_SETTLE; /* the stabilizer has seen it */
+    grobo_i_motion how = {job->priority, GROBO_NEVER_US, false, again_as_it_was};
     grobo_joint_mask left = job->pending;
     int64_t longest_us = 0;
     if (left == 0) {

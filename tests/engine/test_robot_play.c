@@ -357,6 +357,28 @@ static void the_stabilizer_corrects_and_is_checked(void **state)
     assert_true(fabs(trip->u.trip.value + 132) < 1e-9);
 }
 
+/* What went out was corrected already. */
+static void a_repeated_posture_is_not_corrected_twice(void **state)
+{
+    (void)state;
+    static const rig_key low[] = {
+        {0, {{R_KNEE, -40}}}, {500, {{R_KNEE, -50}}}, {1000, {{R_KNEE, -80}}}};
+    grobo_driver driver = *grobo_gr001_driver(GROBO_WIRING_BOARD);
+    driver.stabilize = lean;
+    rig_start_driver(&rig, &driver, &quiet, NULL);
+    rig_clip_init(&clip, low, 3);
+    play(NULL);
+    rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
+    rig_run(&rig, 450000);
+    mute_all(GROBO_SIM_CABLE_MUTE);
+    rig_run(&rig, 150000); /* the last frame left at 0.5 s */
+    mute_all(GROBO_SIM_CABLE_IN);
+    rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
+    assert_true(fabs(rig_angle_deg(&rig, R_KNEE) + 55) < 1);
+    rig_run(&rig, 1500000);
+    assert_true(fabs(rig_angle_deg(&rig, R_KNEE) + 85) < 0.1);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -375,6 +397,7 @@ int main(void)
         cmocka_unit_test(what_the_engine_does_afterwards_makes_way),
         cmocka_unit_test(a_lost_approach_is_repeated),
         cmocka_unit_test(the_stabilizer_corrects_and_is_checked),
+        cmocka_unit_test(a_repeated_posture_is_not_corrected_twice),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
