@@ -1,0 +1,60 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# How a command leaves the robot when its terminal closes, it is stopped, or its reader goes away;
+# signals are in robot.sh and play.sh, a lost line and a silent robot in play.sh.
+. tests/support/cli.sh
+. tests/support/terminal.sh
+
+start_sim || { echo "Bail out! the simulator did not start"; exit 1; }
+
+# stands ANGLE: R_ELBOW_P holds at an angle like that.
+stands() {
+    exits 0 "$GRCTL" -d "$robot" status m5 && says "R_ELBOW_P  *$1  *[-0-9.]*  *on  *0 "
+}
+
+# The last window of a screen closes: the kernel hangs up on who runs there.
+terminal_closes() {
+    LC_ALL=C.UTF-8 on_screen new-session -d -x 80 -y 24 \
+        "exec '$GRCTL' -d '$robot' -v move m5 -120 20000 2>'$work/moving'"
+    written "$work/moving" 'robot found' || return 1
+    until exits 1 "$GRCTL" -d "$robot" status m5 >/dev/null; do :; done
+    on_screen kill-server
+    written "$work/moving" 'exit policy carried out' || { cat "$work/moving"; return 1; }
+    until exits 0 "$GRCTL" -d "$robot" status m5 >/dev/null; do :; done
+    says ' on '
+}
+if have_terminal; then
+    trap 'on_screen kill-server 2>/dev/null; end_cli_test' EXIT
+    check "a closed terminal: the exit policy is carried out" terminal_closes
+    check "and the joint stands on its way" stands '-[2-9][0-9]\.[0-9]'
+else
+    skip "a closed terminal: the exit policy is carried out" "no tmux here"
+    skip "and the joint stands on its way" "no tmux here"
+fi
+
+# Ctrl-Z, and back a while later: what was due meanwhile is not caught up with.
+stopped() {
+    rm -f "$work/out" "$work/err"
+    "$GRCTL" -d "$robot" --json play motions/greet.pseq >"$work/out" 2>"$work/err" &
+    stopped_pid=$!
+    written "$work/out" '"t_ms":[1-9]' || return 1
+    kill -s STOP $stopped_pid
+    sleep 1 # four times what a host may be late
+    kill -s CONT $stopped_pid
+    wait $stopped_pid
+    stopped_got=$?
+    [ $stopped_got -eq 4 ] && complains 'stopped for safety: host stalled'
+}
+check "a stopped process: the motion is over" stopped
+check "and the robot holds" stands '[-0-9.]*'
+
+# The robot plays on where nobody reads what it says.
+unread() {
+    { "$GRCTL" -d "$robot" --json play motions/greet.pseq; echo $? >"$work/status"; } |
+        head -n 1 >"$work/out"
+    grep -qx 141 "$work/status" || { cat "$work/status"; return 1; } # as if by SIGPIPE
+}
+check "nobody reads: the motion goes on" unread
+check "and the robot holds then too" stands '[-0-9.]*'
+stop_sim
+done_testing
