@@ -118,6 +118,9 @@ int grobo_i_posix_set_baud(int fd, int baud_bps, grobo_os_cause *cause)
         return r;
     }
     actual = grobo_i_posix_get_baud(fd, cause);
+    if (actual > 0) {
+        actual = grobo_i_posix_divided_baud(fd, actual);
+    }
     if (actual >= 0 && !grobo_i_baud_fits(baud_bps, actual)) {
         (void)apply(fd, before, cause);
         cause->code = 0;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Linux: any speed, by termios2. In a file of its own because the kernel's header of termios2
- * and the C library's <termios.h> cannot be included together. The other systems' answer is at
- * the end.
+ * and the C library's <termios.h> cannot be included together. And the speed that a chip makes of
+ * it. The other systems' answers are at the end of each part.
  */
 #include <errno.h>
 
@@ -11,6 +11,7 @@
 #ifdef __linux__
 #include <asm/ioctls.h>
 #include <asm/termbits.h>
+#include <linux/serial.h>
 #include <sys/ioctl.h>
 #endif
 
@@ -51,6 +52,33 @@ int grobo_i_posix_custom_baud(int fd)
 {
     (void)fd;
     return 0;
+}
+
+#endif
+
+#ifdef __linux__
+
+/* The driver tells a PC's UART the whole number next to base / speed, and says that it set the
+ * speed. Chips on other buses may divide by fractions: those are believed. */
+int grobo_i_posix_divided_baud(int fd, int baud_bps)
+{
+    struct serial_struct chip;
+    int divisor;
+
+    if (ioctl(fd, TIOCGSERIAL, &chip) != 0 || chip.type < PORT_8250 || chip.type > PORT_16550A ||
+        chip.io_type != SERIAL_IO_PORT || chip.baud_base <= 0 || baud_bps <= 0) {
+        return baud_bps;
+    }
+    divisor = (chip.baud_base + baud_bps / 2) / baud_bps;
+    return divisor > 0 ? chip.baud_base / divisor : chip.baud_base;
+}
+
+#else
+
+int grobo_i_posix_divided_baud(int fd, int baud_bps)
+{
+    (void)fd;
+    return baud_bps;
 }
 
 #endif

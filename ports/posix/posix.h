@@ -68,6 +68,9 @@ int grobo_i_posix_set_custom_baud(int fd, int baud_bps, grobo_os_cause *cause);
 /* The rate that is set, when it is one without a B constant; else 0. */
 int grobo_i_posix_custom_baud(int fd);
 
+/* The rate that the chip behind a descriptor makes of one its driver has taken. */
+int grobo_i_posix_divided_baud(int fd, int baud_bps);
+
 /* grobo_port_ops.set_low_latency for a descriptor. */
 int grobo_i_posix_set_low_latency(int fd, grobo_os_cause *cause);
 
