@@ -309,6 +309,13 @@ $(STATIC_LIB) $(CORE_LIB) $(SUPPORT_LIB) $(TOOL_LIB): $(BUILD)/.flags
 	@rm -f $@
 	$(Q)$(AR) rcs $@ $(filter %.o,$^)
 
+# The command knows where its files are installed.
+$(BUILD)/tools/grctl/os/posix/checkup_node.o: CPPFLAGS += -DGRCTL_DATADIR='"$(DATADIR)"'
+$(BUILD)/tools/grctl/os/posix/checkup_node.o: $(BUILD)/.datadir
+$(BUILD)/.datadir: FORCE
+	@mkdir -p $(@D)
+	@echo '$(DATADIR)' | cmp -s - $@ || echo '$(DATADIR)' > $@
+
 $(SHARED_LIB): $(LIB_OBJS)
 	$(say) LD $@
 	$(Q)$(CC) -shared $(SHARED_FLAGS) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)

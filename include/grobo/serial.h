@@ -149,17 +149,22 @@ GROBO_API int grobo_serial_set_baud(grobo_serial *serial, int baud_bps);
 GROBO_API int grobo_serial_baud(const grobo_serial *serial);
 
 /**
- * Asks the driver of an open port to hand over bytes at once.
- * @return GROBO_OK, GROBO_ERR_UNSUPPORTED, GROBO_ERR_PERM, GROBO_ERR_CLOSED.
+ * Asks the driver of an open port to hand over bytes at once; grobo_serial_open() has done so.
+ * @return GROBO_OK, GROBO_ERR_UNSUPPORTED, GROBO_ERR_PERM, GROBO_ERR_CLOSED, GROBO_ERR_UNPLUGGED,
+ *   GROBO_ERR_IO.
  */
 GROBO_API int grobo_serial_set_low_latency(grobo_serial *serial);
+
+/** What the driver of an open port said when it was last asked for that, or GROBO_ERR_CLOSED. */
+GROBO_API int grobo_serial_low_latency(const grobo_serial *serial);
 
 /* ---- open and close ----------------------------------------------------------------------- */
 
 /**
- * Opens the device. In asynchronous mode GROBO_SERIAL_OPENED follows from the loop, for a
- * connection when it stands; bytes may be sent before. In synchronous mode a connection is waited
- * for, at most 2 s.
+ * Opens the device, and asks its driver for low latency: where it knows no such thing or refuses,
+ * the port is open all the same. In asynchronous mode GROBO_SERIAL_OPENED follows from the loop,
+ * for a connection when it stands; bytes may be sent before. In synchronous mode a connection is
+ * waited for, at most 2 s.
  * @return GROBO_OK, GROBO_ERR_STATE (open already), GROBO_ERR_ARG (no device, malformed name),
  *   GROBO_ERR_TIMEOUT (no connection), GROBO_ERR_NOMEM, or what grobo_port_ops.open says;
  *   grobo_serial_cause() tells why.

@@ -303,8 +303,16 @@ int grobo_serial_baud(const grobo_serial *serial)
 
 int grobo_serial_set_low_latency(grobo_serial *serial)
 {
-    return grobo_serial_is_open(serial) ? serial->ops->set_low_latency(serial->port, &serial->cause)
-                                        : GROBO_ERR_CLOSED;
+    if (!grobo_serial_is_open(serial)) {
+        return GROBO_ERR_CLOSED;
+    }
+    serial->quick_result = serial->ops->set_low_latency(serial->port, &serial->cause);
+    return serial->quick_result;
+}
+
+int grobo_serial_low_latency(const grobo_serial *serial)
+{
+    return grobo_serial_is_open(serial) ? serial->quick_result : GROBO_ERR_CLOSED;
 }
 
 /* ---- opening and closing ------------------------------------------------------------------ */
@@ -332,7 +340,10 @@ static int open_port(grobo_serial *serial)
     }
     r = ops->open(serial->port, serial->device, serial->config.baud_bps, &serial->cause);
     if (r >= 0) {
+        grobo_os_cause cause;
+
         serial->ops = ops;
+        serial->quick_result = ops->set_low_latency(serial->port, &cause);
     }
     return r;
 }

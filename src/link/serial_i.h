@@ -29,7 +29,8 @@ struct grobo_serial {
     const grobo_port_ops *ops; /* of the open port; NULL when closed */
     grobo_port *port;
     size_t port_bytes;
-    bool ready; /* open and connected */
+    bool ready;       /* open and connected */
+    int quick_result; /* of set_low_latency of the open port */
 
     struct event *rx;   /* readable; while open in asynchronous mode */
     struct event *tx;   /* writable; added while bytes are queued or a connection is made */

@@ -99,6 +99,7 @@ static void a_closed_port_says_so(void **state)
     assert_int_equal(grobo_serial_waiting(serial), GROBO_ERR_CLOSED);
     assert_int_equal(grobo_serial_discard(serial), GROBO_ERR_CLOSED);
     assert_int_equal(grobo_serial_set_low_latency(serial), GROBO_ERR_CLOSED);
+    assert_int_equal(grobo_serial_low_latency(serial), GROBO_ERR_CLOSED);
     assert_int_equal(grobo_serial_open(serial), GROBO_OK);
     assert_true(grobo_serial_is_open(serial));
     assert_true(grobo_serial_handle(serial) >= 0);
@@ -281,6 +282,7 @@ static void low_latency_is_reported_where_there_is_none(void **state)
 {
     (void)state;
     test_line_needs_pty("a line without low latency");
+    assert_int_equal(grobo_serial_low_latency(serial), GROBO_ERR_UNSUPPORTED);
     assert_int_equal(grobo_serial_set_low_latency(serial), GROBO_ERR_UNSUPPORTED);
     assert_true(strlen(grobo_serial_cause(serial)->text) > 0);
 }

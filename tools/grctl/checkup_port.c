@@ -24,7 +24,8 @@ static int visit(void *ctx, const grobo_port_info *info)
     return 1;
 }
 
-/* Who merely has it open is no hindrance (a simulator holds its own pty): who has locked it is. */
+/* Who merely has it open is no hindrance (a simulator holds its own pty): who has locked it is.
+ * Asks for low latency as every opening of a serial port does. */
 static bool check_owner(checkup *k, const char *device)
 {
     const grobo_port_ops *ops = grobo_port_serial_ops();
@@ -33,8 +34,10 @@ static bool check_owner(checkup *k, const char *device)
     char fix[FIX_BYTES], name[64] = "";
     int error = port ? ops->open(port, device, GROBO_BAUD_DEFAULT_BPS, &cause) : GROBO_ERR_NOMEM;
     int pid;
-    if (!error)
+    if (!error) {
+        (void)ops->set_low_latency(port, &cause);
         ops->close(port);
+    }
     free(port);
     if (!error) {
         checkup_good(k, false, "owner", "no other program holds it");

@@ -9,6 +9,9 @@
 
 #include "../../checkup.h"
 
+/* The Makefile says where `make install` puts it. */
+static const char rules[] = GRCTL_DATADIR "/grobo/udev/60-grobo.rules";
+
 enum { FIX_BYTES = 512 };
 
 static const char *user_name(void)
@@ -73,9 +76,9 @@ bool checkup_true_path(const char *device, char *path, size_t capacity)
 
 void checkup_quicken(char *fix, size_t capacity, const char *path)
 {
-    snprintf(
-        fix, capacity,
-        "sudo cp /usr/local/share/grobo/udev/60-grobo.rules /etc/udev/rules.d/, plug in again; "
-        "or: echo 1 | sudo tee /sys/bus/usb-serial/devices/%s/latency_timer",
-        strrchr(path, '/') + 1);
+    snprintf(fix, capacity,
+             "sudo cp %s /etc/udev/rules.d/, plug in again; "
+             "or: echo 1 | sudo tee /sys/bus/usb-serial/devices/%s/latency_timer",
+             access(rules, R_OK) == 0 ? rules : "tools/udev/60-grobo.rules (of the sources)",
+             strrchr(path, '/') + 1);
 }
