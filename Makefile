@@ -86,6 +86,7 @@ TOOL_SRCS := $(if $(wildcard tools/grctl/main.c),$(sort $(wildcard tools/grctl/*
     tools/grctl/screen/$(SCREEN).c)
 SUPPORT_SRCS := $(sort $(filter-out %/replay_main.c,$(wildcard tests/support/*.c)))
 TEST_SRCS := $(sort $(foreach ring,unit engine link fault port,$(wildcard tests/$(ring)/test_*.c)))
+DRIVER_SRCS := $(sort $(wildcard tests/drivers/test_*.c))
 TEST_SCRIPTS := $(sort $(foreach ring,cli lint export,$(wildcard tests/$(ring)/*.sh)))
 FUZZ_SRCS := $(sort $(wildcard tests/fuzz/fuzz_*.c))
 BENCH_SRCS := $(sort $(wildcard tests/bench/bench_*.c))
@@ -98,6 +99,9 @@ TOOL_OBJS := $(call objects,$(TOOL_SRCS))
 TOOL_LIB := $(BUILD)/libgrctl.a
 SUPPORT_OBJS := $(call objects,$(SUPPORT_SRCS))
 TEST_PROGRAMS := $(patsubst %.c,$(BUILD)/%$(EXE),$(TEST_SRCS))
+DRIVER_PROGRAMS := $(patsubst %.c,$(BUILD)/%$(EXE),$(DRIVER_SRCS)) $(filter \
+    %/test_conformance$(EXE) %/test_serial_open$(EXE) %/test_serial_sync$(EXE) \
+    %/test_serial_async$(EXE),$(TEST_PROGRAMS))
 FUZZ_REPLAYS := $(patsubst %.c,$(BUILD)/%$(EXE),$(FUZZ_SRCS))
 FUZZERS := $(patsubst %.c,$(BUILD)/%.fuzzer,$(FUZZ_SRCS))
 BENCHES := $(patsubst %.c,$(BUILD)/%$(EXE),$(BENCH_SRCS))
@@ -117,7 +121,7 @@ VERSION = $(shell sed -n 's/.*GROBO_VERSION_STRING "\(.*\)"/\1/p' include/grobo/
 # ---- targets -------------------------------------------------------------------------------
 
 .PHONY: help all demo check lint lint-quick format test check-san check-tsan check-memcheck install uninstall
-.PHONY: clean tidy fuzz soak cov dist bench plots cross check-cross FORCE
+.PHONY: clean tidy fuzz soak cov dist bench plots cross check-cross check-drivers FORCE
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-15s %s\n", $$1, $$2 }' Makefile
@@ -180,6 +184,12 @@ cross: ## build for another machine, in build/arm64 for TARGET=arm64
 
 check-cross: cross ## the tests of that build, under an emulator; RING= chooses
 	+@$(cross_make) test
+
+check-drivers: ## the serial port's tests on real drivers, of a Debian kernel in a virtual machine
+	-@tools/setup.sh --drivers
+	@$(MAKE) --no-print-directory $(GRCTL) $(DRIVER_PROGRAMS)
+	@GRCTL="$(abspath $(GRCTL))" BUILD="$(BUILD)" TEST_TIMEOUT_S=300 TEST_LOGS="$(BUILD)/logs/drivers" \
+	    DRIVER_PROGRAMS="$(DRIVER_PROGRAMS)" tests/run.sh tests/drivers/boot.sh
 
 bench: $(BENCHES) $(GRCTL) ## speed and punctuality; fails where a promise is not kept
 	@status=0; for program in $(BENCHES); do \
@@ -330,7 +340,7 @@ $(BUILD)/run/grctl: $(GRCTL)
 	@printf '#!/bin/sh\nexec %s "$$@"\n' '$(EMULATOR) $(abspath $<)' >$@
 	@chmod +x $@
 
-$(TEST_PROGRAMS): $(BUILD)/%$(EXE): $(BUILD)/%.o $(SUPPORT_LIB) $(TOOL_LIB) $(STATIC_LIB)
+$(sort $(TEST_PROGRAMS) $(DRIVER_PROGRAMS)): $(BUILD)/%$(EXE): $(BUILD)/%.o $(SUPPORT_LIB) $(TOOL_LIB) $(STATIC_LIB)
 	$(say) LD $@
 	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(CMOCKA_LIBS) $(LIBS)
 

@@ -2,11 +2,12 @@
 # SPDX-License-Identifier: MIT
 # Installs what is missing to build libgrobo, with the system's package manager.
 #
-# usage: tools/setup.sh [--demo | --check | --ci | --cross TARGET | --ports] [--dry-run]
+# usage: tools/setup.sh [--demo | --check | --ci | --cross TARGET | --drivers | --ports] [--dry-run]
 #   --demo     what a build and the demo need (default)
 #   --check    that, and what `make check` needs
 #   --ci       that, and the tools that `make check` does without where they are missing
 #   --cross    what `make cross TARGET=...` needs (Debian only)
+#   --drivers  what --check needs, and `make check-drivers`
 #   --ports    what --check needs, and every target of `make check-ports`
 #   --dry-run  say what would be installed, touch nothing
 #
@@ -21,7 +22,8 @@ while [ $# -gt 0 ]; do
     --demo) level=1 ;;
     --check) level=2 ;;
     --ci) level=3 ;;
-    --ports) level=2 targets='arm64 armhf riscv64 s390x win64' ;;
+    --drivers) level=2 targets=drivers ;;
+    --ports) level=2 targets='arm64 armhf riscv64 s390x win64 drivers' ;;
     --cross)
         level=0 targets=${2:-}
         [ $# -lt 2 ] || shift
@@ -118,6 +120,10 @@ look_cross() {
     riscv64) need_foreign riscv64-linux-gnu qemu-riscv64 ;;
     s390x) need_foreign s390x-linux-gnu qemu-s390x ;;
     win64) need_windows x86_64-w64-mingw32 x86-64 ;;
+    drivers)
+        need qemu-system-x86_64 'to boot a kernel' have_command qemu-system-x86_64 -- \
+            qemu-system-x86 qemu-system-x86-core qemu-system-x86 qemu-system-x86_64 qemu-x86
+        ;;
     esac
 }
 

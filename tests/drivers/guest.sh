@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: MIT
+# What is tested in the machine of boot.sh. Prints TAP; prints @unplug and @plug where the robot's
+# adapter is to be pulled out and put back, and @end at the end.
+export CMOCKA_MESSAGE_OUTPUT=TAP HOME=/tmp
+
+robot=/dev/serial/by-id/usb-QEMU_QEMU_USB_SERIAL_ROBOT-if00-port0
+
+# run PROGRAM: a program that says nothing has failed too.
+run() {
+    echo "# ---- $1, $(cut -d ' ' -f 1 /proc/uptime) s"
+    timeout 60 "/tests/$1"
+    status=$?
+    [ $status -lt 124 ] || echo "not ok 1 - $1 ended with status $status"
+}
+
+# appears FILE, vanishes FILE: within ten seconds
+appears() {
+    timeout 10 sh -c "until [ -e $1 ]; do sleep 0.1; done"
+}
+vanishes() {
+    timeout 10 sh -c "while [ -e $1 ]; do sleep 0.1; done"
+}
+
+# cable DRIVER NEAR FAR
+cable() {
+    echo "# ==== $1: $2 to $3"
+    export GROBO_TEST_DRIVER=$1 GROBO_TEST_SERIAL=$2,$3
+    run test_serial_open
+    run test_driver
+    # Somebody has it open all the time: qemu's hardware takes no bytes while nobody has, it has
+    # the sender wait instead.
+    sleep 200 <"$2" &
+    holder=$!
+    run test_conformance
+    run test_serial_sync
+    run test_serial_async
+    kill $holder
+}
+
+cable 8250 /dev/ttyS1 /dev/ttyS2
+cable ftdi_sio /dev/ttyUSB0 /dev/ttyS3
+
+echo '# ==== a robot behind ftdi_sio'
+export GROBO_TEST_DEVICE=$robot
+run test_replug
+
+[ -e "$robot" ] || echo @plug
+appears "$robot"
+. /tap.sh
+tty=$(readlink -f "$robot")
+sys=/sys/bus/usb-serial/devices/${tty##*/}
+
+# says PATTERN COMMAND...
+says() {
+    pattern=$1
+    shift
+    "$@" >/tmp/said 2>&1
+    status=$?
+    cat /tmp/said
+    [ $status -eq 0 ] && grep -q -e "$pattern" /tmp/said
+}
+
+# refused STATUS PATTERN COMMAND...
+refused() {
+    wanted=$1
+    pattern=$2
+    shift 2
+    "$@" >/tmp/said 2>&1
+    status=$?
+    cat /tmp/said
+    [ $status -eq "$wanted" ] && grep -q -e "$pattern" /tmp/said
+}
+
+check 'its group is dialout' [ "$(stat -c '%G %a' "$tty")" = 'dialout 660' ]
+check 'ports: USB ids and driver' says "^$tty .*free .*USB 0403:6001 .*(ftdi_sio)" grctl ports
+check 'ports: its name that stays' says " $robot\$" grctl ports
+check 'ports: an 8250' says '^/dev/ttyS1 .*free' grctl ports
+echo 16 >"$sys/latency_timer"
+check 'doctor: all is well' says '^all [0-9]* checks passed' grctl -d "$robot" doctor -v
+check 'doctor: and it has shortened the latency' says 'latency timer is 1 ms' \
+    grctl -d "$robot" doctor -v
+check 'auto: the robot is found' says "robot found on $tty" grctl -v status
+
+grctl -d "$robot" status --watch >/tmp/watch 2>&1 &
+watcher=$!
+timeout 10 sh -c 'until [ -s /tmp/watch ]; do sleep 0.1; done'
+check 'a held port names its holder' refused 1 "held by grctl (pid $watcher)" \
+    grctl -d "$robot" status
+check 'ports: and who holds it' says "open in grctl (pid $watcher)" grctl ports
+kill -INT $watcher
+wait $watcher
+
+check 'a motion' says '' grctl -d "$robot" play /greet.pseq
+
+grctl -d "$robot" play /greet.pseq >/tmp/play 2>&1 &
+player=$!
+sleep 2
+echo @unplug
+wait $player
+status=$?
+sed 's/^/# /' /tmp/play
+check 'a motion that loses its line: status 1' [ $status -eq 1 ]
+check 'a motion that loses its line: says so' \
+    grep -q "$robot: device is gone while busy with play" /tmp/play
+vanishes "$tty"
+check 'ports: it is gone' [ "$(grctl ports | grep -c ROBOT)" -eq 0 ]
+check 'it cannot be opened' refused 1 "$robot" grctl -d "$robot" status
+echo @plug
+appears "$robot"
+check 'plugged in, it answers under its name' says '' grctl -d "$robot" status
+cp /tmp/said /tmp/before
+sleep 1
+check 'and stands still' says '' grctl -d "$robot" status
+# Without the head, and the age of each reading at the end.
+for file in /tmp/before /tmp/said; do
+    sed '1d; s/ *[0-9]*$//' $file >$file.joints
+done
+check 'to a tenth of a degree' cmp /tmp/before.joints /tmp/said.joints
+done_testing
+echo @end

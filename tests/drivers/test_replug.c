@@ -1,0 +1,224 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * A robot behind a USB adapter that is pulled out while it plays, and put back. GROBO_TEST_DEVICE
+ * is its name under /dev/serial/by-id. Whoever runs this pulls when it prints "@unplug", and puts
+ * back when it prints "@plug".
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <sys/inotify.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+#include <event2/event.h>
+
+#include <grobo/session.h>
+
+#include "loop.h"
+#include "resources.h"
+
+static struct event_base *base;
+static grobo_session *session;
+static int watch;       /* inotify of the folders of devices and of names that stay */
+static int64_t gone_us; /* when a device went */
+static int64_t here_us; /* when a name came */
+static struct {
+    int ups, losts, fails;
+    int error;
+    int64_t at_us;
+    int job, result;
+} seen;
+
+static void on_event(grobo_session *from, grobo_session_event event, int error, void *ctx)
+{
+    (void)from;
+    (void)ctx;
+    seen.error = error;
+    seen.at_us = grobo_now_us();
+    switch (event) {
+    case GROBO_SESSION_EVENT_UP:
+        seen.ups++;
+        break;
+    case GROBO_SESSION_EVENT_LOST:
+        seen.losts++;
+        break;
+    case GROBO_SESSION_EVENT_FAILED:
+        seen.fails++;
+        break;
+    }
+    event_base_loopbreak(base);
+}
+
+static void on_robot(void *ctx, const grobo_event *event)
+{
+    (void)ctx;
+    if (event->kind == GROBO_EVENT_JOB) {
+        seen.job = event->u.job.number;
+        seen.result = event->u.job.result;
+        event_base_loopbreak(base);
+    }
+}
+
+static void on_change(evutil_socket_t fd, short what, void *ctx)
+{
+    union {
+        struct inotify_event event;
+        char bytes[4096];
+    } buf;
+    ssize_t size = read((int)fd, buf.bytes, sizeof buf.bytes);
+
+    (void)what;
+    (void)ctx;
+    for (ssize_t at = 0; at < size;) {
+        struct inotify_event event;
+
+        memcpy(&event, buf.bytes + at, sizeof event);
+        if ((event.mask & IN_DELETE) != 0) {
+            gone_us = grobo_now_us();
+        } else {
+            here_us = grobo_now_us();
+        }
+        at += (ssize_t)(sizeof event + event.len);
+    }
+}
+
+static void run_until(const int *count, int wanted)
+{
+    int64_t end_us = grobo_now_us() + 20000000;
+
+    while (*count < wanted) {
+        assert_true(grobo_now_us() < end_us);
+        (void)loop_run(base, end_us - grobo_now_us());
+    }
+}
+
+static int await(int job)
+{
+    assert_true(job > 0);
+    run_until(&seen.job, job);
+    return seen.result;
+}
+
+/* Where the joints are, in tenths of a degree. */
+static void sense(int16_t *angle_ddeg, size_t n)
+{
+    grobo_robot *robot = grobo_session_robot(session);
+
+    assert_int_equal(
+        await(grobo_session_sense(session, GROBO_JOINTS_ALL((int)n), GROBO_SENSE_FULL)), GROBO_OK);
+    for (size_t i = 0; i < n; i++) {
+        grobo_joint_info info;
+
+        assert_int_equal(grobo_robot_joint(robot, (int)i, grobo_now_us(), &info), GROBO_OK);
+        angle_ddeg[i] = (int16_t)(grobo_deg_from_rad(info.state.angle_rad) * 10.0);
+    }
+}
+
+static void ask(const char *what)
+{
+    printf("%s\n", what);
+    assert_int_equal(fflush(stdout), 0);
+}
+
+static void an_adapter_pulled_out_in_a_motion_and_put_back(void **state)
+{
+    const grobo_session_config config = {.base = base,
+                                         .device = getenv("GROBO_TEST_DEVICE"),
+                                         .reconnect = true,
+                                         .on_event = on_event,
+                                         .on_robot = on_robot};
+    enum { JOINTS = 20 };
+    int16_t before_ddeg[JOINTS];
+    int16_t after_ddeg[JOINTS];
+    grobo_posture far_off;
+    uint64_t frames;
+    int64_t cpu_us;
+    int job;
+
+    (void)state;
+    assert_int_equal(grobo_session_new(&config, &session), GROBO_OK);
+    assert_int_equal(grobo_session_open(session), GROBO_OK);
+    run_until(&seen.ups, 1);
+    assert_int_equal(
+        await(grobo_session_torque(session, GROBO_JOINTS_ALL(JOINTS), GROBO_TORQUE_ON)), GROBO_OK);
+    assert_int_equal(grobo_posture_init(&far_off, JOINTS), GROBO_OK);
+    assert_int_equal(grobo_posture_set_deg(&far_off, 13, 30.0), GROBO_OK);
+    far_off.time_us = 20000000;
+    job = grobo_session_move(session, &far_off);
+    assert_true(job > 0);
+
+    ask("@unplug");
+    run_until(&seen.losts, 1);
+    assert_int_equal(seen.error, GROBO_ERR_UNPLUGGED);
+    assert_true(strlen(grobo_session_cause(session)->text) > 0);
+    assert_int_equal(seen.job, job);
+    assert_int_equal(seen.result, GROBO_ERR_UNPLUGGED);
+    assert_int_equal(grobo_session_get_state(session), GROBO_SESSION_WAITING);
+
+    cpu_us = test_cpu_us();
+    assert_true(loop_run(base, 1000000));
+    cpu_us = test_cpu_us() - cpu_us;
+    print_message("told %lld us after the device went; %lld us of processor time in 1 s\n",
+                  (long long)(seen.at_us - gone_us), (long long)cpu_us);
+    /* An emulated processor: tests/link is stricter with time, on a pseudo-terminal. */
+    assert_true(gone_us > 0 && seen.at_us - gone_us < 200000);
+    assert_true(cpu_us < 100000);
+    assert_int_equal(seen.losts + seen.fails, 1);
+
+    frames = grobo_robot_get_counters(grobo_session_robot(session))->motion_frames;
+    ask("@plug");
+    run_until(&seen.ups, 2);
+    print_message("up %lld us after its name came back\n", (long long)(seen.at_us - here_us));
+    assert_true(here_us > 0 && seen.at_us - here_us < 500000);
+    assert_string_equal(grobo_session_device(session), config.device);
+
+    sense(before_ddeg, JOINTS);
+    assert_true(loop_run(base, 1000000));
+    sense(after_ddeg, JOINTS);
+    assert_memory_equal(after_ddeg, before_ddeg, sizeof before_ddeg);
+    assert_int_equal(grobo_robot_get_counters(grobo_session_robot(session))->motion_frames, frames);
+    assert_int_equal(seen.fails, 0);
+}
+
+static int set_up(void **state)
+{
+    struct event *changes;
+
+    base = grobo_loop_new();
+    watch = inotify_init1(IN_NONBLOCK);
+    assert_non_null(base);
+    assert_true(inotify_add_watch(watch, "/dev", IN_DELETE) >= 0);
+    assert_true(inotify_add_watch(watch, "/dev/serial/by-id", IN_CREATE | IN_MOVED_TO) >= 0);
+    changes = event_new(base, watch, EV_READ | EV_PERSIST, on_change, NULL);
+    assert_non_null(changes);
+    *state = changes;
+    return event_add(changes, NULL);
+}
+
+static int tear_down(void **state)
+{
+    grobo_session_free(session);
+    event_free(*state);
+    event_base_free(base);
+    return close(watch);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(an_adapter_pulled_out_in_a_motion_and_put_back, set_up,
+                                        tear_down),
+    };
+
+    if (getenv("GROBO_TEST_DEVICE") == NULL) {
+        fprintf(stderr, "GROBO_TEST_DEVICE says what to test\n");
+        return 2;
+    }
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
