@@ -19,7 +19,7 @@ give_up() {
 }
 
 here=$(dirname "$0")
-folder=$BUILD/drivers
+folder=$(cd "$BUILD" && pwd)/drivers || exit 1
 qemu=qemu-system-x86_64
 [ "$(uname -m)" = x86_64 ] || give_up 'the programs are not for x86_64'
 for command in $qemu apt-get dpkg-deb; do
@@ -100,8 +100,8 @@ timeout -k 5 240 $qemu -nodefaults -no-user-config -display none -no-reboot -m 5
     -chardev pipe,id=monitor,path="$work/monitor" -mon chardev=monitor \
     -chardev socket,id=s1,path="$work/cable",server=on,wait=off \
     -chardev socket,id=s2,path="$work/cable" \
-    -chardev udp,id=u0,localaddr=$address,localport=1,host=$address,port=2 \
-    -chardev udp,id=s3,localaddr=$address,localport=2,host=$address,port=1 \
+    -chardev udp,id=u0,localaddr=$address,localport=47001,host=$address,port=47002 \
+    -chardev udp,id=s3,localaddr=$address,localport=47002,host=$address,port=47001 \
     -chardev socket,id=robot,host=127.0.0.1,port="$sim_port" \
     -device isa-serial,chardev=s1,index=1 -device isa-serial,chardev=s2,index=2,irq=5 \
     -device isa-serial,chardev=s3,index=3,irq=7 -device qemu-xhci \
