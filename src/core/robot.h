@@ -151,6 +151,10 @@ int grobo_i_gate_send(grobo_robot *robot, const grobo_posture *target, const gro
 typedef enum grobo_i_chunk { GROBO_I_WHOLE = GROBO_JOINTS_MAX, GROBO_I_SMALL = 4 } grobo_i_chunk;
 /* The next move is the first from a sensed posture: a slow one. */
 void grobo_i_gate_soften(grobo_robot *robot);
+/* Around targets that come one by one, from a loop of the caller's own or as raw frames: the first
+ * of them is the slow one. */
+void grobo_i_gate_single(grobo_robot *robot);
+void grobo_i_gate_single_sent(grobo_robot *robot, int64_t time_us);
 /* Takes up to `chunk` joints out of *joints. */
 grobo_joint_mask grobo_i_take_chunk(grobo_joint_mask *joints, grobo_i_chunk chunk);
 /* Sets goal := present for `joints`, which were just read; not for those that stand too far

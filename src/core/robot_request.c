@@ -153,14 +153,12 @@ int grobo_robot_send(grobo_robot *robot, const grobo_posture *target, int64_t no
     int64_t time_us = 0;
     int result = admit_target(robot, target);
     if (result >= 0) {
-        if (robot->now_us >= robot->soft_us) {
-            robot->soft = false; /* where the first target was, it is by now */
-        }
+        grobo_i_gate_single(robot);
         grobo_i_play_overtake(robot);
         result = grobo_i_gate_send(robot, target, &how, &time_us);
     }
-    if (result >= 0 && robot->soft && robot->soft_us == GROBO_NEVER_US) {
-        robot->soft_us = robot->now_us + time_us;
+    if (result >= 0) {
+        grobo_i_gate_single_sent(robot, time_us);
     }
     grobo_i_leave(robot);
     return result < 0 ? result : GROBO_OK;

@@ -145,6 +145,23 @@ void grobo_i_gate_soften(grobo_robot *robot)
     robot->soft_us = GROBO_NEVER_US;
 }
 
+/* Who times targets of his own may be early by this. */
+#define EARLY_US 10000
+
+void grobo_i_gate_single(grobo_robot *robot)
+{
+    if (robot->now_us >= robot->soft_us - EARLY_US) {
+        robot->soft = false; /* where the first target was, it is by now */
+    }
+}
+
+void grobo_i_gate_single_sent(grobo_robot *robot, int64_t time_us)
+{
+    if (robot->soft && robot->soft_us == GROBO_NEVER_US) {
+        robot->soft_us = robot->now_us + time_us;
+    }
+}
+
 static double speed_limit(const grobo_robot *robot, int joint)
 {
     double most = robot->driver->model->joints[joint].max_speed_rad_s;
@@ -159,14 +176,15 @@ static double speed_limit(const grobo_robot *robot, int joint)
 /* Angles are rounded to 0.1 degree on the wire: that much further is not faster. */
 #define ROUNDING_RAD (0.1 * 0.017453292519943295)
 
-static int64_t time_needed(const grobo_robot *robot, int joint, double to_rad)
+/* For a target that leaves at at_us. */
+static int64_t time_needed(const grobo_robot *robot, int joint, double to_rad, int64_t at_us)
 {
     int64_t step_us = robot->driver->time_step_us;
     const grobo_robot_axis *axis = &robot->axes[joint];
-    double from_rad = grobo_i_axis_commanded(axis, robot->now_us);
+    double from_rad = grobo_i_axis_commanded(axis, at_us);
     double way_rad = fmax(fabs(to_rad - from_rad) - ROUNDING_RAD, 0);
     double needed_us = way_rad / speed_limit(robot, joint) * 1e6;
-    if (robot->soft && axis->way.to_us > robot->now_us) {
+    if (robot->soft && axis->way.to_us > at_us) {
         needed_us = fmax(needed_us, HALT_TIME_US); /* it goes on until the frame is there */
     }
     double steps = fmax(ceil(needed_us / (double)step_us), 1);
@@ -192,7 +210,7 @@ static int64_t give_time(grobo_robot *robot, grobo_target *target, bool each)
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         target->joint_time_us[j] = asked_us;
         if ((target->posture.set & GROBO_JOINT_BIT(j)) != 0) {
-            int64_t needed_us = time_needed(robot, j, target->posture.angle_rad[j]);
+            int64_t needed_us = time_needed(robot, j, target->posture.angle_rad[j], robot->now_us);
             if (needed_us == GROBO_NEVER_US) {
                 robot->fault_joint = j;
                 return GROBO_ERR_SPEED;
@@ -454,6 +472,17 @@ static bool all_on(const grobo_robot *robot, grobo_joint_mask joints)
     return true;
 }
 
+static int64_t longest_time(const grobo_robot *robot, const grobo_target *target)
+{
+    int64_t longest_us = 0;
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        bool moves = (target->posture.set & GROBO_JOINT_BIT(j)) != 0;
+        int64_t time_us = moves ? target->joint_time_us[j] : 0;
+        longest_us = time_us > longest_us ? time_us : longest_us;
+    }
+    return longest_us;
+}
+
 /* Nobody knows what it does: not after a latched stop, and then joints are looked for anew. */
 static int take_unknown(grobo_robot *robot)
 {
@@ -462,6 +491,14 @@ static int take_unknown(grobo_robot *robot)
     }
     grobo_i_gate_forget(robot, grobo_i_all_joints(robot));
     return GROBO_OK;
+}
+
+static bool in_time(const grobo_robot *robot, const grobo_target *target, int joint)
+{
+    double to_rad = target->posture.angle_rad[joint];
+    int64_t time_us = target->joint_time_us[joint];
+    return time_us >= time_needed(robot, joint, to_rad, robot->now_us) ||
+           time_us >= time_needed(robot, joint, to_rad, robot->now_us + EARLY_US);
 }
 
 static int judge_raw(grobo_robot *robot, const grobo_target *target, grobo_joint_mask on)
@@ -481,8 +518,7 @@ static int judge_raw(grobo_robot *robot, const grobo_target *target, grobo_joint
         return GROBO_ERR_STATE; /* a torque job does it safely; somebody else moves it */
     }
     for (int j = 0; j < model->n_joints; j++) {
-        if ((target->posture.set & GROBO_JOINT_BIT(j)) != 0 &&
-            target->joint_time_us[j] < time_needed(robot, j, target->posture.angle_rad[j])) {
+        if ((target->posture.set & GROBO_JOINT_BIT(j)) != 0 && !in_time(robot, target, j)) {
             robot->fault_joint = j;
             return GROBO_ERR_SPEED;
         }
@@ -503,10 +539,14 @@ int grobo_i_gate_raw(grobo_robot *robot, const uint8_t *frame, size_t size)
     if (result == GROBO_ERR_UNSUPPORTED && robot->config.accept_unknown_raw) {
         return take_unknown(robot);
     }
+    grobo_i_gate_single(robot);
     if (result >= 0) {
         result = judge_raw(robot, &target, torqued[GROBO_TORQUE_ON]);
     }
     if (result >= 0) {
+        if (target.posture.set != 0) {
+            grobo_i_gate_single_sent(robot, longest_time(robot, &target));
+        }
         note_torque(robot, torqued[GROBO_TORQUE_OFF] | torqued[GROBO_TORQUE_BRAKE]);
         note_way(robot, &target);
     }

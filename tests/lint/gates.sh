@@ -293,6 +293,33 @@ check 'seed map: another member than the reference' \
     refuses 'SC03 is y, not x' sh "$gates/seed_map.sh"
 unset GROBO_SHARED
 
+# ---- safety --------------------------------------------------------------------------------
+
+# safety_rows: a table whose rules name a test.
+safety_rows() {
+    printf '| %s |\n' 'rule | what | by | tests' '---|---|---|---' \
+        'heat | stops | - | `unit/test_a.c:works`' 'cold | stops | - | `cli/a.sh:it plays`'
+}
+# safety_refuses TEXT SED-COMMAND: the table changed so is refused with this.
+safety_refuses() {
+    safety_rows | sed "$2" >docs/safety.md
+    refuses "$1" named_tests safety docs/safety.md
+}
+named_tests() {
+    rules=$1
+    shift
+    awk -f "$gates/strip.awk" -f "$gates/named_tests.awk" -f "$gates/$rules.awk" "$@"
+}
+safety_rows >docs/safety.md
+check 'safety: a whole table' named_tests safety docs/safety.md
+check 'safety: a rule without a test' \
+    safety_refuses 'safety.md:3: safety: heat: names no test' '/heat/s/`[^`]*`/-/'
+check 'safety: no such test' safety_refuses 'heat: no such test: unit/test_a.c:work' 's/works/work/'
+check 'safety: a test that is not run' safety_refuses 'heat: no such test' 's/works/idle/'
+check 'safety: no such check' safety_refuses 'cold: no check called so' 's/it plays/it sings/'
+check 'safety: a row cut short' safety_refuses 'heat: a row has four cells' '/heat/s/| - //'
+check 'safety: no rules' safety_refuses 'no table of rules' '/heat/d;/cold/d'
+
 # ---- banned --------------------------------------------------------------------------------
 
 fresh

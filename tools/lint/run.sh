@@ -36,6 +36,13 @@ scan() {
     awk -f "$gates/strip.awk" -f "$gates/$rules.awk" "$@"
 }
 
+# The same for a document that names tests.
+named_tests() {
+    rules=$1
+    shift
+    awk -f "$gates/strip.awk" -f "$gates/named_tests.awk" -f "$gates/$rules.awk" "$@"
+}
+
 # Files whose last byte is not a newline.
 final_newline() {
     status=0
@@ -66,6 +73,7 @@ everything=$(texts)
     gate help sh "$gates/help.sh"
     gate tree sh "$gates/tree.sh"
     gate seed-map sh "$gates/seed_map.sh"
+    gate safety named_tests safety docs/guide/safety.md
 }
 if [ "$1" = --all ]; then
     gate headers sh "$gates/headers.sh"

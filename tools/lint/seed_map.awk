@@ -1,11 +1,16 @@
 # SPDX-License-Identifier: MIT
-# Gate: each row of docs/seed-map.md is whole and true. Reads, with strip.awk before it, the public
-# headers and then the map, told apart by their names; test programs as the rows name them.
+# Gate: each row of docs/seed-map.md is whole and true. Reads, with strip.awk and named_tests.awk
+# before it, the public headers and then the map, told apart by their names; test programs as the
+# rows name them.
 #
 # A row: | id | member | symbols | note | tests |
 #   symbols: `grobo_name`, `GROBO_NAME` or `grobo_struct.field`, declared in a public header
 #   tests:   `engine/test_x.c:function` or `cli/x.sh:what a check is called`, below tests/. The
 #            function is there, it is run, and its file uses one of the row's symbols.
+
+BEGIN {
+    gate = "seed-map"
+}
 
 # ---- headers: names and the fields of structs ----
 
@@ -38,51 +43,10 @@ FILENAME ~ /\.h$/ {
 
 # ---- tests ----
 
-function load(file,    line, whole) {
-    if (file in loaded) {
-        return loaded[file] != ""
-    }
-    whole = "\n"
-    while ((getline line < file) > 0) {
-        whole = whole line "\n"
-    }
-    close(file)
-    loaded[file] = whole == "\n" ? "" : whole
-    return loaded[file] != ""
-}
-
-# How often a word stands in a text.
-function times(word, text,    n, at, before, after) {
-    n = 0
-    while ((at = index(text, word)) > 0) {
-        before = substr(text, at - 1, 1)
-        after = substr(text, at + length(word), 1)
-        if ((at == 1 || before !~ /[A-Za-z0-9_]/) && after !~ /[A-Za-z0-9_]/) {
-            n++
-        }
-        text = substr(text, at + length(word))
-    }
-    return n
-}
-
-function check_test(name,    at, file, what, i, used) {
-    at = index(name, ":")
-    file = "tests/" substr(name, 1, at - 1)
-    what = substr(name, at + 1)
-    if (at == 0 || !load(file)) {
-        complain("seed-map: " id ": no such test program: " name)
+function check_test(name,    file, i, used) {
+    file = file_of_test(name)
+    if (file == "" || file ~ /\.sh$/) {
         return
-    }
-    if (file ~ /\.sh$/) {
-        if (index(loaded[file], what) == 0) {
-            complain("seed-map: " id ": no check called so: " name)
-        }
-        return
-    }
-    # Defined once and listed once, at least.
-    if (index(loaded[file], "\nstatic void " what "(void **state)") == 0 ||
-        times(what, loaded[file]) < 2) {
-        complain("seed-map: " id ": no such test: " name)
     }
     for (i = 1; i <= n_symbols; i++) {
         sub(/.*\./, "", symbol[i])
@@ -94,20 +58,6 @@ function check_test(name,    at, file, what, i, used) {
 }
 
 # ---- rows ----
-
-# Cuts the `spans` of a cell into list; returns how many.
-function spans(cell, list,    parts, n, i) {
-    n = split(cell, parts, "`")
-    for (i = 2; i < n; i += 2) {
-        list[i / 2] = parts[i]
-    }
-    return int((n - 1) / 2)
-}
-
-function trim(text) {
-    gsub(/^ +| +$/, "", text)
-    return text
-}
 
 $0 ~ /^\| *[A-Z][A-Z][0-9][0-9] *\|/ {
     if (split($0, cell, "|") != 7) {

@@ -10,5 +10,6 @@ members=${GROBO_SHARED:-../shared}/seed/members.tsv
 [ -r "$members" ] || members=
 # The names of headers have no blanks.
 # shellcheck disable=SC2046
-awk -v members="$members" -f "$gates/strip.awk" -f "$gates/seed_map.awk" \
+awk -v members="$members" -f "$gates/strip.awk" -f "$gates/named_tests.awk" \
+    -f "$gates/seed_map.awk" \
     include/grobo/*.h $(ls ports/posix/include/grobo/*.h 2>/dev/null) docs/seed-map.md

@@ -1,0 +1,286 @@
+/* SPDX-License-Identifier: MIT */
+/* Limits by every way in, speed under every control, times out of the ordinary. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <math.h>
+#include <string.h>
+
+#include <grobo/gr001.h>
+#include <grobo/hrpsys.h>
+
+#include "rig.h"
+
+enum { NECK = 13, R_KNEE = 3, NECK_ID = 2 };
+
+static grobo_test_rig rig;
+static rig_clip clip, other;
+static const grobo_robot_config quiet = {.sense_interval_us = GROBO_SENSE_NEVER};
+
+/* The time in the frame that moves motor `id` alone, the last one sent; in ms. */
+static int sent_ms(int id)
+{
+    for (size_t i = rig.n_sent; i > 0; i--) {
+        const uint8_t *b = rig.sent[i - 1].bytes;
+        if (rig.sent[i - 1].size == 14 && b[4] == id && b[6] == GROBO_RS30X_GOAL) {
+            return (b[11] | b[12] << 8) * 10;
+        }
+    }
+    return -1;
+}
+
+/* ---- limits ---------------------------------------------------------------------------------- */
+
+/* The neck may turn to 50 degrees; this is beyond it. Negative where a mirror makes it so. */
+#define TOO_FAR_DEG 50.2
+
+static const rig_key beyond[] = {{0, {{NECK, 0}}}, {1000, {{NECK, TOO_FAR_DEG}}}};
+static const rig_key below[] = {{0, {{NECK, 0}}}, {1000, {{NECK, -TOO_FAR_DEG}}}};
+static const rig_key within[] = {{0, {{NECK, 0}}}, {300, {{NECK, 10}}}};
+static grobo_hrpsys hrpsys;
+
+static int by_move(void)
+{
+    grobo_posture target = rig_posture(&rig, NECK, TOO_FAR_DEG, 3000);
+    return grobo_robot_move(&rig.robot, &target, rig.now_us);
+}
+
+static int by_send(void)
+{
+    grobo_posture target = rig_posture(&rig, NECK, TOO_FAR_DEG, 3000);
+    return grobo_robot_send(&rig.robot, &target, rig.now_us);
+}
+
+static int by_motor(void)
+{
+    return grobo_gr001_move(&rig.robot, NECK_ID, 502, 300, rig.now_us);
+}
+
+static int by_motors(void)
+{
+    double angle_rad[20];
+    grobo_posture target;
+    grobo_posture_init_pose(&target, &grobo_gr001_model);
+    for (int j = 0; j < 20; j++) {
+        angle_rad[grobo_gr001_model.joints[j].motor - 1] = target.angle_rad[j];
+    }
+    angle_rad[NECK_ID - 1] = grobo_rad_from_deg(TOO_FAR_DEG);
+    return grobo_gr001_set_angles(&rig.robot, angle_rad, 20, 3000000, rig.now_us);
+}
+
+static int by_hrpsys(void)
+{
+    grobo_posture target;
+    grobo_posture_init_pose(&target, &grobo_gr001_model);
+    target.angle_rad[NECK] = grobo_rad_from_deg(TOO_FAR_DEG);
+    grobo_hrpsys_init(&hrpsys, &rig.robot);
+    assert_int_equal(grobo_hrpsys_write_joint_commands(&hrpsys, target.angle_rad, 20), 0);
+    return grobo_hrpsys_one_step(&hrpsys, rig.now_us);
+}
+
+static int play(const rig_key *keys, const grobo_play_options *options)
+{
+    rig_clip_init(&clip, keys, 2);
+    return grobo_robot_play(&rig.robot, &clip.clip, options, rig.now_us);
+}
+
+static int by_keys(void)
+{
+    return play(beyond, NULL);
+}
+
+static int at_a_rate(void)
+{
+    grobo_play_options options = {.mode = GROBO_PLAY_RATE, .rate_hz = 30};
+    return play(beyond, &options);
+}
+
+static int backwards(void)
+{
+    grobo_play_options options = {.reverse = true};
+    return play(beyond, &options);
+}
+
+static int mirrored(void)
+{
+    grobo_play_options options = {.mirror = true};
+    return play(below, &options);
+}
+
+static int as_the_second(void)
+{
+    int number = play(within, NULL);
+    rig_expect(&rig, number, GROBO_OK);
+    rig_clip_init(&other, beyond, 2);
+    assert_int_equal(grobo_robot_enqueue(&rig.robot, &other.clip, NULL, rig.now_us), 1);
+    return number;
+}
+
+static int turn_neck(const grobo_driver *self, void *ctx, const grobo_posture *sensed,
+                     grobo_posture *target)
+{
+    (void)self;
+    (void)ctx;
+    (void)sensed;
+    if ((target->set & GROBO_JOINT_BIT(NECK)) != 0) {
+        target->angle_rad[NECK] += grobo_rad_from_deg(40.2);
+    }
+    return 0;
+}
+
+static int by_the_stabilizer(void)
+{
+    return play(within, NULL);
+}
+
+/* All but the raw frame, which is as it is: refused or clamped as configured, and counted. */
+static void every_way_in_is_held_to_the_limits(void **state)
+{
+    (void)state;
+    static int (*const ways[])(void) = {by_move,   by_send,       by_motor,         by_motors,
+                                        by_hrpsys, by_keys,       at_a_rate,        backwards,
+                                        mirrored,  as_the_second, by_the_stabilizer};
+    for (size_t i = 0; i < sizeof ways / sizeof ways[0]; i++) {
+        for (int clamps = 0; clamps < 2; clamps++) {
+            grobo_robot_config config = quiet;
+            grobo_driver driver = *grobo_gr001_driver(GROBO_WIRING_BOARD);
+            config.limit_policy = clamps ? GROBO_LIMIT_CLAMP : GROBO_LIMIT_REFUSE;
+            driver.stabilize = ways[i] == by_the_stabilizer ? turn_neck : NULL;
+            rig_start_driver(&rig, &driver, &config, NULL);
+            rig_power(&rig);
+            int result = ways[i]();
+            double most_deg = rig_angle_deg(&rig, NECK);
+            for (int t = 0; t < 80; t++) { /* the rig looks at each frame on its way */
+                rig_run(&rig, 100000);
+                most_deg = fmax(most_deg, rig_angle_deg(&rig, NECK));
+            }
+            const grobo_event *trip = rig_last(&rig, GROBO_EVENT_TRIP);
+            if (clamps) {
+                assert_true(result >= 0 && most_deg > 49 && most_deg < 50.1);
+                assert_true(grobo_robot_get_counters(&rig.robot)->clamped > 0);
+                assert_null(trip);
+            } else if (result < 0) {
+                assert_int_equal(result, GROBO_ERR_LIMIT);
+                assert_true(fabs(most_deg) < 0.1);
+            } else {
+                assert_non_null(trip);
+                assert_int_equal(trip->u.trip.trip, GROBO_TRIP_LIMIT);
+                assert_int_equal(trip->u.trip.joint, NECK);
+                assert_true(fabs(trip->u.trip.value - TOO_FAR_DEG) < 1e-9);
+            }
+        }
+    }
+}
+
+/* ---- speed ----------------------------------------------------------------------------------- */
+
+/* Keys that ask for more than servos can do, and all that may be done to a motion meanwhile: the
+ * rig holds every frame against each joint's speed. */
+static void control(int which)
+{
+    switch (which) {
+    case 0:
+        (void)grobo_robot_pause(&rig.robot, rig.now_us);
+        rig_run(&rig, 700000);
+        (void)grobo_robot_resume(&rig.robot, rig.now_us);
+        break;
+    case 1:
+        (void)grobo_robot_speed(&rig.robot, 1000, rig.now_us);
+        break;
+    case 2:
+        (void)grobo_robot_seek(&rig.robot, 900000, rig.now_us);
+        break;
+    case 3:
+        (void)grobo_robot_enqueue(&rig.robot, &other.clip, NULL, rig.now_us);
+        break;
+    case 4:
+        (void)grobo_robot_pause(&rig.robot, rig.now_us);
+        (void)grobo_robot_seek(&rig.robot, 100000, rig.now_us);
+        (void)grobo_robot_resume(&rig.robot, rig.now_us);
+        break;
+    case 5:
+        (void)grobo_robot_stop(&rig.robot, true, rig.now_us);
+        (void)grobo_robot_play(&rig.robot, &other.clip, NULL, rig.now_us);
+        break;
+    case 6:
+        (void)grobo_robot_stop(&rig.robot, false, rig.now_us);
+        rig_run(&rig, 400000);
+        (void)grobo_robot_play(&rig.robot, &other.clip, NULL, rig.now_us);
+        break;
+    default:
+        rig_stall(&rig, 200000);
+        break;
+    }
+}
+
+static void no_control_of_a_motion_makes_it_too_fast(void **state)
+{
+    (void)state;
+    static const rig_key wild[] = {{0, {{NECK, -50}}},
+                                   {200, {{NECK, 50}, {R_KNEE, -120}}},
+                                   {400, {{NECK, -50}}},
+                                   {1000, {{R_KNEE, -10}}}};
+    static const rig_key back[] = {{0, {{NECK, 50}, {R_KNEE, -100}}}, {100, {{NECK, -50}}}};
+    uint64_t stretched = 0;
+    for (int i = 0; i < 2 * 8 * 8; i++) {
+        grobo_play_options options = {.mode = i % 2 ? GROBO_PLAY_RATE : GROBO_PLAY_KEY,
+                                      .rate_hz = 30,
+                                      .repeat = 20,
+                                      .reverse = i % 5 == 0};
+        rig_start(&rig, &quiet, NULL);
+        rig_clip_init(&clip, wild, 4);
+        rig_clip_init(&other, back, 2);
+        rig_power(&rig);
+        rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options, rig.now_us), GROBO_OK);
+        rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
+        rig_run(&rig, 37000 * (1 + i % 7));
+        control(i / 2 % 8);
+        rig_run(&rig, 53000 * (1 + i % 11));
+        control(i / 16);
+        rig_run(&rig, 3000000);
+        stretched += grobo_robot_get_counters(&rig.robot)->stretched;
+    }
+    assert_true(stretched > 128); /* it was asked for */
+}
+
+/* The wire has no time that long: what would be sent instead is faster than allowed. */
+static void a_move_that_cannot_be_slow_enough_is_refused(void **state)
+{
+    (void)state;
+    grobo_robot_config config = quiet;
+    config.approach_dps = 0.1;
+    rig_start(&rig, &config, NULL);
+    rig_power(&rig);
+    grobo_posture target = rig_posture(&rig, NECK, 40, 100);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_ERR_SPEED);
+    assert_true(fabs(rig_angle_deg(&rig, NECK)) < 0.1);
+}
+
+static void a_time_out_of_all_reason_is_the_longest_there_is(void **state)
+{
+    (void)state;
+    rig_start(&rig, &quiet, NULL);
+    rig_power(&rig);
+    grobo_posture target = rig_posture(&rig, NECK, 40, 0);
+    target.time_us = INT64_MAX;
+    rig_forget(&rig);
+    int number = grobo_robot_move(&rig.robot, &target, rig.now_us);
+    rig_run(&rig, 1000000);
+    assert_int_equal(sent_ms(NECK_ID), 163830);
+    assert_int_equal(grobo_robot_cancel(&rig.robot, rig.now_us), GROBO_OK);
+    rig_expect(&rig, number, GROBO_ERR_CANCELED);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_way_in_is_held_to_the_limits),
+        cmocka_unit_test(no_control_of_a_motion_makes_it_too_fast),
+        cmocka_unit_test(a_move_that_cannot_be_slow_enough_is_refused),
+        cmocka_unit_test(a_time_out_of_all_reason_is_the_longest_there_is),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
