@@ -118,10 +118,13 @@ SUPPORT_LIB := $(BUILD)/libsupport.a
 
 VERSION = $(shell sed -n 's/.*GROBO_VERSION_STRING "\(.*\)"/\1/p' include/grobo/version.h)
 
+include tools/baremetal/baremetal.mk
+
 # ---- targets -------------------------------------------------------------------------------
 
 .PHONY: help all demo check lint lint-quick format test check-san check-tsan check-memcheck install uninstall
 .PHONY: clean tidy fuzz soak cov dist bench plots cross check-cross check-drivers FORCE
+.PHONY: firmware size check-firmware
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-15s %s\n", $$1, $$2 }' Makefile
@@ -190,6 +193,18 @@ check-drivers: ## the serial port's tests on real drivers, of a Debian kernel in
 	@$(MAKE) --no-print-directory $(GRCTL) $(DRIVER_PROGRAMS)
 	@GRCTL="$(abspath $(GRCTL))" BUILD="$(BUILD)" TEST_TIMEOUT_S=300 TEST_LOGS="$(BUILD)/logs/drivers" \
 	    DRIVER_PROGRAMS="$(DRIVER_PROGRAMS)" tests/run.sh tests/drivers/boot.sh
+
+firmware: $(FIRMWARES) ## the core and a simulated GR001 for Cortex-M0 and M4, in build/bare
+	@:
+
+size: $(BARE_LIBS) $(BARE_RAM) ## what that takes, against the limits; UPDATE=1 keeps the figures
+	@PREFIX=$(BARE_PREFIX) UPDATE=$(UPDATE) tools/baremetal/size.sh $(BARE_DIR) $(BARE_CPUS)
+
+check-firmware: $(GRCTL) ## grctl against that GR001 in qemu-system-arm
+	-@tools/setup.sh --cross baremetal
+	@if command -v $(BARE_PREFIX)gcc >/dev/null; then $(MAKE) --no-print-directory firmware; fi
+	@GRCTL="$(abspath $(GRCTL))" FIRMWARE="$(BARE_DIR)" BARE_PREFIX=$(BARE_PREFIX) \
+	    TEST_TIMEOUT_S=300 TEST_LOGS="$(BUILD)/logs/firmware" tests/run.sh tests/firmware/gr001.sh
 
 bench: $(BENCHES) $(GRCTL) ## speed and punctuality; fails where a promise is not kept
 	@status=0; for program in $(BENCHES); do \

@@ -23,7 +23,7 @@ while [ $# -gt 0 ]; do
     --check) level=2 ;;
     --ci) level=3 ;;
     --drivers) level=2 targets=drivers ;;
-    --ports) level=2 targets='arm64 armhf riscv64 s390x win64 drivers' ;;
+    --ports) level=2 targets='arm64 armhf riscv64 s390x win64 drivers baremetal' ;;
     --cross)
         level=0 targets=${2:-}
         [ $# -lt 2 ] || shift
@@ -105,6 +105,11 @@ need_debian() {
     need "$@" '' '' '' ''
 }
 
+have_newlib() {
+    have_command arm-none-eabi-gcc &&
+        [ "$(arm-none-eabi-gcc -print-file-name=nano.specs)" != nano.specs ]
+}
+
 # What a build for another machine needs here; its libraries are tools/cross/libs.sh's business.
 look_cross() {
     need make 'to build' have_command make -- make make make make make
@@ -119,6 +124,13 @@ look_cross() {
     armhf) need_foreign arm-linux-gnueabihf qemu-arm ;;
     riscv64) need_foreign riscv64-linux-gnu qemu-riscv64 ;;
     s390x) need_foreign s390x-linux-gnu qemu-s390x ;;
+    baremetal)
+        need_debian 'a compiler for microcontrollers' 'to build firmware' \
+            have_command arm-none-eabi-gcc -- gcc-arm-none-eabi
+        need_debian newlib 'to build firmware' have_newlib -- libnewlib-arm-none-eabi
+        need_debian qemu-system-arm 'to run firmware' have_command qemu-system-arm -- \
+            qemu-system-arm
+        ;;
     win64) need_windows x86_64-w64-mingw32 x86-64 ;;
     drivers)
         need qemu-system-x86_64 'to boot a kernel' have_command qemu-system-x86_64 -- \

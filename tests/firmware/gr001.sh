@@ -1,0 +1,108 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# The firmware of docs/examples/firmware in an emulated microcontroller, grctl at its UART.
+# $FIRMWARE is the folder that has it for each processor, as `make firmware` builds it.
+. tests/support/cli.sh
+
+qemu=qemu-system-arm
+qemu_pid=
+
+stop_machine() {
+    exec 9>&-
+    [ -z "$qemu_pid" ] && return
+    kill "$qemu_pid" 2>/dev/null
+    wait "$qemu_pid" 2>/dev/null
+    qemu_pid=
+}
+trap 'stop_machine; end_cli_test' EXIT
+
+# start_machine MACHINE FIRMWARE: $pty is its UART.
+start_machine() {
+    timeout 200 "$qemu" -M "$1" -nographic -monitor none -serial pty -kernel "$2" \
+        >"$work/qemu.log" 2>&1 </dev/null &
+    qemu_pid=$!
+    written "$work/qemu.log" 'redirected to' || return 1
+    pty=$(sed -n 's,.*redirected to \([^ ]*\).*,\1,p' "$work/qemu.log")
+    # QEMU looks once a second whether somebody has the other end: so somebody has it always.
+    exec 9<>"$pty"
+}
+
+# Until QEMU has looked, bytes go nowhere.
+answers() {
+    answers_left=300
+    until "$GRCTL" -d "$pty" --retries 0 status m1 >"$work/out" 2>&1; do
+        answers_left=$((answers_left - 1))
+        [ $answers_left -gt 0 ] || { cat "$work/out" "$work/qemu.log"; return 1; }
+        sleep 0.1
+    done
+}
+
+finds_all() {
+    exits 0 "$GRCTL" -d "$pty" scan --last 22 --timeout 300 || return 1
+    [ "$(grep -c RS30 "$work/out")" -eq 20 ] || { cat "$work/out"; return 1; }
+}
+
+# Started by Ctrl-C; the exit policy is carried out.
+stops_smoothly() {
+    timeout --preserve-status -s INT 3 "$GRCTL" -d "$pty" --on-exit off play -n 20 \
+        motions/greet.pseq >"$work/out" 2>&1
+    [ $? -eq 130 ] || { cat "$work/out"; return 1; }
+}
+
+# What is linked: nothing that allocates, prints or asks an operating system.
+links_bare() {
+    foreign=$("${BARE_PREFIX}nm" "$1/gr001.elf" |
+        grep -E ' _?(malloc|calloc|realloc|free|sbrk|[fsv]*n?printf|puts|abort|exit)(_r)?$')
+    [ -z "$foreign" ] || { echo "$foreign"; return 1; }
+}
+
+# What the core leaves open, beside itself: mem*, math, and what the compiler brings.
+core_asks_little() {
+    "${BARE_PREFIX}nm" --defined-only "$1/libgrobo-core.a" | awk 'NF == 3 { print $3 }' |
+        sort -u >"$work/defined"
+    open=$("${BARE_PREFIX}nm" -u "$1/libgrobo-core.a" | awk '/ U / { print $2 }' | sort -u |
+        comm -23 - "$work/defined" |
+        grep -vxE 'mem(cpy|move|set|cmp|chr)|strlen' |
+        grep -vxE '__(aeabi|gnu_thumb1)_.*|__[a-z]+[dst][fi][0-9]?' |
+        grep -vxE 'a?(sin|cos|tan)|atan2|sqrt|exp2?|log2?|pow|fabs|fmin|fmax|floor|ceil|l?round')
+    [ -z "$open" ] || { echo "$open"; return 1; }
+}
+
+# try CPU MACHINE
+try() {
+    check "$1: the core asks for mem*, math and the compiler's library" core_asks_little \
+        "$FIRMWARE/$1"
+    check "$1: no malloc and no stdio in the firmware" links_bare "$FIRMWARE/$1"
+    if ! command -v "$qemu" >/dev/null; then
+        skip "$1: in $2" "$qemu is missing"
+        return
+    fi
+    start_machine "$2" "$FIRMWARE/$1/gr001.elf"
+    check "$1: answers in $2" answers
+    check "$1: scan finds 20 servos" finds_all
+    check "$1: status" both exits 0 "$GRCTL" -d "$pty" status --- says 'R_KNEE_P  *-40\.0'
+    check "$1: a register is written and read back" both \
+        exits 0 "$GRCTL" -d "$pty" servo-set 12 max_torque 55 --- both \
+        exits 0 "$GRCTL" -d "$pty" servo-get 12 max_torque --- says 55
+    check "$1: plays a motion" both \
+        exits 0 "$GRCTL" -d "$pty" --on-exit hold play --table motions/greet.pseq --- \
+        says 'largest error at the end 0\.'
+    grep ' frames, ' "$work/out" | sed "s/^/# $1: deadlines: /"
+    check "$1: Ctrl-C stops it smoothly and lets it go" both stops_smoothly --- both \
+        exits 0 "$GRCTL" -d "$pty" status m12 --- says ' off '
+    check "$1: emergency stop brakes" both exits 0 "$GRCTL" -d "$pty" estop --- both \
+        exits 0 "$GRCTL" -d "$pty" status m12 --- says ' brake '
+    check "$1: after it no move" exits 4 "$GRCTL" -d "$pty" move m5 10 500
+    check "$1: until it is taken back" both exits 0 "$GRCTL" -d "$pty" estop --reset --- \
+        exits 0 "$GRCTL" -d "$pty" move m5 10 500
+    stop_machine
+}
+
+if [ ! -e "$FIRMWARE/cortex-m0/gr001.elf" ]; then
+    skip "firmware" "no compiler for it: tools/setup.sh --cross baremetal"
+else
+    # What is built for a Cortex-M0 runs on a Cortex-M3 as well.
+    try cortex-m0 mps2-an385
+    try cortex-m4 mps2-an386
+fi
+done_testing

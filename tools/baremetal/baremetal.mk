@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: MIT
+# The core for a Cortex-M0 and a Cortex-M4: `make firmware`, `make size`, `make check-firmware`.
+
+BARE_PREFIX ?= arm-none-eabi-
+BARE_CPUS := cortex-m0 cortex-m4
+# The caps of limits.h for a robot of 20 joints.
+BARE_CAPS ?= -DGROBO_JOINTS_MAX=20 -DGROBO_QUEUE_MAX=2 -DGROBO_SIM_WIRE_BYTES=256 \
+    -DGROBO_SIM_FIFO_BYTES=256
+# An assertion would bring the C library's way of printing it.
+BARE_FLAGS := -std=c11 -DNDEBUG $(WARNINGS) -mthumb -Os -ffunction-sections -fdata-sections -fstack-usage \
+    $(BARE_CAPS) -Iinclude -Isrc -I.
+BARE_DIR := $(BUILD)/bare
+FIRMWARE_SRCS := $(sort $(wildcard docs/examples/firmware/*.c))
+FIRMWARE_SCRIPT := docs/examples/firmware/mps2.ld
+FIRMWARES := $(BARE_CPUS:%=$(BARE_DIR)/%/gr001.elf)
+BARE_LIBS := $(BARE_CPUS:%=$(BARE_DIR)/%/libgrobo-core.a)
+BARE_RAM := $(BARE_CPUS:%=$(BARE_DIR)/%/tools/baremetal/ram.o)
+
+# $(call bare,CPU)
+define bare
+$(BARE_DIR)/$(1)/%.o: %.c tools/baremetal/baremetal.mk
+	$$(say) CC '$$< ($(1))'
+	@mkdir -p $$(@D)
+	$$(Q)$(BARE_PREFIX)gcc -mcpu=$(1) $$(BARE_FLAGS) -MMD -MP -c -o $$@ $$<
+
+$(BARE_DIR)/$(1)/libgrobo-core.a: $(CORE_SRCS:%.c=$(BARE_DIR)/$(1)/%.o)
+	$$(say) AR $$@
+	@rm -f $$@
+	$$(Q)$(BARE_PREFIX)ar rcs $$@ $$^
+
+$(BARE_DIR)/$(1)/gr001.elf: $(FIRMWARE_SRCS:%.c=$(BARE_DIR)/$(1)/%.o) \
+    $(BARE_DIR)/$(1)/libgrobo-core.a $(FIRMWARE_SCRIPT)
+	$$(say) LD $$@
+	$$(Q)$(BARE_PREFIX)gcc -mcpu=$(1) -mthumb --specs=nano.specs -nostartfiles -Wl,--gc-sections \
+	    -Wl,-Map=$$(@:.elf=.map) -T $(FIRMWARE_SCRIPT) -o $$@ $$(filter %.o %.a,$$^) -lm
+endef
+$(foreach cpu,$(BARE_CPUS),$(eval $(call bare,$(cpu))))

@@ -1,0 +1,128 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# What each part of the core takes on a microcontroller, beside what it took when the figures were
+# last kept; fails above the limits.
+#
+# usage: size.sh DIR CPU...     DIR/CPU has the objects, as `make size` builds them
+# environment: PREFIX=arm-none-eabi-
+#              UPDATE=1         keep the figures in tools/baremetal/size.tsv
+set -u
+
+# At most: text of codec, bus and sequencer on a Cortex-M0; RAM of a bus with 20 joints, anywhere.
+text_limit=12288
+ram_limit=1024
+
+prefix=${PREFIX:-arm-none-eabi-}
+kept=tools/baremetal/size.tsv
+dir=$1
+shift
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+: >"$work/now"
+
+# What belongs together. Codec, bus and sequencer need of the others only postures.
+rooms='codec bus sequencer names postures robot engine simulator'
+codec='core/board core/board_frame core/framer core/rs30x_build core/rs30x_parse core/rs30x_state'
+bus='core/bus core/bus_time'
+sequencer='core/sequencer core/sequencer_clip core/sequencer_info'
+names='core/error core/rs30x_registers core/sequencer_names core/version'
+postures='core/posture core/model core/interpolate'
+robot='core/driver core/rs30x_driver core/gr001_driver core/gr001_model'
+engine='core/robot core/robot_job core/robot_play core/robot_query core/robot_request
+    core/robot_slot core/robot_steps core/safety_gate core/safety_watch core/sensing core/hrpsys'
+simulator='sim/board sim/bus sim/fault sim/inspect sim/power sim/servo sim/shaft sim/sim'
+
+# figure CPU NAME BYTES: notes it, and prints it beside the one that was kept.
+figure() {
+    printf '%s\t%s\t%s\n' "$1" "$2" "$3" >>"$work/now"
+    before=$(awk -F '\t' -v cpu="$1" -v name="$2" '$1 == cpu && $2 == name { print $3 }' \
+        "$kept" 2>/dev/null)
+    printf '  %-28s %7d  %7s\n' "$2" "$3" "${before:--}"
+}
+
+# One line an object: OBJECT TEXT DATA.
+measure() {
+    find "$1/src" -name '*.o' | sort | while read -r object; do
+        name=${object#"$1"/src/}
+        "${prefix}size" "$object" | awk -v name="${name%.o}" 'NR == 2 { print name, $1, $2 + $3 }'
+    done >"$work/objects"
+    find "$1/src" -name '*.o' | while read -r object; do
+        name=${object#"$1"/src/}
+        "${prefix}objdump" -dr --no-show-raw-insn "$object" | sed "s,^,${name%.o} ,"
+    done >"$work/calls"
+}
+
+sum() {
+    awk -v objects="$1" -v column="$2" '
+        BEGIN { n = split(objects, list, " "); for (i = 1; i <= n; i++) wanted[list[i]] = 1 }
+        $1 in wanted { bytes += $column }
+        END { print bytes + 0 }' "$work/objects"
+}
+
+report() {
+    cpu=$1
+    measure "$dir/$cpu"
+    printf '%s, bytes%24s  %7s\n' "$cpu" now before
+    printf ' text\n'
+    told=
+    for room in $rooms; do
+        eval "objects=\$$room"
+        for object in $objects; do
+            figure "$cpu" "$object" "$(sum "$object" 2)"
+            told="$told $object"
+        done
+        figure "$cpu" "= $room" "$(sum "$objects" 2)"
+    done
+    text=$(sum "$codec $bus $sequencer" 2)
+    figure "$cpu" '= codec, bus, sequencer' "$text"
+    figure "$cpu" '= static data of all' "$(sum "$told" 3)"
+    printf ' memory of one\n'
+    "${prefix}nm" -S --radix=d "$dir/$cpu/tools/baremetal/ram.o" | sed -n 's/ ram_/ /p' |
+        while read -r _ bytes _ name; do
+            figure "$cpu" "$name" "$(expr "$bytes" + 0)"
+        done
+    printf ' stack, deepest chain of calls\n'
+    for room in $rooms; do
+        eval "objects=\$$room"
+        # The files' names have no spaces.
+        # shellcheck disable=SC2046
+        awk -v objects="$(echo $objects)" -f tools/baremetal/stack.awk \
+            $(find "$dir/$cpu/src" -name '*.su') "$work/calls" >"$work/deepest"
+        read -r bytes way <"$work/deepest"
+        figure "$cpu" "stack $room" "$bytes"
+        printf '    %s\n' "$way"
+    done
+    judge
+}
+
+# Whatever has no room, and whatever is above a limit.
+judge() {
+    awk '{ print $1 }' "$work/objects" | while read -r object; do
+        case " $told " in
+        *" $object "*) ;;
+        *) echo "size: src/$object.c is in no room of tools/baremetal/size.sh" ;;
+        esac
+    done >>"$work/bad"
+    if [ "$cpu" = cortex-m0 ] && [ "$text" -gt $text_limit ]; then
+        echo "size: codec, bus and sequencer take $text bytes on $cpu, more than $text_limit"
+    fi >>"$work/bad"
+    ram=$(awk -F '\t' -v cpu="$cpu" '$1 == cpu && $2 == "bus_of_20" { print $3 }' "$work/now")
+    if [ "$ram" -gt $ram_limit ]; then
+        echo "size: a bus of 20 joints takes $ram bytes on $cpu, more than $ram_limit"
+    fi >>"$work/bad"
+}
+
+: >"$work/bad"
+for cpu in "$@"; do
+    report "$cpu"
+done
+if [ -n "${UPDATE:-}" ]; then
+    cp "$work/now" "$kept"
+fi
+if [ -s "$work/bad" ]; then
+    cat "$work/bad" >&2
+    exit 1
+fi
+text=$(awk -F '\t' '$1 == "cortex-m0" && $2 == "= codec, bus, sequencer" { print $3 }' "$work/now")
+echo "size: codec, bus and sequencer take $text of $text_limit bytes, a bus of 20 joints" \
+    "$ram of $ram_limit"
