@@ -24,6 +24,7 @@ CROSS_COMPILE ?=
 SAN ?=
 PORT ?= posix
 EXE ?=
+ALSO ?=
 EMULATOR ?=
 RING ?= unit engine link fault port cli fuzz lint export
 CFLAGS ?= -O2 -g
@@ -109,7 +110,7 @@ EXAMPLES := $(patsubst %.c,$(BUILD)/%$(EXE),$(EXAMPLE_SRCS))
 
 STATIC_LIB := $(BUILD)/libgrobo.a
 CORE_LIB := $(BUILD)/libgrobo-core.a
-SHARED_LIB := $(BUILD)/$(SONAME)
+SHARED_LIB := $(if $(SONAME),$(BUILD)/$(SONAME))
 PC_FILE := $(BUILD)/grobo.pc
 GRCTL := $(if $(TOOL_SRCS),$(BUILD)/grctl$(EXE))
 # What runs on this machine: grctl, or a script that gives it to the emulator.
@@ -132,7 +133,7 @@ help: ## this list
 	@echo '  RING="unit engine" (for test) PREFIX=/usr/local DESTDIR= V=1'
 	@echo '  TARGET=one of $(TARGETS) (for cross)'
 
-all: $(STATIC_LIB) $(CORE_LIB) $(SHARED_LIB) $(PC_FILE) $(GRCTL) $(GRCTL_RUN) ## libraries and grctl, in build/
+all: $(STATIC_LIB) $(CORE_LIB) $(SHARED_LIB) $(PC_FILE) $(GRCTL) $(GRCTL_RUN) $(ALSO) ## libraries and grctl, in build/
 
 MOTION ?= motions/greet.pseq
 demo: ## play MOTION=motions/greet.pseq on a simulated robot behind a pty
@@ -178,7 +179,7 @@ check-memcheck: ## the same under valgrind
 	@TEST_WRAPPER='valgrind -q --leak-check=full --error-exitcode=99' \
 	    $(MAKE) --no-print-directory test RING='$(filter-out cli lint export,$(RING))'
 
-TARGETS := $(filter-out linux,$(patsubst tools/cross/%.mk,%,$(wildcard tools/cross/*.mk)))
+TARGETS := $(filter-out linux static,$(patsubst tools/cross/%.mk,%,$(wildcard tools/cross/*.mk)))
 cross_make = $(if $(filter $(TARGETS),$(TARGET)),,$(error TARGET= is one of $(TARGETS)))$(MAKE) \
     --no-print-directory CROSS=$(TARGET) BUILD=$(BUILD)/$(TARGET)
 cross: ## build for another machine, in build/arm64 for TARGET=arm64

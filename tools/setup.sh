@@ -23,7 +23,9 @@ while [ $# -gt 0 ]; do
     --check) level=2 ;;
     --ci) level=3 ;;
     --drivers) level=2 targets=drivers ;;
-    --ports) level=2 targets='arm64 armhf riscv64 s390x win64 drivers baremetal' ;;
+    --ports)
+        level=2 targets='arm64 armhf riscv64 s390x musl musl-arm64 win64 drivers baremetal'
+        ;;
     --cross)
         level=0 targets=${2:-}
         [ $# -lt 2 ] || shift
@@ -121,6 +123,11 @@ look_cross() {
         need_debian 'a C++ compiler for arm64' 'to check the headers' \
             have_command aarch64-linux-gnu-g++ -- g++-aarch64-linux-gnu
         ;;
+    musl) need_cmake ;;
+    musl-arm64)
+        need_cmake
+        need_foreign aarch64-linux-gnu qemu-aarch64
+        ;;
     armhf) need_foreign arm-linux-gnueabihf qemu-arm ;;
     riscv64) need_foreign riscv64-linux-gnu qemu-riscv64 ;;
     s390x) need_foreign s390x-linux-gnu qemu-s390x ;;
@@ -143,13 +150,17 @@ need_windows() {
     need_debian "a compiler for $1" 'to build' have_command "$1-gcc" -- "gcc-mingw-w64-$2-win32"
     need_debian "a C++ compiler for $1" 'to check the headers' have_command "$1-g++" -- \
         "g++-mingw-w64-$2-win32"
-    need_debian cmake 'to build libraries for Windows' have_command cmake -- cmake
+    need_cmake
     need_debian wine 'to run the tests' have_command wine -- "wine wine64"
 }
 
 need_foreign() {
     need_debian "a compiler for $1" 'to build' have_command "$1-gcc" -- "gcc-$1"
     need_debian "$2" 'to run the tests' have_command "$2" -- qemu-user
+}
+
+need_cmake() {
+    need cmake 'to build libraries' have_command cmake -- cmake cmake cmake cmake cmake
 }
 
 look() {

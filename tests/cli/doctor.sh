@@ -57,8 +57,9 @@ exits 0 "$GRCTL" -d "$robot" estop --reset
 
 "$GRCTL" -d "$robot" status --watch --interval 3600000 >"$work/watch" &
 holder=$!
-holder_name=${EMULATOR:-grctl}
+holder_name=${EMULATOR:-grctl} # which is a command with its options
 holder_name=${holder_name%% *}
+holder_name=${holder_name##*/}
 until [ -s "$work/watch" ]; do kill -0 $holder || break; done
 check "somebody else has the port" finds "$holder_name (pid $holder) holds it" "kill $holder"
 kill $holder

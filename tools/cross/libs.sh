@@ -24,6 +24,8 @@ top=$(pwd)
 work=$top/build/cross/$target
 
 . tools/cross/distribution.sh
+. tools/cross/sources.sh
+. tools/cross/musl.sh
 . tools/cross/windows.sh
 
 tools/setup.sh --cross "$target" || exit 1
@@ -31,5 +33,7 @@ case $target in
 arm64 | armhf | s390x) sysroot "$target" "$codename" ;;
 win64) windows_libraries x86_64-w64-mingw32 ;;
 riscv64) sysroot riscv64 trixie ;; # Debian has had it since 13
+musl) musl_libraries amd64 gcc ;;
+musl-arm64) musl_libraries arm64 aarch64-linux-gnu-gcc ;;
 *) usage ;;
 esac

@@ -12,4 +12,4 @@ CXX := $(TRIPLET)-g++ --sysroot=$(SYSROOT)
 AR := $(TRIPLET)-ar
 PKG_CONFIG := PKG_CONFIG_SYSROOT_DIR=$(SYSROOT) \
     PKG_CONFIG_LIBDIR=$(SYSROOT)/usr/lib/$(TRIPLET)/pkgconfig pkg-config
-EMULATOR := $(QEMU) -L $(SYSROOT)
+EMULATOR := $(or $(shell command -v $(QEMU)),$(QEMU)) -L $(SYSROOT)

@@ -1,0 +1,4 @@
+# SPDX-License-Identifier: MIT
+# This machine's processor.
+
+include tools/cross/static.mk
