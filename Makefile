@@ -278,10 +278,12 @@ install: all $(JSON_PAGE) ## into $(DESTDIR)$(PREFIX)
 	install -m 644 $(PC_FILE) $(DESTDIR)$(LIBDIR)/pkgconfig
 	$(if $(GRCTL),install -m 755 $(GRCTL) $(DESTDIR)$(BINDIR))
 	$(if $(GRCTL_HERE),$(foreach page,$(PAGES),$(install_page)))
-	install -d $(DESTDIR)$(DATADIR)/man/man5 $(DESTDIR)$(DATADIR)/grobo/udev
+	install -d $(DESTDIR)$(DATADIR)/man/man5 $(DESTDIR)$(DATADIR)/grobo/udev \
+	    $(DESTDIR)$(DATADIR)/grobo/wireshark
 	install -m 644 $(JSON_PAGE) $(DESTDIR)$(DATADIR)/man/man5
 	install -m 644 docs/grctl.schema.json $(DESTDIR)$(DATADIR)/grobo
 	install -m 644 tools/udev/60-grobo.rules $(DESTDIR)$(DATADIR)/grobo/udev
+	install -m 644 tools/wireshark/grobo.lua $(DESTDIR)$(DATADIR)/grobo/wireshark
 
 uninstall: ## take out what install put in
 	rm -rf $(DESTDIR)$(INCLUDEDIR)/grobo

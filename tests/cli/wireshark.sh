@@ -139,4 +139,17 @@ replies() {
         -E separator='|' >"$work/out" && says '^1|2$' && says '^2|4$'
 }
 check 'replies know their requests, split frames their ends' replies
+# As the guide says: a link in the folder of a person's plugins.
+as_plugin() {
+    folder=$(HOME=$work/home tshark -G folders 2>/dev/null |
+        sed -n 's/^Personal Lua Plugins:[[:space:]]*//p')
+    case $folder in
+    "$work/home/"*) ;;
+    *) echo "not in the home: $folder"; return 1 ;;
+    esac
+    mkdir -p "$folder" && ln -s "$PWD/$dissector" "$folder" || return 1
+    HOME=$work/home tshark -r "$work/move" -Y 'grobo.kind == check' 2>/dev/null >"$work/out" &&
+        says 'check'
+}
+check 'as a plugin' as_plugin
 done_testing

@@ -96,6 +96,8 @@ share=$tree/opt/grobo/share
 check 'the man page is there' grep -q '^\.Dt GRCTL 1' "$share/man/man1/grctl.1"
 check 'that of what --json prints too' grep -q '^\.Dt GRCTL-JSON 5' "$share/man/man5/grctl-json.5"
 check 'its schema' grep -q '"title": "What grctl --json prints' "$share/grobo/grctl.schema.json"
+check 'the dissector for Wireshark' grep -q '^local grobo = Proto(' \
+    "$share/grobo/wireshark/grobo.lua"
 check 'completion for bash' grep -q '^complete ' "$share/bash-completion/completions/grctl"
 check 'completion for zsh' grep -q '^#compdef' "$share/zsh/site-functions/_grctl"
 check 'completion for fish' grep -q '^complete ' "$share/fish/vendor_completions.d/grctl.fish"
