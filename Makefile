@@ -85,8 +85,11 @@ OTHER_SRCS := $(sort $(wildcard src/motion/*.c src/body/*.c src/link/*.c ports/c
 TOOL_SRCS := $(if $(wildcard tools/grctl/main.c),$(sort $(wildcard tools/grctl/*.c)) \
     $(sort $(wildcard tools/grctl/os/$(PORT)/*.c)) tools/grctl/edit/$(EDIT).c \
     tools/grctl/screen/$(SCREEN).c)
-SUPPORT_SRCS := $(sort $(filter-out %/replay_main.c,$(wildcard tests/support/*.c)))
-TEST_SRCS := $(sort $(foreach ring,unit engine link fault port,$(wildcard tests/$(ring)/test_*.c)))
+# LEFT_OUT, of a target: tests that its system cannot run, and what only they use.
+SUPPORT_SRCS := $(sort $(filter-out %/replay_main.c $(LEFT_OUT),$(wildcard tests/support/*.c)) \
+    tests/support/os/$(PORT).c)
+TEST_SRCS := $(sort $(filter-out $(LEFT_OUT),\
+    $(foreach ring,unit engine link fault port,$(wildcard tests/$(ring)/test_*.c))))
 DRIVER_SRCS := $(sort $(wildcard tests/drivers/test_*.c))
 TEST_SCRIPTS := $(sort $(foreach ring,cli lint export,$(wildcard tests/$(ring)/*.sh)))
 FUZZ_SRCS := $(sort $(wildcard tests/fuzz/fuzz_*.c))

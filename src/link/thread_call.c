@@ -34,7 +34,7 @@ int grobo_i_control_pair(grobo_socket pair[2])
     evutil_socket_t made[2];
 
     /* libevent takes AF_UNIX for a local pair on every system. */
-    if (evutil_socketpair(AF_UNIX, SOCK_STREAM, 0, made) != 0) {
+    if (grobo_port_start() < 0 || evutil_socketpair(AF_UNIX, SOCK_STREAM, 0, made) != 0) {
         return GROBO_ERR_NOMEM;
     }
     pair[0] = made[0];

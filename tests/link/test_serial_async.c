@@ -13,6 +13,7 @@
 
 #include "line.h"
 #include "loop.h"
+#include "os.h"
 #include "resources.h"
 
 static test_line line;

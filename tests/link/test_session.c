@@ -18,6 +18,7 @@
 
 #include "line.h"
 #include "loop.h"
+#include "os.h"
 #include "resources.h"
 
 static struct event_base *base;

@@ -17,6 +17,7 @@
 #include <grobo/sim_server.h>
 
 #include "loop.h"
+#include "os.h"
 #include "resources.h"
 
 /* Frames of the original: check, torque of servo 1 on, state of servo 1. */

@@ -154,7 +154,7 @@ static void the_nth_posture_is_gone_to(void **state)
 
 static void write_file(const char *name, const char *text)
 {
-    char path[128];
+    char path[sizeof control_folder + 64];
     FILE *file;
 
     (void)snprintf(path, sizeof path, "%s/%s", control_folder, name);
@@ -168,7 +168,7 @@ static void motions_are_saved_and_loaded(void **state)
 {
     static const grobo_motion_format formats[] = {GROBO_FORMAT_M, GROBO_FORMAT_PSEQ,
                                                   GROBO_FORMAT_YAML, GROBO_FORMAT_MSEQ};
-    char path[128];
+    char path[sizeof control_folder + 64];
 
     (void)state;
     for (size_t i = 0; i < 4; i++) {

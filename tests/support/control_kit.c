@@ -7,14 +7,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <unistd.h>
-
 #include <cmocka.h>
 
 #include "control_kit.h"
+#include "os.h"
 
 grobo_control *control;
-char control_folder[64];
+char control_folder[256];
 
 static void make(grobo_control_config config)
 {
@@ -30,8 +29,7 @@ int control_set_up(void **state)
     grobo_control_config config = {.motion_dir = "/nowhere"};
 
     (void)state;
-    memcpy(control_folder, "/tmp/grobo-thread-XXXXXX", 25);
-    assert_non_null(mkdtemp(control_folder));
+    test_folder_new(control_folder, sizeof control_folder);
     make(config);
     assert_int_equal(grobo_control_set_motion_dir(control, control_folder), GROBO_OK);
     return 0;
@@ -48,15 +46,15 @@ int control_tear_down(void **state)
 {
     static const char *const files[] = {"Motion1.m", "Motion2.m", "a.m",   "a.yaml",
                                         "a.pseq",    "a.mseq",    "bad.m", "b.yaml"};
-    char path[128];
+    char path[sizeof control_folder + 16];
 
     (void)state;
     assert_int_equal(grobo_control_free(control), GROBO_OK);
     for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
         (void)snprintf(path, sizeof path, "%s/%s", control_folder, files[i]);
-        (void)unlink(path);
+        (void)remove(path);
     }
-    assert_int_equal(rmdir(control_folder), 0);
+    assert_int_equal(test_folder_remove(control_folder), 0);
     return 0;
 }
 

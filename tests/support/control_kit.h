@@ -10,7 +10,7 @@
 
 /* What the set-ups make. */
 extern grobo_control *control;
-extern char control_folder[64];
+extern char control_folder[256];
 
 /* cmocka's set-ups and tear-down: a control without a thread, and one with it. */
 int control_set_up(void **state);

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include <stddef.h>
 
-#include <sys/resource.h>
-
 #include "resources.h"
 
 static void *resize(void *ctx, void *ptr, size_t old_bytes, size_t new_bytes)
@@ -29,15 +27,4 @@ void test_mem_init(test_mem *mem, int allocations_left)
     mem->mem.ctx = mem;
     mem->allocations_left = allocations_left;
     mem->blocks = 0;
-}
-
-int64_t test_cpu_us(void)
-{
-    struct rusage usage;
-
-    if (getrusage(RUSAGE_SELF, &usage) != 0) {
-        return 0;
-    }
-    return (int64_t)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) * 1000000 +
-           usage.ru_utime.tv_usec + usage.ru_stime.tv_usec;
 }

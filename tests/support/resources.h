@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* What a test counts: memory that is handed out, processor time that is used. */
+/* What a test counts: memory that is handed out. */
 #ifndef GROBO_TESTS_RESOURCES_H
 #define GROBO_TESTS_RESOURCES_H
-
-#include <stdint.h>
 
 #include <grobo/mem.h>
 
@@ -16,8 +14,5 @@ typedef struct test_mem {
 
 /* Makes one with so many allocations left. */
 void test_mem_init(test_mem *mem, int allocations_left);
-
-/* Processor time that this process has used. */
-int64_t test_cpu_us(void);
 
 #endif

@@ -7,12 +7,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <cmocka.h>
 
 #include "motion_files.h"
+#include "os.h"
 
 static const char saved[] = "500  10 -20\n1000  1 2\n";
 static const grobo_write_options in_motor_order = {.model = &grobo_gr001_model};
@@ -22,10 +21,8 @@ static char folder[256];
 static int make_folder(void **state)
 {
     (void)state;
-    const char *base = getenv("TMPDIR");
-
-    (void)snprintf(folder, sizeof folder, "%s/grobo-motion-XXXXXX", base != NULL ? base : "/tmp");
-    return mkdtemp(folder) != NULL ? 0 : -1;
+    test_folder_new(folder, sizeof folder);
+    return 0;
 }
 
 static const char *in_folder(const char *name)
@@ -41,16 +38,15 @@ static const char *in_folder(const char *name)
 static int remove_folder(void **state)
 {
     (void)state;
-    static const char *const names[] = {
-        "a.m", "b.m",    "link.m",    "Motion1.m",  "Motion2.m", "Motion3.m", "sub/c.yaml",
-        "out", "walk.m", "walk.pseq", "readonly.m", "open.m",    "astray.m"};
+    static const char *const names[] = {"a.m",       "b.m",        "Motion1.m", "Motion2.m",
+                                        "Motion3.m", "sub/c.yaml", "walk.m",    "walk.pseq"};
 
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
-        (void)unlink(in_folder(names[i]));
+        (void)remove(in_folder(names[i]));
     }
-    (void)rmdir(in_folder("sub"));
+    (void)test_folder_remove(in_folder("sub"));
     /* Fails if a temporary file was left behind. */
-    return rmdir(folder);
+    return test_folder_remove(folder);
 }
 
 static void put_file(const char *path, const char *text)
@@ -77,14 +73,13 @@ static void test_save(void **state)
     (void)state;
     grobo_motion *motion = motion_of(saved, GROBO_FORMAT_M);
     const char *path = in_folder("a.m");
-    struct stat status;
 
-    assert_int_equal(grobo_motion_save(motion, grobo_files_os(), path, &in_motor_order, NULL), 0);
-    assert_file(path, saved);
-    assert_int_equal(chmod(path, 0640), 0);
-    assert_int_equal(grobo_motion_save(motion, grobo_files_os(), path, &in_motor_order, NULL), 0);
-    assert_int_equal(stat(path, &status), 0);
-    assert_int_equal(status.st_mode & 0777, 0640);
+    for (int i = 0; i < 2; i++) {
+        put_file(path, i == 0 ? "" : "longer than what comes in its place");
+        assert_int_equal(grobo_motion_save(motion, grobo_files_os(), path, &in_motor_order, NULL),
+                         0);
+        assert_file(path, saved);
+    }
     grobo_motion_free(motion);
 }
 
@@ -129,53 +124,6 @@ static void test_save_never_destroys(void **state)
     grobo_motion_free(motion);
 }
 
-static void test_save_through_a_link(void **state)
-{
-    (void)state;
-    grobo_motion *motion = motion_of("500  10\n", GROBO_FORMAT_M);
-    struct stat status;
-
-    put_file(in_folder("b.m"), "old");
-    assert_int_equal(symlink(in_folder("b.m"), in_folder("link.m")), 0);
-    assert_int_equal(grobo_motion_save(motion, grobo_files_os(), in_folder("link.m"),
-                                       &(grobo_write_options){.model = &grobo_gr001_model}, NULL),
-                     0);
-    assert_int_equal(lstat(in_folder("link.m"), &status), 0);
-    assert_true(S_ISLNK(status.st_mode));
-    assert_file(in_folder("b.m"), "500  10\n");
-    grobo_motion_free(motion);
-}
-
-/* /dev/stdout is such a link: to a pipe, by no path. It stays, and so does one to nothing. */
-static void test_save_through_a_link_to_no_file(void **state)
-{
-    (void)state;
-    grobo_motion *motion = motion_of("500  10\n", GROBO_FORMAT_M);
-    grobo_write_options options = {.model = &grobo_gr001_model};
-    struct stat status;
-    char open_end[32], text[16] = "";
-    int ends[2];
-
-    assert_int_equal(pipe(ends), 0);
-    (void)snprintf(open_end, sizeof open_end, "/dev/fd/%d", ends[1]);
-    assert_int_equal(symlink(open_end, in_folder("open.m")), 0);
-    assert_int_equal(
-        grobo_motion_save(motion, grobo_files_os(), in_folder("open.m"), &options, NULL), 0);
-    (void)close(ends[1]);
-    assert_int_equal(read(ends[0], text, sizeof text), 8);
-    assert_string_equal(text, "500  10\n");
-    assert_int_equal(lstat(in_folder("open.m"), &status), 0);
-    assert_true(S_ISLNK(status.st_mode));
-    (void)close(ends[0]);
-    assert_int_equal(symlink(in_folder("nothing.m"), in_folder("astray.m")), 0);
-    assert_int_equal(
-        grobo_motion_save(motion, grobo_files_os(), in_folder("astray.m"), &options, NULL),
-        GROBO_ERR_NOENT);
-    assert_int_equal(lstat(in_folder("astray.m"), &status), 0);
-    assert_true(S_ISLNK(status.st_mode));
-    grobo_motion_free(motion);
-}
-
 static void test_save_next(void **state)
 {
     (void)state;
@@ -199,22 +147,33 @@ static void test_save_next(void **state)
     grobo_motion_free(motion);
 }
 
+/* The system may have spelt the path anew. */
+static const char *last_name(const char *path)
+{
+    const char *last = path;
+
+    for (const char *c = path; *c != '\0'; c++) {
+        last = *c == '/' || *c == '\\' ? c + 1 : last;
+    }
+    return last;
+}
+
 static void test_find(void **state)
 {
     (void)state;
     const grobo_files *files = grobo_files_os();
     char path[4096] = "untouched";
 
-    assert_int_equal(mkdir(in_folder("sub"), 0755), 0);
+    assert_int_equal(test_folder_make(in_folder("sub")), 0);
     put_file(in_folder("walk.pseq"), "");
     put_file(in_folder("sub/c.yaml"), "");
     assert_int_equal(grobo_motion_find(files, folder, "walk", path, sizeof path), 0);
-    assert_string_equal(strrchr(path, '/'), "/walk.pseq");
+    assert_string_equal(last_name(path), "walk.pseq");
     put_file(in_folder("walk.m"), "");
     assert_int_equal(grobo_motion_find(files, folder, "walk", path, sizeof path), 0);
-    assert_string_equal(strrchr(path, '/'), "/walk.m");
+    assert_string_equal(last_name(path), "walk.m");
     assert_int_equal(grobo_motion_find(files, folder, "walk.pseq", path, sizeof path), 0);
-    assert_string_equal(strrchr(path, '/'), "/walk.pseq");
+    assert_string_equal(last_name(path), "walk.pseq");
     assert_int_equal(grobo_motion_find(files, folder, "sub/c", path, sizeof path), 0);
     static const char *const outside[] = {
         "/etc/passwd", "..", "../x", "sub/../../x", "sub/..", "", "\\x", "c:x", "a/../b"};
@@ -224,14 +183,6 @@ static void test_find(void **state)
     }
     assert_int_equal(grobo_motion_find(files, folder, "nothing", path, sizeof path),
                      GROBO_ERR_NOENT);
-    assert_int_equal(symlink("/", in_folder("out")), 0);
-    assert_int_equal(grobo_motion_find(files, folder, "out/etc/passwd.m", path, sizeof path),
-                     GROBO_ERR_NOENT);
-    assert_int_equal(unlink(in_folder("out")), 0);
-    assert_int_equal(symlink("/etc/passwd", in_folder("out")), 0);
-    (void)unlink(in_folder("link.m"));
-    assert_int_equal(symlink("/etc/passwd", in_folder("link.m")), 0);
-    assert_int_equal(grobo_motion_find(files, folder, "link", path, sizeof path), GROBO_ERR_PERM);
     assert_int_equal(grobo_motion_find(files, folder, "walk", path, 3), GROBO_ERR_SPACE);
 }
 
@@ -241,8 +192,6 @@ int main(void)
         cmocka_unit_test(test_save),
         cmocka_unit_test(test_save_refused),
         cmocka_unit_test(test_save_never_destroys),
-        cmocka_unit_test(test_save_through_a_link),
-        cmocka_unit_test(test_save_through_a_link_to_no_file),
         cmocka_unit_test(test_save_next),
         cmocka_unit_test(test_find),
     };

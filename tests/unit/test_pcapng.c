@@ -9,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include "tools/grctl/os.h"
 #include "tools/grctl/pcapng.h"
 
 enum { FILE_BYTES = 16384 };
@@ -28,6 +29,14 @@ static size_t read_image(void *ctx, void *buffer, size_t size)
     memcpy(buffer, i->bytes + i->at, n);
     i->at += n;
     return n;
+}
+
+/* What was written to a temporary file becomes the image. */
+static void take_file(image *i, FILE *from)
+{
+    rewind(from);
+    i->used = fread(i->bytes, 1, sizeof i->bytes, from);
+    fclose(from);
 }
 
 static void add(image *i, uint64_t value, int bytes)
@@ -121,13 +130,12 @@ static void write_sample(image *i)
                                   .description = "a robot",
                                   .speed_bps = 115200,
                                   .link_type = PCAPNG_LINK_USER0};
-    FILE *to = fmemopen(i->bytes, sizeof i->bytes, "wb");
+    FILE *to = os_temporary();
     assert_non_null(to);
     assert_int_equal(pcapng_write_head(to, "test", "what was done", &interface), 0);
     assert_int_equal(pcapng_write_chunk(to, 1700000000123456, PCAPNG_OUT, sent, 2), 0);
     assert_int_equal(pcapng_write_chunk(to, 1700000000123999, PCAPNG_IN, received, 5), 0);
-    i->used = (size_t)ftell(to);
-    fclose(to);
+    take_file(i, to);
 }
 
 static int read_all(image *i, pcapng_reader *reader, int *chunks)
@@ -197,10 +205,10 @@ static void a_packet_block_is_as_the_format_has_it(void **state)
                                        2, 0, 4, 0, 1,  0, 0, 0, 0, 0, 0, 0, 48, 0, 0, 0};
     static image i;
     static const uint8_t byte = 7;
-    FILE *to = fmemopen(i.bytes, sizeof i.bytes, "wb");
+    FILE *to = os_temporary();
     assert_int_equal(pcapng_write_chunk(to, 0x200000001, PCAPNG_IN, &byte, 1), 0);
-    assert_int_equal(ftell(to), sizeof expected);
-    fclose(to);
+    take_file(&i, to);
+    assert_int_equal(i.used, sizeof expected);
     assert_memory_equal(i.bytes, expected, sizeof expected);
 }
 
@@ -208,8 +216,7 @@ static void chunks_out_of_range_are_not_written(void **state)
 {
     (void)state;
     static const uint8_t bytes[PCAPNG_CHUNK_BYTES + 1];
-    static uint8_t room[2 * PCAPNG_CHUNK_BYTES];
-    FILE *to = fmemopen(room, sizeof room, "wb");
+    FILE *to = os_temporary();
     assert_int_equal(pcapng_write_chunk(to, 0, PCAPNG_IN, bytes, 0), GROBO_ERR_ARG);
     assert_int_equal(pcapng_write_chunk(to, 0, PCAPNG_IN, bytes, sizeof bytes), GROBO_ERR_ARG);
     assert_int_equal(ftell(to), 0);
@@ -226,15 +233,14 @@ static void texts_longer_than_kept_are_cut(void **state)
     static const uint8_t byte = 7;
     char text[1000];
     pcapng_chunk chunk;
-    FILE *to = fmemopen(i.bytes, sizeof i.bytes, "wb");
+    FILE *to = os_temporary();
     memset(text, 'x', sizeof text - 1);
     text[sizeof text - 1] = '\0';
     memset(interface.name, 'y', sizeof interface.name - 1);
     memset(interface.description, 'z', sizeof interface.description - 1);
     assert_int_equal(pcapng_write_head(to, text, text, &interface), 0);
     assert_int_equal(pcapng_write_chunk(to, 0, PCAPNG_IN, &byte, 1), 0);
-    i.used = (size_t)ftell(to);
-    fclose(to);
+    take_file(&i, to);
     pcapng_reader_init(&r, read_image, &i);
     assert_int_equal(pcapng_read(&r, &chunk), 1);
     assert_int_equal(strlen(r.comment), PCAPNG_TEXT_BYTES - 1);

@@ -20,3 +20,7 @@ SONAME := grobo.dll
 IMPORT_LIB := libgrobo.dll.a
 SHARED_FLAGS = -Wl,--out-implib,$(BUILD)/$(IMPORT_LIB)
 EMULATOR := $(abspath tools/cross/wine.sh)
+# Written for a pseudo-terminal or for processes and files as POSIX has them.
+LEFT_OUT := $(addprefix tests/,unit/test_motion_links.c port/test_posix_list.c port/test_posix_thread.c fault/test_serial_io.c \
+    $(patsubst %,link/test_%.c,play_line serial_async serial_open serial_sync serial_tcp session \
+    sim_server thread_line) $(patsubst %,support/%.c,line spy far_robot))

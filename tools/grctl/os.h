@@ -26,6 +26,8 @@ int os_columns(FILE *stream);
 /* Are characters beyond ASCII shown, and as UTF-8? */
 bool os_shows_utf8(void);
 
+/* A file to write and to read that is gone when it is closed, or NULL. */
+FILE *os_temporary(void);
 /* What print() writes, to be freed; NULL when there is no room. */
 char *os_printed(void (*print)(FILE *to));
 

@@ -120,7 +120,7 @@ static const char *rasterise(const app *a, FILE *in, FILE *out, const char **tri
 static int save_png(app *a, const svg *drawing, const char *path)
 {
     const char *tried = NULL, *used = NULL;
-    FILE *in = tmpfile(), *out = tmpfile();
+    FILE *in = os_temporary(), *out = os_temporary();
     int status = 0;
     if (!in || !out || fwrite(drawing->data, 1, drawing->size, in) != drawing->size ||
         fflush(in) != 0) {

@@ -21,14 +21,14 @@ int servos_read(conn *c, int id, int address, int length, uint8_t *data)
 
 int servos_hurry_at(conn *c, int baud_bps, int length, uint32_t *wire_us)
 {
-    bool far = strncmp(conn_device(c), "tcp:", 4) == 0;
+    bool remote = strncmp(conn_device(c), "tcp:", 4) == 0;
     grobo_robot_config config = conn_robot_config(c->a);
     int error = wire_read_us(grobo_robot_driver(c->robot), baud_bps, length, wire_us);
     if (error)
         return error;
     config.retries = -1;
     if (!config.timeout_us)
-        config.timeout_us = *wire_us + (far ? TCP_MARGIN_US : WIRE_SILENT_MARGIN_US);
+        config.timeout_us = *wire_us + (remote ? TCP_MARGIN_US : WIRE_SILENT_MARGIN_US);
     return grobo_robot_configure(c->robot, &config);
 }
 

@@ -42,6 +42,11 @@ bool os_shows_utf8(void)
     return strcmp(nl_langinfo(CODESET), "UTF-8") == 0;
 }
 
+FILE *os_temporary(void)
+{
+    return tmpfile();
+}
+
 char *os_printed(void (*print)(FILE *to))
 {
     char *text = NULL;

@@ -68,9 +68,31 @@ bool os_shows_utf8(void)
     return GetConsoleOutputCP() == CP_UTF8;
 }
 
+/* tmpfile() makes its files in C:\, where only administrators may. */
+FILE *os_temporary(void)
+{
+    char folder[MAX_PATH], path[MAX_PATH];
+    HANDLE made;
+    FILE *file;
+    int fd;
+    if (!GetTempPathA(sizeof folder, folder) || !GetTempFileNameA(folder, "grc", 0, path))
+        return NULL;
+    made = CreateFileA(path, GENERIC_READ | GENERIC_WRITE | DELETE, 0, NULL, CREATE_ALWAYS,
+                       FILE_ATTRIBUTE_TEMPORARY | FILE_FLAG_DELETE_ON_CLOSE, NULL);
+    if (made == INVALID_HANDLE_VALUE)
+        return NULL;
+    fd = _open_osfhandle((intptr_t)made, _O_RDWR | _O_BINARY);
+    file = fd < 0 ? NULL : _fdopen(fd, "w+b");
+    if (!file && fd >= 0)
+        _close(fd);
+    else if (!file)
+        CloseHandle(made);
+    return file;
+}
+
 char *os_printed(void (*print)(FILE *to))
 {
-    FILE *file = tmpfile();
+    FILE *file = os_temporary();
     char *text = NULL;
     long size = -1;
     if (!file)

@@ -1,0 +1,157 @@
+/* SPDX-License-Identifier: MIT */
+/* Saving and finding motions where files have modes and links, as on POSIX. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "motion_files.h"
+#include "os.h"
+
+static char folder[256];
+
+static int make_folder(void **state)
+{
+    (void)state;
+    test_folder_new(folder, sizeof folder);
+    return 0;
+}
+
+static const char *in_folder(const char *name)
+{
+    static char paths[4][512];
+    static int next;
+    char *path = paths[next++ % 4];
+
+    (void)snprintf(path, sizeof paths[0], "%s/%s", folder, name);
+    return path;
+}
+
+static int remove_folder(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"a.m", "b.m", "link.m", "out", "open.m", "astray.m"};
+
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        (void)unlink(in_folder(names[i]));
+    }
+    /* Fails if a temporary file was left behind. */
+    return rmdir(folder);
+}
+
+static void put_file(const char *path, const char *text)
+{
+    FILE *file = fopen(path, "wb");
+
+    assert_non_null(file);
+    assert_true(fputs(text, file) >= 0);
+    assert_int_equal(fclose(file), 0);
+}
+
+static void assert_file(const char *path, const char *text)
+{
+    size_t size;
+    char *found = file_text(path, &size);
+
+    assert_non_null(found);
+    assert_string_equal(found, text);
+    free(found);
+}
+
+static void test_mode(void **state)
+{
+    (void)state;
+    grobo_motion *motion = motion_of("500  10\n", GROBO_FORMAT_M);
+    const char *path = in_folder("a.m");
+    struct stat status;
+
+    put_file(path, "old");
+    assert_int_equal(chmod(path, 0640), 0);
+    assert_int_equal(grobo_motion_save(motion, grobo_files_os(), path, NULL, NULL), 0);
+    assert_int_equal(stat(path, &status), 0);
+    assert_int_equal(status.st_mode & 0777, 0640);
+    grobo_motion_free(motion);
+}
+
+static void test_save_through_a_link(void **state)
+{
+    (void)state;
+    grobo_motion *motion = motion_of("500  10\n", GROBO_FORMAT_M);
+    struct stat status;
+
+    put_file(in_folder("b.m"), "old");
+    assert_int_equal(symlink(in_folder("b.m"), in_folder("link.m")), 0);
+    assert_int_equal(grobo_motion_save(motion, grobo_files_os(), in_folder("link.m"),
+                                       &(grobo_write_options){.model = &grobo_gr001_model}, NULL),
+                     0);
+    assert_int_equal(lstat(in_folder("link.m"), &status), 0);
+    assert_true(S_ISLNK(status.st_mode));
+    assert_file(in_folder("b.m"), "500  10\n");
+    grobo_motion_free(motion);
+}
+
+/* /dev/stdout is such a link: to a pipe, by no path. It stays, and so does one to nothing. */
+static void test_save_through_a_link_to_no_file(void **state)
+{
+    (void)state;
+    grobo_motion *motion = motion_of("500  10\n", GROBO_FORMAT_M);
+    grobo_write_options options = {.model = &grobo_gr001_model};
+    struct stat status;
+    char open_end[32], text[16] = "";
+    int ends[2];
+
+    assert_int_equal(pipe(ends), 0);
+    (void)snprintf(open_end, sizeof open_end, "/dev/fd/%d", ends[1]);
+    assert_int_equal(symlink(open_end, in_folder("open.m")), 0);
+    assert_int_equal(
+        grobo_motion_save(motion, grobo_files_os(), in_folder("open.m"), &options, NULL), 0);
+    (void)close(ends[1]);
+    assert_int_equal(read(ends[0], text, sizeof text), 8);
+    assert_string_equal(text, "500  10\n");
+    assert_int_equal(lstat(in_folder("open.m"), &status), 0);
+    assert_true(S_ISLNK(status.st_mode));
+    (void)close(ends[0]);
+    assert_int_equal(symlink(in_folder("nothing.m"), in_folder("astray.m")), 0);
+    assert_int_equal(
+        grobo_motion_save(motion, grobo_files_os(), in_folder("astray.m"), &options, NULL),
+        GROBO_ERR_NOENT);
+    assert_int_equal(lstat(in_folder("astray.m"), &status), 0);
+    assert_true(S_ISLNK(status.st_mode));
+    grobo_motion_free(motion);
+}
+
+static void test_find_through_links(void **state)
+{
+    (void)state;
+    const grobo_files *files = grobo_files_os();
+    char path[4096] = "untouched";
+
+    assert_int_equal(symlink("/", in_folder("out")), 0);
+    assert_int_equal(grobo_motion_find(files, folder, "out/etc/passwd.m", path, sizeof path),
+                     GROBO_ERR_NOENT);
+    assert_int_equal(unlink(in_folder("out")), 0);
+    assert_int_equal(symlink("/etc/passwd", in_folder("out")), 0);
+    (void)unlink(in_folder("link.m"));
+    assert_int_equal(symlink("/etc/passwd", in_folder("link.m")), 0);
+    assert_int_equal(grobo_motion_find(files, folder, "link", path, sizeof path), GROBO_ERR_PERM);
+    assert_string_equal(path, "untouched");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_mode),
+        cmocka_unit_test(test_save_through_a_link),
+        cmocka_unit_test(test_save_through_a_link_to_no_file),
+        cmocka_unit_test(test_find_through_links),
+    };
+
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
