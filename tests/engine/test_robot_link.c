@@ -243,27 +243,6 @@ static void broken_replies_are_retried_and_never_believed(void **state)
     assert_true(grobo_robot_get_bus_stats(&rig.robot)->retries > 10);
 }
 
-static void the_background_uses_the_wire(void **state)
-{
-    (void)state;
-    static const struct {
-        bool position_only;
-        int bytes; /* of request, servo's bus both ways, reply (protocol 2) */
-    } cases[] = {{false, 71}, {true, 11 + 8 + 10 + 10}};
-    for (int i = 0; i < 2; i++) {
-        grobo_robot_config config = {.sense_interval_us = 1,
-                                     .sense_position_only = cases[i].position_only};
-        rig_start(&rig, &config, NULL);
-        rig_run(&rig, 1000000);
-        uint32_t before = grobo_robot_get_bus_stats(&rig.robot)->replies;
-        rig_run(&rig, 1000000);
-        uint32_t replies = grobo_robot_get_bus_stats(&rig.robot)->replies - before;
-        double most = 1e6 / (cases[i].bytes * 10e6 / 115200 + 100);
-        assert_true(replies > 0.95 * most);
-        assert_true(replies <= 1.01 * most);
-    }
-}
-
 static void a_servo_that_stays_silent_is_asked_once_a_round(void **state)
 {
     (void)state;
@@ -398,7 +377,6 @@ int main(void)
         cmocka_unit_test(nineteen_of_twenty_are_delivered),
         cmocka_unit_test(a_stale_angle_is_not_in_a_fresh_posture),
         cmocka_unit_test(broken_replies_are_retried_and_never_believed),
-        cmocka_unit_test(the_background_uses_the_wire),
         cmocka_unit_test(a_servo_that_stays_silent_is_asked_once_a_round),
         cmocka_unit_test(requests_may_come_from_the_callback),
         cmocka_unit_test(a_job_may_be_displaced_from_its_own_events),

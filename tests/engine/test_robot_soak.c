@@ -42,7 +42,7 @@ enum { ESTOP_FRAME_US = 25000, ESTOP_US = 10000000, EXIT_US = 10010000 };
 
 /* What all runs together came to. */
 static struct {
-    unsigned runs, moves, plays, torque_on, trips, power_cycles, stops, stops_cut;
+    unsigned runs, moves, plays, torque_on, trips, ruined, stops, stops_cut;
     unsigned made_up_commands, made_up_replies, made_up_believed, excused;
     uint64_t frames, believed, injected[GROBO_SIM_FAULTS];
     int64_t virtual_us, estop_us, stopped_us, exit_us; /* the longest */
@@ -144,7 +144,8 @@ static void request_estop(void)
         end = last != NULL && last->u.job.number == number ? last : NULL;
     }
     if (end->u.job.result < 0) {
-        assert_int_equal(end->u.job.result, GROBO_ERR_UNPLUGGED);
+        /* Or a servo that the line gave another id: it says itself that it was not reached. */
+        assert_true(end->u.job.result == GROBO_ERR_UNPLUGGED || rig.witness.settings_hit);
         total.stops_cut++;
         return;
     }
@@ -194,19 +195,8 @@ static void on_event(grobo_test_rig *r, const grobo_event *event)
     total.trips += event->kind == GROBO_EVENT_TRIP;
 }
 
-/* What the line made up has changed settings that flash keeps: no robot any more, but for who
- * takes the battery out. */
-static void restore_settings(void)
-{
-    grobo_sim_set_supply(&rig.sim, 0);
-    grobo_sim_set_supply(&rig.sim, 7400);
-    rig.witness.settings_hit = false;
-    total.power_cycles++;
-}
-
 static void add_up(void)
 {
-    total.runs++;
     total.frames += rig.frames;
     total.believed += rig.witness.believed;
     total.torque_on += rig.torque_on;
@@ -219,33 +209,48 @@ static void add_up(void)
     }
 }
 
-static void soak(uint32_t seed, const char *faults, int64_t length_us)
+static void start(uint32_t seed, const char *faults)
 {
     grobo_wiring wiring = seed % 4 == 3 ? GROBO_WIRING_BUS : GROBO_WIRING_BOARD;
     grobo_robot_config config = {.sense_interval_us = (int64_t)(1 + seed % 3 * 150000),
                                  .lost_replies = 30};
     grobo_sim_config sim = {
-        .seed = seed + 1, .start = GROBO_SIM_START_LIMP, .jump_on_torque = seed % 2 == 0};
-    random_state = seed * 2654435761u + 17;
+        .seed = random_state, .start = GROBO_SIM_START_LIMP, .jump_on_torque = seed % 2 == 0};
     rig_start_driver(&rig, grobo_gr001_driver(wiring), &config, &sim);
     rig_clip_init(&clip, sway, 4);
     rig.on_event = on_event;
     rig.replug_us = 50000;
     assert_true(grobo_sim_set_faults(&rig.sim, faults, strlen(faults)) > 0);
-    int64_t until_us = rig.now_us + length_us;
-    while (rig.now_us < until_us) {
+}
+
+/* Up to a time, or until the line made up a command that changed what flash keeps, such as an id:
+ * that is no robot any more. @return how long it was one. */
+static int64_t live(int64_t length_us)
+{
+    int64_t from_us = rig.now_us;
+    while (rig.now_us - from_us < length_us && !rig.witness.settings_hit) {
         request();
         rig_run(&rig, (int64_t)pick(pick(3) == 0 ? 8000000 : 1500000)); /* at times it gets on */
         if (pick(20) == 0) {
             rig_stall(&rig, (int64_t)pick(600000));
         }
-        if (rig.witness.settings_hit) {
-            restore_settings();
-        }
         rig_forget(&rig);
     }
-    total.virtual_us += length_us;
-    add_up();
+    return rig.now_us - from_us;
+}
+
+static void soak(uint32_t seed, const char *faults, int64_t length_us)
+{
+    random_state = seed * 2654435761u + 17;
+    while (length_us > 0) {
+        start(seed, faults);
+        int64_t lived_us = live(length_us);
+        length_us -= lived_us;
+        total.virtual_us += lived_us;
+        total.ruined += rig.witness.settings_hit;
+        add_up();
+    }
+    total.runs++;
 }
 
 #define REPLIES "duplicate=0.01,delay=0.01,split=0.01,rubbish=0.01,silent=0.01,dupid=0.01"
@@ -280,8 +285,8 @@ static void report(uint32_t seeds)
     for (int i = 0; i < GROBO_SIM_FAULTS; i++) {
         print_message(" %s %llu", grobo_sim_fault_name(i), (unsigned long long)total.injected[i]);
     }
-    print_message("\n# %u moves and %u plays done, %u torques on, %u trips, %u power cycles\n",
-                  total.moves, total.plays, total.torque_on, total.trips, total.power_cycles);
+    print_message("\n# %u moves and %u plays done, %u torques on, %u trips, %u robots ruined\n",
+                  total.moves, total.plays, total.torque_on, total.trips, total.ruined);
     print_message("# %u emergency stops seen through, %u ended by the line; robot limp after at "
                   "most %.1f s, seen to be after %.1f s; exits after %.1f s\n",
                   total.stops, total.stops_cut, (double)total.stopped_us / 1e6,

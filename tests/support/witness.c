@@ -69,6 +69,7 @@ void witness_sent(witness *w, const uint8_t *packet, size_t n, int64_t now_us)
 
 static void hear_packet(witness *w, const grobo_sim_event *event)
 {
+    w->heard_us = event->time_us;
     for (unsigned i = 0; i < WITNESS_SENT; i++) {
         if (same(&w->sent[i], event->bytes, event->n_bytes)) {
             return;
@@ -77,19 +78,22 @@ static void hear_packet(witness *w, const grobo_sim_event *event)
     w->made_up_commands++;
     each_servo(w, event->bytes, mislead);
     bool writes = event->bytes[2] == 0 || event->bytes[6] != 0;
-    if (writes && (event->bytes[4] < GROBO_RS30X_GOAL || event->bytes[3] >= 0x10)) {
+    bool acts = event->bytes[3] >= GROBO_RS30X_FACTORY; /* or flash, or reboot */
+    if (acts || (writes && event->bytes[4] < GROBO_RS30X_GOAL)) {
         w->settings_hit = true;
     }
 }
 
 /* ---- replies --------------------------------------------------------------------------------- */
 
-/* Two that talk at once make up a reply that neither gave: a servo's own is in its registers. */
+/* Two that talk at once make up a reply that neither gave: a servo's own is in its registers, but
+ * for one that was told to restart in the same breath. */
 static bool is_given(const witness *w, const uint8_t *p, size_t n)
 {
     int joint = n >= 8 ? grobo_model_joint_of_motor(w->model, p[2]) : -1;
     return joint >= 0 && p[5] == n - 8 && p[4] + p[5] <= GROBO_REGISTERS &&
-           memcmp(p + 7, &w->sim->servo[joint].reg[p[4]], p[5]) == 0;
+           (w->reboot_us[joint] >= w->heard_us ||
+            memcmp(p + 7, &w->sim->servo[joint].reg[p[4]], p[5]) == 0);
 }
 
 static void hear_reply(witness *w, const grobo_sim_event *event)

@@ -32,6 +32,7 @@ typedef struct witness {
     unsigned n_sent, n_said, n_seen;
     uint8_t tail[WITNESS_BYTES]; /* the bytes that arrived last, ring */
     unsigned n_tail;
+    int64_t heard_us;                    /* when servos heard a command last */
     int64_t asked_us[GROBO_JOINTS_MAX];  /* since when an answer is awaited; 0: it is not */
     int64_t goal_us[GROBO_JOINTS_MAX];   /* when the goal was said that was believed last */
     int64_t reboot_us[GROBO_JOINTS_MAX]; /* when a servo last lost what it was told */
