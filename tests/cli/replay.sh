@@ -112,9 +112,9 @@ check 'the replay of a replay' both exits 0 on_robot --trace "$work/again" repla
 check 'moves are not sent unasked' fails 4 'frames move joints of a real robot; say --yes' \
     on_robot replay "$work/moves"
 check 'and nothing moved' is_untouched
-# Torque was switched on safely before, which two readings show.
+# Torque was switched on safely before, which two readings show; on a busy machine others too.
 check 'moves are sent with --yes' both exits 1 on_robot replay --yes "$work/moves" --- \
-    both says '[23] equal, [23] differ, 0 missing, 0 extra' --- says 'recorded .* torque off,'
+    both says ' [2-5] differ, 0 missing, 0 extra' --- says 'recorded .* torque off,'
 check 'and the joint has moved' both exits 0 on_robot status R_KNEE_P --- says '-45.0 .* on '
 
 # Only the first target is held to the approach speed.

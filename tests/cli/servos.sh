@@ -35,7 +35,17 @@ check "how it is reached" says '^GR001 on .*, through its board, which answers$'
 tell silent 12 on
 check "a silent servo is named" both exits 1 on_robot info --- \
     said '^motor 12 (R_KNEE_P): no reply in time$'
+check "who does not answer: what, where, what to do" fails 1 \
+    "no reply from motor 12 (R_KNEE_P) in [0-9.]* ms after 2 retries; is its cable in? see" \
+    on_robot servo on m12
+check "as often as asked" fails 1 'R_KNEE_P) in [0-9.]* ms after 1 retry;' \
+    on_robot --retries 1 servo on m12
+check "-v: the bytes too" both exits 1 on_robot -v servo on m12 --- \
+    said '^sent 54 09 FA AF 0C 0F 1E 18 00 05 20; received nothing$'
 tell silent 12 off
+check "-vv: every byte" both exits 0 on_robot -vv status m12 --- \
+    said '^ *[0-9.]*  >  54 09 FA AF 0C 0F 24 12 00 35 1A$'
+check "and what came" said '^ *[0-9.]*  <  FD DF 0C 00 24 12 01 '
 
 # ---- registers -------------------------------------------------------------------------------
 
@@ -45,7 +55,7 @@ check "a code" both exits 0 on_robot servo-get 12 baud --- says '^  6  baud  *7 
 check "a register that is none" fails 2 "no register 'tail'; there are: model" \
     on_robot servo-get 12 tail
 check "an id that is none" fails 2 "'128' is not an id from 1 to 127" on_robot servo-get 128
-check "an id where nobody is" fails 1 'servo 77: no reply in time' on_robot servo-get 77
+check "an id where nobody is" fails 1 'no reply from servo 77 in .* after 2' on_robot servo-get 77
 check "servo-set" both exits 0 on_robot servo-set 12 delay 2 --- \
     said '^servo 12: delay 0 (100 us) -> 2 (200 us); lost at power-off without --flash$'
 check "is read back" both exits 0 on_robot servo-get 12 delay --- says '  200 us$'

@@ -8,7 +8,8 @@
 #include "latch.h"
 #include "servos.h"
 
-enum { IDENTITY_BYTES = 3 /* No.0-1 model, No.2 firmware */, NAME_BYTES = 16, FIX_BYTES = 512 };
+enum { IDENTITY_BYTES = 3 /* No.0-1 model, No.2 firmware */, READ_BYTES = 30 /* the longest */ };
+enum { NAME_BYTES = 16, FIX_BYTES = 512 };
 
 typedef struct patient {
     checkup k;
@@ -38,23 +39,24 @@ static int keep_usb(void *ctx, const grobo_port_info *info)
 
 /* ---- the line -------------------------------------------------------------------------------- */
 
+static int baud_of(const app *a)
+{
+    const cli_value *baud = app_global(a, GLOBAL_BAUD);
+    return baud->given ? (int)baud->number : GROBO_BAUD_DEFAULT_BPS;
+}
+
 /* Opens the line and asks; what is said of it is in `said`. True: somebody answered. */
 static bool ask(patient *p, char *said)
 {
     app *a = p->k.a;
     bool ok;
     a->hushed = said;
-    ok = conn_open(&p->c, a) == EXIT_DONE;
+    ok = conn_open(&p->c, a) == EXIT_DONE &&
+         servos_wait(&p->c, baud_of(a), READ_BYTES, SERVOS_PATIENT_US, 0) == GROBO_OK;
     if (!ok)
         conn_close(&p->c, EXIT_DONE);
     a->hushed = NULL;
     return ok;
-}
-
-static int baud_of(const app *a)
-{
-    const cli_value *baud = app_global(a, GLOBAL_BAUD);
-    return baud->given ? (int)baud->number : GROBO_BAUD_DEFAULT_BPS;
 }
 
 static void set_baud(app *a, int baud_bps)

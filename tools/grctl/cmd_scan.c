@@ -4,6 +4,7 @@
 
 #include "commands.h"
 #include "servos.h"
+#include "wire.h"
 
 enum { OPT_ALL_BAUD, OPT_FIRST, OPT_LAST };
 enum { IDENTITY_BYTES = 3, FEW = 4 }; /* No.0-1 model, No.2 firmware */
@@ -92,17 +93,17 @@ static int ask_silent(conn *c, pass *p)
 static int ask_all(conn *c, found *f, pass *p, int baud_bps)
 {
     const grobo_bus_stats *stats = grobo_robot_get_bus_stats(c->robot);
-    uint32_t late = stats->late_bytes, wire_us;
-    int64_t began_us;
-    int error = servos_hurry_at(c, baud_bps, IDENTITY_BYTES, &wire_us);
-    if (!error && p->last - p->first < FEW)
-        error = servos_take_time(c);
-    if (error)
-        return error;
-    began_us = grobo_now_us();
-    error = ask_silent(c, p);
-    if (!error && stats->late_bytes != late) {
-        error = servos_take_time(c);
+    bool few = p->last - p->first < FEW;
+    uint32_t late = stats->late_bytes, wire_us = 0;
+    int64_t began_us = grobo_now_us();
+    int error = wire_read_us(grobo_robot_driver(c->robot), baud_bps, IDENTITY_BYTES, &wire_us);
+    if (!error)
+        error = servos_wait(c, baud_bps, IDENTITY_BYTES,
+                            few ? SERVOS_PATIENT_US : WIRE_SILENT_MARGIN_US, -1);
+    if (!error)
+        error = ask_silent(c, p);
+    if (!error && stats->late_bytes != late && !few) {
+        error = servos_wait(c, baud_bps, IDENTITY_BYTES, SERVOS_PATIENT_US, -1);
         if (!error)
             error = ask_silent(c, p);
     }

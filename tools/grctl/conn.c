@@ -77,6 +77,35 @@ static void on_robot(void *ctx, const grobo_event *event)
         c->on_event(c, event);
 }
 
+/* From -vv on, but not over a full screen. */
+static void show_bytes(conn *c, char direction, int64_t at_us, const uint8_t *bytes, size_t size)
+{
+    if (c->a->verbosity < 2 || c->a->hushed || size == 0)
+        return;
+    if (!c->shown_us)
+        c->shown_us = at_us;
+    fprintf(stderr, "%10.3f  %c  ", (double)(at_us - c->shown_us) / 1e3, direction);
+    grobo_hex_print(stderr, bytes, size);
+}
+
+/* What came after the last frame, in one piece. */
+static void show_answer(conn *c)
+{
+    const last_frame *last = last_frames_newest(&c->last);
+    if (last)
+        show_bytes(c, '<', last->got_us, last->got, last->n_got);
+}
+
+static void note_bytes(conn *c, grobo_direction direction, int64_t now_us, const uint8_t *bytes,
+                       size_t size)
+{
+    if (direction == GROBO_DIR_TX) {
+        show_answer(c);
+        show_bytes(c, '>', now_us, bytes, size);
+    }
+    last_frames_note(&c->last, direction, now_us, bytes, size);
+}
+
 static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes, size_t size,
                    void *ctx)
 {
@@ -86,6 +115,7 @@ static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *byt
     if (!c)
         return;
     trace_bytes(&c->trace, direction, now_us, bytes, size);
+    note_bytes(c, direction, now_us, bytes, size);
     if (c->on_bytes)
         c->on_bytes(c, direction, now_us, bytes, size);
 }
@@ -181,24 +211,45 @@ static const char *advice(int error, const char *device)
     return "";
 }
 
+static bool bytes_came(const conn *c)
+{
+    uint64_t tx_bytes, rx_bytes;
+    grobo_session_bytes(c->session, &tx_bytes, &rx_bytes);
+    return rx_bytes > 0;
+}
+
+/* What is wrong with the device, where the error's own text would not say it. */
+static const char *open_trouble(const conn *c, int error)
+{
+    const grobo_os_cause *cause = grobo_session_cause(c->session);
+    switch (error) {
+    case GROBO_ERR_NOTFOUND:
+        return "no robot answers on any serial port";
+    case GROBO_ERR_TIMEOUT:
+        return "no robot answers";
+    case GROBO_ERR_TYPE:
+        return "is not a serial port";
+    case GROBO_ERR_NOENT: /* which way it cannot be reached */
+        return is_tcp(conn_device(c)) && *cause->text ? cause->text : grobo_error_text(error);
+    }
+    return grobo_error_text(error);
+}
+
 static int fail_open(conn *c, int error)
 {
     const grobo_os_cause *cause = grobo_session_cause(c->session);
-    const char *what = grobo_error_text(error);
     /* Of the others the system only says again what the error says. */
     bool tells = *cause->text && (error == GROBO_ERR_BUSY || error == GROBO_ERR_IO ||
                                   error == GROBO_ERR_UNSUPPORTED || error == GROBO_ERR_UNPLUGGED);
-    if (error == GROBO_ERR_NOTFOUND)
-        what = "no robot answers on any serial port";
-    else if (error == GROBO_ERR_TIMEOUT)
-        what = "no robot answers";
-    else if (error == GROBO_ERR_TYPE)
-        what = "is not a serial port";
-    else if (error == GROBO_ERR_NOENT && is_tcp(conn_device(c)) && *cause->text)
-        what = cause->text; /* which way it cannot be reached */
+    if (conn_is_of_reply(error) && bytes_came(c))
+        return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error),
+                        "%s: bytes come, but no reply in them; is the baud rate right, and is it a "
+                        "robot? see 'grctl doctor'",
+                        conn_device(c));
     return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error), "%s: %s%s%s%s%s",
-                    error == GROBO_ERR_NOTFOUND ? "auto" : conn_device(c), what, tells ? " (" : "",
-                    tells ? cause->text : "", tells ? ")" : "", advice(error, conn_device(c)));
+                    error == GROBO_ERR_NOTFOUND ? "auto" : conn_device(c), open_trouble(c, error),
+                    tells ? " (" : "", tells ? cause->text : "", tells ? ")" : "",
+                    advice(error, conn_device(c)));
 }
 
 uint32_t conn_baud(const app *a)
@@ -320,7 +371,7 @@ static int open_device(conn *c, app *a, bool check)
         return app_fail(a, EXIT_USAGE, "USAGE", "--device: an empty name; see 'grctl ports'");
     error = grobo_port_resolve(asked, device, sizeof device, &cause);
     if (error)
-        return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s: %s", asked,
+        return app_fail(a, app_status_of(error), grobo_error_name(error), "%s: %s", asked,
                         *cause.text ? cause.text : grobo_error_text(error));
     error = open_traces(c, device);
     if (error)
@@ -374,37 +425,6 @@ void conn_watch(conn *c, bool on)
     (void)grobo_robot_configure(c->robot, &config);
 }
 
-/* ---- failing -------------------------------------------------------------------------------- */
-
-int conn_fail(conn *c, int error, const char *doing)
-{
-    const grobo_model *model;
-    int joint = c->job.joint;
-    if (c->signal)
-        return EXIT_SIGNAL + c->signal;
-    if (c->link_error)
-        return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error), "%s: %s while busy with %s",
-                        conn_device(c), grobo_error_text(error), doing);
-    if (c->trip.trip != GROBO_TRIP_NONE)
-        return conn_fail_trip(c, doing);
-    model = grobo_robot_driver(c->robot)->model;
-    if (c->job.kind != GROBO_JOB_NONE && joint >= 0 && joint < model->n_joints)
-        return app_fail(c->a, app_status_of(error), grobo_error_name(error),
-                        "%s: %s: %s from motor %d (%s); is its cable in?", conn_device(c), doing,
-                        grobo_error_text(error), model->joints[joint].motor,
-                        model->joints[joint].name);
-    return app_fail(c->a, app_status_of(error), grobo_error_name(error), "%s: %s: %s",
-                    conn_device(c), doing, grobo_error_text(error));
-}
-
-int conn_fail_servo(conn *c, int error, int id)
-{
-    if (c->signal || c->link_error)
-        return conn_fail(c, error, "servo");
-    return app_fail(c->a, app_status_of(error), grobo_error_name(error), "%s: servo %d: %s",
-                    conn_device(c), id, grobo_error_text(error));
-}
-
 /* ---- leaving -------------------------------------------------------------------------------- */
 
 /* What the servos are to do now, or GROBO_EXIT_DEFAULT for nothing. */
@@ -441,10 +461,10 @@ static int carry_out_policy(conn *c, int status)
         return EXIT_DONE;
     c->leaving = true;
     error = conn_wait(c, grobo_session_exit(c->session, policy));
+    if (error && !c->signal && !app_global(c->a, GLOBAL_ON_EXIT)->given)
+        return status; /* nobody asked for it, and why the command failed has been said */
     if (error)
-        return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error),
-                        "%s: the servos could not be left as asked: %s", conn_device(c),
-                        grobo_error_text(error));
+        return conn_fail_job(c, error, "the servos could not be left as asked: ");
     if (c->signal)
         app_note(c->a, "interrupted: the servos %s", policy_words(policy));
     app_detail(c->a, "exit policy carried out");
@@ -472,6 +492,7 @@ static void give_back(conn *c)
 int conn_close(conn *c, int status)
 {
     int failed = c->session ? carry_out_policy(c, status) : EXIT_DONE;
+    show_answer(c);
     if (failed)
         status = failed;
     else if (c->signal)

@@ -11,6 +11,7 @@
 #include <grobo/session.h>
 
 #include "app.h"
+#include "last_frames.h"
 #include "os.h"
 #include "trace.h"
 #include "trims.h"
@@ -54,6 +55,8 @@ struct conn {
     grobo_session *session;      /* the link's */
     grobo_robot *robot;          /* the session's */
     trace trace;                 /* of --trace */
+    last_frames last;            /* for -v */
+    int64_t shown_us;            /* when -vv showed its first byte, 0: none yet */
     grobo_robot_counters before; /* the engine's, when the command began */
     conn_event_fn on_event;
     conn_bytes_fn on_bytes;
@@ -103,6 +106,12 @@ int conn_sleep_until(conn *c, int64_t at_us);
  * A signal is not complained about: conn_close() gives its status.
  */
 int conn_fail(conn *c, int error, const char *doing);
+
+/* Whether an error says that a reply did not come, or came broken. */
+bool conn_is_of_reply(int error);
+
+/* Of conn_fail(): what the job's joint did. The prefix ("init: ") is put before that. */
+int conn_fail_job(conn *c, int error, const char *prefix);
 
 /* Of conn_fail(): the engine has stopped by itself, c->trip says why. */
 int conn_fail_trip(conn *c, const char *doing);

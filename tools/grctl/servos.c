@@ -19,22 +19,18 @@ int servos_read(conn *c, int id, int address, int length, uint8_t *data)
     return error;
 }
 
-int servos_hurry_at(conn *c, int baud_bps, int length, uint32_t *wire_us)
+int servos_wait(conn *c, int baud_bps, int length, uint32_t margin_us, int retries)
 {
     bool remote = strncmp(conn_device(c), "tcp:", 4) == 0;
     grobo_robot_config config = conn_robot_config(c->a);
-    int error = wire_read_us(grobo_robot_driver(c->robot), baud_bps, length, wire_us);
+    uint32_t wire_us;
+    int error = wire_read_us(grobo_robot_driver(c->robot), baud_bps, length, &wire_us);
     if (error)
         return error;
-    config.retries = -1;
+    if (!config.retries)
+        config.retries = retries;
     if (!config.timeout_us)
-        config.timeout_us = *wire_us + (remote ? TCP_MARGIN_US : WIRE_SILENT_MARGIN_US);
-    return grobo_robot_configure(c->robot, &config);
-}
-
-int servos_take_time(conn *c)
-{
-    grobo_robot_config config = conn_robot_config(c->a);
+        config.timeout_us = wire_us + (remote ? TCP_MARGIN_US : margin_us);
     return grobo_robot_configure(c->robot, &config);
 }
 

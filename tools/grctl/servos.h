@@ -11,15 +11,15 @@
  */
 int servos_read(conn *c, int id, int address, int length, uint8_t *data);
 
-/*
- * From now on each servo is asked once, and waited for no longer than a reply of `length` registers
- * takes at this speed of the line: for scans. *wire_us is that time, without any margin. Returns
- * GROBO_OK or the error.
- */
-int servos_hurry_at(conn *c, int baud_bps, int length, uint32_t *wire_us);
+/* Beyond the wire's time, where a reply is sure to be wanted and the host may be busy. */
+enum { SERVOS_PATIENT_US = 30000 };
 
-/* From now on as the options of the command line say. */
-int servos_take_time(conn *c);
+/*
+ * From now on a reply of `length` registers is waited for no longer than the wire takes at this
+ * speed, and margin_us more (over a network longer), and so often again (-1: never), unless the
+ * command line says otherwise. Returns GROBO_OK or the error.
+ */
+int servos_wait(conn *c, int baud_bps, int length, uint32_t margin_us, int retries);
 
 /* Reads an id of the command line: a number 1..127, or a joint's name. -1: *status is set. */
 int servos_parse_id(app *a, const char *text, int *status);
