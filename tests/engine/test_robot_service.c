@@ -302,15 +302,17 @@ static void cancel_stops_a_move_where_it_is(void **state)
 
 int main(void)
 {
+    const struct CMUnitTest of_the_board[] = {
+        cmocka_unit_test(raw_reads_bring_their_reply),
+        cmocka_unit_test(raw_targets_pass_the_same_gate),
+        cmocka_unit_test(raw_bytes_without_meaning_are_refused_unless_told),
+        cmocka_unit_test(stored_motions_are_started),
+    };
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(registers_are_read_and_written),
         cmocka_unit_test(motor_registers_are_not_written_this_way),
         cmocka_unit_test(flash_and_reboot_wait),
         cmocka_unit_test(a_reboot_that_was_asked_for_is_no_loss_of_torque),
-        cmocka_unit_test(raw_reads_bring_their_reply),
-        cmocka_unit_test(raw_targets_pass_the_same_gate),
-        cmocka_unit_test(raw_bytes_without_meaning_are_refused_unless_told),
-        cmocka_unit_test(stored_motions_are_started),
         cmocka_unit_test(free_mode_gives_way_and_holds),
         cmocka_unit_test(limp_joints_hold_in_free_mode_where_they_are),
         cmocka_unit_test(free_mode_believes_no_goal_read_before),
@@ -319,5 +321,6 @@ int main(void)
         cmocka_unit_test(read_back_correction_is_an_option),
         cmocka_unit_test(cancel_stops_a_move_where_it_is),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(of_the_board, NULL, NULL) +
+           rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

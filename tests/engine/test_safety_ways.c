@@ -24,9 +24,10 @@ static const grobo_robot_config quiet = {.sense_interval_us = GROBO_SENSE_NEVER}
 static int sent_ms(int id)
 {
     for (size_t i = rig.n_sent; i > 0; i--) {
-        const uint8_t *b = rig.sent[i - 1].bytes;
-        if (rig.sent[i - 1].size == 14 && b[4] == id && b[6] == GROBO_RS30X_GOAL) {
-            return (b[11] | b[12] << 8) * 10;
+        const uint8_t *p;
+        size_t n = rig_packet(&rig.sent[i - 1], &p);
+        if (n == 12 && p[2] == id && p[4] == GROBO_RS30X_GOAL) {
+            return (p[9] | p[10] << 8) * 10;
         }
     }
     return -1;
@@ -282,5 +283,5 @@ int main(void)
         cmocka_unit_test(a_move_that_cannot_be_slow_enough_is_refused),
         cmocka_unit_test(a_time_out_of_all_reason_is_the_longest_there_is),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

@@ -10,6 +10,8 @@
 #include <math.h>
 #include <string.h>
 
+grobo_wiring rig_wiring = GROBO_WIRING_BOARD;
+
 /* ---- what must always hold, judged on the frames themselves ---------------------------------- */
 
 static int joint_of(const grobo_test_rig *rig, int id)
@@ -208,7 +210,7 @@ void rig_start_driver(grobo_test_rig *rig, const grobo_driver *driver,
 
 void rig_start(grobo_test_rig *rig, const grobo_robot_config *config, const grobo_sim_config *sim)
 {
-    rig_start_driver(rig, grobo_gr001_driver(GROBO_WIRING_BOARD), config, sim);
+    rig_start_driver(rig, grobo_gr001_driver(rig_wiring), config, sim);
 }
 
 static void send_all(grobo_test_rig *rig)
@@ -386,10 +388,18 @@ grobo_posture rig_posture(const grobo_test_rig *rig, int joint, double angle_deg
     return posture;
 }
 
-bool rig_was_sent(const grobo_test_rig *rig, const uint8_t *bytes, size_t size)
+size_t rig_packet(const rig_frame *frame, const uint8_t **packet)
+{
+    size_t ahead = frame->bytes[0] == 0x53 || frame->bytes[0] == 0x54 ? 2 : 0;
+    *packet = frame->bytes + ahead;
+    return frame->size - ahead - (frame->bytes[0] == 0x54);
+}
+
+bool rig_packet_was_sent(const grobo_test_rig *rig, const void *bytes, size_t size)
 {
     for (size_t i = 0; i < rig->n_sent; i++) {
-        if (rig->sent[i].size == size && memcmp(rig->sent[i].bytes, bytes, size) == 0) {
+        const uint8_t *packet;
+        if (rig_packet(&rig->sent[i], &packet) == size && memcmp(packet, bytes, size) == 0) {
             return true;
         }
     }
@@ -440,4 +450,14 @@ void rig_clip_init(rig_clip *clip, const rig_key *keys, size_t n)
     clip->clip.n_keys = n;
     clip->clip.n_joints = grobo_gr001_model.n_joints;
     clip->clip.length_us = keys[n - 1].at_ms * 1000;
+}
+
+/* ---- both wirings ---------------------------------- */
+
+int rig_on_both_wirings(const struct CMUnitTest *tests, size_t n)
+{
+    rig_wiring = GROBO_WIRING_BOARD;
+    int failed = _cmocka_run_group_tests("on the board", tests, n, NULL, NULL);
+    rig_wiring = GROBO_WIRING_BUS;
+    return failed + _cmocka_run_group_tests("on a bus", tests, n, NULL, NULL);
 }

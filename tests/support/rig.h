@@ -46,7 +46,12 @@ typedef struct grobo_test_rig {
     unsigned frames;    /* sent */
 } grobo_test_rig;
 
-/* GR001 behind its board, all defaults, link up at 1 s. config, sim NULL: defaults. */
+/* How rig_start() reaches the servos: through the board, unless a test says otherwise. */
+extern grobo_wiring rig_wiring;
+struct CMUnitTest;
+/* Runs tests that begin with rig_start() once on each wiring; how many failed. */
+int rig_on_both_wirings(const struct CMUnitTest *tests, size_t n);
+/* GR001, all defaults, link up at 1 s. config, sim NULL: defaults. */
 void rig_start(grobo_test_rig *rig, const grobo_robot_config *config, const grobo_sim_config *sim);
 /* The same with a driver of one's own. */
 void rig_start_driver(grobo_test_rig *rig, const grobo_driver *driver,
@@ -76,8 +81,10 @@ grobo_joint_mask rig_all(const grobo_test_rig *rig);
 void rig_power(grobo_test_rig *rig);
 /* A posture of one joint. */
 grobo_posture rig_posture(const grobo_test_rig *rig, int joint, double angle_deg, int time_ms);
-/* True if this frame is among those sent since the last rig_forget(). */
-bool rig_was_sent(const grobo_test_rig *rig, const uint8_t *bytes, size_t size);
+/* The packet for servos in a frame, without what the board puts around it; its bytes. */
+size_t rig_packet(const rig_frame *frame, const uint8_t **packet);
+/* True if this packet for servos is in a frame sent since the last rig_forget(). */
+bool rig_packet_was_sent(const grobo_test_rig *rig, const void *bytes, size_t size);
 
 /* A clip of GR001: key postures that differ from the initial one in a few joints, straight lines
  * between them when sampled. */
