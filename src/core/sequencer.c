@@ -10,6 +10,9 @@
 
 #define SECOND_US 1000000u
 
+/* Longest time of a frame, in units. */
+#define TIME_MAX_UNITS (GROBO_PLAY_TIME_MAX_US / GROBO_PLAY_TIME_UNIT_US)
+
 _Static_assert(GROBO_QUEUE_MAX < 256, "queue_head and queue_n are bytes");
 
 static bool is_under_way(const grobo_sequencer *seq)
@@ -65,20 +68,20 @@ static int64_t in_units(const grobo_sequencer *seq, int64_t t_us)
 
 /* The time of a frame. That of a move comes from absolute times, so that neither lateness nor
  * rounding adds up. */
-static int64_t time_of_frame(const grobo_sequencer *seq)
+static int32_t time_of_frame(const grobo_sequencer *seq)
 {
     const grobo_play_options *options = &seq->item.options;
     if (seq->state == GROBO_SEQUENCER_PLAYING && options->mode == GROBO_PLAY_RATE) {
-        return SECOND_US / options->rate_hz;
+        return (int32_t)(SECOND_US / options->rate_hz);
     }
-    return (in_units(seq, seq->to_us) - in_units(seq, seq->from_us)) * GROBO_PLAY_TIME_UNIT_US;
+    int64_t units = in_units(seq, seq->to_us) - in_units(seq, seq->from_us);
+    return (int32_t)at_most(units, TIME_MAX_UNITS) * GROBO_PLAY_TIME_UNIT_US;
 }
 
 static int hand_out(grobo_sequencer *seq, grobo_play_frame *frame)
 {
-    int64_t time_us = at_least(time_of_frame(seq), GROBO_PLAY_TIME_UNIT_US);
     frame->posture = seq->to;
-    frame->posture.time_us = at_most(time_us, GROBO_PLAY_TIME_MAX_US);
+    frame->posture.time_us = longer(time_of_frame(seq), GROBO_PLAY_TIME_UNIT_US);
     frame->due_us = seq->due_us;
     frame->skipped = seq->skipped;
     frame->phase = seq->state;
