@@ -208,7 +208,7 @@ check-firmware: $(GRCTL) ## grctl against that GR001 in qemu-system-arm
 	-@tools/setup.sh --cross baremetal
 	@if command -v $(BARE_PREFIX)gcc >/dev/null; then $(MAKE) --no-print-directory firmware; fi
 	@GRCTL="$(abspath $(GRCTL))" FIRMWARE="$(BARE_DIR)" BARE_PREFIX=$(BARE_PREFIX) \
-	    TEST_TIMEOUT_S=300 TEST_LOGS="$(BUILD)/logs/firmware" tests/run.sh tests/firmware/gr001.sh
+	    TEST_TIMEOUT_S=300 TEST_LOGS="$(BUILD)/logs/firmware" tests/run.sh tests/firmware/machines.sh
 
 bench: $(BENCHES) $(GRCTL) ## speed and punctuality; fails where a promise is not kept
 	@status=0; for program in $(BENCHES); do \

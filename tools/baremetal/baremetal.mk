@@ -10,11 +10,12 @@ BARE_CAPS ?= -DGROBO_JOINTS_MAX=20 -DGROBO_QUEUE_MAX=2 -DGROBO_SIM_WIRE_BYTES=25
 BARE_FLAGS := -std=c11 -DNDEBUG $(WARNINGS) -mthumb -Os -ffunction-sections -fdata-sections -fstack-usage \
     $(BARE_CAPS) -Iinclude -Isrc -I.
 BARE_DIR := $(BUILD)/bare
-FIRMWARE_SRCS := $(sort $(wildcard docs/examples/firmware/*.c))
-FIRMWARE_SCRIPT := docs/examples/firmware/mps2.ld
-FIRMWARES := $(BARE_CPUS:%=$(BARE_DIR)/%/gr001.elf)
+FIRMWARE_DIR := docs/examples/firmware
+FIRMWARES := $(foreach cpu,$(BARE_CPUS),$(BARE_DIR)/$(cpu)/gr001.elf $(BARE_DIR)/$(cpu)/player.elf)
 BARE_LIBS := $(BARE_CPUS:%=$(BARE_DIR)/%/libgrobo-core.a)
 BARE_RAM := $(BARE_CPUS:%=$(BARE_DIR)/%/tools/baremetal/ram.o)
+
+.SECONDARY: $(foreach cpu,$(BARE_CPUS),$(patsubst %.c,$(BARE_DIR)/$(cpu)/%.o,$(wildcard $(FIRMWARE_DIR)/*.c)))
 
 # $(call bare,CPU)
 define bare
@@ -28,10 +29,10 @@ $(BARE_DIR)/$(1)/libgrobo-core.a: $(CORE_SRCS:%.c=$(BARE_DIR)/$(1)/%.o)
 	@rm -f $$@
 	$$(Q)$(BARE_PREFIX)ar rcs $$@ $$^
 
-$(BARE_DIR)/$(1)/gr001.elf: $(FIRMWARE_SRCS:%.c=$(BARE_DIR)/$(1)/%.o) \
-    $(BARE_DIR)/$(1)/libgrobo-core.a $(FIRMWARE_SCRIPT)
+$(BARE_DIR)/$(1)/%.elf: $(BARE_DIR)/$(1)/$(FIRMWARE_DIR)/%.o \
+    $(BARE_DIR)/$(1)/$(FIRMWARE_DIR)/mps2.o $(BARE_DIR)/$(1)/libgrobo-core.a $(FIRMWARE_DIR)/mps2.ld
 	$$(say) LD $$@
 	$$(Q)$(BARE_PREFIX)gcc -mcpu=$(1) -mthumb --specs=nano.specs -nostartfiles -Wl,--gc-sections \
-	    -Wl,-Map=$$(@:.elf=.map) -T $(FIRMWARE_SCRIPT) -o $$@ $$(filter %.o %.a,$$^) -lm
+	    -Wl,-Map=$$(@:.elf=.map) -T $(FIRMWARE_DIR)/mps2.ld -o $$@ $$(filter %.o %.a,$$^) -lm
 endef
 $(foreach cpu,$(BARE_CPUS),$(eval $(call bare,$(cpu))))

@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# The firmware of docs/examples/firmware in an emulated microcontroller, grctl at its UART.
+# The firmware of docs/examples/firmware in an emulated microcontroller: grctl at the UART of one
+# that is a robot, a simulated robot at the UART of one that plays.
 # $FIRMWARE is the folder that has it for each processor, as `make firmware` builds it.
 . tests/support/cli.sh
 
@@ -16,11 +17,16 @@ stop_machine() {
 }
 trap 'stop_machine; end_cli_test' EXIT
 
-# start_machine MACHINE FIRMWARE: $pty is its UART.
+# start_machine MACHINE FIRMWARE SERIAL: as QEMU names what the UART is connected to.
 start_machine() {
-    timeout 200 "$qemu" -M "$1" -nographic -monitor none -serial pty -kernel "$2" \
+    timeout 200 "$qemu" -M "$1" -nographic -monitor none -serial "$3" -kernel "$2" \
         >"$work/qemu.log" 2>&1 </dev/null &
     qemu_pid=$!
+}
+
+# start_robot MACHINE FIRMWARE: $pty is its UART.
+start_robot() {
+    start_machine "$1" "$2" pty
     written "$work/qemu.log" 'redirected to' || return 1
     pty=$(sed -n 's,.*redirected to \([^ ]*\).*,\1,p' "$work/qemu.log")
     # QEMU looks once a second whether somebody has the other end: so somebody has it always.
@@ -49,9 +55,20 @@ stops_smoothly() {
     [ $? -eq 130 ] || { cat "$work/out"; return 1; }
 }
 
+# The elbow stands where the wave of player.c ends.
+waves() {
+    waves_left=200
+    until tell look R_ELBOW_P && tail -n 1 "$work/sim.log" |
+        grep -q -e '-50\.0 deg  to   -50\.0  torque on .* C$'; do
+        waves_left=$((waves_left - 1))
+        [ $waves_left -gt 0 ] || { cat "$work/sim.log" "$work/qemu.log"; return 1; }
+        sleep 0.1
+    done
+}
+
 # What is linked: nothing that allocates, prints or asks an operating system.
 links_bare() {
-    foreign=$("${BARE_PREFIX}nm" "$1/gr001.elf" |
+    foreign=$("${BARE_PREFIX}nm" "$1/gr001.elf" "$1/player.elf" |
         grep -E ' _?(malloc|calloc|realloc|free|sbrk|[fsv]*n?printf|puts|abort|exit)(_r)?$')
     [ -z "$foreign" ] || { echo "$foreign"; return 1; }
 }
@@ -77,7 +94,7 @@ try() {
         skip "$1: in $2" "$qemu is missing"
         return
     fi
-    start_machine "$2" "$FIRMWARE/$1/gr001.elf"
+    start_robot "$2" "$FIRMWARE/$1/gr001.elf"
     check "$1: answers in $2" answers
     check "$1: scan finds 20 servos" finds_all
     check "$1: status" both exits 0 "$GRCTL" -d "$pty" status --- says 'R_KNEE_P  *-40\.0'
@@ -96,6 +113,12 @@ try() {
     check "$1: until it is taken back" both exits 0 "$GRCTL" -d "$pty" estop --reset --- \
         exits 0 "$GRCTL" -d "$pty" move m5 10 500
     stop_machine
+
+    start_told_sim --tcp 0
+    start_machine "$2" "$FIRMWARE/$1/player.elf" "$(sed -n 's/^also at //p' "$work/sim.log")"
+    check "$1: plays a motion itself, on a simulated robot" waves
+    stop_machine
+    stop_sim
 }
 
 if [ ! -e "$FIRMWARE/cortex-m0/gr001.elf" ]; then
