@@ -166,7 +166,7 @@ cross_env = $(if $(CROSS),$(foreach v,CROSS EMULATOR SYSROOT CXX,$(v)="$($(v))")
 corpora = $(foreach f,$(FUZZ_REPLAYS),$(f)@tests/fuzz/corpus/$(patsubst fuzz_%,%,$(notdir $(f))))
 
 test: all $(TEST_PROGRAMS) $(FUZZ_REPLAYS) $(EXAMPLES) ## the tests alone; RING="unit engine" chooses
-	@GRCTL="$(abspath $(GRCTL_RUN))" BUILD="$(BUILD)" CC="$(CC)" TEST_LOGS="$(BUILD)/logs" EDIT=$(EDIT) \
+	@GRCTL="$(abspath $(GRCTL_RUN))" BUILD="$(BUILD)" CC="$(CC)" TEST_LOGS="$(BUILD)/logs" EDIT=$(EDIT) SCREEN=$(SCREEN) \
 	    $(cross_env) tests/run.sh \
 	    $(call in_rings,$(BUILD)/,$(TEST_PROGRAMS)) $(call in_rings,,$(TEST_SCRIPTS)) \
 	    $(if $(filter fuzz,$(RING)),$(corpora))

@@ -56,14 +56,11 @@ check "an emergency stop that stands" finds 'an emergency stop stands' 'estop --
 exits 0 "$GRCTL" -d "$robot" estop --reset
 
 "$GRCTL" -d "$robot" status --watch --interval 3600000 >"$work/watch" &
-holder=$!
-holder_name=${EMULATOR:-grctl} # which is a command with its options
-holder_name=${holder_name%% *}
-holder_name=${holder_name##*/}
-until [ -s "$work/watch" ]; do kill -0 $holder || break; done
-check "somebody else has the port" finds "$holder_name (pid $holder) holds it" "kill $holder"
-kill $holder
-wait $holder 2>/dev/null
+watcher=$!
+until [ -s "$work/watch" ]; do kill -0 $watcher || break; done
+check "somebody else has the port" finds "$known_as (pid $watcher) holds it" "kill $watcher"
+kill $watcher
+wait $watcher 2>/dev/null
 
 robot=$(readlink "$robot")
 chmod 600 "$robot"

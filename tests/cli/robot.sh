@@ -74,7 +74,7 @@ interrupted() {
 }
 check "torque on before" exits 0 on_robot servo on m5
 check "SIGINT: the exit policy, then 130" interrupted INT 130
-check "a second program is told who has the port" grep -q 'in use by.*grctl (pid' "$work/busy"
+check "a second program is told who has the port" grep -q "in use by.*$known_as (pid" "$work/busy"
 check_json "the joint holds on its way" \
     'lines[0]["joints"][0]["torque"] == "on" and lines[0]["joints"][0]["speed_dps"] == 0 and
      -120 < lines[0]["joints"][0]["angle_deg"] <= 0' on_robot --json status m5

@@ -268,7 +268,8 @@ static void speeds_need_not_be_those_of_a_table(void **state)
 
     (void)state;
     test_line_needs_pty("any speed");
-    if (getenv("EMULATOR") != NULL) {
+    const char *emulator = getenv("EMULATOR");
+    if (emulator != NULL && *emulator != '\0') {
         print_message("the emulator passes on standard speeds only\n");
         skip();
     }

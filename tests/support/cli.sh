@@ -6,6 +6,9 @@
 
 work=$(mktemp -d)
 sim_pid=
+known_as=${EMULATOR:-grctl} # as what the system knows the command; an emulator has options
+known_as=${known_as%% *}
+known_as=${known_as##*/}
 unset GRCTL_DEVICE
 XDG_CONFIG_HOME=$work/config # not that of whoever runs the tests
 XDG_STATE_HOME=$work/state
@@ -24,7 +27,8 @@ start_sim() {
     mkfifo "$work/ready"
     "$GRCTL" sim --link "$robot" "$@" >"$work/ready" 2>"$work/sim.log" &
     sim_pid=$!
-    read -r sim_pty <"$work/ready"
+    exec 6<"$work/ready" # stays open: a line for each robot follows
+    read -r sim_pty <&6
     rm "$work/ready"
     [ -n "$sim_pty" ]
 }
@@ -36,7 +40,8 @@ start_told_sim() {
     "$GRCTL" sim --link "$robot" "$@" <"$work/tell" >"$work/ready" 2>"$work/sim.log" &
     sim_pid=$!
     exec 5>"$work/tell"
-    read -r sim_pty <"$work/ready"
+    exec 6<"$work/ready" # stays open: a line for each robot follows
+    read -r sim_pty <&6
     rm "$work/ready" "$work/tell"
     [ -n "$sim_pty" ]
 }
