@@ -28,6 +28,16 @@ check "a command that is none" fails 2 "no command 'nonsense'" "$GRCTL" nonsense
 check "a near miss" fails 2 "did you mean 'status'" "$GRCTL" stauts
 check "help on a near miss" fails 2 "did you mean 'play'" "$GRCTL" help plya
 check "an option that is none" fails 2 'unknown option --nonsense' "$GRCTL" status --nonsense
+check "a near miss of one" fails 2 'unknown option --sped; did you mean --speed?$' \
+    "$GRCTL" play --sped 3 x
+check "of a global one" fails 2 'unknown option --jsn; did you mean --json?$' "$GRCTL" status --jsn
+check "of a joint" fails 2 "no joint called 'r_kne_p'; did you mean R_KNEE_P?$" \
+    "$GRCTL" move r_kne_p 3
+check "of a group" fails 2 'did you mean right_arm?$' "$GRCTL" status rightarm
+check "a file without a name" fails 2 'an empty name is no file' "$GRCTL" play ''
+check "an option without a value" fails 2 'output needs a value: OUT' "$GRCTL" plot -o '' x
+check "a device without a name" fails 2 'device needs a value: DEV' "$GRCTL" -d '' status
+check "an address that is none" fails 2 'tcp:x: not of the form' "$GRCTL" -d tcp:x status
 check "a letter that is none" fails 2 'unknown option -Z' "$GRCTL" -Z status
 check "a value missing" fails 2 'device needs a value' "$GRCTL" status --device
 check "a value too many" fails 2 'json takes no value' "$GRCTL" status --json=yes

@@ -122,13 +122,13 @@ as_other=
 
 check "an unknown device" fails 1 '^grctl: /dev/none: no such file or device; see .grctl ports' \
     grctl -d /dev/none play "$greet"
-check "a device without a name" fails 2 'an empty name' grctl -d '' play "$greet"
+check "a device without a name" fails 2 'device needs a value' grctl -d '' play "$greet"
 check "a device that is no serial port" fails 1 '/dev/null: is not a serial port' \
     grctl -d /dev/null play "$greet"
 check "a server that is none" fails 1 'tcp:127.0.0.1:1: connect: Connection refused' \
     grctl -d tcp:127.0.0.1:1 play "$greet"
-check "a server without a port" fails 1 'not of the form' grctl -d tcp:localhost play "$greet"
-check "a server with too large a port" fails 1 'not of the form' \
+check "a server without a port" fails 2 'not of the form' grctl -d tcp:localhost play "$greet"
+check "a server with too large a port" fails 2 'not of the form' \
     grctl -d tcp:localhost:65536 play "$greet"
 
 start_sim
@@ -145,7 +145,7 @@ in_use() {
 check "a device in use: who has it" in_use
 stop_sim
 start_sim --fault silent=1
-check "a board without servos" fails 1 "$robot: play: no reply in time from motor 9 (R_HIP_Y)" \
+check "a board without servos" fails 1 "$robot: no servo answers; are they powered?" \
     grctl -d "$robot" play "$greet"
 stop_sim
 start_sim --wiring bus # servos without a board: nobody answers to what a board is asked

@@ -111,7 +111,17 @@ bool cli_parse(cli_line *line, int argc, char *const *argv, char *complaint, siz
 /* The command of that name, or NULL. */
 const cli_command *cli_find_command(const char *name);
 
-/* The known name that is nearest to a mistyped one, or NULL if none is near. */
+/* A mistyped name, and the known one that is nearest to it: NULL while none is near. */
+typedef struct cli_guess {
+    const char *name;
+    size_t length;
+    const char *best;
+    int edits;
+} cli_guess;
+
+void cli_guess_try(cli_guess *guess, const char *candidate);
+
+/* The command that is nearest to a mistyped name, or NULL if none is near. */
 const char *cli_nearest_command(const char *name);
 
 /* Takes the value of an option as the parser does. False with a line of complaint. */

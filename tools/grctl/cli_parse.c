@@ -48,46 +48,6 @@ const cli_command *cli_find_command(const char *name)
     return NULL;
 }
 
-/* Edits (insert, delete, replace, swap of neighbours) that turn a into b; names are short. */
-static int distance(const char *a, const char *b)
-{
-    enum { MOST = 24 };
-    int d[MOST + 1][MOST + 1];
-    int n = (int)strnlen(a, MOST), m = (int)strnlen(b, MOST);
-    for (int i = 0; i <= n; i++)
-        d[i][0] = i;
-    for (int j = 0; j <= m; j++)
-        d[0][j] = j;
-    for (int i = 1; i <= n; i++) {
-        for (int j = 1; j <= m; j++) {
-            int best = d[i - 1][j - 1] + (a[i - 1] != b[j - 1]);
-            if (d[i - 1][j] + 1 < best)
-                best = d[i - 1][j] + 1;
-            if (d[i][j - 1] + 1 < best)
-                best = d[i][j - 1] + 1;
-            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] &&
-                d[i - 2][j - 2] + 1 < best)
-                best = d[i - 2][j - 2] + 1;
-            d[i][j] = best;
-        }
-    }
-    return d[n][m];
-}
-
-const char *cli_nearest_command(const char *name)
-{
-    const char *nearest = NULL;
-    int best = 3; /* more than two edits is another word */
-    for (size_t i = 0; i < cli_n_commands; i++) {
-        int d = distance(name, cli_commands[i]->name);
-        if (d < best && d < (int)strlen(cli_commands[i]->name)) {
-            best = d;
-            nearest = cli_commands[i]->name;
-        }
-    }
-    return nearest;
-}
-
 /* Index of a word in "a|b|c", or -1. */
 static int choice_index(const char *words, const char *word)
 {
@@ -119,8 +79,9 @@ static bool take_value(parser *p, const cli_option *o, cli_value *v, const char 
     v->text = text;
     switch (o->kind) {
     case CLI_FLAG:
-    case CLI_TEXT:
         return true;
+    case CLI_TEXT:
+        return *text || complain(p, "--%s needs a value: %s", o->name, o->value);
     case CLI_NUMBER:
         return take_number(p, o, v, text);
     case CLI_CHOICE:
@@ -163,6 +124,19 @@ static const cli_option *find_option(parser *p, const char *name, size_t length,
     return NULL;
 }
 
+static bool unknown_option(parser *p, const char *name, size_t length)
+{
+    const cli_command *command = p->line->command;
+    cli_guess guess = {.name = name, .length = length};
+    for (size_t i = 0; command && i < command->n_options; i++)
+        cli_guess_try(&guess, command->options[i].name);
+    for (size_t i = 0; i < GLOBAL_COUNT; i++)
+        cli_guess_try(&guess, cli_global_options[i].name);
+    return guess.best ? complain(p, "unknown option --%.*s; did you mean --%s?", (int)length, name,
+                                 guess.best)
+                      : complain(p, "unknown option --%.*s", (int)length, name);
+}
+
 /* True if what follows is no value of an option that can do without. */
 static bool stands_alone(const parser *p, const cli_option *o)
 {
@@ -178,7 +152,7 @@ static bool parse_long(parser *p, const char *token)
     cli_value *value = NULL;
     const cli_option *o = find_option(p, name, length, 0, &value);
     if (!o)
-        return complain(p, "unknown option --%.*s", (int)length, name);
+        return unknown_option(p, name, length);
     if (o->kind == CLI_FLAG)
         return text ? complain(p, "--%s takes no value", o->name) : take_value(p, o, value, "");
     if (!text && stands_alone(p, o)) {
@@ -227,6 +201,8 @@ static bool parse_argument(parser *p, const char *token)
         return nearest ? complain(p, "no command '%s'; did you mean '%s'?", token, nearest)
                        : complain(p, "no command '%s'", token);
     }
+    if (!*token && line->command->argument == CLI_ARG_FILE)
+        return complain(p, "an empty name is no file");
     if (line->n_arguments >= CLI_ARGUMENTS_MAX)
         return complain(p, "more than %d arguments", CLI_ARGUMENTS_MAX);
     line->argument[line->n_arguments++] = token;

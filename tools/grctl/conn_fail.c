@@ -80,6 +80,10 @@ int conn_fail_job(conn *c, int error, const char *prefix)
                         conn_device(c), prefix, grobo_error_text(error));
     snprintf(who, sizeof who, "motor %d (%s)", model->joints[joint].motor,
              model->joints[joint].name);
+    if (conn_is_of_reply(error) && c->job.failed == GROBO_JOINTS_ALL(model->n_joints))
+        return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error),
+                        "%s: %sno servo answers; are they powered? see 'grctl doctor'",
+                        conn_device(c), prefix);
     if (conn_is_of_reply(error))
         return fail_reply(c, error, model->joints[joint].motor, prefix, who);
     return app_fail(c->a, app_status_of(error), grobo_error_name(error), "%s: %s%s: %s",

@@ -5,6 +5,15 @@
 
 static int unknown(app *a, const char *what, const char *name, size_t length)
 {
+    const grobo_model *model = &grobo_gr001_model;
+    cli_guess guess = {.name = name, .length = length};
+    for (int i = 0; i < model->n_joints; i++)
+        cli_guess_try(&guess, model->joints[i].name);
+    for (int i = 0; i < model->n_groups; i++)
+        cli_guess_try(&guess, model->groups[i].name);
+    if (guess.best)
+        return app_fail(a, EXIT_USAGE, "NOTFOUND", "no %s called '%.*s'; did you mean %s?", what,
+                        (int)length, name, guess.best);
     return app_fail(a, EXIT_USAGE, "NOTFOUND",
                     "no %s called '%.*s'; joints are named as R_KNEE_P, m12 or j3, groups are all "
                     "body right_arm left_arm arms right_leg left_leg legs",

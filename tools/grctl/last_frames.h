@@ -5,7 +5,7 @@
 
 #include <grobo/serial.h>
 
-enum { LAST_FRAMES = 32, LAST_FRAME_BYTES = 64 };
+enum { LAST_FRAMES = 80, LAST_FRAME_BYTES = 64 };
 
 typedef struct last_frame {
     int64_t at_us, got_us; /* when it was sent; when the first byte came after it */

@@ -24,6 +24,15 @@ static int help(const cli_command *command)
     return EXIT_DONE;
 }
 
+static int fail(app *a, const char *complaint)
+{
+    const cli_command *command = a->line.command;
+    if (complaint[strlen(complaint) - 1] == '?') /* what was meant says enough */
+        return app_fail(a, EXIT_USAGE, "USAGE", "%s", complaint);
+    return app_fail(a, EXIT_USAGE, "USAGE", "%s; see 'grctl help%s%s'", complaint,
+                    command ? " " : "", command ? command->name : "");
+}
+
 int run_line(app *a, int argc, char **argv, int (*prepare)(void *ctx, app *a), void *ctx)
 {
     char complaint[512];
@@ -34,8 +43,7 @@ int run_line(app *a, int argc, char **argv, int (*prepare)(void *ctx, app *a), v
     app_settle(a);
     if (!ok) {
         a->json = json || wants_json(argc, argv);
-        return app_fail(a, EXIT_USAGE, "USAGE", "%s; see 'grctl help%s%s'", complaint,
-                        command ? " " : "", command ? command->name : "");
+        return fail(a, complaint);
     }
     if (app_global(a, GLOBAL_VERSION)->given)
         return cmd_version.run(a);
