@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* Linux: the serial ports of sysfs. The other systems' answer is at the end. */
+/*
+ * Linux: the serial ports of sysfs, or without it the adapters in /dev. The other systems' answer
+ * is at the end.
+ */
 #include <stdio.h>
 #include <string.h>
 
@@ -142,28 +145,51 @@ static bool describe(const char *sys_tty, const char *dev, const char *name, gro
     return true;
 }
 
+/* Fills info for an adapter as its name tells; false for any other node. */
+static bool describe_node(const char *dev, const char *name, grobo_port_info *info)
+{
+    static const char *const adapters[] = {"ttyUSB", "ttyACM"};
+    bool adapter = false;
+
+    for (size_t i = 0; i < sizeof adapters / sizeof adapters[0]; i++) {
+        adapter = adapter || strncmp(name, adapters[i], strlen(adapters[i])) == 0;
+    }
+    *info = (grobo_port_info){.usb_vendor = -1, .usb_product = -1, .latency_ms = -1};
+    if (!adapter || !join(info->path, sizeof info->path, dev, name)) {
+        return false;
+    }
+    find_by_id(dev, info->path, info->by_id, sizeof info->by_id);
+    add_access(info);
+    return true;
+}
+
 int grobo_i_posix_list(const char *sys_tty, const char *dev,
                        int (*visit)(void *ctx, const grobo_port_info *info), void *ctx)
 {
     struct dirent **names;
     int count = scandir(sys_tty, &names, NULL, alphasort);
+    bool has_sysfs = count >= 0;
     int found = 0;
     int r = 0;
 
-    if (count < 0) {
-        return GROBO_ERR_UNSUPPORTED;
+    if (!has_sysfs) {
+        /* A container: who shares a device with it need not share /sys. */
+        count = scandir(dev, &names, NULL, alphasort);
     }
     for (int i = 0; i < count; i++) {
+        const char *name = names[i]->d_name;
         grobo_port_info info;
 
-        if (r == 0 && names[i]->d_name[0] != '.' &&
-            describe(sys_tty, dev, names[i]->d_name, &info)) {
+        if (r == 0 && name[0] != '.' &&
+            (has_sysfs ? describe(sys_tty, dev, name, &info) : describe_node(dev, name, &info))) {
             found++;
             r = visit(ctx, &info);
         }
         free(names[i]);
     }
-    free(names);
+    if (count >= 0) {
+        free(names);
+    }
     return r != 0 ? r : found;
 }
 

@@ -116,5 +116,12 @@ for file in /tmp/before /tmp/said; do
     sed '1d; s/ *[0-9]*$//' $file >$file.joints
 done
 check 'to a tenth of a degree' cmp /tmp/before.joints /tmp/said.joints
+
+# As in a container. Nothing after this needs /sys.
+without_sys() {
+    umount -l /sys && grctl ports && [ ! -e /sys/class ]
+}
+check 'ports: without /sys an adapter has its name' says "^ .*${robot##*/}\$" without_sys
+check 'ports: and may be used' says '' grctl -d "$robot" info
 done_testing
 echo @end

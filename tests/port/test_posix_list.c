@@ -121,6 +121,26 @@ static void each_port_with_a_device_is_described(void **state)
     assert_int_equal(f.info[1].open_result, GROBO_OK);
 }
 
+static void without_sysfs_adapters_are_found_by_their_names(void **state)
+{
+    found f = {.count = 0};
+    char dev[64];
+    char path[80];
+
+    (void)state;
+    snprintf(dev, sizeof dev, "%s/dev", root);
+    snprintf(path, sizeof path, "%s/ttyUSB0", dev);
+    assert_int_equal(grobo_i_posix_list("/no/such/folder", dev, collect, &f), 1);
+    assert_string_equal(f.info[0].path, path);
+    assert_string_equal(strrchr(f.info[0].by_id, '/'),
+                        "/usb-FTDI_FT232R_USB_UART_A1B2C3-if00-port0");
+    assert_string_equal(f.info[0].driver, "");
+    assert_int_equal(f.info[0].usb_vendor, -1);
+    assert_int_equal(f.info[0].latency_ms, -1);
+    assert_int_equal(f.info[0].open_result, GROBO_OK);
+    assert_int_equal(grobo_i_posix_list("/no/such/folder", "/nor/this", collect, &f), 0);
+}
+
 static void a_visit_can_be_ended(void **state)
 {
     found f = {.stop = 7};
@@ -222,6 +242,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_port_with_a_device_is_described),
+        cmocka_unit_test(without_sysfs_adapters_are_found_by_their_names),
         cmocka_unit_test(a_visit_can_be_ended),
         cmocka_unit_test(a_port_in_use_names_its_owner),
         cmocka_unit_test(a_port_of_somebody_else_is_not_to_be_opened),
