@@ -92,10 +92,11 @@ typedef struct grobo_port grobo_port;
  * A kind of byte port. A table of these functions is all that src/link knows of a line, so a test
  * or a program may hand in its own (grobo_serial_config.ops).
  *
- * No function blocks and none is called again by a signal's interruption (EINTR is taken care of
- * inside). `cause` is filled when a function fails, and is never NULL. A port belongs to the
- * thread that uses it. Reading, writing and ready() return GROBO_ERR_UNPLUGGED when the other end
- * or the device is gone, GROBO_ERR_IO for any other failure; after either only close() may follow.
+ * No function but close() blocks, and none is called again by a signal's interruption (EINTR is
+ * taken care of inside). `cause` is filled when a function fails, and is never NULL. A port belongs
+ * to the thread that uses it. Reading, writing and ready() return GROBO_ERR_UNPLUGGED when the
+ * other end or the device is gone, GROBO_ERR_IO for any other failure; after either only close()
+ * may follow.
  */
 typedef struct grobo_port_ops {
     const char *name;  /**< "serial", "tcp" */
@@ -112,7 +113,10 @@ typedef struct grobo_port_ops {
      */
     int (*open)(grobo_port *port, const char *device, int baud_bps, grobo_os_cause *cause);
 
-    /** Closes; the storage may be used for another open() then. */
+    /**
+     * Closes; the storage may be used for another open() then. What was written still leaves: the
+     * one call that may wait, for the time that takes on the line and 0.1 s more.
+     */
     void (*close)(grobo_port *port);
 
     /**

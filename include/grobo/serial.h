@@ -171,7 +171,11 @@ GROBO_API int grobo_serial_low_latency(const grobo_serial *serial);
  */
 GROBO_API int grobo_serial_open(grobo_serial *serial);
 
-/** Closes; queued bytes and pending events are dropped. Closed already: nothing happens. */
+/**
+ * Closes; queued bytes and pending events are dropped. What the system has taken still leaves, and
+ * this waits for it: for the time the bytes need on the line, at most 0.1 s more, and none when the
+ * line is lost. Closed already: nothing happens.
+ */
 GROBO_API void grobo_serial_close(grobo_serial *serial);
 
 /** True from a successful open until close or loss. */

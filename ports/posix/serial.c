@@ -2,6 +2,7 @@
 /* Serial ports by termios. */
 #include <errno.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/file.h>
@@ -11,6 +12,11 @@
 #include <unistd.h>
 
 #include "ports/posix/posix.h"
+
+/* On the wire, with start and stop bit. */
+enum { BITS_A_BYTE = 10 };
+
+#define GRACE_US INT64_C(100000)
 
 static int refuse_busy(const char *device, grobo_os_cause *cause)
 {
@@ -111,8 +117,35 @@ static int serial_open(grobo_port *port, const char *device, int baud_bps, grobo
     return GROBO_OK;
 }
 
+/*
+ * close() waits until what was written has left: 30 s on a line that takes nothing. The bytes get
+ * the time that they need, and GRACE_US; what is there then never leaves.
+ */
+static void let_leave(int fd)
+{
+    grobo_os_cause cause;
+    int baud_bps = grobo_i_posix_get_baud(fd, &cause);
+    int left = 0;
+    int64_t end_us;
+
+    if (baud_bps <= 0 || ioctl(fd, TIOCOUTQ, &left) != 0) {
+        return;
+    }
+    end_us = grobo_now_us() + GRACE_US + (int64_t)left * BITS_A_BYTE * 1000000 / baud_bps;
+    while (left > 0 && grobo_now_us() < end_us) {
+        (void)poll(NULL, 0, 1);
+        if (ioctl(fd, TIOCOUTQ, &left) != 0) {
+            return;
+        }
+    }
+    if (left > 0) {
+        (void)tcflush(fd, TCOFLUSH);
+    }
+}
+
 static void serial_close(grobo_port *port)
 {
+    let_leave(port->fd);
     /* The lock goes with the descriptor, TIOCEXCL only with the last one of the terminal. */
     (void)ioctl(port->fd, TIOCNXCL);
     grobo_i_posix_close(port);

@@ -155,6 +155,28 @@ static void the_list_describes_it(void **state)
     assert_int_equal(info.open_result, GROBO_OK);
 }
 
+/* The system waits 30 s at close for a line that takes nothing. */
+static void closing_waits_no_longer_than_the_line_needs(void **state)
+{
+    static uint8_t block[65536];
+    int64_t start_us = grobo_now_us();
+    int taken = sizeof block;
+
+    (void)state;
+    test_line_close(&line);
+    while (taken == sizeof block && grobo_now_us() - start_us < 2000000) {
+        taken = grobo_serial_write(serial, block, sizeof block);
+    }
+    if (taken == sizeof block) {
+        print_message("this line takes bytes faster than they can be written\n");
+        skip();
+    }
+    start_us = grobo_now_us();
+    grobo_serial_close(serial);
+    print_message("closed in %lld ms\n", (long long)(grobo_now_us() - start_us) / 1000);
+    assert_true(grobo_now_us() - start_us < 2000000);
+}
+
 int main(void)
 {
 #define ON_LINE(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
@@ -163,6 +185,7 @@ int main(void)
         ON_LINE(speeds_it_has_not_are_refused_and_leave_the_old_one),
         ON_LINE(opening_asks_for_low_latency),
         ON_LINE(the_list_describes_it),
+        ON_LINE(closing_waits_no_longer_than_the_line_needs),
     };
     const char *name = getenv("GROBO_TEST_DRIVER");
 
