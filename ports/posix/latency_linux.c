@@ -9,22 +9,26 @@
 #include <linux/serial.h>
 #include <sys/ioctl.h>
 
+/* Drivers have three ways to say that they know no such thing. */
+static int fail(grobo_os_cause *cause, int code, const char *what)
+{
+    int r = grobo_i_posix_fail(cause, code, what);
+
+    return code == ENOTTY || code == EINVAL || code == EOPNOTSUPP ? GROBO_ERR_UNSUPPORTED : r;
+}
+
 int grobo_i_posix_set_low_latency(int fd, grobo_os_cause *cause)
 {
     struct serial_struct serial;
 
     if (ioctl(fd, TIOCGSERIAL, &serial) != 0) {
-        int error = errno;
-        int r = grobo_i_posix_fail(cause, error, "TIOCGSERIAL");
-
-        return error == ENOTTY || error == EINVAL ? GROBO_ERR_UNSUPPORTED : r;
+        return fail(cause, errno, "TIOCGSERIAL");
     }
     if ((serial.flags & (int)ASYNC_LOW_LATENCY) != 0) {
         return GROBO_OK;
     }
     serial.flags |= (int)ASYNC_LOW_LATENCY;
-    return ioctl(fd, TIOCSSERIAL, &serial) == 0 ? GROBO_OK
-                                                : grobo_i_posix_fail(cause, errno, "TIOCSSERIAL");
+    return ioctl(fd, TIOCSSERIAL, &serial) == 0 ? GROBO_OK : fail(cause, errno, "TIOCSSERIAL");
 }
 
 #else

@@ -188,6 +188,21 @@ static void await_bytes(int count)
     assert_int_equal(grobo_serial_waiting(serial), count);
 }
 
+static void silence_is_100_ms_where_nothing_else_is_said(void **state)
+{
+    const grobo_serial_config config = {.device = line.device};
+    uint8_t byte = 0;
+    int64_t start_us;
+
+    (void)state;
+    grobo_serial_free(serial);
+    assert_int_equal(grobo_serial_new(&config, &serial), GROBO_OK);
+    assert_int_equal(grobo_serial_open(serial), GROBO_OK);
+    start_us = grobo_now_us();
+    assert_int_equal(grobo_serial_receive(serial, &byte, 1), GROBO_ERR_TIMEOUT);
+    assert_in_range(grobo_now_us() - start_us, 100000, 1000000);
+}
+
 static void low_level_read_and_write_take_what_there_is(void **state)
 {
     uint8_t buf[16];
@@ -375,6 +390,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(every_byte_passes_both_ways, set_up, tear_down),
         cmocka_unit_test_setup_teardown(receive_takes_exactly_what_is_asked_for, set_up, tear_down),
         cmocka_unit_test_setup_teardown(silence_ends_a_receive_and_drops_what_came, set_up,
+                                        tear_down),
+        cmocka_unit_test_setup_teardown(silence_is_100_ms_where_nothing_else_is_said, set_up,
                                         tear_down),
         cmocka_unit_test_setup_teardown(low_level_read_and_write_take_what_there_is, set_up,
                                         tear_down),

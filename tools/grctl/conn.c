@@ -358,6 +358,15 @@ static int take_over(conn *c, bool check)
     return error ? EXIT_ROBOT : EXIT_DONE;
 }
 
+static void say_found(conn *c)
+{
+    const grobo_serial *serial = grobo_session_serial(c->session);
+    int answer = serial ? grobo_serial_low_latency(serial) : GROBO_ERR_CLOSED;
+    app_detail(c->a, "robot found on %s", conn_device(c));
+    if (answer < 0 && answer != GROBO_ERR_UNSUPPORTED && answer != GROBO_ERR_CLOSED)
+        app_detail(c->a, "low latency: %s; 'grctl doctor' tells more", grobo_error_text(answer));
+}
+
 static int open_device(conn *c, app *a, bool check)
 {
     char device[GROBO_DEVICE_MAX_BYTES];
@@ -393,7 +402,7 @@ static int open_device(conn *c, app *a, bool check)
         return fail_open(c, error);
     c->link->answered = check && !error;
     if (!error)
-        app_detail(a, "robot found on %s", conn_device(c));
+        say_found(c);
     return error ? EXIT_ROBOT : EXIT_DONE;
 }
 
