@@ -314,17 +314,18 @@ int grobo_control_stop_motion(grobo_control *control, bool at_once)
 static int count_commands(grobo_control *control, void *arg)
 {
     grobo_play_progress progress;
+    bool sequencing = grobo_i_control_sequencing(control);
     bool move;
     int count = 0;
 
     (void)arg;
     grobo_i_control_lock(control);
     move = control->move_wanted;
-    if (control->play == PLAY_WANTED) {
-        count = (int)grobo_motion_size(control->playing);
+    if (control->play == PLAY_WANTED || (control->play_job != 0 && !sequencing)) {
+        count = (int)grobo_motion_size(control->playing); /* it waits, or is being prepared */
     }
     grobo_i_control_unlock(control);
-    if (grobo_i_control_sequencing(control)) {
+    if (sequencing) {
         grobo_robot_progress(robot_of(control), grobo_now_us(), &progress);
         count += (int)(progress.steps - progress.step);
     }

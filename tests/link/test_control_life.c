@@ -126,6 +126,29 @@ static void rounds_are_made_by_whoever_asks(void **state)
     assert_int_equal(grobo_control_free(control), GROBO_OK);
 }
 
+/* How long n more rounds take. */
+static int64_t time_of_rounds(int n)
+{
+    int64_t begun_us = grobo_now_us();
+    await_rounds(grobo_control_call(control, rounds_so_far, NULL) + n);
+    return grobo_now_us() - begun_us;
+}
+
+static void rounds_keep_the_period_that_is_set(void **state)
+{
+    (void)state;
+    make();
+    assert_int_equal(grobo_control_start_thread(control), GROBO_OK);
+    assert_int_equal(grobo_control_set_period_us(control, 100000), GROBO_OK);
+    assert_true(time_of_rounds(4) > 250000); /* the first is under way already */
+    assert_int_equal(grobo_control_set_period_us(control, 2000), GROBO_OK);
+    int64_t end_us = grobo_now_us() + 5000000;
+    while (time_of_rounds(4) > 100000) { /* on a busy machine another time */
+        assert_true(grobo_now_us() < end_us);
+    }
+    assert_int_equal(grobo_control_free(control), GROBO_OK);
+}
+
 static int run_result;
 
 static GROBO_THREAD_FUNC run_it(void *arg)
@@ -205,6 +228,7 @@ int main(void)
         cmocka_unit_test(the_thread_runs_until_it_is_told_to_stop),
         cmocka_unit_test(freeing_lets_the_robot_go_first),
         cmocka_unit_test(rounds_are_made_by_whoever_asks),
+        cmocka_unit_test(rounds_keep_the_period_that_is_set),
         cmocka_unit_test(the_loop_runs_on_a_thread_of_ones_own),
         cmocka_unit_test(callers_are_kept_apart),
     };

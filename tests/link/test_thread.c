@@ -74,6 +74,59 @@ static void settings_are_kept(void **state)
     assert_false(grobo_control_is_reverse(control));
 }
 
+static int rx_bytes(grobo_control *from, void *arg)
+{
+    uint64_t tx;
+    uint64_t rx;
+
+    (void)arg;
+    grobo_session_bytes(grobo_control_session(from), &tx, &rx);
+    return (int)rx;
+}
+
+static int goal_time_cs(grobo_control *from, void *arg)
+{
+    int32_t value = -1;
+
+    (void)arg;
+    (void)grobo_sim_get_register(grobo_session_sim(grobo_control_session(from)), ELBOW,
+                                 GROBO_RS30X_GOAL_TIME, &value);
+    return (int)value;
+}
+
+/* Lets the loop run for a while, whoever runs it; the bytes that came. */
+static int bytes_in(int64_t span_us)
+{
+    int before = grobo_control_call(control, rx_bytes, NULL);
+    int64_t end_us = grobo_now_us() + span_us;
+
+    while (grobo_now_us() < end_us) {
+        assert_true(grobo_control_svc(control) >= 0);
+    }
+    return grobo_control_call(control, rx_bytes, NULL) - before;
+}
+
+static void settings_take_effect(void **state)
+{
+    grobo_posture posture;
+
+    (void)state;
+    control_come_up();
+    assert_int_equal(grobo_control_set_sense_interval_us(control, GROBO_SENSE_NEVER), GROBO_OK);
+    assert_int_equal(grobo_control_read_posture(control, &posture, 0), 20); /* what was under way */
+    assert_int_equal(bytes_in(100000), 0);
+    assert_int_equal(grobo_control_set_sense_interval_us(control, 20000), GROBO_OK);
+    assert_true(bytes_in(100000) >= 26);
+
+    control_have_motion(2);
+    assert_int_equal(grobo_control_set_default_time_us(control, 340000), GROBO_OK);
+    for (int i = 0; i < 2; i++) { /* the way to the first is longer */
+        assert_int_equal(grobo_control_do_nth_motion(control, (size_t)i), GROBO_OK);
+        assert_int_equal(grobo_control_wait(control, 0), GROBO_OK);
+    }
+    assert_int_equal(grobo_control_call(control, goal_time_cs, NULL), 34);
+}
+
 static void postures_are_kept(void **state)
 {
     grobo_posture posture;
@@ -339,6 +392,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         WITH_AND_WITHOUT_THREAD(name_and_joints),
         WITH_AND_WITHOUT_THREAD(settings_are_kept),
+        WITH_AND_WITHOUT_THREAD(settings_take_effect),
         WITH_AND_WITHOUT_THREAD(postures_are_kept),
         WITH_AND_WITHOUT_THREAD(the_line_opens_and_closes),
         WITH_AND_WITHOUT_THREAD(servo_states),

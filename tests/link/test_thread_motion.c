@@ -258,7 +258,10 @@ static void the_motion_is_played(void **state)
     assert_true(grobo_control_is_playing(control));
     assert_int_equal(grobo_control_is_moving(control), 1);
     assert_int_equal(grobo_control_play_motion(control, NULL), GROBO_ERR_STATE);
+    int left = grobo_control_command_count(control);
+    assert_in_range(left, 1, 4);
     grobo_control_clear_motion(control); /* what is played is not touched */
+    assert_in_range(grobo_control_command_count(control), 0, left); /* one after the other goes */
     assert_int_equal(grobo_control_wait(control, 0), GROBO_OK);
     assert_false(grobo_control_is_playing(control));
     assert_int_equal(grobo_control_command_count(control), 0);
