@@ -14,7 +14,7 @@ WRIST    motor 14   -50.0 deg'
 }
 check "a robot of one's own: reaches, with the gripper level" own_robot
 
-# Each C block of the guide stands in the program, word for word.
+# guide_is_true PROGRAM GUIDE: each C block of the guide stands in the program, word for word.
 guide_is_true() {
     awk '
     FILENAME ~ /\.c$/ { program = program $0 "\n"; next }
@@ -30,8 +30,11 @@ guide_is_true() {
     }
     inside { block = block $0 "\n" }
     END { exit bad || blocks == 0 }
-    ' docs/examples/own_robot.c docs/guide/own-robot.md
+    ' "$1" "$2"
 }
-check "a robot of one's own: the guide shows what is built" guide_is_true
+check "a robot of one's own: the guide shows what is built" guide_is_true \
+    docs/examples/own_robot.c docs/guide/own-robot.md
+check "a microcontroller: the guide shows what is built" guide_is_true \
+    docs/examples/firmware/player.c docs/guide/bare-metal.md
 
 done_testing
