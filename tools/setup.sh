@@ -204,6 +204,8 @@ look() {
         valgrind valgrind valgrind valgrind valgrind
     need tshark 'to check the dissector' have_command tshark -- \
         tshark wireshark-cli wireshark-cli tshark wireshark
+    need ser2net 'to check a robot behind a serial server' have_command ser2net -- \
+        ser2net ser2net ser2net ser2net ser2net
 }
 
 install_command() {
