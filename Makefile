@@ -127,7 +127,7 @@ include tools/baremetal/baremetal.mk
 # ---- targets -------------------------------------------------------------------------------
 
 .PHONY: help all demo check lint lint-quick format test check-san check-tsan check-memcheck install uninstall
-.PHONY: clean tidy fuzz soak cov dist bench plots cross check-cross check-drivers FORCE
+.PHONY: clean tidy fuzz soak cov dist bench plots captures cross check-cross check-drivers FORCE
 .PHONY: firmware size check-firmware
 
 help: ## this list
@@ -216,6 +216,9 @@ bench: $(BENCHES) $(GRCTL) ## speed and punctuality; fails where a promise is no
 
 plots: $(BUILD)/grctl ## draw motions/plots/*.svg again
 	@tools/plots.sh $(abspath $(BUILD)/grctl)
+
+captures: $(BUILD)/grctl ## make the screens of docs/guide/tour.md again; needs tmux
+	@GRCTL="$(abspath $(GRCTL))" TOUR_WRITE=yes sh tests/cli/tour.sh
 
 tidy: ## clang-tidy over the library and the command; advice, not a gate
 	@status=0; for file in $(CORE_SRCS) $(OTHER_SRCS) $(TOOL_SRCS); do \

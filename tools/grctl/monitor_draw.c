@@ -97,9 +97,12 @@ static void draw_joint(const monitor *m, int place, int column, int bar)
     if (grobo_robot_joint(m->c.robot, joint, grobo_now_us(), &i) < 0)
         return;
     if (i.angle_age_us == GROBO_NEVER_US || i.angle_age_us > STALE_US) {
-        snprintf(text, sizeof text, " %.24s",
-                 i.status < 0 && i.status != GROBO_ERR_EMPTY ? grobo_error_text(i.status)
-                                                             : "not read yet");
+        if (i.status < 0 && i.status != GROBO_ERR_EMPTY)
+            snprintf(text, sizeof text, " %.24s", grobo_error_text(i.status));
+        else if (i.angle_age_us == GROBO_NEVER_US)
+            snprintf(text, sizeof text, " not read yet");
+        else
+            snprintf(text, sizeof text, " not read for %.0f s", (double)i.angle_age_us / 1e6);
         screen_put(row, column + 13, SCREEN_BAD, text);
         return;
     }

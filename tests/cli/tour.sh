@@ -1,0 +1,116 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# docs/guide/tour.md shows what a terminal of 80x24 shows: every screen in it is made again here, and
+# must differ in nothing but numbers and bars. With TOUR_WRITE=yes (make captures) they are replaced.
+. tests/support/cli.sh
+. tests/support/terminal.sh
+
+tour=$PWD/docs/guide/tour.md
+if ! have_terminal; then
+    echo "1..0 # SKIP no tmux"
+    exit
+fi
+
+# ---- the guide -----------------------------------------------------------------------------------
+
+# block NAME: what the guide shows after <!-- screen NAME -->.
+block() {
+    awk -v mark="<!-- screen $1 -->" '
+        $0 == mark { wanted = 1; next }
+        wanted && /^```/ { if (inside) exit; inside = 1; next }
+        inside { print }' "$tour"
+}
+# alike: numbers, bars and the width of columns aside.
+alike() {
+    LC_ALL=C.UTF-8 sed -e 's/-\{0,1\}[0-9][0-9.]*/N/g' -e 's/[─│█░]\{1,\}/B/g' -e 's/\([A-Z_]\)N/\1 N/g' \
+        -e 's/  */ /g'
+}
+replace() {
+    awk -v mark="<!-- screen $1 -->" -v shot="$work/shots/$1" '
+        $0 == mark { wanted = 1 }
+        !inside { print }
+        /^```/ && inside { print; inside = wanted = 0; next }
+        /^```/ && wanted {
+            inside = 1
+            while ((getline line <shot) > 0)
+                print line
+        }' "$tour" >"$work/tour.md" && cat "$work/tour.md" >"$tour"
+}
+is_true() {
+    block "$1" | alike >"$work/told"
+    alike <"$work/shots/$1" >"$work/seen"
+    [ -s "$work/told" ] && diff "$work/told" "$work/seen"
+}
+# ---- a desk: the command, motions, one of them bad, a robot -------------------------------------
+
+mkdir "$work/bin" "$work/desk" "$work/shots"
+ln -s "$GRCTL" "$work/bin/grctl"
+ln -s "$PWD/motions" "$work/desk/motions"
+{
+    head -n 1 motions/greet.m
+    awk 'NR == 1 { $1 = 100; $6 = -1310; print }' motions/greet.m
+} >"$work/desk/wave.m"
+start_told_sim || { echo "Bail out! the simulator did not start"; exit 1; }
+open_screen
+type_line "cd '$work/desk'; PATH='$work/bin':\$PATH GRCTL_DEVICE='$robot' PS1='\$ ' LC_ALL=C.UTF-8 exec sh"
+until_screen '^\$'
+
+# run COMMAND...: types it, on a clean screen.
+run() {
+    run_line=$*
+    type_line "$run_line"
+}
+# shot NAME: the command and the screen as it is now, without the empty lines below.
+shot() {
+    { printf '$ %s\n' "$run_line" && screen; } | sed -e "s|$robot|/tmp/gr001|g" -e 's/ *$//' |
+        awk '{ line[NR] = $0 } $0 != "" && $0 != "$" { last = NR }
+            END { for (i = 1; i <= last; i++) print line[i] }' >"$work/shots/$1"
+}
+# ends PATTERN: the command has said that, and the prompt is back.
+ends() {
+    until_screen "$1" && until_screen '^\$$'
+}
+
+tell silent 12 on
+tell temperature 13 70
+tell voltage 6.4
+run grctl doctor
+check "doctor" ends 'checks failed'
+shot doctor
+tell silent 12 off
+tell temperature 13 25
+tell voltage 7.4
+
+run grctl status
+check "status" ends 'L_ELBOW_P'
+shot status
+run grctl check wave.m
+check "check" ends 'errors, '
+shot check
+run grctl play motions/greet.pseq
+check "play" until_screen 'playing 2\.'
+shot playing
+check "its end" ends 'largest error'
+shot played
+run grctl monitor motions/greet.pseq
+check "monitor" until_screen '^12 KNEE_P .* on '
+keys p
+check "playing there" until_screen 'playing [1-4]\.'
+keys Space
+until_screen 'paused'
+shot monitor
+settled() {
+    shot monitor
+    [ "${TOUR_WRITE:-}" = yes ] || is_true monitor
+}
+wait_for settled
+keys q
+until_screen '^\$'
+on_screen kill-server
+stop_sim
+
+for name in doctor status check playing played monitor; do
+    [ "${TOUR_WRITE:-}" != yes ] || replace $name
+    check "the guide shows $name as it is" is_true $name
+done
+done_testing
