@@ -38,6 +38,7 @@ check "a dumb terminal: the table" until_screen 'R_KNEE_P  *-40.0'
 keys C-c
 until_screen 'status 130'
 
+began=$(date +%s)
 type_line "$monitor"
 check "the robot and its line" until_screen '^GR001  .*/robot'
 check "a joint of either leg" until_screen '12 KNEE_P  *-40.0 .* off .*18 KNEE_P  *40.0 .* off'
@@ -103,6 +104,20 @@ on_screen resize-window -x 50 -y 12
 check "too small a window" until_screen 'a larger window, please'
 on_screen resize-window -x 120 -y 40
 check "a large one: longer bars" until_screen 'NECK_Y  *[-0-9.]* .\{25,\} on '
+
+# Hundredths of a second of the processor, of those that have passed since the screen came.
+little_of_a_core() {
+    ticks=$(($(getconf CLK_TCK) * ($(date +%s) - began)))
+    pid=$(pgrep -n -x -f "$GRCTL -d $work/robot monitor.*")
+    used=$(awk '{ print $14 + $15 }' "/proc/$pid/stat")
+    echo "$used of $ticks ticks"
+    [ $((used * 100)) -lt $((ticks * 6)) ]
+}
+if [ -r /proc/self/stat ] && command -v pgrep >/dev/null 2>&1; then
+    check "at most 6 % of a core, keys and resizing included" little_of_a_core
+else
+    skip "at most 6 % of a core" "no /proc here"
+fi
 
 keys e
 check "emergency stop" until_screen 'EMERGENCY STOP: R takes it back'

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# docs/guide/tour.md shows what a terminal of 80x24 shows: every screen in it is made again here, and
-# must differ in nothing but numbers and bars. With TOUR_WRITE=yes (make captures) they are replaced.
+# docs/guide/tour.md shows what a terminal of 80x24 shows: every screen in it is made again here,
+# and must differ in nothing but numbers and bars. TOUR_WRITE=yes (make captures) replaces them.
 . tests/support/cli.sh
 . tests/support/terminal.sh
 
@@ -22,8 +22,8 @@ block() {
 }
 # alike: numbers, bars and the width of columns aside.
 alike() {
-    LC_ALL=C.UTF-8 sed -e 's/-\{0,1\}[0-9][0-9.]*/N/g' -e 's/[─│█░]\{1,\}/B/g' -e 's/\([A-Z_]\)N/\1 N/g' \
-        -e 's/  */ /g'
+    LC_ALL=C.UTF-8 sed -e 's/-\{0,1\}[0-9][0-9.]*/N/g' -e 's/[─│█░]\{1,\}/B/g' \
+        -e 's/\([A-Z_]\)N/\1 N/g' -e 's/  */ /g'
 }
 replace() {
     awk -v mark="<!-- screen $1 -->" -v shot="$work/shots/$1" '
@@ -52,7 +52,8 @@ ln -s "$PWD/motions" "$work/desk/motions"
 } >"$work/desk/wave.m"
 start_told_sim || { echo "Bail out! the simulator did not start"; exit 1; }
 open_screen
-type_line "cd '$work/desk'; PATH='$work/bin':\$PATH GRCTL_DEVICE='$robot' PS1='\$ ' LC_ALL=C.UTF-8 exec sh"
+type_line "cd '$work/desk'; export LC_ALL=C.UTF-8 PATH='$work/bin':\$PATH GRCTL_DEVICE='$robot'"
+type_line "PS1='\$ '"
 until_screen '^\$'
 
 # run COMMAND...: types it, on a clean screen.

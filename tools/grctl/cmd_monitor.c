@@ -33,6 +33,8 @@ const char *monitor_busy(const monitor *m)
     grobo_job_kind kind = grobo_robot_job(m->c.robot);
     if (kind == GROBO_JOB_ESTOP)
         return "emergency stop";
+    if (kind == GROBO_JOB_PLAY)
+        return "getting ready to play";
     if (m->job)
         return m->doing;
     return is_playing(m) ? grobo_sequencer_state_name(grobo_robot_play_state(m->c.robot)) : NULL;
