@@ -409,6 +409,48 @@ static int step_quiet(grobo_robot *robot)
     return GROBO_I_WAIT;
 }
 
+/* Nearer than this to its goal, a servo is there. */
+#define THERE_RAD (0.2 * 0.017453292519943295)
+
+/* True if the servo, just read, says that it is on a way; notes that way. */
+static bool is_astray(grobo_robot *robot, int joint)
+{
+    grobo_robot_axis *axis = &robot->axes[joint];
+    const grobo_joint_state *state = &axis->state;
+    int64_t left_us = state->goal_time_us - state->time_us;
+    bool creeps = axis->goal_us == axis->angle_us && left_us > 0 &&
+                  !near_rad(state->goal_rad, state->angle_rad, THERE_RAD);
+    if (state->torque != GROBO_TORQUE_ON ||
+        (axis->own_until_us <= robot->now_us && !axis->adrift && !creeps)) {
+        return false;
+    }
+    if (creeps && axis->own_until_us < axis->goal_us + left_us) {
+        axis->own_until_us = axis->goal_us + left_us;
+    }
+    grobo_i_axis_here(axis, robot->now_us);
+    if (axis->way.to_us <= robot->now_us) {
+        axis->way.to_us = robot->now_us + 1; /* to where nobody knows: it stops where it was */
+    }
+    axis->has_target = true;
+    return true;
+}
+
+/* Nothing goes on behind our back: a halt may be lost, or another program may have been killed. */
+static int step_strays(grobo_robot *robot)
+{
+    grobo_robot_task *job = &robot->job;
+    grobo_joint_mask astray = 0;
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if (is_set(job->joints & ~job->failed, j) && is_astray(robot, j)) {
+            astray |= GROBO_JOINT_BIT(j);
+        }
+    }
+    if (astray != 0 && job->rounds < ROUNDS) {
+        grobo_i_gate_halt(robot);
+    }
+    return again(robot, astray, step_quiet);
+}
+
 /* Sits down with the joints that hold; a robot that is limp stays so. */
 static int step_aim_rest(grobo_robot *robot)
 {
@@ -445,7 +487,7 @@ const grobo_robot_step_fn grobo_i_script_settle[] = {step_aim_last, step_read_pe
                                                      MOVE, NULL};
 const grobo_robot_step_fn grobo_i_script_ask[] = {step_ask, step_settle, NULL};
 const grobo_robot_step_fn grobo_i_script_exit_off[] = {step_quiet, SWITCH, NULL};
-const grobo_robot_step_fn grobo_i_script_exit_hold[] = {step_quiet, step_read, NULL};
+const grobo_robot_step_fn grobo_i_script_exit_hold[] = {step_quiet, step_read, step_strays, NULL};
 const grobo_robot_step_fn grobo_i_script_exit_sit[] = {
     step_quiet,    step_read, step_read_again, step_require, step_from_here,
     step_aim_rest, MOVE,      step_require,    SWITCH,       NULL};

@@ -48,6 +48,22 @@ stopped() {
 check "a stopped process: the motion is over" stopped
 check "and the robot holds" stands '[-0-9.]*'
 
+# Who is killed leaves nothing behind, but the servos know where they were sent.
+killed() {
+    rm -f "$work/moving"
+    "$GRCTL" -d "$robot" -v move m5 -120 20000 2>"$work/moving" &
+    killed_pid=$!
+    written "$work/moving" 'robot found' || return 1
+    sleep 2
+    kill -s KILL $killed_pid
+    wait $killed_pid
+    exits 0 "$GRCTL" -d "$robot" stop && "$GRCTL" -d "$robot" status m5 >"$work/first"
+    exits 0 "$GRCTL" -d "$robot" status m5 && diff "$work/first" "$work/out"
+}
+exits 0 "$GRCTL" -d "$robot" init --time 500
+check "killed: stop stops what it left" killed
+check "and it holds" stands '-[2-9][0-9]\.[0-9]'
+
 # The robot plays on where nobody reads what it says.
 unread() {
     { "$GRCTL" -d "$robot" --json play motions/greet.pseq; echo $? >"$work/status"; } |

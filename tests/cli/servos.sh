@@ -74,6 +74,15 @@ check "a baud rate that is none" fails 2 'baud takes 0 to 10 ' on_robot servo-se
 check "read only" fails 2 'voltage is read only' on_robot servo-set 12 voltage 600
 check "what moves the motor" fails 4 "goal moves the motor; use 'grctl move'" \
     on_robot servo-set 12 goal 100
+exits 0 on_robot servo on m12
+for key in id reverse cw_limit ccw_limit; do
+    check "$key of a servo that holds" fails 4 "servo 12 holds, and would jump with another $key" \
+        on_robot servo-set 12 $key 1
+done
+check "its delay" exits 0 on_robot servo-set 12 delay 0
+exits 0 on_robot servo off m12
+check "cw_limit of one that does not" both exits 0 on_robot servo-set 12 cw_limit 1400 --- \
+    exits 0 on_robot servo-set 12 cw_limit 1500
 check "flash does not keep it" fails 2 'flash does not keep register max_torque' \
     on_robot servo-set 12 max_torque 50 --flash
 

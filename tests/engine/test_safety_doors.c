@@ -355,6 +355,48 @@ static void leaving_stops_what_was_only_sent(void **state)
     }
 }
 
+/* What a killed program left: a fresh engine knows of no move, but the servos do. */
+static void leaving_stops_what_another_program_set_going(void **state)
+{
+    (void)state;
+    for (int slow = 0; slow < 2; slow++) {
+        rig_start(&rig, &quiet, NULL);
+        rig_power(&rig);
+        grobo_posture target = rig_posture(&rig, NECK, slow ? 20 : 45, slow ? 60000 : 5000);
+        (void)grobo_robot_move(&rig.robot, &target, rig.now_us);
+        rig_run(&rig, 2000000);
+        grobo_event_fn on_event = rig.robot.on_event;
+        assert_int_equal(grobo_robot_init(&rig.robot, rig.driver, NULL, &quiet, rig.now_us), 0);
+        grobo_robot_on_event(&rig.robot, on_event, &rig);
+        grobo_robot_link_up(&rig.robot, rig.now_us);
+        rig_forget(&rig);
+        rig_expect(&rig, grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD, rig.now_us), GROBO_OK);
+        double here_deg = rig_angle_deg(&rig, NECK);
+        rig_run(&rig, 3000000);
+        assert_true(fabs(rig_angle_deg(&rig, NECK) - here_deg) < 0.01);
+        assert_int_equal(rig_torque(&rig, NECK), GROBO_TORQUE_ON);
+    }
+}
+
+static void leaving_stops_though_the_first_frame_is_lost(void **state)
+{
+    (void)state;
+    rig_start(&rig, &quiet, NULL);
+    rig_power(&rig);
+    grobo_posture target = rig_posture(&rig, NECK, 45, 20000);
+    (void)grobo_robot_move(&rig.robot, &target, rig.now_us);
+    rig_run(&rig, 2000000);
+    int number = grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD, rig.now_us);
+    assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_MUTE), 0);
+    rig_run(&rig, 30000);
+    assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_IN), 0);
+    rig_expect(&rig, number, GROBO_OK);
+    double here_deg = rig_angle_deg(&rig, NECK);
+    assert_true(here_deg < 10);
+    rig_run(&rig, 3000000);
+    assert_true(fabs(rig_angle_deg(&rig, NECK) - here_deg) < 0.01);
+}
+
 /* Heat, and whatever else latches, stops what was only sent too. */
 static void a_trip_stops_what_was_only_sent(void **state)
 {
@@ -409,6 +451,8 @@ int main(void)
         cmocka_unit_test(a_servo_is_not_restarted_under_a_motion),
         cmocka_unit_test(a_joint_outside_its_limits_can_be_stopped),
         cmocka_unit_test(leaving_stops_what_was_only_sent),
+        cmocka_unit_test(leaving_stops_what_another_program_set_going),
+        cmocka_unit_test(leaving_stops_though_the_first_frame_is_lost),
         cmocka_unit_test(a_trip_stops_what_was_only_sent),
         cmocka_unit_test(lost_replies_stop_what_was_only_sent),
     };
