@@ -82,6 +82,19 @@ static void a_hold_never_passes_the_key(void **state)
     expect_last(2000, 2000, 0.0);
 }
 
+static void a_pause_after_a_late_frame_counts_from_when_it_left(void **state)
+{
+    (void)state;
+    start(&by_key, 0.0);
+    sample_pump_run(&pump, 90 * MS);
+    sample_pump_stall(&pump, 510 * MS); /* due at 100, taken at 600: 500 ms are left */
+    expect_last(100, 500, 1.0);
+    sample_pump_run(&pump, 850 * MS);
+    assert_int_equal(grobo_sequencer_pause(&pump.seq, pump.now_us), 0);
+    sample_pump_run(&pump, 2000 * MS);
+    expect_last(850, 200, 0.7); /* 0.5 of the way are made, and 100 ms further */
+}
+
 static void a_pause_in_an_approach_approaches_again(void **state)
 {
     (void)state;
@@ -443,6 +456,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_pause_by_keys_rests_a_little_ahead_and_goes_on),
         cmocka_unit_test(a_hold_never_passes_the_key),
+        cmocka_unit_test(a_pause_after_a_late_frame_counts_from_when_it_left),
         cmocka_unit_test(a_pause_in_an_approach_approaches_again),
         cmocka_unit_test(a_pause_before_anything_was_sent_moves_nothing),
         cmocka_unit_test(commands_that_meet_keep_posture_and_position_together),

@@ -149,6 +149,21 @@ static void the_end_between_two_frames_is_sent_with_the_second(void **state)
     assert_int_equal(pump.state_us, 2080 * MS);
 }
 
+/* A third of a second is no whole microsecond: neither the frame's time nor the end's. */
+static void the_end_on_a_frame_is_sent_with_that_frame(void **state)
+{
+    (void)state;
+    static const sample_key second[] = {{0, ALL, {0.0, 0, 0}}, {1000 * MS, ALL, {0.1, 0, 0}}};
+    start(second, (grobo_play_options){.rate_hz = 3, .speed_pct = 300}, 0.0);
+    sample_pump_run(&pump, 10000 * MS);
+    assert_int_equal(pump.n, 2);
+    assert_int_equal(frame_at(1)->due_us, 333333);
+    assert_true(frame_at(1)->posture.angle_rad[0] == 0.1);
+    grobo_play_progress p;
+    grobo_sequencer_progress(&pump.seq, pump.now_us, &p);
+    assert_int_equal(p.steps, 2);
+}
+
 static void the_first_move_is_soft(void **state)
 {
     (void)state;
@@ -301,6 +316,7 @@ int main(void)
         cmocka_unit_test(a_stall_skips_to_the_present_without_a_burst),
         cmocka_unit_test(a_stall_past_the_end_still_sends_the_last_posture),
         cmocka_unit_test(the_end_between_two_frames_is_sent_with_the_second),
+        cmocka_unit_test(the_end_on_a_frame_is_sent_with_that_frame),
         cmocka_unit_test(the_first_move_is_soft),
         cmocka_unit_test(a_pause_keeps_the_phase),
         cmocka_unit_test(speed_changes_keep_grid_and_position),
