@@ -71,7 +71,8 @@ typedef struct grobo_session_config {
     const char *const *scan;         /**< borrowed; devices that GROBO_DEVICE_AUTO tries, in this
                                           order, ended by NULL; NULL: all serial ports */
     bool skip_check;                 /**< up as soon as the line is open, whoever is there */
-    bool reconnect;                  /**< open a lost line again, until closed */
+    bool reconnect;                  /**< open a lost line again, until closed, by the name
+                                          that stays (grobo_port_identity()) */
     grobo_session_event_fn on_event; /**< the line's events, or NULL */
     grobo_event_fn on_robot;         /**< the engine's events while up, or NULL */
     grobo_serial_tap_fn on_tap;      /**< every byte, for a trace, or NULL */

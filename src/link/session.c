@@ -114,19 +114,10 @@ static int open_next(grobo_session *session)
     return GROBO_ERR_NOTFOUND;
 }
 
-/* A device that comes back has its stable name first, and its old one if nothing renamed it. */
+/* By the name that stays: the old one may be another device's by now. */
 static int open_again(grobo_session *session)
 {
-    char used[GROBO_DEVICE_MAX_BYTES];
-    int r;
-
-    if (session->is_sim) {
-        return open_sim(session);
-    }
-    memcpy(used, session->used, sizeof used);
-    r = open_path(session, session->stable);
-    return r == GROBO_ERR_NOENT && strcmp(used, session->stable) != 0 ? open_path(session, used)
-                                                                      : r;
+    return session->is_sim ? open_sim(session) : open_path(session, session->stable);
 }
 
 /* ---- checking ----------------------------------------------------------------------------- */

@@ -10,7 +10,8 @@
 #   ttyS0    what it prints comes here
 #   ttyS1    joined to ttyS2
 #   ttyUSB0  joined to ttyS3
-#   ttyUSB1  a simulated robot that runs here
+#   ttyUSB1  a simulated robot that runs here; may be pulled out, and another adapter, with nothing
+#            at its end, be plugged in
 set -u
 
 give_up() {
@@ -93,6 +94,7 @@ done
 # takes is lost. Nobody else has this address of the loopback.
 address=127.$(($$ / 65536 % 256)).$(($$ / 256 % 256)).$(($$ % 254 + 1))
 robot=usb-serial,chardev=robot,serial=ROBOT,id=robot
+other=usb-serial,chardev=other,serial=OTHER,always-plugged=on
 timeout -k 5 240 $qemu -nodefaults -no-user-config -display none -no-reboot -m 512 -accel tcg \
     -kernel "$folder/debian/vmlinuz" -initrd "$folder/disk.cpio" \
     -append 'console=ttyS0 loglevel=1 panic=-1' \
@@ -102,7 +104,7 @@ timeout -k 5 240 $qemu -nodefaults -no-user-config -display none -no-reboot -m 5
     -chardev socket,id=s2,path="$work/cable" \
     -chardev udp,id=u0,localaddr=$address,localport=47001,host=$address,port=47002 \
     -chardev udp,id=s3,localaddr=$address,localport=47002,host=$address,port=47001 \
-    -chardev socket,id=robot,host=127.0.0.1,port="$sim_port" \
+    -chardev socket,id=robot,host=127.0.0.1,port="$sim_port" -chardev null,id=other \
     -device isa-serial,chardev=s1,index=1 -device isa-serial,chardev=s2,index=2,irq=5 \
     -device isa-serial,chardev=s3,index=3,irq=7 -device qemu-xhci \
     -device usb-serial,chardev=u0,serial=CABLE,always-plugged=on -device $robot \
@@ -116,6 +118,7 @@ while IFS= read -r line; do
     case $line in
     @unplug) echo "device_del robot" >"$work/monitor.in" ;;
     @plug) echo "device_add $robot" >"$work/monitor.in" ;;
+    @other) echo "device_add $other" >"$work/monitor.in" ;;
     @end) ended=1 ;;
     *) printf '%s\n' "$line" ;;
     esac

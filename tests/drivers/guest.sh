@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 # What is tested in the machine of boot.sh. Prints TAP; prints @unplug and @plug where the robot's
-# adapter is to be pulled out and put back, and @end at the end.
+# adapter is to be pulled out and put back, @other where another one is to be plugged in, and @end
+# at the end.
 export CMOCKA_MESSAGE_OUTPUT=TAP HOME=/tmp
 
 robot=/dev/serial/by-id/usb-QEMU_QEMU_USB_SERIAL_ROBOT-if00-port0
@@ -41,8 +42,7 @@ cable 8250 /dev/ttyS1 /dev/ttyS2
 cable ftdi_sio /dev/ttyUSB0 /dev/ttyS3
 
 echo '# ==== a robot behind ftdi_sio'
-export GROBO_TEST_DEVICE=$robot
-run test_replug
+GROBO_TEST_DEVICE=$(readlink -f "$robot") GROBO_TEST_NAME=$robot run test_replug
 
 [ -e "$robot" ] || echo @plug
 appears "$robot"

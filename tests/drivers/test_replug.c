@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A robot behind a USB adapter that is pulled out while it plays, and put back. GROBO_TEST_DEVICE
- * is its name under /dev/serial/by-id. Whoever runs this pulls when it prints "@unplug", and puts
- * back when it prints "@plug".
+ * A robot behind a USB adapter that is pulled out while it moves, and put back after another one
+ * has taken its place. GROBO_TEST_DEVICE is the name to open, GROBO_TEST_NAME the one under
+ * /dev/serial/by-id. Whoever runs this pulls the adapter when it prints "@unplug", plugs the other
+ * one in at "@other", and the robot's at "@plug".
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -21,7 +22,7 @@
 #include <grobo/session.h>
 
 #include "loop.h"
-#include "resources.h"
+#include "os.h"
 
 static struct event_base *base;
 static grobo_session *session;
@@ -33,6 +34,7 @@ static struct {
     int error;
     int64_t at_us;
     int job, result;
+    size_t sent_bytes;
 } seen;
 
 static void on_event(grobo_session *from, grobo_session_event event, int error, void *ctx)
@@ -65,6 +67,15 @@ static void on_robot(void *ctx, const grobo_event *event)
     }
 }
 
+static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes, size_t size,
+                   void *ctx)
+{
+    (void)now_us;
+    (void)bytes;
+    (void)ctx;
+    seen.sent_bytes += direction == GROBO_DIR_TX ? size : 0;
+}
+
 static void on_change(evutil_socket_t fd, short what, void *ctx)
 {
     union {
@@ -83,6 +94,7 @@ static void on_change(evutil_socket_t fd, short what, void *ctx)
             gone_us = grobo_now_us();
         } else {
             here_us = grobo_now_us();
+            event_base_loopbreak(base);
         }
         at += (ssize_t)(sizeof event + event.len);
     }
@@ -120,6 +132,16 @@ static void sense(int16_t *angle_ddeg, size_t n)
     }
 }
 
+/* Lets time pass, whatever happens meanwhile. */
+static void pass(int64_t span_us)
+{
+    int64_t end_us = grobo_now_us() + span_us;
+
+    while (grobo_now_us() < end_us) {
+        (void)loop_run(base, end_us - grobo_now_us());
+    }
+}
+
 static void ask(const char *what)
 {
     printf("%s\n", what);
@@ -132,7 +154,8 @@ static void an_adapter_pulled_out_in_a_motion_and_put_back(void **state)
                                          .device = getenv("GROBO_TEST_DEVICE"),
                                          .reconnect = true,
                                          .on_event = on_event,
-                                         .on_robot = on_robot};
+                                         .on_robot = on_robot,
+                                         .on_tap = on_tap};
     enum { JOINTS = 20 };
     int16_t before_ddeg[JOINTS];
     int16_t after_ddeg[JOINTS];
@@ -162,7 +185,7 @@ static void an_adapter_pulled_out_in_a_motion_and_put_back(void **state)
     assert_int_equal(grobo_session_get_state(session), GROBO_SESSION_WAITING);
 
     cpu_us = test_cpu_us();
-    assert_true(loop_run(base, 1000000));
+    pass(1000000);
     cpu_us = test_cpu_us() - cpu_us;
     print_message("told %lld us after the device went; %lld us of processor time in 1 s\n",
                   (long long)(seen.at_us - gone_us), (long long)cpu_us);
@@ -171,15 +194,26 @@ static void an_adapter_pulled_out_in_a_motion_and_put_back(void **state)
     assert_true(cpu_us < 100000);
     assert_int_equal(seen.losts + seen.fails, 1);
 
+    /* Another adapter takes the old name: it is not the robot. */
+    seen.sent_bytes = 0;
+    ask("@other");
+    while (here_us == 0) {
+        assert_false(loop_run(base, 20000000));
+    }
+    assert_int_equal(access(config.device, F_OK), 0);
+    pass(500000);
+    assert_int_equal(seen.sent_bytes, 0);
+    assert_int_equal(grobo_session_get_state(session), GROBO_SESSION_WAITING);
+
     frames = grobo_robot_get_counters(grobo_session_robot(session))->motion_frames;
     ask("@plug");
     run_until(&seen.ups, 2);
     print_message("up %lld us after its name came back\n", (long long)(seen.at_us - here_us));
     assert_true(here_us > 0 && seen.at_us - here_us < 500000);
-    assert_string_equal(grobo_session_device(session), config.device);
+    assert_string_equal(grobo_session_device(session), getenv("GROBO_TEST_NAME"));
 
     sense(before_ddeg, JOINTS);
-    assert_true(loop_run(base, 1000000));
+    pass(1000000);
     sense(after_ddeg, JOINTS);
     assert_memory_equal(after_ddeg, before_ddeg, sizeof before_ddeg);
     assert_int_equal(grobo_robot_get_counters(grobo_session_robot(session))->motion_frames, frames);
@@ -216,8 +250,8 @@ int main(void)
                                         tear_down),
     };
 
-    if (getenv("GROBO_TEST_DEVICE") == NULL) {
-        fprintf(stderr, "GROBO_TEST_DEVICE says what to test\n");
+    if (getenv("GROBO_TEST_DEVICE") == NULL || getenv("GROBO_TEST_NAME") == NULL) {
+        fprintf(stderr, "GROBO_TEST_DEVICE and GROBO_TEST_NAME say what to test\n");
         return 2;
     }
     return cmocka_run_group_tests(tests, NULL, NULL);
