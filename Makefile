@@ -128,7 +128,8 @@ include tools/baremetal/baremetal.mk
 # ---- targets -------------------------------------------------------------------------------
 
 .PHONY: help all demo check lint lint-quick format test check-san check-tsan check-memcheck install uninstall
-.PHONY: clean tidy fuzz soak cov dist bench plots captures cross check-cross check-drivers FORCE
+.PHONY: clean tidy fuzz soak cov dist bench plots captures cross check-cross check-drivers
+.PHONY: check-ports FORCE
 .PHONY: firmware size check-firmware
 
 help: ## this list
@@ -183,7 +184,7 @@ check-memcheck: ## the same under valgrind
 	@TEST_WRAPPER='valgrind -q --leak-check=full --error-exitcode=99' \
 	    $(MAKE) --no-print-directory test RING='$(filter-out cli lint export,$(RING))'
 
-TARGETS := $(filter-out linux static,$(patsubst tools/cross/%.mk,%,$(wildcard tools/cross/*.mk)))
+TARGETS := $(filter-out linux static zig,$(patsubst tools/cross/%.mk,%,$(wildcard tools/cross/*.mk)))
 cross_make = $(if $(filter $(TARGETS),$(TARGET)),,$(error TARGET= is one of $(TARGETS)))$(MAKE) \
     --no-print-directory CROSS=$(TARGET) BUILD=$(BUILD)/$(TARGET)
 cross: ## build for another machine, in build/arm64 for TARGET=arm64
@@ -192,6 +193,10 @@ cross: ## build for another machine, in build/arm64 for TARGET=arm64
 
 check-cross: cross ## the tests of that build, under an emulator; RING= chooses
 	+@$(cross_make) test
+
+check-ports: ## build and test for every machine that can be had here; PORTS="arm64 musl" chooses
+	-@tools/setup.sh --ports
+	@BUILD="$(BUILD)" tools/ports.sh $(PORTS)
 
 check-drivers: ## the serial port's tests on real drivers, of a Debian kernel in a virtual machine
 	-@tools/setup.sh --drivers

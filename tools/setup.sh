@@ -24,7 +24,7 @@ while [ $# -gt 0 ]; do
     --ci) level=3 ;;
     --drivers) level=2 targets=drivers ;;
     --ports)
-        level=2 targets='arm64 armhf riscv64 s390x musl musl-arm64 win64 drivers baremetal'
+        level=2 targets='arm64 armhf riscv64 s390x musl musl-arm64 win64 macos drivers baremetal'
         ;;
     --cross)
         level=0 targets=${2:-}
@@ -124,6 +124,11 @@ look_cross() {
             have_command aarch64-linux-gnu-g++ -- g++-aarch64-linux-gnu
         ;;
     musl) need_cmake ;;
+    macos | freebsd | netbsd | openbsd)
+        need_cmake
+        need_debian "Python's venv" 'to install a compiler for macOS and the BSDs' have_venv -- \
+            python3-venv
+        ;;
     musl-arm64)
         need_cmake
         need_foreign aarch64-linux-gnu qemu-aarch64
@@ -157,6 +162,10 @@ need_windows() {
 need_foreign() {
     need_debian "a compiler for $1" 'to build' have_command "$1-gcc" -- "gcc-$1"
     need_debian "$2" 'to run the tests' have_command "$2" -- qemu-user
+}
+
+have_venv() {
+    python3 -c 'import ensurepip' 2>/dev/null
 }
 
 need_cmake() {

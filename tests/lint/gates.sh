@@ -353,6 +353,20 @@ check 'platform: where it may stand' scan platform ports/posix/a.c include/grobo
 echo '#  elif __linux__ /* why */' | sample src/core/a.c
 check 'platform: in any spelling' refuses 'src/core/a.c:1: platform' scan platform src/core/a.c
 
+
+printf 'int f(void);\nint g(void)\n{\n    return accept4(1, 0, 0, 0);\n}\n' | tee a.c |
+    sample ports/posix/a.c
+check 'platform: a call of Linux' \
+    refuses 'ports/posix/a.c:4: platform: only Linux' scan platform ports/posix/a.c
+sample ports/posix/a_linux.c <a.c
+check 'platform: where that may be' scan platform ports/posix/a_linux.c
+echo '#include <linux/serial.h>' | sample ports/posix/a.c
+check 'platform: a header of Linux' \
+    refuses 'ports/posix/a.c:1: platform: only Linux' scan platform ports/posix/a.c
+printf '#ifdef __linux__\n#endif\n' | sample ports/posix/a.c
+check 'platform: a conditional on Linux' \
+    refuses 'ports/posix/a.c:1: platform: only Linux' scan platform ports/posix/a.c
+
 # ---- size ----------------------------------------------------------------------------------
 
 # body N LINE: a function whose body is N times LINE.

@@ -27,6 +27,7 @@ work=$top/build/cross/$target
 . tools/cross/sources.sh
 . tools/cross/musl.sh
 . tools/cross/windows.sh
+. tools/cross/zig.sh
 
 tools/setup.sh --cross "$target" || exit 1
 case $target in
@@ -35,5 +36,9 @@ win64) windows_libraries x86_64-w64-mingw32 ;;
 riscv64) sysroot riscv64 trixie ;; # Debian has had it since 13
 musl) musl_libraries amd64 gcc ;;
 musl-arm64) musl_libraries arm64 aarch64-linux-gnu-gcc ;;
+macos) zig_libraries aarch64-macos Darwin ;;
+freebsd) zig_libraries x86_64-freebsd FreeBSD ;;
+netbsd) zig_libraries x86_64-netbsd NetBSD ;;
+openbsd) zig_libraries x86_64-openbsd OpenBSD ;;
 *) usage ;;
 esac

@@ -1,0 +1,6 @@
+# SPDX-License-Identifier: MIT
+# macOS on 64-bit ARM.
+
+SONAME := libgrobo.0.dylib
+SHARED_FLAGS := -install_name @rpath/$(SONAME)
+include tools/cross/zig.mk
