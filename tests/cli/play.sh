@@ -93,6 +93,7 @@ quiet_where_no_terminal() {
 check "no terminal: no progress bar, nothing on standard error" quiet_where_no_terminal
 check "a table at the end" both exits 0 "$GRCTL" -d "$robot" play --speed 500 --table "$greet" --- \
     says '^ *12  R_KNEE_P  *-40\.0  *-40\.0  *-*0\.0'
+check "what it did, in words" says '^largest error on the way [0-9.]* deg (R_SHOULDER_R)$'
 check "it ends where the motion ends" both exits 0 "$GRCTL" -d "$robot" status m12 --- \
     says 'R_KNEE_P  *-40\.0  *-  on '
 

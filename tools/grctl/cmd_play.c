@@ -61,6 +61,12 @@ static const cli_option options[PLAY_OPTIONS] = {
 
 enum { TICK_US = 100000, REPORT_EVERY = 10 /* ticks of a JSON line */ };
 
+/* How far a joint was from where the motion had it. */
+typedef struct deviation {
+    double deg;
+    int joint; /* -1: none was read */
+} deviation;
+
 typedef struct show {
     playlist list;
     progress bar;
@@ -69,8 +75,36 @@ typedef struct show {
     struct event *tick;
     int ticks;
     bool started, over;
-    int error; /* why it failed, 0: it did not */
+    int error;           /* why it failed, 0: it did not */
+    uint32_t items;      /* of the sequencer, before the first clip */
+    deviation following; /* the largest, of readings while it was played at a rate */
 } show;
+
+/* A reading: where was the joint to be just then? By keys the servos go their own way between. */
+static void follow(conn *c, show *s, int joint)
+{
+    int64_t now_us = grobo_now_us();
+    grobo_play_progress p;
+    grobo_joint_info info;
+    grobo_posture wanted;
+    const grobo_play_options *o;
+    double off_deg;
+    uint32_t i;
+    grobo_robot_progress(c->robot, now_us, &p);
+    i = p.item - s->items - 1;
+    if (p.state != GROBO_SEQUENCER_PLAYING || i >= (uint32_t)s->list.n)
+        return;
+    o = &s->list.options[i];
+    if (o->mode != GROBO_PLAY_RATE || !s->list.clip[i].sample || s->list.clip[i].relative ||
+        s->list.clip[i].sample(s->list.clip[i].ctx, o->reverse ? p.total_us - p.t_us : p.t_us,
+                               &wanted) < 0 ||
+        !(wanted.set & GROBO_JOINT_BIT(joint)) ||
+        grobo_robot_joint(c->robot, joint, now_us, &info) < 0)
+        return;
+    off_deg = fabs(grobo_deg_from_rad(info.state.angle_rad - wanted.angle_rad[joint]));
+    if (s->following.joint < 0 || off_deg > s->following.deg)
+        s->following = (deviation){.deg = off_deg, .joint = joint};
+}
 
 static void report_progress(conn *c, show *s)
 {
@@ -118,6 +152,8 @@ static void on_event(conn *c, const grobo_event *event)
                   to == GROBO_SEQUENCER_FAILED;
         if (to == GROBO_SEQUENCER_FAILED)
             s->error = event->u.play.error;
+    } else if (event->kind == GROBO_EVENT_JOINT && event->u.joint.result == GROBO_OK) {
+        follow(c, s, event->u.joint.joint);
     } else if (event->kind == GROBO_EVENT_TRIP) {
         s->error = GROBO_ERR_LATCHED;
     }
@@ -130,29 +166,40 @@ static bool is_over(conn *c)
     return s->over && !grobo_robot_settling(c->robot);
 }
 
-static json_t *summary_json(const conn *c, double worst, int joint)
+static json_t *deviation_json(deviation d)
+{
+    return d.joint < 0 ? json_null() : app_json_number(d.deg, 2);
+}
+
+static json_t *summary_json(const conn *c, deviation following, deviation end)
 {
     grobo_robot_counters n;
     grobo_jitter jitter;
     conn_counters(c, &n);
     grobo_robot_jitter(c->robot, &jitter);
-    return json_pack("{s:b,s:I,s:I,s:{s:I,s:I,s:I},s:o}", "done", 1, "frames",
+    return json_pack("{s:b,s:I,s:I,s:{s:I,s:I,s:I},s:o,s:o}", "done", 1, "frames",
                      (json_int_t)n.motion_frames, "late_frames", (json_int_t)n.late_frames,
                      "jitter_us", "p50", (json_int_t)jitter.p50_us, "p99",
                      (json_int_t)jitter.p99_us, "max", (json_int_t)jitter.max_us, "max_error_deg",
-                     joint < 0 ? json_null() : app_json_number(worst, 2));
+                     deviation_json(end), "max_following_deg", deviation_json(following));
 }
 
-static void print_summary(const conn *c)
+static void print_deviation(const conn *c, const char *what, deviation d)
 {
-    const grobo_model *model = grobo_robot_driver(c->robot)->model;
+    if (d.joint >= 0)
+        printf("%s %.1f deg (%s)\n", what, d.deg,
+               grobo_robot_driver(c->robot)->model->joints[d.joint].name);
+}
+
+static void print_summary(const conn *c, deviation following)
+{
     grobo_robot_counters n;
     grobo_jitter jitter;
     int64_t now_us = grobo_now_us();
-    int joint;
-    double worst = render_worst_error(c, now_us, &joint);
+    deviation end;
+    end.deg = render_worst_error(c, now_us, &end.joint);
     if (c->a->json) {
-        app_print_json(summary_json(c, worst, joint));
+        app_print_json(summary_json(c, following, end));
         return;
     }
     conn_counters(c, &n);
@@ -165,8 +212,8 @@ static void print_summary(const conn *c)
     if (n.stretched)
         printf("%llu moves were too fast for a servo and got more time\n",
                (unsigned long long)n.stretched);
-    if (joint >= 0)
-        printf("largest error at the end %.1f deg (%s)\n", worst, model->joints[joint].name);
+    print_deviation(c, "largest error on the way", following);
+    print_deviation(c, "largest error at the end", end);
 }
 
 /* Frames that the line cannot carry would be left out: better said before. */
@@ -186,7 +233,12 @@ static void warn_of_rate(const conn *c, const grobo_play_options *o)
 
 static int start(conn *c, show *s)
 {
-    int error = conn_wait(c, grobo_session_play(c->session, &s->list.clip[0], &s->list.options[0]));
+    grobo_play_progress before;
+    int error;
+    grobo_robot_progress(c->robot, grobo_now_us(), &before);
+    s->items = before.item;
+    s->following.joint = -1;
+    error = conn_wait(c, grobo_session_play(c->session, &s->list.clip[0], &s->list.options[0]));
     for (int i = 1; i < s->list.n && error >= 0; i++)
         error = grobo_session_enqueue(c->session, &s->list.clip[i], &s->list.options[i]);
     return error < 0 ? error : 0;
@@ -251,7 +303,7 @@ static int play(conn *c, show *s)
     error = conn_wait(c, grobo_session_sense(c->session, all, GROBO_SENSE_FULL));
     if (error && c->job.failed == 0)
         return conn_fail(c, error, "play");
-    print_summary(c);
+    print_summary(c, s->following);
     return EXIT_DONE;
 }
 
