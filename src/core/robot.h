@@ -123,6 +123,9 @@ int grobo_i_play_start(grobo_robot *robot);
 
 /* Takes a reading of a joint, or the reason why there is none. @return result, or parse's error. */
 int grobo_i_sense_take(grobo_robot *robot, int joint, int result, const grobo_rs30x_packet *reply);
+/* The goal that holds a joint where its servo says that it is, drawn in to its limits; NaN where it
+ * stands too far outside. */
+double grobo_i_hold_rad(const grobo_robot *robot, int joint);
 /* Starts a background reading if one is due. */
 void grobo_i_sense_step(grobo_robot *robot);
 /* A background reading is over. */
@@ -157,6 +160,8 @@ void grobo_i_gate_single(grobo_robot *robot);
 void grobo_i_gate_single_sent(grobo_robot *robot, int64_t time_us);
 /* Takes up to `chunk` joints out of *joints. */
 grobo_joint_mask grobo_i_take_chunk(grobo_joint_mask *joints, grobo_i_chunk chunk);
+/* True if the goal read back is the one that holds. */
+bool grobo_i_goal_holds(const grobo_robot *robot, int joint);
 /* Sets goal := present for `joints`, which were just read; not for those that stand too far
  * outside their limits. */
 int grobo_i_gate_hold(grobo_robot *robot, grobo_joint_mask joints, grobo_i_chunk chunk);

@@ -179,21 +179,12 @@ static int step_pick_off(grobo_robot *robot)
     return job->pending == 0 || may ? GROBO_I_NEXT : GROBO_ERR_STATE;
 }
 
-/* A joint that stands outside its limits beyond what a hold may draw it in by. */
-static bool stands_outside(const grobo_robot *robot, int joint)
-{
-    const grobo_joint *limits = &robot->driver->model->joints[joint];
-    double outside_rad = grobo_rad_from_deg(GROBO_I_HOLD_OUTSIDE_DEG);
-    double angle_rad = robot->axes[joint].state.angle_rad;
-    return angle_rad < limits->min_rad - outside_rad || angle_rad > limits->max_rad + outside_rad;
-}
-
 static int step_hold(grobo_robot *robot)
 {
     grobo_robot_task *job = &robot->job;
     grobo_joint_mask loose = 0;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if (is_set(job->pending, j) && stands_outside(robot, j)) {
+        if (is_set(job->pending, j) && isnan(grobo_i_hold_rad(robot, j))) {
             grobo_i_job_fail_joint(robot, j, GROBO_ERR_LIMIT,
                                    grobo_deg_from_rad(robot->axes[j].state.angle_rad));
             job->pending &= ~GROBO_JOINT_BIT(j);
@@ -205,22 +196,13 @@ static int step_hold(grobo_robot *robot)
     return result < 0 && result != GROBO_ERR_FULL ? result : GROBO_I_DRAIN;
 }
 
-/* True if the goal read back is where the joint is, or the limit it is drawn in to. */
-static bool goal_holds(const grobo_robot *robot, int joint)
-{
-    const grobo_joint_state *state = &robot->axes[joint].state;
-    const grobo_joint *limits = &robot->driver->model->joints[joint];
-    double hold_rad = fmin(fmax(state->angle_rad, limits->min_rad), limits->max_rad);
-    return near_rad(state->goal_rad, hold_rad, grobo_rad_from_deg(GROBO_I_HOLD_NEAR_DEG));
-}
-
 static int step_hold_check(grobo_robot *robot)
 {
     grobo_robot_task *job = &robot->job;
     grobo_joint_mask bad = 0;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         if (is_set(job->pending, j)) {
-            robot->axes[j].held = !is_set(job->failed, j) && goal_holds(robot, j);
+            robot->axes[j].held = !is_set(job->failed, j) && grobo_i_goal_holds(robot, j);
             bad |= robot->axes[j].held ? 0 : GROBO_JOINT_BIT(j);
         }
     }

@@ -346,18 +346,11 @@ grobo_joint_mask grobo_i_take_chunk(grobo_joint_mask *joints, grobo_i_chunk chun
     return taken;
 }
 
-/* The goal that holds a joint where it stands; false if that is too far outside its limits. */
-static bool hold_goal(const grobo_robot *robot, int joint, double *goal_rad)
+bool grobo_i_goal_holds(const grobo_robot *robot, int joint)
 {
-    const grobo_joint *limits = &robot->driver->model->joints[joint];
-    double outside_rad = grobo_rad_from_deg(GROBO_I_HOLD_OUTSIDE_DEG);
-    double angle_rad = robot->axes[joint].state.angle_rad;
-    if (!(angle_rad >= limits->min_rad - outside_rad &&
-          angle_rad <= limits->max_rad + outside_rad)) {
-        return false;
-    }
-    *goal_rad = fmin(fmax(angle_rad, limits->min_rad), limits->max_rad);
-    return true;
+    double near_rad = grobo_rad_from_deg(GROBO_I_HOLD_NEAR_DEG);
+    double goal_rad = robot->axes[joint].state.goal_rad;
+    return fabs(goal_rad - grobo_i_hold_rad(robot, joint)) <= near_rad; /* not of NaN */
 }
 
 int grobo_i_gate_hold(grobo_robot *robot, grobo_joint_mask joints, grobo_i_chunk chunk)
@@ -369,9 +362,10 @@ int grobo_i_gate_hold(grobo_robot *robot, grobo_joint_mask joints, grobo_i_chunk
         grobo_joint_mask taken = grobo_i_take_chunk(&joints, chunk);
         for (int j = 0; j < target.posture.n_joints; j++) {
             grobo_robot_axis *axis = &robot->axes[j];
+            double hold_rad = grobo_i_hold_rad(robot, j);
             target.joint_time_us[j] = robot->driver->time_step_us;
-            if ((taken & GROBO_JOINT_BIT(j)) != 0 && axis->sensed &&
-                hold_goal(robot, j, &target.posture.angle_rad[j])) {
+            if ((taken & GROBO_JOINT_BIT(j)) != 0 && axis->sensed && !isnan(hold_rad)) {
+                target.posture.angle_rad[j] = hold_rad;
                 target.posture.set |= GROBO_JOINT_BIT(j);
                 grobo_i_axis_rest(axis, robot->now_us);
                 axis->own_until_us = 0;

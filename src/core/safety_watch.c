@@ -74,9 +74,11 @@ void grobo_i_trip(grobo_robot *robot, grobo_trip reason, int joint, double value
         grobo_i_job_end(robot, GROBO_ERR_LATCHED);
     }
     /* Before an emergency stop nothing goes out, and who leaves is on the way already. */
-    if (latched && reason != GROBO_TRIP_ESTOP && !grobo_i_playing(robot) &&
-        robot->job.kind != GROBO_JOB_EXIT) {
-        grobo_i_gate_halt(robot);
+    if (latched && reason != GROBO_TRIP_ESTOP && robot->job.kind != GROBO_JOB_EXIT) {
+        grobo_i_slots_cancel(robot, GROBO_I_USE_PLAIN); /* such as torque that waits to come on */
+        if (!grobo_i_playing(robot)) {
+            grobo_i_gate_halt(robot);
+        }
     }
 }
 

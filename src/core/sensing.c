@@ -33,14 +33,24 @@ static void merge(grobo_robot_axis *axis, const grobo_joint_state *got)
 #undef KEEP
 }
 
-static void correct(const grobo_robot *robot, int joint, grobo_joint_state *got)
+static double correction(const grobo_robot *robot, int joint)
 {
     const grobo_driver *driver = robot->driver;
+    double add_rad = 0;
     for (int i = 0; robot->config.readback_correction && i < driver->n_readback; i++) {
-        if (driver->readback[i].joint == joint && (got->valid & GROBO_FIELD_ANGLE) != 0) {
-            got->angle_rad += driver->readback[i].add_rad;
-        }
+        add_rad += driver->readback[i].joint == joint ? driver->readback[i].add_rad : 0;
     }
+    return add_rad;
+}
+
+double grobo_i_hold_rad(const grobo_robot *robot, int joint)
+{
+    const grobo_joint *limits = &robot->driver->model->joints[joint];
+    double angle_rad = robot->axes[joint].state.angle_rad - correction(robot, joint);
+    double outside_rad = grobo_rad_from_deg(GROBO_I_HOLD_OUTSIDE_DEG);
+    bool near =
+        angle_rad >= limits->min_rad - outside_rad && angle_rad <= limits->max_rad + outside_rad;
+    return near ? fmin(fmax(angle_rad, limits->min_rad), limits->max_rad) : (double)NAN;
 }
 
 /* Where a servo is going, if it told. A host that was away, or another one, may have sent it. */
@@ -66,7 +76,9 @@ static void take_move(grobo_robot *robot, int joint, const grobo_joint_state *go
 static void take_reading(grobo_robot *robot, int joint, grobo_joint_state *got)
 {
     grobo_robot_axis *axis = &robot->axes[joint];
-    correct(robot, joint, got);
+    if ((got->valid & GROBO_FIELD_ANGLE) != 0) {
+        got->angle_rad += correction(robot, joint);
+    }
     merge(axis, got);
     axis->status = GROBO_OK;
     axis->lost = 0;
@@ -125,13 +137,6 @@ int grobo_i_sense_take(grobo_robot *robot, int joint, int result, const grobo_rs
 
 /* ---- free mode ------------------------------------------------------------------------------- */
 
-static bool goal_is_here(const grobo_joint_state *state)
-{
-    double apart_rad = state->goal_rad - state->angle_rad;
-    double near_rad = grobo_rad_from_deg(GROBO_I_HOLD_NEAR_DEG);
-    return apart_rad <= near_rad && apart_rad >= -near_rad;
-}
-
 /* After each reading (protocol 5): above the joint's current, brake; slow, hold. To hold, the goal
  * is set to the present angle first; the next reading shows that it took. */
 static void free_joint(grobo_robot *robot, int joint)
@@ -148,7 +153,7 @@ static void free_joint(grobo_robot *robot, int joint)
                                       GROBO_I_WHOLE);
         }
     } else if (state->torque != GROBO_TORQUE_ON && abs(state->speed_dps) < SLOW_DPS) {
-        axis->held = goal_is_here(state);
+        axis->held = grobo_i_goal_holds(robot, joint);
         (void)(axis->held ? grobo_i_gate_torque(robot, GROBO_JOINT_BIT(joint), GROBO_TORQUE_ON,
                                                 GROBO_I_WHOLE)
                           : grobo_i_gate_hold(robot, GROBO_JOINT_BIT(joint), GROBO_I_WHOLE));

@@ -280,6 +280,28 @@ static void read_back_correction_is_an_option(void **state)
     assert_true(fabs(grobo_deg_from_rad(info.state.angle_rad) + 38) < 0.06);
 }
 
+/* The correction is of what is read, not of where a joint is to be held. */
+static void a_corrected_joint_is_held_where_its_servo_says(void **state)
+{
+    (void)state;
+    grobo_robot_config config = quiet;
+    grobo_sim_config jumpy = {.jump_on_torque = true};
+    config.readback_correction = true;
+    rig_start(&rig, &config, &jumpy);
+    for (int i = 0; i < 5; i++) {
+        rig_power(&rig);
+        rig_run(&rig, 500000);
+        assert_true(fabs(rig_angle_deg(&rig, R_KNEE) + 40) < 0.1);
+        rig_expect(&rig,
+                   grobo_robot_torque(&rig.robot, rig_all(&rig), GROBO_TORQUE_OFF, rig.now_us),
+                   GROBO_OK);
+    }
+    assert_int_equal(grobo_robot_free(&rig.robot, rig_all(&rig), true, rig.now_us), GROBO_OK);
+    rig_run(&rig, 2000000);
+    assert_int_equal(rig_torque(&rig, R_KNEE), GROBO_TORQUE_ON);
+    assert_true(fabs(rig_angle_deg(&rig, R_KNEE) + 40) < 0.1);
+}
+
 static void cancel_stops_a_move_where_it_is(void **state)
 {
     (void)state;
@@ -319,6 +341,7 @@ int main(void)
         cmocka_unit_test(configurations_are_checked),
         cmocka_unit_test(limits_may_be_switched_off),
         cmocka_unit_test(read_back_correction_is_an_option),
+        cmocka_unit_test(a_corrected_joint_is_held_where_its_servo_says),
         cmocka_unit_test(cancel_stops_a_move_where_it_is),
     };
     return cmocka_run_group_tests(of_the_board, NULL, NULL) +
