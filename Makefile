@@ -204,15 +204,18 @@ check-drivers: ## the serial port's tests on real drivers, of a Debian kernel in
 	@GRCTL="$(abspath $(GRCTL))" BUILD="$(BUILD)" TEST_TIMEOUT_S=300 TEST_LOGS="$(BUILD)/logs/drivers" \
 	    DRIVER_PROGRAMS="$(DRIVER_PROGRAMS)" tests/run.sh tests/drivers/boot.sh
 
-firmware: $(FIRMWARES) ## the core and a simulated GR001 for Cortex-M0 and M4, in build/bare
-	@:
+firmware: ## the core and two examples for Cortex-M0 and M4, in build/bare
+	@tools/setup.sh --cross baremetal
+	+@$(MAKE) --no-print-directory $(FIRMWARES)
 
-size: $(BARE_LIBS) $(BARE_RAM) ## what that takes, against the limits; UPDATE=1 keeps the figures
+size: ## what the core takes there, against the limits; UPDATE=1 keeps the figures
+	@tools/setup.sh --cross baremetal
+	+@$(MAKE) --no-print-directory $(BARE_LIBS) $(BARE_RAM)
 	@PREFIX=$(BARE_PREFIX) UPDATE=$(UPDATE) tools/baremetal/size.sh $(BARE_DIR) $(BARE_CPUS)
 
-check-firmware: $(GRCTL) ## grctl against that GR001 in qemu-system-arm
+check-firmware: $(GRCTL) ## these examples in QEMU, grctl or a simulated robot at their UART
 	-@tools/setup.sh --cross baremetal
-	@if command -v $(BARE_PREFIX)gcc >/dev/null; then $(MAKE) --no-print-directory firmware; fi
+	+@if command -v $(BARE_PREFIX)gcc >/dev/null; then $(MAKE) --no-print-directory $(FIRMWARES); fi
 	@GRCTL="$(abspath $(GRCTL))" FIRMWARE="$(BARE_DIR)" BARE_PREFIX=$(BARE_PREFIX) \
 	    TEST_TIMEOUT_S=300 TEST_LOGS="$(BUILD)/logs/firmware" tests/run.sh tests/firmware/machines.sh
 
