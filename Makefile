@@ -164,7 +164,8 @@ format: ## write sources as clang-format 14 does; FILES="src/core/bus.c" chooses
 # The programs and scripts of the chosen rings, as tests/run.sh wants them.
 in_rings = $(foreach ring,$(RING),$(filter $(1)tests/$(ring)/%,$(2)))
 # What tests of a build for another machine must know.
-cross_env = $(if $(CROSS),$(foreach v,CROSS EMULATOR SYSROOT CXX,$(v)="$($(v))") TEST_WRAPPER="$(EMULATOR)")
+cross_env = $(if $(CROSS),$(foreach v,CROSS EMULATOR SYSROOT CXX,$(v)="$($(v))") \
+    TEST_WRAPPER="$(EMULATOR)" TEST_TIMEOUT_S=300)
 corpora = $(foreach f,$(FUZZ_REPLAYS),$(f)@tests/fuzz/corpus/$(patsubst fuzz_%,%,$(notdir $(f))))
 
 test: all $(TEST_PROGRAMS) $(DRIVER_PROGRAMS) $(FUZZ_REPLAYS) $(EXAMPLES) ## the tests alone; RING="unit engine" chooses

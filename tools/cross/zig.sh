@@ -39,7 +39,8 @@ zig_libraries() {
     # shellcheck disable=SC2086
     quietly "$work/log" $apt update
     toolchain="-DCMAKE_SYSTEM_NAME=$2 -DCMAKE_C_COMPILER=$work/bin/cc -DCMAKE_AR=$work/bin/ar"
-    toolchain="$toolchain -DCMAKE_RANLIB=$work/bin/ranlib -DCMAKE_FIND_ROOT_PATH=$work/root"
+    toolchain="$toolchain -DCMAKE_RANLIB=$work/bin/ranlib"
+    toolchain="$toolchain -DCMAKE_FIND_ROOT_PATH=$work/root -DCMAKE_POSITION_INDEPENDENT_CODE=ON"
     libraries_from_source "$1"
     package libevent_core 2.1 '' -levent_core
     package yaml-0.1 0.2 '' -lyaml

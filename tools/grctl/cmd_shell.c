@@ -168,7 +168,7 @@ static int run_script(shell *s, FILE *from)
             break;
     }
     free(line);
-    return noted ? EXIT_SIGNAL + noted : first;
+    return noted ? EXIT_SIGNAL + (int)noted : first;
 }
 
 static int run_prompt(shell *s)
@@ -193,7 +193,7 @@ static int run_prompt(shell *s)
         if (status == EXIT_SIGNAL + os_endings[OS_INTERRUPT])
             fputc('\n', stderr); /* behind the terminal's ^C */
         if (noted && noted != os_endings[OS_INTERRUPT])
-            status = EXIT_SIGNAL + noted;
+            status = EXIT_SIGNAL + (int)noted;
     }
     line_close(reader);
     return ends(s, status) && !s->over ? status : EXIT_DONE;

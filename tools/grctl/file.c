@@ -81,8 +81,9 @@ static int complain(app *a, const char *path, int error, const grobo_diagnostics
 
 static int read_stream(void *ctx, void *buffer, size_t size)
 {
-    size_t n = fread(buffer, 1, size, ctx);
-    return n == 0 && ferror(ctx) ? GROBO_ERR_IO : (int)n;
+    FILE *stream = ctx;
+    size_t n = fread(buffer, 1, size, stream);
+    return n == 0 && ferror(stream) ? GROBO_ERR_IO : (int)n;
 }
 
 const char *file_shown_name(const char *path)
