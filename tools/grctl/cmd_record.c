@@ -348,8 +348,8 @@ const cli_command cmd_record = {
     .details =
         "All joints, or those named, give way to a hand that turns them and hold when it lets go.\n"
         "Postures are kept when a joint has moved by --moved degrees, looked at --rate times a\n"
-        "second; with --key only at the press of a key. Pauses are cut to a second. The line reads\n"
-        "all joints about six times a second (grctl budget): a higher rate sees nothing more.\n"
+        "second; with --key only at the press of a key. Pauses are cut to a second. The line\n"
+        "reads all joints about six times a second: a higher rate sees nothing more.\n"
         "\n"
         "Keys, of a terminal or a pipe:\n"
         "\n"
