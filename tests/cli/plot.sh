@@ -251,9 +251,9 @@ png_drawn() {
     png 0 "$GRCTL" plot -o "$work/out.png" $greet || return 1
     grep -a -q -e PNG "$work/out.png" && grep -a -q -e "$1" "$work/out.png" && rm "$work/out.png"
 }
+none='needs rsvg-convert, inkscape or ImageMagick; install one (Debian: librsvg2-bin)'
 if [ -z "${EMULATOR:-}" ]; then
-    check "without a rasteriser it says what to install" \
-        png_fails 3 'needs rsvg-convert, inkscape or ImageMagick; install one (Debian: librsvg2-bin)'
+    check "without a rasteriser it says what to install" png_fails 3 "$none"
 else
     skip "without a rasteriser" "qemu-user and wine do not tell that a program is missing"
 fi
