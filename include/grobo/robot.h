@@ -240,6 +240,7 @@ typedef struct grobo_robot_slot {
     uint32_t motion;  /* number of the target it carries */
     int job;          /* number of the job it belongs to */
     bool out;         /* given to the line */
+    bool switches_on; /* it brings torque */
     uint8_t use;      /* 0: free */
     uint8_t joint;
 } grobo_robot_slot;

@@ -48,6 +48,8 @@ int grobo_i_slot_send(grobo_robot_slot *slot, grobo_priority priority);
 void grobo_i_slot_drop(grobo_robot_slot *slot);
 /* Takes back every frame of this use. */
 void grobo_i_slots_cancel(grobo_robot *robot, grobo_i_use use);
+/* Takes back frames that would switch torque on and have not left. */
+void grobo_i_slots_keep_off(grobo_robot *robot);
 /* Notes the frames that the bus has just given out. */
 void grobo_i_slots_sent(grobo_robot *robot);
 /* True if a frame of this use is under way. */

@@ -79,6 +79,16 @@ void grobo_i_slots_cancel(grobo_robot *robot, grobo_i_use use)
     }
 }
 
+void grobo_i_slots_keep_off(grobo_robot *robot)
+{
+    for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
+        grobo_robot_slot *slot = &robot->slots[i];
+        if (slot->use != GROBO_I_USE_FREE && slot->switches_on && slot->txn.sent_us < 0) {
+            (void)grobo_bus_cancel(&robot->bus, &slot->txn);
+        }
+    }
+}
+
 void grobo_i_slots_sent(grobo_robot *robot)
 {
     for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {

@@ -411,6 +411,7 @@ static int send_torque(grobo_robot *robot, grobo_joint_mask joints, grobo_torque
             grobo_i_slot_drop(slot);
             return more;
         }
+        slot->switches_on = mode == GROBO_TORQUE_ON;
         int result = grobo_i_slot_send(slot, priority);
         if (result < 0) {
             return result;

@@ -64,6 +64,7 @@ void grobo_i_trip(grobo_robot *robot, grobo_trip reason, int joint, double value
     if (latched) {
         robot->trip = event.u.trip;
         robot->free_joints = 0;
+        grobo_i_slots_keep_off(robot);
     }
     robot->counters.trips++;
     grobo_i_tell(robot, &event);

@@ -434,6 +434,25 @@ static void a_limp_robot_is_not_made_to_sit(void **state)
     assert_true(fabs(rig_angle_deg(&rig, R_KNEE) + 40) < 0.1);
 }
 
+/* In free mode a joint that is let go is switched on again: not once the robot has stopped. Here
+ * the stop comes out of a reading for which the frame that switches on has to wait. */
+static void nothing_is_switched_on_after_a_trip(void **state)
+{
+    (void)state;
+    for (int ms = 100; ms < 400; ms++) {
+        grobo_sim_config limp = {.start = GROBO_SIM_START_LIMP};
+        rig_start(&rig, &quiet, &limp);
+        assert_int_equal(grobo_robot_free(&rig.robot, rig_all(&rig), true, rig.now_us), 0);
+        rig_run(&rig, ms * 1000);
+        assert_int_equal(grobo_sim_set_temperature(&rig.sim, 0, 75), 0);
+        rig_wait(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL, rig.now_us));
+        rig_run(&rig, 100000); /* the rig looks at every frame */
+        grobo_trip_info trip;
+        grobo_robot_tripped(&rig.robot, &trip);
+        assert_true(trip.latched);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -460,6 +479,7 @@ int main(void)
         cmocka_unit_test(exit_holds_sits_or_lets_go),
         cmocka_unit_test(exit_takes_the_place_of_a_job_and_is_bounded),
         cmocka_unit_test(a_limp_robot_is_not_made_to_sit),
+        cmocka_unit_test(nothing_is_switched_on_after_a_trip),
     };
     return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }
