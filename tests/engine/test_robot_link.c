@@ -172,10 +172,10 @@ static void nothing_is_sent_to_a_joint_that_moves_by_itself(void **state)
     assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
 }
 
-static void nineteen_of_twenty_are_delivered(void **state)
+/* Reads all joints twice, the second time without the knee; returns how much longer that took. */
+static int64_t cost_of_silence_us(const grobo_robot_config *config)
 {
-    (void)state;
-    rig_start(&rig, &quiet, NULL);
+    rig_start(&rig, config, NULL);
     rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL, rig.now_us),
                GROBO_OK);
     int64_t begun_us = rig.now_us;
@@ -189,14 +189,26 @@ static void nineteen_of_twenty_are_delivered(void **state)
                    GROBO_ERR_TIMEOUT);
     assert_true(job->failed == GROBO_JOINT_BIT(R_KNEE));
     assert_int_equal(job->joint, R_KNEE);
-    /* Its own timeouts, three attempts, and no more. */
-    assert_in_range(rig.now_us - begun_us, usual_us, usual_us + 70000);
     for (int j = 0; j < 20; j++) {
         grobo_joint_info info;
         assert_int_equal(grobo_robot_joint(&rig.robot, j, rig.now_us, &info), 0);
         assert_int_equal(info.status, j == R_KNEE ? GROBO_ERR_TIMEOUT : GROBO_OK);
         assert_true(j == R_KNEE ? info.angle_age_us > usual_us : info.angle_age_us < 250000);
     }
+    return rig.now_us - begun_us - usual_us;
+}
+
+/* An attempt costs what a reading takes on the wire (6264 us), a margin of 3 ms that was learnt
+ * from those who answered and doubles with each attempt, and a millisecond of quiet: 4 ms more than
+ * an answer where there is one attempt, not 35. Looks are a millisecond apart. */
+static void nineteen_of_twenty_are_delivered_and_silence_costs_its_timeout(void **state)
+{
+    (void)state;
+    static const grobo_robot_config once = {.sense_interval_us = GROBO_SENSE_NEVER, .retries = -1};
+    int64_t cost_us = cost_of_silence_us(&once);
+    assert_in_range(cost_us, 3000, 3000 + 1000 + 1000);
+    cost_us = cost_of_silence_us(&quiet);
+    assert_in_range(cost_us, 2 * 6264 + 21000, 2 * 6264 + 3000 + 6000 + 12000 + 3000 + 1000);
 }
 
 static void a_stale_angle_is_not_in_a_fresh_posture(void **state)
@@ -374,7 +386,7 @@ int main(void)
         cmocka_unit_test(nothing_is_sent_to_a_joint_that_moves_by_itself),
         cmocka_unit_test(an_emergency_stop_that_found_no_line_is_made_up_for),
         cmocka_unit_test(an_emergency_stop_taken_back_is_not_made_up_for),
-        cmocka_unit_test(nineteen_of_twenty_are_delivered),
+        cmocka_unit_test(nineteen_of_twenty_are_delivered_and_silence_costs_its_timeout),
         cmocka_unit_test(a_stale_angle_is_not_in_a_fresh_posture),
         cmocka_unit_test(broken_replies_are_retried_and_never_believed),
         cmocka_unit_test(a_servo_that_stays_silent_is_asked_once_a_round),

@@ -233,15 +233,14 @@ static void a_hang_up_is_one_event_and_then_silence(void **state)
     test_line_close(&line);
     hung_up_us = grobo_now_us();
     run_until_event(GROBO_SERIAL_UNPLUGGED);
-    assert_true(grobo_now_us() - hung_up_us < 500000);
+    assert_true(grobo_now_us() - hung_up_us < 500000); /* test_reconnect.c has the true bound */
     assert_int_equal(seen.error, GROBO_ERR_UNPLUGGED);
     assert_false(grobo_serial_is_open(serial));
     assert_true(strlen(grobo_serial_cause(serial)->text) > 0);
 
     cpu_before_us = test_cpu_us();
-    assert_true(loop_run(base, 200000));
-    /* A spinning loop would use all of the 200 ms. */
-    assert_true(test_cpu_us() - cpu_before_us < 50000);
+    assert_true(loop_run(base, 1000000));
+    assert_true(test_cpu_us() - cpu_before_us < 10000); /* a hundredth */
     assert_int_equal(seen.events[GROBO_SERIAL_UNPLUGGED], 1);
     assert_int_equal(grobo_serial_send(serial, "x", 1), GROBO_ERR_CLOSED);
 }

@@ -99,7 +99,7 @@ static bool is_given(const witness *w, const uint8_t *p, size_t n)
 static void hear_reply(witness *w, const grobo_sim_event *event)
 {
     witness_packet *said = keep(w->said, WITNESS_SAID, &w->n_said, event->bytes, event->n_bytes);
-    said->at_us = event->time_us;
+    said->at_us = w->heard_us; /* what it says was true then */
     said->sound = is_given(w, event->bytes, event->n_bytes);
     said->said_number = w->n_said - 1;
 }
@@ -256,5 +256,5 @@ void witness_believed(witness *w, int joint, const grobo_joint_state *state, int
 
 bool witness_restarted(const witness *w, int joint)
 {
-    return w->reboot_us[joint] > w->goal_us[joint];
+    return w->reboot_us[joint] > 0 && w->reboot_us[joint] >= w->goal_us[joint];
 }

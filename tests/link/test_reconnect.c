@@ -1,0 +1,300 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * A port that goes and comes back: told at once, waited for without work, found again, and nothing
+ * moves because of it. In real time: of several hang-ups most must keep their bound, as any one may
+ * meet a busy machine.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+#include <event2/event.h>
+
+#include <grobo/session.h>
+#include <grobo/sim_server.h>
+
+#include "loop.h"
+#include "os.h"
+
+enum { NECK = 13, HANG_UPS = 9, MOST = 5, IDLE_US = 2000000 };
+
+static struct event_base *base;
+static grobo_session *session;
+static grobo_sim_server *server;
+static char folder[128];
+
+/* What the session said. */
+static struct {
+    int ups, losts, fails, rounds;
+    int error;     /* of the last event of the line */
+    int64_t at_us; /* when it came */
+    int job;       /* the last that ended */
+    int result;
+    int play_error;
+} seen;
+
+/* What the servos heard. */
+static struct {
+    int reads, writes;
+} heard;
+
+static void on_event(grobo_session *from, grobo_session_event event, int error, void *ctx)
+{
+    (void)from;
+    (void)ctx;
+    seen.error = error;
+    seen.at_us = grobo_now_us();
+    seen.ups += event == GROBO_SESSION_EVENT_UP;
+    seen.losts += event == GROBO_SESSION_EVENT_LOST;
+    seen.fails += event == GROBO_SESSION_EVENT_FAILED;
+    event_base_loopbreak(base);
+}
+
+static void on_robot(void *ctx, const grobo_event *event)
+{
+    (void)ctx;
+    if (event->kind == GROBO_EVENT_JOB) {
+        seen.job = event->u.job.number;
+        seen.result = event->u.job.result;
+        event_base_loopbreak(base);
+    } else if (event->kind == GROBO_EVENT_PLAY) {
+        seen.play_error = event->u.play.error;
+    } else if (event->kind == GROBO_EVENT_ROUND) {
+        seen.rounds++;
+        event_base_loopbreak(base);
+    }
+}
+
+static void on_sim(const grobo_sim_event *event, void *ctx)
+{
+    (void)ctx;
+    if (event->kind == GROBO_SIM_PACKET) {
+        bool reads = event->bytes[2] != 0 && event->bytes[6] == 0;
+        heard.reads += reads;
+        heard.writes += !reads;
+    }
+}
+
+/* ---- set-up ------------------------------------------------------------------------------- */
+
+static int set_up(void **state)
+{
+    static const grobo_robot_config robot = {.sense_interval_us = 300000};
+    grobo_sim_config sim = {.hook = on_sim};
+    char link[160];
+    grobo_os_cause cause;
+
+    (void)state;
+    memset(&seen, 0, sizeof seen);
+    memset(&heard, 0, sizeof heard);
+    base = grobo_loop_new();
+    assert_non_null(base);
+    test_folder_new(folder, sizeof folder);
+    snprintf(link, sizeof link, "%s/gr001", folder);
+    grobo_sim_server_config serving = {.base = base, .sim = &sim, .link = link, .replug_ms = -1};
+    assert_int_equal(grobo_sim_server_new(&serving, &server, &cause), GROBO_OK);
+    grobo_session_config config = {.base = base,
+                                   .device = link,
+                                   .reconnect = true,
+                                   .robot = &robot,
+                                   .on_event = on_event,
+                                   .on_robot = on_robot};
+    assert_int_equal(grobo_session_new(&config, &session), GROBO_OK);
+    assert_int_equal(grobo_session_open(session), GROBO_OK);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    grobo_session_free(session);
+    grobo_sim_server_free(server);
+    event_base_free(base);
+    return test_folder_remove(folder);
+}
+
+static void run_until(const int *count, int wanted)
+{
+    int64_t end_us = grobo_now_us() + 20000000;
+
+    while (*count < wanted) {
+        assert_true(grobo_now_us() < end_us);
+        (void)loop_run(base, end_us - grobo_now_us());
+    }
+}
+
+static int await(int job)
+{
+    assert_true(job > 0);
+    run_until(&seen.job, job);
+    return seen.result;
+}
+
+static void run_for(int64_t us)
+{
+    int64_t end_us = grobo_now_us() + us;
+
+    while (grobo_now_us() < end_us) {
+        (void)loop_run(base, end_us - grobo_now_us());
+    }
+}
+
+static void unplug(void)
+{
+    int before = seen.losts;
+
+    assert_int_equal(grobo_sim_server_plug(server, false), GROBO_OK);
+    run_until(&seen.losts, before + 1);
+    assert_int_equal(seen.error, GROBO_ERR_UNPLUGGED);
+    assert_int_equal(grobo_session_get_state(session), GROBO_SESSION_WAITING);
+}
+
+static void plug(void)
+{
+    int before = seen.ups;
+
+    assert_int_equal(grobo_sim_server_plug(server, true), GROBO_OK);
+    run_until(&seen.ups, before + 1);
+    assert_int_equal(grobo_session_get_state(session), GROBO_SESSION_UP);
+}
+
+static grobo_sim_view look(int servo)
+{
+    grobo_sim_view view;
+
+    assert_int_equal(grobo_sim_look(grobo_sim_server_sim(server), servo, &view), 0);
+    return view;
+}
+
+/* ---- tests -------------------------------------------------------------------------------- */
+
+static void a_lost_port_is_told_within_10_ms_and_found_within_250(void **state)
+{
+    int told = 0;
+    int found = 0;
+
+    (void)state;
+    run_until(&seen.ups, 1);
+    for (int i = 0; i < HANG_UPS; i++) {
+        int64_t from_us = grobo_now_us();
+        unplug();
+        told += seen.at_us - from_us <= 10000;
+        assert_int_equal(grobo_session_check(session), GROBO_ERR_CLOSED);
+        run_for(20000 * i); /* at any moment between two attempts */
+        from_us = grobo_now_us();
+        plug();
+        found += seen.at_us - from_us <= 250000;
+    }
+    assert_true(told >= MOST);
+    assert_true(found >= MOST);
+    assert_int_equal(seen.losts, HANG_UPS);
+    assert_int_equal(seen.fails, 0);
+}
+
+static void waiting_for_a_port_takes_less_than_a_hundredth(void **state)
+{
+    int64_t cpu_us;
+
+    (void)state;
+    run_until(&seen.ups, 1);
+    unplug();
+    run_for(500000); /* the first attempts follow each other fast */
+    cpu_us = test_cpu_us();
+    run_for(IDLE_US);
+    cpu_us = test_cpu_us() - cpu_us;
+    print_message("# %d us of processor time in %d us\n", (int)cpu_us, IDLE_US);
+    assert_true(cpu_us < IDLE_US / 100);
+    assert_int_equal(seen.losts, 1);
+    plug();
+}
+
+/* The servos finish what they were told last; from the line's return on they hear reads alone. */
+static void expect_stillness(void)
+{
+    grobo_sim_view before;
+    int rounds;
+
+    memset(&heard, 0, sizeof heard);
+    plug();
+    run_for(700000);
+    before = look(NECK);
+    rounds = seen.rounds;
+    run_until(&seen.rounds, rounds + 2);
+    assert_int_equal(heard.writes, 0);
+    assert_true(heard.reads >= 40);
+    assert_int_equal(look(NECK).angle_mdeg, before.angle_mdeg);
+    assert_int_equal(look(NECK).torque, GROBO_TORQUE_ON);
+}
+
+static grobo_posture neck(double angle_deg, int64_t time_us)
+{
+    grobo_posture target;
+
+    assert_int_equal(grobo_posture_init(&target, 20), GROBO_OK);
+    assert_int_equal(grobo_posture_set_deg(&target, NECK, angle_deg), GROBO_OK);
+    target.time_us = time_us;
+    return target;
+}
+
+static void nothing_moves_by_itself_after_a_move_was_cut(void **state)
+{
+    grobo_posture target = neck(30, 500000);
+    int move;
+
+    (void)state;
+    run_until(&seen.ups, 1);
+    assert_int_equal(await(grobo_session_torque(session, GROBO_JOINTS_ALL(20), GROBO_TORQUE_ON)),
+                     GROBO_OK);
+    move = grobo_session_move(session, &target);
+    run_for(200000);
+    unplug();
+    assert_int_equal(await(move), GROBO_ERR_UNPLUGGED);
+    expect_stillness();
+    /* Asked, it moves. */
+    target = neck(-10, 100000);
+    assert_int_equal(await(grobo_session_move(session, &target)), GROBO_OK);
+    assert_true(heard.writes > 0);
+    assert_in_range(look(NECK).angle_mdeg + 20000, 9900, 10100);
+}
+
+/* ---- a motion ----------------------------------------------------------------------------- */
+
+static int nod_key(void *ctx, size_t i, grobo_posture *posture, int64_t *at_us)
+{
+    (void)ctx;
+    *posture = neck(i % 2 == 0 ? 20 : -20, 200000);
+    *at_us = (int64_t)i * 200000;
+    return 0;
+}
+
+static void nothing_moves_by_itself_after_a_motion_was_cut(void **state)
+{
+    const grobo_clip nod = {
+        .key = nod_key, .n_keys = 100, .n_joints = 20, .length_us = 100 * 200000LL};
+
+    (void)state;
+    run_until(&seen.ups, 1);
+    assert_int_equal(await(grobo_session_play(session, &nod, NULL)), GROBO_OK);
+    run_for(1000000);
+    unplug();
+    assert_int_equal(seen.play_error, GROBO_ERR_UNPLUGGED);
+    expect_stillness();
+    assert_int_equal(await(grobo_session_play(session, &nod, NULL)), GROBO_OK);
+}
+
+#define RECONNECT(f) cmocka_unit_test_setup_teardown(f, set_up, tear_down)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        RECONNECT(a_lost_port_is_told_within_10_ms_and_found_within_250),
+        RECONNECT(waiting_for_a_port_takes_less_than_a_hundredth),
+        RECONNECT(nothing_moves_by_itself_after_a_move_was_cut),
+        RECONNECT(nothing_moves_by_itself_after_a_motion_was_cut),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
