@@ -145,20 +145,12 @@ static void test_keys_of_a_real_motion(void **state)
 
 /* ---- resampled ---------------------------------------------------------------------------- */
 
-/* Seven frames take 120 ms. The first may come late, what was missed does not come after it. */
-static void expect_no_burst(void)
-{
-    for (size_t i = 1; i + 6 < s.n_poses; i++)
-        assert_true(s.poses[i + 6].at_us - s.poses[i].at_us >= SLACK_US);
-}
-
 static void test_rate(void **state)
 {
     (void)state;
     assert_int_equal(play("--rate=50", "--speed=200", greet), 0);
     assert_in_range(s.n_poses, 100, 127); /* the goals, 2.5 s, less what a busy machine skips */
     assert_int_equal(s.n_poses - 1, (size_t)said("frames"));
-    expect_no_burst();
     assert_in_range(s.poses[s.n_poses - 1].at_us - s.poses[1].at_us, 2500000 - SLACK_US,
                     2500000 + SLACK_US);
     expect_end(init_ddeg);
@@ -205,10 +197,11 @@ static void test_short_stall(void **state)
 {
     (void)state;
     assert_int_equal(play_with_a_stall(150000), 0);
-    expect_no_burst();
-    assert_true(said("late_frames") >=
-                6); /* 150 ms are seven frames; the last of them still fits */
+    /* 150 ms are seven frames; the last of them still fits. What was missed is not sent: when
+     * frames arrive tells nothing, as this process may have been stalled too. */
+    assert_true(said("late_frames") >= 6);
     assert_true(said("frames") <= 126 - 6);
+    assert_int_equal(s.n_poses - 1, (size_t)said("frames"));
     expect_end(init_ddeg);
 }
 
