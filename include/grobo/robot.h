@@ -296,7 +296,8 @@ typedef struct grobo_robot_task {
     grobo_play_options options;
     grobo_exchange exchange;
     int part;
-    int rounds; /* of repeating what was not taken */
+    int rounds;      /* of repeating what was not taken */
+    uint32_t motion; /* number of the target that is read back */
     size_t reply_bytes;
     int64_t until_us; /* end of waiting */
     int64_t bound_us; /* end of patience */

@@ -5,16 +5,22 @@
 #include <math.h>
 #include <string.h>
 
+/* What the engine does after a motion makes way for anything. */
+static void make_way(grobo_robot *robot)
+{
+    robot->settling = false;
+    if (robot->job.kind == GROBO_JOB_SETTLE) {
+        grobo_i_job_end(robot, GROBO_ERR_CANCELED);
+    }
+}
+
 /* May a job begin now? */
 static int admit(grobo_robot *robot, bool moves)
 {
     if (!robot->link) {
         return GROBO_ERR_CLOSED;
     }
-    robot->settling = false;
-    if (robot->job.kind == GROBO_JOB_SETTLE) {
-        grobo_i_job_end(robot, GROBO_ERR_CANCELED); /* it makes way for anything */
-    }
+    make_way(robot);
     if (robot->job.kind != GROBO_JOB_NONE) {
         return GROBO_ERR_STATE;
     }
@@ -153,6 +159,7 @@ int grobo_robot_send(grobo_robot *robot, const grobo_posture *target, int64_t no
     int64_t time_us = 0;
     int result = admit_target(robot, target);
     if (result >= 0) {
+        make_way(robot);
         grobo_i_gate_single(robot);
         grobo_i_play_overtake(robot);
         result = grobo_i_gate_send(robot, target, &how, &time_us);

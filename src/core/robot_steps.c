@@ -343,13 +343,16 @@ static int step_play(grobo_robot *robot)
             job->pending |= GROBO_JOINT_BIT(j);
         }
     }
+    job->motion = robot->motion;
     return result;
 }
 
-/* The approach is one frame, and all that follows relies on it: if it was lost, once more. */
+/* The approach is one frame, and all that follows relies on it: if it was lost, once more. Once
+ * another one was sent, what was read back says nothing any more. */
 static int step_approached(grobo_robot *robot)
 {
-    bool approaching = grobo_robot_play_state(robot) == GROBO_SEQUENCER_APPROACHING;
+    bool approaching = grobo_robot_play_state(robot) == GROBO_SEQUENCER_APPROACHING &&
+                       robot->motion == robot->job.motion;
     grobo_joint_mask bad = approaching ? not_taken(robot, robot->job.pending) : 0;
     if (bad == 0) {
         robot->job.failed = 0;

@@ -42,7 +42,7 @@ enum { ESTOP_FRAME_US = 25000, ESTOP_US = 10000000, EXIT_US = 10010000 };
 
 /* What all runs together came to. */
 static struct {
-    unsigned runs, moves, plays, torque_on, trips, ruined, stops, stops_cut;
+    unsigned runs, moves, plays, singles, torque_on, trips, ruined, stops, stops_cut;
     unsigned made_up_commands, made_up_replies, made_up_believed, excused;
     uint64_t frames, believed, injected[GROBO_SIM_FAULTS];
     int64_t virtual_us, estop_us, stopped_us, exit_us; /* the longest */
@@ -62,6 +62,20 @@ static void request_move(void)
     double deg = grobo_deg_from_rad(limits->min_rad + (limits->max_rad - limits->min_rad) * part);
     grobo_posture target = rig_posture(&rig, joint, deg, (int)pick(2000));
     (void)grobo_robot_move(&rig.robot, &target, rig.now_us);
+}
+
+/* A program of one's own that sends a target every 20 ms. */
+static void request_targets(void)
+{
+    int joint = (int)pick(20);
+    const grobo_joint *limits = &rig.driver->model->joints[joint];
+    for (unsigned left = pick(50); left > 0; left--) {
+        double part = pick(1001) / 1000.0;
+        double rad = limits->min_rad + (limits->max_rad - limits->min_rad) * part;
+        grobo_posture target = rig_posture(&rig, joint, grobo_deg_from_rad(rad), (int)pick(200));
+        total.singles += grobo_robot_send(&rig.robot, &target, rig.now_us) == GROBO_OK;
+        rig_run(&rig, 20000);
+    }
 }
 
 static void request_play(void)
@@ -171,9 +185,10 @@ static void request_exit(void)
 
 static void request(void)
 {
-    static void (*const kinds[])(void) = {
-        request_move,   request_move,    request_play,    request_play,  request_play,
-        request_torque, request_control, request_control, request_estop, request_exit};
+    static void (*const kinds[])(void) = {request_move,    request_move,    request_play,
+                                          request_play,    request_play,    request_torque,
+                                          request_targets, request_control, request_control,
+                                          request_estop,   request_exit};
     grobo_trip_info trip;
     rig.asked = true;
     grobo_robot_tripped(&rig.robot, &trip);
@@ -285,8 +300,9 @@ static void report(uint32_t seeds)
     for (int i = 0; i < GROBO_SIM_FAULTS; i++) {
         print_message(" %s %llu", grobo_sim_fault_name(i), (unsigned long long)total.injected[i]);
     }
-    print_message("\n# %u moves and %u plays done, %u torques on, %u trips, %u robots ruined\n",
-                  total.moves, total.plays, total.torque_on, total.trips, total.ruined);
+    print_message(
+        "\n# %u moves and %u plays done, %u single targets, %u torques on, %u trips, %u robots ruined\n",
+        total.moves, total.plays, total.singles, total.torque_on, total.trips, total.ruined);
     print_message("# %u emergency stops seen through, %u ended by the line; robot limp after at "
                   "most %.1f s, seen to be after %.1f s; exits after %.1f s\n",
                   total.stops, total.stops_cut, (double)total.stopped_us / 1e6,

@@ -47,7 +47,7 @@ static int tear_down(void **state)
 
 static int play(const char *a, const char *b, const char *c)
 {
-    const char *arguments[] = {"-q", "--json", "play", a, b, c, NULL};
+    const char *arguments[] = {"-q", "--json", "--timeout=300", "play", a, b, c, NULL};
     if (!getenv("GRCTL")) {
         print_message("no GRCTL to run\n");
         skip();
