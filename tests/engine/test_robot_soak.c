@@ -300,9 +300,10 @@ static void report(uint32_t seeds)
     for (int i = 0; i < GROBO_SIM_FAULTS; i++) {
         print_message(" %s %llu", grobo_sim_fault_name(i), (unsigned long long)total.injected[i]);
     }
-    print_message(
-        "\n# %u moves and %u plays done, %u single targets, %u torques on, %u trips, %u robots ruined\n",
-        total.moves, total.plays, total.singles, total.torque_on, total.trips, total.ruined);
+    print_message("\n# %u moves and %u plays done, %u single targets, %u torques on, %u trips, %u "
+                  "robots ruined\n",
+                  total.moves, total.plays, total.singles, total.torque_on, total.trips,
+                  total.ruined);
     print_message("# %u emergency stops seen through, %u ended by the line; robot limp after at "
                   "most %.1f s, seen to be after %.1f s; exits after %.1f s\n",
                   total.stops, total.stops_cut, (double)total.stopped_us / 1e6,
