@@ -201,6 +201,15 @@ static int64_t time_asked(const grobo_robot *robot, const grobo_posture *posture
     return (steps < 1 ? 1 : steps) * step_us;
 }
 
+/* For a target that may wait for the line, whose joint goes on meanwhile. */
+static int64_t time_to_give(const grobo_robot *robot, int joint, double to_rad)
+{
+    int64_t leaves_us = grobo_bus_free_at(&robot->bus, robot->now_us);
+    int64_t now_us = time_needed(robot, joint, to_rad, robot->now_us);
+    int64_t then_us = time_needed(robot, joint, to_rad, leaves_us);
+    return then_us > now_us ? then_us : now_us;
+}
+
 /* Gives every joint its time; returns the longest, or GROBO_ERR_SPEED where no time on the wire is
  * long enough. */
 static int64_t give_time(grobo_robot *robot, grobo_target *target, bool each)
@@ -210,7 +219,7 @@ static int64_t give_time(grobo_robot *robot, grobo_target *target, bool each)
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         target->joint_time_us[j] = asked_us;
         if ((target->posture.set & GROBO_JOINT_BIT(j)) != 0) {
-            int64_t needed_us = time_needed(robot, j, target->posture.angle_rad[j], robot->now_us);
+            int64_t needed_us = time_to_give(robot, j, target->posture.angle_rad[j]);
             if (needed_us == GROBO_NEVER_US) {
                 robot->fault_joint = j;
                 return GROBO_ERR_SPEED;

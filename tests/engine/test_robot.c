@@ -165,6 +165,21 @@ static void a_loop_of_ones_own_sends_targets(void **state)
     assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_ERR_LIMIT);
 }
 
+/* Whoever turns a joint round while a reading is on the wire: the frame leaves when that is over,
+ * and the joint has gone on meanwhile. The rig looks at each frame as it leaves. */
+static void a_target_that_waits_for_the_line_is_no_faster(void **state)
+{
+    (void)state;
+    grobo_robot_config busy = {.sense_interval_us = 1};
+    rig_start(&rig, &busy, NULL);
+    rig_power(&rig);
+    for (int i = 0; i < 300; i++) {
+        grobo_posture target = rig_posture(&rig, 0, i % 2 == 0 ? 30 : -150, 10);
+        assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+        rig_run(&rig, 60000 + i % 7 * 1000);
+    }
+}
+
 static void bus_wiring_does_the_same(void **state)
 {
     (void)state;
@@ -187,6 +202,7 @@ int main(void)
         cmocka_unit_test(move_switches_torque_on),
         cmocka_unit_test(manual_torque_is_left_to_the_caller),
         cmocka_unit_test(a_loop_of_ones_own_sends_targets),
+        cmocka_unit_test(a_target_that_waits_for_the_line_is_no_faster),
         cmocka_unit_test(bus_wiring_does_the_same),
     };
     return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
