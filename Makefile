@@ -92,7 +92,8 @@ TEST_SRCS := $(sort $(filter-out $(LEFT_OUT),\
     $(foreach ring,unit engine link fault port,$(wildcard tests/$(ring)/test_*.c))))
 # Built wherever they can be, run by check-drivers.
 DRIVER_SRCS := $(if $(filter posixLinux,$(PORT)$(shell uname)),$(sort $(wildcard tests/drivers/test_*.c)))
-TEST_SCRIPTS := $(sort $(foreach ring,cli lint export,$(wildcard tests/$(ring)/*.sh)))
+TEST_SCRIPTS := $(sort $(filter-out $(LEFT_OUT),\
+    $(foreach ring,cli lint export wine,$(wildcard tests/$(ring)/*.sh))))
 FUZZ_SRCS := $(sort $(wildcard tests/fuzz/fuzz_*.c))
 BENCH_SRCS := $(sort $(wildcard tests/bench/bench_*.c))
 EXAMPLE_SRCS := $(sort $(wildcard docs/examples/*.c))
@@ -165,14 +166,20 @@ format: ## write sources as clang-format 14 does; FILES="src/core/bus.c" chooses
 in_rings = $(foreach ring,$(RING),$(filter $(1)tests/$(ring)/%,$(2)))
 # What tests of a build for another machine must know.
 cross_env = $(if $(CROSS),$(foreach v,CROSS EMULATOR SYSROOT CXX,$(v)="$($(v))") \
-    TEST_WRAPPER="$(EMULATOR)" TEST_TIMEOUT_S=300)
+    TEST_WRAPPER="$(or $(TEST_EMULATOR),$(EMULATOR))" TEST_TIMEOUT_S=300)
 corpora = $(foreach f,$(FUZZ_REPLAYS),$(f)@tests/fuzz/corpus/$(patsubst fuzz_%,%,$(notdir $(f))))
 
-test: all $(TEST_PROGRAMS) $(DRIVER_PROGRAMS) $(FUZZ_REPLAYS) $(EXAMPLES) ## the tests alone; RING="unit engine" chooses
-	@GRCTL="$(abspath $(GRCTL_RUN))" BUILD="$(BUILD)" CC="$(CC)" TEST_LOGS="$(BUILD)/logs" EDIT=$(EDIT) SCREEN=$(SCREEN) \
+left_out = $(if $(call in_rings,,$(LEFT_OUT)),$(BUILD)/left_out.sh)
+# Those left out are counted as skipped, with the target's reason.
+$(BUILD)/left_out.sh: FORCE
+	@printf '%s\n' '. tests/support/tap.sh' $(foreach t,$(call in_rings,,$(LEFT_OUT)),'skip $(t) "$(LEFT_OUT_WHY)"') \
+	    done_testing >$@
+
+test: all $(TEST_PROGRAMS) $(DRIVER_PROGRAMS) $(FUZZ_REPLAYS) $(EXAMPLES) $(CROSS_TOOLS) $(left_out) ## the tests alone; RING="unit engine" chooses
+	@$(TEST_BEGIN) GRCTL="$(abspath $(GRCTL_RUN))" BUILD="$(BUILD)" CC="$(CC)" TEST_LOGS="$(BUILD)/logs" EDIT=$(EDIT) SCREEN=$(SCREEN) \
 	    $(cross_env) tests/run.sh \
 	    $(call in_rings,$(BUILD)/,$(TEST_PROGRAMS)) $(call in_rings,,$(TEST_SCRIPTS)) \
-	    $(if $(filter fuzz,$(RING)),$(corpora))
+	    $(if $(filter fuzz,$(RING)),$(corpora)) $(left_out) $(TEST_END)
 
 check-san: ## the tests of our own code under AddressSanitizer and UBSan
 	@$(MAKE) --no-print-directory test BUILD=$(BUILD)/san SAN=address,undefined CFLAGS='-O1 -g' \

@@ -20,7 +20,25 @@ SONAME := grobo.dll
 IMPORT_LIB := libgrobo.dll.a
 SHARED_FLAGS = -Wl,--out-implib,$(BUILD)/$(IMPORT_LIB)
 EMULATOR := $(abspath tools/cross/wine.sh)
+export GROBO_WINE := $(abspath $(CROSS_DIR))
+RING := unit engine link port cli export wine
+
+# What the tests need of this machine: a cable between two COM ports for each test program, and the
+# simulator behind a pseudo-terminal, which wine takes for a COM port.
+NATIVE_GRCTL := $(BUILD)/native/grctl
+CROSS_TOOLS := $(BUILD)/nullmodem $(NATIVE_GRCTL)
+TEST_EMULATOR := $(BUILD)/nullmodem $(GROBO_WINE)/prefix/dosdevices $(EMULATOR)
+export NATIVE_GRCTL := $(abspath $(NATIVE_GRCTL))
+$(BUILD)/nullmodem: tools/cross/nullmodem.c
+	@mkdir -p $(@D)
+	cc -std=c11 -O2 -Wall -Wextra -D_DEFAULT_SOURCE -D_XOPEN_SOURCE=700 -o $@ $<
+$(BUILD)/native/grctl: FORCE
+	@env -u NATIVE_GRCTL $(MAKE) --no-print-directory CROSS= BUILD=$(BUILD)/native $@
+TEST_BEGIN = $(EMULATOR) --begin;
+TEST_END = ; status=$$?; $(EMULATOR) --end; exit $$status
+
 # Written for a pseudo-terminal or for processes and files as POSIX has them.
+LEFT_OUT_WHY := Windows has no pseudo-terminals, signals, file modes or links as it wants them
 LEFT_OUT := $(addprefix tests/,unit/test_motion_links.c port/test_posix_list.c port/test_posix_thread.c fault/test_serial_io.c \
     $(patsubst %,link/test_%.c,play_line serial_async serial_open serial_sync serial_tcp session \
     sim_server thread_line) $(patsubst %,support/%.c,line spy far_robot))

@@ -4,6 +4,7 @@
 #
 # usage: tools/cross/wine.sh PROGRAM [ARGUMENT]...
 #        tools/cross/wine.sh --make     the prefix, where there is none
+#        tools/cross/wine.sh --begin    its services, which else come and go with each program
 #        tools/cross/wine.sh --end      what wine left running
 # environment: GROBO_WINE, the folder of the prefix (default build/cross/win64)
 folder=${GROBO_WINE:-$(dirname "$0")/../../build/cross/win64}
@@ -20,6 +21,14 @@ case ${1:-} in
     [ -f "$WINEPREFIX/system.reg" ] && exit 0
     wine wineboot --init >/dev/null 2>&1 || exit 1
     exec wineserver -w
+    ;;
+--begin)
+    # Its services end with the last program, and begin with the next, whose output they hold open:
+    # who reads that would wait for them. So one program stays, and reads what nobody writes.
+    rm -f "$folder/nothing" "$WINEPREFIX"/dosdevices/com[1-9][0-9] # of tests that were ended
+    mkfifo "$folder/nothing"
+    wine cmd.exe <>"$folder/nothing" >/dev/null 2>&1 &
+    exec wine cmd.exe /c exit </dev/null >/dev/null 2>&1
     ;;
 --end)
     [ -d "$WINEPREFIX" ] || exit 0

@@ -120,34 +120,51 @@ static int open_trace(farm *f, int robot)
     return trace_open(&f->trace[robot], f->a, &line, grobo_now_us());
 }
 
+/* Where programs find a robot. */
+typedef struct place {
+    char link[GROBO_DEVICE_MAX_BYTES], tcp[32];
+    const char *name; /* for messages */
+} place;
+
+/* Fills the place, and what leads to it in config. Returns 0, or the exit status. */
+static int find_place(app *a, int robot, place *at, grobo_sim_server_config *config)
+{
+    const char *path = app_option(a, OPT_LINK)->text;
+    int port = (int)app_number(a, OPT_TCP, 0), n;
+    config->no_pty = grobo_port_pty_ops() == NULL;
+    at->name = config->no_pty ? at->tcp : "pty";
+    if (path && config->no_pty)
+        return app_fail(a, EXIT_USAGE, "UNSUPPORTED",
+                        "sim: --link: there are no pseudo-terminals here; --tcp serves programs");
+    if (path) {
+        n = robot == 0 ? snprintf(at->link, sizeof at->link, "%s", path)
+                       : snprintf(at->link, sizeof at->link, "%s%d", path, robot + 1);
+        if (n < 0 || (size_t)n >= sizeof at->link)
+            return app_fail(a, EXIT_USAGE, "CAP", "sim: --link: the path is too long");
+        config->link = at->name = at->link;
+    }
+    if (app_option(a, OPT_TCP)->given || config->no_pty) {
+        snprintf(at->tcp, sizeof at->tcp, "tcp:127.0.0.1:%d", port ? port + robot : 0);
+        config->tcp = at->tcp;
+    }
+    return 0;
+}
+
 static int add_robot(farm *f, int robot)
 {
-    const app *a = f->a;
-    const char *path = app_option(a, OPT_LINK)->text;
-    const char *faults = app_option(a, OPT_FAULT)->text;
-    grobo_sim_config sim = sim_config(a, robot);
+    const char *faults = app_option(f->a, OPT_FAULT)->text;
+    grobo_sim_config sim = sim_config(f->a, robot);
     grobo_sim_server_config config = {
         .base = f->base, .sim = &sim, .on_tap = on_tap, .ctx = &f->trace[robot]};
     grobo_os_cause cause = {0};
-    char link[GROBO_DEVICE_MAX_BYTES], tcp[32];
-    int port = (int)app_number(a, OPT_TCP, 0);
-    int error;
-    if (path) {
-        int n = robot == 0 ? snprintf(link, sizeof link, "%s", path)
-                           : snprintf(link, sizeof link, "%s%d", path, robot + 1);
-        if (n < 0 || (size_t)n >= sizeof link)
-            return app_fail(f->a, EXIT_USAGE, "CAP", "sim: --link: the path is too long");
-        config.link = link;
-    }
-    if (app_option(a, OPT_TCP)->given) {
-        snprintf(tcp, sizeof tcp, "tcp:127.0.0.1:%d", port ? port + robot : 0);
-        config.tcp = tcp;
-    }
+    place at;
+    int error = find_place(f->a, robot, &at, &config);
+    if (error)
+        return error;
     error = grobo_sim_server_new(&config, &f->server[robot], &cause);
     if (error)
-        return app_fail(f->a, EXIT_ROBOT, grobo_error_name(error), "sim: %s: %s%s%s",
-                        path ? link : "pty", grobo_error_text(error), *cause.text ? ": " : "",
-                        cause.text);
+        return app_fail(f->a, EXIT_ROBOT, grobo_error_name(error), "sim: %s: %s%s%s", at.name,
+                        grobo_error_text(error), *cause.text ? ": " : "", cause.text);
     f->n = robot + 1;
     if (faults &&
         grobo_sim_set_faults(grobo_sim_server_sim(f->server[robot]), faults, strlen(faults)) < 0)
@@ -171,7 +188,7 @@ static bool announce(const farm *f)
         json_array_append_new(list, one);
         if (!f->a->json)
             puts(grobo_sim_server_device(f->server[i]));
-        if (port > 0) {
+        if (port > 0 && grobo_port_pty_ops() != NULL) {
             output_flush();
             app_note(f->a, "also at tcp:127.0.0.1:%d", port);
         }
@@ -235,8 +252,9 @@ const cli_command cmd_sim = {
     .summary = "a simulated robot behind a pty, for any program",
     .details =
         "Runs a simulated GR001 until a signal. Prints the path of its pty, one line a robot,\n"
-        "when it can be opened. The robot is honest at register level and bytes take their time\n"
-        "on the wire; programs may come and go, it stays as they left it.\n"
+        "when it can be opened; where there are no ptys (Windows) that of its TCP port. The robot\n"
+        "is honest at register level and bytes take their time on the wire; programs may come and\n"
+        "go, it stays as they left it.\n"
         "\n"
         "While it runs it takes commands on standard input, when that is a terminal or a pipe.\n"
         "SERVO is a motor's number, a joint or a group; angles are the shaft's.\n"
