@@ -29,11 +29,13 @@ musl_libraries() {
     chmod +x "$work/bin/cc"
     toolchain="-DCMAKE_C_COMPILER=$work/bin/cc -DCMAKE_SYSTEM_NAME=Linux"
     toolchain="$toolchain -DCMAKE_EXE_LINKER_FLAGS=-static -DCMAKE_FIND_ROOT_PATH=$work/root"
+    # cmocka.h guesses uintptr_t, and wrong, where the C library is not glibc.
+    toolchain="$toolchain -DCMAKE_C_FLAGS=-D_UINTPTR_T"
     libraries_from_source "musl on $1"
     package libevent_core 2.1 '' -levent_core
     package yaml-0.1 0.2 '' -lyaml
     package jansson 2.14 '' -ljansson
-    package cmocka 1.1 '' -lcmocka-static
+    package cmocka 1.1 -D_UINTPTR_T -lcmocka-static
     rm -rf "$work/src" "$work/apt"
     echo "$made_of" >"$work/made-of"
 }
