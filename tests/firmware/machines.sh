@@ -53,6 +53,15 @@ finds_all() {
     [ "$(grep -c RS30 "$work/out")" -eq 20 ] || { cat "$work/out"; return 1; }
 }
 
+# On a machine that is too busy for it, a motion is stopped for safety: then once more.
+plays() {
+    for _ in 1 2 3; do
+        exits 0 ask --on-exit hold play --table motions/greet.pseq &&
+            says 'largest error at the end 0\.' && return
+    done
+    return 1
+}
+
 # Started by Ctrl-C; the exit policy is carried out.
 stops_smoothly() {
     timeout --preserve-status -s INT 3 "$GRCTL" -d "$pty" --on-exit off play -n 20 \
@@ -72,13 +81,18 @@ stops_on_the_way() {
 
 # The elbow stands where the wave of player.c ends.
 waves() {
-    waves_left=200
+    waves_left=100
     until tell look R_ELBOW_P && tail -n 1 "$work/sim.log" |
         grep -q -e '-50\.0 deg  to   -50\.0  torque on .* C$'; do
         waves_left=$((waves_left - 1))
         [ $waves_left -gt 0 ] || { cat "$work/sim.log" "$work/qemu.log"; return 1; }
         sleep 0.1
     done
+}
+
+waved() {
+    cat "$work/waves"
+    return $waved
 }
 
 # What is linked: nothing that allocates, prints or asks an operating system.
@@ -116,9 +130,7 @@ try() {
     check "$1: a register is written and read back" both \
         exits 0 ask servo-set 12 max_torque 55 --- both \
         exits 0 ask servo-get 12 max_torque --- says 55
-    check "$1: plays a motion" both \
-        exits 0 ask --on-exit hold play --table motions/greet.pseq --- \
-        says 'largest error at the end 0\.'
+    check "$1: plays a motion" plays
     grep ' frames, ' "$work/out" | sed "s/^/# $1: deadlines: /"
     check "$1: Ctrl-C stops it smoothly and lets it go" both stops_smoothly --- both \
         exits 0 ask status m12 --- says ' off '
@@ -128,11 +140,16 @@ try() {
         exits 0 ask move m5 10 500
     stop_machine
 
-    start_told_sim --tcp 0
-    start_machine "$2" "$FIRMWARE/$1/player.elf" "$(sed -n 's/^also at //p' "$work/sim.log")"
-    check "$1: plays a motion itself, on a simulated robot" waves
-    stop_machine
-    stop_sim
+    for _ in 1 2 3; do
+        start_told_sim --tcp 0
+        start_machine "$2" "$FIRMWARE/$1/player.elf" "$(sed -n 's/^also at //p' "$work/sim.log")"
+        waves >"$work/waves"
+        waved=$?
+        stop_machine
+        stop_sim
+        [ $waved -ne 0 ] || break
+    done
+    check "$1: plays a motion itself, on a simulated robot" waved
 }
 
 if [ ! -e "$FIRMWARE/cortex-m0/gr001.elf" ]; then

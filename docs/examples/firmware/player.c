@@ -34,16 +34,18 @@ static const grobo_clip wave = {
 
 static grobo_robot robot;
 
-/* When the robot has answered, it plays. What goes wrong ends there: the engine has stopped it. */
+/* When the robot has answered, it plays. A robot that did not, or could not be brought to where the
+ * motion begins, is asked anew; one that was stopped for safety refuses, and stays as it is. */
 static void on_event(void *ctx, const grobo_event *event)
 {
     (void)ctx;
-    if (event->kind == GROBO_EVENT_JOB && event->u.job.kind == GROBO_JOB_CHECK) {
-        if (event->u.job.result >= 0) {
-            (void)grobo_robot_play(&robot, &wave, NULL, mcu_now_us());
-        } else {
-            (void)grobo_robot_check(&robot, mcu_now_us());
-        }
+    if (event->kind != GROBO_EVENT_JOB) {
+        return;
+    }
+    if (event->u.job.result < 0) {
+        (void)grobo_robot_check(&robot, mcu_now_us());
+    } else if (event->u.job.kind == GROBO_JOB_CHECK) {
+        (void)grobo_robot_play(&robot, &wave, NULL, mcu_now_us());
     }
 }
 
