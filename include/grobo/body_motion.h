@@ -4,7 +4,8 @@
  * @brief Key poses as files have them, played with the whole body.
  *
  * The bridge between grobo_motion (what a .pseq file holds) and grobo_body (what solves it). A
- * body made here lives on the heap; everything in body.h works with it.
+ * body made here lives on the heap; everything in body.h works with it. So does its rule for
+ * threads: one at a time for a body and for what plays it; two bodies share nothing.
  */
 #ifndef GROBO_BODY_MOTION_H
 #define GROBO_BODY_MOTION_H

@@ -6,7 +6,8 @@
  * A clip is a view with two faces. `key` gives the key postures one by one, as the reference
  * library sends them (one frame a posture, the servos interpolate over its time). `sample` gives
  * the posture at any time, for playing at a rate. Neither may allocate, block or fail for reasons
- * other than a bad argument or a target out of reach: they run on the control path.
+ * other than a bad argument or a target out of reach: they run on the control path, on the thread
+ * that plays.
  */
 #ifndef GROBO_CLIP_H
 #define GROBO_CLIP_H

@@ -296,13 +296,8 @@ static int stop_motion(grobo_control *control, void *arg)
 {
     const bool *at_once = arg;
     bool stopped = grobo_i_control_forget(control, GROBO_ERR_CANCELED);
-    grobo_job_kind job = grobo_robot_job(robot_of(control));
 
-    if (grobo_i_control_sequencing(control)) {
-        stopped = grobo_session_stop(control->session, *at_once) >= 0 || stopped;
-    } else if (job == GROBO_JOB_MOVE || job == GROBO_JOB_PLAY) {
-        stopped = grobo_session_cancel(control->session) >= 0 || stopped;
-    }
+    stopped = grobo_session_stop(control->session, *at_once) >= 0 || stopped;
     return stopped ? GROBO_OK : GROBO_ERR_STATE;
 }
 

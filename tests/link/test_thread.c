@@ -317,6 +317,30 @@ static void raw_commands(void **state)
     assert_true(grobo_control_send_command(control, "rubbish", 7, 0) < 0);
 }
 
+/* Of what was only sent nobody waits for the end, but it can be stopped. */
+static void a_raw_move_is_stopped_like_any_other(void **state)
+{
+    /* Motor 5 to -90.0 degrees in 60 s. */
+    static const uint8_t slow[] = {0x53, 0x0C, 0xFA, 0xAF, 0x05, 0x00, 0x1E,
+                                   0x04, 0x01, 0x7C, 0xFC, 0x70, 0x17, 0xF9};
+    double stood_rad;
+    double angle_rad;
+
+    (void)state;
+    control_come_up();
+    assert_int_equal(grobo_control_set_servo_states(control, EVERY_JOINT, GROBO_TORQUE_ON, 0), 0);
+    assert_int_equal(grobo_control_stop_motion(control, false), GROBO_ERR_STATE);
+    assert_int_equal(grobo_control_send_command(control, slow, sizeof slow, 0), sizeof slow);
+    assert_int_equal(grobo_control_is_moving(control), 1);
+    assert_int_equal(grobo_control_stop_motion(control, false), GROBO_OK);
+    assert_int_equal(grobo_control_wait(control, 0), GROBO_OK);
+    assert_int_equal(grobo_control_is_moving(control), 0);
+    assert_int_equal(grobo_control_read_angle(control, ELBOW, &stood_rad, 0), GROBO_OK);
+    assert_true(bytes_in(300000) >= 0);
+    assert_int_equal(grobo_control_read_angle(control, ELBOW, &angle_rad, 0), GROBO_OK);
+    assert_true(angle_rad == stood_rad);
+}
+
 /* ---- safety ------------------------------------------------------------------------------- */
 
 static void stops_are_latched_until_reset(void **state)
@@ -398,6 +422,7 @@ int main(void)
         WITH_AND_WITHOUT_THREAD(servo_states),
         WITH_AND_WITHOUT_THREAD(readings),
         WITH_AND_WITHOUT_THREAD(raw_commands),
+        WITH_AND_WITHOUT_THREAD(a_raw_move_is_stopped_like_any_other),
         WITH_AND_WITHOUT_THREAD(stops_are_latched_until_reset),
         cmocka_unit_test(bad_configurations_and_lack_of_memory),
     };
