@@ -441,6 +441,9 @@ int grobo_robot_exit(grobo_robot *robot, grobo_exit_policy policy, int64_t now_u
     return begin(robot, number);
 }
 
+/* Where nobody answers any more, nobody waits longer than that. */
+#define ESTOP_BOUND_US 10000000
+
 int grobo_i_estop_start(grobo_robot *robot)
 {
     int number = grobo_i_job_start(robot, GROBO_JOB_ESTOP, grobo_i_script_torque_off);
@@ -448,6 +451,7 @@ int grobo_i_estop_start(grobo_robot *robot)
     robot->job.torque =
         robot->config.estop_torque == GROBO_ESTOP_OFF ? GROBO_TORQUE_OFF : GROBO_TORQUE_BRAKE;
     robot->job.priority = GROBO_PRIORITY_STOP;
+    robot->job.bound_us = robot->now_us + ESTOP_BOUND_US;
     grobo_i_job_run(robot);
     return number;
 }

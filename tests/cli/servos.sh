@@ -107,7 +107,12 @@ check "slot" both exits 0 on_robot slot 3 --- said '^slot 3 was asked for'
 check "scenario" both exits 0 on_robot scenario 2 --- said '^scenario 2 was asked for'
 check "a slot that is none" fails 2 "'-1' is not" on_robot slot -1
 check "stop" both exits 0 on_robot stop --- said '^stopped; joints with torque hold'
-check "estop" both exits 0 on_robot estop --- said "verified; 'grctl estop --reset'"
+check "estop" both exits 0 on_robot --trace "$work/estop" estop --- \
+    said "verified; 'grctl estop --reset'"
+goes_first() {
+    exits 0 "$GRCTL" -q decode "$work/estop" && head -n 1 "$work/out" | grep 'host .*20 servos: torque'
+}
+check "nothing goes before it" goes_first
 check "nothing moves then" fails 4 "stopped by 'grctl estop'" on_robot move m5 0
 check "brakes are on" both exits 0 on_robot status m5 --- says ' brake '
 check "estop --reset" both exits 0 on_robot estop --reset --- said '^emergency stop taken back'

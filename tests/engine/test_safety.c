@@ -352,6 +352,22 @@ static void nothing_queued_follows_an_emergency_stop(void **state)
     }
 }
 
+static void emergency_stop_gives_up_where_nobody_answers(void **state)
+{
+    (void)state;
+    rig_start(&rig, &quiet, NULL);
+    rig_power(&rig);
+    for (int j = 0; j < 20; j++) {
+        assert_int_equal(grobo_sim_set_cable(&rig.sim, j, GROBO_SIM_CABLE_MUTE), 0);
+    }
+    int64_t asked_us = rig.now_us;
+    rig_expect(&rig, grobo_robot_estop(&rig.robot, rig.now_us), GROBO_ERR_TIMEOUT);
+    assert_in_range(rig.now_us - asked_us, 5000000, 10100000);
+    grobo_trip_info info;
+    grobo_robot_tripped(&rig.robot, &info);
+    assert_true(info.latched);
+}
+
 static void emergency_stop_repeats_until_it_took(void **state)
 {
     (void)state;
@@ -474,6 +490,7 @@ int main(void)
         cmocka_unit_test(emergency_stop_is_first_verified_and_latched),
         cmocka_unit_test(emergency_stop_waits_for_no_silent_servo),
         cmocka_unit_test(nothing_queued_follows_an_emergency_stop),
+        cmocka_unit_test(emergency_stop_gives_up_where_nobody_answers),
         cmocka_unit_test(emergency_stop_repeats_until_it_took),
         cmocka_unit_test(emergency_stop_takes_the_place_of_a_job),
         cmocka_unit_test(exit_holds_sits_or_lets_go),

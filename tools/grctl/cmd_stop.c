@@ -54,18 +54,24 @@ static int stop_now(conn *c)
 {
     int latched = latch_set(conn_device(c));
     int error = conn_wait(c, grobo_session_estop(c->session));
+    if (error && !c->signal)
+        return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error),
+                        "%s: the stop was sent, but not every joint is seen to be stopped: %s; "
+                        "switch the robot off",
+                        conn_device(c), grobo_error_text(error));
     if (error)
-        return conn_fail(c, error, "estop");
+        return EXIT_SIGNAL + c->signal;
     if (latched < 0)
         app_note(c->a, "stopped, but other commands cannot be told: %s", grobo_error_text(latched));
     report(c, "stopped and verified; 'grctl estop --reset' takes it back");
     return EXIT_DONE;
 }
 
+/* Who is there is not asked first, unless it decides which port is taken. */
 static int run_estop(app *a)
 {
     conn c;
-    int status = conn_open(&c, a);
+    int status = conn_is_auto(a) ? conn_open(&c, a) : conn_open_unchecked(&c, a);
     if (!status)
         status = app_option(a, OPT_RESET)->given ? reset(&c) : stop_now(&c);
     return conn_close(&c, status);

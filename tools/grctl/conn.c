@@ -21,6 +21,11 @@ static const char *requested_device(const app *a)
     return fallback && *fallback ? fallback : GROBO_DEVICE_AUTO;
 }
 
+bool conn_is_auto(const app *a)
+{
+    return strcmp(requested_device(a), GROBO_DEVICE_AUTO) == 0;
+}
+
 const char *conn_device(const conn *c)
 {
     return grobo_session_device(c->session);

@@ -155,6 +155,9 @@ void conn_link_deinit(conn_link *link);
 void conn_link_watch(conn_link *link);
 void conn_link_unwatch(conn_link *link);
 
+/* True if ports are looked through for a robot. */
+bool conn_is_auto(const app *a);
+
 /* The name of the device in use, for messages. */
 const char *conn_device(const conn *c);
 
