@@ -466,9 +466,9 @@ GROBO_API int grobo_robot_exit(grobo_robot *robot, grobo_exit_policy policy, int
 
 /**
  * Emergency stop: drops everything that waits, sends torque off or brake ahead of all else, reads
- * every joint back and repeats what did not take, for at most 10 s. Latched until grobo_robot_reset(). Never
- * refused but for GROBO_ERR_CLOSED, where it is latched all the same, and carried out as soon as
- * the line is there: so is one that the line was lost under.
+ * every joint back and repeats what did not take, for at most 10 s. Latched until
+ * grobo_robot_reset(). Never refused but for GROBO_ERR_CLOSED, where it is latched all the same,
+ * and carried out as soon as the line is there: so is one that the line was lost under.
  */
 GROBO_API int grobo_robot_estop(grobo_robot *robot, int64_t now_us);
 

@@ -110,7 +110,8 @@ check "stop" both exits 0 on_robot stop --- said '^stopped; joints with torque h
 check "estop" both exits 0 on_robot --trace "$work/estop" estop --- \
     said "verified; 'grctl estop --reset'"
 goes_first() {
-    exits 0 "$GRCTL" -q decode "$work/estop" && head -n 1 "$work/out" | grep 'host .*20 servos: torque'
+    exits 0 "$GRCTL" -q decode "$work/estop" &&
+        head -n 1 "$work/out" | grep 'host .*20 servos: torque'
 }
 check "nothing goes before it" goes_first
 check "nothing moves then" fails 4 "stopped by 'grctl estop'" on_robot move m5 0

@@ -8,8 +8,6 @@
 #include "latch.h"
 #include "os.h"
 
-/* A second is more than any servo needs to stop smoothly; the engine's own bound is 10 s. */
-
 /* How often joints in free mode are read. */
 enum { SENSE_FREE_US = 100000 };
 
