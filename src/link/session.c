@@ -318,7 +318,7 @@ static void on_time(grobo_timer *timer, int64_t late_us, void *ctx)
         if (session->is_sim) {
             grobo_i_session_take_from_sim(session);
         }
-        grobo_robot_step(&session->robot, grobo_now_us());
+        grobo_i_session_step(session);
         break;
     case GROBO_SESSION_WAITING: {
         int r = open_again(session);

@@ -62,6 +62,12 @@ void grobo_i_session_send(grobo_session *session);
 /* Takes what the simulator has for us; tells when it hung up. */
 void grobo_i_session_take_from_sim(grobo_session *session);
 
+/*
+ * Lets the engine's time pass. What the line has for it is read first: a process that was held up
+ * must not take for a servo's silence what has been waiting for it.
+ */
+void grobo_i_session_step(grobo_session *session);
+
 /* Callback of the serial port. */
 void grobo_i_session_on_data(grobo_serial *serial, const uint8_t *bytes, size_t size, void *ctx);
 void grobo_i_session_on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes,

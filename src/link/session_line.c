@@ -7,6 +7,9 @@
 /* How long to leave a line alone that takes no more bytes; it also tells when it does. */
 #define BUSY_US 1000
 
+/* How often one step reads at most: a line that never pauses must not keep us. */
+#define READS_MAX 16
+
 void grobo_i_session_on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes,
                             size_t size, void *ctx)
 {
@@ -24,7 +27,7 @@ void grobo_i_session_on_data(grobo_serial *serial, const uint8_t *bytes, size_t 
     (void)serial;
     grobo_i_session_enter(session);
     grobo_robot_rx(&session->robot, bytes, size, grobo_now_us());
-    grobo_robot_step(&session->robot, grobo_now_us());
+    grobo_i_session_step(session);
     grobo_i_session_leave(session);
 }
 
@@ -48,6 +51,24 @@ void grobo_i_session_take_from_sim(grobo_session *session)
     if (grobo_sim_hung_up(session->sim)) {
         grobo_i_session_lost(session, GROBO_ERR_UNPLUGGED);
     }
+}
+
+void grobo_i_session_step(grobo_session *session)
+{
+    uint8_t buf[256];
+    int64_t now_us = grobo_now_us();
+    int got = session->is_sim ? 0 : 1;
+
+    for (int reads = 0; got > 0 && reads < READS_MAX; reads++) {
+        /* The time before the read that finds nothing: what had come until then has been read. */
+        now_us = grobo_now_us();
+        /* A failure closes the port, and it tells that from the loop. */
+        got = grobo_serial_read(session->serial, buf, sizeof buf);
+        if (got > 0) {
+            grobo_robot_rx(&session->robot, buf, (size_t)got, grobo_now_us());
+        }
+    }
+    grobo_robot_step(&session->robot, now_us);
 }
 
 /* ---- engine to line ----------------------------------------------------------------------- */
