@@ -343,8 +343,11 @@ GROBO_API int grobo_control_do_nth_motion(grobo_control *control, size_t n);
  *   waits or is played), GROBO_ERR_NOMEM, or as grobo_motion_clip().
  */
 GROBO_API int grobo_control_play_motion(grobo_control *control, const grobo_play_options *options);
-/** Ends whatever moves the robot, and forgets what has not begun. Handed over.
- *  @param at_once false: smoothly. @return GROBO_OK; GROBO_ERR_STATE where there is nothing to stop. */
+/**
+ * Ends whatever moves the robot, and forgets what has not begun. Handed over.
+ * @param at_once false: smoothly.
+ * @return GROBO_OK; GROBO_ERR_STATE where there is nothing to stop.
+ */
 GROBO_API int grobo_control_stop_motion(grobo_control *control, bool at_once);
 /** Whether a motion is played or about to be. At once. */
 GROBO_API bool grobo_control_is_playing(grobo_control *control);
