@@ -264,17 +264,11 @@ static int watch_it(conn *c, show *s)
     return error;
 }
 
-static bool is_idle(conn *c)
-{
-    return grobo_robot_job(c->robot) == GROBO_JOB_NONE;
-}
-
 /* The stop is verified joint by joint before anything else is said. */
 static int after_estop(conn *c, int error)
 {
-    c->moving = false;
     if (!error)
-        error = conn_wait_until(c, is_idle);
+        error = conn_end_estop(c);
     if (error)
         return conn_fail(c, error, "estop");
     return app_fail(c->a, EXIT_SAFETY, grobo_trip_name(GROBO_TRIP_ESTOP),
@@ -292,7 +286,7 @@ static int play(conn *c, show *s)
     if (error)
         return conn_fail(c, error, "play");
     error = watch_it(c, s);
-    if (s->keys.estop)
+    if (s->keys.estop || c->trip.trip == GROBO_TRIP_ESTOP)
         return after_estop(c, error);
     if (!error && s->error)
         error = s->error;

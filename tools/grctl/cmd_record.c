@@ -183,7 +183,7 @@ static void on_key(void *ctx, int key)
 static bool is_over(conn *c)
 {
     const recorder *r = c->ctx;
-    return r->over;
+    return r->over || c->trip.trip != GROBO_TRIP_NONE;
 }
 
 static struct event *every(recorder *r, int64_t period_us, event_callback_fn fn)

@@ -1,10 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* stop and estop. */
+#include <grobo/port.h>
+
 #include "commands.h"
 #include "latch.h"
 #include "render.h"
 
 enum { OPT_RESET };
+/* How long a port in use is waited for, and how often it is tried. */
+enum { PATIENCE_US = 3000000, AGAIN_US = 50000 };
 
 static const cli_option estop_options[] = {
     [OPT_RESET] = {.name = "reset",
@@ -67,13 +71,77 @@ static int stop_now(conn *c)
     return EXIT_DONE;
 }
 
+/* ---- where another program has the port ------------------------------------------------------ */
+
+typedef struct busy_ports {
+    char first[GROBO_DEVICE_MAX_BYTES]; /* "": none */
+} busy_ports;
+
+static int mark_busy(void *ctx, const grobo_port_info *info)
+{
+    busy_ports *busy = ctx;
+    if (info->open_result != GROBO_ERR_BUSY)
+        return 0;
+    if (!*busy->first)
+        snprintf(busy->first, sizeof busy->first, "%s", info->path);
+    latch_set(info->path);
+    return 0;
+}
+
+/* `auto` finds no robot on a port that is in use: all such ports are meant. */
+static bool find_busy(app *a)
+{
+    static busy_ports busy;
+    busy.first[0] = '\0';
+    grobo_port_list(mark_busy, &busy);
+    if (*busy.first)
+        a->line.global[GLOBAL_DEVICE] = (cli_value){.given = 1, .text = busy.first};
+    return *busy.first != '\0';
+}
+
 /* Who is there is not asked first, unless it decides which port is taken. */
+static int open_unasked(conn *c, app *a)
+{
+    return conn_is_auto(a) ? conn_open(c, a) : conn_open_unchecked(c, a);
+}
+
+/*
+ * A grctl that has the port sees the mark and stops the robot; when it has left the port, the stop
+ * is verified from here.
+ */
+static int open_to_stop(conn *c, app *a)
+{
+    char said[APP_LINE_BYTES] = "";
+    int64_t until_us = grobo_now_us() + PATIENCE_US;
+    bool busy = false;
+    int status;
+    for (;;) {
+        a->hushed = said;
+        status = open_unasked(c, a);
+        a->hushed = NULL;
+        busy = c->open_error == GROBO_ERR_BUSY;
+        if (busy)
+            latch_set(conn_device(c));
+        else if (c->open_error != GROBO_ERR_NOTFOUND || !find_busy(a))
+            break;
+        c->link_error = 0;
+        if (grobo_now_us() >= until_us || conn_sleep_until(c, grobo_now_us() + AGAIN_US) < 0)
+            break;
+        conn_close(c, status);
+    }
+    if (status && !c->signal)
+        app_fail(a, status, grobo_error_name(c->open_error), "%s%s", said,
+                 busy ? "; a grctl stops the robot now, any other program must be ended" : "");
+    return status;
+}
+
 static int run_estop(app *a)
 {
     conn c;
-    int status = conn_is_auto(a) ? conn_open(&c, a) : conn_open_unchecked(&c, a);
+    bool resets = app_option(a, OPT_RESET)->given > 0;
+    int status = resets ? open_unasked(&c, a) : open_to_stop(&c, a);
     if (!status)
-        status = app_option(a, OPT_RESET)->given ? reset(&c) : stop_now(&c);
+        status = resets ? reset(&c) : stop_now(&c);
     return conn_close(&c, status);
 }
 
@@ -92,7 +160,8 @@ const cli_command cmd_estop = {
     .summary = "emergency stop, verified",
     .details = "Brakes every joint ahead of all else, reads each one back, and repeats what did\n"
                "not take. From then on grctl refuses to move this robot with exit status 4, until\n"
-               "--reset. A robot that stands may sink: hold it.\n",
+               "--reset. Another grctl that has the port stops the robot too. A robot that stands\n"
+               "may sink: hold it.\n",
     .example = "  grctl estop\n  grctl estop --reset\n",
     .options = estop_options,
     .n_options = sizeof estop_options / sizeof estop_options[0],

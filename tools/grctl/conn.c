@@ -80,35 +80,6 @@ static void on_robot(void *ctx, const grobo_event *event)
         c->on_event(c, event);
 }
 
-/* From -vv on, but not over a full screen. */
-static void show_bytes(conn *c, char direction, int64_t at_us, const uint8_t *bytes, size_t size)
-{
-    if (c->a->verbosity < 2 || c->a->hushed || size == 0)
-        return;
-    if (!c->shown_us)
-        c->shown_us = at_us;
-    fprintf(stderr, "%10.3f  %c  ", (double)(at_us - c->shown_us) / 1e3, direction);
-    grobo_hex_print(stderr, bytes, size);
-}
-
-/* What came after the last frame, in one piece. */
-static void show_answer(conn *c)
-{
-    const last_frame *last = last_frames_newest(&c->last);
-    if (last)
-        show_bytes(c, '<', last->got_us, last->got, last->n_got);
-}
-
-static void note_bytes(conn *c, grobo_direction direction, int64_t now_us, const uint8_t *bytes,
-                       size_t size)
-{
-    if (direction == GROBO_DIR_TX) {
-        show_answer(c);
-        show_bytes(c, '>', now_us, bytes, size);
-    }
-    last_frames_note(&c->last, direction, now_us, bytes, size);
-}
-
 static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes, size_t size,
                    void *ctx)
 {
@@ -118,7 +89,7 @@ static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *byt
     if (!c)
         return;
     trace_bytes(&c->trace, direction, now_us, bytes, size);
-    note_bytes(c, direction, now_us, bytes, size);
+    conn_note_bytes(c, direction, now_us, bytes, size);
     if (c->on_bytes)
         c->on_bytes(c, direction, now_us, bytes, size);
 }
@@ -244,6 +215,7 @@ static int fail_open(conn *c, int error)
     /* Of the others the system only says again what the error says. */
     bool tells = *cause->text && (error == GROBO_ERR_BUSY || error == GROBO_ERR_IO ||
                                   error == GROBO_ERR_UNSUPPORTED || error == GROBO_ERR_UNPLUGGED);
+    c->open_error = error;
     if (conn_is_of_reply(error) && bytes_came(c))
         return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error),
                         "%s: bytes come, but no reply in them; is the baud rate right, and is it a "
@@ -398,12 +370,14 @@ static int open_device(conn *c, app *a, bool check)
     c->session = c->link->session;
     c->robot = grobo_session_robot(c->session);
     conn_link_watch(c->link);
+    c->link->marked = true; /* only one that comes later is to be heeded */
     error = grobo_session_open(c->session);
     if (!error)
         error = conn_wait_until(c, opened);
     if (error && !c->signal)
         return fail_open(c, error);
     c->link->answered = check && !error;
+    c->link->marked = !error && latch_is_set(conn_device(c));
     if (!error)
         say_found(c);
     return error ? EXIT_ROBOT : EXIT_DONE;
@@ -467,8 +441,10 @@ static const char *policy_words(grobo_exit_policy policy)
 /* Returns 0, or the exit status when it could not be done; that is said. */
 static int carry_out_policy(conn *c, int status)
 {
+    int error = conn_end_estop(c); /* which comes before any policy */
     grobo_exit_policy policy = policy_now(c, status);
-    int error;
+    if (error)
+        return conn_fail_job(c, error, "the emergency stop could not be verified: ");
     if (policy == GROBO_EXIT_DEFAULT || !c->up || c->link_error)
         return EXIT_DONE;
     c->leaving = true;
@@ -504,7 +480,7 @@ static void give_back(conn *c)
 int conn_close(conn *c, int status)
 {
     int failed = c->session ? carry_out_policy(c, status) : EXIT_DONE;
-    show_answer(c);
+    conn_show_answer(c);
     if (failed)
         status = failed;
     else if (c->signal)
@@ -532,7 +508,7 @@ int conn_link_init(conn_link *link)
         if (!link->signals[i])
             return GROBO_ERR_NOMEM;
     }
-    return link->base ? GROBO_OK : GROBO_ERR_NOMEM;
+    return link->base ? conn_heed_mark(link) : GROBO_ERR_NOMEM;
 }
 
 void conn_link_watch(conn_link *link)
@@ -576,6 +552,8 @@ void conn_link_deinit(conn_link *link)
     for (int i = 0; i < OS_ENDINGS; i++)
         if (link->signals[i])
             event_free(link->signals[i]);
+    if (link->mark_timer)
+        event_free(link->mark_timer);
     if (link->base)
         event_base_free(link->base);
     memset(link, 0, sizeof *link);

@@ -40,7 +40,9 @@ typedef struct conn_link {
     int link_error; /* why the link is lost, 0 while it stands */
     bool up;        /* the line is open */
     bool answered;  /* the robot has answered */
-    trace trace;    /* of the shell's --trace */
+    bool marked;    /* there was a mark of an emergency stop when it was last looked for */
+    struct event *mark_timer;
+    trace trace; /* of the shell's --trace */
     /* set by a shell */
     grobo_joint_mask free_joints; /* in free mode: read in the background */
     app *owner;                   /* of the shell */
@@ -68,6 +70,7 @@ struct conn {
     int signal;           /* the first signal that came, 0 none */
     int link_error;       /* why the link is lost, 0 while it stands */
     grobo_trip_info trip; /* why the engine stopped, if it did */
+    int open_error;       /* why it could not be opened, 0: it was not tried, or it could */
     bool up;              /* the line is open, and the robot has answered where that was asked */
     bool moving;          /* a motion is or may be under way; the exit policy ends it */
     bool leaving;         /* the exit policy is being carried out: signals wait */
@@ -84,6 +87,9 @@ int conn_open_unchecked(conn *c, app *a);
 
 /* The same for a command that moves the robot: refused after an emergency stop. */
 int conn_open_to_move(conn *c, app *a);
+
+/* Where an emergency stop is being carried out: until it is verified. Returns as conn_wait(). */
+int conn_end_estop(conn *c);
 
 /* Reads the joints in the background while a motion is played: heat, current, voltage, silence. */
 void conn_watch(conn *c, bool on);
@@ -119,6 +125,12 @@ int conn_fail_trip(conn *c, const char *doing);
 /* The same for one servo by its id, whether it is a joint's or not. */
 int conn_fail_servo(conn *c, int error, int id);
 
+/* Of the line's tap: keeps what -v tells of a failure, shows it at once from -vv on. */
+void conn_note_bytes(conn *c, grobo_direction direction, int64_t now_us, const uint8_t *bytes,
+                     size_t size);
+/* -vv: what has come since the last frame, in one piece. */
+void conn_show_answer(conn *c);
+
 /* The baud rate that the global options ask for, or the default. */
 uint32_t conn_baud(const app *a);
 
@@ -143,6 +155,12 @@ int conn_close(conn *c, int status);
  * command needs it. conn_link_deinit() in either case.
  */
 int conn_link_init(conn_link *link);
+
+/*
+ * Of conn_link_init(): an emergency stop of another grctl, which cannot have the port too, is
+ * carried out here. GROBO_OK or GROBO_ERR_NOMEM.
+ */
+int conn_heed_mark(conn_link *link);
 
 /*
  * Closes what is open: carries out the exit policy that was asked for. What came between two

@@ -1,0 +1,79 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# `grctl estop` while another grctl has the port: that one stops the robot, and lets it be verified.
+. tests/support/cli.sh
+. tests/support/terminal.sh
+
+on_robot() {
+    "$GRCTL" -d "$robot" "$@"
+}
+braked() {
+    exits 0 on_robot status && says '^ *12  R_KNEE_P .* brake '
+}
+
+# while_running PATTERN COMMAND...: an emergency stop once it has said that; its status in $ended.
+while_running() {
+    while_pattern=$1
+    shift
+    rm -f "$work/busy"
+    on_robot "$@" >"$work/busy" 2>&1 </dev/null &
+    while_pid=$!
+    written "$work/busy" "$while_pattern" || return 1
+    exits 0 on_robot estop
+    while_status=$?
+    wait $while_pid
+    ended=$?
+    return $while_status
+}
+# stopped COMMAND...: exit status 4, all braked, and nothing moves until it is taken back.
+stopped() {
+    while_running "$@" && [ $ended -eq 4 ] && grep -q 'emergency stop' "$work/busy" && braked &&
+        fails 4 "stopped by 'grctl estop'" on_robot move m5 0 &&
+        exits 0 on_robot estop --reset && return
+    echo "it ended with $ended:"
+    cat "$work/busy"
+    return 1
+}
+
+start_sim || { echo "Bail out! the simulator did not start"; exit 1; }
+exits 0 on_robot servo on
+check "while it plays" stopped '"t_ms":[1-9]' --json play --speed 20 motions/greet.pseq
+check "while it moves" stopped 'robot found' -v move m5 -100 20000
+check "while it is taught" stopped 'in your hands' record -o "$work/taught.m"
+check "what was taught is kept" test -s "$work/taught.m"
+
+watched() {
+    "$GRCTL" -d "$robot" status --watch --interval 100 >"$work/watch" 2>&1 &
+    watch_pid=$!
+    written "$work/watch" 'R_KNEE_P .* on ' || return 1
+    fails 1 'in use by .*; a grctl stops the robot now' on_robot estop
+    watched_status=$?
+    written "$work/watch" 'R_KNEE_P .* brake '
+    watched_brake=$?
+    kill $watch_pid
+    wait $watch_pid
+    [ $watched_status -eq 0 ] && [ $watched_brake -eq 0 ]
+}
+exits 0 on_robot servo on
+check "who goes on reading brakes too, and says in whose hands it is" watched
+check "it stands" fails 4 "stopped by 'grctl estop'" on_robot init
+exits 0 on_robot estop --reset
+
+if have_terminal; then
+    open_screen
+    type_line "'$GRCTL' -d '$robot' monitor"
+    until_screen '^12 KNEE_P'
+    keys t
+    until_screen '^torque on: done'
+    exits 1 on_robot estop
+    check "monitor" until_screen 'EMERGENCY STOP: R takes it back'
+    keys R
+    check "and takes it back" until_screen 'stop taken back'
+    keys q
+    until_screen '^>'
+    on_screen kill-server
+else
+    skip "monitor" "no tmux"
+fi
+stop_sim
+done_testing
