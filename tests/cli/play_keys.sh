@@ -15,7 +15,7 @@ motion=$work/long.m
 for t in 1000 9000 18000 27000 36000 45000 54000; do
     echo "$t  0 0 200 0 -$((t / 200)) -200 0 200 0 200 0 -400 -200 0 0 -200 0 400 200 0"
 done >"$motion"
-play="'$GRCTL' -d '$work/robot' play '$motion'; echo status \$?; stty -a"
+play="'$GRCTL' -d '$work/robot' --retries 10 play '$motion'; echo status \$?; stty -a"
 
 start_sim || { echo "Bail out! the simulator did not start"; exit 1; }
 open_screen
