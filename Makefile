@@ -170,7 +170,7 @@ cross_env = $(if $(CROSS),$(foreach v,CROSS EMULATOR SYSROOT CXX,$(v)="$($(v))")
     TEST_WRAPPER="$(or $(TEST_EMULATOR),$(EMULATOR))" TEST_TIMEOUT_S=300)
 corpora = $(foreach f,$(FUZZ_REPLAYS),$(f)@tests/fuzz/corpus/$(patsubst fuzz_%,%,$(notdir $(f))))
 
-left_out = $(if $(call in_rings,,$(LEFT_OUT)),$(BUILD)/left_out.sh)
+left_out = $(if $(strip $(call in_rings,,$(LEFT_OUT))),$(BUILD)/left_out.sh)
 # Those left out are counted as skipped, with the target's reason.
 $(BUILD)/left_out.sh: FORCE
 	@printf '%s\n' '. tests/support/tap.sh' $(foreach t,$(call in_rings,,$(LEFT_OUT)),'skip $(t) "$(LEFT_OUT_WHY)"') \
