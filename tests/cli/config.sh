@@ -43,12 +43,12 @@ check "and keeps the rest of the file" kept
 exits 0 "$GRCTL" -d kitchen move m5 -60 300
 check "a trimmed joint is where it was sent" both exits 0 "$GRCTL" -d kitchen status m5 --- \
     says 'R_ELBOW_P  *-60\.0'
-check "and 2.5 deg beside it for the servo" both exits 0 "$GRCTL" -d "$robot" status m5 --- \
+check "and 2.5 deg beside it for the servo" both exits 0 on_robot status m5 --- \
     says 'R_ELBOW_P  *-57\.5'
 check "limits hold behind the trim" exits 4 "$GRCTL" -d kitchen move m5 49
 check "and before it" exits 4 "$GRCTL" -d kitchen move m5 51
 check "up to it" exits 0 "$GRCTL" -d kitchen move m5 47.5 500
-check "where the servo is at its limit" both exits 0 "$GRCTL" -d "$robot" status m5 --- \
+check "where the servo is at its limit" both exits 0 on_robot status m5 --- \
     says 'R_ELBOW_P  *50\.0'
 check "another trim beside it" exits 0 "$GRCTL" calibrate m12 -1
 check "both are there" grep -q 'trim: {R_KNEE_P: -1\.0, R_ELBOW_P: 2\.5}' "$config"
@@ -62,14 +62,14 @@ dry() {
 check "--dry-run writes nothing" dry
 
 # By measuring: the robot stands in its initial posture but for one joint.
-exits 0 "$GRCTL" -d "$robot" init --time 500
-exits 0 "$GRCTL" -d "$robot" move R_KNEE_P -37 500
+exits 0 on_robot init --time 500
+exits 0 on_robot move R_KNEE_P -37 500
 check_json "calibrate measures" \
     '[j["trim_deg"] for j in lines[0]["joints"] if j["trim_deg"]] == [3] and lines[0]["written"]' \
     "$GRCTL" calibrate --json --timeout 500
 check_json "then the posture is the initial one" \
     'lines[0]["joints"][0]["angle_deg"] == -40' "$GRCTL" status R_KNEE_P --json
-check "calibrate without a robot" fails 2 'must name a robot' "$GRCTL" -d "$robot" calibrate
+check "calibrate without a robot" fails 2 'must name a robot' on_robot calibrate
 check "a joint without degrees" fails 2 'needs JOINT DEG' "$GRCTL" calibrate m5
 
 offset() {

@@ -9,18 +9,18 @@ start_sim || { echo "Bail out! the simulator did not start"; exit 1; }
 
 # stands ANGLE: R_ELBOW_P holds at an angle like that.
 stands() {
-    exits 0 "$GRCTL" -d "$robot" status m5 && says "R_ELBOW_P  *$1  *[-0-9.]*  *on  *0 "
+    exits 0 on_robot status m5 && says "R_ELBOW_P  *$1  *[-0-9.]*  *on  *0 "
 }
 
 # The last window of a screen closes: the kernel hangs up on who runs there.
 terminal_closes() {
     LC_ALL=C.UTF-8 on_screen new-session -d -x 80 -y 24 \
-        "exec '$GRCTL' -d '$robot' -v move m5 -120 20000 2>'$work/moving'"
+        "exec '$GRCTL' -d '$robot' --timeout 500 -v move m5 -120 20000 2>'$work/moving'"
     written "$work/moving" 'robot found' || return 1
-    until exits 1 "$GRCTL" -d "$robot" status m5 >/dev/null; do :; done
+    until exits 1 on_robot status m5 >/dev/null; do :; done
     on_screen kill-server
     written "$work/moving" 'exit policy carried out' || { cat "$work/moving"; return 1; }
-    until exits 0 "$GRCTL" -d "$robot" status m5 >/dev/null; do :; done
+    until exits 0 on_robot status m5 >/dev/null; do :; done
     says ' on '
 }
 if have_terminal; then
@@ -35,7 +35,7 @@ fi
 # Ctrl-Z, and back a while later: what was due meanwhile is not caught up with.
 stopped() {
     rm -f "$work/out" "$work/err"
-    "$GRCTL" -d "$robot" --json play motions/greet.pseq >"$work/out" 2>"$work/err" &
+    "$GRCTL" -d "$robot" --timeout 500 --json play motions/greet.pseq >"$work/out" 2>"$work/err" &
     stopped_pid=$!
     written "$work/out" '"t_ms":[1-9]' || return 1
     kill -s STOP $stopped_pid
@@ -51,22 +51,22 @@ check "and the robot holds" stands '[-0-9.]*'
 # Who is killed leaves nothing behind, but the servos know where they were sent.
 killed() {
     rm -f "$work/moving"
-    "$GRCTL" -d "$robot" -v move m5 -120 20000 2>"$work/moving" &
+    "$GRCTL" -d "$robot" --timeout 500 -v move m5 -120 20000 2>"$work/moving" &
     killed_pid=$!
     written "$work/moving" 'robot found' || return 1
     sleep 2
     kill -s KILL $killed_pid
     wait $killed_pid
-    exits 0 "$GRCTL" -d "$robot" stop && "$GRCTL" -d "$robot" status m5 >"$work/first"
-    exits 0 "$GRCTL" -d "$robot" status m5 && diff "$work/first" "$work/out"
+    exits 0 on_robot stop && on_robot status m5 >"$work/first"
+    exits 0 on_robot status m5 && diff "$work/first" "$work/out"
 }
-exits 0 "$GRCTL" -d "$robot" init --time 500
+exits 0 on_robot init --time 500
 check "killed: stop stops what it left" killed
 check "and it holds" stands '-[2-9][0-9]\.[0-9]'
 
 # The robot plays on where nobody reads what it says.
 unread() {
-    { "$GRCTL" -d "$robot" --json play motions/greet.pseq; echo $? >"$work/status"; } |
+    { on_robot --json play motions/greet.pseq; echo $? >"$work/status"; } |
         head -n 1 >"$work/out"
     grep -qx 141 "$work/status" || { cat "$work/status"; return 1; } # as if by SIGPIPE
 }

@@ -85,21 +85,22 @@ check_json "JSON: a line a second, then the end" \
      lines[-1]["late_frames"] >= 0 and
      sorted(lines[-1]["jitter_us"]) == ["max", "p50", "p99"] and
      0 <= lines[-1]["max_error_deg"] <= 0.1' \
-    "$GRCTL" -d "$robot" --json play --rate 50 --speed 200 "$greet"
+    on_robot --json play --rate 50 --speed 200 "$greet"
 quiet_where_no_terminal() {
-    exits 0 "$GRCTL" -d "$robot" play --speed 500 "$greet" && [ ! -s "$work/err" ] || return 1
+    exits 0 on_robot play --speed 500 "$greet" && [ ! -s "$work/err" ] || return 1
     says '^[0-9]* frames, [0-9]* late; jitter p50 ' && says '^largest error at the end 0\.[01] deg'
 }
 check "no terminal: no progress bar, nothing on standard error" quiet_where_no_terminal
-check "a table at the end" both exits 0 "$GRCTL" -d "$robot" play --speed 500 --table "$greet" --- \
+check "a table at the end" both exits 0 on_robot play --speed 500 --table "$greet" --- \
     says '^ *12  R_KNEE_P  *-40\.0  *-40\.0  *-*0\.0'
 check "what it did, in words" says '^largest error on the way [0-9.]* deg (R_SHOULDER_R)$'
-check "it ends where the motion ends" both exits 0 "$GRCTL" -d "$robot" status m12 --- \
+check "it ends where the motion ends" both exits 0 on_robot status m12 --- \
     says 'R_KNEE_P  *-40\.0  *-  on '
 
 # On a terminal, which script makes: a bar that fits into the line and is cleared away.
 bar() {
-    LC_ALL=$1 TERM=xterm script -qec "stty cols 60; '$GRCTL' -d '$robot' play --speed 400 $greet" \
+    bar_command="'$GRCTL' -d '$robot' --timeout 500 play --speed 400 $greet"
+    LC_ALL=$1 TERM=xterm script -qec "stty cols 60; $bar_command" \
         /dev/null </dev/null >"$work/screen" || return 1
     tr '\r' '\n' <"$work/screen" | grep 'playing' >"$work/bars"
     grep -q "$2" "$work/bars" || { echo "no bar like '$2'"; cat -v "$work/screen"; return 1; }
@@ -139,18 +140,18 @@ interrupted() {
 check "SIGINT, to hold: 130" interrupted 130 hold INT
 check_json "all hold, at a standstill" \
     'all(j["torque"] == "on" and j["speed_dps"] == 0 for j in lines[0]["joints"])' \
-    "$GRCTL" -d "$robot" --json status
+    on_robot --json status
 check "SIGTERM, torque off: 143" interrupted 143 off TERM
 check_json "all are off" 'all(j["torque"] == "off" for j in lines[0]["joints"])' \
-    "$GRCTL" -d "$robot" --json status
+    on_robot --json status
 check "SIGHUP, to hold: 129" interrupted 129 hold HUP
 check "SIGINT again while it leaves changes nothing" interrupted 130 off INT INT INT
 check_json "all are off again" 'all(j["torque"] == "off" for j in lines[0]["joints"])' \
-    "$GRCTL" -d "$robot" --json status
+    on_robot --json status
 check "SIGINT, to sit down: 130" interrupted 130 sit INT
 check_json "the knees are bent, the torque is off" \
     '[abs(j["angle_deg"]) > 60 for j in lines[0]["joints"] if "KNEE" in j["name"]] == [True] * 2
-     and all(j["torque"] == "off" for j in lines[0]["joints"])' "$GRCTL" -d "$robot" --json status
+     and all(j["torque"] == "off" for j in lines[0]["joints"])' on_robot --json status
 
 # A robot that has fallen silent: nobody knows what its servos do, and the status says so.
 silent() {

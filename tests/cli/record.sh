@@ -7,7 +7,7 @@
 start_record() {
     rm -f "$work/keys" "$work/err"
     mkfifo "$work/keys"
-    (cd "$work" && exec "$GRCTL" -d "$robot" record "$@" <keys >out 2>err) &
+    (cd "$work" && exec "$GRCTL" -d "$robot" --timeout 500 record "$@" <keys >out 2>err) &
     record_pid=$!
     exec 6>"$work/keys"
     until grep -qs '^\(space\|Ctrl-C\)' "$work/err"; do kill -0 $record_pid || return 1; done
@@ -59,7 +59,7 @@ finish
 check "by key: s saves" [ $ended -eq 0 ]
 check "it says where" says '^wave.pseq$'
 check "two are left of three" counts 2 "$work/wave.pseq"
-check "torque holds afterwards" both exits 0 "$GRCTL" -d "$robot" status m5 --- says ' on '
+check "torque holds afterwards" both exits 0 on_robot status m5 --- says ' on '
 
 start_record --key --json
 key 'd '
@@ -94,9 +94,9 @@ key q
 finish
 check "nothing was shown" grep -q 'nothing was recorded' "$work/err"
 check "a name without a format" fails 2 'its name tells no format' \
-    "$GRCTL" -d "$robot" record -o wave
-check "a joint that is none" fails 2 'no joint or group' "$GRCTL" -d "$robot" record tail
+    on_robot record -o wave
+check "a joint that is none" fails 2 'no joint or group' on_robot record tail
 check "a folder that is none, before a joint is let go" fails 3 'nowhere/wave.m: cannot write' \
-    "$GRCTL" -d "$robot" record --key -o nowhere/wave.m
+    on_robot record --key -o nowhere/wave.m
 stop_sim
 done_testing

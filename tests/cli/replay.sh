@@ -94,9 +94,6 @@ check 'standard input' fails 2 'name a file' "$GRCTL" replay -
 
 start_sim || { echo "Bail out! the simulator did not start"; exit 1; }
 
-on_robot() {
-    "$GRCTL" -d "$robot" --timeout 500 "$@" # patience on a busy machine
-}
 
 is_untouched() {
     on_robot --trace "$work/after" status >"$work/out" || return 1

@@ -3,9 +3,6 @@
 # Commands on a simulated robot behind a pty: status, servo, init, move; and on no robot at all.
 . tests/support/cli.sh
 
-on_robot() {
-    "$GRCTL" -d "$robot" "$@"
-}
 
 start_sim || { echo "Bail out! the simulator did not start"; exit 1; }
 check "sim keeps a link to its pty" [ "$(readlink "$robot")" = "$sim_pty" ]
@@ -22,12 +19,12 @@ check_json "status counts frames" 'lines[0]["link"]["rx_frames"] == 2' on_robot 
 
 # Who has seen enough of a stream closes the pipe: that ends it.
 left_alone() {
-    timeout 20 "$GRCTL" -d "$robot" status --watch --interval 20 2>/dev/null |
+    timeout 20 "$GRCTL" -d "$robot" --timeout 500 status --watch --interval 20 2>/dev/null |
         head -n 3 >"$work/out"
     says '^ *9  R_HIP_Y'
 }
 watch_ends() {
-    left_alone && ! "$GRCTL" -d "$robot" status 2>&1 | grep -q 'in use'
+    left_alone && ! on_robot status 2>&1 | grep -q 'in use'
 }
 check "status --watch ends with its reader" watch_ends
 
@@ -60,7 +57,7 @@ check_json "it is off" 'all(j["torque"] == "off" for j in lines[0]["joints"])' \
 # interrupted SIGNAL STATUS: a slow move is stopped, the status tells, the joint stands still.
 interrupted() {
     rm -f "$work/moving"
-    "$GRCTL" -d "$robot" -v move m5 -120 5000 >"$work/out" 2>"$work/moving" &
+    "$GRCTL" -d "$robot" --timeout 500 -v move m5 -120 5000 >"$work/out" 2>"$work/moving" &
     interrupted_pid=$!
     written "$work/moving" 'robot found' || return 1
     on_robot status >/dev/null 2>"$work/busy"

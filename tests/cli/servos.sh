@@ -3,9 +3,6 @@
 # Servos one by one and the commands about the whole of the robot, by what they print.
 . tests/support/cli.sh
 
-on_robot() {
-    "$GRCTL" -d "$robot" "$@"
-}
 # said PATTERN: on standard error.
 said() {
     grep -q -e "$1" "$work/err" || { echo "no '$1' in:"; cat "$work/err"; return 1; }

@@ -3,10 +3,6 @@
 # `grctl sim` told what to do on its standard input, as somebody beside the robot would do it.
 . tests/support/cli.sh
 
-on_robot() {
-    "$GRCTL" -d "$robot" "$@"
-}
-
 # answers PATTERN WORD...
 answers() {
     answers_pattern=$1

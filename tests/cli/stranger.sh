@@ -14,6 +14,6 @@ check "a client of the bytes alone drives the simulator" \
 for did in check torque posture joint; do
     check "it was as described: $did" says "^$did\$"
 done
-check "and it is as our own command sees it" both exits 0 "$GRCTL" -d "$robot" status m3 --- \
+check "and it is as our own command sees it" both exits 0 on_robot status m3 --- \
     says ' 90\.0 .* on '
 done_testing

@@ -46,6 +46,11 @@ start_told_sim() {
     [ -n "$sim_pty" ]
 }
 
+# on_robot ARGUMENTS...: the command on that simulator, which on a busy machine answers late.
+on_robot() {
+    "$GRCTL" -d "$robot" --timeout 500 "$@"
+}
+
 # tell WORD...: returns when the simulator has said something to it.
 tell() {
     tell_lines=$(wc -l <"$work/sim.log")
