@@ -297,6 +297,7 @@ typedef struct grobo_robot_task {
     grobo_exchange exchange;
     int part;
     int rounds;      /* of repeating what was not taken */
+    int restarts;    /* of all of it */
     uint32_t motion; /* number of the target that is read back */
     size_t reply_bytes;
     int64_t until_us; /* end of waiting */

@@ -20,7 +20,7 @@ int grobo_i_job_start(grobo_robot *robot, grobo_job_kind kind, const grobo_robot
     job->failed = job->pending = 0;
     job->sense = GROBO_SENSE_ALL;
     job->priority = GROBO_PRIORITY_USER;
-    job->part = job->rounds = 0;
+    job->part = job->rounds = job->restarts = 0;
     job->reply_bytes = 0;
     job->until_us = job->bound_us = GROBO_NEVER_US;
     return job->number;

@@ -292,38 +292,46 @@ static int step_send(grobo_robot *robot)
     return GROBO_I_WAIT;
 }
 
-/* Joints whose goal, just read back, is not the one they were sent to. */
-static grobo_joint_mask not_taken(const grobo_robot *robot, grobo_joint_mask joints)
+/* Of the joints just read, those whose goal is not the one they were sent to. */
+static grobo_joint_mask not_taken(const grobo_robot *robot)
 {
+    grobo_joint_mask read = robot->job.pending & ~robot->job.failed;
     grobo_joint_mask bad = 0;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
-        if (is_set(joints, j) &&
-            (is_set(robot->job.failed, j) ||
-             !near_rad(axis->state.goal_rad, axis->way.to_rad, SAME_GOAL_RAD))) {
+        if (is_set(read, j) && !near_rad(axis->state.goal_rad, axis->way.to_rad, SAME_GOAL_RAD)) {
             bad |= GROBO_JOINT_BIT(j);
         }
     }
     return bad;
 }
 
-/* Joints that are not where they were sent begin anew from where they were read. */
+/* Joints that are not on their way begin anew from where they were read. One that could not be
+ * read is left alone: it is on its way or where it was, and nobody knows. */
 static int step_missed(grobo_robot *robot)
 {
-    grobo_joint_mask bad = not_taken(robot, robot->job.pending);
+    grobo_joint_mask bad = not_taken(robot);
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         if (is_set(bad, j)) {
             grobo_i_axis_here(&robot->axes[j], robot->now_us);
         }
     }
     robot->job.pending = bad;
+    robot->job.failed = 0;
+    robot->job.result = GROBO_OK;
     return GROBO_I_NEXT;
 }
 
 static int step_arrived(grobo_robot *robot)
 {
+    grobo_robot_task *job = &robot->job;
+    grobo_joint_mask lost = job->pending & job->failed;
+    if (lost != 0) {
+        job->pending = lost | not_taken(robot);
+        return again(robot, lost, step_read_pending);
+    }
     (void)step_missed(robot);
-    grobo_joint_mask bad = robot->job.pending;
+    grobo_joint_mask bad = job->pending;
     int result = again(robot, bad, step_send);
     robot->soft = result == GROBO_I_NEXT && bad == 0 ? false : robot->soft;
     return result;
@@ -344,27 +352,36 @@ static int step_play(grobo_robot *robot)
         }
     }
     job->motion = robot->motion;
+    job->rounds = 0;
     return result;
 }
 
-/* The approach is one frame, and all that follows relies on it: if it was lost, once more. Once
- * another one was sent, what was read back says nothing any more. */
+/* The approach is one frame, and all that follows relies on it: if it was lost, all over again.
+ * Once another one was sent, what was read back says nothing any more. */
 static int step_approached(grobo_robot *robot)
 {
+    grobo_robot_task *job = &robot->job;
     bool approaching = grobo_robot_play_state(robot) == GROBO_SEQUENCER_APPROACHING &&
-                       robot->motion == robot->job.motion;
-    grobo_joint_mask bad = approaching ? not_taken(robot, robot->job.pending) : 0;
-    if (bad == 0) {
-        robot->job.failed = 0;
-        robot->job.result = GROBO_OK;
+                       robot->motion == job->motion;
+    grobo_joint_mask lost = approaching ? job->pending & job->failed : 0;
+    grobo_joint_mask bad = approaching ? not_taken(robot) : 0;
+    job->failed = 0;
+    job->result = GROBO_OK;
+    if (bad == 0 && (lost == 0 || job->rounds >= ROUNDS)) {
         return GROBO_I_NEXT;
     }
+    if (bad == 0) {
+        job->pending = lost;
+        return again(robot, lost, step_read_pending);
+    }
     grobo_sequencer_reset(&robot->sequencer);
-    if (robot->job.rounds >= ROUNDS) {
+    if (job->restarts++ >= ROUNDS) {
         grobo_i_gate_halt(robot);
         return GROBO_ERR_MISMATCH;
     }
-    return again(robot, bad, step_from_here);
+    grobo_i_gate_soften(robot);
+    grobo_i_job_goto(robot, step_read);
+    return GROBO_I_NEXT;
 }
 
 /* The last posture of a motion: what was lost of it is sent once more, softly. */

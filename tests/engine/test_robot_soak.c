@@ -73,6 +73,7 @@ static void request_targets(void)
         double part = pick(1001) / 1000.0;
         double rad = limits->min_rad + (limits->max_rad - limits->min_rad) * part;
         grobo_posture target = rig_posture(&rig, joint, grobo_deg_from_rad(rad), (int)pick(200));
+        rig.asked = true;
         total.singles += grobo_robot_send(&rig.robot, &target, rig.now_us) == GROBO_OK;
         rig_run(&rig, 20000);
     }
