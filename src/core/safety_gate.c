@@ -36,7 +36,7 @@ void grobo_i_axis_rest(grobo_robot_axis *axis, int64_t now_us)
 void grobo_i_axis_here(grobo_robot_axis *axis, int64_t now_us)
 {
     grobo_i_axis_rest(axis, now_us);
-    if (axis->own_until_us > now_us) {
+    if (axis->own_until_us > axis->angle_us) { /* by now it may have arrived */
         axis->way = (grobo_robot_way){axis->state.angle_rad, axis->state.goal_rad, axis->angle_us,
                                       axis->own_until_us};
         axis->way_before = axis->way;

@@ -157,6 +157,19 @@ static void a_play_after_a_replug_throws_no_joint_back(void **state)
     }
 }
 
+/* A joint that arrives while the others are read is not where it was read. */
+static void an_exit_after_a_replug_throws_no_joint_back(void **state)
+{
+    (void)state;
+    for (int more_ms = 800; more_ms < 1000; more_ms += 5) {
+        replug_under_way();
+        rig_run(&rig, more_ms * 1000);
+        int number = grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD, rig.now_us);
+        assert_true(fastest_dps(number, HIP) < 120);
+        assert_true(fabs(rig_angle_deg(&rig, HIP) - 20) < 12);
+    }
+}
+
 /* A single target has no reading before it that would tell where the joint is going. */
 static void nothing_is_sent_to_a_joint_that_moves_by_itself(void **state)
 {
@@ -383,6 +396,7 @@ int main(void)
         cmocka_unit_test(a_motion_ends_when_the_line_goes_and_does_not_come_back),
         cmocka_unit_test(a_move_after_a_replug_throws_no_joint_back),
         cmocka_unit_test(a_play_after_a_replug_throws_no_joint_back),
+        cmocka_unit_test(an_exit_after_a_replug_throws_no_joint_back),
         cmocka_unit_test(nothing_is_sent_to_a_joint_that_moves_by_itself),
         cmocka_unit_test(an_emergency_stop_that_found_no_line_is_made_up_for),
         cmocka_unit_test(an_emergency_stop_taken_back_is_not_made_up_for),
