@@ -88,7 +88,9 @@ TOOL_SRCS := $(if $(wildcard tools/grctl/main.c),$(sort $(wildcard tools/grctl/*
 # LEFT_OUT, of a target: tests that its system cannot run, and what only they use.
 SUPPORT_SRCS := $(sort $(filter-out %/replay_main.c $(LEFT_OUT),$(wildcard tests/support/*.c)) \
     tests/support/os/$(PORT).c)
-TEST_SRCS := $(sort $(filter-out $(LEFT_OUT),\
+# Tests of one port's own are named after it.
+OTHER_PORTS := $(filter-out tests/port/test_$(PORT)_%,$(foreach p,posix win32,$(wildcard tests/port/test_$(p)_*.c)))
+TEST_SRCS := $(sort $(filter-out $(LEFT_OUT) $(OTHER_PORTS),\
     $(foreach ring,unit engine link fault port,$(wildcard tests/$(ring)/test_*.c))))
 # Built wherever they can be, run by check-drivers.
 DRIVER_SRCS := $(if $(filter posixLinux,$(PORT)$(shell uname)),$(sort $(wildcard tests/drivers/test_*.c)))
@@ -173,7 +175,7 @@ corpora = $(foreach f,$(FUZZ_REPLAYS),$(f)@tests/fuzz/corpus/$(patsubst fuzz_%,%
 left_out = $(if $(strip $(call in_rings,,$(LEFT_OUT))),$(BUILD)/left_out.sh)
 # Those left out are counted as skipped, with the target's reason.
 $(BUILD)/left_out.sh: FORCE
-	@printf '%s\n' '. tests/support/tap.sh' $(foreach t,$(call in_rings,,$(LEFT_OUT)),'skip $(t) "$(LEFT_OUT_WHY)"') \
+	@printf '%s\n' '. tests/support/tap.sh' $(foreach t,$(call in_rings,,$(LEFT_OUT)),'skip $(t) "$(t): $(LEFT_OUT_WHY)"') \
 	    done_testing >$@
 
 chosen = $(call in_rings,$(BUILD)/,$(TEST_PROGRAMS)) $(if $(filter fuzz,$(RING)),$(FUZZ_REPLAYS)) \
@@ -408,6 +410,7 @@ $(PC_FILE): FORCE
 	@printf '%s\n' 'prefix=$(PREFIX)' 'libdir=$(LIBDIR)' 'includedir=$(INCLUDEDIR)' '' \
 	    'Name: grobo' 'Description: Drives serial command-servo robots' 'Version: $(VERSION)' \
 	    'Requires.private: libevent_core yaml-0.1' 'Cflags: -I$${includedir}' \
+	    'Cflags.private: $(WHOLE)' \
 	    'Libs: -L$${libdir} -lgrobo' 'Libs.private: $(OS_LIBS)' > $@.new
 	@if cmp -s $@.new $@; then rm $@.new; else mv $@.new $@; fi
 

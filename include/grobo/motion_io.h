@@ -105,7 +105,8 @@ typedef struct grobo_source {
  * Reads a motion file.
  * @param[out] motion owned by the caller; untouched on error.
  * @param list what was said about the file is added to it; NULL: nobody listens.
- * @return 0; GROBO_ERR_NOENT, GROBO_ERR_PERM, GROBO_ERR_ISDIR, GROBO_ERR_IO for the file itself;
+ * @return 0; GROBO_ERR_NOENT, GROBO_ERR_PERM, GROBO_ERR_ISDIR (on Windows GROBO_ERR_PERM too),
+ *   GROBO_ERR_IO for the file itself;
  *   GROBO_ERR_SYNTAX (malformed), GROBO_ERR_TYPE (another kind of file), GROBO_ERR_NAN,
  *   GROBO_ERR_CAP (a cap of limits.h), GROBO_ERR_NOMEM. Every error but NOMEM adds a diagnostic.
  */

@@ -110,16 +110,29 @@ static int check_kind(const char *path, grobo_os_cause *cause)
                : grobo_i_port_refuse(cause, GROBO_ERR_TYPE, "not a serial port");
 }
 
+/* True when the system says that there is no line behind a handle; a lost one is another matter. */
+static bool is_no_line(HANDLE com)
+{
+    static const DWORD codes[] = {ERROR_INVALID_FUNCTION, ERROR_INVALID_HANDLE,
+                                  ERROR_INVALID_PARAMETER, ERROR_NOT_SUPPORTED};
+    DCB dcb = {.DCBlength = sizeof dcb};
+    DWORD code = GetCommState(com, &dcb) ? ERROR_SUCCESS : GetLastError();
+
+    for (size_t i = 0; i < sizeof codes / sizeof codes[0]; i++) {
+        if (code == codes[i]) {
+            return true;
+        }
+    }
+    return GetFileType(com) != FILE_TYPE_CHAR;
+}
+
 /* Raw, at this speed, reads that wait for as many bytes as they ask for, nothing received yet. */
 static int make_raw(HANDLE com, int baud_bps, grobo_os_cause *cause)
 {
     COMMTIMEOUTS forever = {0};
-    DCB dcb = {.DCBlength = sizeof dcb};
     int r;
 
-    if (GetFileType(com) != FILE_TYPE_CHAR ||
-        (!GetCommState(com, &dcb) &&
-         (GetLastError() == ERROR_INVALID_FUNCTION || GetLastError() == ERROR_INVALID_PARAMETER))) {
+    if (is_no_line(com)) {
         return grobo_i_port_refuse(cause, GROBO_ERR_TYPE, "not a serial port");
     }
     /* A hint; drivers choose. */

@@ -21,29 +21,42 @@ end_cli_test() {
 trap end_cli_test EXIT
 trap 'exit 1' INT TERM
 
+# For Windows the simulator is that of this machine, and wine takes its pty for a COM port: $robot.
+# wine names those up to COM9 itself.
+sim_com=
+map_com() {
+    [ -n "${NATIVE_GRCTL:-}" ] || return 0
+    sim_number=50
+    until ln -s "$sim_pty" "$GROBO_WINE/prefix/dosdevices/com$sim_number" 2>/dev/null; do
+        sim_number=$((sim_number + 1))
+    done
+    sim_com=$GROBO_WINE/prefix/dosdevices/com$sim_number
+    robot=COM$sim_number
+}
+
 # start_sim [OPTIONS]: $robot is its pty when this returns.
 start_sim() {
     robot=$work/robot
     mkfifo "$work/ready"
-    "$GRCTL" sim --link "$robot" "$@" >"$work/ready" 2>"$work/sim.log" &
+    "${NATIVE_GRCTL:-$GRCTL}" sim --link "$robot" "$@" >"$work/ready" 2>"$work/sim.log" &
     sim_pid=$!
     exec 6<"$work/ready" # stays open: a line for each robot follows
     read -r sim_pty <&6
     rm "$work/ready"
-    [ -n "$sim_pty" ]
+    [ -n "$sim_pty" ] && map_com
 }
 
 # start_told_sim [OPTIONS]: as start_sim, and what is written to descriptor 5 it is told.
 start_told_sim() {
     robot=$work/robot
     mkfifo "$work/ready" "$work/tell"
-    "$GRCTL" sim --link "$robot" "$@" <"$work/tell" >"$work/ready" 2>"$work/sim.log" &
+    "${NATIVE_GRCTL:-$GRCTL}" sim --link "$robot" "$@" <"$work/tell" >"$work/ready" 2>"$work/sim.log" &
     sim_pid=$!
     exec 5>"$work/tell"
     exec 6<"$work/ready" # stays open: a line for each robot follows
     read -r sim_pty <&6
     rm "$work/ready" "$work/tell"
-    [ -n "$sim_pty" ]
+    [ -n "$sim_pty" ] && map_com
 }
 
 # on_robot ARGUMENTS...: the command on that simulator, which on a busy machine answers late.
@@ -68,6 +81,7 @@ stop_sim() {
     kill "$sim_pid" 2>/dev/null
     wait "$sim_pid" 2>/dev/null
     sim_pid=
+    [ -z "$sim_com" ] || rm -f "$sim_com"
 }
 
 # wait_for COMMAND...: until it succeeds; half a minute at most.

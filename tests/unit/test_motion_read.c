@@ -359,9 +359,10 @@ static void test_files_refused(void **state)
 {
     (void)state;
     grobo_motion *motion = NULL;
+    int folder = grobo_motion_read_file("/", NULL, NULL, &motion);
 
     assert_int_equal(grobo_motion_read_file("/no/such.pseq", NULL, NULL, &motion), GROBO_ERR_NOENT);
-    assert_int_equal(grobo_motion_read_file("/", NULL, NULL, &motion), GROBO_ERR_ISDIR);
+    assert_true(folder == GROBO_ERR_ISDIR || folder == GROBO_ERR_PERM);
     assert_null(motion);
 }
 

@@ -4,35 +4,10 @@
 # takes for a COM port, and that of grctl.exe behind TCP.
 . tests/support/cli.sh
 
-windows=$GRCTL
-ports=${GROBO_WINE:?is set by make}/prefix/dosdevices
-
-# A free COM port that leads to the simulator: $com. wine names those up to COM9 itself.
-map_com() {
-    [ -z "${number:-}" ] || rm -f "$ports/com$number"
-    number=50
-    until ln -s "$sim_pty" "$ports/com$number" 2>/dev/null; do
-        number=$((number + 1))
-    done
-    com=COM$number
-}
-
-end_serial_test() {
-    [ -z "${number:-}" ] || rm -f "$ports/com$number"
-    end_cli_test
-}
-trap end_serial_test EXIT
-
 on() {
     device=$1
     shift
-    "$windows" -d "$device" "$@"
-}
-
-start_native_sim() {
-    GRCTL=$NATIVE_GRCTL
-    start_told_sim "$@"
-    GRCTL=$windows
+    "$GRCTL" -d "$device" "$@"
 }
 
 # The joint's angle, read through a port.
@@ -42,19 +17,19 @@ angle_is() {
 }
 
 moves() {
-    on "$com" -y move R_ELBOW_P -45 300 && angle_is "$com" -4[45]
+    on "$robot" -y move R_ELBOW_P -45 300 && angle_is "$robot" -4[45]
 }
 
 plays() {
-    on "$com" play --speed 400 motions/greet.pseq
+    on "$robot" play --speed 400 motions/greet.pseq
 }
 
 no_carriage_returns() {
-    on "$com" --json status >"$work/json" && ! grep -q "$(printf '\r')" "$work/json"
+    on "$robot" --json status >"$work/json" && ! grep -q "$(printf '\r')" "$work/json"
 }
 
 traces() {
-    on "$com" --trace "$work/trace.pcapng" status R_ELBOW_P >"$work/out" &&
+    on "$robot" --trace "$work/trace.pcapng" status R_ELBOW_P >"$work/out" &&
         "$NATIVE_GRCTL" decode "$work/trace.pcapng" >"$work/decoded" 2>&1 &&
         cat "$work/decoded" && grep -q 'R_ELBOW_P\|tx' "$work/decoded"
 }
@@ -62,7 +37,7 @@ traces() {
 # start_play: $player plays a motion that takes long, and has begun when this returns.
 start_play() {
     : >"$work/playing"
-    "$windows" -d "$com" --trace "$work/playing" play --speed 20 motions/greet.pseq \
+    "$GRCTL" -d "$robot" --trace "$work/playing" play --speed 20 motions/greet.pseq \
         >"$work/out" 2>"$work/err" &
     player=$!
     until [ "$(wc -c <"$work/playing")" -gt 20000 ]; do
@@ -71,7 +46,7 @@ start_play() {
 }
 
 holder_is_named() {
-    on "$com" status >"$work/second" 2>&1 && return 1
+    on "$robot" status >"$work/second" 2>&1 && return 1
     grep 'held by grctl.exe (pid [0-9]*)' "$work/second"
 }
 
@@ -88,17 +63,16 @@ nobody_there() {
 
 serves_tcp() {
     mkfifo "$work/port"
-    "$windows" sim --tcp 0 >"$work/port" 2>"$work/tcp.log" &
+    "$GRCTL" sim --tcp 0 >"$work/port" 2>"$work/tcp.log" &
     sim_pid=$!
     tcp=$(head -n 1 "$work/port" | tr -d '\r')
     case $tcp in tcp:127.0.0.1:*) ;; *) return 1 ;; esac
     on "$tcp" -y move R_ELBOW_P -45 300 && angle_is "$tcp" -4[45]
 }
 
-start_native_sim
-map_com
-check 'a COM port beyond COM9' on "$com" status
-check 'by its full name' on '\\.\'"$com" status R_ELBOW_P
+start_told_sim
+check 'a COM port beyond COM9' on "$robot" status
+check 'by its full name' on '\\.\'"$robot" status R_ELBOW_P
 check 'a joint moves and is read back' moves
 check 'a motion is played' plays
 check 'JSON has no carriage returns' no_carriage_returns
@@ -114,12 +88,11 @@ start_play
 tell plug out
 wait "$player"
 player_status=$?
-check 'a port that is unplugged ends the command' player_ended 1 "$com: .*gone"
+check 'a port that is unplugged ends the command' player_ended 1 "$robot: .*gone"
 check 'a port that is not there' nobody_there
 stop_sim
-start_native_sim -b 1000000
-map_com
-check 'at a million bits per second' on "$com" -b 1000000 --retries 20 status R_ELBOW_P
+start_told_sim -b 1000000
+check 'at a million bits per second' on "$robot" -b 1000000 --retries 20 status R_ELBOW_P
 stop_sim
 check 'grctl.exe serves another grctl.exe by TCP' serves_tcp
 done_testing

@@ -21,7 +21,7 @@ IMPORT_LIB := libgrobo.dll.a
 SHARED_FLAGS = -Wl,--out-implib,$(BUILD)/$(IMPORT_LIB)
 EMULATOR := $(abspath tools/cross/wine.sh)
 export GROBO_WINE := $(abspath $(CROSS_DIR))
-RING := unit engine link port cli export wine
+RING := unit engine link port fault cli export wine
 
 # What the tests need of this machine: a cable between two COM ports for each test program, and the
 # simulator behind a pseudo-terminal, which wine takes for a COM port.
@@ -39,6 +39,8 @@ TEST_END = ; status=$$?; $(EMULATOR) --end; exit $$status
 
 # Written for a pseudo-terminal or for processes and files as POSIX has them.
 LEFT_OUT_WHY := Windows has no pseudo-terminals, signals, file modes or links as it wants them
-LEFT_OUT := $(addprefix tests/,unit/test_motion_links.c port/test_posix_list.c port/test_posix_thread.c fault/test_serial_io.c \
+LEFT_OUT := $(addprefix tests/,unit/test_motion_links.c fault/test_serial_io.c export/examples.sh export/install.sh \
+    $(filter-out $(patsubst %,cli/%.sh,check completion convert decode help plot show),\
+    $(patsubst tests/%,%,$(wildcard tests/cli/*.sh))) \
     $(patsubst %,link/test_%.c,play_line serial_async serial_open serial_sync serial_tcp session \
-    sim_server thread_line) $(patsubst %,support/%.c,line spy far_robot))
+    sim_server thread_line reconnect) $(patsubst %,support/%.c,line spy far_robot))
