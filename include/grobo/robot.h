@@ -499,7 +499,8 @@ GROBO_API int grobo_robot_play(grobo_robot *robot, const grobo_clip *clip,
 
 /**
  * Puts a clip behind the one being played; see grobo_sequencer_enqueue().
- * @return clips that wait, or its errors.
+ * @return clips that wait, its errors, or GROBO_ERR_STATE where the clip moves a joint that was not
+ *         read or has no torque: name such joints in grobo_play_options.also of the first one.
  */
 GROBO_API int grobo_robot_enqueue(grobo_robot *robot, const grobo_clip *clip,
                                   const grobo_play_options *options, int64_t now_us);

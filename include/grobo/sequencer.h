@@ -81,6 +81,8 @@ typedef struct grobo_play_options {
     int64_t default_time_us; /**< KEY: time of keys that give none, 0: 100 ms */
     int64_t stop_us;         /**< time for pausing and stopping smoothly, 0: 200 ms */
     int64_t late_us;         /**< a frame taken later than this after its time is late, 0: 5 ms */
+    grobo_joint_mask also;   /**< grobo_robot_play(): joints of clips to be queued behind this one,
+                                  read and switched on with its own */
 } grobo_play_options;
 
 /** What is to be sent now. */

@@ -118,6 +118,9 @@ void grobo_i_play_settle(grobo_robot *robot);
 /* What a caller leaves open is as the robot is configured. */
 void grobo_i_play_options(const grobo_robot *robot, const grobo_play_options *options,
                           grobo_play_options *chosen);
+/* Joints that a clip moves, played so. */
+int grobo_i_play_joints(const grobo_robot *robot, const grobo_clip *clip,
+                        const grobo_play_options *options, grobo_joint_mask *joints);
 /* Begins what job.clip and job.options say, from where the joints are. */
 int grobo_i_play_start(grobo_robot *robot);
 
@@ -171,6 +174,8 @@ int grobo_i_gate_hold(grobo_robot *robot, grobo_joint_mask joints, grobo_i_chunk
 void grobo_i_gate_sent(grobo_robot *robot, uint32_t motion);
 /* The frame with this target never left: the joints are still on the way they were on. */
 void grobo_i_gate_unsent(grobo_robot *robot, uint32_t motion);
+/* True if all of these were sensed and hold. */
+bool grobo_i_gate_ready(const grobo_robot *robot, grobo_joint_mask joints);
 /* True while a joint is on the way it was sent on. */
 bool grobo_i_gate_moving(const grobo_robot *robot);
 /* Where these joints are is not known any more: read first, then moved softly. */

@@ -49,6 +49,44 @@ void grobo_i_play_settle(grobo_robot *robot)
     grobo_i_job_run(robot);
 }
 
+/* Every joint that a clip sets: by keys all of them are looked at, at a rate its ends. */
+static int joints_of_clip(const grobo_clip *clip, const grobo_play_options *options,
+                          grobo_joint_mask *joints)
+{
+    grobo_posture posture;
+    int64_t at_us;
+    int result = GROBO_OK;
+    *joints = 0;
+    if (options->mode == GROBO_PLAY_RATE && clip->sample != NULL) {
+        result = clip->sample(clip->ctx, 0, &posture);
+        *joints = result < 0 ? 0 : posture.set;
+        if (result >= 0) {
+            result = clip->sample(clip->ctx, clip->length_us, &posture);
+        }
+        *joints |= result < 0 ? 0 : posture.set;
+        return result;
+    }
+    for (size_t i = 0; i < clip->n_keys && result >= 0; i++) {
+        result = clip->key(clip->ctx, i, &posture, &at_us);
+        *joints |= result < 0 ? 0 : posture.set;
+    }
+    return result;
+}
+
+int grobo_i_play_joints(const grobo_robot *robot, const grobo_clip *clip,
+                        const grobo_play_options *options, grobo_joint_mask *joints)
+{
+    int result = joints_of_clip(clip, options, joints);
+    if (result >= 0 && options->mirror) {
+        grobo_posture posture;
+        (void)grobo_posture_init(&posture, robot->driver->model->n_joints);
+        posture.set = *joints;
+        result = grobo_posture_mirror(&posture, robot->driver->model);
+        *joints = posture.set;
+    }
+    return result;
+}
+
 void grobo_i_play_options(const grobo_robot *robot, const grobo_play_options *options,
                           grobo_play_options *chosen)
 {
@@ -281,9 +319,16 @@ int grobo_robot_enqueue(grobo_robot *robot, const grobo_clip *clip,
 {
     grobo_i_enter(robot, now_us);
     grobo_play_options chosen;
+    grobo_joint_mask joints = 0;
     grobo_i_play_options(robot, options, &chosen);
     int result = robot->trip.latched ? GROBO_ERR_LATCHED
-                                     : grobo_sequencer_enqueue(&robot->sequencer, clip, &chosen);
+                                     : grobo_i_play_joints(robot, clip, &chosen, &joints);
+    if (result >= 0 && !grobo_i_gate_ready(robot, joints)) {
+        result = GROBO_ERR_STATE; /* it would move in frames only */
+    }
+    if (result >= 0) {
+        result = grobo_sequencer_enqueue(&robot->sequencer, clip, &chosen);
+    }
     grobo_i_leave(robot);
     return result;
 }

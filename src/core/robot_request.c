@@ -171,30 +171,6 @@ int grobo_robot_send(grobo_robot *robot, const grobo_posture *target, int64_t no
     return result < 0 ? result : GROBO_OK;
 }
 
-/* Every joint that a clip sets: by keys all of them are looked at, at a rate its ends. */
-static int joints_of_clip(const grobo_clip *clip, const grobo_play_options *options,
-                          grobo_joint_mask *joints)
-{
-    grobo_posture posture;
-    int64_t at_us;
-    int result = GROBO_OK;
-    *joints = 0;
-    if (options->mode == GROBO_PLAY_RATE && clip->sample != NULL) {
-        result = clip->sample(clip->ctx, 0, &posture);
-        *joints = result < 0 ? 0 : posture.set;
-        if (result >= 0) {
-            result = clip->sample(clip->ctx, clip->length_us, &posture);
-        }
-        *joints |= result < 0 ? 0 : posture.set;
-        return result;
-    }
-    for (size_t i = 0; i < clip->n_keys && result >= 0; i++) {
-        result = clip->key(clip->ctx, i, &posture, &at_us);
-        *joints |= result < 0 ? 0 : posture.set;
-    }
-    return result;
-}
-
 /* May this clip be played now? *joints: those it moves. */
 static int admit_clip(grobo_robot *robot, const grobo_clip *clip, const grobo_play_options *options,
                       grobo_joint_mask *joints)
@@ -207,7 +183,8 @@ static int admit_clip(grobo_robot *robot, const grobo_clip *clip, const grobo_pl
         result = GROBO_ERR_ARG;
     }
     if (result >= 0) {
-        result = joints_of_clip(clip, options, joints);
+        result = grobo_i_play_joints(robot, clip, options, joints);
+        *joints |= options->also;
     }
     if (result >= 0 && !joints_sound(robot, *joints)) {
         result = *joints == 0 ? GROBO_ERR_EMPTY : GROBO_ERR_ARG;
@@ -227,7 +204,7 @@ int grobo_robot_play(grobo_robot *robot, const grobo_clip *clip, const grobo_pla
         return refuse(robot, result);
     }
     int number = grobo_i_job_start(robot, GROBO_JOB_PLAY, grobo_i_script_play);
-    robot->job.joints = chosen.mirror ? grobo_i_all_joints(robot) : joints;
+    robot->job.joints = joints;
     robot->job.clip = *clip;
     robot->job.options = chosen;
     robot->free_joints = 0;

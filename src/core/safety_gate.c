@@ -487,6 +487,12 @@ static int64_t longest_time(const grobo_robot *robot, const grobo_target *target
     return longest_us;
 }
 
+bool grobo_i_gate_ready(const grobo_robot *robot, grobo_joint_mask joints)
+{
+    int joint;
+    return all_sensed(robot, joints, &joint) && all_on(robot, joints);
+}
+
 /* Nobody knows what it does: not after a latched stop, and then joints are looked for anew. */
 static int take_unknown(grobo_robot *robot)
 {

@@ -49,6 +49,13 @@ check "10 Hz for 5 s" plays 51 5000 --rate 10 "$greet"
 check "half the speed" plays 101 10000 --rate 10 --speed 50 "$greet"
 check "twice" plays 20 9400 --key --repeat 2 "$greet"
 check "two files" plays 20 9400 --key "$greet" "$greet"
+for joint in 16 19; do
+    printf '%s\n' 'type: PoseSeq' 'name: ""' 'refs:' \
+        "  - {time: 0, refer: {type: Pose, name: \"\", joints: [ $joint ], q: [ 0 ]}}" \
+        "  - {time: 1, refer: {type: Pose, name: \"\", joints: [ $joint ], q: [ 0.1 ]}}" \
+        >"$work/j$joint.pseq"
+done
+check "two files of different joints" plays 4 1440 --key --ik off "$work/j16.pseq" "$work/j19.pseq"
 check "reversed" plays 10 4300 --key --reverse "$greet"
 check "reversed: CHEST_P first" angle 2 1 -200
 check "mirrored" plays 10 4300 --key --mirror "$greet"

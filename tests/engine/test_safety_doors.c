@@ -98,6 +98,29 @@ static void after_targets_that_are_not_ours_joints_are_read_anew(void **state)
     }
 }
 
+/* Joints that nobody read or switched on would move in frames only. */
+static void a_second_file_moves_what_was_made_ready(void **state)
+{
+    (void)state;
+    static const rig_key one[] = {{0, {{NECK, 0}}}, {500, {{NECK, 5}}}};
+    rig_start(&rig, &quiet, NULL);
+    rig_clip_init(&clip, one, 2);
+    rig_clip_init(&other, one, 2);
+    clip.only = GROBO_JOINT_BIT(NECK);
+    other.only = GROBO_JOINT_BIT(R_KNEE);
+    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_enqueue(&rig.robot, &clip.clip, NULL, rig.now_us), 1);
+    assert_int_equal(grobo_robot_enqueue(&rig.robot, &other.clip, NULL, rig.now_us),
+                     GROBO_ERR_STATE);
+    rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
+    grobo_play_options options = {.also = GROBO_JOINT_BIT(R_KNEE)};
+    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_enqueue(&rig.robot, &other.clip, NULL, rig.now_us), 1);
+    assert_int_equal(rig_torque(&rig, R_KNEE), GROBO_TORQUE_ON);
+    assert_int_equal(rig_torque(&rig, 0), GROBO_TORQUE_OFF);
+    rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
+}
+
 static void a_second_file_is_approached_as_slowly_as_the_first(void **state)
 {
     (void)state;
@@ -438,6 +461,7 @@ int main(void)
         cmocka_unit_test(a_joint_that_a_hand_may_have_moved_begins_softly),
         cmocka_unit_test(free_mode_is_left_softly),
         cmocka_unit_test(after_targets_that_are_not_ours_joints_are_read_anew),
+        cmocka_unit_test(a_second_file_moves_what_was_made_ready),
         cmocka_unit_test(a_second_file_is_approached_as_slowly_as_the_first),
         cmocka_unit_test(raw_frames_reach_known_motors_only),
         cmocka_unit_test(raw_targets_behind_the_first_may_be_fast),

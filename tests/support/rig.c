@@ -416,6 +416,7 @@ static int clip_key(void *ctx, size_t i, grobo_posture *posture, int64_t *at_us)
     for (int k = 0; k < 3 && (k == 0 || key->to[k].joint != 0 || key->to[k].angle_deg != 0); k++) {
         posture->angle_rad[key->to[k].joint] = grobo_rad_from_deg(key->to[k].angle_deg);
     }
+    posture->set = clip->only != 0 ? clip->only : posture->set;
     *at_us = key->at_ms * 1000;
     posture->time_us = i == 0 ? 0 : *at_us - clip->keys[i - 1].at_ms * 1000;
     return 0;

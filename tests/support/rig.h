@@ -99,6 +99,7 @@ typedef struct rig_key {
 typedef struct rig_clip {
     grobo_clip clip;
     const rig_key *keys;
+    grobo_joint_mask only; /* joints that its postures set; 0: all */
 } rig_clip;
 
 void rig_clip_init(rig_clip *clip, const rig_key *keys, size_t n);

@@ -98,6 +98,22 @@ int playlist_load(playlist *list, app *a)
     return 0;
 }
 
+/* Files behind the first may move other joints. */
+static grobo_joint_mask joints_behind(const playlist *list)
+{
+    grobo_joint_mask joints = 0;
+    grobo_posture posture;
+    int64_t at_us;
+    for (int i = 1; i < list->n; i++) {
+        if (list->options[i].mirror)
+            return GROBO_JOINTS_ALL(grobo_gr001_model.n_joints);
+        for (size_t k = 0; k < list->clip[i].n_keys; k++)
+            if (list->clip[i].key(list->clip[i].ctx, k, &posture, &at_us) >= 0)
+                joints |= posture.set;
+    }
+    return joints;
+}
+
 int playlist_prepare(playlist *list, app *a, const grobo_posture *start)
 {
     grobo_clip_options how = {.start = start};
@@ -115,6 +131,7 @@ int playlist_prepare(playlist *list, app *a, const grobo_posture *start)
                             "play: --from is beyond the end of %s (%.0f ms)", list->path[i],
                             (double)list->clip[i].length_us / 1e3);
     }
+    list->options[0].also = joints_behind(list);
     return 0;
 }
 
