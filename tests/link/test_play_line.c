@@ -19,7 +19,11 @@
 #include "motion_files.h"
 #include "spy.h"
 
-enum { LIMIT_S = 60, MOTORS = 20, KEYS_MAX = 64, SLACK_US = 60000 };
+enum { LIMIT_S = 60, MOTORS = 20, KEYS_MAX = 64 };
+enum {
+    SLACK_US = 60000, /* in what a frame says, and in how slowly a robot is approached */
+    SEEN_US = 300000  /* in when it is seen, by a process that waits its turn too */
+};
 
 static const char greet[] = "motions/greet.pseq";
 
@@ -105,7 +109,7 @@ static void expect_keys(const char *path)
         const spy_frame *frame = &s.poses[k + 1];
         const int64_t due_us = s.poses[2].at_us + key_us[k - 1] - key_us[0];
         const int64_t length_us = key_us[k] - key_us[k - 1];
-        assert_in_range(frame->at_us, due_us - SLACK_US, due_us + SLACK_US);
+        assert_in_range(frame->at_us, due_us - SEEN_US, due_us + SEEN_US);
         /* A frame that leaves late has so much less time. */
         assert_in_range(10000 * spy_time_cs(frame, 1), length_us - SLACK_US, length_us + 10000);
         for (int motor = 2; motor <= MOTORS; motor++)
@@ -123,7 +127,7 @@ static void test_keys(void **state)
     for (int motor = 1; motor <= MOTORS; motor++)
         assert_int_equal(spy_angle_ddeg(&s.poses[10], motor), init_ddeg[motor - 1]);
     assert_int_equal(spy_angle_ddeg(&s.poses[bow], 1), -200);
-    assert_int_equal(spy_time_cs(&s.poses[bow], 1), 60);
+    assert_in_range(spy_time_cs(&s.poses[bow], 1), 60 - SLACK_US / 10000, 60); /* less when late */
     assert_int_equal((int)said("frames"), s.n_poses - 1);
     assert_true(said("max_error_deg") >= 0 && said("max_error_deg") <= 0.1);
     expect_end(init_ddeg);
@@ -151,8 +155,8 @@ static void test_rate(void **state)
     assert_int_equal(play("--rate=50", "--speed=200", greet), 0);
     assert_in_range(s.n_poses, 100, 127); /* the goals, 2.5 s, less what a busy machine skips */
     assert_int_equal(s.n_poses - 1, (size_t)said("frames"));
-    assert_in_range(s.poses[s.n_poses - 1].at_us - s.poses[1].at_us, 2500000 - SLACK_US,
-                    2500000 + SLACK_US);
+    assert_in_range(s.poses[s.n_poses - 1].at_us - s.poses[1].at_us, 2500000 - SEEN_US,
+                    2500000 + SEEN_US);
     expect_end(init_ddeg);
 }
 
