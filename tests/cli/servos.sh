@@ -12,11 +12,17 @@ start_told_sim || { echo "Bail out! the simulator did not start"; exit 1; }
 
 # ---- scan, info ------------------------------------------------------------------------------
 
-check "scan finds 20" both exits 0 on_robot scan --- \
-    [ "$(on_robot scan 2>/dev/null | grep -c ' bps  ')" -eq 20 ]
+# It waits for each that is silent: not as long as on_robot() would.
+scan() {
+    "$GRCTL" -d "$robot" --timeout 100 scan "$@"
+}
+finds() {
+    [ "$(grep -c ' bps  ' "$work/out")" -eq "$1" ]
+}
+check "scan finds 20" both exits 0 scan --- finds 20
 check "a row of it" says '^ 12  RS301CR   firmware   1  115200 bps  R_KNEE_P$'
 check "how long it took" said '^20 servos; 107 silent; [0-9]* ms, of which the wire took [0-9]*$'
-check "nobody there" exits 1 on_robot scan --first 21 --last 40
+check "nobody there" exits 1 scan --first 21 --last 40
 check_json "as JSON" '[s["id"] for s in lines[0]["servos"]] == [12, 13] and
     lines[0]["silent"] == 0 and lines[0]["wire_ms"] > 0' on_robot scan --json --first 12 --last 13
 tell fault delay=1
@@ -129,7 +135,7 @@ stop_sim
 # ---- on a bus of servos ----------------------------------------------------------------------
 
 start_sim --wiring bus --baud 57600
-check "--all-baud finds the rate" both exits 0 on_robot --wiring bus scan --all-baud --first 3 \
+check "--all-baud finds the rate" both exits 0 scan --wiring bus --all-baud --first 3 \
     --last 4 --- says '^  3 .*  57600 bps  R_SHOULDER_P$'
 check "and no other" [ "$(grep -c R_SHOULDER_P "$work/out")" -eq 1 ]
 stop_sim
