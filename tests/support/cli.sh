@@ -23,6 +23,7 @@ trap 'exit 1' INT TERM
 
 # For Windows the simulator is that of this machine, and wine takes its pty for a COM port: $robot.
 # wine names those up to COM9 itself.
+simulator=${NATIVE_GRCTL:-$GRCTL}
 sim_com=
 map_com() {
     [ -n "${NATIVE_GRCTL:-}" ] || return 0
@@ -38,7 +39,7 @@ map_com() {
 start_sim() {
     robot=$work/robot
     mkfifo "$work/ready"
-    "${NATIVE_GRCTL:-$GRCTL}" sim --link "$robot" "$@" >"$work/ready" 2>"$work/sim.log" &
+    "$simulator" sim --link "$robot" "$@" >"$work/ready" 2>"$work/sim.log" &
     sim_pid=$!
     exec 6<"$work/ready" # stays open: a line for each robot follows
     read -r sim_pty <&6
@@ -50,7 +51,7 @@ start_sim() {
 start_told_sim() {
     robot=$work/robot
     mkfifo "$work/ready" "$work/tell"
-    "${NATIVE_GRCTL:-$GRCTL}" sim --link "$robot" "$@" <"$work/tell" >"$work/ready" 2>"$work/sim.log" &
+    "$simulator" sim --link "$robot" "$@" <"$work/tell" >"$work/ready" 2>"$work/sim.log" &
     sim_pid=$!
     exec 5>"$work/tell"
     exec 6<"$work/ready" # stays open: a line for each robot follows
