@@ -16,6 +16,7 @@ check_json "help as JSON" 'any(c["name"] == "play" for c in lines[0]["commands"]
 check "there are commands" [ -s "$work/commands" ]
 while read -r command; do
     check "help $command" both exits 0 "$GRCTL" help "$command" --- says "usage: grctl $command"
+    check "its lines fit into 80 columns" [ "$(grep -c '.\{81\}' "$work/out")" -eq 0 ]
     check "$command --help" both exits 0 "$GRCTL" "$command" --help --- says "usage: grctl $command"
 done <"$work/commands"
 
@@ -25,6 +26,7 @@ no_command() {
 }
 check "no command at all: the overview, on standard error" no_command
 check "a command that is none" fails 2 "no command 'nonsense'" "$GRCTL" nonsense
+check "no guess where little is alike" fails 2 "no command 'nope'; see 'grctl help'$" "$GRCTL" nope
 check "a near miss" fails 2 "did you mean 'status'" "$GRCTL" stauts
 check "help on a near miss" fails 2 "did you mean 'play'" "$GRCTL" help plya
 check "an option that is none" fails 2 'unknown option --nonsense' "$GRCTL" status --nonsense

@@ -42,7 +42,7 @@ void cli_guess_try(cli_guess *guess, const char *candidate)
 {
     int most = guess->best ? guess->edits - 1 : 2; /* more than two edits is another word */
     int edits = distance(guess->name, guess->length, candidate);
-    if (edits <= most && edits < (int)strlen(candidate)) {
+    if (edits <= most && 2 * edits < (int)strlen(candidate)) {
         guess->best = candidate;
         guess->edits = edits;
     }

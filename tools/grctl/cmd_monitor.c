@@ -425,7 +425,7 @@ const cli_command cmd_monitor = {
         "battery and the line, 20 times a second. Nothing moves until a key says so. A line that\n"
         "is lost is shown, and opened again when it is back. FILEs are what p plays.\n"
         "\n"
-        "  arrows   choose a joint; 0 to 7: a group (all, body, right_arm, left_arm, arms, ...)\n"
+        "  arrows   choose a joint; 0 to 7: a group (all, body, right_arm, ...)\n"
         "  t, b     torque on or off; brake\n"
         "  [ ]      one degree down, up; { } five\n"
         "  i        to the initial posture\n"

@@ -34,7 +34,7 @@ const cli_option cli_global_options[GLOBAL_COUNT] = {
     [GLOBAL_VERBOSE] = {.name = "verbose",
                         .letter = 'v',
                         .kind = CLI_FLAG,
-                        .help = "more; twice for every step"},
+                        .help = "more: the bytes of a failure; twice: every byte"},
     [GLOBAL_TRACE] = {.name = "trace",
                       .kind = CLI_TEXT,
                       .value = "FILE",
