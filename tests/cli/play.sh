@@ -104,7 +104,8 @@ quiet_where_no_terminal() {
 check "no terminal: no progress bar, nothing on standard error" quiet_where_no_terminal
 check "a table at the end" both exits 0 on_robot play --speed 500 --table "$greet" --- \
     says '^ *12  R_KNEE_P  *-40\.0  *-40\.0  *-*0\.0'
-check "what it did, in words" says '^largest error on the way [0-9.]* deg (R_SHOULDER_R)$'
+check "how far off it was, and which joint" both exits 0 on_robot play "$greet" --- \
+    says '^largest error on the way [0-9.]* deg ([A-Z_]*)$'
 check "it ends where the motion ends" both exits 0 on_robot status m12 --- \
     says 'R_KNEE_P  *-40\.0  *-  on '
 
