@@ -34,6 +34,7 @@ TIDY ?= clang-tidy-14
 FUZZ_S ?= 60
 WERROR ?= -Werror
 SONAME ?= libgrobo.so.0
+LINK_NAME ?= libgrobo.so
 SHARED_FLAGS ?= -Wl,-soname,$(SONAME) $(if $(SAN),,-Wl,-z,defs)
 OS_FLAGS ?= -D_DEFAULT_SOURCE -D_XOPEN_SOURCE=700 -pthread
 OS_LIBS ?= -lm -pthread
@@ -296,13 +297,17 @@ $(JSON_PAGE): docs/grctl-json.md tools/json_page.awk
 	@mkdir -p $(@D)
 	@awk -f tools/json_page.awk $< >$@
 
+define install_shared
+install -m 755 $(SHARED_LIB) $(DESTDIR)$(if $(IMPORT_LIB),$(BINDIR),$(LIBDIR))
+	$(if $(IMPORT_LIB),install -m 644 $(BUILD)/$(IMPORT_LIB),ln -sf $(SONAME)) \
+	    $(DESTDIR)$(LIBDIR)/$(or $(IMPORT_LIB),$(LINK_NAME))
+endef
+
 install: all $(JSON_PAGE) ## into $(DESTDIR)$(PREFIX)
 	install -d $(DESTDIR)$(LIBDIR)/pkgconfig $(DESTDIR)$(INCLUDEDIR)/grobo $(DESTDIR)$(BINDIR)
 	install -m 644 include/grobo/*.h ports/$(PORT)/include/grobo/*.h $(DESTDIR)$(INCLUDEDIR)/grobo
 	install -m 644 $(STATIC_LIB) $(CORE_LIB) $(DESTDIR)$(LIBDIR)
-	install -m 755 $(SHARED_LIB) $(DESTDIR)$(if $(IMPORT_LIB),$(BINDIR),$(LIBDIR))
-	$(if $(IMPORT_LIB),install -m 644 $(BUILD)/$(IMPORT_LIB),ln -sf $(SONAME)) \
-	    $(DESTDIR)$(LIBDIR)/$(or $(IMPORT_LIB),libgrobo.so)
+	$(if $(SHARED_LIB),$(install_shared))
 	install -m 644 $(PC_FILE) $(DESTDIR)$(LIBDIR)/pkgconfig
 	$(if $(GRCTL),install -m 755 $(GRCTL) $(DESTDIR)$(BINDIR))
 	$(if $(GRCTL_HERE),$(foreach page,$(PAGES),$(install_page)))
@@ -315,7 +320,7 @@ install: all $(JSON_PAGE) ## into $(DESTDIR)$(PREFIX)
 
 uninstall: ## take out what install put in
 	rm -rf $(DESTDIR)$(INCLUDEDIR)/grobo
-	rm -f $(addprefix $(DESTDIR)$(LIBDIR)/,libgrobo.a libgrobo-core.a libgrobo.so $(SONAME) $(IMPORT_LIB) \
+	rm -f $(addprefix $(DESTDIR)$(LIBDIR)/,libgrobo.a libgrobo-core.a $(LINK_NAME) $(SONAME) $(IMPORT_LIB) \
 	    pkgconfig/grobo.pc) $(addprefix $(DESTDIR)$(BINDIR)/,grctl$(EXE) $(if $(IMPORT_LIB),$(SONAME)))
 	rm -f $(foreach page,$(PAGES),$(DESTDIR)$(DATADIR)/$(firstword $(subst =, ,$(page))))
 	rm -f $(DESTDIR)$(DATADIR)/man/man5/grctl-json.5
@@ -375,7 +380,7 @@ $(BUILD)/.datadir: FORCE
 $(SHARED_LIB): $(LIB_OBJS)
 	$(say) LD $@
 	$(Q)$(CC) -shared $(SHARED_FLAGS) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
-	$(if $(IMPORT_LIB),,@ln -sf $(SONAME) $(BUILD)/libgrobo.so)
+	$(if $(IMPORT_LIB),,@ln -sf $(SONAME) $(BUILD)/$(LINK_NAME))
 
 $(BUILD)/grctl$(EXE): $(filter %/main.o,$(TOOL_OBJS)) $(TOOL_LIB) $(STATIC_LIB)
 	$(say) LD $@

@@ -2,5 +2,6 @@
 # macOS on 64-bit ARM.
 
 SONAME := libgrobo.0.dylib
+LINK_NAME := libgrobo.dylib
 SHARED_FLAGS := -install_name @rpath/$(SONAME)
 include tools/cross/zig.mk
