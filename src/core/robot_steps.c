@@ -292,6 +292,12 @@ static int step_send(grobo_robot *robot)
     return GROBO_I_WAIT;
 }
 
+/* What was sent is read back; a step of its own, to go back to. */
+static int step_read_back(grobo_robot *robot)
+{
+    return step_read_pending(robot);
+}
+
 /* Of the joints just read, those whose goal is not the one they were sent to. */
 static grobo_joint_mask not_taken(const grobo_robot *robot)
 {
@@ -328,7 +334,7 @@ static int step_arrived(grobo_robot *robot)
     grobo_joint_mask lost = job->pending & job->failed;
     if (lost != 0) {
         job->pending = lost | not_taken(robot);
-        return again(robot, lost, step_read_pending);
+        return again(robot, lost, step_read_back);
     }
     (void)step_missed(robot);
     grobo_joint_mask bad = job->pending;
@@ -372,7 +378,7 @@ static int step_approached(grobo_robot *robot)
     }
     if (bad == 0) {
         job->pending = lost;
-        return again(robot, lost, step_read_pending);
+        return again(robot, lost, step_read_back);
     }
     grobo_sequencer_reset(&robot->sequencer);
     if (job->restarts++ >= ROUNDS) {
@@ -473,7 +479,7 @@ static int step_aim_rest(grobo_robot *robot)
     step_pick_off, step_hold, step_read_pending, step_hold_check, step_torque, step_read_pending,  \
         step_torque_check
 #define SWITCH step_pick_all, step_torque, step_read_pending, step_torque_check
-#define MOVE step_send, step_read_pending, step_arrived
+#define MOVE step_send, step_read_back, step_arrived
 
 const grobo_robot_step_fn grobo_i_script_check[] = {step_check, step_check_next, NULL};
 const grobo_robot_step_fn grobo_i_script_sense[] = {step_read, NULL};
@@ -483,8 +489,8 @@ const grobo_robot_step_fn grobo_i_script_move[] = {
     step_read,      step_read_again, step_require, SWITCH_ON, step_require,
     step_from_here, step_aim,        MOVE,         NULL};
 const grobo_robot_step_fn grobo_i_script_play[] = {
-    step_read,      step_read_again, step_require,      SWITCH_ON,       step_require,
-    step_from_here, step_play,       step_read_pending, step_approached, NULL};
+    step_read,      step_read_again, step_require,   SWITCH_ON,       step_require,
+    step_from_here, step_play,       step_read_back, step_approached, NULL};
 const grobo_robot_step_fn grobo_i_script_settle[] = {step_aim_last, step_read_pending, step_missed,
                                                      MOVE, NULL};
 const grobo_robot_step_fn grobo_i_script_ask[] = {step_ask, step_settle, NULL};

@@ -165,6 +165,27 @@ static void a_loop_of_ones_own_sends_targets(void **state)
     assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_ERR_LIMIT);
 }
 
+/* Nothing is sent again before it is known to have been lost. */
+static void a_move_that_could_not_be_read_back_is_read_again(void **state)
+{
+    (void)state;
+    rig_start(&rig, &quiet, NULL);
+    rig_power(&rig);
+    grobo_posture target = rig_posture(&rig, 0, -60, 500);
+    int number = grobo_robot_move(&rig.robot, &target, rig.now_us);
+    rig_run(&rig, 900000);
+    rig_forget(&rig);
+    assert_int_equal(grobo_sim_set_cable(&rig.sim, 0, GROBO_SIM_CABLE_MUTE), 0);
+    rig_run(&rig, 300000); /* 60 degrees at 60 deg/s are over */
+    assert_int_equal(grobo_sim_set_cable(&rig.sim, 0, GROBO_SIM_CABLE_IN), 0);
+    rig_expect(&rig, number, GROBO_OK);
+    assert_true(rig.n_sent > 3);
+    for (size_t i = 0; i < rig.n_sent; i++) {
+        const uint8_t *bytes = rig.sent[i].bytes;
+        assert_int_equal(bytes[bytes[0] == 0xFA ? 3 : 5], GROBO_RS30X_WANT_GIVEN);
+    }
+}
+
 /* Whoever turns a joint round while a reading is on the wire: the frame leaves when that is over,
  * and the joint has gone on meanwhile. The rig looks at each frame as it leaves. */
 static void a_target_that_waits_for_the_line_is_no_faster(void **state)
@@ -202,6 +223,7 @@ int main(void)
         cmocka_unit_test(move_switches_torque_on),
         cmocka_unit_test(manual_torque_is_left_to_the_caller),
         cmocka_unit_test(a_loop_of_ones_own_sends_targets),
+        cmocka_unit_test(a_move_that_could_not_be_read_back_is_read_again),
         cmocka_unit_test(a_target_that_waits_for_the_line_is_no_faster),
         cmocka_unit_test(bus_wiring_does_the_same),
     };
