@@ -78,6 +78,7 @@ else
 fi
 stop_sim
 exec 5>&-
+robot=$work/none
 check "no such device" finds 'is not there' "'grctl ports'"
 robot=$work
 check "a directory" finds 'is no serial port' "'grctl ports'"
