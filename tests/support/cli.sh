@@ -31,6 +31,7 @@ map_com() {
     until ln -s "$sim_pty" "$GROBO_WINE/prefix/dosdevices/com$sim_number" 2>/dev/null; do
         sim_number=$((sim_number + 1))
     done
+    rm -rf "$GROBO_WINE"/prefix/drive_c/users/*/AppData/Local/grctl # a mark of an estop before
     sim_com=$GROBO_WINE/prefix/dosdevices/com$sim_number
     robot=COM$sim_number
 }

@@ -216,11 +216,15 @@ static bool known_folder(int which, char *path)
 
 bool os_config_path(int which, char *path, size_t capacity)
 {
+    const char *config = getenv("XDG_CONFIG_HOME"); /* of a shell that came from elsewhere */
     char folder[MAX_PATH];
     int n;
-    if (!known_folder(which == 1 ? CSIDL_COMMON_APPDATA : CSIDL_APPDATA, folder))
+    if (which == 0 && config && *config)
+        n = snprintf(path, capacity, "%s/grctl/config.yaml", config);
+    else if (known_folder(which == 1 ? CSIDL_COMMON_APPDATA : CSIDL_APPDATA, folder))
+        n = snprintf(path, capacity, "%s\\grctl\\config.yaml", folder);
+    else
         return false;
-    n = snprintf(path, capacity, "%s\\grctl\\config.yaml", folder);
     return n > 0 && (size_t)n < capacity;
 }
 
