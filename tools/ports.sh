@@ -33,7 +33,7 @@ rings() {
 }
 
 build_only() {
-    case $1 in macos | freebsd | netbsd | openbsd) return 0 ;; esac
+    case $1 in macos | freebsd | openbsd) return 0 ;; esac
     return 1
 }
 

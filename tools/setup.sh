@@ -124,7 +124,7 @@ look_cross() {
             have_command aarch64-linux-gnu-g++ -- g++-aarch64-linux-gnu
         ;;
     musl) need_cmake ;;
-    macos | freebsd | netbsd | openbsd)
+    macos | freebsd | openbsd)
         need_cmake
         need_debian "Python's venv" 'to install a compiler for macOS and the BSDs' have_venv -- \
             python3-venv

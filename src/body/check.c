@@ -19,7 +19,7 @@ enum {
     OPEN_SLIP,
     OPEN_LIMIT = OPEN_SLIP + 2,
     OPEN_SPEED = OPEN_LIMIT + GROBO_JOINTS_MAX,
-    OPEN_MAX = OPEN_SPEED + GROBO_JOINTS_MAX
+    OPEN_COUNT = OPEN_SPEED + GROBO_JOINTS_MAX
 };
 
 struct open_finding {
@@ -32,7 +32,7 @@ struct checking {
     grobo_body *body;
     const grobo_body_check_options *options;
     int n_findings;
-    struct open_finding open[OPEN_MAX];
+    struct open_finding open[OPEN_COUNT];
     double stance_m[2][4][3]; /* where a standing foot's corners came to stand */
     bool stood[2];
 };
@@ -302,7 +302,7 @@ int grobo_body_check(grobo_body *body, const grobo_body_check_options *options)
         }
         check_frame(&now, at, next, &last);
     }
-    for (int i = 0; i < OPEN_MAX; i++) {
+    for (int i = 0; i < OPEN_COUNT; i++) {
         close_finding(&now, &now.open[i]);
     }
     return now.n_findings;

@@ -38,7 +38,6 @@ musl) musl_libraries amd64 gcc ;;
 musl-arm64) musl_libraries arm64 aarch64-linux-gnu-gcc ;;
 macos) zig_libraries aarch64-macos Darwin ;;
 freebsd) zig_libraries x86_64-freebsd FreeBSD ;;
-netbsd) zig_libraries x86_64-netbsd NetBSD ;;
 openbsd) zig_libraries x86_64-openbsd OpenBSD ;;
 *) usage ;;
 esac

@@ -5,8 +5,8 @@
 CC := $(abspath $(CROSS_DIR))/bin/cc
 AR := $(abspath $(CROSS_DIR))/bin/ar
 PKG_CONFIG := PKG_CONFIG_LIBDIR=$(abspath $(CROSS_DIR))/root/lib/pkgconfig pkg-config
-# These show all of their functions where POSIX is not asked for; NetBSD wants to be asked.
-OS_FLAGS := -D_NETBSD_SOURCE -pthread
+# These show all of their functions where POSIX is not asked for.
+OS_FLAGS := -pthread
 # A younger clang than the gates know: an enum as a number, and cmocka's macros, are well meant.
 TARGET_CFLAGS := -Wno-enum-float-conversion -Wno-enum-compare-conditional \
     -Wno-string-concatenation -Wno-gnu-zero-variadic-macro-arguments

@@ -1,4 +1,0 @@
-# SPDX-License-Identifier: MIT
-# NetBSD on x86-64.
-
-include tools/cross/zig.mk
