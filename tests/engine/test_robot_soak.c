@@ -43,7 +43,7 @@ enum { ESTOP_FRAME_US = 25000, ESTOP_US = 10000000, EXIT_US = 10010000 };
 /* What all runs together came to. */
 static struct {
     unsigned runs, moves, plays, singles, torque_on, trips, ruined, stops, stops_cut;
-    unsigned made_up_commands, made_up_replies, made_up_believed, excused;
+    unsigned made_up_commands, made_up_replies, made_up_believed, doubled, excused;
     uint64_t frames, believed, injected[GROBO_SIM_FAULTS];
     int64_t virtual_us, estop_us, stopped_us, exit_us; /* the longest */
 } total;
@@ -219,6 +219,7 @@ static void add_up(void)
     total.made_up_commands += rig.witness.made_up_commands;
     total.made_up_replies += rig.witness.made_up_replies;
     total.made_up_believed += rig.witness.made_up_believed;
+    total.doubled += rig.witness.doubled;
     total.excused += rig.excused;
     for (int i = 0; i < GROBO_SIM_FAULTS; i++) {
         total.injected[i] += rig.sim.stats.injected[i];
@@ -310,9 +311,9 @@ static void report(uint32_t seeds)
                   total.stops, total.stops_cut, (double)total.stopped_us / 1e6,
                   (double)total.estop_us / 1e6, (double)total.exit_us / 1e6);
     print_message("# made up by the line with a sum that is right: %u commands, %u replies (%u "
-                  "believed); %u goals and torques excused by them\n",
+                  "believed); %u goals and torques excused by them; %u replies believed twice\n",
                   total.made_up_commands, total.made_up_replies, total.made_up_believed,
-                  total.excused);
+                  total.excused, total.doubled);
 }
 
 /* GROBO_SOAK: how many seeds of half an hour each; without it one of a minute. */

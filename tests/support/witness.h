@@ -39,6 +39,7 @@ typedef struct witness {
     grobo_joint_mask misled;             /* the line made something up about these */
     bool settings_hit;                   /* a made-up command changed what flash keeps */
     unsigned believed;                   /* readings that were believed, and were true */
+    unsigned doubled;                    /* that the line said twice, and both were believed */
     unsigned made_up_commands, made_up_replies, made_up_believed;
 } witness;
 
