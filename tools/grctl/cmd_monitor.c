@@ -155,7 +155,7 @@ static void go_init(monitor *m)
 static void start_play(monitor *m)
 {
     grobo_posture sensed;
-    int job, error;
+    int job;
     if (!m->list.n) {
         say(m, true, "nothing to play: grctl monitor FILE...");
         return;
@@ -167,10 +167,6 @@ static void start_play(monitor *m)
         return; /* it has said why */
     m->prepared = true;
     job = grobo_session_play(m->c.session, &m->list.clip[0], &m->list.options[0]);
-    for (int i = 1; i < m->list.n && job > 0; i++) {
-        error = grobo_session_enqueue(m->c.session, &m->list.clip[i], &m->list.options[i]);
-        job = error < 0 ? error : job;
-    }
     if (job > 0)
         m->keys.speed_pct = 100;
     say_request(m, job, "play");
@@ -272,6 +268,17 @@ static void on_draw(evutil_socket_t fd, short what, void *ctx)
     monitor_draw(ctx);
 }
 
+/* The files behind the first, once that is on its way. */
+static void queue_others(monitor *m)
+{
+    int error = GROBO_OK;
+    for (int i = 1; i < m->list.n && error >= 0; i++) {
+        error = grobo_session_enqueue(m->c.session, &m->list.clip[i], &m->list.options[i]);
+        if (error < 0)
+            say(m, true, "%s: %s", m->list.path[i], grobo_error_text(error));
+    }
+}
+
 /* How the job ended that was asked for last; an end by our own hand is no complaint. */
 static void say_end(monitor *m, const grobo_event_job *job)
 {
@@ -284,7 +291,9 @@ static void say_end(monitor *m, const grobo_event_job *job)
     else if (job->result < 0)
         say(m, true, "%s: %s%s%s", m->doing, joint, *joint ? ": " : "",
             grobo_error_text(job->result));
-    else if (job->kind != GROBO_JOB_PLAY)
+    else if (job->kind == GROBO_JOB_PLAY)
+        queue_others(m);
+    else
         say(m, false, "%s: done", m->doing);
 }
 
