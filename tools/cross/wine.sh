@@ -14,7 +14,7 @@ export WINEARCH=win64
 export WINEDEBUG=-all
 # No menus on the desktop, no .NET, no browser: none is needed, and each asks for a display.
 export WINEDLLOVERRIDES='winemenubuilder.exe,mscoree,mshtml='
-unset DISPLAY
+unset DISPLAY TMPDIR # one server, wherever a test puts its files
 
 case ${1:-} in
 --make)
