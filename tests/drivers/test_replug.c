@@ -100,20 +100,10 @@ static void on_change(evutil_socket_t fd, short what, void *ctx)
     }
 }
 
-static void run_until(const int *count, int wanted)
-{
-    int64_t end_us = grobo_now_us() + 20000000;
-
-    while (*count < wanted) {
-        assert_true(grobo_now_us() < end_us);
-        (void)loop_run(base, end_us - grobo_now_us());
-    }
-}
-
 static int await(int job)
 {
     assert_true(job > 0);
-    run_until(&seen.job, job);
+    loop_run_until(base, &seen.job, job);
     return seen.result;
 }
 
@@ -168,7 +158,7 @@ static void lose_it(int job)
     int64_t cpu_us;
 
     ask("@unplug");
-    run_until(&seen.losts, 1);
+    loop_run_until(base, &seen.losts, 1);
     assert_int_equal(seen.error, GROBO_ERR_UNPLUGGED);
     assert_true(strlen(grobo_session_cause(session)->text) > 0);
     assert_int_equal(seen.job, job);
@@ -215,13 +205,13 @@ static void an_adapter_pulled_out_in_a_motion_and_put_back(void **state)
     (void)state;
     assert_int_equal(grobo_session_new(&config, &session), GROBO_OK);
     assert_int_equal(grobo_session_open(session), GROBO_OK);
-    run_until(&seen.ups, 1);
+    loop_run_until(base, &seen.ups, 1);
     lose_it(set_going());
     leave_the_other_alone(config.device);
 
     frames = grobo_robot_get_counters(grobo_session_robot(session))->motion_frames;
     ask("@plug");
-    run_until(&seen.ups, 2);
+    loop_run_until(base, &seen.ups, 2);
     print_message("up %lld us after its name came back\n", (long long)(seen.at_us - here_us));
     assert_true(seen.at_us - here_us < 500000);
     assert_string_equal(grobo_session_device(session), getenv("GROBO_TEST_NAME"));

@@ -117,20 +117,10 @@ static int tear_down(void **state)
     return test_folder_remove(folder);
 }
 
-static void run_until(const int *count, int wanted)
-{
-    int64_t end_us = grobo_now_us() + 20000000;
-
-    while (*count < wanted) {
-        assert_true(grobo_now_us() < end_us);
-        (void)loop_run(base, end_us - grobo_now_us());
-    }
-}
-
 static int await(int job)
 {
     assert_true(job > 0);
-    run_until(&seen.job, job);
+    loop_run_until(base, &seen.job, job);
     return seen.result;
 }
 
@@ -148,7 +138,7 @@ static void unplug(void)
     int before = seen.losts;
 
     assert_int_equal(grobo_sim_server_plug(server, false), GROBO_OK);
-    run_until(&seen.losts, before + 1);
+    loop_run_until(base, &seen.losts, before + 1);
     assert_int_equal(seen.error, GROBO_ERR_UNPLUGGED);
     assert_int_equal(grobo_session_get_state(session), GROBO_SESSION_WAITING);
 }
@@ -158,7 +148,7 @@ static void plug(void)
     int before = seen.ups;
 
     assert_int_equal(grobo_sim_server_plug(server, true), GROBO_OK);
-    run_until(&seen.ups, before + 1);
+    loop_run_until(base, &seen.ups, before + 1);
     assert_int_equal(grobo_session_get_state(session), GROBO_SESSION_UP);
 }
 
@@ -178,7 +168,7 @@ static void a_lost_port_is_told_within_10_ms_and_found_within_250(void **state)
     int found = 0;
 
     (void)state;
-    run_until(&seen.ups, 1);
+    loop_run_until(base, &seen.ups, 1);
     for (int i = 0; i < HANG_UPS; i++) {
         int64_t from_us = grobo_now_us();
         unplug();
@@ -200,7 +190,7 @@ static void waiting_for_a_port_takes_less_than_a_hundredth(void **state)
     int64_t cpu_us;
 
     (void)state;
-    run_until(&seen.ups, 1);
+    loop_run_until(base, &seen.ups, 1);
     unplug();
     run_for(500000); /* the first attempts follow each other fast */
     cpu_us = test_cpu_us();
@@ -223,7 +213,7 @@ static void expect_stillness(void)
     run_for(700000);
     before = look(NECK);
     rounds = seen.rounds;
-    run_until(&seen.rounds, rounds + 2);
+    loop_run_until(base, &seen.rounds, rounds + 2);
     assert_int_equal(heard.writes, 0);
     assert_true(heard.reads >= 40);
     assert_int_equal(look(NECK).angle_mdeg, before.angle_mdeg);
@@ -246,7 +236,7 @@ static void nothing_moves_by_itself_after_a_move_was_cut(void **state)
     int move;
 
     (void)state;
-    run_until(&seen.ups, 1);
+    loop_run_until(base, &seen.ups, 1);
     assert_int_equal(await(grobo_session_torque(session, GROBO_JOINTS_ALL(20), GROBO_TORQUE_ON)),
                      GROBO_OK);
     move = grobo_session_move(session, &target);
@@ -277,7 +267,7 @@ static void nothing_moves_by_itself_after_a_motion_was_cut(void **state)
         .key = nod_key, .n_keys = 100, .n_joints = 20, .length_us = 100 * 200000LL};
 
     (void)state;
-    run_until(&seen.ups, 1);
+    loop_run_until(base, &seen.ups, 1);
     assert_int_equal(await(grobo_session_play(session, &nod, NULL)), GROBO_OK);
     run_for(1000000);
     unplug();

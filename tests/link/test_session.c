@@ -89,21 +89,11 @@ static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *byt
 
 /* ---- running ------------------------------------------------------------------------------ */
 
-static void run_until(const int *count, int wanted)
-{
-    int64_t end_us = grobo_now_us() + 5000000;
-
-    while (*count < wanted) {
-        assert_true(grobo_now_us() < end_us);
-        (void)loop_run(base, end_us - grobo_now_us());
-    }
-}
-
 /* Waits for a job that a request returned; its result. */
 static int await(int job)
 {
     assert_true(job > 0);
-    run_until(&seen.job, job);
+    loop_run_until(base, &seen.job, job);
     assert_int_equal(seen.job, job);
     return seen.result;
 }
@@ -154,7 +144,7 @@ static void come_up(void)
 
     assert_int_equal(grobo_session_open(session), GROBO_OK);
     assert_int_equal(seen.ups, before);
-    run_until(&seen.ups, before + 1);
+    loop_run_until(base, &seen.ups, before + 1);
     assert_int_equal(grobo_session_get_state(session), GROBO_SESSION_UP);
 }
 
@@ -290,7 +280,7 @@ static void nobody_answers(void **state)
     test_line_open(&silent);
     make((grobo_session_config){.device = silent.device, .reconnect = true});
     assert_int_equal(grobo_session_open(session), GROBO_OK);
-    run_until(&seen.fails, 1);
+    loop_run_until(base, &seen.fails, 1);
     assert_int_equal(seen.error, GROBO_ERR_TIMEOUT);
     assert_string_equal(grobo_session_cause(session)->text, "no answer to the check");
     assert_true(grobo_now_us() - start_us < 2000000);
@@ -300,7 +290,7 @@ static void nobody_answers(void **state)
 
     make((grobo_session_config){.device = "auto", .scan = scan});
     assert_int_equal(grobo_session_open(session), GROBO_OK);
-    run_until(&seen.fails, 2);
+    loop_run_until(base, &seen.fails, 2);
     assert_int_equal(seen.error, GROBO_ERR_NOTFOUND);
     assert_string_equal(grobo_session_cause(session)->text, "no robot on any of 1 serial ports");
     assert_int_equal(seen.ups + seen.losts, 0);
@@ -317,7 +307,7 @@ static void only_the_check_is_sent_before_somebody_answers(void **state)
     test_line_open(&silent);
     make((grobo_session_config){.device = silent.device});
     assert_int_equal(grobo_session_open(session), GROBO_OK);
-    run_until(&seen.fails, 1);
+    loop_run_until(base, &seen.fails, 1);
     size = test_line_read_some(&silent, bytes, sizeof bytes);
     assert_true(size >= 2 && size % 2 == 0);
     for (size_t i = 0; i < size; i += 2) {
@@ -336,7 +326,7 @@ static void nobody_needs_to_answer_if_so_configured(void **state)
     make((grobo_session_config){.device = silent.device, .skip_check = true});
     come_up();
     test_line_close(&silent);
-    run_until(&seen.losts, 1);
+    loop_run_until(base, &seen.losts, 1);
     assert_int_equal(seen.error, GROBO_ERR_UNPLUGGED);
 }
 
@@ -380,13 +370,13 @@ static void a_lost_port_is_found_again(void **state)
     sense = grobo_session_sense(session, 0xfffff, GROBO_SENSE_FULL);
     assert_int_equal(grobo_sim_server_plug(server, false), GROBO_OK);
     assert_int_equal(await(sense), GROBO_ERR_UNPLUGGED);
-    run_until(&seen.losts, 1);
+    loop_run_until(base, &seen.losts, 1);
     assert_int_equal(seen.error, GROBO_ERR_UNPLUGGED);
     assert_int_equal(grobo_session_get_state(session), GROBO_SESSION_WAITING);
     assert_int_equal(grobo_session_check(session), GROBO_ERR_CLOSED);
 
     assert_int_equal(grobo_sim_server_plug(server, true), GROBO_OK);
-    run_until(&seen.ups, 2);
+    loop_run_until(base, &seen.ups, 2);
     assert_int_equal(seen.losts, 1);
     assert_int_equal(seen.fails, 0);
     assert_it_works();
@@ -402,8 +392,8 @@ static void a_simulator_that_hung_up_is_plugged_in_again(void **state)
     grobo_sim_plug(grobo_session_sim(session), false, grobo_now_us());
     /* The engine finds out when it next looks. */
     assert_true(grobo_session_sense(session, 1, GROBO_SENSE_FULL) > 0);
-    run_until(&seen.losts, 1);
-    run_until(&seen.ups, 2);
+    loop_run_until(base, &seen.losts, 1);
+    loop_run_until(base, &seen.ups, 2);
     assert_it_works();
 }
 
@@ -425,9 +415,9 @@ static void an_emergency_stop_reaches_a_robot_that_is_lost_or_just_found(void **
                      GROBO_OK);
     grobo_sim_plug(grobo_session_sim(session), false, grobo_now_us());
     assert_true(grobo_session_sense(session, 1, GROBO_SENSE_FULL) > 0);
-    run_until(&seen.losts, 1);
+    loop_run_until(base, &seen.losts, 1);
     assert_int_equal(grobo_session_estop(session), GROBO_ERR_CLOSED);
-    run_until(&seen.ups, 2);
+    loop_run_until(base, &seen.ups, 2);
     assert_int_equal(torque_of(0), GROBO_TORQUE_BRAKE);
     assert_int_equal(torque_of(19), GROBO_TORQUE_BRAKE);
     assert_int_equal(grobo_session_reset(session), GROBO_OK);
@@ -440,7 +430,7 @@ static void an_emergency_stop_reaches_a_robot_that_is_lost_or_just_found(void **
         assert_int_equal(event_base_loop(base, EVLOOP_ONCE), 0);
     }
     assert_int_equal(await(grobo_session_estop(session)), GROBO_OK);
-    run_until(&seen.ups, 3); /* who is there was asked afterwards */
+    loop_run_until(base, &seen.ups, 3); /* who is there was asked afterwards */
     assert_int_equal(torque_of(0), GROBO_TORQUE_BRAKE);
     assert_int_equal(torque_of(19), GROBO_TORQUE_BRAKE);
     assert_int_equal(seen.fails, 0);
@@ -454,7 +444,7 @@ static void without_reconnect_a_lost_port_is_closed(void **state)
     make((grobo_session_config){.device = grobo_sim_server_device(server)});
     come_up();
     assert_int_equal(grobo_sim_server_plug(server, false), GROBO_OK);
-    run_until(&seen.losts, 1);
+    loop_run_until(base, &seen.losts, 1);
     assert_int_equal(grobo_session_get_state(session), GROBO_SESSION_CLOSED);
     assert_true(loop_run(base, 150000));
     assert_int_equal(seen.ups, 1);
@@ -469,7 +459,7 @@ static void it_may_be_freed_in_its_event(void **state)
     make((grobo_session_config){.device = "sim"});
     seen.free_on_event = true;
     assert_int_equal(grobo_session_open(session), GROBO_OK);
-    run_until(&seen.ups, 1);
+    loop_run_until(base, &seen.ups, 1);
     assert_null(session);
     assert_true(loop_run(base, 10000));
 }
@@ -492,7 +482,7 @@ static void it_may_be_closed_in_its_event(void **state)
     make((grobo_session_config){.device = "sim"});
     seen.close_on_event = true;
     assert_int_equal(grobo_session_open(session), GROBO_OK);
-    run_until(&seen.ups, 1);
+    loop_run_until(base, &seen.ups, 1);
     assert_int_equal(grobo_session_get_state(session), GROBO_SESSION_CLOSED);
     assert_true(loop_run(base, 10000));
     seen.close_on_event = false;
@@ -507,8 +497,8 @@ static void it_may_be_opened_again_when_lost(void **state)
     seen.open_on_event = true;
     grobo_sim_plug(grobo_session_sim(session), false, grobo_now_us());
     assert_true(grobo_session_check(session) > 0);
-    run_until(&seen.losts, 1);
-    run_until(&seen.ups, 2);
+    loop_run_until(base, &seen.losts, 1);
+    loop_run_until(base, &seen.ups, 2);
     assert_it_works();
 }
 

@@ -38,3 +38,13 @@ bool loop_run(struct event_base *base, int64_t span_us)
     grobo_timer_free(timer);
     return w.passed;
 }
+
+void loop_run_until(struct event_base *base, const int *count, int wanted)
+{
+    int64_t end_us = grobo_now_us() + 20000000;
+
+    while (*count < wanted) {
+        assert_true(grobo_now_us() < end_us);
+        (void)loop_run(base, end_us - grobo_now_us());
+    }
+}

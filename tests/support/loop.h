@@ -11,4 +11,7 @@ struct event_base;
 /* Runs the loop until a callback breaks it; true when span_us passed instead. */
 bool loop_run(struct event_base *base, int64_t span_us);
 
+/* Runs it until callbacks have counted so far; fails the test where that takes 20 s. */
+void loop_run_until(struct event_base *base, const int *count, int wanted);
+
 #endif

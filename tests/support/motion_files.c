@@ -138,6 +138,25 @@ char *file_text(const char *path, size_t *size)
     return text.data;
 }
 
+void put_file(const char *path, const char *text)
+{
+    FILE *file = fopen(path, "wb");
+
+    assert_non_null(file);
+    assert_true(fputs(text, file) >= 0);
+    assert_int_equal(fclose(file), 0);
+}
+
+void assert_file(const char *path, const char *text)
+{
+    size_t size;
+    char *found = file_text(path, &size);
+
+    assert_non_null(found);
+    assert_string_equal(found, text);
+    free(found);
+}
+
 const char *shared_file(const char *name)
 {
     static char path[4096];

@@ -46,25 +46,6 @@ static int remove_folder(void **state)
     return rmdir(folder);
 }
 
-static void put_file(const char *path, const char *text)
-{
-    FILE *file = fopen(path, "wb");
-
-    assert_non_null(file);
-    assert_true(fputs(text, file) >= 0);
-    assert_int_equal(fclose(file), 0);
-}
-
-static void assert_file(const char *path, const char *text)
-{
-    size_t size;
-    char *found = file_text(path, &size);
-
-    assert_non_null(found);
-    assert_string_equal(found, text);
-    free(found);
-}
-
 static void test_mode(void **state)
 {
     (void)state;
