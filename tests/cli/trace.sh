@@ -162,13 +162,19 @@ TEXT
         diff "$work/expected" -
 }
 check 'frames split over chunks, rubbish, a reply that never ends' hand_made
-# The blocks of the guide marked sh are run, line by line.
+# The blocks of the guide marked sh are run, line by line. Status 1 of replay is fine: on a busy
+# machine a servo may say that its motion has lasted for another step of 10 ms.
 guide() {
     mkdir "$work/guide" "$work/bin" && ln -s "$(realpath "$GRCTL")" "$work/bin/grctl" || return 1
     ln -s "$PWD/motions" "$work/guide/motions"
-    awk '/^```/ { open = $0 == "```sh"; next } open' docs/guide/trace.md >"$work/guide.sh"
+    awk '/^```/ { open = $0 == "```sh"; next }
+        open { print $0 (/^grctl replay/ ? " || [ $? -eq 1 ]" : "") }
+        ' docs/guide/trace.md >"$work/guide.sh"
     [ "$(wc -l <"$work/guide.sh")" -ge 7 ] || return 1
-    (cd "$work/guide" && PATH=$work/bin:$PATH sh -eux "$work/guide.sh")
+    (cd "$work/guide" && PATH=$work/bin:$PATH sh -eux "$work/guide.sh" >"$work/guide.out" 2>&1) &&
+        grep -q '^8 frames sent, .* 0 missing, 0 extra' "$work/guide.out" && return
+    tail -n 20 "$work/guide.out"
+    return 1
 }
 check "the guide's commands" guide
 done_testing
