@@ -36,7 +36,7 @@ WERROR ?= -Werror
 SONAME ?= libgrobo.so.0
 LINK_NAME ?= libgrobo.so
 SHARED_FLAGS ?= -Wl,-soname,$(SONAME) $(if $(SAN),,-Wl,-z,defs)
-OS_FLAGS ?= -D_DEFAULT_SOURCE -D_XOPEN_SOURCE=700 -pthread
+OS_FLAGS ?= -D_DEFAULT_SOURCE -D_XOPEN_SOURCE=700 -D_FILE_OFFSET_BITS=64 -pthread
 OS_LIBS ?= -lm -pthread
 ifeq ($(origin CC),default)
 CC := $(CROSS_COMPILE)gcc
