@@ -59,7 +59,7 @@ check "who goes on reading brakes too, and says in whose hands it is" watched
 check "it stands" fails 4 "stopped by 'grctl estop'" on_robot init
 exits 0 on_robot estop --reset
 
-if have_terminal; then
+if have_full_screen; then
     open_screen
     type_line "'$GRCTL' -d '$robot' monitor"
     until_screen '^12 KNEE_P'
@@ -73,7 +73,7 @@ if have_terminal; then
     until_screen '^>'
     on_screen kill-server
 else
-    skip "monitor" "no tmux"
+    skip "monitor" "$no_screen"
 fi
 stop_sim
 done_testing

@@ -33,10 +33,7 @@ else
     skip "as JSON: an object a round" "no python3 to parse JSON with"
 fi
 
-no_screen=
-have_terminal || no_screen='no tmux'
-[ "${SCREEN:-ncurses}" = ncurses ] || no_screen='built without ncurses'
-if [ -n "$no_screen" ]; then
+if ! have_full_screen; then
     skip "the full screen" "$no_screen"
     done_testing
     exit

@@ -6,8 +6,8 @@
 . tests/support/terminal.sh
 
 tour=$PWD/docs/guide/tour.md
-if ! have_terminal; then
-    echo "1..0 # SKIP no tmux"
+if ! have_full_screen; then
+    echo "1..0 # SKIP $no_screen"
     exit
 fi
 

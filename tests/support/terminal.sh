@@ -6,6 +6,14 @@ have_terminal() {
     command -v tmux >/dev/null 2>&1
 }
 
+# Is grctl built with a full screen, and can it be looked at? $no_screen says why not.
+have_full_screen() {
+    no_screen=
+    have_terminal || no_screen='no tmux'
+    [ "${SCREEN:-ncurses}" = ncurses ] || no_screen='built without ncurses'
+    [ -z "$no_screen" ]
+}
+
 on_screen() {
     tmux -L "grctl$$" -f /dev/null "$@"
 }
