@@ -210,7 +210,7 @@ check-cross: cross ## the tests of that build, under an emulator; RING= chooses
 
 check-ports: ## build and test for every machine that can be had here; PORTS="arm64 musl" chooses
 	-@tools/setup.sh --ports
-	@BUILD="$(BUILD)" tools/ports.sh $(PORTS)
+	@BUILD="$(BUILD)" MINUTES=$(MINUTES) tools/ports.sh $(PORTS)
 
 check-drivers: ## the serial port's tests on real drivers, of a Debian kernel in a virtual machine
 	-@tools/setup.sh --drivers

@@ -6,14 +6,17 @@
 #
 # usage: tools/ports.sh [NAME...]     (without a name: all of them)
 # environment: BUILD=build, below which each has a log in logs/ports
+#   MINUTES=n: no row begins when these are over
 #
 # What is left out is told and counted as skipped: where this machine cannot install what a row
-# needs, and the rings of tests that would make the whole longer than half an hour.
+# needs, where the time is over, and the rings of tests that would make the whole longer than half
+# an hour.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 
 build=${BUILD:-build}
 logs=$build/logs/ports
+started=$(date +%s)
 all='size firmware arm64 armhf riscv64 s390x musl musl-arm64 win64 macos freebsd drivers'
 [ $# -gt 0 ] || set -- $all
 mkdir -p "$logs" || exit 1
@@ -92,10 +95,18 @@ why() {
         head -n 60 >&2
 }
 
+time_is_over() {
+    [ -n "${MINUTES:-}" ] && [ $(($(date +%s) - started)) -ge $((MINUTES * 60)) ]
+}
+
 # tried NAME: the row of one. Some tests keep time, and an emulator may stall: who fails runs again.
 tried() {
     log=$logs/$1.log
     begin=$(date +%s)
+    if time_is_over; then
+        row "$1" 0 0 1 0 "left out: $MINUTES minutes are over"
+        return
+    fi
     if ! brings "$1" >"$log" 2>&1; then
         row "$1" 0 0 1 0 "left out: $(tail -n 1 "$log")"
         return
