@@ -8,6 +8,7 @@ start_told_sim || { echo "Bail out! the simulator did not start"; exit 1; }
 
 # rounds COMMAND...: until it has written more than one; a signal ends it.
 rounds() {
+    : >"$work/out" # what the last one wrote does not count
     "$@" >"$work/out" 2>"$work/err" </dev/null &
     rounds_pid=$!
     wait_for several_rounds
