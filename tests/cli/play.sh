@@ -167,6 +167,7 @@ check_json "the knees are bent, the torque is off" \
 
 # A robot that has fallen silent: nobody knows what its servos do, and the status says so.
 silent() {
+    rm -f "$work/out" "$work/leaving"
     "$GRCTL" -d "$robot" -v --json --retries 10 play --speed 50 "$greet" \
         >"$work/out" 2>"$work/leaving" &
     silent_pid=$!
