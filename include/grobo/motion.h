@@ -54,7 +54,7 @@ typedef struct grobo_key_info {
     double zmp_m[3];             /**< meaningful with has_zmp */
     grobo_joint_mask stationary; /**< spJoints: joints with zero velocity at this key */
     bool has_zmp;
-    bool zmp_stationary; /**< isZmpStationaryPoint */
+    bool zmp_stationary; /**< isZmpStationaryPoint; a file that gives a zmp alone means true */
 } grobo_key_info;
 
 /** Where a kept key stands in a file. */

@@ -14,6 +14,10 @@
 /* Latest time of a posture, either way: far beyond use, and exact in microseconds. */
 #define GROBO_I_TIME_MAX_S 1e9
 
+/* Joints in a line of a key pose: Choreonoid's, and that before 1.5, whose line break counted. */
+#define GROBO_I_LINE_ITEMS 10
+#define GROBO_I_LINE_ITEMS_OLD 9
+
 typedef struct grobo_i_kept {
     struct grobo_i_kept *next;
     size_t key_bytes;   /* with the NUL */
@@ -56,6 +60,7 @@ struct grobo_motion {
     grobo_i_kept *kept;
     grobo_motion_kind kind;
     uint8_t n_joints;
+    uint8_t line_items; /* joints that a line of .pseq has */
     bool frame_times;
     bool reverse;
 };

@@ -121,17 +121,19 @@ int grobo_i_read_long(grobo_i_events *events, const char *what, long low, long h
 
 int grobo_i_read_bool(grobo_i_events *events, const char *what, bool *value)
 {
-    static const char *const words[] = {"false", "False", "FALSE", "no",  "off",
-                                        "true",  "True",  "TRUE",  "yes", "on"};
+    static const char *const words[] = {
+        "false", "False", "FALSE", "no",  "No",  "NO",  "off", "Off", "OFF", "n", "N",
+        "true",  "True",  "TRUE",  "yes", "Yes", "YES", "on",  "On",  "ON",  "y", "Y"};
+    size_t n_words = sizeof words / sizeof words[0];
     const grobo_i_event *event;
     int result = next_scalar(events, what, "true or false", &event);
 
     if (result < 0 || event == NULL) {
         return result;
     }
-    for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
+    for (size_t i = 0; i < n_words; i++) {
         if (grobo_i_is_text(event, words[i])) {
-            *value = i >= 5;
+            *value = i >= n_words / 2;
             return 0;
         }
     }

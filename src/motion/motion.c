@@ -49,6 +49,7 @@ int grobo_i_new_like(const grobo_motion *like, grobo_motion **motion)
         return result;
     }
     made->frame_rate_hz = like->frame_rate_hz;
+    made->line_items = like->line_items;
     made->frame_times = like->frame_times;
     made->reverse = like->reverse;
     result = grobo_motion_set_name(made, grobo_motion_name(like));

@@ -279,9 +279,9 @@ static const grobo_i_field component_fields[] = {
 /* Says that a component is skipped, and remembers its rate. */
 static int pass_over(component *part)
 {
-    static const char *const known[] = {"MultiValueSeq",       "MultiSE3Seq",     "MultiSe3Seq",
-                                        "MultiAffine3Seq",     "Vector3Seq",      "MultiVector3Seq",
-                                        "MultiDeviceStateSeq", "MultiVector3Seq", NULL};
+    static const char *const known[] = {"MultiValueSeq",       "MultiSE3Seq", "MultiSe3Seq",
+                                        "MultiAffine3Seq",     "Vector3Seq",  "MultiVector3Seq",
+                                        "MultiDeviceStateSeq", NULL};
     grobo_i_document *document = part->document;
     const char *content = part->content != NULL ? part->content : "no content";
 
@@ -436,12 +436,18 @@ static int check_version(grobo_i_document *document)
     return 0;
 }
 
+/* What Choreonoid takes where frames have times of their own and the file gives no rate. */
+enum { TIMED_RATE_HZ = 100 };
+
 static int check_rate(grobo_i_document *document)
 {
     grobo_i_reader *reader = document->reader;
     const grobo_i_frame_info *frames = &document->frames;
     double rate_hz = frames->rate_hz > 0 ? frames->rate_hz : document->top.rate_hz;
 
+    if (!(rate_hz > 0) && frames->has_frame_time) {
+        rate_hz = TIMED_RATE_HZ;
+    }
     if (grobo_motion_set_frame_rate(reader->motion, rate_hz) < 0) {
         return grobo_i_complain(reader, GROBO_ERR_SYNTAX, "frame-rate",
                                 rate_hz > 0 ? frames->rate_place : document->frames_place,

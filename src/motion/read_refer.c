@@ -39,9 +39,24 @@ static int read_joint_list(grobo_i_events *events, const char *what, grobo_i_pos
     return result;
 }
 
+/* How many joints a line has, so that what is written looks like what was read. */
+static void note_layout(grobo_motion *motion, const grobo_i_pose_list *list)
+{
+    const grobo_i_place *at = list->places;
+
+    if (list->count > GROBO_I_LINE_ITEMS_OLD && at[0].line == at[GROBO_I_LINE_ITEMS_OLD - 1].line &&
+        at[0].line < at[GROBO_I_LINE_ITEMS_OLD].line) {
+        motion->line_items = GROBO_I_LINE_ITEMS_OLD;
+    }
+}
+
 static int read_joints(grobo_i_events *events, void *target)
 {
-    return read_joint_list(events, "joints", &((grobo_i_pose_ref *)target)->joints);
+    grobo_i_pose_list *joints = &((grobo_i_pose_ref *)target)->joints;
+    int result = read_joint_list(events, "joints", joints);
+
+    note_layout(events->reader->motion, joints);
+    return result;
 }
 
 static int read_q(grobo_i_events *events, void *target)
@@ -123,6 +138,7 @@ static const grobo_i_field pose_fields[] = {
     {"zmp", NULL, read_zmp},
     {"isZmpStationaryPoint", NULL, read_zmp_stationary},
 };
+enum { HAS_ZMP_STATIONARY = 1 << 7 };
 
 /* The name of an earlier pose, as Choreonoid wrote up to 1.7. */
 static int read_refer_by_name(grobo_i_events *events, grobo_i_pose_ref *ref)
@@ -166,5 +182,9 @@ int grobo_i_read_refer(grobo_i_events *events, void *target)
     if (event->kind != GROBO_I_MAP) {
         ref->failed = true;
     }
-    return grobo_i_read_map(events, &fields, ref, &seen);
+    result = grobo_i_read_map(events, &fields, ref, &seen);
+    if (result == 0 && ref->info.has_zmp && (seen & HAS_ZMP_STATIONARY) == 0) {
+        ref->info.zmp_stationary = true; /* as Choreonoid takes it */
+    }
+    return result;
 }

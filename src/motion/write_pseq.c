@@ -8,7 +8,6 @@
 #include "motion/write.h"
 
 enum {
-    LINE_ITEMS = 9, /* of a long list; Choreonoid counts its line break as the tenth */
     LONG_LIST = 10, /* bodies of more joints get long lists, whatever a list's length */
     REF_INDENT = 4,
     POSE_INDENT = 6,
@@ -23,23 +22,29 @@ static void put_lead(grobo_i_out *out, int indent, const char *text)
     grobo_i_put_text(out, text);
 }
 
+/* Where the lines of a list end. */
+typedef struct list_shape {
+    int first; /* item that begins the first new line */
+    int items; /* of each line from there on; 0: all of the list is one line */
+    int indent;
+} list_shape;
+
 /* What comes before item i of a list: a line break where the list has one, else a comma. */
-static void put_gap(grobo_i_out *out, int i, int items_a_line, int indent)
+static void put_gap(grobo_i_out *out, int i, const list_shape *shape)
 {
     if (i > 0) {
         grobo_i_put_text(out, ", ");
     }
-    if (items_a_line > 0 && i % items_a_line == 0) {
+    if (shape->items > 0 && i >= shape->first && (i - shape->first) % shape->items == 0) {
         grobo_i_put_text(out, "\n");
-        put_lead(out, indent, "");
+        put_lead(out, shape->indent, "");
     }
 }
 
 /* joints and spJoints, or q: the joints of a mask, by number or by angle. */
-static void put_joints(grobo_i_out *out, const char *name, const grobo_motion *motion,
+static void put_joints(grobo_i_out *out, const char *name, const list_shape *shape,
                        grobo_joint_mask joints, const double *angle_rad)
 {
-    int items_a_line = motion->n_joints > LONG_LIST ? LINE_ITEMS : 0;
     int i = 0;
 
     put_lead(out, POSE_INDENT, name);
@@ -48,7 +53,7 @@ static void put_joints(grobo_i_out *out, const char *name, const grobo_motion *m
         if ((joints & GROBO_JOINT_BIT(j)) == 0) {
             continue;
         }
-        put_gap(out, i++, items_a_line, POSE_INDENT + 2);
+        put_gap(out, i++, shape);
         if (angle_rad != NULL) {
             grobo_i_put_number(out, angle_rad[j]);
         } else {
@@ -61,12 +66,12 @@ static void put_joints(grobo_i_out *out, const char *name, const grobo_motion *m
 static void put_numbers(grobo_i_out *out, int indent, const char *name, const double *values,
                         int count)
 {
-    int items_a_line = count > 3 ? 3 : 0; /* a matrix row by row, a vector on one line */
+    const list_shape shape = {0, count > 3 ? 3 : 0, indent + 2}; /* a matrix row by row */
 
     put_lead(out, indent, name);
     grobo_i_put_text(out, ": [ ");
     for (int i = 0; i < count; i++) {
-        put_gap(out, i, items_a_line, indent + 2);
+        put_gap(out, i, &shape);
         grobo_i_put_number(out, values[i]);
     }
     grobo_i_put_text(out, " ]\n");
@@ -107,11 +112,22 @@ static void put_link(grobo_i_out *out, const grobo_i_extra *extra, int i)
     put_flag(out, LINK_INDENT, "isSlave", link->is_slave);
 }
 
-/* What a pose has besides joints and q. */
-static void put_extra(grobo_i_out *out, const grobo_motion *motion, const grobo_i_extra *extra)
+/* Written wherever there is a ZMP: without it a ZMP stands still. */
+static void put_zmp_stationary(grobo_i_out *out, const grobo_key_info *info)
 {
+    if (info->has_zmp || info->zmp_stationary) {
+        put_lead(out, POSE_INDENT, "isZmpStationaryPoint: ");
+        grobo_i_put_text(out, info->zmp_stationary ? "true\n" : "false\n");
+    }
+}
+
+/* What a pose has besides joints and q. */
+static void put_extra(grobo_i_out *out, int line_items, const grobo_i_extra *extra)
+{
+    const list_shape shape = {GROBO_I_LINE_ITEMS, line_items, POSE_INDENT + 2};
+
     if (extra->info.stationary != 0) {
-        put_joints(out, "spJoints", motion, extra->info.stationary, NULL);
+        put_joints(out, "spJoints", &shape, extra->info.stationary, NULL);
     }
     if (extra->n_links > 0) {
         put_lead(out, POSE_INDENT, "ikLinks: \n");
@@ -122,13 +138,15 @@ static void put_extra(grobo_i_out *out, const grobo_motion *motion, const grobo_
     if (extra->info.has_zmp) {
         put_numbers(out, POSE_INDENT, "zmp", extra->info.zmp_m, 3);
     }
-    put_flag(out, POSE_INDENT, "isZmpStationaryPoint", extra->info.zmp_stationary);
+    put_zmp_stationary(out, &extra->info);
     grobo_i_put_kept(out, extra->kept, GROBO_KEPT_POSE, 0, POSE_INDENT);
 }
 
 static void put_ref(grobo_i_out *out, const grobo_motion *motion, const grobo_i_row *row)
 {
     static const grobo_i_extra nothing;
+    const int line_items = motion->line_items > 0 ? motion->line_items : GROBO_I_LINE_ITEMS;
+    const list_shape shape = {0, motion->n_joints > LONG_LIST ? line_items : 0, POSE_INDENT + 2};
     const grobo_i_extra *extra = *row->extra != NULL ? *row->extra : &nothing;
     const char *name = extra->name != NULL ? extra->name : "";
 
@@ -149,10 +167,10 @@ static void put_ref(grobo_i_out *out, const grobo_motion *motion, const grobo_i_
     grobo_i_put_quoted(out, name, strlen(name));
     grobo_i_put_text(out, "\n");
     if (*row->set != 0) {
-        put_joints(out, "joints", motion, *row->set, NULL);
-        put_joints(out, "q", motion, *row->set, row->angle_rad);
+        put_joints(out, "joints", &shape, *row->set, NULL);
+        put_joints(out, "q", &shape, *row->set, row->angle_rad);
     }
-    put_extra(out, motion, extra);
+    put_extra(out, line_items, extra);
 }
 
 static void put_text_line(grobo_i_out *out, const char *name, const char *value)

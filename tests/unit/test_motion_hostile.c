@@ -199,13 +199,23 @@ static const char *const keyed[] = {
 /* Keys that may be missing; all others are missed. */
 static bool may_miss(const char *line)
 {
-    static const char *const keys[] = {
-        "name: ",          "maxTransitionTime: ",    "spJoints: ",
-        "index: ",         "isBaseLink: ",           "isStationaryPoint: ",
-        "isTouching: ",    "partingDirection: ",     "isSlave: ",
-        "zmp: ",           "isZmpStationaryPoint: ", "num_frames: ",
-        "num_parts: ",     "content: BodyMotion",    "type: PoseSeq",
-        "format_version: "};
+    static const char *const keys[] = {"name: ",
+                                       "maxTransitionTime: ",
+                                       "spJoints: ",
+                                       "index: ",
+                                       "isBaseLink: ",
+                                       "isStationaryPoint: ",
+                                       "isTouching: ",
+                                       "partingDirection: ",
+                                       "isSlave: ",
+                                       "zmp: ",
+                                       "isZmpStationaryPoint: ",
+                                       "num_frames: ",
+                                       "num_parts: ",
+                                       "content: BodyMotion",
+                                       "type: PoseSeq",
+                                       "format_version: ",
+                                       "frame_rate: "};
 
     line += strspn(line, " ");
     for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++) {

@@ -91,6 +91,59 @@ static void test_m_line_too_long(void **state)
 
 /* ---- key poses ---------------------------------------------------------------------------- */
 
+/* A ZMP stands still at its key unless the file denies it. */
+static void test_zmp_stands_still(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *pose;
+        bool has_zmp, stationary;
+    } poses[] = {{"zmp: [ 0.3, 0, 0 ]", true, true},
+                 {"zmp: [ 0.3, 0, 0 ], isZmpStationaryPoint: false", true, false},
+                 {"isZmpStationaryPoint: false, zmp: [ 0.3, 0, 0 ]", true, false},
+                 {"isZmpStationaryPoint: true, zmp: [ 0.3, 0, 0 ]", true, true},
+                 {"name: n", false, false}};
+
+    for (size_t i = 0; i < sizeof poses / sizeof poses[0]; i++) {
+        char text[200];
+        grobo_key_info info;
+        (void)snprintf(text, sizeof text,
+                       "type: PoseSeq\nname: z\nrefs: [ { time: 0, refer: { type: Pose, %s } } ]\n",
+                       poses[i].pose);
+        grobo_motion *motion = motion_of(text, GROBO_FORMAT_PSEQ);
+        assert_int_equal(grobo_motion_get_key(motion, 0, &info), 0);
+        assert_int_equal(info.has_zmp, poses[i].has_zmp);
+        assert_int_equal(info.zmp_stationary, poses[i].stationary);
+        grobo_motion_free(motion);
+    }
+}
+
+/* Choreonoid takes the words of YAML 1.1 for true and false, but for mixed case. */
+static void test_words_for_true_and_false(void **state)
+{
+    (void)state;
+    static const char *const words[2][11] = {
+        {"n", "N", "no", "No", "NO", "false", "False", "FALSE", "off", "Off", "OFF"},
+        {"y", "Y", "yes", "Yes", "YES", "true", "True", "TRUE", "on", "On", "ON"}};
+    static const char *const others[] = {"tRUE", "1", "0", "yep", "\"\"", "~"};
+    static const char pose[] = "type: PoseSeq\nname: w\nrefs: [ { time: 0, refer: { type: Pose, "
+                               "zmp: [ 0, 0, 0 ], isZmpStationaryPoint: %s } } ]\n";
+    char text[200];
+
+    for (size_t i = 0; i < 22; i++) {
+        grobo_key_info info;
+        (void)snprintf(text, sizeof text, pose, words[i / 11][i % 11]);
+        grobo_motion *motion = motion_of(text, GROBO_FORMAT_PSEQ);
+        assert_int_equal(grobo_motion_get_key(motion, 0, &info), 0);
+        assert_int_equal(info.zmp_stationary, i / 11);
+        grobo_motion_free(motion);
+    }
+    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
+        (void)snprintf(text, sizeof text, pose, others[i]);
+        assert_int_equal(read_result(text, NULL, NULL), GROBO_ERR_SYNTAX);
+    }
+}
+
 static void test_pose(void **state)
 {
     (void)state;
@@ -296,6 +349,24 @@ static void test_body_motion_keys_behind(void **state)
     grobo_motion_free(motion);
 }
 
+/* Frames with times of their own need no rate: Choreonoid takes 100 Hz for them. */
+static void test_frame_times_without_rate(void **state)
+{
+    (void)state;
+    grobo_motion *motion = motion_of(
+        "type: CompositeSeq\ncontent: BodyMotion\nformatVersion: 2\ncomponents:\n"
+        "- { type: MultiValueSeq, content: JointDisplacement, numParts: 1, hasFrameTime: true, "
+        "frames: [ [ 0, 0.5 ], [ 0.75, 1 ] ] }\n",
+        GROBO_FORMAT_YAML);
+    double time_s;
+
+    assert_true(grobo_motion_has_frame_times(motion));
+    assert_int_equal(grobo_motion_time_s(motion, 1, &time_s), 0);
+    assert_true(time_s == 0.75 && angle_of(motion, 1, 0) == 1);
+    assert_true(grobo_motion_frame_rate(motion) == 100);
+    grobo_motion_free(motion);
+}
+
 static void test_body_motion_refused(void **state)
 {
     (void)state;
@@ -399,6 +470,8 @@ int main(void)
         cmocka_unit_test(test_m_of_other_robots),
         cmocka_unit_test(test_m_refused),
         cmocka_unit_test(test_m_line_too_long),
+        cmocka_unit_test(test_zmp_stands_still),
+        cmocka_unit_test(test_words_for_true_and_false),
         cmocka_unit_test(test_pose),
         cmocka_unit_test(test_positions),
         cmocka_unit_test(test_pose_refused),
@@ -406,6 +479,7 @@ int main(void)
         cmocka_unit_test(test_merge_and_alias),
         cmocka_unit_test(test_type_behind_refs),
         cmocka_unit_test(test_body_motion_keys_behind),
+        cmocka_unit_test(test_frame_times_without_rate),
         cmocka_unit_test(test_body_motion_refused),
         cmocka_unit_test(test_format_by_content_and_name),
         cmocka_unit_test(test_files_refused),
