@@ -4,48 +4,50 @@
 
 #include "ports/common/common.h"
 
-/* A TCP port, 0 to 65535, in digits. */
-static bool is_port(const char *text)
-{
-    size_t size = strlen(text);
-
-    return size > 0 && strspn(text, "0123456789") == size && size <= 5 &&
-           (size < 5 || strcmp(text, "65535") <= 0);
-}
-
-int grobo_i_tcp_split(const char *device, grobo_i_tcp_name *to)
-{
-    const char *host = device + strlen("tcp:");
-    const char *colon = strrchr(device, ':');
-    size_t host_size;
-
-    if (strncmp(device, "tcp:", 4) != 0 || colon < host) {
-        return GROBO_ERR_ARG;
-    }
-    host_size = (size_t)(colon - host);
-    if (host_size >= 2 && host[0] == '[' && host[host_size - 1] == ']') {
-        host++;
-        host_size -= 2;
-    }
-    if (host_size == 0 || host_size >= sizeof to->host || !is_port(colon + 1)) {
-        return GROBO_ERR_ARG;
-    }
-    memcpy(to->host, host, host_size);
-    to->host[host_size] = '\0';
-    memcpy(to->port, colon + 1, strlen(colon + 1) + 1);
-    return GROBO_OK;
-}
-
-bool grobo_i_baud_fits(int asked, int actual)
-{
-    int64_t off = (int64_t)asked - actual;
-
-    return (off < 0 ? -off : off) * 50 <= asked;
-}
-
 int grobo_i_port_refuse(grobo_os_cause *cause, int error, const char *text)
 {
     cause->code = 0;
     snprintf(cause->text, sizeof cause->text, "%s", text);
     return error;
+}
+
+int grobo_i_port_refuse_busy(grobo_os_cause *cause, int code, int pid, const char *name)
+{
+    if (pid == 0) {
+        (void)grobo_i_port_refuse(cause, GROBO_ERR_BUSY, "held by another program");
+    } else {
+        snprintf(cause->text, sizeof cause->text, "held by %s (pid %d)", name, pid);
+    }
+    cause->code = code;
+    return GROBO_ERR_BUSY;
+}
+
+int grobo_i_port_check_baud(int asked_bps, int actual_bps, grobo_os_cause *cause)
+{
+    int64_t off_bps = (int64_t)asked_bps - actual_bps;
+
+    if ((off_bps < 0 ? -off_bps : off_bps) * 50 <= asked_bps) {
+        return actual_bps;
+    }
+    cause->code = 0;
+    snprintf(cause->text, sizeof cause->text, "device takes %d bps for %d", actual_bps, asked_bps);
+    return GROBO_ERR_UNSUPPORTED;
+}
+
+int grobo_i_port_ready(grobo_port *port, grobo_os_cause *cause)
+{
+    (void)port;
+    (void)cause;
+    return 1;
+}
+
+int grobo_i_port_copy(char *to, size_t size, const char *text)
+{
+    size_t length = strlen(text);
+
+    if (length >= size) {
+        return GROBO_ERR_SPACE;
+    }
+    memcpy(to, text, length + 1);
+    return GROBO_OK;
 }

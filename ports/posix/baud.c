@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Speeds that have a B constant; the others are the business of baud_linux.c. */
 #include <errno.h>
-#include <stdio.h>
 #include <termios.h>
 
 #include "ports/posix/posix.h"
@@ -111,21 +110,22 @@ int grobo_i_posix_get_baud(int fd, grobo_os_cause *cause)
 int grobo_i_posix_set_baud(int fd, int baud_bps, grobo_os_cause *cause)
 {
     int before = grobo_i_posix_get_baud(fd, cause);
-    int actual;
     int r = before < 0 ? before : apply(fd, baud_bps, cause);
 
     if (r < 0) {
         return r;
     }
-    actual = grobo_i_posix_get_baud(fd, cause);
-    if (actual > 0) {
-        actual = grobo_i_posix_divided_baud(fd, actual);
+    r = grobo_i_posix_get_baud(fd, cause);
+    if (r > 0) {
+        r = grobo_i_posix_divided_baud(fd, r);
     }
-    if (actual >= 0 && !grobo_i_baud_fits(baud_bps, actual)) {
-        (void)apply(fd, before, cause);
-        cause->code = 0;
-        snprintf(cause->text, sizeof cause->text, "device takes %d bps for %d", actual, baud_bps);
-        return GROBO_ERR_UNSUPPORTED;
+    if (r >= 0) {
+        r = grobo_i_port_check_baud(baud_bps, r, cause);
+        if (r < 0) {
+            grobo_os_cause ignored;
+
+            (void)apply(fd, before, &ignored);
+        }
     }
-    return actual;
+    return r;
 }

@@ -42,13 +42,6 @@ int grobo_i_posix_prepare(int fd, grobo_os_cause *cause)
     return GROBO_OK;
 }
 
-int grobo_i_posix_ready(grobo_port *port, grobo_os_cause *cause)
-{
-    (void)port;
-    (void)cause;
-    return 1;
-}
-
 int grobo_i_posix_read(grobo_port *port, void *buf, size_t size, grobo_os_cause *cause)
 {
     ssize_t got;

@@ -9,6 +9,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "ports/common/common.h"
+
 #include <grobo/files.h>
 
 enum { TEMPORARIES_MAX = 100 }; /* names tried for one */
@@ -35,17 +37,6 @@ static int error_of(int code)
     default:
         return GROBO_ERR_IO;
     }
-}
-
-static int copy_path(char *to, size_t size, const char *path)
-{
-    size_t length = strlen(path);
-
-    if (length >= size) {
-        return GROBO_ERR_SPACE;
-    }
-    memcpy(to, path, length + 1);
-    return 0;
 }
 
 /* ---- writing ------------------------------------------------------------------------------ */
@@ -97,7 +88,7 @@ static void take_over(int fd, const struct stat *old)
 static int set_path(grobo_file *file, const char *path, bool exclusive)
 {
     char *real = exclusive ? NULL : realpath(path, NULL);
-    int result = copy_path(file->path, sizeof file->path, real != NULL ? real : path);
+    int result = grobo_i_port_copy(file->path, sizeof file->path, real != NULL ? real : path);
 
     free(real);
     return result;
@@ -175,7 +166,7 @@ static void sync_directory(const char *path)
 {
     char folder[GROBO_PATH_MAX_BYTES];
 
-    if (copy_path(folder, sizeof folder, path) < 0) {
+    if (grobo_i_port_copy(folder, sizeof folder, path) < 0) {
         return;
     }
     char *slash = strrchr(folder, '/');
@@ -279,7 +270,7 @@ static int check_file(const char *real, const char *folder, char *path, size_t p
     if (stat(real, &status) != 0) {
         return error_of(errno);
     }
-    return S_ISDIR(status.st_mode) ? GROBO_ERR_ISDIR : copy_path(path, path_bytes, real);
+    return S_ISDIR(status.st_mode) ? GROBO_ERR_ISDIR : grobo_i_port_copy(path, path_bytes, real);
 }
 
 static int inside(const char *directory, const char *name, char *path, size_t path_bytes)

@@ -232,9 +232,5 @@ int grobo_port_identity(const char *device, char *name, size_t name_bytes)
     if (found[0] == '\0') {
         identity = device;
     }
-    if (strlen(identity) >= name_bytes) {
-        return GROBO_ERR_SPACE;
-    }
-    memcpy(name, identity, strlen(identity) + 1);
-    return GROBO_OK;
+    return grobo_i_port_copy(name, name_bytes, identity);
 }

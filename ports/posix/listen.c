@@ -42,7 +42,7 @@ int grobo_port_listen(const char *device, grobo_socket *listener, int *tcp_port,
 {
     struct addrinfo *at;
     int fd;
-    int r = grobo_i_posix_look_up(device, AI_NUMERICHOST, &at, cause);
+    int r = grobo_i_posix_look_up(device, true, &at, cause);
 
     if (r < 0) {
         return r;

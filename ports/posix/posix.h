@@ -30,8 +30,8 @@ int grobo_i_posix_sent(ssize_t put, grobo_os_cause *cause);
 
 struct addrinfo;
 
-/* Finds the address of "tcp:HOST:PORT"; flags as of getaddrinfo(), freed by freeaddrinfo(). */
-int grobo_i_posix_look_up(const char *device, int flags, struct addrinfo **found,
+/* Finds the address of "tcp:HOST:PORT", numeric or by its name; freed by freeaddrinfo(). */
+int grobo_i_posix_look_up(const char *device, bool numeric, struct addrinfo **found,
                           grobo_os_cause *cause);
 
 /* Makes a socket for an address; an error leaves none behind. */
@@ -46,12 +46,6 @@ int grobo_i_posix_waiting(grobo_port *port, grobo_os_cause *cause);
 grobo_socket grobo_i_posix_socket(const grobo_port *port);
 grobo_handle grobo_i_posix_handle(const grobo_port *port);
 
-/* Sets a speed, reads it back; returns the rate in effect or GROBO_ERR_*. */
-int grobo_i_posix_set_baud(int fd, int baud_bps, grobo_os_cause *cause);
-
-/* The rate a descriptor runs at, 0 for one that nobody knows, or GROBO_ERR_*. */
-int grobo_i_posix_get_baud(int fd, grobo_os_cause *cause);
-
 /* Sets a terminal raw: 8 data bits, no parity, 1 stop bit, no flow control. */
 int grobo_i_posix_make_raw(int fd, grobo_os_cause *cause);
 
@@ -59,10 +53,13 @@ int grobo_i_posix_make_raw(int fd, grobo_os_cause *cause);
 int grobo_i_posix_read(grobo_port *port, void *buf, size_t size, grobo_os_cause *cause);
 int grobo_i_posix_write(grobo_port *port, const void *buf, size_t size, grobo_os_cause *cause);
 
-/* A port without a connection to wait for: grobo_port_ops.ready. */
-int grobo_i_posix_ready(grobo_port *port, grobo_os_cause *cause);
+/* Sets a speed, reads it back; returns the rate in effect or GROBO_ERR_*. */
+int grobo_i_posix_set_baud(int fd, int baud_bps, grobo_os_cause *cause);
 
-/* The same for a rate without a B constant; systems without such rates refuse. */
+/* The rate a descriptor runs at, 0 for one that nobody knows, or GROBO_ERR_*. */
+int grobo_i_posix_get_baud(int fd, grobo_os_cause *cause);
+
+/* Sets a rate without a B constant; systems without such rates refuse. */
 int grobo_i_posix_set_custom_baud(int fd, int baud_bps, grobo_os_cause *cause);
 
 /* The rate that is set, when it is one without a B constant; else 0. */

@@ -37,10 +37,9 @@ static int open_slave(grobo_port *port, int baud_bps, grobo_os_cause *cause)
     if (grantpt(port->fd) != 0 || unlockpt(port->fd) != 0 || (path = ptsname(port->fd)) == NULL) {
         return grobo_i_posix_fail(cause, errno, "unlockpt");
     }
-    if (strlen(path) >= sizeof port->path) {
+    if (grobo_i_port_copy(port->path, sizeof port->path, path) < 0) {
         return grobo_i_port_refuse(cause, GROBO_ERR_SPACE, "name of the terminal too long");
     }
-    memcpy(port->path, path, strlen(path) + 1);
     port->slave = open(port->path, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
     if (port->slave < 0) {
         return grobo_i_posix_fail(cause, errno, "open");
@@ -117,7 +116,7 @@ const grobo_port_ops *grobo_port_pty_ops(void)
         .size_bytes = sizeof(grobo_port),
         .open = pty_open,
         .close = pty_close,
-        .ready = grobo_i_posix_ready,
+        .ready = grobo_i_port_ready,
         .read = grobo_i_posix_read,
         .write = grobo_i_posix_write,
         .waiting = grobo_i_posix_waiting,
@@ -133,11 +132,7 @@ const grobo_port_ops *grobo_port_pty_ops(void)
 
 int grobo_port_pty_path(const grobo_port *port, char *path, size_t path_bytes)
 {
-    if (strlen(port->path) >= path_bytes) {
-        return GROBO_ERR_SPACE;
-    }
-    memcpy(path, port->path, strlen(port->path) + 1);
-    return GROBO_OK;
+    return grobo_i_port_copy(path, path_bytes, port->path);
 }
 
 int grobo_port_pty_baud(const grobo_port *port)

@@ -3,8 +3,6 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
-#include <stdio.h>
-#include <string.h>
 #include <sys/file.h>
 #include <sys/ioctl.h>
 #include <sys/stat.h>
@@ -23,12 +21,7 @@ static int refuse_busy(const char *device, grobo_os_cause *cause)
     char name[64];
     int pid = grobo_port_owner(device, name, sizeof name);
 
-    if (pid == 0) {
-        return grobo_i_port_refuse(cause, GROBO_ERR_BUSY, "held by another program");
-    }
-    cause->code = EBUSY;
-    snprintf(cause->text, sizeof cause->text, "held by %s (pid %d)", name, pid);
-    return GROBO_ERR_BUSY;
+    return grobo_i_port_refuse_busy(cause, EBUSY, pid, name);
 }
 
 /* Looks before opening: to open something that is no terminal may have consequences. */
@@ -173,7 +166,7 @@ const grobo_port_ops *grobo_port_serial_ops(void)
         .size_bytes = sizeof(grobo_port),
         .open = serial_open,
         .close = serial_close,
-        .ready = grobo_i_posix_ready,
+        .ready = grobo_i_port_ready,
         .read = grobo_i_posix_read,
         .write = grobo_i_posix_write,
         .waiting = grobo_i_posix_waiting,

@@ -5,8 +5,6 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
-#include <stdio.h>
-#include <string.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -17,22 +15,19 @@
 #define MSG_NOSIGNAL 0
 #endif
 
-int grobo_i_posix_look_up(const char *device, int flags, struct addrinfo **found,
+int grobo_i_posix_look_up(const char *device, bool numeric, struct addrinfo **found,
                           grobo_os_cause *cause)
 {
-    const struct addrinfo hints = {
-        .ai_flags = flags | AI_NUMERICSERV, .ai_family = AF_UNSPEC, .ai_socktype = SOCK_STREAM};
+    const struct addrinfo hints = {.ai_flags = AI_NUMERICSERV | (numeric ? AI_NUMERICHOST : 0),
+                                   .ai_family = AF_UNSPEC,
+                                   .ai_socktype = SOCK_STREAM};
     grobo_i_tcp_name to;
-    const char *host = to.host;
-    int r = grobo_i_tcp_split(device, &to);
+    int r = grobo_i_tcp_split(device, numeric, &to, cause);
 
     if (r < 0) {
-        return grobo_i_port_refuse(cause, r, "not of the form tcp:HOST:PORT");
+        return r;
     }
-    if ((flags & AI_NUMERICHOST) != 0 && strcmp(to.host, "localhost") == 0) {
-        host = "127.0.0.1";
-    }
-    r = getaddrinfo(host, to.port, &hints, found);
+    r = getaddrinfo(to.host, to.port, &hints, found);
     return r == 0 ? GROBO_OK : grobo_i_port_refuse(cause, GROBO_ERR_NOENT, gai_strerror(r));
 }
 
@@ -87,7 +82,7 @@ static int tcp_open(grobo_port *port, const char *device, int baud_bps, grobo_os
 {
     struct addrinfo *found;
     int fd;
-    int r = grobo_i_posix_look_up(device, AI_NUMERICHOST, &found, cause);
+    int r = grobo_i_posix_look_up(device, true, &found, cause);
 
     (void)baud_bps;
     if (r < 0) {
@@ -143,26 +138,6 @@ static int tcp_write(grobo_port *port, const void *buf, size_t size, grobo_os_ca
     return grobo_i_posix_sent(put, cause);
 }
 
-/* What a connection was given will arrive. */
-static void tcp_discard_output(grobo_port *port)
-{
-    (void)port;
-}
-
-/* The server has a speed of its own, raw TCP has no way to ask for another. */
-static int tcp_set_baud(grobo_port *port, int baud_bps, grobo_os_cause *cause)
-{
-    (void)port;
-    (void)cause;
-    return baud_bps;
-}
-
-static int tcp_set_low_latency(grobo_port *port, grobo_os_cause *cause)
-{
-    (void)port;
-    return grobo_i_port_refuse(cause, GROBO_ERR_UNSUPPORTED, "a connection, not a serial port");
-}
-
 const grobo_port_ops *grobo_port_tcp_ops(void)
 {
     static const grobo_port_ops ops = {
@@ -174,9 +149,9 @@ const grobo_port_ops *grobo_port_tcp_ops(void)
         .read = tcp_read,
         .write = tcp_write,
         .waiting = grobo_i_posix_waiting,
-        .discard_output = tcp_discard_output,
-        .set_baud = tcp_set_baud,
-        .set_low_latency = tcp_set_low_latency,
+        .discard_output = grobo_i_tcp_discard_output,
+        .set_baud = grobo_i_tcp_set_baud,
+        .set_low_latency = grobo_i_tcp_set_low_latency,
         .socket = grobo_i_posix_socket,
         .handle = grobo_i_posix_handle,
     };
@@ -184,35 +159,22 @@ const grobo_port_ops *grobo_port_tcp_ops(void)
     return &ops;
 }
 
+static int find_numeric(const char *device, grobo_i_tcp_name *at, grobo_os_cause *cause)
+{
+    struct addrinfo *found;
+    int r = grobo_i_posix_look_up(device, false, &found, cause);
+
+    if (r < 0) {
+        return r;
+    }
+    r = getnameinfo(found->ai_addr, found->ai_addrlen, at->host, sizeof at->host, at->port,
+                    sizeof at->port, NI_NUMERICHOST | NI_NUMERICSERV);
+    freeaddrinfo(found);
+    return r == 0 ? GROBO_OK : grobo_i_port_refuse(cause, GROBO_ERR_NOENT, gai_strerror(r));
+}
+
 int grobo_port_resolve(const char *device, char *numeric, size_t numeric_bytes,
                        grobo_os_cause *cause)
 {
-    struct addrinfo *found;
-    char text[GROBO_DEVICE_MAX_BYTES];
-    char host[INET6_ADDRSTRLEN + 32];
-    char port[8];
-    int n;
-    int r;
-
-    if (strncmp(device, "tcp:", 4) != 0) {
-        n = snprintf(text, sizeof text, "%s", device);
-    } else {
-        r = grobo_i_posix_look_up(device, 0, &found, cause);
-        if (r < 0) {
-            return r;
-        }
-        r = getnameinfo(found->ai_addr, found->ai_addrlen, host, sizeof host, port, sizeof port,
-                        NI_NUMERICHOST | NI_NUMERICSERV);
-        n = snprintf(text, sizeof text, found->ai_family == AF_INET6 ? "tcp:[%s]:%s" : "tcp:%s:%s",
-                     host, port);
-        freeaddrinfo(found);
-        if (r != 0) {
-            return grobo_i_port_refuse(cause, GROBO_ERR_NOENT, gai_strerror(r));
-        }
-    }
-    if (n < 0 || (size_t)n >= sizeof text || (size_t)n >= numeric_bytes) {
-        return grobo_i_port_refuse(cause, GROBO_ERR_SPACE, "device name too long");
-    }
-    memcpy(numeric, text, (size_t)n + 1);
-    return GROBO_OK;
+    return grobo_i_tcp_resolve(device, numeric, numeric_bytes, find_numeric, cause);
 }

@@ -40,17 +40,6 @@ static int last_error(void)
     return error_of(GetLastError());
 }
 
-static int copy_path(char *to, size_t size, const char *path)
-{
-    size_t length = strlen(path);
-
-    if (length >= size) {
-        return GROBO_ERR_SPACE;
-    }
-    memcpy(to, path, length + 1);
-    return 0;
-}
-
 /*
  * The true path of what is there, every link followed, without the \\?\ that the system puts before
  * it; GROBO_ERR_* where it cannot be told.
@@ -77,9 +66,9 @@ static int true_path(const char *path, char *to, size_t size)
     }
     if (strncmp(text, "\\\\?\\UNC\\", 8) == 0) {
         text[6] = '\\';
-        return copy_path(to, size, text + 6);
+        return grobo_i_port_copy(to, size, text + 6);
     }
-    return copy_path(to, size, strncmp(text, "\\\\?\\", 4) == 0 ? text + 4 : text);
+    return grobo_i_port_copy(to, size, strncmp(text, "\\\\?\\", 4) == 0 ? text + 4 : text);
 }
 
 /* ---- writing ------------------------------------------------------------------------------ */
@@ -145,7 +134,7 @@ static int create(grobo_file *file, const char *path, bool exclusive)
     if (there && (attributes & FILE_ATTRIBUTE_DIRECTORY) != 0) {
         return GROBO_ERR_ISDIR;
     }
-    result = copy_path(file->path, sizeof file->path, path);
+    result = grobo_i_port_copy(file->path, sizeof file->path, path);
     if (result < 0) {
         return result;
     }
@@ -259,7 +248,7 @@ static int inside(const char *directory, const char *name, char *path, size_t pa
         return last_error();
     }
     return (attributes & FILE_ATTRIBUTE_DIRECTORY) != 0 ? GROBO_ERR_ISDIR
-                                                        : copy_path(path, path_bytes, real);
+                                                        : grobo_i_port_copy(path, path_bytes, real);
 }
 
 const grobo_files *grobo_files_os(void)

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* The listening side of "tcp:HOST:PORT", and pseudo-terminals, which Windows has not. */
-#include <string.h>
-
 #include "ports/win32/win32.h"
 
 /* Which TCP port a socket has. */
@@ -38,7 +36,7 @@ int grobo_port_listen(const char *device, grobo_socket *listener, int *tcp_port,
 {
     struct addrinfo *at;
     SOCKET made;
-    int r = grobo_i_win32_look_up(device, AI_NUMERICHOST, &at, cause);
+    int r = grobo_i_win32_look_up(device, true, &at, cause);
 
     if (r < 0) {
         return r;

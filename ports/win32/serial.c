@@ -55,14 +55,11 @@ static int set_line(HANDLE com, int baud_bps, grobo_os_cause *cause)
         DCB now;
 
         r = get_state(com, &now, cause);
-        if (r >= 0 && grobo_i_baud_fits(baud_bps, (int)now.BaudRate)) {
-            return (int)now.BaudRate;
+        if (r >= 0) {
+            r = grobo_i_port_check_baud(baud_bps, (int)now.BaudRate, cause);
         }
         if (r >= 0) {
-            cause->code = 0;
-            snprintf(cause->text, sizeof cause->text, "device takes %lu bps for %d", now.BaudRate,
-                     baud_bps);
-            r = GROBO_ERR_UNSUPPORTED;
+            return r;
         }
     }
     /* Some drivers keep half of what they refuse. */
@@ -83,13 +80,7 @@ static int refuse_busy(const char *device, DWORD code, grobo_os_cause *cause)
     char name[64];
     int pid = grobo_port_owner(device, name, sizeof name);
 
-    if (pid == 0) {
-        (void)grobo_i_port_refuse(cause, GROBO_ERR_BUSY, "held by another program");
-    } else {
-        snprintf(cause->text, sizeof cause->text, "held by %s (pid %d)", name, pid);
-    }
-    cause->code = (int)code;
-    return GROBO_ERR_BUSY;
+    return grobo_i_port_refuse_busy(cause, (int)code, pid, name);
 }
 
 /* A path of a file: CreateFile() would open it. */
@@ -223,13 +214,6 @@ static void serial_close(grobo_port *port)
 
 /* ---- bytes -------------------------------------------------------------------------------- */
 
-static int serial_ready(grobo_port *port, grobo_os_cause *cause)
-{
-    (void)port;
-    (void)cause;
-    return 1;
-}
-
 /* The pump has hung up; it left its reason. */
 static int fail_pump(grobo_port *port, const char *what, grobo_os_cause *cause)
 {
@@ -281,7 +265,7 @@ const grobo_port_ops *grobo_port_serial_ops(void)
         .size_bytes = sizeof(grobo_port),
         .open = serial_open,
         .close = serial_close,
-        .ready = serial_ready,
+        .ready = grobo_i_port_ready,
         .read = serial_read,
         .write = serial_write,
         .waiting = grobo_i_win32_waiting,

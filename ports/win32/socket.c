@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* Sockets: their start, pairs of them, what serial port and connection do alike. */
-#include <stdio.h>
-#include <string.h>
-
 #include "ports/win32/win32.h"
 
 #include <timeapi.h>
@@ -45,26 +42,23 @@ int grobo_i_win32_prepare(SOCKET made, grobo_os_cause *cause)
     return GROBO_OK;
 }
 
-int grobo_i_win32_look_up(const char *device, int flags, struct addrinfo **found,
+int grobo_i_win32_look_up(const char *device, bool numeric, struct addrinfo **found,
                           grobo_os_cause *cause)
 {
-    const struct addrinfo hints = {
-        .ai_flags = flags | AI_NUMERICSERV, .ai_family = AF_UNSPEC, .ai_socktype = SOCK_STREAM};
+    const struct addrinfo hints = {.ai_flags = AI_NUMERICSERV | (numeric ? AI_NUMERICHOST : 0),
+                                   .ai_family = AF_UNSPEC,
+                                   .ai_socktype = SOCK_STREAM};
     grobo_i_tcp_name to;
-    const char *host = to.host;
-    int r = grobo_i_tcp_split(device, &to);
+    int r = grobo_i_tcp_split(device, numeric, &to, cause);
 
     if (r < 0) {
-        return grobo_i_port_refuse(cause, r, "not of the form tcp:HOST:PORT");
+        return r;
     }
     r = grobo_port_start();
     if (r < 0) {
         return grobo_i_port_refuse(cause, r, "WSAStartup");
     }
-    if ((flags & AI_NUMERICHOST) != 0 && strcmp(to.host, "localhost") == 0) {
-        host = "127.0.0.1";
-    }
-    r = getaddrinfo(host, to.port, &hints, found);
+    r = getaddrinfo(to.host, to.port, &hints, found);
     if (r != 0) {
         (void)grobo_i_win32_fail(cause, (DWORD)r, "getaddrinfo");
         return GROBO_ERR_NOENT;

@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* Raw TCP to a serial server: "tcp:HOST:PORT". */
-#include <stdio.h>
-#include <string.h>
-
 #include "ports/win32/win32.h"
 
 /* A refused connection means: no such device; a lost one is another matter (error_of). */
@@ -28,7 +25,7 @@ static int tcp_open(grobo_port *port, const char *device, int baud_bps, grobo_os
     struct addrinfo *found;
     SOCKET made = INVALID_SOCKET;
     int one = 1;
-    int r = grobo_i_win32_look_up(device, AI_NUMERICHOST, &found, cause);
+    int r = grobo_i_win32_look_up(device, true, &found, cause);
 
     (void)baud_bps;
     if (r < 0) {
@@ -100,26 +97,6 @@ static int tcp_write(grobo_port *port, const void *buf, size_t size, grobo_os_ca
                : grobo_i_win32_fail(cause, (DWORD)WSAGetLastError(), "write");
 }
 
-/* What a connection was given will arrive. */
-static void tcp_discard_output(grobo_port *port)
-{
-    (void)port;
-}
-
-/* The server has a speed of its own, raw TCP has no way to ask for another. */
-static int tcp_set_baud(grobo_port *port, int baud_bps, grobo_os_cause *cause)
-{
-    (void)port;
-    (void)cause;
-    return baud_bps;
-}
-
-static int tcp_set_low_latency(grobo_port *port, grobo_os_cause *cause)
-{
-    (void)port;
-    return grobo_i_port_refuse(cause, GROBO_ERR_UNSUPPORTED, "a connection, not a serial port");
-}
-
 static grobo_handle tcp_handle(const grobo_port *port)
 {
     return (grobo_handle)port->socket;
@@ -136,9 +113,9 @@ const grobo_port_ops *grobo_port_tcp_ops(void)
         .read = tcp_read,
         .write = tcp_write,
         .waiting = grobo_i_win32_waiting,
-        .discard_output = tcp_discard_output,
-        .set_baud = tcp_set_baud,
-        .set_low_latency = tcp_set_low_latency,
+        .discard_output = grobo_i_tcp_discard_output,
+        .set_baud = grobo_i_tcp_set_baud,
+        .set_low_latency = grobo_i_tcp_set_low_latency,
         .socket = grobo_i_win32_socket,
         .handle = tcp_handle,
     };
@@ -146,22 +123,17 @@ const grobo_port_ops *grobo_port_tcp_ops(void)
     return &ops;
 }
 
-/* The numeric form of the first address of a device; GROBO_OK or GROBO_ERR_*. */
-static int find_numeric(const char *device, char *text, size_t text_bytes, grobo_os_cause *cause)
+static int find_numeric(const char *device, grobo_i_tcp_name *at, grobo_os_cause *cause)
 {
     struct addrinfo *found;
-    char host[INET6_ADDRSTRLEN + 32];
-    char port[8];
     int code;
-    int r = grobo_i_win32_look_up(device, 0, &found, cause);
+    int r = grobo_i_win32_look_up(device, false, &found, cause);
 
     if (r < 0) {
         return r;
     }
-    code = getnameinfo(found->ai_addr, (socklen_t)found->ai_addrlen, host, sizeof host, port,
-                       sizeof port, NI_NUMERICHOST | NI_NUMERICSERV);
-    snprintf(text, text_bytes, found->ai_family == AF_INET6 ? "tcp:[%s]:%s" : "tcp:%s:%s", host,
-             port);
+    code = getnameinfo(found->ai_addr, (socklen_t)found->ai_addrlen, at->host, sizeof at->host,
+                       at->port, sizeof at->port, NI_NUMERICHOST | NI_NUMERICSERV);
     freeaddrinfo(found);
     if (code != 0) {
         (void)grobo_i_win32_fail(cause, (DWORD)code, "getnameinfo");
@@ -173,21 +145,5 @@ static int find_numeric(const char *device, char *text, size_t text_bytes, grobo
 int grobo_port_resolve(const char *device, char *numeric, size_t numeric_bytes,
                        grobo_os_cause *cause)
 {
-    char text[GROBO_DEVICE_MAX_BYTES];
-    size_t size;
-
-    if (strncmp(device, "tcp:", 4) == 0) {
-        int r = find_numeric(device, text, sizeof text, cause);
-
-        if (r < 0) {
-            return r;
-        }
-        device = text;
-    }
-    size = strlen(device);
-    if (size >= numeric_bytes || size >= GROBO_DEVICE_MAX_BYTES) {
-        return grobo_i_port_refuse(cause, GROBO_ERR_SPACE, "device name too long");
-    }
-    memcpy(numeric, device, size + 1);
-    return GROBO_OK;
+    return grobo_i_tcp_resolve(device, numeric, numeric_bytes, find_numeric, cause);
 }

@@ -60,10 +60,8 @@ int grobo_i_win32_socket_pair(SOCKET pair[2], grobo_os_cause *cause);
 /* Sets a socket non-blocking, not inherited, without Nagle's delay. */
 int grobo_i_win32_prepare(SOCKET made, grobo_os_cause *cause);
 
-struct addrinfo;
-
-/* Finds the address of "tcp:HOST:PORT"; flags as of getaddrinfo(), freed by freeaddrinfo(). */
-int grobo_i_win32_look_up(const char *device, int flags, struct addrinfo **found,
+/* Finds the address of "tcp:HOST:PORT", numeric or by its name; freed by freeaddrinfo(). */
+int grobo_i_win32_look_up(const char *device, bool numeric, struct addrinfo **found,
                           grobo_os_cause *cause);
 
 /* Makes a socket for an address; an error leaves none behind. */
@@ -77,7 +75,7 @@ grobo_socket grobo_i_win32_socket(const grobo_port *port);
 /* Has the system's timers tick each millisecond, or as they did; calls are counted. */
 void grobo_i_win32_tick(bool fast);
 
-/* ---- serial ports: pump.c, name.c, lock.c ------------------------------------------------- */
+/* ---- serial ports: pump.c, name.c ------------------------------------------------------- */
 
 /* Starts to move bytes between port->com and port->socket. */
 int grobo_i_win32_pump_start(grobo_port *port, grobo_os_cause *cause);

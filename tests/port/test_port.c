@@ -11,6 +11,8 @@
 
 #include <grobo/port.h>
 
+#include "ports/common/common.h"
+
 static void the_clock_goes_on(void **state)
 {
     int64_t before_us = grobo_now_us();
@@ -138,6 +140,24 @@ static void waiting_tells_what_is_ready(void **state)
     free(port);
 }
 
+static int rate_taken(int asked_bps, int actual_bps)
+{
+    grobo_os_cause cause;
+
+    return grobo_i_port_check_baud(asked_bps, actual_bps, &cause);
+}
+
+static void a_tolerance_of_two_percent(void **state)
+{
+    (void)state;
+    assert_int_equal(rate_taken(115200, 115200), 115200);
+    assert_int_equal(rate_taken(115200, 117504), 117504);
+    assert_int_equal(rate_taken(115200, 117600), GROBO_ERR_UNSUPPORTED);
+    assert_int_equal(rate_taken(76800, 76923), 76923);
+    assert_int_equal(rate_taken(115200, 0), GROBO_ERR_UNSUPPORTED);
+    assert_int_equal(rate_taken(2000000, 115200), GROBO_ERR_UNSUPPORTED);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -146,6 +166,7 @@ int main(void)
         cmocka_unit_test(threads_exclude_each_other),
         cmocka_unit_test(a_thread_does_not_join_itself),
         cmocka_unit_test(waiting_tells_what_is_ready),
+        cmocka_unit_test(a_tolerance_of_two_percent),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -227,17 +227,6 @@ static void this_machines_ports_can_be_listed(void **state)
     }
 }
 
-static void a_tolerance_of_two_percent(void **state)
-{
-    (void)state;
-    assert_true(grobo_i_baud_fits(115200, 115200));
-    assert_true(grobo_i_baud_fits(115200, 117504));
-    assert_false(grobo_i_baud_fits(115200, 117600));
-    assert_true(grobo_i_baud_fits(76800, 76923));
-    assert_false(grobo_i_baud_fits(115200, 0));
-    assert_false(grobo_i_baud_fits(2000000, 115200));
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -248,7 +237,6 @@ int main(void)
         cmocka_unit_test(a_port_of_somebody_else_is_not_to_be_opened),
         cmocka_unit_test(a_device_without_a_link_is_its_own_identity),
         cmocka_unit_test(this_machines_ports_can_be_listed),
-        cmocka_unit_test(a_tolerance_of_two_percent),
     };
 
     return cmocka_run_group_tests(tests, set_up, tear_down);
