@@ -19,63 +19,13 @@
 #include <cmocka.h>
 #include <event2/event.h>
 
-#include <grobo/session.h>
-
 #include "loop.h"
 #include "os.h"
+#include "session_kit.h"
 
-static struct event_base *base;
-static grobo_session *session;
 static int watch;       /* inotify of the folders of devices and of names that stay */
 static int64_t gone_us; /* when a device went */
 static int64_t here_us; /* when a name came */
-static struct {
-    int ups, losts, fails;
-    int error;
-    int64_t at_us;
-    int job, result;
-    size_t sent_bytes;
-} seen;
-
-static void on_event(grobo_session *from, grobo_session_event event, int error, void *ctx)
-{
-    (void)from;
-    (void)ctx;
-    seen.error = error;
-    seen.at_us = grobo_now_us();
-    switch (event) {
-    case GROBO_SESSION_EVENT_UP:
-        seen.ups++;
-        break;
-    case GROBO_SESSION_EVENT_LOST:
-        seen.losts++;
-        break;
-    case GROBO_SESSION_EVENT_FAILED:
-        seen.fails++;
-        break;
-    }
-    event_base_loopbreak(base);
-}
-
-static void on_robot(void *ctx, const grobo_event *event)
-{
-    (void)ctx;
-    if (event->kind == GROBO_EVENT_JOB) {
-        seen.job = event->u.job.number;
-        seen.result = event->u.job.result;
-        event_base_loopbreak(base);
-    }
-}
-
-static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes, size_t size,
-                   void *ctx)
-{
-    (void)now_us;
-    (void)bytes;
-    (void)ctx;
-    seen.sent_bytes += direction == GROBO_DIR_TX ? size : 0;
-}
-
 static void on_change(evutil_socket_t fd, short what, void *ctx)
 {
     union {
@@ -100,35 +50,19 @@ static void on_change(evutil_socket_t fd, short what, void *ctx)
     }
 }
 
-static int await(int job)
-{
-    assert_true(job > 0);
-    loop_run_until(base, &seen.job, job);
-    return seen.result;
-}
-
 /* Where the joints are, in tenths of a degree. */
 static void sense(int16_t *angle_ddeg, size_t n)
 {
     grobo_robot *robot = grobo_session_robot(session);
 
     assert_int_equal(
-        await(grobo_session_sense(session, GROBO_JOINTS_ALL((int)n), GROBO_SENSE_FULL)), GROBO_OK);
+        session_kit_await(grobo_session_sense(session, GROBO_JOINTS_ALL((int)n), GROBO_SENSE_FULL)),
+        GROBO_OK);
     for (size_t i = 0; i < n; i++) {
         grobo_joint_info info;
 
         assert_int_equal(grobo_robot_joint(robot, (int)i, grobo_now_us(), &info), GROBO_OK);
         angle_ddeg[i] = (int16_t)(grobo_deg_from_rad(info.state.angle_rad) * 10.0);
-    }
-}
-
-/* Lets time pass, whatever happens meanwhile. */
-static void pass(int64_t span_us)
-{
-    int64_t end_us = grobo_now_us() + span_us;
-
-    while (grobo_now_us() < end_us) {
-        (void)loop_run(base, end_us - grobo_now_us());
     }
 }
 
@@ -146,7 +80,8 @@ static int set_going(void)
     grobo_posture far_off;
 
     assert_int_equal(
-        await(grobo_session_torque(session, GROBO_JOINTS_ALL(JOINTS), GROBO_TORQUE_ON)), GROBO_OK);
+        session_kit_await(grobo_session_torque(session, GROBO_JOINTS_ALL(JOINTS), GROBO_TORQUE_ON)),
+        GROBO_OK);
     assert_int_equal(grobo_posture_init(&far_off, JOINTS), GROBO_OK);
     assert_int_equal(grobo_posture_set_deg(&far_off, 13, 30.0), GROBO_OK);
     far_off.time_us = 20000000;
@@ -166,7 +101,7 @@ static void lose_it(int job)
     assert_int_equal(grobo_session_get_state(session), GROBO_SESSION_WAITING);
 
     cpu_us = test_cpu_us();
-    pass(1000000);
+    loop_run_for(base, 1000000);
     cpu_us = test_cpu_us() - cpu_us;
     print_message("told %lld us after the device went; %lld us of processor time in 1 s\n",
                   (long long)(seen.at_us - gone_us), (long long)cpu_us);
@@ -179,35 +114,30 @@ static void lose_it(int job)
 /* Another adapter takes the old name: it is not the robot. */
 static void leave_the_other_alone(const char *device)
 {
-    seen.sent_bytes = 0;
+    seen.tapped[GROBO_DIR_TX] = 0;
     ask("@other");
     while (here_us == 0) {
         assert_false(loop_run(base, 20000000));
     }
     assert_int_equal(access(device, F_OK), 0);
-    pass(500000);
-    assert_int_equal(seen.sent_bytes, 0);
+    loop_run_for(base, 500000);
+    assert_int_equal(seen.tapped[GROBO_DIR_TX], 0);
     assert_int_equal(grobo_session_get_state(session), GROBO_SESSION_WAITING);
 }
 
 static void an_adapter_pulled_out_in_a_motion_and_put_back(void **state)
 {
-    const grobo_session_config config = {.base = base,
-                                         .device = getenv("GROBO_TEST_DEVICE"),
-                                         .reconnect = true,
-                                         .on_event = on_event,
-                                         .on_robot = on_robot,
-                                         .on_tap = on_tap};
+    const char *device = getenv("GROBO_TEST_DEVICE");
     int16_t before_ddeg[JOINTS];
     int16_t after_ddeg[JOINTS];
     uint64_t frames;
 
     (void)state;
-    assert_int_equal(grobo_session_new(&config, &session), GROBO_OK);
+    session_kit_make((grobo_session_config){.device = device, .reconnect = true});
     assert_int_equal(grobo_session_open(session), GROBO_OK);
     loop_run_until(base, &seen.ups, 1);
     lose_it(set_going());
-    leave_the_other_alone(config.device);
+    leave_the_other_alone(device);
 
     frames = grobo_robot_get_counters(grobo_session_robot(session))->motion_frames;
     ask("@plug");
@@ -217,7 +147,7 @@ static void an_adapter_pulled_out_in_a_motion_and_put_back(void **state)
     assert_string_equal(grobo_session_device(session), getenv("GROBO_TEST_NAME"));
 
     sense(before_ddeg, JOINTS);
-    pass(1000000);
+    loop_run_for(base, 1000000);
     sense(after_ddeg, JOINTS);
     assert_memory_equal(after_ddeg, before_ddeg, sizeof before_ddeg);
     assert_int_equal(grobo_robot_get_counters(grobo_session_robot(session))->motion_frames, frames);
@@ -228,9 +158,8 @@ static int set_up(void **state)
 {
     struct event *changes;
 
-    base = grobo_loop_new();
+    session_kit_begin();
     watch = inotify_init1(IN_NONBLOCK);
-    assert_non_null(base);
     assert_true(inotify_add_watch(watch, "/dev", IN_DELETE) >= 0);
     assert_true(inotify_add_watch(watch, "/dev/serial/by-id", IN_CREATE | IN_MOVED_TO) >= 0);
     changes = event_new(base, watch, EV_READ | EV_PERSIST, on_change, NULL);
@@ -241,9 +170,8 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    grobo_session_free(session);
     event_free(*state);
-    event_base_free(base);
+    session_kit_end();
     return close(watch);
 }
 

@@ -14,57 +14,29 @@
 #include <cmocka.h>
 #include <event2/event.h>
 
-#include <grobo/session.h>
-#include <grobo/sim_server.h>
-
+#include "folder.h"
 #include "loop.h"
 #include "os.h"
+#include "session_kit.h"
 
 enum { NECK = 13, HANG_UPS = 9, MOST = 5, IDLE_US = 2000000 };
 
-static struct event_base *base;
-static grobo_session *session;
 static grobo_sim_server *server;
-static char folder[128];
 
-/* What the session said. */
-static struct {
-    int ups, losts, fails, rounds;
-    int error;     /* of the last event of the line */
-    int64_t at_us; /* when it came */
-    int job;       /* the last that ended */
-    int result;
-    int play_error;
-} seen;
+/* What the engine said of motions and of readings. */
+static int play_error, rounds;
 
 /* What the servos heard. */
 static struct {
     int reads, writes;
 } heard;
 
-static void on_event(grobo_session *from, grobo_session_event event, int error, void *ctx)
+static void on_robot(const grobo_event *event)
 {
-    (void)from;
-    (void)ctx;
-    seen.error = error;
-    seen.at_us = grobo_now_us();
-    seen.ups += event == GROBO_SESSION_EVENT_UP;
-    seen.losts += event == GROBO_SESSION_EVENT_LOST;
-    seen.fails += event == GROBO_SESSION_EVENT_FAILED;
-    event_base_loopbreak(base);
-}
-
-static void on_robot(void *ctx, const grobo_event *event)
-{
-    (void)ctx;
-    if (event->kind == GROBO_EVENT_JOB) {
-        seen.job = event->u.job.number;
-        seen.result = event->u.job.result;
-        event_base_loopbreak(base);
-    } else if (event->kind == GROBO_EVENT_PLAY) {
-        seen.play_error = event->u.play.error;
+    if (event->kind == GROBO_EVENT_PLAY) {
+        play_error = event->u.play.error;
     } else if (event->kind == GROBO_EVENT_ROUND) {
-        seen.rounds++;
+        rounds++;
         event_base_loopbreak(base);
     }
 }
@@ -85,25 +57,18 @@ static int set_up(void **state)
 {
     static const grobo_robot_config robot = {.sense_interval_us = 300000};
     grobo_sim_config sim = {.hook = on_sim};
-    char link[160];
-    grobo_os_cause cause;
+    const char *link;
 
-    (void)state;
-    memset(&seen, 0, sizeof seen);
+    (void)folder_set_up(state);
+    link = in_folder("gr001");
     memset(&heard, 0, sizeof heard);
-    base = grobo_loop_new();
-    assert_non_null(base);
-    test_folder_new(folder, sizeof folder);
-    snprintf(link, sizeof link, "%s/gr001", folder);
-    grobo_sim_server_config serving = {.base = base, .sim = &sim, .link = link, .replug_ms = -1};
-    assert_int_equal(grobo_sim_server_new(&serving, &server, &cause), GROBO_OK);
-    grobo_session_config config = {.base = base,
-                                   .device = link,
-                                   .reconnect = true,
-                                   .robot = &robot,
-                                   .on_event = on_event,
-                                   .on_robot = on_robot};
-    assert_int_equal(grobo_session_new(&config, &session), GROBO_OK);
+    rounds = 0;
+    play_error = 0;
+    session_kit_begin();
+    seen.then_robot = on_robot;
+    server =
+        loop_serve(base, (grobo_sim_server_config){.sim = &sim, .link = link, .replug_ms = -1});
+    session_kit_make((grobo_session_config){.device = link, .reconnect = true, .robot = &robot});
     assert_int_equal(grobo_session_open(session), GROBO_OK);
     return 0;
 }
@@ -111,26 +76,10 @@ static int set_up(void **state)
 static int tear_down(void **state)
 {
     (void)state;
-    grobo_session_free(session);
     grobo_sim_server_free(server);
-    event_base_free(base);
-    return test_folder_remove(folder);
-}
-
-static int await(int job)
-{
-    assert_true(job > 0);
-    loop_run_until(base, &seen.job, job);
-    return seen.result;
-}
-
-static void run_for(int64_t us)
-{
-    int64_t end_us = grobo_now_us() + us;
-
-    while (grobo_now_us() < end_us) {
-        (void)loop_run(base, end_us - grobo_now_us());
-    }
+    session_kit_end();
+    folder_remove(NULL, 0);
+    return 0;
 }
 
 static void unplug(void)
@@ -174,7 +123,7 @@ static void a_lost_port_is_told_within_10_ms_and_found_within_250(void **state)
         unplug();
         told += seen.at_us - from_us <= 10000;
         assert_int_equal(grobo_session_check(session), GROBO_ERR_CLOSED);
-        run_for(20000 * i); /* at any moment between two attempts */
+        loop_run_for(base, 20000 * i); /* at any moment between two attempts */
         from_us = grobo_now_us();
         plug();
         found += seen.at_us - from_us <= 250000;
@@ -192,9 +141,9 @@ static void waiting_for_a_port_takes_less_than_a_hundredth(void **state)
     (void)state;
     loop_run_until(base, &seen.ups, 1);
     unplug();
-    run_for(500000); /* the first attempts follow each other fast */
+    loop_run_for(base, 500000); /* the first attempts follow each other fast */
     cpu_us = test_cpu_us();
-    run_for(IDLE_US);
+    loop_run_for(base, IDLE_US);
     cpu_us = test_cpu_us() - cpu_us;
     print_message("# %d us of processor time in %d us\n", (int)cpu_us, IDLE_US);
     assert_true(cpu_us < IDLE_US / 100);
@@ -206,14 +155,14 @@ static void waiting_for_a_port_takes_less_than_a_hundredth(void **state)
 static void expect_stillness(void)
 {
     grobo_sim_view before;
-    int rounds;
+    int before_rounds;
 
     memset(&heard, 0, sizeof heard);
     plug();
-    run_for(700000);
+    loop_run_for(base, 700000);
     before = look(NECK);
-    rounds = seen.rounds;
-    loop_run_until(base, &seen.rounds, rounds + 2);
+    before_rounds = rounds;
+    loop_run_until(base, &rounds, before_rounds + 2);
     assert_int_equal(heard.writes, 0);
     assert_true(heard.reads >= 40);
     assert_int_equal(look(NECK).angle_mdeg, before.angle_mdeg);
@@ -237,16 +186,17 @@ static void nothing_moves_by_itself_after_a_move_was_cut(void **state)
 
     (void)state;
     loop_run_until(base, &seen.ups, 1);
-    assert_int_equal(await(grobo_session_torque(session, GROBO_JOINTS_ALL(20), GROBO_TORQUE_ON)),
-                     GROBO_OK);
+    assert_int_equal(
+        session_kit_await(grobo_session_torque(session, GROBO_JOINTS_ALL(20), GROBO_TORQUE_ON)),
+        GROBO_OK);
     move = grobo_session_move(session, &target);
-    run_for(200000);
+    loop_run_for(base, 200000);
     unplug();
-    assert_int_equal(await(move), GROBO_ERR_UNPLUGGED);
+    assert_int_equal(session_kit_await(move), GROBO_ERR_UNPLUGGED);
     expect_stillness();
     /* Asked, it moves. */
     target = neck(-10, 100000);
-    assert_int_equal(await(grobo_session_move(session, &target)), GROBO_OK);
+    assert_int_equal(session_kit_await(grobo_session_move(session, &target)), GROBO_OK);
     assert_true(heard.writes > 0);
     assert_in_range(look(NECK).angle_mdeg + 20000, 9900, 10100);
 }
@@ -268,12 +218,12 @@ static void nothing_moves_by_itself_after_a_motion_was_cut(void **state)
 
     (void)state;
     loop_run_until(base, &seen.ups, 1);
-    assert_int_equal(await(grobo_session_play(session, &nod, NULL)), GROBO_OK);
-    run_for(1000000);
+    assert_int_equal(session_kit_await(grobo_session_play(session, &nod, NULL)), GROBO_OK);
+    loop_run_for(base, 1000000);
     unplug();
-    assert_int_equal(seen.play_error, GROBO_ERR_UNPLUGGED);
+    assert_int_equal(play_error, GROBO_ERR_UNPLUGGED);
     expect_stillness();
-    assert_int_equal(await(grobo_session_play(session, &nod, NULL)), GROBO_OK);
+    assert_int_equal(session_kit_await(grobo_session_play(session, &nod, NULL)), GROBO_OK);
 }
 
 #define RECONNECT(f) cmocka_unit_test_setup_teardown(f, set_up, tear_down)

@@ -11,10 +11,10 @@
 
 #include <grobo/serial.h>
 
+#include "counted_mem.h"
 #include "line.h"
 #include "loop.h"
 #include "os.h"
-#include "resources.h"
 
 static test_line line;
 /* Of the calls that wait, which none of this mode does: longer than a busy machine may take. */
@@ -324,23 +324,23 @@ static void it_may_be_freed_in_on_event(void **state)
 
 static void each_lack_of_memory_is_told_and_leaks_nothing(void **state)
 {
-    test_mem mem;
+    counted_mem counter;
+    const grobo_mem mem = counted_mem_of(&counter);
     const grobo_serial_config config = {.device = line.device,
                                         .base = base,
                                         .mode = GROBO_SERIAL_ASYNC,
                                         .on_data = on_data,
-                                        .mem = &mem.mem};
+                                        .mem = &mem};
     int failures = 0;
     int r = GROBO_ERR_NOMEM;
 
     (void)state;
-    test_mem_init(&mem, 0);
     grobo_serial_close(serial);
-    for (int n = 0; r == GROBO_ERR_NOMEM; n++) {
+    for (size_t n = 1; r == GROBO_ERR_NOMEM; n++) {
         grobo_serial *made = NULL;
 
-        assert_true(n < 20);
-        mem.allocations_left = n;
+        assert_true(n <= 20);
+        counter = (counted_mem){.fail_at = n};
         r = grobo_serial_new(&config, &made);
         if (r == GROBO_OK) {
             r = grobo_serial_open(made);
@@ -349,7 +349,7 @@ static void each_lack_of_memory_is_told_and_leaks_nothing(void **state)
             assert_null(made);
         }
         failures += r == GROBO_ERR_NOMEM ? 1 : 0;
-        assert_int_equal(mem.blocks, 0);
+        assert_int_equal(counter.bytes, 0);
     }
     assert_int_equal(r, GROBO_OK);
     assert_int_equal(failures, 3);

@@ -6,7 +6,6 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include <signal.h>
 #include <sys/stat.h>
@@ -18,7 +17,9 @@
 
 #include <grobo/serial.h>
 
+#include "folder.h"
 #include "line.h"
+#include "motion_files.h"
 
 /* Opens a device; returns the result, leaves the cause's text. */
 static int try_open(const char *device, char *text, size_t text_bytes)
@@ -39,25 +40,20 @@ static int try_open(const char *device, char *text, size_t text_bytes)
 
 static void what_is_no_serial_port_is_refused(void **state)
 {
-    char folder[] = "/tmp/grobo-test-XXXXXX";
-    char file[64];
+    static const char *const names[] = {"file"};
+    const char *file;
     char text[GROBO_CAUSE_MAX_BYTES];
-    FILE *made;
 
-    (void)state;
-    assert_non_null(mkdtemp(folder));
-    snprintf(file, sizeof file, "%s/file", folder);
+    (void)folder_set_up(state);
+    file = in_folder(names[0]);
     assert_int_equal(try_open(file, text, sizeof text), GROBO_ERR_NOENT);
     assert_string_equal(text, "stat: No such file or directory");
-    made = fopen(file, "w");
-    assert_non_null(made);
-    assert_int_equal(fclose(made), 0);
+    put_file(file, "");
     assert_int_equal(try_open(file, text, sizeof text), GROBO_ERR_TYPE);
     assert_int_equal(try_open(folder, text, sizeof text), GROBO_ERR_ISDIR);
     assert_int_equal(try_open("/dev/null", text, sizeof text), GROBO_ERR_TYPE);
     assert_int_equal(try_open("", text, sizeof text), GROBO_ERR_NOENT);
-    assert_int_equal(remove(file), 0);
-    assert_int_equal(rmdir(folder), 0);
+    folder_remove(names, 1);
 }
 
 /* A child that opens the device and keeps it until it is killed. */

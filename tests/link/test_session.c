@@ -13,129 +13,44 @@
 #include <cmocka.h>
 #include <event2/event.h>
 
-#include <grobo/session.h>
-#include <grobo/sim_server.h>
-
+#include "counted_mem.h"
+#include "folder.h"
 #include "line.h"
 #include "loop.h"
-#include "resources.h"
+#include "session_kit.h"
 
-static struct event_base *base;
-static grobo_session *session;
-
-/* What the callbacks saw. */
-static struct {
-    int ups, losts, fails;
-    int error;  /* of the last line event */
-    int robot;  /* engine's events */
-    int job;    /* number of the last job that ended */
-    int result; /* and its result */
-    size_t tapped[2];
-    bool free_on_event, free_on_robot, close_on_event, open_on_event;
-} seen;
-
-static void on_event(grobo_session *from, grobo_session_event event, int error, void *ctx)
+static void free_it(grobo_session *from)
 {
-    assert_ptr_equal(ctx, &seen);
-    seen.error = error;
-    switch (event) {
-    case GROBO_SESSION_EVENT_UP:
-        seen.ups++;
-        break;
-    case GROBO_SESSION_EVENT_LOST:
-        seen.losts++;
-        break;
-    case GROBO_SESSION_EVENT_FAILED:
-        seen.fails++;
-        break;
-    }
-    if (seen.free_on_event) {
-        grobo_session_free(from);
-        session = NULL;
-    } else if (seen.close_on_event) {
-        grobo_session_close(from);
-    } else if (seen.open_on_event) {
-        seen.open_on_event = false;
-        assert_int_equal(grobo_session_open(from), GROBO_OK);
-    }
+    grobo_session_free(from);
+    session = NULL;
+}
+
+static void free_it_then(const grobo_event *event)
+{
+    (void)event;
+    seen.then_robot = NULL;
+    free_it(session);
     event_base_loopbreak(base);
 }
 
-static void on_robot(void *ctx, const grobo_event *event)
+static void open_it(grobo_session *from)
 {
-    assert_ptr_equal(ctx, &seen);
-    seen.robot++;
-    if (event->kind == GROBO_EVENT_JOB) {
-        seen.job = event->u.job.number;
-        seen.result = event->u.job.result;
-        event_base_loopbreak(base);
-    }
-    if (seen.free_on_robot) {
-        grobo_session_free(session);
-        session = NULL;
-        seen.free_on_robot = false;
-        event_base_loopbreak(base);
-    }
+    seen.then_line = NULL;
+    assert_int_equal(grobo_session_open(from), GROBO_OK);
 }
-
-static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes, size_t size,
-                   void *ctx)
-{
-    assert_ptr_equal(ctx, &seen);
-    assert_true(now_us > 0);
-    assert_non_null(bytes);
-    seen.tapped[direction] += size;
-}
-
-/* ---- running ------------------------------------------------------------------------------ */
-
-/* Waits for a job that a request returned; its result. */
-static int await(int job)
-{
-    assert_true(job > 0);
-    loop_run_until(base, &seen.job, job);
-    assert_int_equal(seen.job, job);
-    return seen.result;
-}
-
-/* ---- set-up ------------------------------------------------------------------------------- */
 
 static int set_up(void **state)
 {
     (void)state;
-    memset(&seen, 0, sizeof seen);
-    session = NULL;
-    base = grobo_loop_new();
-    assert_non_null(base);
+    session_kit_begin();
     return 0;
 }
 
 static int tear_down(void **state)
 {
     (void)state;
-    grobo_session_free(session);
-    event_base_free(base);
+    session_kit_end();
     return 0;
-}
-
-static void make(grobo_session_config config)
-{
-    config.base = base;
-    config.on_event = on_event;
-    config.on_robot = on_robot;
-    config.on_tap = on_tap;
-    config.ctx = &seen;
-    assert_int_equal(grobo_session_new(&config, &session), GROBO_OK);
-}
-
-static grobo_sim_server *serve(grobo_sim_server_config config)
-{
-    grobo_sim_server *server;
-    grobo_os_cause cause;
-
-    config.base = base;
-    assert_int_equal(grobo_sim_server_new(&config, &server, &cause), GROBO_OK);
-    return server;
 }
 
 static void come_up(void)
@@ -159,15 +74,17 @@ static void assert_it_works(void)
     uint64_t rx_bytes;
     double angle_deg;
 
-    assert_int_equal(await(grobo_session_sense(session, all, GROBO_SENSE_FULL)), GROBO_OK);
+    assert_int_equal(session_kit_await(grobo_session_sense(session, all, GROBO_SENSE_FULL)),
+                     GROBO_OK);
     assert_int_equal(
         grobo_robot_posture(grobo_session_robot(session), grobo_now_us(), GROBO_NEVER_US, &now),
         model->n_joints);
     assert_int_equal(grobo_posture_init(&target, model->n_joints), GROBO_OK);
     assert_int_equal(grobo_posture_set_deg(&target, 13, 5.0), GROBO_OK);
     target.time_us = 100000;
-    assert_int_equal(await(grobo_session_move(session, &target)), GROBO_OK);
-    assert_int_equal(await(grobo_session_sense(session, all, GROBO_SENSE_FULL)), GROBO_OK);
+    assert_int_equal(session_kit_await(grobo_session_move(session, &target)), GROBO_OK);
+    assert_int_equal(session_kit_await(grobo_session_sense(session, all, GROBO_SENSE_FULL)),
+                     GROBO_OK);
     grobo_robot_posture(grobo_session_robot(session), grobo_now_us(), GROBO_NEVER_US, &now);
     assert_int_equal(grobo_posture_get_deg(&now, 13, &angle_deg), GROBO_OK);
     assert_true(angle_deg > 4.89 && angle_deg < 5.11);
@@ -182,7 +99,7 @@ static void assert_it_works(void)
 static void a_simulator_in_the_process(void **state)
 {
     (void)state;
-    make((grobo_session_config){.device = "sim"});
+    session_kit_make((grobo_session_config){.device = "sim"});
     assert_null(grobo_session_sim(session));
     come_up();
     assert_non_null(grobo_session_sim(session));
@@ -196,10 +113,11 @@ static void a_simulator_keeps_its_state_while_closed(void **state)
     grobo_sim_view view;
 
     (void)state;
-    make((grobo_session_config){.device = "sim"});
+    session_kit_make((grobo_session_config){.device = "sim"});
     come_up();
-    assert_int_equal(await(grobo_session_torque(session, GROBO_JOINT_BIT(3), GROBO_TORQUE_ON)),
-                     GROBO_OK);
+    assert_int_equal(
+        session_kit_await(grobo_session_torque(session, GROBO_JOINT_BIT(3), GROBO_TORQUE_ON)),
+        GROBO_OK);
     grobo_session_close(session);
     assert_int_equal(grobo_session_get_state(session), GROBO_SESSION_CLOSED);
     come_up();
@@ -209,10 +127,10 @@ static void a_simulator_keeps_its_state_while_closed(void **state)
 
 static void a_pseudo_terminal(void **state)
 {
-    grobo_sim_server *server = serve((grobo_sim_server_config){0});
+    grobo_sim_server *server = loop_serve(base, (grobo_sim_server_config){0});
 
     (void)state;
-    make((grobo_session_config){.device = grobo_sim_server_device(server)});
+    session_kit_make((grobo_session_config){.device = grobo_sim_server_device(server)});
     come_up();
     assert_string_equal(grobo_session_device(session), grobo_sim_server_device(server));
     assert_it_works();
@@ -222,10 +140,10 @@ static void a_pseudo_terminal(void **state)
 static void a_connection(void **state)
 {
     grobo_sim_server *server =
-        serve((grobo_sim_server_config){.no_pty = true, .tcp = "tcp:127.0.0.1:0"});
+        loop_serve(base, (grobo_sim_server_config){.no_pty = true, .tcp = "tcp:127.0.0.1:0"});
 
     (void)state;
-    make((grobo_session_config){.device = grobo_sim_server_device(server)});
+    session_kit_make((grobo_session_config){.device = grobo_sim_server_device(server)});
     come_up();
     assert_it_works();
     grobo_sim_server_free(server);
@@ -233,7 +151,7 @@ static void a_connection(void **state)
 
 static void auto_takes_the_first_port_that_answers(void **state)
 {
-    grobo_sim_server *server = serve((grobo_sim_server_config){0});
+    grobo_sim_server *server = loop_serve(base, (grobo_sim_server_config){0});
     test_line silent;
     const char *scan[4] = {"/dev/no-such-port", NULL, NULL, NULL};
 
@@ -241,7 +159,7 @@ static void auto_takes_the_first_port_that_answers(void **state)
     test_line_open(&silent);
     scan[1] = silent.device;
     scan[2] = grobo_sim_server_device(server);
-    make((grobo_session_config){.device = "auto", .scan = scan});
+    session_kit_make((grobo_session_config){.device = "auto", .scan = scan});
     come_up();
     assert_string_equal(grobo_session_device(session), grobo_sim_server_device(server));
     assert_it_works();
@@ -258,12 +176,12 @@ static void what_cannot_be_opened_is_told_at_once(void **state)
     const char *none[1] = {NULL};
 
     (void)state;
-    make((grobo_session_config){.device = "/dev/no-such-port"});
+    session_kit_make((grobo_session_config){.device = "/dev/no-such-port"});
     assert_int_equal(grobo_session_open(session), GROBO_ERR_NOENT);
     assert_true(strlen(grobo_session_cause(session)->text) > 0);
     assert_int_equal(grobo_session_get_state(session), GROBO_SESSION_CLOSED);
     grobo_session_free(session);
-    make((grobo_session_config){.device = "auto", .scan = none});
+    session_kit_make((grobo_session_config){.device = "auto", .scan = none});
     assert_int_equal(grobo_session_open(session), GROBO_ERR_NOTFOUND);
     assert_int_equal(grobo_session_get_state(session), GROBO_SESSION_CLOSED);
     assert_true(loop_run(base, 10000));
@@ -278,7 +196,7 @@ static void nobody_answers(void **state)
 
     (void)state;
     test_line_open(&silent);
-    make((grobo_session_config){.device = silent.device, .reconnect = true});
+    session_kit_make((grobo_session_config){.device = silent.device, .reconnect = true});
     assert_int_equal(grobo_session_open(session), GROBO_OK);
     loop_run_until(base, &seen.fails, 1);
     assert_int_equal(seen.error, GROBO_ERR_TIMEOUT);
@@ -288,7 +206,7 @@ static void nobody_answers(void **state)
     assert_int_equal(seen.robot, 0);
     grobo_session_free(session);
 
-    make((grobo_session_config){.device = "auto", .scan = scan});
+    session_kit_make((grobo_session_config){.device = "auto", .scan = scan});
     assert_int_equal(grobo_session_open(session), GROBO_OK);
     loop_run_until(base, &seen.fails, 2);
     assert_int_equal(seen.error, GROBO_ERR_NOTFOUND);
@@ -305,7 +223,7 @@ static void only_the_check_is_sent_before_somebody_answers(void **state)
 
     (void)state;
     test_line_open(&silent);
-    make((grobo_session_config){.device = silent.device});
+    session_kit_make((grobo_session_config){.device = silent.device});
     assert_int_equal(grobo_session_open(session), GROBO_OK);
     loop_run_until(base, &seen.fails, 1);
     size = test_line_read_some(&silent, bytes, sizeof bytes);
@@ -323,7 +241,7 @@ static void nobody_needs_to_answer_if_so_configured(void **state)
 
     (void)state;
     test_line_open(&silent);
-    make((grobo_session_config){.device = silent.device, .skip_check = true});
+    session_kit_make((grobo_session_config){.device = silent.device, .skip_check = true});
     come_up();
     test_line_close(&silent);
     loop_run_until(base, &seen.losts, 1);
@@ -335,7 +253,7 @@ static void requests_need_a_robot(void **state)
     grobo_trip_info trip;
 
     (void)state;
-    make((grobo_session_config){.device = "sim"});
+    session_kit_make((grobo_session_config){.device = "sim"});
     assert_int_equal(grobo_session_check(session), GROBO_ERR_CLOSED);
     assert_int_equal(grobo_session_sense(session, 1, GROBO_SENSE_FULL), GROBO_ERR_CLOSED);
     assert_int_equal(grobo_session_exit(session, GROBO_EXIT_HOLD), GROBO_ERR_CLOSED);
@@ -346,30 +264,30 @@ static void requests_need_a_robot(void **state)
     come_up();
     assert_int_equal(grobo_session_torque(session, 1, GROBO_TORQUE_ON), GROBO_ERR_LATCHED);
     assert_int_equal(grobo_session_reset(session), GROBO_OK);
-    assert_int_equal(await(grobo_session_torque(session, 1, GROBO_TORQUE_ON)), GROBO_OK);
+    assert_int_equal(session_kit_await(grobo_session_torque(session, 1, GROBO_TORQUE_ON)),
+                     GROBO_OK);
 }
 
 /* ---- lost and back ------------------------------------------------------------------------ */
 
 static void a_lost_port_is_found_again(void **state)
 {
-    char folder[] = "/tmp/grobo-session-XXXXXX";
-    char link[64];
+    const char *link;
     grobo_sim_server *server;
     int sense;
 
-    (void)state;
-    assert_non_null(mkdtemp(folder));
-    snprintf(link, sizeof link, "%s/gr001", folder);
-    server = serve((grobo_sim_server_config){.link = link});
-    make((grobo_session_config){.device = link, .reconnect = true});
+    (void)folder_set_up(state);
+    link = in_folder("gr001");
+    server = loop_serve(base, (grobo_sim_server_config){.link = link});
+    session_kit_make((grobo_session_config){.device = link, .reconnect = true});
     come_up();
-    assert_int_equal(await(grobo_session_torque(session, 1, GROBO_TORQUE_ON)), GROBO_OK);
+    assert_int_equal(session_kit_await(grobo_session_torque(session, 1, GROBO_TORQUE_ON)),
+                     GROBO_OK);
 
     /* A job that runs ends with the line. */
     sense = grobo_session_sense(session, 0xfffff, GROBO_SENSE_FULL);
     assert_int_equal(grobo_sim_server_plug(server, false), GROBO_OK);
-    assert_int_equal(await(sense), GROBO_ERR_UNPLUGGED);
+    assert_int_equal(session_kit_await(sense), GROBO_ERR_UNPLUGGED);
     loop_run_until(base, &seen.losts, 1);
     assert_int_equal(seen.error, GROBO_ERR_UNPLUGGED);
     assert_int_equal(grobo_session_get_state(session), GROBO_SESSION_WAITING);
@@ -381,13 +299,13 @@ static void a_lost_port_is_found_again(void **state)
     assert_int_equal(seen.fails, 0);
     assert_it_works();
     grobo_sim_server_free(server);
-    assert_int_equal(rmdir(folder), 0);
+    folder_remove(NULL, 0);
 }
 
 static void a_simulator_that_hung_up_is_plugged_in_again(void **state)
 {
     (void)state;
-    make((grobo_session_config){.device = "sim", .reconnect = true});
+    session_kit_make((grobo_session_config){.device = "sim", .reconnect = true});
     come_up();
     grobo_sim_plug(grobo_session_sim(session), false, grobo_now_us());
     /* The engine finds out when it next looks. */
@@ -409,10 +327,11 @@ static grobo_torque torque_of(int servo)
 static void an_emergency_stop_reaches_a_robot_that_is_lost_or_just_found(void **state)
 {
     (void)state;
-    make((grobo_session_config){.device = "sim", .reconnect = true});
+    session_kit_make((grobo_session_config){.device = "sim", .reconnect = true});
     come_up();
-    assert_int_equal(await(grobo_session_torque(session, GROBO_JOINTS_ALL(20), GROBO_TORQUE_ON)),
-                     GROBO_OK);
+    assert_int_equal(
+        session_kit_await(grobo_session_torque(session, GROBO_JOINTS_ALL(20), GROBO_TORQUE_ON)),
+        GROBO_OK);
     grobo_sim_plug(grobo_session_sim(session), false, grobo_now_us());
     assert_true(grobo_session_sense(session, 1, GROBO_SENSE_FULL) > 0);
     loop_run_until(base, &seen.losts, 1);
@@ -422,14 +341,15 @@ static void an_emergency_stop_reaches_a_robot_that_is_lost_or_just_found(void **
     assert_int_equal(torque_of(19), GROBO_TORQUE_BRAKE);
     assert_int_equal(grobo_session_reset(session), GROBO_OK);
 
-    assert_int_equal(await(grobo_session_torque(session, GROBO_JOINTS_ALL(20), GROBO_TORQUE_ON)),
-                     GROBO_OK);
+    assert_int_equal(
+        session_kit_await(grobo_session_torque(session, GROBO_JOINTS_ALL(20), GROBO_TORQUE_ON)),
+        GROBO_OK);
     grobo_session_close(session);
     assert_int_equal(grobo_session_open(session), GROBO_OK);
     while (grobo_session_get_state(session) != GROBO_SESSION_CHECKING) {
         assert_int_equal(event_base_loop(base, EVLOOP_ONCE), 0);
     }
-    assert_int_equal(await(grobo_session_estop(session)), GROBO_OK);
+    assert_int_equal(session_kit_await(grobo_session_estop(session)), GROBO_OK);
     loop_run_until(base, &seen.ups, 3); /* who is there was asked afterwards */
     assert_int_equal(torque_of(0), GROBO_TORQUE_BRAKE);
     assert_int_equal(torque_of(19), GROBO_TORQUE_BRAKE);
@@ -438,10 +358,10 @@ static void an_emergency_stop_reaches_a_robot_that_is_lost_or_just_found(void **
 
 static void without_reconnect_a_lost_port_is_closed(void **state)
 {
-    grobo_sim_server *server = serve((grobo_sim_server_config){0});
+    grobo_sim_server *server = loop_serve(base, (grobo_sim_server_config){0});
 
     (void)state;
-    make((grobo_session_config){.device = grobo_sim_server_device(server)});
+    session_kit_make((grobo_session_config){.device = grobo_sim_server_device(server)});
     come_up();
     assert_int_equal(grobo_sim_server_plug(server, false), GROBO_OK);
     loop_run_until(base, &seen.losts, 1);
@@ -456,8 +376,8 @@ static void without_reconnect_a_lost_port_is_closed(void **state)
 static void it_may_be_freed_in_its_event(void **state)
 {
     (void)state;
-    make((grobo_session_config){.device = "sim"});
-    seen.free_on_event = true;
+    session_kit_make((grobo_session_config){.device = "sim"});
+    seen.then_line = free_it;
     assert_int_equal(grobo_session_open(session), GROBO_OK);
     loop_run_until(base, &seen.ups, 1);
     assert_null(session);
@@ -467,9 +387,9 @@ static void it_may_be_freed_in_its_event(void **state)
 static void it_may_be_freed_in_an_event_of_the_engine(void **state)
 {
     (void)state;
-    make((grobo_session_config){.device = "sim"});
+    session_kit_make((grobo_session_config){.device = "sim"});
     come_up();
-    seen.free_on_robot = true;
+    seen.then_robot = free_it_then;
     assert_true(grobo_session_sense(session, 3, GROBO_SENSE_FULL) > 0);
     assert_false(loop_run(base, 5000000));
     assert_null(session);
@@ -479,22 +399,22 @@ static void it_may_be_freed_in_an_event_of_the_engine(void **state)
 static void it_may_be_closed_in_its_event(void **state)
 {
     (void)state;
-    make((grobo_session_config){.device = "sim"});
-    seen.close_on_event = true;
+    session_kit_make((grobo_session_config){.device = "sim"});
+    seen.then_line = grobo_session_close;
     assert_int_equal(grobo_session_open(session), GROBO_OK);
     loop_run_until(base, &seen.ups, 1);
     assert_int_equal(grobo_session_get_state(session), GROBO_SESSION_CLOSED);
     assert_true(loop_run(base, 10000));
-    seen.close_on_event = false;
+    seen.then_line = NULL;
     come_up();
 }
 
 static void it_may_be_opened_again_when_lost(void **state)
 {
     (void)state;
-    make((grobo_session_config){.device = "sim"});
+    session_kit_make((grobo_session_config){.device = "sim"});
     come_up();
-    seen.open_on_event = true;
+    seen.then_line = open_it;
     grobo_sim_plug(grobo_session_sim(session), false, grobo_now_us());
     assert_true(grobo_session_check(session) > 0);
     loop_run_until(base, &seen.losts, 1);
@@ -506,17 +426,17 @@ static void it_may_be_opened_again_when_lost(void **state)
 
 static void bad_configurations_and_lack_of_memory(void **state)
 {
-    test_mem mem;
+    counted_mem counter;
+    const grobo_mem mem = counted_mem_of(&counter);
     static const grobo_robot_config bad_robot = {.speed_limit_pct = 200};
-    grobo_session_config config = {.base = base, .device = "sim", .mem = &mem.mem};
+    grobo_session_config config = {.base = base, .device = "sim", .mem = &mem};
     grobo_session *made = NULL;
-    int failures = -1;
+    size_t failures = 0;
     int r = GROBO_ERR_NOMEM;
 
     (void)state;
-    test_mem_init(&mem, 0);
     while (r == GROBO_ERR_NOMEM) {
-        mem.allocations_left = ++failures;
+        counter = (counted_mem){.fail_at = ++failures};
         r = grobo_session_new(&config, &made);
         if (r >= 0) {
             r = grobo_session_open(made);
@@ -524,12 +444,12 @@ static void bad_configurations_and_lack_of_memory(void **state)
             made = NULL;
         }
         assert_null(made);
-        assert_int_equal(mem.blocks, 0);
+        assert_int_equal(counter.bytes, 0);
     }
     assert_int_equal(r, GROBO_OK);
-    assert_int_equal(failures, 5);
+    assert_int_equal(failures, 6);
 
-    mem.allocations_left = 100;
+    counter.fail_at = 0;
     config.robot = &bad_robot;
     assert_int_equal(grobo_session_new(&config, &made), GROBO_ERR_ARG);
     config.robot = NULL;
@@ -539,7 +459,7 @@ static void bad_configurations_and_lack_of_memory(void **state)
     config.device = NULL;
     assert_int_equal(grobo_session_new(&config, &made), GROBO_ERR_ARG);
     assert_int_equal(grobo_session_new(NULL, &made), GROBO_ERR_ARG);
-    assert_int_equal(mem.blocks, 0);
+    assert_int_equal(counter.bytes, 0);
 }
 
 int main(void)

@@ -14,11 +14,10 @@
 #include <cmocka.h>
 #include <event2/event.h>
 
-#include <grobo/sim_server.h>
-
+#include "counted_mem.h"
+#include "folder.h"
 #include "loop.h"
 #include "os.h"
-#include "resources.h"
 
 /* Frames of the original: check, torque of servo 1 on, state of servo 1. */
 static const uint8_t check[] = {0x41, 0x00};
@@ -121,21 +120,11 @@ static int tear_down(void **state)
     return 0;
 }
 
-static grobo_sim_server *serve(grobo_sim_server_config config)
-{
-    grobo_sim_server *server = NULL;
-    grobo_os_cause cause = {0};
-
-    config.base = base;
-    assert_int_equal(grobo_sim_server_new(&config, &server, &cause), GROBO_OK);
-    return server;
-}
-
 /* ---- tests -------------------------------------------------------------------------------- */
 
 static void the_board_answers_in_its_own_time(void **state)
 {
-    grobo_sim_server *server = serve((grobo_sim_server_config){0});
+    grobo_sim_server *server = loop_serve(base, (grobo_sim_server_config){0});
     client c;
     int64_t start_us;
     int64_t took_us;
@@ -155,7 +144,7 @@ static void the_board_answers_in_its_own_time(void **state)
 
 static void programs_come_and_go_and_the_robot_stays(void **state)
 {
-    grobo_sim_server *server = serve((grobo_sim_server_config){0});
+    grobo_sim_server *server = loop_serve(base, (grobo_sim_server_config){0});
     client c;
 
     (void)state;
@@ -174,7 +163,7 @@ static void programs_come_and_go_and_the_robot_stays(void **state)
 
 static void a_program_at_another_speed_is_not_understood(void **state)
 {
-    grobo_sim_server *server = serve((grobo_sim_server_config){0});
+    grobo_sim_server *server = loop_serve(base, (grobo_sim_server_config){0});
     client c;
 
     (void)state;
@@ -188,8 +177,8 @@ static void a_program_at_another_speed_is_not_understood(void **state)
 
 static void many_robots_live_in_one_process(void **state)
 {
-    grobo_sim_server *one = serve((grobo_sim_server_config){0});
-    grobo_sim_server *two = serve((grobo_sim_server_config){0});
+    grobo_sim_server *one = loop_serve(base, (grobo_sim_server_config){0});
+    grobo_sim_server *two = loop_serve(base, (grobo_sim_server_config){0});
     client a;
     client b;
 
@@ -208,20 +197,19 @@ static void many_robots_live_in_one_process(void **state)
 
 static void the_link_follows_the_terminal(void **state)
 {
-    char folder[] = "/tmp/grobo-sim-XXXXXX";
-    char link[64];
+    const char *link;
     char target[64] = "";
-    grobo_sim_server_config config = {.base = base, .link = link};
+    grobo_sim_server_config config = {.base = base};
     grobo_sim_server *server;
     grobo_os_cause cause = {0};
     client c;
     struct stat st;
 
-    (void)state;
-    assert_non_null(mkdtemp(folder));
-    snprintf(link, sizeof link, "%s/gr001", folder);
+    (void)folder_set_up(state);
+    link = in_folder("gr001");
+    config.link = link;
     assert_int_equal(symlink("/nowhere", link), 0);
-    server = serve(config);
+    server = loop_serve(base, config);
     assert_true(readlink(link, target, sizeof target - 1) > 0);
     assert_string_equal(target, grobo_sim_server_device(server));
     client_open(&c, link, 0);
@@ -247,12 +235,12 @@ static void the_link_follows_the_terminal(void **state)
     assert_int_equal(grobo_sim_server_new(&config, &server, &cause), GROBO_ERR_EXISTS);
     assert_null(server);
     assert_int_equal(rmdir(link), 0);
-    assert_int_equal(rmdir(folder), 0);
+    folder_remove(NULL, 0);
 }
 
 static void a_fault_hangs_up_and_the_port_comes_back(void **state)
 {
-    grobo_sim_server *server = serve((grobo_sim_server_config){.replug_ms = 30});
+    grobo_sim_server *server = loop_serve(base, (grobo_sim_server_config){.replug_ms = 30});
     client c;
 
     (void)state;
@@ -276,7 +264,7 @@ static void a_fault_hangs_up_and_the_port_comes_back(void **state)
 static void tcp_serves_one_caller_at_a_time(void **state)
 {
     grobo_sim_server *server =
-        serve((grobo_sim_server_config){.tcp = "tcp:127.0.0.1:0", .no_pty = true});
+        loop_serve(base, (grobo_sim_server_config){.tcp = "tcp:127.0.0.1:0", .no_pty = true});
     client a;
     client b;
 
@@ -299,7 +287,8 @@ static void tcp_serves_one_caller_at_a_time(void **state)
 
 static void both_ends_reach_one_board(void **state)
 {
-    grobo_sim_server *server = serve((grobo_sim_server_config){.tcp = "tcp:localhost:0"});
+    grobo_sim_server *server =
+        loop_serve(base, (grobo_sim_server_config){.tcp = "tcp:localhost:0"});
     char tcp[64];
     client a;
     client b;
@@ -320,7 +309,7 @@ static void both_ends_reach_one_board(void **state)
 static void a_flood_is_taken_at_the_wires_pace_and_idle_is_idle(void **state)
 {
     static uint8_t flood[4096];
-    grobo_sim_server *server = serve((grobo_sim_server_config){0});
+    grobo_sim_server *server = loop_serve(base, (grobo_sim_server_config){0});
     client c;
     int64_t start_us = grobo_now_us();
     int64_t cpu_before_us;
@@ -346,32 +335,31 @@ static void a_flood_is_taken_at_the_wires_pace_and_idle_is_idle(void **state)
 
 static void refusals_leave_nothing_behind(void **state)
 {
-    test_mem mem;
+    counted_mem counter;
+    const grobo_mem mem = counted_mem_of(&counter);
     const grobo_sim_config bad_sim = {.baud_bps = 1};
-    grobo_sim_server_config config = {.base = base, .mem = &mem.mem};
+    grobo_sim_server_config config = {.base = base, .mem = &mem};
     grobo_sim_server *server = NULL;
     grobo_os_cause cause = {0};
     int r = GROBO_ERR_NOMEM;
-    int failures = -1;
+    size_t failures = 0;
 
     (void)state;
-    test_mem_init(&mem, 0);
     while (r == GROBO_ERR_NOMEM) {
-        failures++;
-        mem.allocations_left = failures;
+        counter = (counted_mem){.fail_at = ++failures};
         r = grobo_sim_server_new(&config, &server, &cause);
         if (r < 0) {
             assert_null(server);
-            assert_int_equal(mem.blocks, 0);
+            assert_int_equal(counter.bytes, 0);
         }
     }
     assert_int_equal(r, GROBO_OK);
-    assert_int_equal(failures, 4);
+    assert_int_equal(failures, 5);
     grobo_sim_server_free(server);
     grobo_sim_server_free(NULL);
-    assert_int_equal(mem.blocks, 0);
+    assert_int_equal(counter.bytes, 0);
 
-    mem.allocations_left = 100;
+    counter.fail_at = 0;
     config.no_pty = true;
     assert_int_equal(grobo_sim_server_new(&config, &server, NULL), GROBO_ERR_ARG);
     config.tcp = "tcp:nowhere";
@@ -379,7 +367,7 @@ static void refusals_leave_nothing_behind(void **state)
     config.tcp = "tcp:127.0.0.1:0";
     config.sim = &bad_sim;
     assert_int_equal(grobo_sim_server_new(&config, &server, &cause), GROBO_ERR_ARG);
-    assert_int_equal(mem.blocks, 0);
+    assert_int_equal(counter.bytes, 0);
 }
 
 int main(void)

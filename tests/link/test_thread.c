@@ -7,7 +7,6 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -17,7 +16,8 @@
 #include <event2/event.h>
 
 #include "control_kit.h"
-#include "resources.h"
+#include "counted_mem.h"
+#include "folder.h"
 
 /* ---- facts and settings ------------------------------------------------------------------- */
 
@@ -30,15 +30,13 @@ static void name_and_joints(void **state)
 
 static void settings_are_kept(void **state)
 {
-    char dir[sizeof control_folder];
+    char dir[sizeof folder];
     char longer[GROBO_PATH_MAX_BYTES + 1];
 
     (void)state;
-    assert_int_equal(grobo_control_get_motion_dir(control, dir, sizeof dir),
-                     (int)strlen(control_folder));
-    assert_string_equal(dir, control_folder);
-    assert_int_equal(grobo_control_get_motion_dir(control, dir, strlen(control_folder)),
-                     GROBO_ERR_SPACE);
+    assert_int_equal(grobo_control_get_motion_dir(control, dir, sizeof dir), (int)strlen(folder));
+    assert_string_equal(dir, folder);
+    assert_int_equal(grobo_control_get_motion_dir(control, dir, strlen(folder)), GROBO_ERR_SPACE);
     memset(longer, 'x', sizeof longer - 1);
     longer[sizeof longer - 1] = '\0';
     assert_int_equal(grobo_control_set_motion_dir(control, longer), GROBO_ERR_CAP);
@@ -372,7 +370,8 @@ static void bad_configurations_and_lack_of_memory(void **state)
     grobo_control_config config = {0};
     grobo_control *made = NULL;
     char longer[GROBO_NAME_MAX_BYTES + 1];
-    test_mem mem;
+    counted_mem counter;
+    const grobo_mem mem = counted_mem_of(&counter);
     int r = GROBO_ERR_NOMEM;
 
     (void)state;
@@ -392,21 +391,20 @@ static void bad_configurations_and_lack_of_memory(void **state)
     assert_int_equal(grobo_control_new(&config, &made), GROBO_ERR_CAP);
     assert_null(made);
     config.name = "Robin";
-    config.session.mem = &mem.mem;
-    test_mem_init(&mem, 0);
-    for (int left = 0; r == GROBO_ERR_NOMEM; left++) {
-        assert_true(left < 20);
-        mem.allocations_left = left;
+    config.session.mem = &mem;
+    for (size_t n = 1; r == GROBO_ERR_NOMEM; n++) {
+        assert_true(n <= 20);
+        counter = (counted_mem){.fail_at = n};
         r = grobo_control_new(&config, &made);
         if (r < 0) {
             assert_null(made);
-            assert_int_equal(mem.blocks, 0);
+            assert_int_equal(counter.bytes, 0);
         }
     }
     assert_int_equal(r, GROBO_OK);
     assert_string_equal(grobo_control_name(made), "Robin");
     assert_int_equal(grobo_control_free(made), GROBO_OK);
-    assert_int_equal(mem.blocks, 0);
+    assert_int_equal(counter.bytes, 0);
     assert_int_equal(grobo_control_free(NULL), GROBO_OK);
     event_base_free(base);
 }

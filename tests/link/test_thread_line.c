@@ -6,7 +6,6 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -16,18 +15,22 @@
 
 #include "control_kit.h"
 #include "far_robot.h"
+#include "folder.h"
 
 static const grobo_robot_config leave_off = {.on_exit = GROBO_EXIT_OFF};
 static far_robot robot;
-static char dir[64];
-static char device[80];
+static char device[128];
+
+static void choose_device(void)
+{
+    (void)folder_set_up(NULL);
+    assert_true(snprintf(device, sizeof device, "%s", in_folder("robot")) < (int)sizeof device);
+}
 
 static int set_up(void **state)
 {
     (void)state;
-    memcpy(dir, "/tmp/grobo-line-XXXXXX", 23);
-    assert_non_null(mkdtemp(dir));
-    (void)snprintf(device, sizeof device, "%s/robot", dir);
+    choose_device();
     far_robot_start(&robot, device);
     return 0;
 }
@@ -36,7 +39,7 @@ static int tear_down(void **state)
 {
     (void)state;
     far_robot_end(&robot);
-    assert_int_equal(rmdir(dir), 0);
+    folder_remove(NULL, 0);
     return 0;
 }
 
@@ -275,9 +278,7 @@ static void a_program_may_free_it_at_exit(void **state)
     pid_t child;
 
     (void)state;
-    memcpy(dir, "/tmp/grobo-line-XXXXXX", 23);
-    assert_non_null(mkdtemp(dir));
-    (void)snprintf(device, sizeof device, "%s/robot", dir);
+    choose_device();
     assert_int_equal(pipe(start), 0);
     child = fork(); /* before there are threads */
     assert_true(child >= 0);

@@ -7,15 +7,14 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <unistd.h>
 
 #include <cmocka.h>
 
 #include "control_kit.h"
+#include "folder.h"
+#include "motion_files.h"
 
 /* ---- the target --------------------------------------------------------------------------- */
 
@@ -152,23 +151,11 @@ static void the_nth_posture_is_gone_to(void **state)
     control_assert_elbow_at(6);
 }
 
-static void write_file(const char *name, const char *text)
-{
-    char path[sizeof control_folder + 64];
-    FILE *file;
-
-    (void)snprintf(path, sizeof path, "%s/%s", control_folder, name);
-    file = fopen(path, "w");
-    assert_non_null(file);
-    assert_true(fputs(text, file) >= 0);
-    assert_int_equal(fclose(file), 0);
-}
-
 static void motions_are_saved_and_loaded(void **state)
 {
     static const grobo_motion_format formats[] = {GROBO_FORMAT_M, GROBO_FORMAT_PSEQ,
                                                   GROBO_FORMAT_YAML, GROBO_FORMAT_MSEQ};
-    char path[sizeof control_folder + 64];
+    char path[sizeof folder + 64];
 
     (void)state;
     for (size_t i = 0; i < 4; i++) {
@@ -216,7 +203,7 @@ static void what_cannot_be_loaded_leaves_nothing(void **state)
     control_have_motion(2);
     assert_int_equal(grobo_control_load_motion(control, "../a", list), GROBO_ERR_PERM);
     assert_int_equal(grobo_control_motion_size(control), 0);
-    write_file("bad.m", "this is no motion\n");
+    put_file(in_folder("bad.m"), "this is no motion\n");
     control_have_motion(2);
     assert_true(grobo_control_load_motion_format(control, GROBO_FORMAT_M, "bad", list) < 0);
     assert_int_equal(grobo_control_motion_size(control), 0);

@@ -14,18 +14,18 @@
 
 #include <cmocka.h>
 
+#include "folder.h"
 #include "line.h"
 #include "ports/posix/posix.h"
 
-static char root[] = "/tmp/grobo-list-XXXXXX";
 static test_line line;
 
-/* Runs a shell command in the made-up root. */
+/* Runs a shell command in the folder. */
 static void shell(const char *command)
 {
     char whole[2048];
 
-    assert_true(snprintf(whole, sizeof whole, "cd %s && %s", root, command) < (int)sizeof whole);
+    assert_true(snprintf(whole, sizeof whole, "cd %s && %s", folder, command) < (int)sizeof whole);
     assert_int_equal(system(whole), 0);
 }
 
@@ -33,8 +33,7 @@ static int set_up(void **state)
 {
     char command[256];
 
-    (void)state;
-    assert_non_null(mkdtemp(root));
+    (void)folder_set_up(state);
     test_line_open(&line);
     /* An FTDI adapter as ttyUSB0, a chip as ttyS0, a node without a chip, a virtual console. */
     shell("mkdir -p class/tty dev/serial/by-id drivers/ftdi_sio drivers/serial8250 "
@@ -58,12 +57,11 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    char command[64];
-
     (void)state;
     test_line_close(&line);
-    snprintf(command, sizeof command, "rm -r %s", root);
-    return system(command);
+    shell("rm -r class dev devices drivers");
+    folder_remove(NULL, 0);
+    return 0;
 }
 
 typedef struct {
@@ -83,31 +81,23 @@ static int collect(void *ctx, const grobo_port_info *info)
 
 static int list(found *f)
 {
-    char sys_tty[64];
-    char dev[64];
-
-    snprintf(sys_tty, sizeof sys_tty, "%s/class/tty", root);
-    snprintf(dev, sizeof dev, "%s/dev", root);
-    return grobo_i_posix_list(sys_tty, dev, collect, f);
+    return grobo_i_posix_list(in_folder("class/tty"), in_folder("dev"), collect, f);
 }
 
 static void each_port_with_a_device_is_described(void **state)
 {
     found f = {.count = 0};
-    char path[64];
 
     (void)state;
     assert_int_equal(list(&f), 2);
-    snprintf(path, sizeof path, "%s/dev/ttyS0", root);
-    assert_string_equal(f.info[0].path, path);
+    assert_string_equal(f.info[0].path, in_folder("dev/ttyS0"));
     assert_string_equal(f.info[0].driver, "serial8250");
     assert_string_equal(f.info[0].by_id, "");
     assert_int_equal(f.info[0].usb_vendor, -1);
     assert_int_equal(f.info[0].latency_ms, -1);
     assert_int_equal(f.info[0].open_result, GROBO_ERR_NOENT);
 
-    snprintf(path, sizeof path, "%s/dev/ttyUSB0", root);
-    assert_string_equal(f.info[1].path, path);
+    assert_string_equal(f.info[1].path, in_folder("dev/ttyUSB0"));
     assert_string_equal(f.info[1].driver, "ftdi_sio");
     assert_string_equal(strrchr(f.info[1].by_id, '/'),
                         "/usb-FTDI_FT232R_USB_UART_A1B2C3-if00-port0");
@@ -124,14 +114,10 @@ static void each_port_with_a_device_is_described(void **state)
 static void without_sysfs_adapters_are_found_by_their_names(void **state)
 {
     found f = {.count = 0};
-    char dev[64];
-    char path[80];
 
     (void)state;
-    snprintf(dev, sizeof dev, "%s/dev", root);
-    snprintf(path, sizeof path, "%s/ttyUSB0", dev);
-    assert_int_equal(grobo_i_posix_list("/no/such/folder", dev, collect, &f), 1);
-    assert_string_equal(f.info[0].path, path);
+    assert_int_equal(grobo_i_posix_list("/no/such/folder", in_folder("dev"), collect, &f), 1);
+    assert_string_equal(f.info[0].path, in_folder("dev/ttyUSB0"));
     assert_string_equal(strrchr(f.info[0].by_id, '/'),
                         "/usb-FTDI_FT232R_USB_UART_A1B2C3-if00-port0");
     assert_string_equal(f.info[0].driver, "");
@@ -189,7 +175,7 @@ static void a_port_of_somebody_else_is_not_to_be_opened(void **state)
         print_message("only root can become another user\n");
         skip();
     }
-    assert_int_equal(chmod(root, 0755), 0);
+    assert_int_equal(chmod(folder, 0755), 0);
     assert_int_equal(chmod(line.device, 0600), 0);
     pid = fork();
     assert_true(pid >= 0);

@@ -5,15 +5,13 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include <cmocka.h>
 
 #include "control_kit.h"
-#include "os.h"
+#include "folder.h"
 
 grobo_control *control;
-char control_folder[256];
 
 static void make(grobo_control_config config)
 {
@@ -28,10 +26,9 @@ int control_set_up(void **state)
 {
     grobo_control_config config = {.motion_dir = "/nowhere"};
 
-    (void)state;
-    test_folder_new(control_folder, sizeof control_folder);
+    (void)folder_set_up(state);
     make(config);
-    assert_int_equal(grobo_control_set_motion_dir(control, control_folder), GROBO_OK);
+    assert_int_equal(grobo_control_set_motion_dir(control, folder), GROBO_OK);
     return 0;
 }
 
@@ -46,15 +43,10 @@ int control_tear_down(void **state)
 {
     static const char *const files[] = {"Motion1.m", "Motion2.m", "a.m",   "a.yaml",
                                         "a.pseq",    "a.mseq",    "bad.m", "b.yaml"};
-    char path[sizeof control_folder + 16];
 
     (void)state;
     assert_int_equal(grobo_control_free(control), GROBO_OK);
-    for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
-        (void)snprintf(path, sizeof path, "%s/%s", control_folder, files[i]);
-        (void)remove(path);
-    }
-    assert_int_equal(test_folder_remove(control_folder), 0);
+    folder_remove(files, sizeof files / sizeof files[0]);
     return 0;
 }
 

@@ -8,9 +8,8 @@
 #define ELBOW 13
 #define EVERY_JOINT GROBO_JOINTS_ALL(20)
 
-/* What the set-ups make. */
+/* What the set-ups make; its motions are in the folder of folder.h. */
 extern grobo_control *control;
-extern char control_folder[256];
 
 /* cmocka's set-ups and tear-down: a control without a thread, and one with it. */
 int control_set_up(void **state);

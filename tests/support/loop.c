@@ -48,3 +48,22 @@ void loop_run_until(struct event_base *base, const int *count, int wanted)
         (void)loop_run(base, end_us - grobo_now_us());
     }
 }
+
+void loop_run_for(struct event_base *base, int64_t span_us)
+{
+    int64_t end_us = grobo_now_us() + span_us;
+
+    while (grobo_now_us() < end_us) {
+        (void)loop_run(base, end_us - grobo_now_us());
+    }
+}
+
+grobo_sim_server *loop_serve(struct event_base *base, grobo_sim_server_config config)
+{
+    grobo_sim_server *server = NULL;
+    grobo_os_cause cause = {0};
+
+    config.base = base;
+    assert_int_equal(grobo_sim_server_new(&config, &server, &cause), GROBO_OK);
+    return server;
+}

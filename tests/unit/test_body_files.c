@@ -14,7 +14,7 @@
 #include <grobo/motion_io.h>
 
 #include "body_script.h"
-#include "motion_mem.h"
+#include "counted_mem.h"
 
 /* Feet on the ground, the waist goes down and up; the head turns. */
 static const char bow[] =
@@ -217,8 +217,8 @@ static void each_allocation_may_fail(void **state)
 
     (void)state;
     for (size_t n = 1; !whole; n++) {
-        motion_mem counter = {.fail_at = n};
-        const grobo_mem mem = motion_mem_of(&counter);
+        counted_mem counter = {.fail_at = n};
+        const grobo_mem mem = counted_mem_of(&counter);
         grobo_motion *frames = NULL;
         grobo_body *body = NULL;
         int result = grobo_body_new(&body, &grobo_gr001_body, motion, NULL, &mem);

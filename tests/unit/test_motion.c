@@ -12,7 +12,7 @@
 
 #include <grobo/motion.h>
 
-#include "motion_mem.h"
+#include "counted_mem.h"
 
 static grobo_posture posture_of(int n_joints, double angle_rad, int64_t time_us)
 {
@@ -408,8 +408,8 @@ static void test_memory_of_a_long_motion(void **state)
 {
     (void)state;
     enum { SIZE = 100000 };
-    motion_mem counter = {0};
-    grobo_mem mem = motion_mem_of(&counter);
+    counted_mem counter = {0};
+    grobo_mem mem = counted_mem_of(&counter);
     grobo_motion *motion = NULL;
     grobo_posture posture = posture_of(20, 0, 1000);
 
@@ -431,8 +431,8 @@ static void test_allocations_fail(void **state)
     bool done = false;
 
     for (size_t n = 1; !done; n++) {
-        motion_mem counter = {.fail_at = n};
-        grobo_mem mem = motion_mem_of(&counter);
+        counted_mem counter = {.fail_at = n};
+        grobo_mem mem = counted_mem_of(&counter);
         grobo_motion *motion = rich(&mem);
         grobo_motion *copy = NULL;
         if (motion != NULL) {

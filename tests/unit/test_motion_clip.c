@@ -11,8 +11,8 @@
 
 #include <cmocka.h>
 
+#include "counted_mem.h"
 #include "motion_files.h"
-#include "motion_mem.h"
 
 static void assert_near(double value, double expected, double delta)
 {
@@ -286,8 +286,8 @@ static void test_resample_is_exact_on_frames(void **state)
 static void test_allocations(void **state)
 {
     (void)state;
-    motion_mem counter = {0};
-    grobo_mem mem = motion_mem_of(&counter);
+    counted_mem counter = {0};
+    grobo_mem mem = counted_mem_of(&counter);
     grobo_read_options options = {.mem = &mem};
     grobo_motion *motion = NULL;
     grobo_clip clip;

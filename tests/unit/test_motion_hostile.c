@@ -10,8 +10,8 @@
 
 #include <cmocka.h>
 
+#include "counted_mem.h"
 #include "motion_files.h"
-#include "motion_mem.h"
 
 /* ---- caps and quadratic inputs ------------------------------------------------------------ */
 
@@ -117,8 +117,8 @@ static void test_allocations_fail(void **state)
     for (size_t i = 0; i < sizeof samples / sizeof samples[0]; i++) {
         int result = GROBO_ERR_NOMEM;
         for (size_t n = 1; result < 0; n++) {
-            motion_mem counter = {.fail_at = n};
-            grobo_mem mem = motion_mem_of(&counter);
+            counted_mem counter = {.fail_at = n};
+            grobo_mem mem = counted_mem_of(&counter);
             grobo_diagnostics *list = NULL;
             grobo_read_options options = {
                 .mem = &mem, .keep_positions = true, .model = &grobo_gr001_model};
@@ -140,8 +140,8 @@ static void test_cut_anywhere(void **state)
     for (size_t i = 0; i < sizeof samples / sizeof samples[0]; i++) {
         size_t size = strlen(samples[i]);
         for (size_t cut = 0; cut < size; cut++) {
-            motion_mem counter = {0};
-            grobo_mem mem = motion_mem_of(&counter);
+            counted_mem counter = {0};
+            grobo_mem mem = counted_mem_of(&counter);
             grobo_diagnostics *list = NULL;
             grobo_read_options options = {.mem = &mem};
             grobo_motion *motion = NULL;
@@ -163,8 +163,8 @@ static void test_cut_anywhere(void **state)
 /* Reads it: a motion, or an error with a place; nothing left behind. @return true if refused. */
 static bool refused(const char *text)
 {
-    motion_mem counter = {0};
-    grobo_mem mem = motion_mem_of(&counter);
+    counted_mem counter = {0};
+    grobo_mem mem = counted_mem_of(&counter);
     grobo_read_options options = {.mem = &mem};
     grobo_motion *motion = NULL;
     grobo_diagnostics *list = NULL;

@@ -6,44 +6,22 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cmocka.h>
 
+#include "folder.h"
 #include "motion_files.h"
-#include "os.h"
-
-static char folder[256];
-
-static int make_folder(void **state)
-{
-    (void)state;
-    test_folder_new(folder, sizeof folder);
-    return 0;
-}
-
-static const char *in_folder(const char *name)
-{
-    static char paths[4][512];
-    static int next;
-    char *path = paths[next++ % 4];
-
-    (void)snprintf(path, sizeof paths[0], "%s/%s", folder, name);
-    return path;
-}
 
 static int remove_folder(void **state)
 {
-    (void)state;
     static const char *const names[] = {"a.m", "b.m", "link.m", "out", "open.m", "astray.m"};
 
-    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
-        (void)unlink(in_folder(names[i]));
-    }
+    (void)state;
     /* Fails if a temporary file was left behind. */
-    return rmdir(folder);
+    folder_remove(names, sizeof names / sizeof names[0]);
+    return 0;
 }
 
 static void test_mode(void **state)
@@ -134,5 +112,5 @@ int main(void)
         cmocka_unit_test(test_find_through_links),
     };
 
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, folder_set_up, remove_folder);
 }

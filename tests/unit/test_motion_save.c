@@ -10,43 +10,24 @@
 
 #include <cmocka.h>
 
+#include "folder.h"
 #include "motion_files.h"
 #include "os.h"
 
 static const char saved[] = "500  10 -20\n1000  1 2\n";
 static const grobo_write_options in_motor_order = {.model = &grobo_gr001_model};
 
-static char folder[256];
-
-static int make_folder(void **state)
-{
-    (void)state;
-    test_folder_new(folder, sizeof folder);
-    return 0;
-}
-
-static const char *in_folder(const char *name)
-{
-    static char paths[4][512];
-    static int next;
-    char *path = paths[next++ % 4];
-
-    (void)snprintf(path, sizeof paths[0], "%s/%s", folder, name);
-    return path;
-}
-
 static int remove_folder(void **state)
 {
-    (void)state;
-    static const char *const names[] = {"a.m",       "b.m",        "Motion1.m", "Motion2.m",
-                                        "Motion3.m", "sub/c.yaml", "walk.m",    "walk.pseq"};
+    static const char *const names[] = {"a.m",       "b.m",    "Motion1.m", "Motion2.m",
+                                        "Motion3.m", "walk.m", "walk.pseq"};
 
-    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
-        (void)remove(in_folder(names[i]));
-    }
+    (void)state;
+    (void)remove(in_folder("sub/c.yaml"));
     (void)test_folder_remove(in_folder("sub"));
     /* Fails if a temporary file was left behind. */
-    return test_folder_remove(folder);
+    folder_remove(names, sizeof names / sizeof names[0]);
+    return 0;
 }
 
 static void test_save(void **state)
@@ -177,5 +158,5 @@ int main(void)
         cmocka_unit_test(test_find),
     };
 
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, folder_set_up, remove_folder);
 }

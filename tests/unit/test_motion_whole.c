@@ -10,8 +10,8 @@
 
 #include <cmocka.h>
 
+#include "counted_mem.h"
 #include "motion_files.h"
-#include "motion_mem.h"
 
 static const char keys[] =
     "type: PoseSeq\nname: t\nrefs:\n"
@@ -370,8 +370,8 @@ static void test_allocations_fail(void **state)
     for (int what = 0; what < 5; what++) {
         int result = GROBO_ERR_NOMEM;
         for (size_t n = 1; result < 0; n++) {
-            motion_mem counter = {0};
-            grobo_mem mem = motion_mem_of(&counter);
+            counted_mem counter = {0};
+            grobo_mem mem = counted_mem_of(&counter);
             grobo_read_options options = {.mem = &mem};
             grobo_motion *motion = NULL, *before = NULL;
             assert_int_equal(grobo_motion_read_memory(keys, strlen(keys), &options, NULL, &motion),

@@ -11,8 +11,8 @@
 
 #include <cmocka.h>
 
+#include "counted_mem.h"
 #include "motion_files.h"
-#include "motion_mem.h"
 
 /* ---- layout ------------------------------------------------------------------------------- */
 
@@ -390,8 +390,8 @@ static void test_allocations_fail(void **state)
     for (int kind = GROBO_MOTION_POSTURES; kind <= GROBO_MOTION_FRAMES; kind++) {
         int result = GROBO_ERR_NOMEM;
         for (size_t n = 1; result < 0; n++) {
-            motion_mem counter = {0};
-            grobo_mem mem = motion_mem_of(&counter);
+            counted_mem counter = {0};
+            grobo_mem mem = counted_mem_of(&counter);
             grobo_read_options options = {.mem = &mem};
             grobo_motion *motion = NULL, *made = NULL;
             assert_int_equal(

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 #include <stdlib.h>
 
-#include "motion_mem.h"
+#include "counted_mem.h"
 
 static void *resize(void *ctx, void *ptr, size_t old_bytes, size_t new_bytes)
 {
-    motion_mem *counter = ctx;
+    counted_mem *counter = ctx;
 
     if (new_bytes > 0 && ++counter->calls == counter->fail_at) {
         counter->failed = true;
@@ -22,7 +22,7 @@ static void *resize(void *ctx, void *ptr, size_t old_bytes, size_t new_bytes)
     return realloc(ptr, new_bytes);
 }
 
-grobo_mem motion_mem_of(motion_mem *counter)
+grobo_mem counted_mem_of(counted_mem *counter)
 {
     return (grobo_mem){resize, counter};
 }
