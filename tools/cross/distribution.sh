@@ -35,10 +35,15 @@ quietly() {
     die "failed: $*"
 }
 
+# True when what is in $work was made of $made_of.
+is_made() {
+    [ "$(cat "$work/made-of" 2>/dev/null)" = "$made_of" ]
+}
+
 # sysroot ARCHITECTURE SUITE: the packages and all they need, unpacked into $work/root.
 sysroot() {
     made_of="$1 $2 $packages"
-    [ "$(cat "$work/made-of" 2>/dev/null)" = "$made_of" ] && return
+    is_made && return
     echo "cross: unpacking the libraries of $2 for $1" >&2
     rm -rf "$work"
     mkdir -p "$work/root"

@@ -5,7 +5,7 @@
 # musl_libraries ARCHITECTURE COMPILER: $work/bin/cc compiles and links with musl.
 musl_libraries() {
     made_of="$1 $2 $codename libevent libyaml jansson cmocka"
-    [ "$(cat "$work/made-of" 2>/dev/null)" = "$made_of" ] && return
+    is_made && return
     rm -rf "$work"
     mkdir -p "$work/root" "$work/bin"
     private_apt "$work/apt" "$1" "$codename"
@@ -31,11 +31,5 @@ musl_libraries() {
     toolchain="$toolchain -DCMAKE_EXE_LINKER_FLAGS=-static -DCMAKE_FIND_ROOT_PATH=$work/root"
     # cmocka.h guesses uintptr_t, and wrong, where the C library is not glibc.
     toolchain="$toolchain -DCMAKE_C_FLAGS=-D_UINTPTR_T"
-    libraries_from_source "musl on $1"
-    package libevent_core 2.1 '' -levent_core
-    package yaml-0.1 0.2 '' -lyaml
-    package jansson 2.14 '' -ljansson
-    package cmocka 1.1 -D_UINTPTR_T -lcmocka-static
-    rm -rf "$work/src" "$work/apt"
-    echo "$made_of" >"$work/made-of"
+    libraries_from_source "musl on $1" '' '' -D_UINTPTR_T
 }

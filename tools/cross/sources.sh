@@ -28,7 +28,8 @@ package() {
         >"$work/root/lib/pkgconfig/$1.pc"
 }
 
-# libraries_from_source WHERE: $apt is for a machine with source packages.
+# libraries_from_source WHERE EVENT-LIBS YAML-CFLAGS CMOCKA-CFLAGS: what programs that use them need
+# beside the libraries. $apt is for a machine with source packages, and not needed any more.
 libraries_from_source() {
     echo "cross: building libevent, libyaml, jansson and cmocka for $1" >&2
     mkdir -p "$work/root/lib/pkgconfig"
@@ -38,4 +39,10 @@ libraries_from_source() {
     from_source libyaml -DBUILD_TESTING=OFF -DINSTALL_CMAKE_DIR=lib/cmake/yaml
     from_source jansson -DJANSSON_BUILD_DOCS=OFF -DJANSSON_EXAMPLES=OFF -DJANSSON_WITHOUT_TESTS=ON
     from_source cmocka -DWITH_STATIC_LIB=ON -DWITH_EXAMPLES=OFF -DUNIT_TESTING=OFF
+    package libevent_core 2.1 '' "-levent_core $2"
+    package yaml-0.1 0.2 "$3" -lyaml
+    package jansson 2.14 '' -ljansson
+    package cmocka 1.1 "$4" -lcmocka-static
+    rm -rf "$work/src" "$work/apt"
+    echo "$made_of" >"$work/made-of"
 }

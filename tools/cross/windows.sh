@@ -8,7 +8,7 @@ windows_libraries() {
     mkdir -p "$work"
     made_of="$triplet $codename libevent libyaml jansson cmocka static"
     quietly "$work/log" env GROBO_WINE="$work" tools/cross/wine.sh --make
-    [ "$(cat "$work/made-of" 2>/dev/null)" = "$made_of" ] && return
+    is_made && return
     rm -rf "$work/root" "$work/src"
     private_apt "$work/apt" amd64 "$codename"
     # $apt is a list of words.
@@ -17,11 +17,6 @@ windows_libraries() {
     toolchain="-DCMAKE_SYSTEM_NAME=Windows -DCMAKE_C_COMPILER=$triplet-gcc"
     toolchain="$toolchain -DCMAKE_RC_COMPILER=$triplet-windres"
     toolchain="$toolchain -DCMAKE_FIND_ROOT_PATH=/usr/$triplet"
-    libraries_from_source Windows
-    package libevent_core 2.1 '' '-levent_core -lws2_32 -liphlpapi -lbcrypt -ladvapi32'
-    package yaml-0.1 0.2 -DYAML_DECLARE_STATIC -lyaml
-    package jansson 2.14 '' -ljansson
-    package cmocka 1.1 -DCMOCKA_STATIC -lcmocka-static
-    rm -rf "$work/src" "$work/apt"
-    echo "$made_of" >"$work/made-of"
+    libraries_from_source Windows '-lws2_32 -liphlpapi -lbcrypt -ladvapi32' \
+        -DYAML_DECLARE_STATIC -DCMOCKA_STATIC
 }

@@ -24,7 +24,7 @@ print(os.path.join(os.path.dirname(ziglang.__file__), "zig"))'
 zig_libraries() {
     made_of="zig $1 $codename libevent libyaml jansson cmocka"
     zig
-    [ "$(cat "$work/made-of" 2>/dev/null)" = "$made_of" ] && return
+    is_made && return
     rm -rf "$work"
     mkdir -p "$work/bin"
     for tool in cc ar ranlib; do
@@ -41,11 +41,5 @@ zig_libraries() {
     toolchain="-DCMAKE_SYSTEM_NAME=$2 -DCMAKE_C_COMPILER=$work/bin/cc -DCMAKE_AR=$work/bin/ar"
     toolchain="$toolchain -DCMAKE_RANLIB=$work/bin/ranlib"
     toolchain="$toolchain -DCMAKE_FIND_ROOT_PATH=$work/root -DCMAKE_POSITION_INDEPENDENT_CODE=ON"
-    libraries_from_source "$1"
-    package libevent_core 2.1 '' -levent_core
-    package yaml-0.1 0.2 '' -lyaml
-    package jansson 2.14 '' -ljansson
-    package cmocka 1.1 '' -lcmocka-static
-    rm -rf "$work/src" "$work/apt"
-    echo "$made_of" >"$work/made-of"
+    libraries_from_source "$1" '' '' ''
 }
