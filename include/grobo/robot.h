@@ -572,6 +572,9 @@ GROBO_API const grobo_bus_stats *grobo_robot_get_bus_stats(const grobo_robot *ro
 /** State of the sequencer. */
 GROBO_API grobo_sequencer_state grobo_robot_play_state(const grobo_robot *robot);
 
+/** True while a motion is under way: approached, played, paused or being stopped. */
+GROBO_API bool grobo_robot_is_playing(const grobo_robot *robot);
+
 /** Where the motion is. */
 GROBO_API void grobo_robot_progress(const grobo_robot *robot, int64_t now_us,
                                     grobo_play_progress *progress);

@@ -111,8 +111,6 @@ void grobo_i_play_overtake(grobo_robot *robot);
 void grobo_i_play_done(grobo_robot_slot *slot, int result);
 /* Tells a new state of the sequencer. */
 void grobo_i_play_tell(grobo_robot *robot);
-/* True while the sequencer has something to send or to wait for. */
-bool grobo_i_playing(const grobo_robot *robot);
 /* After a motion, unless somebody asked for something else: its last posture is read back. */
 void grobo_i_play_settle(grobo_robot *robot);
 /* What a caller leaves open is as the robot is configured. */

@@ -5,22 +5,6 @@
 #include <math.h>
 #include <string.h>
 
-bool grobo_i_playing(const grobo_robot *robot)
-{
-    switch (grobo_sequencer_get_state(&robot->sequencer)) {
-    case GROBO_SEQUENCER_APPROACHING:
-    case GROBO_SEQUENCER_PLAYING:
-    case GROBO_SEQUENCER_PAUSED:
-    case GROBO_SEQUENCER_STOPPING:
-        return true;
-    case GROBO_SEQUENCER_IDLE:
-    case GROBO_SEQUENCER_FINISHED:
-    case GROBO_SEQUENCER_FAILED:
-        return false;
-    }
-    return false;
-}
-
 void grobo_i_play_tell(grobo_robot *robot)
 {
     grobo_sequencer_state state = grobo_sequencer_get_state(&robot->sequencer);
@@ -242,7 +226,7 @@ static void reserve(grobo_robot *robot)
 
 void grobo_i_play_step(grobo_robot *robot)
 {
-    if (!grobo_i_playing(robot)) {
+    if (!grobo_robot_is_playing(robot)) {
         return;
     }
     watch_host(robot);

@@ -105,6 +105,22 @@ grobo_sequencer_state grobo_robot_play_state(const grobo_robot *robot)
     return grobo_sequencer_get_state(&robot->sequencer);
 }
 
+bool grobo_robot_is_playing(const grobo_robot *robot)
+{
+    switch (grobo_sequencer_get_state(&robot->sequencer)) {
+    case GROBO_SEQUENCER_APPROACHING:
+    case GROBO_SEQUENCER_PLAYING:
+    case GROBO_SEQUENCER_PAUSED:
+    case GROBO_SEQUENCER_STOPPING:
+        return true;
+    case GROBO_SEQUENCER_IDLE:
+    case GROBO_SEQUENCER_FINISHED:
+    case GROBO_SEQUENCER_FAILED:
+        return false;
+    }
+    return false;
+}
+
 void grobo_robot_progress(const grobo_robot *robot, int64_t now_us, grobo_play_progress *progress)
 {
     grobo_sequencer_progress(&robot->sequencer, now_us, progress);

@@ -82,7 +82,7 @@ int grobo_robot_torque(grobo_robot *robot, grobo_joint_mask joints, grobo_torque
     grobo_i_enter(robot, now_us);
     bool on = mode == GROBO_TORQUE_ON;
     int result = admit(robot, on);
-    if (result >= 0 && on && grobo_i_playing(robot)) {
+    if (result >= 0 && on && grobo_robot_is_playing(robot)) {
         result = GROBO_ERR_STATE; /* its frames would part goal and present angle again */
     }
     if (result >= 0 && robot->driver->torque == NULL) {
@@ -107,7 +107,7 @@ int grobo_robot_move(grobo_robot *robot, const grobo_posture *target, int64_t no
     grobo_i_enter(robot, now_us);
     grobo_posture checked = *target;
     int result = admit(robot, true);
-    if (result >= 0 && grobo_i_playing(robot)) {
+    if (result >= 0 && grobo_robot_is_playing(robot)) {
         result = GROBO_ERR_STATE;
     }
     if (result >= 0) {
@@ -176,7 +176,7 @@ static int admit_clip(grobo_robot *robot, const grobo_clip *clip, const grobo_pl
                       grobo_joint_mask *joints)
 {
     int result = admit(robot, true);
-    if (result >= 0 && grobo_i_playing(robot)) {
+    if (result >= 0 && grobo_robot_is_playing(robot)) {
         result = GROBO_ERR_STATE;
     }
     if (result >= 0 && clip->n_joints != robot->driver->model->n_joints) {
@@ -311,7 +311,7 @@ int grobo_robot_command(grobo_robot *robot, int id, grobo_servo_command command,
     grobo_exchange exchange = {0};
     grobo_i_enter(robot, now_us);
     int result = admit(robot, false);
-    if (result >= 0 && (grobo_i_playing(robot) || grobo_i_gate_moving(robot))) {
+    if (result >= 0 && (grobo_robot_is_playing(robot) || grobo_i_gate_moving(robot))) {
         result = GROBO_ERR_STATE; /* it needs silence, and the others would go on without it */
     }
     if (id < 1 || id > GROBO_SERVO_ID_MAX || (unsigned)command > GROBO_SERVO_FACTORY_RESET) {
@@ -337,7 +337,7 @@ int grobo_robot_stored(grobo_robot *robot, grobo_stored_kind kind, int number, i
     grobo_exchange exchange = {0};
     grobo_i_enter(robot, now_us);
     int result = admit(robot, true);
-    if (result >= 0 && grobo_i_playing(robot)) {
+    if (result >= 0 && grobo_robot_is_playing(robot)) {
         result = GROBO_ERR_STATE;
     }
     if (result >= 0 && robot->driver->stored == NULL) {
@@ -359,13 +359,13 @@ int grobo_robot_stored(grobo_robot *robot, grobo_stored_kind kind, int number, i
 static void displace(grobo_robot *robot, bool all)
 {
     bool moved = all || robot->job.kind == GROBO_JOB_MOVE;
-    if (robot->job.kind == GROBO_JOB_PLAY && grobo_i_playing(robot)) {
+    if (robot->job.kind == GROBO_JOB_PLAY && grobo_robot_is_playing(robot)) {
         (void)grobo_sequencer_stop(&robot->sequencer, false, robot->now_us);
     }
     if (robot->job.kind != GROBO_JOB_NONE) {
         grobo_i_job_end(robot, GROBO_ERR_CANCELED);
     }
-    if (moved && !grobo_i_playing(robot)) {
+    if (moved && !grobo_robot_is_playing(robot)) {
         grobo_i_gate_halt(robot);
     }
 }
@@ -407,7 +407,7 @@ int grobo_robot_exit(grobo_robot *robot, grobo_exit_policy policy, int64_t now_u
                                                                  : GROBO_ERR_STATE);
     }
     displace(robot, true);
-    if (grobo_i_playing(robot)) {
+    if (grobo_robot_is_playing(robot)) {
         (void)grobo_sequencer_stop(&robot->sequencer, false, robot->now_us);
     }
     int number = grobo_i_job_start(robot, GROBO_JOB_EXIT, exit_script(robot, policy));
@@ -475,7 +475,7 @@ int grobo_robot_free(grobo_robot *robot, grobo_joint_mask joints, bool on, int64
     }
     grobo_i_enter(robot, now_us);
     int result = admit(robot, true);
-    if (result >= 0 && grobo_i_playing(robot)) {
+    if (result >= 0 && grobo_robot_is_playing(robot)) {
         result = GROBO_ERR_STATE;
     }
     if (!joints_sound(robot, joints)) {

@@ -409,7 +409,7 @@ static int step_quiet(grobo_robot *robot)
         int64_t to_us = robot->axes[j].way.to_us;
         still_us = to_us > still_us ? to_us : still_us;
     }
-    if (!grobo_i_playing(robot) && still_us <= robot->now_us) {
+    if (!grobo_robot_is_playing(robot) && still_us <= robot->now_us) {
         return GROBO_I_NEXT;
     }
     grobo_i_job_goto(robot, step_quiet);

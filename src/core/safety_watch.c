@@ -27,7 +27,7 @@ const char *grobo_trip_name(grobo_trip trip)
 
 bool grobo_i_in_motion(const grobo_robot *robot)
 {
-    return robot->job.kind == GROBO_JOB_MOVE || grobo_i_playing(robot);
+    return robot->job.kind == GROBO_JOB_MOVE || grobo_robot_is_playing(robot);
 }
 
 /* Jobs that a latched stop ends: those that move, or that switch torque on. */
@@ -68,7 +68,7 @@ void grobo_i_trip(grobo_robot *robot, grobo_trip reason, int joint, double value
     }
     robot->counters.trips++;
     grobo_i_tell(robot, &event);
-    if (grobo_i_playing(robot)) {
+    if (grobo_robot_is_playing(robot)) {
         (void)grobo_sequencer_stop(&robot->sequencer, false, robot->now_us);
     }
     if (latched && job_must_end(robot)) {
@@ -77,7 +77,7 @@ void grobo_i_trip(grobo_robot *robot, grobo_trip reason, int joint, double value
     /* Before an emergency stop nothing goes out, and who leaves is on the way already. */
     if (latched && reason != GROBO_TRIP_ESTOP && robot->job.kind != GROBO_JOB_EXIT) {
         grobo_i_slots_cancel(robot, GROBO_I_USE_PLAIN); /* such as torque that waits to come on */
-        if (!grobo_i_playing(robot)) {
+        if (!grobo_robot_is_playing(robot)) {
             grobo_i_gate_halt(robot);
         }
     }

@@ -211,9 +211,6 @@ bool grobo_i_control_has_exited(grobo_control *control);
 
 /* ---- thread_play.c ---- */
 
-/* On the loop: true while the sequencer is at work. */
-bool grobo_i_control_sequencing(grobo_control *control);
-
 /* On the loop: looks whether what is played is over. */
 void grobo_i_control_look_at_play(grobo_control *control);
 

@@ -7,27 +7,11 @@ static grobo_robot *robot_of(grobo_control *control)
     return grobo_session_robot(control->session);
 }
 
-bool grobo_i_control_sequencing(grobo_control *control)
-{
-    switch (grobo_robot_play_state(robot_of(control))) {
-    case GROBO_SEQUENCER_APPROACHING:
-    case GROBO_SEQUENCER_PLAYING:
-    case GROBO_SEQUENCER_PAUSED:
-    case GROBO_SEQUENCER_STOPPING:
-        return true;
-    case GROBO_SEQUENCER_IDLE:
-    case GROBO_SEQUENCER_FINISHED:
-    case GROBO_SEQUENCER_FAILED:
-        break;
-    }
-    return false;
-}
-
 /* True while the robot does something that has to be over before it is sent somewhere. */
 static bool is_at_work(grobo_control *control)
 {
     return grobo_robot_job(robot_of(control)) != GROBO_JOB_NONE ||
-           grobo_i_control_sequencing(control);
+           grobo_robot_is_playing(robot_of(control));
 }
 
 static void set_result(grobo_control *control, int result)
@@ -213,7 +197,7 @@ void grobo_i_control_look_at_play(grobo_control *control)
     grobo_i_control_lock(control);
     begun = control->play == PLAY_BEGUN;
     grobo_i_control_unlock(control);
-    if (begun && control->play_job == 0 && !grobo_i_control_sequencing(control)) {
+    if (begun && control->play_job == 0 && !grobo_robot_is_playing(robot_of(control))) {
         end_play(control, control->play_error < 0 ? control->play_error : play_result(control));
     }
 }
@@ -309,7 +293,7 @@ int grobo_control_stop_motion(grobo_control *control, bool at_once)
 static int count_commands(grobo_control *control, void *arg)
 {
     grobo_play_progress progress;
-    bool sequencing = grobo_i_control_sequencing(control);
+    bool sequencing = grobo_robot_is_playing(robot_of(control));
     bool move;
     int count = 0;
 

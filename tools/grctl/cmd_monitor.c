@@ -21,13 +21,6 @@ __attribute__((format(printf, 3, 4))) static void say(monitor *m, bool bad, cons
     m->bad = bad;
 }
 
-static bool is_playing(const monitor *m)
-{
-    grobo_sequencer_state state = grobo_robot_play_state(m->c.robot);
-    return state == GROBO_SEQUENCER_APPROACHING || state == GROBO_SEQUENCER_PLAYING ||
-           state == GROBO_SEQUENCER_PAUSED || state == GROBO_SEQUENCER_STOPPING;
-}
-
 const char *monitor_busy(const monitor *m)
 {
     grobo_job_kind kind = grobo_robot_job(m->c.robot);
@@ -37,7 +30,9 @@ const char *monitor_busy(const monitor *m)
         return "getting ready to play";
     if (m->job)
         return m->doing;
-    return is_playing(m) ? grobo_sequencer_state_name(grobo_robot_play_state(m->c.robot)) : NULL;
+    return grobo_robot_is_playing(m->c.robot)
+               ? grobo_sequencer_state_name(grobo_robot_play_state(m->c.robot))
+               : NULL;
 }
 
 /* What a request came to: a number > 0 is that of a job, whose end is told by on_event(). */
@@ -208,7 +203,7 @@ static bool take_nudge(monitor *m, int key)
 static void take_play_key(monitor *m, int key)
 {
     const char *busy = monitor_busy(m);
-    if (is_playing(m) || (key == 's' && busy))
+    if (grobo_robot_is_playing(m->c.robot) || (key == 's' && busy))
         play_keys_take(&m->keys, key);
     else if (key > 0 && key < 128 && strchr(" +=-s", key))
         say(m, true, "nothing is playing%s%s", busy ? "; the robot is busy: " : "",
