@@ -79,7 +79,6 @@ LIBS = $(call once,LIBS,$(call flags,--libs,yaml-0.1 libevent_core) $(OS_LIBS))
 
 # ---- sources, by folder: a folder may be empty or missing ----------------------------------
 
-PUBLIC_HEADERS := $(wildcard include/grobo/*.h ports/$(PORT)/include/grobo/*.h)
 CORE_SRCS := $(sort $(wildcard src/core/*.c src/sim/*.c))
 OTHER_SRCS := $(sort $(wildcard src/motion/*.c src/body/*.c src/link/*.c ports/common/*.c \
     ports/$(PORT)/*.c))

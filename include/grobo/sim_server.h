@@ -73,9 +73,6 @@ GROBO_API void grobo_sim_server_pump(grobo_sim_server *server);
  */
 GROBO_API int grobo_sim_server_plug(grobo_sim_server *server, bool in);
 
-/** Bytes dropped because a program did not read, since the server was made. */
-GROBO_API uint64_t grobo_sim_server_dropped(const grobo_sim_server *server);
-
 GROBO_END_DECLS
 
 #endif

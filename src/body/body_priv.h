@@ -92,8 +92,4 @@ void grobo_i_stealthy_step(grobo_body *body);
 /* Adds ZMP keys and moments of rest of the feet. */
 void grobo_i_zmp_auto(grobo_body *body);
 
-/* Centre of a sole at a place of its foot, on the ground: x, y, 0. */
-void grobo_i_sole(const grobo_body_model *model, int foot, const double target[6],
-                  double sole_m[3]);
-
 #endif

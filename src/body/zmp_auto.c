@@ -57,7 +57,9 @@ static int phase_at(const struct stepping *now, double t_s)
     return stands[RIGHT] ? RIGHT : stands[LEFT] ? LEFT : NEITHER;
 }
 
-void grobo_i_sole(const grobo_body_model *model, int foot, const double target[6], double sole_m[3])
+/* Centre of a sole at a place of its foot, on the ground: x, y, 0. */
+static void place_sole(const grobo_body_model *model, int foot, const double target[6],
+                       double sole_m[3])
 {
     double r[9], arm[3];
 
@@ -76,7 +78,7 @@ static bool sole_at(const struct stepping *now, int foot, double t_s, double sol
     if (track->n == 0) {
         return false;
     }
-    grobo_i_sole(now->body->model, foot, grobo_i_track_row(track, i < 0 ? 0 : i), sole_m);
+    place_sole(now->body->model, foot, grobo_i_track_row(track, i < 0 ? 0 : i), sole_m);
     return true;
 }
 

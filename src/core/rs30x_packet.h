@@ -14,9 +14,6 @@ enum {
     GROBO_I_AT_DATA = 7
 };
 
-/* Size of the packet that starts here, judged as a grobo_i_measure; accept: what is believed. */
-int grobo_i_rs30x_measure(const uint8_t *bytes, size_t n, unsigned accept);
-
 /*
  * Data bytes that the header (up to and with the count) announces, or GROBO_ERR_FRAME when it is
  * not one of a packet. A factory reset announces none and may have one all the same.
@@ -25,8 +22,5 @@ int grobo_i_rs30x_announced(const uint8_t *header);
 
 /* True for the header of a factory reset, which comes with a data byte FF or without. */
 bool grobo_i_rs30x_is_reset(const uint8_t *header);
-
-/* Takes the whole, good packet of n bytes apart. */
-void grobo_i_rs30x_unpack(const uint8_t *bytes, size_t n, grobo_rs30x_packet *packet);
 
 #endif

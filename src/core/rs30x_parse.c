@@ -81,7 +81,7 @@ static int measure_start(const uint8_t *bytes, size_t n, unsigned accept)
     return 0;
 }
 
-/* As grobo_i_rs30x_measure, whatever the sum. */
+/* As measure, whatever the sum. */
 static int measure_form(const uint8_t *bytes, size_t n, unsigned accept)
 {
     if (bytes[0] == GROBO_RS30X_ACK || bytes[0] == GROBO_RS30X_NACK) {
@@ -116,7 +116,8 @@ static bool has_good_sum(const uint8_t *bytes, int size)
            grobo_i_xor(bytes + GROBO_I_AT_ID, (size_t)size - GROBO_I_AT_ID - 1) == bytes[size - 1];
 }
 
-int grobo_i_rs30x_measure(const uint8_t *bytes, size_t n, unsigned accept)
+/* Size of the packet that starts here, judged as a grobo_i_measure; accept: what is believed. */
+static int measure(const uint8_t *bytes, size_t n, unsigned accept)
 {
     int size = measure_form(bytes, n, accept);
     return size <= 0 || has_good_sum(bytes, size) ? size : GROBO_ERR_CHECKSUM;
@@ -136,7 +137,8 @@ static grobo_rs30x_kind kind_of(const uint8_t *bytes)
     }
 }
 
-void grobo_i_rs30x_unpack(const uint8_t *bytes, size_t n, grobo_rs30x_packet *packet)
+/* Takes the whole, good packet of n bytes apart. */
+static void unpack(const uint8_t *bytes, size_t n, grobo_rs30x_packet *packet)
 {
     memset(packet, 0, sizeof *packet);
     packet->kind = kind_of(bytes);
@@ -157,7 +159,7 @@ int grobo_rs30x_peek(const uint8_t *bytes, size_t n, unsigned accept, grobo_rs30
 {
     int size = n > 0 ? measure_form(bytes, n, accept) : 0;
     if (size > 0) {
-        grobo_i_rs30x_unpack(bytes, (size_t)size, packet);
+        unpack(bytes, (size_t)size, packet);
         *sum_ok = has_good_sum(bytes, size);
     }
     return size;
@@ -176,11 +178,11 @@ size_t grobo_rs30x_parser_feed(grobo_rs30x_parser *parser, const uint8_t *bytes,
 
 int grobo_rs30x_parser_next(grobo_rs30x_parser *parser, grobo_rs30x_packet *packet)
 {
-    size_t size = grobo_i_framer_next(&parser->framer, grobo_i_rs30x_measure, parser->accept);
+    size_t size = grobo_i_framer_next(&parser->framer, measure, parser->accept);
     if (size == 0) {
         return 0;
     }
-    grobo_i_rs30x_unpack(parser->framer.buf, size, packet);
+    unpack(parser->framer.buf, size, packet);
     return 1;
 }
 
@@ -242,7 +244,7 @@ static int reply_to_nibble(const uint8_t *packet, grobo_reply *reply)
 int grobo_rs30x_reply_to(const uint8_t *packet, size_t n, grobo_reply *reply)
 {
     grobo_reply found = {GROBO_REPLY_NONE, 0, 0, 0};
-    int size = n > 0 ? grobo_i_rs30x_measure(packet, n, GROBO_RS30X_ACCEPT_COMMANDS) : 0;
+    int size = n > 0 ? measure(packet, n, GROBO_RS30X_ACCEPT_COMMANDS) : 0;
     if (size < 0) {
         return size;
     }

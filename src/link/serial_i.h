@@ -52,10 +52,6 @@ int grobo_i_serial_lose(grobo_serial *serial, int error);
 /* Has on_event called from the loop. */
 void grobo_i_serial_tell(grobo_serial *serial, unsigned what);
 
-/* Tells the bytes of a read or write to counters and trace. */
-void grobo_i_serial_count(grobo_serial *serial, grobo_direction direction, const void *bytes,
-                          size_t size);
-
 /* Reads once; the port is closed when that fails. */
 int grobo_i_serial_take(grobo_serial *serial, void *buf, size_t size);
 

@@ -5,8 +5,9 @@
 
 #include "src/link/serial_i.h"
 
-void grobo_i_serial_count(grobo_serial *serial, grobo_direction direction, const void *bytes,
-                          size_t size)
+/* Tells the bytes of a read or write to counters and trace. */
+static void note_bytes(grobo_serial *serial, grobo_direction direction, const void *bytes,
+                       size_t size)
 {
     switch (direction) {
     case GROBO_DIR_RX:
@@ -28,7 +29,7 @@ int grobo_i_serial_take(grobo_serial *serial, void *buf, size_t size)
     int got = serial->ops->read(serial->port, buf, size, &serial->cause);
 
     if (got > 0) {
-        grobo_i_serial_count(serial, GROBO_DIR_RX, buf, (size_t)got);
+        note_bytes(serial, GROBO_DIR_RX, buf, (size_t)got);
     }
     return got < 0 ? grobo_i_serial_lose(serial, got) : got;
 }
@@ -45,7 +46,7 @@ static int put(grobo_serial *serial, const void *bytes, size_t size)
         serial->counters.short_writes++;
     }
     if (done > 0) {
-        grobo_i_serial_count(serial, GROBO_DIR_TX, bytes, (size_t)done);
+        note_bytes(serial, GROBO_DIR_TX, bytes, (size_t)done);
     }
     return done;
 }

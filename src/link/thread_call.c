@@ -67,7 +67,7 @@ void grobo_i_control_drain(grobo_socket socket)
     }
 }
 
-void grobo_i_control_ring(grobo_socket socket)
+static void ring(grobo_socket socket)
 {
     /* A full socket has bytes enough to wake whoever sleeps there. */
     (void)send(socket, "", 1, 0);
@@ -77,7 +77,7 @@ void grobo_i_control_wake(grobo_control *control)
 {
     if (!control->woken) {
         control->woken = true;
-        grobo_i_control_ring(control->wake_socket[1]);
+        ring(control->wake_socket[1]);
     }
 }
 
@@ -97,7 +97,7 @@ void grobo_i_control_sleep(grobo_control *control, control_slot *slot, int64_t e
 static void tell(control_slot *slot)
 {
     if (slot->sleeping) {
-        grobo_i_control_ring(slot->socket[1]);
+        ring(slot->socket[1]);
     }
 }
 

@@ -152,9 +152,8 @@ void grobo_i_control_unlock(grobo_control *control);
 int grobo_i_control_pair(grobo_socket pair[2]);
 void grobo_i_control_unpair(grobo_socket pair[2]);
 
-/* Takes a byte or more out of a socket; puts one in. */
+/* Takes what is there out of a socket. */
 void grobo_i_control_drain(grobo_socket socket);
-void grobo_i_control_ring(grobo_socket socket);
 
 /* With the lock: has the loop look at its calls. */
 void grobo_i_control_wake(grobo_control *control);

@@ -125,7 +125,5 @@ void grobo_i_drop_kept(const grobo_mem *mem, grobo_i_kept **list, grobo_kept_lev
 void grobo_i_kept_free(const grobo_mem *mem, grobo_i_kept *list);
 bool grobo_i_kept_equal(const grobo_i_kept *a, const grobo_i_kept *b);
 bool grobo_i_extra_equal(const grobo_i_extra *a, const grobo_i_extra *b);
-/* Finite numbers only. */
-bool grobo_i_link_ok(const grobo_ik_link *link);
 
 #endif

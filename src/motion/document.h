@@ -48,9 +48,6 @@ typedef struct grobo_i_document {
     } others[GROBO_MOTION_COMPONENTS_MAX];
 } grobo_i_document;
 
-/* The document an event stream belongs to. */
-grobo_i_document *grobo_i_document_of(grobo_i_events *events);
-
 /* Values of keys at the top; target is the document. */
 int grobo_i_read_refs(grobo_i_events *events, void *target);
 int grobo_i_read_components(grobo_i_events *events, void *target);

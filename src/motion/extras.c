@@ -239,7 +239,8 @@ static bool all_finite(const double *values, size_t count)
     return true;
 }
 
-bool grobo_i_link_ok(const grobo_ik_link *link)
+/* Finite numbers only. */
+static bool link_ok(const grobo_ik_link *link)
 {
     return all_finite(link->translation_m, 3) && all_finite(link->rotation, 9) &&
            (!link->has_parting_direction || all_finite(link->parting_direction, 3));
@@ -349,7 +350,7 @@ static int check_links(const grobo_ik_link *links, size_t count)
             links[i].index < -1) {
             return GROBO_ERR_ARG;
         }
-        if (!grobo_i_link_ok(&links[i])) {
+        if (!link_ok(&links[i])) {
             return GROBO_ERR_NAN;
         }
     }

@@ -6,7 +6,7 @@
 
 /* ---- single values ------------------------------------------------------------------------ */
 
-bool grobo_i_is_text(const grobo_i_event *event, const char *text)
+static bool is_text(const grobo_i_event *event, const char *text)
 {
     return event->kind == GROBO_I_SCALAR && strlen(text) == event->length &&
            memcmp(event->text, text, event->length) == 0;
@@ -15,8 +15,8 @@ bool grobo_i_is_text(const grobo_i_event *event, const char *text)
 bool grobo_i_is_null(const grobo_i_event *event)
 {
     return event->kind == GROBO_I_SCALAR && event->plain &&
-           (event->length == 0 || grobo_i_is_text(event, "~") || grobo_i_is_text(event, "null") ||
-            grobo_i_is_text(event, "Null") || grobo_i_is_text(event, "NULL"));
+           (event->length == 0 || is_text(event, "~") || is_text(event, "null") ||
+            is_text(event, "Null") || is_text(event, "NULL"));
 }
 
 static const char *kind_name(const grobo_i_event *event)
@@ -132,7 +132,7 @@ int grobo_i_read_bool(grobo_i_events *events, const char *what, bool *value)
         return result;
     }
     for (size_t i = 0; i < n_words; i++) {
-        if (grobo_i_is_text(event, words[i])) {
+        if (is_text(event, words[i])) {
             *value = i >= n_words / 2;
             return 0;
         }

@@ -52,7 +52,6 @@ int grobo_i_read_doubles(grobo_i_events *events, const char *what, double *value
 int grobo_i_read_string(grobo_i_events *events, const char *what, char **value);
 /* True for a plain scalar that means nothing: empty, ~, null. */
 bool grobo_i_is_null(const grobo_i_event *event);
-bool grobo_i_is_text(const grobo_i_event *event, const char *text);
 /* One node as flow-style text on one line. */
 int grobo_i_capture(grobo_i_events *events, grobo_i_text *text);
 

@@ -4,11 +4,6 @@
 
 #include "motion/document.h"
 
-grobo_i_document *grobo_i_document_of(grobo_i_events *events)
-{
-    return (grobo_i_document *)(void *)((char *)events - offsetof(grobo_i_document, events));
-}
-
 int grobo_i_keep_value(grobo_i_events *events, grobo_i_kept **list, const grobo_kept *where)
 {
     grobo_i_reader *reader = events->reader;

@@ -54,7 +54,7 @@ int32_t grobo_i_sim_ddeg(const grobo_sim_servo *servo, int32_t mdeg)
     return servo->reg[GROBO_RS30X_REVERSE] ? -ddeg : ddeg;
 }
 
-int32_t grobo_i_sim_mdeg(const grobo_sim_servo *servo, int32_t ddeg)
+static int32_t mdeg_of_ddeg(const grobo_sim_servo *servo, int32_t ddeg)
 {
     return (servo->reg[GROBO_RS30X_REVERSE] ? -ddeg : ddeg) * 100;
 }
@@ -108,7 +108,7 @@ void grobo_i_sim_drive(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
     grobo_i_sim_halt(sim, index);
-    int32_t goal_mdeg = grobo_i_sim_mdeg(servo, grobo_i_sim_value(servo, GROBO_RS30X_GOAL));
+    int32_t goal_mdeg = mdeg_of_ddeg(servo, grobo_i_sim_value(servo, GROBO_RS30X_GOAL));
     if (!servo->blocked) {
         servo->to_mdeg = clamp(goal_mdeg, servo->stop_min_mdeg, servo->stop_max_mdeg);
     }

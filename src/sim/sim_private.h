@@ -126,9 +126,8 @@ int32_t grobo_i_sim_speed_dps(const grobo_sim_servo *servo, int64_t t_us);
 int32_t grobo_i_sim_current_ma(const grobo_sim_servo *servo, int64_t t_us);
 int64_t grobo_i_sim_move_age_us(const grobo_sim_servo *servo, int64_t t_us);
 bool grobo_i_sim_moving(const grobo_sim_servo *servo, int64_t t_us);
-/* The unit of the wire in the servo's own direction, and back. */
+/* The unit of the wire in the servo's own direction. */
 int32_t grobo_i_sim_ddeg(const grobo_sim_servo *servo, int32_t mdeg);
-int32_t grobo_i_sim_mdeg(const grobo_sim_servo *servo, int32_t ddeg);
 int32_t grobo_i_sim_mdeg_of_rad(double angle_rad);
 /* Lets what the servo does on its own happen up to the latest time. */
 void grobo_i_sim_settle(grobo_sim *sim, int servo);

@@ -62,7 +62,8 @@ static frames_side side_of(pcapng_direction direction)
     return FRAMES_EITHER;
 }
 
-int decode_trace(decoder *d, input *in)
+/* A pcapng trace. Returns 0 or the exit status. */
+static int decode_trace(decoder *d, input *in)
 {
     static pcapng_reader reader;
     pcapng_chunk chunk;

@@ -119,10 +119,7 @@ bool conn_is_of_reply(int error);
 /* Of conn_fail(): what the job's joint did. The prefix ("init: ") is put before that. */
 int conn_fail_job(conn *c, int error, const char *prefix);
 
-/* Of conn_fail(): the engine has stopped by itself, c->trip says why. */
-int conn_fail_trip(conn *c, const char *doing);
-
-/* The same for one servo by its id, whether it is a joint's or not. */
+/* As conn_fail(), for one servo by its id, whether it is a joint's or not. */
 int conn_fail_servo(conn *c, int error, int id);
 
 /* Of the line's tap: keeps what -v tells of a failure, shows it at once from -vv on. */

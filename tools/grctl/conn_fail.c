@@ -28,7 +28,8 @@ static const char *trip_unit(grobo_trip trip)
     return "";
 }
 
-int conn_fail_trip(conn *c, const char *doing)
+/* The engine has stopped by itself, c->trip says why. */
+static int fail_trip(conn *c, const char *doing)
 {
     const grobo_trip_info *t = &c->trip;
     const grobo_model *model = grobo_robot_driver(c->robot)->model;
@@ -99,7 +100,7 @@ int conn_fail(conn *c, int error, const char *doing)
         return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error), "%s: %s while busy with %s",
                         conn_device(c), grobo_error_text(error), doing);
     if (c->trip.trip != GROBO_TRIP_NONE)
-        return conn_fail_trip(c, doing);
+        return fail_trip(c, doing);
     snprintf(prefix, sizeof prefix, "%s: ", doing);
     return conn_fail_job(c, error, conn_is_of_reply(error) ? "" : prefix);
 }

@@ -35,7 +35,4 @@ void decoder_summary(decoder *d);
 /* Lines of hex, as text or JSON, with or without times. Returns 0 or the exit status. */
 int decode_text(decoder *d, input *in);
 
-/* A pcapng trace. Returns 0 or the exit status. */
-int decode_trace(decoder *d, input *in);
-
 #endif

@@ -20,31 +20,14 @@ static int unknown(app *a, const char *what, const char *name, size_t length)
                     what, (int)length, name);
 }
 
-static int parse(app *a, const char *name, size_t length, grobo_joint_mask *joints)
+int joints_parse(app *a, const char *name, grobo_joint_mask *joints)
 {
+    size_t length = strlen(name);
     grobo_joint_mask found;
     if (grobo_model_find_joints(&grobo_gr001_model, name, length, &found) < 0)
         return unknown(a, "joint or group", name, length);
     *joints |= found;
     return 0;
-}
-
-int joints_parse(app *a, const char *name, grobo_joint_mask *joints)
-{
-    return parse(a, name, strlen(name), joints);
-}
-
-int joints_parse_list(app *a, const char *list, grobo_joint_mask *joints)
-{
-    for (;;) {
-        size_t length = strcspn(list, ",");
-        int status = parse(a, list, length, joints);
-        if (status)
-            return status;
-        if (list[length] == '\0')
-            return 0;
-        list += length + 1;
-    }
 }
 
 /* The number behind the j of "j12", or -1. */

@@ -9,8 +9,6 @@
 
 /* One name of a joint or group; on failure says so and returns the exit status, else 0. */
 int joints_parse(app *a, const char *name, grobo_joint_mask *joints);
-/* Names split by commas. */
-int joints_parse_list(app *a, const char *list, grobo_joint_mask *joints);
 /*
  * Names split by commas, of a motion's joints: j0, j1 .. always, other names by its model (NULL:
  * none). As joints_parse().

@@ -17,7 +17,7 @@ typedef struct monitor {
     bool prepared; /* the clips of the list are made */
     play_keys keys;
     grobo_joint_mask chosen; /* what torque and nudges are for */
-    int cursor;              /* place of the joint among monitor_places */
+    int cursor;              /* place of the joint */
     char said[APP_LINE_BYTES];
     bool bad;          /* what was said is a complaint */
     const char *doing; /* what the last job is, for people */
@@ -28,15 +28,8 @@ typedef struct monitor {
     unsigned drops; /* of the line */
 } monitor;
 
-/* Where joints stand on the screen: the robot's right side left, as one sees who faces us. */
-typedef struct monitor_place {
-    const char *joint;
-    int row;    /* below the title */
-    int column; /* 0, 1 */
-} monitor_place;
-
+/* Places of joints on the screen. */
 enum { MONITOR_PLACES = 20 };
-extern const monitor_place monitor_places[MONITOR_PLACES];
 
 /* The joint at a place. */
 int monitor_joint(const monitor *m, int place);

@@ -11,7 +11,12 @@ enum { LEAST_ROWS = 20, LEAST_COLUMNS = 80, BAR_MOST = 40, GAP = 2 };
 enum { BEFORE_BAR = 20, AFTER_BAR = 12, STALE_US = 2000000, WARM_BELOW = 10 };
 enum { ROW_TITLE, ROW_BODY = 2, ROW_LINK = 15, ROW_PLAY = 16, ROW_SAID = 18, ROW_HELP = 20 };
 
-const monitor_place monitor_places[MONITOR_PLACES] = {
+/* Where joints stand on the screen: the robot's right side left, as one sees who faces us. */
+static const struct {
+    const char *joint;
+    int row;    /* below the title */
+    int column; /* 0, 1 */
+} places[MONITOR_PLACES] = {
     {"NECK_Y", 0, 0},       {"R_SHOULDER_P", 2, 0}, {"R_SHOULDER_R", 3, 0}, {"R_ELBOW_P", 4, 0},
     {"R_HIP_Y", 6, 0},      {"R_HIP_R", 7, 0},      {"R_HIP_P", 8, 0},      {"R_KNEE_P", 9, 0},
     {"R_ANKLE_P", 10, 0},   {"R_ANKLE_R", 11, 0},   {"CHEST_P", 0, 1},      {"L_SHOULDER_P", 2, 1},
@@ -21,7 +26,7 @@ const monitor_place monitor_places[MONITOR_PLACES] = {
 
 int monitor_joint(const monitor *m, int place)
 {
-    const char *name = monitor_places[place].joint;
+    const char *name = places[place].joint;
     return grobo_model_find_joint(m->model, name, strlen(name));
 }
 
@@ -86,7 +91,7 @@ static void draw_values(const monitor *m, const grobo_joint_info *i, int row, in
 
 static void draw_joint(const monitor *m, int place, int column, int bar)
 {
-    int joint = monitor_joint(m, place), row = ROW_BODY + monitor_places[place].row;
+    int joint = monitor_joint(m, place), row = ROW_BODY + places[place].row;
     const grobo_joint *j = &m->model->joints[joint];
     bool chosen = (m->chosen & GROBO_JOINT_BIT(joint)) != 0;
     const char *name = j->name + (strncmp(j->name + 1, "_", 1) == 0 ? 2 : 0);
@@ -216,8 +221,7 @@ void monitor_draw(const monitor *m)
     for (int side = 0; side < 2; side++)
         draw_heads(side * (BEFORE_BAR + bar + AFTER_BAR + GAP), bar);
     for (int place = 0; place < MONITOR_PLACES; place++)
-        draw_joint(m, place, monitor_places[place].column * (BEFORE_BAR + bar + AFTER_BAR + GAP),
-                   bar);
+        draw_joint(m, place, places[place].column * (BEFORE_BAR + bar + AFTER_BAR + GAP), bar);
     draw_link(m);
     draw_play(m, columns);
     screen_put(ROW_SAID, 0, m->bad ? SCREEN_BAD : SCREEN_PLAIN, m->said);

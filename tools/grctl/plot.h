@@ -60,8 +60,6 @@ size_t plot_keys(const plot_data *data);
 /* Posture i of them as it is played, and when. Joints it sets are those it is a key of. */
 int plot_key(const plot_data *data, size_t i, grobo_posture *posture, double *t_s);
 
-/* A joint's name: the model's, else "j12". */
-void plot_joint_name(const grobo_model *model, int joint, char *name, size_t capacity);
 /* True if the angle is outside the joint's limits when it is rounded to the wire's 0.1 degree. */
 bool plot_beyond(const plot_curve *curve);
 /* How many places along the time a picture of these joints can tell apart. */

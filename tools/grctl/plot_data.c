@@ -166,7 +166,8 @@ static int follow(collector *c, double rate_hz)
 
 /* ---- all of it ----------------------------------------------------------------------------- */
 
-void plot_joint_name(const grobo_model *model, int joint, char *name, size_t capacity)
+/* The model's, else "j12". */
+static void joint_name(const grobo_model *model, int joint, char *name, size_t capacity)
 {
     if (model && joint < model->n_joints)
         snprintf(name, capacity, "%s", model->joints[joint].name);
@@ -187,7 +188,7 @@ static int add_curve(plot_data *data, int joint, int columns)
 {
     plot_curve *curve = &data->curves[data->n_curves++];
     curve->joint = joint;
-    plot_joint_name(data->of.model, joint, curve->name, sizeof curve->name);
+    joint_name(data->of.model, joint, curve->name, sizeof curve->name);
     if (data->of.model && joint < data->of.model->n_joints)
         curve->limits = &data->of.model->joints[joint];
     curve->points = calloc((size_t)(columns + 1) * POINTS_A_COLUMN, sizeof *curve->points);

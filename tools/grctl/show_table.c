@@ -6,7 +6,7 @@
 #include "show.h"
 
 /* On a terminal rows that do not fit its width are split, so many at a time. */
-enum { NARROWEST = 7, PAGE_ROWS = 40, NAME_PARTS = 4, NAME_BYTES = 64 };
+enum { NARROWEST = 7, PAGE_ROWS = 40, NAME_BYTES = 64 };
 
 typedef struct table {
     const app *a;
