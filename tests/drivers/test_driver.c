@@ -57,12 +57,8 @@ static grobo_serial *serial;
 
 static int set_up(void **state)
 {
-    const grobo_serial_config config = {.device = line.device, .silence_ms = 2000};
-
     (void)state;
-    test_line_open(&line);
-    assert_int_equal(grobo_serial_new(&config, &serial), GROBO_OK);
-    assert_int_equal(grobo_serial_open(serial), GROBO_OK);
+    serial = test_line_open_serial(&line, 2000);
     return 0;
 }
 

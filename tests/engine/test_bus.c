@@ -15,20 +15,9 @@
 
 enum { MS = 1000, S = 1000000, FRAME = GROBO_FRAME_MAX_BYTES };
 
-typedef struct request {
-    grobo_txn txn;
-    uint8_t frame[FRAME];
-} request;
-
-static void make_read(peer *p, request *r, uint8_t id, grobo_priority priority)
-{
-    int n = grobo_frame_read(p->bus.config.wiring, id, 42, 2, r->frame, FRAME);
-    peer_txn(p, &r->txn, r->frame, n, priority);
-}
-
 static void submit_read(peer *p, request *r, uint8_t id, grobo_priority priority)
 {
-    make_read(p, r, id, priority);
+    peer_read(p, r, id, 2, priority);
     assert_int_equal(grobo_bus_submit(&p->bus, &r->txn), GROBO_OK);
 }
 
@@ -212,7 +201,7 @@ static void a_stale_request_is_not_sent(void **state)
     peer_init(&p, NULL);
     p.obliging = true;
     submit_read(&p, &a, 1, GROBO_PRIORITY_USER);
-    make_read(&p, &b, 2, GROBO_PRIORITY_SENSE);
+    peer_read(&p, &b, 2, 2, GROBO_PRIORITY_SENSE);
     b.txn.start_by_us = 3 * MS;
     assert_int_equal(grobo_bus_submit(&p.bus, &b.txn), GROBO_OK);
     peer_run(&p, S);
@@ -254,7 +243,7 @@ static void queues_have_a_cap_that_a_stop_ignores(void **state)
         submit_read(&p, &r[i], 1, GROBO_PRIORITY_SENSE);
     }
     request *more = &r[GROBO_BUS_QUEUE_MAX];
-    make_read(&p, more, 1, GROBO_PRIORITY_MOTION);
+    peer_read(&p, more, 1, 2, GROBO_PRIORITY_MOTION);
     assert_int_equal(grobo_bus_submit(&p.bus, &more->txn), GROBO_ERR_FULL);
     assert_false(grobo_txn_is_pending(&more->txn));
     more->txn.priority = GROBO_PRIORITY_STOP;
@@ -274,7 +263,7 @@ static void nonsense_is_not_submitted(void **state)
     peer p;
     request r;
     peer_init(&p, NULL);
-    make_read(&p, &r, 1, GROBO_PRIORITY_USER);
+    peer_read(&p, &r, 1, 2, GROBO_PRIORITY_USER);
     grobo_txn bad = r.txn;
     bad.frame = NULL;
     assert_int_equal(grobo_bus_submit(&p.bus, &bad), GROBO_ERR_ARG);

@@ -17,11 +17,6 @@ enum { MS = 1000, S = 1000000, FRAME = GROBO_FRAME_MAX_BYTES, MARGIN = 2 * MS };
 /* When a first attempt that starts at 0 has failed: a position read, an ACK request. */
 enum { READ_FAILED = 3488 + MARGIN, PING_FAILED = 955 + 695 + 100 + 87 + 87 + MARGIN };
 
-typedef struct request {
-    grobo_txn txn;
-    uint8_t frame[FRAME];
-} request;
-
 static const uint8_t ack = GROBO_RS30X_ACK;
 
 static void start(peer *p)
@@ -32,8 +27,7 @@ static void start(peer *p)
 
 static void submit_read(peer *p, request *r, uint8_t id, uint8_t retries)
 {
-    int n = grobo_frame_read(p->bus.config.wiring, id, 42, 2, r->frame, FRAME);
-    peer_txn(p, &r->txn, r->frame, n, GROBO_PRIORITY_USER);
+    peer_read(p, r, id, 2, GROBO_PRIORITY_USER);
     r->txn.retries = retries;
     assert_int_equal(grobo_bus_submit(&p->bus, &r->txn), GROBO_OK);
 }

@@ -14,17 +14,6 @@
 
 enum { MS = 1000, S = 1000000, FRAME = GROBO_FRAME_MAX_BYTES, JOINTS = 20 };
 
-typedef struct request {
-    grobo_txn txn;
-    uint8_t frame[FRAME];
-} request;
-
-static void make_read(peer *p, request *r, uint8_t id, uint8_t length)
-{
-    int n = grobo_frame_read(p->bus.config.wiring, id, 42, length, r->frame, FRAME);
-    peer_txn(p, &r->txn, r->frame, n, GROBO_PRIORITY_SENSE);
-}
-
 static void make_pose(peer *p, request *r)
 {
     grobo_rs30x_goal goals[JOINTS];
@@ -43,7 +32,7 @@ static void a_full_read_through_the_board_costs_71_bytes(void **state)
     request r;
     grobo_bus_cost cost;
     peer_init(&p, NULL);
-    make_read(&p, &r, 1, 18);
+    peer_read(&p, &r, 1, 18, GROBO_PRIORITY_SENSE);
     grobo_bus_cost_of(&p.bus, &r.txn, &cost);
     assert_int_equal(cost.request_us, 955);
     assert_int_equal(cost.servo_us, 695 + 100 + 2257);
@@ -79,7 +68,7 @@ static void other_costs_follow_the_same_rule(void **state)
     const grobo_bus_config fast = {
         .wiring = GROBO_WIRING_BUS, .baud_bps = 460800, .return_delay_us = 1000};
     peer_init(&p, &fast);
-    make_read(&p, &r, 1, 18);
+    peer_read(&p, &r, 1, 18, GROBO_PRIORITY_SENSE);
     grobo_bus_cost_of(&p.bus, &r.txn, &cost);
     assert_int_equal(cost.request_us, 174);
     assert_int_equal(cost.servo_us, 0);
@@ -87,7 +76,7 @@ static void other_costs_follow_the_same_rule(void **state)
 
     const grobo_bus_config mixed = {.baud_bps = 460800, .servo_baud_bps = 9600};
     peer_init(&p, &mixed);
-    make_read(&p, &r, 1, 2);
+    peer_read(&p, &r, 1, 2, GROBO_PRIORITY_SENSE);
     grobo_bus_cost_of(&p.bus, &r.txn, &cost);
     assert_int_equal(cost.request_us, 239);
     assert_int_equal(cost.servo_us, 8334 + 100 + 10417);
@@ -122,7 +111,7 @@ static void an_overlapping_board_takes_the_next_frame_earlier(void **state)
     const grobo_bus_config config = {.overlap = true};
     peer_init(&p, &config);
     make_pose(&p, &a);
-    make_read(&p, &b, 1, 18);
+    peer_read(&p, &b, 1, 18, GROBO_PRIORITY_SENSE);
     assert_int_equal(grobo_bus_submit(&p.bus, &a.txn), GROBO_OK);
     assert_int_equal(grobo_bus_submit(&p.bus, &b.txn), GROBO_OK);
     peer_run(&p, 9549);
@@ -141,7 +130,7 @@ static void deadlines_say_when_to_come_back(void **state)
     const grobo_bus_config config = {.margin_us = 4 * MS};
     peer_init(&p, &config);
     assert_int_equal(grobo_bus_deadline(&p.bus, 0), GROBO_NEVER_US);
-    make_read(&p, &r, 1, 18);
+    peer_read(&p, &r, 1, 18, GROBO_PRIORITY_SENSE);
     assert_int_equal(grobo_bus_submit(&p.bus, &r.txn), GROBO_OK);
     assert_int_equal(grobo_bus_deadline(&p.bus, 5 * MS), 5 * MS);
     assert_int_equal(grobo_bus_tx(&p.bus, 5 * MS, buf, FRAME), 11);
@@ -165,7 +154,7 @@ static void a_late_pump_still_takes_what_came_in_time(void **state)
     request r;
     uint8_t buf[FRAME];
     peer_init(&p, NULL);
-    make_read(&p, &r, 1, 2);
+    peer_read(&p, &r, 1, 2, GROBO_PRIORITY_SENSE);
     assert_int_equal(grobo_bus_submit(&p.bus, &r.txn), GROBO_OK);
     assert_int_equal(grobo_bus_tx(&p.bus, 0, buf, FRAME), 11);
     peer_position_at(&p, 0, 1, 42);
@@ -183,12 +172,12 @@ static uint32_t timeout_after(peer *p, int replies, int64_t reply_after_us)
     for (int i = 0; i < replies; i++) {
         p->ended_count = 0;
         p->sent_count = 0;
-        make_read(p, &r, 1, 2);
+        peer_read(p, &r, 1, 2, GROBO_PRIORITY_SENSE);
         assert_int_equal(grobo_bus_submit(&p->bus, &r.txn), GROBO_OK);
         peer_run(p, p->now_us + S);
         assert_int_equal(p->ended[0].result, GROBO_OK);
     }
-    make_read(p, &r, 1, 2);
+    peer_read(p, &r, 1, 2, GROBO_PRIORITY_SENSE);
     grobo_bus_cost_of(&p->bus, &r.txn, &cost);
     return cost.timeout_us - cost.total_us;
 }
@@ -221,7 +210,7 @@ static void the_margin_doubles_with_every_retry(void **state)
     timeout_after(&p, 1, 0);
     p.obliging = false;
     int64_t from_us = p.now_us;
-    make_read(&p, &r, 1, 2);
+    peer_read(&p, &r, 1, 2, GROBO_PRIORITY_SENSE);
     r.txn.retries = 5;
     p.ended_count = p.sent_count = 0;
     assert_int_equal(grobo_bus_submit(&p.bus, &r.txn), GROBO_OK);
@@ -242,7 +231,7 @@ static void no_read_starts_that_would_reach_into_the_reserved_span(void **state)
     peer_init(&p, NULL);
     p.obliging = true;
     for (int i = 0; i < 3; i++) {
-        make_read(&p, &r[i], (uint8_t)(i + 1), 2);
+        peer_read(&p, &r[i], (uint8_t)(i + 1), 2, GROBO_PRIORITY_SENSE);
         assert_int_equal(grobo_bus_submit(&p.bus, &r[i].txn), GROBO_OK);
     }
     grobo_bus_reserve(&p.bus, 7 * MS, 2 * MS);
@@ -255,7 +244,7 @@ static void no_read_starts_that_would_reach_into_the_reserved_span(void **state)
     assert_int_equal(p.sent[1].at_us, 3488);
     assert_int_equal(p.sent[2].at_us, 9 * MS);
     grobo_bus_reserve(&p.bus, S + MS, S);
-    make_read(&p, &r[0], 1, 2);
+    peer_read(&p, &r[0], 1, 2, GROBO_PRIORITY_SENSE);
     assert_int_equal(grobo_bus_submit(&p.bus, &r[0].txn), GROBO_OK);
     peer_run(&p, S + 2 * MS);
     assert_int_equal(p.sent_count, 3);
@@ -271,9 +260,9 @@ static void a_short_request_goes_where_a_long_one_does_not_fit(void **state)
     request longer, shorter;
     peer_init(&p, NULL);
     p.obliging = true;
-    make_read(&p, &longer, 1, 18);
+    peer_read(&p, &longer, 1, 18, GROBO_PRIORITY_SENSE);
     longer.txn.priority = GROBO_PRIORITY_USER;
-    make_read(&p, &shorter, 2, 2);
+    peer_read(&p, &shorter, 2, 2, GROBO_PRIORITY_SENSE);
     grobo_bus_reserve(&p.bus, 5 * MS, MS);
     assert_int_equal(grobo_bus_submit(&p.bus, &longer.txn), GROBO_OK);
     assert_int_equal(grobo_bus_submit(&p.bus, &shorter.txn), GROBO_OK);
@@ -296,7 +285,7 @@ static played play(peer *p, int64_t period_us, int frames, uint8_t silent_id)
     p->obliging = true;
     p->silent_id = silent_id;
     for (uint8_t i = 0; i < JOINTS; i++) {
-        make_read(p, &reads[i], (uint8_t)(i + 1), 2);
+        peer_read(p, &reads[i], (uint8_t)(i + 1), 2, GROBO_PRIORITY_SENSE);
         reads[i].txn.retries = 0;
         assert_int_equal(grobo_bus_submit(&p->bus, &reads[i].txn), GROBO_OK);
     }

@@ -14,10 +14,7 @@
 
 #include "rig.h"
 
-enum { NECK = 13, NECK_ID = 2, R_ELBOW = 16, R_ELBOW_ID = 5, R_HIP_R = 1, R_HIP_P = 2 };
-
 static grobo_test_rig rig;
-static const grobo_robot_config quiet = {.sense_interval_us = GROBO_SENSE_NEVER};
 
 static void start(void)
 {

@@ -12,11 +12,8 @@
 
 #include "rig.h"
 
-enum { NECK = 13, R_KNEE = 3 };
-
 static grobo_test_rig rig;
 static grobo_hrpsys hrpsys;
-static const grobo_robot_config quiet = {.sense_interval_us = GROBO_SENSE_NEVER};
 
 static void start(void)
 {

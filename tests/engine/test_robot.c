@@ -12,7 +12,6 @@
 #include "rig.h"
 
 static grobo_test_rig rig;
-static const grobo_robot_config quiet = {.sense_interval_us = GROBO_SENSE_NEVER};
 
 static void check_is_answered(void **state)
 {

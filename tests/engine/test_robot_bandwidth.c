@@ -25,7 +25,7 @@
 
 #include "rig.h"
 
-enum { NECK = 13, R_KNEE = 3, JOINTS = 20, LENGTH_S = 5, SECOND_US = 1000000 };
+enum { JOINTS = 20, LENGTH_S = 5, SECOND_US = 1000000 };
 
 static grobo_test_rig rig;
 static rig_clip clip;

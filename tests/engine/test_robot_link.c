@@ -11,11 +11,8 @@
 
 #include "rig.h"
 
-enum { NECK = 13, HIP = 0, R_KNEE = 3 };
-
 static grobo_test_rig rig;
 static rig_clip clip;
-static const grobo_robot_config quiet = {.sense_interval_us = GROBO_SENSE_NEVER};
 static const rig_key sway[] = {{0, {{NECK, 0}}}, {1000, {{NECK, 30}}}, {3000, {{NECK, -30}}}};
 
 static void unplug(void)

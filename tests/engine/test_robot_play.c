@@ -11,11 +11,8 @@
 
 #include "rig.h"
 
-enum { HIP = 0, CHEST = 12, NECK = 13, R_KNEE = 3, SHOULDER = 14 };
-
 static grobo_test_rig rig;
 static rig_clip clip;
-static const grobo_robot_config quiet = {.sense_interval_us = GROBO_SENSE_NEVER};
 static const rig_key nod[] = {
     {0, {{NECK, 0}}},     {500, {{NECK, 30}}},  {1000, {{NECK, -30}, {SHOULDER, 60}}},
     {1700, {{NECK, 10}}}, {2000, {{NECK, 20}}},

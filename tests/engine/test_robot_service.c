@@ -11,10 +11,7 @@
 
 #include "rig.h"
 
-enum { NECK = 13, R_KNEE = 3, NECK_ID = 2, R_KNEE_ID = 12 };
-
 static grobo_test_rig rig;
-static const grobo_robot_config quiet = {.sense_interval_us = GROBO_SENSE_NEVER};
 
 static uint8_t reply[GROBO_REGISTERS];
 static size_t reply_bytes;

@@ -26,8 +26,6 @@
 
 #include "rig.h"
 
-enum { NECK = 13, SHOULDER = 14, R_KNEE = 3 };
-
 static grobo_test_rig rig;
 static rig_clip clip;
 static uint32_t random_state;

@@ -11,11 +11,8 @@
 
 #include "rig.h"
 
-enum { NECK = 13, R_KNEE = 3, L_ELBOW = 19 };
-
 static grobo_test_rig rig;
 static rig_clip clip;
-static const grobo_robot_config quiet = {.sense_interval_us = GROBO_SENSE_NEVER};
 static const grobo_robot_config watching = {.sense_interval_us = 200000};
 static const rig_key sway[] = {
     {0, {{NECK, 0}}}, {1000, {{NECK, 30}}}, {3000, {{NECK, -30}}}, {4000, {{NECK, 0}}}};
@@ -129,16 +126,7 @@ static void torque_of_the_others_comes_on(void **state)
 static void a_joint_outside_its_limits_is_not_switched_on(void **state)
 {
     (void)state;
-    static grobo_joint joints[20];
-    static grobo_model model;
-    grobo_driver driver = *grobo_gr001_driver(GROBO_WIRING_BOARD);
-    grobo_sim_config sim = {.model = &grobo_gr001_model};
-    model = grobo_gr001_model;
-    memcpy(joints, model.joints, sizeof joints);
-    joints[NECK].max_rad = grobo_rad_from_deg(20);
-    model.joints = joints;
-    driver.model = &model;
-    rig_start_driver(&rig, &driver, &quiet, &sim);
+    rig_start_narrow(&rig);
 
     assert_int_equal(grobo_sim_set_angle(&rig.sim, NECK, 25000, 0), 0);
     const grobo_event_job *job =

@@ -11,23 +11,8 @@
 
 #include "rig.h"
 
-enum { NECK = 13, R_KNEE = 3, NECK_ID = 2 };
-
 static grobo_test_rig rig;
 static rig_clip clip, other;
-static const grobo_robot_config quiet = {.sense_interval_us = GROBO_SENSE_NEVER};
-
-/* The time in the frame that moves motor `id` alone, the last one sent; in ms. */
-static int sent_ms(int id)
-{
-    for (size_t i = rig.n_sent; i > 0; i--) {
-        const uint8_t *b = rig.sent[i - 1].bytes;
-        if (rig.sent[i - 1].size == 14 && b[4] == id && b[6] == GROBO_RS30X_GOAL) {
-            return (b[11] | b[12] << 8) * 10;
-        }
-    }
-    return -1;
-}
 
 static int raw(const char *bytes, size_t size)
 {
@@ -51,10 +36,10 @@ static void a_joint_that_a_hand_may_have_moved_begins_softly(void **state)
     assert_int_equal(grobo_sim_set_angle(&rig.sim, NECK, 40000, 0), 0);
     rig_forget(&rig);
     move_to(NECK, -20);
-    assert_in_range(sent_ms(NECK_ID), 990, 2000); /* 60 deg at 60 deg/s */
+    assert_in_range(rig_sent_ms(&rig, NECK_ID), 990, 2000); /* 60 deg at 60 deg/s */
     rig_forget(&rig);
     move_to(NECK, 40); /* from there it is the servo's speed again */
-    assert_in_range(sent_ms(NECK_ID), 100, 300);
+    assert_in_range(rig_sent_ms(&rig, NECK_ID), 100, 300);
 }
 
 static void free_mode_is_left_softly(void **state)
@@ -73,7 +58,7 @@ static void free_mode_is_left_softly(void **state)
     double way_deg = rig_angle_deg(&rig, NECK) + 20;
     rig_forget(&rig);
     move_to(NECK, -20);
-    assert_true(sent_ms(NECK_ID) >= way_deg / 60 * 1000 - 10);
+    assert_true(rig_sent_ms(&rig, NECK_ID) >= way_deg / 60 * 1000 - 10);
 }
 
 /* A motion of the board's own, or a frame that nobody can read, may have moved anything. */
@@ -94,7 +79,7 @@ static void after_targets_that_are_not_ours_joints_are_read_anew(void **state)
         assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_ERR_STALE);
         rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), 0, rig.now_us), GROBO_OK);
         move_to(NECK, -20);
-        assert_in_range(sent_ms(NECK_ID), 490, 600); /* 30 deg */
+        assert_in_range(rig_sent_ms(&rig, NECK_ID), 490, 600); /* 30 deg */
     }
 }
 
@@ -222,7 +207,7 @@ static void a_raw_target_that_never_left_is_not_where_a_joint_is(void **state)
     grobo_posture target = rig_posture(&rig, NECK, 40, 10);
     assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
     rig_run(&rig, 20000);
-    assert_in_range(sent_ms(NECK_ID), 200, 400); /* 80 deg at 375 deg/s */
+    assert_in_range(rig_sent_ms(&rig, NECK_ID), 200, 400); /* 80 deg at 375 deg/s */
 }
 
 static void torque_switched_off_by_a_raw_frame_is_no_loss(void **state)
@@ -326,16 +311,7 @@ static void a_servo_is_not_restarted_under_a_motion(void **state)
 static void a_joint_outside_its_limits_can_be_stopped(void **state)
 {
     (void)state;
-    static grobo_joint joints[20];
-    static grobo_model model;
-    grobo_driver driver = *grobo_gr001_driver(GROBO_WIRING_BOARD);
-    grobo_sim_config sim = {.model = &grobo_gr001_model};
-    model = grobo_gr001_model;
-    memcpy(joints, model.joints, sizeof joints);
-    joints[NECK].max_rad = grobo_rad_from_deg(20);
-    model.joints = joints;
-    driver.model = &model;
-    rig_start_driver(&rig, &driver, &quiet, &sim);
+    rig_start_narrow(&rig);
     rig_power(&rig);
     assert_int_equal(grobo_sim_set_register(&rig.sim, NECK, GROBO_RS30X_GOAL, 225), 0);
     rig_run(&rig, 1000000);

@@ -14,24 +14,8 @@
 
 #include "rig.h"
 
-enum { NECK = 13, R_KNEE = 3, NECK_ID = 2 };
-
 static grobo_test_rig rig;
 static rig_clip clip, other;
-static const grobo_robot_config quiet = {.sense_interval_us = GROBO_SENSE_NEVER};
-
-/* The time in the frame that moves motor `id` alone, the last one sent; in ms. */
-static int sent_ms(int id)
-{
-    for (size_t i = rig.n_sent; i > 0; i--) {
-        const uint8_t *p;
-        size_t n = rig_packet(&rig.sent[i - 1], &p);
-        if (n == 12 && p[2] == id && p[4] == GROBO_RS30X_GOAL) {
-            return (p[9] | p[10] << 8) * 10;
-        }
-    }
-    return -1;
-}
 
 /* ---- limits ---------------------------------------------------------------------------------- */
 
@@ -270,7 +254,7 @@ static void a_time_out_of_all_reason_is_the_longest_there_is(void **state)
     rig_forget(&rig);
     int number = grobo_robot_move(&rig.robot, &target, rig.now_us);
     rig_run(&rig, 1000000);
-    assert_int_equal(sent_ms(NECK_ID), 163830);
+    assert_int_equal(rig_sent_ms(&rig, NECK_ID), 163830);
     assert_int_equal(grobo_robot_cancel(&rig.robot, rig.now_us), GROBO_OK);
     rig_expect(&rig, number, GROBO_ERR_CANCELED);
 }

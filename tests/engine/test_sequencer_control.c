@@ -9,37 +9,12 @@
 
 #include <cmocka.h>
 
-#include "sample_clip.h"
-
-#define MS 1000LL
-
-enum { ALL = 7 };
-
-static sample_pump pump;
-static sample_clip clip;
-static sample_clip other;
-
-/* LEFT goes 1 rad in 1 s, back in 2 s. */
-static const sample_key keys[] = {
-    {0, ALL, {0.0, 0, 0}}, {1000 * MS, ALL, {1.0, 0, 0}}, {2000 * MS, ALL, {0.0, 0, 0}}};
-
-static const grobo_play_options by_key = {.default_time_us = 100 * MS};
-static const grobo_play_options at_rate = {.mode = GROBO_PLAY_RATE};
-
-static void start(const grobo_play_options *options, double left_rad)
-{
-    grobo_posture from = sample_posture(left_rad, 0, 0);
-    sample_pump_init(&pump, &sample_model);
-    sample_clip_init(&clip, keys, 3);
-    sample_clip_init(&other, keys, 3);
-    assert_int_equal(grobo_sequencer_play(&pump.seq, &clip.clip, options, &from, 0), 0);
-    sample_pump_look(&pump);
-}
+#include "there_and_back.h"
 
 static const grobo_play_frame *last_frame(void)
 {
     assert_true(pump.n > 0);
-    return &pump.frames[pump.n - 1].frame;
+    return &pump.frames[pump.n - 1];
 }
 
 static void expect_last(int64_t due_ms, int64_t time_ms, double left_rad)
@@ -54,7 +29,7 @@ static void expect_last(int64_t due_ms, int64_t time_ms, double left_rad)
 static void a_pause_by_keys_rests_a_little_ahead_and_goes_on(void **state)
 {
     (void)state;
-    start(&by_key, 0.0);
+    there_and_back_start(&by_key, 0.0);
     sample_pump_run(&pump, 500 * MS); /* 400 of 1000 ms on the way */
     assert_int_equal(grobo_sequencer_pause(&pump.seq, pump.now_us), 0);
     sample_pump_run(&pump, 5000 * MS);
@@ -72,7 +47,7 @@ static void a_pause_by_keys_rests_a_little_ahead_and_goes_on(void **state)
 static void a_hold_never_passes_the_key(void **state)
 {
     (void)state;
-    start(&by_key, 0.0);
+    there_and_back_start(&by_key, 0.0);
     sample_pump_run(&pump, 1050 * MS);
     assert_int_equal(grobo_sequencer_pause(&pump.seq, pump.now_us), 0);
     sample_pump_run(&pump, 2000 * MS);
@@ -85,7 +60,7 @@ static void a_hold_never_passes_the_key(void **state)
 static void a_pause_after_a_late_frame_counts_from_when_it_left(void **state)
 {
     (void)state;
-    start(&by_key, 0.0);
+    there_and_back_start(&by_key, 0.0);
     sample_pump_run(&pump, 90 * MS);
     sample_pump_stall(&pump, 510 * MS); /* due at 100, taken at 600: 500 ms are left */
     expect_last(100, 500, 1.0);
@@ -98,7 +73,7 @@ static void a_pause_after_a_late_frame_counts_from_when_it_left(void **state)
 static void a_pause_in_an_approach_approaches_again(void **state)
 {
     (void)state;
-    start(&by_key, 1.2); /* 1.146 s at 60 deg/s: 1150 ms */
+    there_and_back_start(&by_key, 1.2); /* 1.146 s at 60 deg/s: 1150 ms */
     sample_pump_run(&pump, 475 * MS);
     expect_last(0, 1150, 0.0);
     assert_int_equal(grobo_sequencer_pause(&pump.seq, pump.now_us), 0);
@@ -113,7 +88,7 @@ static void a_pause_in_an_approach_approaches_again(void **state)
 static void a_pause_before_anything_was_sent_moves_nothing(void **state)
 {
     (void)state;
-    start(&by_key, 1.2);
+    there_and_back_start(&by_key, 1.2);
     assert_int_equal(grobo_sequencer_pause(&pump.seq, 0), 0);
     sample_pump_run(&pump, 5000 * MS);
     assert_int_equal(pump.n, 1);
@@ -123,7 +98,7 @@ static void a_pause_before_anything_was_sent_moves_nothing(void **state)
 static void commands_that_meet_keep_posture_and_position_together(void **state)
 {
     (void)state;
-    start(&by_key, 0.0);
+    there_and_back_start(&by_key, 0.0);
     sample_pump_run(&pump, 500 * MS);
     /* The frame for the new speed is not out when the pause comes: it rests where it is. */
     assert_int_equal(grobo_sequencer_set_speed(&pump.seq, 50, pump.now_us), 0);
@@ -138,7 +113,7 @@ static void commands_that_meet_keep_posture_and_position_together(void **state)
 static void speed_after_a_stall_begins_at_the_key_that_is_reached(void **state)
 {
     (void)state;
-    start(&by_key, 0.0);
+    there_and_back_start(&by_key, 0.0);
     sample_pump_run(&pump, 500 * MS);
     pump.now_us = 1500 * MS; /* key 1 was reached at 1100 */
     assert_int_equal(grobo_sequencer_set_speed(&pump.seq, 50, pump.now_us), 0);
@@ -150,7 +125,7 @@ static void speed_after_a_stall_begins_at_the_key_that_is_reached(void **state)
 /* Stops a play at 500 ms; returns when it was idle, after the command. */
 static int64_t stop_at_500(const grobo_play_options *options, bool at_once)
 {
-    start(options, 0.0);
+    there_and_back_start(options, 0.0);
     assert_int_equal(grobo_sequencer_enqueue(&pump.seq, &other.clip, NULL), 1);
     sample_pump_run(&pump, 500 * MS);
     assert_int_equal(grobo_sequencer_stop(&pump.seq, at_once, pump.now_us), 0);
@@ -180,7 +155,7 @@ static void stopping_keeps_its_bound_and_empties_the_queue(void **state)
 static void a_smooth_stop_can_be_cut_short(void **state)
 {
     (void)state;
-    start(&by_key, 0.0);
+    there_and_back_start(&by_key, 0.0);
     sample_pump_run(&pump, 500 * MS);
     assert_int_equal(grobo_sequencer_stop(&pump.seq, false, pump.now_us), 0);
     sample_pump_run(&pump, 600 * MS);
@@ -195,7 +170,7 @@ static void a_smooth_stop_can_be_cut_short(void **state)
 static void stopping_while_paused_stays_there(void **state)
 {
     (void)state;
-    start(&at_rate, 0.0);
+    there_and_back_start(&at_rate, 0.0);
     sample_pump_run(&pump, 500 * MS);
     assert_int_equal(grobo_sequencer_pause(&pump.seq, pump.now_us), 0);
     sample_pump_run(&pump, 5000 * MS);
@@ -209,7 +184,7 @@ static void stopping_while_paused_stays_there(void **state)
 static void stopping_after_a_stall_does_not_leap(void **state)
 {
     (void)state;
-    start(&at_rate, 0.0);
+    there_and_back_start(&at_rate, 0.0);
     sample_pump_run(&pump, 200 * MS);
     pump.now_us = 900 * MS;
     assert_int_equal(grobo_sequencer_stop(&pump.seq, true, pump.now_us), 0);
@@ -222,7 +197,7 @@ static void stopping_after_a_stall_does_not_leap(void **state)
 static void seeking_goes_there_softly(void **state)
 {
     (void)state;
-    start(&by_key, 0.0);
+    there_and_back_start(&by_key, 0.0);
     sample_pump_run(&pump, 200 * MS); /* at 0.1 rad */
     assert_int_equal(grobo_sequencer_seek(&pump.seq, 2000 * MS, pump.now_us), 0);
     sample_pump_run(&pump, 201 * MS);
@@ -233,7 +208,7 @@ static void seeking_goes_there_softly(void **state)
     expect_last(590, 1000, 0.0);
     assert_int_equal(pump.state_us, 1590 * MS);
 
-    start(&at_rate, 0.0);
+    there_and_back_start(&at_rate, 0.0);
     sample_pump_run(&pump, 100 * MS);
     assert_int_equal(grobo_sequencer_seek(&pump.seq, 3000 * MS, pump.now_us), 0);
     sample_pump_run(&pump, 9000 * MS);
@@ -245,7 +220,7 @@ static void seeking_goes_there_softly(void **state)
 static void seeking_while_paused_waits_for_resume(void **state)
 {
     (void)state;
-    start(&by_key, 0.0);
+    there_and_back_start(&by_key, 0.0);
     sample_pump_run(&pump, 500 * MS);
     assert_int_equal(grobo_sequencer_pause(&pump.seq, pump.now_us), 0);
     sample_pump_run(&pump, 1000 * MS);
@@ -257,7 +232,7 @@ static void seeking_while_paused_waits_for_resume(void **state)
     sample_pump_run(&pump, 9000 * MS);
     expect_last(2000, 1000, 0.0); /* it rested at 0.5 rad already */
     assert_int_equal(grobo_sequencer_seek(&pump.seq, 0, pump.now_us), GROBO_ERR_STATE);
-    start(&by_key, 0.0);
+    there_and_back_start(&by_key, 0.0);
     assert_int_equal(grobo_sequencer_seek(&pump.seq, -1, 0), GROBO_ERR_ARG);
     assert_int_equal(grobo_sequencer_seek(&pump.seq, 3000 * MS + 1, 0), GROBO_ERR_ARG);
 }
@@ -270,7 +245,7 @@ static void queued_clips_follow_by_way_of_an_approach(void **state)
     static const sample_key elsewhere[] = {{50 * MS, ALL, {0.5, 0, 0}},
                                            {500 * MS, ALL, {0.7, 0, 0}}};
     grobo_play_progress p;
-    start(&by_key, 0.0);
+    there_and_back_start(&by_key, 0.0);
     sample_clip_init(&other, elsewhere, 2);
     assert_int_equal(grobo_sequencer_enqueue(&pump.seq, &other.clip, &at_rate), 1);
     assert_int_equal(grobo_sequencer_enqueue(&pump.seq, &clip.clip, NULL), 2);
@@ -291,7 +266,7 @@ static void queued_clips_follow_by_way_of_an_approach(void **state)
 static void the_queue_has_a_cap(void **state)
 {
     (void)state;
-    start(&by_key, 0.0);
+    there_and_back_start(&by_key, 0.0);
     for (int i = 1; i <= GROBO_QUEUE_MAX; i++) {
         assert_int_equal(grobo_sequencer_enqueue(&pump.seq, &other.clip, NULL), i);
     }
@@ -326,7 +301,7 @@ static void options_out_of_range_are_refused(void **state)
                                              {.late_us = -1},
                                              {.stop_us = INT64_MAX},
                                              {.default_time_us = INT64_MAX}};
-    start(&by_key, 0.0);
+    there_and_back_start(&by_key, 0.0);
     grobo_sequencer_reset(&pump.seq);
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         assert_int_equal(play_with(bad[i]), GROBO_ERR_ARG);
@@ -352,23 +327,23 @@ static void bad_clips_never_start(void **state)
     static const sample_key backwards[] = {{0, ALL, {0, 0, 0}}, {-5 * MS, ALL, {0, 0, 0}}};
     static const sample_key too_early[] = {{-5 * MS, ALL, {0, 0, 0}}};
     static const sample_key hidden[] = {{0, 1, {0, (double)NAN, 0}}};
-    start(&by_key, 0.0);
+    there_and_back_start(&by_key, 0.0);
     grobo_sequencer_reset(&pump.seq);
-    assert_int_equal(play_keys(keys, 0), GROBO_ERR_EMPTY);
+    assert_int_equal(play_keys(there_and_back, 0), GROBO_ERR_EMPTY);
     assert_int_equal(play_keys(no_number, 2), GROBO_ERR_NAN);
     assert_int_equal(play_keys(backwards, 2), GROBO_ERR_ARG);
     assert_int_equal(play_keys(too_early, 1), GROBO_ERR_ARG);
-    sample_clip_init(&clip, keys, 3);
+    sample_clip_init(&clip, there_and_back, 3);
     clip.fail_at = 2;
     assert_int_equal(play_with(by_key), GROBO_ERR_UNREACHABLE);
     clip.sample_error = GROBO_ERR_STALE;
     assert_int_equal(play_with(at_rate), GROBO_ERR_STALE);
     clip.clip.key = NULL;
     assert_int_equal(play_with(by_key), GROBO_ERR_ARG);
-    sample_clip_init(&clip, keys, 3);
+    sample_clip_init(&clip, there_and_back, 3);
     clip.clip.length_us = -1;
     assert_int_equal(play_with(by_key), GROBO_ERR_ARG);
-    sample_clip_init(&clip, keys, 3);
+    sample_clip_init(&clip, there_and_back, 3);
     clip.clip.n_joints = 0;
     assert_int_equal(play_with(by_key), GROBO_ERR_EMPTY);
     clip.clip.n_joints = 4;
@@ -383,7 +358,7 @@ static void a_start_that_is_no_posture_of_the_robot_is_refused(void **state)
     (void)state;
     grobo_posture from = sample_posture(0, (double)NAN, 0);
     sample_pump_init(&pump, NULL);
-    sample_clip_init(&clip, keys, 3);
+    sample_clip_init(&clip, there_and_back, 3);
     assert_int_equal(grobo_sequencer_play(&pump.seq, &clip.clip, NULL, &from, 0), GROBO_ERR_NAN);
     from.set = 5; /* the one without a number is not set: not known */
     assert_int_equal(grobo_sequencer_play(&pump.seq, &clip.clip, NULL, &from, 0), 0);
@@ -398,7 +373,7 @@ static void a_clip_that_fails_in_mid_motion_says_so_once(void **state)
 {
     (void)state;
     grobo_play_progress p;
-    start(&by_key, 0.0);
+    there_and_back_start(&by_key, 0.0);
     clip.fail_at = 2;
     sample_pump_run(&pump, 1000 * MS);
     pump.now_us = 1100 * MS;
@@ -412,14 +387,14 @@ static void a_clip_that_fails_in_mid_motion_says_so_once(void **state)
     clip.fail_at = SIZE_MAX;
     assert_int_equal(play_with(by_key), 0);
 
-    start(&at_rate, 0.0);
+    there_and_back_start(&at_rate, 0.0);
     sample_pump_run(&pump, 100 * MS);
     clip.sample_error = GROBO_ERR_UNREACHABLE;
     pump.now_us = 120 * MS;
     assert_int_equal(sample_pump_take(&pump), GROBO_ERR_UNREACHABLE);
     assert_int_equal(pump.state, GROBO_SEQUENCER_FAILED);
 
-    start(&at_rate, 0.0);
+    there_and_back_start(&at_rate, 0.0);
     sample_pump_run(&pump, 100 * MS);
     clip.sample_error = GROBO_ERR_UNREACHABLE;
     assert_int_equal(grobo_sequencer_pause(&pump.seq, pump.now_us), GROBO_ERR_UNREACHABLE);
@@ -433,7 +408,7 @@ static void a_queued_clip_without_ground_fails_when_its_turn_comes(void **state)
     static const sample_key left[] = {{100 * MS, 1, {0.1, 0, 0}}};
     sample_pump_init(&pump, NULL);
     sample_clip_init(&clip, left, 1);
-    sample_clip_init(&other, keys, 3);
+    sample_clip_init(&other, there_and_back, 3);
     other.clip.relative = true; /* increments for joints that nobody knows anything of */
     assert_int_equal(grobo_sequencer_play(&pump.seq, &clip.clip, NULL, NULL, 0), 0);
     assert_int_equal(grobo_sequencer_enqueue(&pump.seq, &other.clip, NULL), 1);
@@ -446,7 +421,7 @@ static void a_queued_clip_without_ground_fails_when_its_turn_comes(void **state)
 static void a_posture_out_of_all_reason_takes_the_longest_time(void **state)
 {
     (void)state;
-    start(&by_key, 1e9);
+    there_and_back_start(&by_key, 1e9);
     sample_pump_run(&pump, 0);
     expect_last(0, 163830, 0.0);
 }

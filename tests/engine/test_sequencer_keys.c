@@ -13,9 +13,6 @@
 #include "sample_clip.h"
 
 #define PI 3.14159265358979323846
-#define MS 1000LL
-
-enum { LEFT = 1, RIGHT = 2, MIDDLE = 4, ALL = 7 };
 
 static sample_pump pump;
 static sample_clip clip;
@@ -42,7 +39,7 @@ static void expect_frames(const expected *frames, size_t n)
 {
     assert_int_equal(pump.n, n);
     for (size_t i = 0; i < n; i++) {
-        const grobo_play_frame *got = &pump.frames[i].frame;
+        const grobo_play_frame *got = &pump.frames[i];
         assert_int_equal(got->due_us, frames[i].due_ms * MS);
         assert_int_equal(got->posture.time_us, frames[i].time_ms * MS);
         for (int j = 0; j < SAMPLE_JOINTS; j++) {
@@ -92,8 +89,8 @@ static void a_key_posture_is_one_frame_with_its_time(void **state)
     (void)state;
     play_all(three, 3, (grobo_play_options){0});
     EXPECT({0, 1000, {0.1, 0.2, 0.3}}, {1000, 500, {0.2, 0.0, 0.3}}, {1500, 250, {0.3, 0.1, -0.3}});
-    assert_int_equal(pump.frames[0].frame.phase, GROBO_SEQUENCER_APPROACHING);
-    assert_int_equal(pump.frames[1].frame.phase, GROBO_SEQUENCER_PLAYING);
+    assert_int_equal(pump.frames[0].phase, GROBO_SEQUENCER_APPROACHING);
+    assert_int_equal(pump.frames[1].phase, GROBO_SEQUENCER_PLAYING);
     expect_finished_at(1750);
     assert_int_equal(grobo_sequencer_stats(&pump.seq)->frames, 3);
     assert_int_equal(grobo_sequencer_stats(&pump.seq)->late_frames, 0);
@@ -177,10 +174,10 @@ static void rounding_of_times_never_adds_up(void **state)
     }
     play_all(keys, SAMPLE_KEYS_MAX, (grobo_play_options){0});
     int64_t sum_us = 0;
-    int64_t first_us = pump.frames[1].frame.due_us;
+    int64_t first_us = pump.frames[1].due_us;
     assert_int_equal(pump.n, SAMPLE_KEYS_MAX);
     for (int i = 1; i < SAMPLE_KEYS_MAX; i++) {
-        const grobo_play_frame *frame = &pump.frames[i].frame;
+        const grobo_play_frame *frame = &pump.frames[i];
         assert_int_equal(frame->due_us, first_us + 33333 * (i - 1));
         assert_int_equal(frame->posture.time_us % GROBO_PLAY_TIME_UNIT_US, 0);
         sum_us += frame->posture.time_us;
@@ -286,8 +283,8 @@ static void a_stall_skips_keys_and_keeps_their_joints(void **state)
     /* Due at 100 (RIGHT), 600 (LEFT back), 700 (both): at 650 the second is under way. */
     sample_pump_stall(&pump, 600 * MS);
     assert_int_equal(pump.n, 2);
-    assert_int_equal(pump.frames[1].frame.skipped, 1);
-    assert_int_equal(pump.frames[1].frame.due_us, 600 * MS);
+    assert_int_equal(pump.frames[1].skipped, 1);
+    assert_int_equal(pump.frames[1].due_us, 600 * MS);
     sample_pump_run(&pump, 9000 * MS);
     EXPECT({0, 100, {0.1, (double)NAN, (double)NAN}}, {600, 50, {-0.1, 0.2, (double)NAN}},
            {700, 400, {0.3, -0.2, (double)NAN}});

@@ -12,9 +12,6 @@
 #include "sample_clip.h"
 
 #define PI 3.14159265358979323846
-#define MS 1000LL
-
-enum { ALL = 7 };
 
 static sample_pump pump;
 static sample_clip clip;
@@ -36,7 +33,7 @@ static void start(const sample_key *keys, grobo_play_options options, double lef
 static const grobo_play_frame *frame_at(size_t i)
 {
     assert_true(i < pump.n);
-    return &pump.frames[i].frame;
+    return &pump.frames[i];
 }
 
 /* The position that a frame of `minute` stands for, us. */

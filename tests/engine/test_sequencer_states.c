@@ -9,32 +9,7 @@
 
 #include <cmocka.h>
 
-#include "sample_clip.h"
-
-#define MS 1000LL
-
-enum { ALL = 7 };
-
-static sample_pump pump;
-static sample_clip clip;
-static sample_clip other;
-
-/* LEFT goes 1 rad in 1 s, back in 2 s. */
-static const sample_key keys[] = {
-    {0, ALL, {0.0, 0, 0}}, {1000 * MS, ALL, {1.0, 0, 0}}, {2000 * MS, ALL, {0.0, 0, 0}}};
-
-static const grobo_play_options by_key = {.default_time_us = 100 * MS};
-static const grobo_play_options at_rate = {.mode = GROBO_PLAY_RATE};
-
-static void start(const grobo_play_options *options, double left_rad)
-{
-    grobo_posture from = sample_posture(left_rad, 0, 0);
-    sample_pump_init(&pump, &sample_model);
-    sample_clip_init(&clip, keys, 3);
-    sample_clip_init(&other, keys, 3);
-    assert_int_equal(grobo_sequencer_play(&pump.seq, &clip.clip, options, &from, 0), 0);
-    sample_pump_look(&pump);
-}
+#include "there_and_back.h"
 
 static int play_with(grobo_play_options options)
 {
@@ -100,7 +75,7 @@ static int give(int command)
 
 static void bring_to(grobo_sequencer_state goal, const grobo_play_options *options)
 {
-    start(options, 1.0);
+    there_and_back_start(options, 1.0);
     sample_pump_run(&pump, 100 * MS); /* approaching: 1 rad is far */
     if (goal == GROBO_SEQUENCER_PLAYING || goal == GROBO_SEQUENCER_FINISHED) {
         sample_pump_run(&pump, goal == GROBO_SEQUENCER_PLAYING ? 2000 * MS : 9000 * MS);
@@ -154,7 +129,7 @@ static void each_command_is_taken_in_its_states_only(void **state)
 static void arguments_of_commands_are_checked(void **state)
 {
     (void)state;
-    start(&by_key, 0.0);
+    there_and_back_start(&by_key, 0.0);
     assert_int_equal(grobo_sequencer_set_speed(&pump.seq, 0, 0), GROBO_ERR_ARG);
     assert_int_equal(grobo_sequencer_set_speed(&pump.seq, 1001, 0), GROBO_ERR_ARG);
     assert_int_equal(grobo_sequencer_fail(&pump.seq, 0), GROBO_ERR_ARG);
@@ -192,7 +167,7 @@ static void whatever_happens_frames_stay_in_bounds(void **state)
     for (int round = 0; round < 300; round++) {
         grobo_play_options options;
         grobo_posture from = sample_posture(0.5, 0.5, 0.5);
-        start(&by_key, 0.0);
+        there_and_back_start(&by_key, 0.0);
         grobo_sequencer_reset(&pump.seq);
         (void)sample_pump_take(&pump);
         random_option(&options, &seed);
@@ -210,7 +185,7 @@ static void whatever_happens_frames_stay_in_bounds(void **state)
         }
         for (size_t i = 0; i < pump.n; i++) {
             for (int j = 0; j < SAMPLE_JOINTS; j++) {
-                assert_true(fabs(pump.frames[i].frame.posture.angle_rad[j]) <= 1.0 + 1e-9);
+                assert_true(fabs(pump.frames[i].posture.angle_rad[j]) <= 1.0 + 1e-9);
             }
         }
     }

@@ -16,7 +16,7 @@
 
 #include <grobo/loop.h>
 
-#include "motion_files.h"
+#include "files.h"
 #include "spy.h"
 
 enum { LIMIT_S = 60, MOTORS = 20, KEYS_MAX = 64 };

@@ -17,9 +17,9 @@
 
 #include <grobo/serial.h>
 
+#include "files.h"
 #include "folder.h"
 #include "line.h"
-#include "motion_files.h"
 
 /* Opens a device; returns the result, leaves the cause's text. */
 static int try_open(const char *device, char *text, size_t text_bytes)

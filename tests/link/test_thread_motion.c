@@ -13,8 +13,8 @@
 #include <cmocka.h>
 
 #include "control_kit.h"
+#include "files.h"
 #include "folder.h"
-#include "motion_files.h"
 
 /* ---- the target --------------------------------------------------------------------------- */
 

@@ -38,6 +38,12 @@ void peer_txn(peer *p, grobo_txn *txn, const uint8_t *frame, int n, grobo_priori
     txn->ctx = p;
 }
 
+void peer_read(peer *p, request *r, uint8_t id, uint8_t bytes, grobo_priority priority)
+{
+    int n = grobo_frame_read(p->bus.config.wiring, id, 42, bytes, r->frame, sizeof r->frame);
+    peer_txn(p, &r->txn, r->frame, n, priority);
+}
+
 void peer_bytes_at(peer *p, int64_t at_us, const uint8_t *bytes, size_t n)
 {
     int i = p->chunk_count++;

@@ -51,6 +51,15 @@ void peer_init(peer *p, const grobo_bus_config *config);
 /* A transaction whose end is written down; frame must stay. Asserts that it is well formed. */
 void peer_txn(peer *p, grobo_txn *txn, const uint8_t *frame, int n, grobo_priority priority);
 
+/* A transaction with room for its frame. */
+typedef struct request {
+    grobo_txn txn;
+    uint8_t frame[GROBO_FRAME_MAX_BYTES];
+} request;
+
+/* Makes it read this many bytes of a servo from No.42 on. */
+void peer_read(peer *p, request *r, uint8_t id, uint8_t bytes, grobo_priority priority);
+
 /* Bytes that arrive at a time; in any order of calls. */
 void peer_bytes_at(peer *p, int64_t at_us, const uint8_t *bytes, size_t n);
 

@@ -73,6 +73,17 @@ void test_line_open(test_line *line)
     memcpy(line->device, name, strlen(name) + 1);
 }
 
+grobo_serial *test_line_open_serial(test_line *line, int silence_ms)
+{
+    const grobo_serial_config config = {.device = line->device, .silence_ms = silence_ms};
+    grobo_serial *serial;
+
+    test_line_open(line);
+    assert_int_equal(grobo_serial_new(&config, &serial), GROBO_OK);
+    assert_int_equal(grobo_serial_open(serial), GROBO_OK);
+    return serial;
+}
+
 void test_line_close(test_line *line)
 {
     if (line->fd >= 0) {

@@ -10,6 +10,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include <grobo/serial.h>
+
 typedef struct test_line {
     int fd;          /* the far end, non-blocking; -1 when closed */
     char device[64]; /* what to open */
@@ -17,6 +19,9 @@ typedef struct test_line {
 
 /* Makes a line; fails the test where that does not work. */
 void test_line_open(test_line *line);
+
+/* Makes one and opens a serial port on it; `silence_ms` as of grobo_serial_config. */
+grobo_serial *test_line_open_serial(test_line *line, int silence_ms);
 
 /* Skips the test on a cable: it needs `what`, which only a pty does. */
 void test_line_needs_pty(const char *what);

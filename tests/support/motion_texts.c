@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "motion_files.h"
+#include "motion_texts.h"
 
 const char full_pose[] = "type: PoseSeq\nname: \"a \\\"b\\\"\"\ntargetBody: GR001\n"
                          "author: { who: me, 'two words': [ ] }\n"
@@ -117,57 +117,4 @@ double angle_of(const grobo_motion *motion, size_t n, int joint)
     assert_int_equal(grobo_motion_get(motion, n, &posture), 0);
     (void)grobo_posture_get_rad(&posture, joint, &angle_rad);
     return angle_rad;
-}
-
-char *file_text(const char *path, size_t *size)
-{
-    FILE *file = fopen(path, "rb");
-    text_sink text = {NULL, 0};
-    char block[65536];
-    size_t got;
-
-    if (file == NULL) {
-        return NULL;
-    }
-    (void)write_text(&text, "", 0);
-    while ((got = fread(block, 1, sizeof block, file)) > 0) {
-        (void)write_text(&text, block, got);
-    }
-    fclose(file);
-    *size = text.size;
-    return text.data;
-}
-
-void put_file(const char *path, const char *text)
-{
-    FILE *file = fopen(path, "wb");
-
-    assert_non_null(file);
-    assert_true(fputs(text, file) >= 0);
-    assert_int_equal(fclose(file), 0);
-}
-
-void assert_file(const char *path, const char *text)
-{
-    size_t size;
-    char *found = file_text(path, &size);
-
-    assert_non_null(found);
-    assert_string_equal(found, text);
-    free(found);
-}
-
-const char *shared_file(const char *name)
-{
-    static char path[4096];
-    const char *root = getenv("GROBO_SHARED");
-
-    (void)snprintf(path, sizeof path, "%s/%s", root != NULL ? root : "../shared", name);
-    FILE *file = fopen(path, "rb");
-    if (file == NULL) {
-        print_message("%s is missing: reference material beside the checkout\n", path);
-        skip();
-    }
-    fclose(file);
-    return path;
 }

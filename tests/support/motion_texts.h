@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Motion files for tests: from texts, and from the reference material beside the checkout. */
-#ifndef TESTS_SUPPORT_MOTION_FILES_H
-#define TESTS_SUPPORT_MOTION_FILES_H
+/* Motions of tests: from texts, and written to them. */
+#ifndef GROBO_TESTS_MOTION_TEXTS_H
+#define GROBO_TESTS_MOTION_TEXTS_H
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -23,13 +23,5 @@ bool has_diagnostic(const grobo_diagnostics *list, const char *code, unsigned li
                     unsigned column);
 /* Angle of a joint of posture n; NAN where it is not set. */
 double angle_of(const grobo_motion *motion, size_t n, int joint);
-/* All of a file, NUL-terminated, to be freed by free(); NULL if it cannot be read. */
-char *file_text(const char *path, size_t *size);
-/* Writes a file; fails the test if that fails. */
-void put_file(const char *path, const char *text);
-/* Fails the test if this is not all that the file has. */
-void assert_file(const char *path, const char *text);
-/* The path of a file of the reference material; skips the test, saying so, where it is missing. */
-const char *shared_file(const char *name);
 
 #endif

@@ -10,6 +10,7 @@
 #include <math.h>
 #include <string.h>
 
+const grobo_robot_config quiet = {.sense_interval_us = GROBO_SENSE_NEVER};
 grobo_wiring rig_wiring = GROBO_WIRING_BOARD;
 
 /* ---- what must always hold, judged on the frames themselves ---------------------------------- */
@@ -404,6 +405,33 @@ bool rig_packet_was_sent(const grobo_test_rig *rig, const void *bytes, size_t si
         }
     }
     return false;
+}
+
+int rig_sent_ms(const grobo_test_rig *rig, int id)
+{
+    for (size_t i = rig->n_sent; i > 0; i--) {
+        const uint8_t *p;
+        size_t n = rig_packet(&rig->sent[i - 1], &p);
+        if (n == 12 && p[2] == id && p[4] == GROBO_RS30X_GOAL) {
+            return (p[9] | p[10] << 8) * 10;
+        }
+    }
+    return -1;
+}
+
+void rig_start_narrow(grobo_test_rig *rig)
+{
+    static grobo_joint joints[GROBO_JOINTS_MAX];
+    static grobo_model model;
+    static grobo_driver driver;
+    grobo_sim_config sim = {.model = &grobo_gr001_model};
+    model = grobo_gr001_model;
+    memcpy(joints, model.joints, (size_t)model.n_joints * sizeof *joints);
+    joints[NECK].max_rad = grobo_rad_from_deg(20);
+    model.joints = joints;
+    driver = *grobo_gr001_driver(GROBO_WIRING_BOARD);
+    driver.model = &model;
+    rig_start_driver(rig, &driver, &quiet, &sim);
 }
 
 /* ---- clips ---------------------------------- */

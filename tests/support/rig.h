@@ -46,6 +46,22 @@ typedef struct grobo_test_rig {
     unsigned frames;    /* sent */
 } grobo_test_rig;
 
+/* Joints of GR001 that tests move, in joint order, and the ids of some. */
+enum {
+    HIP = 0,
+    R_HIP_R = 1,
+    R_HIP_P = 2,
+    R_KNEE = 3,
+    CHEST = 12,
+    NECK = 13,
+    SHOULDER = 14,
+    R_ELBOW = 16,
+    L_ELBOW = 19,
+    NECK_ID = 2,
+    R_ELBOW_ID = 5
+};
+/* A config for rig_start(): joints are read only where something asks. */
+extern const grobo_robot_config quiet;
 /* How rig_start() reaches the servos: through the board, unless a test says otherwise. */
 extern grobo_wiring rig_wiring;
 struct CMUnitTest;
@@ -56,6 +72,8 @@ void rig_start(grobo_test_rig *rig, const grobo_robot_config *config, const grob
 /* The same with a driver of one's own. */
 void rig_start_driver(grobo_test_rig *rig, const grobo_driver *driver,
                       const grobo_robot_config *config, const grobo_sim_config *sim);
+/* The same, quiet, with a driver that allows the neck less than its servo's stops do: 20 degrees. */
+void rig_start_narrow(grobo_test_rig *rig);
 /* Lets time pass up to now + us. */
 void rig_run(grobo_test_rig *rig, int64_t us);
 /* Lets time pass until a job ends, 60 s at most. */
@@ -85,6 +103,9 @@ grobo_posture rig_posture(const grobo_test_rig *rig, int joint, double angle_deg
 size_t rig_packet(const rig_frame *frame, const uint8_t **packet);
 /* True if this packet for servos is in a frame sent since the last rig_forget(). */
 bool rig_packet_was_sent(const grobo_test_rig *rig, const void *bytes, size_t size);
+
+/* The time in the frame that moves motor `id` alone, the last one sent; in ms, -1 for none. */
+int rig_sent_ms(const grobo_test_rig *rig, int id);
 
 /* A clip of GR001: key postures that differ from the initial one in a few joints, straight lines
  * between them when sampled. */

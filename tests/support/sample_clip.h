@@ -7,6 +7,11 @@
 
 enum { SAMPLE_JOINTS = 3, SAMPLE_KEYS_MAX = 64, SAMPLE_FRAMES_MAX = 8192 };
 
+#define MS 1000LL
+
+/* Bits of joints. */
+enum { LEFT = 1, RIGHT = 2, MIDDLE = 4, ALL = 7 };
+
 /* Joints LEFT (0) and RIGHT (1) are each other's mirror, MIDDLE (2) its own. */
 extern const grobo_model sample_model;
 
@@ -29,15 +34,10 @@ void sample_clip_init(sample_clip *sample, const sample_key *keys, size_t n);
 /* All three joints at these angles. */
 grobo_posture sample_posture(double left_rad, double right_rad, double middle_rad);
 
-typedef struct sample_frame {
-    grobo_play_frame frame;
-    int64_t taken_us; /* when it was handed out */
-} sample_frame;
-
 typedef struct sample_pump {
     grobo_sequencer seq;
     int64_t now_us;
-    sample_frame frames[SAMPLE_FRAMES_MAX];
+    grobo_play_frame frames[SAMPLE_FRAMES_MAX];
     size_t n;
     int64_t last_due_us;
     grobo_sequencer_state state; /* last seen */

@@ -2,11 +2,17 @@
 #include "vectors.h"
 
 #include <ctype.h>
+#include <setjmp.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { FILE_MAX_BYTES = 1 << 18, STRING_MAX_BYTES = 1024 };
+#include <cmocka.h>
+
+#include "files.h"
+
+enum { STRING_MAX_BYTES = 1024 };
 
 static int hex_digit(char c)
 {
@@ -31,6 +37,15 @@ int vector_from_hex(const char *hex, uint8_t *bytes, size_t cap)
         }
     }
     return (int)n;
+}
+
+void vector_expect(int n, const uint8_t *bytes, const char *hex)
+{
+    uint8_t wanted[VECTOR_MAX_BYTES];
+    int size = vector_from_hex(hex, wanted, sizeof wanted);
+    assert_true(size > 0);
+    assert_int_equal(n, size);
+    assert_memory_equal(bytes, wanted, (size_t)size);
 }
 
 /* Copies the string that starts behind its quote; returns what follows its end, NULL if none. */
@@ -68,8 +83,9 @@ static int set_field(vector *v, const char *key, const char *value)
     return 0;
 }
 
-/* An array of flat objects whose values are strings, or the words true and false. */
-static int scan(const char *p, void (*use)(const vector *v, void *ctx), void *ctx)
+/* An array of flat objects whose values are strings, or the words true and false. Returns how many
+ * were of the kind that is checked, -1 for a broken file. */
+static int scan(const char *p, bool (*check)(const vector *v))
 {
     static char key[STRING_MAX_BYTES], value[STRING_MAX_BYTES];
     vector v;
@@ -93,26 +109,16 @@ static int scan(const char *p, void (*use)(const vector *v, void *ctx), void *ct
         } else if (c == 'f' && strcmp(key, "valid") == 0) {
             v.valid = false;
         } else if (c == '}') {
-            use(&v, ctx);
-            count++;
+            count += check(&v);
         }
     }
     return count;
 }
 
-int vectors_each(void (*use)(const vector *v, void *ctx), void *ctx)
+void vectors_check(bool (*check)(const vector *v), int at_least)
 {
-    static char text[FILE_MAX_BYTES];
-    char path[512];
-    const char *shared = getenv("GROBO_SHARED");
-    snprintf(path, sizeof path, "%s/vectors/rs30x.json", shared != NULL ? shared : "../shared");
-    FILE *file = fopen(path, "rb");
-    if (file == NULL) {
-        printf("# no %s beside the checkout\n", path);
-        return 0;
-    }
-    size_t n = fread(text, 1, sizeof text - 1, file);
-    fclose(file);
-    text[n] = '\0';
-    return scan(text, use, ctx);
+    char *text = file_text(shared_file("vectors/rs30x.json"), NULL);
+    int count = scan(text, check);
+    free(text);
+    assert_true(count >= at_least);
 }

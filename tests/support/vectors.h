@@ -19,12 +19,15 @@ typedef struct vector {
 } vector;
 
 /*
- * Calls use with every vector of $GROBO_SHARED/vectors/rs30x.json (default ../shared).
- * Returns how many there were, 0 when the file is missing (and says so), -1 for a broken file.
+ * Checks every vector of vectors/rs30x.json; skips the test where the file is missing. check()
+ * returns whether a vector was of its kind; fails the test where fewer were than at_least.
  */
-int vectors_each(void (*use)(const vector *v, void *ctx), void *ctx);
+void vectors_check(bool (*check)(const vector *v), int at_least);
 
 /* Bytes of "FA AF 01", at most cap; -1 when it is anything else. */
 int vector_from_hex(const char *hex, uint8_t *bytes, size_t cap);
+
+/* Fails the test if these n bytes are not those of "FA AF 01". */
+void vector_expect(int n, const uint8_t *bytes, const char *hex);
 
 #endif

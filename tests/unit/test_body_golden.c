@@ -15,6 +15,8 @@
 #include <grobo/body_motion.h>
 #include <grobo/motion_io.h>
 
+#include "files.h"
+
 #define RATE_HZ 30.0
 
 static const struct grobo_body_options plain = {.ik = GROBO_BODY_IK_NUMERIC, .rate_hz = RATE_HZ};
@@ -33,13 +35,6 @@ static const struct grobo_body_options compat11 = {.ik = GROBO_BODY_IK_NUMERIC,
                                                    .zmp = GROBO_BODY_ZMP_AUTO,
                                                    .balance = GROBO_BODY_BALANCE_COMPAT11,
                                                    .rate_hz = RATE_HZ};
-
-static void path_in_shared(char *path, size_t bytes, const char *name)
-{
-    const char *shared = getenv("GROBO_SHARED");
-
-    snprintf(path, bytes, "%s/data/%s", shared != NULL ? shared : "../shared", name);
-}
 
 /* Largest difference to the frames of an open file; every frame must be there, none beyond. */
 static double compare(grobo_body *body, FILE *golden)
@@ -68,20 +63,14 @@ static double compare(grobo_body *body, FILE *golden)
 static void agree(const char *motion, const char *frames, const grobo_body_options *options,
                   double tolerance_rad)
 {
-    char path[512];
     grobo_motion *keys = NULL;
     grobo_body *body = NULL;
     FILE *golden;
     double worst;
 
-    path_in_shared(path, sizeof path, frames);
-    golden = fopen(path, "r");
-    if (golden == NULL) {
-        print_message("no %s: reference material is not beside the checkout\n", path);
-        skip();
-    }
-    path_in_shared(path, sizeof path, motion);
-    assert_int_equal(grobo_motion_read_file(path, NULL, NULL, &keys), 0);
+    golden = fopen(shared_file(frames), "r");
+    assert_non_null(golden);
+    assert_int_equal(grobo_motion_read_file(shared_file(motion), NULL, NULL, &keys), 0);
     assert_int_equal(grobo_body_new(&body, &grobo_gr001_body, keys, options, NULL), 0);
     grobo_motion_free(keys);
     worst = compare(body, golden);
@@ -93,61 +82,63 @@ static void agree(const char *motion, const char *frames, const grobo_body_optio
     fclose(golden);
 }
 
-#define SAMPLE "choreonoid/GR001-SampleMotion1.pseq"
+#define SAMPLE "data/choreonoid/GR001-SampleMotion1.pseq"
 
 /* The analytic reference solves its offsets approximately: 9e-5 rad off the exact answer. */
 static void exact_ik_agrees_with_the_analytic_reference(void **state)
 {
     (void)state;
-    agree(SAMPLE, "golden/SampleMotion1.r30.plain_grobot.csv", &plain_grobot, 1e-4);
-    agree("golden/walk.pseq", "golden/walk.r30.plain_grobot.csv", &plain_grobot, 1e-4);
-    agree("golden/misc.pseq", "golden/misc.r30.plain_grobot.csv", &plain_grobot, 1e-8);
-    agree("golden/nowaist.pseq", "golden/nowaist.r30.plain_grobot.csv", &plain_grobot, 1e-8);
+    agree(SAMPLE, "data/golden/SampleMotion1.r30.plain_grobot.csv", &plain_grobot, 1e-4);
+    agree("data/golden/walk.pseq", "data/golden/walk.r30.plain_grobot.csv", &plain_grobot, 1e-4);
+    agree("data/golden/misc.pseq", "data/golden/misc.r30.plain_grobot.csv", &plain_grobot, 1e-8);
+    agree("data/golden/nowaist.pseq", "data/golden/nowaist.r30.plain_grobot.csv", &plain_grobot,
+          1e-8);
 }
 
 static void exact_ik_leaves_unreachable_targets_alone(void **state)
 {
     (void)state;
-    agree("golden/unreachable.pseq", "golden/unreachable.r30.plain_grobot.csv", &plain_grobot,
-          1e-4);
+    agree("data/golden/unreachable.pseq", "data/golden/unreachable.r30.plain_grobot.csv",
+          &plain_grobot, 1e-4);
 }
 
 /* The frames have nine digits: 5e-9 rad is their rounding. */
 static void numeric_ik_agrees(void **state)
 {
     (void)state;
-    agree(SAMPLE, "golden/SampleMotion1.r30.plain.csv", &plain, 1e-8);
-    agree("golden/walk.pseq", "golden/walk.r30.plain.csv", &plain, 1e-8);
-    agree("golden/misc.pseq", "golden/misc.r30.plain.csv", &plain, 1e-8);
-    agree("golden/nowaist.pseq", "golden/nowaist.r30.plain.csv", &plain, 1e-8);
+    agree(SAMPLE, "data/golden/SampleMotion1.r30.plain.csv", &plain, 1e-8);
+    agree("data/golden/walk.pseq", "data/golden/walk.r30.plain.csv", &plain, 1e-8);
+    agree("data/golden/misc.pseq", "data/golden/misc.r30.plain.csv", &plain, 1e-8);
+    agree("data/golden/nowaist.pseq", "data/golden/nowaist.r30.plain.csv", &plain, 1e-8);
 }
 
 static void numeric_ik_leaves_unreachable_targets_alone(void **state)
 {
     (void)state;
-    agree("golden/unreachable.pseq", "golden/unreachable.r30.plain.csv", &plain, 1e-8);
+    agree("data/golden/unreachable.pseq", "data/golden/unreachable.r30.plain.csv", &plain, 1e-8);
 }
 
 static void stealthy_step_and_automatic_zmp_agree(void **state)
 {
     (void)state;
-    agree(SAMPLE, "golden/SampleMotion1.r30.default.csv", &as_the_gui, 1e-8);
-    agree("golden/walk.pseq", "golden/walk.r30.default.csv", &as_the_gui, 1e-8);
-    agree("golden/misc.pseq", "golden/misc.r30.default.csv", &as_the_gui, 1e-8);
-    agree("golden/nowaist.pseq", "golden/nowaist.r30.default.csv", &as_the_gui, 1e-8);
-    agree("golden/unreachable.pseq", "golden/unreachable.r30.default.csv", &as_the_gui, 1e-8);
+    agree(SAMPLE, "data/golden/SampleMotion1.r30.default.csv", &as_the_gui, 1e-8);
+    agree("data/golden/walk.pseq", "data/golden/walk.r30.default.csv", &as_the_gui, 1e-8);
+    agree("data/golden/misc.pseq", "data/golden/misc.r30.default.csv", &as_the_gui, 1e-8);
+    agree("data/golden/nowaist.pseq", "data/golden/nowaist.r30.default.csv", &as_the_gui, 1e-8);
+    agree("data/golden/unreachable.pseq", "data/golden/unreachable.r30.default.csv", &as_the_gui,
+          1e-8);
 }
 
 static void the_balancer_agrees(void **state)
 {
     (void)state;
-    agree(SAMPLE, "golden/SampleMotion1.r30.balancer.csv", &balancer, 1e-7);
+    agree(SAMPLE, "data/golden/SampleMotion1.r30.balancer.csv", &balancer, 1e-7);
 }
 
 static void the_balancer_of_1_1_agrees(void **state)
 {
     (void)state;
-    agree(SAMPLE, "golden/SampleMotion1.r30.compat11.csv", &compat11, 1e-7);
+    agree(SAMPLE, "data/golden/SampleMotion1.r30.compat11.csv", &compat11, 1e-7);
 }
 
 int main(void)

@@ -13,6 +13,7 @@
 #include "body/body_priv.h"
 #include "body/vec.h"
 #include "body_scaled.h"
+#include "transforms.h"
 
 static uint32_t seed;
 
@@ -36,20 +37,6 @@ static void random_pose(double *q_rad, grobo_transform *root)
         root->p_m[k] = random_in(-0.2, 0.2);
     }
     grobo_i_rotation_of_rpy(root->r, rpy);
-}
-
-/* Largest difference of position and of attitude. */
-static double apart(const grobo_transform *a, const grobo_transform *b)
-{
-    double worst = 0;
-
-    for (int i = 0; i < 3; i++) {
-        worst = fmax(worst, fabs(a->p_m[i] - b->p_m[i]));
-    }
-    for (int i = 0; i < 9; i++) {
-        worst = fmax(worst, fabs(a->r[i] - b->r[i]));
-    }
-    return worst;
 }
 
 static void in_frame_of(const grobo_transform *frame, const grobo_transform *at,
@@ -256,8 +243,8 @@ static void hit_targets(const grobo_body_model *model, double tolerance_m)
             memcpy(again, q, sizeof again);
             memcpy(again + 6 * foot, answer, sizeof answer);
             grobo_body_forward(model, &root, again, hit);
-            assert_true(apart(&hit[model->feet[foot].link], &links[model->feet[foot].link]) <
-                        tolerance_m);
+            assert_true(transforms_apart(&hit[model->feet[foot].link],
+                                         &links[model->feet[foot].link]) < tolerance_m);
         }
     }
 }
@@ -382,7 +369,7 @@ static void jacobian_is_the_derivative(void **state)
             double jacobian[6][6], unused[6][6], turn[9], w[3], world[3];
 
             grobo_i_leg_jacobian(&problem, start, q + 6, jacobian, &end);
-            assert_true(apart(&end, &links[up ? 0 : 12]) < 1e-12);
+            assert_true(transforms_apart(&end, &links[up ? 0 : 12]) < 1e-12);
             for (int i = 0; i < 6; i++) {
                 double other[6];
 

@@ -15,6 +15,7 @@
 #include "body/vec.h"
 #include "body_scaled.h"
 #include "body_script.h"
+#include "transforms.h"
 
 /* Where a foot is in a frame that was solved. */
 static void foot_of(const grobo_body_model *model, const double *q_rad,
@@ -24,19 +25,6 @@ static void foot_of(const grobo_body_model *model, const double *q_rad,
 
     grobo_body_forward(model, &report->root, q_rad, links);
     *foot = links[link];
-}
-
-static double apart(const grobo_transform *a, const grobo_transform *b)
-{
-    double worst = 0;
-
-    for (int i = 0; i < 3; i++) {
-        worst = fmax(worst, fabs(a->p_m[i] - b->p_m[i]));
-    }
-    for (int i = 0; i < 9; i++) {
-        worst = fmax(worst, fabs(a->r[i] - b->r[i]));
-    }
-    return worst;
 }
 
 static void a_foot_without_new_keys_does_not_move(void **state)
@@ -59,18 +47,18 @@ static void a_foot_without_new_keys_does_not_move(void **state)
         assert_true(report.touching[1]);
         assert_int_equal(report.touching[0], i < 60 || i >= 140);
         foot_of(&grobo_gr001_body, q, &report, LEFT, &foot);
-        assert_true(apart(&foot, &script.targets[0][2].at) < 1e-9);
+        assert_true(transforms_apart(&foot, &script.targets[0][2].at) < 1e-9);
         foot_of(&grobo_gr001_body, q, &report, RIGHT, &foot);
         if (i <= 60) {
-            assert_true(apart(&foot, &script.targets[0][1].at) < 1e-9);
+            assert_true(transforms_apart(&foot, &script.targets[0][1].at) < 1e-9);
         }
         if (i == 100) {
-            assert_true(apart(&foot, &script.targets[2][1].at) < 1e-9);
+            assert_true(transforms_apart(&foot, &script.targets[2][1].at) < 1e-9);
         }
         if (i >= 140) {
-            assert_true(apart(&foot, &script.targets[3][1].at) < 1e-9);
+            assert_true(transforms_apart(&foot, &script.targets[3][1].at) < 1e-9);
         }
-        assert_true(i != 100 || apart(&report.root, &script.targets[2][0].at) < 1e-9);
+        assert_true(i != 100 || transforms_apart(&report.root, &script.targets[2][0].at) < 1e-9);
     }
     run_finish(&run);
 }
@@ -266,7 +254,7 @@ static void the_waist_is_told_without_a_target(void **state)
     run_start(&run, &grobo_gr001_body, &script, &options);
     assert_int_equal(grobo_body_frame(run.body, 0, q, &report), 0);
     foot_of(&grobo_gr001_body, q, &report, RIGHT, &foot);
-    assert_true(apart(&foot, &script.targets[0][0].at) < 1e-12);
+    assert_true(transforms_apart(&foot, &script.targets[0][0].at) < 1e-12);
     run_finish(&run);
 }
 
@@ -302,7 +290,7 @@ static void a_slave_foot_follows_its_joints(void **state)
     assert_true(fabs(q[3] - q[0]) > 1e-3); /* between: a mixture */
     assert_int_equal(grobo_body_frame(run.body, 50, q, &report), 0);
     foot_of(&grobo_gr001_body, q, &report, RIGHT, &foot);
-    assert_true(apart(&foot, &script.targets[2][1].at) < 1e-9);
+    assert_true(transforms_apart(&foot, &script.targets[2][1].at) < 1e-9);
     run_finish(&run);
 }
 

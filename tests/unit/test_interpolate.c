@@ -12,6 +12,8 @@
 
 #include <grobo/interpolate.h>
 
+#include "files.h"
+
 #define NEAR 1e-6
 
 /* cmocka 1.1 compares in float only. */
@@ -230,31 +232,13 @@ static void a_cursor_changes_nothing_but_the_effort(void **state)
 
 /* ---- against Choreonoid's own output, where the reference material is there ---- */
 
-enum { POSES_MAX = 64, JOINTS = 20, FIRST = 12, TEXT_MAX = 1 << 20 };
+enum { POSES_MAX = 64, JOINTS = 20, FIRST = 12 };
 
 typedef struct key_pose {
     double t_s, max_transition_s;
     double joints[JOINTS], q[JOINTS], stationary[JOINTS];
     size_t n_joints, n_q, n_stationary;
 } key_pose;
-
-static char text[TEXT_MAX];
-
-static bool read_shared(const char *path)
-{
-    const char *shared = getenv("GROBO_SHARED");
-    char name[512];
-    (void)snprintf(name, sizeof name, "%s/data/%s", shared != NULL ? shared : "../shared", path);
-    FILE *file = fopen(name, "rb");
-    if (file == NULL) {
-        print_message("no %s: reference material is not beside the checkout\n", name);
-        return false;
-    }
-    size_t n = fread(text, 1, sizeof text - 1, file);
-    text[n] = '\0';
-    (void)fclose(file);
-    return true;
-}
 
 /* The numbers of "[ 1, 2 ]" after p, over lines. */
 static size_t read_list(const char *p, double *out)
@@ -273,10 +257,10 @@ static size_t read_list(const char *p, double *out)
 }
 
 /* Just enough of the format for files known to be good. */
-static size_t scan_poses(key_pose *poses)
+static size_t scan_poses(const char *text, key_pose *poses)
 {
     size_t n = 0;
-    for (char *line = text; line != NULL; line = strchr(line, '\n')) {
+    for (const char *line = text; line != NULL; line = strchr(line, '\n')) {
         line += strspn(line, " \r\n");
         if (strncmp(line, "time:", 5) == 0) {
             assert_true(n < POSES_MAX);
@@ -318,10 +302,9 @@ static void compare_upper_body(const char *pseq, const char *csv)
     double worst = 0.0;
     int frames = 0;
 
-    if (!read_shared(pseq)) {
-        skip();
-    }
-    size_t n = scan_poses(poses);
+    char *text = file_text(shared_file(pseq), NULL);
+    size_t n = scan_poses(text, poses);
+    free(text);
     for (size_t i = 0; i < n; i++) {
         t_s[i] = poses[i].t_s;
     }
@@ -335,7 +318,7 @@ static void compare_upper_body(const char *pseq, const char *csv)
     for (int j = 0; j < JOINTS; j++) {
         grobo_spline_prepare(tracks[j].track.keys, tracks[j].track.n);
     }
-    assert_true(read_shared(csv));
+    text = file_text(shared_file(csv), NULL);
     for (char *line = text; *line != '\0'; frames++) {
         for (int j = 0; j < JOINTS; j++) {
             double expected = strtod(line, &line);
@@ -345,6 +328,7 @@ static void compare_upper_body(const char *pseq, const char *csv)
         }
         line += strspn(line, "\r\n");
     }
+    free(text);
     assert_int_equal(frames, (int)(30.0 * t_s[order[n - 1]]) + 1);
     print_message("%s: %d frames, worst error %.3g rad\n", pseq, frames, worst);
     assert_near(worst, 0.0, NEAR);
@@ -353,13 +337,14 @@ static void compare_upper_body(const char *pseq, const char *csv)
 static void the_upper_body_follows_choreonoid_in_sample_motion_1(void **state)
 {
     (void)state;
-    compare_upper_body("choreonoid/GR001-SampleMotion1.pseq", "golden/SampleMotion1.r30.plain.csv");
+    compare_upper_body("data/choreonoid/GR001-SampleMotion1.pseq",
+                       "data/golden/SampleMotion1.r30.plain.csv");
 }
 
 static void the_upper_body_follows_choreonoid_in_odd_cases(void **state)
 {
     (void)state;
-    compare_upper_body("golden/misc.pseq", "golden/misc.r30.plain.csv");
+    compare_upper_body("data/golden/misc.pseq", "data/golden/misc.r30.plain.csv");
 }
 
 int main(void)

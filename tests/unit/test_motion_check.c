@@ -10,7 +10,8 @@
 
 #include <cmocka.h>
 
-#include "motion_files.h"
+#include "files.h"
+#include "motion_texts.h"
 
 typedef struct checked {
     grobo_diagnostics *list;

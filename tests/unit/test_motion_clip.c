@@ -12,7 +12,8 @@
 #include <cmocka.h>
 
 #include "counted_mem.h"
-#include "motion_files.h"
+#include "files.h"
+#include "motion_texts.h"
 
 static void assert_near(double value, double expected, double delta)
 {

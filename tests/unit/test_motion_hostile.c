@@ -11,7 +11,8 @@
 #include <cmocka.h>
 
 #include "counted_mem.h"
-#include "motion_files.h"
+#include "files.h"
+#include "motion_texts.h"
 
 /* ---- caps and quadratic inputs ------------------------------------------------------------ */
 

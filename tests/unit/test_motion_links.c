@@ -11,8 +11,9 @@
 
 #include <cmocka.h>
 
+#include "files.h"
 #include "folder.h"
-#include "motion_files.h"
+#include "motion_texts.h"
 
 static int remove_folder(void **state)
 {

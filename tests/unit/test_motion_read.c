@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-#include "motion_files.h"
+#include "motion_texts.h"
 
 /* ---- .m ----------------------------------------------------------------------------------- */
 

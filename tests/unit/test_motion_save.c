@@ -10,8 +10,9 @@
 
 #include <cmocka.h>
 
+#include "files.h"
 #include "folder.h"
-#include "motion_files.h"
+#include "motion_texts.h"
 #include "os.h"
 
 static const char saved[] = "500  10 -20\n1000  1 2\n";

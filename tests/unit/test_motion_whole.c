@@ -11,7 +11,7 @@
 #include <cmocka.h>
 
 #include "counted_mem.h"
-#include "motion_files.h"
+#include "motion_texts.h"
 
 static const char keys[] =
     "type: PoseSeq\nname: t\nrefs:\n"

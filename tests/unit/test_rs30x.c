@@ -15,76 +15,68 @@
 
 enum { MAX = GROBO_RS30X_PACKET_MAX_BYTES };
 
-static void expect_bytes(int n, const uint8_t *bytes, const char *hex)
-{
-    uint8_t wanted[VECTOR_MAX_BYTES];
-    int size = vector_from_hex(hex, wanted, sizeof wanted);
-    assert_true(size > 0);
-    assert_int_equal(n, size);
-    assert_memory_equal(bytes, wanted, (size_t)size);
-}
-
 static void reads_are_those_of_the_manual(void **state)
 {
     (void)state;
     uint8_t b[MAX];
-    expect_bytes(grobo_rs30x_read(1, 42, 2, b, MAX), b, "FA AF 01 0F 2A 02 00 26");
-    expect_bytes(grobo_rs30x_read(1, 42, 18, b, MAX), b, "FA AF 01 0F 2A 12 00 36");
-    expect_bytes(grobo_rs30x_read(1, 36, 18, b, MAX), b, "FA AF 01 0F 24 12 00 38");
-    expect_bytes(grobo_rs30x_read(1, 48, 2, b, MAX), b, "FA AF 01 0F 30 02 00 3C");
-    expect_bytes(grobo_rs30x_read_block(1, GROBO_RS30X_WANT_0_29, b, MAX), b,
-                 "FA AF 01 03 00 00 01 03");
-    expect_bytes(grobo_rs30x_read_block(5, GROBO_RS30X_WANT_42_59, b, MAX), b,
-                 "FA AF 05 09 00 00 01 0D");
-    expect_bytes(grobo_rs30x_read_block(1, GROBO_RS30X_WANT_30_41, b, MAX), b,
-                 "FA AF 01 0B 00 00 01 0B");
+    vector_expect(grobo_rs30x_read(1, 42, 2, b, MAX), b, "FA AF 01 0F 2A 02 00 26");
+    vector_expect(grobo_rs30x_read(1, 42, 18, b, MAX), b, "FA AF 01 0F 2A 12 00 36");
+    vector_expect(grobo_rs30x_read(1, 36, 18, b, MAX), b, "FA AF 01 0F 24 12 00 38");
+    vector_expect(grobo_rs30x_read(1, 48, 2, b, MAX), b, "FA AF 01 0F 30 02 00 3C");
+    vector_expect(grobo_rs30x_read_block(1, GROBO_RS30X_WANT_0_29, b, MAX), b,
+                  "FA AF 01 03 00 00 01 03");
+    vector_expect(grobo_rs30x_read_block(5, GROBO_RS30X_WANT_42_59, b, MAX), b,
+                  "FA AF 05 09 00 00 01 0D");
+    vector_expect(grobo_rs30x_read_block(1, GROBO_RS30X_WANT_30_41, b, MAX), b,
+                  "FA AF 01 0B 00 00 01 0B");
 }
 
 static void writes_are_those_of_the_manual(void **state)
 {
     (void)state;
     uint8_t b[MAX];
-    expect_bytes(grobo_rs30x_write_u8(1, 0, GROBO_RS30X_ID, 5, b, MAX), b,
-                 "FA AF 01 00 04 01 01 05 00");
-    expect_bytes(grobo_rs30x_write_u8(1, 0x60, GROBO_RS30X_BAUD, 4, b, MAX), b,
-                 "FA AF 01 60 06 01 01 04 63");
-    expect_bytes(grobo_rs30x_write_u8(1, 0x60, GROBO_RS30X_DELAY, 18, b, MAX), b,
-                 "FA AF 01 60 07 01 01 12 74");
-    expect_bytes(grobo_rs30x_write_u8(1, 9, GROBO_RS30X_TORQUE, 1, b, MAX), b,
-                 "FA AF 01 09 24 01 01 01 2D");
-    expect_bytes(grobo_rs30x_write_u16(1, 0, GROBO_RS30X_CW_LIMIT, 1000, b, MAX), b,
-                 "FA AF 01 00 08 02 01 E8 03 E1");
-    expect_bytes(grobo_rs30x_write_u16(1, 0, GROBO_RS30X_CCW_LIMIT, (uint16_t)-1000, b, MAX), b,
-                 "FA AF 01 00 0A 02 01 18 FC EC");
-    expect_bytes(grobo_rs30x_write_u16(255, 0, GROBO_RS30X_GOAL, 0, b, MAX), b,
-                 "FA AF FF 00 1E 02 01 00 00 E2");
+    vector_expect(grobo_rs30x_write_u8(1, 0, GROBO_RS30X_ID, 5, b, MAX), b,
+                  "FA AF 01 00 04 01 01 05 00");
+    vector_expect(grobo_rs30x_write_u8(1, 0x60, GROBO_RS30X_BAUD, 4, b, MAX), b,
+                  "FA AF 01 60 06 01 01 04 63");
+    vector_expect(grobo_rs30x_write_u8(1, 0x60, GROBO_RS30X_DELAY, 18, b, MAX), b,
+                  "FA AF 01 60 07 01 01 12 74");
+    vector_expect(grobo_rs30x_write_u8(1, 9, GROBO_RS30X_TORQUE, 1, b, MAX), b,
+                  "FA AF 01 09 24 01 01 01 2D");
+    vector_expect(grobo_rs30x_write_u16(1, 0, GROBO_RS30X_CW_LIMIT, 1000, b, MAX), b,
+                  "FA AF 01 00 08 02 01 E8 03 E1");
+    vector_expect(grobo_rs30x_write_u16(1, 0, GROBO_RS30X_CCW_LIMIT, (uint16_t)-1000, b, MAX), b,
+                  "FA AF 01 00 0A 02 01 18 FC EC");
+    vector_expect(grobo_rs30x_write_u16(255, 0, GROBO_RS30X_GOAL, 0, b, MAX), b,
+                  "FA AF FF 00 1E 02 01 00 00 E2");
     const grobo_rs30x_goal slow = {1, -1200, 1000};
-    expect_bytes(grobo_rs30x_write_goal(&slow, b, MAX), b, "FA AF 01 00 1E 04 01 50 FB E8 03 5A");
+    vector_expect(grobo_rs30x_write_goal(&slow, b, MAX), b, "FA AF 01 00 1E 04 01 50 FB E8 03 5A");
     const grobo_rs30x_goal goals[] = {{1, 100, 100}, {2, -100, 100}, {5, 500, 100}};
-    expect_bytes(grobo_rs30x_write_goals(goals, 3, b, MAX), b,
-                 "FA AF 00 00 1E 05 03 01 64 00 64 00 02 9C FF 64 00 05 F4 01 64 00 88");
+    vector_expect(grobo_rs30x_write_goals(goals, 3, b, MAX), b,
+                  "FA AF 00 00 1E 05 03 01 64 00 64 00 02 9C FF 64 00 05 F4 01 64 00 88");
     const grobo_rs30x_byte torques[] = {{1, 1}, {2, 1}, {5, 1}};
-    expect_bytes(grobo_rs30x_write_bytes(GROBO_RS30X_TORQUE, torques, 3, b, MAX), b,
-                 "FA AF 00 00 24 02 03 01 01 02 01 05 01 22");
+    vector_expect(grobo_rs30x_write_bytes(GROBO_RS30X_TORQUE, torques, 3, b, MAX), b,
+                  "FA AF 00 00 24 02 03 01 01 02 01 05 01 22");
 }
 
 static void special_commands_are_those_of_the_manuals(void **state)
 {
     (void)state;
     uint8_t b[MAX];
-    expect_bytes(grobo_rs30x_control(1, GROBO_RS30X_FLASH | GROBO_RS30X_REBOOT, b, MAX), b,
-                 "FA AF 01 60 FF 00 00 9E");
-    expect_bytes(grobo_rs30x_control(2, GROBO_RS30X_FLASH, b, MAX), b, "FA AF 02 40 FF 00 00 BD");
-    expect_bytes(grobo_rs30x_control(1, GROBO_RS30X_REBOOT, b, MAX), b, "FA AF 01 20 FF 00 00 DE");
-    expect_bytes(grobo_rs30x_factory_reset(1, GROBO_RS30X_RESET_WITH_DATA, b, MAX), b,
-                 "FA AF 01 10 FF FF 00 FF EE");
-    expect_bytes(grobo_rs30x_factory_reset(3, GROBO_RS30X_RESET_BARE, b, MAX), b,
-                 "FA AF 03 10 FF FF 00 13");
-    expect_bytes(grobo_rs30x_ping(1, GROBO_RS30X_PING_FF_1_0, b, MAX), b,
-                 "FA AF 01 01 FF 01 00 FE");
-    expect_bytes(grobo_rs30x_ping(1, GROBO_RS30X_PING_FF_0_0, b, MAX), b,
-                 "FA AF 01 01 FF 00 00 FF");
-    expect_bytes(grobo_rs30x_ping(1, GROBO_RS30X_PING_0_0_0, b, MAX), b, "FA AF 01 01 00 00 00 00");
+    vector_expect(grobo_rs30x_control(1, GROBO_RS30X_FLASH | GROBO_RS30X_REBOOT, b, MAX), b,
+                  "FA AF 01 60 FF 00 00 9E");
+    vector_expect(grobo_rs30x_control(2, GROBO_RS30X_FLASH, b, MAX), b, "FA AF 02 40 FF 00 00 BD");
+    vector_expect(grobo_rs30x_control(1, GROBO_RS30X_REBOOT, b, MAX), b, "FA AF 01 20 FF 00 00 DE");
+    vector_expect(grobo_rs30x_factory_reset(1, GROBO_RS30X_RESET_WITH_DATA, b, MAX), b,
+                  "FA AF 01 10 FF FF 00 FF EE");
+    vector_expect(grobo_rs30x_factory_reset(3, GROBO_RS30X_RESET_BARE, b, MAX), b,
+                  "FA AF 03 10 FF FF 00 13");
+    vector_expect(grobo_rs30x_ping(1, GROBO_RS30X_PING_FF_1_0, b, MAX), b,
+                  "FA AF 01 01 FF 01 00 FE");
+    vector_expect(grobo_rs30x_ping(1, GROBO_RS30X_PING_FF_0_0, b, MAX), b,
+                  "FA AF 01 01 FF 00 00 FF");
+    vector_expect(grobo_rs30x_ping(1, GROBO_RS30X_PING_0_0_0, b, MAX), b,
+                  "FA AF 01 01 00 00 00 00");
 }
 
 static void returns_and_acks_are_built_for_the_other_end(void **state)
@@ -93,13 +85,13 @@ static void returns_and_acks_are_built_for_the_other_end(void **state)
     static const uint8_t data[] = {0x28, 0xFF, 0x00, 0x00, 0x3E, 0x00, 0x0C, 0x00};
     uint8_t b[MAX];
     grobo_rs30x_packet p = {GROBO_RS30X_RETURN, 1, 0, 42, sizeof data, 1, data, sizeof data};
-    expect_bytes(grobo_rs30x_build(&p, b, MAX), b,
-                 "FD DF 01 00 2A 08 01 28 FF 00 00 3E 00 0C 00 C7");
+    vector_expect(grobo_rs30x_build(&p, b, MAX), b,
+                  "FD DF 01 00 2A 08 01 28 FF 00 00 3E 00 0C 00 C7");
     p.kind = GROBO_RS30X_ACK_BYTE;
-    expect_bytes(grobo_rs30x_build(&p, b, MAX), b, "07");
+    vector_expect(grobo_rs30x_build(&p, b, MAX), b, "07");
     assert_int_equal(grobo_rs30x_build(&p, b, 0), GROBO_ERR_SPACE);
     p.kind = GROBO_RS30X_NACK_BYTE;
-    expect_bytes(grobo_rs30x_build(&p, b, MAX), b, "08");
+    vector_expect(grobo_rs30x_build(&p, b, MAX), b, "08");
 }
 
 static void builders_refuse_what_is_out_of_range(void **state)
