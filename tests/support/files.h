@@ -5,7 +5,7 @@
 
 #include <stddef.h>
 
-/* All of a file, NUL-terminated, to be freed by free(); NULL if it cannot be read. size: or NULL. */
+/* All of a file, NUL-terminated, for free(); NULL if it cannot be read. size may be NULL. */
 char *file_text(const char *path, size_t *size);
 
 /* Writes a file; fails the test if that fails. */

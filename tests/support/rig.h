@@ -72,7 +72,7 @@ void rig_start(grobo_test_rig *rig, const grobo_robot_config *config, const grob
 /* The same with a driver of one's own. */
 void rig_start_driver(grobo_test_rig *rig, const grobo_driver *driver,
                       const grobo_robot_config *config, const grobo_sim_config *sim);
-/* The same, quiet, with a driver that allows the neck less than its servo's stops do: 20 degrees. */
+/* The same, quiet; the driver lets the neck go to 20 degrees, its servo farther. */
 void rig_start_narrow(grobo_test_rig *rig);
 /* Lets time pass up to now + us. */
 void rig_run(grobo_test_rig *rig, int64_t us);

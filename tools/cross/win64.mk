@@ -45,4 +45,5 @@ PORTABLE := $(patsubst %,tests/link/test_%.c,control_life loop thread thread_mot
 LEFT_OUT_WHY := Windows has no pseudo-terminals, signals, file modes or links as it wants them
 LEFT_OUT := $(filter-out $(PORTABLE),$(wildcard tests/link/test_*.c tests/cli/*.sh)) \
     $(addprefix tests/,unit/test_motion_links.c fault/test_serial_io.c export/examples.sh \
-    export/install.sh support/line.c support/spy.c support/far_robot.c)
+    export/install.sh support/line.c support/spy.c support/far_robot.c \
+    support/nobody.c)
