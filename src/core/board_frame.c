@@ -58,34 +58,21 @@ int grobo_frame_reply(grobo_wiring wiring, const uint8_t *frame, size_t n, grobo
     return (int)grobo_reply_bytes(&found);
 }
 
-/* Where in a frame the packet is built, so that wrapping it moves nothing. */
-static size_t packet_offset(grobo_wiring wiring, size_t cap)
-{
-    return wiring == GROBO_WIRING_BOARD && cap >= GROBO_BOARD_HEADER_BYTES
-               ? GROBO_BOARD_HEADER_BYTES
-               : 0;
-}
-
-/* Wraps what a builder has put at that offset. */
+/* Wraps in its place what a builder has put into buf. */
 static int wrap_built(grobo_wiring wiring, int built, uint8_t *buf, size_t cap)
 {
-    if (built < 0) {
-        return built;
-    }
-    return grobo_frame_wrap(wiring, buf + packet_offset(wiring, cap), (size_t)built, buf, cap);
+    return built < 0 ? built : grobo_frame_wrap(wiring, buf, (size_t)built, buf, cap);
 }
 
 int grobo_frame_goal(grobo_wiring wiring, const grobo_rs30x_goal *goal, uint8_t *buf, size_t cap)
 {
-    size_t at = packet_offset(wiring, cap);
-    return wrap_built(wiring, grobo_rs30x_write_goal(goal, buf + at, cap - at), buf, cap);
+    return wrap_built(wiring, grobo_rs30x_write_goal(goal, buf, cap), buf, cap);
 }
 
 int grobo_frame_goals(grobo_wiring wiring, const grobo_rs30x_goal *goals, size_t n, uint8_t *buf,
                       size_t cap)
 {
-    size_t at = packet_offset(wiring, cap);
-    return wrap_built(wiring, grobo_rs30x_write_goals(goals, n, buf + at, cap - at), buf, cap);
+    return wrap_built(wiring, grobo_rs30x_write_goals(goals, n, buf, cap), buf, cap);
 }
 
 static bool is_torque(unsigned value)
@@ -99,9 +86,8 @@ int grobo_frame_torque(grobo_wiring wiring, uint8_t id, grobo_torque torque, uin
     if (!is_torque(torque)) {
         return GROBO_ERR_ARG;
     }
-    size_t at = packet_offset(wiring, cap);
     int built = grobo_rs30x_write_u8(id, GROBO_RS30X_WANT_NOTHING, GROBO_RS30X_TORQUE,
-                                     (uint8_t)torque, buf + at, cap - at);
+                                     (uint8_t)torque, buf, cap);
     return wrap_built(wiring, built, buf, cap);
 }
 
@@ -113,14 +99,12 @@ int grobo_frame_torques(grobo_wiring wiring, const grobo_rs30x_byte *torques, si
             return GROBO_ERR_ARG;
         }
     }
-    size_t at = packet_offset(wiring, cap);
-    int built = grobo_rs30x_write_bytes(GROBO_RS30X_TORQUE, torques, n, buf + at, cap - at);
+    int built = grobo_rs30x_write_bytes(GROBO_RS30X_TORQUE, torques, n, buf, cap);
     return wrap_built(wiring, built, buf, cap);
 }
 
 int grobo_frame_read(grobo_wiring wiring, uint8_t id, uint8_t address, uint8_t length, uint8_t *buf,
                      size_t cap)
 {
-    size_t at = packet_offset(wiring, cap);
-    return wrap_built(wiring, grobo_rs30x_read(id, address, length, buf + at, cap - at), buf, cap);
+    return wrap_built(wiring, grobo_rs30x_read(id, address, length, buf, cap), buf, cap);
 }

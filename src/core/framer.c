@@ -8,17 +8,12 @@ void grobo_i_framer_init(grobo_framer *framer)
     memset(framer, 0, offsetof(grobo_framer, buf));
 }
 
+/* Drops the first n bytes, which are at least those of the frame that was handed out. */
 static void discard(grobo_framer *framer, size_t n)
 {
-    size_t left = framer->used - n;
-    memmove(framer->buf, framer->buf + n, left);
-    framer->used = (uint16_t)left;
-}
-
-static void release_taken(grobo_framer *framer)
-{
-    discard(framer, framer->taken);
+    framer->used = (uint16_t)(framer->used - n);
     framer->taken = 0;
+    memmove(framer->buf, framer->buf + n, framer->used);
 }
 
 size_t grobo_i_framer_feed(grobo_framer *framer, const uint8_t *bytes, size_t n)
@@ -26,7 +21,7 @@ size_t grobo_i_framer_feed(grobo_framer *framer, const uint8_t *bytes, size_t n)
     if (framer->ending || n == 0) {
         return 0;
     }
-    release_taken(framer);
+    discard(framer, framer->taken);
     size_t room = sizeof framer->buf - framer->used;
     size_t took = n < room ? n : room;
     memcpy(framer->buf + framer->used, bytes, took);
@@ -36,11 +31,10 @@ size_t grobo_i_framer_feed(grobo_framer *framer, const uint8_t *bytes, size_t n)
 
 size_t grobo_i_framer_next(grobo_framer *framer, grobo_i_measure measure, unsigned accept)
 {
-    release_taken(framer);
-    size_t skip = 0;
+    size_t at = framer->taken;
     int size = 0;
-    while (skip < framer->used) {
-        size = measure(framer->buf + skip, framer->used - skip, accept);
+    while (at < framer->used) {
+        size = measure(framer->buf + at, framer->used - at, accept);
         if (size > 0 || (size == 0 && !framer->ending)) {
             break;
         }
@@ -48,10 +42,10 @@ size_t grobo_i_framer_next(grobo_framer *framer, grobo_i_measure measure, unsign
             framer->stats.bad_sums++;
         }
         size = 0;
-        skip++;
+        at++;
     }
-    framer->stats.dropped_bytes += (uint32_t)skip;
-    discard(framer, skip);
+    framer->stats.dropped_bytes += (uint32_t)(at - framer->taken);
+    discard(framer, at);
     if (size == 0) {
         framer->ending = false;
         return 0;

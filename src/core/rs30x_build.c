@@ -28,11 +28,10 @@ static bool id_fits_kind(const grobo_rs30x_packet *packet)
 
 static bool data_fits(const uint8_t *header, const grobo_rs30x_packet *packet)
 {
-    if (grobo_i_rs30x_is_reset(header) && packet->data_bytes == 1) {
+    if (packet->data_bytes == 1 && grobo_i_rs30x_is_reset(header)) {
         return packet->data[0] == 0xFF;
     }
-    int announced = grobo_i_rs30x_announced(header);
-    return announced >= 0 && (size_t)announced == packet->data_bytes;
+    return grobo_i_rs30x_announced(header) == (int)packet->data_bytes;
 }
 
 int grobo_rs30x_build(const grobo_rs30x_packet *packet, uint8_t *buf, size_t cap)
@@ -146,10 +145,9 @@ int grobo_rs30x_write_u16(uint8_t id, uint8_t flags, uint8_t address, uint16_t v
 int grobo_rs30x_factory_reset(uint8_t id, grobo_rs30x_reset_form form, uint8_t *buf, size_t cap)
 {
     static const uint8_t data = 0xFF;
-    bool bare = form == GROBO_RS30X_RESET_BARE;
+    size_t n = form == GROBO_RS30X_RESET_BARE ? 0 : 1;
     grobo_rs30x_packet packet = {
-        GROBO_RS30X_SHORT,   id,          GROBO_RS30X_FACTORY, 0xFF, 0xFF, 0,
-        bare ? NULL : &data, bare ? 0 : 1};
+        GROBO_RS30X_SHORT, id, GROBO_RS30X_FACTORY, 0xFF, 0xFF, 0, &data, n};
     return grobo_rs30x_build(&packet, buf, cap);
 }
 
