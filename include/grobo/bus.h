@@ -177,9 +177,8 @@ typedef struct grobo_bus {
     int64_t quiet_us;    /* when the silence after a failure is long enough */
     int64_t quiet_by_us; /* when it is long enough in any case */
     int64_t reserve_us;
-    int64_t reserve_end_us;
+    int64_t reserve_end_us; /* 0: no span */
     grobo_txn *head[GROBO_PRIORITIES];
-    grobo_txn *tail[GROBO_PRIORITIES];
     /* public */
     grobo_bus_stats stats; /**< read freely */
     /* private */

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "core/bus_time.h"
+#include "core/instant.h"
 
 enum {
     BAUD_DEFAULT_BPS = 115200,
@@ -20,13 +21,12 @@ enum {
 
 static void put_last(grobo_bus *bus, grobo_txn *txn)
 {
-    txn->next_ = NULL;
-    if (bus->tail[txn->priority] == NULL) {
-        bus->head[txn->priority] = txn;
-    } else {
-        bus->tail[txn->priority]->next_ = txn;
+    grobo_txn **at = &bus->head[txn->priority];
+    while (*at != NULL) {
+        at = &(*at)->next_;
     }
-    bus->tail[txn->priority] = txn;
+    *at = txn;
+    txn->next_ = NULL;
     bus->waiting++;
 }
 
@@ -34,32 +34,20 @@ static void put_first(grobo_bus *bus, grobo_txn *txn)
 {
     txn->next_ = bus->head[txn->priority];
     bus->head[txn->priority] = txn;
-    if (bus->tail[txn->priority] == NULL) {
-        bus->tail[txn->priority] = txn;
-    }
     bus->waiting++;
 }
 
 /* True if it was there. */
 static bool take_out(grobo_bus *bus, grobo_txn *txn)
 {
-    grobo_txn *before = NULL;
-    grobo_txn *at = bus->head[txn->priority];
-    while (at != NULL && at != txn) {
-        before = at;
-        at = at->next_;
+    grobo_txn **at = &bus->head[txn->priority];
+    while (*at != NULL && *at != txn) {
+        at = &(*at)->next_;
     }
-    if (at == NULL) {
+    if (*at == NULL) {
         return false;
     }
-    if (before == NULL) {
-        bus->head[txn->priority] = txn->next_;
-    } else {
-        before->next_ = txn->next_;
-    }
-    if (bus->tail[txn->priority] == txn) {
-        bus->tail[txn->priority] = before;
-    }
+    *at = txn->next_;
     bus->waiting--;
     return true;
 }
@@ -266,6 +254,9 @@ void grobo_bus_rx(grobo_bus *bus, int64_t now_us, const uint8_t *bytes, size_t n
 /* While something urgent waits, the active one gets no more time than its reply needs. */
 static int64_t limit_of_active(const grobo_bus *bus)
 {
+    if (bus->active == NULL) {
+        return GROBO_NEVER_US;
+    }
     for (int p = GROBO_PRIORITY_STOP; p <= GROBO_PRIORITY_MOTION; p++) {
         if (bus->head[p] != NULL && (int)bus->active->priority > p) {
             return grobo_i_sooner(bus->limit_us, bus->over_us + bus->overhead_us);
@@ -295,30 +286,20 @@ static void end_stale(grobo_bus *bus, int64_t now_us)
 void grobo_bus_step(grobo_bus *bus, int64_t now_us)
 {
     bus->now_us = now_us;
-    switch (bus->phase) {
-    case GROBO_BUS_IDLE:
-        break;
-    case GROBO_BUS_GOING:
-        if (now_us >= bus->limit_us) {
+    if (now_us >= limit_of_active(bus)) {
+        if (bus->phase == GROBO_BUS_GOING) {
             finish(bus, bus->active, GROBO_OK, NULL);
-        }
-        break;
-    case GROBO_BUS_ECHOING:
-    case GROBO_BUS_AWAITING:
-        if (now_us >= limit_of_active(bus)) {
+        } else {
             bool some = bus->got_bytes > 0 || bus->echo_bytes > 0;
             fail(bus, some ? GROBO_ERR_SHORT : GROBO_ERR_TIMEOUT);
         }
-        break;
     }
     end_stale(bus, now_us);
 }
 
 int64_t grobo_bus_deadline(const grobo_bus *bus, int64_t now_us)
 {
-    int64_t at_us = bus->phase == GROBO_BUS_IDLE    ? GROBO_NEVER_US
-                    : bus->phase == GROBO_BUS_GOING ? bus->limit_us
-                                                    : limit_of_active(bus);
+    int64_t at_us = limit_of_active(bus);
     for (int p = 0; p < GROBO_PRIORITIES; p++) {
         const grobo_txn *txn = bus->head[p];
         if (txn == NULL) {
@@ -328,7 +309,7 @@ int64_t grobo_bus_deadline(const grobo_bus *bus, int64_t now_us)
             at_us = grobo_i_sooner(at_us, txn->start_by_us + 1);
         }
         if (bus->phase == GROBO_BUS_IDLE) {
-            at_us = grobo_i_sooner(at_us, grobo_i_bus_start_at(bus, now_us, txn));
+            at_us = grobo_i_sooner(at_us, grobo_i_bus_start_at(bus, txn, now_us));
         }
     }
     return at_us;
@@ -340,7 +321,7 @@ static void start_clock(grobo_bus *bus, const grobo_txn *txn, int64_t now_us)
 {
     grobo_bus_cost cost;
     grobo_bus_cost_of(bus, txn, &cost);
-    bus->over_us = grobo_i_bus_over_at(bus, now_us, &cost);
+    bus->over_us = grobo_i_bus_over_at(bus, &cost, now_us);
     bool passing = txn->reply.kind == GROBO_REPLY_NONE && bus->config.overlap;
     bus->free_us = passing ? now_us + cost.request_us : bus->over_us;
     if (cost.servo_us > 0) {
@@ -390,7 +371,7 @@ static grobo_txn *choose(const grobo_bus *bus, int64_t now_us)
     for (int p = 0; p < GROBO_PRIORITIES; p++) {
         grobo_txn *txn = bus->head[p];
         if (txn != NULL && !is_stale(txn, now_us) &&
-            grobo_i_bus_start_at(bus, now_us, txn) <= now_us) {
+            grobo_i_bus_start_at(bus, txn, now_us) <= now_us) {
             return txn;
         }
     }
@@ -441,8 +422,6 @@ int grobo_bus_init(grobo_bus *bus, const grobo_bus_config *config)
     fill(&bus->config.return_delay_us, RETURN_DELAY_US);
     fill(&bus->config.quiet_us, GROBO_BUS_QUIET_US);
     fill(&bus->config.hold_us, GROBO_BUS_HOLD_US);
-    bus->reserve_us = GROBO_NEVER_US;
-    bus->reserve_end_us = GROBO_NEVER_US;
     grobo_rs30x_parser_init(&bus->parser, 0);
     return GROBO_OK;
 }
@@ -489,29 +468,22 @@ bool grobo_txn_is_pending(const grobo_txn *txn)
     return txn->pending_;
 }
 
-/* Takes away the active transaction; its reply may come and must find nobody. */
-static void abandon_active(grobo_bus *bus, int result)
+/* Takes a transaction away; the reply of the active one may come and must find nobody. */
+static int take_back(grobo_bus *bus, grobo_txn *txn, int result)
 {
-    grobo_txn *txn = bus->active;
-    if (bus->phase == GROBO_BUS_AWAITING || bus->phase == GROBO_BUS_ECHOING) {
+    if (bus->active == txn) {
         grobo_i_bus_hold(bus, txn, bus->over_us);
+    } else if (!txn->pending_ || !take_out(bus, txn)) {
+        return GROBO_ERR_NOTFOUND;
     }
     bus->stats.canceled++;
     finish(bus, txn, result, NULL);
+    return GROBO_OK;
 }
 
 int grobo_bus_cancel(grobo_bus *bus, grobo_txn *txn)
 {
-    if (bus->active == txn) {
-        abandon_active(bus, GROBO_ERR_CANCELED);
-        return GROBO_OK;
-    }
-    if (!txn->pending_ || !take_out(bus, txn)) {
-        return GROBO_ERR_NOTFOUND;
-    }
-    bus->stats.canceled++;
-    finish(bus, txn, GROBO_ERR_CANCELED, NULL);
-    return GROBO_OK;
+    return take_back(bus, txn, GROBO_ERR_CANCELED);
 }
 
 static int length_of(const grobo_txn *txn)
@@ -527,17 +499,14 @@ int grobo_bus_cancel_all(grobo_bus *bus, unsigned priority_bits, int result)
 {
     int ended = 0;
     if (bus->active != NULL && (priority_bits & GROBO_PRIORITY_BIT(bus->active->priority)) != 0) {
-        abandon_active(bus, result);
+        (void)take_back(bus, bus->active, result);
         ended++;
     }
     for (int p = 0; p < GROBO_PRIORITIES; p++) {
         /* Counted first: what a callback submits again goes to the end, and stays. */
         int n = (priority_bits & GROBO_PRIORITY_BIT(p)) != 0 ? length_of(bus->head[p]) : 0;
         for (; n > 0 && bus->head[p] != NULL; n--) {
-            grobo_txn *txn = bus->head[p];
-            take_out(bus, txn);
-            bus->stats.canceled++;
-            finish(bus, txn, result, NULL);
+            (void)take_back(bus, bus->head[p], result);
             ended++;
         }
     }

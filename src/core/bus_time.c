@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 #include "core/bus_time.h"
 
+#include <string.h>
+
+#include "core/instant.h"
+
 enum {
     BITS_PER_BYTE = 10, /* 8N1 */
     US_PER_S = 1000000,
@@ -53,7 +57,7 @@ void grobo_bus_cost_of(const grobo_bus *bus, const grobo_txn *txn, grobo_bus_cos
     }
 }
 
-int64_t grobo_i_bus_over_at(const grobo_bus *bus, int64_t start_us, const grobo_bus_cost *cost)
+int64_t grobo_i_bus_over_at(const grobo_bus *bus, const grobo_bus_cost *cost, int64_t start_us)
 {
     int64_t at_us = start_us + cost->request_us;
     if (cost->servo_us > 0) {
@@ -119,7 +123,9 @@ static grobo_bus_hold *slot_for(grobo_bus *bus, const grobo_reply *reply)
             return &bus->hold[i];
         }
     }
-    bus->next_hold = (uint8_t)(bus->next_hold % (GROBO_BUS_HOLDS - 1) + 1);
+    if (++bus->next_hold == GROBO_BUS_HOLDS) {
+        bus->next_hold = 1;
+    }
     return &bus->hold[bus->next_hold];
 }
 
@@ -136,9 +142,7 @@ void grobo_i_bus_hold(grobo_bus *bus, const grobo_txn *txn, int64_t from_us)
 
 void grobo_i_bus_release_holds(grobo_bus *bus)
 {
-    for (int i = 0; i < GROBO_BUS_HOLDS; i++) {
-        bus->hold[i].reply.kind = GROBO_REPLY_NONE;
-    }
+    memset(bus->hold, 0, sizeof bus->hold);
 }
 
 static int64_t held_until(const grobo_bus *bus, const grobo_txn *txn)
@@ -157,15 +161,15 @@ static int64_t held_until(const grobo_bus *bus, const grobo_txn *txn)
 bool grobo_bus_fits(const grobo_bus *bus, int64_t now_us, const grobo_txn *txn)
 {
     grobo_bus_cost cost;
-    if (bus->reserve_us == GROBO_NEVER_US || now_us >= bus->reserve_end_us) {
+    if (now_us >= bus->reserve_end_us) {
         return true;
     }
     grobo_bus_cost_of(bus, txn, &cost);
     uint32_t overhead_us = txn->reply.kind != GROBO_REPLY_NONE ? (uint32_t)bus->overhead_us : 0;
-    return grobo_i_bus_over_at(bus, now_us, &cost) + overhead_us <= bus->reserve_us;
+    return grobo_i_bus_over_at(bus, &cost, now_us) + overhead_us <= bus->reserve_us;
 }
 
-int64_t grobo_i_bus_start_at(const grobo_bus *bus, int64_t now_us, const grobo_txn *txn)
+int64_t grobo_i_bus_start_at(const grobo_bus *bus, const grobo_txn *txn, int64_t now_us)
 {
     int64_t at_us = grobo_i_later(now_us, bus->free_us);
     if (txn->reply.kind != GROBO_REPLY_NONE || bus->config.wiring == GROBO_WIRING_BUS) {
@@ -181,7 +185,7 @@ int64_t grobo_i_bus_start_at(const grobo_bus *bus, int64_t now_us, const grobo_t
 void grobo_bus_reserve(grobo_bus *bus, int64_t at_us, uint32_t duration_us)
 {
     bus->reserve_us = at_us;
-    bus->reserve_end_us = at_us == GROBO_NEVER_US ? at_us : at_us + duration_us;
+    bus->reserve_end_us = at_us == GROBO_NEVER_US ? 0 : at_us + duration_us;
 }
 
 int64_t grobo_bus_free_at(const grobo_bus *bus, int64_t now_us)

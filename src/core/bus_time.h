@@ -5,21 +5,11 @@
 
 #include <grobo/bus.h>
 
-static inline int64_t grobo_i_later(int64_t a_us, int64_t b_us)
-{
-    return a_us > b_us ? a_us : b_us;
-}
-
-static inline int64_t grobo_i_sooner(int64_t a_us, int64_t b_us)
-{
-    return a_us < b_us ? a_us : b_us;
-}
-
 /* Time given above the computed one to attempt number attempts (1 the first). */
 uint32_t grobo_i_bus_margin_us(const grobo_bus *bus, unsigned attempts);
 
 /* When what costs this and starts at start_us is over, the board's backlog considered. */
-int64_t grobo_i_bus_over_at(const grobo_bus *bus, int64_t start_us, const grobo_bus_cost *cost);
+int64_t grobo_i_bus_over_at(const grobo_bus *bus, const grobo_bus_cost *cost, int64_t start_us);
 
 /* The active transaction's reply has come, in its first attempt. */
 void grobo_i_bus_learn(grobo_bus *bus);
@@ -31,6 +21,6 @@ void grobo_i_bus_hold(grobo_bus *bus, const grobo_txn *txn, int64_t from_us);
 void grobo_i_bus_release_holds(grobo_bus *bus);
 
 /* The first moment, not before now_us, at which this waiting transaction may start. */
-int64_t grobo_i_bus_start_at(const grobo_bus *bus, int64_t now_us, const grobo_txn *txn);
+int64_t grobo_i_bus_start_at(const grobo_bus *bus, const grobo_txn *txn, int64_t now_us);
 
 #endif

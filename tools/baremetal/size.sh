@@ -23,7 +23,7 @@ trap 'rm -rf "$work"' EXIT
 # What belongs together. Codec, bus and sequencer need of the others only postures.
 rooms='codec bus sequencer names postures robot engine simulator'
 codec='core/board core/board_frame core/framer core/rs30x_build core/rs30x_parse core/rs30x_state'
-bus='core/bus core/bus_time'
+bus='core/bus core/bus_time core/instant'
 sequencer='core/sequencer core/sequencer_clip core/sequencer_info'
 names='core/error core/rs30x_registers core/sequencer_names core/version'
 postures='core/posture core/model core/interpolate'
