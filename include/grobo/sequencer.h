@@ -123,6 +123,7 @@ typedef struct grobo_play_item {
     grobo_play_options options; /* defaults filled in */
     int64_t span_us;            /* length of a pass */
     int64_t first_key_us;       /* KEY: time of key 0 in the clip */
+    const grobo_model *model;   /* that of the sequencer */
     grobo_clip clip;
 } grobo_play_item;
 

@@ -8,10 +8,9 @@
 
 #include <string.h>
 
-#define SECOND_US 1000000u
+#include "core/instant.h"
 
-/* Longest time of a frame, in units. */
-#define TIME_MAX_UNITS (GROBO_PLAY_TIME_MAX_US / GROBO_PLAY_TIME_UNIT_US)
+#define SECOND_US 1000000u
 
 _Static_assert(GROBO_QUEUE_MAX < 256, "queue_head and queue_n are bytes");
 
@@ -22,26 +21,16 @@ static bool is_under_way(const grobo_sequencer *seq)
 
 /* ---- real time and position ---- */
 
-static int64_t at_least(int64_t value, int64_t least)
-{
-    return value > least ? value : least;
-}
-
 static int32_t longer(int32_t a_us, int32_t b_us)
 {
     return a_us > b_us ? a_us : b_us;
-}
-
-static int64_t at_most(int64_t value, int64_t most)
-{
-    return value < most ? value : most;
 }
 
 int64_t grobo_i_pos_at(const grobo_sequencer *seq, int64_t t_us)
 {
     int64_t pos_us =
         seq->anchor_pos_us + (t_us - seq->anchor_us) * seq->item.options.speed_pct / 100;
-    return at_most(at_least(pos_us, seq->anchor_pos_us), seq->item.span_us);
+    return grobo_i_sooner(grobo_i_later(pos_us, seq->anchor_pos_us), seq->item.span_us);
 }
 
 /* RATE: the frame behind the one that waits is the one that waits. Whole microseconds and the rest
@@ -49,33 +38,30 @@ int64_t grobo_i_pos_at(const grobo_sequencer *seq, int64_t t_us)
 static void advance_grid(grobo_sequencer *seq)
 {
     uint32_t rate_hz = seq->item.options.rate_hz;
+    uint32_t period_us = SECOND_US / rate_hz;
     seq->due_us = seq->grid_us;
-    seq->grid_us += SECOND_US / rate_hz;
-    seq->grid_rest += SECOND_US % rate_hz;
+    seq->grid_us += period_us;
+    seq->grid_rest += SECOND_US - period_us * rate_hz;
     if (seq->grid_rest >= rate_hz) {
         seq->grid_rest -= rate_hz;
         seq->grid_us++;
     }
 }
 
-/* A real time in units of a frame's time, counted from the anchor. */
-static int64_t in_units(const grobo_sequencer *seq, int64_t t_us)
-{
-    return (t_us - seq->anchor_us + GROBO_PLAY_TIME_UNIT_US / 2) / GROBO_PLAY_TIME_UNIT_US;
-}
-
 /* ---- frames ---- */
 
-/* The time of a frame. That of a move comes from absolute times, so that neither lateness nor
- * rounding adds up. */
+/* The time of a frame, that of a move in whole units: from its beginning to its end, both rounded
+ * as times since the anchor, so that neither lateness nor rounding adds up. */
 static int32_t time_of_frame(const grobo_sequencer *seq)
 {
     const grobo_play_options *options = &seq->item.options;
     if (seq->state == GROBO_SEQUENCER_PLAYING && options->mode == GROBO_PLAY_RATE) {
         return (int32_t)(SECOND_US / options->rate_hz);
     }
-    int64_t units = in_units(seq, seq->to_us) - in_units(seq, seq->from_us);
-    return (int32_t)at_most(units, TIME_MAX_UNITS) * GROBO_PLAY_TIME_UNIT_US;
+    int64_t before_us = seq->from_us - seq->anchor_us + GROBO_PLAY_TIME_UNIT_US / 2;
+    int32_t time_us = (int32_t)(before_us % GROBO_PLAY_TIME_UNIT_US) +
+                      (int32_t)grobo_i_sooner(seq->to_us - seq->from_us, GROBO_PLAY_TIME_MAX_US);
+    return time_us - time_us % GROBO_PLAY_TIME_UNIT_US;
 }
 
 static int hand_out(grobo_sequencer *seq, grobo_play_frame *frame)
@@ -88,7 +74,7 @@ static int hand_out(grobo_sequencer *seq, grobo_play_frame *frame)
 
     seq->stats.frames++;
     seq->stats.late_frames += seq->late;
-    seq->stats.max_late_us = at_least(seq->now_us - seq->due_us, seq->stats.max_late_us);
+    seq->stats.max_late_us = grobo_i_later(seq->now_us - seq->due_us, seq->stats.max_late_us);
     seq->skipped = 0;
     seq->waits = false;
     return 1;
@@ -106,7 +92,7 @@ static int fail(grobo_sequencer *seq, int error)
 }
 
 /* Begins a move where and when the last one ended. */
-static void set_move(grobo_sequencer *seq, int64_t to_us, bool has_frame)
+static void set_move(grobo_sequencer *seq, bool has_frame, int64_t to_us)
 {
     seq->from_us = seq->to_us;
     seq->due_us = seq->to_us;
@@ -115,11 +101,11 @@ static void set_move(grobo_sequencer *seq, int64_t to_us, bool has_frame)
 }
 
 /* The same, to a position at its time. */
-static void move_to(grobo_sequencer *seq, int64_t pos_us, bool has_frame)
+static void move_to(grobo_sequencer *seq, bool has_frame, int64_t pos_us)
 {
     int64_t way_us = (pos_us - seq->anchor_pos_us) * 100;
     int32_t speed_pct = seq->item.options.speed_pct;
-    set_move(seq, seq->anchor_us + (way_us + speed_pct / 2) / speed_pct, has_frame);
+    set_move(seq, has_frame, seq->anchor_us + (way_us + speed_pct / 2) / speed_pct);
 }
 
 /* Makes one end of the present move what lies on the way at a time. */
@@ -151,22 +137,12 @@ static int begin(grobo_sequencer *seq, bool soft)
     int64_t time_us = approach_us;
     if (by_key && pos_us == 0) {
         time_us = grobo_i_key_first_time(seq) * 100 / seq->item.options.speed_pct;
-        time_us = at_least(time_us, longer(approach_us, GROBO_PLAY_TIME_UNIT_US));
+        time_us = grobo_i_later(time_us, longer(approach_us, GROBO_PLAY_TIME_UNIT_US));
     }
     seq->state = GROBO_SEQUENCER_APPROACHING;
     seq->anchor_us = seq->to_us;
-    set_move(seq, seq->to_us + time_us, time_us > 0 && seq->to.set != 0);
+    set_move(seq, time_us > 0 && seq->to.set != 0, seq->to_us + time_us);
     return 0;
-}
-
-/* Begins the first item of the queue. */
-static int begin_item(grobo_sequencer *seq, bool soft)
-{
-    grobo_i_item_load(seq, &seq->queue[seq->queue_head]);
-    seq->queue_head = (uint8_t)((seq->queue_head + 1) % GROBO_QUEUE_MAX);
-    seq->queue_n--;
-    seq->anchor_pos_us = seq->item.options.from_us;
-    return begin(seq, soft);
 }
 
 /* The pass is over: again, the next clip, or the end. */
@@ -179,7 +155,8 @@ static int end_pass(grobo_sequencer *seq)
         return begin(seq, true);
     }
     if (seq->queue_n > 0) {
-        return begin_item(seq, true);
+        grobo_i_item_load(seq);
+        return begin(seq, true);
     }
     seq->state = GROBO_SEQUENCER_FINISHED;
     seq->anchor_pos_us = seq->item.span_us;
@@ -195,11 +172,10 @@ static int next_move(grobo_sequencer *seq)
         return end_pass(seq);
     }
     int result = grobo_i_key_next(seq);
-    if (result < 0) {
-        return fail(seq, result);
+    if (result == 0) {
+        move_to(seq, !seq->silent, grobo_i_key_pos(seq));
     }
-    move_to(seq, grobo_i_key_pos(seq), !seq->silent);
-    return 0;
+    return result;
 }
 
 /* From anchor_pos_us on, where the approach ended. */
@@ -212,12 +188,12 @@ static int start_playing(grobo_sequencer *seq)
         seq->grid_us = seq->to_us;
         seq->grid_rest = seq->item.options.rate_hz / 2u;
         advance_grid(seq);
-        move_to(seq, seq->item.span_us, true);
+        move_to(seq, true, seq->item.span_us);
         return 0;
     }
     /* `to` may lie behind its key, on the way to the next. */
     int result = grobo_i_key_load(seq, seq->key.i);
-    return result < 0 ? fail(seq, result) : next_move(seq);
+    return result < 0 ? result : next_move(seq);
 }
 
 /* ---- a function a state, called when its deadline is there: 1 a frame, 0 none, or error ---- */
@@ -244,7 +220,7 @@ static int playing_keys(grobo_sequencer *seq, grobo_play_frame *frame)
         }
         int result = hand_out(seq, frame);
         if (is_last && seq->late) {
-            seq->to_us = at_least(seq->to_us, seq->now_us + frame->posture.time_us);
+            seq->to_us = grobo_i_later(seq->to_us, seq->now_us + frame->posture.time_us);
         }
         return result;
     }
@@ -264,7 +240,7 @@ static int playing_at_rate(grobo_sequencer *seq, grobo_play_frame *frame)
     int result =
         grobo_i_sample(seq, is_last ? seq->item.span_us : grobo_i_pos_at(seq, seq->due_us));
     if (result < 0) {
-        return fail(seq, result);
+        return result;
     }
     (void)hand_out(seq, frame);
     grobo_i_arrive(seq);
@@ -314,7 +290,7 @@ int grobo_sequencer_next(grobo_sequencer *seq, int64_t now_us, grobo_play_frame 
     while (result == 0 && now_us >= grobo_sequencer_deadline(seq)) {
         result = look(seq, frame);
     }
-    return result;
+    return result < 0 ? fail(seq, result) : result;
 }
 
 int64_t grobo_sequencer_deadline(const grobo_sequencer *seq)
@@ -362,7 +338,8 @@ int grobo_sequencer_play(grobo_sequencer *seq, const grobo_clip *clip,
     seq->error = 0;
     seq->queue_n = 1;
     seq->to_us = now_us;
-    return begin_item(seq, start != NULL);
+    grobo_i_item_load(seq);
+    return begin(seq, start != NULL);
 }
 
 int grobo_sequencer_enqueue(grobo_sequencer *seq, const grobo_clip *clip,
@@ -386,19 +363,20 @@ int grobo_sequencer_enqueue(grobo_sequencer *seq, const grobo_clip *clip,
  * Makes the present move one to rest: to the posture that lies half of time_us ahead, in time_us,
  * which is the way a joint goes while it slows down evenly. Never past the end of the move.
  */
-static int hold(grobo_sequencer *seq, int32_t time_us)
+static int hold(grobo_sequencer *seq, grobo_sequencer_state state, int32_t time_us)
 {
     int64_t now_us = seq->now_us;
     if (seq->state == GROBO_SEQUENCER_PLAYING && seq->item.options.mode == GROBO_PLAY_RATE) {
         /* A stalled caller's robot has not gone further than to the frame that waits. */
-        int64_t t_us = seq->waits ? at_most(now_us, seq->due_us) : now_us;
+        int64_t t_us = seq->waits ? grobo_i_sooner(now_us, seq->due_us) : now_us;
         seq->anchor_pos_us = grobo_i_pos_at(seq, t_us + time_us / 2);
         int result = grobo_i_sample(seq, seq->anchor_pos_us);
         if (result < 0) {
             return fail(seq, result);
         }
     } else {
-        int64_t rest_us = seq->waits ? seq->from_us : at_most(now_us + time_us / 2, seq->to_us);
+        int64_t rest_us =
+            seq->waits ? seq->from_us : grobo_i_sooner(now_us + time_us / 2, seq->to_us);
         cut(seq, &seq->from, now_us);
         seq->from_us = now_us;
         cut(seq, &seq->to, rest_us);
@@ -408,7 +386,8 @@ static int hold(grobo_sequencer *seq, int32_t time_us)
     }
     seq->to_us = now_us;
     seq->anchor_us = now_us;
-    set_move(seq, now_us + longer(time_us, GROBO_PLAY_TIME_UNIT_US), seq->to.set != 0);
+    set_move(seq, seq->to.set != 0, now_us + longer(time_us, GROBO_PLAY_TIME_UNIT_US));
+    seq->state = state;
     return 0;
 }
 
@@ -424,11 +403,15 @@ int grobo_sequencer_pause(grobo_sequencer *seq, int64_t now_us)
         return GROBO_ERR_STATE;
     }
     seq->now_us = now_us;
-    int result = hold(seq, stop_time(seq));
-    if (result == 0) {
-        seq->state = GROBO_SEQUENCER_PAUSED;
-    }
-    return result;
+    return hold(seq, GROBO_SEQUENCER_PAUSED, stop_time(seq));
+}
+
+/* From a hold, to anchor_pos_us. */
+static int set_off(grobo_sequencer *seq, int64_t now_us)
+{
+    grobo_i_arrive(seq);
+    seq->to_us = now_us;
+    return begin(seq, true);
 }
 
 int grobo_sequencer_resume(grobo_sequencer *seq, int64_t now_us)
@@ -436,9 +419,7 @@ int grobo_sequencer_resume(grobo_sequencer *seq, int64_t now_us)
     if (seq->state != GROBO_SEQUENCER_PAUSED) {
         return GROBO_ERR_STATE;
     }
-    grobo_i_arrive(seq);
-    seq->to_us = now_us;
-    return begin(seq, true);
+    return set_off(seq, now_us);
 }
 
 int grobo_sequencer_stop(grobo_sequencer *seq, bool at_once, int64_t now_us)
@@ -452,11 +433,7 @@ int grobo_sequencer_stop(grobo_sequencer *seq, bool at_once, int64_t now_us)
         return 0;
     }
     seq->now_us = now_us;
-    int result = hold(seq, at_once ? 0 : stop_time(seq));
-    if (result == 0) {
-        seq->state = GROBO_SEQUENCER_STOPPING;
-    }
-    return result;
+    return hold(seq, GROBO_SEQUENCER_STOPPING, at_once ? 0 : stop_time(seq));
 }
 
 int grobo_sequencer_seek(grobo_sequencer *seq, int64_t pos_us, int64_t now_us)
@@ -472,14 +449,12 @@ int grobo_sequencer_seek(grobo_sequencer *seq, int64_t pos_us, int64_t now_us)
         return 0;
     }
     seq->now_us = now_us;
-    int result = hold(seq, 0);
-    if (result < 0) {
-        return result;
+    int result = hold(seq, GROBO_SEQUENCER_APPROACHING, 0);
+    if (result == 0) {
+        seq->anchor_pos_us = pos_us;
+        result = set_off(seq, now_us);
     }
-    grobo_i_arrive(seq);
-    seq->to_us = now_us;
-    seq->anchor_pos_us = pos_us;
-    return begin(seq, true);
+    return result;
 }
 
 /* While PLAYING. By keys it is the same move in another time, and its frame goes out once more. */
@@ -490,16 +465,16 @@ static void change_speed(grobo_sequencer *seq, uint16_t speed_pct)
     int64_t pos_us = grobo_i_pos_at(seq, seq->now_us);
     int64_t due_us = seq->due_us;
 
-    seq->anchor_pos_us = at_most(pos_us, end_us);
+    seq->anchor_pos_us = grobo_i_sooner(pos_us, end_us);
     seq->anchor_us = seq->now_us;
     seq->item.options.speed_pct = speed_pct;
     if (by_key) {
         bool has_frame = seq->waits || (!seq->silent && seq->anchor_pos_us < end_us);
         cut(seq, &seq->from, seq->now_us);
         seq->to_us = seq->now_us;
-        move_to(seq, end_us, has_frame);
+        move_to(seq, has_frame, end_us);
     } else if (seq->waits) {
-        move_to(seq, end_us, true);
+        move_to(seq, true, end_us);
         seq->due_us = due_us;
     }
 }

@@ -34,31 +34,29 @@ static int check_posture(const grobo_posture *posture, const grobo_clip *clip)
     return 0;
 }
 
-static int finish_read(const grobo_play_item *item, const grobo_model *model,
-                       grobo_posture *posture)
+static int finish_read(const grobo_play_item *item, grobo_posture *posture)
 {
     int result = check_posture(posture, &item->clip);
     if (result == 0 && item->options.mirror) {
-        result = grobo_posture_mirror(posture, model);
+        result = grobo_posture_mirror(posture, item->model);
     }
     return result;
 }
 
-static int read_sample(const grobo_play_item *item, const grobo_model *model, int64_t t_us,
-                       grobo_posture *posture)
+static int read_sample(const grobo_play_item *item, grobo_posture *posture, int64_t t_us)
 {
     int result = item->clip.sample(item->clip.ctx, t_us, posture);
-    return result < 0 ? result : finish_read(item, model, posture);
+    return result < 0 ? result : finish_read(item, posture);
 }
 
 /* Reads key i, the one behind that of `key`, and adds it to the count of time. */
-static int read_key(const grobo_play_item *item, const grobo_model *model, size_t i,
-                    grobo_posture *posture, grobo_play_key *key)
+static int read_key(const grobo_play_item *item, size_t i, grobo_posture *posture,
+                    grobo_play_key *key)
 {
     int64_t at_us;
     int result = item->clip.key(item->clip.ctx, i, posture, &at_us);
     if (result >= 0) {
-        result = at_us < 0 ? GROBO_ERR_ARG : finish_read(item, model, posture);
+        result = at_us < 0 ? GROBO_ERR_ARG : finish_read(item, posture);
     }
     if (result == 0) {
         key->i = i;
@@ -70,13 +68,13 @@ static int read_key(const grobo_play_item *item, const grobo_model *model, size_
 }
 
 /* Reads all keys: the item's times, and the joints they set. */
-static int scan_keys(grobo_play_item *item, const grobo_model *model, grobo_joint_mask *set)
+static int scan_keys(grobo_play_item *item, grobo_joint_mask *set)
 {
     grobo_play_key key = {0};
     int64_t before_us = -1;
     for (size_t i = 0; i < item->clip.n_keys; i++) {
         grobo_posture posture;
-        int result = read_key(item, model, i, &posture, &key);
+        int result = read_key(item, i, &posture, &key);
         if (result < 0) {
             return result;
         }
@@ -134,31 +132,31 @@ static bool settle_options(grobo_play_options *o)
            settle_times(o);
 }
 
-static int check_clip(const grobo_play_item *item, const grobo_model *model)
+static int check_clip(const grobo_play_item *item)
 {
     const grobo_clip *clip = &item->clip;
     if (clip->n_keys == 0 || clip->n_joints == 0) {
         return GROBO_ERR_EMPTY;
     }
     if (clip->n_joints > GROBO_JOINTS_MAX || clip->length_us < 0 || clip->key == NULL ||
-        (model != NULL && clip->n_joints != model->n_joints)) {
+        (item->model != NULL && clip->n_joints != item->model->n_joints)) {
         return GROBO_ERR_ARG;
     }
     if ((item->options.mode == GROBO_PLAY_RATE && clip->sample == NULL) ||
-        (item->options.mirror && model == NULL)) {
+        (item->options.mirror && item->model == NULL)) {
         return GROBO_ERR_UNSUPPORTED;
     }
     return 0;
 }
 
 /* Reads what the mode will read: the item's times, and the joints it sets. */
-static int look_through(grobo_play_item *item, const grobo_model *model, grobo_joint_mask *set)
+static int look_through(grobo_play_item *item, grobo_joint_mask *set)
 {
     if (item->options.mode == GROBO_PLAY_KEY) {
-        return scan_keys(item, model, set);
+        return scan_keys(item, set);
     }
     grobo_posture posture;
-    int result = read_sample(item, model, 0, &posture);
+    int result = read_sample(item, &posture, 0);
     if (result == 0) {
         item->span_us = item->clip.length_us;
         *set = posture.set;
@@ -181,6 +179,7 @@ int grobo_i_item_make(grobo_play_item *item, const grobo_model *model, const gro
     grobo_joint_mask set = 0;
 
     memset(item, 0, sizeof *item);
+    item->model = model;
     item->clip = *clip;
     if (options != NULL) {
         item->options = *options;
@@ -188,9 +187,9 @@ int grobo_i_item_make(grobo_play_item *item, const grobo_model *model, const gro
     if (!settle_options(&item->options)) {
         return GROBO_ERR_ARG;
     }
-    int result = check_clip(item, model);
+    int result = check_clip(item);
     if (result == 0) {
-        result = look_through(item, model, &set);
+        result = look_through(item, &set);
     }
     if (result == 0 && item->options.from_us > item->span_us) {
         result = GROBO_ERR_ARG;
@@ -201,9 +200,12 @@ int grobo_i_item_make(grobo_play_item *item, const grobo_model *model, const gro
     return result;
 }
 
-void grobo_i_item_load(grobo_sequencer *seq, const grobo_play_item *item)
+void grobo_i_item_load(grobo_sequencer *seq)
 {
-    seq->item = *item;
+    seq->item = seq->queue[seq->queue_head];
+    seq->queue_head = (uint8_t)((seq->queue_head + 1) % GROBO_QUEUE_MAX);
+    seq->queue_n--;
+    seq->anchor_pos_us = seq->item.options.from_us;
     seq->pass = 1;
     seq->base = seq->from;
     seq->n_items++;
@@ -239,7 +241,7 @@ int grobo_i_sample(grobo_sequencer *seq, int64_t pos_us)
 {
     grobo_posture posture;
     int64_t t_us = seq->item.options.reverse ? seq->item.span_us - pos_us : pos_us;
-    int result = read_sample(&seq->item, seq->model, t_us, &posture);
+    int result = read_sample(&seq->item, &posture, t_us);
     if (result < 0) {
         return result;
     }
@@ -251,7 +253,7 @@ int grobo_i_sample(grobo_sequencer *seq, int64_t pos_us)
 static int add_key(grobo_sequencer *seq, size_t i)
 {
     grobo_posture posture;
-    int result = read_key(&seq->item, seq->model, i, &posture, &seq->key);
+    int result = read_key(&seq->item, i, &posture, &seq->key);
     return result < 0 ? result : put_over(seq, &posture);
 }
 

@@ -12,8 +12,8 @@
 int grobo_i_item_make(grobo_play_item *item, const grobo_model *model, const grobo_clip *clip,
                       const grobo_play_options *options, const grobo_posture *start);
 
-/* Takes over a checked item; a relative clip starts at `from`. */
-void grobo_i_item_load(grobo_sequencer *seq, const grobo_play_item *item);
+/* Takes over the first item of the queue; a relative clip starts at `from`. */
+void grobo_i_item_load(grobo_sequencer *seq);
 
 /* Sets `late`. */
 void grobo_i_see_if_late(grobo_sequencer *seq);
