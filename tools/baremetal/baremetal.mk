@@ -8,21 +8,23 @@ BARE_CAPS ?= -DGROBO_JOINTS_MAX=20 -DGROBO_QUEUE_MAX=2 -DGROBO_SIM_WIRE_BYTES=25
     -DGROBO_SIM_FIFO_BYTES=256
 # An assertion would bring the C library's way of printing it.
 BARE_FLAGS := -std=c11 -DNDEBUG $(WARNINGS) -mthumb -Os -ffunction-sections -fdata-sections -fstack-usage \
-    $(BARE_CAPS) -Iinclude -Isrc -I.
+    -Iinclude -Isrc -I.
+# What is measured: each processor with these caps, and the smallest with those of limits.h as well.
+BARE_SIZES := $(BARE_CPUS) cortex-m0-default
 BARE_DIR := $(BUILD)/bare
 FIRMWARE_DIR := docs/examples/firmware
 FIRMWARES := $(foreach cpu,$(BARE_CPUS),$(BARE_DIR)/$(cpu)/gr001.elf $(BARE_DIR)/$(cpu)/player.elf)
-BARE_LIBS := $(BARE_CPUS:%=$(BARE_DIR)/%/libgrobo-core.a)
-BARE_RAM := $(BARE_CPUS:%=$(BARE_DIR)/%/tools/baremetal/ram.o)
+BARE_LIBS := $(BARE_SIZES:%=$(BARE_DIR)/%/libgrobo-core.a)
+BARE_RAM := $(BARE_SIZES:%=$(BARE_DIR)/%/tools/baremetal/ram.o)
 
 .SECONDARY: $(foreach cpu,$(BARE_CPUS),$(patsubst %.c,$(BARE_DIR)/$(cpu)/%.o,$(wildcard $(FIRMWARE_DIR)/*.c)))
 
-# $(call bare,CPU)
+# $(call bare,FOLDER,CPU,CAPS)
 define bare
 $(BARE_DIR)/$(1)/%.o: %.c tools/baremetal/baremetal.mk
 	$$(say) CC '$$< ($(1))'
 	@mkdir -p $$(@D)
-	$$(Q)$(BARE_PREFIX)gcc -mcpu=$(1) $$(BARE_FLAGS) -MMD -MP -c -o $$@ $$<
+	$$(Q)$(BARE_PREFIX)gcc -mcpu=$(2) $$(BARE_FLAGS) $(3) -MMD -MP -c -o $$@ $$<
 
 $(BARE_DIR)/$(1)/libgrobo-core.a: $(CORE_SRCS:%.c=$(BARE_DIR)/$(1)/%.o)
 	$$(say) AR $$@
@@ -32,7 +34,8 @@ $(BARE_DIR)/$(1)/libgrobo-core.a: $(CORE_SRCS:%.c=$(BARE_DIR)/$(1)/%.o)
 $(BARE_DIR)/$(1)/%.elf: $(BARE_DIR)/$(1)/$(FIRMWARE_DIR)/%.o \
     $(BARE_DIR)/$(1)/$(FIRMWARE_DIR)/mps2.o $(BARE_DIR)/$(1)/libgrobo-core.a $(FIRMWARE_DIR)/mps2.ld
 	$$(say) LD $$@
-	$$(Q)$(BARE_PREFIX)gcc -mcpu=$(1) -mthumb --specs=nano.specs -nostartfiles -Wl,--gc-sections \
+	$$(Q)$(BARE_PREFIX)gcc -mcpu=$(2) -mthumb --specs=nano.specs -nostartfiles -Wl,--gc-sections \
 	    -Wl,-Map=$$(@:.elf=.map) -T $(FIRMWARE_DIR)/mps2.ld -o $$@ $$(filter %.o %.a,$$^) -lm
 endef
-$(foreach cpu,$(BARE_CPUS),$(eval $(call bare,$(cpu))))
+$(foreach cpu,$(BARE_CPUS),$(eval $(call bare,$(cpu),$(cpu),$(BARE_CAPS))))
+$(eval $(call bare,cortex-m0-default,cortex-m0))
