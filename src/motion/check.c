@@ -81,8 +81,8 @@ static void check_body(check *c)
     }
     if (c->motion->kind == GROBO_MOTION_FRAMES && n_joints != c->model->n_joints) {
         said.code = n_joints > c->model->n_joints ? "joint-unknown" : "joint-missing";
-        grobo_i_say(c->list, &said, "frames of %d joints for the %d of %s", n_joints,
-                    c->model->n_joints, c->model->name);
+        grobo_i_say(c->list, &said, "frames of %d joint%s for the %d of %s", n_joints,
+                    n_joints == 1 ? "" : "s", c->model->n_joints, c->model->name);
     }
 }
 
@@ -111,9 +111,11 @@ static void check_times(check *c)
     }
 }
 
-/* Joints that key poses list and the robot has not: once a pose. */
+/* Joints that key poses list and the robot has not: each where it is there first. */
 static void check_unknown_joints(check *c)
 {
+    grobo_joint_mask told = 0;
+
     if (c->motion->kind == GROBO_MOTION_FRAMES) {
         return;
     }
@@ -122,10 +124,11 @@ static void check_unknown_joints(check *c)
         int first = -1, count = 0;
         (void)grobo_i_row_at(c->motion, n, &row);
         for (int j = c->model->n_joints; j < c->motion->n_joints; j++) {
-            if ((*row.set & GROBO_JOINT_BIT(j)) != 0) {
+            if ((*row.set & ~told & GROBO_JOINT_BIT(j)) != 0) {
                 first = count++ == 0 ? j : first;
             }
         }
+        told |= *row.set;
         if (count > 0) {
             grobo_i_said said = at_joint(c, n, first, "joint-unknown", GROBO_SEVERITY_WARNING);
             grobo_i_say(c->list, &said, "joint %d%s: %s has joints 0 to %d", first,
@@ -151,13 +154,36 @@ static bool link_known(const grobo_model *model, const grobo_ik_link *link)
     return link->index <= model->n_joints && (link->name[0] == '\0' || joint == link->index - 1);
 }
 
+/* Links that have been told of. When there is no more room, all further ones are told. */
+typedef struct told_links {
+    const grobo_ik_link *links[GROBO_IK_LINKS_MAX];
+    size_t count;
+} told_links;
+
+/* False if the link is there already. */
+static bool add_link(told_links *told, const grobo_ik_link *link)
+{
+    for (size_t i = 0; i < told->count; i++) {
+        if (told->links[i]->index == link->index && strcmp(told->links[i]->name, link->name) == 0) {
+            return false;
+        }
+    }
+    if (told->count < GROBO_IK_LINKS_MAX) {
+        told->links[told->count++] = link;
+    }
+    return true;
+}
+
+/* Links that key poses have and the robot has not: each where it is there first. */
 static void check_links(check *c)
 {
+    told_links told = {.count = 0};
+
     for (size_t n = 0; n < c->motion->size; n++) {
         size_t count;
         const grobo_ik_link *links = grobo_motion_ik_links(c->motion, n, &count);
         for (size_t i = 0; i < count; i++) {
-            if (!link_known(c->model, &links[i])) {
+            if (!link_known(c->model, &links[i]) && add_link(&told, &links[i])) {
                 grobo_i_said said = at_row(c, n, "link-unknown", GROBO_SEVERITY_WARNING);
                 grobo_i_say(c->list, &said, "link '%s' with index %d is none of %s", links[i].name,
                             links[i].index, c->model->name);

@@ -30,7 +30,13 @@ check "frames have a rate" both exits 0 "$GRCTL" show motions/greet.yaml \
 check "increments are told as such" both exits 0 "$GRCTL" show motions/greet.mseq \
     --- says ' 10 increments, '
 check "poses that give legs by links are counted" both exits 0 "$GRCTL" show motions/step.pseq \
-    --- says '^9 of 9 poses give legs by ikLinks'
+    --- says '^9 of 9 poses give legs by ikLinks: --ik exact'
+anothers() {
+    sed 's/^targetBody: .*/targetBody: "KNIGHT"/' motions/step.pseq >"$work/knight.pseq"
+    exits 0 "$GRCTL" show "$work/knight.pseq" &&
+        says '^9 of 9 poses give legs by ikLinks: only GR001.s are solved'
+}
+check "another robot's are not promised" anothers
 
 # ---- as it is played ------------------------------------------------------------------------
 

@@ -185,6 +185,32 @@ static void test_warnings(void **state)
     grobo_diagnostics_free(found.list);
 }
 
+/* A motion of another robot: what this one has not is said once, where it is there first. */
+static void test_unknown_once(void **state)
+{
+    (void)state;
+#define AT "translation: [ 0, 0, 0 ], rotation: [ 1, 0, 0, 0, 1, 0, 0, 0, 1 ] }"
+    checked found =
+        check(TOP "- { time: 0, refer: { type: Pose, joints: [ 13, 30, 31 ], q: [ 0, 0, 0 ] } }\n"
+                  "- { time: 1, refer: { type: Pose, joints: [ 30 ], q: [ 0 ], ikLinks: [\n"
+                  "  { name: TAIL, index: 40, " AT ", { name: FIN, index: 41, " AT " ] } }\n"
+                  "- { time: 2, refer: { type: Pose, joints: [ 25, 31 ], q: [ 0, 0 ], ikLinks: [\n"
+                  "  { name: TAIL, index: 40, " AT ", { name: TAIL, index: 42, " AT " ] } }\n",
+              true);
+#undef AT
+
+    assert_int_equal(found.errors, 0);
+    assert_true(has_diagnostic(found.list, "joint-unknown", 5, 67));
+    assert_true(has_diagnostic(found.list, "joint-unknown", 8, 60));
+    assert_true(says(&found, "joint 30 and others"));
+    assert_true(says(&found, "joint 25: "));
+    assert_true(says(&found, "link 'TAIL' with index 40"));
+    assert_true(says(&found, "link 'FIN' with index 41"));
+    assert_true(says(&found, "link 'TAIL' with index 42"));
+    assert_int_equal(found.warnings, 2 + 3 + 1 /* legs-by-ik */);
+    grobo_diagnostics_free(found.list);
+}
+
 static void test_empty(void **state)
 {
     (void)state;
@@ -239,12 +265,12 @@ static void test_real_motion(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_clean),       cmocka_unit_test(test_limits),
-        cmocka_unit_test(test_too_fast),    cmocka_unit_test(test_curve),
-        cmocka_unit_test(test_postures),    cmocka_unit_test(test_increments),
-        cmocka_unit_test(test_frames),      cmocka_unit_test(test_warnings),
-        cmocka_unit_test(test_empty),       cmocka_unit_test(test_list_is_bounded),
-        cmocka_unit_test(test_real_motion),
+        cmocka_unit_test(test_clean),           cmocka_unit_test(test_limits),
+        cmocka_unit_test(test_too_fast),        cmocka_unit_test(test_curve),
+        cmocka_unit_test(test_postures),        cmocka_unit_test(test_increments),
+        cmocka_unit_test(test_frames),          cmocka_unit_test(test_warnings),
+        cmocka_unit_test(test_unknown_once),    cmocka_unit_test(test_empty),
+        cmocka_unit_test(test_list_is_bounded), cmocka_unit_test(test_real_motion),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -108,6 +108,7 @@ static int run(app *a)
     grobo_motion_format to = format_of(a, OPT_TO);
     grobo_read_options read = {.model = &grobo_gr001_model, .format = format_of(a, OPT_FROM)};
     grobo_write_options how = {.model = &grobo_gr001_model,
+                               .name = file_shown_name(in), /* notes tell places in IN */
                                .rate_hz = app_number(a, OPT_RATE, 0),
                                .integers = app_option(a, OPT_INTEGERS)->given > 0};
     grobo_diagnostics *list = NULL;

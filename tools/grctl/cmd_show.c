@@ -156,8 +156,9 @@ static void print_head(const show_rows *rows, const char *path, const char *form
     if (rows->played.body)
         printf("legs by inverse kinematics\n");
     else if (linked)
-        printf("%zu of %zu poses give legs by ikLinks: --ik exact shows their angles\n", linked,
-               grobo_motion_size(motion));
+        printf("%zu of %zu poses give legs by ikLinks: %s\n", linked, grobo_motion_size(motion),
+               rows->model ? "--ik exact shows their angles"
+                           : "only GR001's are solved, this is for another robot");
 }
 
 static int show(app *a, show_rows *rows)
