@@ -84,7 +84,7 @@ check "nothing is left beside" nothing_beside
 # ---- what is lost, what is solved -----------------------------------------------------------
 
 check "what .m cannot hold is said" both convert --ik off motions/step.pseq "$work/step.m" \
-    --- grep -q '^grctl: motions/step.pseq:[0-9]*: note: ikLinks are dropped' "$work/err"
+    --- grep -q '^motions/step.pseq:[0-9]*: note: ikLinks are dropped' "$work/err"
 skipped() {
     zmp='{ type: Vector3Seq, content: ZMP, frameRate: 50, frames: [ [ 0, 0, 0 ] ] }'
     { cat motions/greet.yaml && echo "  - $zmp"; } >"$work/zmp.yaml"

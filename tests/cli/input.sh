@@ -94,7 +94,7 @@ slow_pipe() {
 check "a pipe that somebody writes to" slow_pipe
 pseq limit.pseq '2, 3' '0, 0.5'
 check "an angle outside limits" refuses 4 limit.pseq \
-    '9:15: R_KNEE_P: 28.6 degrees, outside -130..0$'
+    '9:15: R_KNEE_P: 28.6 degrees, outside -130..0; --clamp plays it at the limit$'
 pseq far.pseq 3 -1e30
 check "an angle that nothing can reach" refuses 4 far.pseq '9:12: R_KNEE_P: '
 

@@ -49,6 +49,28 @@ check "10 Hz for 5 s" plays 51 5000 --rate 10 "$greet"
 check "half the speed" plays 101 10000 --rate 10 --speed 50 "$greet"
 check "twice" plays 20 9400 --key --repeat 2 "$greet"
 check "two files" plays 20 9400 --key "$greet" "$greet"
+printf '%s\n' 'type: PoseSeq' 'name: lean' 'refs:' \
+    '  - {time: 0, refer: {type: Pose, joints: [ 12, 13 ], q: [ -0.1, 0 ]}}' \
+    '  - {time: 1, refer: {type: Pose, joints: [ 12, 13 ], q: [ 0.004, 0.1 ]}}' >"$work/lean.pseq"
+clamped() {
+    fails 4 'lean.pseq:5:60: CHEST_P: 0.2 degrees, outside -95..0; --clamp plays it at the limit' \
+        "$GRCTL" play --dry-run --key "$work/lean.pseq" &&
+        exits 0 "$GRCTL" play --dry-run --key --clamp "$work/lean.pseq" &&
+        says '^100 .* 01 00 00 64 00 02 39 00 64 00 ..$' &&
+        exits 0 "$GRCTL" -d sim play --key --clamp "$work/lean.pseq" &&
+        says "^angles outside a joint's limits, taken to the limit: 1$"
+}
+check "--clamp plays an angle outside limits at the limit" clamped
+upright='rotation: [ 1, 0, 0, 0, 1, 0, 0, 0, 1 ]'
+links="ikLinks: [ { name: WAIST, index: 0, isBaseLink: true, translation: [ 0, 0, 0.15 ], $upright }, \
+{ name: R_ANKLE_R, index: 6, translation: [ 0, -0.0221, 0.0225 ], $upright } ]"
+sed "s/q: \[ 0.004, 0.1 \]/&, $links/" "$work/lean.pseq" >"$work/solved.pseq"
+clamped_solved() {
+    fails 4 'solved.pseq:5:60: CHEST_P' "$GRCTL" play --dry-run "$work/solved.pseq" &&
+        exits 0 "$GRCTL" play --dry-run --key --clamp "$work/solved.pseq" &&
+        says '^100 .* 01 00 00 64 00 02 39 00 64 00 '
+}
+check "also where legs are solved" clamped_solved
 for joint in 16 19; do
     printf '%s\n' 'type: PoseSeq' 'name: ""' 'refs:' \
         "  - {time: 0, refer: {type: Pose, name: \"\", joints: [ $joint ], q: [ 0 ]}}" \

@@ -28,6 +28,7 @@ typedef struct app {
     bool color_out, color_err;
     bool tty_in, tty_out, tty_err;
     bool reconnects; /* a lost line is opened again, and is no failure */
+    bool clamps;     /* targets outside limits go to the limit, and are no failure */
     char *hushed;    /* not NULL: app_fail() puts its line here, APP_LINE_BYTES, and says nothing */
 } app;
 

@@ -47,15 +47,15 @@ int body_make(app *a, int base, const char *path, const grobo_motion *motion, do
 /* ---- refusing ------------------------------------------------------------------------------- */
 
 typedef struct refusal {
-    bool any;
+    bool any, clamps;
     grobo_body_finding first;
 } refusal;
 
 static void note_finding(void *ctx, const grobo_body_finding *finding)
 {
     refusal *r = ctx;
-    bool refused =
-        finding->problem == GROBO_BODY_UNREACHABLE || finding->problem == GROBO_BODY_JOINT_LIMIT;
+    bool refused = finding->problem == GROBO_BODY_UNREACHABLE ||
+                   (finding->problem == GROBO_BODY_JOINT_LIMIT && !r->clamps);
     if (!refused || (r->any && r->first.begin_s <= finding->begin_s))
         return;
     r->any = true;
@@ -64,7 +64,7 @@ static void note_finding(void *ctx, const grobo_body_finding *finding)
 
 int body_refuse(app *a, const char *path, grobo_body *body)
 {
-    refusal r = {0};
+    refusal r = {.clamps = a->clamps};
     grobo_body_check_options how = {
         .robot = &grobo_gr001_model, .finding = note_finding, .ctx = &r};
     int error = grobo_body_check(body, &how);
@@ -77,7 +77,8 @@ int body_refuse(app *a, const char *path, grobo_body *body)
                         "%s: at %.2f s a leg does not reach its target (%s); see --ik off", path,
                         r.first.begin_s, grobo_gr001_body.links[r.first.index].name);
     return app_fail(a, EXIT_SAFETY, grobo_error_name(GROBO_ERR_LIMIT),
-                    "%s: at %.2f s %s is %.1f deg outside its limits once the legs are solved",
+                    "%s: at %.2f s %s is %.1f deg outside its limits once the legs are solved; "
+                    "--clamp plays it at the limit",
                     path, r.first.begin_s, grobo_gr001_model.joints[r.first.index].name,
                     grobo_deg_from_rad(r.first.worst));
 }

@@ -50,6 +50,9 @@ static const cli_option options[PLAY_OPTIONS] = {
                   .letter = 'k',
                   .kind = CLI_FLAG,
                   .help = "one frame a key pose, the servos interpolate (m and mseq)"},
+    [PLAY_CLAMP] = {.name = "clamp",
+                    .kind = CLI_FLAG,
+                    .help = "play angles outside a joint's limits at the limit"},
     [PLAY_DRY_RUN] = {.name = "dry-run",
                       .kind = CLI_FLAG,
                       .help = "print 'time_ms hex' a frame; touch no port"},
@@ -212,6 +215,9 @@ static void print_summary(const conn *c, deviation following)
     if (n.stretched)
         printf("%llu moves were too fast for a servo and got more time\n",
                (unsigned long long)n.stretched);
+    if (n.clamped)
+        printf("angles outside a joint's limits, taken to the limit: %llu\n",
+               (unsigned long long)n.clamped);
     print_deviation(c, "largest error on the way", following);
     print_deviation(c, "largest error at the end", end);
 }
@@ -319,6 +325,7 @@ static int run(app *a)
     conn c;
     int status;
     memset(&s, 0, sizeof s);
+    a->clamps = app_option(a, PLAY_CLAMP)->given > 0;
     status = playlist_load(&s.list, a);
     if (!status && app_option(a, PLAY_DRY_RUN)->given) {
         status = play_dry_run(&s.list, a);
@@ -335,6 +342,7 @@ static int run(app *a)
         status = conn_close(&c, status);
     }
     playlist_free(&s.list);
+    a->clamps = false;
     return status;
 }
 
@@ -345,9 +353,9 @@ const cli_command cmd_play = {
     .details =
         "Plays .m, .pseq, .mseq, .yaml and .seq files, one after the other. Every file is\n"
         "checked before anything moves: an angle outside a joint's limits is refused with its\n"
-        "place in the file and exit status 4. Torque comes on where it is off, and the robot\n"
-        "goes slowly from where it is to where the motion begins. Ctrl-C stops smoothly and\n"
-        "carries out the exit policy.\n"
+        "place in the file and exit status 4, or played at the limit with --clamp. Torque comes\n"
+        "on where it is off, and the robot goes slowly from where it is to where the motion\n"
+        "begins. Ctrl-C stops smoothly and carries out the exit policy.\n"
         "\n"
         "On a terminal it takes keys:\n"
         "\n" PLAY_KEYS_HELP,

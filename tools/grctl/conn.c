@@ -240,6 +240,8 @@ grobo_robot_config conn_robot_config(const app *a)
     const cli_value *timeout = app_global(a, GLOBAL_TIMEOUT);
     const cli_value *retries = app_global(a, GLOBAL_RETRIES);
     const cli_value *on_exit = app_global(a, GLOBAL_ON_EXIT);
+    if (a->clamps)
+        config.limit_policy = GROBO_LIMIT_CLAMP;
     if (timeout->given)
         config.timeout_us = (uint32_t)(timeout->number * 1000);
     if (retries->given)
@@ -565,6 +567,7 @@ void conn_counters(const conn *c, grobo_robot_counters *counters)
     counters->motion_frames -= c->before.motion_frames;
     counters->late_frames -= c->before.late_frames;
     counters->stretched -= c->before.stretched;
+    counters->clamped -= c->before.clamped;
 }
 
 json_t *conn_link_json(const conn *c)

@@ -34,6 +34,7 @@ enum {
     PLAY_FROM,
     PLAY_RATE,
     PLAY_KEY,
+    PLAY_CLAMP,
     PLAY_DRY_RUN,
     PLAY_TABLE,
     PLAY_BODY,

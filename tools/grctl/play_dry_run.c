@@ -121,7 +121,9 @@ int play_dry_run(playlist *list, app *a)
     static rehearsal r;
     grobo_wiring wiring = (grobo_wiring)app_global(a, GLOBAL_WIRING)->choice;
     grobo_sim_config sim = {.wiring = wiring};
-    grobo_robot_config config = {.sense_interval_us = GROBO_SENSE_NEVER, .bus = {.wiring = wiring}};
+    grobo_robot_config config = {.limit_policy = a->clamps ? GROBO_LIMIT_CLAMP : GROBO_LIMIT_REFUSE,
+                                 .sense_interval_us = GROBO_SENSE_NEVER,
+                                 .bus = {.wiring = wiring}};
     trace_line line = {.device = GROBO_DEVICE_SIM, .wiring = wiring};
     grobo_posture start;
     int error, status;

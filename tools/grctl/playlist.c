@@ -13,6 +13,21 @@ static void say_warnings(const app *a, const grobo_diagnostics *found, bool legs
             file_say_one(a, &d);
 }
 
+/* An angle outside its joint's limits: --clamp takes it to the limit. */
+static bool is_limit(const grobo_diagnostic *d)
+{
+    return strcmp(d->code, "limit") == 0 || strcmp(d->code, "limit-between") == 0;
+}
+
+/* The first error that would be refused in play; false: there is none. */
+static bool find_refused(const app *a, const grobo_diagnostics *found, grobo_diagnostic *d)
+{
+    for (size_t k = 0; grobo_diagnostics_get(found, k, d) == 0; k++)
+        if (d->severity == GROBO_SEVERITY_ERROR && !(a->clamps && is_limit(d)))
+            return true;
+    return false;
+}
+
 /* Says the first thing that would be refused in play, with its place in the file. */
 static int check_one(app *a, const playlist *list, int i)
 {
@@ -26,13 +41,11 @@ static int check_one(app *a, const playlist *list, int i)
     if (error < 0) {
         status = app_fail(a, EXIT_FILE, grobo_error_name(error), "%s: %s", list->path[i],
                           grobo_error_text(error));
-    } else if (error > 0) {
+    } else if (find_refused(a, found, &d)) {
         char text[1024];
-        for (size_t k = 0; grobo_diagnostics_get(found, k, &d) == 0; k++)
-            if (d.severity == GROBO_SEVERITY_ERROR)
-                break;
         file_format(&d, false, text, sizeof text);
-        status = app_fail(a, EXIT_SAFETY, d.code, "%s", text);
+        status = app_fail(a, EXIT_SAFETY, d.code, "%s%s", text,
+                          is_limit(&d) ? "; --clamp plays it at the limit" : "");
     } else {
         say_warnings(a, found, list->body[i] != NULL);
     }
@@ -55,10 +68,13 @@ static void set_options(grobo_play_options *o, const app *a, grobo_motion_kind k
     o->speed_pct = (uint16_t)app_number(a, PLAY_SPEED, 100);
 }
 
-static int solve_legs(app *a, playlist *list, int i)
+/* First what has a place in the file, then what only shows when the legs are solved. */
+static int solve_and_check(app *a, playlist *list, int i)
 {
     int status = body_make(a, PLAY_BODY, list->path[i], list->motion[i], list->options[i].rate_hz,
                            &list->body[i]);
+    if (!status)
+        status = check_one(a, list, i);
     return status || !list->body[i] ? status : body_refuse(a, list->path[i], list->body[i]);
 }
 
@@ -88,9 +104,7 @@ int playlist_load(playlist *list, app *a)
         if (grobo_motion_size(list->motion[i]) == 0)
             return app_fail(a, EXIT_FILE, "EMPTY", "%s: has no postures", list->path[i]);
         set_options(&list->options[i], a, grobo_motion_get_kind(list->motion[i]));
-        status = solve_legs(a, list, i);
-        if (!status)
-            status = check_one(a, list, i);
+        status = solve_and_check(a, list, i);
         if (status)
             return status;
     }
