@@ -128,6 +128,7 @@ typedef struct grobo_check_options {
     int64_t default_us;         /**< for steps without time; 0: GROBO_MOTION_DEFAULT_US */
     const grobo_posture *start; /**< what .mseq counts from; NULL: the model's initial posture */
     grobo_motion_style style;   /**< how key poses are filled when speeds are looked at */
+    uint16_t speed_pct;         /**< the speed it is played at; 0: 100 */
 } grobo_check_options;
 
 /**

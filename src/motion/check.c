@@ -19,6 +19,7 @@ typedef struct check {
     grobo_clip view;
     const grobo_i_clip *clip; /* view's */
     int n_joints;             /* that motion and model share */
+    double speed;             /* times as fast as the file has it */
     size_t n_errors;
     /* by joint, while keys are gone through */
     double angle_rad[GROBO_JOINTS_MAX]; /* last key's */
@@ -328,7 +329,7 @@ static void check_curve(check *c, size_t row, int j, double at_s)
     }
     const grobo_spline_key *from = &track->keys[k - 1], *to = &track->keys[k];
     cubic q = cubic_of(from, to);
-    double peak_rad_s = peak_speed(&q);
+    double peak_rad_s = peak_speed(&q) * c->speed;
     double worst_rad = furthest(&q, from, to, joint);
     if (peak_rad_s > joint->max_speed_rad_s * 1.001) {
         grobo_i_said said = at_joint(c, row, j, "peak-speed", GROBO_SEVERITY_WARNING);
@@ -362,7 +363,7 @@ static void check_speed(check *c, size_t i, size_t row, int j, double angle_rad)
     grobo_joint_mask bit = GROBO_JOINT_BIT(j);
     double at_s = grobo_i_clip_at_s(c->clip, i);
     double way_rad = fabs(angle_rad - c->angle_rad[j]);
-    double has_s = time_for(c, i, row, j, at_s);
+    double has_s = time_for(c, i, row, j, at_s) / c->speed;
     double needs_s = way_rad / joint->max_speed_rad_s;
 
     if (way_rad < ANGLE_SMALL_RAD || needs_s <= has_s * 1.001) {
@@ -436,6 +437,7 @@ int grobo_motion_check(const grobo_motion *motion, const grobo_model *model,
     c.model = model;
     c.options = options != NULL ? options : &defaults;
     c.list = list;
+    c.speed = c.options->speed_pct > 0 ? c.options->speed_pct / 100.0 : 1;
     c.file = c.options->name != NULL ? c.options->name : "";
     c.n_joints = motion->n_joints < model->n_joints ? motion->n_joints : model->n_joints;
     grobo_posture start = start_of(&c);

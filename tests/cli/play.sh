@@ -61,9 +61,19 @@ clamped() {
         says "^angles outside a joint's limits, taken to the limit: 1$"
 }
 check "--clamp plays an angle outside limits at the limit" clamped
+printf '%s\n' 'type: PoseSeq' 'name: nod' 'refs:' \
+    '  - {time: 0, refer: {type: Pose, joints: [ 13 ], q: [ -0.5 ]}}' \
+    '  - {time: 0.1, refer: {type: Pose, joints: [ 13 ], q: [ 0.5 ]}}' >"$work/nod.pseq"
+slower() {
+    fails 4 'nod.pseq:5:58: NECK_Y: 57.3 degrees in 100 ms, .*; a lower --speed gives it time$' \
+        "$GRCTL" play --dry-run "$work/nod.pseq" &&
+        fails 4 ' in 111.1 ms, ' "$GRCTL" play --dry-run --speed 90 "$work/nod.pseq" &&
+        exits 0 "$GRCTL" play --dry-run --speed 50 "$work/nod.pseq"
+}
+check "too fast a move is played at a lower speed" slower
 upright='rotation: [ 1, 0, 0, 0, 1, 0, 0, 0, 1 ]'
-links="ikLinks: [ { name: WAIST, index: 0, isBaseLink: true, translation: [ 0, 0, 0.15 ], $upright }, \
-{ name: R_ANKLE_R, index: 6, translation: [ 0, -0.0221, 0.0225 ], $upright } ]"
+links="ikLinks: [ { name: WAIST, isBaseLink: true, translation: [ 0, 0, 0.15 ], $upright }, \
+{ name: R_ANKLE_R, translation: [ 0, -0.0221, 0.0225 ], $upright } ]"
 sed "s/q: \[ 0.004, 0.1 \]/&, $links/" "$work/lean.pseq" >"$work/solved.pseq"
 clamped_solved() {
     fails 4 'solved.pseq:5:60: CHEST_P' "$GRCTL" play --dry-run "$work/solved.pseq" &&

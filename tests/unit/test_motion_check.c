@@ -185,6 +185,30 @@ static void test_warnings(void **state)
     grobo_diagnostics_free(found.list);
 }
 
+/* Half the speed gives a move twice the time. */
+static void test_speed_it_is_played_at(void **state)
+{
+    (void)state;
+    static const struct {
+        uint16_t speed_pct;
+        int errors;
+    } speeds[] = {{0, 1}, {100, 1}, {90, 1}, {50, 0}, {200, 1}};
+    grobo_motion *motion =
+        motion_of(TOP "- { time: 0, refer: { type: Pose, joints: [ 13 ], q: [ 0 ] } }\n"
+                      "- { time: 0.1, refer: { type: Pose, joints: [ 13 ], q: [ 0.8 ] } }\n",
+                  GROBO_FORMAT_PSEQ);
+
+    for (size_t i = 0; i < sizeof speeds / sizeof speeds[0]; i++) {
+        grobo_check_options how = {.speed_pct = speeds[i].speed_pct};
+        grobo_diagnostics *list = NULL;
+        assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
+        assert_int_equal(grobo_motion_check(motion, &grobo_gr001_model, &how, list),
+                         speeds[i].errors);
+        grobo_diagnostics_free(list);
+    }
+    grobo_motion_free(motion);
+}
+
 /* A motion of another robot: what this one has not is said once, where it is there first. */
 static void test_unknown_once(void **state)
 {
@@ -265,12 +289,19 @@ static void test_real_motion(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_clean),           cmocka_unit_test(test_limits),
-        cmocka_unit_test(test_too_fast),        cmocka_unit_test(test_curve),
-        cmocka_unit_test(test_postures),        cmocka_unit_test(test_increments),
-        cmocka_unit_test(test_frames),          cmocka_unit_test(test_warnings),
-        cmocka_unit_test(test_unknown_once),    cmocka_unit_test(test_empty),
-        cmocka_unit_test(test_list_is_bounded), cmocka_unit_test(test_real_motion),
+        cmocka_unit_test(test_clean),
+        cmocka_unit_test(test_limits),
+        cmocka_unit_test(test_too_fast),
+        cmocka_unit_test(test_curve),
+        cmocka_unit_test(test_postures),
+        cmocka_unit_test(test_increments),
+        cmocka_unit_test(test_frames),
+        cmocka_unit_test(test_warnings),
+        cmocka_unit_test(test_speed_it_is_played_at),
+        cmocka_unit_test(test_unknown_once),
+        cmocka_unit_test(test_empty),
+        cmocka_unit_test(test_list_is_bounded),
+        cmocka_unit_test(test_real_motion),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

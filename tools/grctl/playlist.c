@@ -31,7 +31,9 @@ static bool find_refused(const app *a, const grobo_diagnostics *found, grobo_dia
 /* Says the first thing that would be refused in play, with its place in the file. */
 static int check_one(app *a, const playlist *list, int i)
 {
-    grobo_check_options how = {.name = list->path[i]};
+    uint16_t speed_pct = list->options[i].speed_pct; /* beyond 100 % moves may be stretched */
+    grobo_check_options how = {.name = list->path[i],
+                               .speed_pct = speed_pct < 100 ? speed_pct : 100};
     grobo_diagnostics *found = NULL;
     grobo_diagnostic d;
     int status = 0;
@@ -44,8 +46,9 @@ static int check_one(app *a, const playlist *list, int i)
     } else if (find_refused(a, found, &d)) {
         char text[1024];
         file_format(&d, false, text, sizeof text);
-        status = app_fail(a, EXIT_SAFETY, d.code, "%s%s", text,
-                          is_limit(&d) ? "; --clamp plays it at the limit" : "");
+        status = app_fail(a, EXIT_SAFETY, d.code, "%s; %s", text,
+                          is_limit(&d) ? "--clamp plays it at the limit"
+                                       : "a lower --speed gives it time");
     } else {
         say_warnings(a, found, list->body[i] != NULL);
     }
