@@ -74,6 +74,12 @@ reboot servo 5 (R_ELBOW_P); sum DA right; no reply
 flash and reboot servo 5 (R_ELBOW_P); sum 9A right; no reply
 factory reset servo 5 (R_ELBOW_P); sum 15 right; no reply
 TEXT
+check 'a write that goes to flash at once, and data that is none' \
+    decodes FAAF016006010104 63 FAAF0540070101 02 40 FAAF0510FF0101FF15 <<'TEXT'
+write servo 1 (CHEST_P): baud 38400 bps, then flash and reboot; sum 63 right; no reply
+write servo 5 (R_ELBOW_P): delay 200 us, then flash; sum 40 right; no reply
+factory reset servo 5 (R_ELBOW_P); sum 15 right; no reply
+TEXT
 check 'requests of blocks and of an ACK' \
     decodes FA AF 7F 09 00 00 01 77 FAAF0101FF0000FF FAAF010B0000010B <<'TEXT'
 read No.42-59 of servo 127; sum 77 right; reply: 26 bytes

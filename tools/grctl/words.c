@@ -214,15 +214,18 @@ static void say_command(text *t, const frame *f, const grobo_reply *reply, int k
 {
     const grobo_rs30x_packet *p = &f->packet;
     const char *action = words_i_action(p);
+    bool only_writes = strcmp(action, "write") == 0;
     words_i_part part;
     if (p->kind == GROBO_RS30X_LONG) {
         say(t, "write %u servos: ", p->count);
         say_names(t, p);
-    } else if (strcmp(action, "write") == 0 && words_i_share(p, 0, &part)) {
+    } else if ((only_writes || p->address < GROBO_REGISTERS) && words_i_share(p, 0, &part)) {
         say(t, "write ");
         say_servo(t, p->id);
         say(t, ": ");
         say_registers(t, &part);
+        if (!only_writes)
+            say(t, ", then %s", action);
     } else {
         say_bare(t, p, reply, known);
     }
