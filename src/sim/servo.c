@@ -92,10 +92,29 @@ static void goal_written(grobo_sim *sim, int index)
                                              .value2 = time_cs});
 }
 
+/* Registers that take any value and make of it what they can, so that none is refused. */
+static bool bends(const grobo_rs30x_register *reg)
+{
+    return reg->address == GROBO_RS30X_GOAL || reg->address == GROBO_RS30X_MAX_TORQUE ||
+           reg->address == GROBO_RS30X_BAUD;
+}
+
+/* The manual on those beside the goal: over 100 % is 100 %, an unknown rate is 115200 bps. */
+static void bend(grobo_sim_servo *servo, const grobo_rs30x_register *reg)
+{
+    int32_t value = grobo_i_sim_value(servo, reg->address);
+    if (reg->address == GROBO_RS30X_MAX_TORQUE) {
+        present(servo, GROBO_RS30X_MAX_TORQUE, value);
+    } else if (reg->address == GROBO_RS30X_BAUD && value > reg->max) {
+        present(servo, GROBO_RS30X_BAUD, GROBO_RS30X_BAUD_CODE_DEFAULT);
+    }
+}
+
 /* Lets a register's new value take effect. */
 static void took_effect(grobo_sim *sim, int index, const grobo_rs30x_register *reg, int32_t before)
 {
     grobo_sim_servo *servo = &sim->servo[index];
+    bend(servo, reg);
     int32_t value = grobo_i_sim_value(servo, reg->address);
     if (reg->address == GROBO_RS30X_GOAL) {
         goal_written(sim, index);
@@ -139,9 +158,8 @@ static bool may_write(const grobo_sim_servo *servo, int address, const uint8_t *
             continue;
         }
         int32_t value = grobo_rs30x_register_get(reg, &after[reg->address]);
-        bool clamped = reg->address == GROBO_RS30X_GOAL;
         if (reg->access != GROBO_RS30X_ACCESS_RW ||
-            (!clamped && (value < reg->min || value > reg->max))) {
+            (!bends(reg) && (value < reg->min || value > reg->max))) {
             return false;
         }
     }

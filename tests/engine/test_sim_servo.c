@@ -208,11 +208,9 @@ static void values_out_of_range_are_refused(void **state)
         {"FA AF 01 00 04 01 01 00", GROBO_RS30X_ID, 1},
         {"FA AF 01 00 04 01 01 80", GROBO_RS30X_ID, 1},
         {"FA AF 01 00 05 01 01 02", GROBO_RS30X_REVERSE, 0},
-        {"FA AF 01 00 06 01 01 0B", GROBO_RS30X_BAUD, 7},
         {"FA AF 01 00 07 01 01 80", GROBO_RS30X_DELAY, 0},
         {"FA AF 01 00 08 02 01 DD 05", GROBO_RS30X_CW_LIMIT, 1500},
         {"FA AF 01 00 20 02 01 00 40", GROBO_RS30X_GOAL_TIME, 0},
-        {"FA AF 01 00 23 01 01 65", GROBO_RS30X_MAX_TORQUE, 100},
         {"FA AF 01 00 24 01 01 03", GROBO_RS30X_TORQUE, 0},
         {"FA AF 01 00 1E 07 01 64 00 00 00 00 50 03", GROBO_RS30X_GOAL, 0},
     };
@@ -223,6 +221,20 @@ static void values_out_of_range_are_refused(void **state)
         assert_int_equal(simkit_events(&kit, GROBO_SIM_REFUSED, NULL), 1);
         assert_int_equal(simkit_register(&kit, CHEST, rows[i].address), rows[i].stays);
     }
+}
+
+static void some_values_out_of_range_become_others(void **state)
+{
+    (void)state;
+    const grobo_sim_config config = {.wiring = GROBO_WIRING_BUS, .baud_bps = 9600};
+    simkit_start(&kit, &config);
+    simkit_packet(&kit, "FA AF 01 01 23 01 01 C8", 1);
+    simkit_expect(&kit, "07");
+    assert_int_equal(simkit_register(&kit, CHEST, GROBO_RS30X_MAX_TORQUE), 100);
+    simkit_packet(&kit, "FA AF 01 01 06 01 01 0B", 1);
+    simkit_expect(&kit, "07");
+    assert_int_equal(simkit_look(&kit, CHEST).baud_bps, 115200);
+    assert_int_equal(simkit_events(&kit, GROBO_SIM_REFUSED, NULL), 0);
 }
 
 static void goals_are_clamped_to_the_limits(void **state)
@@ -380,6 +392,7 @@ int main(void)
         cmocka_unit_test(behind_the_robots_back_the_map_holds_too),
         cmocka_unit_test(read_only_registers_stay),
         cmocka_unit_test(values_out_of_range_are_refused),
+        cmocka_unit_test(some_values_out_of_range_become_others),
         cmocka_unit_test(goals_are_clamped_to_the_limits),
         cmocka_unit_test(reserved_registers_take_nothing),
         cmocka_unit_test(acks_come_when_asked_for),
