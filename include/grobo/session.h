@@ -67,7 +67,8 @@ typedef struct grobo_session_config {
     const grobo_driver *driver;      /**< borrowed; NULL: GR001 through its board */
     void *driver_ctx;                /**< borrowed, handed to the driver */
     const grobo_robot_config *robot; /**< copied; NULL: defaults; baud_bps 0: the session's */
-    const grobo_sim_config *sim;     /**< copied; NULL: of the driver's model, wiring and baud */
+    const grobo_sim_config *sim;     /**< copied; NULL: of the driver's model and the line's baud;
+                                          wiring and echo are those of driver and robot */
     const char *const *scan;         /**< borrowed; devices that GROBO_DEVICE_AUTO tries, in this
                                           order, ended by NULL; NULL: all serial ports */
     bool skip_check;                 /**< up as soon as the line is open, whoever is there */

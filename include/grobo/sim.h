@@ -119,6 +119,7 @@ typedef struct grobo_sim_config {
     uint32_t board_stall_us;   /**< board forgets a frame that stalls. GROBO_BOARD_STALL_US */
     uint32_t supply_mv;        /**< battery. 7400 */
     int32_t ambient_c;         /**< -40..60; 25 */
+    bool echo;                 /**< bus: the host's adapter returns what is sent on one wire */
     bool nack;                 /**< a servo that cannot process an ACK request answers 08 */
     bool jump_on_torque;       /**< torque on runs to the goal register instead of holding */
     grobo_sim_hook hook;       /**< or NULL */
@@ -258,8 +259,9 @@ typedef struct grobo_sim {
  * Powers a simulated robot up: torque off everywhere, goals 0, flash as the factory left it but
  * for the ids of the model and, on bus wiring, the rate of the line. The hook hears nothing of it.
  * @param config NULL: all defaults. Copied; the model is borrowed.
- * @return 0; GROBO_ERR_ARG for a bad model, ambient temperature or baud rate below 300 or (bus
- *         wiring) not one of the servos'; GROBO_ERR_CAP for more than GROBO_SIM_SERVOS_MAX joints
+ * @return 0; GROBO_ERR_ARG for a bad model, ambient temperature, baud rate below 300 or (bus
+ *         wiring) not one of the servos', or an echo through the board; GROBO_ERR_CAP for more
+ *         than GROBO_SIM_SERVOS_MAX joints
  */
 GROBO_API int grobo_sim_init(grobo_sim *sim, const grobo_sim_config *config, int64_t now_us);
 

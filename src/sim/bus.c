@@ -86,6 +86,9 @@ void grobo_i_sim_bus_hear(grobo_sim *sim, uint8_t byte, int64_t t_ns)
     if (clashed) {
         collided(sim);
     }
+    if (sim->config.echo) {
+        grobo_i_sim_to_host(sim, byte, t_ns);
+    }
     if (t_ns - sim->bus_heard_ns > GROBO_I_SIM_SERVO_STALL_NS &&
         grobo_rs30x_parser_pending(&sim->bus) > 0) {
         sim->stats.stalls++;

@@ -270,7 +270,8 @@ int grobo_sim_init(grobo_sim *sim, const grobo_sim_config *config, int64_t now_u
     use_defaults(&with);
     if (grobo_model_check(with.model) < 0 || with.baud_bps < LOWEST_BPS || with.ambient_c < -40 ||
         with.ambient_c > 60 ||
-        (with.wiring == GROBO_WIRING_BUS && grobo_rs30x_baud_code(with.baud_bps) < 0)) {
+        (with.wiring == GROBO_WIRING_BUS && grobo_rs30x_baud_code(with.baud_bps) < 0) ||
+        (with.wiring == GROBO_WIRING_BOARD && with.echo)) {
         return GROBO_ERR_ARG;
     }
     if (with.model->n_joints > GROBO_SIM_SERVOS_MAX) {

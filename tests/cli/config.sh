@@ -126,6 +126,10 @@ check "a wiring that is none" bad "2:37: .*none of board" <<'EOF'
 robots:
   kitchen: {device: /dev/x, wiring: string}
 EOF
+check "an echo that is none" bad "2:50: true or false" <<'EOF'
+robots:
+  kitchen: {device: /dev/x, wiring: bus,   echo: 1}
+EOF
 check "a baud rate that is none" bad "2:35: .*'9' is not" <<'EOF'
 robots:
   kitchen: {device: /dev/x, baud: 9}

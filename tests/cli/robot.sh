@@ -90,5 +90,17 @@ check "somebody else on the port: servos without a board" \
     fails 1 'no robot answers; is the robot switched on' on_robot status
 check "with the right wiring they answer" both exits 0 on_robot --wiring bus status m3 --- \
     says R_SHOULDER_P
+check "and there is no echo" fails 1 '' on_robot --wiring bus --echo status m3
 stop_sim
+
+# Motor 7: its id in what comes back could be taken for an ACK.
+start_sim --wiring bus --echo
+check "an adapter that returns what is sent" both \
+    exits 0 on_robot --wiring bus --echo status m3 m7 --- says L_SHOULDER_R
+check "an ACK behind the echo of one" exits 0 on_robot --wiring bus --echo servo-set 7 delay 1
+check "a motion" exits 0 on_robot --wiring bus --echo init --time 200
+stop_sim
+check "and so in process" exits 0 "$GRCTL" -d sim --wiring bus --echo status m7
+check "through a board there is none" fails 2 'echo needs --wiring bus' \
+    "$GRCTL" -d sim --echo status
 done_testing

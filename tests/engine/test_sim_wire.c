@@ -293,6 +293,36 @@ static void a_crowd_of_one_id_is_only_heard_in_part(void **state)
     assert_int_equal(kit.sim.stats.overflows, (20 - GROBO_SIM_TALKS_MAX) * 26);
 }
 
+static void an_adapter_may_return_what_it_sends(void **state)
+{
+    (void)state;
+    const grobo_sim_config config = {.wiring = GROBO_WIRING_BUS, .echo = true};
+    simkit_start(&kit, &config);
+    int64_t t0 = kit.now_us;
+    simkit_ask(&kit, "FA AF 01 0F 24 01 00 2B", 100000);
+    simkit_expect(&kit, "FA AF 01 0F 24 01 00 2B FD DF 01 00 24 01 01 00 25");
+    assert_int_equal(kit.got_us[7] - t0, bytes_us(8, 115200));
+    assert_int_equal(kit.got_us[16] - t0, 100 + bytes_us(17, 115200));
+    simkit_ask(&kit, "FA AF 01 00 24 01 01 01 24", 100000);
+    simkit_expect(&kit, "FA AF 01 00 24 01 01 01 24");
+    simkit_ask(&kit, "12 34", 100000);
+    simkit_expect(&kit, "12 34");
+}
+
+static void an_echo_is_of_what_was_on_the_line(void **state)
+{
+    (void)state;
+    const grobo_sim_config config = {.wiring = GROBO_WIRING_BUS, .echo = true};
+    simkit_start(&kit, &config);
+    simkit_send(&kit, "FA AF 01 0F 24 01 00 2B");
+    simkit_run(&kit, bytes_us(8, 115200) + 100 + 10);
+    simkit_ask(&kit, "00 00", 100000);
+    assert_true(kit.sim.stats.collisions > 0);
+    assert_true(kit.got[0] == 0);
+    const grobo_sim_config board = {.echo = true};
+    assert_int_equal(grobo_sim_init(&kit.sim, &board, 0), GROBO_ERR_ARG);
+}
+
 /* ---- pacing and the cable ------------------------------------------------------------------ */
 
 static void unpaced_takes_only_the_return_delay(void **state)
@@ -378,6 +408,8 @@ int main(void)
         cmocka_unit_test(replies_that_overlap_spoil_each_other),
         cmocka_unit_test(the_board_too_may_talk_over_a_reply),
         cmocka_unit_test(a_crowd_of_one_id_is_only_heard_in_part),
+        cmocka_unit_test(an_adapter_may_return_what_it_sends),
+        cmocka_unit_test(an_echo_is_of_what_was_on_the_line),
         cmocka_unit_test(unpaced_takes_only_the_return_delay),
         cmocka_unit_test(a_host_that_never_reads_loses_bytes),
         cmocka_unit_test(time_going_back_counts_as_standing_still),

@@ -53,7 +53,7 @@ static void begin_line(shell *s)
 
 static int prepare(void *ctx, app *a)
 {
-    static const int lines[] = {GLOBAL_DEVICE, GLOBAL_BAUD, GLOBAL_WIRING};
+    static const int lines[] = {GLOBAL_DEVICE, GLOBAL_BAUD, GLOBAL_WIRING, GLOBAL_ECHO};
     shell *s = ctx;
     bool touches = false;
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++)

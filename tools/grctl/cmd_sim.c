@@ -103,6 +103,7 @@ static grobo_sim_config sim_config(const app *a, int robot)
     grobo_sim_config config = {
         .wiring = (grobo_wiring)app_global(a, GLOBAL_WIRING)->choice,
         .baud_bps = baud->given ? (uint32_t)baud->number : 0,
+        .echo = app_global(a, GLOBAL_ECHO)->given > 0,
         .unpaced = app_option(a, OPT_NO_PACING)->given > 0,
         .seed = (uint32_t)app_number(a, OPT_SEED, 0) + (uint32_t)robot,
         .start = (grobo_sim_start)app_option(a, OPT_START)->choice,

@@ -85,6 +85,16 @@ static int take_option(reader *r, int global, cli_value *value)
     return 0;
 }
 
+static int take_flag(reader *r, cli_value *value)
+{
+    if (next(r))
+        return r->status;
+    if (!scalar(r) || (strcmp(scalar(r), "true") != 0 && strcmp(scalar(r), "false") != 0))
+        return complain(r, &r->event.start_mark, "%s", "true or false is wanted here");
+    value->given = strcmp(scalar(r), "true") == 0;
+    return 0;
+}
+
 static int take_text(reader *r, char *text, size_t capacity)
 {
     if (next(r))
@@ -134,6 +144,8 @@ static int take_field(reader *r, const char *key)
         return take_text(r, robot->device, sizeof robot->device);
     if (strcmp(key, "wiring") == 0)
         return take_option(r, GLOBAL_WIRING, &robot->wiring);
+    if (strcmp(key, "echo") == 0)
+        return take_flag(r, &robot->echo);
     if (strcmp(key, "baud") == 0)
         return take_option(r, GLOBAL_BAUD, &robot->baud);
     if (strcmp(key, "on_exit") == 0)
@@ -147,7 +159,8 @@ static int take_field(reader *r, const char *key)
         return take_degrees(r, robot->offset_deg, &at, &end);
     }
     return complain(r, &r->event.start_mark,
-                    "no key '%s'; there are device, wiring, baud, on_exit, trim, offset", key);
+                    "no key '%s'; there are device, wiring, echo, baud, on_exit, trim, offset",
+                    key);
 }
 
 /* Every robot is checked; the one that is wanted is kept. */
@@ -279,6 +292,7 @@ int config_apply(app *a)
                    : 0;
     a->line.global[GLOBAL_DEVICE] = (cli_value){.given = 1, .text = robot.device};
     set_option(a, GLOBAL_WIRING, &robot.wiring);
+    set_option(a, GLOBAL_ECHO, &robot.echo);
     set_option(a, GLOBAL_BAUD, &robot.baud);
     a->robot = &robot;
     return 0;

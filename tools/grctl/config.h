@@ -7,6 +7,7 @@
  *     kitchen:
  *       device: /dev/serial/by-id/usb-...
  *       wiring: board          # or bus
+ *       echo: false            # true: the bus's adapter returns what is sent
  *       baud: 115200
  *       on_exit: hold          # or off, sit: where a command is cut short
  *       trim: {R_KNEE_P: 1.5}  # degrees that the servo stands off: added to what goes out
@@ -29,7 +30,7 @@ typedef struct config_robot {
     char name[CONFIG_NAME_BYTES]; /* "": none is configured */
     char path[CONFIG_PATH_BYTES]; /* the file that has it */
     char device[GROBO_DEVICE_MAX_BYTES];
-    cli_value wiring, baud, on_exit; /* as options of the command line */
+    cli_value wiring, echo, baud, on_exit; /* as options of the command line */
     double trim_deg[GROBO_JOINTS_MAX];
     double offset_deg[GROBO_JOINTS_MAX];
     bool trimmed, offsets;

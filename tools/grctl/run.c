@@ -55,6 +55,8 @@ int run_line(app *a, int argc, char **argv, int (*prepare)(void *ctx, app *a), v
     }
     if (!a->link && (status = config_apply(a)) != 0)
         return status;
+    if (app_global(a, GLOBAL_ECHO)->given && app_global(a, GLOBAL_WIRING)->choice == 0)
+        return fail(a, "--echo needs --wiring bus: the board returns nothing");
     if (prepare && (status = prepare(ctx, a)) != 0)
         return status;
     status = command->run(a);
