@@ -80,6 +80,19 @@ write servo 1 (CHEST_P): baud 38400 bps, then flash and reboot; sum 63 right; no
 write servo 5 (R_ELBOW_P): delay 200 us, then flash; sum 40 right; no reply
 factory reset servo 5 (R_ELBOW_P); sum 15 right; no reply
 TEXT
+cat >"$work/echo" <<'JSON'
+{"time_ms": 0, "from": "host", "hex": "FA AF 07 09 00 00 01 0F"}
+{"time_ms": 1, "from": "robot", "hex": "FA AF 07 09 00 00 01 0F"}
+{"time_ms": 2, "from": "host", "hex": "FA AF 00 00 24 02 01 02 01 24"}
+{"time_ms": 3, "from": "robot", "hex": "FA AF 00 00 24 02 01 02 01 24"}
+JSON
+check 'what an adapter returns of what was sent' decodes "$work/echo" <<'TEXT'
+     0.000  host     read No.42-59 of servo 7 (L_SHOULDER_R); sum 0F right; reply: 26 bytes
+     1.000  robot    echo: read No.42-59 of servo 7 (L_SHOULDER_R); sum 0F right
+     2.000  host     write 1 servos: torque; sum 24 right; no reply
+    servo 2 (NECK_Y): torque on
+     3.000  robot    echo: write 1 servos: torque; sum 24 right
+TEXT
 check 'requests of blocks and of an ACK' \
     decodes FA AF 7F 09 00 00 01 77 FAAF0101FF0000FF FAAF010B0000010B <<'TEXT'
 read No.42-59 of servo 127; sum 77 right; reply: 26 bytes

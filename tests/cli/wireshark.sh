@@ -59,9 +59,11 @@ agree() {
 "$GRCTL" -q -d sim --trace "$work/status" status >/dev/null
 "$GRCTL" -q -d sim --trace "$work/move" init --time 100 >/dev/null
 "$GRCTL" -q -d sim --wiring bus --trace "$work/bus" init --time 100 >/dev/null
+"$GRCTL" -q -d sim --wiring bus --echo --trace "$work/echo" init --time 100 >/dev/null
 check 'status: the same frames' agree "$work/status"
 check 'init: the same frames' agree "$work/move"
 check 'on a bus: the same frames' agree "$work/bus"
+check 'of one wire: the same frames' agree "$work/echo"
 
 make_trace >"$work/made" <<'LINES'
 out 1000 41

@@ -22,7 +22,7 @@ typedef struct heard {
 
 static void note(void *ctx, const frame *f)
 {
-    static const char *const kinds[] = {"board", "packet", "cut", "rubbish"};
+    static const char *const kinds[] = {"board", "packet", "echo", "cut", "rubbish"};
     heard *h = ctx;
     size_t used = strlen(h->text);
     snprintf(h->text + used, sizeof h->text - used, "%s%s%s %zu", used ? ", " : "",
@@ -52,6 +52,10 @@ static const struct {
     {GOAL BACK "07", "board 14, packet 9, packet 1", FRAMES_EITHER, FRAMES_ANY_WIRING},
     {BACK "07" BACK, "packet 9, packet 1, packet 9", FRAMES_ROBOT, FRAMES_BOARD},
     {GOAL, "rubbish 14", FRAMES_ROBOT, FRAMES_BOARD},
+    {"FA AF 01 0F 24 01 00 2B" BACK, "echo 8, packet 9", FRAMES_ROBOT, FRAMES_BUS},
+    {"FA AF 07 01 24 01 01 01 23 07", "echo 9, packet 1", FRAMES_ROBOT, FRAMES_BUS},
+    {"FA AF 03 00 24 01 01 01 27", "bad echo 9", FRAMES_ROBOT, FRAMES_BUS},
+    {"FA AF 01 0F 24" BACK, "rubbish 5, packet 9", FRAMES_ROBOT, FRAMES_BUS},
     {"12 34" BACK "99", "rubbish 2, packet 9, rubbish 1", FRAMES_ROBOT, FRAMES_BOARD},
     {"FD DF 01 00 24 01 01 02 24", "bad packet 9", FRAMES_ROBOT, FRAMES_BOARD},
     {"FD DF 01 00", "cut 4", FRAMES_ROBOT, FRAMES_BOARD},

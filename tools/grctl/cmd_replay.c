@@ -141,7 +141,7 @@ static void on_answer(replay *r, int who, const frame *f)
     if (f->kind == FRAME_PACKET && f->sum_ok) {
         if (!ledger_take(&r->asked, who, f, &asked_us))
             r->count.stray[who]++;
-    } else {
+    } else if (f->kind != FRAME_ECHO) {
         r->count.rubbish_bytes[who] += f->size;
     }
 }

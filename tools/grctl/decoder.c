@@ -17,6 +17,7 @@ static void count(decoder *d, const frame *f)
     switch (f->kind) {
     case FRAME_BOARD:
     case FRAME_PACKET:
+    case FRAME_ECHO:
         d->count.frames++;
         d->count.bad_sums += !f->sum_ok;
         break;

@@ -7,15 +7,8 @@
 static unsigned accepted(frames_side side, unsigned wiring)
 {
     unsigned commands = wiring & FRAMES_BUS ? GROBO_RS30X_ACCEPT_COMMANDS : 0;
-    switch (side) {
-    case FRAMES_HOST:
-        return commands;
-    case FRAMES_ROBOT:
-        return GROBO_RS30X_ACCEPT_RETURNS | GROBO_RS30X_ACCEPT_ACKS;
-    case FRAMES_EITHER:
-        break;
-    }
-    return commands | GROBO_RS30X_ACCEPT_RETURNS | GROBO_RS30X_ACCEPT_ACKS;
+    return side == FRAMES_HOST ? commands
+                               : commands | GROBO_RS30X_ACCEPT_RETURNS | GROBO_RS30X_ACCEPT_ACKS;
 }
 
 /* The packet that a relay frame carries, if it carries exactly one. */
@@ -42,7 +35,7 @@ int frame_peek(frames_side side, unsigned wiring, const uint8_t *bytes, size_t n
     }
     if (size < 0) {
         size = grobo_rs30x_peek(bytes, n, accepted(side, wiring), &out->packet, &out->sum_ok);
-        out->kind = FRAME_PACKET;
+        out->kind = side == FRAMES_ROBOT && bytes[0] == 0xFA ? FRAME_ECHO : FRAME_PACKET;
         out->has_packet = true;
         out->packet_size = size > 0 ? (size_t)size : 0;
     }
@@ -203,7 +196,7 @@ int frame_reply(const frame *f, grobo_reply *reply)
 {
     if (f->kind == FRAME_BOARD)
         return grobo_frame_reply(GROBO_WIRING_BOARD, f->bytes, f->size, reply);
-    if (f->kind != FRAME_PACKET)
+    if (f->kind != FRAME_PACKET && f->kind != FRAME_ECHO)
         return GROBO_ERR_FRAME;
     return grobo_frame_reply(GROBO_WIRING_BUS, f->bytes, f->size, reply);
 }

@@ -13,7 +13,7 @@
 typedef enum frames_side {
     FRAMES_EITHER, /* not known: everything */
     FRAMES_HOST,   /* board frames and commands */
-    FRAMES_ROBOT   /* return packets, ACK, NACK */
+    FRAMES_ROBOT   /* return packets, ACK, NACK; of an adapter with an echo commands too */
 } frames_side;
 
 /* What of a host's bytes is believed; or-ed. */
@@ -22,6 +22,7 @@ enum { FRAMES_BOARD = 1, FRAMES_BUS = 2, FRAMES_ANY_WIRING = FRAMES_BOARD | FRAM
 typedef enum frame_kind {
     FRAME_BOARD,  /* a frame of the board; with a servo packet in it: has_packet */
     FRAME_PACKET, /* a servo packet, ACK or NACK */
+    FRAME_ECHO,   /* a host's packet that comes back from a bus of one wire */
     FRAME_CUT,    /* begins like a frame whose rest never came */
     FRAME_RUBBISH /* no frame */
 } frame_kind;
@@ -33,7 +34,7 @@ typedef struct frame {
     const uint8_t *bytes;    /* valid during the callback */
     size_t size;
     grobo_board_frame board;   /* FRAME_BOARD */
-    grobo_rs30x_packet packet; /* if has_packet; FRAME_PACKET has one */
+    grobo_rs30x_packet packet; /* if has_packet; FRAME_PACKET and FRAME_ECHO have one */
     size_t packet_size;        /* with its header and sum */
     bool has_packet;
     bool sum_ok; /* of the packet */

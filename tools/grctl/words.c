@@ -323,7 +323,7 @@ static void say_board(text *t, const frame *f, const grobo_reply *reply, int kno
 
 static bool is_command(const frame *f)
 {
-    return f->kind == FRAME_BOARD ||
+    return f->kind == FRAME_BOARD || f->kind == FRAME_ECHO ||
            (f->kind == FRAME_PACKET &&
             (f->packet.kind == GROBO_RS30X_SHORT || f->packet.kind == GROBO_RS30X_LONG));
 }
@@ -390,6 +390,10 @@ void words_say(const frame *f, bool color, const char *note, char *to, size_t ca
     case FRAME_PACKET:
         say_packet(&t, f, &reply, known);
         break;
+    case FRAME_ECHO:
+        say(&t, "echo: ");
+        say_packet(&t, f, &reply, known);
+        break;
     case FRAME_CUT:
         say_bad(&t, "cut off:");
         say_hex(&t, f->bytes, f->size);
@@ -399,8 +403,9 @@ void words_say(const frame *f, bool color, const char *note, char *to, size_t ca
         say_hex(&t, f->bytes, f->size);
         break;
     }
-    say_reply(&t, &reply, known);
+    if (f->kind != FRAME_ECHO)
+        say_reply(&t, &reply, known);
     say(&t, "%s\n", note);
-    if (f->has_packet && f->packet.kind == GROBO_RS30X_LONG)
+    if (f->has_packet && f->packet.kind == GROBO_RS30X_LONG && f->kind != FRAME_ECHO)
         say_shares(&t, &f->packet);
 }

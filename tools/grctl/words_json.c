@@ -16,6 +16,8 @@ static const char *kind_of(const frame *f)
         return board[f->board.kind];
     case FRAME_PACKET:
         return packet[f->packet.kind];
+    case FRAME_ECHO:
+        return "echo";
     case FRAME_CUT:
         return "cut";
     case FRAME_RUBBISH:
@@ -114,7 +116,7 @@ json_t *words_json(const frame *f)
         json_object_set_new(o, "number", json_integer(f->board.number));
     if (f->has_packet && f->packet_size > 1)
         json_object_set_new(o, "packet", packet_json(f));
-    if (known != GROBO_ERR_TYPE)
+    if (known != GROBO_ERR_TYPE && f->kind != FRAME_ECHO)
         json_object_set_new(o, "reply", reply_json(f, &reply, known));
     return o;
 }

@@ -183,7 +183,7 @@ local function peek_packet(bytes, at, side)
     if (first == 0x07 or first == 0x08) and side ~= "host" then
         return 1, {kind = first == 0x07 and "ack" or "nack", sum_ok = true}
     end
-    local command = first == 0xFA and side ~= "robot"
+    local command = first == 0xFA -- of the robot's side: the echo of an adapter with one wire
     if not command and not (first == 0xFD and side ~= "host") then
         return nil
     end
@@ -214,7 +214,7 @@ local function peek_packet(bytes, at, side)
     end
     local sum = bytes:byte(at + size - 1)
     return size, {
-        kind = command and "packet" or "return",
+        kind = command and (side == "robot" and "echo" or "packet") or "return",
         sum_ok = sum == sum_of(bytes, at + 2, at + size - 2),
     }
 end
@@ -274,7 +274,7 @@ local function peek(bytes, at, side)
     end
     if not size then
         size, found = peek_packet(bytes, at, side)
-        if found and (found.kind == "packet" or found.kind == "return") then
+        if found and (found.kind == "packet" or found.kind == "return" or found.kind == "echo") then
             found.packet_at, found.packet_bytes = 0, size
         end
     end
