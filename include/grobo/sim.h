@@ -119,6 +119,7 @@ typedef struct grobo_sim_config {
     uint32_t board_stall_us;   /**< board forgets a frame that stalls. GROBO_BOARD_STALL_US */
     uint32_t supply_mv;        /**< battery. 7400 */
     int32_t ambient_c;         /**< -40..60; 25 */
+    uint32_t latency_us;       /**< a byte for the host waits so long at its adapter for others */
     bool echo;                 /**< bus: the host's adapter returns what is sent on one wire */
     bool nack;                 /**< a servo that cannot process an ACK request answers 08 */
     bool jump_on_torque;       /**< torque on runs to the goal register instead of holding */
@@ -238,6 +239,7 @@ typedef struct grobo_sim {
     uint8_t n_servos;
     grobo_sim_servo servo[GROBO_SIM_SERVOS_MAX];
     grobo_sim_wire in, out; /* from the host, to the host */
+    int64_t hand_over_ns;   /* when the host's adapter hands over what it has */
 
     grobo_board_parser board;
     grobo_sim_board_state board_state;

@@ -65,16 +65,25 @@ static void misread(grobo_sim *sim, uint8_t *byte)
     }
 }
 
+/* When the host's adapter hands over a byte that has arrived there at at_ns. */
+static int64_t handed_over_ns(grobo_sim *sim, int64_t at_ns)
+{
+    if (at_ns > sim->hand_over_ns) {
+        sim->hand_over_ns = at_ns + (int64_t)sim->config.latency_us * 1000;
+    }
+    return sim->hand_over_ns;
+}
+
 void grobo_i_sim_to_host(grobo_sim *sim, uint8_t byte, int64_t at_ns)
 {
     if (sim->gone) {
         return;
     }
     misread(sim, &byte);
-    sim->out.free_ns = at_ns;
-    if (grobo_i_sim_crosses(sim, &byte) && !put(&sim->out, byte, at_ns)) {
+    if (grobo_i_sim_crosses(sim, &byte) && !put(&sim->out, byte, handed_over_ns(sim, at_ns))) {
         sim->stats.overflows++;
     }
+    sim->out.free_ns = at_ns; /* the adapter waits, the line does not */
 }
 
 static void arrive(grobo_sim *sim, int64_t t_ns)
@@ -189,7 +198,7 @@ void grobo_i_sim_cut(grobo_sim *sim)
 {
     sim->gone = true;
     sim->in.used = sim->out.used = 0;
-    sim->in.free_ns = sim->out.free_ns = sim->now_ns;
+    sim->in.free_ns = sim->out.free_ns = sim->hand_over_ns = sim->now_ns;
     sim->fifo_used = 0;
     grobo_board_parser_reset(&sim->board);
 }
@@ -282,7 +291,7 @@ int grobo_sim_init(grobo_sim *sim, const grobo_sim_config *config, int64_t now_u
     sim->config.hook = NULL;
     sim->now_us = now_us;
     sim->now_ns = now_us * 1000;
-    sim->in.free_ns = sim->out.free_ns = sim->bus_heard_ns = sim->now_ns;
+    sim->in.free_ns = sim->out.free_ns = sim->bus_heard_ns = sim->hand_over_ns = sim->now_ns;
     sim->supply_mv = with.supply_mv;
     sim->n_servos = with.model->n_joints;
     sim->bus_bps = GROBO_I_SIM_BUS_BPS;

@@ -1,7 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# The simulator is driven by a program that knows the reference document's frames and nothing of
-# ours.
+# The simulator is driven by programs that know frames and packets and nothing of ours.
 . tests/support/cli.sh
 
 if ! command -v python3 >/dev/null; then
@@ -16,4 +15,25 @@ for did in check torque posture joint; do
 done
 check "and it is as our own command sees it" both exits 0 on_robot status m3 --- \
     says ' 90\.0 .* on '
+stop_sim
+
+# has HABIT: a client of the bus with that habit gets what it needs.
+has() {
+    exits 0 timeout 60 python3 tests/support/habits.py "$robot" "$1"
+}
+start_sim --wiring bus
+check "a client that writes and reads byte by byte" has byte_by_byte
+stop_sim
+start_sim --wiring bus
+check "one that changes rates" has other_rate
+check "one that never reads" has never_reads
+check "and the servos are there for the next one" both \
+    exits 0 on_robot --wiring bus status m3 --- says R_SHOULDER_P
+stop_sim
+start_sim --wiring bus --latency 16
+check "one that takes the first read for the reply" has one_read
+stop_sim
+start_sim --wiring bus --echo
+check "one that reads its own packets back" has one_wire
+stop_sim
 done_testing

@@ -325,6 +325,23 @@ static void an_echo_is_of_what_was_on_the_line(void **state)
 
 /* ---- pacing and the cable ------------------------------------------------------------------ */
 
+static void an_adapter_hands_over_what_came_together(void **state)
+{
+    (void)state;
+    const grobo_sim_config config = {.latency_us = 16000};
+    simkit_start(&kit, &config);
+    int64_t t0 = kit.now_us;
+    simkit_ask(&kit, "54 09 FA AF 01 0F 24 12 00 38 1A", 100000);
+    assert_int_equal(kit.n_got, 26);
+    assert_int_equal(kit.got_us[0] - t0, 100 + bytes_us(46, 115200) + 16000);
+    assert_int_equal(kit.got_us[25], kit.got_us[0]);
+    t0 = kit.now_us;
+    simkit_ask(&kit, "41 00 41 00", 100000);
+    assert_int_equal(kit.n_got, 2);
+    assert_int_equal(kit.got_us[0] - t0, bytes_us(3, 115200) + 16000);
+    assert_int_equal(kit.got_us[1], kit.got_us[0]);
+}
+
 static void unpaced_takes_only_the_return_delay(void **state)
 {
     (void)state;
@@ -410,6 +427,7 @@ int main(void)
         cmocka_unit_test(a_crowd_of_one_id_is_only_heard_in_part),
         cmocka_unit_test(an_adapter_may_return_what_it_sends),
         cmocka_unit_test(an_echo_is_of_what_was_on_the_line),
+        cmocka_unit_test(an_adapter_hands_over_what_came_together),
         cmocka_unit_test(unpaced_takes_only_the_return_delay),
         cmocka_unit_test(a_host_that_never_reads_loses_bytes),
         cmocka_unit_test(time_going_back_counts_as_standing_still),

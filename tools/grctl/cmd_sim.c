@@ -12,7 +12,7 @@
 #include "sim_console.h"
 #include "trace.h"
 
-enum { OPT_LINK, OPT_TCP, OPT_NO_PACING, OPT_ROBOTS, OPT_SEED, OPT_START, OPT_FAULT };
+enum { OPT_LINK, OPT_TCP, OPT_NO_PACING, OPT_LATENCY, OPT_ROBOTS, OPT_SEED, OPT_START, OPT_FAULT };
 enum { ROBOTS_MAX = 16 };
 
 static const cli_option options[] = {
@@ -30,6 +30,12 @@ static const cli_option options[] = {
     [OPT_NO_PACING] = {.name = "no-pacing",
                        .kind = CLI_FLAG,
                        .help = "bytes take no time on the wire"},
+    [OPT_LATENCY] = {.name = "latency",
+                     .kind = CLI_NUMBER,
+                     .value = "MS",
+                     .help = "bytes wait so long for others, as in an adapter (0; FTDI: 16)",
+                     .min = 0,
+                     .max = 255},
     [OPT_ROBOTS] = {.name = "robots",
                     .letter = 'n',
                     .kind = CLI_NUMBER,
@@ -103,6 +109,7 @@ static grobo_sim_config sim_config(const app *a, int robot)
     grobo_sim_config config = {
         .wiring = (grobo_wiring)app_global(a, GLOBAL_WIRING)->choice,
         .baud_bps = baud->given ? (uint32_t)baud->number : 0,
+        .latency_us = (uint32_t)app_number(a, OPT_LATENCY, 0) * 1000,
         .echo = app_global(a, GLOBAL_ECHO)->given > 0,
         .unpaced = app_option(a, OPT_NO_PACING)->given > 0,
         .seed = (uint32_t)app_number(a, OPT_SEED, 0) + (uint32_t)robot,
