@@ -248,11 +248,25 @@ static void speak_registers(grobo_sim *sim, int index, const grobo_reply *want)
     }
 }
 
+/* Later models take a question to all as one to themselves; docs/simulator.md says who knows. */
+static int wanted(const grobo_sim_servo *servo, const grobo_sim_event *raw, grobo_reply *want)
+{
+    uint8_t own[GROBO_RS30X_PACKET_MAX_BYTES];
+    uint8_t id = servo->reg[GROBO_RS30X_ID];
+    if (early_model(servo) || raw->bytes[2] != GROBO_RS30X_ID_ALL) {
+        return grobo_rs30x_reply_to(raw->bytes, raw->n_bytes, want);
+    }
+    memcpy(own, raw->bytes, raw->n_bytes);
+    own[2] = id;
+    own[raw->n_bytes - 1] ^= GROBO_RS30X_ID_ALL ^ id;
+    return grobo_rs30x_reply_to(own, raw->n_bytes, want);
+}
+
 static void answer(grobo_sim *sim, int index, const grobo_sim_event *raw, bool done)
 {
     grobo_sim_servo *servo = &sim->servo[index];
     grobo_reply want;
-    int result = grobo_rs30x_reply_to(raw->bytes, raw->n_bytes, &want);
+    int result = wanted(servo, raw, &want);
     bool lacks = (raw->bytes[3] & 0xF) == GROBO_RS30X_WANT_60_127 && early_model(servo);
     if (result < 0 || lacks) {
         servo->status |= GROBO_RS30X_STATUS_REFUSED;

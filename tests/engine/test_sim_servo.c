@@ -311,6 +311,19 @@ static void all_are_meant_by_255_and_none_replies(void **state)
     simkit_expect(&kit, "");
 }
 
+static void a_later_model_answers_what_all_are_asked(void **state)
+{
+    (void)state;
+    const grobo_sim_config config = {.model = &late_robot, .wiring = GROBO_WIRING_BUS};
+    simkit_start(&kit, &config);
+    simkit_packet(&kit, "FA AF FF 0F 04 04 00", 12);
+    simkit_expect(&kit, "FD DF 07 00 04 04 01 07 00 07 00 06");
+    simkit_packet(&kit, "FA AF FF 01 24 01 01 01", 1);
+    simkit_expect(&kit, "07");
+    simkit_packet(&kit, "FA AF FF 00 24 01 01 00", 0);
+    simkit_expect(&kit, "");
+}
+
 static void long_packets_reach_those_named(void **state)
 {
     (void)state;
@@ -398,6 +411,7 @@ int main(void)
         cmocka_unit_test(acks_come_when_asked_for),
         cmocka_unit_test(a_write_may_carry_a_request),
         cmocka_unit_test(all_are_meant_by_255_and_none_replies),
+        cmocka_unit_test(a_later_model_answers_what_all_are_asked),
         cmocka_unit_test(long_packets_reach_those_named),
         cmocka_unit_test(an_id_changes_at_once),
         cmocka_unit_test(two_with_one_id_collide),
