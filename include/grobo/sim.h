@@ -182,7 +182,7 @@ typedef struct grobo_sim_servo {
     double temperature_c;       /* at settled_us */
     int64_t settled_us;         /* what it did on its own is known up to here */
     int64_t start_us, move_us;  /* the present move: when it began, how long it takes */
-    int64_t begun_us;           /* when the goal was written that the present move follows */
+    int64_t begun_us;           /* when the last goal was written; later by what it rested since */
     int64_t due_us;             /* when the goal time of the last goal is over */
     int64_t deaf_until_us;      /* end of a flash write or a reboot */
     int64_t saved_us;           /* end of a flash write under way, or GROBO_NEVER_US */

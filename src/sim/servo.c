@@ -81,9 +81,9 @@ static void goal_written(grobo_sim *sim, int index)
     present(servo, GROBO_RS30X_GOAL, goal_ddeg);
     int32_t time_cs = grobo_i_sim_value(servo, GROBO_RS30X_GOAL_TIME);
     if (servo->reg[GROBO_RS30X_TORQUE] == GROBO_TORQUE_ON) {
-        servo->begun_us = sim->now_us;
         servo->due_us = sim->now_us + (int64_t)time_cs * 10000;
         grobo_i_sim_drive(sim, index);
+        servo->begun_us = sim->now_us;
     }
     grobo_i_sim_tell(sim, &(grobo_sim_event){.kind = GROBO_SIM_GOAL,
                                              .time_us = sim->now_us,

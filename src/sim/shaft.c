@@ -83,9 +83,15 @@ int32_t grobo_i_sim_speed_dps(const grobo_sim_servo *servo, int64_t t_us)
     return round_div((way < 0 ? -way : way) * 1000, servo->move_us);
 }
 
+/* When the last move by the servo's own power ends or has ended. */
+static int64_t own_end_us(const grobo_sim_servo *servo)
+{
+    return servo->start_us + (servo->by_hand ? 0 : servo->move_us);
+}
+
 int64_t grobo_i_sim_move_age_us(const grobo_sim_servo *servo, int64_t t_us)
 {
-    int64_t end_us = servo->start_us + servo->move_us;
+    int64_t end_us = own_end_us(servo);
     int64_t age_us = (t_us < end_us ? t_us : end_us) - servo->begun_us;
     return age_us > 0 ? age_us : 0;
 }
@@ -98,7 +104,9 @@ static int32_t clamp(int32_t x, int32_t min, int32_t max)
 void grobo_i_sim_halt(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
+    int64_t rested_us = sim->now_us - own_end_us(servo);
     servo->to_mdeg = servo->from_mdeg = grobo_i_sim_angle_mdeg(servo, sim->now_us);
+    servo->begun_us += rested_us > 0 ? rested_us : 0; /* to rest is not to move */
     servo->start_us = sim->now_us;
     servo->move_us = 0;
     servo->stalled = servo->by_hand = false;
@@ -130,8 +138,9 @@ void grobo_i_sim_torque(grobo_sim *sim, int index, grobo_torque before)
         return;
     }
     if (torque == GROBO_TORQUE_ON && sim->config.jump_on_torque) {
-        servo->begun_us = servo->due_us = sim->now_us;
+        servo->due_us = sim->now_us;
         grobo_i_sim_drive(sim, index);
+        servo->begun_us = sim->now_us;
     } else {
         grobo_i_sim_halt(sim, index);
         if (torque == GROBO_TORQUE_ON) {

@@ -125,6 +125,27 @@ static void time_may_jump_by_hours(void **state)
     assert_true(grobo_sim_deadline(&kit.sim) == GROBO_NEVER_US);
 }
 
+/* Neither torque nor a hand is a move: the time of the last one stays. */
+static void the_present_time_is_that_of_moves_alone(void **state)
+{
+    (void)state;
+    simkit_start(&kit, NULL);
+    simkit_run(&kit, 5000000);
+    simkit_packet(&kit, "FA AF 03 00 24 01 01 01", 0);
+    assert_int_equal(simkit_register(&kit, SHOULDER, GROBO_RS30X_TIME), 0);
+    simkit_packet(&kit, "FA AF 03 00 1E 04 01 84 03 64 00", 0);
+    simkit_run(&kit, 3000000);
+    assert_int_equal(simkit_register(&kit, SHOULDER, GROBO_RS30X_TIME), 100);
+    simkit_packet(&kit, "FA AF 03 00 24 01 01 00", 0);
+    simkit_run(&kit, 1000000);
+    assert_int_equal(simkit_register(&kit, SHOULDER, GROBO_RS30X_TIME), 100);
+    assert_int_equal(grobo_sim_set_angle(&kit.sim, SHOULDER, 50000, 500000), 0);
+    simkit_run(&kit, 1000000);
+    assert_int_equal(simkit_register(&kit, SHOULDER, GROBO_RS30X_TIME), 100);
+    simkit_packet(&kit, "FA AF 03 00 24 01 01 01", 0);
+    assert_int_equal(simkit_register(&kit, SHOULDER, GROBO_RS30X_TIME), 100);
+}
+
 static void mechanical_stops_stall(void **state)
 {
     (void)state;
@@ -317,6 +338,7 @@ int main(void)
         cmocka_unit_test(a_new_goal_starts_where_the_shaft_is),
         cmocka_unit_test(a_goal_without_a_time_takes_the_last_one),
         cmocka_unit_test(time_may_jump_by_hours),
+        cmocka_unit_test(the_present_time_is_that_of_moves_alone),
         cmocka_unit_test(mechanical_stops_stall),
         cmocka_unit_test(torque_on_holds_the_present_position),
         cmocka_unit_test(torque_on_may_jump_by_configuration),
