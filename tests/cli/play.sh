@@ -71,6 +71,18 @@ slower() {
         exits 0 "$GRCTL" play --dry-run --speed 50 "$work/nod.pseq"
 }
 check "too fast a move is played at a lower speed" slower
+printf '%s\n' 'type: PoseSeq' 'name: wag' 'refs:' \
+    '  - {time: 0, refer: {type: Pose, joints: [ 13, 24 ], q: [ 0, 0 ]}}' >"$work/wag.pseq"
+sed 's/\[ 0, 0, /&0, /; s/numParts: 20/numParts: 21/' motions/greet.yaml >"$work/wide.yaml"
+printf '500%22s\n' '' | sed 's/ / 0/g' >"$work/wide.m"
+strangers() {
+    fails 3 'wag.pseq: has 25 joints, GR001 has 20$' "$GRCTL" play --dry-run "$work/wag.pseq" &&
+        fails 3 'wide.yaml: has 21 joints, GR001 has 20$' \
+            "$GRCTL" play --dry-run --clamp "$work/wide.yaml" &&
+        exits 3 "$GRCTL" -d sim play "$work/wide.m" &&
+        grep -q 'wide.m: has 22 joints, GR001 has 20$' "$work/err"
+}
+check "motions with joints that the robot does not have" strangers
 upright='rotation: [ 1, 0, 0, 0, 1, 0, 0, 0, 1 ]'
 links="ikLinks: [ { name: WAIST, isBaseLink: true, translation: [ 0, 0, 0.15 ], $upright }, \
 { name: R_ANKLE_R, translation: [ 0, -0.0221, 0.0225 ], $upright } ]"

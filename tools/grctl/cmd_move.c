@@ -117,10 +117,8 @@ static int pose_of_file(app *a, const char *spec, grobo_posture *target)
     status = file_load(a, path, &read, &motion);
     if (status)
         return status;
-    if (grobo_motion_joints(motion) > target->n_joints)
-        status = app_fail(a, EXIT_FILE, "ARG", "%s: has %d joints, GR001 has %d", path,
-                          grobo_motion_joints(motion), target->n_joints);
-    else if (grobo_motion_get(motion, (size_t)number - 1, target) < 0)
+    status = file_fits(a, path, motion);
+    if (!status && grobo_motion_get(motion, (size_t)number - 1, target) < 0)
         status = app_fail(a, EXIT_USAGE, "USAGE", "pose: %s has %zu postures, no number %.0f", path,
                           grobo_motion_size(motion), number);
     target->n_joints = grobo_gr001_model.n_joints;

@@ -25,6 +25,15 @@ const grobo_model *file_model(const grobo_motion *motion)
     return ours ? &grobo_gr001_model : NULL;
 }
 
+int file_fits(app *a, const char *path, const grobo_motion *motion)
+{
+    int n_joints = grobo_motion_joints(motion), has = grobo_gr001_model.n_joints;
+    if (n_joints <= has)
+        return 0;
+    return app_fail(a, EXIT_FILE, grobo_error_name(GROBO_ERR_ARG),
+                    "%s: has %d joints, GR001 has %d", file_shown_name(path), n_joints, has);
+}
+
 void file_format(const grobo_diagnostic *d, bool with_code, char *text, size_t capacity)
 {
     char place[32] = "";

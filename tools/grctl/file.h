@@ -20,6 +20,9 @@ int file_load(app *a, const char *path, const grobo_read_options *options, grobo
  */
 const grobo_model *file_model(const grobo_motion *motion);
 
+/* Refuses a motion of more joints than GR001 has. Returns 0, or the exit status with it said. */
+int file_fits(app *a, const char *path, const grobo_motion *motion);
+
 /* Says a warning on standard error, a note only with -v. */
 void file_say_one(const app *a, const grobo_diagnostic *d);
 

@@ -103,6 +103,9 @@ int playlist_load(playlist *list, app *a)
         if (status)
             return status;
         list->n = i + 1;
+        status = file_fits(a, list->path[i], list->motion[i]);
+        if (status)
+            return status;
         widen(list->motion[i]);
         if (grobo_motion_size(list->motion[i]) == 0)
             return app_fail(a, EXIT_FILE, "EMPTY", "%s: has no postures", list->path[i]);
