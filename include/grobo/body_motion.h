@@ -20,7 +20,7 @@ GROBO_API bool grobo_body_wanted(const grobo_body_model *model, const grobo_moti
 
 /**
  * Makes a body that solves a motion's key poses. Link targets are found by name, or by index where
- * they have none; others than waist and feet, and joints beyond the model's, are ignored.
+ * no link has it; others than waist and feet, and joints beyond the model's, are ignored.
  * @param[out] body owned by the caller: grobo_body_free(). Untouched on error.
  * @param model borrowed for the body's life
  * @param motion used during the call only

@@ -30,17 +30,15 @@ static bool same_name(const char *a, const char *b)
     return *a == *b;
 }
 
+/* By its name; one that has none, or one that the body has not, by its index. */
 static int link_of(const grobo_body_model *model, const grobo_ik_link *from)
 {
-    if (from->name[0] == '\0') {
-        return from->index;
-    }
-    for (int i = 0; i < model->n_links; i++) {
+    for (int i = 0; i < model->n_links && from->name[0] != '\0'; i++) {
         if (same_name(model->links[i].name, from->name)) {
             return i;
         }
     }
-    return -1;
+    return from->index;
 }
 
 bool grobo_body_wanted(const grobo_body_model *model, const grobo_motion *motion)

@@ -16,7 +16,8 @@
 #include "body_script.h"
 #include "counted_mem.h"
 
-/* Feet on the ground, the waist goes down and up; the head turns. */
+/* Feet on the ground, the waist goes down and up; the head turns. The left foot has a name that
+ * the body has not: its index tells which link it is. */
 static const char bow[] =
     "type: PoseSeq\n"
     "name: \"bow\"\n"
@@ -33,7 +34,7 @@ static const char bow[] =
     "            rotation: [ 1, 0, 0, 0, 1, 0, 0, 0, 1 ] }\n"
     "        - { name: R_ANKLE_R, index: 6, translation: [ 0.0252, -0.0196, 0.02115 ],\n"
     "            rotation: [ 1, 0, 0, 0, 1, 0, 0, 0, 1 ], isTouching: true }\n"
-    "        - { name: L_ANKLE_R, index: 12, translation: [ 0.0252, 0.0196, 0.02115 ],\n"
+    "        - { name: FOOT_L, index: 12, translation: [ 0.0252, 0.0196, 0.02115 ],\n"
     "            rotation: [ 1, 0, 0, 0, 1, 0, 0, 0, 1 ], isTouching: true }\n"
     "        - { name: TAIL, index: 99, translation: [ 0, 0, 9 ],\n"
     "            rotation: [ 1, 0, 0, 0, 1, 0, 0, 0, 1 ] }\n"
