@@ -92,4 +92,8 @@ start_sim --wiring bus
 check "another wiring" finds 'straight on the line' "--wiring bus"
 check "as it should be asked" exits 0 doctor --wiring bus
 stop_sim
+start_sim --wiring bus --echo
+check "an echo nobody reckons with" finds 'returns what is sent' '--wiring bus --echo' --wiring bus
+check "one that is expected" exits 0 doctor --wiring bus --echo
+stop_sim
 done_testing

@@ -113,6 +113,20 @@ static bool check_reply(patient *p, const char *device)
     return true;
 }
 
+/* To who does not reckon with an echo it is rubbish: a request's bytes in front of its reply. */
+static void check_echo(patient *p, const char *device)
+{
+    const app *a = p->k.a;
+    const grobo_bus_stats *n = grobo_robot_get_bus_stats(p->c.robot);
+    char fix[FIX_BYTES + GROBO_DEVICE_MAX_BYTES];
+    if (app_global(a, GLOBAL_WIRING)->choice == GROBO_WIRING_BOARD ||
+        app_global(a, GLOBAL_ECHO)->given || n->replies == 0 ||
+        n->resync_bytes < n->replies * GROBO_RS30X_OVERHEAD_BYTES / 2)
+        return;
+    snprintf(fix, sizeof fix, "grctl -d %s --wiring bus --echo ...", device);
+    checkup_bad(&p->k, "echo", fix, "the adapter returns what is sent to it");
+}
+
 /* ---- the servos ------------------------------------------------------------------------------ */
 
 static void say_silent(patient *p, const char *name, int joint, int error)
@@ -275,6 +289,8 @@ static int run(app *a)
         check_latch(&p.k, device);
         if (check_reply(&p, device)) {
             check_servos(&p);
+            if (!p.c.signal && !p.c.link_error)
+                check_echo(&p, device);
             if (p.c.link_error)
                 checkup_bad(&p.k, "link", "push the cable in at both ends",
                             "%s was lost on the way", device);
