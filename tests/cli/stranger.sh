@@ -9,7 +9,7 @@ if ! command -v python3 >/dev/null; then
 fi
 start_sim
 check "a client of the bytes alone drives the simulator" \
-    exits 0 timeout 60 python3 tests/support/stranger.py "$robot"
+    exits 0 timeout 60 python3 tests/support/stranger.py "$sim_pty"
 for did in check torque posture joint; do
     check "it was as described: $did" says "^$did\$"
 done
@@ -19,7 +19,7 @@ stop_sim
 
 # has HABIT: a client of the bus with that habit gets what it needs.
 has() {
-    exits 0 timeout 60 python3 tests/support/habits.py "$robot" "$1"
+    exits 0 timeout 60 python3 tests/support/habits.py "$sim_pty" "$1"
 }
 start_sim --wiring bus
 check "a client that writes and reads byte by byte" has byte_by_byte
