@@ -17,11 +17,12 @@
 /** Longest packet inside a relay frame of the board: its length has 7 bits (protocol 2). */
 #define GROBO_RELAY_MAX_BYTES 127
 
-/** Longest frame we send: relay header, payload. */
-#define GROBO_FRAME_MAX_BYTES (2 + GROBO_RELAY_MAX_BYTES)
-
 /** Longest return packet: No.0..139 of the memory map with header and sum (protocol 3, 4). */
 #define GROBO_REPLY_MAX_BYTES 148
+
+/** Longest frame we send over either wiring: on a servo bus a packet may be as long as a reply, and
+ *  a relay frame is shorter (2 + GROBO_RELAY_MAX_BYTES). */
+#define GROBO_FRAME_MAX_BYTES GROBO_REPLY_MAX_BYTES
 
 /** Registers of an RS30x servo: No.0..139 (protocol 3: FLAGS 0F reads 0..139). */
 #define GROBO_REGISTERS 140

@@ -22,7 +22,7 @@ GROBO_BEGIN_DECLS
 #define GROBO_RS30X_OVERHEAD_BYTES 8
 
 /** Longest packet built or parsed, in both directions (28 servos with goal and time fit in it). */
-#define GROBO_RS30X_PACKET_MAX_BYTES GROBO_REPLY_MAX_BYTES
+#define GROBO_RS30X_PACKET_MAX_BYTES GROBO_FRAME_MAX_BYTES
 
 /** Address of every servo; nobody replies to it. */
 #define GROBO_RS30X_ID_ALL 255

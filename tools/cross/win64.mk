@@ -39,8 +39,8 @@ TEST_END = ; status=$$?; $(EMULATOR) --end; exit $$status
 
 # Tests are written for a pseudo-terminal, and for processes and files as POSIX has them; these are
 # not: of the ring link, and of the command's (what they cannot check is in tests/wine/left_out).
-PORTABLE := $(patsubst %,tests/link/test_%.c,control_life loop thread thread_motion thread_race \
-    views) $(patsubst %,tests/cli/%.sh,check completion config convert decode help json plot \
+PORTABLE := $(patsubst %,tests/link/test_%.c,control_life loop session_joints thread thread_motion \
+    thread_race views) $(patsubst %,tests/cli/%.sh,check completion config convert decode help json plot \
     servos show)
 LEFT_OUT_WHY := Windows has no pseudo-terminals, signals, file modes or links as it wants them
 LEFT_OUT := $(filter-out $(PORTABLE),$(wildcard tests/link/test_*.c tests/cli/*.sh)) \

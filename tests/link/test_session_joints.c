@@ -1,0 +1,103 @@
+/* SPDX-License-Identifier: MIT */
+/* Robots of one joint and of as many as there may be: those whose frames are the longest. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include <cmocka.h>
+#include <event2/event.h>
+
+#include <grobo/session.h>
+
+#include "loop.h"
+
+static struct event_base *base;
+static int ends, result;
+
+static void on_event(grobo_session *session, grobo_session_event event, int error, void *ctx)
+{
+    (void)session;
+    (void)ctx;
+    assert_int_equal(event, GROBO_SESSION_EVENT_UP);
+    assert_int_equal(error, GROBO_OK);
+    ends++;
+    event_base_loopbreak(base);
+}
+
+static void on_robot(void *ctx, const grobo_event *event)
+{
+    (void)ctx;
+    if (event->kind == GROBO_EVENT_JOB) {
+        result = event->u.job.result;
+        ends++;
+        event_base_loopbreak(base);
+    }
+}
+
+static void move_all(const grobo_model *model, grobo_wiring wiring)
+{
+    grobo_driver driver;
+    grobo_posture target;
+    grobo_session *session;
+    const grobo_sim_config sim = {.unpaced = true};
+    const grobo_session_config config = {.base = base,
+                                         .device = GROBO_DEVICE_SIM,
+                                         .driver = &driver,
+                                         .on_event = on_event,
+                                         .on_robot = on_robot,
+                                         .sim = &sim};
+
+    ends = 0;
+    assert_int_equal(grobo_rs30x_driver_init(&driver, model, wiring), GROBO_OK);
+    assert_int_equal(grobo_session_new(&config, &session), GROBO_OK);
+    assert_int_equal(grobo_session_open(session), GROBO_OK);
+    loop_run_until(base, &ends, 1);
+    assert_int_equal(grobo_posture_init(&target, model->n_joints), GROBO_OK);
+    for (int j = 0; j < model->n_joints; j++) {
+        assert_int_equal(grobo_posture_set_rad(&target, j, 0.05), GROBO_OK);
+    }
+    assert_true(grobo_session_move(session, &target) > 0);
+    loop_run_until(base, &ends, 2);
+    assert_int_equal(result, GROBO_OK);
+    grobo_session_free(session);
+}
+
+static void every_number_of_joints_moves(void **state)
+{
+    /* 24 and 25: the most that a relay frame's packet holds, and one more. */
+    static const uint8_t numbers[] = {1, 24, 25, GROBO_JOINTS_MAX};
+    static grobo_joint joints[GROBO_JOINTS_MAX];
+    static char names[GROBO_JOINTS_MAX][8];
+
+    (void)state;
+    base = grobo_loop_new();
+    assert_non_null(base);
+    for (int j = 0; j < GROBO_JOINTS_MAX; j++) {
+        assert_true(snprintf(names[j], sizeof names[j], "J_%d", j) > 0);
+        joints[j] = (grobo_joint){.name = names[j],
+                                  .min_rad = -1,
+                                  .max_rad = 1,
+                                  .max_speed_rad_s = 10,
+                                  .motor = (uint8_t)(j + 1),
+                                  .mirror = (uint8_t)j,
+                                  .mirror_sign = 1};
+    }
+    for (size_t i = 0; i < sizeof numbers; i++) {
+        const grobo_model model = {.name = "many", .joints = joints, .n_joints = numbers[i]};
+
+        move_all(&model, GROBO_WIRING_BOARD);
+        move_all(&model, GROBO_WIRING_BUS);
+    }
+    event_base_free(base);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_number_of_joints_moves),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
