@@ -130,7 +130,8 @@ void grobo_timer_free(grobo_timer *timer)
 
 int grobo_timer_set(grobo_timer *timer, int64_t deadline_us)
 {
-    timer->deadline_us = deadline_us;
+    /* The clock is never negative: what was before it has passed, however long ago. */
+    timer->deadline_us = deadline_us < 0 ? 0 : deadline_us;
     if (deadline_us == GROBO_NEVER_US) {
         (void)event_del(timer->event);
         return GROBO_OK;

@@ -85,16 +85,19 @@ static void free_in_callback(grobo_timer *timer, int64_t late_us, void *ctx)
 
 static void a_past_deadline_is_called_from_the_loop_and_may_free(void **state)
 {
+    static const int64_t passed_us[] = {0, -1, INT64_MIN};
     struct event_base *base = grobo_loop_new();
     grobo_timer *timer;
     int calls = 0;
 
     (void)state;
-    assert_int_equal(grobo_timer_new(base, free_in_callback, &calls, NULL, &timer), GROBO_OK);
-    assert_int_equal(grobo_timer_set(timer, 0), GROBO_OK);
-    assert_int_equal(calls, 0);
-    event_base_dispatch(base);
-    assert_int_equal(calls, 1);
+    for (int i = 0; i < 3; i++) {
+        assert_int_equal(grobo_timer_new(base, free_in_callback, &calls, NULL, &timer), GROBO_OK);
+        assert_int_equal(grobo_timer_set(timer, passed_us[i]), GROBO_OK);
+        assert_int_equal(calls, i);
+        event_base_dispatch(base);
+        assert_int_equal(calls, i + 1);
+    }
     event_base_free(base);
 }
 
