@@ -77,7 +77,8 @@ typedef struct grobo_robot_config {
     int64_t stall_us;                /**< host may be late by this, then a motion ends; default
                                           250 ms */
     int64_t default_time_us;         /**< time of postures whose time is 0; default 100 ms */
-    int64_t exit_bound_us;           /**< longest an exit may take; default 10 s */
+    int64_t exit_bound_us;           /**< longest an exit may take; GROBO_NEVER_US: as long as it
+                                          takes; default 10 s */
     grobo_exit_policy on_exit;       /**< default the driver's */
     grobo_estop_torque estop_torque; /**< default brake */
     grobo_bus_config bus;            /**< the line's physics; `wiring` is taken from the driver */
@@ -359,7 +360,8 @@ GROBO_API int grobo_robot_init(grobo_robot *robot, const grobo_driver *driver, v
 GROBO_API void grobo_robot_on_event(grobo_robot *robot, grobo_event_fn on_event, void *ctx);
 
 /**
- * Changes the configuration; what is under way goes on under the new one.
+ * Changes the configuration (copied; NULL: all defaults); what is under way goes on under the new
+ * one, and the line's physics stay as they are.
  * @return 0 or GROBO_ERR_ARG, then nothing changed.
  */
 GROBO_API int grobo_robot_configure(grobo_robot *robot, const grobo_robot_config *config);

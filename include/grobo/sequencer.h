@@ -48,6 +48,9 @@ GROBO_BEGIN_DECLS
 /** Longest time of a frame: 16383 units (protocol 4). A longer move is made in this time. */
 #define GROBO_PLAY_TIME_MAX_US (16383LL * GROBO_PLAY_TIME_UNIT_US)
 
+/** Longest clip that is played, 115 days: times at any speed and rate fit into 64 bits. */
+#define GROBO_PLAY_LENGTH_MAX_US INT64_C(10000000000000)
+
 /** What a sequencer is doing. */
 typedef enum grobo_sequencer_state {
     GROBO_SEQUENCER_IDLE = 0,    /**< nothing to play, or stopped */
@@ -182,7 +185,8 @@ GROBO_API void grobo_sequencer_init(grobo_sequencer *seq, const grobo_model *mod
  * @return 0, GROBO_ERR_STATE, GROBO_ERR_EMPTY (no keys, or a relative clip without start),
  *         GROBO_ERR_ARG (an option out of range, numbers of joints that differ, times that do not
  *         rise), GROBO_ERR_UNSUPPORTED (RATE without sample, mirror without model),
- *         GROBO_ERR_NAN, or what the clip said. On error nothing has changed.
+ *         GROBO_ERR_NAN, GROBO_ERR_CAP (longer than GROBO_PLAY_LENGTH_MAX_US), or what the clip
+ *         said. On error nothing has changed.
  */
 GROBO_API int grobo_sequencer_play(grobo_sequencer *seq, const grobo_clip *clip,
                                    const grobo_play_options *options, const grobo_posture *start,

@@ -337,7 +337,7 @@ GROBO_API int grobo_sim_set_register(grobo_sim *sim, int servo, int address, int
 /**
  * Somebody turns a shaft: from where it is to angle_mdeg (kept within the mechanical stops) in
  * time_us, at once for 0. With torque on the servo drives back to its goal at the end of it.
- * @return 0 or GROBO_ERR_ARG (no such servo, time_us < 0)
+ * @return 0 or GROBO_ERR_ARG (no such servo, time_us < 0 or above INT32_MAX: half an hour)
  */
 GROBO_API int grobo_sim_set_angle(grobo_sim *sim, int servo, int32_t angle_mdeg, int64_t time_us);
 

@@ -4,7 +4,8 @@
  * @brief Small types that every layer shares.
  *
  * Units are in the names: _us _ms _s _deg _rad _ddeg (0.1 degree, the wire's unit) _ma _mv _bps
- * _bytes _pct. A time is int64_t microseconds of one monotonic clock of the caller's choice.
+ * _bytes _pct. A time is int64_t microseconds of one monotonic clock of the caller's choice, never
+ * negative and below INT64_MAX / 1000 (292 years).
  */
 #ifndef GROBO_TYPES_H
 #define GROBO_TYPES_H

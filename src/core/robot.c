@@ -60,10 +60,11 @@ static void config_fill(grobo_robot_config *c, const grobo_driver *driver)
     c->bus.wiring = driver->wiring;
 }
 
+static const grobo_robot_config defaults;
+
 int grobo_robot_init(grobo_robot *robot, const grobo_driver *driver, void *driver_ctx,
                      const grobo_robot_config *config, int64_t now_us)
 {
-    static const grobo_robot_config defaults;
     const grobo_robot_config *c = config == NULL ? &defaults : config;
     if (grobo_driver_check(driver) < 0 || !config_sound(c)) {
         return GROBO_ERR_ARG;
@@ -97,11 +98,12 @@ void grobo_robot_on_event(grobo_robot *robot, grobo_event_fn on_event, void *ctx
 
 int grobo_robot_configure(grobo_robot *robot, const grobo_robot_config *config)
 {
-    if (!config_sound(config)) {
+    const grobo_robot_config *c = config == NULL ? &defaults : config;
+    if (!config_sound(c)) {
         return GROBO_ERR_ARG;
     }
     grobo_bus_config bus = robot->config.bus;
-    robot->config = *config;
+    robot->config = *c;
     config_fill(&robot->config, robot->driver);
     robot->config.bus = bus; /* the line stays what it is */
     return GROBO_OK;

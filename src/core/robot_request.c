@@ -413,7 +413,9 @@ int grobo_robot_exit(grobo_robot *robot, grobo_exit_policy policy, int64_t now_u
     int number = grobo_i_job_start(robot, GROBO_JOB_EXIT, exit_script(robot, policy));
     robot->job.joints = grobo_i_all_joints(robot);
     robot->job.torque = GROBO_TORQUE_OFF;
-    robot->job.bound_us = robot->now_us + robot->config.exit_bound_us;
+    robot->job.bound_us = robot->config.exit_bound_us < GROBO_NEVER_US - robot->now_us
+                              ? robot->now_us + robot->config.exit_bound_us
+                              : GROBO_NEVER_US;
     robot->free_joints = 0;
     return begin(robot, number);
 }

@@ -56,7 +56,9 @@ static int read_key(const grobo_play_item *item, size_t i, grobo_posture *postur
     int64_t at_us;
     int result = item->clip.key(item->clip.ctx, i, posture, &at_us);
     if (result >= 0) {
-        result = at_us < 0 ? GROBO_ERR_ARG : finish_read(item, posture);
+        result = at_us < 0                          ? GROBO_ERR_ARG
+                 : at_us > GROBO_PLAY_LENGTH_MAX_US ? GROBO_ERR_CAP
+                                                    : finish_read(item, posture);
     }
     if (result == 0) {
         key->i = i;
@@ -86,7 +88,7 @@ static int scan_keys(grobo_play_item *item, grobo_joint_mask *set)
         *set |= posture.set;
     }
     item->span_us = key.at_us - item->first_key_us;
-    return 0;
+    return item->span_us > GROBO_PLAY_LENGTH_MAX_US ? GROBO_ERR_CAP : 0;
 }
 
 /* ---- items ---- */
@@ -141,6 +143,9 @@ static int check_clip(const grobo_play_item *item)
     if (clip->n_joints > GROBO_JOINTS_MAX || clip->length_us < 0 || clip->key == NULL ||
         (item->model != NULL && clip->n_joints != item->model->n_joints)) {
         return GROBO_ERR_ARG;
+    }
+    if (clip->length_us > GROBO_PLAY_LENGTH_MAX_US) {
+        return GROBO_ERR_CAP;
     }
     if ((item->options.mode == GROBO_PLAY_RATE && clip->sample == NULL) ||
         (item->options.mirror && item->model == NULL)) {

@@ -265,7 +265,9 @@ int64_t grobo_motion_length_us(const grobo_motion *motion, int64_t default_us)
     default_us = default_us < 0 ? GROBO_MOTION_DEFAULT_US : default_us;
     for (size_t n = 0; n < motion->size; n++) {
         int64_t step_us = grobo_motion_step_us(motion, n);
-        length_us += step_us > 0 ? step_us : default_us;
+
+        step_us = step_us > 0 ? step_us : default_us;
+        length_us = step_us > INT64_MAX - length_us ? INT64_MAX : length_us + step_us;
     }
     return length_us;
 }

@@ -103,7 +103,7 @@ static void go_on(grobo_sim *sim, int index)
 int grobo_sim_set_angle(grobo_sim *sim, int index, int32_t angle_mdeg, int64_t time_us)
 {
     grobo_sim_servo *servo = servo_at(sim, index);
-    if (servo == NULL || time_us < 0) {
+    if (servo == NULL || time_us < 0 || time_us > INT32_MAX) {
         return GROBO_ERR_ARG;
     }
     grobo_i_sim_halt(sim, index);

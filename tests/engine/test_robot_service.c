@@ -248,6 +248,7 @@ static void configurations_are_checked(void **state)
     assert_int_equal(grobo_robot_init(&rig.robot, &none, NULL, NULL, 0), GROBO_ERR_ARG);
     rig_start(&rig, NULL, NULL);
     assert_int_equal(grobo_robot_configure(&rig.robot, &bad[0]), GROBO_ERR_ARG);
+    assert_int_equal(grobo_robot_configure(&rig.robot, NULL), 0);
 }
 
 static void limits_may_be_switched_off(void **state)

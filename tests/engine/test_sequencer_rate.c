@@ -92,6 +92,30 @@ static void lateness_of_one_frame_is_not_that_of_the_next(void **state)
     assert_int_equal(stats()->late_frames, 0);
 }
 
+static void a_clip_of_years_is_refused(void **state)
+{
+    (void)state;
+    static const sample_key years[] = {{0, 7, {0, 0, 0}},
+                                       {GROBO_PLAY_LENGTH_MAX_US, 7, {0.1, 0.1, 0.1}},
+                                       {INT64_MAX / 4, 7, {0.2, 0.2, 0.2}}};
+    static const grobo_play_mode modes[] = {GROBO_PLAY_KEY, GROBO_PLAY_RATE};
+    grobo_play_options options = {.speed_pct = 1, .rate_hz = GROBO_PLAY_RATE_MAX_HZ};
+    grobo_play_progress progress;
+    for (int i = 0; i < 2; i++) {
+        options.mode = modes[i];
+        sample_pump_init(&pump, &sample_model);
+        sample_clip_init(&clip, years, 3);
+        assert_int_equal(grobo_sequencer_play(&pump.seq, &clip.clip, &options, NULL, 0),
+                         GROBO_ERR_CAP);
+        sample_clip_init(&clip, years, 2);
+        assert_int_equal(grobo_sequencer_play(&pump.seq, &clip.clip, &options, NULL, 0), 0);
+        grobo_sequencer_progress(&pump.seq, 0, &progress);
+        assert_true(progress.total_us == GROBO_PLAY_LENGTH_MAX_US);
+        assert_true(progress.steps == (i == 0 ? 2 : (uint64_t)progress.total_us / 10 + 1));
+        assert_int_equal(grobo_sequencer_seek(&pump.seq, progress.total_us, 0), 0);
+    }
+}
+
 static void a_stall_skips_to_the_present_without_a_burst(void **state)
 {
     (void)state;
@@ -310,6 +334,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(frames_never_drift),
         cmocka_unit_test(lateness_of_one_frame_is_not_that_of_the_next),
+        cmocka_unit_test(a_clip_of_years_is_refused),
         cmocka_unit_test(a_stall_skips_to_the_present_without_a_burst),
         cmocka_unit_test(a_stall_past_the_end_still_sends_the_last_posture),
         cmocka_unit_test(the_end_between_two_frames_is_sent_with_the_second),

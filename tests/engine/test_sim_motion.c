@@ -314,6 +314,7 @@ static void a_hand_moves_a_limp_shaft(void **state)
     assert_int_equal(grobo_sim_set_angle(&kit.sim, SHOULDER, 999000, 0), 0);
     assert_int_equal(angle(SHOULDER), 150000);
     assert_int_equal(grobo_sim_set_angle(&kit.sim, SHOULDER, 0, -1), GROBO_ERR_ARG);
+    assert_int_equal(grobo_sim_set_angle(&kit.sim, SHOULDER, 0, GROBO_NEVER_US), GROBO_ERR_ARG);
 }
 
 static void a_servo_drives_back_when_the_hand_lets_go(void **state)

@@ -213,6 +213,7 @@ static void test_steps(void **state)
                      500000 + 9950000 + 400);
     assert_int_equal(grobo_motion_length_us(motions[GROBO_MOTION_STEPS], -1),
                      500000 + 9950000 + 4 * GROBO_MOTION_DEFAULT_US);
+    assert_true(grobo_motion_length_us(motions[GROBO_MOTION_STEPS], INT64_MAX / 2) == INT64_MAX);
     for (int kind = 0; kind < 3; kind++) {
         grobo_motion_free(motions[kind]);
     }
