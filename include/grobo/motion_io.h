@@ -53,9 +53,10 @@ GROBO_API size_t grobo_diagnostics_total(const grobo_diagnostics *list, grobo_se
 /** Diagnostic i in the order they were found. @return 0 or GROBO_ERR_ARG. */
 GROBO_API int grobo_diagnostics_get(const grobo_diagnostics *list, size_t i,
                                     grobo_diagnostic *diagnostic);
-/** Adds one; its texts are copied (a message is cut at 255 bytes). NULL list: nothing happens. */
+/** Adds one; its texts are copied (a message is cut at 255 bytes). NULL list, or a severity that is
+ *  none: nothing happens. */
 GROBO_API void grobo_diagnostics_add(grobo_diagnostics *list, const grobo_diagnostic *diagnostic);
-/** "error", "warning" or "note". */
+/** "error", "warning" or "note"; "unknown" for a number that is none. Static. */
 GROBO_API const char *grobo_severity_name(grobo_severity severity);
 
 /* ---- formats ------------------------------------------------------------------------------ */
@@ -69,15 +70,17 @@ typedef enum grobo_motion_format {
     GROBO_FORMAT_YAML = 4  /**< .yaml, .seq: Choreonoid's body motion */
 } grobo_motion_format;
 
-/** "m", "pseq", "mseq", "yaml"; "auto" for GROBO_FORMAT_AUTO. */
+/** "m", "pseq", "mseq", "yaml"; "auto" for GROBO_FORMAT_AUTO, "unknown" for a number that is no
+ *  format. Static. */
 GROBO_API const char *grobo_motion_format_name(grobo_motion_format format);
 /** The format called so ("seq" is yaml). @return it, or GROBO_ERR_NOTFOUND. */
 GROBO_API int grobo_motion_format_find(const char *name);
 /** What the extension of a path says, in any case; GROBO_FORMAT_AUTO where it says nothing. */
 GROBO_API grobo_motion_format grobo_motion_format_of_path(const char *path);
-/** The kind of motion a format holds. GROBO_FORMAT_AUTO gives GROBO_MOTION_KEYS. */
+/** The kind of motion a format holds. GROBO_FORMAT_AUTO, and what is none, give
+ *  GROBO_MOTION_KEYS. */
 GROBO_API grobo_motion_kind grobo_motion_format_kind(grobo_motion_format format);
-/** The format that holds a kind of motion. */
+/** The format that holds a kind of motion; GROBO_FORMAT_AUTO for a number that is none. */
 GROBO_API grobo_motion_format grobo_motion_kind_format(grobo_motion_kind kind);
 
 /* ---- reading ------------------------------------------------------------------------------ */

@@ -7,6 +7,8 @@
 
 enum { MESSAGE_BYTES = 256, FILES_MAX = 64, ENTRIES_FIRST = 8 };
 
+enum { SEVERITIES = GROBO_SEVERITY_NOTE + 1 };
+
 typedef struct entry {
     uint32_t line, column;
     grobo_severity severity;
@@ -19,7 +21,7 @@ struct grobo_diagnostics {
     const grobo_mem *mem;
     entry *entries;
     size_t count, room;
-    size_t totals[GROBO_SEVERITY_NOTE + 1];
+    size_t totals[SEVERITIES];
     char *files[FILES_MAX];
     int n_files;
 };
@@ -63,7 +65,7 @@ size_t grobo_diagnostics_count(const grobo_diagnostics *list)
 
 size_t grobo_diagnostics_total(const grobo_diagnostics *list, grobo_severity severity)
 {
-    return list != NULL ? list->totals[severity] : 0;
+    return list != NULL && (unsigned)severity < SEVERITIES ? list->totals[severity] : 0;
 }
 
 int grobo_diagnostics_get(const grobo_diagnostics *list, size_t i, grobo_diagnostic *diagnostic)
@@ -137,7 +139,7 @@ static void cut_copy(char *to, size_t size, const char *text)
 
 void grobo_diagnostics_add(grobo_diagnostics *list, const grobo_diagnostic *diagnostic)
 {
-    if (list == NULL) {
+    if (list == NULL || (unsigned)diagnostic->severity >= SEVERITIES) {
         return;
     }
     list->totals[diagnostic->severity]++;
@@ -155,9 +157,9 @@ void grobo_diagnostics_add(grobo_diagnostics *list, const grobo_diagnostic *diag
 
 const char *grobo_severity_name(grobo_severity severity)
 {
-    static const char *const names[] = {"error", "warning", "note"};
+    static const char *const names[SEVERITIES] = {"error", "warning", "note"};
 
-    return names[severity];
+    return (unsigned)severity < SEVERITIES ? names[severity] : "unknown";
 }
 
 void grobo_i_format_message(char *message, size_t size, const char *format, va_list args)

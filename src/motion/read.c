@@ -126,7 +126,7 @@ const char *grobo_motion_format_name(grobo_motion_format format)
 {
     static const char *const names[] = {"auto", "m", "pseq", "mseq", "yaml"};
 
-    return names[format];
+    return (unsigned)format < sizeof names / sizeof names[0] ? names[format] : "unknown";
 }
 
 static bool same_word(const char *a, const char *b)
@@ -167,7 +167,7 @@ grobo_motion_kind grobo_motion_format_kind(grobo_motion_format format)
                                               GROBO_MOTION_KEYS, GROBO_MOTION_STEPS,
                                               GROBO_MOTION_FRAMES};
 
-    return kinds[format];
+    return (unsigned)format < sizeof kinds / sizeof kinds[0] ? kinds[format] : GROBO_MOTION_KEYS;
 }
 
 grobo_motion_format grobo_motion_kind_format(grobo_motion_kind kind)
@@ -175,7 +175,7 @@ grobo_motion_format grobo_motion_kind_format(grobo_motion_kind kind)
     static const grobo_motion_format formats[] = {GROBO_FORMAT_M, GROBO_FORMAT_PSEQ,
                                                   GROBO_FORMAT_MSEQ, GROBO_FORMAT_YAML};
 
-    return formats[kind];
+    return (unsigned)kind < sizeof formats / sizeof formats[0] ? formats[kind] : GROBO_FORMAT_AUTO;
 }
 
 static size_t span(const unsigned char *text, size_t size, size_t first, const char *accepted)

@@ -268,6 +268,10 @@ static void test_list_is_bounded(void **state)
     grobo_diagnostics_add(NULL, &said);
     assert_int_equal(grobo_diagnostics_count(NULL), 0);
     assert_string_equal(grobo_severity_name(GROBO_SEVERITY_WARNING), "warning");
+    assert_string_equal(grobo_severity_name((grobo_severity)3), "unknown");
+    assert_string_equal(grobo_motion_format_name((grobo_motion_format)5), "unknown");
+    assert_int_equal(grobo_motion_format_kind((grobo_motion_format)-1), GROBO_MOTION_KEYS);
+    assert_int_equal(grobo_motion_kind_format((grobo_motion_kind)4), GROBO_FORMAT_AUTO);
     grobo_diagnostics_free(list);
 }
 
