@@ -68,7 +68,7 @@ typedef struct grobo_control_config {
     grobo_session_config session;
     const char *name;          /**< copied; NULL: the driver's */
     const char *motion_dir;    /**< copied; NULL: "." */
-    int64_t control_period_us; /**< 0: GROBO_CONTROL_PERIOD_US; at least 1000 */
+    int64_t control_period_us; /**< 1000..1000000; 0: GROBO_CONTROL_PERIOD_US */
     int64_t owner_timeout_us;  /**< > 0: when no thread but the loop's own has called for so long,
                                     the exit policy is carried out, once until the next call */
     bool skip_exit;            /**< leave the robot as it is */
@@ -145,7 +145,8 @@ GROBO_API int grobo_control_call(grobo_control *control, grobo_control_fn fn, vo
 /**
  * Has fn called on the loop, and returns at once. It is called exactly once, at the latest by
  * grobo_control_free(). At once.
- * @return GROBO_OK, GROBO_ERR_FULL, GROBO_ERR_ARG.
+ * @return GROBO_OK, GROBO_ERR_FULL, GROBO_ERR_ARG, GROBO_ERR_CLOSED (of a function that
+ *   grobo_control_free() calls as its last: nobody would call another).
  */
 GROBO_API int grobo_control_post(grobo_control *control, grobo_control_fn fn, void *arg);
 
@@ -179,7 +180,7 @@ GROBO_API int64_t grobo_control_get_default_time_us(grobo_control *control);
 GROBO_API int grobo_control_set_sense_interval_us(grobo_control *control, int64_t interval_us);
 /** Reads it. */
 GROBO_API int64_t grobo_control_get_sense_interval_us(grobo_control *control);
-/** Sets the control period, at least 1000. Handed over. @return GROBO_OK, GROBO_ERR_ARG. */
+/** Sets the control period, 1000..1000000. At once. @return GROBO_OK, GROBO_ERR_ARG. */
 GROBO_API int grobo_control_set_period_us(grobo_control *control, int64_t period_us);
 /** Reads it. */
 GROBO_API int64_t grobo_control_get_period_us(grobo_control *control);

@@ -154,7 +154,8 @@ static int64_t exit_timeout(grobo_control *control)
     grobo_i_control_lock(control);
     bound_us = control->robot_config.exit_bound_us;
     grobo_i_control_unlock(control);
-    return (bound_us > 0 ? bound_us : EXIT_BOUND_US) + EXIT_SPARE_US;
+    bound_us = bound_us > 0 ? bound_us : EXIT_BOUND_US;
+    return bound_us < GROBO_NEVER_US - EXIT_SPARE_US ? bound_us + EXIT_SPARE_US : GROBO_NEVER_US;
 }
 
 /* The body of the control thread; `running` is set. */
@@ -499,6 +500,9 @@ static void do_posted(grobo_control *control)
     const round_frame frame = {control, rounds};
 
     rounds = &frame;
+    grobo_i_control_lock(control);
+    control->freeing = true;
+    grobo_i_control_unlock(control);
     (void)grobo_i_control_forget(control, GROBO_ERR_CANCELED);
     grobo_i_control_serve(control);
     rounds = frame.outer;

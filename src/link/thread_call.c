@@ -149,8 +149,8 @@ int grobo_i_control_post(grobo_control *control, grobo_control_fn fn, void *arg)
 {
     control_slot *slot = take_slot(control, GROBO_CONTROL_CALLS_MAX);
 
-    if (slot == NULL) {
-        return GROBO_ERR_FULL;
+    if (control->freeing || slot == NULL) {
+        return control->freeing ? GROBO_ERR_CLOSED : GROBO_ERR_FULL;
     }
     slot->posted = true;
     hand_over(control, slot, fn, arg);

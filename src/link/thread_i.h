@@ -82,6 +82,7 @@ struct grobo_control {
     bool running;    /* the control thread, or somebody in grobo_control_run() */
     bool ending;     /* it carries out the exit policy */
     bool stopping;   /* it shall end */
+    bool freeing;    /* what is posted has its last turn */
     bool has_thread; /* to be joined */
     bool woken;      /* a byte is on its way to the loop */
     grobo_thread thread;

@@ -317,7 +317,9 @@ int grobo_control_set_command(grobo_control *control, const void *packet, size_t
         return GROBO_ERR_CAP;
     }
     grobo_i_control_lock(control);
-    memcpy(control->command, packet, size);
+    if (size > 0) {
+        memcpy(control->command, packet, size);
+    }
     control->command_bytes = size;
     grobo_i_control_unlock(control);
     return (int)size;
@@ -329,8 +331,10 @@ int grobo_control_get_command(grobo_control *control, void *packet, size_t capac
 
     grobo_i_control_lock(control);
     if (control->command_bytes <= capacity) {
-        memcpy(packet, control->command, control->command_bytes);
         r = (int)control->command_bytes;
+    }
+    if (r > 0) {
+        memcpy(packet, control->command, (size_t)r);
     }
     grobo_i_control_unlock(control);
     return r;

@@ -295,6 +295,8 @@ static void raw_commands(void **state)
     uint8_t got[GROBO_CONTROL_RECEIVE_BYTES + 1];
 
     (void)state;
+    assert_int_equal(grobo_control_get_command(control, NULL, 0), 0);
+    assert_int_equal(grobo_control_set_command(control, NULL, 0), 0);
     assert_int_equal(grobo_control_send_command(control, NULL, 0, 0), GROBO_ERR_EMPTY);
     assert_int_equal(grobo_control_set_command(control, check, sizeof check), 2);
     assert_int_equal(grobo_control_set_command(control, longer, sizeof longer), GROBO_ERR_CAP);

@@ -231,17 +231,32 @@ static void what_is_posted_is_done_once(void **state)
     assert_int_equal(grobo_control_call(control, count, &n), GROBO_CONTROL_CALLS_MAX + 1);
 }
 
+/* Posts another; n[0] is how many were taken, n[1] how many were called. */
+static int post_another(grobo_control *of, void *arg)
+{
+    int *n = arg;
+
+    n[0] += grobo_control_post(of, count, &n[1]) >= 0;
+    return GROBO_OK;
+}
+
 static void what_is_posted_last_is_done_by_free(void **state)
 {
     grobo_control_config config = {.session.device = GROBO_DEVICE_SIM};
     grobo_control *other;
     int n = 0;
+    int chain[2] = {0, 0};
 
     (void)state;
-    assert_int_equal(grobo_control_new(&config, &other), GROBO_OK);
-    assert_int_equal(grobo_control_post(other, count, &n), GROBO_OK);
-    assert_int_equal(grobo_control_free(other), GROBO_OK);
-    assert_int_equal(n, 1);
+    for (int skip = 0; skip < 2; skip++) {
+        config.skip_exit = skip == 1;
+        assert_int_equal(grobo_control_new(&config, &other), GROBO_OK);
+        assert_int_equal(grobo_control_post(other, count, &n), GROBO_OK);
+        assert_int_equal(grobo_control_post(other, post_another, chain), GROBO_OK);
+        assert_int_equal(grobo_control_free(other), GROBO_OK);
+        assert_int_equal(n, skip + 1);
+        assert_int_equal(chain[1], chain[0]);
+    }
 }
 
 static void a_call_gives_up_in_its_time(void **state)
