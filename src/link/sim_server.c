@@ -8,6 +8,12 @@
 
 #include "src/link/link.h"
 
+/* How often one end is read before others have their turn: a wire without pace never is full. */
+#define READS_MAX 8
+
+/* How long nobody is let in after a failure: the system has no descriptor, and who calls waits. */
+#define DOOR_SHUT_US 100000
+
 /* Where programs come in. */
 enum { END_PTY, END_TCP, ENDS };
 
@@ -33,6 +39,7 @@ struct grobo_sim_server {
     int baud_bps; /* of the board's port, and what programs find */
     bool paced;
     int64_t replug_us; /* when to come back; GROBO_NEVER_US: plugged in, or stays away */
+    int64_t door_us;   /* when callers are let in again; GROBO_NEVER_US: they are */
     grobo_sim sim;
 };
 
@@ -70,13 +77,13 @@ static void follow_baud(grobo_sim_server *server, const end *e)
     }
 }
 
-/* Takes from a program what the simulated wire has room for. */
+/* Takes from a program what the simulated wire has room for; of a flood a part, for others wait. */
 static void end_read(end *e)
 {
     grobo_sim_server *server = e->server;
     size_t room = grobo_sim_rx_room(&server->sim);
 
-    while (e->readable != NULL && room > 0) {
+    for (int reads = 0; e->readable != NULL && room > 0 && reads < READS_MAX; reads++) {
         uint8_t buf[512];
         grobo_os_cause cause;
         size_t size = room < sizeof buf ? room : sizeof buf;
@@ -173,8 +180,13 @@ static void on_caller(evutil_socket_t fd, short what, void *arg)
     (void)fd;
     (void)what;
     /* One at a time, as a serial port: who calls while somebody is there waits its turn. */
-    if (e->readable == NULL && grobo_port_accept(server->listener, e->port, &cause) >= 0) {
-        (void)end_begin(e);
+    if (e->readable == NULL) {
+        int r = grobo_port_accept(server->listener, e->port, &cause);
+
+        r = r < 0 ? r : end_begin(e);
+        if (r < 0 && r != GROBO_ERR_EMPTY) {
+            server->door_us = grobo_now_us() + DOOR_SHUT_US;
+        }
     }
     grobo_sim_server_pump(server);
 }
@@ -252,8 +264,11 @@ static bool is_plugged(const grobo_sim_server *server)
 /* A caller in the queue is heard when the one before has gone. */
 static void await_callers(grobo_sim_server *server)
 {
+    if (server->door_us <= grobo_now_us()) {
+        server->door_us = GROBO_NEVER_US;
+    }
     if (server->callers != NULL) {
-        if (server->ends[END_TCP].readable != NULL) {
+        if (server->ends[END_TCP].readable != NULL || server->door_us != GROBO_NEVER_US) {
             (void)event_del(server->callers);
         } else {
             (void)event_add(server->callers, NULL);
@@ -263,7 +278,7 @@ static void await_callers(grobo_sim_server *server)
 
 void grobo_sim_server_pump(grobo_sim_server *server)
 {
-    int64_t sim_us;
+    int64_t next_us;
 
     answer(server);
     for (int i = 0; i < ENDS; i++) {
@@ -275,8 +290,10 @@ void grobo_sim_server_pump(grobo_sim_server *server)
         hang_up(server);
     }
     await_callers(server);
-    sim_us = grobo_sim_deadline(&server->sim);
-    (void)grobo_timer_set(server->timer, sim_us < server->replug_us ? sim_us : server->replug_us);
+    next_us = grobo_sim_deadline(&server->sim);
+    next_us = server->replug_us < next_us ? server->replug_us : next_us;
+    next_us = server->door_us < next_us ? server->door_us : next_us;
+    (void)grobo_timer_set(server->timer, next_us);
 }
 
 static void on_time(grobo_timer *timer, int64_t late_us, void *ctx)
@@ -344,6 +361,7 @@ static int fill(grobo_sim_server *server, const grobo_sim_server_config *config)
     server->baud_bps = (int)sim.baud_bps;
     server->paced = !sim.unpaced;
     server->replug_us = GROBO_NEVER_US;
+    server->door_us = GROBO_NEVER_US;
     r = copy_name(server->link, config->link);
     if (r >= 0) {
         r = copy_name(server->tcp, config->tcp);

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -306,6 +307,66 @@ static void both_ends_reach_one_board(void **state)
     grobo_sim_server_free(server);
 }
 
+/* A wire without pace takes whatever comes: others on the loop have their turn all the same. */
+static void a_flood_leaves_the_loop_to_others(void **state)
+{
+    static const uint8_t flood[4096] = {0};
+    const grobo_sim_config sim = {.unpaced = true};
+    grobo_sim_server *server = loop_serve(
+        base, (grobo_sim_server_config){.sim = &sim, .no_pty = true, .tcp = "tcp:127.0.0.1:0"});
+    const grobo_sim_stats *stats = &grobo_sim_server_sim(server)->stats;
+    size_t sent = 0;
+    client c;
+
+    (void)state;
+    client_open(&c, grobo_sim_server_device(server), 0);
+    while (sent < 16 * sizeof flood && grobo_serial_pending(c.serial) == 0) {
+        assert_int_equal(grobo_serial_send(c.serial, flood, sizeof flood), sizeof flood);
+        sent += sizeof flood;
+    }
+    assert_int_equal(sent, 16 * sizeof flood);
+    for (int i = 0; i < 100 && stats->rx_bytes == 0; i++) {
+        assert_true(event_base_loop(base, EVLOOP_ONCE) >= 0);
+    }
+    assert_in_range(stats->rx_bytes, 1, sizeof flood);
+    while (stats->rx_bytes < sent) {
+        assert_true(event_base_loop(base, EVLOOP_ONCE) >= 0);
+    }
+    assert_answers(&c);
+    grobo_serial_free(c.serial);
+    grobo_sim_server_free(server);
+}
+
+/* A caller that waits for want of a descriptor costs nothing, and is let in when there is one. */
+static void nobody_can_be_let_in(void **state)
+{
+    grobo_sim_server *server =
+        loop_serve(base, (grobo_sim_server_config){.no_pty = true, .tcp = "tcp:127.0.0.1:0"});
+    struct rlimit before;
+    struct rlimit none;
+    int64_t cpu_before_us;
+    client c;
+
+    (void)state;
+    client_open(&c, grobo_sim_server_device(server), 0);
+    grobo_serial_close(c.serial);
+    (void)loop_run(base, 50000);
+    assert_int_equal(grobo_serial_open(c.serial), GROBO_OK);
+    assert_int_equal(getrlimit(RLIMIT_NOFILE, &before), 0);
+    none = before;
+    none.rlim_cur = 0;
+    assert_int_equal(setrlimit(RLIMIT_NOFILE, &none), 0);
+    cpu_before_us = test_cpu_us();
+    while (!loop_run(base, 500000)) { /* until nothing more is told of the connection */
+    }
+    cpu_before_us = test_cpu_us() - cpu_before_us;
+    assert_int_equal(setrlimit(RLIMIT_NOFILE, &before), 0);
+    assert_true(cpu_before_us < 50000); /* a tenth */
+    assert_answers(&c);
+    grobo_serial_free(c.serial);
+    grobo_sim_server_free(server);
+}
+
 static void a_flood_is_taken_at_the_wires_pace_and_idle_is_idle(void **state)
 {
     static uint8_t flood[4096];
@@ -382,6 +443,8 @@ int main(void)
         ON_LOOP(a_fault_hangs_up_and_the_port_comes_back),
         ON_LOOP(tcp_serves_one_caller_at_a_time),
         ON_LOOP(both_ends_reach_one_board),
+        ON_LOOP(a_flood_leaves_the_loop_to_others),
+        ON_LOOP(nobody_can_be_let_in),
         ON_LOOP(a_flood_is_taken_at_the_wires_pace_and_idle_is_idle),
         ON_LOOP(refusals_leave_nothing_behind),
     };
