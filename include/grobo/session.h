@@ -9,7 +9,8 @@
  * decides: requests are the engine's, with the present time filled in.
  *
  * A session belongs to the thread that runs its loop. Every function may be called in its
- * callbacks; closing and freeing take effect when the callback has returned.
+ * callbacks but on_tap, which only looks; closing and freeing take effect when the callback has
+ * returned.
  */
 #ifndef GROBO_SESSION_H
 #define GROBO_SESSION_H
@@ -106,13 +107,14 @@ GROBO_API void grobo_session_close(grobo_session *session);
 
 /**
  * Sets the device for the next open, as in the configuration (copied).
- * @return GROBO_OK, GROBO_ERR_STATE (not closed), GROBO_ERR_CAP (name too long).
+ * @return GROBO_OK, GROBO_ERR_ARG (NULL), GROBO_ERR_STATE (not closed), GROBO_ERR_CAP (name too
+ *   long).
  */
 GROBO_API int grobo_session_set_device(grobo_session *session, const char *device);
 
 /**
- * Changes the engine's configuration (copied), from now on and for every time the line comes up;
- * the line's physics stay as they are.
+ * Changes the engine's configuration (copied; NULL: all defaults), from now on and for every time
+ * the line comes up; the line's physics stay as they are.
  * @return GROBO_OK, or GROBO_ERR_ARG: then nothing changed.
  */
 GROBO_API int grobo_session_configure(grobo_session *session, const grobo_robot_config *config);

@@ -5,6 +5,8 @@
 #include "src/link/link.h"
 #include "src/link/serial_i.h"
 
+static const grobo_os_cause too_late = {0, "no connection in 2 s"};
+
 /* ---- callbacks ---------------------------------------------------------------------------- */
 
 static void destroy(grobo_serial *serial)
@@ -140,9 +142,7 @@ static void on_writable(evutil_socket_t fd, short what, void *arg)
         return;
     }
     if ((what & EV_TIMEOUT) != 0) {
-        static const grobo_os_cause late = {0, "no connection in 2 s"};
-
-        serial->cause = late;
+        serial->cause = too_late;
         (void)grobo_i_serial_lose(serial, GROBO_ERR_TIMEOUT);
         return;
     }
@@ -382,7 +382,11 @@ static int start_sync(grobo_serial *serial)
         serial->ready = true;
         serial->counters.opens++;
     }
-    return r == 0 ? GROBO_ERR_TIMEOUT : r;
+    if (r == 0) {
+        serial->cause = too_late;
+        r = GROBO_ERR_TIMEOUT;
+    }
+    return r;
 }
 
 int grobo_serial_open(grobo_serial *serial)

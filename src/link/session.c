@@ -475,17 +475,21 @@ void grobo_session_close(grobo_session *session)
 
 int grobo_session_set_device(grobo_session *session, const char *device)
 {
+    if (device == NULL) {
+        return GROBO_ERR_ARG;
+    }
     return session->state != GROBO_SESSION_CLOSED ? GROBO_ERR_STATE : set_device(session, device);
 }
 
 int grobo_session_configure(grobo_session *session, const grobo_robot_config *config)
 {
+    static const grobo_robot_config defaults;
     int r = grobo_robot_configure(&session->robot, config);
 
     if (r >= 0) {
         grobo_bus_config bus = session->robot_config.bus;
 
-        session->robot_config = *config;
+        session->robot_config = config != NULL ? *config : defaults;
         session->robot_config.bus = bus;
         configure(session, session->state == GROBO_SESSION_UP);
         grobo_session_pump(session);

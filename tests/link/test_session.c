@@ -460,6 +460,11 @@ static void bad_configurations_and_lack_of_memory(void **state)
     assert_int_equal(grobo_session_new(&config, &made), GROBO_ERR_ARG);
     assert_int_equal(grobo_session_new(NULL, &made), GROBO_ERR_ARG);
     assert_int_equal(counter.bytes, 0);
+    session_kit_make((grobo_session_config){.device = GROBO_DEVICE_SIM});
+    assert_int_equal(grobo_session_configure(session, &bad_robot), GROBO_ERR_ARG);
+    assert_int_equal(grobo_session_configure(session, NULL), GROBO_OK);
+    assert_int_equal(grobo_session_set_device(session, NULL), GROBO_ERR_ARG);
+    assert_string_equal(grobo_session_device(session), GROBO_DEVICE_SIM);
 }
 
 int main(void)
