@@ -64,7 +64,7 @@ GROBO_API int grobo_thread_start(grobo_thread *thread, grobo_thread_fn fn, void 
 
 /**
  * Waits until the thread's function has returned, and frees the thread.
- * @return GROBO_OK; GROBO_ERR_STATE when called by the thread itself or for no thread.
+ * @return GROBO_OK; GROBO_ERR_STATE when called by the thread itself.
  */
 GROBO_API int grobo_thread_join(grobo_thread thread);
 

@@ -131,8 +131,11 @@ static int wait_once(SOCKET of, unsigned what, int64_t span_us)
 int grobo_port_wait(grobo_socket socket, unsigned what, int64_t timeout_us)
 {
     const int64_t most_us = INT64_C(3600000000);
-    int64_t end_us = grobo_now_us() + (timeout_us > 0 ? timeout_us : 0);
-    int64_t rest_us = end_us - grobo_now_us();
+    int64_t begin_us = grobo_now_us();
+    int64_t end_us = timeout_us <= 0                          ? begin_us
+                     : timeout_us < GROBO_NEVER_US - begin_us ? begin_us + timeout_us
+                                                              : GROBO_NEVER_US;
+    int64_t rest_us = end_us - begin_us;
     int ready;
 
     /* select() counts ticks of the system and may be early by one. */

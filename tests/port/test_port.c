@@ -115,6 +115,46 @@ static void a_thread_does_not_join_itself(void **state)
     grobo_mutex_deinit(&s.mutex);
 }
 
+/* Calls a listener after a while. */
+static GROBO_THREAD_FUNC call_later(void *arg)
+{
+    const grobo_port_ops *ops = grobo_port_tcp_ops();
+    grobo_port *port = malloc(ops->size_bytes);
+    grobo_socket silent = silent_socket();
+    grobo_os_cause cause;
+
+    assert_non_null(port);
+    assert_int_equal(grobo_port_wait(silent, GROBO_PORT_READABLE, 50000), 0);
+    assert_int_equal(ops->open(port, arg, 115200, &cause), GROBO_OK);
+    ops->close(port);
+    grobo_port_listen_close(silent);
+    free(port);
+    GROBO_THREAD_RETURN;
+}
+
+static void waiting_may_have_no_end(void **state)
+{
+    static const int64_t timeouts_us[] = {GROBO_NEVER_US, GROBO_NEVER_US - 1};
+
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        grobo_os_cause cause;
+        grobo_socket listener;
+        grobo_thread caller;
+        char device[64];
+        int tcp_port;
+
+        assert_int_equal(grobo_port_listen("tcp:127.0.0.1:0", &listener, &tcp_port, &cause),
+                         GROBO_OK);
+        assert_true(snprintf(device, sizeof device, "tcp:127.0.0.1:%d", tcp_port) > 0);
+        assert_int_equal(grobo_thread_start(&caller, call_later, device), GROBO_OK);
+        assert_int_equal(grobo_port_wait(listener, GROBO_PORT_READABLE, timeouts_us[i]),
+                         GROBO_PORT_READABLE);
+        assert_int_equal(grobo_thread_join(caller), GROBO_OK);
+        grobo_port_listen_close(listener);
+    }
+}
+
 static void waiting_tells_what_is_ready(void **state)
 {
     const grobo_port_ops *ops = grobo_port_tcp_ops();
@@ -165,6 +205,7 @@ int main(void)
         cmocka_unit_test(the_clock_counts_microseconds),
         cmocka_unit_test(threads_exclude_each_other),
         cmocka_unit_test(a_thread_does_not_join_itself),
+        cmocka_unit_test(waiting_may_have_no_end),
         cmocka_unit_test(waiting_tells_what_is_ready),
         cmocka_unit_test(a_tolerance_of_two_percent),
     };
