@@ -19,6 +19,15 @@ logs=$build/logs/ports
 started=$(date +%s)
 all='size firmware arm64 armhf riscv64 s390x musl musl-arm64 win64 macos freebsd drivers'
 [ $# -gt 0 ] || set -- $all
+for name in "$@"; do
+    case " $all openbsd " in
+    *" $name "*) ;;
+    *)
+        echo "ports: no machine is called $name; there are $all openbsd" >&2
+        exit 2
+        ;;
+    esac
+done
 mkdir -p "$logs" || exit 1
 : >"$logs/table"
 
@@ -48,7 +57,7 @@ quick_make() {
 brings() {
     case $1 in
     size | firmware) tools/setup.sh --cross baremetal ;;
-    drivers) tools/setup.sh --drivers ;;
+    drivers) tools/setup.sh --drivers && sh tests/drivers/fetch.sh "$build/drivers/debian" ;;
     *) tools/cross/libs.sh "$1" ;;
     esac
 }

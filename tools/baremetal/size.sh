@@ -114,7 +114,9 @@ judge() {
         ;;
     esac
     ram=$(awk -F '\t' -v cpu="$cpu" '$1 == cpu && $2 == "bus_of_20" { print $3 }' "$work/now")
-    if [ "$ram" -gt $ram_limit ]; then
+    if [ "$text" -eq 0 ] || [ -z "$ram" ]; then
+        echo "size: nothing could be measured on $cpu"
+    elif [ "$ram" -gt $ram_limit ]; then
         echo "size: a bus of 20 joints takes $ram bytes on $cpu, more than $ram_limit"
     fi >>"$work/bad"
 }

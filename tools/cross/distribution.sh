@@ -5,7 +5,7 @@
 
 packages='libc6-dev libevent-dev libyaml-dev libjansson-dev libedit-dev libncurses-dev'
 packages="$packages libcmocka-dev"
-codename=$(. /etc/os-release && echo "${VERSION_CODENAME:-}")
+codename=$(. /etc/os-release && echo "${VERSION_CODENAME:-}") || codename=
 
 # private_apt FOLDER ARCHITECTURE SUITE: $apt is an apt-get for that machine and suite, with all
 # its state in the folder and the mirror of this machine's own lists.

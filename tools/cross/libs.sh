@@ -5,7 +5,8 @@
 #
 # usage: tools/cross/libs.sh TARGET
 #   TARGET is one of tools/cross/*.mk.
-set -u
+# What fails ends it: what is half made, on a full disk, must not pass for whole the next time.
+set -eu
 cd "$(dirname "$0")/../.." || exit 1
 
 usage() {

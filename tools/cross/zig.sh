@@ -5,11 +5,13 @@
 # zig: $zig is that compiler, in build/cross/zig.
 zig() {
     home=$top/build/cross/zig
-    if [ ! -x "$home/bin/python" ] || ! zig_program >/dev/null 2>&1; then
+    if [ ! -e "$home/made" ]; then
         echo 'cross: installing ziglang' >&2
+        rm -rf "$home"
         mkdir -p "$home"
         quietly "$home/log" python3 -m venv "$home"
         quietly "$home/log" "$home/bin/pip" install --no-input ziglang
+        : >"$home/made"
     fi
     zig=$(zig_program) || die 'no zig in the wheel ziglang'
 }
