@@ -183,6 +183,7 @@ static void run(grobo_control *control)
     (void)grobo_i_control_leave(control, exit_timeout(control));
     grobo_mutex_lock(&control->lock);
     control->ending = false;
+    control->ends++;
     grobo_i_control_tell_all(control);
     grobo_mutex_unlock(&control->lock);
 }
@@ -246,19 +247,22 @@ int grobo_control_run(grobo_control *control)
     return mine ? GROBO_OK : GROBO_ERR_STATE;
 }
 
-/* With the lock: waits until the thread has ended. */
+/* With the lock: waits until the thread has ended; another may have been started by then. */
 static int await_end(grobo_control *control)
 {
     control_slot *slot = grobo_i_control_take(control, CONTROL_SLOTS);
+    uint64_t ends = control->ends;
 
     if (slot == NULL) {
         return GROBO_ERR_FULL;
     }
-    while (control->running || control->ending) {
+    while ((control->running || control->ending) && control->ends == ends) {
         grobo_i_control_sleep(control, slot, GROBO_NEVER_US);
     }
     slot->state = CALL_FREE;
-    join(control);
+    if (!control->running && !control->ending) {
+        join(control);
+    }
     return GROBO_OK;
 }
 

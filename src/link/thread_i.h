@@ -83,6 +83,7 @@ struct grobo_control {
     bool ending;     /* it carries out the exit policy */
     bool stopping;   /* it shall end */
     bool freeing;    /* what is posted has its last turn */
+    uint64_t ends;   /* how often it has ended */
     bool has_thread; /* to be joined */
     bool woken;      /* a byte is on its way to the loop */
     grobo_thread thread;

@@ -132,6 +132,63 @@ static void the_thread_is_started_and_stopped_while_others_call(void **state)
     run_together(cycle, workers, 3);
 }
 
+/* A thread that stops the control thread, and tells when that has returned. */
+typedef struct stopper {
+    grobo_thread thread;
+    grobo_mutex lock;
+    bool is_back;
+    int result;
+} stopper;
+
+static GROBO_THREAD_FUNC stop_it(void *arg)
+{
+    stopper *self = arg;
+    int r = grobo_control_stop_thread(control);
+
+    grobo_mutex_lock(&self->lock);
+    self->is_back = true;
+    self->result = r;
+    grobo_mutex_unlock(&self->lock);
+    GROBO_THREAD_RETURN;
+}
+
+static bool is_back(stopper *of)
+{
+    bool back;
+
+    grobo_mutex_lock(&of->lock);
+    back = of->is_back;
+    grobo_mutex_unlock(&of->lock);
+    return back;
+}
+
+/* Who waits for the end of one thread does not wait for that of the next. */
+static void a_stop_returns_though_the_thread_is_started_again(void **state)
+{
+    (void)state;
+    control_come_up();
+    for (int i = 0; i < 200; i++) {
+        stopper other = {.is_back = false};
+        int64_t end_us;
+        bool back;
+
+        assert_int_equal(grobo_mutex_init(&other.lock), GROBO_OK);
+        assert_int_equal(grobo_control_start_thread(control), GROBO_OK);
+        assert_int_equal(grobo_thread_start(&other.thread, stop_it, &other), GROBO_OK);
+        while (grobo_control_start_thread(control) != GROBO_OK) {
+        }
+        end_us = grobo_now_us() + 5000000;
+        do {
+            back = is_back(&other);
+        } while (!back && grobo_now_us() < end_us);
+        assert_int_equal(grobo_control_stop_thread(control), GROBO_OK);
+        assert_int_equal(grobo_thread_join(other.thread), GROBO_OK);
+        grobo_mutex_deinit(&other.lock);
+        assert_true(back);
+        assert_int_equal(other.result, GROBO_OK);
+    }
+}
+
 static void the_thread_starts_and_stops(void **state)
 {
     grobo_thread thread;
@@ -446,6 +503,7 @@ int main(void)
         WITH_AND_WITHOUT_THREAD(a_call_gives_up_in_its_time),
         WITH_AND_WITHOUT_THREAD(a_callback_may_wait_for_another_robot),
         ALONE(the_thread_is_started_and_stopped_while_others_call),
+        ALONE(a_stop_returns_though_the_thread_is_started_again),
         ALONE(the_thread_starts_and_stops),
         ALONE(a_thread_of_the_callers_may_be_the_control_thread),
         ALONE(rounds_may_be_the_callers),
