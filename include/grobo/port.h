@@ -109,6 +109,7 @@ typedef struct grobo_port_ops {
      *   GROBO_ERR_PERM, GROBO_ERR_BUSY (cause names the holder where the system tells),
      *   GROBO_ERR_ISDIR, GROBO_ERR_TYPE (no serial port), GROBO_ERR_UNSUPPORTED (baud rate),
      *   GROBO_ERR_ARG (malformed name), GROBO_ERR_UNPLUGGED (the node is there, the device not),
+     *   GROBO_ERR_NOMEM (the system has no memory or no handle left),
      *   GROBO_ERR_IO.
      */
     int (*open)(grobo_port *port, const char *device, int baud_bps, grobo_os_cause *cause);

@@ -21,6 +21,8 @@ static int error_of(int code)
         {ENODEV, GROBO_ERR_UNPLUGGED},     {EPIPE, GROBO_ERR_UNPLUGGED},
         {ECONNRESET, GROBO_ERR_UNPLUGGED}, {ETIMEDOUT, GROBO_ERR_UNPLUGGED},
         {ENOMEM, GROBO_ERR_NOMEM},         {EAGAIN, GROBO_ERR_NOMEM},
+        {EMFILE, GROBO_ERR_NOMEM},         {ENFILE, GROBO_ERR_NOMEM},
+        {ENOBUFS, GROBO_ERR_NOMEM},
     };
 
     for (size_t i = 0; i < sizeof table / sizeof table[0]; i++) {

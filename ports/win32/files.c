@@ -30,6 +30,9 @@ static int error_of(DWORD code)
         return GROBO_ERR_EXISTS;
     case ERROR_FILENAME_EXCED_RANGE:
         return GROBO_ERR_SPACE;
+    case ERROR_DISK_FULL:
+    case ERROR_HANDLE_DISK_FULL:
+        return GROBO_ERR_DISK;
     default:
         return GROBO_ERR_IO;
     }

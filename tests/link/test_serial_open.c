@@ -8,6 +8,7 @@
 #include <stdlib.h>
 
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <termios.h>
@@ -37,6 +38,26 @@ static int try_open(const char *device, char *text, size_t text_bytes)
     snprintf(text, text_bytes, "%s", grobo_serial_cause(serial)->text);
     grobo_serial_free(serial);
     return r;
+}
+
+static void no_descriptor_is_left(void **state)
+{
+    char text[GROBO_CAUSE_MAX_BYTES];
+    struct rlimit before;
+    struct rlimit none;
+    int serial;
+    int tcp;
+
+    (void)state;
+    assert_int_equal(getrlimit(RLIMIT_NOFILE, &before), 0);
+    none = before;
+    none.rlim_cur = 0;
+    assert_int_equal(setrlimit(RLIMIT_NOFILE, &none), 0);
+    serial = try_open("/dev/zero", text, sizeof text);
+    tcp = try_open("tcp:127.0.0.1:1", text, sizeof text);
+    assert_int_equal(setrlimit(RLIMIT_NOFILE, &before), 0);
+    assert_int_equal(serial, GROBO_ERR_NOMEM);
+    assert_int_equal(tcp, GROBO_ERR_NOMEM);
 }
 
 static void what_is_no_serial_port_is_refused(void **state)
@@ -174,6 +195,7 @@ static void the_line_is_raw_8n1(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(no_descriptor_is_left),
         cmocka_unit_test(what_is_no_serial_port_is_refused),
         cmocka_unit_test(a_second_open_is_refused_and_names_the_holder),
         cmocka_unit_test(without_permission_it_is_refused),
