@@ -126,14 +126,19 @@ static int64_t silence_end(const grobo_serial *serial)
     return grobo_now_us() + (int64_t)serial->config.silence_ms * 1000;
 }
 
-/* Reads at least a byte, or 0 when end_us came first. */
+/*
+ * Reads at least a byte, or 0 when end_us came first. The clock is asked before the line: a process
+ * that is held up between the two must not take what has come for silence.
+ */
 static int take_until(grobo_serial *serial, void *buf, size_t size, int64_t end_us)
 {
+    int64_t now_us = grobo_now_us();
     int got = grobo_i_serial_take(serial, buf, size);
 
-    while (got == 0 && grobo_now_us() < end_us) {
+    while (got == 0 && now_us < end_us) {
         got = wait_until(serial, GROBO_PORT_READABLE, end_us);
         if (got >= 0) {
+            now_us = grobo_now_us();
             got = grobo_i_serial_take(serial, buf, size);
         }
     }

@@ -302,6 +302,24 @@ static void on_serial(grobo_serial *serial, grobo_serial_event event, int error,
     grobo_i_session_leave(session);
 }
 
+/* With a line: what it has, and the time. */
+static void look(grobo_session *session)
+{
+    if (session->is_sim) {
+        grobo_i_session_take_from_sim(session);
+    }
+    grobo_i_session_step(session);
+}
+
+void grobo_i_session_look(grobo_session *session)
+{
+    grobo_i_session_enter(session);
+    if (session->state == GROBO_SESSION_CHECKING || session->state == GROBO_SESSION_UP) {
+        look(session);
+    }
+    grobo_i_session_leave(session);
+}
+
 static void on_time(grobo_timer *timer, int64_t late_us, void *ctx)
 {
     grobo_session *session = ctx;
@@ -315,10 +333,7 @@ static void on_time(grobo_timer *timer, int64_t late_us, void *ctx)
         break;
     case GROBO_SESSION_CHECKING:
     case GROBO_SESSION_UP:
-        if (session->is_sim) {
-            grobo_i_session_take_from_sim(session);
-        }
-        grobo_i_session_step(session);
+        look(session);
         break;
     case GROBO_SESSION_WAITING: {
         int r = open_again(session);

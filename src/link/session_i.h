@@ -51,6 +51,9 @@ struct grobo_session {
 void grobo_i_session_enter(grobo_session *session);
 void grobo_i_session_leave(grobo_session *session);
 
+/* Reads what the line has now, and lets the engine's time pass. */
+void grobo_i_session_look(grobo_session *session);
+
 /* The line is gone, or cannot be had. */
 void grobo_i_session_lost(grobo_session *session, int error);
 

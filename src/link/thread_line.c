@@ -2,6 +2,7 @@
 /* A control's line, servos, readings, raw commands and safety: the session's, for every thread. */
 #include <string.h>
 
+#include "src/link/session_i.h"
 #include "src/link/thread_i.h"
 
 grobo_session *grobo_control_session(grobo_control *control)
@@ -387,20 +388,31 @@ typedef struct receive_call {
     int64_t since_us;
 } receive_call;
 
+static bool is_silent(const grobo_control *control, const receive_call *call, int64_t now_us)
+{
+    int64_t since_us =
+        control->received_us > call->since_us ? control->received_us : call->since_us;
+
+    return now_us - since_us >= INT64_C(1000) * GROBO_SILENCE_DEFAULT_MS;
+}
+
 static int receive(grobo_control *control, void *arg)
 {
     receive_call *call = arg;
-    int64_t since_us =
-        control->received_us > call->since_us ? control->received_us : call->since_us;
-    size_t had = control->received_bytes;
+    int64_t now_us = grobo_now_us();
+    size_t had;
 
+    if (control->received_bytes < call->size && is_silent(control, call, now_us)) {
+        grobo_i_session_look(control->session); /* somebody held us up, maybe */
+    }
+    had = control->received_bytes;
     if (had >= call->size) {
         memcpy(call->bytes, control->received, call->size);
         control->received_bytes -= call->size;
         memmove(control->received, control->received + call->size, control->received_bytes);
         return (int)call->size;
     }
-    if (grobo_now_us() - since_us < INT64_C(1000) * GROBO_SILENCE_DEFAULT_MS) {
+    if (!is_silent(control, call, now_us)) {
         return CALL_PENDING;
     }
     control->received_bytes = 0;

@@ -173,6 +173,44 @@ static void silence_ends_a_receive_and_drops_what_came(void **state)
     assert_memory_equal(buf, "ABCDEFGHIJKLMNOPQRSTUVWXYZ", 26);
 }
 
+/* A read that finds nothing, and a process held up behind it while a byte comes. */
+static bool holds_up;
+
+static int read_and_hold_up(grobo_port *port, void *buf, size_t size, grobo_os_cause *cause)
+{
+    int got = grobo_port_serial_ops()->read(port, buf, size, cause);
+    int64_t until_us = grobo_now_us() + 31000;
+
+    if (holds_up) {
+        holds_up = false;
+        assert_int_equal(got, 0);
+        test_line_write(&line, "\x07", 1);
+        test_line_await_arrival(&line);
+        while (grobo_now_us() < until_us) {
+        }
+    }
+    return got;
+}
+
+static void what_has_come_is_read_before_there_is_silence(void **state)
+{
+    grobo_port_ops ops = *grobo_port_serial_ops();
+    const grobo_serial_config config = {.device = line.device, .silence_ms = 30, .ops = &ops};
+    uint8_t byte = 0;
+
+    (void)state;
+    grobo_serial_free(serial);
+    ops.read = read_and_hold_up;
+    assert_int_equal(grobo_serial_new(&config, &serial), GROBO_OK);
+    assert_int_equal(grobo_serial_open(serial), GROBO_OK);
+    holds_up = true;
+    assert_int_equal(grobo_serial_receive(serial, &byte, 1), 1);
+    assert_int_equal(byte, 0x07);
+    assert_false(holds_up);
+    grobo_serial_free(serial);
+    serial = NULL;
+}
+
 /* Waits until so many bytes are there to be read. */
 static void await_bytes(int count)
 {
@@ -388,6 +426,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(silence_ends_a_receive_and_drops_what_came, set_up,
                                         tear_down),
         cmocka_unit_test_setup_teardown(silence_is_100_ms_where_nothing_else_is_said, set_up,
+                                        tear_down),
+        cmocka_unit_test_setup_teardown(what_has_come_is_read_before_there_is_silence, set_up,
                                         tear_down),
         cmocka_unit_test_setup_teardown(low_level_read_and_write_take_what_there_is, set_up,
                                         tear_down),

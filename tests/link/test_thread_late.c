@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: MIT */
+/* A control that is held up does not take what waits on the line for silence. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <poll.h>
+
+#include <cmocka.h>
+
+#include <grobo/thread.h>
+
+#include "line.h"
+
+enum { PATIENCE_US = 300000, HELD_UP_US = GROBO_SILENCE_DEFAULT_MS * 1000 + 1000 };
+
+static const uint8_t CHECK[] = {0x41, 0x00};
+static const uint8_t ACK = 0x07; /* of the board, to a check */
+
+static test_line line;
+
+/*
+ * Runs in the round in which grobo_control_receive() asks, before it: the answer comes, but the
+ * loop does not get to read it before the silence has lasted too long.
+ */
+static int hold_up(grobo_control *control, void *arg)
+{
+    struct pollfd near = {.fd = grobo_serial_handle(grobo_control_serial(control)),
+                          .events = POLLIN};
+    int64_t until_us = grobo_now_us() + HELD_UP_US;
+
+    (void)arg;
+    test_line_write(&line, &ACK, sizeof ACK);
+    assert_int_equal(poll(&near, 1, 5000), 1);
+    while (grobo_now_us() <= until_us) {
+    }
+    return GROBO_OK;
+}
+
+static void what_has_come_is_read_before_there_is_silence(void **state)
+{
+    /* Nobody but the test asks, and nobody stops waiting for the answer. */
+    const grobo_robot_config robot = {
+        .bus.margin_us = 60000000, .retries = -1, .sense_interval_us = GROBO_SENSE_NEVER};
+    grobo_control_config config = {.session = {.robot = &robot, .skip_check = true},
+                                   .skip_exit = true};
+    grobo_control *control;
+    uint8_t got[2] = {0, 0};
+
+    (void)state;
+    test_line_open(&line);
+    config.session.device = line.device;
+    assert_int_equal(grobo_control_new(&config, &control), GROBO_OK);
+    assert_int_equal(grobo_control_connect(control, 0), GROBO_OK);
+    assert_int_equal(grobo_control_send_command(control, CHECK, sizeof CHECK, PATIENCE_US),
+                     GROBO_ERR_TIMEOUT);
+    test_line_read(&line, got, sizeof got);
+    assert_memory_equal(got, CHECK, sizeof CHECK);
+
+    assert_int_equal(grobo_control_post(control, hold_up, NULL), GROBO_OK);
+    assert_int_equal(grobo_control_receive(control, got, 1), 1);
+    assert_int_equal(got[0], ACK);
+    assert_int_equal(grobo_control_receive(control, got, 1), GROBO_ERR_TIMEOUT);
+    assert_int_equal(grobo_control_free(control), GROBO_OK);
+    test_line_close(&line);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_has_come_is_read_before_there_is_silence)};
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
