@@ -58,7 +58,7 @@ exits 0 "$GRCTL" -d "$robot" estop --reset
 
 "$GRCTL" -d "$robot" status --watch --interval 3600000 >"$work/watch" &
 watcher=$!
-until [ -s "$work/watch" ]; do kill -0 $watcher || break; done
+wait_for test -s "$work/watch"
 check "somebody else has the port" finds "$known_as (pid $watcher) holds it" "kill $watcher"
 kill $watcher
 wait $watcher 2>/dev/null

@@ -5,7 +5,7 @@
 . tests/support/cli.sh
 . tests/support/terminal.sh
 
-start_sim || { echo "Bail out! the simulator did not start"; exit 1; }
+start_told_sim || { echo "Bail out! the simulator did not start"; exit 1; }
 
 # stands ANGLE: R_ELBOW_P holds at an angle like that.
 stands() {
@@ -17,10 +17,11 @@ terminal_closes() {
     LC_ALL=C.UTF-8 on_screen new-session -d -x 80 -y 24 \
         "exec '$GRCTL' -d '$robot' --timeout 500 -v move m5 -120 20000 2>'$work/moving'"
     written "$work/moving" 'robot found' || return 1
-    until exits 1 on_robot status m5 >/dev/null; do :; done
+    wait_for exits 1 on_robot status m5
+    wait_for sim_shows 5 ' -[3-9][0-9]\.[0-9] deg'
     on_screen kill-server
     written "$work/moving" 'exit policy carried out' || { cat "$work/moving"; return 1; }
-    until exits 0 on_robot status m5 >/dev/null; do :; done
+    wait_for exits 0 on_robot status m5
     says ' on '
 }
 if have_terminal; then
@@ -39,7 +40,7 @@ stopped() {
     stopped_pid=$!
     written "$work/out" '"t_ms":[1-9]' || return 1
     kill -s STOP $stopped_pid
-    sleep 1 # four times what a host may be late
+    sleep 1 # a time is what is tested: four times what a host may be late
     kill -s CONT $stopped_pid
     wait $stopped_pid
     stopped_got=$?
@@ -54,7 +55,7 @@ killed() {
     "$GRCTL" -d "$robot" --timeout 500 -v move m5 -120 20000 2>"$work/moving" &
     killed_pid=$!
     written "$work/moving" 'robot found' || return 1
-    sleep 2
+    wait_for sim_shows 5 ' -[3-9][0-9]\.[0-9] deg' || return 1
     kill -s KILL $killed_pid
     wait $killed_pid
     exits 0 on_robot stop && on_robot status m5 >"$work/first"

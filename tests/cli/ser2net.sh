@@ -29,12 +29,9 @@ ser2net -n -c "$work/ser2net.yaml" -P "$work/ser2net.pid" 2>"$work/ser2net.log" 
 server=$!
 
 answers() {
-    left=200
-    until "$GRCTL" -d "$device" info >"$work/out" 2>&1; do
-        left=$((left - 1))
-        [ $left -gt 0 ] || { cat "$work/out" "$work/ser2net.log"; return 1; }
-        sleep 0.05
-    done
+    wait_for exits 0 "$GRCTL" -d "$device" info && return
+    cat "$work/err" "$work/ser2net.log"
+    return 1
 }
 
 check "it answers" answers

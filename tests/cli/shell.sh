@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: MIT
 # grctl shell: scripts, the original programs' letters and words, and a person at a terminal.
 . tests/support/cli.sh
+. tests/support/terminal.sh
 
 grctl=$GRCTL
 
@@ -181,82 +182,51 @@ check "elsewhere there is no record" fails 3 '@record: only a shell has' "$GRCTL
 
 # ---- a person at a terminal -------------------------------------------------------------------
 
-if ! command -v tmux >/dev/null 2>&1; then
+if ! have_terminal; then
     skip "a person at a terminal" "no tmux here"
     done_testing
     exit
 fi
-screen() {
-    tmux -S "$work/tmux" "$@"
-}
-type_keys() {
-    screen send-keys "$@"
-}
-# shows PATTERN: within ten seconds the screen has a line like that.
-shows() {
-    shows_i=0
-    until screen capture-pane -p -S - 2>/dev/null | grep -q -e "$1"; do
-        shows_i=$((shows_i + 1))
-        if [ $shows_i -gt 2000 ]; then
-            screen capture-pane -p -S -
-            return 1
-        fi
-    done
-}
-# cursor_at COLUMN: within ten seconds it is: 7 behind a bare prompt, 0 while a command runs.
-cursor_at() {
-    cursor_i=0
-    until [ "$(screen display-message -p '#{cursor_x}')" = "$1" ]; do
-        cursor_i=$((cursor_i + 1))
-        [ $cursor_i -lt 2000 ] || return 1
-    done
-}
-gone() {
-    gone_i=0
-    while screen has-session 2>/dev/null; do
-        gone_i=$((gone_i + 1))
-        [ $gone_i -lt 2000 ] || return 1
-    done
-}
-screen -f /dev/null new-session -d -x 100 -y 30 "'$GRCTL' -d sim shell 2>$work/shell.err"
-check "a prompt" shows '^grctl>'
-type_keys 'version' Enter
-check "a command" shows '^grctl [0-9]'
+open_screen 100 30
+type_line "'$GRCTL' -d sim shell 2>$work/shell.err; echo status \$?"
+check "a prompt" until_screen '^grctl>'
+keys 'version' Enter
+check "a command" until_screen '^grctl [0-9]'
 if [ "${EDIT:-libedit}" = libedit ]; then
-    type_keys 'serv' Tab Tab
-    check "TAB lists" shows 'servo  servo-get  servo-set'
-    type_keys C-u 'l gre' Tab Enter
-    check "TAB completes names of motions" eval "shows '^grctl> l greet$' &&
-        grep -q '10 postures in the record' '$work/shell.err'"
+    keys 'serv' Tab Tab
+    check "TAB lists" until_screen 'servo  servo-get  servo-set'
+    keys C-u 'l gre' Tab Enter
+    check "TAB completes names of motions" both until_screen '^grctl> l greet$' --- \
+        written "$work/shell.err" '10 postures in the record'
     cp motions/greet.m "$work/two words.m"
-    type_keys "show $work/tw" Tab Enter
-    check "and files with blanks" shows 'two words.m: m, 10 postures'
-    type_keys 'play --mi' Tab '--ik n' Tab
-    check "and options and their words" shows '^grctl> play --mirror --ik numeric'
-    type_keys C-u 'stat' Tab 'R_KN' Tab
-    check "TAB completes commands and joints" shows '^grctl> status R_KNEE_P'
-    type_keys Enter
-    check "and Enter runs" shows 'R_KNEE_P .* -40\.0'
-    type_keys 'garbage'
-    shows '^grctl> garbage$' >/dev/null # a terminal forgets what is unread when Ctrl-C comes
-    type_keys C-c
-    cursor_at 7
-    type_keys 'status m2' Enter
-    check "Ctrl-C clears the line" shows '^ *2  NECK_Y'
-    type_keys Up Up Enter
-    check "history" shows '^grctl> status R_KNEE_P'
+    keys "show $work/tw" Tab Enter
+    check "and files with blanks" until_screen 'two words.m: m, 10 postures'
+    keys 'play --mi' Tab '--ik n' Tab
+    check "and options and their words" until_screen '^grctl> play --mirror --ik numeric'
+    keys C-u 'stat' Tab 'R_KN' Tab
+    check "TAB completes commands and joints" until_screen '^grctl> status R_KNEE_P'
+    keys Enter
+    check "and Enter runs" until_screen 'R_KNEE_P .* -40\.0'
+    keys 'garbage'
+    until_screen '^grctl> garbage$' >/dev/null # a terminal forgets what is unread when Ctrl-C comes
+    keys C-c
+    until_cursor 7
+    keys 'status m2' Enter
+    check "Ctrl-C clears the line" until_screen '^ *2  NECK_Y'
+    keys Up Up Enter
+    check "history" until_screen '^grctl> status R_KNEE_P'
 else
     skip "editing" "built without libedit"
 fi
-type_keys 'm m5 -100 20000' Enter
-check "a long move" eval "shows '^grctl> m m5' && cursor_at 0"
-type_keys C-c
-check "Ctrl-C stops the command" timeout 10 sh -c \
-    'until grep -q interrupted "$0"; do :; done' "$work/shell.err"
-type_keys 'version --json' Enter
-check "not the shell" shows '^{"name":"grctl"'
-type_keys C-d
-check "Ctrl-D ends it" gone
+keys 'm m5 -100 20000' Enter
+check "a long move" both until_screen '^grctl> m m5' --- until_cursor 0
+keys C-c
+check "Ctrl-C stops the command" written "$work/shell.err" interrupted
+keys 'version --json' Enter
+check "not the shell" until_screen '^{"name":"grctl"'
+until_cursor 7
+keys C-d
+check "Ctrl-D ends it" until_screen '^status 0'
 if [ -e "$work/state/grctl/history" ]; then
     check "history is kept, for nobody else" test -n "$(find "$work/state/grctl/history" -perm 600)"
 fi

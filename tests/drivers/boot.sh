@@ -19,6 +19,7 @@ give_up() {
     exit 0
 }
 
+. tests/support/tap.sh
 here=$(dirname "$0")
 folder=$(cd "$BUILD" && pwd)/drivers || exit 1
 qemu=qemu-system-x86_64
@@ -83,9 +84,14 @@ mkfifo "$work/tell" "$work/ready" "$work/monitor.in" "$work/monitor.out" "$work/
 sim_pid=$!
 exec 5>"$work/tell"
 read -r _ <"$work/ready"
-until sim_port=$(sed -n 's/^also at tcp:.*://p' "$work/sim.log") && [ -n "$sim_port" ]; do
-    kill -0 $sim_pid || exit 1
-done
+wait_for grep -q '^also at tcp:' "$work/sim.log" || exit 1
+sim_port=$(sed -n 's/^also at tcp:.*://p' "$work/sim.log")
+
+# For wait_for: asks each time, and looks at what has been answered so far.
+moves() {
+    echo look >&5
+    grep -q ', moving' "$work/sim.log"
+}
 
 # ---- the machine -------------------------------------------------------------------------------
 
@@ -111,12 +117,20 @@ timeout -k 5 240 $qemu -nodefaults -no-user-config -display none -no-reboot -m 5
     </dev/null >"$work/console" 2>&1 &
 qemu_pid=$!
 
+unplug() {
+    echo "device_del robot" >"$work/monitor.in"
+}
+
 ended=
 carriage_return=$(printf '\r')
 while IFS= read -r line; do
     line=${line%"$carriage_return"}
     case $line in
-    @unplug) echo "device_del robot" >"$work/monitor.in" ;;
+    @unplug) unplug ;;
+    @pull)
+        wait_for moves
+        unplug
+        ;;
     @plug) echo "device_add $robot" >"$work/monitor.in" ;;
     @other) echo "device_add $other" >"$work/monitor.in" ;;
     @end) ended=1 ;;

@@ -40,12 +40,9 @@ ask() {
 
 # Until QEMU has looked, bytes go nowhere.
 answers() {
-    answers_left=300
-    until "$GRCTL" -d "$pty" --retries 0 status m1 >"$work/out" 2>&1; do
-        answers_left=$((answers_left - 1))
-        [ $answers_left -gt 0 ] || { cat "$work/out" "$work/qemu.log"; return 1; }
-        sleep 0.1
-    done
+    wait_for exits 0 "$GRCTL" -d "$pty" --retries 0 status m1 && return
+    cat "$work/err" "$work/qemu.log"
+    return 1
 }
 
 finds_all() {
@@ -81,13 +78,9 @@ stops_on_the_way() {
 
 # The elbow stands where the wave of player.c ends.
 waves() {
-    waves_left=100
-    until tell look R_ELBOW_P && tail -n 1 "$work/sim.log" |
-        grep -q -e '-50\.0 deg  to   -50\.0  torque on .* C$'; do
-        waves_left=$((waves_left - 1))
-        [ $waves_left -gt 0 ] || { cat "$work/sim.log" "$work/qemu.log"; return 1; }
-        sleep 0.1
-    done
+    wait_for sim_shows R_ELBOW_P '-50\.0 deg  to   -50\.0  torque on .* C$' && return
+    cat "$work/sim.log" "$work/qemu.log"
+    return 1
 }
 
 waved() {

@@ -66,16 +66,24 @@ on_robot() {
     "$GRCTL" -d "$robot" --timeout 500 "$@"
 }
 
+sim_has_answered() {
+    [ "$(wc -l <"$work/sim.log")" -gt "$tell_lines" ]
+}
+sim_has_answered_or_ended() {
+    sim_has_answered || ! kill -0 "$sim_pid"
+}
+
 # tell WORD...: returns when the simulator has said something to it.
 tell() {
     tell_lines=$(wc -l <"$work/sim.log")
     echo "$*" >&5
-    tell_tries=0
-    until [ "$(wc -l <"$work/sim.log")" -gt "$tell_lines" ]; do
-        kill -0 "$sim_pid" || return 1
-        tell_tries=$((tell_tries + 1))
-        [ $tell_tries -lt 5000 ] || return 1
-    done
+    wait_for sim_has_answered_or_ended && sim_has_answered
+}
+
+# sim_shows WORDS PATTERN: told "look WORDS", the simulator says a line like that; what its joints
+# do then is its word, not a time. For wait_for.
+sim_shows() {
+    tell look "$1" && tail -n +"$((tell_lines + 1))" "$work/sim.log" | grep -q -e "$2"
 }
 
 stop_sim() {
@@ -84,16 +92,6 @@ stop_sim() {
     wait "$sim_pid" 2>/dev/null
     sim_pid=
     [ -z "$sim_com" ] || rm -f "$sim_com"
-}
-
-# wait_for COMMAND...: until it succeeds; half a minute at most.
-wait_for() {
-    wait_for_left=600
-    until "$@" >/dev/null 2>&1; do
-        wait_for_left=$((wait_for_left - 1))
-        [ $wait_for_left -gt 0 ] || return 1
-        sleep 0.05
-    done
 }
 
 # written FILE PATTERN: waits until a program in the background has written such a line; it may have

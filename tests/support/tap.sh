@@ -33,6 +33,17 @@ skip() {
     echo "ok $tap_count - $1 # SKIP $2"
 }
 
+# wait_for COMMAND...: until it succeeds; half a minute at least, longer where each try takes long.
+# The pause is for what is waited for: it may need the processor. One wait_for may stand in another.
+wait_for() (
+    left=1000
+    until "$@" >/dev/null 2>&1; do
+        left=$((left - 1))
+        [ $left -gt 0 ] || return 1
+        sleep 0.03
+    done
+)
+
 done_testing() {
     echo "1..$tap_count"
 }

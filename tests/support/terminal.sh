@@ -38,10 +38,18 @@ screen() {
 
 # until_screen PATTERN: waits until a line is like that, as long as a slow machine may take.
 until_screen() {
-    until_end=$(($(date +%s) + 20))
-    until screen | grep -q -e "$1"; do
-        [ "$(date +%s)" -lt $until_end ] || { echo "no '$1' on the screen:"; screen; return 1; }
-    done
+    wait_for on_screen_is "$1" || { echo "no '$1' on the screen:"; screen; return 1; }
+}
+on_screen_is() {
+    screen | grep -q -e "$1"
+}
+
+# until_cursor COLUMN: waits until the cursor stands there.
+until_cursor() {
+    wait_for cursor_is "$1"
+}
+cursor_is() {
+    [ "$(on_screen display-message -p '#{cursor_x}')" = "$1" ]
 }
 
 # type_line TEXT: a command line, on a clean screen.

@@ -40,9 +40,10 @@ start_play() {
     "$GRCTL" -d "$robot" --trace "$work/playing" play --speed 20 motions/greet.pseq \
         >"$work/out" 2>"$work/err" &
     player=$!
-    until [ "$(wc -c <"$work/playing")" -gt 20000 ]; do
-        kill -0 $player 2>/dev/null || return 1
-    done
+    wait_for plays_for_long
+}
+plays_for_long() {
+    [ "$(wc -c <"$work/playing")" -gt 20000 ]
 }
 
 holder_is_named() {
