@@ -2,7 +2,6 @@
 /* shell: many commands over one connection. */
 #include <errno.h>
 #include <signal.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "commands.h"
@@ -25,6 +24,13 @@ static volatile sig_atomic_t noted;
 static void on_signal(int number)
 {
     noted = number;
+}
+
+int shell_take_noted(void)
+{
+    int number = (int)noted;
+    noted = 0;
+    return number;
 }
 
 /* ---- one line ------------------------------------------------------------------------------- */
@@ -105,16 +111,20 @@ static int run_words(shell *s, int n, char **words)
     return w->run(s, n, words);
 }
 
+static int refuse(shell *s, const char *why)
+{
+    begin_line(s);
+    app_settle(&s->one);
+    return app_fail(&s->one, EXIT_USAGE, "USAGE", "%s", why);
+}
+
 static int run_text(shell *s, char *line)
 {
     char *words[SHELL_WORDS_MAX];
     int n = shell_split(line, words, SHELL_WORDS_MAX - 4);
     int status;
-    if (n < 0) {
-        begin_line(s);
-        app_settle(&s->one);
-        return app_fail(&s->one, EXIT_USAGE, "USAGE", "a quote is not closed");
-    }
+    if (n < 0)
+        return refuse(s, n == SHELL_TOO_MANY ? "too many words" : "a quote is not closed");
     if (n == 0)
         return EXIT_DONE;
     status = run_words(s, n, words);
@@ -130,55 +140,43 @@ static bool ends(const shell *s, int status)
            status == EXIT_SIGNAL + os_endings[OS_HANGUP];
 }
 
-/* A line of any length, into memory that grows. False at the end, or when a signal came. */
-static bool read_line(FILE *from, char **line, size_t *capacity)
+/* A line of a script, or what happened while it was waited for. */
+static int run_next(shell *s, shell_script *in, int next)
 {
-    size_t n = 0;
-    int c;
-    do {
-        if (n == *capacity) {
-            char *more = realloc(*line, *capacity + SHELL_LINE_BYTES);
-            if (!more)
-                return false;
-            *line = more;
-            *capacity += SHELL_LINE_BYTES;
-        }
-        c = getc(from);
-        (*line)[n] = (char)(c == EOF ? '\0' : c);
-        n += c != EOF;
-    } while (c != EOF && c != '\n' && c != '\0');
-    (*line)[c == EOF ? n : n - 1] = '\0';
-    return n > 0;
+    if (next == LINE_NEWS)
+        return conn_link_news(&s->link, s->a);
+    s->line++;
+    return in->wrong ? refuse(s, in->wrong) : run_text(s, in->line);
 }
 
-static int run_script(shell *s, FILE *from)
+static int run_script(shell *s, shell_script *in)
 {
     bool go_on = app_option(s->a, OPT_KEEP_GOING)->given > 0;
-    char *line = NULL;
-    size_t capacity = 0;
-    int first = EXIT_DONE;
-    while (!s->over && !noted && read_line(from, &line, &capacity)) {
-        int status;
-        s->line++;
-        status = run_text(s, line);
+    int first = EXIT_DONE, status = EXIT_DONE;
+    while (!ends(s, status) && !noted && (!status || go_on)) {
+        int next = shell_script_next(s, in);
+        if (next == LINE_END || next == LINE_INTERRUPTED)
+            break;
+        status = run_next(s, in, next);
         if (status && !first)
             first = status;
-        if ((status && !go_on) || ends(s, status) ||
-            status == EXIT_SIGNAL + os_endings[OS_INTERRUPT])
+        if (status == EXIT_SIGNAL + os_endings[OS_INTERRUPT])
             break;
     }
-    free(line);
+    if (in->file && ferror(in->file))
+        first = app_fail(s->a, EXIT_FILE, "IO", "%s: it could not be read to its end", s->file);
     return noted ? EXIT_SIGNAL + (int)noted : first;
 }
 
 static int run_prompt(shell *s)
 {
     char line[SHELL_LINE_BYTES];
-    line_reader *reader = line_open(&s->link);
+    line_reader *reader = line_open(s);
     int status = EXIT_DONE, n;
     if (!reader)
         return app_fail(s->a, EXIT_ROBOT, "NOMEM", "shell: %s", grobo_error_text(GROBO_ERR_NOMEM));
     while (!ends(s, status)) {
+        conn_link_idle(&s->link, s->a);
         n = line_read(reader, "grctl> ", line, sizeof line);
         if (n == LINE_END)
             break;
@@ -189,7 +187,7 @@ static int run_prompt(shell *s)
         if (n == LINE_INTERRUPTED)
             break;
         noted = 0;
-        status = run_text(s, line);
+        status = n == LINE_TOO_LONG ? refuse(s, "the line is too long") : run_text(s, line);
         if (status == EXIT_SIGNAL + os_endings[OS_INTERRUPT])
             fputc('\n', stderr); /* behind the terminal's ^C */
         if (noted && noted != os_endings[OS_INTERRUPT])
@@ -201,18 +199,19 @@ static int run_prompt(shell *s)
 
 static int run_shell(shell *s)
 {
+    static shell_script in;
     const char *path = s->a->line.n_arguments ? s->a->line.argument[0] : NULL;
-    FILE *from = stdin;
+    FILE *from = NULL;
     int status;
     if (!path && s->a->tty_in)
         return run_prompt(s);
+    memset(&in, 0, sizeof in);
     s->file = path ? path : "standard input";
-    if (path)
-        from = fopen(path, "r");
-    if (!from)
+    if (path && !(from = fopen(path, "r")))
         return app_fail(s->a, EXIT_FILE, "NOENT", "%s: %s", path, strerror(errno));
-    status = run_script(s, from);
-    if (path)
+    in.file = from && !os_input_take(from) ? from : NULL;
+    status = run_script(s, &in);
+    if (from)
         fclose(from);
     return status;
 }

@@ -61,11 +61,17 @@ static void on_session(grobo_session *session, grobo_session_event event, int er
         link->user->up = link->up;
         link->user->link_error = link->link_error;
     }
+    link->news |= !link->user && link->link_error;
 }
 
 static void on_robot(void *ctx, const grobo_event *event)
 {
-    conn *c = ((conn_link *)ctx)->user;
+    conn_link *link = ctx;
+    conn *c = link->user;
+    if (!c && event->kind == GROBO_EVENT_TRIP) {
+        link->trip = event->u.trip;
+        link->news = true;
+    }
     if (!c)
         return;
     if (event->kind == GROBO_EVENT_JOB && event->u.job.number == c->waiting_for) {
@@ -328,6 +334,8 @@ static int take_over(conn *c, bool check)
         config.sense_interval_us = SENSE_FREE_US;
     c->before = *grobo_robot_get_counters(c->robot);
     error = grobo_robot_configure(c->robot, &config);
+    if (!error) /* an emergency stop from before the command, maybe */
+        error = conn_wait_until(c, conn_is_idle);
     if (!error && check && !c->link->answered)
         error = conn_wait(c, grobo_session_check(c->session));
     if (error && !c->signal)
@@ -412,6 +420,16 @@ void conn_watch(conn *c, bool on)
     if (on)
         config.sense_interval_us = 0; /* the engine's default */
     (void)grobo_robot_configure(c->robot, &config);
+}
+
+void conn_link_idle(conn_link *link, app *a)
+{
+    conn c = {.a = a};
+    if (!link->session || !link->up)
+        return;
+    c.robot = grobo_session_robot(link->session);
+    conn_watch(&c, true);
+    grobo_session_pump(link->session);
 }
 
 /* ---- leaving -------------------------------------------------------------------------------- */
@@ -534,6 +552,7 @@ int conn_link_close(conn_link *link, app *a, int status)
     take(&c, a);
     c.signal = link->signal;
     if (c.session) {
+        grobo_robot_tripped(c.robot, &c.trip);
         conn_link_watch(link);
         failed = carry_out_policy(&c, status);
         conn_link_unwatch(link);

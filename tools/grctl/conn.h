@@ -42,6 +42,8 @@ typedef struct conn_link {
     bool answered;  /* the robot has answered */
     bool marked;    /* there was a mark of an emergency stop when it was last looked for */
     struct event *mark_timer;
+    bool news; /* between two commands the line was lost, or the engine stopped for this: */
+    grobo_trip_info trip;
     trace trace; /* of the shell's --trace */
     /* set by a shell */
     grobo_joint_mask free_joints; /* in free mode: read in the background */
@@ -90,6 +92,9 @@ int conn_open_to_move(conn *c, app *a);
 
 /* Where an emergency stop is being carried out: until it is verified. Returns as conn_wait(). */
 int conn_end_estop(conn *c);
+
+/* For conn_wait_until(): no job runs. */
+bool conn_is_idle(conn *c);
 
 /* Reads the joints in the background while a motion is played: heat, current, voltage, silence. */
 void conn_watch(conn *c, bool on);
@@ -165,6 +170,13 @@ int conn_heed_mark(conn_link *link);
  */
 int conn_link_close(conn_link *link, app *a, int status);
 void conn_link_deinit(conn_link *link);
+
+/*
+ * Between two commands: has the joints read in the background, which finds heat, low voltage and
+ * lost torque; and says what has happened since the last command. Returns its exit status, or 0.
+ */
+void conn_link_idle(conn_link *link, app *a);
+int conn_link_news(conn_link *link, app *a);
 
 /* The signals are caught while a command has the link, and between these two. */
 void conn_link_watch(conn_link *link);

@@ -116,3 +116,20 @@ int conn_fail_servo(conn *c, int error, int id)
     return app_fail(c->a, app_status_of(error), grobo_error_name(error), "%s: %s: %s",
                     conn_device(c), who, grobo_error_text(error));
 }
+
+int conn_link_news(conn_link *link, app *a)
+{
+    conn c = {.a = a, .link = link, .session = link->session, .trip = link->trip};
+    int status = EXIT_DONE;
+    if (!link->news || !c.session)
+        return EXIT_DONE;
+    link->news = false;
+    link->trip = (grobo_trip_info){.trip = GROBO_TRIP_NONE};
+    c.robot = grobo_session_robot(c.session);
+    if (c.trip.trip != GROBO_TRIP_NONE)
+        status = fail_trip(&c, conn_device(&c));
+    if (link->link_error)
+        status = app_fail(a, EXIT_ROBOT, grobo_error_name(link->link_error), "%s: %s",
+                          conn_device(&c), grobo_error_text(link->link_error));
+    return status;
+}

@@ -30,7 +30,7 @@ int conn_heed_mark(conn_link *link)
                                                                          : GROBO_ERR_NOMEM;
 }
 
-static bool is_idle(conn *c)
+bool conn_is_idle(conn *c)
 {
     return grobo_robot_job(c->robot) == GROBO_JOB_NONE;
 }
@@ -41,5 +41,5 @@ int conn_end_estop(conn *c)
         return GROBO_OK;
     c->moving = false;
     c->leaving = true;
-    return conn_wait_until(c, is_idle);
+    return conn_wait_until(c, conn_is_idle);
 }

@@ -66,6 +66,9 @@ bool os_is_marked(const char *path);
 
 /* ---- standard input on an event loop -------------------------------------------------------- */
 
+/* Has this stand in for standard input, unless it is a file, for which nobody has to wait. */
+bool os_input_take(FILE *from);
+
 typedef void (*os_input_fn)(void *ctx, const char *bytes, size_t size);
 
 typedef struct os_input {
@@ -82,7 +85,10 @@ typedef struct os_input {
 void os_input_start(os_input *input, struct event_base *base, os_input_fn fn, void *ctx);
 void os_input_stop(os_input *input);
 
-/* What becomes readable when os_input_read() has something; it asks the system for more. */
+/*
+ * What becomes readable when os_input_read() has something; it asks the system for more.
+ * EVUTIL_INVALID_SOCKET: there is nothing to wait for, all that will come is there.
+ */
 evutil_socket_t os_input_await(void);
 /* Returns how many bytes, 0 none now, -1 the end. */
 int os_input_read(void *bytes, size_t capacity);

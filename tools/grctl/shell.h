@@ -7,7 +7,11 @@
 
 #include "conn.h"
 
-enum { SHELL_LINE_BYTES = 4096, SHELL_WORDS_MAX = CLI_ARGUMENTS_MAX };
+enum {
+    SHELL_LINE_BYTES = 4096,         /* typed */
+    SHELL_SCRIPT_LINE_BYTES = 65536, /* with the byte that ends it */
+    SHELL_WORDS_MAX = CLI_ARGUMENTS_MAX
+};
 
 typedef struct shell {
     app *a;         /* of the shell's own command line */
@@ -24,9 +28,11 @@ typedef struct shell {
 
 /* ---- words ---------------------------------------------------------------------------------- */
 
+enum { SHELL_OPEN_QUOTE = -1, SHELL_TOO_MANY = -2 };
+
 /*
  * Splits a line into words in place, as a POSIX shell does with blanks, quotes and backslashes;
- * a word that begins with # ends it. Returns their number, or -1 when a quote stays open.
+ * a word that begins with # ends it. Returns their number, or one of the above.
  */
 int shell_split(char *line, char **words, int most);
 
@@ -56,7 +62,29 @@ int shell_run(shell *s, int n, char **words);
 
 /* ---- lines ---------------------------------------------------------------------------------- */
 
-enum { LINE_END = -1, LINE_INTERRUPTED = -2 };
+/* Instead of a line. LINE_NEWS: conn_link_news() has something to say. */
+enum { LINE_END = -1, LINE_INTERRUPTED = -2, LINE_NEWS = -3, LINE_TOO_LONG = -4 };
+
+/* A script, read on the loop where it has to be waited for. */
+typedef struct shell_script {
+    FILE *file; /* NULL: standard input */
+    char line[SHELL_SCRIPT_LINE_BYTES];
+    const char *wrong; /* why the line cannot be run, or NULL */
+    /* private */
+    size_t used;     /* of the line */
+    bool ended;      /* the line: the next byte begins another one */
+    size_t at, held; /* of the block */
+    char block[4096];
+} shell_script;
+
+/*
+ * The next line. Returns its length, LINE_END, LINE_INTERRUPTED by a signal, or LINE_NEWS; after
+ * these it goes on where it was.
+ */
+int shell_script_next(shell *s, shell_script *in);
+
+/* A signal that came while no command had the robot and nobody waited for a line, then 0. */
+int shell_take_noted(void);
 
 /* Tells what a word may be. */
 typedef void (*line_found_fn)(void *ctx, const char *word, bool whole);
@@ -64,13 +92,16 @@ typedef void (*line_found_fn)(void *ctx, const char *word, bool whole);
 typedef struct line_reader line_reader;
 
 /* NULL when there is no memory. The reader waits in the link's loop, so the line stays alive. */
-line_reader *line_open(conn_link *link);
-/* A line without its end. Returns its length, LINE_END, or LINE_INTERRUPTED by a signal. */
+line_reader *line_open(shell *s);
+/*
+ * A line without its end. Returns its length, LINE_END, LINE_INTERRUPTED by a signal, or
+ * LINE_TOO_LONG. News are told while the line is typed.
+ */
 int line_read(line_reader *reader, const char *prompt, char *line, size_t capacity);
 void line_close(line_reader *reader);
 
-/* Waits for standard input in the link's loop: 1 readable, 0 a signal came. */
-int line_wait(conn_link *link);
+/* Waits for standard input in the link's loop. Returns 0, LINE_INTERRUPTED or LINE_NEWS. */
+int line_wait(shell *s);
 
 /*
  * What may stand at the end of the `length` bytes of a line: found() is called for each; whole is

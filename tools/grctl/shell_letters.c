@@ -400,6 +400,9 @@ const char shell_details[] =
     "fails ends the shell with its exit status, and the message names the line. Ctrl-C stops the\n"
     "command that runs; at the prompt it clears the line. What --on-exit asks for is carried out\n"
     "once, at the end.\n\n"
+    "Between two commands an open robot is watched: a lost line, an alarm of a servo, and an\n"
+    "emergency stop by another grctl are told at once. They end a script like a command that\n"
+    "fails, though its next line has not come; a prompt stays.\n\n"
     "The record is a motion that grows by hand; every command takes it as the file @record.\n"
     "\n" SHELL_WORDS(PARAGRAPH);
 

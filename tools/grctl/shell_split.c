@@ -29,13 +29,15 @@ int shell_split(char *line, char **words, int most)
         words[n++] = to;
         from = take_word(from, &to);
         if (!from)
-            return -1;
+            return SHELL_OPEN_QUOTE;
         more = *from != '\0';
         *to = '\0';
         if (!more)
             break;
         from++;
         from += strspn(from, " \t\r\n");
+        if (n == most && *from && *from != '#')
+            return SHELL_TOO_MANY;
     }
     return n;
 }

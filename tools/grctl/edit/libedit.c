@@ -14,7 +14,7 @@
 enum { HISTORY_LINES = 1000, CANDIDATES_MAX = 256, WORD_BYTES = 256, PATH_BYTES = 1024 };
 
 struct line_reader {
-    conn_link *link;
+    shell *s;
     EditLine *edit;
     History *history;
     const char *prompt;
@@ -33,6 +33,15 @@ static char *give_prompt(EditLine *edit)
     return text;
 }
 
+/* Above the line that is typed, which then stands below. */
+static void tell_news(line_reader *reader)
+{
+    fputs("\n", stdout);
+    fflush(stdout);
+    conn_link_news(&reader->s->link, reader->s->a);
+    el_set(reader->edit, EL_REFRESH, NULL);
+}
+
 /* A character, once the loop says that there is one. */
 static int get_character(EditLine *edit, wchar_t *out)
 {
@@ -40,9 +49,14 @@ static int get_character(EditLine *edit, wchar_t *out)
     mbstate_t state = {0};
     el_get(edit, EL_CLIENTDATA, &reader);
     for (;;) {
+        int stopped = line_wait(reader->s);
         char byte;
         size_t n;
-        if (!line_wait(reader->link)) {
+        if (stopped == LINE_NEWS) {
+            tell_news(reader);
+            continue;
+        }
+        if (stopped) {
             reader->interrupted = true;
             return -1;
         }
@@ -182,12 +196,12 @@ static void remember(line_reader *reader, const char *line)
 
 /* ---- the reader ----------------------------------------------------------------------------- */
 
-line_reader *line_open(conn_link *link)
+line_reader *line_open(shell *s)
 {
     line_reader *reader = calloc(1, sizeof *reader);
     if (!reader)
         return NULL;
-    reader->link = link;
+    reader->s = s;
     reader->prompt = "";
     reader->edit = el_init("grctl", stdin, stdout, stderr);
     if (!reader->edit) {
@@ -223,6 +237,8 @@ int line_read(line_reader *reader, const char *prompt, char *line, size_t capaci
         return LINE_END;
     }
     remember(reader, text);
+    if (strcspn(text, "\n") >= capacity)
+        return LINE_TOO_LONG;
     snprintf(line, capacity, "%.*s", (int)strcspn(text, "\n"), text);
     return (int)strlen(line);
 }

@@ -6,15 +6,29 @@
 #include "../shell.h"
 
 struct line_reader {
-    conn_link *link;
+    shell *s;
 };
 
-line_reader *line_open(conn_link *link)
+line_reader *line_open(shell *s)
 {
     line_reader *reader = malloc(sizeof *reader);
     if (reader)
-        reader->link = link;
+        reader->s = s;
     return reader;
+}
+
+/* Returns 0, or LINE_INTERRUPTED. What the terminal has of the line so far it shows no more. */
+static int await_input(shell *s, const char *prompt)
+{
+    int stopped;
+    while ((stopped = line_wait(s)) == LINE_NEWS) {
+        putchar('\n');
+        fflush(stdout);
+        conn_link_news(&s->link, s->a);
+        fputs(prompt, stdout);
+        fflush(stdout);
+    }
+    return stopped;
 }
 
 int line_read(line_reader *reader, const char *prompt, char *line, size_t capacity)
@@ -25,18 +39,22 @@ int line_read(line_reader *reader, const char *prompt, char *line, size_t capaci
     for (;;) {
         char c;
         int got;
-        if (!line_wait(reader->link)) {
+        if (await_input(reader->s, prompt)) {
             putchar('\n');
             return LINE_INTERRUPTED;
         }
         got = os_input_read(&c, 1);
-        if (got < 0)
+        if (got < 0) {
+            putchar('\n');
             return LINE_END;
+        }
         if (got > 0 && c == '\n')
             break;
-        if (got > 0 && c != '\r' && n + 1 < capacity)
+        if (got > 0 && c != '\r' && n < capacity)
             line[n++] = c;
     }
+    if (n == capacity)
+        return LINE_TOO_LONG;
     line[n] = '\0';
     return (int)n;
 }

@@ -7,9 +7,23 @@
 
 #include "../../os.h"
 
+static bool is_stream(int fd)
+{
+    struct stat s;
+    return fstat(fd, &s) == 0 && (S_ISFIFO(s.st_mode) || S_ISSOCK(s.st_mode));
+}
+
+bool os_input_take(FILE *from)
+{
+    int fd = fileno(from);
+    return (is_stream(fd) || isatty(fd)) && dup2(fd, STDIN_FILENO) == STDIN_FILENO;
+}
+
+/* Files and /dev/null cannot be waited for everywhere, nor need they. */
 evutil_socket_t os_input_await(void)
 {
-    return STDIN_FILENO;
+    bool waits = is_stream(STDIN_FILENO) || isatty(STDIN_FILENO);
+    return waits ? STDIN_FILENO : EVUTIL_INVALID_SOCKET;
 }
 
 int os_input_read(void *bytes, size_t capacity)
@@ -36,10 +50,9 @@ static void on_readable(evutil_socket_t fd, short what, void *ctx)
 /* Reading a terminal from the background would stop the process. */
 static bool may_listen(void)
 {
-    struct stat s;
     if (isatty(STDIN_FILENO))
         return tcgetpgrp(STDIN_FILENO) == getpgrp();
-    return fstat(STDIN_FILENO, &s) == 0 && (S_ISFIFO(s.st_mode) || S_ISSOCK(s.st_mode));
+    return is_stream(STDIN_FILENO);
 }
 
 static void on_resumed(evutil_socket_t number, short what, void *ctx)

@@ -8,6 +8,7 @@
 
 #include <windows.h>
 
+#include <io.h>
 #include <process.h>
 
 #include "../../os.h"
@@ -61,6 +62,12 @@ static bool start(void)
     evutil_closesocket(pair[0]);
     evutil_closesocket(pair[1]);
     return false;
+}
+
+bool os_input_take(FILE *from)
+{
+    HANDLE handle = (HANDLE)_get_osfhandle(_fileno(from));
+    return GetFileType(handle) != FILE_TYPE_DISK && _dup2(_fileno(from), _fileno(stdin)) == 0;
 }
 
 evutil_socket_t os_input_await(void)
