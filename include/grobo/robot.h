@@ -128,7 +128,8 @@ GROBO_API const char *grobo_trip_name(grobo_trip trip);
 typedef enum grobo_event_kind {
     GROBO_EVENT_JOB = 0,   /**< a job ended: job */
     GROBO_EVENT_JOINT,     /**< a joint was read, or could not be: joint */
-    GROBO_EVENT_ROUND,     /**< every joint of a background round was asked once */
+    GROBO_EVENT_ROUND,     /**< every joint was asked once in the background; in free mode every
+                                free one */
     GROBO_EVENT_PLAY,      /**< the sequencer changed its state: play */
     GROBO_EVENT_TRIP,      /**< stopped for safety: trip */
     GROBO_EVENT_LINK_DOWN, /**< the line is gone */
@@ -260,6 +261,7 @@ typedef struct grobo_robot_axis {
     int64_t goal_us;            /* when its goal was read back */
     int64_t own_until_us;       /* when the move that the servo told of is over */
     int64_t angle_us, full_us;  /* when read; GROBO_NEVER_US: never */
+    int64_t gave_way_us;        /* in free mode: when a hand pushed or turned it last */
     int64_t current_since_us;   /* above its limit since; GROBO_NEVER_US: it is not */
     grobo_robot_way way;        /* the move it was sent on */
     grobo_robot_way way_before; /* and the one before, should the frame never leave */
@@ -334,12 +336,14 @@ typedef struct grobo_robot {
     uint32_t motion_us;     /* wire time of the last motion frames */
     grobo_joint_mask round; /* joints still to be read in this background round */
     grobo_joint_mask free_joints;
+    grobo_joint_mask other_round; /* in free mode: of the joints that are not free */
     uint8_t reply[GROBO_REGISTERS];
     double fault_deg;
     int fault_joint;
     int last_number;
     unsigned low_readings; /* of the voltage, in a row */
     unsigned depth;        /* calls into the engine, one inside another */
+    bool other_read;       /* in free mode: the last reading was of a joint that is not free */
     bool link;
     bool settling;  /* a motion is over, its end not yet looked at */
     bool soft;      /* the next move is the first from a sensed posture */
@@ -521,7 +525,10 @@ GROBO_API int grobo_robot_speed(grobo_robot *robot, int speed_pct, int64_t now_u
 
 /* ---- free (teaching) mode ----------------------------------------------------------------------
  * A person moves the joints: after each reading a joint whose current is above its
- * grobo_joint.free_current_ma is braked, one slower than 8 deg/s holds again (protocol 5). */
+ * grobo_joint.free_current_ma is braked, one slower than 8 deg/s for 0.1 s holds again (protocol 5;
+ * there it is one reading, which for 20 joints is 0.15 s). Free
+ * joints are read as often as the line allows, the others in sense_interval_us (a second where that
+ * is GROBO_SENSE_NEVER), but not twice before a free one: their heat and voltage are watched. */
 
 /**
  * Puts joints into free mode, or back: off is a job that makes them hold where they are.

@@ -8,6 +8,12 @@
 /* Free mode: a joint slower than this holds again (protocol 5). Else: it is at rest. */
 #define SLOW_DPS 8
 
+/* In free mode a hand has so long to get a joint going, or to turn it back, before it holds. */
+#define GRIP_US 100000
+
+/* In free mode the other joints are read so often, also where nothing is read else. */
+#define WATCH_INTERVAL_US 1000000
+
 /* ---- taking a reading ------------------------------------------------------------------------ */
 
 static void merge(grobo_robot_axis *axis, const grobo_joint_state *got)
@@ -144,15 +150,19 @@ static void free_joint(grobo_robot *robot, int joint)
     grobo_robot_axis *axis = &robot->axes[joint];
     const grobo_joint_state *state = &axis->state;
     int limit_ma = robot->driver->model->joints[joint].free_current_ma;
+    bool pushed = limit_ma > 0 && state->current_ma > limit_ma;
     if (axis->goal_us != robot->now_us) {
         return; /* a reading from before, without the goal */
     }
-    if (limit_ma > 0 && state->current_ma > limit_ma) {
+    if (pushed || abs(state->speed_dps) >= SLOW_DPS) {
+        axis->gave_way_us = robot->now_us;
+    }
+    if (pushed) {
         if (state->torque != GROBO_TORQUE_BRAKE) {
             (void)grobo_i_gate_torque(robot, GROBO_JOINT_BIT(joint), GROBO_TORQUE_BRAKE,
                                       GROBO_I_WHOLE);
         }
-    } else if (state->torque != GROBO_TORQUE_ON && abs(state->speed_dps) < SLOW_DPS) {
+    } else if (state->torque != GROBO_TORQUE_ON && robot->now_us >= axis->gave_way_us + GRIP_US) {
         axis->held = grobo_i_goal_holds(robot, joint);
         (void)(axis->held ? grobo_i_gate_torque(robot, GROBO_JOINT_BIT(joint), GROBO_TORQUE_ON,
                                                 GROBO_I_WHOLE)
@@ -161,21 +171,6 @@ static void free_joint(grobo_robot *robot, int joint)
 }
 
 /* ---- the background -------------------------------------------------------------------------- */
-
-static int64_t pause_between(const grobo_robot *robot)
-{
-    return robot->free_joints != 0
-               ? 0
-               : robot->config.sense_interval_us / robot->driver->model->n_joints;
-}
-
-static grobo_sense_kind background_kind(const grobo_robot *robot)
-{
-    if (robot->free_joints != 0) {
-        return GROBO_SENSE_ALL;
-    }
-    return robot->config.sense_position_only ? GROBO_SENSE_POSITION : GROBO_SENSE_FULL;
-}
 
 /* Not in the silence after a flash write or a restart. */
 static bool background_wanted(const grobo_robot *robot)
@@ -186,37 +181,71 @@ static bool background_wanted(const grobo_robot *robot)
     return robot->config.sense_interval_us != GROBO_SENSE_NEVER || robot->free_joints != 0;
 }
 
-static int next_of_round(grobo_robot *robot)
+/* Takes the next joint of a round through `all`, which begins again at its end. */
+static int next_of(grobo_joint_mask *round, grobo_joint_mask all)
 {
-    if (robot->round == 0) {
-        robot->round = grobo_i_all_joints(robot);
+    *round &= all;
+    if (*round == 0) {
+        *round = all;
     }
     int joint = 0;
-    while ((robot->round & GROBO_JOINT_BIT(joint)) == 0) {
+    while ((*round & GROBO_JOINT_BIT(joint)) == 0) {
         joint++;
     }
+    *round &= ~GROBO_JOINT_BIT(joint);
     return joint;
+}
+
+/* The next joint of a round that takes the interval. */
+static int next_in_time(grobo_robot *robot, grobo_joint_mask *round, grobo_joint_mask all)
+{
+    int64_t interval_us = robot->config.sense_interval_us;
+    int n = 0;
+    for (grobo_joint_mask rest = all; rest != 0; rest &= rest - 1) {
+        n++;
+    }
+    robot->sense_us += (interval_us == GROBO_SENSE_NEVER ? WATCH_INTERVAL_US : interval_us) / n;
+    if (robot->sense_us < robot->now_us) {
+        robot->sense_us = robot->now_us; /* the wire was too slow: no burst to catch up */
+    }
+    return next_of(round, all);
+}
+
+/* Joints that hold while others are free are watched in turn with them, and never twice. */
+static bool is_turn_of_the_others(const grobo_robot *robot)
+{
+    bool all_free = (grobo_i_all_joints(robot) & ~robot->free_joints) == 0;
+    return !all_free && robot->now_us >= robot->sense_us && !robot->other_read;
+}
+
+/* Which joint is read next, and what of it. */
+static int next_reading(grobo_robot *robot, grobo_sense_kind *kind)
+{
+    grobo_joint_mask all = grobo_i_all_joints(robot);
+    if (robot->free_joints == 0) {
+        *kind = robot->config.sense_position_only ? GROBO_SENSE_POSITION : GROBO_SENSE_FULL;
+        return next_in_time(robot, &robot->round, all);
+    }
+    robot->other_read = is_turn_of_the_others(robot);
+    *kind = robot->other_read ? GROBO_SENSE_FULL : GROBO_SENSE_ALL;
+    return robot->other_read ? next_in_time(robot, &robot->other_round, all & ~robot->free_joints)
+                             : next_of(&robot->round, robot->free_joints);
 }
 
 void grobo_i_sense_step(grobo_robot *robot)
 {
     const grobo_driver *driver = robot->driver;
-    if (!background_wanted(robot) || robot->now_us < robot->sense_us ||
-        grobo_i_slots_busy(robot, GROBO_I_USE_SENSE)) {
+    bool due = robot->free_joints != 0 || robot->now_us >= robot->sense_us;
+    grobo_sense_kind kind;
+    if (!due || !background_wanted(robot) || grobo_i_slots_busy(robot, GROBO_I_USE_SENSE)) {
         return;
     }
     grobo_robot_slot *slot = grobo_i_slot_take(robot, GROBO_I_USE_SENSE);
     if (slot == NULL) {
         return;
     }
-    slot->joint = (uint8_t)next_of_round(robot);
-    robot->round &= ~GROBO_JOINT_BIT(slot->joint);
-    robot->sense_us += pause_between(robot);
-    if (robot->sense_us < robot->now_us) {
-        robot->sense_us = robot->now_us; /* the wire was too slow: no burst to catch up */
-    }
-    if (driver->sense(driver, robot->driver_ctx, slot->joint, background_kind(robot),
-                      &slot->exchange) < 0) {
+    slot->joint = (uint8_t)next_reading(robot, &kind);
+    if (driver->sense(driver, robot->driver_ctx, slot->joint, kind, &slot->exchange) < 0) {
         grobo_i_slot_drop(slot);
         return;
     }
@@ -231,10 +260,11 @@ void grobo_i_sense_done(grobo_robot_slot *slot, int result, const grobo_rs30x_pa
         return;
     }
     result = grobo_i_sense_take(robot, joint, result, reply);
-    if (result >= 0 && (robot->free_joints & GROBO_JOINT_BIT(joint)) != 0) {
+    bool is_free = (robot->free_joints & GROBO_JOINT_BIT(joint)) != 0;
+    if (result >= 0 && is_free) {
         free_joint(robot, joint);
     }
-    if (robot->round == 0) {
+    if (robot->round == 0 && (is_free || robot->free_joints == 0)) {
         grobo_event event = {.kind = GROBO_EVENT_ROUND};
         grobo_i_tell(robot, &event);
     }
@@ -244,5 +274,8 @@ void grobo_i_sense_done(grobo_robot_slot *slot, int result, const grobo_rs30x_pa
 int64_t grobo_i_sense_deadline(const grobo_robot *robot)
 {
     bool waits = background_wanted(robot) && !grobo_i_slots_busy(robot, GROBO_I_USE_SENSE);
-    return waits ? robot->sense_us : GROBO_NEVER_US;
+    if (!waits) {
+        return GROBO_NEVER_US;
+    }
+    return robot->free_joints != 0 ? robot->now_us : robot->sense_us;
 }

@@ -10,7 +10,7 @@ start_record() {
     (cd "$work" && exec "$GRCTL" -d "$robot" --timeout 500 record "$@" <keys >out 2>err) &
     record_pid=$!
     exec 6>"$work/keys"
-    until grep -qs '^\(space\|Ctrl-C\)' "$work/err"; do kill -0 $record_pid || return 1; done
+    written "$work/err" '^\(space\|Ctrl-C\)'
 }
 
 key() {
@@ -48,6 +48,10 @@ counts() {
     return 1
 }
 
+fails_to_find() {
+    ! grep -e "$1" "$2"
+}
+
 start_told_sim || { echo "Bail out! the simulator did not start"; exit 1; }
 
 start_record --key -o wave.pseq
@@ -74,15 +78,26 @@ else
 fi
 check "it is there" [ -s "$work/Motion1.m" ]
 
-start_record --rate 20 --moved 0 -o all.m right_arm
-until [ "$(wc -l <"$work/sim.log")" -gt 400 ]; do tell look 5; done
+# The elbow alone is read a hundred times a second: a hand that turns it is seen all the way. With
+# all joints it would be seen 13 times.
+exits 0 on_robot move m5 -20 500
+start_record --rate 50 --moved 1 -o all.m m5
+tell load 5 200
+wait_for sim_shows 5 'torque brake'
+tell turn 5 -80 2000
+wait_for sim_shows 5 ' -80\.0 deg'
+tell load 5 0
 kill -INT $record_pid
 finish
 check "Ctrl-C is told by the status" [ $ended -eq 130 ]
+check "no rate is called too high" fails_to_find 'sees nothing more' "$work/err"
 check "what was recorded is kept" counts "$(wc -l <"$work/all.m")" "$work/all.m"
+check "it has more than a reading of all joints would see" [ "$(wc -l <"$work/all.m")" -gt 20 ]
 check "it is a motion" exits 0 "$GRCTL" show "$work/all.m"
 
-start_record -o lost.m
+start_record --rate 50 -o lost.m arms
+check "a rate that the line does not allow is told" \
+    grep -q 'each joint 20.8 times a second: a higher --rate sees nothing more' "$work/err"
 tell plug out
 finish
 check "a lost line is a failure" [ $ended -eq 1 ]

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# grctl shell while it waits for a line: the robot is looked after, and what happens is told at once.
+# grctl shell while it waits for a line: the robot is looked after, what happens is told at once.
 . tests/support/cli.sh
 . tests/support/terminal.sh
 
@@ -67,7 +67,8 @@ start_told_sim || { echo "Bail out! the simulator did not start"; exit 1; }
 # ---- an emergency stop of another grctl ----------------------------------------------------------
 
 stops() {
-    holds && exits 0 on_robot estop && ended 4 && told 'stopped for safety: emergency stop' && braked
+    holds && exits 0 on_robot estop && ended 4 &&
+        told 'stopped for safety: emergency stop' && braked
 }
 check "an emergency stop ends a script at once" stops
 exits 0 on_robot estop --reset
@@ -164,7 +165,8 @@ many_words() {
     done
     echo
 }
-check "too many words" both runs 2 many_words --- complains '^grctl: standard input:1: too many words'
+check "too many words" both runs 2 many_words --- \
+    complains '^grctl: standard input:1: too many words'
 
 # from FILE: standard input is that.
 from() {

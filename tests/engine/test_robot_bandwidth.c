@@ -166,12 +166,59 @@ static void a_bad_line_delays_no_frame(void **state)
     }
 }
 
+/*
+ * A free joint is read with its goal: 24 bytes of registers, 7306 us through the board, 3746 us on
+ * a bus. The others, which hold, are read in full once a second for heat and voltage.
+ */
+static void expect_free_rate(grobo_wiring wiring, grobo_joint_mask joints, int n)
+{
+    const use full = {wiring, false, 0};
+    double free_us = reading_us(&full) + (wiring == GROBO_WIRING_BOARD ? 12 : 6) * 10e6 / 115200;
+    double allowed_hz = (1 - (JOINTS - n) * reading_us(&full) / 1e6) * 1e6 / free_us / n;
+    grobo_robot_config config = {.sense_interval_us = GROBO_SENSE_NEVER};
+    rig_start_driver(&rig, grobo_gr001_driver(wiring), &config, NULL);
+    rig.on_event = on_event;
+    rig_power(&rig);
+    assert_int_equal(grobo_robot_free(&rig.robot, joints, true, rig.now_us), GROBO_OK);
+    rig_run(&rig, SECOND_US);
+    memset(taken, 0, sizeof taken);
+    rig_run(&rig, LENGTH_S * SECOND_US);
+    print_message("# %s, %d of 20 joints taught: each read %.1f times a second, "
+                  "the wire allows %.1f\n",
+                  wiring == GROBO_WIRING_BOARD ? "board" : "bus", n,
+                  taken[R_KNEE] / (double)LENGTH_S, allowed_hz);
+    for (int j = 0; j < JOINTS; j++) {
+        if (joints & GROBO_JOINT_BIT(j)) {
+            assert_true(taken[j] + 1 >= 0.95 * LENGTH_S * allowed_hz);
+        } else {
+            assert_in_range(taken[j], LENGTH_S - 1, LENGTH_S + 1);
+        }
+    }
+}
+
+static void a_taught_arm_has_the_wire(void **state)
+{
+    (void)state;
+    static const struct {
+        int n;
+        grobo_joint_mask joints;
+    } taught[] = {{1, GROBO_JOINT_BIT(R_KNEE)},
+                  {3, 7u << R_KNEE},
+                  {6, 63u << R_KNEE},
+                  {20, GROBO_JOINTS_ALL(JOINTS)}};
+    for (int i = 0; i < 8; i++) {
+        expect_free_rate(i < 4 ? GROBO_WIRING_BOARD : GROBO_WIRING_BUS, taught[i % 4].joints,
+                         taught[i % 4].n);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(readings_alone_fill_the_wire),
         cmocka_unit_test(readings_fill_the_gaps_between_frames),
         cmocka_unit_test(a_bad_line_delays_no_frame),
+        cmocka_unit_test(a_taught_arm_has_the_wire),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -463,6 +463,28 @@ static void nothing_is_switched_on_after_a_trip(void **state)
     }
 }
 
+/* The arm is taught, and a leg holds the robot: it may be hot, and has no less of a battery. */
+static void who_holds_is_watched_while_others_are_taught(void **state)
+{
+    (void)state;
+    for (int low = 0; low < 2; low++) {
+        grobo_trip_info trip;
+        rig_start(&rig, &quiet, NULL);
+        rig_power(&rig);
+        assert_int_equal(grobo_robot_free(&rig.robot, GROBO_JOINT_BIT(NECK), true, rig.now_us), 0);
+        rig_run(&rig, 5000000);
+        if (low) {
+            grobo_sim_set_supply(&rig.sim, 5000);
+        } else {
+            assert_int_equal(grobo_sim_set_temperature(&rig.sim, R_KNEE, 75), 0);
+        }
+        rig_run(&rig, 1100000); /* each in a second */
+        grobo_robot_tripped(&rig.robot, &trip);
+        assert_true(trip.latched);
+        assert_int_equal(trip.trip, low ? GROBO_TRIP_VOLTAGE : GROBO_TRIP_TEMPERATURE);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -476,6 +498,7 @@ int main(void)
         cmocka_unit_test(a_trip_ends_a_move_where_it_is),
         cmocka_unit_test(a_tripped_robot_holds_instead_of_sitting_down),
         cmocka_unit_test(torque_does_not_come_on_in_a_motion),
+        cmocka_unit_test(who_holds_is_watched_while_others_are_taught),
         cmocka_unit_test(sustained_over_current_stops),
         cmocka_unit_test(low_voltage_stops),
         cmocka_unit_test(lost_replies_stop),

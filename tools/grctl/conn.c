@@ -8,9 +8,6 @@
 #include "latch.h"
 #include "os.h"
 
-/* How often joints in free mode are read. */
-enum { SENSE_FREE_US = 100000 };
-
 static const char *requested_device(const app *a)
 {
     const char *fallback = getenv("GRCTL_DEVICE");
@@ -312,6 +309,7 @@ static void take(conn *c, app *a)
     if (!c->link->session) {
         c->link->link_error = 0;
         c->link->up = c->link->answered = false;
+        c->link->free_joints = 0;
     }
     c->link->user = c;
     c->base = c->link->base;
@@ -330,8 +328,6 @@ static int take_over(conn *c, bool check)
         return status;
     conn_link_watch(c->link);
     config.bus.baud_bps = conn_baud(c->a);
-    if (c->link->free_joints)
-        config.sense_interval_us = SENSE_FREE_US;
     c->before = *grobo_robot_get_counters(c->robot);
     error = grobo_robot_configure(c->robot, &config);
     if (!error) /* an emergency stop from before the command, maybe */

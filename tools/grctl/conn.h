@@ -46,7 +46,7 @@ typedef struct conn_link {
     grobo_trip_info trip;
     trace trace; /* of the shell's --trace */
     /* set by a shell */
-    grobo_joint_mask free_joints; /* in free mode: read in the background */
+    grobo_joint_mask free_joints; /* in free mode */
     app *owner;                   /* of the shell */
     bool kept;                    /* conn_close() leaves it open */
 } conn_link;

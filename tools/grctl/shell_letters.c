@@ -10,7 +10,7 @@
 #include "joints.h"
 #include "shell.h"
 
-enum { SENSE_EVERY_US = 100000, CAPTURE_MS = 100, LONGEST_MS = 3600000 };
+enum { CAPTURE_MS = 100, LONGEST_MS = 3600000, KNOWN_US = 2000000 };
 
 static int usage(shell *s, const char *format, const char *what)
 {
@@ -53,12 +53,21 @@ static int need_record(shell *s)
         s, grobo_motion_new(&s->record, GROBO_MOTION_POSTURES, grobo_gr001_model.n_joints, NULL));
 }
 
+/* Those that a hand may move: in free mode the others hold, and are read each second anyway. */
+static grobo_joint_mask joints_that_move(conn *c, const shell *s)
+{
+    grobo_posture known;
+    int n = grobo_robot_posture(c->robot, grobo_now_us(), KNOWN_US, &known);
+    return s->link.free_joints && n == known.n_joints ? s->link.free_joints
+                                                      : GROBO_JOINTS_ALL(known.n_joints);
+}
+
 /* Reads the posture and appends it. */
 static int push(conn *c, shell *s, double ms)
 {
-    grobo_joint_mask all = GROBO_JOINTS_ALL(grobo_gr001_model.n_joints);
     grobo_posture posture;
-    int error = conn_wait(c, grobo_session_sense(c->session, all, GROBO_SENSE_FULL));
+    int error =
+        conn_wait(c, grobo_session_sense(c->session, joints_that_move(c, s), GROBO_SENSE_FULL));
     int status = error ? conn_fail(c, error, "record") : need_record(s);
     if (status)
         return status;
@@ -191,20 +200,6 @@ static int do_save(shell *s, int n, char **words)
 
 /* ---- free mode ------------------------------------------------------------------------------ */
 
-static int free_mode(conn *c, grobo_joint_mask joints, bool on)
-{
-    grobo_robot_config config = conn_robot_config(c->a);
-    int error;
-    config.bus.baud_bps = conn_baud(c->a);
-    config.sense_interval_us = on ? SENSE_EVERY_US : GROBO_SENSE_NEVER;
-    error = grobo_robot_configure(c->robot, &config);
-    if (!error)
-        error = grobo_session_free_mode(c->session, joints, on);
-    if (!error || on)
-        return error;
-    return conn_wait(c, error);
-}
-
 static int do_free(shell *s, int n, char **words)
 {
     conn c;
@@ -218,7 +213,7 @@ static int do_free(shell *s, int n, char **words)
         joints = GROBO_JOINTS_ALL(grobo_gr001_model.n_joints);
     status = conn_open_to_move(&c, &s->one);
     if (!status) {
-        error = free_mode(&c, joints, true);
+        error = grobo_session_free_mode(c.session, joints, true);
         status = error < 0 ? conn_fail(&c, error, "free") : 0;
         s->link.free_joints |= status ? 0 : joints;
     }
@@ -238,7 +233,7 @@ static int do_end(shell *s, int n, char **words)
         return run_text(s, 1, line);
     status = conn_open(&c, &s->one);
     if (!status) {
-        error = free_mode(&c, s->link.free_joints, false);
+        error = conn_wait(&c, grobo_session_free_mode(c.session, s->link.free_joints, false));
         status = error < 0 ? conn_fail(&c, error, "end") : 0;
         s->link.free_joints = 0;
     }

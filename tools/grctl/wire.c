@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: MIT */
+#include <math.h>
+
 #include <grobo/bus.h>
 
 #include "wire.h"
@@ -57,6 +59,19 @@ int wire_read_us(const grobo_driver *driver, int baud_bps, int length, uint32_t 
     measure(&bus, driver->wiring, &exchange, &cost);
     *time_us = cost.total_us;
     return GROBO_OK;
+}
+
+double wire_taught_hz(const grobo_driver *driver, int baud_bps, int n)
+{
+    wire_cost taught = {0}, other = {0};
+    grobo_bus bus;
+    double left_us;
+    if (make_bus(driver, baud_bps, &bus) < 0)
+        return 0;
+    measure_read(&bus, driver, GROBO_SENSE_ALL, &taught);
+    measure_read(&bus, driver, GROBO_SENSE_FULL, &other);
+    left_us = 1e6 - (double)(driver->model->n_joints - n) * other.total_us; /* each in a second */
+    return fmax(left_us / taught.total_us, 1e6 / (taught.total_us + other.total_us)) / n;
 }
 
 int wire_measure(const grobo_driver *driver, int baud_bps, wire_cost *costs)

@@ -17,6 +17,12 @@ enum { WIRE_MOTION, WIRE_READ_FULL, WIRE_READ_ANGLE, WIRE_COSTS };
 int wire_measure(const grobo_driver *driver, int baud_bps, wire_cost *costs);
 
 /*
+ * How often each of n joints in free mode is read while the others are watched, a second; 0 for a
+ * baud rate that is none.
+ */
+double wire_taught_hz(const grobo_driver *driver, int baud_bps, int n);
+
+/*
  * Beyond the wire's time, until a servo is taken for silent: for an adapter that is set for low
  * latency, and this machine. The bus keeps quiet for 1 ms more: it all stays below 4 ms.
  */
