@@ -71,6 +71,9 @@ GROBO_API int grobo_model_find_joint(const grobo_model *model, const char *name,
 GROBO_API int grobo_model_find_joints(const grobo_model *model, const char *name, size_t length,
                                       grobo_joint_mask *joints);
 
+/** Number of joints in a mask. Thread safe. */
+GROBO_API int grobo_joints_count(grobo_joint_mask joints);
+
 /** HPI GR001: 20 joints, groups all body right_arm left_arm arms right_leg left_leg legs. */
 GROBO_API extern const grobo_model grobo_gr001_model;
 

@@ -40,15 +40,6 @@ static bool is_number(const char *text)
     return *text == '\0';
 }
 
-static int count(grobo_joint_mask joints)
-{
-    int n = 0;
-    for (; joints != 0; joints &= joints - 1) {
-        n++;
-    }
-    return n;
-}
-
 int grobo_hrpsys_find(const grobo_hrpsys *hrpsys, const char *name, grobo_joint_mask *joints)
 {
     const grobo_model *model = model_of(hrpsys);
@@ -59,7 +50,7 @@ int grobo_hrpsys_find(const grobo_hrpsys *hrpsys, const char *name, grobo_joint_
     for (unsigned i = 0; i < hrpsys->n_groups; i++) {
         if (is_same(hrpsys->groups[i].name, name)) {
             *joints = hrpsys->groups[i].joints;
-            return count(*joints);
+            return grobo_joints_count(*joints);
         }
     }
     if (is_number(name)) { /* the model would take it for a group's */
@@ -96,7 +87,7 @@ int grobo_hrpsys_add_joint_group(grobo_hrpsys *hrpsys, const char *name, const c
     memcpy(hrpsys->groups[hrpsys->n_groups].name, name, length + 1);
     hrpsys->groups[hrpsys->n_groups].joints = group;
     hrpsys->n_groups++;
-    return count(group);
+    return grobo_joints_count(group);
 }
 
 int grobo_hrpsys_names_to_ids(const grobo_hrpsys *hrpsys, const char *const *names, size_t n,

@@ -139,10 +139,10 @@ int grobo_model_find_joint(const grobo_model *model, const char *name, size_t le
     return GROBO_ERR_NOTFOUND;
 }
 
-static int count(grobo_joint_mask mask)
+int grobo_joints_count(grobo_joint_mask joints)
 {
     int n = 0;
-    for (; mask != 0; mask &= mask - 1) {
+    for (; joints != 0; joints &= joints - 1) {
         n++;
     }
     return n;
@@ -155,7 +155,7 @@ int grobo_model_find_joints(const grobo_model *model, const char *name, size_t l
     for (int g = 0; g < model->n_groups; g++) {
         if (g == number || is_name(model->groups[g].name, name, length)) {
             *joints = model->groups[g].joints;
-            return count(*joints);
+            return grobo_joints_count(*joints);
         }
     }
     int joint = grobo_model_find_joint(model, name, length);

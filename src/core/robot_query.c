@@ -23,15 +23,6 @@ int grobo_robot_joint(const grobo_robot *robot, int joint, int64_t now_us, grobo
     return GROBO_OK;
 }
 
-static int count(grobo_joint_mask joints)
-{
-    int n = 0;
-    for (; joints != 0; joints &= joints - 1) {
-        n++;
-    }
-    return n;
-}
-
 int grobo_robot_posture(const grobo_robot *robot, int64_t now_us, int64_t max_age_us,
                         grobo_posture *posture)
 {
@@ -43,7 +34,7 @@ int grobo_robot_posture(const grobo_robot *robot, int64_t now_us, int64_t max_ag
             posture->set |= GROBO_JOINT_BIT(j);
         }
     }
-    return count(posture->set);
+    return grobo_joints_count(posture->set);
 }
 
 int grobo_robot_target(const grobo_robot *robot, grobo_posture *posture)
@@ -55,7 +46,7 @@ int grobo_robot_target(const grobo_robot *robot, grobo_posture *posture)
             posture->set |= GROBO_JOINT_BIT(j);
         }
     }
-    return count(posture->set);
+    return grobo_joints_count(posture->set);
 }
 
 bool grobo_robot_moving(const grobo_robot *robot, int64_t now_us)

@@ -58,16 +58,6 @@ static void look_for_owner(grobo_control *control, int64_t now_us)
     }
 }
 
-static int64_t period_of(grobo_control *control)
-{
-    int64_t period_us;
-
-    grobo_i_control_lock(control);
-    period_us = control->period_us;
-    grobo_i_control_unlock(control);
-    return period_us;
-}
-
 static void on_time(grobo_timer *timer, int64_t late_us, void *ctx)
 {
     grobo_control *control = ctx;
@@ -78,9 +68,10 @@ static void on_time(grobo_timer *timer, int64_t late_us, void *ctx)
     if (now_us < control->tick_us) {
         return; /* the end of somebody's patience */
     }
-    control->tick_us += period_of(control);
+    control->tick_us += grobo_control_get_period_us(control);
     if (control->tick_us <= now_us) {
-        control->tick_us = now_us + period_of(control); /* late: skipped, not made up for */
+        /* Late: skipped, not made up for. */
+        control->tick_us = now_us + grobo_control_get_period_us(control);
     }
     look_for_owner(control, now_us);
     if (control->on_svc != NULL) {
@@ -106,7 +97,7 @@ static void do_round(grobo_control *control, int64_t end_us)
 
     rounds = &frame;
     if (control->tick_us == GROBO_NEVER_US) {
-        control->tick_us = grobo_now_us() + period_of(control);
+        control->tick_us = grobo_now_us() + grobo_control_get_period_us(control);
     }
     /* Cannot fail: the timer's event has been added before, or adding takes no memory. */
     (void)grobo_timer_set(control->timer, end_us < control->tick_us ? end_us : control->tick_us);
@@ -321,7 +312,7 @@ static int await_turn(grobo_control *control, int64_t end_us)
 
 int grobo_control_svc(grobo_control *control)
 {
-    int64_t end_us = grobo_now_us() + period_of(control);
+    int64_t end_us = grobo_now_us() + grobo_control_get_period_us(control);
     int r = 0;
 
     if (grobo_i_control_inside(control)) {

@@ -265,16 +265,14 @@ static int sense(grobo_control *control, void *arg)
     control_job *job = arg;
     int r = grobo_i_control_poll_job(control, job);
     int64_t now_us = grobo_now_us();
-    int n = 0;
+    int n;
 
     if (!job->ended || r == GROBO_ERR_UNPLUGGED || r == GROBO_ERR_CANCELED) {
         return r;
     }
     (void)grobo_robot_posture(robot_of(control), now_us, now_us - job->begun_us, job->posture);
     job->posture->set &= job->joints;
-    for (grobo_joint_mask left = job->posture->set; left != 0; left &= left - 1) {
-        n++;
-    }
+    n = grobo_joints_count(job->posture->set);
     return n > 0 ? n : r;
 }
 

@@ -282,12 +282,6 @@ static void the_queue_has_a_cap(void **state)
 
 /* ---- refusals and failures ---- */
 
-static int play_with(grobo_play_options options)
-{
-    grobo_posture from = sample_posture(0, 0, 0);
-    return grobo_sequencer_play(&pump.seq, &clip.clip, &options, &from, pump.now_us);
-}
-
 static void options_out_of_range_are_refused(void **state)
 {
     (void)state;
@@ -304,20 +298,21 @@ static void options_out_of_range_are_refused(void **state)
     there_and_back_start(&by_key, 0.0);
     grobo_sequencer_reset(&pump.seq);
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
-        assert_int_equal(play_with(bad[i]), GROBO_ERR_ARG);
+        assert_int_equal(there_and_back_again(bad[i]), GROBO_ERR_ARG);
     }
     clip.clip.sample = NULL;
-    assert_int_equal(play_with(at_rate), GROBO_ERR_UNSUPPORTED);
+    assert_int_equal(there_and_back_again(at_rate), GROBO_ERR_UNSUPPORTED);
     pump.seq.model = NULL;
-    assert_int_equal(play_with((grobo_play_options){.mirror = true}), GROBO_ERR_UNSUPPORTED);
+    assert_int_equal(there_and_back_again((grobo_play_options){.mirror = true}),
+                     GROBO_ERR_UNSUPPORTED);
     assert_int_equal(grobo_sequencer_get_state(&pump.seq), GROBO_SEQUENCER_IDLE);
-    assert_int_equal(play_with((grobo_play_options){.from_us = 3000 * MS}), 0);
+    assert_int_equal(there_and_back_again((grobo_play_options){.from_us = 3000 * MS}), 0);
 }
 
 static int play_keys(const sample_key *list, size_t n)
 {
     sample_clip_init(&clip, list, n);
-    return play_with((grobo_play_options){0});
+    return there_and_back_again((grobo_play_options){0});
 }
 
 static void bad_clips_never_start(void **state)
@@ -335,19 +330,20 @@ static void bad_clips_never_start(void **state)
     assert_int_equal(play_keys(too_early, 1), GROBO_ERR_ARG);
     sample_clip_init(&clip, there_and_back, 3);
     clip.fail_at = 2;
-    assert_int_equal(play_with(by_key), GROBO_ERR_UNREACHABLE);
+    assert_int_equal(there_and_back_again(by_key), GROBO_ERR_UNREACHABLE);
     clip.sample_error = GROBO_ERR_STALE;
-    assert_int_equal(play_with(at_rate), GROBO_ERR_STALE);
+    assert_int_equal(there_and_back_again(at_rate), GROBO_ERR_STALE);
     clip.clip.key = NULL;
-    assert_int_equal(play_with(by_key), GROBO_ERR_ARG);
+    assert_int_equal(there_and_back_again(by_key), GROBO_ERR_ARG);
     sample_clip_init(&clip, there_and_back, 3);
     clip.clip.length_us = -1;
-    assert_int_equal(play_with(by_key), GROBO_ERR_ARG);
+    assert_int_equal(there_and_back_again(by_key), GROBO_ERR_ARG);
     sample_clip_init(&clip, there_and_back, 3);
     clip.clip.n_joints = 0;
-    assert_int_equal(play_with(by_key), GROBO_ERR_EMPTY);
+    assert_int_equal(there_and_back_again(by_key), GROBO_ERR_EMPTY);
     clip.clip.n_joints = 4;
-    assert_int_equal(play_with(by_key), GROBO_ERR_ARG); /* neither the model's nor the start's */
+    assert_int_equal(there_and_back_again(by_key),
+                     GROBO_ERR_ARG); /* neither the model's nor the start's */
     assert_int_equal(grobo_sequencer_get_state(&pump.seq), GROBO_SEQUENCER_IDLE);
     assert_int_equal(grobo_sequencer_stats(&pump.seq)->frames, 0);
     assert_int_equal(play_keys(hidden, 1), 0); /* what is not set means nothing */
@@ -382,10 +378,10 @@ static void a_clip_that_fails_in_mid_motion_says_so_once(void **state)
     assert_int_equal(pump.state, GROBO_SEQUENCER_FAILED);
     grobo_sequencer_progress(&pump.seq, pump.now_us, &p);
     assert_int_equal(p.error, GROBO_ERR_UNREACHABLE);
-    assert_int_equal(play_with(by_key), GROBO_ERR_STATE);
+    assert_int_equal(there_and_back_again(by_key), GROBO_ERR_STATE);
     grobo_sequencer_reset(&pump.seq);
     clip.fail_at = SIZE_MAX;
-    assert_int_equal(play_with(by_key), 0);
+    assert_int_equal(there_and_back_again(by_key), 0);
 
     there_and_back_start(&at_rate, 0.0);
     sample_pump_run(&pump, 100 * MS);

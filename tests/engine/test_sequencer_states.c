@@ -11,12 +11,6 @@
 
 #include "there_and_back.h"
 
-static int play_with(grobo_play_options options)
-{
-    grobo_posture from = sample_posture(0, 0, 0);
-    return grobo_sequencer_play(&pump.seq, &clip.clip, &options, &from, pump.now_us);
-}
-
 /* ---- transitions ---- */
 
 static void transitions_are_those_of_the_table(void **state)
@@ -54,7 +48,7 @@ static int give(int command)
 {
     switch (command) {
     case PLAY:
-        return play_with(by_key);
+        return there_and_back_again(by_key);
     case ENQUEUE:
         return grobo_sequencer_enqueue(&pump.seq, &other.clip, NULL);
     case PAUSE:

@@ -118,3 +118,11 @@ double angle_of(const grobo_motion *motion, size_t n, int joint)
     (void)grobo_posture_get_rad(&posture, joint, &angle_rad);
     return angle_rad;
 }
+
+double time_of(const grobo_motion *motion, size_t n)
+{
+    double time_s = NAN;
+
+    assert_int_equal(grobo_motion_time_s(motion, n, &time_s), 0);
+    return time_s;
+}

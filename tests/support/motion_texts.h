@@ -23,5 +23,7 @@ bool has_diagnostic(const grobo_diagnostics *list, const char *code, unsigned li
                     unsigned column);
 /* Angle of a joint of posture n; NAN where it is not set. */
 double angle_of(const grobo_motion *motion, size_t n, int joint);
+/* Time of posture n. */
+double time_of(const grobo_motion *motion, size_t n);
 
 #endif

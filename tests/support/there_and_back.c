@@ -24,3 +24,9 @@ void there_and_back_start(const grobo_play_options *options, double left_rad)
     assert_int_equal(grobo_sequencer_play(&pump.seq, &clip.clip, options, &from, 0), 0);
     sample_pump_look(&pump);
 }
+
+int there_and_back_again(grobo_play_options options)
+{
+    grobo_posture from = sample_posture(0, 0, 0);
+    return grobo_sequencer_play(&pump.seq, &clip.clip, &options, &from, pump.now_us);
+}

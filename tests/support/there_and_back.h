@@ -17,4 +17,7 @@ extern const grobo_play_options at_rate;
 /* Plays at time 0, from where LEFT stands at this angle. */
 void there_and_back_start(const grobo_play_options *options, double left_rad);
 
+/* Asks for it at the pump's time; what grobo_sequencer_play() returned. */
+int there_and_back_again(grobo_play_options options);
+
 #endif

@@ -193,6 +193,15 @@ static void sets_are_found_by_joint_too(void **state)
     assert_true(joints == 5);
 }
 
+static void joints_of_a_set_are_counted(void **state)
+{
+    (void)state;
+    assert_int_equal(grobo_joints_count(0), 0);
+    assert_int_equal(grobo_joints_count(GROBO_JOINT_BIT(0) | GROBO_JOINT_BIT(GROBO_JOINTS_MAX - 1)),
+                     2);
+    assert_int_equal(grobo_joints_count(GROBO_JOINTS_ALL(GROBO_JOINTS_MAX)), GROBO_JOINTS_MAX);
+}
+
 /* One fault at a time in a table that is good otherwise. */
 static grobo_joint arm[2];
 static grobo_group arm_groups[2];
@@ -262,6 +271,7 @@ int main(void)
         cmocka_unit_test(joints_are_found_by_name_motor_and_id),
         cmocka_unit_test(groups_are_those_of_the_reference_library),
         cmocka_unit_test(sets_are_found_by_joint_too),
+        cmocka_unit_test(joints_of_a_set_are_counted),
         cmocka_unit_test(a_faulty_joint_is_refused),
         cmocka_unit_test(a_faulty_table_is_refused),
     };

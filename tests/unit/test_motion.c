@@ -13,6 +13,7 @@
 #include <grobo/motion.h>
 
 #include "counted_mem.h"
+#include "motion_texts.h"
 
 static grobo_posture posture_of(int n_joints, double angle_rad, int64_t time_us)
 {
@@ -45,14 +46,6 @@ static double first_angle(const grobo_motion *motion, size_t n)
 
     assert_int_equal(grobo_motion_get(motion, n, &posture), 0);
     return posture.angle_rad[0];
-}
-
-static double time_of(const grobo_motion *motion, size_t n)
-{
-    double time_s = NAN;
-
-    assert_int_equal(grobo_motion_time_s(motion, n, &time_s), 0);
-    return time_s;
 }
 
 static void test_new_refuses(void **state)

@@ -35,14 +35,6 @@ static grobo_motion *frames_of(double rate_hz, int count, double first_rad)
     return motion;
 }
 
-static double time_of(const grobo_motion *motion, size_t n)
-{
-    double time_s = NAN;
-
-    assert_int_equal(grobo_motion_time_s(motion, n, &time_s), 0);
-    return time_s;
-}
-
 static double sample(const grobo_motion *motion, double t_s, int joint)
 {
     grobo_clip clip;

@@ -36,14 +36,13 @@ static void print_json(const conn *c, grobo_joint_mask joints)
 
 static int switch_torque(conn *c, grobo_joint_mask joints, grobo_torque mode, const char *word)
 {
-    int error, n = 0;
+    int error, n;
     if (mode == GROBO_TORQUE_ON)
         c->moving = true;
     error = conn_wait(c, grobo_session_torque(c->session, joints, mode));
     if (error)
         return conn_fail(c, error, "servo");
-    for (grobo_joint_mask rest = joints; rest; rest &= rest - 1)
-        n++;
+    n = grobo_joints_count(joints);
     if (c->a->json)
         print_json(c, joints);
     else
