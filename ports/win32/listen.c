@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The listening side of "tcp:HOST:PORT", and pseudo-terminals, which Windows has not. */
+/* The listening side of "tcp:HOST:PORT". */
 #include "ports/win32/win32.h"
 
 /* Which TCP port a socket has. */
@@ -83,25 +83,4 @@ int grobo_port_accept(grobo_socket listener, grobo_port *port, grobo_os_cause *c
     port->socket = made;
     grobo_i_win32_tick(true);
     return GROBO_OK;
-}
-
-/* ---- pseudo-terminals --------------------------------------------------------------------- */
-
-const grobo_port_ops *grobo_port_pty_ops(void)
-{
-    return NULL;
-}
-
-int grobo_port_pty_path(const grobo_port *port, char *path, size_t path_bytes)
-{
-    (void)port;
-    (void)path;
-    (void)path_bytes;
-    return GROBO_ERR_UNSUPPORTED;
-}
-
-int grobo_port_pty_baud(const grobo_port *port)
-{
-    (void)port;
-    return 0;
 }

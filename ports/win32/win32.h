@@ -75,7 +75,7 @@ grobo_socket grobo_i_win32_socket(const grobo_port *port);
 /* Has the system's timers tick each millisecond, or as they did; calls are counted. */
 void grobo_i_win32_tick(bool fast);
 
-/* ---- serial ports: pump.c, name.c ------------------------------------------------------- */
+/* ---- serial ports: pump.c, name.c, lock.c ------------------------------------------------- */
 
 /* Starts to move bytes between port->com and port->socket. */
 int grobo_i_win32_pump_start(grobo_port *port, grobo_os_cause *cause);

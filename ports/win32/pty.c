@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: MIT */
+/* Pseudo-terminals, which Windows has not. */
+#include "ports/common/common.h"
+
+const grobo_port_ops *grobo_port_pty_ops(void)
+{
+    return NULL;
+}
+
+int grobo_port_pty_path(const grobo_port *port, char *path, size_t path_bytes)
+{
+    (void)port;
+    (void)path;
+    (void)path_bytes;
+    return GROBO_ERR_UNSUPPORTED;
+}
+
+int grobo_port_pty_baud(const grobo_port *port)
+{
+    (void)port;
+    return 0;
+}
