@@ -33,11 +33,20 @@ check "an option that is none" fails 2 'unknown option --nonsense' "$GRCTL" stat
 check "a near miss of one" fails 2 'unknown option --sped; did you mean --speed?$' \
     "$GRCTL" play --sped 3 x
 check "of a global one" fails 2 'unknown option --jsn; did you mean --json?$' "$GRCTL" status --jsn
+check "the beginning of one" both exits 0 "$GRCTL" -d sim status --js m2 --- says '^{"robot":'
+check "before its value" both exits 0 "$GRCTL" --dev=sim status m2 --- says NECK_Y
+check "the beginning of two" fails 2 '^grctl: --re may be --repeat or --reverse; see' \
+    "$GRCTL" play --re x
+check "its whole name, which begins another" exits 0 "$GRCTL" -d sim init --time 300
+check "the beginning of none" fails 2 'unknown option --jx' "$GRCTL" status --jx
 check "of a joint" fails 2 "no joint called 'r_kne_p'; did you mean R_KNEE_P?$" \
     "$GRCTL" move r_kne_p 3
+check "a group where one joint is wanted" fails 2 "^grctl: 'legs' is a group; one joint is wanted" \
+    "$GRCTL" move legs 3
 check "of a group" fails 2 'did you mean right_arm?$' "$GRCTL" status rightarm
 check "a file without a name" fails 2 'an empty name is no file' "$GRCTL" play ''
 check "an option without a value" fails 2 'output needs a value: OUT' "$GRCTL" plot -o '' x
+check "a posture of no file" fails 2 "'@:2' is not @FILE or @FILE:N" "$GRCTL" pose @:2
 check "a device without a name" fails 2 'device needs a value: DEV' "$GRCTL" -d '' status
 check "an address that is none" fails 2 'tcp:x: not of the form' "$GRCTL" -d tcp:x status
 check "a letter that is none" fails 2 'unknown option -Z' "$GRCTL" -Z status

@@ -147,6 +147,7 @@ static const char head[] =
     "or by its number 0 to 7.\n"
     "Angles are degrees, times milliseconds.\n"
     ".Pp\n"
+    "A long option may be cut short to a beginning that no other has.\n"
     "These options are taken before and after the command:\n";
 
 static const char tail[] =

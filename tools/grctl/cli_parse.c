@@ -100,38 +100,61 @@ bool cli_take_value(const cli_option *option, cli_value *value, const char *text
     return take_value(&p, option, value, text);
 }
 
-/* Finds an option among the command's own, then the global ones. */
-static const cli_option *find_option(parser *p, const char *name, size_t length, char letter,
-                                     cli_value **value)
+/* The i-th option that may stand here: the command's own, then the global ones, then NULL. */
+static const cli_option *nth_option(parser *p, size_t i, cli_value **value)
 {
     const cli_command *command = p->line->command;
-    for (size_t i = 0; command && i < command->n_options; i++) {
-        const cli_option *o = &command->options[i];
-        if (letter ? o->letter == letter
-                   : strlen(o->name) == length && strncmp(o->name, name, length) == 0) {
-            *value = &p->line->option[i];
-            return o;
+    size_t own = command ? command->n_options : 0;
+    if (i < own) {
+        *value = &p->line->option[i];
+        return &command->options[i];
+    }
+    if (i - own >= GLOBAL_COUNT)
+        return NULL;
+    *value = &p->line->global[i - own];
+    return &cli_global_options[i - own];
+}
+
+static const cli_option *find_letter(parser *p, char letter, cli_value **value)
+{
+    const cli_option *o;
+    for (size_t i = 0; (o = nth_option(p, i, value)) != NULL && o->letter != letter; i++)
+        continue;
+    return o;
+}
+
+/* By its name, or by the beginning of it; *rival is another that begins so, or NULL. */
+static const cli_option *find_name(parser *p, const char *name, size_t length, cli_value **value,
+                                   const cli_option **rival)
+{
+    const cli_option *o, *found = NULL;
+    cli_value *at;
+    *rival = NULL;
+    for (size_t i = 0; (o = nth_option(p, i, &at)) != NULL; i++) {
+        bool whole = strlen(o->name) == length;
+        if (length == 0 || strncmp(o->name, name, length) != 0)
+            continue;
+        if (found && !whole) {
+            *rival = *rival ? *rival : o;
+            continue;
+        }
+        found = o;
+        *value = at;
+        if (whole) {
+            *rival = NULL;
+            break;
         }
     }
-    for (size_t i = 0; i < GLOBAL_COUNT; i++) {
-        const cli_option *o = &cli_global_options[i];
-        if (letter ? o->letter == letter
-                   : strlen(o->name) == length && strncmp(o->name, name, length) == 0) {
-            *value = &p->line->global[i];
-            return o;
-        }
-    }
-    return NULL;
+    return found;
 }
 
 static bool unknown_option(parser *p, const char *name, size_t length)
 {
-    const cli_command *command = p->line->command;
     cli_guess guess = {.name = name, .length = length};
-    for (size_t i = 0; command && i < command->n_options; i++)
-        cli_guess_try(&guess, command->options[i].name);
-    for (size_t i = 0; i < GLOBAL_COUNT; i++)
-        cli_guess_try(&guess, cli_global_options[i].name);
+    const cli_option *o;
+    cli_value *value;
+    for (size_t i = 0; (o = nth_option(p, i, &value)) != NULL; i++)
+        cli_guess_try(&guess, o->name);
     return guess.best ? complain(p, "unknown option --%.*s; did you mean --%s?", (int)length, name,
                                  guess.best)
                       : complain(p, "unknown option --%.*s", (int)length, name);
@@ -143,16 +166,18 @@ static bool stands_alone(const parser *p, const cli_option *o)
     return o->optional && (p->at >= p->argc || choice_index(o->value, p->argv[p->at]) < 0);
 }
 
-/* --name, --name=value, --name value */
+/* --name, --name=value, --name value; of the name, as much as tells it from the others */
 static bool parse_long(parser *p, const char *token)
 {
     const char *name = token + 2;
     size_t length = strcspn(name, "=");
     const char *text = name[length] == '=' ? name + length + 1 : NULL;
     cli_value *value = NULL;
-    const cli_option *o = find_option(p, name, length, 0, &value);
+    const cli_option *rival, *o = find_name(p, name, length, &value, &rival);
     if (!o)
         return unknown_option(p, name, length);
+    if (rival)
+        return complain(p, "--%.*s may be --%s or --%s", (int)length, name, o->name, rival->name);
     if (o->kind == CLI_FLAG)
         return text ? complain(p, "--%s takes no value", o->name) : take_value(p, o, value, "");
     if (!text && stands_alone(p, o)) {
@@ -172,7 +197,7 @@ static bool parse_short(parser *p, const char *token)
 {
     for (const char *c = token + 1; *c; c++) {
         cli_value *value = NULL;
-        const cli_option *o = find_option(p, "", 0, *c, &value);
+        const cli_option *o = find_letter(p, *c, &value);
         if (!o)
             return complain(p, "unknown option -%c", *c);
         if (o->kind == CLI_FLAG) {

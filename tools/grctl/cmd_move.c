@@ -110,7 +110,8 @@ static int pose_of_file(app *a, const char *spec, grobo_posture *target)
     int status;
     if (colon && cli_read_number(colon + 1, &number))
         length = (size_t)(colon - spec);
-    if (length >= sizeof path || number < 1 || number > 1e9 || number != floor(number))
+    if (length == 0 || length >= sizeof path || number < 1 || number > 1e9 ||
+        number != floor(number))
         return app_fail(a, EXIT_USAGE, "USAGE", "pose: '@%s' is not @FILE or @FILE:N", spec);
     memcpy(path, spec, length);
     path[length] = '\0';

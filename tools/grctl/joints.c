@@ -69,11 +69,16 @@ int joints_parse_motion(app *a, const char *list, const grobo_model *model, int 
 int joints_parse_one(app *a, const char *name, size_t length, int *status)
 {
     int joint = grobo_model_find_joint(&grobo_gr001_model, name, length);
-    if (joint < 0) {
+    grobo_joint_mask group;
+    if (joint >= 0)
+        return joint;
+    if (grobo_model_find_joints(&grobo_gr001_model, name, length, &group) >= 0)
+        *status = app_fail(a, EXIT_USAGE, "NOTFOUND",
+                           "'%.*s' is a group; one joint is wanted, named as R_KNEE_P, m12 or j3",
+                           (int)length, name);
+    else
         *status = unknown(a, "joint", name, length);
-        return -1;
-    }
-    return joint;
+    return -1;
 }
 
 int joints_check_limits(app *a, const grobo_posture *posture, const char *doing)
