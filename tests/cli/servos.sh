@@ -65,6 +65,11 @@ check "is read back" both exits 0 on_robot servo-get 12 delay --- says '  200 us
 check_json "in JSON under its unit" 'lines[0]["registers"] == [
     {"name": "delay", "address": 7, "value": 2, "unit": "50 us", "delay_us": 200}]' \
     on_robot --json servo-get 12 delay
+check "an id that another has" fails 4 'servo-set: a servo with the id 13 is there already' \
+    on_robot servo-set 12 id 13
+check "one that nobody has" both exits 0 on_robot servo-set 12 id 40 --- \
+    said '^servo 40: id 12 -> 40; lost'
+check "and back" exits 0 on_robot servo-set 40 id 12
 check "--flash says what it will write" both exits 0 on_robot servo-set 12 delay 0 --flash --- \
     said '^servo 12: delay 2 (200 us) -> 0 (100 us), and No.4-29 go to flash'
 check "a baud rate as it is" both exits 0 on_robot servo-set 12 baud 115200 --- \

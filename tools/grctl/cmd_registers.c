@@ -201,12 +201,33 @@ static int expect_loose(conn *c, const change *what)
                     what->id, what->reg->name, what->id);
 }
 
+/* Two servos of one id answer together, and nobody could give one of them another. */
+static int expect_free_id(conn *c, const change *what)
+{
+    uint8_t model[2];
+    int error;
+    if (what->reg->address != GROBO_RS30X_ID || what->value == what->id)
+        return EXIT_DONE;
+    error = servos_read(c, what->value, GROBO_RS30X_MODEL, sizeof model, model);
+    if (error == GROBO_ERR_TIMEOUT)
+        return EXIT_DONE;
+    if (error)
+        return conn_fail_servo(c, error, what->value);
+    return app_fail(
+        c->a, EXIT_SAFETY, "EXISTS",
+        "servo-set: a servo with the id %d is there already; two of one id cannot be told "
+        "apart; see 'grctl scan'",
+        what->value);
+}
+
 static int set(conn *c, const change *what)
 {
     uint8_t bytes[2] = {0};
     int32_t before;
     int id = what->reg->address == GROBO_RS30X_ID ? (int)what->value : what->id;
     int error = expect_loose(c, what);
+    if (!error)
+        error = expect_free_id(c, what);
     if (error)
         return error;
     error = servos_read(c, what->id, what->reg->address, what->reg->bytes, bytes);
@@ -316,7 +337,7 @@ const cli_command cmd_servo_set = {
         "servo-get); a baud rate may be given as it is. With --flash the servo also keeps\n"
         "its settings over power-off; that is shown first and, on a terminal, asked for.\n"
         "Goal and torque are refused: move and servo set them safely; id, reverse and limits\n"
-        "are refused while the servo holds.\n",
+        "are refused while the servo holds, and an id that another servo has.\n",
     .example = "  grctl servo-set 12 delay 2 --flash\n  grctl servo-set 1 id 21\n",
     .options = set_options,
     .n_options = sizeof set_options / sizeof set_options[0],
