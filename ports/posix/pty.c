@@ -2,6 +2,7 @@
 /* The far end of a pseudo-terminal, for a simulator. */
 #include <errno.h>
 #include <fcntl.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -9,6 +10,19 @@
 #include <unistd.h>
 
 #include "ports/posix/posix.h"
+
+/* A link that leads to another pseudo-terminal: one that a simulator has, or left when killed. */
+static bool leads_to_pty(const char *link, const char *pty)
+{
+    char target[sizeof((grobo_port *)NULL)->path];
+    ssize_t size = readlink(link, target, sizeof target);
+    size_t stem = strlen(pty);
+
+    while (stem > 0 && strchr("0123456789", pty[stem - 1]) != NULL) {
+        stem--;
+    }
+    return size > 0 && (size_t)size > stem && memcmp(target, pty, stem) == 0;
+}
 
 static int make_link(grobo_port *port, const char *link, grobo_os_cause *cause)
 {
@@ -18,8 +32,8 @@ static int make_link(grobo_port *port, const char *link, grobo_os_cause *cause)
         return grobo_i_port_refuse(cause, GROBO_ERR_CAP, "name of the link too long");
     }
     if (link[0] != '\0') {
-        if (lstat(link, &st) == 0 && !S_ISLNK(st.st_mode)) {
-            return grobo_i_port_refuse(cause, GROBO_ERR_EXISTS, "there, and no symbolic link");
+        if (lstat(link, &st) == 0 && !leads_to_pty(link, port->path)) {
+            return grobo_i_port_refuse(cause, GROBO_ERR_EXISTS, "no link to a pseudo-terminal");
         }
         if ((unlink(link) != 0 && errno != ENOENT) || symlink(port->path, link) != 0) {
             return grobo_i_posix_fail(cause, errno, "symlink");

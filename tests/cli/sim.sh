@@ -33,6 +33,11 @@ check "SIGINT: 130" exits 130 timeout --preserve-status -s INT 1 "$GRCTL" sim
 check "a file in the link's place is not replaced" fails 1 "$work/mine" timeout 5 "$GRCTL" sim \
     --link "$work/mine"
 check "it is still there" [ -f "$work/mine" ]
+check "its help has every fault" both exits 0 "$GRCTL" help sim --- says 'brownout, or all'
+ln -s mine "$work/to-mine"
+check "nor is a link to one" fails 1 'exists already: no link to a pseudo-terminal' \
+    timeout 5 "$GRCTL" sim --link "$work/to-mine"
+check "it leads there still" [ "$(readlink "$work/to-mine")" = mine ]
 check "no such folder" fails 1 "$work/none/robot" timeout 5 "$GRCTL" sim --link "$work/none/robot"
 ln -s /dev/pts/none "$work/robot"
 start_sim
@@ -41,6 +46,9 @@ stop_sim
 
 start_sim --tcp 0
 tcp=$(sed -n 's/^also at //p' "$work/sim.log")
+check "another one there" fails 1 "^grctl: sim: $tcp: in use by another program" \
+    "$GRCTL" sim --tcp "${tcp##*:}"
+check "behind the last port" fails 2 '65535 is the last' "$GRCTL" sim --tcp 65535 --robots 2
 check "by TCP too" both exits 0 "$GRCTL" -d "$tcp" status m12 --- says 'R_KNEE_P  *-40\.0'
 check "one robot, whichever way" both exits 0 "$GRCTL" -d "$tcp" servo on m12 --- \
     exits 0 on_robot status m12

@@ -20,7 +20,7 @@ static const cli_option options[] = {
                   .letter = 'l',
                   .kind = CLI_TEXT,
                   .value = "PATH",
-                  .help = "keep a symbolic link to the pty; PATH1, PATH2... for more robots"},
+                  .help = "keep a symbolic link to the pty; PATH2, PATH3... of more robots"},
     [OPT_TCP] = {.name = "tcp",
                  .kind = CLI_NUMBER,
                  .value = "PORT",
@@ -56,8 +56,8 @@ static const cli_option options[] = {
     [OPT_FAULT] = {.name = "fault",
                    .kind = CLI_TEXT,
                    .value = "LIST",
-                   .help = "KIND=RATE,...: drop flip duplicate delay split rubbish silent dupid\n"
-                           "                              hangup brownout, or all; rates 0 to 1"},
+                   .help = "KIND=RATE,...: drop flip duplicate delay split rubbish silent dupid "
+                           "hangup brownout, or all; rates 0 to 1"},
 };
 
 typedef struct farm {
@@ -151,11 +151,19 @@ static int find_place(app *a, int robot, place *at, grobo_sim_server_config *con
             return app_fail(a, EXIT_USAGE, "CAP", "sim: --link: the path is too long");
         config->link = at->name = at->link;
     }
+    if (port + robot > 65535)
+        return app_fail(a, EXIT_USAGE, "LIMIT", "sim: --tcp: %d is the last port there is", 65535);
     if (app_option(a, OPT_TCP)->given || config->no_pty) {
         snprintf(at->tcp, sizeof at->tcp, "tcp:127.0.0.1:%d", port ? port + robot : 0);
         config->tcp = at->tcp;
     }
     return 0;
+}
+
+/* What could not be opened: nothing but a listener is bound. */
+static const char *name_of_failed(const place *at, const grobo_os_cause *cause)
+{
+    return strncmp(cause->text, "bind", 4) == 0 ? at->tcp : at->name;
 }
 
 static int add_robot(farm *f, int robot)
@@ -171,13 +179,16 @@ static int add_robot(farm *f, int robot)
         return error;
     error = grobo_sim_server_new(&config, &f->server[robot], &cause);
     if (error)
-        return app_fail(f->a, EXIT_ROBOT, grobo_error_name(error), "sim: %s: %s%s%s", at.name,
-                        grobo_error_text(error), *cause.text ? ": " : "", cause.text);
+        return app_fail(f->a, EXIT_ROBOT, grobo_error_name(error), "sim: %s: %s%s%s",
+                        name_of_failed(&at, &cause), grobo_error_text(error),
+                        *cause.text ? ": " : "", cause.text);
     f->n = robot + 1;
     if (faults &&
         grobo_sim_set_faults(grobo_sim_server_sim(f->server[robot]), faults, strlen(faults)) < 0)
         return app_fail(f->a, EXIT_USAGE, "USAGE",
-                        "sim: --fault: '%s' is no list such as drop=0.01,flip=0.02", faults);
+                        "sim: --fault: '%s' is no list such as drop=0.01,flip=0.02; see "
+                        "'grctl help sim'",
+                        faults);
     return open_trace(f, robot);
 }
 
