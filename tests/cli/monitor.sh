@@ -34,6 +34,8 @@ else
     skip "as JSON: an object a round" "no python3 to parse JSON with"
 fi
 
+check "a file that is not there, without a screen too" fails 3 'none.m: no such file$' \
+    "$GRCTL" -d "$robot" monitor "$work/none.m"
 if ! have_full_screen; then
     skip "the full screen" "$no_screen"
     done_testing
@@ -149,6 +151,17 @@ keys C-c
 check "Ctrl-C is told by the status" until_screen 'status 130'
 check "the terminal is as it was then too" until_screen ' icanon'
 
+long=$work/$(printf '%0100d' 0)
+mkdir "$long"
+cp motions/greet.pseq "$long/$(printf '%0100d' 0).pseq"
+type_line "'$GRCTL' -d '$work/robot' --retries 10 monitor '$long/'*"
+check "a long name ends with its row" until_screen ' idle .*/00*$'
+below_it() {
+    until_screen '^arrows' && ! grep -q '^0' "$work/screen"
+}
+check "and is in no other" below_it
+keys C-c
+until_screen '^>'
 type_line "NO_COLOR=1 LC_ALL=C $monitor"
 check "plain letters where nothing else is known" until_screen 'NECK_Y .* -*#-* '
 keys q

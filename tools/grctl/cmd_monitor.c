@@ -404,11 +404,11 @@ static int run(app *a)
 {
     static monitor m;
     int status;
-    if (a->json || !screen_possible())
-        return run_plain(a);
     memset(&m, 0, sizeof m);
     status = a->line.n_arguments ? playlist_load(&m.list, a) : EXIT_DONE;
-    if (!status) {
+    if (!status && (a->json || !screen_possible())) {
+        status = run_plain(a);
+    } else if (!status) {
         a->reconnects = true;
         status = conn_open(&m.c, a);
         if (!status)

@@ -93,7 +93,16 @@ void screen_put(int row, int column, screen_style style, const char *text)
     if (row < 0 || row >= LINES || column < 0 || column >= COLS)
         return;
     attrset((int)attributes[style]);
-    mvaddnstr(row, column, text, -1);
+    move(row, column);
+    /* One character after the other until the row is full: a whole text would go on in the next. */
+    while (*text && getcury(stdscr) == row) {
+        int n = 1;
+        while (((unsigned char)text[n] & 0xC0) == 0x80)
+            n++;
+        if (addnstr(text, n) == ERR)
+            break;
+        text += n;
+    }
 }
 
 void screen_end(void)
