@@ -320,7 +320,7 @@ int grobo_motion_read_file(const char *path, const grobo_read_options *options,
     if (stream == NULL) {
         int result = error_of_errno();
         grobo_i_say(list, &(grobo_i_said){named.name, "open", 0, 0, GROBO_SEVERITY_ERROR}, "%s",
-                    grobo_error_text(result));
+                    result == GROBO_ERR_NOENT ? "no such file" : grobo_error_text(result));
         return result;
     }
     int result = grobo_motion_read(&(grobo_source){read_stream, stream}, &named, list, motion);

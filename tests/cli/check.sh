@@ -75,7 +75,7 @@ every_error() {
         grep -q '^2 errors, 1 warning$' "$work/err"
 }
 check "every error of a file in one run" every_error
-check "a file that is not there" found 3 'nowhere.m: no such file' "$work/nowhere.m"
+check "a file that is not there" found 3 'nowhere.m: no such file \[open\]$' "$work/nowhere.m"
 check "quiet" both exits 0 "$GRCTL" -q check motions/greet.m --- [ ! -s "$work/err" ]
 json_list='not lines[0]["ok"] and [(d["file"][-12:], d["line"], d["column"], d["severity"],
     d["code"]) for d in lines[0]["diagnostics"]] == [("outside.pseq", 16, 12, "error", "limit")]'

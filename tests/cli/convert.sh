@@ -63,7 +63,7 @@ check "content tells when the name does not" both convert "$work/greet.txt" "$wo
     --- alike postures "$work/greet.txt" "$work/again.m"
 check "a file that is not there" fails 3 'nowhere.m: no such file' \
     "$GRCTL" convert nowhere.m "$work/x.m"
-check "a directory that is not there" fails 3 'cannot write: no such file' \
+check "a directory that is not there" fails 3 'cannot write: no such folder' \
     "$GRCTL" convert $greet "$work/no/x.m"
 json_told='lines[0]["file"].endswith("told.m") and lines[0]["postures"] == 10'
 check_json "as JSON" "$json_told" "$GRCTL" convert --json $greet "$work/told.m"

@@ -163,7 +163,7 @@ if [ -c /dev/full ]; then
         to_full() {
             grctl $line >/dev/full 2>"$work/err"
             # musl forgets the cause of what it wrote too early to be asked.
-            [ $? -eq 1 ] && complains '^grctl: standard output: cannot write: \(No space\|I/O\)'
+            [ $? -eq 1 ] && complains '^grctl: standard output: cannot write: \(no room\|I/O\)'
         }
         check "a full disk: grctl ${line%%/*}" to_full
     done

@@ -210,7 +210,7 @@ replaced() {
 check "-o replaces" replaced
 
 check "another extension" fails 2 'pictures are .svg or .png' "$GRCTL" plot -o x.jpg $greet
-check "a directory that is not there" fails 3 'cannot write: no such file' \
+check "a directory that is not there" fails 3 'cannot write: no such folder' \
     "$GRCTL" plot -o "$work/no/x.svg" $greet
 check "a file that is not there" fails 3 'no such file' "$GRCTL" plot "$work/no.pseq"
 check "a file that is none" fails 3 '^grctl: README.md:[0-9]*:' "$GRCTL" plot README.md

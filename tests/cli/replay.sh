@@ -82,7 +82,7 @@ check 'the first five differences, with -v all' many_differ
 
 # ---- bad files
 
-check 'no such file' fails 3 'none: No such file or directory' "$GRCTL" replay "$work/none"
+check 'no such file' fails 3 'none: no such file$' "$GRCTL" replay "$work/none"
 check 'no trace' fails 3 'is no pcapng file' "$GRCTL" replay tests/cli/replay.sh
 make_trace </dev/null >"$work/empty"
 check 'nothing in it' fails 3 'nothing went over the line' "$GRCTL" replay "$work/empty"

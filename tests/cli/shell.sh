@@ -58,7 +58,11 @@ from_file() {
     [ $? -eq 2 ] && printf '%s' "$fails_out" | grep -q "lines:2: no command"
 }
 check "a script in a file" from_file
-check "one that is not there" fails 3 'no such file\|No such file' "$GRCTL" shell "$work/none"
+check "one that is not there" fails 3 'none: no such file$' "$GRCTL" shell "$work/none"
+
+check "exit, as elsewhere" both script 0 'exit
+nonsense' --- [ ! -s "$work/err" ]
+check "a folder is none" fails 3 ': is a directory$' "$GRCTL" shell "$work"
 
 # ---- one connection --------------------------------------------------------------------------
 

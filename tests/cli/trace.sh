@@ -46,10 +46,10 @@ refused() {
     "$GRCTL" -d "$robot" --timeout 500 status >"$work/out" || return 1
     ! says ' on ' >/dev/null && says ' off '
 }
-check 'no such folder: nothing is done' refused "$work/none/trace" 'No such file or directory'
-check 'a folder: nothing is done' refused "$work" 'Is a directory'
+check 'no such folder: nothing is done' refused "$work/none/trace" 'no such folder$'
+check 'a folder: nothing is done' refused "$work" ': is a directory$'
 if [ -c /dev/full ]; then
-    check 'a full disk: nothing is done' refused /dev/full 'No space left on device'
+    check 'a full disk: nothing is done' refused /dev/full 'no room left on the disk$'
 else
     skip 'a full disk: nothing is done' 'no /dev/full here'
 fi

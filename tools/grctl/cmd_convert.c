@@ -134,7 +134,7 @@ static int run(app *a)
     error = write_out(motion, out, &how, list);
     if (error)
         error = app_fail(a, EXIT_FILE, grobo_error_name(error), "%s: cannot write: %s", out,
-                         file_error_text(error));
+                         file_write_error_text(error));
     else
         report(a, motion, out, list);
     grobo_diagnostics_free(list);

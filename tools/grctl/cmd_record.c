@@ -261,7 +261,7 @@ static int fail_to_write(app *a, int error)
 {
     const char *out = app_option(a, OPT_OUT)->text;
     return app_fail(a, EXIT_FILE, grobo_error_name(error), "%s: cannot write: %s",
-                    out ? out : "MotionN.m", file_error_text(error));
+                    out ? out : "MotionN.m", file_write_error_text(error));
 }
 
 /* Whether the file will be writable: better known before somebody has taught for an hour. */

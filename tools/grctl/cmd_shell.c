@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "commands.h"
+#include "file.h"
 #include "output.h"
 #include "run.h"
 #include "shell.h"
@@ -163,8 +164,9 @@ static int run_script(shell *s, shell_script *in)
         if (status == EXIT_SIGNAL + os_endings[OS_INTERRUPT])
             break;
     }
-    if (in->file && ferror(in->file))
-        first = app_fail(s->a, EXIT_FILE, "IO", "%s: it could not be read to its end", s->file);
+    if (in->file && ferror(in->file)) /* where nothing ran, the reason is still known */
+        first = app_fail(s->a, EXIT_FILE, "IO", "%s: %s", s->file,
+                         s->line ? "it could not be read to its end" : file_cause_text(errno));
     return noted ? EXIT_SIGNAL + (int)noted : first;
 }
 
@@ -208,7 +210,7 @@ static int run_shell(shell *s)
     memset(&in, 0, sizeof in);
     s->file = path ? path : "standard input";
     if (path && !(from = fopen(path, "r")))
-        return app_fail(s->a, EXIT_FILE, "NOENT", "%s: %s", path, strerror(errno));
+        return app_fail(s->a, EXIT_FILE, "NOENT", "%s: %s", path, file_cause_text(errno));
     in.file = from && !os_input_take(from) ? from : NULL;
     status = run_script(s, &in);
     if (from)

@@ -8,6 +8,7 @@
 #include <grobo/model.h>
 
 #include "config.h"
+#include "file.h"
 #include "os.h"
 
 typedef struct reader {
@@ -232,7 +233,8 @@ static int find(reader *r)
             errno = 0;
             file = os_config_path(i, r->path, sizeof r->path) ? fopen(r->path, "r") : NULL;
             if (!file && errno == EACCES)
-                return app_fail(r->a, EXIT_FILE, "CONFIG", "%s: %s", r->path, strerror(errno));
+                return app_fail(r->a, EXIT_FILE, "CONFIG", "%s: %s", r->path,
+                                file_cause_text(errno));
             if (!file)
                 break;
             read_file(r, file);

@@ -2,6 +2,7 @@
 #include <errno.h>
 #include <string.h>
 
+#include "file.h"
 #include "input.h"
 
 int input_open(input *in, app *a, const char *path)
@@ -21,7 +22,7 @@ int input_open(input *in, app *a, const char *path)
         int cause = errno;
         input_close(in);
         return app_fail(a, EXIT_FILE, cause == ENOENT ? "NOENT" : "IO", "%s: %s", path,
-                        strerror(cause));
+                        file_cause_text(cause));
     }
     return 0;
 }

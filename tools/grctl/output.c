@@ -2,6 +2,7 @@
 #include <errno.h>
 #include <string.h>
 
+#include "file.h"
 #include "os.h"
 #include "output.h"
 
@@ -25,5 +26,5 @@ int output_finish(app *a, int status)
         return EXIT_SIGNAL + OS_BROKEN_PIPE;
     a->json = false; /* there is no output left to put it on */
     return app_fail(a, EXIT_ROBOT, "IO", "standard output: cannot write: %s",
-                    strerror(flush_errno));
+                    file_cause_text(flush_errno));
 }

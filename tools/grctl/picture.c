@@ -47,7 +47,7 @@ bool picture_is_foreign(const char *path)
 static int refuse(app *a, const char *path, int error)
 {
     return app_fail(a, EXIT_FILE, grobo_error_name(error), "%s: cannot write: %s", path,
-                    file_error_text(error));
+                    file_write_error_text(error));
 }
 
 static int save_bytes(app *a, const char *path, const void *data, size_t size)

@@ -355,6 +355,7 @@ static int do_connect(shell *s, int n, char **words)
 /* letter, word, arguments, meaning, command or NULL, function or NULL */
 #define SHELL_WORDS(X)                                                                             \
     X("q", "quit", "", "end the shell; so does Ctrl-D", NULL, do_quit)                             \
+    X("", "exit", "", "the same", NULL, do_quit)                                                   \
     X("i", "Init", "[--time MS]", "go to the initial posture", "init", NULL)                       \
     X("S", "On", "[JOINT|GROUP]...", "torque on", "servo on", NULL)                                \
     X("s", "Off", "[JOINT|GROUP]...", "torque off: hold the robot", "servo off", NULL)             \

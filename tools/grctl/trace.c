@@ -6,6 +6,7 @@
 
 #include <grobo/version.h>
 
+#include "file.h"
 #include "trace.h"
 
 /* By grobo_wiring. */
@@ -36,7 +37,8 @@ bool trace_was_tried(void)
 static int fail(app *a, const trace *t, int cause)
 {
     return app_fail(a, EXIT_FILE, "TRACE", "%s: the trace cannot be written: %s", t->path,
-                    strerror(cause));
+                    cause == ENOENT ? file_write_error_text(GROBO_ERR_NOENT)
+                                    : file_cause_text(cause));
 }
 
 int trace_open(trace *t, app *a, const trace_line *line, int64_t now_us)
