@@ -209,12 +209,13 @@ static void print_summary(const conn *c, deviation following)
     grobo_robot_jitter(c->robot, &jitter);
     if (app_option(c->a, PLAY_TABLE)->given)
         render_reached(c, now_us);
-    printf("%llu frames, %llu late; jitter p50 %lld us, p99 %lld us, largest %lld us\n",
-           (unsigned long long)n.motion_frames, (unsigned long long)n.late_frames,
-           (long long)jitter.p50_us, (long long)jitter.p99_us, (long long)jitter.max_us);
+    printf("%llu frame%s, %llu late; jitter p50 %lld us, p99 %lld us, largest %lld us\n",
+           (unsigned long long)n.motion_frames, n.motion_frames == 1 ? "" : "s",
+           (unsigned long long)n.late_frames, (long long)jitter.p50_us, (long long)jitter.p99_us,
+           (long long)jitter.max_us);
     if (n.stretched)
-        printf("%llu moves were too fast for a servo and got more time\n",
-               (unsigned long long)n.stretched);
+        printf("%llu move%s too fast for a servo and got more time\n",
+               (unsigned long long)n.stretched, n.stretched == 1 ? " was" : "s were");
     if (n.clamped)
         printf("angles outside a joint's limits, taken to the limit: %llu\n",
                (unsigned long long)n.clamped);
