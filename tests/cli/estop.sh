@@ -42,6 +42,30 @@ check "while it moves" stopped 'robot found' -v move m5 -100 20000
 check "while it is taught" stopped 'in your hands' record -o "$work/taught.m"
 check "what was taught is kept" test -s "$work/taught.m"
 
+# stopped_by COMMAND...: it stops a robot that another command plays on.
+stopped_by() {
+    on_robot --json play --speed 20 motions/greet.pseq >"$work/busy" 2>&1 </dev/null &
+    while_pid=$!
+    written "$work/busy" '"t_ms":[1-9]' && exits 0 "$@"
+    by_status=$?
+    kill $while_pid 2>/dev/null
+    wait $while_pid
+    [ $by_status -eq 0 ] && braked && fails 4 "stopped by 'grctl estop'" on_robot move m5 0 &&
+        exits 0 on_robot estop --reset
+}
+by_another_name() {
+    (cd "$work" && exec "$GRCTL" -d "$1" estop)
+}
+if [ -z "${NATIVE_GRCTL:-}" ]; then # there a port has one name
+    check "by the name that a link leads to" stopped_by by_another_name "$sim_pty"
+    check "by a name that begins here" stopped_by by_another_name robot
+    mkdir "$work/run"
+    check "by one who is logged in, of a service" stopped_by \
+        env XDG_RUNTIME_DIR="$work/run" "$GRCTL" -d "$robot" estop
+    check "where the folder of the session is missing" stopped_by \
+        env XDG_RUNTIME_DIR="$work/none" "$GRCTL" -d "$robot" estop
+fi
+
 watched() {
     "$GRCTL" -d "$robot" status --watch --interval 100 >"$work/watch" 2>&1 &
     watch_pid=$!

@@ -7,6 +7,7 @@
 
 #include "app.h"
 #include "commands.h"
+#include "latch.h"
 #include "os.h"
 #include "output.h"
 #include "sim_console.h"
@@ -183,6 +184,10 @@ static int add_robot(farm *f, int robot)
                         name_of_failed(&at, &cause), grobo_error_text(error),
                         *cause.text ? ": " : "", cause.text);
     f->n = robot + 1;
+    /* Another robot had its names, and may have been stopped under them. */
+    latch_clear(grobo_sim_server_device(f->server[robot]));
+    if (*at.link)
+        latch_clear(at.link);
     if (faults &&
         grobo_sim_set_faults(grobo_sim_server_sim(f->server[robot]), faults, strlen(faults)) < 0)
         return app_fail(f->a, EXIT_USAGE, "USAGE",

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * An emergency stop outlives the command that made it: a mark for the device, in the user's
- * run-time directory, that every command that moves looks at. A simulator in process has none.
+ * An emergency stop outlives the command that made it: a mark for the device, among the files of
+ * the user that last until log-out, that every command that moves looks at. A simulator in process
+ * has none.
  */
 #ifndef GRCTL_LATCH_H
 #define GRCTL_LATCH_H

@@ -57,8 +57,14 @@ void os_take_signals(void);
 
 /* The configuration file: 0 the user's, 1 the machine's. False where there is none. */
 bool os_config_path(int which, char *path, size_t capacity);
-/* The user's own folder for what lasts until log-out; made where missing, and nobody else's. */
-bool os_private_folder(char *path, size_t capacity);
+/*
+ * The user's own folders for what lasts until log-out, 0 to OS_FOLDERS - 1; made where missing, and
+ * nobody else's. Not each process of a user has the same of them: who leaves word leaves it in all.
+ */
+enum { OS_FOLDERS = 2 };
+bool os_private_folder(int which, char *path, size_t capacity);
+/* Where the links that a device's path has lead to, from the root. False where nothing is there. */
+bool os_true_path(const char *device, char *path, size_t capacity);
 /* An empty file that marks something: made, removed (fine when it is not there), looked for. */
 bool os_mark(const char *path);
 bool os_unmark(const char *path);

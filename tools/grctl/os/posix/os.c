@@ -119,19 +119,32 @@ bool os_config_path(int which, char *path, size_t capacity)
     return n > 0 && (size_t)n < capacity;
 }
 
-/* Made with mode 700, and believed only if it is the user's own. */
-bool os_private_folder(char *path, size_t capacity)
+/*
+ * That of the session, which a service or a job of cron has not, and one for all. Made with mode
+ * 700, and believed only if it is the user's own.
+ */
+bool os_private_folder(int which, char *path, size_t capacity)
 {
     const char *run = getenv("XDG_RUNTIME_DIR");
     struct stat s;
-    int n = run && *run == '/'
-                ? snprintf(path, capacity, "%s/grctl", run)
-                : snprintf(path, capacity, "/tmp/grctl-%lu", (unsigned long)geteuid());
+    int n;
+    if (which == 0 && !(run && *run == '/'))
+        return false;
+    n = which == 0 ? snprintf(path, capacity, "%s/grctl", run)
+                   : snprintf(path, capacity, "/tmp/grctl-%lu", (unsigned long)geteuid());
     if (n < 0 || (size_t)n >= capacity)
         return false;
     if (mkdir(path, 0700) < 0 && errno != EEXIST)
         return false;
     return lstat(path, &s) == 0 && S_ISDIR(s.st_mode) && s.st_uid == geteuid();
+}
+
+bool os_true_path(const char *device, char *path, size_t capacity)
+{
+    char *real = realpath(device, NULL);
+    int n = real ? snprintf(path, capacity, "%s", real) : -1;
+    free(real);
+    return n >= 0 && (size_t)n < capacity;
 }
 
 bool os_mark(const char *path)

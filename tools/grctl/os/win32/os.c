@@ -229,16 +229,25 @@ bool os_config_path(int which, char *path, size_t capacity)
 }
 
 /* What is in a user's own AppData is nobody else's. */
-bool os_private_folder(char *path, size_t capacity)
+bool os_private_folder(int which, char *path, size_t capacity)
 {
     char folder[MAX_PATH];
     int n;
-    if (!known_folder(CSIDL_LOCAL_APPDATA, folder))
+    if (which != 0 || !known_folder(CSIDL_LOCAL_APPDATA, folder))
         return false;
     n = snprintf(path, capacity, "%s\\grctl", folder);
     if (n < 0 || (size_t)n >= capacity)
         return false;
     return CreateDirectoryA(path, NULL) || GetLastError() == ERROR_ALREADY_EXISTS;
+}
+
+/* A port has one name only. */
+bool os_true_path(const char *device, char *path, size_t capacity)
+{
+    (void)device;
+    (void)path;
+    (void)capacity;
+    return false;
 }
 
 bool os_mark(const char *path)
