@@ -77,7 +77,17 @@ check_json "the joint holds on its way" \
 check "SIGTERM: 143" interrupted TERM 143
 check "SIGHUP: 129" interrupted HUP 129
 
+# Between two rounds nothing is asked that could fail.
+"$GRCTL" -d "$robot" status --watch --interval 3600000 m5 >"$work/watched" 2>"$work/err" &
+watch_pid=$!
+written "$work/watched" R_ELBOW_P
 stop_sim
+wait $watch_pid
+watched=$?
+lost() {
+    [ $watched -eq 1 ] && grep -q '^grctl: .*: device is gone while busy with status$' "$work/err"
+}
+check "status --watch tells of a line that is lost" lost
 check "no such device" fails 1 'nowhere: no such file or device' "$GRCTL" -d "$work/nowhere" status
 check "a directory" fails 1 'is a directory' "$GRCTL" -d "$work" status
 : >"$work/file"

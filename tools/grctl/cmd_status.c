@@ -54,15 +54,15 @@ static int watch(conn *c, grobo_joint_mask joints)
 {
     int64_t interval_us = (int64_t)app_number(c->a, OPT_INTERVAL, 1000) * 1000;
     int64_t next_us = grobo_now_us();
-    int status;
+    int status, slept = GROBO_OK;
     do {
         status = sense_and_show(c, joints);
         next_us += interval_us;
         if (next_us < grobo_now_us())
             next_us = grobo_now_us();
     } while (output_flush() && !c->signal && !c->link_error &&
-             conn_sleep_until(c, next_us) == GROBO_OK);
-    return status;
+             (slept = conn_sleep_until(c, next_us)) == GROBO_OK);
+    return slept < 0 && c->link_error ? conn_fail(c, c->link_error, "status") : status;
 }
 
 static int run(app *a)
