@@ -83,7 +83,7 @@ check "no such device" finds 'is not there' "'grctl ports'"
 robot=$work
 check "a directory" finds 'is no serial port' "'grctl ports'"
 robot=tcp:127.0.0.1:1
-check "nobody listens" finds 'tcp:127.0.0.1:1' 'switch the robot on'
+check "nobody listens" finds 'tcp:127.0.0.1:1' 'start a serial server there'
 
 start_sim --baud 57600
 check "another baud rate" finds 'somebody does at 57600 bps' "-b 57600"

@@ -131,6 +131,37 @@ check "a server without a port" fails 2 'not of the form' grctl -d tcp:localhost
 check "a server with too large a port" fails 2 'not of the form' \
     grctl -d tcp:localhost:65536 play "$greet"
 
+# A machine that takes no connection and refuses none: its queue of callers is full.
+deaf_server() {
+    cat >"$work/deaf.py" <<'EOF'
+import socket, sys
+server = socket.create_server(("127.0.0.1", 0), backlog=0)
+callers = [socket.socket() for _ in range(8)]
+for caller in callers:
+    caller.setblocking(False)
+    caller.connect_ex(server.getsockname())
+print(server.getsockname()[1], flush=True)
+sys.stdin.read()
+EOF
+    mkfifo "$work/hold" "$work/port"
+    python3 "$work/deaf.py" <"$work/hold" >"$work/port" &
+    deaf_pid=$!
+    exec 4>"$work/hold"
+    read -r deaf_port <"$work/port"
+}
+unconnected='no connection in 2 s; is the address right, and that machine on?$'
+if have_json && [ "$(uname)" = Linux ]; then
+    deaf_server
+    check "a server that takes nobody" fails 1 "tcp:127.0.0.1:$deaf_port: $unconnected" \
+        grctl -d "tcp:127.0.0.1:$deaf_port" status
+    check "nor is it asked at other rates" both exits 1 \
+        timeout 8 "$GRCTL" -d "tcp:127.0.0.1:$deaf_port" doctor --- says 'no connection in 2 s'
+    exec 4>&-
+    wait $deaf_pid
+else
+    skip "a server that takes nobody" "no python3, or another system's queues"
+fi
+
 start_sim
 in_use() {
     "$GRCTL" -v -d "$robot" --on-exit hold play "$greet" >/dev/null 2>"$work/holder" &

@@ -95,7 +95,15 @@ static bool check_reply(patient *p, const char *device)
     }
     if (p->c.signal)
         return false;
-    found_bps = strstr(said, "no robot answers") ? find_answer(p, asked_bps) : 0;
+    if (!strstr(said, "no robot answers")) {
+        checkup_bad(&p->k, "reply",
+                    strncmp(device, "tcp:", 4) == 0 ? "start a serial server there (ser2net), or "
+                                                      "correct the address: -d tcp:HOST:PORT"
+                                                    : "switch the robot on, push its cables in",
+                    "%s", said);
+        return false;
+    }
+    found_bps = find_answer(p, asked_bps);
     if (found_bps == 0) {
         checkup_bad(&p->k, "reply", "switch the robot on, push its cables in", "%s", said);
         return false;

@@ -188,11 +188,11 @@ static const char *advice(int error, const char *device)
     return "";
 }
 
-static bool bytes_came(const conn *c)
+static bool bytes_passed(const conn *c, grobo_direction direction)
 {
     uint64_t tx_bytes, rx_bytes;
     grobo_session_bytes(c->session, &tx_bytes, &rx_bytes);
-    return rx_bytes > 0;
+    return (direction == GROBO_DIR_TX ? tx_bytes : rx_bytes) > 0;
 }
 
 /* What is wrong with the device, where the error's own text would not say it. */
@@ -219,7 +219,11 @@ static int fail_open(conn *c, int error)
     bool tells = *cause->text && (error == GROBO_ERR_BUSY || error == GROBO_ERR_IO ||
                                   error == GROBO_ERR_UNSUPPORTED || error == GROBO_ERR_UNPLUGGED);
     c->open_error = error;
-    if (conn_is_of_reply(error) && bytes_came(c))
+    if (error == GROBO_ERR_TIMEOUT && is_tcp(conn_device(c)) && !bytes_passed(c, GROBO_DIR_TX))
+        return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error),
+                        "%s: %s; is the address right, and that machine on?", conn_device(c),
+                        cause->text);
+    if (conn_is_of_reply(error) && bytes_passed(c, GROBO_DIR_RX))
         return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error),
                         "%s: bytes come, but no reply in them; is the baud rate right, and is it a "
                         "robot? see 'grctl doctor'",
