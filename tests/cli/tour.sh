@@ -23,7 +23,7 @@ block() {
 # alike: numbers, bars, the width of columns, what a busy machine says, and which joint was the
 # latest aside.
 alike() {
-    LC_ALL=C.UTF-8 sed -e '/moves were too fast/d' \
+    LC_ALL=C.UTF-8 sed -e '/ too fast for a servo/d' \
         -e '/^largest error/s/(.*)/(JOINT)/' -e 's/-\{0,1\}[0-9][0-9.]*/N/g' \
         -e 's/[─│█░]\{1,\}/B/g' -e 's/\([A-Z_]\)N/\1 N/g' -e 's/  */ /g'
 }
