@@ -56,6 +56,12 @@ static int take(int fd, const char *device, const struct stat *st, grobo_os_caus
     return GROBO_OK;
 }
 
+/* The lock goes with the descriptor, TIOCEXCL only with the last one of the terminal. */
+static void let_others(int fd)
+{
+    (void)ioctl(fd, TIOCNXCL);
+}
+
 int grobo_i_posix_make_raw(int fd, grobo_os_cause *cause)
 {
     struct termios tio;
@@ -92,9 +98,11 @@ static int serial_open(grobo_port *port, const char *device, int baud_bps, grobo
                               : grobo_i_posix_fail(cause, errno, "open");
     }
     r = take(fd, device, &st, cause);
-    if (r >= 0) {
-        r = grobo_i_posix_make_raw(fd, cause);
+    if (r < 0) {
+        (void)close(fd);
+        return r;
     }
+    r = grobo_i_posix_make_raw(fd, cause);
     if (r >= 0) {
         r = grobo_i_posix_set_baud(fd, baud_bps, cause);
     }
@@ -103,6 +111,7 @@ static int serial_open(grobo_port *port, const char *device, int baud_bps, grobo
         r = grobo_i_posix_fail(cause, errno, "tcflush");
     }
     if (r < 0) {
+        let_others(fd);
         (void)close(fd);
         return r;
     }
@@ -139,8 +148,7 @@ static void let_leave(int fd)
 static void serial_close(grobo_port *port)
 {
     let_leave(port->fd);
-    /* The lock goes with the descriptor, TIOCEXCL only with the last one of the terminal. */
-    (void)ioctl(port->fd, TIOCNXCL);
+    let_others(port->fd);
     grobo_i_posix_close(port);
 }
 
