@@ -78,6 +78,10 @@ struct grobo_txn {
     const uint8_t *frame;    /**< borrowed: what is sent */
     uint8_t frame_bytes;     /**< 1..GROBO_RS30X_PACKET_MAX_BYTES */
     uint8_t retries;         /**< attempts after the first, 0 none */
+    bool patient;            /**< the last attempt is given GROBO_BUS_MARGIN_MAX_US above the wire
+                                  time, where neither timeout_us nor margin_us says otherwise. Not
+                                  a stop or motion, and not into the reserved span. For where a
+                                  stall at the other end is more likely than a dead servo */
     grobo_priority priority; /**< who goes first */
     grobo_reply reply;       /**< what must come back */
     uint32_t timeout_us;     /**< time from the first byte sent to the reply; 0: computed */
@@ -108,7 +112,7 @@ typedef struct grobo_bus_config {
 
 /** Learnt margin: lower bound. */
 #define GROBO_BUS_MARGIN_MIN_US 3000
-/** Learnt margin: upper bound, and of a retry, whose margin doubles. */
+/** Learnt margin: upper bound, and of a retry, whose margin doubles. The last of a patient one. */
 #define GROBO_BUS_MARGIN_MAX_US 40000
 /** Learnt margin: before the first reply. An FTDI adapter holds bytes back for 16 ms. */
 #define GROBO_BUS_MARGIN_FIRST_US 20000

@@ -83,7 +83,7 @@ typedef struct grobo_robot_config {
     grobo_estop_torque estop_torque; /**< default brake */
     grobo_bus_config bus;            /**< the line's physics; `wiring` is taken from the driver */
     uint32_t timeout_us;             /**< reply timeout; default computed, see bus.h */
-    int retries;                     /**< of a lost or broken reply; default 2; -1 none */
+    int retries;                     /**< of a lost reply, the last patient; default 2; -1 none */
 } grobo_robot_config;
 
 /* ---- events --------------------------------------------------------------------------------- */
@@ -243,6 +243,7 @@ typedef struct grobo_robot_slot {
     int job;          /* number of the job it belongs to */
     bool out;         /* given to the line */
     bool switches_on; /* it brings torque */
+    bool reads;       /* it asks where this joint is */
     uint8_t use;      /* 0: free */
     uint8_t joint;
 } grobo_robot_slot;

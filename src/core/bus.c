@@ -317,6 +317,21 @@ int64_t grobo_bus_deadline(const grobo_bus *bus, int64_t now_us)
 
 /* ---- sending ------------------------------------------------------------------------------- */
 
+/* A patient one is over a moment before the span: after a failure a servo bus keeps quiet. */
+static int64_t limit_of_attempt(const grobo_bus *bus, const grobo_txn *txn)
+{
+    int64_t limit_us = bus->over_us + grobo_i_bus_margin_us(bus, txn->attempts_);
+    if (!txn->patient || txn->attempts_ <= txn->retries || txn->priority < GROBO_PRIORITY_USER ||
+        bus->config.margin_us != 0) {
+        return limit_us;
+    }
+    int64_t patient_us = bus->over_us + GROBO_BUS_MARGIN_MAX_US;
+    if (bus->over_us < bus->reserve_end_us) {
+        patient_us = grobo_i_sooner(patient_us, bus->reserve_us - bus->config.quiet_us);
+    }
+    return grobo_i_later(limit_us, patient_us);
+}
+
 static void start_clock(grobo_bus *bus, const grobo_txn *txn, int64_t now_us)
 {
     grobo_bus_cost cost;
@@ -332,7 +347,7 @@ static void start_clock(grobo_bus *bus, const grobo_txn *txn, int64_t now_us)
     } else if (txn->timeout_us != 0) {
         bus->limit_us = now_us + txn->timeout_us;
     } else {
-        bus->limit_us = bus->over_us + grobo_i_bus_margin_us(bus, txn->attempts_);
+        bus->limit_us = limit_of_attempt(bus, txn);
     }
 }
 

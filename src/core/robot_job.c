@@ -100,6 +100,7 @@ static int keep_reading(grobo_robot *robot)
         return GROBO_ERR_FULL;
     }
     slot->joint = (uint8_t)lowest(job->todo);
+    slot->reads = true;
     int result = driver->sense(driver, robot->driver_ctx, slot->joint, job->sense, &slot->exchange);
     if (result < 0) {
         grobo_i_slot_drop(slot);

@@ -52,12 +52,14 @@ static void on_done(void *ctx, grobo_txn *txn, int result, const grobo_rs30x_pac
 int grobo_i_slot_send(grobo_robot_slot *slot, grobo_priority priority)
 {
     const grobo_robot_config *config = &slot->robot->config;
-    bool silent = slot->use == GROBO_I_USE_SENSE && slot->robot->axes[slot->joint].lost > 0;
+    bool had_its_chance = slot->reads && slot->robot->axes[slot->joint].lost > 0;
+    bool once = had_its_chance && slot->use == GROBO_I_USE_SENSE;
     slot->txn.frame = slot->exchange.frame;
     slot->txn.frame_bytes = slot->exchange.frame_bytes;
     slot->txn.reply = slot->exchange.reply;
     slot->txn.priority = priority;
-    slot->txn.retries = silent ? 0 : (uint8_t)config->retries; /* it had its chance */
+    slot->txn.retries = once ? 0 : (uint8_t)config->retries;
+    slot->txn.patient = slot->txn.retries > 0 && !had_its_chance;
     slot->txn.timeout_us = config->timeout_us;
     slot->txn.sent_us = -1;
     slot->given_us = slot->robot->now_us;

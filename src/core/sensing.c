@@ -245,6 +245,7 @@ void grobo_i_sense_step(grobo_robot *robot)
         return;
     }
     slot->joint = (uint8_t)next_reading(robot, &kind);
+    slot->reads = true;
     if (driver->sense(driver, robot->driver_ctx, slot->joint, kind, &slot->exchange) < 0) {
         grobo_i_slot_drop(slot);
         return;

@@ -223,6 +223,94 @@ static void the_margin_doubles_with_every_retry(void **state)
     assert_int_equal(p.ended[0].at_us, p.sent[5].at_us + 3488 + 40 * MS);
 }
 
+/* A patient read of servo 1 on a line on which replies come at once. @return the time at which it
+ * is submitted */
+static int64_t ask_patiently(peer *p, const grobo_bus_config *config, request *r)
+{
+    peer_init(p, config);
+    p->obliging = true;
+    timeout_after(p, 1, 0);
+    p->obliging = false;
+    p->ended_count = p->sent_count = 0;
+    peer_read(p, r, 1, 2, GROBO_PRIORITY_SENSE);
+    r->txn.patient = true;
+    return p->now_us;
+}
+
+/* Three attempts are over after 3 x 3488 + 3000 + 6000 + 12000 and twice the quiet, 33 ms. */
+static void a_patient_read_outlasts_a_stall_at_the_other_end(void **state)
+{
+    (void)state;
+    peer p;
+    request r;
+    int64_t from_us = ask_patiently(&p, NULL, &r);
+    assert_int_equal(grobo_bus_submit(&p.bus, &r.txn), GROBO_OK);
+    peer_position_at(&p, from_us + 55 * MS, 1, 42);
+    peer_run(&p, from_us + S);
+    assert_int_equal(p.sent_count, 3);
+    assert_int_equal(p.ended[0].result, GROBO_OK);
+    assert_int_equal(p.ended[0].value, 42);
+    assert_int_equal(p.ended[0].at_us, from_us + 55 * MS);
+}
+
+static int64_t given_up_after(const grobo_bus_config *config, grobo_priority priority,
+                              uint32_t timeout_us)
+{
+    peer p;
+    request r;
+    int64_t from_us = ask_patiently(&p, config, &r);
+    r.txn.priority = priority;
+    r.txn.timeout_us = timeout_us;
+    assert_int_equal(grobo_bus_submit(&p.bus, &r.txn), GROBO_OK);
+    peer_run(&p, from_us + S);
+    assert_int_equal(p.ended[0].result, GROBO_ERR_TIMEOUT);
+    return p.ended[0].at_us - from_us;
+}
+
+/* One of a motion or a stop is not, others of its kind would wait behind it. */
+static void patience_has_its_limits(void **state)
+{
+    (void)state;
+    const grobo_bus_config fixed = {.margin_us = 4 * MS};
+    const int64_t wire_us = 3 * 3488 + 2 * GROBO_BUS_QUIET_US;
+    const int64_t patient_us = wire_us + (3 + 6 + 40) * MS;
+    const int64_t usual_us = wire_us + (3 + 6 + 12) * MS;
+    assert_int_equal(given_up_after(NULL, GROBO_PRIORITY_SENSE, 0), patient_us);
+    assert_int_equal(given_up_after(NULL, GROBO_PRIORITY_USER, 0), patient_us);
+    assert_int_equal(given_up_after(NULL, GROBO_PRIORITY_MOTION, 0), usual_us);
+    assert_int_equal(given_up_after(NULL, GROBO_PRIORITY_STOP, 0), usual_us);
+    assert_int_equal(given_up_after(&fixed, GROBO_PRIORITY_USER, 0), wire_us + 3 * 4 * MS);
+    assert_int_equal(given_up_after(NULL, GROBO_PRIORITY_USER, 7 * MS),
+                     3 * 7 * MS + 2 * GROBO_BUS_QUIET_US);
+}
+
+/* Whenever one is due while it waits: announced or not through the board, announced on a servo bus,
+ * where after a failure everything keeps quiet. */
+static void a_patient_read_delays_no_motion_frame(void **state)
+{
+    (void)state;
+    static const grobo_bus_config on_bus = {.wiring = GROBO_WIRING_BUS};
+    for (int i = 0; i < 108; i++) {
+        bool bus = i % 3 == 0;
+        bool announced = i % 3 != 1;
+        int64_t after_us = (bus ? 30 : 22) * MS + i * MS / 3;
+        peer p;
+        request read, pose;
+        int64_t due_us = ask_patiently(&p, bus ? &on_bus : NULL, &read) + after_us;
+        make_pose(&p, &pose);
+        if (announced) {
+            grobo_bus_reserve(&p.bus, due_us, 18924);
+        }
+        assert_int_equal(grobo_bus_submit(&p.bus, &read.txn), GROBO_OK);
+        peer_run(&p, due_us - 1);
+        assert_in_range(grobo_bus_pending(&p.bus), announced ? 0 : 1, bus ? 0 : 1);
+        p.now_us = due_us;
+        assert_int_equal(grobo_bus_submit(&p.bus, &pose.txn), GROBO_OK);
+        peer_run(&p, due_us);
+        assert_int_equal(pose.txn.sent_us, due_us);
+    }
+}
+
 static void no_read_starts_that_would_reach_into_the_reserved_span(void **state)
 {
     (void)state;
@@ -352,6 +440,9 @@ int main(void)
         cmocka_unit_test(a_late_pump_still_takes_what_came_in_time),
         cmocka_unit_test(the_margin_is_learnt_from_the_replies),
         cmocka_unit_test(the_margin_doubles_with_every_retry),
+        cmocka_unit_test(a_patient_read_outlasts_a_stall_at_the_other_end),
+        cmocka_unit_test(patience_has_its_limits),
+        cmocka_unit_test(a_patient_read_delays_no_motion_frame),
         cmocka_unit_test(no_read_starts_that_would_reach_into_the_reserved_span),
         cmocka_unit_test(a_short_request_goes_where_a_long_one_does_not_fit),
         cmocka_unit_test(the_gaps_are_filled_and_the_frames_are_on_time),

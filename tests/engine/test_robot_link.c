@@ -182,8 +182,8 @@ static void nothing_is_sent_to_a_joint_that_moves_by_itself(void **state)
     assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
 }
 
-/* Reads all joints twice, the second time without the knee; returns how much longer that took. */
-static int64_t cost_of_silence_us(const grobo_robot_config *config)
+/* Reads all joints, then twice without the knee: how much longer that took, each time. */
+static void measure_silence(const grobo_robot_config *config, int64_t costs_us[2])
 {
     rig_start(&rig, config, NULL);
     rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL, rig.now_us),
@@ -193,32 +193,38 @@ static int64_t cost_of_silence_us(const grobo_robot_config *config)
                GROBO_OK);
     int64_t usual_us = rig.now_us - begun_us;
     assert_int_equal(grobo_sim_set_cable(&rig.sim, R_KNEE, GROBO_SIM_CABLE_MUTE), 0);
-    begun_us = rig.now_us;
-    const grobo_event_job *job =
-        rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL, rig.now_us),
-                   GROBO_ERR_TIMEOUT);
-    assert_true(job->failed == GROBO_JOINT_BIT(R_KNEE));
-    assert_int_equal(job->joint, R_KNEE);
-    for (int j = 0; j < 20; j++) {
-        grobo_joint_info info;
-        assert_int_equal(grobo_robot_joint(&rig.robot, j, rig.now_us, &info), 0);
-        assert_int_equal(info.status, j == R_KNEE ? GROBO_ERR_TIMEOUT : GROBO_OK);
-        assert_true(j == R_KNEE ? info.angle_age_us > usual_us : info.angle_age_us < 250000);
+    for (int i = 0; i < 2; i++) {
+        begun_us = rig.now_us;
+        const grobo_event_job *job = rig_expect(
+            &rig, grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL, rig.now_us),
+            GROBO_ERR_TIMEOUT);
+        assert_true(job->failed == GROBO_JOINT_BIT(R_KNEE));
+        assert_int_equal(job->joint, R_KNEE);
+        for (int j = 0; j < 20; j++) {
+            grobo_joint_info info;
+            assert_int_equal(grobo_robot_joint(&rig.robot, j, rig.now_us, &info), 0);
+            assert_int_equal(info.status, j == R_KNEE ? GROBO_ERR_TIMEOUT : GROBO_OK);
+            assert_true(j == R_KNEE ? info.angle_age_us > usual_us : info.angle_age_us < 250000);
+        }
+        costs_us[i] = rig.now_us - begun_us - usual_us;
     }
-    return rig.now_us - begun_us - usual_us;
 }
 
 /* An attempt costs what a reading takes on the wire (6264 us), a margin of 3 ms that was learnt
  * from those who answered and doubles with each attempt, and a millisecond of quiet: 4 ms more than
- * an answer where there is one attempt, not 35. Looks are a millisecond apart. */
+ * an answer where there is one attempt, not 35. Where there are three, the last is given 40 ms the
+ * first time, for a stall at the other end looks the same. Looks are a millisecond apart. */
 static void nineteen_of_twenty_are_delivered_and_silence_costs_its_timeout(void **state)
 {
     (void)state;
     static const grobo_robot_config once = {.sense_interval_us = GROBO_SENSE_NEVER, .retries = -1};
-    int64_t cost_us = cost_of_silence_us(&once);
-    assert_in_range(cost_us, 3000, 3000 + 1000 + 1000);
-    cost_us = cost_of_silence_us(&quiet);
-    assert_in_range(cost_us, 2 * 6264 + 21000, 2 * 6264 + 3000 + 6000 + 12000 + 3000 + 1000);
+    int64_t costs_us[2];
+    measure_silence(&once, costs_us);
+    assert_in_range(costs_us[0], 3000, 3000 + 1000 + 1000);
+    assert_in_range(costs_us[1], 3000, 3000 + 1000 + 1000);
+    measure_silence(&quiet, costs_us);
+    assert_in_range(costs_us[0], 2 * 6264 + 49000, 2 * 6264 + 3000 + 6000 + 40000 + 3000 + 1000);
+    assert_in_range(costs_us[1], 2 * 6264 + 21000, 2 * 6264 + 3000 + 6000 + 12000 + 3000 + 1000);
 }
 
 static void a_stale_angle_is_not_in_a_fresh_posture(void **state)
