@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: MIT */
+#include <string.h>
+
 #include "body_options.h"
 #include "check_whole.h"
 #include "commands.h"
@@ -24,9 +26,10 @@ static bool is_passed_by(const app *a, const char *path, grobo_diagnostics *list
                           .message = "no motion file by name or content: skipped",
                           .severity = GROBO_SEVERITY_NOTE};
     int error;
-    if (a->line.n_arguments < 2 || grobo_motion_format_of_path(path) != GROBO_FORMAT_AUTO)
+    if (a->line.n_arguments < 2 || strcmp(path, "-") == 0 ||
+        grobo_motion_format_of_path(path) != GROBO_FORMAT_AUTO)
         return false;
-    error = grobo_motion_read_file(path, NULL, NULL, &motion);
+    error = file_read(path, NULL, NULL, &motion);
     grobo_motion_free(motion);
     if (error != GROBO_ERR_SYNTAX && error != GROBO_ERR_TYPE && error != GROBO_ERR_ISDIR)
         return false;

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "file.h"
+#include "os.h"
 #include "pipe.h"
 
 const char *file_cause_text(int number)
@@ -128,6 +129,8 @@ int file_read(const char *path, const grobo_read_options *options, grobo_diagnos
 {
     grobo_source source = {.read = read_stream, .ctx = stdin};
     grobo_read_options named = options ? *options : (grobo_read_options){0};
+    if (strcmp(path, "-") != 0 && os_is_folder(path))
+        return GROBO_ERR_ISDIR;
     if (strcmp(path, "-") != 0)
         return pipe_is(path) ? pipe_read(path, options, list, motion)
                              : grobo_motion_read_file(path, options, list, motion);

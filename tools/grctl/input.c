@@ -4,6 +4,7 @@
 
 #include "file.h"
 #include "input.h"
+#include "os.h"
 
 int input_open(input *in, app *a, const char *path)
 {
@@ -19,7 +20,7 @@ int input_open(input *in, app *a, const char *path)
     if (in->file)
         in->n_peeked = fread(in->peeked, 1, sizeof in->peeked, in->file);
     if (!in->file || ferror(in->file)) {
-        int cause = errno;
+        int cause = in->name == path && os_is_folder(path) ? EISDIR : errno;
         input_close(in);
         return app_fail(a, EXIT_FILE, cause == ENOENT ? "NOENT" : "IO", "%s: %s", path,
                         file_cause_text(cause));

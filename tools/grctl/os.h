@@ -16,11 +16,17 @@
 /*
  * Before anything is opened: fills standard input, output and error where they are closed, so that
  * no file opened later gets their place (what is printed would go into it, and it may be the
- * robot's line), and has all of them take bytes as they are.
+ * robot's line), and has all of them take bytes as they are. Standard error
+ * may be buffered from then on.
  */
 void os_start(void);
 
 bool os_is_terminal(FILE *stream);
+/*
+ * What kept a stream from being written, given the errno of it: EPIPE where nobody reads, which a
+ * system may call otherwise, and a C library forget.
+ */
+int os_write_cause(FILE *stream, int cause);
 /* The width of the terminal behind a stream; 80 where it does not say. */
 int os_columns(FILE *stream);
 /* Are characters beyond ASCII shown, and as UTF-8? */
@@ -55,6 +61,8 @@ void os_take_signals(void);
 
 /* ---- files ---------------------------------------------------------------------------------- */
 
+/* Of which not every system says so when it is opened as a file. */
+bool os_is_folder(const char *path);
 /* The configuration file: 0 the user's, 1 the machine's. False where there is none. */
 bool os_config_path(int which, char *path, size_t capacity);
 /*

@@ -10,11 +10,11 @@ static int flush_errno; /* of the first write that failed */
 
 bool output_flush(void)
 {
-    bool broken = ferror(stdout) != 0;
-    if (fflush(stdout) != 0 && !flush_errno)
-        flush_errno = errno;
-    else if (broken && !flush_errno)
-        flush_errno = EIO; /* a write within printf(), which keeps no reason */
+    int cause = ferror(stdout) ? EIO : 0; /* a write within printf(), which keeps no reason */
+    if (fflush(stdout) != 0)
+        cause = errno;
+    if (cause && !flush_errno)
+        flush_errno = os_write_cause(stdout, cause);
     return flush_errno == 0;
 }
 

@@ -7,6 +7,7 @@
 #include <grobo/version.h>
 
 #include "file.h"
+#include "os.h"
 #include "trace.h"
 
 /* By grobo_wiring. */
@@ -58,7 +59,7 @@ int trace_open(trace *t, app *a, const trace_line *line, int64_t now_us)
     t->to_wall_us = wall_us() - now_us;
     t->file = fopen(t->path, "wb");
     if (!t->file)
-        return fail(a, t, errno);
+        return fail(a, t, os_is_folder(t->path) ? EISDIR : errno);
     snprintf(interface.name, sizeof interface.name, "%s", line->device);
     snprintf(interface.description, sizeof interface.description, "%s", descriptions[line->wiring]);
     interface.speed_bps = (uint64_t)(line->baud_bps ? line->baud_bps : GROBO_BAUD_DEFAULT_BPS);

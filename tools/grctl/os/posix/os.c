@@ -31,6 +31,12 @@ bool os_is_terminal(FILE *stream)
     return isatty(fileno(stream)) == 1;
 }
 
+int os_write_cause(FILE *stream, int cause)
+{
+    (void)stream;
+    return cause;
+}
+
 int os_columns(FILE *stream)
 {
     struct winsize size;
@@ -103,6 +109,12 @@ void os_take_signals(void)
 }
 
 /* ---- files ---------------------------------------------------------------------------------- */
+
+bool os_is_folder(const char *path)
+{
+    struct stat s;
+    return stat(path, &s) == 0 && S_ISDIR(s.st_mode);
+}
 
 bool os_config_path(int which, char *path, size_t capacity)
 {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <windows.h>
 
+#include <errno.h>
 #include <fcntl.h>
 #include <io.h>
 #include <shlobj.h>
@@ -53,6 +54,12 @@ bool os_is_terminal(FILE *stream)
 {
     DWORD mode;
     return GetConsoleMode(handle_of(stream), &mode);
+}
+
+/* There is nothing else that may be wrong with a pipe. */
+int os_write_cause(FILE *stream, int cause)
+{
+    return GetFileType(handle_of(stream)) == FILE_TYPE_PIPE ? EPIPE : cause;
 }
 
 int os_columns(FILE *stream)
@@ -207,6 +214,12 @@ bool os_is_ignored(int number)
 }
 
 /* ---- files ---------------------------------------------------------------------------------- */
+
+bool os_is_folder(const char *path)
+{
+    DWORD attributes = GetFileAttributesA(path);
+    return attributes != INVALID_FILE_ATTRIBUTES && (attributes & FILE_ATTRIBUTE_DIRECTORY) != 0;
+}
 
 static bool known_folder(int which, char *path)
 {
