@@ -72,6 +72,7 @@ int app_fail(app *a, int status, const char *code, const char *format, ...)
     output_flush();
     fprintf(stderr, "%sgrctl:%s %s\n", a->color_err ? "\033[1;31m" : "",
             a->color_err ? "\033[0m" : "", text);
+    fflush(stderr);
     if (a->json)
         app_print_json(json_pack("{s:{s:o,s:o}}", "error", "code", app_json_code(code), "message",
                                  app_json_text(text)));
@@ -99,6 +100,7 @@ static void say(const char *format, va_list list)
     vsnprintf(text, sizeof text, format, list);
     app_make_one_line(text);
     fprintf(stderr, "%s\n", text);
+    fflush(stderr);
 }
 
 void app_note(const app *a, const char *format, ...)

@@ -43,6 +43,7 @@ static bool confirmed(const app *a, const config_robot *robot)
     if (!a->tty_in || app_global(a, GLOBAL_YES)->given)
         return true;
     fprintf(stderr, "write these trims of %s to %s? [y/N] ", robot->name, robot->path);
+    fflush(stderr);
     answer = c = getchar();
     while (c != '\n' && c != EOF)
         c = getchar();

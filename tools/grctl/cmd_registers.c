@@ -140,6 +140,7 @@ static bool confirmed(conn *c, const change *what, int32_t before)
     if (app_global(c->a, GLOBAL_YES)->given || !c->a->tty_in)
         return true;
     fputs("Write it? [y/N] ", stderr);
+    fflush(stderr);
     return fgets(answer, sizeof answer, stdin) && (answer[0] == 'y' || answer[0] == 'Y');
 }
 

@@ -190,8 +190,10 @@ static int run_prompt(shell *s)
             break;
         noted = 0;
         status = n == LINE_TOO_LONG ? refuse(s, "the line is too long") : run_text(s, line);
-        if (status == EXIT_SIGNAL + os_endings[OS_INTERRUPT])
+        if (status == EXIT_SIGNAL + os_endings[OS_INTERRUPT]) {
             fputc('\n', stderr); /* behind the terminal's ^C */
+            fflush(stderr);
+        }
         if (noted && noted != os_endings[OS_INTERRUPT])
             status = EXIT_SIGNAL + (int)noted;
     }

@@ -11,6 +11,7 @@ static void show_bytes(conn *c, char direction, int64_t at_us, const uint8_t *by
         c->shown_us = at_us;
     fprintf(stderr, "%10.3f  %c  ", (double)(at_us - c->shown_us) / 1e3, direction);
     grobo_hex_print(stderr, bytes, size);
+    fflush(stderr);
 }
 
 void conn_show_answer(conn *c)

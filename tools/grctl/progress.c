@@ -48,7 +48,9 @@ void progress_draw(progress *p, double fraction, const char *text)
 
 void progress_clear(progress *p)
 {
-    if (p->drawn)
+    if (p->drawn) {
         fputs("\r\033[K", stderr);
+        fflush(stderr);
+    }
     p->drawn = false;
 }

@@ -105,6 +105,7 @@ static int ask(const plan *p)
                         (unsigned long long)p->moves);
     fprintf(stderr, "%llu frames move joints of the robot at %s. Send them? [y/N] ",
             (unsigned long long)p->moves, app_global(a, GLOBAL_DEVICE)->text);
+    fflush(stderr);
     if (!fgets(answer, sizeof answer, stdin) || (answer[0] != 'y' && answer[0] != 'Y'))
         return app_fail(a, EXIT_SAFETY, "REFUSED", "replay: nothing was sent");
     return 0;

@@ -43,8 +43,12 @@ void os_start(void)
     SetConsoleOutputCP(CP_UTF8);
     understand_escapes(stdout);
     understand_escapes(stderr);
-    /* A C library that knows no line buffering keeps what is said until the end. */
-    setvbuf(stderr, NULL, _IONBF, 0);
+    /*
+     * Unbuffered, the C library writes to a console byte by byte, and half a character is shown as
+     * one that is none. There is no line buffering here: whoever says something flushes it.
+     */
+    setvbuf(stdout, NULL, _IOFBF, BUFSIZ);
+    setvbuf(stderr, NULL, _IOFBF, BUFSIZ);
     /* Also for a robot in the same process, where no port asks for it. */
     if (timeBeginPeriod(1) == TIMERR_NOERROR)
         atexit(end_tick);
