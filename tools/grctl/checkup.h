@@ -33,6 +33,8 @@ bool checkup_port(checkup *k, const char *device);
 bool checkup_node(checkup *k, const char *device);
 /* What a device's name leads to, as the list of ports calls it. */
 bool checkup_true_path(const char *device, char *path, size_t capacity);
+/* How to end the program that has the port. */
+void checkup_end_program(char *fix, size_t capacity, int pid);
 /* The line that makes an adapter's latency timer short. */
 void checkup_quicken(char *fix, size_t capacity, const char *path);
 

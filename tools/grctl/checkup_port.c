@@ -44,7 +44,7 @@ static bool check_owner(checkup *k, const char *device)
         return true;
     }
     pid = error == GROBO_ERR_BUSY ? grobo_port_owner(device, name, sizeof name) : 0;
-    snprintf(fix, sizeof fix, "end that program, or: kill %d", pid);
+    checkup_end_program(fix, sizeof fix, pid);
     if (pid > 0)
         checkup_bad(k, "owner", fix, "%s (pid %d) holds it", name, pid);
     else

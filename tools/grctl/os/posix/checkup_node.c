@@ -74,6 +74,11 @@ bool checkup_true_path(const char *device, char *path, size_t capacity)
     return n >= 0 && (size_t)n < capacity;
 }
 
+void checkup_end_program(char *fix, size_t capacity, int pid)
+{
+    snprintf(fix, capacity, "end that program, or: kill %d", pid);
+}
+
 void checkup_quicken(char *fix, size_t capacity, const char *path)
 {
     snprintf(fix, capacity,

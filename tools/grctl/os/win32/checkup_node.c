@@ -36,6 +36,12 @@ bool checkup_true_path(const char *device, char *path, size_t capacity)
     return grobo_port_identity(device, path, capacity) == GROBO_OK;
 }
 
+/* Nothing else ends a program of another console: what it moves stays under way. */
+void checkup_end_program(char *fix, size_t capacity, int pid)
+{
+    snprintf(fix, capacity, "end that program; if nothing else helps: taskkill /f /pid %d", pid);
+}
+
 void checkup_quicken(char *fix, size_t capacity, const char *path)
 {
     snprintf(fix, capacity,
