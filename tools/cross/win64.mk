@@ -23,6 +23,14 @@ EMULATOR := $(abspath tools/cross/wine.sh)
 export GROBO_WINE := $(abspath $(CROSS_DIR))
 RING := unit engine link port fault cli export wine
 
+# What grctl.exe says of itself to Windows.
+MANIFEST := $(BUILD)/tools/grctl/os/win32/manifest.o
+$(MANIFEST): tools/grctl/os/win32/manifest.rc tools/grctl/os/win32/grctl.manifest
+	@mkdir -p $(@D)
+	$(say) RC $@
+	$(Q)$(TRIPLET)-windres -I $(<D) -o $@ $<
+$(BUILD)/grctl$(EXE): $(MANIFEST)
+
 # What the tests need of this machine: a cable between two COM ports for each test program, and the
 # simulator behind a pseudo-terminal, which wine takes for a COM port.
 NATIVE_GRCTL := $(BUILD)/native/grctl

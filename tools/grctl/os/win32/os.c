@@ -14,6 +14,10 @@
 
 /* ---- the process ---------------------------------------------------------------------------- */
 
+/* Patterns of names are for the program to fill in: the C library does, when this asks it to. */
+extern int _dowildcard;
+int _dowildcard = -1;
+
 static HANDLE handle_of(FILE *stream)
 {
     return (HANDLE)_get_osfhandle(_fileno(stream));
