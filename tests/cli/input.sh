@@ -167,7 +167,8 @@ in_use() {
     "$GRCTL" -v -d "$robot" --on-exit hold play "$greet" >/dev/null 2>"$work/holder" &
     holder=$!
     written "$work/holder" 'robot found' || return 1
-    fails 1 "$robot: in use by another program (held by .*$holder" grctl -d "$robot" play "$greet"
+    fails 1 "$robot: in use by another program (held by .*$(known_pid $holder)" \
+        grctl -d "$robot" play "$greet"
     in_use_result=$?
     kill -TERM $holder
     wait $holder
@@ -193,8 +194,9 @@ if [ -c /dev/full ]; then
         # shellcheck disable=SC2086
         to_full() {
             grctl $line >/dev/full 2>"$work/err"
-            # musl forgets the cause of what it wrote too early to be asked.
-            [ $? -eq 1 ] && complains '^grctl: standard output: cannot write: \(no room\|I/O\)'
+            # musl and Windows forget the cause of what they wrote too early to be asked.
+            [ $? -eq 1 ] &&
+                complains '^grctl: standard output: cannot write: \(no room\|I/O\|Input/output\)'
         }
         check "a full disk: grctl ${line%%/*}" to_full
     done

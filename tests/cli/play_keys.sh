@@ -15,9 +15,9 @@ motion=$work/long.m
 for t in 1000 9000 18000 27000 36000 45000 54000; do
     echo "$t  0 0 200 0 -$((t / 200)) -200 0 200 0 200 0 -400 -200 0 0 -200 0 400 200 0"
 done >"$motion"
-play="'$GRCTL' -d '$work/robot' --retries 10 play '$motion'; echo status \$?; stty -a"
 
 start_sim || { echo "Bail out! the simulator did not start"; exit 1; }
+play="'$GRCTL' -d '$robot' --retries 10 play '$motion'; echo status \$?; stty -a"
 open_screen
 type_line "$play"
 check "the keys are told" until_screen '^space: pause'
@@ -46,9 +46,9 @@ until_screen 'playing'
 keys e
 check "e is the emergency stop" until_screen 'play: emergency stop; .*estop --reset'
 check "that is its status" until_screen '^status 4'
-check "it is braked" both exits 0 "$GRCTL" -d "$work/robot" status m5 --- says ' brake '
-check "other commands know" fails 4 "stopped by 'grctl estop'" "$GRCTL" -d "$work/robot" init
-check "until it is taken back" exits 0 "$GRCTL" -d "$work/robot" estop --reset
+check "it is braked" both exits 0 "$GRCTL" -d "$robot" status m5 --- says ' brake '
+check "other commands know" fails 4 "stopped by 'grctl estop'" "$GRCTL" -d "$robot" init
+check "until it is taken back" exits 0 "$GRCTL" -d "$robot" estop --reset
 on_screen kill-server
 stop_sim
 done_testing

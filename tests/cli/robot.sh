@@ -4,7 +4,7 @@
 . tests/support/cli.sh
 
 start_sim || { echo "Bail out! the simulator did not start"; exit 1; }
-check "sim keeps a link to its pty" [ "$(readlink "$robot")" = "$sim_pty" ]
+check "sim keeps a link to its pty" [ "$(readlink "$work/robot")" = "$sim_pty" ]
 check "sim says that it is none" written "$work/sim.log" SIMULATED
 
 check "status shows a joint" both exits 0 on_robot status --- says '^ *12  R_KNEE_P  *-40\.0  .*off'

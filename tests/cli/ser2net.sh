@@ -23,7 +23,7 @@ start_sim || { echo "Bail out! the simulator did not start"; exit 1; }
 cat >"$work/ser2net.yaml" <<EOF
 connection: &robot
   accepter: tcp,$address,47000
-  connector: serialdev,$robot,115200n81,local
+  connector: serialdev,$sim_pty,115200n81,local
 EOF
 ser2net -n -c "$work/ser2net.yaml" -P "$work/ser2net.pid" 2>"$work/ser2net.log" &
 server=$!

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: MIT
 # grctl sim: a robot for other programs, where they find it, as it was asked for.
 . tests/support/cli.sh
+own_sim
 
 # ---- where it is ----------------------------------------------------------------------------
 
@@ -10,9 +11,11 @@ check "the path is a terminal's" [ -c "$sim_pty" ]
 check "two programs, one after the other" both exits 0 on_robot move m2 20 200 --- \
     exits 0 on_robot status m2
 check "the robot stays as it was left" says 'NECK_Y  *20\.0  *-  on '
-kill -s INT "$sim_pid"
-check "SIGINT, ignored when it began as a shell does for &: it stays" \
+ignores_int() {
+    kill -s INT "$sim_pid"
     exits 0 on_robot status m2
+}
+check "SIGINT, ignored when it began as a shell does for &: it stays" ignores_int
 ends() {
     kill -s "$1" "$sim_pid"
     wait "$sim_pid"
@@ -25,8 +28,9 @@ ends() {
 end_sim() {
     ends TERM 143 >"$work/ends" && ends_result=0 || ends_result=1
 }
-end_sim
-check "SIGTERM: 143, and the link is gone" [ $ends_result -eq 0 ]
+by_tcp || end_sim
+check "SIGTERM: 143, and the link is gone" [ "${ends_result:-}" = 0 ]
+stop_sim
 check "SIGINT: 130" exits 130 timeout --preserve-status -s INT 1 "$GRCTL" sim
 
 : >"$work/mine"
@@ -44,8 +48,9 @@ start_sim
 check "a dangling link of an earlier one is replaced" exits 0 on_robot status m1
 stop_sim
 
-start_sim --tcp 0
+if by_tcp; then start_sim; else start_sim --tcp 0; fi
 tcp=$(sed -n 's/^also at //p' "$work/sim.log")
+tcp=${tcp:-$robot}
 check "another one there" fails 1 "^grctl: sim: $tcp: in use by another program" \
     "$GRCTL" sim --tcp "${tcp##*:}"
 check "behind the last port" fails 2 '65535 is the last' "$GRCTL" sim --tcp 65535 --robots 2
@@ -57,10 +62,19 @@ stop_sim
 
 many() {
     mkfifo "$work/many"
-    "$GRCTL" --json sim --robots 3 --link "$work/many-" >"$work/many" 2>/dev/null &
+    set --
+    by_tcp || set -- --link "$work/many-"
+    "$GRCTL" --json sim --robots 3 "$@" >"$work/many" 2>/dev/null &
     sim_pid=$!
     read -r many_line <"$work/many"
     echo "$many_line" >"$work/out"
+}
+many_devices() {
+    if by_tcp; then
+        grep -o 'tcp:[0-9.:]*' "$work/out"
+    else
+        printf '%s\n' "$work/many-" "$work/many-2" "$work/many-3"
+    fi
 }
 many
 if have_json; then
@@ -69,9 +83,12 @@ if have_json; then
 else
     skip "three robots, in JSON" "no python3 to parse JSON with"
 fi
-for link in many- many-2 many-3; do
-    check "$link answers" exits 0 "$GRCTL" -d "$work/$link" status m1
+number=0
+for device in $(many_devices); do
+    number=$((number + 1))
+    check "number $number answers" exits 0 "$GRCTL" -d "$device" status m1
 done
+check "all three" [ $number -eq 3 ]
 stop_sim
 
 # ---- what it is -----------------------------------------------------------------------------

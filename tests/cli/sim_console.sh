@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: MIT
 # `grctl sim` told what to do on its standard input, as somebody beside the robot would do it.
 . tests/support/cli.sh
+own_sim
 
 # answers PATTERN WORD...
 answers() {
@@ -33,10 +34,11 @@ check "a second robot" answers '^sim: robot 2$' robot 2
 check "its battery" answers '^sim: voltage 8$' voltage 8
 check_json "the first keeps its own" 'lines[0]["joints"][0]["voltage_v"] < 6.6' \
     on_robot --json status m1
-robot=${robot}2
+first=$robot
+if by_tcp; then read -r robot <&6; else robot=${robot}2; fi
 check_json "the second has it" 'lines[0]["joints"][0]["voltage_v"] > 7.9' on_robot --json status m1
 check "the host's cable" answers '^sim: plug out$' plug out
-check "nobody is there" fails 1 'no such file' on_robot status
+check "nobody is there" fails 1 "$robot: .*\(no such file\|refused\)" on_robot status
 check "plugged in again" answers '^sim: plug in$' plug in
 check "somebody is there" exits 0 on_robot status m1
 check "a fault" answers '^sim: fault silent=1$' fault silent=1
@@ -51,7 +53,7 @@ check "no such fault" answers "'fault flood=1'? say: fault KIND=RATE" fault floo
 check "too many words" answers 'at most 4 words' turn 5 1 2 3
 check "a long line" answers 'more than 255 bytes' "$(printf '%0300d' 0)"
 
-robot=$work/robot
+robot=$first
 exec 5>&-
 check "the end of its input is not its end" exits 0 on_robot status m1
 stop_sim

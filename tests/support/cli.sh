@@ -9,6 +9,7 @@ sim_pid=
 known_as=${EMULATOR:-grctl} # as what the system knows the command; an emulator has options
 known_as=${known_as%% *}
 known_as=${known_as##*/}
+[ -z "${NATIVE_GRCTL:-}" ] || known_as=grctl.exe
 unset GRCTL_DEVICE
 XDG_CONFIG_HOME=$work/config # not that of whoever runs the tests
 XDG_STATE_HOME=$work/state
@@ -21,44 +22,69 @@ end_cli_test() {
 trap end_cli_test EXIT
 trap 'exit 1' INT TERM
 
+# known_pid PID: a pattern of the number that the system gives a program begun here: wine its own.
+known_pid() {
+    [ -n "${NATIVE_GRCTL:-}" ] && echo '[0-9][0-9]*' || echo "$1"
+}
+
 # For Windows the simulator is that of this machine, and wine takes its pty for a COM port: $robot.
-# wine names those up to COM9 itself.
+# wine names those up to COM9 itself. Tests of the simulator itself say own_sim: $robot is its TCP
+# port then.
 simulator=${NATIVE_GRCTL:-$GRCTL}
+sim_place="--link $work/robot"
+own_sim() {
+    [ "$simulator" = "$GRCTL" ] || sim_place='--tcp 0'
+    simulator=$GRCTL
+}
+by_tcp() {
+    [ "$sim_place" = '--tcp 0' ]
+}
+
 sim_com=
+# find_robot: sets $robot to where the command finds it.
+find_robot() {
+    robot=$work/robot
+    if by_tcp; then
+        robot=$sim_pty
+    elif [ -n "${NATIVE_GRCTL:-}" ]; then
+        map_com
+    fi
+}
 map_com() {
-    [ -n "${NATIVE_GRCTL:-}" ] || return 0
     sim_number=50
     until ln -s "$sim_pty" "$GROBO_WINE/prefix/dosdevices/com$sim_number" 2>/dev/null; do
         sim_number=$((sim_number + 1))
     done
-    rm -rf "$GROBO_WINE"/prefix/drive_c/users/*/AppData/Local/grctl # a mark of an estop before
     sim_com=$GROBO_WINE/prefix/dosdevices/com$sim_number
     robot=COM$sim_number
+    # The mark of an estop before; others' tests run beside this one.
+    rm -f "$GROBO_WINE"/prefix/drive_c/users/*/AppData/Local/grctl/estop-*"$robot"
 }
 
 # start_sim [OPTIONS]: $robot is its pty when this returns.
 start_sim() {
-    robot=$work/robot
     mkfifo "$work/ready"
-    "$simulator" sim --link "$robot" "$@" >"$work/ready" 2>"$work/sim.log" &
+    # $sim_place is a list of words.
+    # shellcheck disable=SC2086
+    "$simulator" sim $sim_place "$@" >"$work/ready" 2>"$work/sim.log" &
     sim_pid=$!
     exec 6<"$work/ready" # stays open: a line for each robot follows
     read -r sim_pty <&6
     rm "$work/ready"
-    [ -n "$sim_pty" ] && map_com
+    [ -n "$sim_pty" ] && find_robot
 }
 
 # start_told_sim [OPTIONS]: as start_sim, and what is written to descriptor 5 it is told.
 start_told_sim() {
-    robot=$work/robot
     mkfifo "$work/ready" "$work/tell"
-    "$simulator" sim --link "$robot" "$@" <"$work/tell" >"$work/ready" 2>"$work/sim.log" &
+    # shellcheck disable=SC2086
+    "$simulator" sim $sim_place "$@" <"$work/tell" >"$work/ready" 2>"$work/sim.log" &
     sim_pid=$!
     exec 5>"$work/tell"
     exec 6<"$work/ready" # stays open: a line for each robot follows
     read -r sim_pty <&6
     rm "$work/ready" "$work/tell"
-    [ -n "$sim_pty" ] && map_com
+    [ -n "$sim_pty" ] && find_robot
 }
 
 # on_robot ARGUMENTS...: the command on that simulator, which on a busy machine answers late.
