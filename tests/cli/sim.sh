@@ -48,9 +48,14 @@ start_sim
 check "a dangling link of an earlier one is replaced" exits 0 on_robot status m1
 stop_sim
 
-if by_tcp; then start_sim; else start_sim --tcp 0; fi
-tcp=$(sed -n 's/^also at //p' "$work/sim.log")
-tcp=${tcp:-$robot}
+if by_tcp; then
+    start_sim
+    tcp=$robot
+else
+    start_sim --tcp 0
+    written "$work/sim.log" '^also at '
+    tcp=$(sed -n 's/^also at //p' "$work/sim.log")
+fi
 check "another one there" fails 1 "^grctl: sim: $tcp: in use by another program" \
     "$GRCTL" sim --tcp "${tcp##*:}"
 check "behind the last port" fails 2 '65535 is the last' "$GRCTL" sim --tcp 65535 --robots 2

@@ -7,7 +7,7 @@
 on() {
     device=$1
     shift
-    "$GRCTL" -d "$device" "$@"
+    "$GRCTL" -d "$device" --timeout 500 "$@"
 }
 
 # The joint's angle, read through a port.
