@@ -222,6 +222,20 @@ if [ "${EDIT:-libedit}" = libedit ]; then
     check "Ctrl-C clears the line" until_screen '^ *2  NECK_Y'
     keys Up Up Enter
     check "history" until_screen '^grctl> status R_KNEE_P'
+    on_screen new-session -d -s other -x 100 -y 30 'PS1="> " exec sh'
+    other_shows() {
+        on_screen capture-pane -p -t other | grep -q -e "$1"
+    }
+    wait_for other_shows '^>'
+    on_screen send-keys -t other "'$GRCTL' -d sim shell" Enter
+    wait_for other_shows '^grctl>'
+    on_screen send-keys -t other C-z
+    wait_for other_shows 'Stopped'
+    on_screen send-keys -t other 'stty sane; clear; fg' Enter
+    wait_for other_shows '^grctl>'
+    on_screen send-keys -t other 'vers' Tab Enter
+    check "after Ctrl-Z and fg lines are edited as before" wait_for other_shows '^grctl> version$'
+    on_screen kill-session -t other
 else
     skip "editing" "built without libedit"
 fi

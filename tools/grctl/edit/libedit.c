@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Lines edited with libedit, with a history that outlives the shell. */
 #include <errno.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -17,7 +18,9 @@ struct line_reader {
     shell *s;
     EditLine *edit;
     History *history;
+    struct event *resumed; /* SIGCONT */
     const char *prompt;
+    bool reading;
     bool interrupted;
     char path[PATH_BYTES]; /* of the history, "": it is not kept */
 };
@@ -39,6 +42,19 @@ static void tell_news(line_reader *reader)
     fputs("\n", stdout);
     fflush(stdout);
     conn_link_news(&reader->s->link, reader->s->a);
+    el_set(reader->edit, EL_REFRESH, NULL);
+}
+
+/* Whoever had the terminal meanwhile left it in another mode; libedit does not look. */
+static void on_resumed(evutil_socket_t number, short what, void *ctx)
+{
+    line_reader *reader = ctx;
+    (void)number;
+    (void)what;
+    if (!reader->reading || tcgetpgrp(STDIN_FILENO) != getpgrp())
+        return;
+    el_set(reader->edit, EL_PREP_TERM, 0);
+    el_set(reader->edit, EL_PREP_TERM, 1);
     el_set(reader->edit, EL_REFRESH, NULL);
 }
 
@@ -217,6 +233,9 @@ line_reader *line_open(shell *s)
     el_set(reader->edit, EL_BIND, "^R", "em-inc-search-prev", NULL);
     open_history(reader);
     el_source(reader->edit, NULL);
+    reader->resumed = evsignal_new(s->link.base, SIGCONT, on_resumed, reader);
+    if (reader->resumed)
+        event_add(reader->resumed, NULL);
     return reader;
 }
 
@@ -226,7 +245,9 @@ int line_read(line_reader *reader, const char *prompt, char *line, size_t capaci
     int n = 0;
     reader->prompt = prompt;
     reader->interrupted = false;
+    reader->reading = true;
     text = el_gets(reader->edit, &n);
+    reader->reading = false;
     if (reader->interrupted) {
         el_reset(reader->edit);
         fputs("\n", stdout);
@@ -247,6 +268,8 @@ void line_close(line_reader *reader)
 {
     if (reader->history)
         history_end(reader->history);
+    if (reader->resumed)
+        event_free(reader->resumed);
     el_end(reader->edit);
     free(reader);
 }
