@@ -179,7 +179,7 @@ closed() {
     "$GRCTL" -d sim shell <&- >"$work/out" 2>&1 && [ ! -s "$work/out" ]
 }
 check "is closed" closed
-check "a script that is a folder" fails 3 'could not be read to its end' \
+check "a script that is a folder" fails 3 ': is a directory$' \
     "$GRCTL" -d sim shell "$work"
 from_fifo() {
     start_shell "$work/lines"
