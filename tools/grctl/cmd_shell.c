@@ -212,7 +212,8 @@ static int run_shell(shell *s)
     memset(&in, 0, sizeof in);
     s->file = path ? path : "standard input";
     if (path && !(from = fopen(path, "r")))
-        return app_fail(s->a, EXIT_FILE, "NOENT", "%s: %s", path, file_cause_text(errno));
+        return app_fail(s->a, EXIT_FILE, "NOENT", "%s: %s", path,
+                        file_cause_text(os_is_folder(path) ? EISDIR : errno));
     in.file = from && !os_input_take(from) ? from : NULL;
     status = run_script(s, &in);
     if (from)
