@@ -418,4 +418,4 @@ $(PC_FILE): FORCE
 	    'Libs: -L$${libdir} -lgrobo' 'Libs.private: $(OS_LIBS)' > $@.new
 	@if cmp -s $@.new $@; then rm $@.new; else mv $@.new $@; fi
 
--include $(shell find $(addprefix $(BUILD)/,src ports tools tests docs) -name '*.d' 2>/dev/null)
+-include $(shell find $(addprefix $(BUILD)/,src ports tools tests docs bare) -name '*.d' 2>/dev/null)
