@@ -201,6 +201,7 @@ check "SIGTERM, torque off: 143" interrupted 143 off TERM
 check_json "all are off" 'all(j["torque"] == "off" for j in lines[0]["joints"])' \
     on_robot --json status
 check "SIGHUP, to hold: 129" interrupted 129 hold HUP
+check "SIGQUIT, torque off: 131" interrupted 131 off QUIT
 check "SIGINT again while it leaves changes nothing" interrupted 130 off INT INT INT
 check_json "all are off again" 'all(j["torque"] == "off" for j in lines[0]["joints"])' \
     on_robot --json status

@@ -172,8 +172,8 @@ static const char tail[] =
     "a file is bad\n"
     ".It 4\n"
     "refused for safety\n"
-    ".It 129, 130, 143\n"
-    "ended by SIGHUP, SIGINT or SIGTERM, after the exit policy was carried out\n"
+    ".It 129, 130, 131, 143\n"
+    "ended by SIGHUP, SIGINT, SIGQUIT or SIGTERM, after the exit policy was carried out\n"
     ".El\n"
     ".Sh SEE ALSO\n"
     ".Xr grctl\\-json 5\n";

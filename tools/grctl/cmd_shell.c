@@ -138,7 +138,8 @@ static int run_text(shell *s, char *line)
 static bool ends(const shell *s, int status)
 {
     return s->over || status == EXIT_SIGNAL + os_endings[OS_TERMINATE] ||
-           status == EXIT_SIGNAL + os_endings[OS_HANGUP];
+           status == EXIT_SIGNAL + os_endings[OS_HANGUP] ||
+           status == EXIT_SIGNAL + os_endings[OS_QUIT];
 }
 
 /* A line of a script, or what happened while it was waited for. */

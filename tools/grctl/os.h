@@ -42,8 +42,9 @@ int os_run(const char *const *words, FILE *in, FILE *out);
 
 /* ---- signals -------------------------------------------------------------------------------- */
 
-/* What ends a command: Ctrl-C, a request, the end of its terminal. In the C library's numbers. */
-enum { OS_INTERRUPT, OS_TERMINATE, OS_HANGUP, OS_ENDINGS };
+/* What ends a command: Ctrl-C, a request, the end of its terminal, Ctrl-\; in the C library's
+ * numbers. */
+enum { OS_INTERRUPT, OS_TERMINATE, OS_HANGUP, OS_QUIT, OS_ENDINGS };
 extern const int os_endings[OS_ENDINGS];
 
 /* SIGPIPE's number in exit statuses, also where there is no such signal. */

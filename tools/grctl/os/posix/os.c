@@ -88,7 +88,7 @@ int os_run(const char *const *words, FILE *in, FILE *out)
 
 /* ---- signals -------------------------------------------------------------------------------- */
 
-const int os_endings[OS_ENDINGS] = {SIGINT, SIGTERM, SIGHUP};
+const int os_endings[OS_ENDINGS] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT};
 
 void os_catch_endings(void (*handler)(int number))
 {

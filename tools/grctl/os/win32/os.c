@@ -171,8 +171,8 @@ int os_run(const char *const *words, FILE *in, FILE *out)
 
 /* ---- signals -------------------------------------------------------------------------------- */
 
-/* Of Ctrl-C; of Ctrl-Break; of a console that is closed, a log-out and a shut-down. */
-const int os_endings[OS_ENDINGS] = {SIGINT, SIGTERM, SIGBREAK};
+/* Of Ctrl-C; of Ctrl-Break; of a console that is closed, a log-out and a shut-down; no fourth. */
+const int os_endings[OS_ENDINGS] = {SIGINT, SIGTERM, SIGBREAK, SIGBREAK};
 
 static void (*on_ending)(int number);
 
