@@ -19,9 +19,9 @@
  * - Order: stop, then motion, then a user's request, then sensing; first come first served within
  *   a priority. While a stop or a motion frame waits, a lower transaction on the wire gets no more
  *   time than its reply needs, and is tried again afterwards if its budget allows.
- * - A transaction ends exactly once, by its callback. Timeouts, wrong sums and broken echoes are
- *   retried within its budget; a refusal (NACK, or GROBO_RS30X_STATUS_REFUSED in a return packet)
- *   is never retried.
+ * - A transaction ends exactly once, by its callback. Timeouts, wrong sums, broken echoes and a
+ *   NACK, one byte without a name, are retried within its budget; a refusal in a return packet
+ *   (GROBO_RS30X_STATUS_REFUSED) is never retried.
  * - A deadline is computed: wire time of the request at the baud rate, forwarding by the board,
  *   return delay, wire time of the reply, plus a margin learnt from the replies so far.
  * - A reply is believed when header, id, flags, address, length and sum are those expected, and

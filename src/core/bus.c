@@ -150,17 +150,22 @@ static void take_return(grobo_bus *bus, const grobo_rs30x_packet *p)
     }
 }
 
-/* One byte without a name is believed only when no rubbish came before it. */
+/*
+ * One byte without a name is believed only when no rubbish came before it. That it refuses is asked
+ * again: it may be of a reply that the line still owed to the program before this one.
+ */
 static void take_ack(grobo_bus *bus, const grobo_rs30x_packet *p)
 {
-    if (bus->parser.framer.stats.dropped_bytes != bus->dropped_before) {
+    bool among_rubbish = bus->parser.framer.stats.dropped_bytes != bus->dropped_before;
+    bool refuses = p->kind != GROBO_RS30X_ACK_BYTE;
+    if (among_rubbish || (refuses && bus->active->attempts_ <= bus->active->retries)) {
         bus->stats.late_frames++;
         bus->stats.late_bytes++;
-        fail(bus, GROBO_ERR_MISMATCH);
-    } else if (p->kind == GROBO_RS30X_ACK_BYTE) {
-        succeed(bus, p);
-    } else {
+        fail(bus, among_rubbish ? GROBO_ERR_MISMATCH : GROBO_ERR_NACK);
+    } else if (refuses) {
         refuse(bus, p);
+    } else {
+        succeed(bus, p);
     }
 }
 

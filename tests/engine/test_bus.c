@@ -163,34 +163,59 @@ static void a_wrong_sum_is_retried_at_once_and_never_believed(void **state)
     assert_int_equal(p.ended[1].result, GROBO_ERR_CHECKSUM);
 }
 
+static void submit_torque(peer *p, request *r, uint8_t retries)
+{
+    uint8_t b[FRAME];
+    int n = grobo_rs30x_write_u8(3, GROBO_RS30X_WANT_ACK, GROBO_RS30X_TORQUE, 1, b, FRAME);
+    n = grobo_frame_wrap(GROBO_WIRING_BOARD, b, (size_t)n, r->frame, FRAME);
+    peer_txn(p, &r->txn, r->frame, n, GROBO_PRIORITY_USER);
+    r->txn.retries = retries;
+    assert_int_equal(grobo_bus_submit(&p->bus, &r->txn), GROBO_OK);
+}
+
 static void a_refusal_is_never_retried(void **state)
 {
     (void)state;
     peer p;
     request r;
     uint8_t b[FRAME];
-    static const uint8_t nack = GROBO_RS30X_NACK;
     peer_init(&p, NULL);
-    int n = grobo_rs30x_write_u8(3, GROBO_RS30X_WANT_ACK, GROBO_RS30X_TORQUE, 1, b, FRAME);
-    n = grobo_frame_wrap(GROBO_WIRING_BOARD, b, (size_t)n, r.frame, FRAME);
-    peer_txn(&p, &r.txn, r.frame, n, GROBO_PRIORITY_USER);
-    r.txn.retries = 5;
-    assert_int_equal(grobo_bus_submit(&p.bus, &r.txn), GROBO_OK);
-    peer_bytes_at(&p, 3 * MS, &nack, 1);
-    peer_run(&p, S);
-    assert_int_equal(p.ended[0].result, GROBO_ERR_NACK);
-    assert_int_equal(p.sent_count, 1);
-
     const grobo_rs30x_packet refused = {
         GROBO_RS30X_RETURN, 3, GROBO_RS30X_STATUS_REFUSED, 42, 0, 1, b, 0};
     submit_read(&p, &r, 3, GROBO_PRIORITY_USER);
-    n = grobo_rs30x_build(&refused, b, FRAME);
-    peer_bytes_at(&p, S + 3 * MS, b, (size_t)n);
+    int n = grobo_rs30x_build(&refused, b, FRAME);
+    peer_bytes_at(&p, 3 * MS, b, (size_t)n);
+    peer_run(&p, S);
+    assert_int_equal(p.ended[0].result, GROBO_ERR_NACK);
+    assert_true(p.ended[0].has_reply);
+    assert_int_equal(p.sent_count, 1);
+    assert_int_equal(p.bus.stats.refusals, 1);
+}
+
+/* 08 may be the id in a reply that the line still owed to the program before this one. */
+static void a_byte_that_refuses_is_asked_for_again(void **state)
+{
+    (void)state;
+    peer p;
+    request r;
+    static const uint8_t ack = GROBO_RS30X_ACK, nack = GROBO_RS30X_NACK;
+    static const uint8_t owed[] = {0x08, 0x00, 0x2A, 0x02, 0x01, 0x06, 0x00, 0x27};
+    peer_init(&p, NULL);
+    submit_torque(&p, &r, 2);
+    peer_bytes_at(&p, 2 * MS, owed, sizeof owed);
+    peer_bytes_at(&p, 15 * MS, &ack, 1);
+    peer_run(&p, S);
+    assert_int_equal(p.ended[0].result, GROBO_OK);
+    assert_int_equal(p.sent_count, 2);
+
+    submit_torque(&p, &r, 1);
+    peer_bytes_at(&p, S + 3 * MS, &nack, 1);
+    peer_bytes_at(&p, S + 15 * MS, &nack, 1);
     peer_run(&p, 2 * S);
     assert_int_equal(p.ended[1].result, GROBO_ERR_NACK);
     assert_true(p.ended[1].has_reply);
-    assert_int_equal(p.sent_count, 2);
-    assert_int_equal(p.bus.stats.refusals, 2);
+    assert_int_equal(p.sent_count, 4);
+    assert_int_equal(p.bus.stats.refusals, 1);
 }
 
 static void a_stale_request_is_not_sent(void **state)
@@ -438,6 +463,7 @@ int main(void)
         cmocka_unit_test(a_cut_reply_is_short_and_retried),
         cmocka_unit_test(a_wrong_sum_is_retried_at_once_and_never_believed),
         cmocka_unit_test(a_refusal_is_never_retried),
+        cmocka_unit_test(a_byte_that_refuses_is_asked_for_again),
         cmocka_unit_test(a_stale_request_is_not_sent),
         cmocka_unit_test(a_stop_cuts_an_overdue_read_short),
         cmocka_unit_test(queues_have_a_cap_that_a_stop_ignores),
