@@ -66,6 +66,8 @@ typedef enum grobo_i_activity {
     GROBO_I_WAIT      /* until job.until_us */
 } grobo_i_activity;
 
+/* The first of these joints, of which there is one at least. */
+int grobo_i_lowest(grobo_joint_mask joints);
 /* Starts a job; its number, or the reason why not. `script` ends with NULL. */
 int grobo_i_job_start(grobo_robot *robot, grobo_job_kind kind, const grobo_robot_step_fn *script);
 /* Goes on with the job as far as it goes now. */

@@ -71,7 +71,7 @@ void grobo_i_job_goto(grobo_robot *robot, grobo_robot_step_fn step)
 
 /* ---- activities: 1 under way, 0 over, < 0 the job has failed --------------------------------- */
 
-static int lowest(grobo_joint_mask joints)
+int grobo_i_lowest(grobo_joint_mask joints)
 {
     int j = 0;
     while ((joints & GROBO_JOINT_BIT(j)) == 0) {
@@ -99,7 +99,7 @@ static int keep_reading(grobo_robot *robot)
     if (slot == NULL) {
         return GROBO_ERR_FULL;
     }
-    slot->joint = (uint8_t)lowest(job->todo);
+    slot->joint = (uint8_t)grobo_i_lowest(job->todo);
     slot->reads = true;
     int result = driver->sense(driver, robot->driver_ctx, slot->joint, job->sense, &slot->exchange);
     if (result < 0) {

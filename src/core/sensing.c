@@ -188,10 +188,7 @@ static int next_of(grobo_joint_mask *round, grobo_joint_mask all)
     if (*round == 0) {
         *round = all;
     }
-    int joint = 0;
-    while ((*round & GROBO_JOINT_BIT(joint)) == 0) {
-        joint++;
-    }
+    int joint = grobo_i_lowest(*round);
     *round &= ~GROBO_JOINT_BIT(joint);
     return joint;
 }
@@ -200,11 +197,8 @@ static int next_of(grobo_joint_mask *round, grobo_joint_mask all)
 static int next_in_time(grobo_robot *robot, grobo_joint_mask *round, grobo_joint_mask all)
 {
     int64_t interval_us = robot->config.sense_interval_us;
-    int n = 0;
-    for (grobo_joint_mask rest = all; rest != 0; rest &= rest - 1) {
-        n++;
-    }
-    robot->sense_us += (interval_us == GROBO_SENSE_NEVER ? WATCH_INTERVAL_US : interval_us) / n;
+    robot->sense_us += (interval_us == GROBO_SENSE_NEVER ? WATCH_INTERVAL_US : interval_us) /
+                       grobo_joints_count(all);
     if (robot->sense_us < robot->now_us) {
         robot->sense_us = robot->now_us; /* the wire was too slow: no burst to catch up */
     }

@@ -198,17 +198,9 @@ static struct event *every(recorder *r, int64_t period_us, event_callback_fn fn)
 
 /* ---- from the beginning to the end ----------------------------------------------------------- */
 
-static int count(grobo_joint_mask joints)
-{
-    int n = 0;
-    for (; joints; joints &= joints - 1)
-        n++;
-    return n;
-}
-
 static void say_how(const recorder *r, bool hears)
 {
-    int n = count(r->joints);
+    int n = grobo_joints_count(r->joints);
     double rate_hz = app_number(r->c.a, OPT_RATE, seed_rate_hz);
     double line_hz = wire_taught_hz(grobo_robot_driver(r->c.robot), (int)conn_baud(r->c.a), n);
     app_note(r->c.a,
