@@ -12,11 +12,7 @@ script() {
     script_text=$2
     shift 2
     printf '%s' "$script_text" | "$grctl" -d sim shell "$@" >"$work/out" 2>"$work/err"
-    script_got=$?
-    [ $script_got -eq "$script_want" ] && return
-    echo "status $script_got, not $script_want"
-    cat "$work/out" "$work/err"
-    return 1
+    status_was "$script_want" shell "$@"
 }
 
 # told PATTERN: a line like that on standard error.

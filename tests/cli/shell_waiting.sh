@@ -125,11 +125,7 @@ runs() {
     runs_want=$1
     shift
     "$@" | "$GRCTL" -d sim shell >"$work/out" 2>"$work/err"
-    runs_got=$?
-    [ $runs_got -eq "$runs_want" ] && return
-    echo "status $runs_got, not $runs_want"
-    cat "$work/out" "$work/err"
-    return 1
+    status_was "$runs_want" "$@"
 }
 byte_by_byte() {
     start_shell

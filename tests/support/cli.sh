@@ -131,9 +131,16 @@ exits() {
     exits_want=$1
     shift
     "$@" >"$work/out" 2>"$work/err" </dev/null
-    exits_got=$?
-    [ $exits_got -eq "$exits_want" ] && return
-    echo "status $exits_got, not $exits_want: $*"
+    status_was "$exits_want" "$@"
+}
+
+# status_was STATUS COMMAND...: that of the command that was just run; shows what it printed if not.
+status_was() {
+    status_got=$?
+    status_want=$1
+    shift
+    [ $status_got -eq "$status_want" ] && return
+    echo "status $status_got, not $status_want: $*"
     cat "$work/out" "$work/err"
     return 1
 }

@@ -90,26 +90,27 @@ static const char later_pose_file[] =
     "      zmp: [ 0, 0.04, 0 ]\n"
     "      isZmpStationaryPoint: false\n";
 
+/* What is read and written comes out to the letter. */
+static void expect_same_pseq(const char *file)
+{
+    grobo_motion *motion = motion_of(file, GROBO_FORMAT_PSEQ);
+    char *text = written_as(motion, GROBO_FORMAT_AUTO, NULL, NULL);
+
+    assert_string_equal(text, file);
+    free(text);
+    grobo_motion_free(motion);
+}
+
 static void test_later_pseq_layout(void **state)
 {
     (void)state;
-    grobo_motion *motion = motion_of(later_pose_file, GROBO_FORMAT_PSEQ);
-    char *text = written_as(motion, GROBO_FORMAT_AUTO, NULL, NULL);
-
-    assert_string_equal(text, later_pose_file);
-    free(text);
-    grobo_motion_free(motion);
+    expect_same_pseq(later_pose_file);
 }
 
 static void test_pseq_layout(void **state)
 {
     (void)state;
-    grobo_motion *motion = motion_of(pose_file, GROBO_FORMAT_PSEQ);
-    char *text = written_as(motion, GROBO_FORMAT_AUTO, NULL, NULL);
-
-    assert_string_equal(text, pose_file);
-    free(text);
-    grobo_motion_free(motion);
+    expect_same_pseq(pose_file);
 }
 
 /* Keys without a meaning here, of the file and of the component, and a content that is nothing. */
