@@ -14,6 +14,23 @@ CROSS_DIR ?= build/cross/$(CROSS)
 $(if $(CROSS),$(eval include tools/cross/$(CROSS).mk))
 
 BUILD ?= build
+# make splits names at blanks: a folder whose name has some is used by another name, a link.
+ifneq ($(word 2,$(BUILD)),)
+SPACED := $(BUILD)
+override BUILD := build/.link-$(shell printf %s "$(SPACED)" | cksum | tr -cd 0-9)
+ifneq ($(shell mkdir -p build "$(SPACED)" && ln -sfn "$$(cd "$(SPACED)" && pwd)" $(BUILD) && echo yes),yes)
+$(error no folder can be made at "$(SPACED)")
+endif
+endif
+
+# What is not given to `make install` is as it was given to the build before.
+REMEMBERED := CC AR CPPFLAGS CFLAGS LDFLAGS SAN WERROR
+last = $(shell sed -n 's/^$(1) = //p' $(BUILD)/.flags)
+remember = $(if $(filter default undefined,$(origin $(1))),$(eval $(1) := $$(call last,$(1))))
+ifneq ($(and $(filter install install-lib,$(MAKECMDGOALS)),$(wildcard $(BUILD)/.flags)),)
+$(foreach v,$(REMEMBERED),$(call remember,$(v)))
+endif
+
 PREFIX ?= /usr/local
 LIBDIR ?= $(PREFIX)/lib
 INCLUDEDIR ?= $(PREFIX)/include
@@ -32,7 +49,8 @@ PKG_CONFIG ?= $(CROSS_COMPILE)pkg-config
 FUZZ_CC ?= clang
 TIDY ?= clang-tidy-14
 FUZZ_S ?= 60
-WERROR ?= -Werror
+# A released tarball is built by compilers that are not known yet: there a warning is no error.
+WERROR ?= $(if $(wildcard .git),-Werror)
 SONAME ?= libgrobo.so.0
 LINK_NAME ?= libgrobo.so
 SHARED_FLAGS ?= -Wl,-soname,$(SONAME) $(if $(SAN),,-Wl,-z,defs)
@@ -45,6 +63,8 @@ ifeq ($(origin AR),default)
 AR := $(CROSS_COMPILE)ar
 endif
 Q := $(if $(filter 1,$(V)),,@)
+# A file by its whole name; abspath would split the name of this folder at blanks.
+whole = $(if $(filter /%,$(1)),$(1),$(CURDIR)/$(1))
 say = $(if $(filter 1,$(V)),@:,@printf '  %-5s %s\n')
 
 # ---- flags ---------------------------------------------------------------------------------
@@ -54,7 +74,9 @@ WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow \
 SAN_FLAGS := $(if $(SAN),-fsanitize=$(SAN) -fno-sanitize-recover=all -fno-omit-frame-pointer)
 ALL_CPPFLAGS = -Iinclude -Iports/$(PORT)/include $(CPPFLAGS)
 ALL_CFLAGS = -std=c11 $(WARNINGS) $(TARGET_CFLAGS) -fvisibility=hidden -fPIC $(SAN_FLAGS) $(COV_FLAGS) $(CFLAGS)
-ALL_LDFLAGS = $(SAN_FLAGS) $(COV_FLAGS) $(LDFLAGS)
+# Without a number of jobs gcc warns at each link.
+LTO_FLAGS = $(if $(filter -flto,$(CFLAGS)),-flto=auto)
+ALL_LDFLAGS = $(SAN_FLAGS) $(COV_FLAGS) $(LTO_FLAGS) $(LDFLAGS)
 
 # pkg-config is asked when a recipe needs the answer, and then once: set-up may install a library
 # after make began.
@@ -130,9 +152,9 @@ include tools/baremetal/baremetal.mk
 
 # ---- targets -------------------------------------------------------------------------------
 
-.PHONY: help all demo check lint lint-quick format test check-san check-tsan check-memcheck install uninstall
+.PHONY: help all lib demo check lint lint-quick format test check-san check-tsan check-memcheck install uninstall
 .PHONY: clean tidy fuzz soak cov dist bench plots captures cross check-cross check-drivers
-.PHONY: check-ports FORCE
+.PHONY: check-ports check-long check-mutants check-map install-lib FORCE
 .PHONY: firmware size check-firmware
 
 help: ## this list
@@ -141,7 +163,9 @@ help: ## this list
 	@echo '  RING="unit engine" (for test) PREFIX=/usr/local DESTDIR= V=1'
 	@echo '  TARGET=one of $(TARGETS) (for cross)'
 
-all: $(STATIC_LIB) $(CORE_LIB) $(SHARED_LIB) $(PC_FILE) $(GRCTL) $(GRCTL_RUN) $(ALSO) ## libraries and grctl, in build/
+all: lib $(GRCTL) $(GRCTL_RUN) $(ALSO) ## libraries and grctl, in build/
+
+lib: $(STATIC_LIB) $(CORE_LIB) $(SHARED_LIB) $(PC_FILE) ## the libraries alone: libevent and libyaml are enough
 
 MOTION ?= motions/greet.pseq
 demo: ## play MOTION=motions/greet.pseq on a simulated robot behind a pty
@@ -181,20 +205,20 @@ $(BUILD)/left_out.sh: FORCE
 chosen = $(call in_rings,$(BUILD)/,$(TEST_PROGRAMS)) $(if $(filter fuzz,$(RING)),$(FUZZ_REPLAYS)) \
     $(if $(filter port,$(RING)),$(DRIVER_PROGRAMS)) $(if $(filter export,$(RING)),$(EXAMPLES))
 test: all $(chosen) $(CROSS_TOOLS) $(left_out) ## the tests alone; RING="unit engine" chooses
-	@$(TEST_BEGIN) GRCTL="$(abspath $(GRCTL_RUN))" BUILD="$(BUILD)" CC="$(CC)" TEST_LOGS="$(BUILD)/logs" EDIT=$(EDIT) SCREEN=$(SCREEN) \
+	@$(TEST_BEGIN) GRCTL="$(call whole,$(GRCTL_RUN))" BUILD="$(BUILD)" CC="$(CC)" TEST_LOGS="$(BUILD)/logs" EDIT=$(EDIT) SCREEN=$(SCREEN) \
 	    $(cross_env) tests/run.sh \
 	    $(call in_rings,$(BUILD)/,$(TEST_PROGRAMS)) $(call in_rings,,$(TEST_SCRIPTS)) \
 	    $(if $(filter fuzz,$(RING)),$(corpora)) $(left_out) $(TEST_END)
 
 check-san: ## the tests of our own code under AddressSanitizer and UBSan
-	@$(MAKE) --no-print-directory test BUILD=$(BUILD)/san SAN=address,undefined CFLAGS='-O1 -g' \
+	@TEST_TIMEOUT_S=600 $(MAKE) --no-print-directory test BUILD=$(BUILD)/san SAN=address,undefined CFLAGS='-O1 -g' \
 	    RING='$(filter-out lint export,$(RING))'
 
 check-tsan: ## the tests of what threads share under ThreadSanitizer
 	@$(MAKE) --no-print-directory test BUILD=$(BUILD)/tsan SAN=thread CFLAGS='-O1 -g' RING=link
 
 check-memcheck: ## the same under valgrind
-	@TEST_WRAPPER='valgrind -q --leak-check=full --error-exitcode=99' \
+	@TEST_WRAPPER='valgrind -q --leak-check=full --error-exitcode=99' TEST_TIMEOUT_S=900 \
 	    $(MAKE) --no-print-directory test RING='$(filter-out cli lint export,$(RING))'
 
 TARGETS := $(filter-out linux static zig,$(patsubst tools/cross/%.mk,%,$(wildcard tools/cross/*.mk)))
@@ -207,6 +231,14 @@ cross: ## build for another machine, in build/arm64 for TARGET=arm64
 check-cross: cross ## the tests of that build, under an emulator; RING= chooses
 	+@$(cross_make) test
 
+check-long: ## all machines, sabotage, fuzzing, the soak, scans of all lines: hours
+	@$(MAKE) --no-print-directory check-ports
+	@$(MAKE) --no-print-directory check-mutants COUNT=300
+	@$(MAKE) --no-print-directory check-map COUNT=
+	@$(MAKE) --no-print-directory fuzz FUZZ_S=300
+	@$(MAKE) --no-print-directory soak SEEDS=6
+	@GRCTL="$(abspath $(GRCTL))" SCAN_MATRIX=all SCAN_RUNS=20 TEST_TIMEOUT_S=14400 tests/run.sh tests/cli/scan.sh
+
 check-ports: ## build and test for every machine that can be had here; PORTS="arm64 musl" chooses
 	-@tools/setup.sh --ports
 	@BUILD="$(BUILD)" MINUTES=$(MINUTES) tools/ports.sh $(PORTS)
@@ -214,7 +246,7 @@ check-ports: ## build and test for every machine that can be had here; PORTS="ar
 check-drivers: ## the serial port's tests on real drivers, of a Debian kernel in a virtual machine
 	-@tools/setup.sh --drivers
 	@$(MAKE) --no-print-directory $(GRCTL) $(DRIVER_PROGRAMS)
-	@GRCTL="$(abspath $(GRCTL))" BUILD="$(BUILD)" TEST_TIMEOUT_S=300 TEST_LOGS="$(BUILD)/logs/drivers" \
+	@GRCTL="$(call whole,$(GRCTL))" BUILD="$(BUILD)" TEST_TIMEOUT_S=300 TEST_LOGS="$(BUILD)/logs/drivers" \
 	    DRIVER_PROGRAMS="$(DRIVER_PROGRAMS)" tests/run.sh tests/drivers/boot.sh
 
 firmware: ## the core and two examples for Cortex-M0 and M4, in build/bare
@@ -229,18 +261,19 @@ size: ## what the core takes there, against the limits; UPDATE=1 keeps the figur
 check-firmware: $(GRCTL) ## these examples in QEMU, grctl or a simulated robot at their UART
 	-@tools/setup.sh --cross baremetal
 	+@if command -v $(BARE_PREFIX)gcc >/dev/null; then $(MAKE) --no-print-directory $(FIRMWARES); fi
-	@GRCTL="$(abspath $(GRCTL))" FIRMWARE="$(BARE_DIR)" BARE_PREFIX=$(BARE_PREFIX) \
+	@GRCTL="$(call whole,$(GRCTL))" FIRMWARE="$(BARE_DIR)" BARE_PREFIX=$(BARE_PREFIX) \
 	    TEST_TIMEOUT_S=300 TEST_LOGS="$(BUILD)/logs/firmware" tests/run.sh tests/firmware/machines.sh
 
 bench: $(BENCHES) $(GRCTL) ## speed and punctuality; fails where a promise is not kept
 	@status=0; for program in $(BENCHES); do \
-	    GRCTL="$(abspath $(GRCTL))" $$program || status=1; done; exit $$status
+	    GRCTL="$(call whole,$(GRCTL))" $$program || status=1; done; exit $$status
 
 plots: $(BUILD)/grctl ## draw motions/plots/*.svg again
-	@tools/plots.sh $(abspath $(BUILD)/grctl)
+	@tools/plots.sh "$(call whole,$(BUILD)/grctl)"
 
-captures: $(BUILD)/grctl ## make the screens of docs/guide/tour.md again; needs tmux
-	@GRCTL="$(abspath $(GRCTL))" TOUR_WRITE=yes sh tests/cli/tour.sh
+captures: $(BUILD)/grctl ## make the screens of docs/guide/tour.md and the table of safety.md again
+	@GRCTL="$(call whole,$(GRCTL))" TOUR_WRITE=yes sh tests/cli/tour.sh
+	@GRCTL="$(call whole,$(GRCTL))" TOUR_WRITE=yes sh tests/cli/deaths.sh
 
 tidy: ## clang-tidy over the library and the command; advice, not a gate
 	@status=0; for file in $(CORE_SRCS) $(OTHER_SRCS) $(TOOL_SRCS); do \
@@ -248,22 +281,48 @@ tidy: ## clang-tidy over the library and the command; advice, not a gate
 	        2>/dev/null || status=1; \
 	done; exit $$status
 
-fuzz: ## libFuzzer on each target for FUZZ_S=60 seconds; finds stay in build/fuzz
+fuzz: ## libFuzzer on each target for FUZZ_S=60 seconds, two at a time; finds stay in build/fuzz
 	@command -v $(FUZZ_CC) >/dev/null || \
-	    { echo 'fuzz: needs clang with libFuzzer (Debian: clang and libclang-rt-14-dev)' >&2; exit 1; }
-	@$(MAKE) --no-print-directory $(patsubst $(BUILD)/%,$(BUILD)/fuzz/%,$(FUZZERS)) BUILD=$(BUILD)/fuzz \
+	    { echo 'fuzz: needs clang with libFuzzer (tools/setup.sh --ci installs it)' >&2; exit 1; }
+	+@$(MAKE) --no-print-directory $(patsubst $(BUILD)/%,$(BUILD)/fuzz/%,$(FUZZERS)) BUILD=$(BUILD)/fuzz \
 	    CC=$(FUZZ_CC) SAN=address,undefined,fuzzer-no-link CFLAGS='-O1 -g'
-	@set -e; for name in $(patsubst fuzz_%.fuzzer,%,$(notdir $(FUZZERS))); do \
-	    echo "== $$name"; mkdir -p $(BUILD)/fuzz/corpus/$$name; \
-	    $(BUILD)/fuzz/tests/fuzz/fuzz_$$name.fuzzer -max_total_time=$(FUZZ_S) -print_final_stats=1 \
-	        -verbosity=0 -artifact_prefix=$(BUILD)/fuzz/$$name- $(BUILD)/fuzz/corpus/$$name \
-	        tests/fuzz/corpus/$$name; \
-	done
+	@tests/fuzz/run.sh $(BUILD)/fuzz $(FUZZ_S) $(patsubst fuzz_%.fuzzer,%,$(notdir $(FUZZERS)))
 
-SEEDS ?= 10
+SEEDS ?= 6
 FROM ?= 0
-soak: $(BUILD)/tests/engine/test_robot_soak ## half an hour of virtual time on each bad line, for SEEDS=10 seeds
-	@GROBO_SOAK=$(SEEDS) GROBO_SOAK_FROM=$(FROM) $<
+soak: $(BUILD)/tests/engine/test_robot_soak ## half an hour of virtual time on each bad line, SEEDS=6 FROM=0; LINE=, MINUTES= choose
+	@GROBO_SOAK=$(SEEDS) GROBO_SOAK_FROM=$(FROM) GROBO_SOAK_LINE=$(LINE) \
+	    GROBO_SOAK_MINUTES=$(MINUTES) $<
+
+# Sabotages, each of which a test should notice (tests/mutants/). The folder is its own.
+SEED ?= 1
+COUNT ?=
+ONLY ?=
+MUTANT_DIR := $(BUILD)/mutants
+MUTANT_TESTS := $(patsubst %.c,$(MUTANT_DIR)/%.o,$(filter tests/engine/%,$(TEST_SRCS)) \
+    $(filter-out tests/unit/test_body% tests/unit/test_motion% tests/unit/test_pcapng%,$(filter \
+    tests/unit/%,$(TEST_SRCS))))
+MUTANT_LIBS := $(patsubst %,$(MUTANT_DIR)/lib%.a,support grctl grobo)
+check-mutants: ## sabotage the core in COUNT=300 ways that SEED=1 chooses: a test must notice each
+	-@tools/setup.sh --mutants
+	@$(MAKE) --no-print-directory BUILD=$(MUTANT_DIR) CFLAGS=-O2 \
+	    $(MUTANT_TESTS) $(MUTANT_LIBS)
+	@nice python3 tests/mutants/run.py --seed $(SEED) --count $(or $(COUNT),300) $(if $(ONLY),--only $(ONLY)) \
+	    --work $(MUTANT_DIR)/work --sources "$(CORE_SRCS)" --tests "$(MUTANT_TESTS)" \
+	    --compile '$(CC) $(ALL_CPPFLAGS) $(SRC_INCLUDE) -std=c11 -fPIC -O2' --link '$(CC)' \
+	    --libs '$(MUTANT_LIBS) $(CMOCKA_LIBS) $(TOOL_LIBS) $(LIBS)' \
+	    --scope tests/mutants/scope --survivors tests/mutants/survivors --named tests/mutants/named
+
+MAP_TESTS := $(patsubst %.c,$(MUTANT_DIR)/%.o,$(filter tests/unit/% tests/engine/% \
+    tests/link/% tests/port/%,$(TEST_SRCS)))
+check-map: ## sabotage the function of each row of docs/seed-map.md; COUNT=40 rows that SEED=1 chooses
+	-@tools/setup.sh --mutants
+	@$(MAKE) --no-print-directory -s BUILD=$(MUTANT_DIR) CFLAGS=-O2 $(MAP_TESTS) $(MUTANT_LIBS)
+	@nice python3 tests/mutants/rows.py --seed $(SEED) --count $(or $(COUNT),0) $(if $(ONLY),--only "$(ONLY)") \
+	    --map docs/seed-map.md --rows tests/mutants/rows --work $(MUTANT_DIR)/work \
+	    --sources "$(CORE_SRCS) $(OTHER_SRCS)" --objects $(MUTANT_DIR)/tests \
+	    --compile '$(CC) $(ALL_CPPFLAGS) $(SRC_INCLUDE) $(OS_FLAGS) $(EVENT_CFLAGS) $(YAML_CFLAGS) -std=c11 -fPIC -O2' \
+	    --link '$(CC)' --libs '$(MUTANT_LIBS) $(CMOCKA_LIBS) $(TOOL_LIBS) $(LIBS)' $(if $(JOBS),--jobs $(JOBS))
 
 cov: ## which lines the tests reach, by file
 	@$(MAKE) --no-print-directory test BUILD=$(BUILD)/cov COV_FLAGS=--coverage CFLAGS='-O0 -g' \
@@ -275,9 +334,13 @@ cov: ## which lines the tests reach, by file
 	        END { for (f in n) { printf "%6.1f %% of %4d  %s\n", 100 * hit[f] / n[f], n[f], f; all += n[f]; reached += hit[f] } \
 	            printf "%6.1f %% of %4d  all\n", 100 * reached / all, all }' | sort -k 5
 
+DIST = libgrobo-$(VERSION)
 dist: ## a tarball of the last commit, in build/
+	@[ -e .git ] && git rev-parse -q --verify HEAD >/dev/null || \
+	    { echo 'dist: not a git checkout: a tarball is made of a commit' >&2; exit 1; }
 	@mkdir -p $(BUILD)
-	git archive --prefix=libgrobo-$(VERSION)/ HEAD | gzip -n > $(BUILD)/libgrobo-$(VERSION).tar.gz
+	git archive --prefix=$(DIST)/ -o $(BUILD)/$(DIST).tar HEAD
+	@gzip -nf $(BUILD)/$(DIST).tar
 
 # What grctl prints of itself: FILE=ARGUMENTS. It takes a grctl that runs on this machine.
 GRCTL_HERE ?= $(if $(CROSS_COMPILE),,$(GRCTL_RUN))
@@ -286,9 +349,9 @@ PAGES := man/man1/grctl.1=help,--man bash-completion/completions/grctl=completio
 JSON_PAGE := $(BUILD)/grctl-json.5
 comma := ,
 define install_page
-install -d $(DESTDIR)$(DATADIR)/$(dir $(firstword $(subst =, ,$(page))))
+install -d "$(DESTDIR)$(DATADIR)/$(dir $(firstword $(subst =, ,$(page))))"
 	$(GRCTL_HERE) $(subst $(comma), ,$(lastword $(subst =, ,$(page)))) \
-	    >$(DESTDIR)$(DATADIR)/$(firstword $(subst =, ,$(page)))
+	    >"$(DESTDIR)$(DATADIR)/$(firstword $(subst =, ,$(page)))"
 
 endef
 
@@ -297,44 +360,53 @@ $(JSON_PAGE): docs/grctl-json.md tools/json_page.awk
 	@awk -f tools/json_page.awk $< >$@
 
 define install_shared
-install -m 755 $(SHARED_LIB) $(DESTDIR)$(if $(IMPORT_LIB),$(BINDIR),$(LIBDIR))
+install -m 755 $(SHARED_LIB) "$(DESTDIR)$(if $(IMPORT_LIB),$(BINDIR),$(LIBDIR))"
 	$(if $(IMPORT_LIB),install -m 644 $(BUILD)/$(IMPORT_LIB),ln -sf $(SONAME)) \
-	    $(DESTDIR)$(LIBDIR)/$(or $(IMPORT_LIB),$(LINK_NAME))
+	    "$(DESTDIR)$(LIBDIR)/$(or $(IMPORT_LIB),$(LINK_NAME))"
 endef
 
-install: all $(JSON_PAGE) ## into $(DESTDIR)$(PREFIX)
-	install -d $(DESTDIR)$(LIBDIR)/pkgconfig $(DESTDIR)$(INCLUDEDIR)/grobo $(DESTDIR)$(BINDIR)
-	install -m 644 include/grobo/*.h ports/$(PORT)/include/grobo/*.h $(DESTDIR)$(INCLUDEDIR)/grobo
-	install -m 644 $(STATIC_LIB) $(CORE_LIB) $(DESTDIR)$(LIBDIR)
+install-lib: lib ## headers, libraries and grobo.pc alone
+	install -d "$(DESTDIR)$(LIBDIR)/pkgconfig" "$(DESTDIR)$(INCLUDEDIR)/grobo" \
+	    $(if $(IMPORT_LIB),"$(DESTDIR)$(BINDIR)")
+	install -m 644 include/grobo/*.h ports/$(PORT)/include/grobo/*.h "$(DESTDIR)$(INCLUDEDIR)/grobo"
+	install -m 644 $(STATIC_LIB) $(CORE_LIB) "$(DESTDIR)$(LIBDIR)"
 	$(if $(SHARED_LIB),$(install_shared))
-	install -m 644 $(PC_FILE) $(DESTDIR)$(LIBDIR)/pkgconfig
-	$(if $(GRCTL),install -m 755 $(GRCTL) $(DESTDIR)$(BINDIR))
+	install -m 644 $(PC_FILE) "$(DESTDIR)$(LIBDIR)/pkgconfig"
+
+install: all install-lib $(JSON_PAGE) ## into $(DESTDIR)$(PREFIX)
+	install -d "$(DESTDIR)$(BINDIR)"
+	$(if $(GRCTL),install -m 755 $(GRCTL) "$(DESTDIR)$(BINDIR)")
 	$(if $(GRCTL_HERE),$(foreach page,$(PAGES),$(install_page)))
-	install -d $(DESTDIR)$(DATADIR)/man/man5 $(DESTDIR)$(DATADIR)/grobo/udev \
-	    $(DESTDIR)$(DATADIR)/grobo/wireshark
-	install -m 644 $(JSON_PAGE) $(DESTDIR)$(DATADIR)/man/man5
-	install -m 644 docs/grctl.schema.json $(DESTDIR)$(DATADIR)/grobo
-	install -m 644 tools/udev/60-grobo.rules $(DESTDIR)$(DATADIR)/grobo/udev
-	install -m 644 tools/wireshark/grobo.lua $(DESTDIR)$(DATADIR)/grobo/wireshark
+	install -d "$(DESTDIR)$(DATADIR)/man/man5" "$(DESTDIR)$(DATADIR)/grobo/udev" \
+	    "$(DESTDIR)$(DATADIR)/grobo/wireshark"
+	install -m 644 $(JSON_PAGE) "$(DESTDIR)$(DATADIR)/man/man5"
+	install -m 644 docs/grctl.schema.json "$(DESTDIR)$(DATADIR)/grobo"
+	install -m 644 tools/udev/60-grobo.rules "$(DESTDIR)$(DATADIR)/grobo/udev"
+	install -m 644 tools/wireshark/grobo.lua "$(DESTDIR)$(DATADIR)/grobo/wireshark"
 
 uninstall: ## take out what install put in
-	rm -rf $(DESTDIR)$(INCLUDEDIR)/grobo
-	rm -f $(addprefix $(DESTDIR)$(LIBDIR)/,libgrobo.a libgrobo-core.a $(LINK_NAME) $(SONAME) $(IMPORT_LIB) \
-	    pkgconfig/grobo.pc) $(addprefix $(DESTDIR)$(BINDIR)/,grctl$(EXE) $(if $(IMPORT_LIB),$(SONAME)))
-	rm -f $(foreach page,$(PAGES),$(DESTDIR)$(DATADIR)/$(firstword $(subst =, ,$(page))))
-	rm -f $(DESTDIR)$(DATADIR)/man/man5/grctl-json.5
-	rm -rf $(DESTDIR)$(DATADIR)/grobo
+	rm -rf "$(DESTDIR)$(INCLUDEDIR)/grobo"
+	rm -f $(foreach file,libgrobo.a libgrobo-core.a $(LINK_NAME) $(SONAME) $(IMPORT_LIB) \
+	    pkgconfig/grobo.pc,"$(DESTDIR)$(LIBDIR)/$(file)")
+	rm -f $(foreach file,grctl$(EXE) $(if $(IMPORT_LIB),$(SONAME)),"$(DESTDIR)$(BINDIR)/$(file)")
+	rm -f $(foreach page,$(PAGES),"$(DESTDIR)$(DATADIR)/$(firstword $(subst =, ,$(page)))")
+	rm -f "$(DESTDIR)$(DATADIR)/man/man5/grctl-json.5"
+	rm -rf "$(DESTDIR)$(DATADIR)/grobo"
 
 clean: ## remove $(BUILD)
-	rm -rf $(BUILD)
+	rm -rf $(BUILD)$(if $(SPACED), "$(SPACED)")
 
 # ---- rules ---------------------------------------------------------------------------------
 
-# Objects depend on the compiler and the flags they were built with.
+# keep TEXT: a recipe that writes it to the target where it is not there yet.
+quote = '$(subst ','\'',$(1))'
+keep = @mkdir -p $(@D); printf '%s\n' $(1) >$@.new; \
+    if cmp -s $@.new $@; then rm $@.new; else mv $@.new $@; fi
+
+# Objects depend on the compiler and the flags they were built with; `make install` reads them.
 $(BUILD)/.flags: FORCE
-	@mkdir -p $(@D)
-	@echo '$(CC) $(ALL_CPPFLAGS) $(ALL_CFLAGS) $(ALL_LDFLAGS)' | cmp -s - $@ || \
-	    echo '$(CC) $(ALL_CPPFLAGS) $(ALL_CFLAGS) $(ALL_LDFLAGS)' > $@
+	$(call keep,$(call quote,$(ALL_CPPFLAGS) $(ALL_CFLAGS) $(ALL_LDFLAGS)) \
+	    $(foreach v,$(REMEMBERED),$(call quote,$(v) = $($(v)))))
 
 # $(call compile,FOLDER,VARIABLE...): how the files of a folder are compiled.
 define compile
@@ -369,12 +441,17 @@ $(STATIC_LIB) $(CORE_LIB) $(SUPPORT_LIB) $(TOOL_LIB): $(BUILD)/.flags
 	@rm -f $@
 	$(Q)$(AR) rcs $@ $(filter %.o,$^)
 
+# The library knows where the command is installed, which is its guard's program.
+$(BUILD)/ports/posix/guard.o: CPPFLAGS += -DGROBO_GUARD_PROGRAM='"$(BINDIR)/grctl"'
+$(BUILD)/ports/posix/guard.o: $(BUILD)/.bindir
+$(BUILD)/.bindir: FORCE
+	$(call keep,$(call quote,$(BINDIR)))
+
 # The command knows where its files are installed.
 $(BUILD)/tools/grctl/os/posix/checkup_node.o: CPPFLAGS += -DGRCTL_DATADIR='"$(DATADIR)"'
 $(BUILD)/tools/grctl/os/posix/checkup_node.o: $(BUILD)/.datadir
 $(BUILD)/.datadir: FORCE
-	@mkdir -p $(@D)
-	@echo '$(DATADIR)' | cmp -s - $@ || echo '$(DATADIR)' > $@
+	$(call keep,$(call quote,$(DATADIR)))
 
 $(SHARED_LIB): $(LIB_OBJS)
 	$(say) LD $@
@@ -409,13 +486,18 @@ $(EXAMPLES) $(BENCHES):
 	$(say) LD $@
 	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
 
+# A tree that is moved as a whole keeps working: below PREFIX all is relative to grobo.pc.
+empty :=
+up := $(empty) $(empty)
+from_pc = $(subst $(up),,$(foreach part,$(subst /, ,$(LIBDIR:$(PREFIX)/%=%) pkgconfig),/..))
+pc_prefix = $(if $(filter $(PREFIX)/%,$(LIBDIR)),$${pcfiledir}$(from_pc),$(PREFIX))
+pc_path = $(patsubst $(PREFIX)/%,$${prefix}/%,$(1))
 $(PC_FILE): FORCE
-	@mkdir -p $(@D)
-	@printf '%s\n' 'prefix=$(PREFIX)' 'libdir=$(LIBDIR)' 'includedir=$(INCLUDEDIR)' '' \
+	$(call keep,'prefix=$(pc_prefix)' 'libdir=$(call pc_path,$(LIBDIR))' \
+	    'includedir=$(call pc_path,$(INCLUDEDIR))' '' \
 	    'Name: grobo' 'Description: Drives serial command-servo robots' 'Version: $(VERSION)' \
 	    'Requires.private: libevent_core yaml-0.1' 'Cflags: -I$${includedir}' \
 	    'Cflags.private: $(WHOLE)' \
-	    'Libs: -L$${libdir} -lgrobo' 'Libs.private: $(OS_LIBS)' > $@.new
-	@if cmp -s $@.new $@; then rm $@.new; else mv $@.new $@; fi
+	    'Libs: -L$${libdir} -lgrobo' 'Libs.private: $(OS_LIBS)')
 
 -include $(shell find $(addprefix $(BUILD)/,src ports tools tests docs bare) -name '*.d' 2>/dev/null)

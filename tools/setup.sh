@@ -2,16 +2,19 @@
 # SPDX-License-Identifier: MIT
 # Installs what is missing to build libgrobo, with the system's package manager.
 #
-# usage: tools/setup.sh [--demo | --check | --ci | --cross TARGET | --drivers | --ports] [--dry-run]
+# usage: tools/setup.sh [--demo | --check | --ci | --cross TARGET | --drivers | --ports |
+#                        --mutants] [--dry-run]
 #   --demo     what a build and the demo need (default)
-#   --check    that, and what `make check` needs
-#   --ci       that, and the tools that `make check` does without where they are missing
+#   --check    that, what `make check` needs, and the programs without which it skips checks
+#   --ci       that, and what the other stages of .ci/run need: clang with libFuzzer, valgrind
 #   --cross    what `make cross TARGET=...` needs (Debian only)
 #   --drivers  what --check needs, and `make check-drivers`
+#   --mutants  what --check needs, and `make check-mutants`
 #   --ports    what --check needs, and every target of `make check-ports`
 #   --dry-run  say what would be installed, touch nothing
 #
-# Silent and quick where nothing is missing. Never asks when nobody is there to answer.
+# Silent and quick where nothing is missing. Never asks when nobody is there to answer. What only
+# some checks use may be missing: then one line names it, and the exit status is 0.
 set -u
 
 level=1
@@ -23,6 +26,7 @@ while [ $# -gt 0 ]; do
     --check) level=2 ;;
     --ci) level=3 ;;
     --drivers) level=2 targets=drivers ;;
+    --mutants) level=2 targets=mutants ;;
     --ports)
         level=2 targets='arm64 armhf riscv64 s390x musl musl-arm64 win64 macos drivers baremetal'
         ;;
@@ -32,7 +36,7 @@ while [ $# -gt 0 ]; do
         ;;
     --dry-run) dry_run=1 ;;
     *)
-        sed -n 's/^# usage/usage/p' "$0" >&2
+        sed -n '/^# usage/,/dry-run/s/^# //p' "$0" >&2
         exit 2
         ;;
     esac
@@ -144,6 +148,12 @@ look_cross() {
             qemu-system-arm
         ;;
     win64) need_windows x86_64-w64-mingw32 x86-64 ;;
+    mutants)
+        need Python 'to make mutants' have_command python3 -- \
+            python3 python3 python python3 python3
+        need objcopy 'to make mutants' have_command objcopy -- \
+            binutils binutils binutils binutils binutils
+        ;;
     drivers)
         need qemu-system-x86_64 'to boot a kernel' have_command qemu-system-x86_64 -- \
             qemu-system-x86 qemu-system-x86-core qemu-system-x86 qemu-system-x86_64 qemu-x86
@@ -200,30 +210,53 @@ look() {
         libcmocka-dev libcmocka-devel cmocka cmocka-dev libcmocka-devel
     need 'a C++ compiler' 'to check the headers' have_command "${CXX:-g++}" -- \
         g++ gcc-c++ gcc g++ gcc-c++
-    [ $level -ge 3 ] || return
-    need clang-format 'to check the formatting' have_command clang-format-14 -- \
-        clang-format-14 clang-tools-extra clang clang-extra-tools clang-tools
-    need mandoc 'to check the man page' have_command mandoc -- \
-        mandoc mandoc mandoc mandoc mandoc
-    need rsvg-convert 'to check PNG plots' have_command rsvg-convert -- \
-        librsvg2-bin librsvg2-tools librsvg rsvg-convert rsvg-convert
+}
+
+have_fuzzer() {
+    echo 'int LLVMFuzzerTestOneInput(const char *p, unsigned long n) { return !p + !n; }' |
+        clang -x c -fsanitize=fuzzer -o /dev/null - 2>/dev/null
+}
+
+have_mdoc() {
+    have_command groff && [ -e /usr/share/groff/current/tmac/doc.tmac ]
+}
+
+# What only some checks use.
+look_wanted() {
+    packages=
+    reasons=
+    need Python 'to check JSON' have_command python3 -- \
+        python3 python3 python python3 python3
     need tmux 'to check the shell at a terminal' have_command tmux -- \
         tmux tmux tmux tmux tmux
-    need valgrind 'to check memory' have_command valgrind -- \
-        valgrind valgrind valgrind valgrind valgrind
+    need zsh 'to check completion' have_command zsh -- zsh zsh zsh zsh zsh
+    need fish 'to check completion' have_command fish -- fish fish fish fish fish
+    need rsvg-convert 'to check PNG plots' have_command rsvg-convert -- \
+        librsvg2-bin librsvg2-tools librsvg rsvg-convert rsvg-convert
     need tshark 'to check the dissector' have_command tshark -- \
         tshark wireshark-cli wireshark-cli tshark wireshark
     need ser2net 'to check a robot behind a serial server' have_command ser2net -- \
         ser2net ser2net ser2net ser2net ser2net
+    need mandoc 'to check the man page' have_command mandoc -- \
+        mandoc mandoc mandoc mandoc mandoc
+    need groff 'to check the man page' have_mdoc -- groff-base groff groff groff groff
+    [ "$manager" != apt-get ] ||
+        need clang-format 'to check the formatting' have_command clang-format-14 -- clang-format-14
+    [ $level -ge 3 ] || return
+    need valgrind 'to check memory' have_command valgrind -- \
+        valgrind valgrind valgrind valgrind valgrind
+    need 'clang with libFuzzer' 'to fuzz' have_fuzzer -- \
+        'clang libclang-rt-dev' 'clang compiler-rt' 'clang compiler-rt' 'clang compiler-rt' clang
 }
 
+# install_command PACKAGE...
 install_command() {
     case $manager in
-    apt-get) echo "apt-get install -y --no-install-recommends $packages" ;;
-    dnf) echo "dnf install -y $packages" ;;
-    pacman) echo "pacman -S --noconfirm --needed $packages" ;;
-    apk) echo "apk add $packages" ;;
-    zypper) echo "zypper --non-interactive install $packages" ;;
+    apt-get) echo "apt-get install -y --no-install-recommends $*" ;;
+    dnf) echo "dnf install -y $*" ;;
+    pacman) echo "pacman -S --noconfirm --needed $*" ;;
+    apk) echo "apk add $*" ;;
+    zypper) echo "zypper --non-interactive install $*" ;;
     esac
 }
 
@@ -233,12 +266,12 @@ choose_root() {
         as_root=
         return
     fi
-    have_command sudo || die "missing $reasons; as root: $(install_command)"
+    have_command sudo || die "missing $reasons; as root: $(install_command "$packages")"
     as_root=sudo
     if ! [ -t 0 ] || ! [ -t 2 ]; then
         as_root='sudo -n'
         $as_root true 2>/dev/null ||
-            die "missing $reasons, and sudo wants a password; as root: $(install_command)"
+            die "missing $reasons, sudo wants a password; as root: $(install_command "$packages")"
     fi
 }
 
@@ -256,21 +289,49 @@ refresh_lists() {
     esac
 }
 
-[ -z "${CC:-}" ] || have_command "${CC%% *}" || die "CC=$CC: no such compiler"
-look
-[ -n "$packages" ] || exit 0
-[ -n "$manager" ] || die "missing $reasons, and no known package manager is here"
-[ -n "$dry_run" ] || choose_root
-say "missing $reasons"
-say "$(install_command)"
-[ -z "$dry_run" ] || exit 0
+# try PACKAGE...: installs them.
+try() {
+    # shellcheck disable=SC2046
+    run_quietly $(install_command "$@")
+}
 
+# Notes in $packages what a function misses; returns 1 where there is nothing to do about it.
+begin() {
+    "$1"
+    [ -n "$packages" ] || return 1
+    [ -n "$manager" ] || die "missing $reasons, and no known package manager is here"
+    [ -n "$dry_run" ] || choose_root
+    say "missing $reasons"
+    say "$(install_command "$packages")"
+    [ -z "$dry_run" ] || return 1
+    # A fresh machine has no lists or stale ones. Without a network the packages may be cached.
+    [ -n "$refreshed" ] || refresh_lists ||
+        say 'the package lists could not be refreshed; trying with those at hand'
+    refreshed=1
+}
+
+install_needed() {
+    begin look || return 0
+    # shellcheck disable=SC2086
+    try $packages ||
+        die "could not install $packages: $(grep -E '^(E:|error|ERROR)' "$log" | head -n 1)"
+    look
+    [ -z "$packages" ] || die "installed, but still not found: $packages"
+}
+
+# All at once is quick; where the system does not know one of them, the others are installed.
+install_wanted() {
+    begin look_wanted || return 0
+    # shellcheck disable=SC2086
+    try $packages || for package in $packages; do try "$package"; done
+    look_wanted
+    [ -z "$packages" ] || say "without $reasons; these checks are skipped"
+}
+
+[ -z "${CC:-}" ] || have_command "${CC%% *}" || die "CC=$CC: no such compiler"
+refreshed=
 log=$(mktemp) || exit 1
 trap 'rm -f "$log"' EXIT
-# A fresh machine has no lists or stale ones. Without a network the packages may still be cached.
-refresh_lists || say 'the package lists could not be refreshed; trying with those at hand'
-# shellcheck disable=SC2046
-run_quietly $(install_command) ||
-    die "could not install $packages: $(grep -E '^(E:|error|ERROR)' "$log" | head -n 1)"
-look
-[ -z "$packages" ] || die "installed, but still not found: $packages"
+install_needed
+# Who may not install them runs the other checks.
+[ $level -lt 2 ] || (trap - EXIT; install_wanted) || say 'the checks that need them are skipped'

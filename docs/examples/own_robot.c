@@ -25,7 +25,7 @@ static const grobo_joint joints[JOINTS] = {
     {"WRIST", RAD(-100), RAD(100), RAD(375), RAD(-30), 0x3030, 0, 14, WRIST, 1},
 };
 static const grobo_group groups[] = {{"all", 0xF}, {"arm", 0x7}};
-static const grobo_model model = {"ARM", joints, groups, JOINTS, 2};
+static const grobo_model model = {"ARM", joints, groups, JOINTS, 2, 0};
 
 /* The gripper is level when shoulder, elbow and wrist add up to zero. What comes out is checked
  * against the limits like any other target. */
@@ -69,7 +69,7 @@ static void pump(void)
         (void)grobo_sim_rx(&sim, buf, (size_t)n, now_us);
     }
     int64_t next_us = grobo_robot_deadline(&robot, now_us);
-    int64_t sim_us = grobo_sim_deadline(&sim);
+    int64_t sim_us = grobo_sim_packet_deadline(&sim);
     next_us = sim_us < next_us ? sim_us : next_us;
     now_us = next_us > now_us ? next_us : now_us + 1;
 }

@@ -305,6 +305,12 @@ typedef struct grobo_body_check_options {
     const grobo_model *robot; /**< limits and speeds of the joints; NULL: not checked */
     double margin_m;          /**< the ZMP shall be so far inside; 0: anywhere inside */
     double slip_m;            /**< how far a standing foot may move; 0: 0.001 */
+    uint16_t speed_pct;       /**< the speed it is played at; 0: 100 */
+    /**
+     * Balance is that of the angles which `robot` plays: grobo_model_take_slack(). JOINT_LIMIT is
+     * reported all the same.
+     */
+    bool takes_slack;
     /** Told of each frame in order; may be NULL. The frame is valid during the call. */
     void (*frame)(void *ctx, const grobo_body_balance_frame *frame);
     /** Told of each problem when it has ended; may be NULL. Valid during the call. */
@@ -315,7 +321,8 @@ typedef struct grobo_body_check_options {
 /**
  * Solves every frame and tells whether the robot will fall. Feet without targets have no support to
  * be checked against; then limits and speeds alone are. The ZMP is that of the motion started from
- * rest, by differences between frames: frames 0.01 s apart or more are sensible.
+ * rest, by differences between frames: frames 0.01 s apart or more are sensible. Times in findings
+ * are those of the motion, whatever its speed.
  * @return number of findings, or GROBO_ERR_ARG (robot has other joints than the body's model).
  */
 GROBO_API int grobo_body_check(grobo_body *body, const grobo_body_check_options *options);

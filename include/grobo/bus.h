@@ -27,14 +27,26 @@
  * - A reply is believed when header, id, flags, address, length and sum are those expected, and
  *   it came after its request was sent. After a failure the line must be quiet for a moment before
  *   the next request that wants a reply. An ACK is one byte without a name: it must be the first
- *   byte after the request. And for hold_us after an attempt that got no reply, no other
- *   transaction that the same reply would satisfy is sent, unless a reply to a later request has
- *   come meanwhile (the line keeps the order, so the lost one cannot come any more). Retries of
- *   the same transaction do not wait: a late reply to its first attempt is a reply to it.
+ *   byte after the request.
+ * - A late reply is credited: it ends the transaction that waits for its next attempt. The replies
+ *   owed to attempts that failed are counted. While one is owed, no other transaction that it
+ *   would satisfy is sent, until it has come or twice the worst lateness learnt has passed, at most
+ *   hold_us. An ACK is waited for during all of hold_us. A reply to a later request ends this wait:
+ *   the board keeps the order, so the lost reply cannot come any more. On a bus the adapter keeps
+ *   the order but servos answer on their own: there the wait ends GROBO_BUS_MARGIN_MAX_US after
+ *   that reply. Retries of the same transaction do not wait: a late reply to its first attempt is a
+ *   reply to it.
+ * - An echo is found behind late echoes and late replies. As many bytes of rubbish as it has, or
+ *   no echo in time, is a broken echo.
  *
- * The bus is not thread safe: one thread, or the caller's lock. Callbacks run inside rx, step and
- * the cancel functions; in a callback submit, cancel, reserve and the questions are allowed, also
- * freeing or resubmitting the transaction that ended; rx, step and tx are not.
+ * - What was right when a transaction was submitted may be wrong when its turn comes: a transaction
+ *   with a `leave` function is asked at every attempt, retries included, at the moment its frame
+ *   would be given out. A refusal ends it, and the next transaction leaves in the same call.
+ *
+ * The bus is not thread safe: one thread, or the caller's lock. Callbacks run inside rx, step, tx
+ * and the cancel functions; in a callback submit, cancel, reserve and the questions are allowed,
+ * also freeing or resubmitting the transaction that ended; rx, step and tx are not. In a `leave`
+ * function only the questions are.
  */
 #ifndef GROBO_BUS_H
 #define GROBO_BUS_H
@@ -62,8 +74,8 @@ typedef struct grobo_txn grobo_txn;
  * @param txn    the transaction, no longer known to the bus
  * @param result GROBO_OK; GROBO_ERR_TIMEOUT (nothing came), GROBO_ERR_SHORT (some bytes came),
  *               GROBO_ERR_CHECKSUM, GROBO_ERR_MISMATCH (the echo was broken, or an ACK came
- *               among other bytes), GROBO_ERR_NACK, GROBO_ERR_STALE (start_by_us passed), or what
- *               the cancel function was given
+ *               among other bytes), GROBO_ERR_NACK, GROBO_ERR_STALE (start_by_us passed), what
+ *               `leave` returned, or what the cancel function was given
  * @param reply  the return packet or ACK that ended it, valid during the call; NULL when there is
  *               none. GROBO_ERR_NACK comes with it: its flags say why.
  */
@@ -71,8 +83,15 @@ typedef void (*grobo_txn_done)(void *ctx, grobo_txn *txn, int result,
                                const grobo_rs30x_packet *reply);
 
 /**
+ * An attempt is about to be given out. May write the frame anew: its bytes, `frame_bytes` (never
+ * more than before) and `reply`. `sent_us` is still that of the attempt before, -1 at the first.
+ * @return >= 0: the frame leaves now; < 0: it never leaves, and this error ends the transaction.
+ */
+typedef int (*grobo_txn_leave)(void *ctx, grobo_txn *txn);
+
+/**
  * A transaction. The caller owns the struct and the frame's bytes; both must stay as they are until
- * done. Start from grobo_txn_init, then set what differs.
+ * done, but for what `leave` changes. Start from grobo_txn_init, then set what differs.
  */
 struct grobo_txn {
     const uint8_t *frame;    /**< borrowed: what is sent */
@@ -85,14 +104,14 @@ struct grobo_txn {
     grobo_priority priority; /**< who goes first */
     grobo_reply reply;       /**< what must come back */
     uint32_t timeout_us;     /**< time from the first byte sent to the reply; 0: computed */
+    uint8_t attempts_;       /**< private: begun */
+    bool pending_;           /**< private: belongs to a bus */
     int64_t start_by_us;     /**< not worth sending after this time; 0: always */
+    grobo_txn_leave leave;   /**< NULL: every attempt leaves */
     grobo_txn_done done;     /**< may be NULL */
-    void *ctx;               /**< handed back to done */
+    void *ctx;               /**< handed back to leave and done */
     int64_t sent_us;         /**< out: when the last attempt was given out; -1: never */
-    /* private */
-    grobo_txn *next_;
-    uint8_t attempts_; /* begun */
-    bool pending_;     /* belongs to a bus */
+    grobo_txn *next_;        /**< private */
 };
 
 /** The line's physics. Zero means default. */
@@ -104,7 +123,7 @@ typedef struct grobo_bus_config {
     uint32_t margin_us;       /**< time given above the wire time, fixed; default: learnt, between
                                     GROBO_BUS_MARGIN_MIN_US and GROBO_BUS_MARGIN_MAX_US */
     uint32_t quiet_us;        /**< silence after a failure; default GROBO_BUS_QUIET_US */
-    uint32_t hold_us;         /**< see above; default GROBO_BUS_HOLD_US */
+    uint32_t hold_us;         /**< upper bound, see above; default GROBO_BUS_HOLD_US */
     bool echo;                /**< the adapter returns what is sent: check and remove it */
     bool overlap;             /**< the board takes a frame while it still forwards the one before;
                                     nobody documented that, so by default it is not relied upon */
@@ -120,7 +139,7 @@ typedef struct grobo_bus_config {
 #define GROBO_BUS_QUIET_US 1000
 /** A babbling line is not waited for longer than this. */
 #define GROBO_BUS_QUIET_MAX_US 50000
-/** How long a reply may be late and still be told apart. */
+/** How long a reply may be late and still be told apart: upper bound, and before any reply. */
 #define GROBO_BUS_HOLD_US 100000
 /** Lost replies that are remembered at a time: the ACKs, and of the others the latest. */
 #define GROBO_BUS_HOLDS 8
@@ -136,11 +155,12 @@ typedef struct grobo_bus_stats {
     uint32_t timeouts;     /**< attempts without a whole reply in time */
     uint32_t retries;      /**< attempts after the first */
     uint32_t bad_sums;     /**< replies whose sum was wrong */
-    uint32_t resync_bytes; /**< rubbish skipped while a reply was awaited */
-    uint32_t late_frames;  /**< whole replies that fitted nothing awaited */
-    uint32_t late_bytes;   /**< their bytes, and bytes that came when nothing was awaited */
+    uint32_t resync_bytes; /**< rubbish skipped while a reply or an echo was awaited */
+    uint32_t late_frames;  /**< whole replies that fitted nothing awaited, late echoes */
+    uint32_t late_bytes;   /**< their bytes, and rubbish that came when nothing was awaited */
     uint32_t bad_echoes;   /**< frames whose echo was broken */
-    uint32_t failed;       /**< transactions that ended badly after their retries */
+    uint32_t failed;       /**< transactions that ended badly after their retries, or were refused
+                                by `leave` */
     uint32_t canceled;     /**< transactions taken back */
 } grobo_bus_stats;
 
@@ -152,25 +172,26 @@ typedef enum grobo_bus_phase {
     GROBO_BUS_AWAITING /**< waits for a reply */
 } grobo_bus_phase;
 
-/** A reply that was lost and may yet come. */
+/** Replies that did not come in time and may yet come. */
 typedef struct grobo_bus_hold {
-    int64_t until_us;       /**< after this time it is taken for granted that it will not */
+    int64_t due_us;         /**< when the first of them was due */
+    int64_t until_us;       /**< after this time it is taken for granted that none comes */
     const grobo_txn *owner; /**< whose; only compared, it may be gone */
-    grobo_reply reply;
+    uint32_t key;           /**< kind, id, address and length of the replies */
+    uint32_t owed;          /**< how many may yet come; 0: the hold is free */
 } grobo_bus_hold;
 
 /** A bus. The struct is open so that it needs no heap; read stats, leave the rest. */
 typedef struct grobo_bus {
     /* private; small and busy members first, where a Cortex-M0 reaches them in one instruction */
     grobo_bus_phase phase;
-    bool learnt;          /* overhead_us and deviation_us come from a reply */
-    uint8_t echo_bytes;   /* of the active frame's echo seen so far */
-    uint8_t next_hold;    /* the slot used last, of 1.. */
-    uint16_t waiting;     /* transactions in the queues */
-    uint16_t got_bytes;   /* for the active frame; echo and strangers' replies are not counted */
-    grobo_txn *active;    /* on the wire; NULL when idle */
-    int32_t overhead_us;  /* smoothed: how much later than computed replies come */
-    int32_t deviation_us; /* smoothed deviation of that */
+    bool learnt;              /* overhead_us and deviation_us come from a reply */
+    uint8_t next_hold;        /* the slot used last, of 1.. */
+    uint16_t waiting;         /* transactions in the queues */
+    grobo_txn *active;        /* on the wire; NULL when idle */
+    int32_t overhead_us;      /* smoothed: how much later than computed replies come */
+    int32_t deviation_us;     /* smoothed deviation of that */
+    int32_t worst_us;         /* the worst of that, slowly forgotten; at most half of hold_us */
     uint32_t bad_sums_before; /* the parser's counters when the active frame was sent */
     uint32_t dropped_before;
     int64_t now_us;      /* of the rx or step that is running */
@@ -219,6 +240,14 @@ GROBO_API bool grobo_txn_is_pending(const grobo_txn *txn);
  */
 GROBO_API int grobo_bus_cancel(grobo_bus *bus, grobo_txn *txn);
 
+/**
+ * Changes the priority of a transaction that waits: it goes to the end of the other queue and keeps
+ * its attempts.
+ * @return GROBO_OK; GROBO_ERR_NOTFOUND when the bus does not have it or it is on the wire,
+ *         GROBO_ERR_ARG (unknown priority)
+ */
+GROBO_API int grobo_bus_raise(grobo_bus *bus, grobo_txn *txn, grobo_priority priority);
+
 /** Bit of a priority, for grobo_bus_cancel_all. */
 #define GROBO_PRIORITY_BIT(priority) (1u << (unsigned)(priority))
 /** Bits of all priorities. */
@@ -238,7 +267,8 @@ GROBO_API void grobo_bus_rx(grobo_bus *bus, int64_t now_us, const uint8_t *bytes
 GROBO_API void grobo_bus_step(grobo_bus *bus, int64_t now_us);
 
 /**
- * Gives the next frame to send, if one may start now. It counts as sent at now_us.
+ * Gives the next frame to send, if one may start now. It counts as sent at now_us. Transactions
+ * that `leave` refuses end here: callbacks may run.
  * @return bytes put into buf, all of one frame; 0 when nothing may start now; GROBO_ERR_SPACE when
  *         the frame is longer than cap (GROBO_RS30X_PACKET_MAX_BYTES is always enough)
  */

@@ -130,6 +130,8 @@ struct grobo_driver {
     int64_t time_step_us;       /**< unit of a goal time on the wire, > 0 (RS30x: 10 ms) */
     grobo_safety_limits limits; /**< safety limits of this robot */
     grobo_exit_policy on_exit;  /**< what GROBO_EXIT_DEFAULT stands for; not DEFAULT itself */
+    bool arm;                   /**< its joints do not stand on each other, so that it may stop
+                                     anywhere: goals go in segments, see grobo_goals */
     const double *rest_rad; /**< resting posture by joint for GROBO_EXIT_SIT; NULL: initial one */
     const grobo_readback *readback; /**< n_readback corrections, used if the engine is told to */
     uint8_t n_readback;

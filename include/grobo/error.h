@@ -47,7 +47,9 @@ GROBO_BEGIN_DECLS
     X(EXISTS, -30, "exists already")                                                               \
     X(ISDIR, -31, "is a directory")                                                                \
     X(UNREACHABLE, -32, "target out of reach")                                                     \
-    X(DISK, -33, "no room left on the disk")
+    X(DISK, -33, "no room left on the disk")                                                       \
+    X(UNWATCHED, -34, "rate leaves no time to read the joints")                                    \
+    X(STALLED, -35, "stopped by the guard while the program stood still")
 
 /** The errors as an enum: GROBO_ERR_ARG, GROBO_ERR_NOMEM, ... */
 typedef enum grobo_error {

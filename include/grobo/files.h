@@ -25,8 +25,8 @@ typedef struct grobo_file {
 
 /**
  * The functions. All return 0 or GROBO_ERR_NOENT, GROBO_ERR_PERM, GROBO_ERR_ISDIR,
- * GROBO_ERR_EXISTS, GROBO_ERR_SPACE (path too long), GROBO_ERR_DISK, GROBO_ERR_IO. Thread safe for
- * different files.
+ * GROBO_ERR_EXISTS, GROBO_ERR_SPACE (path too long), GROBO_ERR_DISK, GROBO_ERR_NOMEM (memory, or no
+ * descriptor is left), GROBO_ERR_IO. Thread safe for different files.
  */
 typedef struct grobo_files {
     /**
@@ -48,6 +48,8 @@ typedef struct grobo_files {
      * GROBO_ERR_ISDIR: it is a directory.
      */
     int (*inside)(const char *directory, const char *name, char *path, size_t path_bytes);
+    /** True if path leads to a regular file that is not empty, which create() would replace. */
+    bool (*holds)(const char *path);
 } grobo_files;
 
 /** The operating system's files. Static; thread safe. Implemented by the port. */

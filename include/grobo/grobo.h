@@ -10,11 +10,14 @@
 #include <grobo/body.h>
 #include <grobo/body_motion.h>
 #include <grobo/bus.h>
+#include <grobo/callback.h>
 #include <grobo/clip.h>
 #include <grobo/driver.h>
 #include <grobo/error.h>
+#include <grobo/estop.h>
 #include <grobo/files.h>
 #include <grobo/gr001.h>
+#include <grobo/guard.h>
 #include <grobo/hrpsys.h>
 #include <grobo/interpolate.h>
 #include <grobo/limits.h>
@@ -26,6 +29,8 @@
 #include <grobo/port.h>
 #include <grobo/posture.h>
 #include <grobo/robot.h>
+#include <grobo/robot_config.h>
+#include <grobo/robot_event.h>
 #include <grobo/rs30x.h>
 #include <grobo/sequencer.h>
 #include <grobo/serial.h>

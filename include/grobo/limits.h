@@ -84,8 +84,12 @@
 #define GROBO_YAML_KEY_MAX_BYTES 128
 /** Motion files: bytes of one scalar that is kept (names, unknown values). */
 #define GROBO_YAML_SCALAR_MAX_BYTES 65536
+/** Largest limit_slack_deg of a model. */
+#define GROBO_LIMIT_SLACK_MAX_DEG 5
 /** Motion files: postures or frames of one motion. */
 #define GROBO_MOTION_FRAMES_MAX 10000000
+/** Motion files: postures from the front whose angles' places can be kept (keep_positions). */
+#define GROBO_MOTION_POSITIONS_MAX 10000
 /** Motion files: components of a body motion whose rates are compared with that of the joints. */
 #define GROBO_MOTION_COMPONENTS_MAX 64
 /** Motion files: bytes of one line of a .m file. */

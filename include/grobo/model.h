@@ -40,14 +40,29 @@ typedef struct grobo_model {
     const grobo_group *groups; /**< n_groups of them; the index is the seed's group number */
     uint8_t n_joints;          /**< 1..GROBO_JOINTS_MAX */
     uint8_t n_groups;          /**< may be 0 */
+    /**
+     * How far outside a joint's limits a motion file's angle may be and still be played: it is
+     * played at the limit. 0..GROBO_LIMIT_SLACK_MAX_DEG degrees. See grobo_model_take_slack().
+     */
+    double limit_slack_deg;
 } grobo_model;
 
 /**
  * Checks a table: counts within caps, names present and unique, motors unique and within 1..127,
- * limits finite with min <= init <= max, speed > 0, mirrors pairing up with equal signs.
+ * limits finite with min <= init <= max, speed > 0, mirrors pairing up with equal signs, a slack
+ * within its range.
  * @return 0, or GROBO_ERR_ARG. Pure; thread safe.
  */
 GROBO_API int grobo_model_check(const grobo_model *model);
+
+/**
+ * The angle at which a joint plays an angle of a motion file: the nearest limit where that is
+ * exceeded by no more than the model's limit_slack_deg, else the angle as it is. Moves and raw
+ * frames have no slack; nothing applies it by itself.
+ * @param joint 0..n-1
+ * @return radians. Pure; thread safe.
+ */
+GROBO_API double grobo_model_take_slack(const grobo_model *model, int joint, double angle_rad);
 
 /** Joint moved by a motor. @return joint 0..n-1, or GROBO_ERR_NOTFOUND. Thread safe. */
 GROBO_API int grobo_model_joint_of_motor(const grobo_model *model, int motor);

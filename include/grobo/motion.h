@@ -26,6 +26,9 @@ GROBO_BEGIN_DECLS
 /** A step of this or more means 'the default motion time' in .m and .mseq files. */
 #define GROBO_MOTION_STEP_MAX_US 10000000
 
+/** Frames per second of a motion that becomes frames, where nobody asked for another rate. */
+#define GROBO_MOTION_RATE_HZ 50
+
 /** What the postures of a motion mean and how its times count. */
 typedef enum grobo_motion_kind {
     GROBO_MOTION_POSTURES = 0, /**< .m: steps <= 0 or >= 10 s mean the default motion time */
@@ -97,6 +100,18 @@ GROBO_API void grobo_motion_free(grobo_motion *motion);
 GROBO_API int grobo_motion_dup(const grobo_motion *motion, grobo_motion **copy);
 /** Deletes all postures; names, rate, joints and the motion's own kept keys stay. */
 GROBO_API void grobo_motion_clear(grobo_motion *motion);
+/**
+ * Makes it an empty motion of a kind, as grobo_motion_new() does: what it has goes, but for the
+ * number of joints. A kind that is none changes nothing.
+ */
+GROBO_API void grobo_motion_renew(grobo_motion *motion, grobo_motion_kind kind);
+/**
+ * Makes absolute postures of a motion of increments, which count from start: each with the joints
+ * and the time it had. Names and kept keys of its postures go. A motion of another kind stays.
+ * @param start sets every joint that the motion sets
+ * @return 0, GROBO_ERR_ARG (start lacks a joint) or GROBO_ERR_NOMEM.
+ */
+GROBO_API int grobo_motion_resolve(grobo_motion *motion, const grobo_posture *start);
 
 /* ---- the motion itself -------------------------------------------------------------------- */
 
@@ -160,8 +175,9 @@ GROBO_API int64_t grobo_motion_length_us(const grobo_motion *motion, int64_t def
 /**
  * Appends a posture, reached posture->time_us after the last one (frames at a rate: the next
  * frame). Its joints must fit the motion's: grobo_motion_set_joints() makes room.
- * @return 0, GROBO_ERR_ARG (more joints than the motion, time negative or above INT64_MAX / 4),
- *   GROBO_ERR_NAN, GROBO_ERR_CAP (GROBO_MOTION_FRAMES_MAX), GROBO_ERR_NOMEM.
+ * @return 0, GROBO_ERR_ARG (more joints than the motion, time negative or above INT64_MAX / 4, in a
+ *   motion of postures or increments GROBO_MOTION_STEP_MAX_US or more, an angle beyond 10^6
+ *   radians), GROBO_ERR_NAN, GROBO_ERR_CAP (GROBO_MOTION_FRAMES_MAX), GROBO_ERR_NOMEM.
  */
 GROBO_API int grobo_motion_append(grobo_motion *motion, const grobo_posture *posture);
 /** Appends a posture at an absolute time as files have it. Errors as grobo_motion_append(). */
@@ -249,8 +265,12 @@ GROBO_API bool grobo_motion_near(const grobo_motion *a, const grobo_motion *b, d
                                  double delta_s);
 
 /**
- * Appends a deep copy of another motion of the same kind, its steps as they are.
- * @return 0, GROBO_ERR_TYPE (other kind, other frame rate), GROBO_ERR_ARG (more joints),
+ * Appends a deep copy of another motion, its steps as they are. One of another kind or frame rate
+ * is converted before, as grobo_motion_convert() does without a note of what is lost: frames are
+ * resampled, and increments count from where this motion leaves each joint.
+ * @return 0, GROBO_ERR_TYPE (increments of a joint that this motion does not set, or anything but
+ *   increments to a motion of increments: nobody knows from where they count, see
+ *   grobo_motion_resolve()), GROBO_ERR_ARG (more joints), GROBO_ERR_STATE (frames without a rate),
  *   GROBO_ERR_CAP or GROBO_ERR_NOMEM.
  */
 GROBO_API int grobo_motion_append_motion(grobo_motion *motion, const grobo_motion *other);
@@ -283,6 +303,22 @@ GROBO_API int grobo_motion_scale_time(grobo_motion *motion, double factor);
  * as GROBO_MOTION_DEFAULT_US. @return 0, GROBO_ERR_ARG (from negative or above to), NOMEM.
  */
 GROBO_API int grobo_motion_crop(grobo_motion *motion, int64_t from_us, int64_t to_us);
+
+/* ---- the robot it is for ------------------------------------------------------------------ */
+
+/**
+ * True for a motion of a model's robot: it has no more joints, and names as its target body the
+ * model, "SerialRobot" (as the original library calls any robot) or none. Everything else is a
+ * motion of another robot, whose joints have no names here. A NULL model is nobody's: false.
+ */
+GROBO_API bool grobo_motion_is_for(const grobo_motion *motion, const grobo_model *model);
+/**
+ * Where a motion starts when no robot was read: what .mseq counts from, and where joints are that
+ * no posture sets. The model's initial posture for a motion that is for it, else 0 everywhere.
+ * @param[out] start all joints set: the model's, or as many as the motion has.
+ */
+GROBO_API void grobo_motion_start(const grobo_motion *motion, const grobo_model *model,
+                                  grobo_posture *start);
 
 /* ---- playing ------------------------------------------------------------------------------ */
 

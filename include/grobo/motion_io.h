@@ -93,7 +93,8 @@ typedef struct grobo_read_options {
     const grobo_mem *mem;       /**< of the motion and of reading; NULL: the C library's */
     const char *name;           /**< the file's name in diagnostics and for AUTO; NULL: the path, or
                                      "" where there is none */
-    bool keep_positions;        /**< remember where each angle stands (8 bytes an angle) */
+    bool keep_positions;        /**< remember where each angle stands (8 bytes an angle), in the
+                                     first GROBO_MOTION_POSITIONS_MAX postures */
     bool keep_going;            /**< after an error look for more; the result is an error still */
 } grobo_read_options;
 
@@ -125,6 +126,14 @@ GROBO_API int grobo_motion_read(const grobo_source *source, const grobo_read_opt
 
 /* ---- checking ----------------------------------------------------------------------------- */
 
+/** Angles of a motion file played at the limit that they exceed: grobo_model.limit_slack_deg. */
+typedef struct grobo_slack_taken {
+    size_t n;         /**< angles */
+    int joint;        /**< joint of the largest excess; meaningful with n > 0 */
+    double worst_rad; /**< that excess */
+    uint32_t line;    /**< line of the first one, 0: unknown */
+} grobo_slack_taken;
+
 /** Options of grobo_motion_check(). All zero (or NULL): the defaults. */
 typedef struct grobo_check_options {
     const char *name;           /**< the file's name in diagnostics; NULL: "" */
@@ -132,6 +141,11 @@ typedef struct grobo_check_options {
     const grobo_posture *start; /**< what .mseq counts from; NULL: the model's initial posture */
     grobo_motion_style style;   /**< how key poses are filled when speeds are looked at */
     uint16_t speed_pct;         /**< the speed it is played at; 0: 100 */
+    /**
+     * Not NULL: angles that exceed a limit by no more than the model's slack are no errors, and
+     * are added here. Whoever plays the motion has to apply grobo_model_take_slack().
+     */
+    grobo_slack_taken *slack;
 } grobo_check_options;
 
 /**
@@ -152,14 +166,19 @@ typedef struct grobo_write_options {
     grobo_motion_format format; /**< of grobo_motion_save(); AUTO: by the path's extension, else the
                                      one that holds the motion's kind */
     const grobo_model *model;   /**< motor order of .m (as in reading), and `start` if NULL below */
-    const grobo_posture *start; /**< what increments count from; NULL: the model's initial
-                                     posture; without a model: all 0 */
-    double rate_hz;             /**< to frames: resample at this rate; 0: posture by posture, at
-                                     their rate where they have one, else with a time each */
+    const grobo_posture *start; /**< what increments count from; NULL: grobo_motion_start() */
+    double rate_hz;             /**< to frames: resample at this rate; 0: postures that stand at 25
+                                     or more per second one by one, others resampled at
+                                     GROBO_MOTION_RATE_HZ, in the form that every version of
+                                     Choreonoid and the original library read */
     int64_t default_us;         /**< for steps without time; 0: GROBO_MOTION_DEFAULT_US */
     grobo_motion_style style;   /**< how key poses are filled when resampled */
-    bool integers;              /**< .m: whole milliseconds and 0.1 degrees, as the original reads;
-                                     otherwise decimals where a number needs them */
+    bool exact;                 /**< .m: decimals where a number needs them, which the original
+                                     library cannot read; otherwise whole milliseconds and 0.1
+                                     degrees. Frames, with rate_hz 0: each posture at its own time,
+                                     which this library and Choreonoid from 2.1 on read */
+    bool replace;               /**< grobo_motion_save(): whatever the old file holds; otherwise
+                                     see grobo_motion_may_save() */
     const char *name;           /**< the file's name in diagnostics; NULL: the path or "" */
 } grobo_write_options;
 
@@ -172,6 +191,18 @@ typedef struct grobo_write_options {
 GROBO_API int grobo_motion_convert(const grobo_motion *motion, grobo_motion_kind kind,
                                    const grobo_write_options *options, grobo_diagnostics *list,
                                    grobo_motion **converted);
+
+/**
+ * Whether a copy, read back from a file that source was written to with the same options, plays
+ * what source plays: every posture at its time with every joint it sets (.m: within what whole
+ * numbers can hold), and frames at a rate where the source is at their times. What cannot be in
+ * the file's format at all (ikLinks, ZMP, names) is said when it is written, and not here.
+ * @param options of the writing; NULL: the defaults
+ * @param list each joint that differs, where it differs first, and a time that does: errors.
+ * @return how many differences were found, GROBO_ERR_NOMEM, or what grobo_motion_clip() gives.
+ */
+GROBO_API int grobo_motion_verify(const grobo_motion *source, const grobo_motion *copy,
+                                  const grobo_write_options *options, grobo_diagnostics *list);
 
 /* ---- writing ------------------------------------------------------------------------------ */
 
@@ -193,10 +224,21 @@ GROBO_API int grobo_motion_write(const grobo_motion *motion, grobo_motion_format
                                  const grobo_write_options *options, const grobo_sink *sink,
                                  grobo_diagnostics *list);
 /**
+ * Whether a motion may be saved in this format without the loss of anything but an older motion of
+ * the same format: nothing is at the path, or an empty file, what is no regular file (a pipe, a
+ * terminal), or a file that is read without an error in this format.
+ * @param files the system's: grobo_files_os()
+ * @param format not GROBO_FORMAT_AUTO
+ * @return 0, GROBO_ERR_EXISTS (a file that holds something else), GROBO_ERR_ARG, GROBO_ERR_NOMEM.
+ */
+GROBO_API int grobo_motion_may_save(const grobo_files *files, const char *path,
+                                    grobo_motion_format format);
+/**
  * Writes a motion to a file: to a temporary one beside it, which takes its place when all is
  * safely stored. An old file is replaced whole or stays as it was.
  * @param files the system's: grobo_files_os()
- * @return 0, GROBO_ERR_NOENT, GROBO_ERR_PERM, GROBO_ERR_ISDIR, GROBO_ERR_IO, or as above.
+ * @return 0, GROBO_ERR_NOENT, GROBO_ERR_PERM, GROBO_ERR_ISDIR, GROBO_ERR_IO, GROBO_ERR_EXISTS
+ *   (grobo_motion_may_save() refuses it, and `replace` is not set), or as above.
  */
 GROBO_API int grobo_motion_save(const grobo_motion *motion, const grobo_files *files,
                                 const char *path, const grobo_write_options *options,

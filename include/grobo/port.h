@@ -83,6 +83,25 @@ GROBO_API void grobo_mutex_unlock(grobo_mutex *mutex);
 /** Ends a lock that nobody holds. */
 GROBO_API void grobo_mutex_deinit(grobo_mutex *mutex);
 
+/**
+ * Makes a condition in caller's storage: threads sleep at it until another one wakes them. It takes
+ * no descriptor. @return GROBO_OK, GROBO_ERR_NOMEM.
+ */
+GROBO_API int grobo_cond_init(grobo_cond *cond);
+
+/**
+ * Releases the lock, which the caller holds, sleeps, and takes the lock again. No wake-up between
+ * the release and the sleep is lost. It may return early for no reason: test the predicate again.
+ * @param until_us the moment of grobo_now_us() to return at; GROBO_NEVER_US: when woken.
+ */
+GROBO_API void grobo_cond_wait(grobo_cond *cond, grobo_mutex *mutex, int64_t until_us);
+
+/** Wakes all threads that sleep at the condition; with or without the lock. */
+GROBO_API void grobo_cond_wake_all(grobo_cond *cond);
+
+/** Ends a condition at which nobody sleeps. */
+GROBO_API void grobo_cond_deinit(grobo_cond *cond);
+
 /* ---- byte ports --------------------------------------------------------------------------- */
 
 /** An open byte port: storage of grobo_port_ops.size_bytes that the caller provides. */
@@ -162,6 +181,13 @@ typedef struct grobo_port_ops {
 
     /** The operating system's handle; belongs to the port, valid until close(). */
     grobo_handle (*handle)(const grobo_port *port);
+
+    /**
+     * Bytes that the system has taken by write() and that have not left, as far as it tells.
+     * Of a connection: more than it may have on its way before an acknowledgement is due.
+     * @return count; 0 also where the system does not tell. NULL: it never does.
+     */
+    int (*unsent)(const grobo_port *port);
 } grobo_port_ops;
 
 /**
@@ -263,8 +289,8 @@ typedef struct grobo_port_info {
 
 /**
  * Visits every serial port of this machine, without opening any (opening moves modem lines).
- * @param visit called for each, in the order of their names; `info` is valid during the call;
- *   a result other than 0 ends the visit and is returned.
+ * @param visit called for each, in the order of their names (COM2 before COM10); `info` is valid
+ *   during the call; a result other than 0 ends the visit and is returned.
  * @return the number of ports, or what visit returned; GROBO_ERR_UNSUPPORTED where the system
  *   has no list. Blocks for as long as the system takes to list (milliseconds). Thread safe.
  */
@@ -277,6 +303,9 @@ GROBO_API int grobo_port_list(int (*visit)(void *ctx, const grobo_port_info *inf
  * @return GROBO_OK, GROBO_ERR_ARG, GROBO_ERR_SPACE.
  */
 GROBO_API int grobo_port_identity(const char *device, char *name, size_t name_bytes);
+
+/** The name of a guard's process (guard.h) where the system tells names: 15 characters at most. */
+#define GROBO_GUARD_NAME "grobo-guard"
 
 /**
  * A process that has a device open: who holds the lock of it, else the first found that has it

@@ -19,7 +19,7 @@
  * Playing is not a job: grobo_robot_play() prepares as a job, then the sequencer runs beside the
  * jobs until GROBO_EVENT_PLAY tells its end.
  *
- * Safety, on every path before bytes leave:
+ * Safety, on every path, judged as the bytes leave, by grobo_robot_tx():
  * - Every target is finite and within the joint's limits (refused, or clamped if so configured).
  * - No joint is asked to move faster than its limit: times are stretched, and counted.
  * - Nothing moves a joint whose posture was not sensed; the first move from there is slow, and so
@@ -27,6 +27,8 @@
  * - Before torque comes on, the goal is set to the present angle, and torque is read back after.
  * - Heat, current, low voltage, lost replies, torque lost in motion: stop, latched until
  *   grobo_robot_reset().
+ * - While anything moves, each joint is read at least every GROBO_WATCH_US: a rate of frames that
+ *   leaves no time for that is refused, and a reading that has waited too long goes first.
  * - A stalled host skips what is late; after a long stall the motion ends (GROBO_TRIP_HOST_STALL).
  * - grobo_robot_estop() is ahead of everything, read back joint by joint, latched.
  *
@@ -35,187 +37,10 @@
 #ifndef GROBO_ROBOT_H
 #define GROBO_ROBOT_H
 
-#include <grobo/bus.h>
-#include <grobo/driver.h>
-#include <grobo/sequencer.h>
+#include <grobo/robot_config.h>
+#include <grobo/robot_event.h>
 
 GROBO_BEGIN_DECLS
-
-/* ---- configuration -------------------------------------------------------------------------- */
-
-/** What happens to a target outside a joint's limits. */
-typedef enum grobo_limit_policy {
-    GROBO_LIMIT_REFUSE = 0, /**< refused with joint and value; a motion being played stops */
-    GROBO_LIMIT_CLAMP = 1   /**< moved to the limit and counted */
-} grobo_limit_policy;
-
-/** Torque after an emergency stop. */
-typedef enum grobo_estop_torque {
-    GROBO_ESTOP_BRAKE = 0, /**< damped: a standing robot sinks instead of dropping */
-    GROBO_ESTOP_OFF = 1    /**< free */
-} grobo_estop_torque;
-
-/** Sense interval: no reading in the background. */
-#define GROBO_SENSE_NEVER (-1)
-
-/** Configuration. All zero is the default; a negative number where 0 means a limit: no limit. */
-typedef struct grobo_robot_config {
-    grobo_limit_policy limit_policy; /**< targets outside limits; default refuse */
-    int speed_limit_pct;             /**< 1..100 of each joint's speed; default 100 */
-    double approach_dps;             /**< deg/s of the first move, > 0; default the driver's */
-    int64_t sense_interval_us;       /**< background: each joint once in this time; 1 is as fast as
-                                          the wire allows; default 1 s; GROBO_SENSE_NEVER */
-    bool sense_position_only;        /**< background reads angles only (cheaper, watches less) */
-    bool manual_torque;              /**< move and play refuse joints without torque; default: they
-                                          switch it on, safely */
-    bool readback_correction;        /**< add the driver's read-back corrections */
-    bool accept_unknown_raw;         /**< send raw frames the driver cannot check; default refuse */
-    int temperature_c;               /**< trip above; default the driver's */
-    int current_ma;                  /**< trip above for long; default the driver's */
-    int voltage_mv;                  /**< trip below; default the driver's */
-    int lost_replies;                /**< trip after so many in a row; default the driver's */
-    int64_t stall_us;                /**< host may be late by this, then a motion ends; default
-                                          250 ms */
-    int64_t default_time_us;         /**< time of postures whose time is 0; default 100 ms */
-    int64_t exit_bound_us;           /**< longest an exit may take; GROBO_NEVER_US: as long as it
-                                          takes; default 10 s */
-    grobo_exit_policy on_exit;       /**< default the driver's */
-    grobo_estop_torque estop_torque; /**< default brake */
-    grobo_bus_config bus;            /**< the line's physics; `wiring` is taken from the driver */
-    uint32_t timeout_us;             /**< reply timeout; default computed, see bus.h */
-    int retries;                     /**< of a lost reply, the last patient; default 2; -1 none */
-} grobo_robot_config;
-
-/* ---- events --------------------------------------------------------------------------------- */
-
-/** Kinds of job. */
-typedef enum grobo_job_kind {
-    GROBO_JOB_NONE = 0,
-    GROBO_JOB_CHECK,
-    GROBO_JOB_SENSE,
-    GROBO_JOB_TORQUE,
-    GROBO_JOB_MOVE,
-    GROBO_JOB_PLAY, /**< the preparation of a play: sensing, torque, the approach is taken */
-    GROBO_JOB_RAW,
-    GROBO_JOB_REGISTERS,
-    GROBO_JOB_COMMAND,
-    GROBO_JOB_STORED,
-    GROBO_JOB_EXIT,
-    GROBO_JOB_ESTOP,
-    GROBO_JOB_SETTLE /**< the engine's own, after a motion: its last posture is read back, and
-                          repeated where it was lost; makes way for any request, tells nothing */
-} grobo_job_kind;
-
-/** Why the engine stopped by itself. */
-typedef enum grobo_trip {
-    GROBO_TRIP_NONE = 0,
-    GROBO_TRIP_TEMPERATURE,  /**< value: deg C */
-    GROBO_TRIP_OVERHEATED,   /**< a servo cut its torque for heat; value: deg C */
-    GROBO_TRIP_CURRENT,      /**< value: mA */
-    GROBO_TRIP_VOLTAGE,      /**< value: mV */
-    GROBO_TRIP_LOST_REPLIES, /**< in motion; value: readings lost in a row */
-    GROBO_TRIP_TORQUE_LOST,  /**< a joint that held has no torque any more (brown-out) */
-    GROBO_TRIP_LIMIT,        /**< a played target outside limits; value: degrees. Not latched */
-    GROBO_TRIP_NUMBER,       /**< a played target not finite. Not latched */
-    GROBO_TRIP_HOST_STALL,   /**< value: ms late. Not latched */
-    GROBO_TRIP_ESTOP         /**< grobo_robot_estop() */
-} grobo_trip;
-
-/** Short lower-case name of a trip: "over-temperature". @return static string. Thread safe. */
-GROBO_API const char *grobo_trip_name(grobo_trip trip);
-
-/** Kinds of event. */
-typedef enum grobo_event_kind {
-    GROBO_EVENT_JOB = 0,   /**< a job ended: job */
-    GROBO_EVENT_JOINT,     /**< a joint was read, or could not be: joint */
-    GROBO_EVENT_ROUND,     /**< every joint was asked once in the background; in free mode every
-                                free one */
-    GROBO_EVENT_PLAY,      /**< the sequencer changed its state: play */
-    GROBO_EVENT_TRIP,      /**< stopped for safety: trip */
-    GROBO_EVENT_LINK_DOWN, /**< the line is gone */
-    GROBO_EVENT_LINK_UP    /**< the line is there */
-} grobo_event_kind;
-
-/** GROBO_EVENT_JOB. */
-typedef struct grobo_event_job {
-    int number;              /**< what the request returned */
-    grobo_job_kind kind;     /**< what it was */
-    int result;              /**< GROBO_OK or the first error */
-    int joint;               /**< joint the error is about, or -1 */
-    double value;            /**< value at fault (LIMIT: degrees; NAN), else 0 */
-    grobo_joint_mask failed; /**< joints for which it failed; the others are done */
-    const uint8_t *data;     /**< reply of RAW, registers of REGISTERS; valid in the call only */
-    size_t size;             /**< bytes at data */
-} grobo_event_job;
-
-/** GROBO_EVENT_JOINT: see grobo_robot_joint() for the values. */
-typedef struct grobo_event_joint {
-    int joint;
-    int result; /**< GROBO_OK, or why there is no reading */
-} grobo_event_joint;
-
-/** GROBO_EVENT_PLAY: the sequencer took another state. More by grobo_robot_progress(). */
-typedef struct grobo_event_play {
-    grobo_sequencer_state from;
-    grobo_sequencer_state to;
-    int error; /**< why FAILED, else 0 */
-} grobo_event_play;
-
-/** GROBO_EVENT_TRIP, and grobo_robot_tripped(). */
-typedef struct grobo_trip_info {
-    grobo_trip trip; /**< why, GROBO_TRIP_NONE if not tripped */
-    int joint;       /**< which joint, or -1 */
-    double value;    /**< the value at fault, unit as the reason says */
-    int64_t at_us;   /**< when */
-    bool latched;    /**< until grobo_robot_reset() */
-} grobo_trip_info;
-
-/** What grobo_robot.on_event gets. Borrowed: valid during the call only. */
-typedef struct grobo_event {
-    grobo_event_kind kind;
-    int64_t now_us; /**< time of the call into the engine that made it */
-    union {
-        grobo_event_job job;
-        grobo_event_joint joint;
-        grobo_event_play play;
-        grobo_trip_info trip;
-    } u; /**< as kind says */
-} grobo_event;
-
-/** The one callback. Requests may be made from within it; the robot must not be deinitialised. */
-typedef void (*grobo_event_fn)(void *ctx, const grobo_event *event);
-
-/* ---- state that may be asked for ------------------------------------------------------------- */
-
-/** One joint as the engine knows it. */
-typedef struct grobo_joint_info {
-    grobo_joint_state state; /**< last values; `valid` says which were ever read */
-    int64_t angle_age_us;    /**< age of the angle, GROBO_NEVER_US if never read */
-    int64_t full_age_us;     /**< age of the last full reading, GROBO_NEVER_US if never */
-    double target_rad;       /**< last angle asked for, if has_target */
-    int status;              /**< last reading: GROBO_OK, its error, or GROBO_ERR_EMPTY: none yet */
-    bool has_target;         /**< false: nothing was asked of it since the link came up */
-    bool torque_known;       /**< state.torque was read back or switched since the link came up */
-} grobo_joint_info;
-
-/** Monotonic counters since grobo_robot_init(); those of the wire are in grobo_bus_stats. */
-typedef struct grobo_robot_counters {
-    uint64_t motion_frames; /**< frames that moved joints */
-    uint64_t late_frames;   /**< played postures skipped, or sent too late */
-    uint64_t clamped;       /**< targets moved to a limit */
-    uint64_t stretched;     /**< targets given more time, being too fast for a joint */
-    uint64_t stalls;        /**< times the host came later than stall_us */
-    uint64_t trips;         /**< safety stops */
-    uint64_t lost_events;   /**< GROBO_EVENT_JOINT left out, too many in one call */
-} grobo_robot_counters;
-
-/** How late motion frames left, in microseconds: quantiles of a histogram of fixed bins. */
-typedef struct grobo_jitter {
-    uint64_t frames;
-    int64_t p50_us;
-    int64_t p99_us;
-    int64_t max_us;
-} grobo_jitter;
 
 /* ---- the engine ------------------------------------------------------------------------------ */
 
@@ -231,18 +56,35 @@ struct grobo_robot;
 /** A step of a job. Private. */
 typedef int (*grobo_robot_step_fn)(struct grobo_robot *robot);
 
+/** What a frame does to joints, judged at the moment it leaves. Private. */
+typedef struct grobo_robot_order {
+    /* private */
+    grobo_joint_mask joints; /* that it moves, switches, or leaves unknown */
+    uint32_t number;         /* of its target, see grobo_robot_axis.next */
+    int64_t asked_us;        /* a halt, torque: when it was asked for */
+    uint8_t deed;            /* what it does; 0: nothing to any joint */
+    uint8_t torque;          /* the grobo_torque that it switches to */
+    uint8_t part;            /* which of the driver's frames for one joint */
+    bool each;               /* more time only for joints that need it, not for all alike */
+    bool soft;               /* slow, whenever it leaves: asked for as the first move */
+    bool single;             /* from a stream of the caller's own */
+    bool moves;              /* a stop must cancel it */
+    bool stops;              /* leaves after a latched stop as well */
+    bool rests;              /* ends a motion: joints come to rest near where they are by then */
+} grobo_robot_order;
+
 /** A frame under way. Private. */
 typedef struct grobo_robot_slot {
     /* private */
     grobo_txn txn;
     grobo_exchange exchange;
+    grobo_robot_order order;
     struct grobo_robot *robot;
     int64_t due_us;   /* when it should leave; GROBO_NEVER_US: as soon as may be */
     int64_t given_us; /* when the bus got it */
-    uint32_t motion;  /* number of the target it carries */
-    int job;          /* number of the job it belongs to */
-    bool out;         /* given to the line */
-    bool switches_on; /* it brings torque */
+    int64_t asked_us; /* when its first attempt left */
+    int job;          /* number of the job whose step made it; 0: none */
+    bool refused;     /* at the moment it would have left */
     bool reads;       /* it asks where this joint is */
     uint8_t use;      /* 0: free */
     uint8_t joint;
@@ -259,21 +101,27 @@ typedef struct grobo_robot_way {
 typedef struct grobo_robot_axis {
     /* private */
     grobo_joint_state state;
-    int64_t goal_us;            /* when its goal was read back */
-    int64_t own_until_us;       /* when the move that the servo told of is over */
-    int64_t angle_us, full_us;  /* when read; GROBO_NEVER_US: never */
-    int64_t gave_way_us;        /* in free mode: when a hand pushed or turned it last */
-    int64_t current_since_us;   /* above its limit since; GROBO_NEVER_US: it is not */
-    grobo_robot_way way;        /* the move it was sent on */
-    grobo_robot_way way_before; /* and the one before, should the frame never leave */
-    uint32_t motion;            /* number of the target that sent it there */
-    int status;                 /* of the last reading */
-    uint16_t lost;              /* readings lost in a row */
-    bool sensed;                /* since the link came up */
-    bool has_target;            /* sent somewhere since then */
+    int64_t goal_us;           /* when its goal was read back */
+    int64_t own_until_us;      /* when the move that the servo told of is over */
+    int64_t angle_us, full_us; /* when read; GROBO_NEVER_US: never */
+    int64_t gave_way_us;       /* in free mode: when a hand pushed or turned it last */
+    int64_t current_since_us;  /* above its limit since; GROBO_NEVER_US: it is not */
+    int64_t told_us;           /* when a frame that moves or switches it left last */
+    grobo_robot_way way;       /* the move that the last frame sent it on */
+    uint32_t last;             /* number of the target that left last; 0: what had none */
+    uint32_t next;             /* number of the target that waits for the line; 0: none */
+    double next_rad;           /* that target */
+    int64_t next_time_us;      /* and its time, so far */
+    int status;                /* of the last reading */
+    uint16_t lost;             /* readings lost in a row */
+    int64_t told_to_us;        /* in segments: until when on its way the servo was told to go */
+    bool in_segments;          /* it is told its way in parts */
+    bool sensed;               /* since the link came up */
+    bool has_target;           /* sent somewhere since then */
     bool torque_known;
     bool wants_torque; /* we switched it on: to be without is a fault */
     bool held;         /* goal read back to be the present angle: torque may come on */
+    bool off_way;      /* read to stand still elsewhere: it lost the frame of its way */
     bool adrift;       /* moves though we sent it nowhere, and did not tell where to */
 } grobo_robot_axis;
 
@@ -299,11 +147,14 @@ typedef struct grobo_robot_task {
     grobo_clip clip;
     grobo_play_options options;
     grobo_exchange exchange;
+    grobo_robot_order order; /* of the exchange */
+    int64_t leave_by_us;     /* after that it does not leave; 0: always */
     int part;
     int rounds;      /* of repeating what was not taken */
     int restarts;    /* of all of it */
     uint32_t motion; /* number of the target that is read back */
     size_t reply_bytes;
+    int64_t begun_us; /* when it started */
     int64_t until_us; /* end of waiting */
     int64_t bound_us; /* end of patience */
     grobo_register_io io;
@@ -334,9 +185,12 @@ typedef struct grobo_robot {
     int64_t soft_us;        /* grobo_robot_send(): when its first target is reached */
     int64_t sense_us;       /* when the background reads next */
     uint32_t motion;        /* number of the last target */
+    int64_t renewed_us;     /* when the ways in segments were told further */
+    uint32_t told_item;     /* clip of the sequencer of which it was said that none watches it */
     uint32_t motion_us;     /* wire time of the last motion frames */
     grobo_joint_mask round; /* joints still to be read in this background round */
     grobo_joint_mask free_joints;
+    grobo_joint_mask raw_joints;  /* sent where they go by a raw frame */
     grobo_joint_mask other_round; /* in free mode: of the joints that are not free */
     uint8_t reply[GROBO_REGISTERS];
     double fault_deg;
@@ -344,6 +198,7 @@ typedef struct grobo_robot {
     int last_number;
     unsigned low_readings; /* of the voltage, in a row */
     unsigned depth;        /* calls into the engine, one inside another */
+    int acting;            /* number of the job whose step runs; 0: none */
     bool other_read;       /* in free mode: the last reading was of a joint that is not free */
     bool link;
     bool settling;  /* a motion is over, its end not yet looked at */
@@ -376,7 +231,10 @@ GROBO_API void grobo_robot_rx(grobo_robot *robot, const uint8_t *bytes, size_t s
                               int64_t now_us);
 
 /**
- * Takes the next frame for the line, whole; it counts as sent at now_us.
+ * Takes the next frame for the line, whole; it counts as sent at now_us, so take it only when the
+ * line can take all of it and nothing waits before it. Frames are judged here: one that must not
+ * leave any more is dropped and the next one is given. Calls nothing back; what that ends is told
+ * by the next grobo_robot_step(), which grobo_robot_deadline() wants at once then.
  * @param capacity GROBO_RS30X_PACKET_MAX_BYTES is always enough.
  * @return number of bytes, 0 for nothing now, GROBO_ERR_SPACE.
  */
@@ -384,6 +242,13 @@ GROBO_API int grobo_robot_tx(grobo_robot *robot, uint8_t *buf, size_t capacity, 
 
 /** Lets time pass: timeouts, frames that are due, sensing. Call at grobo_robot_deadline(). */
 GROBO_API void grobo_robot_step(grobo_robot *robot, int64_t now_us);
+
+/**
+ * True if a frame that stops the robot (a halt, an emergency stop) could leave now, as far as the
+ * wire is concerned. Where the line still holds bytes of an earlier frame back they are late, and
+ * the owner of the line should drop them if it can.
+ */
+GROBO_API bool grobo_robot_stops(const grobo_robot *robot, int64_t now_us);
 
 /**
  * When grobo_robot_step() and then grobo_robot_tx() are next wanted; GROBO_NEVER_US for not before
@@ -425,25 +290,44 @@ GROBO_API int grobo_robot_torque(grobo_robot *robot, grobo_joint_mask joints, gr
 GROBO_API int grobo_robot_move(grobo_robot *robot, const grobo_posture *target, int64_t now_us);
 
 /**
+ * Gives the move under way another target, which leaves next: the job ends when the joints are at
+ * the target given last. For targets that come one after the other, each before the one before is
+ * reached. What this target sets must include what the one before set; joints that it sets besides
+ * must have been sensed and hold, as for grobo_robot_send().
+ * @return the number of that job, or an error, and then the move is as it was: GROBO_ERR_STATE
+ *         where no move is under way, or none that may be redirected yet: its first target waits to
+ *         leave, or is the slow first one and was not read back. Others as grobo_robot_move().
+ */
+GROBO_API int grobo_robot_retarget(grobo_robot *robot, const grobo_posture *target, int64_t now_us);
+
+/**
  * Sends a target once and lets go: no job, no event, nothing read before or after. For a control
  * loop of the caller's own, which calls it once a period; a target that still waits for the line
  * is replaced. The first ones go there at the approach speed. Joints must have been sensed and
  * hold (a sense and a torque job, once). The target is checked and timed as any other.
  * @return 0, or an error: GROBO_ERR_STATE while something else moves the robot (such as a move
- *         from before the line was there) or a joint has no torque, GROBO_ERR_STALE for a joint
- *         not sensed, and those of grobo_robot_move().
+ *         from before the line was there), a joint has no torque or is in free mode,
+ *         GROBO_ERR_STALE for a joint not sensed, and those of grobo_robot_move().
  */
 GROBO_API int grobo_robot_send(grobo_robot *robot, const grobo_posture *target, int64_t now_us);
 
 /**
  * Sends a frame of the caller's as it is and waits for the reply it calls for, if any. The driver
- * reads its meaning first and it is checked as any other target; what the driver cannot read is
- * refused with GROBO_ERR_UNSUPPORTED unless accept_unknown_raw: other motors than the model's, ids,
- * directions, limits, flash and restarts, motions of the board's own. After one that was accepted
- * all joints must be read anew.
+ * reads its meaning first and it is checked as any other target, now and again when it leaves: by
+ * then the job may end with GROBO_ERR_SPEED, _STALE, _STATE or _LATCHED, and nothing was sent. A
+ * stop ends it with GROBO_ERR_CANCELED, if it moves. A joint in free mode is refused
+ * (GROBO_ERR_STATE); what the driver cannot read is refused with GROBO_ERR_UNSUPPORTED unless
+ * accept_unknown_raw: other motors than the model's, ids, directions, limits, flash and restarts,
+ * motions of the board's own. After one that was accepted all joints must be read anew.
  */
 GROBO_API int grobo_robot_raw(grobo_robot *robot, const uint8_t *frame, size_t size,
                               int64_t now_us);
+/**
+ * The same for who waits until until_us only: no attempt leaves after that; the job ends with
+ * GROBO_ERR_STALE then.
+ */
+GROBO_API int grobo_robot_raw_until(grobo_robot *robot, const uint8_t *frame, size_t size,
+                                    int64_t until_us, int64_t now_us);
 
 /**
  * Reads (data NULL) or writes registers of a servo. Goal and torque registers are refused, and id,
@@ -460,7 +344,8 @@ GROBO_API int grobo_robot_registers(grobo_robot *robot, const grobo_register_io 
 GROBO_API int grobo_robot_command(grobo_robot *robot, int id, grobo_servo_command command,
                                   int64_t now_us);
 
-/** Starts a motion kept in the robot. Its targets are the robot's own: nothing checks them. */
+/** Starts a motion kept in the robot. Its targets are the robot's own: nothing checks them. Ends
+ *  free mode; GROBO_ERR_STATE while anything moves. */
 GROBO_API int grobo_robot_stored(grobo_robot *robot, grobo_stored_kind kind, int number,
                                  int64_t now_us);
 
@@ -481,6 +366,12 @@ GROBO_API int grobo_robot_exit(grobo_robot *robot, grobo_exit_policy policy, int
 GROBO_API int grobo_robot_estop(grobo_robot *robot, int64_t now_us);
 
 /**
+ * Latches as grobo_robot_estop() does, and sends nothing: for a robot that another program has
+ * stopped. @return 0, or GROBO_ERR_STATE while a move or a motion runs.
+ */
+GROBO_API int grobo_robot_latch(grobo_robot *robot, int64_t now_us);
+
+/**
  * Takes back a latched stop. Nothing moves; the next move or play senses first.
  * @return 0, or GROBO_ERR_STATE while the emergency stop is still being carried out.
  */
@@ -499,15 +390,18 @@ GROBO_API int grobo_robot_cancel(grobo_robot *robot, int64_t now_us);
  * posture, plays. The job GROBO_JOB_PLAY ends when the servos are known to be on their way there,
  * or could not be brought on it.
  * @param clip copied; what its ctx points to must live until GROBO_EVENT_PLAY tells the end.
- * @param options copied; NULL for all defaults. approach_deg_s 0 is the configuration's.
+ * @param options copied; NULL for all defaults. approach_deg_s 0 is the configuration's, rate_hz 0
+ *        that of grobo_robot_budget(). A rate above watched_hz is refused with
+ *        GROBO_ERR_UNWATCHED unless `unwatched`; then GROBO_EVENT_UNWATCHED comes when it begins.
  */
 GROBO_API int grobo_robot_play(grobo_robot *robot, const grobo_clip *clip,
                                const grobo_play_options *options, int64_t now_us);
 
 /**
  * Puts a clip behind the one being played; see grobo_sequencer_enqueue().
- * @return clips that wait, its errors, or GROBO_ERR_STATE where the clip moves a joint that was not
- *         read or has no torque: name such joints in grobo_play_options.also of the first one.
+ * @return clips that wait, its errors, GROBO_ERR_UNWATCHED, or GROBO_ERR_STATE where the clip moves
+ *         a joint that was not read or has no torque: name such joints in grobo_play_options.also
+ *         of the first one.
  */
 GROBO_API int grobo_robot_enqueue(grobo_robot *robot, const grobo_clip *clip,
                                   const grobo_play_options *options, int64_t now_us);
@@ -516,8 +410,8 @@ GROBO_API int grobo_robot_enqueue(grobo_robot *robot, const grobo_clip *clip,
 /**@{*/
 GROBO_API int grobo_robot_pause(grobo_robot *robot, int64_t now_us);
 GROBO_API int grobo_robot_resume(grobo_robot *robot, int64_t now_us);
-/** Ends the motion: smoothly, or at the present posture at once. Also a move, and what was only
- *  sent. */
+/** Ends the motion: smoothly, or at the present posture at once. Also a move, what was only sent,
+ *  and a raw frame that moves: their jobs end with GROBO_ERR_CANCELED. */
 GROBO_API int grobo_robot_stop(grobo_robot *robot, bool at_once, int64_t now_us);
 GROBO_API int grobo_robot_seek(grobo_robot *robot, int64_t clip_us, int64_t now_us);
 /** @param speed_pct 1..1000 */
@@ -585,9 +479,15 @@ GROBO_API grobo_sequencer_state grobo_robot_play_state(const grobo_robot *robot)
 /** True while a motion is under way: approached, played, paused or being stopped. */
 GROBO_API bool grobo_robot_is_playing(const grobo_robot *robot);
 
+/** True when no frame waits for the line and no reply is awaited. */
+GROBO_API bool grobo_robot_is_quiet(const grobo_robot *robot);
+
 /** Where the motion is. */
 GROBO_API void grobo_robot_progress(const grobo_robot *robot, int64_t now_us,
                                     grobo_play_progress *progress);
+
+/** The budget of its line. @return 0, or an error of the driver. */
+GROBO_API int grobo_robot_budget(const grobo_robot *robot, grobo_budget *budget);
 
 /** Lateness of motion frames since the last play began. */
 GROBO_API void grobo_robot_jitter(const grobo_robot *robot, grobo_jitter *jitter);

@@ -29,7 +29,7 @@
 
 GROBO_BEGIN_DECLS
 
-/** Default of grobo_play_options.rate_hz. */
+/** Default of grobo_play_options.rate_hz; of a robot, where its line allows it: grobo_budget. */
 #define GROBO_PLAY_RATE_HZ 50
 /** Largest grobo_play_options.rate_hz. */
 #define GROBO_PLAY_RATE_MAX_HZ 1000
@@ -78,7 +78,7 @@ typedef struct grobo_play_options {
     bool mirror;             /**< left for right, by the model's table */
     int32_t repeat;          /**< passes: 0 and 1 one, n > 1 n, negative -n in reverse */
     uint16_t speed_pct;      /**< 1..1000, 0: 100 */
-    uint16_t rate_hz;        /**< RATE: 1..1000, 0: 50 */
+    uint16_t rate_hz;        /**< RATE: 1..1000, 0: 50, or for a robot what its line allows */
     uint16_t approach_deg_s; /**< speed of approaches, 0: 60 */
     int64_t from_us;         /**< position at which the first pass begins, 0..total */
     int64_t default_time_us; /**< KEY: time of keys that give none, 0: 100 ms */
@@ -86,6 +86,9 @@ typedef struct grobo_play_options {
     int64_t late_us;         /**< a frame taken later than this after its time is late, 0: 5 ms */
     grobo_joint_mask also;   /**< grobo_robot_play(): joints of clips to be queued behind this one,
                                   read and switched on with its own */
+    bool unwatched;          /**< for a robot: a rate above grobo_budget.watched_hz is accepted, and
+                                  no frame makes way for a reading. Heat, current and lost torque
+                                  may then stop nothing before the motion ends */
 } grobo_play_options;
 
 /** What is to be sent now. */

@@ -7,8 +7,11 @@
  * The device is a serial port's name (see grobo_port_serial_ops()) or "tcp:HOST:PORT".
  *
  * Asynchronous mode: bytes received come by a callback on the loop, bytes to send go through a
- * bounded queue, and no function waits. Synchronous mode: no callback is ever called, functions
- * wait, with a limit, and return what happened.
+ * bounded queue, and no function waits. A peer that never stops writing is read at most 10000 times
+ * and 1 MB a second; what it writes beyond that waits in the system.
+ *
+ * Synchronous mode: no callback is ever called, functions wait, with a limit, and return what
+ * happened.
  *
  * A port that is gone is closed at once, and said so once: by GROBO_SERIAL_UNPLUGGED in
  * asynchronous mode, by GROBO_ERR_UNPLUGGED of the call in synchronous mode. It may be opened
@@ -32,8 +35,8 @@ GROBO_BEGIN_DECLS
 /** Baud rate where none is given: that of GR001's board (protocol 1). */
 #define GROBO_BAUD_DEFAULT_BPS 115200
 
-/** Silence after which grobo_serial_receive() gives up, where none is given: that of the original
- *  library (recieveData: 100 looks, 1 ms apart). */
+/** How long grobo_serial_receive() waits in all, where no other time is given: as long as the
+ *  original library (recieveData: 100 looks, 1 ms apart). */
 #define GROBO_SILENCE_DEFAULT_MS 100
 
 /** How the functions of a port behave. */
@@ -92,7 +95,7 @@ typedef void (*grobo_serial_tap_fn)(grobo_direction direction, int64_t now_us, c
 typedef struct grobo_serial_config {
     const char *device;      /**< copied; NULL: none yet (grobo_serial_set_device) */
     int baud_bps;            /**< 0: GROBO_BAUD_DEFAULT_BPS; any positive rate, standard or not */
-    int silence_ms;          /**< of grobo_serial_receive(); 0: GROBO_SILENCE_DEFAULT_MS */
+    int silence_ms;          /**< bound of each call that waits; 0: GROBO_SILENCE_DEFAULT_MS */
     struct event_base *base; /**< borrowed; NULL: synchronous mode only */
     grobo_serial_mode mode;  /**< ASYNC needs base and on_data */
     size_t tx_queue_bytes;   /**< 0: GROBO_SERIAL_QUEUE_BYTES, which is the most as well */
@@ -195,21 +198,23 @@ GROBO_API void grobo_serial_get_counters(const grobo_serial *serial,
 
 /**
  * Low-level read: what is there, at most `size` bytes. Synchronous mode waits for the first byte,
- * at most the silence time.
- * @return count, 0 where nothing came; GROBO_ERR_CLOSED, GROBO_ERR_UNPLUGGED, GROBO_ERR_IO.
+ * at most silence_ms.
+ * @return count, 0 where nothing came or an asynchronous port is paused under a flood (see above);
+ *   GROBO_ERR_CLOSED, GROBO_ERR_UNPLUGGED, GROBO_ERR_IO.
  */
 GROBO_API int grobo_serial_read(grobo_serial *serial, void *buf, size_t size);
 
 /**
  * Low-level write: hands over what the system takes. Synchronous mode waits until it takes the
- * first byte, at most the silence time. While bytes are queued it takes none, to keep the order.
+ * first byte, at most silence_ms. While bytes are queued it takes none, to keep the order.
  * @return count, may be short; GROBO_ERR_CLOSED, GROBO_ERR_UNPLUGGED, GROBO_ERR_IO.
  */
 GROBO_API int grobo_serial_write(grobo_serial *serial, const void *bytes, size_t size);
 
 /**
- * Receives exactly `size` bytes (synchronous mode). After the silence time without a byte, what
- * came is dropped.
+ * Receives exactly `size` bytes (synchronous mode), and waits for them silence_ms in all, counted
+ * from the call, however they come. Where fewer are there by then, they are dropped. A message
+ * that takes longer on the line needs a larger silence_ms.
  * @param[out] buf undefined on error.
  * @return size, GROBO_ERR_TIMEOUT (nothing came), GROBO_ERR_SHORT (fewer came), GROBO_ERR_STATE
  *   (asynchronous mode), GROBO_ERR_CLOSED, GROBO_ERR_UNPLUGGED, GROBO_ERR_IO.
@@ -227,6 +232,12 @@ GROBO_API int grobo_serial_send(grobo_serial *serial, const void *bytes, size_t 
 
 /** Bytes queued to be sent that the system has not taken yet. */
 GROBO_API size_t grobo_serial_pending(const grobo_serial *serial);
+
+/**
+ * These, and those that the system has taken and not put on the line yet, as far as it tells (Linux
+ * tells of serial ports and connections; 0 of a pseudo-terminal, and on Windows).
+ */
+GROBO_API size_t grobo_serial_unsent(const grobo_serial *serial);
 
 /**
  * Bytes received and not read yet; the system may cap the number (Linux: 4095).

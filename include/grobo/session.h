@@ -8,13 +8,25 @@
  * where so configured comes back when the line was lost. It adds nothing to what the engine
  * decides: requests are the engine's, with the present time filled in.
  *
+ * It obeys emergency stops that other programs ask for (estop.h), except with GROBO_DEVICE_SIM.
+ * grobo_session_reset() clears the mark of such a stop, where the latched stop is an emergency
+ * stop. Where that fails (GROBO_ERR_PERM, GROBO_ERR_IO), and while a stop that was just asked for
+ * is carried out (GROBO_ERR_STATE), the session stays latched.
+ *
  * A session belongs to the thread that runs its loop. Every function may be called in its
  * callbacks but on_tap, which only looks; closing and freeing take effect when the callback has
- * returned.
+ * returned. While a callback runs, nothing is read, watched or sent. One that takes longer than
+ * GROBO_CALLBACK_SLOW_US is reported to on_robot by GROBO_EVENT_SLOW_CALLBACK, in any state of the
+ * session; of callbacks that run one inside another the outer one is reported.
+ *
+ * Other threads and signal handlers may call grobo_session_post_estop(), grobo_session_post_stop(),
+ * grobo_session_post_exit() and grobo_session_is_latched(), and nothing else of a session. The
+ * program makes sure that none of them is called once the session is being freed.
  */
 #ifndef GROBO_SESSION_H
 #define GROBO_SESSION_H
 
+#include <grobo/guard.h>
 #include <grobo/robot.h>
 #include <grobo/serial.h>
 #include <grobo/sim.h>
@@ -26,7 +38,8 @@ GROBO_BEGIN_DECLS
 /** The device that is the first serial port on which a robot answers. */
 #define GROBO_DEVICE_AUTO "auto"
 
-/** Serial ports that GROBO_DEVICE_AUTO tries at most; USB adapters come first. */
+/** Serial ports that GROBO_DEVICE_AUTO tries at most; USB adapters come first, ttyUSB2
+ *  before ttyUSB10. */
 #define GROBO_SCAN_PORTS_MAX 32
 
 /** First and longest pause between two attempts to open a lost line again; they double. */
@@ -44,9 +57,12 @@ typedef enum grobo_session_state {
 
 /** What is told of a session. */
 typedef enum grobo_session_event {
-    GROBO_SESSION_EVENT_UP,    /**< a robot is there, for the first time or again */
-    GROBO_SESSION_EVENT_LOST,  /**< the line was up and is gone; error says how */
-    GROBO_SESSION_EVENT_FAILED /**< grobo_session_open() came to nothing; error says why */
+    GROBO_SESSION_EVENT_UP,       /**< a robot is there, for the first time or again */
+    GROBO_SESSION_EVENT_LOST,     /**< the line was up and is gone; error says how */
+    GROBO_SESSION_EVENT_FAILED,   /**< grobo_session_open() came to nothing; error says why */
+    GROBO_SESSION_EVENT_UNGUARDED /**< the guard has ended (GROBO_ERR_CLOSED) or cannot guard this
+                                       robot (GROBO_ERR_UNSUPPORTED); told once, the session stays
+                                       as it is */
 } grobo_session_event;
 
 /** A robot on a loop. */
@@ -54,7 +70,8 @@ typedef struct grobo_session grobo_session;
 
 /**
  * Something happened to the line; always from the loop. After LOST without `reconnect`, and after
- * FAILED, the session is closed. grobo_session_cause() says more.
+ * FAILED, the session is closed. grobo_session_cause() says more. LOST with GROBO_ERR_STALLED: this
+ * process was stopped (SIGSTOP) while joints moved, and its guard stopped the robot.
  */
 typedef void (*grobo_session_event_fn)(grobo_session *session, grobo_session_event event, int error,
                                        void *ctx);
@@ -79,6 +96,12 @@ typedef struct grobo_session_config {
     grobo_event_fn on_robot;         /**< the engine's events while up, or NULL */
     grobo_serial_tap_fn on_tap;      /**< every byte, for a trace, or NULL */
     void *ctx;                       /**< borrowed, handed to the callbacks */
+    grobo_guard *guard;              /**< borrowed, of one session at a time, freed after it: stops
+                                          the robot when this process dies (guard.h); NULL: none.
+                                          Not used for GROBO_DEVICE_SIM */
+    const void *guard_data;          /**< borrowed as long as the session: what the guard's program
+                                          needs to make the same driver, or NULL */
+    size_t guard_bytes;              /**< of it, at most GROBO_GUARD_DATA_BYTES */
     const grobo_mem *mem;            /**< borrowed allocator; NULL: the C library's */
 } grobo_session_config;
 
@@ -86,7 +109,7 @@ typedef struct grobo_session_config {
  * Makes a session, closed.
  * @param[out] session freed with grobo_session_free().
  * @return GROBO_OK, GROBO_ERR_ARG (what is needed is missing, driver or robot configuration bad),
- *   GROBO_ERR_CAP (device name too long), GROBO_ERR_NOMEM.
+ *   GROBO_ERR_CAP (device name or guard data too long), GROBO_ERR_NOMEM.
  */
 GROBO_API int grobo_session_new(const grobo_session_config *config, grobo_session **session);
 
@@ -156,7 +179,10 @@ GROBO_API int grobo_session_sense(grobo_session *session, grobo_joint_mask joint
 GROBO_API int grobo_session_torque(grobo_session *session, grobo_joint_mask joints,
                                    grobo_torque mode);
 GROBO_API int grobo_session_move(grobo_session *session, const grobo_posture *target);
+GROBO_API int grobo_session_retarget(grobo_session *session, const grobo_posture *target);
 GROBO_API int grobo_session_raw(grobo_session *session, const uint8_t *frame, size_t size);
+GROBO_API int grobo_session_raw_until(grobo_session *session, const uint8_t *frame, size_t size,
+                                      int64_t until_us);
 GROBO_API int grobo_session_registers(grobo_session *session, const grobo_register_io *io);
 GROBO_API int grobo_session_command(grobo_session *session, int id, grobo_servo_command command);
 GROBO_API int grobo_session_stored(grobo_session *session, grobo_stored_kind kind, int number);
@@ -175,6 +201,37 @@ GROBO_API int grobo_session_seek(grobo_session *session, int64_t clip_us);
 GROBO_API int grobo_session_speed(grobo_session *session, int speed_pct);
 GROBO_API int grobo_session_free_mode(grobo_session *session, grobo_joint_mask joints, bool on);
 /**@}*/
+
+/* ---- requests of other threads and signal handlers ------------------------------------------
+ * They take no lock, no memory and no descriptor, keep errno, and never wait: what is asked for is
+ * noted in an atomic word, and the loop is woken. It is kept until the loop has carried it out, and
+ * nothing else leaves before: the next frame on the wire is the stop. Where the loop does not turn,
+ * because a callback holds it or no thread runs it, the request waits. Requests of the same
+ * kind that the loop finds together are one. All return GROBO_OK, or GROBO_ERR_ARG. */
+
+/**
+ * grobo_session_estop(), by the loop. The stop counts as latched from the return of this call on;
+ * without a line it is carried out when the line is there.
+ */
+GROBO_API int grobo_session_post_estop(grobo_session *session);
+
+/** grobo_session_stop(), by the loop. At once prevails over smoothly, an emergency stop over both.
+ *  Without a robot nothing is done. */
+GROBO_API int grobo_session_post_stop(grobo_session *session, bool at_once);
+
+/**
+ * grobo_session_exit(), by the loop, after an emergency stop that is being carried out; its end is
+ * a job event. The last policy prevails. Without a robot nothing is done.
+ */
+GROBO_API int grobo_session_post_exit(grobo_session *session, grobo_exit_policy policy);
+
+/**
+ * True from a safety stop, or from the return of grobo_session_post_estop(), until the loop has
+ * carried out a grobo_session_reset() that came after it: whatever is asked for in between that
+ * moves or switches torque on is refused. It says that a stop is certain, not that it has been
+ * carried out: that is the end of the job GROBO_JOB_ESTOP, or grobo_robot_tripped() on the loop.
+ */
+GROBO_API bool grobo_session_is_latched(const grobo_session *session);
 
 GROBO_END_DECLS
 

@@ -75,11 +75,20 @@ typedef enum grobo_sim_event_kind {
     GROBO_SIM_SAVED,     /**< registers No.4-29 went to flash */
     GROBO_SIM_OVERHEAT,  /**< a servo cut its torque; value: deg C */
     GROBO_SIM_REFUSED,   /**< a servo could not process a packet */
+    GROBO_SIM_MISSED,    /**< a servo that is busy missed a packet; value: grobo_sim_busy */
+    GROBO_SIM_STALLED,   /**< a packet on the servos' bus stalled and was forgotten; bytes: of it */
     GROBO_SIM_SLOT,      /**< the board was told to play a motion; value: its number */
     GROBO_SIM_SCENARIO,  /**< the board was told to play a scenario; value: its number */
-    GROBO_SIM_COLLISION, /**< two talked at once on the servos' bus */
+    GROBO_SIM_COLLISION, /**< two talked at once on the servos' bus; value: 1: a servo and the
+                              host or board, 0: two servos */
     GROBO_SIM_INJECTED   /**< a fault struck; value: grobo_sim_fault */
 } grobo_sim_event_kind;
+
+/** Why a servo does not hear. */
+typedef enum grobo_sim_busy {
+    GROBO_SIM_BUSY_FLASH, /**< it writes its flash */
+    GROBO_SIM_BUSY_REBOOT /**< it restarts */
+} grobo_sim_busy;
 
 /** One event. Borrowed bytes, valid during the call of the hook. */
 typedef struct grobo_sim_event {
@@ -97,6 +106,25 @@ typedef struct grobo_sim_event {
  * its own (overheating, end of a flash write) when somebody next speaks to it or looks at it.
  */
 typedef void (*grobo_sim_hook)(const grobo_sim_event *event, void *ctx);
+
+/* ---- servos --------------------------------------------------------------------------------- */
+
+/** A servo that can be simulated: a row of a table. docs/simulator.md has the sources. */
+typedef struct grobo_sim_type {
+    const char *name;       /**< "RS301CR" */
+    uint16_t model;         /**< register MODEL; of a joint: its servo_model */
+    uint16_t stall_ma;      /**< current at a stop */
+    int32_t speed_mdeg_s;   /**< 0.001 degree a second, without load at 7.4 V */
+    uint16_t punch;         /**< the factory's register PUNCH */
+    uint8_t slope;          /**< the factory's registers CW_SLOPE and CCW_SLOPE */
+    uint8_t max_torque_pct; /**< register MAX_TORQUE at power-up */
+    bool early;             /**< lacks what came with RS303MR: No.22, 23, 60-127, answers to all */
+} grobo_sim_type;
+
+/** The row of the table, NULL behind its end. Static storage; thread safe. */
+GROBO_API const grobo_sim_type *grobo_sim_type_row(size_t index);
+/** The servo called name[0..length-1], in any case; NULL for none. Static storage; thread safe. */
+GROBO_API const grobo_sim_type *grobo_sim_type_named(const char *name, size_t length);
 
 /* ---- configuration -------------------------------------------------------------------------- */
 
@@ -122,6 +150,7 @@ typedef struct grobo_sim_config {
     uint32_t latency_us;       /**< a byte for the host waits so long at its adapter for others */
     bool echo;                 /**< bus: the host's adapter returns what is sent on one wire */
     bool nack;                 /**< a servo that cannot process an ACK request answers 08 */
+    bool no_stops;             /**< nothing but its limit registers keeps a servo from turning */
     bool jump_on_torque;       /**< torque on runs to the goal register instead of holding */
     grobo_sim_hook hook;       /**< or NULL */
     void *hook_ctx;            /**< given to the hook */
@@ -181,7 +210,8 @@ typedef struct grobo_sim_servo {
     /* private */
     double temperature_c;       /* at settled_us */
     int64_t settled_us;         /* what it did on its own is known up to here */
-    int64_t start_us, move_us;  /* the present move: when it began, how long it takes */
+    int64_t start_us, move_us;  /* the present move: when it began, how long the shaft takes */
+    int64_t plan_us;            /* how long it takes where no stop is met; 0 by hand */
     int64_t begun_us;           /* when the last goal was written; later by what it rested since */
     int64_t due_us;             /* when the goal time of the last goal is over */
     int64_t deaf_until_us;      /* end of a flash write or a reboot */
@@ -292,6 +322,13 @@ GROBO_API void grobo_sim_step(grobo_sim *sim, int64_t now_us);
  */
 GROBO_API int64_t grobo_sim_deadline(const grobo_sim *sim);
 
+/**
+ * As grobo_sim_deadline(), for a host that needs packets, not bytes: when the last of the bytes is
+ * ready that come to the host without a pause. The bytes before it wait in the simulator, so that
+ * a reading wakes the host once for each packet on a wire, not for each byte.
+ */
+GROBO_API int64_t grobo_sim_packet_deadline(const grobo_sim *sim);
+
 /** Room for bytes of the host: what grobo_sim_rx would take now. */
 GROBO_API size_t grobo_sim_rx_room(const grobo_sim *sim);
 
@@ -333,6 +370,20 @@ GROBO_API int grobo_sim_get_register(grobo_sim *sim, int servo, int address, int
  * @return 0, GROBO_ERR_ARG (no such servo or register, present value), GROBO_ERR_LIMIT (range)
  */
 GROBO_API int grobo_sim_set_register(grobo_sim *sim, int servo, int address, int32_t value);
+
+/**
+ * What a servo's flash holds: registers No.4-29 as they were saved last.
+ * @return 0 or GROBO_ERR_ARG (no such servo)
+ */
+GROBO_API int grobo_sim_get_flash(grobo_sim *sim, int servo, uint8_t flash[GROBO_SIM_FLASH_BYTES]);
+
+/**
+ * Gives a servo another flash, and power off and on at once: it is limp afterwards.
+ * @return 0; GROBO_ERR_ARG (no such servo); GROBO_ERR_LIMIT (a value that no servo can have, or a
+ *         reserved byte that is not 0): nothing has changed
+ */
+GROBO_API int grobo_sim_set_flash(grobo_sim *sim, int servo,
+                                  const uint8_t flash[GROBO_SIM_FLASH_BYTES]);
 
 /**
  * Somebody turns a shaft: from where it is to angle_mdeg (kept within the mechanical stops) in

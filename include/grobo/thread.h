@@ -15,16 +15,26 @@
  * exception. They come in three kinds, told at each:
  * - **At once**: kept under a lock for a few instructions. Also in callbacks.
  * - **Handed over**: done by the thread that runs the loop, between two of its events; the caller
- *   waits for that, at most GROBO_CONTROL_TIMEOUT_US: then GROBO_ERR_TIMEOUT, and nothing was
+ *   waits for that, at most the configured timeout_us: then GROBO_ERR_TIMEOUT, and nothing was
  *   done. Also in callbacks, where it is done at once.
  * - **Waits**: handed over, then waits for the robot's answer, at most the timeout given (0:
- *   GROBO_CONTROL_TIMEOUT_US, GROBO_NEVER_US: for ever). GROBO_ERR_TIMEOUT of such a call gives
+ *   timeout_us, GROBO_NEVER_US: for ever). GROBO_ERR_TIMEOUT of such a call gives
  *   up waiting; what the robot has begun goes on. Requests of several threads that need the
  *   robot's attention queue and are served in the order of their calls. In a callback waiting
  *   would be for ever: GROBO_ERR_STATE, and nothing is done.
  *
+ * Stopping does not depend on a turn: grobo_control_estop(), grobo_control_post_stop() and
+ * grobo_control_post_exit() are safe in signal handlers and leave a request that is kept until it
+ * has been carried out; grobo_control_stop_motion() and grobo_control_exit() leave it where they
+ * cannot wait. What delays it is a callback, or a function of grobo_control_call() or
+ * grobo_control_post(), that does not return: while it holds the loop, nothing is read, nothing is
+ * watched and nothing is sent, so joints go on to the posture they were sent to last, and a motion
+ * that is late by stall_us ends. A callback must not wait for a lock whose owner calls here and
+ * waits. One that takes longer than GROBO_CALLBACK_SLOW_US is reported by the event
+ * GROBO_EVENT_SLOW_CALLBACK.
+ *
  * Besides what is said at each, handed-over and waiting calls may return GROBO_ERR_FULL
- * (GROBO_CONTROL_CALLS_MAX are under way; never an emergency stop or an exit), GROBO_ERR_CLOSED
+ * (GROBO_CONTROL_CALLS_MAX are under way; some more for a stop or an exit), GROBO_ERR_CLOSED
  * (the robot is not connected) and GROBO_ERR_UNPLUGGED (the line was lost while the call waited:
  * nobody waits for a robot that is gone). Callbacks run on the thread that runs the loop, without
  * any lock held.
@@ -34,7 +44,8 @@
  * grobo_control_close_port() and by grobo_control_free(), unless skip_exit. The library installs
  * no atexit() or signal handler: a program calls grobo_control_free() on its way out (it may be
  * called by the program's own atexit() handler). Where the thread that owns the robot may die
- * without that, owner_timeout_us is the dead-man's handle.
+ * without that, owner_timeout_us is the dead-man's handle; for the death of the whole process there
+ * is session.guard (guard.h).
  */
 #ifndef GROBO_THREAD_H
 #define GROBO_THREAD_H
@@ -47,7 +58,7 @@ GROBO_BEGIN_DECLS
 
 /** Calls that may wait for the loop at a time. */
 #define GROBO_CONTROL_CALLS_MAX 32
-/** Timeout where none is given. */
+/** Timeout where none is given or configured. */
 #define GROBO_CONTROL_TIMEOUT_US INT64_C(5000000)
 /** Control period where none is given. */
 #define GROBO_CONTROL_PERIOD_US 10000
@@ -74,6 +85,8 @@ typedef struct grobo_control_config {
     bool skip_exit;            /**< leave the robot as it is */
     grobo_control_fn on_svc;   /**< called once each control period while the loop runs, arg being
                                     session.ctx; its result is ignored; or NULL */
+    int64_t timeout_us;        /**< of calls that are given none, and of those handed over; 0:
+                                    GROBO_CONTROL_TIMEOUT_US */
 } grobo_control_config;
 
 /* ---- making and freeing ------------------------------------------------------------------- */
@@ -88,7 +101,8 @@ GROBO_API int grobo_control_new(const grobo_control_config *config, grobo_contro
 
 /**
  * Stops the thread, carries out the exit policy, closes, frees; NULL is fine. Waits for the exit.
- * What was posted is done before. No other thread may be in a call, or call later.
+ * What was posted is done before. No other thread and no signal handler may be in a call, or call
+ * later.
  * @return GROBO_OK; GROBO_ERR_STATE in a callback: then nothing was done.
  */
 GROBO_API int grobo_control_free(grobo_control *control);
@@ -184,9 +198,9 @@ GROBO_API int64_t grobo_control_get_sense_interval_us(grobo_control *control);
 GROBO_API int grobo_control_set_period_us(grobo_control *control, int64_t period_us);
 /** Reads it. */
 GROBO_API int64_t grobo_control_get_period_us(grobo_control *control);
-/** Sets how often it is played: 0 and 1 once, n times, -n times in reverse. @return count. */
+/** Sets how often it is played: 0 and 1 once, n times, -n times in reverse. @return GROBO_OK. */
 GROBO_API int grobo_control_set_motion_count(grobo_control *control, int count);
-/** Reads it. */
+/** The count as it was set; it has no error, so that a negative number is one in reverse. */
 GROBO_API int grobo_control_get_motion_count(grobo_control *control);
 /** Has the motion played from its end to its beginning. */
 GROBO_API void grobo_control_set_reverse(grobo_control *control, bool reverse);
@@ -204,7 +218,9 @@ GROBO_API int grobo_control_get_device(grobo_control *control, char *device, siz
 GROBO_API int grobo_control_open_port(grobo_control *control);
 /**
  * Carries out the exit policy where a robot is connected, then closes. Waits.
- * @return GROBO_OK (also when closed already), or how the exit failed: closed all the same.
+ * @return GROBO_OK (also when closed already), or how the exit failed: closed all the same. Where
+ *   the loop had no turn in that time (GROBO_ERR_TIMEOUT, GROBO_ERR_FULL), the port is still open,
+ *   and the exit policy is carried out once the loop turns.
  */
 GROBO_API int grobo_control_close_port(grobo_control *control, int64_t timeout_us);
 /** Opens the port unless it is open, and waits until the robot has answered. Waits. @return
@@ -264,15 +280,19 @@ GROBO_API int grobo_control_set_motion_time_us(grobo_control *control, int64_t t
 
 /**
  * Has the target posture sent, once: the loop takes the target as it is then, as soon as the
- * robot has done what it is doing. How it ends is told by grobo_control_wait() and by the job
- * event. At once.
+ * robot has done what it is doing. A target that was sent before by this call does not delay it:
+ * the robot leaves for the new one from where it is by then, so that a program may set targets at
+ * its own rate. Only the first after torque came on is awaited, and one whose joints the new one
+ * does not set. A target that still waits is replaced. How the last one ends is told by
+ * grobo_control_wait() and by the job event. At once.
  * @return GROBO_OK, GROBO_ERR_CLOSED, GROBO_ERR_EMPTY (no joint is set).
  */
 GROBO_API int grobo_control_start_motion(grobo_control *control);
 /** Makes the initial posture the target, and grobo_control_start_motion(). At once. */
 GROBO_API int grobo_control_init_position(grobo_control *control);
-/** Postures still to be sent: 1 for a target that waits, and those of the motion that the present
- *  pass has not handed out. Handed over. @return the number. */
+/** Postures still to be sent: 1 for a target that waits, and those of the motion in this pass and
+ *  the repetitions after it (at a rate: its frames). Handed over. @return the number, INT_MAX for
+ *  more than that. */
 GROBO_API int grobo_control_command_count(grobo_control *control);
 /** Whether postures are still to be sent or under way. Handed over. @return 1 or 0. */
 GROBO_API int grobo_control_is_moving(grobo_control *control);
@@ -283,6 +303,12 @@ GROBO_API int grobo_control_wait(grobo_control *control, int64_t timeout_us);
 
 /* ---- the current motion --------------------------------------------------------------------- */
 
+/*
+ * The motion holds absolute postures: one of increments (.mseq) is resolved when it becomes the
+ * current one. Its increments count from the posture sensed last, and from the model's initial
+ * posture for joints that were not sensed.
+ */
+
 /** Replaces the motion by a copy. At once. @return postures, GROBO_ERR_ARG (more joints than the
  *  robot), GROBO_ERR_NOMEM. */
 GROBO_API int grobo_control_set_motion(grobo_control *control, const grobo_motion *motion);
@@ -291,12 +317,13 @@ GROBO_API int grobo_control_set_motion(grobo_control *control, const grobo_motio
 GROBO_API int grobo_control_get_motion(grobo_control *control, grobo_motion **motion);
 /** Number of postures of the motion. At once. */
 GROBO_API size_t grobo_control_motion_size(grobo_control *control);
-/** Empties the motion. What is being played goes on. At once. */
+/** Makes it an empty motion of postures. What is being played goes on. At once. */
 GROBO_API void grobo_control_clear_motion(grobo_control *control);
 /** Appends the posture sensed last, with the default time. Handed over. @return postures,
  *  GROBO_ERR_STALE (nothing was sensed), or as grobo_motion_append(). */
 GROBO_API int grobo_control_append_current_posture(grobo_control *control);
-/** Appends the posture sensed last, with a time >= 0. As above. */
+/** Appends the posture sensed last, with a time from 0 (the default time) to below
+ *  GROBO_MOTION_STEP_MAX_US, which .m files cannot tell from the default. As above. */
 GROBO_API int grobo_control_append_current_posture_us(grobo_control *control, int64_t time_us);
 /**
  * Loads a motion of the motion folder: NAME.m, .yaml, .pseq, .mseq, whichever is there first, or
@@ -317,7 +344,8 @@ GROBO_API int grobo_control_load_motion_format(grobo_control *control, grobo_mot
  *   GROBO_FORMAT_M: the first MotionN.m that is not there.
  * @param[out] path of the file, or NULL.
  * @return postures, GROBO_ERR_PERM (a name that leaves the folder), GROBO_ERR_ARG,
- *   GROBO_ERR_SPACE, or as grobo_motion_save().
+ *   GROBO_ERR_SPACE, or as grobo_motion_save(): GROBO_ERR_EXISTS where the file holds anything but
+ *   a motion of this format, and nothing is written.
  */
 GROBO_API int grobo_control_save_motion(grobo_control *control, grobo_motion_format format,
                                         const char *name, char *path, size_t path_bytes);
@@ -339,15 +367,19 @@ GROBO_API int grobo_control_do_nth_motion(grobo_control *control, size_t n);
  * Has the motion as it is now played, as soon as the robot has done what it is doing, with the
  * count, direction and default time that are set. How it ends is told by grobo_control_wait()
  * and by events. At once.
- * @param options the rest (mode, rate, speed, mirror, ...), copied; NULL: by keys, as it is.
+ * @param options the rest (mode, rate, speed, mirror, ...), copied; NULL: by keys, as it is. A
+ *   rate at which the joints are not watched makes grobo_control_wait() return
+ *   GROBO_ERR_UNWATCHED, as grobo_robot_play() does.
  * @return GROBO_OK, GROBO_ERR_CLOSED, GROBO_ERR_EMPTY (no posture), GROBO_ERR_STATE (a motion
  *   waits or is played), GROBO_ERR_NOMEM, or as grobo_motion_clip().
  */
 GROBO_API int grobo_control_play_motion(grobo_control *control, const grobo_play_options *options);
 /**
- * Ends whatever moves the robot, and forgets what has not begun. Handed over.
+ * Ends whatever moves the robot, and cancels what has not begun. Handed over. The request is never
+ * dropped: where its turn cannot be awaited, it is carried out as grobo_control_post_stop() says.
  * @param at_once false: smoothly.
- * @return GROBO_OK; GROBO_ERR_STATE where there is nothing to stop.
+ * @return GROBO_OK; GROBO_ERR_STATE where there is nothing to stop; GROBO_ERR_TIMEOUT,
+ *   GROBO_ERR_FULL: its turn was not awaited.
  */
 GROBO_API int grobo_control_stop_motion(grobo_control *control, bool at_once);
 /** Whether a motion is played or about to be. At once. */
@@ -362,7 +394,8 @@ GROBO_API int grobo_control_set_command(grobo_control *control, const void *pack
 GROBO_API int grobo_control_get_command(grobo_control *control, void *packet, size_t capacity);
 /**
  * Sends a packet as grobo_robot_raw() does, with all its checks, and waits for the reply it calls
- * for; what comes can be taken by grobo_control_receive(). Connects first where closed. Waits.
+ * for; what comes can be taken by grobo_control_receive(). Connects first where closed. Waits: a
+ * packet that still waits for the line after timeout_us is cancelled.
  * @param packet NULL: what is in the command buffer.
  * @return size, GROBO_ERR_EMPTY (nothing to send), GROBO_ERR_CAP, as grobo_control_connect() and
  *   as grobo_robot_raw().
@@ -371,7 +404,7 @@ GROBO_API int grobo_control_send_command(grobo_control *control, const void *pac
                                          int64_t timeout_us);
 /**
  * Takes exactly `size` of the bytes that came in reply to sent commands, as they were on the wire.
- * Where fewer are there after GROBO_SILENCE_DEFAULT_MS without a new one, they are dropped. Waits.
+ * Waits for them GROBO_SILENCE_DEFAULT_MS in all; where fewer are there by then, they are dropped.
  * @return size, GROBO_ERR_TIMEOUT (nothing came), GROBO_ERR_SHORT (fewer came), GROBO_ERR_CAP
  *   (more than GROBO_CONTROL_RECEIVE_BYTES).
  */
@@ -379,16 +412,40 @@ GROBO_API int grobo_control_receive(grobo_control *control, void *bytes, size_t 
 
 /* ---- safety --------------------------------------------------------------------------------- */
 
-/** Emergency stop, ahead of everything: see grobo_robot_estop(). What has not begun is forgotten.
- *  Handed over; grobo_control_wait() waits until it is verified. @return GROBO_OK,
- *  GROBO_ERR_CLOSED (latched all the same, and carried out when the line is there). */
+/**
+ * Emergency stop, ahead of everything: see grobo_session_post_estop() and grobo_robot_estop(). Safe
+ * in a signal handler: it takes no lock, no memory and no descriptor, keeps errno, and never waits.
+ * The stop is latched from its return on, and the next frame on the wire once the loop turns, or
+ * once the line is there. What was asked for before and has not begun is canceled. Where no thread
+ * runs the loop, the next call that does carries the stop out before anything else, so
+ * grobo_control_wait() belongs behind it there; with and without a thread that waits until the stop
+ * is verified.
+ * @return GROBO_OK, GROBO_ERR_ARG (NULL).
+ */
 GROBO_API int grobo_control_estop(grobo_control *control);
-/** Takes back a latched stop: see grobo_robot_reset(). Handed over. @return GROBO_OK,
- *  GROBO_ERR_STATE. */
+/**
+ * Whether a stop is latched: see grobo_session_is_latched(). True from the return of
+ * grobo_control_estop() on, before the loop has turned. Safe in a signal handler.
+ */
+GROBO_API bool grobo_control_is_latched(const grobo_control *control);
+/** Clears a latched stop, and the mark of an emergency stop (estop.h): see grobo_robot_reset() and
+ *  session.h. Handed over. @return GROBO_OK, GROBO_ERR_STATE (the stop is still being carried out,
+ *  or another one came after the call), GROBO_ERR_PERM, GROBO_ERR_IO. */
 GROBO_API int grobo_control_reset(grobo_control *control);
-/** Carries out an exit policy now. Waits. @return GROBO_OK, or as grobo_robot_exit(). */
+/**
+ * Carries out an exit policy now. Waits. The request is never dropped: where its end cannot be
+ * awaited, it is carried out as grobo_control_post_exit() says.
+ * @return GROBO_OK, or as grobo_robot_exit(); GROBO_ERR_TIMEOUT, GROBO_ERR_FULL, and in a callback
+ *   GROBO_ERR_STATE: its end was not awaited.
+ */
 GROBO_API int grobo_control_exit(grobo_control *control, grobo_exit_policy policy,
                                  int64_t timeout_us);
+/** The exit alone, without waiting: see grobo_session_post_exit(). Safe in a signal handler.
+ *  @return GROBO_OK, GROBO_ERR_ARG. */
+GROBO_API int grobo_control_post_exit(grobo_control *control, grobo_exit_policy policy);
+/** The stop of grobo_control_stop_motion() alone, without waiting: see grobo_session_post_stop().
+ *  Safe in a signal handler. @return GROBO_OK, GROBO_ERR_ARG. */
+GROBO_API int grobo_control_post_stop(grobo_control *control, bool at_once);
 
 GROBO_END_DECLS
 

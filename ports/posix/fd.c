@@ -79,6 +79,13 @@ int grobo_i_posix_waiting(grobo_port *port, grobo_os_cause *cause)
     return count;
 }
 
+int grobo_i_posix_unsent(const grobo_port *port)
+{
+    int count = 0;
+
+    return ioctl(port->fd, TIOCOUTQ, &count) == 0 ? count : 0;
+}
+
 grobo_socket grobo_i_posix_socket(const grobo_port *port)
 {
     return port->fd;

@@ -9,35 +9,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "ports/common/common.h"
+#include "ports/posix/posix.h"
 
 #include <grobo/files.h>
 
 enum { TEMPORARIES_MAX = 100 }; /* names tried for one */
-
-static int error_of(int code)
-{
-    switch (code) {
-    case ENOENT:
-    case ENOTDIR:
-        return GROBO_ERR_NOENT;
-    case EACCES:
-    case EPERM:
-    case EROFS:
-        return GROBO_ERR_PERM;
-    case EISDIR:
-        return GROBO_ERR_ISDIR;
-    case EEXIST:
-        return GROBO_ERR_EXISTS;
-    case ENAMETOOLONG:
-        return GROBO_ERR_SPACE;
-    case ENOSPC:
-    case EDQUOT:
-        return GROBO_ERR_DISK;
-    default:
-        return GROBO_ERR_IO;
-    }
-}
 
 /* ---- writing ------------------------------------------------------------------------------ */
 
@@ -56,7 +32,7 @@ static int open_temporary(grobo_file *file)
             return 0;
         }
         if (errno != EEXIST) {
-            return error_of(errno);
+            return grobo_i_posix_file_error(errno);
         }
     }
     return GROBO_ERR_EXISTS;
@@ -67,7 +43,7 @@ static int open_direct(grobo_file *file)
     int fd = open(file->path, O_WRONLY | O_CLOEXEC);
 
     if (fd < 0) {
-        return error_of(errno);
+        return grobo_i_posix_file_error(errno);
     }
     file->handle = fd;
     file->direct = true;
@@ -105,7 +81,7 @@ static int look(const char *path, struct stat *status, bool *direct)
     }
     bool link = S_ISLNK(status->st_mode);
     if (link && stat(path, status) != 0) {
-        return error_of(errno);
+        return grobo_i_posix_file_error(errno);
     }
     if (S_ISDIR(status->st_mode)) {
         return GROBO_ERR_ISDIR;
@@ -135,7 +111,7 @@ static int create(grobo_file *file, const char *path, bool exclusive)
     }
     /* A directory's permission would be enough to replace it; that is not what its owner meant. */
     if (there && access(file->path, W_OK) != 0) {
-        return error_of(errno);
+        return grobo_i_posix_file_error(errno);
     }
     result = open_temporary(file);
     if (result == 0 && there) {
@@ -151,7 +127,7 @@ static int write_all(grobo_file *file, const void *data, size_t size)
     while (size > 0) {
         ssize_t put = write((int)file->handle, from, size);
         if (put < 0 && errno != EINTR) {
-            return error_of(errno);
+            return grobo_i_posix_file_error(errno);
         }
         if (put > 0) {
             from += put;
@@ -196,10 +172,10 @@ static int put_in_free_place(grobo_file *file)
     /* No links here: hold the place with an empty file. */
     int fd = open(file->path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (fd < 0) {
-        return error_of(errno);
+        return grobo_i_posix_file_error(errno);
     }
     (void)close(fd);
-    return rename(file->temporary, file->path) == 0 ? 0 : error_of(errno);
+    return rename(file->temporary, file->path) == 0 ? 0 : grobo_i_posix_file_error(errno);
 }
 
 static int put_in_place(grobo_file *file)
@@ -207,7 +183,7 @@ static int put_in_place(grobo_file *file)
     if (file->exclusive) {
         return put_in_free_place(file);
     }
-    return rename(file->temporary, file->path) == 0 ? 0 : error_of(errno);
+    return rename(file->temporary, file->path) == 0 ? 0 : grobo_i_posix_file_error(errno);
 }
 
 static void discard(grobo_file *file)
@@ -227,10 +203,10 @@ static int commit(grobo_file *file)
 
     /* A pipe or a terminal cannot be synced. */
     if (fsync((int)file->handle) != 0 && !file->direct) {
-        result = error_of(errno);
+        result = grobo_i_posix_file_error(errno);
     }
     if (close((int)file->handle) != 0 && result == 0) {
-        result = error_of(errno);
+        result = grobo_i_posix_file_error(errno);
     }
     file->handle = -1;
     if (file->direct) {
@@ -268,7 +244,7 @@ static int check_file(const char *real, const char *folder, char *path, size_t p
         return GROBO_ERR_PERM;
     }
     if (stat(real, &status) != 0) {
-        return error_of(errno);
+        return grobo_i_posix_file_error(errno);
     }
     return S_ISDIR(status.st_mode) ? GROBO_ERR_ISDIR : grobo_i_port_copy(path, path_bytes, real);
 }
@@ -279,22 +255,30 @@ static int inside(const char *directory, const char *name, char *path, size_t pa
     char *folder = realpath(directory, NULL);
 
     if (folder == NULL) {
-        return error_of(errno);
+        return grobo_i_posix_file_error(errno);
     }
     int length = snprintf(joined, sizeof joined, "%s/%s", folder, name);
     int result = GROBO_ERR_SPACE;
     if (length > 0 && (size_t)length < sizeof joined) {
         char *real = realpath(joined, NULL);
-        result = real != NULL ? check_file(real, folder, path, path_bytes) : error_of(errno);
+        result = real != NULL ? check_file(real, folder, path, path_bytes)
+                              : grobo_i_posix_file_error(errno);
         free(real);
     }
     free(folder);
     return result;
 }
 
+static bool holds(const char *path)
+{
+    struct stat status;
+
+    return stat(path, &status) == 0 && S_ISREG(status.st_mode) && status.st_size > 0;
+}
+
 const grobo_files *grobo_files_os(void)
 {
-    static const grobo_files files = {create, write_all, commit, discard, inside};
+    static const grobo_files files = {create, write_all, commit, discard, inside, holds};
 
     return &files;
 }

@@ -3,6 +3,7 @@
  * Linux: the serial ports of sysfs, or without it the adapters in /dev. The other systems' answer
  * is at the end.
  */
+#define _GNU_SOURCE /* versionsort: ttyUSB2 before ttyUSB10 */
 #include <stdio.h>
 #include <string.h>
 
@@ -167,14 +168,14 @@ int grobo_i_posix_list(const char *sys_tty, const char *dev,
                        int (*visit)(void *ctx, const grobo_port_info *info), void *ctx)
 {
     struct dirent **names;
-    int count = scandir(sys_tty, &names, NULL, alphasort);
+    int count = scandir(sys_tty, &names, NULL, versionsort);
     bool has_sysfs = count >= 0;
     int found = 0;
     int r = 0;
 
     if (!has_sysfs) {
         /* A container: who shares a device with it need not share /sys. */
-        count = scandir(dev, &names, NULL, alphasort);
+        count = scandir(dev, &names, NULL, versionsort);
     }
     for (int i = 0; i < count; i++) {
         const char *name = names[i]->d_name;

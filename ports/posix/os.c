@@ -77,6 +77,82 @@ void grobo_mutex_deinit(grobo_mutex *mutex)
     (void)pthread_mutex_destroy(mutex);
 }
 
+/* ---- conditions --------------------------------------------------------------------------- */
+
+/* Longest sleep at once; whoever sleeps looks again after it. */
+#define SLEEP_MAX_US INT64_C(3600000000)
+
+static struct timespec timespec_of(int64_t us)
+{
+    struct timespec made = {.tv_sec = (time_t)(us / 1000000),
+                            .tv_nsec = (long)(us % 1000000) * 1000};
+
+    return made;
+}
+
+#ifdef __APPLE__
+/* A condition there knows no clock but the date, and takes a span instead. */
+static int make_cond(grobo_cond *cond)
+{
+    return pthread_cond_init(cond, NULL);
+}
+
+static void sleep_at(grobo_cond *cond, grobo_mutex *mutex, int64_t span_us)
+{
+    struct timespec span = timespec_of(span_us);
+
+    (void)pthread_cond_timedwait_relative_np(cond, mutex, &span);
+}
+#else
+static int make_cond(grobo_cond *cond)
+{
+    pthread_condattr_t how;
+    int r = pthread_condattr_init(&how);
+
+    if (r == 0) {
+        r = pthread_condattr_setclock(&how, CLOCK_MONOTONIC);
+        if (r == 0) {
+            r = pthread_cond_init(cond, &how);
+        }
+        (void)pthread_condattr_destroy(&how);
+    }
+    return r;
+}
+
+static void sleep_at(grobo_cond *cond, grobo_mutex *mutex, int64_t span_us)
+{
+    struct timespec until = timespec_of(grobo_now_us() + span_us);
+
+    (void)pthread_cond_timedwait(cond, mutex, &until);
+}
+#endif
+
+int grobo_cond_init(grobo_cond *cond)
+{
+    return make_cond(cond) == 0 ? GROBO_OK : GROBO_ERR_NOMEM;
+}
+
+void grobo_cond_wait(grobo_cond *cond, grobo_mutex *mutex, int64_t until_us)
+{
+    int64_t span_us = until_us - grobo_now_us();
+
+    if (span_us > 0) {
+        sleep_at(cond, mutex, span_us < SLEEP_MAX_US ? span_us : SLEEP_MAX_US);
+    }
+}
+
+void grobo_cond_wake_all(grobo_cond *cond)
+{
+    (void)pthread_cond_broadcast(cond);
+}
+
+void grobo_cond_deinit(grobo_cond *cond)
+{
+    (void)pthread_cond_destroy(cond);
+}
+
+/* ---- waiting for a descriptor ------------------------------------------------------------- */
+
 int grobo_port_wait(grobo_socket socket, unsigned what, int64_t timeout_us)
 {
     struct pollfd one = {.fd = socket, .events = 0};

@@ -7,8 +7,10 @@
 #ifdef __linux__
 
 #include <dirent.h>
+#include <errno.h>
 #include <fcntl.h>
 #include <inttypes.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -43,7 +45,26 @@ static int lock_holder(const struct stat *node)
     return holder;
 }
 
-static bool has_open(int pid, const struct stat *node)
+/* Does this descriptor of a process carry a flock? Its fdinfo says so, see proc(5). */
+static bool carries_lock(int pid, const char *fd)
+{
+    char path[64];
+    char line[160];
+    FILE *info;
+    bool found = false;
+
+    snprintf(path, sizeof path, "/proc/%d/fdinfo/%.20s", pid, fd);
+    info = fopen(path, "re");
+    while (!found && info != NULL && fgets(line, sizeof line, info) != NULL) {
+        found = strncmp(line, "lock:", 5) == 0 && strstr(line, "FLOCK") != NULL;
+    }
+    if (info != NULL) {
+        (void)fclose(info);
+    }
+    return found;
+}
+
+static bool has_open(int pid, const struct stat *node, bool locked)
 {
     char path[64];
     DIR *fds;
@@ -60,14 +81,17 @@ static bool has_open(int pid, const struct stat *node)
 
         found = fstatat(dirfd(fds), entry->d_name, &st, 0) == 0 && S_ISCHR(st.st_mode) &&
                 st.st_rdev == node->st_rdev && st.st_ino == node->st_ino &&
-                st.st_dev == node->st_dev;
+                st.st_dev == node->st_dev && (!locked || carries_lock(pid, entry->d_name));
     }
     (void)closedir(fds);
     return found;
 }
 
-/* The first process that has the device open, of those that this user may look into. */
-static int user_of(const struct stat *node)
+/*
+ * The first process that has the device open, with the lock of it if so wanted, of those that this
+ * user may look into.
+ */
+static int user_of(const struct stat *node, bool locked)
 {
     DIR *proc = opendir("/proc");
     const struct dirent *entry;
@@ -80,12 +104,22 @@ static int user_of(const struct stat *node)
         char *end;
         long pid = strtol(entry->d_name, &end, 10);
 
-        if (*end == '\0' && pid > 0 && pid != getpid() && has_open((int)pid, node)) {
+        if (*end == '\0' && pid > 0 && pid != getpid() && has_open((int)pid, node, locked)) {
             user = (int)pid;
         }
     }
     (void)closedir(proc);
     return user;
+}
+
+/* One that died may have left its lock to others with the same opening: its guard, or a child. */
+static int holder_of(const struct stat *node)
+{
+    int pid = lock_holder(node);
+    bool died = pid != 0 && kill(pid, 0) != 0 && errno == ESRCH;
+    int heir = died ? user_of(node, true) : 0;
+
+    return heir != 0 ? heir : pid;
 }
 
 static void name_of(int pid, char *name, size_t name_bytes)
@@ -113,10 +147,10 @@ int grobo_i_posix_owner(const char *device, char *name, size_t name_bytes, bool 
     if (stat(device, &node) != 0 || !S_ISCHR(node.st_mode)) {
         return 0;
     }
-    pid = lock_holder(&node);
+    pid = holder_of(&node);
     *locked = pid != 0;
     if (pid == 0) {
-        pid = user_of(&node);
+        pid = user_of(&node, false);
     }
     if (pid != 0 && name_bytes > 0) {
         name_of(pid, name, name_bytes);

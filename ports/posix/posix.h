@@ -10,11 +10,16 @@
 /* An open byte port of any kind. */
 struct grobo_port {
     int fd;
+    bool abandoned; /* the guard releases the device: see ports/common/guard.h */
     /* of a pseudo-terminal only */
     int slave;                         /* held open, so that programs may come and go */
     char path[64];                     /* of the slave */
     char link[GROBO_DEVICE_MAX_BYTES]; /* to it, or empty */
 };
+
+/* The GROBO_ERR_* for an errno: of a line, a socket or a process; and of a file. */
+int grobo_i_posix_error(int code);
+int grobo_i_posix_file_error(int code);
 
 /* Fills cause from an errno, with `what` saying what was tried; returns the GROBO_ERR_* for it. */
 int grobo_i_posix_fail(grobo_os_cause *cause, int code, const char *what);
@@ -43,6 +48,7 @@ int grobo_i_posix_prepare_tcp(int fd, grobo_os_cause *cause);
 /* Calls that serial port and connection have in common. */
 void grobo_i_posix_close(grobo_port *port);
 int grobo_i_posix_waiting(grobo_port *port, grobo_os_cause *cause);
+int grobo_i_posix_unsent(const grobo_port *port);
 grobo_socket grobo_i_posix_socket(const grobo_port *port);
 grobo_handle grobo_i_posix_handle(const grobo_port *port);
 
@@ -79,6 +85,23 @@ bool grobo_i_posix_exclusive_sticks(dev_t device);
 
 /* grobo_port_owner() that also tells whether the owner holds the lock (flock). */
 int grobo_i_posix_owner(const char *device, char *name, size_t name_bytes, bool *locked);
+
+/* ---- of a guard process, guard.c ---- */
+
+/* Closes every descriptor from this one on. */
+void grobo_i_posix_close_from(int first);
+
+/* Has the system call this process so, where it can. */
+void grobo_i_posix_call_it(const char *name);
+
+/* A descriptor that becomes readable when the process dies, or -1. */
+int grobo_i_posix_watch_death(pid_t pid);
+
+/* What grobo_i_posix_is_stopped() reads, or -1. */
+int grobo_i_posix_watch_state(pid_t pid);
+
+/* Is the process stopped by a signal? Not by a debugger. */
+bool grobo_i_posix_is_stopped(int fd);
 
 /* grobo_port_list() with the places where it looks, so that a test can bring its own. */
 int grobo_i_posix_list(const char *sys_tty, const char *dev,

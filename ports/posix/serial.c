@@ -56,10 +56,14 @@ static int take(int fd, const char *device, const struct stat *st, grobo_os_caus
     return GROBO_OK;
 }
 
-/* The lock goes with the descriptor, TIOCEXCL only with the last one of the terminal. */
+/*
+ * The lock goes with the last descriptor of this opening, TIOCEXCL with the last one of the
+ * terminal: a guard, or a process forked meanwhile, may still have one.
+ */
 static void let_others(int fd)
 {
     (void)ioctl(fd, TIOCNXCL);
+    (void)flock(fd, LOCK_UN);
 }
 
 int grobo_i_posix_make_raw(int fd, grobo_os_cause *cause)
@@ -116,6 +120,7 @@ static int serial_open(grobo_port *port, const char *device, int baud_bps, grobo
         return r;
     }
     port->fd = fd;
+    port->abandoned = false;
     return GROBO_OK;
 }
 
@@ -147,8 +152,10 @@ static void let_leave(int fd)
 
 static void serial_close(grobo_port *port)
 {
-    let_leave(port->fd);
-    let_others(port->fd);
+    if (!port->abandoned) {
+        let_leave(port->fd);
+        let_others(port->fd);
+    }
     grobo_i_posix_close(port);
 }
 
@@ -183,6 +190,7 @@ const grobo_port_ops *grobo_port_serial_ops(void)
         .set_low_latency = serial_set_low_latency,
         .socket = grobo_i_posix_socket,
         .handle = grobo_i_posix_handle,
+        .unsent = grobo_i_posix_unsent,
     };
 
     return &ops;

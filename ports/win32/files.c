@@ -254,9 +254,25 @@ static int inside(const char *directory, const char *name, char *path, size_t pa
                                                         : grobo_i_port_copy(path, path_bytes, real);
 }
 
+static bool holds(const char *path)
+{
+    BY_HANDLE_FILE_INFORMATION is;
+    HANDLE there = CreateFileA(path, 0, FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE,
+                               NULL, OPEN_EXISTING, FILE_FLAG_BACKUP_SEMANTICS, NULL);
+
+    if (there == INVALID_HANDLE_VALUE) {
+        return false;
+    }
+    bool full = GetFileType(there) == FILE_TYPE_DISK && GetFileInformationByHandle(there, &is) &&
+                (is.dwFileAttributes & FILE_ATTRIBUTE_DIRECTORY) == 0 &&
+                (is.nFileSizeHigh != 0 || is.nFileSizeLow != 0);
+    CloseHandle(there);
+    return full;
+}
+
 const grobo_files *grobo_files_os(void)
 {
-    static const grobo_files files = {create, write_all, commit, discard, inside};
+    static const grobo_files files = {create, write_all, commit, discard, inside, holds};
 
     return &files;
 }

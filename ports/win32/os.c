@@ -98,6 +98,41 @@ void grobo_mutex_deinit(grobo_mutex *mutex)
     (void)mutex;
 }
 
+/* ---- conditions --------------------------------------------------------------------------- */
+
+_Static_assert(sizeof(grobo_cond) == sizeof(CONDITION_VARIABLE),
+               "port_os.h has room for a CONDITION_VARIABLE");
+
+int grobo_cond_init(grobo_cond *cond)
+{
+    InitializeConditionVariable((CONDITION_VARIABLE *)cond);
+    return GROBO_OK;
+}
+
+void grobo_cond_wait(grobo_cond *cond, grobo_mutex *mutex, int64_t until_us)
+{
+    const int64_t most_ms = 3600000;
+    int64_t span_us = until_us - grobo_now_us();
+
+    if (span_us > 0) {
+        int64_t span_ms = (span_us - 1) / 1000 + 1;
+
+        (void)SleepConditionVariableSRW((CONDITION_VARIABLE *)cond, (SRWLOCK *)mutex,
+                                        (DWORD)(span_ms < most_ms ? span_ms : most_ms), 0);
+    }
+}
+
+void grobo_cond_wake_all(grobo_cond *cond)
+{
+    WakeAllConditionVariable((CONDITION_VARIABLE *)cond);
+}
+
+void grobo_cond_deinit(grobo_cond *cond)
+{
+    /* Such a condition has nothing to give back. */
+    (void)cond;
+}
+
 /* ---- waiting ------------------------------------------------------------------------------ */
 
 /* Asks once, for at most span_us. Returns the ready ones of `what`, 0 none, or GROBO_ERR_IO. */

@@ -33,6 +33,16 @@ struct balancing {
 struct pose {
     grobo_body_report report;
     double q_rad[GROBO_JOINTS_MAX];
+    grobo_transform links[GROBO_BODY_LINKS_MAX];
+    int base; /* link that it was solved from */
+};
+
+/* How the body moves from one frame to the next, as seen from its base link. */
+struct motion {
+    int base; /* link */
+    double linear_m_s[3];
+    double angular_rad_s[3];
+    double joint_rad_s[GROBO_JOINTS_MAX];
 };
 
 size_t grobo_i_balance_doubles(int n_frames)
@@ -48,16 +58,17 @@ static void solve_frame(const struct balancing *now, int frame, const double shi
 
     grobo_i_solve(body, t_s, shift_m, &pose->report);
     memcpy(pose->q_rad, body->q_rad, (size_t)body->model->n_joints * sizeof *pose->q_rad);
+    grobo_body_forward(body->model, &pose->report.root, pose->q_rad, pose->links);
+    pose->base =
+        body->base == GROBO_I_WAIST ? 0 : body->model->feet[body->base - GROBO_I_RIGHT].link;
 }
 
 /* Centre of mass less desired ZMP, x and y, of a pose at rest. */
 static void offset_at_rest(const struct balancing *now, const struct pose *pose, double off_m[2])
 {
-    grobo_transform links[GROBO_BODY_LINKS_MAX];
     double com_m[3];
 
-    grobo_body_forward(now->body->model, &pose->report.root, pose->q_rad, links);
-    (void)grobo_body_com(now->body->model, links, com_m);
+    (void)grobo_body_com(now->body->model, pose->links, com_m);
     off_m[0] = com_m[0] - pose->report.zmp_m[0];
     off_m[1] = com_m[1] - pose->report.zmp_m[1];
 }
@@ -104,36 +115,61 @@ static void start_values(struct balancing *now)
     }
 }
 
-/* Speeds between two frames: forward differences; the base's rotation vector is used as if it were
- * given in the world. */
+/* Speeds between two frames: forward differences of the joints and of the base link. The base's
+ * rotation vector is used as if it were given in the world. Where the base changes, it is the new
+ * one: its place before is known from the pose. */
 static void speeds(const struct balancing *now, const struct pose *from, const struct pose *to,
-                   grobo_body_velocity *velocity, double *joint_rad_s)
+                   struct motion *motion)
 {
+    const grobo_transform *before = &from->links[to->base];
+    const grobo_transform *after = &to->links[to->base];
     double turn[9];
 
+    motion->base = to->base;
     for (int j = 0; j < now->body->model->n_joints; j++) {
-        joint_rad_s[j] = (to->q_rad[j] - from->q_rad[j]) / now->dt_s;
+        motion->joint_rad_s[j] = (to->q_rad[j] - from->q_rad[j]) / now->dt_s;
     }
-    mat_t_mul(turn, from->report.root.r, to->report.root.r);
-    grobo_i_omega(velocity->angular_rad_s, turn);
+    mat_t_mul(turn, before->r, after->r);
+    grobo_i_omega(motion->angular_rad_s, turn);
     for (int k = 0; k < 3; k++) {
-        velocity->linear_m_s[k] = (to->report.root.p_m[k] - from->report.root.p_m[k]) / now->dt_s;
-        velocity->angular_rad_s[k] /= now->dt_s;
+        motion->linear_m_s[k] = (after->p_m[k] - before->p_m[k]) / now->dt_s;
+        motion->angular_rad_s[k] /= now->dt_s;
+    }
+}
+
+/* The root's velocity, from the base's up the chain that ties them. */
+static void root_velocity(const grobo_body_model *model, const struct pose *pose,
+                          const struct motion *motion, grobo_body_velocity *velocity)
+{
+    double *v = velocity->linear_m_s, *w = velocity->angular_rad_s;
+
+    memcpy(v, motion->linear_m_s, sizeof velocity->linear_m_s);
+    memcpy(w, motion->angular_rad_s, sizeof velocity->angular_rad_s);
+    velocity->joint_rad_s = motion->joint_rad_s;
+    for (int i = motion->base; i > 0; i = model->links[i].parent) {
+        const grobo_body_link *link = &model->links[i];
+        double axis[3], arm[3], sweep[3];
+
+        mat_vec(axis, pose->links[i].r, link->axis);
+        vec_add_scaled(w, w, -motion->joint_rad_s[link->joint], axis);
+        vec_add_scaled(arm, pose->links[i].p_m, -1, pose->links[link->parent].p_m);
+        vec_cross(sweep, w, arm);
+        vec_add_scaled(v, v, -1, sweep);
     }
 }
 
 /* One frame's row of the equations: a and the ZMP's error. */
 static void frame_row(struct balancing *now, int frame, const struct pose *pose,
-                      const grobo_body_velocity *velocity, grobo_momentum *last)
+                      const struct motion *motion, grobo_momentum *last)
 {
     const grobo_body_model *model = now->body->model;
-    grobo_transform links[GROBO_BODY_LINKS_MAX];
+    grobo_body_velocity velocity;
     grobo_momentum momentum, rate;
     double com_m[3], zmp_m[3], mass_kg, gravity;
 
-    grobo_body_forward(model, &pose->report.root, pose->q_rad, links);
-    mass_kg = grobo_body_com(model, links, com_m);
-    grobo_body_momentum(model, links, velocity, &momentum);
+    mass_kg = grobo_body_com(model, pose->links, com_m);
+    root_velocity(model, pose, motion, &velocity);
+    grobo_body_momentum(model, pose->links, &velocity, &momentum);
     for (int k = 0; k < 3; k++) {
         rate.p_kgm_s[k] = (momentum.p_kgm_s[k] - last->p_kgm_s[k]) / now->dt_s;
         rate.l_kgm2_s[k] = (momentum.l_kgm2_s[k] - last->l_kgm2_s[k]) / now->dt_s;
@@ -154,17 +190,16 @@ static void frame_row(struct balancing *now, int frame, const struct pose *pose,
 static void all_rows(struct balancing *now)
 {
     struct pose pose[2];
-    double joint_rad_s[GROBO_JOINTS_MAX] = {0};
-    grobo_body_velocity velocity = {{0, 0, 0}, {0, 0, 0}, joint_rad_s};
+    struct motion motion = {.base = 0};
     grobo_momentum last = {{0, 0, 0}, {0, 0, 0}};
 
     solve_frame(now, 0, now->shift_m[0], &pose[0]);
     for (int i = 0; i < now->n; i++) {
         if (i + 1 < now->n) {
             solve_frame(now, i + 1, now->shift_m[i + 1], &pose[(i + 1) % 2]);
-            speeds(now, &pose[i % 2], &pose[(i + 1) % 2], &velocity, joint_rad_s);
+            speeds(now, &pose[i % 2], &pose[(i + 1) % 2], &motion);
         }
-        frame_row(now, i, &pose[i % 2], &velocity, &last);
+        frame_row(now, i, &pose[i % 2], &motion, &last);
     }
 }
 

@@ -73,6 +73,7 @@ struct grobo_body {
     struct grobo_i_track height[2];               /* z of the feet, of the stealthy step */
     struct grobo_i_track zmp;                     /* x y z */
     double *q_rad;                                /* the state: the frame solved last */
+    int base;                                     /* of that frame: the target it was solved from */
     uint32_t *order;                              /* keys by time, while being set up */
     double *time_s;                               /* times of the keys, each once */
     size_t n_poses;

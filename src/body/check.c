@@ -31,6 +31,7 @@ struct open_finding {
 struct checking {
     grobo_body *body;
     const grobo_body_check_options *options;
+    double rate_hz; /* frames a second as they are played */
     int n_findings;
     struct open_finding open[OPEN_COUNT];
     double stance_m[2][4][3]; /* where a standing foot's corners came to stand */
@@ -41,6 +42,7 @@ struct checking {
 struct moment {
     grobo_body_report report;
     double q_rad[GROBO_JOINTS_MAX];
+    double beyond_rad[GROBO_JOINTS_MAX]; /* its limit, before slack is taken */
     grobo_transform links[GROBO_BODY_LINKS_MAX];
 };
 
@@ -102,13 +104,13 @@ static void check_reach(struct checking *now, const grobo_body_report *report)
 static void check_joints(struct checking *now, const struct moment *at, const struct moment *before)
 {
     const grobo_model *robot = now->options->robot;
-    const double rate_hz = now->body->options.rate_hz;
     const double t_s = at->report.time_s;
 
     for (int j = 0; robot != NULL && j < robot->n_joints; j++) {
         const grobo_joint *joint = &robot->joints[j];
-        const double beyond = fmax(joint->min_rad - at->q_rad[j], at->q_rad[j] - joint->max_rad);
-        const double speed = before == NULL ? 0 : fabs(at->q_rad[j] - before->q_rad[j]) * rate_hz;
+        const double beyond = at->beyond_rad[j];
+        const double way = before == NULL ? 0 : fabs(at->q_rad[j] - before->q_rad[j]);
+        const double speed = way * now->rate_hz;
         const grobo_body_finding limit = finding_at(GROBO_BODY_JOINT_LIMIT, j, t_s, beyond);
         const grobo_body_finding fast = finding_at(GROBO_BODY_JOINT_SPEED, j, t_s, speed);
 
@@ -231,7 +233,7 @@ static void check_balance(struct checking *now, const grobo_body_balance_frame *
 static void momentum_between(const struct checking *now, const struct moment *at,
                              const struct moment *next, grobo_momentum *momentum)
 {
-    const double rate_hz = now->body->options.rate_hz;
+    const double rate_hz = now->rate_hz;
     double joint_rad_s[GROBO_JOINTS_MAX], turn[9], w[3];
     grobo_body_velocity velocity = {{0, 0, 0}, {0, 0, 0}, joint_rad_s};
 
@@ -250,7 +252,18 @@ static void momentum_between(const struct checking *now, const struct moment *at
 
 static void take_moment(const struct checking *now, int frame, struct moment *moment)
 {
+    const grobo_model *robot = now->options->robot;
+
     (void)grobo_body_frame(now->body, frame, moment->q_rad, &moment->report);
+    for (int j = 0; robot != NULL && j < robot->n_joints; j++) {
+        double *q_rad = &moment->q_rad[j];
+
+        moment->beyond_rad[j] =
+            fmax(robot->joints[j].min_rad - *q_rad, *q_rad - robot->joints[j].max_rad);
+        if (now->options->takes_slack) {
+            *q_rad = grobo_model_take_slack(robot, j, *q_rad);
+        }
+    }
     grobo_body_forward(now->body->model, &moment->report.root, moment->q_rad, moment->links);
 }
 
@@ -258,7 +271,7 @@ static void take_moment(const struct checking *now, int frame, struct moment *mo
 static void check_frame(struct checking *now, const struct moment *at, const struct moment *next,
                         grobo_momentum *last)
 {
-    const double rate_hz = now->body->options.rate_hz;
+    const double rate_hz = now->rate_hz;
     grobo_momentum momentum = *last, rate;
     grobo_body_balance_frame frame;
 
@@ -282,12 +295,14 @@ static void check_frame(struct checking *now, const struct moment *at, const str
 int grobo_body_check(grobo_body *body, const grobo_body_check_options *options)
 {
     struct checking now = {.body = body, .options = options};
+    const double speed = options->speed_pct > 0 ? options->speed_pct / 100.0 : 1;
     grobo_momentum last = {{0, 0, 0}, {0, 0, 0}};
     struct moment moment[2];
 
     if (options->robot != NULL && options->robot->n_joints != body->model->n_joints) {
         return GROBO_ERR_ARG;
     }
+    now.rate_hz = body->options.rate_hz * speed;
     take_moment(&now, 0, &moment[0]);
     check_reach(&now, &moment[0].report);
     check_joints(&now, &moment[0], NULL);

@@ -155,6 +155,7 @@ static void take_track(struct arena *arena, struct grobo_i_track *track, int dim
 {
     *track = (struct grobo_i_track){.dim = dim, .capacity = (int)capacity};
     track->t_s = take(arena, capacity, sizeof *track->t_s);
+    track->from_s = take(arena, capacity, sizeof *track->from_s);
     track->v = take(arena, capacity * (size_t)dim, sizeof *track->v);
     track->slope = take(arena, capacity * (size_t)dim, sizeof *track->slope);
     track->flags = take(arena, capacity, sizeof *track->flags);

@@ -12,7 +12,7 @@
 struct solving {
     grobo_body *body;
     double time_s;
-    double shift_m[2];
+    double shift_m[3];                   /* of the waist; z is 0 */
     bool valid[GROBO_I_TARGETS];         /* takes part in IK now */
     double beta[GROBO_I_TARGETS];        /* weight of the joints' own keys */
     grobo_transform at[GROBO_I_TARGETS]; /* where it shall be */
@@ -86,17 +86,17 @@ static void read_targets(struct solving *now)
         if (i != GROBO_I_WAIST && body->height[i - GROBO_I_RIGHT].n > 0) {
             grobo_i_track_value(&body->height[i - GROBO_I_RIGHT], now->time_s, &v[2]);
         }
-        if (i == GROBO_I_WAIST) {
-            v[0] += now->shift_m[0];
-            v[1] += now->shift_m[1];
-        }
+        /* a foot follows the waist as far as it follows its joints' own keys */
+        const double part = i == GROBO_I_WAIST ? 1 : fmax(now->beta[i], 0);
+
+        vec_add_scaled(v, v, part, now->shift_m);
         memcpy(now->at[i].p_m, v, sizeof now->at[i].p_m);
         grobo_i_rotation_of_rpy(now->at[i].r, v + 3);
     }
 }
 
-/* The link the tree is walked from: of those whose present key says base the one with the latest
- * key, else the latest of all; -1: no target has begun. */
+/* The link the tree is walked from: of those whose present key has the base flag the one with the
+ * latest key, else the latest of all, of equals the last; -1: no target has begun. */
 static int find_base(const struct solving *now)
 {
     int best = -1;
@@ -113,7 +113,7 @@ static int find_base(const struct solving *now)
         const bool flagged = (track->flags[key] & TRACK_BASE) != 0;
 
         if (best < 0 || (flagged && !best_flagged) ||
-            (flagged == best_flagged && track->t_s[key] > best_s)) {
+            (flagged == best_flagged && track->t_s[key] >= best_s)) {
             best = i;
             best_flagged = flagged;
             best_s = track->t_s[key];
@@ -146,8 +146,9 @@ static bool solve_leg(const struct solving *now, int foot, bool up, const grobo_
     return grobo_i_leg_exact(body->model, leg, &local, q_rad);
 }
 
-/* Where the shift of the waist is more than the leg can follow, the smallest part of it is given
- * up: the goal moves by c w / |w| (a foot), or the waist stays behind by as much. */
+/* Where the shift w of the waist exceeds what a leg can follow, the goal moves along with it by the
+ * smallest c w / |w|. Choreonoid does so for each goal: for a foot this gives up a part of the
+ * shift; for a waist that is solved from a foot it adds to the shift, and rarely helps. */
 static bool solve_with_less_shift(const struct solving *now, int foot, bool up,
                                   const grobo_transform *base, const grobo_transform *goal,
                                   double q_rad[GROBO_BODY_LEG_JOINTS])
@@ -162,11 +163,9 @@ static bool solve_with_less_shift(const struct solving *now, int foot, bool up,
     }
     while (high - low > SHIFT_TOLERANCE_M) {
         const double c = 0.5 * (low + high);
-        const double part = (up ? -c : c) / length_m;
         grobo_transform nearer = *goal;
 
-        nearer.p_m[0] += now->shift_m[0] * part;
-        nearer.p_m[1] += now->shift_m[1] * part;
+        vec_add_scaled(nearer.p_m, goal->p_m, c / length_m, now->shift_m);
         if (solve_leg(now, foot, up, base, &nearer, q_rad)) {
             found = true;
             high = c;
@@ -203,7 +202,8 @@ static void solve_target(struct solving *now, int base, int target)
     }
 }
 
-/* Where the waist is when it is no target: down from a foot that is. */
+/* Where the legs put the waist when a foot is the base. This is its target as far as IK reached
+ * it. */
 static void waist_from_foot(const grobo_body *body, int foot, const grobo_transform *at,
                             grobo_transform *waist)
 {
@@ -221,9 +221,10 @@ static void waist_from_foot(const grobo_body *body, int foot, const grobo_transf
 static void solve_targets(struct solving *now, grobo_transform *root)
 {
     static const double upright[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-    const grobo_body *body = now->body;
+    grobo_body *body = now->body;
     const int base = find_base(now);
 
+    body->base = base < 0 ? GROBO_I_WAIST : base;
     memcpy(root->p_m, body->model->links[0].offset_m, sizeof root->p_m);
     memcpy(root->r, upright, sizeof root->r);
     if (base < 0 || body->options.ik == GROBO_BODY_IK_OFF) {
@@ -237,23 +238,26 @@ static void solve_targets(struct solving *now, grobo_transform *root)
             solve_target(now, GROBO_I_WAIST, i);
         }
     }
-    if (base == GROBO_I_WAIST || now->valid[GROBO_I_WAIST]) {
+    if (base == GROBO_I_WAIST) {
         *root = now->at[GROBO_I_WAIST];
     } else {
         waist_from_foot(body, base - GROBO_I_RIGHT, &now->at[base], root);
     }
 }
 
-/* A foot stands between two touching keys. With the stealthy step the keys of its height say so:
- * those of its place begin to touch before it is down. */
+/* A foot stands between two touching keys, and before the first key if that one touches.
+ * With the stealthy step the keys of its height say so: those of its place begin to touch before it
+ * is down. */
 static bool stands(const grobo_body *body, int foot, double t_s)
 {
     const struct grobo_i_track *track =
         body->height[foot].n > 0 ? &body->height[foot] : &body->target[GROBO_I_RIGHT + foot];
     const int key = grobo_i_track_find(track, t_s);
 
-    return key >= 0 && (track->flags[key] & TRACK_TOUCH) != 0 &&
-           (key == track->n - 1 || (track->flags[key + 1] & TRACK_TOUCH) != 0);
+    if (track->n == 0 || (track->flags[key < 0 ? 0 : key] & TRACK_TOUCH) == 0) {
+        return false;
+    }
+    return key == track->n - 1 || (track->flags[key + 1] & TRACK_TOUCH) != 0;
 }
 
 void grobo_i_solve(grobo_body *body, double time_s, const double shift_m[2],
@@ -261,7 +265,7 @@ void grobo_i_solve(grobo_body *body, double time_s, const double shift_m[2],
 {
     struct solving now = {.body = body, .time_s = time_s};
 
-    memcpy(now.shift_m, shift_m, sizeof now.shift_m);
+    memcpy(now.shift_m, shift_m, 2 * sizeof *shift_m);
     memset(report, 0, sizeof *report);
     read_joints(&now);
     read_targets(&now);

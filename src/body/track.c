@@ -30,10 +30,13 @@ void grobo_i_track_insert(struct grobo_i_track *track, int at, double t_s, const
     memmove(track->slope + (size_t)(at + 1) * dim, track->slope + (size_t)at * dim,
             behind * dim * sizeof *track->slope);
     track->t_s[at] = t_s;
+    track->n++;
+    for (int i = at; i < track->n; i++) {
+        track->from_s[i] = i > 0 ? fmax(track->from_s[i - 1], track->t_s[i]) : track->t_s[i];
+    }
     track->flags[at] = (uint8_t)flags;
     memcpy(grobo_i_track_row(track, at), row, dim * sizeof *row);
     memset(track->slope + (size_t)at * dim, 0, dim * sizeof *track->slope);
-    track->n++;
 }
 
 void grobo_i_track_add(struct grobo_i_track *track, double t_s, const double *v, unsigned flags)
@@ -99,7 +102,7 @@ int grobo_i_track_find(const struct grobo_i_track *track, double t_s)
     while (high - low > 1) {
         const int middle = low + (high - low) / 2;
 
-        if (track->t_s[middle] <= t_s) {
+        if (track->from_s[middle] <= t_s) {
             low = middle;
         } else {
             high = middle;

@@ -21,9 +21,12 @@ enum {
 
 #define TRACK_DIM_MAX 6
 
-/* Storage belongs to the body's workspace. Keys are in the order of time. */
+/* Storage belongs to the body's workspace. Keys are in the order of time, except those of a ZMP
+ * that the automatic ZMP inserted behind a later one, as Choreonoid does. Keys take effect in the
+ * order of the list: such a key does when the one before it has. */
 struct grobo_i_track {
     double *t_s;    /* n of them */
+    double *from_s; /* when each takes effect: the latest time up to it in the list */
     double *v;      /* n rows of dim values */
     double *slope;  /* n rows of dim values a second, by grobo_i_track_slopes() */
     uint8_t *flags; /* n of them */
@@ -47,7 +50,7 @@ void grobo_i_track_hold(struct grobo_i_track *track, int at, double t_s, double 
 /* Computes the slopes; components from first_turn on are angles, first shifted by whole turns. */
 void grobo_i_track_slopes(struct grobo_i_track *track, int first_turn);
 
-/* Last key at or before t_s, -1 if there is none. */
+/* Last key in effect at t_s, -1 if there is none. */
 int grobo_i_track_find(const struct grobo_i_track *track, double t_s);
 
 /* The curve at t_s: dim values; constant before the first and after the last key. n > 0. */

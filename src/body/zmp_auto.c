@@ -101,9 +101,10 @@ static bool between_soles(const struct stepping *now, double t_s, double left_pa
     return true;
 }
 
-static void add_zmp(const struct stepping *now, double t_s, const double at_m[3])
+/* Inserts a ZMP key before key `at`, whatever its time. */
+static void add_zmp(const struct stepping *now, int at, double t_s, const double at_m[3])
 {
-    grobo_i_track_add(&now->body->zmp, t_s, at_m, TRACK_END | TRACK_ADDED);
+    grobo_i_track_insert(&now->body->zmp, at, t_s, at_m, TRACK_END | TRACK_ADDED);
 }
 
 /* The foot rests: key i of its track is repeated at another time, auxiliary. */
@@ -133,11 +134,12 @@ static bool away_from_sole(const struct stepping *now, const double zmp_m[3],
     return now->compat11 ? d >= AT_SOLE_COMPAT11_M : d > AT_SOLE_M;
 }
 
-static bool author_gave_zmp(const struct stepping *now)
+/* Whether the author gave a ZMP after the double support began, up to key z0. */
+static bool author_gave_zmp(const struct stepping *now, int z0)
 {
     const struct grobo_i_track *zmp = &now->body->zmp;
 
-    for (int i = grobo_i_track_find(zmp, now->t0_s); i >= 0 && zmp->t_s[i] > now->double_s; i--) {
+    for (int i = z0; i >= 0 && zmp->t_s[i] > now->double_s; i--) {
         if ((zmp->flags[i] & TRACK_ADDED) == 0) {
             return true;
         }
@@ -145,8 +147,9 @@ static bool author_gave_zmp(const struct stepping *now)
     return false;
 }
 
-/* The ZMP goes to the middle during a double support before `support` alone stands. */
-static bool centre_zmp(const struct stepping *now, int support)
+/* The ZMP goes to the middle during a double support before `support` alone stands. Keys are
+ * inserted behind z0, which becomes the last of them. */
+static bool centre_zmp(const struct stepping *now, int support, int *z0)
 {
     const double length_s = now->t0_s - now->double_s;
     const bool same = support == now->phase_single;
@@ -155,36 +158,43 @@ static bool centre_zmp(const struct stepping *now, int support)
                                             : CENTRED_TWO_KEYS_STEP_S;
     double at_m[3];
 
-    if (length_s < CENTRED_MIN_S || author_gave_zmp(now)) {
+    if (length_s < CENTRED_MIN_S || author_gave_zmp(now, *z0)) {
         return false;
     }
     if (length_s > two_keys_s) {
         if (between_soles(now, now->double_s, 0.5, at_m)) {
-            add_zmp(now, now->double_s + TRANSFER_S, at_m);
-            add_zmp(now, now->t0_s - TRANSFER_S, at_m);
+            add_zmp(now, ++*z0, now->double_s + TRANSFER_S, at_m);
+            add_zmp(now, ++*z0, now->t0_s - TRANSFER_S, at_m);
         }
     } else if (same) {
         const double part = length_s < CENTRED_FULL_S ? 0.5 * length_s / CENTRED_FULL_S : 0.5;
 
         if (between_soles(now, now->double_s, support == RIGHT ? 1 - part : part, at_m)) {
-            add_zmp(now, now->double_s + 0.5 * length_s, at_m);
+            add_zmp(now, ++*z0, now->double_s + 0.5 * length_s, at_m);
         }
     }
     return true;
 }
 
-/* Both -> single: the other foot swings from its key before t1. */
+/* Both -> single: the other foot swings from its key before t1. Choreonoid keeps its place in the
+ * list of ZMP keys and inserts behind it. Where every key comes after the last event that place is
+ * the first key, and what is inserted has an earlier time than the key before it. */
 static void lift(const struct stepping *now, int support, double t1_s)
 {
     const int swing = support == RIGHT ? LEFT : RIGHT;
     const struct grobo_i_track *track = foot_track(now, swing);
     const struct grobo_i_track *zmp = &now->body->zmp;
     const int k1 = foot_key(now, swing, t1_s);
-    const bool centred = centre_zmp(now, support);
-    const int z0 = grobo_i_track_find(zmp, now->t0_s);
+    const int found = grobo_i_track_find(zmp, now->t0_s);
+    int z0 = found < 0 ? 0 : found;
     double sole_m[3];
 
-    if (k1 < 1 || z0 < 0 || !sole_at(now, support, now->t0_s, sole_m) ||
+    if (zmp->n == 0) {
+        return;
+    }
+    const bool centred = centre_zmp(now, support, &z0);
+
+    if (k1 < 1 || !sole_at(now, support, now->t0_s, sole_m) ||
         !away_from_sole(now, grobo_i_track_row(zmp, z0), sole_m)) {
         return;
     }
@@ -194,10 +204,10 @@ static void lift(const struct stepping *now, int support, double t1_s)
     if (!centred && s0_s - zmp->t_s[z0] < TRANSFER_S) {
         const double a_s = fmin(zmp->t_s[z0] + TRANSFER_S, 0.5 * (s0_s + track->t_s[k1]));
 
-        add_zmp(now, a_s, sole_m);
+        add_zmp(now, z0 + 1, a_s, sole_m);
         add_rest(now, swing, k0, a_s);
     } else {
-        add_zmp(now, s0_s, sole_m);
+        add_zmp(now, z0 + 1, s0_s, sole_m);
     }
 }
 
@@ -214,11 +224,11 @@ static void land(const struct stepping *now, int support, double t1_s)
     if (k1 < 1 || !sole_at(now, support, t1_s, sole_m)) {
         return;
     }
-    while (z1 > 0 && zmp->t_s[z1 - 1] >= t1_s) {
+    while (z1 > 0 && zmp->from_s[z1 - 1] >= t1_s) {
         z1--;
     }
     if (z1 >= zmp->n) {
-        add_zmp(now, t1_s, sole_m);
+        add_zmp(now, z1, t1_s, sole_m);
         return;
     }
     if (!away_from_sole(now, grobo_i_track_row(zmp, z1), sole_m)) {
@@ -227,10 +237,10 @@ static void land(const struct stepping *now, int support, double t1_s)
     if (zmp->t_s[z1] - t1_s < TRANSFER_S) {
         const double a_s = fmax(zmp->t_s[z1] - TRANSFER_S, 0.5 * (track->t_s[k1 - 1] + t1_s));
 
-        add_zmp(now, a_s, sole_m);
+        add_zmp(now, z1, a_s, sole_m);
         add_rest(now, swing, k1, a_s);
     } else {
-        add_zmp(now, t1_s, sole_m);
+        add_zmp(now, z1, t1_s, sole_m);
     }
 }
 
@@ -270,7 +280,7 @@ static void begin(struct stepping *now)
     now->phase_single = now->phase == BOTH ? NEITHER : now->phase;
     now->double_s = now->t0_s;
     if (now->body->zmp.n == 0 && between_soles(now, 0, 0.5, at_m)) {
-        add_zmp(now, 0, at_m);
+        add_zmp(now, 0, 0, at_m);
     }
 }
 
@@ -281,7 +291,7 @@ static void end(const struct stepping *now)
 
     if (grobo_i_track_find(zmp, now->t0_s) == zmp->n - 1 &&
         between_soles(now, now->t0_s, 0.5, at_m)) {
-        add_zmp(now, now->t0_s + TRANSFER_S, at_m);
+        add_zmp(now, zmp->n, now->t0_s + TRANSFER_S, at_m);
     }
 }
 

@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* Frames of GR001's controller board: builders, and the device-side parser. */
+/* Frames of GR001's controller board. The push parser, which only its stand-ins need, is apart. */
 #include <grobo/board.h>
 
 #include <string.h>
-
-#include "core/framer.h"
 
 enum {
     CHECK = 0x41,
@@ -106,10 +104,9 @@ static int measure_relay(const uint8_t *bytes, size_t n)
     return have < counted ? 0 : (int)(GROBO_BOARD_HEADER_BYTES + counted);
 }
 
-/* A grobo_i_measure. */
-static int measure(const uint8_t *bytes, size_t n, unsigned accept)
+/* Size of the frame that starts here; 0 when more bytes are needed; GROBO_ERR_FRAME. */
+static int measure(const uint8_t *bytes, size_t n)
 {
-    (void)accept;
     switch (bytes[0]) {
     case CHECK:
         if (n < CHECK_BYTES) {
@@ -149,7 +146,7 @@ static void unpack(const uint8_t *bytes, size_t n, grobo_board_frame *frame)
 
 int grobo_board_peek(const uint8_t *bytes, size_t n, grobo_board_frame *frame)
 {
-    int size = n > 0 ? measure(bytes, n, 0) : 0;
+    int size = n > 0 ? measure(bytes, n) : 0;
     if (size > 0) {
         unpack(bytes, (size_t)size, frame);
     }
@@ -165,55 +162,4 @@ int grobo_board_parse(const uint8_t *bytes, size_t n, grobo_board_frame *frame)
     }
     *frame = found;
     return GROBO_OK;
-}
-
-void grobo_board_parser_init(grobo_board_parser *parser, uint32_t stall_us)
-{
-    grobo_i_framer_init(&parser->framer);
-    parser->stalls = 0;
-    parser->stall_us = stall_us != 0 ? stall_us : GROBO_BOARD_STALL_US;
-    parser->last_us = 0;
-}
-
-static void abandon_what_stands_still(grobo_board_parser *parser, int64_t now_us)
-{
-    if (!parser->framer.ending && now_us >= grobo_board_parser_deadline(parser)) {
-        parser->stalls++;
-        grobo_i_framer_end(&parser->framer);
-    }
-}
-
-size_t grobo_board_parser_feed(grobo_board_parser *parser, int64_t now_us, const uint8_t *bytes,
-                               size_t n)
-{
-    abandon_what_stands_still(parser, now_us);
-    size_t took = grobo_i_framer_feed(&parser->framer, bytes, n);
-    if (took > 0) {
-        parser->last_us = now_us;
-    }
-    return took;
-}
-
-int grobo_board_parser_next(grobo_board_parser *parser, int64_t now_us, grobo_board_frame *frame)
-{
-    abandon_what_stands_still(parser, now_us);
-    size_t size = grobo_i_framer_next(&parser->framer, measure, 0);
-    if (size == 0) {
-        return 0;
-    }
-    unpack(parser->framer.buf, size, frame);
-    return 1;
-}
-
-int64_t grobo_board_parser_deadline(const grobo_board_parser *parser)
-{
-    if (grobo_i_framer_pending(&parser->framer) == 0) {
-        return GROBO_NEVER_US;
-    }
-    return parser->last_us + parser->stall_us;
-}
-
-void grobo_board_parser_reset(grobo_board_parser *parser)
-{
-    grobo_i_framer_reset(&parser->framer);
 }

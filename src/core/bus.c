@@ -1,12 +1,17 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Transactions on a half-duplex line. One is active at a time, in one of three phases; it leaves
- * by finish(), which hands it back, or by fail(), which may put it in front of its queue again.
+ * by grobo_i_bus_finish(), which hands it back, or by grobo_i_bus_fail(), which may put it in front
+ * of its queue again. What the bytes that come mean is in bus_receive.c.
+ * An attempt becomes active only where the owner's `leave` agrees at that moment.
  */
 #include <grobo/bus.h>
 
+#include <assert.h>
 #include <string.h>
 
+#include "core/bus_queue.h"
+#include "core/bus_receive.h"
 #include "core/bus_time.h"
 #include "core/instant.h"
 
@@ -16,243 +21,6 @@ enum {
     RETURN_DELAY_US = GROBO_RS30X_DELAY_US(0),
     RETRIES_DEFAULT = 2
 };
-
-/* ---- queues -------------------------------------------------------------------------------- */
-
-static void put_last(grobo_bus *bus, grobo_txn *txn)
-{
-    grobo_txn **at = &bus->head[txn->priority];
-    while (*at != NULL) {
-        at = &(*at)->next_;
-    }
-    *at = txn;
-    txn->next_ = NULL;
-    bus->waiting++;
-}
-
-static void put_first(grobo_bus *bus, grobo_txn *txn)
-{
-    txn->next_ = bus->head[txn->priority];
-    bus->head[txn->priority] = txn;
-    bus->waiting++;
-}
-
-/* True if it was there. */
-static bool take_out(grobo_bus *bus, grobo_txn *txn)
-{
-    grobo_txn **at = &bus->head[txn->priority];
-    while (*at != NULL && *at != txn) {
-        at = &(*at)->next_;
-    }
-    if (*at == NULL) {
-        return false;
-    }
-    *at = txn->next_;
-    bus->waiting--;
-    return true;
-}
-
-/* ---- ends of a transaction ----------------------------------------------------------------- */
-
-/* The last touch: after the callback the transaction may not exist any more. */
-static void finish(grobo_bus *bus, grobo_txn *txn, int result, const grobo_rs30x_packet *reply)
-{
-    if (bus->active == txn) {
-        bus->active = NULL;
-        bus->phase = GROBO_BUS_IDLE;
-    }
-    txn->pending_ = false;
-    if (txn->done != NULL) {
-        txn->done(txn->ctx, txn, result, reply);
-    }
-}
-
-/*
- * The line has talked out of turn, or has failed: it must be quiet before it is asked again. Where
- * it babbles on, a request goes out all the same when the longest silence asked for is over.
- */
-static void ask_for_quiet(grobo_bus *bus)
-{
-    bool kept_quiet = bus->now_us >= bus->quiet_us && bus->quiet_us < bus->quiet_by_us;
-    if (bus->quiet_by_us == 0 || kept_quiet) {
-        bus->quiet_by_us = bus->now_us + GROBO_BUS_QUIET_MAX_US;
-    }
-    bus->quiet_us = grobo_i_sooner(bus->now_us + bus->config.quiet_us, bus->quiet_by_us);
-}
-
-/* An attempt of the active transaction has failed. */
-static void fail(grobo_bus *bus, int error)
-{
-    grobo_txn *txn = bus->active;
-    if (error == GROBO_ERR_TIMEOUT || error == GROBO_ERR_SHORT) {
-        bus->stats.timeouts++;
-    }
-    /* After a wrong sum too: that may have been an older reply, and this one's is yet to come. */
-    grobo_i_bus_hold(bus, txn, bus->now_us);
-    ask_for_quiet(bus);
-    if (txn->attempts_ <= txn->retries) {
-        bus->active = NULL;
-        bus->phase = GROBO_BUS_IDLE;
-        put_first(bus, txn);
-    } else {
-        bus->stats.failed++;
-        finish(bus, txn, error, NULL);
-    }
-}
-
-/* ---- receiving ----------------------------------------------------------------------------- */
-
-static void count_late(grobo_bus *bus, size_t n)
-{
-    bus->stats.late_bytes += (uint32_t)n;
-    ask_for_quiet(bus);
-}
-
-static void succeed(grobo_bus *bus, const grobo_rs30x_packet *reply)
-{
-    grobo_txn *txn = bus->active;
-    bus->stats.replies++;
-    if (txn->attempts_ == 1) {
-        grobo_i_bus_learn(bus);
-        grobo_i_bus_release_holds(bus);
-        bus->free_us = grobo_i_sooner(bus->free_us, bus->now_us); /* its last byte is here */
-    } else {
-        /* This may have been the late reply to an earlier attempt: one more may come. */
-        grobo_i_bus_hold(bus, txn, bus->now_us);
-    }
-    finish(bus, txn, GROBO_OK, reply);
-}
-
-static void refuse(grobo_bus *bus, const grobo_rs30x_packet *reply)
-{
-    grobo_txn *txn = bus->active;
-    bus->stats.refusals++;
-    bus->stats.failed++;
-    if (txn->attempts_ > 1) {
-        grobo_i_bus_hold(bus, txn, bus->now_us);
-    }
-    finish(bus, txn, GROBO_ERR_NACK, reply);
-}
-
-static void take_return(grobo_bus *bus, const grobo_rs30x_packet *p)
-{
-    const grobo_reply *want = &bus->active->reply;
-    bool from_whom = want->kind == GROBO_REPLY_RETURN && p->id == want->id;
-    if (from_whom && (p->flags & GROBO_RS30X_STATUS_REFUSED) != 0) {
-        refuse(bus, p);
-    } else if (from_whom && p->address == want->address && p->length == want->length) {
-        succeed(bus, p);
-    } else {
-        size_t size = p->data_bytes + GROBO_RS30X_OVERHEAD_BYTES;
-        bus->stats.late_frames++;
-        bus->stats.late_bytes += (uint32_t)size;
-        bus->got_bytes = (uint16_t)(bus->got_bytes - size);
-    }
-}
-
-/*
- * One byte without a name is believed only when no rubbish came before it. That it refuses is asked
- * again: it may be of a reply that the line still owed to the program before this one.
- */
-static void take_ack(grobo_bus *bus, const grobo_rs30x_packet *p)
-{
-    bool among_rubbish = bus->parser.framer.stats.dropped_bytes != bus->dropped_before;
-    bool refuses = p->kind != GROBO_RS30X_ACK_BYTE;
-    if (among_rubbish || (refuses && bus->active->attempts_ <= bus->active->retries)) {
-        bus->stats.late_frames++;
-        bus->stats.late_bytes++;
-        fail(bus, among_rubbish ? GROBO_ERR_MISMATCH : GROBO_ERR_NACK);
-    } else if (refuses) {
-        refuse(bus, p);
-    } else {
-        succeed(bus, p);
-    }
-}
-
-/* As many bytes as the reply has were received and none of them can belong to it any more. */
-static void give_up_on_rubbish(grobo_bus *bus)
-{
-    if (bus->got_bytes < grobo_reply_bytes(&bus->active->reply) ||
-        grobo_rs30x_parser_pending(&bus->parser) > 0) {
-        return;
-    }
-    bool bad_sum = bus->parser.framer.stats.bad_sums != bus->bad_sums_before;
-    fail(bus, bad_sum ? GROBO_ERR_CHECKSUM : GROBO_ERR_MISMATCH);
-}
-
-static void copy_counters(grobo_bus *bus)
-{
-    bus->stats.bad_sums = bus->parser.framer.stats.bad_sums;
-    bus->stats.resync_bytes = bus->parser.framer.stats.dropped_bytes;
-}
-
-/* Bytes taken: all, or those up to the end of the transaction. */
-static size_t take_reply(grobo_bus *bus, const uint8_t *bytes, size_t n)
-{
-    grobo_rs30x_packet p;
-    size_t took = grobo_rs30x_parser_feed(&bus->parser, bytes, n);
-    bus->got_bytes = (uint16_t)(bus->got_bytes + took);
-    while (bus->phase == GROBO_BUS_AWAITING && grobo_rs30x_parser_next(&bus->parser, &p) > 0) {
-        bus->stats.rx_frames++;
-        if (p.kind == GROBO_RS30X_RETURN) {
-            take_return(bus, &p);
-        } else {
-            take_ack(bus, &p);
-        }
-    }
-    if (bus->phase == GROBO_BUS_AWAITING) {
-        give_up_on_rubbish(bus);
-    }
-    if (bus->phase != GROBO_BUS_AWAITING) {
-        grobo_rs30x_parser_reset(&bus->parser);
-    }
-    copy_counters(bus);
-    return took;
-}
-
-static size_t take_echo(grobo_bus *bus, const uint8_t *bytes, size_t n)
-{
-    grobo_txn *txn = bus->active;
-    size_t left = (size_t)(txn->frame_bytes - bus->echo_bytes);
-    size_t took = n < left ? n : left;
-    if (memcmp(bytes, txn->frame + bus->echo_bytes, took) != 0) {
-        bus->stats.bad_echoes++;
-        fail(bus, GROBO_ERR_MISMATCH);
-        return 0;
-    }
-    bus->echo_bytes = (uint8_t)(bus->echo_bytes + took);
-    if (bus->echo_bytes == txn->frame_bytes) {
-        if (txn->reply.kind == GROBO_REPLY_NONE) {
-            finish(bus, txn, GROBO_OK, NULL);
-        } else {
-            bus->phase = GROBO_BUS_AWAITING;
-        }
-    }
-    return took;
-}
-
-void grobo_bus_rx(grobo_bus *bus, int64_t now_us, const uint8_t *bytes, size_t n)
-{
-    bus->now_us = now_us;
-    bus->stats.rx_bytes += (uint32_t)n;
-    while (n > 0) {
-        size_t took = n;
-        switch (bus->phase) {
-        case GROBO_BUS_IDLE:
-        case GROBO_BUS_GOING:
-            count_late(bus, n);
-            break;
-        case GROBO_BUS_ECHOING:
-            took = take_echo(bus, bytes, n);
-            break;
-        case GROBO_BUS_AWAITING:
-            took = take_reply(bus, bytes, n);
-            break;
-        }
-        bytes += took;
-        n -= took;
-    }
-}
 
 /* ---- time ---------------------------------------------------------------------------------- */
 
@@ -280,9 +48,9 @@ static void end_stale(grobo_bus *bus, int64_t now_us)
     for (int p = 0; p < GROBO_PRIORITIES; p++) {
         grobo_txn *txn = bus->head[p];
         while (txn != NULL && is_stale(txn, now_us)) {
-            take_out(bus, txn);
+            grobo_i_bus_take_out(bus, txn);
             bus->stats.failed++;
-            finish(bus, txn, GROBO_ERR_STALE, NULL);
+            grobo_i_bus_finish(bus, txn, GROBO_ERR_STALE, NULL);
             txn = bus->head[p];
         }
     }
@@ -293,10 +61,9 @@ void grobo_bus_step(grobo_bus *bus, int64_t now_us)
     bus->now_us = now_us;
     if (now_us >= limit_of_active(bus)) {
         if (bus->phase == GROBO_BUS_GOING) {
-            finish(bus, bus->active, GROBO_OK, NULL);
+            grobo_i_bus_finish(bus, bus->active, GROBO_OK, NULL);
         } else {
-            bool some = bus->got_bytes > 0 || bus->echo_bytes > 0;
-            fail(bus, some ? GROBO_ERR_SHORT : GROBO_ERR_TIMEOUT);
+            grobo_i_bus_end_silence(bus);
         }
     }
     end_stale(bus, now_us);
@@ -359,26 +126,22 @@ static void start_clock(grobo_bus *bus, const grobo_txn *txn, int64_t now_us)
 static void start(grobo_bus *bus, grobo_txn *txn, int64_t now_us)
 {
     bool wants_reply = txn->reply.kind != GROBO_REPLY_NONE;
+    /* What is no packet is not known again: its echo is rubbish. */
+    bool echoes = bus->config.echo && txn->frame[0] == 0xFA;
     bus->active = txn;
-    bus->phase = bus->config.echo ? GROBO_BUS_ECHOING
-                 : wants_reply    ? GROBO_BUS_AWAITING
-                                  : GROBO_BUS_GOING;
+    bus->phase = echoes ? GROBO_BUS_ECHOING : wants_reply ? GROBO_BUS_AWAITING : GROBO_BUS_GOING;
     if (txn->attempts_ > 0) {
         bus->stats.retries++;
     }
     txn->attempts_++;
     txn->sent_us = now_us;
-    /* The stump of an earlier reply must not become the head of this one. */
-    grobo_rs30x_parser_reset(&bus->parser);
-    copy_counters(bus);
+    grobo_i_bus_clear_line(bus);
     bus->parser.accept = GROBO_RS30X_ACCEPT_RETURNS;
-    if (txn->reply.kind == GROBO_REPLY_ACK) {
+    if (echoes) {
+        bus->parser.accept |= GROBO_RS30X_ACCEPT_COMMANDS;
+    } else if (txn->reply.kind == GROBO_REPLY_ACK) {
         bus->parser.accept |= GROBO_RS30X_ACCEPT_ACKS;
     }
-    bus->bad_sums_before = bus->parser.framer.stats.bad_sums;
-    bus->dropped_before = bus->parser.framer.stats.dropped_bytes;
-    bus->got_bytes = 0;
-    bus->echo_bytes = 0;
     bus->quiet_by_us = 0;
     bus->stats.tx_frames++;
     bus->stats.tx_bytes += txn->frame_bytes;
@@ -398,26 +161,45 @@ static grobo_txn *choose(const grobo_bus *bus, int64_t now_us)
     return NULL;
 }
 
+/* Asks the owner of a transaction just taken out. A refusal ends it. */
+static bool may_leave(grobo_bus *bus, grobo_txn *txn)
+{
+    int result = txn->leave == NULL ? GROBO_OK : txn->leave(txn->ctx, txn);
+    if (result < 0) {
+        bus->stats.failed++;
+        grobo_i_bus_finish(bus, txn, result, NULL);
+    }
+    return result >= 0;
+}
+
 int grobo_bus_tx(grobo_bus *bus, int64_t now_us, uint8_t *buf, size_t cap)
 {
-    grobo_txn *txn = bus->phase == GROBO_BUS_IDLE ? choose(bus, now_us) : NULL;
-    if (txn == NULL) {
-        return 0;
+    /* Bounded by what waits now: a callback may submit again what is refused again. */
+    for (unsigned left = bus->waiting; left > 0 && bus->phase == GROBO_BUS_IDLE; left--) {
+        grobo_txn *txn = choose(bus, now_us);
+        if (txn == NULL) {
+            break;
+        }
+        size_t size = txn->frame_bytes;
+        if (size > cap) {
+            return GROBO_ERR_SPACE;
+        }
+        grobo_i_bus_take_out(bus, txn);
+        if (may_leave(bus, txn)) {
+            assert(txn->frame_bytes > 0 && txn->frame_bytes <= size);
+            memcpy(buf, txn->frame, txn->frame_bytes);
+            start(bus, txn, now_us);
+            return txn->frame_bytes;
+        }
     }
-    if (txn->frame_bytes > cap) {
-        return GROBO_ERR_SPACE;
-    }
-    take_out(bus, txn);
-    memcpy(buf, txn->frame, txn->frame_bytes);
-    start(bus, txn, now_us);
-    return txn->frame_bytes;
+    return 0;
 }
 
 /* ---- the caller's side --------------------------------------------------------------------- */
 
 static bool is_too_slow(uint32_t baud_bps)
 {
-    return baud_bps != 0 && baud_bps < BAUD_MIN_BPS;
+    return baud_bps - 1 < BAUD_MIN_BPS - 1u; /* 0: the default */
 }
 
 static void fill(uint32_t *value, uint32_t fallback)
@@ -442,6 +224,7 @@ int grobo_bus_init(grobo_bus *bus, const grobo_bus_config *config)
     fill(&bus->config.return_delay_us, RETURN_DELAY_US);
     fill(&bus->config.quiet_us, GROBO_BUS_QUIET_US);
     fill(&bus->config.hold_us, GROBO_BUS_HOLD_US);
+    bus->worst_us = (int32_t)(bus->config.hold_us / 2);
     grobo_rs30x_parser_init(&bus->parser, 0);
     return GROBO_OK;
 }
@@ -479,7 +262,7 @@ int grobo_bus_submit(grobo_bus *bus, grobo_txn *txn)
     txn->pending_ = true;
     txn->attempts_ = 0;
     txn->sent_us = -1;
-    put_last(bus, txn);
+    grobo_i_bus_put_last(bus, txn);
     return GROBO_OK;
 }
 
@@ -493,11 +276,24 @@ static int take_back(grobo_bus *bus, grobo_txn *txn, int result)
 {
     if (bus->active == txn) {
         grobo_i_bus_hold(bus, txn, bus->over_us);
-    } else if (!txn->pending_ || !take_out(bus, txn)) {
+    } else if (!txn->pending_ || !grobo_i_bus_take_out(bus, txn)) {
         return GROBO_ERR_NOTFOUND;
     }
     bus->stats.canceled++;
-    finish(bus, txn, result, NULL);
+    grobo_i_bus_finish(bus, txn, result, NULL);
+    return GROBO_OK;
+}
+
+int grobo_bus_raise(grobo_bus *bus, grobo_txn *txn, grobo_priority priority)
+{
+    if ((unsigned)priority >= GROBO_PRIORITIES) {
+        return GROBO_ERR_ARG;
+    }
+    if (!txn->pending_ || bus->active == txn || !grobo_i_bus_take_out(bus, txn)) {
+        return GROBO_ERR_NOTFOUND;
+    }
+    txn->priority = priority;
+    grobo_i_bus_put_last(bus, txn);
     return GROBO_OK;
 }
 

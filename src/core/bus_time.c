@@ -71,27 +71,31 @@ uint32_t grobo_i_bus_margin_us(const grobo_bus *bus, unsigned attempts)
     if (bus->config.margin_us != 0) {
         return bus->config.margin_us;
     }
-    int32_t margin_us = GROBO_BUS_MARGIN_FIRST_US;
+    int64_t margin_us = GROBO_BUS_MARGIN_FIRST_US;
     if (bus->learnt) {
         margin_us = bus->overhead_us + 4 * bus->deviation_us;
     }
-    if (margin_us < GROBO_BUS_MARGIN_MIN_US) {
-        margin_us = GROBO_BUS_MARGIN_MIN_US;
-    }
+    margin_us = grobo_i_later(margin_us, GROBO_BUS_MARGIN_MIN_US);
     for (; attempts > 1 && margin_us < GROBO_BUS_MARGIN_MAX_US; attempts--) {
         margin_us *= 2;
     }
-    return margin_us < GROBO_BUS_MARGIN_MAX_US ? (uint32_t)margin_us : GROBO_BUS_MARGIN_MAX_US;
+    return (uint32_t)grobo_i_sooner(margin_us, GROBO_BUS_MARGIN_MAX_US);
+}
+
+static int32_t clip(int64_t late_us, int32_t most_us)
+{
+    return late_us < 0 ? 0 : late_us > most_us ? most_us : (int32_t)late_us;
 }
 
 /* As TCP does it: mean with weight 1/8, deviation with weight 1/4. A retried request teaches
  * nothing, since nobody knows which of its attempts was answered. */
 void grobo_i_bus_learn(grobo_bus *bus)
 {
-    int64_t late_us = bus->now_us - bus->over_us;
-    int32_t sample_us = late_us < 0                         ? 0
-                        : late_us > GROBO_BUS_MARGIN_MAX_US ? GROBO_BUS_MARGIN_MAX_US
-                                                            : (int32_t)late_us;
+    int32_t sample_us = clip(bus->now_us - bus->over_us, GROBO_BUS_MARGIN_MAX_US);
+    if (sample_us > bus->worst_us) {
+        bus->worst_us = sample_us;
+    }
+    bus->worst_us -= (bus->worst_us - sample_us) >> 8; /* slowly forgotten */
     if (!bus->learnt) {
         bus->learnt = true;
         bus->overhead_us = sample_us;
@@ -103,56 +107,91 @@ void grobo_i_bus_learn(grobo_bus *bus)
     bus->deviation_us += ((error_us < 0 ? -error_us : error_us) - bus->deviation_us) / 4;
 }
 
-/* True if the one reply would be taken for the other. */
-static bool same_reply(const grobo_reply *a, const grobo_reply *b)
+uint32_t grobo_i_bus_key(const grobo_reply *reply)
 {
-    if (a->kind != GROBO_REPLY_RETURN || b->kind != GROBO_REPLY_RETURN) {
-        return a->kind == b->kind && a->kind == GROBO_REPLY_ACK;
-    }
-    return a->id == b->id && a->address == b->address && a->length == b->length;
+    uint32_t name = (uint32_t)reply->id << 16 | (uint32_t)reply->address << 8 | reply->length;
+    return (uint32_t)reply->kind << 24 | (reply->kind == GROBO_REPLY_RETURN ? name : 0);
 }
 
-/* The first slot is for ACKs alone: theirs is the confusion that could name a wrong motor. */
-static grobo_bus_hold *slot_for(grobo_bus *bus, const grobo_reply *reply)
+/* The hold for replies that would be taken for this one, or NULL. */
+static grobo_bus_hold *find_hold(grobo_bus *bus, uint32_t key)
 {
-    if (reply->kind == GROBO_REPLY_ACK) {
-        return &bus->hold[0];
-    }
-    for (int i = 1; i < GROBO_BUS_HOLDS; i++) {
-        if (same_reply(&bus->hold[i].reply, reply)) {
-            return &bus->hold[i];
+    for (grobo_bus_hold *hold = bus->hold; hold < bus->hold + GROBO_BUS_HOLDS; hold++) {
+        if (hold->key == key && hold->owed > 0) {
+            return hold;
         }
     }
-    if (++bus->next_hold == GROBO_BUS_HOLDS) {
-        bus->next_hold = 1;
-    }
-    return &bus->hold[bus->next_hold];
+    return NULL;
 }
 
 void grobo_i_bus_hold(grobo_bus *bus, const grobo_txn *txn, int64_t from_us)
 {
+    uint32_t key = grobo_i_bus_key(&txn->reply);
+    grobo_bus_hold *hold = find_hold(bus, key);
+    uint32_t span_us = 2 * (uint32_t)bus->worst_us;
     if (txn->reply.kind == GROBO_REPLY_NONE) {
         return;
     }
-    grobo_bus_hold *hold = slot_for(bus, &txn->reply);
-    hold->reply = txn->reply;
+    /* An ACK has no name, so that none is known to be the one that is owed: only time tells. The
+     * first hold is theirs: theirs is the confusion that could name a wrong motor. */
+    if (txn->reply.kind == GROBO_REPLY_ACK) {
+        hold = bus->hold;
+        span_us = bus->config.hold_us;
+    }
+    if (hold == NULL) {
+        bus->next_hold = bus->next_hold == GROBO_BUS_HOLDS - 1 ? 1 : (uint8_t)(bus->next_hold + 1);
+        hold = &bus->hold[bus->next_hold];
+        hold->owed = 0;
+    }
+    if (hold->owed == 0 || hold->until_us < bus->now_us) {
+        hold->owed = 0;
+        hold->due_us = bus->over_us;
+    }
+    hold->owed++;
+    hold->key = key;
     hold->owner = txn;
-    hold->until_us = from_us + bus->config.hold_us;
+    hold->until_us = from_us + span_us;
+}
+
+grobo_bus_hold *grobo_i_bus_owed(grobo_bus *bus, uint32_t key)
+{
+    grobo_bus_hold *hold = find_hold(bus, key);
+    return hold != NULL && bus->now_us >= hold->due_us ? hold : NULL;
+}
+
+bool grobo_i_bus_settle(grobo_bus *bus, uint32_t key)
+{
+    grobo_bus_hold *hold = grobo_i_bus_owed(bus, key);
+    if (hold == NULL) {
+        return false;
+    }
+    int32_t late_us = clip(bus->now_us - hold->due_us, (int32_t)(bus->config.hold_us / 2));
+    bus->worst_us = late_us > bus->worst_us ? late_us : bus->worst_us;
+    hold->due_us = bus->over_us; /* the rest are to later attempts */
+    hold->owed--;
+    return true;
 }
 
 void grobo_i_bus_release_holds(grobo_bus *bus)
 {
-    memset(bus->hold, 0, sizeof bus->hold);
+    if (bus->config.wiring == GROBO_WIRING_BOARD) {
+        memset(bus->hold, 0, sizeof bus->hold);
+        return;
+    }
+    for (int i = 0; i < GROBO_BUS_HOLDS; i++) {
+        int64_t *until_us = &bus->hold[i].until_us;
+        *until_us = grobo_i_sooner(*until_us, bus->now_us + GROBO_BUS_MARGIN_MAX_US);
+    }
 }
 
 static int64_t held_until(const grobo_bus *bus, const grobo_txn *txn)
 {
+    uint32_t key = grobo_i_bus_key(&txn->reply);
     int64_t until_us = 0;
     for (int i = 0; i < GROBO_BUS_HOLDS; i++) {
         const grobo_bus_hold *hold = &bus->hold[i];
-        bool own_retry = hold->owner == txn && txn->attempts_ > 0;
-        if (!own_retry && same_reply(&hold->reply, &txn->reply)) {
-            until_us = grobo_i_later(until_us, hold->until_us);
+        if (hold->key == key && hold->owed > 0 && (hold->owner != txn || txn->attempts_ == 0)) {
+            until_us = hold->until_us;
         }
     }
     return until_us;

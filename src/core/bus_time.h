@@ -14,10 +14,25 @@ int64_t grobo_i_bus_over_at(const grobo_bus *bus, const grobo_bus_cost *cost, in
 /* The active transaction's reply has come, in its first attempt. */
 void grobo_i_bus_learn(grobo_bus *bus);
 
-/* Remembers that a reply to this transaction may yet come, counted from from_us. */
+/* Two replies of the same key would be taken for one another. An ACK has no name. */
+uint32_t grobo_i_bus_key(const grobo_reply *reply);
+
+/*
+ * Counts one more reply to this transaction that may yet come, that of its active attempt. Until it
+ * has come, or for the time of lateness that the bus has learnt from from_us on, nothing is asked
+ * that it would be taken for.
+ */
 void grobo_i_bus_hold(grobo_bus *bus, const grobo_txn *txn, int64_t from_us);
 
-/* The line keeps the order: what was lost before the reply that came now will not come. */
+/* The hold that counts on a reply with this key, or NULL. Nothing that comes before the first of
+ * them is due is a reply that is owed. */
+grobo_bus_hold *grobo_i_bus_owed(grobo_bus *bus, uint32_t key);
+
+/* A reply came that is owed: strikes it off, learns how late it was. False if it was not owed. */
+bool grobo_i_bus_settle(grobo_bus *bus, uint32_t key);
+
+/* The board and the adapter keep the order: what was lost before the reply that came now will not
+ * come. Only a servo on a bus may answer a little later than another one. */
 void grobo_i_bus_release_holds(grobo_bus *bus);
 
 /* The first moment, not before now_us, at which this waiting transaction may start. */

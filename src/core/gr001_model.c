@@ -69,4 +69,5 @@ const grobo_model grobo_gr001_model = {
     .groups = gr001_groups,
     .n_joints = sizeof gr001_joints / sizeof gr001_joints[0],
     .n_groups = sizeof gr001_groups / sizeof gr001_groups[0],
+    .limit_slack_deg = 1, /* recordings leave limits by fractions of a degree: CHEST_P by 0.6 */
 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include <grobo/model.h>
+#include <grobo/posture.h>
 
 #include <math.h>
 #include <string.h>
@@ -85,7 +85,8 @@ static bool is_group_good(const grobo_model *model, int g)
 int grobo_model_check(const grobo_model *model)
 {
     if (model == NULL || model->name == NULL || model->joints == NULL || model->n_joints < 1 ||
-        model->n_joints > GROBO_JOINTS_MAX || (model->groups == NULL && model->n_groups > 0)) {
+        model->n_joints > GROBO_JOINTS_MAX || (model->groups == NULL && model->n_groups > 0) ||
+        !(model->limit_slack_deg >= 0 && model->limit_slack_deg <= GROBO_LIMIT_SLACK_MAX_DEG)) {
         return GROBO_ERR_ARG;
     }
     for (int j = 0; j < model->n_joints; j++) {
@@ -99,6 +100,22 @@ int grobo_model_check(const grobo_model *model)
         }
     }
     return 0;
+}
+
+double grobo_model_take_slack(const grobo_model *model, int joint, double angle_rad)
+{
+    const grobo_joint *limits = &model->joints[joint];
+    const bool low = angle_rad < limits->min_rad;
+    const double limit_rad = low ? limits->min_rad : limits->max_rad;
+
+    if (!isfinite(angle_rad) || (!low && angle_rad <= limits->max_rad)) {
+        return angle_rad;
+    }
+    /* on the wire's grid, as limits are judged: within half a step is no excess */
+    int excess = grobo_ddeg_from_rad(angle_rad) - grobo_ddeg_from_rad(limit_rad);
+
+    excess = low ? -excess : excess;
+    return excess > 0 && excess <= 10 * model->limit_slack_deg ? limit_rad : angle_rad;
 }
 
 int grobo_model_joint_of_motor(const grobo_model *model, int motor)

@@ -16,7 +16,7 @@ static bool choices_sound(const grobo_robot_config *c)
 {
     return (c->limit_policy == GROBO_LIMIT_REFUSE || c->limit_policy == GROBO_LIMIT_CLAMP) &&
            (c->estop_torque == GROBO_ESTOP_BRAKE || c->estop_torque == GROBO_ESTOP_OFF) &&
-           (unsigned)c->on_exit <= GROBO_EXIT_SIT;
+           (unsigned)c->on_exit <= GROBO_EXIT_SIT && (unsigned)c->goals <= GROBO_GOALS_SEGMENTS;
 }
 
 static bool config_sound(const grobo_robot_config *c)
@@ -173,16 +173,14 @@ void grobo_robot_rx(grobo_robot *robot, const uint8_t *bytes, size_t size, int64
     grobo_i_leave(robot);
 }
 
+/* Frames are judged in here, and what is refused may end a job. Events of that wait for the next
+ * step: a callback must not come between this frame and its way to the line. */
 int grobo_robot_tx(grobo_robot *robot, uint8_t *buf, size_t capacity, int64_t now_us)
 {
     if (now_us > robot->now_us) {
         robot->now_us = now_us;
     }
-    int size = robot->link ? grobo_bus_tx(&robot->bus, robot->now_us, buf, capacity) : 0;
-    if (size > 0) {
-        grobo_i_slots_sent(robot);
-    }
-    return size;
+    return robot->link ? grobo_bus_tx(&robot->bus, robot->now_us, buf, capacity) : 0;
 }
 
 void grobo_robot_step(grobo_robot *robot, int64_t now_us)
@@ -190,7 +188,9 @@ void grobo_robot_step(grobo_robot *robot, int64_t now_us)
     grobo_i_enter(robot, now_us);
     if (robot->link) {
         grobo_bus_step(&robot->bus, robot->now_us);
+        grobo_i_segments_step(robot);
         grobo_i_play_step(robot);
+        grobo_i_play_reserve(robot);
         grobo_i_job_run(robot);
         grobo_i_sense_step(robot);
     }
@@ -207,8 +207,12 @@ int64_t grobo_robot_deadline(const grobo_robot *robot, int64_t now_us)
     if (!robot->link) {
         return GROBO_NEVER_US;
     }
+    if (robot->events_n > 0 || robot->told_state != grobo_robot_play_state(robot)) {
+        return now_us; /* to be told by the next step */
+    }
     int64_t at_us = grobo_bus_deadline(&robot->bus, now_us);
     at_us = earlier(at_us, grobo_sequencer_deadline(&robot->sequencer));
+    at_us = earlier(at_us, grobo_i_segments_deadline(robot));
     at_us = earlier(at_us, grobo_i_job_deadline(robot));
     return earlier(at_us, grobo_i_sense_deadline(robot));
 }

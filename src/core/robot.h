@@ -9,8 +9,12 @@
  *   robot_request.c  the public requests: checks, then starts a script
  *   robot_play.c     the sequencer's frames, on time
  *   robot_query.c    what may be asked
+ *   budget.c         how many motion frames a second leave time to read
+ *   robot_axis.c     where a joint is, by what it was sent to and what was read
  *   sensing.c        readings: into the axes, in the background, free mode
- *   safety_gate.c    the only way to motors: every target and every torque passes here
+ *   safety_orders.c  orders to motors: into frames that wait for the line
+ *   safety_gate.c    the only way to motors: judges and notes each order as its frame leaves
+ *   segments.c       long moves told in parts
  *   safety_watch.c   judges readings, trips
  */
 #ifndef GROBO_CORE_ROBOT_H
@@ -34,13 +38,31 @@ grobo_joint_mask grobo_i_all_joints(const grobo_robot *robot);
 /* What a frame under way is for. */
 typedef enum grobo_i_use {
     GROBO_I_USE_FREE = 0,
-    GROBO_I_USE_JOB,    /* its end goes to the job that is named in it */
-    GROBO_I_USE_SENSE,  /* a reading of the background */
-    GROBO_I_USE_MOTION, /* a target; a played one if it has a due time */
-    GROBO_I_USE_PLAIN   /* sent for its effect; a later reading shows whether it took */
+    GROBO_I_USE_JOB,     /* its end goes to the job that is named in it */
+    GROBO_I_USE_SENSE,   /* a reading of the background */
+    GROBO_I_USE_MOTION,  /* a target; a played one if it has a due time */
+    GROBO_I_USE_SEGMENT, /* further on the ways of targets that have left */
+    GROBO_I_USE_HALT,    /* what moves is to stop */
+    GROBO_I_USE_PLAIN    /* sent for its effect; a later reading shows whether it took */
 } grobo_i_use;
 
-/* A free slot with a zeroed exchange, or NULL. */
+/* What a frame does to joints: grobo_robot_order.deed. */
+typedef enum grobo_i_deed {
+    GROBO_I_DEED_NONE = 0, /* it reads, or writes what moves nothing */
+    GROBO_I_DEED_GOAL,     /* joints go to their targets, grobo_robot_axis.next */
+    GROBO_I_DEED_SEGMENT,  /* joints go further on the ways that they are on */
+    GROBO_I_DEED_HALT,     /* joints that move stop where they are by then */
+    GROBO_I_DEED_HOLD,     /* goals of joints without torque become where they are */
+    GROBO_I_DEED_TORQUE,   /* torque is switched */
+    GROBO_I_DEED_RAW,      /* what the driver reads in a frame of the user's */
+    GROBO_I_DEED_UNKNOWN,  /* nobody can read what: a raw frame, a motion of the robot's own */
+    GROBO_I_DEED_SETTING,  /* a goal means something else to these afterwards */
+    GROBO_I_DEED_COMMAND   /* a servo is busy with itself; `joints` restart without torque */
+} grobo_i_deed;
+
+/* The index of a free slot, or -1; there is always one for a halt. */
+int grobo_i_slot_find(const grobo_robot *robot, grobo_i_use use);
+/* Takes it, with a zeroed exchange and order, or NULL. */
 grobo_robot_slot *grobo_i_slot_take(grobo_robot *robot, grobo_i_use use);
 /* Gives the slot's exchange to the bus; on error the slot is free again. */
 int grobo_i_slot_send(grobo_robot_slot *slot, grobo_priority priority);
@@ -48,10 +70,15 @@ int grobo_i_slot_send(grobo_robot_slot *slot, grobo_priority priority);
 void grobo_i_slot_drop(grobo_robot_slot *slot);
 /* Takes back every frame of this use. */
 void grobo_i_slots_cancel(grobo_robot *robot, grobo_i_use use);
-/* Takes back frames that would switch torque on and have not left. */
-void grobo_i_slots_keep_off(grobo_robot *robot);
-/* Notes the frames that the bus has just given out. */
-void grobo_i_slots_sent(grobo_robot *robot);
+/* Takes back every frame that a step of this job made. */
+void grobo_i_slots_cancel_job(grobo_robot *robot, int number);
+/* Takes back targets that have not left. */
+void grobo_i_slots_cancel_goals(grobo_robot *robot);
+/* Takes back frames that would switch the torque of one of these joints on. */
+void grobo_i_slots_keep_off(grobo_robot *robot, grobo_joint_mask joints);
+/* True if a frame that does this to the joint waits for the line; `torque` OFF for another deed. */
+bool grobo_i_slots_wait(const grobo_robot *robot, grobo_joint_mask joint, grobo_i_deed deed,
+                        grobo_torque torque);
 /* True if a frame of this use is under way. */
 bool grobo_i_slots_busy(const grobo_robot *robot, grobo_i_use use);
 
@@ -97,18 +124,30 @@ extern const grobo_robot_step_fn grobo_i_script_exit_off[];
 extern const grobo_robot_step_fn grobo_i_script_exit_hold[];
 extern const grobo_robot_step_fn grobo_i_script_exit_sit[];
 
+/* True if the job is a move whose target has been sent. */
+bool grobo_i_move_is_sent(const grobo_robot *robot);
+/* Sends the joints of such a move to another target, and goes on from there. */
+void grobo_i_move_retarget(grobo_robot *robot, const grobo_posture *target);
+
 /* ---- robot_request.c ------------------------------------------------------------------------- */
 
+/* What the engine does by itself after a motion makes way for any request. */
+void grobo_i_make_way(grobo_robot *robot);
 /* Begins to carry an emergency stop out; the link is up. @return the job's number. */
 int grobo_i_estop_start(grobo_robot *robot);
+/* Cancels targets that wait, and halts what moves; while a motion is played, which ends by itself,
+ * only what was sent beside it. */
+void grobo_i_stop_moves(grobo_robot *robot);
+/* True if the job that runs moves joints, or would: a stop ends it. */
+bool grobo_i_job_moves(const grobo_robot *robot);
 
 /* ---- robot_play.c ---------------------------------------------------------------------------- */
 
+/* No reading is begun that would not be over when the next motion frame is due. */
+void grobo_i_play_reserve(grobo_robot *robot);
 /* Sends what the sequencer has due, watches the host's lateness, keeps the line free for what
  * comes next, tells new states. */
 void grobo_i_play_step(grobo_robot *robot);
-/* Takes back targets that still wait for the line when the next one is there. */
-void grobo_i_play_overtake(grobo_robot *robot);
 /* A motion frame is over. */
 void grobo_i_play_done(grobo_robot_slot *slot, int result);
 /* Tells a new state of the sequencer. */
@@ -118,6 +157,11 @@ void grobo_i_play_settle(grobo_robot *robot);
 /* What a caller leaves open is as the robot is configured. */
 void grobo_i_play_options(const grobo_robot *robot, const grobo_play_options *options,
                           grobo_play_options *chosen);
+/* Fills in the rate, and refuses one that leaves no time to watch the joints. `unwatched` remains
+ * only where it is needed. @return 0, GROBO_ERR_UNWATCHED, or an error of the driver. */
+int grobo_i_play_rate(const grobo_robot *robot, grobo_play_options *chosen);
+/* True if the clip being played may make no frame wait for a reading. */
+bool grobo_i_play_unwatched(const grobo_robot *robot);
 /* Joints that a clip moves, played so. */
 int grobo_i_play_joints(const grobo_robot *robot, const grobo_clip *clip,
                         const grobo_play_options *options, grobo_joint_mask *joints);
@@ -126,8 +170,9 @@ int grobo_i_play_start(grobo_robot *robot);
 
 /* ---- sensing.c ------------------------------------------------------------------------------- */
 
-/* Takes a reading of a joint, or the reason why there is none. @return result, or parse's error. */
-int grobo_i_sense_take(grobo_robot *robot, int joint, int result, const grobo_rs30x_packet *reply);
+/* Takes what a slot has read of its joint, or the reason why there is nothing. @return result, or
+ * parse's error. */
+int grobo_i_sense_take(const grobo_robot_slot *slot, int result, const grobo_rs30x_packet *reply);
 /* The goal that holds a joint where its servo says that it is, drawn in to its limits; NaN where it
  * stands too far outside. */
 double grobo_i_hold_rad(const grobo_robot *robot, int joint);
@@ -138,68 +183,123 @@ void grobo_i_sense_done(grobo_robot_slot *slot, int result, const grobo_rs30x_pa
 /* When the background reads next. */
 int64_t grobo_i_sense_deadline(const grobo_robot *robot);
 
+/* ---- budget.c -------------------------------------------------------------------------------- */
+
+int grobo_i_budget(const grobo_bus *bus, const grobo_driver *driver, void *ctx,
+                   grobo_budget *budget);
+
+/* ---- robot_axis.c ---------------------------------------------------------------------------- */
+
+/* Where a way is by then. */
+double grobo_i_way_at(const grobo_robot_way *way, int64_t now_us);
+/* Where a joint is by now on the move it was sent on. */
+double grobo_i_axis_commanded(const grobo_robot_axis *axis, int64_t now_us);
+/* When it is there: on that move, or on the one its servo is on where it lost the frame. */
+int64_t grobo_i_axis_until(const grobo_robot_axis *axis);
+/* Where it was last asked to go, whether that frame has left or waits. */
+double grobo_i_axis_target(const grobo_robot_axis *axis);
+/* Takes the sensed angle for where a joint is, nothing being asked of it. */
+void grobo_i_axis_rest(grobo_robot_axis *axis, int64_t now_us);
+/* Takes what was read for where a joint is: at the angle, or on the move the servo told of. */
+void grobo_i_axis_here(grobo_robot_axis *axis, int64_t now_us);
+/* True if it is known to have torque. */
+bool grobo_i_axis_is_on(const grobo_robot_axis *axis);
+/* True while a joint is on the way it was sent on, or a target waits for the line. */
+bool grobo_i_moving(const grobo_robot *robot, int64_t now_us);
+/* True if one of these moves though nothing was asked of it, nobody knows where to. */
+bool grobo_i_adrift(const grobo_robot *robot, grobo_joint_mask joints);
+/* True if all of these were sensed; else *joint is one that was not. */
+bool grobo_i_all_sensed(const grobo_robot *robot, grobo_joint_mask joints, int *joint);
+/* True if all of these are known to have torque. */
+bool grobo_i_all_on(const grobo_robot *robot, grobo_joint_mask joints);
+
 /* ---- safety_gate.c --------------------------------------------------------------------------- */
 
+/* The frame of this slot would leave now: judges its order, builds the frame anew from it, and
+ * notes what it does. @return 0, or why it must not leave: then nothing is noted. */
+int grobo_i_gate_leave(grobo_robot_slot *slot);
+/* The same judgement now, when a frame is asked for. */
+int grobo_i_gate_judge(grobo_robot *robot, const grobo_robot_order *order,
+                       const grobo_exchange *exchange);
+/* Reads and judges a raw frame. *order is its order then. */
+int grobo_i_gate_raw(grobo_robot *robot, const grobo_exchange *exchange, grobo_robot_order *order);
+/* Judges, and builds part order->part of a GOAL, HALT, HOLD or TORQUE. @return 1, or 0 where the
+ * driver has none; GROBO_ERR_CAP: several joints do not fit one frame. */
+int grobo_i_gate_build(grobo_robot *robot, const grobo_robot_order *order,
+                       grobo_exchange *exchange);
+/* The targets of this order wait no more: they have left, or never will. */
+void grobo_i_gate_unwait(grobo_robot *robot, const grobo_robot_order *order);
+/* Gives every joint of a target as much more time as it needs from where it is now.
+ * @return the longest, or GROBO_ERR_SPEED where the wire has no time that is long enough. */
+int64_t grobo_i_gate_time(grobo_robot *robot, const grobo_robot_order *order, grobo_target *target);
 /* Checks numbers and limits of a target; clamps if so configured. The fault is kept for
  * grobo_robot_fault(). @return 0, GROBO_ERR_NAN, _LIMIT, _ARG. */
 int grobo_i_gate_target(grobo_robot *robot, grobo_posture *target);
+/* The next move is the first from a sensed posture: a slow one. */
+void grobo_i_gate_soften(grobo_robot *robot);
+/* Before a target of a caller's own stream, from his loop or as a raw frame: the first of them is
+ * the slow one. */
+void grobo_i_gate_single(grobo_robot *robot);
+/* True if the goal read back is the one that holds. */
+bool grobo_i_goal_holds(const grobo_robot *robot, int joint);
+/* Holds a goal this far from the angle to be the angle, for switching torque on. */
+#define GROBO_I_HOLD_NEAR_DEG 2.0
+/* How far outside its limits a joint may stand to be switched on; it is drawn to the limit. */
+#define GROBO_I_HOLD_OUTSIDE_DEG 3.0
+
+/* ---- safety_orders.c ------------------------------------------------------------------------- */
+
 /* How a target is sent. */
 typedef struct grobo_i_motion {
     grobo_priority priority;
     int64_t due_us; /* GROBO_NEVER_US, or when it should leave: it is a played one */
     bool each;      /* more time only for joints that need it, not for all alike */
     bool as_is;     /* not for the stabilizer */
+    bool single;    /* from a stream of the caller's own */
+    bool stops;     /* leaves after a latched stop as well */
+    bool rests;     /* ends a motion: each joint comes to rest near where it is by then */
 } grobo_i_motion;
-/* Checks a target, gives it the time that is safe, builds the frames and sends them.
- * @return 0 or an error of the gate, the driver or the bus.
- * *time_us, if not NULL, becomes the longest time of a joint. */
-int grobo_i_gate_send(grobo_robot *robot, const grobo_posture *target, const grobo_i_motion *how,
-                      int64_t *time_us);
+/* Checks a target and has it wait for the line; its time is found when it leaves.
+ * @return 0 or an error of the gate, the driver or the bus: then none of it is sent. */
+int grobo_i_gate_send(grobo_robot *robot, const grobo_posture *target, const grobo_i_motion *how);
+/* Tells these joints more of the ways in segments that they are on. */
+void grobo_i_gate_renew(grobo_robot *robot, grobo_joint_mask joints);
+/* Stops those of the joints that are being moved where they are, softly; targets that wait are
+ * cancelled. */
+void grobo_i_gate_halt(grobo_robot *robot, grobo_joint_mask joints);
 /* Joints in a frame; small frames get through a line that loses bytes. */
 typedef enum grobo_i_chunk { GROBO_I_WHOLE = GROBO_JOINTS_MAX, GROBO_I_SMALL = 4 } grobo_i_chunk;
-/* The next move is the first from a sensed posture: a slow one. */
-void grobo_i_gate_soften(grobo_robot *robot);
-/* Around targets that come one by one, from a loop of the caller's own or as raw frames: the first
- * of them is the slow one. */
-void grobo_i_gate_single(grobo_robot *robot);
-void grobo_i_gate_single_sent(grobo_robot *robot, int64_t time_us);
 /* Takes up to `chunk` joints out of *joints. */
 grobo_joint_mask grobo_i_take_chunk(grobo_joint_mask *joints, grobo_i_chunk chunk);
-/* True if the goal read back is the one that holds. */
-bool grobo_i_goal_holds(const grobo_robot *robot, int joint);
-/* Sets goal := present for `joints`, which were just read; not for those that stand too far
- * outside their limits. */
+/* Sets goal := present for `joints` without torque; not for those that stand too far outside their
+ * limits. */
 int grobo_i_gate_hold(grobo_robot *robot, grobo_joint_mask joints, grobo_i_chunk chunk);
-/* The frame with this target leaves now: its moves begin now. */
-void grobo_i_gate_sent(grobo_robot *robot, uint32_t motion);
-/* The frame with this target never left: the joints are still on the way they were on. */
-void grobo_i_gate_unsent(grobo_robot *robot, uint32_t motion);
-/* True if all of these were sensed and hold. */
-bool grobo_i_gate_ready(const grobo_robot *robot, grobo_joint_mask joints);
-/* True while a joint is on the way it was sent on. */
-bool grobo_i_gate_moving(const grobo_robot *robot);
-/* Where these joints are is not known any more: read first, then moved softly. */
-void grobo_i_gate_forget(grobo_robot *robot, grobo_joint_mask joints);
-/* Stops joints that are being moved where they are, softly. */
-void grobo_i_gate_halt(grobo_robot *robot);
-/* Switches torque. ON is refused with GROBO_ERR_STATE for joints whose goal was not read back to
- * be where they are. */
+/* Switches torque. ON leaves out joints whose goal was not read back to be where they are;
+ * GROBO_ERR_STATE where none is left. */
 int grobo_i_gate_torque(grobo_robot *robot, grobo_joint_mask joints, grobo_torque mode,
                         grobo_i_chunk chunk);
-/* Checks a raw frame. */
-int grobo_i_gate_raw(grobo_robot *robot, const uint8_t *frame, size_t size);
-/* Where a joint is by now on the move it was sent on. */
-double grobo_i_axis_commanded(const grobo_robot_axis *axis, int64_t now_us);
-/* Takes the sensed angle for where a joint is, nothing being asked of it. */
-void grobo_i_axis_rest(grobo_robot_axis *axis, int64_t now_us);
-/* Takes what was read for where a joint is: at the angle, or on the move the servo told of. */
-void grobo_i_axis_here(grobo_robot_axis *axis, int64_t now_us);
-/* True if one of these moves though nothing was asked of it, nobody knows where to. */
-bool grobo_i_adrift(const grobo_robot *robot, grobo_joint_mask joints);
-/* Holds a goal this far from the angle to be the angle, for switching torque on. */
-#define GROBO_I_HOLD_NEAR_DEG 2.0
-/* How far outside its limits a joint may stand to be switched on; it is drawn to the limit. */
-#define GROBO_I_HOLD_OUTSIDE_DEG 3.0
+/* True if all of these were sensed and hold. */
+bool grobo_i_gate_ready(const grobo_robot *robot, grobo_joint_mask joints);
+
+/* ---- segments.c ------------------------------------------------------------------------------ */
+
+/* True if a joint that gets this time by this order is told its way in parts. */
+bool grobo_i_segments_wanted(const grobo_robot *robot, const grobo_robot_order *order,
+                             int64_t time_us);
+/* The part of a target that its frame asks for. @return false, and nothing in *part, where that is
+ * all of it. */
+bool grobo_i_segments_cut(const grobo_robot *robot, const grobo_robot_order *order,
+                          const grobo_target *whole, grobo_target *part);
+/* A joint begins the way just noted, which takes this time. */
+void grobo_i_segments_begin(grobo_robot *robot, int joint, int64_t time_us);
+/* Where these of the joints that are told more go next; and that they were told. */
+void grobo_i_segments_aim(const grobo_robot *robot, grobo_joint_mask joints, grobo_target *target);
+void grobo_i_segments_told(grobo_robot *robot, const grobo_target *target);
+/* Tells more of their ways when it is time for that, and ends what the host has left standing. */
+void grobo_i_segments_step(grobo_robot *robot);
+/* When joints are told more; GROBO_NEVER_US: none is. */
+int64_t grobo_i_segments_due(const grobo_robot *robot);
+int64_t grobo_i_segments_deadline(const grobo_robot *robot);
 
 /* ---- safety_watch.c -------------------------------------------------------------------------- */
 

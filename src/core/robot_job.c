@@ -8,6 +8,7 @@
 int grobo_i_job_start(grobo_robot *robot, grobo_job_kind kind, const grobo_robot_step_fn *script)
 {
     grobo_robot_task *job = &robot->job;
+    assert(job->kind == GROBO_JOB_NONE);
     robot->last_number = robot->last_number == INT32_MAX ? 1 : robot->last_number + 1;
     job->script = script;
     job->number = robot->last_number;
@@ -18,10 +19,13 @@ int grobo_i_job_start(grobo_robot *robot, grobo_job_kind kind, const grobo_robot
     job->joint = -1;
     job->value = 0;
     job->failed = job->pending = 0;
+    job->order = (grobo_robot_order){0};
+    job->leave_by_us = 0;
     job->sense = GROBO_SENSE_ALL;
     job->priority = GROBO_PRIORITY_USER;
     job->part = job->rounds = job->restarts = 0;
     job->reply_bytes = 0;
+    job->begun_us = robot->now_us;
     job->until_us = job->bound_us = GROBO_NEVER_US;
     return job->number;
 }
@@ -42,7 +46,7 @@ void grobo_i_job_end(grobo_robot *robot, int result)
         robot->stop_owed = false;
     }
     job->kind = GROBO_JOB_NONE;
-    grobo_i_slots_cancel(robot, GROBO_I_USE_JOB);
+    grobo_i_slots_cancel_job(robot, job->number);
     if (event.u.job.kind != GROBO_JOB_SETTLE) {
         grobo_i_tell(robot, &event);
     }
@@ -114,8 +118,7 @@ static bool frames_out(const grobo_robot *robot)
 {
     for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
         const grobo_robot_slot *slot = &robot->slots[i];
-        if (slot->use != GROBO_I_USE_FREE && slot->use != GROBO_I_USE_SENSE &&
-            slot->job == robot->job.number) {
+        if (slot->use != GROBO_I_USE_FREE && slot->job == robot->job.number) {
             return false;
         }
     }
@@ -172,7 +175,9 @@ void grobo_i_job_run(grobo_robot *robot)
             grobo_i_job_end(robot, GROBO_ERR_TIMEOUT);
             return;
         }
+        robot->acting = robot->job.number;
         int going = advance(robot);
+        robot->acting = 0;
         if (going < 0) {
             grobo_i_job_end(robot, going);
         } else if (going > 0) {
@@ -219,7 +224,7 @@ void grobo_i_job_done(grobo_robot_slot *slot, int result, const grobo_rs30x_pack
     if (job->activity == GROBO_I_READ) {
         int joint = slot->joint;
         job->todo &= ~GROBO_JOINT_BIT(joint);
-        int taken = grobo_i_sense_take(robot, joint, result, reply);
+        int taken = grobo_i_sense_take(slot, result, reply);
         if (taken < 0 && job->kind != GROBO_JOB_NONE && slot->job == job->number) {
             grobo_i_job_fail_joint(robot, joint, taken, 0);
         }

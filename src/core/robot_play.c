@@ -87,6 +87,55 @@ void grobo_i_play_options(const grobo_robot *robot, const grobo_play_options *op
     }
 }
 
+int grobo_i_play_rate(const grobo_robot *robot, grobo_play_options *chosen)
+{
+    grobo_budget budget;
+    if (chosen->mode != GROBO_PLAY_RATE) {
+        return GROBO_OK;
+    }
+    int result = grobo_robot_budget(robot, &budget);
+    if (result < 0) {
+        return result;
+    }
+    if (chosen->rate_hz == 0) {
+        chosen->rate_hz = budget.default_hz > 0 ? budget.default_hz : 1;
+    }
+    bool watched = chosen->rate_hz <= budget.watched_hz;
+    if (!watched && !chosen->unwatched) {
+        return GROBO_ERR_UNWATCHED;
+    }
+    chosen->unwatched = !watched;
+    return GROBO_OK;
+}
+
+/* ---- watching -------------------------------------------------------------------------------- */
+
+bool grobo_i_play_unwatched(const grobo_robot *robot)
+{
+    return grobo_robot_is_playing(robot) && robot->sequencer.item.options.unwatched;
+}
+
+/* Once for each clip that begins. */
+static void tell_unwatched(grobo_robot *robot)
+{
+    const grobo_play_options *options = &robot->sequencer.item.options;
+    bool read =
+        robot->config.sense_interval_us != GROBO_SENSE_NEVER && !robot->config.sense_position_only;
+    if (robot->told_item == robot->sequencer.n_items) {
+        return;
+    }
+    robot->told_item = robot->sequencer.n_items;
+    if (read && !options->unwatched) {
+        return;
+    }
+    grobo_budget budget = {0};
+    grobo_event event = {.kind = GROBO_EVENT_UNWATCHED};
+    (void)grobo_robot_budget(robot, &budget);
+    event.u.unwatched.rate_hz = options->mode == GROBO_PLAY_RATE ? options->rate_hz : 0;
+    event.u.unwatched.watched_hz = budget.watched_hz;
+    grobo_i_tell(robot, &event);
+}
+
 int grobo_i_play_start(grobo_robot *robot)
 {
     grobo_robot_task *job = &robot->job;
@@ -108,6 +157,9 @@ int grobo_i_play_start(grobo_robot *robot)
         return result;
     }
     grobo_play_progress progress;
+    if (robot->sense_us > robot->now_us) {
+        robot->sense_us = robot->now_us; /* read so far in an interval that may be long */
+    }
     grobo_i_play_step(robot); /* the approach leaves at once */
     grobo_sequencer_progress(&robot->sequencer, robot->now_us, &progress);
     return progress.error;
@@ -152,35 +204,22 @@ void grobo_robot_jitter(const grobo_robot *robot, grobo_jitter *jitter)
     jitter->max_us = robot->late_max_us;
 }
 
-void grobo_i_play_done(grobo_robot_slot *slot, int result)
+static void count_played(const grobo_robot_slot *slot, int result)
 {
-    slot->robot->counters.motion_frames += result >= 0;
-    if (slot->due_us == GROBO_NEVER_US) {
-        return;
-    }
+    grobo_robot_counters *counters = &slot->robot->counters;
     if (result >= 0) {
         int64_t late_us = slot->txn.sent_us - slot->due_us;
         note_lateness(slot->robot, late_us);
         /* Late because of the line; the sequencer counted what came late to it. */
         if (late_us > GROBO_PLAY_LATE_US && slot->given_us - slot->due_us <= GROBO_PLAY_LATE_US) {
-            slot->robot->counters.late_frames++;
+            counters->late_frames++;
         }
     } else {
-        slot->robot->counters.late_frames++; /* a later one took its place */
+        counters->late_frames++; /* a later one took its place */
     }
 }
 
 /* ---- frames ---------------------------------------------------------------------------------- */
-
-void grobo_i_play_overtake(grobo_robot *robot)
-{
-    for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
-        grobo_robot_slot *slot = &robot->slots[i];
-        if (slot->use == GROBO_I_USE_MOTION && slot->txn.sent_us < 0) {
-            (void)grobo_bus_cancel(&robot->bus, &slot->txn);
-        }
-    }
-}
 
 static void give_up(grobo_robot *robot, int error)
 {
@@ -189,20 +228,38 @@ static void give_up(grobo_robot *robot, int error)
         grobo_i_trip(robot, error == GROBO_ERR_LIMIT ? GROBO_TRIP_LIMIT : GROBO_TRIP_NUMBER,
                      robot->fault_joint, robot->fault_deg, false);
     }
-    grobo_i_gate_halt(robot);
+    grobo_i_gate_halt(robot, grobo_i_all_joints(robot));
+}
+
+void grobo_i_play_done(grobo_robot_slot *slot, int result)
+{
+    grobo_robot *robot = slot->robot;
+    robot->counters.motion_frames += result >= 0;
+    if (slot->due_us != GROBO_NEVER_US) {
+        count_played(slot, result);
+        if (slot->refused) {
+            give_up(robot, result);
+        }
+    } else if (slot->refused && robot->job.kind != GROBO_JOB_NONE &&
+               slot->job == robot->job.number) {
+        grobo_i_job_end(robot, result);
+    }
 }
 
 static bool send_frame(grobo_robot *robot, const grobo_play_frame *frame)
 {
-    bool approach = frame->phase == GROBO_SEQUENCER_APPROACHING;
-    grobo_i_motion how = {GROBO_PRIORITY_MOTION, frame->due_us, !approach, false};
-    grobo_i_play_overtake(robot);
-    int result = grobo_i_gate_send(robot, &frame->posture, &how, NULL);
+    grobo_i_motion how = {.priority = GROBO_PRIORITY_MOTION,
+                          .due_us = frame->due_us,
+                          .each = frame->phase != GROBO_SEQUENCER_APPROACHING,
+                          .stops = frame->phase == GROBO_SEQUENCER_STOPPING,
+                          .rests = frame->phase == GROBO_SEQUENCER_STOPPING ||
+                                   frame->phase == GROBO_SEQUENCER_PAUSED};
+    grobo_i_slots_cancel_goals(robot);
+    int result = grobo_i_gate_send(robot, &frame->posture, &how);
     if (result < 0) {
         give_up(robot, result);
         return false;
     }
-    robot->soft = false;
     return true;
 }
 
@@ -217,10 +274,11 @@ static void watch_host(grobo_robot *robot)
                  false);
 }
 
-/* No reading is begun that would not be over when the next frame is due. */
-static void reserve(grobo_robot *robot)
+void grobo_i_play_reserve(grobo_robot *robot)
 {
     int64_t due_us = grobo_sequencer_deadline(&robot->sequencer);
+    int64_t renew_us = grobo_i_segments_due(robot);
+    due_us = renew_us < due_us ? renew_us : due_us;
     grobo_bus_reserve(&robot->bus, due_us, due_us == GROBO_NEVER_US ? 0 : robot->motion_us);
 }
 
@@ -240,20 +298,30 @@ void grobo_i_play_step(grobo_robot *robot)
         }
     }
     if (more < 0) {
-        grobo_i_gate_halt(robot);
+        grobo_i_gate_halt(robot, grobo_i_all_joints(robot));
     }
     robot->counters.late_frames += (uint32_t)(stats->late_frames - late_before);
-    reserve(robot);
+    tell_unwatched(robot);
+    grobo_i_play_reserve(robot);
 }
 
 /* ---- controls -------------------------------------------------------------------------------- */
 
+/* A clip may break under a command while the key that was sent last is still seconds away. */
+static int controlled(grobo_robot *robot, int result)
+{
+    if (grobo_sequencer_get_state(&robot->sequencer) == GROBO_SEQUENCER_FAILED &&
+        robot->told_state != GROBO_SEQUENCER_FAILED) {
+        grobo_i_gate_halt(robot, grobo_i_all_joints(robot));
+    }
+    grobo_i_leave(robot);
+    return result;
+}
+
 int grobo_robot_pause(grobo_robot *robot, int64_t now_us)
 {
     grobo_i_enter(robot, now_us);
-    int result = grobo_sequencer_pause(&robot->sequencer, robot->now_us);
-    grobo_i_leave(robot);
-    return result;
+    return controlled(robot, grobo_sequencer_pause(&robot->sequencer, robot->now_us));
 }
 
 int grobo_robot_resume(grobo_robot *robot, int64_t now_us)
@@ -261,41 +329,35 @@ int grobo_robot_resume(grobo_robot *robot, int64_t now_us)
     grobo_i_enter(robot, now_us);
     int result = robot->trip.latched ? GROBO_ERR_LATCHED
                                      : grobo_sequencer_resume(&robot->sequencer, robot->now_us);
-    grobo_i_leave(robot);
-    return result;
+    return controlled(robot, result);
 }
 
 int grobo_robot_stop(grobo_robot *robot, bool at_once, int64_t now_us)
 {
     grobo_i_enter(robot, now_us);
     int result = grobo_sequencer_stop(&robot->sequencer, at_once, robot->now_us);
-    bool moves = robot->job.kind == GROBO_JOB_MOVE;
-    if (moves || robot->job.kind == GROBO_JOB_PLAY) {
+    grobo_i_make_way(robot); /* it might send again what is stopped here */
+    bool job = robot->job.kind == GROBO_JOB_PLAY || grobo_i_job_moves(robot);
+    bool moves = job || grobo_i_moving(robot, robot->now_us);
+    if (job) {
         grobo_i_job_end(robot, GROBO_ERR_CANCELED);
-        result = GROBO_OK;
     }
-    if (moves || (result < 0 && grobo_i_gate_moving(robot))) {
-        grobo_i_gate_halt(robot);
-        result = GROBO_OK;
-    }
+    grobo_i_stop_moves(robot);
     grobo_i_leave(robot);
-    return result;
+    return moves ? GROBO_OK : result;
 }
 
 int grobo_robot_seek(grobo_robot *robot, int64_t clip_us, int64_t now_us)
 {
     grobo_i_enter(robot, now_us);
-    int result = grobo_sequencer_seek(&robot->sequencer, clip_us, robot->now_us);
-    grobo_i_leave(robot);
-    return result;
+    return controlled(robot, grobo_sequencer_seek(&robot->sequencer, clip_us, robot->now_us));
 }
 
 int grobo_robot_speed(grobo_robot *robot, int speed_pct, int64_t now_us)
 {
     grobo_i_enter(robot, now_us);
-    int result = grobo_sequencer_set_speed(&robot->sequencer, speed_pct, robot->now_us);
-    grobo_i_leave(robot);
-    return result;
+    return controlled(robot,
+                      grobo_sequencer_set_speed(&robot->sequencer, speed_pct, robot->now_us));
 }
 
 int grobo_robot_enqueue(grobo_robot *robot, const grobo_clip *clip,
@@ -305,8 +367,10 @@ int grobo_robot_enqueue(grobo_robot *robot, const grobo_clip *clip,
     grobo_play_options chosen;
     grobo_joint_mask joints = 0;
     grobo_i_play_options(robot, options, &chosen);
-    int result = robot->trip.latched ? GROBO_ERR_LATCHED
-                                     : grobo_i_play_joints(robot, clip, &chosen, &joints);
+    int result = robot->trip.latched ? GROBO_ERR_LATCHED : grobo_i_play_rate(robot, &chosen);
+    if (result >= 0) {
+        result = grobo_i_play_joints(robot, clip, &chosen, &joints);
+    }
     if (result >= 0 && !grobo_i_gate_ready(robot, joints)) {
         result = GROBO_ERR_STATE; /* it would move in frames only */
     }

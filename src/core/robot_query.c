@@ -16,9 +16,9 @@ int grobo_robot_joint(const grobo_robot *robot, int joint, int64_t now_us, grobo
     info->state = axis->state;
     info->angle_age_us = age(axis->angle_us, now_us);
     info->full_age_us = age(axis->full_us, now_us);
-    info->target_rad = axis->way.to_rad;
+    info->target_rad = grobo_i_axis_target(axis);
     info->status = axis->status;
-    info->has_target = axis->has_target;
+    info->has_target = axis->has_target || axis->next != 0;
     info->torque_known = axis->torque_known;
     return GROBO_OK;
 }
@@ -41,8 +41,9 @@ int grobo_robot_target(const grobo_robot *robot, grobo_posture *posture)
 {
     (void)grobo_posture_init(posture, robot->driver->model->n_joints);
     for (int j = 0; j < posture->n_joints; j++) {
-        if (robot->axes[j].has_target) {
-            posture->angle_rad[j] = robot->axes[j].way.to_rad;
+        const grobo_robot_axis *axis = &robot->axes[j];
+        if (axis->has_target || axis->next != 0) {
+            posture->angle_rad[j] = grobo_i_axis_target(axis);
             posture->set |= GROBO_JOINT_BIT(j);
         }
     }
@@ -51,11 +52,21 @@ int grobo_robot_target(const grobo_robot *robot, grobo_posture *posture)
 
 bool grobo_robot_moving(const grobo_robot *robot, int64_t now_us)
 {
-    bool moving = grobo_i_in_motion(robot) || robot->job.kind == GROBO_JOB_PLAY;
-    for (int j = 0; !moving && j < robot->driver->model->n_joints; j++) {
-        moving = robot->axes[j].has_target && robot->axes[j].way.to_us > now_us;
+    return grobo_i_in_motion(robot) || robot->job.kind == GROBO_JOB_PLAY ||
+           grobo_i_moving(robot, now_us);
+}
+
+bool grobo_robot_stops(const grobo_robot *robot, int64_t now_us)
+{
+    bool waits = false;
+    for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
+        const grobo_robot_slot *slot = &robot->slots[i];
+        bool stops = slot->order.stops || (slot->txn.priority == GROBO_PRIORITY_STOP &&
+                                           slot->order.deed != GROBO_I_DEED_NONE);
+        waits =
+            waits || (slot->use != GROBO_I_USE_FREE && grobo_txn_is_pending(&slot->txn) && stops);
     }
-    return moving;
+    return waits && robot->bus.active == NULL && grobo_bus_free_at(&robot->bus, now_us) <= now_us;
 }
 
 bool grobo_robot_settling(const grobo_robot *robot)
@@ -94,6 +105,11 @@ const grobo_bus_stats *grobo_robot_get_bus_stats(const grobo_robot *robot)
 grobo_sequencer_state grobo_robot_play_state(const grobo_robot *robot)
 {
     return grobo_sequencer_get_state(&robot->sequencer);
+}
+
+bool grobo_robot_is_quiet(const grobo_robot *robot)
+{
+    return grobo_bus_pending(&robot->bus) == 0;
 }
 
 bool grobo_robot_is_playing(const grobo_robot *robot)

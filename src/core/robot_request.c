@@ -5,8 +5,9 @@
 #include <math.h>
 #include <string.h>
 
-/* What the engine does after a motion makes way for anything. */
-static void make_way(grobo_robot *robot)
+#include "core/instant.h"
+
+void grobo_i_make_way(grobo_robot *robot)
 {
     robot->settling = false;
     if (robot->job.kind == GROBO_JOB_SETTLE) {
@@ -20,7 +21,7 @@ static int admit(grobo_robot *robot, bool moves)
     if (!robot->link) {
         return GROBO_ERR_CLOSED;
     }
-    make_way(robot);
+    grobo_i_make_way(robot);
     if (robot->job.kind != GROBO_JOB_NONE) {
         return GROBO_ERR_STATE;
     }
@@ -123,18 +124,19 @@ int grobo_robot_move(grobo_robot *robot, const grobo_posture *target, int64_t no
     return begin(robot, number);
 }
 
+/* One that was not sensed either is refused for that. */
 static bool all_hold(const grobo_robot *robot, grobo_joint_mask joints)
 {
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
-        if ((joints & GROBO_JOINT_BIT(j)) != 0 && axis->sensed &&
-            !(axis->torque_known && axis->state.torque == GROBO_TORQUE_ON)) {
+        if ((joints & GROBO_JOINT_BIT(j)) != 0 && axis->sensed && !grobo_i_axis_is_on(axis)) {
             return false;
         }
     }
     return true;
 }
 
+/* A target for joints that nothing is read of before. */
 static int admit_target(const grobo_robot *robot, const grobo_posture *target)
 {
     if (!robot->link) {
@@ -146,33 +148,61 @@ static int admit_target(const grobo_robot *robot, const grobo_posture *target)
     if (target->set == 0) {
         return GROBO_ERR_ARG;
     }
-    bool busy = grobo_i_in_motion(robot) || robot->job.kind == GROBO_JOB_PLAY ||
-                robot->job.kind == GROBO_JOB_EXIT || robot->job.kind == GROBO_JOB_COMMAND;
-    bool ready = all_hold(robot, target->set) && !grobo_i_adrift(robot, target->set);
-    return busy || !ready ? GROBO_ERR_STATE : GROBO_OK;
+    bool others = (target->set & robot->free_joints) != 0 || grobo_i_adrift(robot, target->set);
+    return others || !all_hold(robot, target->set) ? GROBO_ERR_STATE : GROBO_OK;
+}
+
+/* True while something moves the robot that a target of the caller's stream must not disturb. */
+static bool is_taken(const grobo_robot *robot)
+{
+    return grobo_i_in_motion(robot) || robot->job.kind == GROBO_JOB_PLAY ||
+           robot->job.kind == GROBO_JOB_EXIT || robot->job.kind == GROBO_JOB_COMMAND;
 }
 
 int grobo_robot_send(grobo_robot *robot, const grobo_posture *target, int64_t now_us)
 {
     grobo_i_enter(robot, now_us);
-    grobo_i_motion how = {GROBO_PRIORITY_MOTION, GROBO_NEVER_US, true, false};
-    int64_t time_us = 0;
+    grobo_i_motion how = {
+        .priority = GROBO_PRIORITY_MOTION, .due_us = GROBO_NEVER_US, .each = true, .single = true};
     int result = admit_target(robot, target);
-    if (result >= 0) {
-        make_way(robot);
-        grobo_i_gate_single(robot);
-        grobo_i_play_overtake(robot);
-        result = grobo_i_gate_send(robot, target, &how, &time_us);
+    if (result >= 0 && is_taken(robot)) {
+        result = GROBO_ERR_STATE;
     }
     if (result >= 0) {
-        grobo_i_gate_single_sent(robot, time_us);
+        grobo_i_make_way(robot);
+        grobo_i_gate_single(robot);
+        grobo_i_slots_cancel_goals(robot);
+        result = grobo_i_gate_send(robot, target, &how);
     }
     grobo_i_leave(robot);
     return result < 0 ? result : GROBO_OK;
 }
 
+int grobo_robot_retarget(grobo_robot *robot, const grobo_posture *target, int64_t now_us)
+{
+    grobo_i_enter(robot, now_us);
+    grobo_posture checked = *target;
+    int result = admit_target(robot, target);
+    bool sent = grobo_i_move_is_sent(robot) && !robot->soft;
+    if (result >= 0 && (!sent || (robot->job.joints & ~target->set) != 0)) {
+        result = GROBO_ERR_STATE;
+    }
+    if (result >= 0) {
+        result = grobo_i_gate_target(robot, &checked);
+    }
+    if (result >= 0 && !grobo_i_all_sensed(robot, checked.set, &robot->fault_joint)) {
+        result = GROBO_ERR_STALE;
+    }
+    if (result >= 0) {
+        result = robot->job.number;
+        grobo_i_move_retarget(robot, &checked);
+    }
+    grobo_i_leave(robot);
+    return result;
+}
+
 /* May this clip be played now? *joints: those it moves. */
-static int admit_clip(grobo_robot *robot, const grobo_clip *clip, const grobo_play_options *options,
+static int admit_clip(grobo_robot *robot, const grobo_clip *clip, grobo_play_options *options,
                       grobo_joint_mask *joints)
 {
     int result = admit(robot, true);
@@ -189,7 +219,7 @@ static int admit_clip(grobo_robot *robot, const grobo_clip *clip, const grobo_pl
     if (result >= 0 && !joints_sound(robot, *joints)) {
         result = *joints == 0 ? GROBO_ERR_EMPTY : GROBO_ERR_ARG;
     }
-    return result;
+    return result < 0 ? result : grobo_i_play_rate(robot, options);
 }
 
 int grobo_robot_play(grobo_robot *robot, const grobo_clip *clip, const grobo_play_options *options,
@@ -213,33 +243,54 @@ int grobo_robot_play(grobo_robot *robot, const grobo_clip *clip, const grobo_pla
 
 /* ---- frames of other kinds ------------------------------------------------------------------- */
 
-static int begin_exchange(grobo_robot *robot, grobo_job_kind kind, const grobo_exchange *exchange)
+/* Sends an exchange, which is judged again when it leaves. */
+static int start_exchange(grobo_robot *robot, grobo_job_kind kind, const grobo_robot_order *order,
+                          const grobo_exchange *exchange)
 {
     int number = grobo_i_job_start(robot, kind, grobo_i_script_ask);
     robot->job.exchange = *exchange;
-    return begin(robot, number);
+    robot->job.order = *order;
+    return number;
+}
+
+static int begin_exchange(grobo_robot *robot, grobo_job_kind kind, const grobo_robot_order *order,
+                          const grobo_exchange *exchange)
+{
+    return begin(robot, start_exchange(robot, kind, order, exchange));
 }
 
 int grobo_robot_raw(grobo_robot *robot, const uint8_t *frame, size_t size, int64_t now_us)
 {
+    return grobo_robot_raw_until(robot, frame, size, GROBO_NEVER_US, now_us);
+}
+
+int grobo_robot_raw_until(grobo_robot *robot, const uint8_t *frame, size_t size, int64_t until_us,
+                          int64_t now_us)
+{
     grobo_exchange exchange = {0};
+    grobo_robot_order order;
     grobo_i_enter(robot, now_us);
     int result = admit(robot, false);
     if (size == 0 || size > sizeof exchange.frame) {
         result = GROBO_ERR_ARG;
     }
+    if (result >= 0 && until_us < robot->now_us) {
+        result = GROBO_ERR_STALE;
+    }
     if (result >= 0) {
-        result = grobo_i_gate_raw(robot, frame, size);
+        memcpy(exchange.frame, frame, size);
+        exchange.frame_bytes = (uint8_t)size;
+        result = grobo_i_gate_raw(robot, &exchange, &order);
     }
     if (result < 0) {
         return refuse(robot, result);
     }
-    memcpy(exchange.frame, frame, size);
-    exchange.frame_bytes = (uint8_t)size;
     if (grobo_frame_reply(robot->driver->wiring, frame, size, &exchange.reply) < 0) {
         exchange.reply.kind = GROBO_REPLY_NONE;
     }
-    return begin_exchange(robot, GROBO_JOB_RAW, &exchange);
+    int number = start_exchange(robot, GROBO_JOB_RAW, &order, &exchange);
+    robot->job.leave_by_us = until_us == GROBO_NEVER_US ? 0 : until_us;
+    return begin(robot, number);
 }
 
 static bool touches(const grobo_register_io *io, int address, int bytes)
@@ -253,35 +304,29 @@ static bool changes_goal(const grobo_register_io *io)
     return touches(io, GROBO_RS30X_ID, 2) || touches(io, GROBO_RS30X_CW_LIMIT, 4);
 }
 
-static int admit_write(const grobo_robot *robot, const grobo_register_io *io)
+/* The joint of a motor, none where it is not the model's. */
+static grobo_joint_mask joint_of(const grobo_robot *robot, int id)
+{
+    int joint = grobo_model_joint_of_motor(robot->driver->model, id);
+    return joint >= 0 ? GROBO_JOINT_BIT(joint) : 0;
+}
+
+static int admit_write(grobo_robot *robot, const grobo_register_io *io, grobo_robot_order *order)
 {
     if (touches(io, GROBO_RS30X_GOAL, 4) || touches(io, GROBO_RS30X_TORQUE, 1)) {
         return GROBO_ERR_UNSUPPORTED;
     }
-    int joint = grobo_model_joint_of_motor(robot->driver->model, io->id);
-    if (joint < 0 || !changes_goal(io)) {
-        return GROBO_OK;
+    if (changes_goal(io)) {
+        order->deed = GROBO_I_DEED_SETTING;
+        order->joints = joint_of(robot, io->id);
     }
-    const grobo_robot_axis *axis = &robot->axes[joint];
-    if (!axis->torque_known) {
-        return GROBO_ERR_STALE;
-    }
-    return axis->state.torque == GROBO_TORQUE_ON ? GROBO_ERR_STATE : GROBO_OK;
-}
-
-/* After these the servo is without torque, whatever it was before, and must be read anew. */
-static void expect_no_torque(grobo_robot *robot, int id)
-{
-    int joint = grobo_model_joint_of_motor(robot->driver->model, id);
-    if (joint >= 0) {
-        robot->axes[joint].wants_torque = robot->axes[joint].torque_known = false;
-        grobo_i_gate_forget(robot, GROBO_JOINT_BIT(joint));
-    }
+    return grobo_i_gate_judge(robot, order, NULL);
 }
 
 int grobo_robot_registers(grobo_robot *robot, const grobo_register_io *io, int64_t now_us)
 {
     grobo_exchange exchange = {0};
+    grobo_robot_order order = {.deed = GROBO_I_DEED_NONE};
     grobo_i_enter(robot, now_us);
     int result = admit(robot, false);
     if (io->id < 1 || io->id > GROBO_SERVO_ID_MAX || io->length < 1 ||
@@ -292,7 +337,7 @@ int grobo_robot_registers(grobo_robot *robot, const grobo_register_io *io, int64
         result = GROBO_ERR_UNSUPPORTED;
     }
     if (result >= 0 && io->data != NULL) {
-        result = admit_write(robot, io);
+        result = admit_write(robot, io, &order);
     }
     if (result >= 0) {
         result = robot->driver->registers(robot->driver, robot->driver_ctx, io, &exchange);
@@ -300,19 +345,17 @@ int grobo_robot_registers(grobo_robot *robot, const grobo_register_io *io, int64
     if (result < 0) {
         return refuse(robot, result);
     }
-    if (io->data != NULL && changes_goal(io)) {
-        expect_no_torque(robot, io->id); /* nor is it where it was read */
-    }
-    return begin_exchange(robot, GROBO_JOB_REGISTERS, &exchange);
+    return begin_exchange(robot, GROBO_JOB_REGISTERS, &order, &exchange);
 }
 
 int grobo_robot_command(grobo_robot *robot, int id, grobo_servo_command command, int64_t now_us)
 {
     grobo_exchange exchange = {0};
+    grobo_robot_order order = {.deed = GROBO_I_DEED_COMMAND};
     grobo_i_enter(robot, now_us);
     int result = admit(robot, false);
-    if (result >= 0 && (grobo_robot_is_playing(robot) || grobo_i_gate_moving(robot))) {
-        result = GROBO_ERR_STATE; /* it needs silence, and the others would go on without it */
+    if (result >= 0) {
+        result = grobo_i_gate_judge(robot, &order, NULL);
     }
     if (id < 1 || id > GROBO_SERVO_ID_MAX || (unsigned)command > GROBO_SERVO_FACTORY_RESET) {
         result = GROBO_ERR_ARG;
@@ -326,19 +369,19 @@ int grobo_robot_command(grobo_robot *robot, int id, grobo_servo_command command,
     if (result < 0) {
         return refuse(robot, result);
     }
-    if (command != GROBO_SERVO_FLASH) {
-        expect_no_torque(robot, id);
-    }
-    return begin_exchange(robot, GROBO_JOB_COMMAND, &exchange);
+    order.joints = command != GROBO_SERVO_FLASH ? joint_of(robot, id) : 0;
+    return begin_exchange(robot, GROBO_JOB_COMMAND, &order, &exchange);
 }
 
 int grobo_robot_stored(grobo_robot *robot, grobo_stored_kind kind, int number, int64_t now_us)
 {
     grobo_exchange exchange = {0};
+    grobo_robot_order order = {
+        .deed = GROBO_I_DEED_UNKNOWN, .joints = grobo_i_all_joints(robot), .moves = true};
     grobo_i_enter(robot, now_us);
     int result = admit(robot, true);
-    if (result >= 0 && grobo_robot_is_playing(robot)) {
-        result = GROBO_ERR_STATE;
+    if (result >= 0) {
+        result = grobo_i_gate_judge(robot, &order, NULL);
     }
     if (result >= 0 && robot->driver->stored == NULL) {
         result = GROBO_ERR_UNSUPPORTED;
@@ -349,24 +392,41 @@ int grobo_robot_stored(grobo_robot *robot, grobo_stored_kind kind, int number, i
     if (result < 0) {
         return refuse(robot, result);
     }
-    grobo_i_gate_forget(robot, grobo_i_all_joints(robot)); /* its own targets are not known to us */
-    return begin_exchange(robot, GROBO_JOB_STORED, &exchange);
+    robot->free_joints = 0;
+    return begin_exchange(robot, GROBO_JOB_STORED, &order, &exchange);
 }
 
 /* ---- ends ------------------------------------------------------------------------------------ */
 
+void grobo_i_stop_moves(grobo_robot *robot)
+{
+    grobo_joint_mask joints =
+        grobo_robot_is_playing(robot) ? robot->raw_joints : grobo_i_all_joints(robot);
+    grobo_i_slots_cancel_goals(robot);
+    if (joints != 0) {
+        grobo_i_gate_halt(robot, joints);
+    }
+}
+
+bool grobo_i_job_moves(const grobo_robot *robot)
+{
+    return robot->job.kind == GROBO_JOB_MOVE ||
+           (robot->job.kind != GROBO_JOB_NONE && robot->job.order.moves);
+}
+
 /* Ends the job that runs to make place for another; what it moves is stopped, or all that moves. */
 static void displace(grobo_robot *robot, bool all)
 {
-    bool moved = all || robot->job.kind == GROBO_JOB_MOVE;
+    bool moves = all || grobo_i_job_moves(robot);
     if (robot->job.kind == GROBO_JOB_PLAY && grobo_robot_is_playing(robot)) {
         (void)grobo_sequencer_stop(&robot->sequencer, false, robot->now_us);
+        grobo_i_slots_cancel_goals(robot);
     }
     if (robot->job.kind != GROBO_JOB_NONE) {
         grobo_i_job_end(robot, GROBO_ERR_CANCELED);
     }
-    if (moved && !grobo_robot_is_playing(robot)) {
-        grobo_i_gate_halt(robot);
+    if (moves) {
+        grobo_i_stop_moves(robot);
     }
 }
 
@@ -406,16 +466,16 @@ int grobo_robot_exit(grobo_robot *robot, grobo_exit_policy policy, int64_t now_u
                              : (unsigned)policy > GROBO_EXIT_SIT ? GROBO_ERR_ARG
                                                                  : GROBO_ERR_STATE);
     }
-    displace(robot, true);
     if (grobo_robot_is_playing(robot)) {
         (void)grobo_sequencer_stop(&robot->sequencer, false, robot->now_us);
     }
+    displace(robot, true);
+    grobo_i_slots_cancel(robot, GROBO_I_USE_PLAIN); /* such as torque that free mode asked for */
     int number = grobo_i_job_start(robot, GROBO_JOB_EXIT, exit_script(robot, policy));
     robot->job.joints = grobo_i_all_joints(robot);
     robot->job.torque = GROBO_TORQUE_OFF;
-    robot->job.bound_us = robot->config.exit_bound_us < GROBO_NEVER_US - robot->now_us
-                              ? robot->now_us + robot->config.exit_bound_us
-                              : GROBO_NEVER_US;
+    robot->job.bound_us =
+        robot->now_us + grobo_i_sooner(robot->config.exit_bound_us, GROBO_NEVER_US - robot->now_us);
     robot->free_joints = 0;
     return begin(robot, number);
 }
@@ -452,6 +512,17 @@ int grobo_robot_estop(grobo_robot *robot, int64_t now_us)
     int number = robot->link ? grobo_i_estop_start(robot) : GROBO_ERR_CLOSED;
     grobo_i_leave(robot);
     return number;
+}
+
+int grobo_robot_latch(grobo_robot *robot, int64_t now_us)
+{
+    grobo_i_enter(robot, now_us);
+    int result = grobo_i_in_motion(robot) ? GROBO_ERR_STATE : GROBO_OK;
+    if (result >= 0 && robot->trip.trip != GROBO_TRIP_ESTOP) {
+        grobo_i_trip(robot, GROBO_TRIP_ESTOP, -1, 0, true);
+    }
+    grobo_i_leave(robot);
+    return result;
 }
 
 int grobo_robot_reset(grobo_robot *robot, int64_t now_us)

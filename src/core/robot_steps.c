@@ -9,9 +9,13 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/instant.h"
+
 /* Rounds of writing again; a line that loses a byte in a hundred needs some. */
 #define ROUNDS 10
 #define ROUNDS_ESTOP 20
+/* A servo that writes its flash or restarts hears again after this time. */
+#define DEAF_US 2500000
 /* A servo starts when its frame has passed board and bus, and settles. */
 #define ARRIVAL_US 40000
 /* How often a quieting robot is looked at. */
@@ -38,11 +42,12 @@ static bool near_rad(double a_rad, double b_rad, double within_rad)
 static int again(grobo_robot *robot, grobo_joint_mask bad, grobo_robot_step_fn step)
 {
     grobo_robot_task *job = &robot->job;
+    bool ends = job->kind == GROBO_JOB_ESTOP || job->kind == GROBO_JOB_EXIT;
     int rounds = job->kind == GROBO_JOB_ESTOP ? ROUNDS_ESTOP : ROUNDS;
     if (bad == 0) {
         return GROBO_I_NEXT;
     }
-    if (job->rounds++ < rounds) {
+    if (job->rounds++ < rounds || (ends && robot->now_us < job->begun_us + DEAF_US)) {
         job->failed &= ~bad;
         job->result = job->failed == 0 ? GROBO_OK : job->result;
         grobo_i_job_goto(robot, step);
@@ -66,7 +71,8 @@ static int ask(grobo_robot *robot, const grobo_exchange *exchange)
         return GROBO_ERR_FULL;
     }
     slot->exchange = *exchange;
-    slot->motion = robot->job.kind == GROBO_JOB_RAW ? robot->motion : 0;
+    slot->order = robot->job.order;
+    slot->txn.start_by_us = robot->job.leave_by_us;
     int result = grobo_i_slot_send(slot, robot->job.priority);
     return result < 0 ? result : GROBO_I_ASK;
 }
@@ -202,8 +208,10 @@ static int step_hold_check(grobo_robot *robot)
     grobo_joint_mask bad = 0;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         if (is_set(job->pending, j)) {
-            robot->axes[j].held = !is_set(job->failed, j) && grobo_i_goal_holds(robot, j);
-            bad |= robot->axes[j].held ? 0 : GROBO_JOINT_BIT(j);
+            grobo_robot_axis *axis = &robot->axes[j];
+            bool is_new = axis->goal_us != GROBO_NEVER_US && axis->goal_us >= axis->told_us;
+            axis->held = !is_set(job->failed, j) && is_new && grobo_i_goal_holds(robot, j);
+            bad |= axis->held ? 0 : GROBO_JOINT_BIT(j);
         }
     }
     return again(robot, bad, step_hold);
@@ -266,19 +274,16 @@ static int step_aim(grobo_robot *robot)
 static int step_send(grobo_robot *robot)
 {
     grobo_robot_task *job = &robot->job;
-    bool again_as_it_was = job->kind == GROBO_JOB_SETTLE; /* the stabilizer has seen it */
-    grobo_i_motion how = {job->priority, GROBO_NEVER_US, false, again_as_it_was};
+    grobo_i_motion how = {.priority = job->priority,
+                          .due_us = GROBO_NEVER_US,
+                          .as_is = job->kind == GROBO_JOB_SETTLE, /* the stabilizer has seen it */
+                          .stops = job->kind == GROBO_JOB_EXIT};
     grobo_joint_mask left = job->pending;
-    int64_t longest_us = 0;
-    if (left == 0) {
-        return GROBO_I_NEXT;
-    }
     while (left != 0) {
-        int64_t time_us = 0;
         grobo_posture part = job->target;
         part.set = grobo_i_take_chunk(&left, chunk_of(robot));
-        int result = grobo_i_gate_send(robot, &part, &how, &time_us);
-        if (result == GROBO_ERR_FULL && longest_us > 0) {
+        int result = grobo_i_gate_send(robot, &part, &how);
+        if (result == GROBO_ERR_FULL && (left | part.set) != job->pending) {
             break; /* the rest in the next round */
         }
         if (result < 0) {
@@ -286,9 +291,24 @@ static int step_send(grobo_robot *robot)
             job->value = robot->fault_deg;
             return result;
         }
-        longest_us = time_us > longest_us ? time_us : longest_us;
     }
-    job->until_us = robot->now_us + longest_us + ARRIVAL_US;
+    return GROBO_I_DRAIN;
+}
+
+/* Until those that were sent are there: they got their time when their frames left. */
+static int step_arrive(grobo_robot *robot)
+{
+    grobo_robot_task *job = &robot->job;
+    int64_t there_us = robot->now_us;
+    if (job->pending == 0) {
+        return GROBO_I_NEXT;
+    }
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if (is_set(job->pending, j)) {
+            there_us = grobo_i_later(there_us, robot->axes[j].way.to_us);
+        }
+    }
+    job->until_us = there_us + ARRIVAL_US;
     return GROBO_I_WAIT;
 }
 
@@ -298,14 +318,27 @@ static int step_read_back(grobo_robot *robot)
     return step_read_pending(robot);
 }
 
+/* True if the goal read is the one that the joint was sent to, or of a way told in segments lies
+ * ahead of where the joint was by then. */
+static bool has_taken(const grobo_robot_axis *axis)
+{
+    const grobo_robot_way *way = &axis->way;
+    double goal_rad = axis->state.goal_rad;
+    if (!axis->in_segments || axis->goal_us >= way->to_us) {
+        return near_rad(goal_rad, way->to_rad, SAME_GOAL_RAD);
+    }
+    double here_rad = grobo_i_way_at(way, axis->goal_us);
+    return goal_rad >= fmin(here_rad, way->to_rad) - SAME_GOAL_RAD &&
+           goal_rad <= fmax(here_rad, way->to_rad) + SAME_GOAL_RAD;
+}
+
 /* Of the joints just read, those whose goal is not the one they were sent to. */
 static grobo_joint_mask not_taken(const grobo_robot *robot)
 {
     grobo_joint_mask read = robot->job.pending & ~robot->job.failed;
     grobo_joint_mask bad = 0;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        const grobo_robot_axis *axis = &robot->axes[j];
-        if (is_set(read, j) && !near_rad(axis->state.goal_rad, axis->way.to_rad, SAME_GOAL_RAD)) {
+        if (is_set(read, j) && !has_taken(&robot->axes[j])) {
             bad |= GROBO_JOINT_BIT(j);
         }
     }
@@ -352,8 +385,9 @@ static int step_play(grobo_robot *robot)
     int result = grobo_i_play_start(robot);
     job->pending = 0;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        const grobo_robot_way *way = &robot->axes[j].way;
-        if (robot->axes[j].has_target && !near_rad(way->from_rad, way->to_rad, FAR_RAD)) {
+        const grobo_robot_axis *axis = &robot->axes[j];
+        double here_rad = grobo_i_axis_commanded(axis, robot->now_us);
+        if (axis->next != 0 && !near_rad(here_rad, axis->next_rad, FAR_RAD)) {
             job->pending |= GROBO_JOINT_BIT(j);
         }
     }
@@ -382,7 +416,7 @@ static int step_approached(grobo_robot *robot)
     }
     grobo_sequencer_reset(&robot->sequencer);
     if (job->restarts++ >= ROUNDS) {
-        grobo_i_gate_halt(robot);
+        grobo_i_gate_halt(robot, grobo_i_all_joints(robot));
         return GROBO_ERR_MISMATCH;
     }
     grobo_i_gate_soften(robot);
@@ -404,12 +438,12 @@ static int step_aim_last(grobo_robot *robot)
 
 static int step_quiet(grobo_robot *robot)
 {
-    int64_t still_us = robot->now_us;
+    bool still = !grobo_robot_is_playing(robot) && !grobo_i_slots_busy(robot, GROBO_I_USE_HALT);
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        int64_t to_us = robot->axes[j].way.to_us;
-        still_us = to_us > still_us ? to_us : still_us;
+        const grobo_robot_axis *axis = &robot->axes[j];
+        still = still && axis->next == 0 && axis->way.to_us <= robot->now_us;
     }
-    if (!grobo_robot_is_playing(robot) && still_us <= robot->now_us) {
+    if (still) {
         return GROBO_I_NEXT;
     }
     grobo_i_job_goto(robot, step_quiet);
@@ -436,9 +470,8 @@ static bool is_astray(grobo_robot *robot, int joint)
         axis->own_until_us = axis->goal_us + left_us;
     }
     grobo_i_axis_here(axis, robot->now_us);
-    if (axis->way.to_us <= robot->now_us) {
-        axis->way.to_us = robot->now_us + 1; /* to where nobody knows: it stops where it was */
-    }
+    /* To where nobody knows: it stops where it was. */
+    axis->way.to_us = grobo_i_later(axis->way.to_us, robot->now_us + 1);
     axis->has_target = true;
     return true;
 }
@@ -454,7 +487,7 @@ static int step_strays(grobo_robot *robot)
         }
     }
     if (astray != 0 && job->rounds < ROUNDS) {
-        grobo_i_gate_halt(robot);
+        grobo_i_gate_halt(robot, grobo_i_all_joints(robot));
     }
     return again(robot, astray, step_quiet);
 }
@@ -479,7 +512,7 @@ static int step_aim_rest(grobo_robot *robot)
     step_pick_off, step_hold, step_read_pending, step_hold_check, step_torque, step_read_pending,  \
         step_torque_check
 #define SWITCH step_pick_all, step_torque, step_read_pending, step_torque_check
-#define MOVE step_send, step_read_back, step_arrived
+#define MOVE step_send, step_arrive, step_read_back, step_arrived
 
 const grobo_robot_step_fn grobo_i_script_check[] = {step_check, step_check_next, NULL};
 const grobo_robot_step_fn grobo_i_script_sense[] = {step_read, NULL};
@@ -499,3 +532,33 @@ const grobo_robot_step_fn grobo_i_script_exit_hold[] = {step_quiet, step_read, s
 const grobo_robot_step_fn grobo_i_script_exit_sit[] = {
     step_quiet,    step_read, step_read_again, step_require, step_from_here,
     step_aim_rest, MOVE,      step_require,    SWITCH,       NULL};
+
+/* ---- another target -------------------------------------------------------------------------- */
+
+bool grobo_i_move_is_sent(const grobo_robot *robot)
+{
+    const grobo_robot_task *job = &robot->job;
+    unsigned sending = 0;
+    if (job->kind != GROBO_JOB_MOVE) {
+        return false;
+    }
+    while (job->script[sending] != step_send) {
+        sending++;
+    }
+    return job->at > sending;
+}
+
+/* A reading on the wire comes to its end; whatever else the job waits for is over. */
+void grobo_i_move_retarget(grobo_robot *robot, const grobo_posture *target)
+{
+    grobo_robot_task *job = &robot->job;
+    grobo_i_slots_cancel_goals(robot);
+    job->target = *target;
+    job->joints = job->pending = target->set;
+    job->rounds = 0;
+    job->failed = job->todo = 0;
+    job->result = GROBO_OK;
+    job->until_us = robot->now_us;
+    grobo_i_job_goto(robot, step_send);
+    grobo_i_job_run(robot);
+}

@@ -39,19 +39,19 @@ int grobo_rs30x_state_decode(uint8_t address, const uint8_t *data, size_t n,
             field = grobo_i_span_at(block, (size_t)(fields[i].address - address), fields[i].bytes);
         }
         if (field != NULL) {
-            memcpy(window + fields[i].address - WINDOW_AT, field, fields[i].bytes);
+            memcpy(&window[fields[i].address - WINDOW_AT], field, fields[i].bytes);
             has |= 1u << i;
             found++;
         }
     }
     state->torque = window[GROBO_RS30X_TORQUE - WINDOW_AT];
-    state->pos_ddeg = grobo_i_get_i16(window + GROBO_RS30X_POSITION - WINDOW_AT);
-    state->time_cs = grobo_i_get_u16(window + GROBO_RS30X_TIME - WINDOW_AT);
-    state->speed_dps = grobo_i_get_i16(window + GROBO_RS30X_SPEED - WINDOW_AT);
-    state->current_ma = grobo_i_get_u16(window + GROBO_RS30X_CURRENT - WINDOW_AT);
-    state->temperature_c = grobo_i_get_i16(window + GROBO_RS30X_TEMPERATURE - WINDOW_AT);
+    state->pos_ddeg = grobo_i_get_i16(&window[GROBO_RS30X_POSITION - WINDOW_AT]);
+    state->time_cs = grobo_i_get_u16(&window[GROBO_RS30X_TIME - WINDOW_AT]);
+    state->speed_dps = grobo_i_get_i16(&window[GROBO_RS30X_SPEED - WINDOW_AT]);
+    state->current_ma = grobo_i_get_u16(&window[GROBO_RS30X_CURRENT - WINDOW_AT]);
+    state->temperature_c = grobo_i_get_i16(&window[GROBO_RS30X_TEMPERATURE - WINDOW_AT]);
     state->voltage_mv =
-        (uint32_t)grobo_i_get_u16(window + GROBO_RS30X_VOLTAGE - WINDOW_AT) * VOLTAGE_UNIT_MV;
+        (uint32_t)grobo_i_get_u16(&window[GROBO_RS30X_VOLTAGE - WINDOW_AT]) * VOLTAGE_UNIT_MV;
     state->has = (uint8_t)has;
     return found;
 }

@@ -64,8 +64,8 @@ void grobo_i_trip(grobo_robot *robot, grobo_trip reason, int joint, double value
     if (latched) {
         robot->trip = event.u.trip;
         robot->free_joints = 0;
-        grobo_i_slots_keep_off(robot);
     }
+    grobo_i_slots_cancel_goals(robot);
     robot->counters.trips++;
     grobo_i_tell(robot, &event);
     if (grobo_robot_is_playing(robot)) {
@@ -76,10 +76,7 @@ void grobo_i_trip(grobo_robot *robot, grobo_trip reason, int joint, double value
     }
     /* Before an emergency stop nothing goes out, and who leaves is on the way already. */
     if (latched && reason != GROBO_TRIP_ESTOP && robot->job.kind != GROBO_JOB_EXIT) {
-        grobo_i_slots_cancel(robot, GROBO_I_USE_PLAIN); /* such as torque that waits to come on */
-        if (!grobo_robot_is_playing(robot)) {
-            grobo_i_gate_halt(robot);
-        }
+        grobo_i_stop_moves(robot);
     }
 }
 
@@ -149,7 +146,7 @@ void grobo_i_watch_lost(grobo_robot *robot, int joint)
 {
     int limit = robot->config.lost_replies;
     int lost = robot->axes[joint].lost;
-    bool moves = grobo_i_in_motion(robot) || grobo_i_gate_moving(robot);
+    bool moves = grobo_i_in_motion(robot) || grobo_i_moving(robot, robot->now_us);
     if (limit > 0 && lost >= limit && moves) {
         grobo_i_trip(robot, GROBO_TRIP_LOST_REPLIES, joint, lost, true);
     }

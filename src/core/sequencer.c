@@ -148,7 +148,6 @@ static int begin(grobo_sequencer *seq, bool soft)
 /* The pass is over: again, the next clip, or the end. */
 static int end_pass(grobo_sequencer *seq)
 {
-    grobo_i_arrive(seq);
     if (seq->pass < seq->item.options.repeat) {
         seq->pass++;
         seq->anchor_pos_us = 0;
@@ -160,7 +159,6 @@ static int end_pass(grobo_sequencer *seq)
     }
     seq->state = GROBO_SEQUENCER_FINISHED;
     seq->anchor_pos_us = seq->item.span_us;
-    seq->waits = false;
     return 0;
 }
 
@@ -183,7 +181,6 @@ static int start_playing(grobo_sequencer *seq)
 {
     seq->state = GROBO_SEQUENCER_PLAYING;
     seq->anchor_us = seq->to_us;
-    grobo_i_arrive(seq);
     if (seq->item.options.mode == GROBO_PLAY_RATE) {
         seq->grid_us = seq->to_us;
         seq->grid_rest = seq->item.options.rate_hz / 2u;
@@ -335,7 +332,6 @@ int grobo_sequencer_play(grobo_sequencer *seq, const grobo_clip *clip,
         (void)grobo_posture_init(&seq->from, clip->n_joints);
     }
     seq->skipped = 0;
-    seq->error = 0;
     seq->queue_n = 1;
     seq->to_us = now_us;
     grobo_i_item_load(seq);

@@ -130,13 +130,20 @@ void grobo_timer_free(grobo_timer *timer)
 
 int grobo_timer_set(grobo_timer *timer, int64_t deadline_us)
 {
+    int64_t now_us = grobo_now_us();
+    bool is_due = timer->deadline_us <= now_us;
+
     /* The clock is never negative: what was before it has passed, however long ago. */
     timer->deadline_us = deadline_us < 0 ? 0 : deadline_us;
     if (deadline_us == GROBO_NEVER_US) {
         (void)event_del(timer->event);
         return GROBO_OK;
     }
-    return arm(timer);
+    /*
+     * A callback that is due stays due: to add its event again would take it out of the loop's
+     * present round, and a timer that is set anew in every round would never be called.
+     */
+    return is_due && deadline_us <= now_us ? GROBO_OK : arm(timer);
 }
 
 int64_t grobo_timer_deadline(const grobo_timer *timer)

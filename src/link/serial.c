@@ -111,6 +111,17 @@ static void on_readable(evutil_socket_t fd, short what, void *arg)
     }
 }
 
+static void on_resume(evutil_socket_t fd, short what, void *arg)
+{
+    grobo_serial *serial = arg;
+
+    (void)fd;
+    (void)what;
+    serial->paused = false;
+    /* Cannot fail: the event has been added before. */
+    (void)event_add(serial->rx, NULL);
+}
+
 /* Waits for the port to become writable; span_us < 0: for ever. */
 static int await_writable(grobo_serial *serial, int64_t span_us)
 {
@@ -356,7 +367,8 @@ static int start_async(grobo_serial *serial)
 
     serial->rx = event_new(base, socket, EV_READ | EV_PERSIST, on_readable, serial);
     serial->tx = event_new(base, socket, EV_WRITE, on_writable, serial);
-    if (serial->rx == NULL || serial->tx == NULL) {
+    serial->resume = event_new(base, -1, 0, on_resume, serial);
+    if (serial->rx == NULL || serial->tx == NULL || serial->resume == NULL) {
         return GROBO_ERR_NOMEM;
     }
     r = serial->ops->ready(serial->port, &serial->cause);
@@ -410,20 +422,24 @@ int grobo_serial_open(grobo_serial *serial)
     return r < 0 ? r : GROBO_OK;
 }
 
+static void free_event(struct event **event)
+{
+    if (*event != NULL) {
+        event_free(*event);
+        *event = NULL;
+    }
+}
+
 void grobo_serial_close(grobo_serial *serial)
 {
     serial->to_tell = 0;
     serial->ready = false;
+    serial->paused = false;
     serial->head = 0;
     serial->used = 0;
-    if (serial->rx != NULL) {
-        event_free(serial->rx);
-        serial->rx = NULL;
-    }
-    if (serial->tx != NULL) {
-        event_free(serial->tx);
-        serial->tx = NULL;
-    }
+    free_event(&serial->rx);
+    free_event(&serial->tx);
+    free_event(&serial->resume);
     if (serial->ops != NULL) {
         serial->ops->close(serial->port);
         serial->ops = NULL;

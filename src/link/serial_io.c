@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* A serial port's bytes: reading, writing, the queue, the calls that wait. */
+#include <assert.h>
 #include <limits.h>
 #include <string.h>
 
+#include "src/link/link.h"
 #include "src/link/serial_i.h"
 
 /* Tells the bytes of a read or write to counters and trace. */
@@ -24,11 +26,36 @@ static void note_bytes(grobo_serial *serial, grobo_direction direction, const vo
     }
 }
 
+/* Where the timer cannot be added, the port is not paused. */
+static void pause_until(grobo_serial *serial, int64_t end_us, int64_t now_us)
+{
+    struct timeval span = grobo_i_link_timeval(end_us - now_us);
+
+    if (event_add(serial->resume, &span) == 0) {
+        (void)event_del(serial->rx);
+        serial->paused = true;
+    }
+}
+
+static void spend(grobo_serial *serial, int size)
+{
+    int64_t now_us = grobo_now_us();
+
+    if (serial->spent_us < now_us - READ_BUDGET_US) {
+        serial->spent_us = now_us - READ_BUDGET_US;
+    }
+    serial->spent_us += READ_COST_US + (int64_t)size * BYTE_COST_US;
+    if (serial->spent_us > now_us && serial->resume != NULL) {
+        pause_until(serial, serial->spent_us, now_us);
+    }
+}
+
 int grobo_i_serial_take(grobo_serial *serial, void *buf, size_t size)
 {
     int got = serial->ops->read(serial->port, buf, size, &serial->cause);
 
     if (got > 0) {
+        spend(serial, got);
         note_bytes(serial, GROBO_DIR_RX, buf, (size_t)got);
     }
     return got < 0 ? grobo_i_serial_lose(serial, got) : got;
@@ -183,7 +210,7 @@ int grobo_serial_read(grobo_serial *serial, void *buf, size_t size)
     if (!grobo_serial_is_open(serial)) {
         return GROBO_ERR_CLOSED;
     }
-    if (most == 0 || !serial->ready) {
+    if (most == 0 || !serial->ready || serial->paused) {
         return 0;
     }
     return serial->config.mode == GROBO_SERIAL_ASYNC
@@ -209,6 +236,7 @@ int grobo_serial_write(grobo_serial *serial, const void *bytes, size_t size)
 int grobo_serial_receive(grobo_serial *serial, void *buf, size_t size)
 {
     uint8_t *to = buf;
+    int64_t end_us = silence_end(serial);
     size_t got = 0;
 
     if (size > INT_MAX) {
@@ -221,7 +249,7 @@ int grobo_serial_receive(grobo_serial *serial, void *buf, size_t size)
         return GROBO_ERR_STATE;
     }
     while (got < size) {
-        int r = take_until(serial, to + got, size - got, silence_end(serial));
+        int r = take_until(serial, to + got, size - got, end_us);
 
         if (r < 0) {
             return r;
@@ -253,6 +281,25 @@ int grobo_serial_send(grobo_serial *serial, const void *bytes, size_t size)
 size_t grobo_serial_pending(const grobo_serial *serial)
 {
     return serial->used;
+}
+
+size_t grobo_serial_unsent(const grobo_serial *serial)
+{
+    bool tells = serial->ops != NULL && serial->ops->unsent != NULL;
+
+    return serial->used + (tells ? (size_t)serial->ops->unsent(serial->port) : 0);
+}
+
+void grobo_i_serial_take_back(grobo_serial *serial, size_t size, size_t behind)
+{
+    size_t capacity = serial->config.tx_queue_bytes;
+
+    assert(serial->used <= size); /* a frame is sent only when nothing waits */
+    if (serial->used == size || (serial->used == 0 && grobo_serial_unsent(serial) >= size)) {
+        grobo_serial_discard_output(serial);
+    } else if (serial->used > behind) {
+        serial->queue[(serial->head + serial->used - 1 - behind) % capacity] ^= 0xFF;
+    }
 }
 
 int grobo_serial_waiting(grobo_serial *serial)

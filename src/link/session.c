@@ -6,10 +6,13 @@
 #include "src/link/link.h"
 #include "src/link/session_i.h"
 
-static void tell(grobo_session *session, grobo_session_event event, int error)
+void grobo_i_session_say(grobo_session *session, grobo_session_event event, int error)
 {
     if (session->config.on_event != NULL && !session->closing) {
+        int64_t since_us = grobo_i_session_enter_callback(session);
+
         session->config.on_event(session, event, error, session->config.ctx);
+        grobo_i_session_leave_callback(session, GROBO_CALLBACK_EVENT, since_us);
     }
 }
 
@@ -34,6 +37,7 @@ static void drop_line(grobo_session *session)
         grobo_robot_link_down(&session->robot, grobo_now_us());
         configure(session, false);
     }
+    grobo_i_session_guard_release(session);
     grobo_serial_close(session->serial);
     session->backlog_bytes = 0;
     session->check_job = 0;
@@ -44,6 +48,7 @@ static void close_now(grobo_session *session)
 {
     drop_line(session);
     grobo_i_session_scan_end(session);
+    grobo_i_estop_watch_end(&session->estop);
     session->state = GROBO_SESSION_CLOSED;
     session->closing = false;
 }
@@ -52,8 +57,11 @@ static void destroy(grobo_session *session)
 {
     const grobo_mem *mem = session->config.mem;
 
+    grobo_i_session_guard_free(session);
+    grobo_i_session_wake_free(session);
     grobo_timer_free(session->timer);
     grobo_serial_free(session->serial);
+    grobo_i_estop_watch_end(&session->estop);
     grobo_i_session_scan_end(session);
     grobo_i_link_free(mem, session->sim, sizeof *session->sim);
     grobo_i_link_free(mem, session, sizeof *session);
@@ -72,6 +80,7 @@ static int open_path(grobo_session *session, const char *path)
     if (r >= 0) {
         memmove(session->used, path, strlen(path) + 1);
         session->state = GROBO_SESSION_OPENING;
+        grobo_i_session_estop_begin(session, path);
     }
     return r;
 }
@@ -132,7 +141,9 @@ static void be_up(grobo_session *session)
     session->state = GROBO_SESSION_UP;
     session->was_up = true;
     configure(session, true);
-    tell(session, GROBO_SESSION_EVENT_UP, GROBO_OK);
+    grobo_i_session_estop_arm(session);
+    grobo_i_session_guard_take(session);
+    grobo_i_session_say(session, GROBO_SESSION_EVENT_UP, GROBO_OK);
 }
 
 /* Who is there? Asked anew behind an emergency stop, which goes before everything. */
@@ -154,6 +165,9 @@ static void start_check(grobo_session *session)
 {
     session->state = GROBO_SESSION_CHECKING;
     session->check_ended = false;
+    if (session->scan == NULL) { /* of many ports only the robot's counts */
+        grobo_i_session_estop_arm(session);
+    }
     grobo_robot_link_up(&session->robot, grobo_now_us());
     ask_who(session);
 }
@@ -182,7 +196,14 @@ static void on_robot(void *ctx, const grobo_event *event)
     }
     bool checking = session->state == GROBO_SESSION_CHECKING;
     bool job = event->kind == GROBO_EVENT_JOB;
-    bool stop = event->kind == GROBO_EVENT_TRIP || (job && event->u.job.kind == GROBO_JOB_ESTOP);
+    bool estop = job && event->u.job.kind == GROBO_JOB_ESTOP;
+    bool stop = event->kind == GROBO_EVENT_TRIP || estop;
+
+    if (estop) {
+        grobo_i_session_estop_ended(session, event->u.job.result);
+    }
+
+    grobo_i_session_note_latch(session);
 
     if (checking && job && event->u.job.number == session->check_job) {
         /* Only an emergency stop takes its place. */
@@ -192,8 +213,8 @@ static void on_robot(void *ctx, const grobo_event *event)
     if (checking && job && stop) {
         ask_who(session);
     }
-    if ((!checking || stop) && session->config.on_robot != NULL) {
-        session->config.on_robot(session->config.ctx, event);
+    if (!checking || stop) {
+        grobo_i_session_tell_robot(session, event);
     }
 }
 
@@ -218,7 +239,7 @@ static void lose_robot(grobo_session *session, int error)
     } else {
         session->state = GROBO_SESSION_CLOSED;
     }
-    tell(session, GROBO_SESSION_EVENT_LOST, error);
+    grobo_i_session_say(session, GROBO_SESSION_EVENT_LOST, error);
 }
 
 /* An attempt came to nothing: the next port, the next time, or the end. */
@@ -236,7 +257,7 @@ static void lose_attempt(grobo_session *session, int error)
         return;
     }
     session->state = GROBO_SESSION_CLOSED;
-    tell(session, GROBO_SESSION_EVENT_FAILED, error);
+    grobo_i_session_say(session, GROBO_SESSION_EVENT_FAILED, error);
 }
 
 void grobo_i_session_lost(grobo_session *session, int error)
@@ -264,6 +285,14 @@ void grobo_i_session_enter(grobo_session *session)
 
 void grobo_i_session_leave(grobo_session *session)
 {
+    if (session->depth == 1 && !session->freed) {
+        grobo_i_session_report_slow(session);
+    }
+    if (session->depth == 1 && !session->freed) {
+        grobo_i_session_obey(session);
+        grobo_i_session_estop_look(session);
+    }
+    grobo_i_session_note_latch(session);
     /* Still inside: the callbacks of what follows may come back here. */
     while (session->depth == 1 && session->check_ended && !session->closing) {
         end_check(session);
@@ -279,6 +308,7 @@ void grobo_i_session_leave(grobo_session *session)
         destroy(session);
     } else {
         grobo_i_session_send(session);
+        grobo_i_estop_watch_answer(&session->estop);
     }
 }
 
@@ -320,6 +350,18 @@ void grobo_i_session_look(grobo_session *session)
     grobo_i_session_leave(session);
 }
 
+/* The line is lost. The time may be that of a look at the marks. */
+static void try_again(grobo_session *session)
+{
+    if (grobo_now_us() >= session->retry_us) {
+        int r = open_again(session);
+
+        if (r < 0) {
+            grobo_i_session_lost(session, r);
+        }
+    }
+}
+
 static void on_time(grobo_timer *timer, int64_t late_us, void *ctx)
 {
     grobo_session *session = ctx;
@@ -335,14 +377,9 @@ static void on_time(grobo_timer *timer, int64_t late_us, void *ctx)
     case GROBO_SESSION_UP:
         look(session);
         break;
-    case GROBO_SESSION_WAITING: {
-        int r = open_again(session);
-
-        if (r < 0) {
-            grobo_i_session_lost(session, r);
-        }
+    case GROBO_SESSION_WAITING:
+        try_again(session);
         break;
-    }
     case GROBO_SESSION_CLOSED:
         break;
     }
@@ -368,6 +405,7 @@ static int fill(grobo_session *session, const grobo_session_config *config)
     int baud_bps = config->baud_bps > 0 ? config->baud_bps : GROBO_BAUD_DEFAULT_BPS;
     int r = set_device(session, config->device);
 
+    session->wake_socket[0] = session->wake_socket[1] = GROBO_SOCKET_NULL;
     if (r < 0) {
         return r;
     }
@@ -413,9 +451,14 @@ static int make_parts(grobo_session *session)
     };
     int r = grobo_serial_new(&serial, &session->serial);
 
-    return r < 0 ? r
-                 : grobo_timer_new(session->config.base, on_time, session, session->config.mem,
-                                   &session->timer);
+    if (r >= 0) {
+        r = grobo_timer_new(session->config.base, on_time, session, session->config.mem,
+                            &session->timer);
+    }
+    if (r >= 0) {
+        r = grobo_i_session_guard_new(session);
+    }
+    return r < 0 ? r : grobo_i_session_wake_new(session);
 }
 
 int grobo_session_new(const grobo_session_config *config, grobo_session **session)
@@ -465,6 +508,10 @@ int grobo_session_open(grobo_session *session)
         return GROBO_ERR_STATE;
     }
     session->was_up = false;
+    r = grobo_i_session_listen(session, false);
+    if (r < 0) {
+        return r;
+    }
     if (session->is_sim) {
         r = open_sim(session);
     } else if (strcmp(session->device, GROBO_DEVICE_AUTO) == 0) {
@@ -475,9 +522,7 @@ int grobo_session_open(grobo_session *session)
     } else {
         r = open_path(session, session->device);
     }
-    if (r >= 0 && session->depth == 0) {
-        grobo_i_session_send(session);
-    }
+    grobo_session_pump(session);
     return r;
 }
 
@@ -510,50 +555,4 @@ int grobo_session_configure(grobo_session *session, const grobo_robot_config *co
         grobo_session_pump(session);
     }
     return r;
-}
-
-grobo_session_state grobo_session_get_state(const grobo_session *session)
-{
-    return session->state;
-}
-
-const char *grobo_session_device(const grobo_session *session)
-{
-    return session->used;
-}
-
-const grobo_os_cause *grobo_session_cause(const grobo_session *session)
-{
-    return &session->cause;
-}
-
-grobo_robot *grobo_session_robot(grobo_session *session)
-{
-    return &session->robot;
-}
-
-grobo_sim *grobo_session_sim(grobo_session *session)
-{
-    return session->sim;
-}
-
-grobo_serial *grobo_session_serial(grobo_session *session)
-{
-    return session->serial;
-}
-
-void grobo_session_pump(grobo_session *session)
-{
-    if (session->depth == 0) {
-        grobo_i_session_send(session);
-    }
-}
-
-void grobo_session_bytes(const grobo_session *session, uint64_t *tx_bytes, uint64_t *rx_bytes)
-{
-    grobo_serial_counters counters;
-
-    grobo_serial_get_counters(session->serial, &counters);
-    *tx_bytes = counters.tx_bytes + session->sim_tx_bytes;
-    *rx_bytes = counters.rx_bytes + session->sim_rx_bytes;
 }

@@ -36,9 +36,20 @@ int grobo_session_move(grobo_session *session, const grobo_posture *target)
     REQUEST(session, grobo_robot_move(&session->robot, target, grobo_now_us()));
 }
 
+int grobo_session_retarget(grobo_session *session, const grobo_posture *target)
+{
+    REQUEST(session, grobo_robot_retarget(&session->robot, target, grobo_now_us()));
+}
+
 int grobo_session_raw(grobo_session *session, const uint8_t *frame, size_t size)
 {
     REQUEST(session, grobo_robot_raw(&session->robot, frame, size, grobo_now_us()));
+}
+
+int grobo_session_raw_until(grobo_session *session, const uint8_t *frame, size_t size,
+                            int64_t until_us)
+{
+    REQUEST(session, grobo_robot_raw_until(&session->robot, frame, size, until_us, grobo_now_us()));
 }
 
 int grobo_session_registers(grobo_session *session, const grobo_register_io *io)
@@ -114,18 +125,32 @@ int grobo_session_estop(grobo_session *session)
 {
     int r;
 
+    atomic_fetch_add(&session->estops, 1);
     grobo_i_session_enter(session);
     r = grobo_robot_estop(&session->robot, grobo_now_us());
     grobo_i_session_leave(session);
     return r;
 }
 
+/* One that was set since the last look is obeyed, not cleared. */
 int grobo_session_reset(grobo_session *session)
 {
-    int r;
+    grobo_trip_info trip;
+    int r = GROBO_OK;
 
     grobo_i_session_enter(session);
-    r = grobo_robot_reset(&session->robot, grobo_now_us());
+    grobo_i_session_obey(session); /* what was posted came before */
+    session->estop.looked_us = 0;
+    grobo_i_session_estop_look(session);
+    grobo_robot_tripped(&session->robot, &trip);
+    if (grobo_robot_job(&session->robot) == GROBO_JOB_ESTOP) {
+        r = GROBO_ERR_STATE;
+    } else if (session->estop.on && trip.trip == GROBO_TRIP_ESTOP) {
+        r = grobo_i_estop_clear(&session->estop.names, &session->cause);
+    }
+    if (r >= 0) {
+        r = grobo_robot_reset(&session->robot, grobo_now_us());
+    }
     grobo_i_session_leave(session);
     return r;
 }

@@ -4,6 +4,7 @@
 
 #include <event2/event.h>
 
+#include <grobo/estop.h>
 #include <grobo/sim_server.h>
 
 #include "src/link/link.h"
@@ -422,6 +423,9 @@ int grobo_sim_server_new(const grobo_sim_server_config *config, grobo_sim_server
         grobo_sim_server_free(made);
         return r;
     }
+    /* Another robot had these names, and may have been stopped under them. */
+    (void)grobo_estop_clear(made->device, NULL);
+    (void)grobo_estop_clear(made->link, NULL);
     grobo_sim_server_pump(made);
     *server = made;
     return GROBO_OK;

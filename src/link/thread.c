@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "src/link/link.h"
+#include "src/link/session_i.h"
 #include "src/link/thread_i.h"
 
 /* Longest and shortest control period. */
@@ -43,18 +44,16 @@ static void look_for_owner(grobo_control *control, int64_t now_us)
         return;
     }
     grobo_i_control_lock(control);
-    for (size_t i = 0; i < CONTROL_SLOTS; i++) {
-        if (control->slot[i].sleeping) {
-            control->called_us = now_us; /* who waits is there */
-        }
+    if (control->sleepers > 0) {
+        control->called_us = now_us; /* who waits is there */
     }
     if (!control->owner_lost && now_us - control->called_us >= control->owner_timeout_us) {
         control->owner_lost = lost = true;
     }
     grobo_i_control_unlock(control);
     if (lost && !grobo_i_control_has_exited(control)) {
-        (void)grobo_i_control_forget(control, GROBO_ERR_CANCELED);
-        (void)grobo_session_exit(control->session, GROBO_EXIT_DEFAULT);
+        (void)grobo_i_control_forget(control);
+        (void)grobo_session_post_exit(control->session, GROBO_EXIT_DEFAULT);
     }
 }
 
@@ -75,19 +74,11 @@ static void on_time(grobo_timer *timer, int64_t late_us, void *ctx)
     }
     look_for_owner(control, now_us);
     if (control->on_svc != NULL) {
+        int64_t since_us = grobo_i_session_enter_callback(control->session);
+
         (void)control->on_svc(control, control->user.ctx);
+        grobo_i_session_leave_callback(control->session, GROBO_CALLBACK_SVC, since_us);
     }
-}
-
-static void on_wake(evutil_socket_t socket, short what, void *ctx)
-{
-    grobo_control *control = ctx;
-
-    (void)what;
-    grobo_i_control_drain(socket);
-    grobo_i_control_lock(control);
-    control->woken = false;
-    grobo_i_control_unlock(control);
 }
 
 /* Whoever calls has `looping`. */
@@ -114,28 +105,37 @@ void grobo_i_control_take_turn(grobo_control *control, int64_t end_us)
     do_round(control, end_us);
     grobo_mutex_lock(&control->lock);
     control->looping = false;
-    grobo_i_control_tell_all(control);
+    grobo_i_control_wake_all(control);
 }
 
 /* ---- the thread --------------------------------------------------------------------------- */
 
 static int exit_job(grobo_control *control, control_job *job)
 {
-    (void)job;
+    bool up = grobo_session_get_state(control->session) == GROBO_SESSION_UP;
+
+    job->looked = true;
+    if (up && grobo_robot_job(grobo_session_robot(control->session)) == GROBO_JOB_ESTOP) {
+        return GROBO_ERR_STATE; /* to be over first */
+    }
     /* A robot that is gone, or has been left, needs nothing. */
-    if (grobo_session_get_state(control->session) != GROBO_SESSION_UP ||
-        grobo_i_control_has_exited(control)) {
+    if (!up || control->skip_exit || grobo_i_control_has_exited(control)) {
         return GROBO_OK;
     }
-    (void)grobo_i_control_forget(control, GROBO_ERR_CANCELED);
+    (void)grobo_i_control_forget(control);
     return grobo_session_exit(control->session, GROBO_EXIT_DEFAULT);
 }
 
-int grobo_i_control_leave(grobo_control *control, int64_t timeout_us)
+int grobo_i_control_leave(grobo_control *control, int64_t timeout_us, bool *looked)
 {
     control_job job = {.start = exit_job};
+    int r = grobo_i_control_urgent_job(control, &job, timeout_us);
 
-    return control->skip_exit ? GROBO_OK : grobo_i_control_urgent_job(control, &job, timeout_us);
+    *looked = job.looked || (r != GROBO_ERR_TIMEOUT && r != GROBO_ERR_FULL);
+    if (!*looked && !control->skip_exit) {
+        (void)grobo_control_post_exit(control, GROBO_EXIT_DEFAULT);
+    }
+    return r;
 }
 
 static int64_t exit_timeout(grobo_control *control)
@@ -152,10 +152,12 @@ static int64_t exit_timeout(grobo_control *control)
 /* The body of the control thread; `running` is set. */
 static void run(grobo_control *control)
 {
+    bool looked;
+
     grobo_mutex_lock(&control->lock);
     while (control->looping && !control->stopping) {
         /* Whoever is in a round gives the turn to us after it. */
-        grobo_i_control_sleep(control, &control->runner, GROBO_NEVER_US);
+        grobo_cond_wait(&control->changed, &control->lock, GROBO_NEVER_US);
     }
     if (!control->looping) {
         control->looping = true;
@@ -168,14 +170,14 @@ static void run(grobo_control *control)
     }
     control->running = false;
     control->ending = true;
-    grobo_i_control_tell_all(control);
+    grobo_i_control_wake_all(control);
     grobo_mutex_unlock(&control->lock);
     /* Told to nobody: a robot that cannot be left well has been told of by its events. */
-    (void)grobo_i_control_leave(control, exit_timeout(control));
+    (void)grobo_i_control_leave(control, exit_timeout(control), &looked);
     grobo_mutex_lock(&control->lock);
     control->ending = false;
     control->ends++;
-    grobo_i_control_tell_all(control);
+    grobo_i_control_wake_all(control);
     grobo_mutex_unlock(&control->lock);
 }
 
@@ -211,7 +213,7 @@ int grobo_control_start_thread(grobo_control *control)
         control->has_thread = r >= 0;
         control->running = r >= 0;
         if (r < 0) {
-            grobo_i_control_tell_all(control); /* whoever waits for its end already */
+            grobo_i_control_wake_all(control); /* whoever waits for its end already */
         }
     }
     grobo_i_control_unlock(control);
@@ -239,22 +241,16 @@ int grobo_control_run(grobo_control *control)
 }
 
 /* With the lock: waits until the thread has ended; another may have been started by then. */
-static int await_end(grobo_control *control)
+static void await_end(grobo_control *control)
 {
-    control_slot *slot = grobo_i_control_take(control, CONTROL_SLOTS);
     uint64_t ends = control->ends;
 
-    if (slot == NULL) {
-        return GROBO_ERR_FULL;
-    }
     while ((control->running || control->ending) && control->ends == ends) {
-        grobo_i_control_sleep(control, slot, GROBO_NEVER_US);
+        grobo_i_control_sleep(control, GROBO_NEVER_US);
     }
-    slot->state = CALL_FREE;
     if (!control->running && !control->ending) {
         join(control);
     }
-    return GROBO_OK;
 }
 
 int grobo_control_stop_thread(grobo_control *control)
@@ -264,9 +260,12 @@ int grobo_control_stop_thread(grobo_control *control)
     grobo_i_control_lock(control);
     if (control->running || control->ending) {
         control->stopping = true;
-        grobo_i_control_tell_all(control);
+        grobo_i_control_wake_all(control);
         grobo_i_control_wake(control);
-        r = grobo_i_control_inside(control) ? GROBO_OK : await_end(control);
+        r = GROBO_OK;
+        if (!grobo_i_control_inside(control)) {
+            await_end(control);
+        }
     }
     grobo_i_control_unlock(control);
     return r;
@@ -295,21 +294,6 @@ int grobo_control_thread(grobo_control *control, grobo_thread *thread)
     return r;
 }
 
-/* With the lock: sleeps until nobody runs the loop, or end_us. */
-static int await_turn(grobo_control *control, int64_t end_us)
-{
-    control_slot *slot = grobo_i_control_take(control, GROBO_CONTROL_CALLS_MAX);
-
-    if (slot == NULL) {
-        return GROBO_ERR_FULL;
-    }
-    while ((control->looping || control->running) && grobo_now_us() < end_us) {
-        grobo_i_control_sleep(control, slot, end_us);
-    }
-    slot->state = CALL_FREE;
-    return 0;
-}
-
 int grobo_control_svc(grobo_control *control)
 {
     int64_t end_us = grobo_now_us() + grobo_control_get_period_us(control);
@@ -319,10 +303,10 @@ int grobo_control_svc(grobo_control *control)
         return GROBO_ERR_STATE;
     }
     grobo_i_control_lock(control);
-    if (control->looping || control->running) {
-        r = await_turn(control, end_us);
+    while ((control->looping || control->running) && grobo_now_us() < end_us) {
+        grobo_i_control_sleep(control, end_us);
     }
-    if (r >= 0 && !control->looping && !control->running) {
+    if (!control->looping && !control->running) {
         grobo_i_control_take_turn(control, end_us);
         r = 1;
     }
@@ -360,26 +344,16 @@ static void set_postures(grobo_control *control)
 
 static int make_loop(grobo_control *control)
 {
-    int r = grobo_i_control_pair(control->wake_socket);
-
-    if (r >= 0) {
-        r = grobo_i_control_pair(control->runner.socket);
-    }
-    control->base = r >= 0 ? grobo_loop_new() : NULL;
-    if (control->base == NULL) {
-        return GROBO_ERR_NOMEM;
-    }
-    control->wake =
-        event_new(control->base, control->wake_socket[0], EV_READ | EV_PERSIST, on_wake, control);
-    if (control->wake == NULL || event_add(control->wake, NULL) != 0) {
-        return GROBO_ERR_NOMEM;
-    }
-    return grobo_timer_new(control->base, on_time, control, control->mem, &control->timer);
+    control->base = grobo_loop_new();
+    return control->base == NULL
+               ? GROBO_ERR_NOMEM
+               : grobo_timer_new(control->base, on_time, control, control->mem, &control->timer);
 }
 
 static int make_session(grobo_control *control)
 {
     grobo_session_config config = control->user;
+    int r;
 
     config.base = control->base;
     config.driver = control->driver;
@@ -388,7 +362,8 @@ static int make_session(grobo_control *control)
     config.on_robot = grobo_i_control_on_robot;
     config.on_tap = grobo_i_control_on_tap;
     config.ctx = control;
-    return grobo_session_new(&config, &control->session);
+    r = grobo_session_new(&config, &control->session);
+    return r < 0 ? r : grobo_i_session_listen(control->session, true);
 }
 
 static int make_parts(grobo_control *control, const grobo_control_config *config)
@@ -421,34 +396,23 @@ static void fill(grobo_control *control, const grobo_control_config *config)
     control->on_svc = config->on_svc;
     control->owner_timeout_us = config->owner_timeout_us;
     control->skip_exit = config->skip_exit;
+    control->timeout_us = config->timeout_us > 0 ? config->timeout_us : GROBO_CONTROL_TIMEOUT_US;
     control->period_us =
         config->control_period_us != 0 ? config->control_period_us : GROBO_CONTROL_PERIOD_US;
     control->tick_us = GROBO_NEVER_US;
     control->called_us = grobo_now_us();
-    control->runner.socket[0] = control->runner.socket[1] = GROBO_SOCKET_NULL;
-    control->wake_socket[0] = control->wake_socket[1] = GROBO_SOCKET_NULL;
-    for (size_t i = 0; i < CONTROL_SLOTS; i++) {
-        control->slot[i].socket[0] = control->slot[i].socket[1] = GROBO_SOCKET_NULL;
-    }
 }
 
 static void destroy(grobo_control *control)
 {
     grobo_session_free(control->session);
     grobo_timer_free(control->timer);
-    if (control->wake != NULL) {
-        event_free(control->wake);
-    }
     if (control->base != NULL) {
         event_base_free(control->base);
     }
-    grobo_i_control_unpair(control->wake_socket);
-    grobo_i_control_unpair(control->runner.socket);
-    for (size_t i = 0; i < CONTROL_SLOTS; i++) {
-        grobo_i_control_unpair(control->slot[i].socket);
-    }
     grobo_i_control_release_clip(control);
     grobo_motion_free(control->motion);
+    grobo_cond_deinit(&control->changed);
     grobo_mutex_deinit(&control->lock);
     grobo_i_link_free(control->mem, control, sizeof *control);
 }
@@ -458,13 +422,26 @@ static bool is_period(int64_t period_us)
     return period_us >= PERIOD_MIN_US && period_us <= PERIOD_MAX_US;
 }
 
+static int make_lock(grobo_control *control)
+{
+    int r = grobo_mutex_init(&control->lock);
+
+    if (r >= 0) {
+        r = grobo_cond_init(&control->changed);
+        if (r < 0) {
+            grobo_mutex_deinit(&control->lock);
+        }
+    }
+    return r;
+}
+
 int grobo_control_new(const grobo_control_config *config, grobo_control **control)
 {
     grobo_control *made;
     int r;
 
     if (config == NULL || control == NULL || config->session.base != NULL ||
-        config->owner_timeout_us < 0 ||
+        config->owner_timeout_us < 0 || config->timeout_us < 0 ||
         (config->control_period_us != 0 && !is_period(config->control_period_us))) {
         return GROBO_ERR_ARG;
     }
@@ -472,9 +449,10 @@ int grobo_control_new(const grobo_control_config *config, grobo_control **contro
     if (made == NULL) {
         return GROBO_ERR_NOMEM;
     }
-    if (grobo_mutex_init(&made->lock) < 0) {
+    r = make_lock(made);
+    if (r < 0) {
         grobo_i_link_free(config->session.mem, made, sizeof *made);
-        return GROBO_ERR_NOMEM;
+        return r;
     }
     fill(made, config);
     r = make_parts(made, config);
@@ -498,13 +476,15 @@ static void do_posted(grobo_control *control)
     grobo_i_control_lock(control);
     control->freeing = true;
     grobo_i_control_unlock(control);
-    (void)grobo_i_control_forget(control, GROBO_ERR_CANCELED);
+    (void)grobo_i_control_forget(control);
     grobo_i_control_serve(control);
     rounds = frame.outer;
 }
 
 int grobo_control_free(grobo_control *control)
 {
+    bool looked;
+
     if (control == NULL) {
         return GROBO_OK;
     }
@@ -515,7 +495,7 @@ int grobo_control_free(grobo_control *control)
     grobo_i_control_lock(control);
     join(control); /* one that was stopped in a callback */
     grobo_i_control_unlock(control);
-    (void)grobo_i_control_leave(control, exit_timeout(control));
+    (void)grobo_i_control_leave(control, exit_timeout(control), &looked);
     do_posted(control);
     destroy(control);
     return GROBO_OK;

@@ -1,15 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * How threads hand calls to the loop. A call takes a slot, and the loop calls its function, again
- * and again, until it is over. The caller sleeps at the slot's socket meanwhile; or, where nobody
- * runs the loop, runs it itself.
+ * and again, until it is over. The caller sleeps at the condition meanwhile; or, where no thread
+ * runs the loop, runs it itself. Nothing of this takes a descriptor or memory.
  */
-#include <string.h>
-
+#include "src/link/session_i.h"
 #include "src/link/thread_i.h"
-
-/* Longest sleep at once. */
-#define SLEEP_MAX_US INT64_C(3600000000)
 
 void grobo_i_control_lock(grobo_control *control)
 {
@@ -29,84 +25,24 @@ void grobo_i_control_unlock(grobo_control *control)
 
 /* ---- waking ------------------------------------------------------------------------------- */
 
-int grobo_i_control_pair(grobo_socket pair[2])
-{
-    evutil_socket_t made[2];
-
-    /* libevent takes AF_UNIX for a local pair on every system. */
-    if (grobo_port_start() < 0 || evutil_socketpair(AF_UNIX, SOCK_STREAM, 0, made) != 0) {
-        return GROBO_ERR_NOMEM;
-    }
-    pair[0] = made[0];
-    pair[1] = made[1];
-    for (int i = 0; i < 2; i++) {
-        if (evutil_make_socket_nonblocking(pair[i]) != 0 ||
-            evutil_make_socket_closeonexec(pair[i]) != 0) {
-            grobo_i_control_unpair(pair);
-            return GROBO_ERR_NOMEM;
-        }
-    }
-    return GROBO_OK;
-}
-
-void grobo_i_control_unpair(grobo_socket pair[2])
-{
-    for (int i = 0; i < 2; i++) {
-        if (pair[i] != GROBO_SOCKET_NULL) {
-            evutil_closesocket(pair[i]);
-            pair[i] = GROBO_SOCKET_NULL;
-        }
-    }
-}
-
-void grobo_i_control_drain(grobo_socket socket)
-{
-    char bytes[16];
-
-    while (recv(socket, bytes, sizeof bytes, 0) == (int)sizeof bytes) {
-    }
-}
-
-static void ring(grobo_socket socket)
-{
-    /* A full socket has bytes enough to wake whoever sleeps there. */
-    (void)send(socket, "", 1, 0);
-}
-
 void grobo_i_control_wake(grobo_control *control)
 {
     if (!control->woken) {
         control->woken = true;
-        ring(control->wake_socket[1]);
+        grobo_i_session_wake(control->session);
     }
 }
 
-void grobo_i_control_sleep(grobo_control *control, control_slot *slot, int64_t end_us)
+void grobo_i_control_sleep(grobo_control *control, int64_t end_us)
 {
-    int64_t span_us = end_us == GROBO_NEVER_US ? SLEEP_MAX_US : end_us - grobo_now_us();
-
-    slot->sleeping = true;
-    grobo_mutex_unlock(&control->lock);
-    (void)grobo_port_wait(slot->socket[0], GROBO_PORT_READABLE,
-                          span_us < SLEEP_MAX_US ? span_us : SLEEP_MAX_US);
-    grobo_i_control_drain(slot->socket[0]);
-    grobo_mutex_lock(&control->lock);
-    slot->sleeping = false;
+    control->sleepers++;
+    grobo_cond_wait(&control->changed, &control->lock, end_us);
+    control->sleepers--;
 }
 
-static void tell(control_slot *slot)
+void grobo_i_control_wake_all(grobo_control *control)
 {
-    if (slot->sleeping) {
-        ring(slot->socket[1]);
-    }
-}
-
-void grobo_i_control_tell_all(grobo_control *control)
-{
-    tell(&control->runner);
-    for (size_t i = 0; i < CONTROL_SLOTS; i++) {
-        tell(&control->slot[i]);
-    }
+    grobo_cond_wake_all(&control->changed);
 }
 
 /* ---- slots -------------------------------------------------------------------------------- */
@@ -121,31 +57,19 @@ static control_slot *take_slot(grobo_control *control, size_t most)
     return NULL;
 }
 
-control_slot *grobo_i_control_take(grobo_control *control, size_t most)
-{
-    control_slot *slot = take_slot(control, most);
-
-    if (slot != NULL && slot->socket[0] == GROBO_SOCKET_NULL &&
-        grobo_i_control_pair(slot->socket) < 0) {
-        return NULL;
-    }
-    if (slot != NULL) {
-        slot->state = CALL_WAITER;
-    }
-    return slot;
-}
-
 static void hand_over(grobo_control *control, control_slot *slot, grobo_control_fn fn, void *arg)
 {
     slot->fn = fn;
     slot->arg = arg;
     slot->job = NULL;
+    slot->users = false;
+    slot->impatient = false;
     slot->ticket = ++control->tickets;
     slot->state = CALL_OPEN;
     grobo_i_control_wake(control);
 }
 
-int grobo_i_control_post(grobo_control *control, grobo_control_fn fn, void *arg)
+int grobo_i_control_post(grobo_control *control, grobo_control_fn fn, void *arg, bool users)
 {
     control_slot *slot = take_slot(control, GROBO_CONTROL_CALLS_MAX);
 
@@ -154,6 +78,7 @@ int grobo_i_control_post(grobo_control *control, grobo_control_fn fn, void *arg)
     }
     slot->posted = true;
     hand_over(control, slot, fn, arg);
+    slot->users = users;
     return GROBO_OK;
 }
 
@@ -175,7 +100,7 @@ static control_slot *next_call(grobo_control *control, uint64_t after)
     return next;
 }
 
-static void settle(control_slot *slot, int result)
+static void settle(grobo_control *control, control_slot *slot, int result)
 {
     if (result == CALL_PENDING) {
         slot->state = CALL_OPEN;
@@ -186,9 +111,25 @@ static void settle(control_slot *slot, int result)
         slot->result = result;
         slot->state = CALL_DONE;
     }
-    if (slot->state != CALL_OPEN || slot->impatient) {
-        tell(slot);
+    if (slot->state == CALL_DONE || slot->impatient) {
+        grobo_i_control_wake_all(control);
     }
+}
+
+/* What was posted by grobo_session_post_estop() and its like goes before every call. */
+static void attend(grobo_control *control)
+{
+    grobo_i_session_attend(control->session);
+    grobo_i_control_forget_stopped(control);
+}
+
+static int call_user(grobo_control *control, grobo_control_fn fn, void *arg)
+{
+    int64_t since_us = grobo_i_session_enter_callback(control->session);
+    int r = fn(control, arg);
+
+    grobo_i_session_leave_callback(control->session, GROBO_CALLBACK_CALL, since_us);
+    return r;
 }
 
 void grobo_i_control_serve(grobo_control *control)
@@ -198,20 +139,24 @@ void grobo_i_control_serve(grobo_control *control)
     uint64_t last;
 
     grobo_mutex_lock(&control->lock);
+    control->woken = false;
     last = control->tickets; /* what a callback hands over has its turn in the next round */
     while ((slot = next_call(control, after)) != NULL && slot->ticket <= last) {
         grobo_control_fn fn = slot->fn;
         void *arg = slot->arg;
+        bool users = slot->users;
         int result;
 
         after = slot->ticket;
         slot->state = CALL_RUNNING;
         grobo_mutex_unlock(&control->lock);
-        result = fn(control, arg);
+        attend(control);
+        result = users ? call_user(control, fn, arg) : fn(control, arg);
         grobo_mutex_lock(&control->lock);
-        settle(slot, result);
+        settle(control, slot, result);
     }
     grobo_mutex_unlock(&control->lock);
+    attend(control);
 }
 
 /* ---- waiting ------------------------------------------------------------------------------ */
@@ -225,7 +170,7 @@ static int wait_for(grobo_control *control, control_slot *slot, int64_t end_us)
         if (control->looping || control->running) {
             /* A function that runs uses our storage: it has to be over before we may give up. */
             slot->impatient = slot->state == CALL_RUNNING;
-            grobo_i_control_sleep(control, slot, slot->impatient ? GROBO_NEVER_US : end_us);
+            grobo_i_control_sleep(control, slot->impatient ? GROBO_NEVER_US : end_us);
         } else {
             grobo_i_control_take_turn(control, end_us);
         }
@@ -238,12 +183,12 @@ static int wait_for(grobo_control *control, control_slot *slot, int64_t end_us)
     return result;
 }
 
-static int64_t end_of(int64_t timeout_us)
+static int64_t end_of(const grobo_control *control, int64_t timeout_us)
 {
     int64_t now_us = grobo_now_us();
 
     if (timeout_us <= 0) {
-        timeout_us = GROBO_CONTROL_TIMEOUT_US;
+        timeout_us = control->timeout_us;
     }
     return timeout_us > GROBO_NEVER_US - now_us ? GROBO_NEVER_US : now_us + timeout_us;
 }
@@ -255,21 +200,24 @@ typedef struct call_wish {
     control_job *job; /* arg, where fn waits for a job */
     int64_t timeout_us;
     bool urgent;
+    bool users;
 } call_wish;
 
 static int call_and_wait(grobo_control *control, const call_wish *wish)
 {
-    int64_t end_us = end_of(wish->timeout_us);
+    int64_t end_us = end_of(control, wish->timeout_us);
     control_slot *slot;
     int result = GROBO_ERR_FULL;
 
     grobo_i_control_lock(control);
-    slot = grobo_i_control_take(control, wish->urgent ? CONTROL_SLOTS : GROBO_CONTROL_CALLS_MAX);
+    slot = take_slot(control, wish->urgent ? CONTROL_SLOTS : GROBO_CONTROL_CALLS_MAX);
     if (slot != NULL) {
         hand_over(control, slot, wish->fn, wish->arg);
         slot->job = wish->job;
+        slot->users = wish->users;
         if (wish->job != NULL) {
             wish->job->seen_losses = control->losses;
+            wish->job->end_us = end_us;
         }
         result = wait_for(control, slot, end_us);
     }
@@ -277,18 +225,28 @@ static int call_and_wait(grobo_control *control, const call_wish *wish)
     return result;
 }
 
+/* In a callback at once, else handed over. */
+static int call(grobo_control *control, const call_wish *wish)
+{
+    if (!grobo_i_control_inside(control)) {
+        return call_and_wait(control, wish);
+    }
+    attend(control);
+    return wish->fn(control, wish->arg);
+}
+
 int grobo_i_control_call(grobo_control *control, grobo_control_fn fn, void *arg)
 {
     const call_wish wish = {.fn = fn, .arg = arg};
 
-    return grobo_i_control_inside(control) ? fn(control, arg) : call_and_wait(control, &wish);
+    return call(control, &wish);
 }
 
 int grobo_i_control_urgent_call(grobo_control *control, grobo_control_fn fn, void *arg)
 {
     const call_wish wish = {.fn = fn, .arg = arg, .urgent = true};
 
-    return grobo_i_control_inside(control) ? fn(control, arg) : call_and_wait(control, &wish);
+    return call(control, &wish);
 }
 
 int grobo_i_control_wait(grobo_control *control, grobo_control_fn fn, void *arg, int64_t timeout_us)
@@ -351,7 +309,9 @@ int grobo_i_control_urgent_job(grobo_control *control, control_job *job, int64_t
 
 int grobo_control_call(grobo_control *control, grobo_control_fn fn, void *arg)
 {
-    return fn != NULL ? grobo_i_control_call(control, fn, arg) : GROBO_ERR_ARG;
+    const call_wish wish = {.fn = fn, .arg = arg, .users = true};
+
+    return fn != NULL ? call(control, &wish) : GROBO_ERR_ARG;
 }
 
 int grobo_control_post(grobo_control *control, grobo_control_fn fn, void *arg)
@@ -360,7 +320,7 @@ int grobo_control_post(grobo_control *control, grobo_control_fn fn, void *arg)
 
     if (fn != NULL) {
         grobo_i_control_lock(control);
-        r = grobo_i_control_post(control, fn, arg);
+        r = grobo_i_control_post(control, fn, arg, true);
         grobo_i_control_unlock(control);
     }
     return r;

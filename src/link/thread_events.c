@@ -32,6 +32,8 @@ void grobo_i_control_on_event(grobo_session *session, grobo_session_event event,
     case GROBO_SESSION_EVENT_FAILED:
         grobo_i_control_down(control, error);
         break;
+    case GROBO_SESSION_EVENT_UNGUARDED:
+        break;
     }
     if (control->user.on_event != NULL) {
         control->user.on_event(session, event, error, control->user.ctx);
@@ -118,7 +120,6 @@ void grobo_i_control_on_tap(grobo_direction direction, int64_t now_us, const uin
 
         memcpy(control->received + control->received_bytes, bytes, taken);
         control->received_bytes += taken;
-        control->received_us = now_us;
     }
     if (control->user.on_tap != NULL) {
         control->user.on_tap(direction, now_us, bytes, size, control->user.ctx);

@@ -24,7 +24,6 @@
 
 typedef enum call_state {
     CALL_FREE = 0,
-    CALL_WAITER,  /* a thread that waits for its turn, without a call */
     CALL_OPEN,    /* handed over, not over */
     CALL_RUNNING, /* its function runs */
     CALL_DONE
@@ -34,10 +33,12 @@ typedef enum call_state {
 typedef struct control_job {
     int (*start)(grobo_control *control, struct control_job *job);
     int number;           /* 0: not begun */
+    bool looked;          /* the loop has had its turn */
     bool ended;           /* then: */
     int result;           /* how */
     uint64_t seen_losses; /* of the line, when the call was made */
     int64_t begun_us;
+    int64_t end_us;          /* when its caller stops waiting */
     grobo_joint_mask joints; /* what `start` needs */
     grobo_sense_kind sense;
     grobo_torque torque;
@@ -55,10 +56,9 @@ typedef struct control_slot {
     void *arg;
     control_job *job; /* what fn waits for, if a job */
     int result;
-    bool posted;            /* nobody waits */
-    bool sleeping;          /* somebody does, at the socket */
-    bool impatient;         /* and wants to know when fn comes back */
-    grobo_socket socket[2]; /* a byte from 1 to 0 wakes who waits */
+    bool users;     /* fn is the user's */
+    bool posted;    /* nobody waits */
+    bool impatient; /* the caller wants to know when fn comes back */
 } control_slot;
 
 /* What is played. */
@@ -71,12 +71,14 @@ struct grobo_control {
     grobo_control_fn on_svc;
     grobo_session_config user; /* its callbacks */
     int64_t owner_timeout_us;
+    int64_t timeout_us; /* where a call is given none */
     bool skip_exit;
     char name[GROBO_NAME_MAX_BYTES];
 
     /* under lock: whose turn it is */
+    grobo_cond changed; /* a call is over, or the turn is free */
+    int sleepers;       /* callers that sleep there */
     control_slot slot[CONTROL_SLOTS];
-    control_slot runner; /* of the control thread */
     uint64_t tickets;
     bool looping;    /* a thread is in a round */
     bool running;    /* the control thread, or somebody in grobo_control_run() */
@@ -85,7 +87,7 @@ struct grobo_control {
     bool freeing;    /* what is posted has its last turn */
     uint64_t ends;   /* how often it has ended */
     bool has_thread; /* to be joined */
-    bool woken;      /* a byte is on its way to the loop */
+    bool woken;      /* the loop has been woken since it looked at the slots */
     grobo_thread thread;
     int64_t called_us; /* when another thread called last */
     bool owner_lost;
@@ -106,15 +108,15 @@ struct grobo_control {
     uint64_t losses; /* times the line was lost or closed */
     bool move_wanted;
     play_stage play;
-    int motion_result; /* of the last target or motion */
+    unsigned move_after, play_after; /* grobo_i_session_asked() when these were asked for */
+    int motion_result;               /* of the last target or motion */
 
     /* loop */
     struct event_base *base;
-    struct event *wake;
-    grobo_socket wake_socket[2];
     grobo_timer *timer;
-    int64_t tick_us; /* end of the control period */
-    grobo_session *session;
+    int64_t tick_us;           /* end of the control period */
+    grobo_session *session;    /* set by grobo_control_new() for good */
+    unsigned obeyed;           /* of the session, as of the last look at it */
     int line_error;            /* of the last event of the line */
     int last_job, last_result; /* the job that ended last */
     int move_job;              /* number, 0 none */
@@ -129,7 +131,6 @@ struct grobo_control {
     bool recording;                           /* it is on the wire: what comes is its reply */
     uint8_t received[GROBO_CONTROL_RECEIVE_BYTES];
     size_t received_bytes;
-    int64_t received_us;
 };
 
 /* ---- thread.c ---- */
@@ -141,8 +142,11 @@ void grobo_i_control_take_turn(grobo_control *control, int64_t end_us);
 /* True on the thread that is in a round of this control. */
 bool grobo_i_control_inside(const grobo_control *control);
 
-/* Carries out the exit policy where there is a robot. Waits. */
-int grobo_i_control_leave(grobo_control *control, int64_t timeout_us);
+/*
+ * Carries out the exit policy where there is a robot, after an emergency stop that is being carried
+ * out. Waits. @param[out] looked false: the loop has had no turn; then the exit is posted.
+ */
+int grobo_i_control_leave(grobo_control *control, int64_t timeout_us, bool *looked);
 
 /* ---- thread_call.c ---- */
 
@@ -150,24 +154,14 @@ int grobo_i_control_leave(grobo_control *control, int64_t timeout_us);
 void grobo_i_control_lock(grobo_control *control);
 void grobo_i_control_unlock(grobo_control *control);
 
-/* Makes and ends what a slot waits with. */
-int grobo_i_control_pair(grobo_socket pair[2]);
-void grobo_i_control_unpair(grobo_socket pair[2]);
-
-/* Takes what is there out of a socket. */
-void grobo_i_control_drain(grobo_socket socket);
-
 /* With the lock: has the loop look at its calls. */
 void grobo_i_control_wake(grobo_control *control);
 
-/* With the lock: takes a slot to wait in, NULL for none. */
-control_slot *grobo_i_control_take(grobo_control *control, size_t most);
+/* With the lock, which is released meanwhile: sleeps until something has changed, or end_us. */
+void grobo_i_control_sleep(grobo_control *control, int64_t end_us);
 
-/* With the lock, which is given back meanwhile: sleeps until told, or end_us. */
-void grobo_i_control_sleep(grobo_control *control, control_slot *slot, int64_t end_us);
-
-/* With the lock: tells everybody who sleeps that the turn is free. */
-void grobo_i_control_tell_all(grobo_control *control);
+/* With the lock: wakes everybody who sleeps. */
+void grobo_i_control_wake_all(grobo_control *control);
 
 /* On the loop: calls what is open, in the order of the calls. */
 void grobo_i_control_serve(grobo_control *control);
@@ -182,8 +176,8 @@ int grobo_i_control_urgent_call(grobo_control *control, grobo_control_fn fn, voi
 int grobo_i_control_wait(grobo_control *control, grobo_control_fn fn, void *arg,
                          int64_t timeout_us);
 
-/* With the lock: hands over without waiting. */
-int grobo_i_control_post(grobo_control *control, grobo_control_fn fn, void *arg);
+/* With the lock: hands over without waiting. `users`: fn is the user's. */
+int grobo_i_control_post(grobo_control *control, grobo_control_fn fn, void *arg, bool users);
 
 /* Hands over a job, after those before it, and waits for its end. `fn` NULL: nothing besides. */
 int grobo_i_control_job(grobo_control *control, control_job *job, grobo_control_fn fn,
@@ -215,14 +209,19 @@ bool grobo_i_control_has_exited(grobo_control *control);
 /* On the loop: looks whether what is played is over. */
 void grobo_i_control_look_at_play(grobo_control *control);
 
-/* On the loop: forgets what has not begun. @return true if there was something. */
-bool grobo_i_control_forget(grobo_control *control, int result);
+/* On the loop: forgets what has not begun: it is canceled. @return true if there was something. */
+bool grobo_i_control_forget(grobo_control *control);
+
+/* The same of what was asked for before the requests to stop that the session has carried out. */
+void grobo_i_control_forget_stopped(grobo_control *control);
 
 /* Frees what was played. */
 void grobo_i_control_release_clip(grobo_control *control);
 
 /* With the lock: posts the sending of the target. */
 int grobo_i_control_want_move(grobo_control *control);
+/* With the lock: the time of postures whose own is 0. */
+int64_t grobo_i_control_default_us(const grobo_control *control);
 
 /* ---- thread_state.c ---- */
 

@@ -85,13 +85,17 @@ static int close_port(grobo_control *control, void *arg)
 
 int grobo_control_close_port(grobo_control *control, int64_t timeout_us)
 {
+    bool looked;
     int left;
     int closed;
 
     if (grobo_i_control_inside(control)) {
         return GROBO_ERR_STATE;
     }
-    left = grobo_i_control_leave(control, timeout_us);
+    left = grobo_i_control_leave(control, timeout_us, &looked);
+    if (!looked) {
+        return left; /* held up: still open, and the exit stands */
+    }
     closed = grobo_i_control_call(control, close_port, NULL);
     return closed < 0 ? closed : left;
 }
@@ -349,7 +353,8 @@ static int raw_job(grobo_control *control, control_job *job)
     /* It may leave, and even be answered, before the request returns. */
     memcpy(control->raw, job->frame, job->size);
     control->raw_bytes = job->size;
-    r = grobo_session_raw(control->session, job->frame, job->size);
+    /* Who is told that it took too long is not to see it leave afterwards. */
+    r = grobo_session_raw_until(control->session, job->frame, job->size, job->end_us - 1);
     if (r < 0) {
         control->raw_bytes = 0;
     }
@@ -376,6 +381,7 @@ int grobo_control_send_command(grobo_control *control, const void *packet, size_
     r = grobo_control_connect(control, timeout_us);
     if (r >= 0) {
         r = grobo_i_control_job(control, &job, NULL, timeout_us);
+        r = r == GROBO_ERR_STALE && grobo_now_us() >= job.end_us - 1 ? GROBO_ERR_TIMEOUT : r;
     }
     return r < 0 ? r : (int)job.size;
 }
@@ -383,24 +389,16 @@ int grobo_control_send_command(grobo_control *control, const void *packet, size_
 typedef struct receive_call {
     uint8_t *bytes;
     size_t size;
-    int64_t since_us;
+    int64_t end_us;
 } receive_call;
-
-static bool is_silent(const grobo_control *control, const receive_call *call, int64_t now_us)
-{
-    int64_t since_us =
-        control->received_us > call->since_us ? control->received_us : call->since_us;
-
-    return now_us - since_us >= INT64_C(1000) * GROBO_SILENCE_DEFAULT_MS;
-}
 
 static int receive(grobo_control *control, void *arg)
 {
     receive_call *call = arg;
-    int64_t now_us = grobo_now_us();
+    bool over = grobo_now_us() >= call->end_us;
     size_t had;
 
-    if (control->received_bytes < call->size && is_silent(control, call, now_us)) {
+    if (control->received_bytes < call->size && over) {
         grobo_i_session_look(control->session); /* somebody held us up, maybe */
     }
     had = control->received_bytes;
@@ -410,7 +408,7 @@ static int receive(grobo_control *control, void *arg)
         memmove(control->received, control->received + call->size, control->received_bytes);
         return (int)call->size;
     }
-    if (!is_silent(control, call, now_us)) {
+    if (!over) {
         return CALL_PENDING;
     }
     control->received_bytes = 0;
@@ -420,7 +418,7 @@ static int receive(grobo_control *control, void *arg)
 int grobo_control_receive(grobo_control *control, void *bytes, size_t size)
 {
     uint8_t taken[GROBO_CONTROL_RECEIVE_BYTES];
-    receive_call call = {taken, size, grobo_now_us()};
+    receive_call call = {taken, size, grobo_now_us() + INT64_C(1000) * GROBO_SILENCE_DEFAULT_MS};
     int r = GROBO_ERR_CAP;
 
     if (size <= sizeof taken) {
@@ -434,41 +432,56 @@ int grobo_control_receive(grobo_control *control, void *bytes, size_t size)
 
 /* ---- safety ------------------------------------------------------------------------------- */
 
-static int estop(grobo_control *control, void *arg)
-{
-    int r;
-
-    (void)arg;
-    (void)grobo_i_control_forget(control, GROBO_ERR_CANCELED);
-    r = grobo_session_estop(control->session);
-    return r > 0 ? GROBO_OK : r;
-}
-
 int grobo_control_estop(grobo_control *control)
 {
-    return grobo_i_control_urgent_call(control, estop, NULL);
+    return control != NULL ? grobo_session_post_estop(control->session) : GROBO_ERR_ARG;
 }
 
+bool grobo_control_is_latched(const grobo_control *control)
+{
+    return grobo_session_is_latched(control->session);
+}
+
+/* Not where an emergency stop came after the call. */
 static int reset(grobo_control *control, void *arg)
 {
-    (void)arg;
-    return grobo_session_reset(control->session);
+    const unsigned *estops = arg;
+
+    return atomic_load(&control->session->estops) != *estops
+               ? GROBO_ERR_STATE
+               : grobo_session_reset(control->session);
 }
 
 int grobo_control_reset(grobo_control *control)
 {
-    return grobo_i_control_call(control, reset, NULL);
+    unsigned estops = atomic_load(&control->session->estops);
+
+    return grobo_i_control_call(control, reset, &estops);
 }
 
 static int exit_job(grobo_control *control, control_job *job)
 {
-    (void)grobo_i_control_forget(control, GROBO_ERR_CANCELED);
+    (void)grobo_i_control_forget(control);
     return grobo_session_exit(control->session, job->policy);
 }
 
 int grobo_control_exit(grobo_control *control, grobo_exit_policy policy, int64_t timeout_us)
 {
     control_job job = {.start = exit_job, .policy = policy};
+    int r;
 
-    return grobo_i_control_urgent_job(control, &job, timeout_us);
+    if (grobo_i_control_inside(control)) {
+        r = grobo_control_post_exit(control, policy);
+        return r < 0 ? r : GROBO_ERR_STATE;
+    }
+    r = grobo_i_control_urgent_job(control, &job, timeout_us);
+    if (job.number == 0 && (r == GROBO_ERR_TIMEOUT || r == GROBO_ERR_FULL)) {
+        (void)grobo_control_post_exit(control, policy); /* nobody waits, the exit stands */
+    }
+    return r;
+}
+
+int grobo_control_post_exit(grobo_control *control, grobo_exit_policy policy)
+{
+    return control != NULL ? grobo_session_post_exit(control->session, policy) : GROBO_ERR_ARG;
 }

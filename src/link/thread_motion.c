@@ -7,6 +7,25 @@
 
 /* ---- the whole ---------------------------------------------------------------------------- */
 
+/* Increments count from where the robot is; joints that are not known, from the initial posture. */
+static int resolve(grobo_control *control, grobo_motion *motion)
+{
+    grobo_posture start, sensed;
+
+    if (grobo_motion_get_kind(motion) != GROBO_MOTION_STEPS) {
+        return GROBO_OK;
+    }
+    grobo_posture_init_pose(&start, control->driver->model);
+    if (grobo_control_get_current_posture(control, &sensed) > 0) {
+        for (int j = 0; j < start.n_joints; j++) {
+            if ((sensed.set & GROBO_JOINT_BIT(j)) != 0) {
+                start.angle_rad[j] = sensed.angle_rad[j];
+            }
+        }
+    }
+    return grobo_motion_resolve(motion, &start);
+}
+
 /* Makes a motion the current one; it belongs to the control then, or is freed. */
 static int adopt(grobo_control *control, grobo_motion *motion)
 {
@@ -15,6 +34,9 @@ static int adopt(grobo_control *control, grobo_motion *motion)
     int r = grobo_motion_joints(motion) > n_joints ? GROBO_ERR_ARG
                                                    : grobo_motion_set_joints(motion, n_joints);
 
+    if (r >= 0) {
+        r = resolve(control, motion);
+    }
     if (r < 0) {
         grobo_motion_free(motion);
         return r;
@@ -59,7 +81,7 @@ size_t grobo_control_motion_size(grobo_control *control)
 void grobo_control_clear_motion(grobo_control *control)
 {
     grobo_i_control_lock(control);
-    grobo_motion_clear(control->motion);
+    grobo_motion_renew(control->motion, GROBO_MOTION_POSTURES);
     grobo_i_control_unlock(control);
 }
 
@@ -85,8 +107,10 @@ static int append(grobo_control *control, grobo_posture *sensed, int64_t time_us
 int grobo_control_append_current_posture(grobo_control *control)
 {
     grobo_posture sensed;
+    int64_t time_us = grobo_control_get_default_time_us(control);
 
-    return append(control, &sensed, grobo_control_get_default_time_us(control));
+    /* A step that long cannot be told from "the default time", which 0 means as well. */
+    return append(control, &sensed, time_us < GROBO_MOTION_STEP_MAX_US ? time_us : 0);
 }
 
 int grobo_control_append_current_posture_us(grobo_control *control, int64_t time_us)
@@ -139,9 +163,6 @@ int grobo_control_do_nth_motion(grobo_control *control, size_t n)
 
     grobo_i_control_lock(control);
     r = get_nth(control, n, &posture);
-    if (r >= 0 && grobo_motion_get_kind(control->motion) == GROBO_MOTION_STEPS) {
-        r = GROBO_ERR_TYPE;
-    }
     if (r >= 0) {
         posture.time_us = 0; /* the default */
         r = grobo_i_control_check_posture(control, &posture);

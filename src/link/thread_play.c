@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What a control has sent: the target posture, the current motion. */
+#include "src/link/session_i.h"
 #include "src/link/thread_i.h"
 
 static grobo_robot *robot_of(grobo_control *control)
@@ -44,9 +45,15 @@ static int send_target(grobo_control *control, void *arg)
         return GROBO_OK;
     }
     if (is_up(control) && is_at_work(control)) {
-        return CALL_PENDING;
+        /* The target before it makes way once it was sent; anything else comes to its end. */
+        r = control->move_job != 0 ? grobo_session_retarget(control->session, &target)
+                                   : GROBO_ERR_STATE;
+        if (r < 0) {
+            return CALL_PENDING;
+        }
+    } else {
+        r = is_up(control) ? grobo_session_move(control->session, &target) : GROBO_ERR_UNPLUGGED;
     }
-    r = is_up(control) ? grobo_session_move(control->session, &target) : GROBO_ERR_UNPLUGGED;
     if (r > 0 && control->last_job != r) {
         control->move_job = r;
     }
@@ -70,9 +77,10 @@ int grobo_i_control_want_move(grobo_control *control)
         return GROBO_ERR_EMPTY;
     }
     if (!control->move_wanted) {
-        r = grobo_i_control_post(control, send_target, NULL);
+        r = grobo_i_control_post(control, send_target, NULL, false);
         control->move_wanted = r >= 0;
     }
+    control->move_after = grobo_i_session_asked(control->session);
     return r;
 }
 
@@ -158,14 +166,14 @@ static int start_play(grobo_control *control, void *arg)
     if (is_up(control) && is_at_work(control)) {
         return CALL_PENDING;
     }
-    r = is_up(control) ? begin_play(control) : GROBO_ERR_UNPLUGGED;
-    if (r < 0) {
-        end_play(control, r);
-        return GROBO_OK;
-    }
+    /* From here on a callback that stops the robot must not free what is played. */
     grobo_i_control_lock(control);
     control->play = PLAY_BEGUN;
     grobo_i_control_unlock(control);
+    r = is_up(control) ? begin_play(control) : GROBO_ERR_UNPLUGGED;
+    if (r < 0) {
+        end_play(control, r);
+    }
     return GROBO_OK;
 }
 
@@ -220,10 +228,10 @@ static int want_play(grobo_control *control, const grobo_play_options *options)
     }
     wanted.repeat = control->motion_count;
     wanted.reverse = control->reverse;
-    wanted.default_time_us = control->robot_config.default_time_us;
+    wanted.default_time_us = grobo_i_control_default_us(control);
     r = grobo_motion_dup(control->motion, &control->playing);
     if (r >= 0) {
-        r = grobo_i_control_post(control, start_play, NULL);
+        r = grobo_i_control_post(control, start_play, NULL, false);
         if (r < 0) {
             grobo_motion_free(control->playing);
             control->playing = NULL;
@@ -232,6 +240,7 @@ static int want_play(grobo_control *control, const grobo_play_options *options)
     if (r >= 0) {
         control->play_options = wanted;
         control->play = PLAY_WANTED;
+        control->play_after = grobo_i_session_asked(control->session);
     }
     return r;
 }
@@ -258,28 +267,52 @@ bool grobo_control_is_playing(grobo_control *control)
 
 /* ---- stopping, waiting -------------------------------------------------------------------- */
 
-bool grobo_i_control_forget(grobo_control *control, int result)
+static bool forget(grobo_control *control, bool move, bool play)
 {
+    grobo_i_control_lock(control);
+    move = move && control->move_wanted;
+    play = play && control->play == PLAY_WANTED;
+    control->move_wanted = control->move_wanted && !move;
+    grobo_i_control_unlock(control);
+    if (play) {
+        end_play(control, GROBO_ERR_CANCELED);
+    } else if (move) {
+        set_result(control, GROBO_ERR_CANCELED);
+    }
+    return move || play;
+}
+
+bool grobo_i_control_forget(grobo_control *control)
+{
+    return forget(control, true, true);
+}
+
+/* The counts wrap around. */
+static bool is_before(unsigned asked, unsigned obeyed)
+{
+    return (int)(obeyed - asked) > 0;
+}
+
+void grobo_i_control_forget_stopped(grobo_control *control)
+{
+    unsigned obeyed = control->session->obeyed;
     bool move;
     bool play;
 
-    grobo_i_control_lock(control);
-    move = control->move_wanted;
-    play = control->play == PLAY_WANTED;
-    control->move_wanted = false;
-    grobo_i_control_unlock(control);
-    if (play) {
-        end_play(control, result);
-    } else if (move) {
-        set_result(control, result);
+    if (obeyed != control->obeyed) {
+        control->obeyed = obeyed;
+        grobo_i_control_lock(control);
+        move = is_before(control->move_after, obeyed);
+        play = is_before(control->play_after, obeyed);
+        grobo_i_control_unlock(control);
+        (void)forget(control, move, play);
     }
-    return move || play;
 }
 
 static int stop_motion(grobo_control *control, void *arg)
 {
     const bool *at_once = arg;
-    bool stopped = grobo_i_control_forget(control, GROBO_ERR_CANCELED);
+    bool stopped = grobo_i_control_forget(control);
 
     stopped = grobo_session_stop(control->session, *at_once) >= 0 || stopped;
     return stopped ? GROBO_OK : GROBO_ERR_STATE;
@@ -287,28 +320,54 @@ static int stop_motion(grobo_control *control, void *arg)
 
 int grobo_control_stop_motion(grobo_control *control, bool at_once)
 {
-    return grobo_i_control_call(control, stop_motion, &at_once);
+    int r = grobo_i_control_urgent_call(control, stop_motion, &at_once);
+
+    if (r == GROBO_ERR_TIMEOUT || r == GROBO_ERR_FULL) {
+        (void)grobo_control_post_stop(control, at_once); /* nobody waits, the stop stands */
+    }
+    return r;
+}
+
+int grobo_control_post_stop(grobo_control *control, bool at_once)
+{
+    return control != NULL ? grobo_session_post_stop(control->session, at_once) : GROBO_ERR_ARG;
+}
+
+/* How often a motion is played by these options. */
+static uint64_t passes_of(const grobo_play_options *options)
+{
+    int64_t repeat = options->repeat;
+
+    return repeat == 0 ? 1 : (uint64_t)(repeat < 0 ? -repeat : repeat);
+}
+
+/* Frames of the present pass and of those after it. */
+static uint64_t frames_left(grobo_control *control)
+{
+    grobo_play_progress progress;
+
+    grobo_robot_progress(robot_of(control), grobo_now_us(), &progress);
+    if (progress.steps > INT_MAX) {
+        return INT_MAX;
+    }
+    return progress.steps - progress.step +
+           progress.steps * (uint64_t)(progress.passes - progress.pass);
 }
 
 static int count_commands(grobo_control *control, void *arg)
 {
-    grobo_play_progress progress;
     bool sequencing = grobo_robot_is_playing(robot_of(control));
-    bool move;
-    int count = 0;
+    uint64_t count = sequencing ? frames_left(control) : 0;
 
     (void)arg;
     grobo_i_control_lock(control);
-    move = control->move_wanted;
+    count += control->move_wanted;
     if (control->play == PLAY_WANTED || (control->play_job != 0 && !sequencing)) {
-        count = (int)grobo_motion_size(control->playing); /* it waits, or is being prepared */
+        /* it waits, or is being prepared */
+        count += grobo_motion_size(control->playing) * passes_of(&control->play_options);
     }
     grobo_i_control_unlock(control);
-    if (sequencing) {
-        grobo_robot_progress(robot_of(control), grobo_now_us(), &progress);
-        count += (int)(progress.steps - progress.step);
-    }
-    return count + move;
+    return count < INT_MAX ? (int)count : INT_MAX;
 }
 
 int grobo_control_command_count(grobo_control *control)

@@ -83,14 +83,21 @@ int grobo_control_set_default_time_us(grobo_control *control, int64_t time_us)
                : grobo_i_control_call(control, configure, &change);
 }
 
+int64_t grobo_i_control_default_us(const grobo_control *control)
+{
+    int64_t time_us = control->robot_config.default_time_us;
+
+    return time_us != 0 ? time_us : GROBO_POSTURE_TIME_US;
+}
+
 int64_t grobo_control_get_default_time_us(grobo_control *control)
 {
     int64_t time_us;
 
     grobo_i_control_lock(control);
-    time_us = control->robot_config.default_time_us;
+    time_us = grobo_i_control_default_us(control);
     grobo_i_control_unlock(control);
-    return time_us != 0 ? time_us : GROBO_POSTURE_TIME_US;
+    return time_us;
 }
 
 int grobo_control_set_sense_interval_us(grobo_control *control, int64_t interval_us)
@@ -127,7 +134,7 @@ int grobo_control_set_motion_count(grobo_control *control, int count)
     grobo_i_control_lock(control);
     control->motion_count = count;
     grobo_i_control_unlock(control);
-    return count;
+    return GROBO_OK;
 }
 
 int grobo_control_get_motion_count(grobo_control *control)

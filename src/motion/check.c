@@ -68,7 +68,6 @@ static grobo_i_said at_joint(const check *c, size_t row, int joint, const char *
 
 static void check_body(check *c)
 {
-    const char *body = grobo_motion_target_body(c->motion);
     int n_joints = grobo_motion_joints(c->motion);
     grobo_i_said said = {c->file, "target-body", 0, 0, GROBO_SEVERITY_WARNING};
 
@@ -77,8 +76,9 @@ static void check_body(check *c)
         grobo_i_say(c->list, &said, "no postures");
         return;
     }
-    if (body[0] != '\0' && strcmp(body, c->model->name) != 0) {
-        grobo_i_say(c->list, &said, "made for %.60s, not for %s", body, c->model->name);
+    if (!grobo_i_is_named_for(c->motion, c->model)) {
+        grobo_i_say(c->list, &said, "made for %.60s, not for %s",
+                    grobo_motion_target_body(c->motion), c->model->name);
     }
     if (c->motion->kind == GROBO_MOTION_FRAMES && n_joints != c->model->n_joints) {
         said.code = n_joints > c->model->n_joints ? "joint-unknown" : "joint-missing";
@@ -235,6 +235,34 @@ static bool is_outside(const grobo_joint *joint, double angle_rad)
     return ddeg < grobo_ddeg_from_rad(joint->min_rad) || ddeg > grobo_ddeg_from_rad(joint->max_rad);
 }
 
+/* Outside, and more than slack allows. */
+static bool is_refused(const check *c, int j, double angle_rad)
+{
+    if (c->options->slack != NULL) {
+        angle_rad = grobo_model_take_slack(c->model, j, angle_rad);
+    }
+    return is_outside(&c->model->joints[j], angle_rad);
+}
+
+/* The angle is played at the limit that it exceeds; counted. */
+static bool takes_slack(check *c, size_t row, int j, double angle_rad)
+{
+    grobo_slack_taken *taken = c->options->slack;
+    double played_rad = grobo_model_take_slack(c->model, j, angle_rad);
+
+    if (taken == NULL || played_rad == angle_rad) {
+        return false;
+    }
+    if (taken->n++ == 0) {
+        taken->line = grobo_motion_line(c->motion, row);
+    }
+    if (fabs(angle_rad - played_rad) > taken->worst_rad) {
+        taken->worst_rad = fabs(angle_rad - played_rad);
+        taken->joint = j;
+    }
+    return true;
+}
+
 /* In frames a fault goes on for many: its beginning is enough. */
 static bool goes_on(const check *c, grobo_joint_mask before, int j)
 {
@@ -257,7 +285,7 @@ static void check_limit(check *c, size_t row, int j, double angle_rad)
 {
     grobo_joint_mask bit = GROBO_JOINT_BIT(j);
 
-    if (!is_outside(&c->model->joints[j], angle_rad)) {
+    if (!is_outside(&c->model->joints[j], angle_rad) || takes_slack(c, row, j, angle_rad)) {
         c->outside &= ~bit;
         return;
     }
@@ -293,6 +321,12 @@ static double peak_speed(const cubic *q)
     return peak / q->length_s;
 }
 
+/* How far outside its limits; negative inside. */
+static double excess_rad(const grobo_joint *joint, double angle_rad)
+{
+    return fmax(joint->min_rad - angle_rad, angle_rad - joint->max_rad);
+}
+
 /* The value furthest outside the limits where the curve turns, or that of `to`. */
 static double furthest(const cubic *q, const grobo_spline_key *from, const grobo_spline_key *to,
                        const grobo_joint *joint)
@@ -306,7 +340,7 @@ static double furthest(const cubic *q, const grobo_spline_key *from, const grobo
     for (int sign = -1; sign <= 1; sign += 2) {
         double s = (-q->c + sign * sqrt(root)) / (3 * q->d);
         double value = from->value + s * (q->b + s * (q->c + s * q->d));
-        if (s > 0 && s < 1 && is_outside(joint, value)) {
+        if (s > 0 && s < 1 && excess_rad(joint, value) > excess_rad(joint, worst)) {
             worst = value;
         }
     }
@@ -337,9 +371,13 @@ static void check_curve(check *c, size_t row, int j, double at_s)
                     "%s: up to %s degrees a second on the way here, the servo does %s", joint->name,
                     show_deg(peak_rad_s).text, show_deg(joint->max_speed_rad_s).text);
     }
-    if (is_outside(joint, worst_rad) && !is_outside(joint, to->value) &&
-        !is_outside(joint, from->value)) {
+    if (is_refused(c, j, to->value) || is_refused(c, j, from->value)) {
+        return; /* told at the key */
+    }
+    if (is_refused(c, j, worst_rad)) {
         say_outside(c, row, j, worst_rad, " on the way here");
+    } else if (!is_outside(joint, to->value) && !is_outside(joint, from->value)) {
+        (void)takes_slack(c, row, j, worst_rad);
     }
 }
 
@@ -413,11 +451,7 @@ static grobo_posture start_of(const check *c)
 {
     grobo_posture start;
 
-    if (c->options->start != NULL) {
-        start = *c->options->start;
-    } else {
-        grobo_posture_init_pose(&start, c->model);
-    }
+    grobo_i_start(c->motion, c->model, c->options->start, &start);
     for (int j = start.n_joints; j < c->motion->n_joints; j++) {
         start.angle_rad[j] = 0;
         start.set |= GROBO_JOINT_BIT(j);

@@ -307,19 +307,14 @@ static int prepare(grobo_i_clip *clip, const grobo_clip_options *options)
     } else {
         clip->filling = alike ? GROBO_I_ROWS : GROBO_I_STRAIGHT;
     }
-    if (result < 0 || clip->filling == GROBO_I_ROWS) {
-        return result;
-    }
-    return fill_tracks(clip, options->start);
+    return result;
 }
 
-int grobo_motion_clip(const grobo_motion *motion, const grobo_clip_options *options,
+int grobo_i_clip_keys(const grobo_motion *motion, const grobo_clip_options *options,
                       grobo_clip *clip)
 {
-    static const grobo_clip_options defaults;
     grobo_i_clip *made;
 
-    options = options != NULL ? options : &defaults;
     if (options->default_us < 0 || options->style < GROBO_STYLE_CHOREONOID ||
         options->style > GROBO_STYLE_SEED) {
         return GROBO_ERR_ARG;
@@ -350,6 +345,33 @@ int grobo_motion_clip(const grobo_motion *motion, const grobo_clip_options *opti
                          .n_keys = made->size,
                          .n_joints = motion->n_joints,
                          .relative = relative};
+    return 0;
+}
+
+int grobo_i_clip_fill(const grobo_clip *clip, const grobo_posture *start)
+{
+    grobo_i_clip *made = clip->ctx;
+
+    return clip->relative || made->filling == GROBO_I_ROWS ? 0 : fill_tracks(made, start);
+}
+
+int grobo_motion_clip(const grobo_motion *motion, const grobo_clip_options *options,
+                      grobo_clip *clip)
+{
+    static const grobo_clip_options defaults;
+    grobo_clip made;
+
+    options = options != NULL ? options : &defaults;
+    int result = grobo_i_clip_keys(motion, options, &made);
+    if (result < 0) {
+        return result;
+    }
+    result = grobo_i_clip_fill(&made, options->start);
+    if (result < 0) {
+        grobo_motion_clip_free(&made);
+        return result;
+    }
+    *clip = made;
     return 0;
 }
 

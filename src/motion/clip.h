@@ -35,6 +35,12 @@ typedef struct grobo_i_clip {
     grobo_i_filling filling;
 } grobo_i_clip;
 
+/* A clip of which keys are asked only: as grobo_motion_clip(), without room for curves. */
+int grobo_i_clip_keys(const grobo_motion *motion, const grobo_clip_options *options,
+                      grobo_clip *clip);
+/* Has it sampled too, which is asked for once; start as in the options. */
+int grobo_i_clip_fill(const grobo_clip *clip, const grobo_posture *start);
+
 /* When key i is reached. */
 double grobo_i_clip_at_s(const grobo_i_clip *clip, size_t i);
 /* The row that key i is. */

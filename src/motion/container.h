@@ -14,6 +14,9 @@
 /* Latest time of a posture, either way: far beyond use, and exact in microseconds. */
 #define GROBO_I_TIME_MAX_S 1e9
 
+/* Largest angle or increment, either way: some 160,000 turns. Sums of a whole file stay finite. */
+#define GROBO_I_ANGLE_MAX_RAD 1e6
+
 /* Joints in a line of a key pose: Choreonoid's, and that before 1.5, whose line break counted. */
 #define GROBO_I_LINE_ITEMS 10
 #define GROBO_I_LINE_ITEMS_OLD 9
@@ -108,6 +111,13 @@ int grobo_i_copy_rows(grobo_motion *motion, const grobo_motion *from, size_t fir
                       double shift_s);
 /* An empty motion with all that `like` has but postures. */
 int grobo_i_new_like(const grobo_motion *like, grobo_motion **motion);
+/* True for a motion whose target body is the model, any robot of the original library, or none. */
+bool grobo_i_is_named_for(const grobo_motion *motion, const grobo_model *model);
+/* Where a motion starts: at the posture given; NULL: where grobo_motion_start() says. */
+void grobo_i_start(const grobo_motion *motion, const grobo_model *model, const grobo_posture *given,
+                   grobo_posture *start);
+/* Moves all postures of a motion into an empty one of the same allocator. */
+void grobo_i_take_rows(grobo_motion *to, grobo_motion *from);
 /* Exchanges all contents of two motions of the same allocator. */
 void grobo_i_swap(grobo_motion *a, grobo_motion *b);
 

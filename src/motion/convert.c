@@ -5,6 +5,11 @@
 
 #include "motion/clip.h"
 #include "motion/io.h"
+#include "motion/reader.h"
+#include "motion/write.h"
+
+/* Postures further apart are resampled to become frames. */
+#define FRAME_RATE_LEAST_HZ 25
 
 /* What is being made of what. */
 typedef struct conversion {
@@ -110,17 +115,18 @@ static void note_steps(const conversion *conv)
 }
 
 /* Notes joints that no posture sets. */
-static void note_unset(const conversion *conv, const char *text)
+static void note_unset(const conversion *conv)
 {
     int unset = 0;
 
-    for (int j = 0; j < conv->from->n_joints; j++) {
+    for (int j = 0; j < conv->to->n_joints; j++) {
         unset += (conv->clip->listed & GROBO_JOINT_BIT(j)) == 0;
     }
     if (unset > 0 && conv->from->size > 0) {
         const char *name = conv->options->name != NULL ? conv->options->name : "";
         grobo_i_say(conv->list, &(grobo_i_said){name, "joints-unset", 0, 0, GROBO_SEVERITY_NOTE},
-                    "%d joints that no posture sets are written as %s", unset, text);
+                    "%d joint%s that no posture sets stay%s where the motion starts", unset,
+                    unset == 1 ? "" : "s", unset == 1 ? "s" : "");
     }
 }
 
@@ -181,6 +187,12 @@ static double next_angle(conversion *conv, size_t i, const grobo_i_row *old, int
     return step_rad;
 }
 
+/* When posture i of the source is reached in what it becomes. */
+static double new_time_s(const conversion *conv, size_t i)
+{
+    return grobo_i_clip_at_s(conv->clip, i) + conv->shift_s;
+}
+
 /* A row for key i. */
 static int put_key(conversion *conv, size_t i)
 {
@@ -193,7 +205,7 @@ static int put_key(conversion *conv, size_t i)
         return result;
     }
     (void)grobo_i_row_at(conv->from, grobo_i_clip_row(conv->clip, i), &old);
-    *row.time_s = grobo_i_clip_at_s(conv->clip, i) + conv->shift_s;
+    *row.time_s = new_time_s(conv, i);
     *row.line = *old.line;
     *row.set = full ? GROBO_JOINTS_ALL(to->n_joints) : *old.set;
     for (int j = 0; j < to->n_joints; j++) {
@@ -207,22 +219,22 @@ static int put_key(conversion *conv, size_t i)
 }
 
 /* The rate at which the times are those of frames, or 0. */
-static double find_rate(const grobo_motion *motion)
+static double find_rate(const conversion *conv)
 {
-    size_t last = motion->size - 1;
-    grobo_i_row row;
+    size_t size = conv->from->size;
+    double last_s = size >= 2 ? new_time_s(conv, size - 1) : 0;
 
-    if (motion->size < 2 || !(grobo_i_row_at(motion, last, &row) && *row.time_s > 0)) {
+    if (!(last_s > 0)) {
         return 0;
     }
-    double rate_hz = (double)last / *row.time_s;
+    double rate_hz = (double)(size - 1) / last_s;
     double whole_hz = round(rate_hz);
     rate_hz = fabs(rate_hz - whole_hz) < 1e-6 * rate_hz ? whole_hz : rate_hz;
     if (rate_hz < 0.1) {
         return 0; /* even steps, but no frames */
     }
-    for (size_t n = 0; grobo_i_row_at(motion, n, &row); n++) {
-        if (!(fabs(*row.time_s * rate_hz - (double)n) < 1e-6)) {
+    for (size_t i = 0; i < size; i++) {
+        if (!(fabs(new_time_s(conv, i) * rate_hz - (double)i) < 1e-6)) {
             return 0;
         }
     }
@@ -254,25 +266,19 @@ static int set_rate(conversion *conv)
         to->frame_times = from->frame_times;
         return grobo_motion_set_frame_rate(to, from->frame_rate_hz);
     }
-    double rate_hz = find_rate(to);
+    double rate_hz = find_rate(conv);
     to->frame_times = rate_hz == 0;
     return grobo_motion_set_frame_rate(to, rate_hz > 0 ? rate_hz : finest_rate(to));
 }
 
 static int one_by_one(conversion *conv)
 {
-    static const double zeros[GROBO_JOINTS_MAX];
     grobo_motion_kind kind = conv->to->kind;
-    double first_s = conv->from->size > 0 ? grobo_i_time_s(conv->from, 0) : 0;
 
-    /* A first posture at 0 stays there, though it has no step to be reached by. */
-    if (conv->from->size > 0 && first_s == 0) {
-        conv->shift_s = -grobo_i_clip_at_s(conv->clip, 0);
-    }
     if (kind == GROBO_MOTION_STEPS) {
         memcpy(conv->angle_rad, conv->start.angle_rad, sizeof conv->angle_rad);
     } else {
-        first_values(conv, kind == GROBO_MOTION_POSTURES ? conv->start.angle_rad : zeros);
+        first_values(conv, conv->start.angle_rad);
     }
     for (size_t i = 0; i < conv->from->size; i++) {
         int result = put_key(conv, i);
@@ -285,31 +291,104 @@ static int one_by_one(conversion *conv)
 
 /* ---- frames at a rate --------------------------------------------------------------------- */
 
-static int resample(conversion *conv)
+/* Joints that nothing sets stay at the start. */
+static int complete_rows(conversion *conv)
+{
+    grobo_motion *to = conv->to;
+    int result = 0;
+
+    for (size_t n = 0; result == 0 && n < to->size; n++) {
+        grobo_i_row row;
+        result = grobo_i_row_wide(to, n, &row);
+        for (int j = 0; result == 0 && j < to->n_joints; j++) {
+            if ((*row.set & GROBO_JOINT_BIT(j)) == 0) {
+                row.angle_rad[j] = conv->start.angle_rad[j];
+            }
+        }
+        *row.set = GROBO_JOINTS_ALL(to->n_joints);
+    }
+    return result;
+}
+
+/* Where the motion ends between two frames, one more has the posture in which it ends. */
+static int add_end(const conversion *conv, grobo_motion *frames)
+{
+    grobo_posture end;
+    double last_s = frames->size > 0 ? grobo_i_time_s(frames, frames->size - 1) : 0;
+
+    if (frames->size == 0 || (double)conv->view.length_us / 1e6 - last_s < 1e-6) {
+        return 0;
+    }
+    int result = conv->view.sample(conv->view.ctx, conv->view.length_us, &end);
+    end.time_us = 0;
+    return result < 0 ? result : grobo_motion_append(frames, &end);
+}
+
+static int resample(conversion *conv, double rate_hz)
 {
     grobo_motion *frames;
-    int result = grobo_motion_resample(&conv->view, conv->options->rate_hz, conv->to->mem, &frames);
+    int result = grobo_i_clip_fill(&conv->view, &conv->start);
+
+    if (result < 0) {
+        return result;
+    }
+    result = grobo_motion_resample(&conv->view, rate_hz, conv->to->mem, &frames);
 
     if (result < 0) {
         return result;
     }
     conv->to->frame_rate_hz = frames->frame_rate_hz;
-    result = grobo_i_copy_rows(conv->to, frames, 0, frames->size, 0);
     conv->to->frame_times = false;
+    result = add_end(conv, frames);
+    if (result == 0) {
+        grobo_i_take_rows(conv->to, frames);
+    }
     grobo_motion_free(frames);
-    grobo_i_row row;
-    for (size_t n = 0; grobo_i_row_at(conv->to, n, &row); n++) {
-        for (int j = 0; j < conv->to->n_joints; j++) {
-            if ((*row.set & GROBO_JOINT_BIT(j)) == 0) {
-                row.angle_rad[j] = 0;
-            }
-        }
-        *row.set = GROBO_JOINTS_ALL(conv->to->n_joints);
+    return result < 0 ? result : complete_rows(conv);
+}
+
+/*
+ * Frames without a rate asked for: those of a motion that has them, or postures that are as close
+ * as frames; anything else is resampled, since programs that read frames hold each until the next.
+ */
+static int to_frames(conversion *conv)
+{
+    const grobo_write_options *options = conv->options;
+
+    if (options->rate_hz > 0) {
+        return resample(conv, options->rate_hz);
+    }
+    if (conv->from->kind == GROBO_MOTION_FRAMES || options->exact ||
+        find_rate(conv) >= FRAME_RATE_LEAST_HZ) {
+        return one_by_one(conv);
+    }
+    int result = resample(conv, GROBO_MOTION_RATE_HZ);
+    if (result == 0 && conv->to->size > 0) {
+        grobo_i_say(conv->list,
+                    &(grobo_i_said){options->name != NULL ? options->name : "", "resampled", 0, 0,
+                                    GROBO_SEVERITY_NOTE},
+                    "resampled: %d frames per second", GROBO_MOTION_RATE_HZ);
     }
     return result;
 }
 
 /* ---- all of it ---------------------------------------------------------------------------- */
+
+/* A line of .m has the joints of the first motors. A motion with others gets them all. */
+static bool lacks_columns(const grobo_motion *motion, const grobo_model *model)
+{
+    uint8_t joints[GROBO_JOINTS_MAX];
+    bool lacks = false;
+
+    if (model == NULL || motion->n_joints >= model->n_joints) {
+        return false;
+    }
+    (void)grobo_i_motor_order(model, model->n_joints, joints);
+    for (int c = 0; c < motion->n_joints; c++) {
+        lacks |= joints[c] >= motion->n_joints;
+    }
+    return lacks;
+}
 
 static int begin(conversion *conv, grobo_motion_kind kind)
 {
@@ -317,23 +396,29 @@ static int begin(conversion *conv, grobo_motion_kind kind)
     const grobo_write_options *options = conv->options;
     grobo_clip_options how = {.style = options->style, .default_us = options->default_us};
 
-    (void)grobo_posture_init(&conv->start, from->n_joints);
-    conv->start.set = GROBO_JOINTS_ALL(from->n_joints);
-    if (options->start != NULL) {
-        conv->start = *options->start;
-    } else if (options->model != NULL && options->model->n_joints == from->n_joints) {
-        grobo_posture_init_pose(&conv->start, options->model);
-    }
+    grobo_i_start(from, options->model, options->start, &conv->start);
     how.start = &conv->start;
     int result = grobo_i_new_like(from, &conv->to);
     if (result < 0) {
         return result;
     }
+    bool full = kind == GROBO_MOTION_POSTURES || kind == GROBO_MOTION_FRAMES;
+    if (full && conv->start.n_joints > from->n_joints) {
+        (void)grobo_motion_set_joints(conv->to, conv->start.n_joints);
+    }
+    if (kind == GROBO_MOTION_POSTURES && from->size > 0 &&
+        lacks_columns(conv->to, options->model)) {
+        (void)grobo_motion_set_joints(conv->to, options->model->n_joints);
+    }
     conv->to->kind = kind;
     conv->to->frame_times = false;
     conv->to->frame_rate_hz = 0;
-    result = grobo_motion_clip(from, &how, &conv->view);
+    result = grobo_i_clip_keys(from, &how, &conv->view);
     conv->clip = conv->view.ctx;
+    /* A first posture at 0 stays there, though it has no step to be reached by. */
+    if (result == 0 && from->size > 0 && grobo_i_time_s(from, 0) == 0) {
+        conv->shift_s = -grobo_i_clip_at_s(conv->clip, 0);
+    }
     return result;
 }
 
@@ -342,20 +427,59 @@ static int run(conversion *conv, grobo_motion_kind kind)
     int result = begin(conv, kind);
 
     if (result == 0) {
-        result = kind == GROBO_MOTION_FRAMES && conv->options->rate_hz > 0 ? resample(conv)
-                                                                           : one_by_one(conv);
+        result = kind == GROBO_MOTION_FRAMES ? to_frames(conv) : one_by_one(conv);
     }
     if (result < 0) {
         return result;
     }
     if (kind == GROBO_MOTION_POSTURES || kind == GROBO_MOTION_FRAMES) {
         note_losses(conv);
-        note_unset(conv, kind == GROBO_MOTION_FRAMES ? "0" : "they are at the start");
+        note_unset(conv);
     }
     if (kind == GROBO_MOTION_POSTURES || kind == GROBO_MOTION_STEPS) {
         note_steps(conv);
     }
     return 0;
+}
+
+int grobo_motion_resolve(grobo_motion *motion, const grobo_posture *start)
+{
+    grobo_clip view;
+    int64_t at_us;
+
+    if (motion->kind != GROBO_MOTION_STEPS) {
+        return 0;
+    }
+    int result = grobo_i_clip_keys(motion, &(grobo_clip_options){.start = start}, &view);
+    if (result < 0) {
+        return result;
+    }
+    for (size_t n = 0; n < motion->size; n++) {
+        grobo_posture posture;
+        grobo_i_row row;
+        (void)view.key(view.ctx, n, &posture, &at_us);
+        (void)grobo_i_row_at(motion, n, &row);
+        memcpy(row.angle_rad, posture.angle_rad, row.width * sizeof *row.angle_rad);
+        grobo_i_extra_free(motion->mem, *row.extra);
+        *row.extra = NULL;
+    }
+    grobo_motion_clip_free(&view);
+    motion->kind = GROBO_MOTION_POSTURES;
+    return 0;
+}
+
+bool grobo_i_is_as_written(const grobo_motion *motion, grobo_motion_kind kind,
+                           const grobo_write_options *options)
+{
+    uint8_t joints[GROBO_JOINTS_MAX];
+
+    if (kind != motion->kind) {
+        return false;
+    }
+    if (kind == GROBO_MOTION_POSTURES && motion->size > 0) {
+        return grobo_i_m_columns(motion, options->model, joints) > 0;
+    }
+    return kind != GROBO_MOTION_FRAMES || !(options->rate_hz > 0);
 }
 
 int grobo_motion_convert(const grobo_motion *motion, grobo_motion_kind kind,
@@ -371,7 +495,7 @@ int grobo_motion_convert(const grobo_motion *motion, grobo_motion_kind kind,
         rate_hz < 0) {
         return GROBO_ERR_ARG;
     }
-    if (kind == motion->kind && !(kind == GROBO_MOTION_FRAMES && rate_hz > 0)) {
+    if (grobo_i_is_as_written(motion, kind, conv.options)) {
         return grobo_motion_dup(motion, converted);
     }
     int result = run(&conv, kind);

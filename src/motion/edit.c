@@ -17,6 +17,10 @@ static int check_posture(const grobo_motion *motion, const grobo_posture *postur
         if ((posture->set & GROBO_JOINT_BIT(j)) != 0 && !isfinite(posture->angle_rad[j])) {
             return GROBO_ERR_NAN;
         }
+        if ((posture->set & GROBO_JOINT_BIT(j)) != 0 &&
+            fabs(posture->angle_rad[j]) > GROBO_I_ANGLE_MAX_RAD) {
+            return GROBO_ERR_ARG;
+        }
     }
     return 0;
 }

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -75,6 +76,21 @@ void grobo_i_swap(grobo_motion *a, grobo_motion *b)
     *b = other;
 }
 
+void grobo_i_take_rows(grobo_motion *to, grobo_motion *from)
+{
+    grobo_motion empty = *to;
+
+    assert(to->size == 0 && to->mem == from->mem);
+    to->chunks = from->chunks;
+    to->n_chunks = from->n_chunks;
+    to->chunk_room = from->chunk_room;
+    to->size = from->size;
+    from->chunks = empty.chunks;
+    from->n_chunks = empty.n_chunks;
+    from->chunk_room = empty.chunk_room;
+    from->size = 0;
+}
+
 int grobo_motion_dup(const grobo_motion *motion, grobo_motion **copy)
 {
     grobo_motion *made;
@@ -91,6 +107,57 @@ int grobo_motion_dup(const grobo_motion *motion, grobo_motion **copy)
     made->place = motion->place;
     *copy = made;
     return 0;
+}
+
+void grobo_motion_renew(grobo_motion *motion, grobo_motion_kind kind)
+{
+    if ((unsigned)kind > GROBO_MOTION_FRAMES) {
+        return;
+    }
+    grobo_motion_clear(motion);
+    grobo_i_free_text(motion->mem, motion->name);
+    grobo_i_free_text(motion->mem, motion->target_body);
+    grobo_i_kept_free(motion->mem, motion->kept);
+    motion->name = motion->target_body = NULL;
+    motion->kept = NULL;
+    motion->frame_rate_hz = 0;
+    motion->frame_times = motion->reverse = false;
+    motion->kind = kind;
+}
+
+/* ---- the robot it is for ------------------------------------------------------------------ */
+
+bool grobo_i_is_named_for(const grobo_motion *motion, const grobo_model *model)
+{
+    const char *body = grobo_motion_target_body(motion);
+
+    return body[0] == '\0' || strcmp(body, "SerialRobot") == 0 || strcmp(body, model->name) == 0;
+}
+
+bool grobo_motion_is_for(const grobo_motion *motion, const grobo_model *model)
+{
+    return model != NULL && motion->n_joints <= model->n_joints &&
+           grobo_i_is_named_for(motion, model);
+}
+
+void grobo_motion_start(const grobo_motion *motion, const grobo_model *model, grobo_posture *start)
+{
+    if (grobo_motion_is_for(motion, model)) {
+        grobo_posture_init_pose(start, model);
+    } else {
+        (void)grobo_posture_init(start, motion->n_joints);
+        start->set = GROBO_JOINTS_ALL(motion->n_joints);
+    }
+}
+
+void grobo_i_start(const grobo_motion *motion, const grobo_model *model, const grobo_posture *given,
+                   grobo_posture *start)
+{
+    if (given != NULL) {
+        *start = *given;
+    } else {
+        grobo_motion_start(motion, model, start);
+    }
 }
 
 /* ---- the motion itself -------------------------------------------------------------------- */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* From a path, memory or a source to a motion: opens, guesses the format, picks the reader. */
 #include <errno.h>
+#include <math.h>
 #include <stdarg.h>
 #include <string.h>
 
@@ -94,12 +95,13 @@ void grobo_i_note(grobo_i_reader *reader, const char *code, grobo_i_place place,
     va_end(args);
 }
 
-int grobo_i_keep_position(grobo_i_reader *reader, const grobo_i_row *row, int joint,
-                          grobo_i_place place)
+/* Places cost more than the angles themselves: later postures of a long file are named by line. */
+static int keep_position(grobo_i_reader *reader, const grobo_i_row *row, int joint,
+                         grobo_i_place place)
 {
     uint8_t n_joints = reader->motion->n_joints;
 
-    if (!reader->options.keep_positions) {
+    if (!reader->options.keep_positions || reader->motion->size > GROBO_MOTION_POSITIONS_MAX) {
         return 0;
     }
     grobo_i_extra *extra = grobo_i_extra_of(reader->mem, row);
@@ -118,6 +120,32 @@ int grobo_i_keep_position(grobo_i_reader *reader, const grobo_i_row *row, int jo
     extra->positions[2 * joint] = place.line;
     extra->positions[2 * joint + 1] = place.column;
     return 0;
+}
+
+int grobo_i_take_time(grobo_i_reader *reader, double *time_s, double found_s, grobo_i_place place)
+{
+    bool in_range = found_s >= 0 && found_s <= GROBO_I_TIME_MAX_S;
+
+    *time_s = in_range ? found_s : 0;
+    return in_range
+               ? 0
+               : grobo_i_complain(reader, GROBO_ERR_SYNTAX, "time-range", place,
+                                  found_s < 0 ? "a time before 0" : "a time beyond 10^9 seconds");
+}
+
+int grobo_i_set_angle(grobo_i_reader *reader, const grobo_i_row *row, int joint, double angle_rad,
+                      grobo_i_place place)
+{
+    int result = 0;
+
+    if (!(fabs(angle_rad) <= GROBO_I_ANGLE_MAX_RAD)) {
+        angle_rad = 0;
+        result = grobo_i_complain(reader, GROBO_ERR_SYNTAX, "angle-range", place,
+                                  "an angle beyond 10^6 radians");
+    }
+    row->angle_rad[joint] = angle_rad;
+    *row->set |= GROBO_JOINT_BIT(joint);
+    return result < 0 ? result : keep_position(reader, row, joint, place);
 }
 
 /* ---- formats ------------------------------------------------------------------------------ */

@@ -205,18 +205,12 @@ static int add_frame(component *part)
         return result;
     }
     *row.line = part->row_place.line;
-    *row.set = GROBO_JOINTS_ALL(motion->n_joints);
-    memcpy(row.angle_rad, part->values + first, motion->n_joints * sizeof *row.angle_rad);
     if (part->times) {
-        *row.time_s = part->values[0];
-        if (fabs(part->values[0]) > GROBO_I_TIME_MAX_S) {
-            result = grobo_i_complain(reader, GROBO_ERR_SYNTAX, "time-range", part->places[0],
-                                      "a time beyond 10^9 seconds");
-            *row.time_s = 0;
-        }
+        result = grobo_i_take_time(reader, row.time_s, part->values[0], part->places[0]);
     }
-    for (int j = 0; result == 0 && reader->options.keep_positions && j < motion->n_joints; j++) {
-        result = grobo_i_keep_position(reader, &row, j, part->places[first + j]);
+    for (int j = 0; result == 0 && j < motion->n_joints; j++) {
+        result =
+            grobo_i_set_angle(reader, &row, j, part->values[first + j], part->places[first + j]);
     }
     return result;
 }
@@ -310,19 +304,24 @@ static void drop_rows(component *part)
 }
 
 /* hasFrameTime came behind the frames: what was read as the first joint are the times. */
-static void take_times_from_frames(component *part)
+static int take_times_from_frames(component *part)
 {
-    grobo_motion *motion = part->document->reader->motion;
+    grobo_i_reader *reader = part->document->reader;
+    grobo_motion *motion = reader->motion;
     grobo_i_row row;
+    int result = 0;
 
-    for (size_t n = 0; motion->n_joints > 0 && grobo_i_row_at(motion, n, &row); n++) {
-        *row.time_s = row.angle_rad[0];
+    for (size_t n = 0; result == 0 && motion->n_joints > 0 && grobo_i_row_at(motion, n, &row);
+         n++) {
+        result =
+            grobo_i_take_time(reader, row.time_s, row.angle_rad[0], (grobo_i_place){*row.line, 0});
         memmove(row.angle_rad, row.angle_rad + 1,
                 (size_t)(motion->n_joints - 1) * sizeof *row.angle_rad);
     }
     (void)grobo_motion_set_joints(motion, motion->n_joints - 1);
     part->columns--;
     part->times = true;
+    return result;
 }
 
 /* The component gave the joints' frames: what it said of them must fit. */
@@ -334,17 +333,11 @@ static int take_frames(component *part)
 
     document->has_joints = true;
     if (!part->times && has_frame_time(part) && part->columns > 1) {
-        take_times_from_frames(part);
+        result = take_times_from_frames(part);
     }
     document->frames = part->info;
     document->frames.has_frame_time = part->times;
     document->frames_place = part->has_frames ? part->frames_place : part->place;
-    long n_parts = part->info.n_parts;
-    if (reader->motion->size > 0 && n_parts >= 0 && n_parts != reader->motion->n_joints) {
-        result =
-            grobo_i_complain(reader, GROBO_ERR_SYNTAX, "frame-length", part->info.n_parts_place,
-                             "numParts is %ld, frames have %d", n_parts, reader->motion->n_joints);
-    }
     if (part->info.n_frames >= 0 && (size_t)part->info.n_frames != reader->motion->size) {
         grobo_i_warn(reader, "num-frames", part->info.n_frames_place,
                      "numFrames is %ld, there are %lu", part->info.n_frames,
@@ -425,8 +418,8 @@ static int check_version(grobo_i_document *document)
                                 "from version 2 on the type must be CompositeSeq");
     }
     if (version < 2 && composite) {
-        grobo_i_warn(reader, "version", document->type_place,
-                     "a CompositeSeq without a version from 2 on");
+        return grobo_i_complain(reader, GROBO_ERR_TYPE, "version", document->type_place,
+                                "a CompositeSeq needs format_version 2 or later");
     }
     if (document->content != NULL && document->content[0] != '\0' &&
         strcmp(document->content, "BodyMotion") != 0) {
@@ -462,6 +455,38 @@ static int check_rate(grobo_i_document *document)
     return 0;
 }
 
+/* Choreonoid reads no frames whose number of joints is not given. */
+static int check_parts(grobo_i_document *document)
+{
+    grobo_i_reader *reader = document->reader;
+    const grobo_i_frame_info *info =
+        document->frames.n_parts >= 0 ? &document->frames : &document->top;
+
+    if (info->n_parts < 0) {
+        return grobo_i_complain(reader, GROBO_ERR_SYNTAX, "no-parts", document->frames_place,
+                                "no numParts: how many joints the frames have is not given");
+    }
+    if (info->n_parts != reader->motion->n_joints) {
+        return grobo_i_complain(reader, GROBO_ERR_SYNTAX, "frame-length", info->n_parts_place,
+                                "numParts is %ld, frames have %d", info->n_parts,
+                                reader->motion->n_joints);
+    }
+    return 0;
+}
+
+/* An empty motion as this library writes it. Choreonoid reads no frames that are none. */
+static bool is_meant_empty(grobo_i_document *document)
+{
+    long n_parts = document->frames.n_parts;
+
+    if (document->frames.n_frames != 0 || n_parts < 0 || n_parts > GROBO_JOINTS_MAX ||
+        strcmp(document->type, "BodyMotion") != 0) {
+        return false;
+    }
+    document->reader->motion->n_joints = (uint8_t)n_parts;
+    return true;
+}
+
 int grobo_i_finish_frames(grobo_i_document *document)
 {
     grobo_i_reader *reader = document->reader;
@@ -475,10 +500,11 @@ int grobo_i_finish_frames(grobo_i_document *document)
                                 document->has_components ? "no component with the joints' frames"
                                                          : "no components");
     }
-    if (reader->motion->size == 0) {
+    if (reader->motion->size == 0 && !is_meant_empty(document)) {
         return grobo_i_complain(reader, GROBO_ERR_SYNTAX, "no-frames", document->frames_place,
                                 "no frames");
     }
     reader->motion->frame_times = document->frames.has_frame_time;
-    return check_rate(document);
+    result = check_parts(document);
+    return result < 0 ? result : check_rate(document);
 }

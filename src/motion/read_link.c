@@ -8,6 +8,7 @@
 typedef struct link_entry {
     grobo_i_pose_ref *ref;
     grobo_ik_link *link;
+    bool has_translation, has_rotation; /* each with all its numbers */
 } link_entry;
 
 static int read_link_name(grobo_i_events *events, void *target)
@@ -66,15 +67,34 @@ static int read_is_slave(grobo_i_events *events, void *target)
     return grobo_i_read_bool(events, "isSlave", &((link_entry *)target)->link->is_slave);
 }
 
+/* A list of another length makes the link unusable, not the file. */
+static int read_matrix(grobo_i_events *events, const char *what, double *values, int count,
+                       bool *whole)
+{
+    double found[16];
+    grobo_i_numbers list = {found, NULL, 0, sizeof found / sizeof found[0]};
+    int result = grobo_i_read_numbers(events, what, &list);
+
+    *whole = result == 0 && list.count == count;
+    if (*whole) {
+        memcpy(values, found, (size_t)count * sizeof *values);
+    }
+    return result;
+}
+
 static int read_translation(grobo_i_events *events, void *target)
 {
-    return grobo_i_read_doubles(events, "translation", ((link_entry *)target)->link->translation_m,
-                                3);
+    link_entry *entry = target;
+
+    return read_matrix(events, "translation", entry->link->translation_m, 3,
+                       &entry->has_translation);
 }
 
 static int read_rotation(grobo_i_events *events, void *target)
 {
-    return grobo_i_read_doubles(events, "rotation", ((link_entry *)target)->link->rotation, 9);
+    link_entry *entry = target;
+
+    return read_matrix(events, "rotation", entry->link->rotation, 9, &entry->has_rotation);
 }
 
 static int read_parting_direction(grobo_i_events *events, void *target)
@@ -105,7 +125,23 @@ static const grobo_i_field link_fields[] = {
     {"isSlave", NULL, read_is_slave},
     {"partingDirection", NULL, read_parting_direction},
 };
-enum { LINK_NEEDS = 0x3 /* translation and rotation */ };
+
+/* Unknown keys of a link that is left out go with it. */
+static void drop_link(grobo_i_pose_ref *ref)
+{
+    grobo_i_kept **list = &ref->kept;
+
+    while (*list != NULL) {
+        grobo_i_kept *kept = *list;
+        if (kept->level == GROBO_KEPT_LINK && kept->link == ref->n_links) {
+            *list = kept->next;
+            kept->next = NULL;
+            grobo_i_kept_free(ref->document->reader->mem, kept);
+        } else {
+            list = &kept->next;
+        }
+    }
+}
 
 int grobo_i_read_link(grobo_i_events *events, void *target)
 {
@@ -113,9 +149,9 @@ int grobo_i_read_link(grobo_i_events *events, void *target)
                                           sizeof link_fields / sizeof link_fields[0],
                                           keep_link_key};
     grobo_i_pose_ref *ref = target;
-    link_entry entry = {ref, &ref->links[ref->n_links]};
+    link_entry entry = {ref, &ref->links[ref->n_links], false, false};
     const grobo_i_event *event;
-    uint32_t seen = LINK_NEEDS;
+    uint32_t seen = 0;
     int result = grobo_i_peek(events, &event);
     grobo_i_place place = event->place;
 
@@ -130,10 +166,16 @@ int grobo_i_read_link(grobo_i_events *events, void *target)
         result = grobo_i_read_map(events, &fields, &entry, &seen);
     }
     bool named = entry.link->name[0] != '\0' || entry.link->index >= 0;
-    if (result == 0 && is_map && ((seen & LINK_NEEDS) != LINK_NEEDS || !named)) {
-        result = grobo_i_complain(events->reader, GROBO_ERR_SYNTAX, "key-missing", place,
-                                  "a link needs a name or index, translation and rotation");
+    if (result < 0 || !is_map) {
+        return result;
+    }
+    if (!named || !entry.has_translation || !entry.has_rotation) {
+        grobo_i_warn(events->reader, "link-skipped", place,
+                     "a link of ikLinks without a name or index, a translation of 3 and a rotation "
+                     "of 9 numbers is skipped");
+        drop_link(ref);
+        return 0;
     }
     ref->n_links++;
-    return result;
+    return 0;
 }

@@ -107,10 +107,9 @@ static int add_posture(m_file *file, const m_line *line)
     *row.line = file->line;
     for (int c = 0; c < file->columns && result == 0; c++) {
         int joint = file->joints[c];
-        row.angle_rad[joint] = line->values[1 + c] * GROBO_I_M_ANGLE / GROBO_I_M_ANGLE_UNITS;
-        *row.set |= GROBO_JOINT_BIT(joint);
-        result = grobo_i_keep_position(file->reader, &row, joint,
-                                       (grobo_i_place){file->line, line->column[1 + c]});
+        double angle_rad = line->values[1 + c] * GROBO_I_M_ANGLE / GROBO_I_M_ANGLE_UNITS;
+        result = grobo_i_set_angle(file->reader, &row, joint, angle_rad,
+                                   (grobo_i_place){file->line, line->column[1 + c]});
     }
     return result;
 }

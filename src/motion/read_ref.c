@@ -22,9 +22,8 @@ static int read_time(grobo_i_events *events, void *target)
     if (result == 0) {
         result = grobo_i_read_double(events, "time", &ref->time_s);
     }
-    if (result == 0 && fabs(ref->time_s) > GROBO_I_TIME_MAX_S) {
-        ref->time_s = 0;
-        result = complain_range(events, place, "a time");
+    if (result == 0) {
+        result = grobo_i_take_time(events->reader, &ref->time_s, ref->time_s, place);
     }
     return result;
 }
@@ -157,10 +156,8 @@ static int put_angles(grobo_i_pose_ref *ref, const grobo_i_row *row)
             result = grobo_i_complain(reader, GROBO_ERR_SYNTAX, "joint-twice",
                                       ref->joints.places[i], "joint %d is there twice", joint);
         }
-        row->angle_rad[joint] = ref->q.values[i];
-        *row->set |= GROBO_JOINT_BIT(joint);
         if (result == 0) {
-            result = grobo_i_keep_position(reader, row, joint, ref->q.places[i]);
+            result = grobo_i_set_angle(reader, row, joint, ref->q.values[i], ref->q.places[i]);
         }
         if (result < 0) {
             return result;

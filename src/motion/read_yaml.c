@@ -133,6 +133,13 @@ static grobo_i_place top_place(const grobo_i_document *document)
     return document->type_place.line > 0 ? document->type_place : (grobo_i_place){1, 1};
 }
 
+/* The kind that the refs are, where the top's type does not say it. Choreonoid does not look. */
+static const char *type_of_refs(const grobo_i_document *document, grobo_motion_kind *kind)
+{
+    *kind = document->poses_known ? document->poses : GROBO_MOTION_KEYS;
+    return *kind == GROBO_MOTION_STEPS ? "MotionSeq" : "PoseSeq";
+}
+
 /* The kind the top says, or what it holds if it does not say. */
 static int find_kind(grobo_i_document *document, grobo_motion_kind *kind)
 {
@@ -151,9 +158,7 @@ static int find_kind(grobo_i_document *document, grobo_motion_kind *kind)
                                   "no 'type': neither key poses nor a body motion");
         }
         grobo_i_warn(reader, "top-type", top_place(document),
-                     "no 'type': taken for %s, as its refs are",
-                     document->poses == GROBO_MOTION_STEPS ? "MotionSeq" : "PoseSeq");
-        *kind = document->poses_known ? document->poses : GROBO_MOTION_KEYS;
+                     "no 'type': read as %s, as its refs are", type_of_refs(document, kind));
         return 0;
     }
     for (size_t i = 0; i < sizeof types / sizeof types[0]; i++) {
@@ -162,8 +167,14 @@ static int find_kind(grobo_i_document *document, grobo_motion_kind *kind)
             return 0;
         }
     }
-    return grobo_i_refuse(reader, GROBO_ERR_TYPE, "top-type", top_place(document),
-                          "'%.40s' is no type of a motion file", document->type);
+    if (!document->has_refs || document->has_components) {
+        return grobo_i_refuse(reader, GROBO_ERR_TYPE, "top-type", top_place(document),
+                              "'%.40s' is not a type of motion file", document->type);
+    }
+    grobo_i_warn(reader, "top-type", top_place(document),
+                 "'%.40s' is not a type of motion file: read as %s, as its refs are",
+                 document->type, type_of_refs(document, kind));
+    return 0;
 }
 
 /* The refs or components found are those that the kind has. */

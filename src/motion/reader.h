@@ -47,9 +47,14 @@ void grobo_i_warn(grobo_i_reader *reader, const char *code, grobo_i_place place,
                   ...) GROBO_I_FORMAT(4, 5);
 void grobo_i_note(grobo_i_reader *reader, const char *code, grobo_i_place place, const char *format,
                   ...) GROBO_I_FORMAT(4, 5);
-/* Remembers where the angle of a joint stands, where the caller of reading wants that. */
-int grobo_i_keep_position(grobo_i_reader *reader, const grobo_i_row *row, int joint,
-                          grobo_i_place place);
+/* A time of a key pose or a frame, in seconds from 0 to GROBO_I_TIME_MAX_S; else it becomes 0. */
+int grobo_i_take_time(grobo_i_reader *reader, double *time_s, double found_s, grobo_i_place place);
+/*
+ * Sets the angle of a joint of a row, which stands at place in the file: refuses one that is too
+ * large, and remembers the place where the caller of reading wants that.
+ */
+int grobo_i_set_angle(grobo_i_reader *reader, const grobo_i_row *row, int joint, double angle_rad,
+                      grobo_i_place place);
 
 /*
  * Column c of a .m file is joint joints[c]: the model's joints in the order of their motors, or,

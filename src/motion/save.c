@@ -20,21 +20,34 @@ static int write_file(void *ctx, const void *data, size_t size)
     return to->files->write(to->file, data, size);
 }
 
+int grobo_motion_may_save(const grobo_files *files, const char *path, grobo_motion_format format)
+{
+    grobo_motion *there = NULL;
+
+    if (format <= GROBO_FORMAT_AUTO || format > GROBO_FORMAT_YAML) {
+        return GROBO_ERR_ARG;
+    }
+    if (!files->holds(path)) {
+        return 0;
+    }
+    int result =
+        grobo_motion_read_file(path, &(grobo_read_options){.format = format}, NULL, &there);
+    grobo_motion_free(there);
+    return result < 0 && result != GROBO_ERR_NOMEM ? GROBO_ERR_EXISTS : result;
+}
+
 /* Writes to path, which with exclusive must not be there. */
 static int save(const grobo_motion *motion, const grobo_files *files, const char *path,
                 const grobo_write_options *options, grobo_diagnostics *list, bool exclusive)
 {
     grobo_file file;
     file_sink sink = {files, &file};
-    grobo_motion_format format = exclusive ? GROBO_FORMAT_M : options->format;
-    if (format == GROBO_FORMAT_AUTO) {
-        format = grobo_motion_format_of_path(path);
-    }
     int result = files->create(&file, path, exclusive);
 
     if (result < 0) {
         return result;
     }
+    grobo_motion_format format = exclusive ? GROBO_FORMAT_M : options->format;
     result = grobo_motion_write(motion, format, options, &(grobo_sink){write_file, &sink}, list);
     if (result < 0) {
         files->discard(&file);
@@ -52,7 +65,22 @@ int grobo_motion_save(const grobo_motion *motion, const grobo_files *files, cons
         named = *options;
         named.name = options->name != NULL ? options->name : path;
     }
-    int result = save(motion, files, path, &named, list, false);
+    if (named.format == GROBO_FORMAT_AUTO) {
+        named.format = grobo_motion_format_of_path(path);
+    }
+    if (named.format == GROBO_FORMAT_AUTO) {
+        named.format = grobo_motion_kind_format(motion->kind);
+    }
+    int result = named.replace ? 0 : grobo_motion_may_save(files, path, named.format);
+    if (result == GROBO_ERR_EXISTS) {
+        grobo_i_say(list, &(grobo_i_said){named.name, "save", 0, 0, GROBO_SEVERITY_ERROR},
+                    "the file holds something other than a .%s motion",
+                    grobo_motion_format_name(named.format));
+        return result;
+    }
+    if (result == 0) {
+        result = save(motion, files, path, &named, list, false);
+    }
     if (result < 0 && result != GROBO_ERR_NOMEM) {
         grobo_i_say(list, &(grobo_i_said){named.name, "save", 0, 0, GROBO_SEVERITY_ERROR}, "%s",
                     grobo_error_text(result));

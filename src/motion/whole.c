@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include <grobo/motion_io.h>
+
 #include "motion/container.h"
 
 static bool same_rate(const grobo_motion *a, const grobo_motion *b)
@@ -16,9 +18,6 @@ static int append_rows(grobo_motion *motion, const grobo_motion *other, double s
 {
     size_t size = motion->size;
 
-    if (motion->kind != other->kind || !same_rate(motion, other)) {
-        return GROBO_ERR_TYPE;
-    }
     if (other->n_joints > motion->n_joints) {
         return GROBO_ERR_ARG;
     }
@@ -35,9 +34,95 @@ static double end_s(const grobo_motion *motion)
     return motion->size > 0 ? grobo_i_time_s(motion, motion->size - 1) : 0;
 }
 
+/* ---- a motion of another kind ------------------------------------------------------------- */
+
+static bool is_alike(const grobo_motion *motion, const grobo_motion *other)
+{
+    return motion->kind == other->kind && same_rate(motion, other);
+}
+
+/* The last angle of each joint that the motion sets. */
+static void find_end(const grobo_motion *motion, grobo_posture *end)
+{
+    grobo_joint_mask all = GROBO_JOINTS_ALL(motion->n_joints);
+    grobo_i_row row;
+
+    (void)grobo_posture_init(end, motion->n_joints);
+    for (size_t n = motion->size; n > 0 && end->set != all; n--) {
+        (void)grobo_i_row_at(motion, n - 1, &row);
+        for (int j = 0; j < motion->n_joints; j++) {
+            if ((*row.set & ~end->set & GROBO_JOINT_BIT(j)) != 0) {
+                end->angle_rad[j] = row.angle_rad[j];
+                end->set |= GROBO_JOINT_BIT(j);
+            }
+        }
+    }
+}
+
+static grobo_joint_mask joints_of(const grobo_motion *motion)
+{
+    grobo_joint_mask joints = 0;
+    grobo_i_row row;
+
+    for (size_t n = 0; grobo_i_row_at(motion, n, &row); n++) {
+        joints |= *row.set;
+    }
+    return joints;
+}
+
+/* Joints that neither motion sets are not set in what was converted either. */
+static void keep_joints(grobo_motion *motion, grobo_joint_mask joints)
+{
+    grobo_i_row row;
+
+    for (size_t n = 0; grobo_i_row_at(motion, n, &row); n++) {
+        *row.set &= joints;
+    }
+}
+
+/*
+ * The other as a motion of this one's kind and rate, which goes on where this one ends. Where
+ * nobody knows from where increments count there is none: postures would be reached from there.
+ */
+static int convert_for(const grobo_motion *motion, const grobo_motion *other, grobo_motion **made)
+{
+    bool at_rate = motion->kind == GROBO_MOTION_FRAMES && !motion->frame_times;
+    grobo_joint_mask joints = joints_of(other);
+    grobo_posture end;
+    grobo_write_options how = {.start = &end, .exact = true};
+
+    if (other->n_joints > motion->n_joints) {
+        return GROBO_ERR_ARG;
+    }
+    find_end(motion, &end);
+    if (motion->kind == GROBO_MOTION_STEPS ||
+        (other->kind == GROBO_MOTION_STEPS && (joints & ~end.set) != 0)) {
+        return GROBO_ERR_TYPE;
+    }
+    if (at_rate && !(motion->frame_rate_hz > 0)) {
+        return GROBO_ERR_STATE;
+    }
+    how.rate_hz = at_rate ? motion->frame_rate_hz : 0;
+    int result = grobo_motion_convert(other, motion->kind, &how, NULL, made);
+    if (result < 0) {
+        return result;
+    }
+    keep_joints(*made, joints | end.set);
+    return motion->kind == GROBO_MOTION_FRAMES
+               ? grobo_motion_set_frame_times(*made, motion->frame_times)
+               : 0;
+}
+
 int grobo_motion_append_motion(grobo_motion *motion, const grobo_motion *other)
 {
-    return append_rows(motion, other, end_s(motion));
+    grobo_motion *made = NULL;
+    int result = is_alike(motion, other) ? 0 : convert_for(motion, other, &made);
+
+    if (result == 0) {
+        result = append_rows(motion, made != NULL ? made : other, end_s(motion));
+    }
+    grobo_motion_free(made);
+    return result;
 }
 
 /* ---- concatenation ------------------------------------------------------------------------ */
@@ -106,19 +191,23 @@ static int concat_into(grobo_motion *made, const grobo_motion *other, double ble
 
 int grobo_motion_concat(grobo_motion *motion, const grobo_motion *other, int64_t blend_us)
 {
-    grobo_motion *made;
+    grobo_motion *made = NULL;
+    grobo_motion *converted = NULL;
 
     if (blend_us < 0 || (motion->kind == GROBO_MOTION_FRAMES && !(motion->frame_rate_hz > 0))) {
         return GROBO_ERR_ARG;
     }
-    int result = grobo_motion_dup(motion, &made);
-    if (result < 0) {
-        return result;
+    int result = is_alike(motion, other) ? 0 : convert_for(motion, other, &converted);
+    if (result == 0) {
+        result = grobo_motion_dup(motion, &made);
     }
-    result = concat_into(made, other, (double)blend_us / 1e6);
+    if (result == 0) {
+        result = concat_into(made, converted != NULL ? converted : other, (double)blend_us / 1e6);
+    }
     if (result == 0) {
         grobo_i_swap(motion, made);
     }
     grobo_motion_free(made);
+    grobo_motion_free(converted);
     return result;
 }

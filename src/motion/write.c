@@ -20,19 +20,19 @@ void grobo_i_put_kept(grobo_i_out *out, const grobo_i_kept *kept, grobo_kept_lev
     }
 }
 
-/* Postures without joints are no lines, and no frames are no body motion. */
+/* Postures without joints are no lines. */
 static int check_writable(const grobo_motion *motion, const grobo_i_writing *writing)
 {
     bool frames = motion->kind == GROBO_MOTION_FRAMES;
     const char *name = writing->options->name != NULL ? writing->options->name : "";
 
-    if ((frames && motion->size == 0) || ((frames || motion->kind == GROBO_MOTION_POSTURES) &&
-                                          motion->size > 0 && motion->n_joints == 0)) {
+    if ((frames || motion->kind == GROBO_MOTION_POSTURES) && motion->size > 0 &&
+        motion->n_joints == 0) {
         grobo_i_say(writing->list, &(grobo_i_said){name, "empty", 0, 0, GROBO_SEVERITY_ERROR},
-                    motion->size == 0 ? "a body motion needs frames" : "no posture sets any joint");
+                    "no posture sets any joint");
         return GROBO_ERR_EMPTY;
     }
-    return frames && !(motion->frame_rate_hz > 0) ? GROBO_ERR_STATE : 0;
+    return frames && motion->size > 0 && !(motion->frame_rate_hz > 0) ? GROBO_ERR_STATE : 0;
 }
 
 int grobo_motion_write(const grobo_motion *motion, grobo_motion_format format,
@@ -51,7 +51,7 @@ int grobo_motion_write(const grobo_motion *motion, grobo_motion_format format,
         format = grobo_motion_kind_format(motion->kind);
     }
     grobo_motion_kind kind = grobo_motion_format_kind(format);
-    if (kind != motion->kind || (kind == GROBO_MOTION_FRAMES && writing.options->rate_hz > 0)) {
+    if (!grobo_i_is_as_written(motion, kind, writing.options)) {
         int result = grobo_motion_convert(motion, kind, writing.options, list, &converted);
         if (result < 0) {
             return result;
@@ -64,6 +64,13 @@ int grobo_motion_write(const grobo_motion *motion, grobo_motion_format format,
         return result;
     }
     grobo_i_out_begin(&out, sink);
+    if (motion->frame_times && motion->size > 0) {
+        const char *name = writing.options->name != NULL ? writing.options->name : "";
+        grobo_i_say(
+            list, &(grobo_i_said){name, "frame-times", 0, 0, GROBO_SEVERITY_NOTE},
+            "each frame has a time of its own: read by this library, and by Choreonoid from "
+            "2.1 on, which holds it until the next");
+    }
     if (kind == GROBO_MOTION_POSTURES) {
         grobo_i_write_m(&writing, motion);
     } else if (kind == GROBO_MOTION_FRAMES) {

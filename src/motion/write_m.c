@@ -28,30 +28,32 @@ static void put_whole(grobo_i_out *out, double value, double *change)
     grobo_i_put_number(out, whole == 0 ? 0 : whole);
 }
 
-/* How many columns: all joints, or as many of the first motors as every posture sets. */
-static int count_columns(const grobo_motion *motion, const uint8_t *joints)
+int grobo_i_m_columns(const grobo_motion *motion, const grobo_model *model, uint8_t *joints)
 {
+    int n_joints =
+        model != NULL && motion->n_joints < model->n_joints ? model->n_joints : motion->n_joints;
     grobo_joint_mask set = 0, first = 0;
     grobo_i_row row;
     int columns = 0;
 
+    (void)grobo_i_motor_order(model, n_joints, joints);
     for (size_t n = 0; grobo_i_row_at(motion, n, &row); n++) {
         if (n > 0 && *row.set != set) {
-            return motion->n_joints;
+            return 0;
         }
         set = *row.set;
     }
-    while (columns < motion->n_joints && (set & GROBO_JOINT_BIT(joints[columns])) != 0) {
+    while (columns < n_joints && (set & GROBO_JOINT_BIT(joints[columns])) != 0) {
         first |= GROBO_JOINT_BIT(joints[columns++]);
     }
-    return first == set && columns > 0 ? columns : motion->n_joints;
+    return first == set ? columns : 0;
 }
 
 static void put_line(const grobo_i_writing *writing, const grobo_i_row *row, const uint8_t *joints,
                      int columns, rounding *changes)
 {
     grobo_i_out *out = writing->out;
-    bool integers = writing->options->integers;
+    bool integers = !writing->options->exact;
 
     if (integers) {
         put_whole(out, *row->time_s * GROBO_I_M_SECOND_UNITS, &changes->ms);
@@ -61,7 +63,7 @@ static void put_line(const grobo_i_writing *writing, const grobo_i_row *row, con
     grobo_i_put(out, " ", 1);
     for (int c = 0; c < columns; c++) {
         int j = joints[c];
-        double angle_rad = (*row->set & GROBO_JOINT_BIT(j)) != 0 ? row->angle_rad[j] : 0;
+        double angle_rad = row->angle_rad[j];
         grobo_i_put(out, " ", 1);
         if (integers) {
             put_whole(out, angle_rad * GROBO_I_M_ANGLE_UNITS / GROBO_I_M_ANGLE, &changes->ddeg);
@@ -78,8 +80,7 @@ void grobo_i_write_m(const grobo_i_writing *writing, const grobo_motion *motion)
     rounding changes = {0, 0};
     grobo_i_row row;
 
-    (void)grobo_i_motor_order(writing->options->model, motion->n_joints, joints);
-    int columns = count_columns(motion, joints);
+    int columns = grobo_i_m_columns(motion, writing->options->model, joints);
     for (size_t n = 0; grobo_i_row_at(motion, n, &row) && writing->out->result == 0; n++) {
         put_line(writing, &row, joints, columns, &changes);
     }

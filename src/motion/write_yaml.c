@@ -27,7 +27,8 @@ static void put_number_line(grobo_i_out *out, const char *lead, double value)
 
 static void put_head(grobo_i_out *out, const grobo_motion *motion)
 {
-    bool times = motion->frame_times;
+    bool times = motion->frame_times && motion->size > 0;
+    double rate_hz = motion->frame_rate_hz > 0 ? motion->frame_rate_hz : GROBO_MOTION_RATE_HZ;
 
     grobo_i_put_text(out, times ? "type: CompositeSeq\ncontent: BodyMotion\nformat_version: 4\n"
                                 : "type: BodyMotion\n");
@@ -35,20 +36,20 @@ static void put_head(grobo_i_out *out, const grobo_motion *motion)
     put_text_line(out, "targetBody", grobo_motion_target_body(motion));
     grobo_i_put_kept(out, motion->kept, GROBO_KEPT_TOP, 0, 0);
     if (times) {
-        put_number_line(out, "frame_rate: ", motion->frame_rate_hz);
+        put_number_line(out, "frame_rate: ", rate_hz);
         put_number_line(out, "num_frames: ", (double)motion->size);
     }
     grobo_i_put_text(out, "components: \n  - \n    type: MultiValueSeq\n");
     grobo_i_put_text(out, times ? "    content: JointDisplacement\n"
                                 : "    content: JointPosition\n    purpose: JointPosition\n");
-    put_number_line(out, times ? "    frame_rate: " : "    frameRate: ", motion->frame_rate_hz);
+    put_number_line(out, times ? "    frame_rate: " : "    frameRate: ", rate_hz);
     put_number_line(out, times ? "    num_frames: " : "    numFrames: ", (double)motion->size);
     put_number_line(out, times ? "    num_parts: " : "    numParts: ", motion->n_joints);
     if (times) {
         grobo_i_put_text(out, "    has_frame_time: true\n");
     }
     grobo_i_put_kept(out, motion->kept, GROBO_KEPT_COMPONENT, 0, 4);
-    grobo_i_put_text(out, "    frames: \n");
+    grobo_i_put_text(out, motion->size > 0 ? "    frames: \n" : "    frames: [ ]\n");
 }
 
 void grobo_i_write_yaml(const grobo_i_writing *writing, const grobo_motion *motion)

@@ -49,10 +49,10 @@ static bool clash_with_master(const grobo_sim *sim, int64_t to_ns, uint8_t *byte
     return true;
 }
 
-static void collided(grobo_sim *sim)
+static void collided(grobo_sim *sim, bool with_master)
 {
     sim->stats.collisions++;
-    grobo_i_sim_note(sim, GROBO_SIM_COLLISION, -1, 0);
+    grobo_i_sim_note(sim, GROBO_SIM_COLLISION, -1, with_master);
 }
 
 /* ---- what servos hear ------------------------------------------------------------------------ */
@@ -77,6 +77,19 @@ static void hear_packet(grobo_sim *sim, const grobo_rs30x_packet *packet)
     grobo_i_sim_packet(sim, packet, &raw);
 }
 
+/* What has come of a packet is forgotten. */
+static void stalled(grobo_sim *sim)
+{
+    const grobo_framer *framer = &sim->bus.framer;
+    sim->stats.stalls++;
+    grobo_i_sim_tell(sim, &(grobo_sim_event){.kind = GROBO_SIM_STALLED,
+                                             .time_us = sim->now_us,
+                                             .servo = -1,
+                                             .bytes = framer->buf + framer->taken,
+                                             .n_bytes = grobo_rs30x_parser_pending(&sim->bus)});
+    grobo_rs30x_parser_reset(&sim->bus);
+}
+
 void grobo_i_sim_bus_hear(grobo_sim *sim, uint8_t byte, int64_t t_ns)
 {
     bool clashed = false;
@@ -84,15 +97,14 @@ void grobo_i_sim_bus_hear(grobo_sim *sim, uint8_t byte, int64_t t_ns)
         clashed |= clash(sim, &sim->talk[i], t_ns - sim->bus_byte_ns, &byte);
     }
     if (clashed) {
-        collided(sim);
+        collided(sim, true);
     }
     if (sim->config.echo) {
         grobo_i_sim_to_host(sim, byte, t_ns);
     }
     if (t_ns - sim->bus_heard_ns > GROBO_I_SIM_SERVO_STALL_NS &&
         grobo_rs30x_parser_pending(&sim->bus) > 0) {
-        sim->stats.stalls++;
-        grobo_rs30x_parser_reset(&sim->bus);
+        stalled(sim);
     }
     sim->bus_heard_ns = t_ns;
     (void)grobo_rs30x_parser_feed(&sim->bus, &byte, 1);
@@ -111,7 +123,7 @@ static void join(grobo_sim *sim, grobo_sim_talk *talk, const uint8_t *bytes, siz
         talk->byte[i] = i < talk->used ? talk->byte[i] & bytes[i] : bytes[i];
     }
     talk->used = n > talk->used ? (uint16_t)n : talk->used;
-    collided(sim);
+    collided(sim, false);
 }
 
 void grobo_i_sim_talk(grobo_sim *sim, const uint8_t *bytes, size_t n, int64_t start_ns)
@@ -176,14 +188,14 @@ void grobo_i_sim_talk_act(grobo_sim *sim, int64_t t_ns)
     int first = next_talk(sim);
     grobo_sim_talk *talk = &sim->talk[first];
     uint8_t byte = talk->byte[talk->said++];
-    bool clashed = clash_with_master(sim, t_ns, &byte);
+    bool with_master = clash_with_master(sim, t_ns, &byte), clashed = with_master;
     for (int i = 0; i < GROBO_SIM_TALKS_MAX; i++) {
         if (i != first) {
             clashed |= clash(sim, &sim->talk[i], t_ns - sim->bus_byte_ns, &byte);
         }
     }
     if (clashed) {
-        collided(sim);
+        collided(sim, with_master);
     }
     if (talk->said == talk->used) {
         talk->used = 0;

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* What a test, or a person at the simulator, sees and changes behind the robot's back. */
+#include <string.h>
+
 #include "sim_private.h"
 
 /* The servo, settled; NULL when there is none of this index. */
@@ -73,6 +75,16 @@ int grobo_sim_get_register(grobo_sim *sim, int index, int address, int32_t *valu
     return 0;
 }
 
+int grobo_sim_get_flash(grobo_sim *sim, int index, uint8_t flash[GROBO_SIM_FLASH_BYTES])
+{
+    const grobo_sim_servo *servo = servo_at(sim, index);
+    if (servo == NULL) {
+        return GROBO_ERR_ARG;
+    }
+    memcpy(flash, servo->flash, sizeof servo->flash);
+    return 0;
+}
+
 /* ---- changing -------------------------------------------------------------------------------- */
 
 int grobo_sim_set_register(grobo_sim *sim, int index, int address, int32_t value)
@@ -88,6 +100,18 @@ int grobo_sim_set_register(grobo_sim *sim, int index, int address, int32_t value
         return n;
     }
     grobo_i_sim_store(sim, index, address, bytes, (size_t)n);
+    return 0;
+}
+
+int grobo_sim_set_flash(grobo_sim *sim, int index, const uint8_t flash[GROBO_SIM_FLASH_BYTES])
+{
+    if (servo_at(sim, index) == NULL) {
+        return GROBO_ERR_ARG;
+    }
+    if (!grobo_i_sim_flash_fits(flash)) {
+        return GROBO_ERR_LIMIT;
+    }
+    grobo_i_sim_exchange_flash(sim, index, flash);
     return 0;
 }
 

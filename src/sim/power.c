@@ -16,7 +16,7 @@ static void put(uint8_t *registers, uint8_t address, int32_t value)
 /* No.4-29 as they leave the factory (RS301CR/RS302CD manual, memory map). */
 static void factory_block(grobo_sim_servo *servo)
 {
-    const grobo_i_sim_type *type = grobo_i_sim_type_of(servo);
+    const grobo_sim_type *type = grobo_i_sim_type_of(servo);
     memset(&servo->reg[GROBO_RS30X_ID], 0, GROBO_SIM_FLASH_BYTES);
     put(servo->reg, GROBO_RS30X_ID, 1);
     put(servo->reg, GROBO_RS30X_BAUD, GROBO_RS30X_BAUD_CODE_DEFAULT);
@@ -95,6 +95,32 @@ void grobo_i_sim_reset(grobo_sim *sim, int index)
 {
     factory_block(&sim->servo[index]);
     grobo_i_sim_save(sim, index, false);
+}
+
+bool grobo_i_sim_flash_fits(const uint8_t *flash)
+{
+    uint8_t registers[GROBO_REGISTERS] = {0};
+    memcpy(&registers[GROBO_RS30X_ID], flash, GROBO_SIM_FLASH_BYTES);
+    for (int a = GROBO_RS30X_ID; a < GROBO_RS30X_ID + GROBO_SIM_FLASH_BYTES; a++) {
+        const grobo_rs30x_register *reg = grobo_rs30x_register_at((uint8_t)a);
+        int32_t value =
+            reg == NULL ? registers[a] : grobo_rs30x_register_get(reg, &registers[reg->address]);
+        if (value < (reg == NULL ? 0 : reg->min) || value > (reg == NULL ? 0 : reg->max)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+void grobo_i_sim_exchange_flash(grobo_sim *sim, int index, const uint8_t *flash)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    limp(sim, index);
+    memcpy(servo->flash, flash, sizeof servo->flash);
+    servo->saved_us = GROBO_NEVER_US;
+    if (servo->powered) {
+        grobo_i_sim_boot(sim, index, 0);
+    }
 }
 
 void grobo_i_sim_power(grobo_sim *sim, int index, bool on)

@@ -15,13 +15,6 @@ int32_t grobo_i_sim_value(const grobo_sim_servo *servo, uint8_t address)
     return grobo_rs30x_register_get(grobo_rs30x_register_at(address), &servo->reg[address]);
 }
 
-/* RS301CR and RS302CD lack what later models have. */
-static bool early_model(const grobo_sim_servo *servo)
-{
-    int32_t model = grobo_i_sim_value(servo, GROBO_RS30X_MODEL);
-    return model == GROBO_RS30X_RS301CR || model == GROBO_RS30X_RS302CD;
-}
-
 bool grobo_i_sim_deaf(const grobo_sim *sim, int index)
 {
     const grobo_sim_servo *servo = &sim->servo[index];
@@ -140,7 +133,7 @@ static const grobo_rs30x_register *row_at(const grobo_sim_servo *servo, int addr
 {
     const grobo_rs30x_register *reg = grobo_rs30x_register_at((uint8_t)address);
     bool lacks = address == GROBO_RS30X_SILENCE_TORQUE || address == GROBO_RS30X_WARM_UP_TIME;
-    return lacks && early_model(servo) ? NULL : reg;
+    return lacks && grobo_i_sim_type_of(servo)->early ? NULL : reg;
 }
 
 /* True if every register hit may be written and every value is in range. Reserved ones may. */
@@ -253,7 +246,7 @@ static int wanted(const grobo_sim_servo *servo, const grobo_sim_event *raw, grob
 {
     uint8_t own[GROBO_RS30X_PACKET_MAX_BYTES];
     uint8_t id = servo->reg[GROBO_RS30X_ID];
-    if (early_model(servo) || raw->bytes[2] != GROBO_RS30X_ID_ALL) {
+    if (grobo_i_sim_type_of(servo)->early || raw->bytes[2] != GROBO_RS30X_ID_ALL) {
         return grobo_rs30x_reply_to(raw->bytes, raw->n_bytes, want);
     }
     memcpy(own, raw->bytes, raw->n_bytes);
@@ -267,7 +260,8 @@ static void answer(grobo_sim *sim, int index, const grobo_sim_event *raw, bool d
     grobo_sim_servo *servo = &sim->servo[index];
     grobo_reply want;
     int result = wanted(servo, raw, &want);
-    bool lacks = (raw->bytes[3] & 0xF) == GROBO_RS30X_WANT_60_127 && early_model(servo);
+    bool lacks =
+        (raw->bytes[3] & 0xF) == GROBO_RS30X_WANT_60_127 && grobo_i_sim_type_of(servo)->early;
     if (result < 0 || lacks) {
         servo->status |= GROBO_RS30X_STATUS_REFUSED;
         grobo_i_sim_note(sim, GROBO_SIM_REFUSED, index, raw->bytes[4]);
@@ -326,6 +320,21 @@ static bool speaks_to(const grobo_rs30x_packet *packet, uint8_t id)
     return false;
 }
 
+/* A servo that does something else for a while misses what it is told. */
+static void note_missed(grobo_sim *sim, int index, const grobo_sim_event *raw)
+{
+    const grobo_sim_servo *servo = &sim->servo[index];
+    if (sim->now_us < servo->deaf_until_us && servo->powered &&
+        servo->cable == GROBO_SIM_CABLE_IN) {
+        grobo_sim_event missed = *raw;
+        missed.kind = GROBO_SIM_MISSED;
+        missed.servo = index;
+        missed.value =
+            servo->saved_us != GROBO_NEVER_US ? GROBO_SIM_BUSY_FLASH : GROBO_SIM_BUSY_REBOOT;
+        grobo_i_sim_tell(sim, &missed);
+    }
+}
+
 void grobo_i_sim_packet(grobo_sim *sim, const grobo_rs30x_packet *packet,
                         const grobo_sim_event *raw)
 {
@@ -334,6 +343,7 @@ void grobo_i_sim_packet(grobo_sim *sim, const grobo_rs30x_packet *packet,
             continue;
         }
         grobo_i_sim_settle(sim, i);
+        note_missed(sim, i, raw);
         if (!hears(sim, i) || grobo_i_sim_strikes(sim, GROBO_SIM_FAULT_SILENT, i)) {
             continue;
         }

@@ -17,25 +17,6 @@
 
 #define MDEG_PER_RAD (180000.0 / 3.14159265358979323846)
 
-/* Speeds: 0.11 and 0.16 s for 60 degrees (RS301CR/RS302CD manual). */
-static const grobo_i_sim_type types[] = {
-    {GROBO_RS30X_RS301CR, 1200, 545455, 180, 10, 100},
-    {GROBO_RS30X_RS302CD, 900, 375000, 200, 15, 77},
-    {GROBO_RS30X_RS303MR, 1200, 545455, 180, 10, 100},
-    {GROBO_RS30X_RS304MD, 900, 375000, 200, 15, 77},
-};
-
-const grobo_i_sim_type *grobo_i_sim_type_of(const grobo_sim_servo *servo)
-{
-    int32_t model = grobo_i_sim_value(servo, GROBO_RS30X_MODEL);
-    for (size_t i = 1; i < sizeof types / sizeof *types; i++) {
-        if (types[i].model == model) {
-            return &types[i];
-        }
-    }
-    return &types[0];
-}
-
 /* ---- position ------------------------------------------------------------------------------ */
 
 static int32_t round_div(int64_t n, int64_t d)
@@ -83,10 +64,10 @@ int32_t grobo_i_sim_speed_dps(const grobo_sim_servo *servo, int64_t t_us)
     return round_div((way < 0 ? -way : way) * 1000, servo->move_us);
 }
 
-/* When the last move by the servo's own power ends or has ended. */
+/* When the last move by the servo's own power ends or has ended, be the shaft on the way or not. */
 static int64_t own_end_us(const grobo_sim_servo *servo)
 {
-    return servo->start_us + (servo->by_hand ? 0 : servo->move_us);
+    return servo->start_us + servo->plan_us;
 }
 
 int64_t grobo_i_sim_move_age_us(const grobo_sim_servo *servo, int64_t t_us)
@@ -101,6 +82,11 @@ static int32_t clamp(int32_t x, int32_t min, int32_t max)
     return x < min ? min : x > max ? max : x;
 }
 
+static int64_t distance(int32_t a, int32_t b)
+{
+    return a < b ? (int64_t)b - a : (int64_t)a - b;
+}
+
 void grobo_i_sim_halt(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
@@ -108,10 +94,14 @@ void grobo_i_sim_halt(grobo_sim *sim, int index)
     servo->to_mdeg = servo->from_mdeg = grobo_i_sim_angle_mdeg(servo, sim->now_us);
     servo->begun_us += rested_us > 0 ? rested_us : 0; /* to rest is not to move */
     servo->start_us = sim->now_us;
-    servo->move_us = 0;
+    servo->move_us = servo->plan_us = 0;
     servo->stalled = servo->by_hand = false;
 }
 
+/*
+ * The servo plans the way to its goal and knows nothing of stops: speed and time are those of the
+ * whole way. The shaft goes along until it meets a stop, and the motor stalls there.
+ */
 void grobo_i_sim_drive(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
@@ -121,11 +111,16 @@ void grobo_i_sim_drive(grobo_sim *sim, int index)
         servo->to_mdeg = clamp(goal_mdeg, servo->stop_min_mdeg, servo->stop_max_mdeg);
     }
     servo->stalled = servo->to_mdeg != goal_mdeg;
-    int64_t way = servo->to_mdeg - servo->from_mdeg;
+    int64_t wanted = distance(servo->from_mdeg, goal_mdeg);
+    int64_t way = distance(servo->from_mdeg, servo->to_mdeg);
+    if (wanted == 0) {
+        return;
+    }
     int64_t speed = (int64_t)grobo_i_sim_type_of(servo)->speed_mdeg_s * sim->supply_mv / 7400;
-    int64_t least_us = speed > 0 ? (way < 0 ? -way : way) * 1000000 / speed : 0;
-    int64_t wanted_us = way == 0 ? 0 : servo->due_us - sim->now_us;
-    servo->move_us = wanted_us > least_us ? wanted_us : least_us;
+    int64_t least_us = speed > 0 ? wanted * 1000000 / speed : 0;
+    int64_t left_us = servo->due_us - sim->now_us;
+    servo->plan_us = left_us > least_us ? left_us : least_us;
+    servo->move_us = servo->plan_us * way / wanted;
 }
 
 /* ---- torque -------------------------------------------------------------------------------- */
@@ -163,7 +158,7 @@ int32_t grobo_i_sim_current_ma(const grobo_sim_servo *servo, int64_t t_us)
     if (servo->reg[GROBO_RS30X_TORQUE] != GROBO_TORQUE_ON) {
         return IDLE_MA;
     }
-    const grobo_i_sim_type *type = grobo_i_sim_type_of(servo);
+    const grobo_sim_type *type = grobo_i_sim_type_of(servo);
     int32_t most_ma = type->stall_ma * servo->reg[GROBO_RS30X_MAX_TORQUE] / 100;
     int32_t ma = HOLD_MA + servo->load_ma;
     if (grobo_i_sim_moving(servo, t_us)) {

@@ -5,8 +5,8 @@
 #include "sim_private.h"
 
 #define LOWEST_BPS 300
-/* Frames are at least about this long: input is looked at that many bytes late at most. */
-#define LOOKAHEAD_BYTES 8
+/* As far as register POSITION can tell. */
+#define NO_STOP_MDEG 3276700
 
 /* ---- telling ------------------------------------------------------------------------------- */
 
@@ -138,24 +138,111 @@ void grobo_sim_step(grobo_sim *sim, int64_t now_us)
     sim->now_ns = now_us * 1000;
 }
 
-int64_t grobo_sim_deadline(const grobo_sim *sim)
+/* ---- what comes ---------------------------------------------------------------------------- */
+
+/* Size of the frame (bus: packet) at the start of bytes; 0: not whole yet; negative: none. */
+static int frame_at(const grobo_sim *sim, const uint8_t *bytes, size_t n)
+{
+    grobo_board_frame frame;
+    grobo_rs30x_packet packet;
+    bool sum_ok;
+    return sim->config.wiring == GROBO_WIRING_BUS
+               ? grobo_rs30x_peek(bytes, n, GROBO_RS30X_ACCEPT_COMMANDS, &packet, &sum_ok)
+               : grobo_board_peek(bytes, n, &frame);
+}
+
+/*
+ * When the host's next frame or packet is whole: nobody acts on a part of one. What has arrived of
+ * it is in the parser, the rest on the line. Where more is missing, or nothing starts, the last
+ * byte looked at.
+ */
+static int64_t next_whole_ns(const grobo_sim *sim)
 {
     const grobo_sim_wire *in = &sim->in;
-    int64_t at_ns = earlier(next_end_ns(&sim->out), grobo_i_sim_board_next(sim));
-    if (sim->board_state == GROBO_SIM_BOARD_SENDING) {
-        at_ns = earlier(next_end_ns(&sim->out),
-                        sim->board_at_ns + (sim->send_used - sim->sent - 1) * sim->bus_byte_ns);
+    const grobo_framer *heard =
+        sim->config.wiring == GROBO_WIRING_BUS ? &sim->bus.framer : &sim->board.framer;
+    uint8_t bytes[2 * GROBO_RS30X_PACKET_MAX_BYTES];
+    size_t arrived = (size_t)(heard->used - heard->taken), n = arrived, at = 0;
+    int size = -1;
+    if (in->used == 0) {
+        return GROBO_NEVER_US;
     }
+    memcpy(bytes, heard->buf + heard->taken, arrived);
+    for (size_t i = 0; i < in->used && n < sizeof bytes; i++) {
+        bytes[n++] = in->byte[(in->head + i) % GROBO_SIM_WIRE_BYTES];
+    }
+    while (at < n && (size = frame_at(sim, bytes + at, n - at)) < 0) {
+        at++;
+    }
+    size_t end = size > 0 ? at + (size_t)size : n;
+    size_t ahead = end > arrived ? end - arrived : 1;
+    return in->at_ns[(in->head + ahead - 1) % GROBO_SIM_WIRE_BYTES];
+}
+
+/* When the board does something that depends on nothing that is still to come. */
+static int64_t board_step_ns(const grobo_sim *sim)
+{
+    switch (sim->board_state) {
+    case GROBO_SIM_BOARD_SENDING: /* a payload acts when it is over */
+        return sim->board_at_ns + (sim->send_used - sim->sent - 1) * sim->bus_byte_ns;
+    case GROBO_SIM_BOARD_WAITING: /* bytes that come put its patience off */
+        if (grobo_i_sim_talk_next(sim) <= sim->board_at_ns) {
+            return GROBO_NEVER_US;
+        }
+        break;
+    case GROBO_SIM_BOARD_IDLE:
+    case GROBO_SIM_BOARD_REPLYING:
+        break;
+    }
+    return grobo_i_sim_board_next(sim);
+}
+
+/* When something has to be done within, whatever the host sees of it. */
+static int64_t inner_deadline_ns(const grobo_sim *sim)
+{
+    int64_t at_ns = grobo_i_sim_talks_end(sim);
     if (sim->config.wiring == GROBO_WIRING_BUS) {
-        at_ns = earlier(at_ns, grobo_i_sim_talk_next(sim));
-    } else {
-        at_ns = earlier(at_ns, grobo_i_sim_talks_end(sim));
+        return earlier(at_ns, next_whole_ns(sim));
     }
-    if (in->used > 0 && (sim->board_state == GROBO_SIM_BOARD_IDLE)) {
-        size_t ahead = in->used < LOOKAHEAD_BYTES ? in->used : LOOKAHEAD_BYTES;
-        at_ns = earlier(at_ns, in->at_ns[(in->head + ahead - 1) % GROBO_SIM_WIRE_BYTES]);
+    if (sim->board_state == GROBO_SIM_BOARD_IDLE) {
+        at_ns = earlier(at_ns, next_whole_ns(sim));
     }
+    return earlier(at_ns, board_step_ns(sim));
+}
+
+/* When the last of the bytes is ready that follow each other to the host without a pause. */
+static int64_t burst_end_ns(const grobo_sim *sim)
+{
+    const grobo_sim_wire *out = &sim->out;
+    int64_t end_ns = next_end_ns(out);
+    for (size_t i = 1; i < out->used; i++) {
+        int64_t at_ns = out->at_ns[(out->head + i) % GROBO_SIM_WIRE_BYTES];
+        if (at_ns - end_ns > sim->line_byte_ns) {
+            break;
+        }
+        end_ns = at_ns;
+    }
+    return end_ns;
+}
+
+static int64_t deadline_us(int64_t at_ns)
+{
     return at_ns == GROBO_NEVER_US ? GROBO_NEVER_US : grobo_i_sim_us(at_ns);
+}
+
+int64_t grobo_sim_deadline(const grobo_sim *sim)
+{
+    int64_t at_ns = earlier(next_end_ns(&sim->out), inner_deadline_ns(sim));
+    if (sim->config.wiring == GROBO_WIRING_BUS) { /* these reach the host as they are over */
+        at_ns = earlier(at_ns, grobo_i_sim_talk_next(sim));
+        at_ns = sim->config.echo ? earlier(at_ns, next_end_ns(&sim->in)) : at_ns;
+    }
+    return deadline_us(at_ns);
+}
+
+int64_t grobo_sim_packet_deadline(const grobo_sim *sim)
+{
+    return deadline_us(earlier(burst_end_ns(sim), inner_deadline_ns(sim)));
 }
 
 /* ---- the host's end ------------------------------------------------------------------------ */
@@ -255,6 +342,10 @@ static void init_servo(grobo_sim *sim, int index)
     servo->stop_min_mdeg = grobo_i_sim_mdeg_of_rad(joint->min_rad);
     servo->stop_max_mdeg = grobo_i_sim_mdeg_of_rad(joint->max_rad);
     servo->from_mdeg = servo->to_mdeg = start_mdeg(sim, servo, joint->init_rad);
+    if (sim->config.no_stops) {
+        servo->stop_min_mdeg = -NO_STOP_MDEG;
+        servo->stop_max_mdeg = NO_STOP_MDEG;
+    }
     servo->start_us = servo->due_us = servo->settled_us = sim->now_us;
     servo->saved_us = GROBO_NEVER_US;
     servo->temperature_c = sim->config.ambient_c;

@@ -99,6 +99,10 @@ int32_t grobo_i_sim_value(const grobo_sim_servo *servo, uint8_t address);
 
 /* From the factory, with an id and a rate that were set and saved since. */
 void grobo_i_sim_factory(grobo_sim_servo *servo, uint16_t model, uint8_t id, uint32_t baud_bps);
+/* True if a servo may have these bytes as No.4-29. */
+bool grobo_i_sim_flash_fits(const uint8_t *flash);
+/* Out of and into power, with another flash. */
+void grobo_i_sim_exchange_flash(grobo_sim *sim, int servo, const uint8_t *flash);
 void grobo_i_sim_boot(grobo_sim *sim, int servo, int64_t deaf_us);
 void grobo_i_sim_reboot(grobo_sim *sim, int servo);
 void grobo_i_sim_save(grobo_sim *sim, int servo, bool reboot_after);
@@ -109,18 +113,12 @@ void grobo_i_sim_power(grobo_sim *sim, int servo, bool on);
 /* All servos lose power for a moment. */
 void grobo_i_sim_brown_out(grobo_sim *sim);
 
+/* ---- types.c: what tells one servo from another ---- */
+
+const grobo_sim_type *grobo_i_sim_type_of(const grobo_sim_servo *servo);
+
 /* ---- shaft.c: moves, currents, temperatures as functions of time ---- */
 
-/* What tells one servo model from another. */
-typedef struct grobo_i_sim_type {
-    uint16_t model;
-    uint16_t stall_ma;
-    int32_t speed_mdeg_s; /* without load at 7.4 V */
-    uint16_t punch;
-    uint8_t slope, max_torque_pct;
-} grobo_i_sim_type;
-
-const grobo_i_sim_type *grobo_i_sim_type_of(const grobo_sim_servo *servo);
 int32_t grobo_i_sim_angle_mdeg(const grobo_sim_servo *servo, int64_t t_us);
 int32_t grobo_i_sim_speed_dps(const grobo_sim_servo *servo, int64_t t_us);
 int32_t grobo_i_sim_current_ma(const grobo_sim_servo *servo, int64_t t_us);

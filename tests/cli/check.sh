@@ -57,6 +57,14 @@ check "an odd name stays one line without its escape codes" named_oddly
 check "an angle outside its limits, to the column" \
     found 3 "outside.pseq:16:12: NECK_Y: 51.6 degrees, outside -50..50 \[limit\]" \
     "$work/outside.pseq"
+{ pose 0 '12, 3' '0.0035, 0' && pose 1 '12, 3' '0.0105, 0.0174'; } |
+    motion near >"$work/near.pseq"
+check "within a degree of limits: one warning" found 0 \
+    'near.pseq:5: warning: 3 angles up to 1.0 degrees outside their limits (R_KNEE_P): clamped' \
+    "$work/near.pseq"
+{ pose 0 '12' 0 && pose 1 '12' 0.0192; } | motion beyond >"$work/beyond.pseq"
+check "beyond it an error" found 3 'beyond.pseq:16:12: CHEST_P: 1.1 degrees, outside' \
+    "$work/beyond.pseq"
 { pose 0 '13' 0 && pose 0.1 '13' 0.8; } | motion fast >"$work/fast.pseq"
 check "a move too fast, with the time it needs" \
     found 3 "fast.pseq:16:12: NECK_Y: 45.8 degrees in 100 ms, the servo needs 123 ms \[too-fast\]" \
@@ -105,6 +113,31 @@ falls() {
         says 'falls.pseq:[0-9]*: the ZMP is [0-9.]* mm outside the soles, at .*\[zmp-margin\]'
 }
 check "with --balance it is not" falls
+warned='falls.pseq:[0-9]*: warning: the robot would fall: the ZMP is [0-9.]* mm outside'
+check "it warns of the fall without" found 0 "$warned.*\[fall\]$" "$work/falls.pseq"
+check "--force silences it" fails 0 'nothing wrong' "$GRCTL" check --force "$work/falls.pseq"
+mkdir -p "$XDG_CONFIG_HOME/grctl"
+printf '%s\n' 'warn_fall: false' 'robots: {a: {device: sim}}' >"$XDG_CONFIG_HOME/grctl/config.yaml"
+check "the configuration too" fails 0 'nothing wrong' "$GRCTL" check "$work/falls.pseq"
+check "but not what is asked for" falls
+printf '%s\n' 'warn_fall: maybe' >"$XDG_CONFIG_HOME/grctl/config.yaml"
+check "a configuration that cannot be read says nothing" \
+    found 0 'the robot would fall' "$work/falls.pseq"
+rm "$XDG_CONFIG_HOME/grctl/config.yaml"
+# With the chest where its file has it, 0.9 degrees beyond, the ZMP is where it is at its limit.
+margin() {
+    "$GRCTL" check --balance "$1" | sed -n 's/.*the ZMP is \([0-9.]*\) mm.*/\1/p'
+}
+slack_judged() {
+    for chest in 0 0.0157 0.05; do
+        pose 0 '4, 10, 12' "-0.5, 0.5, $chest" |
+            motion bent >"$work/bent$chest.pseq"
+    done
+    [ -n "$(margin "$work/bent0.pseq")" ] &&
+        [ "$(margin "$work/bent0.pseq")" = "$(margin "$work/bent0.0157.pseq")" ] &&
+        [ "$(margin "$work/bent0.pseq")" != "$(margin "$work/bent0.05.pseq")" ]
+}
+check "balance is judged at the limit that is played" slack_judged
 slips() {
     { pose 0 "$all" "$stand" && pose 2 '6' '0.5'; } | motion slips >"$work/slips.pseq"
     exits 0 "$GRCTL" check --balance "$work/slips.pseq" &&

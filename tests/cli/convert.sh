@@ -31,14 +31,15 @@ remade() {
     convert $2 $greet "$work/greet.$1" || return 1
     alike postures motions/greet."$1" "$work/greet.$1"
 }
-check "greet.m is what convert makes" remade m --integers
+check "greet.m is what convert makes" remade m
 check "greet.mseq too" remade mseq
 check "greet.yaml too" remade yaml '--rate 50'
 check "frames play as the key poses do" alike played $greet motions/greet.yaml
 
 # there_and_back FORMAT: to another format and back to key poses gives the same postures.
 there_and_back() {
-    convert motions/squat.pseq "$work/there.$1" && convert "$work/there.$1" "$work/back.m" &&
+    convert --exact motions/squat.pseq "$work/there.$1" &&
+        convert "$work/there.$1" "$work/back.m" &&
         convert motions/squat.pseq "$work/straight.m" &&
         alike postures "$work/straight.m" "$work/back.m"
 }
@@ -120,6 +121,76 @@ if [ -e /dev/full ]; then
 else
     skip "a full disk" "no /dev/full here"
 fi
+
+# ---- what an old file holds ---------------------------------------------------------------------
+
+cp $greet "$work/old.pseq"
+check "an old file of another format stays" fails 3 \
+    'old.pseq: holds something other than a .m motion' \
+    "$GRCTL" convert --to m $greet "$work/old.pseq"
+check "as it was" cmp $greet "$work/old.pseq"
+printf 'function y = f(x)\n' >"$work/matlab.m"
+check "a .m file that holds no motion" fails 3 'matlab.m: holds something other' \
+    "$GRCTL" convert $greet "$work/matlab.m"
+check "--replace writes over it" both convert --replace $greet "$work/matlab.m" \
+    --- cmp motions/greet.m "$work/matlab.m"
+check "a motion of the same format is replaced" both convert motions/step.pseq "$work/old.pseq" \
+    --- convert $greet "$work/old.pseq"
+: >"$work/empty"
+check "an empty file is filled" convert --to yaml $greet "$work/empty"
+
+# ---- what cannot be written without loss ------------------------------------------------------
+
+# pseq FILE REF...: a file of key poses.
+pseq() {
+    file=$1
+    shift
+    { printf 'type: PoseSeq\nname: t\nrefs:\n' && printf -- '- %s\n' "$@"; } >"$file"
+}
+pseq "$work/jump.pseq" '{ time: 0.5, refer: { type: Pose, joints: [ 3 ], q: [ -0.5 ] } }' \
+    '{ time: 0.5, refer: { type: Pose, joints: [ 3 ], q: [ -0.6 ] } }'
+check "a jump cannot be in .m" fails 3 \
+    'jump.pseq:5: the posture at 500 ms is reached at 750 ms in the copy; --lossy writes' \
+    "$GRCTL" convert "$work/jump.pseq" "$work/jump.m"
+check "nothing is written then" test ! -e "$work/jump.m"
+check "--lossy writes it" both convert --lossy "$work/jump.pseq" "$work/jump.m" \
+    --- test -s "$work/jump.m"
+link='translation: [ 0, 0, 0 ], rotation: [ 1, 0, 0, 0, 1, 0, 0, 0, 1 ]'
+pseq "$work/other.pseq" "{ time: 1, refer: { type: Pose, ikLinks: [ { name: X, $link } ] } }"
+sed 's/^name: t/&\ntargetBody: Other/' "$work/other.pseq" >"$work/foreign.pseq"
+check "legs that nothing solves" fails 3 'foreign.pseq: 1 of 1 poses have ikLinks' \
+    "$GRCTL" convert "$work/foreign.pseq" "$work/foreign.yaml"
+check "key poses keep them" convert "$work/foreign.pseq" "$work/kept.pseq"
+
+# Only two joints, none of them the last: every format plays the same, for any body of this robot's.
+few() {
+    knees='refer: { type: Pose, joints: [ 3, 9 ]'
+    pseq "$work/few.pseq" "{ time: 0.5, $knees, q: [ -0.5, 0.5 ] } }" \
+        "{ time: 1, $knees, q: [ -0.7, 0.7 ] } }"
+    [ -z "$1" ] || sed -i "s/^name: t/&\\ntargetBody: $1/" "$work/few.pseq"
+    "$GRCTL" show --rate 2 -j 3,9 "$work/few.pseq" | sed 1d >"$work/first"
+    for format in m mseq yaml; do
+        convert "$work/few.pseq" "$work/few.$format" || return 1
+        "$GRCTL" show --rate 2 -j 3,9 "$work/few.$format" | sed 1d >"$work/second"
+        diff "$work/first" "$work/second" || return 1
+    done
+}
+for body in '' GR001 SerialRobot; do
+    check "a few joints, body '$body'" few "$body"
+done
+whole() {
+    ! grep '\.' "$1"
+}
+check "whole numbers, which the original reads" whole "$work/few.m"
+check "--exact keeps what they lose" both convert --exact "$work/few.pseq" "$work/exact.m" \
+    --- grep -q '\.' "$work/exact.m"
+check "frames at a rate, which every Choreonoid reads" both grep -q '^type: BodyMotion' \
+    "$work/few.yaml" --- grep -q 'frameRate: 50$' "$work/few.yaml"
+check "--exact keeps the times" both convert --exact "$work/few.pseq" "$work/exact.yaml" \
+    --- grep -q 'has_frame_time: true' "$work/exact.yaml"
+check "and says who reads them" grep -q 'by Choreonoid from 2.1 on' "$work/err"
+check "--exact and --integers" fails 2 'cannot be used together' \
+    "$GRCTL" convert --exact --integers $greet "$work/x.m"
 
 # ---- reference material ---------------------------------------------------------------------
 

@@ -8,11 +8,20 @@ joined() {
     sed -e ':again' -e '/\\$/{' -e N -e 's/\\\n *//' -e 'b again' -e '}'
 }
 
-# decodes ARGUMENTS... <<TEXT: exactly that on standard output, status 0.
-decodes() {
+# prints STATUS ARGUMENTS... <<TEXT: exactly that on standard output, and the status.
+prints() {
+    printed_status=$1
+    shift
     joined >"$work/expected"
-    "$GRCTL" decode "$@" >"$work/got" 2>"$work/err" || return 1
-    diff "$work/expected" "$work/got"
+    exits "$printed_status" "$GRCTL" decode "$@" || return 1
+    diff "$work/expected" "$work/out"
+}
+decodes() {
+    prints 0 "$@"
+}
+# faulty ARGUMENTS...: as decodes, and a sum was wrong or a frame cut off.
+faulty() {
+    prints 3 "$@"
 }
 
 # reads FILE <<TEXT: the same of a file that is given on standard input.
@@ -52,7 +61,7 @@ check 'a board that is told another number of bytes than the servo returns' \
 relay 8, return 10: read No.36-53 of servo 1 (CHEST_P); sum 38 right; \
     but the packet is answered by 26 bytes
 TEXT
-check 'a wrong sum, and what it should be' decodes FA AF 03 00 24 01 01 01 27 <<'TEXT'
+check 'a wrong sum, and what it should be' faulty FA AF 03 00 24 01 01 01 27 <<'TEXT'
 write servo 3 (R_SHOULDER_P): torque on; sum 27 wrong, should be 26
 TEXT
 check 'the other frames of the board' decodes 4100 504D07 505303 <<'TEXT'
@@ -112,7 +121,7 @@ check 'registers that do not exist' decodes FA AF 01 0F 8B F0 00 75 <<'TEXT'
 read No.139-378 of servo 1 (CHEST_P); sum 75 right; asks for registers that do not exist
 TEXT
 check 'rubbish and what is cut off are shown, and what follows is found' \
-    decodes 12 34 41 00 FD DF 01 00 24 01 01 24 FD DF 01 00 24 01 01 01 24 08 53 0C FA <<'TEXT'
+    faulty 12 34 41 00 FD DF 01 00 24 01 01 24 FD DF 01 00 24 01 01 01 24 08 53 0C FA <<'TEXT'
 rubbish: 12 34
 check the board; reply: ACK
 cut off: FD DF 01 00 24 01 01 24
@@ -179,7 +188,7 @@ check 'a frame as JSON' decodes --json 53 0C FA AF 03 00 1E 04 01 84 03 0A 00 95
     "count":1,"sum":149,"sum_ok":true,"servos":[{"id":3,"name":"R_SHOULDER_P",\
     "registers":{"goal_deg":90.0,"goal_time_ms":100}}]},"reply":{"kind":"none","bytes":0}}
 TEXT
-check 'a wrong sum as JSON' decodes --json FA AF 03 00 24 01 01 01 27 <<'TEXT'
+check 'a wrong sum as JSON' faulty --json FA AF 03 00 24 01 01 01 27 <<'TEXT'
 {"from":"host","kind":"packet","bytes":9,"hex":"FA AF 03 00 24 01 01 01 27",\
     "packet":{"kind":"short","action":"write","id":3,"flags":0,"address":36,"length":1,\
     "count":1,"sum":39,"sum_ok":false,"right_sum":38,"servos":[{"id":3,\

@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# `grctl estop` while another grctl has the port: that one stops the robot, and lets it be verified.
+# `grctl estop` while another program has the port, is stopped, does not obey, or cannot be reached:
+# what it says is what was done.
 . tests/support/cli.sh
 . tests/support/terminal.sh
 
@@ -35,7 +36,7 @@ stopped() {
     return 1
 }
 
-start_sim || { echo "Bail out! the simulator did not start"; exit 1; }
+start_told_sim || { echo "Bail out! the simulator did not start"; exit 1; }
 exits 0 on_robot servo on
 check "while it plays" stopped '"t_ms":[1-9]' --json play --speed 20 motions/greet.pseq
 check "while it moves" stopped 'robot found' -v move m5 -100 20000
@@ -70,7 +71,7 @@ watched() {
     "$GRCTL" -d "$robot" status --watch --interval 100 >"$work/watch" 2>&1 &
     watch_pid=$!
     written "$work/watch" 'R_KNEE_P .* on ' || return 1
-    fails 1 'in use by .*; a grctl stops the robot now' on_robot estop
+    exits 0 on_robot estop && complains "^stopped by process $(known_pid $watch_pid), .* verified"
     watched_status=$?
     written "$work/watch" 'R_KNEE_P .* brake '
     watched_brake=$?
@@ -89,7 +90,7 @@ if have_full_screen; then
     until_screen '^12 KNEE_P'
     keys t
     until_screen '^torque on: done'
-    exits 1 on_robot estop
+    exits 0 on_robot estop
     check "monitor" until_screen 'EMERGENCY STOP: R takes it back'
     keys R
     check "and takes it back" until_screen 'stop taken back'
@@ -98,6 +99,174 @@ if have_full_screen; then
     on_screen kill-server
 else
     skip "monitor" "$no_screen"
+fi
+
+# ---- who is stopped, who does not obey -----------------------------------------------------------
+
+# under_way [guarded]: a slow move, as seen from the joint; its process in $mover. A guard would
+# stop the joint of one that is stopped, and release the port.
+under_way() {
+    [ "${1:-}" = guarded ] || export GRCTL_GUARD=''
+    rm -f "$work/moving"
+    exits 0 on_robot servo on && exits 0 on_robot move m5 0 500 || return 1
+    "$GRCTL" -d "$robot" -v move m5 -120 20000 >"$work/moving" 2>&1 </dev/null &
+    mover=$!
+    written "$work/moving" 'robot found' && wait_for sim_shows 5 ' -[1-9][0-9]\.[0-9] deg'
+}
+# read_angle: what the simulator says of the joint's angle, in $angle.
+read_angle() {
+    tell look 5 && angle=$(tail -n +"$((tell_lines + 1))" "$work/sim.log" |
+        sed -n 's/.* \(-*[0-9]*\)\.[0-9] deg.*/\1/p')
+}
+seconds() {
+    date +%s
+}
+frozen() {
+    under_way || return 1
+    kill -s STOP $mover
+    read_angle && at_first=$angle && frozen_s=$(seconds)
+    exits 0 on_robot estop || { kill -s KILL $mover; return 1; }
+    frozen_s=$(($(seconds) - frozen_s))
+    sim_shows 5 'torque brake' && read_angle || return 1
+    wait $mover
+    frozen_ended=$?
+    [ $frozen_ended -eq 4 ] && grep -q 'emergency stop' "$work/moving" && [ $frozen_s -le 2 ] &&
+        [ $((at_first - angle)) -le 10 ] && braked && exits 0 on_robot estop --reset && return
+    echo "ended with $frozen_ended after $frozen_s s; from $at_first to $angle"
+    cat "$work/moving"
+    return 1
+}
+
+# Its guard has stopped the joint and released the port: it is braked all the same, and stays so.
+frozen_and_guarded() {
+    under_way guarded || return 1
+    kill -s STOP $mover
+    wait_for exits 0 on_robot status m5 && exits 0 on_robot estop && sim_shows 5 'torque brake'
+    guarded_status=$?
+    kill -s CONT $mover
+    wait $mover
+    [ $? -eq 4 ] && [ $guarded_status -eq 0 ] && braked && exits 0 on_robot estop --reset
+}
+
+# A process of this user with the port, and no session: it obeys nobody.
+stranger() {
+    flock -F -n "$sim_pty" sleep 100 &
+    stranger_pid=$!
+    wait_for fails 1 'in use by' on_robot status || return 1
+    fails 1 "in use by .*; NOT stopped, nothing was sent: .* end that program .*; programs refuse" \
+        on_robot estop
+    stranger_status=$?
+    kill $stranger_pid
+    wait $stranger_pid
+    [ $stranger_status -eq 0 ] && fails 4 "stopped by 'grctl estop'" on_robot move m5 0 &&
+        exits 0 on_robot estop --reset
+}
+
+# A process that is registered, and does not answer.
+deaf() {
+    mkdir -p "$work/run/grobo" && chmod 700 "$work/run" "$work/run/grobo" || return 1
+    flock -F -n "$sim_pty" sleep 100 &
+    deaf_pid=$!
+    wait_for fails 1 'in use by' on_robot status || return 1
+    deaf_note=$work/run/grobo/holder-$(echo "$sim_pty" | tr / !)
+    printf '%s %s\n' $deaf_pid "$(sed 's/.*) //' /proc/$deaf_pid/stat | cut -d ' ' -f 20)" \
+        >"$deaf_note"
+    chmod 600 "$deaf_note"
+    fails 1 "NOT stopped: process $deaf_pid has the port and has not answered in 3 s" \
+        env XDG_RUNTIME_DIR="$work/run" "$GRCTL" -d "$robot" estop
+    deaf_status=$?
+    kill $deaf_pid
+    wait $deaf_pid
+    rm "$deaf_note"
+    [ $deaf_status -eq 0 ] &&
+        exits 0 env XDG_RUNTIME_DIR="$work/run" "$GRCTL" -d "$robot" estop --reset
+}
+
+# The mark is set before the device is looked for, and is there when that is.
+missing() {
+    fails 1 "no such file or device.*; NOT stopped, nothing was sent; programs refuse to move it" \
+        "$GRCTL" -d "$work/missing" estop || return 1
+    ln -s "$sim_pty" "$work/missing"
+    fails 4 "stopped by 'grctl estop'" "$GRCTL" -d "$work/missing" move m5 0 &&
+        exits 0 "$GRCTL" -d "$work/missing" estop --reset &&
+        exits 0 "$GRCTL" -d "$work/missing" status && exits 0 on_robot servo on m5
+}
+
+# reset_of_busy: the mark goes, and who has the port is told of.
+reset_of_busy() {
+    rm -f "$work/watch"
+    "$GRCTL" -d "$robot" status --watch --interval 100 >"$work/watch" 2>&1 &
+    watch_pid=$!
+    written "$work/watch" 'R_KNEE_P ' && exits 0 on_robot estop && exits 0 on_robot estop --reset &&
+        grep -q "process $watch_pid, which has the port, stays stopped" "$work/err"
+    busy_status=$?
+    kill $watch_pid
+    wait $watch_pid
+    [ $busy_status -eq 0 ] && exits 0 on_robot move m5 0 500
+}
+
+# with_tmp MOUNTS COMMAND: with another /tmp and no session, as root of a name space.
+with_tmp() {
+    env -u XDG_RUNTIME_DIR -u XDG_CONFIG_HOME -u XDG_STATE_HOME unshare -m sh -c "$1"' &&
+        shift && exec "$@"' sh "$@"
+}
+read_only='mount --bind /tmp /tmp && mount -o remount,ro,bind /tmp'
+unwritable() {
+    fails 1 'stopped and verified, .*; the mark could not be written (.*): other programs may' \
+        with_tmp "$read_only" "$GRCTL" -d "$robot" estop && exits 0 on_robot servo on
+}
+# Who is stopped and cannot see a mark would go on.
+unwritable_and_frozen() {
+    under_way || return 1
+    kill -s STOP $mover
+    fails 1 'NOT stopped: .* was not resumed, .*; the mark could not be written' \
+        with_tmp "$read_only" "$GRCTL" -d "$robot" estop
+    unseen_status=$?
+    grep -q '^State:.T' /proc/$mover/status
+    unseen_still=$?
+    kill -s KILL $mover
+    wait $mover
+    [ $unseen_status -eq 0 ] && [ $unseen_still -eq 0 ]
+}
+# Another user has taken the name of the directory; both programs meet in another one all the same.
+taken() {
+    exits 0 on_robot servo on || return 1
+    # shellcheck disable=SC2016
+    exits 0 with_tmp 'mount -t tmpfs -o mode=1777 none /tmp' sh -c '
+        mkdir "/tmp/grobo-$(id -u)" && chown 65534 "/tmp/grobo-$(id -u)" || exit 9
+        GRCTL_GUARD="" "$1" -d "$2" --json play --speed 20 motions/greet.pseq \
+            >/tmp/busy 2>/tmp/err &
+        for i in $(seq 1000); do grep -q "\"t_ms\":[1-9]" /tmp/busy && break; sleep 0.03; done
+        kill -s STOP $!
+        "$1" -d "$2" estop || exit 8
+        wait $!
+        [ $? -eq 4 ] || exit 7
+        "$1" -d "$2" move m5 0
+        [ $? -eq 4 ] || exit 6
+        rmdir "/tmp/grobo-$(id -u)"
+        "$1" -d "$2" move m5 0
+        [ $? -eq 4 ] || exit 5
+        exec "$1" -d "$2" estop --reset' sh "$GRCTL" "$sim_pty"
+}
+
+if [ -z "${NATIVE_GRCTL:-}" ]; then # there nobody is stopped, and nobody else has a port
+    check "who is stopped is resumed, and sends nothing but the stop" frozen
+    check "who is stopped, and whose guard has stopped the joint" frozen_and_guarded
+    if command -v flock >/dev/null 2>&1; then
+        check "another program has the port" stranger
+        check "who is registered does not answer" deaf
+    else
+        skip "another program has the port" "no flock here"
+    fi
+    check "the device is missing" missing
+    check "taken back while another grctl has the port" reset_of_busy
+    if unshare -m true 2>/dev/null; then
+        check "no mark can be written" unwritable
+        check "who could not see a mark is not resumed" unwritable_and_frozen
+        check "another user has taken the name of the directory" taken
+    else
+        skip "no mark can be written" "no name space can be made here"
+    fi
 fi
 stop_sim
 done_testing

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# The commands of docs/guide/motions.md do what it says, on files that it shows.
+# The commands of the guides do what these say, on files that they show.
 . tests/support/cli.sh
 
 here=$(pwd)
@@ -13,7 +13,7 @@ awk -v desk="$work/desk" -v commands="$work/commands" '
     /^<!-- file / { file = desk "/" $3 }
     /^<!-- run -->/ { file = commands }
     /^```/ { open = !open && file != ""; if (!open) { close(file); file = "" }; next }
-    open { print >>file }' docs/guide/motions.md
+    open { print >>file }' docs/guide/motions.md docs/guide/whole-body.md
 
 check "the guide has commands and a file" [ -s "$work/commands" ] && [ -s "$work/desk/no.pseq" ]
 PATH=$work/bin:$PATH

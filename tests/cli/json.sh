@@ -19,7 +19,9 @@ cat >"$work/rows" <<'END'
 0|lines[0]["max_error_deg"] <= 0.1|-d sim init --time 300
 0|lines[0]["joints"][0]["name"] == "R_ELBOW_P"|-d sim move m5 -30
 0|lines[0]["joints"][0]["motor"] == 5|-d sim pose m5=-30
-0|lines[-1]["done"]|-d sim play --speed 500 motions/greet.pseq
+0|lines[-1]["done"] and lines[-1]["watched"]|-d sim play --speed 500 motions/greet.pseq
+0|lines[-1]["watched"] is False|-d sim play --rate 50 --unwatched --speed 500 motions/greet.pseq
+4|lines[0]["error"]["code"] == "unwatched"|-d sim play --rate 50 motions/greet.pseq
 0|len(lines) == 10|play --dry-run --key motions/greet.pseq
 0|lines[0]["done"]|-d sim stop
 0|lines[0]["done"]|-d sim estop
@@ -28,7 +30,7 @@ cat >"$work/rows" <<'END'
 0|lines[0]["length_ms"] == 5000|show motions/greet.pseq
 0|lines[0]["output"]|plot motions/greet.pseq -o WORK/greet.svg
 0|lines[0]["postures"] == 10|convert motions/greet.pseq WORK/greet.m
-0|lines[0]["baud_bps"] == 115200|budget
+0|lines[0]["baud_bps"] == 115200 and lines[0]["watched_max_hz"] == 39|budget
 0|lines[0]["slot"] == 1|-d sim slot 1
 0|lines[0]["scenario"] == 1|-d sim scenario 1
 0|lines[0]["id"] == 5|-d sim servo-get 5 baud

@@ -44,16 +44,30 @@ angle() {
 check "a frame a key pose, as it begins" plays 10 4300 --key "$greet"
 check "its angles: motor 2, NECK_Y, to 20 degrees" angle 2 2 200
 check "its angles: motor 1, CHEST_P, to -20 degrees" angle 8 1 -200
-check "50 Hz for 5 s" plays 251 5000 --rate 50 "$greet"
+check "50 Hz for 5 s" plays 251 5000 --rate 50 --unwatched "$greet"
+# 5 s at 39 Hz, the last frame on the end of the motion.
+check "by default what the line allows, through the board" plays 196 5000 "$greet"
+check "39 Hz may be asked for" plays 196 5000 --rate 39 "$greet"
+too_fast='40 frames a second leave no time to read the joints (at most 39); --unwatched plays them'
+check "40 Hz may not" fails 4 "$too_fast" "$GRCTL" play --dry-run --rate 40 "$greet"
+check "nor on a robot, of which nothing is opened" \
+    fails 4 "$too_fast" "$GRCTL" -d /dev/none play --rate 40 "$greet"
+on_a_bus() {
+    exits 0 "$GRCTL" --wiring bus play --dry-run "$greet" && [ "$(wc -l <"$work/out")" -eq 251 ] &&
+        exits 0 "$GRCTL" --wiring bus play --dry-run --rate 80 "$greet" &&
+        fails 4 'at most 80' "$GRCTL" --wiring bus play --dry-run --rate 81 "$greet" &&
+        fails 4 'at most 11' "$GRCTL" -b 19200 play --dry-run --rate 12 "$greet"
+}
+check "on a bus 50 Hz, and up to 80; on a slow line less" on_a_bus
 check "10 Hz for 5 s" plays 51 5000 --rate 10 "$greet"
 check "half the speed" plays 101 10000 --rate 10 --speed 50 "$greet"
 check "twice" plays 20 9400 --key --repeat 2 "$greet"
 check "two files" plays 20 9400 --key "$greet" "$greet"
 printf '%s\n' 'type: PoseSeq' 'name: lean' 'refs:' \
     '  - {time: 0, refer: {type: Pose, joints: [ 12, 13 ], q: [ -0.1, 0 ]}}' \
-    '  - {time: 1, refer: {type: Pose, joints: [ 12, 13 ], q: [ 0.004, 0.1 ]}}' >"$work/lean.pseq"
+    '  - {time: 1, refer: {type: Pose, joints: [ 12, 13 ], q: [ 0.03, 0.1 ]}}' >"$work/lean.pseq"
 clamped() {
-    fails 4 'lean.pseq:5:60: CHEST_P: 0.2 degrees, outside -95..0; --clamp plays it at the limit' \
+    fails 4 'lean.pseq:5:60: CHEST_P: 1.7 degrees, outside -95..0; --clamp plays it at the limit' \
         "$GRCTL" play --dry-run --key "$work/lean.pseq" &&
         exits 0 "$GRCTL" play --dry-run --key --clamp "$work/lean.pseq" &&
         says '^100 .* 01 00 00 64 00 02 39 00 64 00 ..$' &&
@@ -61,6 +75,30 @@ clamped() {
         says "^angles outside a joint's limits, taken to the limit: 1$"
 }
 check "--clamp plays an angle outside limits at the limit" clamped
+# Within a degree of a limit: 0.2 and 0.6 degrees, and on the curve between.
+sed 's/ 0.03, 0.1 / 0.0035, 0.1 /; $p; $s/time: 1/time: 2/; $s/ 0.0035, / 0.0105, /' \
+    "$work/lean.pseq" >"$work/near.pseq"
+counted='near.pseq:5: warning: 2 angles up to 0.6 degrees outside their limits (CHEST_P): clamped$'
+near() {
+    exits 0 "$GRCTL" play "$@" "$work/near.pseq" || return 1
+    [ "$(grep -c clamped "$work/err")" -eq 1 ] && grep -q "$counted" "$work/err" && return
+    cat "$work/err"
+    return 1
+}
+near_frames() { # no frame with motor 1 above 0
+    exits 0 "$GRCTL" play --dry-run "$@" "$work/near.pseq" && says ' 05 02 01 00 00 ' &&
+        ! grep ' 05 02 01 \(0[1-9A-F]\|[1-9A-F].\) 00 ' "$work/out"
+}
+check "within a degree of a limit: one warning" near --dry-run --key
+check "the robot plays it" near -d sim --speed 400
+check "at the limit by keys" near_frames --key
+check "at the limit at a rate" near_frames --rate 20
+check "at the limit backwards" near_frames --key --reverse
+check "a move has no slack" fails 4 'CHEST_P' "$GRCTL" -d sim move CHEST_P 0.6
+kept() {
+    exits 0 "$GRCTL" convert "$work/near.pseq" "$work/near.m" && grep -q ' 6' "$work/near.m"
+}
+check "nor does convert change an angle" kept
 printf '%s\n' 'type: PoseSeq' 'name: nod' 'refs:' \
     '  - {time: 0, refer: {type: Pose, joints: [ 13 ], q: [ -0.5 ]}}' \
     '  - {time: 0.1, refer: {type: Pose, joints: [ 13 ], q: [ 0.5 ]}}' >"$work/nod.pseq"
@@ -86,7 +124,7 @@ check "motions with joints that the robot does not have" strangers
 upright='rotation: [ 1, 0, 0, 0, 1, 0, 0, 0, 1 ]'
 links="ikLinks: [ { name: WAIST, isBaseLink: true, translation: [ 0, 0, 0.15 ], $upright }, \
 { name: R_ANKLE_R, translation: [ 0, -0.0221, 0.0225 ], $upright } ]"
-sed "s/q: \[ 0.004, 0.1 \]/&, $links/" "$work/lean.pseq" >"$work/solved.pseq"
+sed "s/q: \[ 0.03, 0.1 \]/&, $links/" "$work/lean.pseq" >"$work/solved.pseq"
 clamped_solved() {
     fails 4 'solved.pseq:5:60: CHEST_P' "$GRCTL" play --dry-run "$work/solved.pseq" &&
         exits 0 "$GRCTL" play --dry-run --key --clamp "$work/solved.pseq" &&
@@ -124,11 +162,42 @@ check "play .m" plays 10 4450 "$work/greet.m"
 check "its last posture is the initial one" angle 10 12 -400
 check "play .mseq" plays 10 4450 "$work/greet.mseq"
 check "increments lead to the initial posture" angle 10 12 -400
-check "play .yaml" plays 251 5000 --rate 50 "$work/greet.yaml"
+check "play .yaml" plays 151 5000 --rate 30 "$work/greet.yaml"
 check "one after the other" plays 40 19900 --key "$greet" "$work/greet.m" "$greet" "$work/greet.m"
 check_json "a dry run as JSON" \
     'len(lines) == 10 and all(len(l["hex"].split()) == 110 for l in lines)' \
     "$GRCTL" --json play --dry-run --key "$greet"
+
+# ---- a fall ---------------------------------------------------------------------------------
+
+# Leans over to where it falls.
+printf '%s\n' 'type: PoseSeq' 'name: falls' 'targetBody: GR001' 'refs:' \
+    '  - {time: 0, refer: {type: Pose, joints: [ 4, 10, 12 ], q: [ 0, 0, 0 ]}}' \
+    '  - {time: 2, refer: {type: Pose, joints: [ 4, 10, 12 ], q: [ 0.6, -0.6, 0 ]}}' \
+    >"$work/falls.pseq"
+falls='falls.pseq:[0-9]*: warning: the robot would fall: the ZMP is [0-9.]* mm outside the soles'
+silent() {
+    exits 0 "$@" && [ ! -s "$work/err" ]
+}
+check "play warns of a fall" both exits 0 "$GRCTL" play --dry-run "$work/falls.pseq" \
+    --- grep -q "$falls" "$work/err"
+check "unless it is silenced" silent "$GRCTL" play --dry-run --force "$work/falls.pseq"
+mkdir -p "$XDG_CONFIG_HOME/grctl"
+echo 'warn_fall: false' >"$XDG_CONFIG_HOME/grctl/config.yaml"
+check "by the configuration too" silent "$GRCTL" play --dry-run "$work/falls.pseq"
+echo 'warn_fall: maybe' >"$XDG_CONFIG_HOME/grctl/config.yaml"
+check "which says true or false" fails 3 'config.yaml:1:12: true or false is wanted here' \
+    "$GRCTL" play --dry-run "$work/falls.pseq"
+rm "$XDG_CONFIG_HOME/grctl/config.yaml"
+# What stands when it is slow falls when it is fast: the arms swing.
+printf '%s\n' 'type: PoseSeq' 'name: sways' 'targetBody: GR001' 'refs:' \
+    '  - {time: 0, refer: {type: Pose, joints: [ 4, 10 ], q: [ 0, 0 ]}}' \
+    '  - {time: 1, refer: {type: Pose, joints: [ 4, 10 ], q: [ 0.1, -0.1 ]}}' \
+    '  - {time: 2, refer: {type: Pose, joints: [ 4, 10 ], q: [ -0.1, 0.1 ]}}' \
+    '  - {time: 3, refer: {type: Pose, joints: [ 4, 10 ], q: [ 0, 0 ]}}' >"$work/sways.pseq"
+check "what stands when it is slow" silent "$GRCTL" play --dry-run "$work/sways.pseq"
+check "falls when it is fast" both exits 0 "$GRCTL" play --dry-run --speed 800 "$work/sways.pseq" \
+    --- grep -q 'sways.pseq.*the robot would fall' "$work/err"
 
 # ---- what is said ---------------------------------------------------------------------------
 
@@ -140,7 +209,12 @@ check_json "JSON: a line a second, then the end" \
      lines[-1]["frames"] > 0 and lines[-1]["frames"] + lines[-1]["late_frames"] > 100 and
      sorted(lines[-1]["jitter_us"]) == ["max", "p50", "p99"] and
      0 <= lines[-1]["max_error_deg"] <= 0.1' \
-    on_robot --json play --rate 50 --speed 200 "$greet"
+    on_robot --json play --rate 50 --unwatched --speed 200 "$greet"
+says_unwatched() {
+    exits 0 on_robot play --rate 50 --unwatched --speed 500 "$greet" &&
+        grep -q '^play: unwatched at 50 Hz: .* up to 39 Hz)$' "$work/err"
+}
+check "unwatched, and it says so" says_unwatched
 quiet_where_no_terminal() {
     exits 0 on_robot play --speed 500 "$greet" && [ ! -s "$work/err" ] || return 1
     says '^[0-9]* frames, [0-9]* late; jitter p50 ' && says '^largest error at the end 0\.[01] deg'

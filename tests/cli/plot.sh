@@ -104,9 +104,9 @@ type: PoseSeq
 name: huge
 refs:
   - time: 0
-    refer: { type: Pose, name: "", joints: [ 0 ], q: [ -1e+300 ] }
+    refer: { type: Pose, name: "", joints: [ 0 ], q: [ -999999 ] }
   - time: 1e-7
-    refer: { type: Pose, name: "", joints: [ 0 ], q: [ 1e+300 ] }
+    refer: { type: Pose, name: "", joints: [ 0 ], q: [ 999999 ] }
 PSEQ
 check "numbers beyond any robot" plots "$work/huge.pseq" 'R_HIP_Y'
 

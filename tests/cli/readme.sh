@@ -37,12 +37,21 @@ builds() {
 runs() {
     exits 0 timeout 30 "$work/example" && says '^moved: ' && [ ! -s "$work/err" ]
 }
+# On a robot behind a port it obeys the emergency stop of another program.
+obeys() {
+    start_sim && sed -i "s|\.device = \"sim\"|.device = \"$robot\"|" "$work/example.c" && builds &&
+        exits 0 "$GRCTL" -d "$robot" estop || return 1
+    timeout 30 "$work/example" >"$work/out" 2>"$work/err"
+    ! says '^moved: ' && complains '^move: stopped for safety until reset$' &&
+        exits 0 "$GRCTL" -d "$robot" estop --reset && runs
+}
 check "the program is there" grep -q '^int main' "$work/example.c"
 if [ -n "${CROSS:-}" ]; then
     skip "it builds and runs" "the libraries are of another machine"
 elif command -v "${CC%% *}" >/dev/null 2>&1 || command -v cc >/dev/null 2>&1; then
     check "it builds" builds
     check "it moves the simulated robot" runs
+    check "it is refused after an emergency stop, until that is cleared" obeys
 else
     skip "it builds and runs" "no C compiler"
 fi

@@ -111,6 +111,11 @@ check "nothing was shown" grep -q 'nothing was recorded' "$work/err"
 check "a name without a format" fails 2 'its name tells no format' \
     on_robot record -o wave
 check "a joint that is none" fails 2 'no joint or group' on_robot record tail
+cp motions/greet.pseq "$work/greet.m"
+check "a file of another format, before a joint is let go" \
+    fails 3 'greet.m: holds something other' \
+    "$GRCTL" -d sim record -o "$work/greet.m"
+check "it is as it was" cmp motions/greet.pseq "$work/greet.m"
 check "a folder that is none, before a joint is let go" fails 3 'nowhere/wave.m: cannot write' \
     on_robot record --key -o nowhere/wave.m
 stop_sim

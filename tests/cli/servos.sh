@@ -29,6 +29,11 @@ tell fault delay=1
 check "who answers late is found" both exits 0 on_robot scan --first 10 --last 15 --- \
     says '^ 12 .*R_KNEE_P'
 tell fault delay=0
+tell id 3 12
+check "two servos with one id are named" both exits 1 on_robot scan --first 10 --last 13 --- \
+    said '^id 12 answers, but: .* (two servos with one id?)$'
+check "nobody else is" both finds 3 --- said '^not sure: '
+tell id 3 3
 check "--first behind --last" fails 2 'first is behind' on_robot scan --first 5 --last 3
 check "--all-baud through the board" fails 2 'needs --wiring bus' on_robot scan --all-baud
 check "--all-baud without a line" fails 2 'needs a line' \
@@ -74,6 +79,9 @@ check "--flash says what it will write" both exits 0 on_robot servo-set 12 delay
     said '^servo 12: delay 2 (200 us) -> 0 (100 us), and No.4-29 go to flash'
 check "a baud rate as it is" both exits 0 on_robot servo-set 12 baud 115200 --- \
     said 'baud 7 (115200 bps) -> 7 (115200 bps)'
+check "another baud rate through the board" fails 4 'bus behind the board has 115200 bps' \
+    on_robot servo-set 12 baud 57600 --flash
+check "and nothing was written" both exits 0 on_robot servo-get 12 baud --- says ' 115200 bps$'
 for value in 128 -1 1.5 1e300 nan '' x; do
     check "delay '$value'" fails 2 "servo-set: '$value': delay takes 0 to 127 (counts of 50 us)" \
         on_robot servo-set 12 delay "$value"
@@ -130,6 +138,10 @@ check "it moves again" exits 0 on_robot move m5 -20 300
 check "budget" both exits 0 "$GRCTL" budget --- says '^motion, 20 joints  *110 B  *0 B  *18.92 ms$'
 check "what does not fit" both exits 0 "$GRCTL" budget --rate 60 --- \
     says '^motion at 60 Hz does not fit'
+check "how many frames leave time for readings" both exits 0 "$GRCTL" budget --- \
+    says '^each joint read in 2 s  *at most 39 Hz$'
+check "what leaves none" both exits 0 "$GRCTL" budget --rate 40 --- \
+    says '^motion at 40 Hz is unwatched'
 check_json "budget as JSON" 'lines[0]["fits"] and lines[0]["costs"][0]["wire_us"] == 18924' \
     "$GRCTL" budget --json --rate 50
 check "ports" exits 0 "$GRCTL" ports

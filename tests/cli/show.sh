@@ -89,11 +89,11 @@ type: PoseSeq
 name: wide
 refs:
   - time: 123456789.5
-    refer: { type: Pose, name: "", joints: [ 0, 1 ], q: [ -1e+10, -0.0001 ] }
+    refer: { type: Pose, name: "", joints: [ 0, 1 ], q: [ -999999, -0.0001 ] }
 PSEQ
 wide() {
     exits 0 "$GRCTL" show "$work/wide.pseq" &&
-        says '^ *123456789500  *-572957795130.8  *0.0$'
+        says '^ *123456789500  *-57295722.2  *0.0$'
 }
 check "numbers do not run together, nor is there a -0.0" wide
 

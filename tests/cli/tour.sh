@@ -3,6 +3,7 @@
 # docs/guide/tour.md shows what a terminal of 80x24 shows: every screen in it is made again here,
 # and must differ in nothing but numbers and bars. TOUR_WRITE=yes (make captures) replaces them.
 . tests/support/cli.sh
+. tests/support/guide_blocks.sh
 . tests/support/terminal.sh
 
 tour=$PWD/docs/guide/tour.md
@@ -13,13 +14,6 @@ fi
 
 # ---- the guide -----------------------------------------------------------------------------------
 
-# block NAME: what the guide shows after <!-- screen NAME -->.
-block() {
-    awk -v mark="<!-- screen $1 -->" '
-        $0 == mark { wanted = 1; next }
-        wanted && /^```/ { if (inside) exit; inside = 1; next }
-        inside { print }' "$tour"
-}
 # alike: numbers, bars, the width of columns, what a busy machine says, and which joint was the
 # latest aside.
 alike() {
@@ -27,19 +21,8 @@ alike() {
         -e '/^largest error/s/(.*)/(JOINT)/' -e 's/-\{0,1\}[0-9][0-9.]*/N/g' \
         -e 's/[─│█░]\{1,\}/B/g' -e 's/\([A-Z_]\)N/\1 N/g' -e 's/  */ /g'
 }
-replace() {
-    awk -v mark="<!-- screen $1 -->" -v shot="$work/shots/$1" '
-        $0 == mark { wanted = 1 }
-        !inside { print }
-        /^```/ && inside { print; inside = wanted = 0; next }
-        /^```/ && wanted {
-            inside = 1
-            while ((getline line <shot) > 0)
-                print line
-        }' "$tour" >"$work/tour.md" && cat "$work/tour.md" >"$tour"
-}
 is_true() {
-    block "$1" | alike >"$work/told"
+    block "$tour" "screen $1" | alike >"$work/told"
     alike <"$work/shots/$1" >"$work/seen"
     [ -s "$work/told" ] && diff "$work/told" "$work/seen"
 }
@@ -50,7 +33,7 @@ ln -s "$GRCTL" "$work/bin/grctl"
 ln -s "$PWD/motions" "$work/desk/motions"
 {
     head -n 1 motions/greet.m
-    awk 'NR == 1 { $1 = 100; $6 = -1310; print }' motions/greet.m
+    awk 'NR == 1 { $1 = 100; $6 = -1330; print }' motions/greet.m
 } >"$work/desk/wave.m"
 start_told_sim || { echo "Bail out! the simulator did not start"; exit 1; }
 open_screen
@@ -121,7 +104,7 @@ on_screen kill-server
 stop_sim
 
 for name in doctor status check playing played monitor; do
-    [ "${TOUR_WRITE:-}" != yes ] || replace $name
+    [ "${TOUR_WRITE:-}" != yes ] || replace_block "$tour" "screen $name" "$work/shots/$name"
     check "the guide shows $name as it is" is_true $name
 done
 done_testing

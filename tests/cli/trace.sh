@@ -77,6 +77,15 @@ is_moving() {
     "$GRCTL" decode -q "$work/ended" 2>/dev/null | grep -q 'goal_time 60000 ms'
 }
 
+# The file has no fault; the last reply on the line may be cut off (status 3), since joints are read
+# while they move.
+is_whole() {
+    "$GRCTL" decode -q "$work/ended" >"$work/text" 2>"$work/err"
+    whole_status=$?
+    cat "$work/err"
+    [ ! -s "$work/err" ] && { [ $whole_status -eq 0 ] || [ $whole_status -eq 3 ]; }
+}
+
 # interrupted SIGNAL: a long move is ended by a signal; what is left of its trace in $work/ended.
 interrupted() {
     rm -f "$work/ended"
@@ -91,7 +100,7 @@ ends_by_a_signal() {
     interrupted "$1"
     status=$?
     echo "status $status"
-    [ $status -eq "$2" ] && "$GRCTL" decode -q "$work/ended" >"$work/text" &&
+    [ $status -eq "$2" ] && is_whole &&
         grep -q 'write 20 servos: goal, goal_time; sum .. right' "$work/text"
 }
 check 'Ctrl-C: the trace is whole' ends_by_a_signal INT 130
@@ -99,10 +108,7 @@ check 'SIGTERM: the trace is whole' ends_by_a_signal TERM 143
 
 killed() {
     interrupted KILL
-    "$GRCTL" decode -q "$work/ended" >"$work/text" 2>"$work/err"
-    status=$?
-    cat "$work/err"
-    [ $status -eq 0 ] && grep -q 'goal_time 60000 ms' "$work/text"
+    is_whole && grep -q 'goal_time 60000 ms' "$work/text"
 }
 check 'killed: the trace is whole up to then' killed
 
@@ -172,7 +178,7 @@ guide() {
         ' docs/guide/trace.md >"$work/guide.sh"
     [ "$(wc -l <"$work/guide.sh")" -ge 7 ] || return 1
     (cd "$work/guide" && PATH=$work/bin:$PATH sh -eux "$work/guide.sh" >"$work/guide.out" 2>&1) &&
-        grep -q '^8 frames sent, .* 0 missing, 0 extra' "$work/guide.out" && return
+        grep -q '^[1-9][0-9]* frames sent, .* 0 missing, 0 extra' "$work/guide.out" && return
     tail -n 20 "$work/guide.out"
     return 1
 }

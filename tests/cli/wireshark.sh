@@ -22,7 +22,7 @@ same_registers() {
 check 'the registers are those of rs30x.h' same_registers
 
 if ! command -v tshark >/dev/null 2>&1; then
-    skip 'frames as grctl decode has them' 'no tshark here (tools/setup.sh --ci installs it)'
+    skip 'frames as grctl decode has them' 'no tshark here (tools/setup.sh --check installs it)'
     done_testing
     exit 0
 fi
@@ -141,6 +141,33 @@ replies() {
         -E separator='|' >"$work/out" && says '^1|2$' && says '^2|4$'
 }
 check 'replies know their requests, split frames their ends' replies
+
+# What an adapter of one wire returns is no request: a reply answers what the host sent, its time
+# counts from there, and a repeated request is the one that counts.
+make_trace >"$work/one-wire" <<'LINES'
+out 1000 FA AF 01 0F 2A 02 00 26
+in 2000 FA AF 01 0F 2A 02 00 26
+in 3500 FD DF 01 00 2A 02 01 00 00 28
+out 10000 FA AF 02 0F 2A 02 00 25
+in 11000 FA AF 02 0F 2A 02 00 25
+out 40000 FA AF 02 0F 2A 02 00 25
+in 41000 FA AF 02 0F 2A 02 00 25 FD DF 02 00 2A 02 01 00 00 2B
+out 50000 FA AF 03 01 24 01 01 01 27
+in 51000 FA AF 03 01 24 01 01 01 27 07
+LINES
+echoes() {
+    shark "$work/one-wire" -2 -T fields -e frame.number -e grobo.request_in \
+        -e grobo.reply_time_ms -e grobo.reply_in -E separator='|' >"$work/out" || return 1
+    printf '%s\n' '1|||3' '2|||' '3|1|2.5|' '4|||' '5|||' '6|||7' '7|6|1|' '8|||9' '9|8|1|' |
+        diff - "$work/out" || return 1
+    # In a trace of the simulator each reply answers a packet of the host too.
+    shark "$work/echo" -2 -Y 'grobo.from == host' -T fields -e frame.number >"$work/host" &&
+        shark "$work/echo" -2 -Y grobo.request_in -T fields -e grobo.request_in |
+        tr , '\n' >"$work/requests" || return 1
+    [ "$(wc -l <"$work/requests")" -ge 20 ] && ! grep -v -x -F -f "$work/host" "$work/requests"
+}
+check 'on an echoing line replies answer what the host sent' echoes
+
 # As the guide says: a link in the folder of a person's plugins.
 as_plugin() {
     folder=$(HOME=$work/home tshark -G folders 2>/dev/null |

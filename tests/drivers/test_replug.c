@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * A robot behind a USB adapter that is pulled out while it moves, and put back after another one
- * has taken its place. GROBO_TEST_DEVICE is the name to open, GROBO_TEST_NAME the one under
- * /dev/serial/by-id. Whoever runs this pulls the adapter when it prints "@unplug", plugs the other
- * one in at "@other", and the robot's at "@plug".
+ * has taken its place: its guard must not keep the old name from that one. GROBO_TEST_DEVICE is the
+ * name to open, GROBO_TEST_NAME the one under /dev/serial/by-id. The caller pulls the adapter when
+ * this prints "@unplug", plugs the other one in at "@other", and the robot's at "@plug".
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -19,10 +19,13 @@
 #include <cmocka.h>
 #include <event2/event.h>
 
+#include "guarded.h"
 #include "loop.h"
 #include "os.h"
 #include "session_kit.h"
 
+static const char *self;
+static grobo_guard *guard;
 static int watch;       /* inotify of the folders of devices and of names that stay */
 static int64_t gone_us; /* when a device went */
 static int64_t here_us; /* when a name came */
@@ -133,7 +136,11 @@ static void an_adapter_pulled_out_in_a_motion_and_put_back(void **state)
     uint64_t frames;
 
     (void)state;
-    session_kit_make((grobo_session_config){.device = device, .reconnect = true});
+    session_kit_make((grobo_session_config){.device = device,
+                                            .reconnect = true,
+                                            .guard = guard,
+                                            .guard_data = "known",
+                                            .guard_bytes = 5});
     assert_int_equal(grobo_session_open(session), GROBO_OK);
     loop_run_until(base, &seen.ups, 1);
     lose_it(set_going());
@@ -151,13 +158,15 @@ static void an_adapter_pulled_out_in_a_motion_and_put_back(void **state)
     sense(after_ddeg, JOINTS);
     assert_memory_equal(after_ddeg, before_ddeg, sizeof before_ddeg);
     assert_int_equal(grobo_robot_get_counters(grobo_session_robot(session))->motion_frames, frames);
-    assert_int_equal(seen.fails, 0);
+    assert_int_equal(seen.fails + seen.unguarded, 0);
 }
 
 static int set_up(void **state)
 {
     struct event *changes;
 
+    guard = NULL;
+    assert_int_equal(guarded_new(self, &guard), GROBO_OK);
     session_kit_begin();
     watch = inotify_init1(IN_NONBLOCK);
     assert_true(inotify_add_watch(watch, "/dev", IN_DELETE) >= 0);
@@ -172,16 +181,23 @@ static int tear_down(void **state)
 {
     event_free(*state);
     session_kit_end();
+    grobo_guard_free(guard);
     return close(watch);
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(an_adapter_pulled_out_in_a_motion_and_put_back, set_up,
                                         tear_down),
     };
 
+    int status = guarded_main(argc, argv);
+
+    if (status >= 0) {
+        return status;
+    }
+    self = argv[0];
     if (getenv("GROBO_TEST_DEVICE") == NULL || getenv("GROBO_TEST_NAME") == NULL) {
         fprintf(stderr, "GROBO_TEST_DEVICE and GROBO_TEST_NAME say what to test\n");
         return 2;

@@ -21,14 +21,6 @@ static void submit_read(peer *p, request *r, uint8_t id, grobo_priority priority
     assert_int_equal(grobo_bus_submit(&p->bus, &r->txn), GROBO_OK);
 }
 
-static void submit_goal(peer *p, request *r, uint8_t id, grobo_priority priority)
-{
-    const grobo_rs30x_goal goal = {id, 0, 0};
-    int n = grobo_frame_goal(p->bus.config.wiring, &goal, r->frame, FRAME);
-    peer_txn(p, &r->txn, r->frame, n, priority);
-    assert_int_equal(grobo_bus_submit(&p->bus, &r->txn), GROBO_OK);
-}
-
 static void a_read_is_answered(void **state)
 {
     (void)state;
@@ -83,7 +75,7 @@ static void only_one_is_on_the_wire(void **state)
     uint8_t buf[FRAME];
     peer_init(&p, NULL);
     submit_read(&p, &a, 1, GROBO_PRIORITY_USER);
-    submit_goal(&p, &b, 2, GROBO_PRIORITY_STOP);
+    peer_submit_goal(&p, &b, 2, GROBO_PRIORITY_STOP);
     assert_int_equal(grobo_bus_tx(&p.bus, 0, buf, 13), GROBO_ERR_SPACE); /* nothing lost by it */
     assert_int_equal(grobo_bus_tx(&p.bus, 0, buf, FRAME), 14);
     assert_int_equal(buf[4], 2);
@@ -246,7 +238,7 @@ static void a_stop_cuts_an_overdue_read_short(void **state)
     peer_init(&p, NULL);
     submit_read(&p, &read, 1, GROBO_PRIORITY_SENSE);
     peer_run(&p, 2 * MS);
-    submit_goal(&p, &stop, 2, GROBO_PRIORITY_STOP);
+    peer_submit_goal(&p, &stop, 2, GROBO_PRIORITY_STOP);
     peer_run(&p, 3487);
     assert_int_equal(p.sent_count, 1);
     peer_run(&p, 4 * MS);
@@ -333,11 +325,37 @@ static void cancelling_takes_one_out_wherever_it_is(void **state)
     assert_int_equal(p.ended_count, 4);
     assert_ptr_equal(p.ended[3].txn, &r[2].txn);
     assert_int_equal(p.ended[3].value, 300);
-    /* The line stayed occupied for the cancelled one, whose reply was nobody's. */
-    assert_int_equal(p.sent[1].at_us, 3488 + MS);
+    /* The line stayed occupied for the cancelled one, whose reply was expected, and nobody's. */
+    assert_int_equal(p.sent[1].at_us, 3488);
     assert_int_equal(p.bus.stats.late_bytes, 10);
     assert_int_equal(p.bus.stats.canceled, 3);
     assert_int_equal(p.bus.stats.failed, 0);
+}
+
+static void a_raised_one_goes_behind_those_of_its_new_priority(void **state)
+{
+    (void)state;
+    peer p;
+    request r[4];
+    peer_init(&p, NULL);
+    p.obliging = true;
+    submit_read(&p, &r[0], 1, GROBO_PRIORITY_USER);
+    peer_run(&p, 0); /* on the wire */
+    submit_read(&p, &r[1], 2, GROBO_PRIORITY_SENSE);
+    submit_read(&p, &r[2], 3, GROBO_PRIORITY_SENSE);
+    submit_read(&p, &r[3], 4, GROBO_PRIORITY_MOTION);
+    assert_int_equal(grobo_bus_raise(&p.bus, &r[0].txn, GROBO_PRIORITY_STOP), GROBO_ERR_NOTFOUND);
+    assert_int_equal(grobo_bus_raise(&p.bus, &r[2].txn, (grobo_priority)4), GROBO_ERR_ARG);
+    assert_int_equal(grobo_bus_raise(&p.bus, &r[2].txn, GROBO_PRIORITY_MOTION), GROBO_OK);
+    assert_int_equal(grobo_bus_pending(&p.bus), 4);
+    peer_run(&p, S);
+    static const uint8_t order[] = {1, 4, 3, 2};
+    assert_int_equal(p.ended_count, 4);
+    for (int i = 0; i < 4; i++) {
+        assert_int_equal(p.sent[i].id, order[i]);
+        assert_int_equal(p.ended[i].value, 100 * order[i]);
+    }
+    assert_int_equal(grobo_bus_raise(&p.bus, &r[2].txn, GROBO_PRIORITY_STOP), GROBO_ERR_NOTFOUND);
 }
 
 static void submit_again(peer *p, grobo_txn *txn, int result)
@@ -446,7 +464,7 @@ static void a_transaction_needs_no_callback(void **state)
     peer p;
     request r;
     peer_init(&p, NULL);
-    submit_goal(&p, &r, 1, GROBO_PRIORITY_MOTION);
+    peer_submit_goal(&p, &r, 1, GROBO_PRIORITY_MOTION);
     r.txn.done = NULL;
     peer_run(&p, S);
     assert_false(grobo_txn_is_pending(&r.txn));
@@ -469,6 +487,7 @@ int main(void)
         cmocka_unit_test(queues_have_a_cap_that_a_stop_ignores),
         cmocka_unit_test(nonsense_is_not_submitted),
         cmocka_unit_test(cancelling_takes_one_out_wherever_it_is),
+        cmocka_unit_test(a_raised_one_goes_behind_those_of_its_new_priority),
         cmocka_unit_test(a_callback_may_submit_again),
         cmocka_unit_test(a_callback_may_cancel_others),
         cmocka_unit_test(a_callback_may_free_its_transaction),

@@ -25,23 +25,6 @@ static void start(peer *p)
     peer_init(p, &config);
 }
 
-static void submit_read(peer *p, request *r, uint8_t id, uint8_t retries)
-{
-    peer_read(p, r, id, 2, GROBO_PRIORITY_USER);
-    r->txn.retries = retries;
-    assert_int_equal(grobo_bus_submit(&p->bus, &r->txn), GROBO_OK);
-}
-
-static void submit_ping(peer *p, request *r, uint8_t id, uint8_t retries)
-{
-    uint8_t packet[16];
-    int n = grobo_rs30x_ping(id, GROBO_RS30X_PING_FF_0_0, packet, sizeof packet);
-    n = grobo_frame_wrap(p->bus.config.wiring, packet, (size_t)n, r->frame, FRAME);
-    peer_txn(p, &r->txn, r->frame, n, GROBO_PRIORITY_USER);
-    r->txn.retries = retries;
-    assert_int_equal(grobo_bus_submit(&p->bus, &r->txn), GROBO_OK);
-}
-
 static void bytes_that_nobody_awaits_are_late(void **state)
 {
     (void)state;
@@ -60,8 +43,8 @@ static void the_reply_of_a_dead_read_is_not_taken_for_another_motors(void **stat
     peer p;
     request a, b;
     start(&p);
-    submit_read(&p, &a, 1, 0);
-    submit_read(&p, &b, 2, 0);
+    peer_submit_read(&p, &a, 1, 0);
+    peer_submit_read(&p, &b, 2, 0);
     int64_t second_us = READ_FAILED + GROBO_BUS_QUIET_US;
     peer_position_at(&p, second_us + MS, 1, 11);
     peer_position_at(&p, second_us + 3488, 2, 22);
@@ -80,10 +63,26 @@ static void the_same_read_again_waits_until_the_lost_reply_cannot_come(void **st
     peer p;
     request a, b;
     start(&p);
-    submit_read(&p, &a, 1, 0);
-    submit_read(&p, &b, 1, 0);
-    peer_position_at(&p, 60 * MS, 1, 11);
+    peer_submit_read(&p, &a, 1, 0);
+    peer_submit_read(&p, &b, 1, 0);
     int64_t second_us = READ_FAILED + GROBO_BUS_HOLD_US;
+    peer_position_at(&p, second_us + 3488, 1, 22);
+    peer_run(&p, S);
+    assert_int_equal(p.sent[1].at_us, second_us);
+    assert_int_equal(p.ended[1].value, 22);
+    assert_int_equal(p.bus.stats.late_bytes, 0);
+}
+
+static void the_same_read_again_waits_until_the_lost_reply_has_come(void **state)
+{
+    (void)state;
+    peer p;
+    request a, b;
+    start(&p);
+    peer_submit_read(&p, &a, 1, 0);
+    peer_submit_read(&p, &b, 1, 0);
+    int64_t second_us = 60 * MS;
+    peer_position_at(&p, second_us, 1, 11);
     peer_position_at(&p, second_us + 3488, 1, 22);
     peer_run(&p, S);
     assert_int_equal(p.sent[1].at_us, second_us);
@@ -97,15 +96,44 @@ static void another_reply_proves_that_the_lost_one_is_lost(void **state)
     peer p;
     request a, b, c;
     start(&p);
-    submit_read(&p, &a, 1, 0);
-    submit_read(&p, &b, 2, 0);
-    submit_read(&p, &c, 1, 0);
+    peer_submit_read(&p, &a, 1, 0);
+    peer_submit_read(&p, &b, 2, 0);
+    peer_submit_read(&p, &c, 1, 0);
     int64_t second_us = READ_FAILED + GROBO_BUS_QUIET_US;
     peer_position_at(&p, second_us + 3488, 2, 22);
     peer_position_at(&p, second_us + 2 * 3488, 1, 33);
     peer_run(&p, S);
     assert_int_equal(p.sent[2].at_us, second_us + 3488);
     assert_int_equal(p.ended[2].value, 33);
+}
+
+/* On a bus it proves that for the adapter only: a servo may answer after another one did. */
+static void on_a_bus_a_servo_may_answer_after_another_one(void **state)
+{
+    (void)state;
+    const grobo_bus_config config = {.margin_us = MARGIN, .wiring = GROBO_WIRING_BUS};
+    for (int comes = 0; comes <= 1; comes++) {
+        peer p;
+        request a, b, c;
+        peer_init(&p, &config);
+        peer_submit_read(&p, &a, 1, 0);
+        peer_submit_read(&p, &b, 2, 0);
+        peer_submit_read(&p, &c, 1, 0);
+        int64_t failed_us = 695 + 868 + 100 + MARGIN; /* 8 bytes, 10 back, the return delay */
+        int64_t second_us = failed_us + GROBO_BUS_QUIET_US;
+        int64_t answered_us = second_us + 1663;
+        int64_t third_us = answered_us + (comes ? 20 * MS : GROBO_BUS_MARGIN_MAX_US);
+        peer_position_at(&p, answered_us, 2, 22);
+        if (comes) {
+            peer_position_at(&p, third_us, 1, 11); /* of the first question */
+        }
+        peer_position_at(&p, third_us + 1663, 1, 33);
+        peer_run(&p, S);
+        assert_int_equal(p.ended[1].value, 22);
+        assert_int_equal(p.sent[2].at_us, third_us);
+        assert_int_equal(p.ended[2].value, 33);
+        assert_int_equal(p.bus.stats.late_bytes, comes ? 10 : 0);
+    }
 }
 
 /* The first attempt's reply answers the second; the second's must not answer the next read. */
@@ -115,13 +143,15 @@ static void a_retry_that_succeeds_may_leave_a_reply_behind(void **state)
     peer p;
     request a, b;
     start(&p);
-    submit_read(&p, &a, 1, 1);
-    submit_read(&p, &b, 1, 0);
+    peer_submit_read(&p, &a, 1, 1);
+    peer_submit_read(&p, &b, 1, 0);
     int64_t second_us = READ_FAILED + GROBO_BUS_QUIET_US;
+    int64_t third_us = second_us + 3488 + MS;
     peer_position_at(&p, second_us + MS, 1, 11);
-    peer_position_at(&p, second_us + 3488 + MS, 1, 22);
-    peer_position_at(&p, second_us + MS + GROBO_BUS_HOLD_US + 3488, 1, 33);
+    peer_position_at(&p, third_us, 1, 22);
+    peer_position_at(&p, third_us + 3488, 1, 33);
     peer_run(&p, S);
+    assert_int_equal(p.sent[2].at_us, third_us);
     assert_int_equal(p.ended[0].value, 11);
     assert_int_equal(p.ended[1].value, 33);
     assert_int_equal(p.bus.stats.late_bytes, 10);
@@ -133,8 +163,8 @@ static void a_late_ack_is_not_taken_for_another_motors(void **state)
     peer p;
     request a, b, c;
     start(&p);
-    submit_ping(&p, &a, 1, 0);
-    submit_ping(&p, &b, 2, 0);
+    peer_submit_ping(&p, &a, 1, 0);
+    peer_submit_ping(&p, &b, 2, 0);
     peer_bytes_at(&p, PING_FAILED + 20 * MS, &ack, 1); /* motor 1's, when motor 2 could be asked */
     peer_run(&p, PING_FAILED + GROBO_BUS_HOLD_US - 1);
     assert_int_equal(p.sent_count, 1);
@@ -144,9 +174,9 @@ static void a_late_ack_is_not_taken_for_another_motors(void **state)
     assert_int_equal(p.ended[1].result, GROBO_ERR_TIMEOUT);
     assert_int_equal(p.bus.stats.late_bytes, 1);
 
-    submit_ping(&p, &a, 1, 0); /* 100 ms later an ACK is believed again */
+    peer_submit_ping(&p, &a, 1, 0); /* 100 ms later an ACK is believed again */
     peer_bytes_at(&p, S + 2 * MS, &ack, 1);
-    submit_read(&p, &c, 3, 0);
+    peer_submit_read(&p, &c, 3, 0);
     peer_run(&p, 2 * S);
     assert_int_equal(p.ended[2].result, GROBO_OK);
 }
@@ -157,8 +187,8 @@ static void reads_go_on_while_an_ack_is_outstanding_and_clear_it(void **state)
     peer p;
     request a, b, c;
     start(&p);
-    submit_ping(&p, &a, 1, 0);
-    submit_ping(&p, &b, 2, 0);
+    peer_submit_ping(&p, &a, 1, 0);
+    peer_submit_ping(&p, &b, 2, 0);
     int n = grobo_frame_read(GROBO_WIRING_BOARD, 3, 42, 2, c.frame, FRAME);
     peer_txn(&p, &c.txn, c.frame, n, GROBO_PRIORITY_SENSE);
     assert_int_equal(grobo_bus_submit(&p.bus, &c.txn), GROBO_OK);
@@ -181,7 +211,7 @@ static void an_ack_among_rubbish_is_not_believed(void **state)
     peer p;
     request r;
     start(&p);
-    submit_ping(&p, &r, 1, 0);
+    peer_submit_ping(&p, &r, 1, 0);
     peer_bytes_at(&p, MS, rubbish, sizeof rubbish);
     peer_run(&p, S);
     assert_int_equal(p.ended[0].result, GROBO_ERR_MISMATCH);
@@ -195,7 +225,7 @@ static void an_ack_inside_a_late_reply_is_not_believed(void **state)
     peer p;
     request r;
     start(&p);
-    submit_ping(&p, &r, 1, 0);
+    peer_submit_ping(&p, &r, 1, 0);
     peer_position_at(&p, MS, 9, 0x0707);
     peer_bytes_at(&p, 1924, &ack, 1);
     peer_run(&p, S);
@@ -212,7 +242,7 @@ static void a_stump_does_not_swallow_the_next_reply(void **state)
     peer p;
     request r;
     start(&p);
-    submit_read(&p, &r, 1, 1);
+    peer_submit_read(&p, &r, 1, 1);
     peer_bytes_at(&p, 3 * MS, stump, sizeof stump);
     int64_t second_us = READ_FAILED + GROBO_BUS_QUIET_US;
     peer_position_at(&p, second_us + 3488, 1, 22);
@@ -229,7 +259,7 @@ static void an_ack_is_no_answer_to_a_read(void **state)
     peer p;
     request r;
     start(&p);
-    submit_read(&p, &r, 1, 0);
+    peer_submit_read(&p, &r, 1, 0);
     peer_bytes_at(&p, MS, &ack, 1);
     peer_position_at(&p, 3488, 1, 11);
     peer_run(&p, S);
@@ -249,7 +279,7 @@ static void replies_that_fit_in_part_are_not_believed(void **state)
         peer p;
         request r;
         start(&p);
-        submit_read(&p, &r, 1, 0);
+        peer_submit_read(&p, &r, 1, 0);
         const grobo_rs30x_packet packet = {GROBO_RS30X_RETURN, wrong[i].id, 0,    wrong[i].address,
                                            wrong[i].length,    1,           data, wrong[i].length};
         int n = grobo_rs30x_build(&packet, b, FRAME);
@@ -265,21 +295,46 @@ static void replies_that_fit_in_part_are_not_believed(void **state)
 static void a_babbling_line_is_waited_for_with_patience_and_no_more(void **state)
 {
     (void)state;
+    static const int64_t steps_us[] = {900, 500}; /* past the end of patience; at its end, too */
+    for (int i = 0; i < 2; i++) {
+        peer p;
+        request r;
+        start(&p);
+        peer_submit_read(&p, &r, 1, 0);
+        peer_run(&p, READ_FAILED);
+        peer_submit_read(&p, &r, 2, 0);
+        int64_t babble_us = READ_FAILED;
+        while (babble_us < 2 * READ_FAILED + GROBO_BUS_QUIET_MAX_US && p.sent_count < 2) {
+            static const uint8_t rubbish = 0x55;
+            babble_us += steps_us[i];
+            peer_bytes_at(&p, babble_us, &rubbish, 1);
+            peer_run(&p, babble_us);
+        }
+        assert_int_equal(p.sent_count, 2);
+        assert_int_equal(p.sent[1].at_us, READ_FAILED + GROBO_BUS_QUIET_MAX_US);
+        request third; /* once something was sent, the line is waited for anew */
+        peer_submit_read(&p, &third, 3, 0);
+        peer_run(&p, S);
+        assert_int_equal(p.sent_count, 3);
+        assert_int_equal(p.sent[2].at_us, p.ended[1].at_us + GROBO_BUS_QUIET_US);
+    }
+}
+
+/* It was quiet meanwhile: the patience with the first babble is no measure of the second. */
+static void a_line_that_babbles_again_is_waited_for_again(void **state)
+{
+    (void)state;
+    static const uint8_t rubbish = 0x55;
     peer p;
     request r;
     start(&p);
-    submit_read(&p, &r, 1, 0);
-    peer_run(&p, READ_FAILED);
-    submit_read(&p, &r, 2, 0);
-    int64_t babble_us = READ_FAILED;
-    for (int i = 0; i < 60 && p.sent_count < 2; i++, babble_us += 900) {
-        static const uint8_t rubbish = 0x55;
-        peer_bytes_at(&p, babble_us + 900, &rubbish, 1);
-        peer_run(&p, babble_us + 900);
-    }
-    assert_int_equal(p.sent_count, 2);
-    assert_in_range(p.sent[1].at_us, READ_FAILED + GROBO_BUS_QUIET_MAX_US,
-                    READ_FAILED + GROBO_BUS_QUIET_MAX_US + 900);
+    peer_bytes_at(&p, MS, &rubbish, 1);
+    peer_run(&p, 200 * MS);
+    peer_bytes_at(&p, 200 * MS, &rubbish, 1);
+    peer_run(&p, 200 * MS);
+    peer_submit_read(&p, &r, 1, 0);
+    peer_run(&p, S);
+    assert_int_equal(p.sent[0].at_us, 200 * MS + GROBO_BUS_QUIET_US);
 }
 
 static void motion_does_not_wait_for_quiet(void **state)
@@ -289,7 +344,7 @@ static void motion_does_not_wait_for_quiet(void **state)
     request a, b;
     const grobo_rs30x_goal goal = {2, 0, 0};
     start(&p);
-    submit_read(&p, &a, 1, 0);
+    peer_submit_read(&p, &a, 1, 0);
     int n = grobo_frame_goal(GROBO_WIRING_BOARD, &goal, b.frame, FRAME);
     peer_run(&p, 4 * MS);
     peer_txn(&p, &b.txn, b.frame, n, GROBO_PRIORITY_MOTION);
@@ -312,7 +367,7 @@ static void an_echo_is_removed(void **state)
     peer p;
     request a, b;
     start_echo(&p);
-    submit_ping(&p, &a, 7, 0); /* its frame holds a 07, which is no ACK */
+    peer_submit_ping(&p, &a, 7, 0); /* its frame holds a 07, which is no ACK */
     peer_bytes_at(&p, 300, a.frame, 4);
     peer_bytes_at(&p, 700, a.frame + 4, 4);
     peer_bytes_at(&p, MS, &ack, 1);
@@ -320,7 +375,7 @@ static void an_echo_is_removed(void **state)
     assert_int_equal(p.ended[0].result, GROBO_OK);
     assert_int_equal(p.ended[0].at_us, MS);
 
-    submit_read(&p, &b, 1, 0);
+    peer_submit_read(&p, &b, 1, 0);
     uint8_t all[18]; /* echo and reply in one piece */
     memcpy(all, b.frame, 8);
     memcpy(all + 8, "\xFD\xDF\x01\x00\x2A\x02\x01\x64\x00\x4C", 10);
@@ -361,11 +416,11 @@ static void an_adapter_without_echo_is_found_out(void **state)
     peer p;
     request r;
     start_echo(&p);
-    submit_read(&p, &r, 1, 0);
+    peer_submit_read(&p, &r, 1, 0);
     peer_position_at(&p, 2 * MS, 1, 5);
     peer_run(&p, S);
     assert_int_equal(p.ended[0].result, GROBO_ERR_MISMATCH);
-    submit_read(&p, &r, 1, 0);
+    peer_submit_read(&p, &r, 1, 0);
     peer_run(&p, 2 * S);
     assert_int_equal(p.ended[1].result, GROBO_ERR_TIMEOUT);
 }
@@ -376,7 +431,9 @@ int main(void)
         cmocka_unit_test(bytes_that_nobody_awaits_are_late),
         cmocka_unit_test(the_reply_of_a_dead_read_is_not_taken_for_another_motors),
         cmocka_unit_test(the_same_read_again_waits_until_the_lost_reply_cannot_come),
+        cmocka_unit_test(the_same_read_again_waits_until_the_lost_reply_has_come),
         cmocka_unit_test(another_reply_proves_that_the_lost_one_is_lost),
+        cmocka_unit_test(on_a_bus_a_servo_may_answer_after_another_one),
         cmocka_unit_test(a_retry_that_succeeds_may_leave_a_reply_behind),
         cmocka_unit_test(a_late_ack_is_not_taken_for_another_motors),
         cmocka_unit_test(reads_go_on_while_an_ack_is_outstanding_and_clear_it),
@@ -386,6 +443,7 @@ int main(void)
         cmocka_unit_test(an_ack_is_no_answer_to_a_read),
         cmocka_unit_test(replies_that_fit_in_part_are_not_believed),
         cmocka_unit_test(a_babbling_line_is_waited_for_with_patience_and_no_more),
+        cmocka_unit_test(a_line_that_babbles_again_is_waited_for_again),
         cmocka_unit_test(motion_does_not_wait_for_quiet),
         cmocka_unit_test(an_echo_is_removed),
         cmocka_unit_test(a_write_is_over_when_its_echo_is_there),

@@ -89,6 +89,12 @@ static void flip_a_bit(soak *s, uint8_t *b, size_t n)
     b[at == 5 ? 4 : at] ^= (uint8_t)(1u << draw(s, 8));
 }
 
+static uint32_t late_below_us(const soak *s)
+{
+    uint32_t twice_us = 2 * (uint32_t)s->bus.worst_us;
+    return twice_us < DELAY_MAX_US ? twice_us : DELAY_MAX_US;
+}
+
 static void answer(soak *s, const request *r)
 {
     uint8_t b[40];
@@ -104,11 +110,13 @@ static void answer(soak *s, const request *r)
     case 2: /* one bit flipped */
         flip_a_bit(s, b, n);
         break;
-    case 3: /* late */
-        at_us += draw(s, DELAY_MAX_US);
+    case 3: /* late, by no more than the bus waits for */
+        at_us += draw(s, late_below_us(s));
         break;
-    case 4: /* doubled */
-        put_chunk(s, at_us, r->number, b, n);
+    case 4: /* doubled; of a late reply the second could not be told from one that is owed */
+        if (at_us >= s->last_us) {
+            put_chunk(s, at_us, r->number, b, n);
+        }
         break;
     case 5:
         put_chunk(s, at_us - 500, 0, &rubbish, 1);

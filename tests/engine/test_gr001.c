@@ -172,7 +172,9 @@ static void angles_are_set_and_got_in_motor_order(void **state)
                      GROBO_ERR_ARG);
     assert_int_equal(grobo_gr001_set_angles(&rig.robot, angle_rad, 21, 500000, rig.now_us),
                      GROBO_ERR_ARG);
-    rig_expect(&rig, grobo_gr001_set_angles(&rig.robot, angle_rad, 20, 500000, rig.now_us), 0);
+    int64_t begun_us = rig.now_us;
+    rig_expect(&rig, grobo_gr001_set_angles(&rig.robot, angle_rad, 20, 5000000, rig.now_us), 0);
+    assert_in_range(rig.now_us - begun_us, 5000000, 6500000);
     for (int j = 0; j < 20; j++) {
         double want_rad = angle_rad[rig.driver->model->joints[j].motor - 1];
         assert_true(fabs(rig_angle_deg(&rig, j) - grobo_deg_from_rad(want_rad)) < 0.1);
@@ -237,6 +239,11 @@ static void voltages_and_currents_are_got_in_motor_order(void **state)
     rig_expect(&rig, grobo_gr001_sense(&rig.robot, NECK_ID, rig.now_us), GROBO_OK);
     assert_int_equal(grobo_gr001_voltages(&rig.robot, rig.now_us, 1000000, value, 20), 1);
     assert_int_equal(value[0], -1);
+    assert_int_equal(grobo_gr001_currents(&rig.robot, rig.now_us, 1000000, value, 20), 1);
+    for (int i = 0; i < 20; i++) {
+        assert_int_equal(value[i] >= 0, i == NECK_ID - 1);
+    }
+    assert_int_equal(grobo_gr001_voltages(&rig.robot, rig.now_us, 1000000, value, 20), 1);
     assert_int_equal(grobo_gr001_mean_voltage_mv(&rig.robot, rig.now_us, 1000000),
                      value[NECK_ID - 1]);
 }

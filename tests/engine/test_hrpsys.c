@@ -91,6 +91,9 @@ static void groups_have_names_of_their_own(void **state)
     start();
     assert_int_equal(grobo_hrpsys_add_joint_group(&hrpsys, name, tail, 2), GROBO_ERR_NOTFOUND);
     assert_int_equal(grobo_hrpsys_add_joint_group(&hrpsys, name, knees, 2), 2);
+    grobo_joint_mask found = 0;
+    assert_int_equal(grobo_hrpsys_find(&hrpsys, "knees", &found), 2);
+    assert_true(found == (GROBO_JOINT_BIT(3) | GROBO_JOINT_BIT(9)));
     assert_string_equal(name, "knees"); /* untouched */
     name[0] = 'X';                      /* it was copied */
     assert_int_equal(grobo_hrpsys_add_joint_group(&hrpsys, "knees", knees, 2), GROBO_ERR_EXISTS);
@@ -161,6 +164,20 @@ static void commands_go_out_with_one_step(void **state)
     assert_int_equal(grobo_hrpsys_one_step(&hrpsys, rig.now_us), GROBO_OK);
     rig_run(&rig, 600000);
     assert_true(fabs(rig_angle_deg(&rig, NECK) - 20) < 0.1);
+
+    /* Each joint gets its own. */
+    double each[20];
+    for (int j = 0; j < 20; j++) {
+        const grobo_joint *joint = &rig.driver->model->joints[j];
+        each[j] = 0.9 * joint->init_rad + 0.1 * (j % 2 == 0 ? joint->min_rad : joint->max_rad);
+    }
+    assert_int_equal(grobo_hrpsys_write_joint_commands(&hrpsys, each, 20), GROBO_OK);
+    assert_int_equal(grobo_hrpsys_set_period_us(&hrpsys, 1000000), GROBO_OK);
+    assert_int_equal(grobo_hrpsys_one_step(&hrpsys, rig.now_us), GROBO_OK);
+    rig_run(&rig, 1500000);
+    for (int j = 0; j < 20; j++) {
+        assert_true(fabs(rig_angle_deg(&rig, j) - grobo_deg_from_rad(each[j])) < 0.1);
+    }
 }
 
 static void a_loop_of_steps_is_followed(void **state)

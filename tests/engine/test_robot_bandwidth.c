@@ -23,6 +23,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/robot.h"
 #include "rig.h"
 
 enum { JOINTS = 20, LENGTH_S = 5, SECOND_US = 1000000 };
@@ -77,7 +78,8 @@ static void start(const use *u)
     rig.on_event = on_event;
     rig_power(&rig);
     if (u->frames_hz > 0) {
-        grobo_play_options options = {.mode = GROBO_PLAY_RATE, .rate_hz = (uint16_t)u->frames_hz};
+        grobo_play_options options = {
+            .mode = GROBO_PLAY_RATE, .rate_hz = (uint16_t)u->frames_hz, .unwatched = true};
         rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options, rig.now_us), GROBO_OK);
         rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
         rig_run(&rig, SECOND_US);
@@ -212,6 +214,29 @@ static void a_taught_arm_has_the_wire(void **state)
     }
 }
 
+/* Nothing wakes the host for a reading that finds no room before a frame has left. */
+static void a_reading_without_room_does_not_spin(void **state)
+{
+    (void)state;
+    rig_start(&rig, &quiet, NULL);
+    rig_power(&rig);
+    grobo_robot_slot *slots[GROBO_ROBOT_SLOTS];
+    int n = 0;
+    while ((slots[n] = grobo_i_slot_take(&rig.robot, GROBO_I_USE_PLAIN)) != NULL) {
+        n++;
+    }
+    assert_true(n > 0);
+    assert_int_equal(grobo_robot_free(&rig.robot, GROBO_JOINT_BIT(NECK), true, rig.now_us),
+                     GROBO_OK);
+    rig_run(&rig, 10000);
+    assert_true(grobo_robot_deadline(&rig.robot, rig.now_us) > rig.now_us);
+    grobo_i_slot_drop(slots[--n]);
+    assert_true(grobo_robot_deadline(&rig.robot, rig.now_us) <= rig.now_us);
+    rig_forget(&rig);
+    rig_run(&rig, 300000);
+    assert_true(rig_count(&rig, GROBO_EVENT_JOINT) > 10); /* then it is read */
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -219,6 +244,7 @@ int main(void)
         cmocka_unit_test(readings_fill_the_gaps_between_frames),
         cmocka_unit_test(a_bad_line_delays_no_frame),
         cmocka_unit_test(a_taught_arm_has_the_wire),
+        cmocka_unit_test(a_reading_without_room_does_not_spin),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -107,14 +107,14 @@ static double fastest_dps(int number, int joint)
     return most_dps;
 }
 
-/* A hip on its way at 107 deg/s, the line gone and back. */
-static void replug_under_way(void)
+/* A hip on its way through 160 degrees, the line gone and back. */
+static void replug_under_way(int time_ms)
 {
     rig_start(&rig, NULL, NULL);
     rig_power(&rig);
     grobo_posture target = rig_posture(&rig, HIP, -140, 100);
     rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
-    target = rig_posture(&rig, HIP, 20, 1500);
+    target = rig_posture(&rig, HIP, 20, time_ms);
     assert_true(grobo_robot_move(&rig.robot, &target, rig.now_us) > 0);
     rig_run(&rig, 500000);
     unplug();
@@ -128,7 +128,7 @@ static void a_move_after_a_replug_throws_no_joint_back(void **state)
 {
     (void)state;
     for (int to_deg = -140; to_deg <= 30; to_deg += 5) {
-        replug_under_way();
+        replug_under_way(1500);
         grobo_posture target = rig_posture(&rig, HIP, to_deg, 10);
         for (int j = 1; j < 12; j++) { /* more to read: more time between reading and moving */
             assert_int_equal(grobo_posture_set_deg(&target, j, rig_angle_deg(&rig, j)), 0);
@@ -139,11 +139,27 @@ static void a_move_after_a_replug_throws_no_joint_back(void **state)
     }
 }
 
+/* A servo that is slower than what counts as moving has a long way behind it before it is read
+ * again. */
+static void a_target_after_a_replug_throws_no_joint_that_creeps(void **state)
+{
+    (void)state;
+    for (int wait_ms = 300; wait_ms <= 1000; wait_ms += 100) {
+        replug_under_way(24000);
+        rig_run(&rig, wait_ms * 1000);
+        grobo_posture target = rig_posture(&rig, HIP, -140, 10);
+        assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+        double before_deg = rig_angle_deg(&rig, HIP);
+        rig_run(&rig, 50000);
+        assert_true(fabs(rig_angle_deg(&rig, HIP) - before_deg) < 0.06 * 60);
+    }
+}
+
 static void a_play_after_a_replug_throws_no_joint_back(void **state)
 {
     (void)state;
     for (int to_deg = -140; to_deg <= 30; to_deg += 5) {
-        replug_under_way();
+        replug_under_way(1500);
         const rig_key keys[] = {{0, {{HIP, to_deg}}}, {1000, {{HIP, to_deg}}}};
         rig_clip_init(&clip, keys, 2);
         double most_dps =
@@ -159,7 +175,7 @@ static void an_exit_after_a_replug_throws_no_joint_back(void **state)
 {
     (void)state;
     for (int more_ms = 800; more_ms < 1000; more_ms += 5) {
-        replug_under_way();
+        replug_under_way(1500);
         rig_run(&rig, more_ms * 1000);
         int number = grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD, rig.now_us);
         assert_true(fastest_dps(number, HIP) < 120);
@@ -171,7 +187,7 @@ static void an_exit_after_a_replug_throws_no_joint_back(void **state)
 static void nothing_is_sent_to_a_joint_that_moves_by_itself(void **state)
 {
     (void)state;
-    replug_under_way();
+    replug_under_way(1500);
     rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL, rig.now_us),
                GROBO_OK);
     grobo_posture target = rig_posture(&rig, HIP, 0, 100);
@@ -398,6 +414,7 @@ int main(void)
         cmocka_unit_test(a_job_ends_when_the_line_goes),
         cmocka_unit_test(a_motion_ends_when_the_line_goes_and_does_not_come_back),
         cmocka_unit_test(a_move_after_a_replug_throws_no_joint_back),
+        cmocka_unit_test(a_target_after_a_replug_throws_no_joint_that_creeps),
         cmocka_unit_test(a_play_after_a_replug_throws_no_joint_back),
         cmocka_unit_test(an_exit_after_a_replug_throws_no_joint_back),
         cmocka_unit_test(nothing_is_sent_to_a_joint_that_moves_by_itself),

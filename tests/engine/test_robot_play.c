@@ -246,7 +246,7 @@ static void a_short_stall_skips_a_long_one_stops(void **state)
 {
     (void)state;
     static rig_frame frames[256];
-    grobo_play_options options = {.mode = GROBO_PLAY_RATE, .rate_hz = 50};
+    grobo_play_options options = {.mode = GROBO_PLAY_RATE, .rate_hz = 50, .unwatched = true};
     start(&quiet);
     play(&options);
     rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
@@ -347,7 +347,8 @@ static void an_approach_is_judged_by_its_own_readings(void **state)
 {
     (void)state;
     static const rig_key reach[] = {{0, {{NECK, 0}}}, {1000, {{HIP, -90}}}};
-    grobo_play_options options = {.mode = GROBO_PLAY_RATE, .rate_hz = 50, .repeat = 3};
+    grobo_play_options options = {
+        .mode = GROBO_PLAY_RATE, .rate_hz = 50, .unwatched = true, .repeat = 3};
     start(&quiet);
     rig_clip_init(&clip, reach, 2);
     for (int j = 0; j < 20; j++) {

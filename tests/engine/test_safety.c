@@ -320,7 +320,8 @@ static void emergency_stop_waits_for_no_silent_servo(void **state)
 static void nothing_queued_follows_an_emergency_stop(void **state)
 {
     (void)state;
-    grobo_play_options options = {.mode = GROBO_PLAY_RATE, .rate_hz = 60}; /* too much */
+    grobo_play_options options = {
+        .mode = GROBO_PLAY_RATE, .rate_hz = 60, .unwatched = true}; /* too much */
     rig_start(&rig, &watching, NULL);
     rig_clip_init(&clip, sway, 4);
     rig_power(&rig);

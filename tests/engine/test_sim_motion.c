@@ -163,6 +163,82 @@ static void mechanical_stops_stall(void **state)
     assert_false(simkit_look(&kit, R_HIP_P).stalled);
 }
 
+/*
+ * The servo aims at the goal, and its speed is that of the way to the goal: 20 to 150 degrees in
+ * 2 s passes the stop at 120 after 100/130 of the time. From there the motor stalls, and the time
+ * of the move runs on to its end.
+ */
+static void a_stop_is_met_at_the_speed_of_the_way_to_the_goal(void **state)
+{
+    (void)state;
+    start_with_torque(NULL);
+    simkit_packet(&kit, "FA AF 0A 00 1E 04 01 DC 05 C8 00", 0);
+    simkit_run(&kit, 1000000);
+    assert_in_range(angle(R_HIP_P), 84999, 85001);
+    assert_int_equal(simkit_look(&kit, R_HIP_P).speed_dps, 65);
+    simkit_run(&kit, 538000);
+    assert_in_range(angle(R_HIP_P), 119900, 119999);
+    assert_true(simkit_look(&kit, R_HIP_P).moving);
+    assert_false(simkit_look(&kit, R_HIP_P).stalled);
+    simkit_run(&kit, 1000);
+    grobo_sim_view view = simkit_look(&kit, R_HIP_P);
+    assert_int_equal(view.angle_mdeg, 120000);
+    assert_int_equal(view.target_mdeg, 120000);
+    assert_int_equal(view.speed_dps, 0);
+    assert_false(view.moving);
+    assert_true(view.stalled);
+    assert_int_equal(view.current_ma, 1200);
+    assert_int_equal(simkit_register(&kit, R_HIP_P, GROBO_RS30X_TIME), 153);
+    simkit_run(&kit, 261000);
+    assert_int_equal(simkit_register(&kit, R_HIP_P, GROBO_RS30X_TIME), 180);
+    simkit_run(&kit, 1000000);
+    assert_int_equal(simkit_register(&kit, R_HIP_P, GROBO_RS30X_TIME), 200);
+}
+
+/* Where nothing can move, from the first moment on, the time of the move runs as well. */
+static void time_runs_at_a_stop_and_while_blocked(void **state)
+{
+    (void)state;
+    simkit_start(&kit, NULL);
+    assert_int_equal(grobo_sim_set_angle(&kit.sim, R_HIP_P, 120000, 0), 0);
+    assert_int_equal(grobo_sim_set_blocked(&kit.sim, SHOULDER, true), 0);
+    simkit_packet(&kit, "FA AF FF 00 24 01 01 01", 0);
+    simkit_packet(&kit, "FA AF 00 00 1E 05 02 0A DC 05 64 00 03 00 00 64 00", 0);
+    for (int i = 0; i < 2; i++) {
+        int servo = i == 0 ? R_HIP_P : SHOULDER;
+        assert_true(simkit_look(&kit, servo).stalled);
+        assert_int_equal(simkit_look(&kit, servo).current_ma, i == 0 ? 1200 : 693);
+        assert_int_equal(simkit_register(&kit, servo, GROBO_RS30X_TIME), 0);
+    }
+    simkit_run(&kit, 400000);
+    assert_int_equal(simkit_register(&kit, R_HIP_P, GROBO_RS30X_TIME), 40);
+    assert_int_equal(simkit_register(&kit, SHOULDER, GROBO_RS30X_TIME), 40);
+    /* Free again, the servo makes up for the way in the time that is left. */
+    assert_int_equal(grobo_sim_set_blocked(&kit.sim, SHOULDER, false), 0);
+    simkit_run(&kit, 300000);
+    assert_in_range(angle(SHOULDER), 9999, 10001);
+    simkit_run(&kit, 2000000);
+    assert_int_equal(angle(SHOULDER), 0);
+    assert_int_equal(simkit_register(&kit, R_HIP_P, GROBO_RS30X_TIME), 100);
+    assert_int_equal(simkit_register(&kit, SHOULDER, GROBO_RS30X_TIME), 100);
+}
+
+/* Without stops a servo goes wherever its limit registers let it. */
+static void without_stops_a_servo_goes_to_its_limits(void **state)
+{
+    (void)state;
+    const grobo_sim_config config = {.no_stops = true};
+    start_with_torque(&config);
+    assert_int_equal(angle(R_HIP_P), 20000);
+    simkit_packet(&kit, "FA AF 0A 00 1E 02 01 DC 05", 0);
+    simkit_run(&kit, 1000000);
+    assert_int_equal(angle(R_HIP_P), 150000);
+    assert_false(simkit_look(&kit, R_HIP_P).stalled);
+    simkit_packet(&kit, "FA AF 0A 00 24 01 01 00", 0);
+    assert_int_equal(grobo_sim_set_angle(&kit.sim, R_HIP_P, 400000, 0), 0);
+    assert_int_equal(simkit_register(&kit, R_HIP_P, GROBO_RS30X_POSITION), 4000);
+}
+
 /* ---- torque -------------------------------------------------------------------------------- */
 
 static void torque_on_holds_the_present_position(void **state)
@@ -341,6 +417,9 @@ int main(void)
         cmocka_unit_test(time_may_jump_by_hours),
         cmocka_unit_test(the_present_time_is_that_of_moves_alone),
         cmocka_unit_test(mechanical_stops_stall),
+        cmocka_unit_test(a_stop_is_met_at_the_speed_of_the_way_to_the_goal),
+        cmocka_unit_test(time_runs_at_a_stop_and_while_blocked),
+        cmocka_unit_test(without_stops_a_servo_goes_to_its_limits),
         cmocka_unit_test(torque_on_holds_the_present_position),
         cmocka_unit_test(torque_on_may_jump_by_configuration),
         cmocka_unit_test(off_and_brake_stop_a_move),

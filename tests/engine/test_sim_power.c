@@ -150,6 +150,63 @@ static void flash_takes_a_second_and_lasts(void **state)
     assert_int_equal(simkit_register(&kit, neck, GROBO_RS30X_CCW_MARGIN), 6);
 }
 
+/* Who writes to a servo that is busy is told of, and with which packet. */
+static void a_busy_servo_misses_what_it_is_told(void **state)
+{
+    (void)state;
+    grobo_sim_event event;
+    simkit_start(&kit, NULL);
+    simkit_packet(&kit, "FA AF 01 40 FF 00 00", 0);
+    simkit_packet(&kit, "FA AF 01 00 24 01 01 01", 0);
+    assert_int_equal(simkit_events(&kit, GROBO_SIM_MISSED, &event), 1);
+    assert_int_equal(event.servo, CHEST);
+    assert_int_equal(event.value, GROBO_SIM_BUSY_FLASH);
+    assert_int_equal(event.n_bytes, 9);
+    simkit_packet(&kit, "FA AF 02 00 24 01 01 01", 0);
+    assert_int_equal(simkit_events(&kit, GROBO_SIM_MISSED, NULL), 1);
+    simkit_run(&kit, 1000000);
+    simkit_packet(&kit, "FA AF 01 20 FF 00 00", 0);
+    simkit_packet(&kit, "FA AF FF 00 24 01 01 01", 0);
+    assert_int_equal(simkit_events(&kit, GROBO_SIM_MISSED, &event), 2);
+    assert_int_equal(event.value, GROBO_SIM_BUSY_REBOOT);
+}
+
+static void flash_goes_from_one_simulator_to_the_next(void **state)
+{
+    (void)state;
+    uint8_t flash[GROBO_SIM_FLASH_BYTES], before[GROBO_SIM_FLASH_BYTES];
+    simkit_start(&kit, NULL);
+    assert_int_equal(grobo_sim_get_flash(&kit.sim, CHEST, before), 0);
+    simkit_packet(&kit, "FA AF 01 00 04 01 01 63", 0);
+    simkit_packet(&kit, "FA AF 63 00 1C 02 01 2C 01", 0);
+    assert_int_equal(grobo_sim_get_flash(&kit.sim, CHEST, flash), 0);
+    assert_memory_equal(flash, before, sizeof flash);
+    simkit_packet(&kit, "FA AF 63 40 FF 00 00", 0);
+    simkit_run(&kit, 1000000);
+    assert_int_equal(grobo_sim_get_flash(&kit.sim, CHEST, flash), 0);
+    assert_int_equal(grobo_sim_get_flash(&kit.sim, 20, flash), GROBO_ERR_ARG);
+
+    simkit_start(&kit, NULL);
+    simkit_packet(&kit, "FA AF 01 00 24 01 01 01", 0);
+    assert_int_equal(grobo_sim_set_flash(&kit.sim, CHEST, flash), 0);
+    assert_int_equal(simkit_look(&kit, CHEST).torque, GROBO_TORQUE_OFF);
+    assert_int_equal(simkit_look(&kit, CHEST).id, 99);
+    assert_int_equal(simkit_register(&kit, CHEST, GROBO_RS30X_PUNCH), 300);
+    assert_true(answers("FA AF 63 01 00 00 01"));
+    memcpy(before, flash, sizeof flash);
+    /* The id, the rate, a reserved byte, a limit's high byte: what no servo can have. */
+    static const struct {
+        uint8_t at, value;
+    } wrong[] = {{0, 0}, {0, 128}, {2, 11}, {8, 1}, {5, 0x7F}, {1, 2}};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        flash[wrong[i].at] = wrong[i].value;
+        assert_int_equal(grobo_sim_set_flash(&kit.sim, CHEST, flash), GROBO_ERR_LIMIT);
+        memcpy(flash, before, sizeof flash);
+    }
+    assert_int_equal(grobo_sim_set_flash(&kit.sim, -1, flash), GROBO_ERR_ARG);
+    assert_int_equal(simkit_look(&kit, CHEST).id, 99);
+}
+
 static void flash_and_reboot_in_one_packet(void **state)
 {
     (void)state;
@@ -313,6 +370,8 @@ int main(void)
         cmocka_unit_test(bad_configurations_are_refused),
         cmocka_unit_test(reboot_forgets_what_is_not_in_flash),
         cmocka_unit_test(flash_takes_a_second_and_lasts),
+        cmocka_unit_test(a_busy_servo_misses_what_it_is_told),
+        cmocka_unit_test(flash_goes_from_one_simulator_to_the_next),
         cmocka_unit_test(flash_and_reboot_in_one_packet),
         cmocka_unit_test(power_lost_while_saving_is_a_flash_error),
         cmocka_unit_test(factory_reset_in_both_spellings),

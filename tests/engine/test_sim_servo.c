@@ -394,9 +394,59 @@ static void reverse_turns_signs_and_limits(void **state)
     assert_int_equal(simkit_register(&kit, R_HIP_P, GROBO_RS30X_GOAL), -100);
 }
 
+/* ---- the table of types -------------------------------------------------------------------- */
+
+/* A chain of every type there is: each says which it is, and behaves as its row says. */
+static void every_type_is_what_its_row_says(void **state)
+{
+    (void)state;
+    grobo_joint joints[GROBO_SIM_SERVOS_MAX];
+    char names[GROBO_SIM_SERVOS_MAX][8];
+    grobo_model model = {.name = "chain", .joints = joints};
+    const grobo_sim_config config = {.model = &model, .wiring = GROBO_WIRING_BUS, .no_stops = true};
+    const grobo_sim_type *type;
+    for (; (type = grobo_sim_type_row(model.n_joints)) != NULL; model.n_joints++) {
+        int i = model.n_joints;
+        assert_true(i < GROBO_SIM_SERVOS_MAX);
+        snprintf(names[i], sizeof names[i], "S%d", i);
+        joints[i] = (grobo_joint){.name = names[i],
+                                  .min_rad = -2.6,
+                                  .max_rad = 2.6,
+                                  .max_speed_rad_s = 1,
+                                  .servo_model = type->model,
+                                  .motor = (uint8_t)(i + 1),
+                                  .mirror = (uint8_t)i,
+                                  .mirror_sign = 1};
+        assert_ptr_equal(grobo_sim_type_named(type->name, strlen(type->name)), type);
+        assert_string_equal(grobo_rs30x_model_name(type->model), type->name);
+    }
+    assert_true(model.n_joints >= 4);
+    assert_null(grobo_sim_type_named("RS301", 5));
+    assert_null(grobo_sim_type_named("RS301CRX", 8));
+    assert_ptr_equal(grobo_sim_type_named("rs304md", 7), grobo_sim_type_row(3));
+    simkit_start(&kit, &config);
+    simkit_packet(&kit, "FA AF FF 00 24 01 01 01", 0);
+    for (int i = 0; i < model.n_joints; i++) {
+        type = grobo_sim_type_row((size_t)i);
+        assert_int_equal(simkit_register(&kit, i, GROBO_RS30X_MODEL), type->model);
+        assert_int_equal(simkit_register(&kit, i, GROBO_RS30X_PUNCH), type->punch);
+        assert_int_equal(simkit_register(&kit, i, GROBO_RS30X_CW_SLOPE), type->slope);
+        assert_int_equal(simkit_register(&kit, i, GROBO_RS30X_MAX_TORQUE), type->max_torque_pct);
+        assert_int_equal(grobo_sim_set_register(&kit.sim, i, GROBO_RS30X_GOAL, 1000), 0);
+        kit.now_us += 100000;
+        assert_in_range(simkit_look(&kit, i).angle_mdeg, type->speed_mdeg_s / 10 - 1,
+                        type->speed_mdeg_s / 10 + 1);
+        char hex[64];
+        snprintf(hex, sizeof hex, "FA AF %02X 0D 00 00 01", (unsigned)i + 1);
+        simkit_packet(&kit, hex, 76);
+        assert_int_equal(kit.n_got, type->early ? 0 : 76);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_type_is_what_its_row_says),
         cmocka_unit_test(every_vector_is_understood),
         cmocka_unit_test(blocks_come_as_their_nibble_says),
         cmocka_unit_test(every_reply_has_its_sum),

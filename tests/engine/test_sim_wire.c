@@ -75,6 +75,76 @@ static void pose_frame_is_stored_and_forwarded(void **state)
     assert_int_equal(kit.n_got, 0);
 }
 
+/* ---- when to look ---------------------------------------------------------------------------- */
+
+typedef int64_t (*deadline_fn)(const grobo_sim *sim);
+
+/*
+ * Sends, then turns by a deadline until the simulator is idle: how often that is, and which bytes
+ * have come when. A deadline in the past is a turn too, so that a loop that spins is noticed.
+ */
+static int turns(deadline_fn deadline, const char *hex)
+{
+    int n = 0;
+    simkit_send(&kit, hex);
+    for (int64_t at_us; (at_us = deadline(&kit.sim)) != GROBO_NEVER_US; n++) {
+        assert_true(n < 1000);
+        kit.now_us = at_us > kit.now_us ? at_us : kit.now_us;
+        size_t got =
+            grobo_sim_tx(&kit.sim, kit.got + kit.n_got, SIMKIT_BYTES - kit.n_got, kit.now_us);
+        while (got-- > 0) {
+            kit.got_us[kit.n_got++] = kit.now_us;
+        }
+    }
+    return n;
+}
+
+/* By packets there is a turn for each packet on each wire, and the reply is there as early. */
+static void a_reading_takes_a_turn_for_each_packet(void **state)
+{
+    (void)state;
+    static const grobo_sim_config bus = {.wiring = GROBO_WIRING_BUS};
+    static const grobo_sim_config echo = {.wiring = GROBO_WIRING_BUS, .echo = true};
+    static const grobo_sim_config ftdi = {.latency_us = 16000};
+    static const struct {
+        const grobo_sim_config *config;
+        const char *hex;
+        int turns, bytes;
+    } lines[] = {
+        {NULL, "54 09 FA AF 01 0F 24 12 00 38 1A", 4, 26},
+        {NULL, "41 00", 2, 1},
+        {NULL, "53 09 FA AF 01 00 24 01 01 01 24", 2, 0},
+        {NULL, "54 09 FA AF 01 0F", 2, 0}, /* the second: it stalls */
+        {&bus, "FA AF 01 0F", 1, 0},
+        {&ftdi, "54 09 FA AF 01 0F 24 12 00 38 1A", 5, 26},
+        {&bus, "FA AF 01 0F 24 12 00 38", 2, 26},
+        {&echo, "FA AF 01 0F 24 12 00 38", 2, 34},
+        {&bus, "FA AF 01 0F 24 12 00 38 FA AF 02 00 24 01 01 00 26", 3, 26},
+        {&bus, "55 55 FA FA AF 01 0F 24 12 00 38", 2, 26},
+    };
+    for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {
+        simkit_start(&kit, lines[i].config);
+        int64_t t0 = kit.now_us;
+        int by_bytes = turns(grobo_sim_deadline, lines[i].hex);
+        size_t n = kit.n_got;
+        int64_t last_us = n > 0 ? kit.got_us[n - 1] - t0 : 0;
+        uint8_t bytes[64];
+        assert_true(n <= sizeof bytes);
+        for (size_t k = 1; k < n && lines[i].config != &ftdi; k++) { /* each in its own time */
+            assert_in_range(kit.got_us[k] - kit.got_us[k - 1], 86, 300);
+        }
+        memcpy(bytes, kit.got, n);
+        simkit_start(&kit, lines[i].config);
+        int by_packets = turns(grobo_sim_packet_deadline, lines[i].hex);
+        assert_int_equal(n, lines[i].bytes);
+        assert_int_equal(by_packets, lines[i].turns);
+        assert_true(by_bytes >= by_packets);
+        assert_int_equal(kit.n_got, n);
+        assert_memory_equal(kit.got, bytes, n);
+        assert_int_equal(n > 0 ? kit.got_us[n - 1] - t0 : 0, last_us);
+    }
+}
+
 /* ---- the board ----------------------------------------------------------------------------- */
 
 static void frames_that_come_while_it_relays_wait(void **state)
@@ -233,6 +303,9 @@ static void a_stalled_packet_is_forgotten(void **state)
     simkit_ask(&kit, "FA AF 01 00 24 01 01 00 25", 100000);
     assert_int_equal(simkit_look(&kit, 12).torque, GROBO_TORQUE_OFF);
     assert_int_equal(kit.sim.stats.stalls, 1);
+    grobo_sim_event event;
+    assert_int_equal(simkit_events(&kit, GROBO_SIM_STALLED, &event), 1);
+    assert_int_equal(event.n_bytes, 5);
 }
 
 static void talking_over_a_reply_spoils_both(void **state)
@@ -244,7 +317,9 @@ static void talking_over_a_reply_spoils_both(void **state)
     simkit_run(&kit, bytes_us(8, 115200) + 500);
     simkit_send(&kit, "FA AF 02 00 24 01 01 01 27");
     simkit_run(&kit, 100000);
-    assert_true(simkit_events(&kit, GROBO_SIM_COLLISION, NULL) >= 8);
+    grobo_sim_event collision;
+    assert_true(simkit_events(&kit, GROBO_SIM_COLLISION, &collision) >= 8);
+    assert_int_equal(collision.value, 1);
     assert_int_equal(kit.sim.stats.packets, 1);
     assert_int_equal(simkit_look(&kit, simkit_servo(&kit, 2)).torque, GROBO_TORQUE_OFF);
     simkit_packet(&kit, "FA AF 02 00 24 01 01 01", 0);
@@ -260,6 +335,9 @@ static void replies_that_overlap_spoil_each_other(void **state)
     assert_int_equal(grobo_sim_set_register(&kit.sim, 12, GROBO_RS30X_ID, 2), 0);
     assert_int_equal(grobo_sim_set_register(&kit.sim, 12, GROBO_RS30X_DELAY, 2), 0);
     simkit_packet(&kit, "FA AF 02 0F 24 01 00", 9);
+    grobo_sim_event collision;
+    assert_true(simkit_events(&kit, GROBO_SIM_COLLISION, &collision) > 0);
+    assert_int_equal(collision.value, 0);
     assert_true(kit.n_got >= 9);
     assert_true(simkit_events(&kit, GROBO_SIM_COLLISION, NULL) >= 7);
     static const uint8_t clean[] = {0xFD, 0xDF, 0x02, 0x00, 0x24, 0x01, 0x01, 0x00, 0x26};
@@ -411,6 +489,7 @@ int main(void)
         cmocka_unit_test(read_costs_71_bytes_and_the_delay),
         cmocka_unit_test(return_delay_is_waited),
         cmocka_unit_test(pose_frame_is_stored_and_forwarded),
+        cmocka_unit_test(a_reading_takes_a_turn_for_each_packet),
         cmocka_unit_test(frames_that_come_while_it_relays_wait),
         cmocka_unit_test(a_flooded_board_loses_bytes_and_counts_them),
         cmocka_unit_test(a_silent_servo_makes_a_reply_short),

@@ -93,8 +93,9 @@ static void answer(run *r, size_t n)
     }
     size_t size = 0;
     if (r->bus.phase == GROBO_BUS_ECHOING) {
-        size = (size_t)(txn->frame_bytes - r->bus.echo_bytes);
-        memcpy(b, txn->frame + r->bus.echo_bytes, size);
+        size_t had = grobo_rs30x_parser_pending(&r->bus.parser) % txn->frame_bytes;
+        size = txn->frame_bytes - had;
+        memcpy(b, txn->frame + had, size);
     }
     const grobo_rs30x_packet packet = {txn->reply.kind == GROBO_REPLY_ACK ? GROBO_RS30X_ACK_BYTE
                                                                           : GROBO_RS30X_RETURN,

@@ -9,7 +9,7 @@
 
 #include <grobo/thread.h>
 
-enum { CALLS = 200 };
+enum { CALLS = 100 };
 
 static grobo_control *control;
 
@@ -70,6 +70,15 @@ static int torque_on(void)
     return grobo_control_set_servo_states(control, GROBO_JOINTS_ALL(20), GROBO_TORQUE_ON, 0);
 }
 
+/* On the loop: whether its thread is this one. */
+static int is_self(grobo_control *from, void *arg)
+{
+    const grobo_thread *thread = arg;
+
+    (void)from;
+    return grobo_thread_is_self(*thread);
+}
+
 static void the_thread_runs_until_it_is_told_to_stop(void **state)
 {
     grobo_thread thread;
@@ -84,6 +93,7 @@ static void the_thread_runs_until_it_is_told_to_stop(void **state)
     assert_int_equal(grobo_control_start_thread(control), GROBO_ERR_STATE);
     assert_int_equal(grobo_control_thread(control, &thread), GROBO_OK);
     assert_false(grobo_thread_is_self(thread));
+    assert_int_equal(grobo_control_call(control, is_self, &thread), 1);
     await_rounds(5);
 
     assert_int_equal(grobo_control_connect(control, 0), GROBO_OK);
@@ -183,9 +193,12 @@ static int count_call(grobo_control *from, void *arg)
 {
     (void)from;
     (void)arg;
+    int64_t end_us = grobo_now_us() + 100;
     together += inside;
     inside++;
     calls++;
+    while (grobo_now_us() < end_us) { /* long enough for another to come in, if it could */
+    }
     inside--;
     return calls;
 }

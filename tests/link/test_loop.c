@@ -120,6 +120,57 @@ static void never_disarms(void **state)
     event_base_free(base);
 }
 
+/* A socket that is always readable, and a timer that is set anew whenever it is. */
+typedef struct busy_loop {
+    struct event_base *base;
+    grobo_timer *timer;
+    int rounds, calls;
+} busy_loop;
+
+static void set_anew(evutil_socket_t socket, short what, void *ctx)
+{
+    busy_loop *busy = ctx;
+
+    (void)socket;
+    (void)what;
+    assert_int_equal(grobo_timer_set(busy->timer, grobo_now_us()), GROBO_OK);
+    if (++busy->rounds == 100) {
+        event_base_loopbreak(busy->base);
+    }
+}
+
+static void end_busy_loop(grobo_timer *timer, int64_t late_us, void *ctx)
+{
+    busy_loop *busy = ctx;
+
+    (void)timer;
+    assert_true(late_us >= 0);
+    busy->calls++;
+    event_base_loopbreak(busy->base);
+}
+
+static void what_is_due_is_called_though_it_is_set_anew(void **state)
+{
+    busy_loop busy = {.base = grobo_loop_new()};
+    evutil_socket_t pair[2];
+    struct event *event;
+
+    (void)state;
+    assert_int_equal(grobo_timer_new(busy.base, end_busy_loop, &busy, NULL, &busy.timer), GROBO_OK);
+    assert_int_equal(evutil_socketpair(AF_UNIX, SOCK_STREAM, 0, pair), 0);
+    assert_int_equal(send(pair[1], "", 1, 0), 1);
+    event = event_new(busy.base, pair[0], EV_READ | EV_PERSIST, set_anew, &busy);
+    assert_non_null(event);
+    assert_int_equal(event_add(event, NULL), 0);
+    event_base_dispatch(busy.base);
+    assert_int_equal(busy.calls, 1);
+    event_free(event);
+    evutil_closesocket(pair[0]);
+    evutil_closesocket(pair[1]);
+    grobo_timer_free(busy.timer);
+    event_base_free(busy.base);
+}
+
 static void *no_memory(void *ctx, void *ptr, size_t old_bytes, size_t new_bytes)
 {
     (void)ctx;
@@ -150,6 +201,7 @@ int main(void)
         cmocka_unit_test(a_base_with_a_coarse_clock_is_never_early_either),
         cmocka_unit_test(a_past_deadline_is_called_from_the_loop_and_may_free),
         cmocka_unit_test(never_disarms),
+        cmocka_unit_test(what_is_due_is_called_though_it_is_set_anew),
         cmocka_unit_test(refusals),
     };
 

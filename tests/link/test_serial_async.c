@@ -15,6 +15,7 @@
 #include "line.h"
 #include "loop.h"
 #include "os.h"
+#include "src/link/serial_i.h"
 
 static test_line line;
 /* Of the calls that wait, which none of this mode does: longer than a busy machine may take. */
@@ -22,6 +23,8 @@ enum { SILENCE_MS = 2000 };
 
 static struct event_base *base;
 static grobo_serial *serial;
+static counted_mem counter; /* of the port's memory */
+static grobo_mem mem;
 
 /* What the callbacks saw. */
 static struct {
@@ -32,13 +35,19 @@ static struct {
     int stop_events; /* bits of events that end the loop */
     int error;       /* of the last event */
     bool free_on_data, free_on_event, reopen_on_event;
+    bool floods;      /* bytes are counted only */
+    size_t flood;     /* a flood's bytes in one write */
     size_t tapped[2]; /* by grobo_direction */
 } seen;
 
 static void on_data(grobo_serial *from, const uint8_t *bytes, size_t size, void *ctx)
 {
     assert_ptr_equal(ctx, &seen);
-    assert_true(size > 0 && size <= sizeof seen.bytes - seen.size);
+    assert_true(size > 0);
+    if (seen.floods) {
+        return;
+    }
+    assert_true(size <= sizeof seen.bytes - seen.size);
     memcpy(seen.bytes + seen.size, bytes, size);
     seen.size += size;
     if (seen.free_on_data) {
@@ -106,6 +115,9 @@ static int set_up(void **state)
     grobo_serial_config with_base = config;
 
     (void)state;
+    counter = (counted_mem){0};
+    mem = counted_mem_of(&counter);
+    with_base.mem = &mem;
     memset(&seen, 0, sizeof seen);
     seen.stop_at = SIZE_MAX;
     test_line_open(&line);
@@ -155,6 +167,13 @@ static void nothing_waits_in_this_mode(void **state)
     assert_int_equal(grobo_serial_set_mode(serial, GROBO_SERIAL_SYNC), GROBO_ERR_STATE);
     assert_int_equal(grobo_serial_get_mode(serial), GROBO_SERIAL_ASYNC);
     assert_true(grobo_now_us() - start_us < 1000 * SILENCE_MS);
+    grobo_serial_close(serial);
+    assert_int_equal(grobo_serial_set_mode(serial, GROBO_SERIAL_SYNC), GROBO_OK);
+    assert_int_equal(grobo_serial_get_mode(serial), GROBO_SERIAL_SYNC);
+    assert_int_equal(grobo_serial_open(serial), GROBO_OK);
+    test_line_write(&line, "s", 1);
+    assert_int_equal(grobo_serial_receive(serial, &byte, 1), 1); /* as this mode does */
+    assert_int_equal(byte, 's');
 }
 
 /* Fills the line and the queue; returns how many bytes of a counting pattern were taken. */
@@ -215,6 +234,99 @@ static void a_full_queue_refuses_and_drains_in_order(void **state)
     for (size_t i = 0; i < total; i++) {
         assert_int_equal(seen.bytes[i], i % 251);
     }
+}
+
+/* ---- a peer that never pauses -------------------------------------------------------------- */
+
+static void on_room(evutil_socket_t fd, short what, void *arg)
+{
+    static const uint8_t rubbish[READ_BYTES];
+
+    (void)fd;
+    (void)what;
+    (void)arg;
+    (void)test_line_write_some(&line, rubbish, seen.flood);
+}
+
+/* The loop runs while the far end writes `flood` bytes whenever the line takes some. */
+static grobo_serial_counters run_flooded(size_t flood)
+{
+    grobo_serial_counters counters;
+    struct event *writer = event_new(base, line.fd, EV_WRITE | EV_PERSIST, on_room, NULL);
+
+    assert_non_null(writer);
+    assert_int_equal(event_add(writer, NULL), 0);
+    seen.floods = true;
+    seen.flood = flood;
+    assert_true(loop_run(base, 700000));
+    event_free(writer);
+    grobo_serial_get_counters(serial, &counters);
+    return counters;
+}
+
+/* What had been written is read, and then the line is as it was. */
+static void assert_works_after_flood(void)
+{
+    uint64_t before;
+    grobo_serial_counters counters = {.rx_bytes = 1};
+
+    do {
+        before = counters.rx_bytes;
+        assert_true(loop_run(base, 50000));
+        grobo_serial_get_counters(serial, &counters);
+    } while (counters.rx_bytes != before);
+    seen.floods = false;
+    test_line_write(&line, "hello", 5);
+    run_until_bytes(5);
+    assert_memory_equal(seen.bytes, "hello", 5);
+}
+
+static void a_flood_is_read_no_faster_than_a_line_brings_bytes(void **state)
+{
+    int64_t budget_us = READ_BUDGET_US - grobo_now_us();
+    grobo_serial_counters counters;
+
+    (void)state;
+    test_line_needs_pty("more bytes than a line brings");
+    counters = run_flooded(READ_BYTES);
+    budget_us += grobo_now_us();
+    assert_true(counters.rx_bytes > READ_BUDGET_US / 2); /* it does not stop reading */
+    assert_true(counters.rx_bytes <= (uint64_t)budget_us + READ_BYTES);
+    assert_works_after_flood();
+}
+
+static void a_flood_of_single_bytes_wakes_the_loop_no_faster(void **state)
+{
+    int64_t budget_us = READ_BUDGET_US - grobo_now_us();
+    grobo_serial_counters counters;
+
+    (void)state;
+    test_line_needs_pty("more bytes than a line brings");
+    counters = run_flooded(1);
+    budget_us += grobo_now_us();
+    assert_true(counters.reads <= (uint64_t)(budget_us / READ_COST_US) + 1);
+    assert_works_after_flood();
+}
+
+/* A callback that reads until nothing is left, as a session does, comes to an end. */
+static void reading_a_flood_in_one_callback_ends(void **state)
+{
+    static uint8_t buf[READ_BYTES];
+    int64_t end_us = grobo_now_us() + 500000;
+    size_t total = 0;
+
+    (void)state;
+    test_line_needs_pty("more bytes than a line brings");
+    while (grobo_now_us() < end_us) {
+        int got = grobo_serial_read(serial, buf, sizeof buf);
+
+        assert_true(got >= 0);
+        total += (size_t)got;
+        (void)test_line_write_some(&line, buf, sizeof buf);
+    }
+    assert_true(total <= READ_BUDGET_US + 500000 + sizeof buf);
+    seen.floods = true;
+    assert_works_after_flood();
 }
 
 static void queued_bytes_can_be_dropped(void **state)
@@ -309,6 +421,7 @@ static void it_may_be_freed_in_on_data(void **state)
     run_until_bytes(1);
     assert_null(serial);
     assert_true(loop_run(base, 10000));
+    assert_int_equal(counter.bytes, 0);
 }
 
 static void it_may_be_freed_in_on_event(void **state)
@@ -324,13 +437,13 @@ static void it_may_be_freed_in_on_event(void **state)
 
 static void each_lack_of_memory_is_told_and_leaks_nothing(void **state)
 {
-    counted_mem counter;
-    const grobo_mem mem = counted_mem_of(&counter);
+    counted_mem few;
+    const grobo_mem few_mem = counted_mem_of(&few);
     const grobo_serial_config config = {.device = line.device,
                                         .base = base,
                                         .mode = GROBO_SERIAL_ASYNC,
                                         .on_data = on_data,
-                                        .mem = &mem};
+                                        .mem = &few_mem};
     int failures = 0;
     int r = GROBO_ERR_NOMEM;
 
@@ -340,7 +453,7 @@ static void each_lack_of_memory_is_told_and_leaks_nothing(void **state)
         grobo_serial *made = NULL;
 
         assert_true(n <= 20);
-        counter = (counted_mem){.fail_at = n};
+        few = (counted_mem){.fail_at = n};
         r = grobo_serial_new(&config, &made);
         if (r == GROBO_OK) {
             r = grobo_serial_open(made);
@@ -349,7 +462,7 @@ static void each_lack_of_memory_is_told_and_leaks_nothing(void **state)
             assert_null(made);
         }
         failures += r == GROBO_ERR_NOMEM ? 1 : 0;
-        assert_int_equal(counter.bytes, 0);
+        assert_int_equal(few.bytes, 0);
     }
     assert_int_equal(r, GROBO_OK);
     assert_int_equal(failures, 3);
@@ -362,6 +475,9 @@ int main(void)
         ON_LINE(bytes_come_by_callback_and_leave_by_send),
         ON_LINE(nothing_waits_in_this_mode),
         ON_LINE(a_full_queue_refuses_and_drains_in_order),
+        ON_LINE(a_flood_is_read_no_faster_than_a_line_brings_bytes),
+        ON_LINE(a_flood_of_single_bytes_wakes_the_loop_no_faster),
+        ON_LINE(reading_a_flood_in_one_callback_ends),
         ON_LINE(queued_bytes_can_be_dropped),
         ON_LINE(a_hang_up_is_one_event_and_then_silence),
         ON_LINE(a_hang_up_with_bytes_queued_is_one_event),

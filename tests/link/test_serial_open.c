@@ -175,6 +175,7 @@ static void the_line_is_raw_8n1(void **state)
     test_line line;
     grobo_serial *serial;
     struct termios tio;
+    uint8_t byte = 0;
     grobo_serial_config config = {.device = line.device};
 
     (void)state;
@@ -188,6 +189,10 @@ static void the_line_is_raw_8n1(void **state)
     assert_int_equal(tio.c_iflag & (IXON | IXOFF | ICRNL | INLCR | ISTRIP), 0);
     assert_int_equal(tio.c_oflag & OPOST, 0);
     assert_int_equal(cfgetospeed(&tio), B115200);
+    assert_int_equal(grobo_serial_baud(serial), GROBO_BAUD_DEFAULT_BPS);
+    assert_int_equal(grobo_serial_write(serial, "x", 1), 1);
+    test_line_read(&line, &byte, 1);
+    assert_int_equal(byte, 'x');
     grobo_serial_free(serial);
     test_line_close(&line);
 }

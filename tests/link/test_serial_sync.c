@@ -7,9 +7,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <fcntl.h>
 #include <signal.h>
 #include <sys/ioctl.h>
 #include <sys/time.h>
+#include <termios.h>
+#include <unistd.h>
 
 #include <cmocka.h>
 
@@ -82,9 +85,14 @@ static void bad_configurations_are_refused(void **state)
 static void a_closed_port_says_so(void **state)
 {
     uint8_t byte = 0;
+    grobo_handle handle = grobo_serial_handle(serial);
 
     (void)state;
+    assert_int_equal(write(handle, "h", 1), 1); /* it is the line's */
+    test_line_read(&line, &byte, 1);
+    assert_int_equal(byte, 'h');
     grobo_serial_close(serial);
+    assert_int_equal(fcntl(handle, F_GETFD), -1);
     grobo_serial_close(serial);
     assert_false(grobo_serial_is_open(serial));
     assert_int_equal(grobo_serial_handle(serial), GROBO_HANDLE_NULL);
@@ -171,6 +179,46 @@ static void silence_ends_a_receive_and_drops_what_came(void **state)
     test_line_write(&line, "ABCDEFGHIJKLMNOPQRSTUVWXYZ", 26);
     assert_int_equal(grobo_serial_receive(serial, buf, sizeof buf), 26);
     assert_memory_equal(buf, "ABCDEFGHIJKLMNOPQRSTUVWXYZ", 26);
+}
+
+/* A device that never pauses and never sends all: a byte at each read, one read each 10 ms. */
+static int read_slowly(grobo_port *port, void *buf, size_t size, grobo_os_cause *cause)
+{
+    static int64_t next_us;
+
+    (void)port;
+    (void)cause;
+    if (grobo_now_us() < next_us || size == 0) {
+        return 0;
+    }
+    next_us = grobo_now_us() + 10000;
+    *(uint8_t *)buf = 0x55;
+    return 1;
+}
+
+static void a_trickle_does_not_stretch_a_receive(void **state)
+{
+    grobo_port_ops ops = *grobo_port_serial_ops();
+    const grobo_serial_config config = {.device = line.device, .ops = &ops};
+    grobo_serial_counters counters;
+    uint8_t buf[400];
+    int64_t start_us;
+
+    (void)state;
+    grobo_serial_free(serial);
+    ops.read = read_slowly;
+    assert_int_equal(grobo_serial_new(&config, &serial), GROBO_OK);
+    assert_int_equal(grobo_serial_open(serial), GROBO_OK);
+    test_line_write(&line, "x", 1); /* never read: the line is readable all the time */
+    start_us = grobo_now_us();
+    assert_int_equal(grobo_serial_receive(serial, buf, sizeof buf), GROBO_ERR_SHORT);
+    /* 400 bytes would take 4 s. */
+    assert_in_range(grobo_now_us() - start_us, 100000, 2000000);
+    grobo_serial_get_counters(serial, &counters);
+    assert_true(counters.rx_bytes > 0);
+    assert_int_equal(counters.dropped_bytes, counters.rx_bytes);
+    grobo_serial_free(serial);
+    serial = NULL;
 }
 
 /* A read that finds nothing, and a process held up behind it while a byte comes. */
@@ -292,6 +340,14 @@ static void a_line_that_takes_nothing_ends_a_send(void **state)
     assert_true(counters.tx_bytes > 0 && counters.tx_bytes < sizeof much);
 }
 
+static speed_t line_speed(void)
+{
+    struct termios tio;
+
+    assert_int_equal(tcgetattr(grobo_serial_handle(serial), &tio), 0);
+    return cfgetospeed(&tio);
+}
+
 static void speed_changes_on_an_open_port(void **state)
 {
     static const int rates[] = {9600, 19200, 57600, 115200, 230400, 460800};
@@ -302,12 +358,19 @@ static void speed_changes_on_an_open_port(void **state)
         assert_int_equal(grobo_serial_set_baud(serial, rates[i]), rates[i]);
         assert_int_equal(grobo_serial_baud(serial), rates[i]);
     }
+    /* The line has it too, while it is open. */
+    assert_int_equal(grobo_serial_set_baud(serial, 57600), 57600);
+    assert_true(line_speed() == B57600);
+    assert_int_equal(grobo_serial_set_baud(serial, 19200), 19200);
+    assert_true(line_speed() == B19200);
     assert_int_equal(grobo_serial_set_baud(serial, 0), GROBO_ERR_ARG);
-    assert_int_equal(grobo_serial_baud(serial), 460800);
+    assert_int_equal(grobo_serial_baud(serial), 19200);
+    assert_true(line_speed() == B19200);
     grobo_serial_close(serial);
     assert_int_equal(grobo_serial_set_baud(serial, 57600), 57600);
     assert_int_equal(grobo_serial_open(serial), GROBO_OK);
     assert_int_equal(grobo_serial_baud(serial), 57600);
+    assert_true(line_speed() == B57600);
     assert_int_equal(grobo_serial_set_baud(serial, 115200), 115200);
 }
 
@@ -425,6 +488,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(receive_takes_exactly_what_is_asked_for, set_up, tear_down),
         cmocka_unit_test_setup_teardown(silence_ends_a_receive_and_drops_what_came, set_up,
                                         tear_down),
+        cmocka_unit_test_setup_teardown(a_trickle_does_not_stretch_a_receive, set_up, tear_down),
         cmocka_unit_test_setup_teardown(silence_is_100_ms_where_nothing_else_is_said, set_up,
                                         tear_down),
         cmocka_unit_test_setup_teardown(what_has_come_is_read_before_there_is_silence, set_up,

@@ -104,8 +104,14 @@ static void a_simulator_in_the_process(void **state)
     come_up();
     assert_non_null(grobo_session_sim(session));
     assert_string_equal(grobo_session_device(session), "sim");
+    const grobo_driver *driver = grobo_robot_driver(grobo_session_robot(session));
+    assert_ptr_equal(driver, grobo_gr001_driver(GROBO_WIRING_BOARD));
+    assert_int_equal(driver->wiring, GROBO_WIRING_BOARD);
+    assert_string_equal(driver->name, "GR001");
     assert_int_equal(grobo_session_open(session), GROBO_ERR_STATE);
     assert_it_works();
+    /* A reply comes in one piece, or in two where the engine has looked meanwhile. */
+    assert_true(seen.taps[GROBO_DIR_RX] <= seen.tapped[GROBO_DIR_RX] / 13);
 }
 
 static void a_simulator_keeps_its_state_while_closed(void **state)
@@ -152,20 +158,24 @@ static void a_connection(void **state)
 static void auto_takes_the_first_port_that_answers(void **state)
 {
     grobo_sim_server *server = loop_serve(base, (grobo_sim_server_config){0});
+    grobo_sim_server *another = loop_serve(base, (grobo_sim_server_config){0});
     test_line silent;
-    const char *scan[4] = {"/dev/no-such-port", NULL, NULL, NULL};
+    const char *scan[5] = {"/dev/no-such-port", NULL, NULL, NULL, NULL};
 
     (void)state;
     test_line_open(&silent);
     scan[1] = silent.device;
     scan[2] = grobo_sim_server_device(server);
+    scan[3] = grobo_sim_server_device(another);
     session_kit_make((grobo_session_config){.device = "auto", .scan = scan});
     come_up();
     assert_string_equal(grobo_session_device(session), grobo_sim_server_device(server));
     assert_it_works();
     grobo_session_close(session);
     come_up();
+    assert_string_equal(grobo_session_device(session), grobo_sim_server_device(server));
     test_line_close(&silent);
+    grobo_sim_server_free(another);
     grobo_sim_server_free(server);
 }
 
@@ -375,13 +385,17 @@ static void without_reconnect_a_lost_port_is_closed(void **state)
 
 static void it_may_be_freed_in_its_event(void **state)
 {
+    counted_mem counter = {0};
+    const grobo_mem mem = counted_mem_of(&counter);
+
     (void)state;
-    session_kit_make((grobo_session_config){.device = "sim"});
+    session_kit_make((grobo_session_config){.device = "sim", .mem = &mem});
     seen.then_line = free_it;
     assert_int_equal(grobo_session_open(session), GROBO_OK);
     loop_run_until(base, &seen.ups, 1);
     assert_null(session);
     assert_true(loop_run(base, 10000));
+    assert_int_equal(counter.bytes, 0);
 }
 
 static void it_may_be_freed_in_an_event_of_the_engine(void **state)

@@ -26,6 +26,23 @@ static void name_and_joints(void **state)
     (void)state;
     assert_string_equal(grobo_control_name(control), "GR001");
     assert_int_equal(grobo_control_joints(control), 20);
+
+    /* Of a robot of three joints. */
+    grobo_joint joints[3];
+    grobo_model model = {.name = "leg", .joints = joints, .n_joints = 3};
+    grobo_driver driver;
+    grobo_control *leg = NULL;
+    for (int j = 0; j < 3; j++) {
+        joints[j] = grobo_gr001_model.joints[j];
+        joints[j].mirror = (uint8_t)j;
+    }
+    assert_int_equal(grobo_rs30x_driver_init(&driver, &model, GROBO_WIRING_BUS), GROBO_OK);
+    const grobo_control_config config = {
+        .name = "Robin", .session = {.device = GROBO_DEVICE_SIM, .driver = &driver}};
+    assert_int_equal(grobo_control_new(&config, &leg), GROBO_OK);
+    assert_string_equal(grobo_control_name(leg), "Robin");
+    assert_int_equal(grobo_control_joints(leg), 3);
+    assert_int_equal(grobo_control_free(leg), GROBO_OK);
 }
 
 static void settings_are_kept(void **state)
@@ -60,12 +77,12 @@ static void settings_are_kept(void **state)
     assert_int_equal(grobo_control_set_period_us(control, 999), GROBO_ERR_ARG);
 
     assert_int_equal(grobo_control_get_motion_count(control), 0);
-    assert_int_equal(grobo_control_set_motion_count(control, 3), 3);
+    assert_int_equal(grobo_control_set_motion_count(control, 3), GROBO_OK);
     assert_int_equal(grobo_control_get_motion_count(control), 3);
     assert_false(grobo_control_is_reverse(control));
-    assert_int_equal(grobo_control_set_motion_count(control, -3), -3);
+    assert_int_equal(grobo_control_set_motion_count(control, -3), GROBO_OK);
     assert_true(grobo_control_is_reverse(control));
-    assert_int_equal(grobo_control_set_motion_count(control, 1), 1);
+    assert_int_equal(grobo_control_set_motion_count(control, 1), GROBO_OK);
     grobo_control_set_reverse(control, true);
     assert_true(grobo_control_is_reverse(control));
     grobo_control_set_reverse(control, false);
@@ -137,6 +154,15 @@ static void postures_are_kept(void **state)
     for (int j = 0; j < 20; j++) {
         assert_true(got.angle_rad[j] == 0);
     }
+    grobo_posture_init_pose(&got, &grobo_gr001_model);
+    assert_true(got.set == EVERY_JOINT);
+    for (int j = 0; j < 20; j++) {
+        assert_true(got.angle_rad[j] == grobo_gr001_model.joints[j].init_rad);
+    }
+    assert_int_equal(grobo_control_set_init_posture(control, &got), GROBO_OK);
+    grobo_control_get_init_posture(control, &posture);
+    assert_true(grobo_posture_equal(&posture, &got));
+    assert_int_equal(grobo_posture_set_deg(&got, 0, 0), GROBO_OK);
     assert_int_equal(grobo_posture_set_deg(&got, ELBOW, 1000), GROBO_OK);
     assert_int_equal(grobo_control_set_init_posture(control, &got), GROBO_ERR_LIMIT);
     assert_int_equal(grobo_posture_set_deg(&got, ELBOW, 7), GROBO_OK);
@@ -158,11 +184,17 @@ static void postures_are_kept(void **state)
     assert_true(posture.set == GROBO_JOINT_BIT(ELBOW));
     assert_true(posture.angle_rad[ELBOW] == grobo_rad_from_deg(8));
     assert_int_equal(posture.time_us, 300000);
+    got.time_us = 650000;
+    assert_int_equal(grobo_posture_set_deg(&got, 0, 3), GROBO_OK);
     assert_int_equal(grobo_control_set_target_posture(control, &got), GROBO_OK);
+    grobo_posture kept = got;
     got.n_joints = 3;
     assert_int_equal(grobo_control_set_target_posture(control, &got), GROBO_ERR_ARG);
     grobo_control_get_target_posture(control, &posture);
-    assert_int_equal(posture.n_joints, 20);
+    assert_true(grobo_posture_equal(&posture, &kept));
+    assert_int_equal(posture.time_us, 650000);
+    grobo_control_get_init_posture(control, &posture); /* is another one */
+    assert_true(posture.angle_rad[0] == 0 && posture.angle_rad[ELBOW] == kept.angle_rad[ELBOW]);
 }
 
 /* ---- the line ----------------------------------------------------------------------------- */
@@ -264,6 +296,7 @@ static int cut_elbow(grobo_control *from, void *arg)
 static void readings(void **state)
 {
     grobo_posture posture;
+    grobo_posture current;
     double angle_rad = -99;
     int32_t angle_mdeg = 12000;
 
@@ -274,7 +307,9 @@ static void readings(void **state)
     assert_int_equal(grobo_control_call(control, turn_elbow, &angle_mdeg), GROBO_OK);
     assert_int_equal(grobo_control_read_posture(control, &posture, 0), 20);
     assert_true(grobo_deg_from_rad(posture.angle_rad[ELBOW]) > 11.9);
-    assert_int_equal(grobo_control_get_current_posture(control, &posture), 20);
+    assert_int_equal(grobo_control_get_current_posture(control, &current), 20);
+    assert_true(grobo_posture_near(&current, &posture, grobo_rad_from_deg(0.2)));
+    assert_true(grobo_deg_from_rad(current.angle_rad[ELBOW]) > 11.9);
     control_assert_elbow_at(12);
     assert_int_equal(grobo_control_read_angle(control, 20, &angle_rad, 0), GROBO_ERR_ARG);
 
@@ -393,6 +428,7 @@ static void bad_configurations_and_lack_of_memory(void **state)
     assert_int_equal(grobo_control_new(&config, &made), GROBO_ERR_CAP);
     assert_null(made);
     config.name = "Robin";
+    config.control_period_us = 3000;
     config.session.mem = &mem;
     for (size_t n = 1; r == GROBO_ERR_NOMEM; n++) {
         assert_true(n <= 20);
@@ -405,6 +441,10 @@ static void bad_configurations_and_lack_of_memory(void **state)
     }
     assert_int_equal(r, GROBO_OK);
     assert_string_equal(grobo_control_name(made), "Robin");
+    assert_int_equal(grobo_control_joints(made), 20);
+    assert_int_equal(grobo_control_get_period_us(made), 3000);
+    assert_int_equal(grobo_control_get_device(made, longer, sizeof longer), 3);
+    assert_string_equal(longer, GROBO_DEVICE_SIM);
     assert_int_equal(grobo_control_free(made), GROBO_OK);
     assert_int_equal(counter.bytes, 0);
     assert_int_equal(grobo_control_free(NULL), GROBO_OK);

@@ -38,17 +38,17 @@ static int hold_up(grobo_control *control, void *arg)
     return GROBO_OK;
 }
 
-static void what_has_come_is_read_before_there_is_silence(void **state)
+/* A control that has sent a check, and takes what comes for its answer. */
+static grobo_control *ask(grobo_control_fn on_svc)
 {
     /* Nobody but the test asks, and nobody stops waiting for the answer. */
     const grobo_robot_config robot = {
         .bus.margin_us = 60000000, .retries = -1, .sense_interval_us = GROBO_SENSE_NEVER};
-    grobo_control_config config = {.session = {.robot = &robot, .skip_check = true},
-                                   .skip_exit = true};
+    grobo_control_config config = {
+        .session = {.robot = &robot, .skip_check = true}, .on_svc = on_svc, .skip_exit = true};
     grobo_control *control;
     uint8_t got[2] = {0, 0};
 
-    (void)state;
     test_line_open(&line);
     config.session.device = line.device;
     assert_int_equal(grobo_control_new(&config, &control), GROBO_OK);
@@ -57,7 +57,15 @@ static void what_has_come_is_read_before_there_is_silence(void **state)
                      GROBO_ERR_TIMEOUT);
     test_line_read(&line, got, sizeof got);
     assert_memory_equal(got, CHECK, sizeof CHECK);
+    return control;
+}
 
+static void what_has_come_is_read_before_there_is_silence(void **state)
+{
+    grobo_control *control = ask(NULL);
+    uint8_t got[2] = {0, 0};
+
+    (void)state;
     assert_int_equal(grobo_control_post(control, hold_up, NULL), GROBO_OK);
     assert_int_equal(grobo_control_receive(control, got, 1), 1);
     assert_int_equal(got[0], ACK);
@@ -66,10 +74,42 @@ static void what_has_come_is_read_before_there_is_silence(void **state)
     test_line_close(&line);
 }
 
+static bool trickles;
+
+/* The beginning of a reply, which is no answer yet: the command continues to wait. */
+static int send_a_byte(grobo_control *control, void *arg)
+{
+    const uint8_t noise = 0xFD;
+
+    (void)control;
+    (void)arg;
+    if (trickles) {
+        test_line_write(&line, &noise, sizeof noise);
+    }
+    return GROBO_OK;
+}
+
+static void a_trickle_does_not_stretch_a_receive(void **state)
+{
+    grobo_control *control = ask(send_a_byte);
+    uint8_t got[400];
+    int64_t start_us = grobo_now_us();
+
+    (void)state;
+    trickles = true;
+    /* A byte in each round of 10 ms: 400 would take 4 s. */
+    assert_int_equal(grobo_control_receive(control, got, sizeof got), GROBO_ERR_SHORT);
+    assert_in_range(grobo_now_us() - start_us, 1000 * GROBO_SILENCE_DEFAULT_MS, 2000000);
+    trickles = false;
+    assert_int_equal(grobo_control_free(control), GROBO_OK);
+    test_line_close(&line);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_has_come_is_read_before_there_is_silence)};
+        cmocka_unit_test(what_has_come_is_read_before_there_is_silence),
+        cmocka_unit_test(a_trickle_does_not_stretch_a_receive)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,6 +3,8 @@
  * A control's target and motion over the simulator, from a thread that is not the loop's: once
  * while a control thread runs the loop, and once without, where the calls run it themselves.
  */
+#include <limits.h>
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -13,13 +15,18 @@
 #include <cmocka.h>
 
 #include "control_kit.h"
-#include "files.h"
-#include "folder.h"
 
 /* ---- the target --------------------------------------------------------------------------- */
 
+static int engine_target(grobo_control *from, void *arg)
+{
+    return grobo_robot_target(grobo_session_robot(grobo_control_session(from)), arg);
+}
+
 static void a_target_is_sent_once(void **state)
 {
+    grobo_posture sent;
+
     (void)state;
     control_come_up();
     assert_int_equal(grobo_control_start_motion(control), GROBO_ERR_EMPTY);
@@ -30,10 +37,67 @@ static void a_target_is_sent_once(void **state)
     assert_int_equal(grobo_control_is_moving(control), 0);
     assert_int_equal(grobo_control_command_count(control), 0);
     control_assert_elbow_at(10);
+    assert_true(grobo_control_call(control, engine_target, &sent) > 0);
+    assert_int_equal(sent.n_joints, 20);
+    assert_true((sent.set & GROBO_JOINT_BIT(ELBOW)) != 0);
+    assert_true(fabs(grobo_deg_from_rad(sent.angle_rad[ELBOW]) - 10) < 1e-9);
 
     assert_int_equal(grobo_control_init_position(control), GROBO_OK);
     assert_int_equal(grobo_control_wait(control, 0), GROBO_OK);
     control_assert_elbow_at(0);
+
+    grobo_posture init;
+    grobo_posture posture;
+    grobo_control_get_init_posture(control, &init);
+    assert_int_equal(grobo_posture_set_deg(&init, ELBOW, -6), GROBO_OK);
+    assert_int_equal(grobo_posture_set_deg(&init, ELBOW + 1, 12), GROBO_OK);
+    init.time_us = 200000;
+    assert_int_equal(grobo_control_set_init_posture(control, &init), GROBO_OK);
+    assert_int_equal(grobo_control_init_position(control), GROBO_OK);
+    grobo_control_get_target_posture(control, &posture);
+    assert_true(grobo_posture_equal(&posture, &init));
+    assert_int_equal(posture.time_us, 200000);
+    assert_int_equal(grobo_control_wait(control, 0), GROBO_OK);
+    assert_int_equal(grobo_control_read_posture(control, &posture, 0), 20);
+    assert_true(grobo_posture_near(&posture, &init, grobo_rad_from_deg(0.6)));
+}
+
+static int frames_sent(grobo_control *from, void *arg)
+{
+    grobo_robot *robot = grobo_session_robot(grobo_control_session(from));
+
+    (void)arg;
+    return (int)grobo_robot_get_counters(robot)->motion_frames;
+}
+
+/* Targets of a program's own rate: each leaves while the one before is on its way. */
+static void each_target_of_a_stream_is_sent(void **state)
+{
+    int frames;
+
+    (void)state;
+    control_come_up();
+    assert_int_equal(grobo_control_init_position(control), GROBO_OK);
+    assert_int_equal(grobo_control_wait(control, 0), GROBO_OK);
+    frames = grobo_control_call(control, frames_sent, NULL);
+    /* A minute each: a target that waits for the one before to be reached is not sent in time. */
+    assert_int_equal(grobo_control_set_motion_time_us(control, 60000000), GROBO_OK);
+    for (int i = 1; i <= 10; i++) {
+        assert_int_equal(grobo_control_set_joint(control, ELBOW, grobo_rad_from_deg(i)), 0);
+        assert_int_equal(grobo_control_start_motion(control), GROBO_OK);
+        for (int rounds = 0; grobo_control_call(control, frames_sent, NULL) < frames + i;
+             rounds++) {
+            assert_in_range(rounds, 0, 1000); /* 10 s */
+            (void)grobo_control_svc(control);
+        }
+        assert_int_equal(grobo_control_command_count(control), 0);
+        assert_int_equal(grobo_control_is_moving(control), 1);
+    }
+    assert_int_equal(grobo_control_set_motion_time_us(control, 100000), GROBO_OK);
+    assert_int_equal(grobo_control_start_motion(control), GROBO_OK);
+    assert_int_equal(grobo_control_wait(control, 0), GROBO_OK);
+    assert_int_equal(grobo_control_call(control, frames_sent, NULL) - frames, 11);
+    control_assert_elbow_at(10);
 }
 
 /* Asks for a move behind a reading that is under way: it has to wait for its turn. */
@@ -81,17 +145,36 @@ static void the_motion_is_kept(void **state)
     control_come_up();
     assert_int_equal(grobo_control_read_posture(control, &posture, 0), 20);
     assert_int_equal(grobo_control_append_current_posture(control), 1);
+    assert_int_equal(grobo_control_set_joint(control, ELBOW, grobo_rad_from_deg(10)), GROBO_OK);
+    assert_int_equal(grobo_control_start_motion(control), GROBO_OK);
+    assert_int_equal(grobo_control_wait(control, 0), GROBO_OK);
+    control_assert_elbow_at(10);
     assert_int_equal(grobo_control_append_current_posture_us(control, 700000), 2);
+    assert_int_equal(grobo_control_set_default_time_us(control, 150000), GROBO_OK);
+    assert_int_equal(grobo_control_append_current_posture(control), 3);
     assert_int_equal(grobo_control_append_current_posture_us(control, -1), GROBO_ERR_ARG);
-    assert_int_equal(grobo_control_motion_size(control), 2);
-    assert_int_equal(grobo_control_get_first_posture(control, &posture), GROBO_OK);
-    assert_int_equal(posture.time_us, 100000);
+    static const int64_t times_us[] = {100000, 700000, 150000};
+    assert_int_equal(grobo_control_motion_size(control), 3);
+    assert_int_equal(grobo_control_get_motion(control, &copy), 3);
+    for (size_t n = 0; n < 3; n++) {
+        grobo_posture same;
+        assert_int_equal(grobo_control_get_nth_posture(control, n, &posture), GROBO_OK);
+        assert_true(posture.set == EVERY_JOINT);
+        assert_int_equal(posture.time_us, times_us[n]);
+        assert_true(fabs(grobo_deg_from_rad(posture.angle_rad[ELBOW]) - (n > 0 ? 10 : 0)) < 0.6);
+        assert_int_equal(grobo_motion_get(copy, n, &same), 0);
+        assert_true(grobo_posture_equal(&posture, &same));
+        assert_int_equal(same.time_us, times_us[n]);
+    }
     assert_int_equal(grobo_control_get_last_posture(control, &posture), GROBO_OK);
-    assert_int_equal(posture.time_us, 700000);
-    assert_int_equal(grobo_control_get_motion(control, &copy), 2);
+    assert_int_equal(posture.time_us, 150000);
     grobo_control_clear_motion(control);
     assert_int_equal(grobo_control_motion_size(control), 0);
-    assert_int_equal(grobo_motion_size(copy), 2);
+    assert_int_equal(grobo_motion_size(copy), 3);
+    assert_int_equal(grobo_control_set_motion(control, copy), 3);
+    assert_int_equal(grobo_motion_delete(copy, 0), 0); /* the control's own stays whole */
+    assert_int_equal(grobo_control_get_first_posture(control, &posture), GROBO_OK);
+    assert_int_equal(posture.time_us, 100000);
     assert_int_equal(grobo_motion_set_joints(copy, 21), 21);
     assert_int_equal(grobo_control_set_motion(control, copy), GROBO_ERR_ARG);
     grobo_motion_free(copy);
@@ -151,75 +234,107 @@ static void the_nth_posture_is_gone_to(void **state)
     control_assert_elbow_at(6);
 }
 
-static void motions_are_saved_and_loaded(void **state)
+/* A motion of increments: the elbow by 3 degrees, and by 3 more, from where it is. */
+static void have_increments(void)
 {
-    static const grobo_motion_format formats[] = {GROBO_FORMAT_M, GROBO_FORMAT_PSEQ,
-                                                  GROBO_FORMAT_YAML, GROBO_FORMAT_MSEQ};
-    char path[sizeof folder + 64];
+    grobo_motion *steps = NULL;
+    grobo_posture posture;
 
-    (void)state;
-    for (size_t i = 0; i < 4; i++) {
-        control_have_motion(3);
-        assert_int_equal(grobo_control_save_motion(control, formats[i], "a", NULL, 0), 3);
-        grobo_control_clear_motion(control);
-        assert_true(grobo_control_load_motion_format(control, formats[i], "a", NULL) >= 3);
-        assert_true(grobo_control_motion_size(control) >= 3);
-    }
-    control_have_motion(2);
-    assert_int_equal(grobo_control_save_motion(control, GROBO_FORMAT_M, NULL, path, sizeof path),
-                     2);
-    assert_string_equal(strrchr(path, '/'), "/Motion1.m");
-    control_have_motion(1);
-    assert_int_equal(grobo_control_save_motion(control, GROBO_FORMAT_M, NULL, path, sizeof path),
-                     1);
-    assert_string_equal(strrchr(path, '/'), "/Motion2.m");
-    assert_int_equal(grobo_control_load_motion(control, "Motion1", NULL), 2);
-
-    /* a.m comes before a.yaml, a.pseq and a.mseq; b is there as b.yaml only. */
-    control_have_motion(1);
-    assert_int_equal(grobo_control_save_motion(control, GROBO_FORMAT_M, "a.m", path, sizeof path),
-                     1);
-    assert_string_equal(strrchr(path, '/'), "/a.m");
-    control_have_motion(3);
-    assert_true(grobo_control_save_motion(control, GROBO_FORMAT_YAML, "b", NULL, 0) >= 3);
-    assert_int_equal(grobo_control_load_motion(control, "a", NULL), 1);
-    assert_true(grobo_control_load_motion(control, "b", NULL) >= 3);
-    assert_true(grobo_control_load_motion(control, "a.pseq", NULL) >= 3);
+    assert_int_equal(grobo_motion_new(&steps, GROBO_MOTION_STEPS, 20, NULL), 0);
+    (void)grobo_posture_init(&posture, 20);
+    (void)grobo_posture_set_deg(&posture, ELBOW, 3);
+    posture.time_us = 300000;
+    assert_int_equal(grobo_motion_append(steps, &posture), 0);
+    assert_int_equal(grobo_motion_append(steps, &posture), 0);
+    assert_int_equal(grobo_control_set_motion(control, steps), 2);
+    grobo_motion_free(steps);
 }
 
-static void what_cannot_be_loaded_leaves_nothing(void **state)
+/* Resolved where the robot is, so that each posture can be had and gone to. */
+static void increments_become_postures(void **state)
 {
-    grobo_diagnostics *list;
-    char path[8];
+    grobo_posture posture;
 
     (void)state;
-    assert_int_equal(grobo_diagnostics_new(&list, NULL), GROBO_OK);
-    control_have_motion(2);
-    assert_int_equal(grobo_control_load_motion(control, "none", list), GROBO_ERR_NOENT);
-    assert_int_equal(grobo_control_motion_size(control), 0);
-    control_have_motion(2);
-    assert_int_equal(grobo_control_load_motion(control, NULL, list), GROBO_ERR_ARG);
-    assert_int_equal(grobo_control_motion_size(control), 0);
-    control_have_motion(2);
-    assert_int_equal(grobo_control_load_motion(control, "../a", list), GROBO_ERR_PERM);
-    assert_int_equal(grobo_control_motion_size(control), 0);
-    put_file(in_folder("bad.m"), "this is no motion\n");
-    control_have_motion(2);
-    assert_true(grobo_control_load_motion_format(control, GROBO_FORMAT_M, "bad", list) < 0);
-    assert_int_equal(grobo_control_motion_size(control), 0);
-    assert_true(grobo_diagnostics_count(list) > 0);
-    grobo_diagnostics_free(list);
+    control_come_up();
+    assert_int_equal(grobo_control_set_joint(control, ELBOW, grobo_rad_from_deg(10)), GROBO_OK);
+    assert_int_equal(grobo_control_start_motion(control), GROBO_OK);
+    assert_int_equal(grobo_control_wait(control, 0), GROBO_OK);
+    assert_int_equal(grobo_control_read_posture(control, &posture, 0), 20);
+    have_increments();
+    assert_float_equal(nth_deg(0), 13, 0.11);
+    assert_float_equal(nth_deg(1), 16, 0.11);
+    assert_int_equal(grobo_control_get_nth_posture(control, 1, &posture), GROBO_OK);
+    assert_int_equal(posture.set, GROBO_JOINT_BIT(ELBOW));
+    assert_int_equal(grobo_control_do_nth_motion(control, 1), GROBO_OK);
+    assert_int_equal(grobo_control_wait(control, 0), GROBO_OK);
+    control_assert_elbow_at(16);
+}
 
-    control_have_motion(2);
-    assert_int_equal(grobo_control_save_motion(control, GROBO_FORMAT_M, "../a", NULL, 0),
-                     GROBO_ERR_PERM);
-    assert_int_equal(grobo_control_save_motion(control, GROBO_FORMAT_M, "", NULL, 0),
-                     GROBO_ERR_ARG);
-    assert_int_equal(grobo_control_save_motion(control, GROBO_FORMAT_PSEQ, NULL, NULL, 0),
-                     GROBO_ERR_ARG);
-    assert_int_equal(grobo_control_save_motion(control, GROBO_FORMAT_M, "a", path, sizeof path),
-                     GROBO_ERR_SPACE);
-    assert_int_equal(grobo_control_load_motion(control, "a", NULL), GROBO_ERR_NOENT);
+/* An emptied motion takes absolute postures, whatever it was. */
+static void an_emptied_motion_takes_postures(void **state)
+{
+    grobo_posture posture;
+
+    (void)state;
+    control_come_up();
+    for (int i = 0; i < 2; i++) {
+        have_increments();
+        if (i == 0) {
+            grobo_control_clear_motion(control);
+        } else {
+            assert_true(grobo_control_load_motion(control, "nowhere", NULL) < 0);
+        }
+        assert_int_equal(grobo_control_motion_size(control), 0);
+        assert_int_equal(grobo_control_set_joint(control, ELBOW, grobo_rad_from_deg(-20)), 0);
+        assert_int_equal(grobo_control_start_motion(control), GROBO_OK);
+        assert_int_equal(grobo_control_wait(control, 0), GROBO_OK);
+        assert_int_equal(grobo_control_read_posture(control, &posture, 0), 20);
+        assert_int_equal(grobo_control_append_current_posture_us(control, 200000), 1);
+        assert_int_equal(grobo_control_play_motion(control, NULL), GROBO_OK);
+        assert_int_equal(grobo_control_wait(control, 0), GROBO_OK);
+        control_assert_elbow_at(-20);
+    }
+}
+
+static int total_ms(grobo_control *from, void *arg)
+{
+    grobo_play_progress progress;
+
+    (void)arg;
+    grobo_robot_progress(grobo_session_robot(grobo_control_session(from)), grobo_now_us(),
+                         &progress);
+    return (int)(progress.total_us / 1000);
+}
+
+/* Postures without a time take the time that is reported, also where none was set. */
+static void the_default_time_is_what_is_played(void **state)
+{
+    grobo_posture posture;
+    grobo_motion *motion = NULL;
+    int64_t default_us = grobo_control_get_default_time_us(control);
+
+    (void)state;
+    assert_int_equal(default_us, GROBO_POSTURE_TIME_US);
+    assert_int_equal(grobo_motion_new(&motion, GROBO_MOTION_POSTURES, 20, NULL), 0);
+    (void)grobo_posture_init(&posture, 20);
+    (void)grobo_posture_set_deg(&posture, ELBOW, 0);
+    posture.time_us = 0;
+    for (int i = 0; i < 3; i++) {
+        assert_int_equal(grobo_motion_append(motion, &posture), 0);
+    }
+    assert_int_equal(grobo_control_set_motion(control, motion), 3);
+    grobo_motion_free(motion);
+    control_come_up();
+    assert_int_equal(grobo_control_play_motion(control, NULL), GROBO_OK);
+    assert_int_equal(grobo_control_wait(control, 0), GROBO_OK);
+    /* The way to the first is the approach. */
+    assert_int_equal(grobo_control_call(control, total_ms, NULL), 2 * default_us / 1000);
+    /* One that no .m file can hold as a step is appended as "the default time". */
+    assert_int_equal(grobo_control_set_default_time_us(control, 12000000), GROBO_OK);
+    assert_int_equal(grobo_control_read_posture(control, &posture, 0), 20);
+    grobo_control_clear_motion(control);
+    assert_int_equal(grobo_control_append_current_posture(control), 1);
 }
 
 /* ---- playing ------------------------------------------------------------------------------ */
@@ -234,6 +349,12 @@ static int passes_of(grobo_control *from, void *arg)
     return progress.passes;
 }
 
+static int play_state(grobo_control *from, void *arg)
+{
+    (void)arg;
+    return (int)grobo_robot_play_state(grobo_session_robot(grobo_control_session(from)));
+}
+
 static void the_motion_is_played(void **state)
 {
     (void)state;
@@ -241,9 +362,11 @@ static void the_motion_is_played(void **state)
     control_come_up();
     assert_int_equal(grobo_control_play_motion(control, NULL), GROBO_ERR_EMPTY);
     control_have_motion(4);
+    assert_int_equal(grobo_control_call(control, play_state, NULL), GROBO_SEQUENCER_IDLE);
     assert_int_equal(grobo_control_play_motion(control, NULL), GROBO_OK);
     assert_true(grobo_control_is_playing(control));
     assert_int_equal(grobo_control_is_moving(control), 1);
+    assert_true(grobo_control_is_playing(control)); /* begun by now */
     assert_int_equal(grobo_control_play_motion(control, NULL), GROBO_ERR_STATE);
     int left = grobo_control_command_count(control);
     assert_in_range(left, 1, 4);
@@ -251,27 +374,82 @@ static void the_motion_is_played(void **state)
     assert_in_range(grobo_control_command_count(control), 0, left); /* one after the other goes */
     assert_int_equal(grobo_control_wait(control, 0), GROBO_OK);
     assert_false(grobo_control_is_playing(control));
+    assert_int_equal(grobo_control_call(control, play_state, NULL), GROBO_SEQUENCER_FINISHED);
     assert_int_equal(grobo_control_command_count(control), 0);
     control_assert_elbow_at(8);
 }
 
-static void a_negative_count_plays_in_reverse(void **state)
+/* On the loop, where nothing has begun yet. */
+static int ask_to_play(grobo_control *from, void *arg)
 {
-    const grobo_play_options at_a_rate = {.mode = GROBO_PLAY_RATE, .rate_hz = 50};
+    int r = grobo_control_play_motion(from, arg);
+
+    return r < 0 ? r : grobo_control_command_count(from);
+}
+
+static void every_repetition_is_counted(void **state)
+{
+    const grobo_play_options at_a_rate = {.mode = GROBO_PLAY_RATE, .rate_hz = 20};
+    int most = 3 * 4;
+    int left;
 
     (void)state;
     control_come_up();
     control_have_motion(4);
-    assert_int_equal(grobo_control_set_motion_count(control, -2), -2);
+    assert_int_equal(grobo_control_set_motion_count(control, -3), GROBO_OK);
+    assert_int_equal(grobo_control_get_motion_count(control), -3);
+    assert_int_equal(grobo_control_call(control, ask_to_play, NULL), most);
+    left = grobo_control_command_count(control);
+    assert_in_range(left, 5, most); /* not only the first pass, which has 4 */
+    while (grobo_control_is_playing(control)) {
+        left = grobo_control_command_count(control);
+        assert_in_range(left, 0, most);
+        most = left;
+        (void)grobo_control_svc(control);
+    }
+    assert_int_equal(grobo_control_wait(control, 0), GROBO_OK);
+    assert_int_equal(grobo_control_command_count(control), 0);
+
+    /* More than there are numbers for. */
+    assert_int_equal(grobo_control_set_motion_count(control, INT_MIN), GROBO_OK);
+    assert_int_equal(grobo_control_play_motion(control, &at_a_rate), GROBO_OK);
+    assert_int_equal(grobo_control_command_count(control), INT_MAX);
+    assert_int_equal(grobo_control_wait(control, 300000), GROBO_ERR_TIMEOUT);
+    assert_int_equal(grobo_control_command_count(control), INT_MAX);
+    assert_int_equal(grobo_control_stop_motion(control, true), GROBO_OK);
+    assert_int_equal(grobo_control_wait(control, 0), GROBO_ERR_CANCELED);
+}
+
+static void a_negative_count_plays_in_reverse(void **state)
+{
+    const grobo_play_options at_a_rate = {.mode = GROBO_PLAY_RATE};
+    const grobo_play_options too_fast = {.mode = GROBO_PLAY_RATE, .rate_hz = 1000};
+
+    (void)state;
+    control_come_up();
+    control_have_motion(4);
+    assert_int_equal(grobo_control_set_motion_count(control, 3), GROBO_OK);
+    assert_false(grobo_control_is_reverse(control));
+    assert_int_equal(grobo_control_play_motion(control, NULL), GROBO_OK);
+    assert_int_equal(grobo_control_wait(control, 0), GROBO_OK);
+    assert_int_equal(grobo_control_call(control, passes_of, NULL), 3);
+    control_assert_elbow_at(8);
+    assert_int_equal(grobo_control_set_motion_count(control, -2), GROBO_OK);
+    assert_true(grobo_control_is_reverse(control));
     assert_int_equal(grobo_control_play_motion(control, NULL), GROBO_OK);
     assert_int_equal(grobo_control_wait(control, 0), GROBO_OK);
     assert_int_equal(grobo_control_call(control, passes_of, NULL), 2);
     control_assert_elbow_at(2);
-    assert_int_equal(grobo_control_set_motion_count(control, 1), 1);
+    assert_int_equal(grobo_control_set_motion_count(control, 1), GROBO_OK);
+    assert_int_equal(grobo_control_play_motion(control, &too_fast), GROBO_OK);
+    assert_int_equal(grobo_control_wait(control, 0), GROBO_ERR_UNWATCHED);
+    control_assert_elbow_at(2);
     assert_int_equal(grobo_control_play_motion(control, &at_a_rate), GROBO_OK);
     assert_int_equal(grobo_control_wait(control, 0), GROBO_OK);
     control_assert_elbow_at(8);
+    assert_false(grobo_control_is_reverse(control));
     grobo_control_set_reverse(control, true);
+    assert_true(grobo_control_is_reverse(control));
     assert_int_equal(grobo_control_play_motion(control, NULL), GROBO_OK);
     assert_int_equal(grobo_control_wait(control, 0), GROBO_OK);
     control_assert_elbow_at(2);
@@ -282,7 +460,7 @@ static void playing_is_stopped(void **state)
     (void)state;
     control_come_up();
     control_have_motion(4);
-    assert_int_equal(grobo_control_set_motion_count(control, 10000), 10000);
+    assert_int_equal(grobo_control_set_motion_count(control, 10000), GROBO_OK);
     for (int at_once = 0; at_once < 2; at_once++) {
         assert_int_equal(grobo_control_play_motion(control, NULL), GROBO_OK);
         assert_int_equal(grobo_control_wait(control, 400000), GROBO_ERR_TIMEOUT);
@@ -301,13 +479,16 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         WITH_AND_WITHOUT_THREAD(a_target_is_sent_once),
+        WITH_AND_WITHOUT_THREAD(each_target_of_a_stream_is_sent),
         WITH_AND_WITHOUT_THREAD(a_target_that_waits_is_counted),
         WITH_AND_WITHOUT_THREAD(the_motion_is_kept),
         WITH_AND_WITHOUT_THREAD(postures_count_in_playing_direction),
         WITH_AND_WITHOUT_THREAD(the_nth_posture_is_gone_to),
-        WITH_AND_WITHOUT_THREAD(motions_are_saved_and_loaded),
-        WITH_AND_WITHOUT_THREAD(what_cannot_be_loaded_leaves_nothing),
+        WITH_AND_WITHOUT_THREAD(increments_become_postures),
+        WITH_AND_WITHOUT_THREAD(an_emptied_motion_takes_postures),
+        WITH_AND_WITHOUT_THREAD(the_default_time_is_what_is_played),
         WITH_AND_WITHOUT_THREAD(the_motion_is_played),
+        WITH_AND_WITHOUT_THREAD(every_repetition_is_counted),
         WITH_AND_WITHOUT_THREAD(a_negative_count_plays_in_reverse),
         WITH_AND_WITHOUT_THREAD(playing_is_stopped),
     };

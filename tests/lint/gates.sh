@@ -393,8 +393,8 @@ printf 'int f(int a, int b, int c,\n      int (*d)(int, int), int e, int f)\n{\n
 check 'size: six parameters' scan size many.c
 printf 'int f(int a, int b, int c,\n      int d, int e, int f, int g)\n{\n}\n' >many.c
 check 'size: seven parameters' refuses 'many.c:1: size: f has 7 parameters' scan size many.c
-awk 'BEGIN { for (i = 0; i < 601; i++) print "int x;" }' >file.c
-check 'size: a file of 601 lines' refuses 'file.c:601: size: file of 601' scan size file.c long.c
+awk 'BEGIN { for (i = 0; i < 1001; i++) print "int x;" }' >file.c
+check 'size: a file of 1001 lines' refuses 'file.c:1001: size: file of 1001' scan size file.c long.c
 
 # ---- switch --------------------------------------------------------------------------------
 
@@ -486,7 +486,7 @@ if command -v clang-format-14 >/dev/null; then
     printf 'int x;\n' >a.c
     check 'format: formatted' sh "$gates/format.sh" a.c
 else
-    skip 'format' 'no clang-format 14; tools/setup.sh --ci installs it'
+    skip 'format' 'no clang-format 14; tools/setup.sh --check installs it'
 fi
 
 printf '.PHONY: all check \\\n  clean\nall: ## x\ncheck: ## y\nclean:\n' >Makefile

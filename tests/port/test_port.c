@@ -89,6 +89,84 @@ static void threads_exclude_each_other(void **state)
     grobo_mutex_deinit(&s.mutex);
 }
 
+/* Two threads that pass a turn to each other at a condition. */
+typedef struct {
+    grobo_mutex mutex;
+    grobo_cond cond;
+    int turn;
+    int64_t until_us;
+} passing;
+
+enum { TURNS = 2000 };
+
+static GROBO_THREAD_FUNC take_odd_turns(void *arg)
+{
+    passing *p = arg;
+
+    grobo_mutex_lock(&p->mutex);
+    while (p->turn < TURNS) {
+        if (p->turn % 2 == 1) {
+            p->turn++;
+            grobo_cond_wake_all(&p->cond);
+        } else {
+            grobo_cond_wait(&p->cond, &p->mutex, p->until_us);
+        }
+    }
+    grobo_mutex_unlock(&p->mutex);
+    GROBO_THREAD_RETURN;
+}
+
+static void a_condition_wakes_who_sleeps(void **state)
+{
+    static const int64_t untils_us[] = {GROBO_NEVER_US, GROBO_NEVER_US - 1};
+
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        passing p = {.turn = 0, .until_us = untils_us[i]};
+        grobo_thread other;
+
+        assert_int_equal(grobo_mutex_init(&p.mutex), GROBO_OK);
+        assert_int_equal(grobo_cond_init(&p.cond), GROBO_OK);
+        assert_int_equal(grobo_thread_start(&other, take_odd_turns, &p), GROBO_OK);
+        grobo_mutex_lock(&p.mutex);
+        while (p.turn < TURNS) {
+            if (p.turn % 2 == 0) {
+                p.turn++;
+                grobo_cond_wake_all(&p.cond);
+            } else {
+                grobo_cond_wait(&p.cond, &p.mutex, p.until_us);
+            }
+        }
+        grobo_mutex_unlock(&p.mutex);
+        assert_int_equal(grobo_thread_join(other), GROBO_OK);
+        grobo_cond_deinit(&p.cond);
+        grobo_mutex_deinit(&p.mutex);
+    }
+}
+
+static void sleeping_at_a_condition_ends_in_time(void **state)
+{
+    passing p = {.turn = 0};
+    int64_t start_us;
+    int sleeps = 0;
+
+    (void)state;
+    assert_int_equal(grobo_mutex_init(&p.mutex), GROBO_OK);
+    assert_int_equal(grobo_cond_init(&p.cond), GROBO_OK);
+    grobo_mutex_lock(&p.mutex);
+    start_us = grobo_now_us();
+    grobo_cond_wait(&p.cond, &p.mutex, start_us - 1); /* has passed */
+    while (grobo_now_us() < start_us + 50000) {
+        grobo_cond_wait(&p.cond, &p.mutex, start_us + 50000);
+        sleeps++;
+    }
+    assert_in_range(sleeps, 1, 100); /* it does not spin */
+    assert_true(grobo_now_us() < start_us + 1000000);
+    grobo_mutex_unlock(&p.mutex);
+    grobo_cond_deinit(&p.cond);
+    grobo_mutex_deinit(&p.mutex);
+}
+
 static GROBO_THREAD_FUNC join_self(void *arg)
 {
     shared *s = arg;
@@ -204,6 +282,8 @@ int main(void)
         cmocka_unit_test(the_clock_goes_on),
         cmocka_unit_test(the_clock_counts_microseconds),
         cmocka_unit_test(threads_exclude_each_other),
+        cmocka_unit_test(a_condition_wakes_who_sleeps),
+        cmocka_unit_test(sleeping_at_a_condition_ends_in_time),
         cmocka_unit_test(a_thread_does_not_join_itself),
         cmocka_unit_test(waiting_may_have_no_end),
         cmocka_unit_test(waiting_tells_what_is_ready),

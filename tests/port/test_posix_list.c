@@ -127,6 +127,29 @@ static void without_sysfs_adapters_are_found_by_their_names(void **state)
     assert_int_equal(grobo_i_posix_list("/no/such/folder", "/nor/this", collect, &f), 0);
 }
 
+/* ttyUSB2 before ttyUSB10: the order in which adapters are tried. */
+static void ports_are_in_the_order_of_their_numbers(void **state)
+{
+    static const char *const names[] = {"ttyS0", "ttyUSB0", "ttyUSB1", "ttyUSB2", "ttyUSB10"};
+    found f = {.count = 0};
+
+    (void)state;
+    shell("for n in 10 2 1; do mkdir -p devices/usb1/1-1/1-1:1.0/ttyUSB$n && "
+          "ln -s ../../devices/usb1/1-1/1-1:1.0/ttyUSB$n class/tty/ttyUSB$n && "
+          "ln -s .. class/tty/ttyUSB$n/device && : >dev/ttyUSB$n; done");
+    assert_int_equal(list(&f), 5);
+    for (int i = 0; i < f.count; i++) {
+        assert_string_equal(strrchr(f.info[i].path, '/') + 1, names[i]);
+    }
+    f.count = 0;
+    assert_int_equal(grobo_i_posix_list("/no/such/folder", in_folder("dev"), collect, &f), 4);
+    for (int i = 0; i < f.count; i++) {
+        assert_string_equal(strrchr(f.info[i].path, '/') + 1, names[i + 1]);
+    }
+    shell("for n in 1 2 10; do "
+          "rm -r devices/usb1/1-1/1-1:1.0/ttyUSB$n class/tty/ttyUSB$n dev/ttyUSB$n; done");
+}
+
 static void a_visit_can_be_ended(void **state)
 {
     found f = {.stop = 7};
@@ -209,6 +232,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_port_with_a_device_is_described),
         cmocka_unit_test(without_sysfs_adapters_are_found_by_their_names),
+        cmocka_unit_test(ports_are_in_the_order_of_their_numbers),
         cmocka_unit_test(a_visit_can_be_ended),
         cmocka_unit_test(a_port_in_use_names_its_owner),
         cmocka_unit_test(a_port_of_somebody_else_is_not_to_be_opened),

@@ -44,6 +44,31 @@ void peer_read(peer *p, request *r, uint8_t id, uint8_t bytes, grobo_priority pr
     peer_txn(p, &r->txn, r->frame, n, priority);
 }
 
+void peer_submit_ping(peer *p, request *r, uint8_t id, uint8_t retries)
+{
+    uint8_t packet[16];
+    int n = grobo_rs30x_ping(id, GROBO_RS30X_PING_FF_0_0, packet, sizeof packet);
+    n = grobo_frame_wrap(p->bus.config.wiring, packet, (size_t)n, r->frame, sizeof r->frame);
+    peer_txn(p, &r->txn, r->frame, n, GROBO_PRIORITY_USER);
+    r->txn.retries = retries;
+    assert_int_equal(grobo_bus_submit(&p->bus, &r->txn), GROBO_OK);
+}
+
+void peer_submit_read(peer *p, request *r, uint8_t id, uint8_t retries)
+{
+    peer_read(p, r, id, 2, GROBO_PRIORITY_USER);
+    r->txn.retries = retries;
+    assert_int_equal(grobo_bus_submit(&p->bus, &r->txn), GROBO_OK);
+}
+
+void peer_submit_goal(peer *p, request *r, uint8_t id, grobo_priority priority)
+{
+    const grobo_rs30x_goal goal = {id, 0, 0};
+    int n = grobo_frame_goal(p->bus.config.wiring, &goal, r->frame, sizeof r->frame);
+    peer_txn(p, &r->txn, r->frame, n, priority);
+    assert_int_equal(grobo_bus_submit(&p->bus, &r->txn), GROBO_OK);
+}
+
 void peer_bytes_at(peer *p, int64_t at_us, const uint8_t *bytes, size_t n)
 {
     int i = p->chunk_count++;

@@ -60,6 +60,11 @@ typedef struct request {
 /* Makes it read this many bytes of a servo from No.42 on. */
 void peer_read(peer *p, request *r, uint8_t id, uint8_t bytes, grobo_priority priority);
 
+/* Submits a reading of No.42-43, a ping that wants an ACK, or a goal that wants no reply. */
+void peer_submit_read(peer *p, request *r, uint8_t id, uint8_t retries);
+void peer_submit_ping(peer *p, request *r, uint8_t id, uint8_t retries);
+void peer_submit_goal(peer *p, request *r, uint8_t id, grobo_priority priority);
+
 /* Bytes that arrive at a time; in any order of calls. */
 void peer_bytes_at(peer *p, int64_t at_us, const uint8_t *bytes, size_t n);
 

@@ -11,6 +11,8 @@ known_as=${known_as%% *}
 known_as=${known_as##*/}
 [ -z "${NATIVE_GRCTL:-}" ] || known_as=grctl.exe
 unset GRCTL_DEVICE
+# What grctl starts of itself goes to the emulator too.
+[ -z "${EMULATOR:-}" ] || [ -n "${NATIVE_GRCTL:-}" ] || export GRCTL_GUARD="$GRCTL"
 XDG_CONFIG_HOME=$work/config # not that of whoever runs the tests
 XDG_STATE_HOME=$work/state
 export XDG_CONFIG_HOME XDG_STATE_HOME
@@ -58,7 +60,7 @@ map_com() {
     sim_com=$GROBO_WINE/prefix/dosdevices/com$sim_number
     robot=COM$sim_number
     # The mark of an estop before; others' tests run beside this one.
-    rm -f "$GROBO_WINE"/prefix/drive_c/users/*/AppData/Local/grctl/estop-*"$robot"
+    rm -f "$GROBO_WINE"/prefix/drive_c/users/*/AppData/Local/grobo/estop-*"$robot"
 }
 
 # start_sim [OPTIONS]: $robot is its pty when this returns.

@@ -116,6 +116,13 @@ void test_line_write(test_line *line, const void *bytes, size_t size)
     }
 }
 
+size_t test_line_write_some(test_line *line, const void *bytes, size_t size)
+{
+    ssize_t done = write(line->fd, bytes, size);
+
+    return done > 0 ? (size_t)done : 0;
+}
+
 void test_line_await_arrival(test_line *line)
 {
     struct pollfd one = {.fd = line->fd, .events = POLLIN};

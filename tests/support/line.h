@@ -32,6 +32,9 @@ void test_line_close(test_line *line);
 /* Writes all bytes; fails the test when the line does not take them. */
 void test_line_write(test_line *line, const void *bytes, size_t size);
 
+/* Writes what the line takes at once. */
+size_t test_line_write_some(test_line *line, const void *bytes, size_t size);
+
 /* Returns when what was written has arrived; on a cable when it must have. */
 void test_line_await_arrival(test_line *line);
 

@@ -8,10 +8,12 @@
 
 #include <cmocka.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 const grobo_robot_config quiet = {.sense_interval_us = GROBO_SENSE_NEVER};
 grobo_wiring rig_wiring = GROBO_WIRING_BOARD;
+int64_t rig_epoch_us = 1000000;
 
 /* ---- what must always hold, judged on the frames themselves ---------------------------------- */
 
@@ -20,30 +22,98 @@ static int joint_of(const grobo_test_rig *rig, int id)
     return grobo_model_joint_of_motor(rig->driver->model, id);
 }
 
-static double along_deg(const grobo_test_rig *rig, int j, double from_deg)
+static double along_deg(const rig_way *way, int64_t now_us)
 {
-    if (rig->now_us >= rig->to_us[j] || rig->to_us[j] <= rig->from_us[j]) {
-        return rig->to_deg[j];
+    if (now_us >= way->to_us || way->to_us <= way->from_us) {
+        return way->to_deg;
     }
-    double part =
-        (double)(rig->now_us - rig->from_us[j]) / (double)(rig->to_us[j] - rig->from_us[j]);
-    return from_deg + (rig->to_deg[j] - from_deg) * part;
+    double part = (double)(now_us - way->from_us) / (double)(way->to_us - way->from_us);
+    return way->from_deg + (way->to_deg - way->from_deg) * part;
 }
 
-/* Where the joint may be taken to be: where it is, or on its way from where it was asked to go or
- * from where it was read. Lost frames part the three. Of a line that is back only the first is
- * true: what was asked before it went may have been lost with it. */
-static double least_way_deg(grobo_test_rig *rig, int j, double deg)
+/* A joint that is read to stand still so far beside its way has lost the frame of that way. The
+ * engine draws the line at 12 degrees, and what it takes for the way is rounded: just below and
+ * above that it may take either. */
+static const double beside_deg[RIG_ASKED] = {11, 13};
+/* The servo's speed below which a joint stands still. */
+#define SLOW_DPS 8
+
+/* Of a joint that is not on a way, or has left it: restarted, or moved by a frame that nobody can
+ * read. The next goal is judged from where the joint is. */
+static void leave_ways(grobo_test_rig *rig, grobo_joint_mask joints)
+{
+    rig->on_way &= ~joints;
+}
+
+/* The way that a servo is on by itself, as far as it told. */
+static rig_way own_way(grobo_test_rig *rig, int j, const grobo_joint_state *state)
+{
+    double deg = grobo_deg_from_rad(state->angle_rad);
+    double most_rad_s = rig->driver->model->joints[j].max_speed_rad_s;
+    double way_rad = fabs(state->goal_rad - state->angle_rad);
+    int64_t left_us = state->goal_time_us - state->time_us;
+    int64_t least_us = (int64_t)(way_rad / most_rad_s * 1e6);
+    bool creeps = state->speed_dps != 0 && left_us > 0;
+    bool moves = abs(state->speed_dps) >= SLOW_DPS || creeps;
+    rig_way own = {deg, deg, rig->now_us, rig->now_us};
+    if (!witness_asked(&rig->witness, GROBO_RS30X_GOAL)) {
+        own.to_deg = rig->own[j].to_us > rig->now_us ? rig->own[j].to_deg : deg;
+        own.to_us = rig->own[j].to_us;
+    } else if (state->torque == GROBO_TORQUE_ON && moves) {
+        own.to_deg = grobo_deg_from_rad(state->goal_rad);
+        own.to_us += left_us > least_us ? left_us : least_us;
+    }
+    return own;
+}
+
+/* A joint was read: is it on its ways? What was asked before the last frame left tells nothing of
+ * what that frame does. */
+static void look_for_ways(grobo_test_rig *rig, int j, const grobo_joint_state *state)
+{
+    double deg = grobo_deg_from_rad(state->angle_rad);
+    int64_t asked_us = rig->witness.asked_us[rig->witness.model->joints[j].motor];
+    bool slow = abs(state->speed_dps) < SLOW_DPS;
+    if (asked_us < rig->told_us[j]) {
+        return;
+    }
+    rig->own[j] = own_way(rig, j, state);
+    for (int i = 0; witness_asked(&rig->witness, GROBO_RS30X_SPEED) && i < RIG_ASKED; i++) {
+        double then_deg = fabs(deg - along_deg(&rig->ways[j][i], asked_us));
+        double now_deg = fabs(deg - along_deg(&rig->ways[j][i], rig->now_us));
+        rig->off[j][i] = slow && fmin(then_deg, now_deg) > beside_deg[i];
+    }
+    if (witness_asked(&rig->witness, GROBO_RS30X_GOAL)) {
+        rig->own_told |= GROBO_JOINT_BIT(j);
+    }
+}
+
+/* How far a joint is sent, from where it is or from where it should be on its ways, whatever is
+ * nearest: a frame may have been lost. Of a joint without a way only the first is true. */
+static double least_way_deg(grobo_test_rig *rig, int j, double to_deg, int64_t time_us)
 {
     double here_deg = rig_angle_deg(rig, j);
-    bool first = !rig->was_sent[j];
-    double asked_deg = first ? here_deg : along_deg(rig, j, rig->asked_deg[j]);
-    double stood_deg = first ? here_deg : along_deg(rig, j, rig->stood_deg[j]);
-    rig->asked_deg[j] = asked_deg;
-    rig->stood_deg[j] = rig->was_read[j] ? here_deg : stood_deg;
-    rig->was_read[j] = false;
-    rig->was_sent[j] = true;
-    return fmin(fabs(deg - here_deg), fmin(fabs(deg - asked_deg), fabs(deg - stood_deg)));
+    bool on_way = (rig->on_way & GROBO_JOINT_BIT(j)) != 0;
+    bool told = (rig->own_told & GROBO_JOINT_BIT(j)) != 0;
+    bool loose = (rig->loose & GROBO_JOINT_BIT(j)) != 0;
+    double least_deg = fabs(to_deg - here_deg);
+    if (on_way) {
+        double way_deg = along_deg(&rig->ways[j][RIG_ASKED], rig->now_us);
+        least_deg = fmin(least_deg, fabs(to_deg - way_deg));
+    }
+    for (int i = 0; i < RIG_WAYS; i++) {
+        bool off = i < RIG_ASKED ? rig->off[j][i] : told;
+        const rig_way *way = off ? &rig->own[j] : &rig->ways[j][i];
+        bool here = !on_way || (loose && i == RIG_ASKED);
+        double from_deg = here ? here_deg : along_deg(way, rig->now_us);
+        least_deg = fmin(least_deg, fabs(to_deg - from_deg));
+        rig->ways[j][i] = (rig_way){from_deg, to_deg, rig->now_us, rig->now_us + time_us};
+    }
+    memset(rig->off[j], 0, sizeof rig->off[j]);
+    rig->own[j].to_us = rig->now_us;
+    rig->on_way |= GROBO_JOINT_BIT(j);
+    rig->own_told &= ~GROBO_JOINT_BIT(j);
+    rig->loose &= ~GROBO_JOINT_BIT(j);
+    return least_deg;
 }
 
 /* The line made up what this joint was told or said, and its sum was right: not the engine's
@@ -68,19 +138,19 @@ static void check_goal(grobo_test_rig *rig, int id, const uint8_t *data)
     }
     bool holds = rig_torque(rig, j) != GROBO_TORQUE_ON;
     double most_dps = grobo_deg_from_rad(joint->max_speed_rad_s);
-    double way_deg = least_way_deg(rig, j, deg) - 0.2;
+    double way_deg = least_way_deg(rig, j, deg, time_us) - 0.2;
     if (!holds && way_deg > most_dps * 1.02 * (double)time_us / 1e6 && !excused(rig, j)) {
         fail_msg("%s sent %.1f deg in %lld us", joint->name, way_deg, (long long)time_us);
     }
-    rig->to_deg[j] = deg;
-    rig->from_us[j] = rig->now_us;
-    rig->to_us[j] = rig->now_us + time_us;
 }
 
 static void check_torque(grobo_test_rig *rig, int id, int value)
 {
     int j = joint_of(rig, id);
     assert_true(j >= 0 && value <= 2);
+    if (value != GROBO_TORQUE_ON) {
+        rig->loose |= GROBO_JOINT_BIT(j); /* where a hand has it, or on its way if this is lost */
+    }
     if (value != GROBO_TORQUE_ON || rig_torque(rig, j) == GROBO_TORQUE_ON) {
         return;
     }
@@ -88,7 +158,8 @@ static void check_torque(grobo_test_rig *rig, int id, int value)
     int32_t goal = 0;
     assert_int_equal(grobo_sim_get_register(&rig->sim, j, GROBO_RS30X_GOAL, &goal), 0);
     double apart_deg = fabs(goal / 10.0 - rig_angle_deg(rig, j));
-    if (apart_deg > 3.6 && !witness_restarted(&rig->witness, j) && !excused(rig, j)) {
+    if (apart_deg > 3.6 && !rig->judged && !witness_restarted(&rig->witness, j) &&
+        !excused(rig, j)) {
         fail_msg("torque of %s comes on %.1f deg from its goal", rig->driver->model->joints[j].name,
                  apart_deg);
     }
@@ -107,6 +178,9 @@ static void check_may_move(const grobo_test_rig *rig, bool switches_on)
 
 static void check_write(grobo_test_rig *rig, int id, int address, const uint8_t *data, int n)
 {
+    if (joint_of(rig, id) >= 0) {
+        rig->told_us[joint_of(rig, id)] = rig->now_us;
+    }
     if (address == GROBO_RS30X_GOAL && n >= 4) {
         check_may_move(rig, false);
         check_goal(rig, id, data);
@@ -127,7 +201,7 @@ static void check_packet(grobo_test_rig *rig, const uint8_t *p, size_t n)
         sum ^= p[i];
     }
     assert_int_equal(sum, 0);
-    witness_sent(&rig->witness, p, n, rig->now_us);
+    witness_sent(&rig->witness, p, n, rig->robot.bus.active, rig->now_us);
     if (p[2] == 0) {
         for (int i = 0; i < p[6]; i++) {
             const uint8_t *entry = p + 7 + i * p[5];
@@ -135,6 +209,8 @@ static void check_packet(grobo_test_rig *rig, const uint8_t *p, size_t n)
         }
     } else if (p[6] == 1) {
         check_write(rig, p[2], p[4], p + 7, p[5]);
+    } else if (p[3] >= GROBO_RS30X_FACTORY) {
+        leave_ways(rig, rig_all(rig));
     }
 }
 
@@ -144,6 +220,8 @@ static void check_frame(grobo_test_rig *rig, const uint8_t *bytes, size_t n)
         check_packet(rig, bytes, n);
     } else if (bytes[0] == 0x53 || bytes[0] == 0x54) {
         check_packet(rig, bytes + 2, n - 2 - (bytes[0] == 0x54));
+    } else if (bytes[0] == 0x50) {
+        leave_ways(rig, rig_all(rig)); /* a motion of the board's own */
     }
 }
 
@@ -151,21 +229,18 @@ static void check_frame(grobo_test_rig *rig, const uint8_t *bytes, size_t n)
 static void check_reading(grobo_test_rig *rig, const grobo_event_joint *event)
 {
     grobo_joint_info info;
-    if (rig->robot.config.readback_correction) {
-        return; /* then it is not what was said */
-    }
-    if (event->result != GROBO_OK) {
-        witness_believed(&rig->witness, event->joint, NULL, rig->now_us);
-        return;
+    if (event->result != GROBO_OK || rig->robot.config.readback_correction) {
+        return; /* nothing was read, or it is not what was said */
     }
     assert_int_equal(grobo_robot_joint(&rig->robot, event->joint, rig->now_us, &info), 0);
     witness_believed(&rig->witness, event->joint, &info.state, rig->now_us);
-    rig->was_read[event->joint] = true;
+    look_for_ways(rig, event->joint, &info.state);
 }
 
 static void note_event(void *ctx, const grobo_event *event)
 {
     grobo_test_rig *rig = ctx;
+    assert_true(event->now_us == rig->now_us); /* the time of the call that made it */
     if (rig->n_events < RIG_EVENTS) {
         rig->events[rig->n_events++] = *event;
     }
@@ -181,6 +256,9 @@ static void note_sim(const grobo_sim_event *event, void *ctx)
 {
     grobo_test_rig *rig = ctx;
     witness_heard(&rig->witness, event);
+    if (rig->on_sim != NULL) {
+        rig->on_sim(rig, event);
+    }
 }
 
 /* ---- the pump ---------------------------------- */
@@ -200,7 +278,7 @@ void rig_start_driver(grobo_test_rig *rig, const grobo_driver *driver,
     sim_config.hook = note_sim;
     sim_config.hook_ctx = rig;
     rig->driver = driver;
-    rig->now_us = rig->wake_us = 1000000;
+    rig->now_us = rig->wake_us = rig_epoch_us;
     rig->asked = true;
     witness_init(&rig->witness, driver->model, &rig->sim);
     assert_int_equal(grobo_sim_init(&rig->sim, &sim_config, rig->now_us), 0);
@@ -228,6 +306,9 @@ static void send_all(grobo_test_rig *rig)
         rig->frames++;
         check_frame(rig, buf, (size_t)n);
         assert_int_equal(grobo_sim_rx(&rig->sim, buf, (size_t)n, rig->now_us), n);
+        if (rig->on_frame != NULL) {
+            rig->on_frame(rig, buf, (size_t)n);
+        }
     }
     assert_true(n == 0);
 }
@@ -250,7 +331,7 @@ static void pump(grobo_test_rig *rig)
     } else if (rig->back_us != 0 && rig->now_us >= rig->back_us) {
         rig->back_us = 0;
         rig->asked = false;
-        memset(rig->was_sent, 0, sizeof rig->was_sent);
+        leave_ways(rig, rig_all(rig)); /* what was asked before may have been lost with it */
         grobo_sim_plug(&rig->sim, true, rig->now_us);
         grobo_robot_link_up(&rig->robot, rig->now_us);
     }
@@ -489,4 +570,13 @@ int rig_on_both_wirings(const struct CMUnitTest *tests, size_t n)
     int failed = _cmocka_run_group_tests("on the board", tests, n, NULL, NULL);
     rig_wiring = GROBO_WIRING_BUS;
     return failed + _cmocka_run_group_tests("on a bus", tests, n, NULL, NULL);
+}
+
+void rig_start_at(grobo_test_rig *rig, double deg, const grobo_robot_config *config)
+{
+    rig_start(rig, config, NULL);
+    rig_power(rig);
+    grobo_posture target = rig_posture(rig, NECK, deg, 1000);
+    rig_expect(rig, grobo_robot_move(&rig->robot, &target, rig->now_us), GROBO_OK);
+    rig_forget(rig);
 }

@@ -20,6 +20,17 @@ typedef struct rig_frame {
     uint8_t bytes[GROBO_RS30X_PACKET_MAX_BYTES];
 } rig_frame;
 
+/* The way that the frames ask of a joint. */
+typedef struct rig_way {
+    double from_deg, to_deg;
+    int64_t from_us, to_us;
+} rig_way;
+
+/* A joint should be on one of these ways. Two are what the frames ask for, and a joint is taken to
+ * be off them where it is read far beside them, off the one sooner than off the other; the third
+ * begins anew with a goal before which the servo told where it is going. */
+enum { RIG_ASKED = 2, RIG_WAYS };
+
 typedef struct grobo_test_rig {
     grobo_robot robot;
     grobo_sim sim;
@@ -33,17 +44,25 @@ typedef struct grobo_test_rig {
     size_t n_events;
     rig_frame sent[RIG_SENT];
     size_t n_sent;
-    void (*on_event)(struct grobo_test_rig *rig, const grobo_event *event); /* or NULL */
-    double to_deg[GROBO_JOINTS_MAX]; /* what the frames asked for, to check speeds by */
-    double asked_deg[GROBO_JOINTS_MAX], stood_deg[GROBO_JOINTS_MAX];
-    bool was_read[GROBO_JOINTS_MAX]; /* since it was last sent somewhere */
-    bool was_sent[GROBO_JOINTS_MAX]; /* since the line was last there */
-    int64_t from_us[GROBO_JOINTS_MAX], to_us[GROBO_JOINTS_MAX];
-    witness witness;    /* of what was truly said */
-    int64_t torque_us;  /* when a torque was last switched */
-    unsigned torque_on; /* torques switched on */
-    unsigned excused;   /* goals and torques that a made-up packet explains */
-    unsigned frames;    /* sent */
+    /* Hooks, NULL where nobody wants them: an event of the engine, a frame after it left, an event
+     * of the simulator. */
+    void (*on_event)(struct grobo_test_rig *rig, const grobo_event *event);
+    void (*on_frame)(struct grobo_test_rig *rig, const uint8_t *bytes, size_t n);
+    void (*on_sim)(struct grobo_test_rig *rig, const grobo_sim_event *event);
+    void *ctx;                                /* of the hooks */
+    bool judged;                              /* somebody else judges where torque comes on */
+    rig_way ways[GROBO_JOINTS_MAX][RIG_WAYS]; /* to check speeds by */
+    rig_way own[GROBO_JOINTS_MAX];            /* by what the servo said of its move last */
+    bool off[GROBO_JOINTS_MAX][RIG_ASKED];    /* it is on its own way instead */
+    grobo_joint_mask on_way;                  /* joints that have one */
+    grobo_joint_mask own_told;                /* since the last goal */
+    grobo_joint_mask loose;                   /* told to be without torque since then */
+    int64_t told_us[GROBO_JOINTS_MAX];        /* when a frame for it left last */
+    witness witness;                          /* of what was truly said */
+    int64_t torque_us;                        /* when a torque was last switched */
+    unsigned torque_on;                       /* torques switched on */
+    unsigned excused;                         /* goals and torques that a made-up packet explains */
+    unsigned frames;                          /* sent */
 } grobo_test_rig;
 
 /* Joints of GR001 that tests move, in joint order, and the ids of some. */
@@ -64,16 +83,20 @@ enum {
 extern const grobo_robot_config quiet;
 /* How rig_start() reaches the servos: through the board, unless a test says otherwise. */
 extern grobo_wiring rig_wiring;
+/* When rig_start() begins, on its clock: 1 s, unless a test says otherwise. */
+extern int64_t rig_epoch_us;
 struct CMUnitTest;
 /* Runs tests that begin with rig_start() once on each wiring; how many failed. */
 int rig_on_both_wirings(const struct CMUnitTest *tests, size_t n);
-/* GR001, all defaults, link up at 1 s. config, sim NULL: defaults. */
+/* GR001, all defaults, link up at once. config, sim NULL: defaults. */
 void rig_start(grobo_test_rig *rig, const grobo_robot_config *config, const grobo_sim_config *sim);
 /* The same with a driver of one's own. */
 void rig_start_driver(grobo_test_rig *rig, const grobo_driver *driver,
                       const grobo_robot_config *config, const grobo_sim_config *sim);
 /* The same, quiet; the driver lets the neck go to 20 degrees, its servo farther. */
 void rig_start_narrow(grobo_test_rig *rig);
+/* rig_start() with torque on, the neck moved there in 1 s, and all of that forgotten. */
+void rig_start_at(grobo_test_rig *rig, double deg, const grobo_robot_config *config);
 /* Lets time pass up to now + us. */
 void rig_run(grobo_test_rig *rig, int64_t us);
 /* Lets time pass until a job ends, 60 s at most. */

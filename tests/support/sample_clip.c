@@ -14,7 +14,7 @@ static const grobo_joint joints[SAMPLE_JOINTS] = {
     {"MIDDLE", -3, 3, 6, 0, 0, 0, 3, 2, 1},
 };
 
-const grobo_model sample_model = {"SAMPLE", joints, NULL, SAMPLE_JOINTS, 0};
+const grobo_model sample_model = {"SAMPLE", joints, NULL, SAMPLE_JOINTS, 0, 0};
 
 static int sample_key_at(void *ctx, size_t i, grobo_posture *posture, int64_t *at_us)
 {
@@ -126,6 +126,7 @@ int sample_pump_take(sample_pump *pump)
 
     sample_pump_look(pump);
     while ((result = grobo_sequencer_next(&pump->seq, pump->now_us, &frame)) > 0) {
+        assert_int_equal(result, 1);
         sample_pump_look(pump);
         check_frame(pump, &frame);
         assert_true(pump->n < SAMPLE_FRAMES_MAX);

@@ -32,6 +32,9 @@ static void on_event(grobo_session *from, grobo_session_event event, int error, 
     case GROBO_SESSION_EVENT_FAILED:
         seen.fails++;
         break;
+    case GROBO_SESSION_EVENT_UNGUARDED:
+        seen.unguarded++;
+        break;
     }
     if (seen.then_line != NULL) {
         seen.then_line(from);
@@ -60,6 +63,7 @@ static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *byt
     assert_true(now_us > 0);
     assert_non_null(bytes);
     seen.tapped[direction] += size;
+    seen.taps[direction]++;
 }
 
 void session_kit_begin(void)

@@ -11,12 +11,13 @@ extern grobo_session *session;
 
 /* Each event of the line, and each end of a job, ends the loop's run. */
 typedef struct session_seen {
-    int ups, losts, fails;
+    int ups, losts, fails, unguarded;
     int error;        /* of the last event of the line */
     int64_t at_us;    /* when it came */
     int robot;        /* number of the engine's events */
     int job, result;  /* the last job that ended */
     size_t tapped[2]; /* bytes, by grobo_direction */
+    size_t taps[2];   /* how often, by grobo_direction */
     /* Called behind, or NULL; they may free the session. */
     void (*then_line)(grobo_session *from);
     void (*then_robot)(const grobo_event *event);

@@ -31,7 +31,7 @@ make_trace() {
         done
         total=$(($# + 44))
         # shellcheck disable=SC2046
-        bytes 06 00 00 00 $(u32 $total) 00 00 00 00 00 00 00 00 $(u32 "$time_us") \
+        bytes 06 00 00 00 $(u32 $total) 00 00 00 00 $(u32 $((time_us >> 32))) $(u32 "$time_us") \
             $(u32 $size) $(u32 $size) "$@" 02 00 04 00 $flags 00 00 00 00 00 00 00 $(u32 $total)
     done
 }

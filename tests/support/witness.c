@@ -60,13 +60,31 @@ static void mislead(witness *w, int joint)
     w->misled |= GROBO_JOINT_BIT(joint);
 }
 
-void witness_sent(witness *w, const uint8_t *packet, size_t n, int64_t now_us)
+static bool reads(const uint8_t *packet)
+{
+    return packet[2] != 0 && packet[6] == 0;
+}
+
+/* A transaction on the wire for the first time is a new question, wherever it is kept. */
+static void ask(witness *w, int motor, const grobo_txn *txn, int64_t now_us)
+{
+    int i = 0;
+    while (i < WITNESS_QUESTIONS && w->questions[i].txn != NULL && w->questions[i].txn != txn) {
+        i++;
+    }
+    assert_true(i < WITNESS_QUESTIONS);
+    if (txn->attempts_ == 1) {
+        w->questions[i] = (witness_question){txn, now_us};
+    }
+    assert_true(w->questions[i].txn == txn);
+    w->asked_us[motor] = w->questions[i].since_us;
+}
+
+void witness_sent(witness *w, const uint8_t *packet, size_t n, const grobo_txn *txn, int64_t now_us)
 {
     keep(w->sent, WITNESS_SENT, &w->n_sent, packet, n)->at_us = now_us;
-    bool reads = packet[2] != 0 && packet[6] == 0;
-    int joint = grobo_model_joint_of_motor(w->model, packet[2]);
-    if (reads && joint >= 0 && w->asked_us[joint] == 0) {
-        w->asked_us[joint] = now_us;
+    if (reads(packet)) {
+        ask(w, packet[2], txn, now_us);
     }
 }
 
@@ -208,36 +226,54 @@ static bool agrees(const witness_packet *p, const grobo_joint_state *state)
            (!has(p, GROBO_RS30X_VOLTAGE, 2, &value) || value * 10 == state->voltage_mv);
 }
 
-/* The packet that has just arrived and says this of the joint; one that was said rather. */
-static const witness_packet *find_seen(const witness *w, int joint, const grobo_joint_state *state,
-                                       int64_t now_us)
+/* The packet that says this of the joint, the last since it was asked; one that was said rather. It
+ * need not have arrived just now: behind a broken length it is found when more bytes have come. */
+static const witness_packet *find_seen(const witness *w, int joint, const grobo_joint_state *state)
 {
     const witness_packet *found = NULL;
     for (unsigned i = 0; i < WITNESS_SEEN; i++) {
         const witness_packet *seen = &w->seen[i];
-        if (seen->at_us == now_us && seen->bytes[2] == w->model->joints[joint].motor &&
-            agrees(seen, state) && (found == NULL || seen->sound)) {
+        if (seen->at_us >= w->asked_us[seen->bytes[2]] &&
+            seen->bytes[2] == w->model->joints[joint].motor && agrees(seen, state) &&
+            (found == NULL || seen->at_us > found->at_us ||
+             (seen->at_us == found->at_us && seen->sound))) {
             found = seen;
         }
     }
     return found;
 }
 
+/* True if this may as well be the second one of a reply that the line said twice. */
+static bool may_be_second(const witness *w, const witness_packet *seen, int64_t now_us)
+{
+    for (unsigned i = 0; i < WITNESS_SAID && i < w->n_said; i++) {
+        const witness_packet *said = &w->said[i];
+        if (said->believed && same(said, seen->bytes, seen->n) &&
+            now_us - said->at_us <= DOUBLED_US) {
+            return true;
+        }
+    }
+    return false;
+}
+
 static void believe_said(witness *w, int joint, const witness_packet *seen, int64_t now_us)
 {
     const char *name = w->model->joints[joint].name;
     witness_packet *said = &w->said[seen->said_number % WITNESS_SAID];
-    if (said->believed && now_us - said->at_us <= DOUBLED_US) {
+    int64_t asked_us = w->asked_us[w->model->joints[joint].motor];
+    bool fresh = !said->believed && said->at_us >= asked_us;
+    if (!fresh && may_be_second(w, seen, now_us)) {
         w->doubled++;
         return;
     }
     if (said->believed) {
         fail_msg("a reply of %s was believed twice", name);
     }
-    if (said->at_us < w->asked_us[joint]) {
+    if (said->at_us < asked_us) {
         fail_msg("a reply of %s was believed that is older than the question", name);
     }
     said->believed = true;
+    w->said_us[joint] = said->at_us;
     w->believed++;
     if (said->bytes[4] == GROBO_RS30X_GOAL) {
         w->goal_us[joint] = said->at_us;
@@ -247,18 +283,21 @@ static void believe_said(witness *w, int joint, const witness_packet *seen, int6
 
 void witness_believed(witness *w, int joint, const grobo_joint_state *state, int64_t now_us)
 {
-    if (state != NULL) {
-        const witness_packet *seen = find_seen(w, joint, state, now_us);
-        if (seen == NULL) {
-            fail_msg("nobody said what was believed of %s", w->model->joints[joint].name);
-        } else if (seen->sound) {
-            believe_said(w, joint, seen, now_us);
-        } else {
-            w->made_up_believed++;
-            mislead(w, joint);
-        }
+    const witness_packet *seen = find_seen(w, joint, state);
+    if (seen == NULL) {
+        fail_msg("nobody said what was believed of %s", w->model->joints[joint].name);
+    } else if (seen->sound) {
+        believe_said(w, joint, seen, now_us);
+    } else {
+        w->made_up_believed++;
+        mislead(w, joint);
     }
-    w->asked_us[joint] = 0;
+}
+
+bool witness_asked(const witness *w, int address)
+{
+    const uint8_t *p = w->sent[(w->n_sent - 1) % WITNESS_SENT].bytes;
+    return reads(p) && p[4] <= address && address < p[4] + p[5];
 }
 
 bool witness_restarted(const witness *w, int joint)

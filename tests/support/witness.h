@@ -10,10 +10,17 @@
 #ifndef GROBO_TEST_WITNESS_H
 #define GROBO_TEST_WITNESS_H
 
+#include <grobo/bus.h>
 #include <grobo/driver.h>
 #include <grobo/sim.h>
 
-enum { WITNESS_BYTES = 64, WITNESS_SENT = 128, WITNESS_SAID = 64, WITNESS_SEEN = 16 };
+enum {
+    WITNESS_BYTES = 64,
+    WITNESS_SENT = 128,
+    WITNESS_SAID = 64,
+    WITNESS_SEEN = 16,
+    WITNESS_QUESTIONS = 16
+};
 
 /* A packet: sent by the host, said by a servo, or seen to arrive whole at the host. */
 typedef struct witness_packet {
@@ -25,6 +32,12 @@ typedef struct witness_packet {
     unsigned said_number; /* seen: which one it was */
 } witness_packet;
 
+/* A question: its attempts, between which other questions may leave, are one question. */
+typedef struct witness_question {
+    const grobo_txn *txn;
+    int64_t since_us; /* when its first attempt left */
+} witness_question;
+
 typedef struct witness {
     const grobo_model *model;
     const grobo_sim *sim;
@@ -32,8 +45,10 @@ typedef struct witness {
     unsigned n_sent, n_said, n_seen;
     uint8_t tail[WITNESS_BYTES]; /* the bytes that arrived last, ring */
     unsigned n_tail;
-    int64_t heard_us;                    /* when servos heard a command last */
-    int64_t asked_us[GROBO_JOINTS_MAX];  /* since when an answer is awaited; 0: it is not */
+    int64_t heard_us; /* when servos heard a command last */
+    witness_question questions[WITNESS_QUESTIONS];
+    int64_t asked_us[256]; /* of each motor: since when its question that left last is asked */
+    int64_t said_us[GROBO_JOINTS_MAX];   /* when the reading was said that was believed last */
     int64_t goal_us[GROBO_JOINTS_MAX];   /* when the goal was said that was believed last */
     int64_t reboot_us[GROBO_JOINTS_MAX]; /* when a servo last lost what it was told */
     grobo_joint_mask misled;             /* the line made something up about these */
@@ -44,15 +59,18 @@ typedef struct witness {
 } witness;
 
 void witness_init(witness *w, const grobo_model *model, const grobo_sim *sim);
-/* The host sends a packet. */
-void witness_sent(witness *w, const uint8_t *packet, size_t n, int64_t now_us);
+/* The host sends a packet, an attempt of this transaction. */
+void witness_sent(witness *w, const uint8_t *packet, size_t n, const grobo_txn *txn,
+                  int64_t now_us);
 /* The simulator tells. */
 void witness_heard(witness *w, const grobo_sim_event *event);
 /* Bytes arrive at the host. */
 void witness_arrived(witness *w, const uint8_t *bytes, size_t n, int64_t now_us);
-/* The host took this for a joint's state, or gave up (state NULL). Fails the test if nobody said
- * so: no servo, another one, an earlier time. */
+/* The host took this for a joint's state, as the answer to the question that left last. Fails the
+ * test if nobody said so: no servo, another one, before the question was first asked. */
 void witness_believed(witness *w, int joint, const grobo_joint_state *state, int64_t now_us);
+/* True if the question that left last asks for the register at this address. */
+bool witness_asked(const witness *w, int address);
 /* True if a servo restarted after its goal was read last: it has forgotten it, who can know. */
 bool witness_restarted(const witness *w, int joint);
 

@@ -87,6 +87,40 @@ static void the_balancer_brings_the_zmp_to_the_desired_one(void **state)
     assert_true(on.least_margin_m > 0.01);
 }
 
+/* It does so too with a foot as base, and where the base changes on the way: what the balancer sees
+ * of the body's speeds must not depend on the link they are told from. */
+static void the_balancer_works_from_any_base(void **state)
+{
+    const grobo_body_options options = {
+        .zmp = GROBO_BODY_ZMP_AUTO, .balance = GROBO_BODY_BALANCE_ON, .rate_hz = 100};
+    struct script script;
+    struct run waist, foot;
+
+    (void)state;
+    script_slow_step(&script);
+    run_start(&waist, &grobo_gr001_body, &script, &options);
+    for (int change = 0; change < 2; change++) {
+        for (size_t i = 0; i < script.n_keys; i++) {
+            script.targets[i][0].base = change && i == 2;
+        }
+        script.targets[0][2].base = true;
+        run_start(&foot, &grobo_gr001_body, &script, &options);
+        for (int i = 0; i < grobo_body_frame_count(waist.body); i++) {
+            grobo_body_report one, other;
+            double q[JOINTS];
+
+            assert_int_equal(grobo_body_frame(waist.body, i, q, &one), 0);
+            assert_int_equal(grobo_body_frame(foot.body, i, q, &other), 0);
+            assert_int_equal(other.unreachable, 0);
+            for (int k = 0; k < 3; k++) {
+                assert_true(fabs(one.root.p_m[k] - other.root.p_m[k]) < 1e-3);
+            }
+        }
+        run_finish(&foot);
+    }
+    run_finish(&waist);
+}
+
 /* A body that stands has its ZMP under its centre of mass; bent far over, it falls, and the lint
  * says when. */
 static void the_lint_tells_a_fall(void **state)
@@ -110,6 +144,82 @@ static void the_lint_tells_a_fall(void **state)
     assert_true(watch.last[GROBO_BODY_ZMP_MARGIN].begin_s > 2);
     assert_true(watch.last[GROBO_BODY_ZMP_MARGIN].end_s > 3.99);
     assert_true(watch.last[GROBO_BODY_ZMP_MARGIN].worst < -0.005);
+}
+
+/* The same lean eight times as fast: inertia counts 64 times, and the servos hurry. */
+static void the_lint_knows_the_speed(void **state)
+{
+    const grobo_body_options options = {.rate_hz = 100};
+    const uint16_t speeds_pct[] = {0, 100, 800};
+    int findings[3][2];
+    struct script script;
+
+    (void)state;
+    memset(&script, 0, sizeof script);
+    script_key(&script, 0);
+    script_joint(&script, 14, -1);
+    script_joint(&script, 17, 1);
+    script_stand(&script, 0.01, 0, 0.145);
+    script_key(&script, 0.8);
+    script_joint(&script, 14, 1);
+    script_joint(&script, 17, -1);
+    script_target(&script, WAIST, 0.02, 0, 0.145);
+    for (int i = 0; i < 3; i++) {
+        struct watch watch;
+        struct run run;
+        grobo_body_check_options checks = {.robot = &grobo_gr001_model,
+                                           .finding = see_finding,
+                                           .ctx = &watch,
+                                           .speed_pct = speeds_pct[i]};
+
+        memset(&watch, 0, sizeof watch);
+        run_start(&run, &grobo_gr001_body, &script, &options);
+        (void)grobo_body_check(run.body, &checks);
+        run_finish(&run);
+        findings[i][0] = watch.findings[GROBO_BODY_ZMP_MARGIN];
+        findings[i][1] = watch.findings[GROBO_BODY_JOINT_SPEED];
+        assert_true(watch.last[GROBO_BODY_JOINT_SPEED].end_s < 0.81);
+    }
+    assert_int_equal(findings[0][0] + findings[0][1] + findings[1][0] + findings[1][1], 0);
+    assert_true(findings[2][0] > 0);
+    assert_int_equal(findings[2][1], 2);
+}
+
+static void last_frame(void *ctx, const grobo_body_balance_frame *frame)
+{
+    *(grobo_body_balance_frame *)ctx = *frame;
+}
+
+/* Balance is judged with the chest where it is played: at its limit. */
+static void the_lint_takes_slack(void **state)
+{
+    const grobo_body_options options = {.rate_hz = 100};
+    const double chest_rad[] = {0, 0.01, 0.01, 0.03};
+    const bool takes[] = {false, true, false, true};
+    double com_m[4];
+
+    (void)state;
+    for (int i = 0; i < 4; i++) {
+        grobo_body_balance_frame frame;
+        grobo_body_check_options checks = {.robot = &grobo_gr001_model,
+                                           .frame = last_frame,
+                                           .takes_slack = takes[i],
+                                           .ctx = &frame};
+        struct script script;
+        struct run run;
+
+        memset(&script, 0, sizeof script);
+        script_key(&script, 0);
+        script_joint(&script, 12, chest_rad[i]);
+        script_stand(&script, 0.01, 0, 0.145);
+        run_start(&run, &grobo_gr001_body, &script, &options);
+        assert_int_equal(grobo_body_check(run.body, &checks), i > 0);
+        run_finish(&run);
+        com_m[i] = frame.com_m[0];
+    }
+    assert_true(com_m[1] == com_m[0]);
+    assert_true(fabs(com_m[2] - com_m[0]) > 1e-5);
+    assert_true(fabs(com_m[3] - com_m[2]) > 1e-5);
 }
 
 static void the_lint_tells_what_else_is_wrong(void **state)
@@ -168,7 +278,10 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_balancer_brings_the_zmp_to_the_desired_one),
+        cmocka_unit_test(the_balancer_works_from_any_base),
         cmocka_unit_test(the_lint_tells_a_fall),
+        cmocka_unit_test(the_lint_knows_the_speed),
+        cmocka_unit_test(the_lint_takes_slack),
         cmocka_unit_test(the_lint_tells_what_else_is_wrong),
         cmocka_unit_test(margins_of_a_hull),
     };

@@ -294,6 +294,34 @@ static void exact_ik_finds_the_pose_again(void **state)
     }
 }
 
+/* Beside a straight knee, where a small error of the ankle's place is a large one of the knee. */
+static void exact_ik_is_exact_beside_a_straight_knee(void **state)
+{
+    (void)state;
+    for (double knee = 0.1; knee > 1e-5; knee *= 0.7) {
+        for (int foot = 0; foot < 2; foot++) {
+            const double side = foot == 0 ? 1 : -1;
+            double q[20] = {0}, answer[6];
+            double *leg = q + 6 * foot;
+            grobo_transform links[21], hit[21], target;
+
+            leg[0] = 0.1;
+            leg[1] = side * 0.05;
+            leg[2] = side * 0.3;
+            leg[3] = -side * knee;
+            leg[4] = side * 0.25;
+            grobo_body_forward(&grobo_gr001_body, NULL, q, links);
+            in_frame_of(&links[0], &links[foot == 0 ? 6 : 12], &target);
+            assert_int_equal(grobo_body_leg_exact(&grobo_gr001_body, foot, &target, answer), 0);
+            assert_true(fabs(answer[3] - leg[3]) * knee < 1e-13); /* the rounding of a cosine */
+            memcpy(leg, answer, sizeof answer);
+            grobo_body_forward(&grobo_gr001_body, NULL, q, hit);
+            assert_true(transforms_apart(&hit[foot == 0 ? 6 : 12], &links[foot == 0 ? 6 : 12]) <
+                        1e-9);
+        }
+    }
+}
+
 static void far_targets_are_unreachable(void **state)
 {
     const double q[20] = {0};
@@ -450,6 +478,7 @@ int main(void)
         cmocka_unit_test(exact_ik_hits_the_target),
         cmocka_unit_test(exact_ik_hits_the_target_of_a_larger_robot),
         cmocka_unit_test(exact_ik_finds_the_pose_again),
+        cmocka_unit_test(exact_ik_is_exact_beside_a_straight_knee),
         cmocka_unit_test(far_targets_are_unreachable),
         cmocka_unit_test(numeric_ik_comes_near_the_exact_answer),
         cmocka_unit_test(jacobian_is_the_derivative),

@@ -258,6 +258,29 @@ static void the_waist_is_told_without_a_target(void **state)
     run_finish(&run);
 }
 
+/* What waits for its first key is at that key's place: a foot stands there. */
+static void a_foot_stands_before_its_first_key(void **state)
+{
+    const grobo_body_options options = {.rate_hz = 10};
+    struct script script;
+    struct run run;
+    double q[JOINTS];
+    grobo_body_report report;
+
+    (void)state;
+    memset(&script, 0, sizeof script);
+    script_key(&script, 0.5);
+    script_stand(&script, 0, 0, 0.145);
+    script.targets[0][1].touching = false;
+    run_start(&run, &grobo_gr001_body, &script, &options);
+    for (int i = 0; i <= 5; i++) {
+        assert_int_equal(grobo_body_frame(run.body, i, q, &report), 0);
+        assert_false(report.touching[0]);
+        assert_true(report.touching[1]);
+    }
+    run_finish(&run);
+}
+
 /* A slave foot follows the joints' own keys while both its keys are slaves, and comes to its
  * target where one is not. */
 static void a_slave_foot_follows_its_joints(void **state)
@@ -532,6 +555,7 @@ int main(void)
         cmocka_unit_test(unreachable_targets_are_told),
         cmocka_unit_test(a_foot_can_be_the_base),
         cmocka_unit_test(the_waist_is_told_without_a_target),
+        cmocka_unit_test(a_foot_stands_before_its_first_key),
         cmocka_unit_test(a_slave_foot_follows_its_joints),
         cmocka_unit_test(a_stealthy_step_does_not_slide),
         cmocka_unit_test(automatic_zmp_is_under_the_standing_foot),

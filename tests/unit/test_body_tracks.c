@@ -12,13 +12,14 @@
 #include "body/body_priv.h"
 #include "body/vec.h"
 #include "body_script.h"
+#include "transforms.h"
 
 #define NEAR 1e-12
 
 /* A track of one or six values with room. */
 struct shelf {
     struct grobo_i_track track;
-    double t_s[16], v[16 * 6], slope[16 * 6];
+    double t_s[16], from_s[16], v[16 * 6], slope[16 * 6];
     uint8_t flags[16];
 };
 
@@ -26,6 +27,7 @@ static void open_shelf(struct shelf *shelf, int dim)
 {
     memset(shelf, 0, sizeof *shelf);
     shelf->track = (struct grobo_i_track){.t_s = shelf->t_s,
+                                          .from_s = shelf->from_s,
                                           .v = shelf->v,
                                           .slope = shelf->slope,
                                           .flags = shelf->flags,
@@ -171,6 +173,9 @@ static void the_base_is_the_latest_that_says_so(void **state)
     script_target(&script, LEFT, 0, 0.02, 0.03)->base = true;
     script_key(&script, 3); /* the other no longer does, though it is later now */
     script_target(&script, RIGHT, 0, -0.02, 0.02);
+    script_key(&script, 4); /* of two at the same time the last link wins */
+    script_target(&script, RIGHT, 0, -0.02, 0.02)->base = true;
+    script_target(&script, LEFT, 0, 0.02, 0.03)->base = true;
     run_start(&run, &grobo_gr001_body, &script, &options);
     assert_int_equal(grobo_body_frame(run.body, 0, q, &first), 0);
     assert_int_equal(grobo_body_frame(run.body, 15, q, &later), 0);
@@ -179,6 +184,8 @@ static void the_base_is_the_latest_that_says_so(void **state)
     assert_true(fabs(later.root.p_m[2] - first.root.p_m[2]) > 5e-3);
     first = later;
     assert_int_equal(grobo_body_frame(run.body, 30, q, &later), 0);
+    assert_memory_equal(&later.root, &first.root, sizeof first.root);
+    assert_int_equal(grobo_body_frame(run.body, 40, q, &later), 0);
     assert_memory_equal(&later.root, &first.root, sizeof first.root);
     run_finish(&run);
 }
@@ -311,6 +318,35 @@ static void feet_wait_for_the_zmp(void **state)
     run_finish(&run);
 }
 
+/* The first ZMP key of the author comes with the first key of the swing foot in the air. The foot
+ * rests until half the way there. The key for the support is inserted behind the author's, which
+ * is later: until that one the ZMP stays at its place, then it jumps to the sole. */
+static void a_first_zmp_key_behind_the_lift(void **state)
+{
+    struct script script;
+    struct run run;
+    unsigned flags = 0;
+
+    (void)state;
+    memset(&script, 0, sizeof script);
+    script_key(&script, 0);
+    script_stand(&script, 0, 0, 0.145);
+    script_key(&script, 1.2);
+    script_target(&script, RIGHT, FOOT_X, -FOOT_Y, FOOT_Z + 0.02);
+    zmp_key(&script, SOLE_X, 0);
+    script_key(&script, 1.5);
+    script_target(&script, RIGHT, FOOT_X, -FOOT_Y, FOOT_Z + 0.02);
+    run_start(&run, &grobo_gr001_body, &script, &automatic);
+    assert_int_equal(keys_at(&run.body->target[GROBO_I_RIGHT], 0.6, &flags), 1);
+    assert_int_equal(flags, TRACK_TOUCH | TRACK_END | TRACK_AUX);
+    zmp_is(&run, 0, SOLE_X, 0);
+    zmp_is(&run, 0.6, SOLE_X, 0);
+    zmp_is(&run, 1.199, SOLE_X, 0);
+    zmp_is(&run, 1.2, SOLE_X, SOLE_Y);
+    zmp_is(&run, 1.6, SOLE_X, SOLE_Y);
+    run_finish(&run);
+}
+
 /* Two steps of the same foot: the ZMP visits the middle between them, the less of it the shorter
  * both feet stand. */
 static void same_foot_twice(double stand_s, const grobo_body_options *options, struct run *run)
@@ -367,6 +403,8 @@ static void an_author_s_zmp_keys_are_held(void **state)
 
     (void)state;
     script_step(&script);
+    script.keys[0].has_zmp = true;
+    script.keys[0].zmp_m[0] = SOLE_X;
     script.n_keys--;
     script_key(&script, 3)->max_transition_s = 0.25;
     zmp_key(&script, SOLE_X, 0.007);
@@ -414,6 +452,70 @@ static void a_leg_gives_up_the_least_of_a_shift(void **state)
     run_finish(&run);
 }
 
+/* A foot between full contact and its joints' own keys follows the shift by its blending ratio. */
+static void a_slave_foot_follows_the_shifted_waist(void **state)
+{
+    const grobo_body_options options = {.rate_hz = 100};
+    const double shift[2] = {0.004, 0.006};
+    struct script script;
+    struct run run;
+    grobo_body_report report;
+    grobo_transform links[21];
+
+    (void)state;
+    memset(&script, 0, sizeof script);
+    for (int i = 0; i < 2; i++) {
+        script_key(&script, i);
+        script_stand(&script, 0, 0, 0.14);
+        script.targets[i][1].touching = false;
+        script.targets[i][1].slave = i == 1;
+    }
+    run_start(&run, &grobo_gr001_body, &script, &options);
+    for (int i = 0; i < 10; i++) {
+        const double part = smooth(0.1 * i);
+
+        grobo_i_solve(run.body, 0.1 * i, shift, &report);
+        assert_int_equal(report.unreachable, 0);
+        grobo_body_forward(&grobo_gr001_body, &report.root, run.body->q_rad, links);
+        assert_true(fabs(links[RIGHT].p_m[0] - FOOT_X - part * shift[0]) < 1e-9);
+        assert_true(fabs(links[RIGHT].p_m[1] + FOOT_Y - part * shift[1]) < 1e-9);
+        assert_true(fabs(links[RIGHT].p_m[2] - FOOT_Z) < 1e-9);
+        assert_true(fabs(links[LEFT].p_m[1] - FOOT_Y) < 1e-9);
+    }
+    run_finish(&run);
+}
+
+/* With a foot as base the waist is the goal. Where it is shifted beyond reach the leg stays as its
+ * joints' keys have it, and the waist is where that leg puts it; the base foot does not move. */
+static void a_waist_shifted_beyond_its_base_foot(void **state)
+{
+    const grobo_body_options options = {.rate_hz = 100};
+    const double shift[2] = {0.06, 0.08};
+    struct script script;
+    struct run run;
+    grobo_body_report report;
+    grobo_transform links[21];
+
+    (void)state;
+    memset(&script, 0, sizeof script);
+    script_key(&script, 0);
+    for (int j = 0; j < 12; j++) {
+        script_joint(&script, j, 0.01 * j);
+    }
+    script_stand(&script, 0, 0, 0.148);
+    script.targets[0][0].base = false;
+    script.targets[0][2].base = true;
+    run_start(&run, &grobo_gr001_body, &script, &options);
+    grobo_i_solve(run.body, 0, shift, &report);
+    assert_true((report.unreachable & UINT64_C(1) << LEFT) != 0);
+    for (int j = 6; j < 12; j++) {
+        assert_true(fabs(run.body->q_rad[j] - 0.01 * j) < NEAR);
+    }
+    grobo_body_forward(&grobo_gr001_body, &report.root, run.body->q_rad, links);
+    assert_true(transforms_apart(&links[LEFT], &script.targets[0][2].at) < NEAR);
+    run_finish(&run);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -425,9 +527,12 @@ int main(void)
         cmocka_unit_test(the_base_is_the_latest_that_says_so),
         cmocka_unit_test(slave_feet_are_blended),
         cmocka_unit_test(feet_wait_for_the_zmp),
+        cmocka_unit_test(a_first_zmp_key_behind_the_lift),
         cmocka_unit_test(the_zmp_visits_the_middle),
         cmocka_unit_test(an_author_s_zmp_keys_are_held),
         cmocka_unit_test(a_leg_gives_up_the_least_of_a_shift),
+        cmocka_unit_test(a_slave_foot_follows_the_shifted_waist),
+        cmocka_unit_test(a_waist_shifted_beyond_its_base_foot),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

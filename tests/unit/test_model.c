@@ -56,6 +56,38 @@ static void gr001_is_as_its_sheet_says(void **state)
     }
 }
 
+/* Motion files of GR001 may leave a limit by one degree, judged on the wire's grid. */
+static void slack_goes_to_the_limit(void **state)
+{
+    const double max_rad = gr001->joints[12].max_rad, min_rad = gr001->joints[12].min_rad;
+    const double within_deg[] = {0.06, 0.3, 1, 1.04}, left_deg[] = {-20, 0, 0.04, 1.06, 30};
+    grobo_model model = *gr001;
+
+    (void)state;
+    for (size_t i = 0; i < sizeof within_deg / sizeof within_deg[0]; i++) {
+        const double by_rad = grobo_rad_from_deg(within_deg[i]);
+
+        assert_true(grobo_model_take_slack(gr001, 12, max_rad + by_rad) == max_rad);
+        assert_true(grobo_model_take_slack(gr001, 12, min_rad - by_rad) == min_rad);
+    }
+    for (size_t i = 0; i < sizeof left_deg / sizeof left_deg[0]; i++) {
+        const double by_rad = grobo_rad_from_deg(left_deg[i]);
+
+        assert_true(grobo_model_take_slack(gr001, 12, max_rad + by_rad) == max_rad + by_rad);
+        assert_true(grobo_model_take_slack(gr001, 12, min_rad - by_rad) == min_rad - by_rad);
+    }
+    assert_true(isnan(grobo_model_take_slack(gr001, 12, NAN)));
+    model.limit_slack_deg = 0;
+    assert_int_equal(grobo_model_check(&model), 0);
+    assert_true(grobo_model_take_slack(&model, 12, max_rad + 0.01) == max_rad + 0.01);
+    model.limit_slack_deg = -1;
+    assert_int_equal(grobo_model_check(&model), GROBO_ERR_ARG);
+    model.limit_slack_deg = 5.1;
+    assert_int_equal(grobo_model_check(&model), GROBO_ERR_ARG);
+    model.limit_slack_deg = NAN;
+    assert_int_equal(grobo_model_check(&model), GROBO_ERR_ARG);
+}
+
 static void the_standard_pose_is_the_initial_posture_of_the_wire(void **state)
 {
     (void)state;
@@ -213,7 +245,7 @@ static void make_two(void)
     arm[1] = (grobo_joint){"RIGHT", -1, 1, 5, 0, 0, 0, 2, 0, -1};
     arm_groups[0] = (grobo_group){"both", 3};
     arm_groups[1] = (grobo_group){"one", 1};
-    two = (grobo_model){"TWO", arm, arm_groups, 2, 2};
+    two = (grobo_model){"TWO", arm, arm_groups, 2, 2, 0};
 }
 
 #define assert_refused(fault)                                                                      \
@@ -264,6 +296,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(gr001_is_as_its_sheet_says),
+        cmocka_unit_test(slack_goes_to_the_limit),
         cmocka_unit_test(the_standard_pose_is_the_initial_posture_of_the_wire),
         cmocka_unit_test(servos_are_eleven_of_one_kind_and_nine_of_the_other),
         cmocka_unit_test(the_mirror_fits_names_limits_and_pose),

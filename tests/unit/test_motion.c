@@ -12,6 +12,8 @@
 
 #include <grobo/motion.h>
 
+#include <grobo/motion_io.h>
+
 #include "counted_mem.h"
 #include "motion_texts.h"
 
@@ -59,6 +61,15 @@ static void test_new_refuses(void **state)
                      GROBO_ERR_CAP);
     assert_null(motion);
     grobo_motion_free(NULL);
+    for (int kind = GROBO_MOTION_POSTURES; kind <= GROBO_MOTION_FRAMES; kind++) {
+        assert_int_equal(grobo_motion_new(&motion, (grobo_motion_kind)kind, 7, NULL), 0);
+        assert_int_equal(grobo_motion_get_kind(motion), kind);
+        assert_int_equal(grobo_motion_joints(motion), 7);
+        assert_int_equal(grobo_motion_size(motion), 0);
+        assert_int_equal(grobo_motion_current(motion), 0);
+        assert_false(grobo_motion_is_reverse(motion));
+        grobo_motion_free(motion);
+    }
 }
 
 static void test_append_refuses(void **state)
@@ -78,7 +89,9 @@ static void test_append_refuses(void **state)
     posture.angle_rad[2] = HUGE_VAL;
     assert_int_equal(grobo_motion_append(motion, &posture), GROBO_ERR_NAN);
     posture.set &= ~GROBO_JOINT_BIT(2);
+    posture.angle_rad[0] = 7;
     assert_int_equal(grobo_motion_append(motion, &posture), 0);
+    assert_true(first_angle(motion, 0) == 0 && first_angle(motion, 1) == 7); /* behind the last */
     assert_int_equal(grobo_motion_append_at(motion, NAN, &posture), GROBO_ERR_NAN);
     assert_int_equal(grobo_motion_append_at(motion, 1e10, &posture), GROBO_ERR_ARG);
     assert_int_equal(grobo_motion_size(motion), 2);
@@ -97,6 +110,8 @@ static void test_get_and_rget(void **state)
     assert_int_equal(grobo_motion_rget(motion, SIZE_MAX, &posture), GROBO_ERR_ARG);
     assert_int_equal(posture.n_joints, 7); /* untouched */
     assert_int_equal(grobo_motion_rget(motion, 1, &posture), 0);
+    assert_int_equal(posture.n_joints, 2);
+    assert_int_equal(posture.set, 3);
     assert_true(posture.angle_rad[1] == 5.0);
     assert_int_equal(posture.time_us, 1000000);
     assert_int_equal(grobo_motion_rget(motion, 5, &posture), 0);
@@ -257,6 +272,8 @@ static void test_walk(void **state)
     }
     assert_int_equal(grobo_motion_next(motion, &posture), 0);
     grobo_motion_clear(motion);
+    assert_int_equal(grobo_motion_size(motion), 0);
+    assert_int_equal(grobo_motion_current(motion), 0);
     grobo_motion_reset(motion);
     assert_int_equal(grobo_motion_next(motion, &posture), 0);
     grobo_motion_free(motion);
@@ -343,8 +360,12 @@ static void test_dup_is_deep_and_equal(void **state)
     size_t count = 0;
 
     assert_non_null(motion);
+    (void)grobo_motion_set_reverse(motion, true);
+    grobo_motion_reset(motion);
     assert_int_equal(grobo_motion_dup(motion, &copy), 0);
     assert_true(grobo_motion_equal(motion, copy));
+    assert_int_equal(grobo_motion_current(copy), 1);
+    assert_true(grobo_motion_is_reverse(copy));
     assert_ptr_not_equal(grobo_motion_ik_links(motion, 0, &count),
                          grobo_motion_ik_links(copy, 0, &count));
     assert_int_equal(count, 2);
@@ -418,6 +439,45 @@ static void test_memory_of_a_long_motion(void **state)
     assert_int_equal(counter.bytes, 0);
 }
 
+/* Beside its source a conversion holds one posture for each that it makes, and its time. */
+static void test_memory_of_a_conversion(void **state)
+{
+    static const struct {
+        grobo_motion_kind from, to;
+        int step_us;
+    } cases[] = {
+        {GROBO_MOTION_POSTURES, GROBO_MOTION_FRAMES, 20000},
+        {GROBO_MOTION_POSTURES, GROBO_MOTION_FRAMES, 100000}, /* resampled */
+        {GROBO_MOTION_POSTURES, GROBO_MOTION_KEYS, 100000},
+        {GROBO_MOTION_KEYS, GROBO_MOTION_POSTURES, 100000},
+        {GROBO_MOTION_FRAMES, GROBO_MOTION_POSTURES, 20000},
+    };
+    enum { SIZE = 10000 };
+
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        counted_mem counter = {0};
+        grobo_mem mem = counted_mem_of(&counter);
+        grobo_motion *motion = NULL, *made = NULL;
+        grobo_posture posture = posture_of(20, 0, cases[i].step_us);
+
+        assert_int_equal(grobo_motion_new(&motion, cases[i].from, 20, &mem), 0);
+        if (cases[i].from == GROBO_MOTION_FRAMES) {
+            assert_int_equal(grobo_motion_set_frame_rate(motion, 1e6 / cases[i].step_us), 0);
+        }
+        for (int n = 0; n < SIZE; n++) {
+            assert_int_equal(grobo_motion_append(motion, &posture), 0);
+        }
+        size_t held = counter.bytes;
+        counter.bytes_peak = held;
+        assert_int_equal(grobo_motion_convert(motion, cases[i].to, NULL, NULL, &made), 0);
+        assert_true(counter.bytes_peak - held <= 200 * grobo_motion_size(made));
+        grobo_motion_free(motion);
+        grobo_motion_free(made);
+        assert_int_equal(counter.bytes, 0);
+    }
+}
+
 /* Every allocation fails in turn: an error, and nothing is lost or leaked. */
 static void test_allocations_fail(void **state)
 {
@@ -461,6 +521,7 @@ int main(void)
         cmocka_unit_test(test_kept_keys),
         cmocka_unit_test(test_links_refused),
         cmocka_unit_test(test_memory_of_a_long_motion),
+        cmocka_unit_test(test_memory_of_a_conversion),
         cmocka_unit_test(test_allocations_fail),
     };
 

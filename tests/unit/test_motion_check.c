@@ -19,8 +19,10 @@ typedef struct checked {
     size_t warnings, notes;
 } checked;
 
-static checked check(const char *text, bool positions)
+/* slack: NULL: none is taken. */
+static checked check_with(const char *text, bool positions, grobo_slack_taken *slack)
 {
+    const grobo_check_options how = {.slack = slack};
     grobo_read_options options = {.model = &grobo_gr001_model, .keep_positions = positions};
     checked found;
     grobo_motion *motion = NULL;
@@ -28,12 +30,17 @@ static checked check(const char *text, bool positions)
     assert_int_equal(grobo_diagnostics_new(&found.list, NULL), 0);
     assert_int_equal(grobo_motion_read_memory(text, strlen(text), &options, found.list, &motion),
                      0);
-    found.errors = grobo_motion_check(motion, &grobo_gr001_model, NULL, found.list);
+    found.errors = grobo_motion_check(motion, &grobo_gr001_model, &how, found.list);
     assert_true((size_t)found.errors == grobo_diagnostics_total(found.list, GROBO_SEVERITY_ERROR));
     found.warnings = grobo_diagnostics_total(found.list, GROBO_SEVERITY_WARNING);
     found.notes = grobo_diagnostics_total(found.list, GROBO_SEVERITY_NOTE);
     grobo_motion_free(motion);
     return found;
+}
+
+static checked check(const char *text, bool positions)
+{
+    return check_with(text, positions, NULL);
 }
 
 static bool says(const checked *found, const char *words)
@@ -77,6 +84,42 @@ static void test_limits(void **state)
     grobo_diagnostics_free(found.list);
     found = check(text, false);
     assert_true(has_diagnostic(found.list, "limit", 5, 0));
+    grobo_diagnostics_free(found.list);
+}
+
+/* Within a degree of a limit an angle is counted, beyond it is an error, on curves too. */
+static void test_slack(void **state)
+{
+    grobo_slack_taken slack = {0};
+
+    (void)state;
+    checked found = check_with(
+        TOP "- { time: 0, refer: { type: Pose, joints: [ 3, 12 ], q: [ 0, 0 ] } }\n"
+            "- { time: 1, refer: { type: Pose, joints: [ 12, 3 ], q: [ 0.005, 0.01 ] } }\n"
+            "- { time: 2, refer: { type: Pose, joints: [ 3 ], q: [ 0.02 ] } }\n",
+        true, &slack);
+    assert_int_equal(found.errors, 1);
+    assert_true(has_diagnostic(found.list, "limit", 7, 55));
+    assert_true(slack.n == 2 && slack.joint == 3 && slack.line == 6);
+    assert_true(slack.worst_rad == 0.01);
+    grobo_diagnostics_free(found.list);
+    /* the keys are within, the curve swings out by 0.4 degrees; then from a slack key by 2 */
+    memset(&slack, 0, sizeof slack);
+    found =
+        check_with(TOP "- { time: 0, refer: { type: Pose, joints: [ 13 ], q: [ 0 ] } }\n"
+                       "- { time: 1, refer: { type: Pose, joints: [ 13 ], q: [ 0.87 ] } }\n"
+                       "- { time: 1.2, refer: { type: Pose, joints: [ 13 ], q: [ 0.8712 ] } }\n",
+                   true, &slack);
+    assert_int_equal(found.errors, 0);
+    assert_true(slack.n == 1 && slack.joint == 13 && slack.line == 7);
+    grobo_diagnostics_free(found.list);
+    found =
+        check_with(TOP "- { time: 0, refer: { type: Pose, joints: [ 13 ], q: [ 0 ] } }\n"
+                       "- { time: 0.3, refer: { type: Pose, joints: [ 13 ], q: [ 0.878 ] } }\n"
+                       "- { time: 2.3, refer: { type: Pose, joints: [ 13 ], q: [ 0.8795 ] } }\n",
+                   true, &slack);
+    assert_int_equal(found.errors, 1);
+    assert_true(has_diagnostic(found.list, "limit-between", 7, 0));
     grobo_diagnostics_free(found.list);
 }
 
@@ -149,10 +192,11 @@ static void test_frames(void **state)
 {
     (void)state;
     /* A fault that lasts is said once, and again when it comes back. */
-    checked found = check("type: BodyMotion\ntargetBody: Other\ncomponents:\n"
-                          "- { type: MultiValueSeq, content: JointPosition, frameRate: 1,\n"
-                          "    frames: [\n[ 0 ],\n[ 1 ],\n[ 1 ],\n[ 0 ],\n[ 1 ] ] }\n",
-                          true);
+    checked found =
+        check("type: BodyMotion\ntargetBody: Other\ncomponents:\n"
+              "- { type: MultiValueSeq, content: JointPosition, frameRate: 1, numParts: 1,\n"
+              "    frames: [\n[ 0 ],\n[ 1 ],\n[ 1 ],\n[ 0 ],\n[ 1 ] ] }\n",
+              true);
 
     assert_int_equal(found.errors, 2);
     assert_true(has_diagnostic(found.list, "limit", 7, 3));
@@ -293,19 +337,13 @@ static void test_real_motion(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_clean),
-        cmocka_unit_test(test_limits),
-        cmocka_unit_test(test_too_fast),
-        cmocka_unit_test(test_curve),
-        cmocka_unit_test(test_postures),
-        cmocka_unit_test(test_increments),
-        cmocka_unit_test(test_frames),
-        cmocka_unit_test(test_warnings),
-        cmocka_unit_test(test_speed_it_is_played_at),
-        cmocka_unit_test(test_unknown_once),
-        cmocka_unit_test(test_empty),
-        cmocka_unit_test(test_list_is_bounded),
-        cmocka_unit_test(test_real_motion),
+        cmocka_unit_test(test_clean),           cmocka_unit_test(test_limits),
+        cmocka_unit_test(test_slack),           cmocka_unit_test(test_too_fast),
+        cmocka_unit_test(test_curve),           cmocka_unit_test(test_postures),
+        cmocka_unit_test(test_increments),      cmocka_unit_test(test_frames),
+        cmocka_unit_test(test_warnings),        cmocka_unit_test(test_speed_it_is_played_at),
+        cmocka_unit_test(test_unknown_once),    cmocka_unit_test(test_empty),
+        cmocka_unit_test(test_list_is_bounded), cmocka_unit_test(test_real_motion),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

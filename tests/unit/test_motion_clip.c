@@ -207,7 +207,7 @@ static void test_frames(void **state)
     (void)state;
     grobo_motion *motion =
         motion_of("type: BodyMotion\ncomponents:\n- { type: MultiValueSeq, purpose: JointPosition,"
-                  " frameRate: 10, frames: [ [ 0 ], [ 1 ], [ 4 ] ] }\n",
+                  " frameRate: 10, numParts: 1, frames: [ [ 0 ], [ 1 ], [ 4 ] ] }\n",
                   GROBO_FORMAT_AUTO);
     grobo_clip clip = clip_of(motion, NULL);
 

@@ -32,7 +32,7 @@ static void test_mode(void **state)
     const char *path = in_folder("a.m");
     struct stat status;
 
-    put_file(path, "old");
+    put_file(path, "500  20\n");
     assert_int_equal(chmod(path, 0640), 0);
     assert_int_equal(grobo_motion_save(motion, grobo_files_os(), path, NULL, NULL), 0);
     assert_int_equal(stat(path, &status), 0);
@@ -46,7 +46,7 @@ static void test_save_through_a_link(void **state)
     grobo_motion *motion = motion_of("500  10\n", GROBO_FORMAT_M);
     struct stat status;
 
-    put_file(in_folder("b.m"), "old");
+    put_file(in_folder("b.m"), "500  20\n");
     assert_int_equal(symlink(in_folder("b.m"), in_folder("link.m")), 0);
     assert_int_equal(grobo_motion_save(motion, grobo_files_os(), in_folder("link.m"),
                                        &(grobo_write_options){.model = &grobo_gr001_model}, NULL),

@@ -11,6 +11,7 @@
 
 #include <cmocka.h>
 
+#include "counted_mem.h"
 #include "motion_texts.h"
 
 /* ---- .m ----------------------------------------------------------------------------------- */
@@ -224,8 +225,9 @@ static const struct bad_file {
      4, 45},
     {TOP "- { time: 0, refer: { type: Pose, joints: [ -1 ], q: [ 1 ] } }", GROBO_ERR_SYNTAX,
      "joints", 4, 45},
-    {TOP "- { time: 0, refer: { type: Pose, ikLinks: [ { name: a } ] } }", GROBO_ERR_SYNTAX,
-     "key-missing", 4, 46},
+    {TOP "- { time: -1, refer: { type: Pose } }", GROBO_ERR_SYNTAX, "time-range", 4, 11},
+    {TOP "- { time: 0, refer: { type: Pose, joints: [ 1 ], q: [ 1e308 ] } }", GROBO_ERR_SYNTAX,
+     "angle-range", 4, 55},
     {TOP "- { time: 0, refer: { type: Pose, isZmpStationaryPoint: 3 } }", GROBO_ERR_SYNTAX, "type",
      4, 57},
     {TOP "- { time: 0, refer: { type: Pose, a: 1, a: 2 } }", GROBO_ERR_SYNTAX, "key-twice", 4, 41},
@@ -382,6 +384,12 @@ static void test_body_motion_refused(void **state)
         {PART "content: JointPosition }", "no-frames", 4, 3},
         {PART "content: JointPosition, numParts: 2, frames: [ [ 1 ] ] }", "frame-length", 4, 73},
         {PART "content: Other, frames: [ [ 1 ] ] }", "no-joints", 1, 7},
+        {PART "content: JointPosition, frames: [ [ 1 ] ] }", "no-parts", 4, 58},
+        {PART "content: JointPosition, numParts: 1, frames: [ [ 1e7 ] ] }", "angle-range", 4, 75},
+        {PART "content: JointPosition, numParts: 1, hasFrameTime: true, frames: [ [ -1, 1 ] ] }",
+         "time-range", 4, 95},
+        {PART "content: JointPosition, numParts: 1, frames: [ [ -1, 1 ] ], hasFrameTime: true }",
+         "frame-length", 4, 73},
         {PART "content: JointPosition, frameRate: x, frames: [ [ 1 ] ] }", "type", 4, 61},
         {PART "content: JointPosition, frameRate: -1, frames: [ [ 1 ] ] }", "frame-rate", 4, 61},
     };
@@ -399,6 +407,93 @@ static void test_body_motion_refused(void **state)
         }
         grobo_diagnostics_free(list);
     }
+}
+
+/* As Choreonoid: version 1 is called BodyMotion. */
+static void test_composite_needs_a_version(void **state)
+{
+    (void)state;
+    assert_int_equal(
+        read_result("type: CompositeSeq\ncomponents:\n- { type: MultiValueSeq, content: "
+                    "JointPosition, frameRate: 1, numParts: 1, frames: [ [ 1 ] ] }\n",
+                    NULL, NULL),
+        GROBO_ERR_TYPE);
+}
+
+/* A target that cannot be used is left out with a warning, and what it kept goes with it. */
+static void test_unusable_links_are_skipped(void **state)
+{
+    (void)state;
+#define LINK "rotation: [ 1, 0, 0, 0, 1, 0, 0, 0, 1 ] }"
+    static const char text[] =
+        "type: PoseSeq\nname: t\nrefs:\n- { time: 0, refer: { type: Pose, ikLinks: [\n"
+        "  { name: A, mine: 1, translation: [ 0, 0 ], " LINK ",\n"
+        "  { name: B, " LINK ",\n  { translation: [ 0, 0, 0 ], " LINK ",\n"
+        "  { name: C, mine: 2, translation: [ 1, 2, 3 ], " LINK " ] } }\n";
+#undef LINK
+    grobo_diagnostics *list = NULL;
+    grobo_kept kept;
+    size_t count = 0;
+
+    assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
+    assert_int_equal(read_result(text, NULL, list), 0);
+    assert_int_equal(grobo_diagnostics_total(list, GROBO_SEVERITY_WARNING), 3);
+    assert_true(has_diagnostic(list, "link-skipped", 5, 3) &&
+                has_diagnostic(list, "link-skipped", 6, 3) &&
+                has_diagnostic(list, "link-skipped", 7, 3));
+    grobo_diagnostics_free(list);
+    grobo_motion *motion = motion_of(text, GROBO_FORMAT_PSEQ);
+    const grobo_ik_link *links = grobo_motion_ik_links(motion, 0, &count);
+    assert_int_equal(count, 1);
+    assert_string_equal(links[0].name, "C");
+    assert_int_equal(grobo_motion_kept_count(motion, 0), 1);
+    assert_int_equal(grobo_motion_get_kept(motion, 0, 0, &kept), 0);
+    assert_string_equal(kept.value, "2");
+    assert_int_equal(kept.link, 0);
+    grobo_motion_free(motion);
+}
+
+/* Choreonoid does not look at the type: the refs say what the file is. */
+static void test_key_poses_of_another_type(void **state)
+{
+    (void)state;
+    static const char text[] = "type: Foo\nname: t\nrefs: [ { time: 0, refer: { type: Pose } } ]\n";
+    grobo_diagnostics *list = NULL;
+
+    assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
+    assert_int_equal(read_result(text, NULL, list), 0);
+    assert_true(has_diagnostic(list, "top-type", 1, 7));
+    grobo_diagnostics_free(list);
+}
+
+/* A posture of 20 joints takes 188 bytes, also where places are kept: those of the first alone. */
+static void test_memory_of_a_long_file(void **state)
+{
+    (void)state;
+    enum { POSTURES = 100000 };
+    static const char line[] = "10 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0\n";
+    size_t length = strlen(line);
+    char *text = malloc(length * POSTURES + 1);
+    for (size_t n = 0; n < POSTURES; n++) {
+        memcpy(text + n * length, line, length + 1);
+    }
+    counted_mem counter = {0};
+    grobo_mem mem = counted_mem_of(&counter);
+    grobo_read_options options = {
+        .mem = &mem, .keep_positions = true, .model = &grobo_gr001_model, .format = GROBO_FORMAT_M};
+    grobo_motion *motion = NULL;
+    uint32_t at_line, at_column;
+
+    assert_int_equal(grobo_motion_read_memory(text, length * POSTURES, &options, NULL, &motion), 0);
+    size_t places = (size_t)GROBO_MOTION_POSITIONS_MAX * 512;
+    assert_in_range(counter.bytes, 188 * POSTURES, 200 * POSTURES + places);
+    assert_true(
+        grobo_motion_position(motion, GROBO_MOTION_POSITIONS_MAX - 1, 0, &at_line, &at_column));
+    assert_false(
+        grobo_motion_position(motion, GROBO_MOTION_POSITIONS_MAX, 0, &at_line, &at_column));
+    grobo_motion_free(motion);
+    assert_int_equal(counter.bytes, 0);
+    free(text);
 }
 
 /* ---- formats ------------------------------------------------------------------------------ */
@@ -480,6 +575,10 @@ int main(void)
         cmocka_unit_test(test_type_behind_refs),
         cmocka_unit_test(test_body_motion_keys_behind),
         cmocka_unit_test(test_frame_times_without_rate),
+        cmocka_unit_test(test_composite_needs_a_version),
+        cmocka_unit_test(test_unusable_links_are_skipped),
+        cmocka_unit_test(test_key_poses_of_another_type),
+        cmocka_unit_test(test_memory_of_a_long_file),
         cmocka_unit_test(test_body_motion_refused),
         cmocka_unit_test(test_format_by_content_and_name),
         cmocka_unit_test(test_files_refused),

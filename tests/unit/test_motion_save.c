@@ -21,7 +21,8 @@ static const grobo_write_options in_motor_order = {.model = &grobo_gr001_model};
 static int remove_folder(void **state)
 {
     static const char *const names[] = {"a.m",       "b.m",    "Motion1.m", "Motion2.m",
-                                        "Motion3.m", "walk.m", "walk.pseq"};
+                                        "Motion3.m", "walk.m", "walk.pseq", "walk.yaml",
+                                        "walk.mseq", "c.pseq", "c.yaml"};
 
     (void)state;
     (void)remove(in_folder("sub/c.yaml"));
@@ -31,19 +32,70 @@ static int remove_folder(void **state)
     return 0;
 }
 
+/* The file read again for a model, which must give what was saved. */
+static grobo_motion *again_as(const char *path, const grobo_model *model, const grobo_motion *same)
+{
+    const grobo_read_options options = {.model = model};
+    grobo_motion *again = NULL;
+
+    assert_int_equal(grobo_motion_read_file(path, &options, NULL, &again), 0);
+    assert_true(same == NULL || grobo_motion_equal(same, again));
+    return again;
+}
+
 static void test_save(void **state)
 {
     (void)state;
     grobo_motion *motion = motion_of(saved, GROBO_FORMAT_M);
     const char *path = in_folder("a.m");
+    grobo_model short_model = grobo_gr001_model;
 
+    short_model.n_joints = 15; /* to motor 3 */
     for (int i = 0; i < 2; i++) {
-        put_file(path, i == 0 ? "" : "longer than what comes in its place");
+        put_file(path, i == 0 ? "" : "1 2 3\n# longer than what comes in its place\n");
         assert_int_equal(grobo_motion_save(motion, grobo_files_os(), path, &in_motor_order, NULL),
                          0);
         assert_file(path, saved);
     }
+    grobo_motion_free(again_as(path, &grobo_gr001_model, motion));
+    grobo_motion *two = again_as(path, &short_model, NULL);
+    assert_int_equal(grobo_motion_joints(two), short_model.n_joints);
+    grobo_motion_free(two);
     grobo_motion_free(motion);
+}
+
+/* The name tells the format, and what is read again is what was saved. */
+static void test_save_formats(void **state)
+{
+    static const struct {
+        const char *name, *text, *type;
+        grobo_motion_format format;
+    } rows[] = {
+        {"c.pseq",
+         "type: PoseSeq\nname: a\nrefs:\n  - time: 1\n    refer:\n      type: Pose\n"
+         "      joints: [ 0, 1 ]\n      q: [ 0.5, -0.25 ]\n",
+         "PoseSeq", GROBO_FORMAT_PSEQ},
+        {"c.yaml",
+         "type: BodyMotion\ncomponents:\n  - type: MultiValueSeq\n    purpose: JointPosition\n"
+         "    frameRate: 20\n    numFrames: 2\n    numParts: 2\n"
+         "    frames: [ [ 0, 1 ], [ 0.5, -0.25 ] ]\n",
+         "BodyMotion", GROBO_FORMAT_YAML},
+    };
+
+    (void)state;
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        const char *path = in_folder(rows[i].name);
+        grobo_motion *motion = motion_of(rows[i].text, rows[i].format);
+        char begins[128] = "";
+        assert_int_equal(grobo_motion_save(motion, grobo_files_os(), path, NULL, NULL), 0);
+        grobo_motion_free(again_as(path, NULL, motion));
+        FILE *file = fopen(path, "rb");
+        assert_non_null(file);
+        assert_true(fread(begins, 1, sizeof begins - 1, file) > 0);
+        assert_int_equal(fclose(file), 0);
+        assert_non_null(strstr(begins, rows[i].type));
+        grobo_motion_free(motion);
+    }
 }
 
 static void test_save_refused(void **state)
@@ -80,10 +132,53 @@ static void test_save_never_destroys(void **state)
     const char *path = in_folder("b.m");
 
     files.write = few_writes;
-    put_file(path, "precious");
+    put_file(path, "100 1 2\n");
     writes_left = 0;
     assert_int_equal(grobo_motion_save(motion, &files, path, NULL, NULL), GROBO_ERR_IO);
-    assert_file(path, "precious");
+    assert_file(path, "100 1 2\n");
+    grobo_motion_free(motion);
+}
+
+/* Whatever the names say, what a file holds decides; `replace` takes anything. */
+static void test_save_keeps_other_formats(void **state)
+{
+    static const char *const held[] = {
+        "100 1 2\n",
+        "type: PoseSeq\nname: a\nrefs:\n  - time: 1\n    refer:\n      type: Pose\n"
+        "      joints: [ 0 ]\n      q: [ 0.5 ]\n",
+        "function y = f(x)\ny = x;\n",
+    };
+    static const grobo_motion_format formats[] = {GROBO_FORMAT_M, GROBO_FORMAT_PSEQ,
+                                                  GROBO_FORMAT_MSEQ, GROBO_FORMAT_YAML};
+    grobo_motion *motion = motion_of(saved, GROBO_FORMAT_M);
+    const char *path = in_folder("a.m");
+    grobo_diagnostics *list = NULL;
+
+    (void)state;
+    assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
+    for (int h = 0; h < 3; h++) {
+        for (int f = 0; f < 4; f++) {
+            grobo_write_options options = {.model = &grobo_gr001_model, .format = formats[f]};
+            int wanted = h == f && h < 2 ? 0 : GROBO_ERR_EXISTS;
+            put_file(path, held[h]);
+            assert_int_equal(grobo_motion_may_save(grobo_files_os(), path, formats[f]), wanted);
+            grobo_diagnostics_clear(list);
+            assert_int_equal(grobo_motion_save(motion, grobo_files_os(), path, &options, list),
+                             wanted);
+            if (wanted < 0) {
+                assert_file(path, held[h]);
+                assert_int_equal(grobo_diagnostics_total(list, GROBO_SEVERITY_ERROR), 1);
+            }
+            options.replace = true;
+            assert_int_equal(grobo_motion_save(motion, grobo_files_os(), path, &options, list), 0);
+            assert_int_equal(grobo_motion_may_save(grobo_files_os(), path, formats[f]), 0);
+        }
+    }
+    assert_int_equal(grobo_motion_may_save(grobo_files_os(), in_folder("none"), GROBO_FORMAT_M), 0);
+    assert_int_equal(grobo_motion_may_save(grobo_files_os(), folder, GROBO_FORMAT_M), 0);
+    assert_int_equal(grobo_motion_may_save(grobo_files_os(), path, GROBO_FORMAT_AUTO),
+                     GROBO_ERR_ARG);
+    grobo_diagnostics_free(list);
     grobo_motion_free(motion);
 }
 
@@ -128,13 +223,13 @@ static void test_find(void **state)
     char path[4096] = "untouched";
 
     assert_int_equal(test_folder_make(in_folder("sub")), 0);
-    put_file(in_folder("walk.pseq"), "");
     put_file(in_folder("sub/c.yaml"), "");
-    assert_int_equal(grobo_motion_find(files, folder, "walk", path, sizeof path), 0);
-    assert_string_equal(last_name(path), "walk.pseq");
-    put_file(in_folder("walk.m"), "");
-    assert_int_equal(grobo_motion_find(files, folder, "walk", path, sizeof path), 0);
-    assert_string_equal(last_name(path), "walk.m");
+    static const char *const found[] = {"walk.mseq", "walk.pseq", "walk.yaml", "walk.m"};
+    for (size_t i = 0; i < 4; i++) { /* each goes before those there were */
+        put_file(in_folder(found[i]), "");
+        assert_int_equal(grobo_motion_find(files, folder, "walk", path, sizeof path), 0);
+        assert_string_equal(last_name(path), found[i]);
+    }
     assert_int_equal(grobo_motion_find(files, folder, "walk.pseq", path, sizeof path), 0);
     assert_string_equal(last_name(path), "walk.pseq");
     assert_int_equal(grobo_motion_find(files, folder, "sub/c", path, sizeof path), 0);
@@ -155,6 +250,8 @@ int main(void)
         cmocka_unit_test(test_save),
         cmocka_unit_test(test_save_refused),
         cmocka_unit_test(test_save_never_destroys),
+        cmocka_unit_test(test_save_keeps_other_formats),
+        cmocka_unit_test(test_save_formats),
         cmocka_unit_test(test_save_next),
         cmocka_unit_test(test_find),
     };

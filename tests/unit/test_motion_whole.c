@@ -75,16 +75,110 @@ static void test_append_motion(void **state)
 {
     (void)state;
     grobo_motion *motion = motion_of(keys, GROBO_FORMAT_AUTO);
-    grobo_motion *other = motion_of("100 1 2\n", GROBO_FORMAT_M);
 
-    assert_int_equal(grobo_motion_append_motion(motion, other), GROBO_ERR_TYPE);
     assert_int_equal(grobo_motion_append_motion(motion, motion), 0);
     assert_int_equal(grobo_motion_size(motion), 6);
     assert_true(time_of(motion, 5) == 8.0);
     assert_int_equal(grobo_motion_step_us(motion, 3), 0);
     assert_true(angle_of(motion, 5, 0) == 2.0);
     grobo_motion_free(motion);
-    grobo_motion_free(other);
+}
+
+/* Appends 0.2 to 0.6 s that end at 0.3, by increments 0.3 further than the motion did. */
+static void append_and_look(grobo_motion *motion, const grobo_motion *other, bool concat)
+{
+    double end_s = (double)grobo_motion_length_us(motion, -1) / 1e6;
+    size_t size = grobo_motion_size(motion);
+    bool relative = grobo_motion_get_kind(other) == GROBO_MOTION_STEPS;
+    double from_rad = angle_of(motion, size - 1, 0);
+    int result = concat ? grobo_motion_concat(motion, other, 100000)
+                        : grobo_motion_append_motion(motion, other);
+
+    assert_int_equal(result, 0);
+    assert_true(grobo_motion_size(motion) >= size + 2);
+    end_s = (double)grobo_motion_length_us(motion, -1) / 1e6 - end_s;
+    assert_true(end_s > 0.19 && end_s < 1.01);
+    double to_rad = angle_of(motion, grobo_motion_size(motion) - 1, 0);
+    assert_true(fabs(to_rad - (relative ? from_rad + 0.3 : 0.3)) < 1e-9);
+}
+
+static grobo_motion *any_of(grobo_motion_kind kind, double rate_hz)
+{
+    grobo_motion *motion = NULL;
+    grobo_posture posture;
+
+    assert_int_equal(grobo_motion_new(&motion, kind, 2, NULL), 0);
+    if (kind == GROBO_MOTION_FRAMES && rate_hz > 0) {
+        assert_int_equal(grobo_motion_set_frame_rate(motion, rate_hz), 0);
+    } else if (kind == GROBO_MOTION_FRAMES) {
+        assert_int_equal(grobo_motion_set_frame_times(motion, true), 0);
+        assert_int_equal(grobo_motion_set_frame_rate(motion, 10), 0);
+    }
+    for (int i = 1; i <= 3; i++) {
+        (void)grobo_posture_init(&posture, 2);
+        (void)grobo_posture_set_rad(&posture, 0, kind == GROBO_MOTION_STEPS ? 0.1 : 0.1 * i);
+        posture.time_us = 200000;
+        assert_int_equal(grobo_motion_append(motion, &posture), 0);
+    }
+    return motion;
+}
+
+static void test_append_another_kind(void **state)
+{
+    static const grobo_motion_kind kinds[] = {GROBO_MOTION_POSTURES, GROBO_MOTION_KEYS,
+                                              GROBO_MOTION_FRAMES,   GROBO_MOTION_FRAMES,
+                                              GROBO_MOTION_FRAMES,   GROBO_MOTION_STEPS};
+    static const double rates_hz[] = {0, 0, 5, 10, 0, 0};
+
+    (void)state;
+    for (int to = 0; to < 5; to++) {
+        for (int from = 0; from < 6; from++) {
+            for (int concat = 0; concat < 2; concat++) {
+                grobo_motion *motion = any_of(kinds[to], rates_hz[to]);
+                grobo_motion *other = any_of(kinds[from], rates_hz[from]);
+                append_and_look(motion, other, concat != 0);
+                assert_int_equal(grobo_motion_get_kind(motion), kinds[to]);
+                /* The second joint is set by neither. */
+                for (size_t n = 0; n < grobo_motion_size(motion); n++) {
+                    grobo_posture posture;
+                    assert_int_equal(grobo_motion_get(motion, n, &posture), 0);
+                    assert_int_equal(posture.set, 1);
+                }
+                grobo_motion_free(motion);
+                grobo_motion_free(other);
+            }
+        }
+    }
+}
+
+/* What cannot be converted without a guess is refused, and nothing has changed. */
+static void test_append_never_mixes(void **state)
+{
+    grobo_motion *steps = any_of(GROBO_MOTION_STEPS, 0);
+    grobo_motion *before = NULL;
+    grobo_motion *empty = NULL;
+    grobo_motion *keys_of = any_of(GROBO_MOTION_KEYS, 0);
+    grobo_motion *frames = NULL;
+
+    (void)state;
+    assert_int_equal(grobo_motion_dup(steps, &before), 0);
+    assert_int_equal(grobo_motion_append_motion(steps, keys_of), GROBO_ERR_TYPE);
+    assert_int_equal(grobo_motion_concat(steps, keys_of, 0), GROBO_ERR_TYPE);
+    assert_true(grobo_motion_equal(steps, before));
+    assert_int_equal(grobo_motion_new(&empty, GROBO_MOTION_POSTURES, 2, NULL), 0);
+    assert_int_equal(grobo_motion_append_motion(empty, steps), GROBO_ERR_TYPE);
+    assert_int_equal(grobo_motion_size(empty), 0);
+    assert_int_equal(grobo_motion_append_motion(empty, keys_of), 0);
+    assert_int_equal(grobo_motion_append_motion(empty, steps), 0);
+    assert_int_equal(grobo_motion_new(&frames, GROBO_MOTION_FRAMES, 2, NULL), 0);
+    assert_int_equal(grobo_motion_append_motion(frames, keys_of), GROBO_ERR_STATE);
+    assert_int_equal(grobo_motion_set_joints(frames, 1), 1);
+    assert_int_equal(grobo_motion_append_motion(frames, keys_of), GROBO_ERR_ARG);
+    grobo_motion_free(steps);
+    grobo_motion_free(before);
+    grobo_motion_free(empty);
+    grobo_motion_free(keys_of);
+    grobo_motion_free(frames);
 }
 
 static void test_concat_keys(void **state)
@@ -107,9 +201,7 @@ static void test_concat_frames(void **state)
 {
     (void)state;
     grobo_motion *motion = frames_of(10, 2, 0), *other = frames_of(10, 2, 5);
-    grobo_motion *slow = frames_of(5, 2, 5);
 
-    assert_int_equal(grobo_motion_concat(motion, slow, 0), GROBO_ERR_TYPE);
     assert_int_equal(grobo_motion_concat(motion, other, 400000), 0);
     /* 0 1 | three between, eased | 5 6 */
     assert_int_equal(grobo_motion_size(motion), 7);
@@ -121,7 +213,6 @@ static void test_concat_frames(void **state)
     assert_int_equal(grobo_motion_size(other), 4);
     grobo_motion_free(motion);
     grobo_motion_free(other);
-    grobo_motion_free(slow);
 }
 
 static void test_concat_postures(void **state)
@@ -386,6 +477,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_equal_and_near),
         cmocka_unit_test(test_append_motion),
+        cmocka_unit_test(test_append_another_kind),
+        cmocka_unit_test(test_append_never_mixes),
         cmocka_unit_test(test_concat_keys),
         cmocka_unit_test(test_concat_frames),
         cmocka_unit_test(test_concat_postures),

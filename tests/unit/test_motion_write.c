@@ -121,7 +121,7 @@ static void test_yaml_keeps_keys(void **state)
         motion_of("type: BodyMotion\nauthor: me\ncomponents:\n"
                   "  - { type: MultiVector3Seq, content: ZMP, mine: 1, frames: [ ] }\n"
                   "  - { type: MultiValueSeq, content: ~, purpose: JointPosition, mine: { a: 2 }, "
-                  "frameRate: 50, frames: [ [ 1, 2 ] ] }\n",
+                  "frameRate: 50, numParts: 2, frames: [ [ 1, 2 ] ] }\n",
                   GROBO_FORMAT_YAML);
     char *written = written_as(motion, GROBO_FORMAT_YAML, NULL, NULL);
 
@@ -209,11 +209,12 @@ static void test_m_layout(void **state)
     grobo_motion *motion = motion_of(file, GROBO_FORMAT_M);
     char *text = written_as(motion, GROBO_FORMAT_M, &options, NULL);
 
-    assert_string_equal(text, file);
-    free(text);
-    options.integers = true;
-    text = written_as(motion, GROBO_FORMAT_M, &options, NULL);
+    /* The original reads whole numbers. */
     assert_string_equal(text, "500  10 -21 0\n1000  1 2 3\n");
+    free(text);
+    options.exact = true;
+    text = written_as(motion, GROBO_FORMAT_M, &options, NULL);
+    assert_string_equal(text, file);
     free(text);
     grobo_motion_free(motion);
 }
@@ -278,10 +279,11 @@ static grobo_motion *converted(const grobo_motion *motion, grobo_motion_kind kin
     return made;
 }
 
-/* There and back again: every pair of kinds keeps sizes, times and angles. */
+/* There and back again: every pair of kinds keeps sizes, times and angles, if told to. */
 static void test_every_pair(void **state)
 {
     (void)state;
+    const grobo_write_options exact = {.exact = true};
     static const char *const files[] = {
         "0  10 -20 30\n400  15 -20 31\n1000  40 0 0\n",
         "type: PoseSeq\nname: t\nrefs:\n"
@@ -291,15 +293,16 @@ static void test_every_pair(void **state)
         "- { time: 0, refer: { type: Motion, joints: [ 0, 1 ], q: [ 0.1, 0.2 ] } }\n"
         "- { time: 0.5, refer: { type: Motion, joints: [ 0, 1 ], q: [ 0.3, 0.7 ] } }\n",
         "type: BodyMotion\ncomponents:\n- { type: MultiValueSeq, content: JointPosition,"
-        " frameRate: 30, frames: [ [ 0.1, 0.2 ], [ 0.3, 0.33333333333333331 ], [ 1, 2 ] ] }\n"};
+        " frameRate: 30, numParts: 2,"
+        " frames: [ [ 0.1, 0.2 ], [ 0.3, 0.33333333333333331 ], [ 1, 2 ] ] }\n"};
 
     for (int from = 0; from < 4; from++) {
         grobo_motion *motion = NULL;
         assert_int_equal(
             grobo_motion_read_memory(files[from], strlen(files[from]), NULL, NULL, &motion), 0);
         for (int to = 0; to < 4; to++) {
-            grobo_motion *there = converted(motion, (grobo_motion_kind)to, NULL, NULL);
-            grobo_motion *back = converted(there, (grobo_motion_kind)from, NULL, NULL);
+            grobo_motion *there = converted(motion, (grobo_motion_kind)to, &exact, NULL);
+            grobo_motion *back = converted(there, (grobo_motion_kind)from, &exact, NULL);
             assert_true(grobo_motion_near(motion, back, 1e-15, 1e-12));
             grobo_motion_free(there);
             grobo_motion_free(back);
@@ -354,8 +357,9 @@ static void test_conversion_fills_joints(void **state)
     assert_true(angle_of(postures, 0, 2) == 7.0);
     assert_true(has_diagnostic(list, "joints-unset", 0, 0));
     assert_true(has_diagnostic(list, "step-default", 5, 0));
-    grobo_motion *frames = converted(motion, GROBO_MOTION_FRAMES, NULL, list);
-    assert_true(angle_of(frames, 0, 2) == 0.0);
+    grobo_motion *frames = converted(motion, GROBO_MOTION_FRAMES,
+                                     &(grobo_write_options){.start = &start, .exact = true}, list);
+    assert_true(angle_of(frames, 0, 2) == 7.0);
     assert_true(grobo_motion_has_frame_times(frames));
     grobo_motion_free(postures);
     grobo_motion_free(frames);
@@ -370,12 +374,12 @@ static void test_conversion_at_a_rate(void **state)
     grobo_write_options options = {.rate_hz = 10};
     grobo_motion *frames = converted(motion, GROBO_MOTION_FRAMES, &options, NULL);
 
-    /* The first posture takes the default time. */
-    assert_int_equal(grobo_motion_size(frames), 13);
+    /* The first posture takes the default time; the end is not on a frame. */
+    assert_int_equal(grobo_motion_size(frames), 14);
     assert_true(grobo_motion_frame_rate(frames) == 10.0);
     grobo_motion *finer =
         converted(frames, GROBO_MOTION_FRAMES, &(grobo_write_options){.rate_hz = 20}, NULL);
-    assert_int_equal(grobo_motion_size(finer), 25);
+    assert_int_equal(grobo_motion_size(finer), 27);
     grobo_motion *bad = NULL;
     assert_int_equal(grobo_motion_convert(motion, GROBO_MOTION_FRAMES,
                                           &(grobo_write_options){.rate_hz = -1}, NULL, &bad),
@@ -385,6 +389,60 @@ static void test_conversion_at_a_rate(void **state)
     grobo_motion_free(frames);
     grobo_motion_free(finer);
 }
+
+/* Without a rate asked for, key poses become frames that programs which hold each can play. */
+static void test_frames_are_resampled(void **state)
+{
+    (void)state;
+    grobo_motion *motion =
+        motion_of("type: PoseSeq\nname: t\nrefs:\n"
+                  "- { time: 0.1, refer: { type: Pose, joints: [ 0 ], q: [ 1 ] } }\n"
+                  "- { time: 0.35, refer: { type: Pose, joints: [ 0 ], q: [ 2 ] } }\n",
+                  GROBO_FORMAT_PSEQ);
+    grobo_diagnostics *list = NULL;
+    assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
+    grobo_motion *frames = converted(motion, GROBO_MOTION_FRAMES, NULL, list);
+    size_t size = grobo_motion_size(frames);
+
+    assert_true(has_diagnostic(list, "resampled", 0, 0));
+    assert_false(grobo_motion_has_frame_times(frames));
+    assert_true(grobo_motion_frame_rate(frames) == GROBO_MOTION_RATE_HZ);
+    /* 0, 20 ... 340 ms, and one more for the end at 350. */
+    assert_int_equal(size, 19);
+    assert_true(angle_of(frames, 5, 0) == 1 && angle_of(frames, size - 1, 0) == 2);
+    grobo_motion_free(frames);
+    grobo_motion_free(motion);
+    /* What stands at a rate keeps it. */
+    motion = motion_of("40  0\n80  10\n120  0\n", GROBO_FORMAT_M);
+    grobo_diagnostics_clear(list);
+    frames = converted(motion, GROBO_MOTION_FRAMES, NULL, list);
+    assert_true(grobo_motion_frame_rate(frames) == 50);
+    grobo_motion_free(frames);
+    grobo_motion_free(motion);
+    grobo_diagnostics_free(list);
+}
+
+/* An empty motion has a file in every format, and comes back from it. */
+static void test_empty_motions_are_written(void **state)
+{
+    (void)state;
+    const grobo_write_options options = {.model = &grobo_gr001_model};
+
+    for (int kind = GROBO_MOTION_POSTURES; kind <= GROBO_MOTION_FRAMES; kind++) {
+        for (int format = GROBO_FORMAT_M; format <= GROBO_FORMAT_YAML; format++) {
+            grobo_motion *motion = NULL;
+            assert_int_equal(grobo_motion_new(&motion, (grobo_motion_kind)kind, 0, NULL), 0);
+            char *text = written_as(motion, (grobo_motion_format)format, &options, NULL);
+            grobo_motion *back = motion_of(text, (grobo_motion_format)format);
+            assert_int_equal(grobo_motion_size(back), 0);
+            grobo_motion_free(back);
+            free(text);
+            grobo_motion_free(motion);
+        }
+    }
+}
+
+/* ---- memory ------------------------------------------------------------------------------- */
 
 static void test_allocations_fail(void **state)
 {
@@ -435,7 +493,7 @@ static void test_real_key_poses_byte_for_byte(void **state)
 static void test_real_files_there_and_back(void **state)
 {
     (void)state;
-    grobo_write_options options = {.model = &grobo_gr001_model};
+    grobo_write_options options = {.model = &grobo_gr001_model, .exact = true};
 
     for (size_t i = 0; i < sizeof real_names / sizeof real_names[0]; i++) {
         grobo_motion *motion = NULL;
@@ -496,6 +554,8 @@ int main(void)
         cmocka_unit_test(test_conversion_says_what_is_dropped),
         cmocka_unit_test(test_conversion_fills_joints),
         cmocka_unit_test(test_conversion_at_a_rate),
+        cmocka_unit_test(test_frames_are_resampled),
+        cmocka_unit_test(test_empty_motions_are_written),
         cmocka_unit_test(test_allocations_fail),
         cmocka_unit_test(test_real_key_poses_byte_for_byte),
         cmocka_unit_test(test_real_files_there_and_back),

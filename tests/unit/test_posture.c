@@ -170,6 +170,9 @@ static void copying_keeps_the_copys_own_number_of_joints(void **state)
     assert_int_equal(grobo_posture_copy(&two, &src, 2), 2);
     assert_true(two.set == GROBO_JOINT_BIT(1));
     assert_near(two.angle_rad[1], 0.4, 0.0);
+    assert_int_equal(grobo_posture_copy(&two, &src, 0), 2); /* no more than it has */
+    assert_true(two.set == GROBO_JOINT_BIT(0));
+    assert_int_equal(two.n_joints, 2);
     assert_int_equal(grobo_posture_copy(&two, &src, 4), 0);
     assert_int_equal(grobo_posture_copy(&two, &src, 5), GROBO_ERR_ARG);
     assert_int_equal(grobo_posture_copy(&two, &src, -1), GROBO_ERR_ARG);

@@ -70,9 +70,8 @@ int app_fail(app *a, int status, const char *code, const char *format, ...)
         return status;
     }
     output_flush();
-    fprintf(stderr, "%sgrctl:%s %s\n", a->color_err ? "\033[1;31m" : "",
-            a->color_err ? "\033[0m" : "", text);
-    fflush(stderr);
+    output_complain("%sgrctl:%s %s\n", a->color_err ? "\033[1;31m" : "",
+                    a->color_err ? "\033[0m" : "", text);
     if (a->json)
         app_print_json(json_pack("{s:{s:o,s:o}}", "error", "code", app_json_code(code), "message",
                                  app_json_text(text)));
@@ -85,6 +84,8 @@ int app_status_of(int error)
     case GROBO_ERR_LIMIT:
     case GROBO_ERR_SPEED:
     case GROBO_ERR_LATCHED:
+    case GROBO_ERR_UNWATCHED:
+    case GROBO_ERR_STALLED:
         return EXIT_SAFETY;
     case GROBO_ERR_ARG:
         return EXIT_USAGE;
@@ -99,8 +100,7 @@ static void say(const char *format, va_list list)
     char text[APP_LINE_BYTES];
     vsnprintf(text, sizeof text, format, list);
     app_make_one_line(text);
-    fprintf(stderr, "%s\n", text);
-    fflush(stderr);
+    output_complain("%s\n", text);
 }
 
 void app_note(const app *a, const char *format, ...)
@@ -123,10 +123,25 @@ void app_detail(const app *a, const char *format, ...)
     va_end(list);
 }
 
+void app_done(const app *a, const char *text)
+{
+    if (a->json)
+        app_print_json(json_pack("{s:b}", "done", 1));
+    else
+        app_note(a, "%s", text);
+}
+
+static int print_part(const char *bytes, size_t size, void *ctx)
+{
+    (void)ctx;
+    output_bytes(bytes, size);
+    return 0;
+}
+
 void app_print_json(json_t *object)
 {
-    json_dumpf(object, stdout, JSON_COMPACT | JSON_REAL_PRECISION(12));
-    putchar('\n');
+    json_dump_callback(object, print_part, NULL, JSON_COMPACT | JSON_REAL_PRECISION(12));
+    app_print("\n");
     output_flush();
     json_decref(object);
 }

@@ -27,6 +27,8 @@ typedef struct app {
     int verbosity; /* -1 quiet, 0, 1, 2 */
     bool color_out, color_err;
     bool tty_in, tty_out, tty_err;
+    bool moves;      /* the command may move the robot: it gets a guard */
+    bool stops;      /* the command stops the robot: no signal or trace keeps it from that */
     bool reconnects; /* a lost line is opened again, and is no failure */
     bool clamps;     /* targets outside limits go to the limit, and are no failure */
     char *hushed;    /* not NULL: app_fail() puts its line here, APP_LINE_BYTES, and says nothing */
@@ -51,12 +53,17 @@ int app_fail(app *a, int status, const char *code, const char *format, ...)
 /* The exit status that fits a library error. */
 int app_status_of(int error);
 
+/* Says that a command which moves nothing more is done: {"done": true}, or the text. */
+void app_done(const app *a, const char *text);
+
 /* A line for a person on standard error, unless quiet; only from -v on. */
 /* A file name may hold anything; what is said of it stays one line without control characters. */
 void app_make_one_line(char *text);
 void app_note(const app *a, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void app_detail(const app *a, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
+/* Prints on standard output as printf() does, see output.h; a while later, or by output_flush(). */
+void app_print(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /* One JSON object on a line of its own; takes the reference. */
 void app_print_json(json_t *object);
 /* A JSON string of bytes that may be no UTF-8. */

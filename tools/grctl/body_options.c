@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "body_options.h"
-#include "whole.h"
+#include "check_whole.h"
 
 bool body_options_given(const app *a, int base)
 {
@@ -16,30 +16,59 @@ static int fail(app *a, const char *path, int error)
                     grobo_error_text(error));
 }
 
-grobo_body_options body_options_read(const app *a, int base, double rate_hz)
+/* What --like names: a file as Choreonoid's window shows it by default; as 1.1 made motions for the
+ * real robot; and as later versions make them. See docs/guide/whole-body.md. */
+static const grobo_body_options likes[] = {
+    {.ik = GROBO_BODY_IK_NUMERIC, .step = GROBO_BODY_STEP_STEALTHY, .zmp = GROBO_BODY_ZMP_AUTO},
+    {.ik = GROBO_BODY_IK_NUMERIC,
+     .zmp = GROBO_BODY_ZMP_AUTO,
+     .balance = GROBO_BODY_BALANCE_COMPAT11},
+    {.ik = GROBO_BODY_IK_NUMERIC, .zmp = GROBO_BODY_ZMP_AUTO, .balance = GROBO_BODY_BALANCE_ON},
+};
+
+/* The option's word; `preset` where it is not given, or --balance without a word. */
+static int choice(const app *a, int option, int preset)
 {
-    static const grobo_body_ik iks[] = {GROBO_BODY_IK_EXACT, GROBO_BODY_IK_NUMERIC,
-                                        GROBO_BODY_IK_OFF};
-    static const grobo_body_balance balances[] = {GROBO_BODY_BALANCE_OFF, GROBO_BODY_BALANCE_ON,
-                                                  GROBO_BODY_BALANCE_COMPAT11};
-    const cli_value *zmp = app_option(a, base + BODY_ZMP);
-    return (grobo_body_options){
-        .ik = iks[app_option(a, base + BODY_IK)->choice],
-        .step = app_option(a, base + BODY_STEP)->choice == 1 ? GROBO_BODY_STEP_STEALTHY
-                                                             : GROBO_BODY_STEP_NONE,
-        .zmp = zmp->given && zmp->choice == 0 ? GROBO_BODY_ZMP_AUTO : GROBO_BODY_ZMP_FILE,
-        .balance = balances[app_option(a, base + BODY_BALANCE)->choice],
-        .rate_hz = rate_hz,
-    };
+    const cli_value *v = app_option(a, option);
+    return v->given && v->text ? v->choice : preset;
+}
+
+int body_options_read(app *a, int base, double rate_hz, grobo_body_options *options)
+{
+    static const grobo_body_zmp_source zmps[] = {GROBO_BODY_ZMP_AUTO, GROBO_BODY_ZMP_FILE};
+    const cli_value *like = app_option(a, base + BODY_LIKE);
+    grobo_body_options o = {.rate_hz = 0};
+    int zmp = choice(a, base + BODY_ZMP, -1);
+    if (like->given)
+        o = likes[like->choice];
+    o.ik = (grobo_body_ik)choice(a, base + BODY_IK, (int)o.ik);
+    o.step = (grobo_body_step)choice(a, base + BODY_STEP, (int)o.step);
+    o.balance = (grobo_body_balance)choice(a, base + BODY_BALANCE, (int)o.balance);
+    if (zmp >= 0)
+        o.zmp = zmps[zmp];
+    else if (o.balance != GROBO_BODY_BALANCE_OFF)
+        o.zmp = GROBO_BODY_ZMP_AUTO;
+    o.rate_hz = rate_hz;
+    *options = o;
+    if (o.ik == GROBO_BODY_IK_OFF && o.balance != GROBO_BODY_BALANCE_OFF)
+        return app_fail(a, EXIT_USAGE, "USAGE",
+                        "%s: --ik off and a balancer cannot be used together; add --balance off",
+                        a->line.command->name);
+    return 0;
 }
 
 int body_make(app *a, int base, const char *path, const grobo_motion *motion, double rate_hz,
               grobo_body **body)
 {
-    grobo_body_options options = body_options_read(a, base, rate_hz);
-    int error;
-    if (!whole_applies(motion, &options))
+    grobo_body_options options;
+    int error = body_options_read(a, base, rate_hz, &options);
+    if (error)
+        return error;
+    if (!whole_applies(motion, &options)) {
+        if (options.balance != GROBO_BODY_BALANCE_OFF)
+            app_note(a, "%s: no legs by ikLinks: the balancer has nothing to move", path);
         return 0;
+    }
     error = grobo_body_new(body, &grobo_gr001_body, motion, &options, NULL);
     return error ? fail(a, path, error) : 0;
 }
@@ -48,23 +77,29 @@ int body_make(app *a, int base, const char *path, const grobo_motion *motion, do
 
 typedef struct refusal {
     bool any, clamps;
+    grobo_slack_taken *slack;
     grobo_body_finding first;
 } refusal;
 
 static void note_finding(void *ctx, const grobo_body_finding *finding)
 {
     refusal *r = ctx;
-    bool refused = finding->problem == GROBO_BODY_UNREACHABLE ||
-                   (finding->problem == GROBO_BODY_JOINT_LIMIT && !r->clamps);
+    bool limit = finding->problem == GROBO_BODY_JOINT_LIMIT;
+    bool refused = finding->problem == GROBO_BODY_UNREACHABLE || (limit && !r->clamps);
+    if (limit && check_takes_slack(finding)) {
+        if (whole_joints() & GROBO_JOINT_BIT(finding->index)) /* the others are counted by key */
+            check_add_slack(r->slack, finding);
+        return;
+    }
     if (!refused || (r->any && r->first.begin_s <= finding->begin_s))
         return;
     r->any = true;
     r->first = *finding;
 }
 
-int body_refuse(app *a, const char *path, grobo_body *body)
+int body_refuse(app *a, const char *path, grobo_body *body, grobo_slack_taken *slack)
 {
-    refusal r = {.clamps = a->clamps};
+    refusal r = {.clamps = a->clamps, .slack = slack};
     grobo_body_check_options how = {
         .robot = &grobo_gr001_model, .finding = note_finding, .ctx = &r};
     int error = grobo_body_check(body, &how);

@@ -4,25 +4,32 @@
 #define GRCTL_BODY_OPTIONS_H
 
 #include <grobo/body_motion.h>
+#include <grobo/motion_io.h>
 
 #include "app.h"
 
-enum { BODY_IK, BODY_STEP, BODY_ZMP, BODY_BALANCE, BODY_OPTIONS };
+enum { BODY_LIKE, BODY_IK, BODY_STEP, BODY_ZMP, BODY_BALANCE, BODY_OPTIONS };
 
-/* The rows of a command's table, from row `base` on: how legs are solved, */
+/* The rows of a command's table, from row `base` on; the words of ik, step and balance are in the
+ * order of the enums of body.h. How legs are solved, */
 #define BODY_LEG_ROWS(base)                                                                        \
-    [(base) + BODY_IK] = {.name = "ik",                                                            \
-                          .kind = CLI_CHOICE,                                                      \
-                          .value = "exact|numeric|off",                                            \
-                          .help = "legs given by ikLinks: solved how (exact), or left out"},       \
-              [(base) + BODY_STEP] = {.name = "step",                                              \
-                                      .kind = CLI_CHOICE,                                          \
-                                      .value = "none|stealthy",                                    \
-                                      .help = "soften lift and landing of feet (none)"},           \
-              [(base) + BODY_ZMP] = {.name = "zmp",                                                \
-                                     .kind = CLI_CHOICE,                                           \
-                                     .value = "auto|file",                                         \
-                                     .help = "where the balance is wanted (file)"}
+    [(base) +                                                                                      \
+        BODY_LIKE] = {.name = "like",                                                              \
+                      .kind = CLI_CHOICE,                                                          \
+                      .value = "choreonoid|choreonoid-1.1|robot",                                  \
+                      .help = "solve legs as these do; the options below change it"},              \
+        [(base) + BODY_IK] = {.name = "ik",                                                        \
+                              .kind = CLI_CHOICE,                                                  \
+                              .value = "exact|numeric|off",                                        \
+                              .help = "solve legs given by ikLinks (exact), or ignore them"},      \
+        [(base) + BODY_STEP] = {.name = "step",                                                    \
+                                .kind = CLI_CHOICE,                                                \
+                                .value = "none|stealthy",                                          \
+                                .help = "soften lift and landing of feet (none)"},                 \
+        [(base) + BODY_ZMP] = {.name = "zmp",                                                      \
+                               .kind = CLI_CHOICE,                                                 \
+                               .value = "auto|file",                                               \
+                               .help = "source of the desired ZMP (file; auto with a balancer)"}
 
 /* and whether the waist is moved; for play and convert, */
 #define BODY_OPTION_ROWS(base)                                                                     \
@@ -31,7 +38,7 @@ enum { BODY_IK, BODY_STEP, BODY_ZMP, BODY_BALANCE, BODY_OPTIONS };
             .name = "balance",                                                                     \
             .kind = CLI_CHOICE,                                                                    \
             .value = "off|on|compat11",                                                            \
-            .help = "shift the waist to keep it (off); compat11 as Choreonoid 1.1"}
+            .help = "shift the waist to keep balance (off); compat11 as Choreonoid 1.1"}
 
 /* for check and plot, which look at the balance when the option is given, even without a word. */
 #define BODY_LOOK_ROWS(base)                                                                       \
@@ -58,8 +65,12 @@ enum { BODY_IK, BODY_STEP, BODY_ZMP, BODY_BALANCE, BODY_OPTIONS };
               .max = 1000,                                                                         \
               .real = true}
 
-/* The options as given, at a rate (0: the default). */
-grobo_body_options body_options_read(const app *a, int base, double rate_hz);
+/*
+ * The options as given, at a rate (0: the default): what --like names, changed by the others. A
+ * balancer without --zmp has automatic ZMP. Returns 0, or the exit status with the reason said: a
+ * balancer without IK.
+ */
+int body_options_read(app *a, int base, double rate_hz, grobo_body_options *options);
 /* True if any of them was given. */
 bool body_options_given(const app *a, int base);
 
@@ -70,8 +81,11 @@ bool body_options_given(const app *a, int base);
 int body_make(app *a, int base, const char *path, const grobo_motion *motion, double rate_hz,
               grobo_body **body);
 
-/* Refuses what a robot cannot do: legs that do not reach, angles beyond limits. 0 or the status. */
-int body_refuse(app *a, const char *path, grobo_body *body);
+/*
+ * Refuses what a robot cannot do: legs that do not reach, angles beyond limits. Those within the
+ * slack of a limit are counted. 0 or the status.
+ */
+int body_refuse(app *a, const char *path, grobo_body *body, grobo_slack_taken *slack);
 
 /*
  * The motion with its legs solved: frames at a rate, or (0) a posture a key time. The motion

@@ -22,8 +22,8 @@ static void note_down(checkup *k, const char *name, bool ok, const char *message
 static void print(const checkup *k, const char *color, const char *verdict, const char *name,
                   const char *message)
 {
-    printf("%s%-4s%s  %-10s  %s\n", k->a->color_out ? color : "", verdict,
-           k->a->color_out ? "\033[0m" : "", name, message);
+    app_print("%s%-4s%s  %-10s  %s\n", k->a->color_out ? color : "", verdict,
+              k->a->color_out ? "\033[0m" : "", name, message);
 }
 
 void checkup_good(checkup *k, bool minor, const char *name, const char *format, ...)
@@ -49,7 +49,7 @@ void checkup_bad(checkup *k, const char *name, const char *fix, const char *form
     note_down(k, name, false, message, fix);
     if (!k->checks) {
         print(k, "\033[1;31m", "BAD", name, message);
-        printf("      %-10s  -> %s\n", "", fix);
+        app_print("      %-10s  -> %s\n", "", fix);
     }
     output_flush();
 }

@@ -20,7 +20,7 @@ enum {
     EXIT_SIGNAL = 128 /* plus the number of the signal */
 };
 
-enum { CLI_OPTIONS_MAX = 16, CLI_ARGUMENTS_MAX = 256 };
+enum { CLI_OPTIONS_MAX = 24, CLI_ARGUMENTS_MAX = 256 };
 
 typedef enum cli_kind {
     CLI_FLAG,   /* no value; may be counted (-vv) */
@@ -68,6 +68,7 @@ typedef struct cli_command {
     size_t n_options;
     int min_arguments, max_arguments;
     cli_argument argument;
+    bool stops; /* it stops the robot: done first, and mistakes are reported after it */
     int (*run)(struct app *app);
 } cli_command;
 
@@ -105,7 +106,8 @@ typedef struct cli_line {
 
 /*
  * Parses a command line. Strings of argv are borrowed.
- * Returns true, or false with one line of complaint (no newline) in `complaint`.
+ * Returns true, or false with one line of complaint (no newline) in `complaint`: on the first
+ * mistake. The line has the command and all that is right, behind a mistake too.
  */
 bool cli_parse(cli_line *line, int argc, char *const *argv, char *complaint, size_t capacity);
 

@@ -14,6 +14,7 @@ typedef struct parser {
     bool only_arguments; /* after "--" */
     char *complaint;
     size_t capacity;
+    bool mistaken; /* the first mistake is in complaint */
 } parser;
 
 static bool complain(parser *p, const char *format, ...) __attribute__((format(printf, 2, 3)));
@@ -21,6 +22,9 @@ static bool complain(parser *p, const char *format, ...) __attribute__((format(p
 static bool complain(parser *p, const char *format, ...)
 {
     va_list list;
+    if (p->mistaken)
+        return false;
+    p->mistaken = true;
     va_start(list, format);
     vsnprintf(p->complaint, p->capacity, format, list);
     va_end(list);
@@ -73,10 +77,8 @@ static bool take_number(parser *p, const cli_option *o, cli_value *v, const char
     return true;
 }
 
-static bool take_value(parser *p, const cli_option *o, cli_value *v, const char *text)
+static bool check_value(parser *p, const cli_option *o, cli_value *v, const char *text)
 {
-    v->given++;
-    v->text = text;
     switch (o->kind) {
     case CLI_FLAG:
         return true;
@@ -91,6 +93,16 @@ static bool take_value(parser *p, const cli_option *o, cli_value *v, const char 
         return true;
     }
     return false;
+}
+
+/* A value that is refused is as one that was not given. */
+static bool take_value(parser *p, const cli_option *o, cli_value *v, const char *text)
+{
+    cli_value taken = {.given = v->given + 1, .text = text};
+    if (!check_value(p, o, &taken, text))
+        return false;
+    *v = taken;
+    return true;
 }
 
 bool cli_take_value(const cli_option *option, cli_value *value, const char *text, char *complaint,
@@ -265,17 +277,18 @@ bool cli_parse(cli_line *line, int argc, char *const *argv, char *complaint, siz
     memset(line, 0, sizeof *line);
     while (p.at < argc) {
         const char *token = argv[p.at++];
-        bool ok;
         if (!p.only_arguments && strcmp(token, "--") == 0) {
             p.only_arguments = true;
             continue;
         }
         if (p.only_arguments || !is_option(token))
-            ok = parse_argument(&p, token);
+            parse_argument(&p, token);
+        else if (token[1] == '-')
+            parse_long(&p, token);
         else
-            ok = token[1] == '-' ? parse_long(&p, token) : parse_short(&p, token);
-        if (!ok)
-            return false;
+            parse_short(&p, token);
+        if (p.mistaken && !line->command && token[0] != '-') /* no command: nothing to go on for */
+            break;
     }
-    return check_count(&p);
+    return check_count(&p) && !p.mistaken;
 }

@@ -8,6 +8,7 @@
 #include "config.h"
 #include "conn.h"
 #include "joints.h"
+#include "output.h"
 
 enum { OPT_DRY_RUN };
 
@@ -21,8 +22,8 @@ static void show(const app *a, const config_robot *before, const config_robot *a
     const grobo_model *model = &grobo_gr001_model;
     for (int j = 0; j < model->n_joints; j++) {
         if (!a->json && after->trim_deg[j] != before->trim_deg[j])
-            printf("%5d  %-12s  %6.1f -> %6.1f deg\n", model->joints[j].motor,
-                   model->joints[j].name, before->trim_deg[j], after->trim_deg[j]);
+            app_print("%5d  %-12s  %6.1f -> %6.1f deg\n", model->joints[j].motor,
+                      model->joints[j].name, before->trim_deg[j], after->trim_deg[j]);
         json_array_append_new(list, json_pack("{s:i,s:i,s:s,s:o,s:o}", "id", j, "motor",
                                               model->joints[j].motor, "name", model->joints[j].name,
                                               "before_deg", app_json_number(before->trim_deg[j], 1),
@@ -42,8 +43,7 @@ static bool confirmed(const app *a, const config_robot *robot)
     int answer, c;
     if (!a->tty_in || app_global(a, GLOBAL_YES)->given)
         return true;
-    fprintf(stderr, "write these trims of %s to %s? [y/N] ", robot->name, robot->path);
-    fflush(stderr);
+    output_complain("write these trims of %s to %s? [y/N] ", robot->name, robot->path);
     answer = c = getchar();
     while (c != '\n' && c != EOF)
         c = getchar();

@@ -4,13 +4,21 @@
 #include "body_options.h"
 #include "check_whole.h"
 #include "commands.h"
+#include "config.h"
 #include "file.h"
 
-enum { OPT_BODY, OPT_BALANCE = OPT_BODY + BODY_BALANCE };
+enum { OPT_FORCE, OPT_BODY, OPT_BALANCE = OPT_BODY + BODY_BALANCE };
 
 static const cli_option options[] = {
+    [OPT_FORCE] = {.name = "force", .kind = CLI_FLAG, .help = "do not warn of a fall"},
     BODY_LOOK_ROWS(OPT_BODY),
 };
+
+/* What check_file() needs beside the file. */
+typedef struct order {
+    grobo_body_options body;
+    unsigned what; /* CHECK_... */
+} order;
 
 typedef struct tally {
     size_t errors, warnings;
@@ -38,20 +46,22 @@ static bool is_passed_by(const app *a, const char *path, grobo_diagnostics *list
 }
 
 /* Everything about one file goes to the list: reading it, then playing it on the model. */
-static void check_file(const app *a, const char *path, grobo_diagnostics *list)
+static void check_file(const char *path, const order *o, grobo_diagnostics *list)
 {
-    grobo_body_options body = body_options_read(a, OPT_BODY, 0);
     grobo_read_options read = {
         .model = &grobo_gr001_model, .keep_positions = true, .keep_going = true};
     const char *name = file_shown_name(path);
-    grobo_check_options check = {.name = name};
+    grobo_slack_taken slack = {.n = 0};
+    grobo_check_options check = {.name = name, .slack = &slack};
+    check_whole_how how = {.path = name, .what = o->what, .slack = &slack};
     grobo_motion *motion = NULL;
     size_t before = grobo_diagnostics_total(list, GROBO_SEVERITY_ERROR);
     int error = file_read(path, &read, list, &motion);
     if (!error) {
         error = grobo_motion_check(motion, &grobo_gr001_model, &check, list);
         if (error >= 0)
-            error = check_whole(name, motion, &body, app_option(a, OPT_BALANCE)->given, list);
+            error = check_whole(motion, &o->body, &how, list);
+        check_report_slack(name, &slack, list);
         grobo_motion_free(motion);
     }
     if (error < 0 && grobo_diagnostics_total(list, GROBO_SEVERITY_ERROR) == before) {
@@ -80,7 +90,7 @@ static void print_text(const app *a, const grobo_diagnostics *list)
         if (d.severity == GROBO_SEVERITY_NOTE && a->verbosity < 1)
             continue;
         file_format(&d, true, text, sizeof text);
-        printf("%s%s%s\n", color_of(a, d.severity), text, a->color_out ? "\033[0m" : "");
+        app_print("%s%s%s\n", color_of(a, d.severity), text, a->color_out ? "\033[0m" : "");
     }
 }
 
@@ -93,17 +103,28 @@ static void print_json(const grobo_diagnostics *list, bool ok)
     app_print_json(json_pack("{s:b,s:o}", "ok", ok, "diagnostics", all));
 }
 
+static unsigned how_to_balance(const app *a)
+{
+    if (app_option(a, OPT_BALANCE)->given)
+        return CHECK_BALANCE;
+    return app_option(a, OPT_FORCE)->given || !config_warns_of_falls(a) ? 0 : CHECK_FALL;
+}
+
 static int run(app *a)
 {
+    order o = {.what = CHECK_LEGS | how_to_balance(a)};
     grobo_diagnostics *list = NULL;
     tally t = {0};
-    int error = grobo_diagnostics_new(&list, NULL);
+    int error = body_options_read(a, OPT_BODY, 0, &o.body);
+    if (error)
+        return error;
+    error = grobo_diagnostics_new(&list, NULL);
     if (error)
         return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s", grobo_error_text(error));
     for (int i = 0; i < a->line.n_arguments; i++) {
         if (is_passed_by(a, a->line.argument[i], list))
             continue;
-        check_file(a, a->line.argument[i], list);
+        check_file(a->line.argument[i], &o, list);
         t.files++;
     }
     t.errors = grobo_diagnostics_total(list, GROBO_SEVERITY_ERROR);
@@ -132,9 +153,13 @@ const cli_command cmd_check = {
         "GR001 does not have, legs that only ikLinks give. Exit status 3 if there is an\n"
         "error; warnings alone leave it 0. Notes are shown with -v. Of several files those that\n"
         "neither name nor content make a motion are passed by.\n\n"
-        "Legs given by ikLinks are solved, and what they come to is checked too. --balance\n"
-        "adds where the ZMP leaves the soles, no foot stands, or a standing foot slips; a\n"
-        "motion that gives no feet is taken to stand on both.\n",
+        "Legs given by ikLinks are solved, and the solved angles are checked too. One\n"
+        "warning says where the robot would fall; --force and 'warn_fall: false' in config.yaml\n"
+        "silence it. --balance reports more: where the ZMP leaves the soles, no foot stands, or\n"
+        "a standing foot slips, the former two as errors. A motion that gives no feet is taken\n"
+        "to stand on both.\n\n"
+        "Angles up to one degree outside a limit, as recordings have them, are played at the\n"
+        "limit: one warning counts them.\n",
     .example = "  grctl check motions/*\n  grctl check --json walk.pseq\n"
                "  grctl check --balance walk.pseq\n",
     .options = options,

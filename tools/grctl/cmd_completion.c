@@ -3,6 +3,7 @@
 
 #include "app.h"
 #include "commands.h"
+#include "output.h"
 
 static int run(app *a)
 {
@@ -18,7 +19,7 @@ static int run(app *a)
             app_print_json(
                 json_pack("{s:s,s:o}", "shell", shell, "script", app_json_printed(all[i].print)));
         else
-            all[i].print(stdout);
+            all[i].print(output_stream());
         return EXIT_DONE;
     }
     return app_fail(a, EXIT_USAGE, "USAGE", "completion: '%s' is none of bash, zsh, fish", shell);

@@ -46,7 +46,7 @@ static void print_comment(const decoder *d, const pcapng_chunk *chunk)
         app_print_json(json_pack("{s:o,s:o}", "time_ms", app_json_number(time_ms, 3), "comment",
                                  app_json_text(chunk->comment)));
     else
-        printf("%10.3f  %-7s  %s\n", time_ms, "comment", chunk->comment);
+        app_print("%10.3f  %-7s  %s\n", time_ms, "comment", chunk->comment);
 }
 
 static frames_side side_of(pcapng_direction direction)
@@ -97,7 +97,7 @@ static int decode_file(decoder *d, const char *path)
     decoder_end(d);
     if (!status)
         decoder_summary(d);
-    return status;
+    return status ? status : decoder_status(d);
 }
 
 /* One name of a file, rather than hex: it is no hex and looks like a path or is there. */
@@ -143,7 +143,7 @@ static int decode_arguments(decoder *d)
         return app_fail(a, EXIT_USAGE, "EMPTY", "decode: no bytes");
     decoder_feed(d, FRAMES_EITHER, 0, bytes, used);
     decoder_end(d);
-    return EXIT_DONE;
+    return decoder_status(d);
 }
 
 static int run(app *a)
@@ -165,6 +165,7 @@ const cli_command cmd_decode = {
         "no frame are shown as what they are. The bytes come as hex on the command line (with or\n"
         "without blanks), from a file or standard input of hex, from what 'play --dry-run'\n"
         "prints, or from a trace of --trace. A name that is hex is hex: say ./cafe for a file.\n"
+        "Exit status 3 if a frame had a wrong sum or was cut off.\n"
         "With -v the bytes are shown too. --wiring tells what to believe of a host; without it\n"
         "board frames and bare packets are both known.\n",
     .example = "  grctl decode 53 0C FA AF 03 00 1E 04 01 F6 FF 00 00 11\n"

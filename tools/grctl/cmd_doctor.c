@@ -3,9 +3,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <grobo/estop.h>
+
 #include "checkup.h"
 #include "commands.h"
-#include "latch.h"
 #include "servos.h"
 
 enum { IDENTITY_BYTES = 3 /* No.0-1 model, No.2 firmware */, READ_BYTES = 30 /* the longest */ };
@@ -52,7 +53,7 @@ static bool ask(patient *p, char *said)
     bool ok;
     a->hushed = said;
     ok = conn_open(&p->c, a) == EXIT_DONE &&
-         servos_wait(&p->c, baud_of(a), READ_BYTES, SERVOS_PATIENT_US, 0) == GROBO_OK;
+         servos_wait(&p->c, baud_of(a), READ_BYTES, SERVOS_PATIENT_US, 0, NULL) == GROBO_OK;
     if (!ok)
         conn_close(&p->c, EXIT_DONE);
     a->hushed = NULL;
@@ -262,7 +263,7 @@ static void check_latch(checkup *k, const char *device)
 {
     char fix[FIX_BYTES + GROBO_DEVICE_MAX_BYTES];
     snprintf(fix, sizeof fix, "grctl -d %s estop --reset", device);
-    if (latch_is_set(device))
+    if (grobo_estop_stands(device))
         checkup_bad(k, "estop", fix, "an emergency stop stands: nothing will move");
 }
 

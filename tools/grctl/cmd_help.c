@@ -3,6 +3,7 @@
 
 #include "app.h"
 #include "commands.h"
+#include "output.h"
 
 enum { OPT_MAN };
 
@@ -51,11 +52,11 @@ static int run(app *a)
                 json_array_append_new(list, command_json(cli_commands[i]));
         app_print_json(json_pack("{s:o}", "commands", list));
     } else if (app_option(a, OPT_MAN)->given) {
-        cli_print_manual(stdout);
+        cli_print_manual(output_stream());
     } else if (about) {
-        cli_print_command(stdout, about);
+        cli_print_command(output_stream(), about);
     } else {
-        cli_print_overview(stdout);
+        cli_print_overview(output_stream());
     }
     return EXIT_DONE;
 }

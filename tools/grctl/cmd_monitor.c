@@ -4,8 +4,9 @@
 #include <string.h>
 #include <unistd.h>
 
+#include <grobo/estop.h>
+
 #include "commands.h"
-#include "latch.h"
 #include "monitor.h"
 #include "os.h"
 #include "screen.h"
@@ -54,7 +55,7 @@ static void say_request(monitor *m, int result, const char *doing)
 /* An emergency stop of another command stands here too. */
 static bool may_move(monitor *m)
 {
-    if (!latch_is_set(conn_device(&m->c)))
+    if (!grobo_estop_stands(conn_device(&m->c)))
         return true;
     say(m, true, "an emergency stop stands: R takes it back");
     return false;
@@ -169,9 +170,7 @@ static void start_play(monitor *m)
 
 static void reset(monitor *m)
 {
-    int error = latch_clear(conn_device(&m->c));
-    if (!error)
-        error = grobo_session_reset(m->c.session);
+    int error = grobo_session_reset(m->c.session);
     say_request(m, error, "stop taken back; nothing moves by itself");
     m->c.trip = (grobo_trip_info){0};
 }
@@ -409,7 +408,7 @@ static int run(app *a)
     if (!status && (a->json || !screen_possible())) {
         status = run_plain(a);
     } else if (!status) {
-        a->reconnects = true;
+        a->reconnects = a->moves = true;
         status = conn_open(&m.c, a);
         if (!status)
             status = run_screen(&m);

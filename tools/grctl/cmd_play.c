@@ -10,7 +10,6 @@
 #include "play_keys.h"
 #include "progress.h"
 #include "render.h"
-#include "wire.h"
 
 static const cli_option options[PLAY_OPTIONS] = {
     [PLAY_REPEAT] = {.name = "repeat",
@@ -43,7 +42,7 @@ static const cli_option options[PLAY_OPTIONS] = {
     [PLAY_RATE] = {.name = "rate",
                    .kind = CLI_NUMBER,
                    .value = "HZ",
-                   .help = "interpolate, so many frames a second (pseq and yaml: 30)",
+                   .help = "interpolate, so many frames a second (pseq and yaml)",
                    .min = 1,
                    .max = GROBO_PLAY_RATE_MAX_HZ},
     [PLAY_KEY] = {.name = "key",
@@ -53,6 +52,10 @@ static const cli_option options[PLAY_OPTIONS] = {
     [PLAY_CLAMP] = {.name = "clamp",
                     .kind = CLI_FLAG,
                     .help = "play angles outside a joint's limits at the limit"},
+    [PLAY_UNWATCHED] = {.name = "unwatched",
+                        .kind = CLI_FLAG,
+                        .help = "allow a rate at which joints cannot be read"},
+    [PLAY_FORCE] = {.name = "force", .kind = CLI_FLAG, .help = "do not warn of a fall"},
     [PLAY_DRY_RUN] = {.name = "dry-run",
                       .kind = CLI_FLAG,
                       .help = "print 'time_ms hex' a frame; touch no port"},
@@ -77,7 +80,7 @@ typedef struct show {
     play_keys keys;
     struct event *tick;
     int ticks;
-    bool started, over;
+    bool started, over, unwatched;
     int error;           /* why it failed, 0: it did not */
     uint32_t items;      /* of the sequencer, before the first clip */
     deviation following; /* the largest, of readings while it was played at a rate */
@@ -145,6 +148,17 @@ static void on_key(void *ctx, int key)
         report_progress(c, s);
 }
 
+static void warn_unwatched(const conn *c, const grobo_event_unwatched *told)
+{
+    char rate[32] = "by keys";
+    if (told->rate_hz > 0)
+        snprintf(rate, sizeof rate, "at %d Hz", told->rate_hz);
+    app_note(c->a,
+             "play: unwatched %s: heat, current and lost torque may stop nothing "
+             "(joints are watched up to %d Hz)",
+             rate, told->watched_hz);
+}
+
 static void on_event(conn *c, const grobo_event *event)
 {
     show *s = c->ctx;
@@ -157,6 +171,9 @@ static void on_event(conn *c, const grobo_event *event)
             s->error = event->u.play.error;
     } else if (event->kind == GROBO_EVENT_JOINT && event->u.joint.result == GROBO_OK) {
         follow(c, s, event->u.joint.joint);
+    } else if (event->kind == GROBO_EVENT_UNWATCHED) {
+        s->unwatched = true;
+        warn_unwatched(c, &event->u.unwatched);
     } else if (event->kind == GROBO_EVENT_TRIP) {
         s->error = GROBO_ERR_LATCHED;
     }
@@ -176,22 +193,24 @@ static json_t *deviation_json(deviation d)
 
 static json_t *summary_json(const conn *c, deviation following, deviation end)
 {
+    const show *s = c->ctx;
     grobo_robot_counters n;
     grobo_jitter jitter;
     conn_counters(c, &n);
     grobo_robot_jitter(c->robot, &jitter);
-    return json_pack("{s:b,s:I,s:I,s:{s:I,s:I,s:I},s:o,s:o}", "done", 1, "frames",
-                     (json_int_t)n.motion_frames, "late_frames", (json_int_t)n.late_frames,
-                     "jitter_us", "p50", (json_int_t)jitter.p50_us, "p99",
-                     (json_int_t)jitter.p99_us, "max", (json_int_t)jitter.max_us, "max_error_deg",
-                     deviation_json(end), "max_following_deg", deviation_json(following));
+    return json_pack("{s:b,s:b,s:I,s:I,s:{s:I,s:I,s:I},s:o,s:o}", "done", 1, "watched",
+                     !s->unwatched, "frames", (json_int_t)n.motion_frames, "late_frames",
+                     (json_int_t)n.late_frames, "jitter_us", "p50", (json_int_t)jitter.p50_us,
+                     "p99", (json_int_t)jitter.p99_us, "max", (json_int_t)jitter.max_us,
+                     "max_error_deg", deviation_json(end), "max_following_deg",
+                     deviation_json(following));
 }
 
 static void print_deviation(const conn *c, const char *what, deviation d)
 {
     if (d.joint >= 0)
-        printf("%s %.1f deg (%s)\n", what, d.deg,
-               grobo_robot_driver(c->robot)->model->joints[d.joint].name);
+        app_print("%s %.1f deg (%s)\n", what, d.deg,
+                  grobo_robot_driver(c->robot)->model->joints[d.joint].name);
 }
 
 static void print_summary(const conn *c, deviation following)
@@ -209,16 +228,16 @@ static void print_summary(const conn *c, deviation following)
     grobo_robot_jitter(c->robot, &jitter);
     if (app_option(c->a, PLAY_TABLE)->given)
         render_reached(c, now_us);
-    printf("%llu frame%s, %llu late; jitter p50 %lld us, p99 %lld us, largest %lld us\n",
-           (unsigned long long)n.motion_frames, n.motion_frames == 1 ? "" : "s",
-           (unsigned long long)n.late_frames, (long long)jitter.p50_us, (long long)jitter.p99_us,
-           (long long)jitter.max_us);
+    app_print("%llu frame%s, %llu late; jitter p50 %lld us, p99 %lld us, largest %lld us\n",
+              (unsigned long long)n.motion_frames, n.motion_frames == 1 ? "" : "s",
+              (unsigned long long)n.late_frames, (long long)jitter.p50_us, (long long)jitter.p99_us,
+              (long long)jitter.max_us);
     if (n.stretched)
-        printf("%llu move%s too fast for a servo and got more time\n",
-               (unsigned long long)n.stretched, n.stretched == 1 ? " was" : "s were");
+        app_print("%llu move%s too fast for a servo and got more time\n",
+                  (unsigned long long)n.stretched, n.stretched == 1 ? " was" : "s were");
     if (n.clamped)
-        printf("angles outside a joint's limits, taken to the limit: %llu\n",
-               (unsigned long long)n.clamped);
+        app_print("angles outside a joint's limits, taken to the limit: %llu\n",
+                  (unsigned long long)n.clamped);
     print_deviation(c, "largest error on the way", following);
     print_deviation(c, "largest error at the end", end);
 }
@@ -226,16 +245,12 @@ static void print_summary(const conn *c, deviation following)
 /* Frames that the line cannot carry would be left out: better said before. */
 static void warn_of_rate(const conn *c, const grobo_play_options *o)
 {
-    wire_cost costs[WIRE_COSTS];
-    const cli_value *baud = app_global(c->a, GLOBAL_BAUD);
-    int baud_bps = baud->given ? (int)baud->number : GROBO_BAUD_DEFAULT_BPS;
-    if (o->mode != GROBO_PLAY_RATE ||
-        wire_measure(grobo_robot_driver(c->robot), baud_bps, costs) < 0)
+    grobo_budget line;
+    if (o->mode != GROBO_PLAY_RATE || grobo_robot_budget(c->robot, &line) < 0)
         return;
-    if ((double)o->rate_hz * costs[WIRE_MOTION].total_us > 1e6)
-        app_note(c->a,
-                 "%d frames a second are more than the line carries (%.0f): some will be left out",
-                 o->rate_hz, 1e6 / costs[WIRE_MOTION].total_us);
+    if ((double)o->rate_hz * line.motion_us > 1e6)
+        app_note(c->a, "%d frames a second exceed what the line carries (%.0f): some are dropped",
+                 o->rate_hz, 1e6 / line.motion_us);
 }
 
 static int start(conn *c, show *s)
@@ -288,7 +303,6 @@ static int play(conn *c, show *s)
     grobo_joint_mask all = GROBO_JOINTS_ALL(grobo_robot_driver(c->robot)->model->n_joints);
     int error;
     warn_of_rate(c, &s->list.options[0]);
-    conn_watch(c, true);
     error = start(c, s);
     if (error)
         return conn_fail(c, error, "play");
@@ -354,9 +368,17 @@ const cli_command cmd_play = {
     .details =
         "Plays .m, .pseq, .mseq, .yaml and .seq files, one after the other. Every file is\n"
         "checked before anything moves: an angle outside a joint's limits is refused with its\n"
-        "place in the file and exit status 4, or played at the limit with --clamp. Torque comes\n"
-        "on where it is off, and the robot goes slowly from where it is to where the motion\n"
-        "begins. Ctrl-C stops smoothly and carries out the exit policy.\n"
+        "place in the file and exit status 4, or played at the limit with --clamp. An angle up\n"
+        "to one degree outside, as recordings have them, is played at the limit, with a warning.\n"
+        "One warning says where the robot would fall; --force and 'warn_fall: false' in\n"
+        "config.yaml silence it. Torque comes on where it is off, and the robot goes slowly from\n"
+        "where it is to where the motion begins. Ctrl-C stops smoothly and carries out the exit\n"
+        "policy.\n"
+        "\n"
+        "While it plays, every joint is read at least every 2 s, and heat, current, low voltage\n"
+        "and lost torque stop it. --rate is the rate that leaves time for that, at most 50; a\n"
+        "higher one needs --unwatched. 'grctl budget' computes it: 39 through the board at\n"
+        "115200 bps.\n"
         "\n"
         "On a terminal it takes keys:\n"
         "\n" PLAY_KEYS_HELP,

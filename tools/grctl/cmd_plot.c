@@ -153,14 +153,14 @@ typedef struct work {
     plot_data data;
 } work;
 
-static int solve(const app *a, work *w, const grobo_motion *motion, plot_subject *subject)
+static int solve(const app *a, work *w, const grobo_motion *motion, plot_subject *subject,
+                 grobo_body_options body)
 {
     grobo_posture start;
     grobo_clip_options plain = {.start = &start};
-    grobo_body_options body = body_options_read(a, OPT_BODY, 0);
     bool standing;
     int error;
-    whole_start(motion, subject->model, &start);
+    grobo_motion_start(motion, subject->model, &start);
     error = whole_open(&w->played, motion, &plain, &body);
     subject->clip = &w->played.clip;
     if (w->played.body)
@@ -193,7 +193,11 @@ static int plot(app *a, const order *o, const grobo_motion *motion)
     static work w;
     plot_subject subject = {.motion = motion, .model = file_model(motion)};
     plot_options how = {.rate_hz = app_number(a, OPT_RATE, 0)};
-    int error = solve(a, &w, motion, &subject), status = 0;
+    grobo_body_options body;
+    int error, status = body_options_read(a, OPT_BODY, how.rate_hz, &body);
+    if (status)
+        return status;
+    error = solve(a, &w, motion, &subject, body);
     if (!error) {
         status = choose_joints(a, &subject, &how.joints);
         how.columns = plot_columns(how.joints);

@@ -40,23 +40,23 @@ static json_t *port_json(const grobo_port_info *info)
 
 static void print_port(const grobo_port_info *info)
 {
-    printf("%-16s", info->path);
+    app_print("%-16s", info->path);
     if (info->open_result == GROBO_OK)
-        fputs("  free", stdout);
+        app_print("  free");
     else
-        printf("  %s", grobo_error_text(info->open_result));
+        app_print("  %s", grobo_error_text(info->open_result));
     if (info->owner_pid)
-        printf(", open in %s (pid %d)", info->owner_name, info->owner_pid);
+        app_print(", open in %s (pid %d)", info->owner_name, info->owner_pid);
     if (info->usb_vendor >= 0)
-        printf("  USB %04x:%04x", (unsigned)info->usb_vendor & 0xffff,
-               (unsigned)info->usb_product & 0xffff);
+        app_print("  USB %04x:%04x", (unsigned)info->usb_vendor & 0xffff,
+                  (unsigned)info->usb_product & 0xffff);
     if (*info->product)
-        printf(" %s", info->product);
+        app_print(" %s", info->product);
     if (*info->driver)
-        printf("  (%s)", info->driver);
-    putchar('\n');
+        app_print("  (%s)", info->driver);
+    app_print("\n");
     if (*info->by_id)
-        printf("%-16s  %s\n", "", info->by_id);
+        app_print("%-16s  %s\n", "", info->by_id);
 }
 
 static int visit(void *ctx, const grobo_port_info *info)

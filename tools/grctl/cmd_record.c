@@ -252,6 +252,10 @@ static int teach(recorder *r)
 static int fail_to_write(app *a, int error)
 {
     const char *out = app_option(a, OPT_OUT)->text;
+    if (out && error == GROBO_ERR_EXISTS)
+        return app_fail(
+            a, EXIT_FILE, grobo_error_name(error),
+            "%s: holds something other than a motion of its format; choose another name", out);
     return app_fail(a, EXIT_FILE, grobo_error_name(error), "%s: cannot write: %s",
                     out ? out : "MotionN.m", file_write_error_text(error));
 }
@@ -262,7 +266,10 @@ static int try_to_write(app *a)
     const grobo_files *files = grobo_files_os();
     const char *out = app_option(a, OPT_OUT)->text;
     grobo_file file;
-    int error = files->create(&file, out ? out : "./Motion.m", false);
+    int error =
+        out ? grobo_motion_may_save(files, out, grobo_motion_format_of_path(out)) : GROBO_OK;
+    if (error == GROBO_OK)
+        error = files->create(&file, out ? out : "./Motion.m", false);
     if (error < 0)
         return fail_to_write(a, error);
     files->discard(&file);
@@ -283,8 +290,13 @@ static int save(recorder *r)
         app_note(a, "nothing was recorded; no file is written");
         return EXIT_DONE;
     }
-    error = out ? grobo_motion_save(r->motion, grobo_files_os(), out, &how, NULL)
-                : grobo_motion_save_next(r->motion, grobo_files_os(), ".", &how, path, sizeof path);
+    error = out ? grobo_motion_save(r->motion, grobo_files_os(), out, &how, NULL) : GROBO_OK;
+    if (error == GROBO_ERR_EXISTS) { /* it was not there when teaching began */
+        app_note(a, "%s holds something other than a motion of its format now", out);
+        out = NULL;
+    }
+    if (!out)
+        error = grobo_motion_save_next(r->motion, grobo_files_os(), ".", &how, path, sizeof path);
     if (error < 0)
         return fail_to_write(a, error);
     if (a->json)
@@ -292,7 +304,7 @@ static int save(recorder *r)
                                  "postures", (json_int_t)n, "length_ms",
                                  json_integer((json_int_t)(length_s * 1e3 + 0.5))));
     else
-        printf("%s\n", out ? out : name);
+        app_print("%s\n", out ? out : name);
     app_note(a, "%zu posture%s, %.1f s", n, n == 1 ? "" : "s", length_s);
     return EXIT_DONE;
 }

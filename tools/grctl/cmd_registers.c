@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "commands.h"
+#include "output.h"
 #include "registers.h"
 #include "servos.h"
 
@@ -36,10 +37,10 @@ static void print_value(const grobo_rs30x_register *reg, int32_t value)
     char counts[REGISTERS_TEXT_BYTES], text[REGISTERS_TEXT_BYTES];
     snprintf(counts, sizeof counts, "%d", value);
     registers_text(reg, value, text, sizeof text);
-    printf("%3d  %-18s %6s", reg->address, reg->name, counts);
+    app_print("%3d  %-18s %6s", reg->address, reg->name, counts);
     if (strcmp(text, counts) != 0)
-        printf("  %12s", text);
-    putchar('\n');
+        app_print("  %12s", text);
+    app_print("\n");
 }
 
 /* Beside the counts what they mean: under a key with its unit, or as a word. */
@@ -139,8 +140,7 @@ static bool confirmed(conn *c, const change *what, int32_t before)
     app_note(c->a, "servo %d: %s, and No.4-29 go to flash: keep its power on", what->id, text);
     if (app_global(c->a, GLOBAL_YES)->given || !c->a->tty_in)
         return true;
-    fputs("Write it? [y/N] ", stderr);
-    fflush(stderr);
+    output_complain("Write it? [y/N] ");
     return fgets(answer, sizeof answer, stdin) && (answer[0] == 'y' || answer[0] == 'Y');
 }
 
@@ -169,7 +169,10 @@ static void report(const conn *c, int id, const change *what, int32_t before)
                                  "before", before, "value", what->value, "flash", what->flash));
     else
         app_note(c->a, "servo %d: %s%s", id, text,
-                 what->flash ? ", kept in flash" : "; lost at power-off without --flash");
+                 what->reg->address == GROBO_RS30X_BAUD && what->value != before
+                     ? "; sent, not verified: look for it with 'grctl scan --all-baud'"
+                 : what->flash ? ", kept in flash"
+                               : "; lost at power-off without --flash");
 }
 
 /* After these a goal means another angle: a servo that holds would go there at once. */
@@ -298,6 +301,12 @@ static int parse_change(app *a, change *what)
     if (what->reg->kept == GROBO_RS30X_KEPT_RAM && app_option(a, OPT_FLASH)->given)
         return app_fail(a, EXIT_USAGE, "USAGE", "servo-set: flash does not keep register %s",
                         what->reg->name);
+    if (what->reg->address == GROBO_RS30X_BAUD && what->value != GROBO_RS30X_BAUD_CODE_DEFAULT &&
+        app_global(a, GLOBAL_WIRING)->choice == GROBO_WIRING_BOARD)
+        return app_fail(a, EXIT_SAFETY, "REFUSED",
+                        "servo-set: the bus behind the board has %d bps; a servo with another "
+                        "baud rate could not be reached",
+                        GROBO_BAUD_DEFAULT_BPS);
     what->flash = app_option(a, OPT_FLASH)->given > 0;
     return 0;
 }
@@ -338,7 +347,8 @@ const cli_command cmd_servo_set = {
         "servo-get); a baud rate may be given as it is. With --flash the servo also keeps\n"
         "its settings over power-off; that is shown first and, on a terminal, asked for.\n"
         "Goal and torque are refused: move and servo set them safely; id, reverse and limits\n"
-        "are refused while the servo holds, and an id that another servo has.\n",
+        "are refused while the servo holds, an id that another servo has, and through the board\n"
+        "a baud rate other than 115200. A new baud rate is not verified.\n",
     .example = "  grctl servo-set 12 delay 2 --flash\n  grctl servo-set 1 id 21\n",
     .options = set_options,
     .n_options = sizeof set_options / sizeof set_options[0],

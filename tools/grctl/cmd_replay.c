@@ -11,6 +11,8 @@
 /* Differences shown as text, unless -v asks for all. */
 enum { SHOWN = 5 };
 
+#define LENGTH_MAX_US (24 * 3600 * INT64_C(1000000))
+
 /* ---- the trace ----------------------------------------------------------------------------- */
 
 /* Line and clock of the trace, as its first chunk has them; options go before. */
@@ -28,6 +30,17 @@ static void take_line(replay *r, const pcapng_chunk *chunk)
         r->baud_bps = (int)baud->number;
 }
 
+/* A clock that was set, or nonsense, is not to be waited for. */
+static int refuse_length(const replay *r, int64_t at_us)
+{
+    if (r->first_us < 0 || at_us <= LENGTH_MAX_US)
+        return 0;
+    return app_fail(r->a, EXIT_FILE, "CAP",
+                    "%s: a packet %.0f s after the first: a trace of more than a day is not "
+                    "replayed",
+                    r->path, (double)at_us / 1e6);
+}
+
 int replay_read(replay *r, replay_fn use, void *ctx)
 {
     static pcapng_reader reader;
@@ -38,8 +51,11 @@ int replay_read(replay *r, replay_fn use, void *ctx)
     if (status)
         return status;
     pcapng_reader_init(&reader, input_read, &in);
-    while (!status && (more = pcapng_read(&reader, &chunk)) > 0)
-        status = use(ctx, &chunk);
+    while (!status && (more = pcapng_read(&reader, &chunk)) > 0) {
+        status = refuse_length(r, chunk.time_us - r->first_us);
+        if (!status)
+            status = use(ctx, &chunk);
+    }
     if (more < 0)
         status = input_fail(&in, r->a, &reader);
     input_close(&in);
@@ -95,7 +111,7 @@ static void print_one(const replay *r, const char *who, frames_side side, const 
         snprintf(text, sizeof text, "nothing\n");
     else if (frame_of(r, side, bytes, n, &f))
         words_say(&f, r->a->color_out, "", text, sizeof text);
-    printf("    %-9s %s", who, text);
+    app_print("    %-9s %s", who, text);
 }
 
 static json_t *json_of(const replay *r, frames_side side, const uint8_t *bytes, size_t n)
@@ -116,7 +132,7 @@ static void print_difference(const replay *r, const ledger_entry *e, const char 
                                  json_of(r, FRAMES_ROBOT, is->bytes, is->size)));
         return;
     }
-    printf("request %llu at %.3f ms: %s\n", (unsigned long long)e->number, time_ms, verdict);
+    app_print("request %llu at %.3f ms: %s\n", (unsigned long long)e->number, time_ms, verdict);
     print_one(r, "asked", FRAMES_HOST, e->bytes, e->size);
     print_one(r, "recorded", FRAMES_ROBOT, was->bytes, was->size);
     print_one(r, "replayed", FRAMES_ROBOT, is->bytes, is->size);
@@ -208,18 +224,18 @@ static int report(replay *r)
                       (json_int_t)r->count.rubbish_bytes[REPLAY_REPLAYED]));
         return ok ? EXIT_DONE : EXIT_ROBOT;
     }
-    printf("%llu frames sent, %llu call for a reply: %llu equal, %llu differ, %llu missing, "
-           "%llu extra, %llu silent both times\n",
-           (unsigned long long)r->count.frames, (unsigned long long)r->asked.requests,
-           (unsigned long long)r->count.equal, (unsigned long long)r->count.differ,
-           (unsigned long long)r->count.missing, (unsigned long long)r->count.extra,
-           (unsigned long long)r->count.silent);
+    app_print("%llu frames sent, %llu call for a reply: %llu equal, %llu differ, %llu missing, "
+              "%llu extra, %llu silent both times\n",
+              (unsigned long long)r->count.frames, (unsigned long long)r->asked.requests,
+              (unsigned long long)r->count.equal, (unsigned long long)r->count.differ,
+              (unsigned long long)r->count.missing, (unsigned long long)r->count.extra,
+              (unsigned long long)r->count.silent);
     for (int who = 0; who < LEDGER_SIDES; who++)
         if (r->count.stray[who] || r->count.rubbish_bytes[who])
-            printf("%s: %llu replies nobody asked for, %llu bytes that are no reply\n",
-                   who == REPLAY_RECORDED ? "recorded" : "replayed",
-                   (unsigned long long)r->count.stray[who],
-                   (unsigned long long)r->count.rubbish_bytes[who]);
+            app_print("%s: %llu replies nobody asked for, %llu bytes that are no reply\n",
+                      who == REPLAY_RECORDED ? "recorded" : "replayed",
+                      (unsigned long long)r->count.stray[who],
+                      (unsigned long long)r->count.rubbish_bytes[who]);
     return ok ? EXIT_DONE : EXIT_ROBOT;
 }
 

@@ -6,6 +6,7 @@
 
 #include "commands.h"
 #include "file.h"
+#include "guard.h"
 #include "output.h"
 #include "run.h"
 #include "shell.h"
@@ -45,6 +46,7 @@ void shell_inherit(shell *s)
             s->one.line.global[i] = s->a->line.global[i];
     }
     s->one.robot = s->a->robot;
+    s->one.moves = true;
     s->one.tty_in = s->a->tty_in && !s->file;
 }
 
@@ -137,9 +139,10 @@ static int run_text(shell *s, char *line)
 
 static bool ends(const shell *s, int status)
 {
-    return s->over || status == EXIT_SIGNAL + os_endings[OS_TERMINATE] ||
-           status == EXIT_SIGNAL + os_endings[OS_HANGUP] ||
-           status == EXIT_SIGNAL + os_endings[OS_QUIT];
+    bool ended = s->over;
+    for (int i = 0; i < os_n_endings; i++)
+        ended |= i != OS_INTERRUPT && status == EXIT_SIGNAL + os_endings[i];
+    return ended;
 }
 
 /* A line of a script, or what happened while it was waited for. */
@@ -192,8 +195,7 @@ static int run_prompt(shell *s)
         noted = 0;
         status = n == LINE_TOO_LONG ? refuse(s, "the line is too long") : run_text(s, line);
         if (status == EXIT_SIGNAL + os_endings[OS_INTERRUPT]) {
-            fputc('\n', stderr); /* behind the terminal's ^C */
-            fflush(stderr);
+            output_complain("\n"); /* behind the terminal's ^C */
         }
         if (noted && noted != os_endings[OS_INTERRUPT])
             status = EXIT_SIGNAL + (int)noted;
@@ -233,6 +235,8 @@ static int run(app *a)
     s.link.owner = a;
     a->link = &s.link;
     os_catch_endings(on_signal);
+    a->moves = true;
+    guard_start(a, conn_requested(a));
     if (conn_link_init(&s.link) != GROBO_OK)
         status = app_fail(a, EXIT_ROBOT, "NOMEM", "shell: %s", grobo_error_text(GROBO_ERR_NOMEM));
     else

@@ -19,16 +19,19 @@ static const cli_option options[] = {
 /* With --rate or a body option the motion as it is played, otherwise as the file has it. */
 static int choose_rows(app *a, show_rows *rows)
 {
-    const grobo_body_options body = body_options_read(a, OPT_BODY, 0);
+    grobo_body_options body;
     grobo_posture start;
     grobo_clip_options plain = {.start = &start};
     int error;
     rows->n = grobo_motion_size(rows->motion);
     rows->rate_hz = app_number(a, OPT_RATE, 0);
+    error = body_options_read(a, OPT_BODY, rows->rate_hz, &body);
+    if (error)
+        return error;
     rows->as_played = rows->rate_hz > 0 || body_options_given(a, OPT_BODY);
     if (!rows->as_played)
         return 0;
-    whole_start(rows->motion, rows->model, &start);
+    grobo_motion_start(rows->motion, rows->model, &start);
     error = whole_open(&rows->played, rows->motion, &plain, &body);
     if (error)
         return app_fail(a, EXIT_FILE, grobo_error_name(error), "%s: %s", a->line.argument[0],
@@ -101,7 +104,7 @@ static void print_text(const char *text)
 {
     for (const unsigned char *c = (const unsigned char *)text; *c; c++) {
         bool c1 = c[0] == 0xc2 && c[1] >= 0x80 && c[1] < 0xa0; /* controls of eight bits */
-        putchar(*c < 0x20 || *c == 0x7f || c1 ? '?' : *c);
+        app_print("%c", *c < 0x20 || *c == 0x7f || c1 ? '?' : *c);
         c += c1;
     }
 }
@@ -139,26 +142,26 @@ static void print_head(const show_rows *rows, const char *path, const char *form
                                        : (double)grobo_motion_length_us(motion, -1);
     size_t linked = count_linked(motion);
     print_text(path);
-    printf(": %s", format);
+    app_print(": %s", format);
     if (*grobo_motion_name(motion)) {
-        printf(" \"");
+        app_print(" \"");
         print_text(grobo_motion_name(motion));
-        printf("\"");
+        app_print("\"");
     }
     if (*grobo_motion_target_body(motion)) {
-        printf(" for ");
+        app_print(" for ");
         print_text(grobo_motion_target_body(motion));
     }
-    printf(", %zu %s", rows->n, row_word(rows));
+    app_print(", %zu %s", rows->n, row_word(rows));
     if (grobo_motion_frame_rate(motion) > 0 && !grobo_motion_has_frame_times(motion))
-        printf(" at %.5g Hz", grobo_motion_frame_rate(motion));
-    printf(", %.3f s, angles in degrees\n", length_us / 1e6);
+        app_print(" at %.5g Hz", grobo_motion_frame_rate(motion));
+    app_print(", %.3f s, angles in degrees\n", length_us / 1e6);
     if (rows->played.body)
-        printf("legs by inverse kinematics\n");
+        app_print("legs by inverse kinematics\n");
     else if (linked)
-        printf("%zu of %zu poses give legs by ikLinks: %s\n", linked, grobo_motion_size(motion),
-               rows->model ? "--ik exact shows their angles"
-                           : "only GR001's are solved, this is for another robot");
+        app_print("%zu of %zu poses give legs by ikLinks: %s\n", linked, grobo_motion_size(motion),
+                  rows->model ? "--ik exact shows their angles"
+                              : "only GR001's are solved, this is for another robot");
 }
 
 static int show(app *a, show_rows *rows)

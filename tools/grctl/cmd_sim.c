@@ -7,13 +7,28 @@
 
 #include "app.h"
 #include "commands.h"
-#include "latch.h"
 #include "os.h"
 #include "output.h"
+#include "sim_chain.h"
 #include "sim_console.h"
+#include "sim_state.h"
+#include "sim_strict.h"
 #include "trace.h"
 
-enum { OPT_LINK, OPT_TCP, OPT_NO_PACING, OPT_LATENCY, OPT_ROBOTS, OPT_SEED, OPT_START, OPT_FAULT };
+enum {
+    OPT_LINK,
+    OPT_TCP,
+    OPT_SERVO,
+    OPT_NO_STOPS,
+    OPT_NO_PACING,
+    OPT_LATENCY,
+    OPT_ROBOTS,
+    OPT_SEED,
+    OPT_START,
+    OPT_FAULT,
+    OPT_STRICT,
+    OPT_STATE
+};
 enum { ROBOTS_MAX = 16 };
 
 static const cli_option options[] = {
@@ -28,6 +43,14 @@ static const cli_option options[] = {
                  .help = "listen on 127.0.0.1 too; 0: any port; the next ones for more robots",
                  .min = 0,
                  .max = 65535},
+    [OPT_SERVO] = {.name = "servo",
+                   .kind = CLI_TEXT,
+                   .value = "ID=TYPE,...",
+                   .help = "simulate these servos, on a bus, instead of GR001: RS301CR RS302CD "
+                           "RS303MR RS304MD"},
+    [OPT_NO_STOPS] = {.name = "no-stops",
+                      .kind = CLI_FLAG,
+                      .help = "shafts meet no mechanical stops"},
     [OPT_NO_PACING] = {.name = "no-pacing",
                        .kind = CLI_FLAG,
                        .help = "bytes take no time on the wire"},
@@ -59,15 +82,33 @@ static const cli_option options[] = {
                    .value = "LIST",
                    .help = "KIND=RATE,...: drop flip duplicate delay split rubbish silent dupid "
                            "hangup brownout, or all; rates 0 to 1"},
+    [OPT_STRICT] = {.name = "strict",
+                    .kind = CLI_FLAG,
+                    .help = "report each offence of a client against the protocol; then the exit "
+                            "status is 3, else 0"},
+    [OPT_STATE] = {.name = "state",
+                   .kind = CLI_TEXT,
+                   .value = "FILE",
+                   .help = "keep the servos' flash in FILE from one simulator to the next; FILE2, "
+                           "FILE3... of more robots"},
 };
+
+/* What goes with a robot. */
+typedef struct watched {
+    trace trace;
+    sim_strict strict;
+    sim_state state;
+} watched;
 
 typedef struct farm {
     app *a;
     struct event_base *base;
-    struct event *signals[OS_ENDINGS];
+    struct event *signals[OS_ENDINGS_MAX];
     grobo_sim_server *server[ROBOTS_MAX];
-    trace trace[ROBOTS_MAX];
+    watched watched[ROBOTS_MAX];
     sim_console console;
+    sim_chain chain; /* of --servo */
+    const grobo_model *model;
     int n;
     int signal;
 } farm;
@@ -76,7 +117,18 @@ typedef struct farm {
 static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes, size_t size,
                    void *ctx)
 {
-    trace_bytes(ctx, direction == GROBO_DIR_RX ? GROBO_DIR_TX : GROBO_DIR_RX, now_us, bytes, size);
+    watched *w = ctx;
+    if (direction == GROBO_DIR_RX)
+        sim_strict_bytes(&w->strict, now_us, bytes, size);
+    trace_bytes(&w->trace, direction == GROBO_DIR_RX ? GROBO_DIR_TX : GROBO_DIR_RX, now_us, bytes,
+                size);
+}
+
+static void on_sim(const grobo_sim_event *event, void *ctx)
+{
+    watched *w = ctx;
+    sim_strict_event(&w->strict, event);
+    sim_state_event(&w->state, event);
 }
 
 static void on_signal(evutil_socket_t number, short what, void *ctx)
@@ -94,7 +146,7 @@ static void on_signal(evutil_socket_t number, short what, void *ctx)
  */
 static int watch_signals(farm *f)
 {
-    for (int i = 0; i < OS_ENDINGS; i++) {
+    for (int i = 0; i < os_n_endings; i++) {
         if (os_is_ignored(os_endings[i]))
             continue;
         f->signals[i] = evsignal_new(f->base, os_endings[i], on_signal, f);
@@ -104,11 +156,15 @@ static int watch_signals(farm *f)
     return GROBO_OK;
 }
 
-static grobo_sim_config sim_config(const app *a, int robot)
+static grobo_sim_config sim_config(const farm *f, int robot)
 {
-    const cli_value *baud = app_global(a, GLOBAL_BAUD);
+    const app *a = f->a;
+    const cli_value *baud = app_global(a, GLOBAL_BAUD), *wiring = app_global(a, GLOBAL_WIRING);
+    bool bus = app_option(a, OPT_SERVO)->given && !wiring->given;
     grobo_sim_config config = {
-        .wiring = (grobo_wiring)app_global(a, GLOBAL_WIRING)->choice,
+        .model = f->model,
+        .wiring = bus ? GROBO_WIRING_BUS : (grobo_wiring)wiring->choice,
+        .no_stops = app_option(a, OPT_NO_STOPS)->given > 0,
         .baud_bps = baud->given ? (uint32_t)baud->number : 0,
         .latency_us = (uint32_t)app_number(a, OPT_LATENCY, 0) * 1000,
         .echo = app_global(a, GLOBAL_ECHO)->given > 0,
@@ -121,12 +177,20 @@ static grobo_sim_config sim_config(const app *a, int robot)
 
 static int open_trace(farm *f, int robot)
 {
-    grobo_sim_config sim = sim_config(f->a, robot);
+    grobo_sim_config sim = sim_config(f, robot);
     trace_line line = {.device = grobo_sim_server_device(f->server[robot]),
                        .wiring = sim.wiring,
                        .baud_bps = (int)sim.baud_bps,
                        .number = robot + 1};
-    return trace_open(&f->trace[robot], f->a, &line, grobo_now_us());
+    return trace_open(&f->watched[robot].trace, f->a, &line, grobo_now_us());
+}
+
+/* PATH of the first robot, PATH2, PATH3... of more. False: too long. */
+static bool number_path(const char *path, int robot, char *numbered, size_t capacity)
+{
+    int n = robot == 0 ? snprintf(numbered, capacity, "%s", path)
+                       : snprintf(numbered, capacity, "%s%d", path, robot + 1);
+    return n >= 0 && (size_t)n < capacity;
 }
 
 /* Where programs find a robot. */
@@ -139,16 +203,14 @@ typedef struct place {
 static int find_place(app *a, int robot, place *at, grobo_sim_server_config *config)
 {
     const char *path = app_option(a, OPT_LINK)->text;
-    int port = (int)app_number(a, OPT_TCP, 0), n;
+    int port = (int)app_number(a, OPT_TCP, 0);
     config->no_pty = grobo_port_pty_ops() == NULL;
     at->name = config->no_pty ? at->tcp : "pty";
     if (path && config->no_pty)
         return app_fail(a, EXIT_USAGE, "UNSUPPORTED",
                         "sim: --link: there are no pseudo-terminals here; --tcp serves programs");
     if (path) {
-        n = robot == 0 ? snprintf(at->link, sizeof at->link, "%s", path)
-                       : snprintf(at->link, sizeof at->link, "%s%d", path, robot + 1);
-        if (n < 0 || (size_t)n >= sizeof at->link)
+        if (!number_path(path, robot, at->link, sizeof at->link))
             return app_fail(a, EXIT_USAGE, "CAP", "sim: --link: the path is too long");
         config->link = at->name = at->link;
     }
@@ -167,34 +229,46 @@ static const char *name_of_failed(const place *at, const grobo_os_cause *cause)
     return strncmp(cause->text, "bind", 4) == 0 ? at->tcp : at->name;
 }
 
+static int open_state(farm *f, int robot)
+{
+    const char *path = app_option(f->a, OPT_STATE)->text;
+    char numbered[1024];
+    if (!path)
+        return 0;
+    if (!number_path(path, robot, numbered, sizeof numbered))
+        return app_fail(f->a, EXIT_USAGE, "CAP", "sim: --state: the path is too long");
+    return sim_state_start(&f->watched[robot].state, f->a, f->base, f->server[robot], numbered);
+}
+
 static int add_robot(farm *f, int robot)
 {
     const char *faults = app_option(f->a, OPT_FAULT)->text;
-    grobo_sim_config sim = sim_config(f->a, robot);
+    grobo_sim_config sim = sim_config(f, robot);
     grobo_sim_server_config config = {
-        .base = f->base, .sim = &sim, .on_tap = on_tap, .ctx = &f->trace[robot]};
+        .base = f->base, .sim = &sim, .on_tap = on_tap, .ctx = &f->watched[robot]};
     grobo_os_cause cause = {0};
     place at;
     int error = find_place(f->a, robot, &at, &config);
     if (error)
         return error;
+    sim.hook = on_sim;
+    sim.hook_ctx = &f->watched[robot];
+    if (app_option(f->a, OPT_STRICT)->given)
+        sim_strict_start(&f->watched[robot].strict, f->a, robot + 1, sim.wiring, grobo_now_us());
     error = grobo_sim_server_new(&config, &f->server[robot], &cause);
     if (error)
         return app_fail(f->a, EXIT_ROBOT, grobo_error_name(error), "sim: %s: %s%s%s",
                         name_of_failed(&at, &cause), grobo_error_text(error),
                         *cause.text ? ": " : "", cause.text);
     f->n = robot + 1;
-    /* Another robot had its names, and may have been stopped under them. */
-    latch_clear(grobo_sim_server_device(f->server[robot]));
-    if (*at.link)
-        latch_clear(at.link);
     if (faults &&
         grobo_sim_set_faults(grobo_sim_server_sim(f->server[robot]), faults, strlen(faults)) < 0)
         return app_fail(f->a, EXIT_USAGE, "USAGE",
                         "sim: --fault: '%s' is no list such as drop=0.01,flip=0.02; see "
                         "'grctl help sim'",
                         faults);
-    return open_trace(f, robot);
+    error = open_state(f, robot);
+    return error ? error : open_trace(f, robot);
 }
 
 /*
@@ -211,7 +285,7 @@ static bool announce(const farm *f)
             json_object_set_new(one, "tcp_port", json_integer(port));
         json_array_append_new(list, one);
         if (!f->a->json)
-            puts(grobo_sim_server_device(f->server[i]));
+            app_print("%s\n", grobo_sim_server_device(f->server[i]));
         if (port > 0 && grobo_port_pty_ops() != NULL) {
             output_flush();
             app_note(f->a, "also at tcp:127.0.0.1:%d", port);
@@ -231,10 +305,11 @@ static bool announce(const farm *f)
 static int close_farm(farm *f, int status)
 {
     for (int i = 0; i < f->n; i++) {
+        status = sim_state_end(&f->watched[i].state, status);
         grobo_sim_server_free(f->server[i]);
-        status = trace_close(&f->trace[i], f->a, status);
+        status = trace_close(&f->watched[i].trace, f->a, status);
     }
-    for (int i = 0; i < OS_ENDINGS; i++)
+    for (int i = 0; i < os_n_endings; i++)
         if (f->signals[i])
             event_free(f->signals[i]);
     if (f->base)
@@ -242,13 +317,29 @@ static int close_farm(farm *f, int status)
     return status;
 }
 
+/* However it was ended: whether the clients kept to the protocol. */
+static int strict_status(farm *f)
+{
+    uint64_t offences = 0;
+    for (int i = 0; i < f->n; i++) {
+        sim_strict_end(&f->watched[i].strict);
+        offences += f->watched[i].strict.offences;
+    }
+    app_note(f->a, "%llu offence%s against the protocol", (unsigned long long)offences,
+             offences == 1 ? "" : "s");
+    return offences > 0 ? EXIT_FILE : EXIT_DONE;
+}
+
 /* Until a signal, or until somebody says quit. */
 static int serve(farm *f)
 {
-    f->console = (sim_console){.a = f->a, .base = f->base, .server = f->server, .n = f->n};
+    f->console = (sim_console){
+        .a = f->a, .base = f->base, .model = f->model, .server = f->server, .n = f->n};
     sim_console_start(&f->console);
     event_base_dispatch(f->base);
     sim_console_stop(&f->console);
+    if (app_option(f->a, OPT_STRICT)->given)
+        return strict_status(f);
     return f->signal ? EXIT_SIGNAL + f->signal : EXIT_DONE;
 }
 
@@ -263,6 +354,11 @@ static int run(app *a)
     f.base = grobo_loop_new();
     if (!f.base || watch_signals(&f) != GROBO_OK)
         status = app_fail(a, EXIT_ROBOT, "NOMEM", "sim: %s", grobo_error_text(GROBO_ERR_NOMEM));
+    f.model = &grobo_gr001_model;
+    if (app_option(a, OPT_SERVO)->given && !status) {
+        f.model = &f.chain.model;
+        status = sim_chain_read(a, &f.chain, app_option(a, OPT_SERVO)->text);
+    }
     for (int i = 0; i < robots && !status; i++)
         status = add_robot(&f, i);
     if (!status && announce(&f))
@@ -275,16 +371,24 @@ const cli_command cmd_sim = {
     .arguments = "",
     .summary = "a simulated robot behind a pty, for any program",
     .details =
-        "Runs a simulated GR001 until a signal. Prints the path of its pty, one line a robot,\n"
-        "when it can be opened; where there are no ptys (Windows) that of its TCP port. The robot\n"
-        "is honest at register level and bytes take their time on the wire; programs may come and\n"
-        "go, it stays as they left it.\n"
+        "Runs a simulated GR001, or a chain of servos, until a signal. Prints the path of its\n"
+        "pty, one line a robot, when it can be opened; where there are no ptys (Windows) that of\n"
+        "its TCP port. The robot is honest at register level and bytes take their time on the\n"
+        "wire; programs may come and go, it stays as they left it.\n"
+        "\n"
+        "With --strict each offence of a client is a line on standard error, with --json an\n"
+        "object on standard output: a wrong sum, a value out of range or a read-only register,\n"
+        "bytes that are no frame or cut off, talking over a reply, writing to a servo that\n"
+        "writes its flash or restarts, a pause inside a packet, a wrong count of bytes to\n"
+        "return. The exit status is then 3, and 0 where there was none, whatever ended it:\n"
+        "tests of any library for such servos may run against it.\n"
         "\n"
         "While it runs it takes commands on standard input, when that is a terminal or a pipe.\n"
         "SERVO is a motor's number, a joint or a group; angles are the shaft's.\n"
         "\n" SIM_CONSOLE_HELP,
     .example = "  grctl sim --link /tmp/gr001\n"
-               "  grctl sim --wiring bus --fault drop=0.01,flip=0.001 --seed 7\n",
+               "  grctl sim --wiring bus --fault drop=0.01,flip=0.001 --seed 7\n"
+               "  grctl sim --servo 1=RS304MD,2=RS302CD --no-stops --state servos.state\n",
     .options = options,
     .n_options = sizeof options / sizeof options[0],
     .run = run,

@@ -27,7 +27,7 @@ static void show(conn *c, grobo_joint_mask joints)
     json_t *list;
     if (!c->a->json) {
         if (c->a->tty_out && app_option(c->a, OPT_WATCH)->given)
-            fputs("\033[H\033[J", stdout);
+            app_print("\033[H\033[J");
         render_status(c, joints, now_us);
         output_flush();
         return;

@@ -9,7 +9,7 @@ static int run(app *a)
     if (a->json)
         app_print_json(json_pack("{s:s,s:s}", "name", "grctl", "version", grobo_version()));
     else
-        printf("grctl %s\n", grobo_version());
+        app_print("grctl %s\n", grobo_version());
     return EXIT_DONE;
 }
 

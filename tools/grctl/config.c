@@ -7,6 +7,7 @@
 
 #include <grobo/model.h>
 
+#include "checkup.h"
 #include "config.h"
 #include "file.h"
 #include "os.h"
@@ -21,6 +22,7 @@ typedef struct reader {
     char wanted[CONFIG_NAME_BYTES];
     bool wants_default;
     config_robot *robot;
+    bool has_warn_fall, warn_fall;
 } reader;
 
 /* ---- events --------------------------------------------------------------------------------- */
@@ -86,13 +88,22 @@ static int take_option(reader *r, int global, cli_value *value)
     return 0;
 }
 
-static int take_flag(reader *r, cli_value *value)
+static int take_truth(reader *r, bool *truth)
 {
     if (next(r))
         return r->status;
     if (!scalar(r) || (strcmp(scalar(r), "true") != 0 && strcmp(scalar(r), "false") != 0))
         return complain(r, &r->event.start_mark, "%s", "true or false is wanted here");
-    value->given = strcmp(scalar(r), "true") == 0;
+    *truth = strcmp(scalar(r), "true") == 0;
+    return 0;
+}
+
+static int take_flag(reader *r, cli_value *value)
+{
+    bool given = false;
+    if (take_truth(r, &given))
+        return r->status;
+    value->given = given;
     return 0;
 }
 
@@ -193,8 +204,13 @@ static int take_top(reader *r, const char *key)
     char name[CONFIG_NAME_BYTES];
     if (strcmp(key, "robots") == 0)
         return next(r) ? r->status : each_key(r, take_robot);
+    if (strcmp(key, "warn_fall") == 0) {
+        r->has_warn_fall = take_truth(r, &r->warn_fall) == 0;
+        return r->status;
+    }
     if (strcmp(key, "default") != 0)
-        return complain(r, &r->event.start_mark, "no key '%s'; there are default, robots", key);
+        return complain(r, &r->event.start_mark,
+                        "no key '%s'; there are default, robots, warn_fall", key);
     if (take_text(r, name, sizeof name) == 0 && r->wants_default) {
         if (*r->robot->name == '\0' && *r->wanted == '\0')
             snprintf(r->wanted, sizeof r->wanted, "%s", name);
@@ -233,8 +249,8 @@ static int find(reader *r)
             errno = 0;
             file = os_config_path(i, r->path, sizeof r->path) ? fopen(r->path, "r") : NULL;
             if (!file && errno == EACCES)
-                return app_fail(r->a, EXIT_FILE, "CONFIG", "%s: %s", r->path,
-                                file_cause_text(errno));
+                return r->status = app_fail(r->a, EXIT_FILE, "CONFIG", "%s: %s", r->path,
+                                            file_cause_text(errno));
             if (!file)
                 break;
             read_file(r, file);
@@ -285,10 +301,10 @@ int config_apply(app *a)
     memset(&robot, 0, sizeof robot);
     if (asked)
         snprintf(r.wanted, sizeof r.wanted, "%s", asked);
-    if (find(&r) != 0)
-        return r.status;
+    find(&r);
     if (!*robot.name)
-        return r.wants_default && *r.wanted
+        return r.status ? r.status
+               : r.wants_default && *r.wanted
                    ? app_fail(a, EXIT_FILE, "CONFIG", "%s: default '%s' is no robot of the file",
                               r.path, r.wanted)
                    : 0;
@@ -297,5 +313,30 @@ int config_apply(app *a)
     set_option(a, GLOBAL_ECHO, &robot.echo);
     set_option(a, GLOBAL_BAUD, &robot.baud);
     a->robot = &robot;
-    return 0;
+    return r.status;
+}
+
+bool config_is_unknown_name(const app *a, const char *device)
+{
+    char path[GROBO_DEVICE_MAX_BYTES];
+    return !a->robot && may_be_name(device) && !checkup_true_path(device, path, sizeof path);
+}
+
+bool config_warns_of_falls(const app *a)
+{
+    static config_robot robot;
+    char hushed[APP_LINE_BYTES];
+    app quiet = *a;
+    reader r = {.a = &quiet, .robot = &robot};
+    quiet.hushed = hushed;
+    for (int i = 0; i < 2 && !r.has_warn_fall; i++) {
+        FILE *file = os_config_path(i, r.path, sizeof r.path) ? fopen(r.path, "r") : NULL;
+        memset(&robot, 0, sizeof robot);
+        r.status = 0;
+        if (!file)
+            continue;
+        read_file(&r, file);
+        fclose(file);
+    }
+    return !r.has_warn_fall || r.warn_fall;
 }

@@ -3,6 +3,7 @@
  * Named robots: $XDG_CONFIG_HOME/grctl/config.yaml (~/.config), then /etc/grctl/config.yaml.
  *
  *   default: kitchen
+ *   warn_fall: false         # play and check do not say that the robot would fall
  *   robots:
  *     kitchen:
  *       device: /dev/serial/by-id/usb-...
@@ -41,9 +42,19 @@ typedef struct config_robot {
 
 /*
  * Finds the robot that the command line names, or the default one where it names no device, and
- * sets the options that were not given. Returns 0, or the exit status with the reason said.
+ * sets the options that were not given. Returns 0, or the exit status with the reason said; the
+ * robot is applied then too where it stands before the mistake of the file.
  */
 int config_apply(app *a);
+
+/* After config_apply(): a name that neither the configuration nor the system has. */
+bool config_is_unknown_name(const app *a, const char *device);
+
+/*
+ * False where the configuration says warn_fall: false. Asked by commands that work without a
+ * configuration too: one that cannot be read says nothing.
+ */
+bool config_warns_of_falls(const app *a);
 
 /* Writes the trims of the robot into its file: a temporary one takes its place. As above. */
 int config_write_trims(app *a, const config_robot *robot);

@@ -5,10 +5,11 @@
 #include <grobo/port.h>
 
 #include "conn.h"
-#include "latch.h"
+#include "guard.h"
 #include "os.h"
+#include "output.h"
 
-static const char *requested_device(const app *a)
+const char *conn_requested(const app *a)
 {
     const char *fallback = getenv("GRCTL_DEVICE");
     if (app_global(a, GLOBAL_DEVICE)->given)
@@ -18,7 +19,7 @@ static const char *requested_device(const app *a)
 
 bool conn_is_auto(const app *a)
 {
-    return strcmp(requested_device(a), GROBO_DEVICE_AUTO) == 0;
+    return strcmp(conn_requested(a), GROBO_DEVICE_AUTO) == 0;
 }
 
 const char *conn_device(const conn *c)
@@ -27,15 +28,6 @@ const char *conn_device(const conn *c)
 }
 
 /* ---- what comes from the loop --------------------------------------------------------------- */
-
-static void on_signal(evutil_socket_t number, short what, void *ctx)
-{
-    conn_link *link = ctx;
-    int *signal = link->user ? &link->user->signal : &link->signal;
-    (void)what;
-    if (!*signal)
-        *signal = (int)number;
-}
 
 static void on_session(grobo_session *session, grobo_session_event event, int error, void *ctx)
 {
@@ -52,6 +44,11 @@ static void on_session(grobo_session *session, grobo_session_event event, int er
         break;
     case GROBO_SESSION_EVENT_FAILED:
         link->link_error = error ? error : GROBO_ERR_UNPLUGGED;
+        break;
+    case GROBO_SESSION_EVENT_UNGUARDED:
+        if (link->user)
+            app_note(link->user->a,
+                     "the guard has ended: if grctl is killed, joints go on to their goals");
         break;
     }
     if (link->user) {
@@ -71,6 +68,10 @@ static void on_robot(void *ctx, const grobo_event *event)
     }
     if (!c)
         return;
+    if (event->kind == GROBO_EVENT_JOB && event->u.job.kind == GROBO_JOB_ESTOP) {
+        c->estop_ended = true;
+        c->estop_result = event->u.job.result;
+    }
     if (event->kind == GROBO_EVENT_JOB && event->u.job.number == c->waiting_for) {
         c->job = event->u.job;
         c->waiting_for = 0;
@@ -104,10 +105,16 @@ static bool job_done(conn *c)
     return c->waiting_for == 0;
 }
 
+/* Did a signal come that ends the command? None ends one that stops the robot. */
+static bool is_interrupted(const conn *c)
+{
+    return c->signal && !c->leaving && !c->a->stops;
+}
+
 int conn_wait_until(conn *c, bool (*done)(conn *c))
 {
     while (!done(c)) {
-        if (c->signal && !c->leaving)
+        if (is_interrupted(c))
             return GROBO_ERR_CANCELED;
         if (c->link_error)
             return c->link_error;
@@ -152,19 +159,16 @@ int conn_sleep_until(conn *c, int64_t at_us)
     if (!timer)
         return GROBO_ERR_NOMEM;
     evtimer_add(timer, &rest);
-    while (!awake && !c->signal && !c->link_error && !error)
+    while (!awake && (!c->signal || c->a->stops) && !c->link_error && !error)
         if (event_base_loop(c->base, EVLOOP_ONCE) != 0)
             error = GROBO_ERR_IO;
     event_free(timer);
-    return c->signal ? GROBO_ERR_CANCELED : c->link_error ? c->link_error : error;
+    if (c->signal && !c->a->stops)
+        return GROBO_ERR_CANCELED;
+    return c->link_error ? c->link_error : error;
 }
 
 /* ---- opening -------------------------------------------------------------------------------- */
-
-static bool opened(conn *c)
-{
-    return c->up;
-}
 
 static bool is_tcp(const char *device)
 {
@@ -261,6 +265,11 @@ grobo_robot_config conn_robot_config(const app *a)
 static int make_session(conn *c, const char *device, bool check)
 {
     app *a = c->a;
+    int error = conn_link_init(c->link);
+    if (!error && !output_detach() && !a->stops)
+        error = GROBO_ERR_NOMEM;
+    if (error)
+        return error;
     grobo_wiring wiring = (grobo_wiring)app_global(a, GLOBAL_WIRING)->choice;
     const cli_value *baud = app_global(a, GLOBAL_BAUD);
     grobo_robot_config robot = conn_robot_config(a);
@@ -279,7 +288,9 @@ static int make_session(conn *c, const char *device, bool check)
                                    .on_event = on_session,
                                    .on_robot = on_robot,
                                    .on_tap = on_tap,
-                                   .ctx = c->link};
+                                   .ctx = c->link,
+                                   .guard = guard_started()};
+    config.guard_data = guard_data(a->robot, &config.guard_bytes);
     return grobo_session_new(&config, &c->link->session);
 }
 
@@ -338,7 +349,7 @@ static int take_over(conn *c, bool check)
         error = conn_wait_until(c, conn_is_idle);
     if (!error && check && !c->link->answered)
         error = conn_wait(c, grobo_session_check(c->session));
-    if (error && !c->signal)
+    if (error && !is_interrupted(c))
         return fail_open(c, error);
     c->link->answered |= check;
     return error ? EXIT_ROBOT : EXIT_DONE;
@@ -356,7 +367,7 @@ static void say_found(conn *c)
 static int open_device(conn *c, app *a, bool check)
 {
     char device[GROBO_DEVICE_MAX_BYTES];
-    const char *asked = requested_device(a);
+    const char *asked = conn_requested(a);
     grobo_os_cause cause = {0};
     int error;
     take(c, a);
@@ -368,12 +379,12 @@ static int open_device(conn *c, app *a, bool check)
     if (error)
         return app_fail(a, app_status_of(error), grobo_error_name(error), "%s: %s", asked,
                         *cause.text ? cause.text : grobo_error_text(error));
+    if (a->moves)
+        guard_start(a, device);
     error = open_traces(c, device);
     if (error)
         return error;
-    error = conn_link_init(c->link);
-    if (!error)
-        error = make_session(c, device, check);
+    error = make_session(c, device, check);
     if (error)
         return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s: %s", device,
                         grobo_error_text(error));
@@ -381,14 +392,13 @@ static int open_device(conn *c, app *a, bool check)
     c->session = c->link->session;
     c->robot = grobo_session_robot(c->session);
     conn_link_watch(c->link);
-    c->link->marked = true; /* only one that comes later is to be heeded */
-    error = grobo_session_open(c->session);
-    if (!error)
-        error = conn_wait_until(c, opened);
-    if (error && !c->signal)
+    error = conn_open_session(c);
+    if (error && !is_interrupted(c))
         return fail_open(c, error);
     c->link->answered = check && !error;
-    c->link->marked = !error && latch_is_set(conn_device(c));
+    c->trip = (grobo_trip_info){.trip = GROBO_TRIP_NONE}; /* of a stop that stands */
+    if (!error)                                           /* one that had not reached the robot */
+        error = conn_wait_until(c, conn_is_idle);
     if (!error)
         say_found(c);
     return error ? EXIT_ROBOT : EXIT_DONE;
@@ -402,16 +412,6 @@ int conn_open(conn *c, app *a)
 int conn_open_unchecked(conn *c, app *a)
 {
     return open_device(c, a, false);
-}
-
-int conn_open_to_move(conn *c, app *a)
-{
-    int status = conn_open(c, a);
-    if (!status && latch_is_set(conn_device(c)))
-        return app_fail(a, EXIT_SAFETY, grobo_error_name(GROBO_ERR_LATCHED),
-                        "%s: stopped by 'grctl estop'; 'grctl estop --reset' takes it back",
-                        conn_device(c));
-    return status;
 }
 
 void conn_watch(conn *c, bool on)
@@ -498,9 +498,28 @@ static void give_back(conn *c)
         grobo_serial_set_baud(serial, baud_bps);
 }
 
+static bool is_quiet(conn *c)
+{
+    return grobo_robot_is_quiet(c->robot);
+}
+
+/* The answer to a reading in the background is not left on the line for who comes next. */
+static void end_readings(conn *c)
+{
+    if (!c->up || c->link_error)
+        return;
+    conn_watch(c, false);
+    (void)conn_wait_until(c, is_quiet);
+}
+
 int conn_close(conn *c, int status)
 {
-    int failed = c->session ? carry_out_policy(c, status) : EXIT_DONE;
+    int failed = EXIT_DONE;
+    conn_suspend(c);
+    if (c->session) {
+        end_readings(c);
+        failed = carry_out_policy(c, status);
+    }
     conn_show_answer(c);
     if (failed)
         status = failed;
@@ -512,6 +531,8 @@ int conn_close(conn *c, int status)
         grobo_session_free(c->session);
         c->link->session = NULL;
         conn_link_deinit(c->link);
+        if (!c->a->stops) /* it may be an attempt that is repeated */
+            output_attach(c->a);
     }
     return trace_close(&c->trace, c->a, status);
 }
@@ -522,27 +543,8 @@ int conn_link_init(conn_link *link)
 {
     if (link->base)
         return GROBO_OK;
-    os_take_signals();
     link->base = grobo_loop_new();
-    for (int i = 0; link->base && i < OS_ENDINGS; i++) {
-        link->signals[i] = evsignal_new(link->base, os_endings[i], on_signal, link);
-        if (!link->signals[i])
-            return GROBO_ERR_NOMEM;
-    }
-    return link->base ? conn_heed_mark(link) : GROBO_ERR_NOMEM;
-}
-
-void conn_link_watch(conn_link *link)
-{
-    for (int i = 0; i < OS_ENDINGS; i++)
-        event_add(link->signals[i], NULL);
-}
-
-void conn_link_unwatch(conn_link *link)
-{
-    for (int i = 0; i < OS_ENDINGS; i++)
-        if (link->signals[i])
-            event_del(link->signals[i]);
+    return link->base && conn_signals_init(link) ? GROBO_OK : GROBO_ERR_NOMEM;
 }
 
 int conn_link_close(conn_link *link, app *a, int status)
@@ -564,6 +566,7 @@ int conn_link_close(conn_link *link, app *a, int status)
     grobo_session_free(c.session);
     link->session = NULL;
     link->user = NULL;
+    output_attach(a);
     status = trace_close(&link->trace, a, status);
     memset(&link->trace, 0, sizeof link->trace);
     return status;
@@ -571,14 +574,11 @@ int conn_link_close(conn_link *link, app *a, int status)
 
 void conn_link_deinit(conn_link *link)
 {
-    for (int i = 0; i < OS_ENDINGS; i++)
-        if (link->signals[i])
-            event_free(link->signals[i]);
-    if (link->mark_timer)
-        event_free(link->mark_timer);
+    conn_signals_deinit(link);
     if (link->base)
         event_base_free(link->base);
     memset(link, 0, sizeof *link);
+    guard_end();
 }
 
 void conn_counters(const conn *c, grobo_robot_counters *counters)

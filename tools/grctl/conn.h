@@ -32,7 +32,8 @@ typedef void (*conn_bytes_fn)(conn *c, grobo_direction direction, int64_t now_us
 typedef struct conn_link {
     /* private */
     struct event_base *base;
-    struct event *signals[OS_ENDINGS];
+    struct event *signals[OS_ENDINGS_MAX + 1]; /* the last is Ctrl-Z */
+    int n_signals;
     grobo_session *session;
     trims trims;    /* its driver, for a configured robot */
     conn *user;     /* the command that has it now, NULL between two */
@@ -40,9 +41,7 @@ typedef struct conn_link {
     int link_error; /* why the link is lost, 0 while it stands */
     bool up;        /* the line is open */
     bool answered;  /* the robot has answered */
-    bool marked;    /* there was a mark of an emergency stop when it was last looked for */
-    struct event *mark_timer;
-    bool news; /* between two commands the line was lost, or the engine stopped for this: */
+    bool news;      /* between two commands the line was lost, or the engine stopped for this: */
     grobo_trip_info trip;
     trace trace; /* of the shell's --trace */
     /* set by a shell */
@@ -72,10 +71,12 @@ struct conn {
     int signal;           /* the first signal that came, 0 none */
     int link_error;       /* why the link is lost, 0 while it stands */
     grobo_trip_info trip; /* why the engine stopped, if it did */
-    int open_error;       /* why it could not be opened, 0: it was not tried, or it could */
-    bool up;              /* the line is open, and the robot has answered where that was asked */
-    bool moving;          /* a motion is or may be under way; the exit policy ends it */
-    bool leaving;         /* the exit policy is being carried out: signals wait */
+    bool estop_ended;     /* an emergency stop was carried out, with this result: */
+    int estop_result;
+    int open_error; /* why it could not be opened, 0: it was not tried, or it could */
+    bool up;        /* the line is open, and the robot has answered where that was asked */
+    bool moving;    /* a motion is or may be under way; the exit policy ends it */
+    bool leaving;   /* the exit policy is being carried out: signals wait */
 };
 
 /*
@@ -87,7 +88,10 @@ int conn_open(conn *c, app *a);
 /* The same, but nobody needs to answer: for scans. */
 int conn_open_unchecked(conn *c, app *a);
 
-/* The same for a command that moves the robot: refused after an emergency stop. */
+/*
+ * The same for a command that moves the robot: refused after an emergency stop. From then on the
+ * joints are watched, see conn_watch().
+ */
 int conn_open_to_move(conn *c, app *a);
 
 /* Where an emergency stop is being carried out: until it is verified. Returns as conn_wait(). */
@@ -96,7 +100,7 @@ int conn_end_estop(conn *c);
 /* For conn_wait_until(): no job runs. */
 bool conn_is_idle(conn *c);
 
-/* Reads the joints in the background while a motion is played: heat, current, voltage, silence. */
+/* Reads the joints in the background, so that heat, current, low voltage and silence stop them. */
 void conn_watch(conn *c, bool on);
 
 /*
@@ -159,12 +163,6 @@ int conn_close(conn *c, int status);
 int conn_link_init(conn_link *link);
 
 /*
- * Of conn_link_init(): an emergency stop of another grctl, which cannot have the port too, is
- * carried out here. GROBO_OK or GROBO_ERR_NOMEM.
- */
-int conn_heed_mark(conn_link *link);
-
-/*
  * Closes what is open: carries out the exit policy that was asked for. What came between two
  * commands is its signal. Returns as conn_close(). The link may be used again.
  */
@@ -178,12 +176,25 @@ void conn_link_deinit(conn_link *link);
 void conn_link_idle(conn_link *link, app *a);
 int conn_link_news(conn_link *link, app *a);
 
+/* Of conn_link_init() and conn_link_deinit(): false where there is no memory. */
+bool conn_signals_init(conn_link *link);
+void conn_signals_deinit(conn_link *link);
+
+/* Of conn_close(), after Ctrl-Z: stops what moves, suspends the process until it continues. */
+void conn_suspend(conn *c);
+
+/* Opens the link's session; waits while the guard of a grctl that died stops the robot. */
+int conn_open_session(conn *c);
+
 /* The signals are caught while a command has the link, and between these two. */
 void conn_link_watch(conn_link *link);
 void conn_link_unwatch(conn_link *link);
 
 /* True if ports are looked through for a robot. */
 bool conn_is_auto(const app *a);
+
+/* The device of the command line, or "auto". */
+const char *conn_requested(const app *a);
 
 /* The name of the device in use, for messages. */
 const char *conn_device(const conn *c);

@@ -1,17 +1,20 @@
 /* SPDX-License-Identifier: MIT */
 /* What -v and -vv tell of the bytes of the line. */
 #include "conn.h"
+#include "output.h"
+
+enum { HEX_BYTES = 1024 };
 
 /* From -vv on, but not over a full screen. */
 static void show_bytes(conn *c, char direction, int64_t at_us, const uint8_t *bytes, size_t size)
 {
+    char text[HEX_BYTES];
     if (c->a->verbosity < 2 || c->a->hushed || size == 0)
         return;
     if (!c->shown_us)
         c->shown_us = at_us;
-    fprintf(stderr, "%10.3f  %c  ", (double)(at_us - c->shown_us) / 1e3, direction);
-    grobo_hex_print(stderr, bytes, size);
-    fflush(stderr);
+    grobo_hex(text, sizeof text, bytes, size);
+    output_complain("%10.3f  %c  %s\n", (double)(at_us - c->shown_us) / 1e3, direction, text);
 }
 
 void conn_show_answer(conn *c)

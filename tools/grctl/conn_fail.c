@@ -94,8 +94,13 @@ int conn_fail_job(conn *c, int error, const char *prefix)
 int conn_fail(conn *c, int error, const char *doing)
 {
     char prefix[64];
-    if (c->signal)
+    if (c->signal && !c->a->stops)
         return EXIT_SIGNAL + c->signal;
+    if (c->link_error == GROBO_ERR_STALLED)
+        return app_fail(c->a, EXIT_SAFETY, grobo_trip_name(GROBO_TRIP_HOST_STALL),
+                        "%s: stopped for safety: host stalled: grctl was stopped by a signal, and "
+                        "the guard stopped the robot",
+                        doing);
     if (c->link_error)
         return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error), "%s: %s while busy with %s",
                         conn_device(c), grobo_error_text(error), doing);
@@ -108,7 +113,7 @@ int conn_fail(conn *c, int error, const char *doing)
 int conn_fail_servo(conn *c, int error, int id)
 {
     char who[32];
-    if (c->signal || c->link_error)
+    if ((c->signal && !c->a->stops) || c->link_error)
         return conn_fail(c, error, "servo");
     snprintf(who, sizeof who, "servo %d", id);
     if (conn_is_of_reply(error))

@@ -5,6 +5,7 @@
 
 #include <grobo/serial.h>
 
+#include "output.h"
 #include "words.h"
 
 static double ms_of(const decoder *d, int64_t time_us)
@@ -34,7 +35,7 @@ static void print_hex(const frame *f)
 {
     char hex[3 * FRAMES_BUFFER_BYTES + 1];
     if (grobo_hex(hex, sizeof hex, f->bytes, f->size) > 0)
-        printf("    %s\n", hex);
+        app_print("    %s\n", hex);
 }
 
 static void print_text(const decoder *d, const frame *f, const char *note)
@@ -42,8 +43,8 @@ static void print_text(const decoder *d, const frame *f, const char *note)
     static char text[WORDS_BYTES];
     words_say(f, d->a->color_out, note, text, sizeof text);
     if (d->timed)
-        printf("%10.3f  %-7s  ", ms_of(d, f->time_us), words_side(f->side));
-    fputs(text, stdout);
+        app_print("%10.3f  %-7s  ", ms_of(d, f->time_us), words_side(f->side));
+    app_print("%s", text);
     if (d->a->verbosity > 0)
         print_hex(f);
 }
@@ -124,6 +125,11 @@ void decoder_end(decoder *d)
     ledger_end(&d->asked);
 }
 
+int decoder_status(const decoder *d)
+{
+    return d->count.bad_sums || d->count.cut ? EXIT_FILE : EXIT_DONE;
+}
+
 void decoder_summary(decoder *d)
 {
     app *a = d->a;
@@ -136,7 +142,7 @@ void decoder_summary(decoder *d)
                       (json_int_t)d->count.unanswered, "unasked", (json_int_t)d->count.unasked));
         return;
     }
-    fflush(stdout);
+    output_flush();
     app_note(a,
              "%llu frames, %llu with a wrong sum, %llu cut off, %llu bytes of rubbish; of %llu "
              "requests %llu were answered; %llu replies nobody asked for",

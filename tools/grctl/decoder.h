@@ -31,6 +31,8 @@ void decoder_end(decoder *d);
 
 /* What was seen, on standard error for people, as the last line of JSON. */
 void decoder_summary(decoder *d);
+/* The exit status for what was seen: EXIT_FILE where a frame had a wrong sum or was cut off. */
+int decoder_status(const decoder *d);
 
 /* Lines of hex, as text or JSON, with or without times. Returns 0 or the exit status. */
 int decode_text(decoder *d, input *in);

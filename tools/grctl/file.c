@@ -43,10 +43,7 @@ const char *file_error_text(int error)
 
 const grobo_model *file_model(const grobo_motion *motion)
 {
-    const char *body = grobo_motion_target_body(motion);
-    bool ours = *body ? strcmp(body, grobo_gr001_model.name) == 0
-                      : grobo_motion_joints(motion) <= grobo_gr001_model.n_joints;
-    return ours ? &grobo_gr001_model : NULL;
+    return grobo_motion_is_for(motion, &grobo_gr001_model) ? &grobo_gr001_model : NULL;
 }
 
 int file_fits(app *a, const char *path, const grobo_motion *motion)

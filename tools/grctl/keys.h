@@ -13,11 +13,11 @@ enum { KEYS_END = -1 };
 
 typedef void (*keys_fn)(void *ctx, int key);
 
-enum { KEYS_EVENTS = 3 };
+enum { KEYS_EVENTS = 2 };
 
 typedef struct keys {
     /* private */
-    struct event *events[KEYS_EVENTS]; /* of input, SIGTSTP, SIGCONT */
+    struct event *events[KEYS_EVENTS]; /* of input, SIGCONT */
     keys_fn on_key;
     void *ctx;
 } keys;
@@ -25,10 +25,12 @@ typedef struct keys {
 /*
  * Hears keys from now on, without echo and without waiting for the end of a line: of a terminal
  * that this process has in the foreground, or of a pipe if `pipes`. Else nothing happens. Ctrl-C
- * stays a signal; Ctrl-Z gives the terminal back as it was.
+ * and Ctrl-Z stay signals.
  * Returns whether it hears.
  */
 bool keys_start(keys *k, struct event_base *base, bool pipes, keys_fn on_key, void *ctx);
 void keys_stop(keys *k);
+/* The terminal is as it was, until the process is continued after a suspension. */
+void keys_pause(void);
 
 #endif

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 #include <locale.h>
+#include <string.h>
 
 #include <grobo/version.h>
 
 #include "app.h"
 #include "commands.h"
+#include "guard.h"
 #include "os.h"
 #include "output.h"
 #include "run.h"
@@ -76,6 +78,9 @@ int main(int argc, char **argv)
 {
     static app a;
     os_start();
+    if (argc == 2 && strcmp(argv[1], "guard") == 0)
+        return guard_main();
+    guard_note_program(argv[0]);
     setlocale(LC_CTYPE, "");
     return output_finish(&a, run_line(&a, argc, argv, NULL, NULL));
 }

@@ -7,6 +7,7 @@
 #define GRCTL_OS_H
 
 #include <stdbool.h>
+#include <stdint.h>
 #include <stdio.h>
 
 #include <event2/event.h>
@@ -34,18 +35,35 @@ bool os_shows_utf8(void);
 
 /* A file to write and to read that is gone when it is closed, or NULL. */
 FILE *os_temporary(void);
+/* May bytes be written to this stream without waiting for its reader, as far as it can be known? */
+bool os_takes_bytes(FILE *stream);
+/* Writes all of it, past what the stream has buffered. Waits. Returns 0 or errno. */
+int os_write(FILE *stream, const void *bytes, size_t size);
+/* May a line be written to this stream without waiting for who reads it? */
+bool os_takes_line(FILE *stream);
 /* What print() writes, to be freed; NULL when there is no room. */
 char *os_printed(void (*print)(FILE *to));
+
+/*
+ * The path of this very program, for posix_spawn() and the like. argv0 is how it was called; the
+ * result is argv0 or static.
+ */
+const char *os_own_program(const char *argv0);
+/* Suspends this process, as Ctrl-Z does without a handler; returns when it continues. */
+void os_suspend(void);
 
 /* Runs a program, words ending with NULL. Returns its exit status, or -1: it is not here. */
 int os_run(const char *const *words, FILE *in, FILE *out);
 
 /* ---- signals -------------------------------------------------------------------------------- */
 
-/* What ends a command: Ctrl-C, a request, the end of its terminal, Ctrl-\; in the C library's
- * numbers. */
-enum { OS_INTERRUPT, OS_TERMINATE, OS_HANGUP, OS_QUIT, OS_ENDINGS };
-extern const int os_endings[OS_ENDINGS];
+/* What ends a command: Ctrl-C, a request, the end of its terminal, Ctrl-\, and the system's other
+ * signals that would end it and can be caught; in the C library's numbers. */
+enum { OS_INTERRUPT, OS_TERMINATE, OS_HANGUP, OS_QUIT, OS_ENDINGS_MAX = 12 };
+extern const int os_endings[];
+extern const int os_n_endings;
+/* What a terminal suspends a command by (Ctrl-Z), 0 where there is no such thing. */
+extern const int os_suspension;
 
 /* SIGPIPE's number in exit statuses, also where there is no such signal. */
 enum { OS_BROKEN_PIPE = 13 };
@@ -62,22 +80,30 @@ void os_take_signals(void);
 
 /* ---- files ---------------------------------------------------------------------------------- */
 
+/*
+ * A file to be written from its beginning, or NULL with errno. waits: for the reader of a pipe that
+ * has a name, if it has none.
+ */
+FILE *os_create(const char *path, bool waits);
 /* Of which not every system says so when it is opened as a file. */
 bool os_is_folder(const char *path);
 /* The configuration file: 0 the user's, 1 the machine's. False where there is none. */
 bool os_config_path(int which, char *path, size_t capacity);
+
+/* A file that one process has for itself. */
+typedef struct os_lock {
+    /* private */
+    intptr_t handle;
+    char path[4096 + 8];
+} os_lock;
+
 /*
- * The user's own folders for what lasts until log-out, 0 to OS_FOLDERS - 1; made where missing, and
- * nobody else's. Not each process of a user has the same of them: who leaves word leaves it in all.
+ * Takes a file for this process by a second one beside it, PATH.lock, whatever name leads to the
+ * file; the file itself may be replaced meanwhile, and need not be there. The lock ends with the
+ * process. Returns 0, EWOULDBLOCK where another process has it, or an errno.
  */
-enum { OS_FOLDERS = 2 };
-bool os_private_folder(int which, char *path, size_t capacity);
-/* Where the links that a device's path has lead to, from the root. False where nothing is there. */
-bool os_true_path(const char *device, char *path, size_t capacity);
-/* An empty file that marks something: made, removed (fine when it is not there), looked for. */
-bool os_mark(const char *path);
-bool os_unmark(const char *path);
-bool os_is_marked(const char *path);
+int os_lock_file(os_lock *lock, const char *path);
+void os_unlock_file(os_lock *lock);
 
 /* ---- standard input on an event loop -------------------------------------------------------- */
 

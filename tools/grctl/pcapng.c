@@ -25,6 +25,7 @@ enum {
     SECTION_BYTES = 16,     /* fixed fields */
     INTERFACE_BYTES = 8,
     PACKET_BYTES = 20,
+    TAIL_BYTES = 16,
     OPTION_HEAD_BYTES = 4,
 
     RESOLUTION_US = 6, /* if_tsresol: ten to the minus six */
@@ -122,32 +123,37 @@ int pcapng_write_head(FILE *to, const char *program, const char *comment,
     return finish(&b, to);
 }
 
-int pcapng_write_chunk(FILE *to, int64_t time_us, pcapng_direction direction, const uint8_t *bytes,
-                       size_t size)
+size_t pcapng_make_chunk(uint8_t *packet, int64_t time_us, pcapng_direction direction,
+                         const uint8_t *bytes, size_t size)
 {
-    static const uint8_t zeros[4];
     size_t padding = padded(size) - size;
-    uint8_t head[BLOCK_HEAD_BYTES + PACKET_BYTES];
-    uint8_t tail[16];
-    size_t total = sizeof head + size + padding + sizeof tail;
-    if (size == 0 || size > PCAPNG_CHUNK_BYTES)
-        return GROBO_ERR_ARG;
-    put(head, BLOCK_PACKET, 4);
-    put(head + 4, total, 4);
-    put(head + 8, 0, 4); /* the only interface */
-    put(head + 12, (uint64_t)time_us >> 32, 4);
-    put(head + 16, (uint64_t)time_us & 0xFFFFFFFFu, 4);
-    put(head + 20, size, 4);
-    put(head + 24, size, 4);
+    uint8_t *tail = packet + BLOCK_HEAD_BYTES + PACKET_BYTES + size + padding;
+    size_t total = (size_t)(tail - packet) + TAIL_BYTES;
+    put(packet, BLOCK_PACKET, 4);
+    put(packet + 4, total, 4);
+    put(packet + 8, 0, 4); /* the only interface */
+    put(packet + 12, (uint64_t)time_us >> 32, 4);
+    put(packet + 16, (uint64_t)time_us & 0xFFFFFFFFu, 4);
+    put(packet + 20, size, 4);
+    put(packet + 24, size, 4);
+    memcpy(packet + BLOCK_HEAD_BYTES + PACKET_BYTES, bytes, size);
+    memset(tail - padding, 0, padding);
     put(tail, OPTION_FLAGS, 2);
     put(tail + 2, 4, 2);
     put(tail + 4, (uint64_t)direction, 4);
     put(tail + 8, OPTION_END, 4);
     put(tail + 12, total, 4);
-    if (fwrite(head, 1, sizeof head, to) != sizeof head || fwrite(bytes, 1, size, to) != size ||
-        fwrite(zeros, 1, padding, to) != padding || fwrite(tail, 1, sizeof tail, to) != sizeof tail)
-        return GROBO_ERR_IO;
-    return GROBO_OK;
+    return total;
+}
+
+int pcapng_write_chunk(FILE *to, int64_t time_us, pcapng_direction direction, const uint8_t *bytes,
+                       size_t size)
+{
+    uint8_t packet[PCAPNG_PACKET_BYTES];
+    if (size == 0 || size > PCAPNG_CHUNK_BYTES)
+        return GROBO_ERR_ARG;
+    size_t total = pcapng_make_chunk(packet, time_us, direction, bytes, size);
+    return fwrite(packet, 1, total, to) == total ? GROBO_OK : GROBO_ERR_IO;
 }
 
 /* ---- reading -------------------------------------------------------------------------------- */

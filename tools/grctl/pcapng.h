@@ -19,6 +19,7 @@ enum { PCAPNG_LINK_USER0 = 147 };
 
 enum {
     PCAPNG_TEXT_BYTES = 256,    /* of a name or comment that is kept, with its NUL */
+    PCAPNG_PACKET_BYTES = 4160, /* of the block of a packet that is written */
     PCAPNG_CHUNK_BYTES = 4096,  /* of one packet that is read; longer ones are refused */
     PCAPNG_INTERFACES_MAX = 16, /* of one section */
 };
@@ -50,6 +51,9 @@ int pcapng_write_head(FILE *to, const char *program, const char *comment,
                       const pcapng_interface *interface);
 
 /* A chunk of 1..PCAPNG_CHUNK_BYTES bytes; time since 1970 in UTC. */
+size_t pcapng_make_chunk(uint8_t *packet, int64_t time_us, pcapng_direction direction,
+                         const uint8_t *bytes, size_t size);
+/* The same into a file. */
 int pcapng_write_chunk(FILE *to, int64_t time_us, pcapng_direction direction, const uint8_t *bytes,
                        size_t size);
 

@@ -8,6 +8,7 @@
 
 #include "file.h"
 #include "os.h"
+#include "output.h"
 #include "picture.h"
 
 /* They read SVG from standard input and write PNG to standard output, two pixels for one. */
@@ -151,6 +152,6 @@ int picture_save(app *a, const svg *drawing, const char *path, picture_format fo
         return save_png(a, drawing, path);
     if (strcmp(path, "-") != 0)
         return save_bytes(a, path, drawing->data, drawing->size);
-    fwrite(drawing->data, 1, drawing->size, stdout); /* the end of the program says if it failed */
+    output_bytes(drawing->data, drawing->size); /* the end of the program says if it failed */
     return 0;
 }

@@ -10,18 +10,13 @@
 
 enum { PLAY_FILES_MAX = 1 + GROBO_QUEUE_MAX };
 
-/*
- * Frames a second where nothing else is asked for. At 115200 bps through the board, 50 of them
- * would fill the line, and nobody could look after heat and current while the robot moves.
- */
-enum { PLAY_RATE_HZ = 30 };
-
 typedef struct playlist {
     int n;
     const char *path[PLAY_FILES_MAX];
     grobo_motion *motion[PLAY_FILES_MAX];
     grobo_body *body[PLAY_FILES_MAX]; /* where legs are solved, else NULL */
-    grobo_clip clip[PLAY_FILES_MAX];
+    grobo_clip view[PLAY_FILES_MAX];  /* of the motion or the body */
+    grobo_clip clip[PLAY_FILES_MAX];  /* the same within the slack of limits: what is played */
     grobo_play_options options[PLAY_FILES_MAX];
 } playlist;
 
@@ -35,6 +30,8 @@ enum {
     PLAY_RATE,
     PLAY_KEY,
     PLAY_CLAMP,
+    PLAY_UNWATCHED,
+    PLAY_FORCE,
     PLAY_DRY_RUN,
     PLAY_TABLE,
     PLAY_BODY,

@@ -9,6 +9,7 @@
 
 #include <grobo/session.h>
 
+#include "conn.h"
 #include "play.h"
 #include "trace.h"
 
@@ -59,7 +60,7 @@ static void print_frame(rehearsal *r, const uint8_t *frame, int size)
     if (r->a->json)
         app_print_json(json_pack("{s:o,s:s}", "time_ms", app_json_number(time_ms, 3), "hex", hex));
     else
-        printf("%.0f %s\n", time_ms, hex);
+        app_print("%.0f %s\n", time_ms, hex);
 }
 
 /* One round of the pump; false when nothing will happen any more. */
@@ -79,7 +80,7 @@ static bool turn(rehearsal *r)
         grobo_sim_rx(&r->sim, buf, (size_t)sent, r->now_us);
     }
     next = grobo_robot_deadline(&r->robot, r->now_us);
-    other = grobo_sim_deadline(&r->sim);
+    other = grobo_sim_packet_deadline(&r->sim);
     next = other < next ? other : next;
     if (next == GROBO_NEVER_US)
         return false;
@@ -120,10 +121,10 @@ int play_dry_run(playlist *list, app *a)
 {
     static rehearsal r;
     grobo_wiring wiring = (grobo_wiring)app_global(a, GLOBAL_WIRING)->choice;
-    grobo_sim_config sim = {.wiring = wiring};
+    grobo_sim_config sim = {.wiring = wiring, .baud_bps = conn_baud(a)};
     grobo_robot_config config = {.limit_policy = a->clamps ? GROBO_LIMIT_CLAMP : GROBO_LIMIT_REFUSE,
                                  .sense_interval_us = GROBO_SENSE_NEVER,
-                                 .bus = {.wiring = wiring}};
+                                 .bus = {.wiring = wiring, .baud_bps = conn_baud(a)}};
     trace_line line = {.device = GROBO_DEVICE_SIM, .wiring = wiring};
     grobo_posture start;
     int error, status;

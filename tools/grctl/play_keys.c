@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
+#include <grobo/estop.h>
+
 #include "play_keys.h"
-#include "latch.h"
 
 enum { SPEED_STEP_PCT = 10 };
 
@@ -28,8 +29,9 @@ static void change_speed(play_keys *k, int by_pct)
 void play_keys_estop(play_keys *k)
 {
     k->estop = true;
-    if (latch_set(conn_device(k->c)) < 0)
-        app_detail(k->c->a, "other commands cannot be told of the emergency stop");
+    grobo_os_cause cause;
+    if (grobo_estop_set(conn_device(k->c), NULL, &cause) < 0)
+        app_note(k->c->a, "the emergency stop is not kept for other programs: %s", cause.text);
     grobo_session_estop(k->c->session);
 }
 

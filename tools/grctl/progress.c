@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "os.h"
+#include "output.h"
 #include "progress.h"
 
 /* The last columns stay free for the ^C that a terminal shows. */
@@ -28,7 +29,7 @@ void progress_draw(progress *p, double fraction, const char *text)
     char line[LINE_BYTES] = "";
     size_t at = 0;
     int room, bar, full;
-    if (!p->shown)
+    if (!p->shown || output_is_behind())
         return;
     room = os_columns(stderr) - FREE; /* it may have changed */
     bar = fraction < 0 ? 0 : room - 3 - (int)strlen(text);
@@ -41,16 +42,13 @@ void progress_draw(progress *p, double fraction, const char *text)
             at = append(line, at, p->blocks ? (i < full ? "█" : "░") : i < full ? "#" : "-");
         at = append(line, at, p->blocks ? "  " : "] ");
     }
-    fprintf(stderr, "\r%s%.*s\033[K", line, room > 0 ? room : 0, text);
-    fflush(stderr);
+    output_complain("\r%s%.*s\033[K", line, room > 0 ? room : 0, text);
     p->drawn = true;
 }
 
 void progress_clear(progress *p)
 {
-    if (p->drawn) {
-        fputs("\r\033[K", stderr);
-        fflush(stderr);
-    }
+    if (p->drawn)
+        output_complain("\r\033[K");
     p->drawn = false;
 }

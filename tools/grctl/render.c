@@ -68,35 +68,35 @@ static void cell(bool known, int width, int decimals, double value)
 {
     double unit = pow(10, -decimals);
     if (known)
-        printf("  %*.*f", width, decimals, fabs(value) < unit / 2 ? 0.0 : value); /* no -0.0 */
+        app_print("  %*.*f", width, decimals, fabs(value) < unit / 2 ? 0.0 : value); /* no -0.0 */
     else
-        printf("  %*s", width, "-");
+        app_print("  %*s", width, "-");
 }
 
 void render_status(const conn *c, grobo_joint_mask joints, int64_t now_us)
 {
     const grobo_model *model = model_of(c);
     bool color = c->a->color_out;
-    printf("motor  joint         angle  target  torque  speed  current  temp  volts  age ms\n");
+    app_print("motor  joint         angle  target  torque  speed  current  temp  volts  age ms\n");
     for (int k = 0; k < model->n_joints; k++) {
         grobo_joint_info i;
         bool known;
         if (!(joints & GROBO_JOINT_BIT(k)) || grobo_robot_joint(c->robot, k, now_us, &i) < 0)
             continue;
         known = i.angle_age_us != GROBO_NEVER_US;
-        printf("%5d  %-12s", model->joints[k].motor, model->joints[k].name);
+        app_print("%5d  %-12s", model->joints[k].motor, model->joints[k].name);
         cell(known, 5, 1, grobo_deg_from_rad(i.state.angle_rad));
         cell(i.has_target, 6, 1, grobo_deg_from_rad(i.target_rad));
-        printf("  %-6s", render_torque(&i));
+        app_print("  %-6s", render_torque(&i));
         cell(has(&i, GROBO_FIELD_SPEED), 5, 0, i.state.speed_dps);
         cell(has(&i, GROBO_FIELD_CURRENT), 7, 0, i.state.current_ma);
         cell(has(&i, GROBO_FIELD_TEMPERATURE), 4, 0, i.state.temperature_c);
         cell(has(&i, GROBO_FIELD_VOLTAGE), 5, 2, i.state.voltage_mv / 1e3);
         cell(known, 6, 0, known ? (double)(i.angle_age_us / 1000) : 0);
         if (i.status != GROBO_OK)
-            printf("  %s%s%s", color ? "\033[31m" : "", grobo_error_text(i.status),
-                   color ? "\033[0m" : "");
-        putchar('\n');
+            app_print("  %s%s%s", color ? "\033[31m" : "", grobo_error_text(i.status),
+                      color ? "\033[0m" : "");
+        app_print("\n");
     }
 }
 
@@ -122,19 +122,19 @@ double render_worst_error(const conn *c, int64_t now_us, int *joint)
 void render_reached(const conn *c, int64_t now_us)
 {
     const grobo_model *model = model_of(c);
-    printf("motor  joint         target  reached  error deg\n");
+    app_print("motor  joint         target  reached  error deg\n");
     for (int k = 0; k < model->n_joints; k++) {
         grobo_joint_info i;
         bool both;
         if (grobo_robot_joint(c->robot, k, now_us, &i) < 0)
             continue;
         both = i.has_target && i.status == GROBO_OK && i.angle_age_us != GROBO_NEVER_US;
-        printf("%5d  %-12s", model->joints[k].motor, model->joints[k].name);
+        app_print("%5d  %-12s", model->joints[k].motor, model->joints[k].name);
         cell(i.has_target, 6, 1, grobo_deg_from_rad(i.target_rad));
         cell(i.angle_age_us != GROBO_NEVER_US, 7, 1, grobo_deg_from_rad(i.state.angle_rad));
         cell(both, 9, 2, grobo_deg_from_rad(i.state.angle_rad - i.target_rad));
         if (i.status != GROBO_OK)
-            printf("  %s", grobo_error_text(i.status));
-        putchar('\n');
+            app_print("  %s", grobo_error_text(i.status));
+        app_print("\n");
     }
 }

@@ -8,6 +8,7 @@
 #include <grobo/driver.h>
 
 #include "conn.h"
+#include "output.h"
 #include "replay.h"
 #include "words.h"
 
@@ -103,9 +104,8 @@ static int ask(const plan *p)
         return app_fail(a, EXIT_SAFETY, "REFUSED",
                         "replay: %llu frames move joints of a real robot; say --yes if it may",
                         (unsigned long long)p->moves);
-    fprintf(stderr, "%llu frames move joints of the robot at %s. Send them? [y/N] ",
-            (unsigned long long)p->moves, app_global(a, GLOBAL_DEVICE)->text);
-    fflush(stderr);
+    output_complain("%llu frames move joints of the robot at %s. Send them? [y/N] ",
+                    (unsigned long long)p->moves, app_global(a, GLOBAL_DEVICE)->text);
     if (!fgets(answer, sizeof answer, stdin) || (answer[0] != 'y' && answer[0] != 'Y'))
         return app_fail(a, EXIT_SAFETY, "REFUSED", "replay: nothing was sent");
     return 0;
@@ -159,7 +159,8 @@ static int send_chunk(void *ctx, const pcapng_chunk *chunk)
 
 /*
  * The gate wants to know where the joints are, and torque to have come on safely. Then every
- * frame is sent once, and late replies to what was asked so far are let go by.
+ * frame is sent once, and late replies to what was asked so far are let go by. From then on the
+ * joints are not watched: replies to other questions would be compared with those of the trace.
  */
 static int prepare(plan *p)
 {

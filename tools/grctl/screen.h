@@ -31,6 +31,8 @@ bool screen_possible(void);
 /* Takes the terminal. False: nothing changed. It is given back by screen_close(), or at exit. */
 bool screen_open(bool color);
 void screen_close(void);
+/* Gives the terminal back until the next screen_end(). */
+void screen_pause(void);
 
 /* Begins a picture, empty, as large as the terminal is now. */
 void screen_begin(int *rows, int *columns);

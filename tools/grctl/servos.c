@@ -19,7 +19,8 @@ int servos_read(conn *c, int id, int address, int length, uint8_t *data)
     return error;
 }
 
-int servos_wait(conn *c, int baud_bps, int length, uint32_t margin_us, int retries)
+int servos_wait(conn *c, int baud_bps, int length, uint32_t margin_us, int retries,
+                uint32_t *timeout_us)
 {
     bool remote = strncmp(conn_device(c), "tcp:", 4) == 0;
     grobo_robot_config config = conn_robot_config(c->a);
@@ -31,6 +32,8 @@ int servos_wait(conn *c, int baud_bps, int length, uint32_t margin_us, int retri
         config.retries = retries;
     if (!config.timeout_us)
         config.timeout_us = wire_us + (remote ? TCP_MARGIN_US : margin_us);
+    if (timeout_us)
+        *timeout_us = config.timeout_us;
     return grobo_robot_configure(c->robot, &config);
 }
 

@@ -149,7 +149,7 @@ static void print_part(const table *t, int c, int k, int lines)
     int first = lines - name_parts(name); /* names stand on the rows below */
     size_t length = 0;
     const char *part = k >= first ? name_part(name, k - first, &length) : "";
-    printf("%*.*s", t->width[c], (int)length, part);
+    app_print("%*.*s", t->width[c], (int)length, part);
 }
 
 static void print_names(const table *t, int from, int to)
@@ -159,14 +159,14 @@ static void print_names(const table *t, int from, int to)
     for (int c = from; c < to && t->terminal; c++)
         widen(&lines, name_parts(show_joint_name(t->rows, c, buffer, sizeof buffer)));
     for (int k = 0; k < lines; k++) {
-        printf("%*s", t->time_width, k + 1 < lines ? "" : "time_ms");
+        app_print("%*s", t->time_width, k + 1 < lines ? "" : "time_ms");
         for (int c = from; c < to; c++) {
             if (t->terminal)
                 print_part(t, c, k, lines);
             else
-                printf("%*s", t->width[c], show_joint_name(t->rows, c, buffer, sizeof buffer));
+                app_print("%*s", t->width[c], show_joint_name(t->rows, c, buffer, sizeof buffer));
         }
-        putchar('\n');
+        app_print("\n");
     }
 }
 
@@ -187,11 +187,11 @@ static void print_angle(const table *t, int c, const grobo_posture *posture)
     double deg;
     bool red;
     if (grobo_posture_get_deg(posture, t->rows->joint[c], &deg) < 0) {
-        printf("%*s", t->width[c], ".");
+        app_print("%*s", t->width[c], ".");
         return;
     }
     red = t->a->color_out && is_outside(t, c, deg);
-    printf("%s%*.1f%s", red ? "\033[31m" : "", t->width[c], tenths(deg), red ? "\033[0m" : "");
+    app_print("%s%*.1f%s", red ? "\033[31m" : "", t->width[c], tenths(deg), red ? "\033[0m" : "");
 }
 
 static void print_rows(const table *t, size_t first, size_t last, int from, int to)
@@ -200,10 +200,10 @@ static void print_rows(const table *t, size_t first, size_t last, int from, int 
     double time_s = 0;
     print_names(t, from, to);
     for (size_t i = first; i < last && show_row(t->rows, i, &posture, &time_s) == 0; i++) {
-        printf("%*.*f", t->time_width, t->decimals, time_s * 1e3);
+        app_print("%*.*f", t->time_width, t->decimals, time_s * 1e3);
         for (int c = from; c < to; c++)
             print_angle(t, c, &posture);
-        putchar('\n');
+        app_print("\n");
     }
 }
 
@@ -221,7 +221,7 @@ void show_table(const app *a, const show_rows *rows)
         for (int from = 0, to; from < rows->n_joints; from = to) {
             to = fits(&t, from);
             if (first || from)
-                putchar('\n');
+                app_print("\n");
             print_rows(&t, first, last, from, to);
         }
     }

@@ -4,8 +4,6 @@
 
 #include "sim_console.h"
 
-static const grobo_model *const model = &grobo_gr001_model;
-
 static grobo_sim *sim_of(const sim_console *console)
 {
     return grobo_sim_server_sim(console->server[console->robot]);
@@ -32,9 +30,9 @@ static bool read_servos(const sim_console *console, grobo_joint_mask *joints)
     if (console->n_words < 2)
         return false;
     if (!cli_read_number(console->word[1], &motor))
-        return grobo_model_find_joints(model, console->word[1], strlen(console->word[1]), joints) >
-               0;
-    joint = grobo_model_joint_of_motor(model, (int)motor);
+        return grobo_model_find_joints(console->model, console->word[1], strlen(console->word[1]),
+                                       joints) > 0;
+    joint = grobo_model_joint_of_motor(console->model, (int)motor);
     if (joint < 0)
         return false;
     *joints = GROBO_JOINT_BIT(joint);
@@ -125,7 +123,7 @@ static const char *act_on_servos(const sim_console *console, size_t i)
     grobo_joint_mask joints;
     if (!read_servos(console, &joints))
         return servo_commands[i].usage;
-    for (int servo = 0; servo < model->n_joints; servo++)
+    for (int servo = 0; servo < console->model->n_joints; servo++)
         if ((joints & GROBO_JOINT_BIT(servo)) && !servo_commands[i].act(console, servo))
             return servo_commands[i].usage;
     return NULL;
@@ -139,18 +137,18 @@ static void say_servo(const sim_console *console, int servo)
     if (grobo_sim_look(sim_of(console), servo, &v) < 0)
         return;
     app_note(console->a, "%3d  %-12s  %7.1f deg  to %7.1f  torque %-5s  %4d mA  %5.1f C%s%s%s",
-             (int)v.id, model->joints[servo].name, v.angle_mdeg / 1e3, v.target_mdeg / 1e3,
+             (int)v.id, console->model->joints[servo].name, v.angle_mdeg / 1e3, v.target_mdeg / 1e3,
              torques[v.torque], (int)v.current_ma, v.temperature_c, cables[v.cable],
              v.moving ? ", moving" : "", v.stalled ? ", stalled" : "");
 }
 
 static const char *look(const sim_console *console)
 {
-    grobo_joint_mask joints = GROBO_JOINTS_ALL(model->n_joints);
+    grobo_joint_mask joints = GROBO_JOINTS_ALL(console->model->n_joints);
     if (console->n_words > 1 && !read_servos(console, &joints))
         return "look [SERVO]";
     grobo_sim_step(sim_of(console), grobo_now_us());
-    for (int servo = 0; servo < model->n_joints; servo++)
+    for (int servo = 0; servo < console->model->n_joints; servo++)
         if (joints & GROBO_JOINT_BIT(servo))
             say_servo(console, servo);
     return NULL;

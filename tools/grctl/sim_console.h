@@ -15,6 +15,7 @@ enum { SIM_CONSOLE_BYTES = 256 };
 typedef struct sim_console {
     app *a;
     struct event_base *base;
+    const grobo_model *model;        /* of all robots, borrowed */
     grobo_sim_server *const *server; /* n of them, borrowed */
     int n;
     int robot; /* the one that commands are for, from 0 */

@@ -10,6 +10,8 @@
 #include "os.h"
 #include "trace.h"
 
+enum { QUEUE_BYTES = 1024 * 1024 };
+
 /* By grobo_wiring. */
 static const char *const descriptions[] = {"GR001 through its board", "servos on a bus"};
 
@@ -42,6 +44,15 @@ static int fail(app *a, const trace *t, int cause)
                                     : file_cause_text(cause));
 }
 
+/* No trace keeps a robot from being stopped: then trace_close() reports it. */
+static int give_up(app *a, trace *t, int cause)
+{
+    if (!a->stops)
+        return fail(a, t, cause);
+    t->error = cause;
+    return 0;
+}
+
 int trace_open(trace *t, app *a, const trace_line *line, int64_t now_us)
 {
     pcapng_interface interface = {.link_type = PCAPNG_LINK_USER0};
@@ -55,11 +66,11 @@ int trace_open(trace *t, app *a, const trace_line *line, int64_t now_us)
     n = line->number > 1 ? snprintf(t->path, sizeof t->path, "%s%d", path, line->number)
                          : snprintf(t->path, sizeof t->path, "%s", path);
     if (n < 0 || (size_t)n >= sizeof t->path)
-        return fail(a, t, ENAMETOOLONG);
+        return give_up(a, t, ENAMETOOLONG);
     t->to_wall_us = wall_us() - now_us;
-    t->file = fopen(t->path, "wb");
+    t->file = os_create(t->path, !a->stops);
     if (!t->file)
-        return fail(a, t, os_is_folder(t->path) ? EISDIR : errno);
+        return give_up(a, t, os_is_folder(t->path) ? EISDIR : errno);
     snprintf(interface.name, sizeof interface.name, "%s", line->device);
     snprintf(interface.description, sizeof interface.description, "%s", descriptions[line->wiring]);
     interface.speed_bps = (uint64_t)(line->baud_bps ? line->baud_bps : GROBO_BAUD_DEFAULT_BPS);
@@ -69,21 +80,22 @@ int trace_open(trace *t, app *a, const trace_line *line, int64_t now_us)
         int cause = errno;
         fclose(t->file);
         t->file = NULL;
-        return fail(a, t, cause);
+        return give_up(a, t, cause);
     }
-    return 0;
+    t->queue = writer_new(t->file, QUEUE_BYTES);
+    return t->queue ? 0 : give_up(a, t, ENOMEM);
 }
 
 void trace_bytes(trace *t, grobo_direction direction, int64_t now_us, const uint8_t *bytes,
                  size_t size)
 {
     pcapng_direction way = direction == GROBO_DIR_TX ? PCAPNG_OUT : PCAPNG_IN;
-    while (t->file && !t->error && size > 0) {
+    while (t->queue && size > 0) {
+        uint8_t block[PCAPNG_PACKET_BYTES];
         size_t n = size < PCAPNG_CHUNK_BYTES ? size : PCAPNG_CHUNK_BYTES;
-        /* Flushed: a program that is killed has its trace, and a watcher behind a pipe sees it. */
-        if (pcapng_write_chunk(t->file, now_us + t->to_wall_us, way, bytes, n) < 0 ||
-            fflush(t->file) != 0)
-            t->error = errno;
+        /* At once: a program that is killed has its trace, and a watcher behind a pipe sees it. */
+        writer_put(t->queue, block,
+                   pcapng_make_chunk(block, now_us + t->to_wall_us, way, bytes, n));
         bytes += n;
         size -= n;
     }
@@ -92,14 +104,26 @@ void trace_bytes(trace *t, grobo_direction direction, int64_t now_us, const uint
 int trace_close(trace *t, app *a, int status)
 {
     int error = t->error;
-    if (!t->file)
-        return status;
-    if (fclose(t->file) != 0 && !error)
+    uint64_t dropped = 0;
+    if (t->queue) {
+        writer_drain(t->queue);
+        error = error ? error : writer_error(t->queue);
+        dropped = writer_dropped(t->queue);
+        writer_free(t->queue);
+        t->queue = NULL;
+    }
+    if (t->file && fclose(t->file) != 0 && !error)
         error = errno;
     t->file = NULL;
-    if (!error)
+    t->error = 0;
+    if (error)
+        error = fail(a, t, error);
+    else if (dropped)
+        error = app_fail(a, EXIT_FILE, "TRACE",
+                         "%s: the trace lacks %llu packets: its reader was too slow", t->path,
+                         (unsigned long long)dropped);
+    else
         return status;
-    error = fail(a, t, error);
     return status == EXIT_DONE ? error : status;
 }
 

@@ -7,10 +7,12 @@
 
 #include "app.h"
 #include "pcapng.h"
+#include "writer.h"
 
 typedef struct trace {
     /* private */
-    FILE *file; /* NULL: no trace */
+    FILE *file;    /* NULL: no trace */
+    writer *queue; /* to it: a pipe may be full, a disk busy */
     char path[1024];
     int64_t to_wall_us; /* from our clock to that of the world */
     int error;          /* errno of the first failure, 0 none */
@@ -26,7 +28,8 @@ typedef struct trace_line {
 
 /*
  * Begins the trace that the command line asks for, if it does; now_us is the present time of the
- * clock that trace_bytes() will be given. Returns 0, or the exit status with the reason said.
+ * clock that trace_bytes() will be given. Returns 0, or the exit status with the reason said; a
+ * command that stops the robot waits for no reader of a pipe, and hears of a failure at the end.
  */
 int trace_open(trace *t, app *a, const trace_line *line, int64_t now_us);
 

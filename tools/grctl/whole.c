@@ -31,14 +31,6 @@ void whole_close(whole *w)
     memset(w, 0, sizeof *w);
 }
 
-void whole_start(const grobo_motion *motion, const grobo_model *model, grobo_posture *start)
-{
-    grobo_posture_init(start, grobo_motion_joints(motion));
-    start->set = GROBO_JOINTS_ALL(start->n_joints);
-    for (int j = 0; model && j < model->n_joints && j < start->n_joints; j++)
-        start->angle_rad[j] = model->joints[j].init_rad;
-}
-
 grobo_joint_mask whole_joints(void)
 {
     const grobo_body_model *model = &grobo_gr001_body;

@@ -19,8 +19,6 @@ bool whole_applies(const grobo_motion *motion, const grobo_body_options *options
 int whole_open(whole *w, const grobo_motion *motion, const grobo_clip_options *plain,
                const grobo_body_options *options);
 void whole_close(whole *w);
-/* What increments count from: the initial posture; joints that the model does not have at 0. */
-void whole_start(const grobo_motion *motion, const grobo_model *model, grobo_posture *start);
 /* The joints that inverse kinematics moves. */
 grobo_joint_mask whole_joints(void);
 

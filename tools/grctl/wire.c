@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include <math.h>
 
-#include <grobo/bus.h>
-
 #include "wire.h"
 
 static void measure(const grobo_bus *bus, grobo_wiring wiring, const grobo_exchange *exchange,
@@ -43,6 +41,12 @@ static int make_bus(const grobo_driver *driver, int baud_bps, grobo_bus *bus)
 {
     grobo_bus_config config = {.wiring = driver->wiring, .baud_bps = (uint32_t)baud_bps};
     return grobo_bus_init(bus, &config);
+}
+
+int wire_budget(const grobo_driver *driver, int baud_bps, grobo_budget *budget)
+{
+    grobo_bus_config line = {.baud_bps = (uint32_t)baud_bps};
+    return grobo_budget_init(budget, driver, NULL, &line);
 }
 
 int wire_read_us(const grobo_driver *driver, int baud_bps, int length, uint32_t *time_us)

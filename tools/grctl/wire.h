@@ -3,7 +3,7 @@
 #ifndef GRCTL_WIRE_H
 #define GRCTL_WIRE_H
 
-#include <grobo/driver.h>
+#include <grobo/robot.h>
 
 typedef struct wire_cost {
     const char *name;
@@ -12,6 +12,10 @@ typedef struct wire_cost {
 } wire_cost;
 
 enum { WIRE_MOTION, WIRE_READ_FULL, WIRE_READ_ANGLE, WIRE_COSTS };
+
+/* What the line of this command's robot allows. Returns 0 or GROBO_ERR_ARG for a baud rate that is
+ * none. */
+int wire_budget(const grobo_driver *driver, int baud_bps, grobo_budget *budget);
 
 /* Fills all WIRE_COSTS of them. Returns 0 or GROBO_ERR_ARG for a baud rate that is none. */
 int wire_measure(const grobo_driver *driver, int baud_bps, wire_cost *costs);

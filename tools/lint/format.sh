@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # Gate: sources look as clang-format 14 writes them. Another version writes them another way, so
-# without this one the gate says so and passes; `tools/setup.sh --ci` installs it.
+# without this one the gate says so and passes; `tools/setup.sh --check` installs it.
 #
 # usage: format.sh [--fix] FILE...
 set -u
@@ -19,7 +19,7 @@ if [ "${1:-}" = --fix ]; then
     shift
 fi
 if [ -z "$tool" ]; then
-    echo 'format: no clang-format 14 here (tools/setup.sh --ci installs it)' >&2
+    echo 'format: no clang-format 14 here (tools/setup.sh --check installs it)' >&2
     [ $mode = check ]
     exit
 fi

@@ -5,7 +5,8 @@
 set -u
 
 bad=0
-if git rev-parse --git-dir >/dev/null 2>&1; then
+# A tarball may be unpacked inside of another project's checkout.
+if [ -e .git ] && git rev-parse --git-dir >/dev/null 2>&1; then
     files=$(git ls-files)
 else
     files=$(find . -type f ! -path './build*' ! -path './.git/*' | sed 's,^\./,,')

@@ -359,7 +359,8 @@ local function question(frame, bytes)
     if frame.kind == "check" then
         return "ack"
     end
-    if not frame.packet_at or not frame.sum_ok or frame.kind == "relay" or frame.kind == "return" then
+    local asks = frame.kind == "packet" or frame.kind == "relay_return" -- an echo asks nothing
+    if not asks or not frame.packet_at or not frame.sum_ok then
         return nil
     end
     return expected(bytes, frame.at + frame.packet_at)

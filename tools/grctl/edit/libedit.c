@@ -10,6 +10,7 @@
 
 #include <histedit.h>
 
+#include "../output.h"
 #include "../shell.h"
 
 enum { HISTORY_LINES = 1000, CANDIDATES_MAX = 256, WORD_BYTES = 256, PATH_BYTES = 1024 };
@@ -246,6 +247,7 @@ int line_read(line_reader *reader, const char *prompt, char *line, size_t capaci
     reader->prompt = prompt;
     reader->interrupted = false;
     reader->reading = true;
+    output_stream(); /* what was printed stands before the prompt */
     text = el_gets(reader->edit, &n);
     reader->reading = false;
     if (reader->interrupted) {

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../output.h"
 #include "../shell.h"
 
 struct line_reader {
@@ -34,7 +35,7 @@ static int await_input(shell *s, const char *prompt)
 int line_read(line_reader *reader, const char *prompt, char *line, size_t capacity)
 {
     size_t n = 0;
-    fputs(prompt, stdout);
+    fputs(prompt, output_stream());
     fflush(stdout);
     for (;;) {
         char c;

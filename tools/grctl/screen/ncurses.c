@@ -10,11 +10,14 @@
 
 #undef columns /* a capability in term.h, a parameter in ours */
 
+#include "../os.h"
+#include "../output.h"
 #include "../screen.h"
 
 enum { ESCAPE_MS = 25 };
 
 static SCREEN *terminal;
+static WINDOW *input; /* a pad: reading a key from it draws nothing */
 static attr_t attributes[SCREEN_STYLES];
 
 bool screen_possible(void)
@@ -53,14 +56,19 @@ bool screen_open(bool color)
     if (!registered && atexit(screen_close) != 0)
         return false;
     registered = true;
-    terminal = newterm(NULL, stdout, stdin);
+    terminal = newterm(NULL, output_stream(), stdin);
     if (!terminal)
         return false;
+    input = newpad(1, 1);
+    if (!input) {
+        screen_close();
+        return false;
+    }
     set_escdelay(ESCAPE_MS);
     cbreak();
     noecho();
-    nodelay(stdscr, true);
-    keypad(stdscr, true);
+    nodelay(input, true);
+    keypad(input, true);
     curs_set(0);
     choose_attributes(color);
     return true;
@@ -71,8 +79,17 @@ void screen_close(void)
     if (!terminal)
         return;
     endwin();
+    if (input)
+        delwin(input);
     delscreen(terminal);
+    input = NULL;
     terminal = NULL;
+}
+
+void screen_pause(void)
+{
+    if (terminal)
+        endwin();
 }
 
 void screen_begin(int *rows, int *columns)
@@ -107,12 +124,14 @@ void screen_put(int row, int column, screen_style style, const char *text)
 
 void screen_end(void)
 {
-    refresh();
+    /* Not to a terminal that has been stopped (Ctrl-S): the next picture is as good. */
+    if (os_takes_bytes(stdout))
+        refresh();
 }
 
 int screen_key(void)
 {
-    int key = getch();
+    int key = wgetch(input);
     switch (key) {
     case ERR:
         return SCREEN_KEY_NONE;

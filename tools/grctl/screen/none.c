@@ -12,6 +12,10 @@ bool screen_open(bool color)
     return false;
 }
 
+void screen_pause(void)
+{
+}
+
 void screen_close(void)
 {
 }

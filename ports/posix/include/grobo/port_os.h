@@ -32,4 +32,7 @@ typedef pthread_t grobo_thread;
 /** A lock, not recursive, from grobo_mutex_init() to grobo_mutex_deinit(). */
 typedef pthread_mutex_t grobo_mutex;
 
+/** A condition, from grobo_cond_init() to grobo_cond_deinit(). */
+typedef pthread_cond_t grobo_cond;
+
 #endif

@@ -36,4 +36,10 @@ typedef struct grobo_mutex {
     void *lock;
 } grobo_mutex;
 
+/** A condition, from grobo_cond_init() to grobo_cond_deinit(): a CONDITION_VARIABLE. */
+typedef struct grobo_cond {
+    /* private */
+    void *cond;
+} grobo_cond;
+
 #endif

@@ -54,15 +54,6 @@ static void on_input(evutil_socket_t fd, short what, void *ctx)
     }
 }
 
-static void on_suspend(evutil_socket_t number, short what, void *ctx)
-{
-    (void)number;
-    (void)what;
-    (void)ctx;
-    restore();
-    raise(SIGSTOP);
-}
-
 static void on_continue(evutil_socket_t number, short what, void *ctx)
 {
     (void)number;
@@ -88,8 +79,7 @@ bool keys_start(keys *k, struct event_base *base, bool pipes, keys_fn on_key, vo
         registered = true;
         if (!make_raw())
             return false;
-        k->events[1] = evsignal_new(base, SIGTSTP, on_suspend, k);
-        k->events[2] = evsignal_new(base, SIGCONT, on_continue, k);
+        k->events[1] = evsignal_new(base, SIGCONT, on_continue, k);
     }
     k->on_key = on_key;
     k->ctx = ctx;
@@ -98,6 +88,11 @@ bool keys_start(keys *k, struct event_base *base, bool pipes, keys_fn on_key, vo
         if (k->events[i])
             event_add(k->events[i], NULL);
     return true;
+}
+
+void keys_pause(void)
+{
+    restore();
 }
 
 void keys_stop(keys *k)

@@ -2,10 +2,12 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <langinfo.h>
+#include <poll.h>
 #include <signal.h>
 #include <spawn.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -24,11 +26,47 @@ void os_start(void)
     for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; fd++)
         if (fcntl(fd, F_GETFD) < 0 && open("/dev/null", wrong_way[fd]) != fd)
             _exit(EXIT_FAILURE);
+    signal(SIGXFSZ, SIG_IGN); /* a file that may not grow is an error of writing it, not the end */
+}
+
+const char *os_own_program(const char *argv0)
+{
+    /* Of Linux: this very file, though another has its name by now. */
+    static const char self[] = "/proc/self/exe";
+    return access(self, X_OK) == 0 ? self : argv0;
 }
 
 bool os_is_terminal(FILE *stream)
 {
     return isatty(fileno(stream)) == 1;
+}
+
+bool os_takes_line(FILE *stream)
+{
+    struct pollfd one = {.fd = fileno(stream), .events = POLLOUT};
+    return poll(&one, 1, 0) == 1 && (one.revents & POLLOUT) && !(one.revents & POLLERR);
+}
+
+bool os_takes_bytes(FILE *stream)
+{
+    struct pollfd one = {.fd = fileno(stream), .events = POLLOUT};
+    return poll(&one, 1, 0) != 0; /* an error is for the write to find */
+}
+
+int os_write(FILE *stream, const void *bytes, size_t size)
+{
+    const char *from = bytes;
+    struct pollfd one = {.fd = fileno(stream), .events = POLLOUT};
+    while (size > 0) {
+        ssize_t n = write(one.fd, from, size);
+        if (n < 0 && errno == EAGAIN) /* by another program that has it too */
+            poll(&one, 1, -1);
+        else if (n < 0 && errno != EINTR)
+            return errno;
+        from += n > 0 ? n : 0;
+        size -= n > 0 ? (size_t)n : 0;
+    }
+    return 0;
 }
 
 int os_write_cause(FILE *stream, int cause)
@@ -46,6 +84,21 @@ int os_columns(FILE *stream)
 bool os_shows_utf8(void)
 {
     return strcmp(nl_langinfo(CODESET), "UTF-8") == 0;
+}
+
+FILE *os_create(const char *path, bool waits)
+{
+    int flags = O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC;
+    int fd = open(path, flags | (waits ? 0 : O_NONBLOCK), 0666);
+    FILE *file = NULL;
+    if (fd >= 0 && (waits || fcntl(fd, F_SETFL, O_WRONLY) == 0))
+        file = fdopen(fd, "wb");
+    if (fd >= 0 && !file) {
+        int cause = errno;
+        close(fd);
+        errno = cause;
+    }
+    return file;
 }
 
 FILE *os_temporary(void)
@@ -88,12 +141,15 @@ int os_run(const char *const *words, FILE *in, FILE *out)
 
 /* ---- signals -------------------------------------------------------------------------------- */
 
-const int os_endings[OS_ENDINGS] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT};
+const int os_endings[] = {SIGINT,  SIGTERM, SIGHUP,    SIGQUIT, SIGALRM,
+                          SIGUSR1, SIGUSR2, SIGVTALRM, SIGPROF, SIGXCPU};
+const int os_n_endings = sizeof os_endings / sizeof os_endings[0];
+const int os_suspension = SIGTSTP;
 
 void os_catch_endings(void (*handler)(int number))
 {
     struct sigaction action = {.sa_handler = handler};
-    for (int i = 0; i < OS_ENDINGS; i++)
+    for (int i = 0; i < os_n_endings; i++)
         sigaction(os_endings[i], &action, NULL);
 }
 
@@ -108,12 +164,52 @@ void os_take_signals(void)
     signal(SIGPIPE, SIG_IGN);
 }
 
+void os_suspend(void)
+{
+    raise(SIGSTOP);
+}
+
 /* ---- files ---------------------------------------------------------------------------------- */
 
 bool os_is_folder(const char *path)
 {
     struct stat s;
     return stat(path, &s) == 0 && S_ISDIR(s.st_mode);
+}
+
+/* The lock must be that of the file of this name still: its last owner removes it. */
+static int try_lock(os_lock *lock)
+{
+    struct stat ours, named;
+    int fd = open(lock->path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
+    int cause;
+    if (fd < 0)
+        return errno;
+    if (flock(fd, LOCK_EX | LOCK_NB) == 0) {
+        if (fstat(fd, &ours) == 0 && lstat(lock->path, &named) == 0 &&
+            ours.st_ino == named.st_ino && ours.st_dev == named.st_dev) {
+            lock->handle = fd;
+            return 0;
+        }
+        errno = EAGAIN;
+    }
+    cause = errno;
+    close(fd);
+    return cause == EAGAIN ? EWOULDBLOCK : cause;
+}
+
+int os_lock_file(os_lock *lock, const char *path)
+{
+    char *real = realpath(path, NULL); /* not there yet: as it is */
+    int n = snprintf(lock->path, sizeof lock->path, "%s.lock", real ? real : path);
+    free(real);
+    return n < 0 || (size_t)n >= sizeof lock->path ? ENAMETOOLONG : try_lock(lock);
+}
+
+void os_unlock_file(os_lock *lock)
+{
+    (void)unlink(lock->path);
+    close((int)lock->handle);
 }
 
 bool os_config_path(int which, char *path, size_t capacity)
@@ -129,49 +225,4 @@ bool os_config_path(int which, char *path, size_t capacity)
     else
         return false;
     return n > 0 && (size_t)n < capacity;
-}
-
-/*
- * That of the session, which a service or a job of cron has not, and one for all. Made with mode
- * 700, and believed only if it is the user's own.
- */
-bool os_private_folder(int which, char *path, size_t capacity)
-{
-    const char *run = getenv("XDG_RUNTIME_DIR");
-    struct stat s;
-    int n;
-    if (which == 0 && !(run && *run == '/'))
-        return false;
-    n = which == 0 ? snprintf(path, capacity, "%s/grctl", run)
-                   : snprintf(path, capacity, "/tmp/grctl-%lu", (unsigned long)geteuid());
-    if (n < 0 || (size_t)n >= capacity)
-        return false;
-    if (mkdir(path, 0700) < 0 && errno != EEXIST)
-        return false;
-    return lstat(path, &s) == 0 && S_ISDIR(s.st_mode) && s.st_uid == geteuid();
-}
-
-bool os_true_path(const char *device, char *path, size_t capacity)
-{
-    char *real = realpath(device, NULL);
-    int n = real ? snprintf(path, capacity, "%s", real) : -1;
-    free(real);
-    return n >= 0 && (size_t)n < capacity;
-}
-
-bool os_mark(const char *path)
-{
-    int fd = open(path, O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
-    return fd >= 0 && close(fd) == 0;
-}
-
-bool os_unmark(const char *path)
-{
-    return unlink(path) == 0 || errno == ENOENT;
-}
-
-bool os_is_marked(const char *path)
-{
-    struct stat s;
-    return lstat(path, &s) == 0;
 }

@@ -130,6 +130,10 @@ bool keys_start(keys *k, struct event_base *base, bool pipes, keys_fn on_key, vo
     return true;
 }
 
+void keys_pause(void)
+{
+}
+
 void keys_stop(keys *k)
 {
     if (k->events[0])

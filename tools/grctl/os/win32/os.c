@@ -172,7 +172,9 @@ int os_run(const char *const *words, FILE *in, FILE *out)
 /* ---- signals -------------------------------------------------------------------------------- */
 
 /* Of Ctrl-C; of Ctrl-Break; of a console that is closed, a log-out and a shut-down; no fourth. */
-const int os_endings[OS_ENDINGS] = {SIGINT, SIGTERM, SIGBREAK, SIGBREAK};
+const int os_endings[] = {SIGINT, SIGTERM, SIGBREAK, SIGBREAK};
+const int os_n_endings = sizeof os_endings / sizeof os_endings[0];
+const int os_suspension = 0;
 
 static void (*on_ending)(int number);
 
@@ -193,6 +195,46 @@ static BOOL WINAPI on_console(DWORD event)
     }
 }
 
+FILE *os_create(const char *path, bool waits)
+{
+    (void)waits;
+    return fopen(path, "wb");
+}
+
+bool os_takes_bytes(FILE *stream)
+{
+    (void)stream; /* nothing tells: the writer's thread waits */
+    return true;
+}
+
+int os_write(FILE *stream, const void *bytes, size_t size)
+{
+    const char *from = bytes;
+    while (size > 0) {
+        int n = _write(_fileno(stream), from, (unsigned)size);
+        if (n <= 0)
+            return n < 0 ? errno : EIO;
+        from += n;
+        size -= (size_t)n;
+    }
+    return 0;
+}
+
+bool os_takes_line(FILE *stream)
+{
+    (void)stream;
+    return true;
+}
+
+void os_suspend(void)
+{
+}
+
+const char *os_own_program(const char *argv0)
+{
+    return argv0;
+}
+
 void os_take_signals(void)
 {
     static bool taken;
@@ -211,7 +253,7 @@ void os_catch_endings(void (*handler)(int number))
 {
     on_ending = handler;
     os_take_signals();
-    for (int i = 0; i < OS_ENDINGS; i++)
+    for (int i = 0; i < os_n_endings; i++)
         signal(os_endings[i], again);
 }
 
@@ -227,6 +269,36 @@ bool os_is_folder(const char *path)
 {
     DWORD attributes = GetFileAttributesA(path);
     return attributes != INVALID_FILE_ATTRIBUTES && (attributes & FILE_ATTRIBUTE_DIRECTORY) != 0;
+}
+
+int os_lock_file(os_lock *lock, const char *path)
+{
+    char full[MAX_PATH];
+    DWORD size = GetFullPathNameA(path, sizeof full, full, NULL);
+    HANDLE handle;
+    if (size == 0 || size >= sizeof full)
+        return ENAMETOOLONG;
+    snprintf(lock->path, sizeof lock->path, "%s.lock", full);
+    handle = CreateFileA(lock->path, GENERIC_WRITE, 0, NULL, OPEN_ALWAYS,
+                         FILE_ATTRIBUTE_NORMAL | FILE_FLAG_DELETE_ON_CLOSE, NULL);
+    if (handle == INVALID_HANDLE_VALUE) {
+        switch (GetLastError()) {
+        case ERROR_SHARING_VIOLATION:
+        case ERROR_DELETE_PENDING:
+            return EWOULDBLOCK;
+        case ERROR_PATH_NOT_FOUND:
+            return ENOENT;
+        default:
+            return EACCES;
+        }
+    }
+    lock->handle = (intptr_t)handle;
+    return 0;
+}
+
+void os_unlock_file(os_lock *lock)
+{
+    CloseHandle((HANDLE)lock->handle); /* and it is gone */
 }
 
 static bool known_folder(int which, char *path)
@@ -247,43 +319,4 @@ bool os_config_path(int which, char *path, size_t capacity)
     else
         return false;
     return n > 0 && (size_t)n < capacity;
-}
-
-/* What is in a user's own AppData is nobody else's. */
-bool os_private_folder(int which, char *path, size_t capacity)
-{
-    char folder[MAX_PATH];
-    int n;
-    if (which != 0 || !known_folder(CSIDL_LOCAL_APPDATA, folder))
-        return false;
-    n = snprintf(path, capacity, "%s\\grctl", folder);
-    if (n < 0 || (size_t)n >= capacity)
-        return false;
-    return CreateDirectoryA(path, NULL) || GetLastError() == ERROR_ALREADY_EXISTS;
-}
-
-/* A port has one name only. */
-bool os_true_path(const char *device, char *path, size_t capacity)
-{
-    (void)device;
-    (void)path;
-    (void)capacity;
-    return false;
-}
-
-bool os_mark(const char *path)
-{
-    HANDLE made = CreateFileA(path, GENERIC_WRITE, FILE_SHARE_READ | FILE_SHARE_WRITE, NULL,
-                              OPEN_ALWAYS, FILE_ATTRIBUTE_NORMAL, NULL);
-    return made != INVALID_HANDLE_VALUE && CloseHandle(made);
-}
-
-bool os_unmark(const char *path)
-{
-    return DeleteFileA(path) || GetLastError() == ERROR_FILE_NOT_FOUND;
-}
-
-bool os_is_marked(const char *path)
-{
-    return GetFileAttributesA(path) != INVALID_FILE_ATTRIBUTES;
 }

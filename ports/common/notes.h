@@ -1,0 +1,68 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Notes that the programs of one user leave for each other, the processes that left them, and the
+ * names under which they may know the same device. src/link makes emergency stops of these.
+ *
+ * A note is a small file in a directory that belongs to the user and that nobody else may enter
+ * (POSIX: mode 0700, no symbolic link). What stands anywhere else is not read. There are two such
+ * directories, because not every process of a user knows the same ones; a note is written into
+ * both, and read from each.
+ */
+#ifndef GROBO_PORTS_NOTES_H
+#define GROBO_PORTS_NOTES_H
+
+#include <grobo/port.h>
+
+enum { NOTE_FOLDERS = 2, NOTE_NAME_BYTES = 240, NOTE_TEXT_BYTES = 2048 };
+
+/* ---- notes: notes.c ------------------------------------------------------------------------- */
+
+/*
+ * Writes a note, or replaces it: a reader finds the old text or the new one. The directories are
+ * made where they are missing.
+ * Returns a bit (1 << folder) for each directory that has it now, or why none has: GROBO_ERR_PERM,
+ * GROBO_ERR_NOMEM, GROBO_ERR_IO; then `cause` names the directory.
+ */
+int grobo_i_note_write(const char *name, const char *text, grobo_os_cause *cause);
+
+/*
+ * Reads a note of one directory; the text is cut to size. A note that is there but cannot be opened
+ * (no free descriptor) is read as empty.
+ * Returns GROBO_OK, or GROBO_ERR_NOENT where there is none that can be trusted.
+ */
+int grobo_i_note_read(int folder, const char *name, char *text, size_t text_bytes);
+
+/* Removes a note everywhere. GROBO_OK, also where there was none, or why one is left. */
+int grobo_i_note_remove(const char *name, grobo_os_cause *cause);
+
+/* ---- processes: process.c, process_linux.c -------------------------------------------------- */
+
+/* A process, and not another one that has its number later. */
+typedef struct grobo_i_process {
+    int pid;
+    uint64_t started; /* in the system's unit, since its start; 0: the system does not say */
+} grobo_i_process;
+
+void grobo_i_process_self(grobo_i_process *self);
+
+/*
+ * Is the process alive? Where `wake`, and it is stopped (SIGSTOP, Ctrl-Z), it continues.
+ * Returns 0: alive; 1: alive, and it was stopped; GROBO_ERR_NOENT: it has exited; GROBO_ERR_PERM.
+ */
+int grobo_i_process_look(const grobo_i_process *process, bool wake);
+
+/* ---- names of a device: names.c ------------------------------------------------------------- */
+
+enum { DEVICE_NAMES = 6 };
+
+/* The names that a device has, or had where it is missing now. */
+typedef struct grobo_i_device_names {
+    char name[DEVICE_NAMES][GROBO_DEVICE_MAX_BYTES];
+    int n;
+    int passing; /* the one that another device may have later, -1 none */
+} grobo_i_device_names;
+
+/* Follows links, and finds the name that stays when it is plugged in elsewhere. */
+void grobo_i_device_names_find(const char *device, grobo_i_device_names *names);
+
+#endif

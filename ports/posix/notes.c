@@ -1,0 +1,234 @@
+/* SPDX-License-Identifier: MIT */
+/* Notes between the programs of one user, in directories that nobody else may enter. */
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "ports/common/notes.h"
+#include "ports/posix/posix.h"
+
+enum { FOLDER_BYTES = 512, PATH_BYTES = FOLDER_BYTES + NOTE_NAME_BYTES + 32 };
+
+static const char shared_parent[] = "/tmp";
+
+/* ---- directories -------------------------------------------------------------------------- */
+
+/* Belongs to the user, and nobody else may look into it. */
+static bool is_private(const char *path)
+{
+    struct stat st;
+
+    return lstat(path, &st) == 0 && S_ISDIR(st.st_mode) && st.st_uid == geteuid() &&
+           (st.st_mode & 077) == 0;
+}
+
+/* Nobody but the user and root can rename what is in it. */
+static bool is_safe_parent(const char *path)
+{
+    struct stat st;
+
+    return stat(path, &st) == 0 && S_ISDIR(st.st_mode) &&
+           (st.st_uid == geteuid() || st.st_uid == 0) &&
+           ((st.st_mode & 022) == 0 || (st.st_mode & S_ISVTX) != 0);
+}
+
+static bool make_private(const char *path)
+{
+    return mkdir(path, 0700) == 0 && is_private(path);
+}
+
+/* That of the login session, which a service or a job of cron does not have. */
+static bool session_folder(char *path, bool make)
+{
+    const char *run = getenv("XDG_RUNTIME_DIR");
+
+    if (run == NULL || run[0] != '/') {
+        return false;
+    }
+    int n = snprintf(path, FOLDER_BYTES, "%s/grobo", run);
+
+    if (n < 0 || n >= FOLDER_BYTES || !is_safe_parent(run)) {
+        return false;
+    }
+    return is_private(path) || (make && make_private(path));
+}
+
+/* The user's directory whose name begins with `base`: another one. */
+static bool find_substitute(const char *base, char *path)
+{
+    const char *prefix = base + sizeof shared_parent;
+    size_t size = strlen(prefix);
+    DIR *parent = opendir(shared_parent);
+    const struct dirent *entry;
+    bool found = false;
+
+    if (parent == NULL) {
+        return false;
+    }
+    while (!found && (entry = readdir(parent)) != NULL) {
+        int n = -1;
+
+        if (strncmp(entry->d_name, prefix, size) == 0 && entry->d_name[size] == '.') {
+            n = snprintf(path, FOLDER_BYTES, "%s/%s", shared_parent, entry->d_name);
+        }
+        found = n > 0 && n < FOLDER_BYTES && is_private(path);
+    }
+    (void)closedir(parent);
+    return found;
+}
+
+/*
+ * That of all processes of the user. Another user can take its name first, so that one with a
+ * random ending is made; it gets the plain name as soon as that is free. The search is paid for
+ * only in this state.
+ */
+static bool shared_folder(char *path, bool make)
+{
+    char base[64];
+    struct stat st;
+
+    snprintf(base, sizeof base, "%s/grobo-%lu", shared_parent, (unsigned long)geteuid());
+    snprintf(path, FOLDER_BYTES, "%s", base);
+    if (is_private(base)) {
+        return true;
+    }
+    if (!is_safe_parent(shared_parent)) {
+        return false;
+    }
+    bool taken = lstat(base, &st) == 0;
+
+    if (find_substitute(base, path)) {
+        if (!taken && rename(path, base) == 0) {
+            snprintf(path, FOLDER_BYTES, "%s", base);
+        }
+        return is_private(path);
+    }
+    snprintf(path, FOLDER_BYTES, "%s%s", base, taken ? ".XXXXXX" : "");
+    if (!make) {
+        return false;
+    }
+    return taken ? mkdtemp(path) != NULL && is_private(path) : make_private(path);
+}
+
+/* The path of a name in a directory that can be trusted. */
+static bool place(int folder, const char *name, bool make, char *path)
+{
+    char in[FOLDER_BYTES];
+    bool found = folder == 0 ? session_folder(in, make) : shared_folder(in, make);
+    int n = found ? snprintf(path, PATH_BYTES, "%s/%s", in, name) : -1;
+
+    return n > 0 && n < PATH_BYTES;
+}
+
+/* ---- notes -------------------------------------------------------------------------------- */
+
+static bool write_text(int fd, const char *text)
+{
+    size_t left = strlen(text);
+
+    while (left > 0) {
+        ssize_t put = write(fd, text, left);
+
+        if (put < 0 && errno != EINTR) {
+            return false;
+        }
+        if (put > 0) {
+            text += put;
+            left -= (size_t)put;
+        }
+    }
+    return true;
+}
+
+/* Replaces the note at once: what is there meanwhile is whole. */
+static int write_at(const char *path, const char *text, grobo_os_cause *cause)
+{
+    char next[PATH_BYTES + 16];
+    int fd;
+    bool whole;
+    int code;
+
+    snprintf(next, sizeof next, "%s~%ld", path, (long)getpid());
+    (void)unlink(next);
+    fd = open(next, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
+    if (fd < 0) {
+        return grobo_i_posix_fail(cause, errno, path);
+    }
+    whole = write_text(fd, text);
+    code = errno;
+    if (close(fd) != 0 && whole) {
+        code = errno;
+        whole = false;
+    }
+    if (whole && rename(next, path) != 0) {
+        code = errno;
+        whole = false;
+    }
+    if (!whole) {
+        (void)unlink(next);
+    }
+    return whole ? GROBO_OK : grobo_i_posix_fail(cause, code, path);
+}
+
+int grobo_i_note_write(const char *name, const char *text, grobo_os_cause *cause)
+{
+    char path[PATH_BYTES];
+    int written = 0;
+    int r = grobo_i_port_refuse(cause, GROBO_ERR_PERM,
+                                "no directory that belongs to this user alone (mode 0700)");
+
+    for (int folder = 0; folder < NOTE_FOLDERS; folder++) {
+        if (place(folder, name, true, path)) {
+            int error = write_at(path, text, cause);
+
+            written |= error < 0 ? 0 : 1 << folder;
+            r = error < 0 ? error : r;
+        }
+    }
+    return written != 0 ? written : r;
+}
+
+/* A file that the user made, and that nobody else may have written to. */
+static bool is_own(const struct stat *st)
+{
+    return S_ISREG(st->st_mode) && st->st_uid == geteuid() && (st->st_mode & 022) == 0;
+}
+
+int grobo_i_note_read(int folder, const char *name, char *text, size_t text_bytes)
+{
+    char path[PATH_BYTES];
+    struct stat st;
+    ssize_t got = 0;
+    int fd;
+
+    if (!place(folder, name, false, path) || lstat(path, &st) != 0 || !is_own(&st)) {
+        return GROBO_ERR_NOENT;
+    }
+    fd = open(path, O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
+    if (fd >= 0) {
+        got = read(fd, text, text_bytes - 1);
+        (void)close(fd);
+    } else if (errno == ENOENT) {
+        return GROBO_ERR_NOENT;
+    }
+    text[got > 0 ? got : 0] = '\0';
+    return GROBO_OK;
+}
+
+int grobo_i_note_remove(const char *name, grobo_os_cause *cause)
+{
+    char path[PATH_BYTES];
+    int r = GROBO_OK;
+
+    for (int folder = 0; folder < NOTE_FOLDERS; folder++) {
+        if (place(folder, name, false, path) && unlink(path) != 0 && errno != ENOENT) {
+            r = grobo_i_posix_fail(cause, errno, path);
+        }
+    }
+    return r;
+}

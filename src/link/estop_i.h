@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: MIT */
+/* What a session knows of the marks of its device: estop.c. */
+#ifndef GROBO_LINK_ESTOP_I_H
+#define GROBO_LINK_ESTOP_I_H
+
+#include <grobo/estop.h>
+
+#include "ports/common/notes.h"
+
+/* Marks that may stand at a time, each with an id of its own. */
+enum { ESTOP_HEARD = DEVICE_NAMES * NOTE_FOLDERS };
+
+typedef struct grobo_i_estop_watch {
+    bool on;
+    bool armed; /* the marks that stood at the beginning have been looked at */
+    grobo_i_device_names names;
+    char heard[ESTOP_HEARD][sizeof((grobo_estop *)0)->id]; /* marks that stand and were obeyed */
+    int n_heard;
+    int64_t looked_us;
+    grobo_estop_answer say; /* to be written, GROBO_ESTOP_NOBODY: nothing */
+    int result;             /* of GROBO_ESTOP_FAILED */
+} grobo_i_estop_watch;
+
+/* Registers this process as the one that has the device; it answers for it from now on. */
+void grobo_i_estop_watch_begin(grobo_i_estop_watch *watch, const char *device);
+
+/* The same process has it no more. Fine where it never had. */
+void grobo_i_estop_watch_end(grobo_i_estop_watch *watch);
+
+/*
+ * Looks for marks that have not been heard; they are then. Returns true if there is one.
+ * pending: one of them has not reached the robot by any program.
+ */
+bool grobo_i_estop_watch_look(grobo_i_estop_watch *watch, bool *pending);
+
+/* Writes what is to be said. */
+void grobo_i_estop_watch_answer(grobo_i_estop_watch *watch);
+
+/* Clears the marks under all these names. */
+int grobo_i_estop_clear(const grobo_i_device_names *names, grobo_os_cause *cause);
+
+#endif

@@ -1,0 +1,83 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * A guard: guard.c has the program's side, guard_run.c that of the process, session_guard.c when a
+ * session uses it.
+ *
+ * What goes over the socket, between two builds of the same library:
+ * - to the guard: messages of guard_message and its data. TAKE brings the port, and how to speak on
+ *   it; STATE what changed since; RELEASE takes the port back; at the end of the stream the program
+ *   has ended well where it had no port there, else it has died.
+ * - to the program: guard_hello once, then a byte for each of guard_word.
+ *
+ * States of the process: idle (no port), watching (a port, the program lives), stopping (it died,
+ * or is stopped). A stopped program is told GUARD_TAKEN before anything is sent: when it continues,
+ * it reads that before it sends anything, and leaves the port, which is then the guard's alone to
+ * release.
+ */
+#ifndef GROBO_LINK_GUARD_I_H
+#define GROBO_LINK_GUARD_I_H
+
+#include <grobo/guard.h>
+#include <grobo/robot.h>
+
+#include "ports/common/guard.h"
+
+/* Changes with the layout of guard_message. */
+#define GUARD_MAGIC UINT32_C(0x47524432)
+
+typedef enum guard_kind { GUARD_TAKE = 1, GUARD_STATE, GUARD_RELEASE } guard_kind;
+
+/* Bytes from the guard. */
+enum guard_word {
+    GUARD_TAKEN = 'T',  /* the robot is being stopped: the program has no port any more */
+    GUARD_REFUSED = 'X' /* that port cannot be guarded */
+};
+
+/* What the guard says first: the program's build and the guard's are alike. */
+typedef struct guard_hello {
+    uint32_t magic;
+    uint32_t message_bytes;
+} guard_hello;
+
+/* What the guard does with the torque. */
+typedef enum guard_policy { GUARD_HOLD, GUARD_OFF, GUARD_ESTOP } guard_policy;
+
+typedef struct guard_message {
+    uint32_t magic;
+    uint32_t kind;   /* guard_kind */
+    uint32_t policy; /* guard_policy */
+    uint32_t moves;  /* joints are on their way */
+    /* of TAKE */
+    uint32_t connection; /* a TCP connection, not a serial port */
+    uint32_t data_bytes; /* behind the message */
+    grobo_wiring wiring;
+    grobo_robot_config robot;
+    char driver[32];
+} guard_message;
+
+struct grobo_guard {
+    grobo_i_guard_process process;
+    const grobo_mem *mem;
+    guard_message message; /* what it knows of the port it has */
+    bool has_port;
+    bool taken;   /* it stops the robot: nothing may be sent on the port given to it */
+    bool refused; /* it cannot guard the port given to it */
+    bool ended;
+};
+
+/* Each of these does nothing in a process that the program forked, or when the guard has ended. */
+
+/* Gives it a port; message->data_bytes of data go with it. */
+void grobo_i_guard_take(grobo_guard *guard, const guard_message *message, const void *data,
+                        grobo_handle handle);
+
+/* Says what has changed, if it has. */
+void grobo_i_guard_tell(grobo_guard *guard, guard_policy policy, bool moves);
+
+/* Takes the port back. */
+void grobo_i_guard_release(grobo_guard *guard);
+
+/* Reads what it says, without waiting: `taken`, `refused` and `ended` are new then. */
+void grobo_i_guard_hear(grobo_guard *guard);
+
+#endif

@@ -1,0 +1,126 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Nobody takes what a command prints while it has the robot: a pipe is full, a terminal stopped by
+# Ctrl-S. The robot does not wait for that.
+. tests/support/cli.sh
+. tests/support/terminal.sh
+
+# A reader that is paused: a pipe that this shell holds open, with so many bytes in it already. The
+# pipe of Linux takes 64 KiB.
+reader=
+end_paused() {
+    [ -z "$reader" ] || kill "$reader" 2>/dev/null
+    on_screen kill-server 2>/dev/null
+    end_cli_test
+}
+trap end_paused EXIT
+pause_reader() {
+    rm -f "$work/pipe"
+    mkfifo "$work/pipe"
+    exec 8<>"$work/pipe"
+    head -c "$1" /dev/zero >&8
+}
+# Reads on: what came behind those bytes is in $work/read when resumed_reader() returns.
+resume_reader() {
+    tail -c +$((full + 1)) <"$work/pipe" >"$work/read" 8>&- &
+    reader=$!
+    exec 8>&-
+}
+full=65536
+
+start_told_sim || { echo "Bail out! the simulator did not start"; exit 1; }
+
+# is_left_alone: it has moved the robot, and the port is free though it still waits for its reader.
+is_left_alone() {
+    wait_for sim_shows 5 moving && wait_for exits 0 on_robot status m5 && kill -0 $player
+}
+# ended STATUS: with its reader back, grctl ends like that.
+ended() {
+    resume_reader
+    wait $player
+    ended_got=$?
+    wait $reader
+    reader=
+    [ $ended_got -eq "$1" ] && return
+    echo "status $ended_got"
+    tail -n 3 "$work/read" "$work/said"
+    return 1
+}
+
+plays_on() {
+    pause_reader $full
+    "$GRCTL" -d "$robot" --timeout 500 --json play motions/greet.pseq >&8 2>"$work/said" 8>&- &
+    player=$!
+    is_left_alone && ended 0 && ! grep -q stalled "$work/said" && grep -q '"done":true' "$work/read"
+}
+check "a full pipe: the motion goes on to its end" plays_on
+
+# Here and for a trace there is room for what is written before the robot is opened.
+complains_on() {
+    full=61440
+    pause_reader $full
+    "$GRCTL" -d "$robot" --timeout 500 -vv play --repeat 3 motions/greet.pseq \
+        >"$work/said" 2>&8 8>&- &
+    player=$!
+    is_left_alone && ended 0 && grep -q 'largest error at the end' "$work/said" &&
+        grep -q '^standard error: [1-9][0-9]* messages were dropped' "$work/read"
+}
+check "standard error too: what its queue cannot hold is counted" complains_on
+
+prints_on() {
+    full=65536
+    pause_reader $full
+    "$GRCTL" -d "$robot" --timeout 500 -v status --watch --interval 20 >&8 2>"$work/said" 8>&- &
+    player=$!
+    written "$work/said" 'robot found' && exits 0 on_robot estop &&
+        complains 'which has the port, and verified' && exits 0 on_robot estop --reset
+    prints_status=$?
+    kill $player
+    [ $prints_status -eq 0 ] && ended 143
+}
+check "an emergency stop reaches who prints into it" prints_on
+
+traces_on() {
+    full=61440
+    pause_reader $full
+    "$GRCTL" -d "$robot" --timeout 500 --trace "$work/pipe" play motions/greet.pseq \
+        >"$work/said" 2>&1 8>&- &
+    player=$!
+    is_left_alone && ended 0 && exits 0 "$GRCTL" decode -q "$work/read" &&
+        says 'relay .*goal' && ! grep -q stalled "$work/said"
+}
+check "a trace into a full pipe: the motion goes on, and the trace is whole" traces_on
+
+# ---- a terminal ----------------------------------------------------------------------------------
+
+plays_on_screen() {
+    type_line "'$GRCTL' -d '$robot' --timeout 500 play motions/greet.pseq; echo ended with \$?"
+    until_screen 's left at 100' || return 1
+    keys C-s
+    wait_for exits 0 on_robot status m5 || return 1
+    on_screen_is '^ended' && { echo 'it was not stopped'; return 1; }
+    keys C-q
+    until_screen '^ended with 0'
+}
+monitors_on() {
+    exits 0 on_robot servo on || return 1
+    type_line "'$GRCTL' -d '$robot' --timeout 500 monitor"
+    until_screen '^12 KNEE_P' || return 1
+    keys C-s
+    exits 0 on_robot estop && complains 'which has the port, and verified' || return 1
+    keys C-q
+    until_screen 'EMERGENCY STOP: R takes it back' || return 1
+    keys R
+    until_screen 'stop taken back' && keys q && until_screen '^>'
+}
+if have_full_screen; then
+    open_screen
+    trap end_paused EXIT
+    check "Ctrl-S: the motion goes on to its end" plays_on_screen
+    check "an emergency stop reaches a monitor after Ctrl-S" monitors_on
+else
+    skip "Ctrl-S: the motion goes on to its end" "$no_screen"
+    skip "an emergency stop reaches a monitor after Ctrl-S" "$no_screen"
+fi
+stop_sim
+done_testing

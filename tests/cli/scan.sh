@@ -1,0 +1,99 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# grctl scan finds each servo on any line: board or bus, with an echo or none, behind an adapter
+# that holds bytes back, with a round trip of 60 ms, on a busy machine. The whole matrix is long;
+# without SCAN_MATRIX=all it is a part of it. SCAN_RUNS: how often each.
+. tests/support/cli.sh
+
+runs=${SCAN_RUNS:-1}
+burners=
+line_pid=
+
+end_scan_test() {
+    burn_no_more
+    far_no_more
+    end_cli_test
+}
+trap end_scan_test EXIT
+
+burn() {
+    for one in 1 2 3; do
+        (trap - EXIT; while :; do :; done) &
+        burners="$burners $!"
+    done
+}
+burn_no_more() {
+    # $burners is a list of words.
+    # shellcheck disable=SC2086
+    [ -z "$burners" ] || kill $burners
+    burners=
+}
+
+# go_far: $robot is 30 ms away from here on.
+go_far() {
+    mkfifo "$work/far"
+    python3 tests/support/delay_line.py "$robot" 30 >"$work/far" &
+    line_pid=$!
+    read -r robot <"$work/far"
+    rm "$work/far"
+}
+far_no_more() {
+    [ -z "$line_pid" ] || kill "$line_pid"
+    [ -z "$line_pid" ] || wait "$line_pid" 2>/dev/null
+    line_pid=
+}
+
+finds() {
+    [ "$(grep -c ' bps  ' "$work/out")" -eq "$1" ] && ! grep -q 'answers, but' "$work/err" && return
+    cat "$work/out" "$work/err"
+    return 1
+}
+scan_finds_all() {
+    for run in $(seq "$runs"); do
+        # $options is a list of words.
+        # shellcheck disable=SC2086
+        both exits 0 "$GRCTL" -d "$robot" $options scan --last "$last" --- finds 20 ||
+            { echo "run $run"; return 1; }
+    done
+}
+
+# cell OPTIONS LATENCY near|far idle|busy
+cell() {
+    options=$1
+    # shellcheck disable=SC2086
+    start_sim $options --latency "$2" || { echo "Bail out! the simulator did not start"; exit 1; }
+    [ "$3" = near ] || go_far
+    [ "$4" = idle ] || burn
+    check "$1, $2 ms of latency, $3, $4" scan_finds_all
+    burn_no_more
+    far_no_more
+    stop_sim
+}
+
+lines='--wiring=board|--wiring=bus|--wiring=bus --echo'
+if ! command -v python3 >/dev/null 2>&1; then
+    skip "lines that are far away" "no python3"
+    last=24
+    cell '--wiring=bus --echo' 16 near busy
+elif [ "${SCAN_MATRIX:-}" = all ]; then
+    last=127
+    for load in idle busy; do
+        for place in near far; do
+            for latency in 0 4 16; do
+                IFS='|'
+                for line in $lines; do
+                    unset IFS
+                    cell "$line" $latency $place $load
+                done
+            done
+        done
+    done
+else
+    last=24
+    cell '--wiring=board' 0 far idle
+    cell '--wiring=board' 16 near busy
+    cell '--wiring=bus' 4 far busy
+    cell '--wiring=bus --echo' 16 near idle
+    cell '--wiring=bus --echo' 0 far busy
+fi
+done_testing

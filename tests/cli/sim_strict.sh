@@ -1,0 +1,116 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# grctl sim --strict: what a client does against the protocol, one line each, and the exit status.
+. tests/support/cli.sh
+own_sim
+
+# Opens the simulator as any program does, and writes bytes: "FA AF 01", "wait 30" pauses for 30 ms.
+cat >"$work/client.py" <<'PY'
+import os, sys, time, tty
+fd = os.open(sys.argv[1], os.O_RDWR | os.O_NOCTTY)
+tty.setraw(fd)
+for what in sys.argv[2:]:
+    if what.startswith("wait "):
+        time.sleep(float(what[5:]) / 1e3)
+    else:
+        os.write(fd, bytes.fromhex(what))
+PY
+
+# strict OPTIONS --- BYTES...: the status when it is ended, the lines of its clients' offences.
+strict() {
+    strict_options=
+    while [ "$1" != --- ]; do
+        strict_options="$strict_options $1"
+        shift
+    done
+    shift
+    # shellcheck disable=SC2086 # options are words
+    start_sim --strict $strict_options
+    python3 "$work/client.py" "$robot" "$@" "wait 60"
+    kill -s TERM "$sim_pid"
+    wait "$sim_pid"
+    strict_status=$?
+    sim_pid=
+    grep '^grctl: sim: robot ' "$work/sim.log" >"$work/out"
+}
+
+# offends CODE BYTES [COUNT]: the last strict ended with 3, and this is what was printed.
+offends() {
+    [ $strict_status -eq 3 ] && says "^grctl: sim: robot 1: [0-9.]* ms: $1: .*: $2" &&
+        [ "$(wc -l <"$work/out")" -eq "${3:-1}" ] && return
+    echo "status $strict_status"
+    cat "$work/out"
+    return 1
+}
+
+if by_tcp || ! command -v python3 >/dev/null 2>&1; then
+    skip 'offences against the protocol' 'needs a pty and python3'
+    done_testing
+    exit 0
+fi
+
+chain='--servo 1=RS301CR,2=RS304MD'
+# t NAME CODE BYTES-PRINTED BYTES...
+t() {
+    name=$1
+    code=$2
+    bytes=$3
+    shift 3
+    # shellcheck disable=SC2086 # options are words
+    strict $chain --- "$@"
+    check "$name" offends "$code" "$bytes"
+}
+
+# shellcheck disable=SC2086 # options are words
+strict $chain --- 'FA AF 01 0F 2A 02 00 26' 'wait 30' 'FA AF 01 00 1E 04 01 84 03 0A 00 97' \
+    'wait 30' 'FA AF 01 40 FF 00 00 BE' 'wait 30' 'FA AF 01 0F 2A 02 00 26'
+faultless() {
+    cat "$work/out"
+    [ "$strict_status" -eq 0 ] && [ ! -s "$work/out" ]
+}
+check 'a client that keeps to the protocol: 0, and nothing is printed' faultless
+t 'a wrong sum' sum 'FA AF 01 00 24 01 01 01 25' 'FA AF 01 00 24 01 01 01 25'
+t 'a value out of range' range 'FA AF 01 00 1E 02 01 D0 07 CB' 'FA AF 01 00 1E 02 01 D0 07 CB'
+check 'which' says 'goal 2000 is outside -1500..1500'
+t 'a register that is read-only' range 'FA AF 01 00 2A' 'FA AF 01 00 2A 02 01 00 00 28'
+t 'behind the last register' request 'FA AF 01 0F 8B' 'FA AF 01 0F 8B 05 00 80'
+t 'an id in a long packet' range 'FA AF 00 00 24' 'FA AF 00 00 24 02 01 80 01 A6'
+t 'what an RS301CR does not have' refused 'FA AF 01 0D' 'FA AF 01 0D 00 00 01 0D'
+t 'bytes that are no frame' rubbish '41 00 12' '41 00 12'
+t 'a frame cut off' cut 'FA AF 01 0F' 'FA AF 01 0F'
+t 'talking over a reply' talk 'FA AF 01 0F 00 1E 00 10 FA AF 02' \
+    'FA AF 01 0F 00 1E 00 10 FA AF 02 00 24 01 01 01 27'
+t 'writing during a flash write' busy 'FA AF 01 00 24 01 01 01 24' 'FA AF 01 40 FF 00 00 BE' \
+    'wait 50' 'FA AF 01 00 24 01 01 01 24'
+check 'why' says 'the servo writes its flash'
+t 'writing during a restart' busy 'FA AF 01 00 24 01 01 01 24' 'FA AF 01 20 FF 00 00 DE' \
+    'wait 50' 'FA AF 01 00 24 01 01 01 24'
+t 'a pause inside a packet' stall 'FA AF 01' 'FA AF 01' 'wait 30' '00 24 01 01 01 24'
+
+strict --- '54 09 FA AF 01 0F 24 12 00 38 1A'
+check 'through the board: nothing' [ "$strict_status" = 0 ]
+strict --- '54 09 FA AF 01 0F 24 12 00 38 0A'
+check 'too few bytes asked of the board' offends relay '54 09 FA'
+strict --- '53 09 FA AF 01 00 24 01 01 01 25' 'wait 20' '41 00'
+check 'a wrong sum behind the board' offends sum '53 09 FA AF 01'
+strict --robots 2 --- '41 00'
+check 'two robots' [ "$strict_status" = 0 ]
+ours() {
+    start_sim --strict --wiring "$1"
+    on_robot -q --wiring "$1" init --time 100
+    kill -s TERM "$sim_pid"
+    wait "$sim_pid"
+    strict_status=$?
+    sim_pid=
+    grep '^grctl: sim: robot ' "$work/sim.log"
+    [ $strict_status -eq 0 ]
+}
+check 'grctl keeps to the protocol' ours board
+check 'on a bus too' ours bus
+start_sim --json --strict --wiring bus
+python3 "$work/client.py" "$robot" 'FA AF 01 00 24 01 01 01 25' 'wait 30'
+read -r line <&6
+printf '%s\n' "$line" >"$work/out"
+check 'as JSON' says '^{"offence":"sum","robot":1,"time_ms":[0-9.]*,"bytes":"FA AF 01 [^"]*25",'
+stop_sim
+done_testing

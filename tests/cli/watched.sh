@@ -1,0 +1,57 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# A command that moves the robot reads the joints while they move: heat, low voltage and a joint
+# that is blocked end the move. Motions that are played are in engine/test_watched.c.
+. tests/support/cli.sh
+
+start_told_sim || { echo "Bail out! the simulator did not start"; exit 1; }
+
+# stops PATTERN TELL... --- COMMAND...: while that moves R_ELBOW_P for 20 s, the simulator is told
+# so. Exit status 4, a message like that, and the joint stands on its way.
+stops() {
+    stops_pattern=$1
+    shift
+    stops_told=
+    while [ "$1" != --- ]; do
+        stops_told="$stops_told $1"
+        shift
+    done
+    shift
+    exits 0 on_robot init --time 500 || return 1
+    on_robot "$@" >"$work/out" 2>"$work/err" </dev/null &
+    stops_pid=$!
+    # Words of the simulator's console.
+    # shellcheck disable=SC2086
+    wait_for sim_shows 5 ' -[2-9][0-9]\.[0-9] .*, moving' && tell $stops_told
+    wait $stops_pid
+    status_was 4 "$@" && complains "$stops_pattern" && ! sim_shows 5 moving
+}
+heat='stopped for safety: over-temperature .* at motor 12 (R_KNEE_P)'
+# recovers TELL...: told so, the robot moves again.
+recovers() {
+    tell "$@" && exits 0 on_robot init --time 500
+}
+
+check "heat of another joint ends a move" stops "$heat" temperature 12 70 --- move m5 -120 20000
+check "it moves again when it is cool" recovers temperature 12 25
+check "low voltage ends a pose" stops 'stopped for safety: low voltage' voltage 5 --- \
+    pose --time 20000 R_ELBOW_P=-120
+check "it moves again with a full battery" recovers voltage 7.4
+check "a joint that is blocked ends a move" stops 'stopped for safety: .*motor 5 (R_ELBOW_P)' \
+    block 5 on --- move m5 -120 20000
+check "it moves again when it is free" recovers block 5 off
+
+# The way to the initial posture is as long as the approach from here.
+hot_init() {
+    exits 0 on_robot move m5 -120 500 || return 1
+    on_robot init --time 20000 >"$work/out" 2>"$work/err" </dev/null &
+    hot_pid=$!
+    wait_for sim_shows 5 ' -1*[0-9][0-9]\.[0-9] .*, moving' && tell temperature 12 70
+    wait $hot_pid
+    status_was 4 init && complains "$heat" && ! sim_shows 5 moving
+}
+check "heat ends init" hot_init
+check "it moves again then too" recovers temperature 12 25
+
+stop_sim
+done_testing

@@ -1,0 +1,386 @@
+/* SPDX-License-Identifier: MIT */
+/* Replies that are late and still owed: whom they are credited to, and what they cost. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include <grobo/bus.h>
+
+#include "bus_peer.h"
+
+enum { MS = 1000, S = 1000000, MARGIN = 2 * MS, READ_US = 3488, READ_FAILED = READ_US + MARGIN };
+enum { BUS_READ_US = 695 + 100 + 869 }; /* 8 bytes, the return delay, 10 bytes */
+
+static void start(peer *p, bool echo)
+{
+    const grobo_bus_config config = {
+        .wiring = echo ? GROBO_WIRING_BUS : GROBO_WIRING_BOARD, .margin_us = MARGIN, .echo = echo};
+    peer_init(p, &config);
+}
+
+/* ---- credit ---------------------------------------------------------------------------------- */
+
+static void a_late_reply_takes_the_place_of_the_next_attempt(void **state)
+{
+    (void)state;
+    peer p;
+    request a, b;
+    start(&p, false);
+    peer_submit_read(&p, &a, 1, 1);
+    peer_submit_read(&p, &b, 1, 0);
+    int64_t at_us = READ_FAILED + GROBO_BUS_QUIET_US / 2; /* the line is kept quiet */
+    peer_position_at(&p, at_us, 1, 11);
+    peer_position_at(&p, at_us + READ_US + MS, 1, 22);
+    peer_run(&p, S);
+    assert_int_equal(p.ended[0].result, GROBO_OK);
+    assert_int_equal(p.ended[0].at_us, at_us);
+    assert_int_equal(p.ended[0].value, 11);
+    assert_ptr_equal(p.ended[1].txn, &b.txn); /* nothing more is owed: it did not wait */
+    assert_int_equal(p.ended[1].value, 22);
+    assert_int_equal(p.sent_count, 2);
+    assert_in_range(p.sent[1].at_us, at_us, at_us + GROBO_BUS_QUIET_US);
+    assert_int_equal(p.bus.stats.replies, 2);
+    assert_int_equal(p.bus.stats.late_bytes, 0);
+}
+
+static void a_late_reply_is_credited_while_another_is_awaited(void **state)
+{
+    (void)state;
+    peer p;
+    request a, b;
+    start(&p, false);
+    peer_submit_read(&p, &a, 1, 1);
+    peer_run(&p, READ_FAILED);
+    peer_read(&p, &b, 2, 2, GROBO_PRIORITY_MOTION); /* goes before the next attempt */
+    assert_int_equal(grobo_bus_submit(&p.bus, &b.txn), GROBO_OK);
+    int64_t at_us = READ_FAILED + GROBO_BUS_QUIET_US;
+    peer_position_at(&p, at_us + MS, 1, 11);
+    peer_position_at(&p, at_us + READ_US, 2, 22);
+    peer_run(&p, S);
+    assert_int_equal(p.sent[1].id, 2);
+    assert_ptr_equal(p.ended[0].txn, &a.txn);
+    assert_int_equal(p.ended[0].result, GROBO_OK);
+    assert_int_equal(p.ended[0].value, 11);
+    assert_int_equal(p.ended[1].value, 22);
+    assert_int_equal(p.sent_count, 2);
+}
+
+static void a_late_refusal_is_credited_too(void **state)
+{
+    (void)state;
+    uint8_t bytes[16];
+    const uint8_t data[2] = {0};
+    const grobo_rs30x_packet refused = {
+        GROBO_RS30X_RETURN, 1, GROBO_RS30X_STATUS_REFUSED, 42, 2, 1, data, 2};
+    peer p;
+    request a;
+    start(&p, false);
+    peer_submit_read(&p, &a, 1, 1);
+    int n = grobo_rs30x_build(&refused, bytes, sizeof bytes);
+    peer_bytes_at(&p, READ_FAILED + 100, bytes, (size_t)n);
+    peer_run(&p, S);
+    assert_int_equal(p.ended[0].result, GROBO_ERR_NACK);
+    assert_int_equal(p.sent_count, 1);
+    assert_int_equal(p.bus.stats.refusals, 1);
+    assert_int_equal(p.bus.stats.failed, 1);
+}
+
+/* The line keeps the order: what comes after a later reply is not the one that was lost. */
+static void what_is_not_owed_any_more_is_credited_to_nobody(void **state)
+{
+    (void)state;
+    peer p;
+    request a, b;
+    start(&p, false);
+    peer_submit_read(&p, &a, 1, 1);
+    peer_run(&p, READ_FAILED);
+    peer_read(&p, &b, 2, 2, GROBO_PRIORITY_MOTION);
+    assert_int_equal(grobo_bus_submit(&p.bus, &b.txn), GROBO_OK);
+    int64_t at_us = READ_FAILED + GROBO_BUS_QUIET_US + READ_US;
+    peer_position_at(&p, at_us, 2, 22);
+    peer_run(&p, at_us - 1);
+    p.now_us = at_us;
+    uint8_t both[20] = "\xFD\xDF\x02\x00\x2A\x02\x01\x16\x00\x3D"  /* 22 */
+                       "\xFD\xDF\x01\x00\x2A\x02\x01\x0B\x00\x23"; /* 11 */
+    p.chunk_count = 0;
+    grobo_bus_rx(&p.bus, at_us, both, sizeof both);
+    assert_int_equal(p.ended_count, 1);
+    assert_ptr_equal(p.ended[0].txn, &b.txn);
+    peer_position_at(&p, at_us + GROBO_BUS_QUIET_US + READ_US, 1, 33);
+    peer_run(&p, S);
+    assert_int_equal(p.ended[1].value, 33);
+}
+
+/* Nothing can come before its time is over: a doubled reply settles nothing. */
+static void a_doubled_reply_is_not_taken_for_the_one_that_is_owed(void **state)
+{
+    (void)state;
+    peer p;
+    request a, b;
+    start(&p, false);
+    peer_submit_read(&p, &a, 1, 1);
+    peer_submit_read(&p, &b, 1, 0);
+    int64_t second_us = READ_FAILED + GROBO_BUS_QUIET_US;
+    peer_position_at(&p, second_us + MS, 1, 11);
+    peer_position_at(&p, second_us + MS + 100, 1, 11);
+    peer_position_at(&p, second_us + READ_US + 200, 1, 22);
+    peer_position_at(&p, second_us + READ_US + 200 + READ_US, 1, 33);
+    peer_run(&p, S);
+    assert_int_equal(p.ended[1].value, 33);
+    assert_int_equal(p.sent[2].at_us, second_us + READ_US + 200);
+}
+
+/* ---- echo ------------------------------------------------------------------------------------ */
+
+/* What the adapter hands over late, all of it: the echo and the reply of the request before. */
+static void an_echo_is_found_behind_a_late_echo_and_a_late_reply(void **state)
+{
+    (void)state;
+    peer p;
+    request a, b;
+    start(&p, true);
+    peer_submit_read(&p, &a, 1, 0);
+    peer_submit_read(&p, &b, 2, 0);
+    int64_t second_us = BUS_READ_US + MARGIN + GROBO_BUS_QUIET_US;
+    peer_bytes_at(&p, second_us + 100, a.frame, 3);
+    peer_bytes_at(&p, second_us + 200, a.frame + 3, 5);
+    peer_position_at(&p, second_us + 300, 1, 11);
+    peer_bytes_at(&p, second_us + MS, b.frame, 8);
+    peer_position_at(&p, second_us + BUS_READ_US, 2, 22);
+    peer_run(&p, S);
+    assert_int_equal(p.ended[0].result, GROBO_ERR_TIMEOUT);
+    assert_int_equal(p.ended[1].result, GROBO_OK);
+    assert_int_equal(p.ended[1].value, 22);
+    assert_int_equal(p.sent_count, 2);
+    assert_int_equal(p.bus.stats.bad_echoes, 0);
+    assert_int_equal(p.bus.stats.resync_bytes, 0);
+    assert_int_equal(p.bus.stats.late_frames, 2);
+}
+
+/* With nothing but late bytes before its time is over it was silent, not wrong. */
+static void late_packets_are_no_broken_echo(void **state)
+{
+    (void)state;
+    peer p;
+    request a, b;
+    start(&p, true);
+    peer_submit_read(&p, &a, 1, 0);
+    peer_submit_read(&p, &b, 2, 0);
+    int64_t second_us = BUS_READ_US + MARGIN + GROBO_BUS_QUIET_US;
+    peer_bytes_at(&p, second_us + 100, a.frame, 8);
+    peer_position_at(&p, second_us + 300, 1, 11);
+    peer_run(&p, S);
+    assert_int_equal(p.ended[1].result, GROBO_ERR_TIMEOUT);
+    assert_int_equal(p.bus.stats.bad_echoes, 0);
+}
+
+static void a_late_reply_before_the_echo_of_the_next_attempt_is_believed(void **state)
+{
+    (void)state;
+    peer p;
+    request a;
+    start(&p, true);
+    peer_submit_read(&p, &a, 1, 1);
+    int64_t second_us = BUS_READ_US + MARGIN + GROBO_BUS_QUIET_US;
+    peer_bytes_at(&p, second_us + 100, a.frame, 8); /* cannot be told from its own */
+    peer_position_at(&p, second_us + 300, 1, 11);
+    peer_bytes_at(&p, second_us + 700, a.frame, 8);
+    peer_position_at(&p, second_us + BUS_READ_US, 1, 22);
+    peer_run(&p, S);
+    assert_int_equal(p.ended_count, 1);
+    assert_int_equal(p.ended[0].result, GROBO_OK);
+    assert_int_equal(p.ended[0].value, 11);
+    assert_int_equal(p.bus.stats.resync_bytes, 0);
+}
+
+/* The sum FA looks like the head of an echo: the packet is whole all the same. */
+static void a_reply_that_ends_as_an_echo_begins_is_credited(void **state)
+{
+    (void)state;
+    peer p;
+    request a, b;
+    start(&p, true);
+    peer_submit_read(&p, &a, 1, 1);
+    peer_run(&p, BUS_READ_US + MARGIN);
+    peer_read(&p, &b, 2, 2, GROBO_PRIORITY_MOTION);
+    b.txn.retries = 0;
+    assert_int_equal(grobo_bus_submit(&p.bus, &b.txn), GROBO_OK);
+    int64_t second_us = BUS_READ_US + MARGIN + GROBO_BUS_QUIET_US;
+    const int16_t value = 0xFA ^ (1 ^ 0x2A ^ 2 ^ 1); /* what makes the sum FA */
+    peer_position_at(&p, second_us + 300, 1, value);
+    peer_run(&p, S);
+    assert_ptr_equal(p.ended[0].txn, &a.txn);
+    assert_int_equal(p.ended[0].result, GROBO_OK);
+    assert_int_equal(p.ended[0].value, value);
+    assert_int_equal(p.ended[1].result, GROBO_ERR_TIMEOUT);
+    assert_int_equal(p.sent_count, 2);
+}
+
+/* A frame that begins with a part of itself: each place where it may begin is tried. */
+static void an_echo_is_found_behind_a_part_of_itself(void **state)
+{
+    (void)state;
+    peer p;
+    request r;
+    start(&p, true);
+    peer_submit_read(&p, &r, 1, 0);
+    uint8_t line[2 + 5 + 8] = {0xFA, 0xFA};
+    memcpy(line + 2, r.frame, 5);
+    memcpy(line + 7, r.frame, 8);
+    peer_bytes_at(&p, 700, line, sizeof line);
+    peer_position_at(&p, BUS_READ_US, 1, 11);
+    peer_run(&p, S);
+    assert_int_equal(p.ended[0].result, GROBO_OK);
+    assert_int_equal(p.ended[0].value, 11);
+    assert_int_equal(p.bus.stats.bad_echoes, 0);
+}
+
+static void a_broken_echo_is_known_by_its_length(void **state)
+{
+    (void)state;
+    peer p;
+    request r;
+    uint8_t hit[8];
+    start(&p, true);
+    peer_submit_read(&p, &r, 1, 0);
+    memcpy(hit, r.frame, sizeof hit);
+    hit[6] ^= 0x10;
+    peer_bytes_at(&p, 700, hit, sizeof hit);
+    peer_run(&p, S);
+    assert_int_equal(p.ended[0].result, GROBO_ERR_MISMATCH);
+    assert_int_equal(p.ended[0].at_us, 700);
+    assert_int_equal(p.bus.stats.bad_echoes, 1);
+}
+
+/* ---- what a late reply costs ----------------------------------------------------------------- */
+
+enum { POLLS = 2000, LATE_EVERY = 100, WARM_UP = 1000 };
+
+typedef struct polling {
+    grobo_bus bus;
+    request r;
+    int64_t now_us, line_us; /* line_us: when the last reply so far has come */
+    int64_t arrives_us[8];   /* replies under way */
+    int under_way, ended, asked;
+    int64_t bare_us; /* of a loop that waits for each reply, whenever it comes */
+} polling;
+
+static void polled(void *ctx, grobo_txn *txn, int result, const grobo_rs30x_packet *reply)
+{
+    polling *p = ctx;
+    (void)reply;
+    assert_int_equal(result, GROBO_OK);
+    if (++p->ended < WARM_UP + POLLS) {
+        p->asked = 0;
+        assert_int_equal(grobo_bus_submit(&p->bus, txn), GROBO_OK);
+    }
+}
+
+/* A request leaves: its reply comes in time, but for the first to each LATE_EVERYth query. */
+static void answer(polling *p, uint32_t late_us, bool lose)
+{
+    bool hit = p->asked++ == 0 && p->ended >= WARM_UP && p->ended % LATE_EVERY == 0;
+    int64_t at_us = p->bus.over_us + (hit ? late_us : 0);
+    if (p->asked == 1) {
+        p->bare_us += at_us - p->now_us;
+    }
+    if (hit && lose) {
+        return;
+    }
+    assert_true(p->under_way < 8);
+    p->line_us = at_us > p->line_us ? at_us : p->line_us;
+    p->arrives_us[p->under_way++] = p->line_us;
+}
+
+static void receive(polling *p)
+{
+    static const uint8_t reply[] = {0xFD, 0xDF, 1, 0, 42, 2, 1, 100, 0, 0x4C};
+    while (p->under_way > 0 && p->arrives_us[0] <= p->now_us) {
+        memmove(p->arrives_us, p->arrives_us + 1, sizeof p->arrives_us - sizeof p->arrives_us[0]);
+        p->under_way--;
+        grobo_bus_rx(&p->bus, p->now_us, reply, sizeof reply);
+    }
+}
+
+/* Polls one register of one servo; how fast that is, as part of a bare loop. */
+static double poll(const grobo_bus_config *config, uint32_t late_us, bool lose)
+{
+    static polling p;
+    uint8_t buf[GROBO_RS30X_PACKET_MAX_BYTES];
+    int64_t begun_us = 0;
+    memset(&p, 0, sizeof p);
+    assert_int_equal(grobo_bus_init(&p.bus, config), GROBO_OK);
+    int n = grobo_frame_read(config->wiring, 1, 42, 2, p.r.frame, sizeof p.r.frame);
+    assert_int_equal(grobo_txn_init(&p.r.txn, config->wiring, p.r.frame, (size_t)n), GROBO_OK);
+    p.r.txn.done = polled;
+    p.r.txn.ctx = &p;
+    assert_int_equal(grobo_bus_submit(&p.bus, &p.r.txn), GROBO_OK);
+    while (p.ended < WARM_UP + POLLS) {
+        receive(&p);
+        grobo_bus_step(&p.bus, p.now_us);
+        if (grobo_bus_tx(&p.bus, p.now_us, buf, sizeof buf) > 0) {
+            answer(&p, late_us, lose);
+        }
+        if (p.ended < WARM_UP) {
+            begun_us = p.now_us;
+            p.bare_us = 0;
+        }
+        int64_t next_us = grobo_bus_deadline(&p.bus, p.now_us);
+        next_us = p.under_way > 0 && p.arrives_us[0] < next_us ? p.arrives_us[0] : next_us;
+        p.now_us = p.ended < WARM_UP + POLLS && next_us > p.now_us ? next_us : p.now_us;
+    }
+    return (double)p.bare_us / (double)(p.now_us - begun_us);
+}
+
+static void polling_keeps_up_with_a_bare_loop_where_replies_are_late(void **state)
+{
+    (void)state;
+    static const grobo_bus_config lines[] = {
+        {.wiring = GROBO_WIRING_BOARD},
+        {.wiring = GROBO_WIRING_BUS},
+        {.wiring = GROBO_WIRING_BUS, .baud_bps = 460800},
+    };
+    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
+        static const uint32_t late_us[] = {3 * MS, 3200, 5 * MS, 10 * MS, 20 * MS};
+        for (size_t k = 0; k < sizeof late_us / sizeof late_us[0]; k++) {
+            double part = poll(&lines[i], late_us[k], false);
+            print_message("# line %zu, 1 reply of %d %.1f ms late: %.3f of a bare loop\n", i,
+                          LATE_EVERY, late_us[k] / 1e3, part);
+            assert_true(part > 0.95);
+        }
+    }
+}
+
+/* Nothing comes that would end the hold: it is as long as the line has shown that it must be. */
+static void a_lost_reply_costs_what_the_line_has_taught(void **state)
+{
+    (void)state;
+    const grobo_bus_config line = {.wiring = GROBO_WIRING_BUS, .baud_bps = 460800};
+    double part = poll(&line, 0, true);
+    print_message("# 1 reply of %d lost: %.3f of a bare loop\n", LATE_EVERY, part);
+    assert_true(part > 0.6);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_late_reply_takes_the_place_of_the_next_attempt),
+        cmocka_unit_test(a_late_reply_is_credited_while_another_is_awaited),
+        cmocka_unit_test(a_late_refusal_is_credited_too),
+        cmocka_unit_test(what_is_not_owed_any_more_is_credited_to_nobody),
+        cmocka_unit_test(a_doubled_reply_is_not_taken_for_the_one_that_is_owed),
+        cmocka_unit_test(an_echo_is_found_behind_a_late_echo_and_a_late_reply),
+        cmocka_unit_test(late_packets_are_no_broken_echo),
+        cmocka_unit_test(a_late_reply_before_the_echo_of_the_next_attempt_is_believed),
+        cmocka_unit_test(a_reply_that_ends_as_an_echo_begins_is_credited),
+        cmocka_unit_test(an_echo_is_found_behind_a_part_of_itself),
+        cmocka_unit_test(a_broken_echo_is_known_by_its_length),
+        cmocka_unit_test(polling_keeps_up_with_a_bare_loop_where_replies_are_late),
+        cmocka_unit_test(a_lost_reply_costs_what_the_line_has_taught),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,322 @@
+/* SPDX-License-Identifier: MIT */
+/* What the engine owes a driver: its context, every part of an order, and what it answers. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <limits.h>
+#include <math.h>
+#include <string.h>
+
+#include <grobo/board.h>
+
+#include "rig.h"
+
+static grobo_test_rig rig;
+static rig_clip clip;
+static const grobo_driver *inner;
+static int context;
+static unsigned calls[9];
+static bool has_no_frame; /* for any target */
+static unsigned frames;   /* before the driver fails */
+
+/* ---- a driver that looks at its context ------------------------------------------------------ */
+
+static void count(const grobo_driver *self, void *ctx, int what)
+{
+    assert_ptr_equal(self, rig.driver);
+    assert_ptr_equal(ctx, &context);
+    calls[what]++;
+}
+
+static int check(const grobo_driver *self, void *ctx, int part, grobo_exchange *exchange)
+{
+    count(self, ctx, 0);
+    return inner->check(inner, NULL, part, exchange);
+}
+
+/* Frames of four joints at most, as many as that takes. */
+static grobo_joint_mask part_of(grobo_joint_mask joints, int part)
+{
+    grobo_joint_mask mine = 0;
+    int n = 0;
+    for (int j = 0; j < 20; j++) {
+        if ((joints & GROBO_JOINT_BIT(j)) != 0) {
+            mine |= n / 4 == part ? GROBO_JOINT_BIT(j) : 0;
+            n++;
+        }
+    }
+    return mine;
+}
+
+static int posture(const grobo_driver *self, void *ctx, const grobo_target *target, int part,
+                   grobo_exchange *exchange)
+{
+    count(self, ctx, 1);
+    if (has_no_frame) {
+        return 0;
+    }
+    if (frames == 0) {
+        return GROBO_ERR_SPACE;
+    }
+    frames--;
+    grobo_target mine = *target;
+    mine.posture.set = part_of(target->posture.set, part);
+    return mine.posture.set == 0 ? 0 : inner->posture(inner, NULL, &mine, 0, exchange);
+}
+
+static int torque(const grobo_driver *self, void *ctx, grobo_joint_mask joints, grobo_torque mode,
+                  int part, grobo_exchange *exchange)
+{
+    count(self, ctx, 2);
+    grobo_joint_mask mine = part_of(joints, part);
+    return mine == 0 ? 0 : inner->torque(inner, NULL, mine, mode, 0, exchange);
+}
+
+static int sense(const grobo_driver *self, void *ctx, int joint, grobo_sense_kind kind,
+                 grobo_exchange *exchange)
+{
+    count(self, ctx, 3);
+    return inner->sense(inner, NULL, joint, kind, exchange);
+}
+
+static int parse(const grobo_driver *self, void *ctx, int joint, const grobo_rs30x_packet *reply,
+                 grobo_joint_state *state)
+{
+    count(self, ctx, 4);
+    return inner->parse(inner, NULL, joint, reply, state);
+}
+
+static int registers(const grobo_driver *self, void *ctx, const grobo_register_io *io,
+                     grobo_exchange *exchange)
+{
+    count(self, ctx, 5);
+    return inner->registers(inner, NULL, io, exchange);
+}
+
+static int command(const grobo_driver *self, void *ctx, int id, grobo_servo_command what,
+                   grobo_exchange *exchange)
+{
+    count(self, ctx, 6);
+    return inner->command(inner, NULL, id, what, exchange);
+}
+
+static int inspect(const grobo_driver *self, void *ctx, const uint8_t *frame, size_t size,
+                   grobo_target *target, grobo_joint_mask *torqued)
+{
+    count(self, ctx, 7);
+    return inner->inspect(inner, NULL, frame, size, target, torqued);
+}
+
+static int stabilize(const grobo_driver *self, void *ctx, const grobo_posture *sensed,
+                     grobo_posture *target)
+{
+    count(self, ctx, 8);
+    assert_int_equal(sensed->n_joints, target->n_joints);
+    return 0;
+}
+
+static void start(const grobo_robot_config *config)
+{
+    static grobo_driver driver;
+    grobo_robot_config used = *config;
+    inner = grobo_gr001_driver(rig_wiring);
+    driver = *inner;
+    driver.check = check;
+    driver.posture = posture;
+    driver.torque = torque;
+    driver.sense = sense;
+    driver.parse = parse;
+    driver.registers = registers;
+    driver.command = command;
+    driver.inspect = inspect;
+    driver.stabilize = stabilize;
+    memset(calls, 0, sizeof calls);
+    has_no_frame = false;
+    frames = UINT_MAX;
+    rig_start_driver(&rig, &driver, config, NULL);
+    grobo_event_fn on_event = rig.robot.on_event; /* again, with a context */
+    assert_int_equal(grobo_robot_init(&rig.robot, &driver, &context, &used, rig.now_us), 0);
+    grobo_robot_on_event(&rig.robot, on_event, &rig);
+    grobo_robot_link_up(&rig.robot, rig.now_us);
+}
+
+static grobo_posture all_at(double way_deg, int time_ms)
+{
+    grobo_posture target;
+    grobo_posture_init_pose(&target, rig.driver->model);
+    for (int j = 0; j < target.n_joints; j++) {
+        target.angle_rad[j] += grobo_rad_from_deg(way_deg);
+    }
+    (void)grobo_posture_clamp(&target, rig.driver->model);
+    target.time_us = time_ms * 1000LL;
+    return target;
+}
+
+static void expect_all_at(const grobo_posture *target)
+{
+    for (int j = 0; j < target->n_joints; j++) {
+        assert_true(fabs(rig_angle_deg(&rig, j) - grobo_deg_from_rad(target->angle_rad[j])) < 0.1);
+    }
+}
+
+/* ---- tests ----------------------------------------------------------------------------------- */
+
+static void every_function_gets_the_context(void **state)
+{
+    (void)state;
+    static const rig_key nod[] = {{0, {{NECK, 10}}}, {500, {{NECK, 0}}}};
+    uint8_t frame[GROBO_RS30X_PACKET_MAX_BYTES];
+    const grobo_robot_config config = {.sense_interval_us = 200000};
+    start(&config);
+    rig_expect(&rig, grobo_robot_check(&rig.robot, rig.now_us), GROBO_OK);
+    rig_power(&rig);
+    grobo_posture target = rig_posture(&rig, NECK, 10, 500);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    rig_clip_init(&clip, nod, 2);
+    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL, rig.now_us), GROBO_OK);
+    rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
+    grobo_register_io io = {R_ELBOW_ID, 42, 2, NULL};
+    rig_expect(&rig, grobo_robot_registers(&rig.robot, &io, rig.now_us), GROBO_OK);
+    int n = grobo_frame_read(rig_wiring, NECK_ID, 42, 2, frame, sizeof frame);
+    rig_expect(&rig, grobo_robot_raw(&rig.robot, frame, (size_t)n, rig.now_us), GROBO_OK);
+    rig_run(&rig, 1000000);
+    rig_expect(&rig, grobo_robot_command(&rig.robot, NECK_ID, GROBO_SERVO_REBOOT, rig.now_us),
+               GROBO_OK);
+    for (size_t i = 0; i < sizeof calls / sizeof calls[0]; i++) {
+        assert_true(calls[i] > 0);
+    }
+}
+
+/* A bus that has no frame for all joints: all parts of an order leave, of whatever kind it is. */
+static void an_order_of_several_frames_is_whole(void **state)
+{
+    (void)state;
+    start(&quiet);
+    rig_power(&rig);
+    for (int j = 0; j < 20; j++) {
+        assert_int_equal(rig_torque(&rig, j), GROBO_TORQUE_ON);
+    }
+    grobo_posture target = all_at(5, 500);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
+    expect_all_at(&target);
+    target = all_at(-5, 500);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    rig_run(&rig, 700000);
+    expect_all_at(&target);
+    rig_expect(&rig, grobo_robot_torque(&rig.robot, rig_all(&rig), GROBO_TORQUE_BRAKE, rig.now_us),
+               GROBO_OK);
+    for (int j = 0; j < 20; j++) {
+        assert_int_equal(rig_torque(&rig, j), GROBO_TORQUE_BRAKE);
+    }
+}
+
+static void a_halt_of_several_frames_stops_all(void **state)
+{
+    (void)state;
+    start(&quiet);
+    rig_power(&rig);
+    grobo_posture target = all_at(5, 500);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
+    target = all_at(-5, 5000);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    rig_run(&rig, 1000000);
+    assert_int_equal(grobo_robot_stop(&rig.robot, false, rig.now_us), GROBO_OK);
+    rig_run(&rig, 400000);
+    double here_deg[20];
+    for (int j = 0; j < 20; j++) {
+        here_deg[j] = rig_angle_deg(&rig, j);
+    }
+    rig_run(&rig, 3000000);
+    for (int j = 0; j < 20; j++) {
+        assert_true(fabs(rig_angle_deg(&rig, j) - here_deg[j]) < 0.01);
+    }
+    target = all_at(-5, 500);
+    assert_true(fabs(rig_angle_deg(&rig, NECK) - grobo_deg_from_rad(target.angle_rad[NECK])) > 3);
+}
+
+/* A target for which the driver has no frame is no move. */
+static void an_order_without_a_frame_is_over(void **state)
+{
+    (void)state;
+    start(&quiet);
+    rig_power(&rig);
+    grobo_posture target = all_at(5, 500);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
+    rig_forget(&rig);
+    has_no_frame = true;
+    target = all_at(-5, 5000);
+    (void)grobo_robot_send(&rig.robot, &target, rig.now_us);
+    rig_run(&rig, 100000);
+    assert_int_equal(rig.n_sent, 0);
+    assert_false(grobo_robot_moving(&rig.robot, rig.now_us));
+    target = rig_posture(&rig, NECK, 10, 5000);
+    (void)grobo_robot_send(&rig.robot, &target, rig.now_us);
+    rig_run(&rig, 100000);
+    assert_false(grobo_robot_moving(&rig.robot, rig.now_us));
+    has_no_frame = false;
+    target = all_at(0, 500);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
+    expect_all_at(&target);
+}
+
+/* Half of a target is no posture: where a later frame of it cannot be made, none leaves. */
+static void an_order_leaves_whole_or_not_at_all(void **state)
+{
+    (void)state;
+    for (unsigned n = 1; n < 12; n++) {
+        start(&quiet);
+        rig_power(&rig);
+        grobo_posture target = all_at(5, 500);
+        rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
+        rig_forget(&rig);
+        frames = n;
+        target = all_at(-5, 5000);
+        int result = grobo_robot_send(&rig.robot, &target, rig.now_us);
+        frames = UINT_MAX;
+        rig_run(&rig, 100000);
+        if (result < 0) {
+            assert_int_equal(result, GROBO_ERR_SPACE);
+            assert_int_equal(rig.n_sent, 0);
+            assert_false(grobo_robot_moving(&rig.robot, rig.now_us));
+        }
+    }
+}
+
+/* What does not take is told again, in frames of few joints: they get through. */
+static void what_is_told_again_is_told_in_small_frames(void **state)
+{
+    (void)state;
+    unsigned of_four = 0;
+    rig_start(&rig, &quiet, NULL);
+    assert_int_equal(grobo_sim_set_fault(&rig.sim, GROBO_SIM_FAULT_SILENT, 0.3), 0);
+    (void)rig_wait(&rig,
+                   grobo_robot_torque(&rig.robot, rig_all(&rig), GROBO_TORQUE_ON, rig.now_us));
+    unsigned whole = 0;
+    for (size_t i = 0; i < rig.n_sent; i++) {
+        const uint8_t *p;
+        (void)rig_packet(&rig.sent[i], &p);
+        if (p[2] == 0 && p[4] == GROBO_RS30X_GOAL) { /* one that means several servos */
+            whole += p[6] > 4;
+            of_four += p[6] == 4;
+        }
+    }
+    assert_int_equal(whole, 1);
+    assert_true(of_four > 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_function_gets_the_context),
+        cmocka_unit_test(an_order_of_several_frames_is_whole),
+        cmocka_unit_test(a_halt_of_several_frames_stops_all),
+        cmocka_unit_test(an_order_without_a_frame_is_over),
+        cmocka_unit_test(an_order_leaves_whole_or_not_at_all),
+        cmocka_unit_test(what_is_told_again_is_told_in_small_frames),
+    };
+    return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
+}

@@ -1,0 +1,187 @@
+/* SPDX-License-Identifier: MIT */
+/* Targets that come before the one before is reached. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <math.h>
+
+#include "rig.h"
+
+enum { TARGETS = 40 };
+
+static grobo_test_rig rig;
+
+/* Goals of the neck in the frames sent since the last rig_forget(). */
+static int goals_sent(void)
+{
+    int n = 0;
+    for (size_t i = 0; i < rig.n_sent; i++) {
+        const uint8_t *p;
+        size_t size = rig_packet(&rig.sent[i], &p);
+        n += size == 12 && p[2] == NECK_ID && p[4] == GROBO_RS30X_GOAL;
+    }
+    return n;
+}
+
+static int move(double angle_deg, int time_ms)
+{
+    grobo_posture target = rig_posture(&rig, NECK, angle_deg, time_ms);
+    return grobo_robot_move(&rig.robot, &target, rig.now_us);
+}
+
+static int retarget(double angle_deg, int time_ms)
+{
+    grobo_posture target = rig_posture(&rig, NECK, angle_deg, time_ms);
+    return grobo_robot_retarget(&rig.robot, &target, rig.now_us);
+}
+
+/* Torque is on, and the slow first move is over. */
+static void begin(const grobo_robot_config *config)
+{
+    rig_start(&rig, config, NULL);
+    rig_power(&rig);
+    rig_expect(&rig, move(1, 100), GROBO_OK);
+    rig_forget(&rig);
+}
+
+static void each_target_of_a_stream_leaves(void **state)
+{
+    (void)state;
+    for (int rate_hz = 10; rate_hz <= 20; rate_hz += 10) {
+        begin(NULL);
+        int number = move(0, 100);
+        assert_true(number > 0);
+        for (int i = 1; i < TARGETS; i++) {
+            rig_run(&rig, 1000000 / rate_hz);
+            assert_int_equal(goals_sent(), i);
+            assert_int_equal(retarget(10 * sin(i / 5.0), 100), number);
+        }
+        rig_expect(&rig, number, GROBO_OK);
+        assert_int_equal(goals_sent(), TARGETS);
+        assert_int_equal(rig_count(&rig, GROBO_EVENT_JOB), 1);
+        assert_true(fabs(rig_angle_deg(&rig, NECK) - 10 * sin((TARGETS - 1) / 5.0)) < 0.2);
+    }
+}
+
+/* The speed is the joint's, and the time is counted from where it is by then. */
+static void a_target_turns_a_joint_round_on_its_way(void **state)
+{
+    (void)state;
+    begin(&quiet);
+    int number = move(30, 1000);
+    rig_run(&rig, 500000);
+    assert_true(fabs(rig_angle_deg(&rig, NECK) - 15) < 5);
+    assert_int_equal(retarget(-30, 10), number);
+    rig_run(&rig, 50000);
+    assert_true(rig_sent_ms(&rig, NECK_ID) > 10);
+    rig_expect(&rig, number, GROBO_OK);
+    assert_true(fabs(rig_angle_deg(&rig, NECK) + 30) < 0.2);
+}
+
+/* While the job waits, reads back, and sends: it goes on with the last target. */
+static void a_target_may_come_at_any_moment(void **state)
+{
+    (void)state;
+    for (int after_us = 40000; after_us < 260000; after_us += 1700) {
+        begin(NULL);
+        int number = move(5, 100);
+        rig_run(&rig, after_us);
+        int again =
+            grobo_robot_job(&rig.robot) == GROBO_JOB_MOVE ? retarget(-5, 100) : move(-5, 100);
+        assert_true(again >= number);
+        rig_expect(&rig, again, GROBO_OK);
+        assert_true(fabs(rig_angle_deg(&rig, NECK) + 5) < 0.2);
+        assert_int_equal(goals_sent(), 2);
+    }
+}
+
+/* The last target is read back, and sent again where it was lost. */
+static void a_lost_target_is_sent_again(void **state)
+{
+    (void)state;
+    begin(&quiet);
+    int number = move(5, 100);
+    rig_run(&rig, 60000);
+    assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_MUTE), 0);
+    assert_int_equal(retarget(-5, 100), number);
+    rig_run(&rig, 60000);
+    assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_IN), 0);
+    rig_expect(&rig, number, GROBO_OK);
+    assert_true(goals_sent() > 2);
+    assert_true(fabs(rig_angle_deg(&rig, NECK) + 5) < 0.2);
+}
+
+/* Joints join, and none is forgotten. */
+static void the_joints_before_go_along(void **state)
+{
+    (void)state;
+    begin(&quiet);
+    int number = move(5, 500);
+    rig_run(&rig, 60000);
+    grobo_posture target = rig_posture(&rig, L_ELBOW, 20, 500);
+    assert_int_equal(grobo_robot_retarget(&rig.robot, &target, rig.now_us), GROBO_ERR_STATE);
+    assert_int_equal(grobo_posture_set_deg(&target, NECK, 8), 0);
+    assert_int_equal(grobo_robot_retarget(&rig.robot, &target, rig.now_us), number);
+    rig_expect(&rig, number, GROBO_OK);
+    assert_true(fabs(rig_angle_deg(&rig, NECK) - 8) < 0.2);
+    assert_true(fabs(rig_angle_deg(&rig, L_ELBOW) - 20) < 0.2);
+}
+
+static void what_must_not_be_redirected_is_not(void **state)
+{
+    (void)state;
+    rig_start(&rig, &quiet, NULL);
+    assert_int_equal(retarget(5, 100), GROBO_ERR_STATE);
+    rig_power(&rig);
+    assert_int_equal(retarget(5, 100), GROBO_ERR_STATE);
+    int number = move(5, 100); /* the slow first one */
+    assert_int_equal(retarget(6, 100), GROBO_ERR_STATE);
+    rig_run(&rig, 60000);
+    assert_int_equal(retarget(6, 100), GROBO_ERR_STATE);
+    rig_expect(&rig, number, GROBO_OK);
+    assert_true(fabs(rig_angle_deg(&rig, NECK) - 5) < 0.2);
+
+    number = move(0, 500);
+    assert_int_equal(retarget(6, 100), GROBO_ERR_STATE); /* the joint is still being read */
+    rig_run(&rig, 60000);
+    assert_int_equal(retarget(-60, 100), GROBO_ERR_LIMIT);
+    grobo_posture bad = rig_posture(&rig, NECK, 0, 100);
+    bad.angle_rad[NECK] = NAN;
+    assert_int_equal(grobo_robot_retarget(&rig.robot, &bad, rig.now_us), GROBO_ERR_NAN);
+    bad.set = 0;
+    assert_int_equal(grobo_robot_retarget(&rig.robot, &bad, rig.now_us), GROBO_ERR_ARG);
+    rig_expect(&rig, number, GROBO_OK);
+    assert_true(fabs(rig_angle_deg(&rig, NECK)) < 0.2);
+
+    /* A joint that is limp does not join. */
+    rig_expect(
+        &rig,
+        grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(L_ELBOW), GROBO_TORQUE_OFF, rig.now_us),
+        GROBO_OK);
+    number = move(5, 500);
+    rig_run(&rig, 60000);
+    grobo_posture both = rig_posture(&rig, NECK, 8, 100);
+    assert_int_equal(grobo_posture_set_deg(&both, L_ELBOW, 0), 0);
+    assert_int_equal(grobo_robot_retarget(&rig.robot, &both, rig.now_us), GROBO_ERR_STATE);
+    (void)grobo_robot_estop(&rig.robot, rig.now_us);
+    assert_int_equal(retarget(6, 100), GROBO_ERR_LATCHED);
+    grobo_robot_link_down(&rig.robot, rig.now_us);
+    assert_int_equal(retarget(6, 100), GROBO_ERR_CLOSED);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(each_target_of_a_stream_leaves),
+        cmocka_unit_test(a_target_turns_a_joint_round_on_its_way),
+        cmocka_unit_test(a_target_may_come_at_any_moment),
+        cmocka_unit_test(a_lost_target_is_sent_again),
+        cmocka_unit_test(the_joints_before_go_along),
+        cmocka_unit_test(what_must_not_be_redirected_is_not),
+    };
+
+    return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
+}

@@ -1,0 +1,597 @@
+/* SPDX-License-Identifier: MIT */
+/* Motions that are stopped, by whatever stops them: softly, ahead, and then it is quiet. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <math.h>
+#include <string.h>
+
+#include <grobo/board.h>
+
+#include "rig.h"
+
+static grobo_test_rig rig;
+static rig_clip clip;
+
+/* From -45 to 45 degrees in 2 s, then a while there. */
+static const rig_key rise[] = {{0, {{NECK, -45}}}, {2000, {{NECK, 45}}}, {4000, {{NECK, 45}}}};
+
+enum { STOP, STOP_AT_ONCE, EXIT, TRIP, PAUSE, WAYS };
+
+static void begin_to_play(grobo_play_mode mode)
+{
+    grobo_play_options options = {.mode = mode, .rate_hz = 30};
+    rig_clip_init(&clip, rise, 3);
+    clip.only = GROBO_JOINT_BIT(NECK);
+    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options, rig.now_us), GROBO_OK);
+    rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
+}
+
+static void stop_by(int way)
+{
+    switch (way) {
+    case STOP:
+    case STOP_AT_ONCE:
+        assert_int_equal(grobo_robot_stop(&rig.robot, way == STOP_AT_ONCE, rig.now_us), GROBO_OK);
+        break;
+    case EXIT:
+        assert_true(grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD, rig.now_us) > 0);
+        break;
+    case TRIP:
+        assert_int_equal(grobo_sim_set_temperature(&rig.sim, R_KNEE, 75), 0);
+        rig_expect(
+            &rig,
+            grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(R_KNEE), GROBO_SENSE_FULL, rig.now_us),
+            GROBO_OK);
+        break;
+    default:
+        assert_int_equal(grobo_robot_pause(&rig.robot, rig.now_us), GROBO_OK);
+        break;
+    }
+}
+
+static void whatever_stops_a_motion_throws_no_joint_back(void **state)
+{
+    (void)state;
+    static const grobo_play_mode modes[] = {GROBO_PLAY_KEY, GROBO_PLAY_RATE};
+    for (int i = 0; i < 2 * WAYS; i++) {
+        int way = i / 2;
+        rig_start_at(&rig, -45, &quiet);
+        begin_to_play(modes[i % 2]);
+        rig_run(&rig, 1000000);
+        stop_by(way);
+        double asked_deg = rig_angle_deg(&rig, NECK);
+        double most_deg = asked_deg;
+        for (int ms = 0; ms < 400; ms++) {
+            rig_run(&rig, 1000);
+            double deg = rig_angle_deg(&rig, NECK);
+            assert_true(deg >= most_deg - (way == STOP_AT_ONCE ? 2 : 0.3));
+            most_deg = fmax(deg, most_deg);
+        }
+        /* Half of the 200 ms that it takes, behind a frame that is a period old. */
+        assert_true(most_deg - asked_deg < 45 * 0.15);
+        double here_deg = rig_angle_deg(&rig, NECK);
+        assert_true(here_deg > -5 && here_deg < 8);
+        rig_run(&rig, 1000000);
+        assert_true(fabs(rig_angle_deg(&rig, NECK) - here_deg) < 0.01);
+        grobo_sequencer_state now = grobo_robot_play_state(&rig.robot);
+        assert_int_equal(now, way == PAUSE ? GROBO_SEQUENCER_PAUSED : GROBO_SEQUENCER_IDLE);
+    }
+}
+
+/* What a stop may add to the way of a joint: half of what it does in the 200 ms of a smooth one,
+ * and what it does while the frame is on its way. */
+static double stop_way_deg(int way)
+{
+    return 375 * ((way == STOP_AT_ONCE ? 0.005 : 0.1) + 0.04);
+}
+
+/* The clip is through with a way that takes the joint half a second. */
+static void a_stop_begins_where_a_joint_is_that_is_behind(void **state)
+{
+    (void)state;
+    static const rig_key leap[] = {
+        {0, {{SHOULDER, 100}}}, {100, {{SHOULDER, -100}}}, {4000, {{SHOULDER, -100}}}};
+    const grobo_play_options options = {.mode = GROBO_PLAY_RATE, .rate_hz = 30};
+    for (int way = 0; way < WAYS; way++) {
+        rig_start_at(&rig, 0, &quiet);
+        rig_clip_init(&clip, leap, 3);
+        rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options, rig.now_us), GROBO_OK);
+        rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
+        rig_run(&rig, 200000);
+        stop_by(way);
+        double asked_deg = rig_angle_deg(&rig, SHOULDER);
+        assert_true(asked_deg > 0);
+        rig_run(&rig, 1500000);
+        assert_true(fabs(rig_angle_deg(&rig, SHOULDER) - asked_deg) < stop_way_deg(way));
+    }
+}
+
+/* Asks for a raw goal of one joint. */
+static int raw_goal(int joint, int16_t ddeg, uint16_t time_cs)
+{
+    uint8_t packet[GROBO_RS30X_PACKET_MAX_BYTES];
+    uint8_t frame[GROBO_FRAME_MAX_BYTES];
+    const grobo_rs30x_goal goal = {rig.driver->model->joints[joint].motor, ddeg, time_cs};
+    int n = grobo_rs30x_write_goal(&goal, packet, sizeof packet);
+    n = grobo_frame_wrap(rig.driver->wiring, packet, (size_t)n, frame, sizeof frame);
+    return grobo_robot_raw(&rig.robot, frame, (size_t)n, rig.now_us);
+}
+
+/* The clip has the neck at 30 degrees by then. */
+static void a_stop_leaves_a_joint_where_a_raw_goal_sent_it(void **state)
+{
+    (void)state;
+    for (int way = 0; way < WAYS; way++) {
+        rig_start_at(&rig, -45, &quiet);
+        begin_to_play(GROBO_PLAY_KEY);
+        rig_run(&rig, 500000);
+        rig_expect(&rig, raw_goal(NECK, -450, 100), GROBO_OK);
+        rig_run(&rig, 1100000);
+        assert_true(fabs(rig_angle_deg(&rig, NECK) + 45) < 0.1);
+        stop_by(way);
+        rig_run(&rig, 1500000);
+        assert_true(fabs(rig_angle_deg(&rig, NECK) + 45) < 0.5);
+    }
+}
+
+static int goals_sent(void)
+{
+    int goals = 0;
+    for (size_t i = 0; i < rig.n_sent; i++) {
+        const uint8_t *packet;
+        goals += rig_packet(&rig.sent[i], &packet) > 8 && packet[4] == GROBO_RS30X_GOAL;
+    }
+    return goals;
+}
+
+/* A raw goal moved the neck before the motion did: it is the motion's by now, and rests with it. */
+static void a_stop_is_smooth_where_a_raw_goal_was_before(void **state)
+{
+    (void)state;
+    rig_start_at(&rig, -45, &quiet);
+    rig_expect(&rig, raw_goal(NECK, -440, 20), GROBO_OK);
+    begin_to_play(GROBO_PLAY_KEY);
+    rig_run(&rig, 1000000);
+    rig_forget(&rig);
+    stop_by(STOP);
+    rig_run(&rig, 1000000);
+    assert_int_equal(goals_sent(), 1);
+}
+
+/* While the end of a motion is read back, joint by joint, and repeated where it was lost. */
+static void a_stop_after_a_motion_is_not_undone_by_its_end(void **state)
+{
+    (void)state;
+    bool settles = true;
+    for (int ms = 1; settles; ms += 8) {
+        rig_start_at(&rig, -45, &quiet);
+        begin_to_play(GROBO_PLAY_KEY);
+        rig_run(&rig, 3800000);
+        rig_expect(&rig, raw_goal(SHOULDER, 1200, 250), GROBO_OK);
+        rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
+        rig_run(&rig, ms * 1000);
+        settles = grobo_robot_settling(&rig.robot);
+        assert_true(settles || ms > 50);
+        assert_int_equal(grobo_robot_stop(&rig.robot, true, rig.now_us), GROBO_OK);
+        double asked_deg = rig_angle_deg(&rig, SHOULDER);
+        rig_run(&rig, 3000000);
+        assert_true(fabs(rig_angle_deg(&rig, SHOULDER) - asked_deg) < 5);
+    }
+}
+
+/* The one frame of a target is lost, and the joint is read to stand still where it was. */
+static void a_stop_moves_no_joint_that_lost_its_frame(void **state)
+{
+    (void)state;
+    const grobo_robot_config reading = {.sense_interval_us = 200000};
+    rig_start_at(&rig, -45, &reading);
+    grobo_posture target = rig_posture(&rig, NECK, 45, 3000);
+    assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_MUTE), 0);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    rig_run(&rig, 15000);
+    assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_IN), 0);
+    rig_run(&rig, 1500000);
+    assert_int_equal(grobo_robot_stop(&rig.robot, true, rig.now_us), GROBO_OK);
+    rig_run(&rig, 1000000);
+    assert_true(fabs(rig_angle_deg(&rig, NECK) + 45) < 0.1);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    rig_run(&rig, 3500000);
+    assert_true(fabs(rig_angle_deg(&rig, NECK) - 45) < 0.1);
+}
+
+/* It creeps on, where an earlier target has sent it: the stop is for that way. */
+static void a_stop_ends_the_way_of_a_joint_that_lost_its_frame(void **state)
+{
+    (void)state;
+    for (int angle_too = 0; angle_too < 2; angle_too++) {
+        rig_start_at(&rig, -45, &quiet);
+        grobo_posture target = rig_posture(&rig, NECK, 45, 13000);
+        assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+        rig_run(&rig, 500000);
+        target.time_us = 3000000;
+        assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_MUTE), 0);
+        assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+        rig_run(&rig, 15000);
+        assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_IN), 0);
+        rig_run(&rig, 1000000);
+        for (int i = 0; i <= angle_too; i++) { /* the angle alone tells nothing new */
+            grobo_sense_kind kind = i == 0 ? GROBO_SENSE_ALL : GROBO_SENSE_POSITION;
+            rig_expect(&rig, grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(NECK), kind, rig.now_us),
+                       GROBO_OK);
+        }
+        double asked_deg = rig_angle_deg(&rig, NECK);
+        assert_int_equal(grobo_robot_stop(&rig.robot, true, rig.now_us), GROBO_OK);
+        rig_run(&rig, 3000000);
+        assert_true(fabs(rig_angle_deg(&rig, NECK) - asked_deg) < 2);
+    }
+}
+
+/* A servo that writes its flash or restarts hears nothing for up to two seconds. */
+static void a_stop_reaches_a_servo_that_was_deaf(void **state)
+{
+    (void)state;
+    for (int exits = 0; exits < 2; exits++) {
+        rig_start_at(&rig, 0, &quiet);
+        assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_MUTE), 0);
+        int number = exits ? grobo_robot_exit(&rig.robot, GROBO_EXIT_OFF, rig.now_us)
+                           : grobo_robot_estop(&rig.robot, rig.now_us);
+        rig_run(&rig, 2200000);
+        assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_IN), 0);
+        rig_expect(&rig, number, GROBO_OK);
+        assert_int_not_equal(rig_torque(&rig, NECK), GROBO_TORQUE_ON);
+    }
+}
+
+/* A robot that moves is let go when it stands: else its joints would fly on. */
+static void leaving_lets_go_when_the_joints_stand(void **state)
+{
+    (void)state;
+    for (int by_play = 0; by_play < 2; by_play++) {
+        for (int ms = 300; ms < 1500; ms += 170) {
+            rig_start_at(&rig, -45, &quiet);
+            if (by_play) {
+                begin_to_play(GROBO_PLAY_KEY);
+            } else {
+                grobo_posture target = rig_posture(&rig, NECK, 45, 2000);
+                assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+            }
+            rig_run(&rig, ms * 1000);
+            int number = grobo_robot_exit(&rig.robot, GROBO_EXIT_OFF, rig.now_us);
+            double before_deg = 0;
+            while (rig_torque(&rig, NECK) == GROBO_TORQUE_ON) {
+                before_deg = rig_angle_deg(&rig, NECK);
+                rig_run(&rig, 2000);
+            }
+            assert_true(fabs(rig_angle_deg(&rig, NECK) - before_deg) < 0.01);
+            rig_expect(&rig, number, GROBO_OK);
+        }
+    }
+}
+
+static void what_is_stopped_says_that_it_was_canceled(void **state)
+{
+    (void)state;
+    rig_start_at(&rig, 0, &quiet);
+    grobo_posture target = rig_posture(&rig, NECK, 40, 2000);
+    for (int at_once = 0; at_once < 2; at_once++) {
+        int number = grobo_robot_move(&rig.robot, &target, rig.now_us);
+        rig_run(&rig, 800000);
+        assert_int_equal(grobo_robot_stop(&rig.robot, at_once, rig.now_us), GROBO_OK);
+        rig_expect(&rig, number, GROBO_ERR_CANCELED);
+        rig_run(&rig, 500000);
+        rig_clip_init(&clip, rise, 3);
+        number = grobo_robot_play(&rig.robot, &clip.clip, NULL, rig.now_us);
+        rig_run(&rig, 50000); /* it still reads the joints */
+        assert_int_equal(grobo_robot_stop(&rig.robot, at_once, rig.now_us), GROBO_OK);
+        rig_expect(&rig, number, GROBO_ERR_CANCELED);
+        rig_run(&rig, 500000);
+        assert_int_equal(grobo_robot_stop(&rig.robot, at_once, rig.now_us), GROBO_ERR_STATE);
+        assert_int_equal(grobo_robot_cancel(&rig.robot, rig.now_us), GROBO_ERR_STATE);
+    }
+}
+
+/* The stop itself counts as asked for when it was asked for, between the engine's own times. */
+static void a_stop_is_dated_by_its_call(void **state)
+{
+    (void)state;
+    rig_start_at(&rig, 0, &quiet);
+    rig_run(&rig, 500000);
+    rig.now_us += 3210;
+    assert_true(grobo_robot_estop(&rig.robot, rig.now_us) > 0);
+    grobo_trip_info trip;
+    grobo_robot_tripped(&rig.robot, &trip);
+    assert_true(trip.at_us == rig.now_us);
+    assert_int_equal(trip.joint, -1);
+    assert_true(trip.value == 0);
+    assert_int_equal(grobo_robot_get_counters(&rig.robot)->trips, 1);
+}
+
+/* Whoever asks for it need not come back: the frame is there. */
+static void the_frame_that_stops_is_there_at_once(void **state)
+{
+    (void)state;
+    uint8_t buf[GROBO_RS30X_PACKET_MAX_BYTES];
+    rig_start_at(&rig, 0, &quiet);
+    grobo_posture target = rig_posture(&rig, NECK, 40, 2000);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    rig_run(&rig, 500000);
+    assert_true(grobo_robot_estop(&rig.robot, rig.now_us) > 0);
+    rig_frame first = {0};
+    int n = grobo_robot_tx(&rig.robot, buf, sizeof buf, rig.now_us);
+    assert_true(n > 0);
+    first.size = (uint8_t)n;
+    memcpy(first.bytes, buf, (size_t)n);
+    const uint8_t *packet;
+    (void)rig_packet(&first, &packet);
+    assert_int_equal(packet[4], GROBO_RS30X_TORQUE);
+}
+
+/* A servo that could not go where it was sent is where it was read, not at its goal. */
+static void a_move_begins_where_the_joint_is(void **state)
+{
+    (void)state;
+    rig_start_at(&rig, 0, &quiet);
+    assert_int_equal(grobo_sim_set_blocked(&rig.sim, NECK, true), 0);
+    grobo_posture target = rig_posture(&rig, NECK, 40, 500);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    rig_run(&rig, 2000000);
+    assert_true(fabs(rig_angle_deg(&rig, NECK)) < 1);
+    assert_int_equal(grobo_sim_set_blocked(&rig.sim, NECK, false), 0);
+    rig_forget(&rig);
+    target = rig_posture(&rig, NECK, 40, 10);
+    (void)rig_wait(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us));
+    double asked_deg = fabs(rig_angle_deg(&rig, NECK));
+    assert_true(asked_deg > 39);
+    assert_in_range(rig_sent_ms(&rig, NECK_ID), 100, 120); /* 40 deg at 375 deg/s */
+}
+
+/* Leaving is bounded from when it was asked for, too. */
+static void leaving_is_bounded_by_its_call(void **state)
+{
+    (void)state;
+    grobo_robot_config config = quiet;
+    config.exit_bound_us = 100000;
+    rig_start_at(&rig, 0, &config);
+    for (int j = 0; j < 20; j++) {
+        assert_int_equal(grobo_sim_set_cable(&rig.sim, j, GROBO_SIM_CABLE_MUTE), 0);
+    }
+    rig_run(&rig, 500000);
+    int64_t late_us = rig.now_us;
+    rig.now_us += 70000;
+    int number = grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD, rig.now_us);
+    const grobo_event_job *job = rig_expect(&rig, number, GROBO_ERR_TIMEOUT);
+    assert_int_equal(job->number, number);
+    assert_in_range(rig_last(&rig, GROBO_EVENT_JOB)->now_us - late_us, 170000, 170000);
+}
+
+/* Another program has stopped the robot while this one had it sit down: it does not, whatever was
+ * on the way to be sent. */
+static void nobody_sits_down_after_an_emergency_stop(void **state)
+{
+    (void)state;
+    bool sits = false;
+    for (int ms = 0; !sits; ms += 2) {
+        rig_start_at(&rig, -30, &quiet);
+        int number = grobo_robot_exit(&rig.robot, GROBO_EXIT_SIT, rig.now_us);
+        rig_run(&rig, ms * 1000);
+        sits = goals_sent() > 0;
+        assert_int_equal(grobo_robot_latch(&rig.robot, rig.now_us), GROBO_OK);
+        rig_forget(&rig);
+        const grobo_event_job *job = rig_wait(&rig, number);
+        assert_true(sits || job->result == GROBO_ERR_LATCHED);
+        assert_int_equal(goals_sent(), 0);
+    }
+}
+
+static bool broken;
+static int (*sound_key)(void *ctx, size_t i, grobo_posture *posture, int64_t *at_us);
+
+static int key_that_breaks(void *ctx, size_t i, grobo_posture *posture, int64_t *at_us)
+{
+    return broken ? GROBO_ERR_EMPTY : sound_key(ctx, i, posture, at_us);
+}
+
+/* The key that was sent last may be seconds away: nobody would stop it any more. */
+static void a_clip_that_breaks_under_a_command_stops_the_robot(void **state)
+{
+    (void)state;
+    rig_start_at(&rig, -45, &quiet);
+    rig_clip_init(&clip, rise, 3);
+    clip.only = GROBO_JOINT_BIT(NECK);
+    sound_key = clip.clip.key;
+    clip.clip.key = key_that_breaks;
+    broken = false;
+    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL, rig.now_us), GROBO_OK);
+    rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
+    rig_run(&rig, 500000);
+    broken = true;
+    assert_int_equal(grobo_robot_seek(&rig.robot, 100000, rig.now_us), GROBO_ERR_EMPTY);
+    assert_int_equal(grobo_robot_play_state(&rig.robot), GROBO_SEQUENCER_FAILED);
+    rig_run(&rig, 200000);
+    double here_deg = rig_angle_deg(&rig, NECK);
+    assert_true(here_deg < -15);
+    rig_run(&rig, 2000000);
+    assert_true(fabs(rig_angle_deg(&rig, NECK) - here_deg) < 0.01);
+    /* A command that finds nothing to play stops nothing. */
+    grobo_posture target = rig_posture(&rig, NECK, 30, 1000);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    rig_run(&rig, 300000);
+    assert_int_equal(grobo_robot_seek(&rig.robot, 100000, rig.now_us), GROBO_ERR_STATE);
+    assert_int_equal(grobo_robot_pause(&rig.robot, rig.now_us), GROBO_ERR_STATE);
+    assert_int_equal(grobo_robot_resume(&rig.robot, rig.now_us), GROBO_ERR_STATE);
+    assert_int_equal(grobo_robot_speed(&rig.robot, 50, rig.now_us), GROBO_ERR_STATE);
+    rig_run(&rig, 2000000);
+    assert_true(fabs(rig_angle_deg(&rig, NECK) - 30) < 0.1);
+}
+
+static int (*sound_sample)(void *ctx, int64_t t_us, grobo_posture *posture);
+
+static int sample_that_breaks(void *ctx, int64_t t_us, grobo_posture *posture)
+{
+    return broken ? GROBO_ERR_EMPTY : sound_sample(ctx, t_us, posture);
+}
+
+/* More frames than the line carries: one of them waits whenever it is, and never leaves. */
+static void nothing_of_a_broken_clip_leaves_any_more(void **state)
+{
+    (void)state;
+    const grobo_play_options options = {.mode = GROBO_PLAY_RATE, .rate_hz = 150, .unwatched = true};
+    for (int ms = 0; ms < 40; ms++) {
+        rig_start_at(&rig, -45, &quiet);
+        rig_clip_init(&clip, rise, 3);
+        sound_sample = clip.clip.sample;
+        clip.clip.sample = sample_that_breaks;
+        broken = false;
+        rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options, rig.now_us), GROBO_OK);
+        rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
+        rig_run(&rig, 300000 + ms * 1000);
+        broken = true;
+        rig_wait_play(&rig, GROBO_SEQUENCER_FAILED);
+        int64_t over_us = rig_last(&rig, GROBO_EVENT_PLAY)->now_us;
+        rig_run(&rig, 500000);
+        for (size_t i = 0; i < rig.n_sent; i++) {
+            const uint8_t *p;
+            size_t n = rig_packet(&rig.sent[i], &p);
+            bool moves = n > 12 && p[2] == 0 && p[4] == GROBO_RS30X_GOAL;
+            int time_ms = moves ? (p[10] | p[11] << 8) * 10 : 0;
+            assert_false(moves && rig.sent[i].at_us > over_us && time_ms < 100);
+        }
+    }
+}
+
+/* A raw frame for all joints does not fit between those of the motion, readings do: it waits, and
+ * ends with the reading that trips, not when its turn would come. */
+static void a_trip_ends_a_raw_job_that_waits_for_the_end_of_a_motion(void **state)
+{
+    (void)state;
+    const bool by_board = rig_wiring == GROBO_WIRING_BOARD;
+    const grobo_robot_config config = {.sense_interval_us = 100000};
+    const grobo_play_options options = {
+        .mode = GROBO_PLAY_RATE, .rate_hz = by_board ? 33 : 66, .repeat = 100, .unwatched = true};
+    uint8_t frame[GROBO_RS30X_PACKET_MAX_BYTES];
+    grobo_rs30x_goal goals[20];
+    rig_start_at(&rig, -45, &config);
+    rig_clip_init(&clip, rise, 3);
+    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options, rig.now_us), GROBO_OK);
+    rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
+    rig_run(&rig, 500000);
+    for (int j = 0; j < 20; j++) {
+        goals[j] = (grobo_rs30x_goal){(uint8_t)(j + 1), 0, 500};
+        int joint = grobo_model_joint_of_motor(rig.driver->model, j + 1);
+        goals[j].pos_ddeg = (int16_t)lround(rig_angle_deg(&rig, joint) * 10);
+    }
+    int n = grobo_frame_goals(rig_wiring, goals, 20, frame, sizeof frame);
+    assert_true(n > 0);
+    int number = grobo_robot_raw(&rig.robot, frame, (size_t)n, rig.now_us);
+    assert_true(number > 0);
+    rig_run(&rig, 300000);
+    assert_int_equal(grobo_robot_job(&rig.robot), GROBO_JOB_RAW);
+    assert_int_equal(grobo_sim_set_temperature(&rig.sim, R_KNEE, 75), 0);
+    rig_expect(&rig, number, GROBO_ERR_LATCHED);
+    assert_non_null(rig_last(&rig, GROBO_EVENT_TRIP));
+    assert_true(rig_last(&rig, GROBO_EVENT_JOB)->now_us ==
+                rig_last(&rig, GROBO_EVENT_TRIP)->now_us);
+}
+
+/* Its first attempt was lost, and before the second the joint was sent elsewhere: that stands. */
+static void a_raw_goal_is_not_tried_again_behind_a_later_target(void **state)
+{
+    (void)state;
+    for (int later = 0; later < 2; later++) {
+        uint8_t packet[32];
+        uint8_t frame[GROBO_RS30X_PACKET_MAX_BYTES];
+        const uint8_t data[4] = {200, 0, 100, 0}; /* 20 degrees in 1 s */
+        const grobo_rs30x_packet goal = {
+            GROBO_RS30X_SHORT, NECK_ID, GROBO_RS30X_WANT_ACK, GROBO_RS30X_GOAL, 4, 1, data, 4};
+        rig_start_at(&rig, 0, &quiet);
+        int n = grobo_rs30x_build(&goal, packet, sizeof packet);
+        n = grobo_frame_wrap(rig_wiring, packet, (size_t)n, frame, sizeof frame);
+        assert_true(n > 0);
+        assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_MUTE), 0);
+        int number = grobo_robot_raw(&rig.robot, frame, (size_t)n, rig.now_us);
+        assert_true(number > 0);
+        rig_run(&rig, 5000); /* it is out, and nobody has it */
+        assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_IN), 0);
+        if (later) {
+            grobo_posture target = rig_posture(&rig, NECK, -10, 1000);
+            assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+        }
+        rig_expect(&rig, number, later ? GROBO_ERR_STALE : GROBO_OK);
+        rig_run(&rig, 2000000);
+        assert_true(fabs(rig_angle_deg(&rig, NECK) - (later ? -10 : 20)) < 0.1);
+    }
+}
+
+/* ---- torque ---------------------------------------------------------------------------------- */
+
+/* The host takes what came and lets time pass, but writes nothing. */
+static void take_without_writing(int64_t us)
+{
+    uint8_t buf[64];
+    size_t n;
+    for (int64_t until_us = rig.now_us + us; rig.now_us < until_us; rig.now_us += 100) {
+        while ((n = grobo_sim_tx(&rig.sim, buf, sizeof buf, rig.now_us)) > 0) {
+            witness_arrived(&rig.witness, buf, n, rig.now_us);
+            grobo_robot_rx(&rig.robot, buf, n, rig.now_us);
+        }
+        grobo_robot_step(&rig.robot, rig.now_us);
+    }
+}
+
+/* A host stalls with the frame in its hands that switches torque on, and somebody turns the joint:
+ * the frame is out of date. The rig fails where torque comes on away from the goal. */
+static void torque_that_waited_long_comes_on_for_nobody(void **state)
+{
+    (void)state;
+    int overtaken = 0;
+    for (int ms = 1; ms < 400; ms += 3) {
+        const grobo_sim_config jumps = {.jump_on_torque = true};
+        rig_start(&rig, &quiet, &jumps);
+        int number = grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(NECK) | GROBO_JOINT_BIT(CHEST),
+                                        GROBO_TORQUE_ON, rig.now_us);
+        assert_true(number > 0);
+        rig_run(&rig, ms * 100);
+        bool on_its_way = rig_torque(&rig, NECK) != GROBO_TORQUE_ON;
+        take_without_writing(10000);
+        if (on_its_way && rig_torque(&rig, NECK) != GROBO_TORQUE_ON) {
+            assert_int_equal(grobo_sim_set_angle(&rig.sim, NECK, 40000, 0), 0);
+            overtaken++;
+        }
+        take_without_writing(2500000);
+        (void)rig_wait(&rig, number);
+    }
+    assert_true(overtaken > 0);
+}
+
+/* ---- targets --------------------------------------------------------------------------------- */
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(whatever_stops_a_motion_throws_no_joint_back),
+        cmocka_unit_test(a_stop_begins_where_a_joint_is_that_is_behind),
+        cmocka_unit_test(a_stop_leaves_a_joint_where_a_raw_goal_sent_it),
+        cmocka_unit_test(a_stop_is_smooth_where_a_raw_goal_was_before),
+        cmocka_unit_test(a_stop_after_a_motion_is_not_undone_by_its_end),
+        cmocka_unit_test(a_stop_moves_no_joint_that_lost_its_frame),
+        cmocka_unit_test(a_stop_ends_the_way_of_a_joint_that_lost_its_frame),
+        cmocka_unit_test(a_stop_reaches_a_servo_that_was_deaf),
+        cmocka_unit_test(leaving_lets_go_when_the_joints_stand),
+        cmocka_unit_test(what_is_stopped_says_that_it_was_canceled),
+        cmocka_unit_test(a_stop_is_dated_by_its_call),
+        cmocka_unit_test(the_frame_that_stops_is_there_at_once),
+        cmocka_unit_test(a_move_begins_where_the_joint_is),
+        cmocka_unit_test(leaving_is_bounded_by_its_call),
+        cmocka_unit_test(nobody_sits_down_after_an_emergency_stop),
+        cmocka_unit_test(a_clip_that_breaks_under_a_command_stops_the_robot),
+        cmocka_unit_test(nothing_of_a_broken_clip_leaves_any_more),
+        cmocka_unit_test(a_trip_ends_a_raw_job_that_waits_for_the_end_of_a_motion),
+        cmocka_unit_test(a_raw_goal_is_not_tried_again_behind_a_later_target),
+        cmocka_unit_test(torque_that_waited_long_comes_on_for_nobody),
+    };
+    return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
+}

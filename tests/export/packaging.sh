@@ -1,0 +1,128 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# What a packager does: a tarball, the libraries alone, folders with blanks in their names, an
+# installation that compiles nothing again, and a tree that is moved after it.
+set -u
+
+. tests/support/tap.sh
+here=$(pwd)
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"
+    find build -maxdepth 1 -name ".link-*" -lname "$work*" -delete 2>/dev/null' EXIT
+built=${BUILD:-build}
+unset BUILD
+
+# make in a folder, without what the make above has set.
+make_in() {
+    (
+        unset MAKEFLAGS MAKELEVEL MFLAGS
+        cd "$1" && shift && make --no-print-directory "$@"
+    )
+}
+
+# Only the development files of libevent and libyaml are on this machine.
+cat >"$work/pkg-config" <<'S'
+#!/bin/sh
+case "$*" in *jansson* | *cmocka* | *libedit* | *ncurses*) exit 1 ;; esac
+exec pkg-config "$@"
+S
+chmod +x "$work/pkg-config"
+
+# prints TEXT COMMAND...: and its exit status is 0.
+prints() {
+    text=$1
+    shift
+    "$@" >"$work/out" 2>&1 && grep -Fq -- "$text" "$work/out" || { cat "$work/out"; return 1; }
+}
+
+tarball() {
+    if [ -e .git ]; then
+        make_in "$here" dist BUILD="$work/dist" && tar -xzf "$work"/dist/*.tar.gz -C "$work"
+    else
+        # This is a tarball, unpacked.
+        mkdir "$work/libgrobo-0" && tar -cf - --exclude=./build* . | tar -xf - -C "$work/libgrobo-0"
+    fi
+    source=$(echo "$work"/libgrobo-*)
+    [ -e "$source/Makefile" ]
+}
+
+dist_needs_git() {
+    make_in "$source" dist BUILD="$work/again" >"$work/out" 2>&1 && return 1
+    cat "$work/out"
+    [ "$(grep -c '^dist: not a git checkout' "$work/out")" -eq 1 ] &&
+        [ -z "$(find "$work/again" -name '*.tar*' 2>/dev/null)" ]
+}
+
+no_werror_in_a_tarball() {
+    make_in "$source" -n lib BUILD="$work/n" >"$work/out" && ! grep -q -e -Werror "$work/out" &&
+        { [ ! -e .git ] || make_in "$here" -n lib BUILD="$work/n" | grep -q -e -Werror; }
+}
+
+# What pkg-config is asked when each recipe is expanded; libyaml is needed.
+needs_no_more() {
+    make_in "$source" -n lib PKG_CONFIG="$work/pkg-config" BUILD="$work/n" >"$work/out" 2>&1 ||
+        { cat "$work/out"; return 1; }
+    ! make_in "$source" -n lib PKG_CONFIG=false BUILD="$work/n" >"$work/out" 2>&1
+}
+
+# The objects of this build in another folder, as if they had been built there with other flags.
+as_built_with() {
+    mkdir "$work/plain" && cp -R "$built/src" "$built/ports" "$work/plain" &&
+        make_in "$here" "$work/plain/.flags" BUILD="$work/plain" CC="${CC:-gcc}" CFLAGS="$1" &&
+        find "$work/plain" -name '*.o' -exec touch {} + &&
+        touch -d 2001-01-01 "$work/plain/.flags" && mv "$work/plain" "$work/b u"
+}
+
+# The guard's program is below PREFIX: that file alone is compiled for it, with the same flags.
+installs_what_was_built() {
+    as_built_with "-O0 -DREMEMBERED='\"a b\"'" || return 1
+    make_in "$here" install-lib V=1 BUILD="$work/b u" DESTDIR="$work/d e" PREFIX=/opt/grobo \
+        >"$work/out" 2>&1 || { cat "$work/out"; return 1; }
+    grep -o -e '-DREMEMBERED.* -c -o .*' "$work/out" | head -n 3
+    [ "$(grep -c -e "-DREMEMBERED='\"a b\"'.* -c -o .*guard\.o" "$work/out")" -eq 1 ] &&
+        [ "$(grep -c -e ' -c -o ' "$work/out")" -eq 1 ] || return 1
+    ls "$work/b u/libgrobo.a" "$work/d e/opt/grobo/lib/libgrobo.so.0" \
+        "$work/d e/opt/grobo/include/grobo/grobo.h"
+}
+
+compiles_again_for_other_flags() {
+    make_in "$here" -n install-lib BUILD="$work/b u" CFLAGS=-O1 PREFIX=/opt/grobo |
+        grep -q -e ' -O1 .*error\.c'
+}
+
+moved() {
+    mkdir "$work/moved" && mv "$work/d e/opt/grobo" "$work/moved/tree" || return 1
+    PKG_CONFIG_PATH=$work/moved/tree/lib/pkgconfig
+    export PKG_CONFIG_PATH
+    case $(pkg-config --cflags --libs grobo) in
+    *"$work"*"$work"*) ;;
+    *) return 1 ;;
+    esac
+    # shellcheck disable=SC2046
+    ${CC:-gcc} -o "$work/program" tests/export/consumer.c $(pkg-config --cflags --libs grobo) &&
+        LD_LIBRARY_PATH=$work/moved/tree/lib "$work/program"
+}
+
+uninstalls() {
+    for target in install-lib uninstall; do
+        make_in "$here" $target BUILD="$work/b u" DESTDIR="$work/d e" PREFIX=/opt/grobo || return 1
+    done
+    left=$(find "$work/d e" -type f -o -type l)
+    [ -z "$left" ] || { echo "$left"; return 1; }
+}
+
+if [ -n "${CROSS:-}${EMULATOR:-}" ]; then
+    skip 'packaging' 'only for this machine'
+    done_testing
+    exit 0
+fi
+check 'a tarball, unpacked' tarball
+source=$(echo "$work"/libgrobo-*)
+check 'a tarball of a tarball: one line, and no file' dist_needs_git
+check 'a warning is an error in a checkout only' no_werror_in_a_tarball
+check 'the libraries alone need libevent and libyaml' needs_no_more
+check 'blanks in BUILD and DESTDIR; nothing is compiled again' installs_what_was_built
+check 'grobo.pc: the tree may be moved' moved
+check 'uninstalled there, no file is left' uninstalls
+check 'other flags, when they are given, are used' compiles_again_for_other_flags
+done_testing

@@ -1,0 +1,589 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * A guard stops the robot of a program that dies. The test serves a simulated robot; this same
+ * executable is the program and its guard, see guarded.h.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+#include <event2/event.h>
+
+#include <grobo/guard.h>
+#include <grobo/session.h>
+
+#include "folder.h"
+#include "guarded.h"
+#include "leash.h"
+#include "loop.h"
+
+/* How much longer than it says a busy machine may take. */
+#define GRACE_US INT64_C(700000)
+
+static const char *self;
+
+static struct event_base *base;
+static grobo_sim_server *server;
+static pid_t program;
+static leash its_leash; /* with a child that it leaves */
+static bool program_ended;
+static int64_t ended_us;
+static FILE *from_program;
+static struct event *heard;
+static char said[1024];   /* its words, a blank before and after each */
+static size_t understood; /* of them, by await_word() */
+static int guard_pid;
+static size_t bytes_sent; /* to the robot */
+static char device[256];  /* of the robot */
+
+static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes, size_t size,
+                   void *ctx)
+{
+    (void)now_us;
+    (void)bytes;
+    (void)ctx;
+    bytes_sent += direction == GROBO_DIR_RX ? size : 0;
+}
+
+static void on_word(evutil_socket_t fd, short what, void *ctx)
+{
+    char word[64];
+    int pid;
+
+    (void)fd;
+    (void)what;
+    (void)ctx;
+    if (fscanf(from_program, "%63s %d", word, &pid) == 2) {
+        size_t length = strlen(said);
+
+        assert_true(snprintf(said + length, sizeof said - length, "%s ", word) <
+                    (int)(sizeof said - length));
+        guard_pid = pid != 0 ? pid : guard_pid;
+    } else {
+        event_del(heard);
+    }
+}
+
+static void serve(bool tcp)
+{
+    grobo_sim_config sim = {.baud_bps = GUARDED_BPS};
+    grobo_sim_server_config config = {
+        .sim = &sim, .no_pty = tcp, .tcp = tcp ? "tcp:127.0.0.1:0" : NULL, .on_tap = on_tap};
+
+    snprintf(device, sizeof device, "%s", in_folder("robot"));
+    config.link = tcp ? NULL : device;
+    server = loop_serve(base, config);
+    if (tcp) {
+        snprintf(device, sizeof device, "%s", grobo_sim_server_device(server));
+    }
+}
+
+static void start(const char *how)
+{
+    int ends[2];
+
+    assert_int_equal(pipe(ends), 0);
+    program = fork();
+    assert_true(program >= 0);
+    if (program == 0) {
+        (void)setpgid(0, 0);
+        (void)dup2(ends[1], STDOUT_FILENO);
+        (void)close(ends[0]);
+        (void)close(ends[1]);
+        execl("/bin/sh", "sh", "-c", guarded_again, self, "program", how, device, (char *)NULL);
+        _exit(127);
+    }
+    (void)setpgid(program, program); /* whoever of both is first */
+    leash_put(&its_leash, program);
+    (void)close(ends[1]);
+    from_program = fdopen(ends[0], "r");
+    assert_non_null(from_program);
+    setvbuf(from_program, NULL, _IONBF, 0);
+    heard = event_new(base, ends[0], EV_READ | EV_PERSIST, on_word, NULL);
+    assert_int_equal(event_add(heard, NULL), 0);
+}
+
+static void await(bool (*is_so)(void))
+{
+    int64_t end_us = grobo_now_us() + 20000000;
+
+    while (!is_so()) {
+        assert_true(grobo_now_us() < end_us);
+        loop_run_for(base, 5000);
+    }
+}
+
+static char awaited[64];
+
+static bool is_said(void)
+{
+    const char *at = strstr(said + understood, awaited);
+
+    if (at != NULL) {
+        understood = (size_t)(at - said) + strlen(awaited) - 1;
+    }
+    return at != NULL;
+}
+
+/* Words are understood in their order, others between them are passed over. */
+static void await_word(const char *wanted)
+{
+    snprintf(awaited, sizeof awaited, " %s ", wanted);
+    await(is_said);
+}
+
+static bool has_ended(void)
+{
+    if (!program_ended && waitpid(program, NULL, WNOHANG) == program) {
+        program_ended = true;
+        ended_us = grobo_now_us();
+    }
+    return program_ended;
+}
+
+static grobo_sim_view look(void)
+{
+    grobo_sim *sim = grobo_sim_server_sim(server);
+    grobo_sim_view view;
+
+    grobo_sim_server_pump(server);
+    assert_int_equal(grobo_sim_look(sim, grobo_sim_find(sim, GUARDED_MOTOR), &view), 0);
+    return view;
+}
+
+static bool stands(void)
+{
+    return !look().moving;
+}
+
+static void assert_it_stopped_on_its_way(grobo_torque torque)
+{
+    grobo_sim_view view = look();
+
+    assert_false(view.moving);
+    assert_int_equal(view.torque, torque);
+    assert_true(view.angle_mdeg < GUARDED_FROM_DEG * 1000 &&
+                view.angle_mdeg > GUARDED_TO_DEG * 1000);
+}
+
+/* Can the next program have the port? */
+static bool is_free(void)
+{
+    const grobo_serial_config config = {.device = device, .baud_bps = GUARDED_BPS};
+    grobo_serial *serial;
+    int r;
+
+    assert_int_equal(grobo_serial_new(&config, &serial), GROBO_OK);
+    r = grobo_serial_open(serial);
+    grobo_serial_free(serial);
+    assert_true(r == GROBO_OK || r == GROBO_ERR_BUSY);
+    return r == GROBO_OK;
+}
+
+/* A process that waits to be reaped by whoever inherited it is gone too. */
+static bool guard_is_gone(void)
+{
+    char path[64];
+    char state = 'Z';
+    FILE *stat;
+
+    assert_true(guard_pid > 0);
+    if (kill(guard_pid, 0) != 0) {
+        return true;
+    }
+    snprintf(path, sizeof path, "/proc/%d/stat", guard_pid);
+    stat = fopen(path, "r");
+    if (stat != NULL) {
+        (void)fscanf(stat, "%*d (%*[^)]) %c", &state);
+        (void)fclose(stat);
+    }
+    return stat != NULL && state == 'Z';
+}
+
+static void run_until_it_dies(const char *how)
+{
+    start(how);
+    await_word("moving");
+    await(has_ended);
+}
+
+static void a_killed_program(void **state)
+{
+    (void)state;
+    serve(false);
+    run_until_it_dies("kill");
+    await(stands);
+    assert_it_stopped_on_its_way(GROBO_TORQUE_ON);
+    await(is_free);
+    assert_true(grobo_now_us() < ended_us + GROBO_GUARD_BOUND_US + GRACE_US);
+    await(guard_is_gone);
+}
+
+static void a_robot_behind_a_connection(void **state)
+{
+    (void)state;
+    serve(true);
+    run_until_it_dies("kill");
+    await(stands);
+    assert_it_stopped_on_its_way(GROBO_TORQUE_ON);
+    await(guard_is_gone);
+}
+
+/* Servos that do not answer cost the guard all its time, and not more. */
+static void a_robot_that_is_silent(void **state)
+{
+    (void)state;
+    serve(false);
+    start("kill");
+    await_word("moving");
+    for (int i = 0; i < 20; i++) {
+        (void)grobo_sim_set_cable(grobo_sim_server_sim(server), i, GROBO_SIM_CABLE_MUTE);
+    }
+    await(has_ended);
+    await(is_free);
+    assert_true(grobo_now_us() < ended_us + GROBO_GUARD_BOUND_US + GRACE_US);
+    await(guard_is_gone);
+}
+
+static void torque_goes_off_where_the_policy_says_so(void **state)
+{
+    (void)state;
+    serve(false);
+    run_until_it_dies("off");
+    await(guard_is_gone);
+    assert_it_stopped_on_its_way(GROBO_TORQUE_OFF);
+}
+
+/* The servo does not hear the program's, but the guard's. */
+static void an_emergency_stop_stays_one(void **state)
+{
+    grobo_sim *sim;
+    int elbow;
+
+    (void)state;
+    serve(false);
+    sim = grobo_sim_server_sim(server);
+    elbow = grobo_sim_find(sim, GUARDED_MOTOR);
+    start("estop");
+    await_word("moving");
+    assert_int_equal(grobo_sim_set_cable(sim, elbow, GROBO_SIM_CABLE_MUTE), 0);
+    await(has_ended);
+    assert_int_equal(grobo_sim_set_cable(sim, elbow, GROBO_SIM_CABLE_IN), 0);
+    await(guard_is_gone);
+    assert_it_stopped_on_its_way(GROBO_TORQUE_BRAKE);
+}
+
+/* The child has the port, its lock and the guard's socket, and lives on. */
+static void a_child_that_survives(void **state)
+{
+    int64_t end_us;
+
+    (void)state;
+    serve(false);
+    run_until_it_dies("fork");
+    end_us = ended_us + GROBO_GUARD_BOUND_US + GRACE_US;
+    await(stands);
+    assert_it_stopped_on_its_way(GROBO_TORQUE_ON);
+    await(is_free);
+    await(guard_is_gone);
+    assert_true(grobo_now_us() < end_us);
+    assert_int_equal(kill(-program, SIGKILL), 0); /* it was there */
+}
+
+static void a_program_that_is_stopped(void **state)
+{
+    (void)state;
+    if (access("/proc/self/stat", R_OK) != 0) {
+        skip(); /* only Linux tells */
+    }
+    serve(false);
+    start("stop");
+    await_word("moving");
+    await(stands);
+    await(is_free);
+    assert_it_stopped_on_its_way(GROBO_TORQUE_ON); /* not off, as one that is dead wants it */
+    assert_false(guard_is_gone());
+    assert_int_equal(kill(program, SIGCONT), 0);
+    await_word("STALLED");
+    await_word("up"); /* it opens the port again, and its guard has it again */
+    (void)kill(program, SIGKILL);
+    await(has_ended);
+    await(guard_is_gone);
+    await(is_free);
+    assert_it_stopped_on_its_way(GROBO_TORQUE_OFF); /* the policy of one that is dead */
+}
+
+/* It continues while the guard is still busy: the port stays the guard's. */
+static void a_program_that_continues_too_early(void **state)
+{
+    size_t bytes;
+
+    (void)state;
+    if (access("/proc/self/stat", R_OK) != 0) {
+        skip(); /* only Linux tells */
+    }
+    serve(false);
+    start("halt");
+    await_word("moving");
+    for (int i = 0; i < 20; i++) {
+        (void)grobo_sim_set_cable(grobo_sim_server_sim(server), i, GROBO_SIM_CABLE_MUTE);
+    }
+    bytes = bytes_sent;
+    for (int64_t end_us = grobo_now_us() + 20000000; bytes_sent == bytes;) {
+        assert_true(grobo_now_us() < end_us);
+        loop_run_for(base, 5000);
+    }
+    assert_int_equal(kill(program, SIGCONT), 0);
+    await_word("STALLED");
+    assert_false(is_free());
+    await(is_free);
+}
+
+static void a_program_that_ends_well(void **state)
+{
+    size_t bytes;
+
+    (void)state;
+    serve(false);
+    run_until_it_dies("end");
+    assert_true(guard_is_gone()); /* it was waited for */
+    assert_true(is_free());
+    bytes = bytes_sent;
+    loop_run_for(base, 300000);
+    assert_int_equal(bytes_sent, bytes);
+    assert_true(look().moving); /* no exit policy was asked for */
+}
+
+static void a_guard_that_is_killed(void **state)
+{
+    size_t bytes;
+
+    (void)state;
+    serve(false);
+    start("watch");
+    await_word("moving");
+    assert_int_equal(kill(guard_pid, SIGKILL), 0);
+    await_word("unguarded");
+    loop_run_for(base, 500000);
+    assert_string_equal(said + understood, " "); /* once, and the session stays */
+    assert_true(look().moving);
+    (void)kill(program, SIGKILL);
+    await(has_ended);
+    bytes = bytes_sent;
+    loop_run_for(base, 500000);
+    assert_int_equal(bytes_sent, bytes);
+    assert_true(look().moving); /* nobody is left to stop it */
+}
+
+/* How many descriptors of the guard lead to names like that; -1: the system does not tell. */
+static int open_in_the_guard(const char *name)
+{
+    int count = -1;
+
+    for (int fd = 0; fd < 20; fd++) {
+        char path[64];
+        char to[128];
+        ssize_t size;
+
+        snprintf(path, sizeof path, "/proc/%d/fd/%d", guard_pid, fd);
+        size = readlink(path, to, sizeof to - 1);
+        if (size > 0) {
+            to[size] = '\0';
+            count = (count < 0 ? 0 : count) +
+                    (fd != STDERR_FILENO && strncmp(to, name, strlen(name)) == 0);
+        }
+    }
+    return count;
+}
+
+static bool guard_has_a_terminal(void)
+{
+    return open_in_the_guard("/dev/pts/") != 0;
+}
+
+static bool guard_has_no_terminal(void)
+{
+    return open_in_the_guard("/dev/pts/") <= 0;
+}
+
+/* A device that is unplugged keeps its name only if nobody has it open any more. */
+static void a_line_that_is_lost_and_comes_back(void **state)
+{
+    (void)state;
+    serve(false);
+    start("watch");
+    await_word("moving");
+    await(guard_has_a_terminal);
+    assert_int_equal(grobo_sim_server_plug(server, false), GROBO_OK);
+    await_word("UNPLUGGED");
+    await(guard_has_no_terminal);
+    assert_false(guard_is_gone());
+    assert_int_equal(grobo_sim_server_plug(server, true), GROBO_OK);
+    await_word("up");
+    await(guard_has_a_terminal);
+    (void)kill(program, SIGKILL);
+    await(has_ended);
+    await(guard_is_gone);
+    assert_it_stopped_on_its_way(GROBO_TORQUE_ON);
+}
+
+static void a_line_that_is_lost_while_the_program_cannot_say_so(void **state)
+{
+    (void)state;
+    serve(false);
+    start("rest");
+    await_word("resting");
+    await(guard_has_a_terminal);
+    assert_int_equal(kill(program, SIGSTOP), 0);
+    assert_int_equal(grobo_sim_server_plug(server, false), GROBO_OK);
+    await(guard_has_no_terminal);
+}
+
+static void a_port_that_is_closed(void **state)
+{
+    size_t bytes;
+
+    (void)state;
+    serve(false);
+    start("close");
+    await_word("moving");
+    await_word("closed");
+    await(guard_has_no_terminal);
+    assert_true(open_in_the_guard("pipe:") <= 0); /* nor anything else of the program */
+    assert_true(is_free());
+    bytes = bytes_sent;
+    (void)kill(program, SIGKILL);
+    await(has_ended);
+    await(guard_is_gone);
+    assert_int_equal(bytes_sent, bytes); /* it was the program's no more */
+}
+
+static void a_robot_that_it_does_not_know(void **state)
+{
+    (void)state;
+    serve(false);
+    start("strange");
+    await_word("refused");
+    await(has_ended);
+    await(guard_is_gone);
+    assert_true(look().moving);
+}
+
+static void what_is_no_guard(void **state)
+{
+    const char *const nothing[] = {NULL};
+    const char *many[20] = {0};
+    grobo_guard_config config = {.program = "true", .arguments = nothing};
+    grobo_guard *guard = NULL;
+
+    (void)state;
+    assert_int_equal(grobo_guard_new(&config, &guard), GROBO_ERR_MISMATCH);
+    config.program = "/nowhere/guard";
+    assert_int_equal(grobo_guard_new(&config, &guard), GROBO_ERR_NOENT);
+    for (size_t i = 0; i < 19; i++) {
+        many[i] = "word";
+    }
+    config.arguments = many;
+    assert_int_equal(grobo_guard_new(&config, &guard), GROBO_ERR_CAP);
+    assert_null(guard);
+    assert_int_equal(grobo_guard_new(NULL, NULL), GROBO_ERR_ARG);
+    grobo_guard_free(NULL);
+}
+
+static void what_the_caller_gets_wrong(void **state)
+{
+    static const uint8_t data[GROBO_GUARD_DATA_BYTES + 1];
+    grobo_session_config config = {.base = base, .device = "/dev/null", .guard_data = data};
+    grobo_session *session = NULL;
+    grobo_guard *guard = NULL;
+
+    (void)state;
+    assert_int_equal(guarded_new(self, &guard), GROBO_OK);
+    assert_true(grobo_guard_pid(guard) > 0);
+    config.guard = guard;
+    config.guard_bytes = sizeof data;
+    assert_int_equal(grobo_session_new(&config, &session), GROBO_ERR_CAP);
+    assert_null(session);
+    guard_pid = grobo_guard_pid(guard);
+    grobo_guard_free(guard);
+    assert_true(guard_is_gone());
+    assert_int_equal(grobo_guard_run(NULL), GROBO_ERR_ARG); /* not what a guard started */
+}
+
+static int set_up(void **state)
+{
+    (void)folder_set_up(state);
+    base = grobo_loop_new();
+    assert_non_null(base);
+    server = NULL;
+    program = 0;
+    its_leash.end = -1;
+    program_ended = false;
+    from_program = NULL;
+    heard = NULL;
+    snprintf(said, sizeof said, " ");
+    understood = 0;
+    guard_pid = 0;
+    bytes_sent = 0;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    leash_take(&its_leash);
+    if (program > 0) {
+        (void)kill(-program, SIGKILL); /* with a child that it left */
+    }
+    if (program > 0 && !program_ended) {
+        (void)waitpid(program, NULL, 0);
+    }
+    if (from_program != NULL) {
+        event_free(heard);
+        (void)fclose(from_program);
+    }
+    grobo_sim_server_free(server);
+    event_base_free(base);
+    folder_remove(NULL, 0);
+    return 0;
+}
+
+int main(int argc, char **argv)
+{
+#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
+    const struct CMUnitTest tests[] = {
+        TEST(a_killed_program),
+        TEST(a_robot_behind_a_connection),
+        TEST(a_robot_that_is_silent),
+        TEST(torque_goes_off_where_the_policy_says_so),
+        TEST(an_emergency_stop_stays_one),
+        TEST(a_child_that_survives),
+        TEST(a_program_that_is_stopped),
+        TEST(a_program_that_continues_too_early),
+        TEST(a_program_that_ends_well),
+        TEST(a_port_that_is_closed),
+        TEST(a_guard_that_is_killed),
+        TEST(a_line_that_is_lost_and_comes_back),
+        TEST(a_line_that_is_lost_while_the_program_cannot_say_so),
+        TEST(a_robot_that_it_does_not_know),
+        TEST(what_is_no_guard),
+        TEST(what_the_caller_gets_wrong),
+    };
+
+    int status = guarded_main(argc, argv);
+
+    if (status >= 0) {
+        return status;
+    }
+    self = argv[0];
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,230 @@
+/* SPDX-License-Identifier: MIT */
+/* A line that holds bytes back: nothing waits behind the judgement of the engine, and what has not
+ * left by a stop never moves the robot. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <unistd.h>
+
+#include <cmocka.h>
+#include <event2/event.h>
+
+#include "far_robot.h"
+#include "folder.h"
+#include "loop.h"
+#include "session_kit.h"
+#include "src/link/serial_i.h"
+#include "src/link/session_i.h"
+
+enum { NECK = 13, GOALS = 110, TORQUES = 50, UNLIMITED = 1 << 30 };
+
+static const grobo_robot_config quiet = {.sense_interval_us = GROBO_SENSE_NEVER};
+static far_robot far;
+static const grobo_port_ops *true_ops;
+static grobo_port_ops slow_ops;
+static int budget_bytes; /* what the line still takes */
+static int unsent_bytes; /* what it says of what it took */
+static uint8_t written[4096];
+static size_t n_written;
+
+static int write_slowly(grobo_port *port, const void *buf, size_t size, grobo_os_cause *cause)
+{
+    int done = 0;
+
+    if (budget_bytes > 0) {
+        done = true_ops->write(port, buf, size < (size_t)budget_bytes ? size : (size_t)budget_bytes,
+                               cause);
+    }
+    if (done > 0) {
+        assert_true(n_written + (size_t)done <= sizeof written);
+        memcpy(written + n_written, buf, (size_t)done);
+        n_written += (size_t)done;
+        budget_bytes -= done;
+    }
+    return done;
+}
+
+static int say_unsent(const grobo_port *port)
+{
+    (void)port;
+    return unsent_bytes;
+}
+
+static grobo_robot *robot(void)
+{
+    return grobo_session_robot(session);
+}
+
+/* A robot that holds, on a line that does as it is told. */
+static int set_up(void **state)
+{
+    grobo_joint_mask all = GROBO_JOINTS_ALL(20);
+
+    assert_int_equal(folder_set_up(state), 0);
+    far_robot_start(&far, in_folder("robot"));
+    session_kit_begin();
+    session_kit_make(
+        (grobo_session_config){.device = far.link, .baud_bps = FAR_ROBOT_BPS, .robot = &quiet});
+    assert_int_equal(grobo_session_open(session), GROBO_OK);
+    loop_run_until(base, &seen.ups, 1);
+    assert_int_equal(session_kit_await(grobo_session_torque(session, all, GROBO_TORQUE_ON)),
+                     GROBO_OK);
+    true_ops = session->serial->ops;
+    slow_ops = *true_ops;
+    slow_ops.write = write_slowly;
+    slow_ops.unsent = say_unsent;
+    session->serial->ops = &slow_ops;
+    budget_bytes = UNLIMITED;
+    unsent_bytes = 0;
+    n_written = 0;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    static const char *const names[] = {"robot"};
+
+    (void)state;
+    session_kit_end();
+    far_robot_end(&far);
+    folder_remove(names, 1);
+    return 0;
+}
+
+/* Sends every joint somewhere, of which the line takes so many bytes. */
+static void send_goals(int taken_bytes)
+{
+    grobo_posture target;
+
+    grobo_posture_init_pose(&target, &grobo_gr001_model);
+    target.time_us = 2000000;
+    target.angle_rad[NECK] = grobo_rad_from_deg(40);
+    budget_bytes = taken_bytes;
+    assert_int_equal(grobo_robot_send(robot(), &target, grobo_now_us()), GROBO_OK);
+    grobo_session_pump(session);
+    assert_int_equal(n_written, taken_bytes);
+}
+
+static uint8_t sum_of(const uint8_t *frame, size_t size)
+{
+    uint8_t sum = 0;
+
+    for (size_t i = 4; i < size; i++) {
+        sum ^= frame[i];
+    }
+    return sum;
+}
+
+static void assert_stop_at(size_t at)
+{
+    assert_true(n_written >= at + TORQUES);
+    assert_memory_equal(written + at, "\x53\x30\xFA\xAF\x00\x00\x24\x02\x14", 9);
+    assert_int_equal(sum_of(written + at, TORQUES), 0);
+}
+
+static double neck_deg(void)
+{
+    grobo_joint_info info;
+    grobo_joint_mask neck = GROBO_JOINT_BIT(NECK);
+
+    assert_int_equal(session_kit_await(grobo_session_sense(session, neck, GROBO_SENSE_FULL)),
+                     GROBO_OK);
+    assert_int_equal(grobo_robot_joint(robot(), NECK, grobo_now_us(), &info), 0);
+    return grobo_deg_from_rad(info.state.angle_rad);
+}
+
+/* A stop while the line has taken so much of a frame; then it takes everything again. */
+static int stop_and_let_go(int taken_bytes)
+{
+    int job;
+
+    send_goals(taken_bytes);
+    job = grobo_session_estop(session);
+    assert_true(job > 0);
+    assert_true(loop_run(base, 60000)); /* the frame would be over by now */
+    budget_bytes = UNLIMITED;
+    return session_kit_await(job);
+}
+
+static void a_frame_that_has_not_left_by_a_stop_never_does(void **state)
+{
+    (void)state;
+    assert_int_equal(stop_and_let_go(0), GROBO_OK);
+    assert_stop_at(0);
+    assert_true(neck_deg() < 0.2);
+}
+
+/* Its rest is awaited at the other end: it comes, with a wrong sum, and the stop behind it is
+ * understood at once. */
+static void a_torn_frame_is_spoilt_by_a_stop(void **state)
+{
+    static const int taken[] = {1, 2, 40, GOALS - 1};
+
+    (void)state;
+    for (size_t i = 0; i < sizeof taken / sizeof taken[0]; i++) {
+        n_written = 0;
+        assert_int_equal(stop_and_let_go(taken[i]), GROBO_OK);
+        assert_int_equal(written[0], 0x53);
+        assert_int_equal(written[1], GOALS - 2);
+        assert_int_equal(sum_of(written, GOALS), 0xFF);
+        assert_stop_at(GOALS);
+        assert_int_equal(far_robot_torqued(&far), 0);
+        assert_true(neck_deg() < 0.2);
+        assert_int_equal(grobo_session_reset(session), GROBO_OK);
+        n_written = 0;
+        assert_int_equal(
+            session_kit_await(grobo_session_torque(session, GROBO_JOINTS_ALL(20), GROBO_TORQUE_ON)),
+            GROBO_OK);
+    }
+}
+
+/* A stop that is held back itself is not taken back, however long its readings wait behind it. */
+static void a_stop_is_not_taken_back(void **state)
+{
+    int job;
+
+    (void)state;
+    budget_bytes = 20;
+    job = grobo_session_estop(session);
+    assert_true(loop_run(base, 60000));
+    assert_int_equal(n_written, 20);
+    budget_bytes = UNLIMITED;
+    assert_int_equal(session_kit_await(job), GROBO_OK);
+    assert_stop_at(0);
+}
+
+/* What the system holds back counts as well. */
+static void no_frame_is_taken_behind_one_that_has_not_left(void **state)
+{
+    (void)state;
+    send_goals(GOALS);
+    budget_bytes = UNLIMITED;
+    unsent_bytes = 1;
+    assert_true(loop_run(base, 60000));
+    grobo_posture target;
+    grobo_posture_init_pose(&target, &grobo_gr001_model);
+    assert_int_equal(grobo_robot_send(robot(), &target, grobo_now_us()), GROBO_OK);
+    grobo_session_pump(session);
+    assert_true(loop_run(base, 20000));
+    assert_int_equal(n_written, GOALS);
+    unsent_bytes = 0;
+    assert_true(loop_run(base, 20000)); /* nobody tells: it is looked at again */
+    assert_int_equal(n_written, 2 * GOALS);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(a_frame_that_has_not_left_by_a_stop_never_does, set_up,
+                                        tear_down),
+        cmocka_unit_test_setup_teardown(a_torn_frame_is_spoilt_by_a_stop, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_stop_is_not_taken_back, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(no_frame_is_taken_behind_one_that_has_not_left, set_up,
+                                        tear_down),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,540 @@
+/* SPDX-License-Identifier: MIT */
+/* Stops that signal handlers post, to a control and to a session, with nothing to be had. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <errno.h>
+#include <signal.h>
+#include <sys/resource.h>
+
+#include <cmocka.h>
+#include <event2/event.h>
+
+#include "control_kit.h"
+#include "hold.h"
+#include "loop.h"
+#include "session_kit.h"
+#include "src/link/session_i.h"
+#include "src/link/thread_i.h"
+
+enum { ERRNO = 4711, SLOW_US = GROBO_CALLBACK_SLOW_US + 5000 };
+
+static hold gate;
+
+/* What the handler found. */
+static volatile sig_atomic_t handled, failed;
+
+static void on_signal(int number)
+{
+    int kept = errno;
+
+    errno = ERRNO;
+    if (number == SIGUSR1) {
+        failed = grobo_control_estop(control) < 0 || !grobo_control_is_latched(control);
+    } else {
+        failed = grobo_control_post_stop(control, true) < 0 ||
+                 grobo_control_post_exit(control, GROBO_EXIT_OFF) < 0;
+    }
+    failed = failed || errno != ERRNO;
+    handled++;
+    errno = kept;
+}
+
+static void have_handlers(void)
+{
+    const struct sigaction action = {.sa_handler = on_signal};
+
+    handled = failed = 0;
+    assert_int_equal(sigaction(SIGUSR1, &action, NULL), 0);
+    assert_int_equal(sigaction(SIGUSR2, &action, NULL), 0);
+}
+
+static void have_descriptors(bool any)
+{
+    static struct rlimit before;
+    struct rlimit none;
+
+    if (any) {
+        assert_int_equal(setrlimit(RLIMIT_NOFILE, &before), 0);
+    } else {
+        assert_int_equal(getrlimit(RLIMIT_NOFILE, &before), 0);
+        none = before;
+        none.rlim_cur = 1;
+        assert_int_equal(setrlimit(RLIMIT_NOFILE, &none), 0);
+    }
+}
+
+/* ---- a control ---------------------------------------------------------------------------- */
+
+static int on_svc(grobo_control *from, void *ctx)
+{
+    (void)from;
+    (void)ctx;
+    hold_here(&gate);
+    return 0;
+}
+
+static void start(bool threaded)
+{
+    const grobo_control_config config = {
+        .session = {.device = GROBO_DEVICE_SIM, .baud_bps = 1000000},
+        .control_period_us = 1000,
+        .skip_exit = true,
+        .on_svc = on_svc};
+
+    hold_init(&gate);
+    assert_int_equal(grobo_control_new(&config, &control), GROBO_OK);
+    if (threaded) {
+        assert_int_equal(grobo_control_start_thread(control), GROBO_OK);
+    }
+    control_come_up();
+    assert_int_equal(grobo_control_set_servo_states(control, EVERY_JOINT, GROBO_TORQUE_ON, 0), 0);
+    have_handlers();
+}
+
+static void end(void)
+{
+    assert_int_equal(grobo_control_free(control), GROBO_OK);
+    hold_deinit(&gate);
+}
+
+static void assert_braked(void)
+{
+    (void)grobo_control_wait(control, 0);
+    for (int j = 0; j < 20; j++) {
+        assert_int_equal(grobo_control_get_servo_state(control, j), GROBO_TORQUE_BRAKE);
+    }
+}
+
+/* The handler runs while the loop is held, and while its own thread has the control's lock. */
+static void a_handler_needs_no_lock(void **state)
+{
+    (void)state;
+    start(true);
+    hold_begin(&gate);
+    grobo_i_control_lock(control);
+    assert_int_equal(raise(SIGUSR1), 0);
+    assert_int_equal(raise(SIGUSR2), 0);
+    grobo_i_control_unlock(control);
+    assert_int_equal(handled, 2);
+    assert_int_equal(failed, 0);
+    hold_end(&gate);
+    (void)grobo_control_wait(control, 0);
+    assert_true(grobo_control_is_latched(control));
+    assert_int_equal(grobo_control_get_servo_state(control, ELBOW), GROBO_TORQUE_OFF);
+    end();
+}
+
+/* More of them than the wake-up socket takes bytes. */
+static void a_handler_never_waits(void **state)
+{
+    (void)state;
+    start(true);
+    hold_begin(&gate);
+    for (int i = 0; i < 20000; i++) {
+        assert_int_equal(raise(SIGUSR1), 0);
+        assert_int_equal(failed, 0);
+    }
+    hold_end(&gate);
+    assert_braked();
+    end();
+}
+
+/* In a callback of the loop, or anywhere in it: a thread has signals sent to this one meanwhile. */
+static int raise_it(grobo_control *from, void *arg)
+{
+    (void)from;
+    (void)arg;
+    return raise(SIGUSR1);
+}
+
+static void a_handler_may_interrupt_the_loop(void **state)
+{
+    (void)state;
+    start(false);
+    assert_int_equal(grobo_control_call(control, raise_it, NULL), 0);
+    assert_int_equal(failed, 0);
+    assert_braked();
+    end();
+}
+
+typedef struct sender {
+    grobo_thread thread;
+    pthread_t to;
+    _Atomic bool stop;
+} sender;
+
+static GROBO_THREAD_FUNC send_signals(void *arg)
+{
+    sender *self = arg;
+
+    while (!self->stop) {
+        (void)pthread_kill(self->to, SIGUSR1);
+    }
+    GROBO_THREAD_RETURN;
+}
+
+static void handlers_may_interrupt_anything(void **state)
+{
+    sender self = {.to = pthread_self()};
+    double angle_rad;
+
+    (void)state;
+    start(false);
+    assert_int_equal(grobo_thread_start(&self.thread, send_signals, &self), GROBO_OK);
+    for (int i = 0; i < 20; i++) {
+        (void)grobo_control_svc(control);
+        (void)grobo_control_read_angle(control, ELBOW, &angle_rad, 1000);
+    }
+    self.stop = true;
+    assert_int_equal(grobo_thread_join(self.thread), GROBO_OK);
+    assert_true(handled > 0);
+    assert_int_equal(failed, 0);
+    assert_braked();
+    end();
+}
+
+static GROBO_THREAD_FUNC wait_for_rest(void *arg)
+{
+    *(int *)arg = grobo_control_wait(control, GROBO_NEVER_US);
+    GROBO_THREAD_RETURN;
+}
+
+static void nothing_takes_a_descriptor(void **state)
+{
+    grobo_thread other;
+    int result = 1;
+
+    (void)state;
+    start(true);
+    assert_int_equal(grobo_control_set_joint(control, ELBOW, grobo_rad_from_deg(45)), GROBO_OK);
+    assert_int_equal(grobo_control_set_motion_time_us(control, 60000000), GROBO_OK);
+    assert_int_equal(grobo_control_start_motion(control), GROBO_OK);
+    have_descriptors(false);
+    assert_int_equal(grobo_thread_start(&other, wait_for_rest, &result), GROBO_OK);
+    assert_int_equal(grobo_control_is_moving(control), 1);
+    assert_int_equal(grobo_control_stop_motion(control, true), GROBO_OK);
+    assert_int_equal(grobo_thread_join(other), GROBO_OK);
+    assert_int_equal(result, GROBO_ERR_CANCELED);
+    assert_int_equal(grobo_control_exit(control, GROBO_EXIT_HOLD, 0), GROBO_OK);
+    assert_int_equal(grobo_control_estop(control), GROBO_OK);
+    assert_braked();
+    assert_int_equal(grobo_control_reset(control), GROBO_OK);
+    assert_int_equal(grobo_control_exit(control, GROBO_EXIT_OFF, 0), GROBO_OK);
+    assert_int_equal(grobo_control_get_servo_state(control, ELBOW), GROBO_TORQUE_OFF);
+    assert_int_equal(grobo_control_stop_thread(control), GROBO_OK);
+    assert_int_equal(grobo_control_close_port(control, 0), GROBO_OK);
+    have_descriptors(true);
+    end();
+}
+
+/* ---- a session ---------------------------------------------------------------------------- */
+
+static int set_up(void **state)
+{
+    (void)state;
+    session_kit_begin();
+    session_kit_make((grobo_session_config){.device = GROBO_DEVICE_SIM, .baud_bps = 1000000});
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    session_kit_end();
+    return 0;
+}
+
+static void come_up(void)
+{
+    assert_int_equal(grobo_session_open(session), GROBO_OK);
+    loop_run_until(base, &seen.ups, 1);
+}
+
+static int posted, estops, exits, exit_result;
+
+static void post_it(const grobo_event *event)
+{
+    if (event->kind == GROBO_EVENT_JOINT && posted == 0) {
+        posted = 1;
+        assert_int_equal(grobo_session_post_exit(session, GROBO_EXIT_OFF), GROBO_OK);
+        assert_int_equal(grobo_session_post_stop(session, false), GROBO_OK);
+        assert_false(grobo_session_is_latched(session));
+        assert_int_equal(grobo_session_post_estop(session), GROBO_OK);
+        assert_true(grobo_session_is_latched(session));
+    }
+    if (event->kind == GROBO_EVENT_JOB) {
+        estops += event->u.job.kind == GROBO_JOB_ESTOP;
+        exits += event->u.job.kind == GROBO_JOB_EXIT;
+        if (event->u.job.kind == GROBO_JOB_EXIT) {
+            exit_result = event->u.job.result;
+            assert_int_equal(estops, 1);
+        }
+    }
+}
+
+static void a_session_takes_all_three(void **state)
+{
+    grobo_joint_info info;
+
+    (void)state;
+    come_up();
+    assert_int_equal(session_kit_await(grobo_session_torque(session, EVERY_JOINT, GROBO_TORQUE_ON)),
+                     GROBO_OK);
+    posted = estops = exits = 0;
+    seen.then_robot = post_it;
+    loop_run_until(base, &exits, 1);
+    assert_int_equal(exit_result, GROBO_OK);
+    assert_int_equal(estops, 1);
+    assert_true(grobo_session_is_latched(session));
+    assert_int_equal(grobo_robot_joint(grobo_session_robot(session), ELBOW, grobo_now_us(), &info),
+                     0);
+    assert_int_equal(info.state.torque, GROBO_TORQUE_OFF);
+    assert_int_equal(grobo_session_reset(session), GROBO_OK);
+    assert_false(grobo_session_is_latched(session));
+    assert_int_equal(grobo_session_post_estop(NULL), GROBO_ERR_ARG);
+    assert_int_equal(grobo_session_post_stop(NULL, true), GROBO_ERR_ARG);
+    assert_int_equal(grobo_session_post_exit(NULL, GROBO_EXIT_OFF), GROBO_ERR_ARG);
+    assert_int_equal(grobo_session_post_exit(session, (grobo_exit_policy)4), GROBO_ERR_ARG);
+}
+
+static GROBO_THREAD_FUNC post_from_far(void *arg)
+{
+    *(int *)arg = grobo_session_post_estop(session);
+    GROBO_THREAD_RETURN;
+}
+
+/* Nothing else wakes this loop. */
+static void another_thread_wakes_the_loop(void **state)
+{
+    static const grobo_robot_config still = {.sense_interval_us = GROBO_SENSE_NEVER};
+    grobo_thread other;
+    int result = 1;
+
+    (void)state;
+    come_up();
+    assert_int_equal(grobo_session_configure(session, &still), GROBO_OK);
+    posted = 1;
+    estops = exits = 0;
+    seen.then_robot = post_it;
+    loop_run_for(base, 50000);
+    assert_int_equal(grobo_timer_deadline(session->timer), GROBO_NEVER_US);
+    assert_int_equal(grobo_thread_start(&other, post_from_far, &result), GROBO_OK);
+    loop_run_until(base, &estops, 1);
+    assert_int_equal(grobo_thread_join(other), GROBO_OK);
+    assert_int_equal(result, GROBO_OK);
+}
+
+/* As where another thread posts between the last look for requests and the sending. */
+static void nothing_is_sent_before_a_posted_stop(void **state)
+{
+    static const grobo_robot_config still = {.sense_interval_us = GROBO_SENSE_NEVER};
+    size_t sent;
+
+    (void)state;
+    come_up();
+    assert_int_equal(grobo_session_configure(session, &still), GROBO_OK);
+    loop_run_for(base, 50000); /* the line is quiet */
+    posted = 1;
+    estops = 0;
+    seen.then_robot = post_it;
+    for (int stop = 0; stop < 2; stop++) {
+        sent = seen.tapped[GROBO_DIR_TX];
+        assert_true(grobo_robot_check(&session->robot, grobo_now_us()) > 0);
+        if (stop) {
+            assert_int_equal(grobo_session_post_estop(session), GROBO_OK);
+        }
+        grobo_i_session_send(session);
+        assert_true((seen.tapped[GROBO_DIR_TX] == sent) == (stop == 1));
+        loop_run_for(base, 50000);
+    }
+    loop_run_until(base, &estops, 1);
+}
+
+static void a_closed_session_keeps_no_loop_alive(void **state)
+{
+    (void)state;
+    assert_int_equal(event_base_dispatch(base), 1); /* 1: there is nothing to wait for */
+    come_up();
+    grobo_session_close(session);
+    assert_int_equal(event_base_dispatch(base), 1);
+    assert_int_equal(grobo_session_set_device(session, "/nowhere/tty"), GROBO_OK);
+    assert_int_equal(grobo_session_open(session), GROBO_ERR_NOENT);
+    assert_int_equal(event_base_dispatch(base), 1);
+
+    assert_int_equal(grobo_session_post_exit(session, GROBO_EXIT_OFF), GROBO_OK); /* nobody there */
+    assert_int_equal(grobo_session_post_estop(session), GROBO_OK);
+    assert_int_equal(grobo_session_set_device(session, GROBO_DEVICE_SIM), GROBO_OK);
+    posted = 1;
+    estops = exits = 0;
+    seen.then_robot = post_it;
+    assert_int_equal(grobo_session_open(session), GROBO_OK);
+    loop_run_until(base, &seen.ups, 2);
+    loop_run_until(base, &estops, 1);
+    assert_int_equal(exits, 0);
+    assert_true(grobo_session_is_latched(session));
+    assert_int_equal(grobo_session_reset(session), GROBO_OK); /* a reset clears what came before */
+    assert_int_equal(grobo_session_post_estop(session), GROBO_OK);
+    assert_int_equal(grobo_session_reset(session), GROBO_ERR_STATE);
+    loop_run_until(base, &estops, 2);
+}
+
+/* ---- slow callbacks ----------------------------------------------------------------------- */
+
+/* Reports, by the callback, and the last one; since_us is set by the callback that was slow. */
+static int reports[GROBO_CALLBACK_CALL + 1];
+static grobo_event_slow last;
+static grobo_callback slow_one; /* the callback to be slow, once */
+static bool slow_wanted;
+
+static void be_slow(grobo_callback callback)
+{
+    if (slow_wanted && slow_one == callback) {
+        int64_t end_us = grobo_now_us() + SLOW_US;
+
+        slow_wanted = false;
+        while (grobo_now_us() < end_us) {
+        }
+    }
+}
+
+static int slow_svc(grobo_control *from, void *ctx)
+{
+    (void)from;
+    (void)ctx;
+    be_slow(GROBO_CALLBACK_SVC);
+    return 0;
+}
+
+static void slow_robot(void *ctx, const grobo_event *event)
+{
+    (void)ctx;
+    if (event->kind == GROBO_EVENT_SLOW_CALLBACK) {
+        reports[event->u.slow.callback]++;
+        last = event->u.slow;
+        assert_true(event->now_us > 0);
+        assert_true(event->u.slow.count >= 1);
+        slow_wanted = slow_wanted || slow_one == GROBO_CALLBACK_ROBOT;
+    }
+    be_slow(GROBO_CALLBACK_ROBOT);
+}
+
+static void slow_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes, size_t size,
+                     void *ctx)
+{
+    (void)direction;
+    (void)now_us;
+    (void)bytes;
+    (void)size;
+    (void)ctx;
+    be_slow(GROBO_CALLBACK_TAP);
+}
+
+static void slow_event(grobo_session *from, grobo_session_event event, int error, void *ctx)
+{
+    (void)from;
+    (void)event;
+    (void)error;
+    (void)ctx;
+    be_slow(GROBO_CALLBACK_EVENT);
+}
+
+static int slow_call(grobo_control *from, void *arg)
+{
+    (void)from;
+    (void)arg;
+    be_slow(GROBO_CALLBACK_CALL);
+    return 0;
+}
+
+static int ask_reports(grobo_control *from, void *arg)
+{
+    const int *callback = arg;
+
+    (void)from;
+    return reports[*callback];
+}
+
+static void a_slow_callback_is_reported(void **state)
+{
+    const grobo_control_config config = {.session = {.device = GROBO_DEVICE_SIM,
+                                                     .baud_bps = 1000000,
+                                                     .on_event = slow_event,
+                                                     .on_robot = slow_robot,
+                                                     .on_tap = slow_tap},
+                                         .control_period_us = 1000,
+                                         .skip_exit = true,
+                                         .on_svc = slow_svc};
+
+    (void)state;
+    for (int c = GROBO_CALLBACK_EVENT; c <= GROBO_CALLBACK_CALL; c++) {
+        int64_t end_us = grobo_now_us() + 20000000;
+
+        assert_int_equal(grobo_control_new(&config, &control), GROBO_OK);
+        reports[c] = 0;
+        slow_one = (grobo_callback)c;
+        slow_wanted = true;
+        control_come_up();
+        assert_int_equal(grobo_control_call(control, slow_call, NULL), 0);
+        assert_true(c != GROBO_CALLBACK_CALL || reports[c] > 0); /* before the call is over */
+        do { /* on a busy machine another callback may be reported too */
+            assert_int_equal(grobo_control_call(control, slow_call, NULL), 0);
+            assert_true(grobo_now_us() < end_us);
+        } while (grobo_control_call(control, ask_reports, &c) == 0);
+        for (int i = 0; i < 100; i++) { /* a slow report is not reported */
+            assert_int_equal(grobo_control_call(control, slow_call, NULL), 0);
+        }
+        assert_int_equal(grobo_control_free(control), GROBO_OK);
+        assert_true(last.held_us > GROBO_CALLBACK_SLOW_US);
+        assert_true(reports[c] < 50);
+    }
+}
+
+/* A machine that is busy may make any callback slow, but not each of many. */
+static void a_quick_callback_is_not_reported(void **state)
+{
+    int64_t since_us;
+
+    (void)state;
+    do {
+        session->slow.count = 0;
+        since_us = grobo_i_session_enter_callback(session);
+        grobo_i_session_leave_callback(session, GROBO_CALLBACK_TAP, since_us);
+    } while (grobo_now_us() - since_us > GROBO_CALLBACK_SLOW_US);
+    assert_int_equal(session->slow.count, 0);
+
+    /* Of what is nested only the outer one counts, and of several the longest is told. */
+    since_us = grobo_i_session_enter_callback(session);
+    (void)grobo_i_session_enter_callback(session);
+    grobo_i_session_leave_callback(session, GROBO_CALLBACK_TAP, since_us - 90000);
+    assert_int_equal(session->slow.count, 0);
+    grobo_i_session_leave_callback(session, GROBO_CALLBACK_ROBOT, since_us - 90000);
+    assert_int_equal(session->slow.count, 1);
+    (void)grobo_i_session_enter_callback(session);
+    grobo_i_session_leave_callback(session, GROBO_CALLBACK_TAP, grobo_now_us() - 30000);
+    assert_int_equal(session->slow.count, 2);
+    assert_int_equal(session->slow.callback, GROBO_CALLBACK_ROBOT);
+    assert_true(session->slow.held_us >= 90000);
+}
+
+int main(void)
+{
+#define ON_LOOP(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_handler_needs_no_lock),
+        cmocka_unit_test(a_handler_never_waits),
+        cmocka_unit_test(a_handler_may_interrupt_the_loop),
+        cmocka_unit_test(handlers_may_interrupt_anything),
+        cmocka_unit_test(nothing_takes_a_descriptor),
+        ON_LOOP(a_session_takes_all_three),
+        ON_LOOP(another_thread_wakes_the_loop),
+        ON_LOOP(nothing_is_sent_before_a_posted_stop),
+        ON_LOOP(a_closed_session_keeps_no_loop_alive),
+        cmocka_unit_test(a_slow_callback_is_reported),
+        ON_LOOP(a_quick_callback_is_not_reported),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

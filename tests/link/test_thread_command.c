@@ -1,0 +1,94 @@
+/* SPDX-License-Identifier: MIT */
+/* A command that nobody waits for any more does not leave. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include <grobo/thread.h>
+
+enum { ELBOW = 13, PATIENCE_US = 1500000 };
+
+/* Motor 2 to 1.0 degree in 20 s. */
+static const uint8_t goal[] = {0x53, 0x0C, 0xFA, 0xAF, 0x02, 0x00, 0x1E,
+                               0x04, 0x01, 0x0A, 0x00, 0xD0, 0x07, 0xC4};
+
+/* Filled by the loop, looked at when it is over. */
+static struct {
+    uint8_t bytes[1 << 20];
+    size_t size;
+} sent;
+
+static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes, size_t size,
+                   void *ctx)
+{
+    (void)now_us;
+    (void)ctx;
+    if (direction == GROBO_DIR_TX && sent.size + size <= sizeof sent.bytes) {
+        memcpy(sent.bytes + sent.size, bytes, size);
+        sent.size += size;
+    }
+}
+
+static int times_sent(void)
+{
+    int n = 0;
+
+    for (size_t i = 0; i + sizeof goal <= sent.size; i++) {
+        n += memcmp(sent.bytes + i, goal, sizeof goal) == 0;
+    }
+    return n;
+}
+
+/* 4 s in which the frames of a motion leave no room for anything else. */
+static void fill_line(grobo_control *control)
+{
+    const grobo_play_options full = {.mode = GROBO_PLAY_RATE, .rate_hz = 53, .unwatched = true};
+    grobo_motion *motion;
+    grobo_posture posture;
+
+    assert_int_equal(grobo_motion_new(&motion, GROBO_MOTION_POSTURES, 20, NULL), GROBO_OK);
+    grobo_posture_init_pose(&posture, &grobo_gr001_model);
+    for (int i = 0; i < 2; i++) {
+        posture.time_us = 4000000 * i;
+        assert_int_equal(grobo_posture_set_deg(&posture, ELBOW, 5.0 * i), GROBO_OK);
+        assert_int_equal(grobo_motion_append(motion, &posture), GROBO_OK);
+    }
+    assert_int_equal(grobo_control_set_motion(control, motion), 2);
+    grobo_motion_free(motion);
+    assert_int_equal(grobo_control_play_motion(control, &full), GROBO_OK);
+}
+
+static void a_command_that_took_too_long_does_not_leave(void **state)
+{
+    grobo_control_config config = {.session = {.device = GROBO_DEVICE_SIM, .on_tap = on_tap},
+                                   .skip_exit = true};
+    grobo_control *control;
+
+    (void)state;
+    assert_int_equal(grobo_control_new(&config, &control), GROBO_OK);
+    assert_int_equal(grobo_control_start_thread(control), GROBO_OK);
+    assert_int_equal(grobo_control_connect(control, 0), GROBO_OK);
+    assert_int_equal(
+        grobo_control_set_servo_states(control, GROBO_JOINTS_ALL(20), GROBO_TORQUE_ON, 0), 0);
+    fill_line(control);
+    /* It is begun when the robot is known to be where the motion begins, and finds no room. */
+    assert_int_equal(grobo_control_send_command(control, goal, sizeof goal, PATIENCE_US),
+                     GROBO_ERR_TIMEOUT);
+    assert_int_equal(grobo_control_wait(control, 10000000), GROBO_OK);
+    /* The next one has the line to itself. */
+    assert_int_equal(grobo_control_send_command(control, goal, sizeof goal, 0), sizeof goal);
+    assert_int_equal(grobo_control_free(control), GROBO_OK);
+    assert_int_equal(times_sent(), 1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_command_that_took_too_long_does_not_leave)};
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,164 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * A control's motion and files over the simulator, from a thread that is not the loop's: once
+ * while a control thread runs the loop, and once without, where the calls run it themselves.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "control_kit.h"
+#include "files.h"
+#include "folder.h"
+
+enum { POSTURES = 4, STEP_US = 100000 };
+
+/* Whole degrees that differ from joint to joint and from posture to posture, within limits. */
+static double angle_deg(int n, int joint)
+{
+    const grobo_joint *limits = &grobo_gr001_model.joints[joint];
+    double deg = (3 * joint + 5 * n) % 23 - 11;
+
+    deg = fmin(deg, floor(grobo_deg_from_rad(limits->max_rad)));
+    return fmax(deg, ceil(grobo_deg_from_rad(limits->min_rad)));
+}
+
+static void have_every_joint(void)
+{
+    grobo_motion *motion;
+    grobo_posture posture;
+
+    assert_int_equal(grobo_motion_new(&motion, GROBO_MOTION_POSTURES, 20, NULL), GROBO_OK);
+    assert_int_equal(grobo_posture_init(&posture, 20), GROBO_OK);
+    posture.time_us = STEP_US;
+    for (int n = 0; n < POSTURES; n++) {
+        for (int j = 0; j < 20; j++) {
+            assert_int_equal(grobo_posture_set_deg(&posture, j, angle_deg(n, j)), GROBO_OK);
+        }
+        assert_int_equal(grobo_motion_append(motion, &posture), GROBO_OK);
+    }
+    assert_int_equal(grobo_control_set_motion(control, motion), POSTURES);
+    grobo_motion_free(motion);
+}
+
+/* The motion of n postures is that of have_every_joint(), with frames between where sampled. */
+static void expect_every_joint(int n, bool sampled)
+{
+    grobo_motion *motion = NULL;
+    grobo_posture posture;
+    int64_t at_us = 0;
+    int found = 0;
+
+    assert_true(sampled ? n > POSTURES : n == POSTURES);
+    assert_int_equal(grobo_control_get_motion(control, &motion), n);
+    for (int i = 0; i < n; i++) {
+        assert_int_equal(grobo_motion_get(motion, (size_t)i, &posture), 0);
+        at_us += posture.time_us;
+        if (at_us < (found + 1) * STEP_US - 1) {
+            continue;
+        }
+        assert_true(llabs(at_us - (found + 1) * STEP_US) <= 1);
+        assert_true(posture.set == EVERY_JOINT);
+        for (int j = 0; j < 20; j++) {
+            assert_true(fabs(grobo_deg_from_rad(posture.angle_rad[j]) - angle_deg(found, j)) <
+                        0.01);
+        }
+        found++;
+    }
+    assert_int_equal(found, POSTURES);
+    grobo_motion_free(motion);
+}
+
+static void motions_are_saved_and_loaded(void **state)
+{
+    static const grobo_motion_format formats[] = {GROBO_FORMAT_M, GROBO_FORMAT_PSEQ,
+                                                  GROBO_FORMAT_YAML, GROBO_FORMAT_MSEQ};
+    char path[sizeof folder + 64];
+
+    (void)state;
+    for (size_t i = 0; i < 4; i++) {
+        have_every_joint();
+        assert_int_equal(grobo_control_save_motion(control, formats[i], "a", NULL, 0), POSTURES);
+        grobo_control_clear_motion(control);
+        assert_int_equal(grobo_control_motion_size(control), 0);
+        int n = grobo_control_load_motion_format(control, formats[i], "a", NULL);
+        assert_int_equal(grobo_control_motion_size(control), n);
+        expect_every_joint(n, formats[i] == GROBO_FORMAT_YAML);
+    }
+    have_every_joint();
+    assert_int_equal(grobo_control_save_motion(control, GROBO_FORMAT_M, NULL, path, sizeof path),
+                     POSTURES);
+    assert_string_equal(strrchr(path, '/'), "/Motion1.m");
+    control_have_motion(1);
+    assert_int_equal(grobo_control_save_motion(control, GROBO_FORMAT_M, NULL, path, sizeof path),
+                     1);
+    assert_string_equal(strrchr(path, '/'), "/Motion2.m");
+    expect_every_joint(grobo_control_load_motion(control, "Motion1", NULL), false);
+
+    /* Another format is not replaced, whatever the name says. */
+    assert_int_equal(grobo_control_save_motion(control, GROBO_FORMAT_M, "a.pseq", NULL, 0),
+                     GROBO_ERR_EXISTS);
+    assert_true(grobo_control_load_motion(control, "a.pseq", NULL) >= 3);
+
+    /* a.m comes before a.yaml, a.pseq and a.mseq; b is there as b.yaml only. */
+    control_have_motion(1);
+    assert_int_equal(grobo_control_save_motion(control, GROBO_FORMAT_M, "a.m", path, sizeof path),
+                     1);
+    assert_string_equal(strrchr(path, '/'), "/a.m");
+    control_have_motion(3);
+    assert_true(grobo_control_save_motion(control, GROBO_FORMAT_YAML, "b", NULL, 0) >= 3);
+    assert_int_equal(grobo_control_load_motion(control, "a", NULL), 1);
+    assert_true(grobo_control_load_motion(control, "b", NULL) >= 3);
+    assert_true(grobo_control_load_motion(control, "a.pseq", NULL) >= 3);
+}
+
+static void what_cannot_be_loaded_leaves_nothing(void **state)
+{
+    grobo_diagnostics *list;
+    char path[8];
+
+    (void)state;
+    assert_int_equal(grobo_diagnostics_new(&list, NULL), GROBO_OK);
+    control_have_motion(2);
+    assert_int_equal(grobo_control_load_motion(control, "none", list), GROBO_ERR_NOENT);
+    assert_int_equal(grobo_control_motion_size(control), 0);
+    control_have_motion(2);
+    assert_int_equal(grobo_control_load_motion(control, NULL, list), GROBO_ERR_ARG);
+    assert_int_equal(grobo_control_motion_size(control), 0);
+    control_have_motion(2);
+    assert_int_equal(grobo_control_load_motion(control, "../a", list), GROBO_ERR_PERM);
+    assert_int_equal(grobo_control_motion_size(control), 0);
+    put_file(in_folder("bad.m"), "this is no motion\n");
+    control_have_motion(2);
+    assert_true(grobo_control_load_motion_format(control, GROBO_FORMAT_M, "bad", list) < 0);
+    assert_int_equal(grobo_control_motion_size(control), 0);
+    assert_true(grobo_diagnostics_count(list) > 0);
+    grobo_diagnostics_free(list);
+
+    control_have_motion(2);
+    assert_int_equal(grobo_control_save_motion(control, GROBO_FORMAT_M, "../a", NULL, 0),
+                     GROBO_ERR_PERM);
+    assert_int_equal(grobo_control_save_motion(control, GROBO_FORMAT_M, "", NULL, 0),
+                     GROBO_ERR_ARG);
+    assert_int_equal(grobo_control_save_motion(control, GROBO_FORMAT_PSEQ, NULL, NULL, 0),
+                     GROBO_ERR_ARG);
+    assert_int_equal(grobo_control_save_motion(control, GROBO_FORMAT_M, "a", path, sizeof path),
+                     GROBO_ERR_SPACE);
+    assert_int_equal(grobo_control_load_motion(control, "a", NULL), GROBO_ERR_NOENT);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        WITH_AND_WITHOUT_THREAD(motions_are_saved_and_loaded),
+        WITH_AND_WITHOUT_THREAD(what_cannot_be_loaded_leaves_nothing),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

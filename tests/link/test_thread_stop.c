@@ -1,0 +1,243 @@
+/* SPDX-License-Identifier: MIT */
+/* Emergency stops of a control whose loop is held, has no thread, or has no line. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "stop_kit.h"
+
+/* ---- emergency stops ---------------------------------------------------------------------- */
+
+static void an_emergency_stop_stands_while_a_callback_blocks(void **state)
+{
+    (void)state;
+    stop_kit_start((grobo_control_config){.skip_exit = true});
+    move_for_long();
+    hold_begin(&gate);
+    assert_false(grobo_control_is_latched(control));
+    assert_int_equal(grobo_control_estop(control), GROBO_OK);
+    assert_true(grobo_control_is_latched(control));
+    hold_end(&gate);
+    assert_int_equal(grobo_control_call(control, tripped, NULL), 1);
+    assert_stopped(1);
+    assert_int_equal(grobo_control_set_servo_state(control, ELBOW, GROBO_TORQUE_ON, 0),
+                     GROBO_ERR_LATCHED);
+    assert_int_equal(grobo_control_reset(control), GROBO_OK);
+    assert_false(grobo_control_is_latched(control));
+    assert_int_equal(grobo_control_set_servo_state(control, ELBOW, GROBO_TORQUE_ON, 0),
+                     GROBO_TORQUE_ON);
+    stop_kit_end();
+}
+
+static void an_emergency_stop_needs_no_lock_of_the_programs(void **state)
+{
+    (void)state;
+    stop_kit_start((grobo_control_config){.skip_exit = true});
+    move_for_long();
+    grobo_mutex_lock(&users);
+    assert_int_equal(grobo_control_estop(control), GROBO_OK); /* on_svc waits, or soon will */
+    assert_true(grobo_control_is_latched(control));
+    grobo_mutex_unlock(&users);
+    assert_stopped(1);
+    stop_kit_end();
+}
+
+static void several_emergency_stops_are_one(void **state)
+{
+    (void)state;
+    stop_kit_start((grobo_control_config){.skip_exit = true});
+    move_for_long();
+    hold_begin(&gate);
+    for (int i = 0; i < 1000; i++) {
+        assert_int_equal(grobo_control_estop(control), GROBO_OK);
+    }
+    hold_end(&gate);
+    assert_stopped(1);
+    assert_int_equal(told.trips, 1);
+    assert_int_equal(grobo_control_estop(NULL), GROBO_ERR_ARG);
+    stop_kit_end();
+}
+
+static void the_next_frame_is_the_stop(void **state)
+{
+    (void)state;
+    for (int round = 0; round < 5; round++) {
+        stop_kit_start((grobo_control_config){.skip_exit = true});
+        play_for_long();
+        hold_begin(&gate);
+        saw.listen = true;
+        told = saw; /* the loop is held */
+        int goals = told.goals;
+        if (round > 0) { /* a stop besides sends nothing */
+            assert_int_equal(grobo_control_post_stop(control, round == 1), GROBO_OK);
+        }
+        assert_int_equal(grobo_control_estop(control), GROBO_OK);
+        hold_end(&gate);
+        assert_stopped(1);
+        assert_int_equal(told.first, TORQUE);
+        assert_int_equal(told.goals, goals);
+        stop_kit_end();
+    }
+}
+
+/* The robot has just been found, and a frame that reads a joint is about to leave. */
+static void stop_when_up(grobo_session *session, grobo_session_event event, int error, void *ctx)
+{
+    (void)error;
+    (void)ctx;
+    if (event == GROBO_SESSION_EVENT_UP) {
+        saw.listen = true;
+        assert_true(grobo_session_sense(session, EVERY_JOINT, GROBO_SENSE_FULL) > 0);
+        assert_int_equal(grobo_session_post_estop(session), GROBO_OK);
+    }
+}
+
+static void no_frame_leaves_before_a_posted_stop(void **state)
+{
+    (void)state;
+    stop_kit_make((grobo_control_config){.skip_exit = true, .session.on_event = stop_when_up});
+    control_come_up();
+    assert_stopped(1);
+    assert_int_equal(told.first, TORQUE);
+    stop_kit_end();
+}
+
+static void without_a_thread_the_next_call_stops_first(void **state)
+{
+    (void)state;
+    stop_kit_make((grobo_control_config){.skip_exit = true});
+    assert_int_equal(grobo_control_estop(control), GROBO_OK); /* nothing is open yet */
+    assert_true(grobo_control_is_latched(control));
+    assert_int_equal(grobo_control_call(control, tripped, NULL), 1);
+    control_come_up();
+    assert_stopped(1);
+    assert_int_equal(grobo_control_reset(control), GROBO_OK);
+
+    assert_int_equal(grobo_control_set_servo_states(control, EVERY_JOINT, GROBO_TORQUE_ON, 0), 0);
+    move_for_long();
+    assert_int_equal(grobo_control_call(control, begin_to_listen, NULL), 0);
+    assert_int_equal(grobo_control_estop(control), GROBO_OK);
+    assert_stopped(2);
+    assert_int_equal(told.first, TORQUE);
+    stop_kit_end();
+}
+
+static int stop_twice(grobo_control *from)
+{
+    int r = grobo_control_estop(from);
+    bool at_once = grobo_control_is_latched(from);
+
+    /* A call in a callback is done at once, and the stop goes before it. */
+    return r == GROBO_OK && at_once && grobo_control_call(from, tripped, NULL) == 1 &&
+           grobo_control_estop(from) == GROBO_OK && grobo_control_reset(from) == GROBO_ERR_STATE;
+}
+
+static void a_callback_may_stop(void **state)
+{
+    (void)state;
+    stop_kit_start((grobo_control_config){.skip_exit = true});
+    move_for_long();
+    hold_begin(&gate);
+    in_callback = stop_twice;
+    hold_end(&gate);
+    while (!grobo_control_is_latched(control)) {
+        assert_int_equal(grobo_control_svc(control), 0);
+    }
+    (void)grobo_control_wait(control, 0);
+    assert_int_equal(callback_result, 1);
+    assert_stopped(1); /* the second found the first under way */
+    stop_kit_end();
+}
+
+static void an_emergency_stop_waits_for_the_line(void **state)
+{
+    (void)state;
+    stop_kit_start((grobo_control_config){.skip_exit = true});
+    assert_int_equal(grobo_control_close_port(control, 0), GROBO_OK);
+    assert_int_equal(grobo_control_estop(control), GROBO_OK);
+    assert_true(grobo_control_is_latched(control));
+    assert_int_equal(grobo_control_call(control, tripped, NULL), 1);
+    control_come_up();
+    assert_stopped(1);
+    stop_kit_end();
+}
+
+static void a_program_that_ends_is_stopped_before(void **state)
+{
+    (void)state;
+    for (int threaded = 0; threaded < 2; threaded++) {
+        stop_kit_start((grobo_control_config){.skip_exit = true});
+        if (!threaded) {
+            assert_int_equal(grobo_control_stop_thread(control), GROBO_OK);
+        }
+        assert_int_equal(grobo_control_estop(control), GROBO_OK);
+        stop_kit_end();
+        assert_int_equal(saw.estops, 1);
+        assert_int_equal(saw.estop_result, GROBO_OK);
+    }
+}
+
+/* ---- resets ------------------------------------------------------------------------------- */
+
+static void a_reset_does_not_clear_a_later_stop(void **state)
+{
+    caller other;
+
+    (void)state;
+    stop_kit_start((grobo_control_config){.skip_exit = true, .timeout_us = LONG_US});
+    assert_int_equal(grobo_control_close_port(control, 0), GROBO_OK); /* it stays latched then */
+    assert_int_equal(grobo_control_estop(control), GROBO_OK);
+    hold_begin(&gate);
+    begin_call(&other, grobo_control_reset, 1);
+    assert_int_equal(grobo_control_estop(control), GROBO_OK);
+    hold_end(&gate);
+    assert_int_equal(end_call(&other), GROBO_ERR_STATE);
+    assert_true(grobo_control_is_latched(control));
+    control_come_up();
+    assert_stopped(1);
+    stop_kit_end();
+}
+
+static int stop_session(grobo_control *from)
+{
+    return grobo_session_estop(grobo_control_session(from));
+}
+
+static void nor_one_that_a_callback_made(void **state)
+{
+    caller other;
+
+    (void)state;
+    stop_kit_start((grobo_control_config){.skip_exit = true, .timeout_us = LONG_US});
+    assert_int_equal(grobo_control_close_port(control, 0), GROBO_OK);
+    hold_begin(&gate);
+    begin_call(&other, grobo_control_reset, 1);
+    in_callback = stop_session;
+    hold_end(&gate);
+    assert_int_equal(end_call(&other), GROBO_ERR_STATE);
+    assert_int_equal(callback_result, GROBO_ERR_CLOSED);
+    assert_true(grobo_control_is_latched(control));
+    stop_kit_end();
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(an_emergency_stop_stands_while_a_callback_blocks),
+        cmocka_unit_test(an_emergency_stop_needs_no_lock_of_the_programs),
+        cmocka_unit_test(several_emergency_stops_are_one),
+        cmocka_unit_test(the_next_frame_is_the_stop),
+        cmocka_unit_test(no_frame_leaves_before_a_posted_stop),
+        cmocka_unit_test(without_a_thread_the_next_call_stops_first),
+        cmocka_unit_test(a_callback_may_stop),
+        cmocka_unit_test(an_emergency_stop_waits_for_the_line),
+        cmocka_unit_test(a_program_that_ends_is_stopped_before),
+        cmocka_unit_test(a_reset_does_not_clear_a_later_stop),
+        cmocka_unit_test(nor_one_that_a_callback_made),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,426 @@
+# SPDX-License-Identifier: MIT
+"""Sabotages functions one by one and looks whether a test notices.
+
+usage: run.py [option]...
+  --sources "FILE..."   C sources in which the functions of the scope are looked for
+  --tests "FILE..."     objects of test programs, each with its own main
+  --libs "WORD..."      what they are linked with, the library last; a sabotaged object goes before it
+  --compile "WORD..."   compiler and flags
+  --link "WORD..."      compiler and flags to link with
+  --scope FILE          patterns of function names: `unit PATTERN`, `function PATTERN`
+  --survivors FILE      mutants that no test can notice, each with its reason
+  --named FILE          sabotages that are always tried
+  --work DIR            a folder for what is built; nothing else is written
+  --seed N --count N    which mutants, and how many that compile (0: all of them)
+  --choose PATTERN      tests to run; default all
+  --only ID             this mutant alone; `named`: all by hand
+  --jobs N              how many at a time
+
+Compiled into the same object as the original is no mutant; like one that does not compile it does
+not count. Noticed is what fails a test, crashes (what looks past the end of an array does), or
+takes five times the processor time of the original. The last line is: N passed (noticed), N failed
+(not noticed, or wrong anchors), N skipped (not noticed, with a reason in the file of survivors).
+Exit status 0 if none failed and 95 % of all were noticed.
+"""
+import argparse
+import concurrent.futures
+import json
+import os
+import random
+import re
+import resource
+import shlex
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+sys.dont_write_bytecode = True
+import mutate  # noqa: E402
+
+WANTED_PCT = 95
+MEMORY_BYTES = 2 << 30
+QUIET = {"stdin": subprocess.DEVNULL, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+
+
+class Problem(Exception):
+    """What ends the run: said in one line."""
+
+
+# ---- the files beside this one -------------------------------------------------------------------
+
+def lines_of(path):
+    with open(path, encoding="utf-8") as file:
+        for number, line in enumerate(file, 1):
+            if line.strip() and not line.startswith("#"):
+                yield number, line.rstrip("\n")
+
+
+def read_survivors(path):
+    """Anchor -> reason. A reason is indented and stands below the anchors that it is for."""
+    reasons, open_anchors, closed = {}, [], False
+    for number, line in lines_of(path):
+        if line[0] == " ":
+            if not open_anchors:
+                raise Problem(f"{path}:{number}: reason without a mutant")
+            for anchor in open_anchors:
+                reasons[anchor] = (reasons.get(anchor, "") + " " + line.strip()).strip()
+            closed = True
+        else:
+            open_anchors = [] if closed else open_anchors
+            closed = False
+            open_anchors.append(line.strip())
+            if line.strip() in reasons:
+                raise Problem(f"{path}:{number}: the same mutant twice")
+    missing = [a for a in open_anchors if not reasons.get(a)]
+    if missing:
+        raise Problem(f"{path}: no reason: {missing[0]}")
+    return reasons
+
+
+class Named(mutate.Mutant):
+    """A sabotage written by hand: other text in one function."""
+
+    def __init__(self, function, old, new):
+        pattern = r"\s+".join(re.escape(word) for word in old.split())
+        found = list(re.finditer(pattern, function.clean[function.start:function.end]))
+        if len(found) != 1:
+            raise Problem(f"{function.name}: found {len(found)} times, not once: {old}")
+        span = (function.start + found[0].start(), function.start + found[0].end())
+        super().__init__(function, "named", function.path, span, new)
+
+
+def read_blocks(path):
+    """Line number, head, old and new text of blocks of three lines: head, `- old`, `+ new`."""
+    lines = list(lines_of(path))
+    if len(lines) % 3 != 0:
+        raise Problem(f"{path}: not in blocks of three lines")
+    for i in range(0, len(lines), 3):
+        (number, head), (_, old), (_, new) = lines[i:i + 3]
+        if old[:2] != "- " or new[:1] != "+":
+            raise Problem(f"{path}:{number}: not a head, '- old' and '+ new'")
+        yield number, head, old[2:], new[2:]
+
+
+def read_named(path, functions):
+    """Sabotages written by hand; the head of a block is a function."""
+    for number, name, old, new in read_blocks(path):
+        if len(functions.get(name, [])) != 1:
+            raise Problem(f"{path}:{number}: missing anchor: one function {name}")
+        yield Named(functions[name][0], old, new)
+
+
+def read_scope(path, by_file):
+    """The functions that are sabotaged. Each pattern must name one at least."""
+    chosen = set()
+    for number, line in lines_of(path):
+        kind, pattern = line.split()
+        found = [f for functions in by_file.values() for f in functions
+                 if re.fullmatch(pattern, f.name)]
+        if kind not in ("unit", "function") or not found:
+            raise Problem(f"{path}:{number}: missing anchor: {kind} {pattern}")
+        for function in found:
+            chosen.update(by_file[function.path] if kind == "unit" else [function])
+    return chosen
+
+
+# ---- building and running ------------------------------------------------------------------------
+
+def limit(cpu_s):
+    def apply():
+        resource.setrlimit(resource.RLIMIT_CPU, (cpu_s, cpu_s + 1))
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        resource.setrlimit(resource.RLIMIT_AS, (MEMORY_BYTES, MEMORY_BYTES))
+    return apply
+
+
+class Builder:
+    """Compiles sabotaged files."""
+
+    def __init__(self, options, work):
+        self.options, self.work = options, work
+        self.texts, self.plain = {}, {}
+        self.flags = ["-w", "-fwrapv"]
+        more = ["-ftrivial-auto-var-init=zero"]
+        if self.compile(".", "", os.path.join(work, "try.o"), more):
+            self.flags += more  # what is not set is the same each time
+
+    def functions(self):
+        """The functions of the sources, by file and by name."""
+        by_file, by_name = {}, {}
+        for path in self.options.sources.split():
+            with open(path, encoding="utf-8") as file:
+                self.texts[path] = file.read()
+            by_file[path] = mutate.functions_of(self.texts[path])
+            for function in by_file[path]:
+                function.path = path
+                by_name.setdefault(function.name, []).append(function)
+        return by_file, by_name
+
+    @staticmethod
+    def call(command, text=None):
+        done = subprocess.run(command, input=text, text=True, capture_output=True, check=False)
+        if done.returncode != 0:
+            raise Problem(f"{command[0]} failed: {done.stderr.strip()[:2000]}")
+
+    def compile(self, path, text, out, more=()):
+        """True if it compiles. It comes by a pipe, so that no path is in the object."""
+        command = shlex.split(self.options.compile) + self.flags + list(more) + [
+            "-iquote", os.path.dirname(path), "-x", "c", "-", "-c", "-o", out]
+        done = subprocess.run(command, input=text, text=True, check=False,
+                              stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        return done.returncode == 0
+
+    def original(self, path):
+        """The bytes of the object that was not sabotaged."""
+        if path not in self.plain:
+            out = os.path.join(self.work, "plain.o")
+            if not self.compile(path, self.texts[path], out):
+                raise Problem(f"{path} does not compile")
+            with open(out, "rb") as file:
+                self.plain[path] = file.read()
+        return self.plain[path]
+
+    def make(self, mutant):
+        """The object of a mutant, or None where it does not count."""
+        out = os.path.join(self.work, f"{mutant.id}-{mutant.start}.o")
+        if not self.compile(mutant.path, mutant.apply(self.texts[mutant.path]), out):
+            return None
+        with open(out, "rb") as file:
+            same = file.read() == self.original(mutant.path)
+        if same:
+            os.unlink(out)
+        return None if same else out
+
+
+class Bench(Builder):
+    """Compiles one file, links it with all tests into one program, runs the tests in it."""
+
+    def __init__(self, options, work):
+        super().__init__(options, work)
+        more = ["-fsanitize=bounds,shift", "-fsanitize-undefined-trap-on-error"]
+        if self.compile(".", "", os.path.join(work, "try.o"), more):
+            self.flags += more  # what looks past the end of an array crashes
+        self.killers_path = os.path.join(options.work, "killers.json")
+        self.tests, self.killers, self.hits = [], self._killers(), {}
+        self.main = os.path.join(work, "main.o")
+        self.objects = self._tests_of(options.tests.split())
+
+    def _killers(self):
+        """Anchor -> the test that noticed it in an earlier run: only a hint which goes first."""
+        try:
+            with open(self.killers_path, encoding="utf-8") as file:
+                return dict(json.load(file))
+        except (OSError, ValueError):
+            return {}
+
+    def keep_killers(self):
+        with open(self.killers_path, "w", encoding="utf-8") as file:
+            json.dump(self.killers, file, indent=0)
+
+    def _tests_of(self, objects):
+        """Copies of the tests whose mains have names of their own, and a main that calls one."""
+        names, copies = [], []
+        for path in objects:
+            name = os.path.splitext(os.path.basename(path))[0]
+            if not re.fullmatch(self.options.choose, name):
+                continue
+            copy = os.path.join(self.work, name + ".test.o")
+            self.call(["objcopy", "--redefine-sym", f"main=main_of_{name}", path, copy])
+            names.append(name)
+            copies.append(copy)
+        rows = "".join(f'    {{"{n}", main_of_{n}}},\n' for n in names)
+        source = ("#include <string.h>\n" + "".join(f"int main_of_{n}(void);\n" for n in names) +
+                  "static const struct { const char *name; int (*run)(void); } tests[] = {\n" +
+                  rows + "};\nint main(int argc, char **argv)\n{\n"
+                  "    for (unsigned i = 0; i < sizeof tests / sizeof tests[0]; i++) {\n"
+                  "        if (argc == 2 && strcmp(argv[1], tests[i].name) == 0) {\n"
+                  "            return tests[i].run() != 0;\n        }\n    }\n    return 0;\n}\n")
+        self.call(shlex.split(self.options.compile) + ["-w", "-x", "c", "-", "-c", "-o", self.main],
+                   source)
+        self.tests = names
+        return copies
+
+    def link(self, objects, out):
+        self.call(shlex.split(self.options.link) + ["-o", out, self.main] + self.objects +
+                   objects + shlex.split(self.options.libs))
+
+    def run(self, program, test, cpu_s):
+        """True if the test passes."""
+        env = dict(os.environ, CMOCKA_TEST_ABORT="1", CMOCKA_MESSAGE_OUTPUT="TAP")
+        try:
+            done = subprocess.run([program, test], env=env, cwd=self.options.root, check=False,
+                                  preexec_fn=limit(cpu_s), timeout=20 * cpu_s + 60, **QUIET)
+        except subprocess.TimeoutExpired:
+            return False
+        return done.returncode == 0
+
+    def measure(self):
+        """How long each test takes when nothing is sabotaged; the quick ones come first."""
+        program = os.path.join(self.work, "original")
+        self.link([], program)
+        took = {}
+        for test in self.tests:
+            before = resource.getrusage(resource.RUSAGE_CHILDREN)
+            if not self.run(program, test, 300):
+                raise Problem(f"{test} fails though nothing is sabotaged")
+            after = resource.getrusage(resource.RUSAGE_CHILDREN)
+            took[test] = after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
+        return sorted((s, test) for test, s in took.items())
+
+    def noticed_by(self, mutant, obj, times):
+        """The test that notices this object, or None. First what noticed it before, then what
+        noticed others of its function and of its file."""
+        program = obj[:-2]
+        hits = self.hits.setdefault(mutant.path, {})
+        near = [t for a, t in list(self.killers.items()) if a.startswith(mutant.function + " |")]
+        before = self.killers.get(mutant.anchor)
+        order = sorted(times, key=lambda x: (x[1] != before, (x[0] + 0.02) / (
+            1 + hits.get(x[1], 0) + 8 * near.count(x[1]))))
+        try:
+            self.link([obj], program)
+            for took_s, test in order:
+                if not self.run(program, test, 2 + int(5 * took_s)):
+                    hits[test] = hits.get(test, 0) + 1
+                    self.killers[mutant.anchor] = test
+                    return test
+        finally:
+            for path in (program, obj):
+                if os.path.exists(path):
+                    os.unlink(path)
+        return None
+
+
+# ---- the whole -----------------------------------------------------------------------------------
+
+def sample(mutants, seed):
+    """All of them in a random order: first one of each line, then a second of each, ..."""
+    chance = random.Random(seed)
+    lines = {}
+    for mutant in mutants:
+        lines.setdefault((mutant.path, mutant.line), []).append(mutant)
+    for of_line in lines.values():
+        chance.shuffle(of_line)
+    order = list(lines.values())
+    while order:
+        chance.shuffle(order)
+        for of_line in order:
+            yield of_line.pop()
+        order = [of_line for of_line in order if of_line]
+
+
+def choose(options, functions, by_file, reasons):
+    """The mutants to try, and how many of them that compile are wanted."""
+    scope = read_scope(options.scope, by_file)
+    order = [f for functions_of in by_file.values() for f in functions_of if f in scope]
+    mutants = [m for f in order for m in mutate.mutants_of(f, f.path)]
+    named = list(read_named(options.named, functions)) if options.named else []
+    known = {m.anchor for m in mutants}
+    for anchor in reasons:
+        if anchor not in known:
+            raise Problem(f"{options.survivors}: missing anchor: {anchor}")
+    print(f"{len(mutants)} mutants of {len(scope)} functions, seed {options.seed}")
+    if options.only == "named":
+        return named, len(named)
+    if options.only:
+        found = [m for m in mutants + named if m.id == options.only]
+        if not found:
+            raise Problem(f"no mutant {options.only}")
+        return found, len(found)
+    wanted = options.count + len(named) if options.count > 0 else len(mutants) + len(named)
+    return named + list(sample(mutants, options.seed)), wanted
+
+
+def build(bench, pool, mutants, wanted):
+    """Pairs of a mutant and its object, as many as wanted."""
+    made, at = [], 0
+    for path in {m.path for m in mutants}:
+        bench.original(path)
+    while at < len(mutants) and len(made) < wanted:
+        part = mutants[at:at + min(64, wanted - len(made))]
+        at += len(part)
+        made += [(m, o) for m, o in zip(part, pool.map(bench.make, part)) if o is not None]
+    return made, at - len(made)
+
+
+def judge(results, reasons, options):
+    noticed = failed = skipped = 0
+    by = {}
+    for mutant, test in results:
+        if test is not None:
+            noticed += 1
+            by[test] = by.get(test, 0) + 1
+            if mutant.anchor in reasons:
+                failed += 1
+                noticed -= 1
+                print(f"{options.survivors}: {test} notices it: {mutant.anchor}")
+        elif mutant.anchor in reasons:
+            skipped += 1
+        else:
+            failed += 1
+        if options.only and test is not None:
+            print(f"noticed by {test}: {mutant.anchor}")
+    print("noticed by: " + ", ".join(f"{t} {n}" for t, n in sorted(by.items(), key=lambda x: -x[1])))
+    return noticed, failed, skipped
+
+
+def run_all(options, work):
+    bench = Bench(options, work)
+    by_file, functions = bench.functions()
+    reasons = read_survivors(options.survivors) if options.survivors else {}
+    mutants, wanted = choose(options, functions, by_file, reasons)
+    begun_s = time.monotonic()
+    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+        times = bench.measure()
+        made, left_out = build(bench, pool, mutants, wanted)
+        print(f"{len(made)} to try, {left_out} that do not compile or change nothing", flush=True)
+        tests = pool.map(lambda pair: bench.noticed_by(*pair, times), made)
+        results = []
+        for (mutant, _), test in zip(made, tests):
+            results.append((mutant, test))
+            if len(results) % 20 == 0 or len(results) == len(made):
+                bench.keep_killers()
+            if test is None and mutant.anchor not in reasons:
+                print(f"not noticed: {mutant.anchor}\n    {mutant.path}:{mutant.line}; again: "
+                      f"make check-mutants ONLY={mutant.id}", flush=True)
+    noticed, failed, skipped = judge(results, reasons, options)
+    share_pct = 100 * noticed / max(1, len(results))
+    print(f"{noticed} of {len(results)} noticed, {share_pct:.1f} %, "
+          f"in {time.monotonic() - begun_s:.0f} s")
+    print(f"{noticed} passed, {failed} failed, {skipped} skipped")
+    return 0 if failed == 0 and results and (options.only or share_pct >= WANTED_PCT) else 1
+
+
+def in_work_folder(options, run):
+    """The exit status of run(options, work), in a folder that is gone when it ends."""
+    options.root = os.getcwd()
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # and leaves nothing behind
+    os.makedirs(options.work, exist_ok=True)
+    work = tempfile.mkdtemp(prefix="run-", dir=options.work)
+    try:
+        return run(options, work)
+    except Problem as problem:
+        print(f"mutants: {problem}")
+        print("0 passed, 1 failed, 0 skipped")
+        return 1
+    finally:
+        shutil.rmtree(work, ignore_errors=True)
+
+
+def main():
+    parser = argparse.ArgumentParser(usage=__doc__)
+    for name in ("sources", "tests", "libs", "compile", "link", "scope", "work"):
+        parser.add_argument("--" + name, required=True)
+    for name in ("survivors", "named", "only"):
+        parser.add_argument("--" + name)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--count", type=int, default=300)
+    parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)))
+    parser.add_argument("--choose", default=".*")
+    return in_work_folder(parser.parse_args(), run_all)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: MIT */
+#include "many_joints.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+grobo_driver *many_joints(grobo_wiring wiring, int n)
+{
+    static char names[GROBO_JOINTS_MAX][8];
+    static grobo_joint joints[GROBO_JOINTS_MAX];
+    static grobo_model model;
+    static grobo_driver driver;
+    model = grobo_gr001_model;
+    for (int j = 0; j < n; j++) {
+        joints[j] = grobo_gr001_model.joints[j % grobo_gr001_model.n_joints];
+        names[j][0] = 'J';
+        names[j][1] = (char)('0' + j / 10);
+        names[j][2] = (char)('0' + j % 10);
+        joints[j].name = names[j];
+        joints[j].motor = (uint8_t)(j + 1);
+        joints[j].mirror = (uint8_t)j;
+        joints[j].mirror_sign = 1;
+    }
+    model.joints = joints;
+    model.n_groups = 0;
+    model.n_joints = (uint8_t)n;
+    assert_int_equal(grobo_rs30x_driver_init(&driver, &model, wiring), 0);
+    return &driver;
+}

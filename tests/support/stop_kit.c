@@ -1,0 +1,201 @@
+/* SPDX-License-Identifier: MIT */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "src/link/thread_i.h"
+#include "stop_kit.h"
+
+struct saw saw, told;
+hold gate;
+int (*in_callback)(grobo_control *from);
+int callback_result;
+grobo_mutex users;
+
+static int on_svc(grobo_control *from, void *ctx)
+{
+    int (*asked)(grobo_control *);
+
+    (void)ctx;
+    hold_here(&gate);
+    grobo_mutex_lock(&users);
+    grobo_mutex_unlock(&users);
+    asked = in_callback;
+    in_callback = NULL;
+    if (asked != NULL) {
+        callback_result = asked(from);
+    }
+    return 0;
+}
+
+static void on_robot(void *ctx, const grobo_event *event)
+{
+    (void)ctx;
+    saw.trips += event->kind == GROBO_EVENT_TRIP;
+    if (event->kind == GROBO_EVENT_PLAY && event->u.play.to == GROBO_SEQUENCER_STOPPING) {
+        saw.stop_us = -event->now_us;
+    }
+    if (event->kind == GROBO_EVENT_PLAY && event->u.play.from == GROBO_SEQUENCER_STOPPING) {
+        saw.stop_us += event->now_us;
+    }
+    if (event->kind == GROBO_EVENT_JOB && event->u.job.kind == GROBO_JOB_ESTOP) {
+        saw.estops++;
+        saw.estop_result = event->u.job.result;
+    }
+    if (event->kind == GROBO_EVENT_JOB && event->u.job.kind == GROBO_JOB_EXIT) {
+        saw.exits++;
+        saw.exit_result = event->u.job.result;
+    }
+}
+
+/* A packet for the servos is behind two bytes of the board: its address is the seventh byte, and
+ * the ninth how many servos it writes to, 0 for a reading. */
+static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes, size_t size,
+                   void *ctx)
+{
+    (void)now_us;
+    (void)ctx;
+    if (direction == GROBO_DIR_TX) {
+        bool writes = size > 8 && bytes[2] == 0xFA && bytes[3] == 0xAF && bytes[8] > 0;
+        int address = writes ? bytes[6] : -1;
+
+        saw.goals += address == GOAL;
+        if (saw.listen && saw.first == 0) {
+            saw.first = address;
+        }
+    }
+}
+
+void stop_kit_make(grobo_control_config config)
+{
+    config.session.device = GROBO_DEVICE_SIM;
+    config.session.baud_bps = 1000000;
+    config.session.on_robot = on_robot;
+    config.session.on_tap = on_tap;
+    config.control_period_us = 1000;
+    config.on_svc = on_svc;
+    memset(&saw, 0, sizeof saw);
+    in_callback = NULL;
+    callback_result = 0;
+    hold_init(&gate);
+    assert_int_equal(grobo_mutex_init(&users), GROBO_OK);
+    assert_int_equal(grobo_control_new(&config, &control), GROBO_OK);
+}
+
+void stop_kit_end(void)
+{
+    assert_int_equal(grobo_control_free(control), GROBO_OK);
+    hold_deinit(&gate);
+    grobo_mutex_deinit(&users);
+}
+
+void stop_kit_start(grobo_control_config config)
+{
+    stop_kit_make(config);
+    assert_int_equal(grobo_control_start_thread(control), GROBO_OK);
+    assert_int_equal(grobo_control_connect(control, LONG_US), GROBO_OK);
+    assert_int_equal(grobo_control_set_servo_states(control, EVERY_JOINT, GROBO_TORQUE_ON, LONG_US),
+                     GROBO_OK);
+}
+
+void move_for_long(void)
+{
+    assert_int_equal(grobo_control_set_joint(control, ELBOW, grobo_rad_from_deg(45)), GROBO_OK);
+    assert_int_equal(grobo_control_set_motion_time_us(control, LONG_US), GROBO_OK);
+    assert_int_equal(grobo_control_start_motion(control), GROBO_OK);
+    assert_int_equal(grobo_control_wait(control, 300000), GROBO_ERR_TIMEOUT);
+    assert_int_equal(grobo_control_is_moving(control), 1);
+}
+
+int copy_seen(grobo_control *from, void *arg)
+{
+    (void)from;
+    memcpy(arg, &saw, sizeof saw);
+    return 0;
+}
+
+int tripped(grobo_control *from, void *arg)
+{
+    grobo_trip_info trip;
+
+    (void)arg;
+    grobo_robot_tripped(grobo_session_robot(grobo_control_session(from)), &trip);
+    return trip.latched;
+}
+
+int begin_to_listen(grobo_control *from, void *arg)
+{
+    (void)from;
+    (void)arg;
+    saw.listen = true;
+    saw.first = 0;
+    return 0;
+}
+
+void assert_stopped(int estops)
+{
+    (void)grobo_control_wait(control, 0);
+    assert_int_equal(grobo_control_call(control, tripped, NULL), 1);
+    assert_true(grobo_control_is_latched(control));
+    assert_int_equal(grobo_control_is_moving(control), 0);
+    assert_int_equal(grobo_control_call(control, copy_seen, &told), 0);
+    assert_int_equal(told.estops, estops);
+    assert_int_equal(told.estop_result, GROBO_OK);
+    for (int j = 0; j < 20; j++) {
+        assert_int_equal(grobo_control_get_servo_state(control, j), GROBO_TORQUE_BRAKE);
+    }
+}
+
+void play_for_long(void)
+{
+    const grobo_play_options fast = {
+        .mode = GROBO_PLAY_RATE, .rate_hz = 100, .unwatched = true, .stop_us = STOP_US};
+    int64_t end_us = grobo_now_us() + LONG_US / 2;
+    int before;
+
+    assert_int_equal(grobo_control_call(control, copy_seen, &told), 0);
+    before = told.goals;
+    control_have_motion(4);
+    (void)grobo_control_set_motion_count(control, 1000000);
+    assert_int_equal(grobo_control_play_motion(control, &fast), GROBO_OK);
+    do {
+        assert_int_equal(grobo_control_call(control, copy_seen, &told), 0);
+        assert_true(grobo_now_us() < end_us);
+    } while (told.goals < before + 20);
+}
+
+static GROBO_THREAD_FUNC run_call(void *arg)
+{
+    caller *self = arg;
+
+    self->result = self->call(control);
+    GROBO_THREAD_RETURN;
+}
+
+void begin_call(caller *c, int (*call)(grobo_control *from), int slots)
+{
+    int64_t end_us = grobo_now_us() + 10000000;
+    int n;
+
+    c->call = call;
+    assert_int_equal(grobo_thread_start(&c->thread, run_call, c), GROBO_OK);
+    do {
+        n = 0;
+        grobo_i_control_lock(control);
+        for (int i = 0; i < CONTROL_SLOTS; i++) {
+            n += control->slot[i].state != CALL_FREE;
+        }
+        grobo_i_control_unlock(control);
+        assert_true(grobo_now_us() < end_us);
+    } while (n < slots);
+}
+
+int end_call(caller *c)
+{
+    assert_int_equal(grobo_thread_join(c->thread), GROBO_OK);
+    return c->result;
+}

@@ -1,0 +1,208 @@
+/* SPDX-License-Identifier: MIT */
+/* Whatever is written plays what its source plays, and grobo_motion_verify() notices where not. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "motion_texts.h"
+
+enum { KEYS = 6, TRIALS = 25 };
+#define KEY_S 0.5 /* on a frame at GROBO_MOTION_RATE_HZ */
+
+static double random_rad(uint32_t *seed)
+{
+    *seed = *seed * 1664525U + 1013904223U;
+    return grobo_rad_from_deg((int)(*seed >> 16) % 200 / 10.0);
+}
+
+/* Key poses of some joints, what they mean put down in wanted. */
+static grobo_motion *random_motion(grobo_motion_kind kind, grobo_joint_mask joints,
+                                   double wanted[KEYS][GROBO_JOINTS_MAX], uint32_t *seed)
+{
+    grobo_motion *motion = NULL;
+    int n_joints = 20;
+    while ((joints & GROBO_JOINT_BIT(n_joints - 1)) == 0) {
+        n_joints--;
+    }
+    assert_int_equal(grobo_motion_new(&motion, kind, n_joints, NULL), 0);
+    for (int k = 0; k < KEYS; k++) {
+        grobo_posture posture;
+        (void)grobo_posture_init(&posture, n_joints);
+        for (int j = 0; j < n_joints; j++) {
+            if ((joints & GROBO_JOINT_BIT(j)) == 0) {
+                continue;
+            }
+            double value = random_rad(seed);
+            double before = k > 0 ? wanted[k - 1][j] : grobo_gr001_model.joints[j].init_rad;
+            wanted[k][j] = kind == GROBO_MOTION_STEPS ? before + value : value;
+            (void)grobo_posture_set_rad(&posture, j, value);
+        }
+        assert_int_equal(grobo_motion_append_at(motion, (k + 1) * KEY_S, &posture), 0);
+    }
+    if (kind == GROBO_MOTION_FRAMES) {
+        assert_int_equal(grobo_motion_set_frame_rate(motion, 1 / KEY_S), 0);
+    }
+    return motion;
+}
+
+/* What a file plays at the times of the keys. */
+static void expect_played(const char *text, grobo_motion_format format, grobo_joint_mask joints,
+                          double wanted[KEYS][GROBO_JOINTS_MAX], double near_rad, double first_s)
+{
+    grobo_motion *motion = motion_of(text, format);
+    grobo_posture start, at;
+    grobo_clip clip;
+
+    grobo_motion_start(motion, &grobo_gr001_model, &start);
+    assert_int_equal(grobo_motion_clip(motion, &(grobo_clip_options){.start = &start}, &clip), 0);
+    for (int k = 0; k < KEYS; k++) {
+        int64_t at_us = (int64_t)((first_s + k * KEY_S) * 1e6 + 0.5);
+        assert_int_equal(clip.sample(clip.ctx, at_us, &at), 0);
+        for (int j = 0; j < 20; j++) {
+            if ((joints & GROBO_JOINT_BIT(j)) != 0) {
+                assert_float_equal(at.angle_rad[j], wanted[k][j], near_rad);
+            }
+        }
+    }
+    grobo_motion_clip_free(&clip);
+    grobo_motion_free(motion);
+}
+
+static void expect_lossless(grobo_motion *motion, grobo_joint_mask joints, bool exact,
+                            double wanted[KEYS][GROBO_JOINTS_MAX])
+{
+    bool frames = grobo_motion_get_kind(motion) == GROBO_MOTION_FRAMES;
+    const grobo_write_options options = {.model = &grobo_gr001_model, .exact = exact};
+
+    for (int format = GROBO_FORMAT_M; format <= GROBO_FORMAT_YAML; format++) {
+        bool whole = format == GROBO_FORMAT_M && !exact;
+        char *text = written_as(motion, (grobo_motion_format)format, &options, NULL);
+        grobo_motion *copy = motion_of(text, (grobo_motion_format)format);
+        /* A first frame at 0 takes the default time where a posture needs one. */
+        double first_s = !frames ? KEY_S
+                         : format == GROBO_FORMAT_M || format == GROBO_FORMAT_MSEQ
+                             ? GROBO_MOTION_DEFAULT_US / 1e6
+                             : 0;
+        expect_played(text, (grobo_motion_format)format, joints, wanted,
+                      whole ? grobo_rad_from_deg(0.0501) : 1e-9, first_s);
+        assert_int_equal(grobo_motion_verify(motion, copy, &options, NULL), 0);
+        grobo_motion_free(copy);
+        free(text);
+    }
+}
+
+/* Every pair of formats, with any joints, for any body that is this robot's. */
+static void test_nothing_is_lost(void **state)
+{
+    (void)state;
+    static const char *const bodies[] = {"", "GR001", "SerialRobot"};
+    uint32_t seed = 1;
+
+    for (int trial = 0; trial < TRIALS; trial++) {
+        for (int kind = GROBO_MOTION_POSTURES; kind <= GROBO_MOTION_FRAMES; kind++) {
+            static double wanted[KEYS][GROBO_JOINTS_MAX];
+            seed = seed * 1664525U + 1013904223U;
+            grobo_joint_mask joints = (seed >> 8) & GROBO_JOINTS_ALL(1 + trial % 20);
+            joints = joints != 0 ? joints : GROBO_JOINT_BIT(trial % 20);
+            if (kind ==
+                GROBO_MOTION_FRAMES) { /* as files of frames have them: all up to the last */
+                joints = GROBO_JOINTS_ALL(1 + trial % 20);
+            }
+            grobo_motion *motion = random_motion((grobo_motion_kind)kind, joints, wanted, &seed);
+            assert_int_equal(grobo_motion_set_target_body(motion, bodies[trial % 3]), 0);
+            expect_lossless(motion, joints, trial % 2 == 0, wanted);
+            grobo_motion_free(motion);
+        }
+    }
+}
+
+/* verify() notices whatever is lost. */
+static void test_losses_are_noticed(void **state)
+{
+    (void)state;
+    static const char whole[] = "500  10 -20 30\n1000  40 50 60\n1500  0 0 0\n";
+    static const struct {
+        const char *text, *code;
+    } copies[] = {
+        {whole, NULL},
+        {"500  10 -20\n1000  40 50\n1500  0 0\n", "angle-lost"},
+        {"500  10 -20 30\n1000  40 51 60\n1500  0 0 0\n", "angle-lost"},
+        {"500  10 -20 30\n1000  40 50 60\n1500  0 0 1\n", "angle-lost"},
+        {"501  10 -20 30\n1000  40 50 60\n1500  0 0 0\n", "time-lost"},
+        {"500  10 -20 30\n500  40 50 60\n1500  0 0 0\n", "time-lost"},
+        {"500  10 -20 30\n1000  40 50 60\n", "posture-lost"},
+        {"500  10 -20 30\n1000  40 50 60\n1500  0 0 0\n2000  0 0 0\n", "posture-lost"},
+    };
+    grobo_motion *motion = motion_of(whole, GROBO_FORMAT_M);
+
+    for (size_t i = 0; i < sizeof copies / sizeof copies[0]; i++) {
+        grobo_motion *copy = motion_of(copies[i].text, GROBO_FORMAT_M);
+        grobo_diagnostics *list = NULL;
+        assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
+        int lost = grobo_motion_verify(motion, copy, NULL, list);
+        assert_int_equal(lost, grobo_diagnostics_total(list, GROBO_SEVERITY_ERROR));
+        assert_int_equal(lost > 0, copies[i].code != NULL);
+        grobo_diagnostic first;
+        if (copies[i].code != NULL) {
+            assert_int_equal(grobo_diagnostics_get(list, 0, &first), 0);
+            assert_string_equal(first.code, copies[i].code);
+        }
+        grobo_diagnostics_free(list);
+        grobo_motion_free(copy);
+    }
+    grobo_motion_free(motion);
+}
+
+static grobo_motion *frames_of(const grobo_motion *motion)
+{
+    grobo_motion *frames = NULL;
+
+    assert_int_equal(grobo_motion_convert(motion, GROBO_MOTION_FRAMES, NULL, NULL, &frames), 0);
+    return frames;
+}
+
+/* Frames: one that is wrong, and an end that is missing. */
+static void test_losses_of_frames_are_noticed(void **state)
+{
+    (void)state;
+    grobo_motion *motion = motion_of("300  100\n600  0\n900  50\n", GROBO_FORMAT_M);
+    grobo_diagnostics *list = NULL;
+    grobo_motion *frames = frames_of(motion);
+    grobo_posture posture;
+
+    assert_int_equal(grobo_diagnostics_new(&list, NULL), 0);
+    assert_int_equal(grobo_motion_verify(motion, frames, NULL, list), 0);
+    assert_int_equal(grobo_motion_get(frames, 20, &posture), 0);
+    posture.angle_rad[12] += 0.001; /* CHEST_P is motor 1 */
+    assert_int_equal(grobo_motion_set(frames, 20, &posture), 0);
+    assert_int_equal(grobo_motion_verify(motion, frames, NULL, list), 1);
+    assert_true(has_diagnostic(list, "angle-lost", 0, 0));
+    grobo_motion_free(frames);
+    grobo_diagnostics_clear(list);
+    frames = frames_of(motion);
+    while (grobo_motion_size(frames) > 40) {
+        assert_int_equal(grobo_motion_delete(frames, 40), 0);
+    }
+    assert_int_equal(grobo_motion_verify(motion, frames, NULL, list), 1);
+    assert_true(has_diagnostic(list, "time-lost", 0, 0));
+    grobo_motion_free(frames);
+    grobo_motion_free(motion);
+    grobo_diagnostics_free(list);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_nothing_is_lost),
+        cmocka_unit_test(test_losses_are_noticed),
+        cmocka_unit_test(test_losses_of_frames_are_noticed),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
