@@ -45,14 +45,15 @@ check "what was taught is kept" test -s "$work/taught.m"
 
 # stopped_by COMMAND...: it stops a robot that another command plays on.
 stopped_by() {
-    on_robot --json play --speed 20 motions/greet.pseq >"$work/busy" 2>&1 </dev/null &
+    "$GRCTL" -d "$robot" --json play --speed 20 motions/greet.pseq >"$work/busy" 2>&1 </dev/null &
     while_pid=$!
     written "$work/busy" '"t_ms":[1-9]' && exits 0 "$@"
     by_status=$?
-    kill $while_pid 2>/dev/null
+    [ $by_status -eq 0 ] || kill $while_pid 2>/dev/null
     wait $while_pid
-    [ $by_status -eq 0 ] && braked && fails 4 "stopped by 'grctl estop'" on_robot move m5 0 &&
-        exits 0 on_robot estop --reset
+    ended=$?
+    [ $by_status -eq 0 ] && [ $ended -eq 4 ] && braked &&
+        fails 4 "stopped by 'grctl estop'" on_robot move m5 0 && exits 0 on_robot estop --reset
 }
 by_another_name() {
     (cd "$work" && exec "$GRCTL" -d "$1" estop)
@@ -150,7 +151,7 @@ frozen_and_guarded() {
 
 # A process of this user with the port, and no session: it obeys nobody.
 stranger() {
-    flock -F -n "$sim_pty" sleep 100 &
+    flock -F "$sim_pty" sleep 100 &
     stranger_pid=$!
     wait_for fails 1 'in use by' on_robot status || return 1
     fails 1 "in use by .*; NOT stopped, nothing was sent: .* end that program .*; programs refuse" \
@@ -165,7 +166,7 @@ stranger() {
 # A process that is registered, and does not answer.
 deaf() {
     mkdir -p "$work/run/grobo" && chmod 700 "$work/run" "$work/run/grobo" || return 1
-    flock -F -n "$sim_pty" sleep 100 &
+    flock -F "$sim_pty" sleep 100 &
     deaf_pid=$!
     wait_for fails 1 'in use by' on_robot status || return 1
     deaf_note=$work/run/grobo/holder-$(echo "$sim_pty" | tr / !)

@@ -129,7 +129,7 @@ fi
 # for the port, which another program has.
 signalled() {
     holds || return 1
-    flock -F -n "$sim_pty" sleep 100 &
+    flock -F "$sim_pty" sleep 100 &
     stranger_pid=$!
     wait_for fails 1 'in use by' on_robot status || return 1
     "$GRCTL" -d "$robot" --timeout 500 estop >"$work/out" 2>"$work/err" &
