@@ -101,12 +101,15 @@ LIBS = $(call once,LIBS,$(call flags,--libs,yaml-0.1 libevent_core) $(OS_LIBS))
 
 # ---- sources, by folder: a folder may be empty or missing ----------------------------------
 
-CORE_SRCS := $(sort $(wildcard src/core/*.c src/sim/*.c))
-OTHER_SRCS := $(sort $(wildcard src/motion/*.c src/body/*.c src/link/*.c ports/common/*.c \
+# The core needs no C library but memcpy() and its like, and mathematics.
+CORE_FOLDERS := base model play bus servo servo/* robot sim
+HEAP := src/base/heap.c
+CORE_SRCS := $(filter-out $(HEAP),$(sort $(wildcard $(CORE_FOLDERS:%=src/%/*.c))))
+OTHER_SRCS := $(sort $(HEAP) $(wildcard src/motion/*/*.c src/body/*.c src/link/*/*.c ports/common/*.c \
     ports/$(PORT)/*.c))
-TOOL_SRCS := $(if $(wildcard tools/grctl/main.c),$(sort $(wildcard tools/grctl/*.c)) \
-    $(sort $(wildcard tools/grctl/os/$(PORT)/*.c)) tools/grctl/edit/$(EDIT).c \
-    tools/grctl/screen/$(SCREEN).c)
+TOOL_SRCS := $(if $(wildcard tools/grctl/main.c),$(sort $(filter-out tools/grctl/edit/% tools/grctl/screen/%,\
+    $(wildcard tools/grctl/*.c tools/grctl/*/*.c tools/grctl/os/$(PORT)/*.c)) tools/grctl/edit/$(EDIT).c \
+    tools/grctl/screen/$(SCREEN).c))
 # LEFT_OUT, of a target: tests that its system cannot run, and what only they use.
 SUPPORT_SRCS := $(sort $(filter-out %/replay_main.c $(LEFT_OUT),$(wildcard tests/support/*.c)) \
     tests/support/os/$(PORT).c)
@@ -186,7 +189,7 @@ lint: all ## check the rules of the house: sources, objects, headers, symbols
 lint-quick: ## the rules that sources alone can break; takes a second
 	@tools/lint/run.sh --quick
 
-format: ## write sources as clang-format 14 does; FILES="src/core/bus.c" chooses
+format: ## write sources as clang-format 14 does; FILES="src/bus/bus.c" chooses
 	@tools/lint/format.sh --fix $(or $(FILES),$(shell find include src ports tools tests docs -name '*.[ch]'))
 
 # The programs and scripts of the chosen rings, as tests/run.sh wants them.
@@ -277,7 +280,7 @@ captures: $(BUILD)/grctl ## make the screens of docs/guide/tour.md and the table
 
 tidy: ## clang-tidy over the library and the command; advice, not a gate
 	@status=0; for file in $(CORE_SRCS) $(OTHER_SRCS) $(TOOL_SRCS); do \
-	    $(TIDY) --quiet $$file -- -std=c11 -Iinclude -Iports/$(PORT)/include -Isrc -I. $(OS_FLAGS) \
+	    $(TIDY) --quiet $$file -- -std=c11 -Iinclude -Iports/$(PORT)/include -I. $(OS_FLAGS) \
 	        2>/dev/null || status=1; \
 	done; exit $$status
 
@@ -417,17 +420,16 @@ $(BUILD)/$(1)/%.o: $(1)/%.c $(BUILD)/.flags
 endef
 
 # Where an interface has two sides (Windows), the library is one and who links it whole the other.
-SRC_INCLUDE := -Isrc -I. -DGROBO_BUILDING
+SRC_INCLUDE := -I. -DGROBO_BUILDING
 WHOLE := -DGROBO_STATIC
-TEST_INCLUDE := -Isrc -I. -Itests/support $(WHOLE)
-$(eval $(call compile,src/core,SRC_INCLUDE))
-$(eval $(call compile,src/sim,SRC_INCLUDE))
-$(eval $(call compile,src/body,SRC_INCLUDE))
+TOOL_INCLUDE := -I. $(WHOLE)
+TEST_INCLUDE := -I. $(WHOLE)
+$(eval $(call compile,src,SRC_INCLUDE))
 $(eval $(call compile,src/motion,SRC_INCLUDE YAML_CFLAGS))
 $(eval $(call compile,src/link,SRC_INCLUDE OS_FLAGS EVENT_CFLAGS))
 $(eval $(call compile,ports/common,SRC_INCLUDE))
 $(eval $(call compile,ports/$(PORT),SRC_INCLUDE OS_FLAGS))
-$(eval $(call compile,tools/grctl,WHOLE OS_FLAGS EVENT_CFLAGS YAML_CFLAGS JSON_CFLAGS EDIT_CFLAGS SCREEN_CFLAGS))
+$(eval $(call compile,tools/grctl,TOOL_INCLUDE OS_FLAGS EVENT_CFLAGS YAML_CFLAGS JSON_CFLAGS EDIT_CFLAGS SCREEN_CFLAGS))
 $(eval $(call compile,docs/examples,WHOLE OS_FLAGS EVENT_CFLAGS))
 $(eval $(call compile,tests,TEST_INCLUDE OS_FLAGS EVENT_CFLAGS YAML_CFLAGS CMOCKA_CFLAGS JSON_CFLAGS))
 

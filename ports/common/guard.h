@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A process beside the program, and the socket between them: what src/link/guard.c asks of a
+ * A process beside the program, and the socket between them: what src/link/guard/guard.c asks of a
  * port. Systems without descriptors that can be passed on (Win32) answer GROBO_ERR_UNSUPPORTED.
  */
 #ifndef GROBO_PORTS_GUARD_H

@@ -3,7 +3,7 @@
 #ifndef GROBO_SRC_BODY_BALANCE_H
 #define GROBO_SRC_BODY_BALANCE_H
 
-#include "body_priv.h"
+#include "src/body/body.h"
 
 /* How many doubles of workspace it needs. */
 size_t grobo_i_balance_doubles(int n_frames);

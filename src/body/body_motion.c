@@ -4,8 +4,8 @@
 
 #include <string.h>
 
-#include "body_priv.h"
-#include "vec.h"
+#include "src/body/body.h"
+#include "src/body/vec.h"
 
 /* A motion's keys in the form the solver takes, in one block. */
 struct key_block {

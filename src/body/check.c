@@ -2,9 +2,9 @@
 /* The lint of a walk. */
 #include <string.h>
 
-#include "body_priv.h"
-#include "polygon.h"
-#include "vec.h"
+#include "src/body/body.h"
+#include "src/body/polygon.h"
+#include "src/body/vec.h"
 
 #define SLIP_DEFAULT_M 1e-3
 /* A limit is kept when the angle rounded to the wire's 0.1 degree keeps it. */

@@ -2,8 +2,8 @@
 /* Frames of a motion that is set up. */
 #include <string.h>
 
-#include "body_priv.h"
-#include "vec.h"
+#include "src/body/body.h"
+#include "src/body/vec.h"
 
 int grobo_body_frame_count(const grobo_body *body)
 {

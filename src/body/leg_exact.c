@@ -8,8 +8,8 @@
  * ankle pitch link; M y = n as well. The derivation with a drawing: docs/guide/whole-body.md. */
 #include <string.h>
 
-#include "body_priv.h"
-#include "vec.h"
+#include "src/body/body.h"
+#include "src/body/vec.h"
 
 enum { YAW, HIP_ROLL, HIP_PITCH, KNEE, ANKLE_PITCH, ANKLE_ROLL };
 

@@ -4,8 +4,8 @@
 #include <float.h>
 #include <string.h>
 
-#include "body_priv.h"
-#include "vec.h"
+#include "src/body/body.h"
+#include "src/body/vec.h"
 
 enum { DOF = GROBO_BODY_LEG_JOINTS };
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "polygon.h"
+#include "src/body/polygon.h"
 
 #include <math.h>
 #include <string.h>

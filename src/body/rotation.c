@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Attitudes. Roll, pitch, yaw: choreonoid-whole-body.md, section "Keys". */
-#include "body_priv.h"
-#include "vec.h"
+#include "src/body/body.h"
+#include "src/body/vec.h"
 
 /* As near as this to straight up or down, yaw is taken to be 0. */
 #define GIMBAL_RAD 1e-6

@@ -3,9 +3,9 @@
  * "Frames", "Order", "Keys". */
 #include <string.h>
 
-#include "balance.h"
-#include "body_priv.h"
-#include "vec.h"
+#include "src/body/balance.h"
+#include "src/body/body.h"
+#include "src/body/vec.h"
 
 #define RATE_DEFAULT_HZ 100.0
 #define RATE_MAX_HZ 10000.0

@@ -3,8 +3,8 @@
  * choreonoid-whole-body.md, sections "Base link", "Slave feet", "Solving". */
 #include <string.h>
 
-#include "body_priv.h"
-#include "vec.h"
+#include "src/body/body.h"
+#include "src/body/vec.h"
 
 /* A shift that IK cannot follow is bisected to this. */
 #define SHIFT_TOLERANCE_M 1e-4

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Stealthy step: choreonoid-whole-body.md, section of that name. A foot goes straight up before it
  * travels, stops travelling before it comes straight down, and touches down softly. */
-#include "body_priv.h"
-#include "vec.h"
+#include "src/body/body.h"
+#include "src/body/vec.h"
 
 /* Height in which a foot does not travel, and from which it comes down softly. */
 #define STEALTH_M 0.005

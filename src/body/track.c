@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-#include "track.h"
+#include "src/body/track.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "vec.h"
+#include "src/body/vec.h"
 
 /* Keys closer than this jump. */
 #define SEGMENT_MIN_S 1e-6

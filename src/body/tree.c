@@ -4,8 +4,8 @@
  * choreonoid-whole-body.md, section "Waist balancer", point 2, writes it. */
 #include <string.h>
 
-#include "body_priv.h"
-#include "vec.h"
+#include "src/body/body.h"
+#include "src/body/vec.h"
 
 /* Part of the weight below which the ground's force counts as none. */
 #define FREE_FALL 1e-6

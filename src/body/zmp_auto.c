@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Automatic ZMP: choreonoid-whole-body.md, section of that name. Keys are added so that the
  * desired ZMP lies under the support foot while the other swings, and under both between. */
-#include "body_priv.h"
-#include "vec.h"
+#include "src/body/body.h"
+#include "src/body/vec.h"
 
 /* The ZMP needs this long from one sole to the next. */
 #define TRANSFER_S 0.1

@@ -2,7 +2,7 @@
 /* The controller board: takes a frame, relays its payload, waits, returns what came. */
 #include <string.h>
 
-#include "sim_private.h"
+#include "src/sim/sim.h"
 
 void grobo_i_sim_frame_faults(grobo_sim *sim)
 {

@@ -5,7 +5,7 @@
  */
 #include <string.h>
 
-#include "sim_private.h"
+#include "src/sim/sim.h"
 
 /* ---- who else talks -------------------------------------------------------------------------- */
 

@@ -2,7 +2,7 @@
 /* Chance: one generator a fault, so that turning one on does not change when another strikes. */
 #include <string.h>
 
-#include "sim_private.h"
+#include "src/sim/sim.h"
 
 static const char *const names[GROBO_SIM_FAULTS] = {
 #define NAME(name, text, hits, does) text,

@@ -2,7 +2,7 @@
 /* What a test, or a person at the simulator, sees and changes behind the robot's back. */
 #include <string.h>
 
-#include "sim_private.h"
+#include "src/sim/sim.h"
 
 /* The servo, settled; NULL when there is none of this index. */
 static grobo_sim_servo *servo_at(grobo_sim *sim, int index)

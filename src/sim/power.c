@@ -2,7 +2,7 @@
 /* What a servo remembers: factory, flash, reboot, loss of power. */
 #include <string.h>
 
-#include "sim_private.h"
+#include "src/sim/sim.h"
 
 /* Not in the manuals at hand: the limit of register TEMPERATURE_LIMIT, the firmware's number. */
 #define LIMIT_C 80

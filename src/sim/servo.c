@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "sim_private.h"
+#include "src/sim/sim.h"
 
 /* The alarm flag comes this much below the temperature limit. An assumption. */
 #define ALARM_BELOW_LIMIT_C 10

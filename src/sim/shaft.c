@@ -5,7 +5,7 @@
  */
 #include <math.h>
 
-#include "sim_private.h"
+#include "src/sim/sim.h"
 
 /* Assumptions (docs/simulator.md): mA of the circuit, of holding, of moving at full speed. */
 #define IDLE_MA 6

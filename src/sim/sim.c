@@ -2,7 +2,7 @@
 /* The simulator's pump: what is due next on any wire happens next. */
 #include <string.h>
 
-#include "sim_private.h"
+#include "src/sim/sim.h"
 
 #define LOWEST_BPS 300
 /* As far as register POSITION can tell. */

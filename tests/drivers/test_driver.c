@@ -21,7 +21,7 @@
 
 #include <grobo/serial.h>
 
-#include "line.h"
+#include "tests/support/line.h"
 
 /* Speeds are of both kinds: with a B constant and without. The lists end with 0. */
 typedef struct driver {

@@ -19,10 +19,10 @@
 #include <cmocka.h>
 #include <event2/event.h>
 
-#include "guarded.h"
-#include "loop.h"
-#include "os.h"
-#include "session_kit.h"
+#include "tests/support/guarded.h"
+#include "tests/support/loop.h"
+#include "tests/support/os.h"
+#include "tests/support/session_kit.h"
 
 static const char *self;
 static grobo_guard *guard;

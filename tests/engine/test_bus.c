@@ -11,7 +11,7 @@
 
 #include <grobo/bus.h>
 
-#include "bus_peer.h"
+#include "tests/support/bus_peer.h"
 
 enum { MS = 1000, S = 1000000, FRAME = GROBO_FRAME_MAX_BYTES };
 

@@ -10,9 +10,9 @@
 
 #include <grobo/bus.h>
 
-#include "core/bus_time.h"
+#include "src/bus/time.h"
 
-#include "bus_peer.h"
+#include "tests/support/bus_peer.h"
 
 enum { MS = 1000, S = 1000000, FRAME = GROBO_FRAME_MAX_BYTES, READ_US = 3488 };
 

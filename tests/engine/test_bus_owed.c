@@ -10,7 +10,7 @@
 
 #include <grobo/bus.h>
 
-#include "bus_peer.h"
+#include "tests/support/bus_peer.h"
 
 enum { MS = 1000, S = 1000000, MARGIN = 2 * MS, READ_US = 3488, READ_FAILED = READ_US + MARGIN };
 enum { BUS_READ_US = 695 + 100 + 869 }; /* 8 bytes, the return delay, 10 bytes */

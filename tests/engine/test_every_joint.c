@@ -11,7 +11,7 @@
 
 #include <grobo/board.h>
 
-#include "rig.h"
+#include "tests/support/rig.h"
 
 enum { JOINTS = 20 };
 

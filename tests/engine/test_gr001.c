@@ -12,7 +12,7 @@
 
 #include <grobo/gr001.h>
 
-#include "rig.h"
+#include "tests/support/rig.h"
 
 static grobo_test_rig rig;
 

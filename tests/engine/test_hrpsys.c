@@ -10,7 +10,7 @@
 
 #include <grobo/hrpsys.h>
 
-#include "rig.h"
+#include "tests/support/rig.h"
 
 static grobo_test_rig rig;
 static grobo_hrpsys hrpsys;

@@ -12,8 +12,8 @@
 
 #include <grobo/board.h>
 
-#include "many_joints.h"
-#include "rig.h"
+#include "tests/support/many_joints.h"
+#include "tests/support/rig.h"
 
 enum { LAST = GROBO_JOINTS_MAX - 1 };
 

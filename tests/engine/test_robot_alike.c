@@ -11,7 +11,7 @@
 
 #include <grobo/board.h>
 
-#include "rig.h"
+#include "tests/support/rig.h"
 
 static grobo_test_rig rig, first;
 static rig_clip clip, other;

@@ -23,8 +23,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/robot.h"
-#include "rig.h"
+#include "src/robot/robot.h"
+#include "tests/support/rig.h"
 
 enum { JOINTS = 20, LENGTH_S = 5, SECOND_US = 1000000 };
 

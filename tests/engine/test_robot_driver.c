@@ -12,7 +12,7 @@
 
 #include <grobo/board.h>
 
-#include "rig.h"
+#include "tests/support/rig.h"
 
 static grobo_test_rig rig;
 static rig_clip clip;

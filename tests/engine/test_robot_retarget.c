@@ -8,7 +8,7 @@
 #include <cmocka.h>
 #include <math.h>
 
-#include "rig.h"
+#include "tests/support/rig.h"
 
 enum { TARGETS = 40 };
 

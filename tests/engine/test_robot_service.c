@@ -9,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "rig.h"
+#include "tests/support/rig.h"
 
 static grobo_test_rig rig;
 

@@ -31,7 +31,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "restless.h"
+#include "tests/support/restless.h"
 
 #define REPLIES "duplicate=0.01,delay=0.01,split=0.01,rubbish=0.01,silent=0.01,dupid=0.01"
 

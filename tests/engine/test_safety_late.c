@@ -9,8 +9,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/robot.h"
-#include "raw_frames.h"
+#include "src/robot/robot.h"
+#include "tests/support/raw_frames.h"
 
 static grobo_test_rig rig;
 

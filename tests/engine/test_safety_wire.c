@@ -10,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "raw_frames.h"
+#include "tests/support/raw_frames.h"
 
 static grobo_test_rig rig;
 static rig_clip clip;

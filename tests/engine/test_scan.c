@@ -7,8 +7,8 @@
 
 #include <cmocka.h>
 
-#include "rig.h"
-#include "tools/grctl/wire.h"
+#include "tests/support/rig.h"
+#include "tools/grctl/conn/wire.h"
 
 enum { BAUD_BPS = 115200, FIRST_ID = 21, SILENT = 20, IDENTITY_BYTES = 3, SILENCE_US = 4000 };
 

@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "rig.h"
+#include "tests/support/rig.h"
 
 enum { JOINTS = 20, SECOND_US = 1000000, MOVE_MS = 3000, LOOK_US = 5000 };
 

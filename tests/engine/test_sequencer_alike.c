@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "there_and_back.h"
+#include "tests/support/there_and_back.h"
 
 static sample_pump first;
 

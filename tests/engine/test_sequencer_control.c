@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "there_and_back.h"
+#include "tests/support/there_and_back.h"
 
 static const grobo_play_frame *last_frame(void)
 {

@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "sample_clip.h"
+#include "tests/support/sample_clip.h"
 
 #define PI 3.14159265358979323846
 

@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "there_and_back.h"
+#include "tests/support/there_and_back.h"
 
 /* ---- transitions ---- */
 

@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "simkit.h"
+#include "tests/support/simkit.h"
 
 static simkit kit;
 

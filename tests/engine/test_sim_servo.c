@@ -9,8 +9,8 @@
 
 #include <cmocka.h>
 
-#include "simkit.h"
-#include "vectors.h"
+#include "tests/support/simkit.h"
+#include "tests/support/vectors.h"
 
 static simkit kit;
 

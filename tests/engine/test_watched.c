@@ -12,8 +12,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "many_joints.h"
-#include "rig.h"
+#include "tests/support/many_joints.h"
+#include "tests/support/rig.h"
 
 enum { JOINTS = 20, SECOND_US = 1000000 };
 

@@ -11,7 +11,7 @@
 
 #include <grobo/serial.h>
 
-#include "line.h"
+#include "tests/support/line.h"
 
 #define BYTES 300
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Any bytes as a .pseq file: refused with a place, or a motion that can be played. */
-#include "motion_target.h"
+#include "tests/fuzz/motion_target.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

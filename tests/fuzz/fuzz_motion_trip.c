@@ -3,7 +3,7 @@
  * written to any other format it can be read, with as many postures. */
 #include <string.h>
 
-#include "motion_target.h"
+#include "tests/fuzz/motion_target.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

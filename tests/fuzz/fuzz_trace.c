@@ -6,9 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "tools/grctl/ledger.h"
-#include "tools/grctl/pcapng.h"
-#include "tools/grctl/words.h"
+#include "tools/grctl/conn/pcapng.h"
+#include "tools/grctl/decode/ledger.h"
+#include "tools/grctl/decode/words.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

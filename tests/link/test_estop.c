@@ -14,9 +14,9 @@
 #include <grobo/loop.h>
 #include <grobo/thread.h>
 
-#include "loop.h"
-#include "os.h"
 #include "ports/common/notes.h"
+#include "tests/support/loop.h"
+#include "tests/support/os.h"
 
 enum { ELBOW = 16, FRAME_BYTES = 256 };
 

@@ -21,10 +21,10 @@
 #include <grobo/guard.h>
 #include <grobo/session.h>
 
-#include "folder.h"
-#include "guarded.h"
-#include "leash.h"
-#include "loop.h"
+#include "tests/support/folder.h"
+#include "tests/support/guarded.h"
+#include "tests/support/leash.h"
+#include "tests/support/loop.h"
 
 /* How much longer than it says a busy machine may take. */
 #define GRACE_US INT64_C(700000)

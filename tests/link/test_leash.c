@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-#include "leash.h"
+#include "tests/support/leash.h"
 
 /* The end of a pipe that all processes of a test have, but the one that reads it here. */
 typedef struct family {

@@ -16,8 +16,8 @@
 
 #include <grobo/loop.h>
 
-#include "files.h"
-#include "spy.h"
+#include "tests/support/files.h"
+#include "tests/support/spy.h"
 
 enum { LIMIT_S = 60, MOTORS = 20, KEYS_MAX = 64 };
 enum {

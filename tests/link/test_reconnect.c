@@ -14,10 +14,10 @@
 #include <cmocka.h>
 #include <event2/event.h>
 
-#include "folder.h"
-#include "loop.h"
-#include "os.h"
-#include "session_kit.h"
+#include "tests/support/folder.h"
+#include "tests/support/loop.h"
+#include "tests/support/os.h"
+#include "tests/support/session_kit.h"
 
 enum { NECK = 13, HANG_UPS = 9, MOST = 5, IDLE_US = 2000000 };
 

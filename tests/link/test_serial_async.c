@@ -11,11 +11,11 @@
 
 #include <grobo/serial.h>
 
-#include "counted_mem.h"
-#include "line.h"
-#include "loop.h"
-#include "os.h"
-#include "src/link/serial_i.h"
+#include "src/link/serial/serial.h"
+#include "tests/support/counted_mem.h"
+#include "tests/support/line.h"
+#include "tests/support/loop.h"
+#include "tests/support/os.h"
 
 static test_line line;
 /* Of the calls that wait, which none of this mode does: longer than a busy machine may take. */

@@ -18,10 +18,10 @@
 
 #include <grobo/serial.h>
 
-#include "files.h"
-#include "folder.h"
-#include "line.h"
-#include "nobody.h"
+#include "tests/support/files.h"
+#include "tests/support/folder.h"
+#include "tests/support/line.h"
+#include "tests/support/nobody.h"
 
 /* Opens a device; returns the result, leaves the cause's text. */
 static int try_open(const char *device, char *text, size_t text_bytes)

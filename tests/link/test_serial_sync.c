@@ -18,7 +18,7 @@
 
 #include <grobo/serial.h>
 
-#include "line.h"
+#include "tests/support/line.h"
 
 static test_line line;
 static grobo_serial *serial;

@@ -19,7 +19,7 @@
 
 #include <grobo/serial.h>
 
-#include "line.h"
+#include "tests/support/line.h"
 
 static int listener;
 static char device[64];

@@ -13,11 +13,11 @@
 #include <cmocka.h>
 #include <event2/event.h>
 
-#include "counted_mem.h"
-#include "folder.h"
-#include "line.h"
-#include "loop.h"
-#include "session_kit.h"
+#include "tests/support/counted_mem.h"
+#include "tests/support/folder.h"
+#include "tests/support/line.h"
+#include "tests/support/loop.h"
+#include "tests/support/session_kit.h"
 
 static void free_it(grobo_session *from)
 {

@@ -13,12 +13,12 @@
 #include <cmocka.h>
 #include <event2/event.h>
 
-#include "far_robot.h"
-#include "folder.h"
-#include "loop.h"
-#include "session_kit.h"
-#include "src/link/serial_i.h"
-#include "src/link/session_i.h"
+#include "src/link/serial/serial.h"
+#include "src/link/session/session.h"
+#include "tests/support/far_robot.h"
+#include "tests/support/folder.h"
+#include "tests/support/loop.h"
+#include "tests/support/session_kit.h"
 
 enum { NECK = 13, GOALS = 110, TORQUES = 50, UNLIMITED = 1 << 30 };
 

@@ -11,7 +11,7 @@
 
 #include <grobo/session.h>
 
-#include "loop.h"
+#include "tests/support/loop.h"
 
 static struct event_base *base;
 static int ends, result;

@@ -12,8 +12,8 @@
 
 #include <grobo/session.h>
 
-#include "line.h"
-#include "loop.h"
+#include "tests/support/line.h"
+#include "tests/support/loop.h"
 
 static const uint8_t ACK = 0x07; /* of the board, to a check */
 

@@ -12,12 +12,12 @@
 #include <cmocka.h>
 #include <event2/event.h>
 
-#include "control_kit.h"
-#include "hold.h"
-#include "loop.h"
-#include "session_kit.h"
-#include "src/link/session_i.h"
-#include "src/link/thread_i.h"
+#include "src/link/session/session.h"
+#include "src/link/thread/thread.h"
+#include "tests/support/control_kit.h"
+#include "tests/support/hold.h"
+#include "tests/support/loop.h"
+#include "tests/support/session_kit.h"
 
 enum { ERRNO = 4711, SLOW_US = GROBO_CALLBACK_SLOW_US + 5000 };
 

@@ -15,10 +15,10 @@
 #include <cmocka.h>
 #include <event2/event.h>
 
-#include "counted_mem.h"
-#include "folder.h"
-#include "loop.h"
-#include "os.h"
+#include "tests/support/counted_mem.h"
+#include "tests/support/folder.h"
+#include "tests/support/loop.h"
+#include "tests/support/os.h"
 
 /* Frames of the original: check, torque of servo 1 on, state of servo 1. */
 static const uint8_t check[] = {0x41, 0x00};

@@ -15,9 +15,9 @@
 #include <cmocka.h>
 #include <event2/event.h>
 
-#include "control_kit.h"
-#include "counted_mem.h"
-#include "folder.h"
+#include "tests/support/control_kit.h"
+#include "tests/support/counted_mem.h"
+#include "tests/support/folder.h"
 
 /* ---- facts and settings ------------------------------------------------------------------- */
 

@@ -13,9 +13,9 @@
 
 #include <cmocka.h>
 
-#include "control_kit.h"
-#include "files.h"
-#include "folder.h"
+#include "tests/support/control_kit.h"
+#include "tests/support/files.h"
+#include "tests/support/folder.h"
 
 enum { POSTURES = 4, STEP_US = 100000 };
 

@@ -11,7 +11,7 @@
 
 #include <grobo/thread.h>
 
-#include "line.h"
+#include "tests/support/line.h"
 
 enum { PATIENCE_US = 300000, HELD_UP_US = GROBO_SILENCE_DEFAULT_MS * 1000 + 1000 };
 

@@ -7,8 +7,8 @@
 
 #include <cmocka.h>
 
-#include "src/link/thread_i.h"
-#include "stop_kit.h"
+#include "src/link/thread/thread.h"
+#include "tests/support/stop_kit.h"
 
 static int stop_at_once(grobo_control *from)
 {

@@ -13,9 +13,9 @@
 #include <cmocka.h>
 #include <event2/event.h>
 
-#include "control_kit.h"
-#include "far_robot.h"
-#include "folder.h"
+#include "tests/support/control_kit.h"
+#include "tests/support/far_robot.h"
+#include "tests/support/folder.h"
 
 static const grobo_robot_config leave_off = {.on_exit = GROBO_EXIT_OFF};
 static far_robot robot;

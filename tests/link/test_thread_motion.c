@@ -14,7 +14,7 @@
 
 #include <cmocka.h>
 
-#include "control_kit.h"
+#include "tests/support/control_kit.h"
 
 /* ---- the target --------------------------------------------------------------------------- */
 

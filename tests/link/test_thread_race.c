@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "control_kit.h"
+#include "tests/support/control_kit.h"
 
 /* What threads of a test count of their calls; each has its own. */
 typedef struct worker {

@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "stop_kit.h"
+#include "tests/support/stop_kit.h"
 
 /* ---- emergency stops ---------------------------------------------------------------------- */
 

@@ -13,10 +13,10 @@
 
 #include <cmocka.h>
 
-#include "folder.h"
-#include "line.h"
-#include "nobody.h"
 #include "ports/posix/posix.h"
+#include "tests/support/folder.h"
+#include "tests/support/line.h"
+#include "tests/support/nobody.h"
 
 static test_line line;
 

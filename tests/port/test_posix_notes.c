@@ -17,8 +17,8 @@
 
 #include <grobo/estop.h>
 
-#include "folder.h"
 #include "ports/common/notes.h"
+#include "tests/support/folder.h"
 
 enum { NOBODY = 65534 };
 

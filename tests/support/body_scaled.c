@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "body_scaled.h"
+#include "tests/support/body_scaled.h"
 
 #include <string.h>
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "body_script.h"
+#include "tests/support/body_script.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "body/body_priv.h"
+#include "src/body/body.h"
 
 grobo_body_key *script_key(struct script *script, double time_s)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "bus_peer.h"
+#include "tests/support/bus_peer.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "chronicle.h"
+#include "tests/support/chronicle.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

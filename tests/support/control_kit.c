@@ -8,8 +8,8 @@
 
 #include <cmocka.h>
 
-#include "control_kit.h"
-#include "folder.h"
+#include "tests/support/control_kit.h"
+#include "tests/support/folder.h"
 
 grobo_control *control;
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <stdlib.h>
 
-#include "counted_mem.h"
+#include "tests/support/counted_mem.h"
 
 static void *resize(void *ctx, void *ptr, size_t old_bytes, size_t new_bytes)
 {

@@ -10,7 +10,7 @@
 #include <cmocka.h>
 #include <event2/event.h>
 
-#include "far_robot.h"
+#include "tests/support/far_robot.h"
 
 #define TORQUE_REGISTER 36 /* No.36, torque enable (protocol 4) */
 

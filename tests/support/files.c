@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "files.h"
+#include "tests/support/files.h"
 
 char *file_text(const char *path, size_t *size)
 {

@@ -6,8 +6,8 @@
 
 #include <cmocka.h>
 
-#include "folder.h"
-#include "os.h"
+#include "tests/support/folder.h"
+#include "tests/support/os.h"
 
 char folder[256];
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "guarded.h"
+#include "tests/support/guarded.h"
 
 #include <signal.h>
 #include <stdio.h>

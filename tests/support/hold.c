@@ -6,7 +6,7 @@
 
 #include <cmocka.h>
 
-#include "hold.h"
+#include "tests/support/hold.h"
 
 void hold_init(hold *h)
 {

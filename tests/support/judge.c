@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What was asked for, what leaves, and how jobs end. */
-#include "judge.h"
+#include "tests/support/judge.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -15,8 +15,8 @@
 #ifndef GROBO_TEST_JUDGE_H
 #define GROBO_TEST_JUDGE_H
 
-#include "chronicle.h"
-#include "rig.h"
+#include "tests/support/chronicle.h"
+#include "tests/support/rig.h"
 
 enum { JUDGE_JOBS = 64, JUDGE_RAWS = 64, JUDGE_FLYING = 16 };
 

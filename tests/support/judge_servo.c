@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What servos do with the frames that reach them, by where their shafts are. */
-#include "judge.h"
+#include "tests/support/judge.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

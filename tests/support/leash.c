@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "leash.h"
+#include "tests/support/leash.h"
 
 #include <setjmp.h>
 #include <signal.h>

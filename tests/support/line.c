@@ -13,7 +13,7 @@
 
 #include <cmocka.h>
 
-#include "line.h"
+#include "tests/support/line.h"
 
 /* Bytes of the test before may still be on their way. */
 static void await_silence(test_line *line)

@@ -10,7 +10,7 @@
 #include <grobo/loop.h>
 #include <grobo/port.h>
 
-#include "loop.h"
+#include "tests/support/loop.h"
 
 typedef struct bounded_wait {
     struct event_base *base;

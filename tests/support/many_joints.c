@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "many_joints.h"
+#include "tests/support/many_joints.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "motion_texts.h"
+#include "tests/support/motion_texts.h"
 
 const char full_pose[] = "type: PoseSeq\nname: \"a \\\"b\\\"\"\ntargetBody: GR001\n"
                          "author: { who: me, 'two words': [ ] }\n"

@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "nobody.h"
+#include "tests/support/nobody.h"
 
 enum { NOBODY = 65534, NOT_ANOTHER = 100 };
 

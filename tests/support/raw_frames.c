@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "raw_frames.h"
+#include "tests/support/raw_frames.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

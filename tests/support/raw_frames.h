@@ -3,7 +3,7 @@
 #ifndef GROBO_TEST_RAW_FRAMES_H
 #define GROBO_TEST_RAW_FRAMES_H
 
-#include "rig.h"
+#include "tests/support/rig.h"
 
 /* Sends a joint somewhere. @return what grobo_robot_raw() says. */
 int raw_goal(grobo_test_rig *rig, int joint, double deg, int time_ms);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "restless.h"
+#include "tests/support/restless.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -7,7 +7,7 @@
 #ifndef GROBO_TEST_RESTLESS_H
 #define GROBO_TEST_RESTLESS_H
 
-#include "judge.h"
+#include "tests/support/judge.h"
 
 /* What is asked for: X(name, weight). */
 #define RESTLESS_LIST(X)                                                                           \

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Raw frames and registers. */
-#include "restless.h"
+#include "tests/support/restless.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

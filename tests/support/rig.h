@@ -9,7 +9,7 @@
 #include <grobo/robot.h>
 #include <grobo/sim.h>
 
-#include "witness.h"
+#include "tests/support/witness.h"
 
 enum { RIG_EVENTS = 4096, RIG_SENT = 4096 };
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "sample_clip.h"
+#include "tests/support/sample_clip.h"
 
 #include <math.h>
 #include <setjmp.h>

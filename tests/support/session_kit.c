@@ -10,8 +10,8 @@
 
 #include <grobo/loop.h>
 
-#include "loop.h"
-#include "session_kit.h"
+#include "tests/support/loop.h"
+#include "tests/support/session_kit.h"
 
 struct event_base *base;
 grobo_session *session;

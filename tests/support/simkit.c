@@ -7,8 +7,8 @@
 
 #include <cmocka.h>
 
-#include "simkit.h"
-#include "vectors.h"
+#include "tests/support/simkit.h"
+#include "tests/support/vectors.h"
 
 static void note(const grobo_sim_event *event, void *ctx)
 {

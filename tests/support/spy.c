@@ -5,7 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "spy.h"
+#include "tests/support/spy.h"
 
 enum { ARGUMENTS = 32 };
 

@@ -7,8 +7,8 @@
 
 #include <cmocka.h>
 
-#include "src/link/thread_i.h"
-#include "stop_kit.h"
+#include "src/link/thread/thread.h"
+#include "tests/support/stop_kit.h"
 
 struct saw saw, told;
 hold gate;

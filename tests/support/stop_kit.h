@@ -3,8 +3,8 @@
 #ifndef GROBO_TESTS_STOP_KIT_H
 #define GROBO_TESTS_STOP_KIT_H
 
-#include "control_kit.h"
-#include "hold.h"
+#include "tests/support/control_kit.h"
+#include "tests/support/hold.h"
 
 /* A call gives up after SHORT_US; LONG_US is longer than a test; motions take STOP_US to stop. GOAL
  * and TORQUE are addresses of registers. */

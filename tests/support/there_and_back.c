@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "there_and_back.h"
+#include "tests/support/there_and_back.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -3,7 +3,7 @@
 #ifndef GROBO_TESTS_THERE_AND_BACK_H
 #define GROBO_TESTS_THERE_AND_BACK_H
 
-#include "sample_clip.h"
+#include "tests/support/sample_clip.h"
 
 extern const sample_key there_and_back[3];
 

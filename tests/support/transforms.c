@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "transforms.h"
+#include "tests/support/transforms.h"
 
 #include <math.h>
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "vectors.h"
+#include "tests/support/vectors.h"
 
 #include <ctype.h>
 #include <setjmp.h>
@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "files.h"
+#include "tests/support/files.h"
 
 enum { STRING_MAX_BYTES = 1024 };
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "witness.h"
+#include "tests/support/witness.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

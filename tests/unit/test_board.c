@@ -12,7 +12,7 @@
 
 #include <grobo/board.h>
 
-#include "vectors.h"
+#include "tests/support/vectors.h"
 
 enum { MAX = GROBO_FRAME_MAX_BYTES, MS = 1000, JOINTS = 20 };
 

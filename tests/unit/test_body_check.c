@@ -9,8 +9,8 @@
 
 #include <cmocka.h>
 
-#include "body/polygon.h"
-#include "body_script.h"
+#include "src/body/polygon.h"
+#include "tests/support/body_script.h"
 
 struct watch {
     int frames;

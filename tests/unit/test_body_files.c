@@ -13,8 +13,8 @@
 #include <grobo/body_motion.h>
 #include <grobo/motion_io.h>
 
-#include "body_script.h"
-#include "counted_mem.h"
+#include "tests/support/body_script.h"
+#include "tests/support/counted_mem.h"
 
 /* Feet on the ground, the waist goes down and up; the head turns. The left foot has a name that
  * the body has not: its index tells which link it is. */

@@ -17,7 +17,7 @@
 #include <grobo/body_motion.h>
 #include <grobo/motion_io.h>
 
-#include "files.h"
+#include "tests/support/files.h"
 
 #define GOLDEN "data/golden/"
 #define SAMPLE "SampleMotion1" /* lies elsewhere: Choreonoid brings it along */

@@ -10,10 +10,10 @@
 
 #include <cmocka.h>
 
-#include "body/body_priv.h"
-#include "body/vec.h"
-#include "body_scaled.h"
-#include "transforms.h"
+#include "src/body/body.h"
+#include "src/body/vec.h"
+#include "tests/support/body_scaled.h"
+#include "tests/support/transforms.h"
 
 static uint32_t seed;
 

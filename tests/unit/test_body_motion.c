@@ -11,11 +11,11 @@
 
 #include <cmocka.h>
 
-#include "body/body_priv.h"
-#include "body/vec.h"
-#include "body_scaled.h"
-#include "body_script.h"
-#include "transforms.h"
+#include "src/body/body.h"
+#include "src/body/vec.h"
+#include "tests/support/body_scaled.h"
+#include "tests/support/body_script.h"
+#include "tests/support/transforms.h"
 
 /* Where a foot is in a frame that was solved. */
 static void foot_of(const grobo_body_model *model, const double *q_rad,

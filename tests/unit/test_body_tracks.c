@@ -9,10 +9,10 @@
 
 #include <cmocka.h>
 
-#include "body/body_priv.h"
-#include "body/vec.h"
-#include "body_script.h"
-#include "transforms.h"
+#include "src/body/body.h"
+#include "src/body/vec.h"
+#include "tests/support/body_script.h"
+#include "tests/support/transforms.h"
 
 #define NEAR 1e-12
 

@@ -9,8 +9,8 @@
 
 #include <cmocka.h>
 
-#include "tools/grctl/ledger.h"
-#include "vectors.h"
+#include "tests/support/vectors.h"
+#include "tools/grctl/decode/ledger.h"
 
 /* What came out, as text: "board 14, rubbish 2, " and the bytes one after the other. */
 typedef struct heard {

@@ -12,7 +12,7 @@
 
 #include <grobo/interpolate.h>
 
-#include "files.h"
+#include "tests/support/files.h"
 
 #define NEAR 1e-6
 

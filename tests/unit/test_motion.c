@@ -14,8 +14,8 @@
 
 #include <grobo/motion_io.h>
 
-#include "counted_mem.h"
-#include "motion_texts.h"
+#include "tests/support/counted_mem.h"
+#include "tests/support/motion_texts.h"
 
 static grobo_posture posture_of(int n_joints, double angle_rad, int64_t time_us)
 {

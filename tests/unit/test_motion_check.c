@@ -10,8 +10,8 @@
 
 #include <cmocka.h>
 
-#include "files.h"
-#include "motion_texts.h"
+#include "tests/support/files.h"
+#include "tests/support/motion_texts.h"
 
 typedef struct checked {
     grobo_diagnostics *list;

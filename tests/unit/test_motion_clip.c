@@ -11,9 +11,9 @@
 
 #include <cmocka.h>
 
-#include "counted_mem.h"
-#include "files.h"
-#include "motion_texts.h"
+#include "tests/support/counted_mem.h"
+#include "tests/support/files.h"
+#include "tests/support/motion_texts.h"
 
 static void assert_near(double value, double expected, double delta)
 {

@@ -11,9 +11,9 @@
 
 #include <cmocka.h>
 
-#include "files.h"
-#include "folder.h"
-#include "motion_texts.h"
+#include "tests/support/files.h"
+#include "tests/support/folder.h"
+#include "tests/support/motion_texts.h"
 
 static int remove_folder(void **state)
 {

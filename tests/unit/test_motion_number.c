@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-#include "motion/number.h"
+#include "src/motion/text/number.h"
 
 static void test_numbers(void **state)
 {

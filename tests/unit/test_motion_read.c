@@ -11,8 +11,8 @@
 
 #include <cmocka.h>
 
-#include "counted_mem.h"
-#include "motion_texts.h"
+#include "tests/support/counted_mem.h"
+#include "tests/support/motion_texts.h"
 
 /* ---- .m ----------------------------------------------------------------------------------- */
 

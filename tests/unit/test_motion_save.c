@@ -10,10 +10,10 @@
 
 #include <cmocka.h>
 
-#include "files.h"
-#include "folder.h"
-#include "motion_texts.h"
-#include "os.h"
+#include "tests/support/files.h"
+#include "tests/support/folder.h"
+#include "tests/support/motion_texts.h"
+#include "tests/support/os.h"
 
 static const char saved[] = "500  10 -20\n1000  1 2\n";
 static const grobo_write_options in_motor_order = {.model = &grobo_gr001_model};

@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "motion_texts.h"
+#include "tests/support/motion_texts.h"
 
 enum { KEYS = 6, TRIALS = 25 };
 #define KEY_S 0.5 /* on a frame at GROBO_MOTION_RATE_HZ */

@@ -10,8 +10,8 @@
 
 #include <cmocka.h>
 
-#include "counted_mem.h"
-#include "motion_texts.h"
+#include "tests/support/counted_mem.h"
+#include "tests/support/motion_texts.h"
 
 static const char keys[] =
     "type: PoseSeq\nname: t\nrefs:\n"

@@ -9,8 +9,8 @@
 
 #include <cmocka.h>
 
-#include "tools/grctl/os.h"
-#include "tools/grctl/pcapng.h"
+#include "tools/grctl/conn/pcapng.h"
+#include "tools/grctl/os/os.h"
 
 enum { FILE_BYTES = 16384 };
 

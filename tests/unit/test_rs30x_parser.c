@@ -12,7 +12,7 @@
 
 #include <grobo/rs30x.h>
 
-#include "vectors.h"
+#include "tests/support/vectors.h"
 
 enum { MAX = GROBO_RS30X_PACKET_MAX_BYTES };
 

@@ -8,7 +8,7 @@ BARE_CAPS ?= -DGROBO_JOINTS_MAX=20 -DGROBO_QUEUE_MAX=2 -DGROBO_SIM_WIRE_BYTES=25
     -DGROBO_SIM_FIFO_BYTES=256
 # An assertion would bring the C library's way of printing it.
 BARE_FLAGS := -std=c11 -DNDEBUG $(WARNINGS) -mthumb -Os -ffunction-sections -fdata-sections -fstack-usage \
-    -Iinclude -Isrc -I.
+    -Iinclude -I.
 # What is measured: each processor with these caps, and the smallest with those of limits.h as well.
 BARE_SIZES := $(BARE_CPUS) cortex-m0-default
 BARE_DIR := $(BUILD)/bare

@@ -24,16 +24,17 @@ trap 'rm -rf "$work"' EXIT
 
 # What belongs together. Codec, bus and sequencer need of the others only postures.
 rooms='codec bus sequencer names postures robot engine simulator'
-codec='core/board core/board_frame core/framer core/rs30x_build core/rs30x_parse core/rs30x_state'
-bus='core/bus core/bus_queue core/bus_receive core/bus_time core/instant'
-sequencer='core/sequencer core/sequencer_clip core/sequencer_info'
-names='core/error core/rs30x_registers core/sequencer_names core/version'
-postures='core/posture core/model core/interpolate'
-robot='core/driver core/rs30x_driver core/gr001_driver core/gr001_model'
-engine='core/robot core/robot_job core/robot_play core/robot_query core/robot_request
-    core/robot_slot core/robot_steps core/robot_axis core/sequencer_progress core/safety_gate
-    core/safety_orders core/safety_watch core/segments core/sensing core/hrpsys core/budget'
-simulator='core/board_parser sim/board sim/bus sim/fault sim/inspect sim/power sim/servo sim/shaft
+codec='servo/gr001/board servo/gr001/frame bus/framer servo/rs30x/build servo/rs30x/parse
+    servo/rs30x/state'
+bus='bus/bus bus/queue bus/receive bus/time base/instant'
+sequencer='play/sequencer play/clip play/info'
+names='base/error servo/rs30x/registers play/names base/version'
+postures='model/posture model/model model/interpolate'
+robot='servo/driver servo/rs30x/driver servo/gr001/driver model/gr001'
+engine='robot/robot robot/job robot/play robot/query robot/request
+    robot/slot robot/steps robot/axis play/progress robot/gate
+    robot/orders robot/watch robot/segments robot/sense robot/hrpsys robot/budget'
+simulator='servo/gr001/parser sim/board sim/bus sim/fault sim/inspect sim/power sim/servo sim/shaft
     sim/sim sim/types'
 
 # figure CPU NAME BYTES: notes it, and prints it beside the one that was kept.

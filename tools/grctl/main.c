@@ -4,12 +4,12 @@
 
 #include <grobo/version.h>
 
-#include "app.h"
-#include "commands.h"
-#include "guard.h"
-#include "os.h"
-#include "output.h"
-#include "run.h"
+#include "tools/grctl/cli/app.h"
+#include "tools/grctl/cli/commands.h"
+#include "tools/grctl/cli/output.h"
+#include "tools/grctl/cli/run.h"
+#include "tools/grctl/conn/guard.h"
+#include "tools/grctl/os/os.h"
 
 const cli_option cli_global_options[GLOBAL_COUNT] = {
     [GLOBAL_DEVICE] =

@@ -47,10 +47,10 @@ if [ -f include/grobo/grobo.h ]; then
 fi
 # shellcheck disable=SC2086
 for header in $(find src ports tools tests -name '*.h' ! -path '*/include/grobo/*'); do
-    folder=$(dirname "$header")
     system=
     case $header in
-    src/core/* | src/sim/* | src/body/* | src/motion/*) ;;
+    src/link/*) system='-D_DEFAULT_SOURCE -D_XOPEN_SOURCE=700' ;;
+    src/*) ;;
     *) system='-D_DEFAULT_SOURCE -D_XOPEN_SOURCE=700' ;;
     esac
     # A port's own headers want its system.
@@ -62,7 +62,6 @@ for header in $(find src ports tools tests -name '*.h' ! -path '*/include/grobo/
         continue
         ;;
     esac
-    try "$header" C11 $cc -x c -std=c11 $warnings $system $flags -Isrc -I. -Itests/support \
-        -I"$folder"
+    try "$header" C11 $cc -x c -std=c11 $warnings $system $flags -I.
 done
 exit $bad

@@ -1,17 +1,87 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Gate: folders are layers, and a layer links without those above it. Looks at the symbols that
-# the objects of a folder leave open (nm): each must come from a layer allowed to it, or from
-# outside by the rules below. Also finds banned functions that a macro hid from the source scan.
+# Gate: a file uses files below it, never in a circle. Looks at the symbols of the objects (nm):
+# no circle of files, none of folders, and a folder takes from others only what layers.txt allows
+# it. Also finds banned functions that a macro hid from the source scan.
 #
-# usage: layers.sh BUILD     (BUILD holds the objects: BUILD/src/core/*.o ...)
+# usage: layers.sh BUILD     (BUILD holds the objects: BUILD/src/bus/*.o ...)
 set -u
 
 build=$1
 nm=${NM:-nm}
+table=$(dirname "$0")/layers.txt
 bad=0
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
+
+# ---- who uses whom -------------------------------------------------------------------------
+
+# uses: FILE FILE SYMBOL, the first takes the symbol from the second; open: FILE SYMBOL, taken from
+# outside. The command's own symbols may be defined in several ports, of which one is built.
+(cd "$build" && find src ports tools/grctl -name '*.o' 2>/dev/null | sort | xargs -r "$nm" -o -g) |
+    sed -n 's/^\([^ :]*\)\.o:/\1.c /p' | awk -v uses="$work/uses" -v outside="$work/outside" '
+    $(NF - 1) == "U" || $(NF - 1) == "w" { wants[++n] = $1 " " $NF; next }
+    { home[$NF] = $1 }
+    END {
+        printf "" >uses
+        printf "" >outside
+        for (i = 1; i <= n; i++) {
+            split(wants[i], want, " ")
+            if (!(want[2] in home)) {
+                print wants[i] >outside
+            } else if (home[want[2]] != want[1]) {
+                print want[1], home[want[2]], want[2] >uses
+            }
+        }
+    }'
+
+# ---- circles -------------------------------------------------------------------------------
+
+# circles NAME: of the pairs on standard input; what is in one, a line each.
+circles() {
+    tsort 2>&1 >/dev/null | sed -n 's/^tsort: \([^ ]*\/[^ ]*\)$/\1/p' | sort -u >"$work/circle"
+    if [ -s "$work/circle" ]; then
+        sed "s/\$/:1: layers: in a circle of $1/" "$work/circle"
+        bad=1
+    fi
+}
+awk '{ print $1, $2 }' "$work/uses" | sort -u >"$work/files"
+circles files <"$work/files"
+sed 's,/[^/ ]*\.c,,g' "$work/files" | awk '$1 != $2' | sort -u >"$work/folders"
+circles folders <"$work/folders"
+
+# ---- what a folder may use -----------------------------------------------------------------
+
+# layers.txt: FOLDER: FOLDERS. A folder that has no line may use nothing; PORT is the port that is
+# built.
+awk -v table="$table" '
+    BEGIN {
+        while ((getline line <table) > 0) {
+            sub(/#.*/, "", line)
+            n = split(line, word, /[: ]+/)
+            for (i = 2; i <= n; i++) {
+                may[word[1] " " word[i]] = 1
+            }
+        }
+    }
+    function folder(file) {
+        sub(/\/[^\/]*$/, "", file)
+        sub(/\/(posix|win32)$/, "/PORT", file)
+        return file
+    }
+    {
+        from = folder($1)
+        to = folder($2)
+        if (from != to && !((from " " to) in may)) {
+            print $1 ":1: layers: " $3 " comes from " to ", which " from " may not use"
+        }
+    }' "$work/uses" | sort >"$work/found"
+if [ -s "$work/found" ]; then
+    cat "$work/found"
+    bad=1
+fi
+
+# ---- what a folder may take from outside ---------------------------------------------------
 
 # What the compiler itself may ask for, and what assert() becomes.
 helpers='__stack_chk_fail|__assert_fail|_GLOBAL_OFFSET_TABLE_|__aeabi_.*|__[a-z]+[dst][fi][0-9]?'
@@ -25,67 +95,43 @@ banned="$banned|alloca|_?setjmp|longjmp|sleep|usleep"
 output='printf|vprintf|puts|putchar|perror|stdout|stderr|exit|abort|_exit'
 system='socket|connect|open|openat|read|write|poll|select|ioctl|clock_gettime|nanosleep|time'
 system="$system|tc[sg]etattr|gettimeofday|pthread_.*|thrd_.*|fork|exec.*"
+loop='event_.*|evutil_.*|bufferevent_.*'
 
-# Names that the objects of the folders define, one a line.
-defined() {
-    for folder in "$@"; do
-        find "$build/$folder" -name '*.o' 2>/dev/null
-    done | xargs -r "$nm" -g --defined-only 2>/dev/null | awk 'NF == 3 { print $3 }' | sort -u
-}
-
-# layer FOLDER "FOLDERS BELOW" ALLOWED DENIED: both are extended regular expressions of whole names
-# for symbols from outside; an empty ALLOWED allows everything but the denied.
-layer() {
-    folder=$1
-    below=$2
-    allowed=$3
-    denied=$4
-    [ -d "$build/$folder" ] || return
-    # $below is a list.
-    # shellcheck disable=SC2086
-    defined "$folder" $below >"$work/known"
-    find "$build/$folder" -name '*.o' | while read -r object; do
-        # A fortified function (__printf_chk) counts as what the source calls.
-        "$nm" -u "$object" | awk '{ print $NF }' | sed 's/^__\(.*\)_chk$/\1/' | sort -u |
-            comm -23 - "$work/known" >"$work/open"
-        source=${object#"$build"/}
-        source=${source%.o}.c
-        grep -vE "^($helpers)\$" "$work/open" | while read -r symbol; do
+# outside PATTERN ALLOWED DENIED: extended regular expressions, of the files' names and of whole names
+# of symbols; an empty ALLOWED allows everything but the denied.
+outside() {
+    # A fortified function (__printf_chk) counts as what the source calls.
+    grep -E "^($1) " "$work/outside" | sed 's/ __\(.*\)_chk$/ \1/' | grep -vE " ($helpers)\$" |
+        while read -r file symbol; do
             if printf '%s\n' "$symbol" | grep -qE '^grobo_'; then
-                echo "$source:1: layers: $symbol does not come from: $folder $below"
-            elif [ -n "$allowed" ] && ! printf '%s\n' "$symbol" | grep -qE "^($allowed)\$"; then
-                echo "$source:1: layers: $folder may not use $symbol"
-            elif printf '%s\n' "$symbol" | grep -qE "^($denied)\$"; then
-                echo "$source:1: layers: $folder may not use $symbol"
+                echo "$file:1: layers: $symbol is defined nowhere"
+            elif printf '%s\n' "$symbol" | grep -qE "^($3)\$" ||
+                { [ -n "$2" ] && ! printf '%s\n' "$symbol" | grep -qE "^($2)\$"; }; then
+                echo "$file:1: layers: ${file%/*} may not use $symbol"
             fi
-        done
-    done >"$work/found"
+        done | sort -u >"$work/found"
     if [ -s "$work/found" ]; then
         cat "$work/found"
         bad=1
     fi
 }
 
-layer src/core '' "$freestanding" "$banned"
-layer src/sim 'src/core' "$freestanding" "$banned"
-layer src/body 'src/core src/motion' "$freestanding" "$banned"
-loop='event_.*|evutil_.*|bufferevent_.*'
-layer src/motion 'src/core' '' "$banned|$output|$system|$loop"
-layer ports/common 'src/core' '' "$banned|$output|$system|$loop|yaml_.*"
-layer ports/posix 'src/core ports/common' '' "$banned|$output|$loop|yaml_.*"
-layer src/link 'src/core src/sim src/motion src/body ports/common ports/posix' '' \
-    "$banned|$output|yaml_.*"
+heap='src/base/heap\.c'
+grep -vE "^$heap " "$work/outside" >"$work/rest"
+mv "$work/rest" "$work/outside"
+outside 'src/(base|model|play|bus|servo|robot|sim|body)/.*' "$freestanding" "$banned"
+outside 'src/motion/.*' '' "$banned|$output|$system|$loop"
+outside 'ports/common/.*' '' "$banned|$output|$system|$loop|yaml_.*"
+outside 'ports/posix/.*' '' "$banned|$output|$loop|yaml_.*"
+outside 'src/link/.*' '' "$banned|$output|yaml_.*"
 
 # The command is a user like any other: what it takes from the library is public.
-if [ -d "$build/tools/grctl" ]; then
-    sh "$(dirname "$0")/symbols.sh" --declared >"$work/public"
-    defined tools/grctl >>"$work/public"
-    sort -u "$work/public" >"$work/known"
-    find "$build/tools/grctl" -name '*.o' | xargs -r "$nm" -u | awk '/ grobo_/ { print $NF }' |
-        sort -u | comm -23 - "$work/known" >"$work/found"
-    if [ -s "$work/found" ]; then
-        sed 's/^/tools\/grctl:1: layers: not a public function: /' "$work/found"
-        bad=1
-    fi
+sh "$(dirname "$0")/symbols.sh" --declared 2>/dev/null | sort >"$work/public"
+awk '$1 ~ /^tools\/grctl\// && $2 !~ /^tools\// { print $3, $1 }' "$work/uses" | sort |
+    join -v 1 - "$work/public" |
+    awk '{ print $2 ":1: layers: not a public function: " $1 }' >"$work/found"
+if [ -s "$work/found" ]; then
+    cat "$work/found"
+    bad=1
 fi
 exit $bad

@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "os.h"
+#include "tests/support/os.h"
 
 void test_folder_new(char *path, size_t path_bytes)
 {

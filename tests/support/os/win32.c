@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "os.h"
+#include "tests/support/os.h"
 
 void test_folder_new(char *path, size_t path_bytes)
 {

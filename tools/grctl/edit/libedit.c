@@ -10,8 +10,8 @@
 
 #include <histedit.h>
 
-#include "../output.h"
-#include "../shell.h"
+#include "tools/grctl/cli/output.h"
+#include "tools/grctl/shell/shell.h"
 
 enum { HISTORY_LINES = 1000, CANDIDATES_MAX = 256, WORD_BYTES = 256, PATH_BYTES = 1024 };
 

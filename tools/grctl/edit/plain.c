@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../output.h"
-#include "../shell.h"
+#include "tools/grctl/cli/output.h"
+#include "tools/grctl/shell/shell.h"
 
 struct line_reader {
     shell *s;

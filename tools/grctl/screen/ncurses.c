@@ -10,9 +10,9 @@
 
 #undef columns /* a capability in term.h, a parameter in ours */
 
-#include "../os.h"
-#include "../output.h"
-#include "../screen.h"
+#include "tools/grctl/cli/output.h"
+#include "tools/grctl/os/os.h"
+#include "tools/grctl/screen/screen.h"
 
 enum { ESCAPE_MS = 25 };
 

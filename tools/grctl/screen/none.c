@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "../screen.h"
+#include "tools/grctl/screen/screen.h"
 
 bool screen_possible(void)
 {

@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "../../checkup.h"
+#include "tools/grctl/doctor/checkup.h"
 
 /* The Makefile says where `make install` puts it. */
 static const char rules[] = GRCTL_DATADIR "/grobo/udev/60-grobo.rules";

@@ -5,7 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "../../os.h"
+#include "tools/grctl/os/os.h"
 
 static bool is_stream(int fd)
 {

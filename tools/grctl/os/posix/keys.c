@@ -7,7 +7,7 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include "../../keys.h"
+#include "tools/grctl/os/keys.h"
 
 /* The terminal is one for the process, and atexit() hands over no context. */
 static struct termios before;

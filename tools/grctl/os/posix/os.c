@@ -13,7 +13,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "../../os.h"
+#include "tools/grctl/os/os.h"
 
 extern char **environ;
 

@@ -5,7 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "../../pipe.h"
+#include "tools/grctl/os/pipe.h"
 
 enum { WRITER_MS = 1000 };
 

@@ -5,7 +5,7 @@
 
 #include <grobo/serial.h>
 
-#include "../../checkup.h"
+#include "tools/grctl/doctor/checkup.h"
 
 bool checkup_node(checkup *k, const char *device)
 {

@@ -11,7 +11,7 @@
 #include <io.h>
 #include <process.h>
 
-#include "../../os.h"
+#include "tools/grctl/os/os.h"
 
 enum { BLOCK_BYTES = 512 };
 

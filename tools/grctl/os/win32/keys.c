@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../keys.h"
+#include "tools/grctl/os/keys.h"
 
 /* The console is one for the process. */
 static struct {

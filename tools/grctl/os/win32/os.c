@@ -10,7 +10,7 @@
 #include <string.h>
 #include <timeapi.h>
 
-#include "../../os.h"
+#include "tools/grctl/os/os.h"
 
 /* ---- the process ---------------------------------------------------------------------------- */
 

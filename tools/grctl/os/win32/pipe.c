@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* No command hands over a pipe by its name here: every path is a file's. */
-#include "../../pipe.h"
+#include "tools/grctl/os/pipe.h"
 
 bool pipe_is(const char *path)
 {

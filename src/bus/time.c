@@ -1,0 +1,233 @@
+/* SPDX-License-Identifier: MIT */
+#include "src/bus/time.h"
+
+#include <string.h>
+
+#include "src/base/instant.h"
+
+enum {
+    BITS_PER_BYTE = 10, /* 8N1 */
+    US_PER_S = 1000000,
+    ASK = 0x54,
+    SEND = 0x53
+};
+
+/* At most 429 bytes, so that the product fits 32 bits: no 64-bit division on small machines. */
+static uint32_t wire_us(size_t bytes, uint32_t baud_bps)
+{
+    uint32_t bits = (uint32_t)bytes * BITS_PER_BYTE;
+    return (bits * US_PER_S + baud_bps - 1) / baud_bps;
+}
+
+/* Bytes that the board puts on the servo bus for this frame. */
+static size_t relayed_bytes(const grobo_txn *txn)
+{
+    if (txn->frame_bytes < GROBO_BOARD_HEADER_BYTES) {
+        return 0;
+    }
+    size_t counted = txn->frame[1];
+    if (txn->frame[0] == SEND) {
+        return counted;
+    }
+    return txn->frame[0] == ASK && counted > 0 ? counted - 1 : 0;
+}
+
+void grobo_bus_cost_of(const grobo_bus *bus, const grobo_txn *txn, grobo_bus_cost *cost)
+{
+    const grobo_bus_config *c = &bus->config;
+    size_t reply = grobo_reply_bytes(&txn->reply);
+    uint32_t delay_us = reply > 0 ? c->return_delay_us : 0;
+    cost->request_us = wire_us(txn->frame_bytes, c->baud_bps);
+    cost->servo_us = 0;
+    cost->reply_us = wire_us(reply, c->baud_bps);
+    if (c->wiring == GROBO_WIRING_BUS) {
+        cost->reply_us += delay_us;
+    } else {
+        size_t relayed = relayed_bytes(txn);
+        if (relayed > 0) {
+            cost->servo_us =
+                wire_us(relayed, c->servo_baud_bps) + delay_us + wire_us(reply, c->servo_baud_bps);
+        }
+    }
+    cost->total_us = cost->request_us + cost->servo_us + cost->reply_us;
+    if (txn->timeout_us != 0) {
+        cost->timeout_us = txn->timeout_us;
+    } else {
+        cost->timeout_us = cost->total_us + grobo_i_bus_margin_us(bus, 1);
+    }
+}
+
+int64_t grobo_i_bus_over_at(const grobo_bus *bus, const grobo_bus_cost *cost, int64_t start_us)
+{
+    int64_t at_us = start_us + cost->request_us;
+    if (cost->servo_us > 0) {
+        at_us = grobo_i_later(at_us, bus->servo_us) + cost->servo_us;
+    }
+    return at_us + cost->reply_us;
+}
+
+uint32_t grobo_i_bus_margin_us(const grobo_bus *bus, unsigned attempts)
+{
+    if (bus->config.margin_us != 0) {
+        return bus->config.margin_us;
+    }
+    int64_t margin_us = GROBO_BUS_MARGIN_FIRST_US;
+    if (bus->learnt) {
+        margin_us = bus->overhead_us + 4 * bus->deviation_us;
+    }
+    margin_us = grobo_i_later(margin_us, GROBO_BUS_MARGIN_MIN_US);
+    for (; attempts > 1 && margin_us < GROBO_BUS_MARGIN_MAX_US; attempts--) {
+        margin_us *= 2;
+    }
+    return (uint32_t)grobo_i_sooner(margin_us, GROBO_BUS_MARGIN_MAX_US);
+}
+
+static int32_t clip(int64_t late_us, int32_t most_us)
+{
+    return late_us < 0 ? 0 : late_us > most_us ? most_us : (int32_t)late_us;
+}
+
+/* As TCP does it: mean with weight 1/8, deviation with weight 1/4. A retried request teaches
+ * nothing, since nobody knows which of its attempts was answered. */
+void grobo_i_bus_learn(grobo_bus *bus)
+{
+    int32_t sample_us = clip(bus->now_us - bus->over_us, GROBO_BUS_MARGIN_MAX_US);
+    if (sample_us > bus->worst_us) {
+        bus->worst_us = sample_us;
+    }
+    bus->worst_us -= (bus->worst_us - sample_us) >> 8; /* slowly forgotten */
+    if (!bus->learnt) {
+        bus->learnt = true;
+        bus->overhead_us = sample_us;
+        bus->deviation_us = sample_us / 2;
+        return;
+    }
+    int32_t error_us = sample_us - bus->overhead_us;
+    bus->overhead_us += error_us / 8;
+    bus->deviation_us += ((error_us < 0 ? -error_us : error_us) - bus->deviation_us) / 4;
+}
+
+uint32_t grobo_i_bus_key(const grobo_reply *reply)
+{
+    uint32_t name = (uint32_t)reply->id << 16 | (uint32_t)reply->address << 8 | reply->length;
+    return (uint32_t)reply->kind << 24 | (reply->kind == GROBO_REPLY_RETURN ? name : 0);
+}
+
+/* The hold for replies that would be taken for this one, or NULL. */
+static grobo_bus_hold *find_hold(grobo_bus *bus, uint32_t key)
+{
+    for (grobo_bus_hold *hold = bus->hold; hold < bus->hold + GROBO_BUS_HOLDS; hold++) {
+        if (hold->key == key && hold->owed > 0) {
+            return hold;
+        }
+    }
+    return NULL;
+}
+
+void grobo_i_bus_hold(grobo_bus *bus, const grobo_txn *txn, int64_t from_us)
+{
+    uint32_t key = grobo_i_bus_key(&txn->reply);
+    grobo_bus_hold *hold = find_hold(bus, key);
+    uint32_t span_us = 2 * (uint32_t)bus->worst_us;
+    if (txn->reply.kind == GROBO_REPLY_NONE) {
+        return;
+    }
+    /* An ACK has no name, so that none is known to be the one that is owed: only time tells. The
+     * first hold is theirs: theirs is the confusion that could name a wrong motor. */
+    if (txn->reply.kind == GROBO_REPLY_ACK) {
+        hold = bus->hold;
+        span_us = bus->config.hold_us;
+    }
+    if (hold == NULL) {
+        bus->next_hold = bus->next_hold == GROBO_BUS_HOLDS - 1 ? 1 : (uint8_t)(bus->next_hold + 1);
+        hold = &bus->hold[bus->next_hold];
+        hold->owed = 0;
+    }
+    if (hold->owed == 0 || hold->until_us < bus->now_us) {
+        hold->owed = 0;
+        hold->due_us = bus->over_us;
+    }
+    hold->owed++;
+    hold->key = key;
+    hold->owner = txn;
+    hold->until_us = from_us + span_us;
+}
+
+grobo_bus_hold *grobo_i_bus_owed(grobo_bus *bus, uint32_t key)
+{
+    grobo_bus_hold *hold = find_hold(bus, key);
+    return hold != NULL && bus->now_us >= hold->due_us ? hold : NULL;
+}
+
+bool grobo_i_bus_settle(grobo_bus *bus, uint32_t key)
+{
+    grobo_bus_hold *hold = grobo_i_bus_owed(bus, key);
+    if (hold == NULL) {
+        return false;
+    }
+    int32_t late_us = clip(bus->now_us - hold->due_us, (int32_t)(bus->config.hold_us / 2));
+    bus->worst_us = late_us > bus->worst_us ? late_us : bus->worst_us;
+    hold->due_us = bus->over_us; /* the rest are to later attempts */
+    hold->owed--;
+    return true;
+}
+
+void grobo_i_bus_release_holds(grobo_bus *bus)
+{
+    if (bus->config.wiring == GROBO_WIRING_BOARD) {
+        memset(bus->hold, 0, sizeof bus->hold);
+        return;
+    }
+    for (int i = 0; i < GROBO_BUS_HOLDS; i++) {
+        int64_t *until_us = &bus->hold[i].until_us;
+        *until_us = grobo_i_sooner(*until_us, bus->now_us + GROBO_BUS_MARGIN_MAX_US);
+    }
+}
+
+static int64_t held_until(const grobo_bus *bus, const grobo_txn *txn)
+{
+    uint32_t key = grobo_i_bus_key(&txn->reply);
+    int64_t until_us = 0;
+    for (int i = 0; i < GROBO_BUS_HOLDS; i++) {
+        const grobo_bus_hold *hold = &bus->hold[i];
+        if (hold->key == key && hold->owed > 0 && (hold->owner != txn || txn->attempts_ == 0)) {
+            until_us = hold->until_us;
+        }
+    }
+    return until_us;
+}
+
+bool grobo_bus_fits(const grobo_bus *bus, int64_t now_us, const grobo_txn *txn)
+{
+    grobo_bus_cost cost;
+    if (now_us >= bus->reserve_end_us) {
+        return true;
+    }
+    grobo_bus_cost_of(bus, txn, &cost);
+    uint32_t overhead_us = txn->reply.kind != GROBO_REPLY_NONE ? (uint32_t)bus->overhead_us : 0;
+    return grobo_i_bus_over_at(bus, &cost, now_us) + overhead_us <= bus->reserve_us;
+}
+
+int64_t grobo_i_bus_start_at(const grobo_bus *bus, const grobo_txn *txn, int64_t now_us)
+{
+    int64_t at_us = grobo_i_later(now_us, bus->free_us);
+    if (txn->reply.kind != GROBO_REPLY_NONE || bus->config.wiring == GROBO_WIRING_BUS) {
+        at_us = grobo_i_later(at_us, bus->quiet_us);
+        at_us = grobo_i_later(at_us, held_until(bus, txn));
+    }
+    if (txn->priority >= GROBO_PRIORITY_USER && !grobo_bus_fits(bus, at_us, txn)) {
+        at_us = bus->reserve_end_us;
+    }
+    return at_us;
+}
+
+void grobo_bus_reserve(grobo_bus *bus, int64_t at_us, uint32_t duration_us)
+{
+    bus->reserve_us = at_us;
+    bus->reserve_end_us = at_us == GROBO_NEVER_US ? 0 : at_us + duration_us;
+}
+
+int64_t grobo_bus_free_at(const grobo_bus *bus, int64_t now_us)
+{
+    return grobo_i_later(now_us, bus->free_us);
+}

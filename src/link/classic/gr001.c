@@ -1,0 +1,242 @@
+/* SPDX-License-Identifier: MIT */
+/* GR001 by motor number and in motor order, on the engine. */
+#include <grobo/gr001.h>
+
+#include <math.h>
+
+#include "src/link/classic/gr001.h"
+
+static const grobo_model *model_of(const grobo_robot *robot)
+{
+    return grobo_robot_driver(robot)->model;
+}
+
+int grobo_i_gr001_order(const grobo_model *model, uint8_t *joints)
+{
+    for (int n = 0; n < model->n_joints; n++) {
+        int at = n;
+        for (; at > 0 && model->joints[joints[at - 1]].motor > model->joints[n].motor; at--) {
+            joints[at] = joints[at - 1];
+        }
+        joints[at] = (uint8_t)n;
+    }
+    return model->n_joints;
+}
+
+/* ---- one motor, a group of motors ------------------------------------------------------------ */
+
+int grobo_gr001_torque(grobo_robot *robot, int motor, grobo_torque mode, int64_t now_us)
+{
+    int joint = grobo_model_joint_of_motor(model_of(robot), motor);
+    return joint < 0 ? joint : grobo_robot_torque(robot, GROBO_JOINT_BIT(joint), mode, now_us);
+}
+
+int grobo_gr001_servo(grobo_robot *robot, grobo_gr001_group group, grobo_torque mode,
+                      int64_t now_us)
+{
+    const grobo_model *model = model_of(robot);
+    if ((unsigned)group >= model->n_groups) {
+        return GROBO_ERR_NOTFOUND;
+    }
+    return grobo_robot_torque(robot, model->groups[group].joints, mode, now_us);
+}
+
+static bool is_time(int time_cs)
+{
+    return time_cs >= 0 && time_cs <= GROBO_PLAY_TIME_MAX_US / GROBO_PLAY_TIME_UNIT_US;
+}
+
+int grobo_gr001_move(grobo_robot *robot, int motor, int angle_ddeg, int time_cs, int64_t now_us)
+{
+    grobo_posture target;
+    const grobo_model *model = model_of(robot);
+    int joint = grobo_model_joint_of_motor(model, motor);
+    if (joint < 0) {
+        return joint;
+    }
+    if (!is_time(time_cs)) {
+        return GROBO_ERR_ARG;
+    }
+    (void)grobo_posture_init(&target, model->n_joints);
+    (void)grobo_posture_set_rad(&target, joint, grobo_rad_from_ddeg(angle_ddeg));
+    /* One unit, which the engine stretches to what the joint can do. */
+    target.time_us = (time_cs == 0 ? 1 : time_cs) * (int64_t)GROBO_PLAY_TIME_UNIT_US;
+    return grobo_robot_move(robot, &target, now_us);
+}
+
+int grobo_gr001_sense(grobo_robot *robot, int motor, int64_t now_us)
+{
+    int joint = grobo_model_joint_of_motor(model_of(robot), motor);
+    return joint < 0 ? joint
+                     : grobo_robot_sense(robot, GROBO_JOINT_BIT(joint), GROBO_SENSE_FULL, now_us);
+}
+
+int grobo_gr001_angle(const grobo_robot *robot, int motor, int64_t now_us, int64_t max_age_us,
+                      int *angle_ddeg)
+{
+    grobo_joint_info info;
+    int joint = grobo_model_joint_of_motor(model_of(robot), motor);
+    if (joint < 0) {
+        return joint;
+    }
+    (void)grobo_robot_joint(robot, joint, now_us, &info);
+    if (info.angle_age_us == GROBO_NEVER_US || info.angle_age_us > max_age_us) {
+        return GROBO_ERR_STALE;
+    }
+    *angle_ddeg = grobo_ddeg_from_rad(info.state.angle_rad);
+    return GROBO_OK;
+}
+
+int grobo_gr001_pack_goal(int angle_ddeg, int time_cs, uint8_t *data, size_t cap)
+{
+    if (angle_ddeg < -1500 || angle_ddeg > 1500 || !is_time(time_cs)) {
+        return GROBO_ERR_LIMIT;
+    }
+    if (cap < 4) {
+        return GROBO_ERR_SPACE;
+    }
+    unsigned angle = (uint16_t)angle_ddeg;
+    data[0] = (uint8_t)(angle & 0xFF);
+    data[1] = (uint8_t)(angle >> 8);
+    data[2] = (uint8_t)(time_cs & 0xFF);
+    data[3] = (uint8_t)(time_cs >> 8);
+    return 4;
+}
+
+/* ---- all motors ------------------------------------------------------------------------------ */
+
+int grobo_gr001_posture(const grobo_model *model, const int16_t *angle_ddeg, size_t n, int time_cs,
+                        grobo_posture *posture)
+{
+    uint8_t joints[GROBO_JOINTS_MAX];
+    if (n > (size_t)grobo_i_gr001_order(model, joints)) {
+        return GROBO_ERR_CAP;
+    }
+    if (!is_time(time_cs)) {
+        return GROBO_ERR_ARG;
+    }
+    (void)grobo_posture_init(posture, model->n_joints);
+    for (size_t i = 0; i < n; i++) {
+        (void)grobo_posture_set_rad(posture, joints[i], grobo_rad_from_ddeg(angle_ddeg[i]));
+    }
+    posture->time_us = time_cs * (int64_t)GROBO_PLAY_TIME_UNIT_US;
+    return (int)n;
+}
+
+int grobo_gr001_set_angles(grobo_robot *robot, const double *angle_rad, size_t n, int64_t time_us,
+                           int64_t now_us)
+{
+    uint8_t joints[GROBO_JOINTS_MAX];
+    grobo_posture target;
+    const grobo_model *model = model_of(robot);
+    if (n != (size_t)grobo_i_gr001_order(model, joints)) {
+        return GROBO_ERR_ARG;
+    }
+    (void)grobo_posture_init(&target, model->n_joints);
+    for (size_t i = 0; i < n; i++) {
+        target.angle_rad[joints[i]] = angle_rad[i]; /* what is no number, the engine refuses */
+    }
+    target.set = GROBO_JOINTS_ALL(model->n_joints);
+    target.time_us = time_us;
+    return grobo_robot_move(robot, &target, now_us);
+}
+
+int grobo_gr001_get_angles(const grobo_robot *robot, int64_t now_us, int64_t max_age_us,
+                           double *angle_rad, size_t capacity)
+{
+    uint8_t joints[GROBO_JOINTS_MAX];
+    double by_joint[GROBO_JOINTS_MAX];
+    grobo_posture sensed;
+    int n = grobo_i_gr001_order(model_of(robot), joints);
+    if (capacity < (size_t)n) {
+        return GROBO_ERR_SPACE;
+    }
+    int fresh = grobo_robot_posture(robot, now_us, max_age_us, &sensed);
+    (void)grobo_posture_all_rad(&sensed, by_joint, GROBO_JOINTS_MAX);
+    for (int i = 0; i < n; i++) {
+        angle_rad[i] = by_joint[joints[i]];
+    }
+    return fresh;
+}
+
+/* Values of one field in motor order. */
+static int values(const grobo_robot *robot, grobo_field field, int64_t now_us, int64_t max_age_us,
+                  int32_t *value)
+{
+    uint8_t joints[GROBO_JOINTS_MAX];
+    int n = grobo_i_gr001_order(model_of(robot), joints);
+    int known = 0;
+    for (int i = 0; i < n; i++) {
+        grobo_joint_info info;
+        (void)grobo_robot_joint(robot, joints[i], now_us, &info);
+        bool fresh = (info.state.valid & field) != 0 && info.full_age_us != GROBO_NEVER_US &&
+                     info.full_age_us <= max_age_us;
+        int32_t measured =
+            field == GROBO_FIELD_VOLTAGE ? info.state.voltage_mv : info.state.current_ma;
+        value[i] = fresh ? measured : -1;
+        known += fresh;
+    }
+    return known;
+}
+
+int grobo_gr001_voltages(const grobo_robot *robot, int64_t now_us, int64_t max_age_us,
+                         int32_t *voltage_mv, size_t capacity)
+{
+    return capacity < model_of(robot)->n_joints
+               ? GROBO_ERR_SPACE
+               : values(robot, GROBO_FIELD_VOLTAGE, now_us, max_age_us, voltage_mv);
+}
+
+int grobo_gr001_currents(const grobo_robot *robot, int64_t now_us, int64_t max_age_us,
+                         int32_t *current_ma, size_t capacity)
+{
+    return capacity < model_of(robot)->n_joints
+               ? GROBO_ERR_SPACE
+               : values(robot, GROBO_FIELD_CURRENT, now_us, max_age_us, current_ma);
+}
+
+int grobo_gr001_mean_voltage_mv(const grobo_robot *robot, int64_t now_us, int64_t max_age_us)
+{
+    int32_t voltage_mv[GROBO_JOINTS_MAX];
+    int n = values(robot, GROBO_FIELD_VOLTAGE, now_us, max_age_us, voltage_mv);
+    double sum_mv = 0;
+    if (n == 0) {
+        return GROBO_ERR_STALE;
+    }
+    for (int i = 0; i < model_of(robot)->n_joints; i++) {
+        sum_mv += voltage_mv[i] < 0 ? 0 : voltage_mv[i];
+    }
+    return (int)lround(sum_mv / n);
+}
+
+/* ---- the record ------------------------------------------------------------------------------ */
+
+int grobo_gr001_record(grobo_motion *record, const grobo_robot *robot, int64_t time_us,
+                       int64_t now_us)
+{
+    grobo_posture sensed;
+    int fresh = grobo_robot_posture(robot, now_us, GROBO_GR001_RECORD_AGE_US, &sensed);
+    if (fresh < sensed.n_joints) {
+        return GROBO_ERR_STALE;
+    }
+    sensed.time_us = time_us;
+    int result = grobo_motion_append(record, &sensed);
+    return result < 0 ? result : (int)grobo_motion_size(record);
+}
+
+int grobo_gr001_play_record(const grobo_motion *record, grobo_robot *robot,
+                            const grobo_play_options *options, grobo_clip *clip, int64_t now_us)
+{
+    grobo_clip made;
+    int result = grobo_motion_clip(record, NULL, &made);
+    if (result < 0) {
+        return result;
+    }
+    int number = grobo_robot_play(robot, &made, options, now_us);
+    if (number < 0) {
+        grobo_motion_clip_free(&made);
+        return number;
+    }
+    *clip = made;
+    return number;
+}

@@ -1,0 +1,449 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Emergency stops across programs, as notes between the programs of one user. Three kinds:
+ *
+ *   estop-NAME   a mark, one for each name of the device. Its first line is the mark's id, the
+ *                others are the notes that were set together: clearing one clears all.
+ *   holder-NAME  the process that has the device: number and start time.
+ *   answer-ID    what was done about the mark: a grobo_estop_answer and a result. As long as there
+ *                is none, the stop has not reached the robot.
+ *
+ * A mark counts as soon as its file is there, whatever is in it.
+ */
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <grobo/session.h>
+
+#include "src/link/guard/estop.h"
+
+/* Longest part of a device's name that goes into that of a note. */
+enum { NAME_PART = 180 };
+
+/* A mark in which no id could be written, for want of room on the disk. */
+static const char nameless[] = "none";
+
+/* ---- names of notes ----------------------------------------------------------------------- */
+
+/* Characters that no system takes in a file's name. A long name is cut and gets a sum. */
+static void note_of(const char *kind, const char *name, char *note)
+{
+    size_t size = strlen(name);
+    uint32_t sum = 2166136261u; /* FNV-1a */
+
+    for (const char *c = name; *c != '\0'; c++) {
+        sum = (sum ^ (unsigned char)*c) * 16777619u;
+    }
+    if (size > NAME_PART) {
+        snprintf(note, NOTE_NAME_BYTES, "%s-%08" PRIx32 "-%s", kind, sum, name + size - NAME_PART);
+    } else {
+        snprintf(note, NOTE_NAME_BYTES, "%s-%s", kind, name);
+    }
+    for (char *c = note; *c != '\0'; c++) {
+        if ((unsigned char)*c < ' ' || strchr("/\\:*?\"<>|", *c) != NULL) {
+            *c = '!';
+        }
+    }
+}
+
+/* The id in a mark's text: its first line. */
+static void take_id(const char *text, char *id)
+{
+    size_t size = strcspn(text, "\n");
+
+    if (size == 0 || size >= sizeof((grobo_estop *)0)->id) {
+        text = nameless;
+        size = sizeof nameless - 1;
+    }
+    memcpy(id, text, size);
+    id[size] = '\0';
+}
+
+static bool is_device(const char *device)
+{
+    return device != NULL && device[0] != '\0' && strcmp(device, GROBO_DEVICE_AUTO) != 0;
+}
+
+/* ---- marks -------------------------------------------------------------------------------- */
+
+static void remove_answer(const char *id)
+{
+    char note[NOTE_NAME_BYTES];
+    grobo_os_cause cause;
+
+    note_of("answer", id, note);
+    (void)grobo_i_note_remove(note, &cause);
+}
+
+/* The notes to be set: not by a name that another device may have later. */
+static int list_marks(const grobo_i_device_names *names, char note[][NOTE_NAME_BYTES])
+{
+    int n = 0;
+
+    for (int i = 0; i < names->n; i++) {
+        if (i != names->passing) {
+            note_of("estop", names->name[i], note[n++]);
+        }
+    }
+    return n;
+}
+
+static int set_mark(const char *note, const char *text, grobo_estop *stop, grobo_os_cause *cause)
+{
+    int r = grobo_i_note_write(note, text, cause);
+
+    if (r < 0) {
+        /* A full disk may still take an empty file. */
+        grobo_os_cause again;
+        int empty = grobo_i_note_write(note, "", &again);
+
+        if (empty > 0) {
+            remove_answer(nameless);
+            snprintf(stop->id, sizeof stop->id, "%s", nameless);
+            r = empty;
+        }
+    }
+    stop->places |= r > 0 ? (unsigned)r : 0;
+    return r < 0 ? r : GROBO_OK;
+}
+
+/* The answers to marks that are replaced are of no use to anybody. */
+static void forget_answers(const char *note)
+{
+    char text[NOTE_TEXT_BYTES];
+    char id[sizeof((grobo_estop *)0)->id];
+
+    for (int folder = 0; folder < NOTE_FOLDERS; folder++) {
+        if (grobo_i_note_read(folder, note, text, sizeof text) >= 0) {
+            take_id(text, id);
+            remove_answer(id);
+        }
+    }
+}
+
+int grobo_estop_set(const char *device, grobo_estop *stop, grobo_os_cause *cause)
+{
+    grobo_i_device_names names;
+    char note[DEVICE_NAMES][NOTE_NAME_BYTES];
+    char text[NOTE_TEXT_BYTES];
+    grobo_i_process self;
+    grobo_estop made = {.places = 0};
+    grobo_os_cause why;
+    int size;
+    int r = GROBO_OK;
+
+    if (!is_device(device)) {
+        return GROBO_ERR_ARG;
+    }
+    if (strcmp(device, GROBO_DEVICE_SIM) != 0) {
+        grobo_i_device_names_find(device, &names);
+        int n = list_marks(&names, note);
+
+        grobo_i_process_self(&self);
+        snprintf(made.id, sizeof made.id, "%x-%" PRIx64, (unsigned)self.pid,
+                 (uint64_t)grobo_now_us());
+        size = snprintf(text, sizeof text, "%s\n", made.id);
+        for (int i = 0; i < n; i++) {
+            forget_answers(note[i]);
+            size += snprintf(text + size, sizeof text - (size_t)size, "%s\n", note[i]);
+        }
+        r = n > 0 ? GROBO_OK : GROBO_ERR_ARG;
+        for (int i = 0; i < n; i++) {
+            int error = set_mark(note[i], text, &made, cause != NULL ? cause : &why);
+
+            r = error < 0 ? error : r;
+        }
+    }
+    if (stop != NULL) {
+        *stop = made;
+    }
+    return r;
+}
+
+/* Removes the marks that were set together, as a mark's text lists them. */
+static int clear_group(const char *text, grobo_os_cause *cause)
+{
+    char note[NOTE_NAME_BYTES];
+    int r = GROBO_OK;
+
+    take_id(text, note);
+    remove_answer(note);
+    for (text += strcspn(text, "\n"); *text == '\n'; text += strcspn(text, "\n")) {
+        size_t size = strcspn(++text, "\n");
+
+        if (size < sizeof note && strncmp(text, "estop-", 6) == 0) {
+            memcpy(note, text, size);
+            note[size] = '\0';
+            r = strpbrk(note, "/\\") == NULL && grobo_i_note_remove(note, cause) < 0 ? GROBO_ERR_IO
+                                                                                     : r;
+        }
+    }
+    return r;
+}
+
+int grobo_i_estop_clear(const grobo_i_device_names *names, grobo_os_cause *cause)
+{
+    char note[NOTE_NAME_BYTES];
+    char text[NOTE_TEXT_BYTES];
+    int r = GROBO_OK;
+
+    for (int i = 0; i < names->n; i++) {
+        note_of("estop", names->name[i], note);
+        for (int folder = 0; folder < NOTE_FOLDERS; folder++) {
+            if (grobo_i_note_read(folder, note, text, sizeof text) >= 0) {
+                int error = clear_group(text, cause);
+
+                r = error < 0 ? error : r;
+            }
+        }
+        int error = grobo_i_note_remove(note, cause);
+
+        r = error < 0 ? error : r;
+    }
+    return r;
+}
+
+int grobo_estop_clear(const char *device, grobo_os_cause *cause)
+{
+    grobo_i_device_names names;
+    grobo_os_cause why;
+
+    if (!is_device(device)) {
+        return GROBO_ERR_ARG;
+    }
+    if (strcmp(device, GROBO_DEVICE_SIM) == 0) {
+        return GROBO_OK;
+    }
+    grobo_i_device_names_find(device, &names);
+    return grobo_i_estop_clear(&names, cause != NULL ? cause : &why);
+}
+
+/* Calls for each mark of a device until one returns true. */
+typedef bool mark_fn(void *ctx, const char *id);
+
+static bool each_mark(const grobo_i_device_names *names, mark_fn *fn, void *ctx)
+{
+    char note[NOTE_NAME_BYTES];
+    char text[sizeof((grobo_estop *)0)->id + 1];
+    char id[sizeof((grobo_estop *)0)->id];
+
+    for (int i = 0; i < names->n; i++) {
+        note_of("estop", names->name[i], note);
+        for (int folder = 0; folder < NOTE_FOLDERS; folder++) {
+            if (grobo_i_note_read(folder, note, text, sizeof text) >= 0) {
+                take_id(text, id);
+                if (fn(ctx, id)) {
+                    return true;
+                }
+            }
+        }
+    }
+    return false;
+}
+
+static bool is_any(void *ctx, const char *id)
+{
+    (void)ctx;
+    (void)id;
+    return true;
+}
+
+bool grobo_estop_stands(const char *device)
+{
+    grobo_i_device_names names;
+
+    if (!is_device(device) || strcmp(device, GROBO_DEVICE_SIM) == 0) {
+        return false;
+    }
+    grobo_i_device_names_find(device, &names);
+    return each_mark(&names, is_any, NULL);
+}
+
+/* ---- who has the device ------------------------------------------------------------------- */
+
+static bool read_holder(int folder, const char *name, grobo_i_process *holder)
+{
+    char note[NOTE_NAME_BYTES];
+    char text[64];
+
+    note_of("holder", name, note);
+    return grobo_i_note_read(folder, note, text, sizeof text) >= 0 &&
+           sscanf(text, "%d %" SCNu64, &holder->pid, &holder->started) == 2 && holder->pid > 0;
+}
+
+/* Fills the process that has the device and is alive; false where there is none. */
+static bool find_holder(const grobo_i_device_names *names, const grobo_estop *stop,
+                        grobo_estop_holder *holder)
+{
+    grobo_i_process process;
+
+    for (int i = 0; i < names->n; i++) {
+        for (int folder = 0; folder < NOTE_FOLDERS; folder++) {
+            /* One that does not see the mark would go on with what it was doing. */
+            bool wake = stop != NULL && (stop->places & 1u << folder) != 0;
+            int r = GROBO_ERR_NOENT;
+
+            if (read_holder(folder, names->name[i], &process)) {
+                r = grobo_i_process_look(&process, wake);
+            }
+            if (r != GROBO_ERR_NOENT) {
+                holder->pid = process.pid;
+                holder->stopped = r == 1;
+                holder->resumed = r == 1 && wake;
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+static bool read_answer(const char *id, int *answer, int *result)
+{
+    char note[NOTE_NAME_BYTES];
+    char text[64];
+
+    note_of("answer", id, note);
+    for (int folder = 0; folder < NOTE_FOLDERS; folder++) {
+        if (grobo_i_note_read(folder, note, text, sizeof text) >= 0 &&
+            sscanf(text, "%d %d", answer, result) == 2) {
+            return true;
+        }
+    }
+    return false;
+}
+
+int grobo_estop_ask(const char *device, const grobo_estop *stop, grobo_estop_holder *holder)
+{
+    grobo_i_device_names names;
+    int answer;
+    int result;
+
+    if (!is_device(device) || holder == NULL) {
+        return GROBO_ERR_ARG;
+    }
+    *holder = (grobo_estop_holder){.answer = GROBO_ESTOP_NOBODY};
+    if (strcmp(device, GROBO_DEVICE_SIM) == 0) {
+        return GROBO_OK;
+    }
+    grobo_i_device_names_find(device, &names);
+    if (find_holder(&names, stop, holder)) {
+        holder->answer = GROBO_ESTOP_SILENT;
+    }
+    if (stop != NULL && stop->id[0] != '\0' && read_answer(stop->id, &answer, &result) &&
+        answer >= GROBO_ESTOP_HEARD && answer <= GROBO_ESTOP_FAILED) {
+        holder->answer = (grobo_estop_answer)answer;
+        holder->result = result;
+    }
+    return GROBO_OK;
+}
+
+/* ---- a session's side --------------------------------------------------------------------- */
+
+void grobo_i_estop_watch_begin(grobo_i_estop_watch *watch, const char *device)
+{
+    char note[NOTE_NAME_BYTES];
+    char text[64];
+    grobo_i_process self;
+    grobo_os_cause cause;
+    bool armed = watch->on && watch->armed;
+
+    grobo_i_device_names_find(device, &watch->names);
+    grobo_i_process_self(&self);
+    snprintf(text, sizeof text, "%d %" PRIu64 "\n", self.pid, self.started);
+    for (int i = 0; i < watch->names.n; i++) {
+        note_of("holder", watch->names.name[i], note);
+        /* Where it cannot be registered, whoever asks is told that nobody is. */
+        (void)grobo_i_note_write(note, text, &cause);
+    }
+    watch->on = true;
+    watch->armed = armed;
+}
+
+void grobo_i_estop_watch_end(grobo_i_estop_watch *watch)
+{
+    char note[NOTE_NAME_BYTES];
+    grobo_i_process self;
+    grobo_i_process holder;
+    grobo_os_cause cause;
+
+    if (!watch->on) {
+        return;
+    }
+    grobo_i_estop_watch_answer(watch);
+    grobo_i_process_self(&self);
+    for (int i = 0; i < watch->names.n; i++) {
+        for (int folder = 0; folder < NOTE_FOLDERS; folder++) {
+            /* A connection may have several, and the last one is registered. */
+            if (read_holder(folder, watch->names.name[i], &holder) && holder.pid == self.pid) {
+                note_of("holder", watch->names.name[i], note);
+                (void)grobo_i_note_remove(note, &cause);
+            }
+        }
+    }
+    *watch = (grobo_i_estop_watch){.on = false};
+}
+
+/* The marks that stand now. */
+typedef struct standing {
+    char id[ESTOP_HEARD][sizeof((grobo_estop *)0)->id];
+    int n;
+} standing;
+
+static bool has(char list[][sizeof((grobo_estop *)0)->id], int n, const char *id)
+{
+    int at = 0;
+
+    while (at < n && strcmp(list[at], id) != 0) {
+        at++;
+    }
+    return at < n;
+}
+
+static bool collect(void *ctx, const char *id)
+{
+    standing *marks = ctx;
+
+    if (!has(marks->id, marks->n, id)) {
+        snprintf(marks->id[marks->n++], sizeof marks->id[0], "%s", id);
+    }
+    return marks->n == ESTOP_HEARD;
+}
+
+bool grobo_i_estop_watch_look(grobo_i_estop_watch *watch, bool *pending)
+{
+    standing marks = {.n = 0};
+    bool fresh = false;
+    int answer;
+    int result;
+
+    *pending = false;
+    watch->looked_us = grobo_now_us();
+    (void)each_mark(&watch->names, collect, &marks);
+    for (int i = 0; i < marks.n; i++) {
+        if (!has(watch->heard, watch->n_heard, marks.id[i])) {
+            fresh = true;
+            *pending = *pending || !read_answer(marks.id[i], &answer, &result);
+        }
+    }
+    memcpy(watch->heard, marks.id, sizeof watch->heard);
+    watch->n_heard = marks.n;
+    return fresh;
+}
+
+void grobo_i_estop_watch_answer(grobo_i_estop_watch *watch)
+{
+    char note[NOTE_NAME_BYTES];
+    char text[64];
+    grobo_os_cause cause;
+
+    if (watch->say == GROBO_ESTOP_NOBODY) {
+        return;
+    }
+    snprintf(text, sizeof text, "%d %d\n", (int)watch->say, watch->result);
+    for (int i = 0; i < watch->n_heard; i++) {
+        note_of("answer", watch->heard[i], note);
+        (void)grobo_i_note_write(note, text, &cause);
+    }
+    watch->say = GROBO_ESTOP_NOBODY;
+}

@@ -1,0 +1,172 @@
+/* SPDX-License-Identifier: MIT */
+/* A guard, seen from the program: started, given a port, ended. */
+#include <string.h>
+
+#include "src/link/guard/guard.h"
+#include "src/link/serial/loop.h"
+
+/* Longest the guard may take to come up, and to end. */
+#define READY_US INT64_C(2000000)
+#define END_US INT64_C(1000000)
+
+/* ---- starting and ending ------------------------------------------------------------------ */
+
+static int await_hello(const grobo_guard *guard)
+{
+    guard_hello hello;
+    size_t have = 0;
+    int64_t end_us = grobo_now_us() + READY_US;
+
+    while (have < sizeof hello) {
+        int64_t left_us = end_us - grobo_now_us();
+        int r = left_us > 0 ? grobo_port_wait(guard->process.socket, GROBO_PORT_READABLE, left_us)
+                            : GROBO_ERR_TIMEOUT;
+
+        if (r >= 0) {
+            r = grobo_i_guard_receive(guard->process.socket, (char *)&hello + have,
+                                      sizeof hello - have, NULL);
+        }
+        if (r < 0) {
+            return r == GROBO_ERR_CLOSED ? GROBO_ERR_MISMATCH : r;
+        }
+        have += (size_t)r;
+    }
+    return hello.magic == GUARD_MAGIC && hello.message_bytes == sizeof(guard_message)
+               ? GROBO_OK
+               : GROBO_ERR_MISMATCH;
+}
+
+int grobo_guard_new(const grobo_guard_config *config, grobo_guard **guard)
+{
+    static const grobo_guard_config defaults = {0};
+    static const char *const word[] = {"guard", NULL};
+    const grobo_guard_config *from = config != NULL ? config : &defaults;
+    const char *program = from->program != NULL ? from->program : grobo_i_guard_default();
+    grobo_guard *made;
+    int r;
+
+    if (guard == NULL) {
+        return GROBO_ERR_ARG;
+    }
+    made = grobo_i_link_new(from->mem, sizeof *made);
+    if (made == NULL) {
+        return GROBO_ERR_NOMEM;
+    }
+    made->mem = from->mem;
+    r = grobo_i_guard_spawn(program, from->arguments != NULL ? from->arguments : word,
+                            &made->process);
+    if (r >= 0) {
+        r = await_hello(made);
+        if (r < 0) {
+            grobo_i_guard_end(&made->process, 0);
+        }
+    }
+    if (r < 0) {
+        grobo_i_link_free(from->mem, made, sizeof *made);
+        return r;
+    }
+    *guard = made;
+    return GROBO_OK;
+}
+
+void grobo_guard_free(grobo_guard *guard)
+{
+    if (guard != NULL) {
+        grobo_i_guard_release(guard);
+        grobo_i_guard_end(&guard->process, END_US);
+        grobo_i_link_free(guard->mem, guard, sizeof *guard);
+    }
+}
+
+int grobo_guard_pid(const grobo_guard *guard)
+{
+    return guard->ended ? 0 : guard->process.pid;
+}
+
+/* ---- what is said ------------------------------------------------------------------------- */
+
+/* One that does not listen must not take the robot later: it is ended. */
+static void give_up(grobo_guard *guard)
+{
+    guard->ended = true;
+    guard->has_port = false;
+    grobo_i_guard_kill(&guard->process);
+}
+
+static bool can_be_told(const grobo_guard *guard)
+{
+    return !guard->ended && grobo_i_guard_is_owner(&guard->process);
+}
+
+static void send(grobo_guard *guard, const void *bytes, size_t size, grobo_handle handle)
+{
+    if (grobo_i_guard_send(guard->process.socket, bytes, size, handle) < 0) {
+        give_up(guard);
+    }
+}
+
+void grobo_i_guard_take(grobo_guard *guard, const guard_message *message, const void *data,
+                        grobo_handle handle)
+{
+    struct {
+        guard_message message;
+        uint8_t data[GROBO_GUARD_DATA_BYTES];
+    } all;
+
+    if (!can_be_told(guard)) {
+        return;
+    }
+    memset(&all, 0, sizeof all);
+    all.message = *message;
+    if (message->data_bytes > 0) {
+        memcpy(all.data, data, message->data_bytes);
+    }
+    guard->message = *message;
+    guard->taken = guard->refused = false;
+    guard->has_port = true;
+    send(guard, &all, sizeof all.message + message->data_bytes, handle);
+}
+
+void grobo_i_guard_tell(grobo_guard *guard, guard_policy policy, bool moves)
+{
+    guard_message *told = &guard->message;
+
+    if (!can_be_told(guard) || !guard->has_port ||
+        (told->policy == (uint32_t)policy && told->moves == (uint32_t)moves)) {
+        return;
+    }
+    told->kind = GUARD_STATE;
+    told->policy = (uint32_t)policy;
+    told->moves = moves;
+    told->data_bytes = 0;
+    send(guard, told, sizeof *told, GROBO_HANDLE_NULL);
+}
+
+void grobo_i_guard_release(grobo_guard *guard)
+{
+    if (can_be_told(guard) && guard->has_port) {
+        guard->has_port = false;
+        if (guard->taken) {
+            return; /* it has released it already, or will */
+        }
+        guard->message.kind = GUARD_RELEASE;
+        guard->message.data_bytes = 0;
+        send(guard, &guard->message, sizeof guard->message, GROBO_HANDLE_NULL);
+    }
+}
+
+void grobo_i_guard_hear(grobo_guard *guard)
+{
+    char words[16];
+    int got = can_be_told(guard)
+                  ? grobo_i_guard_receive(guard->process.socket, words, sizeof words, NULL)
+                  : 0;
+
+    for (int i = 0; i < got; i++) {
+        guard->taken = guard->taken || (words[i] == GUARD_TAKEN && guard->has_port);
+        guard->refused = guard->refused || words[i] == GUARD_REFUSED;
+    }
+    if (got < 0) {
+        give_up(guard);
+    }
+}

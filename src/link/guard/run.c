@@ -1,0 +1,380 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The guard's process. It waits for one of: a message of the program, the program's death, the
+ * program being stopped while joints move, the line's hang-up. For the second and third it runs the
+ * engine of robot.h on the port it was given: the exit policy is carried out by the same code that
+ * `grctl stop` uses.
+ */
+#include <string.h>
+
+#include <grobo/serial.h>
+
+#include "src/link/guard/guard.h"
+#include "src/link/serial/loop.h"
+
+/* Of GROBO_GUARD_BOUND_US: what stopping may take, and what it leaves for switching torque off. */
+#define STOP_US (GROBO_GUARD_BOUND_US - 300000)
+#define OFF_US 600000
+
+/* A frame on its way to the board, on to the servo, and its reply; and the servo's thinking. */
+#define QUIET_BYTES (3 * GROBO_FRAME_MAX_BYTES)
+#define QUIET_EXTRA_US 10000
+#define QUIET_MAX_US 400000
+#define BITS_A_BYTE 10
+
+typedef struct guard_run {
+    const grobo_guard_program *program;
+    grobo_i_guard_watch watch;
+    /* what comes */
+    struct {
+        guard_message message;
+        uint8_t data[GROBO_GUARD_DATA_BYTES];
+    } in;
+    size_t have;
+    grobo_handle came; /* with the message that is not complete yet */
+    /* the port it has */
+    bool has_port;
+    grobo_handle line;
+    guard_message how;
+    const grobo_driver *driver;
+    void *driver_ctx;
+    grobo_port *port;
+    const grobo_port_ops *ops;
+    /* the engine, while it stops the robot */
+    grobo_robot robot;
+    int ended_job, result; /* the job that ended last */
+} guard_run;
+
+/* ---- the port it has ---------------------------------------------------------------------- */
+
+static void forget(guard_run *run)
+{
+    run->has_port = false;
+    run->line = GROBO_HANDLE_NULL;
+}
+
+/* The program has released the device, or it is gone. */
+static void drop(guard_run *run)
+{
+    if (run->has_port) {
+        grobo_i_guard_drop(run->line);
+    }
+    forget(run);
+}
+
+static void say(guard_run *run, char word)
+{
+    /* Nobody may be left to hear it. */
+    (void)grobo_i_guard_send(run->watch.socket, &word, 1, GROBO_HANDLE_NULL);
+}
+
+static const grobo_driver *find_driver(guard_run *run)
+{
+    const guard_message *how = &run->in.message;
+    const grobo_guard_program *program = run->program;
+
+    run->driver_ctx = NULL;
+    if (program->driver != NULL) {
+        return program->driver(program->ctx, how->driver, how->wiring, run->in.data,
+                               how->data_bytes, &run->driver_ctx);
+    }
+    return strcmp(how->driver, "GR001") == 0 && how->data_bytes == 0
+               ? grobo_gr001_driver(how->wiring)
+               : NULL;
+}
+
+static void take(guard_run *run)
+{
+    drop(run);
+    run->driver = find_driver(run);
+    if (run->came == GROBO_HANDLE_NULL || run->driver == NULL) {
+        say(run, GUARD_REFUSED);
+        return;
+    }
+    run->has_port = true;
+    run->line = run->came;
+    run->came = GROBO_HANDLE_NULL;
+    run->how = run->in.message;
+    run->ops = run->how.connection ? grobo_port_tcp_ops() : grobo_port_serial_ops();
+}
+
+static void obey(guard_run *run)
+{
+    run->in.message.driver[sizeof run->in.message.driver - 1] = '\0';
+    switch ((guard_kind)run->in.message.kind) {
+    case GUARD_TAKE:
+        take(run);
+        break;
+    case GUARD_STATE:
+        run->how.policy = run->in.message.policy;
+        run->how.moves = run->in.message.moves;
+        break;
+    case GUARD_RELEASE:
+        drop(run);
+        break;
+    }
+    if (run->came != GROBO_HANDLE_NULL) {
+        grobo_i_guard_drop(run->came);
+        run->came = GROBO_HANDLE_NULL;
+    }
+}
+
+/* Takes what has come of a message. False at the end of the stream, or where it makes no sense. */
+static bool take_some(guard_run *run)
+{
+    size_t want = sizeof run->in.message;
+    int got;
+
+    if (run->have >= want) {
+        want += run->in.message.data_bytes;
+    }
+    got = grobo_i_guard_receive(run->watch.socket, (char *)&run->in + run->have, want - run->have,
+                                &run->came);
+    if (got < 0) {
+        return false;
+    }
+    run->have += (size_t)got;
+    if (run->have < sizeof run->in.message) {
+        return true;
+    }
+    if (run->in.message.magic != GUARD_MAGIC || run->in.message.data_bytes > sizeof run->in.data) {
+        return false;
+    }
+    if (run->have == sizeof run->in.message + run->in.message.data_bytes) {
+        obey(run);
+        run->have = 0;
+    }
+    return true;
+}
+
+/* ---- stopping the robot ------------------------------------------------------------------- */
+
+static void on_robot(void *ctx, const grobo_event *event)
+{
+    guard_run *run = ctx;
+
+    if (event->kind == GROBO_EVENT_JOB) {
+        run->ended_job = event->u.job.number;
+        run->result = event->u.job.result;
+    }
+}
+
+/* What the program sent last leaves, and its replies come; < 0: the line is gone. */
+static int await_quiet(guard_run *run)
+{
+    uint32_t baud_bps = run->how.robot.bus.baud_bps;
+    int64_t quiet_us = QUIET_EXTRA_US + (int64_t)QUIET_BYTES * BITS_A_BYTE * 1000000 /
+                                            (baud_bps > 0 ? baud_bps : GROBO_BAUD_DEFAULT_BPS);
+    int64_t now_us = grobo_now_us();
+    int64_t end_us = now_us + QUIET_MAX_US;
+    int64_t quiet_until_us = now_us + (quiet_us < QUIET_MAX_US ? quiet_us : QUIET_MAX_US);
+
+    while (now_us < quiet_until_us && now_us < end_us) {
+        uint8_t dropped[256];
+        grobo_os_cause cause;
+        int got = grobo_port_wait(run->ops->socket(run->port), GROBO_PORT_READABLE,
+                                  quiet_until_us - now_us);
+
+        if (got > 0) {
+            got = run->ops->read(run->port, dropped, sizeof dropped, &cause);
+        }
+        now_us = grobo_now_us();
+        if (got < 0) {
+            return got;
+        }
+        if (got > 0) {
+            quiet_until_us = now_us + (quiet_us < QUIET_MAX_US ? quiet_us : QUIET_MAX_US);
+        }
+    }
+    return GROBO_OK;
+}
+
+/* Writes a whole frame; a line that takes nothing is as good as gone. */
+static int put(guard_run *run, const uint8_t *frame, size_t size, int64_t end_us)
+{
+    while (size > 0) {
+        grobo_os_cause cause;
+        int done = run->ops->write(run->port, frame, size, &cause);
+
+        if (done == 0) {
+            int64_t left_us = end_us - grobo_now_us();
+
+            done = left_us > 0
+                       ? grobo_port_wait(run->ops->socket(run->port), GROBO_PORT_WRITABLE, left_us)
+                       : GROBO_ERR_TIMEOUT;
+            if (done >= 0) {
+                continue;
+            }
+        }
+        if (done < 0) {
+            return done;
+        }
+        frame += done;
+        size -= (size_t)done;
+    }
+    return GROBO_OK;
+}
+
+static int pump_out(guard_run *run, int64_t end_us)
+{
+    uint8_t frame[GROBO_FRAME_MAX_BYTES];
+    int size;
+    int r = GROBO_OK;
+
+    while (r >= 0 &&
+           (size = grobo_robot_tx(&run->robot, frame, sizeof frame, grobo_now_us())) > 0) {
+        r = put(run, frame, (size_t)size, end_us);
+    }
+    return r;
+}
+
+static int pump_in(guard_run *run, int64_t end_us)
+{
+    int64_t now_us = grobo_now_us();
+    int64_t until_us = grobo_robot_deadline(&run->robot, now_us);
+    uint8_t bytes[256];
+    grobo_os_cause cause;
+    int got;
+
+    until_us = until_us < end_us ? until_us : end_us;
+    got = grobo_port_wait(run->ops->socket(run->port), GROBO_PORT_READABLE, until_us - now_us);
+    if (got > 0) {
+        got = run->ops->read(run->port, bytes, sizeof bytes, &cause);
+    }
+    if (got > 0) {
+        grobo_robot_rx(&run->robot, bytes, (size_t)got, grobo_now_us());
+    }
+    if (got >= 0) {
+        grobo_robot_step(&run->robot, grobo_now_us());
+    }
+    return got;
+}
+
+/* Lets the engine do a job that was just begun. */
+static int do_job(guard_run *run, int job, int64_t end_us)
+{
+    int r = job;
+
+    while (r >= 0 && run->ended_job != job) {
+        r = grobo_now_us() < end_us ? pump_out(run, end_us) : GROBO_ERR_TIMEOUT;
+        if (r >= 0) {
+            r = pump_in(run, end_us);
+        }
+    }
+    return r < 0 ? r : run->result;
+}
+
+static int exit_by(guard_run *run, grobo_exit_policy policy, int64_t end_us)
+{
+    return do_job(run, grobo_robot_exit(&run->robot, policy, grobo_now_us()), end_us);
+}
+
+static int stop_robot(guard_run *run, guard_policy policy)
+{
+    int64_t end_us = grobo_now_us() + STOP_US;
+    grobo_robot_config config = run->how.robot;
+    int r = await_quiet(run);
+
+    config.sense_interval_us = GROBO_SENSE_NEVER;
+    if (r >= 0) {
+        r = grobo_robot_init(&run->robot, run->driver, run->driver_ctx, &config, grobo_now_us());
+    }
+    if (r < 0) {
+        return r;
+    }
+    run->ended_job = 0;
+    grobo_robot_on_event(&run->robot, on_robot, run);
+    grobo_robot_link_up(&run->robot, grobo_now_us());
+    switch (policy) {
+    case GUARD_ESTOP:
+        return do_job(run, grobo_robot_estop(&run->robot, grobo_now_us()), end_us);
+    case GUARD_OFF:
+        r = exit_by(run, GROBO_EXIT_HOLD, end_us - OFF_US);
+        return r == GROBO_ERR_UNPLUGGED ? r : exit_by(run, GROBO_EXIT_OFF, end_us);
+    case GUARD_HOLD:
+        break;
+    }
+    return exit_by(run, GROBO_EXIT_HOLD, end_us);
+}
+
+static void stop(guard_run *run, grobo_guard_cause cause)
+{
+    guard_policy policy = (guard_policy)run->how.policy;
+    int result;
+
+    if (cause == GROBO_GUARD_STOPPED && policy == GUARD_OFF) {
+        policy = GUARD_HOLD; /* it may continue; a robot that fell does not */
+    }
+    grobo_i_port_adopt(run->port, run->line);
+    result = stop_robot(run, policy);
+    run->ops->close(run->port);
+    forget(run);
+    if (run->program->on_stop != NULL) {
+        run->program->on_stop(run->program->ctx, cause, result);
+    }
+}
+
+/* ---- waiting for it ----------------------------------------------------------------------- */
+
+static bool look(guard_run *run)
+{
+    unsigned found = grobo_i_guard_await(&run->watch, run->line, run->has_port && run->how.moves);
+
+    /* What the program said before it died is read first: it may have released the port. */
+    if ((found & GROBO_I_GUARD_NEWS) != 0) {
+        if (take_some(run)) {
+            return true;
+        }
+        found |= GROBO_I_GUARD_DEAD;
+    }
+    if ((found & GROBO_I_GUARD_HUNG_UP) != 0) {
+        drop(run);
+    }
+    if ((found & GROBO_I_GUARD_DEAD) != 0) {
+        if (run->has_port) {
+            stop(run, GROBO_GUARD_DIED);
+        }
+        return false;
+    }
+    if ((found & GROBO_I_GUARD_STOPPED) != 0) {
+        say(run, GUARD_TAKEN);
+        stop(run, GROBO_GUARD_STOPPED);
+    }
+    return true;
+}
+
+/* Room for a port of either kind. */
+static size_t port_bytes(void)
+{
+    size_t serial_bytes = grobo_port_serial_ops()->size_bytes;
+    size_t tcp_bytes = grobo_port_tcp_ops()->size_bytes;
+
+    return serial_bytes > tcp_bytes ? serial_bytes : tcp_bytes;
+}
+
+int grobo_guard_run(const grobo_guard_program *program)
+{
+    static const grobo_guard_program defaults = {0};
+    const guard_hello hello = {GUARD_MAGIC, sizeof(guard_message)};
+    guard_run *run = grobo_i_link_new(NULL, sizeof *run);
+    int r;
+
+    if (run == NULL) {
+        return GROBO_ERR_NOMEM;
+    }
+    run->program = program != NULL ? program : &defaults;
+    run->came = GROBO_HANDLE_NULL;
+    forget(run);
+    run->port = grobo_i_link_new(NULL, port_bytes());
+    r = run->port != NULL ? grobo_i_guard_begin(&run->watch) : GROBO_ERR_NOMEM;
+    if (r >= 0) {
+        r = grobo_i_guard_send(run->watch.socket, &hello, sizeof hello, GROBO_HANDLE_NULL);
+        while (r >= 0 && look(run)) {
+        }
+        grobo_i_guard_cease(&run->watch);
+    }
+    drop(run);
+    grobo_i_link_free(NULL, run->port, port_bytes());
+    grobo_i_link_free(NULL, run, sizeof *run);
+    return r < 0 ? r : GROBO_OK;
+}

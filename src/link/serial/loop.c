@@ -1,0 +1,152 @@
+/* SPDX-License-Identifier: MIT */
+#include <string.h>
+
+#include <event2/event.h>
+
+#include <grobo/loop.h>
+#include <grobo/port.h>
+
+#include "src/link/serial/loop.h"
+
+/* Longest span given to libevent at once; a later deadline is reached in several. */
+#define SPAN_MAX_US INT64_C(3600000000)
+
+struct grobo_timer {
+    struct event *event;
+    grobo_timer_fn fn;
+    void *ctx;
+    const grobo_mem *mem;
+    int64_t deadline_us;
+};
+
+void *grobo_i_link_new(const grobo_mem *mem, size_t bytes)
+{
+    const grobo_mem *from = mem != NULL ? mem : grobo_mem_default();
+    void *ptr = from->resize(from->ctx, NULL, 0, bytes);
+
+    if (ptr != NULL) {
+        memset(ptr, 0, bytes);
+    }
+    return ptr;
+}
+
+void grobo_i_link_free(const grobo_mem *mem, void *ptr, size_t bytes)
+{
+    const grobo_mem *to = mem != NULL ? mem : grobo_mem_default();
+
+    if (ptr != NULL) {
+        (void)to->resize(to->ctx, ptr, bytes, 0);
+    }
+}
+
+struct timeval grobo_i_link_timeval(int64_t span_us)
+{
+    struct timeval tv = {0, 0};
+
+    if (span_us > 0) {
+        /* Systems do not agree on the types: int goes into all of them. */
+        tv.tv_sec = (int)(span_us / 1000000);
+        tv.tv_usec = (int)(span_us % 1000000);
+    }
+    return tv;
+}
+
+struct event_base *grobo_loop_new(void)
+{
+    struct event_config *config = grobo_port_start() < 0 ? NULL : event_config_new();
+    struct event_base *base = NULL;
+
+    if (config == NULL) {
+        return NULL;
+    }
+    /*
+     * Without a cached time, spans count from the moment a timer is set and not from the moment
+     * the loop woke up, which a slow callback makes a while ago.
+     */
+    if (event_config_set_flag(config, EVENT_BASE_FLAG_PRECISE_TIMER) == 0 &&
+        event_config_set_flag(config, EVENT_BASE_FLAG_NO_CACHE_TIME) == 0) {
+        base = event_base_new_with_config(config);
+    }
+    event_config_free(config);
+    return base;
+}
+
+static int arm(grobo_timer *timer)
+{
+    int64_t span_us = timer->deadline_us - grobo_now_us();
+    struct timeval tv = grobo_i_link_timeval(span_us < SPAN_MAX_US ? span_us : SPAN_MAX_US);
+
+    return event_add(timer->event, &tv) == 0 ? GROBO_OK : GROBO_ERR_NOMEM;
+}
+
+static void on_time(evutil_socket_t fd, short what, void *arg)
+{
+    grobo_timer *timer = arg;
+    int64_t late_us = grobo_now_us() - timer->deadline_us;
+
+    (void)fd;
+    (void)what;
+    if (late_us < 0) {
+        /* A base with a coarse clock or a cached time calls early. Re-adding takes no memory. */
+        (void)arm(timer);
+        return;
+    }
+    timer->deadline_us = GROBO_NEVER_US;
+    timer->fn(timer, late_us, timer->ctx);
+}
+
+int grobo_timer_new(struct event_base *base, grobo_timer_fn fn, void *ctx, const grobo_mem *mem,
+                    grobo_timer **timer)
+{
+    grobo_timer *made;
+
+    if (base == NULL || fn == NULL || timer == NULL) {
+        return GROBO_ERR_ARG;
+    }
+    made = grobo_i_link_new(mem, sizeof *made);
+    if (made == NULL) {
+        return GROBO_ERR_NOMEM;
+    }
+    made->event = event_new(base, -1, 0, on_time, made);
+    if (made->event == NULL) {
+        grobo_i_link_free(mem, made, sizeof *made);
+        return GROBO_ERR_NOMEM;
+    }
+    made->fn = fn;
+    made->ctx = ctx;
+    made->mem = mem;
+    made->deadline_us = GROBO_NEVER_US;
+    *timer = made;
+    return GROBO_OK;
+}
+
+void grobo_timer_free(grobo_timer *timer)
+{
+    if (timer != NULL) {
+        event_free(timer->event);
+        grobo_i_link_free(timer->mem, timer, sizeof *timer);
+    }
+}
+
+int grobo_timer_set(grobo_timer *timer, int64_t deadline_us)
+{
+    int64_t now_us = grobo_now_us();
+    bool is_due = timer->deadline_us <= now_us;
+
+    /* The clock is never negative: what was before it has passed, however long ago. */
+    timer->deadline_us = deadline_us < 0 ? 0 : deadline_us;
+    if (deadline_us == GROBO_NEVER_US) {
+        (void)event_del(timer->event);
+        return GROBO_OK;
+    }
+    /*
+     * A callback that is due stays due: to add its event again would take it out of the loop's
+     * present round, and a timer that is set anew in every round would never be called.
+     */
+    return is_due && deadline_us <= now_us ? GROBO_OK : arm(timer);
+}
+
+int64_t grobo_timer_deadline(const grobo_timer *timer)
+{
+    return timer->deadline_us;
+}

@@ -1,0 +1,467 @@
+/* SPDX-License-Identifier: MIT */
+/* A serial port's life: made, opened, lost, closed; what it tells. */
+#include <string.h>
+
+#include "src/link/serial/loop.h"
+#include "src/link/serial/serial.h"
+
+static const grobo_os_cause too_late = {0, "no connection in 2 s"};
+
+/* ---- callbacks ---------------------------------------------------------------------------- */
+
+static void destroy(grobo_serial *serial)
+{
+    const grobo_mem *mem = serial->config.mem;
+
+    if (serial->tell != NULL) {
+        event_free(serial->tell);
+    }
+    grobo_i_link_free(mem, serial->port, serial->port_bytes);
+    grobo_i_link_free(mem, serial->queue, serial->config.tx_queue_bytes);
+    grobo_i_link_free(mem, serial, sizeof *serial);
+}
+
+/* Leaves a callback. False: the callback has freed the port. */
+static bool unpin(grobo_serial *serial)
+{
+    serial->pins--;
+    if (!serial->freed) {
+        return true;
+    }
+    if (serial->pins == 0) {
+        destroy(serial);
+    }
+    return false;
+}
+
+static bool tell_one(grobo_serial *serial, grobo_serial_event event, int error)
+{
+    if (serial->config.on_event == NULL) {
+        return true;
+    }
+    serial->pins++;
+    serial->config.on_event(serial, event, error, serial->config.ctx);
+    return unpin(serial);
+}
+
+/* Each callback may close, open again or free: what is to be told is looked at afresh. */
+static void tell_all(grobo_serial *serial)
+{
+    while (serial->to_tell != 0) {
+        grobo_serial_event event;
+        int error = GROBO_OK;
+
+        if ((serial->to_tell & TELL_OPENED) != 0) {
+            serial->to_tell &= ~(unsigned)TELL_OPENED;
+            event = GROBO_SERIAL_OPENED;
+        } else if ((serial->to_tell & TELL_DRAINED) != 0) {
+            serial->to_tell &= ~(unsigned)TELL_DRAINED;
+            event = GROBO_SERIAL_DRAINED;
+        } else {
+            serial->to_tell = 0;
+            error = serial->lost_error;
+            event = error == GROBO_ERR_UNPLUGGED ? GROBO_SERIAL_UNPLUGGED : GROBO_SERIAL_FAILED;
+        }
+        if (!tell_one(serial, event, error)) {
+            return;
+        }
+    }
+}
+
+static void on_tell(evutil_socket_t fd, short what, void *arg)
+{
+    (void)fd;
+    (void)what;
+    tell_all(arg);
+}
+
+void grobo_i_serial_tell(grobo_serial *serial, unsigned what)
+{
+    if (serial->config.mode == GROBO_SERIAL_ASYNC) {
+        serial->to_tell |= what;
+        event_active(serial->tell, 0, 0);
+    }
+}
+
+int grobo_i_serial_lose(grobo_serial *serial, int error)
+{
+    if (error == GROBO_ERR_UNPLUGGED) {
+        serial->counters.unplugs++;
+    }
+    grobo_serial_close(serial);
+    serial->lost_error = error;
+    grobo_i_serial_tell(serial, TELL_LOST);
+    return error;
+}
+
+/* ---- the loop's side ---------------------------------------------------------------------- */
+
+static void on_readable(evutil_socket_t fd, short what, void *arg)
+{
+    grobo_serial *serial = arg;
+    uint8_t buf[READ_BYTES];
+    int got = grobo_i_serial_take(serial, buf, sizeof buf);
+
+    (void)fd;
+    (void)what;
+    if (got > 0) {
+        serial->pins++;
+        serial->config.on_data(serial, buf, (size_t)got, serial->config.ctx);
+        (void)unpin(serial);
+    }
+}
+
+static void on_resume(evutil_socket_t fd, short what, void *arg)
+{
+    grobo_serial *serial = arg;
+
+    (void)fd;
+    (void)what;
+    serial->paused = false;
+    /* Cannot fail: the event has been added before. */
+    (void)event_add(serial->rx, NULL);
+}
+
+/* Waits for the port to become writable; span_us < 0: for ever. */
+static int await_writable(grobo_serial *serial, int64_t span_us)
+{
+    struct timeval tv = grobo_i_link_timeval(span_us);
+
+    return event_add(serial->tx, span_us < 0 ? NULL : &tv) == 0 ? GROBO_OK : GROBO_ERR_NOMEM;
+}
+
+/* The port is usable: listen, and send what was queued meanwhile. */
+static int begin(grobo_serial *serial)
+{
+    serial->ready = true;
+    serial->counters.opens++;
+    if (event_add(serial->rx, NULL) != 0) {
+        return GROBO_ERR_NOMEM;
+    }
+    grobo_i_serial_tell(serial, TELL_OPENED);
+    return grobo_i_serial_flush(serial);
+}
+
+static void on_writable(evutil_socket_t fd, short what, void *arg)
+{
+    grobo_serial *serial = arg;
+    int r;
+
+    (void)fd;
+    if (serial->ready) {
+        (void)grobo_i_serial_flush(serial);
+        return;
+    }
+    if ((what & EV_TIMEOUT) != 0) {
+        serial->cause = too_late;
+        (void)grobo_i_serial_lose(serial, GROBO_ERR_TIMEOUT);
+        return;
+    }
+    r = serial->ops->ready(serial->port, &serial->cause);
+    if (r == 0) {
+        r = await_writable(serial, CONNECT_TIMEOUT_US);
+    } else if (r > 0) {
+        r = begin(serial);
+    }
+    if (r < 0 && grobo_serial_is_open(serial)) {
+        (void)grobo_i_serial_lose(serial, r);
+    }
+}
+
+/* ---- making and configuring --------------------------------------------------------------- */
+
+static int check_mode(const grobo_serial_config *config, grobo_serial_mode mode)
+{
+    switch (mode) {
+    case GROBO_SERIAL_SYNC:
+        return GROBO_OK;
+    case GROBO_SERIAL_ASYNC:
+        return config->base != NULL && config->on_data != NULL ? GROBO_OK : GROBO_ERR_ARG;
+    }
+    return GROBO_ERR_ARG;
+}
+
+static int check(const grobo_serial_config *config)
+{
+    if (config->baud_bps < 0 || config->silence_ms < 0) {
+        return GROBO_ERR_ARG;
+    }
+    if (config->tx_queue_bytes > GROBO_SERIAL_QUEUE_BYTES) {
+        return GROBO_ERR_CAP;
+    }
+    return check_mode(config, config->mode);
+}
+
+static void fill_defaults(grobo_serial_config *config)
+{
+    if (config->baud_bps == 0) {
+        config->baud_bps = GROBO_BAUD_DEFAULT_BPS;
+    }
+    if (config->silence_ms == 0) {
+        config->silence_ms = GROBO_SILENCE_DEFAULT_MS;
+    }
+    if (config->tx_queue_bytes == 0) {
+        config->tx_queue_bytes = GROBO_SERIAL_QUEUE_BYTES;
+    }
+}
+
+int grobo_serial_new(const grobo_serial_config *config, grobo_serial **serial)
+{
+    static const grobo_serial_config zero = {0};
+    const grobo_serial_config *from = config != NULL ? config : &zero;
+    grobo_serial *made;
+    int r = serial != NULL ? check(from) : GROBO_ERR_ARG;
+
+    if (r < 0) {
+        return r;
+    }
+    made = grobo_i_link_new(from->mem, sizeof *made);
+    if (made == NULL) {
+        return GROBO_ERR_NOMEM;
+    }
+    made->config = *from;
+    fill_defaults(&made->config);
+    r = grobo_serial_set_device(made, from->device);
+    made->config.device = NULL;
+    if (r >= 0) {
+        made->queue = grobo_i_link_new(from->mem, made->config.tx_queue_bytes);
+        made->tell = from->base != NULL ? event_new(from->base, -1, 0, on_tell, made) : NULL;
+        if (made->queue == NULL || (from->base != NULL && made->tell == NULL)) {
+            r = GROBO_ERR_NOMEM;
+        }
+    }
+    if (r < 0) {
+        destroy(made);
+        return r;
+    }
+    *serial = made;
+    return GROBO_OK;
+}
+
+void grobo_serial_free(grobo_serial *serial)
+{
+    if (serial == NULL) {
+        return;
+    }
+    grobo_serial_close(serial);
+    if (serial->pins > 0) {
+        serial->freed = true;
+    } else {
+        destroy(serial);
+    }
+}
+
+int grobo_serial_set_device(grobo_serial *serial, const char *device)
+{
+    if (grobo_serial_is_open(serial)) {
+        return GROBO_ERR_STATE;
+    }
+    if (device != NULL) {
+        size_t size = strlen(device);
+
+        if (size >= sizeof serial->device) {
+            return GROBO_ERR_CAP;
+        }
+        memmove(serial->device, device, size + 1);
+    }
+    serial->has_device = device != NULL;
+    return GROBO_OK;
+}
+
+const char *grobo_serial_device(const grobo_serial *serial)
+{
+    return serial->has_device ? serial->device : NULL;
+}
+
+int grobo_serial_set_mode(grobo_serial *serial, grobo_serial_mode mode)
+{
+    int r = check_mode(&serial->config, mode);
+
+    if (grobo_serial_is_open(serial)) {
+        return GROBO_ERR_STATE;
+    }
+    if (r >= 0) {
+        serial->config.mode = mode;
+    }
+    return r;
+}
+
+grobo_serial_mode grobo_serial_get_mode(const grobo_serial *serial)
+{
+    return serial->config.mode;
+}
+
+int grobo_serial_set_baud(grobo_serial *serial, int baud_bps)
+{
+    int r = baud_bps;
+
+    if (baud_bps <= 0) {
+        return GROBO_ERR_ARG;
+    }
+    if (grobo_serial_is_open(serial)) {
+        r = serial->ops->set_baud(serial->port, baud_bps, &serial->cause);
+    }
+    if (r > 0) {
+        serial->config.baud_bps = baud_bps;
+    }
+    return r == GROBO_ERR_UNPLUGGED ? grobo_i_serial_lose(serial, r) : r;
+}
+
+int grobo_serial_baud(const grobo_serial *serial)
+{
+    return serial->config.baud_bps;
+}
+
+int grobo_serial_set_low_latency(grobo_serial *serial)
+{
+    if (!grobo_serial_is_open(serial)) {
+        return GROBO_ERR_CLOSED;
+    }
+    serial->quick_result = serial->ops->set_low_latency(serial->port, &serial->cause);
+    return serial->quick_result;
+}
+
+int grobo_serial_low_latency(const grobo_serial *serial)
+{
+    return grobo_serial_is_open(serial) ? serial->quick_result : GROBO_ERR_CLOSED;
+}
+
+/* ---- opening and closing ------------------------------------------------------------------ */
+
+static const grobo_port_ops *choose_ops(const grobo_serial *serial)
+{
+    if (serial->config.ops != NULL) {
+        return serial->config.ops;
+    }
+    return strncmp(serial->device, "tcp:", 4) == 0 ? grobo_port_tcp_ops() : grobo_port_serial_ops();
+}
+
+static int open_port(grobo_serial *serial)
+{
+    const grobo_port_ops *ops = choose_ops(serial);
+    int r;
+
+    if (ops->size_bytes > serial->port_bytes) {
+        grobo_i_link_free(serial->config.mem, serial->port, serial->port_bytes);
+        serial->port = grobo_i_link_new(serial->config.mem, ops->size_bytes);
+        serial->port_bytes = serial->port != NULL ? ops->size_bytes : 0;
+        if (serial->port == NULL) {
+            return GROBO_ERR_NOMEM;
+        }
+    }
+    r = ops->open(serial->port, serial->device, serial->config.baud_bps, &serial->cause);
+    if (r >= 0) {
+        grobo_os_cause cause;
+
+        serial->ops = ops;
+        serial->quick_result = ops->set_low_latency(serial->port, &cause);
+    }
+    return r;
+}
+
+static int start_async(grobo_serial *serial)
+{
+    evutil_socket_t socket = serial->ops->socket(serial->port);
+    struct event_base *base = serial->config.base;
+    int r;
+
+    serial->rx = event_new(base, socket, EV_READ | EV_PERSIST, on_readable, serial);
+    serial->tx = event_new(base, socket, EV_WRITE, on_writable, serial);
+    serial->resume = event_new(base, -1, 0, on_resume, serial);
+    if (serial->rx == NULL || serial->tx == NULL || serial->resume == NULL) {
+        return GROBO_ERR_NOMEM;
+    }
+    r = serial->ops->ready(serial->port, &serial->cause);
+    if (r > 0) {
+        return begin(serial);
+    }
+    return r < 0 ? r : await_writable(serial, CONNECT_TIMEOUT_US);
+}
+
+static int start_sync(grobo_serial *serial)
+{
+    int64_t end_us = grobo_now_us() + CONNECT_TIMEOUT_US;
+    int r = serial->ops->ready(serial->port, &serial->cause);
+
+    while (r == 0 && grobo_now_us() < end_us) {
+        r = grobo_port_wait(serial->ops->socket(serial->port), GROBO_PORT_WRITABLE,
+                            end_us - grobo_now_us());
+        if (r >= 0) {
+            r = serial->ops->ready(serial->port, &serial->cause);
+        }
+    }
+    if (r > 0) {
+        serial->ready = true;
+        serial->counters.opens++;
+    }
+    if (r == 0) {
+        serial->cause = too_late;
+        r = GROBO_ERR_TIMEOUT;
+    }
+    return r;
+}
+
+int grobo_serial_open(grobo_serial *serial)
+{
+    int r;
+
+    if (grobo_serial_is_open(serial)) {
+        return GROBO_ERR_STATE;
+    }
+    if (!serial->has_device) {
+        return GROBO_ERR_ARG;
+    }
+    serial->to_tell = 0;
+    r = open_port(serial);
+    if (r >= 0) {
+        r = serial->config.mode == GROBO_SERIAL_ASYNC ? start_async(serial) : start_sync(serial);
+        if (r < 0) {
+            grobo_serial_close(serial);
+        }
+    }
+    return r < 0 ? r : GROBO_OK;
+}
+
+static void free_event(struct event **event)
+{
+    if (*event != NULL) {
+        event_free(*event);
+        *event = NULL;
+    }
+}
+
+void grobo_serial_close(grobo_serial *serial)
+{
+    serial->to_tell = 0;
+    serial->ready = false;
+    serial->paused = false;
+    serial->head = 0;
+    serial->used = 0;
+    free_event(&serial->rx);
+    free_event(&serial->tx);
+    free_event(&serial->resume);
+    if (serial->ops != NULL) {
+        serial->ops->close(serial->port);
+        serial->ops = NULL;
+    }
+}
+
+bool grobo_serial_is_open(const grobo_serial *serial)
+{
+    return serial->ops != NULL;
+}
+
+grobo_handle grobo_serial_handle(const grobo_serial *serial)
+{
+    return serial->ops != NULL ? serial->ops->handle(serial->port) : GROBO_HANDLE_NULL;
+}
+
+const grobo_os_cause *grobo_serial_cause(const grobo_serial *serial)
+{
+    return &serial->cause;
+}
+
+void grobo_serial_get_counters(const grobo_serial *serial, grobo_serial_counters *counters)
+{
+    *counters = serial->counters;
+}

@@ -1,0 +1,465 @@
+/* SPDX-License-Identifier: MIT */
+#include <stdio.h>
+#include <string.h>
+
+#include <event2/event.h>
+
+#include <grobo/estop.h>
+#include <grobo/sim_server.h>
+
+#include "src/link/serial/loop.h"
+
+/* How often one end is read before others have their turn: a wire without pace never is full. */
+#define READS_MAX 8
+
+/* How long nobody is let in after a failure: the system has no descriptor, and who calls waits. */
+#define DOOR_SHUT_US 100000
+
+/* Where programs come in. */
+enum { END_PTY, END_TCP, ENDS };
+
+typedef struct {
+    grobo_sim_server *server;
+    const grobo_port_ops *ops;
+    grobo_port *port;
+    struct event *readable; /* NULL: closed */
+    bool paused;            /* the simulator takes no more bytes now */
+} end;
+
+struct grobo_sim_server {
+    grobo_sim_server_config config;
+    char link[GROBO_DEVICE_MAX_BYTES];
+    char tcp[GROBO_DEVICE_MAX_BYTES];
+    char device[GROBO_DEVICE_MAX_BYTES];
+    grobo_timer *timer;
+    end ends[ENDS];
+    end *answers; /* the end that spoke last, which the board answers */
+    grobo_socket listener;
+    struct event *callers; /* NULL: not listening */
+    int tcp_port;
+    int baud_bps; /* of the board's port, and what programs find */
+    bool paced;
+    int64_t replug_us; /* when to come back; GROBO_NEVER_US: plugged in, or stays away */
+    int64_t door_us;   /* when callers are let in again; GROBO_NEVER_US: they are */
+    grobo_sim sim;
+};
+
+static void tap(const grobo_sim_server *server, grobo_direction direction, int64_t now_us,
+                const uint8_t *bytes, size_t size)
+{
+    if (server->config.on_tap != NULL) {
+        server->config.on_tap(direction, now_us, bytes, size, server->config.ctx);
+    }
+}
+
+/* ---- ends --------------------------------------------------------------------------------- */
+
+static void end_close(end *e)
+{
+    if (e->readable != NULL) {
+        event_free(e->readable);
+        e->readable = NULL;
+        e->ops->close(e->port);
+    }
+    e->paused = false;
+    if (e->server->answers == e) {
+        e->server->answers = NULL;
+    }
+}
+
+/* What a program sets at its end of the pseudo-terminal, the simulated line has too. */
+static void follow_baud(grobo_sim_server *server, const end *e)
+{
+    int baud_bps = e == &server->ends[END_PTY] ? grobo_port_pty_baud(e->port) : 0;
+
+    if (baud_bps > 0 && server->paced) {
+        /* A rate too low for a line is a rate at which nothing is understood: the old one. */
+        (void)grobo_sim_set_line_bps(&server->sim, (uint32_t)baud_bps);
+    }
+}
+
+/* Takes from a program what the simulated wire has room for; of a flood a part, for others wait. */
+static void end_read(end *e)
+{
+    grobo_sim_server *server = e->server;
+    size_t room = grobo_sim_rx_room(&server->sim);
+
+    for (int reads = 0; e->readable != NULL && room > 0 && reads < READS_MAX; reads++) {
+        uint8_t buf[512];
+        grobo_os_cause cause;
+        size_t size = room < sizeof buf ? room : sizeof buf;
+        int got = e->ops->read(e->port, buf, size, &cause);
+        int64_t now_us = grobo_now_us();
+
+        if (got < 0) {
+            end_close(e);
+        }
+        if (got <= 0) {
+            break;
+        }
+        follow_baud(server, e);
+        server->answers = e;
+        tap(server, GROBO_DIR_RX, now_us, buf, (size_t)got);
+        (void)grobo_sim_rx(&server->sim, buf, (size_t)got, now_us);
+        room = grobo_sim_rx_room(&server->sim);
+    }
+    /* Without room the bytes stay where they are, and must not wake the loop. */
+    if (e->readable != NULL && e->paused != (room == 0)) {
+        e->paused = room == 0;
+        (void)(e->paused ? event_del(e->readable) : event_add(e->readable, NULL));
+    }
+}
+
+static void on_readable(evutil_socket_t fd, short what, void *arg)
+{
+    end *e = arg;
+
+    (void)fd;
+    (void)what;
+    end_read(e);
+    grobo_sim_server_pump(e->server);
+}
+
+/* Listens to a port that has just been opened. */
+static int end_begin(end *e)
+{
+    e->readable = event_new(e->server->config.base, e->ops->socket(e->port), EV_READ | EV_PERSIST,
+                            on_readable, e);
+    if (e->readable == NULL) {
+        e->ops->close(e->port);
+        return GROBO_ERR_NOMEM;
+    }
+    if (event_add(e->readable, NULL) != 0) {
+        end_close(e);
+        return GROBO_ERR_NOMEM;
+    }
+    return GROBO_OK;
+}
+
+/* Gives programs what has come out of the wire. */
+static void answer(grobo_sim_server *server)
+{
+    uint8_t buf[256];
+    size_t got;
+
+    do {
+        int64_t now_us = grobo_now_us();
+        end *e = server->answers;
+
+        got = grobo_sim_tx(&server->sim, buf, sizeof buf, now_us);
+        if (got > 0 && e != NULL) {
+            grobo_os_cause cause;
+
+            tap(server, GROBO_DIR_TX, now_us, buf, got);
+            /* Where nobody reads, the rest is lost: bytes of a serial line do not wait. */
+            if (e->ops->write(e->port, buf, got, &cause) < 0) {
+                end_close(e);
+            }
+        }
+    } while (got == sizeof buf);
+}
+
+/* ---- cable -------------------------------------------------------------------------------- */
+
+static int open_pty(grobo_sim_server *server, grobo_os_cause *cause)
+{
+    end *e = &server->ends[END_PTY];
+    int r = e->ops->open(e->port, server->link, server->baud_bps, cause);
+
+    if (r >= 0) {
+        r = end_begin(e);
+    }
+    return r < 0 ? r : grobo_port_pty_path(e->port, server->device, sizeof server->device);
+}
+
+static void on_caller(evutil_socket_t fd, short what, void *arg)
+{
+    grobo_sim_server *server = arg;
+    end *e = &server->ends[END_TCP];
+    grobo_os_cause cause;
+
+    (void)fd;
+    (void)what;
+    /* One at a time, as a serial port: who calls while somebody is there waits its turn. */
+    if (e->readable == NULL) {
+        int r = grobo_port_accept(server->listener, e->port, &cause);
+
+        r = r < 0 ? r : end_begin(e);
+        if (r < 0 && r != GROBO_ERR_EMPTY) {
+            server->door_us = grobo_now_us() + DOOR_SHUT_US;
+        }
+    }
+    grobo_sim_server_pump(server);
+}
+
+static int open_tcp(grobo_sim_server *server, grobo_os_cause *cause)
+{
+    size_t host_bytes;
+    int r = grobo_port_listen(server->tcp, &server->listener, &server->tcp_port, cause);
+
+    if (r < 0) {
+        return r;
+    }
+    server->callers =
+        event_new(server->config.base, server->listener, EV_READ | EV_PERSIST, on_caller, server);
+    if (server->callers == NULL) {
+        grobo_port_listen_close(server->listener);
+        return GROBO_ERR_NOMEM;
+    }
+    /* A port that was free to choose stays the same from now on. */
+    host_bytes = (size_t)(strrchr(server->tcp, ':') + 1 - server->tcp);
+    snprintf(server->tcp + host_bytes, sizeof server->tcp - host_bytes, "%d", server->tcp_port);
+    if (server->device[0] == '\0') {
+        memcpy(server->device, server->tcp, sizeof server->device);
+    }
+    return event_add(server->callers, NULL) == 0 ? GROBO_OK : GROBO_ERR_NOMEM;
+}
+
+static void unplug(grobo_sim_server *server)
+{
+    for (int i = 0; i < ENDS; i++) {
+        end_close(&server->ends[i]);
+    }
+    if (server->callers != NULL) {
+        event_free(server->callers);
+        server->callers = NULL;
+        grobo_port_listen_close(server->listener);
+    }
+    server->device[0] = '\0';
+}
+
+static int plug(grobo_sim_server *server, grobo_os_cause *cause)
+{
+    int r = GROBO_OK;
+
+    if (!server->config.no_pty) {
+        r = open_pty(server, cause);
+    }
+    if (r >= 0 && server->tcp[0] != '\0') {
+        r = open_tcp(server, cause);
+    }
+    if (r < 0) {
+        unplug(server);
+        return r;
+    }
+    server->replug_us = GROBO_NEVER_US;
+    return GROBO_OK;
+}
+
+/* The simulator has hung up: the port goes, and comes back after a while. */
+static void hang_up(grobo_sim_server *server)
+{
+    unplug(server);
+    if (server->config.replug_ms >= 0) {
+        server->replug_us = grobo_now_us() + (int64_t)server->config.replug_ms * 1000;
+    }
+}
+
+/* ---- pumping ------------------------------------------------------------------------------ */
+
+static bool is_plugged(const grobo_sim_server *server)
+{
+    return server->device[0] != '\0';
+}
+
+/* A caller in the queue is heard when the one before has gone. */
+static void await_callers(grobo_sim_server *server)
+{
+    if (server->door_us <= grobo_now_us()) {
+        server->door_us = GROBO_NEVER_US;
+    }
+    if (server->callers != NULL) {
+        if (server->ends[END_TCP].readable != NULL || server->door_us != GROBO_NEVER_US) {
+            (void)event_del(server->callers);
+        } else {
+            (void)event_add(server->callers, NULL);
+        }
+    }
+}
+
+void grobo_sim_server_pump(grobo_sim_server *server)
+{
+    int64_t next_us;
+
+    answer(server);
+    for (int i = 0; i < ENDS; i++) {
+        if (server->ends[i].paused) {
+            end_read(&server->ends[i]);
+        }
+    }
+    if (grobo_sim_hung_up(&server->sim) && is_plugged(server)) {
+        hang_up(server);
+    }
+    await_callers(server);
+    next_us = grobo_sim_deadline(&server->sim);
+    next_us = server->replug_us < next_us ? server->replug_us : next_us;
+    next_us = server->door_us < next_us ? server->door_us : next_us;
+    (void)grobo_timer_set(server->timer, next_us);
+}
+
+static void on_time(grobo_timer *timer, int64_t late_us, void *ctx)
+{
+    grobo_sim_server *server = ctx;
+
+    (void)timer;
+    (void)late_us;
+    if (server->replug_us <= grobo_now_us() && grobo_sim_server_plug(server, true) < 0) {
+        /* What was free a moment ago is taken: it will be free again. */
+        server->replug_us = grobo_now_us() + GROBO_SIM_REPLUG_DEFAULT_MS * INT64_C(1000);
+    }
+    grobo_sim_server_pump(server);
+}
+
+int grobo_sim_server_plug(grobo_sim_server *server, bool in)
+{
+    grobo_os_cause cause;
+    int r = GROBO_OK;
+
+    if (in && !is_plugged(server)) {
+        r = plug(server, &cause);
+    } else if (!in) {
+        unplug(server);
+        server->replug_us = GROBO_NEVER_US;
+    }
+    if (r >= 0 && grobo_sim_hung_up(&server->sim) == in) {
+        grobo_sim_plug(&server->sim, in, grobo_now_us());
+    }
+    grobo_sim_server_pump(server);
+    return r;
+}
+
+/* ---- making ------------------------------------------------------------------------------- */
+
+static int copy_name(char *to, const char *name)
+{
+    size_t size = name != NULL ? strlen(name) : 0;
+
+    if (size >= GROBO_DEVICE_MAX_BYTES) {
+        return GROBO_ERR_CAP;
+    }
+    memcpy(to, name != NULL ? name : "", size + 1);
+    return GROBO_OK;
+}
+
+static int fill(grobo_sim_server *server, const grobo_sim_server_config *config)
+{
+    grobo_sim_config sim = {0};
+    int r;
+
+    if (config->sim != NULL) {
+        sim = *config->sim;
+    }
+    if (sim.baud_bps == 0) {
+        sim.baud_bps = GROBO_BAUD_DEFAULT_BPS;
+    }
+    server->config = *config;
+    server->config.sim = NULL;
+    server->config.link = NULL;
+    server->config.tcp = NULL;
+    if (server->config.replug_ms == 0) {
+        server->config.replug_ms = GROBO_SIM_REPLUG_DEFAULT_MS;
+    }
+    server->baud_bps = (int)sim.baud_bps;
+    server->paced = !sim.unpaced;
+    server->replug_us = GROBO_NEVER_US;
+    server->door_us = GROBO_NEVER_US;
+    r = copy_name(server->link, config->link);
+    if (r >= 0) {
+        r = copy_name(server->tcp, config->tcp);
+    }
+    return r < 0 ? r : grobo_sim_init(&server->sim, &sim, grobo_now_us());
+}
+
+static int make_ends(grobo_sim_server *server)
+{
+    const grobo_port_ops *ops[ENDS] = {grobo_port_pty_ops(), grobo_port_tcp_ops()};
+
+    for (int i = 0; i < ENDS; i++) {
+        end *e = &server->ends[i];
+
+        e->ops = ops[i];
+        if (e->ops == NULL) {
+            if (!server->config.no_pty) {
+                return GROBO_ERR_UNSUPPORTED;
+            }
+            continue;
+        }
+        e->port = grobo_i_link_new(server->config.mem, e->ops->size_bytes);
+        if (e->port == NULL) {
+            return GROBO_ERR_NOMEM;
+        }
+    }
+    return grobo_timer_new(server->config.base, on_time, server, server->config.mem,
+                           &server->timer);
+}
+
+int grobo_sim_server_new(const grobo_sim_server_config *config, grobo_sim_server **server,
+                         grobo_os_cause *cause)
+{
+    grobo_os_cause unheard = {0};
+    grobo_sim_server *made;
+    int r;
+
+    if (config == NULL || server == NULL || config->base == NULL ||
+        (config->no_pty && config->tcp == NULL)) {
+        return GROBO_ERR_ARG;
+    }
+    made = grobo_i_link_new(config->mem, sizeof *made);
+    if (made == NULL) {
+        return GROBO_ERR_NOMEM;
+    }
+    for (int i = 0; i < ENDS; i++) {
+        made->ends[i].server = made;
+    }
+    made->config.mem = config->mem;
+    r = fill(made, config);
+    if (r >= 0) {
+        r = make_ends(made);
+    }
+    if (r >= 0) {
+        r = plug(made, cause != NULL ? cause : &unheard);
+    }
+    if (r < 0) {
+        grobo_sim_server_free(made);
+        return r;
+    }
+    /* Another robot had these names, and may have been stopped under them. */
+    (void)grobo_estop_clear(made->device, NULL);
+    (void)grobo_estop_clear(made->link, NULL);
+    grobo_sim_server_pump(made);
+    *server = made;
+    return GROBO_OK;
+}
+
+void grobo_sim_server_free(grobo_sim_server *server)
+{
+    const grobo_mem *mem;
+
+    if (server == NULL) {
+        return;
+    }
+    mem = server->config.mem;
+    unplug(server);
+    grobo_timer_free(server->timer);
+    for (int i = 0; i < ENDS; i++) {
+        end *e = &server->ends[i];
+
+        grobo_i_link_free(mem, e->port, e->ops != NULL ? e->ops->size_bytes : 0);
+    }
+    grobo_i_link_free(mem, server, sizeof *server);
+}
+
+const char *grobo_sim_server_device(const grobo_sim_server *server)
+{
+    return server->device;
+}
+
+int grobo_sim_server_tcp_port(const grobo_sim_server *server)
+{
+    return server->callers != NULL ? server->tcp_port : 0;
+}
+
+grobo_sim *grobo_sim_server_sim(grobo_sim_server *server)
+{
+    return &server->sim;
+}

@@ -1,0 +1,235 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Requests to stop that any thread and any signal handler may make.
+ *
+ * `asked` is one atomic word: the number of requests made so far, and below it a bit for each kind
+ * of request that the loop has not looked at. The poster sets both at once and writes a byte to the
+ * wake-up socket. The loop takes the bits in grobo_i_session_obey(), which every way out of the
+ * session passes before bytes leave; grobo_i_session_send() sends nothing while a bit is set. So
+ * the first frame after a request is the stop, wherever the loop was.
+ *
+ * An exit waits in `exit_owed` while an emergency stop is carried out. An emergency stop without a
+ * line is the engine's to keep (grobo_robot_estop()).
+ */
+#include <errno.h>
+
+#include "src/link/session/session.h"
+
+_Static_assert(ATOMIC_INT_LOCK_FREE == 2 && ATOMIC_BOOL_LOCK_FREE == 2,
+               "a signal handler may use what is lock-free only");
+_Static_assert(GROBO_EXIT_SIT <= 3, "an exit policy has two bits");
+
+/* The bits of `asked`. */
+enum {
+    ASK_ESTOP = 1,
+    ASK_STOP = 2,
+    ASK_STOP_AT_ONCE = 4,
+    ASK_EXIT = 8,
+    ASK_POLICY_SHIFT = 4,
+    ASK_POLICY = 3 << ASK_POLICY_SHIFT,
+    ASK_COUNT_ONE = SESSION_ASK_BITS + 1
+};
+_Static_assert((ASK_POLICY | (ASK_EXIT * 2 - 1)) == SESSION_ASK_BITS, "all bits of a request");
+
+/* ---- any thread, signal handlers ---------------------------------------------------------- */
+
+void grobo_i_session_wake(grobo_session *session)
+{
+    int kept = errno;
+
+    /* A full socket has bytes enough to wake the loop. */
+    (void)send(session->wake_socket[1], "", 1, 0);
+    errno = kept;
+}
+
+static int ask(grobo_session *session, unsigned what, unsigned instead_of)
+{
+    unsigned old = atomic_load(&session->asked);
+
+    while (!atomic_compare_exchange_weak(&session->asked, &old,
+                                         ((old & ~instead_of) | what) + ASK_COUNT_ONE)) {
+    }
+    grobo_i_session_wake(session);
+    return GROBO_OK;
+}
+
+int grobo_session_post_estop(grobo_session *session)
+{
+    if (session == NULL) {
+        return GROBO_ERR_ARG;
+    }
+    atomic_fetch_add(&session->estops, 1);
+    return ask(session, ASK_ESTOP, 0);
+}
+
+int grobo_session_post_stop(grobo_session *session, bool at_once)
+{
+    return session != NULL ? ask(session, at_once ? ASK_STOP_AT_ONCE : ASK_STOP, 0) : GROBO_ERR_ARG;
+}
+
+int grobo_session_post_exit(grobo_session *session, grobo_exit_policy policy)
+{
+    if (session == NULL || (unsigned)policy > GROBO_EXIT_SIT) {
+        return GROBO_ERR_ARG;
+    }
+    return ask(session, ASK_EXIT | (unsigned)policy << ASK_POLICY_SHIFT, ASK_POLICY);
+}
+
+bool grobo_session_is_latched(const grobo_session *session)
+{
+    /* In this order: take() clears the bit when `latched` is set. */
+    return (atomic_load(&session->asked) & ASK_ESTOP) != 0 || atomic_load(&session->latched);
+}
+
+unsigned grobo_i_session_asked(const grobo_session *session)
+{
+    return atomic_load(&session->asked) & ~SESSION_ASK_BITS;
+}
+
+bool grobo_i_session_has_asked(const grobo_session *session)
+{
+    return (atomic_load(&session->asked) & SESSION_ASK_BITS) != 0;
+}
+
+/* ---- on the loop -------------------------------------------------------------------------- */
+
+void grobo_i_session_note_latch(grobo_session *session)
+{
+    grobo_trip_info trip;
+
+    grobo_robot_tripped(&session->robot, &trip);
+    atomic_store(&session->latched, trip.latched);
+}
+
+/* Takes the bits, and the number of requests with them. */
+static unsigned take(grobo_session *session)
+{
+    unsigned asked = atomic_load(&session->asked);
+
+    do {
+        if ((asked & ASK_ESTOP) != 0) {
+            atomic_store(&session->latched, true);
+        }
+    } while (!atomic_compare_exchange_weak(&session->asked, &asked,
+                                           asked & ~(unsigned)SESSION_ASK_BITS));
+    return asked;
+}
+
+static void exit_when_due(grobo_session *session)
+{
+    bool up = session->state == GROBO_SESSION_UP;
+
+    if (session->exit_owed && !(up && grobo_robot_job(&session->robot) == GROBO_JOB_ESTOP)) {
+        session->exit_owed = false;
+        if (up) {
+            /* Its end is a job event. Cannot be refused: the policy has been checked. */
+            (void)grobo_robot_exit(&session->robot, session->exit_policy, grobo_now_us());
+        }
+    }
+}
+
+/* One that is being carried out serves for both: begun anew each time, it would never end. */
+static void estop(grobo_session *session)
+{
+    if (grobo_robot_job(&session->robot) != GROBO_JOB_ESTOP) {
+        (void)grobo_robot_estop(&session->robot, grobo_now_us());
+    }
+}
+
+void grobo_i_session_obey(grobo_session *session)
+{
+    unsigned asked = take(session);
+
+    if ((asked & SESSION_ASK_BITS) != 0) {
+        session->obeyed = asked & ~SESSION_ASK_BITS;
+    }
+    if ((asked & ASK_ESTOP) != 0) {
+        estop(session);
+    } else if ((asked & (ASK_STOP | ASK_STOP_AT_ONCE)) != 0 && session->state == GROBO_SESSION_UP) {
+        (void)grobo_robot_stop(&session->robot, (asked & ASK_STOP_AT_ONCE) != 0, grobo_now_us());
+    }
+    if ((asked & ASK_EXIT) != 0) {
+        session->exit_owed = true;
+        session->exit_policy = (grobo_exit_policy)((asked & ASK_POLICY) >> ASK_POLICY_SHIFT);
+    }
+    exit_when_due(session);
+}
+
+void grobo_i_session_attend(grobo_session *session)
+{
+    if (grobo_i_session_has_asked(session) || session->slow.count > 0) {
+        grobo_i_session_enter(session);
+        grobo_i_session_obey(session);
+        grobo_i_session_leave(session);
+    }
+}
+
+static void on_wake(evutil_socket_t socket, short what, void *ctx)
+{
+    grobo_session *session = ctx;
+    char bytes[64];
+
+    (void)what;
+    while (recv(socket, bytes, sizeof bytes, 0) == (int)sizeof bytes) {
+    }
+    grobo_i_session_attend(session);
+}
+
+/* ---- making and freeing ------------------------------------------------------------------- */
+
+static int make_pair(grobo_socket pair[2])
+{
+    evutil_socket_t made[2];
+
+    /* libevent takes AF_UNIX for a local pair on every system. */
+    if (grobo_port_start() < 0 || evutil_socketpair(AF_UNIX, SOCK_STREAM, 0, made) != 0) {
+        return GROBO_ERR_NOMEM;
+    }
+    for (int i = 0; i < 2; i++) {
+        pair[i] = made[i];
+    }
+    for (int i = 0; i < 2; i++) {
+        if (evutil_make_socket_nonblocking(made[i]) != 0 ||
+            evutil_make_socket_closeonexec(made[i]) != 0) {
+            return GROBO_ERR_NOMEM;
+        }
+    }
+    return GROBO_OK;
+}
+
+int grobo_i_session_listen(grobo_session *session, bool always)
+{
+    session->always_listens = session->always_listens || always;
+    return event_add(session->wake, NULL) == 0 ? GROBO_OK : GROBO_ERR_NOMEM;
+}
+
+void grobo_i_session_rest(grobo_session *session)
+{
+    if (!session->always_listens) {
+        (void)event_del(session->wake);
+    }
+}
+
+int grobo_i_session_wake_new(grobo_session *session)
+{
+    int r = make_pair(session->wake_socket);
+
+    if (r >= 0) {
+        session->wake = event_new(session->config.base, session->wake_socket[0],
+                                  EV_READ | EV_PERSIST, on_wake, session);
+        r = session->wake != NULL ? GROBO_OK : GROBO_ERR_NOMEM;
+    }
+    return r;
+}
+
+void grobo_i_session_wake_free(grobo_session *session)
+{
+    if (session->wake != NULL) {
+        event_free(session->wake);
+    }
+    for (int i = 0; i < 2; i++) {
+        if (session->wake_socket[i] != GROBO_SOCKET_NULL) {
+            evutil_closesocket(session->wake_socket[i]);
+        }
+    }
+}

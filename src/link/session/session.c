@@ -1,0 +1,558 @@
+/* SPDX-License-Identifier: MIT */
+/* A session's states: opening, checking, up, lost, coming back. */
+#include <stdio.h>
+#include <string.h>
+
+#include "src/link/serial/loop.h"
+#include "src/link/session/session.h"
+
+void grobo_i_session_say(grobo_session *session, grobo_session_event event, int error)
+{
+    if (session->config.on_event != NULL && !session->closing) {
+        int64_t since_us = grobo_i_session_enter_callback(session);
+
+        session->config.on_event(session, event, error, session->config.ctx);
+        grobo_i_session_leave_callback(session, GROBO_CALLBACK_EVENT, since_us);
+    }
+}
+
+/* ---- closing ------------------------------------------------------------------------------ */
+
+/* Until a robot has answered, nothing is sent to whoever is there but the check. */
+static void configure(grobo_session *session, bool up)
+{
+    grobo_robot_config config = session->robot_config;
+
+    if (!up) {
+        config.sense_interval_us = GROBO_SENSE_NEVER;
+    }
+    /* Cannot fail: the configuration was good at grobo_session_new(). */
+    (void)grobo_robot_configure(&session->robot, &config);
+}
+
+/* Takes the line away from the engine, which tells what that ends. */
+static void drop_line(grobo_session *session)
+{
+    if (session->state == GROBO_SESSION_CHECKING || session->state == GROBO_SESSION_UP) {
+        grobo_robot_link_down(&session->robot, grobo_now_us());
+        configure(session, false);
+    }
+    grobo_i_session_guard_release(session);
+    grobo_serial_close(session->serial);
+    session->backlog_bytes = 0;
+    session->check_job = 0;
+    session->check_ended = false;
+}
+
+static void close_now(grobo_session *session)
+{
+    drop_line(session);
+    grobo_i_session_scan_end(session);
+    grobo_i_estop_watch_end(&session->estop);
+    session->state = GROBO_SESSION_CLOSED;
+    session->closing = false;
+}
+
+static void destroy(grobo_session *session)
+{
+    const grobo_mem *mem = session->config.mem;
+
+    grobo_i_session_guard_free(session);
+    grobo_i_session_wake_free(session);
+    grobo_timer_free(session->timer);
+    grobo_serial_free(session->serial);
+    grobo_i_estop_watch_end(&session->estop);
+    grobo_i_session_scan_end(session);
+    grobo_i_link_free(mem, session->sim, sizeof *session->sim);
+    grobo_i_link_free(mem, session, sizeof *session);
+}
+
+/* ---- opening ------------------------------------------------------------------------------ */
+
+static int open_path(grobo_session *session, const char *path)
+{
+    int r = grobo_serial_set_device(session->serial, path);
+
+    if (r >= 0) {
+        r = grobo_serial_open(session->serial);
+        session->cause = *grobo_serial_cause(session->serial);
+    }
+    if (r >= 0) {
+        memmove(session->used, path, strlen(path) + 1);
+        session->state = GROBO_SESSION_OPENING;
+        grobo_i_session_estop_begin(session, path);
+    }
+    return r;
+}
+
+static int open_sim(grobo_session *session)
+{
+    int64_t now_us = grobo_now_us();
+
+    if (session->sim == NULL) {
+        grobo_sim *sim = grobo_i_link_new(session->config.mem, sizeof *sim);
+        int r = sim != NULL ? grobo_sim_init(sim, &session->sim_config, now_us) : GROBO_ERR_NOMEM;
+
+        if (r < 0) {
+            grobo_i_link_free(session->config.mem, sim, sizeof *sim);
+            return r;
+        }
+        session->sim = sim;
+    }
+    if (grobo_sim_hung_up(session->sim)) {
+        grobo_sim_plug(session->sim, true, now_us);
+    }
+    session->state = GROBO_SESSION_OPENING;
+    return GROBO_OK;
+}
+
+/* Opens the first port of the scan, from the present one on, that can be opened. */
+static int open_next(grobo_session *session)
+{
+    session_scan *scan = session->scan;
+
+    for (; scan->at < scan->count; scan->at++) {
+        if (open_path(session, scan->path[scan->at]) >= 0) {
+            return GROBO_OK;
+        }
+    }
+    session->cause.code = 0;
+    snprintf(session->cause.text, sizeof session->cause.text, "no robot on any of %d serial ports",
+             scan->count);
+    grobo_i_session_scan_end(session);
+    return GROBO_ERR_NOTFOUND;
+}
+
+/* By the name that stays: the old one may be another device's by now. */
+static int open_again(grobo_session *session)
+{
+    return session->is_sim ? open_sim(session) : open_path(session, session->stable);
+}
+
+/* ---- checking ----------------------------------------------------------------------------- */
+
+static void be_up(grobo_session *session)
+{
+    grobo_i_session_scan_end(session);
+    if (!session->is_sim &&
+        grobo_port_identity(session->used, session->stable, sizeof session->stable) < 0) {
+        memcpy(session->stable, session->used, sizeof session->stable);
+    }
+    session->state = GROBO_SESSION_UP;
+    session->was_up = true;
+    configure(session, true);
+    grobo_i_session_estop_arm(session);
+    grobo_i_session_guard_take(session);
+    grobo_i_session_say(session, GROBO_SESSION_EVENT_UP, GROBO_OK);
+}
+
+/* Who is there? Asked anew behind an emergency stop, which goes before everything. */
+static void ask_who(grobo_session *session)
+{
+    session->check_job = session->config.skip_check
+                             ? GROBO_ERR_UNSUPPORTED
+                             : grobo_robot_check(&session->robot, grobo_now_us());
+    if (session->check_job < 0 && grobo_robot_job(&session->robot) != GROBO_JOB_ESTOP) {
+        /* A driver without a check takes who is there for its robot. */
+        session->check_result =
+            session->check_job == GROBO_ERR_UNSUPPORTED ? GROBO_OK : session->check_job;
+        session->check_ended = true;
+    }
+}
+
+/* The line is open. */
+static void start_check(grobo_session *session)
+{
+    session->state = GROBO_SESSION_CHECKING;
+    session->check_ended = false;
+    if (session->scan == NULL) { /* of many ports only the robot's counts */
+        grobo_i_session_estop_arm(session);
+    }
+    grobo_robot_link_up(&session->robot, grobo_now_us());
+    ask_who(session);
+}
+
+static void end_check(grobo_session *session)
+{
+    int result = session->check_result;
+
+    session->check_ended = false;
+    session->check_job = 0;
+    if (result >= 0) {
+        be_up(session);
+    } else {
+        session->cause.code = 0;
+        snprintf(session->cause.text, sizeof session->cause.text, "no answer to the check");
+        grobo_i_session_lost(session, result);
+    }
+}
+
+static void on_robot(void *ctx, const grobo_event *event)
+{
+    grobo_session *session = ctx;
+
+    if (session->freed) {
+        return;
+    }
+    bool checking = session->state == GROBO_SESSION_CHECKING;
+    bool job = event->kind == GROBO_EVENT_JOB;
+    bool estop = job && event->u.job.kind == GROBO_JOB_ESTOP;
+    bool stop = event->kind == GROBO_EVENT_TRIP || estop;
+
+    if (estop) {
+        grobo_i_session_estop_ended(session, event->u.job.result);
+    }
+
+    grobo_i_session_note_latch(session);
+
+    if (checking && job && event->u.job.number == session->check_job) {
+        /* Only an emergency stop takes its place. */
+        session->check_ended = event->u.job.result != GROBO_ERR_CANCELED;
+        session->check_result = event->u.job.result;
+    }
+    if (checking && job && stop) {
+        ask_who(session);
+    }
+    if (!checking || stop) {
+        grobo_i_session_tell_robot(session, event);
+    }
+}
+
+/* ---- losing ------------------------------------------------------------------------------- */
+
+static void wait_for_return(grobo_session *session)
+{
+    session->state = GROBO_SESSION_WAITING;
+    session->retry_us = grobo_now_us() + session->pause_us;
+    session->pause_us *= 2;
+    if (session->pause_us > GROBO_RECONNECT_MAX_US) {
+        session->pause_us = GROBO_RECONNECT_MAX_US;
+    }
+}
+
+static void lose_robot(grobo_session *session, int error)
+{
+    drop_line(session);
+    session->pause_us = GROBO_RECONNECT_FIRST_US;
+    if (session->config.reconnect) {
+        wait_for_return(session);
+    } else {
+        session->state = GROBO_SESSION_CLOSED;
+    }
+    grobo_i_session_say(session, GROBO_SESSION_EVENT_LOST, error);
+}
+
+/* An attempt came to nothing: the next port, the next time, or the end. */
+static void lose_attempt(grobo_session *session, int error)
+{
+    drop_line(session);
+    if (session->scan != NULL) {
+        session->scan->at++;
+        error = open_next(session);
+        if (error >= 0) {
+            return;
+        }
+    } else if (session->was_up && session->config.reconnect) {
+        wait_for_return(session);
+        return;
+    }
+    session->state = GROBO_SESSION_CLOSED;
+    grobo_i_session_say(session, GROBO_SESSION_EVENT_FAILED, error);
+}
+
+void grobo_i_session_lost(grobo_session *session, int error)
+{
+    switch (session->state) {
+    case GROBO_SESSION_UP:
+        lose_robot(session, error);
+        break;
+    case GROBO_SESSION_OPENING:
+    case GROBO_SESSION_CHECKING:
+    case GROBO_SESSION_WAITING:
+        lose_attempt(session, error);
+        break;
+    case GROBO_SESSION_CLOSED:
+        break;
+    }
+}
+
+/* ---- the loop's calls --------------------------------------------------------------------- */
+
+void grobo_i_session_enter(grobo_session *session)
+{
+    session->depth++;
+}
+
+void grobo_i_session_leave(grobo_session *session)
+{
+    if (session->depth == 1 && !session->freed) {
+        grobo_i_session_report_slow(session);
+    }
+    if (session->depth == 1 && !session->freed) {
+        grobo_i_session_obey(session);
+        grobo_i_session_estop_look(session);
+    }
+    grobo_i_session_note_latch(session);
+    /* Still inside: the callbacks of what follows may come back here. */
+    while (session->depth == 1 && session->check_ended && !session->closing) {
+        end_check(session);
+    }
+    if (session->depth == 1 && session->closing) {
+        close_now(session);
+    }
+    session->depth--;
+    if (session->depth > 0) {
+        return;
+    }
+    if (session->freed) {
+        destroy(session);
+    } else {
+        grobo_i_session_send(session);
+        grobo_i_estop_watch_answer(&session->estop);
+    }
+}
+
+static void on_serial(grobo_serial *serial, grobo_serial_event event, int error, void *ctx)
+{
+    grobo_session *session = ctx;
+
+    grobo_i_session_enter(session);
+    switch (event) {
+    case GROBO_SERIAL_OPENED:
+        start_check(session);
+        break;
+    case GROBO_SERIAL_DRAINED:
+        break;
+    case GROBO_SERIAL_UNPLUGGED:
+    case GROBO_SERIAL_FAILED:
+        session->cause = *grobo_serial_cause(serial);
+        grobo_i_session_lost(session, error);
+        break;
+    }
+    grobo_i_session_leave(session);
+}
+
+/* With a line: what it has, and the time. */
+static void look(grobo_session *session)
+{
+    if (session->is_sim) {
+        grobo_i_session_take_from_sim(session);
+    }
+    grobo_i_session_step(session);
+}
+
+void grobo_i_session_look(grobo_session *session)
+{
+    grobo_i_session_enter(session);
+    if (session->state == GROBO_SESSION_CHECKING || session->state == GROBO_SESSION_UP) {
+        look(session);
+    }
+    grobo_i_session_leave(session);
+}
+
+/* The line is lost. The time may be that of a look at the marks. */
+static void try_again(grobo_session *session)
+{
+    if (grobo_now_us() >= session->retry_us) {
+        int r = open_again(session);
+
+        if (r < 0) {
+            grobo_i_session_lost(session, r);
+        }
+    }
+}
+
+static void on_time(grobo_timer *timer, int64_t late_us, void *ctx)
+{
+    grobo_session *session = ctx;
+
+    (void)timer;
+    (void)late_us;
+    grobo_i_session_enter(session);
+    switch (session->state) {
+    case GROBO_SESSION_OPENING:
+        start_check(session);
+        break;
+    case GROBO_SESSION_CHECKING:
+    case GROBO_SESSION_UP:
+        look(session);
+        break;
+    case GROBO_SESSION_WAITING:
+        try_again(session);
+        break;
+    case GROBO_SESSION_CLOSED:
+        break;
+    }
+    grobo_i_session_leave(session);
+}
+
+/* ---- the public functions ----------------------------------------------------------------- */
+
+static int set_device(grobo_session *session, const char *device)
+{
+    if (strlen(device) >= sizeof session->device) {
+        return GROBO_ERR_CAP;
+    }
+    memmove(session->device, device, strlen(device) + 1);
+    memcpy(session->used, session->device, sizeof session->used);
+    session->is_sim = strcmp(session->device, GROBO_DEVICE_SIM) == 0;
+    return GROBO_OK;
+}
+
+static int fill(grobo_session *session, const grobo_session_config *config)
+{
+    const grobo_driver *driver = config->driver;
+    int baud_bps = config->baud_bps > 0 ? config->baud_bps : GROBO_BAUD_DEFAULT_BPS;
+    int r = set_device(session, config->device);
+
+    session->wake_socket[0] = session->wake_socket[1] = GROBO_SOCKET_NULL;
+    if (r < 0) {
+        return r;
+    }
+    if (driver == NULL) {
+        driver = grobo_gr001_driver(GROBO_WIRING_BOARD);
+    }
+    session->config = *config;
+    session->config.device = NULL;
+    session->config.robot = NULL;
+    session->config.sim = NULL;
+    if (config->robot != NULL) {
+        session->robot_config = *config->robot;
+    }
+    if (session->robot_config.bus.baud_bps == 0) {
+        session->robot_config.bus.baud_bps = (uint32_t)baud_bps;
+    }
+    if (config->sim != NULL) {
+        session->sim_config = *config->sim;
+    }
+    session->sim_config.wiring = driver->wiring;
+    session->sim_config.echo = session->robot_config.bus.echo;
+    if (session->sim_config.model == NULL) {
+        session->sim_config.model = driver->model;
+    }
+    if (session->sim_config.baud_bps == 0) {
+        session->sim_config.baud_bps = (uint32_t)baud_bps;
+    }
+    return grobo_robot_init(&session->robot, driver, config->driver_ctx, &session->robot_config,
+                            grobo_now_us());
+}
+
+static int make_parts(grobo_session *session)
+{
+    const grobo_serial_config serial = {
+        .baud_bps = session->config.baud_bps,
+        .base = session->config.base,
+        .mode = GROBO_SERIAL_ASYNC,
+        .on_data = grobo_i_session_on_data,
+        .on_event = on_serial,
+        .on_tap = session->config.on_tap != NULL ? grobo_i_session_on_tap : NULL,
+        .ctx = session,
+        .mem = session->config.mem,
+    };
+    int r = grobo_serial_new(&serial, &session->serial);
+
+    if (r >= 0) {
+        r = grobo_timer_new(session->config.base, on_time, session, session->config.mem,
+                            &session->timer);
+    }
+    if (r >= 0) {
+        r = grobo_i_session_guard_new(session);
+    }
+    return r < 0 ? r : grobo_i_session_wake_new(session);
+}
+
+int grobo_session_new(const grobo_session_config *config, grobo_session **session)
+{
+    grobo_session *made;
+    int r;
+
+    if (config == NULL || session == NULL || config->base == NULL || config->device == NULL ||
+        config->baud_bps < 0) {
+        return GROBO_ERR_ARG;
+    }
+    made = grobo_i_link_new(config->mem, sizeof *made);
+    if (made == NULL) {
+        return GROBO_ERR_NOMEM;
+    }
+    r = fill(made, config);
+    made->config.mem = config->mem;
+    if (r >= 0) {
+        r = make_parts(made);
+    }
+    if (r < 0) {
+        destroy(made);
+        return r;
+    }
+    grobo_robot_on_event(&made->robot, on_robot, made);
+    configure(made, false);
+    *session = made;
+    return GROBO_OK;
+}
+
+void grobo_session_free(grobo_session *session)
+{
+    if (session == NULL) {
+        return;
+    }
+    grobo_i_session_enter(session);
+    session->freed = true;
+    session->closing = true;
+    grobo_i_session_leave(session);
+}
+
+int grobo_session_open(grobo_session *session)
+{
+    int r;
+
+    if (session->state != GROBO_SESSION_CLOSED || session->closing) {
+        return GROBO_ERR_STATE;
+    }
+    session->was_up = false;
+    r = grobo_i_session_listen(session, false);
+    if (r < 0) {
+        return r;
+    }
+    if (session->is_sim) {
+        r = open_sim(session);
+    } else if (strcmp(session->device, GROBO_DEVICE_AUTO) == 0) {
+        r = grobo_i_session_scan_begin(session);
+        if (r >= 0) {
+            r = open_next(session);
+        }
+    } else {
+        r = open_path(session, session->device);
+    }
+    grobo_session_pump(session);
+    return r;
+}
+
+void grobo_session_close(grobo_session *session)
+{
+    grobo_i_session_enter(session);
+    session->closing = true;
+    grobo_i_session_leave(session);
+}
+
+int grobo_session_set_device(grobo_session *session, const char *device)
+{
+    if (device == NULL) {
+        return GROBO_ERR_ARG;
+    }
+    return session->state != GROBO_SESSION_CLOSED ? GROBO_ERR_STATE : set_device(session, device);
+}
+
+int grobo_session_configure(grobo_session *session, const grobo_robot_config *config)
+{
+    static const grobo_robot_config defaults;
+    int r = grobo_robot_configure(&session->robot, config);
+
+    if (r >= 0) {
+        grobo_bus_config bus = session->robot_config.bus;
+
+        session->robot_config = config != NULL ? *config : defaults;
+        session->robot_config.bus = bus;
+        configure(session, session->state == GROBO_SESSION_UP);
+        grobo_session_pump(session);
+    }
+    return r;
+}

@@ -1,0 +1,206 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The inside of a grobo_session: session.c has its states, session_line.c its bytes, session_post.c
+ * what other threads and signal handlers ask of it.
+ */
+#ifndef GROBO_LINK_SESSION_I_H
+#define GROBO_LINK_SESSION_I_H
+
+#include <stdatomic.h>
+
+#include <event2/event.h>
+
+#include <grobo/session.h>
+
+#include "src/link/guard/estop.h"
+
+/* The bits of grobo_session.asked that are requests; above them their number is counted. */
+#define SESSION_ASK_BITS 0x3Fu
+
+/* Serial ports found for GROBO_DEVICE_AUTO. */
+typedef struct session_scan {
+    int count;
+    int at; /* the one that is tried */
+    char path[GROBO_SCAN_PORTS_MAX][GROBO_DEVICE_MAX_BYTES];
+} session_scan;
+
+struct grobo_session {
+    grobo_session_config config;         /* pointers to copied things are NULL */
+    char device[GROBO_DEVICE_MAX_BYTES]; /* as configured */
+    char used[GROBO_DEVICE_MAX_BYTES];   /* as opened */
+    char stable[GROBO_DEVICE_MAX_BYTES]; /* the name it will have when it comes back */
+    grobo_robot_config robot_config;     /* in effect while up */
+    grobo_os_cause cause;
+
+    grobo_session_state state;
+    bool was_up; /* since open: then a failed attempt is not the end, if so configured */
+    grobo_robot robot;
+    grobo_serial *serial;
+    grobo_timer *timer;
+
+    grobo_sim_config sim_config;
+    grobo_sim *sim;
+    bool is_sim;                            /* the device is the simulator */
+    uint8_t backlog[GROBO_FRAME_MAX_BYTES]; /* of a frame that the simulator took in part */
+    size_t backlog_bytes;
+    size_t given_bytes;  /* of the frame given to the line last; 0: it may not be taken back */
+    size_t given_behind; /* bytes of it behind its sum */
+    uint64_t sim_tx_bytes, sim_rx_bytes;
+
+    grobo_i_estop_watch estop; /* the marks of the device */
+
+    session_scan *scan; /* while one goes on */
+    int check_job;      /* number of the check that runs, 0 none */
+    bool check_ended;
+    int check_result;
+    int64_t retry_us; /* next attempt while WAITING */
+    int64_t pause_us; /* the pause before it */
+
+    /* any thread, signal handlers: see session_post.c */
+    atomic_uint asked;
+    atomic_bool latched;         /* the engine's trip, as of the last time it was looked at */
+    atomic_uint estops;          /* emergency stops asked for; wraps around */
+    grobo_socket wake_socket[2]; /* a byte from 1 to 0 wakes the loop */
+    struct event *wake;
+    bool always_listens; /* also while closed */
+    unsigned obeyed;     /* number of requests, when the last one was carried out */
+    bool exit_owed;      /* asked for while an emergency stop is carried out */
+    grobo_exit_policy exit_policy;
+
+    unsigned in_callback;  /* callbacks that run, one inside another */
+    grobo_event_slow slow; /* to be reported, count 0: nothing */
+
+    struct event *guard_news; /* the guard's socket; NULL without a guard */
+    bool unguarded;           /* told that there is none any more */
+
+    unsigned depth; /* calls that may call back, one inside another */
+    bool closing;   /* closed in a callback */
+    bool freed;     /* freed in a callback */
+};
+
+/* ---- session.c ---- */
+
+/* Around everything that may call back; the last leave does what callbacks asked for, and pumps. */
+void grobo_i_session_enter(grobo_session *session);
+void grobo_i_session_leave(grobo_session *session);
+
+/* Reads what the line has now, and lets the engine's time pass. */
+void grobo_i_session_look(grobo_session *session);
+
+/* The line is gone, or cannot be had. */
+void grobo_i_session_lost(grobo_session *session, int error);
+
+/* Tells an event of the line, unless the session is being closed. */
+void grobo_i_session_say(grobo_session *session, grobo_session_event event, int error);
+
+/* ---- session_post.c ---- */
+
+/* Any thread, signal handlers: has the loop make a round. */
+void grobo_i_session_wake(grobo_session *session);
+
+/* Any thread: the number of requests posted, in steps of SESSION_ASK_BITS + 1; wraps around. */
+unsigned grobo_i_session_asked(const grobo_session *session);
+
+/* Any thread: true while a posted request has not been looked at. */
+bool grobo_i_session_has_asked(const grobo_session *session);
+
+/* Carries out what was posted; inside of enter and leave. */
+void grobo_i_session_obey(grobo_session *session);
+
+/* The same at any place, where something was posted. */
+void grobo_i_session_attend(grobo_session *session);
+
+/* Notes for grobo_session_is_latched() what the engine says. */
+void grobo_i_session_note_latch(grobo_session *session);
+
+/* Makes and ends the wake-up socket. */
+int grobo_i_session_wake_new(grobo_session *session);
+void grobo_i_session_wake_free(grobo_session *session);
+
+/* The loop waits for the socket while the session is not closed, or always; or no more. */
+int grobo_i_session_listen(grobo_session *session, bool always);
+void grobo_i_session_rest(grobo_session *session);
+
+/* ---- session_slow.c ---- */
+
+/* Around every callback of the user. The first returns what the second takes. */
+int64_t grobo_i_session_enter_callback(grobo_session *session);
+void grobo_i_session_leave_callback(grobo_session *session, grobo_callback callback,
+                                    int64_t since_us);
+
+/* Reports the slow ones; inside of enter and leave. */
+void grobo_i_session_report_slow(grobo_session *session);
+
+/* The user's callbacks, where there are any. */
+void grobo_i_session_tell_robot(grobo_session *session, const grobo_event *event);
+void grobo_i_session_tell_tap(grobo_session *session, grobo_direction direction, int64_t now_us,
+                              const uint8_t *bytes, size_t size);
+
+/* ---- session_line.c ---- */
+
+/* Hands out what the engine wants to send as far as the line takes it, and sets the timer. */
+void grobo_i_session_send(grobo_session *session);
+
+/* Takes what the simulator has for us; tells when it hung up. */
+void grobo_i_session_take_from_sim(grobo_session *session);
+
+/*
+ * Lets the engine's time pass. What the line has for it is read first: a process that was held up
+ * must not take for a servo's silence what has been waiting for it.
+ */
+void grobo_i_session_step(grobo_session *session);
+
+/* Callback of the serial port. */
+void grobo_i_session_on_data(grobo_serial *serial, const uint8_t *bytes, size_t size, void *ctx);
+void grobo_i_session_on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes,
+                            size_t size, void *ctx);
+
+/* ---- session_estop.c ---- */
+
+/*
+ * Emergency stops that other programs ask for (grobo/estop.h). Nothing leaves when the last look at
+ * the marks is older than GROBO_ESTOP_WATCH_US: a program that was stopped looks before it sends.
+ */
+
+/* A port is open: the marks that stand are those of its device. */
+void grobo_i_session_estop_begin(grobo_session *session, const char *device);
+
+/* Before the robot is asked for anything: obeys the marks that stand. */
+void grobo_i_session_estop_arm(grobo_session *session);
+
+/* Looks for new marks, where that is due, and obeys them. Calls back. */
+void grobo_i_session_estop_look(grobo_session *session);
+
+/* When that is due next; GROBO_NEVER_US without a device. */
+int64_t grobo_i_session_estop_deadline(const grobo_session *session);
+
+/* An emergency stop has ended so. */
+void grobo_i_session_estop_ended(grobo_session *session, int result);
+
+/* ---- session_guard.c: each does nothing without a guard ---- */
+
+/* Makes and frees what hears the guard. GROBO_OK, GROBO_ERR_CAP, GROBO_ERR_NOMEM. */
+int grobo_i_session_guard_new(grobo_session *session);
+void grobo_i_session_guard_free(grobo_session *session);
+
+/* The port is open, and a robot answers: the guard gets it. */
+void grobo_i_session_guard_take(grobo_session *session);
+
+/* The port is about to be closed. */
+void grobo_i_session_guard_release(grobo_session *session);
+
+/* Before anything is sent. True: the guard has the port, and nothing may be. */
+bool grobo_i_session_guard_has_it(grobo_session *session);
+
+/* After: says whether joints are on their way. */
+void grobo_i_session_guard_tell(grobo_session *session);
+
+/* ---- session_scan.c ---- */
+
+/* Lists the ports to try; GROBO_ERR_NOTFOUND where there are none. */
+int grobo_i_session_scan_begin(grobo_session *session);
+
+/* Forgets them. */
+void grobo_i_session_scan_end(grobo_session *session);
+
+#endif

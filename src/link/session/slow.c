@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: MIT */
+/* The user's callbacks, and how long they hold the loop. */
+#include "src/link/session/session.h"
+
+int64_t grobo_i_session_enter_callback(grobo_session *session)
+{
+    session->in_callback++;
+    return grobo_now_us();
+}
+
+void grobo_i_session_leave_callback(grobo_session *session, grobo_callback callback,
+                                    int64_t since_us)
+{
+    int64_t held_us = grobo_now_us() - since_us;
+
+    session->in_callback--;
+    if (session->in_callback > 0 || held_us <= GROBO_CALLBACK_SLOW_US) {
+        return;
+    }
+    session->slow.count++;
+    if (held_us > session->slow.held_us) {
+        session->slow.callback = callback;
+        session->slow.held_us = held_us;
+    }
+}
+
+void grobo_i_session_report_slow(grobo_session *session)
+{
+    const grobo_event event = {
+        .kind = GROBO_EVENT_SLOW_CALLBACK, .now_us = grobo_now_us(), .u.slow = session->slow};
+
+    if (session->slow.count == 0) {
+        return;
+    }
+    session->slow = (grobo_event_slow){.count = 0};
+    if (session->config.on_robot != NULL) {
+        /* Not measured: a report of a report would have no end. */
+        session->config.on_robot(session->config.ctx, &event);
+    }
+}
+
+void grobo_i_session_tell_robot(grobo_session *session, const grobo_event *event)
+{
+    if (session->config.on_robot != NULL) {
+        int64_t since_us = grobo_i_session_enter_callback(session);
+
+        session->config.on_robot(session->config.ctx, event);
+        grobo_i_session_leave_callback(session, GROBO_CALLBACK_ROBOT, since_us);
+    }
+}
+
+void grobo_i_session_tell_tap(grobo_session *session, grobo_direction direction, int64_t now_us,
+                              const uint8_t *bytes, size_t size)
+{
+    if (session->config.on_tap != NULL) {
+        int64_t since_us = grobo_i_session_enter_callback(session);
+
+        session->config.on_tap(direction, now_us, bytes, size, session->config.ctx);
+        grobo_i_session_leave_callback(session, GROBO_CALLBACK_TAP, since_us);
+    }
+}

@@ -1,0 +1,327 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * How threads hand calls to the loop. A call takes a slot, and the loop calls its function, again
+ * and again, until it is over. The caller sleeps at the condition meanwhile; or, where no thread
+ * runs the loop, runs it itself. Nothing of this takes a descriptor or memory.
+ */
+#include "src/link/session/session.h"
+#include "src/link/thread/thread.h"
+
+void grobo_i_control_lock(grobo_control *control)
+{
+    bool inside = grobo_i_control_inside(control);
+
+    grobo_mutex_lock(&control->lock);
+    if (!inside) {
+        control->called_us = grobo_now_us();
+        control->owner_lost = false;
+    }
+}
+
+void grobo_i_control_unlock(grobo_control *control)
+{
+    grobo_mutex_unlock(&control->lock);
+}
+
+/* ---- waking ------------------------------------------------------------------------------- */
+
+void grobo_i_control_wake(grobo_control *control)
+{
+    if (!control->woken) {
+        control->woken = true;
+        grobo_i_session_wake(control->session);
+    }
+}
+
+void grobo_i_control_sleep(grobo_control *control, int64_t end_us)
+{
+    control->sleepers++;
+    grobo_cond_wait(&control->changed, &control->lock, end_us);
+    control->sleepers--;
+}
+
+void grobo_i_control_wake_all(grobo_control *control)
+{
+    grobo_cond_wake_all(&control->changed);
+}
+
+/* ---- slots -------------------------------------------------------------------------------- */
+
+static control_slot *take_slot(grobo_control *control, size_t most)
+{
+    for (size_t i = 0; i < most; i++) {
+        if (control->slot[i].state == CALL_FREE) {
+            return &control->slot[i];
+        }
+    }
+    return NULL;
+}
+
+static void hand_over(grobo_control *control, control_slot *slot, grobo_control_fn fn, void *arg)
+{
+    slot->fn = fn;
+    slot->arg = arg;
+    slot->job = NULL;
+    slot->users = false;
+    slot->impatient = false;
+    slot->ticket = ++control->tickets;
+    slot->state = CALL_OPEN;
+    grobo_i_control_wake(control);
+}
+
+int grobo_i_control_post(grobo_control *control, grobo_control_fn fn, void *arg, bool users)
+{
+    control_slot *slot = take_slot(control, GROBO_CONTROL_CALLS_MAX);
+
+    if (control->freeing || slot == NULL) {
+        return control->freeing ? GROBO_ERR_CLOSED : GROBO_ERR_FULL;
+    }
+    slot->posted = true;
+    hand_over(control, slot, fn, arg);
+    slot->users = users;
+    return GROBO_OK;
+}
+
+/* ---- on the loop -------------------------------------------------------------------------- */
+
+/* The oldest call after a ticket. */
+static control_slot *next_call(grobo_control *control, uint64_t after)
+{
+    control_slot *next = NULL;
+
+    for (size_t i = 0; i < CONTROL_SLOTS; i++) {
+        control_slot *slot = &control->slot[i];
+
+        if (slot->state == CALL_OPEN && slot->ticket > after &&
+            (next == NULL || slot->ticket < next->ticket)) {
+            next = slot;
+        }
+    }
+    return next;
+}
+
+static void settle(grobo_control *control, control_slot *slot, int result)
+{
+    if (result == CALL_PENDING) {
+        slot->state = CALL_OPEN;
+    } else if (slot->posted) {
+        slot->posted = false;
+        slot->state = CALL_FREE;
+    } else {
+        slot->result = result;
+        slot->state = CALL_DONE;
+    }
+    if (slot->state == CALL_DONE || slot->impatient) {
+        grobo_i_control_wake_all(control);
+    }
+}
+
+/* What was posted by grobo_session_post_estop() and its like goes before every call. */
+static void attend(grobo_control *control)
+{
+    grobo_i_session_attend(control->session);
+    grobo_i_control_forget_stopped(control);
+}
+
+static int call_user(grobo_control *control, grobo_control_fn fn, void *arg)
+{
+    int64_t since_us = grobo_i_session_enter_callback(control->session);
+    int r = fn(control, arg);
+
+    grobo_i_session_leave_callback(control->session, GROBO_CALLBACK_CALL, since_us);
+    return r;
+}
+
+void grobo_i_control_serve(grobo_control *control)
+{
+    control_slot *slot;
+    uint64_t after = 0;
+    uint64_t last;
+
+    grobo_mutex_lock(&control->lock);
+    control->woken = false;
+    last = control->tickets; /* what a callback hands over has its turn in the next round */
+    while ((slot = next_call(control, after)) != NULL && slot->ticket <= last) {
+        grobo_control_fn fn = slot->fn;
+        void *arg = slot->arg;
+        bool users = slot->users;
+        int result;
+
+        after = slot->ticket;
+        slot->state = CALL_RUNNING;
+        grobo_mutex_unlock(&control->lock);
+        attend(control);
+        result = users ? call_user(control, fn, arg) : fn(control, arg);
+        grobo_mutex_lock(&control->lock);
+        settle(control, slot, result);
+    }
+    grobo_mutex_unlock(&control->lock);
+    attend(control);
+}
+
+/* ---- waiting ------------------------------------------------------------------------------ */
+
+/* With the lock: runs the loop, or sleeps while another thread does, until the call is over. */
+static int wait_for(grobo_control *control, control_slot *slot, int64_t end_us)
+{
+    int result = GROBO_ERR_TIMEOUT;
+
+    while (slot->state != CALL_DONE && (slot->state == CALL_RUNNING || grobo_now_us() < end_us)) {
+        if (control->looping || control->running) {
+            /* A function that runs uses our storage: it has to be over before we may give up. */
+            slot->impatient = slot->state == CALL_RUNNING;
+            grobo_i_control_sleep(control, slot->impatient ? GROBO_NEVER_US : end_us);
+        } else {
+            grobo_i_control_take_turn(control, end_us);
+        }
+    }
+    if (slot->state == CALL_DONE) {
+        result = slot->result;
+    }
+    slot->job = NULL;
+    slot->state = CALL_FREE;
+    return result;
+}
+
+static int64_t end_of(const grobo_control *control, int64_t timeout_us)
+{
+    int64_t now_us = grobo_now_us();
+
+    if (timeout_us <= 0) {
+        timeout_us = control->timeout_us;
+    }
+    return timeout_us > GROBO_NEVER_US - now_us ? GROBO_NEVER_US : now_us + timeout_us;
+}
+
+/* A call as its caller has it. */
+typedef struct call_wish {
+    grobo_control_fn fn;
+    void *arg;
+    control_job *job; /* arg, where fn waits for a job */
+    int64_t timeout_us;
+    bool urgent;
+    bool users;
+} call_wish;
+
+static int call_and_wait(grobo_control *control, const call_wish *wish)
+{
+    int64_t end_us = end_of(control, wish->timeout_us);
+    control_slot *slot;
+    int result = GROBO_ERR_FULL;
+
+    grobo_i_control_lock(control);
+    slot = take_slot(control, wish->urgent ? CONTROL_SLOTS : GROBO_CONTROL_CALLS_MAX);
+    if (slot != NULL) {
+        hand_over(control, slot, wish->fn, wish->arg);
+        slot->job = wish->job;
+        slot->users = wish->users;
+        if (wish->job != NULL) {
+            wish->job->seen_losses = control->losses;
+            wish->job->end_us = end_us;
+        }
+        result = wait_for(control, slot, end_us);
+    }
+    grobo_i_control_unlock(control);
+    return result;
+}
+
+/* In a callback at once, else handed over. */
+static int call(grobo_control *control, const call_wish *wish)
+{
+    if (!grobo_i_control_inside(control)) {
+        return call_and_wait(control, wish);
+    }
+    attend(control);
+    return wish->fn(control, wish->arg);
+}
+
+int grobo_i_control_call(grobo_control *control, grobo_control_fn fn, void *arg)
+{
+    const call_wish wish = {.fn = fn, .arg = arg};
+
+    return call(control, &wish);
+}
+
+int grobo_i_control_urgent_call(grobo_control *control, grobo_control_fn fn, void *arg)
+{
+    const call_wish wish = {.fn = fn, .arg = arg, .urgent = true};
+
+    return call(control, &wish);
+}
+
+int grobo_i_control_wait(grobo_control *control, grobo_control_fn fn, void *arg, int64_t timeout_us)
+{
+    const call_wish wish = {.fn = fn, .arg = arg, .timeout_us = timeout_us};
+
+    return grobo_i_control_inside(control) ? GROBO_ERR_STATE : call_and_wait(control, &wish);
+}
+
+/* ---- jobs --------------------------------------------------------------------------------- */
+
+int grobo_i_control_poll_job(grobo_control *control, void *arg)
+{
+    control_job *job = arg;
+
+    if (job->number == 0) {
+        job->begun_us = grobo_now_us();
+        int r =
+            job->seen_losses != control->losses ? GROBO_ERR_UNPLUGGED : job->start(control, job);
+
+        if (r == GROBO_ERR_STATE &&
+            grobo_robot_job(grobo_session_robot(control->session)) != GROBO_JOB_NONE) {
+            return CALL_PENDING; /* behind the one that runs */
+        }
+        if (r <= 0) {
+            return r;
+        }
+        job->number = r;
+        if (control->last_job == r) {
+            job->ended = true;
+            job->result = control->last_result;
+        }
+    }
+    return job->ended ? job->result : CALL_PENDING;
+}
+
+int grobo_i_control_job(grobo_control *control, control_job *job, grobo_control_fn fn,
+                        int64_t timeout_us)
+{
+    const call_wish wish = {.fn = fn != NULL ? fn : grobo_i_control_poll_job,
+                            .arg = job,
+                            .job = job,
+                            .timeout_us = timeout_us};
+
+    return grobo_i_control_inside(control) ? GROBO_ERR_STATE : call_and_wait(control, &wish);
+}
+
+int grobo_i_control_urgent_job(grobo_control *control, control_job *job, int64_t timeout_us)
+{
+    const call_wish wish = {.fn = grobo_i_control_poll_job,
+                            .arg = job,
+                            .job = job,
+                            .timeout_us = timeout_us,
+                            .urgent = true};
+
+    return grobo_i_control_inside(control) ? GROBO_ERR_STATE : call_and_wait(control, &wish);
+}
+
+/* ---- the public functions ----------------------------------------------------------------- */
+
+int grobo_control_call(grobo_control *control, grobo_control_fn fn, void *arg)
+{
+    const call_wish wish = {.fn = fn, .arg = arg, .users = true};
+
+    return fn != NULL ? call(control, &wish) : GROBO_ERR_ARG;
+}
+
+int grobo_control_post(grobo_control *control, grobo_control_fn fn, void *arg)
+{
+    int r = GROBO_ERR_ARG;
+
+    if (fn != NULL) {
+        grobo_i_control_lock(control);
+        r = grobo_i_control_post(control, fn, arg, true);
+        grobo_i_control_unlock(control);
+    }
+    return r;
+}

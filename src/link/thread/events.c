@@ -1,0 +1,127 @@
+/* SPDX-License-Identifier: MIT */
+/* What the loop of a control is told by its session, and hands on to the user's callbacks. */
+#include <string.h>
+
+#include "src/link/thread/thread.h"
+
+/* ---- the line ----------------------------------------------------------------------------- */
+
+void grobo_i_control_down(grobo_control *control, int error)
+{
+    control->line_error = error;
+    control->recording = false;
+    grobo_i_control_lock(control);
+    control->up = false;
+    control->losses++;
+    grobo_i_control_unlock(control);
+}
+
+void grobo_i_control_on_event(grobo_session *session, grobo_session_event event, int error,
+                              void *ctx)
+{
+    grobo_control *control = ctx;
+
+    switch (event) {
+    case GROBO_SESSION_EVENT_UP:
+        control->exited = false;
+        grobo_i_control_lock(control);
+        control->up = true;
+        grobo_i_control_unlock(control);
+        break;
+    case GROBO_SESSION_EVENT_LOST:
+    case GROBO_SESSION_EVENT_FAILED:
+        grobo_i_control_down(control, error);
+        break;
+    case GROBO_SESSION_EVENT_UNGUARDED:
+        break;
+    }
+    if (control->user.on_event != NULL) {
+        control->user.on_event(session, event, error, control->user.ctx);
+    }
+}
+
+/* ---- the engine --------------------------------------------------------------------------- */
+
+static uint64_t frames_sent(grobo_control *control)
+{
+    return grobo_robot_get_counters(grobo_session_robot(control->session))->motion_frames;
+}
+
+bool grobo_i_control_has_exited(grobo_control *control)
+{
+    return control->exited && control->exit_frames == frames_sent(control);
+}
+
+/* Tells a job's end to who waits for it. */
+static void end_job(grobo_control *control, const grobo_event_job *ended)
+{
+    control->last_job = ended->number;
+    control->last_result = ended->result;
+    grobo_i_control_lock(control);
+    for (size_t i = 0; i < CONTROL_SLOTS; i++) {
+        control_job *job = control->slot[i].job;
+
+        if (job != NULL && job->number == ended->number) {
+            job->ended = true;
+            job->result = ended->result;
+        }
+    }
+    if (control->move_job == ended->number) {
+        control->motion_result = ended->result;
+    }
+    grobo_i_control_unlock(control);
+    if (control->move_job == ended->number) {
+        control->move_job = 0;
+    }
+    if (control->play_job == ended->number) {
+        control->play_job = 0;
+        control->play_error = ended->result;
+    }
+}
+
+static void on_job(grobo_control *control, const grobo_event_job *ended)
+{
+    control->exited = ended->kind == GROBO_JOB_EXIT && ended->result >= 0;
+    control->exit_frames = frames_sent(control);
+    if (ended->kind == GROBO_JOB_RAW) {
+        control->recording = false;
+        control->raw_bytes = 0;
+    }
+    end_job(control, ended);
+}
+
+void grobo_i_control_on_robot(void *ctx, const grobo_event *event)
+{
+    grobo_control *control = ctx;
+
+    if (event->kind == GROBO_EVENT_JOB) {
+        on_job(control, &event->u.job);
+    }
+    if (control->user.on_robot != NULL) {
+        control->user.on_robot(control->user.ctx, event);
+    }
+}
+
+/* ---- the bytes ---------------------------------------------------------------------------- */
+
+/* What comes between a raw command's leaving and its job's end is its reply. */
+void grobo_i_control_on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes,
+                            size_t size, void *ctx)
+{
+    grobo_control *control = ctx;
+
+    if (direction == GROBO_DIR_TX && control->raw_bytes > 0) {
+        size_t same = size < control->raw_bytes ? size : control->raw_bytes;
+
+        control->recording = control->recording || memcmp(bytes, control->raw, same) == 0;
+    } else if (direction == GROBO_DIR_RX && control->recording) {
+        size_t room = sizeof control->received - control->received_bytes;
+        size_t taken = size < room ? size : room;
+
+        memcpy(control->received + control->received_bytes, bytes, taken);
+        control->received_bytes += taken;
+    }
+    if (control->user.on_tap != NULL) {
+        control->user.on_tap(direction, now_us, bytes, size, control->user.ctx);
+    }
+}

@@ -1,0 +1,487 @@
+/* SPDX-License-Identifier: MIT */
+/* A control's line, servos, readings, raw commands and safety: the session's, for every thread. */
+#include <string.h>
+
+#include "src/link/session/session.h"
+#include "src/link/thread/thread.h"
+
+grobo_session *grobo_control_session(grobo_control *control)
+{
+    return control->session;
+}
+
+grobo_serial *grobo_control_serial(grobo_control *control)
+{
+    return grobo_session_serial(control->session);
+}
+
+static grobo_robot *robot_of(grobo_control *control)
+{
+    return grobo_session_robot(control->session);
+}
+
+/* ---- the line ----------------------------------------------------------------------------- */
+
+static int set_device(grobo_control *control, void *arg)
+{
+    return grobo_session_set_device(control->session, arg);
+}
+
+int grobo_control_set_device(grobo_control *control, const char *device)
+{
+    char name[GROBO_DEVICE_MAX_BYTES];
+
+    if (device == NULL) {
+        return GROBO_ERR_ARG;
+    }
+    if (strlen(device) >= sizeof name) {
+        return GROBO_ERR_CAP;
+    }
+    memcpy(name, device, strlen(device) + 1);
+    return grobo_i_control_call(control, set_device, name);
+}
+
+static int get_device(grobo_control *control, void *arg)
+{
+    const char *device = grobo_session_device(control->session);
+
+    memcpy(arg, device, strlen(device) + 1);
+    return GROBO_OK;
+}
+
+int grobo_control_get_device(grobo_control *control, char *device, size_t device_bytes)
+{
+    char name[GROBO_DEVICE_MAX_BYTES];
+    int r = grobo_i_control_call(control, get_device, name);
+
+    if (r >= 0 && strlen(name) >= device_bytes) {
+        r = GROBO_ERR_SPACE;
+    }
+    if (r >= 0) {
+        memcpy(device, name, strlen(name) + 1);
+        r = (int)strlen(name);
+    }
+    return r;
+}
+
+static int open_port(grobo_control *control, void *arg)
+{
+    (void)arg;
+    return grobo_session_open(control->session);
+}
+
+int grobo_control_open_port(grobo_control *control)
+{
+    return grobo_i_control_call(control, open_port, NULL);
+}
+
+static int close_port(grobo_control *control, void *arg)
+{
+    (void)arg;
+    grobo_session_close(control->session);
+    grobo_i_control_down(control, GROBO_ERR_CLOSED);
+    return GROBO_OK;
+}
+
+int grobo_control_close_port(grobo_control *control, int64_t timeout_us)
+{
+    bool looked;
+    int left;
+    int closed;
+
+    if (grobo_i_control_inside(control)) {
+        return GROBO_ERR_STATE;
+    }
+    left = grobo_i_control_leave(control, timeout_us, &looked);
+    if (!looked) {
+        return left; /* held up: still open, and the exit stands */
+    }
+    closed = grobo_i_control_call(control, close_port, NULL);
+    return closed < 0 ? closed : left;
+}
+
+static int connect_port(grobo_control *control, void *arg)
+{
+    bool *opened = arg;
+
+    switch (grobo_session_get_state(control->session)) {
+    case GROBO_SESSION_UP:
+        return GROBO_OK;
+    case GROBO_SESSION_CLOSED:
+        if (*opened) {
+            return control->line_error;
+        } else {
+            int r = grobo_session_open(control->session);
+
+            *opened = true;
+            return r < 0 ? r : CALL_PENDING;
+        }
+    case GROBO_SESSION_OPENING:
+    case GROBO_SESSION_CHECKING:
+    case GROBO_SESSION_WAITING:
+        break;
+    }
+    *opened = true;
+    return CALL_PENDING;
+}
+
+int grobo_control_connect(grobo_control *control, int64_t timeout_us)
+{
+    bool opened = false;
+
+    return grobo_i_control_wait(control, connect_port, &opened, timeout_us);
+}
+
+bool grobo_control_is_connected(grobo_control *control)
+{
+    bool up;
+
+    grobo_i_control_lock(control);
+    up = control->up;
+    grobo_i_control_unlock(control);
+    return up;
+}
+
+static int get_cause(grobo_control *control, void *arg)
+{
+    grobo_os_cause *cause = arg;
+
+    *cause = *grobo_session_cause(control->session);
+    return GROBO_OK;
+}
+
+int grobo_control_get_cause(grobo_control *control, grobo_os_cause *cause)
+{
+    grobo_os_cause said;
+    int r = grobo_i_control_call(control, get_cause, &said);
+
+    if (r >= 0) {
+        *cause = said;
+    }
+    return r;
+}
+
+static int check_job(grobo_control *control, control_job *job)
+{
+    (void)job;
+    return grobo_session_check(control->session);
+}
+
+int grobo_control_check_connection(grobo_control *control, int64_t timeout_us)
+{
+    control_job job = {.start = check_job};
+
+    return grobo_i_control_job(control, &job, NULL, timeout_us);
+}
+
+/* ---- servos ------------------------------------------------------------------------------- */
+
+static int get_states(grobo_control *control, void *arg)
+{
+    int *state = arg;
+    int n_joints = control->driver->model->n_joints;
+
+    for (int j = 0; j < n_joints; j++) {
+        grobo_joint_info info;
+        int r = grobo_robot_joint(robot_of(control), j, grobo_now_us(), &info);
+
+        state[j] = r >= 0 && info.torque_known ? (int)info.state.torque : GROBO_ERR_EMPTY;
+    }
+    return n_joints;
+}
+
+int grobo_control_get_servo_states(grobo_control *control, int *states, size_t capacity)
+{
+    int state[GROBO_JOINTS_MAX];
+    int r = GROBO_ERR_SPACE;
+
+    if (capacity >= control->driver->model->n_joints) {
+        r = grobo_i_control_call(control, get_states, state);
+    }
+    if (r > 0) {
+        memcpy(states, state, (size_t)r * sizeof *states);
+    }
+    return r;
+}
+
+int grobo_control_get_servo_state(grobo_control *control, int joint)
+{
+    int state[GROBO_JOINTS_MAX];
+    int r;
+
+    if (joint < 0 || joint >= control->driver->model->n_joints) {
+        return GROBO_ERR_ARG;
+    }
+    r = grobo_i_control_call(control, get_states, state);
+    return r < 0 ? r : state[joint];
+}
+
+static int torque_job(grobo_control *control, control_job *job)
+{
+    return grobo_session_torque(control->session, job->joints, job->torque);
+}
+
+int grobo_control_set_servo_states(grobo_control *control, grobo_joint_mask joints,
+                                   grobo_torque state, int64_t timeout_us)
+{
+    control_job job = {.start = torque_job, .joints = joints, .torque = state};
+
+    return grobo_i_control_job(control, &job, NULL, timeout_us);
+}
+
+int grobo_control_set_servo_state(grobo_control *control, int joint, grobo_torque state,
+                                  int64_t timeout_us)
+{
+    int r = GROBO_ERR_ARG;
+
+    if (joint >= 0 && joint < control->driver->model->n_joints) {
+        r = grobo_control_set_servo_states(control, GROBO_JOINT_BIT(joint), state, timeout_us);
+    }
+    return r < 0 ? r : (int)state;
+}
+
+/* ---- readings ----------------------------------------------------------------------------- */
+
+static int get_posture(grobo_control *control, void *arg)
+{
+    return grobo_robot_posture(robot_of(control), grobo_now_us(), GROBO_NEVER_US, arg);
+}
+
+int grobo_control_get_current_posture(grobo_control *control, grobo_posture *posture)
+{
+    grobo_posture sensed;
+    int r = grobo_i_control_call(control, get_posture, &sensed);
+
+    if (r >= 0) {
+        *posture = sensed;
+    }
+    return r;
+}
+
+static int sense_job(grobo_control *control, control_job *job)
+{
+    return grobo_session_sense(control->session, job->joints, job->sense);
+}
+
+/* A reading, and then the joints that have been read since it began. */
+static int sense(grobo_control *control, void *arg)
+{
+    control_job *job = arg;
+    int r = grobo_i_control_poll_job(control, job);
+    int64_t now_us = grobo_now_us();
+    int n;
+
+    if (!job->ended || r == GROBO_ERR_UNPLUGGED || r == GROBO_ERR_CANCELED) {
+        return r;
+    }
+    (void)grobo_robot_posture(robot_of(control), now_us, now_us - job->begun_us, job->posture);
+    job->posture->set &= job->joints;
+    n = grobo_joints_count(job->posture->set);
+    return n > 0 ? n : r;
+}
+
+int grobo_control_read_posture(grobo_control *control, grobo_posture *posture, int64_t timeout_us)
+{
+    grobo_posture sensed;
+    control_job job = {
+        .start = sense_job,
+        .joints = GROBO_JOINTS_ALL(control->driver->model->n_joints),
+        .sense = GROBO_SENSE_FULL,
+        .posture = &sensed,
+    };
+    int r = grobo_i_control_job(control, &job, sense, timeout_us);
+
+    if (r >= 0) {
+        *posture = sensed;
+    }
+    return r;
+}
+
+int grobo_control_read_angle(grobo_control *control, int joint, double *angle_rad,
+                             int64_t timeout_us)
+{
+    grobo_posture sensed;
+    control_job job = {.start = sense_job, .sense = GROBO_SENSE_POSITION, .posture = &sensed};
+    int r;
+
+    if (joint < 0 || joint >= control->driver->model->n_joints) {
+        return GROBO_ERR_ARG;
+    }
+    job.joints = GROBO_JOINT_BIT(joint);
+    r = grobo_i_control_job(control, &job, sense, timeout_us);
+    return r > 0 ? grobo_posture_get_rad(&sensed, joint, angle_rad) : r;
+}
+
+/* ---- raw commands ------------------------------------------------------------------------- */
+
+int grobo_control_set_command(grobo_control *control, const void *packet, size_t size)
+{
+    if (size > sizeof control->command) {
+        return GROBO_ERR_CAP;
+    }
+    grobo_i_control_lock(control);
+    if (size > 0) {
+        memcpy(control->command, packet, size);
+    }
+    control->command_bytes = size;
+    grobo_i_control_unlock(control);
+    return (int)size;
+}
+
+int grobo_control_get_command(grobo_control *control, void *packet, size_t capacity)
+{
+    int r = GROBO_ERR_SPACE;
+
+    grobo_i_control_lock(control);
+    if (control->command_bytes <= capacity) {
+        r = (int)control->command_bytes;
+    }
+    if (r > 0) {
+        memcpy(packet, control->command, (size_t)r);
+    }
+    grobo_i_control_unlock(control);
+    return r;
+}
+
+static int raw_job(grobo_control *control, control_job *job)
+{
+    int r;
+
+    if (grobo_robot_job(robot_of(control)) != GROBO_JOB_NONE) {
+        return GROBO_ERR_STATE;
+    }
+    /* It may leave, and even be answered, before the request returns. */
+    memcpy(control->raw, job->frame, job->size);
+    control->raw_bytes = job->size;
+    /* Who is told that it took too long is not to see it leave afterwards. */
+    r = grobo_session_raw_until(control->session, job->frame, job->size, job->end_us - 1);
+    if (r < 0) {
+        control->raw_bytes = 0;
+    }
+    return r;
+}
+
+int grobo_control_send_command(grobo_control *control, const void *packet, size_t size,
+                               int64_t timeout_us)
+{
+    control_job job = {.start = raw_job, .size = size};
+    int r;
+
+    if (packet == NULL) {
+        r = grobo_control_get_command(control, job.frame, sizeof job.frame);
+        job.size = (size_t)r;
+    } else if (size > sizeof job.frame) {
+        return GROBO_ERR_CAP;
+    } else {
+        memcpy(job.frame, packet, size);
+    }
+    if (job.size == 0) {
+        return GROBO_ERR_EMPTY;
+    }
+    r = grobo_control_connect(control, timeout_us);
+    if (r >= 0) {
+        r = grobo_i_control_job(control, &job, NULL, timeout_us);
+        r = r == GROBO_ERR_STALE && grobo_now_us() >= job.end_us - 1 ? GROBO_ERR_TIMEOUT : r;
+    }
+    return r < 0 ? r : (int)job.size;
+}
+
+typedef struct receive_call {
+    uint8_t *bytes;
+    size_t size;
+    int64_t end_us;
+} receive_call;
+
+static int receive(grobo_control *control, void *arg)
+{
+    receive_call *call = arg;
+    bool over = grobo_now_us() >= call->end_us;
+    size_t had;
+
+    if (control->received_bytes < call->size && over) {
+        grobo_i_session_look(control->session); /* somebody held us up, maybe */
+    }
+    had = control->received_bytes;
+    if (had >= call->size) {
+        memcpy(call->bytes, control->received, call->size);
+        control->received_bytes -= call->size;
+        memmove(control->received, control->received + call->size, control->received_bytes);
+        return (int)call->size;
+    }
+    if (!over) {
+        return CALL_PENDING;
+    }
+    control->received_bytes = 0;
+    return had > 0 ? GROBO_ERR_SHORT : GROBO_ERR_TIMEOUT;
+}
+
+int grobo_control_receive(grobo_control *control, void *bytes, size_t size)
+{
+    uint8_t taken[GROBO_CONTROL_RECEIVE_BYTES];
+    receive_call call = {taken, size, grobo_now_us() + INT64_C(1000) * GROBO_SILENCE_DEFAULT_MS};
+    int r = GROBO_ERR_CAP;
+
+    if (size <= sizeof taken) {
+        r = grobo_i_control_wait(control, receive, &call, 0);
+    }
+    if (r > 0) {
+        memcpy(bytes, taken, (size_t)r);
+    }
+    return r;
+}
+
+/* ---- safety ------------------------------------------------------------------------------- */
+
+int grobo_control_estop(grobo_control *control)
+{
+    return control != NULL ? grobo_session_post_estop(control->session) : GROBO_ERR_ARG;
+}
+
+bool grobo_control_is_latched(const grobo_control *control)
+{
+    return grobo_session_is_latched(control->session);
+}
+
+/* Not where an emergency stop came after the call. */
+static int reset(grobo_control *control, void *arg)
+{
+    const unsigned *estops = arg;
+
+    return atomic_load(&control->session->estops) != *estops
+               ? GROBO_ERR_STATE
+               : grobo_session_reset(control->session);
+}
+
+int grobo_control_reset(grobo_control *control)
+{
+    unsigned estops = atomic_load(&control->session->estops);
+
+    return grobo_i_control_call(control, reset, &estops);
+}
+
+static int exit_job(grobo_control *control, control_job *job)
+{
+    (void)grobo_i_control_forget(control);
+    return grobo_session_exit(control->session, job->policy);
+}
+
+int grobo_control_exit(grobo_control *control, grobo_exit_policy policy, int64_t timeout_us)
+{
+    control_job job = {.start = exit_job, .policy = policy};
+    int r;
+
+    if (grobo_i_control_inside(control)) {
+        r = grobo_control_post_exit(control, policy);
+        return r < 0 ? r : GROBO_ERR_STATE;
+    }
+    r = grobo_i_control_urgent_job(control, &job, timeout_us);
+    if (job.number == 0 && (r == GROBO_ERR_TIMEOUT || r == GROBO_ERR_FULL)) {
+        (void)grobo_control_post_exit(control, policy); /* nobody waits, the exit stands */
+    }
+    return r;
+}
+
+int grobo_control_post_exit(grobo_control *control, grobo_exit_policy policy)
+{
+    return control != NULL ? grobo_session_post_exit(control->session, policy) : GROBO_ERR_ARG;
+}

@@ -1,0 +1,302 @@
+/* SPDX-License-Identifier: MIT */
+/* A control's current motion: its postures, its files. */
+#include <stdio.h>
+#include <string.h>
+
+#include "src/link/thread/thread.h"
+
+/* ---- the whole ---------------------------------------------------------------------------- */
+
+/* Increments count from where the robot is; joints that are not known, from the initial posture. */
+static int resolve(grobo_control *control, grobo_motion *motion)
+{
+    grobo_posture start, sensed;
+
+    if (grobo_motion_get_kind(motion) != GROBO_MOTION_STEPS) {
+        return GROBO_OK;
+    }
+    grobo_posture_init_pose(&start, control->driver->model);
+    if (grobo_control_get_current_posture(control, &sensed) > 0) {
+        for (int j = 0; j < start.n_joints; j++) {
+            if ((sensed.set & GROBO_JOINT_BIT(j)) != 0) {
+                start.angle_rad[j] = sensed.angle_rad[j];
+            }
+        }
+    }
+    return grobo_motion_resolve(motion, &start);
+}
+
+/* Makes a motion the current one; it belongs to the control then, or is freed. */
+static int adopt(grobo_control *control, grobo_motion *motion)
+{
+    int n_joints = control->driver->model->n_joints;
+    grobo_motion *old;
+    int r = grobo_motion_joints(motion) > n_joints ? GROBO_ERR_ARG
+                                                   : grobo_motion_set_joints(motion, n_joints);
+
+    if (r >= 0) {
+        r = resolve(control, motion);
+    }
+    if (r < 0) {
+        grobo_motion_free(motion);
+        return r;
+    }
+    r = (int)grobo_motion_size(motion);
+    grobo_i_control_lock(control);
+    old = control->motion;
+    control->motion = motion;
+    grobo_i_control_unlock(control);
+    grobo_motion_free(old);
+    return r;
+}
+
+int grobo_control_set_motion(grobo_control *control, const grobo_motion *motion)
+{
+    grobo_motion *copy;
+    int r = grobo_motion_dup(motion, &copy);
+
+    return r < 0 ? r : adopt(control, copy);
+}
+
+int grobo_control_get_motion(grobo_control *control, grobo_motion **motion)
+{
+    int r;
+
+    grobo_i_control_lock(control);
+    r = grobo_motion_dup(control->motion, motion);
+    grobo_i_control_unlock(control);
+    return r < 0 ? r : (int)grobo_motion_size(*motion);
+}
+
+size_t grobo_control_motion_size(grobo_control *control)
+{
+    size_t size;
+
+    grobo_i_control_lock(control);
+    size = grobo_motion_size(control->motion);
+    grobo_i_control_unlock(control);
+    return size;
+}
+
+void grobo_control_clear_motion(grobo_control *control)
+{
+    grobo_i_control_lock(control);
+    grobo_motion_renew(control->motion, GROBO_MOTION_POSTURES);
+    grobo_i_control_unlock(control);
+}
+
+/* ---- its postures ------------------------------------------------------------------------- */
+
+static int append(grobo_control *control, grobo_posture *sensed, int64_t time_us)
+{
+    int r = grobo_control_get_current_posture(control, sensed);
+
+    if (r <= 0) {
+        return r < 0 ? r : GROBO_ERR_STALE;
+    }
+    sensed->time_us = time_us;
+    grobo_i_control_lock(control);
+    r = grobo_motion_append(control->motion, sensed);
+    if (r >= 0) {
+        r = (int)grobo_motion_size(control->motion);
+    }
+    grobo_i_control_unlock(control);
+    return r;
+}
+
+int grobo_control_append_current_posture(grobo_control *control)
+{
+    grobo_posture sensed;
+    int64_t time_us = grobo_control_get_default_time_us(control);
+
+    /* A step that long cannot be told from "the default time", which 0 means as well. */
+    return append(control, &sensed, time_us < GROBO_MOTION_STEP_MAX_US ? time_us : 0);
+}
+
+int grobo_control_append_current_posture_us(grobo_control *control, int64_t time_us)
+{
+    grobo_posture sensed;
+
+    return time_us < 0 ? GROBO_ERR_ARG : append(control, &sensed, time_us);
+}
+
+/* With the lock: posture n in playing direction. */
+static int get_nth(const grobo_control *control, size_t n, grobo_posture *posture)
+{
+    size_t size = grobo_motion_size(control->motion);
+    bool reverse = control->reverse || control->motion_count < 0;
+
+    return n >= size ? GROBO_ERR_EMPTY
+                     : grobo_motion_get(control->motion, reverse ? size - 1 - n : n, posture);
+}
+
+int grobo_control_get_nth_posture(grobo_control *control, size_t n, grobo_posture *posture)
+{
+    int r;
+
+    grobo_i_control_lock(control);
+    r = get_nth(control, n, posture);
+    grobo_i_control_unlock(control);
+    return r;
+}
+
+int grobo_control_get_first_posture(grobo_control *control, grobo_posture *posture)
+{
+    return grobo_control_get_nth_posture(control, 0, posture);
+}
+
+int grobo_control_get_last_posture(grobo_control *control, grobo_posture *posture)
+{
+    int r;
+
+    grobo_i_control_lock(control);
+    /* Of an empty motion the number wraps around, to one that is not there. */
+    r = get_nth(control, grobo_motion_size(control->motion) - 1, posture);
+    grobo_i_control_unlock(control);
+    return r;
+}
+
+int grobo_control_do_nth_motion(grobo_control *control, size_t n)
+{
+    grobo_posture posture;
+    int r;
+
+    grobo_i_control_lock(control);
+    r = get_nth(control, n, &posture);
+    if (r >= 0) {
+        posture.time_us = 0; /* the default */
+        r = grobo_i_control_check_posture(control, &posture);
+    }
+    if (r >= 0) {
+        control->target = posture;
+        r = grobo_i_control_want_move(control);
+    }
+    grobo_i_control_unlock(control);
+    return r;
+}
+
+/* ---- reading files ------------------------------------------------------------------------ */
+
+/* NAME, or NAME and the extension of a format where it has none. */
+static int with_extension(grobo_motion_format format, const char *name, char *to, size_t bytes)
+{
+    bool has =
+        format == GROBO_FORMAT_AUTO || grobo_motion_format_of_path(name) != GROBO_FORMAT_AUTO;
+    int length = snprintf(to, bytes, "%s%s%s", name, has ? "" : ".",
+                          has ? "" : grobo_motion_format_name(format));
+
+    return length < 0 || (size_t)length >= bytes ? GROBO_ERR_SPACE : GROBO_OK;
+}
+
+static int find(grobo_control *control, const char *name, char *path, size_t path_bytes)
+{
+    char dir[GROBO_PATH_MAX_BYTES];
+    int r = grobo_control_get_motion_dir(control, dir, sizeof dir);
+
+    return r < 0 ? r : grobo_motion_find(grobo_files_os(), dir, name, path, path_bytes);
+}
+
+int grobo_control_load_motion_format(grobo_control *control, grobo_motion_format format,
+                                     const char *name, grobo_diagnostics *list)
+{
+    char path[GROBO_PATH_MAX_BYTES];
+    char file[GROBO_PATH_MAX_BYTES];
+    const grobo_read_options options = {
+        .format = format, .model = control->driver->model, .mem = control->mem};
+    grobo_motion *motion = NULL;
+    int r = GROBO_ERR_ARG;
+
+    if (name != NULL) {
+        r = with_extension(format, name, file, sizeof file);
+    }
+    if (r >= 0) {
+        r = find(control, file, path, sizeof path);
+    }
+    if (r >= 0) {
+        r = grobo_motion_read_file(path, &options, list, &motion);
+    }
+    if (r >= 0) {
+        r = adopt(control, motion);
+    }
+    if (r < 0) {
+        grobo_control_clear_motion(control);
+    }
+    return r;
+}
+
+int grobo_control_load_motion(grobo_control *control, const char *name, grobo_diagnostics *list)
+{
+    return grobo_control_load_motion_format(control, GROBO_FORMAT_AUTO, name, list);
+}
+
+/* ---- writing files ------------------------------------------------------------------------ */
+
+/* Where a motion is saved: a plain name, so that it stays in the folder. */
+static int path_of(grobo_control *control, grobo_motion_format format, const char *name, char *path,
+                   size_t path_bytes)
+{
+    char file[GROBO_PATH_MAX_BYTES];
+    char dir[GROBO_PATH_MAX_BYTES];
+    int length;
+    int r = with_extension(format, name, file, sizeof file);
+
+    if (name[0] == '\0' || strpbrk(name, "/\\:") != NULL || strcmp(name, "..") == 0 ||
+        strcmp(name, ".") == 0) {
+        return name[0] == '\0' ? GROBO_ERR_ARG : GROBO_ERR_PERM;
+    }
+    if (r >= 0) {
+        r = grobo_control_get_motion_dir(control, dir, sizeof dir);
+    }
+    if (r < 0) {
+        return r;
+    }
+    length = snprintf(path, path_bytes, "%s/%s", dir, file);
+    return length < 0 || (size_t)length >= path_bytes ? GROBO_ERR_SPACE : GROBO_OK;
+}
+
+static int save_next(grobo_control *control, const grobo_motion *motion,
+                     const grobo_write_options *options, char *path, size_t path_bytes)
+{
+    char dir[GROBO_PATH_MAX_BYTES];
+    int r = grobo_control_get_motion_dir(control, dir, sizeof dir);
+
+    return r < 0 ? r
+                 : grobo_motion_save_next(motion, grobo_files_os(), dir, options, path, path_bytes);
+}
+
+int grobo_control_save_motion(grobo_control *control, grobo_motion_format format, const char *name,
+                              char *path, size_t path_bytes)
+{
+    char used[GROBO_PATH_MAX_BYTES];
+    const grobo_write_options options = {
+        .format = format,
+        .model = control->driver->model,
+        .default_us = grobo_control_get_default_time_us(control),
+    };
+    size_t room = path != NULL && path_bytes < sizeof used ? path_bytes : sizeof used;
+    grobo_motion *motion = NULL;
+    int r = GROBO_ERR_ARG;
+
+    if (name != NULL) {
+        r = path_of(control, format, name, used, sizeof used);
+    } else if (format == GROBO_FORMAT_M) {
+        r = GROBO_OK;
+    }
+    if (r >= 0) {
+        r = grobo_control_get_motion(control, &motion);
+    }
+    if (r >= 0 && name != NULL) {
+        r = strlen(used) < room ? grobo_motion_save(motion, grobo_files_os(), used, &options, NULL)
+                                : GROBO_ERR_SPACE;
+    } else if (r >= 0) {
+        r = save_next(control, motion, &options, used, room);
+    }
+    if (r >= 0 && path != NULL) {
+        memcpy(path, used, strlen(used) + 1);
+    }
+    if (r >= 0) {
+        r = (int)grobo_motion_size(motion);
+    }
+    grobo_motion_free(motion);
+    return r;
+}

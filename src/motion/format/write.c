@@ -1,0 +1,83 @@
+/* SPDX-License-Identifier: MIT */
+#include <string.h>
+
+#include "src/motion/format/write.h"
+
+void grobo_i_put_kept(grobo_i_out *out, const grobo_i_kept *kept, grobo_kept_level level, int link,
+                      int indent)
+{
+    for (; kept != NULL; kept = kept->next) {
+        if (kept->level != level || (level == GROBO_KEPT_LINK && kept->link != link)) {
+            continue;
+        }
+        for (int i = 0; i < indent; i++) {
+            grobo_i_put(out, " ", 1);
+        }
+        grobo_i_put_name(out, kept->text, kept->key_bytes - 1);
+        grobo_i_put_text(out, ": ");
+        grobo_i_put(out, kept->text + kept->key_bytes, kept->value_bytes - 1);
+        grobo_i_put_text(out, "\n");
+    }
+}
+
+/* Postures without joints are no lines. */
+static int check_writable(const grobo_motion *motion, const grobo_i_writing *writing)
+{
+    bool frames = motion->kind == GROBO_MOTION_FRAMES;
+    const char *name = writing->options->name != NULL ? writing->options->name : "";
+
+    if ((frames || motion->kind == GROBO_MOTION_POSTURES) && motion->size > 0 &&
+        motion->n_joints == 0) {
+        grobo_i_say(writing->list, &(grobo_i_said){name, "empty", 0, 0, GROBO_SEVERITY_ERROR},
+                    "no posture sets any joint");
+        return GROBO_ERR_EMPTY;
+    }
+    return frames && motion->size > 0 && !(motion->frame_rate_hz > 0) ? GROBO_ERR_STATE : 0;
+}
+
+int grobo_motion_write(const grobo_motion *motion, grobo_motion_format format,
+                       const grobo_write_options *options, const grobo_sink *sink,
+                       grobo_diagnostics *list)
+{
+    static const grobo_write_options defaults;
+    grobo_i_out out;
+    grobo_i_writing writing = {options != NULL ? options : &defaults, list, &out};
+    grobo_motion *converted = NULL;
+
+    if (format < GROBO_FORMAT_AUTO || format > GROBO_FORMAT_YAML) {
+        return GROBO_ERR_ARG;
+    }
+    if (format == GROBO_FORMAT_AUTO) {
+        format = grobo_motion_kind_format(motion->kind);
+    }
+    grobo_motion_kind kind = grobo_motion_format_kind(format);
+    if (!grobo_i_is_as_written(motion, kind, writing.options)) {
+        int result = grobo_motion_convert(motion, kind, writing.options, list, &converted);
+        if (result < 0) {
+            return result;
+        }
+        motion = converted;
+    }
+    int result = check_writable(motion, &writing);
+    if (result < 0) {
+        grobo_motion_free(converted);
+        return result;
+    }
+    grobo_i_out_begin(&out, sink);
+    if (motion->frame_times && motion->size > 0) {
+        const char *name = writing.options->name != NULL ? writing.options->name : "";
+        grobo_i_say(
+            list, &(grobo_i_said){name, "frame-times", 0, 0, GROBO_SEVERITY_NOTE},
+            "each frame has a time of its own: read by this library, and by Choreonoid from "
+            "2.1 on, which holds it until the next");
+    }
+    if (kind == GROBO_MOTION_POSTURES) {
+        grobo_i_write_m(&writing, motion);
+    } else if (kind == GROBO_MOTION_FRAMES) {
+        grobo_i_write_yaml(&writing, motion);
+    } else {
+        grobo_i_write_pseq(&writing, motion);
+    }
+    grobo_motion_free(converted);
+    return grobo_i_out_end(&out);
+}

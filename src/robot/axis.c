@@ -1,0 +1,100 @@
+/* SPDX-License-Identifier: MIT */
+/* Where a joint is, by what it was sent to and by what was read last. */
+#include "src/base/instant.h"
+#include "src/robot/robot.h"
+
+double grobo_i_way_at(const grobo_robot_way *way, int64_t now_us)
+{
+    int64_t at_us = grobo_i_later(now_us, way->from_us);
+    if (at_us >= way->to_us) {
+        return way->to_rad;
+    }
+    double part = (double)(at_us - way->from_us) / (double)(way->to_us - way->from_us);
+    return way->from_rad + (way->to_rad - way->from_rad) * part;
+}
+
+double grobo_i_axis_commanded(const grobo_robot_axis *axis, int64_t now_us)
+{
+    if (axis->off_way) {
+        const grobo_robot_way own = {axis->state.angle_rad, axis->state.goal_rad, axis->angle_us,
+                                     axis->own_until_us};
+        return axis->own_until_us > axis->angle_us ? grobo_i_way_at(&own, now_us)
+                                                   : axis->state.angle_rad;
+    }
+    int64_t at_us = axis->in_segments ? grobo_i_sooner(now_us, axis->told_to_us) : now_us;
+    return grobo_i_way_at(&axis->way, at_us);
+}
+
+int64_t grobo_i_axis_until(const grobo_robot_axis *axis)
+{
+    return axis->off_way ? axis->own_until_us : axis->way.to_us;
+}
+
+double grobo_i_axis_target(const grobo_robot_axis *axis)
+{
+    return axis->next != 0 ? axis->next_rad : axis->way.to_rad;
+}
+
+void grobo_i_axis_rest(grobo_robot_axis *axis, int64_t now_us)
+{
+    double angle_rad = axis->state.angle_rad;
+    axis->way = (grobo_robot_way){angle_rad, angle_rad, now_us, now_us};
+    axis->in_segments = axis->off_way = false;
+}
+
+void grobo_i_axis_here(grobo_robot_axis *axis, int64_t now_us)
+{
+    grobo_i_axis_rest(axis, now_us);
+    if (axis->own_until_us > axis->angle_us) { /* by now it may have arrived */
+        axis->way = (grobo_robot_way){axis->state.angle_rad, axis->state.goal_rad, axis->angle_us,
+                                      axis->own_until_us};
+    }
+}
+
+bool grobo_i_axis_is_on(const grobo_robot_axis *axis)
+{
+    return axis->torque_known && axis->state.torque == GROBO_TORQUE_ON;
+}
+
+bool grobo_i_moving(const grobo_robot *robot, int64_t now_us)
+{
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        const grobo_robot_axis *axis = &robot->axes[j];
+        bool moves = axis->way.to_us > now_us || grobo_i_axis_until(axis) > now_us;
+        if (axis->next != 0 || (axis->has_target && moves)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool grobo_i_adrift(const grobo_robot *robot, grobo_joint_mask joints)
+{
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if ((joints & GROBO_JOINT_BIT(j)) != 0 && robot->axes[j].adrift) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool grobo_i_all_sensed(const grobo_robot *robot, grobo_joint_mask joints, int *joint)
+{
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if ((joints & GROBO_JOINT_BIT(j)) != 0 && !robot->axes[j].sensed) {
+            *joint = j;
+            return false;
+        }
+    }
+    return true;
+}
+
+bool grobo_i_all_on(const grobo_robot *robot, grobo_joint_mask joints)
+{
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if ((joints & GROBO_JOINT_BIT(j)) != 0 && !grobo_i_axis_is_on(&robot->axes[j])) {
+            return false;
+        }
+    }
+    return true;
+}

@@ -1,0 +1,102 @@
+/* SPDX-License-Identifier: MIT */
+/* How many motion frames a second leave time to read every joint: the one rule for all callers. */
+#include "src/robot/robot.h"
+
+#define SECOND_US 1000000u
+
+static uint32_t cost_of(const grobo_bus *bus, const grobo_exchange *exchange)
+{
+    const grobo_txn txn = {
+        .frame = exchange->frame, .frame_bytes = exchange->frame_bytes, .reply = exchange->reply};
+    grobo_bus_cost cost;
+    grobo_bus_cost_of(bus, &txn, &cost);
+    return cost.total_us;
+}
+
+/* Every joint to its initial angle, in as many frames as the driver needs. */
+static int motion_cost(const grobo_bus *bus, const grobo_driver *driver, void *ctx, uint32_t *us)
+{
+    grobo_target target = {0};
+    int more = 1;
+    grobo_posture_init_pose(&target.posture, driver->model);
+    for (int j = 0; j < driver->model->n_joints; j++) {
+        target.joint_time_us[j] = driver->time_step_us;
+    }
+    *us = 0;
+    for (int part = 0; more > 0 && part < GROBO_ROBOT_SLOTS; part++) {
+        grobo_exchange exchange = {0};
+        more = driver->posture(driver, ctx, &target, part, &exchange);
+        *us += more > 0 ? cost_of(bus, &exchange) : 0;
+    }
+    return more;
+}
+
+/* The costliest joint counts: they are read in turn. */
+static int reading_cost(const grobo_bus *bus, const grobo_driver *driver, void *ctx, uint32_t *us)
+{
+    int result = GROBO_OK;
+    *us = 0;
+    for (int j = 0; j < driver->model->n_joints && result >= 0; j++) {
+        grobo_exchange exchange = {0};
+        result = driver->sense(driver, ctx, j, GROBO_SENSE_FULL, &exchange);
+        uint32_t one_us = result < 0 ? 0 : cost_of(bus, &exchange);
+        *us = one_us > *us ? one_us : *us;
+    }
+    return result;
+}
+
+/*
+ * With k whole readings between two frames, the largest rate is 1 / (motion + k readings), and k
+ * readings a frame are enough where k * rate * GROBO_WATCH_US >= joints. The smallest k that is
+ * enough gives the largest rate.
+ */
+static uint16_t watched_rate(const grobo_budget *budget, uint32_t joints)
+{
+    for (uint32_t k = 1; k <= joints; k++) {
+        uint32_t period_us = budget->motion_us + k * budget->reading_us;
+        uint32_t hz = period_us == 0 ? GROBO_PLAY_RATE_MAX_HZ : SECOND_US / period_us;
+        if (k * hz * (GROBO_WATCH_US / SECOND_US) >= joints) {
+            return (uint16_t)(hz < GROBO_PLAY_RATE_MAX_HZ ? hz : GROBO_PLAY_RATE_MAX_HZ);
+        }
+    }
+    return 0;
+}
+
+int grobo_i_budget(const grobo_bus *bus, const grobo_driver *driver, void *ctx,
+                   grobo_budget *budget)
+{
+    grobo_budget found;
+    int result = motion_cost(bus, driver, ctx, &found.motion_us);
+    if (result >= 0) {
+        result = reading_cost(bus, driver, ctx, &found.reading_us);
+    }
+    if (result < 0) {
+        return result;
+    }
+    found.watched_hz = watched_rate(&found, driver->model->n_joints);
+    found.default_hz =
+        found.watched_hz < GROBO_PLAY_RATE_HZ ? found.watched_hz : GROBO_PLAY_RATE_HZ;
+    *budget = found;
+    return GROBO_OK;
+}
+
+int grobo_budget_init(grobo_budget *budget, const grobo_driver *driver, void *ctx,
+                      const grobo_bus_config *line)
+{
+    grobo_bus bus;
+    grobo_bus_config config = {0};
+    if (grobo_driver_check(driver) < 0) {
+        return GROBO_ERR_ARG;
+    }
+    if (line != NULL) {
+        config = *line;
+    }
+    config.wiring = driver->wiring;
+    int result = grobo_bus_init(&bus, &config);
+    return result < 0 ? result : grobo_i_budget(&bus, driver, ctx, budget);
+}
+
+int grobo_robot_budget(const grobo_robot *robot, grobo_budget *budget)
+{
+    return grobo_i_budget(&robot->bus, robot->driver, robot->driver_ctx, budget);
+}

@@ -1,0 +1,598 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The only way to motors. A frame that moves a joint, switches torque, or leaves unknown what a
+ * servo does carries an order. Whatever its origin, the order is judged and its frame is built at
+ * the moment it leaves, at each attempt: against what has left before, and what was read last.
+ * What is noted of it is noted then as well, not when it was asked for.
+ *
+ *   judge()                the one judgement of all orders
+ *   make_frame()           the only caller of the driver's functions that build motor frames
+ *   note()                 what is known of joints once the frame has left
+ *   grobo_i_gate_leave()   the bus is about to give the frame out: judged, built, noted
+ *   grobo_i_gate_judge(), grobo_i_gate_build()   judged when it is asked for, to refuse at once
+ */
+#include "src/robot/robot.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+#include "src/base/instant.h"
+
+/* What the frame of an order says. */
+typedef struct saying {
+    grobo_target target;                              /* where to, for deeds that move */
+    grobo_joint_mask torqued[GROBO_TORQUE_BRAKE + 1]; /* what it switches, by mode */
+} saying;
+
+static bool is_in(grobo_joint_mask joints, int joint)
+{
+    return (joints & GROBO_JOINT_BIT(joint)) != 0;
+}
+
+/* ---- numbers and limits ---------------------------------------------------------------------- */
+
+int grobo_i_gate_target(grobo_robot *robot, grobo_posture *target)
+{
+    const grobo_model *model = robot->driver->model;
+    int joint = -1;
+    int result = grobo_posture_check(target, model, &joint);
+    if (result == GROBO_ERR_LIMIT && robot->config.limit_policy == GROBO_LIMIT_CLAMP) {
+        int clamped = grobo_posture_clamp(target, model);
+        if (clamped >= 0) {
+            robot->counters.clamped += (unsigned)clamped;
+            return GROBO_OK;
+        }
+        result = clamped; /* a joint behind the first one has no number at all */
+        joint = -1;
+    }
+    robot->fault_joint = result < 0 ? joint : -1;
+    robot->fault_deg = joint >= 0 ? grobo_deg_from_rad(target->angle_rad[joint]) : 0;
+    return result;
+}
+
+/* ---- speed ----------------------------------------------------------------------------------- */
+
+void grobo_i_gate_soften(grobo_robot *robot)
+{
+    robot->soft = true;
+    robot->soft_us = GROBO_NEVER_US;
+}
+
+/* Who times targets of his own may be early by this. */
+#define EARLY_US 10000
+
+void grobo_i_gate_single(grobo_robot *robot)
+{
+    if (robot->now_us >= robot->soft_us - EARLY_US) {
+        robot->soft = false; /* where the first target was, it is by now */
+    }
+}
+
+static double speed_limit(const grobo_robot *robot, int joint, bool soft)
+{
+    double most = robot->driver->model->joints[joint].max_speed_rad_s;
+    double limit_rad_s = most * robot->config.speed_limit_pct / 100;
+    double approach_rad_s = grobo_rad_from_deg(robot->config.approach_dps);
+    return soft ? fmin(approach_rad_s, limit_rad_s) : limit_rad_s;
+}
+
+/* A halt: joints stop where they are this long after it was asked for, or so long after it leaves
+ * if that is later, so that none is thrown back; at half the speed. */
+#define HALT_AHEAD_US 50000
+#define HALT_LEAST_US 25000
+#define HALT_TIME_US 100000
+/* Angles are rounded to 0.1 degree on the wire: that much further is not faster. */
+#define ROUNDING_RAD (0.1 * 0.017453292519943295)
+
+/* The least time from where the joint is now, in microseconds. */
+static double time_of_way(const grobo_robot *robot, int joint, double to_rad, bool soft)
+{
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    double from_rad = grobo_i_axis_commanded(axis, robot->now_us);
+    double way_rad = fmax(fabs(to_rad - from_rad) - ROUNDING_RAD, 0);
+    double time_us = way_rad / speed_limit(robot, joint, soft) * 1e6;
+    /* One that moves goes on until the frame is there. */
+    return soft && axis->way.to_us > robot->now_us ? fmax(time_us, HALT_TIME_US) : time_us;
+}
+
+/* The same in the wire's unit; GROBO_NEVER_US where the wire has no time that is long enough. */
+static int64_t time_needed(const grobo_robot *robot, int joint, double to_rad, bool soft)
+{
+    int64_t step_us = robot->driver->time_step_us;
+    double needed_us = time_of_way(robot, joint, to_rad, soft);
+    double steps = fmax(ceil(needed_us / (double)step_us), 1);
+    double most = (double)(GROBO_PLAY_TIME_MAX_US / step_us);
+    return steps > most ? GROBO_NEVER_US : (int64_t)steps * step_us;
+}
+
+int64_t grobo_i_gate_time(grobo_robot *robot, const grobo_robot_order *order, grobo_target *target)
+{
+    bool soft = robot->soft || order->soft;
+    bool stretched = false;
+    int64_t longest_us = 0;
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if (!is_in(target->posture.set, j)) {
+            continue;
+        }
+        int64_t needed_us = time_needed(robot, j, target->posture.angle_rad[j], soft);
+        if (needed_us == GROBO_NEVER_US) {
+            robot->fault_joint = j;
+            return GROBO_ERR_SPEED;
+        }
+        int64_t *time_us = &target->joint_time_us[j];
+        stretched = stretched || needed_us > *time_us;
+        *time_us = grobo_i_later(needed_us, *time_us);
+        longest_us = grobo_i_later(longest_us, *time_us);
+    }
+    robot->counters.stretched += stretched;
+    for (int j = 0; !order->each && j < robot->driver->model->n_joints; j++) {
+        target->joint_time_us[j] = longest_us;
+    }
+    return longest_us;
+}
+
+/* ---- judging --------------------------------------------------------------------------------- */
+
+/* May these joints be sent anywhere? */
+static int judge_joints(grobo_robot *robot, grobo_joint_mask joints)
+{
+    if (!grobo_i_all_sensed(robot, joints, &robot->fault_joint)) {
+        return GROBO_ERR_STALE;
+    }
+    /* A joint in free mode is moved by a person; one adrift by somebody else. */
+    bool others = (joints & robot->free_joints) != 0 || grobo_i_adrift(robot, joints);
+    return others ? GROBO_ERR_STATE : GROBO_OK;
+}
+
+/* Where the end of a motion brings a joint to rest: at most half of what it could do in that time
+ * from where it is. A joint that is behind, or that a raw frame moves, is not where the clip is. */
+static double rest_of(const grobo_robot *robot, int joint)
+{
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    bool halted = axis->last == 0; /* by what has no number: a raw frame, or a halt behind it */
+    double here_rad = grobo_i_axis_commanded(axis, robot->now_us + (halted ? HALT_AHEAD_US : 0));
+    double time_s = halted ? 0 : (double)axis->next_time_us / 1e6;
+    double most_rad = speed_limit(robot, joint, false) * time_s / 2;
+    return fmin(fmax(axis->next_rad, here_rad - most_rad), here_rad + most_rad);
+}
+
+/* To its target, as far as no later one has taken its place; in more time where it leaves late. */
+static int judge_goal(grobo_robot *robot, const grobo_robot_order *order, grobo_target *target)
+{
+    if (robot->trip.latched && (!order->stops || robot->trip.trip == GROBO_TRIP_ESTOP)) {
+        return GROBO_ERR_LATCHED;
+    }
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        const grobo_robot_axis *axis = &robot->axes[j];
+        bool last = axis->next == 0 && axis->last == order->number; /* again, or its next part */
+        if (is_in(order->joints, j) && (axis->next == order->number || last)) {
+            target->posture.angle_rad[j] = order->rests ? rest_of(robot, j) : axis->next_rad;
+            target->joint_time_us[j] = axis->next_time_us;
+            target->posture.set |= GROBO_JOINT_BIT(j);
+        }
+    }
+    if (target->posture.set == 0) {
+        return GROBO_ERR_STALE;
+    }
+    (void)grobo_posture_clamp(&target->posture, robot->driver->model); /* one may rest outside */
+    int result = judge_joints(robot, target->posture.set);
+    return result < 0 ? result : (int)grobo_i_gate_time(robot, order, target);
+}
+
+/* What still moves stops ahead of where it is by now, however long this had to wait. */
+static int judge_halt(grobo_robot *robot, const grobo_robot_order *order, grobo_target *target)
+{
+    if (robot->trip.trip == GROBO_TRIP_ESTOP) {
+        return GROBO_ERR_LATCHED;
+    }
+    int64_t rest_us = grobo_i_later(order->asked_us + HALT_AHEAD_US, robot->now_us + HALT_LEAST_US);
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        const grobo_robot_axis *axis = &robot->axes[j];
+        bool moves = axis->sensed && axis->has_target && grobo_i_axis_until(axis) > robot->now_us;
+        if (is_in(order->joints, j) && moves) {
+            target->posture.angle_rad[j] = grobo_i_axis_commanded(axis, rest_us);
+            target->joint_time_us[j] = HALT_TIME_US;
+            target->posture.set |= GROBO_JOINT_BIT(j);
+        }
+    }
+    if (target->posture.set == 0) {
+        return GROBO_ERR_EMPTY;
+    }
+    (void)grobo_posture_clamp(&target->posture, robot->driver->model); /* one may stand outside */
+    return (int)grobo_i_gate_time(robot, order, target);
+}
+
+/* The goal of joints without torque to where each was seen last; not of one too far outside. */
+static int judge_hold(const grobo_robot *robot, const grobo_robot_order *order,
+                      grobo_target *target)
+{
+    if (robot->trip.latched) {
+        return GROBO_ERR_LATCHED;
+    }
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        const grobo_robot_axis *axis = &robot->axes[j];
+        double hold_rad = grobo_i_hold_rad(robot, j);
+        if (is_in(order->joints, j) && axis->sensed && !isnan(hold_rad) &&
+            !grobo_i_axis_is_on(axis)) {
+            target->posture.angle_rad[j] = hold_rad;
+            target->joint_time_us[j] = robot->driver->time_step_us;
+            target->posture.set |= GROBO_JOINT_BIT(j);
+        }
+    }
+    return target->posture.set == 0 ? GROBO_ERR_STATE : GROBO_OK;
+}
+
+bool grobo_i_goal_holds(const grobo_robot *robot, int joint)
+{
+    double near_rad = grobo_rad_from_deg(GROBO_I_HOLD_NEAR_DEG);
+    double goal_rad = robot->axes[joint].state.goal_rad;
+    return fabs(goal_rad - grobo_i_hold_rad(robot, joint)) <= near_rad; /* not of NaN */
+}
+
+/* Who had to wait longer for the line knows nothing of where a hand has the joint by now. */
+#define ON_WAITS_US 2000000
+
+/* Torque comes on only where the last goal given is where the joint was seen last. */
+static int judge_torque(const grobo_robot *robot, const grobo_robot_order *order, saying *says)
+{
+    bool on = order->torque == GROBO_TORQUE_ON;
+    bool stale = robot->now_us - order->asked_us > ON_WAITS_US;
+    grobo_joint_mask may = order->joints;
+    for (int j = 0; on && j < robot->driver->model->n_joints; j++) {
+        const grobo_robot_axis *axis = &robot->axes[j];
+        bool holds = !stale && axis->held && grobo_i_goal_holds(robot, j);
+        if (!holds && !grobo_i_axis_is_on(axis)) {
+            may &= ~GROBO_JOINT_BIT(j);
+        }
+    }
+    says->torqued[order->torque] = may;
+    if (on && robot->trip.latched) {
+        return GROBO_ERR_LATCHED;
+    }
+    return may == 0 ? GROBO_ERR_STATE : GROBO_OK;
+}
+
+/* A caller who times his own targets may be early or late by a little. */
+#define RAW_TOLERANCE 1.02
+
+static int judge_raw(grobo_robot *robot, const grobo_exchange *exchange, saying *says)
+{
+    const grobo_driver *driver = robot->driver;
+    const grobo_target *target = &says->target;
+    grobo_joint_mask on;
+    int result = driver->inspect(driver, robot->driver_ctx, exchange->frame, exchange->frame_bytes,
+                                 &says->target, says->torqued);
+    if (result >= 0) {
+        result = grobo_posture_check(&target->posture, driver->model, &robot->fault_joint);
+    }
+    if (result < 0) {
+        return result;
+    }
+    on = says->torqued[GROBO_TORQUE_ON];
+    if ((target->posture.set | on) != 0 && robot->trip.latched) {
+        return GROBO_ERR_LATCHED;
+    }
+    result = judge_joints(robot, target->posture.set | on);
+    if (result < 0 || !grobo_i_all_on(robot, on)) {
+        return result < 0 ? result : GROBO_ERR_STATE; /* a torque job does it safely */
+    }
+    grobo_i_gate_single(robot);
+    for (int j = 0; j < driver->model->n_joints; j++) {
+        double most_us = (double)target->joint_time_us[j] * RAW_TOLERANCE;
+        if (is_in(target->posture.set, j) &&
+            most_us < time_of_way(robot, j, target->posture.angle_rad[j], robot->soft)) {
+            robot->fault_joint = j;
+            return GROBO_ERR_SPEED;
+        }
+    }
+    return GROBO_OK;
+}
+
+/* Further along the ways that its joints are on; another one may have taken their place. */
+static int judge_segment(grobo_robot *robot, const grobo_robot_order *order, grobo_target *target)
+{
+    if (robot->trip.latched) {
+        return GROBO_ERR_LATCHED;
+    }
+    grobo_i_segments_aim(robot, order->joints, target);
+    return target->posture.set == 0 ? GROBO_ERR_EMPTY : judge_joints(robot, target->posture.set);
+}
+
+/* Afterwards a goal means something else: a servo that holds would jump. Its own first attempt is
+ * why nothing is known at the second. */
+static int judge_setting(const grobo_robot *robot, grobo_joint_mask joints, bool again)
+{
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        const grobo_robot_axis *axis = &robot->axes[j];
+        if (is_in(joints, j) && (grobo_i_axis_is_on(axis) || (!axis->torque_known && !again))) {
+            return axis->torque_known ? GROBO_ERR_STATE : GROBO_ERR_STALE;
+        }
+    }
+    return GROBO_OK;
+}
+
+/* A command needs silence, and the others would go on without it. Of an unknown frame nobody here
+ * knows what it makes joints do. */
+static int judge_alone(const grobo_robot *robot)
+{
+    bool moves = grobo_robot_is_playing(robot) || grobo_i_moving(robot, robot->now_us);
+    return moves ? GROBO_ERR_STATE : GROBO_OK;
+}
+
+static saying nothing_said(const grobo_robot *robot)
+{
+    saying says = {0};
+    (void)grobo_posture_init(&says.target.posture, robot->driver->model->n_joints);
+    return says;
+}
+
+static int judge(grobo_robot *robot, const grobo_robot_order *order, const grobo_exchange *exchange,
+                 bool again, saying *says)
+{
+    *says = nothing_said(robot);
+    switch ((grobo_i_deed)order->deed) {
+    case GROBO_I_DEED_NONE:
+        return GROBO_OK;
+    case GROBO_I_DEED_GOAL:
+        return judge_goal(robot, order, &says->target);
+    case GROBO_I_DEED_SEGMENT:
+        return judge_segment(robot, order, &says->target);
+    case GROBO_I_DEED_HALT:
+        return judge_halt(robot, order, &says->target);
+    case GROBO_I_DEED_HOLD:
+        return judge_hold(robot, order, &says->target);
+    case GROBO_I_DEED_TORQUE:
+        return judge_torque(robot, order, says);
+    case GROBO_I_DEED_RAW:
+        return judge_raw(robot, exchange, says);
+    case GROBO_I_DEED_UNKNOWN:
+        return robot->trip.latched ? GROBO_ERR_LATCHED : judge_alone(robot);
+    case GROBO_I_DEED_SETTING:
+        return judge_setting(robot, order->joints, again);
+    case GROBO_I_DEED_COMMAND:
+        return judge_alone(robot);
+    }
+    assert(false); /* each deed returns above */
+    return GROBO_ERR_ARG;
+}
+
+int grobo_i_gate_judge(grobo_robot *robot, const grobo_robot_order *order,
+                       const grobo_exchange *exchange)
+{
+    saying says;
+    int result = judge(robot, order, exchange, false, &says);
+    return result < 0 ? result : GROBO_OK;
+}
+
+int grobo_i_gate_raw(grobo_robot *robot, const grobo_exchange *exchange, grobo_robot_order *order)
+{
+    const grobo_driver *driver = robot->driver;
+    saying says = nothing_said(robot);
+    int result = driver->inspect == NULL
+                     ? GROBO_ERR_UNSUPPORTED
+                     : driver->inspect(driver, robot->driver_ctx, exchange->frame,
+                                       exchange->frame_bytes, &says.target, says.torqued);
+    grobo_joint_mask moved = says.target.posture.set | says.torqued[GROBO_TORQUE_ON];
+    *order = (grobo_robot_order){.single = true};
+    if (result == GROBO_ERR_UNSUPPORTED && robot->config.accept_unknown_raw) {
+        order->deed = GROBO_I_DEED_UNKNOWN;
+        order->joints = grobo_i_all_joints(robot);
+        order->moves = true;
+    } else if (result < 0) {
+        return result;
+    } else {
+        order->joints = moved | says.torqued[GROBO_TORQUE_OFF] | says.torqued[GROBO_TORQUE_BRAKE];
+        order->deed = order->joints != 0 ? GROBO_I_DEED_RAW : GROBO_I_DEED_NONE;
+        order->moves = moved != 0;
+    }
+    return grobo_i_gate_judge(robot, order, exchange);
+}
+
+/* ---- frames ---------------------------------------------------------------------------------- */
+
+/* Part `part` of what an order says; the only calls of these two functions of a driver. */
+static int make_frame(const grobo_robot *robot, const grobo_robot_order *order, const saying *says,
+                      int part, grobo_exchange *exchange)
+{
+    const grobo_driver *driver = robot->driver;
+    const grobo_target *target = &says->target;
+    grobo_target part_way;
+    memset(exchange, 0, sizeof *exchange);
+    if (order->deed == GROBO_I_DEED_GOAL && grobo_i_segments_cut(robot, order, target, &part_way)) {
+        target = &part_way;
+    }
+    return order->deed == GROBO_I_DEED_TORQUE
+               ? driver->torque(driver, robot->driver_ctx, says->torqued[order->torque],
+                                (grobo_torque)order->torque, part, exchange)
+               : driver->posture(driver, robot->driver_ctx, target, part, exchange);
+}
+
+int grobo_i_gate_build(grobo_robot *robot, const grobo_robot_order *order, grobo_exchange *exchange)
+{
+    saying says;
+    grobo_exchange next;
+    int result = judge(robot, order, NULL, false, &says);
+    if (result >= 0) {
+        result = make_frame(robot, order, &says, order->part, exchange);
+    }
+    bool several = order->part == 0 && grobo_joints_count(order->joints) > 1;
+    if (result > 0 && several && make_frame(robot, order, &says, 1, &next) > 0) {
+        return GROBO_ERR_CAP;
+    }
+    return result;
+}
+
+static bool is_built(const grobo_robot_order *order)
+{
+    return order->deed == GROBO_I_DEED_GOAL || order->deed == GROBO_I_DEED_SEGMENT ||
+           order->deed == GROBO_I_DEED_HALT || order->deed == GROBO_I_DEED_HOLD ||
+           order->deed == GROBO_I_DEED_TORQUE;
+}
+
+/* ---- noting ---------------------------------------------------------------------------------- */
+
+static void forget(grobo_robot *robot, grobo_joint_mask joints, bool torque_too)
+{
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        grobo_robot_axis *axis = &robot->axes[j];
+        if (is_in(joints, j)) {
+            axis->sensed = axis->has_target = axis->held = false;
+            axis->wants_torque = axis->wants_torque && !torque_too;
+            axis->torque_known = axis->torque_known && !torque_too;
+            axis->own_until_us = 0;
+        }
+    }
+    grobo_i_gate_soften(robot);
+}
+
+/* Where joints are on their way to from now on. */
+static void note_way(grobo_robot *robot, const grobo_robot_order *order, const grobo_target *target)
+{
+    int64_t now_us = robot->now_us;
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if (is_in(target->posture.set, j)) {
+            grobo_robot_axis *axis = &robot->axes[j];
+            double from_rad = grobo_i_axis_commanded(axis, now_us);
+            axis->way = (grobo_robot_way){from_rad, target->posture.angle_rad[j], now_us,
+                                          now_us + target->joint_time_us[j]};
+            axis->own_until_us = 0;
+            axis->has_target = true;
+            axis->adrift = axis->held = axis->in_segments = axis->off_way = false;
+            if (order->deed == GROBO_I_DEED_GOAL &&
+                grobo_i_segments_wanted(robot, order, target->joint_time_us[j])) {
+                grobo_i_segments_begin(robot, j, target->joint_time_us[j]);
+            }
+        }
+    }
+}
+
+static void note_hold(grobo_robot *robot, grobo_joint_mask joints)
+{
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if (is_in(joints, j)) {
+            grobo_i_axis_rest(&robot->axes[j], robot->now_us);
+            robot->axes[j].own_until_us = 0;
+            robot->axes[j].held = false;
+        }
+    }
+}
+
+/* The switch is taken for done; a later reading shows. */
+static void note_torque(grobo_robot *robot, const saying *says)
+{
+    grobo_joint_mask on = says->torqued[GROBO_TORQUE_ON];
+    grobo_joint_mask off = says->torqued[GROBO_TORQUE_OFF] | says->torqued[GROBO_TORQUE_BRAKE];
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        grobo_robot_axis *axis = &robot->axes[j];
+        if (is_in(off, j)) {
+            axis->wants_torque = axis->held = axis->has_target = axis->torque_known = false;
+        } else if (is_in(on, j) && !grobo_i_axis_is_on(axis)) {
+            axis->torque_known = false;
+            grobo_i_gate_soften(robot); /* a hand may have moved it as long as it was off */
+        }
+    }
+}
+
+static void note_pace(grobo_robot *robot, const grobo_robot_slot *slot, const grobo_target *target)
+{
+    int64_t longest_us = 0;
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        int64_t time_us = is_in(target->posture.set, j) ? target->joint_time_us[j] : 0;
+        longest_us = grobo_i_later(longest_us, time_us);
+    }
+    if (slot->due_us != GROBO_NEVER_US) {
+        robot->soft = false; /* what the sequencer sends next begins there */
+    } else if (slot->order.single && robot->soft && robot->soft_us == GROBO_NEVER_US) {
+        robot->soft_us = robot->now_us + longest_us;
+    }
+}
+
+static void note_goals(grobo_robot *robot, const grobo_robot_slot *slot, const saying *says)
+{
+    const grobo_target *target = &says->target;
+    if (target->posture.set == 0) {
+        return;
+    }
+    note_way(robot, &slot->order, target);
+    note_pace(robot, slot, target);
+    robot->raw_joints &= ~target->posture.set;
+    robot->raw_joints |= slot->order.deed == GROBO_I_DEED_RAW ? target->posture.set : 0;
+}
+
+static void note(grobo_robot *robot, const grobo_robot_slot *slot, const saying *says)
+{
+    switch ((grobo_i_deed)slot->order.deed) {
+    case GROBO_I_DEED_NONE:
+        return;
+    case GROBO_I_DEED_GOAL:
+    case GROBO_I_DEED_HALT:
+    case GROBO_I_DEED_TORQUE:
+    case GROBO_I_DEED_RAW:
+        note_torque(robot, says);
+        note_goals(robot, slot, says);
+        break;
+    case GROBO_I_DEED_SEGMENT:
+        grobo_i_segments_told(robot, &says->target);
+        return; /* the way is the one that was noted */
+    case GROBO_I_DEED_HOLD:
+        note_hold(robot, says->target.posture.set);
+        break;
+    case GROBO_I_DEED_UNKNOWN:
+        forget(robot, slot->order.joints, false);
+        break;
+    case GROBO_I_DEED_SETTING:
+    case GROBO_I_DEED_COMMAND:
+        forget(robot, slot->order.joints, true); /* the servo is without torque afterwards */
+        break;
+    }
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if (is_in(slot->order.joints, j)) {
+            robot->axes[j].told_us = robot->now_us;
+            robot->axes[j].last = slot->order.number;
+        }
+    }
+    grobo_i_gate_unwait(robot, &slot->order);
+}
+
+/* ---- leaving --------------------------------------------------------------------------------- */
+
+void grobo_i_gate_unwait(grobo_robot *robot, const grobo_robot_order *order)
+{
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        grobo_robot_axis *axis = &robot->axes[j];
+        if (is_in(order->joints, j) && order->number != 0 && axis->next == order->number) {
+            axis->next = 0;
+        }
+    }
+}
+
+/* A frame tried again has been passed by where another one told its joints something since. */
+static bool is_passed(const grobo_robot *robot, const grobo_robot_slot *slot)
+{
+    for (int j = 0; slot->txn.sent_us >= 0 && j < robot->driver->model->n_joints; j++) {
+        if (is_in(slot->order.joints, j) && robot->axes[j].told_us > slot->txn.sent_us) {
+            return true;
+        }
+    }
+    return false;
+}
+
+int grobo_i_gate_leave(grobo_robot_slot *slot)
+{
+    grobo_robot *robot = slot->robot;
+    bool again = slot->txn.sent_us >= 0;
+    saying says;
+    assert(slot->use != GROBO_I_USE_FREE && robot->link);
+    int result = is_passed(robot, slot) ? GROBO_ERR_STALE
+                                        : judge(robot, &slot->order, &slot->exchange, again, &says);
+    if (result >= 0 && is_built(&slot->order)) {
+        result = make_frame(robot, &slot->order, &says, slot->order.part, &slot->exchange);
+        result = result == 0 ? GROBO_ERR_EMPTY : result;
+    }
+    if (result < 0) {
+        return result;
+    }
+    note(robot, slot, &says);
+    return GROBO_OK;
+}

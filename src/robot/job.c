@@ -1,0 +1,235 @@
+/* SPDX-License-Identifier: MIT */
+/* Runs the script of a job: one step after the other, waiting where a step says so. */
+#include "src/robot/robot.h"
+
+#include <assert.h>
+#include <string.h>
+
+int grobo_i_job_start(grobo_robot *robot, grobo_job_kind kind, const grobo_robot_step_fn *script)
+{
+    grobo_robot_task *job = &robot->job;
+    assert(job->kind == GROBO_JOB_NONE);
+    robot->last_number = robot->last_number == INT32_MAX ? 1 : robot->last_number + 1;
+    job->script = script;
+    job->number = robot->last_number;
+    job->kind = kind;
+    job->at = 0;
+    job->activity = GROBO_I_NEXT;
+    job->result = GROBO_OK;
+    job->joint = -1;
+    job->value = 0;
+    job->failed = job->pending = 0;
+    job->order = (grobo_robot_order){0};
+    job->leave_by_us = 0;
+    job->sense = GROBO_SENSE_ALL;
+    job->priority = GROBO_PRIORITY_USER;
+    job->part = job->rounds = job->restarts = 0;
+    job->reply_bytes = 0;
+    job->begun_us = robot->now_us;
+    job->until_us = job->bound_us = GROBO_NEVER_US;
+    return job->number;
+}
+
+void grobo_i_job_end(grobo_robot *robot, int result)
+{
+    grobo_robot_task *job = &robot->job;
+    grobo_event event = {.kind = GROBO_EVENT_JOB};
+    event.u.job.number = job->number;
+    event.u.job.kind = job->kind;
+    event.u.job.result = result;
+    event.u.job.joint = job->joint;
+    event.u.job.value = job->value;
+    event.u.job.failed = job->failed;
+    event.u.job.data = robot->reply;
+    event.u.job.size = job->reply_bytes;
+    if (job->kind == GROBO_JOB_ESTOP && result != GROBO_ERR_UNPLUGGED) {
+        robot->stop_owed = false;
+    }
+    job->kind = GROBO_JOB_NONE;
+    grobo_i_slots_cancel_job(robot, job->number);
+    if (event.u.job.kind != GROBO_JOB_SETTLE) {
+        grobo_i_tell(robot, &event);
+    }
+}
+
+void grobo_i_job_fail_joint(grobo_robot *robot, int joint, int error, double value)
+{
+    grobo_robot_task *job = &robot->job;
+    if (job->failed == 0) {
+        job->result = error;
+        job->joint = joint;
+        job->value = value;
+    }
+    job->failed |= GROBO_JOINT_BIT(joint);
+}
+
+void grobo_i_job_goto(grobo_robot *robot, grobo_robot_step_fn step)
+{
+    unsigned at = 0;
+    while (robot->job.script[at] != NULL && robot->job.script[at] != step) {
+        at++;
+    }
+    assert(robot->job.script[at] == step);
+    robot->job.at = at;
+}
+
+/* ---- activities: 1 under way, 0 over, < 0 the job has failed --------------------------------- */
+
+int grobo_i_lowest(grobo_joint_mask joints)
+{
+    int j = 0;
+    while ((joints & GROBO_JOINT_BIT(j)) == 0) {
+        j++;
+    }
+    return j;
+}
+
+static int keep_asking(grobo_robot *robot)
+{
+    return grobo_i_slots_busy(robot, GROBO_I_USE_JOB) ? 1 : 0;
+}
+
+static int keep_reading(grobo_robot *robot)
+{
+    grobo_robot_task *job = &robot->job;
+    if (grobo_i_slots_busy(robot, GROBO_I_USE_JOB)) {
+        return 1;
+    }
+    if (job->todo == 0) {
+        return 0;
+    }
+    const grobo_driver *driver = robot->driver;
+    grobo_robot_slot *slot = grobo_i_slot_take(robot, GROBO_I_USE_JOB);
+    if (slot == NULL) {
+        return GROBO_ERR_FULL;
+    }
+    slot->joint = (uint8_t)grobo_i_lowest(job->todo);
+    slot->reads = true;
+    int result = driver->sense(driver, robot->driver_ctx, slot->joint, job->sense, &slot->exchange);
+    if (result < 0) {
+        grobo_i_slot_drop(slot);
+        return result;
+    }
+    result = grobo_i_slot_send(slot, job->priority);
+    return result < 0 ? result : 1;
+}
+
+static bool frames_out(const grobo_robot *robot)
+{
+    for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
+        const grobo_robot_slot *slot = &robot->slots[i];
+        if (slot->use != GROBO_I_USE_FREE && slot->job == robot->job.number) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static int keep_draining(grobo_robot *robot)
+{
+    return frames_out(robot) ? 0 : 1;
+}
+
+static int keep_waiting(grobo_robot *robot)
+{
+    return robot->now_us < robot->job.until_us ? 1 : 0;
+}
+
+static int (*const keep[])(grobo_robot *robot) = {
+    [GROBO_I_ASK] = keep_asking,
+    [GROBO_I_READ] = keep_reading,
+    [GROBO_I_DRAIN] = keep_draining,
+    [GROBO_I_WAIT] = keep_waiting,
+};
+
+/* One go: carries on with the activity, or takes the next step. 0: go on, 1: wait. */
+static int advance(grobo_robot *robot)
+{
+    grobo_robot_task *job = &robot->job;
+    if (job->activity != GROBO_I_NEXT) {
+        int going = keep[job->activity](robot);
+        if (going != 0) {
+            return going;
+        }
+        job->activity = GROBO_I_NEXT;
+    }
+    grobo_robot_step_fn step = job->script[job->at];
+    if (step == NULL) {
+        grobo_i_job_end(robot, job->result);
+        return 1;
+    }
+    job->at++;
+    int activity = step(robot);
+    if (activity < 0) {
+        return activity;
+    }
+    job->activity = (uint8_t)activity;
+    return 0;
+}
+
+void grobo_i_job_run(grobo_robot *robot)
+{
+    while (robot->job.kind != GROBO_JOB_NONE) {
+        if (robot->now_us >= robot->job.bound_us) {
+            robot->job.failed |= robot->job.pending;
+            grobo_i_job_end(robot, GROBO_ERR_TIMEOUT);
+            return;
+        }
+        robot->acting = robot->job.number;
+        int going = advance(robot);
+        robot->acting = 0;
+        if (going < 0) {
+            grobo_i_job_end(robot, going);
+        } else if (going > 0) {
+            return;
+        }
+    }
+}
+
+int64_t grobo_i_job_deadline(const grobo_robot *robot)
+{
+    const grobo_robot_task *job = &robot->job;
+    if (job->kind == GROBO_JOB_NONE) {
+        return GROBO_NEVER_US;
+    }
+    int64_t at_us = job->activity == GROBO_I_WAIT ? job->until_us : GROBO_NEVER_US;
+    /* Drained frames and a job just begun have no event of their own: look again at once. */
+    if (job->activity == GROBO_I_NEXT || (job->activity == GROBO_I_DRAIN && frames_out(robot))) {
+        at_us = robot->now_us;
+    }
+    return at_us < job->bound_us ? at_us : job->bound_us;
+}
+
+/* ---- what comes back ------------------------------------------------------------------------- */
+
+static void take_answer(grobo_robot *robot, int result, const grobo_rs30x_packet *reply)
+{
+    grobo_robot_task *job = &robot->job;
+    job->reply_bytes = 0;
+    /* An ACK has no data, and then no place of it. */
+    if (reply != NULL && reply->data_bytes > 0 && reply->data_bytes <= sizeof robot->reply) {
+        memcpy(robot->reply, reply->data, reply->data_bytes);
+        job->reply_bytes = reply->data_bytes;
+    }
+    job->result = result;
+}
+
+void grobo_i_job_done(grobo_robot_slot *slot, int result, const grobo_rs30x_packet *reply)
+{
+    grobo_robot *robot = slot->robot;
+    grobo_robot_task *job = &robot->job;
+    if (job->kind == GROBO_JOB_NONE || slot->job != job->number) {
+        return;
+    }
+    if (job->activity == GROBO_I_READ) {
+        int joint = slot->joint;
+        job->todo &= ~GROBO_JOINT_BIT(joint);
+        int taken = grobo_i_sense_take(slot, result, reply);
+        if (taken < 0 && job->kind != GROBO_JOB_NONE && slot->job == job->number) {
+            grobo_i_job_fail_joint(robot, joint, taken, 0);
+        }
+    } else {
+        take_answer(robot, result, reply);
+    }
+    grobo_i_job_run(robot);
+}

@@ -1,0 +1,234 @@
+/* SPDX-License-Identifier: MIT */
+/* Orders to motors: targets, halts, holds and torque, put into the frames that wait for the line.
+ * Nothing is noted of them here but what waits; safety_gate.c judges them again as they leave. */
+#include "src/base/instant.h"
+#include "src/robot/robot.h"
+
+/* How the frames of an order go. */
+typedef struct way_out {
+    grobo_i_use use;
+    grobo_priority priority;
+    int64_t due_us;
+} way_out;
+
+/* 1: it waits for the line; 0: the driver has no frame for it; GROBO_ERR_CAP: one is too few. */
+static int send_one(grobo_robot *robot, const grobo_robot_order *order, const way_out *out)
+{
+    grobo_robot_slot *slot = grobo_i_slot_take(robot, out->use);
+    if (slot == NULL) {
+        return GROBO_ERR_FULL;
+    }
+    slot->order = *order;
+    slot->due_us = out->due_us;
+    slot->job = out->due_us != GROBO_NEVER_US ? 0 : slot->job; /* the sequencer's, not a job's */
+    int result = grobo_i_gate_build(robot, order, &slot->exchange);
+    if (result <= 0) {
+        grobo_i_slot_drop(slot);
+        return result;
+    }
+    result = grobo_i_slot_send(slot, out->priority);
+    if (result >= 0 && out->use == GROBO_I_USE_MOTION) {
+        grobo_bus_cost cost;
+        grobo_bus_cost_of(&robot->bus, &slot->txn, &cost);
+        robot->motion_us += cost.total_us;
+    }
+    return result < 0 ? result : 1;
+}
+
+/* A driver may need several frames for one joint. */
+static int send_parts(grobo_robot *robot, grobo_robot_order order, const way_out *out)
+{
+    int more = 1;
+    for (order.part = 0; more > 0 && order.part < UINT8_MAX; order.part++) {
+        more = send_one(robot, &order, out);
+    }
+    if (order.part == 1) {
+        grobo_i_gate_unwait(robot, &order); /* the driver has no frame for it */
+    }
+    return more;
+}
+
+/* Each frame has joints of its own, so that what is noted of it is about these: as few frames as
+ * the driver can do with. */
+static int send_order(grobo_robot *robot, grobo_robot_order order, const way_out *out)
+{
+    grobo_joint_mask left = order.joints;
+    int count = grobo_joints_count(left);
+    int frames = 1;
+    int result = GROBO_OK;
+    while (left != 0 && result >= 0) {
+        int chunk = (count + frames - 1) / frames;
+        grobo_joint_mask rest = left;
+        order.joints = grobo_i_take_chunk(&rest, (grobo_i_chunk)chunk);
+        result = chunk > 1 ? send_one(robot, &order, out) : send_parts(robot, order, out);
+        if (result == GROBO_ERR_CAP && chunk > 1) {
+            frames++;
+            result = GROBO_OK;
+            continue;
+        }
+        left = rest;
+        if (result == 0 && chunk > 1) {
+            grobo_i_gate_unwait(robot, &order);
+        }
+    }
+    return result < 0 ? result : GROBO_OK;
+}
+
+grobo_joint_mask grobo_i_take_chunk(grobo_joint_mask *joints, grobo_i_chunk chunk)
+{
+    grobo_joint_mask taken = 0;
+    int n = 0;
+    for (int j = 0; j < GROBO_JOINTS_MAX && n < (int)chunk; j++) {
+        if ((*joints & GROBO_JOINT_BIT(j)) != 0) {
+            taken |= GROBO_JOINT_BIT(j);
+            n++;
+        }
+    }
+    *joints &= ~taken;
+    return taken;
+}
+
+/* ---- targets --------------------------------------------------------------------------------- */
+
+static int64_t time_asked(const grobo_robot *robot, const grobo_posture *posture)
+{
+    int64_t step_us = robot->driver->time_step_us;
+    int64_t time_us = posture->time_us > 0 ? posture->time_us : robot->config.default_time_us;
+    time_us = grobo_i_sooner(time_us, GROBO_PLAY_TIME_MAX_US);
+    return grobo_i_later((time_us + step_us / 2) / step_us, 1) * step_us;
+}
+
+static int stabilize(grobo_robot *robot, grobo_posture *target)
+{
+    const grobo_driver *driver = robot->driver;
+    if (driver->stabilize == NULL) {
+        return GROBO_OK;
+    }
+    grobo_posture sensed;
+    (void)grobo_robot_posture(robot, robot->now_us, GROBO_NEVER_US, &sensed);
+    return driver->stabilize(driver, robot->driver_ctx, &sensed, target);
+}
+
+/* Times the target from where its joints are now, and has it wait. It is timed again when it
+ * leaves. */
+static int await_line(grobo_robot *robot, const grobo_robot_order *order,
+                      const grobo_posture *posture)
+{
+    grobo_target target = {.posture = *posture};
+    int64_t asked_us = time_asked(robot, posture);
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        target.joint_time_us[j] = asked_us;
+    }
+    int64_t longest_us = grobo_i_gate_time(robot, order, &target);
+    for (int j = 0; longest_us >= 0 && j < robot->driver->model->n_joints; j++) {
+        if ((order->joints & GROBO_JOINT_BIT(j)) != 0) {
+            grobo_robot_axis *axis = &robot->axes[j];
+            axis->next = order->number;
+            axis->next_rad = posture->angle_rad[j];
+            axis->next_time_us = order->rests ? asked_us : target.joint_time_us[j];
+        }
+    }
+    return longest_us < 0 ? (int)longest_us : GROBO_OK;
+}
+
+int grobo_i_gate_send(grobo_robot *robot, const grobo_posture *wanted, const grobo_i_motion *how)
+{
+    grobo_posture target = *wanted;
+    int result = how->as_is ? GROBO_OK : stabilize(robot, &target);
+    if (result >= 0) {
+        result = grobo_i_gate_target(robot, &target);
+    }
+    if (result >= 0 && !grobo_i_all_sensed(robot, target.set, &robot->fault_joint)) {
+        result = GROBO_ERR_STALE;
+    }
+    robot->motion = robot->motion == UINT32_MAX ? 1 : robot->motion + 1;
+    grobo_robot_order order = {.joints = target.set,
+                               .number = robot->motion,
+                               .deed = GROBO_I_DEED_GOAL,
+                               .each = how->each,
+                               .soft = robot->soft,
+                               .single = how->single,
+                               .moves = true,
+                               .stops = how->stops,
+                               .rests = how->rests};
+    if (result >= 0) {
+        result = await_line(robot, &order, &target);
+    }
+    if (result >= 0) {
+        robot->motion_us = 0;
+        result =
+            send_order(robot, order, &(way_out){GROBO_I_USE_MOTION, how->priority, how->due_us});
+    }
+    if (result < 0) {
+        grobo_i_gate_unwait(robot, &order); /* all of it or nothing: its frames are stale by that */
+    }
+    return result;
+}
+
+void grobo_i_gate_renew(grobo_robot *robot, grobo_joint_mask joints)
+{
+    grobo_robot_order order = {
+        .joints = joints, .deed = GROBO_I_DEED_SEGMENT, .each = true, .moves = true};
+    (void)send_order(robot, order,
+                     &(way_out){GROBO_I_USE_SEGMENT, GROBO_PRIORITY_MOTION, GROBO_NEVER_US});
+}
+
+/* ---- halting --------------------------------------------------------------------------------- */
+
+void grobo_i_gate_halt(grobo_robot *robot, grobo_joint_mask joints)
+{
+    grobo_robot_order order = {.joints = joints,
+                               .asked_us = robot->now_us,
+                               .deed = GROBO_I_DEED_HALT,
+                               .each = true,
+                               .stops = true};
+    grobo_i_slots_cancel(robot, GROBO_I_USE_MOTION);
+    grobo_i_slots_cancel(robot, GROBO_I_USE_SEGMENT);
+    (void)send_order(robot, order,
+                     &(way_out){GROBO_I_USE_HALT, GROBO_PRIORITY_STOP, GROBO_NEVER_US});
+}
+
+/* ---- torque ---------------------------------------------------------------------------------- */
+
+static grobo_priority priority_of_job(const grobo_robot *robot)
+{
+    return robot->job.kind == GROBO_JOB_NONE ? GROBO_PRIORITY_USER : robot->job.priority;
+}
+
+int grobo_i_gate_hold(grobo_robot *robot, grobo_joint_mask joints, grobo_i_chunk chunk)
+{
+    grobo_robot_order order = {.deed = GROBO_I_DEED_HOLD, .each = true};
+    int result = GROBO_OK;
+    while (joints != 0 && result >= 0) {
+        order.joints = grobo_i_take_chunk(&joints, chunk);
+        result = send_order(robot, order,
+                            &(way_out){GROBO_I_USE_PLAIN, GROBO_PRIORITY_USER, GROBO_NEVER_US});
+    }
+    return result;
+}
+
+int grobo_i_gate_torque(grobo_robot *robot, grobo_joint_mask joints, grobo_torque mode,
+                        grobo_i_chunk chunk)
+{
+    grobo_robot_order order = {
+        .asked_us = robot->now_us, .deed = GROBO_I_DEED_TORQUE, .torque = (uint8_t)mode};
+    if (robot->driver->torque == NULL) {
+        return GROBO_ERR_UNSUPPORTED;
+    }
+    if (mode != GROBO_TORQUE_ON) {
+        grobo_i_slots_keep_off(robot, joints);
+    }
+    int result = GROBO_OK;
+    while (joints != 0 && result >= 0) {
+        order.joints = grobo_i_take_chunk(&joints, chunk);
+        result = send_order(robot, order,
+                            &(way_out){GROBO_I_USE_PLAIN, priority_of_job(robot), GROBO_NEVER_US});
+    }
+    return result;
+}
+
+bool grobo_i_gate_ready(const grobo_robot *robot, grobo_joint_mask joints)
+{
+    int joint;
+    return grobo_i_all_sensed(robot, joints, &joint) && grobo_i_all_on(robot, joints);
+}

@@ -1,0 +1,566 @@
+/* SPDX-License-Identifier: MIT */
+/* The public requests: what is asked is checked here, then a script is started. */
+#include "src/robot/robot.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "src/base/instant.h"
+
+void grobo_i_make_way(grobo_robot *robot)
+{
+    robot->settling = false;
+    if (robot->job.kind == GROBO_JOB_SETTLE) {
+        grobo_i_job_end(robot, GROBO_ERR_CANCELED);
+    }
+}
+
+/* May a job begin now? */
+static int admit(grobo_robot *robot, bool moves)
+{
+    if (!robot->link) {
+        return GROBO_ERR_CLOSED;
+    }
+    grobo_i_make_way(robot);
+    if (robot->job.kind != GROBO_JOB_NONE) {
+        return GROBO_ERR_STATE;
+    }
+    return moves && robot->trip.latched ? GROBO_ERR_LATCHED : GROBO_OK;
+}
+
+/* Runs a job just begun as far as it goes, and leaves. */
+static int begin(grobo_robot *robot, int number)
+{
+    grobo_i_job_run(robot);
+    grobo_i_leave(robot);
+    return number;
+}
+
+static int refuse(grobo_robot *robot, int error)
+{
+    grobo_i_leave(robot);
+    return error;
+}
+
+int grobo_robot_check(grobo_robot *robot, int64_t now_us)
+{
+    grobo_i_enter(robot, now_us);
+    int result = admit(robot, false);
+    if (result >= 0 && robot->driver->check == NULL) {
+        result = GROBO_ERR_UNSUPPORTED;
+    }
+    if (result < 0) {
+        return refuse(robot, result);
+    }
+    return begin(robot, grobo_i_job_start(robot, GROBO_JOB_CHECK, grobo_i_script_check));
+}
+
+static bool joints_sound(const grobo_robot *robot, grobo_joint_mask joints)
+{
+    return joints != 0 && (joints & ~grobo_i_all_joints(robot)) == 0;
+}
+
+int grobo_robot_sense(grobo_robot *robot, grobo_joint_mask joints, grobo_sense_kind kind,
+                      int64_t now_us)
+{
+    grobo_i_enter(robot, now_us);
+    int result = admit(robot, false);
+    if (!joints_sound(robot, joints) || (unsigned)kind > GROBO_SENSE_ALL) {
+        result = GROBO_ERR_ARG;
+    }
+    if (result < 0) {
+        return refuse(robot, result);
+    }
+    int number = grobo_i_job_start(robot, GROBO_JOB_SENSE, grobo_i_script_sense);
+    robot->job.joints = joints;
+    robot->job.sense = kind;
+    return begin(robot, number);
+}
+
+int grobo_robot_torque(grobo_robot *robot, grobo_joint_mask joints, grobo_torque mode,
+                       int64_t now_us)
+{
+    grobo_i_enter(robot, now_us);
+    bool on = mode == GROBO_TORQUE_ON;
+    int result = admit(robot, on);
+    if (result >= 0 && on && grobo_robot_is_playing(robot)) {
+        result = GROBO_ERR_STATE; /* its frames would part goal and present angle again */
+    }
+    if (result >= 0 && robot->driver->torque == NULL) {
+        result = GROBO_ERR_UNSUPPORTED;
+    }
+    if (!joints_sound(robot, joints) || (unsigned)mode > GROBO_TORQUE_BRAKE) {
+        result = GROBO_ERR_ARG;
+    }
+    if (result < 0) {
+        return refuse(robot, result);
+    }
+    int number = grobo_i_job_start(robot, GROBO_JOB_TORQUE,
+                                   on ? grobo_i_script_torque_on : grobo_i_script_torque_off);
+    robot->job.joints = joints;
+    robot->job.torque = mode;
+    robot->free_joints &= ~joints;
+    return begin(robot, number);
+}
+
+int grobo_robot_move(grobo_robot *robot, const grobo_posture *target, int64_t now_us)
+{
+    grobo_i_enter(robot, now_us);
+    grobo_posture checked = *target;
+    int result = admit(robot, true);
+    if (result >= 0 && grobo_robot_is_playing(robot)) {
+        result = GROBO_ERR_STATE;
+    }
+    if (result >= 0) {
+        result = target->set == 0 ? GROBO_ERR_ARG : grobo_i_gate_target(robot, &checked);
+    }
+    if (result < 0) {
+        return refuse(robot, result);
+    }
+    int number = grobo_i_job_start(robot, GROBO_JOB_MOVE, grobo_i_script_move);
+    robot->job.joints = checked.set;
+    robot->job.target = checked;
+    robot->free_joints &= ~checked.set;
+    return begin(robot, number);
+}
+
+/* One that was not sensed either is refused for that. */
+static bool all_hold(const grobo_robot *robot, grobo_joint_mask joints)
+{
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        const grobo_robot_axis *axis = &robot->axes[j];
+        if ((joints & GROBO_JOINT_BIT(j)) != 0 && axis->sensed && !grobo_i_axis_is_on(axis)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* A target for joints that nothing is read of before. */
+static int admit_target(const grobo_robot *robot, const grobo_posture *target)
+{
+    if (!robot->link) {
+        return GROBO_ERR_CLOSED;
+    }
+    if (robot->trip.latched) {
+        return GROBO_ERR_LATCHED;
+    }
+    if (target->set == 0) {
+        return GROBO_ERR_ARG;
+    }
+    bool others = (target->set & robot->free_joints) != 0 || grobo_i_adrift(robot, target->set);
+    return others || !all_hold(robot, target->set) ? GROBO_ERR_STATE : GROBO_OK;
+}
+
+/* True while something moves the robot that a target of the caller's stream must not disturb. */
+static bool is_taken(const grobo_robot *robot)
+{
+    return grobo_i_in_motion(robot) || robot->job.kind == GROBO_JOB_PLAY ||
+           robot->job.kind == GROBO_JOB_EXIT || robot->job.kind == GROBO_JOB_COMMAND;
+}
+
+int grobo_robot_send(grobo_robot *robot, const grobo_posture *target, int64_t now_us)
+{
+    grobo_i_enter(robot, now_us);
+    grobo_i_motion how = {
+        .priority = GROBO_PRIORITY_MOTION, .due_us = GROBO_NEVER_US, .each = true, .single = true};
+    int result = admit_target(robot, target);
+    if (result >= 0 && is_taken(robot)) {
+        result = GROBO_ERR_STATE;
+    }
+    if (result >= 0) {
+        grobo_i_make_way(robot);
+        grobo_i_gate_single(robot);
+        grobo_i_slots_cancel_goals(robot);
+        result = grobo_i_gate_send(robot, target, &how);
+    }
+    grobo_i_leave(robot);
+    return result < 0 ? result : GROBO_OK;
+}
+
+int grobo_robot_retarget(grobo_robot *robot, const grobo_posture *target, int64_t now_us)
+{
+    grobo_i_enter(robot, now_us);
+    grobo_posture checked = *target;
+    int result = admit_target(robot, target);
+    bool sent = grobo_i_move_is_sent(robot) && !robot->soft;
+    if (result >= 0 && (!sent || (robot->job.joints & ~target->set) != 0)) {
+        result = GROBO_ERR_STATE;
+    }
+    if (result >= 0) {
+        result = grobo_i_gate_target(robot, &checked);
+    }
+    if (result >= 0 && !grobo_i_all_sensed(robot, checked.set, &robot->fault_joint)) {
+        result = GROBO_ERR_STALE;
+    }
+    if (result >= 0) {
+        result = robot->job.number;
+        grobo_i_move_retarget(robot, &checked);
+    }
+    grobo_i_leave(robot);
+    return result;
+}
+
+/* May this clip be played now? *joints: those it moves. */
+static int admit_clip(grobo_robot *robot, const grobo_clip *clip, grobo_play_options *options,
+                      grobo_joint_mask *joints)
+{
+    int result = admit(robot, true);
+    if (result >= 0 && grobo_robot_is_playing(robot)) {
+        result = GROBO_ERR_STATE;
+    }
+    if (result >= 0 && clip->n_joints != robot->driver->model->n_joints) {
+        result = GROBO_ERR_ARG;
+    }
+    if (result >= 0) {
+        result = grobo_i_play_joints(robot, clip, options, joints);
+        *joints |= options->also;
+    }
+    if (result >= 0 && !joints_sound(robot, *joints)) {
+        result = *joints == 0 ? GROBO_ERR_EMPTY : GROBO_ERR_ARG;
+    }
+    return result < 0 ? result : grobo_i_play_rate(robot, options);
+}
+
+int grobo_robot_play(grobo_robot *robot, const grobo_clip *clip, const grobo_play_options *options,
+                     int64_t now_us)
+{
+    grobo_i_enter(robot, now_us);
+    grobo_play_options chosen;
+    grobo_joint_mask joints = 0;
+    grobo_i_play_options(robot, options, &chosen);
+    int result = admit_clip(robot, clip, &chosen, &joints);
+    if (result < 0) {
+        return refuse(robot, result);
+    }
+    int number = grobo_i_job_start(robot, GROBO_JOB_PLAY, grobo_i_script_play);
+    robot->job.joints = joints;
+    robot->job.clip = *clip;
+    robot->job.options = chosen;
+    robot->free_joints = 0;
+    return begin(robot, number);
+}
+
+/* ---- frames of other kinds ------------------------------------------------------------------- */
+
+/* Sends an exchange, which is judged again when it leaves. */
+static int start_exchange(grobo_robot *robot, grobo_job_kind kind, const grobo_robot_order *order,
+                          const grobo_exchange *exchange)
+{
+    int number = grobo_i_job_start(robot, kind, grobo_i_script_ask);
+    robot->job.exchange = *exchange;
+    robot->job.order = *order;
+    return number;
+}
+
+static int begin_exchange(grobo_robot *robot, grobo_job_kind kind, const grobo_robot_order *order,
+                          const grobo_exchange *exchange)
+{
+    return begin(robot, start_exchange(robot, kind, order, exchange));
+}
+
+int grobo_robot_raw(grobo_robot *robot, const uint8_t *frame, size_t size, int64_t now_us)
+{
+    return grobo_robot_raw_until(robot, frame, size, GROBO_NEVER_US, now_us);
+}
+
+int grobo_robot_raw_until(grobo_robot *robot, const uint8_t *frame, size_t size, int64_t until_us,
+                          int64_t now_us)
+{
+    grobo_exchange exchange = {0};
+    grobo_robot_order order;
+    grobo_i_enter(robot, now_us);
+    int result = admit(robot, false);
+    if (size == 0 || size > sizeof exchange.frame) {
+        result = GROBO_ERR_ARG;
+    }
+    if (result >= 0 && until_us < robot->now_us) {
+        result = GROBO_ERR_STALE;
+    }
+    if (result >= 0) {
+        memcpy(exchange.frame, frame, size);
+        exchange.frame_bytes = (uint8_t)size;
+        result = grobo_i_gate_raw(robot, &exchange, &order);
+    }
+    if (result < 0) {
+        return refuse(robot, result);
+    }
+    if (grobo_frame_reply(robot->driver->wiring, frame, size, &exchange.reply) < 0) {
+        exchange.reply.kind = GROBO_REPLY_NONE;
+    }
+    int number = start_exchange(robot, GROBO_JOB_RAW, &order, &exchange);
+    robot->job.leave_by_us = until_us == GROBO_NEVER_US ? 0 : until_us;
+    return begin(robot, number);
+}
+
+static bool touches(const grobo_register_io *io, int address, int bytes)
+{
+    return io->address < address + bytes && io->address + io->length > address;
+}
+
+/* Settings that change what a goal means: a servo that holds would jump. */
+static bool changes_goal(const grobo_register_io *io)
+{
+    return touches(io, GROBO_RS30X_ID, 2) || touches(io, GROBO_RS30X_CW_LIMIT, 4);
+}
+
+/* The joint of a motor, none where it is not the model's. */
+static grobo_joint_mask joint_of(const grobo_robot *robot, int id)
+{
+    int joint = grobo_model_joint_of_motor(robot->driver->model, id);
+    return joint >= 0 ? GROBO_JOINT_BIT(joint) : 0;
+}
+
+static int admit_write(grobo_robot *robot, const grobo_register_io *io, grobo_robot_order *order)
+{
+    if (touches(io, GROBO_RS30X_GOAL, 4) || touches(io, GROBO_RS30X_TORQUE, 1)) {
+        return GROBO_ERR_UNSUPPORTED;
+    }
+    if (changes_goal(io)) {
+        order->deed = GROBO_I_DEED_SETTING;
+        order->joints = joint_of(robot, io->id);
+    }
+    return grobo_i_gate_judge(robot, order, NULL);
+}
+
+int grobo_robot_registers(grobo_robot *robot, const grobo_register_io *io, int64_t now_us)
+{
+    grobo_exchange exchange = {0};
+    grobo_robot_order order = {.deed = GROBO_I_DEED_NONE};
+    grobo_i_enter(robot, now_us);
+    int result = admit(robot, false);
+    if (io->id < 1 || io->id > GROBO_SERVO_ID_MAX || io->length < 1 ||
+        io->address + io->length > GROBO_REGISTERS) {
+        result = GROBO_ERR_ARG;
+    }
+    if (result >= 0 && robot->driver->registers == NULL) {
+        result = GROBO_ERR_UNSUPPORTED;
+    }
+    if (result >= 0 && io->data != NULL) {
+        result = admit_write(robot, io, &order);
+    }
+    if (result >= 0) {
+        result = robot->driver->registers(robot->driver, robot->driver_ctx, io, &exchange);
+    }
+    if (result < 0) {
+        return refuse(robot, result);
+    }
+    return begin_exchange(robot, GROBO_JOB_REGISTERS, &order, &exchange);
+}
+
+int grobo_robot_command(grobo_robot *robot, int id, grobo_servo_command command, int64_t now_us)
+{
+    grobo_exchange exchange = {0};
+    grobo_robot_order order = {.deed = GROBO_I_DEED_COMMAND};
+    grobo_i_enter(robot, now_us);
+    int result = admit(robot, false);
+    if (result >= 0) {
+        result = grobo_i_gate_judge(robot, &order, NULL);
+    }
+    if (id < 1 || id > GROBO_SERVO_ID_MAX || (unsigned)command > GROBO_SERVO_FACTORY_RESET) {
+        result = GROBO_ERR_ARG;
+    }
+    if (result >= 0 && robot->driver->command == NULL) {
+        result = GROBO_ERR_UNSUPPORTED;
+    }
+    if (result >= 0) {
+        result = robot->driver->command(robot->driver, robot->driver_ctx, id, command, &exchange);
+    }
+    if (result < 0) {
+        return refuse(robot, result);
+    }
+    order.joints = command != GROBO_SERVO_FLASH ? joint_of(robot, id) : 0;
+    return begin_exchange(robot, GROBO_JOB_COMMAND, &order, &exchange);
+}
+
+int grobo_robot_stored(grobo_robot *robot, grobo_stored_kind kind, int number, int64_t now_us)
+{
+    grobo_exchange exchange = {0};
+    grobo_robot_order order = {
+        .deed = GROBO_I_DEED_UNKNOWN, .joints = grobo_i_all_joints(robot), .moves = true};
+    grobo_i_enter(robot, now_us);
+    int result = admit(robot, true);
+    if (result >= 0) {
+        result = grobo_i_gate_judge(robot, &order, NULL);
+    }
+    if (result >= 0 && robot->driver->stored == NULL) {
+        result = GROBO_ERR_UNSUPPORTED;
+    }
+    if (result >= 0) {
+        result = robot->driver->stored(robot->driver, robot->driver_ctx, kind, number, &exchange);
+    }
+    if (result < 0) {
+        return refuse(robot, result);
+    }
+    robot->free_joints = 0;
+    return begin_exchange(robot, GROBO_JOB_STORED, &order, &exchange);
+}
+
+/* ---- ends ------------------------------------------------------------------------------------ */
+
+void grobo_i_stop_moves(grobo_robot *robot)
+{
+    grobo_joint_mask joints =
+        grobo_robot_is_playing(robot) ? robot->raw_joints : grobo_i_all_joints(robot);
+    grobo_i_slots_cancel_goals(robot);
+    if (joints != 0) {
+        grobo_i_gate_halt(robot, joints);
+    }
+}
+
+bool grobo_i_job_moves(const grobo_robot *robot)
+{
+    return robot->job.kind == GROBO_JOB_MOVE ||
+           (robot->job.kind != GROBO_JOB_NONE && robot->job.order.moves);
+}
+
+/* Ends the job that runs to make place for another; what it moves is stopped, or all that moves. */
+static void displace(grobo_robot *robot, bool all)
+{
+    bool moves = all || grobo_i_job_moves(robot);
+    if (robot->job.kind == GROBO_JOB_PLAY && grobo_robot_is_playing(robot)) {
+        (void)grobo_sequencer_stop(&robot->sequencer, false, robot->now_us);
+        grobo_i_slots_cancel_goals(robot);
+    }
+    if (robot->job.kind != GROBO_JOB_NONE) {
+        grobo_i_job_end(robot, GROBO_ERR_CANCELED);
+    }
+    if (moves) {
+        grobo_i_stop_moves(robot);
+    }
+}
+
+int grobo_robot_cancel(grobo_robot *robot, int64_t now_us)
+{
+    grobo_i_enter(robot, now_us);
+    int result = GROBO_OK;
+    if (robot->job.kind == GROBO_JOB_NONE || robot->job.kind == GROBO_JOB_ESTOP ||
+        robot->job.kind == GROBO_JOB_SETTLE) {
+        result = GROBO_ERR_STATE;
+    } else {
+        displace(robot, false);
+    }
+    grobo_i_leave(robot);
+    return result;
+}
+
+static const grobo_robot_step_fn *exit_script(const grobo_robot *robot, grobo_exit_policy policy)
+{
+    switch (policy == GROBO_EXIT_DEFAULT ? robot->config.on_exit : policy) {
+    case GROBO_EXIT_OFF:
+        return grobo_i_script_exit_off;
+    case GROBO_EXIT_SIT:
+        return robot->trip.latched ? grobo_i_script_exit_hold : grobo_i_script_exit_sit;
+    case GROBO_EXIT_DEFAULT:
+    case GROBO_EXIT_HOLD:
+        return grobo_i_script_exit_hold;
+    }
+    return grobo_i_script_exit_hold;
+}
+
+int grobo_robot_exit(grobo_robot *robot, grobo_exit_policy policy, int64_t now_us)
+{
+    grobo_i_enter(robot, now_us);
+    if (!robot->link || (unsigned)policy > GROBO_EXIT_SIT || robot->job.kind == GROBO_JOB_ESTOP) {
+        return refuse(robot, !robot->link                        ? GROBO_ERR_CLOSED
+                             : (unsigned)policy > GROBO_EXIT_SIT ? GROBO_ERR_ARG
+                                                                 : GROBO_ERR_STATE);
+    }
+    if (grobo_robot_is_playing(robot)) {
+        (void)grobo_sequencer_stop(&robot->sequencer, false, robot->now_us);
+    }
+    displace(robot, true);
+    grobo_i_slots_cancel(robot, GROBO_I_USE_PLAIN); /* such as torque that free mode asked for */
+    int number = grobo_i_job_start(robot, GROBO_JOB_EXIT, exit_script(robot, policy));
+    robot->job.joints = grobo_i_all_joints(robot);
+    robot->job.torque = GROBO_TORQUE_OFF;
+    robot->job.bound_us =
+        robot->now_us + grobo_i_sooner(robot->config.exit_bound_us, GROBO_NEVER_US - robot->now_us);
+    robot->free_joints = 0;
+    return begin(robot, number);
+}
+
+/* Where nobody answers any more, nobody waits longer than that. */
+#define ESTOP_BOUND_US 10000000
+
+int grobo_i_estop_start(grobo_robot *robot)
+{
+    int number = grobo_i_job_start(robot, GROBO_JOB_ESTOP, grobo_i_script_torque_off);
+    robot->job.joints = grobo_i_all_joints(robot);
+    robot->job.torque =
+        robot->config.estop_torque == GROBO_ESTOP_OFF ? GROBO_TORQUE_OFF : GROBO_TORQUE_BRAKE;
+    robot->job.priority = GROBO_PRIORITY_STOP;
+    robot->job.bound_us = robot->now_us + ESTOP_BOUND_US;
+    grobo_i_job_run(robot);
+    return number;
+}
+
+int grobo_robot_estop(grobo_robot *robot, int64_t now_us)
+{
+    grobo_i_enter(robot, now_us);
+    if (robot->job.kind != GROBO_JOB_NONE) {
+        grobo_i_job_end(robot, GROBO_ERR_CANCELED);
+    }
+    grobo_sequencer_reset(&robot->sequencer);
+    grobo_bus_reserve(&robot->bus, GROBO_NEVER_US, 0);
+    (void)grobo_bus_cancel_all(&robot->bus, GROBO_PRIORITY_ALL, GROBO_ERR_CANCELED);
+    grobo_i_trip(robot, GROBO_TRIP_ESTOP, -1, 0, true);
+    if (robot->driver->torque == NULL) {
+        return refuse(robot, GROBO_ERR_UNSUPPORTED);
+    }
+    robot->stop_owed = true;
+    int number = robot->link ? grobo_i_estop_start(robot) : GROBO_ERR_CLOSED;
+    grobo_i_leave(robot);
+    return number;
+}
+
+int grobo_robot_latch(grobo_robot *robot, int64_t now_us)
+{
+    grobo_i_enter(robot, now_us);
+    int result = grobo_i_in_motion(robot) ? GROBO_ERR_STATE : GROBO_OK;
+    if (result >= 0 && robot->trip.trip != GROBO_TRIP_ESTOP) {
+        grobo_i_trip(robot, GROBO_TRIP_ESTOP, -1, 0, true);
+    }
+    grobo_i_leave(robot);
+    return result;
+}
+
+int grobo_robot_reset(grobo_robot *robot, int64_t now_us)
+{
+    grobo_i_enter(robot, now_us);
+    int result = robot->job.kind == GROBO_JOB_ESTOP ? GROBO_ERR_STATE : GROBO_OK;
+    if (result >= 0) {
+        robot->trip = (grobo_trip_info){.joint = -1};
+        grobo_i_gate_soften(robot);
+        robot->low_readings = 0;
+        robot->stop_owed = false;
+    }
+    grobo_i_leave(robot);
+    return result;
+}
+
+/* ---- free mode ------------------------------------------------------------------------------- */
+
+int grobo_robot_free(grobo_robot *robot, grobo_joint_mask joints, bool on, int64_t now_us)
+{
+    if (!on) {
+        return grobo_robot_torque(robot, joints, GROBO_TORQUE_ON, now_us);
+    }
+    grobo_i_enter(robot, now_us);
+    int result = admit(robot, true);
+    if (result >= 0 && grobo_robot_is_playing(robot)) {
+        result = GROBO_ERR_STATE;
+    }
+    if (!joints_sound(robot, joints)) {
+        result = GROBO_ERR_ARG;
+    }
+    if (result >= 0 && robot->driver->torque == NULL) {
+        result = GROBO_ERR_UNSUPPORTED;
+    }
+    if (result >= 0) {
+        robot->free_joints |= joints;
+        robot->sense_us = robot->now_us;
+    }
+    grobo_i_leave(robot);
+    return result < 0 ? result : GROBO_OK;
+}

@@ -1,0 +1,273 @@
+/* SPDX-License-Identifier: MIT */
+/* Life, pump and link of the engine. */
+#include "src/robot/robot.h"
+
+#include <math.h>
+#include <string.h>
+
+#define STALL_US 250000
+#define EXIT_BOUND_US 10000000
+#define SENSE_INTERVAL_US 1000000
+#define RETRIES 2
+
+/* ---- configuration --------------------------------------------------------------------------- */
+
+static bool choices_sound(const grobo_robot_config *c)
+{
+    return (c->limit_policy == GROBO_LIMIT_REFUSE || c->limit_policy == GROBO_LIMIT_CLAMP) &&
+           (c->estop_torque == GROBO_ESTOP_BRAKE || c->estop_torque == GROBO_ESTOP_OFF) &&
+           (unsigned)c->on_exit <= GROBO_EXIT_SIT && (unsigned)c->goals <= GROBO_GOALS_SEGMENTS;
+}
+
+static bool config_sound(const grobo_robot_config *c)
+{
+    bool speeds = c->speed_limit_pct >= 0 && c->speed_limit_pct <= 100 &&
+                  isfinite(c->approach_dps) && c->approach_dps >= 0;
+    bool times = c->sense_interval_us >= GROBO_SENSE_NEVER && c->stall_us >= 0 &&
+                 c->default_time_us >= 0 && c->default_time_us <= GROBO_PLAY_TIME_MAX_US &&
+                 c->exit_bound_us >= 0;
+    return choices_sound(c) && speeds && times && c->retries >= -1 && c->retries <= UINT8_MAX;
+}
+
+/* A limit: 0 is the driver's, less is none (0 from here on). */
+static int limit_or(int value, int other)
+{
+    return value == 0 ? other : value < 0 ? 0 : value;
+}
+
+static int64_t time_or(int64_t value_us, int64_t other_us)
+{
+    return value_us == 0 ? other_us : value_us;
+}
+
+static void config_fill(grobo_robot_config *c, const grobo_driver *driver)
+{
+    const grobo_safety_limits *limits = &driver->limits;
+    c->speed_limit_pct = c->speed_limit_pct == 0 ? 100 : c->speed_limit_pct;
+    if (c->approach_dps <= 0) {
+        c->approach_dps = grobo_deg_from_rad(limits->approach_rad_s);
+    }
+    c->sense_interval_us = time_or(c->sense_interval_us, SENSE_INTERVAL_US);
+    c->temperature_c = limit_or(c->temperature_c, limits->temperature_c);
+    c->current_ma = limit_or(c->current_ma, limits->current_ma);
+    c->voltage_mv = limit_or(c->voltage_mv, limits->voltage_mv);
+    c->lost_replies = limit_or(c->lost_replies, limits->lost_replies);
+    c->stall_us = time_or(c->stall_us, STALL_US);
+    c->default_time_us = time_or(c->default_time_us, GROBO_POSTURE_TIME_US);
+    c->exit_bound_us = time_or(c->exit_bound_us, EXIT_BOUND_US);
+    c->on_exit = c->on_exit == GROBO_EXIT_DEFAULT ? driver->on_exit : c->on_exit;
+    c->retries = c->retries == 0 ? RETRIES : c->retries < 0 ? 0 : c->retries;
+    c->bus.wiring = driver->wiring;
+}
+
+static const grobo_robot_config defaults;
+
+int grobo_robot_init(grobo_robot *robot, const grobo_driver *driver, void *driver_ctx,
+                     const grobo_robot_config *config, int64_t now_us)
+{
+    const grobo_robot_config *c = config == NULL ? &defaults : config;
+    if (grobo_driver_check(driver) < 0 || !config_sound(c)) {
+        return GROBO_ERR_ARG;
+    }
+    memset(robot, 0, sizeof *robot);
+    robot->driver = driver;
+    robot->driver_ctx = driver_ctx;
+    robot->config = *c;
+    config_fill(&robot->config, driver);
+    if (grobo_bus_init(&robot->bus, &robot->config.bus) < 0) {
+        return GROBO_ERR_ARG;
+    }
+    grobo_sequencer_init(&robot->sequencer, driver->model);
+    for (int j = 0; j < driver->model->n_joints; j++) {
+        grobo_robot_axis *axis = &robot->axes[j];
+        axis->angle_us = axis->full_us = axis->goal_us = GROBO_NEVER_US;
+        axis->current_since_us = GROBO_NEVER_US;
+        axis->status = GROBO_ERR_EMPTY;
+    }
+    robot->trip.joint = robot->fault_joint = -1;
+    robot->now_us = robot->sense_us = now_us;
+    grobo_i_gate_soften(robot);
+    return GROBO_OK;
+}
+
+void grobo_robot_on_event(grobo_robot *robot, grobo_event_fn on_event, void *ctx)
+{
+    robot->on_event = on_event;
+    robot->event_ctx = ctx;
+}
+
+int grobo_robot_configure(grobo_robot *robot, const grobo_robot_config *config)
+{
+    const grobo_robot_config *c = config == NULL ? &defaults : config;
+    if (!config_sound(c)) {
+        return GROBO_ERR_ARG;
+    }
+    grobo_bus_config bus = robot->config.bus;
+    robot->config = *c;
+    config_fill(&robot->config, robot->driver);
+    robot->config.bus = bus; /* the line stays what it is */
+    return GROBO_OK;
+}
+
+grobo_joint_mask grobo_i_all_joints(const grobo_robot *robot)
+{
+    return GROBO_JOINTS_ALL(robot->driver->model->n_joints);
+}
+
+/* ---- events ---------------------------------------------------------------------------------- */
+
+void grobo_i_tell(grobo_robot *robot, const grobo_event *event)
+{
+    if (robot->events_n == GROBO_ROBOT_EVENTS ||
+        (event->kind == GROBO_EVENT_JOINT && robot->events_n >= GROBO_ROBOT_EVENTS / 2)) {
+        robot->counters.lost_events++;
+        return;
+    }
+    grobo_event *place =
+        &robot->events[(robot->events_head + robot->events_n) % GROBO_ROBOT_EVENTS];
+    *place = *event;
+    place->now_us = robot->now_us;
+    robot->events_n++;
+}
+
+static void tell_kind(grobo_robot *robot, grobo_event_kind kind)
+{
+    grobo_event event = {.kind = kind};
+    grobo_i_tell(robot, &event);
+}
+
+void grobo_i_enter(grobo_robot *robot, int64_t now_us)
+{
+    robot->depth++;
+    if (now_us > robot->now_us) {
+        robot->now_us = now_us;
+    }
+}
+
+void grobo_i_leave(grobo_robot *robot)
+{
+    if (robot->depth == 1) {
+        grobo_i_play_tell(robot);
+        while (robot->events_n > 0) {
+            grobo_event event = robot->events[robot->events_head];
+            robot->events_head = (robot->events_head + 1) % GROBO_ROBOT_EVENTS;
+            robot->events_n--;
+            if (robot->on_event != NULL) {
+                robot->on_event(robot->event_ctx, &event);
+            }
+            grobo_i_play_tell(robot);
+        }
+        grobo_i_play_settle(robot);
+    }
+    robot->depth--;
+}
+
+/* ---- pump ------------------------------------------------------------------------------------ */
+
+void grobo_robot_rx(grobo_robot *robot, const uint8_t *bytes, size_t size, int64_t now_us)
+{
+    grobo_i_enter(robot, now_us);
+    if (robot->link) {
+        grobo_bus_rx(&robot->bus, robot->now_us, bytes, size);
+    }
+    grobo_i_leave(robot);
+}
+
+/* Frames are judged in here, and what is refused may end a job. Events of that wait for the next
+ * step: a callback must not come between this frame and its way to the line. */
+int grobo_robot_tx(grobo_robot *robot, uint8_t *buf, size_t capacity, int64_t now_us)
+{
+    if (now_us > robot->now_us) {
+        robot->now_us = now_us;
+    }
+    return robot->link ? grobo_bus_tx(&robot->bus, robot->now_us, buf, capacity) : 0;
+}
+
+void grobo_robot_step(grobo_robot *robot, int64_t now_us)
+{
+    grobo_i_enter(robot, now_us);
+    if (robot->link) {
+        grobo_bus_step(&robot->bus, robot->now_us);
+        grobo_i_segments_step(robot);
+        grobo_i_play_step(robot);
+        grobo_i_play_reserve(robot);
+        grobo_i_job_run(robot);
+        grobo_i_sense_step(robot);
+    }
+    grobo_i_leave(robot);
+}
+
+static int64_t earlier(int64_t a_us, int64_t b_us)
+{
+    return a_us < b_us ? a_us : b_us;
+}
+
+int64_t grobo_robot_deadline(const grobo_robot *robot, int64_t now_us)
+{
+    if (!robot->link) {
+        return GROBO_NEVER_US;
+    }
+    if (robot->events_n > 0 || robot->told_state != grobo_robot_play_state(robot)) {
+        return now_us; /* to be told by the next step */
+    }
+    int64_t at_us = grobo_bus_deadline(&robot->bus, now_us);
+    at_us = earlier(at_us, grobo_sequencer_deadline(&robot->sequencer));
+    at_us = earlier(at_us, grobo_i_segments_deadline(robot));
+    at_us = earlier(at_us, grobo_i_job_deadline(robot));
+    return earlier(at_us, grobo_i_sense_deadline(robot));
+}
+
+/* ---- link ------------------------------------------------------------------------------------ */
+
+void grobo_robot_link_up(grobo_robot *robot, int64_t now_us)
+{
+    grobo_i_enter(robot, now_us);
+    if (!robot->link) {
+        robot->link = true;
+        grobo_i_gate_soften(robot);
+        robot->sense_us = robot->now_us;
+        robot->round = grobo_i_all_joints(robot);
+        tell_kind(robot, GROBO_EVENT_LINK_UP);
+        if (robot->stop_owed) {
+            (void)grobo_i_estop_start(robot);
+        }
+    }
+    grobo_i_leave(robot);
+}
+
+/* What was known of the servos before the line went may be wrong when it comes back. */
+static void forget(grobo_robot *robot)
+{
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        grobo_robot_axis *axis = &robot->axes[j];
+        axis->sensed = axis->has_target = axis->torque_known = false;
+        axis->wants_torque = axis->held = axis->adrift = false;
+        axis->own_until_us = 0;
+        axis->status = GROBO_ERR_UNPLUGGED;
+        axis->lost = 0;
+        axis->current_since_us = GROBO_NEVER_US;
+        axis->way.to_us = robot->now_us;
+    }
+    robot->free_joints = 0;
+    robot->low_readings = 0;
+}
+
+void grobo_robot_link_down(grobo_robot *robot, int64_t now_us)
+{
+    grobo_i_enter(robot, now_us);
+    if (robot->link) {
+        robot->link = false;
+        tell_kind(robot, GROBO_EVENT_LINK_DOWN);
+        if (grobo_robot_is_playing(robot)) {
+            (void)grobo_sequencer_fail(&robot->sequencer, GROBO_ERR_UNPLUGGED);
+        }
+        if (robot->job.kind != GROBO_JOB_NONE) {
+            robot->job.failed |= robot->job.pending;
+            grobo_i_job_end(robot, GROBO_ERR_UNPLUGGED);
+        }
+        (void)grobo_bus_cancel_all(&robot->bus, GROBO_PRIORITY_ALL, GROBO_ERR_UNPLUGGED);
+        grobo_bus_reserve(&robot->bus, GROBO_NEVER_US, 0);
+        forget(robot);
+    }
+    grobo_i_leave(robot);
+}

@@ -1,0 +1,186 @@
+/* SPDX-License-Identifier: MIT */
+/* Frames under way: from an exchange to a transaction of the bus and back. */
+#include "src/robot/robot.h"
+
+#include <assert.h>
+#include <string.h>
+
+/* Slots that only a halt may take: there is always room for what stops the robot. */
+#define SLOTS_TO_HALT 3
+
+int grobo_i_slot_find(const grobo_robot *robot, grobo_i_use use)
+{
+    int to_leave = use == GROBO_I_USE_HALT ? 0 : SLOTS_TO_HALT;
+    int found = -1;
+    for (int i = 0; i < GROBO_ROBOT_SLOTS && (found < 0 || to_leave > 0); i++) {
+        const grobo_robot_slot *slot = &robot->slots[i];
+        if (slot->use == GROBO_I_USE_FREE && found < 0) {
+            found = i;
+        } else if (slot->use == GROBO_I_USE_FREE || slot->use == GROBO_I_USE_HALT) {
+            to_leave--;
+        }
+    }
+    return to_leave > 0 ? -1 : found;
+}
+
+grobo_robot_slot *grobo_i_slot_take(grobo_robot *robot, grobo_i_use use)
+{
+    int at = grobo_i_slot_find(robot, use);
+    if (at < 0) {
+        return NULL;
+    }
+    grobo_robot_slot *found = &robot->slots[at];
+    memset(found, 0, sizeof *found);
+    found->robot = robot;
+    found->due_us = GROBO_NEVER_US;
+    found->use = (uint8_t)use;
+    found->job = use == GROBO_I_USE_HALT ? 0 : robot->acting; /* a halt outlives its job */
+    return found;
+}
+
+void grobo_i_slot_drop(grobo_robot_slot *slot)
+{
+    slot->use = GROBO_I_USE_FREE;
+}
+
+static int on_leave(void *ctx, grobo_txn *txn)
+{
+    grobo_robot_slot *slot = ctx;
+    int result = grobo_i_gate_leave(slot);
+    slot->refused = result < 0;
+    if (result >= 0) {
+        assert(slot->exchange.frame_bytes > 0);
+        slot->asked_us = txn->sent_us < 0 ? slot->robot->now_us : slot->asked_us;
+        txn->frame_bytes = slot->exchange.frame_bytes;
+        txn->reply = slot->exchange.reply;
+    }
+    return result;
+}
+
+static void on_done(void *ctx, grobo_txn *txn, int result, const grobo_rs30x_packet *reply)
+{
+    grobo_robot_slot slot = *(grobo_robot_slot *)ctx;
+    assert(slot.use != GROBO_I_USE_FREE && txn == &((grobo_robot_slot *)ctx)->txn);
+    grobo_i_slot_drop(ctx);
+    if (txn->sent_us < 0) {
+        grobo_i_gate_unwait(slot.robot, &slot.order);
+    }
+    switch ((grobo_i_use)slot.use) {
+    case GROBO_I_USE_FREE:
+    case GROBO_I_USE_PLAIN:
+    case GROBO_I_USE_HALT:
+        break;
+    case GROBO_I_USE_JOB:
+        grobo_i_job_done(&slot, result, reply);
+        break;
+    case GROBO_I_USE_SENSE:
+        grobo_i_sense_done(&slot, result, reply);
+        break;
+    case GROBO_I_USE_SEGMENT:
+        slot.robot->counters.motion_frames += result >= 0;
+        break;
+    case GROBO_I_USE_MOTION:
+        grobo_i_play_done(&slot, result);
+        break;
+    }
+}
+
+int grobo_i_slot_send(grobo_robot_slot *slot, grobo_priority priority)
+{
+    const grobo_robot_config *config = &slot->robot->config;
+    assert(slot->use != GROBO_I_USE_FREE && !grobo_txn_is_pending(&slot->txn));
+    bool had_its_chance = slot->reads && slot->robot->axes[slot->joint].lost > 0;
+    bool once = had_its_chance && slot->use == GROBO_I_USE_SENSE;
+    slot->txn.frame = slot->exchange.frame;
+    slot->txn.frame_bytes = slot->exchange.frame_bytes;
+    slot->txn.reply = slot->exchange.reply;
+    slot->txn.priority = priority;
+    slot->txn.retries = once ? 0 : (uint8_t)config->retries;
+    slot->txn.patient = slot->txn.retries > 0 && !had_its_chance;
+    slot->txn.timeout_us = config->timeout_us;
+    slot->txn.sent_us = -1;
+    slot->given_us = slot->robot->now_us;
+    slot->txn.leave = on_leave;
+    slot->txn.done = on_done;
+    slot->txn.ctx = slot;
+    int result = grobo_bus_submit(&slot->robot->bus, &slot->txn);
+    if (result < 0) {
+        grobo_i_slot_drop(slot);
+    }
+    return result;
+}
+
+static bool waits(const grobo_robot_slot *slot)
+{
+    return slot->use != GROBO_I_USE_FREE && slot->txn.sent_us < 0;
+}
+
+static void cancel(grobo_robot_slot *slot)
+{
+    (void)grobo_bus_cancel(&slot->robot->bus, &slot->txn);
+}
+
+void grobo_i_slots_cancel(grobo_robot *robot, grobo_i_use use)
+{
+    for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
+        if (robot->slots[i].use == use) {
+            cancel(&robot->slots[i]);
+        }
+    }
+}
+
+void grobo_i_slots_cancel_job(grobo_robot *robot, int number)
+{
+    for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
+        grobo_robot_slot *slot = &robot->slots[i];
+        if (slot->use != GROBO_I_USE_FREE && slot->job == number) {
+            cancel(slot);
+        }
+    }
+}
+
+void grobo_i_slots_cancel_goals(grobo_robot *robot)
+{
+    for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
+        grobo_robot_slot *slot = &robot->slots[i];
+        bool goal = slot->use == GROBO_I_USE_MOTION || slot->use == GROBO_I_USE_SEGMENT;
+        if (goal && waits(slot)) {
+            cancel(slot);
+        }
+    }
+}
+
+void grobo_i_slots_keep_off(grobo_robot *robot, grobo_joint_mask joints)
+{
+    for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
+        grobo_robot_slot *slot = &robot->slots[i];
+        bool on = slot->order.deed == GROBO_I_DEED_TORQUE && slot->order.torque == GROBO_TORQUE_ON;
+        if (on && waits(slot) && (slot->order.joints & joints) != 0) {
+            cancel(slot);
+        }
+    }
+}
+
+bool grobo_i_slots_wait(const grobo_robot *robot, grobo_joint_mask joint, grobo_i_deed deed,
+                        grobo_torque torque)
+{
+    for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
+        const grobo_robot_slot *slot = &robot->slots[i];
+        const grobo_robot_order *order = &slot->order;
+        if (waits(slot) && order->deed == deed && order->torque == torque &&
+            (order->joints & joint) != 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool grobo_i_slots_busy(const grobo_robot *robot, grobo_i_use use)
+{
+    for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
+        if (robot->slots[i].use == use) {
+            return true;
+        }
+    }
+    return false;
+}

@@ -1,0 +1,564 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The steps of which the scripts of jobs are made. Commands of servos are not answered through
+ * the board, so whatever was written is read back, and written again where it did not take; a
+ * budget of rounds ends that.
+ */
+#include "src/robot/robot.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "src/base/instant.h"
+
+/* Rounds of writing again; a line that loses a byte in a hundred needs some. */
+#define ROUNDS 10
+#define ROUNDS_ESTOP 20
+/* A servo that writes its flash or restarts hears again after this time. */
+#define DEAF_US 2500000
+/* A servo starts when its frame has passed board and bus, and settles. */
+#define ARRIVAL_US 40000
+/* How often a quieting robot is looked at. */
+#define QUIET_US 5000
+/* A goal is the one that was written if it is the same in the wire's unit. */
+#define SAME_GOAL_RAD (0.06 * 0.017453292519943295)
+
+static bool is_set(grobo_joint_mask joints, int joint)
+{
+    return (joints & GROBO_JOINT_BIT(joint)) != 0;
+}
+
+static grobo_i_chunk chunk_of(const grobo_robot *robot)
+{
+    return robot->job.rounds == 0 ? GROBO_I_WHOLE : GROBO_I_SMALL;
+}
+
+static bool near_rad(double a_rad, double b_rad, double within_rad)
+{
+    return fabs(a_rad - b_rad) <= within_rad;
+}
+
+/* What did not take gets another round from `step` on; without rounds left it has failed. */
+static int again(grobo_robot *robot, grobo_joint_mask bad, grobo_robot_step_fn step)
+{
+    grobo_robot_task *job = &robot->job;
+    bool ends = job->kind == GROBO_JOB_ESTOP || job->kind == GROBO_JOB_EXIT;
+    int rounds = job->kind == GROBO_JOB_ESTOP ? ROUNDS_ESTOP : ROUNDS;
+    if (bad == 0) {
+        return GROBO_I_NEXT;
+    }
+    if (job->rounds++ < rounds || (ends && robot->now_us < job->begun_us + DEAF_US)) {
+        job->failed &= ~bad;
+        job->result = job->failed == 0 ? GROBO_OK : job->result;
+        grobo_i_job_goto(robot, step);
+        return GROBO_I_NEXT;
+    }
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if (is_set(bad & ~job->failed, j)) {
+            grobo_i_job_fail_joint(robot, j, GROBO_ERR_MISMATCH, 0);
+        }
+    }
+    job->pending &= ~bad;
+    return GROBO_I_NEXT;
+}
+
+/* ---- asking ---------------------------------------------------------------------------------- */
+
+static int ask(grobo_robot *robot, const grobo_exchange *exchange)
+{
+    grobo_robot_slot *slot = grobo_i_slot_take(robot, GROBO_I_USE_JOB);
+    if (slot == NULL) {
+        return GROBO_ERR_FULL;
+    }
+    slot->exchange = *exchange;
+    slot->order = robot->job.order;
+    slot->txn.start_by_us = robot->job.leave_by_us;
+    int result = grobo_i_slot_send(slot, robot->job.priority);
+    return result < 0 ? result : GROBO_I_ASK;
+}
+
+static int step_ask(grobo_robot *robot)
+{
+    return ask(robot, &robot->job.exchange);
+}
+
+/* Flash and reboot need silence after them. */
+static int step_settle(grobo_robot *robot)
+{
+    if (robot->job.result < 0 || robot->job.exchange.settle_us == 0) {
+        return robot->job.result;
+    }
+    robot->job.until_us = robot->now_us + robot->job.exchange.settle_us;
+    return GROBO_I_WAIT;
+}
+
+static int step_check(grobo_robot *robot)
+{
+    const grobo_driver *driver = robot->driver;
+    grobo_robot_task *job = &robot->job;
+    memset(&job->exchange, 0, sizeof job->exchange);
+    int more = driver->check(driver, robot->driver_ctx, job->part, &job->exchange);
+    if (more == 0) {
+        return job->part == 0 ? GROBO_ERR_UNSUPPORTED : job->result;
+    }
+    return more < 0 ? more : ask(robot, &job->exchange);
+}
+
+static int step_check_next(grobo_robot *robot)
+{
+    if (robot->job.result < 0) {
+        robot->job.part++;
+        grobo_i_job_goto(robot, step_check);
+    }
+    return GROBO_I_NEXT;
+}
+
+/* ---- reading --------------------------------------------------------------------------------- */
+
+static int step_read(grobo_robot *robot)
+{
+    robot->job.todo = robot->job.joints;
+    return GROBO_I_READ;
+}
+
+static int step_read_again(grobo_robot *robot)
+{
+    grobo_robot_task *job = &robot->job;
+    job->todo = job->failed;
+    job->failed = 0;
+    job->result = GROBO_OK;
+    return GROBO_I_READ;
+}
+
+static int step_read_pending(grobo_robot *robot)
+{
+    robot->job.todo = robot->job.pending;
+    robot->job.sense = GROBO_SENSE_GOAL;
+    return GROBO_I_READ;
+}
+
+/* From here on every joint is needed. */
+static int step_require(grobo_robot *robot)
+{
+    return robot->job.failed == 0 ? GROBO_I_NEXT : robot->job.result;
+}
+
+/* Motions begin where the joints were just seen, not where they were told to be. */
+static int step_from_here(grobo_robot *robot)
+{
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if (is_set(robot->job.joints & ~robot->job.failed, j)) {
+            grobo_i_axis_here(&robot->axes[j], robot->now_us);
+        }
+    }
+    return GROBO_I_NEXT;
+}
+
+/* ---- torque ---------------------------------------------------------------------------------- */
+
+static grobo_joint_mask joints_with(const grobo_robot *robot, grobo_joint_mask joints,
+                                    grobo_torque mode)
+{
+    grobo_joint_mask found = 0;
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if (is_set(joints, j) && robot->axes[j].state.torque == mode) {
+            found |= GROBO_JOINT_BIT(j);
+        }
+    }
+    return found;
+}
+
+static int step_pick_off(grobo_robot *robot)
+{
+    grobo_robot_task *job = &robot->job;
+    grobo_joint_mask read = job->joints & ~job->failed;
+    job->pending = read & ~joints_with(robot, read, GROBO_TORQUE_ON);
+    job->torque = GROBO_TORQUE_ON;
+    job->rounds = 0;
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        robot->axes[j].held = is_set(job->pending, j) ? false : robot->axes[j].held;
+        if (is_set(read & ~job->pending, j)) {
+            robot->axes[j].wants_torque = true;
+        }
+    }
+    bool may = !robot->config.manual_torque || job->kind == GROBO_JOB_TORQUE;
+    return job->pending == 0 || may ? GROBO_I_NEXT : GROBO_ERR_STATE;
+}
+
+static int step_hold(grobo_robot *robot)
+{
+    grobo_robot_task *job = &robot->job;
+    grobo_joint_mask loose = 0;
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if (is_set(job->pending, j) && isnan(grobo_i_hold_rad(robot, j))) {
+            grobo_i_job_fail_joint(robot, j, GROBO_ERR_LIMIT,
+                                   grobo_deg_from_rad(robot->axes[j].state.angle_rad));
+            job->pending &= ~GROBO_JOINT_BIT(j);
+        } else if (is_set(job->pending, j) && !robot->axes[j].held) {
+            loose |= GROBO_JOINT_BIT(j);
+        }
+    }
+    int result = grobo_i_gate_hold(robot, loose, chunk_of(robot));
+    return result < 0 && result != GROBO_ERR_FULL ? result : GROBO_I_DRAIN;
+}
+
+static int step_hold_check(grobo_robot *robot)
+{
+    grobo_robot_task *job = &robot->job;
+    grobo_joint_mask bad = 0;
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if (is_set(job->pending, j)) {
+            grobo_robot_axis *axis = &robot->axes[j];
+            bool is_new = axis->goal_us != GROBO_NEVER_US && axis->goal_us >= axis->told_us;
+            axis->held = !is_set(job->failed, j) && is_new && grobo_i_goal_holds(robot, j);
+            bad |= axis->held ? 0 : GROBO_JOINT_BIT(j);
+        }
+    }
+    return again(robot, bad, step_hold);
+}
+
+static int step_torque(grobo_robot *robot)
+{
+    grobo_robot_task *job = &robot->job;
+    int result = grobo_i_gate_torque(robot, job->pending, job->torque, chunk_of(robot));
+    return result < 0 && result != GROBO_ERR_FULL ? result : GROBO_I_DRAIN;
+}
+
+static bool torque_taken(const grobo_robot *robot, int joint)
+{
+    grobo_torque has = robot->axes[joint].state.torque;
+    return has == robot->job.torque ||
+           (robot->job.kind == GROBO_JOB_ESTOP && has == GROBO_TORQUE_OFF);
+}
+
+static int step_torque_check(grobo_robot *robot)
+{
+    grobo_robot_task *job = &robot->job;
+    grobo_joint_mask bad = 0;
+    bool on = job->torque == GROBO_TORQUE_ON;
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if (!is_set(job->pending, j)) {
+            continue;
+        }
+        if (is_set(job->failed, j) || !torque_taken(robot, j)) {
+            bad |= GROBO_JOINT_BIT(j);
+            robot->axes[j].held = false;
+        } else {
+            robot->axes[j].wants_torque = on;
+            robot->axes[j].has_target = on;
+            grobo_i_axis_rest(&robot->axes[j], robot->now_us);
+        }
+    }
+    job->pending = bad;
+    return again(robot, bad, on ? step_hold : step_torque);
+}
+
+static int step_pick_all(grobo_robot *robot)
+{
+    robot->job.pending = robot->job.joints;
+    robot->job.rounds = 0;
+    robot->job.failed = 0;
+    robot->job.result = GROBO_OK;
+    return GROBO_I_NEXT;
+}
+
+/* ---- moving ---------------------------------------------------------------------------------- */
+
+static int step_aim(grobo_robot *robot)
+{
+    robot->job.pending = robot->job.target.set;
+    robot->job.rounds = 0;
+    return GROBO_I_NEXT;
+}
+
+static int step_send(grobo_robot *robot)
+{
+    grobo_robot_task *job = &robot->job;
+    grobo_i_motion how = {.priority = job->priority,
+                          .due_us = GROBO_NEVER_US,
+                          .as_is = job->kind == GROBO_JOB_SETTLE, /* the stabilizer has seen it */
+                          .stops = job->kind == GROBO_JOB_EXIT};
+    grobo_joint_mask left = job->pending;
+    while (left != 0) {
+        grobo_posture part = job->target;
+        part.set = grobo_i_take_chunk(&left, chunk_of(robot));
+        int result = grobo_i_gate_send(robot, &part, &how);
+        if (result == GROBO_ERR_FULL && (left | part.set) != job->pending) {
+            break; /* the rest in the next round */
+        }
+        if (result < 0) {
+            job->joint = robot->fault_joint;
+            job->value = robot->fault_deg;
+            return result;
+        }
+    }
+    return GROBO_I_DRAIN;
+}
+
+/* Until those that were sent are there: they got their time when their frames left. */
+static int step_arrive(grobo_robot *robot)
+{
+    grobo_robot_task *job = &robot->job;
+    int64_t there_us = robot->now_us;
+    if (job->pending == 0) {
+        return GROBO_I_NEXT;
+    }
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if (is_set(job->pending, j)) {
+            there_us = grobo_i_later(there_us, robot->axes[j].way.to_us);
+        }
+    }
+    job->until_us = there_us + ARRIVAL_US;
+    return GROBO_I_WAIT;
+}
+
+/* What was sent is read back; a step of its own, to go back to. */
+static int step_read_back(grobo_robot *robot)
+{
+    return step_read_pending(robot);
+}
+
+/* True if the goal read is the one that the joint was sent to, or of a way told in segments lies
+ * ahead of where the joint was by then. */
+static bool has_taken(const grobo_robot_axis *axis)
+{
+    const grobo_robot_way *way = &axis->way;
+    double goal_rad = axis->state.goal_rad;
+    if (!axis->in_segments || axis->goal_us >= way->to_us) {
+        return near_rad(goal_rad, way->to_rad, SAME_GOAL_RAD);
+    }
+    double here_rad = grobo_i_way_at(way, axis->goal_us);
+    return goal_rad >= fmin(here_rad, way->to_rad) - SAME_GOAL_RAD &&
+           goal_rad <= fmax(here_rad, way->to_rad) + SAME_GOAL_RAD;
+}
+
+/* Of the joints just read, those whose goal is not the one they were sent to. */
+static grobo_joint_mask not_taken(const grobo_robot *robot)
+{
+    grobo_joint_mask read = robot->job.pending & ~robot->job.failed;
+    grobo_joint_mask bad = 0;
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if (is_set(read, j) && !has_taken(&robot->axes[j])) {
+            bad |= GROBO_JOINT_BIT(j);
+        }
+    }
+    return bad;
+}
+
+/* Joints that are not on their way begin anew from where they were read. One that could not be
+ * read is left alone: it is on its way or where it was, and nobody knows. */
+static int step_missed(grobo_robot *robot)
+{
+    grobo_joint_mask bad = not_taken(robot);
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if (is_set(bad, j)) {
+            grobo_i_axis_here(&robot->axes[j], robot->now_us);
+        }
+    }
+    robot->job.pending = bad;
+    robot->job.failed = 0;
+    robot->job.result = GROBO_OK;
+    return GROBO_I_NEXT;
+}
+
+static int step_arrived(grobo_robot *robot)
+{
+    grobo_robot_task *job = &robot->job;
+    grobo_joint_mask lost = job->pending & job->failed;
+    if (lost != 0) {
+        job->pending = lost | not_taken(robot);
+        return again(robot, lost, step_read_back);
+    }
+    (void)step_missed(robot);
+    grobo_joint_mask bad = job->pending;
+    int result = again(robot, bad, step_send);
+    robot->soft = result == GROBO_I_NEXT && bad == 0 ? false : robot->soft;
+    return result;
+}
+
+/* A joint that has so far to go to where playing begins is looked after. */
+#define FAR_RAD (3 * 0.017453292519943295)
+
+static int step_play(grobo_robot *robot)
+{
+    grobo_robot_task *job = &robot->job;
+    int result = grobo_i_play_start(robot);
+    job->pending = 0;
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        const grobo_robot_axis *axis = &robot->axes[j];
+        double here_rad = grobo_i_axis_commanded(axis, robot->now_us);
+        if (axis->next != 0 && !near_rad(here_rad, axis->next_rad, FAR_RAD)) {
+            job->pending |= GROBO_JOINT_BIT(j);
+        }
+    }
+    job->motion = robot->motion;
+    job->rounds = 0;
+    return result;
+}
+
+/* The approach is one frame, and all that follows relies on it: if it was lost, all over again.
+ * Once another one was sent, what was read back says nothing any more. */
+static int step_approached(grobo_robot *robot)
+{
+    grobo_robot_task *job = &robot->job;
+    bool approaching = grobo_robot_play_state(robot) == GROBO_SEQUENCER_APPROACHING &&
+                       robot->motion == job->motion;
+    grobo_joint_mask lost = approaching ? job->pending & job->failed : 0;
+    grobo_joint_mask bad = approaching ? not_taken(robot) : 0;
+    job->failed = 0;
+    job->result = GROBO_OK;
+    if (bad == 0 && (lost == 0 || job->rounds >= ROUNDS)) {
+        return GROBO_I_NEXT;
+    }
+    if (bad == 0) {
+        job->pending = lost;
+        return again(robot, lost, step_read_back);
+    }
+    grobo_sequencer_reset(&robot->sequencer);
+    if (job->restarts++ >= ROUNDS) {
+        grobo_i_gate_halt(robot, grobo_i_all_joints(robot));
+        return GROBO_ERR_MISMATCH;
+    }
+    grobo_i_gate_soften(robot);
+    grobo_i_job_goto(robot, step_read);
+    return GROBO_I_NEXT;
+}
+
+/* The last posture of a motion: what was lost of it is sent once more, softly. */
+static int step_aim_last(grobo_robot *robot)
+{
+    grobo_robot_task *job = &robot->job;
+    (void)grobo_robot_target(robot, &job->target);
+    job->target.set &= job->joints;
+    grobo_i_gate_soften(robot);
+    return step_aim(robot);
+}
+
+/* ---- leaving --------------------------------------------------------------------------------- */
+
+static int step_quiet(grobo_robot *robot)
+{
+    bool still = !grobo_robot_is_playing(robot) && !grobo_i_slots_busy(robot, GROBO_I_USE_HALT);
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        const grobo_robot_axis *axis = &robot->axes[j];
+        still = still && axis->next == 0 && axis->way.to_us <= robot->now_us;
+    }
+    if (still) {
+        return GROBO_I_NEXT;
+    }
+    grobo_i_job_goto(robot, step_quiet);
+    robot->job.until_us = robot->now_us + QUIET_US;
+    return GROBO_I_WAIT;
+}
+
+/* Nearer than this to its goal, a servo is there. */
+#define THERE_RAD (0.2 * 0.017453292519943295)
+
+/* True if the servo, just read, says that it is on a way; notes that way. */
+static bool is_astray(grobo_robot *robot, int joint)
+{
+    grobo_robot_axis *axis = &robot->axes[joint];
+    const grobo_joint_state *state = &axis->state;
+    int64_t left_us = state->goal_time_us - state->time_us;
+    bool creeps = axis->goal_us == axis->angle_us && left_us > 0 &&
+                  !near_rad(state->goal_rad, state->angle_rad, THERE_RAD);
+    if (state->torque != GROBO_TORQUE_ON ||
+        (axis->own_until_us <= robot->now_us && !axis->adrift && !creeps)) {
+        return false;
+    }
+    if (creeps && axis->own_until_us < axis->goal_us + left_us) {
+        axis->own_until_us = axis->goal_us + left_us;
+    }
+    grobo_i_axis_here(axis, robot->now_us);
+    /* To where nobody knows: it stops where it was. */
+    axis->way.to_us = grobo_i_later(axis->way.to_us, robot->now_us + 1);
+    axis->has_target = true;
+    return true;
+}
+
+/* Nothing goes on behind our back: a halt may be lost, or another program may have been killed. */
+static int step_strays(grobo_robot *robot)
+{
+    grobo_robot_task *job = &robot->job;
+    grobo_joint_mask astray = 0;
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if (is_set(job->joints & ~job->failed, j) && is_astray(robot, j)) {
+            astray |= GROBO_JOINT_BIT(j);
+        }
+    }
+    if (astray != 0 && job->rounds < ROUNDS) {
+        grobo_i_gate_halt(robot, grobo_i_all_joints(robot));
+    }
+    return again(robot, astray, step_quiet);
+}
+
+/* Sits down with the joints that hold; a robot that is limp stays so. */
+static int step_aim_rest(grobo_robot *robot)
+{
+    const grobo_driver *driver = robot->driver;
+    grobo_robot_task *job = &robot->job;
+    grobo_posture_init_pose(&job->target, driver->model);
+    for (int j = 0; driver->rest_rad != NULL && j < driver->model->n_joints; j++) {
+        job->target.angle_rad[j] = driver->rest_rad[j];
+    }
+    job->target.set = joints_with(robot, job->joints, GROBO_TORQUE_ON);
+    grobo_i_gate_soften(robot);
+    return step_aim(robot);
+}
+
+/* ---- scripts --------------------------------------------------------------------------------- */
+
+#define SWITCH_ON                                                                                  \
+    step_pick_off, step_hold, step_read_pending, step_hold_check, step_torque, step_read_pending,  \
+        step_torque_check
+#define SWITCH step_pick_all, step_torque, step_read_pending, step_torque_check
+#define MOVE step_send, step_arrive, step_read_back, step_arrived
+
+const grobo_robot_step_fn grobo_i_script_check[] = {step_check, step_check_next, NULL};
+const grobo_robot_step_fn grobo_i_script_sense[] = {step_read, NULL};
+const grobo_robot_step_fn grobo_i_script_torque_on[] = {step_read, SWITCH_ON, NULL};
+const grobo_robot_step_fn grobo_i_script_torque_off[] = {SWITCH, NULL};
+const grobo_robot_step_fn grobo_i_script_move[] = {
+    step_read,      step_read_again, step_require, SWITCH_ON, step_require,
+    step_from_here, step_aim,        MOVE,         NULL};
+const grobo_robot_step_fn grobo_i_script_play[] = {
+    step_read,      step_read_again, step_require,   SWITCH_ON,       step_require,
+    step_from_here, step_play,       step_read_back, step_approached, NULL};
+const grobo_robot_step_fn grobo_i_script_settle[] = {step_aim_last, step_read_pending, step_missed,
+                                                     MOVE, NULL};
+const grobo_robot_step_fn grobo_i_script_ask[] = {step_ask, step_settle, NULL};
+const grobo_robot_step_fn grobo_i_script_exit_off[] = {step_quiet, SWITCH, NULL};
+const grobo_robot_step_fn grobo_i_script_exit_hold[] = {step_quiet, step_read, step_strays, NULL};
+const grobo_robot_step_fn grobo_i_script_exit_sit[] = {
+    step_quiet,    step_read, step_read_again, step_require, step_from_here,
+    step_aim_rest, MOVE,      step_require,    SWITCH,       NULL};
+
+/* ---- another target -------------------------------------------------------------------------- */
+
+bool grobo_i_move_is_sent(const grobo_robot *robot)
+{
+    const grobo_robot_task *job = &robot->job;
+    unsigned sending = 0;
+    if (job->kind != GROBO_JOB_MOVE) {
+        return false;
+    }
+    while (job->script[sending] != step_send) {
+        sending++;
+    }
+    return job->at > sending;
+}
+
+/* A reading on the wire comes to its end; whatever else the job waits for is over. */
+void grobo_i_move_retarget(grobo_robot *robot, const grobo_posture *target)
+{
+    grobo_robot_task *job = &robot->job;
+    grobo_i_slots_cancel_goals(robot);
+    job->target = *target;
+    job->joints = job->pending = target->set;
+    job->rounds = 0;
+    job->failed = job->todo = 0;
+    job->result = GROBO_OK;
+    job->until_us = robot->now_us;
+    grobo_i_job_goto(robot, step_send);
+    grobo_i_job_run(robot);
+}

@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: MIT */
+/* The push parser of board frames: for who stands in for the board. */
+#include <grobo/board.h>
+
+#include "src/bus/framer.h"
+
+/* A grobo_i_measure. */
+static int measure(const uint8_t *bytes, size_t n, unsigned accept)
+{
+    grobo_board_frame frame;
+    (void)accept;
+    return grobo_board_peek(bytes, n, &frame);
+}
+
+void grobo_board_parser_init(grobo_board_parser *parser, uint32_t stall_us)
+{
+    grobo_i_framer_init(&parser->framer);
+    parser->stalls = 0;
+    parser->stall_us = stall_us != 0 ? stall_us : GROBO_BOARD_STALL_US;
+    parser->last_us = 0;
+}
+
+static void abandon_what_stands_still(grobo_board_parser *parser, int64_t now_us)
+{
+    if (!parser->framer.ending && now_us >= grobo_board_parser_deadline(parser)) {
+        parser->stalls++;
+        grobo_i_framer_end(&parser->framer);
+    }
+}
+
+size_t grobo_board_parser_feed(grobo_board_parser *parser, int64_t now_us, const uint8_t *bytes,
+                               size_t n)
+{
+    abandon_what_stands_still(parser, now_us);
+    size_t took = grobo_i_framer_feed(&parser->framer, bytes, n);
+    if (took > 0) {
+        parser->last_us = now_us;
+    }
+    return took;
+}
+
+int grobo_board_parser_next(grobo_board_parser *parser, int64_t now_us, grobo_board_frame *frame)
+{
+    abandon_what_stands_still(parser, now_us);
+    size_t size = grobo_i_framer_next(&parser->framer, measure, 0);
+    if (size == 0) {
+        return 0;
+    }
+    return grobo_board_peek(parser->framer.buf, size, frame) > 0;
+}
+
+int64_t grobo_board_parser_deadline(const grobo_board_parser *parser)
+{
+    if (grobo_i_framer_pending(&parser->framer) == 0) {
+        return GROBO_NEVER_US;
+    }
+    return parser->last_us + parser->stall_us;
+}
+
+void grobo_board_parser_reset(grobo_board_parser *parser)
+{
+    grobo_i_framer_reset(&parser->framer);
+}

@@ -1,0 +1,418 @@
+/* SPDX-License-Identifier: MIT */
+/* The driver functions of robots made of RS30x servos, for either wiring. */
+#include <grobo/driver.h>
+
+#include <string.h>
+
+#include "src/servo/rs30x/driver.h"
+
+/* A long packet of n servos has 8 + (1 + data) n bytes (protocol 3). */
+static int servos_per_frame(const grobo_driver *self, int data_bytes)
+{
+    int packet =
+        self->wiring == GROBO_WIRING_BOARD ? GROBO_RELAY_MAX_BYTES : GROBO_RS30X_PACKET_MAX_BYTES;
+    return (packet - GROBO_RS30X_OVERHEAD_BYTES) / (1 + data_bytes);
+}
+
+/* Takes the size a builder returned into the exchange and works out the reply. */
+static int finish(const grobo_driver *self, int size, grobo_exchange *exchange)
+{
+    if (size < 0) {
+        return size;
+    }
+    exchange->frame_bytes = (uint8_t)size;
+    int reply = grobo_frame_reply(self->wiring, exchange->frame, (size_t)size, &exchange->reply);
+    return reply < 0 ? reply : GROBO_OK;
+}
+
+static int finish_part(const grobo_driver *self, int size, grobo_exchange *exchange)
+{
+    int result = finish(self, size, exchange);
+    return result < 0 ? result : 1;
+}
+
+/* The joints of part `part` in motor order, `capacity` a part; returns how many. */
+static int joints_of_part(const grobo_model *model, grobo_joint_mask joints, int part, int capacity,
+                          uint8_t *list)
+{
+    uint8_t sorted[GROBO_JOINTS_MAX];
+    int n = 0;
+    for (int j = 0; j < model->n_joints; j++) {
+        if ((joints & GROBO_JOINT_BIT(j)) == 0) {
+            continue;
+        }
+        int at = n++;
+        for (; at > 0 && model->joints[sorted[at - 1]].motor > model->joints[j].motor; at--) {
+            sorted[at] = sorted[at - 1];
+        }
+        sorted[at] = (uint8_t)j;
+    }
+    int first = part * capacity;
+    int count = n - first < capacity ? n - first : capacity;
+    if (count <= 0) {
+        return 0;
+    }
+    memcpy(list, &sorted[first], (size_t)count);
+    return count;
+}
+
+int grobo_i_rs30x_check(const grobo_driver *self, void *ctx, int part, grobo_exchange *exchange)
+{
+    (void)ctx;
+    if (self->wiring == GROBO_WIRING_BOARD) {
+        return part > 0
+                   ? 0
+                   : finish_part(self, grobo_board_check(exchange->frame, sizeof exchange->frame),
+                                 exchange);
+    }
+    if (part >= self->model->n_joints) {
+        return 0;
+    }
+    int size = grobo_frame_read(self->wiring, self->model->joints[part].motor, GROBO_RS30X_MODEL, 2,
+                                exchange->frame, sizeof exchange->frame);
+    return finish_part(self, size, exchange);
+}
+
+static void fill_goal(const grobo_driver *self, const grobo_target *target, int joint,
+                      grobo_rs30x_goal *goal)
+{
+    int64_t steps = (target->joint_time_us[joint] + self->time_step_us / 2) / self->time_step_us;
+    int64_t most = GROBO_PLAY_TIME_MAX_US / self->time_step_us;
+    goal->id = self->model->joints[joint].motor;
+    goal->pos_ddeg = grobo_ddeg_from_rad(target->posture.angle_rad[joint]);
+    goal->time_cs = (uint16_t)(steps > most ? most : steps);
+}
+
+int grobo_i_rs30x_posture(const grobo_driver *self, void *ctx, const grobo_target *target, int part,
+                          grobo_exchange *exchange)
+{
+    (void)ctx;
+    uint8_t list[GROBO_JOINTS_MAX];
+    grobo_rs30x_goal goals[GROBO_JOINTS_MAX];
+    int n = joints_of_part(self->model, target->posture.set, part, servos_per_frame(self, 4), list);
+    if (n == 0) {
+        return 0;
+    }
+    for (int i = 0; i < n; i++) {
+        fill_goal(self, target, list[i], &goals[i]);
+    }
+    uint8_t *buf = exchange->frame;
+    int size = n == 1
+                   ? grobo_frame_goal(self->wiring, goals, buf, sizeof exchange->frame)
+                   : grobo_frame_goals(self->wiring, goals, (size_t)n, buf, sizeof exchange->frame);
+    return finish_part(self, size, exchange);
+}
+
+int grobo_i_rs30x_torque(const grobo_driver *self, void *ctx, grobo_joint_mask joints,
+                         grobo_torque mode, int part, grobo_exchange *exchange)
+{
+    (void)ctx;
+    uint8_t list[GROBO_JOINTS_MAX];
+    grobo_rs30x_byte torques[GROBO_JOINTS_MAX];
+    int n = joints_of_part(self->model, joints, part, servos_per_frame(self, 1), list);
+    if (n == 0) {
+        return 0;
+    }
+    for (int i = 0; i < n; i++) {
+        torques[i].id = self->model->joints[list[i]].motor;
+        torques[i].value = (uint8_t)mode;
+    }
+    uint8_t *buf = exchange->frame;
+    int size =
+        n == 1 ? grobo_frame_torque(self->wiring, torques[0].id, mode, buf, sizeof exchange->frame)
+               : grobo_frame_torques(self->wiring, torques, (size_t)n, buf, sizeof exchange->frame);
+    return finish_part(self, size, exchange);
+}
+
+/* Registers that each kind of sensing reads. */
+static const struct {
+    uint8_t address, length;
+} blocks[] = {
+    [GROBO_SENSE_FULL] = {GROBO_STATE_ADDRESS, GROBO_STATE_BYTES},
+    [GROBO_SENSE_POSITION] = {GROBO_RS30X_POSITION, 2},
+    [GROBO_SENSE_GOAL] = {GROBO_RS30X_GOAL, GROBO_RS30X_SPEED + 2 - GROBO_RS30X_GOAL},
+    [GROBO_SENSE_ALL] = {GROBO_RS30X_GOAL, GROBO_RS30X_VOLTAGE + 2 - GROBO_RS30X_GOAL},
+};
+
+int grobo_i_rs30x_sense(const grobo_driver *self, void *ctx, int joint, grobo_sense_kind kind,
+                        grobo_exchange *exchange)
+{
+    (void)ctx;
+    int size =
+        grobo_frame_read(self->wiring, self->model->joints[joint].motor, blocks[kind].address,
+                         blocks[kind].length, exchange->frame, sizeof exchange->frame);
+    return finish(self, size, exchange);
+}
+
+/* The bits of both lists, side by side. */
+static const struct {
+    uint8_t has;
+    uint16_t field;
+} fields[] = {
+    {GROBO_RS30X_HAS_POSITION, GROBO_FIELD_ANGLE},
+    {GROBO_RS30X_HAS_TIME, GROBO_FIELD_TIME},
+    {GROBO_RS30X_HAS_SPEED, GROBO_FIELD_SPEED},
+    {GROBO_RS30X_HAS_CURRENT, GROBO_FIELD_CURRENT},
+    {GROBO_RS30X_HAS_TEMPERATURE, GROBO_FIELD_TEMPERATURE},
+    {GROBO_RS30X_HAS_VOLTAGE, GROBO_FIELD_VOLTAGE},
+    {GROBO_RS30X_HAS_TORQUE, GROBO_FIELD_TORQUE},
+};
+
+/* The sum is an exclusive or: two bytes broken alike, or a lost one made up for, go through it.
+ * What no servo says is not believed all the same. */
+static bool plausible(const grobo_rs30x_state *s)
+{
+    return s->pos_ddeg >= -1800 && s->pos_ddeg <= 1800 && s->temperature_c >= -40 &&
+           s->temperature_c <= 150 && s->voltage_mv <= 20000 && s->current_ma <= 10000 &&
+           s->torque <= GROBO_TORQUE_BRAKE;
+}
+
+int grobo_i_rs30x_parse(const grobo_driver *self, void *ctx, int joint,
+                        const grobo_rs30x_packet *reply, grobo_joint_state *state)
+{
+    (void)self;
+    (void)ctx;
+    (void)joint;
+    grobo_rs30x_state got;
+    int found = grobo_rs30x_state_decode(reply->address, reply->data, reply->data_bytes, &got);
+    if (found <= 0 || !plausible(&got)) {
+        return GROBO_ERR_MISMATCH;
+    }
+    state->angle_rad = grobo_rad_from_ddeg(got.pos_ddeg);
+    state->time_us = (int64_t)got.time_cs * GROBO_PLAY_TIME_UNIT_US;
+    state->speed_dps = got.speed_dps;
+    state->current_ma = got.current_ma;
+    state->temperature_c = got.temperature_c;
+    state->voltage_mv = (int32_t)got.voltage_mv;
+    state->torque = (grobo_torque)got.torque;
+    state->flags = reply->flags;
+    for (size_t i = 0; i < sizeof fields / sizeof fields[0]; i++) {
+        if ((got.has & fields[i].has) != 0) {
+            state->valid = (uint16_t)(state->valid | fields[i].field);
+        }
+    }
+    if (reply->address == GROBO_RS30X_GOAL && reply->data_bytes >= 4) {
+        const grobo_rs30x_register *goal = grobo_rs30x_register_at(GROBO_RS30X_GOAL);
+        const grobo_rs30x_register *time = grobo_rs30x_register_at(GROBO_RS30X_GOAL_TIME);
+        state->goal_rad = grobo_rad_from_ddeg(grobo_rs30x_register_get(goal, reply->data));
+        state->goal_time_us =
+            (int64_t)grobo_rs30x_register_get(time, reply->data + 2) * GROBO_PLAY_TIME_UNIT_US;
+        state->valid |= GROBO_FIELD_GOAL;
+    }
+    return GROBO_OK;
+}
+
+int grobo_i_rs30x_registers(const grobo_driver *self, void *ctx, const grobo_register_io *io,
+                            grobo_exchange *exchange)
+{
+    (void)ctx;
+    uint8_t *buf = exchange->frame;
+    size_t cap = sizeof exchange->frame;
+    if (io->data == NULL) {
+        int size = grobo_frame_read(self->wiring, io->id, io->address, io->length, buf, cap);
+        return finish(self, size, exchange);
+    }
+    grobo_rs30x_packet packet = {
+        .kind = GROBO_RS30X_SHORT,
+        .id = io->id,
+        .flags = GROBO_RS30X_WANT_ACK,
+        .address = io->address,
+        .length = io->length,
+        .count = 1,
+        .data = io->data,
+        .data_bytes = io->length,
+    };
+    int size = grobo_rs30x_build(&packet, buf, cap);
+    if (size > 0) {
+        size = grobo_frame_wrap(self->wiring, buf, (size_t)size, buf, cap);
+    }
+    return finish(self, size, exchange);
+}
+
+/* Protocol 3: a flash write takes a second or more, a reboot two. */
+#define FLASH_US 1200000
+#define REBOOT_US 2000000
+
+int grobo_i_rs30x_command(const grobo_driver *self, void *ctx, int id, grobo_servo_command command,
+                          grobo_exchange *exchange)
+{
+    (void)ctx;
+    uint8_t *buf = exchange->frame;
+    size_t cap = sizeof exchange->frame;
+    int size = GROBO_ERR_ARG;
+    switch (command) {
+    case GROBO_SERVO_FLASH:
+        size = grobo_rs30x_control((uint8_t)id, GROBO_RS30X_FLASH, buf, cap);
+        exchange->settle_us = FLASH_US;
+        break;
+    case GROBO_SERVO_REBOOT:
+        size = grobo_rs30x_control((uint8_t)id, GROBO_RS30X_REBOOT, buf, cap);
+        exchange->settle_us = REBOOT_US;
+        break;
+    case GROBO_SERVO_FACTORY_RESET:
+        size = grobo_rs30x_factory_reset((uint8_t)id, GROBO_RS30X_RESET_WITH_DATA, buf, cap);
+        exchange->settle_us = FLASH_US;
+        break;
+    }
+    if (size > 0) {
+        size = grobo_frame_wrap(self->wiring, buf, (size_t)size, buf, cap);
+    }
+    return finish(self, size, exchange);
+}
+
+int grobo_i_rs30x_stored(const grobo_driver *self, void *ctx, grobo_stored_kind kind, int number,
+                         grobo_exchange *exchange)
+{
+    (void)ctx;
+    uint8_t *buf = exchange->frame;
+    size_t cap = sizeof exchange->frame;
+    if (number < 0 || number > UINT8_MAX) {
+        return GROBO_ERR_ARG;
+    }
+    int size = kind == GROBO_STORED_SLOT ? grobo_board_slot((uint8_t)number, buf, cap)
+                                         : grobo_board_scenario((uint8_t)number, buf, cap);
+    return finish(self, size, exchange);
+}
+
+/* ---- reading the wish out of a raw frame ----------------------------------------------------- */
+
+/* Flags by which a servo does something with itself. */
+#define ACTS (GROBO_RS30X_FLASH | GROBO_RS30X_REBOOT | GROBO_RS30X_FACTORY)
+
+/* One servo's share of a write: its data from `address` on. */
+typedef struct share {
+    uint8_t id, address, bytes;
+    const uint8_t *data;
+} share;
+
+static const uint8_t *at_register(const share *s, int address, int bytes)
+{
+    bool inside = address >= s->address && address + bytes <= s->address + s->bytes;
+    return inside ? s->data + (address - s->address) : NULL;
+}
+
+static bool overlaps(const share *s, int first, int last)
+{
+    return s->bytes > 0 && s->address <= last && s->address + s->bytes > first;
+}
+
+static int inspect_joint(const grobo_driver *self, const share *s, int joint, grobo_target *target,
+                         grobo_joint_mask *torqued)
+{
+    grobo_joint_mask bit = GROBO_JOINT_BIT(joint);
+    const uint8_t *goal = at_register(s, GROBO_RS30X_GOAL, 2);
+    const uint8_t *time = at_register(s, GROBO_RS30X_GOAL_TIME, 2);
+    const uint8_t *torque = at_register(s, GROBO_RS30X_TORQUE, 1);
+    if (overlaps(s, GROBO_RS30X_GOAL, GROBO_RS30X_GOAL + 1) != (goal != NULL) ||
+        overlaps(s, GROBO_RS30X_GOAL_TIME, GROBO_RS30X_GOAL_TIME + 1) != (time != NULL)) {
+        return GROBO_ERR_UNSUPPORTED; /* half of a value */
+    }
+    if ((torque != NULL && *torque > GROBO_TORQUE_BRAKE) ||
+        (goal != NULL && (target->posture.set & bit) != 0)) {
+        return GROBO_ERR_UNSUPPORTED; /* a torque that there is not, or two goals */
+    }
+    if (goal != NULL) {
+        int ddeg = (int)grobo_rs30x_register_get(grobo_rs30x_register_at(GROBO_RS30X_GOAL), goal);
+        int64_t units = time == NULL ? 0 : time[0] + 256 * time[1];
+        target->posture.angle_rad[joint] = grobo_rad_from_ddeg(ddeg);
+        target->posture.set |= bit;
+        target->joint_time_us[joint] = units * self->time_step_us;
+    }
+    if (torque != NULL) {
+        torqued[*torque] |= bit;
+    }
+    return GROBO_OK;
+}
+
+static int inspect_share(const grobo_driver *self, const share *s, grobo_target *target,
+                         grobo_joint_mask *torqued)
+{
+    bool motor = overlaps(s, GROBO_RS30X_GOAL, GROBO_RS30X_GOAL_TIME + 1) ||
+                 overlaps(s, GROBO_RS30X_TORQUE, GROBO_RS30X_TORQUE);
+    bool known = s->id == GROBO_RS30X_ID_ALL || grobo_model_joint_of_motor(self->model, s->id) >= 0;
+    /* Id, direction, speed, limits: afterwards a goal means something else. */
+    if (overlaps(s, GROBO_RS30X_ID, GROBO_RS30X_CCW_LIMIT + 1) || (motor && !known)) {
+        return GROBO_ERR_UNSUPPORTED;
+    }
+    for (int j = 0; j < self->model->n_joints; j++) {
+        if (s->id == GROBO_RS30X_ID_ALL || s->id == self->model->joints[j].motor) {
+            int result = inspect_joint(self, s, j, target, torqued);
+            if (result < 0) {
+                return result;
+            }
+        }
+    }
+    return GROBO_OK;
+}
+
+static int inspect_packet(const grobo_driver *self, const grobo_rs30x_packet *packet,
+                          grobo_target *target, grobo_joint_mask *torqued)
+{
+    if ((packet->flags & ACTS) != 0) {
+        return GROBO_ERR_UNSUPPORTED; /* grobo_robot_command() does it */
+    }
+    if (packet->kind == GROBO_RS30X_SHORT) {
+        share s = {packet->id, packet->address, (uint8_t)packet->data_bytes, packet->data};
+        return inspect_share(self, &s, target, torqued);
+    }
+    for (size_t i = 0; i < packet->count; i++) {
+        const uint8_t *entry = packet->data + i * packet->length;
+        share s = {entry[0], packet->address, (uint8_t)(packet->length - 1), entry + 1};
+        int result = inspect_share(self, &s, target, torqued);
+        if (result < 0) {
+            return result;
+        }
+    }
+    return GROBO_OK;
+}
+
+int grobo_i_rs30x_inspect(const grobo_driver *self, void *ctx, const uint8_t *frame, size_t size,
+                          grobo_target *target, grobo_joint_mask *torqued)
+{
+    (void)ctx;
+    const uint8_t *bytes = frame;
+    size_t n = size;
+    if (self->wiring == GROBO_WIRING_BOARD) {
+        grobo_board_frame board;
+        if (grobo_board_parse(frame, size, &board) < 0 || board.kind == GROBO_BOARD_SLOT ||
+            board.kind == GROBO_BOARD_SCENARIO) {
+            return GROBO_ERR_UNSUPPORTED;
+        }
+        if (board.kind == GROBO_BOARD_CHECK) {
+            return GROBO_OK;
+        }
+        bytes = board.packet;
+        n = board.packet_bytes;
+    }
+    grobo_rs30x_parser parser;
+    grobo_rs30x_packet packet;
+    grobo_rs30x_parser_init(&parser, GROBO_RS30X_ACCEPT_COMMANDS);
+    if (grobo_rs30x_parser_feed(&parser, bytes, n) != n ||
+        grobo_rs30x_parser_next(&parser, &packet) != 1 || parser.framer.stats.frame_bytes != n) {
+        return GROBO_ERR_UNSUPPORTED;
+    }
+    return inspect_packet(self, &packet, target, torqued);
+}
+
+/* ---- the table ------------------------------------------------------------------------------- */
+
+int grobo_rs30x_driver_init(grobo_driver *driver, const grobo_model *model, grobo_wiring wiring)
+{
+    if (driver == NULL || model == NULL || grobo_model_check(model) < 0 ||
+        (wiring != GROBO_WIRING_BOARD && wiring != GROBO_WIRING_BUS)) {
+        return GROBO_ERR_ARG;
+    }
+    *driver = (grobo_driver){
+        .name = model->name,
+        .model = model,
+        .wiring = wiring,
+        .limits = {.temperature_c = 70,
+                   .lost_replies = 5,
+                   .approach_rad_s = grobo_rad_from_deg(GROBO_PLAY_APPROACH_DEG_S)},
+        GROBO_I_RS30X_FUNCTIONS,
+    };
+    if (wiring == GROBO_WIRING_BOARD) {
+        driver->stored = grobo_i_rs30x_stored;
+    }
+    return GROBO_OK;
+}

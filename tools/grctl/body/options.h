@@ -1,0 +1,96 @@
+/* SPDX-License-Identifier: MIT */
+/* BODY OPTIONS: how legs that a key-pose file gives by ikLinks are solved. */
+#ifndef GRCTL_BODY_OPTIONS_H
+#define GRCTL_BODY_OPTIONS_H
+
+#include <grobo/body_motion.h>
+#include <grobo/motion_io.h>
+
+#include "tools/grctl/cli/app.h"
+
+enum { BODY_LIKE, BODY_IK, BODY_STEP, BODY_ZMP, BODY_BALANCE, BODY_OPTIONS };
+
+/* The rows of a command's table, from row `base` on; the words of ik, step and balance are in the
+ * order of the enums of body.h. How legs are solved, */
+#define BODY_LEG_ROWS(base)                                                                        \
+    [(base) +                                                                                      \
+        BODY_LIKE] = {.name = "like",                                                              \
+                      .kind = CLI_CHOICE,                                                          \
+                      .value = "choreonoid|choreonoid-1.1|robot",                                  \
+                      .help = "solve legs as these do; the options below change it"},              \
+        [(base) + BODY_IK] = {.name = "ik",                                                        \
+                              .kind = CLI_CHOICE,                                                  \
+                              .value = "exact|numeric|off",                                        \
+                              .help = "solve legs given by ikLinks (exact), or ignore them"},      \
+        [(base) + BODY_STEP] = {.name = "step",                                                    \
+                                .kind = CLI_CHOICE,                                                \
+                                .value = "none|stealthy",                                          \
+                                .help = "soften lift and landing of feet (none)"},                 \
+        [(base) + BODY_ZMP] = {.name = "zmp",                                                      \
+                               .kind = CLI_CHOICE,                                                 \
+                               .value = "auto|file",                                               \
+                               .help = "source of the desired ZMP (file; auto with a balancer)"}
+
+/* and whether the waist is moved; for play and convert, */
+#define BODY_OPTION_ROWS(base)                                                                     \
+    BODY_LEG_ROWS(base),                                                                           \
+        [(base) + BODY_BALANCE] = {                                                                \
+            .name = "balance",                                                                     \
+            .kind = CLI_CHOICE,                                                                    \
+            .value = "off|on|compat11",                                                            \
+            .help = "shift the waist to keep balance (off); compat11 as Choreonoid 1.1"}
+
+/* for check and plot, which look at the balance when the option is given, even without a word. */
+#define BODY_LOOK_ROWS(base)                                                                       \
+    BODY_LEG_ROWS(base),                                                                           \
+        [(base) + BODY_BALANCE] = {.name = "balance",                                              \
+                                   .kind = CLI_CHOICE,                                             \
+                                   .value = "off|on|compat11",                                     \
+                                   .optional = true,                                               \
+                                   .help = "would it fall? on: with the waist shifted to keep it"}
+
+/* Beside them, for show and plot: which joints, and the motion as it is sent. */
+#define MOTION_LOOK_ROWS(joints, rate, rate_help)                                                  \
+    [joints] = {.name = "joints",                                                                  \
+                .letter = 'j',                                                                     \
+                .kind = CLI_TEXT,                                                                  \
+                .value = "LIST",                                                                   \
+                .help = "only these joints or groups, split by commas"},                           \
+    [rate] = {.name = "rate",                                                                      \
+              .letter = 'r',                                                                       \
+              .kind = CLI_NUMBER,                                                                  \
+              .value = "HZ",                                                                       \
+              .help = (rate_help),                                                                 \
+              .min = 0.1,                                                                          \
+              .max = 1000,                                                                         \
+              .real = true}
+
+/*
+ * The options as given, at a rate (0: the default): what --like names, changed by the others. A
+ * balancer without --zmp has automatic ZMP. Returns 0, or the exit status with the reason said: a
+ * balancer without IK.
+ */
+int body_options_read(app *a, int base, double rate_hz, grobo_body_options *options);
+/* True if any of them was given. */
+bool body_options_given(const app *a, int base);
+
+/*
+ * Makes a body for a motion whose legs are given by ikLinks; *body stays NULL for any other motion
+ * and with --ik off. Returns 0, or the exit status with the reason said. grobo_body_free() after.
+ */
+int body_make(app *a, int base, const char *path, const grobo_motion *motion, double rate_hz,
+              grobo_body **body);
+
+/*
+ * Refuses what a robot cannot do: legs that do not reach, angles beyond limits. Those within the
+ * slack of a limit are counted. 0 or the status.
+ */
+int body_refuse(app *a, const char *path, grobo_body *body, grobo_slack_taken *slack);
+
+/*
+ * The motion with its legs solved: frames at a rate, or (0) a posture a key time. The motion
+ * belongs to the caller. 0 or the status.
+ */
+int body_motion(app *a, const char *path, grobo_body *body, double rate_hz, grobo_motion **out);
+
+#endif

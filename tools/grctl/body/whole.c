@@ -1,0 +1,97 @@
+/* SPDX-License-Identifier: MIT */
+#include <string.h>
+
+#include "tools/grctl/body/whole.h"
+#include "tools/grctl/cli/file.h"
+
+bool whole_applies(const grobo_motion *motion, const grobo_body_options *options)
+{
+    return options->ik != GROBO_BODY_IK_OFF && grobo_motion_get_kind(motion) == GROBO_MOTION_KEYS &&
+           file_model(motion) == &grobo_gr001_model && grobo_body_wanted(&grobo_gr001_body, motion);
+}
+
+int whole_open(whole *w, const grobo_motion *motion, const grobo_clip_options *plain,
+               const grobo_body_options *options)
+{
+    int error;
+    memset(w, 0, sizeof *w);
+    if (!whole_applies(motion, options))
+        return grobo_motion_clip(motion, plain, &w->clip);
+    error = grobo_body_new(&w->body, &grobo_gr001_body, motion, options, NULL);
+    if (!error)
+        grobo_body_clip(w->body, false, &w->clip);
+    return error;
+}
+
+void whole_close(whole *w)
+{
+    if (!w->body && w->clip.key)
+        grobo_motion_clip_free(&w->clip);
+    grobo_body_free(w->body);
+    memset(w, 0, sizeof *w);
+}
+
+grobo_joint_mask whole_joints(void)
+{
+    const grobo_body_model *model = &grobo_gr001_body;
+    grobo_joint_mask joints = 0;
+    for (int foot = 0; foot < 2; foot++)
+        for (int link = model->feet[foot].link; link > 0; link = model->links[link].parent)
+            joints |= GROBO_JOINT_BIT(model->links[link].joint);
+    return joints;
+}
+
+/* ---- two feet on the ground ---------------------------------------------------------------- */
+
+static void stand(grobo_ik_link *link, int foot)
+{
+    const grobo_body_foot *at = &grobo_gr001_body.feet[foot];
+    memset(link, 0, sizeof *link);
+    snprintf(link->name, sizeof link->name, "%s", grobo_gr001_body.links[at->link].name);
+    link->index = at->link;
+    link->is_base = foot == 0;
+    link->is_touching = true;
+    link->rotation[0] = link->rotation[4] = link->rotation[8] = 1;
+    link->translation_m[2] = -at->sole_m[2];
+}
+
+/* With a foot as base and no target for the waist no leg is solved: the angles are as they are. */
+static int stand_on_feet(grobo_motion *keys)
+{
+    grobo_ik_link feet[2];
+    stand(&feet[0], 0);
+    stand(&feet[1], 1);
+    return grobo_motion_set_ik_links(keys, 0, feet, 2);
+}
+
+/* The same postures as key poses, with Choreonoid's curve between them: straight lines would have
+ * no acceleration but in their corners. */
+static int to_keys(const grobo_motion *motion, grobo_motion **keys)
+{
+    grobo_write_options how = {.model = &grobo_gr001_model};
+    return grobo_motion_convert(motion, GROBO_MOTION_KEYS, &how, NULL, keys);
+}
+
+int whole_body(grobo_body **body, const grobo_motion *motion, const grobo_body_options *options,
+               bool *standing)
+{
+    const grobo_body_options as_they_are = {.rate_hz = options->rate_hz};
+    grobo_motion *keys = NULL;
+    int error;
+    *standing = !whole_applies(motion, options);
+    if (!*standing)
+        return grobo_body_new(body, &grobo_gr001_body, motion, options, NULL);
+    if (file_model(motion) != &grobo_gr001_model)
+        return GROBO_ERR_TYPE;
+    error = to_keys(motion, &keys);
+    if (!error && grobo_motion_size(keys) == 0)
+        error = GROBO_ERR_EMPTY;
+    for (size_t i = 0; !error && i < grobo_motion_size(keys); i++)
+        error = grobo_motion_set_ik_links(keys, i, NULL, 0);
+    if (!error)
+        error = stand_on_feet(keys);
+    if (!error)
+        error = grobo_body_new(body, &grobo_gr001_body, keys, &as_they_are, NULL);
+    grobo_motion_free(keys);
+    return error;
+}

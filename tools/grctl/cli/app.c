@@ -1,0 +1,187 @@
+/* SPDX-License-Identifier: MIT */
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "tools/grctl/cli/app.h"
+#include "tools/grctl/cli/output.h"
+#include "tools/grctl/os/os.h"
+
+static bool wants_color(const app *a, bool tty)
+{
+    const cli_value *v = app_global(a, GLOBAL_COLOR);
+    const char *no_color = getenv("NO_COLOR");
+    const char *term = getenv("TERM");
+    if (v->given && v->choice == 1) /* always */
+        return true;
+    if (v->given && v->choice == 2) /* never */
+        return false;
+    if (no_color && *no_color)
+        return false;
+    return tty && !(term && strcmp(term, "dumb") == 0);
+}
+
+void app_settle(app *a)
+{
+    a->json = app_global(a, GLOBAL_JSON)->given > 0;
+    a->verbosity = app_global(a, GLOBAL_QUIET)->given ? -1 : app_global(a, GLOBAL_VERBOSE)->given;
+    a->tty_in = os_is_terminal(stdin);
+    a->tty_out = os_is_terminal(stdout);
+    a->tty_err = os_is_terminal(stderr);
+    a->color_out = wants_color(a, a->tty_out);
+    a->color_err = wants_color(a, a->tty_err);
+}
+
+const cli_value *app_option(const app *a, int i)
+{
+    return &a->line.option[i];
+}
+
+const cli_value *app_global(const app *a, int i)
+{
+    return &a->line.global[i];
+}
+
+double app_number(const app *a, int i, double otherwise)
+{
+    return a->line.option[i].given ? a->line.option[i].number : otherwise;
+}
+
+void app_make_one_line(char *text)
+{
+    for (; *text; text++)
+        if ((unsigned char)*text < 0x20 || *text == 0x7f)
+            *text = '?';
+}
+
+int app_fail(app *a, int status, const char *code, const char *format, ...)
+{
+    char text[APP_LINE_BYTES];
+    va_list list;
+    int n;
+    va_start(list, format);
+    n = snprintf(text, sizeof text, "%s", a->place);
+    vsnprintf(text + n, sizeof text - (size_t)n, format, list);
+    va_end(list);
+    app_make_one_line(text);
+    if (a->hushed) {
+        memcpy(a->hushed, text, sizeof text);
+        return status;
+    }
+    output_flush();
+    output_complain("%sgrctl:%s %s\n", a->color_err ? "\033[1;31m" : "",
+                    a->color_err ? "\033[0m" : "", text);
+    if (a->json)
+        app_print_json(json_pack("{s:{s:o,s:o}}", "error", "code", app_json_code(code), "message",
+                                 app_json_text(text)));
+    return status;
+}
+
+int app_status_of(int error)
+{
+    switch (error) {
+    case GROBO_ERR_LIMIT:
+    case GROBO_ERR_SPEED:
+    case GROBO_ERR_LATCHED:
+    case GROBO_ERR_UNWATCHED:
+    case GROBO_ERR_STALLED:
+        return EXIT_SAFETY;
+    case GROBO_ERR_ARG:
+        return EXIT_USAGE;
+    case GROBO_ERR_SYNTAX:
+        return EXIT_FILE;
+    }
+    return EXIT_ROBOT;
+}
+
+static void say(const char *format, va_list list)
+{
+    char text[APP_LINE_BYTES];
+    vsnprintf(text, sizeof text, format, list);
+    app_make_one_line(text);
+    output_complain("%s\n", text);
+}
+
+void app_note(const app *a, const char *format, ...)
+{
+    va_list list;
+    if (a->verbosity < 0)
+        return;
+    va_start(list, format);
+    say(format, list);
+    va_end(list);
+}
+
+void app_detail(const app *a, const char *format, ...)
+{
+    va_list list;
+    if (a->verbosity < 1)
+        return;
+    va_start(list, format);
+    say(format, list);
+    va_end(list);
+}
+
+void app_done(const app *a, const char *text)
+{
+    if (a->json)
+        app_print_json(json_pack("{s:b}", "done", 1));
+    else
+        app_note(a, "%s", text);
+}
+
+static int print_part(const char *bytes, size_t size, void *ctx)
+{
+    (void)ctx;
+    output_bytes(bytes, size);
+    return 0;
+}
+
+void app_print_json(json_t *object)
+{
+    json_dump_callback(object, print_part, NULL, JSON_COMPACT | JSON_REAL_PRECISION(12));
+    app_print("\n");
+    output_flush();
+    json_decref(object);
+}
+
+json_t *app_json_text(const char *text)
+{
+    json_t *string = json_string(text);
+    if (!string) { /* not UTF-8: keep what can be shown */
+        char *copy = strdup(text);
+        for (char *c = copy; c && *c; c++)
+            if ((unsigned char)*c >= 0x80)
+                *c = '?';
+        string = json_string(copy ? copy : "?");
+        free(copy);
+    }
+    return string;
+}
+
+json_t *app_json_code(const char *name)
+{
+    char code[32];
+    size_t n = 0;
+    for (; name[n] && n < sizeof code; n++)
+        code[n] = (char)(name[n] >= 'A' && name[n] <= 'Z' ? name[n] - 'A' + 'a' : name[n]);
+    return json_stringn(code, n);
+}
+
+json_t *app_json_printed(void (*print)(FILE *to))
+{
+    char *text = os_printed(print);
+    json_t *string = text ? json_string(text) : json_null();
+    free(text);
+    return string;
+}
+
+json_t *app_json_number(double number, int decimals)
+{
+    double scale = pow(10, decimals);
+    double rounded = round(number * scale) / scale;
+    if (!isfinite(rounded))
+        return json_null();
+    return json_real(rounded == 0 ? 0 : rounded); /* no -0.0 */
+}

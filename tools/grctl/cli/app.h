@@ -1,0 +1,78 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What every command has at hand: the parsed command line and the one way to speak, as text or
+ * as JSON. Results go to standard output, everything said to a person to standard error.
+ */
+#ifndef GRCTL_APP_H
+#define GRCTL_APP_H
+
+#include <jansson.h>
+
+#include <grobo/types.h>
+
+#include "tools/grctl/cli/cli.h"
+
+enum { APP_LINE_BYTES = 1024 };
+
+struct config_robot;
+struct conn_link;
+
+typedef struct app {
+    cli_line line;
+    struct conn_link *link; /* the shell's, NULL: every command opens and closes its own */
+    const struct grobo_motion *record; /* the shell's @record, or NULL */
+    const struct config_robot *robot;  /* the configured one, or NULL */
+    char place[128];                   /* "FILE:LINE: " of a script, for messages */
+    bool json;
+    int verbosity; /* -1 quiet, 0, 1, 2 */
+    bool color_out, color_err;
+    bool tty_in, tty_out, tty_err;
+    bool moves;      /* the command may move the robot: it gets a guard */
+    bool stops;      /* the command stops the robot: no signal or trace keeps it from that */
+    bool reconnects; /* a lost line is opened again, and is no failure */
+    bool clamps;     /* targets outside limits go to the limit, and are no failure */
+    char *hushed;    /* not NULL: app_fail() puts its line here, APP_LINE_BYTES, and says nothing */
+} app;
+
+/* Sets what follows from the parsed line: verbosity, colours, terminals. */
+void app_settle(app *a);
+
+/* The value of the command's own option number i; of a global option. */
+const cli_value *app_option(const app *a, int i);
+const cli_value *app_global(const app *a, int i);
+/* Number of an option, or `otherwise` when it was not given. */
+double app_number(const app *a, int i, double otherwise);
+
+/*
+ * Says one line of what went wrong ("grctl: ...") and returns the exit status it was given. With
+ * --json the same goes to standard output as {"error": {"code": ..., "message": ...}}.
+ * code: a stable word, such as grobo_error_name() gives; capitals are told as small letters.
+ */
+int app_fail(app *a, int status, const char *code, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+/* The exit status that fits a library error. */
+int app_status_of(int error);
+
+/* Says that a command which moves nothing more is done: {"done": true}, or the text. */
+void app_done(const app *a, const char *text);
+
+/* A line for a person on standard error, unless quiet; only from -v on. */
+/* A file name may hold anything; what is said of it stays one line without control characters. */
+void app_make_one_line(char *text);
+void app_note(const app *a, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void app_detail(const app *a, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* Prints on standard output as printf() does, see output.h; a while later, or by output_flush(). */
+void app_print(const char *format, ...) __attribute__((format(printf, 1, 2)));
+/* One JSON object on a line of its own; takes the reference. */
+void app_print_json(json_t *object);
+/* A JSON string of bytes that may be no UTF-8. */
+json_t *app_json_text(const char *text);
+/* A stable word, as every code is spelled: in small letters. */
+json_t *app_json_code(const char *name);
+/* A JSON string of what a function prints. */
+json_t *app_json_printed(void (*print)(FILE *to));
+/* A JSON number rounded to so many decimals. */
+json_t *app_json_number(double number, int decimals);
+
+#endif

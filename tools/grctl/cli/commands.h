@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: MIT */
+/* Every command: each stands in a file of its name, or of its family's. */
+#ifndef GRCTL_COMMANDS_H
+#define GRCTL_COMMANDS_H
+
+#include "tools/grctl/cli/cli.h"
+
+/* In the order of the overview: finding a robot, its state, moving it, files, servos, the rest. */
+#define GRCTL_COMMANDS(X)                                                                          \
+    X(ports)                                                                                       \
+    X(doctor)                                                                                      \
+    X(scan)                                                                                        \
+    X(info)                                                                                        \
+    X(status)                                                                                      \
+    X(monitor)                                                                                     \
+    X(servo)                                                                                       \
+    X(init)                                                                                        \
+    X(move)                                                                                        \
+    X(pose)                                                                                        \
+    X(play)                                                                                        \
+    X(stop)                                                                                        \
+    X(estop)                                                                                       \
+    X(record)                                                                                      \
+    X(check)                                                                                       \
+    X(show)                                                                                        \
+    X(plot)                                                                                        \
+    X(convert)                                                                                     \
+    X(budget)                                                                                      \
+    X(slot)                                                                                        \
+    X(scenario)                                                                                    \
+    X(servo_get)                                                                                   \
+    X(servo_set)                                                                                   \
+    X(decode)                                                                                      \
+    X(replay)                                                                                      \
+    X(sim)                                                                                         \
+    X(calibrate)                                                                                   \
+    X(shell)                                                                                       \
+    X(completion)                                                                                  \
+    X(help)                                                                                        \
+    X(version)
+
+#define GRCTL_DECLARE(name) extern const cli_command cmd_##name;
+GRCTL_COMMANDS(GRCTL_DECLARE)
+#undef GRCTL_DECLARE
+
+#endif

@@ -1,0 +1,342 @@
+/* SPDX-License-Identifier: MIT */
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <yaml.h>
+
+#include <grobo/model.h>
+
+#include "tools/grctl/cli/config.h"
+#include "tools/grctl/cli/file.h"
+#include "tools/grctl/doctor/checkup.h"
+#include "tools/grctl/os/os.h"
+
+typedef struct reader {
+    app *a;
+    char path[CONFIG_PATH_BYTES]; /* of the file being read, or read last */
+    yaml_parser_t parser;
+    yaml_event_t event; /* the last one read */
+    bool has_event;
+    int status; /* of the first complaint */
+    char wanted[CONFIG_NAME_BYTES];
+    bool wants_default;
+    config_robot *robot;
+    bool has_warn_fall, warn_fall;
+} reader;
+
+/* ---- events --------------------------------------------------------------------------------- */
+
+static int complain(reader *r, const yaml_mark_t *at, const char *format, const char *what)
+{
+    char text[256];
+    snprintf(text, sizeof text, format, what);
+    if (!r->status)
+        r->status = app_fail(r->a, EXIT_FILE, "CONFIG", "%s:%zu:%zu: %s", r->path, at->line + 1,
+                             at->column + 1, text);
+    return r->status;
+}
+
+static int next(reader *r)
+{
+    if (r->has_event)
+        yaml_event_delete(&r->event);
+    r->has_event = yaml_parser_parse(&r->parser, &r->event) != 0;
+    if (!r->has_event)
+        return complain(r, &r->parser.problem_mark, "%s",
+                        r->parser.problem ? r->parser.problem : "cannot be read");
+    if (r->event.type == YAML_ALIAS_EVENT)
+        return complain(r, &r->event.start_mark, "%s", "aliases are not known here");
+    return 0;
+}
+
+static const char *scalar(const reader *r)
+{
+    return r->event.type == YAML_SCALAR_EVENT ? (const char *)r->event.data.scalar.value : NULL;
+}
+
+/* Calls `take` with each key of the mapping that the last event began, the value being next. */
+static int each_key(reader *r, int (*take)(reader *r, const char *key))
+{
+    if (r->event.type != YAML_MAPPING_START_EVENT)
+        return complain(r, &r->event.start_mark, "%s", "a mapping is wanted here");
+    while (!r->status && next(r) == 0 && r->event.type != YAML_MAPPING_END_EVENT) {
+        char key[CONFIG_NAME_BYTES];
+        if (!scalar(r) || r->event.data.scalar.length >= sizeof key)
+            return complain(r, &r->event.start_mark, "%s", "a name is wanted here");
+        snprintf(key, sizeof key, "%s", scalar(r));
+        take(r, key);
+    }
+    return r->status;
+}
+
+/* ---- values --------------------------------------------------------------------------------- */
+
+/* A value as the option of that name would take it. */
+static int take_option(reader *r, int global, cli_value *value)
+{
+    const cli_option *o = &cli_global_options[global];
+    char complaint[128];
+    if (next(r))
+        return r->status;
+    if (!scalar(r))
+        return complain(r, &r->event.start_mark, "%s", "a single value is wanted here");
+    memset(value, 0, sizeof *value);
+    if (!cli_take_value(o, value, scalar(r), complaint, sizeof complaint))
+        return complain(r, &r->event.start_mark, "%s", complaint);
+    value->text = NULL; /* lives no longer than the event */
+    return 0;
+}
+
+static int take_truth(reader *r, bool *truth)
+{
+    if (next(r))
+        return r->status;
+    if (!scalar(r) || (strcmp(scalar(r), "true") != 0 && strcmp(scalar(r), "false") != 0))
+        return complain(r, &r->event.start_mark, "%s", "true or false is wanted here");
+    *truth = strcmp(scalar(r), "true") == 0;
+    return 0;
+}
+
+static int take_flag(reader *r, cli_value *value)
+{
+    bool given = false;
+    if (take_truth(r, &given))
+        return r->status;
+    value->given = given;
+    return 0;
+}
+
+static int take_text(reader *r, char *text, size_t capacity)
+{
+    if (next(r))
+        return r->status;
+    if (!scalar(r) || !*scalar(r) || r->event.data.scalar.length >= capacity)
+        return complain(r, &r->event.start_mark, "%s", "a name is wanted here");
+    snprintf(text, capacity, "%s", scalar(r));
+    return 0;
+}
+
+/* {JOINT: degrees, ...}; at_end: behind the last character of the mapping's text. */
+static int take_degrees(reader *r, double *deg, size_t *at, size_t *at_end)
+{
+    bool flow;
+    if (next(r))
+        return r->status;
+    if (r->event.type != YAML_MAPPING_START_EVENT)
+        return complain(r, &r->event.start_mark, "%s", "JOINT: degrees are wanted here");
+    flow = r->event.data.mapping_start.style == YAML_FLOW_MAPPING_STYLE;
+    *at = *at_end = r->event.start_mark.index;
+    while (next(r) == 0 && r->event.type != YAML_MAPPING_END_EVENT) {
+        const char *name = scalar(r);
+        int joint = name ? grobo_model_find_joint(&grobo_gr001_model, name, strlen(name)) : -1;
+        if (joint < 0)
+            return complain(r, &r->event.start_mark, "no joint called '%s'", name ? name : "");
+        if (next(r))
+            return r->status;
+        if (!scalar(r) || !cli_read_number(scalar(r), &deg[joint]) ||
+            deg[joint] < -CONFIG_TRIM_MAX_DEG || deg[joint] > CONFIG_TRIM_MAX_DEG)
+            return complain(r, &r->event.start_mark, "%s", "degrees from -20 to 20 are wanted");
+        *at_end = r->event.end_mark.index;
+    }
+    if (flow && !r->status)
+        *at_end = r->event.end_mark.index;
+    return r->status;
+}
+
+static int take_field(reader *r, const char *key)
+{
+    config_robot *robot = r->robot;
+    size_t at, end;
+    if (!robot->first_at) {
+        robot->first_at = r->event.start_mark.index;
+        robot->first_column = r->event.start_mark.column;
+    }
+    if (strcmp(key, "device") == 0)
+        return take_text(r, robot->device, sizeof robot->device);
+    if (strcmp(key, "wiring") == 0)
+        return take_option(r, GLOBAL_WIRING, &robot->wiring);
+    if (strcmp(key, "echo") == 0)
+        return take_flag(r, &robot->echo);
+    if (strcmp(key, "baud") == 0)
+        return take_option(r, GLOBAL_BAUD, &robot->baud);
+    if (strcmp(key, "on_exit") == 0)
+        return take_option(r, GLOBAL_ON_EXIT, &robot->on_exit);
+    if (strcmp(key, "trim") == 0) {
+        robot->trimmed = true;
+        return take_degrees(r, robot->trim_deg, &robot->trim_at, &robot->trim_end);
+    }
+    if (strcmp(key, "offset") == 0) {
+        robot->offsets = true;
+        return take_degrees(r, robot->offset_deg, &at, &end);
+    }
+    return complain(r, &r->event.start_mark,
+                    "no key '%s'; there are device, wiring, echo, baud, on_exit, trim, offset",
+                    key);
+}
+
+/* Every robot is checked; the one that is wanted is kept. */
+static int take_robot(reader *r, const char *name)
+{
+    static config_robot one;
+    config_robot *kept = r->robot;
+    yaml_mark_t at = r->event.start_mark;
+    memset(&one, 0, sizeof one);
+    if (next(r))
+        return r->status;
+    one.flow = r->event.type == YAML_MAPPING_START_EVENT &&
+               r->event.data.mapping_start.style == YAML_FLOW_MAPPING_STYLE;
+    r->robot = &one;
+    each_key(r, take_field);
+    r->robot = kept;
+    if (!r->status && !*one.device)
+        return complain(r, &at, "robot %s has no device", name);
+    if (!r->status && strcmp(name, r->wanted) == 0) {
+        *kept = one;
+        snprintf(kept->name, sizeof kept->name, "%s", name);
+        snprintf(kept->path, sizeof kept->path, "%s", r->path);
+    }
+    return r->status;
+}
+
+static int take_top(reader *r, const char *key)
+{
+    char name[CONFIG_NAME_BYTES];
+    if (strcmp(key, "robots") == 0)
+        return next(r) ? r->status : each_key(r, take_robot);
+    if (strcmp(key, "warn_fall") == 0) {
+        r->has_warn_fall = take_truth(r, &r->warn_fall) == 0;
+        return r->status;
+    }
+    if (strcmp(key, "default") != 0)
+        return complain(r, &r->event.start_mark,
+                        "no key '%s'; there are default, robots, warn_fall", key);
+    if (take_text(r, name, sizeof name) == 0 && r->wants_default) {
+        if (*r->robot->name == '\0' && *r->wanted == '\0')
+            snprintf(r->wanted, sizeof r->wanted, "%s", name);
+    }
+    return r->status;
+}
+
+/* ---- files ---------------------------------------------------------------------------------- */
+
+static int read_file(reader *r, FILE *file)
+{
+    if (!yaml_parser_initialize(&r->parser))
+        return app_fail(r->a, EXIT_ROBOT, "NOMEM", "%s: not enough memory", r->path);
+    yaml_parser_set_input_file(&r->parser, file);
+    r->has_event = false;
+    next(r);
+    if (!r->status)
+        next(r);
+    if (!r->status && r->event.type == YAML_DOCUMENT_START_EVENT && next(r) == 0 &&
+        !(scalar(r) && !*scalar(r))) /* a file of comments alone */
+        each_key(r, take_top);
+    if (r->has_event)
+        yaml_event_delete(&r->event);
+    yaml_parser_delete(&r->parser);
+    return r->status;
+}
+
+/* Reads both files; the user's comes first. Returns 0 whether or not the robot was found. */
+static int find(reader *r)
+{
+    for (int i = 0; i < 2 && !r->status && !*r->robot->name; i++) {
+        /* `default` may stand behind `robots`: then the file is read again for its robot. */
+        for (int round = 0; round < 2 && !r->status && !*r->robot->name; round++) {
+            bool knew = *r->wanted != '\0';
+            FILE *file;
+            errno = 0;
+            file = os_config_path(i, r->path, sizeof r->path) ? fopen(r->path, "r") : NULL;
+            if (!file && errno == EACCES)
+                return r->status = app_fail(r->a, EXIT_FILE, "CONFIG", "%s: %s", r->path,
+                                            file_cause_text(errno));
+            if (!file)
+                break;
+            read_file(r, file);
+            fclose(file);
+            if (knew)
+                break;
+        }
+    }
+    return r->status;
+}
+
+/* ---- applying ------------------------------------------------------------------------------- */
+
+/* Commands that speak to no robot: a bad configuration does not keep them from working. */
+static bool is_offline(const cli_command *command)
+{
+    static const char *const names[] = {"ports",      "check",   "show",  "plot",
+                                        "convert",    "decode",  "sim",   "help",
+                                        "completion", "version", "budget"};
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
+        if (strcmp(command->name, names[i]) == 0)
+            return true;
+    return false;
+}
+
+/* True where a name of the configuration may stand: no path, no scheme, none of the words. */
+static bool may_be_name(const char *device)
+{
+    return *device && !strpbrk(device, "/:\\") && strcmp(device, "auto") != 0 &&
+           strcmp(device, "sim") != 0 && strlen(device) < CONFIG_NAME_BYTES;
+}
+
+static void set_option(app *a, int global, const cli_value *value)
+{
+    if (value->given && !a->line.global[global].given)
+        a->line.global[global] = *value;
+}
+
+int config_apply(app *a)
+{
+    static config_robot robot;
+    const cli_value *device = app_global(a, GLOBAL_DEVICE);
+    const char *fallback = getenv("GRCTL_DEVICE");
+    const char *asked = device->given ? device->text : fallback && *fallback ? fallback : NULL;
+    reader r = {.a = a, .robot = &robot, .wants_default = asked == NULL};
+    if (is_offline(a->line.command) || (asked && !may_be_name(asked)))
+        return 0;
+    memset(&robot, 0, sizeof robot);
+    if (asked)
+        snprintf(r.wanted, sizeof r.wanted, "%s", asked);
+    find(&r);
+    if (!*robot.name)
+        return r.status ? r.status
+               : r.wants_default && *r.wanted
+                   ? app_fail(a, EXIT_FILE, "CONFIG", "%s: default '%s' is no robot of the file",
+                              r.path, r.wanted)
+                   : 0;
+    a->line.global[GLOBAL_DEVICE] = (cli_value){.given = 1, .text = robot.device};
+    set_option(a, GLOBAL_WIRING, &robot.wiring);
+    set_option(a, GLOBAL_ECHO, &robot.echo);
+    set_option(a, GLOBAL_BAUD, &robot.baud);
+    a->robot = &robot;
+    return r.status;
+}
+
+bool config_is_unknown_name(const app *a, const char *device)
+{
+    char path[GROBO_DEVICE_MAX_BYTES];
+    return !a->robot && may_be_name(device) && !checkup_true_path(device, path, sizeof path);
+}
+
+bool config_warns_of_falls(const app *a)
+{
+    static config_robot robot;
+    char hushed[APP_LINE_BYTES];
+    app quiet = *a;
+    reader r = {.a = &quiet, .robot = &robot};
+    quiet.hushed = hushed;
+    for (int i = 0; i < 2 && !r.has_warn_fall; i++) {
+        FILE *file = os_config_path(i, r.path, sizeof r.path) ? fopen(r.path, "r") : NULL;
+        memset(&robot, 0, sizeof robot);
+        r.status = 0;
+        if (!file)
+            continue;
+        read_file(&r, file);
+        fclose(file);
+    }
+    return !r.has_warn_fall || r.warn_fall;
+}

@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Named robots: $XDG_CONFIG_HOME/grctl/config.yaml (~/.config), then /etc/grctl/config.yaml.
+ *
+ *   default: kitchen
+ *   warn_fall: false         # play and check do not say that the robot would fall
+ *   robots:
+ *     kitchen:
+ *       device: /dev/serial/by-id/usb-...
+ *       wiring: board          # or bus
+ *       echo: false            # true: the bus's adapter returns what is sent
+ *       baud: 115200
+ *       on_exit: hold          # or off, sit: where a command is cut short
+ *       trim: {R_KNEE_P: 1.5}  # degrees that the servo stands off: added to what goes out
+ *       offset: {m12: 2}       # degrees added to what is read, as the driver's own corrections
+ */
+#ifndef GRCTL_CONFIG_H
+#define GRCTL_CONFIG_H
+
+#include <grobo/driver.h>
+#include <grobo/serial.h>
+
+#include "tools/grctl/cli/app.h"
+
+enum { CONFIG_PATH_BYTES = 1024, CONFIG_NAME_BYTES = 64, CONFIG_FILE_MAX_BYTES = 1 << 20 };
+
+/* No trim is larger: more is a servo horn that sits a tooth off. */
+#define CONFIG_TRIM_MAX_DEG 20
+
+typedef struct config_robot {
+    char name[CONFIG_NAME_BYTES]; /* "": none is configured */
+    char path[CONFIG_PATH_BYTES]; /* the file that has it */
+    char device[GROBO_DEVICE_MAX_BYTES];
+    cli_value wiring, echo, baud, on_exit; /* as options of the command line */
+    double trim_deg[GROBO_JOINTS_MAX];
+    double offset_deg[GROBO_JOINTS_MAX];
+    bool trimmed, offsets;
+    /* where the trim stands in the file, or would, in characters */
+    size_t trim_at, trim_end, first_at, first_column;
+    bool flow; /* the robot is written as { ... } */
+} config_robot;
+
+/*
+ * Finds the robot that the command line names, or the default one where it names no device, and
+ * sets the options that were not given. Returns 0, or the exit status with the reason said; the
+ * robot is applied then too where it stands before the mistake of the file.
+ */
+int config_apply(app *a);
+
+/* After config_apply(): a name that neither the configuration nor the system has. */
+bool config_is_unknown_name(const app *a, const char *device);
+
+/*
+ * False where the configuration says warn_fall: false. Asked by commands that work without a
+ * configuration too: one that cannot be read says nothing.
+ */
+bool config_warns_of_falls(const app *a);
+
+/* Writes the trims of the robot into its file: a temporary one takes its place. As above. */
+int config_write_trims(app *a, const config_robot *robot);
+
+#endif

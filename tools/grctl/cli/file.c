@@ -1,0 +1,168 @@
+/* SPDX-License-Identifier: MIT */
+#include <errno.h>
+#include <string.h>
+
+#include "tools/grctl/cli/file.h"
+#include "tools/grctl/os/os.h"
+#include "tools/grctl/os/pipe.h"
+
+const char *file_cause_text(int number)
+{
+    switch (number) {
+    case ENOENT:
+    case ENOTDIR:
+        return "no such file";
+    case EISDIR:
+        return grobo_error_text(GROBO_ERR_ISDIR);
+    case EACCES:
+    case EPERM:
+        return grobo_error_text(GROBO_ERR_PERM);
+    case ENOSPC:
+        return grobo_error_text(GROBO_ERR_DISK);
+    }
+    return strerror(number);
+}
+
+const char *file_write_error_text(int error)
+{
+    return error == GROBO_ERR_NOENT ? "no such folder" : file_error_text(error);
+}
+
+const char *file_error_text(int error)
+{
+    switch (error) {
+    case GROBO_ERR_NOENT:
+        return "no such file";
+    case GROBO_ERR_ISDIR:
+        return "is a directory, not a motion file";
+    case GROBO_ERR_EMPTY:
+        return "is empty";
+    }
+    return grobo_error_text(error);
+}
+
+const grobo_model *file_model(const grobo_motion *motion)
+{
+    return grobo_motion_is_for(motion, &grobo_gr001_model) ? &grobo_gr001_model : NULL;
+}
+
+int file_fits(app *a, const char *path, const grobo_motion *motion)
+{
+    int n_joints = grobo_motion_joints(motion), has = grobo_gr001_model.n_joints;
+    if (n_joints <= has)
+        return 0;
+    return app_fail(a, EXIT_FILE, grobo_error_name(GROBO_ERR_ARG),
+                    "%s: has %d joints, GR001 has %d", file_shown_name(path), n_joints, has);
+}
+
+void file_format(const grobo_diagnostic *d, bool with_code, char *text, size_t capacity)
+{
+    char place[32] = "";
+    if (d->line && d->column)
+        snprintf(place, sizeof place, "%u:%u:", d->line, d->column);
+    else if (d->line)
+        snprintf(place, sizeof place, "%u:", d->line);
+    snprintf(text, capacity, "%s:%s %s%s%s%s%s%s", d->file, place,
+             d->severity == GROBO_SEVERITY_ERROR ? "" : grobo_severity_name(d->severity),
+             d->severity == GROBO_SEVERITY_ERROR ? "" : ": ", d->message, with_code ? " [" : "",
+             with_code ? d->code : "", with_code ? "]" : "");
+    app_make_one_line(text);
+}
+
+json_t *file_json(const grobo_diagnostic *d)
+{
+    return json_pack("{s:o,s:I,s:I,s:s,s:s,s:o}", "file", app_json_text(d->file), "line",
+                     (json_int_t)d->line, "column", (json_int_t)d->column, "severity",
+                     grobo_severity_name(d->severity), "code", d->code, "message",
+                     app_json_text(d->message));
+}
+
+void file_say_one(const app *a, const grobo_diagnostic *d)
+{
+    char text[1024];
+    file_format(d, false, text, sizeof text);
+    if (d->severity == GROBO_SEVERITY_WARNING)
+        app_note(a, "%s", text);
+    else
+        app_detail(a, "%s", text);
+}
+
+/* Warnings and notes of reading, on standard error. */
+static void say_all(const app *a, const grobo_diagnostics *list)
+{
+    grobo_diagnostic d;
+    for (size_t i = 0; grobo_diagnostics_get(list, i, &d) == 0; i++)
+        file_say_one(a, &d);
+}
+
+/* The first error of the list, or what happened to the file as a whole. */
+static int complain(app *a, const char *path, int error, const grobo_diagnostics *list)
+{
+    char text[1024];
+    grobo_diagnostic d;
+    for (size_t i = 0; grobo_diagnostics_get(list, i, &d) == 0; i++) {
+        if (d.severity != GROBO_SEVERITY_ERROR || strcmp(d.code, "open") == 0)
+            continue;
+        file_format(&d, false, text, sizeof text);
+        return app_fail(a, EXIT_FILE, d.code, "%s", text);
+    }
+    return app_fail(a, EXIT_FILE, grobo_error_name(error), "%s: %s", path, file_error_text(error));
+}
+
+static int read_stream(void *ctx, void *buffer, size_t size)
+{
+    FILE *stream = ctx;
+    size_t n = fread(buffer, 1, size, stream);
+    return n == 0 && ferror(stream) ? GROBO_ERR_IO : (int)n;
+}
+
+const char *file_shown_name(const char *path)
+{
+    return strcmp(path, "-") == 0 ? "(standard input)" : path;
+}
+
+int file_read(const char *path, const grobo_read_options *options, grobo_diagnostics *list,
+              grobo_motion **motion)
+{
+    grobo_source source = {.read = read_stream, .ctx = stdin};
+    grobo_read_options named = options ? *options : (grobo_read_options){0};
+    if (strcmp(path, "-") != 0 && os_is_folder(path))
+        return GROBO_ERR_ISDIR;
+    if (strcmp(path, "-") != 0)
+        return pipe_is(path) ? pipe_read(path, options, list, motion)
+                             : grobo_motion_read_file(path, options, list, motion);
+    named.name = file_shown_name(path);
+    return grobo_motion_read(&source, &named, list, motion);
+}
+
+/* A copy of what the shell has recorded. */
+static int load_record(app *a, grobo_motion **motion)
+{
+    int error = a->record ? grobo_motion_dup(a->record, motion) : GROBO_ERR_EMPTY;
+    return error ? app_fail(a, EXIT_FILE, grobo_error_name(error), "@record: %s",
+                            a->link ? file_error_text(error) : "only a shell has a record")
+                 : 0;
+}
+
+int file_load_listed(app *a, const char *path, const grobo_read_options *options,
+                     grobo_diagnostics *list, grobo_motion **motion)
+{
+    int error;
+    if (strcmp(path, "@record") == 0)
+        return load_record(a, motion);
+    error = file_read(path, options, list, motion);
+    return error ? complain(a, path, error, list) : EXIT_DONE;
+}
+
+int file_load(app *a, const char *path, const grobo_read_options *options, grobo_motion **motion)
+{
+    grobo_diagnostics *list = NULL;
+    int error = grobo_diagnostics_new(&list, NULL);
+    if (error)
+        return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s", grobo_error_text(error));
+    error = file_load_listed(a, path, options, list, motion);
+    if (!error)
+        say_all(a, list);
+    grobo_diagnostics_free(list);
+    return error;
+}

@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: MIT */
+/* Motion files on the command line: reading them, and saying what is wrong with them. */
+#ifndef GRCTL_FILE_H
+#define GRCTL_FILE_H
+
+#include <grobo/motion_io.h>
+
+#include "tools/grctl/cli/app.h"
+
+/*
+ * Reads a motion; "-" is standard input, "@record" what a shell has recorded. On failure says the
+ * first error ("walk.pseq:41:9: ...") and returns the exit status; on success 0, and warnings are
+ * said on standard error. The motion belongs to the caller.
+ */
+int file_load(app *a, const char *path, const grobo_read_options *options, grobo_motion **motion);
+
+/*
+ * The model whose joints a motion's are: GR001's, unless the motion names another body or, naming
+ * none, has more joints. NULL: none we know.
+ */
+const grobo_model *file_model(const grobo_motion *motion);
+
+/* Refuses a motion of more joints than GR001 has. Returns 0, or the exit status with it said. */
+int file_fits(app *a, const char *path, const grobo_motion *motion);
+
+/* Says a warning on standard error, a note only with -v. */
+void file_say_one(const app *a, const grobo_diagnostic *d);
+
+/*
+ * As grobo_motion_read_file(), but "-" is standard input, and a pipe that nobody writes to is
+ * waited for a second only.
+ */
+int file_read(const char *path, const grobo_read_options *options, grobo_diagnostics *list,
+              grobo_motion **motion);
+
+/* As file_load(), but what there is to say beside an error goes to the caller's list. */
+int file_load_listed(app *a, const char *path, const grobo_read_options *options,
+                     grobo_diagnostics *list, grobo_motion **motion);
+
+/* What a file is called in messages: "-" is standard input. */
+const char *file_shown_name(const char *path);
+
+/* One line of a diagnostic: "file:line:column: warning: message [code]". */
+void file_format(const grobo_diagnostic *d, bool with_code, char *text, size_t capacity);
+
+/* A diagnostic as JSON. */
+json_t *file_json(const grobo_diagnostic *d);
+
+/* Words of --from, --to: CLI_CHOICE of these gives the format at choice + 1. */
+#define FILE_FORMATS "m|pseq|mseq|yaml"
+
+/* What went wrong with a file as a whole, for a person. */
+const char *file_error_text(int error);
+
+/* The same of one that was to be written: what is not there is its folder. */
+const char *file_write_error_text(int error);
+
+/* In the same words, what errno says of a file. */
+const char *file_cause_text(int number);
+
+#endif

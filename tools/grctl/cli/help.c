@@ -1,0 +1,102 @@
+/* SPDX-License-Identifier: MIT */
+/* Help texts, made from the tables. */
+#include <stdbool.h>
+#include <string.h>
+
+#include "tools/grctl/cli/cli.h"
+
+enum { COLUMN = 26, WIDTH = 80 };
+
+/*
+ * Words of a text up to an empty line, an indented one or its end, in lines of at most WIDTH; the
+ * first begins at a column, the others at the indent. Returns what is left of the text.
+ */
+static const char *print_words(FILE *to, const char *text, int column, int indent)
+{
+    bool first = true;
+    while (*text && *text != '\n' && *text != ' ') {
+        size_t n = strcspn(text, " \n");
+        if (!first && column + 1 + (int)n > WIDTH) {
+            fprintf(to, "\n%*s", indent, "");
+            column = indent;
+            first = true;
+        }
+        fprintf(to, "%s%.*s", first ? "" : " ", (int)n, text);
+        column += !first + (int)n;
+        first = false;
+        text += n;
+        text += *text == ' ' || (*text == '\n' && text[1] != '\0');
+    }
+    putc('\n', to);
+    return text;
+}
+
+/* Paragraphs anew; what is indented stays as it is. */
+static void print_details(FILE *to, const char *text)
+{
+    while (*text) {
+        size_t n = strcspn(text, "\n");
+        if (*text == ' ' || *text == '\n') {
+            fprintf(to, "%.*s\n", (int)n, text);
+            text += n + (text[n] == '\n');
+        } else {
+            text = print_words(to, text, 0, 0);
+            text += *text == '\n' && text[1] == '\0';
+        }
+    }
+}
+
+static void print_option(FILE *to, const cli_option *o)
+{
+    char left[64];
+    int n;
+    if (o->letter)
+        n = snprintf(left, sizeof left, "-%c, --%s", o->letter, o->name);
+    else
+        n = snprintf(left, sizeof left, "    --%s", o->name);
+    if (o->kind != CLI_FLAG && n > 0 && (size_t)n < sizeof left)
+        snprintf(left + n, sizeof left - (size_t)n, o->optional ? " [%s]" : " %s", o->value);
+    if (strlen(left) < COLUMN)
+        fprintf(to, "  %-*s  ", COLUMN, left);
+    else
+        fprintf(to, "  %s\n  %-*s  ", left, COLUMN, "");
+    print_words(to, o->help, COLUMN + 4, COLUMN + 4);
+}
+
+static void print_global_options(FILE *to)
+{
+    fputs("\nGlobal options, before or after the command:\n", to);
+    for (size_t i = 0; i < GLOBAL_COUNT; i++)
+        print_option(to, &cli_global_options[i]);
+}
+
+void cli_print_overview(FILE *to)
+{
+    fputs("grctl drives serial command-servo robots, first of all the GR001 humanoid.\n\n"
+          "usage: grctl [GLOBAL OPTIONS] COMMAND [OPTIONS] [ARGUMENTS]\n\nCommands:\n",
+          to);
+    for (size_t i = 0; i < cli_n_commands; i++)
+        fprintf(to, "  %-12s%s\n", cli_commands[i]->name, cli_commands[i]->summary);
+    print_global_options(to);
+    putc('\n', to);
+    print_details(
+        to, "A joint is named by name (R_KNEE_P), motor (m12) or joint id (j3); a group by name "
+            "(all body right_arm left_arm arms right_leg left_leg legs) or by its number 0..7. "
+            "Angles are degrees, times milliseconds. 'grctl help COMMAND' says more.\n");
+}
+
+void cli_print_command(FILE *to, const cli_command *command)
+{
+    fprintf(to, "grctl %s - %s\n\nusage: grctl %s%s%s%s\n\n", command->name, command->summary,
+            command->name, command->n_options ? " [OPTIONS]" : "", *command->arguments ? " " : "",
+            command->arguments);
+    print_details(to, command->details);
+    if (command->n_options) {
+        fputs("\nOptions:\n", to);
+        for (size_t i = 0; i < command->n_options; i++)
+            print_option(to, &command->options[i]);
+    }
+    print_global_options(to);
+    if (command->example)
+        fprintf(to, "\nExamples:\n%s", command->example);
+}

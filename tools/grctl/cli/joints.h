@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: MIT */
+/* Joints and groups as people name them: R_KNEE_P, m12, j3, right_arm, 0..7. */
+#ifndef GRCTL_JOINTS_H
+#define GRCTL_JOINTS_H
+
+#include <grobo/posture.h>
+
+#include "tools/grctl/cli/app.h"
+
+/* One name of a joint or group; on failure says so and returns the exit status, else 0. */
+int joints_parse(app *a, const char *name, grobo_joint_mask *joints);
+/*
+ * Names split by commas, of a motion's joints: j0, j1 .. always, other names by its model (NULL:
+ * none). As joints_parse().
+ */
+int joints_parse_motion(app *a, const char *list, const grobo_model *model, int n_joints,
+                        grobo_joint_mask *joints);
+/* One joint alone. Returns the joint, or -1 with *status set and said. */
+int joints_parse_one(app *a, const char *name, size_t length, int *status);
+/* Refuses a posture with an angle outside its limits: says which, returns the exit status, or 0. */
+int joints_check_limits(app *a, const grobo_posture *posture, const char *doing);
+
+#endif

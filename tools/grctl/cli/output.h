@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Standard output and standard error. While a robot is connected, what is printed goes to a queue
+ * and a thread writes it (writer.h): neither a full pipe nor a terminal after Ctrl-S holds up the
+ * loop. What does not fit into the queue is dropped and counted. Without a robot, printing waits
+ * for its reader, as it does everywhere.
+ */
+#ifndef GRCTL_OUTPUT_H
+#define GRCTL_OUTPUT_H
+
+#include "tools/grctl/cli/app.h"
+
+/* From here on nothing waits for a reader. False where memory or a thread is missing. */
+bool output_detach(void);
+
+/* From here on readers are waited for, first for all that is queued; what was dropped is said. */
+void output_attach(const app *a);
+
+/* Writes out what was printed; false when it cannot be, now or at an earlier call. */
+bool output_flush(void);
+
+/* Bytes for standard output. */
+void output_bytes(const void *bytes, size_t size);
+
+/* For what prints to a stream itself: standard output, to be flushed. It waits for the reader. */
+FILE *output_stream(void);
+
+/* Text for standard error, written out at once. */
+void output_complain(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+/* True while standard error has not taken what it was given: what is soon stale can wait. */
+bool output_is_behind(void);
+
+/*
+ * The end of the program: `status`, or, when what was printed could not all be written,
+ * EXIT_ROBOT with a line of complaint. A reader that left is not complained about: that is
+ * EXIT_SIGNAL + OS_BROKEN_PIPE, as without a handler.
+ */
+int output_finish(app *a, int status);
+
+#endif

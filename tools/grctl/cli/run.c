@@ -1,0 +1,151 @@
+/* SPDX-License-Identifier: MIT */
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "tools/grctl/cli/commands.h"
+#include "tools/grctl/cli/config.h"
+#include "tools/grctl/cli/output.h"
+#include "tools/grctl/cli/run.h"
+#include "tools/grctl/conn/trace.h"
+#include "tools/grctl/os/os.h"
+
+/* A mistake ends parsing, but not the wish for JSON that stands behind it. */
+static bool wants_json(int argc, char *const *argv)
+{
+    for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++)
+        if (strcmp(argv[i], "--json") == 0)
+            return true;
+    return false;
+}
+
+static int help(const cli_command *command)
+{
+    if (command)
+        cli_print_command(output_stream(), command);
+    else
+        cli_print_overview(output_stream());
+    return EXIT_DONE;
+}
+
+static int fail(app *a, const char *complaint)
+{
+    const cli_command *command = a->line.command;
+    if (complaint[strlen(complaint) - 1] == '?') /* what was meant says enough */
+        return app_fail(a, EXIT_USAGE, "USAGE", "%s", complaint);
+    return app_fail(a, EXIT_USAGE, "USAGE", "%s; see 'grctl help%s%s'", complaint,
+                    command ? " " : "", command ? command->name : "");
+}
+
+static const char echo_alone[] = "--echo needs --wiring bus: the board returns nothing";
+
+static bool is_echo_alone(const app *a)
+{
+    return app_global(a, GLOBAL_ECHO)->given && app_global(a, GLOBAL_WIRING)->choice == 0;
+}
+
+/* The first signal to a command that stops the robot. */
+static volatile sig_atomic_t noted;
+static volatile sig_atomic_t is_over;
+
+static void on_signal(int number)
+{
+    if (is_over) /* only the output is still to be written */
+        _Exit(EXIT_SIGNAL + number);
+    if (!noted)
+        noted = number;
+}
+
+/* Does Ctrl-Z suspend it? */
+static void suspend_by(void (*handler)(int number))
+{
+    if (os_suspension)
+        signal(os_suspension, handler);
+}
+
+/*
+ * A command that stops the robot: neither a mistake on its line nor a bad configuration keeps it
+ * from that, nor a signal. They are reported after it; the status is that of a signal, or of the
+ * stop where that failed.
+ */
+static int stop_first(app *a, const char *complaint, int (*prepare)(void *ctx, app *a), void *ctx)
+{
+    char hushed[APP_LINE_BYTES] = "";
+    int later, status;
+    if (!a->link) {
+        os_take_signals();
+        os_catch_endings(on_signal);
+        suspend_by(SIG_IGN);
+    }
+    a->hushed = hushed;
+    later = a->link ? EXIT_DONE : config_apply(a);
+    if (prepare && !later)
+        later = prepare(ctx, a);
+    a->hushed = NULL;
+    if (is_echo_alone(a)) {
+        complaint = complaint ? complaint : echo_alone;
+        a->line.global[GLOBAL_ECHO].given = 0;
+    }
+    a->stops = true;
+    status = a->line.command->run(a);
+    a->stops = false;
+    is_over = true;
+    if (!a->link)
+        suspend_by(SIG_DFL);
+    if (later) {
+        *a->place = '\0'; /* it stands in the message */
+        app_fail(a, later, later == EXIT_FILE ? "CONFIG" : "USAGE", "%s", hushed);
+    }
+    if (complaint)
+        later = fail(a, complaint);
+    if (noted && status < EXIT_SIGNAL)
+        return EXIT_SIGNAL + noted;
+    return status ? status : later;
+}
+
+/* Help and version, and a line without a command: the exit status, or -1 for any other line. */
+static int run_without_robot(app *a)
+{
+    if (app_global(a, GLOBAL_VERSION)->given)
+        return cmd_version.run(a);
+    if (app_global(a, GLOBAL_HELP)->given)
+        return help(a->line.command);
+    if (a->line.command)
+        return -1;
+    cli_print_overview(stderr);
+    return EXIT_USAGE;
+}
+
+static int run_command(app *a, int (*prepare)(void *ctx, app *a), void *ctx)
+{
+    int status;
+    if (!a->link && (status = config_apply(a)) != 0)
+        return status;
+    if (is_echo_alone(a))
+        return fail(a, echo_alone);
+    if (prepare && (status = prepare(ctx, a)) != 0)
+        return status;
+    status = a->line.command->run(a);
+    if (status == EXIT_DONE && app_global(a, GLOBAL_TRACE)->given && !trace_was_tried())
+        app_note(a, "nothing was traced: no robot was spoken to");
+    return status;
+}
+
+int run_line(app *a, int argc, char **argv, int (*prepare)(void *ctx, app *a), void *ctx)
+{
+    char complaint[512];
+    bool ok = cli_parse(&a->line, argc, argv, complaint, sizeof complaint);
+    const cli_command *command = a->line.command;
+    bool json = a->json; /* of the shell */
+    int status;
+    app_settle(a);
+    if (!ok)
+        a->json = json || wants_json(argc, argv);
+    if (command && command->stops && !app_global(a, GLOBAL_VERSION)->given &&
+        !app_global(a, GLOBAL_HELP)->given)
+        return stop_first(a, ok ? NULL : complaint, prepare, ctx);
+    if (!ok)
+        return fail(a, complaint);
+    status = run_without_robot(a);
+    return status < 0 ? run_command(a, prepare, ctx) : status;
+}

@@ -1,0 +1,110 @@
+/* SPDX-License-Identifier: MIT */
+/* What the wire allows: computed from the same costs that the bus plans with. */
+#include <grobo/serial.h>
+
+#include "tools/grctl/cli/app.h"
+#include "tools/grctl/cli/commands.h"
+#include "tools/grctl/conn/wire.h"
+
+enum { OPT_RATE };
+
+static const cli_option options[] = {
+    [OPT_RATE] = {.name = "rate",
+                  .letter = 'r',
+                  .kind = CLI_NUMBER,
+                  .value = "HZ",
+                  .help = "motion frames a second (as play has it)",
+                  .min = 0,
+                  .max = 1000,
+                  .real = true},
+};
+
+/* Reads of one kind that fit between two motion frames; between none, those of a second. */
+static double reads_per_s(const wire_cost *motion, const wire_cost *read, double rate_hz)
+{
+    double period_us = 1e6 / (rate_hz > 0 ? rate_hz : 1);
+    double left_us = rate_hz > 0 ? period_us - motion->total_us : period_us;
+    if (left_us < 0)
+        return 0;
+    return (double)(long)(left_us / read->total_us) * (rate_hz > 0 ? rate_hz : 1);
+}
+
+static void print_text(const wire_cost *costs, const grobo_budget *line, int baud_bps,
+                       double rate_hz, int n_joints)
+{
+    double largest_hz = 1e6 / costs[WIRE_MOTION].total_us;
+    app_print("at %d bps                 to robot  from robot  wire time\n", baud_bps);
+    for (int i = 0; i < WIRE_COSTS; i++)
+        app_print("%-24s  %6d B    %6d B  %6.2f ms\n", costs[i].name, costs[i].frame_bytes,
+                  costs[i].reply_bytes, costs[i].total_us / 1e3);
+    app_print("motion frames alone       at most %.1f Hz\n", largest_hz);
+    app_print("each joint read in %.0f s    at most %d Hz\n", GROBO_WATCH_US / 1e6,
+              line->watched_hz);
+    for (int i = WIRE_READ_FULL; i < WIRE_COSTS; i++)
+        app_print("%-24s  %.1f times a second when nothing moves, %.1f beside motion at %g Hz\n",
+                  i == WIRE_READ_FULL ? "all joints, full" : "all joints, angle only",
+                  reads_per_s(&costs[WIRE_MOTION], &costs[i], 0) / n_joints,
+                  reads_per_s(&costs[WIRE_MOTION], &costs[i], rate_hz) / n_joints, rate_hz);
+    if (rate_hz > largest_hz)
+        app_print("motion at %g Hz does not fit: frames would be dropped\n", rate_hz);
+    else if (rate_hz > line->watched_hz)
+        app_print("motion at %g Hz is unwatched: joints would be read too seldom\n", rate_hz);
+}
+
+static json_t *to_json(const wire_cost *costs, const grobo_budget *line, int baud_bps,
+                       double rate_hz, int n_joints)
+{
+    json_t *list = json_array();
+    for (int i = 0; i < WIRE_COSTS; i++)
+        json_array_append_new(list, json_pack("{s:s,s:i,s:i,s:I}", "name", costs[i].name,
+                                              "to_robot_bytes", costs[i].frame_bytes,
+                                              "from_robot_bytes", costs[i].reply_bytes, "wire_us",
+                                              (json_int_t)costs[i].total_us));
+    return json_pack(
+        "{s:i,s:o,s:o,s:o,s:i,s:b,s:o,s:o}", "baud_bps", baud_bps, "rate_hz",
+        app_json_number(rate_hz, 3), "costs", list, "motion_max_hz",
+        app_json_number(1e6 / costs[WIRE_MOTION].total_us, 2), "watched_max_hz", line->watched_hz,
+        "fits", rate_hz * costs[WIRE_MOTION].total_us <= 1e6, "full_rounds_per_s",
+        app_json_number(
+            reads_per_s(&costs[WIRE_MOTION], &costs[WIRE_READ_FULL], rate_hz) / n_joints, 2),
+        "angle_rounds_per_s",
+        app_json_number(
+            reads_per_s(&costs[WIRE_MOTION], &costs[WIRE_READ_ANGLE], rate_hz) / n_joints, 2));
+}
+
+static int run(app *a)
+{
+    grobo_wiring wiring = (grobo_wiring)app_global(a, GLOBAL_WIRING)->choice;
+    const grobo_driver *driver = grobo_gr001_driver(wiring);
+    const cli_value *baud = app_global(a, GLOBAL_BAUD);
+    int baud_bps = baud->given ? (int)baud->number : GROBO_BAUD_DEFAULT_BPS;
+    double rate_hz;
+    grobo_budget line;
+    wire_cost costs[WIRE_COSTS];
+    int error = wire_measure(driver, baud_bps, costs);
+    if (!error)
+        error = wire_budget(driver, baud_bps, &line);
+    if (error)
+        return app_fail(a, EXIT_USAGE, grobo_error_name(error), "budget: %s",
+                        grobo_error_text(error));
+    rate_hz = app_number(a, OPT_RATE, line.default_hz);
+    if (a->json)
+        app_print_json(to_json(costs, &line, baud_bps, rate_hz, driver->model->n_joints));
+    else
+        print_text(costs, &line, baud_bps, rate_hz, driver->model->n_joints);
+    return EXIT_DONE;
+}
+
+const cli_command cmd_budget = {
+    .name = "budget",
+    .arguments = "",
+    .summary = "compute how many frames per second the line can carry",
+    .details =
+        "Computes from the baud rate, the sizes of the frames and the way through the board\n"
+        "how long a motion frame and a reading take, how many frames a second fit, and how\n"
+        "often all joints can be read beside them. Touches no port.\n",
+    .example = "  grctl budget --rate 20\n  grctl budget --wiring bus -b 460800\n",
+    .options = options,
+    .n_options = sizeof options / sizeof options[0],
+    .run = run,
+};

@@ -1,0 +1,163 @@
+/* SPDX-License-Identifier: MIT */
+/* calibrate: writes the trims of a configured robot. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "tools/grctl/cli/commands.h"
+#include "tools/grctl/cli/config.h"
+#include "tools/grctl/cli/joints.h"
+#include "tools/grctl/cli/output.h"
+#include "tools/grctl/conn/conn.h"
+
+enum { OPT_DRY_RUN };
+
+static const cli_option options[] = {
+    [OPT_DRY_RUN] = {.name = "dry-run", .kind = CLI_FLAG, .help = "show the trims, write nothing"},
+};
+
+static void show(const app *a, const config_robot *before, const config_robot *after)
+{
+    json_t *list = json_array();
+    const grobo_model *model = &grobo_gr001_model;
+    for (int j = 0; j < model->n_joints; j++) {
+        if (!a->json && after->trim_deg[j] != before->trim_deg[j])
+            app_print("%5d  %-12s  %6.1f -> %6.1f deg\n", model->joints[j].motor,
+                      model->joints[j].name, before->trim_deg[j], after->trim_deg[j]);
+        json_array_append_new(list, json_pack("{s:i,s:i,s:s,s:o,s:o}", "id", j, "motor",
+                                              model->joints[j].motor, "name", model->joints[j].name,
+                                              "before_deg", app_json_number(before->trim_deg[j], 1),
+                                              "trim_deg", app_json_number(after->trim_deg[j], 1)));
+    }
+    if (a->json)
+        app_print_json(json_pack("{s:s,s:o,s:b,s:o}", "robot", after->name, "file",
+                                 app_json_text(after->path), "written",
+                                 !app_option(a, OPT_DRY_RUN)->given, "joints", list));
+    else
+        json_decref(list);
+}
+
+/* Asked on a terminal only; nobody is asked to answer for a script. */
+static bool confirmed(const app *a, const config_robot *robot)
+{
+    int answer, c;
+    if (!a->tty_in || app_global(a, GLOBAL_YES)->given)
+        return true;
+    output_complain("write these trims of %s to %s? [y/N] ", robot->name, robot->path);
+    answer = c = getchar();
+    while (c != '\n' && c != EOF)
+        c = getchar();
+    return answer == 'y' || answer == 'Y';
+}
+
+static int finish(app *a, const config_robot *after)
+{
+    int status;
+    if (app_option(a, OPT_DRY_RUN)->given) {
+        show(a, a->robot, after);
+        return EXIT_DONE;
+    }
+    if (!a->json)
+        show(a, a->robot, after);
+    if (!confirmed(a, after))
+        return app_fail(a, EXIT_USAGE, "CANCELED", "calibrate: nothing was written");
+    status = config_write_trims(a, after);
+    if (status)
+        return status;
+    if (a->json)
+        show(a, a->robot, after);
+    else
+        app_note(a, "trims of %s written to %s", after->name, after->path);
+    return EXIT_DONE;
+}
+
+static int set_trim(app *a, config_robot *after, int joint, double deg)
+{
+    deg = round(deg * 10) / 10;
+    if (fabs(deg) > CONFIG_TRIM_MAX_DEG)
+        return app_fail(a, EXIT_SAFETY, "LIMIT",
+                        "calibrate: %s is %.1f deg off, more than %d; does its horn sit right?",
+                        grobo_gr001_model.joints[joint].name, deg, CONFIG_TRIM_MAX_DEG);
+    after->trim_deg[joint] = deg == 0 ? 0 : deg;
+    return EXIT_DONE;
+}
+
+/* Where the joints stand is called the initial posture: what they read beside it is the trim. */
+static int measure(app *a, config_robot *after)
+{
+    conn c;
+    const grobo_model *model = &grobo_gr001_model;
+    int status = conn_open(&c, a);
+    int error =
+        status ? 0
+               : conn_wait(&c, grobo_session_sense(c.session, GROBO_JOINTS_ALL(model->n_joints),
+                                                   GROBO_SENSE_FULL));
+    if (error)
+        status = conn_fail(&c, error, "calibrate");
+    for (int j = 0; j < model->n_joints && !status; j++) {
+        grobo_joint_info i;
+        if (grobo_robot_joint(c.robot, j, grobo_now_us(), &i) < 0)
+            continue;
+        status = set_trim(a, after, j,
+                          a->robot->trim_deg[j] +
+                              grobo_deg_from_rad(i.state.angle_rad - model->joints[j].init_rad));
+    }
+    return conn_close(&c, status);
+}
+
+static int run(app *a)
+{
+    config_robot after;
+    double deg;
+    int joint, status = 0;
+    if (!a->robot)
+        return app_fail(a, EXIT_USAGE, "USAGE",
+                        "calibrate: -d must name a robot of ~/.config/grctl/config.yaml; see "
+                        "'grctl help calibrate'");
+    if (a->line.n_arguments == 1)
+        return app_fail(a, EXIT_USAGE, "USAGE", "calibrate needs JOINT DEG, or neither");
+    after = *a->robot;
+    if (a->line.n_arguments == 0) {
+        status = measure(a, &after);
+    } else {
+        const char *name = a->line.argument[0];
+        joint = joints_parse_one(a, name, strlen(name), &status);
+        if (joint < 0)
+            return status;
+        if (!cli_read_number(a->line.argument[1], &deg))
+            return app_fail(a, EXIT_USAGE, "USAGE", "calibrate: '%s' is not an angle in degrees",
+                            a->line.argument[1]);
+        status = set_trim(a, &after, joint, deg);
+    }
+    return status ? status : finish(a, &after);
+}
+
+const cli_command cmd_calibrate = {
+    .name = "calibrate",
+    .arguments = "[JOINT DEG]",
+    .summary = "write the trims of a configured robot",
+    .details =
+        "Switch torque off, put the robot by hand into its initial posture, and run it: what the\n"
+        "joints read beside that posture becomes their trims. With JOINT and DEG it sets the trim\n"
+        "of one joint and speaks to no robot. A trim is added to every angle that goes to the\n"
+        "servo and taken from every angle it reports; limits hold for both.\n\n"
+        "The robot is one of ~/.config/grctl/config.yaml or /etc/grctl/config.yaml:\n\n"
+        "  default: kitchen\n"
+        "  robots:\n"
+        "    kitchen:\n"
+        "      device: /dev/serial/by-id/usb-FTDI_FT232R-if00-port0\n"
+        "      wiring: board          # or bus; and echo: true if its adapter has one\n"
+        "      baud: 115200\n"
+        "      on_exit: hold          # or off, sit: where a motion is cut short\n"
+        "      trim: {R_KNEE_P: 1.5}  # degrees\n"
+        "      offset: {m12: 2}       # added to what is read only\n\n"
+        "Only the trims change in the file: it is replaced as a whole when the new one is safely\n"
+        "stored.\n",
+    .example = "  grctl -d kitchen servo off\n  grctl -d kitchen calibrate\n"
+               "  grctl -d kitchen calibrate R_KNEE_P 1.5\n",
+    .options = options,
+    .n_options = sizeof options / sizeof options[0],
+    .max_arguments = 2,
+    .argument = CLI_ARG_JOINT,
+    .run = run,
+};

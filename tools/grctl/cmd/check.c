@@ -1,0 +1,171 @@
+/* SPDX-License-Identifier: MIT */
+#include <string.h>
+
+#include "tools/grctl/body/check.h"
+#include "tools/grctl/body/options.h"
+#include "tools/grctl/cli/commands.h"
+#include "tools/grctl/cli/config.h"
+#include "tools/grctl/cli/file.h"
+
+enum { OPT_FORCE, OPT_BODY, OPT_BALANCE = OPT_BODY + BODY_BALANCE };
+
+static const cli_option options[] = {
+    [OPT_FORCE] = {.name = "force", .kind = CLI_FLAG, .help = "do not warn of a fall"},
+    BODY_LOOK_ROWS(OPT_BODY),
+};
+
+/* What check_file() needs beside the file. */
+typedef struct order {
+    grobo_body_options body;
+    unsigned what; /* CHECK_... */
+} order;
+
+typedef struct tally {
+    size_t errors, warnings;
+    int files;
+} tally;
+
+/* Of several files (a shell pattern) those that neither name nor content make a motion. */
+static bool is_passed_by(const app *a, const char *path, grobo_diagnostics *list)
+{
+    grobo_motion *motion = NULL;
+    grobo_diagnostic d = {.file = path,
+                          .code = "skipped",
+                          .message = "no motion file by name or content: skipped",
+                          .severity = GROBO_SEVERITY_NOTE};
+    int error;
+    if (a->line.n_arguments < 2 || strcmp(path, "-") == 0 ||
+        grobo_motion_format_of_path(path) != GROBO_FORMAT_AUTO)
+        return false;
+    error = file_read(path, NULL, NULL, &motion);
+    grobo_motion_free(motion);
+    if (error != GROBO_ERR_SYNTAX && error != GROBO_ERR_TYPE && error != GROBO_ERR_ISDIR)
+        return false;
+    grobo_diagnostics_add(list, &d);
+    return true;
+}
+
+/* Everything about one file goes to the list: reading it, then playing it on the model. */
+static void check_file(const char *path, const order *o, grobo_diagnostics *list)
+{
+    grobo_read_options read = {
+        .model = &grobo_gr001_model, .keep_positions = true, .keep_going = true};
+    const char *name = file_shown_name(path);
+    grobo_slack_taken slack = {.n = 0};
+    grobo_check_options check = {.name = name, .slack = &slack};
+    check_whole_how how = {.path = name, .what = o->what, .slack = &slack};
+    grobo_motion *motion = NULL;
+    size_t before = grobo_diagnostics_total(list, GROBO_SEVERITY_ERROR);
+    int error = file_read(path, &read, list, &motion);
+    if (!error) {
+        error = grobo_motion_check(motion, &grobo_gr001_model, &check, list);
+        if (error >= 0)
+            error = check_whole(motion, &o->body, &how, list);
+        check_report_slack(name, &slack, list);
+        grobo_motion_free(motion);
+    }
+    if (error < 0 && grobo_diagnostics_total(list, GROBO_SEVERITY_ERROR) == before) {
+        grobo_diagnostic d = {.file = name,
+                              .code = "file",
+                              .message = file_error_text(error),
+                              .severity = GROBO_SEVERITY_ERROR};
+        grobo_diagnostics_add(list, &d);
+    }
+}
+
+static const char *color_of(const app *a, grobo_severity severity)
+{
+    if (!a->color_out)
+        return "";
+    return severity == GROBO_SEVERITY_ERROR     ? "\033[31m"
+           : severity == GROBO_SEVERITY_WARNING ? "\033[33m"
+                                                : "\033[2m";
+}
+
+static void print_text(const app *a, const grobo_diagnostics *list)
+{
+    char text[1024];
+    grobo_diagnostic d;
+    for (size_t i = 0; grobo_diagnostics_get(list, i, &d) == 0; i++) {
+        if (d.severity == GROBO_SEVERITY_NOTE && a->verbosity < 1)
+            continue;
+        file_format(&d, true, text, sizeof text);
+        app_print("%s%s%s\n", color_of(a, d.severity), text, a->color_out ? "\033[0m" : "");
+    }
+}
+
+static void print_json(const grobo_diagnostics *list, bool ok)
+{
+    json_t *all = json_array();
+    grobo_diagnostic d;
+    for (size_t i = 0; grobo_diagnostics_get(list, i, &d) == 0; i++)
+        json_array_append_new(all, file_json(&d));
+    app_print_json(json_pack("{s:b,s:o}", "ok", ok, "diagnostics", all));
+}
+
+static unsigned how_to_balance(const app *a)
+{
+    if (app_option(a, OPT_BALANCE)->given)
+        return CHECK_BALANCE;
+    return app_option(a, OPT_FORCE)->given || !config_warns_of_falls(a) ? 0 : CHECK_FALL;
+}
+
+static int run(app *a)
+{
+    order o = {.what = CHECK_LEGS | how_to_balance(a)};
+    grobo_diagnostics *list = NULL;
+    tally t = {0};
+    int error = body_options_read(a, OPT_BODY, 0, &o.body);
+    if (error)
+        return error;
+    error = grobo_diagnostics_new(&list, NULL);
+    if (error)
+        return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s", grobo_error_text(error));
+    for (int i = 0; i < a->line.n_arguments; i++) {
+        if (is_passed_by(a, a->line.argument[i], list))
+            continue;
+        check_file(a->line.argument[i], &o, list);
+        t.files++;
+    }
+    t.errors = grobo_diagnostics_total(list, GROBO_SEVERITY_ERROR);
+    t.warnings = grobo_diagnostics_total(list, GROBO_SEVERITY_WARNING);
+    if (a->json)
+        print_json(list, t.errors == 0);
+    else
+        print_text(a, list);
+    grobo_diagnostics_free(list);
+    if (!a->json && (t.errors || t.warnings))
+        app_note(a, "%zu error%s, %zu warning%s", t.errors, t.errors == 1 ? "" : "s", t.warnings,
+                 t.warnings == 1 ? "" : "s");
+    else if (!a->json)
+        app_note(a, "%d file%s, nothing wrong", t.files, t.files == 1 ? "" : "s");
+    return t.errors ? EXIT_FILE : EXIT_DONE;
+}
+
+const cli_command cmd_check = {
+    .name = "check",
+    .arguments = "FILE...",
+    .summary = "what is wrong with motion files",
+    .details =
+        "Reads motion files (.m .pseq .mseq .yaml .seq) and says every problem with its\n"
+        "line and column: what is malformed, angles outside a joint's limits, moves too\n"
+        "fast for the servo (and the time they would need), times going back, joints that\n"
+        "GR001 does not have, legs that only ikLinks give. Exit status 3 if there is an\n"
+        "error; warnings alone leave it 0. Notes are shown with -v. Of several files those that\n"
+        "neither name nor content make a motion are passed by.\n\n"
+        "Legs given by ikLinks are solved, and the solved angles are checked too. One\n"
+        "warning says where the robot would fall; --force and 'warn_fall: false' in config.yaml\n"
+        "silence it. --balance reports more: where the ZMP leaves the soles, no foot stands, or\n"
+        "a standing foot slips, the former two as errors. A motion that gives no feet is taken\n"
+        "to stand on both.\n\n"
+        "Angles up to one degree outside a limit, as recordings have them, are played at the\n"
+        "limit: one warning counts them.\n",
+    .example = "  grctl check motions/*\n  grctl check --json walk.pseq\n"
+               "  grctl check --balance walk.pseq\n",
+    .options = options,
+    .n_options = sizeof options / sizeof options[0],
+    .min_arguments = 1,
+    .max_arguments = -1,
+    .argument = CLI_ARG_FILE,
+    .run = run,
+};

@@ -1,0 +1,295 @@
+/* SPDX-License-Identifier: MIT */
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "tools/grctl/body/options.h"
+#include "tools/grctl/cli/commands.h"
+#include "tools/grctl/cli/file.h"
+#include "tools/grctl/cli/output.h"
+
+enum { OPT_RATE, OPT_FROM, OPT_TO, OPT_EXACT, OPT_LOSSY, OPT_REPLACE, OPT_INTEGERS, OPT_BODY };
+
+static const cli_option options[] = {
+    [OPT_RATE] = {.name = "rate",
+                  .letter = 'r',
+                  .kind = CLI_NUMBER,
+                  .value = "HZ",
+                  .help = "to yaml: frames per second (50, or the source's own)",
+                  .min = 0.1,
+                  .max = 1000,
+                  .real = true},
+    [OPT_FROM] = {.name = "from",
+                  .kind = CLI_CHOICE,
+                  .value = FILE_FORMATS,
+                  .help = "format of IN, whatever its name says"},
+    [OPT_TO] = {.name = "to",
+                .kind = CLI_CHOICE,
+                .value = FILE_FORMATS,
+                .help = "format of OUT, whatever its name says"},
+    [OPT_EXACT] = {.name = "exact",
+                   .kind = CLI_FLAG,
+                   .help = "write exact angles (m) and times (yaml), which the original and "
+                           "Choreonoid before 2.1 cannot read"},
+    [OPT_LOSSY] = {.name = "lossy",
+                   .kind = CLI_FLAG,
+                   .help = "write OUT also where it does not play what IN plays"},
+    [OPT_REPLACE] = {.name = "replace",
+                     .kind = CLI_FLAG,
+                     .help = "write OUT also where it holds something other than a motion of its "
+                             "format"},
+    [OPT_INTEGERS] = {.name = "integers",
+                      .kind = CLI_FLAG,
+                      .help = "to m: whole ms and 0.1 degrees; the default"},
+    BODY_OPTION_ROWS(OPT_BODY),
+};
+
+static grobo_motion_format format_of(const app *a, int option)
+{
+    const cli_value *v = app_option(a, option);
+    return v->given ? (grobo_motion_format)(v->choice + 1) : GROBO_FORMAT_AUTO;
+}
+
+/* ---- writing -------------------------------------------------------------------------------- */
+
+/* The file as it will be, so that it is read back before an old one is replaced. */
+typedef struct file_text {
+    char *bytes;
+    size_t size, room;
+} file_text;
+
+static int write_text(void *ctx, const void *data, size_t size)
+{
+    file_text *t = ctx;
+    if (size > t->room - t->size) {
+        size_t room = 2 * t->room + size;
+        char *bytes = realloc(t->bytes, room);
+        if (!bytes)
+            return GROBO_ERR_NOMEM;
+        t->bytes = bytes;
+        t->room = room;
+    }
+    memcpy(t->bytes + t->size, data, size);
+    t->size += size;
+    return 0;
+}
+
+static int write_error(void)
+{
+    return errno == ENOSPC ? GROBO_ERR_DISK : GROBO_ERR_IO;
+}
+
+static int put_out(const file_text *t, const char *path)
+{
+    const grobo_files *files = grobo_files_os();
+    grobo_file file;
+    int error;
+    if (strcmp(path, "-") == 0) {
+        errno = 0;
+        return fwrite(t->bytes, 1, t->size, stdout) == t->size && fflush(stdout) == 0
+                   ? 0
+                   : write_error();
+    }
+    error = files->create(&file, path, false);
+    if (error)
+        return error;
+    error = files->write(&file, t->bytes, t->size);
+    if (error) {
+        files->discard(&file);
+        return error;
+    }
+    return files->commit(&file);
+}
+
+/* Reads the text and looks whether it plays what the motion does. 0, or the status. */
+static int verify(app *a, const grobo_motion *motion, const char *path, const file_text *t,
+                  const grobo_write_options *how)
+{
+    grobo_read_options read = {.model = how->model, .format = how->format, .name = path};
+    grobo_diagnostics *list = NULL;
+    grobo_motion *copy = NULL;
+    grobo_diagnostic first = {.code = "NOMEM"};
+    char said[1024] = "no memory is left";
+    int lost = grobo_diagnostics_new(&list, NULL);
+    if (!lost)
+        lost = grobo_motion_read_memory(t->bytes ? t->bytes : "", t->size, &read, list, &copy);
+    if (!lost) {
+        grobo_diagnostics_clear(list);
+        lost = grobo_motion_verify(motion, copy, how, list);
+    }
+    for (size_t i = 0; grobo_diagnostics_get(list, i, &first) == 0; i++) {
+        file_format(&first, false, said, sizeof said);
+        if (i > 0)
+            app_note(a, "%s", said);
+        else if (lost)
+            app_fail(a, EXIT_FILE, first.code, "%s; --lossy writes %s all the same", said, path);
+    }
+    if (lost < 0 && grobo_diagnostics_count(list) == 0)
+        app_fail(a, EXIT_FILE, grobo_error_name(lost), "%s: %s", path, grobo_error_text(lost));
+    grobo_motion_free(copy);
+    grobo_diagnostics_free(list);
+    return lost ? EXIT_FILE : 0;
+}
+
+static int write_out(app *a, const grobo_motion *motion, const char *path,
+                     const grobo_write_options *how, grobo_diagnostics *list)
+{
+    file_text t = {0};
+    grobo_sink sink = {.write = write_text, .ctx = &t};
+    int status = 0, error = grobo_motion_write(motion, how->format, how, &sink, list);
+    if (!error && !app_option(a, OPT_LOSSY)->given)
+        status = verify(a, motion, path, &t, how);
+    if (!error && !status)
+        error = put_out(&t, path);
+    if (error)
+        status = app_fail(a, EXIT_FILE, grobo_error_name(error), "%s: cannot write: %s", path,
+                          file_write_error_text(error));
+    free(t.bytes);
+    return status;
+}
+
+/* What may be written over OUT: nothing but a motion of the format to be written. */
+static int refuse_out(app *a, const char *out, grobo_motion_format to)
+{
+    int error = strcmp(out, "-") == 0 || app_option(a, OPT_REPLACE)->given
+                    ? 0
+                    : grobo_motion_may_save(grobo_files_os(), out, to);
+    if (error == GROBO_ERR_EXISTS)
+        return app_fail(a, EXIT_FILE, grobo_error_name(error),
+                        "%s: holds something other than a .%s motion; --replace writes over it",
+                        out, grobo_motion_format_name(to));
+    return error ? app_fail(a, EXIT_FILE, grobo_error_name(error), "%s: %s", out,
+                            grobo_error_text(error))
+                 : 0;
+}
+
+/* ---- converting ----------------------------------------------------------------------------- */
+
+/* Legs given by link targets that were not solved, in a format without them. */
+static int refuse_links(app *a, const char *path, const grobo_motion *motion,
+                        const grobo_write_options *how)
+{
+    bool keeps = how->format == GROBO_FORMAT_PSEQ || how->format == GROBO_FORMAT_MSEQ;
+    size_t n = 0, links;
+    const cli_value *ik = app_option(a, OPT_BODY + BODY_IK);
+    for (size_t i = 0; i < grobo_motion_size(motion); i++)
+        n += grobo_motion_ik_links(motion, i, &links) && links;
+    if (!n || keeps || ik->given || app_option(a, OPT_LOSSY)->given)
+        return 0;
+    return app_fail(a, EXIT_FILE, "ik-links-lost",
+                    "%s: %zu of %zu poses have ikLinks, which are solved for GR001 only; --ik off "
+                    "converts the listed joints alone",
+                    path, n, grobo_motion_size(motion));
+}
+
+/* Key poses keep their link targets; any other format gets the angles that they lead to. */
+static int solve_legs(app *a, const char *path, const grobo_write_options *how,
+                      grobo_motion **motion)
+{
+    grobo_body *body = NULL;
+    grobo_motion *solved = NULL;
+    int status;
+    double rate_hz = how->rate_hz;
+    if (how->format == GROBO_FORMAT_PSEQ && !body_options_given(a, OPT_BODY))
+        return 0;
+    if (how->format == GROBO_FORMAT_YAML && !how->exact && !(rate_hz > 0))
+        rate_hz = GROBO_MOTION_RATE_HZ;
+    status = body_make(a, OPT_BODY, path, *motion, rate_hz, &body);
+    if (!status && body)
+        status = body_motion(a, path, body, rate_hz, &solved);
+    grobo_body_free(body);
+    if (solved) {
+        (void)grobo_motion_set_name(solved, grobo_motion_name(*motion));
+        (void)grobo_motion_set_target_body(solved, grobo_motion_target_body(*motion));
+        grobo_motion_free(*motion);
+        *motion = solved;
+    }
+    return status;
+}
+
+static void report(app *a, const grobo_motion *motion, const char *out,
+                   const grobo_diagnostics *list)
+{
+    size_t n = grobo_diagnostics_count(list);
+    if (a->json && strcmp(out, "-") != 0) {
+        json_t *all = json_array();
+        grobo_diagnostic d;
+        for (size_t i = 0; grobo_diagnostics_get(list, i, &d) == 0; i++)
+            json_array_append_new(all, file_json(&d));
+        app_print_json(json_pack("{s:o,s:I,s:o}", "file", app_json_text(out), "postures",
+                                 (json_int_t)grobo_motion_size(motion), "diagnostics", all));
+        return;
+    }
+    for (size_t i = 0; i < n; i++) { /* what is lost is worth a line even when it is a note */
+        char text[1024];
+        grobo_diagnostic d;
+        grobo_diagnostics_get(list, i, &d);
+        file_format(&d, false, text, sizeof text);
+        app_note(a, "%s", text);
+    }
+}
+
+static int run(app *a)
+{
+    const char *in = a->line.argument[0], *out = a->line.argument[1];
+    grobo_motion_format to = format_of(a, OPT_TO);
+    grobo_read_options read = {.model = &grobo_gr001_model, .format = format_of(a, OPT_FROM)};
+    grobo_write_options how = {.model = &grobo_gr001_model,
+                               .name = file_shown_name(in), /* notes tell places in IN */
+                               .rate_hz = app_number(a, OPT_RATE, 0),
+                               .exact = app_option(a, OPT_EXACT)->given > 0};
+    grobo_diagnostics *list = NULL;
+    grobo_motion *motion = NULL;
+    int error;
+    if (to == GROBO_FORMAT_AUTO)
+        to = grobo_motion_format_of_path(out);
+    how.format = to;
+    if (how.exact && app_option(a, OPT_INTEGERS)->given)
+        return app_fail(a, EXIT_USAGE, "USAGE",
+                        "convert: --exact and --integers cannot be used together");
+    if (to == GROBO_FORMAT_AUTO)
+        return app_fail(a, EXIT_USAGE, "USAGE",
+                        "%s: its name tells no format; give --to " FILE_FORMATS, out);
+    error = refuse_out(a, out, to);
+    if (error)
+        return error;
+    error = grobo_diagnostics_new(&list, NULL);
+    if (error)
+        return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s", grobo_error_text(error));
+    error = file_load_listed(a, in, &read, list, &motion);
+    if (!error)
+        error = solve_legs(a, in, &how, &motion);
+    if (error) {
+        grobo_diagnostics_free(list);
+        grobo_motion_free(motion);
+        return error;
+    }
+    error = refuse_links(a, in, motion, &how);
+    if (!error)
+        error = write_out(a, motion, out, &how, list);
+    if (!error)
+        report(a, motion, out, list);
+    grobo_diagnostics_free(list);
+    grobo_motion_free(motion);
+    return error;
+}
+
+const cli_command cmd_convert = {
+    .name = "convert",
+    .arguments = "IN OUT",
+    .summary = "turn a motion file into another format",
+    .details = "Converts between .m, .pseq, .mseq and .yaml (.seq), both ways. The formats follow\n"
+               "from the names unless --from or --to say otherwise; - is standard input or\n"
+               "output. OUT is read back before it is written: if it does not play what IN plays,\n"
+               "that is an error. What its format has no place for (names, ZMP) is a note. An old\n"
+               "OUT is replaced only when the new one is safely written, and only where it holds\n"
+               "a motion of the same format, unless --replace is given.\n",
+    .example = "  grctl convert greet.pseq greet.m\n"
+               "  grctl convert --rate 50 greet.pseq greet.yaml\n",
+    .options = options,
+    .n_options = sizeof options / sizeof options[0],
+    .min_arguments = 2,
+    .max_arguments = 2,
+    .argument = CLI_ARG_FILE,
+    .run = run,
+};

@@ -1,0 +1,177 @@
+/* SPDX-License-Identifier: MIT */
+#include <string.h>
+#include <time.h>
+
+#include "tools/grctl/cli/commands.h"
+#include "tools/grctl/decode/decoder.h"
+#include "tools/grctl/decode/hextext.h"
+
+enum { HEX_BYTES = 65536 };
+
+static unsigned wiring_of(const app *a)
+{
+    const cli_value *wiring = app_global(a, GLOBAL_WIRING);
+    if (!wiring->given)
+        return FRAMES_ANY_WIRING;
+    return (grobo_wiring)wiring->choice == GROBO_WIRING_BOARD ? FRAMES_BOARD : FRAMES_BUS;
+}
+
+/* ---- a trace ------------------------------------------------------------------------------- */
+
+/* What the trace says of itself. */
+static void print_head(const decoder *d, const pcapng_reader *r, const pcapng_chunk *first)
+{
+    const pcapng_interface *i = first->interface;
+    time_t seconds = (time_t)(first->time_us / 1000000);
+    const struct tm *utc = gmtime(&seconds);
+    char started[40] = "";
+    if (utc)
+        strftime(started, sizeof started, "%Y-%m-%dT%H:%M:%SZ", utc);
+    if (d->a->json) {
+        app_print_json(json_pack("{s:{s:o,s:o,s:o,s:I,s:s}}", "trace", "comment",
+                                 app_json_text(r->comment), "device", app_json_text(i->name),
+                                 "line", app_json_text(i->description), "baud_bps",
+                                 (json_int_t)i->speed_bps, "started", started));
+        return;
+    }
+    app_note(d->a, "%s%s%s%s%s, %llu bps, begun %s", r->comment, *r->comment ? ": " : "", i->name,
+             *i->description ? ", " : "", i->description, (unsigned long long)i->speed_bps,
+             started);
+}
+
+static void print_comment(const decoder *d, const pcapng_chunk *chunk)
+{
+    double time_ms = (double)(chunk->time_us - d->first_us) / 1e3;
+    if (d->a->json)
+        app_print_json(json_pack("{s:o,s:o}", "time_ms", app_json_number(time_ms, 3), "comment",
+                                 app_json_text(chunk->comment)));
+    else
+        app_print("%10.3f  %-7s  %s\n", time_ms, "comment", chunk->comment);
+}
+
+static frames_side side_of(pcapng_direction direction)
+{
+    switch (direction) {
+    case PCAPNG_OUT:
+        return FRAMES_HOST;
+    case PCAPNG_IN:
+        return FRAMES_ROBOT;
+    case PCAPNG_UNKNOWN:
+        break;
+    }
+    return FRAMES_EITHER;
+}
+
+/* A pcapng trace. Returns 0 or the exit status. */
+static int decode_trace(decoder *d, input *in)
+{
+    static pcapng_reader reader;
+    pcapng_chunk chunk;
+    int more;
+    d->timed = true;
+    pcapng_reader_init(&reader, input_read, in);
+    while ((more = pcapng_read(&reader, &chunk)) > 0) {
+        if (!d->begun)
+            print_head(d, &reader, &chunk);
+        decoder_feed(d, side_of(chunk.direction), chunk.time_us, chunk.bytes, chunk.size);
+        if (*chunk.comment)
+            print_comment(d, &chunk);
+    }
+    if (more < 0) {
+        decoder_end(d);
+        return input_fail(in, d->a, &reader);
+    }
+    return 0;
+}
+
+/* ---- the command --------------------------------------------------------------------------- */
+
+static int decode_file(decoder *d, const char *path)
+{
+    input in;
+    int status = input_open(&in, d->a, path);
+    if (status)
+        return status;
+    status = input_is_pcapng(&in) ? decode_trace(d, &in) : decode_text(d, &in);
+    input_close(&in);
+    decoder_end(d);
+    if (!status)
+        decoder_summary(d);
+    return status ? status : decoder_status(d);
+}
+
+/* One name of a file, rather than hex: it is no hex and looks like a path or is there. */
+static bool is_file(const app *a)
+{
+    const char *name = a->line.argument[0];
+    uint8_t bytes[1];
+    size_t at;
+    FILE *file;
+    int n;
+    if (a->line.n_arguments != 1)
+        return false;
+    if (strcmp(name, "-") == 0)
+        return true;
+    n = hextext_parse(name, bytes, sizeof bytes, &at);
+    if (n == 1 || n == GROBO_ERR_CAP)
+        return strpbrk(name, "/.") != NULL;
+    file = fopen(name, "rb");
+    if (file)
+        fclose(file);
+    return file || strpbrk(name, "/.");
+}
+
+static int decode_arguments(decoder *d)
+{
+    static uint8_t bytes[HEX_BYTES];
+    app *a = d->a;
+    size_t used = 0;
+    for (int i = 0; i < a->line.n_arguments; i++) {
+        const char *text = a->line.argument[i];
+        size_t at = 0;
+        int n = hextext_parse(text, bytes + used, sizeof bytes - used, &at);
+        if (n == GROBO_ERR_CAP)
+            return app_fail(a, EXIT_USAGE, "CAP", "decode: more than %d bytes; use a file",
+                            HEX_BYTES);
+        if (n < 0)
+            return app_fail(a, EXIT_USAGE, "SYNTAX",
+                            "decode: '%.*s' is neither a byte in hex nor a file",
+                            hextext_word(text + at) > 40 ? 40 : hextext_word(text + at), text + at);
+        used += (size_t)n;
+    }
+    if (used == 0)
+        return app_fail(a, EXIT_USAGE, "EMPTY", "decode: no bytes");
+    decoder_feed(d, FRAMES_EITHER, 0, bytes, used);
+    decoder_end(d);
+    return decoder_status(d);
+}
+
+static int run(app *a)
+{
+    static decoder d;
+    decoder_init(&d, a, wiring_of(a));
+    if (a->line.n_arguments == 0)
+        return decode_file(&d, "-");
+    return is_file(a) ? decode_file(&d, a->line.argument[0]) : decode_arguments(&d);
+}
+
+const cli_command cmd_decode = {
+    .name = "decode",
+    .arguments = "[HEX | FILE]",
+    .summary = "frames in words, from hex or a trace",
+    .details =
+        "Says what bytes mean: frames of the board, packets to servos and from them, registers by\n"
+        "name and in their units, whether the sum is right, what will be answered. Bytes that are\n"
+        "no frame are shown as what they are. The bytes come as hex on the command line (with or\n"
+        "without blanks), from a file or standard input of hex, from what 'play --dry-run'\n"
+        "prints, or from a trace of --trace. A name that is hex is hex: say ./cafe for a file.\n"
+        "Exit status 3 if a frame had a wrong sum or was cut off.\n"
+        "With -v the bytes are shown too. --wiring tells what to believe of a host; without it\n"
+        "board frames and bare packets are both known.\n",
+    .example = "  grctl decode 53 0C FA AF 03 00 1E 04 01 F6 FF 00 00 11\n"
+               "  grctl play --dry-run motions/greet.pseq | grctl decode\n"
+               "  grctl decode walk.pcapng\n",
+    .max_arguments = -1,
+    .argument = CLI_ARG_FILE,
+    .run = run,
+};

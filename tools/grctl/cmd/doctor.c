@@ -1,0 +1,329 @@
+/* SPDX-License-Identifier: MIT */
+/* doctor: from the port to the last servo, what is wrong and what mends it. */
+#include <stdlib.h>
+#include <string.h>
+
+#include <grobo/estop.h>
+
+#include "tools/grctl/cli/commands.h"
+#include "tools/grctl/conn/servos.h"
+#include "tools/grctl/doctor/checkup.h"
+
+enum { IDENTITY_BYTES = 3 /* No.0-1 model, No.2 firmware */, READ_BYTES = 30 /* the longest */ };
+enum { NAME_BYTES = 16, FIX_BYTES = 512 };
+
+typedef struct patient {
+    checkup k;
+    conn c;
+    const grobo_model *model;
+    int answered; /* servos */
+    int32_t low_mv, high_mv;
+    int hottest_c;
+} patient;
+
+/* Bits a second that robots are found at; the usual one first is asked for already. */
+static const int usual_bauds[] = {9600, 19200, 38400, 57600, 115200, 230400, 460800};
+
+static bool is_path(const char *device)
+{
+    return strcmp(device, GROBO_DEVICE_SIM) != 0 && strncmp(device, "tcp:", 4) != 0;
+}
+
+static int keep_usb(void *ctx, const grobo_port_info *info)
+{
+    char *path = ctx;
+    if (info->usb_vendor < 0)
+        return 0;
+    snprintf(path, GROBO_DEVICE_MAX_BYTES, "%s", info->path);
+    return 1;
+}
+
+/* ---- the line -------------------------------------------------------------------------------- */
+
+static int baud_of(const app *a)
+{
+    const cli_value *baud = app_global(a, GLOBAL_BAUD);
+    return baud->given ? (int)baud->number : GROBO_BAUD_DEFAULT_BPS;
+}
+
+/* Opens the line and asks; what is said of it is in `said`. True: somebody answered. */
+static bool ask(patient *p, char *said)
+{
+    app *a = p->k.a;
+    bool ok;
+    a->hushed = said;
+    ok = conn_open(&p->c, a) == EXIT_DONE &&
+         servos_wait(&p->c, baud_of(a), READ_BYTES, SERVOS_PATIENT_US, 0, NULL) == GROBO_OK;
+    if (!ok)
+        conn_close(&p->c, EXIT_DONE);
+    a->hushed = NULL;
+    return ok;
+}
+
+static void set_baud(app *a, int baud_bps)
+{
+    a->line.global[GLOBAL_BAUD].given = 1;
+    a->line.global[GLOBAL_BAUD].number = baud_bps;
+}
+
+/* Somebody who answers at another rate, or straight on the line: 0 nobody, else the rate. */
+static int find_answer(patient *p, int asked_bps)
+{
+    app *a = p->k.a;
+    char said[APP_LINE_BYTES];
+    for (size_t i = 0; i < sizeof usual_bauds / sizeof usual_bauds[0] && !p->c.signal; i++) {
+        if (usual_bauds[i] == asked_bps)
+            continue;
+        set_baud(a, usual_bauds[i]);
+        if (ask(p, said))
+            return usual_bauds[i];
+    }
+    set_baud(a, asked_bps);
+    a->line.global[GLOBAL_WIRING].choice = !a->line.global[GLOBAL_WIRING].choice;
+    return ask(p, said) ? asked_bps : 0;
+}
+
+static bool check_reply(patient *p, const char *device)
+{
+    app *a = p->k.a;
+    char said[APP_LINE_BYTES] = "", fix[FIX_BYTES];
+    int asked_bps = baud_of(a), found_bps;
+    int wiring = app_global(a, GLOBAL_WIRING)->choice;
+    if (ask(p, said)) {
+        checkup_good(&p->k, false, "reply", "the %s answers at %d bps",
+                     wiring == GROBO_WIRING_BOARD ? "board" : "robot", asked_bps);
+        return true;
+    }
+    if (p->c.signal)
+        return false;
+    if (!strstr(said, "no robot answers")) {
+        checkup_bad(&p->k, "reply",
+                    strncmp(device, "tcp:", 4) == 0 ? "start a serial server there (ser2net), or "
+                                                      "correct the address: -d tcp:HOST:PORT"
+                                                    : "switch the robot on, push its cables in",
+                    "%s", said);
+        return false;
+    }
+    found_bps = find_answer(p, asked_bps);
+    if (found_bps == 0) {
+        checkup_bad(&p->k, "reply", "switch the robot on, push its cables in", "%s", said);
+        return false;
+    }
+    if (found_bps != asked_bps)
+        snprintf(fix, sizeof fix, "grctl -d %s -b %d ...", device, found_bps);
+    else
+        snprintf(fix, sizeof fix, "grctl -d %s --wiring %s ...", device,
+                 wiring == GROBO_WIRING_BOARD ? "bus" : "board");
+    checkup_bad(&p->k, "reply", fix, "nobody answers as asked, but somebody does at %d bps%s",
+                found_bps,
+                found_bps != asked_bps         ? ""
+                : wiring == GROBO_WIRING_BOARD ? ", straight on the line"
+                                               : ", through a board");
+    return true;
+}
+
+/* To who does not reckon with an echo it is rubbish: a request's bytes in front of its reply. */
+static void check_echo(patient *p, const char *device)
+{
+    const app *a = p->k.a;
+    const grobo_bus_stats *n = grobo_robot_get_bus_stats(p->c.robot);
+    char fix[FIX_BYTES + GROBO_DEVICE_MAX_BYTES];
+    if (app_global(a, GLOBAL_WIRING)->choice == GROBO_WIRING_BOARD ||
+        app_global(a, GLOBAL_ECHO)->given || n->replies == 0 ||
+        n->resync_bytes < n->replies * GROBO_RS30X_OVERHEAD_BYTES / 2)
+        return;
+    snprintf(fix, sizeof fix, "grctl -d %s --wiring bus --echo ...", device);
+    checkup_bad(&p->k, "echo", fix, "the adapter returns what is sent to it");
+}
+
+/* ---- the servos ------------------------------------------------------------------------------ */
+
+static void say_silent(patient *p, const char *name, int joint, int error)
+{
+    const grobo_joint *j = &p->model->joints[joint];
+    char fix[FIX_BYTES];
+    if (error == GROBO_ERR_TIMEOUT || error == GROBO_ERR_SHORT) {
+        snprintf(fix, sizeof fix, "push its cable in; has it another id? grctl%s scan",
+                 app_global(p->k.a, GLOBAL_WIRING)->choice ? " --wiring bus" : "");
+        checkup_bad(&p->k, name, fix, "%s does not answer", j->name);
+    } else {
+        snprintf(fix, sizeof fix,
+                 "unplug all servos but one of id %d, and: grctl servo-set %d id NEW --flash",
+                 j->motor, j->motor);
+        checkup_bad(&p->k, name, fix, "%s answers, but: %s; two servos with id %d?", j->name,
+                    grobo_error_text(error), j->motor);
+    }
+}
+
+/* True when something is wrong with what it reports. */
+static bool check_state(patient *p, const char *name, int joint, const grobo_joint_state *s)
+{
+    const grobo_driver *driver = grobo_robot_driver(p->c.robot);
+    const grobo_joint *j = &p->model->joints[joint];
+    char fix[FIX_BYTES];
+    snprintf(fix, sizeof fix, "let it cool down: grctl servo off m%d", j->motor);
+    if (s->flags & GROBO_RS30X_STATUS_OVERHEATED)
+        checkup_bad(&p->k, name, fix, "%s has cut its torque for heat (%d C)", j->name,
+                    s->temperature_c);
+    else if ((s->flags & GROBO_RS30X_STATUS_HOT) || s->temperature_c > driver->limits.temperature_c)
+        checkup_bad(&p->k, name, fix, "%s is hot: %d C, at most %d are good for it", j->name,
+                    s->temperature_c, driver->limits.temperature_c);
+    else if (s->flags & GROBO_RS30X_STATUS_FLASH_ERROR) {
+        snprintf(fix, sizeof fix, "write its settings again: grctl servo-set %d id %d --flash",
+                 j->motor, j->motor);
+        checkup_bad(&p->k, name, fix, "%s lost power while it wrote its flash", j->name);
+    } else
+        return false;
+    return true;
+}
+
+static void keep_extremes(patient *p, const grobo_joint_state *s)
+{
+    p->answered++;
+    if (p->low_mv == 0 || s->voltage_mv < p->low_mv)
+        p->low_mv = s->voltage_mv;
+    if (s->voltage_mv > p->high_mv)
+        p->high_mv = s->voltage_mv;
+    if (s->temperature_c > p->hottest_c)
+        p->hottest_c = s->temperature_c;
+}
+
+static void check_model(patient *p, const char *name, int joint, uint16_t model,
+                        const grobo_joint_state *s)
+{
+    const grobo_joint *j = &p->model->joints[joint];
+    const char *type = grobo_rs30x_model_name(model);
+    const char *expected = grobo_rs30x_model_name(j->servo_model);
+    if (j->servo_model && model != j->servo_model)
+        checkup_bad(&p->k, name, "put the right servo there; its speed and torque are others",
+                    "%s is %s, not %s", j->name, type ? type : "of an unknown model",
+                    expected ? expected : "that");
+    else
+        checkup_good(&p->k, true, name, "%s: %s, %d C, %.2f V", j->name, type ? type : "a servo",
+                     s->temperature_c, s->voltage_mv / 1e3);
+}
+
+/* Asking again may hide that two talk at once. */
+static uint64_t broken_replies(const patient *p)
+{
+    return grobo_robot_get_bus_stats(p->c.robot)->bad_sums;
+}
+
+static void check_servo(patient *p, int joint)
+{
+    const grobo_joint *j = &p->model->joints[joint];
+    uint8_t identity[IDENTITY_BYTES];
+    char name[NAME_BYTES];
+    grobo_joint_info i = {0};
+    uint64_t broken = broken_replies(p);
+    int error = servos_read(&p->c, j->motor, GROBO_RS30X_MODEL, IDENTITY_BYTES, identity);
+    snprintf(name, sizeof name, "servo_%d", j->motor);
+    if (!error)
+        error = conn_wait(
+            &p->c, grobo_session_sense(p->c.session, GROBO_JOINT_BIT(joint), GROBO_SENSE_FULL));
+    if (p->c.signal || p->c.link_error)
+        return;
+    if (!error)
+        error = grobo_robot_joint(p->c.robot, joint, grobo_now_us(), &i);
+    broken = broken_replies(p) - broken;
+    if (error || broken) {
+        say_silent(p, name, joint, broken && !error ? GROBO_ERR_CHECKSUM : error);
+        return;
+    }
+    keep_extremes(p, &i.state);
+    if (check_state(p, name, joint, &i.state))
+        return;
+    check_model(p, name, joint, (uint16_t)(identity[0] | identity[1] << 8), &i.state);
+}
+
+static void check_servos(patient *p)
+{
+    int32_t least_mv;
+    p->model = grobo_robot_driver(p->c.robot)->model;
+    for (int joint = 0; joint < p->model->n_joints && !p->c.signal && !p->c.link_error; joint++)
+        check_servo(p, joint);
+    if (p->c.signal || p->c.link_error || p->answered == 0)
+        return;
+    least_mv = grobo_robot_driver(p->c.robot)->limits.voltage_mv * 11 / 10;
+    if (p->low_mv < least_mv)
+        checkup_bad(&p->k, "voltage", "charge the battery",
+                    "%.2f V at the servos: low; at %.1f V every motion is stopped", p->low_mv / 1e3,
+                    grobo_robot_driver(p->c.robot)->limits.voltage_mv / 1e3);
+    else
+        checkup_good(&p->k, false, "voltage", "%.2f to %.2f V at the servos", p->low_mv / 1e3,
+                     p->high_mv / 1e3);
+    if (p->answered == p->model->n_joints)
+        checkup_good(&p->k, false, "servos", "all %d answer; the warmest has %d C", p->answered,
+                     p->hottest_c);
+}
+
+/* ---- the whole of it ------------------------------------------------------------------------- */
+
+static void check_latch(checkup *k, const char *device)
+{
+    char fix[FIX_BYTES + GROBO_DEVICE_MAX_BYTES];
+    snprintf(fix, sizeof fix, "grctl -d %s estop --reset", device);
+    if (grobo_estop_stands(device))
+        checkup_bad(k, "estop", fix, "an emergency stop stands: nothing will move");
+}
+
+/* The device to look at: auto is the first USB adapter. False: there is none. */
+static bool choose_device(checkup *k, char *device)
+{
+    app *a = k->a;
+    cli_value *asked = &a->line.global[GLOBAL_DEVICE];
+    const char *fallback = getenv("GRCTL_DEVICE");
+    const char *name = asked->given ? asked->text : fallback && *fallback ? fallback : "auto";
+    if (strcmp(name, GROBO_DEVICE_AUTO) != 0) {
+        snprintf(device, GROBO_DEVICE_MAX_BYTES, "%s", name);
+    } else if (grobo_port_list(keep_usb, device) <= 0 || !*device) {
+        checkup_bad(k, "device",
+                    "plug the robot's cable in, or name its port: -d DEV; 'grctl ports' lists them",
+                    "no USB serial adapter is here");
+        return false;
+    }
+    asked->given = 1;
+    asked->text = device;
+    return true;
+}
+
+static int run(app *a)
+{
+    static char device[GROBO_DEVICE_MAX_BYTES];
+    static patient p;
+    int signal = 0;
+    memset(&p, 0, sizeof p);
+    checkup_start(&p.k, a);
+    if (choose_device(&p.k, device) && (!is_path(device) || checkup_port(&p.k, device))) {
+        check_latch(&p.k, device);
+        if (check_reply(&p, device)) {
+            check_servos(&p);
+            if (!p.c.signal && !p.c.link_error)
+                check_echo(&p, device);
+            if (p.c.link_error)
+                checkup_bad(&p.k, "link", "push the cable in at both ends",
+                            "%s was lost on the way", device);
+            conn_close(&p.c, EXIT_DONE);
+        }
+        signal = p.c.signal;
+    }
+    if (signal) {
+        json_decref(p.k.checks);
+        return EXIT_SIGNAL + signal;
+    }
+    return checkup_end(&p.k);
+}
+
+const cli_command cmd_doctor = {
+    .name = "doctor",
+    .arguments = "",
+    .summary = "look for what is wrong, and say what mends it",
+    .details =
+        "Looks at the port (is it there, may you open it, who holds it, is its latency timer\n"
+        "short), asks for a reply (at other baud rates and wirings too when nobody answers), then\n"
+        "asks every servo for its model, voltage, temperature and flags. Each thing that is wrong\n"
+        "comes with the line that mends it, and makes the exit status 1. Nothing moves. -v shows\n"
+        "every servo, also those that are well.\n",
+    .example = "  grctl doctor\n  grctl -d /dev/ttyUSB0 doctor -v\n",
+    .run = run,
+};

@@ -1,0 +1,443 @@
+/* SPDX-License-Identifier: MIT */
+/* monitor: everything at a glance, and the keys to act on it. */
+#include <math.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <grobo/estop.h>
+
+#include "tools/grctl/cli/commands.h"
+#include "tools/grctl/monitor/monitor.h"
+#include "tools/grctl/os/os.h"
+#include "tools/grctl/screen/screen.h"
+
+enum { DRAW_US = 50000, SENSE_US = 300000, NUDGE_MS = 300, INIT_MS = 3000, GROUP_KEYS = 8 };
+
+__attribute__((format(printf, 3, 4))) static void say(monitor *m, bool bad, const char *format, ...)
+{
+    va_list list;
+    va_start(list, format);
+    vsnprintf(m->said, sizeof m->said, format, list);
+    va_end(list);
+    m->bad = bad;
+}
+
+const char *monitor_busy(const monitor *m)
+{
+    grobo_job_kind kind = grobo_robot_job(m->c.robot);
+    if (kind == GROBO_JOB_ESTOP)
+        return "emergency stop";
+    if (kind == GROBO_JOB_PLAY)
+        return "getting ready to play";
+    if (m->job)
+        return m->doing;
+    return grobo_robot_is_playing(m->c.robot)
+               ? grobo_sequencer_state_name(grobo_robot_play_state(m->c.robot))
+               : NULL;
+}
+
+/* What a request came to: a number > 0 is that of a job, whose end is told by on_event(). */
+static void say_request(monitor *m, int result, const char *doing)
+{
+    const char *busy = monitor_busy(m);
+    if (result == GROBO_ERR_STATE)
+        say(m, true, "%s: not now, the robot is busy: %s", doing, busy ? busy : "moving");
+    else if (result < 0)
+        say(m, true, "%s: %s", doing, grobo_error_text(result));
+    else
+        say(m, false, "%s", doing);
+    if (result > 0) {
+        m->job = result;
+        m->doing = doing;
+    }
+}
+
+/* An emergency stop of another command stands here too. */
+static bool may_move(monitor *m)
+{
+    if (!grobo_estop_stands(conn_device(&m->c)))
+        return true;
+    say(m, true, "an emergency stop stands: R takes it back");
+    return false;
+}
+
+/* ---- what keys do ---------------------------------------------------------------------------- */
+
+static void choose_place(monitor *m, int place)
+{
+    m->cursor = (place + MONITOR_PLACES) % MONITOR_PLACES;
+    m->chosen = GROBO_JOINT_BIT(monitor_joint(m, m->cursor));
+}
+
+static void choose_group(monitor *m, int group)
+{
+    if (group >= m->model->n_groups)
+        return;
+    m->chosen = m->model->groups[group].joints;
+    say(m, false, "%s", m->model->groups[group].name);
+}
+
+static bool torque_is_on(const monitor *m, int joint)
+{
+    grobo_joint_info i;
+    return grobo_robot_joint(m->c.robot, joint, grobo_now_us(), &i) == 0 && i.torque_known &&
+           i.state.torque == GROBO_TORQUE_ON;
+}
+
+static int first_chosen(const monitor *m)
+{
+    int joint = 0;
+    while (!(m->chosen & GROBO_JOINT_BIT(joint)))
+        joint++;
+    return joint;
+}
+
+/* Less torque does not wait for a move to end: it ends the move. */
+static void switch_torque(monitor *m, grobo_torque mode, const char *doing)
+{
+    int result;
+    if (mode == GROBO_TORQUE_ON && !may_move(m))
+        return;
+    result = grobo_session_torque(m->c.session, m->chosen, mode);
+    if (result == GROBO_ERR_STATE && mode != GROBO_TORQUE_ON &&
+        grobo_session_cancel(m->c.session) == GROBO_OK)
+        result = grobo_session_torque(m->c.session, m->chosen, mode);
+    say_request(m, result, doing);
+}
+
+static void toggle_torque(monitor *m)
+{
+    if (torque_is_on(m, first_chosen(m)))
+        switch_torque(m, GROBO_TORQUE_OFF, "torque off");
+    else
+        switch_torque(m, GROBO_TORQUE_ON, "torque on");
+}
+
+/* Only what holds is nudged: a limp joint may stand where its weight took it. */
+static void nudge(monitor *m, double by_deg)
+{
+    grobo_posture target;
+    if (!may_move(m))
+        return;
+    grobo_posture_init(&target, m->model->n_joints);
+    for (int j = 0; j < m->model->n_joints; j++) {
+        grobo_joint_info i;
+        double from_rad;
+        if (!(m->chosen & GROBO_JOINT_BIT(j)) || !torque_is_on(m, j) ||
+            grobo_robot_joint(m->c.robot, j, grobo_now_us(), &i) < 0)
+            continue;
+        from_rad = i.has_target ? i.target_rad : i.state.angle_rad;
+        grobo_posture_set_rad(&target, j, from_rad + grobo_rad_from_deg(by_deg));
+    }
+    if (!target.set) {
+        say(m, true, "no torque there: t switches it on");
+        return;
+    }
+    grobo_posture_clamp(&target, m->model);
+    grobo_posture_set_time_ms(&target, NUDGE_MS);
+    say_request(m, grobo_session_move(m->c.session, &target), "nudge");
+}
+
+static void go_init(monitor *m)
+{
+    grobo_posture target;
+    if (!may_move(m))
+        return;
+    grobo_posture_init_pose(&target, m->model);
+    grobo_posture_set_time_ms(&target, INIT_MS);
+    say_request(m, grobo_session_move(m->c.session, &target), "move to the initial posture");
+}
+
+static void start_play(monitor *m)
+{
+    grobo_posture sensed;
+    int job;
+    if (!m->list.n) {
+        say(m, true, "nothing to play: grctl monitor FILE...");
+        return;
+    }
+    if (!may_move(m))
+        return;
+    grobo_robot_posture(m->c.robot, grobo_now_us(), GROBO_NEVER_US, &sensed);
+    if (!m->prepared && playlist_prepare(&m->list, m->c.a, &sensed) != EXIT_DONE)
+        return; /* it has said why */
+    m->prepared = true;
+    job = grobo_session_play(m->c.session, &m->list.clip[0], &m->list.options[0]);
+    if (job > 0)
+        m->keys.speed_pct = 100;
+    say_request(m, job, "play");
+}
+
+static void reset(monitor *m)
+{
+    int error = grobo_session_reset(m->c.session);
+    say_request(m, error, "stop taken back; nothing moves by itself");
+    m->c.trip = (grobo_trip_info){0};
+}
+
+static bool take_choice(monitor *m, int key)
+{
+    if (key >= '0' && key < '0' + GROUP_KEYS)
+        choose_group(m, key - '0');
+    else if (key == SCREEN_KEY_UP || key == SCREEN_KEY_DOWN)
+        choose_place(m, m->cursor + (key == SCREEN_KEY_DOWN ? 1 : -1));
+    else if (key == SCREEN_KEY_LEFT || key == SCREEN_KEY_RIGHT)
+        choose_place(m, m->cursor + MONITOR_PLACES / 2);
+    else
+        return false;
+    return true;
+}
+
+static bool take_nudge(monitor *m, int key)
+{
+    static const char nudges[] = "[]{}";
+    static const double by_deg[] = {-1, 1, -5, 5};
+    const char *found = key > 0 && key < 128 ? strchr(nudges, key) : NULL;
+    if (found)
+        nudge(m, by_deg[found - nudges]);
+    return found != NULL;
+}
+
+/* Of a motion; s ends any other move too. */
+static void take_play_key(monitor *m, int key)
+{
+    const char *busy = monitor_busy(m);
+    if (grobo_robot_is_playing(m->c.robot) || (key == 's' && busy))
+        play_keys_take(&m->keys, key);
+    else if (key > 0 && key < 128 && strchr(" +=-s", key))
+        say(m, true, "nothing is playing%s%s", busy ? "; the robot is busy: " : "",
+            busy ? busy : "");
+}
+
+static void take_key(monitor *m, int key)
+{
+    if (key == 'q') {
+        m->over = true;
+        return;
+    }
+    if (key == 'e') {
+        play_keys_estop(&m->keys);
+        say(m, true, "emergency stop");
+        return;
+    }
+    if (take_choice(m, key))
+        return;
+    if (!m->c.up) {
+        say(m, true, "the line is lost");
+        return;
+    }
+    if (take_nudge(m, key))
+        return;
+    if (key == 't')
+        toggle_torque(m);
+    else if (key == 'b')
+        switch_torque(m, GROBO_TORQUE_BRAKE, "brake");
+    else if (key == 'i')
+        go_init(m);
+    else if (key == 'p')
+        start_play(m);
+    else if (key == 'R')
+        reset(m);
+    else
+        take_play_key(m, key);
+}
+
+/* ---- what comes from the loop ---------------------------------------------------------------- */
+
+static void on_input(evutil_socket_t fd, short what, void *ctx)
+{
+    monitor *m = ctx;
+    int key;
+    (void)fd;
+    (void)what;
+    while ((key = screen_key()) != SCREEN_KEY_NONE)
+        take_key(m, key);
+    monitor_draw(m);
+}
+
+static void on_draw(evutil_socket_t fd, short what, void *ctx)
+{
+    (void)fd;
+    (void)what;
+    monitor_draw(ctx);
+}
+
+/* The files behind the first, once that is on its way. */
+static void queue_others(monitor *m)
+{
+    int error = GROBO_OK;
+    for (int i = 1; i < m->list.n && error >= 0; i++) {
+        error = grobo_session_enqueue(m->c.session, &m->list.clip[i], &m->list.options[i]);
+        if (error < 0)
+            say(m, true, "%s: %s", m->list.path[i], grobo_error_text(error));
+    }
+}
+
+/* How the job ended that was asked for last; an end by our own hand is no complaint. */
+static void say_end(monitor *m, const grobo_event_job *job)
+{
+    const char *joint = job->joint >= 0 ? m->model->joints[job->joint].name : "";
+    if (job->number != m->job)
+        return;
+    m->job = 0;
+    if (job->result == GROBO_ERR_CANCELED)
+        say(m, false, "%s: stopped", m->doing);
+    else if (job->result < 0)
+        say(m, true, "%s: %s%s%s", m->doing, joint, *joint ? ": " : "",
+            grobo_error_text(job->result));
+    else if (job->kind == GROBO_JOB_PLAY)
+        queue_others(m);
+    else
+        say(m, false, "%s: done", m->doing);
+}
+
+static void say_play(monitor *m, grobo_sequencer_state to)
+{
+    if (to == GROBO_SEQUENCER_FINISHED)
+        say(m, false, "played");
+    else if (to == GROBO_SEQUENCER_IDLE)
+        say(m, false, "play: stopped");
+}
+
+static void on_event(conn *c, const grobo_event *event)
+{
+    monitor *m = c->ctx;
+    if (event->kind == GROBO_EVENT_LINK_DOWN) {
+        m->up_us = event->now_us;
+        m->drops++;
+    } else if (event->kind == GROBO_EVENT_TRIP) {
+        say(m, true, "stopped for safety: %s", grobo_trip_name(event->u.trip.trip));
+    } else if (event->kind == GROBO_EVENT_PLAY) {
+        say_play(m, event->u.play.to);
+    } else if (event->kind == GROBO_EVENT_JOB) {
+        say_end(m, &event->u.job);
+    }
+}
+
+static bool is_over(conn *c)
+{
+    const monitor *m = c->ctx;
+    return m->over;
+}
+
+/* ---- the whole of it ------------------------------------------------------------------------- */
+
+/* Until somebody quits. Returns why it ended otherwise, or 0. */
+static int watch(monitor *m)
+{
+    struct timeval period = {0, DRAW_US};
+    struct event *tick = event_new(m->c.base, -1, EV_PERSIST, on_draw, m);
+    struct event *input = event_new(m->c.base, STDIN_FILENO, EV_READ | EV_PERSIST, on_input, m);
+    int error = tick && input ? GROBO_OK : GROBO_ERR_NOMEM;
+    if (!error) {
+        event_add(tick, &period);
+        event_add(input, NULL);
+        monitor_draw(m);
+        error = conn_wait_until(&m->c, is_over);
+    }
+    if (tick)
+        event_free(tick);
+    if (input)
+        event_free(input);
+    return error;
+}
+
+/*
+ * Each joint three times a second, in the background of whatever else goes on: the wire would carry
+ * twice as much, but asking costs more of the processor than drawing.
+ */
+static int sense_often(conn *c)
+{
+    grobo_robot_config config = conn_robot_config(c->a);
+    config.sense_interval_us = SENSE_US;
+    return grobo_session_configure(c->session, &config);
+}
+
+/* Who leaves while something moves leaves it standing. */
+static int leave(monitor *m, int error)
+{
+    conn *c = &m->c;
+    c->moving = c->up && grobo_robot_moving(c->robot, grobo_now_us());
+    if (!error && c->moving)
+        error = conn_wait(c, grobo_session_exit(c->session, GROBO_EXIT_HOLD));
+    return error ? conn_fail(c, error, "monitor") : EXIT_DONE;
+}
+
+static int run_screen(monitor *m)
+{
+    conn *c = &m->c;
+    app *a = c->a;
+    int error;
+    c->ctx = m;
+    c->on_event = on_event;
+    m->model = grobo_robot_driver(c->robot)->model;
+    m->keys = (play_keys){.c = c, .speed_pct = 100};
+    m->blocks = os_shows_utf8();
+    choose_place(m, 0);
+    error = sense_often(c);
+    if (error)
+        return conn_fail(c, error, "monitor");
+    if (!screen_open(a->color_out))
+        return app_fail(a, EXIT_ROBOT, "UNSUPPORTED", "monitor: cannot use this terminal");
+    a->hushed = m->said;
+    error = watch(m);
+    a->hushed = NULL;
+    screen_close();
+    return leave(m, error);
+}
+
+/* Where no full screen can be: the table again and again, which any terminal and pipe takes. */
+static int run_plain(app *a)
+{
+    static const char *const words[] = {"grctl", "status", "--watch"};
+    cli_line line = a->line;
+    char complaint[1];
+    app_note(a, "monitor: no full screen here; this is 'grctl status --watch'");
+    if (!cli_parse(&a->line, 3, (char *const *)words, complaint, sizeof complaint))
+        return EXIT_USAGE;
+    memcpy(a->line.global, line.global, sizeof line.global);
+    return a->line.command->run(a);
+}
+
+static int run(app *a)
+{
+    static monitor m;
+    int status;
+    memset(&m, 0, sizeof m);
+    status = a->line.n_arguments ? playlist_load(&m.list, a) : EXIT_DONE;
+    if (!status && (a->json || !screen_possible())) {
+        status = run_plain(a);
+    } else if (!status) {
+        a->reconnects = a->moves = true;
+        status = conn_open(&m.c, a);
+        if (!status)
+            status = run_screen(&m);
+        status = conn_close(&m.c, status);
+        a->reconnects = false;
+    }
+    playlist_free(&m.list);
+    return status;
+}
+
+const cli_command cmd_monitor = {
+    .name = "monitor",
+    .arguments = "[FILE]...",
+    .summary = "full-screen live view, with keys",
+    .details =
+        "Shows all joints between their limits, their torque, temperature and current, the\n"
+        "battery and the line, 20 times a second. Nothing moves until a key says so. A line that\n"
+        "is lost is shown, and opened again when it is back. FILEs are what p plays.\n"
+        "\n"
+        "  arrows   choose a joint; 0 to 7: a group (all, body, right_arm, ...)\n"
+        "  t, b     torque on or off; brake\n"
+        "  [ ]      one degree down, up; { } five\n"
+        "  i        to the initial posture\n"
+        "  p        play the files\n" PLAY_KEYS_HELP "  R        take a stop back\n"
+        "  q        quit; what moves is stopped first\n"
+        "\n"
+        "Without a terminal that can show it (or with --json) it is 'status --watch'.\n",
+    .example = "  grctl monitor\n  grctl -d sim monitor motions/greet.pseq\n",
+    .max_arguments = -1,
+    .argument = CLI_ARG_FILE,
+    .run = run,
+};

@@ -1,0 +1,233 @@
+/* SPDX-License-Identifier: MIT */
+/* init, move and pose: one posture, reached safely and read back. */
+#include <math.h>
+#include <string.h>
+
+#include "tools/grctl/cli/commands.h"
+#include "tools/grctl/cli/file.h"
+#include "tools/grctl/cli/joints.h"
+#include "tools/grctl/show/render.h"
+
+enum { OPT_TIME };
+enum { MOVE_MS = 1000, INIT_MS = 2000, LONGEST_MS = 163830 };
+
+static const cli_option init_options[] = {
+    [OPT_TIME] = {.name = "time",
+                  .letter = 't',
+                  .kind = CLI_NUMBER,
+                  .value = "MS",
+                  .help = "time to get there; more where that is safer (2000)",
+                  .min = 0,
+                  .max = LONGEST_MS},
+};
+
+static const cli_option pose_options[] = {
+    [OPT_TIME] = {.name = "time",
+                  .letter = 't',
+                  .kind = CLI_NUMBER,
+                  .value = "MS",
+                  .help = "time to get there; more where that is safer (1000)",
+                  .min = 0,
+                  .max = LONGEST_MS},
+};
+
+static void report(const conn *c, const grobo_posture *target)
+{
+    int64_t now_us = grobo_now_us();
+    int joint;
+    double worst = render_worst_error(c, now_us, &joint);
+    if (c->a->json) {
+        json_t *list = json_array();
+        for (int j = 0; j < target->n_joints; j++)
+            if (target->set & GROBO_JOINT_BIT(j))
+                json_array_append_new(list, render_joint_json(c, j, now_us));
+        app_print_json(json_pack("{s:o,s:o}", "joints", list, "max_error_deg",
+                                 joint < 0 ? json_null() : app_json_number(worst, 2)));
+    } else if (joint >= 0) {
+        app_note(c->a, "there; largest error %.1f deg (%s)", worst,
+                 grobo_robot_driver(c->robot)->model->joints[joint].name);
+    }
+}
+
+static int go(app *a, const grobo_posture *target, const char *doing)
+{
+    conn c;
+    int status = conn_open_to_move(&c, a);
+    if (!status) {
+        int error, job = grobo_session_move(c.session, target);
+        c.moving = job > 0; /* refused at once: nothing moves, nothing is to be left */
+        error = conn_wait(&c, job);
+        if (error)
+            status = conn_fail(&c, error, doing);
+        else
+            report(&c, target);
+    }
+    return conn_close(&c, status);
+}
+
+static int run_init(app *a)
+{
+    grobo_posture target;
+    grobo_posture_init_pose(&target, &grobo_gr001_model);
+    grobo_posture_set_time_ms(&target, app_number(a, OPT_TIME, INIT_MS));
+    return go(a, &target, "init");
+}
+
+static int run_move(app *a)
+{
+    const char *name = a->line.argument[0];
+    const char *angle = a->line.argument[1];
+    const char *time = a->line.n_arguments > 2 ? a->line.argument[2] : NULL;
+    grobo_posture target;
+    double deg, ms = MOVE_MS;
+    int status = 0;
+    int joint = joints_parse_one(a, name, strlen(name), &status);
+    if (joint < 0)
+        return status;
+    if (!cli_read_number(angle, &deg))
+        return app_fail(a, EXIT_USAGE, "USAGE", "move: '%s' is not an angle in degrees", angle);
+    if (time && (!cli_read_number(time, &ms) || ms < 0 || ms > LONGEST_MS))
+        return app_fail(a, EXIT_USAGE, "USAGE", "move: '%s' is not a time of 0 to %d ms", time,
+                        LONGEST_MS);
+    grobo_posture_init(&target, grobo_gr001_model.n_joints);
+    grobo_posture_set_deg(&target, joint, deg);
+    grobo_posture_set_time_ms(&target, ms);
+    status = joints_check_limits(a, &target, "move");
+    return status ? status : go(a, &target, "move");
+}
+
+/* ---- pose ----------------------------------------------------------------------------------- */
+
+/* "@greet.pseq:3": posture 3, counted from 1; without a number the first. */
+static int pose_of_file(app *a, const char *spec, grobo_posture *target)
+{
+    char path[GROBO_PATH_MAX_BYTES];
+    const char *colon = strrchr(spec, ':');
+    grobo_read_options read = {.model = &grobo_gr001_model};
+    grobo_motion *motion = NULL;
+    double number = 1;
+    size_t length = strlen(spec);
+    int status;
+    if (colon && cli_read_number(colon + 1, &number))
+        length = (size_t)(colon - spec);
+    if (length == 0 || length >= sizeof path || number < 1 || number > 1e9 ||
+        number != floor(number))
+        return app_fail(a, EXIT_USAGE, "USAGE", "pose: '@%s' is not @FILE or @FILE:N", spec);
+    memcpy(path, spec, length);
+    path[length] = '\0';
+    status = file_load(a, path, &read, &motion);
+    if (status)
+        return status;
+    status = file_fits(a, path, motion);
+    if (!status && grobo_motion_get(motion, (size_t)number - 1, target) < 0)
+        status = app_fail(a, EXIT_USAGE, "USAGE", "pose: %s has %zu postures, no number %.0f", path,
+                          grobo_motion_size(motion), number);
+    target->n_joints = grobo_gr001_model.n_joints;
+    grobo_motion_free(motion);
+    return status;
+}
+
+/* "R_KNEE_P=-40" */
+static int pose_of_joint(app *a, const char *text, grobo_posture *target)
+{
+    size_t length = strcspn(text, "=");
+    double deg;
+    int status = 0;
+    int joint = joints_parse_one(a, text, length, &status);
+    if (joint < 0)
+        return status;
+    if (text[length] != '=' || !cli_read_number(text + length + 1, &deg))
+        return app_fail(a, EXIT_USAGE, "USAGE", "pose: '%s' is not JOINT=DEG", text);
+    grobo_posture_set_deg(target, joint, deg);
+    return 0;
+}
+
+static bool all_numbers(const app *a)
+{
+    double number;
+    for (int i = 0; i < a->line.n_arguments; i++)
+        if (!cli_read_number(a->line.argument[i], &number))
+            return false;
+    return true;
+}
+
+/* Angles of all motors, in the order of their numbers, as a line of a .m file has them. */
+static int pose_of_motors(app *a, grobo_posture *target)
+{
+    for (int i = 0; i < a->line.n_arguments; i++) {
+        double deg;
+        int joint = grobo_model_joint_of_motor(&grobo_gr001_model, i + 1);
+        if (joint < 0 || !cli_read_number(a->line.argument[i], &deg))
+            return app_fail(a, EXIT_USAGE, "USAGE", "pose: '%s' is not an angle in degrees",
+                            a->line.argument[i]);
+        grobo_posture_set_deg(target, joint, deg);
+    }
+    return 0;
+}
+
+static int run_pose(app *a)
+{
+    grobo_posture target;
+    const char *first = a->line.argument[0];
+    int n = a->line.n_arguments, status = 0;
+    grobo_posture_init(&target, grobo_gr001_model.n_joints);
+    if (first[0] == '@' && n == 1)
+        status = pose_of_file(a, first + 1, &target);
+    else if (n == grobo_gr001_model.n_joints && !strchr(first, '='))
+        status = pose_of_motors(a, &target);
+    else if (all_numbers(a))
+        return app_fail(a, EXIT_USAGE, "USAGE",
+                        "pose takes %d angles, in the order of the motors, not %d",
+                        grobo_gr001_model.n_joints, n);
+    else
+        for (int i = 0; i < n && !status; i++)
+            status = pose_of_joint(a, a->line.argument[i], &target);
+    if (!status)
+        status = joints_check_limits(a, &target, "pose");
+    grobo_posture_set_time_ms(&target, app_number(a, OPT_TIME, MOVE_MS));
+    return status ? status : go(a, &target, "pose");
+}
+
+const cli_command cmd_pose = {
+    .name = "pose",
+    .arguments = "DEG x20 | JOINT=DEG... | @FILE[:N]",
+    .summary = "move many joints at once",
+    .details = "Moves all joints (20 angles in the order of the motors 1..20, as a line of a .m\n"
+               "file has them), those named, or to posture N of a motion file (the first). All\n"
+               "start and arrive together. An angle outside a joint's limits is refused with\n"
+               "exit status 4, and nothing moves.\n",
+    .example = "  grctl pose R_ELBOW_P=-45 L_ELBOW_P=45\n"
+               "  grctl pose --time 3000 @motions/greet.pseq:2\n",
+    .options = pose_options,
+    .n_options = sizeof pose_options / sizeof pose_options[0],
+    .min_arguments = 1,
+    .max_arguments = -1,
+    .argument = CLI_ARG_JOINT,
+    .run = run_pose,
+};
+
+const cli_command cmd_init = {
+    .name = "init",
+    .arguments = "",
+    .summary = "go to the initial posture",
+    .details = "Switches torque on where it is off, goes to the initial posture and reads back\n"
+               "where the joints are. The first move from an unknown posture is slow.\n",
+    .example = "  grctl init\n  grctl init --time 5000\n",
+    .options = init_options,
+    .n_options = sizeof init_options / sizeof init_options[0],
+    .run = run_init,
+};
+
+const cli_command cmd_move = {
+    .name = "move",
+    .arguments = "JOINT DEG [MS]",
+    .summary = "move one joint",
+    .details = "Moves one joint to an angle, in the time given (1000 ms) or as much longer as the\n"
+               "servo needs, and reads back where it is. Torque comes on where it is off. An\n"
+               "angle outside the joint's limits is refused with exit status 4.\n",
+    .example = "  grctl move R_KNEE_P -40\n  grctl move m2 15 500\n",
+    .min_arguments = 2,
+    .max_arguments = 3,
+    .argument = CLI_ARG_JOINT,
+    .run = run_move,
+};

@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: MIT */
+#include <string.h>
+
+#include "tools/grctl/cli/commands.h"
+#include "tools/grctl/cli/joints.h"
+#include "tools/grctl/show/render.h"
+
+static bool parse_mode(const char *word, grobo_torque *mode)
+{
+    if (strcmp(word, "on") == 0)
+        *mode = GROBO_TORQUE_ON;
+    else if (strcmp(word, "off") == 0)
+        *mode = GROBO_TORQUE_OFF;
+    else if (strcmp(word, "brake") == 0)
+        *mode = GROBO_TORQUE_BRAKE;
+    else
+        return false;
+    return true;
+}
+
+static void print_json(const conn *c, grobo_joint_mask joints)
+{
+    json_t *list = json_array();
+    const grobo_model *model = grobo_robot_driver(c->robot)->model;
+    for (int j = 0; j < model->n_joints; j++) {
+        grobo_joint_info i;
+        if (!(joints & GROBO_JOINT_BIT(j)) ||
+            grobo_robot_joint(c->robot, j, grobo_now_us(), &i) < 0)
+            continue;
+        json_array_append_new(list, json_pack("{s:i,s:i,s:s,s:s}", "id", j, "motor",
+                                              model->joints[j].motor, "name", model->joints[j].name,
+                                              "torque", render_torque(&i)));
+    }
+    app_print_json(json_pack("{s:o}", "joints", list));
+}
+
+static int switch_torque(conn *c, grobo_joint_mask joints, grobo_torque mode, const char *word)
+{
+    int error, n;
+    if (mode == GROBO_TORQUE_ON)
+        c->moving = true;
+    error = conn_wait(c, grobo_session_torque(c->session, joints, mode));
+    if (error)
+        return conn_fail(c, error, "servo");
+    n = grobo_joints_count(joints);
+    if (c->a->json)
+        print_json(c, joints);
+    else
+        app_note(c->a, "torque of %d joint%s is %s", n, n == 1 ? "" : "s", word);
+    return EXIT_DONE;
+}
+
+static int run(app *a)
+{
+    conn c;
+    grobo_joint_mask joints = 0;
+    grobo_torque mode;
+    const char *word = a->line.argument[0];
+    int status = 0;
+    if (!parse_mode(word, &mode))
+        return app_fail(a, EXIT_USAGE, "USAGE", "servo: '%s' is none of on, off, brake", word);
+    for (int i = 1; i < a->line.n_arguments && !status; i++)
+        status = joints_parse(a, a->line.argument[i], &joints);
+    if (status)
+        return status;
+    if (!joints)
+        joints = GROBO_JOINTS_ALL(grobo_gr001_model.n_joints);
+    status = mode == GROBO_TORQUE_ON ? conn_open_to_move(&c, a) : conn_open(&c, a);
+    if (!status)
+        status = switch_torque(&c, joints, mode, word);
+    return conn_close(&c, status);
+}
+
+const cli_command cmd_servo = {
+    .name = "servo",
+    .arguments = "on|off|brake [JOINT|GROUP]...",
+    .summary = "switch torque",
+    .details = "Switches the torque of all joints, or of those named, and reads it back. Before\n"
+               "torque comes on, each joint's target is set to where the joint is: nothing jumps.\n"
+               "Hold the robot when you switch it off: it falls.\n",
+    .example = "  grctl servo on\n  grctl servo off right_arm\n  grctl servo brake legs\n",
+    .min_arguments = 1,
+    .max_arguments = -1,
+    .argument = CLI_ARG_JOINT,
+    .run = run,
+};

@@ -1,0 +1,262 @@
+/* SPDX-License-Identifier: MIT */
+/* shell: many commands over one connection. */
+#include <errno.h>
+#include <signal.h>
+#include <string.h>
+
+#include "tools/grctl/cli/commands.h"
+#include "tools/grctl/cli/file.h"
+#include "tools/grctl/cli/output.h"
+#include "tools/grctl/cli/run.h"
+#include "tools/grctl/conn/guard.h"
+#include "tools/grctl/shell/shell.h"
+
+enum { OPT_KEEP_GOING };
+
+static const cli_option options[] = {
+    [OPT_KEEP_GOING] = {.name = "keep-going",
+                        .letter = 'k',
+                        .kind = CLI_FLAG,
+                        .help = "go on behind a command that fails; its exit status stays"},
+};
+
+/* While no command has the robot, a signal is only noted: it ends the shell, or a script. */
+static volatile sig_atomic_t noted;
+
+static void on_signal(int number)
+{
+    noted = number;
+}
+
+int shell_take_noted(void)
+{
+    int number = (int)noted;
+    noted = 0;
+    return number;
+}
+
+/* ---- one line ------------------------------------------------------------------------------- */
+
+void shell_inherit(shell *s)
+{
+    for (int i = 0; i < GLOBAL_COUNT; i++) {
+        bool own = i == GLOBAL_ON_EXIT || i == GLOBAL_TRACE || i == GLOBAL_HELP ||
+                   i == GLOBAL_VERSION || s->one.line.global[i].given;
+        if (!own)
+            s->one.line.global[i] = s->a->line.global[i];
+    }
+    s->one.robot = s->a->robot;
+    s->one.moves = true;
+    s->one.tty_in = s->a->tty_in && !s->file;
+}
+
+static void begin_line(shell *s)
+{
+    memset(&s->one, 0, sizeof s->one);
+    s->one.link = &s->link;
+    s->one.record = s->record;
+    s->one.json = s->a->json;
+    if (s->file)
+        snprintf(s->one.place, sizeof s->one.place, "%s:%d: ", s->file, s->line);
+}
+
+static int prepare(void *ctx, app *a)
+{
+    static const int lines[] = {GLOBAL_DEVICE, GLOBAL_BAUD, GLOBAL_WIRING, GLOBAL_ECHO};
+    shell *s = ctx;
+    bool touches = false;
+    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++)
+        touches |= app_global(a, lines[i])->given > 0;
+    shell_inherit(s);
+    app_settle(a);
+    a->tty_in = a->tty_in && !s->file;
+    if (touches)
+        return app_fail(a, EXIT_USAGE, "USAGE",
+                        "a shell has one line; 'connect DEV' takes another device");
+    if (a->line.command == &cmd_shell)
+        return app_fail(a, EXIT_USAGE, "USAGE", "this is a shell already");
+    return 0;
+}
+
+int shell_run(shell *s, int n, char **words)
+{
+    char *argv[SHELL_WORDS_MAX + 1] = {"grctl"};
+    begin_line(s);
+    for (int i = 0; i < n && i < SHELL_WORDS_MAX; i++)
+        argv[i + 1] = words[i];
+    return run_line(&s->one, n + 1, argv, prepare, s);
+}
+
+/* A letter or word of the original programs that is a command: its words, then the line's. */
+static int run_command_of(shell *s, const shell_word *w, int n, char **words)
+{
+    char text[64];
+    char *all[SHELL_WORDS_MAX];
+    int m;
+    snprintf(text, sizeof text, "%s", w->command);
+    m = shell_split(text, all, 4);
+    for (int i = 1; i < n && m < SHELL_WORDS_MAX; i++)
+        all[m++] = words[i];
+    return shell_run(s, m, all);
+}
+
+static int run_words(shell *s, int n, char **words)
+{
+    const shell_word *w = shell_word_find(words[0]);
+    if (!w)
+        return shell_run(s, n, words);
+    if (w->command)
+        return run_command_of(s, w, n, words);
+    begin_line(s);
+    shell_inherit(s);
+    app_settle(&s->one);
+    s->one.tty_in = s->one.tty_in && !s->file;
+    return w->run(s, n, words);
+}
+
+static int refuse(shell *s, const char *why)
+{
+    begin_line(s);
+    app_settle(&s->one);
+    return app_fail(&s->one, EXIT_USAGE, "USAGE", "%s", why);
+}
+
+static int run_text(shell *s, char *line)
+{
+    char *words[SHELL_WORDS_MAX];
+    int n = shell_split(line, words, SHELL_WORDS_MAX - 4);
+    int status;
+    if (n < 0)
+        return refuse(s, n == SHELL_TOO_MANY ? "too many words" : "a quote is not closed");
+    if (n == 0)
+        return EXIT_DONE;
+    status = run_words(s, n, words);
+    output_flush();
+    return status;
+}
+
+/* ---- many lines ----------------------------------------------------------------------------- */
+
+static bool ends(const shell *s, int status)
+{
+    bool ended = s->over;
+    for (int i = 0; i < os_n_endings; i++)
+        ended |= i != OS_INTERRUPT && status == EXIT_SIGNAL + os_endings[i];
+    return ended;
+}
+
+/* A line of a script, or what happened while it was waited for. */
+static int run_next(shell *s, shell_script *in, int next)
+{
+    if (next == LINE_NEWS)
+        return conn_link_news(&s->link, s->a);
+    s->line++;
+    return in->wrong ? refuse(s, in->wrong) : run_text(s, in->line);
+}
+
+static int run_script(shell *s, shell_script *in)
+{
+    bool go_on = app_option(s->a, OPT_KEEP_GOING)->given > 0;
+    int first = EXIT_DONE, status = EXIT_DONE;
+    while (!ends(s, status) && !noted && (!status || go_on)) {
+        int next = shell_script_next(s, in);
+        if (next == LINE_END || next == LINE_INTERRUPTED)
+            break;
+        status = run_next(s, in, next);
+        if (status && !first)
+            first = status;
+        if (status == EXIT_SIGNAL + os_endings[OS_INTERRUPT])
+            break;
+    }
+    if (in->file && ferror(in->file)) /* where nothing ran, the reason is still known */
+        first = app_fail(s->a, EXIT_FILE, "IO", "%s: %s", s->file,
+                         s->line ? "it could not be read to its end" : file_cause_text(errno));
+    return noted ? EXIT_SIGNAL + (int)noted : first;
+}
+
+static int run_prompt(shell *s)
+{
+    char line[SHELL_LINE_BYTES];
+    line_reader *reader = line_open(s);
+    int status = EXIT_DONE, n;
+    if (!reader)
+        return app_fail(s->a, EXIT_ROBOT, "NOMEM", "shell: %s", grobo_error_text(GROBO_ERR_NOMEM));
+    while (!ends(s, status)) {
+        conn_link_idle(&s->link, s->a);
+        n = line_read(reader, "grctl> ", line, sizeof line);
+        if (n == LINE_END)
+            break;
+        if (n == LINE_INTERRUPTED && s->link.signal == os_endings[OS_INTERRUPT]) {
+            s->link.signal = 0;
+            continue;
+        }
+        if (n == LINE_INTERRUPTED)
+            break;
+        noted = 0;
+        status = n == LINE_TOO_LONG ? refuse(s, "the line is too long") : run_text(s, line);
+        if (status == EXIT_SIGNAL + os_endings[OS_INTERRUPT]) {
+            output_complain("\n"); /* behind the terminal's ^C */
+        }
+        if (noted && noted != os_endings[OS_INTERRUPT])
+            status = EXIT_SIGNAL + (int)noted;
+    }
+    line_close(reader);
+    return ends(s, status) && !s->over ? status : EXIT_DONE;
+}
+
+static int run_shell(shell *s)
+{
+    static shell_script in;
+    const char *path = s->a->line.n_arguments ? s->a->line.argument[0] : NULL;
+    FILE *from = NULL;
+    int status;
+    if (!path && s->a->tty_in)
+        return run_prompt(s);
+    memset(&in, 0, sizeof in);
+    s->file = path ? path : "standard input";
+    if (path && !(from = fopen(path, "r")))
+        return app_fail(s->a, EXIT_FILE, "NOENT", "%s: %s", path,
+                        file_cause_text(os_is_folder(path) ? EISDIR : errno));
+    in.file = from && !os_input_take(from) ? from : NULL;
+    status = run_script(s, &in);
+    if (from)
+        fclose(from);
+    return status;
+}
+
+static int run(app *a)
+{
+    static shell s;
+    int status;
+    memset(&s, 0, sizeof s);
+    s.a = a;
+    s.time_ms = 1000;
+    s.link.kept = true;
+    s.link.owner = a;
+    a->link = &s.link;
+    os_catch_endings(on_signal);
+    a->moves = true;
+    guard_start(a, conn_requested(a));
+    if (conn_link_init(&s.link) != GROBO_OK)
+        status = app_fail(a, EXIT_ROBOT, "NOMEM", "shell: %s", grobo_error_text(GROBO_ERR_NOMEM));
+    else
+        status = run_shell(&s);
+    status = conn_link_close(&s.link, a, status);
+    conn_link_deinit(&s.link);
+    grobo_motion_free(s.record);
+    return status;
+}
+
+const cli_command cmd_shell = {
+    .name = "shell",
+    .arguments = "[FILE]",
+    .summary = "many commands over one connection, typed or from a script",
+    .details = shell_details,
+    .example = "  grctl shell\n  printf 'init\\nm R_ELBOW_P -45\\n' | grctl -d sim shell\n"
+               "  grctl shell -k morning.txt\n",
+    .options = options,
+    .n_options = sizeof options / sizeof options[0],
+    .max_arguments = 1,
+    .argument = CLI_ARG_FILE,
+    .run = run,
+};

@@ -1,0 +1,395 @@
+/* SPDX-License-Identifier: MIT */
+#include <string.h>
+
+#include <event2/event.h>
+
+#include <grobo/sim_server.h>
+
+#include "tools/grctl/cli/app.h"
+#include "tools/grctl/cli/commands.h"
+#include "tools/grctl/cli/output.h"
+#include "tools/grctl/conn/trace.h"
+#include "tools/grctl/os/os.h"
+#include "tools/grctl/sim/chain.h"
+#include "tools/grctl/sim/console.h"
+#include "tools/grctl/sim/state.h"
+#include "tools/grctl/sim/strict.h"
+
+enum {
+    OPT_LINK,
+    OPT_TCP,
+    OPT_SERVO,
+    OPT_NO_STOPS,
+    OPT_NO_PACING,
+    OPT_LATENCY,
+    OPT_ROBOTS,
+    OPT_SEED,
+    OPT_START,
+    OPT_FAULT,
+    OPT_STRICT,
+    OPT_STATE
+};
+enum { ROBOTS_MAX = 16 };
+
+static const cli_option options[] = {
+    [OPT_LINK] = {.name = "link",
+                  .letter = 'l',
+                  .kind = CLI_TEXT,
+                  .value = "PATH",
+                  .help = "keep a symbolic link to the pty; PATH2, PATH3... of more robots"},
+    [OPT_TCP] = {.name = "tcp",
+                 .kind = CLI_NUMBER,
+                 .value = "PORT",
+                 .help = "listen on 127.0.0.1 too; 0: any port; the next ones for more robots",
+                 .min = 0,
+                 .max = 65535},
+    [OPT_SERVO] = {.name = "servo",
+                   .kind = CLI_TEXT,
+                   .value = "ID=TYPE,...",
+                   .help = "simulate these servos, on a bus, instead of GR001: RS301CR RS302CD "
+                           "RS303MR RS304MD"},
+    [OPT_NO_STOPS] = {.name = "no-stops",
+                      .kind = CLI_FLAG,
+                      .help = "shafts meet no mechanical stops"},
+    [OPT_NO_PACING] = {.name = "no-pacing",
+                       .kind = CLI_FLAG,
+                       .help = "bytes take no time on the wire"},
+    [OPT_LATENCY] = {.name = "latency",
+                     .kind = CLI_NUMBER,
+                     .value = "MS",
+                     .help = "bytes wait so long for others, as in an adapter (0; FTDI: 16)",
+                     .min = 0,
+                     .max = 255},
+    [OPT_ROBOTS] = {.name = "robots",
+                    .letter = 'n',
+                    .kind = CLI_NUMBER,
+                    .value = "N",
+                    .help = "so many robots, each behind a pty of its own (1)",
+                    .min = 1,
+                    .max = ROBOTS_MAX},
+    [OPT_SEED] = {.name = "seed",
+                  .kind = CLI_NUMBER,
+                  .value = "N",
+                  .help = "of everything random",
+                  .min = 0,
+                  .max = 4294967295.0},
+    [OPT_START] = {.name = "start",
+                   .kind = CLI_CHOICE,
+                   .value = "init|zero|limp",
+                   .help = "where the joints are at power-up; limp: anywhere (init)"},
+    [OPT_FAULT] = {.name = "fault",
+                   .kind = CLI_TEXT,
+                   .value = "LIST",
+                   .help = "KIND=RATE,...: drop flip duplicate delay split rubbish silent dupid "
+                           "hangup brownout, or all; rates 0 to 1"},
+    [OPT_STRICT] = {.name = "strict",
+                    .kind = CLI_FLAG,
+                    .help = "report each offence of a client against the protocol; then the exit "
+                            "status is 3, else 0"},
+    [OPT_STATE] = {.name = "state",
+                   .kind = CLI_TEXT,
+                   .value = "FILE",
+                   .help = "keep the servos' flash in FILE from one simulator to the next; FILE2, "
+                           "FILE3... of more robots"},
+};
+
+/* What goes with a robot. */
+typedef struct watched {
+    trace trace;
+    sim_strict strict;
+    sim_state state;
+} watched;
+
+typedef struct farm {
+    app *a;
+    struct event_base *base;
+    struct event *signals[OS_ENDINGS_MAX];
+    grobo_sim_server *server[ROBOTS_MAX];
+    watched watched[ROBOTS_MAX];
+    sim_console console;
+    sim_chain chain; /* of --servo */
+    const grobo_model *model;
+    int n;
+    int signal;
+} farm;
+
+/* A trace is told as the host sees it: what the robot receives, the host has sent. */
+static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes, size_t size,
+                   void *ctx)
+{
+    watched *w = ctx;
+    if (direction == GROBO_DIR_RX)
+        sim_strict_bytes(&w->strict, now_us, bytes, size);
+    trace_bytes(&w->trace, direction == GROBO_DIR_RX ? GROBO_DIR_TX : GROBO_DIR_RX, now_us, bytes,
+                size);
+}
+
+static void on_sim(const grobo_sim_event *event, void *ctx)
+{
+    watched *w = ctx;
+    sim_strict_event(&w->strict, event);
+    sim_state_event(&w->state, event);
+}
+
+static void on_signal(evutil_socket_t number, short what, void *ctx)
+{
+    farm *f = ctx;
+    (void)what;
+    f->signal = (int)number;
+    event_base_loopbreak(f->base);
+}
+
+/*
+ * What was ignored when it was started stays so: a shell does that to SIGINT for what a script runs
+ * in the background, nohup to SIGHUP. The Ctrl-C is for the program that plays, which needs the
+ * robot to leave it in good order.
+ */
+static int watch_signals(farm *f)
+{
+    for (int i = 0; i < os_n_endings; i++) {
+        if (os_is_ignored(os_endings[i]))
+            continue;
+        f->signals[i] = evsignal_new(f->base, os_endings[i], on_signal, f);
+        if (!f->signals[i] || evsignal_add(f->signals[i], NULL) != 0)
+            return GROBO_ERR_NOMEM;
+    }
+    return GROBO_OK;
+}
+
+static grobo_sim_config sim_config(const farm *f, int robot)
+{
+    const app *a = f->a;
+    const cli_value *baud = app_global(a, GLOBAL_BAUD), *wiring = app_global(a, GLOBAL_WIRING);
+    bool bus = app_option(a, OPT_SERVO)->given && !wiring->given;
+    grobo_sim_config config = {
+        .model = f->model,
+        .wiring = bus ? GROBO_WIRING_BUS : (grobo_wiring)wiring->choice,
+        .no_stops = app_option(a, OPT_NO_STOPS)->given > 0,
+        .baud_bps = baud->given ? (uint32_t)baud->number : 0,
+        .latency_us = (uint32_t)app_number(a, OPT_LATENCY, 0) * 1000,
+        .echo = app_global(a, GLOBAL_ECHO)->given > 0,
+        .unpaced = app_option(a, OPT_NO_PACING)->given > 0,
+        .seed = (uint32_t)app_number(a, OPT_SEED, 0) + (uint32_t)robot,
+        .start = (grobo_sim_start)app_option(a, OPT_START)->choice,
+    };
+    return config;
+}
+
+static int open_trace(farm *f, int robot)
+{
+    grobo_sim_config sim = sim_config(f, robot);
+    trace_line line = {.device = grobo_sim_server_device(f->server[robot]),
+                       .wiring = sim.wiring,
+                       .baud_bps = (int)sim.baud_bps,
+                       .number = robot + 1};
+    return trace_open(&f->watched[robot].trace, f->a, &line, grobo_now_us());
+}
+
+/* PATH of the first robot, PATH2, PATH3... of more. False: too long. */
+static bool number_path(const char *path, int robot, char *numbered, size_t capacity)
+{
+    int n = robot == 0 ? snprintf(numbered, capacity, "%s", path)
+                       : snprintf(numbered, capacity, "%s%d", path, robot + 1);
+    return n >= 0 && (size_t)n < capacity;
+}
+
+/* Where programs find a robot. */
+typedef struct place {
+    char link[GROBO_DEVICE_MAX_BYTES], tcp[32];
+    const char *name; /* for messages */
+} place;
+
+/* Fills the place, and what leads to it in config. Returns 0, or the exit status. */
+static int find_place(app *a, int robot, place *at, grobo_sim_server_config *config)
+{
+    const char *path = app_option(a, OPT_LINK)->text;
+    int port = (int)app_number(a, OPT_TCP, 0);
+    config->no_pty = grobo_port_pty_ops() == NULL;
+    at->name = config->no_pty ? at->tcp : "pty";
+    if (path && config->no_pty)
+        return app_fail(a, EXIT_USAGE, "UNSUPPORTED",
+                        "sim: --link: there are no pseudo-terminals here; --tcp serves programs");
+    if (path) {
+        if (!number_path(path, robot, at->link, sizeof at->link))
+            return app_fail(a, EXIT_USAGE, "CAP", "sim: --link: the path is too long");
+        config->link = at->name = at->link;
+    }
+    if (port + robot > 65535)
+        return app_fail(a, EXIT_USAGE, "LIMIT", "sim: --tcp: %d is the last port there is", 65535);
+    if (app_option(a, OPT_TCP)->given || config->no_pty) {
+        snprintf(at->tcp, sizeof at->tcp, "tcp:127.0.0.1:%d", port ? port + robot : 0);
+        config->tcp = at->tcp;
+    }
+    return 0;
+}
+
+/* What could not be opened: nothing but a listener is bound. */
+static const char *name_of_failed(const place *at, const grobo_os_cause *cause)
+{
+    return strncmp(cause->text, "bind", 4) == 0 ? at->tcp : at->name;
+}
+
+static int open_state(farm *f, int robot)
+{
+    const char *path = app_option(f->a, OPT_STATE)->text;
+    char numbered[1024];
+    if (!path)
+        return 0;
+    if (!number_path(path, robot, numbered, sizeof numbered))
+        return app_fail(f->a, EXIT_USAGE, "CAP", "sim: --state: the path is too long");
+    return sim_state_start(&f->watched[robot].state, f->a, f->base, f->server[robot], numbered);
+}
+
+static int add_robot(farm *f, int robot)
+{
+    const char *faults = app_option(f->a, OPT_FAULT)->text;
+    grobo_sim_config sim = sim_config(f, robot);
+    grobo_sim_server_config config = {
+        .base = f->base, .sim = &sim, .on_tap = on_tap, .ctx = &f->watched[robot]};
+    grobo_os_cause cause = {0};
+    place at;
+    int error = find_place(f->a, robot, &at, &config);
+    if (error)
+        return error;
+    sim.hook = on_sim;
+    sim.hook_ctx = &f->watched[robot];
+    if (app_option(f->a, OPT_STRICT)->given)
+        sim_strict_start(&f->watched[robot].strict, f->a, robot + 1, sim.wiring, grobo_now_us());
+    error = grobo_sim_server_new(&config, &f->server[robot], &cause);
+    if (error)
+        return app_fail(f->a, EXIT_ROBOT, grobo_error_name(error), "sim: %s: %s%s%s",
+                        name_of_failed(&at, &cause), grobo_error_text(error),
+                        *cause.text ? ": " : "", cause.text);
+    f->n = robot + 1;
+    if (faults &&
+        grobo_sim_set_faults(grobo_sim_server_sim(f->server[robot]), faults, strlen(faults)) < 0)
+        return app_fail(f->a, EXIT_USAGE, "USAGE",
+                        "sim: --fault: '%s' is no list such as drop=0.01,flip=0.02; see "
+                        "'grctl help sim'",
+                        faults);
+    error = open_state(f, robot);
+    return error ? error : open_trace(f, robot);
+}
+
+/*
+ * Standard output is data: the device alone, so that a script can read it. False when it cannot be
+ * told: nobody would find the robot.
+ */
+static bool announce(const farm *f)
+{
+    json_t *list = json_array();
+    for (int i = 0; i < f->n; i++) {
+        int port = grobo_sim_server_tcp_port(f->server[i]);
+        json_t *one = json_pack("{s:s}", "device", grobo_sim_server_device(f->server[i]));
+        if (port > 0)
+            json_object_set_new(one, "tcp_port", json_integer(port));
+        json_array_append_new(list, one);
+        if (!f->a->json)
+            app_print("%s\n", grobo_sim_server_device(f->server[i]));
+        if (port > 0 && grobo_port_pty_ops() != NULL) {
+            output_flush();
+            app_note(f->a, "also at tcp:127.0.0.1:%d", port);
+        }
+    }
+    if (f->a->json)
+        app_print_json(json_pack("{s:b,s:o}", "simulated", 1, "robots", list));
+    else
+        json_decref(list);
+    if (!output_flush())
+        return false;
+    app_note(f->a, "SIMULATED robot%s, no motor moves anywhere; Ctrl-C ends it",
+             f->n == 1 ? "" : "s");
+    return true;
+}
+
+static int close_farm(farm *f, int status)
+{
+    for (int i = 0; i < f->n; i++) {
+        status = sim_state_end(&f->watched[i].state, status);
+        grobo_sim_server_free(f->server[i]);
+        status = trace_close(&f->watched[i].trace, f->a, status);
+    }
+    for (int i = 0; i < os_n_endings; i++)
+        if (f->signals[i])
+            event_free(f->signals[i]);
+    if (f->base)
+        event_base_free(f->base);
+    return status;
+}
+
+/* However it was ended: whether the clients kept to the protocol. */
+static int strict_status(farm *f)
+{
+    uint64_t offences = 0;
+    for (int i = 0; i < f->n; i++) {
+        sim_strict_end(&f->watched[i].strict);
+        offences += f->watched[i].strict.offences;
+    }
+    app_note(f->a, "%llu offence%s against the protocol", (unsigned long long)offences,
+             offences == 1 ? "" : "s");
+    return offences > 0 ? EXIT_FILE : EXIT_DONE;
+}
+
+/* Until a signal, or until somebody says quit. */
+static int serve(farm *f)
+{
+    f->console = (sim_console){
+        .a = f->a, .base = f->base, .model = f->model, .server = f->server, .n = f->n};
+    sim_console_start(&f->console);
+    event_base_dispatch(f->base);
+    sim_console_stop(&f->console);
+    if (app_option(f->a, OPT_STRICT)->given)
+        return strict_status(f);
+    return f->signal ? EXIT_SIGNAL + f->signal : EXIT_DONE;
+}
+
+static int run(app *a)
+{
+    static farm f;
+    int robots = (int)app_number(a, OPT_ROBOTS, 1);
+    int status = 0;
+    memset(&f, 0, sizeof f);
+    f.a = a;
+    os_take_signals();
+    f.base = grobo_loop_new();
+    if (!f.base || watch_signals(&f) != GROBO_OK)
+        status = app_fail(a, EXIT_ROBOT, "NOMEM", "sim: %s", grobo_error_text(GROBO_ERR_NOMEM));
+    f.model = &grobo_gr001_model;
+    if (app_option(a, OPT_SERVO)->given && !status) {
+        f.model = &f.chain.model;
+        status = sim_chain_read(a, &f.chain, app_option(a, OPT_SERVO)->text);
+    }
+    for (int i = 0; i < robots && !status; i++)
+        status = add_robot(&f, i);
+    if (!status && announce(&f))
+        status = serve(&f);
+    return close_farm(&f, status);
+}
+
+const cli_command cmd_sim = {
+    .name = "sim",
+    .arguments = "",
+    .summary = "a simulated robot behind a pty, for any program",
+    .details =
+        "Runs a simulated GR001, or a chain of servos, until a signal. Prints the path of its\n"
+        "pty, one line a robot, when it can be opened; where there are no ptys (Windows) that of\n"
+        "its TCP port. The robot is honest at register level and bytes take their time on the\n"
+        "wire; programs may come and go, it stays as they left it.\n"
+        "\n"
+        "With --strict each offence of a client is a line on standard error, with --json an\n"
+        "object on standard output: a wrong sum, a value out of range or a read-only register,\n"
+        "bytes that are no frame or cut off, talking over a reply, writing to a servo that\n"
+        "writes its flash or restarts, a pause inside a packet, a wrong count of bytes to\n"
+        "return. The exit status is then 3, and 0 where there was none, whatever ended it:\n"
+        "tests of any library for such servos may run against it.\n"
+        "\n"
+        "While it runs it takes commands on standard input, when that is a terminal or a pipe.\n"
+        "SERVO is a motor's number, a joint or a group; angles are the shaft's.\n"
+        "\n" SIM_CONSOLE_HELP,
+    .example = "  grctl sim --link /tmp/gr001\n"
+               "  grctl sim --wiring bus --fault drop=0.01,flip=0.001 --seed 7\n"
+               "  grctl sim --servo 1=RS304MD,2=RS302CD --no-stops --state servos.state\n",
+    .options = options,
+    .n_options = sizeof options / sizeof options[0],
+    .run = run,
+};

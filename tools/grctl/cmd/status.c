@@ -1,0 +1,99 @@
+/* SPDX-License-Identifier: MIT */
+#include "tools/grctl/cli/commands.h"
+#include "tools/grctl/cli/joints.h"
+#include "tools/grctl/cli/output.h"
+#include "tools/grctl/show/render.h"
+
+enum { OPT_WATCH, OPT_INTERVAL };
+
+static const cli_option options[] = {
+    [OPT_WATCH] = {.name = "watch",
+                   .letter = 'w',
+                   .kind = CLI_FLAG,
+                   .help = "again and again, until a signal"},
+    [OPT_INTERVAL] = {.name = "interval",
+                      .letter = 'i',
+                      .kind = CLI_NUMBER,
+                      .value = "MS",
+                      .help = "time between two rounds of --watch (1000)",
+                      .min = 20,
+                      .max = 3600000},
+};
+
+static void show(conn *c, grobo_joint_mask joints)
+{
+    int64_t now_us = grobo_now_us();
+    const grobo_model *model = grobo_robot_driver(c->robot)->model;
+    json_t *list;
+    if (!c->a->json) {
+        if (c->a->tty_out && app_option(c->a, OPT_WATCH)->given)
+            app_print("\033[H\033[J");
+        render_status(c, joints, now_us);
+        output_flush();
+        return;
+    }
+    list = json_array();
+    for (int j = 0; j < model->n_joints; j++)
+        if (joints & GROBO_JOINT_BIT(j))
+            json_array_append_new(list, render_joint_json(c, j, now_us));
+    app_print_json(json_pack("{s:s,s:s,s:o,s:o}", "robot", model->name, "device", conn_device(c),
+                             "joints", list, "link", conn_link_json(c)));
+}
+
+/* One round; the exit status: a joint that stays silent is shown, and makes it 1. */
+static int sense_and_show(conn *c, grobo_joint_mask joints)
+{
+    int error = conn_wait(c, grobo_session_sense(c->session, joints, GROBO_SENSE_FULL));
+    if (error && c->job.failed == 0)
+        return conn_fail(c, error, "status");
+    show(c, joints);
+    return error ? EXIT_ROBOT : EXIT_DONE;
+}
+
+static int watch(conn *c, grobo_joint_mask joints)
+{
+    int64_t interval_us = (int64_t)app_number(c->a, OPT_INTERVAL, 1000) * 1000;
+    int64_t next_us = grobo_now_us();
+    int status, slept = GROBO_OK;
+    do {
+        status = sense_and_show(c, joints);
+        next_us += interval_us;
+        if (next_us < grobo_now_us())
+            next_us = grobo_now_us();
+    } while (output_flush() && !c->signal && !c->link_error &&
+             (slept = conn_sleep_until(c, next_us)) == GROBO_OK);
+    return slept < 0 && c->link_error ? conn_fail(c, c->link_error, "status") : status;
+}
+
+static int run(app *a)
+{
+    conn c;
+    grobo_joint_mask joints = 0;
+    int status = 0;
+    for (int i = 0; i < a->line.n_arguments && !status; i++)
+        status = joints_parse(a, a->line.argument[i], &joints);
+    if (status)
+        return status;
+    if (!joints)
+        joints = GROBO_JOINTS_ALL(grobo_gr001_model.n_joints);
+    status = conn_open(&c, a);
+    if (!status)
+        status = app_option(a, OPT_WATCH)->given ? watch(&c, joints) : sense_and_show(&c, joints);
+    return conn_close(&c, status);
+}
+
+const cli_command cmd_status = {
+    .name = "status",
+    .arguments = "[JOINT|GROUP]...",
+    .summary = "angle, torque, current, temperature and voltage of the joints",
+    .details = "Reads every joint, or those named, and prints what it reports. A joint that does\n"
+               "not answer is shown with the reason and makes the exit status 1; the others are\n"
+               "shown all the same. Nothing moves.\n",
+    .example = "  grctl status\n  grctl status right_arm --json\n"
+               "  grctl status --watch --interval 200\n",
+    .options = options,
+    .n_options = sizeof options / sizeof options[0],
+    .max_arguments = -1,
+    .argument = CLI_ARG_JOINT,
+    .run = run,
+};

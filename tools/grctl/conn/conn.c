@@ -1,0 +1,600 @@
+/* SPDX-License-Identifier: MIT */
+#include <stdlib.h>
+#include <string.h>
+
+#include <grobo/port.h>
+
+#include "tools/grctl/cli/output.h"
+#include "tools/grctl/conn/conn.h"
+#include "tools/grctl/conn/guard.h"
+#include "tools/grctl/os/os.h"
+
+const char *conn_requested(const app *a)
+{
+    const char *fallback = getenv("GRCTL_DEVICE");
+    if (app_global(a, GLOBAL_DEVICE)->given)
+        return app_global(a, GLOBAL_DEVICE)->text;
+    return fallback && *fallback ? fallback : GROBO_DEVICE_AUTO;
+}
+
+bool conn_is_auto(const app *a)
+{
+    return strcmp(conn_requested(a), GROBO_DEVICE_AUTO) == 0;
+}
+
+const char *conn_device(const conn *c)
+{
+    return grobo_session_device(c->session);
+}
+
+/* ---- what comes from the loop --------------------------------------------------------------- */
+
+static void on_session(grobo_session *session, grobo_session_event event, int error, void *ctx)
+{
+    conn_link *link = ctx;
+    (void)session;
+    switch (event) {
+    case GROBO_SESSION_EVENT_UP:
+        link->up = true;
+        break;
+    case GROBO_SESSION_EVENT_LOST:
+        link->up = false;
+        if (!link->user || !link->user->a->reconnects || link->kept)
+            link->link_error = error ? error : GROBO_ERR_UNPLUGGED;
+        break;
+    case GROBO_SESSION_EVENT_FAILED:
+        link->link_error = error ? error : GROBO_ERR_UNPLUGGED;
+        break;
+    case GROBO_SESSION_EVENT_UNGUARDED:
+        if (link->user)
+            app_note(link->user->a,
+                     "the guard has ended: if grctl is killed, joints go on to their goals");
+        break;
+    }
+    if (link->user) {
+        link->user->up = link->up;
+        link->user->link_error = link->link_error;
+    }
+    link->news |= !link->user && link->link_error;
+}
+
+static void on_robot(void *ctx, const grobo_event *event)
+{
+    conn_link *link = ctx;
+    conn *c = link->user;
+    if (!c && event->kind == GROBO_EVENT_TRIP) {
+        link->trip = event->u.trip;
+        link->news = true;
+    }
+    if (!c)
+        return;
+    if (event->kind == GROBO_EVENT_JOB && event->u.job.kind == GROBO_JOB_ESTOP) {
+        c->estop_ended = true;
+        c->estop_result = event->u.job.result;
+    }
+    if (event->kind == GROBO_EVENT_JOB && event->u.job.number == c->waiting_for) {
+        c->job = event->u.job;
+        c->waiting_for = 0;
+        if (c->data && c->job.size)
+            memcpy(c->data, c->job.data, c->job.size < c->data_bytes ? c->job.size : c->data_bytes);
+    }
+    if (event->kind == GROBO_EVENT_TRIP)
+        c->trip = event->u.trip;
+    if (c->on_event)
+        c->on_event(c, event);
+}
+
+static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes, size_t size,
+                   void *ctx)
+{
+    conn_link *link = ctx;
+    conn *c = link->user;
+    trace_bytes(&link->trace, direction, now_us, bytes, size);
+    if (!c)
+        return;
+    trace_bytes(&c->trace, direction, now_us, bytes, size);
+    conn_note_bytes(c, direction, now_us, bytes, size);
+    if (c->on_bytes)
+        c->on_bytes(c, direction, now_us, bytes, size);
+}
+
+/* ---- waiting -------------------------------------------------------------------------------- */
+
+static bool job_done(conn *c)
+{
+    return c->waiting_for == 0;
+}
+
+/* Did a signal come that ends the command? None ends one that stops the robot. */
+static bool is_interrupted(const conn *c)
+{
+    return c->signal && !c->leaving && !c->a->stops;
+}
+
+int conn_wait_until(conn *c, bool (*done)(conn *c))
+{
+    while (!done(c)) {
+        if (is_interrupted(c))
+            return GROBO_ERR_CANCELED;
+        if (c->link_error)
+            return c->link_error;
+        if (event_base_loop(c->base, EVLOOP_ONCE) != 0)
+            return GROBO_ERR_IO;
+    }
+    return GROBO_OK;
+}
+
+int conn_wait(conn *c, int job)
+{
+    int error;
+    memset(&c->job, 0, sizeof c->job);
+    if (job < 0)
+        return job;
+    c->waiting_for = job;
+    error = conn_wait_until(c, job_done);
+    c->waiting_for = 0;
+    return error ? error : c->job.result;
+}
+
+static void on_wake(evutil_socket_t fd, short what, void *ctx)
+{
+    bool *awake = ctx;
+    (void)fd;
+    (void)what;
+    *awake = true;
+}
+
+int conn_sleep_until(conn *c, int64_t at_us)
+{
+    bool awake = false;
+    int64_t rest_us = at_us - grobo_now_us();
+    struct timeval rest = {0};
+    struct event *timer;
+    int error = GROBO_OK;
+    if (rest_us > 0) {
+        rest.tv_sec = (int)(rest_us / 1000000);
+        rest.tv_usec = (int)(rest_us % 1000000);
+    }
+    timer = evtimer_new(c->base, on_wake, &awake);
+    if (!timer)
+        return GROBO_ERR_NOMEM;
+    evtimer_add(timer, &rest);
+    while (!awake && (!c->signal || c->a->stops) && !c->link_error && !error)
+        if (event_base_loop(c->base, EVLOOP_ONCE) != 0)
+            error = GROBO_ERR_IO;
+    event_free(timer);
+    if (c->signal && !c->a->stops)
+        return GROBO_ERR_CANCELED;
+    return c->link_error ? c->link_error : error;
+}
+
+/* ---- opening -------------------------------------------------------------------------------- */
+
+static bool is_tcp(const char *device)
+{
+    return strncmp(device, "tcp:", 4) == 0;
+}
+
+/* Why the device cannot be used, and what to do about it. */
+static const char *advice(int error, const char *device)
+{
+    switch (error) {
+    case GROBO_ERR_NOENT:
+        return is_tcp(device) ? "; does a serial server listen there?"
+                              : "; see 'grctl ports' for what there is";
+    case GROBO_ERR_PERM:
+        return "; may your user open it? it often takes membership of the group dialout";
+    case GROBO_ERR_TIMEOUT:
+        return "; is the robot switched on, and its baud rate right?";
+    case GROBO_ERR_NOTFOUND:
+        return "; is its cable in? see 'grctl ports', or try '-d sim'";
+    }
+    return "";
+}
+
+static bool bytes_passed(const conn *c, grobo_direction direction)
+{
+    uint64_t tx_bytes, rx_bytes;
+    grobo_session_bytes(c->session, &tx_bytes, &rx_bytes);
+    return (direction == GROBO_DIR_TX ? tx_bytes : rx_bytes) > 0;
+}
+
+/* What is wrong with the device, where the error's own text would not say it. */
+static const char *open_trouble(const conn *c, int error)
+{
+    const grobo_os_cause *cause = grobo_session_cause(c->session);
+    switch (error) {
+    case GROBO_ERR_NOTFOUND:
+        return "no robot answers on any serial port";
+    case GROBO_ERR_TIMEOUT:
+        return "no robot answers";
+    case GROBO_ERR_TYPE:
+        return "is not a serial port";
+    case GROBO_ERR_NOENT: /* which way it cannot be reached */
+        return is_tcp(conn_device(c)) && *cause->text ? cause->text : grobo_error_text(error);
+    }
+    return grobo_error_text(error);
+}
+
+static int fail_open(conn *c, int error)
+{
+    const grobo_os_cause *cause = grobo_session_cause(c->session);
+    /* Of the others the system only says again what the error says. */
+    bool tells = *cause->text && (error == GROBO_ERR_BUSY || error == GROBO_ERR_IO ||
+                                  error == GROBO_ERR_UNSUPPORTED || error == GROBO_ERR_UNPLUGGED);
+    c->open_error = error;
+    if (error == GROBO_ERR_TIMEOUT && is_tcp(conn_device(c)) && !bytes_passed(c, GROBO_DIR_TX))
+        return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error),
+                        "%s: %s; is the address right, and that machine on?", conn_device(c),
+                        cause->text);
+    if (conn_is_of_reply(error) && bytes_passed(c, GROBO_DIR_RX))
+        return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error),
+                        "%s: bytes come, but no reply in them; is the baud rate right, and is it a "
+                        "robot? see 'grctl doctor'",
+                        conn_device(c));
+    return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error), "%s: %s%s%s%s%s",
+                    error == GROBO_ERR_NOTFOUND ? "auto" : conn_device(c), open_trouble(c, error),
+                    tells ? " (" : "", tells ? cause->text : "", tells ? ")" : "",
+                    advice(error, conn_device(c)));
+}
+
+uint32_t conn_baud(const app *a)
+{
+    const cli_value *baud = app_global(a, GLOBAL_BAUD);
+    return baud->given ? (uint32_t)baud->number : GROBO_BAUD_DEFAULT_BPS;
+}
+
+grobo_robot_config conn_robot_config(const app *a)
+{
+    grobo_robot_config config = {.readback_correction = a->robot && a->robot->offsets,
+                                 .sense_interval_us = GROBO_SENSE_NEVER};
+    const cli_value *timeout = app_global(a, GLOBAL_TIMEOUT);
+    const cli_value *retries = app_global(a, GLOBAL_RETRIES);
+    const cli_value *on_exit = app_global(a, GLOBAL_ON_EXIT);
+    if (a->clamps)
+        config.limit_policy = GROBO_LIMIT_CLAMP;
+    if (timeout->given)
+        config.timeout_us = (uint32_t)(timeout->number * 1000);
+    if (retries->given)
+        config.retries = retries->number > 0 ? (int)retries->number : -1;
+    if (on_exit->given)
+        config.on_exit = (grobo_exit_policy)(on_exit->choice + GROBO_EXIT_OFF);
+    return config;
+}
+
+static int make_session(conn *c, const char *device, bool check)
+{
+    app *a = c->a;
+    int error = conn_link_init(c->link);
+    if (!error && !output_detach() && !a->stops)
+        error = GROBO_ERR_NOMEM;
+    if (error)
+        return error;
+    grobo_wiring wiring = (grobo_wiring)app_global(a, GLOBAL_WIRING)->choice;
+    const cli_value *baud = app_global(a, GLOBAL_BAUD);
+    grobo_robot_config robot = conn_robot_config(a);
+    robot.bus.echo = app_global(a, GLOBAL_ECHO)->given > 0;
+    const grobo_driver *driver = grobo_gr001_driver(wiring);
+    if (a->robot)
+        driver = trims_driver(&c->link->trims, driver, a->robot);
+    grobo_session_config config = {.base = c->link->base,
+                                   .device = device,
+                                   .baud_bps = baud->given ? (int)baud->number : 0,
+                                   .driver = driver,
+                                   .driver_ctx = a->robot ? &c->link->trims : NULL,
+                                   .robot = &robot,
+                                   .skip_check = !check,
+                                   .reconnect = a->reconnects,
+                                   .on_event = on_session,
+                                   .on_robot = on_robot,
+                                   .on_tap = on_tap,
+                                   .ctx = c->link,
+                                   .guard = guard_started()};
+    config.guard_data = guard_data(a->robot, &config.guard_bytes);
+    return grobo_session_new(&config, &c->link->session);
+}
+
+static int open_trace(conn *c, app *a, trace *t, const char *device)
+{
+    trace_line line = {.device = device,
+                       .wiring = (grobo_wiring)app_global(c->a, GLOBAL_WIRING)->choice,
+                       .baud_bps = (int)conn_baud(c->a)};
+    return trace_open(t, a, &line, grobo_now_us());
+}
+
+/* That of the command, and that of the shell it runs in. */
+static int open_traces(conn *c, const char *device)
+{
+    int status = open_trace(c, c->a, &c->trace, device);
+    if (!status && c->link->owner)
+        status = open_trace(c, c->link->owner, &c->link->trace, device);
+    return status;
+}
+
+/* The command takes the link, and with it the signals. */
+static void take(conn *c, app *a)
+{
+    memset(c, 0, sizeof *c);
+    c->a = a;
+    c->link = a->link ? a->link : &c->own;
+    if (c->link->session && c->link->link_error) { /* lost: the next command opens it again */
+        grobo_session_free(c->link->session);
+        c->link->session = NULL;
+    }
+    if (!c->link->session) {
+        c->link->link_error = 0;
+        c->link->up = c->link->answered = false;
+        c->link->free_joints = 0;
+    }
+    c->link->user = c;
+    c->base = c->link->base;
+    c->session = c->link->session;
+    c->robot = c->session ? grobo_session_robot(c->session) : NULL;
+    c->up = c->link->up;
+}
+
+/* The open link of a shell, with what this command's options say. */
+static int take_over(conn *c, bool check)
+{
+    grobo_robot_config config = conn_robot_config(c->a);
+    int status = open_trace(c, c->a, &c->trace, conn_device(c));
+    int error;
+    if (status)
+        return status;
+    conn_link_watch(c->link);
+    config.bus.baud_bps = conn_baud(c->a);
+    c->before = *grobo_robot_get_counters(c->robot);
+    error = grobo_robot_configure(c->robot, &config);
+    if (!error) /* an emergency stop from before the command, maybe */
+        error = conn_wait_until(c, conn_is_idle);
+    if (!error && check && !c->link->answered)
+        error = conn_wait(c, grobo_session_check(c->session));
+    if (error && !is_interrupted(c))
+        return fail_open(c, error);
+    c->link->answered |= check;
+    return error ? EXIT_ROBOT : EXIT_DONE;
+}
+
+static void say_found(conn *c)
+{
+    const grobo_serial *serial = grobo_session_serial(c->session);
+    int answer = serial ? grobo_serial_low_latency(serial) : GROBO_ERR_CLOSED;
+    app_detail(c->a, "robot found on %s", conn_device(c));
+    if (answer < 0 && answer != GROBO_ERR_UNSUPPORTED && answer != GROBO_ERR_CLOSED)
+        app_detail(c->a, "low latency: %s; 'grctl doctor' tells more", grobo_error_text(answer));
+}
+
+static int open_device(conn *c, app *a, bool check)
+{
+    char device[GROBO_DEVICE_MAX_BYTES];
+    const char *asked = conn_requested(a);
+    grobo_os_cause cause = {0};
+    int error;
+    take(c, a);
+    if (c->session)
+        return take_over(c, check);
+    if (!*asked)
+        return app_fail(a, EXIT_USAGE, "USAGE", "--device: an empty name; see 'grctl ports'");
+    error = grobo_port_resolve(asked, device, sizeof device, &cause);
+    if (error)
+        return app_fail(a, app_status_of(error), grobo_error_name(error), "%s: %s", asked,
+                        *cause.text ? cause.text : grobo_error_text(error));
+    if (a->moves)
+        guard_start(a, device);
+    error = open_traces(c, device);
+    if (error)
+        return error;
+    error = make_session(c, device, check);
+    if (error)
+        return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s: %s", device,
+                        grobo_error_text(error));
+    c->base = c->link->base;
+    c->session = c->link->session;
+    c->robot = grobo_session_robot(c->session);
+    conn_link_watch(c->link);
+    error = conn_open_session(c);
+    if (error && !is_interrupted(c))
+        return fail_open(c, error);
+    c->link->answered = check && !error;
+    c->trip = (grobo_trip_info){.trip = GROBO_TRIP_NONE}; /* of a stop that stands */
+    if (!error)                                           /* one that had not reached the robot */
+        error = conn_wait_until(c, conn_is_idle);
+    if (!error)
+        say_found(c);
+    return error ? EXIT_ROBOT : EXIT_DONE;
+}
+
+int conn_open(conn *c, app *a)
+{
+    return open_device(c, a, true);
+}
+
+int conn_open_unchecked(conn *c, app *a)
+{
+    return open_device(c, a, false);
+}
+
+void conn_watch(conn *c, bool on)
+{
+    grobo_robot_config config = conn_robot_config(c->a);
+    if (on)
+        config.sense_interval_us = 0; /* the engine's default */
+    (void)grobo_robot_configure(c->robot, &config);
+}
+
+void conn_link_idle(conn_link *link, app *a)
+{
+    conn c = {.a = a};
+    if (!link->session || !link->up)
+        return;
+    c.robot = grobo_session_robot(link->session);
+    conn_watch(&c, true);
+    grobo_session_pump(link->session);
+}
+
+/* ---- leaving -------------------------------------------------------------------------------- */
+
+/* What the servos are to do now, or GROBO_EXIT_DEFAULT for nothing. */
+static grobo_exit_policy policy_now(const conn *c, int status)
+{
+    const cli_value *asked = app_global(c->a, GLOBAL_ON_EXIT);
+    if (asked->given)
+        return (grobo_exit_policy)(asked->choice + GROBO_EXIT_OFF);
+    if (c->moving && (c->signal || status != EXIT_DONE))
+        return grobo_robot_driver(c->robot)->on_exit;
+    return GROBO_EXIT_DEFAULT;
+}
+
+static const char *policy_words(grobo_exit_policy policy)
+{
+    switch (policy) {
+    case GROBO_EXIT_OFF:
+        return "are off";
+    case GROBO_EXIT_SIT:
+        return "sat the robot down and are off";
+    case GROBO_EXIT_HOLD:
+    case GROBO_EXIT_DEFAULT:
+        break;
+    }
+    return "hold where they are";
+}
+
+/* Returns 0, or the exit status when it could not be done; that is said. */
+static int carry_out_policy(conn *c, int status)
+{
+    int error = conn_end_estop(c); /* which comes before any policy */
+    grobo_exit_policy policy = policy_now(c, status);
+    if (error)
+        return conn_fail_job(c, error, "the emergency stop could not be verified: ");
+    if (policy == GROBO_EXIT_DEFAULT || !c->up || c->link_error)
+        return EXIT_DONE;
+    c->leaving = true;
+    error = conn_wait(c, grobo_session_exit(c->session, policy));
+    if (error && !c->signal && !app_global(c->a, GLOBAL_ON_EXIT)->given)
+        return status; /* nobody asked for it, and why the command failed has been said */
+    if (error)
+        return conn_fail_job(c, error, "the servos could not be left as asked: ");
+    if (c->signal)
+        app_note(c->a, "interrupted: the servos %s", policy_words(policy));
+    app_detail(c->a, "exit policy carried out");
+    return EXIT_DONE;
+}
+
+/* A shell's link is left as the next command wants to find it. */
+static void give_back(conn *c)
+{
+    grobo_serial *serial = c->session ? grobo_session_serial(c->session) : NULL;
+    int baud_bps = (int)conn_baud(c->a);
+    conn_link_unwatch(c->link);
+    c->link->user = NULL;
+    if (!c->up || c->link_error) { /* never came, or is gone */
+        grobo_session_free(c->session);
+        c->link->session = NULL;
+        return;
+    }
+    if (grobo_robot_job(c->robot) != GROBO_JOB_NONE)
+        grobo_session_cancel(c->session);
+    if (serial && grobo_serial_baud(serial) != baud_bps)
+        grobo_serial_set_baud(serial, baud_bps);
+}
+
+static bool is_quiet(conn *c)
+{
+    return grobo_robot_is_quiet(c->robot);
+}
+
+/* The answer to a reading in the background is not left on the line for who comes next. */
+static void end_readings(conn *c)
+{
+    if (!c->up || c->link_error)
+        return;
+    conn_watch(c, false);
+    (void)conn_wait_until(c, is_quiet);
+}
+
+int conn_close(conn *c, int status)
+{
+    int failed = EXIT_DONE;
+    conn_suspend(c);
+    if (c->session) {
+        end_readings(c);
+        failed = carry_out_policy(c, status);
+    }
+    conn_show_answer(c);
+    if (failed)
+        status = failed;
+    else if (c->signal)
+        status = EXIT_SIGNAL + c->signal;
+    if (c->link->kept) {
+        give_back(c);
+    } else {
+        grobo_session_free(c->session);
+        c->link->session = NULL;
+        conn_link_deinit(c->link);
+        if (!c->a->stops) /* it may be an attempt that is repeated */
+            output_attach(c->a);
+    }
+    return trace_close(&c->trace, c->a, status);
+}
+
+/* ---- of a shell ----------------------------------------------------------------------------- */
+
+int conn_link_init(conn_link *link)
+{
+    if (link->base)
+        return GROBO_OK;
+    link->base = grobo_loop_new();
+    return link->base && conn_signals_init(link) ? GROBO_OK : GROBO_ERR_NOMEM;
+}
+
+int conn_link_close(conn_link *link, app *a, int status)
+{
+    conn c;
+    int failed = EXIT_DONE;
+    take(&c, a);
+    c.signal = link->signal;
+    if (c.session) {
+        grobo_robot_tripped(c.robot, &c.trip);
+        conn_link_watch(link);
+        failed = carry_out_policy(&c, status);
+        conn_link_unwatch(link);
+    }
+    if (failed)
+        status = failed;
+    else if (c.signal)
+        status = EXIT_SIGNAL + c.signal;
+    grobo_session_free(c.session);
+    link->session = NULL;
+    link->user = NULL;
+    output_attach(a);
+    status = trace_close(&link->trace, a, status);
+    memset(&link->trace, 0, sizeof link->trace);
+    return status;
+}
+
+void conn_link_deinit(conn_link *link)
+{
+    conn_signals_deinit(link);
+    if (link->base)
+        event_base_free(link->base);
+    memset(link, 0, sizeof *link);
+    guard_end();
+}
+
+void conn_counters(const conn *c, grobo_robot_counters *counters)
+{
+    *counters = *grobo_robot_get_counters(c->robot);
+    counters->motion_frames -= c->before.motion_frames;
+    counters->late_frames -= c->before.late_frames;
+    counters->stretched -= c->before.stretched;
+    counters->clamped -= c->before.clamped;
+}
+
+json_t *conn_link_json(const conn *c)
+{
+    const grobo_bus_stats *n = grobo_robot_get_bus_stats(c->robot);
+    return json_pack("{s:I,s:I,s:I,s:I,s:I,s:I}", "tx_frames", (json_int_t)n->tx_frames,
+                     "rx_frames", (json_int_t)n->rx_frames, "timeouts", (json_int_t)n->timeouts,
+                     "retries", (json_int_t)n->retries, "bad_sums", (json_int_t)n->bad_sums,
+                     "resync_bytes", (json_int_t)n->resync_bytes);
+}

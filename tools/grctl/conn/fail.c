@@ -1,0 +1,140 @@
+/* SPDX-License-Identifier: MIT */
+/* Why something failed, in words: what, where, what to do; with -v the bytes. */
+#include "tools/grctl/conn/conn.h"
+
+/* What a trip's value is measured in. */
+static const char *trip_unit(grobo_trip trip)
+{
+    switch (trip) {
+    case GROBO_TRIP_TEMPERATURE:
+    case GROBO_TRIP_OVERHEATED:
+        return " deg C";
+    case GROBO_TRIP_CURRENT:
+        return " mA";
+    case GROBO_TRIP_VOLTAGE:
+        return " mV";
+    case GROBO_TRIP_LOST_REPLIES:
+        return " in a row";
+    case GROBO_TRIP_LIMIT:
+        return " deg";
+    case GROBO_TRIP_HOST_STALL:
+        return " ms late";
+    case GROBO_TRIP_NONE:
+    case GROBO_TRIP_TORQUE_LOST:
+    case GROBO_TRIP_NUMBER:
+    case GROBO_TRIP_ESTOP:
+        break;
+    }
+    return "";
+}
+
+/* The engine has stopped by itself, c->trip says why. */
+static int fail_trip(conn *c, const char *doing)
+{
+    const grobo_trip_info *t = &c->trip;
+    const grobo_model *model = grobo_robot_driver(c->robot)->model;
+    char value[48] = "";
+    if (*trip_unit(t->trip))
+        snprintf(value, sizeof value, " (%.4g%s)", t->value, trip_unit(t->trip));
+    if (t->joint >= 0 && t->joint < model->n_joints)
+        return app_fail(c->a, EXIT_SAFETY, grobo_trip_name(t->trip),
+                        "%s: stopped for safety: %s%s at motor %d (%s)", doing,
+                        grobo_trip_name(t->trip), value, model->joints[t->joint].motor,
+                        model->joints[t->joint].name);
+    return app_fail(c->a, EXIT_SAFETY, grobo_trip_name(t->trip), "%s: stopped for safety: %s%s",
+                    doing, grobo_trip_name(t->trip), value);
+}
+
+bool conn_is_of_reply(int error)
+{
+    return error == GROBO_ERR_TIMEOUT || error == GROBO_ERR_SHORT || error == GROBO_ERR_CHECKSUM ||
+           error == GROBO_ERR_MISMATCH;
+}
+
+/* "no reply from WHO in 4.2 ms after 2 retries; ADVICE", and with -v the bytes. */
+static int fail_reply(conn *c, int error, int id, const char *prefix, const char *who)
+{
+    last_try last = last_frames_to(&c->last, id, grobo_now_us());
+    char took[48] = "", bytes[8 * LAST_FRAME_BYTES];
+    int status;
+    if (last.frame)
+        snprintf(took, sizeof took, " in %.1f ms after %d %s", (double)last.took_us / 1e3,
+                 last.attempts - 1, last.attempts == 2 ? "retry" : "retries");
+    status =
+        app_fail(c->a, EXIT_ROBOT, grobo_error_name(error),
+                 "%s: %s%s from %s%s; is its cable in? see 'grctl doctor'", conn_device(c), prefix,
+                 error == GROBO_ERR_TIMEOUT ? "no reply" : grobo_error_text(error), who, took);
+    if (last.frame) {
+        last_frames_text(last.frame, bytes, sizeof bytes);
+        app_detail(c->a, "%s", bytes);
+    }
+    return status;
+}
+
+int conn_fail_job(conn *c, int error, const char *prefix)
+{
+    const grobo_model *model = grobo_robot_driver(c->robot)->model;
+    int joint = c->job.kind == GROBO_JOB_NONE ? -1 : c->job.joint;
+    char who[64];
+    if (joint < 0 || joint >= model->n_joints)
+        return app_fail(c->a, app_status_of(error), grobo_error_name(error), "%s: %s%s",
+                        conn_device(c), prefix, grobo_error_text(error));
+    snprintf(who, sizeof who, "motor %d (%s)", model->joints[joint].motor,
+             model->joints[joint].name);
+    if (conn_is_of_reply(error) && c->job.failed == GROBO_JOINTS_ALL(model->n_joints))
+        return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error),
+                        "%s: %sno servo answers; are they powered? see 'grctl doctor'",
+                        conn_device(c), prefix);
+    if (conn_is_of_reply(error))
+        return fail_reply(c, error, model->joints[joint].motor, prefix, who);
+    return app_fail(c->a, app_status_of(error), grobo_error_name(error), "%s: %s%s: %s",
+                    conn_device(c), prefix, who, grobo_error_text(error));
+}
+
+int conn_fail(conn *c, int error, const char *doing)
+{
+    char prefix[64];
+    if (c->signal && !c->a->stops)
+        return EXIT_SIGNAL + c->signal;
+    if (c->link_error == GROBO_ERR_STALLED)
+        return app_fail(c->a, EXIT_SAFETY, grobo_trip_name(GROBO_TRIP_HOST_STALL),
+                        "%s: stopped for safety: host stalled: grctl was stopped by a signal, and "
+                        "the guard stopped the robot",
+                        doing);
+    if (c->link_error)
+        return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error), "%s: %s while busy with %s",
+                        conn_device(c), grobo_error_text(error), doing);
+    if (c->trip.trip != GROBO_TRIP_NONE)
+        return fail_trip(c, doing);
+    snprintf(prefix, sizeof prefix, "%s: ", doing);
+    return conn_fail_job(c, error, conn_is_of_reply(error) ? "" : prefix);
+}
+
+int conn_fail_servo(conn *c, int error, int id)
+{
+    char who[32];
+    if ((c->signal && !c->a->stops) || c->link_error)
+        return conn_fail(c, error, "servo");
+    snprintf(who, sizeof who, "servo %d", id);
+    if (conn_is_of_reply(error))
+        return fail_reply(c, error, id, "", who);
+    return app_fail(c->a, app_status_of(error), grobo_error_name(error), "%s: %s: %s",
+                    conn_device(c), who, grobo_error_text(error));
+}
+
+int conn_link_news(conn_link *link, app *a)
+{
+    conn c = {.a = a, .link = link, .session = link->session, .trip = link->trip};
+    int status = EXIT_DONE;
+    if (!link->news || !c.session)
+        return EXIT_DONE;
+    link->news = false;
+    link->trip = (grobo_trip_info){.trip = GROBO_TRIP_NONE};
+    c.robot = grobo_session_robot(c.session);
+    if (c.trip.trip != GROBO_TRIP_NONE)
+        status = fail_trip(&c, conn_device(&c));
+    if (link->link_error)
+        status = app_fail(a, EXIT_ROBOT, grobo_error_name(link->link_error), "%s: %s",
+                          conn_device(&c), grobo_error_text(link->link_error));
+    return status;
+}

@@ -1,0 +1,132 @@
+/* SPDX-License-Identifier: MIT */
+#include <stdlib.h>
+#include <string.h>
+
+#include <grobo/port.h>
+#include <grobo/session.h>
+
+#include "tools/grctl/conn/guard.h"
+#include "tools/grctl/conn/trims.h"
+#include "tools/grctl/os/os.h"
+
+/* A process has one. */
+static grobo_guard *guard;
+static const char *called = "grctl";
+
+/* Of a configured robot, as it goes to the guard. */
+typedef struct guard_robot {
+    double trim_deg[GROBO_JOINTS_MAX];
+    double offset_deg[GROBO_JOINTS_MAX];
+    bool offsets;
+} guard_robot;
+
+/* ---- its own process ------------------------------------------------------------------------ */
+
+static const grobo_driver *find_driver(void *ctx, const char *name, grobo_wiring wiring,
+                                       const void *data, size_t bytes, void **driver_ctx)
+{
+    static trims t;
+    static config_robot robot;
+    guard_robot given;
+    const grobo_driver *inner = grobo_gr001_driver(wiring);
+    (void)ctx;
+    if (!inner || strcmp(name, inner->name) != 0 || (bytes && bytes != sizeof given))
+        return NULL;
+    if (!bytes)
+        return inner;
+    memcpy(&given, data, sizeof given);
+    memcpy(robot.trim_deg, given.trim_deg, sizeof robot.trim_deg);
+    memcpy(robot.offset_deg, given.offset_deg, sizeof robot.offset_deg);
+    robot.offsets = given.offsets;
+    *driver_ctx = &t;
+    return trims_driver(&t, inner, &robot);
+}
+
+static void on_stop(void *ctx, grobo_guard_cause cause, int result)
+{
+    (void)ctx;
+    /* One that is only stopped says so when it continues. Nobody may be left to read this. */
+    if ((cause != GROBO_GUARD_DIED && result >= 0) || !os_takes_line(stderr))
+        return;
+    if (result < 0)
+        fprintf(stderr,
+                "grctl was killed; not every joint is seen to stand: %s; switch the robot off\n",
+                grobo_error_text(result));
+    else
+        fprintf(stderr, "grctl was killed; its guard stopped the robot\n");
+    fflush(stderr);
+}
+
+int guard_main(void)
+{
+    static const grobo_guard_program program = {.driver = find_driver, .on_stop = on_stop};
+    int error = grobo_guard_run(&program);
+    if (error == GROBO_ERR_ARG || error == GROBO_ERR_UNSUPPORTED)
+        fprintf(stderr, "grctl: guard: is started by grctl itself, to stop a robot\n");
+    return error == GROBO_ERR_ARG || error == GROBO_ERR_UNSUPPORTED ? EXIT_USAGE
+           : error                                                  ? EXIT_ROBOT
+                                                                    : EXIT_DONE;
+}
+
+/* ---- the command's -------------------------------------------------------------------------- */
+
+void guard_note_program(const char *argv0)
+{
+    if (argv0 && *argv0)
+        called = argv0;
+}
+
+void guard_start(const app *a, const char *device)
+{
+    const char *chosen = getenv("GRCTL_GUARD");
+    grobo_guard_config config = {.program = chosen ? chosen : os_own_program(called)};
+    int error;
+    if (guard || strcmp(device, GROBO_DEVICE_SIM) == 0 || !*config.program)
+        return;
+    error = grobo_guard_new(&config, &guard);
+    if (!error)
+        app_detail(a, "guarded by process %d", grobo_guard_pid(guard));
+    if (error && error != GROBO_ERR_UNSUPPORTED)
+        app_note(a, "no guard: %s; if grctl is killed, joints go on to their goals",
+                 grobo_error_text(error));
+}
+
+grobo_guard *guard_started(void)
+{
+    return guard;
+}
+
+const void *guard_data(const config_robot *robot, size_t *bytes)
+{
+    static guard_robot given;
+    *bytes = robot ? sizeof given : 0;
+    if (!robot)
+        return NULL;
+    memset(&given, 0, sizeof given);
+    memcpy(given.trim_deg, robot->trim_deg, sizeof given.trim_deg);
+    memcpy(given.offset_deg, robot->offset_deg, sizeof given.offset_deg);
+    given.offsets = robot->offsets;
+    return &given;
+}
+
+void guard_end(void)
+{
+    grobo_guard_free(guard);
+    guard = NULL;
+}
+
+/* ---- the guard of another, that has the port ------------------------------------------------ */
+
+static int is_with_guard(void *ctx, const grobo_port_info *info)
+{
+    (void)ctx;
+    return info->owner_pid && strcmp(info->owner_name, GROBO_GUARD_NAME) == 0;
+}
+
+bool guard_has(const char *device)
+{
+    char name[64];
+    if (strcmp(device, GROBO_DEVICE_AUTO) == 0)
+        return grobo_port_list(is_with_guard, NULL) == 1;
+    return grobo_port_owner(device, name, sizeof name) && strcmp(name, GROBO_GUARD_NAME) == 0;
+}

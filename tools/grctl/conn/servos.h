@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: MIT */
+/* Single servos by their id: asking for registers, quickly where nobody may be there. */
+#ifndef GRCTL_SERVOS_H
+#define GRCTL_SERVOS_H
+
+#include "tools/grctl/conn/conn.h"
+
+/*
+ * Reads `length` registers of a servo into data.
+ * Returns GROBO_OK or the error; nothing is said.
+ */
+int servos_read(conn *c, int id, int address, int length, uint8_t *data);
+
+/* Beyond the wire's time, where a reply is sure to be wanted and the host may be busy. */
+enum { SERVOS_PATIENT_US = 30000 };
+
+/*
+ * From now on a reply of `length` registers is waited for no longer than the wire takes at this
+ * speed, and margin_us more (over a network longer), and so often again (-1: never), unless the
+ * command line says otherwise. *timeout_us, where not NULL: how long that is in all. Returns
+ * GROBO_OK or the error.
+ */
+int servos_wait(conn *c, int baud_bps, int length, uint32_t margin_us, int retries,
+                uint32_t *timeout_us);
+
+/* Reads an id of the command line: a number 1..127, or a joint's name. -1: *status is set. */
+int servos_parse_id(app *a, const char *text, int *status);
+
+#endif

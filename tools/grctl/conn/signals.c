@@ -1,0 +1,91 @@
+/* SPDX-License-Identifier: MIT */
+/* Signals while a command has the robot: those that end it, and Ctrl-Z. */
+#include <grobo/port.h>
+
+#include "tools/grctl/conn/conn.h"
+#include "tools/grctl/os/keys.h"
+#include "tools/grctl/screen/screen.h"
+
+static void on_signal(evutil_socket_t number, short what, void *ctx)
+{
+    conn_link *link = ctx;
+    int *signal = link->user ? &link->user->signal : &link->signal;
+    (void)what;
+    if (!*signal)
+        *signal = (int)number;
+}
+
+/* The terminal is as it was while the process is suspended. */
+static void suspend(void)
+{
+    keys_pause();
+    screen_pause();
+    os_suspend();
+}
+
+/*
+ * What moves is stopped first: that ends the command, as Ctrl-C does, and conn_close() suspends the
+ * process when the robot stands. While nothing moves it is suspended at once, and continues.
+ */
+static void on_suspend(evutil_socket_t number, short what, void *ctx)
+{
+    conn_link *link = ctx;
+    conn *c = link->user;
+    if (c && c->a->stops)
+        return; /* in a moment it has ended */
+    bool moves =
+        c && c->up && !c->link_error && (c->moving || grobo_robot_moving(c->robot, grobo_now_us()));
+    if (!moves)
+        suspend();
+    else if (!c->leaving)
+        on_signal(number, what, ctx);
+}
+
+void conn_suspend(conn *c)
+{
+    if (c->signal != os_suspension || !c->up || c->link_error)
+        return;
+    c->leaving = true;
+    (void)conn_wait(c, grobo_session_exit(c->session, GROBO_EXIT_HOLD));
+    suspend();
+}
+
+/* One of these to be heard: false where there is no memory. */
+static bool hear(conn_link *link, int number, event_callback_fn fn)
+{
+    struct event *event = evsignal_new(link->base, number, fn, link);
+    if (event)
+        link->signals[link->n_signals++] = event;
+    return event != NULL;
+}
+
+bool conn_signals_init(conn_link *link)
+{
+    os_take_signals();
+    for (int i = 0; i < os_n_endings; i++)
+        if (!hear(link, os_endings[i], on_signal))
+            return false;
+    return !os_suspension || os_is_ignored(os_suspension) || hear(link, os_suspension, on_suspend);
+}
+
+void conn_signals_deinit(conn_link *link)
+{
+    for (int i = 0; i < link->n_signals; i++)
+        event_free(link->signals[i]);
+    link->n_signals = 0;
+}
+
+/* A command that stops the robot hears them itself (run.c): it opens more than one loop. */
+void conn_link_watch(conn_link *link)
+{
+    if (link->user && link->user->a->stops && !link->user->a->link)
+        return;
+    for (int i = 0; i < link->n_signals; i++)
+        event_add(link->signals[i], NULL);
+}
+
+void conn_link_unwatch(conn_link *link)
+{
+    for (int i = 0; i < link->n_signals; i++)
+        event_del(link->signals[i]);
+}

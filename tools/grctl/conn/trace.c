@@ -1,0 +1,139 @@
+/* SPDX-License-Identifier: MIT */
+#include <errno.h>
+#include <string.h>
+
+#include <event2/util.h>
+
+#include <grobo/version.h>
+
+#include "tools/grctl/cli/file.h"
+#include "tools/grctl/conn/trace.h"
+#include "tools/grctl/os/os.h"
+
+enum { QUEUE_BYTES = 1024 * 1024 };
+
+/* By grobo_wiring. */
+static const char *const descriptions[] = {"GR001 through its board", "servos on a bus"};
+
+static int64_t wall_us(void)
+{
+    struct timeval now = {0, 0};
+    evutil_gettimeofday(&now, NULL);
+    return (int64_t)now.tv_sec * 1000000 + now.tv_usec;
+}
+
+/* The command line, as far as it says what was done. */
+static void describe(const app *a, char *text, size_t capacity)
+{
+    size_t used = (size_t)snprintf(text, capacity, "grctl %s", a->line.command->name);
+    for (int i = 0; i < a->line.n_arguments && used < capacity; i++)
+        used += (size_t)snprintf(text + used, capacity - used, " %s", a->line.argument[i]);
+}
+
+static bool tried;
+
+bool trace_was_tried(void)
+{
+    return tried;
+}
+
+static int fail(app *a, const trace *t, int cause)
+{
+    return app_fail(a, EXIT_FILE, "TRACE", "%s: the trace cannot be written: %s", t->path,
+                    cause == ENOENT ? file_write_error_text(GROBO_ERR_NOENT)
+                                    : file_cause_text(cause));
+}
+
+/* No trace keeps a robot from being stopped: then trace_close() reports it. */
+static int give_up(app *a, trace *t, int cause)
+{
+    if (!a->stops)
+        return fail(a, t, cause);
+    t->error = cause;
+    return 0;
+}
+
+int trace_open(trace *t, app *a, const trace_line *line, int64_t now_us)
+{
+    pcapng_interface interface = {.link_type = PCAPNG_LINK_USER0};
+    char comment[PCAPNG_TEXT_BYTES];
+    const char *path = app_global(a, GLOBAL_TRACE)->text;
+    int n;
+    memset(t, 0, sizeof *t);
+    if (!path)
+        return 0;
+    tried = true;
+    n = line->number > 1 ? snprintf(t->path, sizeof t->path, "%s%d", path, line->number)
+                         : snprintf(t->path, sizeof t->path, "%s", path);
+    if (n < 0 || (size_t)n >= sizeof t->path)
+        return give_up(a, t, ENAMETOOLONG);
+    t->to_wall_us = wall_us() - now_us;
+    t->file = os_create(t->path, !a->stops);
+    if (!t->file)
+        return give_up(a, t, os_is_folder(t->path) ? EISDIR : errno);
+    snprintf(interface.name, sizeof interface.name, "%s", line->device);
+    snprintf(interface.description, sizeof interface.description, "%s", descriptions[line->wiring]);
+    interface.speed_bps = (uint64_t)(line->baud_bps ? line->baud_bps : GROBO_BAUD_DEFAULT_BPS);
+    describe(a, comment, sizeof comment);
+    if (pcapng_write_head(t->file, "grctl " GROBO_VERSION_STRING, comment, &interface) < 0 ||
+        fflush(t->file) != 0) {
+        int cause = errno;
+        fclose(t->file);
+        t->file = NULL;
+        return give_up(a, t, cause);
+    }
+    t->queue = writer_new(t->file, QUEUE_BYTES);
+    return t->queue ? 0 : give_up(a, t, ENOMEM);
+}
+
+void trace_bytes(trace *t, grobo_direction direction, int64_t now_us, const uint8_t *bytes,
+                 size_t size)
+{
+    pcapng_direction way = direction == GROBO_DIR_TX ? PCAPNG_OUT : PCAPNG_IN;
+    while (t->queue && size > 0) {
+        uint8_t block[PCAPNG_PACKET_BYTES];
+        size_t n = size < PCAPNG_CHUNK_BYTES ? size : PCAPNG_CHUNK_BYTES;
+        /* At once: a program that is killed has its trace, and a watcher behind a pipe sees it. */
+        writer_put(t->queue, block,
+                   pcapng_make_chunk(block, now_us + t->to_wall_us, way, bytes, n));
+        bytes += n;
+        size -= n;
+    }
+}
+
+int trace_close(trace *t, app *a, int status)
+{
+    int error = t->error;
+    uint64_t dropped = 0;
+    if (t->queue) {
+        writer_drain(t->queue);
+        error = error ? error : writer_error(t->queue);
+        dropped = writer_dropped(t->queue);
+        writer_free(t->queue);
+        t->queue = NULL;
+    }
+    if (t->file && fclose(t->file) != 0 && !error)
+        error = errno;
+    t->file = NULL;
+    t->error = 0;
+    if (error)
+        error = fail(a, t, error);
+    else if (dropped)
+        error = app_fail(a, EXIT_FILE, "TRACE",
+                         "%s: the trace lacks %llu packets: its reader was too slow", t->path,
+                         (unsigned long long)dropped);
+    else
+        return status;
+    return status == EXIT_DONE ? error : status;
+}
+
+bool trace_wiring(const pcapng_interface *interface, grobo_wiring *wiring)
+{
+    for (int i = 0; i < (int)(sizeof descriptions / sizeof descriptions[0]); i++) {
+        if (strcmp(interface->description, descriptions[i]) == 0) {
+            *wiring = (grobo_wiring)i;
+            return true;
+        }
+    }
+    return false;
+}

@@ -1,0 +1,94 @@
+/* SPDX-License-Identifier: MIT */
+#include <math.h>
+
+#include "tools/grctl/conn/wire.h"
+
+static void measure(const grobo_bus *bus, grobo_wiring wiring, const grobo_exchange *exchange,
+                    wire_cost *to)
+{
+    grobo_txn txn;
+    grobo_bus_cost found = {0};
+    if (grobo_txn_init(&txn, wiring, exchange->frame, exchange->frame_bytes) < 0)
+        return;
+    grobo_bus_cost_of(bus, &txn, &found);
+    to->frame_bytes += exchange->frame_bytes;
+    to->reply_bytes += (int)grobo_reply_bytes(&txn.reply);
+    to->total_us += found.total_us;
+}
+
+/* Every joint to its initial angle; as many frames as the driver needs for that. */
+static void measure_motion(const grobo_bus *bus, const grobo_driver *driver, wire_cost *to)
+{
+    grobo_target target = {0};
+    grobo_posture_init_pose(&target.posture, driver->model);
+    for (int part = 0;; part++) {
+        grobo_exchange exchange = {0};
+        if (driver->posture(driver, NULL, &target, part, &exchange) != 1)
+            return;
+        measure(bus, driver->wiring, &exchange, to);
+    }
+}
+
+static void measure_read(const grobo_bus *bus, const grobo_driver *driver, grobo_sense_kind kind,
+                         wire_cost *to)
+{
+    grobo_exchange exchange = {0};
+    if (driver->sense(driver, NULL, 0, kind, &exchange) >= 0)
+        measure(bus, driver->wiring, &exchange, to);
+}
+
+static int make_bus(const grobo_driver *driver, int baud_bps, grobo_bus *bus)
+{
+    grobo_bus_config config = {.wiring = driver->wiring, .baud_bps = (uint32_t)baud_bps};
+    return grobo_bus_init(bus, &config);
+}
+
+int wire_budget(const grobo_driver *driver, int baud_bps, grobo_budget *budget)
+{
+    grobo_bus_config line = {.baud_bps = (uint32_t)baud_bps};
+    return grobo_budget_init(budget, driver, NULL, &line);
+}
+
+int wire_read_us(const grobo_driver *driver, int baud_bps, int length, uint32_t *time_us)
+{
+    grobo_register_io io = {.id = 1, .length = (uint8_t)length};
+    grobo_exchange exchange = {0};
+    wire_cost cost = {0};
+    grobo_bus bus;
+    int error = make_bus(driver, baud_bps, &bus);
+    if (!error)
+        error = driver->registers(driver, NULL, &io, &exchange);
+    if (error < 0)
+        return error;
+    measure(&bus, driver->wiring, &exchange, &cost);
+    *time_us = cost.total_us;
+    return GROBO_OK;
+}
+
+double wire_taught_hz(const grobo_driver *driver, int baud_bps, int n)
+{
+    wire_cost taught = {0}, other = {0};
+    grobo_bus bus;
+    double left_us;
+    if (make_bus(driver, baud_bps, &bus) < 0)
+        return 0;
+    measure_read(&bus, driver, GROBO_SENSE_ALL, &taught);
+    measure_read(&bus, driver, GROBO_SENSE_FULL, &other);
+    left_us = 1e6 - (double)(driver->model->n_joints - n) * other.total_us; /* each in a second */
+    return fmax(left_us / taught.total_us, 1e6 / (taught.total_us + other.total_us)) / n;
+}
+
+int wire_measure(const grobo_driver *driver, int baud_bps, wire_cost *costs)
+{
+    grobo_bus bus;
+    int error = make_bus(driver, baud_bps, &bus);
+    if (error)
+        return error;
+    costs[WIRE_MOTION] = (wire_cost){.name = "motion, 20 joints"};
+    costs[WIRE_READ_FULL] = (wire_cost){.name = "one joint, full"};
+    costs[WIRE_READ_ANGLE] = (wire_cost){.name = "one joint, angle only"};
+    measure_motion(&bus, driver, &costs[WIRE_MOTION]);
+    measure_read(&bus, driver, GROBO_SENSE_FULL, &costs[WIRE_READ_FULL]);
+    measure_read(&bus, driver, GROBO_SENSE_POSITION, &costs[WIRE_READ_ANGLE]);
+    return GROBO_OK;
+}

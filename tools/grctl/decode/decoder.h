@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: MIT */
+/* What `decode` does with bytes, wherever they come from: frames in words, on standard output. */
+#ifndef GRCTL_DECODER_H
+#define GRCTL_DECODER_H
+
+#include "tools/grctl/cli/app.h"
+#include "tools/grctl/decode/frames.h"
+#include "tools/grctl/decode/input.h"
+#include "tools/grctl/decode/ledger.h"
+
+typedef struct decoder {
+    app *a;
+    frames lines[3]; /* by frames_side */
+    ledger asked;
+    bool timed;       /* bytes come with their time; it is shown */
+    bool begun;       /* first_us is set */
+    int64_t first_us; /* what times are counted from */
+    char note[96];
+    struct {
+        uint64_t frames, bad_sums, cut, rubbish_bytes, answered, unanswered, unasked;
+    } count;
+} decoder;
+
+/* wiring: FRAMES_BOARD, FRAMES_BUS or both, of what is believed. */
+void decoder_init(decoder *d, app *a, unsigned wiring);
+
+void decoder_feed(decoder *d, frames_side side, int64_t time_us, const uint8_t *bytes, size_t n);
+
+/* Nothing more comes. */
+void decoder_end(decoder *d);
+
+/* What was seen, on standard error for people, as the last line of JSON. */
+void decoder_summary(decoder *d);
+/* The exit status for what was seen: EXIT_FILE where a frame had a wrong sum or was cut off. */
+int decoder_status(const decoder *d);
+
+/* Lines of hex, as text or JSON, with or without times. Returns 0 or the exit status. */
+int decode_text(decoder *d, input *in);
+
+#endif

@@ -1,0 +1,219 @@
+/* SPDX-License-Identifier: MIT */
+#include "tools/grctl/decode/frames.h"
+
+#include <string.h>
+
+/* What of packets is believed outside of relay frames. */
+static unsigned accepted(frames_side side, unsigned wiring)
+{
+    unsigned commands = wiring & FRAMES_BUS ? GROBO_RS30X_ACCEPT_COMMANDS : 0;
+    return side == FRAMES_HOST ? commands
+                               : commands | GROBO_RS30X_ACCEPT_RETURNS | GROBO_RS30X_ACCEPT_ACKS;
+}
+
+/* The packet that a relay frame carries, if it carries exactly one. */
+static void look_inside(frame *out)
+{
+    int size = grobo_rs30x_peek(out->board.packet, out->board.packet_bytes,
+                                GROBO_RS30X_ACCEPT_COMMANDS, &out->packet, &out->sum_ok);
+    out->has_packet = size > 0 && (size_t)size == out->board.packet_bytes;
+    out->packet_size = out->has_packet ? (size_t)size : 0;
+}
+
+int frame_peek(frames_side side, unsigned wiring, const uint8_t *bytes, size_t n, frame *out)
+{
+    int size = GROBO_ERR_FRAME;
+    memset(out, 0, sizeof *out);
+    out->side = side;
+    out->bytes = bytes;
+    if (side != FRAMES_ROBOT && (wiring & FRAMES_BOARD)) {
+        size = grobo_board_peek(bytes, n, &out->board);
+        out->kind = FRAME_BOARD;
+        out->sum_ok = true;
+        if (size > 0)
+            look_inside(out);
+    }
+    if (size < 0) {
+        size = grobo_rs30x_peek(bytes, n, accepted(side, wiring), &out->packet, &out->sum_ok);
+        out->kind = side == FRAMES_ROBOT && bytes[0] == 0xFA ? FRAME_ECHO : FRAME_PACKET;
+        out->has_packet = true;
+        out->packet_size = size > 0 ? (size_t)size : 0;
+    }
+    out->size = size > 0 ? (size_t)size : 0;
+    return size;
+}
+
+/* What begins at offset `at`. */
+static int look(const frames *f, size_t at, frame *out)
+{
+    return frame_peek(f->side, f->wiring, f->bytes + at, f->used - at, out);
+}
+
+static void drop(frames *f, size_t n)
+{
+    f->used -= n;
+    memmove(f->bytes, f->bytes + n, f->used);
+    memmove(f->time_us, f->time_us + n, f->used * sizeof f->time_us[0]);
+}
+
+/* Where nobody told who speaks, the frame itself tells. */
+static frames_side speaker(const frame *f)
+{
+    if (f->kind == FRAME_BOARD)
+        return FRAMES_HOST;
+    if (f->kind != FRAME_PACKET)
+        return FRAMES_EITHER;
+    return f->packet.kind == GROBO_RS30X_SHORT || f->packet.kind == GROBO_RS30X_LONG ? FRAMES_HOST
+                                                                                     : FRAMES_ROBOT;
+}
+
+/* Hands out the first n bytes as what *out says. */
+static void hand_out(frames *f, frame *out, size_t n)
+{
+    out->side = f->side == FRAMES_EITHER ? speaker(out) : f->side;
+    out->bytes = f->bytes;
+    out->size = n;
+    out->time_us = f->time_us[0];
+    out->end_us = f->time_us[n - 1];
+    f->use(f->ctx, out);
+    drop(f, n);
+}
+
+static void hand_out_rubbish(frames *f)
+{
+    frame out = {.kind = FRAME_RUBBISH};
+    size_t n = f->rubbish;
+    f->rubbish = 0;
+    if (n > 0)
+        hand_out(f, &out, n);
+}
+
+/* A single byte proves nothing inside of something else. */
+static bool is_whole(const frame *f, int size)
+{
+    return size > 1 && f->sum_ok;
+}
+
+/*
+ * Where a good frame begins inside the `size` bytes at `at`, which are none: its offset, `size`
+ * where there is none, 0 where more bytes are needed to know.
+ */
+static size_t next_start(const frames *f, size_t at, size_t size)
+{
+    bool open = false;
+    for (size_t i = 1; i < size; i++) {
+        frame inner;
+        int found = look(f, at + i, &inner);
+        if (is_whole(&inner, found))
+            return open && !f->ending ? 0 : i;
+        open = open || found == 0;
+    }
+    return open && !f->ending ? 0 : size;
+}
+
+/* Judges what stands behind the rubbish. False: more bytes are needed. */
+static bool judge(frames *f)
+{
+    frame out;
+    size_t left = f->used - f->rubbish;
+    int size = look(f, f->rubbish, &out);
+    if (size == 0 && !f->ending)
+        return false;
+    if (size < 0) {
+        f->rubbish++;
+        if (f->rubbish == FRAMES_RUBBISH_MAX_BYTES)
+            hand_out_rubbish(f);
+        return true;
+    }
+    if (size > 0 && out.sum_ok) {
+        size_t n = (size_t)size;
+        hand_out_rubbish(f);
+        look(f, 0, &out); /* it has moved */
+        hand_out(f, &out, n);
+        return true;
+    }
+    /* A packet with a wrong sum, or one whose rest never came: a good one may begin inside. */
+    size_t end = size > 0 ? (size_t)size : left;
+    size_t n = next_start(f, f->rubbish, end);
+    if (n == 0)
+        return false;
+    hand_out_rubbish(f);
+    if (size > 0 && n == end) {
+        look(f, 0, &out);
+    } else {
+        memset(&out, 0, sizeof out);
+        out.kind = FRAME_CUT;
+    }
+    hand_out(f, &out, n);
+    return true;
+}
+
+static void scan(frames *f)
+{
+    while (f->rubbish < f->used && judge(f))
+        ;
+}
+
+void frames_init(frames *f, frames_side side, unsigned wiring, frames_fn use, void *ctx)
+{
+    memset(f, 0, sizeof *f);
+    f->side = side;
+    f->wiring = wiring;
+    f->use = use;
+    f->ctx = ctx;
+}
+
+void frames_pass(frames *f, int64_t now_us)
+{
+    if (f->used > 0 && now_us - f->time_us[f->used - 1] >= FRAMES_STALL_US)
+        frames_end(f);
+}
+
+void frames_feed(frames *f, int64_t time_us, const uint8_t *bytes, size_t n)
+{
+    frames_pass(f, time_us);
+    for (size_t i = 0; i < n; i++) {
+        f->bytes[f->used] = bytes[i];
+        f->time_us[f->used] = time_us;
+        f->used++;
+        scan(f);
+        if (f->used == FRAMES_BUFFER_BYTES)
+            frames_end(f);
+    }
+    if (f->rubbish == f->used)
+        hand_out_rubbish(f);
+}
+
+void frames_end(frames *f)
+{
+    f->ending = true;
+    scan(f);
+    hand_out_rubbish(f);
+    f->ending = false;
+}
+
+int frame_reply(const frame *f, grobo_reply *reply)
+{
+    if (f->kind == FRAME_BOARD)
+        return grobo_frame_reply(GROBO_WIRING_BOARD, f->bytes, f->size, reply);
+    if (f->kind != FRAME_PACKET && f->kind != FRAME_ECHO)
+        return GROBO_ERR_FRAME;
+    return grobo_frame_reply(GROBO_WIRING_BUS, f->bytes, f->size, reply);
+}
+
+bool frame_is_reply(const frame *f, const grobo_reply *expected)
+{
+    const grobo_rs30x_packet *p = &f->packet;
+    if (f->kind != FRAME_PACKET || !f->sum_ok)
+        return false;
+    switch (expected->kind) {
+    case GROBO_REPLY_NONE:
+        return false;
+    case GROBO_REPLY_ACK:
+        return p->kind == GROBO_RS30X_ACK_BYTE || p->kind == GROBO_RS30X_NACK_BYTE;
+    case GROBO_REPLY_RETURN:
+        return p->kind == GROBO_RS30X_RETURN && p->id == expected->id &&
+               p->address == expected->address && p->length == expected->length;
+    }
+    return false;
+}

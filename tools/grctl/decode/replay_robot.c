@@ -1,0 +1,221 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * A trace against a real robot. Every frame is judged before the first one is sent: reads may
+ * go, goals and torque go through the engine's gate after a question, the rest is refused.
+ */
+#include <string.h>
+
+#include <grobo/driver.h>
+
+#include "tools/grctl/cli/output.h"
+#include "tools/grctl/conn/conn.h"
+#include "tools/grctl/decode/replay.h"
+#include "tools/grctl/decode/words.h"
+
+typedef enum danger {
+    HARMLESS, /* reads */
+    MOVES,    /* goals, torque: the engine can judge them */
+    REFUSED   /* settings, flash, stored motions, broken frames: nobody can */
+} danger;
+
+typedef struct plan {
+    replay *r;
+    conn c;
+    uint64_t moves;
+    grobo_joint_mask torqued; /* joints whose torque the trace switches on */
+    int64_t start_us;         /* of the replay, by our clock */
+    int status;               /* why it has to end, 0: it need not */
+} plan;
+
+/* ---- judging ------------------------------------------------------------------------------- */
+
+static bool is_motion_register(unsigned address)
+{
+    return (address >= GROBO_RS30X_GOAL && address <= GROBO_RS30X_GOAL_TIME + 1) ||
+           address == GROBO_RS30X_TORQUE;
+}
+
+static danger judge(const frame *f)
+{
+    const grobo_rs30x_packet *p = &f->packet;
+    const unsigned acts = GROBO_RS30X_FLASH | GROBO_RS30X_REBOOT | GROBO_RS30X_FACTORY;
+    size_t n;
+    if (f->kind == FRAME_BOARD && f->board.kind == GROBO_BOARD_CHECK)
+        return HARMLESS;
+    if (!f->has_packet || !f->sum_ok || (p->flags & (acts | 0x80)))
+        return REFUSED;
+    if (p->data_bytes == 0)
+        return HARMLESS;
+    n = p->kind == GROBO_RS30X_LONG ? (size_t)p->length - 1 : p->data_bytes;
+    for (size_t i = 0; i < n; i++)
+        if (!is_motion_register(p->address + (unsigned)i))
+            return REFUSED;
+    return MOVES;
+}
+
+static void note_torque(plan *p, const frame *f)
+{
+    const grobo_driver *driver = grobo_gr001_driver(p->r->wiring);
+    grobo_target target = {0};
+    grobo_joint_mask torqued[GROBO_TORQUE_BRAKE + 1] = {0};
+    grobo_posture_init(&target.posture, driver->model->n_joints);
+    if (driver->inspect(driver, NULL, f->bytes, f->size, &target, torqued) >= 0)
+        p->torqued |= torqued[GROBO_TORQUE_ON];
+}
+
+static void judge_frame(void *ctx, const frame *f)
+{
+    static char text[WORDS_BYTES];
+    replay *r = ctx;
+    plan *p = r->ctx;
+    if (p->status || f->kind == FRAME_CUT || f->kind == FRAME_RUBBISH)
+        return;
+    switch (judge(f)) {
+    case HARMLESS:
+        return;
+    case MOVES:
+        p->moves++;
+        note_torque(p, f);
+        return;
+    case REFUSED:
+        words_say(f, false, "", text, sizeof text);
+        text[strcspn(text, "\n")] = '\0';
+        p->status =
+            app_fail(r->a, EXIT_SAFETY, "REFUSED", "replay: at %.3f ms: not to a real robot: %s",
+                     (double)f->time_us / 1e3, text);
+    }
+}
+
+static int judge_chunk(void *ctx, const pcapng_chunk *chunk)
+{
+    plan *p = ctx;
+    if (chunk->direction == PCAPNG_OUT)
+        frames_feed(&p->r->host, chunk->time_us - p->r->first_us, chunk->bytes, chunk->size);
+    return p->status;
+}
+
+static int ask(const plan *p)
+{
+    app *a = p->r->a;
+    char answer[8] = "";
+    if (p->moves == 0 || app_global(a, GLOBAL_YES)->given)
+        return 0;
+    if (!a->tty_err || !a->tty_in)
+        return app_fail(a, EXIT_SAFETY, "REFUSED",
+                        "replay: %llu frames move joints of a real robot; say --yes if it may",
+                        (unsigned long long)p->moves);
+    output_complain("%llu frames move joints of the robot at %s. Send them? [y/N] ",
+                    (unsigned long long)p->moves, app_global(a, GLOBAL_DEVICE)->text);
+    if (!fgets(answer, sizeof answer, stdin) || (answer[0] != 'y' && answer[0] != 'Y'))
+        return app_fail(a, EXIT_SAFETY, "REFUSED", "replay: nothing was sent");
+    return 0;
+}
+
+/* ---- sending ------------------------------------------------------------------------------- */
+
+static void on_bytes(conn *c, grobo_direction direction, int64_t now_us, const uint8_t *bytes,
+                     size_t size)
+{
+    plan *p = c->ctx;
+    if (direction == GROBO_DIR_RX)
+        replay_answer(p->r, REPLAY_REPLAYED, now_us - p->start_us, bytes, size);
+}
+
+/* What a robot may do to a frame that the comparison will tell; everything else ends it. */
+static bool is_reply_trouble(int error)
+{
+    return error == GROBO_ERR_TIMEOUT || error == GROBO_ERR_SHORT || error == GROBO_ERR_CHECKSUM ||
+           error == GROBO_ERR_MISMATCH || error == GROBO_ERR_NACK;
+}
+
+static void send_frame(void *ctx, const frame *f)
+{
+    replay *r = ctx;
+    plan *p = r->ctx;
+    char doing[48];
+    int error;
+    if (p->status || f->kind == FRAME_CUT || f->kind == FRAME_RUBBISH)
+        return;
+    replay_ask(r, f);
+    error = conn_sleep_until(&p->c, p->start_us + f->time_us);
+    if (!error)
+        error = conn_wait(&p->c, grobo_session_raw(p->c.session, f->bytes, f->size));
+    if (error && !is_reply_trouble(error)) {
+        snprintf(doing, sizeof doing, "replay: the frame at %.3f ms", (double)f->time_us / 1e3);
+        p->status = conn_fail(&p->c, error, doing);
+    }
+}
+
+static int send_chunk(void *ctx, const pcapng_chunk *chunk)
+{
+    plan *p = ctx;
+    int64_t at_us = chunk->time_us - p->r->first_us;
+    if (chunk->direction == PCAPNG_OUT)
+        frames_feed(&p->r->host, at_us, chunk->bytes, chunk->size);
+    else if (chunk->direction == PCAPNG_IN)
+        replay_answer(p->r, REPLAY_RECORDED, at_us, chunk->bytes, chunk->size);
+    return p->status;
+}
+
+/*
+ * The gate wants to know where the joints are, and torque to have come on safely. Then every
+ * frame is sent once, and late replies to what was asked so far are let go by. From then on the
+ * joints are not watched: replies to other questions would be compared with those of the trace.
+ */
+static int prepare(plan *p)
+{
+    grobo_joint_mask all = GROBO_JOINTS_ALL(grobo_robot_driver(p->c.robot)->model->n_joints);
+    grobo_robot_config config = conn_robot_config(p->r->a);
+    int error = 0;
+    if (p->moves)
+        error = conn_wait(&p->c, grobo_session_sense(p->c.session, all, GROBO_SENSE_FULL));
+    if (!error && p->torqued)
+        error = conn_wait(&p->c, grobo_session_torque(p->c.session, p->torqued, GROBO_TORQUE_ON));
+    config.retries = -1;
+    if (!error)
+        error = grobo_robot_configure(p->c.robot, &config);
+    if (!error)
+        error = conn_sleep_until(&p->c, grobo_now_us() + GROBO_BUS_HOLD_US);
+    return error ? conn_fail(&p->c, error, "replay") : 0;
+}
+
+static int send_all(plan *p)
+{
+    grobo_robot_config config;
+    int status = p->moves ? conn_open_to_move(&p->c, p->r->a) : conn_open(&p->c, p->r->a);
+    p->c.ctx = p;
+    p->c.moving = p->moves > 0;
+    if (!status)
+        status = prepare(p);
+    if (!status) {
+        replay_begin(p->r, send_frame);
+        p->start_us = grobo_now_us();
+        p->c.on_bytes = on_bytes;
+        status = replay_read(p->r, send_chunk, p);
+        if (!status) {
+            frames_end(&p->r->host);
+            status = p->status;
+        }
+        p->c.on_bytes = NULL; /* the exit policy is no part of it, and may try again */
+        config = conn_robot_config(p->r->a);
+        grobo_robot_configure(p->c.robot, &config);
+    }
+    return conn_close(&p->c, status);
+}
+
+int replay_to_robot(replay *r)
+{
+    static plan p;
+    int status;
+    p.r = r;
+    r->ctx = &p;
+    replay_begin(r, judge_frame);
+    status = replay_read(r, judge_chunk, &p);
+    if (!status) {
+        frames_end(&r->host);
+        status = p.status;
+    }
+    if (!status)
+        status = ask(&p);
+    return status ? status : send_all(&p);
+}

@@ -1,0 +1,66 @@
+/* SPDX-License-Identifier: MIT */
+#include <stdarg.h>
+
+#include "tools/grctl/cli/output.h"
+#include "tools/grctl/doctor/checkup.h"
+
+void checkup_start(checkup *k, app *a)
+{
+    *k = (checkup){.a = a, .checks = a->json ? json_array() : NULL};
+}
+
+static void note_down(checkup *k, const char *name, bool ok, const char *message, const char *fix)
+{
+    k->n++;
+    k->failed += !ok;
+    if (k->checks)
+        json_array_append_new(k->checks, json_pack("{s:s,s:b,s:o,s:o}", "name", name, "ok", (int)ok,
+                                                   "message", app_json_text(message), "fix",
+                                                   fix ? app_json_text(fix) : json_null()));
+}
+
+static void print(const checkup *k, const char *color, const char *verdict, const char *name,
+                  const char *message)
+{
+    app_print("%s%-4s%s  %-10s  %s\n", k->a->color_out ? color : "", verdict,
+              k->a->color_out ? "\033[0m" : "", name, message);
+}
+
+void checkup_good(checkup *k, bool minor, const char *name, const char *format, ...)
+{
+    char message[APP_LINE_BYTES];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(message, sizeof message, format, list);
+    va_end(list);
+    note_down(k, name, true, message, NULL);
+    if (!k->checks && (!minor || k->a->verbosity > 0))
+        print(k, "\033[32m", "ok", name, message);
+    output_flush();
+}
+
+void checkup_bad(checkup *k, const char *name, const char *fix, const char *format, ...)
+{
+    char message[APP_LINE_BYTES];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(message, sizeof message, format, list);
+    va_end(list);
+    note_down(k, name, false, message, fix);
+    if (!k->checks) {
+        print(k, "\033[1;31m", "BAD", name, message);
+        app_print("      %-10s  -> %s\n", "", fix);
+    }
+    output_flush();
+}
+
+int checkup_end(checkup *k)
+{
+    if (k->checks)
+        app_print_json(json_pack("{s:b,s:o}", "ok", k->failed == 0, "checks", k->checks));
+    else if (k->failed)
+        app_note(k->a, "%d of %d check%s failed", k->failed, k->n, k->n == 1 ? "" : "s");
+    else
+        app_note(k->a, "all %d checks passed", k->n);
+    return k->failed ? EXIT_ROBOT : EXIT_DONE;
+}

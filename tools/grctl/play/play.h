@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: MIT */
+/* What is to be played: the files of a command line, checked and made into clips. */
+#ifndef GRCTL_PLAY_H
+#define GRCTL_PLAY_H
+
+#include <grobo/motion_io.h>
+#include <grobo/sequencer.h>
+
+#include "tools/grctl/body/options.h"
+
+enum { PLAY_FILES_MAX = 1 + GROBO_QUEUE_MAX };
+
+typedef struct playlist {
+    int n;
+    const char *path[PLAY_FILES_MAX];
+    grobo_motion *motion[PLAY_FILES_MAX];
+    grobo_body *body[PLAY_FILES_MAX]; /* where legs are solved, else NULL */
+    grobo_clip view[PLAY_FILES_MAX];  /* of the motion or the body */
+    grobo_clip clip[PLAY_FILES_MAX];  /* the same within the slack of limits: what is played */
+    grobo_play_options options[PLAY_FILES_MAX];
+} playlist;
+
+/* Options of `play`, in the order of its table. */
+enum {
+    PLAY_REPEAT,
+    PLAY_REVERSE,
+    PLAY_MIRROR,
+    PLAY_SPEED,
+    PLAY_FROM,
+    PLAY_RATE,
+    PLAY_KEY,
+    PLAY_CLAMP,
+    PLAY_UNWATCHED,
+    PLAY_FORCE,
+    PLAY_DRY_RUN,
+    PLAY_TABLE,
+    PLAY_BODY,
+    PLAY_OPTIONS = PLAY_BODY + BODY_OPTIONS
+};
+
+/*
+ * Reads and checks every file of the command line: whatever is wrong is said before anything
+ * moves. Returns 0 or the exit status. playlist_free() in either case.
+ */
+int playlist_load(playlist *list, app *a);
+
+/* Makes the clips; start: the sensed posture, what increments count from. 0 or the exit status. */
+int playlist_prepare(playlist *list, app *a, const grobo_posture *start);
+
+void playlist_free(playlist *list);
+
+/* Prints "time_ms hex" a frame; touches no port. Returns the exit status. */
+int play_dry_run(playlist *list, app *a);
+
+#endif

@@ -1,0 +1,253 @@
+/* SPDX-License-Identifier: MIT */
+#include <string.h>
+
+#include "tools/grctl/body/check.h"
+#include "tools/grctl/cli/config.h"
+#include "tools/grctl/cli/file.h"
+#include "tools/grctl/conn/conn.h"
+#include "tools/grctl/conn/wire.h"
+#include "tools/grctl/play/play.h"
+
+/* Legs given by ikLinks are no matter for a warning where they are solved. */
+static void say_warnings(const app *a, const grobo_diagnostics *found, bool legs_solved)
+{
+    grobo_diagnostic d;
+    for (size_t k = 0; grobo_diagnostics_get(found, k, &d) == 0; k++)
+        if (!legs_solved || strcmp(d.code, "legs-by-ik") != 0)
+            file_say_one(a, &d);
+}
+
+/* An angle outside its joint's limits: --clamp takes it to the limit. */
+static bool is_limit(const grobo_diagnostic *d)
+{
+    return strcmp(d->code, "limit") == 0 || strcmp(d->code, "limit-between") == 0;
+}
+
+/* The first error that would be refused in play; false: there is none. */
+static bool find_refused(const app *a, const grobo_diagnostics *found, grobo_diagnostic *d)
+{
+    for (size_t k = 0; grobo_diagnostics_get(found, k, d) == 0; k++)
+        if (d->severity == GROBO_SEVERITY_ERROR && !(a->clamps && is_limit(d)))
+            return true;
+    return false;
+}
+
+static int fail(app *a, const char *path, int error)
+{
+    return app_fail(a, EXIT_FILE, grobo_error_name(error), "%s: %s", path, grobo_error_text(error));
+}
+
+/* Says the first thing that would be refused in play, with its place in the file. */
+static int check_one(app *a, const playlist *list, int i, grobo_slack_taken *slack,
+                     grobo_diagnostics *found)
+{
+    uint16_t speed_pct = list->options[i].speed_pct; /* beyond 100 % moves may be stretched */
+    grobo_check_options how = {
+        .name = list->path[i], .speed_pct = speed_pct < 100 ? speed_pct : 100, .slack = slack};
+    grobo_diagnostic d;
+    char text[1024];
+    int error = grobo_motion_check(list->motion[i], &grobo_gr001_model, &how, found);
+    if (error < 0)
+        return fail(a, list->path[i], error);
+    if (!find_refused(a, found, &d))
+        return list->body[i] ? body_refuse(a, list->path[i], list->body[i], slack) : 0;
+    file_format(&d, false, text, sizeof text);
+    return app_fail(a, EXIT_SAFETY, d.code, "%s; %s", text,
+                    is_limit(&d) ? "--clamp plays it at the limit"
+                                 : "a lower --speed gives it time");
+}
+
+/* One warning of angles that are played at a limit, one where the robot would fall. */
+static int add_warnings(app *a, const playlist *list, int i, grobo_slack_taken *slack,
+                        grobo_diagnostics *found)
+{
+    check_whole_how how = {.path = list->path[i],
+                           .what = CHECK_FALL,
+                           .speed_pct = list->options[i].speed_pct,
+                           .slack = slack};
+    grobo_body_options body;
+    int error = body_options_read(a, PLAY_BODY, 0, &body);
+    if (error)
+        return error;
+    check_report_slack(list->path[i], slack, found);
+    if (app_option(a, PLAY_FORCE)->given || !config_warns_of_falls(a))
+        return 0;
+    error = check_whole(list->motion[i], &body, &how, found);
+    return error < 0 ? fail(a, list->path[i], error) : 0;
+}
+
+/* What the robot would refuse is refused before anything is opened. */
+static int find_rate(app *a, grobo_budget *line)
+{
+    grobo_wiring wiring = (grobo_wiring)app_global(a, GLOBAL_WIRING)->choice;
+    double rate_hz = app_number(a, PLAY_RATE, 0);
+    int error = wire_budget(grobo_gr001_driver(wiring), (int)conn_baud(a), line);
+    if (error < 0)
+        return app_fail(a, EXIT_USAGE, grobo_error_name(error), "play: %s",
+                        grobo_error_text(error));
+    if (rate_hz > line->watched_hz && !app_option(a, PLAY_UNWATCHED)->given)
+        return app_fail(a, EXIT_SAFETY, grobo_error_name(GROBO_ERR_UNWATCHED),
+                        "play: %.0f frames a second leave no time to read the joints (at most %d); "
+                        "--unwatched plays them all the same",
+                        rate_hz, line->watched_hz);
+    return 0;
+}
+
+static void set_options(grobo_play_options *o, const app *a, grobo_motion_kind kind)
+{
+    bool keyed = kind == GROBO_MOTION_POSTURES || kind == GROBO_MOTION_STEPS;
+    if (app_option(a, PLAY_KEY)->given)
+        keyed = true;
+    if (app_option(a, PLAY_RATE)->given)
+        keyed = false;
+    o->mode = keyed ? GROBO_PLAY_KEY : GROBO_PLAY_RATE;
+    o->rate_hz = (uint16_t)app_number(a, PLAY_RATE, 0);
+    o->unwatched = app_option(a, PLAY_UNWATCHED)->given > 0;
+    o->reverse = app_option(a, PLAY_REVERSE)->given > 0;
+    o->mirror = app_option(a, PLAY_MIRROR)->given > 0;
+    o->repeat = (int32_t)app_number(a, PLAY_REPEAT, 1);
+    o->speed_pct = (uint16_t)app_number(a, PLAY_SPEED, 100);
+}
+
+/* First what has a place in the file, then what only shows when the legs are solved. */
+static int solve_and_check(app *a, playlist *list, int i, const grobo_budget *line)
+{
+    double rate_hz = list->options[i].rate_hz > 0 ? list->options[i].rate_hz : line->default_hz;
+    grobo_slack_taken slack = {.n = 0};
+    grobo_diagnostics *found = NULL;
+    int status = body_make(a, PLAY_BODY, list->path[i], list->motion[i], rate_hz, &list->body[i]);
+    int error = status ? 0 : grobo_diagnostics_new(&found, NULL);
+    if (error)
+        return fail(a, list->path[i], error);
+    if (!status)
+        status = check_one(a, list, i, &slack, found);
+    if (!status)
+        status = add_warnings(a, list, i, &slack, found);
+    if (!status)
+        say_warnings(a, found, list->body[i] != NULL);
+    grobo_diagnostics_free(found);
+    return status;
+}
+
+/* A file has the joints that it lists, the robot all: the others are not set. */
+static void widen(grobo_motion *motion)
+{
+    if (grobo_motion_joints(motion) < grobo_gr001_model.n_joints)
+        (void)grobo_motion_set_joints(motion, grobo_gr001_model.n_joints);
+}
+
+int playlist_load(playlist *list, app *a)
+{
+    grobo_budget line;
+    int status;
+    memset(list, 0, sizeof *list);
+    if (app_option(a, PLAY_RATE)->given && app_option(a, PLAY_KEY)->given)
+        return app_fail(a, EXIT_USAGE, "USAGE", "play: --rate and --key exclude each other");
+    if (a->line.n_arguments > PLAY_FILES_MAX)
+        return app_fail(a, EXIT_USAGE, "USAGE", "play: more than %d files", PLAY_FILES_MAX);
+    status = find_rate(a, &line);
+    if (status)
+        return status;
+    for (int i = 0; i < a->line.n_arguments; i++) {
+        grobo_read_options read = {.model = &grobo_gr001_model, .keep_positions = true};
+        list->path[i] = a->line.argument[i];
+        status = file_load(a, list->path[i], &read, &list->motion[i]);
+        if (status)
+            return status;
+        list->n = i + 1;
+        status = file_fits(a, list->path[i], list->motion[i]);
+        if (status)
+            return status;
+        widen(list->motion[i]);
+        if (grobo_motion_size(list->motion[i]) == 0)
+            return app_fail(a, EXIT_FILE, "EMPTY", "%s: has no postures", list->path[i]);
+        set_options(&list->options[i], a, grobo_motion_get_kind(list->motion[i]));
+        status = solve_and_check(a, list, i, &line);
+        if (status)
+            return status;
+    }
+    list->options[0].from_us = (int64_t)(app_number(a, PLAY_FROM, 0) * 1000);
+    return 0;
+}
+
+/* Files behind the first may move other joints. */
+static grobo_joint_mask joints_behind(const playlist *list)
+{
+    grobo_joint_mask joints = 0;
+    grobo_posture posture;
+    int64_t at_us;
+    for (int i = 1; i < list->n; i++) {
+        if (list->options[i].mirror)
+            return GROBO_JOINTS_ALL(grobo_gr001_model.n_joints);
+        for (size_t k = 0; k < list->clip[i].n_keys; k++)
+            if (list->clip[i].key(list->clip[i].ctx, k, &posture, &at_us) >= 0)
+                joints |= posture.set;
+    }
+    return joints;
+}
+
+/* ---- within the slack of limits ------------------------------------------------------------- */
+
+static int within_slack(int error, grobo_posture *posture)
+{
+    const grobo_model *model = &grobo_gr001_model;
+    for (int j = 0; error >= 0 && j < posture->n_joints && j < model->n_joints; j++)
+        if (posture->set & GROBO_JOINT_BIT(j))
+            posture->angle_rad[j] = grobo_model_take_slack(model, j, posture->angle_rad[j]);
+    return error;
+}
+
+static int slack_key(void *ctx, size_t i, grobo_posture *posture, int64_t *at_us)
+{
+    const grobo_clip *view = ctx;
+    return within_slack(view->key(view->ctx, i, posture, at_us), posture);
+}
+
+static int slack_sample(void *ctx, int64_t t_us, grobo_posture *posture)
+{
+    const grobo_clip *view = ctx;
+    return within_slack(view->sample(view->ctx, t_us, posture), posture);
+}
+
+/* Increments are no angles: they are played as they are. */
+static void play_within_slack(grobo_clip *view, grobo_clip *clip)
+{
+    *clip = *view;
+    if (view->relative)
+        return;
+    clip->key = slack_key;
+    clip->sample = view->sample ? slack_sample : NULL;
+    clip->ctx = view;
+}
+
+int playlist_prepare(playlist *list, app *a, const grobo_posture *start)
+{
+    grobo_clip_options how = {.start = start};
+    for (int i = 0; i < list->n; i++) {
+        int error = 0;
+        if (list->body[i])
+            grobo_body_clip(list->body[i], true, &list->view[i]);
+        else
+            error = grobo_motion_clip(list->motion[i], i == 0 ? &how : NULL, &list->view[i]);
+        if (error)
+            return fail(a, list->path[i], error);
+        play_within_slack(&list->view[i], &list->clip[i]);
+        if (list->options[i].from_us > list->clip[i].length_us)
+            return app_fail(a, EXIT_USAGE, "USAGE",
+                            "play: --from is beyond the end of %s (%.0f ms)", list->path[i],
+                            (double)list->clip[i].length_us / 1e3);
+    }
+    list->options[0].also = joints_behind(list);
+    return 0;
+}
+
+void playlist_free(playlist *list)
+{
+    for (int i = 0; i < list->n; i++) {
+        if (list->view[i].key && !list->body[i])
+            grobo_motion_clip_free(&list->view[i]);
+        grobo_body_free(list->body[i]);
+        grobo_motion_free(list->motion[i]);
+    }
+    list->n = 0;
+}

@@ -1,0 +1,416 @@
+/* SPDX-License-Identifier: MIT */
+/* What the original programs' letters and words mean, and the record that they fill. */
+#include <stdlib.h>
+#include <string.h>
+
+#include <grobo/port.h>
+
+#include "tools/grctl/cli/config.h"
+#include "tools/grctl/cli/file.h"
+#include "tools/grctl/cli/joints.h"
+#include "tools/grctl/shell/shell.h"
+
+enum { CAPTURE_MS = 100, LONGEST_MS = 3600000, KNOWN_US = 2000000 };
+
+static int usage(shell *s, const char *format, const char *what)
+{
+    return app_fail(&s->one, EXIT_USAGE, "USAGE", format, what);
+}
+
+/* A time of 1 ms to an hour. */
+static bool take_ms(const char *text, double *ms)
+{
+    double number;
+    if (!cli_read_number(text, &number) || number < 1 || number > LONGEST_MS)
+        return false;
+    *ms = number;
+    return true;
+}
+
+static int run_text(shell *s, int n, const char *const *words)
+{
+    char *list[SHELL_WORDS_MAX];
+    for (int i = 0; i < n; i++)
+        list[i] = (char *)words[i];
+    return shell_run(s, n, list);
+}
+
+/* ---- the record ----------------------------------------------------------------------------- */
+
+static int keep(shell *s, int error)
+{
+    return error < 0 ? app_fail(&s->one, EXIT_ROBOT, grobo_error_name(error), "record: %s",
+                                grobo_error_text(error))
+                     : 0;
+}
+
+/* An empty record where there is none. */
+static int need_record(shell *s)
+{
+    if (s->record)
+        return 0;
+    return keep(
+        s, grobo_motion_new(&s->record, GROBO_MOTION_POSTURES, grobo_gr001_model.n_joints, NULL));
+}
+
+/* Those that a hand may move: in free mode the others hold, and are read each second anyway. */
+static grobo_joint_mask joints_that_move(conn *c, const shell *s)
+{
+    grobo_posture known;
+    int n = grobo_robot_posture(c->robot, grobo_now_us(), KNOWN_US, &known);
+    return s->link.free_joints && n == known.n_joints ? s->link.free_joints
+                                                      : GROBO_JOINTS_ALL(known.n_joints);
+}
+
+/* Reads the posture and appends it. */
+static int push(conn *c, shell *s, double ms)
+{
+    grobo_posture posture;
+    int error =
+        conn_wait(c, grobo_session_sense(c->session, joints_that_move(c, s), GROBO_SENSE_FULL));
+    int status = error ? conn_fail(c, error, "record") : need_record(s);
+    if (status)
+        return status;
+    grobo_robot_posture(c->robot, grobo_now_us(), GROBO_NEVER_US, &posture);
+    grobo_posture_set_time_ms(&posture, ms);
+    return keep(s, grobo_motion_append(s->record, &posture));
+}
+
+static void tell_size(shell *s)
+{
+    size_t n = s->record ? grobo_motion_size(s->record) : 0;
+    if (s->one.json)
+        app_print_json(json_pack("{s:I}", "postures", (json_int_t)n));
+    else
+        app_note(&s->one, "%zu posture%s in the record", n, n == 1 ? "" : "s");
+}
+
+static int do_push(shell *s, int n, char **words)
+{
+    conn c;
+    double ms = s->time_ms;
+    int status;
+    if (n > 1 && !take_ms(words[1], &ms))
+        return usage(s, "'%s' is not a time of 1 to 3600000 ms", words[1]);
+    status = conn_open(&c, &s->one);
+    if (!status)
+        status = push(&c, s, ms);
+    if (!status)
+        tell_size(s);
+    return conn_close(&c, status);
+}
+
+static int do_clear(shell *s, int n, char **words)
+{
+    (void)n;
+    (void)words;
+    grobo_motion_free(s->record);
+    s->record = NULL;
+    tell_size(s);
+    return EXIT_DONE;
+}
+
+/* Reads a motion by its file or its name, with the extensions that the library tries. */
+static int read_motion(shell *s, const char *name, grobo_motion **motion)
+{
+    char path[GROBO_PATH_MAX_BYTES];
+    grobo_read_options read = {.model = &grobo_gr001_model};
+    if (grobo_motion_find(grobo_files_os(), ".", name, path, sizeof path) == 0 ||
+        grobo_motion_find(grobo_files_os(), "motions", name, path, sizeof path) == 0)
+        return file_load(&s->one, path, &read, motion);
+    return file_load(&s->one, name, &read, motion);
+}
+
+static int do_load(shell *s, int n, char **words)
+{
+    grobo_motion *motion = NULL;
+    int status;
+    if (n != 2)
+        return usage(s, "%s needs NAME", words[0]);
+    status = read_motion(s, words[1], &motion);
+    if (status)
+        return status;
+    grobo_motion_free(s->record);
+    s->record = motion;
+    tell_size(s);
+    return EXIT_DONE;
+}
+
+static int do_append(shell *s, int n, char **words)
+{
+    grobo_motion *motion = NULL;
+    double ms;
+    int status;
+    if (n < 2 || take_ms(words[1], &ms))
+        return do_push(s, n, words);
+    if (!s->record)
+        return do_load(s, n, words);
+    status = read_motion(s, words[1], &motion);
+    if (!status)
+        status = keep(s, grobo_motion_append_motion(s->record, motion));
+    grobo_motion_free(motion);
+    if (!status)
+        tell_size(s);
+    return status;
+}
+
+static int do_play(shell *s, int n, char **words)
+{
+    const char *line[SHELL_WORDS_MAX] = {"play", "@record"};
+    int at = 2;
+    if (s->reverse)
+        line[at++] = "--reverse";
+    for (int i = 1; i < n && at < SHELL_WORDS_MAX; i++)
+        line[at++] = words[i];
+    return run_text(s, at, line);
+}
+
+static int do_reverse(shell *s, int n, char **words)
+{
+    (void)n;
+    (void)words;
+    s->reverse = !s->reverse;
+    if (s->one.json)
+        app_print_json(json_pack("{s:b}", "reverse", s->reverse));
+    else
+        app_note(&s->one, "the record plays %s", s->reverse ? "backwards" : "forwards");
+    return EXIT_DONE;
+}
+
+static int do_save(shell *s, int n, char **words)
+{
+    char path[GROBO_PATH_MAX_BYTES];
+    grobo_write_options write = {.model = &grobo_gr001_model};
+    const char *line[] = {"convert", "@record", n > 1 ? words[1] : ""};
+    int error;
+    if (n > 1)
+        return run_text(s, 3, line);
+    if (!s->record)
+        return usage(s, "%s: the record is empty", words[0]);
+    error = grobo_motion_save_next(s->record, grobo_files_os(), ".", &write, path, sizeof path);
+    if (error < 0)
+        return app_fail(&s->one, EXIT_FILE, grobo_error_name(error), "%s: %s", words[0],
+                        grobo_error_text(error));
+    if (s->one.json)
+        app_print_json(json_pack("{s:o}", "output", app_json_text(path)));
+    else
+        app_note(&s->one, "saved as %s", path);
+    return EXIT_DONE;
+}
+
+/* ---- free mode ------------------------------------------------------------------------------ */
+
+static int do_free(shell *s, int n, char **words)
+{
+    conn c;
+    grobo_joint_mask joints = 0;
+    int status = 0, error;
+    for (int i = 1; i < n && !status; i++)
+        status = joints_parse(&s->one, words[i], &joints);
+    if (status)
+        return status;
+    if (!joints)
+        joints = GROBO_JOINTS_ALL(grobo_gr001_model.n_joints);
+    status = conn_open_to_move(&c, &s->one);
+    if (!status) {
+        error = grobo_session_free_mode(c.session, joints, true);
+        status = error < 0 ? conn_fail(&c, error, "free") : 0;
+        s->link.free_joints |= status ? 0 : joints;
+    }
+    if (!status)
+        app_note(&s->one, "free: move the joints by hand; 'End' makes them hold");
+    return conn_close(&c, status);
+}
+
+static int do_end(shell *s, int n, char **words)
+{
+    const char *line[] = {"stop"};
+    conn c;
+    int status, error;
+    (void)n;
+    (void)words;
+    if (!s->link.free_joints)
+        return run_text(s, 1, line);
+    status = conn_open(&c, &s->one);
+    if (!status) {
+        error = conn_wait(&c, grobo_session_free_mode(c.session, s->link.free_joints, false));
+        status = error < 0 ? conn_fail(&c, error, "end") : 0;
+        s->link.free_joints = 0;
+    }
+    return conn_close(&c, status);
+}
+
+/* Captures every so often, for a time or until Ctrl-C, which is no failure here. */
+static int capture(conn *c, shell *s, double every_ms, double for_ms)
+{
+    int64_t begin_us = grobo_now_us(), next_us = begin_us;
+    int status = 0;
+    while (!status && !c->signal && (double)(next_us - begin_us) <= for_ms * 1000) {
+        status = push(c, s, every_ms);
+        next_us += (int64_t)(every_ms * 1000);
+        if (!status && conn_sleep_until(c, next_us) != GROBO_OK && c->link_error)
+            status = conn_fail(c, c->link_error, "record");
+    }
+    if (c->signal == os_endings[OS_INTERRUPT]) {
+        c->signal = 0;
+        status = EXIT_DONE;
+    }
+    tell_size(s);
+    return status;
+}
+
+static int do_rec(shell *s, int n, char **words)
+{
+    conn c;
+    double every_ms = CAPTURE_MS, for_ms = LONGEST_MS;
+    int status;
+    if ((n > 1 && !take_ms(words[1], &for_ms)) || (n > 2 && !take_ms(words[2], &every_ms)))
+        return usage(s, "'%s' is not a time of 1 to 3600000 ms",
+                     n > 2 && take_ms(words[1], &for_ms) ? words[2] : words[1]);
+    status = conn_open(&c, &s->one);
+    if (!status)
+        status = capture(&c, s, every_ms, for_ms);
+    return conn_close(&c, status);
+}
+
+/* ---- the rest ------------------------------------------------------------------------------- */
+
+static int do_quit(shell *s, int n, char **words)
+{
+    (void)n;
+    (void)words;
+    s->over = true;
+    return EXIT_DONE;
+}
+
+static int do_time(shell *s, int n, char **words)
+{
+    if (n > 1 && !take_ms(words[1], &s->time_ms))
+        return usage(s, "'%s' is not a time of 1 to 3600000 ms", words[1]);
+    if (s->one.json)
+        app_print_json(json_pack("{s:f}", "time_ms", s->time_ms));
+    else
+        app_note(&s->one, "postures and moves take %g ms", s->time_ms);
+    return EXIT_DONE;
+}
+
+static int do_move(shell *s, int n, char **words)
+{
+    char ms[32];
+    const char *line[] = {"move", n > 1 ? words[1] : "", n > 2 ? words[2] : "", ms};
+    if (n < 3 || n > 4)
+        return usage(s, "%s needs JOINT DEG [MS]", words[0]);
+    snprintf(ms, sizeof ms, "%g", s->time_ms);
+    if (n == 4)
+        line[3] = words[3];
+    return run_text(s, 4, line);
+}
+
+static int do_wait(shell *s, int n, char **words)
+{
+    conn c;
+    double ms;
+    int status, error;
+    if (n != 2 || !take_ms(words[1], &ms))
+        return usage(s, "%s needs a time of 1 to 3600000 ms", words[0]);
+    status = conn_open(&c, &s->one);
+    if (!status) {
+        error = conn_sleep_until(&c, grobo_now_us() + (int64_t)(ms * 1000));
+        status = error ? conn_fail(&c, error, "wait") : EXIT_DONE;
+    }
+    return conn_close(&c, status);
+}
+
+static int do_close(shell *s, int n, char **words)
+{
+    (void)n;
+    (void)words;
+    s->link.free_joints = 0;
+    return conn_link_close(&s->link, s->a, EXIT_DONE);
+}
+
+static int do_connect(shell *s, int n, char **words)
+{
+    conn c;
+    int status = do_close(s, 1, words);
+    if (status || n > 2)
+        return n > 2 ? usage(s, "'%s' is one argument too many", words[2]) : status;
+    if (n == 2 && (size_t)snprintf(s->device, sizeof s->device, "%s", words[1]) >= sizeof s->device)
+        return usage(s, "%s: the name is too long", words[1]);
+    if (n == 2) {
+        s->a->line.global[GLOBAL_DEVICE] = (cli_value){.given = 1, .text = s->device};
+        s->a->robot = NULL;
+        status = config_apply(s->a);
+    }
+    if (status)
+        return status;
+    s->one.line.global[GLOBAL_DEVICE].given = 0;
+    shell_inherit(s);
+    status = conn_open(&c, &s->one);
+    if (!status)
+        app_note(&s->one, "connected: %s", conn_device(&c));
+    return conn_close(&c, status);
+}
+
+/* letter, word, arguments, meaning, command or NULL, function or NULL */
+#define SHELL_WORDS(X)                                                                             \
+    X("q", "quit", "", "end the shell; so does Ctrl-D", NULL, do_quit)                             \
+    X("", "exit", "", "the same", NULL, do_quit)                                                   \
+    X("i", "Init", "[--time MS]", "go to the initial posture", "init", NULL)                       \
+    X("S", "On", "[JOINT|GROUP]...", "torque on", "servo on", NULL)                                \
+    X("s", "Off", "[JOINT|GROUP]...", "torque off: hold the robot", "servo off", NULL)             \
+    X("b", "Break", "[JOINT|GROUP]...", "brake", "servo brake", NULL)                              \
+    X("f", "Free", "[JOINT|GROUP]...", "free mode: joints follow the hand", NULL, do_free)         \
+    X("e", "End", "", "end free mode, or stop: joints hold", NULL, do_end)                         \
+    X("m", "", "JOINT DEG [MS]", "move one joint", NULL, do_move)                                  \
+    X("t", "", "[MS]", "time of moves and recorded postures (1000)", NULL, do_time)                \
+    X("p", "", "[JOINT|GROUP]...", "print the present posture", "status", NULL)                    \
+    X("C", "", "[JOINT|GROUP]...", "print currents and voltages", "status", NULL)                  \
+    X("r", "Push", "[MS]", "append the present posture to the record", NULL, do_push)              \
+    X("", "Rec", "[MS [EVERY]]", "append one every 100 ms, for a time or until Ctrl-C", NULL,      \
+      do_rec)                                                                                      \
+    X("c", "Clear", "", "empty the record", NULL, do_clear)                                        \
+    X("R", "DoRecord", "[OPTIONS]", "play the record, with the options of play", NULL, do_play)    \
+    X("", "Start", "[OPTIONS]", "the same", NULL, do_play)                                         \
+    X("", "Reverse", "", "from now on play the record the other way round", NULL, do_reverse)      \
+    X("", "PrintRecord", "", "print the record", "show @record", NULL)                             \
+    X("", "Save", "[FILE]", "save the record, without a name as MotionN.m", NULL, do_save)         \
+    X("l", "", "NAME", "load a motion into the record, by file or by name", NULL, do_load)         \
+    X("a", "", "[MS|NAME]", "append the present posture, or a motion, to the record", NULL,        \
+      do_append)                                                                                   \
+    X("", "connect", "[DEV]", "open the robot, or another one", NULL, do_connect)                  \
+    X("", "close", "", "close it; the next command opens it again", NULL, do_close)                \
+    X("", "wait", "MS", "let time pass", NULL, do_wait)
+
+#define ROW(letter, word, arguments, help, command, run)                                           \
+    {letter, word, arguments, help, command, run},
+static const shell_word table[] = {SHELL_WORDS(ROW)};
+
+#define PARAGRAPH(letter, word, arguments, help, command, run)                                     \
+    "  " letter " " word " " arguments "\n      " help "\n"
+const char shell_details[] =
+    "Runs commands, one a line, over one connection that stays open between them: those of grctl\n"
+    "without 'grctl', and the letters and words of the original programs below. Words are split\n"
+    "at blanks, quotes and backslashes keep them together, # begins a comment. Commands come from\n"
+    "a person, who gets history and completion (TAB), or from FILE or a pipe: then the first that\n"
+    "fails ends the shell with its exit status, and the message names the line. Ctrl-C stops the\n"
+    "command that runs; at the prompt it clears the line. What --on-exit asks for is carried out\n"
+    "once, at the end.\n\n"
+    "Between two commands an open robot is watched: a lost line, an alarm of a servo, and an\n"
+    "emergency stop by another grctl are told at once. They end a script like a command that\n"
+    "fails, though its next line has not come; a prompt stays.\n\n"
+    "The record is a motion that grows by hand; every command takes it as the file @record.\n"
+    "\n" SHELL_WORDS(PARAGRAPH);
+
+const shell_word *shell_word_row(size_t i)
+{
+    return i < sizeof table / sizeof table[0] ? &table[i] : NULL;
+}
+
+const shell_word *shell_word_find(const char *name)
+{
+    for (size_t i = 0; *name && i < sizeof table / sizeof table[0]; i++)
+        if (strcmp(table[i].letter, name) == 0 || strcmp(table[i].word, name) == 0)
+            return &table[i];
+    return NULL;
+}

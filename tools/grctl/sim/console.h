@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: MIT */
+/* What happens to a simulated robot while it runs, told by a person: `sim`'s standard input. */
+#ifndef GRCTL_SIM_CONSOLE_H
+#define GRCTL_SIM_CONSOLE_H
+
+#include <event2/event.h>
+
+#include <grobo/sim_server.h>
+
+#include "tools/grctl/cli/app.h"
+#include "tools/grctl/os/os.h"
+
+enum { SIM_CONSOLE_BYTES = 256 };
+
+typedef struct sim_console {
+    app *a;
+    struct event_base *base;
+    const grobo_model *model;        /* of all robots, borrowed */
+    grobo_sim_server *const *server; /* n of them, borrowed */
+    int n;
+    int robot; /* the one that commands are for, from 0 */
+    /* private */
+    os_input input;
+    char line[SIM_CONSOLE_BYTES];
+    size_t used;
+    bool too_long;
+    char *word[4]; /* of the command being carried out */
+    int n_words;
+} sim_console;
+
+/* The commands, for help. */
+#define SIM_CONSOLE_HELP                                                                           \
+    "  robot N                     the commands after this are for robot N\n"                      \
+    "  fault KIND=RATE,...         as --fault\n"                                                   \
+    "  silent SERVO on|off         it neither hears nor speaks, but holds\n"                       \
+    "  cable SERVO in|mute|out     out: no power, limp\n"                                          \
+    "  block SERVO on|off          its shaft is held fast\n"                                       \
+    "  turn SERVO DEG [MS]         a hand turns its shaft\n"                                       \
+    "  load SERVO MA               extra current, as of a weight\n"                                \
+    "  temperature SERVO C         of its case\n"                                                  \
+    "  id SERVO ID                 another id, perhaps somebody else's\n"                          \
+    "  voltage V                   of the battery\n"                                               \
+    "  plug in|out                 the host's cable\n"                                             \
+    "  look [SERVO]                what it does\n"                                                 \
+    "  quit\n"
+
+/*
+ * Listens for commands on standard input, if that is a pipe or a terminal that this process has in
+ * the foreground; its end ends nothing. The fields above `private` are the caller's to fill.
+ */
+void sim_console_start(sim_console *console);
+void sim_console_stop(sim_console *console);
+
+#endif

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: MIT */
+/* `sim --strict`: each offence of a client against the protocol, in a line of its own. */
+#ifndef GRCTL_SIM_STRICT_H
+#define GRCTL_SIM_STRICT_H
+
+#include <grobo/sim.h>
+
+#include "tools/grctl/cli/app.h"
+#include "tools/grctl/decode/frames.h"
+
+typedef struct sim_strict {
+    app *a; /* NULL: not strict */
+    int robot;
+    uint64_t offences;
+    /* private */
+    grobo_wiring wiring;
+    int64_t start_us, collision_us;
+    frames host;
+    uint8_t packet[GROBO_RS30X_PACKET_MAX_BYTES]; /* the last one on the servos' bus */
+    size_t n_packet;
+    bool told;                                  /* of that packet */
+    uint8_t last[GROBO_RS30X_PACKET_MAX_BYTES]; /* what the client wrote last */
+    size_t n_last;
+} sim_strict;
+
+void sim_strict_start(sim_strict *s, app *a, int robot, grobo_wiring wiring, int64_t now_us);
+/* What the client has written. */
+void sim_strict_bytes(sim_strict *s, int64_t now_us, const uint8_t *bytes, size_t n);
+/* What happened in the simulator. */
+void sim_strict_event(sim_strict *s, const grobo_sim_event *event);
+/* Nothing more comes: what is cut off is an offence too. */
+void sim_strict_end(sim_strict *s);
+
+#endif
