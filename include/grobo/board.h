@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /**
  * @file board.h
- * @brief Frames of GR001's controller board, and servo frames for either wiring.
+ * @brief Frames of GR001's controller board.
  *
  * The board sits between the host and the servo bus. It stores a relay frame and forwards the
  * packet inside it; the answer comes back as the servo sent it. Other frames are for the board
@@ -19,6 +19,12 @@ GROBO_BEGIN_DECLS
 
 /** Bytes before the packet in a relay frame. */
 #define GROBO_BOARD_HEADER_BYTES 2
+
+/** RS30x servos behind the board. */
+GROBO_API extern const grobo_protocol grobo_board_protocol;
+
+/** The protocol of RS30x servos over this wiring; NULL for an unknown one. */
+GROBO_API const grobo_protocol *grobo_wiring_protocol(grobo_wiring wiring);
 
 /** What a board frame is. */
 typedef enum grobo_board_kind {
@@ -124,47 +130,6 @@ GROBO_API int64_t grobo_board_parser_deadline(const grobo_board_parser *parser);
 
 /** Forgets what is buffered (it counts as dropped); counters stay. */
 GROBO_API void grobo_board_parser_reset(grobo_board_parser *parser);
-
-/* ---- frames for either wiring ------------------------------------------------------------------
- * The packet itself on a servo bus, the packet in its relay frame through the board. They return
- * the size or the error of the builder in rs30x.h. buf needs GROBO_FRAME_MAX_BYTES at most. */
-
-/**
- * What a frame is answered by, over this wiring: through the board a SEND is never answered.
- * @return bytes of the reply (0: none) or the errors of grobo_rs30x_reply_to; GROBO_ERR_FRAME too
- *         when an ASK wants another number of bytes than its packet will return
- */
-GROBO_API int grobo_frame_reply(grobo_wiring wiring, const uint8_t *frame, size_t n,
-                                grobo_reply *reply);
-
-/** Goal of one servo (14 bytes through the board). */
-GROBO_API int grobo_frame_goal(grobo_wiring wiring, const grobo_rs30x_goal *goal, uint8_t *buf,
-                               size_t cap);
-
-/** Goals of n servos in one frame (110 bytes through the board for 20; 23 fit at most). */
-GROBO_API int grobo_frame_goals(grobo_wiring wiring, const grobo_rs30x_goal *goals, size_t n,
-                                uint8_t *buf, size_t cap);
-
-/** Torque of one servo, or of all with id 255 (11 bytes through the board). */
-GROBO_API int grobo_frame_torque(grobo_wiring wiring, uint8_t id, grobo_torque torque, uint8_t *buf,
-                                 size_t cap);
-
-/** Torques (values of grobo_torque) of n servos in one frame (50 bytes for 20). */
-GROBO_API int grobo_frame_torques(grobo_wiring wiring, const grobo_rs30x_byte *torques, size_t n,
-                                  uint8_t *buf, size_t cap);
-
-/** First register of the state block that GR001's programs read: No.36-53. */
-#define GROBO_STATE_ADDRESS 36
-/** Registers of that block; its return packet has 26 bytes. */
-#define GROBO_STATE_BYTES 18
-
-/** Read of length registers from address (11 bytes through the board). */
-GROBO_API int grobo_frame_read(grobo_wiring wiring, uint8_t id, uint8_t address, uint8_t length,
-                               uint8_t *buf, size_t cap);
-
-/** Any command packet that is already built, for this wiring. packet may lie in buf. */
-GROBO_API int grobo_frame_wrap(grobo_wiring wiring, const uint8_t *packet, size_t n, uint8_t *buf,
-                               size_t cap);
 
 GROBO_END_DECLS
 

@@ -51,7 +51,8 @@
 #ifndef GROBO_BUS_H
 #define GROBO_BUS_H
 
-#include <grobo/board.h>
+#include <grobo/limits.h>
+#include <grobo/protocol.h>
 
 GROBO_BEGIN_DECLS
 
@@ -79,8 +80,7 @@ typedef struct grobo_txn grobo_txn;
  * @param reply  the return packet or ACK that ended it, valid during the call; NULL when there is
  *               none. GROBO_ERR_NACK comes with it: its flags say why.
  */
-typedef void (*grobo_txn_done)(void *ctx, grobo_txn *txn, int result,
-                               const grobo_rs30x_packet *reply);
+typedef void (*grobo_txn_done)(void *ctx, grobo_txn *txn, int result, const grobo_packet *reply);
 
 /**
  * An attempt is about to be given out. May write the frame anew: its bytes, `frame_bytes` (never
@@ -95,7 +95,7 @@ typedef int (*grobo_txn_leave)(void *ctx, grobo_txn *txn);
  */
 struct grobo_txn {
     const uint8_t *frame;    /**< borrowed: what is sent */
-    uint8_t frame_bytes;     /**< 1..GROBO_RS30X_PACKET_MAX_BYTES */
+    uint8_t frame_bytes;     /**< 1..GROBO_FRAME_MAX_BYTES */
     uint8_t retries;         /**< attempts after the first, 0 none */
     bool patient;            /**< the last attempt is given GROBO_BUS_MARGIN_MAX_US above the wire
                                   time, where neither timeout_us nor margin_us says otherwise. Not
@@ -114,18 +114,18 @@ struct grobo_txn {
     grobo_txn *next_;        /**< private */
 };
 
-/** The line's physics. Zero means default. */
+/** The line's physics. Zero means default, but for the protocol. */
 typedef struct grobo_bus_config {
-    grobo_wiring wiring;      /**< default: through the board */
-    uint32_t baud_bps;        /**< of the host's line; default 115200 */
-    uint32_t servo_baud_bps;  /**< of the bus behind the board; default 115200 */
-    uint32_t return_delay_us; /**< of the servos, GROBO_RS30X_DELAY_US(n); default 100 */
-    uint32_t margin_us;       /**< time given above the wire time, fixed; default: learnt, between
+    const grobo_protocol *protocol; /**< how the servos talk; borrowed */
+    uint32_t baud_bps;              /**< of the host's line; default 115200 */
+    uint32_t servo_baud_bps;        /**< of the bus behind the board; default 115200 */
+    uint32_t return_delay_us;       /**< of the servos; default: the protocol's */
+    uint32_t margin_us; /**< time given above the wire time, fixed; default: learnt, between
                                     GROBO_BUS_MARGIN_MIN_US and GROBO_BUS_MARGIN_MAX_US */
-    uint32_t quiet_us;        /**< silence after a failure; default GROBO_BUS_QUIET_US */
-    uint32_t hold_us;         /**< upper bound, see above; default GROBO_BUS_HOLD_US */
-    bool echo;                /**< the adapter returns what is sent: check and remove it */
-    bool overlap;             /**< the board takes a frame while it still forwards the one before;
+    uint32_t quiet_us;  /**< silence after a failure; default GROBO_BUS_QUIET_US */
+    uint32_t hold_us;   /**< upper bound, see above; default GROBO_BUS_HOLD_US */
+    bool echo;          /**< the adapter returns what is sent: check and remove it */
+    bool overlap;       /**< the board takes a frame while it still forwards the one before;
                                     nobody documented that, so by default it is not relied upon */
 } grobo_bus_config;
 
@@ -208,20 +208,22 @@ typedef struct grobo_bus {
     grobo_bus_stats stats; /**< read freely */
     /* private */
     grobo_bus_config config; /* no zeros left in it, but margin_us */
-    grobo_rs30x_parser parser;
+    grobo_framer framer;
+    unsigned accept; /* packets that are believed now */
     grobo_bus_hold hold[GROBO_BUS_HOLDS];
 } grobo_bus;
 
 /**
- * Makes a bus ready; nothing is sent. config is copied; NULL: all defaults.
- * @return GROBO_OK or GROBO_ERR_ARG (echo through the board, a baud rate below 1200)
+ * Makes a bus ready; nothing is sent. config is copied.
+ * @return GROBO_OK or GROBO_ERR_ARG (no protocol, echo through a board, a baud rate below 1200)
  */
 GROBO_API int grobo_bus_init(grobo_bus *bus, const grobo_bus_config *config);
 
-/** Fills a transaction with a frame for this wiring and the reply that the frame calls for.
+/** Fills a transaction with a frame of this protocol and the reply that the frame calls for.
  *  Priority user, two retries, computed timeout, no callback.
- *  @return GROBO_OK or the errors of grobo_frame_reply */
-GROBO_API int grobo_txn_init(grobo_txn *txn, grobo_wiring wiring, const uint8_t *frame, size_t n);
+ *  @return GROBO_OK or the errors of protocol->reply_to */
+GROBO_API int grobo_txn_init(grobo_txn *txn, const grobo_protocol *protocol, const uint8_t *frame,
+                             size_t n);
 
 /**
  * Puts a transaction at the end of its priority's queue.
@@ -270,7 +272,7 @@ GROBO_API void grobo_bus_step(grobo_bus *bus, int64_t now_us);
  * Gives the next frame to send, if one may start now. It counts as sent at now_us. Transactions
  * that `leave` refuses end here: callbacks may run.
  * @return bytes put into buf, all of one frame; 0 when nothing may start now; GROBO_ERR_SPACE when
- *         the frame is longer than cap (GROBO_RS30X_PACKET_MAX_BYTES is always enough)
+ *         the frame is longer than cap (GROBO_FRAME_MAX_BYTES is always enough)
  */
 GROBO_API int grobo_bus_tx(grobo_bus *bus, int64_t now_us, uint8_t *buf, size_t cap);
 

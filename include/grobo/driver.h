@@ -9,14 +9,14 @@
  *
  * A robot of RS30x servos needs data only: grobo_rs30x_driver_init() fills a whole table from a
  * model and a wiring, and single functions may then be replaced. Another kind of servo or board
- * replaces all of them; its frames may be any bytes, its replies are an ACK byte or a return
- * packet (rs30x.h).
+ * replaces all of them, and brings a protocol of its own (protocol.h).
  */
 #ifndef GROBO_DRIVER_H
 #define GROBO_DRIVER_H
 
-#include <grobo/board.h>
+#include <grobo/model.h>
 #include <grobo/posture.h>
+#include <grobo/protocol.h>
 
 GROBO_BEGIN_DECLS
 
@@ -32,10 +32,10 @@ typedef enum grobo_sense_kind {
 
 /** One frame to send and the reply it waits for. Plain data. */
 typedef struct grobo_exchange {
-    uint8_t frame[GROBO_RS30X_PACKET_MAX_BYTES]; /**< what is sent */
-    uint8_t frame_bytes;                         /**< how much of it */
-    grobo_reply reply;                           /**< what must come back */
-    int64_t settle_us; /**< silence the device needs afterwards, 0: none */
+    uint8_t frame[GROBO_FRAME_MAX_BYTES]; /**< what is sent */
+    uint8_t frame_bytes;                  /**< how much of it */
+    grobo_reply reply;                    /**< what must come back */
+    int64_t settle_us;                    /**< silence the device needs afterwards, 0: none */
 } grobo_exchange;
 
 /* ---- what a joint reports ------------------------------------------------------------------ */
@@ -64,7 +64,8 @@ typedef struct grobo_joint_state {
     int16_t temperature_c; /**< degrees Celsius */
     uint16_t valid;        /**< GROBO_FIELD_... bits */
     grobo_torque torque;   /**< as read, not as asked */
-    uint8_t flags;         /**< of the reply: GROBO_RS30X_STATUS_... */
+    bool overheated;       /**< the servo says that it was too hot and has cut its torque */
+    uint8_t flags;         /**< of the reply, in bits of its family (GROBO_RS30X_STATUS_...) */
 } grobo_joint_state;
 
 /* ---- the table ----------------------------------------------------------------------------- */
@@ -88,6 +89,14 @@ typedef struct grobo_register_io {
     uint8_t length;      /**< bytes, 1..GROBO_REGISTERS - address */
     const uint8_t *data; /**< bytes to write, or NULL to read */
 } grobo_register_io;
+
+/** What writing registers does. */
+typedef enum grobo_write_kind {
+    GROBO_WRITE_HARMLESS = 0, /**< nothing moves, and goals mean what they meant */
+    GROBO_WRITE_SETTING = 1,  /**< goals mean something else (id, direction, limits): a servo that
+                                   holds would jump */
+    GROBO_WRITE_MOTOR = 2     /**< a goal, its time, torque: there are requests for these */
+} grobo_write_kind;
 
 /** What a servo does with itself. */
 typedef enum grobo_servo_command {
@@ -124,13 +133,13 @@ typedef struct grobo_driver grobo_driver;
  * comes zeroed.
  */
 struct grobo_driver {
-    const char *name;           /**< "GR001" */
-    const grobo_model *model;   /**< joints, motors, limits */
-    grobo_wiring wiring;        /**< how the generic RS30x functions reach the servos */
-    int64_t time_step_us;       /**< unit of a goal time on the wire, > 0 (RS30x: 10 ms) */
-    grobo_safety_limits limits; /**< safety limits of this robot */
-    grobo_exit_policy on_exit;  /**< what GROBO_EXIT_DEFAULT stands for; not DEFAULT itself */
-    bool arm;                   /**< its joints do not stand on each other, so that it may stop
+    const char *name;               /**< "GR001" */
+    const grobo_model *model;       /**< joints, motors, limits */
+    const grobo_protocol *protocol; /**< how its servos talk, and over what line */
+    int64_t time_step_us;           /**< unit of a goal time on the wire, > 0 (RS30x: 10 ms) */
+    grobo_safety_limits limits;     /**< safety limits of this robot */
+    grobo_exit_policy on_exit;      /**< what GROBO_EXIT_DEFAULT stands for; not DEFAULT itself */
+    bool arm;                       /**< its joints do not stand on each other, so that it may stop
                                      anywhere: goals go in segments, see grobo_goals */
     const double *rest_rad; /**< resting posture by joint for GROBO_EXIT_SIT; NULL: initial one */
     const grobo_readback *readback; /**< n_readback corrections, used if the engine is told to */
@@ -151,8 +160,10 @@ struct grobo_driver {
      * Reads what a joint returned; the packet has been checked against the exchange's reply.
      * Sets the fields it finds and their bits in state->valid. @return 0 or an error.
      */
-    int (*parse)(const grobo_driver *self, void *ctx, int joint, const grobo_rs30x_packet *reply,
+    int (*parse)(const grobo_driver *self, void *ctx, int joint, const grobo_packet *reply,
                  grobo_joint_state *state);
+    /** What writing these registers would do; the worst counts. Must be there with `registers`. */
+    grobo_write_kind (*write_kind)(const grobo_driver *self, const grobo_register_io *io);
     /** Reads or writes registers of one servo. @return 0 or an error. */
     int (*registers)(const grobo_driver *self, void *ctx, const grobo_register_io *io,
                      grobo_exchange *exchange);
@@ -187,16 +198,20 @@ struct grobo_driver {
  */
 GROBO_API int grobo_driver_check(const grobo_driver *driver);
 
+/** Whether there is a board between the host and its servos. */
+GROBO_API grobo_wiring grobo_driver_wiring(const grobo_driver *driver);
+
 /**
  * Fills a table for a robot of RS30x servos: every function but `stabilize`, and `stored` only
- * for GROBO_WIRING_BOARD. Limits: 70 deg C, 5 lost replies, 60 deg/s for the first move, no limit
+ * where a board is in between. Limits: 70 deg C, 5 lost replies, 60 deg/s for the first move, no limit
  * of current and voltage; exit policy hold.
  * @param[out] driver the caller's table; change what is different in it afterwards.
  * @param model borrowed.
- * @return 0, or GROBO_ERR_ARG for a bad model or wiring.
+ * @param protocol grobo_rs30x_protocol, or grobo_board_protocol through GR001's board.
+ * @return 0, or GROBO_ERR_ARG for a bad model or no protocol.
  */
 GROBO_API int grobo_rs30x_driver_init(grobo_driver *driver, const grobo_model *model,
-                                      grobo_wiring wiring);
+                                      const grobo_protocol *protocol);
 
 /**
  * The table of HPI's GR001.

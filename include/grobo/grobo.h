@@ -28,6 +28,7 @@
 #include <grobo/motion_io.h>
 #include <grobo/port.h>
 #include <grobo/posture.h>
+#include <grobo/protocol.h>
 #include <grobo/robot.h>
 #include <grobo/robot_config.h>
 #include <grobo/robot_event.h>

@@ -14,7 +14,7 @@
 #ifndef GROBO_RS30X_H
 #define GROBO_RS30X_H
 
-#include <grobo/types.h>
+#include <grobo/protocol.h>
 
 GROBO_BEGIN_DECLS
 
@@ -26,6 +26,9 @@ GROBO_BEGIN_DECLS
 
 /** Address of every servo; nobody replies to it. */
 #define GROBO_RS30X_ID_ALL 255
+
+/** RS30x servos straight on their bus. */
+GROBO_API extern const grobo_protocol grobo_rs30x_protocol;
 
 /** The byte that says "done". */
 #define GROBO_RS30X_ACK 0x07
@@ -277,24 +280,6 @@ GROBO_API int grobo_rs30x_ping(uint8_t id, grobo_rs30x_ping_form form, uint8_t *
 
 /* ---- replies -------------------------------------------------------------------------------- */
 
-/** What a command is answered by. */
-typedef enum grobo_reply_kind {
-    GROBO_REPLY_NONE = 0,  /**< nothing */
-    GROBO_REPLY_ACK = 1,   /**< the byte 07 (or 08) */
-    GROBO_REPLY_RETURN = 2 /**< a return packet of this id, address and length */
-} grobo_reply_kind;
-
-/** The reply to expect. id, address and length count for GROBO_REPLY_RETURN only. */
-typedef struct grobo_reply {
-    grobo_reply_kind kind;
-    uint8_t id;
-    uint8_t address;
-    uint8_t length; /**< data bytes */
-} grobo_reply;
-
-/** Bytes of a reply on the wire: 0, 1, or length + 8. */
-GROBO_API size_t grobo_reply_bytes(const grobo_reply *reply);
-
 /**
  * What a command packet (n bytes, one whole packet) will be answered by.
  * @return bytes of the reply (0: none); GROBO_ERR_FRAME or GROBO_ERR_CHECKSUM when the bytes are
@@ -302,31 +287,43 @@ GROBO_API size_t grobo_reply_bytes(const grobo_reply *reply);
  */
 GROBO_API int grobo_rs30x_reply_to(const uint8_t *packet, size_t n, grobo_reply *reply);
 
+/** Bytes of a reply on the wire: 0, 1, or length + 8. */
+GROBO_API size_t grobo_rs30x_reply_bytes(const grobo_reply *reply);
+
+/* ---- frames ---------------------------------------------------------------------------------
+ * A packet as it goes over the line: itself on a servo bus, in a frame of the board in between. They
+ * return the size or the error of the builder above. buf needs GROBO_FRAME_MAX_BYTES at most. */
+
+/** Goal of one servo (14 bytes through the board). */
+GROBO_API int grobo_frame_goal(const grobo_protocol *protocol, const grobo_rs30x_goal *goal,
+                               uint8_t *buf, size_t cap);
+
+/** Goals of n servos in one frame (110 bytes through the board for 20; 23 fit at most). */
+GROBO_API int grobo_frame_goals(const grobo_protocol *protocol, const grobo_rs30x_goal *goals,
+                                size_t n, uint8_t *buf, size_t cap);
+
+/** Torque of one servo, or of all with id 255 (11 bytes through the board). */
+GROBO_API int grobo_frame_torque(const grobo_protocol *protocol, uint8_t id, grobo_torque torque,
+                                 uint8_t *buf, size_t cap);
+
+/** Torques (values of grobo_torque) of n servos in one frame (50 bytes for 20). */
+GROBO_API int grobo_frame_torques(const grobo_protocol *protocol, const grobo_rs30x_byte *torques,
+                                  size_t n, uint8_t *buf, size_t cap);
+
+/** First register of the state block that GR001's programs read: No.36-53. */
+#define GROBO_STATE_ADDRESS 36
+/** Registers of that block; its return packet has 26 bytes. */
+#define GROBO_STATE_BYTES 18
+
+/** Read of length registers from address (11 bytes through the board). */
+GROBO_API int grobo_frame_read(const grobo_protocol *protocol, uint8_t id, uint8_t address,
+                               uint8_t length, uint8_t *buf, size_t cap);
+
+/** Any command packet that is already built, for this line. packet may lie in buf. */
+GROBO_API int grobo_frame_wrap(const grobo_protocol *protocol, const uint8_t *packet, size_t n,
+                               uint8_t *buf, size_t cap);
+
 /* ---- parser --------------------------------------------------------------------------------- */
-
-/** What a framer met since it was initialised. Bytes in = bytes of frames + dropped + buffered. */
-typedef struct grobo_framer_stats {
-    uint32_t frames;        /**< good ones handed out */
-    uint32_t frame_bytes;   /**< their bytes */
-    uint32_t dropped_bytes; /**< rubbish skipped while looking for a frame */
-    uint32_t bad_sums;      /**< frames whole in form whose sum was wrong */
-} grobo_framer_stats;
-
-/** The buffer behind every push parser. All fields are private but stats. */
-typedef struct grobo_framer {
-    grobo_framer_stats stats; /**< read freely */
-    /* private */
-    uint16_t used;  /* bytes in buf */
-    uint16_t taken; /* of them, those of the frame handed out last */
-    bool ending;    /* what is incomplete now will never be completed */
-    uint8_t buf[GROBO_RS30X_PACKET_MAX_BYTES];
-} grobo_framer;
-
-/** What a parser believes in; or-ed. What it does not, it drops as rubbish. */
-#define GROBO_RS30X_ACCEPT_COMMANDS 0x1u
-#define GROBO_RS30X_ACCEPT_RETURNS 0x2u
-/** Single bytes 07 and 08 between packets. */
-#define GROBO_RS30X_ACCEPT_ACKS 0x4u
 
 /**
  * A push parser of packets: takes any bytes in any split, hands out packets whose header, id,
@@ -338,7 +335,7 @@ typedef struct grobo_rs30x_parser {
     unsigned accept;
 } grobo_rs30x_parser;
 
-/** Makes a parser ready; accept: GROBO_RS30X_ACCEPT_... or-ed. Counters start at zero. */
+/** Makes a parser ready; accept: GROBO_ACCEPT_... or-ed. Counters start at zero. */
 GROBO_API void grobo_rs30x_parser_init(grobo_rs30x_parser *parser, unsigned accept);
 
 /**
@@ -378,7 +375,7 @@ GROBO_API size_t grobo_rs30x_parser_pending(const grobo_rs30x_parser *parser);
 /**
  * Looks at the packet that n bytes start with, without a parser: for what shows the packets of
  * others, those with a wrong sum too. packet->data points into bytes.
- * @param accept GROBO_RS30X_ACCEPT_... or-ed
+ * @param accept GROBO_ACCEPT_... or-ed
  * @param[out] sum_ok whether the sum is right; true for ACK and NACK
  * @return size of the packet; 0 when more bytes are needed, GROBO_ERR_FRAME when none starts here
  *         (then nothing is written)

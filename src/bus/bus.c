@@ -2,7 +2,7 @@
 /*
  * Transactions on a half-duplex line. One is active at a time, in one of three phases; it leaves
  * by grobo_i_bus_finish(), which hands it back, or by grobo_i_bus_fail(), which may put it in front
- * of its queue again. What the bytes that come mean is in bus_receive.c.
+ * of its queue again. What the bytes that come mean is in receive.c.
  * An attempt becomes active only where the owner's `leave` agrees at that moment.
  */
 #include <grobo/bus.h>
@@ -11,16 +11,12 @@
 #include <string.h>
 
 #include "src/base/instant.h"
+#include "src/bus/framer.h"
 #include "src/bus/queue.h"
 #include "src/bus/receive.h"
 #include "src/bus/time.h"
 
-enum {
-    BAUD_DEFAULT_BPS = 115200,
-    BAUD_MIN_BPS = 1200,
-    RETURN_DELAY_US = GROBO_RS30X_DELAY_US(0),
-    RETRIES_DEFAULT = 2
-};
+enum { BAUD_DEFAULT_BPS = 115200, BAUD_MIN_BPS = 1200, RETRIES_DEFAULT = 2 };
 
 /* ---- time ---------------------------------------------------------------------------------- */
 
@@ -127,7 +123,8 @@ static void start(grobo_bus *bus, grobo_txn *txn, int64_t now_us)
 {
     bool wants_reply = txn->reply.kind != GROBO_REPLY_NONE;
     /* What is no packet is not known again: its echo is rubbish. */
-    bool echoes = bus->config.echo && txn->frame[0] == 0xFA;
+    bool echoes = bus->config.echo && bus->config.protocol->measure(txn->frame, txn->frame_bytes,
+                                                                    GROBO_ACCEPT_COMMANDS) > 0;
     bus->active = txn;
     bus->phase = echoes ? GROBO_BUS_ECHOING : wants_reply ? GROBO_BUS_AWAITING : GROBO_BUS_GOING;
     if (txn->attempts_ > 0) {
@@ -136,11 +133,11 @@ static void start(grobo_bus *bus, grobo_txn *txn, int64_t now_us)
     txn->attempts_++;
     txn->sent_us = now_us;
     grobo_i_bus_clear_line(bus);
-    bus->parser.accept = GROBO_RS30X_ACCEPT_RETURNS;
+    bus->accept = GROBO_ACCEPT_RETURNS;
     if (echoes) {
-        bus->parser.accept |= GROBO_RS30X_ACCEPT_COMMANDS;
+        bus->accept |= GROBO_ACCEPT_COMMANDS;
     } else if (txn->reply.kind == GROBO_REPLY_ACK) {
-        bus->parser.accept |= GROBO_RS30X_ACCEPT_ACKS;
+        bus->accept |= GROBO_ACCEPT_ACKS;
     }
     bus->quiet_by_us = 0;
     bus->stats.tx_frames++;
@@ -211,28 +208,27 @@ static void fill(uint32_t *value, uint32_t fallback)
 
 int grobo_bus_init(grobo_bus *bus, const grobo_bus_config *config)
 {
-    if (config != NULL && (is_too_slow(config->baud_bps) || is_too_slow(config->servo_baud_bps) ||
-                           (config->echo && config->wiring == GROBO_WIRING_BOARD))) {
+    if (bus == NULL || config == NULL || config->protocol == NULL ||
+        is_too_slow(config->baud_bps) || is_too_slow(config->servo_baud_bps) ||
+        (config->echo && config->protocol->relay != NULL)) {
         return GROBO_ERR_ARG;
     }
     memset(bus, 0, sizeof *bus);
-    if (config != NULL) {
-        bus->config = *config;
-    }
+    bus->config = *config;
     fill(&bus->config.baud_bps, BAUD_DEFAULT_BPS);
     fill(&bus->config.servo_baud_bps, BAUD_DEFAULT_BPS);
-    fill(&bus->config.return_delay_us, RETURN_DELAY_US);
+    fill(&bus->config.return_delay_us, config->protocol->return_delay_us);
     fill(&bus->config.quiet_us, GROBO_BUS_QUIET_US);
     fill(&bus->config.hold_us, GROBO_BUS_HOLD_US);
     bus->worst_us = (int32_t)(bus->config.hold_us / 2);
-    grobo_rs30x_parser_init(&bus->parser, 0);
+    grobo_i_framer_init(&bus->framer);
     return GROBO_OK;
 }
 
-int grobo_txn_init(grobo_txn *txn, grobo_wiring wiring, const uint8_t *frame, size_t n)
+int grobo_txn_init(grobo_txn *txn, const grobo_protocol *protocol, const uint8_t *frame, size_t n)
 {
     grobo_reply reply;
-    int result = grobo_frame_reply(wiring, frame, n, &reply);
+    int result = protocol->reply_to(frame, n, &reply);
     if (result < 0) {
         return result;
     }
@@ -251,8 +247,7 @@ int grobo_bus_submit(grobo_bus *bus, grobo_txn *txn)
     if (txn->pending_) {
         return GROBO_ERR_BUSY;
     }
-    if (txn->frame == NULL || txn->frame_bytes == 0 ||
-        txn->frame_bytes > GROBO_RS30X_PACKET_MAX_BYTES ||
+    if (txn->frame == NULL || txn->frame_bytes == 0 || txn->frame_bytes > GROBO_FRAME_MAX_BYTES ||
         (unsigned)txn->priority >= GROBO_PRIORITIES) {
         return GROBO_ERR_ARG;
     }

@@ -6,13 +6,9 @@
 #ifndef GROBO_CORE_FRAMER_H
 #define GROBO_CORE_FRAMER_H
 
-#include <grobo/rs30x.h>
+#include <grobo/protocol.h>
 
-/*
- * Judges n > 0 bytes: the size of the good frame that they start with; 0 when they may start one
- * and more are needed; GROBO_ERR_FRAME when they cannot, GROBO_ERR_CHECKSUM when only the sum is
- * wrong. A size is never above GROBO_RS30X_PACKET_MAX_BYTES.
- */
+/* As grobo_protocol.measure. */
 typedef int (*grobo_i_measure)(const uint8_t *bytes, size_t n, unsigned accept);
 
 void grobo_i_framer_init(grobo_framer *framer);

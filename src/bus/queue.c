@@ -38,7 +38,7 @@ bool grobo_i_bus_take_out(grobo_bus *bus, grobo_txn *txn)
 
 /* ---- ends of a transaction ----------------------------------------------------------------- */
 
-void grobo_i_bus_finish(grobo_bus *bus, grobo_txn *txn, int result, const grobo_rs30x_packet *reply)
+void grobo_i_bus_finish(grobo_bus *bus, grobo_txn *txn, int result, const grobo_packet *reply)
 {
     if (bus->active == txn) {
         bus->active = NULL;

@@ -11,8 +11,7 @@ void grobo_i_bus_put_last(grobo_bus *bus, grobo_txn *txn);
 bool grobo_i_bus_take_out(grobo_bus *bus, grobo_txn *txn);
 
 /* The last touch: after the callback the transaction may not exist any more. */
-void grobo_i_bus_finish(grobo_bus *bus, grobo_txn *txn, int result,
-                        const grobo_rs30x_packet *reply);
+void grobo_i_bus_finish(grobo_bus *bus, grobo_txn *txn, int result, const grobo_packet *reply);
 
 /* An attempt of the active transaction has failed: it waits for the next one, or ends. */
 void grobo_i_bus_fail(grobo_bus *bus, int error);

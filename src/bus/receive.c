@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "src/base/instant.h"
+#include "src/bus/framer.h"
 #include "src/bus/queue.h"
 #include "src/bus/time.h"
 
@@ -22,37 +23,32 @@ static bool is_asked(const grobo_bus *bus)
 /* Bytes skipped since the frame was sent, or since its echo. */
 static uint32_t rubbish(const grobo_bus *bus)
 {
-    return bus->parser.framer.stats.dropped_bytes - bus->dropped_before;
+    return bus->framer.stats.dropped_bytes - bus->dropped_before;
 }
 
 static void start_count(grobo_bus *bus)
 {
-    bus->bad_sums_before = bus->parser.framer.stats.bad_sums;
-    bus->dropped_before = bus->parser.framer.stats.dropped_bytes;
+    bus->bad_sums_before = bus->framer.stats.bad_sums;
+    bus->dropped_before = bus->framer.stats.dropped_bytes;
 }
 
 void grobo_i_bus_clear_line(grobo_bus *bus)
 {
-    bus->stats.resync_bytes += (uint32_t)grobo_rs30x_parser_pending(&bus->parser);
-    grobo_rs30x_parser_reset(&bus->parser);
+    bus->stats.resync_bytes += (uint32_t)grobo_i_framer_pending(&bus->framer);
+    grobo_i_framer_reset(&bus->framer);
     start_count(bus);
 }
 
 /* ---- packets --------------------------------------------------------------------------------- */
 
-static bool is_refusal(const grobo_rs30x_packet *p)
-{
-    return p->kind == GROBO_RS30X_NACK_BYTE || (p->flags & GROBO_RS30X_STATUS_REFUSED) != 0;
-}
-
 /* The transaction that a return packet ends: the active one, or one that waits for its next
  * attempt, if a reply to an earlier one is still owed. */
-static grobo_txn *find_asker(grobo_bus *bus, const grobo_rs30x_packet *p, uint32_t key)
+static grobo_txn *find_asker(grobo_bus *bus, const grobo_packet *p, uint32_t key)
 {
     grobo_txn *txn = bus->active;
     if (bus->phase == GROBO_BUS_AWAITING &&
         (grobo_i_bus_key(&txn->reply) == key ||
-         (is_refusal(p) && txn->reply.kind == GROBO_REPLY_RETURN && txn->reply.id == p->id))) {
+         (p->refused && txn->reply.kind == GROBO_REPLY_RETURN && txn->reply.id == p->id))) {
         return txn;
     }
     const grobo_bus_hold *hold = grobo_i_bus_owed(bus, key);
@@ -67,40 +63,39 @@ static grobo_txn *find_asker(grobo_bus *bus, const grobo_rs30x_packet *p, uint32
 }
 
 /* A reply to this transaction: a return packet or an ACK byte. */
-static void take_reply(grobo_bus *bus, grobo_txn *txn, const grobo_rs30x_packet *p, uint32_t key)
+static void take_reply(grobo_bus *bus, grobo_txn *txn, const grobo_packet *p, uint32_t key)
 {
-    bool refused = is_refusal(p);
     if (txn != bus->active) {
         (void)grobo_i_bus_take_out(bus, txn);
     } else if (txn->attempts_ > 1) {
         /* This may have been the late reply to an earlier attempt: one more may come. */
         grobo_i_bus_hold(bus, txn, bus->now_us);
-    } else if (!refused) {
+    } else if (!p->refused) {
         key = 0; /* nothing was owed to it */
         grobo_i_bus_learn(bus);
         grobo_i_bus_release_holds(bus);
         bus->free_us = grobo_i_sooner(bus->free_us, bus->now_us); /* its last byte is here */
     }
     (void)grobo_i_bus_settle(bus, key);
-    if (refused) {
+    if (p->refused) {
         bus->stats.refusals++;
         bus->stats.failed++;
     } else {
         bus->stats.replies++;
     }
-    grobo_i_bus_finish(bus, txn, refused ? GROBO_ERR_NACK : GROBO_OK, p);
+    grobo_i_bus_finish(bus, txn, p->refused ? GROBO_ERR_NACK : GROBO_OK, p);
 }
 
 /*
  * One byte without a name is believed only when no rubbish came before it. That it refuses is asked
  * again: it may be of a reply that the line still owed to the program before this one.
  */
-static void take_ack(grobo_bus *bus, const grobo_rs30x_packet *p)
+static void take_ack(grobo_bus *bus, const grobo_packet *p)
 {
     const grobo_txn *txn = bus->active;
-    int error = rubbish(bus) != 0                                 ? GROBO_ERR_MISMATCH
-                : is_refusal(p) && txn->attempts_ <= txn->retries ? GROBO_ERR_NACK
-                                                                  : GROBO_OK;
+    int error = rubbish(bus) != 0                              ? GROBO_ERR_MISMATCH
+                : p->refused && txn->attempts_ <= txn->retries ? GROBO_ERR_NACK
+                                                               : GROBO_OK;
     if (error == GROBO_OK) {
         take_reply(bus, bus->active, p, 0);
         return;
@@ -121,7 +116,7 @@ static void end_echo(grobo_bus *bus)
     bus->phase = GROBO_BUS_AWAITING;
     start_count(bus);
     if (txn->reply.kind == GROBO_REPLY_ACK) {
-        bus->parser.accept |= GROBO_RS30X_ACCEPT_ACKS;
+        bus->accept |= GROBO_ACCEPT_ACKS;
     }
 }
 
@@ -142,18 +137,18 @@ static void take_late(grobo_bus *bus, size_t size, uint32_t key)
     }
 }
 
-static void take_packet(grobo_bus *bus, const grobo_rs30x_packet *p)
+static void take_packet(grobo_bus *bus, const grobo_packet *p)
 {
-    const grobo_framer *framer = &bus->parser.framer;
+    const grobo_framer *framer = &bus->framer;
     const grobo_txn *active = bus->active;
     size_t size = framer->taken;
-    bool returned = p->kind == GROBO_RS30X_RETURN;
+    bool returned = p->kind == GROBO_PACKET_RETURN;
     const grobo_reply reply = {GROBO_REPLY_RETURN, p->id, p->address, p->length};
     uint32_t key = returned ? grobo_i_bus_key(&reply) : 0;
     grobo_txn *txn = returned ? find_asker(bus, p, key) : NULL;
     if (txn != NULL) {
         take_reply(bus, txn, p, key);
-    } else if (size == 1 && bus->phase == GROBO_BUS_AWAITING) {
+    } else if (p->kind == GROBO_PACKET_ACK && bus->phase == GROBO_BUS_AWAITING) {
         take_ack(bus, p);
     } else if (bus->phase == GROBO_BUS_ECHOING && size == active->frame_bytes &&
                memcmp(framer->buf, active->frame, size) == 0) {
@@ -170,24 +165,27 @@ static void take_packet(grobo_bus *bus, const grobo_rs30x_packet *p)
 static void give_up_on_rubbish(grobo_bus *bus)
 {
     bool echoing = bus->phase == GROBO_BUS_ECHOING;
-    if (!is_asked(bus) || grobo_rs30x_parser_pending(&bus->parser) > 0 ||
-        rubbish(bus) <
-            (echoing ? bus->active->frame_bytes : grobo_reply_bytes(&bus->active->reply))) {
+    if (!is_asked(bus) || grobo_i_framer_pending(&bus->framer) > 0 ||
+        rubbish(bus) < (echoing ? bus->active->frame_bytes
+                                : bus->config.protocol->reply_bytes(&bus->active->reply))) {
         return;
     }
-    bool bad_sum = bus->parser.framer.stats.bad_sums != bus->bad_sums_before;
+    bool bad_sum = bus->framer.stats.bad_sums != bus->bad_sums_before;
     grobo_i_bus_fail(bus, bad_sum && !echoing ? GROBO_ERR_CHECKSUM : GROBO_ERR_MISMATCH);
 }
 
 /* Bytes taken, at least one. */
 static size_t take_bytes(grobo_bus *bus, const uint8_t *bytes, size_t n)
 {
-    const grobo_framer_stats *stats = &bus->parser.framer.stats;
-    grobo_rs30x_packet p;
+    const grobo_framer_stats *stats = &bus->framer.stats;
+    const grobo_protocol *protocol = bus->config.protocol;
     uint32_t *counter = is_asked(bus) ? &bus->stats.resync_bytes : &bus->stats.late_bytes;
     uint32_t before = stats->dropped_bytes;
-    size_t took = grobo_rs30x_parser_feed(&bus->parser, bytes, n);
-    while (grobo_rs30x_parser_next(&bus->parser, &p) > 0) {
+    size_t took = grobo_i_framer_feed(&bus->framer, bytes, n);
+    size_t size;
+    while ((size = grobo_i_framer_next(&bus->framer, protocol->measure, bus->accept)) > 0) {
+        grobo_packet p;
+        protocol->unpack(bus->framer.buf, size, &p);
         bus->stats.rx_frames++;
         take_packet(bus, &p);
     }
@@ -195,7 +193,7 @@ static size_t take_bytes(grobo_bus *bus, const uint8_t *bytes, size_t n)
     uint32_t dropped = stats->dropped_bytes - before;
     *counter += dropped;
     bus->stats.bad_sums = stats->bad_sums;
-    if (!is_asked(bus) && dropped + grobo_rs30x_parser_pending(&bus->parser) > 0) {
+    if (!is_asked(bus) && dropped + grobo_i_framer_pending(&bus->framer) > 0) {
         grobo_i_bus_ask_for_quiet(bus);
     }
     return took;
@@ -215,8 +213,7 @@ void grobo_bus_rx(grobo_bus *bus, int64_t now_us, const uint8_t *bytes, size_t n
 void grobo_i_bus_end_silence(grobo_bus *bus)
 {
     bool some = rubbish(bus) > 0;
-    grobo_i_bus_fail(bus, some && bus->phase == GROBO_BUS_ECHOING ? GROBO_ERR_MISMATCH
-                          : some || grobo_rs30x_parser_pending(&bus->parser) > 0
-                              ? GROBO_ERR_SHORT
-                              : GROBO_ERR_TIMEOUT);
+    grobo_i_bus_fail(bus, some && bus->phase == GROBO_BUS_ECHOING            ? GROBO_ERR_MISMATCH
+                          : some || grobo_i_framer_pending(&bus->framer) > 0 ? GROBO_ERR_SHORT
+                                                                             : GROBO_ERR_TIMEOUT);
 }

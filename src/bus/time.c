@@ -7,9 +7,7 @@
 
 enum {
     BITS_PER_BYTE = 10, /* 8N1 */
-    US_PER_S = 1000000,
-    ASK = 0x54,
-    SEND = 0x53
+    US_PER_S = 1000000
 };
 
 /* At most 429 bytes, so that the product fits 32 bits: no 64-bit division on small machines. */
@@ -19,34 +17,22 @@ static uint32_t wire_us(size_t bytes, uint32_t baud_bps)
     return (bits * US_PER_S + baud_bps - 1) / baud_bps;
 }
 
-/* Bytes that the board puts on the servo bus for this frame. */
-static size_t relayed_bytes(const grobo_txn *txn)
-{
-    if (txn->frame_bytes < GROBO_BOARD_HEADER_BYTES) {
-        return 0;
-    }
-    size_t counted = txn->frame[1];
-    if (txn->frame[0] == SEND) {
-        return counted;
-    }
-    return txn->frame[0] == ASK && counted > 0 ? counted - 1 : 0;
-}
-
 void grobo_bus_cost_of(const grobo_bus *bus, const grobo_txn *txn, grobo_bus_cost *cost)
 {
     const grobo_bus_config *c = &bus->config;
-    size_t reply = grobo_reply_bytes(&txn->reply);
+    const grobo_relay *relay = c->protocol->relay;
+    size_t reply = c->protocol->reply_bytes(&txn->reply);
     uint32_t delay_us = reply > 0 ? c->return_delay_us : 0;
     cost->request_us = wire_us(txn->frame_bytes, c->baud_bps);
     cost->servo_us = 0;
     cost->reply_us = wire_us(reply, c->baud_bps);
-    if (c->wiring == GROBO_WIRING_BUS) {
+    if (relay == NULL) {
         cost->reply_us += delay_us;
     } else {
-        size_t relayed = relayed_bytes(txn);
-        if (relayed > 0) {
-            cost->servo_us =
-                wire_us(relayed, c->servo_baud_bps) + delay_us + wire_us(reply, c->servo_baud_bps);
+        size_t forwarded = relay->forwarded(txn->frame, txn->frame_bytes);
+        if (forwarded > 0) {
+            cost->servo_us = wire_us(forwarded, c->servo_baud_bps) + delay_us +
+                             wire_us(reply, c->servo_baud_bps);
         }
     }
     cost->total_us = cost->request_us + cost->servo_us + cost->reply_us;
@@ -174,7 +160,7 @@ bool grobo_i_bus_settle(grobo_bus *bus, uint32_t key)
 
 void grobo_i_bus_release_holds(grobo_bus *bus)
 {
-    if (bus->config.wiring == GROBO_WIRING_BOARD) {
+    if (bus->config.protocol->relay != NULL) {
         memset(bus->hold, 0, sizeof bus->hold);
         return;
     }
@@ -211,7 +197,7 @@ bool grobo_bus_fits(const grobo_bus *bus, int64_t now_us, const grobo_txn *txn)
 int64_t grobo_i_bus_start_at(const grobo_bus *bus, const grobo_txn *txn, int64_t now_us)
 {
     int64_t at_us = grobo_i_later(now_us, bus->free_us);
-    if (txn->reply.kind != GROBO_REPLY_NONE || bus->config.wiring == GROBO_WIRING_BUS) {
+    if (txn->reply.kind != GROBO_REPLY_NONE || bus->config.protocol->relay == NULL) {
         at_us = grobo_i_later(at_us, bus->quiet_us);
         at_us = grobo_i_later(at_us, held_until(bus, txn));
     }

@@ -91,7 +91,7 @@ int grobo_budget_init(grobo_budget *budget, const grobo_driver *driver, void *ct
     if (line != NULL) {
         config = *line;
     }
-    config.wiring = driver->wiring;
+    config.protocol = driver->protocol;
     int result = grobo_bus_init(&bus, &config);
     return result < 0 ? result : grobo_i_budget(&bus, driver, ctx, budget);
 }

@@ -202,7 +202,7 @@ int64_t grobo_i_job_deadline(const grobo_robot *robot)
 
 /* ---- what comes back ------------------------------------------------------------------------- */
 
-static void take_answer(grobo_robot *robot, int result, const grobo_rs30x_packet *reply)
+static void take_answer(grobo_robot *robot, int result, const grobo_packet *reply)
 {
     grobo_robot_task *job = &robot->job;
     job->reply_bytes = 0;
@@ -214,7 +214,7 @@ static void take_answer(grobo_robot *robot, int result, const grobo_rs30x_packet
     job->result = result;
 }
 
-void grobo_i_job_done(grobo_robot_slot *slot, int result, const grobo_rs30x_packet *reply)
+void grobo_i_job_done(grobo_robot_slot *slot, int result, const grobo_packet *reply)
 {
     grobo_robot *robot = slot->robot;
     grobo_robot_task *job = &robot->job;

@@ -285,23 +285,12 @@ int grobo_robot_raw_until(grobo_robot *robot, const uint8_t *frame, size_t size,
     if (result < 0) {
         return refuse(robot, result);
     }
-    if (grobo_frame_reply(robot->driver->wiring, frame, size, &exchange.reply) < 0) {
+    if (robot->driver->protocol->reply_to(frame, size, &exchange.reply) < 0) {
         exchange.reply.kind = GROBO_REPLY_NONE;
     }
     int number = start_exchange(robot, GROBO_JOB_RAW, &order, &exchange);
     robot->job.leave_by_us = until_us == GROBO_NEVER_US ? 0 : until_us;
     return begin(robot, number);
-}
-
-static bool touches(const grobo_register_io *io, int address, int bytes)
-{
-    return io->address < address + bytes && io->address + io->length > address;
-}
-
-/* Settings that change what a goal means: a servo that holds would jump. */
-static bool changes_goal(const grobo_register_io *io)
-{
-    return touches(io, GROBO_RS30X_ID, 2) || touches(io, GROBO_RS30X_CW_LIMIT, 4);
 }
 
 /* The joint of a motor, none where it is not the model's. */
@@ -313,10 +302,11 @@ static grobo_joint_mask joint_of(const grobo_robot *robot, int id)
 
 static int admit_write(grobo_robot *robot, const grobo_register_io *io, grobo_robot_order *order)
 {
-    if (touches(io, GROBO_RS30X_GOAL, 4) || touches(io, GROBO_RS30X_TORQUE, 1)) {
+    grobo_write_kind kind = robot->driver->write_kind(robot->driver, io);
+    if (kind == GROBO_WRITE_MOTOR) {
         return GROBO_ERR_UNSUPPORTED;
     }
-    if (changes_goal(io)) {
+    if (kind == GROBO_WRITE_SETTING) {
         order->deed = GROBO_I_DEED_SETTING;
         order->joints = joint_of(robot, io->id);
     }

@@ -57,7 +57,7 @@ static void config_fill(grobo_robot_config *c, const grobo_driver *driver)
     c->exit_bound_us = time_or(c->exit_bound_us, EXIT_BOUND_US);
     c->on_exit = c->on_exit == GROBO_EXIT_DEFAULT ? driver->on_exit : c->on_exit;
     c->retries = c->retries == 0 ? RETRIES : c->retries < 0 ? 0 : c->retries;
-    c->bus.wiring = driver->wiring;
+    c->bus.protocol = driver->protocol;
 }
 
 static const grobo_robot_config defaults;

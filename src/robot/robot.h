@@ -102,7 +102,7 @@ void grobo_i_job_run(grobo_robot *robot);
 /* Ends the job and tells so. */
 void grobo_i_job_end(grobo_robot *robot, int result);
 /* A frame of the job is over. */
-void grobo_i_job_done(grobo_robot_slot *slot, int result, const grobo_rs30x_packet *reply);
+void grobo_i_job_done(grobo_robot_slot *slot, int result, const grobo_packet *reply);
 /* One joint failed; the job goes on with the others. The first error is the job's result. */
 void grobo_i_job_fail_joint(grobo_robot *robot, int joint, int error, double value);
 /* The step to go on with instead of the next one; it must be in the script. */
@@ -172,14 +172,14 @@ int grobo_i_play_start(grobo_robot *robot);
 
 /* Takes what a slot has read of its joint, or the reason why there is nothing. @return result, or
  * parse's error. */
-int grobo_i_sense_take(const grobo_robot_slot *slot, int result, const grobo_rs30x_packet *reply);
+int grobo_i_sense_take(const grobo_robot_slot *slot, int result, const grobo_packet *reply);
 /* The goal that holds a joint where its servo says that it is, drawn in to its limits; NaN where it
  * stands too far outside. */
 double grobo_i_hold_rad(const grobo_robot *robot, int joint);
 /* Starts a background reading if one is due. */
 void grobo_i_sense_step(grobo_robot *robot);
 /* A background reading is over. */
-void grobo_i_sense_done(grobo_robot_slot *slot, int result, const grobo_rs30x_packet *reply);
+void grobo_i_sense_done(grobo_robot_slot *slot, int result, const grobo_packet *reply);
 /* When the background reads next. */
 int64_t grobo_i_sense_deadline(const grobo_robot *robot);
 

@@ -159,7 +159,7 @@ static bool is_loss(int result)
            result == GROBO_ERR_CHECKSUM || result == GROBO_ERR_MISMATCH;
 }
 
-int grobo_i_sense_take(const grobo_robot_slot *slot, int result, const grobo_rs30x_packet *reply)
+int grobo_i_sense_take(const grobo_robot_slot *slot, int result, const grobo_packet *reply)
 {
     grobo_robot *robot = slot->robot;
     const grobo_driver *driver = robot->driver;
@@ -380,7 +380,7 @@ void grobo_i_sense_step(grobo_robot *robot)
     (void)grobo_i_slot_send(slot, GROBO_PRIORITY_SENSE);
 }
 
-void grobo_i_sense_done(grobo_robot_slot *slot, int result, const grobo_rs30x_packet *reply)
+void grobo_i_sense_done(grobo_robot_slot *slot, int result, const grobo_packet *reply)
 {
     grobo_robot *robot = slot->robot;
     int joint = slot->joint;

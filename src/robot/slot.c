@@ -57,7 +57,7 @@ static int on_leave(void *ctx, grobo_txn *txn)
     return result;
 }
 
-static void on_done(void *ctx, grobo_txn *txn, int result, const grobo_rs30x_packet *reply)
+static void on_done(void *ctx, grobo_txn *txn, int result, const grobo_packet *reply)
 {
     grobo_robot_slot slot = *(grobo_robot_slot *)ctx;
     assert(slot.use != GROBO_I_USE_FREE && txn == &((grobo_robot_slot *)ctx)->txn);

@@ -85,7 +85,7 @@ void grobo_i_trip(grobo_robot *robot, grobo_trip reason, int joint, double value
 static void watch_heat(grobo_robot *robot, int joint, const grobo_joint_state *got)
 {
     bool known = (got->valid & GROBO_FIELD_TEMPERATURE) != 0;
-    if ((got->flags & GROBO_RS30X_STATUS_OVERHEATED) != 0) {
+    if (got->overheated) {
         grobo_i_trip(robot, GROBO_TRIP_OVERHEATED, joint, known ? got->temperature_c : 0, true);
     } else if (known && robot->config.temperature_c > 0 &&
                got->temperature_c > robot->config.temperature_c) {

@@ -6,7 +6,8 @@
 
 static bool functions_present(const grobo_driver *driver)
 {
-    return driver->posture != NULL && driver->sense != NULL && driver->parse != NULL;
+    return driver->posture != NULL && driver->sense != NULL && driver->parse != NULL &&
+           (driver->registers == NULL || driver->write_kind != NULL);
 }
 
 static bool limits_sound(const grobo_safety_limits *limits)
@@ -52,10 +53,15 @@ int grobo_driver_check(const grobo_driver *driver)
     }
     bool policy = driver->on_exit == GROBO_EXIT_OFF || driver->on_exit == GROBO_EXIT_HOLD ||
                   driver->on_exit == GROBO_EXIT_SIT;
-    bool wiring = driver->wiring == GROBO_WIRING_BOARD || driver->wiring == GROBO_WIRING_BUS;
-    if (!policy || !wiring || driver->time_step_us <= 0 || !functions_present(driver) ||
-        !limits_sound(&driver->limits) || !rest_sound(driver) || !readback_sound(driver)) {
+    if (!policy || driver->protocol == NULL || driver->time_step_us <= 0 ||
+        !functions_present(driver) || !limits_sound(&driver->limits) || !rest_sound(driver) ||
+        !readback_sound(driver)) {
         return GROBO_ERR_ARG;
     }
     return GROBO_OK;
+}
+
+grobo_wiring grobo_driver_wiring(const grobo_driver *driver)
+{
+    return driver->protocol->relay != NULL ? GROBO_WIRING_BOARD : GROBO_WIRING_BUS;
 }

@@ -147,7 +147,7 @@ static int frame_at(const grobo_sim *sim, const uint8_t *bytes, size_t n)
     grobo_rs30x_packet packet;
     bool sum_ok;
     return sim->config.wiring == GROBO_WIRING_BUS
-               ? grobo_rs30x_peek(bytes, n, GROBO_RS30X_ACCEPT_COMMANDS, &packet, &sum_ok)
+               ? grobo_rs30x_peek(bytes, n, GROBO_ACCEPT_COMMANDS, &packet, &sum_ok)
                : grobo_board_peek(bytes, n, &frame);
 }
 
@@ -389,7 +389,7 @@ int grobo_sim_init(grobo_sim *sim, const grobo_sim_config *config, int64_t now_u
     sim->bus_byte_ns = byte_ns(sim, sim->bus_bps);
     (void)grobo_sim_set_line_bps(sim, with.baud_bps);
     grobo_board_parser_init(&sim->board, with.board_stall_us);
-    grobo_rs30x_parser_init(&sim->bus, GROBO_RS30X_ACCEPT_COMMANDS);
+    grobo_rs30x_parser_init(&sim->bus, GROBO_ACCEPT_COMMANDS);
     grobo_i_sim_seed(sim);
     for (int i = 0; i < sim->n_servos; i++) {
         init_servo(sim, i);

@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include <grobo/board.h>
 #include <grobo/bus.h>
 
 #include "tests/support/bus_peer.h"
@@ -26,7 +27,8 @@ static uint32_t next_random(uint32_t *seed)
 static void live(peer *p, uint32_t seed, int64_t origin_us)
 {
     static request r[200];
-    const grobo_bus_config config = {.wiring = seed % 2 ? GROBO_WIRING_BUS : GROBO_WIRING_BOARD,
+    const grobo_bus_config config = {.protocol =
+                                         seed % 2 ? &grobo_rs30x_protocol : &grobo_board_protocol,
                                      .overlap = seed % 3 == 0,
                                      .hold_us = 20 * MS};
     peer_init(p, &config);

@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include <grobo/board.h>
 #include <grobo/bus.h>
 
 #include "src/bus/time.h"
@@ -33,20 +34,20 @@ static void what_stood_in_the_memory_before_means_nothing(void **state)
     static grobo_bus a, b;
     uint8_t frame[FRAME];
     grobo_txn x, y;
-    int n = grobo_frame_read(GROBO_WIRING_BOARD, 1, 42, 2, frame, FRAME);
+    int n = grobo_frame_read(&grobo_board_protocol, 1, 42, 2, frame, FRAME);
     memset(&a, 0, sizeof a);
     memset(&b, 0xA5, sizeof b);
-    assert_int_equal(grobo_bus_init(&a, NULL), GROBO_OK);
-    assert_int_equal(grobo_bus_init(&b, NULL), GROBO_OK);
+    assert_int_equal(grobo_bus_init(&a, &board_line), GROBO_OK);
+    assert_int_equal(grobo_bus_init(&b, &board_line), GROBO_OK);
     assert_memory_equal(&a, &b, sizeof a);
     assert_int_equal(a.config.baud_bps, 115200);
     assert_int_equal(a.config.servo_baud_bps, 115200);
     memset(&x, 0, sizeof x);
     memset(&y, 0xA5, sizeof y);
-    assert_int_equal(grobo_txn_init(&x, GROBO_WIRING_BOARD, frame, (size_t)n), GROBO_OK);
-    assert_int_equal(grobo_txn_init(&y, GROBO_WIRING_BOARD, frame, (size_t)n), GROBO_OK);
+    assert_int_equal(grobo_txn_init(&x, &grobo_board_protocol, frame, (size_t)n), GROBO_OK);
+    assert_int_equal(grobo_txn_init(&y, &grobo_board_protocol, frame, (size_t)n), GROBO_OK);
     assert_int_equal(x.reply.kind, y.reply.kind);
-    assert_int_equal(grobo_reply_bytes(&x.reply), grobo_reply_bytes(&y.reply));
+    assert_int_equal(grobo_rs30x_reply_bytes(&x.reply), grobo_rs30x_reply_bytes(&y.reply));
     memset(&x.reply, 0, sizeof x.reply); /* what lies between its fields is nobody's */
     memset(&y.reply, 0, sizeof y.reply);
     assert_memory_equal(&x, &y, sizeof x);
@@ -60,8 +61,8 @@ static void a_line_may_be_as_slow_as_1200_bps(void **state)
     (void)state;
     grobo_bus bus;
     for (uint32_t bps = 1199; bps <= 1200; bps++) {
-        const grobo_bus_config line = {.baud_bps = bps};
-        const grobo_bus_config servos = {.servo_baud_bps = bps};
+        const grobo_bus_config line = {.protocol = &grobo_board_protocol, .baud_bps = bps};
+        const grobo_bus_config servos = {.protocol = &grobo_board_protocol, .servo_baud_bps = bps};
         int result = bps < 1200 ? GROBO_ERR_ARG : GROBO_OK;
         assert_int_equal(grobo_bus_init(&bus, &line), result);
         assert_int_equal(grobo_bus_init(&bus, &servos), result);
@@ -363,9 +364,9 @@ static void nothing_is_remembered_behind_the_last(void **state)
     } memory;
     static uint8_t frame[FRAME];
     grobo_txn txn;
-    assert_int_equal(grobo_bus_init(&memory.bus, NULL), GROBO_OK);
-    int n = grobo_frame_read(GROBO_WIRING_BOARD, 1, 42, 2, frame, FRAME);
-    assert_int_equal(grobo_txn_init(&txn, GROBO_WIRING_BOARD, frame, (size_t)n), GROBO_OK);
+    assert_int_equal(grobo_bus_init(&memory.bus, &board_line), GROBO_OK);
+    int n = grobo_frame_read(&grobo_board_protocol, 1, 42, 2, frame, FRAME);
+    assert_int_equal(grobo_txn_init(&txn, &grobo_board_protocol, frame, (size_t)n), GROBO_OK);
     txn.retries = 0;
     const grobo_bus_hold stranger = {
         .until_us = 60LL * S, .key = grobo_i_bus_key(&txn.reply), .owed = 1};
@@ -508,7 +509,7 @@ static void a_stump_of_the_echo_is_short(void **state)
     for (int some = 0; some < 2; some++) {
         peer p;
         request r;
-        const grobo_bus_config config = {.wiring = GROBO_WIRING_BUS, .echo = true};
+        const grobo_bus_config config = {.protocol = &grobo_rs30x_protocol, .echo = true};
         peer_init(&p, &config);
         submit_read(&p, &r, 3, 0, GROBO_PRIORITY_USER);
         if (some) {

@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include <grobo/board.h>
 #include <grobo/bus.h>
 
 #include "tests/support/bus_peer.h"
@@ -111,7 +112,7 @@ static void another_reply_proves_that_the_lost_one_is_lost(void **state)
 static void on_a_bus_a_servo_may_answer_after_another_one(void **state)
 {
     (void)state;
-    const grobo_bus_config config = {.margin_us = MARGIN, .wiring = GROBO_WIRING_BUS};
+    const grobo_bus_config config = {.margin_us = MARGIN, .protocol = &grobo_rs30x_protocol};
     for (int comes = 0; comes <= 1; comes++) {
         peer p;
         request a, b, c;
@@ -189,7 +190,7 @@ static void reads_go_on_while_an_ack_is_outstanding_and_clear_it(void **state)
     start(&p);
     peer_submit_ping(&p, &a, 1, 0);
     peer_submit_ping(&p, &b, 2, 0);
-    int n = grobo_frame_read(GROBO_WIRING_BOARD, 3, 42, 2, c.frame, FRAME);
+    int n = grobo_frame_read(&grobo_board_protocol, 3, 42, 2, c.frame, FRAME);
     peer_txn(&p, &c.txn, c.frame, n, GROBO_PRIORITY_SENSE);
     assert_int_equal(grobo_bus_submit(&p.bus, &c.txn), GROBO_OK);
     int64_t read_us = PING_FAILED + GROBO_BUS_QUIET_US;
@@ -345,7 +346,7 @@ static void motion_does_not_wait_for_quiet(void **state)
     const grobo_rs30x_goal goal = {2, 0, 0};
     start(&p);
     peer_submit_read(&p, &a, 1, 0);
-    int n = grobo_frame_goal(GROBO_WIRING_BOARD, &goal, b.frame, FRAME);
+    int n = grobo_frame_goal(&grobo_board_protocol, &goal, b.frame, FRAME);
     peer_run(&p, 4 * MS);
     peer_txn(&p, &b.txn, b.frame, n, GROBO_PRIORITY_MOTION);
     assert_int_equal(grobo_bus_submit(&p.bus, &b.txn), GROBO_OK);
@@ -357,7 +358,8 @@ static void motion_does_not_wait_for_quiet(void **state)
 
 static void start_echo(peer *p)
 {
-    const grobo_bus_config config = {.wiring = GROBO_WIRING_BUS, .margin_us = MARGIN, .echo = true};
+    const grobo_bus_config config = {
+        .protocol = &grobo_rs30x_protocol, .margin_us = MARGIN, .echo = true};
     peer_init(p, &config);
 }
 
@@ -394,7 +396,7 @@ static void a_write_is_over_when_its_echo_is_there(void **state)
     request r;
     const grobo_rs30x_goal goal = {2, 0, 0};
     start_echo(&p);
-    int n = grobo_frame_goal(GROBO_WIRING_BUS, &goal, r.frame, FRAME);
+    int n = grobo_frame_goal(&grobo_rs30x_protocol, &goal, r.frame, FRAME);
     peer_txn(&p, &r.txn, r.frame, n, GROBO_PRIORITY_MOTION);
     r.txn.retries = 1;
     assert_int_equal(grobo_bus_submit(&p.bus, &r.txn), GROBO_OK);

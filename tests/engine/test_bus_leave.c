@@ -9,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include <grobo/board.h>
 #include <grobo/bus.h>
 
 #include "tests/support/bus_peer.h"

@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include <grobo/board.h>
 #include <grobo/bus.h>
 
 #include "tests/support/bus_peer.h"
@@ -17,8 +18,10 @@ enum { BUS_READ_US = 695 + 100 + 869 }; /* 8 bytes, the return delay, 10 bytes *
 
 static void start(peer *p, bool echo)
 {
-    const grobo_bus_config config = {
-        .wiring = echo ? GROBO_WIRING_BUS : GROBO_WIRING_BOARD, .margin_us = MARGIN, .echo = echo};
+    const grobo_bus_config config = {.protocol =
+                                         echo ? &grobo_rs30x_protocol : &grobo_board_protocol,
+                                     .margin_us = MARGIN,
+                                     .echo = echo};
     peer_init(p, &config);
 }
 
@@ -269,7 +272,7 @@ typedef struct polling {
     int64_t bare_us; /* of a loop that waits for each reply, whenever it comes */
 } polling;
 
-static void polled(void *ctx, grobo_txn *txn, int result, const grobo_rs30x_packet *reply)
+static void polled(void *ctx, grobo_txn *txn, int result, const grobo_packet *reply)
 {
     polling *p = ctx;
     (void)reply;
@@ -314,8 +317,8 @@ static double poll(const grobo_bus_config *config, uint32_t late_us, bool lose)
     int64_t begun_us = 0;
     memset(&p, 0, sizeof p);
     assert_int_equal(grobo_bus_init(&p.bus, config), GROBO_OK);
-    int n = grobo_frame_read(config->wiring, 1, 42, 2, p.r.frame, sizeof p.r.frame);
-    assert_int_equal(grobo_txn_init(&p.r.txn, config->wiring, p.r.frame, (size_t)n), GROBO_OK);
+    int n = grobo_frame_read(config->protocol, 1, 42, 2, p.r.frame, sizeof p.r.frame);
+    assert_int_equal(grobo_txn_init(&p.r.txn, config->protocol, p.r.frame, (size_t)n), GROBO_OK);
     p.r.txn.done = polled;
     p.r.txn.ctx = &p;
     assert_int_equal(grobo_bus_submit(&p.bus, &p.r.txn), GROBO_OK);
@@ -340,9 +343,9 @@ static void polling_keeps_up_with_a_bare_loop_where_replies_are_late(void **stat
 {
     (void)state;
     static const grobo_bus_config lines[] = {
-        {.wiring = GROBO_WIRING_BOARD},
-        {.wiring = GROBO_WIRING_BUS},
-        {.wiring = GROBO_WIRING_BUS, .baud_bps = 460800},
+        {.protocol = &grobo_board_protocol},
+        {.protocol = &grobo_rs30x_protocol},
+        {.protocol = &grobo_rs30x_protocol, .baud_bps = 460800},
     };
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
         static const uint32_t late_us[] = {3 * MS, 3200, 5 * MS, 10 * MS, 20 * MS};
@@ -359,7 +362,7 @@ static void polling_keeps_up_with_a_bare_loop_where_replies_are_late(void **stat
 static void a_lost_reply_costs_what_the_line_has_taught(void **state)
 {
     (void)state;
-    const grobo_bus_config line = {.wiring = GROBO_WIRING_BUS, .baud_bps = 460800};
+    const grobo_bus_config line = {.protocol = &grobo_rs30x_protocol, .baud_bps = 460800};
     double part = poll(&line, 0, true);
     print_message("# 1 reply of %d lost: %.3f of a bare loop\n", LATE_EVERY, part);
     assert_true(part > 0.6);

@@ -14,6 +14,8 @@
 
 #include <cmocka.h>
 
+#include "src/bus/framer.h"
+#include <grobo/board.h>
 #include <grobo/bus.h>
 
 enum {
@@ -134,7 +136,7 @@ static void submit(soak *s, request *r)
     assert_int_equal(grobo_bus_submit(&s->bus, &r->txn), GROBO_OK);
 }
 
-static void ended(void *ctx, grobo_txn *txn, int result, const grobo_rs30x_packet *reply)
+static void ended(void *ctx, grobo_txn *txn, int result, const grobo_packet *reply)
 {
     soak *s = ctx;
     request *r = (request *)txn; /* its first member */
@@ -147,7 +149,7 @@ static void ended(void *ctx, grobo_txn *txn, int result, const grobo_rs30x_packe
         } else {
             assert_int_equal(reply->data[0] | reply->data[1] << 8, r->number & 0xFFFF);
         }
-        s->believed_bytes += grobo_reply_bytes(&txn->reply);
+        s->believed_bytes += grobo_rs30x_reply_bytes(&txn->reply);
     }
     if (r != &s->pose && draw(s, 8) != 0) {
         submit(s, r);
@@ -161,8 +163,8 @@ static void make_request(soak *s, request *r)
     int n = draw(s, 4) == 0
                 ? grobo_rs30x_ping(id, GROBO_RS30X_PING_0_0_0, packet, sizeof packet)
                 : grobo_rs30x_read(id, 42, draw(s, 2) == 0 ? 2 : 18, packet, sizeof packet);
-    n = grobo_frame_wrap(GROBO_WIRING_BOARD, packet, (size_t)n, r->frame, FRAME);
-    assert_int_equal(grobo_txn_init(&r->txn, GROBO_WIRING_BOARD, r->frame, (size_t)n), GROBO_OK);
+    n = grobo_frame_wrap(&grobo_board_protocol, packet, (size_t)n, r->frame, FRAME);
+    assert_int_equal(grobo_txn_init(&r->txn, &grobo_board_protocol, r->frame, (size_t)n), GROBO_OK);
     r->txn.retries = (uint8_t)draw(s, 3);
     r->txn.priority = draw(s, 2) == 0 ? GROBO_PRIORITY_USER : GROBO_PRIORITY_SENSE;
     r->txn.done = ended;
@@ -172,9 +174,10 @@ static void make_request(soak *s, request *r)
 static void make_pose(soak *s)
 {
     const grobo_rs30x_goal goals[] = {{1, 0, 2}, {2, 0, 2}, {3, 0, 2}, {4, 0, 2}};
-    int n = grobo_frame_goals(GROBO_WIRING_BOARD, goals, 4, s->pose.frame, FRAME);
+    int n = grobo_frame_goals(&grobo_board_protocol, goals, 4, s->pose.frame, FRAME);
     grobo_txn *txn = &s->pose.txn;
-    assert_int_equal(grobo_txn_init(txn, GROBO_WIRING_BOARD, s->pose.frame, (size_t)n), GROBO_OK);
+    assert_int_equal(grobo_txn_init(txn, &grobo_board_protocol, s->pose.frame, (size_t)n),
+                     GROBO_OK);
     txn->priority = GROBO_PRIORITY_MOTION;
     txn->done = ended;
     txn->ctx = s;
@@ -208,7 +211,7 @@ static void deliver(soak *s)
 static void check_books(const soak *s)
 {
     const grobo_bus_stats *b = &s->bus.stats;
-    size_t pending = grobo_rs30x_parser_pending(&s->bus.parser);
+    size_t pending = grobo_i_framer_pending(&s->bus.framer);
     assert_int_equal(b->rx_bytes, s->believed_bytes + b->late_bytes + b->resync_bytes + pending);
     assert_int_equal(s->submitted - s->ended, grobo_bus_pending(&s->bus));
     assert_true(b->tx_frames >= b->retries);
@@ -266,7 +269,8 @@ static void no_fault_breaks_the_bus(void **state)
     for (uint64_t seed = 1; seed <= SEEDS; seed++) {
         memset(&s, 0, sizeof s);
         s.random = seed * 0x9E3779B97F4A7C15u;
-        assert_int_equal(grobo_bus_init(&s.bus, NULL), GROBO_OK);
+        const grobo_bus_config line = {.protocol = &grobo_board_protocol};
+        assert_int_equal(grobo_bus_init(&s.bus, &line), GROBO_OK);
         make_pose(&s);
         for (int i = 0; i < REQUESTS; i++) {
             make_request(&s, &s.requests[i]);

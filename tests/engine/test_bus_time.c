@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include <grobo/board.h>
 #include <grobo/bus.h>
 
 #include "tests/support/bus_peer.h"
@@ -20,7 +21,7 @@ static void make_pose(peer *p, request *r)
     for (int i = 0; i < JOINTS; i++) {
         goals[i] = (grobo_rs30x_goal){(uint8_t)(i + 1), 0, 2};
     }
-    int n = grobo_frame_goals(p->bus.config.wiring, goals, JOINTS, r->frame, FRAME);
+    int n = grobo_frame_goals(p->bus.config.protocol, goals, JOINTS, r->frame, FRAME);
     peer_txn(p, &r->txn, r->frame, n, GROBO_PRIORITY_MOTION);
 }
 
@@ -66,7 +67,7 @@ static void other_costs_follow_the_same_rule(void **state)
     assert_int_equal(cost.total_us, 261);
 
     const grobo_bus_config fast = {
-        .wiring = GROBO_WIRING_BUS, .baud_bps = 460800, .return_delay_us = 1000};
+        .protocol = &grobo_rs30x_protocol, .baud_bps = 460800, .return_delay_us = 1000};
     peer_init(&p, &fast);
     peer_read(&p, &r, 1, 18, GROBO_PRIORITY_SENSE);
     grobo_bus_cost_of(&p.bus, &r.txn, &cost);
@@ -299,7 +300,7 @@ static void patience_has_its_limits(void **state)
 static void a_patient_read_delays_no_motion_frame(void **state)
 {
     (void)state;
-    static const grobo_bus_config on_bus = {.wiring = GROBO_WIRING_BUS};
+    static const grobo_bus_config on_bus = {.protocol = &grobo_rs30x_protocol};
     for (int i = 0; i < 108; i++) {
         bool bus = i % 3 == 0;
         bool announced = i % 3 != 1;

@@ -33,7 +33,7 @@ static int raw_goal(int joint, double deg, int time_ms)
     uint8_t frame[GROBO_RS30X_PACKET_MAX_BYTES];
     grobo_rs30x_goal goal = {(uint8_t)joint_of(joint)->motor, (int16_t)lround(deg * 10),
                              (uint16_t)(time_ms / 10)};
-    int n = grobo_frame_goals(rig_wiring, &goal, 1, frame, sizeof frame);
+    int n = grobo_frame_goals(grobo_wiring_protocol(rig_wiring), &goal, 1, frame, sizeof frame);
     assert_true(n > 0);
     return grobo_robot_raw(&rig.robot, frame, (size_t)n, rig.now_us);
 }
@@ -41,8 +41,8 @@ static int raw_goal(int joint, double deg, int time_ms)
 static int raw_torque(int joint, grobo_torque torque)
 {
     uint8_t frame[GROBO_RS30X_PACKET_MAX_BYTES];
-    int n = grobo_frame_torque(rig_wiring, (uint8_t)joint_of(joint)->motor, torque, frame,
-                               sizeof frame);
+    int n = grobo_frame_torque(grobo_wiring_protocol(rig_wiring), (uint8_t)joint_of(joint)->motor,
+                               torque, frame, sizeof frame);
     assert_true(n > 0);
     return grobo_robot_raw(&rig.robot, frame, (size_t)n, rig.now_us);
 }

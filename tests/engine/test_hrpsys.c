@@ -8,6 +8,7 @@
 #include <math.h>
 #include <string.h>
 
+#include <grobo/board.h>
 #include <grobo/hrpsys.h>
 
 #include "tests/support/rig.h"
@@ -73,7 +74,7 @@ static void all_joints_are_called_all_by_any_model(void **state)
     grobo_joint_mask joints = 0;
     grobo_model model = grobo_gr001_model;
     model.n_groups = 0;
-    assert_int_equal(grobo_rs30x_driver_init(&driver, &model, GROBO_WIRING_BUS), 0);
+    assert_int_equal(grobo_rs30x_driver_init(&driver, &model, &grobo_rs30x_protocol), 0);
     assert_int_equal(grobo_robot_init(&robot, &driver, NULL, NULL, 0), 0);
     grobo_hrpsys_init(&hrpsys, &robot);
     assert_int_equal(grobo_hrpsys_find(&hrpsys, "All", &joints), 20);

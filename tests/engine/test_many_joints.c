@@ -123,7 +123,7 @@ static int raw_goal(double deg, uint16_t time_cs)
 {
     uint8_t frame[GROBO_FRAME_MAX_BYTES];
     const grobo_rs30x_goal goal = {LAST + 1, (int16_t)lround(deg * 10), time_cs};
-    int n = grobo_frame_goal(rig_wiring, &goal, frame, sizeof frame);
+    int n = grobo_frame_goal(grobo_wiring_protocol(rig_wiring), &goal, frame, sizeof frame);
     return grobo_robot_raw(&rig.robot, frame, (size_t)n, rig.now_us);
 }
 

@@ -51,10 +51,12 @@ static void send_raw(void)
 {
     uint8_t frame[GROBO_RS30X_PACKET_MAX_BYTES];
     grobo_rs30x_goal goal = {NECK_ID, (int16_t)((int)pick(800) - 400), (uint16_t)(1 + pick(200))};
-    int n = pick(3) == 0   ? grobo_frame_read(rig_wiring, R_ELBOW_ID, 42, 2, frame, sizeof frame)
-            : pick(3) == 0 ? grobo_frame_torque(rig_wiring, NECK_ID, (grobo_torque)pick(3), frame,
-                                                sizeof frame)
-                           : grobo_frame_goals(rig_wiring, &goal, 1, frame, sizeof frame);
+    int n = pick(3) == 0   ? grobo_frame_read(grobo_wiring_protocol(rig_wiring), R_ELBOW_ID, 42, 2,
+                                              frame, sizeof frame)
+            : pick(3) == 0 ? grobo_frame_torque(grobo_wiring_protocol(rig_wiring), NECK_ID,
+                                                (grobo_torque)pick(3), frame, sizeof frame)
+                           : grobo_frame_goals(grobo_wiring_protocol(rig_wiring), &goal, 1, frame,
+                                               sizeof frame);
     assert_true(n > 0);
     (void)grobo_robot_raw(&rig.robot, frame, (size_t)n, rig.now_us);
 }

@@ -82,7 +82,7 @@ static int sense(const grobo_driver *self, void *ctx, int joint, grobo_sense_kin
     return inner->sense(inner, NULL, joint, kind, exchange);
 }
 
-static int parse(const grobo_driver *self, void *ctx, int joint, const grobo_rs30x_packet *reply,
+static int parse(const grobo_driver *self, void *ctx, int joint, const grobo_packet *reply,
                  grobo_joint_state *state)
 {
     count(self, ctx, 4);
@@ -181,7 +181,8 @@ static void every_function_gets_the_context(void **state)
     rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
     grobo_register_io io = {R_ELBOW_ID, 42, 2, NULL};
     rig_expect(&rig, grobo_robot_registers(&rig.robot, &io, rig.now_us), GROBO_OK);
-    int n = grobo_frame_read(rig_wiring, NECK_ID, 42, 2, frame, sizeof frame);
+    int n =
+        grobo_frame_read(grobo_wiring_protocol(rig_wiring), NECK_ID, 42, 2, frame, sizeof frame);
     rig_expect(&rig, grobo_robot_raw(&rig.robot, frame, (size_t)n, rig.now_us), GROBO_OK);
     rig_run(&rig, 1000000);
     rig_expect(&rig, grobo_robot_command(&rig.robot, NECK_ID, GROBO_SERVO_REBOOT, rig.now_us),

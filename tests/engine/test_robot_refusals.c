@@ -157,7 +157,8 @@ static int do_enqueue(void)
 static int do_raw(void)
 {
     uint8_t frame[GROBO_RS30X_PACKET_MAX_BYTES];
-    int n = grobo_frame_read(rig_wiring, NECK_ID, 42, 2, frame, sizeof frame);
+    int n =
+        grobo_frame_read(grobo_wiring_protocol(rig_wiring), NECK_ID, 42, 2, frame, sizeof frame);
     return grobo_robot_raw(&rig.robot, frame, (size_t)n, rig.now_us);
 }
 
@@ -165,7 +166,7 @@ static int do_raw_goal(void)
 {
     uint8_t frame[GROBO_RS30X_PACKET_MAX_BYTES];
     const grobo_rs30x_goal goal = {R_ELBOW_ID, 0, 300};
-    int n = grobo_frame_goals(rig_wiring, &goal, 1, frame, sizeof frame);
+    int n = grobo_frame_goals(grobo_wiring_protocol(rig_wiring), &goal, 1, frame, sizeof frame);
     return grobo_robot_raw(&rig.robot, frame, (size_t)n, rig.now_us);
 }
 

@@ -157,7 +157,7 @@ static int tell_if_broken(void **state)
     if (!r->over) {
         print_message("# A rule is broken at %.6f s, %s wiring%s. The last frames and requests:\n",
                       (double)rig.now_us / 1e6,
-                      rig.driver->wiring == GROBO_WIRING_BOARD ? "board" : "bus",
+                      grobo_driver_wiring(rig.driver) == GROBO_WIRING_BOARD ? "board" : "bus",
                       rig.sim.config.jump_on_torque ? ", servos that jump" : "");
         chronicle_print(&user.judge.notes);
         print_message("# It is repeated by: make soak SEEDS=1 FROM=%u LINE=%d MINUTES=%u\n",

@@ -232,7 +232,7 @@ static void raw_reads_of_any_register_pass(void **state)
     rig_start(&rig, &quiet, NULL);
     for (uint8_t at = 0; at < 54; at++) {
         uint8_t frame[16];
-        int n = grobo_frame_read(GROBO_WIRING_BOARD, NECK_ID, at, 1, frame, sizeof frame);
+        int n = grobo_frame_read(&grobo_board_protocol, NECK_ID, at, 1, frame, sizeof frame);
         rig_expect(&rig, grobo_robot_raw(&rig.robot, frame, (size_t)n, rig.now_us), GROBO_OK);
     }
 }

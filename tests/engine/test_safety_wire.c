@@ -59,7 +59,7 @@ static void a_raw_goal_that_nobody_waits_for_does_not_leave(void **state)
     uint8_t frame[GROBO_FRAME_MAX_BYTES];
     const grobo_rs30x_goal goal = {NECK_ID, 0, 200};
     play_on_full_line(&quiet);
-    int n = grobo_frame_goal(rig.driver->wiring, &goal, frame, sizeof frame);
+    int n = grobo_frame_goal(rig.driver->protocol, &goal, frame, sizeof frame);
     int64_t until_us = rig.now_us + 1000000;
     int number = grobo_robot_raw_until(&rig.robot, frame, (size_t)n, until_us, rig.now_us);
     rig_expect(&rig, number, GROBO_ERR_STALE);

@@ -23,7 +23,7 @@ static int raw_goal(int id, int tenths, int units)
 {
     uint8_t frame[GROBO_RS30X_PACKET_MAX_BYTES];
     grobo_rs30x_goal goal = {(uint8_t)id, (int16_t)tenths, (uint16_t)units};
-    int n = grobo_frame_goals(rig_wiring, &goal, 1, frame, sizeof frame);
+    int n = grobo_frame_goals(grobo_wiring_protocol(rig_wiring), &goal, 1, frame, sizeof frame);
     assert_true(n > 0);
     return grobo_robot_raw(&rig.robot, frame, (size_t)n, rig.now_us);
 }
@@ -31,7 +31,8 @@ static int raw_goal(int id, int tenths, int units)
 static int raw_torque(int id, grobo_torque torque)
 {
     uint8_t frame[GROBO_RS30X_PACKET_MAX_BYTES];
-    int n = grobo_frame_torque(rig_wiring, (uint8_t)id, torque, frame, sizeof frame);
+    int n = grobo_frame_torque(grobo_wiring_protocol(rig_wiring), (uint8_t)id, torque, frame,
+                               sizeof frame);
     assert_true(n > 0);
     return grobo_robot_raw(&rig.robot, frame, (size_t)n, rig.now_us);
 }

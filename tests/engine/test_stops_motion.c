@@ -117,7 +117,7 @@ static int raw_goal(int joint, int16_t ddeg, uint16_t time_cs)
     uint8_t frame[GROBO_FRAME_MAX_BYTES];
     const grobo_rs30x_goal goal = {rig.driver->model->joints[joint].motor, ddeg, time_cs};
     int n = grobo_rs30x_write_goal(&goal, packet, sizeof packet);
-    n = grobo_frame_wrap(rig.driver->wiring, packet, (size_t)n, frame, sizeof frame);
+    n = grobo_frame_wrap(rig.driver->protocol, packet, (size_t)n, frame, sizeof frame);
     return grobo_robot_raw(&rig.robot, frame, (size_t)n, rig.now_us);
 }
 
@@ -484,7 +484,7 @@ static void a_trip_ends_a_raw_job_that_waits_for_the_end_of_a_motion(void **stat
         int joint = grobo_model_joint_of_motor(rig.driver->model, j + 1);
         goals[j].pos_ddeg = (int16_t)lround(rig_angle_deg(&rig, joint) * 10);
     }
-    int n = grobo_frame_goals(rig_wiring, goals, 20, frame, sizeof frame);
+    int n = grobo_frame_goals(grobo_wiring_protocol(rig_wiring), goals, 20, frame, sizeof frame);
     assert_true(n > 0);
     int number = grobo_robot_raw(&rig.robot, frame, (size_t)n, rig.now_us);
     assert_true(number > 0);
@@ -509,7 +509,8 @@ static void a_raw_goal_is_not_tried_again_behind_a_later_target(void **state)
             GROBO_RS30X_SHORT, NECK_ID, GROBO_RS30X_WANT_ACK, GROBO_RS30X_GOAL, 4, 1, data, 4};
         rig_start_at(&rig, 0, &quiet);
         int n = grobo_rs30x_build(&goal, packet, sizeof packet);
-        n = grobo_frame_wrap(rig_wiring, packet, (size_t)n, frame, sizeof frame);
+        n = grobo_frame_wrap(grobo_wiring_protocol(rig_wiring), packet, (size_t)n, frame,
+                             sizeof frame);
         assert_true(n > 0);
         assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_MUTE), 0);
         int number = grobo_robot_raw(&rig.robot, frame, (size_t)n, rig.now_us);

@@ -173,8 +173,9 @@ static void play_at_watched_rate(uint32_t baud_bps, const grobo_budget *budget)
     rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
     int64_t unread_us = longest_unread(8LL * SECOND_US);
     print_message("# %s, %u bps, %d joints: %d Hz, each read every %lld ms\n",
-                  driver->wiring == GROBO_WIRING_BUS ? "bus" : "board", (unsigned)baud_bps,
-                  driver->model->n_joints, budget->watched_hz, (long long)unread_us / 1000);
+                  grobo_driver_wiring(driver) == GROBO_WIRING_BUS ? "bus" : "board",
+                  (unsigned)baud_bps, driver->model->n_joints, budget->watched_hz,
+                  (long long)unread_us / 1000);
     assert_true(unread_us <= GROBO_WATCH_US);
 }
 

@@ -9,6 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/bus/framer.h"
+#include <grobo/board.h>
 #include <grobo/bus.h>
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
@@ -24,14 +26,14 @@ typedef struct request {
 
 typedef struct run {
     grobo_bus bus;
-    grobo_wiring wiring;
+    const grobo_protocol *protocol;
     int64_t now_us;
     request requests[REQUESTS];
     uint32_t submitted, ended;
     size_t believed_bytes;
 } run;
 
-static void ended(void *ctx, grobo_txn *txn, int result, const grobo_rs30x_packet *reply)
+static void ended(void *ctx, grobo_txn *txn, int result, const grobo_packet *reply)
 {
     run *r = ctx;
     r->ended++;
@@ -39,8 +41,8 @@ static void ended(void *ctx, grobo_txn *txn, int result, const grobo_rs30x_packe
     CHECK(result <= 0);
     if (reply != NULL) {
         size_t size =
-            reply->kind == GROBO_RS30X_RETURN ? reply->data_bytes + GROBO_RS30X_OVERHEAD_BYTES : 1;
-        CHECK(result == GROBO_ERR_NACK || size == grobo_reply_bytes(&txn->reply));
+            reply->kind == GROBO_PACKET_RETURN ? reply->data_bytes + GROBO_RS30X_OVERHEAD_BYTES : 1;
+        CHECK(result == GROBO_ERR_NACK || size == grobo_rs30x_reply_bytes(&txn->reply));
         r->believed_bytes += size;
     }
     if (result == GROBO_ERR_TIMEOUT && txn->retries == 2) { /* once more, from the callback */
@@ -72,8 +74,8 @@ static void submit(run *r, uint8_t number)
         n = grobo_rs30x_read(id, 42, 2, packet, sizeof packet);
         break;
     }
-    n = grobo_frame_wrap(r->wiring, packet, (size_t)n, q->frame, FRAME);
-    CHECK(grobo_txn_init(&q->txn, r->wiring, q->frame, (size_t)n) == GROBO_OK);
+    n = grobo_frame_wrap(r->protocol, packet, (size_t)n, q->frame, FRAME);
+    CHECK(grobo_txn_init(&q->txn, r->protocol, q->frame, (size_t)n) == GROBO_OK);
     q->txn.priority = (grobo_priority)(number >> 3 & 3);
     q->txn.start_by_us = number % 11 == 0 ? r->now_us + 5000 : 0;
     q->txn.done = ended;
@@ -93,7 +95,7 @@ static void answer(run *r, size_t n)
     }
     size_t size = 0;
     if (r->bus.phase == GROBO_BUS_ECHOING) {
-        size_t had = grobo_rs30x_parser_pending(&r->bus.parser) % txn->frame_bytes;
+        size_t had = grobo_i_framer_pending(&r->bus.framer) % txn->frame_bytes;
         size = txn->frame_bytes - had;
         memcpy(b, txn->frame + had, size);
     }
@@ -114,7 +116,7 @@ static void answer(run *r, size_t n)
 static void check_books(const run *r)
 {
     const grobo_bus_stats *s = &r->bus.stats;
-    size_t pending = grobo_rs30x_parser_pending(&r->bus.parser);
+    size_t pending = grobo_i_framer_pending(&r->bus.framer);
     size_t known = r->believed_bytes + s->late_bytes + s->resync_bytes + pending;
     CHECK(r->bus.config.echo ? known <= s->rx_bytes : known == s->rx_bytes);
     CHECK(r->submitted - r->ended == (uint32_t)grobo_bus_pending(&r->bus));
@@ -175,9 +177,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         return 0;
     }
     memset(&r, 0, sizeof r);
-    r.wiring = (data[0] & 1) != 0 ? GROBO_WIRING_BUS : GROBO_WIRING_BOARD;
+    r.protocol = (data[0] & 1) != 0 ? &grobo_rs30x_protocol : &grobo_board_protocol;
     const grobo_bus_config config = {
-        .wiring = r.wiring, .echo = (data[0] & 3) == 3, .overlap = (data[0] & 4) != 0};
+        .protocol = r.protocol, .echo = (data[0] & 3) == 3, .overlap = (data[0] & 4) != 0};
     CHECK(grobo_bus_init(&r.bus, &config) == GROBO_OK);
     for (size_t i = 1; i + 1 < size; i += 2) {
         operate(&r, data[i], data[i + 1]);

@@ -106,7 +106,7 @@ static void a_simulator_in_the_process(void **state)
     assert_string_equal(grobo_session_device(session), "sim");
     const grobo_driver *driver = grobo_robot_driver(grobo_session_robot(session));
     assert_ptr_equal(driver, grobo_gr001_driver(GROBO_WIRING_BOARD));
-    assert_int_equal(driver->wiring, GROBO_WIRING_BOARD);
+    assert_int_equal(grobo_driver_wiring(driver), GROBO_WIRING_BOARD);
     assert_string_equal(driver->name, "GR001");
     assert_int_equal(grobo_session_open(session), GROBO_ERR_STATE);
     assert_it_works();

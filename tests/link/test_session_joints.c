@@ -9,6 +9,7 @@
 #include <cmocka.h>
 #include <event2/event.h>
 
+#include <grobo/board.h>
 #include <grobo/session.h>
 
 #include "tests/support/loop.h"
@@ -50,7 +51,8 @@ static void move_all(const grobo_model *model, grobo_wiring wiring)
                                          .sim = &sim};
 
     ends = 0;
-    assert_int_equal(grobo_rs30x_driver_init(&driver, model, wiring), GROBO_OK);
+    assert_int_equal(grobo_rs30x_driver_init(&driver, model, grobo_wiring_protocol(wiring)),
+                     GROBO_OK);
     assert_int_equal(grobo_session_new(&config, &session), GROBO_OK);
     assert_int_equal(grobo_session_open(session), GROBO_OK);
     loop_run_until(base, &ends, 1);

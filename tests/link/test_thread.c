@@ -36,7 +36,7 @@ static void name_and_joints(void **state)
         joints[j] = grobo_gr001_model.joints[j];
         joints[j].mirror = (uint8_t)j;
     }
-    assert_int_equal(grobo_rs30x_driver_init(&driver, &model, GROBO_WIRING_BUS), GROBO_OK);
+    assert_int_equal(grobo_rs30x_driver_init(&driver, &model, &grobo_rs30x_protocol), GROBO_OK);
     const grobo_control_config config = {
         .name = "Robin", .session = {.device = GROBO_DEVICE_SIM, .driver = &driver}};
     assert_int_equal(grobo_control_new(&config, &leg), GROBO_OK);

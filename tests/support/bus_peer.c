@@ -7,13 +7,19 @@
 
 #include <cmocka.h>
 
+const grobo_bus_config board_line = {.protocol = &grobo_board_protocol};
+
 void peer_init(peer *p, const grobo_bus_config *config)
 {
+    grobo_bus_config line = config != NULL ? *config : board_line;
+    if (line.protocol == NULL) {
+        line.protocol = board_line.protocol;
+    }
     memset(p, 0, sizeof *p);
-    assert_int_equal(grobo_bus_init(&p->bus, config), GROBO_OK);
+    assert_int_equal(grobo_bus_init(&p->bus, &line), GROBO_OK);
 }
 
-static void written_down(void *ctx, grobo_txn *txn, int result, const grobo_rs30x_packet *reply)
+static void written_down(void *ctx, grobo_txn *txn, int result, const grobo_packet *reply)
 {
     peer *p = ctx;
     assert_true(p->ended_count < PEER_LOG_MAX);
@@ -31,8 +37,8 @@ static void written_down(void *ctx, grobo_txn *txn, int result, const grobo_rs30
 void peer_txn(peer *p, grobo_txn *txn, const uint8_t *frame, int n, grobo_priority priority)
 {
     assert_true(n > 0);
-    grobo_wiring wiring = p->bus.config.wiring;
-    assert_int_equal(grobo_txn_init(txn, wiring, frame, (size_t)n), GROBO_OK);
+    const grobo_protocol *protocol = p->bus.config.protocol;
+    assert_int_equal(grobo_txn_init(txn, protocol, frame, (size_t)n), GROBO_OK);
     txn->priority = priority;
     txn->done = written_down;
     txn->ctx = p;
@@ -40,7 +46,7 @@ void peer_txn(peer *p, grobo_txn *txn, const uint8_t *frame, int n, grobo_priori
 
 void peer_read(peer *p, request *r, uint8_t id, uint8_t bytes, grobo_priority priority)
 {
-    int n = grobo_frame_read(p->bus.config.wiring, id, 42, bytes, r->frame, sizeof r->frame);
+    int n = grobo_frame_read(p->bus.config.protocol, id, 42, bytes, r->frame, sizeof r->frame);
     peer_txn(p, &r->txn, r->frame, n, priority);
 }
 
@@ -48,7 +54,7 @@ void peer_submit_ping(peer *p, request *r, uint8_t id, uint8_t retries)
 {
     uint8_t packet[16];
     int n = grobo_rs30x_ping(id, GROBO_RS30X_PING_FF_0_0, packet, sizeof packet);
-    n = grobo_frame_wrap(p->bus.config.wiring, packet, (size_t)n, r->frame, sizeof r->frame);
+    n = grobo_frame_wrap(p->bus.config.protocol, packet, (size_t)n, r->frame, sizeof r->frame);
     peer_txn(p, &r->txn, r->frame, n, GROBO_PRIORITY_USER);
     r->txn.retries = retries;
     assert_int_equal(grobo_bus_submit(&p->bus, &r->txn), GROBO_OK);
@@ -64,7 +70,7 @@ void peer_submit_read(peer *p, request *r, uint8_t id, uint8_t retries)
 void peer_submit_goal(peer *p, request *r, uint8_t id, grobo_priority priority)
 {
     const grobo_rs30x_goal goal = {id, 0, 0};
-    int n = grobo_frame_goal(p->bus.config.wiring, &goal, r->frame, sizeof r->frame);
+    int n = grobo_frame_goal(p->bus.config.protocol, &goal, r->frame, sizeof r->frame);
     peer_txn(p, &r->txn, r->frame, n, priority);
     assert_int_equal(grobo_bus_submit(&p->bus, &r->txn), GROBO_OK);
 }
@@ -107,7 +113,7 @@ static void send_next(peer *p)
         return;
     }
     assert_true(p->sent_count < PEER_LOG_MAX);
-    bool board = p->bus.config.wiring == GROBO_WIRING_BOARD;
+    bool board = p->bus.config.protocol == &grobo_board_protocol;
     uint8_t id = board ? (n > 4 ? b[4] : 0) : b[2];
     p->sent[p->sent_count++] = (peer_sent){p->now_us, id, b[0]};
     answer(p, id);

@@ -6,7 +6,11 @@
 #ifndef GROBO_TEST_BUS_PEER_H
 #define GROBO_TEST_BUS_PEER_H
 
+#include <grobo/board.h>
 #include <grobo/bus.h>
+
+/* Through the board, everything else by default. */
+extern const grobo_bus_config board_line;
 
 enum { PEER_LOG_MAX = 256, PEER_CHUNKS_MAX = 64, PEER_CHUNK_BYTES = 160 };
 

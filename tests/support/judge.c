@@ -94,7 +94,9 @@ static bool same(const judge_raw *raw, const uint8_t *bytes, size_t n)
 static const uint8_t *packet_of(const judge *w, const uint8_t *bytes)
 {
     bool relays = bytes[0] == 0x53 || bytes[0] == 0x54;
-    return w->rig->driver->wiring == GROBO_WIRING_BUS ? bytes : relays ? bytes + 2 : NULL;
+    return grobo_driver_wiring(w->rig->driver) == GROBO_WIRING_BUS ? bytes
+           : relays                                                ? bytes + 2
+                                                                   : NULL;
 }
 
 static bool is_question(const judge *w, const uint8_t *bytes)
@@ -303,7 +305,7 @@ static void check_estop_first(judge *w, const uint8_t *packet)
 /* How long a frame is on its way to the servos: the board takes it whole before it relays it. */
 static int64_t wire_us(const judge *w, size_t n)
 {
-    bool relayed = w->rig->driver->wiring == GROBO_WIRING_BOARD;
+    bool relayed = grobo_driver_wiring(w->rig->driver) == GROBO_WIRING_BOARD;
     return (int64_t)(relayed ? 2 * n - GROBO_BOARD_HEADER_BYTES : n) * 10 * 1000000 / BAUD_BPS;
 }
 

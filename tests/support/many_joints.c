@@ -8,6 +8,8 @@
 
 #include <cmocka.h>
 
+#include <grobo/board.h>
+
 grobo_driver *many_joints(grobo_wiring wiring, int n)
 {
     static char names[GROBO_JOINTS_MAX][8];
@@ -28,6 +30,6 @@ grobo_driver *many_joints(grobo_wiring wiring, int n)
     model.joints = joints;
     model.n_groups = 0;
     model.n_joints = (uint8_t)n;
-    assert_int_equal(grobo_rs30x_driver_init(&driver, &model, wiring), 0);
+    assert_int_equal(grobo_rs30x_driver_init(&driver, &model, grobo_wiring_protocol(wiring)), 0);
     return &driver;
 }

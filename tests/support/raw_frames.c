@@ -30,7 +30,7 @@ static int ask(grobo_test_rig *rig, int size)
 {
     uint8_t frame[GROBO_FRAME_MAX_BYTES];
     remember(size);
-    int n = grobo_frame_wrap(rig->driver->wiring, packet.bytes, packet.size, frame, sizeof frame);
+    int n = grobo_frame_wrap(rig->driver->protocol, packet.bytes, packet.size, frame, sizeof frame);
     assert_true(n > 0);
     return grobo_robot_raw(&rig->robot, frame, (size_t)n, rig->now_us);
 }

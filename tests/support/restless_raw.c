@@ -20,7 +20,7 @@ static void send_raw(restless *u, const uint8_t *packet, int n, restless_effect 
 {
     uint8_t frame[GROBO_FRAME_MAX_BYTES];
     assert_true(n > 0);
-    if (u->rig->driver->wiring == GROBO_WIRING_BOARD) {
+    if (grobo_driver_wiring(u->rig->driver) == GROBO_WIRING_BOARD) {
         n = grobo_board_relay(packet, (size_t)n, frame, sizeof frame);
         assert_true(n > 0);
         packet = frame;

@@ -216,7 +216,7 @@ static void check_packet(grobo_test_rig *rig, const uint8_t *p, size_t n)
 
 static void check_frame(grobo_test_rig *rig, const uint8_t *bytes, size_t n)
 {
-    if (rig->driver->wiring == GROBO_WIRING_BUS) {
+    if (grobo_driver_wiring(rig->driver) == GROBO_WIRING_BUS) {
         check_packet(rig, bytes, n);
     } else if (bytes[0] == 0x53 || bytes[0] == 0x54) {
         check_packet(rig, bytes + 2, n - 2 - (bytes[0] == 0x54));
@@ -274,7 +274,7 @@ void rig_start_driver(grobo_test_rig *rig, const grobo_driver *driver,
     if (sim_config.model == NULL) {
         sim_config.model = driver->model;
     }
-    sim_config.wiring = driver->wiring;
+    sim_config.wiring = grobo_driver_wiring(driver);
     sim_config.hook = note_sim;
     sim_config.hook_ctx = rig;
     rig->driver = driver;

@@ -6,6 +6,7 @@
 #ifndef GROBO_TEST_RIG_H
 #define GROBO_TEST_RIG_H
 
+#include <grobo/board.h>
 #include <grobo/robot.h>
 #include <grobo/sim.h>
 

@@ -10,6 +10,7 @@
 #ifndef GROBO_TEST_WITNESS_H
 #define GROBO_TEST_WITNESS_H
 
+#include <grobo/board.h>
 #include <grobo/bus.h>
 #include <grobo/driver.h>
 #include <grobo/sim.h>

@@ -34,13 +34,13 @@ static void single_joint_frames(void **state)
     const grobo_rs30x_goal down = {3, -10, 0};
     const grobo_rs30x_goal right_angle = {3, 900, 10};
     const grobo_rs30x_goal slow = {1, 900, 500};
-    vector_expect(grobo_frame_goal(GROBO_WIRING_BOARD, &down, b, MAX), b,
+    vector_expect(grobo_frame_goal(&grobo_board_protocol, &down, b, MAX), b,
                   "53 0C FA AF 03 00 1E 04 01 F6 FF 00 00 11");
-    vector_expect(grobo_frame_goal(GROBO_WIRING_BOARD, &right_angle, b, MAX), b,
+    vector_expect(grobo_frame_goal(&grobo_board_protocol, &right_angle, b, MAX), b,
                   "53 0C FA AF 03 00 1E 04 01 84 03 0A 00 95");
-    vector_expect(grobo_frame_goal(GROBO_WIRING_BOARD, &slow, b, MAX), b,
+    vector_expect(grobo_frame_goal(&grobo_board_protocol, &slow, b, MAX), b,
                   "53 0C FA AF 01 00 1E 04 01 84 03 F4 01 68");
-    vector_expect(grobo_frame_goal(GROBO_WIRING_BUS, &down, b, MAX), b,
+    vector_expect(grobo_frame_goal(&grobo_rs30x_protocol, &down, b, MAX), b,
                   "FA AF 03 00 1E 04 01 F6 FF 00 00 11");
 }
 
@@ -54,14 +54,14 @@ static void all_joints_in_one_frame(void **state)
     for (int i = 0; i < JOINTS; i++) {
         goals[i] = (grobo_rs30x_goal){(uint8_t)(i + 1), 0, 100};
     }
-    assert_int_equal(grobo_frame_goals(GROBO_WIRING_BOARD, goals, JOINTS, b, MAX), 110);
+    assert_int_equal(grobo_frame_goals(&grobo_board_protocol, goals, JOINTS, b, MAX), 110);
     static const uint8_t head[] = {0x53, 0x6C, 0xFA, 0xAF, 0, 0, 0x1E, 5, 0x14, 1, 0, 0, 0x64, 0};
     assert_memory_equal(b, head, sizeof head);
     assert_int_equal(b[109], 0x1B);
     for (int i = 0; i < JOINTS; i++) {
         goals[i] = (grobo_rs30x_goal){(uint8_t)(i + 1), init_ddeg[i], 25};
     }
-    assert_int_equal(grobo_frame_goals(GROBO_WIRING_BOARD, goals, JOINTS, b, MAX), 110);
+    assert_int_equal(grobo_frame_goals(&grobo_board_protocol, goals, JOINTS, b, MAX), 110);
     for (int i = 0; i < JOINTS; i++) {
         assert_int_equal(b[5 * i + 9], i + 1);
         assert_int_equal(b[5 * i + 10], init_ddeg[i] & 0xFF);
@@ -75,27 +75,29 @@ static void torque_frames(void **state)
     (void)state;
     uint8_t b[MAX];
     const grobo_wiring board = GROBO_WIRING_BOARD;
-    vector_expect(grobo_frame_torque(board, 1, GROBO_TORQUE_ON, b, MAX), b,
+    vector_expect(grobo_frame_torque(grobo_wiring_protocol(board), 1, GROBO_TORQUE_ON, b, MAX), b,
                   "53 09 FA AF 01 00 24 01 01 01 24");
-    vector_expect(grobo_frame_torque(board, 1, GROBO_TORQUE_OFF, b, MAX), b,
+    vector_expect(grobo_frame_torque(grobo_wiring_protocol(board), 1, GROBO_TORQUE_OFF, b, MAX), b,
                   "53 09 FA AF 01 00 24 01 01 00 25");
-    vector_expect(grobo_frame_torque(board, 1, GROBO_TORQUE_BRAKE, b, MAX), b,
-                  "53 09 FA AF 01 00 24 01 01 02 27");
-    vector_expect(grobo_frame_torque(board, 20, GROBO_TORQUE_ON, b, MAX), b,
+    vector_expect(grobo_frame_torque(grobo_wiring_protocol(board), 1, GROBO_TORQUE_BRAKE, b, MAX),
+                  b, "53 09 FA AF 01 00 24 01 01 02 27");
+    vector_expect(grobo_frame_torque(grobo_wiring_protocol(board), 20, GROBO_TORQUE_ON, b, MAX), b,
                   "53 09 FA AF 14 00 24 01 01 01 31");
-    vector_expect(grobo_frame_torque(board, 255, GROBO_TORQUE_OFF, b, MAX), b,
-                  "53 09 FA AF FF 00 24 01 01 00 DB");
+    vector_expect(grobo_frame_torque(grobo_wiring_protocol(board), 255, GROBO_TORQUE_OFF, b, MAX),
+                  b, "53 09 FA AF FF 00 24 01 01 00 DB");
     grobo_rs30x_byte all[JOINTS];
     for (uint8_t i = 0; i < JOINTS; i++) {
         all[i] = (grobo_rs30x_byte){(uint8_t)(i + 1), GROBO_TORQUE_ON};
     }
     vector_expect(
-        grobo_frame_torques(board, all, JOINTS, b, MAX), b,
+        grobo_frame_torques(grobo_wiring_protocol(board), all, JOINTS, b, MAX), b,
         "53 30 FA AF 00 00 24 02 14 01 01 02 01 03 01 04 01 05 01 06 01 07 01 08 01 09 01 "
         "0A 01 0B 01 0C 01 0D 01 0E 01 0F 01 10 01 11 01 12 01 13 01 14 01 26");
     all[19].value = 3;
-    assert_int_equal(grobo_frame_torques(board, all, JOINTS, b, MAX), GROBO_ERR_ARG);
-    assert_int_equal(grobo_frame_torque(board, 1, (grobo_torque)3, b, MAX), GROBO_ERR_ARG);
+    assert_int_equal(grobo_frame_torques(grobo_wiring_protocol(board), all, JOINTS, b, MAX),
+                     GROBO_ERR_ARG);
+    assert_int_equal(grobo_frame_torque(grobo_wiring_protocol(board), 1, (grobo_torque)3, b, MAX),
+                     GROBO_ERR_ARG);
 }
 
 static void read_frames(void **state)
@@ -103,15 +105,18 @@ static void read_frames(void **state)
     (void)state;
     uint8_t b[MAX];
     const grobo_wiring board = GROBO_WIRING_BOARD;
-    vector_expect(grobo_frame_read(board, 1, GROBO_STATE_ADDRESS, GROBO_STATE_BYTES, b, MAX), b,
-                  "54 09 FA AF 01 0F 24 12 00 38 1A");
-    vector_expect(grobo_frame_read(board, 2, GROBO_STATE_ADDRESS, GROBO_STATE_BYTES, b, MAX), b,
-                  "54 09 FA AF 02 0F 24 12 00 3B 1A");
-    vector_expect(grobo_frame_read(board, 1, GROBO_RS30X_CURRENT, 2, b, MAX), b,
-                  "54 09 FA AF 01 0F 30 02 00 3C 0A");
-    vector_expect(grobo_frame_read(board, 1, GROBO_RS30X_POSITION, 2, b, MAX), b,
-                  "54 09 FA AF 01 0F 2A 02 00 26 0A");
-    vector_expect(grobo_frame_read(GROBO_WIRING_BUS, 1, GROBO_RS30X_POSITION, 2, b, MAX), b,
+    vector_expect(grobo_frame_read(grobo_wiring_protocol(board), 1, GROBO_STATE_ADDRESS,
+                                   GROBO_STATE_BYTES, b, MAX),
+                  b, "54 09 FA AF 01 0F 24 12 00 38 1A");
+    vector_expect(grobo_frame_read(grobo_wiring_protocol(board), 2, GROBO_STATE_ADDRESS,
+                                   GROBO_STATE_BYTES, b, MAX),
+                  b, "54 09 FA AF 02 0F 24 12 00 3B 1A");
+    vector_expect(grobo_frame_read(grobo_wiring_protocol(board), 1, GROBO_RS30X_CURRENT, 2, b, MAX),
+                  b, "54 09 FA AF 01 0F 30 02 00 3C 0A");
+    vector_expect(
+        grobo_frame_read(grobo_wiring_protocol(board), 1, GROBO_RS30X_POSITION, 2, b, MAX), b,
+        "54 09 FA AF 01 0F 2A 02 00 26 0A");
+    vector_expect(grobo_frame_read(&grobo_rs30x_protocol, 1, GROBO_RS30X_POSITION, 2, b, MAX), b,
                   "FA AF 01 0F 2A 02 00 26");
 }
 
@@ -120,16 +125,17 @@ static void any_packet_is_wrapped_by_what_it_asks_for(void **state)
     (void)state;
     uint8_t b[MAX];
     int n = grobo_rs30x_write_u8(1, GROBO_RS30X_WANT_ACK, GROBO_RS30X_TORQUE, 1, b, MAX);
-    vector_expect(grobo_frame_wrap(GROBO_WIRING_BOARD, b, (size_t)n, b, MAX), b,
+    vector_expect(grobo_frame_wrap(&grobo_board_protocol, b, (size_t)n, b, MAX), b,
                   "54 0A FA AF 01 01 24 01 01 01 25 01");
     n = grobo_rs30x_control(1, GROBO_RS30X_REBOOT, b, MAX);
-    vector_expect(grobo_frame_wrap(GROBO_WIRING_BOARD, b, (size_t)n, b, MAX), b,
+    vector_expect(grobo_frame_wrap(&grobo_board_protocol, b, (size_t)n, b, MAX), b,
                   "53 08 FA AF 01 20 FF 00 00 DE");
     n = grobo_rs30x_read_block(5, GROBO_RS30X_WANT_42_59, b, MAX);
-    vector_expect(grobo_frame_wrap(GROBO_WIRING_BOARD, b, (size_t)n, b, MAX), b,
+    vector_expect(grobo_frame_wrap(&grobo_board_protocol, b, (size_t)n, b, MAX), b,
                   "54 09 FA AF 05 09 00 00 01 0D 1A");
     b[3] ^= 1;
-    assert_int_equal(grobo_frame_wrap(GROBO_WIRING_BUS, b, (size_t)n, b, MAX), GROBO_ERR_FRAME);
+    assert_int_equal(grobo_frame_wrap(&grobo_rs30x_protocol, b, (size_t)n, b, MAX),
+                     GROBO_ERR_FRAME);
 }
 
 static void relays_know_their_bounds(void **state)
@@ -151,11 +157,15 @@ static void relays_know_their_bounds(void **state)
         goals[i] = (grobo_rs30x_goal){(uint8_t)(i + 1), 0, 0};
     }
     const grobo_wiring board = GROBO_WIRING_BOARD;
-    assert_int_equal(grobo_frame_goals(board, goals, 23, roomy, sizeof roomy), 125);
-    assert_int_equal(grobo_frame_goals(board, goals, 24, roomy, sizeof roomy), GROBO_ERR_CAP);
-    assert_int_equal(grobo_frame_goals(board, goals, 20, roomy, 109), GROBO_ERR_SPACE);
+    assert_int_equal(
+        grobo_frame_goals(grobo_wiring_protocol(board), goals, 23, roomy, sizeof roomy), 125);
+    assert_int_equal(
+        grobo_frame_goals(grobo_wiring_protocol(board), goals, 24, roomy, sizeof roomy),
+        GROBO_ERR_CAP);
+    assert_int_equal(grobo_frame_goals(grobo_wiring_protocol(board), goals, 20, roomy, 109),
+                     GROBO_ERR_SPACE);
     for (size_t cap = 0; cap < 11; cap++) {
-        int n = grobo_frame_read(GROBO_WIRING_BOARD, 1, 42, 2, b, cap);
+        int n = grobo_frame_read(&grobo_board_protocol, 1, 42, 2, b, cap);
         assert_int_equal(n, GROBO_ERR_SPACE);
     }
 }
@@ -185,7 +195,7 @@ static void hosts_know_what_a_frame_is_answered_by(void **state)
         uint8_t b[MAX];
         grobo_reply reply = {GROBO_REPLY_NONE, 99, 0, 0};
         int n = vector_from_hex(rows[i].frame, b, MAX);
-        int bytes = grobo_frame_reply(GROBO_WIRING_BOARD, b, (size_t)n, &reply);
+        int bytes = grobo_board_protocol.reply_to(b, (size_t)n, &reply);
         assert_int_equal(bytes, rows[i].bytes);
         assert_int_equal(reply.kind, rows[i].kind);
         assert_int_equal(reply.id, bytes < 0 ? 99 : bytes > 1 ? 1 : 0);
@@ -357,10 +367,10 @@ static bool check_vector(const vector *v)
     uint8_t b[MAX];
     assert_int_equal(grobo_board_parse(v->bytes, v->n, &frame), GROBO_OK);
     if (!v->valid) {
-        assert_true(grobo_frame_reply(GROBO_WIRING_BOARD, v->bytes, v->n, &reply) < 0);
+        assert_true(grobo_board_protocol.reply_to(v->bytes, v->n, &reply) < 0);
         return true;
     }
-    assert_true(grobo_frame_reply(GROBO_WIRING_BOARD, v->bytes, v->n, &reply) >= 0);
+    assert_true(grobo_board_protocol.reply_to(v->bytes, v->n, &reply) >= 0);
     assert_int_equal(rebuild(&frame, b), v->n);
     assert_memory_equal(b, v->bytes, v->n);
     if (frame.packet_bytes > 0) {

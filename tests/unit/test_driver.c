@@ -9,6 +9,7 @@
 #include <math.h>
 #include <string.h>
 
+#include <grobo/board.h>
 #include <grobo/driver.h>
 
 static grobo_exchange exchange;
@@ -126,7 +127,8 @@ static void more_joints_than_a_frame_holds_make_more_frames(void **state)
     }
     for (int w = 0; w < 2; w++) {
         grobo_driver driver;
-        assert_int_equal(grobo_rs30x_driver_init(&driver, &model, (grobo_wiring)w), 0);
+        assert_int_equal(
+            grobo_rs30x_driver_init(&driver, &model, grobo_wiring_protocol((grobo_wiring)w)), 0);
         assert_int_equal(grobo_driver_check(&driver), 0);
         grobo_target target = zero_target(100000);
         target.posture.set = GROBO_JOINTS_ALL(40);
@@ -141,8 +143,10 @@ static void more_joints_than_a_frame_holds_make_more_frames(void **state)
         assert_true((driver.stored == NULL) == (w == GROBO_WIRING_BUS));
     }
     grobo_driver driver;
-    assert_int_equal(grobo_rs30x_driver_init(&driver, &model, (grobo_wiring)2), GROBO_ERR_ARG);
-    assert_int_equal(grobo_rs30x_driver_init(&driver, NULL, GROBO_WIRING_BUS), GROBO_ERR_ARG);
+    assert_int_equal(
+        grobo_rs30x_driver_init(&driver, &model, grobo_wiring_protocol((grobo_wiring)2)),
+        GROBO_ERR_ARG);
+    assert_int_equal(grobo_rs30x_driver_init(&driver, NULL, &grobo_rs30x_protocol), GROBO_ERR_ARG);
     assert_null(grobo_gr001_driver((grobo_wiring)2));
 }
 
@@ -162,12 +166,11 @@ static void senses_ask_for_what_they_say(void **state)
 static int parse(const uint8_t *data, size_t n, uint8_t address, grobo_joint_state *got)
 {
     const grobo_driver *driver = grobo_gr001_driver(GROBO_WIRING_BOARD);
-    grobo_rs30x_packet reply = {.kind = GROBO_RS30X_RETURN,
+    const grobo_packet reply = {.kind = GROBO_PACKET_RETURN,
                                 .id = 1,
                                 .flags = GROBO_RS30X_STATUS_HOT,
                                 .address = address,
                                 .length = (uint8_t)n,
-                                .count = 1,
                                 .data = data,
                                 .data_bytes = n};
     memset(got, 0, sizeof *got);
@@ -232,7 +235,7 @@ static void bad_tables_are_refused(void **state)
     bad[5].readback = nowhere;
     bad[5].n_readback = 1;
     bad[6].rest_rad = rest_outside;
-    bad[7].wiring = (grobo_wiring)7;
+    bad[7].protocol = NULL;
     bad[8].model = NULL;
     for (int i = 0; i < 9; i++) {
         assert_int_equal(grobo_driver_check(&bad[i]), GROBO_ERR_ARG);

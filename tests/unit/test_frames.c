@@ -160,7 +160,7 @@ static void ask(ledger *l, uint8_t id, int64_t now_us)
 {
     uint8_t bytes[32];
     frame f;
-    int n = grobo_frame_read(GROBO_WIRING_BOARD, id, 36, 1, bytes, sizeof bytes);
+    int n = grobo_frame_read(&grobo_board_protocol, id, 36, 1, bytes, sizeof bytes);
     assert_int_equal(frame_peek(FRAMES_HOST, FRAMES_BOARD, bytes, (size_t)n, &f), n);
     f.time_us = now_us;
     ledger_ask(l, &f);

@@ -10,7 +10,7 @@
 
 #include <grobo/board.h>
 
-enum { EVERYTHING = GROBO_RS30X_ACCEPT_COMMANDS | GROBO_RS30X_ACCEPT_RETURNS };
+enum { EVERYTHING = GROBO_ACCEPT_COMMANDS | GROBO_ACCEPT_RETURNS };
 
 static const uint8_t goal[] = {0xFA, 0xAF, 0x03, 0x00, 0x1E, 0x04, 0x01,
                                0xF6, 0xFF, 0x00, 0x00, 0x11, 0xFA, 0xAF};
@@ -58,11 +58,10 @@ static void only_what_is_accepted_is_seen(void **state)
     assert_int_equal(grobo_rs30x_peek(back, sizeof back, EVERYTHING, &packet, &sum_ok), 9);
     assert_true(sum_ok);
     assert_int_equal(packet.kind, GROBO_RS30X_RETURN);
-    assert_int_equal(
-        grobo_rs30x_peek(back, sizeof back, GROBO_RS30X_ACCEPT_COMMANDS, &packet, &sum_ok),
-        GROBO_ERR_FRAME);
+    assert_int_equal(grobo_rs30x_peek(back, sizeof back, GROBO_ACCEPT_COMMANDS, &packet, &sum_ok),
+                     GROBO_ERR_FRAME);
     assert_int_equal(grobo_rs30x_peek(ack, 1, EVERYTHING, &packet, &sum_ok), GROBO_ERR_FRAME);
-    assert_int_equal(grobo_rs30x_peek(ack, 1, GROBO_RS30X_ACCEPT_ACKS, &packet, &sum_ok), 1);
+    assert_int_equal(grobo_rs30x_peek(ack, 1, GROBO_ACCEPT_ACKS, &packet, &sum_ok), 1);
     assert_int_equal(packet.kind, GROBO_RS30X_ACK_BYTE);
 }
 

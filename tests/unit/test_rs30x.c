@@ -179,7 +179,7 @@ static void every_want_has_the_reply_of_the_table(void **state)
         assert_int_equal(r.id, 7);
         assert_int_equal(r.address, rows[i].address);
         assert_int_equal(r.length, rows[i].length);
-        assert_int_equal(grobo_reply_bytes(&r), rows[i].bytes);
+        assert_int_equal(grobo_rs30x_reply_bytes(&r), rows[i].bytes);
     }
     int n = grobo_rs30x_write_u8(7, 1, 36, 1, b, MAX);
     assert_int_equal(grobo_rs30x_reply_to(b, (size_t)n, &r), 1);

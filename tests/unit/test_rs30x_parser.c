@@ -16,8 +16,8 @@
 
 enum { MAX = GROBO_RS30X_PACKET_MAX_BYTES };
 
-#define ANY (GROBO_RS30X_ACCEPT_COMMANDS | GROBO_RS30X_ACCEPT_RETURNS | GROBO_RS30X_ACCEPT_ACKS)
-#define HOST (GROBO_RS30X_ACCEPT_RETURNS | GROBO_RS30X_ACCEPT_ACKS)
+#define ANY (GROBO_ACCEPT_COMMANDS | GROBO_ACCEPT_RETURNS | GROBO_ACCEPT_ACKS)
+#define HOST (GROBO_ACCEPT_RETURNS | GROBO_ACCEPT_ACKS)
 
 /* The vectors that go over the servo bus, for those who have no reference material. */
 static const char *const packets[] = {
@@ -136,7 +136,7 @@ static void packets_behind_a_false_start_are_found(void **state)
     }
     grobo_rs30x_parser parser;
     heard h = {.n = 0};
-    grobo_rs30x_parser_init(&parser, GROBO_RS30X_ACCEPT_RETURNS);
+    grobo_rs30x_parser_init(&parser, GROBO_ACCEPT_RETURNS);
     push(&parser, b, n, &h);
     expect_heard(&h, wanted, size);
     assert_int_equal(parser.framer.stats.dropped_bytes, rubbish);
@@ -155,7 +155,7 @@ static void no_flipped_bit_is_believed(void **state)
         broken[bit / 8] = (uint8_t)(broken[bit / 8] ^ 1u << bit % 8);
         grobo_rs30x_parser parser;
         heard h = {.n = 0};
-        grobo_rs30x_parser_init(&parser, GROBO_RS30X_ACCEPT_RETURNS);
+        grobo_rs30x_parser_init(&parser, GROBO_ACCEPT_RETURNS);
         push(&parser, broken, n, &h);
         grobo_rs30x_parser_end(&parser);
         hear(&parser, &h);
@@ -175,13 +175,13 @@ static void only_what_is_accepted_is_heard(void **state)
         for (int i = 0; i < PACKETS; i++) {
             uint8_t b[MAX];
             size_t n = (size_t)vector_from_hex(packets[i], b, MAX);
-            unsigned what = b[0] == 0xFA   ? GROBO_RS30X_ACCEPT_COMMANDS
-                            : b[0] == 0xFD ? GROBO_RS30X_ACCEPT_RETURNS
-                                           : GROBO_RS30X_ACCEPT_ACKS;
+            unsigned what = b[0] == 0xFA   ? GROBO_ACCEPT_COMMANDS
+                            : b[0] == 0xFD ? GROBO_ACCEPT_RETURNS
+                                           : GROBO_ACCEPT_ACKS;
             wanted += (accept & what) != 0;
             push(&parser, b, n, &h);
         }
-        if ((accept & GROBO_RS30X_ACCEPT_ACKS) == 0 || accept == ANY) {
+        if ((accept & GROBO_ACCEPT_ACKS) == 0 || accept == ANY) {
             assert_int_equal(h.packets, wanted); /* else 07 in refused packets counts as ACK */
         }
     }

@@ -88,7 +88,7 @@ void grobo_i_session_guard_take(grobo_session *session)
     message.policy = (uint32_t)policy_of(session);
     message.connection = strcmp(session->serial->ops->name, "tcp") == 0;
     message.data_bytes = (uint32_t)config->guard_bytes;
-    message.wiring = driver->wiring;
+    message.wiring = grobo_driver_wiring(driver);
     message.robot = session->robot.config;
     (void)snprintf(message.driver, sizeof message.driver, "%s", driver->name);
     grobo_i_guard_take(config->guard, &message, config->guard_data,

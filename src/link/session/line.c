@@ -98,7 +98,8 @@ static bool line_takes_more(grobo_session *session)
 /* Bytes of a frame behind its sum; all of them where it has none. */
 static size_t behind_sum(const grobo_session *session, const uint8_t *frame, size_t size)
 {
-    if (grobo_robot_driver(&session->robot)->wiring == GROBO_WIRING_BUS || frame[0] == 'S') {
+    if (grobo_driver_wiring(grobo_robot_driver(&session->robot)) == GROBO_WIRING_BUS ||
+        frame[0] == 'S') {
         return 0;
     }
     return frame[0] == 'T' ? 1 : size;

@@ -425,7 +425,7 @@ static int fill(grobo_session *session, const grobo_session_config *config)
     if (config->sim != NULL) {
         session->sim_config = *config->sim;
     }
-    session->sim_config.wiring = driver->wiring;
+    session->sim_config.wiring = grobo_driver_wiring(driver);
     session->sim_config.echo = session->robot_config.bus.echo;
     if (session->sim_config.model == NULL) {
         session->sim_config.model = driver->model;

@@ -4,6 +4,8 @@
 
 #include <string.h>
 
+#include "src/servo/rs30x/packet.h"
+
 enum {
     CHECK = 0x41,
     SEND = 0x53,
@@ -162,4 +164,85 @@ int grobo_board_parse(const uint8_t *bytes, size_t n, grobo_board_frame *frame)
     }
     *frame = found;
     return GROBO_OK;
+}
+
+/* ---- for the bus and the drivers ----------------------------------------------------------- */
+
+static int unwrap(const uint8_t *bytes, size_t n, const uint8_t **packet)
+{
+    grobo_board_frame frame;
+    if (grobo_board_parse(bytes, n, &frame) < 0 || frame.kind == GROBO_BOARD_SLOT ||
+        frame.kind == GROBO_BOARD_SCENARIO) {
+        return GROBO_ERR_UNSUPPORTED;
+    }
+    *packet = frame.packet;
+    return (int)frame.packet_bytes;
+}
+
+static size_t forwarded(const uint8_t *frame, size_t n)
+{
+    if (n < GROBO_BOARD_HEADER_BYTES) {
+        return 0;
+    }
+    size_t counted = frame[1];
+    if (frame[0] == SEND) {
+        return counted;
+    }
+    return frame[0] == ASK && counted > 0 ? counted - 1 : 0;
+}
+
+static int build_stored(bool scenario, uint8_t number, uint8_t *buf, size_t cap)
+{
+    return build_play(scenario ? PLAY_SCENARIO : PLAY_SLOT, number, buf, cap);
+}
+
+/* A SEND is never answered. An ASK must want as many bytes as its packet will return. */
+static int reply_to(const uint8_t *bytes, size_t n, grobo_reply *reply)
+{
+    grobo_board_frame frame;
+    grobo_reply found = {GROBO_REPLY_NONE, 0, 0, 0};
+    int result = grobo_board_parse(bytes, n, &frame);
+    if (result >= 0 && frame.packet_bytes > 0) {
+        result = grobo_rs30x_reply_to(frame.packet, frame.packet_bytes, &found);
+    }
+    if (result < 0) {
+        return result;
+    }
+    if (frame.kind == GROBO_BOARD_CHECK) {
+        found.kind = GROBO_REPLY_ACK;
+    } else if (frame.kind != GROBO_BOARD_ASK) {
+        found = (grobo_reply){GROBO_REPLY_NONE, 0, 0, 0};
+    } else if (frame.reply_bytes != result) {
+        return GROBO_ERR_FRAME;
+    }
+    *reply = found;
+    return (int)grobo_rs30x_reply_bytes(&found);
+}
+
+static const grobo_relay relay = {
+    .packet_max_bytes = GROBO_RELAY_MAX_BYTES,
+    .wrap = grobo_board_relay,
+    .unwrap = unwrap,
+    .forwarded = forwarded,
+    .check = grobo_board_check,
+    .stored = build_stored,
+};
+
+const grobo_protocol grobo_board_protocol = {
+    .name = "RS30x, GR001's board",
+    .measure = grobo_i_rs30x_measure,
+    .unpack = grobo_i_rs30x_unpack,
+    .reply_to = reply_to,
+    .reply_bytes = grobo_rs30x_reply_bytes,
+    .return_delay_us = GROBO_RS30X_DELAY_US(0),
+    .relay = &relay,
+};
+
+const grobo_protocol *grobo_wiring_protocol(grobo_wiring wiring)
+{
+    static const grobo_protocol *const tables[] = {
+        [GROBO_WIRING_BOARD] = &grobo_board_protocol,
+        [GROBO_WIRING_BUS] = &grobo_rs30x_protocol,
+    };
+    return wiring == GROBO_WIRING_BOARD || wiring == GROBO_WIRING_BUS ? tables[wiring] : NULL;
 }

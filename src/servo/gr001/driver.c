@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The driver of HPI's GR001. */
+#include <grobo/board.h>
+
 #include "src/servo/rs30x/driver.h"
 
 #define RAD(deg) ((deg)*0.017453292519943295)
@@ -32,7 +34,7 @@ static const grobo_readback readback[] = {
 static const grobo_driver tables[] = {
     [GROBO_WIRING_BOARD] = {.name = "GR001",
                             .model = &grobo_gr001_model,
-                            .wiring = GROBO_WIRING_BOARD,
+                            .protocol = &grobo_board_protocol,
                             .rest_rad = rest_rad,
                             .readback = readback,
                             .n_readback = sizeof readback / sizeof readback[0],
@@ -41,7 +43,7 @@ static const grobo_driver tables[] = {
                             GROBO_I_RS30X_FUNCTIONS},
     [GROBO_WIRING_BUS] = {.name = "GR001",
                           .model = &grobo_gr001_model,
-                          .wiring = GROBO_WIRING_BUS,
+                          .protocol = &grobo_rs30x_protocol,
                           .rest_rad = rest_rad,
                           .readback = readback,
                           .n_readback = sizeof readback / sizeof readback[0],

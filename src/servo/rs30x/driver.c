@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The driver functions of robots made of RS30x servos, for either wiring. */
+/* The driver functions of robots made of RS30x servos, on any line. */
 #include <grobo/driver.h>
 
 #include <string.h>
@@ -9,8 +9,8 @@
 /* A long packet of n servos has 8 + (1 + data) n bytes (protocol 3). */
 static int servos_per_frame(const grobo_driver *self, int data_bytes)
 {
-    int packet =
-        self->wiring == GROBO_WIRING_BOARD ? GROBO_RELAY_MAX_BYTES : GROBO_RS30X_PACKET_MAX_BYTES;
+    const grobo_relay *relay = self->protocol->relay;
+    int packet = relay != NULL ? (int)relay->packet_max_bytes : GROBO_RS30X_PACKET_MAX_BYTES;
     return (packet - GROBO_RS30X_OVERHEAD_BYTES) / (1 + data_bytes);
 }
 
@@ -21,7 +21,7 @@ static int finish(const grobo_driver *self, int size, grobo_exchange *exchange)
         return size;
     }
     exchange->frame_bytes = (uint8_t)size;
-    int reply = grobo_frame_reply(self->wiring, exchange->frame, (size_t)size, &exchange->reply);
+    int reply = self->protocol->reply_to(exchange->frame, (size_t)size, &exchange->reply);
     return reply < 0 ? reply : GROBO_OK;
 }
 
@@ -59,17 +59,17 @@ static int joints_of_part(const grobo_model *model, grobo_joint_mask joints, int
 int grobo_i_rs30x_check(const grobo_driver *self, void *ctx, int part, grobo_exchange *exchange)
 {
     (void)ctx;
-    if (self->wiring == GROBO_WIRING_BOARD) {
-        return part > 0
-                   ? 0
-                   : finish_part(self, grobo_board_check(exchange->frame, sizeof exchange->frame),
-                                 exchange);
+    const grobo_relay *relay = self->protocol->relay;
+    if (relay != NULL) {
+        return part > 0 ? 0
+                        : finish_part(self, relay->check(exchange->frame, sizeof exchange->frame),
+                                      exchange);
     }
     if (part >= self->model->n_joints) {
         return 0;
     }
-    int size = grobo_frame_read(self->wiring, self->model->joints[part].motor, GROBO_RS30X_MODEL, 2,
-                                exchange->frame, sizeof exchange->frame);
+    int size = grobo_frame_read(self->protocol, self->model->joints[part].motor, GROBO_RS30X_MODEL,
+                                2, exchange->frame, sizeof exchange->frame);
     return finish_part(self, size, exchange);
 }
 
@@ -97,9 +97,9 @@ int grobo_i_rs30x_posture(const grobo_driver *self, void *ctx, const grobo_targe
         fill_goal(self, target, list[i], &goals[i]);
     }
     uint8_t *buf = exchange->frame;
-    int size = n == 1
-                   ? grobo_frame_goal(self->wiring, goals, buf, sizeof exchange->frame)
-                   : grobo_frame_goals(self->wiring, goals, (size_t)n, buf, sizeof exchange->frame);
+    int size =
+        n == 1 ? grobo_frame_goal(self->protocol, goals, buf, sizeof exchange->frame)
+               : grobo_frame_goals(self->protocol, goals, (size_t)n, buf, sizeof exchange->frame);
     return finish_part(self, size, exchange);
 }
 
@@ -119,8 +119,9 @@ int grobo_i_rs30x_torque(const grobo_driver *self, void *ctx, grobo_joint_mask j
     }
     uint8_t *buf = exchange->frame;
     int size =
-        n == 1 ? grobo_frame_torque(self->wiring, torques[0].id, mode, buf, sizeof exchange->frame)
-               : grobo_frame_torques(self->wiring, torques, (size_t)n, buf, sizeof exchange->frame);
+        n == 1
+            ? grobo_frame_torque(self->protocol, torques[0].id, mode, buf, sizeof exchange->frame)
+            : grobo_frame_torques(self->protocol, torques, (size_t)n, buf, sizeof exchange->frame);
     return finish_part(self, size, exchange);
 }
 
@@ -139,7 +140,7 @@ int grobo_i_rs30x_sense(const grobo_driver *self, void *ctx, int joint, grobo_se
 {
     (void)ctx;
     int size =
-        grobo_frame_read(self->wiring, self->model->joints[joint].motor, blocks[kind].address,
+        grobo_frame_read(self->protocol, self->model->joints[joint].motor, blocks[kind].address,
                          blocks[kind].length, exchange->frame, sizeof exchange->frame);
     return finish(self, size, exchange);
 }
@@ -167,8 +168,8 @@ static bool plausible(const grobo_rs30x_state *s)
            s->torque <= GROBO_TORQUE_BRAKE;
 }
 
-int grobo_i_rs30x_parse(const grobo_driver *self, void *ctx, int joint,
-                        const grobo_rs30x_packet *reply, grobo_joint_state *state)
+int grobo_i_rs30x_parse(const grobo_driver *self, void *ctx, int joint, const grobo_packet *reply,
+                        grobo_joint_state *state)
 {
     (void)self;
     (void)ctx;
@@ -186,6 +187,7 @@ int grobo_i_rs30x_parse(const grobo_driver *self, void *ctx, int joint,
     state->voltage_mv = (int32_t)got.voltage_mv;
     state->torque = (grobo_torque)got.torque;
     state->flags = reply->flags;
+    state->overheated = (reply->flags & GROBO_RS30X_STATUS_OVERHEATED) != 0;
     for (size_t i = 0; i < sizeof fields / sizeof fields[0]; i++) {
         if ((got.has & fields[i].has) != 0) {
             state->valid = (uint16_t)(state->valid | fields[i].field);
@@ -202,6 +204,22 @@ int grobo_i_rs30x_parse(const grobo_driver *self, void *ctx, int joint,
     return GROBO_OK;
 }
 
+static bool touches(const grobo_register_io *io, int address, int bytes)
+{
+    return io->address < address + bytes && io->address + io->length > address;
+}
+
+grobo_write_kind grobo_i_rs30x_write_kind(const grobo_driver *self, const grobo_register_io *io)
+{
+    (void)self;
+    if (touches(io, GROBO_RS30X_GOAL, 4) || touches(io, GROBO_RS30X_TORQUE, 1)) {
+        return GROBO_WRITE_MOTOR;
+    }
+    return touches(io, GROBO_RS30X_ID, 2) || touches(io, GROBO_RS30X_CW_LIMIT, 4)
+               ? GROBO_WRITE_SETTING
+               : GROBO_WRITE_HARMLESS;
+}
+
 int grobo_i_rs30x_registers(const grobo_driver *self, void *ctx, const grobo_register_io *io,
                             grobo_exchange *exchange)
 {
@@ -209,7 +227,7 @@ int grobo_i_rs30x_registers(const grobo_driver *self, void *ctx, const grobo_reg
     uint8_t *buf = exchange->frame;
     size_t cap = sizeof exchange->frame;
     if (io->data == NULL) {
-        int size = grobo_frame_read(self->wiring, io->id, io->address, io->length, buf, cap);
+        int size = grobo_frame_read(self->protocol, io->id, io->address, io->length, buf, cap);
         return finish(self, size, exchange);
     }
     grobo_rs30x_packet packet = {
@@ -224,7 +242,7 @@ int grobo_i_rs30x_registers(const grobo_driver *self, void *ctx, const grobo_reg
     };
     int size = grobo_rs30x_build(&packet, buf, cap);
     if (size > 0) {
-        size = grobo_frame_wrap(self->wiring, buf, (size_t)size, buf, cap);
+        size = grobo_frame_wrap(self->protocol, buf, (size_t)size, buf, cap);
     }
     return finish(self, size, exchange);
 }
@@ -255,7 +273,7 @@ int grobo_i_rs30x_command(const grobo_driver *self, void *ctx, int id, grobo_ser
         break;
     }
     if (size > 0) {
-        size = grobo_frame_wrap(self->wiring, buf, (size_t)size, buf, cap);
+        size = grobo_frame_wrap(self->protocol, buf, (size_t)size, buf, cap);
     }
     return finish(self, size, exchange);
 }
@@ -269,8 +287,8 @@ int grobo_i_rs30x_stored(const grobo_driver *self, void *ctx, grobo_stored_kind 
     if (number < 0 || number > UINT8_MAX) {
         return GROBO_ERR_ARG;
     }
-    int size = kind == GROBO_STORED_SLOT ? grobo_board_slot((uint8_t)number, buf, cap)
-                                         : grobo_board_scenario((uint8_t)number, buf, cap);
+    int size =
+        self->protocol->relay->stored(kind == GROBO_STORED_SCENARIO, (uint8_t)number, buf, cap);
     return finish(self, size, exchange);
 }
 
@@ -372,21 +390,16 @@ int grobo_i_rs30x_inspect(const grobo_driver *self, void *ctx, const uint8_t *fr
     (void)ctx;
     const uint8_t *bytes = frame;
     size_t n = size;
-    if (self->wiring == GROBO_WIRING_BOARD) {
-        grobo_board_frame board;
-        if (grobo_board_parse(frame, size, &board) < 0 || board.kind == GROBO_BOARD_SLOT ||
-            board.kind == GROBO_BOARD_SCENARIO) {
-            return GROBO_ERR_UNSUPPORTED;
+    if (self->protocol->relay != NULL) {
+        int inside = self->protocol->relay->unwrap(frame, size, &bytes);
+        if (inside <= 0) {
+            return inside;
         }
-        if (board.kind == GROBO_BOARD_CHECK) {
-            return GROBO_OK;
-        }
-        bytes = board.packet;
-        n = board.packet_bytes;
+        n = (size_t)inside;
     }
     grobo_rs30x_parser parser;
     grobo_rs30x_packet packet;
-    grobo_rs30x_parser_init(&parser, GROBO_RS30X_ACCEPT_COMMANDS);
+    grobo_rs30x_parser_init(&parser, GROBO_ACCEPT_COMMANDS);
     if (grobo_rs30x_parser_feed(&parser, bytes, n) != n ||
         grobo_rs30x_parser_next(&parser, &packet) != 1 || parser.framer.stats.frame_bytes != n) {
         return GROBO_ERR_UNSUPPORTED;
@@ -396,22 +409,22 @@ int grobo_i_rs30x_inspect(const grobo_driver *self, void *ctx, const uint8_t *fr
 
 /* ---- the table ------------------------------------------------------------------------------- */
 
-int grobo_rs30x_driver_init(grobo_driver *driver, const grobo_model *model, grobo_wiring wiring)
+int grobo_rs30x_driver_init(grobo_driver *driver, const grobo_model *model,
+                            const grobo_protocol *protocol)
 {
-    if (driver == NULL || model == NULL || grobo_model_check(model) < 0 ||
-        (wiring != GROBO_WIRING_BOARD && wiring != GROBO_WIRING_BUS)) {
+    if (driver == NULL || model == NULL || protocol == NULL || grobo_model_check(model) < 0) {
         return GROBO_ERR_ARG;
     }
     *driver = (grobo_driver){
         .name = model->name,
         .model = model,
-        .wiring = wiring,
+        .protocol = protocol,
         .limits = {.temperature_c = 70,
                    .lost_replies = 5,
                    .approach_rad_s = grobo_rad_from_deg(GROBO_PLAY_APPROACH_DEG_S)},
         GROBO_I_RS30X_FUNCTIONS,
     };
-    if (wiring == GROBO_WIRING_BOARD) {
+    if (protocol->relay != NULL) {
         driver->stored = grobo_i_rs30x_stored;
     }
     return GROBO_OK;

@@ -4,6 +4,7 @@
 #define GROBO_CORE_RS30X_DRIVER_H
 
 #include <grobo/driver.h>
+#include <grobo/rs30x.h>
 #include <grobo/sequencer.h>
 
 int grobo_i_rs30x_check(const grobo_driver *self, void *ctx, int part, grobo_exchange *exchange);
@@ -13,8 +14,9 @@ int grobo_i_rs30x_torque(const grobo_driver *self, void *ctx, grobo_joint_mask j
                          grobo_torque mode, int part, grobo_exchange *exchange);
 int grobo_i_rs30x_sense(const grobo_driver *self, void *ctx, int joint, grobo_sense_kind kind,
                         grobo_exchange *exchange);
-int grobo_i_rs30x_parse(const grobo_driver *self, void *ctx, int joint,
-                        const grobo_rs30x_packet *reply, grobo_joint_state *state);
+int grobo_i_rs30x_parse(const grobo_driver *self, void *ctx, int joint, const grobo_packet *reply,
+                        grobo_joint_state *state);
+grobo_write_kind grobo_i_rs30x_write_kind(const grobo_driver *self, const grobo_register_io *io);
 int grobo_i_rs30x_registers(const grobo_driver *self, void *ctx, const grobo_register_io *io,
                             grobo_exchange *exchange);
 int grobo_i_rs30x_command(const grobo_driver *self, void *ctx, int id, grobo_servo_command command,
@@ -29,7 +31,7 @@ int grobo_i_rs30x_inspect(const grobo_driver *self, void *ctx, const uint8_t *fr
     .time_step_us = GROBO_PLAY_TIME_UNIT_US, .on_exit = GROBO_EXIT_HOLD,                           \
     .check = grobo_i_rs30x_check, .posture = grobo_i_rs30x_posture,                                \
     .torque = grobo_i_rs30x_torque, .sense = grobo_i_rs30x_sense, .parse = grobo_i_rs30x_parse,    \
-    .registers = grobo_i_rs30x_registers, .command = grobo_i_rs30x_command,                        \
-    .inspect = grobo_i_rs30x_inspect
+    .write_kind = grobo_i_rs30x_write_kind, .registers = grobo_i_rs30x_registers,                  \
+    .command = grobo_i_rs30x_command, .inspect = grobo_i_rs30x_inspect
 
 #endif

@@ -23,4 +23,8 @@ int grobo_i_rs30x_announced(const uint8_t *header);
 /* True for the header of a factory reset, which comes with a data byte FF or without. */
 bool grobo_i_rs30x_is_reset(const uint8_t *header);
 
+/* Of grobo_protocol. */
+int grobo_i_rs30x_measure(const uint8_t *bytes, size_t n, unsigned accept);
+void grobo_i_rs30x_unpack(const uint8_t *bytes, size_t n, grobo_packet *packet);
+
 #endif

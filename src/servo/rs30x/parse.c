@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Packets of RS30x servos: their form, the push parser, what a command is answered by. */
+/* Packets of RS30x servos: their form, the push parser, what a command is answered by; and the
+ * protocol, for the bus. */
 #include <string.h>
 
 #include "src/base/bytes.h"
@@ -67,7 +68,7 @@ static int measure_start(const uint8_t *bytes, size_t n, unsigned accept)
     if (!command && bytes[0] != 0xFD) {
         return GROBO_ERR_FRAME;
     }
-    if ((accept & (command ? GROBO_RS30X_ACCEPT_COMMANDS : GROBO_RS30X_ACCEPT_RETURNS)) == 0) {
+    if ((accept & (command ? GROBO_ACCEPT_COMMANDS : GROBO_ACCEPT_RETURNS)) == 0) {
         return GROBO_ERR_FRAME;
     }
     if (n >= 2 && bytes[1] != (command ? 0xAF : 0xDF)) {
@@ -85,7 +86,7 @@ static int measure_start(const uint8_t *bytes, size_t n, unsigned accept)
 static int measure_form(const uint8_t *bytes, size_t n, unsigned accept)
 {
     if (bytes[0] == GROBO_RS30X_ACK || bytes[0] == GROBO_RS30X_NACK) {
-        return (accept & GROBO_RS30X_ACCEPT_ACKS) != 0 ? 1 : GROBO_ERR_FRAME;
+        return (accept & GROBO_ACCEPT_ACKS) != 0 ? 1 : GROBO_ERR_FRAME;
     }
     int result = measure_start(bytes, n, accept);
     if (result < 0 || n < GROBO_I_AT_DATA) {
@@ -116,8 +117,7 @@ static bool has_good_sum(const uint8_t *bytes, int size)
            grobo_i_xor(bytes + GROBO_I_AT_ID, (size_t)size - GROBO_I_AT_ID - 1) == bytes[size - 1];
 }
 
-/* Size of the packet that starts here, judged as a grobo_i_measure; accept: what is believed. */
-static int measure(const uint8_t *bytes, size_t n, unsigned accept)
+int grobo_i_rs30x_measure(const uint8_t *bytes, size_t n, unsigned accept)
 {
     int size = measure_form(bytes, n, accept);
     return size <= 0 || has_good_sum(bytes, size) ? size : GROBO_ERR_CHECKSUM;
@@ -178,7 +178,7 @@ size_t grobo_rs30x_parser_feed(grobo_rs30x_parser *parser, const uint8_t *bytes,
 
 int grobo_rs30x_parser_next(grobo_rs30x_parser *parser, grobo_rs30x_packet *packet)
 {
-    size_t size = grobo_i_framer_next(&parser->framer, measure, parser->accept);
+    size_t size = grobo_i_framer_next(&parser->framer, grobo_i_rs30x_measure, parser->accept);
     if (size == 0) {
         return 0;
     }
@@ -201,7 +201,7 @@ size_t grobo_rs30x_parser_pending(const grobo_rs30x_parser *parser)
     return grobo_i_framer_pending(&parser->framer);
 }
 
-size_t grobo_reply_bytes(const grobo_reply *reply)
+size_t grobo_rs30x_reply_bytes(const grobo_reply *reply)
 {
     switch (reply->kind) {
     case GROBO_REPLY_NONE:
@@ -244,7 +244,7 @@ static int reply_to_nibble(const uint8_t *packet, grobo_reply *reply)
 int grobo_rs30x_reply_to(const uint8_t *packet, size_t n, grobo_reply *reply)
 {
     grobo_reply found = {GROBO_REPLY_NONE, 0, 0, 0};
-    int size = n > 0 ? measure(packet, n, GROBO_RS30X_ACCEPT_COMMANDS) : 0;
+    int size = n > 0 ? grobo_i_rs30x_measure(packet, n, GROBO_ACCEPT_COMMANDS) : 0;
     if (size < 0) {
         return size;
     }
@@ -259,5 +259,38 @@ int grobo_rs30x_reply_to(const uint8_t *packet, size_t n, grobo_reply *reply)
         }
     }
     *reply = found;
-    return (int)grobo_reply_bytes(&found);
+    return (int)grobo_rs30x_reply_bytes(&found);
 }
+
+/* ---- for the bus --------------------------------------------------------------------------- */
+
+void grobo_i_rs30x_unpack(const uint8_t *bytes, size_t n, grobo_packet *packet)
+{
+    grobo_rs30x_packet found;
+    unpack(bytes, n, &found);
+    *packet = (grobo_packet){
+        .kind = GROBO_PACKET_COMMAND,
+        .id = found.id,
+        .flags = found.flags,
+        .address = found.address,
+        .length = found.length,
+        .data = found.data,
+        .data_bytes = found.data_bytes,
+    };
+    if (found.kind == GROBO_RS30X_RETURN) {
+        packet->kind = GROBO_PACKET_RETURN;
+        packet->refused = (found.flags & GROBO_RS30X_STATUS_REFUSED) != 0;
+    } else if (n == 1) {
+        packet->kind = GROBO_PACKET_ACK;
+        packet->refused = found.kind == GROBO_RS30X_NACK_BYTE;
+    }
+}
+
+const grobo_protocol grobo_rs30x_protocol = {
+    .name = "RS30x",
+    .measure = grobo_i_rs30x_measure,
+    .unpack = grobo_i_rs30x_unpack,
+    .reply_to = grobo_rs30x_reply_to,
+    .reply_bytes = grobo_rs30x_reply_bytes,
+    .return_delay_us = GROBO_RS30X_DELAY_US(0),
+};

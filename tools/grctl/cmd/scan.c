@@ -244,7 +244,7 @@ static int ask_all(conn *c, found *f, pass *p)
     bool sure = false;
     int error =
         wire_read_us(grobo_robot_driver(c->robot), p->baud_bps, IDENTITY_BYTES, &p->wire_us);
-    grobo_rs30x_parser_init(&p->parser, GROBO_RS30X_ACCEPT_COMMANDS | GROBO_RS30X_ACCEPT_RETURNS);
+    grobo_rs30x_parser_init(&p->parser, GROBO_ACCEPT_COMMANDS | GROBO_ACCEPT_RETURNS);
     c->ctx = p;
     c->on_bytes = on_bytes;
     if (!error)

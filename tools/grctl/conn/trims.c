@@ -14,7 +14,7 @@ static int posture(const grobo_driver *self, void *ctx, const grobo_target *targ
     return t->inner->posture(self, NULL, &moved, part, exchange);
 }
 
-static int parse(const grobo_driver *self, void *ctx, int joint, const grobo_rs30x_packet *reply,
+static int parse(const grobo_driver *self, void *ctx, int joint, const grobo_packet *reply,
                  grobo_joint_state *state)
 {
     const trims *t = ctx;

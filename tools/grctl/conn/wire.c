@@ -3,16 +3,15 @@
 
 #include "tools/grctl/conn/wire.h"
 
-static void measure(const grobo_bus *bus, grobo_wiring wiring, const grobo_exchange *exchange,
-                    wire_cost *to)
+static void measure(const grobo_bus *bus, const grobo_exchange *exchange, wire_cost *to)
 {
     grobo_txn txn;
     grobo_bus_cost found = {0};
-    if (grobo_txn_init(&txn, wiring, exchange->frame, exchange->frame_bytes) < 0)
+    if (grobo_txn_init(&txn, bus->config.protocol, exchange->frame, exchange->frame_bytes) < 0)
         return;
     grobo_bus_cost_of(bus, &txn, &found);
     to->frame_bytes += exchange->frame_bytes;
-    to->reply_bytes += (int)grobo_reply_bytes(&txn.reply);
+    to->reply_bytes += (int)bus->config.protocol->reply_bytes(&txn.reply);
     to->total_us += found.total_us;
 }
 
@@ -25,7 +24,7 @@ static void measure_motion(const grobo_bus *bus, const grobo_driver *driver, wir
         grobo_exchange exchange = {0};
         if (driver->posture(driver, NULL, &target, part, &exchange) != 1)
             return;
-        measure(bus, driver->wiring, &exchange, to);
+        measure(bus, &exchange, to);
     }
 }
 
@@ -34,12 +33,12 @@ static void measure_read(const grobo_bus *bus, const grobo_driver *driver, grobo
 {
     grobo_exchange exchange = {0};
     if (driver->sense(driver, NULL, 0, kind, &exchange) >= 0)
-        measure(bus, driver->wiring, &exchange, to);
+        measure(bus, &exchange, to);
 }
 
 static int make_bus(const grobo_driver *driver, int baud_bps, grobo_bus *bus)
 {
-    grobo_bus_config config = {.wiring = driver->wiring, .baud_bps = (uint32_t)baud_bps};
+    grobo_bus_config config = {.protocol = driver->protocol, .baud_bps = (uint32_t)baud_bps};
     return grobo_bus_init(bus, &config);
 }
 
@@ -60,7 +59,7 @@ int wire_read_us(const grobo_driver *driver, int baud_bps, int length, uint32_t 
         error = driver->registers(driver, NULL, &io, &exchange);
     if (error < 0)
         return error;
-    measure(&bus, driver->wiring, &exchange, &cost);
+    measure(&bus, &exchange, &cost);
     *time_us = cost.total_us;
     return GROBO_OK;
 }

@@ -6,16 +6,15 @@
 /* What of packets is believed outside of relay frames. */
 static unsigned accepted(frames_side side, unsigned wiring)
 {
-    unsigned commands = wiring & FRAMES_BUS ? GROBO_RS30X_ACCEPT_COMMANDS : 0;
-    return side == FRAMES_HOST ? commands
-                               : commands | GROBO_RS30X_ACCEPT_RETURNS | GROBO_RS30X_ACCEPT_ACKS;
+    unsigned commands = wiring & FRAMES_BUS ? GROBO_ACCEPT_COMMANDS : 0;
+    return side == FRAMES_HOST ? commands : commands | GROBO_ACCEPT_RETURNS | GROBO_ACCEPT_ACKS;
 }
 
 /* The packet that a relay frame carries, if it carries exactly one. */
 static void look_inside(frame *out)
 {
-    int size = grobo_rs30x_peek(out->board.packet, out->board.packet_bytes,
-                                GROBO_RS30X_ACCEPT_COMMANDS, &out->packet, &out->sum_ok);
+    int size = grobo_rs30x_peek(out->board.packet, out->board.packet_bytes, GROBO_ACCEPT_COMMANDS,
+                                &out->packet, &out->sum_ok);
     out->has_packet = size > 0 && (size_t)size == out->board.packet_bytes;
     out->packet_size = out->has_packet ? (size_t)size : 0;
 }
@@ -195,10 +194,10 @@ void frames_end(frames *f)
 int frame_reply(const frame *f, grobo_reply *reply)
 {
     if (f->kind == FRAME_BOARD)
-        return grobo_frame_reply(GROBO_WIRING_BOARD, f->bytes, f->size, reply);
+        return grobo_board_protocol.reply_to(f->bytes, f->size, reply);
     if (f->kind != FRAME_PACKET && f->kind != FRAME_ECHO)
         return GROBO_ERR_FRAME;
-    return grobo_frame_reply(GROBO_WIRING_BUS, f->bytes, f->size, reply);
+    return grobo_rs30x_reply_to(f->bytes, f->size, reply);
 }
 
 bool frame_is_reply(const frame *f, const grobo_reply *expected)

@@ -49,8 +49,7 @@ static bool begins_frame(const uint8_t *bytes, int n)
     if (n <= 0)
         return false;
     return grobo_board_peek(bytes, (size_t)n, &board) >= 0 ||
-           grobo_rs30x_peek(bytes, (size_t)n,
-                            GROBO_RS30X_ACCEPT_COMMANDS | GROBO_RS30X_ACCEPT_RETURNS, &packet,
+           grobo_rs30x_peek(bytes, (size_t)n, GROBO_ACCEPT_COMMANDS | GROBO_ACCEPT_RETURNS, &packet,
                             &sum_ok) >= 0;
 }
 

@@ -352,7 +352,7 @@ static void say_reply(text *t, const grobo_reply *reply, int known)
     if (known == GROBO_ERR_MISMATCH) {
         char bad[80];
         snprintf(bad, sizeof bad, "but the packet is answered by %zu bytes",
-                 grobo_reply_bytes(reply));
+                 grobo_rs30x_reply_bytes(reply));
         say_bad(t, bad);
     } else if (known < 0) {
         say_bad(t, "asks for registers that do not exist");
@@ -361,7 +361,7 @@ static void say_reply(text *t, const grobo_reply *reply, int known)
     } else if (reply->kind == GROBO_REPLY_ACK) {
         say(t, "reply: ACK");
     } else {
-        say(t, "reply: %zu bytes", grobo_reply_bytes(reply));
+        say(t, "reply: %zu bytes", grobo_rs30x_reply_bytes(reply));
     }
 }
 

@@ -124,7 +124,7 @@ int play_dry_run(playlist *list, app *a)
     grobo_sim_config sim = {.wiring = wiring, .baud_bps = conn_baud(a)};
     grobo_robot_config config = {.limit_policy = a->clamps ? GROBO_LIMIT_CLAMP : GROBO_LIMIT_REFUSE,
                                  .sense_interval_us = GROBO_SENSE_NEVER,
-                                 .bus = {.wiring = wiring, .baud_bps = conn_baud(a)}};
+                                 .bus = {.baud_bps = conn_baud(a)}};
     trace_line line = {.device = GROBO_DEVICE_SIM, .wiring = wiring};
     grobo_posture start;
     int error, status;

@@ -156,8 +156,7 @@ static void on_refused(sim_strict *s, const grobo_sim_event *event)
     char why[WHY_BYTES];
     grobo_rs30x_packet packet;
     bool sum_ok;
-    int size =
-        grobo_rs30x_peek(s->packet, s->n_packet, GROBO_RS30X_ACCEPT_COMMANDS, &packet, &sum_ok);
+    int size = grobo_rs30x_peek(s->packet, s->n_packet, GROBO_ACCEPT_COMMANDS, &packet, &sum_ok);
     if (s->told || size <= 0 || wrong_packet(&packet, s->packet, s->n_packet, why))
         return;
     s->told = true;

@@ -1,0 +1,127 @@
+/* SPDX-License-Identifier: MIT */
+/**
+ * @file protocol.h
+ * @brief How servos talk, as a table: what the bus (bus.h) asks a family of servos.
+ *
+ * The bus knows when something is sent and what it waits for; a protocol knows what bytes are. A
+ * table is const data and pure functions, so that one serves any number of lines and threads. Those
+ * there are: grobo_rs30x_protocol (rs30x.h), and grobo_board_protocol (board.h) for the same
+ * servos behind GR001's board.
+ */
+#ifndef GROBO_PROTOCOL_H
+#define GROBO_PROTOCOL_H
+
+#include <stddef.h>
+
+#include <grobo/types.h>
+
+GROBO_BEGIN_DECLS
+
+/* ---- replies ------------------------------------------------------------------------------- */
+
+/** What a frame is answered by. */
+typedef enum grobo_reply_kind {
+    GROBO_REPLY_NONE = 0,  /**< nothing */
+    GROBO_REPLY_ACK = 1,   /**< one byte without a name (RS30x: 07 or 08) */
+    GROBO_REPLY_RETURN = 2 /**< a packet of this id, address and length */
+} grobo_reply_kind;
+
+/** The reply to expect. id, address and length count for GROBO_REPLY_RETURN only. */
+typedef struct grobo_reply {
+    grobo_reply_kind kind;
+    uint8_t id;
+    uint8_t address;
+    uint8_t length; /**< data bytes */
+} grobo_reply;
+
+/* ---- packets ------------------------------------------------------------------------------- */
+
+/** What came off the line, whatever the family. */
+typedef enum grobo_packet_kind {
+    GROBO_PACKET_COMMAND, /**< of a host: an echo, or another host's */
+    GROBO_PACKET_RETURN,  /**< of a servo, with its name */
+    GROBO_PACKET_ACK      /**< of a servo, without one */
+} grobo_packet_kind;
+
+/** A packet taken apart. */
+typedef struct grobo_packet {
+    grobo_packet_kind kind;
+    bool refused;        /**< the servo says that it did not do what it was told */
+    uint8_t id;          /**< RETURN: the servo's */
+    uint8_t flags;       /**< RETURN: the servo's status, in bits of its family */
+    uint8_t address;     /**< RETURN: first register */
+    uint8_t length;      /**< RETURN: data bytes */
+    const uint8_t *data; /**< borrowed */
+    size_t data_bytes;   /**< number of them */
+} grobo_packet;
+
+/** Packets that are believed, or-ed. What is not, is rubbish. */
+#define GROBO_ACCEPT_COMMANDS 0x1u
+#define GROBO_ACCEPT_RETURNS 0x2u
+/** Packets without a name, between others. */
+#define GROBO_ACCEPT_ACKS 0x4u
+
+/** What a framer met since it was initialised. Bytes in = bytes of frames + dropped + buffered. */
+typedef struct grobo_framer_stats {
+    uint32_t frames;        /**< good ones handed out */
+    uint32_t frame_bytes;   /**< their bytes */
+    uint32_t dropped_bytes; /**< rubbish skipped while looking for a frame */
+    uint32_t bad_sums;      /**< frames whole in form whose sum was wrong */
+} grobo_framer_stats;
+
+/** The buffer behind every push parser. All fields are private but stats. */
+typedef struct grobo_framer {
+    grobo_framer_stats stats; /**< read freely */
+    /* private */
+    uint16_t used;  /* bytes in buf */
+    uint16_t taken; /* of them, those of the frame handed out last */
+    bool ending;    /* what is incomplete now will never be completed */
+    uint8_t buf[GROBO_FRAME_MAX_BYTES];
+} grobo_framer;
+
+/* ---- the table ----------------------------------------------------------------------------- */
+
+/**
+ * A board between the host and the servos: it keeps a frame until it is whole and forwards the
+ * packet in it. It answers in the order in which it was asked.
+ */
+typedef struct grobo_relay {
+    size_t packet_max_bytes; /**< longest packet that fits in a frame */
+    /** Puts a command packet in a frame; packet may lie in buf. @return size or an error. */
+    int (*wrap)(const uint8_t *packet, size_t n, uint8_t *buf, size_t cap);
+    /** The packet in a frame. @return its bytes, 0 for a frame that asks the board itself and
+     *  changes nothing, or an error: no frame, or the board does something on its own. */
+    int (*unwrap)(const uint8_t *frame, size_t n, const uint8_t **packet);
+    /** Bytes that the board puts on the servos' bus for a frame; 0 for its own. */
+    size_t (*forwarded)(const uint8_t *frame, size_t n);
+    /** The frame that asks whether the board is there. @return size or an error. */
+    int (*check)(uint8_t *buf, size_t cap);
+    /** The frame that plays motion `number` of the board's memory, or scenario. */
+    int (*stored)(bool scenario, uint8_t number, uint8_t *buf, size_t cap);
+} grobo_relay;
+
+/** A protocol. Everything but `relay` must be there. */
+typedef struct grobo_protocol {
+    const char *name; /**< "RS30x" */
+    /**
+     * Judges n > 0 bytes: the size of the good packet that they start with; 0 when they may start
+     * one and more are needed; GROBO_ERR_FRAME when they cannot, GROBO_ERR_CHECKSUM when only the
+     * sum is wrong. A size is never above GROBO_FRAME_MAX_BYTES.
+     * @param accept GROBO_ACCEPT_... or-ed
+     */
+    int (*measure)(const uint8_t *bytes, size_t n, unsigned accept);
+    /** Takes the packet of n bytes apart that measure() found; packet->data points into bytes. */
+    void (*unpack)(const uint8_t *bytes, size_t n, grobo_packet *packet);
+    /** What a frame of n bytes is answered by. @return bytes of the reply (0: none), or
+     *  GROBO_ERR_FRAME, GROBO_ERR_CHECKSUM: no whole frame, GROBO_ERR_ARG: it asks for nothing
+     *  that there is */
+    int (*reply_to)(const uint8_t *frame, size_t n, grobo_reply *reply);
+    /** Bytes of a reply on the wire. */
+    size_t (*reply_bytes)(const grobo_reply *reply);
+    uint32_t return_delay_us; /**< before a servo replies, as it leaves the factory */
+    const grobo_relay *relay; /**< the board in between; NULL: the line is the servos' own bus */
+} grobo_protocol;
+
+GROBO_END_DECLS
+
+#endif
