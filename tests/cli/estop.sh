@@ -45,6 +45,7 @@ check "what was taught is kept" test -s "$work/taught.m"
 
 # stopped_by COMMAND...: it stops a robot that another command plays on.
 stopped_by() {
+    rm -f "$work/busy" # what the one before said does not count
     "$GRCTL" -d "$robot" --json play --speed 20 motions/greet.pseq >"$work/busy" 2>&1 </dev/null &
     while_pid=$!
     written "$work/busy" '"t_ms":[1-9]' && exits 0 "$@"
@@ -53,7 +54,11 @@ stopped_by() {
     wait $while_pid
     ended=$?
     [ $by_status -eq 0 ] && [ $ended -eq 4 ] && braked &&
-        fails 4 "stopped by 'grctl estop'" on_robot move m5 0 && exits 0 on_robot estop --reset
+        fails 4 "stopped by 'grctl estop'" on_robot move m5 0 && exits 0 on_robot estop --reset &&
+        return
+    echo "it ended with $ended:"
+    tail "$work/busy"
+    return 1
 }
 by_another_name() {
     (cd "$work" && exec "$GRCTL" -d "$1" estop)
