@@ -93,7 +93,7 @@ int main(void)
 {
     grobo_driver driver;
     grobo_sim_config sim_config = {.model = &model, .wiring = GROBO_WIRING_BUS};
-    if (grobo_rs30x_driver_init(&driver, &model, GROBO_WIRING_BUS) < 0) {
+    if (grobo_rs30x_driver_init(&driver, &model, &grobo_rs30x_protocol) < 0) {
         return 1;
     }
     driver.stabilize = keep_level;

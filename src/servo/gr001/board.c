@@ -229,7 +229,7 @@ static const grobo_relay relay = {
 };
 
 const grobo_protocol grobo_board_protocol = {
-    .name = "RS30x, GR001's board",
+    .name = "GR001",
     .measure = grobo_i_rs30x_measure,
     .unpack = grobo_i_rs30x_unpack,
     .reply_to = reply_to,

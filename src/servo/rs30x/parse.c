@@ -266,23 +266,21 @@ int grobo_rs30x_reply_to(const uint8_t *packet, size_t n, grobo_reply *reply)
 
 void grobo_i_rs30x_unpack(const uint8_t *bytes, size_t n, grobo_packet *packet)
 {
-    grobo_rs30x_packet found;
-    unpack(bytes, n, &found);
-    *packet = (grobo_packet){
-        .kind = GROBO_PACKET_COMMAND,
-        .id = found.id,
-        .flags = found.flags,
-        .address = found.address,
-        .length = found.length,
-        .data = found.data,
-        .data_bytes = found.data_bytes,
-    };
-    if (found.kind == GROBO_RS30X_RETURN) {
-        packet->kind = GROBO_PACKET_RETURN;
-        packet->refused = (found.flags & GROBO_RS30X_STATUS_REFUSED) != 0;
-    } else if (n == 1) {
+    memset(packet, 0, sizeof *packet);
+    if (n < GROBO_RS30X_OVERHEAD_BYTES) {
         packet->kind = GROBO_PACKET_ACK;
-        packet->refused = found.kind == GROBO_RS30X_NACK_BYTE;
+        packet->refused = bytes[0] == GROBO_RS30X_NACK;
+        return;
+    }
+    packet->id = bytes[GROBO_I_AT_ID];
+    packet->flags = bytes[GROBO_I_AT_FLAGS];
+    packet->address = bytes[GROBO_I_AT_ADDRESS];
+    packet->length = bytes[GROBO_I_AT_LENGTH];
+    packet->data = bytes + GROBO_I_AT_DATA;
+    packet->data_bytes = n - GROBO_RS30X_OVERHEAD_BYTES;
+    if (bytes[0] == 0xFD) {
+        packet->kind = GROBO_PACKET_RETURN;
+        packet->refused = (packet->flags & GROBO_RS30X_STATUS_REFUSED) != 0;
     }
 }
 
