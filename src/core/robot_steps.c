@@ -244,9 +244,12 @@ static int step_torque_check(grobo_robot *robot)
             bad |= GROBO_JOINT_BIT(j);
             robot->axes[j].held = false;
         } else {
-            robot->axes[j].wants_torque = on;
-            robot->axes[j].has_target = on;
-            grobo_i_axis_rest(&robot->axes[j], robot->now_us);
+            grobo_robot_axis *axis = &robot->axes[j];
+            axis->wants_torque = on;
+            if (!on || !axis->has_target) { /* or it was sent on its way since it holds */
+                grobo_i_axis_rest(axis, robot->now_us);
+            }
+            axis->has_target = on;
         }
     }
     job->pending = bad;
