@@ -217,11 +217,24 @@ static int step_hold_check(grobo_robot *robot)
     return again(robot, bad, step_hold);
 }
 
+/* The emergency stop of a driver that does not switch torque: all stand, and hold. */
+static int stop_by_halt(grobo_robot *robot)
+{
+    robot->holds_at_stop = true;
+    robot->job.script = grobo_i_script_exit_hold;
+    robot->job.at = 0;
+    grobo_i_gate_halt(robot, grobo_i_all_joints(robot));
+    return GROBO_I_NEXT;
+}
+
 static int step_torque(grobo_robot *robot)
 {
     grobo_robot_task *job = &robot->job;
     int result = grobo_i_gate_torque(robot, job->pending, job->torque, chunk_of(robot));
-    return result < 0 && result != GROBO_ERR_FULL ? result : GROBO_I_DRAIN;
+    if (result < 0 && result != GROBO_ERR_FULL) {
+        return job->kind == GROBO_JOB_ESTOP ? stop_by_halt(robot) : result;
+    }
+    return GROBO_I_DRAIN;
 }
 
 static bool torque_taken(const grobo_robot *robot, int joint)
