@@ -121,7 +121,7 @@ typedef struct grobo_robot_axis {
     bool torque_known;
     bool wants_torque; /* we switched it on: to be without is a fault */
     bool held;         /* goal read back to be the present angle: torque may come on */
-    bool off_way;      /* read to stand still elsewhere: it lost the frame of its way */
+    bool off_way;      /* read to be elsewhere: it lost the frame of its way */
     bool adrift;       /* moves though we sent it nowhere, and did not tell where to */
 } grobo_robot_axis;
 

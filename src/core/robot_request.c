@@ -417,7 +417,8 @@ bool grobo_i_job_moves(const grobo_robot *robot)
 /* Ends the job that runs to make place for another; what it moves is stopped, or all that moves. */
 static void displace(grobo_robot *robot, bool all)
 {
-    bool moves = all || grobo_i_job_moves(robot);
+    /* What a motion has sent before it plays is on its way, too. */
+    bool moves = all || grobo_i_job_moves(robot) || robot->job.kind == GROBO_JOB_PLAY;
     if (robot->job.kind == GROBO_JOB_PLAY && grobo_robot_is_playing(robot)) {
         (void)grobo_sequencer_stop(&robot->sequencer, false, robot->now_us);
         grobo_i_slots_cancel_goals(robot);
