@@ -150,7 +150,7 @@ struct grobo_driver {
     /** Moves the joints that target->posture sets; several frames where one does not hold them. */
     int (*posture)(const grobo_driver *self, void *ctx, const grobo_target *target, int part,
                    grobo_exchange *exchange);
-    /** Sets the torque of `joints`. */
+    /** Sets the torque of `joints`. NULL: it cannot be switched, and an emergency stop halts. */
     int (*torque)(const grobo_driver *self, void *ctx, grobo_joint_mask joints, grobo_torque mode,
                   int part, grobo_exchange *exchange);
     /** Asks one joint for its state. @return 0 or an error. */

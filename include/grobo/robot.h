@@ -121,7 +121,7 @@ typedef struct grobo_robot_axis {
     bool torque_known;
     bool wants_torque; /* we switched it on: to be without is a fault */
     bool held;         /* goal read back to be the present angle: torque may come on */
-    bool off_way;      /* read to stand still elsewhere: it lost the frame of its way */
+    bool off_way;      /* read to be elsewhere: it lost the frame of its way */
     bool adrift;       /* moves though we sent it nowhere, and did not tell where to */
 } grobo_robot_axis;
 
@@ -204,6 +204,7 @@ typedef struct grobo_robot {
     bool settling;  /* a motion is over, its end not yet looked at */
     bool soft;      /* the next move is the first from a sensed posture */
     bool stop_owed; /* an emergency stop that no line has carried yet */
+    bool holds_at_stop; /* the driver switches no torque: an emergency stop halts */
 } grobo_robot;
 
 /**
@@ -359,7 +360,8 @@ GROBO_API int grobo_robot_exit(grobo_robot *robot, grobo_exit_policy policy, int
 
 /**
  * Emergency stop: drops everything that waits, sends torque off or brake ahead of all else, reads
- * every joint back and repeats what did not take, for at most 10 s. Latched until
+ * every joint back and repeats what did not take, for at most 10 s. Where the driver has no
+ * `torque`, or that fails, all joints are halted and hold instead. Latched until
  * grobo_robot_reset(). Never refused but for GROBO_ERR_CLOSED, where it is latched all the same,
  * and carried out as soon as the line is there: so is one that the line was lost under.
  */

@@ -66,17 +66,17 @@ static grobo_txn *find_asker(grobo_bus *bus, const grobo_packet *p, uint32_t key
 static void take_reply(grobo_bus *bus, grobo_txn *txn, const grobo_packet *p, uint32_t key)
 {
     if (txn != bus->active) {
+        (void)grobo_i_bus_settle(bus, key);
         (void)grobo_i_bus_take_out(bus, txn);
     } else if (txn->attempts_ > 1) {
-        /* This may have been the late reply to an earlier attempt: one more may come. */
-        grobo_i_bus_hold(bus, txn, bus->now_us);
-    } else if (!p->refused) {
-        key = 0; /* nothing was owed to it */
+        grobo_i_bus_hold_more(bus, txn, key);
+    } else if (p->refused) {
+        (void)grobo_i_bus_settle(bus, key);
+    } else { /* nothing was owed to it */
         grobo_i_bus_learn(bus);
         grobo_i_bus_release_holds(bus);
         bus->free_us = grobo_i_sooner(bus->free_us, bus->now_us); /* its last byte is here */
     }
-    (void)grobo_i_bus_settle(bus, key);
     if (p->refused) {
         bus->stats.refusals++;
         bus->stats.failed++;

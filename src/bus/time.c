@@ -99,11 +99,11 @@ uint32_t grobo_i_bus_key(const grobo_reply *reply)
     return (uint32_t)reply->kind << 24 | (reply->kind == GROBO_REPLY_RETURN ? name : 0);
 }
 
-/* The hold for replies that would be taken for this one, or NULL. */
+/* The hold for replies that would be taken for this one, though none may be owed; or NULL. */
 static grobo_bus_hold *find_hold(grobo_bus *bus, uint32_t key)
 {
     for (grobo_bus_hold *hold = bus->hold; hold < bus->hold + GROBO_BUS_HOLDS; hold++) {
-        if (hold->key == key && hold->owed > 0) {
+        if (hold->key == key) {
             return hold;
         }
     }
@@ -142,7 +142,13 @@ void grobo_i_bus_hold(grobo_bus *bus, const grobo_txn *txn, int64_t from_us)
 grobo_bus_hold *grobo_i_bus_owed(grobo_bus *bus, uint32_t key)
 {
     grobo_bus_hold *hold = find_hold(bus, key);
-    return hold != NULL && bus->now_us >= hold->due_us ? hold : NULL;
+    return hold != NULL && hold->owed > 0 && bus->now_us >= hold->due_us ? hold : NULL;
+}
+
+static void learn_late(grobo_bus *bus, int64_t due_us)
+{
+    int32_t late_us = clip(bus->now_us - due_us, (int32_t)(bus->config.hold_us / 2));
+    bus->worst_us = late_us > bus->worst_us ? late_us : bus->worst_us;
 }
 
 bool grobo_i_bus_settle(grobo_bus *bus, uint32_t key)
@@ -151,11 +157,21 @@ bool grobo_i_bus_settle(grobo_bus *bus, uint32_t key)
     if (hold == NULL) {
         return false;
     }
-    int32_t late_us = clip(bus->now_us - hold->due_us, (int32_t)(bus->config.hold_us / 2));
-    bus->worst_us = late_us > bus->worst_us ? late_us : bus->worst_us;
+    learn_late(bus, hold->due_us);
     hold->due_us = bus->over_us; /* the rest are to later attempts */
     hold->owed--;
     return true;
+}
+
+void grobo_i_bus_hold_more(grobo_bus *bus, const grobo_txn *txn, uint32_t key)
+{
+    const grobo_bus_hold *hold = grobo_i_bus_owed(bus, key);
+    if (hold != NULL && hold->until_us >= bus->now_us) {
+        (void)grobo_i_bus_settle(bus, key);
+    } else if (key != 0) {
+        learn_late(bus, bus->over_us);
+    }
+    grobo_i_bus_hold(bus, txn, grobo_i_later(bus->now_us, bus->over_us));
 }
 
 void grobo_i_bus_release_holds(grobo_bus *bus)

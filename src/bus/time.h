@@ -31,6 +31,10 @@ grobo_bus_hold *grobo_i_bus_owed(grobo_bus *bus, uint32_t key);
 /* A reply came that is owed: strikes it off, learns how late it was. False if it was not owed. */
 bool grobo_i_bus_settle(grobo_bus *bus, uint32_t key);
 
+/* A reply with this key, 0 for a byte without a name, ends a later attempt than the first. It may
+ * have been the late one to an earlier attempt: then one more comes, as late as this one. */
+void grobo_i_bus_hold_more(grobo_bus *bus, const grobo_txn *txn, uint32_t key);
+
 /* The board and the adapter keep the order: what was lost before the reply that came now will not
  * come. Only a servo on a bus may answer a little later than another one. */
 void grobo_i_bus_release_holds(grobo_bus *bus);

@@ -147,13 +147,13 @@ static int judge_joints(grobo_robot *robot, grobo_joint_mask joints)
 
 /* Where the end of a motion brings a joint to rest: at most half of what it could do in that time
  * from where it is. A joint that is behind, or that a raw frame moves, is not where the clip is. */
-static double rest_of(const grobo_robot *robot, int joint)
+static double rest_of(const grobo_robot *robot, int joint, bool soft)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
     bool halted = axis->last == 0; /* by what has no number: a raw frame, or a halt behind it */
     double here_rad = grobo_i_axis_commanded(axis, robot->now_us + (halted ? HALT_AHEAD_US : 0));
     double time_s = halted ? 0 : (double)axis->next_time_us / 1e6;
-    double most_rad = speed_limit(robot, joint, false) * time_s / 2;
+    double most_rad = speed_limit(robot, joint, soft) * time_s / 2;
     return fmin(fmax(axis->next_rad, here_rad - most_rad), here_rad + most_rad);
 }
 
@@ -163,11 +163,12 @@ static int judge_goal(grobo_robot *robot, const grobo_robot_order *order, grobo_
     if (robot->trip.latched && (!order->stops || robot->trip.trip == GROBO_TRIP_ESTOP)) {
         return GROBO_ERR_LATCHED;
     }
+    bool soft = robot->soft || order->soft;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
         bool last = axis->next == 0 && axis->last == order->number; /* again, or its next part */
         if (is_in(order->joints, j) && (axis->next == order->number || last)) {
-            target->posture.angle_rad[j] = order->rests ? rest_of(robot, j) : axis->next_rad;
+            target->posture.angle_rad[j] = order->rests ? rest_of(robot, j, soft) : axis->next_rad;
             target->joint_time_us[j] = axis->next_time_us;
             target->posture.set |= GROBO_JOINT_BIT(j);
         }
@@ -183,13 +184,14 @@ static int judge_goal(grobo_robot *robot, const grobo_robot_order *order, grobo_
 /* What still moves stops ahead of where it is by now, however long this had to wait. */
 static int judge_halt(grobo_robot *robot, const grobo_robot_order *order, grobo_target *target)
 {
-    if (robot->trip.trip == GROBO_TRIP_ESTOP) {
+    if (robot->trip.trip == GROBO_TRIP_ESTOP && !robot->holds_at_stop) {
         return GROBO_ERR_LATCHED;
     }
     int64_t rest_us = grobo_i_later(order->asked_us + HALT_AHEAD_US, robot->now_us + HALT_LEAST_US);
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
-        bool moves = axis->sensed && axis->has_target && grobo_i_axis_until(axis) > robot->now_us;
+        int64_t until_us = grobo_i_later(grobo_i_axis_until(axis), axis->way.to_us);
+        bool moves = axis->sensed && axis->has_target && until_us > robot->now_us;
         if (is_in(order->joints, j) && moves) {
             target->posture.angle_rad[j] = grobo_i_axis_commanded(axis, rest_us);
             target->joint_time_us[j] = HALT_TIME_US;
@@ -473,7 +475,7 @@ static void note_hold(grobo_robot *robot, grobo_joint_mask joints)
         if (is_in(joints, j)) {
             grobo_i_axis_rest(&robot->axes[j], robot->now_us);
             robot->axes[j].own_until_us = 0;
-            robot->axes[j].held = false;
+            robot->axes[j].held = robot->axes[j].has_target = false;
         }
     }
 }

@@ -407,7 +407,8 @@ bool grobo_i_job_moves(const grobo_robot *robot)
 /* Ends the job that runs to make place for another; what it moves is stopped, or all that moves. */
 static void displace(grobo_robot *robot, bool all)
 {
-    bool moves = all || grobo_i_job_moves(robot);
+    /* What a motion has sent before it plays is on its way, too. */
+    bool moves = all || grobo_i_job_moves(robot) || robot->job.kind == GROBO_JOB_PLAY;
     if (robot->job.kind == GROBO_JOB_PLAY && grobo_robot_is_playing(robot)) {
         (void)grobo_sequencer_stop(&robot->sequencer, false, robot->now_us);
         grobo_i_slots_cancel_goals(robot);
@@ -481,6 +482,7 @@ int grobo_i_estop_start(grobo_robot *robot)
         robot->config.estop_torque == GROBO_ESTOP_OFF ? GROBO_TORQUE_OFF : GROBO_TORQUE_BRAKE;
     robot->job.priority = GROBO_PRIORITY_STOP;
     robot->job.bound_us = robot->now_us + ESTOP_BOUND_US;
+    robot->holds_at_stop = false;
     grobo_i_job_run(robot);
     return number;
 }
@@ -495,9 +497,6 @@ int grobo_robot_estop(grobo_robot *robot, int64_t now_us)
     grobo_bus_reserve(&robot->bus, GROBO_NEVER_US, 0);
     (void)grobo_bus_cancel_all(&robot->bus, GROBO_PRIORITY_ALL, GROBO_ERR_CANCELED);
     grobo_i_trip(robot, GROBO_TRIP_ESTOP, -1, 0, true);
-    if (robot->driver->torque == NULL) {
-        return refuse(robot, GROBO_ERR_UNSUPPORTED);
-    }
     robot->stop_owed = true;
     int number = robot->link ? grobo_i_estop_start(robot) : GROBO_ERR_CLOSED;
     grobo_i_leave(robot);

@@ -92,15 +92,32 @@ static void take_move(grobo_robot *robot, int joint, const grobo_joint_state *go
  * what the fastest one does while a frame is on its way. */
 #define OFF_WAY_RAD (12 * 0.017453292519943295)
 
-/* A joint that stands still, or creeps, beside its way has lost the frame. Until the next one it is
- * where it was read, or on the way that its servo told of: a stop would throw it to where it should
- * be by then. The angle alone tells nothing of it. */
+/* The goals of a way are on the wire's grid. */
+#define SAME_GOAL_RAD (0.06 * 0.017453292519943295)
+
+/* True if the servo has told since the last frame that its goal is another one; or did so before
+ * this reading, and does not move but on the way it told of then. */
+static bool has_not_taken(const grobo_robot *robot, const grobo_robot_axis *axis,
+                          const grobo_joint_state *got)
+{
+    bool as_told = abs(got->speed_dps) < SLOW_DPS || axis->own_until_us > robot->now_us;
+    bool before = axis->goal_us != GROBO_NEVER_US && axis->goal_us >= axis->told_us && as_told;
+    bool told = (got->valid & GROBO_FIELD_GOAL) != 0 || before;
+    return told && fabs(axis->state.goal_rad - axis->way.to_rad) > SAME_GOAL_RAD;
+}
+
+/* A joint that stands still, or creeps, beside its way has lost the frame, and so has one whose
+ * goal is another. Until the next one it is where it was read, or on the way that its servo told
+ * of: a stop would throw it to where it should be by then. The angle alone tells nothing of it. */
 static bool is_off_way(const grobo_robot *robot, int joint, int64_t asked_us,
                        const grobo_joint_state *got)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
     if ((got->valid & GROBO_FIELD_SPEED) == 0) {
         return axis->off_way;
+    }
+    if (axis->has_target && !axis->in_segments && has_not_taken(robot, axis, got)) {
+        return true;
     }
     double then_rad = grobo_i_way_at(&axis->way, asked_us);
     double now_rad = grobo_i_way_at(&axis->way, robot->now_us);

@@ -217,11 +217,24 @@ static int step_hold_check(grobo_robot *robot)
     return again(robot, bad, step_hold);
 }
 
+/* The emergency stop of a driver that does not switch torque: all stand, and hold. */
+static int stop_by_halt(grobo_robot *robot)
+{
+    robot->holds_at_stop = true;
+    robot->job.script = grobo_i_script_exit_hold;
+    robot->job.at = 0;
+    grobo_i_gate_halt(robot, grobo_i_all_joints(robot));
+    return GROBO_I_NEXT;
+}
+
 static int step_torque(grobo_robot *robot)
 {
     grobo_robot_task *job = &robot->job;
     int result = grobo_i_gate_torque(robot, job->pending, job->torque, chunk_of(robot));
-    return result < 0 && result != GROBO_ERR_FULL ? result : GROBO_I_DRAIN;
+    if (result < 0 && result != GROBO_ERR_FULL) {
+        return job->kind == GROBO_JOB_ESTOP ? stop_by_halt(robot) : result;
+    }
+    return GROBO_I_DRAIN;
 }
 
 static bool torque_taken(const grobo_robot *robot, int joint)
@@ -244,9 +257,12 @@ static int step_torque_check(grobo_robot *robot)
             bad |= GROBO_JOINT_BIT(j);
             robot->axes[j].held = false;
         } else {
-            robot->axes[j].wants_torque = on;
-            robot->axes[j].has_target = on;
-            grobo_i_axis_rest(&robot->axes[j], robot->now_us);
+            grobo_robot_axis *axis = &robot->axes[j];
+            axis->wants_torque = on;
+            if (!on || !axis->has_target) { /* or it was sent on its way since it holds */
+                grobo_i_axis_rest(axis, robot->now_us);
+            }
+            axis->has_target = on;
         }
     }
     job->pending = bad;

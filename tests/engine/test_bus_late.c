@@ -158,6 +158,28 @@ static void a_retry_that_succeeds_may_leave_a_reply_behind(void **state)
     assert_int_equal(p.bus.stats.late_bytes, 10);
 }
 
+/* Also where the line was quick so far, so that the wait for the first one was soon over. */
+static void the_reply_behind_a_late_one_may_be_as_late(void **state)
+{
+    (void)state;
+    peer p;
+    request a, b;
+    start(&p);
+    p.bus.worst_us = 100;
+    peer_submit_read(&p, &a, 1, 1);
+    peer_submit_read(&p, &b, 1, 0);
+    int64_t first_us = READ_FAILED + GROBO_BUS_QUIET_US + 3488 + MS;
+    int64_t second_us = first_us + MS + MS / 2;
+    peer_position_at(&p, first_us, 1, 11);
+    peer_position_at(&p, second_us, 1, 22);
+    peer_position_at(&p, second_us + 3488, 1, 33);
+    peer_run(&p, S);
+    assert_int_equal(p.sent[2].at_us, second_us);
+    assert_int_equal(p.ended[0].value, 11);
+    assert_int_equal(p.ended[1].value, 33);
+    assert_int_equal(p.bus.stats.late_bytes, 10);
+}
+
 static void a_late_ack_is_not_taken_for_another_motors(void **state)
 {
     (void)state;
@@ -437,6 +459,7 @@ int main(void)
         cmocka_unit_test(another_reply_proves_that_the_lost_one_is_lost),
         cmocka_unit_test(on_a_bus_a_servo_may_answer_after_another_one),
         cmocka_unit_test(a_retry_that_succeeds_may_leave_a_reply_behind),
+        cmocka_unit_test(the_reply_behind_a_late_one_may_be_as_late),
         cmocka_unit_test(a_late_ack_is_not_taken_for_another_motors),
         cmocka_unit_test(reads_go_on_while_an_ack_is_outstanding_and_clear_it),
         cmocka_unit_test(an_ack_among_rubbish_is_not_believed),

@@ -309,6 +309,63 @@ static void what_is_told_again_is_told_in_small_frames(void **state)
     assert_true(of_four > 0);
 }
 
+static int torque_that_fails(const grobo_driver *self, void *ctx, grobo_joint_mask joints,
+                             grobo_torque mode, int part, grobo_exchange *exchange)
+{
+    (void)self;
+    (void)ctx;
+    (void)joints;
+    (void)mode;
+    (void)part;
+    (void)exchange;
+    return GROBO_ERR_UNSUPPORTED;
+}
+
+/* The neck has not arrived, and stands. */
+static void expect_neck_stands(void)
+{
+    double here_deg = rig_angle_deg(&rig, NECK);
+    rig_run(&rig, 1000000);
+    assert_true(fabs(rig_angle_deg(&rig, NECK) - here_deg) < 0.01);
+    assert_in_range(fabs(here_deg), 1, 35);
+    assert_int_equal(rig_torque(&rig, NECK), GROBO_TORQUE_ON);
+}
+
+/* It is latched, and what moves is halted and holds; so it is where the line comes back. */
+static void an_emergency_stop_without_torque_halts(void **state)
+{
+    (void)state;
+    for (int way = 0; way < 4; way++) {
+        grobo_driver driver = *grobo_gr001_driver(rig_wiring);
+        grobo_posture target;
+        rig_start_driver(&rig, &driver, &quiet, NULL);
+        rig_power(&rig);
+        target = rig_posture(&rig, NECK, 10, 500);
+        rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
+        driver.torque = way % 2 == 0 ? NULL : torque_that_fails;
+        rig.halts_at_estop = true;
+        target = rig_posture(&rig, NECK, -40, 3000);
+        int move = grobo_robot_move(&rig.robot, &target, rig.now_us);
+        rig_run(&rig, 1000000);
+        if (way < 2) {
+            int number = grobo_robot_estop(&rig.robot, rig.now_us);
+            assert_true(number > move);
+            rig_expect(&rig, number, GROBO_OK);
+        } else {
+            grobo_robot_link_down(&rig.robot, rig.now_us);
+            assert_int_equal(grobo_robot_estop(&rig.robot, rig.now_us), GROBO_ERR_CLOSED);
+            rig_forget(&rig);
+            grobo_robot_link_up(&rig.robot, rig.now_us);
+            rig_run(&rig, 600000);
+            assert_int_equal(rig_last(&rig, GROBO_EVENT_JOB)->u.job.kind, GROBO_JOB_ESTOP);
+            assert_int_equal(rig_last(&rig, GROBO_EVENT_JOB)->u.job.result, GROBO_OK);
+        }
+        expect_neck_stands();
+        assert_int_equal(grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_ERR_LATCHED);
+        assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_ERR_LATCHED);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -318,6 +375,7 @@ int main(void)
         cmocka_unit_test(an_order_without_a_frame_is_over),
         cmocka_unit_test(an_order_leaves_whole_or_not_at_all),
         cmocka_unit_test(what_is_told_again_is_told_in_small_frames),
+        cmocka_unit_test(an_emergency_stop_without_torque_halts),
     };
     return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

@@ -427,6 +427,28 @@ static void a_repeated_posture_is_not_corrected_twice(void **state)
     assert_true(fabs(rig_angle_deg(&rig, R_KNEE) + 85) < 0.1);
 }
 
+/* One servo has missed the approach, which begins anew: the others are on their way already. */
+static void a_cancel_stops_an_approach_that_begins_anew(void **state)
+{
+    (void)state;
+    static const rig_key far[] = {{0, {{NECK, 40}, {SHOULDER, 90}}}, {500, {{NECK, 40}}}};
+    rig_start_at(&rig, 0, &quiet);
+    rig_clip_init(&clip, far, 2);
+    int number = grobo_robot_play(&rig.robot, &clip.clip, NULL, rig.now_us);
+    rig_wait_play(&rig, GROBO_SEQUENCER_APPROACHING);
+    assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_MUTE), 0);
+    rig_run(&rig, 30000);
+    assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_IN), 0);
+    rig_wait_play(&rig, GROBO_SEQUENCER_IDLE);
+    assert_int_equal(grobo_robot_job(&rig.robot), GROBO_JOB_PLAY);
+    assert_int_equal(grobo_robot_cancel(&rig.robot, rig.now_us), GROBO_OK);
+    rig_expect(&rig, number, GROBO_ERR_CANCELED);
+    rig_run(&rig, 300000);
+    double here_deg = rig_angle_deg(&rig, SHOULDER);
+    rig_run(&rig, 1000000);
+    assert_true(fabs(rig_angle_deg(&rig, SHOULDER) - here_deg) < 0.01);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -448,6 +470,7 @@ int main(void)
         cmocka_unit_test(an_approach_is_judged_by_its_own_readings),
         cmocka_unit_test(the_stabilizer_corrects_and_is_checked),
         cmocka_unit_test(a_repeated_posture_is_not_corrected_twice),
+        cmocka_unit_test(a_cancel_stops_an_approach_that_begins_anew),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

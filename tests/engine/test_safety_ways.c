@@ -259,6 +259,32 @@ static void a_time_out_of_all_reason_is_the_longest_there_is(void **state)
     rig_expect(&rig, number, GROBO_ERR_CANCELED);
 }
 
+/* ---- frames that are lost -------------------------------------------------------------------- */
+
+/* Where the servo has said that its goal is another one, the joint is not on the way, however near
+ * to it it was read then. */
+static void a_goal_that_was_not_taken_is_no_way(void **state)
+{
+    (void)state;
+    static const grobo_sense_kind kinds[] = {GROBO_SENSE_GOAL, GROBO_SENSE_FULL};
+    rig_start_at(&rig, -45, &quiet);
+    grobo_posture target = rig_posture(&rig, NECK, 45, 3000);
+    assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_MUTE), 0);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    rig_run(&rig, 50000);
+    assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_IN), 0);
+    for (int i = 0; i < 2; i++) { /* the second tells nothing of the goal */
+        int number =
+            grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(NECK), kinds[i], rig.now_us);
+        rig_expect(&rig, number, GROBO_OK);
+    }
+    rig_run(&rig, 1000000);
+    target = rig_posture(&rig, NECK, 0, 20);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    rig_run(&rig, 20000);
+    assert_true(rig_sent_ms(&rig, NECK_ID) >= 45 * 1000 / 375);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -266,6 +292,7 @@ int main(void)
         cmocka_unit_test(no_control_of_a_motion_makes_it_too_fast),
         cmocka_unit_test(a_move_that_cannot_be_slow_enough_is_refused),
         cmocka_unit_test(a_time_out_of_all_reason_is_the_longest_there_is),
+        cmocka_unit_test(a_goal_that_was_not_taken_is_no_way),
     };
     return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

@@ -234,6 +234,54 @@ static void a_stopped_joint_never_goes_back(void **state)
     }
 }
 
+/* A reset makes what begins behind it slow; the end of a motion does not take longer by that. */
+static void a_smooth_stop_is_no_longer_after_a_reset(void **state)
+{
+    (void)state;
+    static const rig_key leap[] = {
+        {0, {{SHOULDER, 100}}}, {100, {{SHOULDER, -100}}}, {4000, {{SHOULDER, -100}}}};
+    const grobo_play_options options = {.mode = GROBO_PLAY_RATE, .rate_hz = 30};
+    for (int pauses = 0; pauses < 2; pauses++) {
+        start_at(0);
+        rig_clip_init(&clip, leap, 3);
+        rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options, rig.now_us), GROBO_OK);
+        rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
+        rig_run(&rig, 200000);
+        assert_int_equal(grobo_robot_reset(&rig.robot, rig.now_us), GROBO_OK);
+        assert_int_equal(pauses ? grobo_robot_pause(&rig.robot, rig.now_us)
+                                : grobo_robot_stop(&rig.robot, false, rig.now_us),
+                         GROBO_OK);
+        rig_run(&rig, 300000);
+        double here_deg = rig_angle_deg(&rig, SHOULDER);
+        rig_run(&rig, 1000000);
+        assert_true(fabs(rig_angle_deg(&rig, SHOULDER) - here_deg) < 0.01);
+    }
+}
+
+/* A joint holds, and is sent on its way, while the same job still verifies others. */
+static void a_joint_sent_while_torque_comes_on_is_stopped_where_it_is(void **state)
+{
+    (void)state;
+    const grobo_sim_config limp = {.start = GROBO_SIM_START_LIMP, .seed = 7};
+    rig_start(&rig, NULL, &limp);
+    int number = grobo_robot_torque(&rig.robot, rig_all(&rig), GROBO_TORQUE_ON, rig.now_us);
+    double here_deg = rig_angle_deg(&rig, HIP);
+    grobo_posture target = rig_posture(&rig, HIP, here_deg + (here_deg < -60 ? 90 : -90), 3000);
+    int result = GROBO_ERR_STATE;
+    while (result < 0 && grobo_robot_job(&rig.robot) == GROBO_JOB_TORQUE) {
+        rig_run(&rig, 1000);
+        result = grobo_robot_send(&rig.robot, &target, rig.now_us);
+    }
+    assert_int_equal(result, GROBO_OK);
+    rig_expect(&rig, number, GROBO_OK);
+    rig_run(&rig, 200000);
+    assert_int_equal(grobo_robot_stop(&rig.robot, false, rig.now_us), GROBO_OK);
+    rig_run(&rig, 300000);
+    here_deg = rig_angle_deg(&rig, HIP);
+    rig_run(&rig, 1000000);
+    assert_true(fabs(rig_angle_deg(&rig, HIP) - here_deg) < 0.01);
+}
+
 /* The clip that waited in the queue is gone with the first stop, and stays so. */
 static void a_stop_empties_the_queue(void **state)
 {
@@ -522,6 +570,8 @@ int main(void)
         cmocka_unit_test(a_stop_cancels_what_waits_for_the_line),
         cmocka_unit_test(a_stop_does_not_wait_for_a_silent_servo),
         cmocka_unit_test(a_stopped_joint_never_goes_back),
+        cmocka_unit_test(a_smooth_stop_is_no_longer_after_a_reset),
+        cmocka_unit_test(a_joint_sent_while_torque_comes_on_is_stopped_where_it_is),
         cmocka_unit_test(a_stop_empties_the_queue),
         cmocka_unit_test(a_trip_ends_a_raw_job),
         cmocka_unit_test(a_trip_ends_torque_that_comes_on),

@@ -51,6 +51,7 @@ typedef struct grobo_test_rig {
     void (*on_frame)(struct grobo_test_rig *rig, const uint8_t *bytes, size_t n);
     void (*on_sim)(struct grobo_test_rig *rig, const grobo_sim_event *event);
     void *ctx;                                /* of the hooks */
+    bool halts_at_estop;                      /* the driver switches no torque */
     bool judged;                              /* somebody else judges where torque comes on */
     rig_way ways[GROBO_JOINTS_MAX][RIG_WAYS]; /* to check speeds by */
     rig_way own[GROBO_JOINTS_MAX];            /* by what the servo said of its move last */

@@ -12,7 +12,8 @@
 /* A reply later than this is nobody's any more. */
 #define LATE_US 1000000
 /* A line that says a reply twice does so within this: the second may be taken for the answer to the
- * same question asked again. It is the same joint's, and as old as a reading may be. */
+ * same question asked again, and then the answer to that for the answer to the next. Each is the
+ * same joint's, and as old as a reading may be. */
 #define DOUBLED_US 20000
 /* Longest return packet that the engine asks for. */
 enum { REPLY_MAX = 40 };
@@ -66,7 +67,7 @@ static bool reads(const uint8_t *packet)
 }
 
 /* A transaction on the wire for the first time is a new question, wherever it is kept. */
-static void ask(witness *w, int motor, const grobo_txn *txn, int64_t now_us)
+static void ask(witness *w, const uint8_t *packet, const grobo_txn *txn, int64_t now_us)
 {
     int i = 0;
     while (i < WITNESS_QUESTIONS && w->questions[i].txn != NULL && w->questions[i].txn != txn) {
@@ -74,17 +75,31 @@ static void ask(witness *w, int motor, const grobo_txn *txn, int64_t now_us)
     }
     assert_true(i < WITNESS_QUESTIONS);
     if (txn->attempts_ == 1) {
-        w->questions[i] = (witness_question){txn, now_us};
+        w->questions[i] = (witness_question){txn, now_us, packet[2], packet[4], packet[5]};
     }
     assert_true(w->questions[i].txn == txn);
-    w->asked_us[motor] = w->questions[i].since_us;
+}
+
+/* The question that a return packet answers: of those that ask for the same the latest. Between its
+ * attempts other questions to the same motor may leave. */
+static witness_question question_of(const witness *w, const uint8_t *packet)
+{
+    witness_question found = {0};
+    for (int i = 0; i < WITNESS_QUESTIONS && w->questions[i].txn != NULL; i++) {
+        const witness_question *q = &w->questions[i];
+        if (q->motor == packet[2] && q->address == packet[4] && q->length == packet[5] &&
+            q->since_us >= found.since_us) {
+            found = *q;
+        }
+    }
+    return found;
 }
 
 void witness_sent(witness *w, const uint8_t *packet, size_t n, const grobo_txn *txn, int64_t now_us)
 {
     keep(w->sent, WITNESS_SENT, &w->n_sent, packet, n)->at_us = now_us;
     if (reads(packet)) {
-        ask(w, packet[2], txn, now_us);
+        ask(w, packet, txn, now_us);
     }
 }
 
@@ -233,7 +248,7 @@ static const witness_packet *find_seen(const witness *w, int joint, const grobo_
     const witness_packet *found = NULL;
     for (unsigned i = 0; i < WITNESS_SEEN; i++) {
         const witness_packet *seen = &w->seen[i];
-        if (seen->at_us >= w->asked_us[seen->bytes[2]] &&
+        if (seen->at_us >= question_of(w, seen->bytes).since_us &&
             seen->bytes[2] == w->model->joints[joint].motor && agrees(seen, state) &&
             (found == NULL || seen->at_us > found->at_us ||
              (seen->at_us == found->at_us && seen->sound))) {
@@ -243,9 +258,15 @@ static const witness_packet *find_seen(const witness *w, int joint, const grobo_
     return found;
 }
 
-/* True if this may as well be the second one of a reply that the line said twice. */
-static bool may_be_second(const witness *w, const witness_packet *seen, int64_t now_us)
+/* True if this may as well be the second one of a reply that the line said twice, or came to the
+ * question behind its own because of one. */
+static bool may_be_doubled(const witness *w, int joint, const witness_packet *seen, int64_t now_us)
 {
+    const witness_packet *its = &w->said[seen->said_number % WITNESS_SAID];
+    if (!its->believed && now_us - its->at_us <= DOUBLED_US &&
+        now_us - w->doubled_us[joint] <= DOUBLED_US) {
+        return true;
+    }
     for (unsigned i = 0; i < WITNESS_SAID && i < w->n_said; i++) {
         const witness_packet *said = &w->said[i];
         if (said->believed && same(said, seen->bytes, seen->n) &&
@@ -260,10 +281,12 @@ static void believe_said(witness *w, int joint, const witness_packet *seen, int6
 {
     const char *name = w->model->joints[joint].name;
     witness_packet *said = &w->said[seen->said_number % WITNESS_SAID];
-    int64_t asked_us = w->asked_us[w->model->joints[joint].motor];
+    int64_t asked_us = w->answered.since_us;
     bool fresh = !said->believed && said->at_us >= asked_us;
-    if (!fresh && may_be_second(w, seen, now_us)) {
+    if (!fresh && may_be_doubled(w, joint, seen, now_us)) {
         w->doubled++;
+        w->doubled_us[joint] = now_us;
+        said->believed = true;
         return;
     }
     if (said->believed) {
@@ -286,7 +309,10 @@ void witness_believed(witness *w, int joint, const grobo_joint_state *state, int
     const witness_packet *seen = find_seen(w, joint, state);
     if (seen == NULL) {
         fail_msg("nobody said what was believed of %s", w->model->joints[joint].name);
-    } else if (seen->sound) {
+        return;
+    }
+    w->answered = question_of(w, seen->bytes);
+    if (seen->sound) {
         believe_said(w, joint, seen, now_us);
     } else {
         w->made_up_believed++;
@@ -294,10 +320,10 @@ void witness_believed(witness *w, int joint, const grobo_joint_state *state, int
     }
 }
 
-bool witness_asked(const witness *w, int address)
+bool witness_told(const witness *w, int address)
 {
-    const uint8_t *p = w->sent[(w->n_sent - 1) % WITNESS_SENT].bytes;
-    return reads(p) && p[4] <= address && address < p[4] + p[5];
+    const witness_question *q = &w->answered;
+    return q->address <= address && address < q->address + q->length;
 }
 
 bool witness_restarted(const witness *w, int joint)

@@ -36,7 +36,8 @@ typedef struct witness_packet {
 /* A question: its attempts, between which other questions may leave, are one question. */
 typedef struct witness_question {
     const grobo_txn *txn;
-    int64_t since_us; /* when its first attempt left */
+    int64_t since_us;               /* when its first attempt left */
+    uint8_t motor, address, length; /* what it asks for */
 } witness_question;
 
 typedef struct witness {
@@ -48,14 +49,15 @@ typedef struct witness {
     unsigned n_tail;
     int64_t heard_us; /* when servos heard a command last */
     witness_question questions[WITNESS_QUESTIONS];
-    int64_t asked_us[256]; /* of each motor: since when its question that left last is asked */
+    witness_question answered;           /* by the reading that was believed last */
+    int64_t doubled_us[GROBO_JOINTS_MAX]; /* when a doubled reply was believed last */
     int64_t said_us[GROBO_JOINTS_MAX];   /* when the reading was said that was believed last */
     int64_t goal_us[GROBO_JOINTS_MAX];   /* when the goal was said that was believed last */
     int64_t reboot_us[GROBO_JOINTS_MAX]; /* when a servo last lost what it was told */
     grobo_joint_mask misled;             /* the line made something up about these */
     bool settings_hit;                   /* a made-up command changed what flash keeps */
     unsigned believed;                   /* readings that were believed, and were true */
-    unsigned doubled;                    /* that the line said twice, and both were believed */
+    unsigned doubled;                    /* that the line said twice, or because of one */
     unsigned made_up_commands, made_up_replies, made_up_believed;
 } witness;
 
@@ -67,11 +69,11 @@ void witness_sent(witness *w, const uint8_t *packet, size_t n, const grobo_txn *
 void witness_heard(witness *w, const grobo_sim_event *event);
 /* Bytes arrive at the host. */
 void witness_arrived(witness *w, const uint8_t *bytes, size_t n, int64_t now_us);
-/* The host took this for a joint's state, as the answer to the question that left last. Fails the
- * test if nobody said so: no servo, another one, before the question was first asked. */
+/* The host took this for a joint's state. Fails the test if nobody said so: no servo, another one,
+ * before its question was first asked. */
 void witness_believed(witness *w, int joint, const grobo_joint_state *state, int64_t now_us);
-/* True if the question that left last asks for the register at this address. */
-bool witness_asked(const witness *w, int address);
+/* True if the reading that was believed last tells of the register at this address. */
+bool witness_told(const witness *w, int address);
 /* True if a servo restarted after its goal was read last: it has forgotten it, who can know. */
 bool witness_restarted(const witness *w, int joint);
 

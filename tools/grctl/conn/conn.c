@@ -504,12 +504,10 @@ static bool is_quiet(conn *c)
 }
 
 /* The answer to a reading in the background is not left on the line for who comes next. */
-static void end_readings(conn *c)
+static void await_quiet(conn *c)
 {
-    if (!c->up || c->link_error)
-        return;
-    conn_watch(c, false);
-    (void)conn_wait_until(c, is_quiet);
+    if (c->up && !c->link_error)
+        (void)conn_wait_until(c, is_quiet);
 }
 
 int conn_close(conn *c, int status)
@@ -517,8 +515,9 @@ int conn_close(conn *c, int status)
     int failed = EXIT_DONE;
     conn_suspend(c);
     if (c->session) {
-        end_readings(c);
+        conn_watch(c, false);
         failed = carry_out_policy(c, status);
+        await_quiet(c);
     }
     conn_show_answer(c);
     if (failed)
