@@ -98,3 +98,17 @@ bool grobo_i_all_on(const grobo_robot *robot, grobo_joint_mask joints)
     }
     return true;
 }
+
+grobo_joint_mask grobo_i_all_joints(const grobo_robot *robot)
+{
+    return GROBO_JOINTS_ALL(robot->driver->model->n_joints);
+}
+
+int grobo_i_lowest(grobo_joint_mask joints)
+{
+    int j = 0;
+    while ((joints & GROBO_JOINT_BIT(j)) == 0) {
+        j++;
+    }
+    return j;
+}

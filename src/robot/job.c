@@ -75,15 +75,6 @@ void grobo_i_job_goto(grobo_robot *robot, grobo_robot_step_fn step)
 
 /* ---- activities: 1 under way, 0 over, < 0 the job has failed --------------------------------- */
 
-int grobo_i_lowest(grobo_joint_mask joints)
-{
-    int j = 0;
-    while ((joints & GROBO_JOINT_BIT(j)) == 0) {
-        j++;
-    }
-    return j;
-}
-
 static int keep_asking(grobo_robot *robot)
 {
     return grobo_i_slots_busy(robot, GROBO_I_USE_JOB) ? 1 : 0;
@@ -214,19 +205,22 @@ static void take_answer(grobo_robot *robot, int result, const grobo_packet *repl
     job->result = result;
 }
 
-void grobo_i_job_done(grobo_robot_slot *slot, int result, const grobo_packet *reply)
+bool grobo_i_job_has(const grobo_robot_slot *slot)
+{
+    const grobo_robot_task *job = &slot->robot->job;
+    return job->kind != GROBO_JOB_NONE && slot->job == job->number;
+}
+
+void grobo_i_job_done(const grobo_robot_slot *slot, int result, const grobo_packet *reply)
 {
     grobo_robot *robot = slot->robot;
-    grobo_robot_task *job = &robot->job;
-    if (job->kind == GROBO_JOB_NONE || slot->job != job->number) {
-        return;
+    if (!grobo_i_job_has(slot)) {
+        return; /* what was read has ended it */
     }
-    if (job->activity == GROBO_I_READ) {
-        int joint = slot->joint;
-        job->todo &= ~GROBO_JOINT_BIT(joint);
-        int taken = grobo_i_sense_take(slot, result, reply);
-        if (taken < 0 && job->kind != GROBO_JOB_NONE && slot->job == job->number) {
-            grobo_i_job_fail_joint(robot, joint, taken, 0);
+    if (slot->reads) {
+        robot->job.todo &= ~GROBO_JOINT_BIT(slot->joint);
+        if (result < 0) {
+            grobo_i_job_fail_joint(robot, slot->joint, result, 0);
         }
     } else {
         take_answer(robot, result, reply);

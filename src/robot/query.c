@@ -137,3 +137,8 @@ const grobo_driver *grobo_robot_driver(const grobo_robot *robot)
 {
     return robot->driver;
 }
+
+bool grobo_i_in_motion(const grobo_robot *robot)
+{
+    return robot->job.kind == GROBO_JOB_MOVE || grobo_robot_is_playing(robot);
+}

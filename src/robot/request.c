@@ -7,14 +7,6 @@
 
 #include "src/base/instant.h"
 
-void grobo_i_make_way(grobo_robot *robot)
-{
-    robot->settling = false;
-    if (robot->job.kind == GROBO_JOB_SETTLE) {
-        grobo_i_job_end(robot, GROBO_ERR_CANCELED);
-    }
-}
-
 /* May a job begin now? */
 static int admit(grobo_robot *robot, bool moves)
 {
@@ -387,22 +379,6 @@ int grobo_robot_stored(grobo_robot *robot, grobo_stored_kind kind, int number, i
 }
 
 /* ---- ends ------------------------------------------------------------------------------------ */
-
-void grobo_i_stop_moves(grobo_robot *robot)
-{
-    grobo_joint_mask joints =
-        grobo_robot_is_playing(robot) ? robot->raw_joints : grobo_i_all_joints(robot);
-    grobo_i_slots_cancel_goals(robot);
-    if (joints != 0) {
-        grobo_i_gate_halt(robot, joints);
-    }
-}
-
-bool grobo_i_job_moves(const grobo_robot *robot)
-{
-    return robot->job.kind == GROBO_JOB_MOVE ||
-           (robot->job.kind != GROBO_JOB_NONE && robot->job.order.moves);
-}
 
 /* Ends the job that runs to make place for another; what it moves is stopped, or all that moves. */
 static void displace(grobo_robot *robot, bool all)

@@ -72,6 +72,8 @@ int grobo_robot_init(grobo_robot *robot, const grobo_driver *driver, void *drive
     memset(robot, 0, sizeof *robot);
     robot->driver = driver;
     robot->driver_ctx = driver_ctx;
+    robot->leave = grobo_i_gate_leave;
+    robot->over = grobo_i_frame_over;
     robot->config = *c;
     config_fill(&robot->config, driver);
     if (grobo_bus_init(&robot->bus, &robot->config.bus) < 0) {
@@ -109,57 +111,10 @@ int grobo_robot_configure(grobo_robot *robot, const grobo_robot_config *config)
     return GROBO_OK;
 }
 
-grobo_joint_mask grobo_i_all_joints(const grobo_robot *robot)
-{
-    return GROBO_JOINTS_ALL(robot->driver->model->n_joints);
-}
-
-/* ---- events ---------------------------------------------------------------------------------- */
-
-void grobo_i_tell(grobo_robot *robot, const grobo_event *event)
-{
-    if (robot->events_n == GROBO_ROBOT_EVENTS ||
-        (event->kind == GROBO_EVENT_JOINT && robot->events_n >= GROBO_ROBOT_EVENTS / 2)) {
-        robot->counters.lost_events++;
-        return;
-    }
-    grobo_event *place =
-        &robot->events[(robot->events_head + robot->events_n) % GROBO_ROBOT_EVENTS];
-    *place = *event;
-    place->now_us = robot->now_us;
-    robot->events_n++;
-}
-
 static void tell_kind(grobo_robot *robot, grobo_event_kind kind)
 {
     grobo_event event = {.kind = kind};
     grobo_i_tell(robot, &event);
-}
-
-void grobo_i_enter(grobo_robot *robot, int64_t now_us)
-{
-    robot->depth++;
-    if (now_us > robot->now_us) {
-        robot->now_us = now_us;
-    }
-}
-
-void grobo_i_leave(grobo_robot *robot)
-{
-    if (robot->depth == 1) {
-        grobo_i_play_tell(robot);
-        while (robot->events_n > 0) {
-            grobo_event event = robot->events[robot->events_head];
-            robot->events_head = (robot->events_head + 1) % GROBO_ROBOT_EVENTS;
-            robot->events_n--;
-            if (robot->on_event != NULL) {
-                robot->on_event(robot->event_ctx, &event);
-            }
-            grobo_i_play_tell(robot);
-        }
-        grobo_i_play_settle(robot);
-    }
-    robot->depth--;
 }
 
 /* ---- pump ------------------------------------------------------------------------------------ */

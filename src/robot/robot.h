@@ -1,39 +1,78 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The rooms of the engine and what they say to each other.
+ * The floors of the engine, the lowest first: a function calls its own floor or lower ones. What
+ * must go up goes as data, as an event, or through the two functions of a robot that robot.c sets:
+ * `leave` when a frame would leave, `over` when it is over.
  *
- *   robot.c          life, pump, link, the queue of events
- *   robot_slot.c     frames under way: from an exchange to a transaction and back
- *   robot_job.c      runs the script of a job, step by step
- *   robot_steps.c    the steps that scripts are made of
- *   robot_request.c  the public requests: checks, then starts a script
- *   robot_play.c     the sequencer's frames, on time
- *   robot_query.c    what may be asked
- *   budget.c         how many motion frames a second leave time to read
- *   robot_axis.c     where a joint is, by what it was sent to and what was read
- *   sensing.c        readings: into the axes, in the background, free mode
- *   safety_orders.c  orders to motors: into frames that wait for the line
- *   safety_gate.c    the only way to motors: judges and notes each order as its frame leaves
- *   segments.c       long moves told in parts
- *   safety_watch.c   judges readings, trips
+ *   event.c      the queue of events
+ *   axis.c       where a joint is, by what it was sent to and what was read
+ *   query.c      what may be asked
+ *   slot.c       frames under way: from an exchange to a transaction and back
+ *   budget.c     how many motion frames a second leave time to read
+ *   reading.c    what a reading tells of a joint
+ *   ways.c       ways that are told in segments
+ *   gate.c       the only way to motors: judges and notes each order as its frame leaves
+ *   orders.c     orders to motors: into frames that wait for the line
+ *   job.c        runs the script of a job, step by step
+ *   stop.c       what ends the engine's own work and stops joints that move
+ *   trip.c       stops for safety
+ *   watch.c      judges readings
+ *   play.c       the sequencer's frames, on time
+ *   segments.c   long moves told in parts, in time
+ *   sense.c      when the background reads which joint, free mode
+ *   steps.c      the steps that scripts are made of
+ *   turn.c       the end of a call and of a frame
+ *   request.c    the public requests: checks, then starts a script
+ *   control.c    the public controls of a motion
+ *   robot.c      life, pump, link
+ *   hrpsys.c     another view of it all
  */
 #ifndef GROBO_CORE_ROBOT_H
 #define GROBO_CORE_ROBOT_H
 
 #include <grobo/robot.h>
 
-/* ---- robot.c --------------------------------------------------------------------------------- */
+/* ---- event.c ------------------------------------------------------------------------------------ */
 
-/* Every public call that may change something stands between these two: the outermost leave tells
- * the events. */
-void grobo_i_enter(grobo_robot *robot, int64_t now_us);
-void grobo_i_leave(grobo_robot *robot);
 /* Puts an event into the queue. */
 void grobo_i_tell(grobo_robot *robot, const grobo_event *event);
+
+/* ---- axis.c ------------------------------------------------------------------------------------- */
+
 /* All joints of the model. */
 grobo_joint_mask grobo_i_all_joints(const grobo_robot *robot);
 
-/* ---- robot_slot.c ---------------------------------------------------------------------------- */
+/* The first of these joints, of which there is one at least. */
+int grobo_i_lowest(grobo_joint_mask joints);
+/* Where a way is by then. */
+double grobo_i_way_at(const grobo_robot_way *way, int64_t now_us);
+/* Where a joint is by now on the move it was sent on. */
+double grobo_i_axis_commanded(const grobo_robot_axis *axis, int64_t now_us);
+/* When it is there: on that move, or on the one its servo is on where it lost the frame. */
+int64_t grobo_i_axis_until(const grobo_robot_axis *axis);
+/* Where it was last asked to go, whether that frame has left or waits. */
+double grobo_i_axis_target(const grobo_robot_axis *axis);
+/* Takes the sensed angle for where a joint is, nothing being asked of it. */
+void grobo_i_axis_rest(grobo_robot_axis *axis, int64_t now_us);
+/* Takes what was read for where a joint is: at the angle, or on the move the servo told of. */
+void grobo_i_axis_here(grobo_robot_axis *axis, int64_t now_us);
+/* True if it is known to have torque. */
+bool grobo_i_axis_is_on(const grobo_robot_axis *axis);
+/* True while a joint is on the way it was sent on, or a target waits for the line. */
+bool grobo_i_moving(const grobo_robot *robot, int64_t now_us);
+/* True if one of these moves though nothing was asked of it, nobody knows where to. */
+bool grobo_i_adrift(const grobo_robot *robot, grobo_joint_mask joints);
+/* True if all of these were sensed; else *joint is one that was not. */
+bool grobo_i_all_sensed(const grobo_robot *robot, grobo_joint_mask joints, int *joint);
+/* True if all of these are known to have torque. */
+bool grobo_i_all_on(const grobo_robot *robot, grobo_joint_mask joints);
+
+/* ---- query.c ------------------------------------------------------------------------------------ */
+
+/* True while joints are being moved, by a job or by the sequencer. */
+bool grobo_i_in_motion(const grobo_robot *robot);
+
+/* ---- slot.c ------------------------------------------------------------------------------------- */
 
 /* What a frame under way is for. */
 typedef enum grobo_i_use {
@@ -82,138 +121,51 @@ bool grobo_i_slots_wait(const grobo_robot *robot, grobo_joint_mask joint, grobo_
 /* True if a frame of this use is under way. */
 bool grobo_i_slots_busy(const grobo_robot *robot, grobo_i_use use);
 
-/* ---- robot_job.c ----------------------------------------------------------------------------- */
-
-/* What a step returns: on to the next step, or one of the activities, or an error. */
-typedef enum grobo_i_activity {
-    GROBO_I_NEXT = 0, /* nothing to wait for */
-    GROBO_I_ASK,      /* until the frame that the step sent is answered, into robot.reply */
-    GROBO_I_READ,     /* reads job.todo, job.sense each */
-    GROBO_I_DRAIN,    /* until the frames of the job that were sent are out */
-    GROBO_I_WAIT      /* until job.until_us */
-} grobo_i_activity;
-
-/* The first of these joints, of which there is one at least. */
-int grobo_i_lowest(grobo_joint_mask joints);
-/* Starts a job; its number, or the reason why not. `script` ends with NULL. */
-int grobo_i_job_start(grobo_robot *robot, grobo_job_kind kind, const grobo_robot_step_fn *script);
-/* Goes on with the job as far as it goes now. */
-void grobo_i_job_run(grobo_robot *robot);
-/* Ends the job and tells so. */
-void grobo_i_job_end(grobo_robot *robot, int result);
-/* A frame of the job is over. */
-void grobo_i_job_done(grobo_robot_slot *slot, int result, const grobo_packet *reply);
-/* One joint failed; the job goes on with the others. The first error is the job's result. */
-void grobo_i_job_fail_joint(grobo_robot *robot, int joint, int error, double value);
-/* The step to go on with instead of the next one; it must be in the script. */
-void grobo_i_job_goto(grobo_robot *robot, grobo_robot_step_fn step);
-/* When the job wants to be run though nothing happens. */
-int64_t grobo_i_job_deadline(const grobo_robot *robot);
-
-/* ---- robot_steps.c --------------------------------------------------------------------------- */
-
-extern const grobo_robot_step_fn grobo_i_script_check[];
-extern const grobo_robot_step_fn grobo_i_script_sense[];
-extern const grobo_robot_step_fn grobo_i_script_torque_on[];
-extern const grobo_robot_step_fn grobo_i_script_torque_off[]; /* brake as well */
-extern const grobo_robot_step_fn grobo_i_script_move[];
-extern const grobo_robot_step_fn grobo_i_script_play[];
-extern const grobo_robot_step_fn grobo_i_script_settle[];
-extern const grobo_robot_step_fn grobo_i_script_ask[];
-extern const grobo_robot_step_fn grobo_i_script_exit_off[];
-extern const grobo_robot_step_fn grobo_i_script_exit_hold[];
-extern const grobo_robot_step_fn grobo_i_script_exit_sit[];
-
-/* True if the job is a move whose target has been sent. */
-bool grobo_i_move_is_sent(const grobo_robot *robot);
-/* Sends the joints of such a move to another target, and goes on from there. */
-void grobo_i_move_retarget(grobo_robot *robot, const grobo_posture *target);
-
-/* ---- robot_request.c ------------------------------------------------------------------------- */
-
-/* What the engine does by itself after a motion makes way for any request. */
-void grobo_i_make_way(grobo_robot *robot);
-/* Begins to carry an emergency stop out; the link is up. @return the job's number. */
-int grobo_i_estop_start(grobo_robot *robot);
-/* Cancels targets that wait, and halts what moves; while a motion is played, which ends by itself,
- * only what was sent beside it. */
-void grobo_i_stop_moves(grobo_robot *robot);
-/* True if the job that runs moves joints, or would: a stop ends it. */
-bool grobo_i_job_moves(const grobo_robot *robot);
-
-/* ---- robot_play.c ---------------------------------------------------------------------------- */
-
-/* No reading is begun that would not be over when the next motion frame is due. */
-void grobo_i_play_reserve(grobo_robot *robot);
-/* Sends what the sequencer has due, watches the host's lateness, keeps the line free for what
- * comes next, tells new states. */
-void grobo_i_play_step(grobo_robot *robot);
-/* A motion frame is over. */
-void grobo_i_play_done(grobo_robot_slot *slot, int result);
-/* Tells a new state of the sequencer. */
-void grobo_i_play_tell(grobo_robot *robot);
-/* After a motion, unless somebody asked for something else: its last posture is read back. */
-void grobo_i_play_settle(grobo_robot *robot);
-/* What a caller leaves open is as the robot is configured. */
-void grobo_i_play_options(const grobo_robot *robot, const grobo_play_options *options,
-                          grobo_play_options *chosen);
-/* Fills in the rate, and refuses one that leaves no time to watch the joints. `unwatched` remains
- * only where it is needed. @return 0, GROBO_ERR_UNWATCHED, or an error of the driver. */
-int grobo_i_play_rate(const grobo_robot *robot, grobo_play_options *chosen);
-/* True if the clip being played may make no frame wait for a reading. */
-bool grobo_i_play_unwatched(const grobo_robot *robot);
-/* Joints that a clip moves, played so. */
-int grobo_i_play_joints(const grobo_robot *robot, const grobo_clip *clip,
-                        const grobo_play_options *options, grobo_joint_mask *joints);
-/* Begins what job.clip and job.options say, from where the joints are. */
-int grobo_i_play_start(grobo_robot *robot);
-
-/* ---- sensing.c ------------------------------------------------------------------------------- */
-
-/* Takes what a slot has read of its joint, or the reason why there is nothing. @return result, or
- * parse's error. */
-int grobo_i_sense_take(const grobo_robot_slot *slot, int result, const grobo_packet *reply);
-/* The goal that holds a joint where its servo says that it is, drawn in to its limits; NaN where it
- * stands too far outside. */
-double grobo_i_hold_rad(const grobo_robot *robot, int joint);
-/* Starts a background reading if one is due. */
-void grobo_i_sense_step(grobo_robot *robot);
-/* A background reading is over. */
-void grobo_i_sense_done(grobo_robot_slot *slot, int result, const grobo_packet *reply);
-/* When the background reads next. */
-int64_t grobo_i_sense_deadline(const grobo_robot *robot);
-
-/* ---- budget.c -------------------------------------------------------------------------------- */
+/* ---- budget.c ----------------------------------------------------------------------------------- */
 
 int grobo_i_budget(const grobo_bus *bus, const grobo_driver *driver, void *ctx,
                    grobo_budget *budget);
 
-/* ---- robot_axis.c ---------------------------------------------------------------------------- */
+/* ---- reading.c ---------------------------------------------------------------------------------- */
 
-/* Where a way is by then. */
-double grobo_i_way_at(const grobo_robot_way *way, int64_t now_us);
-/* Where a joint is by now on the move it was sent on. */
-double grobo_i_axis_commanded(const grobo_robot_axis *axis, int64_t now_us);
-/* When it is there: on that move, or on the one its servo is on where it lost the frame. */
-int64_t grobo_i_axis_until(const grobo_robot_axis *axis);
-/* Where it was last asked to go, whether that frame has left or waits. */
-double grobo_i_axis_target(const grobo_robot_axis *axis);
-/* Takes the sensed angle for where a joint is, nothing being asked of it. */
-void grobo_i_axis_rest(grobo_robot_axis *axis, int64_t now_us);
-/* Takes what was read for where a joint is: at the angle, or on the move the servo told of. */
-void grobo_i_axis_here(grobo_robot_axis *axis, int64_t now_us);
-/* True if it is known to have torque. */
-bool grobo_i_axis_is_on(const grobo_robot_axis *axis);
-/* True while a joint is on the way it was sent on, or a target waits for the line. */
-bool grobo_i_moving(const grobo_robot *robot, int64_t now_us);
-/* True if one of these moves though nothing was asked of it, nobody knows where to. */
-bool grobo_i_adrift(const grobo_robot *robot, grobo_joint_mask joints);
-/* True if all of these were sensed; else *joint is one that was not. */
-bool grobo_i_all_sensed(const grobo_robot *robot, grobo_joint_mask joints, int *joint);
-/* True if all of these are known to have torque. */
-bool grobo_i_all_on(const grobo_robot *robot, grobo_joint_mask joints);
+/* A joint slower than this does not move: in free mode it holds again (protocol 5). */
+#define GROBO_I_SLOW_DPS 8
 
-/* ---- safety_gate.c --------------------------------------------------------------------------- */
+/* Takes what a slot has read of its joint, or the reason why there is nothing. *got: what was read,
+ * corrected. @return result, or the error of the driver's parse. */
+int grobo_i_reading_take(const grobo_robot_slot *slot, int result, const grobo_packet *reply,
+                         grobo_joint_state *got);
+/* True for a result that says that no reading came. */
+bool grobo_i_is_loss(int result);
+/* The goal that holds a joint where its servo says that it is, drawn in to its limits; NaN where it
+ * stands too far outside. */
+double grobo_i_hold_rad(const grobo_robot *robot, int joint);
+
+/* ---- ways.c ------------------------------------------------------------------------------------- */
+
+/* True if a joint that gets this time by this order is told its way in parts. */
+bool grobo_i_segments_wanted(const grobo_robot *robot, const grobo_robot_order *order,
+                             int64_t time_us);
+/* The part of a target that its frame asks for. @return false, and nothing in *part, where that is
+ * all of it. */
+bool grobo_i_segments_cut(const grobo_robot *robot, const grobo_robot_order *order,
+                          const grobo_target *whole, grobo_target *part);
+/* A joint begins the way just noted, which takes this time. */
+void grobo_i_segments_begin(grobo_robot *robot, int joint, int64_t time_us);
+/* Where these of the joints that are told more go next; and that they were told. */
+void grobo_i_segments_aim(const grobo_robot *robot, grobo_joint_mask joints, grobo_target *target);
+void grobo_i_segments_told(grobo_robot *robot, const grobo_target *target);
+/* When joints are told more; GROBO_NEVER_US: none is. */
+int64_t grobo_i_segments_due(const grobo_robot *robot);
+/* True while the servo was not told the end of its way. */
+bool grobo_i_way_is_short(const grobo_robot_axis *axis);
+/* The joints of which that is true now. */
+grobo_joint_mask grobo_i_joints_that(const grobo_robot *robot,
+                                     bool (*is)(const grobo_robot_axis *axis, int64_t now_us));
+/* Joints that are told more of their ways. */
+grobo_joint_mask grobo_i_ways_renewed(const grobo_robot *robot);
+
+/* ---- gate.c ------------------------------------------------------------------------------------- */
 
 /* The frame of this slot would leave now: judges its order, builds the frame anew from it, and
  * notes what it does. @return 0, or why it must not leave: then nothing is noted. */
@@ -247,7 +199,7 @@ bool grobo_i_goal_holds(const grobo_robot *robot, int joint);
 /* How far outside its limits a joint may stand to be switched on; it is drawn to the limit. */
 #define GROBO_I_HOLD_OUTSIDE_DEG 3.0
 
-/* ---- safety_orders.c ------------------------------------------------------------------------- */
+/* ---- orders.c ----------------------------------------------------------------------------------- */
 
 /* How a target is sent. */
 typedef struct grobo_i_motion {
@@ -281,35 +233,130 @@ int grobo_i_gate_torque(grobo_robot *robot, grobo_joint_mask joints, grobo_torqu
 /* True if all of these were sensed and hold. */
 bool grobo_i_gate_ready(const grobo_robot *robot, grobo_joint_mask joints);
 
-/* ---- segments.c ------------------------------------------------------------------------------ */
+/* ---- job.c -------------------------------------------------------------------------------------- */
 
-/* True if a joint that gets this time by this order is told its way in parts. */
-bool grobo_i_segments_wanted(const grobo_robot *robot, const grobo_robot_order *order,
-                             int64_t time_us);
-/* The part of a target that its frame asks for. @return false, and nothing in *part, where that is
- * all of it. */
-bool grobo_i_segments_cut(const grobo_robot *robot, const grobo_robot_order *order,
-                          const grobo_target *whole, grobo_target *part);
-/* A joint begins the way just noted, which takes this time. */
-void grobo_i_segments_begin(grobo_robot *robot, int joint, int64_t time_us);
-/* Where these of the joints that are told more go next; and that they were told. */
-void grobo_i_segments_aim(const grobo_robot *robot, grobo_joint_mask joints, grobo_target *target);
-void grobo_i_segments_told(grobo_robot *robot, const grobo_target *target);
-/* Tells more of their ways when it is time for that, and ends what the host has left standing. */
-void grobo_i_segments_step(grobo_robot *robot);
-/* When joints are told more; GROBO_NEVER_US: none is. */
-int64_t grobo_i_segments_due(const grobo_robot *robot);
-int64_t grobo_i_segments_deadline(const grobo_robot *robot);
+/* What a step returns: on to the next step, or one of the activities, or an error. */
+typedef enum grobo_i_activity {
+    GROBO_I_NEXT = 0, /* nothing to wait for */
+    GROBO_I_ASK,      /* until the frame that the step sent is answered, into robot.reply */
+    GROBO_I_READ,     /* reads job.todo, job.sense each */
+    GROBO_I_DRAIN,    /* until the frames of the job that were sent are out */
+    GROBO_I_WAIT      /* until job.until_us */
+} grobo_i_activity;
 
-/* ---- safety_watch.c -------------------------------------------------------------------------- */
+/* Starts a job; its number, or the reason why not. `script` ends with NULL. */
+int grobo_i_job_start(grobo_robot *robot, grobo_job_kind kind, const grobo_robot_step_fn *script);
+/* Goes on with the job as far as it goes now. */
+void grobo_i_job_run(grobo_robot *robot);
+/* Ends the job and tells so. */
+void grobo_i_job_end(grobo_robot *robot, int result);
+/* One joint failed; the job goes on with the others. The first error is the job's result. */
+void grobo_i_job_fail_joint(grobo_robot *robot, int joint, int error, double value);
+/* The step to go on with instead of the next one; it must be in the script. */
+void grobo_i_job_goto(grobo_robot *robot, grobo_robot_step_fn step);
+/* When the job wants to be run though nothing happens. */
+int64_t grobo_i_job_deadline(const grobo_robot *robot);
+
+/* True if the frame is of the job that runs. */
+bool grobo_i_job_has(const grobo_robot_slot *slot);
+/* A frame of the job is over; a reading was taken. */
+void grobo_i_job_done(const grobo_robot_slot *slot, int result, const grobo_packet *reply);
+
+/* ---- stop.c ------------------------------------------------------------------------------------- */
+
+/* What the engine does by itself after a motion makes way for any request. */
+void grobo_i_make_way(grobo_robot *robot);
+/* Cancels targets that wait, and halts what moves; while a motion is played, which ends by itself,
+ * only what was sent beside it. */
+void grobo_i_stop_moves(grobo_robot *robot);
+/* True if the job that runs moves joints, or would: a stop ends it. */
+bool grobo_i_job_moves(const grobo_robot *robot);
+
+/* ---- trip.c ------------------------------------------------------------------------------------- */
+
+/* Stops for safety. Latched ones end a job that moves or switches on. */
+void grobo_i_trip(grobo_robot *robot, grobo_trip reason, int joint, double value, bool latched);
+
+/* ---- watch.c ------------------------------------------------------------------------------------ */
 
 /* Judges the reading of a joint just taken. */
 void grobo_i_watch_reading(grobo_robot *robot, int joint, const grobo_joint_state *got);
 /* Judges a reading that did not come. */
 void grobo_i_watch_lost(grobo_robot *robot, int joint);
-/* Stops for safety. Latched ones end a job that moves or switches on. */
-void grobo_i_trip(grobo_robot *robot, grobo_trip reason, int joint, double value, bool latched);
-/* True while joints are being moved, by a job or by the sequencer. */
-bool grobo_i_in_motion(const grobo_robot *robot);
+
+/* ---- play.c ------------------------------------------------------------------------------------- */
+
+/* No reading is begun that would not be over when the next motion frame is due. */
+void grobo_i_play_reserve(grobo_robot *robot);
+/* Sends what the sequencer has due, watches the host's lateness, keeps the line free for what
+ * comes next, tells new states. */
+void grobo_i_play_step(grobo_robot *robot);
+/* A motion frame is over. */
+void grobo_i_play_done(grobo_robot_slot *slot, int result);
+/* Tells a new state of the sequencer. */
+void grobo_i_play_tell(grobo_robot *robot);
+/* What a caller leaves open is as the robot is configured. */
+void grobo_i_play_options(const grobo_robot *robot, const grobo_play_options *options,
+                          grobo_play_options *chosen);
+/* Fills in the rate, and refuses one that leaves no time to watch the joints. `unwatched` remains
+ * only where it is needed. @return 0, GROBO_ERR_UNWATCHED, or an error of the driver. */
+int grobo_i_play_rate(const grobo_robot *robot, grobo_play_options *chosen);
+/* True if the clip being played may make no frame wait for a reading. */
+bool grobo_i_play_unwatched(const grobo_robot *robot);
+/* Joints that a clip moves, played so. */
+int grobo_i_play_joints(const grobo_robot *robot, const grobo_clip *clip,
+                        const grobo_play_options *options, grobo_joint_mask *joints);
+/* Begins what job.clip and job.options say, from where the joints are. */
+int grobo_i_play_start(grobo_robot *robot);
+
+/* ---- segments.c --------------------------------------------------------------------------------- */
+
+/* Tells more of their ways when it is time for that, and ends what the host has left standing. */
+void grobo_i_segments_step(grobo_robot *robot);
+/* When that is to be looked at next. */
+int64_t grobo_i_segments_deadline(const grobo_robot *robot);
+
+/* ---- sense.c ------------------------------------------------------------------------------------ */
+
+/* Starts a background reading if one is due. */
+void grobo_i_sense_step(grobo_robot *robot);
+/* When the background reads next. */
+int64_t grobo_i_sense_deadline(const grobo_robot *robot);
+
+/* A background reading is over, and taken. */
+void grobo_i_sense_done(const grobo_robot_slot *slot, int result);
+
+/* ---- steps.c ------------------------------------------------------------------------------------ */
+
+extern const grobo_robot_step_fn grobo_i_script_check[];
+extern const grobo_robot_step_fn grobo_i_script_sense[];
+extern const grobo_robot_step_fn grobo_i_script_torque_on[];
+extern const grobo_robot_step_fn grobo_i_script_torque_off[]; /* brake as well */
+extern const grobo_robot_step_fn grobo_i_script_move[];
+extern const grobo_robot_step_fn grobo_i_script_play[];
+extern const grobo_robot_step_fn grobo_i_script_settle[];
+extern const grobo_robot_step_fn grobo_i_script_ask[];
+extern const grobo_robot_step_fn grobo_i_script_exit_off[];
+extern const grobo_robot_step_fn grobo_i_script_exit_hold[];
+extern const grobo_robot_step_fn grobo_i_script_exit_sit[];
+
+/* True if the job is a move whose target has been sent. */
+bool grobo_i_move_is_sent(const grobo_robot *robot);
+/* Sends the joints of such a move to another target, and goes on from there. */
+void grobo_i_move_retarget(grobo_robot *robot, const grobo_posture *target);
+
+/* ---- turn.c ------------------------------------------------------------------------------------- */
+
+/* Every public call that may change something stands between these two: the outermost leave tells
+ * the events. */
+void grobo_i_enter(grobo_robot *robot, int64_t now_us);
+void grobo_i_leave(grobo_robot *robot);
+/* A frame is over: grobo_robot.over. The slot is a copy. */
+void grobo_i_frame_over(grobo_robot_slot *slot, int result, const grobo_packet *reply);
+
+/* ---- request.c ---------------------------------------------------------------------------------- */
+
+/* Begins to carry an emergency stop out; the link is up. @return the job's number. */
+int grobo_i_estop_start(grobo_robot *robot);
 
 #endif

@@ -1,132 +1,17 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Goals in segments. Of a long move a frame asks for the next GROBO_SEGMENT_US only, and every
- * GROBO_SEGMENT_RENEW_US another one asks for more, so that a joint stops soon when none comes.
+ * Goals in segments, in time. Of a long move a frame asks for the next GROBO_SEGMENT_US only, and
+ * every GROBO_SEGMENT_RENEW_US another one asks for more, so that a joint stops soon when none
+ * comes. ways.c says what a frame asks for.
  *
- * grobo_robot_axis.way is the whole move, as for a whole goal; told_to_us is how far along it the
- * servo was told to go. Frames are built when they leave, so that a renewal lies on the way
- * whenever that is. A joint whose segment was over before the next one left stands where it ended.
- * Then the host was away: the move is over, and does not continue by itself.
+ * A joint whose segment was over before the next one left stands where it ended. Then the host was
+ * away: the move is over, and does not continue by itself.
  */
 #include "src/robot/robot.h"
 
-#include <math.h>
-
-static bool is_in(grobo_joint_mask joints, int joint)
-{
-    return (joints & GROBO_JOINT_BIT(joint)) != 0;
-}
-
-/* ---- one joint ------------------------------------------------------------------------------- */
-
-/* What a frame asks for where so much is left to go: a multiple of the wire's unit. */
-static int64_t next_us(const grobo_robot *robot, int64_t left_us)
-{
-    int64_t step_us = robot->driver->time_step_us;
-    int64_t most_us = GROBO_SEGMENT_US < step_us ? step_us : GROBO_SEGMENT_US / step_us * step_us;
-    return left_us > most_us ? most_us : (left_us + step_us - 1) / step_us * step_us;
-}
-
-/* Where a way is after so much of its time, and never outside the limits: it may begin there. */
-static double place(const grobo_robot *robot, int joint, const grobo_robot_way *way, int64_t at_us)
-{
-    const grobo_joint *limits = &robot->driver->model->joints[joint];
-    return fmin(fmax(grobo_i_way_at(way, at_us), limits->min_rad), limits->max_rad);
-}
-
-/* True while the servo was not told the end of the way. */
-static bool is_short(const grobo_robot_axis *axis)
-{
-    return axis->has_target && axis->in_segments && axis->told_to_us < axis->way.to_us;
-}
-
-/* The end is repeated, too, while there is time for it: a frame may be lost. */
-static bool is_renewed(const grobo_robot_axis *axis, int64_t now_us)
-{
-    bool late = axis->way.to_us - now_us < GROBO_SEGMENT_RENEW_US;
-    return is_short(axis) || (axis->has_target && axis->in_segments && !late);
-}
-
-bool grobo_i_segments_wanted(const grobo_robot *robot, const grobo_robot_order *order,
-                             int64_t time_us)
-{
-    grobo_goals goals = robot->config.goals;
-    bool parts =
-        goals == GROBO_GOALS_SEGMENTS || (goals == GROBO_GOALS_DEFAULT && robot->driver->arm);
-    return parts && !order->stops && time_us > next_us(robot, time_us);
-}
-
-/* ---- frames ---------------------------------------------------------------------------------- */
-
-bool grobo_i_segments_cut(const grobo_robot *robot, const grobo_robot_order *order,
-                          const grobo_target *whole, grobo_target *part)
-{
-    bool cut = false;
-    for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        int64_t time_us = whole->joint_time_us[j];
-        if (!is_in(whole->posture.set, j) || !grobo_i_segments_wanted(robot, order, time_us)) {
-            continue;
-        }
-        if (!cut) {
-            *part = *whole;
-            cut = true;
-        }
-        const grobo_robot_way way = {grobo_i_axis_commanded(&robot->axes[j], robot->now_us),
-                                     whole->posture.angle_rad[j], 0, time_us};
-        part->joint_time_us[j] = next_us(robot, time_us);
-        part->posture.angle_rad[j] = place(robot, j, &way, part->joint_time_us[j]);
-    }
-    return cut;
-}
-
-static grobo_joint_mask joints_that(const grobo_robot *robot,
-                                    bool (*is)(const grobo_robot_axis *, int64_t))
-{
-    grobo_joint_mask joints = 0;
-    for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        joints |= is(&robot->axes[j], robot->now_us) ? GROBO_JOINT_BIT(j) : 0;
-    }
-    return joints;
-}
-
-void grobo_i_segments_begin(grobo_robot *robot, int joint, int64_t time_us)
-{
-    grobo_robot_axis *axis = &robot->axes[joint];
-    if (joints_that(robot, is_renewed) == 0) {
-        robot->renewed_us = robot->now_us;
-    }
-    axis->in_segments = true;
-    axis->told_to_us = robot->now_us + next_us(robot, time_us);
-}
-
-void grobo_i_segments_aim(const grobo_robot *robot, grobo_joint_mask joints, grobo_target *target)
-{
-    for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        const grobo_robot_axis *axis = &robot->axes[j];
-        if (is_in(joints, j) && is_renewed(axis, robot->now_us) &&
-            axis->told_to_us > robot->now_us) {
-            int64_t time_us = next_us(robot, axis->way.to_us - robot->now_us);
-            target->joint_time_us[j] = time_us;
-            target->posture.angle_rad[j] = place(robot, j, &axis->way, robot->now_us + time_us);
-            target->posture.set |= GROBO_JOINT_BIT(j);
-        }
-    }
-}
-
-void grobo_i_segments_told(grobo_robot *robot, const grobo_target *target)
-{
-    for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if (is_in(target->posture.set, j)) {
-            robot->axes[j].told_to_us = robot->now_us + target->joint_time_us[j];
-        }
-    }
-}
-
-/* ---- in time --------------------------------------------------------------------------------- */
-
 static bool has_stopped(const grobo_robot_axis *axis, int64_t now_us)
 {
-    return is_short(axis) && axis->told_to_us <= now_us;
+    return grobo_i_way_is_short(axis) && axis->told_to_us <= now_us;
 }
 
 /* As where the host stalls in a motion: what moves is over, and nothing is latched. */
@@ -135,7 +20,7 @@ static void give_up(grobo_robot *robot)
     grobo_job_kind kind = robot->job.kind;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         grobo_robot_axis *axis = &robot->axes[j];
-        if (is_short(axis)) {
+        if (grobo_i_way_is_short(axis)) {
             double stands_rad = grobo_i_axis_commanded(axis, robot->now_us);
             axis->way = (grobo_robot_way){stands_rad, stands_rad, robot->now_us, robot->now_us};
             axis->in_segments = false;
@@ -156,21 +41,15 @@ static void give_up(grobo_robot *robot)
 
 void grobo_i_segments_step(grobo_robot *robot)
 {
-    if (joints_that(robot, has_stopped) != 0) {
+    if (grobo_i_joints_that(robot, has_stopped) != 0) {
         give_up(robot);
     }
     int64_t due_us = grobo_i_segments_due(robot);
     if (due_us <= robot->now_us && !grobo_i_slots_busy(robot, GROBO_I_USE_SEGMENT)) {
         bool late = due_us + GROBO_SEGMENT_RENEW_US <= robot->now_us;
         robot->renewed_us = late ? robot->now_us : due_us; /* on its grid, so that ends are exact */
-        grobo_i_gate_renew(robot, joints_that(robot, is_renewed));
+        grobo_i_gate_renew(robot, grobo_i_ways_renewed(robot));
     }
-}
-
-int64_t grobo_i_segments_due(const grobo_robot *robot)
-{
-    bool some = joints_that(robot, is_renewed) != 0;
-    return some ? robot->renewed_us + GROBO_SEGMENT_RENEW_US : GROBO_NEVER_US;
 }
 
 int64_t grobo_i_segments_deadline(const grobo_robot *robot)
@@ -179,7 +58,7 @@ int64_t grobo_i_segments_deadline(const grobo_robot *robot)
                                                                    : grobo_i_segments_due(robot);
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
-        if (is_short(axis) && axis->told_to_us < at_us) {
+        if (grobo_i_way_is_short(axis) && axis->told_to_us < at_us) {
             at_us = axis->told_to_us;
         }
     }

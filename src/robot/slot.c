@@ -46,7 +46,7 @@ void grobo_i_slot_drop(grobo_robot_slot *slot)
 static int on_leave(void *ctx, grobo_txn *txn)
 {
     grobo_robot_slot *slot = ctx;
-    int result = grobo_i_gate_leave(slot);
+    int result = slot->robot->leave(slot);
     slot->refused = result < 0;
     if (result >= 0) {
         assert(slot->exchange.frame_bytes > 0);
@@ -62,27 +62,7 @@ static void on_done(void *ctx, grobo_txn *txn, int result, const grobo_packet *r
     grobo_robot_slot slot = *(grobo_robot_slot *)ctx;
     assert(slot.use != GROBO_I_USE_FREE && txn == &((grobo_robot_slot *)ctx)->txn);
     grobo_i_slot_drop(ctx);
-    if (txn->sent_us < 0) {
-        grobo_i_gate_unwait(slot.robot, &slot.order);
-    }
-    switch ((grobo_i_use)slot.use) {
-    case GROBO_I_USE_FREE:
-    case GROBO_I_USE_PLAIN:
-    case GROBO_I_USE_HALT:
-        break;
-    case GROBO_I_USE_JOB:
-        grobo_i_job_done(&slot, result, reply);
-        break;
-    case GROBO_I_USE_SENSE:
-        grobo_i_sense_done(&slot, result, reply);
-        break;
-    case GROBO_I_USE_SEGMENT:
-        slot.robot->counters.motion_frames += result >= 0;
-        break;
-    case GROBO_I_USE_MOTION:
-        grobo_i_play_done(&slot, result);
-        break;
-    }
+    slot.robot->over(&slot, result, reply);
 }
 
 int grobo_i_slot_send(grobo_robot_slot *slot, grobo_priority priority)

@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: MIT */
+/* The public controls of a motion that is played. */
+#include "src/robot/robot.h"
+
+/* A clip may break under a command while the key that was sent last is still seconds away. */
+static int controlled(grobo_robot *robot, int result)
+{
+    if (grobo_sequencer_get_state(&robot->sequencer) == GROBO_SEQUENCER_FAILED &&
+        robot->told_state != GROBO_SEQUENCER_FAILED) {
+        grobo_i_gate_halt(robot, grobo_i_all_joints(robot));
+    }
+    grobo_i_leave(robot);
+    return result;
+}
+
+int grobo_robot_pause(grobo_robot *robot, int64_t now_us)
+{
+    grobo_i_enter(robot, now_us);
+    return controlled(robot, grobo_sequencer_pause(&robot->sequencer, robot->now_us));
+}
+
+int grobo_robot_resume(grobo_robot *robot, int64_t now_us)
+{
+    grobo_i_enter(robot, now_us);
+    int result = robot->trip.latched ? GROBO_ERR_LATCHED
+                                     : grobo_sequencer_resume(&robot->sequencer, robot->now_us);
+    return controlled(robot, result);
+}
+
+int grobo_robot_stop(grobo_robot *robot, bool at_once, int64_t now_us)
+{
+    grobo_i_enter(robot, now_us);
+    int result = grobo_sequencer_stop(&robot->sequencer, at_once, robot->now_us);
+    grobo_i_make_way(robot); /* it might send again what is stopped here */
+    bool job = robot->job.kind == GROBO_JOB_PLAY || grobo_i_job_moves(robot);
+    bool moves = job || grobo_i_moving(robot, robot->now_us);
+    if (job) {
+        grobo_i_job_end(robot, GROBO_ERR_CANCELED);
+    }
+    grobo_i_stop_moves(robot);
+    grobo_i_leave(robot);
+    return moves ? GROBO_OK : result;
+}
+
+int grobo_robot_seek(grobo_robot *robot, int64_t clip_us, int64_t now_us)
+{
+    grobo_i_enter(robot, now_us);
+    return controlled(robot, grobo_sequencer_seek(&robot->sequencer, clip_us, robot->now_us));
+}
+
+int grobo_robot_speed(grobo_robot *robot, int speed_pct, int64_t now_us)
+{
+    grobo_i_enter(robot, now_us);
+    return controlled(robot,
+                      grobo_sequencer_set_speed(&robot->sequencer, speed_pct, robot->now_us));
+}
+
+int grobo_robot_enqueue(grobo_robot *robot, const grobo_clip *clip,
+                        const grobo_play_options *options, int64_t now_us)
+{
+    grobo_i_enter(robot, now_us);
+    grobo_play_options chosen;
+    grobo_joint_mask joints = 0;
+    grobo_i_play_options(robot, options, &chosen);
+    int result = robot->trip.latched ? GROBO_ERR_LATCHED : grobo_i_play_rate(robot, &chosen);
+    if (result >= 0) {
+        result = grobo_i_play_joints(robot, clip, &chosen, &joints);
+    }
+    if (result >= 0 && !grobo_i_gate_ready(robot, joints)) {
+        result = GROBO_ERR_STATE; /* it would move in frames only */
+    }
+    if (result >= 0) {
+        result = grobo_sequencer_enqueue(&robot->sequencer, clip, &chosen);
+    }
+    grobo_i_leave(robot);
+    return result;
+}

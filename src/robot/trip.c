@@ -1,0 +1,73 @@
+/* SPDX-License-Identifier: MIT */
+/* Stops for safety. */
+#include "src/robot/robot.h"
+
+static const char *const trip_names[] = {
+    [GROBO_TRIP_NONE] = "none",
+    [GROBO_TRIP_TEMPERATURE] = "over-temperature",
+    [GROBO_TRIP_OVERHEATED] = "servo overheated",
+    [GROBO_TRIP_CURRENT] = "over-current",
+    [GROBO_TRIP_VOLTAGE] = "low voltage",
+    [GROBO_TRIP_LOST_REPLIES] = "lost replies",
+    [GROBO_TRIP_TORQUE_LOST] = "torque lost",
+    [GROBO_TRIP_LIMIT] = "outside limits",
+    [GROBO_TRIP_NUMBER] = "not a number",
+    [GROBO_TRIP_HOST_STALL] = "host stalled",
+    [GROBO_TRIP_ESTOP] = "emergency stop",
+};
+
+const char *grobo_trip_name(grobo_trip trip)
+{
+    size_t n = sizeof trip_names / sizeof trip_names[0];
+    return (size_t)trip < n ? trip_names[trip] : "unknown";
+}
+
+/* Jobs that a latched stop ends: those that move, or that switch torque on. */
+static bool job_must_end(const grobo_robot *robot)
+{
+    switch (robot->job.kind) {
+    case GROBO_JOB_MOVE:
+    case GROBO_JOB_PLAY:
+    case GROBO_JOB_STORED:
+    case GROBO_JOB_RAW:
+    case GROBO_JOB_SETTLE:
+        return true;
+    case GROBO_JOB_TORQUE:
+        return robot->job.torque == GROBO_TORQUE_ON;
+    case GROBO_JOB_NONE:
+    case GROBO_JOB_CHECK:
+    case GROBO_JOB_SENSE:
+    case GROBO_JOB_REGISTERS:
+    case GROBO_JOB_COMMAND:
+    case GROBO_JOB_EXIT:
+    case GROBO_JOB_ESTOP:
+        return false;
+    }
+    return false;
+}
+
+void grobo_i_trip(grobo_robot *robot, grobo_trip reason, int joint, double value, bool latched)
+{
+    if (robot->trip.latched && reason != GROBO_TRIP_ESTOP) {
+        return; /* the first reason stays */
+    }
+    grobo_event event = {.kind = GROBO_EVENT_TRIP};
+    event.u.trip = (grobo_trip_info){reason, joint, value, robot->now_us, latched};
+    if (latched) {
+        robot->trip = event.u.trip;
+        robot->free_joints = 0;
+    }
+    grobo_i_slots_cancel_goals(robot);
+    robot->counters.trips++;
+    grobo_i_tell(robot, &event);
+    if (grobo_robot_is_playing(robot)) {
+        (void)grobo_sequencer_stop(&robot->sequencer, false, robot->now_us);
+    }
+    if (latched && job_must_end(robot)) {
+        grobo_i_job_end(robot, GROBO_ERR_LATCHED);
+    }
+    /* Before an emergency stop nothing goes out, and who leaves is on the way already. */
+    if (latched && reason != GROBO_TRIP_ESTOP && robot->job.kind != GROBO_JOB_EXIT) {
+        grobo_i_stop_moves(robot);
+    }
+}

@@ -1,0 +1,92 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The end of a call, and of a frame: what was read is judged, what waited for it goes on, a motion
+ * that is over is settled, and events are told.
+ */
+#include "src/robot/robot.h"
+
+/* Takes what a slot has read of its joint, or the reason why there is nothing, and judges it. */
+static int take_reading(const grobo_robot_slot *slot, int result, const grobo_packet *reply)
+{
+    grobo_robot *robot = slot->robot;
+    grobo_joint_state got;
+    int taken = grobo_i_reading_take(slot, result, reply, &got);
+    if (taken >= 0) {
+        grobo_i_watch_reading(robot, slot->joint, &got);
+    } else if (grobo_i_is_loss(taken)) {
+        grobo_i_watch_lost(robot, slot->joint);
+    }
+    grobo_event event = {.kind = GROBO_EVENT_JOINT};
+    event.u.joint.joint = slot->joint;
+    event.u.joint.result = taken;
+    grobo_i_tell(robot, &event);
+    return taken;
+}
+
+void grobo_i_frame_over(grobo_robot_slot *slot, int result, const grobo_packet *reply)
+{
+    if (slot->txn.sent_us < 0) {
+        grobo_i_gate_unwait(slot->robot, &slot->order);
+    }
+    switch ((grobo_i_use)slot->use) {
+    case GROBO_I_USE_FREE:
+    case GROBO_I_USE_PLAIN:
+    case GROBO_I_USE_HALT:
+        break;
+    case GROBO_I_USE_JOB:
+        if (grobo_i_job_has(slot)) {
+            result = slot->reads ? take_reading(slot, result, reply) : result;
+            grobo_i_job_done(slot, result, reply);
+        }
+        break;
+    case GROBO_I_USE_SENSE:
+        if (result != GROBO_ERR_CANCELED && result != GROBO_ERR_UNPLUGGED) {
+            grobo_i_sense_done(slot, take_reading(slot, result, reply));
+        }
+        break;
+    case GROBO_I_USE_SEGMENT:
+        slot->robot->counters.motion_frames += result >= 0;
+        break;
+    case GROBO_I_USE_MOTION:
+        grobo_i_play_done(slot, result);
+        break;
+    }
+}
+
+void grobo_i_enter(grobo_robot *robot, int64_t now_us)
+{
+    robot->depth++;
+    if (now_us > robot->now_us) {
+        robot->now_us = now_us;
+    }
+}
+
+/* After a motion, unless somebody asked for something else: its last posture is read back. */
+static void settle(grobo_robot *robot)
+{
+    if (!robot->settling || robot->job.kind != GROBO_JOB_NONE || !robot->link) {
+        return;
+    }
+    robot->settling = false;
+    (void)grobo_i_job_start(robot, GROBO_JOB_SETTLE, grobo_i_script_settle);
+    robot->job.joints = grobo_i_all_joints(robot);
+    grobo_i_job_run(robot);
+}
+
+void grobo_i_leave(grobo_robot *robot)
+{
+    if (robot->depth == 1) {
+        grobo_i_play_tell(robot);
+        while (robot->events_n > 0) {
+            grobo_event event = robot->events[robot->events_head];
+            robot->events_head = (robot->events_head + 1) % GROBO_ROBOT_EVENTS;
+            robot->events_n--;
+            if (robot->on_event != NULL) {
+                robot->on_event(robot->event_ctx, &event);
+            }
+            grobo_i_play_tell(robot);
+        }
+        settle(robot);
+    }
+    robot->depth--;
+}
