@@ -250,7 +250,7 @@ static int find(reader *r)
             file = os_config_path(i, r->path, sizeof r->path) ? fopen(r->path, "r") : NULL;
             if (!file && errno == EACCES)
                 return r->status = app_fail(r->a, EXIT_FILE, "CONFIG", "%s: %s", r->path,
-                                            file_cause_text(errno));
+                                            app_cause_text(errno));
             if (!file)
                 break;
             read_file(r, file);

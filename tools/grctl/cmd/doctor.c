@@ -5,7 +5,7 @@
 
 #include <grobo/estop.h>
 
-#include "tools/grctl/cli/commands.h"
+#include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/servos.h"
 #include "tools/grctl/doctor/checkup.h"
 

@@ -6,7 +6,7 @@
 
 #include <grobo/estop.h>
 
-#include "tools/grctl/cli/commands.h"
+#include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/monitor/monitor.h"
 #include "tools/grctl/os/os.h"
 #include "tools/grctl/screen/screen.h"

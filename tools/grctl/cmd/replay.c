@@ -3,7 +3,7 @@
 
 #include <grobo/session.h>
 
-#include "tools/grctl/cli/commands.h"
+#include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/trace.h"
 #include "tools/grctl/decode/replay.h"
 #include "tools/grctl/decode/words.h"

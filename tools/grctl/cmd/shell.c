@@ -4,10 +4,10 @@
 #include <signal.h>
 #include <string.h>
 
-#include "tools/grctl/cli/commands.h"
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/cli/run.h"
+#include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/guard.h"
 #include "tools/grctl/shell/shell.h"
 
@@ -170,7 +170,7 @@ static int run_script(shell *s, shell_script *in)
     }
     if (in->file && ferror(in->file)) /* where nothing ran, the reason is still known */
         first = app_fail(s->a, EXIT_FILE, "IO", "%s: %s", s->file,
-                         s->line ? "it could not be read to its end" : file_cause_text(errno));
+                         s->line ? "it could not be read to its end" : app_cause_text(errno));
     return noted ? EXIT_SIGNAL + (int)noted : first;
 }
 
@@ -216,7 +216,7 @@ static int run_shell(shell *s)
     s->file = path ? path : "standard input";
     if (path && !(from = fopen(path, "r")))
         return app_fail(s->a, EXIT_FILE, "NOENT", "%s: %s", path,
-                        file_cause_text(os_is_folder(path) ? EISDIR : errno));
+                        app_cause_text(os_is_folder(path) ? EISDIR : errno));
     in.file = from && !os_input_take(from) ? from : NULL;
     status = run_script(s, &in);
     if (from)

@@ -532,7 +532,7 @@ int conn_close(conn *c, int status)
         c->link->session = NULL;
         conn_link_deinit(c->link);
         if (!c->a->stops) /* it may be an attempt that is repeated */
-            output_attach(c->a);
+            app_attach(c->a);
     }
     return trace_close(&c->trace, c->a, status);
 }
@@ -566,7 +566,7 @@ int conn_link_close(conn_link *link, app *a, int status)
     grobo_session_free(c.session);
     link->session = NULL;
     link->user = NULL;
-    output_attach(a);
+    app_attach(a);
     status = trace_close(&link->trace, a, status);
     memset(&link->trace, 0, sizeof link->trace);
     return status;
