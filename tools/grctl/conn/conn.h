@@ -180,11 +180,8 @@ int conn_link_news(conn_link *link, app *a);
 bool conn_signals_init(conn_link *link);
 void conn_signals_deinit(conn_link *link);
 
-/* Of conn_close(), after Ctrl-Z: stops what moves, suspends the process until it continues. */
-void conn_suspend(conn *c);
-
-/* Opens the link's session; waits while the guard of a grctl that died stops the robot. */
-int conn_open_session(conn *c);
+/* Suspends the process until it continues; the terminal is as it was meanwhile. */
+void conn_suspend(void);
 
 /* The signals are caught while a command has the link, and between these two. */
 void conn_link_watch(conn_link *link);
