@@ -22,20 +22,6 @@ __attribute__((format(printf, 3, 4))) static void say(monitor *m, bool bad, cons
     m->bad = bad;
 }
 
-const char *monitor_busy(const monitor *m)
-{
-    grobo_job_kind kind = grobo_robot_job(m->c.robot);
-    if (kind == GROBO_JOB_ESTOP)
-        return "emergency stop";
-    if (kind == GROBO_JOB_PLAY)
-        return "getting ready to play";
-    if (m->job)
-        return m->doing;
-    return grobo_robot_is_playing(m->c.robot)
-               ? grobo_sequencer_state_name(grobo_robot_play_state(m->c.robot))
-               : NULL;
-}
-
 /* What a request came to: a number > 0 is that of a job, whose end is told by on_event(). */
 static void say_request(monitor *m, int result, const char *doing)
 {
