@@ -6,6 +6,7 @@
 
 #include <grobo/estop.h>
 
+#include "tools/grctl/cli/output.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/monitor/monitor.h"
 #include "tools/grctl/os/os.h"
@@ -363,6 +364,7 @@ static int run_screen(monitor *m)
     error = sense_often(c);
     if (error)
         return conn_fail(c, error, "monitor");
+    output_stream(); /* what was printed stands before the screen */
     if (!screen_open(a->color_out))
         return app_fail(a, EXIT_ROBOT, "UNSUPPORTED", "monitor: cannot use this terminal");
     a->hushed = m->said;

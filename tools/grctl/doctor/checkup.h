@@ -27,15 +27,4 @@ int checkup_end(checkup *k);
 /* The port itself: is it there, may it be opened, who holds it, is it quick. True: go on. */
 bool checkup_port(checkup *k, const char *device);
 
-/* ---- of the operating system: os/ ----------------------------------------------------------- */
-
-/* Is the device there, and may the user open it? True: go on. */
-bool checkup_node(checkup *k, const char *device);
-/* What a device's name leads to, as the list of ports calls it. */
-bool checkup_true_path(const char *device, char *path, size_t capacity);
-/* How to end the program that has the port. */
-void checkup_end_program(char *fix, size_t capacity, int pid);
-/* The line that makes an adapter's latency timer short. */
-void checkup_quicken(char *fix, size_t capacity, const char *path);
-
 #endif

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT */
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include <grobo/serial.h>
 
 #include "tools/grctl/doctor/checkup.h"
+#include "tools/grctl/os/node.h"
 
 enum { FIX_BYTES = 512, QUICK_MS = 2 };
 
@@ -44,7 +46,7 @@ static bool check_owner(checkup *k, const char *device)
         return true;
     }
     pid = error == GROBO_ERR_BUSY ? grobo_port_owner(device, name, sizeof name) : 0;
-    checkup_end_program(fix, sizeof fix, pid);
+    node_end_program(fix, sizeof fix, pid);
     if (pid > 0)
         checkup_bad(k, "owner", fix, "%s (pid %d) holds it", name, pid);
     else
@@ -64,17 +66,31 @@ static void check_latency(checkup *k, const char *path)
         checkup_good(k, false, "latency", "its latency timer is %d ms", s.info.latency_ms);
         return;
     }
-    checkup_quicken(fix, sizeof fix, path);
+    node_quicken(fix, sizeof fix, path);
     checkup_bad(k, "latency", fix, "its latency timer is %d ms: every reply waits so long",
                 s.info.latency_ms);
+}
+
+__attribute__((format(printf, 4, 5))) static void found(void *ctx, const char *name,
+                                                        const char *fix, const char *format, ...)
+{
+    char message[APP_LINE_BYTES];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(message, sizeof message, format, list);
+    va_end(list);
+    if (fix)
+        checkup_bad(ctx, name, fix, "%s", message);
+    else
+        checkup_good(ctx, false, name, "%s", message);
 }
 
 bool checkup_port(checkup *k, const char *device)
 {
     char path[GROBO_DEVICE_MAX_BYTES];
-    if (!checkup_node(k, device) || !check_owner(k, device))
+    if (!node_look(device, found, k) || !check_owner(k, device))
         return false;
-    if (checkup_true_path(device, path, sizeof path))
+    if (node_true_path(device, path, sizeof path))
         check_latency(k, path);
     return true;
 }
