@@ -164,7 +164,7 @@ int conn_sleep_until(conn *c, int64_t at_us)
     return c->link_error ? c->link_error : error;
 }
 
-bool conn_is_idle(conn *c)
+static bool is_idle(conn *c)
 {
     return grobo_robot_job(c->robot) == GROBO_JOB_NONE;
 }
@@ -347,7 +347,7 @@ static int take_over(conn *c, bool check)
     c->before = *grobo_robot_get_counters(c->robot);
     error = grobo_robot_configure(c->robot, &config);
     if (!error) /* an emergency stop from before the command, maybe */
-        error = conn_wait_until(c, conn_is_idle);
+        error = conn_wait_until(c, is_idle);
     if (!error && check && !c->link->answered)
         error = conn_wait(c, grobo_session_check(c->session));
     if (error && !is_interrupted(c))
@@ -436,7 +436,7 @@ static int open_device(conn *c, app *a, bool check)
     c->link->answered = check && !error;
     c->trip = (grobo_trip_info){.trip = GROBO_TRIP_NONE}; /* of a stop that stands */
     if (!error)                                           /* one that had not reached the robot */
-        error = conn_wait_until(c, conn_is_idle);
+        error = conn_wait_until(c, is_idle);
     if (!error)
         say_found(c);
     return error ? EXIT_ROBOT : EXIT_DONE;
@@ -503,7 +503,7 @@ int conn_end_estop(conn *c)
         return GROBO_OK;
     c->moving = false;
     c->leaving = true;
-    return conn_wait_until(c, conn_is_idle);
+    return conn_wait_until(c, is_idle);
 }
 
 /* What the servos are to do now, or GROBO_EXIT_DEFAULT for nothing. */

@@ -97,9 +97,6 @@ int conn_open_to_move(conn *c, app *a);
 /* Where an emergency stop is being carried out: until it is verified. Returns as conn_wait(). */
 int conn_end_estop(conn *c);
 
-/* For conn_wait_until(): no job runs. */
-bool conn_is_idle(conn *c);
-
 /* Reads the joints in the background, so that heat, current, low voltage and silence stop them. */
 void conn_watch(conn *c, bool on);
 

@@ -13,12 +13,11 @@ typedef struct checkup {
 
 void checkup_start(checkup *k, app *a);
 
-/* What is well. `minor`: as text with -v only. */
-void checkup_good(checkup *k, bool minor, const char *name, const char *format, ...)
-    __attribute__((format(printf, 4, 5)));
-
-/* What is wrong, and the line that mends it. */
-void checkup_bad(checkup *k, const char *name, const char *fix, const char *format, ...)
+/*
+ * What was looked at, and how it is. fix: NULL, or it is wrong, and this line mends it; "": it is
+ * well, and said as text with -v only. ctx is the checkup.
+ */
+void checkup_found(void *ctx, const char *name, const char *fix, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 
 /* The end of it. Returns EXIT_DONE, or EXIT_ROBOT when a check failed. */
