@@ -450,8 +450,8 @@ $(BUILD)/.bindir: FORCE
 	$(call keep,$(call quote,$(BINDIR)))
 
 # The command knows where its files are installed.
-$(BUILD)/tools/grctl/os/posix/checkup_node.o: CPPFLAGS += -DGRCTL_DATADIR='"$(DATADIR)"'
-$(BUILD)/tools/grctl/os/posix/checkup_node.o: $(BUILD)/.datadir
+$(BUILD)/tools/grctl/os/posix/node.o: CPPFLAGS += -DGRCTL_DATADIR='"$(DATADIR)"'
+$(BUILD)/tools/grctl/os/posix/node.o: $(BUILD)/.datadir
 $(BUILD)/.datadir: FORCE
 	$(call keep,$(call quote,$(DATADIR)))
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include <errno.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -95,6 +96,23 @@ int app_status_of(int error)
     return EXIT_ROBOT;
 }
 
+const char *app_cause_text(int number)
+{
+    switch (number) {
+    case ENOENT:
+    case ENOTDIR:
+        return "no such file";
+    case EISDIR:
+        return grobo_error_text(GROBO_ERR_ISDIR);
+    case EACCES:
+    case EPERM:
+        return grobo_error_text(GROBO_ERR_PERM);
+    case ENOSPC:
+        return grobo_error_text(GROBO_ERR_DISK);
+    }
+    return strerror(number);
+}
+
 static void say(const char *format, va_list list)
 {
     char text[APP_LINE_BYTES];
@@ -129,6 +147,43 @@ void app_done(const app *a, const char *text)
         app_print_json(json_pack("{s:b}", "done", 1));
     else
         app_note(a, "%s", text);
+}
+
+static bool dropped; /* some of standard output */
+
+static void report_dropped(const app *a, const char *name, uint64_t n)
+{
+    if (n > 0)
+        app_note(a, "standard %s: %llu messages were dropped: its reader was too slow", name,
+                 (unsigned long long)n);
+}
+
+void app_attach(const app *a)
+{
+    output_dropped lost = output_attach();
+    dropped |= lost.out > 0;
+    report_dropped(a, "output", lost.out);
+    report_dropped(a, "error", lost.err);
+}
+
+int app_finish(app *a, int status)
+{
+    app_attach(a);
+    if (output_flush() || status != EXIT_DONE)
+        return status == EXIT_DONE && dropped ? EXIT_ROBOT : status;
+    if (output_error() == EPIPE)
+        return EXIT_SIGNAL + OS_BROKEN_PIPE;
+    a->json = false; /* there is no output left to put it on */
+    return app_fail(a, EXIT_ROBOT, "IO", "standard output: cannot write: %s",
+                    app_cause_text(output_error()));
+}
+
+void app_print(const char *format, ...)
+{
+    va_list list;
+    va_start(list, format);
+    output_print(format, list);
+    va_end(list);
 }
 
 static int print_part(const char *bytes, size_t size, void *ctx)

@@ -30,6 +30,7 @@ typedef struct app {
     bool moves;      /* the command may move the robot: it gets a guard */
     bool stops;      /* the command stops the robot: no signal or trace keeps it from that */
     bool reconnects; /* a lost line is opened again, and is no failure */
+    bool traced;     /* --trace was begun, or could not be; else there was no line to trace */
     bool clamps;     /* targets outside limits go to the limit, and are no failure */
     char *hushed;    /* not NULL: app_fail() puts its line here, APP_LINE_BYTES, and says nothing */
 } app;
@@ -57,6 +58,19 @@ int app_status_of(int error);
 void app_done(const app *a, const char *text);
 
 /* A line for a person on standard error, unless quiet; only from -v on. */
+/* output_attach(), and says what was dropped. */
+void app_attach(const app *a);
+
+/*
+ * The end of the program: `status`, or, when what was printed could not all be written,
+ * EXIT_ROBOT with a line of complaint. A reader that left is not complained about: that is
+ * EXIT_SIGNAL + OS_BROKEN_PIPE, as without a handler.
+ */
+int app_finish(app *a, int status);
+
+/* What errno says of a file, for a person. */
+const char *app_cause_text(int number);
+
 /* A file name may hold anything; what is said of it stays one line without control characters. */
 void app_make_one_line(char *text);
 void app_note(const app *a, const char *format, ...) __attribute__((format(printf, 2, 3)));

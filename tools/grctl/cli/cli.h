@@ -93,8 +93,9 @@ enum {
 };
 extern const cli_option cli_global_options[GLOBAL_COUNT];
 
-extern const cli_command *const cli_commands[];
-extern const size_t cli_n_commands;
+/* Every command, set by main() before anything else runs. */
+extern const cli_command *const *cli_commands;
+extern size_t cli_n_commands;
 
 typedef struct cli_line {
     const cli_command *command; /* NULL: none was given */

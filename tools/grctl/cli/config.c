@@ -9,7 +9,7 @@
 
 #include "tools/grctl/cli/config.h"
 #include "tools/grctl/cli/file.h"
-#include "tools/grctl/doctor/checkup.h"
+#include "tools/grctl/os/node.h"
 #include "tools/grctl/os/os.h"
 
 typedef struct reader {
@@ -250,7 +250,7 @@ static int find(reader *r)
             file = os_config_path(i, r->path, sizeof r->path) ? fopen(r->path, "r") : NULL;
             if (!file && errno == EACCES)
                 return r->status = app_fail(r->a, EXIT_FILE, "CONFIG", "%s: %s", r->path,
-                                            file_cause_text(errno));
+                                            app_cause_text(errno));
             if (!file)
                 break;
             read_file(r, file);
@@ -319,7 +319,7 @@ int config_apply(app *a)
 bool config_is_unknown_name(const app *a, const char *device)
 {
     char path[GROBO_DEVICE_MAX_BYTES];
-    return !a->robot && may_be_name(device) && !checkup_true_path(device, path, sizeof path);
+    return !a->robot && may_be_name(device) && !node_true_path(device, path, sizeof path);
 }
 
 bool config_warns_of_falls(const app *a)

@@ -111,7 +111,7 @@ int config_write_trims(app *a, const config_robot *robot)
     char *text = read_all(robot->path);
     int status, error;
     if (!text)
-        return fail(a, robot->path, file_cause_text(errno));
+        return fail(a, robot->path, app_cause_text(errno));
     made.text = malloc(made.capacity);
     if (made.text)
         put_file(&made, text, robot);

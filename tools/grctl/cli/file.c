@@ -1,27 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-#include <errno.h>
 #include <string.h>
 
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/os/os.h"
 #include "tools/grctl/os/pipe.h"
-
-const char *file_cause_text(int number)
-{
-    switch (number) {
-    case ENOENT:
-    case ENOTDIR:
-        return "no such file";
-    case EISDIR:
-        return grobo_error_text(GROBO_ERR_ISDIR);
-    case EACCES:
-    case EPERM:
-        return grobo_error_text(GROBO_ERR_PERM);
-    case ENOSPC:
-        return grobo_error_text(GROBO_ERR_DISK);
-    }
-    return strerror(number);
-}
 
 const char *file_write_error_text(int error)
 {

@@ -55,7 +55,4 @@ const char *file_error_text(int error);
 /* The same of one that was to be written: what is not there is its folder. */
 const char *file_write_error_text(int error);
 
-/* In the same words, what errno says of a file. */
-const char *file_cause_text(int number);
-
 #endif

@@ -3,7 +3,6 @@
 #include <stdarg.h>
 #include <string.h>
 
-#include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/cli/writer.h"
 #include "tools/grctl/os/os.h"
@@ -12,7 +11,6 @@ enum { OUT_QUEUE_BYTES = 256 * 1024, ERR_QUEUE_BYTES = 32 * 1024, STAGE_BYTES = 
 enum { COMPLAINT_BYTES = 2048 };
 
 static int flush_errno;   /* of the first write that failed */
-static bool dropped;      /* some of standard output */
 static writer *out, *err; /* NULL: written by the C library */
 
 /* What was printed for the writer since the last flush. */
@@ -59,10 +57,13 @@ void output_bytes(const void *bytes, size_t size)
     }
 }
 
-void app_print(const char *format, ...)
+int output_error(void)
 {
-    va_list list;
-    va_start(list, format);
+    return flush_errno;
+}
+
+void output_print(const char *format, va_list list)
+{
     if (!out) {
         vprintf(format, list);
     } else {
@@ -71,7 +72,6 @@ void app_print(const char *format, ...)
         if (n > 0)
             output_bytes(text, (size_t)n < sizeof text ? (size_t)n : sizeof text - 1);
     }
-    va_end(list);
 }
 
 FILE *output_stream(void)
@@ -117,38 +117,18 @@ bool output_detach(void)
     return out != NULL;
 }
 
-static void report_dropped(const app *a, const char *name, uint64_t n)
+output_dropped output_attach(void)
 {
-    if (n > 0)
-        app_note(a, "standard %s: %llu messages were dropped: its reader was too slow", name,
-                 (unsigned long long)n);
-}
-
-void output_attach(const app *a)
-{
+    output_dropped dropped = {0, 0};
     if (!out)
-        return;
+        return dropped;
     output_flush();
     writer_drain(out);
     writer_drain(err);
     note_error(writer_error(out));
-    uint64_t lost_out = writer_dropped(out), lost_err = writer_dropped(err);
+    dropped = (output_dropped){writer_dropped(out), writer_dropped(err)};
     writer_free(out);
     writer_free(err);
     out = err = NULL;
-    dropped |= lost_out > 0;
-    report_dropped(a, "output", lost_out);
-    report_dropped(a, "error", lost_err);
-}
-
-int output_finish(app *a, int status)
-{
-    output_attach(a);
-    if (output_flush() || status != EXIT_DONE)
-        return status == EXIT_DONE && dropped ? EXIT_ROBOT : status;
-    if (flush_errno == EPIPE)
-        return EXIT_SIGNAL + OS_BROKEN_PIPE;
-    a->json = false; /* there is no output left to put it on */
-    return app_fail(a, EXIT_ROBOT, "IO", "standard output: cannot write: %s",
-                    file_cause_text(flush_errno));
+    return dropped;
 }

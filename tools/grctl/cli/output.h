@@ -8,16 +8,31 @@
 #ifndef GRCTL_OUTPUT_H
 #define GRCTL_OUTPUT_H
 
-#include "tools/grctl/cli/app.h"
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
 
 /* From here on nothing waits for a reader. False where memory or a thread is missing. */
 bool output_detach(void);
 
-/* From here on readers are waited for, first for all that is queued; what was dropped is said. */
-void output_attach(const app *a);
+/* Messages that were dropped since output_detach(): their readers were too slow. */
+typedef struct output_dropped {
+    uint64_t out, err;
+} output_dropped;
+
+/* From here on readers are waited for, first for all that is queued. */
+output_dropped output_attach(void);
 
 /* Writes out what was printed; false when it cannot be, now or at an earlier call. */
 bool output_flush(void);
+
+/* Why standard output cannot be written: errno of the first failure, 0 none. */
+int output_error(void);
+
+/* Text for standard output, as vprintf() does it. */
+void output_print(const char *format, va_list list);
 
 /* Bytes for standard output. */
 void output_bytes(const void *bytes, size_t size);
@@ -30,12 +45,5 @@ void output_complain(const char *format, ...) __attribute__((format(printf, 1, 2
 
 /* True while standard error has not taken what it was given: what is soon stale can wait. */
 bool output_is_behind(void);
-
-/*
- * The end of the program: `status`, or, when what was printed could not all be written,
- * EXIT_ROBOT with a line of complaint. A reader that left is not complained about: that is
- * EXIT_SIGNAL + OS_BROKEN_PIPE, as without a handler.
- */
-int output_finish(app *a, int status);
 
 #endif

@@ -3,11 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "tools/grctl/cli/commands.h"
 #include "tools/grctl/cli/config.h"
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/cli/run.h"
-#include "tools/grctl/conn/trace.h"
 #include "tools/grctl/os/os.h"
 
 /* A mistake ends parsing, but not the wish for JSON that stands behind it. */
@@ -107,7 +105,7 @@ static int stop_first(app *a, const char *complaint, int (*prepare)(void *ctx, a
 static int run_without_robot(app *a)
 {
     if (app_global(a, GLOBAL_VERSION)->given)
-        return cmd_version.run(a);
+        return cli_find_command("version")->run(a);
     if (app_global(a, GLOBAL_HELP)->given)
         return help(a->line.command);
     if (a->line.command)
@@ -126,7 +124,7 @@ static int run_command(app *a, int (*prepare)(void *ctx, app *a), void *ctx)
     if (prepare && (status = prepare(ctx, a)) != 0)
         return status;
     status = a->line.command->run(a);
-    if (status == EXIT_DONE && app_global(a, GLOBAL_TRACE)->given && !trace_was_tried())
+    if (status == EXIT_DONE && app_global(a, GLOBAL_TRACE)->given && !a->traced)
         app_note(a, "nothing was traced: no robot was spoken to");
     return status;
 }

@@ -3,7 +3,7 @@
 #include <grobo/serial.h>
 
 #include "tools/grctl/cli/app.h"
-#include "tools/grctl/cli/commands.h"
+#include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/wire.h"
 
 enum { OPT_RATE };

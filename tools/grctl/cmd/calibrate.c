@@ -4,10 +4,10 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "tools/grctl/cli/commands.h"
 #include "tools/grctl/cli/config.h"
 #include "tools/grctl/cli/joints.h"
 #include "tools/grctl/cli/output.h"
+#include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/conn.h"
 
 enum { OPT_DRY_RUN };

@@ -3,9 +3,9 @@
 
 #include "tools/grctl/body/check.h"
 #include "tools/grctl/body/options.h"
-#include "tools/grctl/cli/commands.h"
 #include "tools/grctl/cli/config.h"
 #include "tools/grctl/cli/file.h"
+#include "tools/grctl/cmd/commands.h"
 
 enum { OPT_FORCE, OPT_BODY, OPT_BALANCE = OPT_BODY + BODY_BALANCE };
 

@@ -2,7 +2,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "tools/grctl/cli/commands.h"
+#include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/decode/decoder.h"
 #include "tools/grctl/decode/hextext.h"
 

@@ -5,7 +5,7 @@
 
 #include <grobo/estop.h>
 
-#include "tools/grctl/cli/commands.h"
+#include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/servos.h"
 #include "tools/grctl/doctor/checkup.h"
 
@@ -90,23 +90,23 @@ static bool check_reply(patient *p, const char *device)
     int asked_bps = baud_of(a), found_bps;
     int wiring = app_global(a, GLOBAL_WIRING)->choice;
     if (ask(p, said)) {
-        checkup_good(&p->k, false, "reply", "the %s answers at %d bps",
-                     wiring == GROBO_WIRING_BOARD ? "board" : "robot", asked_bps);
+        checkup_found(&p->k, "reply", NULL, "the %s answers at %d bps",
+                      wiring == GROBO_WIRING_BOARD ? "board" : "robot", asked_bps);
         return true;
     }
     if (p->c.signal)
         return false;
     if (!strstr(said, "no robot answers")) {
-        checkup_bad(&p->k, "reply",
-                    strncmp(device, "tcp:", 4) == 0 ? "start a serial server there (ser2net), or "
-                                                      "correct the address: -d tcp:HOST:PORT"
-                                                    : "switch the robot on, push its cables in",
-                    "%s", said);
+        checkup_found(&p->k, "reply",
+                      strncmp(device, "tcp:", 4) == 0 ? "start a serial server there (ser2net), or "
+                                                        "correct the address: -d tcp:HOST:PORT"
+                                                      : "switch the robot on, push its cables in",
+                      "%s", said);
         return false;
     }
     found_bps = find_answer(p, asked_bps);
     if (found_bps == 0) {
-        checkup_bad(&p->k, "reply", "switch the robot on, push its cables in", "%s", said);
+        checkup_found(&p->k, "reply", "switch the robot on, push its cables in", "%s", said);
         return false;
     }
     if (found_bps != asked_bps)
@@ -114,11 +114,11 @@ static bool check_reply(patient *p, const char *device)
     else
         snprintf(fix, sizeof fix, "grctl -d %s --wiring %s ...", device,
                  wiring == GROBO_WIRING_BOARD ? "bus" : "board");
-    checkup_bad(&p->k, "reply", fix, "nobody answers as asked, but somebody does at %d bps%s",
-                found_bps,
-                found_bps != asked_bps         ? ""
-                : wiring == GROBO_WIRING_BOARD ? ", straight on the line"
-                                               : ", through a board");
+    checkup_found(&p->k, "reply", fix, "nobody answers as asked, but somebody does at %d bps%s",
+                  found_bps,
+                  found_bps != asked_bps         ? ""
+                  : wiring == GROBO_WIRING_BOARD ? ", straight on the line"
+                                                 : ", through a board");
     return true;
 }
 
@@ -133,7 +133,7 @@ static void check_echo(patient *p, const char *device)
         n->resync_bytes < n->replies * GROBO_RS30X_OVERHEAD_BYTES / 2)
         return;
     snprintf(fix, sizeof fix, "grctl -d %s --wiring bus --echo ...", device);
-    checkup_bad(&p->k, "echo", fix, "the adapter returns what is sent to it");
+    checkup_found(&p->k, "echo", fix, "the adapter returns what is sent to it");
 }
 
 /* ---- the servos ------------------------------------------------------------------------------ */
@@ -145,13 +145,13 @@ static void say_silent(patient *p, const char *name, int joint, int error)
     if (error == GROBO_ERR_TIMEOUT || error == GROBO_ERR_SHORT) {
         snprintf(fix, sizeof fix, "push its cable in; has it another id? grctl%s scan",
                  app_global(p->k.a, GLOBAL_WIRING)->choice ? " --wiring bus" : "");
-        checkup_bad(&p->k, name, fix, "%s does not answer", j->name);
+        checkup_found(&p->k, name, fix, "%s does not answer", j->name);
     } else {
         snprintf(fix, sizeof fix,
                  "unplug all servos but one of id %d, and: grctl servo-set %d id NEW --flash",
                  j->motor, j->motor);
-        checkup_bad(&p->k, name, fix, "%s answers, but: %s; two servos with id %d?", j->name,
-                    grobo_error_text(error), j->motor);
+        checkup_found(&p->k, name, fix, "%s answers, but: %s; two servos with id %d?", j->name,
+                      grobo_error_text(error), j->motor);
     }
 }
 
@@ -163,15 +163,15 @@ static bool check_state(patient *p, const char *name, int joint, const grobo_joi
     char fix[FIX_BYTES];
     snprintf(fix, sizeof fix, "let it cool down: grctl servo off m%d", j->motor);
     if (s->flags & GROBO_RS30X_STATUS_OVERHEATED)
-        checkup_bad(&p->k, name, fix, "%s has cut its torque for heat (%d C)", j->name,
-                    s->temperature_c);
+        checkup_found(&p->k, name, fix, "%s has cut its torque for heat (%d C)", j->name,
+                      s->temperature_c);
     else if ((s->flags & GROBO_RS30X_STATUS_HOT) || s->temperature_c > driver->limits.temperature_c)
-        checkup_bad(&p->k, name, fix, "%s is hot: %d C, at most %d are good for it", j->name,
-                    s->temperature_c, driver->limits.temperature_c);
+        checkup_found(&p->k, name, fix, "%s is hot: %d C, at most %d are good for it", j->name,
+                      s->temperature_c, driver->limits.temperature_c);
     else if (s->flags & GROBO_RS30X_STATUS_FLASH_ERROR) {
         snprintf(fix, sizeof fix, "write its settings again: grctl servo-set %d id %d --flash",
                  j->motor, j->motor);
-        checkup_bad(&p->k, name, fix, "%s lost power while it wrote its flash", j->name);
+        checkup_found(&p->k, name, fix, "%s lost power while it wrote its flash", j->name);
     } else
         return false;
     return true;
@@ -195,12 +195,12 @@ static void check_model(patient *p, const char *name, int joint, uint16_t model,
     const char *type = grobo_rs30x_model_name(model);
     const char *expected = grobo_rs30x_model_name(j->servo_model);
     if (j->servo_model && model != j->servo_model)
-        checkup_bad(&p->k, name, "put the right servo there; its speed and torque are others",
-                    "%s is %s, not %s", j->name, type ? type : "of an unknown model",
-                    expected ? expected : "that");
+        checkup_found(&p->k, name, "put the right servo there; its speed and torque are others",
+                      "%s is %s, not %s", j->name, type ? type : "of an unknown model",
+                      expected ? expected : "that");
     else
-        checkup_good(&p->k, true, name, "%s: %s, %d C, %.2f V", j->name, type ? type : "a servo",
-                     s->temperature_c, s->voltage_mv / 1e3);
+        checkup_found(&p->k, name, "", "%s: %s, %d C, %.2f V", j->name, type ? type : "a servo",
+                      s->temperature_c, s->voltage_mv / 1e3);
 }
 
 /* Asking again may hide that two talk at once. */
@@ -246,15 +246,15 @@ static void check_servos(patient *p)
         return;
     least_mv = grobo_robot_driver(p->c.robot)->limits.voltage_mv * 11 / 10;
     if (p->low_mv < least_mv)
-        checkup_bad(&p->k, "voltage", "charge the battery",
-                    "%.2f V at the servos: low; at %.1f V every motion is stopped", p->low_mv / 1e3,
-                    grobo_robot_driver(p->c.robot)->limits.voltage_mv / 1e3);
+        checkup_found(&p->k, "voltage", "charge the battery",
+                      "%.2f V at the servos: low; at %.1f V every motion is stopped",
+                      p->low_mv / 1e3, grobo_robot_driver(p->c.robot)->limits.voltage_mv / 1e3);
     else
-        checkup_good(&p->k, false, "voltage", "%.2f to %.2f V at the servos", p->low_mv / 1e3,
-                     p->high_mv / 1e3);
+        checkup_found(&p->k, "voltage", NULL, "%.2f to %.2f V at the servos", p->low_mv / 1e3,
+                      p->high_mv / 1e3);
     if (p->answered == p->model->n_joints)
-        checkup_good(&p->k, false, "servos", "all %d answer; the warmest has %d C", p->answered,
-                     p->hottest_c);
+        checkup_found(&p->k, "servos", NULL, "all %d answer; the warmest has %d C", p->answered,
+                      p->hottest_c);
 }
 
 /* ---- the whole of it ------------------------------------------------------------------------- */
@@ -264,7 +264,7 @@ static void check_latch(checkup *k, const char *device)
     char fix[FIX_BYTES + GROBO_DEVICE_MAX_BYTES];
     snprintf(fix, sizeof fix, "grctl -d %s estop --reset", device);
     if (grobo_estop_stands(device))
-        checkup_bad(k, "estop", fix, "an emergency stop stands: nothing will move");
+        checkup_found(k, "estop", fix, "an emergency stop stands: nothing will move");
 }
 
 /* The device to look at: auto is the first USB adapter. False: there is none. */
@@ -277,9 +277,10 @@ static bool choose_device(checkup *k, char *device)
     if (strcmp(name, GROBO_DEVICE_AUTO) != 0) {
         snprintf(device, GROBO_DEVICE_MAX_BYTES, "%s", name);
     } else if (grobo_port_list(keep_usb, device) <= 0 || !*device) {
-        checkup_bad(k, "device",
-                    "plug the robot's cable in, or name its port: -d DEV; 'grctl ports' lists them",
-                    "no USB serial adapter is here");
+        checkup_found(
+            k, "device",
+            "plug the robot's cable in, or name its port: -d DEV; 'grctl ports' lists them",
+            "no USB serial adapter is here");
         return false;
     }
     asked->given = 1;
@@ -301,8 +302,8 @@ static int run(app *a)
             if (!p.c.signal && !p.c.link_error)
                 check_echo(&p, device);
             if (p.c.link_error)
-                checkup_bad(&p.k, "link", "push the cable in at both ends",
-                            "%s was lost on the way", device);
+                checkup_found(&p.k, "link", "push the cable in at both ends",
+                              "%s was lost on the way", device);
             conn_close(&p.c, EXIT_DONE);
         }
         signal = p.c.signal;

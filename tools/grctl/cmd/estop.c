@@ -13,8 +13,8 @@
 #include <grobo/estop.h>
 #include <grobo/port.h>
 
-#include "tools/grctl/cli/commands.h"
 #include "tools/grctl/cli/config.h"
+#include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/conn.h"
 
 enum { OPT_RESET };

@@ -2,8 +2,8 @@
 #include <string.h>
 
 #include "tools/grctl/cli/app.h"
-#include "tools/grctl/cli/commands.h"
 #include "tools/grctl/cli/output.h"
+#include "tools/grctl/cmd/commands.h"
 
 enum { OPT_MAN };
 

@@ -6,7 +6,8 @@
 
 #include <grobo/estop.h>
 
-#include "tools/grctl/cli/commands.h"
+#include "tools/grctl/cli/output.h"
+#include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/monitor/monitor.h"
 #include "tools/grctl/os/os.h"
 #include "tools/grctl/screen/screen.h"
@@ -20,20 +21,6 @@ __attribute__((format(printf, 3, 4))) static void say(monitor *m, bool bad, cons
     vsnprintf(m->said, sizeof m->said, format, list);
     va_end(list);
     m->bad = bad;
-}
-
-const char *monitor_busy(const monitor *m)
-{
-    grobo_job_kind kind = grobo_robot_job(m->c.robot);
-    if (kind == GROBO_JOB_ESTOP)
-        return "emergency stop";
-    if (kind == GROBO_JOB_PLAY)
-        return "getting ready to play";
-    if (m->job)
-        return m->doing;
-    return grobo_robot_is_playing(m->c.robot)
-               ? grobo_sequencer_state_name(grobo_robot_play_state(m->c.robot))
-               : NULL;
 }
 
 /* What a request came to: a number > 0 is that of a job, whose end is told by on_event(). */
@@ -377,6 +364,7 @@ static int run_screen(monitor *m)
     error = sense_often(c);
     if (error)
         return conn_fail(c, error, "monitor");
+    output_stream(); /* what was printed stands before the screen */
     if (!screen_open(a->color_out))
         return app_fail(a, EXIT_ROBOT, "UNSUPPORTED", "monitor: cannot use this terminal");
     a->hushed = m->said;

@@ -3,9 +3,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "tools/grctl/cli/commands.h"
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/joints.h"
+#include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/show/render.h"
 
 enum { OPT_TIME };

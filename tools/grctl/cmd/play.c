@@ -4,8 +4,8 @@
 
 #include <event2/event.h>
 
-#include "tools/grctl/cli/commands.h"
 #include "tools/grctl/cli/progress.h"
+#include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/os/keys.h"
 #include "tools/grctl/play/keys.h"
 #include "tools/grctl/play/play.h"

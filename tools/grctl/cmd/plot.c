@@ -3,9 +3,9 @@
 
 #include "tools/grctl/body/options.h"
 #include "tools/grctl/body/whole.h"
-#include "tools/grctl/cli/commands.h"
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/joints.h"
+#include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/plot/picture.h"
 #include "tools/grctl/plot/plot.h"
 

@@ -2,7 +2,7 @@
 #include <grobo/port.h>
 
 #include "tools/grctl/cli/app.h"
-#include "tools/grctl/cli/commands.h"
+#include "tools/grctl/cmd/commands.h"
 
 static json_t *text_or_null(const char *text)
 {

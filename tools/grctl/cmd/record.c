@@ -5,10 +5,10 @@
 
 #include <grobo/motion_io.h>
 
-#include "tools/grctl/cli/commands.h"
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/joints.h"
 #include "tools/grctl/cli/progress.h"
+#include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/conn.h"
 #include "tools/grctl/conn/wire.h"
 #include "tools/grctl/os/keys.h"

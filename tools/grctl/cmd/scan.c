@@ -2,7 +2,7 @@
 /* scan and info: which servos answer, and what they are. */
 #include <string.h>
 
-#include "tools/grctl/cli/commands.h"
+#include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/servos.h"
 #include "tools/grctl/conn/wire.h"
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
 
-#include "tools/grctl/cli/commands.h"
 #include "tools/grctl/cli/joints.h"
+#include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/show/render.h"
 
 static bool parse_mode(const char *word, grobo_torque *mode)

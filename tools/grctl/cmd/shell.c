@@ -4,10 +4,9 @@
 #include <signal.h>
 #include <string.h>
 
-#include "tools/grctl/cli/commands.h"
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/output.h"
-#include "tools/grctl/cli/run.h"
+#include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/guard.h"
 #include "tools/grctl/shell/shell.h"
 
@@ -21,71 +20,12 @@ static const cli_option options[] = {
 };
 
 /* While no command has the robot, a signal is only noted: it ends the shell, or a script. */
-static volatile sig_atomic_t noted;
-
 static void on_signal(int number)
 {
-    noted = number;
-}
-
-int shell_take_noted(void)
-{
-    int number = (int)noted;
-    noted = 0;
-    return number;
+    shell_noted = number;
 }
 
 /* ---- one line ------------------------------------------------------------------------------- */
-
-void shell_inherit(shell *s)
-{
-    for (int i = 0; i < GLOBAL_COUNT; i++) {
-        bool own = i == GLOBAL_ON_EXIT || i == GLOBAL_TRACE || i == GLOBAL_HELP ||
-                   i == GLOBAL_VERSION || s->one.line.global[i].given;
-        if (!own)
-            s->one.line.global[i] = s->a->line.global[i];
-    }
-    s->one.robot = s->a->robot;
-    s->one.moves = true;
-    s->one.tty_in = s->a->tty_in && !s->file;
-}
-
-static void begin_line(shell *s)
-{
-    memset(&s->one, 0, sizeof s->one);
-    s->one.link = &s->link;
-    s->one.record = s->record;
-    s->one.json = s->a->json;
-    if (s->file)
-        snprintf(s->one.place, sizeof s->one.place, "%s:%d: ", s->file, s->line);
-}
-
-static int prepare(void *ctx, app *a)
-{
-    static const int lines[] = {GLOBAL_DEVICE, GLOBAL_BAUD, GLOBAL_WIRING, GLOBAL_ECHO};
-    shell *s = ctx;
-    bool touches = false;
-    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++)
-        touches |= app_global(a, lines[i])->given > 0;
-    shell_inherit(s);
-    app_settle(a);
-    a->tty_in = a->tty_in && !s->file;
-    if (touches)
-        return app_fail(a, EXIT_USAGE, "USAGE",
-                        "a shell has one line; 'connect DEV' takes another device");
-    if (a->line.command == &cmd_shell)
-        return app_fail(a, EXIT_USAGE, "USAGE", "this is a shell already");
-    return 0;
-}
-
-int shell_run(shell *s, int n, char **words)
-{
-    char *argv[SHELL_WORDS_MAX + 1] = {"grctl"};
-    begin_line(s);
-    for (int i = 0; i < n && i < SHELL_WORDS_MAX; i++)
-        argv[i + 1] = words[i];
-    return run_line(&s->one, n + 1, argv, prepare, s);
-}
 
 /* A letter or word of the original programs that is a command: its words, then the line's. */
 static int run_command_of(shell *s, const shell_word *w, int n, char **words)
@@ -107,7 +47,7 @@ static int run_words(shell *s, int n, char **words)
         return shell_run(s, n, words);
     if (w->command)
         return run_command_of(s, w, n, words);
-    begin_line(s);
+    shell_begin(s);
     shell_inherit(s);
     app_settle(&s->one);
     s->one.tty_in = s->one.tty_in && !s->file;
@@ -116,7 +56,7 @@ static int run_words(shell *s, int n, char **words)
 
 static int refuse(shell *s, const char *why)
 {
-    begin_line(s);
+    shell_begin(s);
     app_settle(&s->one);
     return app_fail(&s->one, EXIT_USAGE, "USAGE", "%s", why);
 }
@@ -158,7 +98,7 @@ static int run_script(shell *s, shell_script *in)
 {
     bool go_on = app_option(s->a, OPT_KEEP_GOING)->given > 0;
     int first = EXIT_DONE, status = EXIT_DONE;
-    while (!ends(s, status) && !noted && (!status || go_on)) {
+    while (!ends(s, status) && !shell_noted && (!status || go_on)) {
         int next = shell_script_next(s, in);
         if (next == LINE_END || next == LINE_INTERRUPTED)
             break;
@@ -170,19 +110,27 @@ static int run_script(shell *s, shell_script *in)
     }
     if (in->file && ferror(in->file)) /* where nothing ran, the reason is still known */
         first = app_fail(s->a, EXIT_FILE, "IO", "%s: %s", s->file,
-                         s->line ? "it could not be read to its end" : file_cause_text(errno));
-    return noted ? EXIT_SIGNAL + (int)noted : first;
+                         s->line ? "it could not be read to its end" : app_cause_text(errno));
+    return shell_noted ? EXIT_SIGNAL + (int)shell_noted : first;
+}
+
+static void tell_news(void *ctx)
+{
+    shell *s = ctx;
+    conn_link_news(&s->link, s->a);
 }
 
 static int run_prompt(shell *s)
 {
     char line[SHELL_LINE_BYTES];
-    line_reader *reader = line_open(s);
+    line_owner owner = {s, s->link.base, shell_wait, tell_news, shell_complete};
+    line_reader *reader = line_open(&owner);
     int status = EXIT_DONE, n;
     if (!reader)
         return app_fail(s->a, EXIT_ROBOT, "NOMEM", "shell: %s", grobo_error_text(GROBO_ERR_NOMEM));
     while (!ends(s, status)) {
         conn_link_idle(&s->link, s->a);
+        output_stream(); /* what was printed stands before the prompt */
         n = line_read(reader, "grctl> ", line, sizeof line);
         if (n == LINE_END)
             break;
@@ -192,13 +140,13 @@ static int run_prompt(shell *s)
         }
         if (n == LINE_INTERRUPTED)
             break;
-        noted = 0;
+        shell_noted = 0;
         status = n == LINE_TOO_LONG ? refuse(s, "the line is too long") : run_text(s, line);
         if (status == EXIT_SIGNAL + os_endings[OS_INTERRUPT]) {
             output_complain("\n"); /* behind the terminal's ^C */
         }
-        if (noted && noted != os_endings[OS_INTERRUPT])
-            status = EXIT_SIGNAL + (int)noted;
+        if (shell_noted && shell_noted != os_endings[OS_INTERRUPT])
+            status = EXIT_SIGNAL + (int)shell_noted;
     }
     line_close(reader);
     return ends(s, status) && !s->over ? status : EXIT_DONE;
@@ -216,7 +164,7 @@ static int run_shell(shell *s)
     s->file = path ? path : "standard input";
     if (path && !(from = fopen(path, "r")))
         return app_fail(s->a, EXIT_FILE, "NOENT", "%s: %s", path,
-                        file_cause_text(os_is_folder(path) ? EISDIR : errno));
+                        app_cause_text(os_is_folder(path) ? EISDIR : errno));
     in.file = from && !os_input_take(from) ? from : NULL;
     status = run_script(s, &in);
     if (from)

@@ -2,9 +2,9 @@
 #include <string.h>
 
 #include "tools/grctl/body/options.h"
-#include "tools/grctl/cli/commands.h"
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/joints.h"
+#include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/show/show.h"
 
 enum { OPT_JOINTS, OPT_RATE, OPT_BODY };

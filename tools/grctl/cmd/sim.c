@@ -6,8 +6,8 @@
 #include <grobo/sim_server.h>
 
 #include "tools/grctl/cli/app.h"
-#include "tools/grctl/cli/commands.h"
 #include "tools/grctl/cli/output.h"
+#include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/trace.h"
 #include "tools/grctl/os/os.h"
 #include "tools/grctl/sim/chain.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include "tools/grctl/cli/commands.h"
 #include "tools/grctl/cli/joints.h"
 #include "tools/grctl/cli/output.h"
+#include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/show/render.h"
 
 enum { OPT_WATCH, OPT_INTERVAL };

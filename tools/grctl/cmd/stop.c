@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* stop: the smooth one. */
-#include "tools/grctl/cli/commands.h"
+#include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/conn.h"
 
 static int run_stop(app *a)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* slot and scenario: what the board has in its own memory. */
-#include "tools/grctl/cli/commands.h"
+#include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/conn.h"
 
 static int start(app *a, grobo_stored_kind kind, const char *what)

@@ -2,7 +2,7 @@
 #include <grobo/version.h>
 
 #include "tools/grctl/cli/app.h"
-#include "tools/grctl/cli/commands.h"
+#include "tools/grctl/cmd/commands.h"
 
 static int run(app *a)
 {

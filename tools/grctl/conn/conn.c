@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <grobo/estop.h>
 #include <grobo/port.h>
 
 #include "tools/grctl/cli/output.h"
@@ -20,11 +21,6 @@ const char *conn_requested(const app *a)
 bool conn_is_auto(const app *a)
 {
     return strcmp(conn_requested(a), GROBO_DEVICE_AUTO) == 0;
-}
-
-const char *conn_device(const conn *c)
-{
-    return grobo_session_device(c->session);
 }
 
 /* ---- what comes from the loop --------------------------------------------------------------- */
@@ -166,6 +162,11 @@ int conn_sleep_until(conn *c, int64_t at_us)
     if (c->signal && !c->a->stops)
         return GROBO_ERR_CANCELED;
     return c->link_error ? c->link_error : error;
+}
+
+static bool is_idle(conn *c)
+{
+    return grobo_robot_job(c->robot) == GROBO_JOB_NONE;
 }
 
 /* ---- opening -------------------------------------------------------------------------------- */
@@ -346,7 +347,7 @@ static int take_over(conn *c, bool check)
     c->before = *grobo_robot_get_counters(c->robot);
     error = grobo_robot_configure(c->robot, &config);
     if (!error) /* an emergency stop from before the command, maybe */
-        error = conn_wait_until(c, conn_is_idle);
+        error = conn_wait_until(c, is_idle);
     if (!error && check && !c->link->answered)
         error = conn_wait(c, grobo_session_check(c->session));
     if (error && !is_interrupted(c))
@@ -362,6 +363,43 @@ static void say_found(conn *c)
     app_detail(c->a, "robot found on %s", conn_device(c));
     if (answer < 0 && answer != GROBO_ERR_UNSUPPORTED && answer != GROBO_ERR_CLOSED)
         app_detail(c->a, "low latency: %s; 'grctl doctor' tells more", grobo_error_text(answer));
+}
+
+/* How long a guard is waited for, and how often it is looked at. */
+enum { GUARD_WAIT_US = 2500000, GUARD_LOOK_US = 50000 };
+
+static bool opened(conn *c)
+{
+    return c->up;
+}
+
+static int try_once(conn *c)
+{
+    int error = grobo_session_open(c->session);
+    return error ? error : conn_wait_until(c, opened);
+}
+
+/*
+ * The guard of a grctl that died may have the device a moment longer, while it stops the robot.
+ * With a last look when it has gone: it may have released the port since the port was tried.
+ */
+static int open_session(conn *c)
+{
+    int64_t until_us = grobo_now_us() + GUARD_WAIT_US;
+    bool waits = true, waited = false;
+    int error = try_once(c);
+    while (waits && (error == GROBO_ERR_BUSY || error == GROBO_ERR_NOTFOUND)) {
+        waits = guard_has(conn_is_auto(c->a) ? GROBO_DEVICE_AUTO : conn_device(c)) &&
+                grobo_now_us() < until_us;
+        if (!waits && !waited && error == GROBO_ERR_NOTFOUND)
+            break;
+        c->link_error = c->link->link_error = 0;
+        if (waits && conn_sleep_until(c, grobo_now_us() + GUARD_LOOK_US) < 0)
+            break;
+        waited = true;
+        error = try_once(c);
+    }
+    return error;
 }
 
 static int open_device(conn *c, app *a, bool check)
@@ -392,13 +430,13 @@ static int open_device(conn *c, app *a, bool check)
     c->session = c->link->session;
     c->robot = grobo_session_robot(c->session);
     conn_link_watch(c->link);
-    error = conn_open_session(c);
+    error = open_session(c);
     if (error && !is_interrupted(c))
         return fail_open(c, error);
     c->link->answered = check && !error;
     c->trip = (grobo_trip_info){.trip = GROBO_TRIP_NONE}; /* of a stop that stands */
     if (!error)                                           /* one that had not reached the robot */
-        error = conn_wait_until(c, conn_is_idle);
+        error = conn_wait_until(c, is_idle);
     if (!error)
         say_found(c);
     return error ? EXIT_ROBOT : EXIT_DONE;
@@ -422,6 +460,21 @@ void conn_watch(conn *c, bool on)
     (void)grobo_robot_configure(c->robot, &config);
 }
 
+int conn_open_to_move(conn *c, app *a)
+{
+    int status;
+    a->moves = true;
+    status = conn_open(c, a);
+    if (status)
+        return status;
+    conn_watch(c, true);
+    if (grobo_estop_stands(conn_device(c)))
+        return app_fail(a, EXIT_SAFETY, grobo_error_name(GROBO_ERR_LATCHED),
+                        "%s: stopped by 'grctl estop'; 'grctl estop --reset' takes it back",
+                        conn_device(c));
+    return EXIT_DONE;
+}
+
 void conn_link_idle(conn_link *link, app *a)
 {
     conn c = {.a = a};
@@ -433,6 +486,25 @@ void conn_link_idle(conn_link *link, app *a)
 }
 
 /* ---- leaving -------------------------------------------------------------------------------- */
+
+/* After Ctrl-Z: what moves stands before the process is suspended. */
+static void suspend(conn *c)
+{
+    if (c->signal != os_suspension || !c->up || c->link_error)
+        return;
+    c->leaving = true;
+    (void)conn_wait(c, grobo_session_exit(c->session, GROBO_EXIT_HOLD));
+    conn_suspend();
+}
+
+int conn_end_estop(conn *c)
+{
+    if (c->trip.trip != GROBO_TRIP_ESTOP || !c->up)
+        return GROBO_OK;
+    c->moving = false;
+    c->leaving = true;
+    return conn_wait_until(c, is_idle);
+}
 
 /* What the servos are to do now, or GROBO_EXIT_DEFAULT for nothing. */
 static grobo_exit_policy policy_now(const conn *c, int status)
@@ -513,7 +585,7 @@ static void await_quiet(conn *c)
 int conn_close(conn *c, int status)
 {
     int failed = EXIT_DONE;
-    conn_suspend(c);
+    suspend(c);
     if (c->session) {
         conn_watch(c, false);
         failed = carry_out_policy(c, status);
@@ -531,7 +603,7 @@ int conn_close(conn *c, int status)
         c->link->session = NULL;
         conn_link_deinit(c->link);
         if (!c->a->stops) /* it may be an attempt that is repeated */
-            output_attach(c->a);
+            app_attach(c->a);
     }
     return trace_close(&c->trace, c->a, status);
 }
@@ -565,7 +637,7 @@ int conn_link_close(conn_link *link, app *a, int status)
     grobo_session_free(c.session);
     link->session = NULL;
     link->user = NULL;
-    output_attach(a);
+    app_attach(a);
     status = trace_close(&link->trace, a, status);
     memset(&link->trace, 0, sizeof link->trace);
     return status;

@@ -97,9 +97,6 @@ int conn_open_to_move(conn *c, app *a);
 /* Where an emergency stop is being carried out: until it is verified. Returns as conn_wait(). */
 int conn_end_estop(conn *c);
 
-/* For conn_wait_until(): no job runs. */
-bool conn_is_idle(conn *c);
-
 /* Reads the joints in the background, so that heat, current, low voltage and silence stop them. */
 void conn_watch(conn *c, bool on);
 
@@ -180,11 +177,8 @@ int conn_link_news(conn_link *link, app *a);
 bool conn_signals_init(conn_link *link);
 void conn_signals_deinit(conn_link *link);
 
-/* Of conn_close(), after Ctrl-Z: stops what moves, suspends the process until it continues. */
-void conn_suspend(conn *c);
-
-/* Opens the link's session; waits while the guard of a grctl that died stops the robot. */
-int conn_open_session(conn *c);
+/* Suspends the process until it continues; the terminal is as it was meanwhile. */
+void conn_suspend(void);
 
 /* The signals are caught while a command has the link, and between these two. */
 void conn_link_watch(conn_link *link);

@@ -16,7 +16,7 @@ static void on_signal(evutil_socket_t number, short what, void *ctx)
 }
 
 /* The terminal is as it was while the process is suspended. */
-static void suspend(void)
+void conn_suspend(void)
 {
     keys_pause();
     screen_pause();
@@ -36,18 +36,9 @@ static void on_suspend(evutil_socket_t number, short what, void *ctx)
     bool moves =
         c && c->up && !c->link_error && (c->moving || grobo_robot_moving(c->robot, grobo_now_us()));
     if (!moves)
-        suspend();
+        conn_suspend();
     else if (!c->leaving)
         on_signal(number, what, ctx);
-}
-
-void conn_suspend(conn *c)
-{
-    if (c->signal != os_suspension || !c->up || c->link_error)
-        return;
-    c->leaving = true;
-    (void)conn_wait(c, grobo_session_exit(c->session, GROBO_EXIT_HOLD));
-    suspend();
 }
 
 /* One of these to be heard: false where there is no memory. */

@@ -30,18 +30,11 @@ static void describe(const app *a, char *text, size_t capacity)
         used += (size_t)snprintf(text + used, capacity - used, " %s", a->line.argument[i]);
 }
 
-static bool tried;
-
-bool trace_was_tried(void)
-{
-    return tried;
-}
-
 static int fail(app *a, const trace *t, int cause)
 {
     return app_fail(a, EXIT_FILE, "TRACE", "%s: the trace cannot be written: %s", t->path,
                     cause == ENOENT ? file_write_error_text(GROBO_ERR_NOENT)
-                                    : file_cause_text(cause));
+                                    : app_cause_text(cause));
 }
 
 /* No trace keeps a robot from being stopped: then trace_close() reports it. */
@@ -62,7 +55,7 @@ int trace_open(trace *t, app *a, const trace_line *line, int64_t now_us)
     memset(t, 0, sizeof *t);
     if (!path)
         return 0;
-    tried = true;
+    a->traced = true;
     n = line->number > 1 ? snprintf(t->path, sizeof t->path, "%s%d", path, line->number)
                          : snprintf(t->path, sizeof t->path, "%s", path);
     if (n < 0 || (size_t)n >= sizeof t->path)

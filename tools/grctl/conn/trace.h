@@ -40,9 +40,6 @@ void trace_bytes(trace *t, grobo_direction direction, int64_t now_us, const uint
 /* Ends it. Returns `status`, or the exit status of a trace that could not be written. */
 int trace_close(trace *t, app *a, int status);
 
-/* True once a trace was begun, or could not be: false says that there was no line to trace. */
-bool trace_was_tried(void);
-
 /* The wiring that a trace's interface tells. False: it does not. */
 bool trace_wiring(const pcapng_interface *interface, grobo_wiring *wiring);
 

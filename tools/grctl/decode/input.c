@@ -23,7 +23,7 @@ int input_open(input *in, app *a, const char *path)
         int cause = in->name == path && os_is_folder(path) ? EISDIR : errno;
         input_close(in);
         return app_fail(a, EXIT_FILE, cause == ENOENT ? "NOENT" : "IO", "%s: %s", path,
-                        file_cause_text(cause));
+                        app_cause_text(cause));
     }
     return 0;
 }

@@ -42,6 +42,9 @@ void replay_ask(replay *r, const frame *f);
 /* Bytes of one that answers, at a time counted from the trace's beginning. */
 void replay_answer(replay *r, int who, int64_t time_us, const uint8_t *bytes, size_t n);
 
+/* Says what the comparison came to: EXIT_DONE where nothing differs, else EXIT_ROBOT. */
+int replay_report(replay *r);
+
 /* To the simulator, in virtual time; to a robot. 0 or the exit status, the reason said. */
 int replay_to_sim(replay *r);
 int replay_to_robot(replay *r);

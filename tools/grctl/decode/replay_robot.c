@@ -124,8 +124,7 @@ static void on_bytes(conn *c, grobo_direction direction, int64_t now_us, const u
 /* What a robot may do to a frame that the comparison will tell; everything else ends it. */
 static bool is_reply_trouble(int error)
 {
-    return error == GROBO_ERR_TIMEOUT || error == GROBO_ERR_SHORT || error == GROBO_ERR_CHECKSUM ||
-           error == GROBO_ERR_MISMATCH || error == GROBO_ERR_NACK;
+    return conn_is_of_reply(error) || error == GROBO_ERR_NACK;
 }
 
 static void send_frame(void *ctx, const frame *f)

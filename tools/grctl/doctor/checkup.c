@@ -9,16 +9,6 @@ void checkup_start(checkup *k, app *a)
     *k = (checkup){.a = a, .checks = a->json ? json_array() : NULL};
 }
 
-static void note_down(checkup *k, const char *name, bool ok, const char *message, const char *fix)
-{
-    k->n++;
-    k->failed += !ok;
-    if (k->checks)
-        json_array_append_new(k->checks, json_pack("{s:s,s:b,s:o,s:o}", "name", name, "ok", (int)ok,
-                                                   "message", app_json_text(message), "fix",
-                                                   fix ? app_json_text(fix) : json_null()));
-}
-
 static void print(const checkup *k, const char *color, const char *verdict, const char *name,
                   const char *message)
 {
@@ -26,30 +16,26 @@ static void print(const checkup *k, const char *color, const char *verdict, cons
               k->a->color_out ? "\033[0m" : "", name, message);
 }
 
-void checkup_good(checkup *k, bool minor, const char *name, const char *format, ...)
+void checkup_found(void *ctx, const char *name, const char *fix, const char *format, ...)
 {
+    checkup *k = ctx;
+    bool ok = !fix || !*fix;
     char message[APP_LINE_BYTES];
     va_list list;
     va_start(list, format);
     vsnprintf(message, sizeof message, format, list);
     va_end(list);
-    note_down(k, name, true, message, NULL);
-    if (!k->checks && (!minor || k->a->verbosity > 0))
-        print(k, "\033[32m", "ok", name, message);
-    output_flush();
-}
-
-void checkup_bad(checkup *k, const char *name, const char *fix, const char *format, ...)
-{
-    char message[APP_LINE_BYTES];
-    va_list list;
-    va_start(list, format);
-    vsnprintf(message, sizeof message, format, list);
-    va_end(list);
-    note_down(k, name, false, message, fix);
-    if (!k->checks) {
+    k->n++;
+    k->failed += !ok;
+    if (k->checks) {
+        json_array_append_new(k->checks, json_pack("{s:s,s:b,s:o,s:o}", "name", name, "ok", (int)ok,
+                                                   "message", app_json_text(message), "fix",
+                                                   ok ? json_null() : app_json_text(fix)));
+    } else if (!ok) {
         print(k, "\033[1;31m", "BAD", name, message);
         app_print("      %-10s  -> %s\n", "", fix);
+    } else if (!fix || k->a->verbosity > 0) {
+        print(k, "\033[32m", "ok", name, message);
     }
     output_flush();
 }

@@ -13,12 +13,11 @@ typedef struct checkup {
 
 void checkup_start(checkup *k, app *a);
 
-/* What is well. `minor`: as text with -v only. */
-void checkup_good(checkup *k, bool minor, const char *name, const char *format, ...)
-    __attribute__((format(printf, 4, 5)));
-
-/* What is wrong, and the line that mends it. */
-void checkup_bad(checkup *k, const char *name, const char *fix, const char *format, ...)
+/*
+ * What was looked at, and how it is. fix: NULL, or it is wrong, and this line mends it; "": it is
+ * well, and said as text with -v only. ctx is the checkup.
+ */
+void checkup_found(void *ctx, const char *name, const char *fix, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 
 /* The end of it. Returns EXIT_DONE, or EXIT_ROBOT when a check failed. */
@@ -26,16 +25,5 @@ int checkup_end(checkup *k);
 
 /* The port itself: is it there, may it be opened, who holds it, is it quick. True: go on. */
 bool checkup_port(checkup *k, const char *device);
-
-/* ---- of the operating system: os/ ----------------------------------------------------------- */
-
-/* Is the device there, and may the user open it? True: go on. */
-bool checkup_node(checkup *k, const char *device);
-/* What a device's name leads to, as the list of ports calls it. */
-bool checkup_true_path(const char *device, char *path, size_t capacity);
-/* How to end the program that has the port. */
-void checkup_end_program(char *fix, size_t capacity, int pid);
-/* The line that makes an adapter's latency timer short. */
-void checkup_quicken(char *fix, size_t capacity, const char *path);
 
 #endif

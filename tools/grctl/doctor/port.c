@@ -5,6 +5,7 @@
 #include <grobo/serial.h>
 
 #include "tools/grctl/doctor/checkup.h"
+#include "tools/grctl/os/node.h"
 
 enum { FIX_BYTES = 512, QUICK_MS = 2 };
 
@@ -40,16 +41,17 @@ static bool check_owner(checkup *k, const char *device)
     }
     free(port);
     if (!error) {
-        checkup_good(k, false, "owner", "no other program holds it");
+        checkup_found(k, "owner", NULL, "no other program holds it");
         return true;
     }
     pid = error == GROBO_ERR_BUSY ? grobo_port_owner(device, name, sizeof name) : 0;
-    checkup_end_program(fix, sizeof fix, pid);
+    node_end_program(fix, sizeof fix, pid);
     if (pid > 0)
-        checkup_bad(k, "owner", fix, "%s (pid %d) holds it", name, pid);
+        checkup_found(k, "owner", fix, "%s (pid %d) holds it", name, pid);
     else
-        checkup_bad(k, "open", "end the program that holds it, or plug it out and in", "%s: %s%s%s",
-                    device, grobo_error_text(error), *cause.text ? ": " : "", cause.text);
+        checkup_found(k, "open", "end the program that holds it, or plug it out and in",
+                      "%s: %s%s%s", device, grobo_error_text(error), *cause.text ? ": " : "",
+                      cause.text);
     return false;
 }
 
@@ -61,20 +63,20 @@ static void check_latency(checkup *k, const char *path)
     if (!s.found || s.info.latency_ms < 0)
         return;
     if (s.info.latency_ms <= QUICK_MS) {
-        checkup_good(k, false, "latency", "its latency timer is %d ms", s.info.latency_ms);
+        checkup_found(k, "latency", NULL, "its latency timer is %d ms", s.info.latency_ms);
         return;
     }
-    checkup_quicken(fix, sizeof fix, path);
-    checkup_bad(k, "latency", fix, "its latency timer is %d ms: every reply waits so long",
-                s.info.latency_ms);
+    node_quicken(fix, sizeof fix, path);
+    checkup_found(k, "latency", fix, "its latency timer is %d ms: every reply waits so long",
+                  s.info.latency_ms);
 }
 
 bool checkup_port(checkup *k, const char *device)
 {
     char path[GROBO_DEVICE_MAX_BYTES];
-    if (!checkup_node(k, device) || !check_owner(k, device))
+    if (!node_look(device, checkup_found, k) || !check_owner(k, device))
         return false;
-    if (checkup_true_path(device, path, sizeof path))
+    if (node_true_path(device, path, sizeof path))
         check_latency(k, path);
     return true;
 }

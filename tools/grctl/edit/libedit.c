@@ -10,13 +10,12 @@
 
 #include <histedit.h>
 
-#include "tools/grctl/cli/output.h"
-#include "tools/grctl/shell/shell.h"
+#include "tools/grctl/edit/edit.h"
 
 enum { HISTORY_LINES = 1000, CANDIDATES_MAX = 256, WORD_BYTES = 256, PATH_BYTES = 1024 };
 
 struct line_reader {
-    shell *s;
+    line_owner owner;
     EditLine *edit;
     History *history;
     struct event *resumed; /* SIGCONT */
@@ -42,7 +41,7 @@ static void tell_news(line_reader *reader)
 {
     fputs("\n", stdout);
     fflush(stdout);
-    conn_link_news(&reader->s->link, reader->s->a);
+    reader->owner.tell(reader->owner.ctx);
     el_set(reader->edit, EL_REFRESH, NULL);
 }
 
@@ -66,7 +65,7 @@ static int get_character(EditLine *edit, wchar_t *out)
     mbstate_t state = {0};
     el_get(edit, EL_CLIENTDATA, &reader);
     for (;;) {
-        int stopped = line_wait(reader->s);
+        int stopped = reader->owner.wait(reader->owner.ctx);
         char byte;
         size_t n;
         if (stopped == LINE_NEWS) {
@@ -140,9 +139,11 @@ static unsigned char complete(EditLine *edit, int key)
     char text[WORD_BYTES + 1];
     const LineInfo *info = el_line(edit);
     size_t length = (size_t)(info->cursor - info->buffer), replaced, n;
+    line_reader *reader = NULL;
     (void)key;
     found.n = 0;
-    replaced = shell_complete(info->buffer, length, take_candidate, &found);
+    el_get(edit, EL_CLIENTDATA, &reader);
+    replaced = reader->owner.complete(info->buffer, length, take_candidate, &found);
     if (found.n == 0)
         return CC_REFRESH_BEEP;
     n = common(&found);
@@ -213,12 +214,12 @@ static void remember(line_reader *reader, const char *line)
 
 /* ---- the reader ----------------------------------------------------------------------------- */
 
-line_reader *line_open(shell *s)
+line_reader *line_open(const line_owner *owner)
 {
     line_reader *reader = calloc(1, sizeof *reader);
     if (!reader)
         return NULL;
-    reader->s = s;
+    reader->owner = *owner;
     reader->prompt = "";
     reader->edit = el_init("grctl", stdin, stdout, stderr);
     if (!reader->edit) {
@@ -234,7 +235,7 @@ line_reader *line_open(shell *s)
     el_set(reader->edit, EL_BIND, "^R", "em-inc-search-prev", NULL);
     open_history(reader);
     el_source(reader->edit, NULL);
-    reader->resumed = evsignal_new(s->link.base, SIGCONT, on_resumed, reader);
+    reader->resumed = evsignal_new(owner->base, SIGCONT, on_resumed, reader);
     if (reader->resumed)
         event_add(reader->resumed, NULL);
     return reader;
@@ -247,7 +248,6 @@ int line_read(line_reader *reader, const char *prompt, char *line, size_t capaci
     reader->prompt = prompt;
     reader->interrupted = false;
     reader->reading = true;
-    output_stream(); /* what was printed stands before the prompt */
     text = el_gets(reader->edit, &n);
     reader->reading = false;
     if (reader->interrupted) {

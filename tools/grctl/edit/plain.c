@@ -1,31 +1,32 @@
 /* SPDX-License-Identifier: MIT */
 /* Lines without editing, where libedit was not there when grctl was built. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "tools/grctl/cli/output.h"
-#include "tools/grctl/shell/shell.h"
+#include "tools/grctl/edit/edit.h"
+#include "tools/grctl/os/os.h"
 
 struct line_reader {
-    shell *s;
+    line_owner owner;
 };
 
-line_reader *line_open(shell *s)
+line_reader *line_open(const line_owner *owner)
 {
     line_reader *reader = malloc(sizeof *reader);
     if (reader)
-        reader->s = s;
+        reader->owner = *owner;
     return reader;
 }
 
 /* Returns 0, or LINE_INTERRUPTED. What the terminal has of the line so far it shows no more. */
-static int await_input(shell *s, const char *prompt)
+static int await_input(const line_owner *owner, const char *prompt)
 {
     int stopped;
-    while ((stopped = line_wait(s)) == LINE_NEWS) {
+    while ((stopped = owner->wait(owner->ctx)) == LINE_NEWS) {
         putchar('\n');
         fflush(stdout);
-        conn_link_news(&s->link, s->a);
+        owner->tell(owner->ctx);
         fputs(prompt, stdout);
         fflush(stdout);
     }
@@ -35,12 +36,12 @@ static int await_input(shell *s, const char *prompt)
 int line_read(line_reader *reader, const char *prompt, char *line, size_t capacity)
 {
     size_t n = 0;
-    fputs(prompt, output_stream());
+    fputs(prompt, stdout);
     fflush(stdout);
     for (;;) {
         char c;
         int got;
-        if (await_input(reader->s, prompt)) {
+        if (await_input(&reader->owner, prompt)) {
             putchar('\n');
             return LINE_INTERRUPTED;
         }

@@ -30,6 +30,20 @@ int monitor_joint(const monitor *m, int place)
     return grobo_model_find_joint(m->model, name, strlen(name));
 }
 
+const char *monitor_busy(const monitor *m)
+{
+    grobo_job_kind kind = grobo_robot_job(m->c.robot);
+    if (kind == GROBO_JOB_ESTOP)
+        return "emergency stop";
+    if (kind == GROBO_JOB_PLAY)
+        return "getting ready to play";
+    if (m->job)
+        return m->doing;
+    return grobo_robot_is_playing(m->c.robot)
+               ? grobo_sequencer_state_name(grobo_robot_play_state(m->c.robot))
+               : NULL;
+}
+
 /* ---- a joint --------------------------------------------------------------------------------- */
 
 static screen_style torque_style(const grobo_joint_info *i)

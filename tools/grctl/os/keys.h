@@ -3,10 +3,9 @@
 #ifndef GRCTL_KEYS_H
 #define GRCTL_KEYS_H
 
-#include <event2/event.h>
+#include <stdbool.h>
 
-#include "tools/grctl/cli/app.h"
-#include "tools/grctl/os/os.h"
+#include <event2/event.h>
 
 /* What keys_fn gets at the end of standard input. */
 enum { KEYS_END = -1 };

@@ -10,7 +10,6 @@
 
 #undef columns /* a capability in term.h, a parameter in ours */
 
-#include "tools/grctl/cli/output.h"
 #include "tools/grctl/os/os.h"
 #include "tools/grctl/screen/screen.h"
 
@@ -56,7 +55,7 @@ bool screen_open(bool color)
     if (!registered && atexit(screen_close) != 0)
         return false;
     registered = true;
-    terminal = newterm(NULL, output_stream(), stdin);
+    terminal = newterm(NULL, stdout, stdin);
     if (!terminal)
         return false;
     input = newpad(1, 1);

@@ -28,7 +28,10 @@ enum {
 /* Whether standard input and output are a terminal on which text can be placed. */
 bool screen_possible(void);
 
-/* Takes the terminal. False: nothing changed. It is given back by screen_close(), or at exit. */
+/*
+ * Takes the terminal, after what was printed has gone out. False: nothing changed. It is given back
+ * by screen_close(), or at exit.
+ */
 bool screen_open(bool color);
 void screen_close(void);
 /* Gives the terminal back until the next screen_end(). */

@@ -3,9 +3,12 @@
 #ifndef GRCTL_SHELL_H
 #define GRCTL_SHELL_H
 
+#include <signal.h>
+
 #include <grobo/motion.h>
 
 #include "tools/grctl/conn/conn.h"
+#include "tools/grctl/edit/edit.h"
 
 enum {
     SHELL_LINE_BYTES = 4096,         /* typed */
@@ -54,6 +57,9 @@ const shell_word *shell_word_find(const char *name);
 /* The table as paragraphs, for help and manual. */
 extern const char shell_details[];
 
+/* A line begins: nothing is known of it. */
+void shell_begin(shell *s);
+
 /* The running line has what the shell's command line said, where it says nothing itself. */
 void shell_inherit(shell *s);
 
@@ -61,9 +67,6 @@ void shell_inherit(shell *s);
 int shell_run(shell *s, int n, char **words);
 
 /* ---- lines ---------------------------------------------------------------------------------- */
-
-/* Instead of a line. LINE_NEWS: conn_link_news() has something to say. */
-enum { LINE_END = -1, LINE_INTERRUPTED = -2, LINE_NEWS = -3, LINE_TOO_LONG = -4 };
 
 /* A script, read on the loop where it has to be waited for. */
 typedef struct shell_script {
@@ -83,30 +86,16 @@ typedef struct shell_script {
  */
 int shell_script_next(shell *s, shell_script *in);
 
-/* A signal that came while no command had the robot and nobody waited for a line, then 0. */
-int shell_take_noted(void);
-
-/* Tells what a word may be. */
-typedef void (*line_found_fn)(void *ctx, const char *word, bool whole);
-
-typedef struct line_reader line_reader;
-
-/* NULL when there is no memory. The reader waits in the link's loop, so the line stays alive. */
-line_reader *line_open(shell *s);
-/*
- * A line without its end. Returns its length, LINE_END, LINE_INTERRUPTED by a signal, or
- * LINE_TOO_LONG. News are told while the line is typed.
- */
-int line_read(line_reader *reader, const char *prompt, char *line, size_t capacity);
-void line_close(line_reader *reader);
-
-/* Waits for standard input in the link's loop. Returns 0, LINE_INTERRUPTED or LINE_NEWS. */
-int line_wait(shell *s);
+/* A signal that came while no command had the robot and nobody waited for a line, 0 none. */
+extern volatile sig_atomic_t shell_noted;
 
 /*
- * What may stand at the end of the `length` bytes of a line: found() is called for each; whole is
- * false where more must follow (a folder). Returns how many bytes at the end they replace.
+ * Waits for standard input in the link's loop, so the line stays alive; s is the shell. Returns 0,
+ * LINE_INTERRUPTED or LINE_NEWS: conn_link_news() has something to say.
  */
+int shell_wait(void *s);
+
+/* For line_owner. */
 size_t shell_complete(const char *line, size_t length, line_found_fn found, void *ctx);
 
 #endif

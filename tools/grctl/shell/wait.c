@@ -10,9 +10,11 @@ static void on_readable(evutil_socket_t fd, short what, void *ctx)
     *readable = true;
 }
 
-int line_wait(shell *s)
+volatile sig_atomic_t shell_noted;
+
+int shell_wait(void *s)
 {
-    conn_link *link = &s->link;
+    conn_link *link = &((shell *)s)->link;
     evutil_socket_t fd = os_input_await();
     bool readable = fd == (evutil_socket_t)EVUTIL_INVALID_SOCKET;
     struct event *input =
@@ -20,8 +22,10 @@ int line_wait(shell *s)
     if (!input || event_add(input, NULL) != 0)
         readable = true; /* then the reading itself waits */
     conn_link_watch(link);
-    if (!link->signal)
-        link->signal = shell_take_noted();
+    if (!link->signal) {
+        link->signal = (int)shell_noted;
+        shell_noted = 0;
+    }
     while (!readable && !link->signal && !link->news)
         if (event_base_loop(link->base, EVLOOP_ONCE) != 0)
             break;
@@ -44,7 +48,7 @@ static int fill(shell *s, shell_script *in)
     }
     conn_link_idle(&s->link, s->a);
     while (n == 0) {
-        int stopped = line_wait(s);
+        int stopped = shell_wait(s);
         if (stopped)
             return stopped;
         n = os_input_read(in->block, sizeof in->block);

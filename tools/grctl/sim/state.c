@@ -204,7 +204,7 @@ static int load(sim_state *s)
     if (file)
         return read_file(s, file);
     if (errno != ENOENT)
-        return fail(s, file_cause_text(errno));
+        return fail(s, app_cause_text(errno));
     error = write_file(s);
     return error ? fail(s, file_write_error_text(error)) : 0;
 }
@@ -223,7 +223,7 @@ int sim_state_start(sim_state *s, app *a, struct event_base *base, grobo_sim_ser
         return app_fail(a, EXIT_FILE, status == EWOULDBLOCK ? "BUSY" : "IO", "sim: --state: %s: %s",
                         path,
                         status == EWOULDBLOCK ? "another simulator has it; name another file"
-                                              : file_cause_text(status));
+                                              : app_cause_text(status));
     }
     s->settle = evtimer_new(base, on_settle, s);
     if (!s->settle)

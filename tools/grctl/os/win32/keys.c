@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "tools/grctl/os/keys.h"
+#include "tools/grctl/os/os.h"
 
 /* The console is one for the process. */
 static struct {

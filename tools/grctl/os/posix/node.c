@@ -2,12 +2,13 @@
 /* Is the device's node there, and may the user open it? */
 #include <grp.h>
 #include <pwd.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "tools/grctl/doctor/checkup.h"
+#include "tools/grctl/os/node.h"
 
 /* The Makefile says where `make install` puts it. */
 static const char rules[] = GRCTL_DATADIR "/grobo/udev/60-grobo.rules";
@@ -29,7 +30,7 @@ static bool is_member(const struct group *group)
     return false;
 }
 
-static void say_forbidden(checkup *k, const char *device, const struct stat *s)
+static void say_forbidden(const char *device, const struct stat *s, node_found_fn found, void *ctx)
 {
     char fix[FIX_BYTES];
     const struct group *group = getgrgid(s->st_gid);
@@ -40,33 +41,33 @@ static void say_forbidden(checkup *k, const char *device, const struct stat *s)
     else
         snprintf(fix, sizeof fix, "sudo usermod -aG %s %s; then log out and in again",
                  group->gr_name, user_name());
-    checkup_bad(k, "permission", fix, "%s belongs to group %s, mode %03o: %s may not open it",
-                device, group ? group->gr_name : "?", (unsigned)s->st_mode & 0777, user_name());
+    found(ctx, "permission", fix, "%s belongs to group %s, mode %03o: %s may not open it", device,
+          group ? group->gr_name : "?", (unsigned)s->st_mode & 0777, user_name());
 }
 
-bool checkup_node(checkup *k, const char *device)
+bool node_look(const char *device, node_found_fn found, void *ctx)
 {
     struct stat s;
     if (stat(device, &s) < 0) {
-        checkup_bad(k, "device", "plug the robot's cable in; 'grctl ports' lists what there is",
-                    "%s is not there", device);
+        found(ctx, "device", "plug the robot's cable in; 'grctl ports' lists what there is",
+              "%s is not there", device);
         return false;
     }
     if (!S_ISCHR(s.st_mode)) {
-        checkup_bad(k, "device", "choose one of those that 'grctl ports' lists",
-                    "%s is no serial port", device);
+        found(ctx, "device", "choose one of those that 'grctl ports' lists", "%s is no serial port",
+              device);
         return false;
     }
-    checkup_good(k, false, "device", "%s is there", device);
+    found(ctx, "device", NULL, "%s is there", device);
     if (access(device, R_OK | W_OK) < 0) {
-        say_forbidden(k, device, &s);
+        say_forbidden(device, &s, found, ctx);
         return false;
     }
-    checkup_good(k, false, "permission", "%s may read and write it", user_name());
+    found(ctx, "permission", NULL, "%s may read and write it", user_name());
     return true;
 }
 
-bool checkup_true_path(const char *device, char *path, size_t capacity)
+bool node_true_path(const char *device, char *path, size_t capacity)
 {
     char *real = realpath(device, NULL);
     int n = real ? snprintf(path, capacity, "%s", real) : -1;
@@ -74,12 +75,12 @@ bool checkup_true_path(const char *device, char *path, size_t capacity)
     return n >= 0 && (size_t)n < capacity;
 }
 
-void checkup_end_program(char *fix, size_t capacity, int pid)
+void node_end_program(char *fix, size_t capacity, int pid)
 {
     snprintf(fix, capacity, "end that program, or: kill %d", pid);
 }
 
-void checkup_quicken(char *fix, size_t capacity, const char *path)
+void node_quicken(char *fix, size_t capacity, const char *path)
 {
     snprintf(fix, capacity,
              "sudo cp %s /etc/udev/rules.d/, plug in again; "
