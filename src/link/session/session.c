@@ -534,7 +534,7 @@ int grobo_session_configure(grobo_session *session, const grobo_robot_config *co
     return r;
 }
 
-/* ---- what it knows, its parts -------------------------------------------------------------- */
+/* ---- what it knows, its parts ------------------------------------------------------------- */
 
 grobo_session_state grobo_session_get_state(const grobo_session *session)
 {

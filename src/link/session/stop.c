@@ -176,7 +176,7 @@ static void on_wake(evutil_socket_t socket, short what, void *ctx)
     grobo_i_session_attend(session);
 }
 
-/* ---- of other programs --------------------------------------------------------------------- */
+/* ---- of other programs -------------------------------------------------------------------- */
 
 void grobo_i_session_estop_begin(grobo_session *session, const char *device)
 {

@@ -119,16 +119,6 @@ int64_t grobo_control_get_sense_interval_us(grobo_control *control)
     return interval_us != 0 ? interval_us : SENSE_US;
 }
 
-int64_t grobo_control_get_period_us(grobo_control *control)
-{
-    int64_t period_us;
-
-    grobo_i_control_lock(control);
-    period_us = control->period_us;
-    grobo_i_control_unlock(control);
-    return period_us;
-}
-
 int grobo_control_set_motion_count(grobo_control *control, int count)
 {
     grobo_i_control_lock(control);
