@@ -125,12 +125,7 @@ static void serve(grobo_control *control)
 
 int64_t grobo_control_get_period_us(grobo_control *control)
 {
-    int64_t period_us;
-
-    grobo_i_control_lock(control);
-    period_us = control->period_us;
-    grobo_i_control_unlock(control);
-    return period_us;
+    RETURN_LOCKED(control, int64_t, control->period_us);
 }
 
 void grobo_i_control_round(grobo_control *control, int64_t end_us)
@@ -301,18 +296,8 @@ int grobo_i_control_job(grobo_control *control, control_job *job, grobo_control_
     const call_wish wish = {.fn = fn != NULL ? fn : grobo_i_control_poll_job,
                             .arg = job,
                             .job = job,
-                            .timeout_us = timeout_us};
-
-    return grobo_i_control_inside(control) ? GROBO_ERR_STATE : call_and_wait(control, &wish);
-}
-
-int grobo_i_control_urgent_job(grobo_control *control, control_job *job, int64_t timeout_us)
-{
-    const call_wish wish = {.fn = grobo_i_control_poll_job,
-                            .arg = job,
-                            .job = job,
                             .timeout_us = timeout_us,
-                            .urgent = true};
+                            .urgent = job->urgent};
 
     return grobo_i_control_inside(control) ? GROBO_ERR_STATE : call_and_wait(control, &wish);
 }

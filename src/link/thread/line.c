@@ -93,8 +93,8 @@ static int leave_job(grobo_control *control, control_job *job)
 
 int grobo_i_control_leave(grobo_control *control, int64_t timeout_us, bool *looked)
 {
-    control_job job = {.start = leave_job};
-    int r = grobo_i_control_urgent_job(control, &job, timeout_us);
+    control_job job = {.start = leave_job, .urgent = true};
+    int r = grobo_i_control_job(control, &job, NULL, timeout_us);
 
     *looked = job.looked || (r != GROBO_ERR_TIMEOUT && r != GROBO_ERR_FULL);
     if (!*looked && !control->skip_exit) {
@@ -162,12 +162,7 @@ int grobo_control_connect(grobo_control *control, int64_t timeout_us)
 
 bool grobo_control_is_connected(grobo_control *control)
 {
-    bool up;
-
-    grobo_i_control_lock(control);
-    up = control->up;
-    grobo_i_control_unlock(control);
-    return up;
+    RETURN_LOCKED(control, bool, control->up);
 }
 
 static int get_cause(grobo_control *control, void *arg)
@@ -495,14 +490,14 @@ static int exit_job(grobo_control *control, control_job *job)
 
 int grobo_control_exit(grobo_control *control, grobo_exit_policy policy, int64_t timeout_us)
 {
-    control_job job = {.start = exit_job, .policy = policy};
+    control_job job = {.start = exit_job, .policy = policy, .urgent = true};
     int r;
 
     if (grobo_i_control_inside(control)) {
         r = grobo_control_post_exit(control, policy);
         return r < 0 ? r : GROBO_ERR_STATE;
     }
-    r = grobo_i_control_urgent_job(control, &job, timeout_us);
+    r = grobo_i_control_job(control, &job, NULL, timeout_us);
     if (job.number == 0 && (r == GROBO_ERR_TIMEOUT || r == GROBO_ERR_FULL)) {
         (void)grobo_control_post_exit(control, policy); /* nobody waits, the exit stands */
     }

@@ -71,12 +71,7 @@ int grobo_control_get_motion(grobo_control *control, grobo_motion **motion)
 
 size_t grobo_control_motion_size(grobo_control *control)
 {
-    size_t size;
-
-    grobo_i_control_lock(control);
-    size = grobo_motion_size(control->motion);
-    grobo_i_control_unlock(control);
-    return size;
+    RETURN_LOCKED(control, size_t, grobo_motion_size(control->motion));
 }
 
 void grobo_control_clear_motion(grobo_control *control)
@@ -109,12 +104,7 @@ static int want_move(grobo_control *control)
 
 int grobo_control_start_motion(grobo_control *control)
 {
-    int r;
-
-    grobo_i_control_lock(control);
-    r = want_move(control);
-    grobo_i_control_unlock(control);
-    return r;
+    RETURN_LOCKED(control, int, want_move(control));
 }
 
 int grobo_control_init_position(grobo_control *control)
@@ -165,22 +155,12 @@ static int want_play(grobo_control *control, const grobo_play_options *options)
 
 int grobo_control_play_motion(grobo_control *control, const grobo_play_options *options)
 {
-    int r;
-
-    grobo_i_control_lock(control);
-    r = want_play(control, options);
-    grobo_i_control_unlock(control);
-    return r;
+    RETURN_LOCKED(control, int, want_play(control, options));
 }
 
 bool grobo_control_is_playing(grobo_control *control)
 {
-    bool playing;
-
-    grobo_i_control_lock(control);
-    playing = control->play != PLAY_NONE;
-    grobo_i_control_unlock(control);
-    return playing;
+    RETURN_LOCKED(control, bool, control->play != PLAY_NONE);
 }
 
 /* ---- stopping, waiting -------------------------------------------------------------------- */
@@ -334,12 +314,7 @@ static int get_nth(const grobo_control *control, size_t n, grobo_posture *postur
 
 int grobo_control_get_nth_posture(grobo_control *control, size_t n, grobo_posture *posture)
 {
-    int r;
-
-    grobo_i_control_lock(control);
-    r = get_nth(control, n, posture);
-    grobo_i_control_unlock(control);
-    return r;
+    RETURN_LOCKED(control, int, get_nth(control, n, posture));
 }
 
 int grobo_control_get_first_posture(grobo_control *control, grobo_posture *posture)
@@ -349,13 +324,8 @@ int grobo_control_get_first_posture(grobo_control *control, grobo_posture *postu
 
 int grobo_control_get_last_posture(grobo_control *control, grobo_posture *posture)
 {
-    int r;
-
-    grobo_i_control_lock(control);
     /* Of an empty motion the number wraps around, to one that is not there. */
-    r = get_nth(control, grobo_motion_size(control->motion) - 1, posture);
-    grobo_i_control_unlock(control);
-    return r;
+    RETURN_LOCKED(control, int, get_nth(control, grobo_motion_size(control->motion) - 1, posture));
 }
 
 int grobo_control_do_nth_motion(grobo_control *control, size_t n)

@@ -200,12 +200,7 @@ int grobo_control_stop_thread(grobo_control *control)
 
 bool grobo_control_is_active(grobo_control *control)
 {
-    bool active;
-
-    grobo_i_control_lock(control);
-    active = control->running && !control->stopping;
-    grobo_i_control_unlock(control);
-    return active;
+    RETURN_LOCKED(control, bool, control->running && !control->stopping);
 }
 
 int grobo_control_thread(grobo_control *control, grobo_thread *thread)

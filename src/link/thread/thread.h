@@ -33,6 +33,7 @@ typedef enum call_state {
 /* A job of the engine that a thread waits for. */
 typedef struct control_job {
     int (*start)(grobo_control *control, struct control_job *job);
+    bool urgent;          /* must not be refused because too much is under way */
     int number;           /* 0: not begun */
     bool looked;          /* the loop has had its turn */
     bool ended;           /* then: */
@@ -158,6 +159,17 @@ bool grobo_i_control_inside(const grobo_control *control);
 void grobo_i_control_lock(grobo_control *control);
 void grobo_i_control_unlock(grobo_control *control);
 
+/* The whole of a function that returns what it looks up, or does, with the lock. */
+#define RETURN_LOCKED(control, type, value)                                                        \
+    do {                                                                                           \
+        type value_;                                                                               \
+                                                                                                   \
+        grobo_i_control_lock(control);                                                             \
+        value_ = (value);                                                                          \
+        grobo_i_control_unlock(control);                                                           \
+        return value_;                                                                             \
+    } while (0)
+
 /* With the lock: has the loop look at its calls. */
 void grobo_i_control_wake(grobo_control *control);
 
@@ -227,9 +239,6 @@ int grobo_i_control_post(grobo_control *control, grobo_control_fn fn, void *arg,
 /* Hands over a job, after those before it, and waits for its end. `fn` NULL: nothing besides. */
 int grobo_i_control_job(grobo_control *control, control_job *job, grobo_control_fn fn,
                         int64_t timeout_us);
-
-/* The same, for what must not be refused because too much is under way. */
-int grobo_i_control_urgent_job(grobo_control *control, control_job *job, int64_t timeout_us);
 
 /* On the loop: the function of a job. */
 int grobo_i_control_poll_job(grobo_control *control, void *arg);
