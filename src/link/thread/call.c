@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The rounds of the loop, and how threads hand calls to it. A call takes a slot, and the loop calls its function, again
- * and again, until it is over. The caller sleeps at the condition meanwhile; or, where no thread
- * runs the loop, runs it itself. Nothing of this takes a descriptor or memory.
+ * The rounds of the loop, and how threads hand calls to it. A call takes a slot, and the loop calls
+ * its function, again and again, until it is over. The caller sleeps at the condition meanwhile;
+ * or, where no thread runs the loop, runs it itself. Nothing of this takes a descriptor or memory.
  */
 #include "src/link/session/session.h"
 #include "src/link/thread/thread.h"

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The inside of a grobo_control, each file below the next: wake.c the lock and who is in a round,
- * events.c what the loop is told, play.c what it has the robot do, call.c its rounds and how threads
- * hand calls to it, state.c, line.c and motion.c the functions, thread.c its life.
+ * events.c what the loop is told, play.c what it has the robot do, call.c its rounds and the calls
+ * of threads, state.c, line.c and motion.c the functions, thread.c its life.
  *
  * `lock` guards what several threads touch; it is never held while anything is called that may
  * call back. What is marked 'loop' belongs to the thread that is in a round (`looping`), and goes
