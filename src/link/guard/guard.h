@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A guard: guard.c has the program's side, guard_run.c that of the process, session_guard.c when a
+ * A guard: guard.c has the program's side, run.c that of the process; session/guard.c has when a
  * session uses it.
  *
  * What goes over the socket, between two builds of the same library:

@@ -1,11 +1,63 @@
 /* SPDX-License-Identifier: MIT */
-/* A serial port's bytes: reading, writing, the queue, the calls that wait. */
+/* An open serial port: its bytes, the queue, the calls that wait, its end. */
 #include <assert.h>
 #include <limits.h>
 #include <string.h>
 
 #include "src/link/serial/loop.h"
 #include "src/link/serial/serial.h"
+
+/* ---- what ends it, what is to be told ----------------------------------------------------- */
+
+static void free_event(struct event **event)
+{
+    if (*event != NULL) {
+        event_free(*event);
+        *event = NULL;
+    }
+}
+
+void grobo_serial_close(grobo_serial *serial)
+{
+    serial->to_tell = 0;
+    serial->ready = false;
+    serial->paused = false;
+    serial->head = 0;
+    serial->used = 0;
+    free_event(&serial->rx);
+    free_event(&serial->tx);
+    free_event(&serial->resume);
+    if (serial->ops != NULL) {
+        serial->ops->close(serial->port);
+        serial->ops = NULL;
+    }
+}
+
+bool grobo_serial_is_open(const grobo_serial *serial)
+{
+    return serial->ops != NULL;
+}
+
+void grobo_i_serial_tell(grobo_serial *serial, unsigned what)
+{
+    if (serial->config.mode == GROBO_SERIAL_ASYNC) {
+        serial->to_tell |= what;
+        event_active(serial->tell, 0, 0);
+    }
+}
+
+int grobo_i_serial_lose(grobo_serial *serial, int error)
+{
+    if (error == GROBO_ERR_UNPLUGGED) {
+        serial->counters.unplugs++;
+    }
+    grobo_serial_close(serial);
+    serial->lost_error = error;
+    grobo_i_serial_tell(serial, TELL_LOST);
+    return error;
+}
+
+/* ---- one read, one write ------------------------------------------------------------------ */
 
 /* Tells the bytes of a read or write to counters and trace. */
 static void note_bytes(grobo_serial *serial, grobo_direction direction, const void *bytes,

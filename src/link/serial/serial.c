@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A serial port's life: made, opened, lost, closed; what it tells. */
+/* A serial port's life: made, opened, what the loop brings, what it tells. */
 #include <string.h>
 
 #include "src/link/serial/loop.h"
@@ -73,25 +73,6 @@ static void on_tell(evutil_socket_t fd, short what, void *arg)
     (void)fd;
     (void)what;
     tell_all(arg);
-}
-
-void grobo_i_serial_tell(grobo_serial *serial, unsigned what)
-{
-    if (serial->config.mode == GROBO_SERIAL_ASYNC) {
-        serial->to_tell |= what;
-        event_active(serial->tell, 0, 0);
-    }
-}
-
-int grobo_i_serial_lose(grobo_serial *serial, int error)
-{
-    if (error == GROBO_ERR_UNPLUGGED) {
-        serial->counters.unplugs++;
-    }
-    grobo_serial_close(serial);
-    serial->lost_error = error;
-    grobo_i_serial_tell(serial, TELL_LOST);
-    return error;
 }
 
 /* ---- the loop's side ---------------------------------------------------------------------- */
@@ -326,7 +307,7 @@ int grobo_serial_low_latency(const grobo_serial *serial)
     return grobo_serial_is_open(serial) ? serial->quick_result : GROBO_ERR_CLOSED;
 }
 
-/* ---- opening and closing ------------------------------------------------------------------ */
+/* ---- opening ------------------------------------------------------------------------------ */
 
 static const grobo_port_ops *choose_ops(const grobo_serial *serial)
 {
@@ -420,35 +401,6 @@ int grobo_serial_open(grobo_serial *serial)
         }
     }
     return r < 0 ? r : GROBO_OK;
-}
-
-static void free_event(struct event **event)
-{
-    if (*event != NULL) {
-        event_free(*event);
-        *event = NULL;
-    }
-}
-
-void grobo_serial_close(grobo_serial *serial)
-{
-    serial->to_tell = 0;
-    serial->ready = false;
-    serial->paused = false;
-    serial->head = 0;
-    serial->used = 0;
-    free_event(&serial->rx);
-    free_event(&serial->tx);
-    free_event(&serial->resume);
-    if (serial->ops != NULL) {
-        serial->ops->close(serial->port);
-        serial->ops = NULL;
-    }
-}
-
-bool grobo_serial_is_open(const grobo_serial *serial)
-{
-    return serial->ops != NULL;
 }
 
 grobo_handle grobo_serial_handle(const grobo_serial *serial)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The inside of a grobo_serial: serial.c has its life, serial_io.c its bytes. */
+/* The inside of a grobo_serial: io.c has the open port, serial.c on top of it its life. */
 #ifndef GROBO_LINK_SERIAL_I_H
 #define GROBO_LINK_SERIAL_I_H
 

@@ -16,27 +16,19 @@ static void say_unguarded(grobo_session *session, int error)
     }
 }
 
-static void on_news(evutil_socket_t fd, short what, void *ctx)
+bool grobo_i_session_guard_hear(grobo_session *session)
 {
-    grobo_session *session = ctx;
     grobo_guard *guard = session->config.guard;
 
-    (void)fd;
-    (void)what;
-    grobo_i_session_enter(session);
     grobo_i_guard_hear(guard);
     if (guard->ended || guard->refused) {
         (void)event_del(session->guard_news); /* a socket that is closed, or nothing to come */
         say_unguarded(session, guard->refused ? GROBO_ERR_UNSUPPORTED : GROBO_ERR_CLOSED);
     }
-    if (guard->taken) {
-        grobo_i_session_lost(session, GROBO_ERR_STALLED);
-        guard->taken = false;
-    }
-    grobo_i_session_leave(session);
+    return guard->taken;
 }
 
-int grobo_i_session_guard_new(grobo_session *session)
+int grobo_i_session_guard_new(grobo_session *session, event_callback_fn on_news)
 {
     const grobo_session_config *config = &session->config;
 
@@ -100,10 +92,10 @@ void grobo_i_session_guard_take(grobo_session *session)
 
 void grobo_i_session_guard_release(grobo_session *session)
 {
-    if (session->guard_news == NULL || session->is_sim) {
+    if (session->guard_news == NULL) {
         return;
     }
-    if (session->config.guard->taken && session->serial->ops != NULL) {
+    if (session->config.guard->taken && grobo_serial_is_open(session->serial)) {
         grobo_i_port_abandon(session->serial->port);
     }
     grobo_i_guard_release(session->config.guard);
@@ -113,7 +105,7 @@ bool grobo_i_session_guard_has_it(grobo_session *session)
 {
     grobo_guard *guard = session->config.guard;
 
-    if (session->guard_news == NULL || session->is_sim) {
+    if (session->guard_news == NULL || !grobo_serial_is_open(session->serial)) {
         return false;
     }
     grobo_i_guard_hear(guard);
@@ -125,7 +117,7 @@ bool grobo_i_session_guard_has_it(grobo_session *session)
 
 void grobo_i_session_guard_tell(grobo_session *session)
 {
-    if (session->guard_news != NULL && !session->is_sim) {
+    if (session->guard_news != NULL) {
         grobo_i_guard_tell(session->config.guard, policy_of(session),
                            grobo_robot_moving(&session->robot, grobo_now_us()));
     }

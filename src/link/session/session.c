@@ -1,20 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* A session's states: opening, checking, up, lost, coming back. */
+/* A session's states: opening, checking, up, lost, coming back; and what it is told. */
 #include <stdio.h>
 #include <string.h>
 
+#include "src/link/guard/guard.h"
 #include "src/link/serial/loop.h"
 #include "src/link/session/session.h"
-
-void grobo_i_session_say(grobo_session *session, grobo_session_event event, int error)
-{
-    if (session->config.on_event != NULL && !session->closing) {
-        int64_t since_us = grobo_i_session_enter_callback(session);
-
-        session->config.on_event(session, event, error, session->config.ctx);
-        grobo_i_session_leave_callback(session, GROBO_CALLBACK_EVENT, since_us);
-    }
-}
 
 /* ---- closing ------------------------------------------------------------------------------ */
 
@@ -69,41 +60,14 @@ static void destroy(grobo_session *session)
 
 /* ---- opening ------------------------------------------------------------------------------ */
 
-static int open_path(grobo_session *session, const char *path)
+static int open_device(grobo_session *session, const char *device)
 {
-    int r = grobo_serial_set_device(session->serial, path);
+    int r = session->line->open(session, device);
 
     if (r >= 0) {
-        r = grobo_serial_open(session->serial);
-        session->cause = *grobo_serial_cause(session->serial);
-    }
-    if (r >= 0) {
-        memmove(session->used, path, strlen(path) + 1);
         session->state = GROBO_SESSION_OPENING;
-        grobo_i_session_estop_begin(session, path);
     }
     return r;
-}
-
-static int open_sim(grobo_session *session)
-{
-    int64_t now_us = grobo_now_us();
-
-    if (session->sim == NULL) {
-        grobo_sim *sim = grobo_i_link_new(session->config.mem, sizeof *sim);
-        int r = sim != NULL ? grobo_sim_init(sim, &session->sim_config, now_us) : GROBO_ERR_NOMEM;
-
-        if (r < 0) {
-            grobo_i_link_free(session->config.mem, sim, sizeof *sim);
-            return r;
-        }
-        session->sim = sim;
-    }
-    if (grobo_sim_hung_up(session->sim)) {
-        grobo_sim_plug(session->sim, true, now_us);
-    }
-    session->state = GROBO_SESSION_OPENING;
-    return GROBO_OK;
 }
 
 /* Opens the first port of the scan, from the present one on, that can be opened. */
@@ -112,7 +76,7 @@ static int open_next(grobo_session *session)
     session_scan *scan = session->scan;
 
     for (; scan->at < scan->count; scan->at++) {
-        if (open_path(session, scan->path[scan->at]) >= 0) {
+        if (open_device(session, scan->path[scan->at]) >= 0) {
             return GROBO_OK;
         }
     }
@@ -123,10 +87,62 @@ static int open_next(grobo_session *session)
     return GROBO_ERR_NOTFOUND;
 }
 
-/* By the name that stays: the old one may be another device's by now. */
-static int open_again(grobo_session *session)
+/* ---- losing ------------------------------------------------------------------------------- */
+
+static void wait_for_return(grobo_session *session)
 {
-    return session->is_sim ? open_sim(session) : open_path(session, session->stable);
+    session->state = GROBO_SESSION_WAITING;
+    session->retry_us = grobo_now_us() + session->pause_us;
+    session->pause_us *= 2;
+    if (session->pause_us > GROBO_RECONNECT_MAX_US) {
+        session->pause_us = GROBO_RECONNECT_MAX_US;
+    }
+}
+
+static void lose_robot(grobo_session *session, int error)
+{
+    drop_line(session);
+    session->pause_us = GROBO_RECONNECT_FIRST_US;
+    if (session->config.reconnect) {
+        wait_for_return(session);
+    } else {
+        session->state = GROBO_SESSION_CLOSED;
+    }
+    grobo_i_session_say(session, GROBO_SESSION_EVENT_LOST, error);
+}
+
+/* An attempt came to nothing: the next port, the next time, or the end. */
+static void lose_attempt(grobo_session *session, int error)
+{
+    drop_line(session);
+    if (session->scan != NULL) {
+        session->scan->at++;
+        error = open_next(session);
+        if (error >= 0) {
+            return;
+        }
+    } else if (session->was_up && session->config.reconnect) {
+        wait_for_return(session);
+        return;
+    }
+    session->state = GROBO_SESSION_CLOSED;
+    grobo_i_session_say(session, GROBO_SESSION_EVENT_FAILED, error);
+}
+
+static void lose(grobo_session *session, int error)
+{
+    switch (session->state) {
+    case GROBO_SESSION_UP:
+        lose_robot(session, error);
+        break;
+    case GROBO_SESSION_OPENING:
+    case GROBO_SESSION_CHECKING:
+    case GROBO_SESSION_WAITING:
+        lose_attempt(session, error);
+        break;
+    case GROBO_SESSION_CLOSED:
+        break;
+    }
 }
 
 /* ---- checking ----------------------------------------------------------------------------- */
@@ -134,8 +150,8 @@ static int open_again(grobo_session *session)
 static void be_up(grobo_session *session)
 {
     grobo_i_session_scan_end(session);
-    if (!session->is_sim &&
-        grobo_port_identity(session->used, session->stable, sizeof session->stable) < 0) {
+    /* By now the system has given it its names. The simulator goes by none. */
+    if (grobo_port_identity(session->used, session->stable, sizeof session->stable) < 0) {
         memcpy(session->stable, session->used, sizeof session->stable);
     }
     session->state = GROBO_SESSION_UP;
@@ -183,7 +199,7 @@ static void end_check(grobo_session *session)
     } else {
         session->cause.code = 0;
         snprintf(session->cause.text, sizeof session->cause.text, "no answer to the check");
-        grobo_i_session_lost(session, result);
+        lose(session, result);
     }
 }
 
@@ -218,72 +234,10 @@ static void on_robot(void *ctx, const grobo_event *event)
     }
 }
 
-/* ---- losing ------------------------------------------------------------------------------- */
-
-static void wait_for_return(grobo_session *session)
-{
-    session->state = GROBO_SESSION_WAITING;
-    session->retry_us = grobo_now_us() + session->pause_us;
-    session->pause_us *= 2;
-    if (session->pause_us > GROBO_RECONNECT_MAX_US) {
-        session->pause_us = GROBO_RECONNECT_MAX_US;
-    }
-}
-
-static void lose_robot(grobo_session *session, int error)
-{
-    drop_line(session);
-    session->pause_us = GROBO_RECONNECT_FIRST_US;
-    if (session->config.reconnect) {
-        wait_for_return(session);
-    } else {
-        session->state = GROBO_SESSION_CLOSED;
-    }
-    grobo_i_session_say(session, GROBO_SESSION_EVENT_LOST, error);
-}
-
-/* An attempt came to nothing: the next port, the next time, or the end. */
-static void lose_attempt(grobo_session *session, int error)
-{
-    drop_line(session);
-    if (session->scan != NULL) {
-        session->scan->at++;
-        error = open_next(session);
-        if (error >= 0) {
-            return;
-        }
-    } else if (session->was_up && session->config.reconnect) {
-        wait_for_return(session);
-        return;
-    }
-    session->state = GROBO_SESSION_CLOSED;
-    grobo_i_session_say(session, GROBO_SESSION_EVENT_FAILED, error);
-}
-
-void grobo_i_session_lost(grobo_session *session, int error)
-{
-    switch (session->state) {
-    case GROBO_SESSION_UP:
-        lose_robot(session, error);
-        break;
-    case GROBO_SESSION_OPENING:
-    case GROBO_SESSION_CHECKING:
-    case GROBO_SESSION_WAITING:
-        lose_attempt(session, error);
-        break;
-    case GROBO_SESSION_CLOSED:
-        break;
-    }
-}
-
 /* ---- the loop's calls --------------------------------------------------------------------- */
 
-void grobo_i_session_enter(grobo_session *session)
-{
-    session->depth++;
-}
-
-void grobo_i_session_leave(grobo_session *session)
+/* The last leave does what callbacks asked for, and pumps. */
+static void on_leave(grobo_session *session)
 {
     if (session->depth == 1 && !session->freed) {
         grobo_i_session_report_slow(session);
@@ -326,7 +280,7 @@ static void on_serial(grobo_serial *serial, grobo_serial_event event, int error,
     case GROBO_SERIAL_UNPLUGGED:
     case GROBO_SERIAL_FAILED:
         session->cause = *grobo_serial_cause(serial);
-        grobo_i_session_lost(session, error);
+        lose(session, error);
         break;
     }
     grobo_i_session_leave(session);
@@ -335,10 +289,12 @@ static void on_serial(grobo_serial *serial, grobo_serial_event event, int error,
 /* With a line: what it has, and the time. */
 static void look(grobo_session *session)
 {
-    if (session->is_sim) {
-        grobo_i_session_take_from_sim(session);
+    int r = grobo_i_session_step(session);
+
+    if (r < 0) {
+        lose(session, r);
+        grobo_robot_step(&session->robot, grobo_now_us());
     }
-    grobo_i_session_step(session);
 }
 
 void grobo_i_session_look(grobo_session *session)
@@ -354,10 +310,11 @@ void grobo_i_session_look(grobo_session *session)
 static void try_again(grobo_session *session)
 {
     if (grobo_now_us() >= session->retry_us) {
-        int r = open_again(session);
+        /* By the name that stays: the old one may be another device's by now. */
+        int r = open_device(session, session->stable);
 
         if (r < 0) {
-            grobo_i_session_lost(session, r);
+            lose(session, r);
         }
     }
 }
@@ -386,6 +343,20 @@ static void on_time(grobo_timer *timer, int64_t late_us, void *ctx)
     grobo_i_session_leave(session);
 }
 
+static void on_guard(evutil_socket_t fd, short what, void *ctx)
+{
+    grobo_session *session = ctx;
+
+    (void)fd;
+    (void)what;
+    grobo_i_session_enter(session);
+    if (grobo_i_session_guard_hear(session)) {
+        lose(session, GROBO_ERR_STALLED);
+        session->config.guard->taken = false;
+    }
+    grobo_i_session_leave(session);
+}
+
 /* ---- the public functions ----------------------------------------------------------------- */
 
 static int set_device(grobo_session *session, const char *device)
@@ -395,7 +366,8 @@ static int set_device(grobo_session *session, const char *device)
     }
     memmove(session->device, device, strlen(device) + 1);
     memcpy(session->used, session->device, sizeof session->used);
-    session->is_sim = strcmp(session->device, GROBO_DEVICE_SIM) == 0;
+    session->line = strcmp(session->device, GROBO_DEVICE_SIM) == 0 ? &grobo_i_session_sim
+                                                                   : &grobo_i_session_port;
     return GROBO_OK;
 }
 
@@ -445,7 +417,7 @@ static int make_parts(grobo_session *session)
         .mode = GROBO_SERIAL_ASYNC,
         .on_data = grobo_i_session_on_data,
         .on_event = on_serial,
-        .on_tap = session->config.on_tap != NULL ? grobo_i_session_on_tap : NULL,
+        .on_tap = session->config.on_tap != NULL ? grobo_i_session_tell_tap : NULL,
         .ctx = session,
         .mem = session->config.mem,
     };
@@ -456,7 +428,7 @@ static int make_parts(grobo_session *session)
                             &session->timer);
     }
     if (r >= 0) {
-        r = grobo_i_session_guard_new(session);
+        r = grobo_i_session_guard_new(session, on_guard);
     }
     return r < 0 ? r : grobo_i_session_wake_new(session);
 }
@@ -474,6 +446,7 @@ int grobo_session_new(const grobo_session_config *config, grobo_session **sessio
     if (made == NULL) {
         return GROBO_ERR_NOMEM;
     }
+    made->on_leave = on_leave;
     r = fill(made, config);
     made->config.mem = config->mem;
     if (r >= 0) {
@@ -487,6 +460,12 @@ int grobo_session_new(const grobo_session_config *config, grobo_session **sessio
     configure(made, false);
     *session = made;
     return GROBO_OK;
+}
+
+void grobo_session_pump(grobo_session *session)
+{
+    grobo_i_session_enter(session);
+    grobo_i_session_leave(session);
 }
 
 void grobo_session_free(grobo_session *session)
@@ -512,15 +491,13 @@ int grobo_session_open(grobo_session *session)
     if (r < 0) {
         return r;
     }
-    if (session->is_sim) {
-        r = open_sim(session);
-    } else if (strcmp(session->device, GROBO_DEVICE_AUTO) == 0) {
+    if (strcmp(session->device, GROBO_DEVICE_AUTO) != 0) {
+        r = open_device(session, session->device);
+    } else {
         r = grobo_i_session_scan_begin(session);
         if (r >= 0) {
             r = open_next(session);
         }
-    } else {
-        r = open_path(session, session->device);
     }
     grobo_session_pump(session);
     return r;
@@ -555,4 +532,45 @@ int grobo_session_configure(grobo_session *session, const grobo_robot_config *co
         grobo_session_pump(session);
     }
     return r;
+}
+
+/* ---- what it knows, its parts ------------------------------------------------------------- */
+
+grobo_session_state grobo_session_get_state(const grobo_session *session)
+{
+    return session->state;
+}
+
+const char *grobo_session_device(const grobo_session *session)
+{
+    return session->used;
+}
+
+const grobo_os_cause *grobo_session_cause(const grobo_session *session)
+{
+    return &session->cause;
+}
+
+grobo_robot *grobo_session_robot(grobo_session *session)
+{
+    return &session->robot;
+}
+
+grobo_sim *grobo_session_sim(grobo_session *session)
+{
+    return session->sim;
+}
+
+grobo_serial *grobo_session_serial(grobo_session *session)
+{
+    return session->serial;
+}
+
+void grobo_session_bytes(const grobo_session *session, uint64_t *tx_bytes, uint64_t *rx_bytes)
+{
+    grobo_serial_counters counters;
+
+    grobo_serial_get_counters(session->serial, &counters);
+    *tx_bytes = counters.tx_bytes + session->sim_tx_bytes;
+    *rx_bytes = counters.rx_bytes + session->sim_rx_bytes;
 }

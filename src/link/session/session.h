@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The inside of a grobo_session: session.c has its states, session_line.c its bytes, session_post.c
- * what other threads and signal handlers ask of it.
+ * The inside of a grobo_session, each file below the next: inside.c the calls that may call back,
+ * stop.c what others ask of it, guard.c its guard, line.c the port or the simulator, pump.c its
+ * bytes, session.c its states.
  */
 #ifndef GROBO_LINK_SESSION_I_H
 #define GROBO_LINK_SESSION_I_H
@@ -24,6 +25,26 @@ typedef struct session_scan {
     char path[GROBO_SCAN_PORTS_MAX][GROBO_DEVICE_MAX_BYTES];
 } session_scan;
 
+/* What a session speaks over: grobo_i_session_port or grobo_i_session_sim. */
+typedef struct session_line {
+    int (*open)(grobo_session *session, const char *device); /* < 0: `cause` says why */
+
+    /* Gives the engine what has come, all until *until_us. < 0: gone, where nothing else tells. */
+    int (*take)(grobo_session *session, int64_t *until_us);
+
+    /* A frame is taken from the engine, which judges it, when nothing is left of the one before. */
+    bool (*has_room)(grobo_session *session);
+    void (*give)(grobo_session *session, const uint8_t *frame, size_t size);
+
+    /* As grobo_i_serial_take_back(). */
+    void (*take_back)(grobo_session *session, size_t size, size_t behind);
+
+    /* When to look at it, which tells nothing by the loop. */
+    int64_t (*deadline)(const grobo_session *session);
+} session_line;
+
+extern const session_line grobo_i_session_port, grobo_i_session_sim;
+
 struct grobo_session {
     grobo_session_config config;         /* pointers to copied things are NULL */
     char device[GROBO_DEVICE_MAX_BYTES]; /* as configured */
@@ -40,7 +61,7 @@ struct grobo_session {
 
     grobo_sim_config sim_config;
     grobo_sim *sim;
-    bool is_sim;                            /* the device is the simulator */
+    const session_line *line;
     uint8_t backlog[GROBO_FRAME_MAX_BYTES]; /* of a frame that the simulator took in part */
     size_t backlog_bytes;
     size_t given_bytes;  /* of the frame given to the line last; 0: it may not be taken back */
@@ -56,7 +77,7 @@ struct grobo_session {
     int64_t retry_us; /* next attempt while WAITING */
     int64_t pause_us; /* the pause before it */
 
-    /* any thread, signal handlers: see session_post.c */
+    /* any thread, signal handlers: see stop.c */
     atomic_uint asked;
     atomic_bool latched;         /* the engine's trip, as of the last time it was looked at */
     atomic_uint estops;          /* emergency stops asked for; wraps around */
@@ -73,27 +94,33 @@ struct grobo_session {
     struct event *guard_news; /* the guard's socket; NULL without a guard */
     bool unguarded;           /* told that there is none any more */
 
-    unsigned depth; /* calls that may call back, one inside another */
-    bool closing;   /* closed in a callback */
-    bool freed;     /* freed in a callback */
+    unsigned depth;                           /* calls that may call back, one inside another */
+    void (*on_leave)(grobo_session *session); /* of session.c: counts down, and settles */
+    bool closing;                             /* closed in a callback */
+    bool freed;                               /* freed in a callback */
 };
 
-/* ---- session.c ---- */
+/* ---- inside.c ---- */
 
 /* Around everything that may call back; the last leave does what callbacks asked for, and pumps. */
 void grobo_i_session_enter(grobo_session *session);
 void grobo_i_session_leave(grobo_session *session);
 
-/* Reads what the line has now, and lets the engine's time pass. */
-void grobo_i_session_look(grobo_session *session);
+/* Around every callback of the user. The first returns what the second takes. */
+int64_t grobo_i_session_enter_callback(grobo_session *session);
+void grobo_i_session_leave_callback(grobo_session *session, grobo_callback callback,
+                                    int64_t since_us);
 
-/* The line is gone, or cannot be had. */
-void grobo_i_session_lost(grobo_session *session, int error);
+/* Reports the slow ones; inside of enter and leave. */
+void grobo_i_session_report_slow(grobo_session *session);
 
-/* Tells an event of the line, unless the session is being closed. */
+/* The user's callbacks, where there are any. No event of the line while the session is closed. */
 void grobo_i_session_say(grobo_session *session, grobo_session_event event, int error);
+void grobo_i_session_tell_robot(grobo_session *session, const grobo_event *event);
+void grobo_i_session_tell_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes,
+                              size_t size, void *ctx);
 
-/* ---- session_post.c ---- */
+/* ---- stop.c ---- */
 
 /* Any thread, signal handlers: has the loop make a round. */
 void grobo_i_session_wake(grobo_session *session);
@@ -121,42 +148,6 @@ void grobo_i_session_wake_free(grobo_session *session);
 int grobo_i_session_listen(grobo_session *session, bool always);
 void grobo_i_session_rest(grobo_session *session);
 
-/* ---- session_slow.c ---- */
-
-/* Around every callback of the user. The first returns what the second takes. */
-int64_t grobo_i_session_enter_callback(grobo_session *session);
-void grobo_i_session_leave_callback(grobo_session *session, grobo_callback callback,
-                                    int64_t since_us);
-
-/* Reports the slow ones; inside of enter and leave. */
-void grobo_i_session_report_slow(grobo_session *session);
-
-/* The user's callbacks, where there are any. */
-void grobo_i_session_tell_robot(grobo_session *session, const grobo_event *event);
-void grobo_i_session_tell_tap(grobo_session *session, grobo_direction direction, int64_t now_us,
-                              const uint8_t *bytes, size_t size);
-
-/* ---- session_line.c ---- */
-
-/* Hands out what the engine wants to send as far as the line takes it, and sets the timer. */
-void grobo_i_session_send(grobo_session *session);
-
-/* Takes what the simulator has for us; tells when it hung up. */
-void grobo_i_session_take_from_sim(grobo_session *session);
-
-/*
- * Lets the engine's time pass. What the line has for it is read first: a process that was held up
- * must not take for a servo's silence what has been waiting for it.
- */
-void grobo_i_session_step(grobo_session *session);
-
-/* Callback of the serial port. */
-void grobo_i_session_on_data(grobo_serial *serial, const uint8_t *bytes, size_t size, void *ctx);
-void grobo_i_session_on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes,
-                            size_t size, void *ctx);
-
-/* ---- session_estop.c ---- */
-
 /*
  * Emergency stops that other programs ask for (grobo/estop.h). Nothing leaves when the last look at
  * the marks is older than GROBO_ESTOP_WATCH_US: a program that was stopped looks before it sends.
@@ -177,11 +168,15 @@ int64_t grobo_i_session_estop_deadline(const grobo_session *session);
 /* An emergency stop has ended so. */
 void grobo_i_session_estop_ended(grobo_session *session, int result);
 
-/* ---- session_guard.c: each does nothing without a guard ---- */
+/* ---- guard.c: each does nothing without a guard ---- */
 
-/* Makes and frees what hears the guard. GROBO_OK, GROBO_ERR_CAP, GROBO_ERR_NOMEM. */
-int grobo_i_session_guard_new(grobo_session *session);
+/* Makes and frees what hears the guard; on_news gets the session. GROBO_OK, GROBO_ERR_CAP,
+ * GROBO_ERR_NOMEM. */
+int grobo_i_session_guard_new(grobo_session *session, event_callback_fn on_news);
 void grobo_i_session_guard_free(grobo_session *session);
+
+/* There is news: true where the guard has taken the port. */
+bool grobo_i_session_guard_hear(grobo_session *session);
 
 /* The port is open, and a robot answers: the guard gets it. */
 void grobo_i_session_guard_take(grobo_session *session);
@@ -195,12 +190,32 @@ bool grobo_i_session_guard_has_it(grobo_session *session);
 /* After: says whether joints are on their way. */
 void grobo_i_session_guard_tell(grobo_session *session);
 
-/* ---- session_scan.c ---- */
+/* ---- line.c ---- */
 
 /* Lists the ports to try; GROBO_ERR_NOTFOUND where there are none. */
 int grobo_i_session_scan_begin(grobo_session *session);
 
 /* Forgets them. */
 void grobo_i_session_scan_end(grobo_session *session);
+
+/* ---- pump.c ---- */
+
+/* Hands out what the engine wants to send as far as the line takes it, and sets the timer. */
+void grobo_i_session_send(grobo_session *session);
+
+/*
+ * Lets the engine's time pass, with a line. What the line has for it is read first: a process that
+ * was held up must not take for a servo's silence what has been waiting for it. < 0: the line is
+ * gone, and no time has passed.
+ */
+int grobo_i_session_step(grobo_session *session);
+
+/* Callback of the serial port. */
+void grobo_i_session_on_data(grobo_serial *serial, const uint8_t *bytes, size_t size, void *ctx);
+
+/* ---- session.c ---- */
+
+/* Reads what the line has now, and lets the engine's time pass. */
+void grobo_i_session_look(grobo_session *session);
 
 #endif

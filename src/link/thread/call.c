@@ -1,49 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * How threads hand calls to the loop. A call takes a slot, and the loop calls its function, again
- * and again, until it is over. The caller sleeps at the condition meanwhile; or, where no thread
- * runs the loop, runs it itself. Nothing of this takes a descriptor or memory.
+ * The rounds of the loop, and how threads hand calls to it. A call takes a slot, and the loop calls
+ * its function, again and again, until it is over. The caller sleeps at the condition meanwhile;
+ * or, where no thread runs the loop, runs it itself. Nothing of this takes a descriptor or memory.
  */
 #include "src/link/session/session.h"
 #include "src/link/thread/thread.h"
-
-void grobo_i_control_lock(grobo_control *control)
-{
-    bool inside = grobo_i_control_inside(control);
-
-    grobo_mutex_lock(&control->lock);
-    if (!inside) {
-        control->called_us = grobo_now_us();
-        control->owner_lost = false;
-    }
-}
-
-void grobo_i_control_unlock(grobo_control *control)
-{
-    grobo_mutex_unlock(&control->lock);
-}
-
-/* ---- waking ------------------------------------------------------------------------------- */
-
-void grobo_i_control_wake(grobo_control *control)
-{
-    if (!control->woken) {
-        control->woken = true;
-        grobo_i_session_wake(control->session);
-    }
-}
-
-void grobo_i_control_sleep(grobo_control *control, int64_t end_us)
-{
-    control->sleepers++;
-    grobo_cond_wait(&control->changed, &control->lock, end_us);
-    control->sleepers--;
-}
-
-void grobo_i_control_wake_all(grobo_control *control)
-{
-    grobo_cond_wake_all(&control->changed);
-}
 
 /* ---- slots -------------------------------------------------------------------------------- */
 
@@ -132,7 +94,7 @@ static int call_user(grobo_control *control, grobo_control_fn fn, void *arg)
     return r;
 }
 
-void grobo_i_control_serve(grobo_control *control)
+static void serve(grobo_control *control)
 {
     control_slot *slot;
     uint64_t after = 0;
@@ -157,6 +119,52 @@ void grobo_i_control_serve(grobo_control *control)
     }
     grobo_mutex_unlock(&control->lock);
     attend(control);
+}
+
+/* ---- a round ------------------------------------------------------------------------------ */
+
+int64_t grobo_control_get_period_us(grobo_control *control)
+{
+    RETURN_LOCKED(control, int64_t, control->period_us);
+}
+
+void grobo_i_control_round(grobo_control *control, int64_t end_us)
+{
+    round_frame frame;
+
+    grobo_i_control_begin_round(&frame, control);
+    if (control->tick_us == GROBO_NEVER_US) {
+        control->tick_us = grobo_now_us() + grobo_control_get_period_us(control);
+    }
+    /* Cannot fail: the timer's event has been added before, or adding takes no memory. */
+    (void)grobo_timer_set(control->timer, end_us < control->tick_us ? end_us : control->tick_us);
+    (void)event_base_loop(control->base, EVLOOP_ONCE);
+    grobo_i_control_look_at_play(control);
+    serve(control);
+    grobo_i_control_end_round(&frame);
+}
+
+void grobo_i_control_take_turn(grobo_control *control, int64_t end_us)
+{
+    control->looping = true;
+    grobo_mutex_unlock(&control->lock);
+    grobo_i_control_round(control, end_us);
+    grobo_mutex_lock(&control->lock);
+    control->looping = false;
+    grobo_i_control_wake_all(control);
+}
+
+void grobo_i_control_end_calls(grobo_control *control)
+{
+    round_frame frame;
+
+    grobo_i_control_begin_round(&frame, control);
+    grobo_i_control_lock(control);
+    control->freeing = true;
+    grobo_i_control_unlock(control);
+    (void)grobo_i_control_forget(control);
+    serve(control);
+    grobo_i_control_end_round(&frame);
 }
 
 /* ---- waiting ------------------------------------------------------------------------------ */
@@ -267,8 +275,7 @@ int grobo_i_control_poll_job(grobo_control *control, void *arg)
         int r =
             job->seen_losses != control->losses ? GROBO_ERR_UNPLUGGED : job->start(control, job);
 
-        if (r == GROBO_ERR_STATE &&
-            grobo_robot_job(grobo_session_robot(control->session)) != GROBO_JOB_NONE) {
+        if (r == GROBO_ERR_STATE && grobo_robot_job(control_robot(control)) != GROBO_JOB_NONE) {
             return CALL_PENDING; /* behind the one that runs */
         }
         if (r <= 0) {
@@ -289,18 +296,8 @@ int grobo_i_control_job(grobo_control *control, control_job *job, grobo_control_
     const call_wish wish = {.fn = fn != NULL ? fn : grobo_i_control_poll_job,
                             .arg = job,
                             .job = job,
-                            .timeout_us = timeout_us};
-
-    return grobo_i_control_inside(control) ? GROBO_ERR_STATE : call_and_wait(control, &wish);
-}
-
-int grobo_i_control_urgent_job(grobo_control *control, control_job *job, int64_t timeout_us)
-{
-    const call_wish wish = {.fn = grobo_i_control_poll_job,
-                            .arg = job,
-                            .job = job,
                             .timeout_us = timeout_us,
-                            .urgent = true};
+                            .urgent = job->urgent};
 
     return grobo_i_control_inside(control) ? GROBO_ERR_STATE : call_and_wait(control, &wish);
 }

@@ -44,7 +44,7 @@ void grobo_i_control_on_event(grobo_session *session, grobo_session_event event,
 
 static uint64_t frames_sent(grobo_control *control)
 {
-    return grobo_robot_get_counters(grobo_session_robot(control->session))->motion_frames;
+    return grobo_robot_get_counters(control_robot(control))->motion_frames;
 }
 
 bool grobo_i_control_has_exited(grobo_control *control)

@@ -15,11 +15,6 @@ grobo_serial *grobo_control_serial(grobo_control *control)
     return grobo_session_serial(control->session);
 }
 
-static grobo_robot *robot_of(grobo_control *control)
-{
-    return grobo_session_robot(control->session);
-}
-
 /* ---- the line ----------------------------------------------------------------------------- */
 
 static int set_device(grobo_control *control, void *arg)
@@ -73,6 +68,39 @@ static int open_port(grobo_control *control, void *arg)
 int grobo_control_open_port(grobo_control *control)
 {
     return grobo_i_control_call(control, open_port, NULL);
+}
+
+int grobo_control_post_exit(grobo_control *control, grobo_exit_policy policy)
+{
+    return control != NULL ? grobo_session_post_exit(control->session, policy) : GROBO_ERR_ARG;
+}
+
+static int leave_job(grobo_control *control, control_job *job)
+{
+    bool up = grobo_session_get_state(control->session) == GROBO_SESSION_UP;
+
+    job->looked = true;
+    if (up && grobo_robot_job(control_robot(control)) == GROBO_JOB_ESTOP) {
+        return GROBO_ERR_STATE; /* to be over first */
+    }
+    /* A robot that is gone, or has been left, needs nothing. */
+    if (!up || control->skip_exit || grobo_i_control_has_exited(control)) {
+        return GROBO_OK;
+    }
+    (void)grobo_i_control_forget(control);
+    return grobo_session_exit(control->session, GROBO_EXIT_DEFAULT);
+}
+
+int grobo_i_control_leave(grobo_control *control, int64_t timeout_us, bool *looked)
+{
+    control_job job = {.start = leave_job, .urgent = true};
+    int r = grobo_i_control_job(control, &job, NULL, timeout_us);
+
+    *looked = job.looked || (r != GROBO_ERR_TIMEOUT && r != GROBO_ERR_FULL);
+    if (!*looked && !control->skip_exit) {
+        (void)grobo_control_post_exit(control, GROBO_EXIT_DEFAULT);
+    }
+    return r;
 }
 
 static int close_port(grobo_control *control, void *arg)
@@ -134,12 +162,7 @@ int grobo_control_connect(grobo_control *control, int64_t timeout_us)
 
 bool grobo_control_is_connected(grobo_control *control)
 {
-    bool up;
-
-    grobo_i_control_lock(control);
-    up = control->up;
-    grobo_i_control_unlock(control);
-    return up;
+    RETURN_LOCKED(control, bool, control->up);
 }
 
 static int get_cause(grobo_control *control, void *arg)
@@ -183,7 +206,7 @@ static int get_states(grobo_control *control, void *arg)
 
     for (int j = 0; j < n_joints; j++) {
         grobo_joint_info info;
-        int r = grobo_robot_joint(robot_of(control), j, grobo_now_us(), &info);
+        int r = grobo_robot_joint(control_robot(control), j, grobo_now_us(), &info);
 
         state[j] = r >= 0 && info.torque_known ? (int)info.state.torque : GROBO_ERR_EMPTY;
     }
@@ -244,7 +267,7 @@ int grobo_control_set_servo_state(grobo_control *control, int joint, grobo_torqu
 
 static int get_posture(grobo_control *control, void *arg)
 {
-    return grobo_robot_posture(robot_of(control), grobo_now_us(), GROBO_NEVER_US, arg);
+    return grobo_robot_posture(control_robot(control), grobo_now_us(), GROBO_NEVER_US, arg);
 }
 
 int grobo_control_get_current_posture(grobo_control *control, grobo_posture *posture)
@@ -274,7 +297,7 @@ static int sense(grobo_control *control, void *arg)
     if (!job->ended || r == GROBO_ERR_UNPLUGGED || r == GROBO_ERR_CANCELED) {
         return r;
     }
-    (void)grobo_robot_posture(robot_of(control), now_us, now_us - job->begun_us, job->posture);
+    (void)grobo_robot_posture(control_robot(control), now_us, now_us - job->begun_us, job->posture);
     job->posture->set &= job->joints;
     n = grobo_joints_count(job->posture->set);
     return n > 0 ? n : r;
@@ -347,7 +370,7 @@ static int raw_job(grobo_control *control, control_job *job)
 {
     int r;
 
-    if (grobo_robot_job(robot_of(control)) != GROBO_JOB_NONE) {
+    if (grobo_robot_job(control_robot(control)) != GROBO_JOB_NONE) {
         return GROBO_ERR_STATE;
     }
     /* It may leave, and even be answered, before the request returns. */
@@ -467,21 +490,16 @@ static int exit_job(grobo_control *control, control_job *job)
 
 int grobo_control_exit(grobo_control *control, grobo_exit_policy policy, int64_t timeout_us)
 {
-    control_job job = {.start = exit_job, .policy = policy};
+    control_job job = {.start = exit_job, .policy = policy, .urgent = true};
     int r;
 
     if (grobo_i_control_inside(control)) {
         r = grobo_control_post_exit(control, policy);
         return r < 0 ? r : GROBO_ERR_STATE;
     }
-    r = grobo_i_control_urgent_job(control, &job, timeout_us);
+    r = grobo_i_control_job(control, &job, NULL, timeout_us);
     if (job.number == 0 && (r == GROBO_ERR_TIMEOUT || r == GROBO_ERR_FULL)) {
         (void)grobo_control_post_exit(control, policy); /* nobody waits, the exit stands */
     }
     return r;
-}
-
-int grobo_control_post_exit(grobo_control *control, grobo_exit_policy policy)
-{
-    return control != NULL ? grobo_session_post_exit(control->session, policy) : GROBO_ERR_ARG;
 }

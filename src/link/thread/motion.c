@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* A control's current motion: its postures, its files. */
+/* A control's target and current motion: sent and played, its postures, its files. */
 #include <stdio.h>
 #include <string.h>
 
+#include "src/link/session/session.h"
 #include "src/link/thread/thread.h"
 
 /* ---- the whole ---------------------------------------------------------------------------- */
@@ -70,12 +71,7 @@ int grobo_control_get_motion(grobo_control *control, grobo_motion **motion)
 
 size_t grobo_control_motion_size(grobo_control *control)
 {
-    size_t size;
-
-    grobo_i_control_lock(control);
-    size = grobo_motion_size(control->motion);
-    grobo_i_control_unlock(control);
-    return size;
+    RETURN_LOCKED(control, size_t, grobo_motion_size(control->motion));
 }
 
 void grobo_control_clear_motion(grobo_control *control)
@@ -83,6 +79,192 @@ void grobo_control_clear_motion(grobo_control *control)
     grobo_i_control_lock(control);
     grobo_motion_renew(control->motion, GROBO_MOTION_POSTURES);
     grobo_i_control_unlock(control);
+}
+
+/* ---- sent and played ---------------------------------------------------------------------- */
+
+/* With the lock: posts the sending of the target. */
+static int want_move(grobo_control *control)
+{
+    int r = GROBO_OK;
+
+    if (!control->up) {
+        return GROBO_ERR_CLOSED;
+    }
+    if (control->target.set == 0) {
+        return GROBO_ERR_EMPTY;
+    }
+    if (!control->move_wanted) {
+        r = grobo_i_control_post(control, grobo_i_control_send_target, NULL, false);
+        control->move_wanted = r >= 0;
+    }
+    control->move_after = grobo_i_session_asked(control->session);
+    return r;
+}
+
+int grobo_control_start_motion(grobo_control *control)
+{
+    RETURN_LOCKED(control, int, want_move(control));
+}
+
+int grobo_control_init_position(grobo_control *control)
+{
+    int r;
+
+    grobo_i_control_lock(control);
+    control->target = control->init;
+    r = want_move(control);
+    grobo_i_control_unlock(control);
+    return r;
+}
+
+/* With the lock: a copy of the motion, to be played. */
+static int want_play(grobo_control *control, const grobo_play_options *options)
+{
+    static const grobo_play_options defaults;
+    grobo_play_options wanted = options != NULL ? *options : defaults;
+    int r;
+
+    if (!control->up) {
+        return GROBO_ERR_CLOSED;
+    }
+    if (grobo_motion_size(control->motion) == 0) {
+        return GROBO_ERR_EMPTY;
+    }
+    if (control->play != PLAY_NONE) {
+        return GROBO_ERR_STATE;
+    }
+    wanted.repeat = control->motion_count;
+    wanted.reverse = control->reverse;
+    wanted.default_time_us = grobo_i_control_default_us(control);
+    r = grobo_motion_dup(control->motion, &control->playing);
+    if (r >= 0) {
+        r = grobo_i_control_post(control, grobo_i_control_start_play, NULL, false);
+        if (r < 0) {
+            grobo_motion_free(control->playing);
+            control->playing = NULL;
+        }
+    }
+    if (r >= 0) {
+        control->play_options = wanted;
+        control->play = PLAY_WANTED;
+        control->play_after = grobo_i_session_asked(control->session);
+    }
+    return r;
+}
+
+int grobo_control_play_motion(grobo_control *control, const grobo_play_options *options)
+{
+    RETURN_LOCKED(control, int, want_play(control, options));
+}
+
+bool grobo_control_is_playing(grobo_control *control)
+{
+    RETURN_LOCKED(control, bool, control->play != PLAY_NONE);
+}
+
+/* ---- stopping, waiting -------------------------------------------------------------------- */
+
+static int stop_motion(grobo_control *control, void *arg)
+{
+    const bool *at_once = arg;
+    bool stopped = grobo_i_control_forget(control);
+
+    stopped = grobo_session_stop(control->session, *at_once) >= 0 || stopped;
+    return stopped ? GROBO_OK : GROBO_ERR_STATE;
+}
+
+int grobo_control_stop_motion(grobo_control *control, bool at_once)
+{
+    int r = grobo_i_control_urgent_call(control, stop_motion, &at_once);
+
+    if (r == GROBO_ERR_TIMEOUT || r == GROBO_ERR_FULL) {
+        (void)grobo_control_post_stop(control, at_once); /* nobody waits, the stop stands */
+    }
+    return r;
+}
+
+int grobo_control_post_stop(grobo_control *control, bool at_once)
+{
+    return control != NULL ? grobo_session_post_stop(control->session, at_once) : GROBO_ERR_ARG;
+}
+
+/* How often a motion is played by these options. */
+static uint64_t passes_of(const grobo_play_options *options)
+{
+    int64_t repeat = options->repeat;
+
+    return repeat == 0 ? 1 : (uint64_t)(repeat < 0 ? -repeat : repeat);
+}
+
+/* Frames of the present pass and of those after it. */
+static uint64_t frames_left(grobo_control *control)
+{
+    grobo_play_progress progress;
+
+    grobo_robot_progress(control_robot(control), grobo_now_us(), &progress);
+    if (progress.steps > INT_MAX) {
+        return INT_MAX;
+    }
+    return progress.steps - progress.step +
+           progress.steps * (uint64_t)(progress.passes - progress.pass);
+}
+
+static int count_commands(grobo_control *control, void *arg)
+{
+    bool sequencing = grobo_robot_is_playing(control_robot(control));
+    uint64_t count = sequencing ? frames_left(control) : 0;
+
+    (void)arg;
+    grobo_i_control_lock(control);
+    count += control->move_wanted;
+    if (control->play == PLAY_WANTED || (control->play_job != 0 && !sequencing)) {
+        /* it waits, or is being prepared */
+        count += grobo_motion_size(control->playing) * passes_of(&control->play_options);
+    }
+    grobo_i_control_unlock(control);
+    return count < INT_MAX ? (int)count : INT_MAX;
+}
+
+int grobo_control_command_count(grobo_control *control)
+{
+    return grobo_i_control_call(control, count_commands, NULL);
+}
+
+static int is_moving(grobo_control *control, void *arg)
+{
+    bool wanted;
+
+    (void)arg;
+    grobo_i_control_lock(control);
+    wanted = control->move_wanted || control->play != PLAY_NONE;
+    grobo_i_control_unlock(control);
+    return wanted || control->move_job != 0 ||
+           grobo_robot_moving(control_robot(control), grobo_now_us());
+}
+
+int grobo_control_is_moving(grobo_control *control)
+{
+    return grobo_i_control_call(control, is_moving, NULL);
+}
+
+static int await_rest(grobo_control *control, void *arg)
+{
+    int result;
+
+    if (is_moving(control, arg) || grobo_robot_settling(control_robot(control)) ||
+        grobo_robot_job(control_robot(control)) != GROBO_JOB_NONE) {
+        return CALL_PENDING;
+    }
+    grobo_i_control_lock(control);
+    result = control->motion_result;
+    grobo_i_control_unlock(control);
+    return result;
+}
+
+int grobo_control_wait(grobo_control *control, int64_t timeout_us)
+{
+    return grobo_i_control_wait(control, await_rest, NULL, timeout_us);
 }
 
 /* ---- its postures ------------------------------------------------------------------------- */
@@ -132,12 +314,7 @@ static int get_nth(const grobo_control *control, size_t n, grobo_posture *postur
 
 int grobo_control_get_nth_posture(grobo_control *control, size_t n, grobo_posture *posture)
 {
-    int r;
-
-    grobo_i_control_lock(control);
-    r = get_nth(control, n, posture);
-    grobo_i_control_unlock(control);
-    return r;
+    RETURN_LOCKED(control, int, get_nth(control, n, posture));
 }
 
 int grobo_control_get_first_posture(grobo_control *control, grobo_posture *posture)
@@ -147,13 +324,8 @@ int grobo_control_get_first_posture(grobo_control *control, grobo_posture *postu
 
 int grobo_control_get_last_posture(grobo_control *control, grobo_posture *posture)
 {
-    int r;
-
-    grobo_i_control_lock(control);
     /* Of an empty motion the number wraps around, to one that is not there. */
-    r = get_nth(control, grobo_motion_size(control->motion) - 1, posture);
-    grobo_i_control_unlock(control);
-    return r;
+    RETURN_LOCKED(control, int, get_nth(control, grobo_motion_size(control->motion) - 1, posture));
 }
 
 int grobo_control_do_nth_motion(grobo_control *control, size_t n)
@@ -169,7 +341,7 @@ int grobo_control_do_nth_motion(grobo_control *control, size_t n)
     }
     if (r >= 0) {
         control->target = posture;
-        r = grobo_i_control_want_move(control);
+        r = want_move(control);
     }
     grobo_i_control_unlock(control);
     return r;

@@ -92,12 +92,7 @@ int64_t grobo_i_control_default_us(const grobo_control *control)
 
 int64_t grobo_control_get_default_time_us(grobo_control *control)
 {
-    int64_t time_us;
-
-    grobo_i_control_lock(control);
-    time_us = grobo_i_control_default_us(control);
-    grobo_i_control_unlock(control);
-    return time_us;
+    RETURN_LOCKED(control, int64_t, grobo_i_control_default_us(control));
 }
 
 int grobo_control_set_sense_interval_us(grobo_control *control, int64_t interval_us)
@@ -119,16 +114,6 @@ int64_t grobo_control_get_sense_interval_us(grobo_control *control)
     return interval_us != 0 ? interval_us : SENSE_US;
 }
 
-int64_t grobo_control_get_period_us(grobo_control *control)
-{
-    int64_t period_us;
-
-    grobo_i_control_lock(control);
-    period_us = control->period_us;
-    grobo_i_control_unlock(control);
-    return period_us;
-}
-
 int grobo_control_set_motion_count(grobo_control *control, int count)
 {
     grobo_i_control_lock(control);
@@ -139,12 +124,7 @@ int grobo_control_set_motion_count(grobo_control *control, int count)
 
 int grobo_control_get_motion_count(grobo_control *control)
 {
-    int count;
-
-    grobo_i_control_lock(control);
-    count = control->motion_count;
-    grobo_i_control_unlock(control);
-    return count;
+    RETURN_LOCKED(control, int, control->motion_count);
 }
 
 void grobo_control_set_reverse(grobo_control *control, bool reverse)
@@ -156,12 +136,7 @@ void grobo_control_set_reverse(grobo_control *control, bool reverse)
 
 bool grobo_control_is_reverse(grobo_control *control)
 {
-    bool reverse;
-
-    grobo_i_control_lock(control);
-    reverse = control->reverse || control->motion_count < 0;
-    grobo_i_control_unlock(control);
-    return reverse;
+    RETURN_LOCKED(control, bool, control->reverse || control->motion_count < 0);
 }
 
 /* ---- postures ----------------------------------------------------------------------------- */

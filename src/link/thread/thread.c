@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The life of a control, its thread, its rounds. */
+/* The life of a control, and its thread. */
 #include <string.h>
 
 #include "src/link/serial/loop.h"
@@ -15,25 +15,7 @@
 /* That bound where none is configured (robot.h). */
 #define EXIT_BOUND_US INT64_C(10000000)
 
-/* The rounds that a thread is in, one inside another, of different controls. */
-typedef struct round_frame {
-    const grobo_control *control;
-    const struct round_frame *outer;
-} round_frame;
-
-static _Thread_local const round_frame *rounds;
-
-bool grobo_i_control_inside(const grobo_control *control)
-{
-    const round_frame *frame = rounds;
-
-    while (frame != NULL && frame->control != control) {
-        frame = frame->outer;
-    }
-    return frame != NULL;
-}
-
-/* ---- a round ------------------------------------------------------------------------------ */
+/* ---- its period --------------------------------------------------------------------------- */
 
 /* The exit policy, when nobody has called for too long: who should is gone. */
 static void look_for_owner(grobo_control *control, int64_t now_us)
@@ -81,62 +63,7 @@ static void on_time(grobo_timer *timer, int64_t late_us, void *ctx)
     }
 }
 
-/* Whoever calls has `looping`. */
-static void do_round(grobo_control *control, int64_t end_us)
-{
-    const round_frame frame = {control, rounds};
-
-    rounds = &frame;
-    if (control->tick_us == GROBO_NEVER_US) {
-        control->tick_us = grobo_now_us() + grobo_control_get_period_us(control);
-    }
-    /* Cannot fail: the timer's event has been added before, or adding takes no memory. */
-    (void)grobo_timer_set(control->timer, end_us < control->tick_us ? end_us : control->tick_us);
-    (void)event_base_loop(control->base, EVLOOP_ONCE);
-    grobo_i_control_look_at_play(control);
-    grobo_i_control_serve(control);
-    rounds = frame.outer;
-}
-
-void grobo_i_control_take_turn(grobo_control *control, int64_t end_us)
-{
-    control->looping = true;
-    grobo_mutex_unlock(&control->lock);
-    do_round(control, end_us);
-    grobo_mutex_lock(&control->lock);
-    control->looping = false;
-    grobo_i_control_wake_all(control);
-}
-
 /* ---- the thread --------------------------------------------------------------------------- */
-
-static int exit_job(grobo_control *control, control_job *job)
-{
-    bool up = grobo_session_get_state(control->session) == GROBO_SESSION_UP;
-
-    job->looked = true;
-    if (up && grobo_robot_job(grobo_session_robot(control->session)) == GROBO_JOB_ESTOP) {
-        return GROBO_ERR_STATE; /* to be over first */
-    }
-    /* A robot that is gone, or has been left, needs nothing. */
-    if (!up || control->skip_exit || grobo_i_control_has_exited(control)) {
-        return GROBO_OK;
-    }
-    (void)grobo_i_control_forget(control);
-    return grobo_session_exit(control->session, GROBO_EXIT_DEFAULT);
-}
-
-int grobo_i_control_leave(grobo_control *control, int64_t timeout_us, bool *looked)
-{
-    control_job job = {.start = exit_job};
-    int r = grobo_i_control_urgent_job(control, &job, timeout_us);
-
-    *looked = job.looked || (r != GROBO_ERR_TIMEOUT && r != GROBO_ERR_FULL);
-    if (!*looked && !control->skip_exit) {
-        (void)grobo_control_post_exit(control, GROBO_EXIT_DEFAULT);
-    }
-    return r;
-}
 
 static int64_t exit_timeout(grobo_control *control)
 {
@@ -163,7 +90,7 @@ static void run(grobo_control *control)
         control->looping = true;
         while (!control->stopping) {
             grobo_mutex_unlock(&control->lock);
-            do_round(control, GROBO_NEVER_US);
+            grobo_i_control_round(control, GROBO_NEVER_US);
             grobo_mutex_lock(&control->lock);
         }
         control->looping = false;
@@ -273,12 +200,7 @@ int grobo_control_stop_thread(grobo_control *control)
 
 bool grobo_control_is_active(grobo_control *control)
 {
-    bool active;
-
-    grobo_i_control_lock(control);
-    active = control->running && !control->stopping;
-    grobo_i_control_unlock(control);
-    return active;
+    RETURN_LOCKED(control, bool, control->running && !control->stopping);
 }
 
 int grobo_control_thread(grobo_control *control, grobo_thread *thread)
@@ -467,20 +389,6 @@ int grobo_control_new(const grobo_control_config *config, grobo_control **contro
     return GROBO_OK;
 }
 
-/* What was posted and has not had its turn. */
-static void do_posted(grobo_control *control)
-{
-    const round_frame frame = {control, rounds};
-
-    rounds = &frame;
-    grobo_i_control_lock(control);
-    control->freeing = true;
-    grobo_i_control_unlock(control);
-    (void)grobo_i_control_forget(control);
-    grobo_i_control_serve(control);
-    rounds = frame.outer;
-}
-
 int grobo_control_free(grobo_control *control)
 {
     bool looked;
@@ -496,7 +404,7 @@ int grobo_control_free(grobo_control *control)
     join(control); /* one that was stopped in a callback */
     grobo_i_control_unlock(control);
     (void)grobo_i_control_leave(control, exit_timeout(control), &looked);
-    do_posted(control);
+    grobo_i_control_end_calls(control);
     destroy(control);
     return GROBO_OK;
 }

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The inside of a grobo_control: thread.c has its life and its rounds, thread_call.c how threads
- * hand calls to the loop, thread_events.c what the loop is told, the others the functions.
+ * The inside of a grobo_control, each file below the next: wake.c the lock and who is in a round,
+ * events.c what the loop is told, play.c what it has the robot do, call.c its rounds and the calls
+ * of threads, state.c, line.c and motion.c the functions, thread.c its life.
  *
  * `lock` guards what several threads touch; it is never held while anything is called that may
  * call back. What is marked 'loop' belongs to the thread that is in a round (`looping`), and goes
@@ -32,6 +33,7 @@ typedef enum call_state {
 /* A job of the engine that a thread waits for. */
 typedef struct control_job {
     int (*start)(grobo_control *control, struct control_job *job);
+    bool urgent;          /* must not be refused because too much is under way */
     int number;           /* 0: not begun */
     bool looked;          /* the loop has had its turn */
     bool ended;           /* then: */
@@ -133,26 +135,40 @@ struct grobo_control {
     size_t received_bytes;
 };
 
-/* ---- thread.c ---- */
+static inline grobo_robot *control_robot(const grobo_control *control)
+{
+    return grobo_session_robot(control->session);
+}
 
-/* With the lock, which is given back meanwhile: a round of the loop, at most until end_us, for a
- * thread that found nobody in one. */
-void grobo_i_control_take_turn(grobo_control *control, int64_t end_us);
+/* ---- wake.c ---- */
+
+/* A round that a thread is in. */
+typedef struct round_frame {
+    const grobo_control *control;
+    const struct round_frame *outer;
+} round_frame;
+
+/* Around what a thread does in its turn. */
+void grobo_i_control_begin_round(round_frame *frame, const grobo_control *control);
+void grobo_i_control_end_round(const round_frame *frame);
 
 /* True on the thread that is in a round of this control. */
 bool grobo_i_control_inside(const grobo_control *control);
 
-/*
- * Carries out the exit policy where there is a robot, after an emergency stop that is being carried
- * out. Waits. @param[out] looked false: the loop has had no turn; then the exit is posted.
- */
-int grobo_i_control_leave(grobo_control *control, int64_t timeout_us, bool *looked);
-
-/* ---- thread_call.c ---- */
-
 /* Takes the lock, and takes note that somebody is there. */
 void grobo_i_control_lock(grobo_control *control);
 void grobo_i_control_unlock(grobo_control *control);
+
+/* The whole of a function that returns what it looks up, or does, with the lock. */
+#define RETURN_LOCKED(control, type, value)                                                        \
+    do {                                                                                           \
+        type value_;                                                                               \
+                                                                                                   \
+        grobo_i_control_lock(control);                                                             \
+        value_ = (value);                                                                          \
+        grobo_i_control_unlock(control);                                                           \
+        return value_;                                                                             \
+    } while (0)
 
 /* With the lock: has the loop look at its calls. */
 void grobo_i_control_wake(grobo_control *control);
@@ -163,8 +179,49 @@ void grobo_i_control_sleep(grobo_control *control, int64_t end_us);
 /* With the lock: wakes everybody who sleeps. */
 void grobo_i_control_wake_all(grobo_control *control);
 
-/* On the loop: calls what is open, in the order of the calls. */
-void grobo_i_control_serve(grobo_control *control);
+/* ---- events.c ---- */
+
+/* The session's callbacks; their ctx is the control. */
+void grobo_i_control_on_event(grobo_session *session, grobo_session_event event, int error,
+                              void *ctx);
+void grobo_i_control_on_robot(void *ctx, const grobo_event *event);
+void grobo_i_control_on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes,
+                            size_t size, void *ctx);
+
+/* On the loop: the line is down. */
+void grobo_i_control_down(grobo_control *control, int error);
+
+/* On the loop: true if the exit policy is carried out and nothing was done since. */
+bool grobo_i_control_has_exited(grobo_control *control);
+
+/* ---- play.c ---- */
+
+/* On the loop, posted: sends the target, begins to play, when the robot is free for it. */
+int grobo_i_control_send_target(grobo_control *control, void *arg);
+int grobo_i_control_start_play(grobo_control *control, void *arg);
+
+/* On the loop: looks whether what is played is over. */
+void grobo_i_control_look_at_play(grobo_control *control);
+
+/* On the loop: forgets what has not begun: it is canceled. @return true if there was something. */
+bool grobo_i_control_forget(grobo_control *control);
+
+/* The same of what was asked for before the requests to stop that the session has carried out. */
+void grobo_i_control_forget_stopped(grobo_control *control);
+
+/* Frees what was played. */
+void grobo_i_control_release_clip(grobo_control *control);
+
+/* ---- call.c ---- */
+
+/* A round of the loop, at most until end_us. Whoever calls has `looping`. */
+void grobo_i_control_round(grobo_control *control, int64_t end_us);
+
+/* The same for a thread that found nobody in one. With the lock, which is given back meanwhile. */
+void grobo_i_control_take_turn(grobo_control *control, int64_t end_us);
+
+/* What was posted and has not had its turn has it; no more is taken. */
+void grobo_i_control_end_calls(grobo_control *control);
 
 /* Hands over. */
 int grobo_i_control_call(grobo_control *control, grobo_control_fn fn, void *arg);
@@ -183,49 +240,23 @@ int grobo_i_control_post(grobo_control *control, grobo_control_fn fn, void *arg,
 int grobo_i_control_job(grobo_control *control, control_job *job, grobo_control_fn fn,
                         int64_t timeout_us);
 
-/* The same, for what must not be refused because too much is under way. */
-int grobo_i_control_urgent_job(grobo_control *control, control_job *job, int64_t timeout_us);
-
 /* On the loop: the function of a job. */
 int grobo_i_control_poll_job(grobo_control *control, void *arg);
 
-/* ---- thread_events.c ---- */
-
-/* The session's callbacks; their ctx is the control. */
-void grobo_i_control_on_event(grobo_session *session, grobo_session_event event, int error,
-                              void *ctx);
-void grobo_i_control_on_robot(void *ctx, const grobo_event *event);
-void grobo_i_control_on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes,
-                            size_t size, void *ctx);
-
-/* On the loop: the line is down. */
-void grobo_i_control_down(grobo_control *control, int error);
-
-/* On the loop: true if the exit policy is carried out and nothing was done since. */
-bool grobo_i_control_has_exited(grobo_control *control);
-
-/* ---- thread_play.c ---- */
-
-/* On the loop: looks whether what is played is over. */
-void grobo_i_control_look_at_play(grobo_control *control);
-
-/* On the loop: forgets what has not begun: it is canceled. @return true if there was something. */
-bool grobo_i_control_forget(grobo_control *control);
-
-/* The same of what was asked for before the requests to stop that the session has carried out. */
-void grobo_i_control_forget_stopped(grobo_control *control);
-
-/* Frees what was played. */
-void grobo_i_control_release_clip(grobo_control *control);
-
-/* With the lock: posts the sending of the target. */
-int grobo_i_control_want_move(grobo_control *control);
-/* With the lock: the time of postures whose own is 0. */
-int64_t grobo_i_control_default_us(const grobo_control *control);
-
-/* ---- thread_state.c ---- */
+/* ---- state.c ---- */
 
 /* With the lock: may this be a target? */
 int grobo_i_control_check_posture(const grobo_control *control, const grobo_posture *posture);
+
+/* With the lock: the time of postures whose own is 0. */
+int64_t grobo_i_control_default_us(const grobo_control *control);
+
+/* ---- line.c ---- */
+
+/*
+ * Carries out the exit policy where there is a robot, after an emergency stop that is being carried
+ * out. Waits. @param[out] looked false: the loop has had no turn; then the exit is posted.
+ */
+int grobo_i_control_leave(grobo_control *control, int64_t timeout_us, bool *looked);
 
 #endif

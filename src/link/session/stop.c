@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Requests to stop that any thread and any signal handler may make.
+ * Requests to stop: those that any thread and any signal handler may make, and the emergency stops
+ * of other programs (grobo/estop.h).
  *
  * `asked` is one atomic word: the number of requests made so far, and below it a bit for each kind
  * of request that the loop has not looked at. The poster sets both at once and writes a byte to the
@@ -129,11 +130,11 @@ static void exit_when_due(grobo_session *session)
 }
 
 /* One that is being carried out serves for both: begun anew each time, it would never end. */
-static void estop(grobo_session *session)
+static int estop(grobo_session *session)
 {
-    if (grobo_robot_job(&session->robot) != GROBO_JOB_ESTOP) {
-        (void)grobo_robot_estop(&session->robot, grobo_now_us());
-    }
+    return grobo_robot_job(&session->robot) != GROBO_JOB_ESTOP
+               ? grobo_robot_estop(&session->robot, grobo_now_us())
+               : GROBO_OK;
 }
 
 void grobo_i_session_obey(grobo_session *session)
@@ -144,7 +145,7 @@ void grobo_i_session_obey(grobo_session *session)
         session->obeyed = asked & ~SESSION_ASK_BITS;
     }
     if ((asked & ASK_ESTOP) != 0) {
-        estop(session);
+        (void)estop(session);
     } else if ((asked & (ASK_STOP | ASK_STOP_AT_ONCE)) != 0 && session->state == GROBO_SESSION_UP) {
         (void)grobo_robot_stop(&session->robot, (asked & ASK_STOP_AT_ONCE) != 0, grobo_now_us());
     }
@@ -173,6 +174,69 @@ static void on_wake(evutil_socket_t socket, short what, void *ctx)
     while (recv(socket, bytes, sizeof bytes, 0) == (int)sizeof bytes) {
     }
     grobo_i_session_attend(session);
+}
+
+/* ---- of other programs -------------------------------------------------------------------- */
+
+void grobo_i_session_estop_begin(grobo_session *session, const char *device)
+{
+    if (session->estop.on && !session->was_up) { /* the port before it, of a scan */
+        grobo_i_estop_watch_end(&session->estop);
+    }
+    grobo_i_estop_watch_begin(&session->estop, device);
+}
+
+static void obey_mark(grobo_session *session)
+{
+    int r = estop(session);
+
+    session->estop.say = GROBO_ESTOP_HEARD;
+    if (r < 0 && r != GROBO_ERR_CLOSED) { /* latched, but the driver has no way to stop */
+        session->estop.say = GROBO_ESTOP_FAILED;
+        session->estop.result = r;
+    }
+}
+
+void grobo_i_session_estop_arm(grobo_session *session)
+{
+    bool pending = false;
+
+    if (!session->estop.on || session->estop.armed) {
+        return;
+    }
+    session->estop.armed = true;
+    if (!grobo_i_estop_watch_look(&session->estop, &pending)) {
+        return;
+    }
+    if (pending) {
+        obey_mark(session);
+    } else {
+        (void)grobo_robot_latch(&session->robot, grobo_now_us());
+    }
+}
+
+int64_t grobo_i_session_estop_deadline(const grobo_session *session)
+{
+    return session->estop.armed ? session->estop.looked_us + GROBO_ESTOP_WATCH_US : GROBO_NEVER_US;
+}
+
+void grobo_i_session_estop_look(grobo_session *session)
+{
+    bool pending = false;
+
+    if (grobo_now_us() >= grobo_i_session_estop_deadline(session) &&
+        grobo_i_estop_watch_look(&session->estop, &pending)) {
+        obey_mark(session);
+    }
+}
+
+void grobo_i_session_estop_ended(grobo_session *session, int result)
+{
+    /* Another one took its place, or the line went: it is carried out later. */
+    if (result != GROBO_ERR_CANCELED && result != GROBO_ERR_UNPLUGGED) {
+        session->estop.say = result < 0 ? GROBO_ESTOP_FAILED : GROBO_ESTOP_DONE;
+        session->estop.result = result;
+    }
 }
 
 /* ---- making and freeing ------------------------------------------------------------------- */

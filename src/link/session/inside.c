@@ -1,6 +1,18 @@
 /* SPDX-License-Identifier: MIT */
-/* The user's callbacks, and how long they hold the loop. */
+/* Being inside of a session: calls that may call back, and the user's callbacks. */
 #include "src/link/session/session.h"
+
+void grobo_i_session_enter(grobo_session *session)
+{
+    session->depth++;
+}
+
+void grobo_i_session_leave(grobo_session *session)
+{
+    session->on_leave(session);
+}
+
+/* ---- the user's callbacks, and how long they hold the loop -------------------------------- */
 
 int64_t grobo_i_session_enter_callback(grobo_session *session)
 {
@@ -39,6 +51,16 @@ void grobo_i_session_report_slow(grobo_session *session)
     }
 }
 
+void grobo_i_session_say(grobo_session *session, grobo_session_event event, int error)
+{
+    if (session->config.on_event != NULL && !session->closing) {
+        int64_t since_us = grobo_i_session_enter_callback(session);
+
+        session->config.on_event(session, event, error, session->config.ctx);
+        grobo_i_session_leave_callback(session, GROBO_CALLBACK_EVENT, since_us);
+    }
+}
+
 void grobo_i_session_tell_robot(grobo_session *session, const grobo_event *event)
 {
     if (session->config.on_robot != NULL) {
@@ -49,9 +71,11 @@ void grobo_i_session_tell_robot(grobo_session *session, const grobo_event *event
     }
 }
 
-void grobo_i_session_tell_tap(grobo_session *session, grobo_direction direction, int64_t now_us,
-                              const uint8_t *bytes, size_t size)
+void grobo_i_session_tell_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes,
+                              size_t size, void *ctx)
 {
+    grobo_session *session = ctx;
+
     if (session->config.on_tap != NULL) {
         int64_t since_us = grobo_i_session_enter_callback(session);
 

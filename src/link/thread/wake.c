@@ -1,0 +1,66 @@
+/* SPDX-License-Identifier: MIT */
+/* What everything else of a control uses: the lock, waking, and who is in a round. */
+#include "src/link/session/session.h"
+#include "src/link/thread/thread.h"
+
+/* The rounds that a thread is in, one inside another, of different controls. */
+static _Thread_local const round_frame *rounds;
+
+void grobo_i_control_begin_round(round_frame *frame, const grobo_control *control)
+{
+    *frame = (round_frame){control, rounds};
+    rounds = frame;
+}
+
+void grobo_i_control_end_round(const round_frame *frame)
+{
+    rounds = frame->outer;
+}
+
+bool grobo_i_control_inside(const grobo_control *control)
+{
+    const round_frame *frame = rounds;
+
+    while (frame != NULL && frame->control != control) {
+        frame = frame->outer;
+    }
+    return frame != NULL;
+}
+
+void grobo_i_control_lock(grobo_control *control)
+{
+    bool inside = grobo_i_control_inside(control);
+
+    grobo_mutex_lock(&control->lock);
+    if (!inside) {
+        control->called_us = grobo_now_us();
+        control->owner_lost = false;
+    }
+}
+
+void grobo_i_control_unlock(grobo_control *control)
+{
+    grobo_mutex_unlock(&control->lock);
+}
+
+/* ---- waking ------------------------------------------------------------------------------- */
+
+void grobo_i_control_wake(grobo_control *control)
+{
+    if (!control->woken) {
+        control->woken = true;
+        grobo_i_session_wake(control->session);
+    }
+}
+
+void grobo_i_control_sleep(grobo_control *control, int64_t end_us)
+{
+    control->sleepers++;
+    grobo_cond_wait(&control->changed, &control->lock, end_us);
+    control->sleepers--;
+}
+
+void grobo_i_control_wake_all(grobo_control *control)
+{
+    grobo_cond_wake_all(&control->changed);
+}
