@@ -32,7 +32,7 @@ static int add_port(void *ctx, const grobo_port_info *info)
 int grobo_i_session_scan_begin(grobo_session *session)
 {
     const char *const *device = session->config.scan;
-    session_scan *scan = grobo_i_link_new(session->config.mem, sizeof *scan);
+    session_scan *scan = grobo_i_new(session->config.mem, sizeof *scan);
 
     if (scan == NULL) {
         return GROBO_ERR_NOMEM;
@@ -57,6 +57,6 @@ int grobo_i_session_scan_begin(grobo_session *session)
 
 void grobo_i_session_scan_end(grobo_session *session)
 {
-    grobo_i_link_free(session->config.mem, session->scan, sizeof *session->scan);
+    grobo_i_free(session->config.mem, session->scan, sizeof *session->scan);
     session->scan = NULL;
 }

@@ -63,8 +63,8 @@ static void destroy(grobo_session *session)
     grobo_serial_free(session->serial);
     grobo_i_estop_watch_end(&session->estop);
     grobo_i_session_scan_end(session);
-    grobo_i_link_free(mem, session->sim, sizeof *session->sim);
-    grobo_i_link_free(mem, session, sizeof *session);
+    grobo_i_free(mem, session->sim, sizeof *session->sim);
+    grobo_i_free(mem, session, sizeof *session);
 }
 
 /* ---- opening ------------------------------------------------------------------------------ */
@@ -90,11 +90,11 @@ static int open_sim(grobo_session *session)
     int64_t now_us = grobo_now_us();
 
     if (session->sim == NULL) {
-        grobo_sim *sim = grobo_i_link_new(session->config.mem, sizeof *sim);
+        grobo_sim *sim = grobo_i_new(session->config.mem, sizeof *sim);
         int r = sim != NULL ? grobo_sim_init(sim, &session->sim_config, now_us) : GROBO_ERR_NOMEM;
 
         if (r < 0) {
-            grobo_i_link_free(session->config.mem, sim, sizeof *sim);
+            grobo_i_free(session->config.mem, sim, sizeof *sim);
             return r;
         }
         session->sim = sim;
@@ -470,7 +470,7 @@ int grobo_session_new(const grobo_session_config *config, grobo_session **sessio
         config->baud_bps < 0) {
         return GROBO_ERR_ARG;
     }
-    made = grobo_i_link_new(config->mem, sizeof *made);
+    made = grobo_i_new(config->mem, sizeof *made);
     if (made == NULL) {
         return GROBO_ERR_NOMEM;
     }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
 
+#include "src/base/memory.h"
 #include "src/motion/format/fields.h"
 #include "src/motion/text/number.h"
 

@@ -5,6 +5,7 @@
 #include <stdarg.h>
 #include <string.h>
 
+#include "src/base/memory.h"
 #include "src/motion/format/reader.h"
 
 enum { BUFFER_BYTES = 64 * 1024 };
@@ -110,11 +111,10 @@ static int keep_position(grobo_i_reader *reader, const grobo_i_row *row, int joi
     }
     if (extra->positions == NULL) {
         size_t bytes = (size_t)n_joints * 2 * sizeof *extra->positions;
-        extra->positions = grobo_i_alloc(reader->mem, bytes);
+        extra->positions = grobo_i_new(reader->mem, bytes);
         if (extra->positions == NULL) {
             return GROBO_ERR_NOMEM;
         }
-        memset(extra->positions, 0, bytes);
         extra->n_positions = n_joints;
     }
     extra->positions[2 * joint] = place.line;

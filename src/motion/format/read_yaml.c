@@ -2,6 +2,7 @@
 /* The top of a YAML motion file, and what kind of motion it is. */
 #include <string.h>
 
+#include "src/base/memory.h"
 #include "src/motion/format/document.h"
 
 int grobo_i_keep_value(grobo_i_events *events, grobo_i_kept **list, const grobo_kept *where)

@@ -4,6 +4,7 @@
 #define GROBO_MOTION_WRITE_H
 
 #include "src/motion/store/container.h"
+#include "src/motion/store/diagnostics.h"
 #include "src/motion/text/out.h"
 
 /* What is told to a writer. */

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "src/base/memory.h"
 #include "src/motion/play/clip.h"
 
 static bool counts_steps(const grobo_motion *motion)
@@ -322,11 +323,10 @@ int grobo_i_clip_keys(const grobo_motion *motion, const grobo_clip_options *opti
     if (grobo_i_at_rate(motion) && motion->size > 0 && !(motion->frame_rate_hz > 0)) {
         return GROBO_ERR_STATE;
     }
-    made = grobo_i_alloc(motion->mem, sizeof *made);
+    made = grobo_i_new(motion->mem, sizeof *made);
     if (made == NULL) {
         return GROBO_ERR_NOMEM;
     }
-    memset(made, 0, sizeof *made);
     made->motion = motion;
     made->mem = motion->mem;
     made->size = motion->size;

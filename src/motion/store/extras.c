@@ -3,7 +3,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "src/base/memory.h"
 #include "src/motion/store/container.h"
+#include "src/motion/text/utf8.h"
 
 /* Texts of one kept key, names included, with their NULs. */
 enum { KEPT_MAX_BYTES = GROBO_YAML_SCALAR_MAX_BYTES + GROBO_YAML_KEY_MAX_BYTES };
@@ -11,11 +13,7 @@ enum { KEPT_MAX_BYTES = GROBO_YAML_SCALAR_MAX_BYTES + GROBO_YAML_KEY_MAX_BYTES }
 grobo_i_extra *grobo_i_extra_of(const grobo_mem *mem, const grobo_i_row *row)
 {
     if (*row->extra == NULL) {
-        grobo_i_extra *extra = grobo_i_alloc(mem, sizeof *extra);
-        if (extra != NULL) {
-            memset(extra, 0, sizeof *extra);
-        }
-        *row->extra = extra;
+        *row->extra = grobo_i_new(mem, sizeof **row->extra);
     }
     return *row->extra;
 }

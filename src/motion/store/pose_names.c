@@ -2,6 +2,7 @@
 /* Poses by name: up to Choreonoid 1.7 a ref may say the name of an earlier pose. */
 #include <string.h>
 
+#include "src/base/memory.h"
 #include "src/motion/format/pose.h"
 
 static uint64_t hash_name(const char *name)
@@ -46,11 +47,10 @@ static int grow_names(grobo_i_document *document)
     if (old.count * 2 < old.room) {
         return 0;
     }
-    struct grobo_i_pose_slot *slots = grobo_i_alloc(document->reader->mem, room * sizeof *slots);
+    struct grobo_i_pose_slot *slots = grobo_i_new(document->reader->mem, room * sizeof *slots);
     if (slots == NULL) {
         return GROBO_ERR_NOMEM;
     }
-    memset(slots, 0, room * sizeof *slots);
     names->slots = slots;
     names->room = room;
     for (size_t i = 0; i < old.room; i++) {
