@@ -11,22 +11,6 @@ static bool counts_steps(const grobo_motion *motion)
     return motion->kind == GROBO_MOTION_POSTURES || motion->kind == GROBO_MOTION_STEPS;
 }
 
-size_t grobo_i_clip_row(const grobo_i_clip *clip, size_t i)
-{
-    return clip->order != NULL ? clip->order[i] : i;
-}
-
-double grobo_i_clip_at_s(const grobo_i_clip *clip, size_t i)
-{
-    return clip->at_s != NULL ? clip->at_s[i] : grobo_i_time_s(clip->motion, i);
-}
-
-double grobo_i_clip_angle(const grobo_i_clip *clip, size_t i, const grobo_i_row *row, int j)
-{
-    return clip->sums != NULL ? clip->sums[i * clip->motion->n_joints + (size_t)j]
-                              : row->angle_rad[j];
-}
-
 static void clip_free(grobo_i_clip *clip)
 {
     const grobo_mem *mem = clip->mem;

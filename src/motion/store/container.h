@@ -124,7 +124,5 @@ int grobo_i_kept_dup(const grobo_mem *mem, const grobo_i_kept *from, grobo_i_kep
 /* Takes the kept keys of a level out of a list. */
 void grobo_i_drop_kept(const grobo_mem *mem, grobo_i_kept **list, grobo_kept_level level);
 void grobo_i_kept_free(const grobo_mem *mem, grobo_i_kept *list);
-bool grobo_i_kept_equal(const grobo_i_kept *a, const grobo_i_kept *b);
-bool grobo_i_extra_equal(const grobo_i_extra *a, const grobo_i_extra *b);
 
 #endif
