@@ -3,9 +3,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "src/motion/format/reader.h"
-#include "src/motion/format/write.h"
+#include "src/motion/change/convert.h"
 #include "src/motion/play/clip.h"
+#include "src/motion/store/columns.h"
 #include "src/motion/store/diagnostics.h"
 
 /* Postures further apart are resampled to become frames. */

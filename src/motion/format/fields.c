@@ -4,6 +4,7 @@
 #include "src/base/memory.h"
 #include "src/motion/format/fields.h"
 #include "src/motion/text/number.h"
+#include "src/motion/text/out.h"
 
 /* ---- single values ------------------------------------------------------------------------ */
 
@@ -507,7 +508,8 @@ static void put_event(grobo_i_out *out, const grobo_i_event *event)
     }
 }
 
-int grobo_i_capture(grobo_i_events *events, grobo_i_text *text)
+/* One node as flow-style text on one line. */
+static int capture(grobo_i_events *events, grobo_i_text *text)
 {
     grobo_sink sink = {grobo_i_text_write, text};
     capture_level levels[GROBO_YAML_DEPTH_MAX + 1] = {{false, false, true}};
@@ -536,4 +538,31 @@ int grobo_i_capture(grobo_i_events *events, grobo_i_text *text)
         }
     } while (depth > 0);
     return grobo_i_out_end(&out);
+}
+
+int grobo_i_keep_value(grobo_i_events *events, grobo_i_kept **list, const grobo_kept *where)
+{
+    grobo_i_reader *reader = events->reader;
+    grobo_i_text text = {.mem = reader->mem, .cap = GROBO_YAML_SCALAR_MAX_BYTES};
+    grobo_kept kept = *where;
+    const grobo_i_event *event;
+    int result = grobo_i_peek(events, &event);
+    grobo_i_place place = event->place;
+
+    if (result == 0) {
+        result = capture(events, &text);
+    }
+    if (result == 0) {
+        result = grobo_i_text_write(&text, "", 1);
+    }
+    if (result == 0) {
+        kept.value = text.data;
+        result = grobo_i_kept_add(reader->mem, list, &kept);
+    }
+    grobo_i_text_free(&text);
+    if (result == GROBO_ERR_CAP) {
+        return grobo_i_refuse(reader, result, "kept-size", place,
+                              "'%s' is larger than unknown keys may be", where->key);
+    }
+    return result;
 }
