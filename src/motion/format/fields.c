@@ -291,6 +291,16 @@ int grobo_i_read_doubles(grobo_i_events *events, const char *what, double *value
 
 /* ---- mappings ----------------------------------------------------------------------------- */
 
+uint64_t grobo_i_hash(const char *text)
+{
+    uint64_t hash = 14695981039346656037U; /* FNV-1a */
+
+    for (; *text != '\0'; text++) {
+        hash = (hash ^ (unsigned char)*text) * 1099511628211U;
+    }
+    return hash;
+}
+
 /* What is known of a mapping while it is read. */
 typedef struct map_state {
     const grobo_i_fields *fields;
@@ -301,16 +311,6 @@ typedef struct map_state {
     int merges[GROBO_YAML_MERGES_MAX];             /* anchors */
     grobo_i_place merge_place;
 } map_state;
-
-static uint64_t hash_of(const char *text, size_t length)
-{
-    uint64_t hash = 14695981039346656037U; /* FNV-1a */
-
-    for (size_t i = 0; i < length; i++) {
-        hash = (hash ^ (unsigned char)text[i]) * 1099511628211U;
-    }
-    return hash;
-}
 
 /* The value of a merge key: an alias or a list of them. */
 static int read_merge(grobo_i_events *events, map_state *map)
@@ -351,7 +351,7 @@ static int complain_twice(grobo_i_events *events, const map_state *map, const ch
 static int read_unknown(grobo_i_events *events, map_state *map, const char *key,
                         grobo_i_place place, bool merged)
 {
-    uint64_t hash = hash_of(key, strlen(key));
+    uint64_t hash = grobo_i_hash(key);
 
     for (int i = 0; i < map->n_unknown; i++) {
         if (map->unknown[i] == hash) {

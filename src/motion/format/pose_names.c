@@ -5,21 +5,11 @@
 #include "src/base/memory.h"
 #include "src/motion/format/pose.h"
 
-static uint64_t hash_name(const char *name)
-{
-    uint64_t hash = 14695981039346656037U; /* FNV-1a */
-
-    for (; *name != '\0'; name++) {
-        hash = (hash ^ (unsigned char)*name) * 1099511628211U;
-    }
-    return hash;
-}
-
 /* The slot of a name: its own, or the free one where it belongs. */
 static struct grobo_i_pose_slot *slot_of(const grobo_i_document *document, const char *name)
 {
     const grobo_i_pose_names *names = &document->names;
-    uint64_t hash = hash_name(name);
+    uint64_t hash = grobo_i_hash(name);
     size_t i = (size_t)hash & (names->room - 1);
 
     while (names->slots[i].pose != 0 &&

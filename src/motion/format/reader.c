@@ -31,15 +31,16 @@ int grobo_i_input_fill(grobo_i_input *input)
 
 /* ---- complaints --------------------------------------------------------------------------- */
 
-static void say(grobo_i_reader *reader, const grobo_i_said *said, const char *format, va_list args)
+static void say(grobo_i_reader *reader, grobo_severity severity, const char *code,
+                grobo_i_place place, const char *format, va_list args)
 {
     char message[256];
 
     if (reader->list != NULL) {
         grobo_i_format_message(message, sizeof message, format, args);
-        grobo_diagnostics_add(reader->list,
-                              &(grobo_diagnostic){reader->file, said->code, message, said->line,
-                                                  said->column, said->severity});
+        grobo_diagnostics_add(
+            reader->list,
+            &(grobo_diagnostic){reader->file, code, message, place.line, place.column, severity});
     }
 }
 
@@ -49,8 +50,7 @@ int grobo_i_refuse(grobo_i_reader *reader, int result, const char *code, grobo_i
     va_list args;
 
     va_start(args, format);
-    say(reader, &(grobo_i_said){NULL, code, place.line, place.column, GROBO_SEVERITY_ERROR}, format,
-        args);
+    say(reader, GROBO_SEVERITY_ERROR, code, place, format, args);
     va_end(args);
     return result;
 }
@@ -61,8 +61,7 @@ int grobo_i_complain(grobo_i_reader *reader, int result, const char *code, grobo
     va_list args;
 
     va_start(args, format);
-    say(reader, &(grobo_i_said){NULL, code, place.line, place.column, GROBO_SEVERITY_ERROR}, format,
-        args);
+    say(reader, GROBO_SEVERITY_ERROR, code, place, format, args);
     va_end(args);
     if (reader->result == 0) {
         reader->result = result;
@@ -76,8 +75,7 @@ void grobo_i_warn(grobo_i_reader *reader, const char *code, grobo_i_place place,
     va_list args;
 
     va_start(args, format);
-    say(reader, &(grobo_i_said){NULL, code, place.line, place.column, GROBO_SEVERITY_WARNING},
-        format, args);
+    say(reader, GROBO_SEVERITY_WARNING, code, place, format, args);
     va_end(args);
 }
 
@@ -87,8 +85,7 @@ void grobo_i_note(grobo_i_reader *reader, const char *code, grobo_i_place place,
     va_list args;
 
     va_start(args, format);
-    say(reader, &(grobo_i_said){NULL, code, place.line, place.column, GROBO_SEVERITY_NOTE}, format,
-        args);
+    say(reader, GROBO_SEVERITY_NOTE, code, place, format, args);
     va_end(args);
 }
 

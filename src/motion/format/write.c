@@ -6,11 +6,11 @@
 static int check_writable(const grobo_motion *motion, const grobo_i_writing *writing)
 {
     bool frames = motion->kind == GROBO_MOTION_FRAMES;
-    const char *name = writing->options->name != NULL ? writing->options->name : "";
 
     if ((frames || motion->kind == GROBO_MOTION_POSTURES) && motion->size > 0 &&
         motion->n_joints == 0) {
-        grobo_i_say(writing->list, &(grobo_i_said){name, "empty", 0, 0, GROBO_SEVERITY_ERROR},
+        grobo_i_say(writing->list,
+                    &(grobo_i_said){writing->options->name, "empty", 0, 0, GROBO_SEVERITY_ERROR},
                     "no posture sets any joint");
         return GROBO_ERR_EMPTY;
     }
@@ -47,9 +47,8 @@ int grobo_motion_write(const grobo_motion *motion, grobo_motion_format format,
     }
     grobo_i_out_begin(&out, sink);
     if (motion->frame_times && motion->size > 0) {
-        const char *name = writing.options->name != NULL ? writing.options->name : "";
         grobo_i_say(
-            list, &(grobo_i_said){name, "frame-times", 0, 0, GROBO_SEVERITY_NOTE},
+            list, &(grobo_i_said){writing.options->name, "frame-times", 0, 0, GROBO_SEVERITY_NOTE},
             "each frame has a time of its own: read by this library, and by Choreonoid from "
             "2.1 on, which holds it until the next");
     }

@@ -63,11 +63,11 @@ void grobo_i_write_m(const grobo_i_writing *writing, const grobo_motion *motion)
         put_line(writing, &row, joints, columns, &changes);
     }
     if (changes.ms > 1e-6 || changes.ddeg > 1e-6) {
-        const char *name = writing->options->name != NULL ? writing->options->name : "";
         char ms[GROBO_I_NUMBER_BYTES], ddeg[GROBO_I_NUMBER_BYTES];
         ms[grobo_i_format_number(round(changes.ms * 1e3) / 1e3, ms)] = '\0';
         ddeg[grobo_i_format_number(round(changes.ddeg * 1e3) / 1e4, ddeg)] = '\0';
-        grobo_i_say(writing->list, &(grobo_i_said){name, "rounded", 0, 0, GROBO_SEVERITY_NOTE},
+        grobo_i_say(writing->list,
+                    &(grobo_i_said){writing->options->name, "rounded", 0, 0, GROBO_SEVERITY_NOTE},
                     "rounded to whole milliseconds and 0.1 degrees, by at most %s ms and %s "
                     "degrees",
                     ms, ddeg);
