@@ -103,7 +103,7 @@ LIBS = $(call once,LIBS,$(call flags,--libs,yaml-0.1 libevent_core) $(OS_LIBS))
 
 # The core needs no C library but memcpy() and its like, and mathematics.
 CORE_FOLDERS := base model play bus servo servo/* robot sim
-HEAP := src/base/heap.c
+HEAP := src/base/memory.c
 CORE_SRCS := $(filter-out $(HEAP),$(sort $(wildcard $(CORE_FOLDERS:%=src/%/*.c))))
 OTHER_SRCS := $(sort $(HEAP) $(wildcard src/motion/*/*.c src/body/*.c src/link/*/*.c ports/common/*.c \
     ports/$(PORT)/*.c))

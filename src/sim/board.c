@@ -2,17 +2,11 @@
 /* The controller board: takes a frame, relays its payload, waits, returns what came. */
 #include <string.h>
 
-#include "src/sim/sim.h"
-
-void grobo_i_sim_frame_faults(grobo_sim *sim)
-{
-    if (grobo_i_sim_strikes(sim, GROBO_SIM_FAULT_BROWN_OUT, -1)) {
-        grobo_i_sim_brown_out(sim);
-    }
-    if (grobo_i_sim_strikes(sim, GROBO_SIM_FAULT_HANG_UP, -1)) {
-        grobo_i_sim_cut(sim);
-    }
-}
+#include "src/sim/board.h"
+#include "src/sim/bus.h"
+#include "src/sim/fault.h"
+#include "src/sim/note.h"
+#include "src/sim/wire.h"
 
 /* ---- replying ------------------------------------------------------------------------------ */
 

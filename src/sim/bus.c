@@ -1,61 +1,25 @@
 /* SPDX-License-Identifier: MIT */
-/*
- * The servos' half-duplex line. One master (the board, or the host on bus wiring) and any number
- * of servos; where two talk at once both bytes become their AND, as on a line that idles high.
- */
-#include <string.h>
+/* What servos hear: bytes of the board or host, and the packets that they make. */
+#include "src/sim/bus.h"
+#include "src/sim/fault.h"
+#include "src/sim/note.h"
+#include "src/sim/power.h"
+#include "src/sim/servo.h"
+#include "src/sim/talk.h"
+#include "src/sim/wire.h"
 
-#include "src/sim/sim.h"
+/* A servo forgets a packet that stands still for this long. */
+#define SERVO_STALL_NS 10000000
 
-/* ---- who else talks -------------------------------------------------------------------------- */
-
-/* Bytes of a talk that lie in [from_ns, to_ns): ANDs them with byte and byte with them. */
-static bool clash(grobo_sim *sim, grobo_sim_talk *talk, int64_t from_ns, uint8_t *byte)
+void grobo_i_sim_frame_faults(grobo_sim *sim)
 {
-    const int64_t byte_ns = sim->bus_byte_ns;
-    int64_t to_ns = from_ns + byte_ns;
-    int64_t first = (from_ns - talk->start_ns) / byte_ns;
-    bool clashed = false;
-    for (int64_t k = first < 0 ? 0 : first; k < talk->used; k++) {
-        int64_t start_ns = talk->start_ns + k * byte_ns;
-        if (start_ns >= to_ns) {
-            break;
-        }
-        if (start_ns + byte_ns > from_ns) {
-            *byte &= talk->byte[k];
-            talk->byte[k] = *byte;
-            clashed = true;
-        }
+    if (grobo_i_sim_strikes(sim, GROBO_SIM_FAULT_BROWN_OUT, -1)) {
+        grobo_i_sim_brown_out(sim);
     }
-    return clashed;
-}
-
-/* The byte that the master began before to_ns and that is not over yet. */
-static bool clash_with_master(const grobo_sim *sim, int64_t to_ns, uint8_t *byte)
-{
-    if (sim->config.wiring == GROBO_WIRING_BUS) {
-        const grobo_sim_wire *in = &sim->in;
-        if (in->used == 0 || in->at_ns[in->head] - sim->bus_byte_ns >= to_ns) {
-            return false;
-        }
-        *byte &= in->byte[in->head];
-        return true;
+    if (grobo_i_sim_strikes(sim, GROBO_SIM_FAULT_HANG_UP, -1)) {
+        grobo_i_sim_cut(sim);
     }
-    if (sim->board_state != GROBO_SIM_BOARD_SENDING ||
-        sim->board_at_ns - sim->bus_byte_ns >= to_ns) {
-        return false;
-    }
-    *byte &= sim->send[sim->sent];
-    return true;
 }
-
-static void collided(grobo_sim *sim, bool with_master)
-{
-    sim->stats.collisions++;
-    grobo_i_sim_note(sim, GROBO_SIM_COLLISION, -1, with_master);
-}
-
-/* ---- what servos hear ------------------------------------------------------------------------ */
 
 static void hear_packet(grobo_sim *sim, const grobo_rs30x_packet *packet)
 {
@@ -92,18 +56,11 @@ static void stalled(grobo_sim *sim)
 
 void grobo_i_sim_bus_hear(grobo_sim *sim, uint8_t byte, int64_t t_ns)
 {
-    bool clashed = false;
-    for (size_t i = 0; i < GROBO_SIM_TALKS_MAX; i++) {
-        clashed |= clash(sim, &sim->talk[i], t_ns - sim->bus_byte_ns, &byte);
-    }
-    if (clashed) {
-        collided(sim, true);
-    }
+    grobo_i_sim_talk_into(sim, &byte, t_ns);
     if (sim->config.echo) {
         grobo_i_sim_to_host(sim, byte, t_ns);
     }
-    if (t_ns - sim->bus_heard_ns > GROBO_I_SIM_SERVO_STALL_NS &&
-        grobo_rs30x_parser_pending(&sim->bus) > 0) {
+    if (t_ns - sim->bus_heard_ns > SERVO_STALL_NS && grobo_rs30x_parser_pending(&sim->bus) > 0) {
         stalled(sim);
     }
     sim->bus_heard_ns = t_ns;
@@ -111,98 +68,5 @@ void grobo_i_sim_bus_hear(grobo_sim *sim, uint8_t byte, int64_t t_ns)
     grobo_rs30x_packet packet;
     while (grobo_rs30x_parser_next(&sim->bus, &packet) > 0) {
         hear_packet(sim, &packet);
-    }
-}
-
-/* ---- what servos say ------------------------------------------------------------------------- */
-
-/* Two with one id begin together: what both say at the same time is the AND. */
-static void join(grobo_sim *sim, grobo_sim_talk *talk, const uint8_t *bytes, size_t n)
-{
-    for (size_t i = 0; i < n; i++) {
-        talk->byte[i] = i < talk->used ? talk->byte[i] & bytes[i] : bytes[i];
-    }
-    talk->used = n > talk->used ? (uint16_t)n : talk->used;
-    collided(sim, false);
-}
-
-void grobo_i_sim_talk(grobo_sim *sim, const uint8_t *bytes, size_t n, int64_t start_ns)
-{
-    grobo_sim_talk *spare = NULL;
-    for (size_t i = 0; i < GROBO_SIM_TALKS_MAX; i++) {
-        grobo_sim_talk *talk = &sim->talk[i];
-        if (talk->used == 0) {
-            spare = spare == NULL ? talk : spare;
-        } else if (talk->start_ns == start_ns) {
-            join(sim, talk, bytes, n);
-            return;
-        }
-    }
-    if (spare == NULL) {
-        sim->stats.overflows += (uint32_t)n;
-        return;
-    }
-    spare->start_ns = start_ns;
-    spare->said = 0;
-    spare->used = (uint16_t)n;
-    memcpy(spare->byte, bytes, n);
-}
-
-static int64_t byte_end_ns(const grobo_sim *sim, const grobo_sim_talk *talk)
-{
-    return talk->start_ns + (talk->said + 1) * sim->bus_byte_ns;
-}
-
-static int next_talk(const grobo_sim *sim)
-{
-    int first = -1;
-    for (int i = 0; i < GROBO_SIM_TALKS_MAX; i++) {
-        const grobo_sim_talk *talk = &sim->talk[i];
-        if (talk->used > 0 &&
-            (first < 0 || byte_end_ns(sim, talk) < byte_end_ns(sim, &sim->talk[first]))) {
-            first = i;
-        }
-    }
-    return first;
-}
-
-int64_t grobo_i_sim_talk_next(const grobo_sim *sim)
-{
-    int i = next_talk(sim);
-    return i < 0 ? GROBO_NEVER_US : byte_end_ns(sim, &sim->talk[i]);
-}
-
-int64_t grobo_i_sim_talks_end(const grobo_sim *sim)
-{
-    int64_t end_ns = GROBO_NEVER_US;
-    for (int i = 0; i < GROBO_SIM_TALKS_MAX; i++) {
-        const grobo_sim_talk *talk = &sim->talk[i];
-        int64_t its_ns = talk->start_ns + talk->used * sim->bus_byte_ns;
-        end_ns = talk->used > 0 && its_ns < end_ns ? its_ns : end_ns;
-    }
-    return end_ns;
-}
-
-void grobo_i_sim_talk_act(grobo_sim *sim, int64_t t_ns)
-{
-    int first = next_talk(sim);
-    grobo_sim_talk *talk = &sim->talk[first];
-    uint8_t byte = talk->byte[talk->said++];
-    bool with_master = clash_with_master(sim, t_ns, &byte), clashed = with_master;
-    for (int i = 0; i < GROBO_SIM_TALKS_MAX; i++) {
-        if (i != first) {
-            clashed |= clash(sim, &sim->talk[i], t_ns - sim->bus_byte_ns, &byte);
-        }
-    }
-    if (clashed) {
-        collided(sim, with_master);
-    }
-    if (talk->said == talk->used) {
-        talk->used = 0;
-    }
-    if (sim->config.wiring == GROBO_WIRING_BUS) {
-        grobo_i_sim_to_host(sim, byte, t_ns);
-    } else {
-        grobo_i_sim_board_got(sim, byte, t_ns);
     }
 }

@@ -2,7 +2,10 @@
 /* What a test, or a person at the simulator, sees and changes behind the robot's back. */
 #include <string.h>
 
-#include "src/sim/sim.h"
+#include "src/sim/power.h"
+#include "src/sim/registers.h"
+#include "src/sim/servo.h"
+#include "src/sim/shaft.h"
 
 /* The servo, settled; NULL when there is none of this index. */
 static grobo_sim_servo *servo_at(grobo_sim *sim, int index)
@@ -115,15 +118,6 @@ int grobo_sim_set_flash(grobo_sim *sim, int index, const uint8_t flash[GROBO_SIM
     return 0;
 }
 
-/* What the servo does goes on from where it is, under what has changed. */
-static void go_on(grobo_sim *sim, int index)
-{
-    const grobo_sim_servo *servo = &sim->servo[index];
-    if (servo->powered && !servo->by_hand && servo->reg[GROBO_RS30X_TORQUE] == GROBO_TORQUE_ON) {
-        grobo_i_sim_drive(sim, index);
-    }
-}
-
 int grobo_sim_set_angle(grobo_sim *sim, int index, int32_t angle_mdeg, int64_t time_us)
 {
     grobo_sim_servo *servo = servo_at(sim, index);
@@ -147,7 +141,7 @@ int grobo_sim_set_blocked(grobo_sim *sim, int index, bool blocked)
         return GROBO_ERR_ARG;
     }
     servo->blocked = blocked;
-    go_on(sim, index);
+    grobo_i_sim_go_on(sim, index);
     return 0;
 }
 
@@ -171,11 +165,6 @@ int grobo_sim_set_temperature(grobo_sim *sim, int index, double temperature_c)
     return 0;
 }
 
-static bool has_power(const grobo_sim *sim, const grobo_sim_servo *servo)
-{
-    return sim->supply_mv >= GROBO_SIM_BROWN_OUT_MV && servo->cable != GROBO_SIM_CABLE_OUT;
-}
-
 int grobo_sim_set_cable(grobo_sim *sim, int index, grobo_sim_cable cable)
 {
     grobo_sim_servo *servo = servo_at(sim, index);
@@ -183,7 +172,7 @@ int grobo_sim_set_cable(grobo_sim *sim, int index, grobo_sim_cable cable)
         return GROBO_ERR_ARG;
     }
     servo->cable = (uint8_t)cable;
-    grobo_i_sim_power(sim, index, has_power(sim, servo));
+    grobo_i_sim_feed(sim, index);
     return 0;
 }
 
@@ -194,7 +183,7 @@ void grobo_sim_set_supply(grobo_sim *sim, uint32_t supply_mv)
     }
     sim->supply_mv = supply_mv;
     for (int i = 0; i < sim->n_servos; i++) {
-        grobo_i_sim_power(sim, i, has_power(sim, &sim->servo[i]));
-        go_on(sim, i);
+        grobo_i_sim_feed(sim, i);
+        grobo_i_sim_go_on(sim, i);
     }
 }

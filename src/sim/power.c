@@ -1,12 +1,18 @@
 /* SPDX-License-Identifier: MIT */
-/* What a servo remembers: factory, flash, reboot, loss of power. */
+/* What a servo remembers: factory, flash, reboot, loss of power; and how its time goes by. */
 #include <string.h>
 
-#include "src/sim/sim.h"
+#include "src/sim/note.h"
+#include "src/sim/power.h"
+#include "src/sim/registers.h"
+#include "src/sim/shaft.h"
 
 /* Not in the manuals at hand: the limit of register TEMPERATURE_LIMIT, the firmware's number. */
 #define LIMIT_C 80
 #define FIRMWARE 1
+/* Assumptions; docs/simulator.md lists them. */
+#define BOOT_US 500000
+#define SAVE_US 1000000
 
 static void put(uint8_t *registers, uint8_t address, int32_t value)
 {
@@ -69,26 +75,14 @@ static void limp(grobo_sim *sim, int index)
 void grobo_i_sim_reboot(grobo_sim *sim, int index)
 {
     limp(sim, index);
-    grobo_i_sim_boot(sim, index, GROBO_I_SIM_BOOT_US);
+    grobo_i_sim_boot(sim, index, BOOT_US);
 }
 
 void grobo_i_sim_save(grobo_sim *sim, int index, bool reboot_after)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    servo->saved_us = servo->deaf_until_us = sim->now_us + GROBO_I_SIM_SAVE_US;
+    servo->saved_us = servo->deaf_until_us = sim->now_us + SAVE_US;
     servo->reboots_after_save = reboot_after;
-}
-
-void grobo_i_sim_saved(grobo_sim *sim, int index)
-{
-    grobo_sim_servo *servo = &sim->servo[index];
-    to_flash(servo);
-    servo->status &= (uint8_t)~GROBO_RS30X_STATUS_FLASH_ERROR;
-    servo->saved_us = GROBO_NEVER_US;
-    grobo_i_sim_note(sim, GROBO_SIM_SAVED, index, 0);
-    if (servo->reboots_after_save) {
-        grobo_i_sim_reboot(sim, index);
-    }
 }
 
 void grobo_i_sim_reset(grobo_sim *sim, int index)
@@ -123,7 +117,45 @@ void grobo_i_sim_exchange_flash(grobo_sim *sim, int index, const uint8_t *flash)
     }
 }
 
-void grobo_i_sim_power(grobo_sim *sim, int index, bool on)
+static void saved(grobo_sim *sim, int index)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    to_flash(servo);
+    servo->status &= (uint8_t)~GROBO_RS30X_STATUS_FLASH_ERROR;
+    servo->saved_us = GROBO_NEVER_US;
+    grobo_i_sim_note(sim, GROBO_SIM_SAVED, index, 0);
+    if (servo->reboots_after_save) {
+        grobo_i_sim_reboot(sim, index);
+    }
+}
+
+void grobo_i_sim_settle(grobo_sim *sim, int index)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    const int64_t now_us = sim->now_us;
+    for (;;) {
+        int64_t hand_us = servo->by_hand ? servo->start_us + servo->move_us : GROBO_NEVER_US;
+        bool is_saved = servo->saved_us <= hand_us;
+        int64_t t_us = is_saved ? servo->saved_us : hand_us;
+        if (t_us > now_us) {
+            break;
+        }
+        grobo_i_sim_warm(sim, index, t_us);
+        sim->now_us = t_us;
+        if (is_saved) {
+            saved(sim, index);
+        } else {
+            grobo_i_sim_halt(sim, index);
+            grobo_i_sim_go_on(sim, index);
+        }
+    }
+    grobo_i_sim_warm(sim, index, now_us);
+    sim->now_us = now_us;
+}
+
+/* ---- supply -------------------------------------------------------------------------------- */
+
+static void power(grobo_sim *sim, int index, bool on)
 {
     grobo_sim_servo *servo = &sim->servo[index];
     if (on == servo->powered) {
@@ -131,7 +163,7 @@ void grobo_i_sim_power(grobo_sim *sim, int index, bool on)
     }
     grobo_i_sim_settle(sim, index);
     if (on) {
-        grobo_i_sim_boot(sim, index, GROBO_I_SIM_BOOT_US);
+        grobo_i_sim_boot(sim, index, BOOT_US);
         return;
     }
     if (servo->saved_us != GROBO_NEVER_US) {
@@ -142,11 +174,18 @@ void grobo_i_sim_power(grobo_sim *sim, int index, bool on)
     servo->powered = false;
 }
 
+void grobo_i_sim_feed(grobo_sim *sim, int index)
+{
+    power(sim, index,
+          sim->supply_mv >= GROBO_SIM_BROWN_OUT_MV &&
+              sim->servo[index].cable != GROBO_SIM_CABLE_OUT);
+}
+
 void grobo_i_sim_brown_out(grobo_sim *sim)
 {
     for (int i = 0; i < sim->n_servos; i++) {
         bool powered = sim->servo[i].powered;
-        grobo_i_sim_power(sim, i, false);
-        grobo_i_sim_power(sim, i, powered);
+        power(sim, i, false);
+        power(sim, i, powered);
     }
 }

@@ -3,17 +3,18 @@
 #include <math.h>
 #include <string.h>
 
-#include "src/sim/sim.h"
+#include "src/sim/fault.h"
+#include "src/sim/note.h"
+#include "src/sim/power.h"
+#include "src/sim/registers.h"
+#include "src/sim/servo.h"
+#include "src/sim/shaft.h"
+#include "src/sim/talk.h"
 
 /* The alarm flag comes this much below the temperature limit. An assumption. */
 #define ALARM_BELOW_LIMIT_C 10
 /* Resistance of battery and wires: the supply sags by it. An assumption. */
 #define SUPPLY_MOHM 100
-
-int32_t grobo_i_sim_value(const grobo_sim_servo *servo, uint8_t address)
-{
-    return grobo_rs30x_register_get(grobo_rs30x_register_at(address), &servo->reg[address]);
-}
 
 bool grobo_i_sim_deaf(const grobo_sim *sim, int index)
 {
@@ -40,25 +41,18 @@ static int32_t supply_mv(const grobo_sim *sim)
     return mv > 0 ? (int32_t)mv : 0;
 }
 
-static void present(grobo_sim_servo *servo, uint8_t address, int64_t value)
-{
-    const grobo_rs30x_register *reg = grobo_rs30x_register_at(address);
-    int64_t held = value < reg->min ? reg->min : value > reg->max ? reg->max : value;
-    (void)grobo_rs30x_register_put(reg, (int32_t)held, &servo->reg[address]);
-}
-
 void grobo_i_sim_refresh(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
     grobo_i_sim_settle(sim, index);
     int64_t now_us = sim->now_us;
     int32_t here_ddeg = grobo_i_sim_ddeg(servo, grobo_i_sim_angle_mdeg(servo, now_us));
-    present(servo, GROBO_RS30X_POSITION, here_ddeg);
-    present(servo, GROBO_RS30X_TIME, grobo_i_sim_move_age_us(servo, now_us) / 10000);
-    present(servo, GROBO_RS30X_SPEED, grobo_i_sim_speed_dps(servo, now_us));
-    present(servo, GROBO_RS30X_CURRENT, grobo_i_sim_current_ma(servo, now_us));
-    present(servo, GROBO_RS30X_TEMPERATURE, lround(servo->temperature_c));
-    present(servo, GROBO_RS30X_VOLTAGE, supply_mv(sim) / 10);
+    grobo_i_sim_hold(servo, GROBO_RS30X_POSITION, here_ddeg);
+    grobo_i_sim_hold(servo, GROBO_RS30X_TIME, grobo_i_sim_move_age_us(servo, now_us) / 10000);
+    grobo_i_sim_hold(servo, GROBO_RS30X_SPEED, grobo_i_sim_speed_dps(servo, now_us));
+    grobo_i_sim_hold(servo, GROBO_RS30X_CURRENT, grobo_i_sim_current_ma(servo, now_us));
+    grobo_i_sim_hold(servo, GROBO_RS30X_TEMPERATURE, lround(servo->temperature_c));
+    grobo_i_sim_hold(servo, GROBO_RS30X_VOLTAGE, supply_mv(sim) / 10);
 }
 
 /* ---- writing ------------------------------------------------------------------------------- */
@@ -71,7 +65,7 @@ static void goal_written(grobo_sim *sim, int index)
     int32_t ccw_ddeg = grobo_i_sim_value(servo, GROBO_RS30X_CCW_LIMIT);
     goal_ddeg = goal_ddeg > cw_ddeg ? cw_ddeg : goal_ddeg;
     goal_ddeg = goal_ddeg < ccw_ddeg ? ccw_ddeg : goal_ddeg;
-    present(servo, GROBO_RS30X_GOAL, goal_ddeg);
+    grobo_i_sim_hold(servo, GROBO_RS30X_GOAL, goal_ddeg);
     int32_t time_cs = grobo_i_sim_value(servo, GROBO_RS30X_GOAL_TIME);
     if (servo->reg[GROBO_RS30X_TORQUE] == GROBO_TORQUE_ON) {
         servo->due_us = sim->now_us + (int64_t)time_cs * 10000;
@@ -97,9 +91,9 @@ static void bend(grobo_sim_servo *servo, const grobo_rs30x_register *reg)
 {
     int32_t value = grobo_i_sim_value(servo, reg->address);
     if (reg->address == GROBO_RS30X_MAX_TORQUE) {
-        present(servo, GROBO_RS30X_MAX_TORQUE, value);
+        grobo_i_sim_hold(servo, GROBO_RS30X_MAX_TORQUE, value);
     } else if (reg->address == GROBO_RS30X_BAUD && value > reg->max) {
-        present(servo, GROBO_RS30X_BAUD, GROBO_RS30X_BAUD_CODE_DEFAULT);
+        grobo_i_sim_hold(servo, GROBO_RS30X_BAUD, GROBO_RS30X_BAUD_CODE_DEFAULT);
     }
 }
 
@@ -119,7 +113,7 @@ static void took_effect(grobo_sim *sim, int index, const grobo_rs30x_register *r
         return;
     }
     if (reg->address == GROBO_RS30X_REVERSE && value != before) {
-        present(servo, GROBO_RS30X_GOAL, -grobo_i_sim_value(servo, GROBO_RS30X_GOAL));
+        grobo_i_sim_hold(servo, GROBO_RS30X_GOAL, -grobo_i_sim_value(servo, GROBO_RS30X_GOAL));
     }
     grobo_i_sim_tell(sim, &(grobo_sim_event){.kind = GROBO_SIM_REGISTER,
                                              .time_us = sim->now_us,

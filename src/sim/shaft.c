@@ -5,7 +5,9 @@
  */
 #include <math.h>
 
-#include "src/sim/sim.h"
+#include "src/sim/note.h"
+#include "src/sim/registers.h"
+#include "src/sim/shaft.h"
 
 /* Assumptions (docs/simulator.md): mA of the circuit, of holding, of moving at full speed. */
 #define IDLE_MA 6
@@ -123,6 +125,14 @@ void grobo_i_sim_drive(grobo_sim *sim, int index)
     servo->move_us = servo->plan_us * way / wanted;
 }
 
+void grobo_i_sim_go_on(grobo_sim *sim, int index)
+{
+    const grobo_sim_servo *servo = &sim->servo[index];
+    if (servo->powered && !servo->by_hand && servo->reg[GROBO_RS30X_TORQUE] == GROBO_TORQUE_ON) {
+        grobo_i_sim_drive(sim, index);
+    }
+}
+
 /* ---- torque -------------------------------------------------------------------------------- */
 
 void grobo_i_sim_torque(grobo_sim *sim, int index, grobo_torque before)
@@ -139,10 +149,7 @@ void grobo_i_sim_torque(grobo_sim *sim, int index, grobo_torque before)
     } else {
         grobo_i_sim_halt(sim, index);
         if (torque == GROBO_TORQUE_ON) {
-            int32_t here_ddeg = grobo_i_sim_ddeg(servo, servo->to_mdeg);
-            const grobo_rs30x_register *goal = grobo_rs30x_register_at(GROBO_RS30X_GOAL);
-            (void)grobo_rs30x_register_put(goal, clamp(here_ddeg, goal->min, goal->max),
-                                           &servo->reg[GROBO_RS30X_GOAL]);
+            grobo_i_sim_hold(servo, GROBO_RS30X_GOAL, grobo_i_sim_ddeg(servo, servo->to_mdeg));
         }
     }
     grobo_i_sim_note(sim, GROBO_SIM_TORQUE, index, (int32_t)torque);
@@ -205,35 +212,9 @@ static void warm_once(grobo_sim *sim, int index, int64_t until_us)
     }
 }
 
-static void warm(grobo_sim *sim, int index, int64_t until_us)
+void grobo_i_sim_warm(grobo_sim *sim, int index, int64_t until_us)
 {
     while (sim->servo[index].settled_us < until_us) {
         warm_once(sim, index, until_us);
     }
-}
-
-void grobo_i_sim_settle(grobo_sim *sim, int index)
-{
-    grobo_sim_servo *servo = &sim->servo[index];
-    const int64_t now_us = sim->now_us;
-    for (;;) {
-        int64_t hand_us = servo->by_hand ? servo->start_us + servo->move_us : GROBO_NEVER_US;
-        bool saved = servo->saved_us <= hand_us;
-        int64_t t_us = saved ? servo->saved_us : hand_us;
-        if (t_us > now_us) {
-            break;
-        }
-        warm(sim, index, t_us);
-        sim->now_us = t_us;
-        if (saved) {
-            grobo_i_sim_saved(sim, index);
-        } else {
-            grobo_i_sim_halt(sim, index);
-            if (servo->powered && servo->reg[GROBO_RS30X_TORQUE] == GROBO_TORQUE_ON) {
-                grobo_i_sim_drive(sim, index);
-            }
-        }
-    }
-    warm(sim, index, now_us);
-    sim->now_us = now_us;
 }

@@ -1,103 +1,57 @@
 /* SPDX-License-Identifier: MIT */
-/* The simulator's pump: what is due next on any wire happens next. */
+/*
+ * The simulator's pump: what is due next on any wire happens next. A byte's way, by files:
+ *
+ *   host - wire - board (fifo, send) - bus - servo - talk - board (got) - wire - host
+ *   host - wire ---------------------- bus - servo - talk --------------- wire - host
+ */
 #include <string.h>
 
-#include "src/sim/sim.h"
+#include "src/sim/board.h"
+#include "src/sim/bus.h"
+#include "src/sim/fault.h"
+#include "src/sim/note.h"
+#include "src/sim/power.h"
+#include "src/sim/shaft.h"
+#include "src/sim/talk.h"
+#include "src/sim/wire.h"
 
 #define LOWEST_BPS 300
+/* Assumptions; docs/simulator.md lists them. */
+#define SUPPLY_MV 7400
+#define AMBIENT_C 25
+#define SILENCE_US 2000
+/* The board's rate towards the servos (protocol 2). */
+#define BUS_BPS 115200
 /* As far as register POSITION can tell. */
 #define NO_STOP_MDEG 3276700
-
-/* ---- telling ------------------------------------------------------------------------------- */
-
-void grobo_i_sim_tell(grobo_sim *sim, const grobo_sim_event *event)
-{
-    if (sim->config.hook != NULL) {
-        sim->config.hook(event, sim->config.hook_ctx);
-    }
-}
-
-void grobo_i_sim_note(grobo_sim *sim, grobo_sim_event_kind kind, int servo, int32_t value)
-{
-    grobo_i_sim_tell(
-        sim,
-        &(grobo_sim_event){.kind = kind, .time_us = sim->now_us, .servo = servo, .value = value});
-}
-
-/* ---- wires --------------------------------------------------------------------------------- */
-
-/* A byte that is over at at_ns; false when there is no room for it. */
-static bool put(grobo_sim_wire *wire, uint8_t byte, int64_t at_ns)
-{
-    wire->free_ns = at_ns;
-    if (wire->used == GROBO_SIM_WIRE_BYTES) {
-        return false;
-    }
-    size_t at = (size_t)(wire->head + wire->used++) % GROBO_SIM_WIRE_BYTES;
-    wire->byte[at] = byte;
-    wire->at_ns[at] = at_ns;
-    return true;
-}
-
-static uint8_t take(grobo_sim_wire *wire)
-{
-    uint8_t byte = wire->byte[wire->head];
-    wire->head = (uint16_t)((wire->head + 1) % GROBO_SIM_WIRE_BYTES);
-    wire->used--;
-    return byte;
-}
-
-static int64_t next_end_ns(const grobo_sim_wire *wire)
-{
-    return wire->used > 0 ? wire->at_ns[wire->head] : GROBO_NEVER_US;
-}
 
 static int64_t byte_ns(const grobo_sim *sim, uint32_t bps)
 {
     return sim->config.unpaced ? 1 : 10000000000 / bps;
 }
 
-/* A byte as it arrives at another rate than it was sent. */
-static void misread(grobo_sim *sim, uint8_t *byte)
-{
-    if (sim->config.wiring == GROBO_WIRING_BOARD && sim->line_bps != sim->config.baud_bps) {
-        *byte = (uint8_t)grobo_i_sim_random(sim, GROBO_I_SIM_CHANCE, 256);
-    }
-}
-
-/* When the host's adapter hands over a byte that has arrived there at at_ns. */
-static int64_t handed_over_ns(grobo_sim *sim, int64_t at_ns)
-{
-    if (at_ns > sim->hand_over_ns) {
-        sim->hand_over_ns = at_ns + (int64_t)sim->config.latency_us * 1000;
-    }
-    return sim->hand_over_ns;
-}
-
-void grobo_i_sim_to_host(grobo_sim *sim, uint8_t byte, int64_t at_ns)
-{
-    if (sim->gone) {
-        return;
-    }
-    misread(sim, &byte);
-    if (grobo_i_sim_crosses(sim, &byte) && !put(&sim->out, byte, handed_over_ns(sim, at_ns))) {
-        sim->stats.overflows++;
-    }
-    sim->out.free_ns = at_ns; /* the adapter waits, the line does not */
-}
-
 static void arrive(grobo_sim *sim, int64_t t_ns)
 {
-    uint8_t byte = take(&sim->in);
-    sim->stats.rx_bytes++;
-    misread(sim, &byte);
-    if (!grobo_i_sim_crosses(sim, &byte)) {
+    uint8_t byte;
+    if (!grobo_i_sim_from_host(sim, &byte)) {
         return;
     }
     if (sim->config.wiring == GROBO_WIRING_BUS) {
         grobo_i_sim_bus_hear(sim, byte, t_ns);
     } else {
         grobo_i_sim_board_hear(sim, byte, t_ns);
+    }
+}
+
+/* A byte of a servo is over. */
+static void said(grobo_sim *sim, int64_t t_ns)
+{
+    uint8_t byte = grobo_i_sim_talk_take(sim, t_ns);
+    if (sim->config.wiring == GROBO_WIRING_BUS) {
+        grobo_i_sim_to_host(sim, byte, t_ns);
+    } else {
+        grobo_i_sim_board_got(sim, byte, t_ns);
     }
 }
 
@@ -111,7 +65,7 @@ static int64_t earlier(int64_t a, int64_t b)
 /* Does what is due first, if it is due by limit_ns. */
 static bool step_once(grobo_sim *sim, int64_t limit_ns)
 {
-    int64_t talk_ns = grobo_i_sim_talk_next(sim), in_ns = next_end_ns(&sim->in);
+    int64_t talk_ns = grobo_i_sim_talk_next(sim), in_ns = grobo_i_sim_wire_next(&sim->in);
     int64_t board_ns = grobo_i_sim_board_next(sim);
     int64_t t_ns = earlier(talk_ns, earlier(in_ns, board_ns));
     if (t_ns > limit_ns) {
@@ -120,7 +74,7 @@ static bool step_once(grobo_sim *sim, int64_t limit_ns)
     sim->now_ns = t_ns;
     sim->now_us = grobo_i_sim_us(t_ns);
     if (talk_ns == t_ns) {
-        grobo_i_sim_talk_act(sim, t_ns);
+        said(sim, t_ns);
     } else if (in_ns == t_ns) {
         arrive(sim, t_ns);
     } else {
@@ -214,7 +168,7 @@ static int64_t inner_deadline_ns(const grobo_sim *sim)
 static int64_t burst_end_ns(const grobo_sim *sim)
 {
     const grobo_sim_wire *out = &sim->out;
-    int64_t end_ns = next_end_ns(out);
+    int64_t end_ns = grobo_i_sim_wire_next(out);
     for (size_t i = 1; i < out->used; i++) {
         int64_t at_ns = out->at_ns[(out->head + i) % GROBO_SIM_WIRE_BYTES];
         if (at_ns - end_ns > sim->line_byte_ns) {
@@ -232,10 +186,10 @@ static int64_t deadline_us(int64_t at_ns)
 
 int64_t grobo_sim_deadline(const grobo_sim *sim)
 {
-    int64_t at_ns = earlier(next_end_ns(&sim->out), inner_deadline_ns(sim));
+    int64_t at_ns = earlier(grobo_i_sim_wire_next(&sim->out), inner_deadline_ns(sim));
     if (sim->config.wiring == GROBO_WIRING_BUS) { /* these reach the host as they are over */
         at_ns = earlier(at_ns, grobo_i_sim_talk_next(sim));
-        at_ns = sim->config.echo ? earlier(at_ns, next_end_ns(&sim->in)) : at_ns;
+        at_ns = sim->config.echo ? earlier(at_ns, grobo_i_sim_wire_next(&sim->in)) : at_ns;
     }
     return deadline_us(at_ns);
 }
@@ -263,7 +217,7 @@ size_t grobo_sim_rx(grobo_sim *sim, const uint8_t *bytes, size_t n, int64_t now_
     int64_t at_ns = sim->in.free_ns > sim->now_ns ? sim->in.free_ns : sim->now_ns;
     for (size_t i = 0; i < n; i++) {
         at_ns += sim->line_byte_ns;
-        (void)put(&sim->in, bytes[i], at_ns);
+        (void)grobo_i_sim_wire_put(&sim->in, bytes[i], at_ns);
     }
     return n;
 }
@@ -272,23 +226,14 @@ size_t grobo_sim_tx(grobo_sim *sim, uint8_t *buf, size_t cap, int64_t now_us)
 {
     grobo_sim_step(sim, now_us);
     size_t n = 0;
-    while (n < cap && next_end_ns(&sim->out) <= sim->now_ns) {
-        buf[n++] = take(&sim->out);
+    while (n < cap && grobo_i_sim_wire_next(&sim->out) <= sim->now_ns) {
+        buf[n++] = grobo_i_sim_wire_take(&sim->out);
     }
     sim->stats.tx_bytes += (uint32_t)n;
     return n;
 }
 
 /* ---- the host's cable ---------------------------------------------------------------------- */
-
-void grobo_i_sim_cut(grobo_sim *sim)
-{
-    sim->gone = true;
-    sim->in.used = sim->out.used = 0;
-    sim->in.free_ns = sim->out.free_ns = sim->hand_over_ns = sim->now_ns;
-    sim->fifo_used = 0;
-    grobo_board_parser_reset(&sim->board);
-}
 
 void grobo_sim_plug(grobo_sim *sim, bool in, int64_t now_us)
 {
@@ -351,16 +296,17 @@ static void init_servo(grobo_sim *sim, int index)
     servo->temperature_c = sim->config.ambient_c;
     grobo_i_sim_factory(servo, joint->servo_model, joint->motor, sim->bus_bps);
     grobo_i_sim_boot(sim, index, 0);
+    grobo_i_sim_feed(sim, index);
 }
 
 static void use_defaults(grobo_sim_config *config)
 {
     config->model = config->model == NULL ? &grobo_gr001_model : config->model;
     config->baud_bps = config->baud_bps == 0 ? 115200 : config->baud_bps;
-    config->supply_mv = config->supply_mv == 0 ? GROBO_I_SIM_SUPPLY_MV : config->supply_mv;
-    config->ambient_c = config->ambient_c == 0 ? GROBO_I_SIM_AMBIENT_C : config->ambient_c;
+    config->supply_mv = config->supply_mv == 0 ? SUPPLY_MV : config->supply_mv;
+    config->ambient_c = config->ambient_c == 0 ? AMBIENT_C : config->ambient_c;
     if (config->board_silence_us == 0) {
-        config->board_silence_us = GROBO_I_SIM_SILENCE_US;
+        config->board_silence_us = SILENCE_US;
     }
 }
 
@@ -385,7 +331,7 @@ int grobo_sim_init(grobo_sim *sim, const grobo_sim_config *config, int64_t now_u
     sim->in.free_ns = sim->out.free_ns = sim->bus_heard_ns = sim->hand_over_ns = sim->now_ns;
     sim->supply_mv = with.supply_mv;
     sim->n_servos = with.model->n_joints;
-    sim->bus_bps = GROBO_I_SIM_BUS_BPS;
+    sim->bus_bps = BUS_BPS;
     sim->bus_byte_ns = byte_ns(sim, sim->bus_bps);
     (void)grobo_sim_set_line_bps(sim, with.baud_bps);
     grobo_board_parser_init(&sim->board, with.board_stall_us);
@@ -394,7 +340,6 @@ int grobo_sim_init(grobo_sim *sim, const grobo_sim_config *config, int64_t now_u
     for (int i = 0; i < sim->n_servos; i++) {
         init_servo(sim, i);
     }
-    grobo_sim_set_supply(sim, with.supply_mv);
     sim->config.hook = with.hook;
     return 0;
 }

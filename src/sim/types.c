@@ -2,7 +2,7 @@
 /* The servos that can be simulated: what tells one from another is a row of this table. */
 #include <string.h>
 
-#include "src/sim/sim.h"
+#include "src/sim/registers.h"
 
 /*
  * Name, model, stall current, speed (0.11 and 0.16 s for 60 degrees at 7.4 V), punch, slope,

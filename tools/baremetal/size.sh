@@ -34,8 +34,8 @@ robot='servo/driver servo/rs30x/driver servo/gr001/driver model/gr001'
 engine='robot/robot robot/job robot/play robot/query robot/request
     robot/slot robot/steps robot/axis play/progress robot/gate
     robot/orders robot/watch robot/segments robot/sense robot/hrpsys robot/budget'
-simulator='servo/gr001/parser sim/board sim/bus sim/fault sim/inspect sim/power sim/servo sim/shaft
-    sim/sim sim/types'
+simulator='servo/gr001/parser sim/board sim/bus sim/fault sim/inspect sim/note sim/power
+    sim/registers sim/servo sim/shaft sim/sim sim/talk sim/types sim/wire'
 
 # figure CPU NAME BYTES: notes it, and prints it beside the one that was kept.
 figure() {

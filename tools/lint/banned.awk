@@ -31,7 +31,7 @@ BEGIN {
 }
 
 # The one place where grobo_mem_default() meets the C library.
-FILENAME ~ /(^|\/)heap\.c$/ { next }
+FILENAME ~ /(^|\/)base\/memory\.c$/ { next }
 
 {
     rest = code

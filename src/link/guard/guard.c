@@ -48,7 +48,7 @@ int grobo_guard_new(const grobo_guard_config *config, grobo_guard **guard)
     if (guard == NULL) {
         return GROBO_ERR_ARG;
     }
-    made = grobo_i_link_new(from->mem, sizeof *made);
+    made = grobo_i_new(from->mem, sizeof *made);
     if (made == NULL) {
         return GROBO_ERR_NOMEM;
     }
@@ -62,7 +62,7 @@ int grobo_guard_new(const grobo_guard_config *config, grobo_guard **guard)
         }
     }
     if (r < 0) {
-        grobo_i_link_free(from->mem, made, sizeof *made);
+        grobo_i_free(from->mem, made, sizeof *made);
         return r;
     }
     *guard = made;
@@ -74,7 +74,7 @@ void grobo_guard_free(grobo_guard *guard)
     if (guard != NULL) {
         grobo_i_guard_release(guard);
         grobo_i_guard_end(&guard->process, END_US);
-        grobo_i_link_free(guard->mem, guard, sizeof *guard);
+        grobo_i_free(guard->mem, guard, sizeof *guard);
     }
 }
 

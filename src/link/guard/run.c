@@ -356,7 +356,7 @@ int grobo_guard_run(const grobo_guard_program *program)
 {
     static const grobo_guard_program defaults = {0};
     const guard_hello hello = {GUARD_MAGIC, sizeof(guard_message)};
-    guard_run *run = grobo_i_link_new(NULL, sizeof *run);
+    guard_run *run = grobo_i_new(NULL, sizeof *run);
     int r;
 
     if (run == NULL) {
@@ -365,7 +365,7 @@ int grobo_guard_run(const grobo_guard_program *program)
     run->program = program != NULL ? program : &defaults;
     run->came = GROBO_HANDLE_NULL;
     forget(run);
-    run->port = grobo_i_link_new(NULL, port_bytes());
+    run->port = grobo_i_new(NULL, port_bytes());
     r = run->port != NULL ? grobo_i_guard_begin(&run->watch) : GROBO_ERR_NOMEM;
     if (r >= 0) {
         r = grobo_i_guard_send(run->watch.socket, &hello, sizeof hello, GROBO_HANDLE_NULL);
@@ -374,7 +374,7 @@ int grobo_guard_run(const grobo_guard_program *program)
         grobo_i_guard_cease(&run->watch);
     }
     drop(run);
-    grobo_i_link_free(NULL, run->port, port_bytes());
-    grobo_i_link_free(NULL, run, sizeof *run);
+    grobo_i_free(NULL, run->port, port_bytes());
+    grobo_i_free(NULL, run, sizeof *run);
     return r < 0 ? r : GROBO_OK;
 }

@@ -1,6 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include <string.h>
-
 #include <event2/event.h>
 
 #include <grobo/loop.h>
@@ -18,26 +16,6 @@ struct grobo_timer {
     const grobo_mem *mem;
     int64_t deadline_us;
 };
-
-void *grobo_i_link_new(const grobo_mem *mem, size_t bytes)
-{
-    const grobo_mem *from = mem != NULL ? mem : grobo_mem_default();
-    void *ptr = from->resize(from->ctx, NULL, 0, bytes);
-
-    if (ptr != NULL) {
-        memset(ptr, 0, bytes);
-    }
-    return ptr;
-}
-
-void grobo_i_link_free(const grobo_mem *mem, void *ptr, size_t bytes)
-{
-    const grobo_mem *to = mem != NULL ? mem : grobo_mem_default();
-
-    if (ptr != NULL) {
-        (void)to->resize(to->ctx, ptr, bytes, 0);
-    }
-}
 
 struct timeval grobo_i_link_timeval(int64_t span_us)
 {
@@ -103,13 +81,13 @@ int grobo_timer_new(struct event_base *base, grobo_timer_fn fn, void *ctx, const
     if (base == NULL || fn == NULL || timer == NULL) {
         return GROBO_ERR_ARG;
     }
-    made = grobo_i_link_new(mem, sizeof *made);
+    made = grobo_i_new(mem, sizeof *made);
     if (made == NULL) {
         return GROBO_ERR_NOMEM;
     }
     made->event = event_new(base, -1, 0, on_time, made);
     if (made->event == NULL) {
-        grobo_i_link_free(mem, made, sizeof *made);
+        grobo_i_free(mem, made, sizeof *made);
         return GROBO_ERR_NOMEM;
     }
     made->fn = fn;
@@ -124,7 +102,7 @@ void grobo_timer_free(grobo_timer *timer)
 {
     if (timer != NULL) {
         event_free(timer->event);
-        grobo_i_link_free(timer->mem, timer, sizeof *timer);
+        grobo_i_free(timer->mem, timer, sizeof *timer);
     }
 }
 

@@ -16,9 +16,9 @@ static void destroy(grobo_serial *serial)
     if (serial->tell != NULL) {
         event_free(serial->tell);
     }
-    grobo_i_link_free(mem, serial->port, serial->port_bytes);
-    grobo_i_link_free(mem, serial->queue, serial->config.tx_queue_bytes);
-    grobo_i_link_free(mem, serial, sizeof *serial);
+    grobo_i_free(mem, serial->port, serial->port_bytes);
+    grobo_i_free(mem, serial->queue, serial->config.tx_queue_bytes);
+    grobo_i_free(mem, serial, sizeof *serial);
 }
 
 /* Leaves a callback. False: the callback has freed the port. */
@@ -196,7 +196,7 @@ int grobo_serial_new(const grobo_serial_config *config, grobo_serial **serial)
     if (r < 0) {
         return r;
     }
-    made = grobo_i_link_new(from->mem, sizeof *made);
+    made = grobo_i_new(from->mem, sizeof *made);
     if (made == NULL) {
         return GROBO_ERR_NOMEM;
     }
@@ -205,7 +205,7 @@ int grobo_serial_new(const grobo_serial_config *config, grobo_serial **serial)
     r = grobo_serial_set_device(made, from->device);
     made->config.device = NULL;
     if (r >= 0) {
-        made->queue = grobo_i_link_new(from->mem, made->config.tx_queue_bytes);
+        made->queue = grobo_i_new(from->mem, made->config.tx_queue_bytes);
         made->tell = from->base != NULL ? event_new(from->base, -1, 0, on_tell, made) : NULL;
         if (made->queue == NULL || (from->base != NULL && made->tell == NULL)) {
             r = GROBO_ERR_NOMEM;
@@ -323,8 +323,8 @@ static int open_port(grobo_serial *serial)
     int r;
 
     if (ops->size_bytes > serial->port_bytes) {
-        grobo_i_link_free(serial->config.mem, serial->port, serial->port_bytes);
-        serial->port = grobo_i_link_new(serial->config.mem, ops->size_bytes);
+        grobo_i_free(serial->config.mem, serial->port, serial->port_bytes);
+        serial->port = grobo_i_new(serial->config.mem, ops->size_bytes);
         serial->port_bytes = serial->port != NULL ? ops->size_bytes : 0;
         if (serial->port == NULL) {
             return GROBO_ERR_NOMEM;

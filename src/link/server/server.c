@@ -384,7 +384,7 @@ static int make_ends(grobo_sim_server *server)
             }
             continue;
         }
-        e->port = grobo_i_link_new(server->config.mem, e->ops->size_bytes);
+        e->port = grobo_i_new(server->config.mem, e->ops->size_bytes);
         if (e->port == NULL) {
             return GROBO_ERR_NOMEM;
         }
@@ -404,7 +404,7 @@ int grobo_sim_server_new(const grobo_sim_server_config *config, grobo_sim_server
         (config->no_pty && config->tcp == NULL)) {
         return GROBO_ERR_ARG;
     }
-    made = grobo_i_link_new(config->mem, sizeof *made);
+    made = grobo_i_new(config->mem, sizeof *made);
     if (made == NULL) {
         return GROBO_ERR_NOMEM;
     }
@@ -444,9 +444,9 @@ void grobo_sim_server_free(grobo_sim_server *server)
     for (int i = 0; i < ENDS; i++) {
         end *e = &server->ends[i];
 
-        grobo_i_link_free(mem, e->port, e->ops != NULL ? e->ops->size_bytes : 0);
+        grobo_i_free(mem, e->port, e->ops != NULL ? e->ops->size_bytes : 0);
     }
-    grobo_i_link_free(mem, server, sizeof *server);
+    grobo_i_free(mem, server, sizeof *server);
 }
 
 const char *grobo_sim_server_device(const grobo_sim_server *server)

@@ -82,11 +82,11 @@ static int sim_open(grobo_session *session, const char *name)
 
     (void)name;
     if (session->sim == NULL) {
-        grobo_sim *sim = grobo_i_link_new(session->config.mem, sizeof *sim);
+        grobo_sim *sim = grobo_i_new(session->config.mem, sizeof *sim);
         int r = sim != NULL ? grobo_sim_init(sim, &session->sim_config, now_us) : GROBO_ERR_NOMEM;
 
         if (r < 0) {
-            grobo_i_link_free(session->config.mem, sim, sizeof *sim);
+            grobo_i_free(session->config.mem, sim, sizeof *sim);
             return r;
         }
         session->sim = sim;
@@ -190,7 +190,7 @@ static int add_port(void *ctx, const grobo_port_info *info)
 int grobo_i_session_scan_begin(grobo_session *session)
 {
     const char *const *device = session->config.scan;
-    session_scan *scan = grobo_i_link_new(session->config.mem, sizeof *scan);
+    session_scan *scan = grobo_i_new(session->config.mem, sizeof *scan);
 
     if (scan == NULL) {
         return GROBO_ERR_NOMEM;
@@ -215,6 +215,6 @@ int grobo_i_session_scan_begin(grobo_session *session)
 
 void grobo_i_session_scan_end(grobo_session *session)
 {
-    grobo_i_link_free(session->config.mem, session->scan, sizeof *session->scan);
+    grobo_i_free(session->config.mem, session->scan, sizeof *session->scan);
     session->scan = NULL;
 }

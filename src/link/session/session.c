@@ -54,8 +54,8 @@ static void destroy(grobo_session *session)
     grobo_serial_free(session->serial);
     grobo_i_estop_watch_end(&session->estop);
     grobo_i_session_scan_end(session);
-    grobo_i_link_free(mem, session->sim, sizeof *session->sim);
-    grobo_i_link_free(mem, session, sizeof *session);
+    grobo_i_free(mem, session->sim, sizeof *session->sim);
+    grobo_i_free(mem, session, sizeof *session);
 }
 
 /* ---- opening ------------------------------------------------------------------------------ */
@@ -442,7 +442,7 @@ int grobo_session_new(const grobo_session_config *config, grobo_session **sessio
         config->baud_bps < 0) {
         return GROBO_ERR_ARG;
     }
-    made = grobo_i_link_new(config->mem, sizeof *made);
+    made = grobo_i_new(config->mem, sizeof *made);
     if (made == NULL) {
         return GROBO_ERR_NOMEM;
     }

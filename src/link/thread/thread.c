@@ -336,7 +336,7 @@ static void destroy(grobo_control *control)
     grobo_motion_free(control->motion);
     grobo_cond_deinit(&control->changed);
     grobo_mutex_deinit(&control->lock);
-    grobo_i_link_free(control->mem, control, sizeof *control);
+    grobo_i_free(control->mem, control, sizeof *control);
 }
 
 static bool is_period(int64_t period_us)
@@ -367,13 +367,13 @@ int grobo_control_new(const grobo_control_config *config, grobo_control **contro
         (config->control_period_us != 0 && !is_period(config->control_period_us))) {
         return GROBO_ERR_ARG;
     }
-    made = grobo_i_link_new(config->session.mem, sizeof *made);
+    made = grobo_i_new(config->session.mem, sizeof *made);
     if (made == NULL) {
         return GROBO_ERR_NOMEM;
     }
     r = make_lock(made);
     if (r < 0) {
-        grobo_i_link_free(config->session.mem, made, sizeof *made);
+        grobo_i_free(config->session.mem, made, sizeof *made);
         return r;
     }
     fill(made, config);

@@ -3,9 +3,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "src/motion/format/reader.h"
-#include "src/motion/format/write.h"
+#include "src/motion/change/convert.h"
 #include "src/motion/play/clip.h"
+#include "src/motion/store/columns.h"
 #include "src/motion/store/diagnostics.h"
 
 /* Postures further apart are resampled to become frames. */
@@ -27,11 +27,9 @@ typedef struct conversion {
 static void note(const conversion *conv, const char *code, uint32_t line, const char *text,
                  size_t count)
 {
-    const char *name = conv->options->name != NULL ? conv->options->name : "";
-
-    grobo_i_say(conv->list, &(grobo_i_said){name, code, line, 0, GROBO_SEVERITY_NOTE},
-                "%s (%lu of %lu postures)", text, (unsigned long)count,
-                (unsigned long)conv->from->size);
+    grobo_i_say(
+        conv->list, &(grobo_i_said){conv->options->name, code, line, 0, GROBO_SEVERITY_NOTE},
+        "%s (%lu of %lu postures)", text, (unsigned long)count, (unsigned long)conv->from->size);
 }
 
 /* ---- what is lost ------------------------------------------------------------------------- */
@@ -123,8 +121,8 @@ static void note_unset(const conversion *conv)
         unset += (conv->clip->listed & GROBO_JOINT_BIT(j)) == 0;
     }
     if (unset > 0 && conv->from->size > 0) {
-        const char *name = conv->options->name != NULL ? conv->options->name : "";
-        grobo_i_say(conv->list, &(grobo_i_said){name, "joints-unset", 0, 0, GROBO_SEVERITY_NOTE},
+        grobo_i_say(conv->list,
+                    &(grobo_i_said){conv->options->name, "joints-unset", 0, 0, GROBO_SEVERITY_NOTE},
                     "%d joint%s that no posture sets stay%s where the motion starts", unset,
                     unset == 1 ? "" : "s", unset == 1 ? "s" : "");
     }
@@ -365,8 +363,7 @@ static int to_frames(conversion *conv)
     int result = resample(conv, GROBO_MOTION_RATE_HZ);
     if (result == 0 && conv->to->size > 0) {
         grobo_i_say(conv->list,
-                    &(grobo_i_said){options->name != NULL ? options->name : "", "resampled", 0, 0,
-                                    GROBO_SEVERITY_NOTE},
+                    &(grobo_i_said){options->name, "resampled", 0, 0, GROBO_SEVERITY_NOTE},
                     "resampled: %d frames per second", GROBO_MOTION_RATE_HZ);
     }
     return result;

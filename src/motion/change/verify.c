@@ -28,7 +28,6 @@ static void say_at(verification *v, uint32_t line, const char *code, const char 
 
 static void say_at(verification *v, uint32_t line, const char *code, const char *format, ...)
 {
-    const char *name = v->options->name != NULL ? v->options->name : "";
     char text[256];
     va_list args;
 
@@ -36,7 +35,8 @@ static void say_at(verification *v, uint32_t line, const char *code, const char 
     grobo_i_format_message(text, sizeof text, format, args);
     va_end(args);
     v->n_lost++;
-    grobo_i_say(v->list, &(grobo_i_said){name, code, line, 0, GROBO_SEVERITY_ERROR}, "%s", text);
+    grobo_i_say(v->list, &(grobo_i_said){v->options->name, code, line, 0, GROBO_SEVERITY_ERROR},
+                "%s", text);
 }
 
 /* Tenths of a unit of a number, which a message can hold without a locale's point. */

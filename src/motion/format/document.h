@@ -60,10 +60,4 @@ int grobo_i_read_has_frame_time(grobo_i_events *events, grobo_i_frame_info *info
 int grobo_i_finish_frames(grobo_i_document *document);
 void grobo_i_pose_names_free(grobo_i_document *document);
 
-/*
- * Keeps the value of a key: adds it to a list of kept keys. Line breaks and quotes are made such
- * that it can be written on one line.
- */
-int grobo_i_keep_value(grobo_i_events *events, grobo_i_kept **list, const grobo_kept *where);
-
 #endif

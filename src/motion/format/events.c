@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
 
+#include "src/base/memory.h"
 #include "src/motion/format/events.h"
 
 static grobo_i_place place_of(yaml_mark_t mark)

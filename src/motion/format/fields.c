@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
 
+#include "src/base/memory.h"
 #include "src/motion/format/fields.h"
 #include "src/motion/text/number.h"
+#include "src/motion/text/out.h"
 
 /* ---- single values ------------------------------------------------------------------------ */
 
@@ -289,6 +291,16 @@ int grobo_i_read_doubles(grobo_i_events *events, const char *what, double *value
 
 /* ---- mappings ----------------------------------------------------------------------------- */
 
+uint64_t grobo_i_hash(const char *text)
+{
+    uint64_t hash = 14695981039346656037U; /* FNV-1a */
+
+    for (; *text != '\0'; text++) {
+        hash = (hash ^ (unsigned char)*text) * 1099511628211U;
+    }
+    return hash;
+}
+
 /* What is known of a mapping while it is read. */
 typedef struct map_state {
     const grobo_i_fields *fields;
@@ -299,16 +311,6 @@ typedef struct map_state {
     int merges[GROBO_YAML_MERGES_MAX];             /* anchors */
     grobo_i_place merge_place;
 } map_state;
-
-static uint64_t hash_of(const char *text, size_t length)
-{
-    uint64_t hash = 14695981039346656037U; /* FNV-1a */
-
-    for (size_t i = 0; i < length; i++) {
-        hash = (hash ^ (unsigned char)text[i]) * 1099511628211U;
-    }
-    return hash;
-}
 
 /* The value of a merge key: an alias or a list of them. */
 static int read_merge(grobo_i_events *events, map_state *map)
@@ -349,7 +351,7 @@ static int complain_twice(grobo_i_events *events, const map_state *map, const ch
 static int read_unknown(grobo_i_events *events, map_state *map, const char *key,
                         grobo_i_place place, bool merged)
 {
-    uint64_t hash = hash_of(key, strlen(key));
+    uint64_t hash = grobo_i_hash(key);
 
     for (int i = 0; i < map->n_unknown; i++) {
         if (map->unknown[i] == hash) {
@@ -506,7 +508,8 @@ static void put_event(grobo_i_out *out, const grobo_i_event *event)
     }
 }
 
-int grobo_i_capture(grobo_i_events *events, grobo_i_text *text)
+/* One node as flow-style text on one line. */
+static int capture(grobo_i_events *events, grobo_i_text *text)
 {
     grobo_sink sink = {grobo_i_text_write, text};
     capture_level levels[GROBO_YAML_DEPTH_MAX + 1] = {{false, false, true}};
@@ -535,4 +538,31 @@ int grobo_i_capture(grobo_i_events *events, grobo_i_text *text)
         }
     } while (depth > 0);
     return grobo_i_out_end(&out);
+}
+
+int grobo_i_keep_value(grobo_i_events *events, grobo_i_kept **list, const grobo_kept *where)
+{
+    grobo_i_reader *reader = events->reader;
+    grobo_i_text text = {.mem = reader->mem, .cap = GROBO_YAML_SCALAR_MAX_BYTES};
+    grobo_kept kept = *where;
+    const grobo_i_event *event;
+    int result = grobo_i_peek(events, &event);
+    grobo_i_place place = event->place;
+
+    if (result == 0) {
+        result = capture(events, &text);
+    }
+    if (result == 0) {
+        result = grobo_i_text_write(&text, "", 1);
+    }
+    if (result == 0) {
+        kept.value = text.data;
+        result = grobo_i_kept_add(reader->mem, list, &kept);
+    }
+    grobo_i_text_free(&text);
+    if (result == GROBO_ERR_CAP) {
+        return grobo_i_refuse(reader, result, "kept-size", place,
+                              "'%s' is larger than unknown keys may be", where->key);
+    }
+    return result;
 }

@@ -8,7 +8,6 @@
 #define GROBO_MOTION_FIELDS_H
 
 #include "src/motion/format/events.h"
-#include "src/motion/text/out.h"
 
 typedef struct grobo_i_field {
     const char *name;
@@ -50,9 +49,13 @@ int grobo_i_read_numbers(grobo_i_events *events, const char *what, grobo_i_numbe
 int grobo_i_read_doubles(grobo_i_events *events, const char *what, double *values, int count);
 /* A copy of a scalar, null being ""; freed by grobo_i_free_text(). An old *value is freed. */
 int grobo_i_read_string(grobo_i_events *events, const char *what, char **value);
+uint64_t grobo_i_hash(const char *text);
 /* True for a plain scalar that means nothing: empty, ~, null. */
 bool grobo_i_is_null(const grobo_i_event *event);
-/* One node as flow-style text on one line. */
-int grobo_i_capture(grobo_i_events *events, grobo_i_text *text);
+/*
+ * Keeps the value of a key: adds it to a list of kept keys. Line breaks and quotes are made such
+ * that it can be written on one line.
+ */
+int grobo_i_keep_value(grobo_i_events *events, grobo_i_kept **list, const grobo_kept *where);
 
 #endif

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "src/base/memory.h"
 #include "src/motion/format/document.h"
 
 /* What a component proves to be. Unknown until type and content have been read. */

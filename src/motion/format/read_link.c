@@ -2,6 +2,7 @@
 /* Entries of ikLinks. */
 #include <string.h>
 
+#include "src/base/memory.h"
 #include "src/motion/format/pose.h"
 
 /* An entry of ikLinks while it is read. */

@@ -3,7 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "src/motion/format/reader.h"
+#include "src/motion/format/read.h"
+#include "src/motion/store/columns.h"
 #include "src/motion/text/number.h"
 #include "src/motion/text/units.h"
 
@@ -27,23 +28,6 @@ typedef struct m_line {
 static bool is_blank(unsigned char c)
 {
     return c == ' ' || (c >= '\t' && c <= '\r');
-}
-
-bool grobo_i_motor_order(const grobo_model *model, int columns, uint8_t *joints)
-{
-    bool by_motor = model != NULL && columns <= model->n_joints;
-    int c = 0;
-
-    for (int motor = 1; by_motor && c < columns && motor <= GROBO_SERVO_ID_MAX; motor++) {
-        int joint = grobo_model_joint_of_motor(model, motor);
-        if (joint >= 0) {
-            joints[c++] = (uint8_t)joint;
-        }
-    }
-    for (; c < columns; c++) {
-        joints[c] = (uint8_t)c;
-    }
-    return by_motor;
 }
 
 /* The first posture decides how many angles all have, and whose they are. */

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "src/base/memory.h"
 #include "src/motion/format/pose.h"
 
 static int complain_range(grobo_i_events *events, grobo_i_place place, const char *what)

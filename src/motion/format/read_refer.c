@@ -2,6 +2,7 @@
 /* A pose: the value of `refer`. */
 #include <string.h>
 
+#include "src/base/memory.h"
 #include "src/motion/format/pose.h"
 
 static int read_list(grobo_i_events *events, const char *what, grobo_i_pose_list *list)

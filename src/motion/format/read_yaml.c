@@ -2,34 +2,9 @@
 /* The top of a YAML motion file, and what kind of motion it is. */
 #include <string.h>
 
+#include "src/base/memory.h"
 #include "src/motion/format/document.h"
-
-int grobo_i_keep_value(grobo_i_events *events, grobo_i_kept **list, const grobo_kept *where)
-{
-    grobo_i_reader *reader = events->reader;
-    grobo_i_text text = {.mem = reader->mem, .cap = GROBO_YAML_SCALAR_MAX_BYTES};
-    grobo_kept kept = *where;
-    const grobo_i_event *event;
-    int result = grobo_i_peek(events, &event);
-    grobo_i_place place = event->place;
-
-    if (result == 0) {
-        result = grobo_i_capture(events, &text);
-    }
-    if (result == 0) {
-        result = grobo_i_text_write(&text, "", 1);
-    }
-    if (result == 0) {
-        kept.value = text.data;
-        result = grobo_i_kept_add(reader->mem, list, &kept);
-    }
-    grobo_i_text_free(&text);
-    if (result == GROBO_ERR_CAP) {
-        return grobo_i_refuse(reader, result, "kept-size", place,
-                              "'%s' is larger than unknown keys may be", where->key);
-    }
-    return result;
-}
+#include "src/motion/format/read.h"
 
 /* ---- keys of the top ---------------------------------------------------------------------- */
 

@@ -56,14 +56,4 @@ int grobo_i_take_time(grobo_i_reader *reader, double *time_s, double found_s, gr
 int grobo_i_set_angle(grobo_i_reader *reader, const grobo_i_row *row, int joint, double angle_rad,
                       grobo_i_place place);
 
-/*
- * Column c of a .m file is joint joints[c]: the model's joints in the order of their motors, or,
- * where it has not so many joints (or there is no model), joint c. @return true for motor order.
- */
-bool grobo_i_motor_order(const grobo_model *model, int columns, uint8_t *joints);
-
-/* Reads reader->input into reader->motion. */
-int grobo_i_read_m(grobo_i_reader *reader);
-int grobo_i_read_yaml(grobo_i_reader *reader, grobo_motion_format format, bool forced);
-
 #endif

@@ -1,34 +1,16 @@
 /* SPDX-License-Identifier: MIT */
-#include <string.h>
-
 #include "src/motion/format/write.h"
-
-void grobo_i_put_kept(grobo_i_out *out, const grobo_i_kept *kept, grobo_kept_level level, int link,
-                      int indent)
-{
-    for (; kept != NULL; kept = kept->next) {
-        if (kept->level != level || (level == GROBO_KEPT_LINK && kept->link != link)) {
-            continue;
-        }
-        for (int i = 0; i < indent; i++) {
-            grobo_i_put(out, " ", 1);
-        }
-        grobo_i_put_name(out, kept->text, kept->key_bytes - 1);
-        grobo_i_put_text(out, ": ");
-        grobo_i_put(out, kept->text + kept->key_bytes, kept->value_bytes - 1);
-        grobo_i_put_text(out, "\n");
-    }
-}
+#include "src/motion/change/convert.h"
 
 /* Postures without joints are no lines. */
 static int check_writable(const grobo_motion *motion, const grobo_i_writing *writing)
 {
     bool frames = motion->kind == GROBO_MOTION_FRAMES;
-    const char *name = writing->options->name != NULL ? writing->options->name : "";
 
     if ((frames || motion->kind == GROBO_MOTION_POSTURES) && motion->size > 0 &&
         motion->n_joints == 0) {
-        grobo_i_say(writing->list, &(grobo_i_said){name, "empty", 0, 0, GROBO_SEVERITY_ERROR},
+        grobo_i_say(writing->list,
+                    &(grobo_i_said){writing->options->name, "empty", 0, 0, GROBO_SEVERITY_ERROR},
                     "no posture sets any joint");
         return GROBO_ERR_EMPTY;
     }
@@ -65,9 +47,8 @@ int grobo_motion_write(const grobo_motion *motion, grobo_motion_format format,
     }
     grobo_i_out_begin(&out, sink);
     if (motion->frame_times && motion->size > 0) {
-        const char *name = writing.options->name != NULL ? writing.options->name : "";
         grobo_i_say(
-            list, &(grobo_i_said){name, "frame-times", 0, 0, GROBO_SEVERITY_NOTE},
+            list, &(grobo_i_said){writing.options->name, "frame-times", 0, 0, GROBO_SEVERITY_NOTE},
             "each frame has a time of its own: read by this library, and by Choreonoid from "
             "2.1 on, which holds it until the next");
     }

@@ -4,6 +4,7 @@
 #define GROBO_MOTION_WRITE_H
 
 #include "src/motion/store/container.h"
+#include "src/motion/store/diagnostics.h"
 #include "src/motion/text/out.h"
 
 /* What is told to a writer. */
@@ -13,14 +14,6 @@ typedef struct grobo_i_writing {
     grobo_i_out *out;
 } grobo_i_writing;
 
-/* True for a motion that is written as it is: of that kind, with rows that the format can hold. */
-bool grobo_i_is_as_written(const grobo_motion *motion, grobo_motion_kind kind,
-                           const grobo_write_options *options);
-/*
- * How many columns a motion takes in a .m file, and whose they are: as many of the first motors as
- * every posture sets, or 0 where postures set others.
- */
-int grobo_i_m_columns(const grobo_motion *motion, const grobo_model *model, uint8_t *joints);
 /* Its postures have columns. */
 void grobo_i_write_m(const grobo_i_writing *writing, const grobo_motion *motion);
 void grobo_i_write_pseq(const grobo_i_writing *writing, const grobo_motion *motion);
@@ -29,5 +22,7 @@ void grobo_i_write_yaml(const grobo_i_writing *writing, const grobo_motion *moti
 /* "key: value" lines of the kept keys of a level, and a link, each behind `indent` spaces. */
 void grobo_i_put_kept(grobo_i_out *out, const grobo_i_kept *kept, grobo_kept_level level, int link,
                       int indent);
+/* name: "value" */
+void grobo_i_put_text_line(grobo_i_out *out, const char *name, const char *value);
 
 #endif

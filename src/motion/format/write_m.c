@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* .m: a posture a line. */
 #include <math.h>
-#include <string.h>
 
-#include "src/motion/format/reader.h"
 #include "src/motion/format/write.h"
+#include "src/motion/store/columns.h"
 #include "src/motion/text/number.h"
 #include "src/motion/text/units.h"
 
@@ -26,27 +25,6 @@ static void put_whole(grobo_i_out *out, double value, double *change)
     *change = fmax(*change, fabs(value - whole));
     /* Never "-0": the original reads integers. */
     grobo_i_put_number(out, whole == 0 ? 0 : whole);
-}
-
-int grobo_i_m_columns(const grobo_motion *motion, const grobo_model *model, uint8_t *joints)
-{
-    int n_joints =
-        model != NULL && motion->n_joints < model->n_joints ? model->n_joints : motion->n_joints;
-    grobo_joint_mask set = 0, first = 0;
-    grobo_i_row row;
-    int columns = 0;
-
-    (void)grobo_i_motor_order(model, n_joints, joints);
-    for (size_t n = 0; grobo_i_row_at(motion, n, &row); n++) {
-        if (n > 0 && *row.set != set) {
-            return 0;
-        }
-        set = *row.set;
-    }
-    while (columns < n_joints && (set & GROBO_JOINT_BIT(joints[columns])) != 0) {
-        first |= GROBO_JOINT_BIT(joints[columns++]);
-    }
-    return first == set ? columns : 0;
 }
 
 static void put_line(const grobo_i_writing *writing, const grobo_i_row *row, const uint8_t *joints,
@@ -85,11 +63,11 @@ void grobo_i_write_m(const grobo_i_writing *writing, const grobo_motion *motion)
         put_line(writing, &row, joints, columns, &changes);
     }
     if (changes.ms > 1e-6 || changes.ddeg > 1e-6) {
-        const char *name = writing->options->name != NULL ? writing->options->name : "";
         char ms[GROBO_I_NUMBER_BYTES], ddeg[GROBO_I_NUMBER_BYTES];
         ms[grobo_i_format_number(round(changes.ms * 1e3) / 1e3, ms)] = '\0';
         ddeg[grobo_i_format_number(round(changes.ddeg * 1e3) / 1e4, ddeg)] = '\0';
-        grobo_i_say(writing->list, &(grobo_i_said){name, "rounded", 0, 0, GROBO_SEVERITY_NOTE},
+        grobo_i_say(writing->list,
+                    &(grobo_i_said){writing->options->name, "rounded", 0, 0, GROBO_SEVERITY_NOTE},
                     "rounded to whole milliseconds and 0.1 degrees, by at most %s ms and %s "
                     "degrees",
                     ms, ddeg);

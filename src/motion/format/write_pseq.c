@@ -173,14 +173,6 @@ static void put_ref(grobo_i_out *out, const grobo_motion *motion, const grobo_i_
     put_extra(out, line_items, extra);
 }
 
-static void put_text_line(grobo_i_out *out, const char *name, const char *value)
-{
-    grobo_i_put_text(out, name);
-    grobo_i_put_text(out, ": ");
-    grobo_i_put_quoted(out, value, strlen(value));
-    grobo_i_put_text(out, "\n");
-}
-
 void grobo_i_write_pseq(const grobo_i_writing *writing, const grobo_motion *motion)
 {
     grobo_i_out *out = writing->out;
@@ -192,9 +184,9 @@ void grobo_i_write_pseq(const grobo_i_writing *writing, const grobo_motion *moti
         grobo_i_put_text(out, "# Body pose sequence format version 1.0 defined by "
                               "cnoid-Robotics\n\ntype: PoseSeq\n");
     }
-    put_text_line(out, "name", grobo_motion_name(motion));
+    grobo_i_put_text_line(out, "name", grobo_motion_name(motion));
     if (grobo_motion_target_body(motion)[0] != '\0') {
-        put_text_line(out, "targetBody", grobo_motion_target_body(motion));
+        grobo_i_put_text_line(out, "targetBody", grobo_motion_target_body(motion));
     }
     grobo_i_put_kept(out, motion->kept, GROBO_KEPT_TOP, 0, 0);
     grobo_i_put_text(out, "refs: \n");

@@ -4,19 +4,7 @@
  * Frames with times of their own: version 4 of the format, which older programs refuse, and do
  * not take the times for angles.
  */
-#include <string.h>
-
 #include "src/motion/format/write.h"
-
-static void put_text_line(grobo_i_out *out, const char *name, const char *value)
-{
-    if (value[0] != '\0') {
-        grobo_i_put_text(out, name);
-        grobo_i_put_text(out, ": ");
-        grobo_i_put_quoted(out, value, strlen(value));
-        grobo_i_put_text(out, "\n");
-    }
-}
 
 static void put_number_line(grobo_i_out *out, const char *lead, double value)
 {
@@ -32,8 +20,12 @@ static void put_head(grobo_i_out *out, const grobo_motion *motion)
 
     grobo_i_put_text(out, times ? "type: CompositeSeq\ncontent: BodyMotion\nformat_version: 4\n"
                                 : "type: BodyMotion\n");
-    put_text_line(out, "name", grobo_motion_name(motion));
-    put_text_line(out, "targetBody", grobo_motion_target_body(motion));
+    if (grobo_motion_name(motion)[0] != '\0') {
+        grobo_i_put_text_line(out, "name", grobo_motion_name(motion));
+    }
+    if (grobo_motion_target_body(motion)[0] != '\0') {
+        grobo_i_put_text_line(out, "targetBody", grobo_motion_target_body(motion));
+    }
     grobo_i_put_kept(out, motion->kept, GROBO_KEPT_TOP, 0, 0);
     if (times) {
         put_number_line(out, "frame_rate: ", rate_hz);

@@ -472,7 +472,7 @@ int grobo_motion_check(const grobo_motion *motion, const grobo_model *model,
     c.options = options != NULL ? options : &defaults;
     c.list = list;
     c.speed = c.options->speed_pct > 0 ? c.options->speed_pct / 100.0 : 1;
-    c.file = c.options->name != NULL ? c.options->name : "";
+    c.file = c.options->name;
     c.n_joints = motion->n_joints < model->n_joints ? motion->n_joints : model->n_joints;
     grobo_posture start = start_of(&c);
     grobo_clip_options how = {c.options->style, c.options->default_us, &start};

@@ -3,27 +3,12 @@
 #include <math.h>
 #include <string.h>
 
+#include "src/base/memory.h"
 #include "src/motion/play/clip.h"
 
 static bool counts_steps(const grobo_motion *motion)
 {
     return motion->kind == GROBO_MOTION_POSTURES || motion->kind == GROBO_MOTION_STEPS;
-}
-
-size_t grobo_i_clip_row(const grobo_i_clip *clip, size_t i)
-{
-    return clip->order != NULL ? clip->order[i] : i;
-}
-
-double grobo_i_clip_at_s(const grobo_i_clip *clip, size_t i)
-{
-    return clip->at_s != NULL ? clip->at_s[i] : grobo_i_time_s(clip->motion, i);
-}
-
-double grobo_i_clip_angle(const grobo_i_clip *clip, size_t i, const grobo_i_row *row, int j)
-{
-    return clip->sums != NULL ? clip->sums[i * clip->motion->n_joints + (size_t)j]
-                              : row->angle_rad[j];
 }
 
 static void clip_free(grobo_i_clip *clip)
@@ -322,11 +307,10 @@ int grobo_i_clip_keys(const grobo_motion *motion, const grobo_clip_options *opti
     if (grobo_i_at_rate(motion) && motion->size > 0 && !(motion->frame_rate_hz > 0)) {
         return GROBO_ERR_STATE;
     }
-    made = grobo_i_alloc(motion->mem, sizeof *made);
+    made = grobo_i_new(motion->mem, sizeof *made);
     if (made == NULL) {
         return GROBO_ERR_NOMEM;
     }
-    memset(made, 0, sizeof *made);
     made->motion = motion;
     made->mem = motion->mem;
     made->size = motion->size;

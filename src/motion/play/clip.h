@@ -42,11 +42,24 @@ int grobo_i_clip_keys(const grobo_motion *motion, const grobo_clip_options *opti
 int grobo_i_clip_fill(const grobo_clip *clip, const grobo_posture *start);
 
 /* When key i is reached. */
-double grobo_i_clip_at_s(const grobo_i_clip *clip, size_t i);
+static inline double grobo_i_clip_at_s(const grobo_i_clip *clip, size_t i)
+{
+    return clip->at_s != NULL ? clip->at_s[i] : grobo_i_time_s(clip->motion, i);
+}
+
 /* The row that key i is. */
-size_t grobo_i_clip_row(const grobo_i_clip *clip, size_t i);
+static inline size_t grobo_i_clip_row(const grobo_i_clip *clip, size_t i)
+{
+    return clip->order != NULL ? clip->order[i] : i;
+}
+
 /* Angle of joint j of key i; the row sets it. */
-double grobo_i_clip_angle(const grobo_i_clip *clip, size_t i, const grobo_i_row *row, int j);
+static inline double grobo_i_clip_angle(const grobo_i_clip *clip, size_t i, const grobo_i_row *row,
+                                        int j)
+{
+    return clip->sums != NULL ? clip->sums[i * clip->motion->n_joints + (size_t)j]
+                              : row->angle_rad[j];
+}
 
 /* The two faces of a grobo_clip. */
 int grobo_i_clip_key(void *ctx, size_t i, grobo_posture *posture, int64_t *at_us);

@@ -1,8 +1,66 @@
 /* SPDX-License-Identifier: MIT */
+/* Two motions: the same to the bit, or near each other. */
 #include <math.h>
 #include <string.h>
 
 #include "src/motion/store/container.h"
+
+static bool kept_equal(const grobo_i_kept *a, const grobo_i_kept *b)
+{
+    while (a != NULL && b != NULL) {
+        if (a->level != b->level || a->link != b->link || a->key_bytes != b->key_bytes ||
+            a->value_bytes != b->value_bytes ||
+            memcmp(a->text, b->text, a->key_bytes + a->value_bytes) != 0) {
+            return false;
+        }
+        a = a->next;
+        b = b->next;
+    }
+    return a == b;
+}
+
+static bool same_doubles(const double *a, const double *b, size_t count)
+{
+    return memcmp(a, b, count * sizeof *a) == 0;
+}
+
+static bool link_equal(const grobo_ik_link *a, const grobo_ik_link *b)
+{
+    return same_doubles(a->translation_m, b->translation_m, 3) &&
+           same_doubles(a->rotation, b->rotation, 9) && a->index == b->index &&
+           strcmp(a->name, b->name) == 0 && a->is_base == b->is_base &&
+           a->is_stationary == b->is_stationary && a->is_touching == b->is_touching &&
+           a->is_slave == b->is_slave && a->has_parting_direction == b->has_parting_direction &&
+           (!a->has_parting_direction ||
+            same_doubles(a->parting_direction, b->parting_direction, 3));
+}
+
+static bool info_equal(const grobo_key_info *a, const grobo_key_info *b)
+{
+    return same_doubles(&a->max_transition_s, &b->max_transition_s, 1) &&
+           a->stationary == b->stationary && a->has_zmp == b->has_zmp &&
+           a->zmp_stationary == b->zmp_stationary &&
+           (!a->has_zmp || same_doubles(a->zmp_m, b->zmp_m, 3));
+}
+
+static bool extra_equal(const grobo_i_extra *a, const grobo_i_extra *b)
+{
+    static const grobo_i_extra nothing;
+
+    a = a != NULL ? a : &nothing;
+    b = b != NULL ? b : &nothing;
+    if (!info_equal(&a->info, &b->info) || a->n_links != b->n_links ||
+        strcmp(a->name != NULL ? a->name : "", b->name != NULL ? b->name : "") != 0 ||
+        !kept_equal(a->kept, b->kept)) {
+        return false;
+    }
+    for (size_t i = 0; i < a->n_links; i++) {
+        if (!link_equal(&a->links[i], &b->links[i])) {
+            return false;
+        }
+    }
+    return true;
+}
 
 static bool rows_equal(const grobo_motion *a, const grobo_motion *b, size_t n)
 {
@@ -10,7 +68,7 @@ static bool rows_equal(const grobo_motion *a, const grobo_motion *b, size_t n)
 
     (void)grobo_i_row_at(a, n, &left);
     (void)grobo_i_row_at(b, n, &right);
-    if (*left.set != *right.set || !grobo_i_extra_equal(*left.extra, *right.extra)) {
+    if (*left.set != *right.set || !extra_equal(*left.extra, *right.extra)) {
         return false;
     }
     if (!grobo_i_at_rate(a) && memcmp(left.time_s, right.time_s, sizeof *left.time_s) != 0) {
@@ -31,7 +89,7 @@ bool grobo_motion_equal(const grobo_motion *a, const grobo_motion *b)
         a->frame_rate_hz != b->frame_rate_hz || a->frame_times != b->frame_times ||
         strcmp(grobo_motion_name(a), grobo_motion_name(b)) != 0 ||
         strcmp(grobo_motion_target_body(a), grobo_motion_target_body(b)) != 0 ||
-        !grobo_i_kept_equal(a->kept, b->kept)) {
+        !kept_equal(a->kept, b->kept)) {
         return false;
     }
     for (size_t n = 0; n < a->size; n++) {

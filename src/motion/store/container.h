@@ -78,15 +78,6 @@ typedef struct grobo_i_row {
     uint8_t width;
 } grobo_i_row;
 
-/* ---- memory: sizes are what was asked for, as grobo_mem wants them ---- */
-void *grobo_i_alloc(const grobo_mem *mem, size_t bytes);
-void grobo_i_free(const grobo_mem *mem, void *ptr, size_t bytes);
-/* A copy of text[0..length-1] with a NUL; freed by grobo_i_free_text(). */
-char *grobo_i_copy_text(const grobo_mem *mem, const char *text, size_t length);
-void grobo_i_free_text(const grobo_mem *mem, char *text);
-/* True for well-formed UTF-8 without NUL. */
-bool grobo_i_utf8_ok(const char *text, size_t length);
-
 /* ---- rows ---- */
 bool grobo_i_row_at(const grobo_motion *motion, size_t n, grobo_i_row *row);
 /* As grobo_i_row_at(), and its chunk is made wide enough for n_joints of the motion. */
@@ -133,7 +124,5 @@ int grobo_i_kept_dup(const grobo_mem *mem, const grobo_i_kept *from, grobo_i_kep
 /* Takes the kept keys of a level out of a list. */
 void grobo_i_drop_kept(const grobo_mem *mem, grobo_i_kept **list, grobo_kept_level level);
 void grobo_i_kept_free(const grobo_mem *mem, grobo_i_kept *list);
-bool grobo_i_kept_equal(const grobo_i_kept *a, const grobo_i_kept *b);
-bool grobo_i_extra_equal(const grobo_i_extra *a, const grobo_i_extra *b);
 
 #endif

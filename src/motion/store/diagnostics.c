@@ -2,8 +2,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "src/motion/store/container.h"
+#include "src/base/memory.h"
 #include "src/motion/store/diagnostics.h"
+#include "src/motion/text/utf8.h"
 
 enum { MESSAGE_BYTES = 256, FILES_MAX = 64, ENTRIES_FIRST = 8 };
 
@@ -29,11 +30,10 @@ struct grobo_diagnostics {
 int grobo_diagnostics_new(grobo_diagnostics **list, const grobo_mem *mem)
 {
     mem = mem != NULL ? mem : grobo_mem_default();
-    grobo_diagnostics *made = grobo_i_alloc(mem, sizeof *made);
+    grobo_diagnostics *made = grobo_i_new(mem, sizeof *made);
     if (made == NULL) {
         return GROBO_ERR_NOMEM;
     }
-    memset(made, 0, sizeof *made);
     made->mem = mem;
     *list = made;
     return 0;

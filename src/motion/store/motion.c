@@ -3,7 +3,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "src/base/memory.h"
 #include "src/motion/store/container.h"
+#include "src/motion/text/utf8.h"
 
 /* ---- making and freeing ------------------------------------------------------------------- */
 
@@ -17,11 +19,10 @@ int grobo_motion_new(grobo_motion **motion, grobo_motion_kind kind, int n_joints
         return GROBO_ERR_CAP;
     }
     mem = mem != NULL ? mem : grobo_mem_default();
-    grobo_motion *made = grobo_i_alloc(mem, sizeof *made);
+    grobo_motion *made = grobo_i_new(mem, sizeof *made);
     if (made == NULL) {
         return GROBO_ERR_NOMEM;
     }
-    memset(made, 0, sizeof *made);
     made->mem = mem;
     made->kind = kind;
     made->n_joints = (uint8_t)n_joints;

@@ -2,7 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "src/motion/store/container.h"
+#include "src/base/memory.h"
 #include "src/motion/text/number.h"
 #include "src/motion/text/out.h"
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "src/motion/store/container.h"
+#include "src/motion/text/utf8.h"
 
 /* Length of the UTF-8 sequence at text, 0 if it is malformed. */
 static size_t sequence_length(const unsigned char *text, size_t length)

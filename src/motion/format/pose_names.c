@@ -2,23 +2,14 @@
 /* Poses by name: up to Choreonoid 1.7 a ref may say the name of an earlier pose. */
 #include <string.h>
 
+#include "src/base/memory.h"
 #include "src/motion/format/pose.h"
-
-static uint64_t hash_name(const char *name)
-{
-    uint64_t hash = 14695981039346656037U; /* FNV-1a */
-
-    for (; *name != '\0'; name++) {
-        hash = (hash ^ (unsigned char)*name) * 1099511628211U;
-    }
-    return hash;
-}
 
 /* The slot of a name: its own, or the free one where it belongs. */
 static struct grobo_i_pose_slot *slot_of(const grobo_i_document *document, const char *name)
 {
     const grobo_i_pose_names *names = &document->names;
-    uint64_t hash = hash_name(name);
+    uint64_t hash = grobo_i_hash(name);
     size_t i = (size_t)hash & (names->room - 1);
 
     while (names->slots[i].pose != 0 &&
@@ -46,11 +37,10 @@ static int grow_names(grobo_i_document *document)
     if (old.count * 2 < old.room) {
         return 0;
     }
-    struct grobo_i_pose_slot *slots = grobo_i_alloc(document->reader->mem, room * sizeof *slots);
+    struct grobo_i_pose_slot *slots = grobo_i_new(document->reader->mem, room * sizeof *slots);
     if (slots == NULL) {
         return GROBO_ERR_NOMEM;
     }
-    memset(slots, 0, room * sizeof *slots);
     names->slots = slots;
     names->room = room;
     for (size_t i = 0; i < old.room; i++) {

@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: MIT */
+/* The controller board. */
+#ifndef GROBO_SIM_BOARD_H
+#define GROBO_SIM_BOARD_H
+
+#include <grobo/sim.h>
+
+/* A byte of the host has arrived. */
+void grobo_i_sim_board_hear(grobo_sim *sim, uint8_t byte, int64_t t_ns);
+/* A byte of a servo has arrived. */
+void grobo_i_sim_board_got(grobo_sim *sim, uint8_t byte, int64_t t_ns);
+/* When the board does something on its own, or GROBO_NEVER_US; and doing it. */
+int64_t grobo_i_sim_board_next(const grobo_sim *sim);
+void grobo_i_sim_board_act(grobo_sim *sim, int64_t t_ns);
+
+#endif

@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: MIT */
+#include "src/sim/wire.h"
+#include "src/sim/fault.h"
+
+bool grobo_i_sim_wire_put(grobo_sim_wire *wire, uint8_t byte, int64_t at_ns)
+{
+    wire->free_ns = at_ns;
+    if (wire->used == GROBO_SIM_WIRE_BYTES) {
+        return false;
+    }
+    size_t at = (size_t)(wire->head + wire->used++) % GROBO_SIM_WIRE_BYTES;
+    wire->byte[at] = byte;
+    wire->at_ns[at] = at_ns;
+    return true;
+}
+
+uint8_t grobo_i_sim_wire_take(grobo_sim_wire *wire)
+{
+    uint8_t byte = wire->byte[wire->head];
+    wire->head = (uint16_t)((wire->head + 1) % GROBO_SIM_WIRE_BYTES);
+    wire->used--;
+    return byte;
+}
+
+int64_t grobo_i_sim_wire_next(const grobo_sim_wire *wire)
+{
+    return wire->used > 0 ? wire->at_ns[wire->head] : GROBO_NEVER_US;
+}
+
+/* A byte as it arrives at another rate than it was sent. */
+static void misread(grobo_sim *sim, uint8_t *byte)
+{
+    if (sim->config.wiring == GROBO_WIRING_BOARD && sim->line_bps != sim->config.baud_bps) {
+        *byte = (uint8_t)grobo_i_sim_random(sim, GROBO_I_SIM_CHANCE, 256);
+    }
+}
+
+/* When the host's adapter hands over a byte that has arrived there at at_ns. */
+static int64_t handed_over_ns(grobo_sim *sim, int64_t at_ns)
+{
+    if (at_ns > sim->hand_over_ns) {
+        sim->hand_over_ns = at_ns + (int64_t)sim->config.latency_us * 1000;
+    }
+    return sim->hand_over_ns;
+}
+
+void grobo_i_sim_to_host(grobo_sim *sim, uint8_t byte, int64_t at_ns)
+{
+    if (sim->gone) {
+        return;
+    }
+    misread(sim, &byte);
+    if (grobo_i_sim_crosses(sim, &byte) &&
+        !grobo_i_sim_wire_put(&sim->out, byte, handed_over_ns(sim, at_ns))) {
+        sim->stats.overflows++;
+    }
+    sim->out.free_ns = at_ns; /* the adapter waits, the line does not */
+}
+
+bool grobo_i_sim_from_host(grobo_sim *sim, uint8_t *byte)
+{
+    *byte = grobo_i_sim_wire_take(&sim->in);
+    sim->stats.rx_bytes++;
+    misread(sim, byte);
+    return grobo_i_sim_crosses(sim, byte);
+}
+
+void grobo_i_sim_cut(grobo_sim *sim)
+{
+    sim->gone = true;
+    sim->in.used = sim->out.used = 0;
+    sim->in.free_ns = sim->out.free_ns = sim->hand_over_ns = sim->now_ns;
+    sim->fifo_used = 0;
+    grobo_board_parser_reset(&sim->board);
+}

@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: MIT */
+/* The host's line: the bytes under way to and from it. */
+#ifndef GROBO_SIM_WIRE_H
+#define GROBO_SIM_WIRE_H
+
+#include <grobo/sim.h>
+
+/* A byte that is over at at_ns; false when there is no room for it. */
+bool grobo_i_sim_wire_put(grobo_sim_wire *wire, uint8_t byte, int64_t at_ns);
+uint8_t grobo_i_sim_wire_take(grobo_sim_wire *wire);
+/* When the next byte is over, or GROBO_NEVER_US. */
+int64_t grobo_i_sim_wire_next(const grobo_sim_wire *wire);
+/* The next byte of the host as it arrives; false when it is lost. */
+bool grobo_i_sim_from_host(grobo_sim *sim, uint8_t *byte);
+/* A byte for the host that is over at at_ns. */
+void grobo_i_sim_to_host(grobo_sim *sim, uint8_t byte, int64_t at_ns);
+/* The host's cable is out: what is on the line is lost. */
+void grobo_i_sim_cut(grobo_sim *sim);
+
+#endif
