@@ -203,8 +203,8 @@ GROBO_API grobo_wiring grobo_driver_wiring(const grobo_driver *driver);
 
 /**
  * Fills a table for a robot of RS30x servos: every function but `stabilize`, and `stored` only
- * where a board is in between. Limits: 70 deg C, 5 lost replies, 60 deg/s for the first move, no limit
- * of current and voltage; exit policy hold.
+ * where a board is in between. Limits: 70 deg C, 5 lost replies, 60 deg/s for the first move, no
+ * limit of current and voltage; exit policy hold.
  * @param[out] driver the caller's table; change what is different in it afterwards.
  * @param model borrowed.
  * @param protocol grobo_rs30x_protocol, or grobo_board_protocol through GR001's board.

@@ -291,8 +291,8 @@ GROBO_API int grobo_rs30x_reply_to(const uint8_t *packet, size_t n, grobo_reply 
 GROBO_API size_t grobo_rs30x_reply_bytes(const grobo_reply *reply);
 
 /* ---- frames ---------------------------------------------------------------------------------
- * A packet as it goes over the line: itself on a servo bus, in a frame of the board in between. They
- * return the size or the error of the builder above. buf needs GROBO_FRAME_MAX_BYTES at most. */
+ * A packet as it goes over the line: itself on a servo bus, in a frame of the board in between.
+ * They return the size or the error of the builder above. buf needs GROBO_FRAME_MAX_BYTES. */
 
 /** Goal of one servo (14 bytes through the board). */
 GROBO_API int grobo_frame_goal(const grobo_protocol *protocol, const grobo_rs30x_goal *goal,

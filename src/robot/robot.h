@@ -32,12 +32,12 @@
 
 #include <grobo/robot.h>
 
-/* ---- event.c ------------------------------------------------------------------------------------ */
+/* ---- event.c --------------------------------------------------------------------------------- */
 
 /* Puts an event into the queue. */
 void grobo_i_tell(grobo_robot *robot, const grobo_event *event);
 
-/* ---- axis.c ------------------------------------------------------------------------------------- */
+/* ---- axis.c ---------------------------------------------------------------------------------- */
 
 /* All joints of the model. */
 grobo_joint_mask grobo_i_all_joints(const grobo_robot *robot);
@@ -67,12 +67,12 @@ bool grobo_i_all_sensed(const grobo_robot *robot, grobo_joint_mask joints, int *
 /* True if all of these are known to have torque. */
 bool grobo_i_all_on(const grobo_robot *robot, grobo_joint_mask joints);
 
-/* ---- query.c ------------------------------------------------------------------------------------ */
+/* ---- query.c --------------------------------------------------------------------------------- */
 
 /* True while joints are being moved, by a job or by the sequencer. */
 bool grobo_i_in_motion(const grobo_robot *robot);
 
-/* ---- slot.c ------------------------------------------------------------------------------------- */
+/* ---- slot.c ---------------------------------------------------------------------------------- */
 
 /* What a frame under way is for. */
 typedef enum grobo_i_use {
@@ -121,12 +121,12 @@ bool grobo_i_slots_wait(const grobo_robot *robot, grobo_joint_mask joint, grobo_
 /* True if a frame of this use is under way. */
 bool grobo_i_slots_busy(const grobo_robot *robot, grobo_i_use use);
 
-/* ---- budget.c ----------------------------------------------------------------------------------- */
+/* ---- budget.c -------------------------------------------------------------------------------- */
 
 int grobo_i_budget(const grobo_bus *bus, const grobo_driver *driver, void *ctx,
                    grobo_budget *budget);
 
-/* ---- reading.c ---------------------------------------------------------------------------------- */
+/* ---- reading.c ------------------------------------------------------------------------------- */
 
 /* A joint slower than this does not move: in free mode it holds again (protocol 5). */
 #define GROBO_I_SLOW_DPS 8
@@ -141,7 +141,7 @@ bool grobo_i_is_loss(int result);
  * stands too far outside. */
 double grobo_i_hold_rad(const grobo_robot *robot, int joint);
 
-/* ---- ways.c ------------------------------------------------------------------------------------- */
+/* ---- ways.c ---------------------------------------------------------------------------------- */
 
 /* True if a joint that gets this time by this order is told its way in parts. */
 bool grobo_i_segments_wanted(const grobo_robot *robot, const grobo_robot_order *order,
@@ -165,7 +165,7 @@ grobo_joint_mask grobo_i_joints_that(const grobo_robot *robot,
 /* Joints that are told more of their ways. */
 grobo_joint_mask grobo_i_ways_renewed(const grobo_robot *robot);
 
-/* ---- gate.c ------------------------------------------------------------------------------------- */
+/* ---- gate.c ---------------------------------------------------------------------------------- */
 
 /* The frame of this slot would leave now: judges its order, builds the frame anew from it, and
  * notes what it does. @return 0, or why it must not leave: then nothing is noted. */
@@ -199,7 +199,7 @@ bool grobo_i_goal_holds(const grobo_robot *robot, int joint);
 /* How far outside its limits a joint may stand to be switched on; it is drawn to the limit. */
 #define GROBO_I_HOLD_OUTSIDE_DEG 3.0
 
-/* ---- orders.c ----------------------------------------------------------------------------------- */
+/* ---- orders.c -------------------------------------------------------------------------------- */
 
 /* How a target is sent. */
 typedef struct grobo_i_motion {
@@ -233,7 +233,7 @@ int grobo_i_gate_torque(grobo_robot *robot, grobo_joint_mask joints, grobo_torqu
 /* True if all of these were sensed and hold. */
 bool grobo_i_gate_ready(const grobo_robot *robot, grobo_joint_mask joints);
 
-/* ---- job.c -------------------------------------------------------------------------------------- */
+/* ---- job.c ----------------------------------------------------------------------------------- */
 
 /* What a step returns: on to the next step, or one of the activities, or an error. */
 typedef enum grobo_i_activity {
@@ -262,7 +262,7 @@ bool grobo_i_job_has(const grobo_robot_slot *slot);
 /* A frame of the job is over; a reading was taken. */
 void grobo_i_job_done(const grobo_robot_slot *slot, int result, const grobo_packet *reply);
 
-/* ---- stop.c ------------------------------------------------------------------------------------- */
+/* ---- stop.c ---------------------------------------------------------------------------------- */
 
 /* What the engine does by itself after a motion makes way for any request. */
 void grobo_i_make_way(grobo_robot *robot);
@@ -272,19 +272,19 @@ void grobo_i_stop_moves(grobo_robot *robot);
 /* True if the job that runs moves joints, or would: a stop ends it. */
 bool grobo_i_job_moves(const grobo_robot *robot);
 
-/* ---- trip.c ------------------------------------------------------------------------------------- */
+/* ---- trip.c ---------------------------------------------------------------------------------- */
 
 /* Stops for safety. Latched ones end a job that moves or switches on. */
 void grobo_i_trip(grobo_robot *robot, grobo_trip reason, int joint, double value, bool latched);
 
-/* ---- watch.c ------------------------------------------------------------------------------------ */
+/* ---- watch.c --------------------------------------------------------------------------------- */
 
 /* Judges the reading of a joint just taken. */
 void grobo_i_watch_reading(grobo_robot *robot, int joint, const grobo_joint_state *got);
 /* Judges a reading that did not come. */
 void grobo_i_watch_lost(grobo_robot *robot, int joint);
 
-/* ---- play.c ------------------------------------------------------------------------------------- */
+/* ---- play.c ---------------------------------------------------------------------------------- */
 
 /* No reading is begun that would not be over when the next motion frame is due. */
 void grobo_i_play_reserve(grobo_robot *robot);
@@ -309,14 +309,14 @@ int grobo_i_play_joints(const grobo_robot *robot, const grobo_clip *clip,
 /* Begins what job.clip and job.options say, from where the joints are. */
 int grobo_i_play_start(grobo_robot *robot);
 
-/* ---- segments.c --------------------------------------------------------------------------------- */
+/* ---- segments.c ------------------------------------------------------------------------------ */
 
 /* Tells more of their ways when it is time for that, and ends what the host has left standing. */
 void grobo_i_segments_step(grobo_robot *robot);
 /* When that is to be looked at next. */
 int64_t grobo_i_segments_deadline(const grobo_robot *robot);
 
-/* ---- sense.c ------------------------------------------------------------------------------------ */
+/* ---- sense.c --------------------------------------------------------------------------------- */
 
 /* Starts a background reading if one is due. */
 void grobo_i_sense_step(grobo_robot *robot);
@@ -326,7 +326,7 @@ int64_t grobo_i_sense_deadline(const grobo_robot *robot);
 /* A background reading is over, and taken. */
 void grobo_i_sense_done(const grobo_robot_slot *slot, int result);
 
-/* ---- steps.c ------------------------------------------------------------------------------------ */
+/* ---- steps.c --------------------------------------------------------------------------------- */
 
 extern const grobo_robot_step_fn grobo_i_script_check[];
 extern const grobo_robot_step_fn grobo_i_script_sense[];
@@ -345,7 +345,7 @@ bool grobo_i_move_is_sent(const grobo_robot *robot);
 /* Sends the joints of such a move to another target, and goes on from there. */
 void grobo_i_move_retarget(grobo_robot *robot, const grobo_posture *target);
 
-/* ---- turn.c ------------------------------------------------------------------------------------- */
+/* ---- turn.c ---------------------------------------------------------------------------------- */
 
 /* Every public call that may change something stands between these two: the outermost leave tells
  * the events. */
@@ -354,7 +354,7 @@ void grobo_i_leave(grobo_robot *robot);
 /* A frame is over: grobo_robot.over. The slot is a copy. */
 void grobo_i_frame_over(grobo_robot_slot *slot, int result, const grobo_packet *reply);
 
-/* ---- request.c ---------------------------------------------------------------------------------- */
+/* ---- request.c ------------------------------------------------------------------------------- */
 
 /* Begins to carry an emergency stop out; the link is up. @return the job's number. */
 int grobo_i_estop_start(grobo_robot *robot);

@@ -51,7 +51,7 @@ compile() {
 # ---- layers --------------------------------------------------------------------------------
 
 fresh
-sample src/core/a.c <<'C'
+sample src/bus/a.c <<'C'
 #include <math.h>
 #include <string.h>
 double grobo_a(double *p, const double *q, double x);
@@ -61,9 +61,9 @@ double grobo_a(double *p, const double *q, double x)
     return sin(x) + atan2(x, 2.0) + hypot(x, 3.0);
 }
 C
-compile src/core/a.c
-check 'layers: core may use mem* and math' sh "$gates/layers.sh" build
-sample src/core/b.c <<'C'
+compile src/bus/a.c
+check 'layers: the core may use mem* and math' sh "$gates/layers.sh" build
+sample src/bus/b.c <<'C'
 #include <stdlib.h>
 void *grobo_b(void);
 void *grobo_b(void)
@@ -71,12 +71,12 @@ void *grobo_b(void)
     return malloc(3);
 }
 C
-compile src/core/b.c
-check 'layers: core may not use malloc' \
-    refuses 'src/core/b.c:1: layers: src/core may not use malloc' sh "$gates/layers.sh" build
+compile src/bus/b.c
+check 'layers: the core may not use malloc' \
+    refuses 'src/bus/b.c:1: layers: src/bus may not use malloc' sh "$gates/layers.sh" build
 
 fresh
-sample src/core/a.c <<'C'
+sample src/bus/a.c <<'C'
 int grobo_i_link(void);
 int grobo_a(void);
 int grobo_a(void)
@@ -84,14 +84,14 @@ int grobo_a(void)
     return grobo_i_link();
 }
 C
-sample src/link/b.c <<'C'
+sample src/robot/b.c <<'C'
 int grobo_i_link(void);
 int grobo_i_link(void)
 {
     return 0;
 }
 C
-sample src/link/c.c <<'C'
+sample src/robot/c.c <<'C'
 int grobo_a(void);
 int grobo_c(void);
 int grobo_c(void)
@@ -99,24 +99,50 @@ int grobo_c(void)
     return grobo_a();
 }
 C
-compile src/core/a.c
-compile src/link/b.c
-compile src/link/c.c
+compile src/bus/a.c
+compile src/robot/b.c
+compile src/robot/c.c
 check 'layers: a layer does not reach up' \
-    refuses 'src/core/a.c:1: layers: grobo_i_link' sh "$gates/layers.sh" build
-rm build/src/core/a.o
-sample src/core/a.c <<'C'
+    refuses 'src/bus/a.c:1: layers: grobo_i_link comes from src/robot' sh "$gates/layers.sh" build
+rm build/src/bus/a.o
+sample src/bus/a.c <<'C'
 int grobo_a(void);
 int grobo_a(void)
 {
     return 1;
 }
 C
-compile src/core/a.c
+compile src/bus/a.c
 check 'layers: a layer may reach down' sh "$gates/layers.sh" build
 
+# calls FILE MINE YOURS: a file that has one function and calls another.
+calls() {
+    printf 'int %s(void);\nint %s(void);\nint %s(void)\n{\n    return %s();\n}\n' \
+        "$2" "$3" "$2" "$3" | sample "$1"
+    compile "$1"
+}
 fresh
-sample src/motion/a.c <<'C'
+calls src/robot/a.c grobo_a grobo_b
+calls src/robot/b.c grobo_b grobo_c
+calls src/robot/c.c grobo_c grobo_a
+check 'layers: files in a circle' \
+    refuses 'src/robot/b.c:1: layers: in a circle of files' sh "$gates/layers.sh" build
+fresh
+calls src/robot/a.c grobo_a grobo_b
+calls src/bus/b.c grobo_b grobo_c
+sample src/robot/c.c <<'C'
+int grobo_c(void);
+int grobo_c(void)
+{
+    return 1;
+}
+C
+compile src/robot/c.c
+check 'layers: folders in a circle' \
+    refuses 'src/bus:1: layers: in a circle of folders' sh "$gates/layers.sh" build
+
+fresh
+sample src/motion/text/a.c <<'C'
 #include <stdio.h>
 int grobo_a(void);
 int grobo_a(void)
@@ -124,9 +150,10 @@ int grobo_a(void)
     return printf("%d\n", 3);
 }
 C
-compile src/motion/a.c
+compile src/motion/text/a.c
 check 'layers: the library does not print' \
-    refuses 'src/motion/a.c:1: layers: src/motion may not use printf' sh "$gates/layers.sh" build
+    refuses 'src/motion/text/a.c:1: layers: src/motion/text may not use printf' \
+    sh "$gates/layers.sh" build
 
 fresh
 sample include/grobo/a.h <<'C'
@@ -145,7 +172,7 @@ check 'layers: grctl is a user like any other' \
     refuses 'not a public function: grobo_i_secret' sh "$gates/layers.sh" build
 
 fresh
-sample src/core/a.c <<'C'
+sample src/bus/a.c <<'C'
 #include <string.h>
 void grobo_a(char *p, const char *q, size_t n);
 void grobo_a(char *p, const char *q, size_t n)
@@ -155,7 +182,7 @@ void grobo_a(char *p, const char *q, size_t n)
     memcpy(p, text, sizeof text);
 }
 C
-compile src/core/a.c '-U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2'
+compile src/bus/a.c '-U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2'
 check 'layers: a fortified memcpy is a memcpy' sh "$gates/layers.sh" build
 
 # ---- symbols -------------------------------------------------------------------------------
@@ -214,11 +241,11 @@ C
 check 'headers: an umbrella with a hole' \
     refuses 'grobo.h:1: headers: does not include <grobo/a.h>' sh "$gates/headers.sh"
 rm include/grobo/a.h include/grobo/grobo.h
-sample src/core/private.h <<'C'
+sample src/bus/private.h <<'C'
 struct a { size_t n; };
 C
 check 'headers: a private one' \
-    refuses 'src/core/private.h:1: headers' sh "$gates/headers.sh"
+    refuses 'src/bus/private.h:1: headers' sh "$gates/headers.sh"
 
 # ---- seed map ------------------------------------------------------------------------------
 
@@ -344,14 +371,14 @@ check 'banned: a test that sleeps' refuses 'tests/unit/a.c:1: banned' scan banne
 # ---- platform ------------------------------------------------------------------------------
 
 fresh
-printf '#if defined(_WIN32)\n#endif\n' | tee a.c | sample src/core/a.c
+printf '#if defined(_WIN32)\n#endif\n' | tee a.c | sample src/bus/a.c
 check 'platform: a conditional in src' \
-    refuses 'src/core/a.c:1: platform' scan platform src/core/a.c
+    refuses 'src/bus/a.c:1: platform' scan platform src/bus/a.c
 sample ports/posix/a.c <a.c
 sample include/grobo/export.h <a.c
 check 'platform: where it may stand' scan platform ports/posix/a.c include/grobo/export.h
-echo '#  elif __linux__ /* why */' | sample src/core/a.c
-check 'platform: in any spelling' refuses 'src/core/a.c:1: platform' scan platform src/core/a.c
+echo '#  elif __linux__ /* why */' | sample src/bus/a.c
+check 'platform: in any spelling' refuses 'src/bus/a.c:1: platform' scan platform src/bus/a.c
 
 
 printf 'int f(void);\nint g(void)\n{\n    return accept4(1, 0, 0, 0);\n}\n' | tee a.c |

@@ -27,7 +27,8 @@ BEGIN {
         "^(src|ports)/")
     forbid("exit abort _exit", "a library does not end the program", "^(src|ports)/")
     forbid("malloc calloc realloc free strdup strndup", "allocate through grobo_mem", "^src/")
-    forbid("errno", "only ports/ meets the operating system", "^src/(base|model|play|bus|servo|robot|sim|body)/")
+    forbid("errno", "only ports/ meets the operating system",
+           "^src/(base|model|play|bus|servo|robot|sim|body)/")
 }
 
 # The one place where grobo_mem_default() meets the C library.

@@ -52,8 +52,6 @@ circles folders <"$work/folders"
 
 # ---- what a folder may use -----------------------------------------------------------------
 
-# layers.txt: FOLDER: FOLDERS. A folder that has no line may use nothing; PORT is the port that is
-# built.
 awk -v table="$table" '
     BEGIN {
         while ((getline line <table) > 0) {
@@ -101,8 +99,8 @@ system='socket|connect|open|openat|read|write|poll|select|ioctl|clock_gettime|na
 system="$system|tc[sg]etattr|gettimeofday|pthread_.*|thrd_.*|fork|exec.*"
 loop='event_.*|evutil_.*|bufferevent_.*'
 
-# outside PATTERN ALLOWED DENIED: extended regular expressions, of the files' names and of whole names
-# of symbols; an empty ALLOWED allows everything but the denied.
+# outside PATTERN ALLOWED DENIED: extended regular expressions, of the files' names and of whole
+# names of symbols; an empty ALLOWED allows everything but the denied.
 outside() {
     # A fortified function (__printf_chk) counts as what the source calls.
     grep -E "^($1) " "$work/outside" | sed 's/ __\(.*\)_chk$/ \1/' | grep -vE " ($helpers)\$" |
@@ -131,7 +129,8 @@ outside 'src/link/.*' '' "$banned|$output|yaml_.*"
 
 # The command is a user like any other: what it takes from the library is public.
 sh "$(dirname "$0")/symbols.sh" --declared 2>/dev/null | sort >"$work/public"
-awk '$1 ~ /^tools\/grctl\// && $2 !~ /^tools\// { print $3, $1 }' "$work/uses" | sort |
+awk '$1 ~ /^tools\/grctl\// && $NF ~ /^grobo_/ { print $NF, $1 }' "$work/uses" "$work/outside" |
+    sort |
     join -v 1 - "$work/public" |
     awk '{ print $2 ":1: layers: not a public function: " $1 }' >"$work/found"
 if [ -s "$work/found" ]; then
