@@ -94,6 +94,8 @@ void grobo_i_sim_refresh(grobo_sim *sim, int servo);
 /* True while it neither hears nor speaks, whatever the rate. */
 bool grobo_i_sim_deaf(const grobo_sim *sim, int servo);
 int32_t grobo_i_sim_value(const grobo_sim_servo *servo, uint8_t address);
+/* The rate at which a servo listens and speaks; negative: none has this code. */
+int32_t grobo_i_sim_bps(const grobo_sim *sim, int servo);
 
 /* ---- power.c: flash, reboot, supply ---- */
 
