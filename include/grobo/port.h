@@ -250,6 +250,12 @@ GROBO_API int grobo_port_pty_path(const grobo_port *port, char *path, size_t pat
 GROBO_API int grobo_port_pty_baud(const grobo_port *port);
 
 /**
+ * Whether a program has the other end of an open pseudo-terminal open. What it wrote before it
+ * closed is still to be read.
+ */
+GROBO_API bool grobo_port_pty_in_use(grobo_port *port);
+
+/**
  * Listens for connections.
  * @param device "tcp:HOST:PORT", HOST numeric or localhost; PORT 0 takes a free one.
  * @param[out] listener to be waited on until readable; closed by grobo_port_listen_close().

@@ -91,6 +91,9 @@ typedef struct grobo_play_options {
                                   may then stop nothing before the motion ends */
 } grobo_play_options;
 
+/** How often grobo_play_options.repeat plays a clip: at least once. Thread safe. */
+GROBO_API int32_t grobo_play_passes(int32_t repeat);
+
 /** What is to be sent now. */
 typedef struct grobo_play_frame {
     grobo_posture posture;       /**< joints the clip has set so far, and the time to get there:

@@ -151,6 +151,7 @@ typedef struct grobo_sim_config {
     bool echo;                 /**< bus: the host's adapter returns what is sent on one wire */
     bool nack;                 /**< a servo that cannot process an ACK request answers 08 */
     bool no_stops;             /**< nothing but its limit registers keeps a servo from turning */
+    bool baud_at_once;         /**< register BAUD takes effect when written, not at a restart */
     bool jump_on_torque;       /**< torque on runs to the goal register instead of holding */
     grobo_sim_hook hook;       /**< or NULL */
     void *hook_ctx;            /**< given to the hook */
@@ -197,7 +198,7 @@ typedef struct grobo_sim_view {
     bool stalled;          /**< wants to go where it cannot */
     bool deaf;             /**< writing flash, rebooting, without power, or its cable is not in */
     uint8_t id;            /**< register ID */
-    uint32_t baud_bps;     /**< what it listens at */
+    uint32_t baud_bps;     /**< rate at which it listens: of register BAUD at its last restart */
 } grobo_sim_view;
 
 /* ---- the simulator -------------------------------------------------------------------------- */
@@ -219,6 +220,7 @@ typedef struct grobo_sim_servo {
     int32_t from_mdeg, to_mdeg; /* the present move, of the shaft */
     int32_t stop_min_mdeg, stop_max_mdeg; /* mechanical stops */
     int32_t load_ma;                      /* extra current of a hand or a weight */
+    int32_t baud_bps;                     /* of register BAUD at the last restart */
     uint8_t reg[GROBO_REGISTERS];         /* present values are filled in when read */
     uint8_t flash[GROBO_SIM_FLASH_BYTES];
     uint8_t status; /* flags of the next return packet */
@@ -343,8 +345,8 @@ GROBO_API void grobo_sim_plug(grobo_sim *sim, bool in, int64_t now_us);
 
 /**
  * The host speaks at another rate from now on. Board wiring: at another rate than config.baud_bps
- * the board hears rubbish. Bus wiring: the line has the host's rate, and servos whose register
- * BAUD says another do not understand it.
+ * the board hears rubbish. Bus wiring: the line has the host's rate, and servos that listen at
+ * another do not understand it: grobo_sim_view.baud_bps.
  * @return 0, or GROBO_ERR_ARG below 300 bps
  */
 GROBO_API int grobo_sim_set_line_bps(grobo_sim *sim, uint32_t line_bps);

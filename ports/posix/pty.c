@@ -2,9 +2,11 @@
 /* The far end of a pseudo-terminal, for a simulator. */
 #include <errno.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <termios.h>
 #include <unistd.h>
@@ -43,6 +45,13 @@ static int make_link(grobo_port *port, const char *link, grobo_os_cause *cause)
     return GROBO_OK;
 }
 
+/* While the port has it open too, the end of a program is none of the line. */
+static bool hold_slave(grobo_port *port)
+{
+    port->slave = open(port->path, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+    return port->slave >= 0;
+}
+
 static int open_slave(grobo_port *port, int baud_bps, grobo_os_cause *cause)
 {
     const char *path;
@@ -54,8 +63,7 @@ static int open_slave(grobo_port *port, int baud_bps, grobo_os_cause *cause)
     if (grobo_i_port_copy(port->path, sizeof port->path, path) < 0) {
         return grobo_i_port_refuse(cause, GROBO_ERR_SPACE, "name of the terminal too long");
     }
-    port->slave = open(port->path, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-    if (port->slave < 0) {
+    if (!hold_slave(port)) {
         return grobo_i_posix_fail(cause, errno, "open");
     }
     r = grobo_i_posix_make_raw(port->slave, cause);
@@ -155,4 +163,18 @@ int grobo_port_pty_baud(const grobo_port *port)
     int baud_bps = grobo_i_posix_get_baud(port->slave, &cause);
 
     return baud_bps > 0 ? baud_bps : 0;
+}
+
+/* A line that nobody else has open has hung up as soon as the port has let go of it. */
+bool grobo_port_pty_in_use(grobo_port *port)
+{
+    struct pollfd line = {.fd = port->fd};
+
+    if (port->slave >= 0) {
+        (void)ioctl(port->slave, TIOCNXCL); /* a program's, which would keep the port out */
+        (void)close(port->slave);
+    }
+    (void)poll(&line, 1, 0);
+    (void)hold_slave(port);
+    return (line.revents & POLLHUP) == 0;
 }

@@ -20,3 +20,9 @@ int grobo_port_pty_baud(const grobo_port *port)
     (void)port;
     return 0;
 }
+
+bool grobo_port_pty_in_use(grobo_port *port)
+{
+    (void)port;
+    return true;
+}

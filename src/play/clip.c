@@ -119,13 +119,18 @@ static void fill_number(uint16_t *number, uint16_t otherwise)
     }
 }
 
+int32_t grobo_play_passes(int32_t repeat)
+{
+    if (repeat < 0) {
+        return repeat < -INT32_MAX ? INT32_MAX : -repeat;
+    }
+    return repeat > 0 ? repeat : 1;
+}
+
 static bool settle_options(grobo_play_options *o)
 {
-    if (o->repeat < 0) {
-        o->reverse = true;
-        o->repeat = o->repeat < -INT32_MAX ? INT32_MAX : -o->repeat;
-    }
-    o->repeat += o->repeat == 0;
+    o->reverse |= o->repeat < 0;
+    o->repeat = grobo_play_passes(o->repeat);
     fill_number(&o->speed_pct, 100);
     fill_number(&o->rate_hz, GROBO_PLAY_RATE_HZ);
     fill_number(&o->approach_deg_s, GROBO_PLAY_APPROACH_DEG_S);

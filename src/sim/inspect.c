@@ -40,7 +40,7 @@ int grobo_sim_look(grobo_sim *sim, int index, grobo_sim_view *view)
     if (servo == NULL) {
         return GROBO_ERR_ARG;
     }
-    int32_t bps = grobo_rs30x_baud_bps(servo->reg[GROBO_RS30X_BAUD]);
+    int32_t bps = grobo_i_sim_bps(sim, index);
     *view = (grobo_sim_view){
         .angle_mdeg = grobo_i_sim_angle_mdeg(servo, sim->now_us),
         .target_mdeg = servo->to_mdeg,

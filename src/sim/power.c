@@ -55,6 +55,7 @@ void grobo_i_sim_boot(grobo_sim *sim, int index, int64_t deaf_us)
 {
     grobo_sim_servo *servo = &sim->servo[index];
     memcpy(&servo->reg[GROBO_RS30X_ID], servo->flash, sizeof servo->flash);
+    servo->baud_bps = grobo_rs30x_baud_bps(servo->reg[GROBO_RS30X_BAUD]);
     memset(&servo->reg[GROBO_RS30X_GOAL], 0, GROBO_REGISTERS - GROBO_RS30X_GOAL);
     put(servo->reg, GROBO_RS30X_MAX_TORQUE, grobo_i_sim_type_of(servo)->max_torque_pct);
     servo->status &= GROBO_RS30X_STATUS_FLASH_ERROR;

@@ -23,9 +23,16 @@ bool grobo_i_sim_deaf(const grobo_sim *sim, int index)
            sim->now_us < servo->deaf_until_us;
 }
 
+int32_t grobo_i_sim_bps(const grobo_sim *sim, int index)
+{
+    const grobo_sim_servo *servo = &sim->servo[index];
+    return sim->config.baud_at_once ? grobo_rs30x_baud_bps(servo->reg[GROBO_RS30X_BAUD])
+                                    : servo->baud_bps;
+}
+
 static bool hears(const grobo_sim *sim, int index)
 {
-    int32_t bps = grobo_rs30x_baud_bps(sim->servo[index].reg[GROBO_RS30X_BAUD]);
+    int32_t bps = grobo_i_sim_bps(sim, index);
     return !grobo_i_sim_deaf(sim, index) && bps > 0 && (uint32_t)bps == sim->bus_bps;
 }
 

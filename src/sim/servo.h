@@ -14,5 +14,7 @@ void grobo_i_sim_store(grobo_sim *sim, int servo, int address, const uint8_t *by
 void grobo_i_sim_refresh(grobo_sim *sim, int servo);
 /* True while it neither hears nor speaks, whatever the rate. */
 bool grobo_i_sim_deaf(const grobo_sim *sim, int servo);
+/* The rate at which a servo listens and speaks; negative: none has this code. */
+int32_t grobo_i_sim_bps(const grobo_sim *sim, int servo);
 
 #endif

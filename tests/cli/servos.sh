@@ -156,4 +156,55 @@ check "--all-baud finds the rate" both exits 0 scan --wiring bus --all-baud --fi
     --last 4 --- says '^  3 .*  57600 bps  R_SHOULDER_P$'
 check "and no other" [ "$(grep -c R_SHOULDER_P "$work/out")" -eq 1 ]
 stop_sim
+
+# A servo changes its rate when it restarts, or at once: the command finds out where it answers.
+on_bus() {
+    on_robot --wiring bus "$@"
+}
+# follows NAME: with --flash to the new rate, and back.
+follows() {
+    check "$1: with --flash the servo is followed" both \
+        exits 0 on_bus servo-set 2 baud 460800 --flash --- \
+        said '^servo 2: baud [57] (.*) -> 10 (460800 bps), kept in flash; it answers at 460800 bps$'
+    check "$1: it is not at the old rate" fails 1 'no reply from servo 2' \
+        on_bus --timeout 60 servo-get 2 baud
+    check "$1: it is where the command says" both exits 0 on_bus -b 460800 servo-get 2 baud --- \
+        says '^  6  baud  *10  *460800 bps$'
+    check_json "$1: and back" 'lines[0]["flash"] and lines[0]["baud_bps"] == 115200' \
+        on_bus -b 460800 --json servo-set 2 baud 7 --flash
+}
+
+start_told_sim --wiring bus
+check "a baud rate without --flash" both exits 0 on_bus servo-set 2 baud 57600 --- \
+    said '(57600 bps); takes effect at a restart, and is lost there .*; it answers at 115200 bps$'
+check_json "in JSON" 'lines[0]["flash"] is False and lines[0]["baud_bps"] == 115200' \
+    on_bus --json servo-set 2 baud 57600
+follows 'at the restart'
+tell cable 2 out
+tell cable 2 in
+# It starts for half a second.
+check "its power does not take the rate away" wait_for exits 0 on_bus --timeout 60 servo-get 2 baud
+exits 0 on_bus servo on m12
+check "a servo that holds is not restarted" fails 4 'servo 12 holds, and would restart limp' \
+    on_bus servo-set 12 baud 57600 --flash
+check "and keeps its rate" both exits 0 on_bus servo-get 12 baud --- says ' 115200 bps$'
+check "without --flash it goes on holding" exits 0 on_bus servo-set 12 baud 57600
+stop_sim
+start_sim --wiring bus --baud-at-once
+check "--baud-at-once, without --flash" both exits 0 on_bus servo-set 2 baud 57600 --- \
+    said '(57600 bps); lost at power-off without --flash; it answers at 57600 bps$'
+check "and back" both exits 0 on_bus -b 57600 servo-set 2 baud 115200 --- said 'at 115200 bps$'
+follows '--baud-at-once'
+stop_sim
+check_json "in process" 'lines[0]["flash"] and lines[0]["baud_bps"] == 9600' \
+    "$GRCTL" -d sim --wiring bus --timeout 500 --json servo-set 2 baud 9600 --flash
+start_sim --wiring bus --tcp 0
+written "$work/sim.log" '^also at '
+tcp=$(sed -n 's/^also at //p' "$work/sim.log")
+check "behind TCP" fails 4 'the rate of a line behind TCP is not set from here' \
+    "$GRCTL" -d "$tcp" --wiring bus --timeout 500 servo-set 2 baud 57600
+check "nothing was written" both exits 0 on_bus servo-get 2 baud --- says ' 115200 bps$'
+check "--all-baud behind TCP" fails 2 'the rate of a line behind TCP' \
+    "$GRCTL" -d "$tcp" --wiring bus scan --all-baud
+stop_sim
 done_testing

@@ -12,16 +12,11 @@
 #include <grobo/bus.h>
 
 #include "tests/support/bus_peer.h"
+#include "tests/support/next_random.h"
 
 enum { MS = 1000, S = 1000000, FRAME = GROBO_FRAME_MAX_BYTES };
 
 static const uint8_t ack = GROBO_RS30X_ACK;
-
-static uint32_t next_random(uint32_t *seed)
-{
-    *seed = *seed * 1664525u + 1013904223u; /* Numerical Recipes */
-    return *seed >> 8;
-}
 
 /* Requests of all kinds, replies in time, late, broken or none, spans kept free. */
 static void live(peer *p, uint32_t seed, int64_t origin_us)

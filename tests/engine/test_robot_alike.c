@@ -11,6 +11,7 @@
 
 #include <grobo/board.h>
 
+#include "tests/support/next_random.h"
 #include "tests/support/rig.h"
 
 static grobo_test_rig rig, first;
@@ -25,8 +26,7 @@ static const rig_key nod[] = {{0, {{NECK, 10}}}, {600, {{NECK, -10}, {CHEST, 20}
 
 static uint32_t pick(uint32_t n)
 {
-    random_state = random_state * 1664525u + 1013904223u;
-    return (random_state >> 8) % n;
+    return next_random(&random_state) % n;
 }
 
 static grobo_posture any_target(void)

@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "tests/support/next_random.h"
 #include "tests/support/there_and_back.h"
 
 static sample_pump first;
@@ -20,12 +21,6 @@ static const sample_key mixed[] = {{130 * MS, ALL, {0.1, 0.2, 0.3}},
                                    {250 * MS, 0, {0, 0, 0}},
                                    {310 * MS, RIGHT, {0, -0.4, 0}},
                                    {470 * MS, ALL, {-0.2, 0.1, 0.9}}};
-
-static uint32_t next_random(uint32_t *seed)
-{
-    *seed = *seed * 1664525u + 1013904223u; /* Numerical Recipes */
-    return *seed >> 8;
-}
 
 static void random_options(grobo_play_options *options, uint32_t *seed)
 {

@@ -9,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include "tests/support/next_random.h"
 #include "tests/support/there_and_back.h"
 
 /* ---- transitions ---- */
@@ -131,12 +132,6 @@ static void arguments_of_commands_are_checked(void **state)
 }
 
 /* ---- anything in any order ---- */
-
-static uint32_t next_random(uint32_t *seed)
-{
-    *seed = *seed * 1664525u + 1013904223u; /* Numerical Recipes */
-    return *seed >> 8;
-}
 
 static void random_option(grobo_play_options *options, uint32_t *seed)
 {

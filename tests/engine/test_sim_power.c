@@ -265,10 +265,52 @@ static void factory_reset_in_both_spellings(void **state)
 
 /* ---- baud ---------------------------------------------------------------------------------- */
 
-static void another_rate_is_not_understood_until_the_line_has_it(void **state)
+/* No.6, flash and reboot all at the old rate, as programs for these servos do it. */
+static void a_rate_takes_effect_at_the_restart(void **state)
 {
     (void)state;
     const grobo_sim_config config = {.wiring = GROBO_WIRING_BUS};
+    simkit_start(&kit, &config);
+    simkit_packet(&kit, "FA AF 01 00 06 01 01 0A", 0);
+    assert_int_equal(simkit_register(&kit, CHEST, GROBO_RS30X_BAUD), 10);
+    assert_int_equal(simkit_look(&kit, CHEST).baud_bps, 115200);
+    assert_true(answers("FA AF 01 01 FF 00 00"));
+    simkit_packet(&kit, "FA AF 01 40 FF 00 00", 0);
+    simkit_run(&kit, 1000000);
+    assert_true(answers("FA AF 01 01 FF 00 00"));
+    simkit_packet(&kit, "FA AF 01 20 FF 00 00", 0);
+    simkit_run(&kit, 500000);
+    assert_false(answers("FA AF 01 01 FF 00 00"));
+    assert_int_equal(grobo_sim_set_line_bps(&kit.sim, 460800), 0);
+    assert_true(answers("FA AF 01 01 FF 00 00"));
+    assert_int_equal(simkit_look(&kit, CHEST).baud_bps, 460800);
+    /* A factory reset too is one of the next restart, here by the supply. */
+    simkit_packet(&kit, "FA AF 01 10 FF FF 00", 0);
+    simkit_run(&kit, 1000000);
+    assert_true(answers("FA AF 01 01 FF 00 00"));
+    grobo_sim_set_supply(&kit.sim, 0);
+    grobo_sim_set_supply(&kit.sim, 7400);
+    simkit_run(&kit, 500000);
+    assert_false(answers("FA AF 01 01 FF 00 00"));
+    assert_int_equal(simkit_look(&kit, CHEST).baud_bps, 115200);
+}
+
+static void a_restart_without_flash_loses_the_rate(void **state)
+{
+    (void)state;
+    const grobo_sim_config config = {.wiring = GROBO_WIRING_BUS};
+    simkit_start(&kit, &config);
+    simkit_packet(&kit, "FA AF 01 00 06 01 01 0A", 0);
+    simkit_packet(&kit, "FA AF 01 20 FF 00 00", 0);
+    simkit_run(&kit, 500000);
+    assert_true(answers("FA AF 01 01 FF 00 00"));
+    assert_int_equal(simkit_register(&kit, CHEST, GROBO_RS30X_BAUD), GROBO_RS30X_BAUD_CODE_DEFAULT);
+}
+
+static void another_rate_is_not_understood_until_the_line_has_it(void **state)
+{
+    (void)state;
+    const grobo_sim_config config = {.wiring = GROBO_WIRING_BUS, .baud_at_once = true};
     simkit_start(&kit, &config);
     assert_true(answers("FA AF 01 01 FF 00 00"));
     simkit_packet(&kit, "FA AF 01 00 06 01 01 0A", 0);
@@ -288,7 +330,8 @@ static void another_rate_is_not_understood_until_the_line_has_it(void **state)
 static void the_board_loses_a_servo_of_another_rate(void **state)
 {
     (void)state;
-    simkit_start(&kit, NULL);
+    const grobo_sim_config config = {.baud_at_once = true};
+    simkit_start(&kit, &config);
     simkit_ask(&kit, "53 09 FA AF 01 00 06 01 01 0A 0D", 10000);
     assert_false(answers("FA AF 01 01 FF 00 00"));
     assert_true(answers("FA AF 02 01 FF 00 00"));
@@ -375,6 +418,8 @@ int main(void)
         cmocka_unit_test(flash_and_reboot_in_one_packet),
         cmocka_unit_test(power_lost_while_saving_is_a_flash_error),
         cmocka_unit_test(factory_reset_in_both_spellings),
+        cmocka_unit_test(a_rate_takes_effect_at_the_restart),
+        cmocka_unit_test(a_restart_without_flash_loses_the_rate),
         cmocka_unit_test(another_rate_is_not_understood_until_the_line_has_it),
         cmocka_unit_test(the_board_loses_a_servo_of_another_rate),
         cmocka_unit_test(the_board_hears_rubbish_at_another_rate),

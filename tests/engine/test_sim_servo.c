@@ -226,7 +226,8 @@ static void values_out_of_range_are_refused(void **state)
 static void some_values_out_of_range_become_others(void **state)
 {
     (void)state;
-    const grobo_sim_config config = {.wiring = GROBO_WIRING_BUS, .baud_bps = 9600};
+    const grobo_sim_config config = {
+        .wiring = GROBO_WIRING_BUS, .baud_bps = 9600, .baud_at_once = true};
     simkit_start(&kit, &config);
     simkit_packet(&kit, "FA AF 01 01 23 01 01 C8", 1);
     simkit_expect(&kit, "07");

@@ -8,7 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <fcntl.h>
+#include <netinet/in.h>
 #include <sys/resource.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -400,6 +403,162 @@ static void a_flood_is_taken_at_the_wires_pace_and_idle_is_idle(void **state)
     grobo_sim_server_free(server);
 }
 
+/* ---- what a program leaves behind when it closes ------------------------------------------- */
+
+/* Writes until the system takes no more for a while: far more than the line carries meanwhile. */
+static size_t write_flood(int fd)
+{
+    static uint8_t flood[65536];
+    size_t wrote = 0;
+    memset(flood, 0x55, sizeof flood);
+    for (int refused = 0; refused < 20; refused++) {
+        ssize_t put;
+        while ((put = write(fd, flood, sizeof flood)) > 0) {
+            wrote += (size_t)put;
+            refused = 0;
+        }
+        (void)loop_run(base, 1000);
+    }
+    return wrote;
+}
+
+static int connect_raw(const grobo_sim_server *server)
+{
+    struct sockaddr_in to = {.sin_family = AF_INET,
+                             .sin_addr.s_addr = htonl(INADDR_LOOPBACK),
+                             .sin_port = htons((uint16_t)grobo_sim_server_tcp_port(server))};
+    int fd = socket(AF_INET, SOCK_STREAM, 0);
+    assert_true(fd >= 0);
+    assert_int_equal(connect(fd, (struct sockaddr *)&to, sizeof to), 0);
+    assert_int_equal(fcntl(fd, F_SETFL, O_NONBLOCK), 0);
+    return fd;
+}
+
+/* At this rate a flood would take minutes. */
+#define FLOODED_BPS 9600
+
+static grobo_sim_server *serve_slowly(void)
+{
+    const grobo_sim_config sim = {.baud_bps = FLOODED_BPS};
+    return loop_serve(base, (grobo_sim_server_config){.sim = &sim, .tcp = "tcp:127.0.0.1:0"});
+}
+
+/* The next program, there or here, is answered as if nobody had been there. */
+static void assert_next_is_answered(const char *device)
+{
+    client c;
+    client_open(&c, device, FLOODED_BPS);
+    assert_true(ask(&c, check, sizeof check, 1, 1000000));
+    assert_int_equal(c.bytes[0], 0x07);
+    grobo_serial_free(c.serial);
+}
+
+static int open_raw(const grobo_sim_server *server)
+{
+    int fd = open(grobo_sim_server_device(server), O_RDWR | O_NOCTTY | O_NONBLOCK);
+    assert_true(fd >= 0);
+    return fd;
+}
+
+static void a_terminal_flooded_and_closed_answers_the_next(void **state)
+{
+    grobo_sim_server *server = serve_slowly();
+    char tcp[64];
+
+    (void)state;
+    snprintf(tcp, sizeof tcp, "tcp:127.0.0.1:%d", grobo_sim_server_tcp_port(server));
+    for (int by_tcp = 0; by_tcp < 2; by_tcp++) {
+        int fd = open_raw(server);
+        assert_true(write_flood(fd) > 2 * GROBO_SIM_WIRE_BYTES);
+        (void)close(fd);
+        (void)loop_run(base, 20000);
+        assert_next_is_answered(by_tcp ? tcp : grobo_sim_server_device(server));
+    }
+    grobo_sim_server_free(server);
+}
+
+static void a_connection_flooded_and_closed_answers_the_next(void **state)
+{
+    grobo_sim_server *server = serve_slowly();
+    char tcp[64];
+
+    (void)state;
+    snprintf(tcp, sizeof tcp, "tcp:127.0.0.1:%d", grobo_sim_server_tcp_port(server));
+    for (int round = 0; round < 4; round++) {
+        const struct linger killed = {.l_onoff = round / 2, .l_linger = 0};
+        int fd = connect_raw(server);
+        assert_true(write_flood(fd) > 65536);
+        assert_int_equal(setsockopt(fd, SOL_SOCKET, SO_LINGER, &killed, sizeof killed), 0);
+        (void)close(fd);
+        assert_next_is_answered(round % 2 ? grobo_sim_server_device(server) : tcp);
+    }
+    grobo_sim_server_free(server);
+}
+
+/* What is no flood is no loss: programs write a motion and leave. */
+enum { LEFT_FRAMES = 2000, LEFT_BYTES = LEFT_FRAMES * sizeof check };
+
+static void write_frames(int fd)
+{
+    static uint8_t frames[LEFT_BYTES];
+    for (size_t i = 0; i < sizeof frames; i++) {
+        frames[i] = check[i % sizeof check];
+    }
+    for (size_t wrote = 0; wrote < sizeof frames;) {
+        ssize_t put = write(fd, frames + wrote, sizeof frames - wrote);
+        wrote += put > 0 ? (size_t)put : 0;
+        (void)loop_run(base, 1000);
+    }
+}
+
+static void run_until_heard(grobo_sim_server *server, uint32_t frames)
+{
+    for (int i = 0; i < 2000 && grobo_sim_server_sim(server)->stats.frames < frames; i++) {
+        (void)loop_run(base, 10000);
+    }
+    assert_int_equal(grobo_sim_server_sim(server)->stats.frames, frames);
+}
+
+static void all_that_was_written_before_a_close_is_heard(void **state)
+{
+    grobo_sim_server *server =
+        loop_serve(base, (grobo_sim_server_config){.tcp = "tcp:127.0.0.1:0"});
+    int fd = open_raw(server);
+
+    (void)state;
+    write_frames(fd);
+    (void)close(fd);
+    run_until_heard(server, LEFT_FRAMES);
+    fd = connect_raw(server);
+    write_frames(fd);
+    assert_int_equal(shutdown(fd, SHUT_WR), 0);
+    run_until_heard(server, 2 * LEFT_FRAMES);
+    (void)close(fd);
+    grobo_sim_server_free(server);
+}
+
+/* A caller at the door costs the one that is there nothing, however far ahead it writes. */
+static void who_waits_takes_nothing_from_who_is_there(void **state)
+{
+    grobo_sim_server *server =
+        loop_serve(base, (grobo_sim_server_config){.tcp = "tcp:127.0.0.1:0"});
+    int fd = connect_raw(server);
+    int waits;
+
+    (void)state;
+    (void)loop_run(base, 20000);
+    waits = connect_raw(server);
+    write_frames(fd);
+    run_until_heard(server, LEFT_FRAMES);
+    assert_int_equal(write(waits, check, sizeof check), sizeof check);
+    (void)loop_run(base, 50000);
+    assert_int_equal(grobo_sim_server_sim(server)->stats.frames, LEFT_FRAMES);
+    (void)close(fd);
+    run_until_heard(server, LEFT_FRAMES + 1);
+    (void)close(waits);
+    grobo_sim_server_free(server);
+}
+
 static void refusals_leave_nothing_behind(void **state)
 {
     counted_mem counter;
@@ -452,6 +611,10 @@ int main(void)
         ON_LOOP(a_flood_leaves_the_loop_to_others),
         ON_LOOP(nobody_can_be_let_in),
         ON_LOOP(a_flood_is_taken_at_the_wires_pace_and_idle_is_idle),
+        ON_LOOP(a_terminal_flooded_and_closed_answers_the_next),
+        ON_LOOP(a_connection_flooded_and_closed_answers_the_next),
+        ON_LOOP(all_that_was_written_before_a_close_is_heard),
+        ON_LOOP(who_waits_takes_nothing_from_who_is_there),
         ON_LOOP(refusals_leave_nothing_behind),
     };
 

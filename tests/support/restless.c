@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "tests/support/restless.h"
+#include "tests/support/next_random.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -41,8 +42,7 @@ const char *restless_name(int kind)
 
 uint32_t restless_pick(restless *u, uint32_t n)
 {
-    u->random = u->random * 1664525u + 1013904223u;
-    return (u->random >> 8) % n;
+    return next_random(&u->random) % n;
 }
 
 static int any_joint(restless *u)

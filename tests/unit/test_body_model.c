@@ -13,6 +13,7 @@
 #include "src/body/body.h"
 #include "src/body/vec.h"
 #include "tests/support/body_scaled.h"
+#include "tests/support/next_random.h"
 #include "tests/support/transforms.h"
 
 static uint32_t seed;
@@ -20,8 +21,7 @@ static uint32_t seed;
 /* Even in low..high, the same numbers in every run. */
 static double random_in(double low, double high)
 {
-    seed = seed * 1664525u + 1013904223u;
-    return low + (high - low) * (double)(seed >> 8) / 16777216.0;
+    return low + (high - low) * (double)next_random(&seed) / 16777216.0;
 }
 
 static void random_pose(double *q_rad, grobo_transform *root)

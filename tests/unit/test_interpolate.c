@@ -13,6 +13,7 @@
 #include <grobo/interpolate.h>
 
 #include "tests/support/files.h"
+#include "tests/support/next_random.h"
 
 #define NEAR 1e-6
 
@@ -197,11 +198,10 @@ static void poses_come_by_time_and_equal_ones_backwards(void **state)
     assert_int_equal(order[0], 0);
 }
 
-/* Reproducible numbers in 0..1 (Numerical Recipes' generator). */
-static double next_random(uint32_t *seed)
+/* In 0..1. */
+static double next_part(uint32_t *seed)
 {
-    *seed = *seed * 1664525u + 1013904223u;
-    return (*seed >> 8) / 16777216.0;
+    return next_random(seed) / 16777216.0;
 }
 
 static void a_cursor_changes_nothing_but_the_effort(void **state)
@@ -212,8 +212,8 @@ static void a_cursor_changes_nothing_but_the_effort(void **state)
     uint32_t seed = 1;
     double t_s = 0;
     for (size_t i = 0; i < 24; i++) {
-        t_s += i % 5 == 4 ? 0.0 : 0.01 + next_random(&seed);
-        poses[i] = (pose){t_s, next_random(&seed), i % 3 == 0 ? 0.3 : 0.0, i % 7 == 0};
+        t_s += i % 5 == 4 ? 0.0 : 0.01 + next_part(&seed);
+        poses[i] = (pose){t_s, next_part(&seed), i % 3 == 0 ? 0.3 : 0.0, i % 7 == 0};
     }
     build(&f, poses, 24);
     size_t cursor = 0;
@@ -221,7 +221,7 @@ static void a_cursor_changes_nothing_but_the_effort(void **state)
         assert_true(grobo_spline_at(f.track.keys, f.track.n, t, &cursor) == at(&f, t));
     }
     for (int i = 0; i < 2000; i++) {
-        double t = next_random(&seed) * (t_s + 2.0) - 1.0;
+        double t = next_part(&seed) * (t_s + 2.0) - 1.0;
         assert_true(grobo_spline_at(f.track.keys, f.track.n, t, &cursor) == at(&f, t));
     }
     for (size_t i = 0; i < f.track.n; i++) {

@@ -12,6 +12,17 @@
 /* How often one end is read before others have their turn: a wire without pace never is full. */
 #define READS_MAX 8
 
+/*
+ * A program that writes faster than the line carries leaves a backlog in the system when it closes:
+ * the next one would wait for minutes. While somebody waits, such a backlog is read ahead of the
+ * line, so that its end is seen; it is dropped then, or where it is larger than this, which is more
+ * than any program that looks after its line writes ahead.
+ */
+#define AHEAD_BYTES 65536
+
+/* How often a backlog is looked at: whether its program has left, or more of it has come. */
+#define LOOK_US 2000
+
 /* How long nobody is let in after a failure: the system has no descriptor, and who calls waits. */
 #define DOOR_SHUT_US 100000
 
@@ -23,7 +34,12 @@ typedef struct {
     const grobo_port_ops *ops;
     grobo_port *port;
     struct event *readable; /* NULL: closed */
-    bool paused;            /* the simulator takes no more bytes now */
+    bool paused;            /* there is more than the simulator takes now */
+    bool armed;             /* readable is waited for */
+    bool waits;             /* until the other end's backlog is over */
+    bool left;              /* pty: the program that wrote its backlog has closed it */
+    size_t ahead_bytes;     /* read and not yet given to the simulator */
+    uint8_t ahead[AHEAD_BYTES];
 } end;
 
 struct grobo_sim_server {
@@ -36,6 +52,7 @@ struct grobo_sim_server {
     end *answers; /* the end that spoke last, which the board answers */
     grobo_socket listener;
     struct event *callers; /* NULL: not listening */
+    bool knocked;          /* a caller waits until the one before has gone */
     int tcp_port;
     int baud_bps; /* of the board's port, and what programs find */
     bool paced;
@@ -61,7 +78,8 @@ static void end_close(end *e)
         e->readable = NULL;
         e->ops->close(e->port);
     }
-    e->paused = false;
+    e->paused = e->armed = e->waits = e->left = false;
+    e->ahead_bytes = 0;
     if (e->server->answers == e) {
         e->server->answers = NULL;
     }
@@ -78,17 +96,89 @@ static void follow_baud(grobo_sim_server *server, const end *e)
     }
 }
 
-/* Takes from a program what the simulated wire has room for; of a flood a part, for others wait. */
-static void end_read(end *e)
+static end *other_end(const end *e)
+{
+    return &e->server->ends[e == &e->server->ends[END_PTY] ? END_TCP : END_PTY];
+}
+
+/* What a program has left behind, here and on the line, makes way for the next one. */
+static void forget(end *e)
+{
+    e->ahead_bytes = 0;
+    if (!grobo_sim_hung_up(&e->server->sim)) {
+        grobo_sim_plug(&e->server->sim, true, grobo_now_us());
+    }
+}
+
+/* Whether a backlog is to be read ahead of the line: somebody waits for its end. */
+static bool is_in_the_way(end *e)
+{
+    if (!e->paused) {
+        e->left = false;
+        return false;
+    }
+    if (e == &e->server->ends[END_TCP]) {
+        return e->server->knocked || other_end(e)->waits;
+    }
+    if (grobo_port_pty_in_use(e->port)) {
+        if (e->left) {
+            forget(e); /* it is the next one that has it open */
+        }
+        e->left = false;
+    } else {
+        e->left = true;
+    }
+    return e->left;
+}
+
+/* Reads a backlog; of a flood a part, for the loop has others to serve. True: as far as it goes. */
+static bool read_ahead(end *e)
+{
+    int got = 1;
+
+    for (int reads = 0; got > 0 && reads < READS_MAX; reads++) {
+        grobo_os_cause cause;
+
+        if (e->ahead_bytes == sizeof e->ahead) {
+            forget(e);
+        }
+        got = e->ops->read(e->port, e->ahead + e->ahead_bytes, sizeof e->ahead - e->ahead_bytes,
+                           &cause);
+        e->ahead_bytes += got > 0 ? (size_t)got : 0;
+    }
+    if (got < 0 || (got == 0 && e->left && other_end(e)->waits)) {
+        forget(e);
+    }
+    if (got < 0) {
+        end_close(e);
+    }
+    return got <= 0;
+}
+
+/* The next bytes of a program. Returns as the port's read(). */
+static int take(end *e, uint8_t *buf, size_t size)
+{
+    grobo_os_cause cause;
+
+    if (e->ahead_bytes == 0) {
+        return e->ops->read(e->port, buf, size, &cause);
+    }
+    size = size < e->ahead_bytes ? size : e->ahead_bytes;
+    memcpy(buf, e->ahead, size);
+    e->ahead_bytes -= size;
+    memmove(e->ahead, e->ahead + size, e->ahead_bytes);
+    return (int)size;
+}
+
+/* Gives the simulated wire what it has room for. */
+static void feed(end *e)
 {
     grobo_sim_server *server = e->server;
     size_t room = grobo_sim_rx_room(&server->sim);
 
     for (int reads = 0; e->readable != NULL && room > 0 && reads < READS_MAX; reads++) {
         uint8_t buf[512];
-        grobo_os_cause cause;
-        size_t size = room < sizeof buf ? room : sizeof buf;
-        int got = e->ops->read(e->port, buf, size, &cause);
+        int got = take(e, buf, room < sizeof buf ? room : sizeof buf);
         int64_t now_us = grobo_now_us();
 
         if (got < 0) {
@@ -103,10 +193,29 @@ static void end_read(end *e)
         (void)grobo_sim_rx(&server->sim, buf, (size_t)got, now_us);
         room = grobo_sim_rx_room(&server->sim);
     }
+    e->paused = e->readable != NULL && (room == 0 || e->ahead_bytes > 0);
+}
+
+/*
+ * Takes from a program what the simulated wire has room for; of a flood a part, for others wait.
+ * Bytes of one end do not come into the middle of what the other one has begun.
+ */
+static void end_read(end *e)
+{
+    bool dry = is_in_the_way(e) && read_ahead(e);
+    bool armed;
+
+    e->waits = other_end(e)->paused && !other_end(e)->waits;
+    if (e->waits) {
+        e->paused = e->readable != NULL;
+    } else {
+        feed(e);
+    }
     /* Without room the bytes stay where they are, and must not wake the loop. */
-    if (e->readable != NULL && e->paused != (room == 0)) {
-        e->paused = room == 0;
-        (void)(e->paused ? event_del(e->readable) : event_add(e->readable, NULL));
+    armed = dry || !e->paused;
+    if (e->readable != NULL && e->armed != armed) {
+        e->armed = armed;
+        (void)(armed ? event_add(e->readable, NULL) : event_del(e->readable));
     }
 }
 
@@ -133,6 +242,7 @@ static int end_begin(end *e)
         end_close(e);
         return GROBO_ERR_NOMEM;
     }
+    e->armed = true;
     return GROBO_OK;
 }
 
@@ -181,7 +291,8 @@ static void on_caller(evutil_socket_t fd, short what, void *arg)
     (void)fd;
     (void)what;
     /* One at a time, as a serial port: who calls while somebody is there waits its turn. */
-    if (e->readable == NULL) {
+    server->knocked = e->readable != NULL;
+    if (!server->knocked) {
         int r = grobo_port_accept(server->listener, e->port, &cause);
 
         r = r < 0 ? r : end_begin(e);
@@ -269,7 +380,9 @@ static void await_callers(grobo_sim_server *server)
         server->door_us = GROBO_NEVER_US;
     }
     if (server->callers != NULL) {
-        if (server->ends[END_TCP].readable != NULL || server->door_us != GROBO_NEVER_US) {
+        bool heard = server->knocked && server->ends[END_TCP].readable != NULL;
+
+        if (heard || server->door_us != GROBO_NEVER_US) {
             (void)event_del(server->callers);
         } else {
             (void)event_add(server->callers, NULL);
@@ -277,10 +390,23 @@ static void await_callers(grobo_sim_server *server)
     }
 }
 
+/* When there is something to do without anybody's bytes. */
+static int64_t next_look_us(const grobo_sim_server *server)
+{
+    int64_t next_us = grobo_sim_deadline(&server->sim);
+
+    next_us = server->replug_us < next_us ? server->replug_us : next_us;
+    next_us = server->door_us < next_us ? server->door_us : next_us;
+    for (int i = 0; i < ENDS; i++) {
+        int64_t look_us = grobo_now_us() + LOOK_US;
+
+        next_us = server->ends[i].paused && look_us < next_us ? look_us : next_us;
+    }
+    return next_us;
+}
+
 void grobo_sim_server_pump(grobo_sim_server *server)
 {
-    int64_t next_us;
-
     answer(server);
     for (int i = 0; i < ENDS; i++) {
         if (server->ends[i].paused) {
@@ -291,10 +417,7 @@ void grobo_sim_server_pump(grobo_sim_server *server)
         hang_up(server);
     }
     await_callers(server);
-    next_us = grobo_sim_deadline(&server->sim);
-    next_us = server->replug_us < next_us ? server->replug_us : next_us;
-    next_us = server->door_us < next_us ? server->door_us : next_us;
-    (void)grobo_timer_set(server->timer, next_us);
+    (void)grobo_timer_set(server->timer, next_look_us(server));
 }
 
 static void on_time(grobo_timer *timer, int64_t late_us, void *ctx)

@@ -189,14 +189,6 @@ int grobo_control_post_stop(grobo_control *control, bool at_once)
     return control != NULL ? grobo_session_post_stop(control->session, at_once) : GROBO_ERR_ARG;
 }
 
-/* How often a motion is played by these options. */
-static uint64_t passes_of(const grobo_play_options *options)
-{
-    int64_t repeat = options->repeat;
-
-    return repeat == 0 ? 1 : (uint64_t)(repeat < 0 ? -repeat : repeat);
-}
-
 /* Frames of the present pass and of those after it. */
 static uint64_t frames_left(grobo_control *control)
 {
@@ -220,7 +212,8 @@ static int count_commands(grobo_control *control, void *arg)
     count += control->move_wanted;
     if (control->play == PLAY_WANTED || (control->play_job != 0 && !sequencing)) {
         /* it waits, or is being prepared */
-        count += grobo_motion_size(control->playing) * passes_of(&control->play_options);
+        count += grobo_motion_size(control->playing) *
+                 (uint64_t)grobo_play_passes(control->play_options.repeat);
     }
     grobo_i_control_unlock(control);
     return count < INT_MAX ? (int)count : INT_MAX;

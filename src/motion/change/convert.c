@@ -254,21 +254,6 @@ static double finest_rate(const grobo_motion *motion)
     return ceil(1 / least_s);
 }
 
-static int set_rate(conversion *conv)
-{
-    const grobo_motion *from = conv->from;
-    grobo_motion *to = conv->to;
-
-    to->frame_times = true;
-    if (from->kind == GROBO_MOTION_FRAMES) {
-        to->frame_times = from->frame_times;
-        return grobo_motion_set_frame_rate(to, from->frame_rate_hz);
-    }
-    double rate_hz = find_rate(conv);
-    to->frame_times = rate_hz == 0;
-    return grobo_motion_set_frame_rate(to, rate_hz > 0 ? rate_hz : finest_rate(to));
-}
-
 static int one_by_one(conversion *conv)
 {
     grobo_motion_kind kind = conv->to->kind;
@@ -284,7 +269,24 @@ static int one_by_one(conversion *conv)
             return result;
         }
     }
-    return kind == GROBO_MOTION_FRAMES ? set_rate(conv) : 0;
+    return 0;
+}
+
+/* Of frames, those of the motion as they are; the others at a rate, or 0 where they have none. */
+static int frame_by_frame(conversion *conv, double rate_hz)
+{
+    grobo_motion *to = conv->to;
+    int result = one_by_one(conv);
+
+    if (result < 0) {
+        return result;
+    }
+    if (conv->from->kind == GROBO_MOTION_FRAMES) {
+        to->frame_times = conv->from->frame_times;
+        return grobo_motion_set_frame_rate(to, rate_hz);
+    }
+    to->frame_times = rate_hz == 0;
+    return grobo_motion_set_frame_rate(to, rate_hz > 0 ? rate_hz : finest_rate(to));
 }
 
 /* ---- frames at a rate --------------------------------------------------------------------- */
@@ -356,9 +358,10 @@ static int to_frames(conversion *conv)
     if (options->rate_hz > 0) {
         return resample(conv, options->rate_hz);
     }
-    if (conv->from->kind == GROBO_MOTION_FRAMES || options->exact ||
-        find_rate(conv) >= FRAME_RATE_LEAST_HZ) {
-        return one_by_one(conv);
+    bool framed = conv->from->kind == GROBO_MOTION_FRAMES;
+    double rate_hz = framed ? conv->from->frame_rate_hz : find_rate(conv);
+    if (framed || options->exact || rate_hz >= FRAME_RATE_LEAST_HZ) {
+        return frame_by_frame(conv, rate_hz);
     }
     int result = resample(conv, GROBO_MOTION_RATE_HZ);
     if (result == 0 && conv->to->size > 0) {

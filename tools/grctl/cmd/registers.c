@@ -130,6 +130,14 @@ static void change_text(const change *what, int32_t before, char *text, size_t c
         snprintf(text, capacity, "%s %d -> %d", what->reg->name, before, what->value);
 }
 
+/* A rate that the line does not have. Only what it has can be asked through the board. */
+static bool changes_rate(const conn *c, const change *what)
+{
+    return what->reg->address == GROBO_RS30X_BAUD &&
+           grobo_rs30x_baud_bps((uint8_t)what->value) != (int32_t)conn_baud(c->a) &&
+           app_global(c->a, GLOBAL_WIRING)->choice == GROBO_WIRING_BUS;
+}
+
 /* What is asked on a terminal before flash is written; true to go on. */
 static bool confirmed(conn *c, const change *what, int32_t before)
 {
@@ -137,7 +145,8 @@ static bool confirmed(conn *c, const change *what, int32_t before)
     if (!what->flash)
         return true;
     change_text(what, before, text, sizeof text);
-    app_note(c->a, "servo %d: %s, and No.4-29 go to flash: keep its power on", what->id, text);
+    app_note(c->a, "servo %d: %s, and No.4-29 go to flash%s: keep its power on", what->id, text,
+             changes_rate(c, what) ? ", then it restarts" : "");
     if (app_global(c->a, GLOBAL_YES)->given || !c->a->tty_in)
         return true;
     output_complain("Write it? [y/N] ");
@@ -160,19 +169,25 @@ static int write_it(conn *c, const change *what)
     return error;
 }
 
-static void report(const conn *c, int id, const change *what, int32_t before)
+/* baud_bps: where the servo answers after its rate was written, 0 where nothing is to be said. */
+static void report(const conn *c, int id, const change *what, int32_t before, int baud_bps)
 {
-    char text[4 * REGISTERS_TEXT_BYTES];
+    char text[4 * REGISTERS_TEXT_BYTES], where[32] = "";
+    const char *kept = what->flash ? ", kept in flash" : "; lost at power-off without --flash";
     change_text(what, before, text, sizeof text);
-    if (c->a->json)
-        app_print_json(json_pack("{s:i,s:s,s:i,s:i,s:b}", "id", id, "name", what->reg->name,
-                                 "before", before, "value", what->value, "flash", what->flash));
-    else
-        app_note(c->a, "servo %d: %s%s", id, text,
-                 what->reg->address == GROBO_RS30X_BAUD && what->value != before
-                     ? "; sent, not verified: look for it with 'grctl scan --all-baud'"
-                 : what->flash ? ", kept in flash"
-                               : "; lost at power-off without --flash");
+    if (baud_bps)
+        snprintf(where, sizeof where, "; it answers at %d bps", baud_bps);
+    if (baud_bps && !what->flash && baud_bps != grobo_rs30x_baud_bps((uint8_t)what->value))
+        kept = "; takes effect at a restart, and is lost there without --flash";
+    if (c->a->json) {
+        json_t *o = json_pack("{s:i,s:s,s:i,s:i,s:b}", "id", id, "name", what->reg->name, "before",
+                              before, "value", what->value, "flash", what->flash);
+        if (baud_bps)
+            json_object_set_new(o, "baud_bps", json_integer(baud_bps));
+        app_print_json(o);
+    } else {
+        app_note(c->a, "servo %d: %s%s%s", id, text, kept, where);
+    }
 }
 
 /* After these a goal means another angle: a servo that holds would go there at once. */
@@ -189,7 +204,8 @@ static int expect_loose(conn *c, const change *what)
     int joint = grobo_model_joint_of_motor(grobo_robot_driver(c->robot)->model, what->id);
     uint8_t torque = GROBO_TORQUE_OFF;
     int error;
-    if (!changes_goal(what->reg))
+    bool restarts = what->flash && changes_rate(c, what);
+    if (!changes_goal(what->reg) && !restarts)
         return EXIT_DONE;
     error = servos_read(c, what->id, GROBO_RS30X_TORQUE, 1, &torque);
     if (!error && joint >= 0)
@@ -200,9 +216,9 @@ static int expect_loose(conn *c, const change *what)
     if (torque != GROBO_TORQUE_ON)
         return EXIT_DONE;
     return app_fail(c->a, EXIT_SAFETY, "STATE",
-                    "servo-set: servo %d holds, and would jump with another %s; first: grctl servo "
+                    "servo-set: servo %d holds, and would %s with another %s; first: grctl servo "
                     "off m%d",
-                    what->id, what->reg->name, what->id);
+                    what->id, restarts ? "restart limp" : "jump", what->reg->name, what->id);
 }
 
 /* Two servos of one id answer together, and nobody could give one of them another. */
@@ -224,6 +240,88 @@ static int expect_free_id(conn *c, const change *what)
         what->value);
 }
 
+/* ---- another baud rate: the servo is followed ------------------------------------------------ */
+
+/* The line, and the wait for a reply, at another rate. */
+static int tune(conn *c, int baud_bps)
+{
+    grobo_sim *sim = grobo_session_sim(c->session);
+    int error = sim ? grobo_sim_set_line_bps(sim, (uint32_t)baud_bps)
+                    : grobo_serial_set_baud(grobo_session_serial(c->session), baud_bps);
+    return error < 0 ? error : servos_wait(c, baud_bps, 1, SERVOS_PATIENT_US, 0, NULL);
+}
+
+/* At which of two rates the servo answers, or an error. The line stays there. */
+static int find_rate(conn *c, const change *what, int first_bps, int second_bps, uint8_t *code)
+{
+    const int rates_bps[] = {first_bps, second_bps};
+    int error = GROBO_OK;
+    for (int i = 0; i < 2; i++) {
+        error = tune(c, rates_bps[i]);
+        if (!error)
+            error = servos_read(c, what->id, GROBO_RS30X_BAUD, 1, code);
+        if (!error)
+            return rates_bps[i];
+        if (!conn_is_of_reply(error))
+            break;
+    }
+    return error;
+}
+
+/* Writes the rate; with --flash keeps it and restarts the servo. Returns the rate at which it
+ * answers then, and its register, or an error. */
+static int move_rate(conn *c, const change *what, int old_bps, int new_bps, uint8_t *code)
+{
+    const change only = {.id = what->id, .reg = what->reg, .value = what->value};
+    int at_bps, error = write_it(c, &only);
+    if (error)
+        return error;
+    at_bps = find_rate(c, what, old_bps, new_bps, code);
+    if (at_bps < 0 || *code != what->value || !what->flash)
+        return at_bps;
+    error = conn_wait(c, grobo_session_command(c->session, what->id, GROBO_SERVO_FLASH));
+    if (!error)
+        error = conn_wait(c, grobo_session_command(c->session, what->id, GROBO_SERVO_REBOOT));
+    return error ? error : find_rate(c, what, new_bps, old_bps, code);
+}
+
+/*
+ * Whether a servo changes its rate at once or when it restarts, no manual at hand says: it is
+ * looked for at both.
+ */
+static int set_rate(conn *c, const change *what, int32_t before)
+{
+    int old_bps = (int)conn_baud(c->a), new_bps = grobo_rs30x_baud_bps((uint8_t)what->value);
+    int at_bps, error;
+    uint8_t code = 0;
+    if (strncmp(conn_device(c), "tcp:", 4) == 0)
+        return app_fail(c->a, EXIT_SAFETY, "REFUSED",
+                        "servo-set: the rate of a line behind TCP is not set from here; a servo "
+                        "with another one could not be reached");
+    error = tune(c, new_bps); /* before anything is written: the line must know the rate */
+    if (!error)
+        error = tune(c, old_bps);
+    if (error)
+        return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error),
+                        "servo-set: %s at %d bps: %s; nothing was written", conn_device(c), new_bps,
+                        grobo_error_text(error));
+    at_bps = move_rate(c, what, old_bps, new_bps, &code);
+    error = tune(c, old_bps);
+    if (conn_is_of_reply(at_bps))
+        return app_fail(c->a, EXIT_ROBOT, grobo_error_name(at_bps),
+                        "servo %d answers neither at %d nor at %d bps after writing; look for it "
+                        "with 'grctl scan --all-baud'",
+                        what->id, old_bps, new_bps);
+    if (at_bps < 0 || error < 0)
+        return conn_fail_servo(c, at_bps < 0 ? at_bps : error, what->id);
+    if (code != what->value || (what->flash && at_bps != new_bps))
+        return app_fail(c->a, EXIT_ROBOT, "MISMATCH",
+                        "servo %d answers at %d bps, and its baud is %d, not %d, after writing%s",
+                        what->id, at_bps, code, what->value, what->flash ? " and a restart" : "");
+    report(c, what->id, what, before, at_bps);
+    return EXIT_DONE;
+}
+
 static int set(conn *c, const change *what)
 {
     uint8_t bytes[2] = {0};
@@ -240,18 +338,18 @@ static int set(conn *c, const change *what)
     before = grobo_rs30x_register_get(what->reg, bytes);
     if (!confirmed(c, what, before))
         return app_fail(c->a, EXIT_USAGE, "CANCELED", "servo-set: nothing was written");
+    if (changes_rate(c, what))
+        return set_rate(c, what, before);
     error = write_it(c, what);
-    /* A servo with another baud rate cannot be heard any more: nothing to read back. */
-    if (!error && what->reg->address != GROBO_RS30X_BAUD)
+    if (!error)
         error = servos_read(c, id, what->reg->address, what->reg->bytes, bytes);
     if (error)
         return conn_fail_servo(c, error, id);
-    if (what->reg->address != GROBO_RS30X_BAUD &&
-        grobo_rs30x_register_get(what->reg, bytes) != what->value)
+    if (grobo_rs30x_register_get(what->reg, bytes) != what->value)
         return app_fail(c->a, EXIT_ROBOT, "MISMATCH", "servo %d: %s is %d, not %d, after writing",
                         id, what->reg->name, grobo_rs30x_register_get(what->reg, bytes),
                         what->value);
-    report(c, id, what, before);
+    report(c, id, what, before, 0);
     return EXIT_DONE;
 }
 
@@ -348,7 +446,12 @@ const cli_command cmd_servo_set = {
         "its settings over power-off; that is shown first and, on a terminal, asked for.\n"
         "Goal and torque are refused: move and servo set them safely; id, reverse and limits\n"
         "are refused while the servo holds, an id that another servo has, and through the board\n"
-        "a baud rate other than 115200. A new baud rate is not verified.\n",
+        "a baud rate other than 115200.\n"
+        "\n"
+        "On a bus a new baud rate is written at the old one. With --flash the servo keeps it and\n"
+        "restarts, the command follows it to the new rate and verifies that it answers there;\n"
+        "-b then reaches it. Without --flash the servo goes on at the old rate and forgets the\n"
+        "new one when it restarts.\n",
     .example = "  grctl servo-set 12 delay 2 --flash\n  grctl servo-set 1 id 21\n",
     .options = set_options,
     .n_options = sizeof set_options / sizeof set_options[0],

@@ -328,6 +328,10 @@ static int run_scan(app *a)
     if (!status && app_option(a, OPT_ALL_BAUD)->given && grobo_session_sim(c.session))
         status = app_fail(a, EXIT_USAGE, "USAGE",
                           "scan: --all-baud needs a line; 'grctl sim --wiring bus' makes one");
+    else if (!status && app_option(a, OPT_ALL_BAUD)->given &&
+             strncmp(conn_device(&c), "tcp:", 4) == 0)
+        status = app_fail(a, EXIT_USAGE, "USAGE",
+                          "scan: --all-baud: the rate of a line behind TCP is not set from here");
     else if (!status)
         status = scan(&c);
     return conn_close(&c, status);

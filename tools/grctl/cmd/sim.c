@@ -27,7 +27,8 @@ enum {
     OPT_START,
     OPT_FAULT,
     OPT_STRICT,
-    OPT_STATE
+    OPT_STATE,
+    OPT_BAUD_AT_ONCE
 };
 enum { ROBOTS_MAX = 16 };
 
@@ -91,6 +92,10 @@ static const cli_option options[] = {
                    .value = "FILE",
                    .help = "keep the servos' flash in FILE from one simulator to the next; FILE2, "
                            "FILE3... of more robots"},
+    [OPT_BAUD_AT_ONCE] = {.name = "baud-at-once",
+                          .kind = CLI_FLAG,
+                          .help = "servos change their baud rate when it is written, not when "
+                                  "they restart"},
 };
 
 /* What goes with a robot. */
@@ -170,6 +175,7 @@ static grobo_sim_config sim_config(const farm *f, int robot)
         .echo = app_global(a, GLOBAL_ECHO)->given > 0,
         .unpaced = app_option(a, OPT_NO_PACING)->given > 0,
         .seed = (uint32_t)app_number(a, OPT_SEED, 0) + (uint32_t)robot,
+        .baud_at_once = app_option(a, OPT_BAUD_AT_ONCE)->given > 0,
         .start = (grobo_sim_start)app_option(a, OPT_START)->choice,
     };
     return config;
