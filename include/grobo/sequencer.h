@@ -81,6 +81,9 @@ typedef struct grobo_play_options {
     uint16_t rate_hz;        /**< RATE: 1..1000, 0: 50, or for a robot what its line allows */
     uint16_t approach_deg_s; /**< speed of approaches, 0: 60 */
     int64_t from_us;         /**< position at which the first pass begins, 0..total */
+    int64_t start_us;        /**< when it begins, on the clock of the caller: what has approached
+                                  sooner waits, what is late begins at once. 0: at once. So several
+                                  robots on one clock begin together */
     int64_t default_time_us; /**< KEY: time of keys that give none, 0: 100 ms */
     int64_t stop_us;         /**< time for pausing and stopping smoothly, 0: 200 ms */
     int64_t late_us;         /**< a frame taken later than this after its time is late, 0: 5 ms */

@@ -197,6 +197,11 @@ static int start_playing(grobo_sequencer *seq)
 
 static int approaching(grobo_sequencer *seq, grobo_play_frame *frame)
 {
+    if (!seq->waits && seq->item.options.start_us > seq->to_us) {
+        grobo_i_arrive(seq);
+        set_move(seq, false, seq->item.options.start_us);
+        return 0;
+    }
     if (!seq->waits) {
         return start_playing(seq);
     }

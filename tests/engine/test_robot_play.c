@@ -104,6 +104,31 @@ static void frames_at_a_rate_leave_on_their_grid(void **state)
     assert_int_equal(grobo_robot_get_counters(&rig.robot)->late_frames, 0);
 }
 
+/* When the first frame behind the approach leaves, of a robot whose neck stands there. */
+static int64_t first_leaves_at(double neck_deg, int64_t start_us)
+{
+    static rig_frame frames[64];
+    const grobo_play_options options = {.start_us = start_us};
+    start(&quiet);
+    rig_power(&rig);
+    const grobo_posture turned = rig_posture(&rig, NECK, neck_deg, 1000);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &turned, rig.now_us), GROBO_OK);
+    play(&options);
+    rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
+    assert_true(motion_frames(frames, 64) >= 2);
+    return frames[1].at_us;
+}
+
+static void robots_begin_together_however_far_they_approach(void **state)
+{
+    (void)state;
+    int64_t start_us = rig_epoch_us + 8000000;
+    int64_t near_us = first_leaves_at(1, start_us);
+    int64_t far_us = first_leaves_at(-40, start_us);
+    assert_in_range(near_us, start_us, start_us + 1000);
+    assert_in_range(far_us, start_us, start_us + 1000);
+}
+
 static void gaps_between_frames_are_read_in(void **state)
 {
     (void)state;
@@ -454,6 +479,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(keys_are_frames_with_their_times),
         cmocka_unit_test(frames_at_a_rate_leave_on_their_grid),
+        cmocka_unit_test(robots_begin_together_however_far_they_approach),
         cmocka_unit_test(gaps_between_frames_are_read_in),
         cmocka_unit_test(first_move_is_slow_and_from_where_the_robot_is),
         cmocka_unit_test(targets_outside_limits_end_the_motion),

@@ -280,6 +280,57 @@ static void the_queue_has_a_cap(void **state)
     assert_int_equal(pump.n, 3 * (GROBO_QUEUE_MAX + 2));
 }
 
+/* ---- a start at a time ---- */
+
+/* From half a way off, about half a second of approach. */
+static void start_at(const grobo_play_options *how, int64_t start_us)
+{
+    grobo_play_options options = *how;
+    options.start_us = start_us;
+    there_and_back_start(&options, 0.5);
+}
+
+static void who_has_approached_waits_for_the_start(void **state)
+{
+    (void)state;
+    start_at(&by_key, 3000 * MS);
+    sample_pump_run(&pump, 2999 * MS);
+    assert_int_equal(pump.n, 1); /* the approach at its own speed, at once */
+    assert_true(last_frame()->posture.time_us < 600 * MS);
+    assert_int_equal(grobo_sequencer_get_state(&pump.seq), GROBO_SEQUENCER_APPROACHING);
+    sample_pump_run(&pump, 3000 * MS);
+    assert_int_equal(pump.n, 2);
+    expect_last(3000, 1000, 1.0);
+    start_at(&at_rate, 3000 * MS);
+    sample_pump_run(&pump, 3100 * MS);
+    assert_int_equal(pump.frames[1].due_us, 3000 * MS);
+    assert_int_equal(pump.n, 7);
+}
+
+static void a_start_that_is_over_is_no_start(void **state)
+{
+    (void)state;
+    there_and_back_start(&by_key, 0.5);
+    sample_pump_run(&pump, 2000 * MS);
+    int64_t due_us = pump.frames[1].due_us;
+    start_at(&by_key, due_us - 1);
+    sample_pump_run(&pump, 2000 * MS);
+    assert_int_equal(pump.frames[1].due_us, due_us);
+}
+
+static void a_pause_before_the_start_stands_where_it_is(void **state)
+{
+    (void)state;
+    start_at(&by_key, 3000 * MS);
+    sample_pump_run(&pump, 2000 * MS);
+    assert_int_equal(grobo_sequencer_pause(&pump.seq, pump.now_us), 0);
+    sample_pump_run(&pump, 5000 * MS);
+    expect_last(2000, 200, 0.0);
+    assert_int_equal(grobo_sequencer_resume(&pump.seq, pump.now_us), 0);
+    sample_pump_run(&pump, 5200 * MS);
+    expect_last(5100, 1000, 1.0); /* behind the first key's own time */
+}
+
 /* ---- refusals and failures ---- */
 
 static void options_out_of_range_are_refused(void **state)
@@ -289,6 +340,8 @@ static void options_out_of_range_are_refused(void **state)
                                              {.speed_pct = 1001},
                                              {.rate_hz = 1001},
                                              {.from_us = -1},
+                                             {.start_us = -1},
+                                             {.start_us = GROBO_NEVER_US},
                                              {.from_us = 3000 * MS + 1},
                                              {.default_time_us = -1},
                                              {.stop_us = -1},
@@ -440,6 +493,9 @@ int main(void)
         cmocka_unit_test(seeking_while_paused_waits_for_resume),
         cmocka_unit_test(queued_clips_follow_by_way_of_an_approach),
         cmocka_unit_test(the_queue_has_a_cap),
+        cmocka_unit_test(who_has_approached_waits_for_the_start),
+        cmocka_unit_test(a_start_that_is_over_is_no_start),
+        cmocka_unit_test(a_pause_before_the_start_stands_where_it_is),
         cmocka_unit_test(options_out_of_range_are_refused),
         cmocka_unit_test(bad_clips_never_start),
         cmocka_unit_test(a_start_that_is_no_posture_of_the_robot_is_refused),
