@@ -184,8 +184,7 @@ static void read_only_registers_stay(void **state)
     static const char *const writes[] = {
         "FA AF 01 00 00 01 01 55", "FA AF 01 00 0E 01 01 55", "FA AF 01 00 2A 02 01 01 00",
         "FA AF 01 00 34 02 01 01 00",
-        "FA AF 01 00 1D 0E 01 00 00 00 00 00 00 00 00 00 00 00 00 00 "
-        "00"};
+        "FA AF 01 00 1D 0E 01 00 00 00 00 00 00 00 00 00 00 00 00 00 00"};
     simkit_start(&kit, NULL);
     for (size_t i = 0; i < sizeof writes / sizeof *writes; i++) {
         uint8_t before[GROBO_REGISTERS];

@@ -144,8 +144,8 @@ static void test_save_keeps_other_formats(void **state)
 {
     static const char *const held[] = {
         "100 1 2\n",
-        "type: PoseSeq\nname: a\nrefs:\n  - time: 1\n    refer:\n      type: Pose\n"
-        "      joints: [ 0 ]\n      q: [ 0.5 ]\n",
+        ("type: PoseSeq\nname: a\nrefs:\n  - time: 1\n    refer:\n      type: Pose\n"
+         "      joints: [ 0 ]\n      q: [ 0.5 ]\n"),
         "function y = f(x)\ny = x;\n",
     };
     static const grobo_motion_format formats[] = {GROBO_FORMAT_M, GROBO_FORMAT_PSEQ,

@@ -383,7 +383,7 @@ static bool lacks_columns(const grobo_motion *motion, const grobo_model *model)
     if (model == NULL || motion->n_joints >= model->n_joints) {
         return false;
     }
-    (void)grobo_i_motor_order(model, model->n_joints, joints);
+    (void)grobo_i_motor_order(model, motion->n_joints, joints);
     for (int c = 0; c < motion->n_joints; c++) {
         lacks |= joints[c] >= motion->n_joints;
     }

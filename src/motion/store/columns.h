@@ -7,7 +7,8 @@
 
 /*
  * Column c of a .m file is joint joints[c]: the model's joints in the order of their motors, or,
- * where it has not so many joints (or there is no model), joint c. @return true for motor order.
+ * where it has not so many joints (or there is no model), joint c. Of at most GROBO_JOINTS_MAX
+ * columns. @return true for motor order.
  */
 bool grobo_i_motor_order(const grobo_model *model, int columns, uint8_t *joints);
 /*
