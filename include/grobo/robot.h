@@ -201,9 +201,9 @@ typedef struct grobo_robot {
     int acting;            /* number of the job whose step runs; 0: none */
     bool other_read;       /* in free mode: the last reading was of a joint that is not free */
     bool link;
-    bool settling;  /* a motion is over, its end not yet looked at */
-    bool soft;      /* the next move is the first from a sensed posture */
-    bool stop_owed; /* an emergency stop that no line has carried yet */
+    bool settling;      /* a motion is over, its end not yet looked at */
+    bool soft;          /* the next move is the first from a sensed posture */
+    bool stop_owed;     /* an emergency stop that no line has carried yet */
     bool holds_at_stop; /* the driver switches no torque: an emergency stop halts */
 } grobo_robot;
 

@@ -274,8 +274,7 @@ static void a_goal_that_was_not_taken_is_no_way(void **state)
     rig_run(&rig, 50000);
     assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_IN), 0);
     for (int i = 0; i < 2; i++) { /* the second tells nothing of the goal */
-        int number =
-            grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(NECK), kinds[i], rig.now_us);
+        int number = grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(NECK), kinds[i], rig.now_us);
         rig_expect(&rig, number, GROBO_OK);
     }
     rig_run(&rig, 1000000);

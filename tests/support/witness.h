@@ -48,15 +48,15 @@ typedef struct witness {
     unsigned n_tail;
     int64_t heard_us; /* when servos heard a command last */
     witness_question questions[WITNESS_QUESTIONS];
-    witness_question answered;           /* by the reading that was believed last */
+    witness_question answered;            /* by the reading that was believed last */
     int64_t doubled_us[GROBO_JOINTS_MAX]; /* when a doubled reply was believed last */
-    int64_t said_us[GROBO_JOINTS_MAX];   /* when the reading was said that was believed last */
-    int64_t goal_us[GROBO_JOINTS_MAX];   /* when the goal was said that was believed last */
-    int64_t reboot_us[GROBO_JOINTS_MAX]; /* when a servo last lost what it was told */
-    grobo_joint_mask misled;             /* the line made something up about these */
-    bool settings_hit;                   /* a made-up command changed what flash keeps */
-    unsigned believed;                   /* readings that were believed, and were true */
-    unsigned doubled;                    /* that the line said twice, or because of one */
+    int64_t said_us[GROBO_JOINTS_MAX];    /* when the reading was said that was believed last */
+    int64_t goal_us[GROBO_JOINTS_MAX];    /* when the goal was said that was believed last */
+    int64_t reboot_us[GROBO_JOINTS_MAX];  /* when a servo last lost what it was told */
+    grobo_joint_mask misled;              /* the line made something up about these */
+    bool settings_hit;                    /* a made-up command changed what flash keeps */
+    unsigned believed;                    /* readings that were believed, and were true */
+    unsigned doubled;                     /* that the line said twice, or because of one */
     unsigned made_up_commands, made_up_replies, made_up_believed;
 } witness;
 
