@@ -517,8 +517,8 @@ static void note_goals(grobo_robot *robot, const grobo_robot_slot *slot, const s
     }
     note_way(robot, &slot->order, target);
     note_pace(robot, slot, target);
-    robot->raw_joints &= ~target->posture.set;
-    robot->raw_joints |= slot->order.deed == GROBO_I_DEED_RAW ? target->posture.set : 0;
+    robot->played_joints &= ~target->posture.set;
+    robot->played_joints |= slot->due_us != GROBO_NEVER_US ? target->posture.set : 0;
 }
 
 static void note(grobo_robot *robot, const grobo_robot_slot *slot, const saying *says)
