@@ -39,7 +39,7 @@ static bool near_rad(double a_rad, double b_rad, double within_rad)
 }
 
 /* Until when rounds do not count: who leaves waits for a servo that was deaf as it began, and an
- * emergency stop for one that was heard lately, within its bound. It may restart again and again. */
+ * emergency stop for one that was heard lately, within its bound: it may restart all the time. */
 static int64_t patient_until(const grobo_robot *robot, grobo_joint_mask bad)
 {
     int64_t from_us = robot->job.begun_us;
