@@ -192,8 +192,8 @@ typedef struct grobo_robot {
     uint32_t motion_us;     /* wire time of the last motion frames */
     grobo_joint_mask round; /* joints still to be read in this background round */
     grobo_joint_mask free_joints;
-    grobo_joint_mask raw_joints;  /* sent where they go by a raw frame */
-    grobo_joint_mask other_round; /* in free mode: of the joints that are not free */
+    grobo_joint_mask played_joints; /* sent where they go by the sequencer */
+    grobo_joint_mask other_round;   /* in free mode: of the joints that are not free */
     uint8_t reply[GROBO_REGISTERS];
     double fault_deg;
     int fault_joint;

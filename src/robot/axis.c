@@ -56,12 +56,17 @@ bool grobo_i_axis_is_on(const grobo_robot_axis *axis)
     return axis->torque_known && axis->state.torque == GROBO_TORQUE_ON;
 }
 
+bool grobo_i_axis_moves(const grobo_robot_axis *axis, int64_t now_us)
+{
+    bool limp = axis->torque_known && axis->state.torque != GROBO_TORQUE_ON;
+    return !limp && grobo_i_later(grobo_i_axis_until(axis), axis->way.to_us) > now_us;
+}
+
 bool grobo_i_moving(const grobo_robot *robot, int64_t now_us)
 {
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
-        bool moves = axis->way.to_us > now_us || grobo_i_axis_until(axis) > now_us;
-        if (axis->next != 0 || (axis->has_target && moves)) {
+        if (axis->next != 0 || (axis->sensed && grobo_i_axis_moves(axis, now_us))) {
             return true;
         }
     }

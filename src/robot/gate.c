@@ -190,8 +190,7 @@ static int judge_halt(grobo_robot *robot, const grobo_robot_order *order, grobo_
     int64_t rest_us = grobo_i_later(order->asked_us + HALT_AHEAD_US, robot->now_us + HALT_LEAST_US);
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
-        int64_t until_us = grobo_i_later(grobo_i_axis_until(axis), axis->way.to_us);
-        bool moves = axis->sensed && axis->has_target && until_us > robot->now_us;
+        bool moves = axis->sensed && grobo_i_axis_moves(axis, robot->now_us);
         if (is_in(order->joints, j) && moves) {
             target->posture.angle_rad[j] = grobo_i_axis_commanded(axis, rest_us);
             target->joint_time_us[j] = HALT_TIME_US;
@@ -518,8 +517,8 @@ static void note_goals(grobo_robot *robot, const grobo_robot_slot *slot, const s
     }
     note_way(robot, &slot->order, target);
     note_pace(robot, slot, target);
-    robot->raw_joints &= ~target->posture.set;
-    robot->raw_joints |= slot->order.deed == GROBO_I_DEED_RAW ? target->posture.set : 0;
+    robot->played_joints &= ~target->posture.set;
+    robot->played_joints |= slot->due_us != GROBO_NEVER_US ? target->posture.set : 0;
 }
 
 static void note(grobo_robot *robot, const grobo_robot_slot *slot, const saying *says)

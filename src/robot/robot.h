@@ -50,6 +50,9 @@ double grobo_i_way_at(const grobo_robot_way *way, int64_t now_us);
 double grobo_i_axis_commanded(const grobo_robot_axis *axis, int64_t now_us);
 /* When it is there: on that move, or on the one its servo is on where it lost the frame. */
 int64_t grobo_i_axis_until(const grobo_robot_axis *axis);
+/* False where a joint is known to be there, or to be without torque. One that was told to let go
+ * may not have heard it. */
+bool grobo_i_axis_moves(const grobo_robot_axis *axis, int64_t now_us);
 /* Where it was last asked to go, whether that frame has left or waits. */
 double grobo_i_axis_target(const grobo_robot_axis *axis);
 /* Takes the sensed angle for where a joint is, nothing being asked of it. */

@@ -38,6 +38,21 @@ static bool near_rad(double a_rad, double b_rad, double within_rad)
     return fabs(a_rad - b_rad) <= within_rad;
 }
 
+/* Until when rounds do not count: who leaves waits for a servo that was deaf as it began, and an
+ * emergency stop for one that was heard lately, within its bound: it may restart all the time. */
+static int64_t patient_until(const grobo_robot *robot, grobo_joint_mask bad)
+{
+    int64_t from_us = robot->job.begun_us;
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        const grobo_robot_axis *axis = &robot->axes[j];
+        bool heard = is_set(bad, j) && axis->angle_us != GROBO_NEVER_US;
+        if (heard && robot->job.kind == GROBO_JOB_ESTOP) {
+            from_us = grobo_i_later(from_us, axis->angle_us);
+        }
+    }
+    return from_us + DEAF_US;
+}
+
 /* What did not take gets another round from `step` on; without rounds left it has failed. */
 static int again(grobo_robot *robot, grobo_joint_mask bad, grobo_robot_step_fn step)
 {
@@ -47,7 +62,7 @@ static int again(grobo_robot *robot, grobo_joint_mask bad, grobo_robot_step_fn s
     if (bad == 0) {
         return GROBO_I_NEXT;
     }
-    if (job->rounds++ < rounds || (ends && robot->now_us < job->begun_us + DEAF_US)) {
+    if (job->rounds++ < rounds || (ends && robot->now_us < patient_until(robot, bad))) {
         job->failed &= ~bad;
         job->result = job->failed == 0 ? GROBO_OK : job->result;
         grobo_i_job_goto(robot, step);

@@ -12,8 +12,10 @@ void grobo_i_make_way(grobo_robot *robot)
 
 void grobo_i_stop_moves(grobo_robot *robot)
 {
-    grobo_joint_mask joints =
-        grobo_robot_is_playing(robot) ? robot->raw_joints : grobo_i_all_joints(robot);
+    grobo_joint_mask joints = grobo_i_all_joints(robot);
+    if (grobo_robot_is_playing(robot)) {
+        joints &= ~robot->played_joints; /* the sequencer brings these to rest */
+    }
     grobo_i_slots_cancel_goals(robot);
     if (joints != 0) {
         grobo_i_gate_halt(robot, joints);

@@ -177,10 +177,26 @@ static void an_exit_after_a_replug_throws_no_joint_back(void **state)
     for (int more_ms = 800; more_ms < 1000; more_ms += 5) {
         replug_under_way(1500);
         rig_run(&rig, more_ms * 1000);
+        double asked_deg = rig_angle_deg(&rig, HIP);
         int number = grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD, rig.now_us);
         assert_true(fastest_dps(number, HIP) < 120);
-        assert_true(fabs(rig_angle_deg(&rig, HIP) - 20) < 12);
+        double stood_deg = rig_angle_deg(&rig, HIP);
+        assert_true(stood_deg > asked_deg - 1 && stood_deg < 21);
     }
+}
+
+static void a_stop_after_a_replug_ends_the_way_of_before(void **state)
+{
+    (void)state;
+    replug_under_way(12000);
+    rig_run(&rig, 500000); /* all are read */
+    double asked_deg = rig_angle_deg(&rig, HIP);
+    assert_int_equal(grobo_robot_stop(&rig.robot, false, rig.now_us), GROBO_OK);
+    rig_run(&rig, 300000);
+    double here_deg = rig_angle_deg(&rig, HIP);
+    assert_true(fabs(here_deg - asked_deg) < 5);
+    rig_run(&rig, 1000000);
+    assert_true(fabs(rig_angle_deg(&rig, HIP) - here_deg) < 0.01);
 }
 
 /* A single target has no reading before it that would tell where the joint is going. */
@@ -417,6 +433,7 @@ int main(void)
         cmocka_unit_test(a_target_after_a_replug_throws_no_joint_that_creeps),
         cmocka_unit_test(a_play_after_a_replug_throws_no_joint_back),
         cmocka_unit_test(an_exit_after_a_replug_throws_no_joint_back),
+        cmocka_unit_test(a_stop_after_a_replug_ends_the_way_of_before),
         cmocka_unit_test(nothing_is_sent_to_a_joint_that_moves_by_itself),
         cmocka_unit_test(an_emergency_stop_that_found_no_line_is_made_up_for),
         cmocka_unit_test(an_emergency_stop_taken_back_is_not_made_up_for),

@@ -341,6 +341,36 @@ static void nothing_queued_follows_an_emergency_stop(void **state)
     }
 }
 
+/* Deaf to whatever switches torque, as in the moments of restarts, but not to questions. */
+static void mute_for_torque(grobo_test_rig *on, const uint8_t *bytes, size_t n)
+{
+    const rig_frame *last = &on->sent[on->n_sent - 1];
+    const uint8_t *p;
+    (void)bytes;
+    assert_int_equal(last->size, n);
+    (void)rig_packet(last, &p);
+    bool torque = p[4] == GROBO_RS30X_TORQUE && p[6] > 0;
+    assert_int_equal(
+        grobo_sim_set_cable(&on->sim, NECK, torque ? GROBO_SIM_CABLE_MUTE : GROBO_SIM_CABLE_IN), 0);
+}
+
+static void emergency_stop_does_not_give_up_who_answers(void **state)
+{
+    (void)state;
+    rig_start_at(&rig, 0, &quiet);
+    rig.on_frame = mute_for_torque;
+    int number = grobo_robot_estop(&rig.robot, rig.now_us);
+    for (int ms = 0; ms < 5000; ms += 100) {
+        rig_run(&rig, 100000);
+        rig.n_sent = 0;
+    }
+    assert_int_equal(rig_torque(&rig, NECK), GROBO_TORQUE_ON);
+    rig.on_frame = NULL;
+    assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_IN), 0);
+    rig_expect(&rig, number, GROBO_OK);
+    assert_int_equal(rig_torque(&rig, NECK), GROBO_TORQUE_BRAKE);
+}
+
 static void emergency_stop_gives_up_where_nobody_answers(void **state)
 {
     (void)state;
@@ -508,6 +538,7 @@ int main(void)
         cmocka_unit_test(emergency_stop_is_first_verified_and_latched),
         cmocka_unit_test(emergency_stop_waits_for_no_silent_servo),
         cmocka_unit_test(nothing_queued_follows_an_emergency_stop),
+        cmocka_unit_test(emergency_stop_does_not_give_up_who_answers),
         cmocka_unit_test(emergency_stop_gives_up_where_nobody_answers),
         cmocka_unit_test(emergency_stop_repeats_until_it_took),
         cmocka_unit_test(emergency_stop_takes_the_place_of_a_job),

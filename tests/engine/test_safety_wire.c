@@ -161,6 +161,25 @@ static void a_stop_halts_what_a_raw_goal_moves_beside_a_motion(void **state)
     assert_int_equal(grobo_robot_play_state(&rig.robot), GROBO_SEQUENCER_IDLE);
 }
 
+/* So it does with one that a target sent on its way before the motion began. */
+static void a_stop_halts_what_was_sent_before_a_motion(void **state)
+{
+    (void)state;
+    const grobo_play_options slow = {.mode = GROBO_PLAY_RATE, .rate_hz = 10};
+    rig_start_at(&rig, 0, &quiet);
+    rig_clip_init(&clip, waits_then_turns, 3);
+    clip.only = GROBO_JOINT_BIT(NECK);
+    grobo_posture target = rig_posture(&rig, SHOULDER, 60, 6000);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &slow, rig.now_us), GROBO_OK);
+    rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
+    ask_stop();
+    rig_run(&rig, 300000);
+    double here_deg = rig_angle_deg(&rig, SHOULDER);
+    rig_run(&rig, 6000000);
+    assert_true(fabs(rig_angle_deg(&rig, SHOULDER) - here_deg) < 0.1);
+}
+
 /* ---- free mode ------------------------------------------------------------------------------- */
 
 static void refuse_send(void)
@@ -494,6 +513,7 @@ int main(void)
         cmocka_unit_test(a_raw_goal_that_is_slow_enough_leaves_late),
         cmocka_unit_test(a_stop_cancels_a_raw_goal_that_waits),
         cmocka_unit_test(a_stop_halts_what_a_raw_goal_moves_beside_a_motion),
+        cmocka_unit_test(a_stop_halts_what_was_sent_before_a_motion),
         cmocka_unit_test(a_joint_in_free_mode_takes_no_target),
         cmocka_unit_test(moving_a_joint_takes_it_out_of_free_mode),
         cmocka_unit_test(what_is_unknown_is_noted_when_the_frame_leaves),

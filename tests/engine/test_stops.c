@@ -282,6 +282,22 @@ static void a_joint_sent_while_torque_comes_on_is_stopped_where_it_is(void **sta
     assert_true(fabs(rig_angle_deg(&rig, HIP) - here_deg) < 0.01);
 }
 
+/* A raw goal for a joint without torque moves nothing, and nothing is there to stop. */
+static void a_stop_sends_no_joint_that_has_no_torque(void **state)
+{
+    (void)state;
+    start_at(0);
+    grobo_joint_mask neck = GROBO_JOINT_BIT(NECK);
+    rig_expect(&rig, grobo_robot_torque(&rig.robot, neck, GROBO_TORQUE_BRAKE, rig.now_us),
+               GROBO_OK);
+    rig_expect(&rig, raw_goal(NECK_ID, 400, 200), GROBO_OK);
+    rig_run(&rig, 500000);
+    rig_forget(&rig);
+    (void)grobo_robot_stop(&rig.robot, true, rig.now_us);
+    rig_run(&rig, 100000);
+    assert_null(goal_sent(0));
+}
+
 /* The clip that waited in the queue is gone with the first stop, and stays so. */
 static void a_stop_empties_the_queue(void **state)
 {
@@ -572,6 +588,7 @@ int main(void)
         cmocka_unit_test(a_stopped_joint_never_goes_back),
         cmocka_unit_test(a_smooth_stop_is_no_longer_after_a_reset),
         cmocka_unit_test(a_joint_sent_while_torque_comes_on_is_stopped_where_it_is),
+        cmocka_unit_test(a_stop_sends_no_joint_that_has_no_torque),
         cmocka_unit_test(a_stop_empties_the_queue),
         cmocka_unit_test(a_trip_ends_a_raw_job),
         cmocka_unit_test(a_trip_ends_torque_that_comes_on),

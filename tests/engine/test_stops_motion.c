@@ -230,6 +230,59 @@ static void a_stop_ends_the_way_of_a_joint_that_lost_its_frame(void **state)
     }
 }
 
+/* A reading that was on the line tells of one more joint that moves, sent there by nobody here. */
+static void a_halt_is_no_longer_when_it_leaves(void **state)
+{
+    (void)state;
+    uint8_t frame[GROBO_FRAME_MAX_BYTES];
+    const grobo_rs30x_goal goal = {NECK_ID, -400, 500};
+    rig_start_at(&rig, 0, &quiet);
+    grobo_posture target = rig_posture(&rig, NECK, 10, 200);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    rig_run(&rig, 500000);
+    int n = grobo_frame_goals(rig_wiring, &goal, 1, frame, sizeof frame);
+    assert_int_equal(grobo_sim_rx(&rig.sim, frame, (size_t)n, rig.now_us), n);
+    target = rig_posture(&rig, SHOULDER, 90, 5000);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    rig_run(&rig, 500000);
+    assert_true(grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(NECK), GROBO_SENSE_ALL, rig.now_us) >
+                0);
+    rig_run(&rig, 1000);
+    assert_int_equal(grobo_robot_stop(&rig.robot, true, rig.now_us), GROBO_OK);
+    rig_run(&rig, 300000);
+    double here_deg = rig_angle_deg(&rig, SHOULDER);
+    rig_run(&rig, 1000000);
+    assert_true(fabs(rig_angle_deg(&rig, SHOULDER) - here_deg) < 0.01);
+}
+
+/* It was told to let go, did not hear that, and is known to hold, or not known not to. */
+static void a_stop_reaches_a_joint_that_was_to_let_go(void **state)
+{
+    (void)state;
+    for (int reads = 0; reads < 2; reads++) {
+        rig_start_at(&rig, -45, &quiet);
+        grobo_joint_mask neck = GROBO_JOINT_BIT(NECK);
+        grobo_posture target = rig_posture(&rig, NECK, 45, 4000);
+        assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+        rig_run(&rig, 500000);
+        assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_MUTE), 0);
+        int number = grobo_robot_torque(&rig.robot, neck, GROBO_TORQUE_OFF, rig.now_us);
+        rig_run(&rig, 4000);
+        assert_int_equal(grobo_robot_cancel(&rig.robot, rig.now_us), GROBO_OK);
+        rig_expect(&rig, number, GROBO_ERR_CANCELED);
+        assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_IN), 0);
+        if (reads) {
+            number = grobo_robot_sense(&rig.robot, neck, GROBO_SENSE_ALL, rig.now_us);
+            rig_expect(&rig, number, GROBO_OK);
+        }
+        assert_int_equal(grobo_robot_stop(&rig.robot, true, rig.now_us), GROBO_OK);
+        rig_run(&rig, 300000);
+        double here_deg = rig_angle_deg(&rig, NECK);
+        rig_run(&rig, 1000000);
+        assert_true(fabs(rig_angle_deg(&rig, NECK) - here_deg) < 0.01);
+    }
+}
+
 /* A servo that writes its flash or restarts hears nothing for up to two seconds. */
 static void a_stop_reaches_a_servo_that_was_deaf(void **state)
 {
@@ -580,6 +633,8 @@ int main(void)
         cmocka_unit_test(a_stop_after_a_motion_is_not_undone_by_its_end),
         cmocka_unit_test(a_stop_moves_no_joint_that_lost_its_frame),
         cmocka_unit_test(a_stop_ends_the_way_of_a_joint_that_lost_its_frame),
+        cmocka_unit_test(a_halt_is_no_longer_when_it_leaves),
+        cmocka_unit_test(a_stop_reaches_a_joint_that_was_to_let_go),
         cmocka_unit_test(a_stop_reaches_a_servo_that_was_deaf),
         cmocka_unit_test(leaving_lets_go_when_the_joints_stand),
         cmocka_unit_test(what_is_stopped_says_that_it_was_canceled),

@@ -64,6 +64,7 @@ void judge_motion_asked(judge *w)
 void judge_stop_asked(judge *w, grobo_joint_mask joints, bool smooth)
 {
     w->resting = true;
+    w->rig->asked = true; /* to bring to rest what moves by itself since the line is back */
     w->rest_joints = joints;
     w->smooth = smooth;
     w->rest_looked =

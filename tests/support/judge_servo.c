@@ -174,9 +174,10 @@ static void take_torque(judge *w, const grobo_sim_event *event)
         return;
     }
     double apart_deg = fabs(axis->goal_deg - here_deg);
-    axis->parted |= is_turned(w, joint);
-    if (apart_deg > judge_hold_deg(w, joint) && !witness_restarted(&w->rig->witness, joint) &&
-        !judge_excused(w, joint)) {
+    bool is_far = apart_deg > judge_hold_deg(w, joint);
+    bool restarted = witness_restarted(&w->rig->witness, joint);
+    axis->parted |= is_turned(w, joint) || (is_far && restarted); /* then it jumps, unseen */
+    if (is_far && !restarted && !judge_excused(w, joint)) {
         fail_msg("torque of %s comes on %.1f deg from its goal, %.1f deg; it jumps there or "
                  "forgets it",
                  judge_name(w, joint), apart_deg, axis->goal_deg);
