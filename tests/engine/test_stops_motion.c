@@ -240,7 +240,7 @@ static void a_halt_is_no_longer_when_it_leaves(void **state)
     grobo_posture target = rig_posture(&rig, NECK, 10, 200);
     assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
     rig_run(&rig, 500000);
-    int n = grobo_frame_goals(rig_wiring, &goal, 1, frame, sizeof frame);
+    int n = grobo_frame_goals(rig.driver->protocol, &goal, 1, frame, sizeof frame);
     assert_int_equal(grobo_sim_rx(&rig.sim, frame, (size_t)n, rig.now_us), n);
     target = rig_posture(&rig, SHOULDER, 90, 5000);
     assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);

@@ -18,7 +18,12 @@ trap 'rm -rf "$work"' EXIT
 
 # uses: FILE FILE SYMBOL, the first takes the symbol from the second; open: FILE SYMBOL, taken from
 # outside. The command's own symbols may be defined in several ports, of which one is built.
-(cd "$build" && find src ports tools/grctl -name '*.o' 2>/dev/null | sort | xargs -r "$nm" -o -g) |
+# Objects of files that are gone do not count.
+(cd "$build" && find src ports tools/grctl -name '*.o' 2>/dev/null) | sort |
+    while read -r object; do
+        [ ! -f "${object%.o}.c" ] || echo "$object"
+    done >"$work/objects"
+(cd "$build" && xargs -r "$nm" -o -g <"$work/objects") |
     sed -n 's/^\([^ :]*\)\.o:/\1.c /p' | awk -v uses="$work/uses" -v outside="$work/outside" '
     $(NF - 1) == "U" || $(NF - 1) == "w" { wants[++n] = $1 " " $NF; next }
     { home[$NF] = $1 }
