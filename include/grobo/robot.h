@@ -424,10 +424,11 @@ GROBO_API int grobo_robot_speed(grobo_robot *robot, int speed_pct, int64_t now_u
 
 /* ---- free (teaching) mode ----------------------------------------------------------------------
  * A person moves the joints: after each reading a joint whose current is above its
- * grobo_joint.free_current_ma is braked, one slower than 8 deg/s for 0.1 s holds again (protocol 5;
- * there it is one reading, which for 20 joints is 0.15 s). Free
- * joints are read as often as the line allows, the others in sense_interval_us (a second where that
- * is GROBO_SENSE_NEVER), but not twice before a free one: their heat and voltage are watched. */
+ * grobo_joint.free_current_ma is braked, or one that turns at 8 deg/s and more while it holds and
+ * is more than 2 degrees from its goal; one slower than 8 deg/s for 0.1 s holds again (protocol 5,
+ * but for the second; there it is one reading, which for 20 joints is 0.15 s). Free joints are read
+ * as often as the line allows, the others in sense_interval_us (a second where that is
+ * GROBO_SENSE_NEVER), but not twice before a free one: their heat and voltage are watched. */
 
 /**
  * Puts joints into free mode, or back: off is a job that makes them hold where they are.

@@ -389,7 +389,8 @@ GROBO_API int grobo_sim_set_flash(grobo_sim *sim, int servo,
 
 /**
  * Somebody turns a shaft: from where it is to angle_mdeg (kept within the mechanical stops) in
- * time_us, at once for 0. With torque on the servo drives back to its goal at the end of it.
+ * time_us, at once for 0, whatever the torque is and becomes meanwhile. With torque on at the end
+ * of it the servo drives to its goal.
  * @return 0 or GROBO_ERR_ARG (no such servo, time_us < 0 or above INT32_MAX: half an hour)
  */
 GROBO_API int grobo_sim_set_angle(grobo_sim *sim, int servo, int32_t angle_mdeg, int64_t time_us);

@@ -3,10 +3,14 @@
 #include "src/bus/time.h"
 #include "src/robot/robot.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 /* In free mode a hand has so long to get a joint going, or to turn it back, before it holds. */
 #define GRIP_US 100000
+
+/* A joint that moves this far from the goal that it holds is turned by a hand. */
+#define TURNED_RAD (2 * 0.017453292519943295)
 
 /* While a motion is played joints are read so often, and in free mode the others, also where
  * nothing is read else. */
@@ -26,14 +30,24 @@ static void switch_once(grobo_robot *robot, grobo_joint_mask joint, grobo_torque
     }
 }
 
-/* After each reading (protocol 5): above the joint's current, brake; slow, hold. To hold, the goal
- * is set to the present angle first; the next reading shows that it took. */
+/* True if something else than its servo turns a joint: it holds, has no way to go, and moves this
+ * far from its goal. A leg's current stays below its limit under a hand that is not slow. */
+static bool is_turned(const grobo_robot *robot, const grobo_robot_axis *axis)
+{
+    const grobo_joint_state *state = &axis->state;
+    double away_rad = fabs(state->angle_rad - state->goal_rad);
+    return state->torque == GROBO_TORQUE_ON && abs(state->speed_dps) >= GROBO_I_SLOW_DPS &&
+           away_rad > TURNED_RAD && grobo_i_axis_until(axis) <= robot->now_us;
+}
+
+/* After each reading (protocol 5): above the joint's current, or turned, brake; slow, hold. To
+ * hold, the goal is set to the present angle first; the next reading shows that it took. */
 static void free_joint(grobo_robot *robot, int joint)
 {
     grobo_robot_axis *axis = &robot->axes[joint];
     const grobo_joint_state *state = &axis->state;
     int limit_ma = robot->driver->model->joints[joint].free_current_ma;
-    bool pushed = limit_ma > 0 && state->current_ma > limit_ma;
+    bool pushed = (limit_ma > 0 && state->current_ma > limit_ma) || is_turned(robot, axis);
     grobo_joint_mask bit = GROBO_JOINT_BIT(joint);
     if (axis->goal_us != robot->now_us) {
         return; /* a reading from before, without the goal */

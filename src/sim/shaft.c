@@ -142,15 +142,17 @@ void grobo_i_sim_torque(grobo_sim *sim, int index, grobo_torque before)
     if (torque == before) {
         return;
     }
-    if (torque == GROBO_TORQUE_ON && sim->config.jump_on_torque) {
+    bool on = torque == GROBO_TORQUE_ON;
+    if (!servo->by_hand) {
+        grobo_i_sim_halt(sim, index);
+    }
+    if (on && !sim->config.jump_on_torque) {
+        int32_t here_mdeg = grobo_i_sim_angle_mdeg(servo, sim->now_us);
+        grobo_i_sim_hold(servo, GROBO_RS30X_GOAL, grobo_i_sim_ddeg(servo, here_mdeg));
+    } else if (on && !servo->by_hand) { /* from under a hand at the end of its way */
         servo->due_us = sim->now_us;
         grobo_i_sim_drive(sim, index);
         servo->begun_us = sim->now_us;
-    } else {
-        grobo_i_sim_halt(sim, index);
-        if (torque == GROBO_TORQUE_ON) {
-            grobo_i_sim_hold(servo, GROBO_RS30X_GOAL, grobo_i_sim_ddeg(servo, servo->to_mdeg));
-        }
     }
     grobo_i_sim_note(sim, GROBO_SIM_TORQUE, index, (int32_t)torque);
 }

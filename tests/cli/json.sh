@@ -179,6 +179,12 @@ exits_with_keys() {
 }
 check "--json record" records
 check "as the schema says" fits record
+teaches() {
+    printf ' s' | exits_with_keys "$GRCTL" --json -d sim teach -o "$work/taught.pseq" arms &&
+        json 'lines[0]["postures"] == 1'
+}
+check "--json teach" teaches
+check "as the schema says" fits teach
 in_shell() {
     printf 'Clear\nPush\nt 500\nReverse\nversion\n' |
         exits_with_keys "$GRCTL" --json -d sim shell
@@ -189,7 +195,7 @@ check "as the schema says" fits shell,version
 rows names | sort -u >"$work/names"
 every_command() {
     for command in $("$GRCTL" help | sed -n '/^Commands:/,/^$/s/^  \([a-z-]*\) .*/\1/p'); do
-        case " sim shell monitor record " in
+        case " sim shell monitor record teach " in
         *" $command "*) ;; # above
         *) grep -qx -e "$command" "$work/names" || { echo "$command has no row"; return 1; } ;;
         esac

@@ -406,6 +406,23 @@ static void a_servo_drives_back_when_the_hand_lets_go(void **state)
     assert_int_equal(angle(SHOULDER), 20000);
 }
 
+static void a_hand_goes_on_whatever_the_torque_becomes(void **state)
+{
+    (void)state;
+    start_with_torque(NULL);
+    assert_int_equal(grobo_sim_set_angle(&kit.sim, SHOULDER, 80000, 600000), 0);
+    simkit_run(&kit, 100000);
+    simkit_packet(&kit, "FA AF 03 00 24 01 01 02", 0);
+    simkit_run(&kit, 100000);
+    assert_in_range(angle(SHOULDER), 39000, 42000);
+    simkit_packet(&kit, "FA AF 03 00 24 01 01 01", 0);
+    simkit_run(&kit, 100000);
+    assert_in_range(angle(SHOULDER), 49000, 53000);
+    simkit_packet(&kit, "FA AF 03 00 24 01 01 00", 0);
+    simkit_run(&kit, 1000000);
+    assert_int_equal(angle(SHOULDER), 80000);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -430,6 +447,7 @@ int main(void)
         cmocka_unit_test(an_overheated_servo_says_so_until_torque_is_written),
         cmocka_unit_test(a_hand_moves_a_limp_shaft),
         cmocka_unit_test(a_servo_drives_back_when_the_hand_lets_go),
+        cmocka_unit_test(a_hand_goes_on_whatever_the_torque_becomes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -21,6 +21,7 @@
     X(stop)                                                                                        \
     X(estop)                                                                                       \
     X(record)                                                                                      \
+    X(teach)                                                                                       \
     X(check)                                                                                       \
     X(show)                                                                                        \
     X(plot)                                                                                        \

@@ -1,5 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* record: a motion taught by hand. */
+/*
+ * record, teach: a motion taught by hand.
+ *
+ * A joint that is taught is held or limp. A held one is in free mode: the engine reads it all the
+ * time. A limp one has no torque: this reads it when a posture is looked at, and for what is shown.
+ * Keys and timers only note what is due; the loop in mind() does one thing after the other, so that
+ * a key waits for a reading or for what is being played.
+ */
 #include <math.h>
 #include <string.h>
 
@@ -12,9 +19,11 @@
 #include "tools/grctl/conn/conn.h"
 #include "tools/grctl/conn/wire.h"
 #include "tools/grctl/os/keys.h"
+#include "tools/grctl/play/keys.h"
 
-enum { OPT_OUT, OPT_RATE, OPT_KEY, OPT_MOVED, OPT_TIME };
-enum { KEY_MS = 1000, PAUSE_US = 1000000, LIVE_US = 100000 };
+/* The first ones are those of teach. */
+enum { OPT_OUT, OPT_TIME, TEACH_OPTIONS, OPT_RATE = TEACH_OPTIONS, OPT_KEY, OPT_MOVED, OPT_LIMP };
+enum { KEY_MS = 1000, PAUSE_US = 1000000, LIVE_US = 100000, KEYS_MAX = 32 };
 
 /* The original's: a look each 250 ms, a posture when a joint moved by 10 degrees. */
 static const double seed_rate_hz = 4, seed_moved_deg = 10;
@@ -25,6 +34,13 @@ static const cli_option options[] = {
                  .kind = CLI_TEXT,
                  .value = "FILE",
                  .help = ".m, .pseq, .mseq or .yaml (the first free MotionN.m)"},
+    [OPT_TIME] = {.name = "time",
+                  .letter = 't',
+                  .kind = CLI_NUMBER,
+                  .value = "MS",
+                  .help = "time to reach a posture kept by a key press (1000)",
+                  .min = 10,
+                  .max = 9990},
     [OPT_RATE] = {.name = "rate",
                   .letter = 'r',
                   .kind = CLI_NUMBER,
@@ -45,29 +61,36 @@ static const cli_option options[] = {
                    .min = 0,
                    .max = 180,
                    .real = true},
-    [OPT_TIME] = {.name = "time",
-                  .letter = 't',
-                  .kind = CLI_NUMBER,
-                  .value = "MS",
-                  .help = "with --key: time to reach a posture (1000)",
-                  .min = 10,
-                  .max = 9990},
+    [OPT_LIMP] = {.name = "limp",
+                  .kind = CLI_FLAG,
+                  .help = "switch torque off; the default where it is off"},
 };
 
 typedef struct recorder {
     conn c;
     keys input;
+    play_keys playing; /* its conn is NULL while nothing is played */
     struct event *look, *live;
     grobo_motion *motion;
-    grobo_joint_mask joints; /* in the hand */
+    grobo_motion *played;    /* a copy that is or was played; the robot may read it until the end */
+    grobo_clip clip;         /* of that */
+    grobo_joint_mask joints; /* that are taught: */
+    grobo_joint_mask held;   /* in free mode */
+    grobo_joint_mask limp;   /* without torque */
     grobo_posture last;      /* kept last */
     int64_t last_us;         /* when */
+    int key[KEYS_MAX], n_keys;     /* that wait, the first one first */
+    bool look_is_due, live_is_due; /* by the timers */
     progress line;
     double moved_deg;
     int last_moved; /* joint, -1 none */
-    bool by_key, over;
-    int error;
+    bool teaches, by_key, over;
 } recorder;
+
+static const char *name_of(const recorder *r)
+{
+    return r->teaches ? "teach" : "record";
+}
 
 /* ---- postures -------------------------------------------------------------------------------- */
 
@@ -86,7 +109,7 @@ static double furthest(const recorder *r, const grobo_posture *now, int *joint)
     return grobo_deg_from_rad(most_rad);
 }
 
-static void keep(recorder *r, grobo_posture *now)
+static int keep(recorder *r, grobo_posture *now)
 {
     int64_t now_us = grobo_now_us();
     size_t n = grobo_motion_size(r->motion);
@@ -96,31 +119,58 @@ static void keep(recorder *r, grobo_posture *now)
     else
         now->time_us = n == 0 ? KEY_MS * 1000 : took_us < PAUSE_US ? took_us : PAUSE_US;
     grobo_posture_clamp(now, grobo_robot_driver(r->c.robot)->model);
-    r->error = grobo_motion_append(r->motion, now);
-    r->over |= r->error < 0;
     r->last = *now;
     r->last_us = now_us;
+    return grobo_motion_append(r->motion, now);
 }
 
-static void look(recorder *r, bool anyway)
+/* Limp joints are read now. A reply that was lost is no reason to end; *read is false then. */
+static int read_limp(recorder *r, bool *read)
+{
+    conn *c = &r->c;
+    int error = GROBO_OK;
+    *read = true;
+    if (r->limp)
+        error = conn_wait(c, grobo_session_sense(c->session, r->limp, GROBO_SENSE_POSITION));
+    if (conn_is_of_reply(error)) {
+        *read = false;
+        error = GROBO_OK;
+    }
+    return error;
+}
+
+/* Keeps the posture read last where that is asked for, or where it is another one. */
+static int take(recorder *r, bool anyway)
 {
     grobo_posture now;
     int n = grobo_robot_posture(r->c.robot, grobo_now_us(), GROBO_NEVER_US, &now);
     if (n < now.n_joints) /* a first round is still under way */
-        return;
+        return 0;
     if (anyway || grobo_motion_size(r->motion) == 0 ||
         furthest(r, &now, &r->last_moved) >= r->moved_deg)
-        keep(r, &now);
+        return keep(r, &now);
+    return 0;
 }
 
-static void drop_last(recorder *r)
+static int look(recorder *r, bool anyway)
+{
+    bool read;
+    int error = read_limp(r, &read);
+    if (!error && read)
+        return take(r, anyway);
+    if (!error && anyway)
+        app_note(r->c.a, "not kept: a servo did not answer; try again");
+    return error;
+}
+
+static int drop_last(recorder *r)
 {
     size_t n = grobo_motion_size(r->motion);
-    if (n == 0)
-        return;
-    grobo_motion_delete(r->motion, n - 1);
+    if (n > 0)
+        grobo_motion_delete(r->motion, n - 1);
     if (n > 1)
         grobo_motion_get(r->motion, n - 2, &r->last);
+    return 0;
 }
 
 /* ---- what is seen ---------------------------------------------------------------------------- */
@@ -154,37 +204,195 @@ static void draw(recorder *r)
     progress_draw(&r->line, -1, text);
 }
 
+/* ---- playing what is kept -------------------------------------------------------------------- */
+
+static void free_played(recorder *r)
+{
+    if (r->played)
+        grobo_motion_clip_free(&r->clip);
+    grobo_motion_free(r->played);
+    r->played = NULL;
+}
+
+/* A copy with the joints that are taught alone: no other one is switched on, or moves. */
+static int copy_taught(const recorder *r, grobo_motion *copy)
+{
+    grobo_posture posture;
+    int error = 0;
+    for (size_t i = 0; i < grobo_motion_size(r->motion) && error >= 0; i++) {
+        error = grobo_motion_get(r->motion, i, &posture);
+        posture.set &= r->joints;
+        if (error >= 0)
+            error = grobo_motion_append(copy, &posture);
+    }
+    return error < 0 ? error : 0;
+}
+
+static bool has_played(conn *c)
+{
+    return c->trip.trip != GROBO_TRIP_NONE ||
+           (!grobo_robot_is_playing(c->robot) && !grobo_robot_settling(c->robot));
+}
+
+static int make_clip(recorder *r)
+{
+    grobo_motion *copy;
+    int error =
+        grobo_motion_new(&copy, GROBO_MOTION_POSTURES, grobo_motion_joints(r->motion), NULL);
+    if (error < 0)
+        return error;
+    error = copy_taught(r, copy);
+    if (error >= 0)
+        error = grobo_motion_clip(copy, NULL, &r->clip);
+    if (error < 0)
+        grobo_motion_free(copy);
+    else
+        r->played = copy;
+    return error < 0 ? error : 0;
+}
+
+/* From where each joint is: torque comes on there, and the first posture is reached slowly. */
+static int play(recorder *r)
+{
+    conn *c = &r->c;
+    grobo_play_progress end = {0};
+    int error;
+    r->playing = (play_keys){.c = c, .speed_pct = 100};
+    c->moving = true;
+    error = conn_wait(c, grobo_session_play(c->session, &r->clip, NULL));
+    if (!error)
+        error = conn_wait_until(c, has_played);
+    if (!error && r->playing.estop)
+        error = conn_end_estop(c);
+    if (!error) {
+        grobo_robot_progress(c->robot, grobo_now_us(), &end);
+        error = c->trip.trip != GROBO_TRIP_NONE ? GROBO_ERR_LATCHED : end.error;
+    }
+    c->moving = error < 0;
+    r->playing.c = NULL;
+    return error;
+}
+
+/* Switches torque off, after a warning. */
+static int let_fall(recorder *r, grobo_joint_mask joints)
+{
+    conn *c = &r->c;
+    int n = grobo_joints_count(joints);
+    app_note(c->a, "torque of %d joint%s goes off: hold the robot; what is raised falls", n,
+             n == 1 ? "" : "s");
+    return conn_wait(c, grobo_session_torque(c->session, joints, GROBO_TORQUE_OFF));
+}
+
+static int play_kept(recorder *r)
+{
+    size_t n = grobo_motion_size(r->motion);
+    int error;
+    if (n == 0) {
+        app_note(r->c.a, "nothing is kept yet: space keeps a posture");
+        return 0;
+    }
+    progress_clear(&r->line);
+    app_note(r->c.a, "torque comes on, %zu posture%s: space: pause   s: stop   e: EMERGENCY STOP",
+             n, n == 1 ? "" : "s");
+    free_played(r);
+    error = make_clip(r);
+    if (!error)
+        error = play(r);
+    if (error == GROBO_ERR_LIMIT || conn_is_of_reply(error)) { /* the next try may do better */
+        (void)conn_fail(&r->c, error, name_of(r));
+        r->c.moving = false;
+        return let_fall(r, r->joints);
+    }
+    if (!error)
+        error = let_fall(r, r->joints);
+    if (!error)
+        app_note(r->c.a, "played; space: keep a posture   enter, p: play them   s: save and end");
+    return error;
+}
+
 /* ---- what comes from the loop ---------------------------------------------------------------- */
 
 static void on_look(evutil_socket_t fd, short what, void *ctx)
 {
+    recorder *r = ctx;
     (void)fd;
     (void)what;
-    look(ctx, false);
+    r->look_is_due = true;
 }
 
 static void on_live(evutil_socket_t fd, short what, void *ctx)
 {
+    recorder *r = ctx;
     (void)fd;
     (void)what;
-    draw(ctx);
+    r->live_is_due = true;
 }
 
+/* While it plays, keys are for that. A key too many is lost: nobody has pressed it. */
 static void on_key(void *ctx, int key)
 {
     recorder *r = ctx;
-    if (key == ' ')
-        look(r, true);
-    else if (key == 'd')
-        drop_last(r);
-    else if (key == 's' || key == 'q' || (key == KEYS_END && r->by_key))
-        r->over = true;
+    if (r->playing.c && key != KEYS_END)
+        (void)play_keys_take(&r->playing, key);
+    else if (r->n_keys < KEYS_MAX)
+        r->key[r->n_keys++] = key;
 }
 
-static bool is_over(conn *c)
+/* Without a line, so that a program that writes the keys can wait for a posture. */
+static int tell_kept(const recorder *r, int error)
+{
+    if (!error && !r->line.shown)
+        app_note(r->c.a, "%zu kept", grobo_motion_size(r->motion));
+    return error;
+}
+
+static int take_key(recorder *r)
+{
+    int key = r->key[0];
+    memmove(r->key, r->key + 1, (size_t)--r->n_keys * sizeof r->key[0]);
+    if (key == ' ')
+        return tell_kept(r, look(r, true));
+    if (key == 'd')
+        return tell_kept(r, drop_last(r));
+    if (r->teaches && (key == 'p' || key == '\n' || key == '\r'))
+        return play_kept(r);
+    if (key == 's' || key == 'q' || (key == KEYS_END && r->by_key))
+        r->over = true;
+    return 0;
+}
+
+static bool is_due(conn *c)
 {
     const recorder *r = c->ctx;
-    return r->over || c->trip.trip != GROBO_TRIP_NONE;
+    return r->n_keys > 0 || r->look_is_due || r->live_is_due || c->trip.trip != GROBO_TRIP_NONE;
+}
+
+/* A posture by time, or a line that shows one: with --rate the looks alone read limp joints. */
+static int take_time(recorder *r)
+{
+    bool read, looks = r->look_is_due;
+    int error = 0;
+    r->look_is_due = r->live_is_due = false;
+    if (looks)
+        error = look(r, false);
+    else if (r->by_key && r->line.shown)
+        error = read_limp(r, &read);
+    draw(r);
+    return error;
+}
+
+/* Until somebody says so. */
+static int mind(recorder *r)
+{
+    int error = 0;
+    while (!error && !r->over) {
+        error = conn_wait_until(&r->c, is_due);
+        if (!error && r->c.trip.trip != GROBO_TRIP_NONE)
+            error = GROBO_ERR_LATCHED;
+        if (!error)
+            error = r->n_keys > 0 ? take_key(r) : take_time(r);
+    }
+    return error;
 }
 
 static struct event *every(recorder *r, int64_t period_us, event_callback_fn fn)
@@ -198,45 +406,86 @@ static struct event *every(recorder *r, int64_t period_us, event_callback_fn fn)
 
 /* ---- from the beginning to the end ----------------------------------------------------------- */
 
-static void say_how(const recorder *r, bool hears)
+static void say_rate(const recorder *r)
 {
     int n = grobo_joints_count(r->joints);
     double rate_hz = app_number(r->c.a, OPT_RATE, seed_rate_hz);
     double line_hz = wire_taught_hz(grobo_robot_driver(r->c.robot), (int)conn_baud(r->c.a), n);
-    app_note(r->c.a,
-             "joints are in your hands: each gives way when you turn it, holds when let go");
-    if (!r->by_key && rate_hz > line_hz)
+    if (rate_hz > line_hz)
         app_note(r->c.a, "the line reads %s %.3g times a second: a higher --rate sees nothing more",
                  n == 1 ? "the joint" : "each joint", line_hz);
-    if (hears)
-        app_note(r->c.a, "space: keep a posture   d: drop the last   s: save and end");
-    else
+}
+
+static void say_how(const recorder *r, bool hears)
+{
+    if (r->held)
+        app_note(r->c.a,
+                 "joints are in your hands: each gives way when you turn it, holds when let go");
+    if (r->limp)
+        app_note(r->c.a, "%d joint%s limp: move by hand; a released joint does not hold",
+                 grobo_joints_count(r->limp), grobo_joints_count(r->limp) == 1 ? " is" : "s are");
+    if (!r->by_key)
+        say_rate(r);
+    if (!hears)
         app_note(r->c.a, "Ctrl-C saves and ends");
+    else
+        app_note(r->c.a, "space: keep a posture   d: drop the last   %ss: save and end",
+                 r->teaches ? "enter, p: play them   " : "");
+}
+
+/* Those of the joints that hold, and those that are not limp: braked ones too. */
+static void look_at_torque(const recorder *r, grobo_joint_mask *hold, grobo_joint_mask *switched)
+{
+    *hold = *switched = 0;
+    for (int j = 0; j < grobo_robot_driver(r->c.robot)->model->n_joints; j++) {
+        grobo_joint_info info;
+        if (!(r->joints & GROBO_JOINT_BIT(j)) ||
+            grobo_robot_joint(r->c.robot, j, grobo_now_us(), &info) < 0)
+            continue;
+        *hold |= info.state.torque == GROBO_TORQUE_ON ? GROBO_JOINT_BIT(j) : 0;
+        *switched |= info.state.torque != GROBO_TORQUE_OFF ? GROBO_JOINT_BIT(j) : 0;
+    }
+}
+
+/* Gives the joints into the hands. What is off stays off. */
+static int give(recorder *r)
+{
+    conn *c = &r->c;
+    grobo_joint_mask all = GROBO_JOINTS_ALL(grobo_robot_driver(c->robot)->model->n_joints);
+    grobo_joint_mask hold, switched;
+    int error = conn_wait(c, grobo_session_sense(c->session, all, GROBO_SENSE_ALL));
+    if (error < 0)
+        return error;
+    look_at_torque(r, &hold, &switched);
+    if (r->teaches || app_option(c->a, OPT_LIMP)->given > 0) {
+        error = switched ? let_fall(r, switched) : 0;
+        hold = 0;
+    }
+    r->held = hold;
+    r->limp = r->joints & ~hold;
+    return hold ? grobo_session_free_mode(c->session, hold, true) : error;
 }
 
 /* Until somebody says so. Returns why it ended before, or 0. */
 static int teach(recorder *r)
 {
     conn *c = &r->c;
-    grobo_joint_mask all = GROBO_JOINTS_ALL(grobo_robot_driver(c->robot)->model->n_joints);
-    int error = conn_wait(c, grobo_session_sense(c->session, all, GROBO_SENSE_ALL));
     bool hears;
-    if (!error)
-        error = conn_wait(c, grobo_session_torque(c->session, r->joints, GROBO_TORQUE_ON));
-    if (!error)
-        error = grobo_session_free_mode(c->session, r->joints, true);
+    int error = give(r);
     if (error < 0)
         return error;
+    if (!r->by_key)
+        error = take(r, true);
     hears = keys_start(&r->input, c->base, true, on_key, r);
     say_how(r, hears);
     progress_start(&r->line, c->a);
     if (!r->by_key) {
         double rate_hz = app_number(c->a, OPT_RATE, seed_rate_hz);
-        look(r, true);
         r->look = every(r, (int64_t)(1e6 / rate_hz), on_look);
     }
     r->live = every(r, LIVE_US, on_live);
-    error = conn_wait_until(c, is_over);
+    if (!error)
+        error = mind(r);
     keys_stop(&r->input);
     progress_clear(&r->line);
     for (int i = 0; i < 2; i++) {
@@ -244,9 +493,9 @@ static int teach(recorder *r)
         if (timer)
             event_free(timer);
     }
-    if (!error) /* out of the hands: they hold where they are */
-        error = conn_wait(c, grobo_session_free_mode(c->session, r->joints, false));
-    return error ? error : r->error;
+    if (!error && r->held) /* out of the hands: they hold where they are */
+        error = conn_wait(c, grobo_session_free_mode(c->session, r->held, false));
+    return error;
 }
 
 static int fail_to_write(app *a, int error)
@@ -316,7 +565,7 @@ static int record(recorder *r)
     int error, status, saved;
     c->ctx = r;
     error = teach(r);
-    status = error ? conn_fail(c, error, "record") : EXIT_DONE;
+    status = error ? conn_fail(c, error, name_of(r)) : EXIT_DONE;
     saved = save(r);
     return status ? status : saved;
 }
@@ -325,12 +574,13 @@ static int prepare(recorder *r, app *a)
 {
     const char *out = app_option(a, OPT_OUT)->text;
     int status = 0;
-    r->by_key = app_option(a, OPT_KEY)->given > 0;
-    r->moved_deg = app_number(a, OPT_MOVED, seed_moved_deg);
+    r->by_key = r->teaches || app_option(a, OPT_KEY)->given > 0;
+    r->moved_deg = r->teaches ? 0 : app_number(a, OPT_MOVED, seed_moved_deg);
     r->last_moved = -1;
     if (out && grobo_motion_format_of_path(out) == GROBO_FORMAT_AUTO)
         return app_fail(a, EXIT_USAGE, "USAGE",
-                        "record: -o %s: its name tells no format; .m, .pseq, .mseq or .yaml", out);
+                        "%s: -o %s: its name tells no format; .m, .pseq, .mseq or .yaml",
+                        name_of(r), out);
     for (int i = 0; i < a->line.n_arguments && !status; i++)
         status = joints_parse(a, a->line.argument[i], &r->joints);
     if (!status)
@@ -340,15 +590,17 @@ static int prepare(recorder *r, app *a)
     if (!r->joints)
         r->joints = GROBO_JOINTS_ALL(grobo_gr001_model.n_joints);
     if (grobo_motion_new(&r->motion, GROBO_MOTION_POSTURES, grobo_gr001_model.n_joints, NULL) < 0)
-        return app_fail(a, EXIT_ROBOT, "NOMEM", "record: %s", grobo_error_text(GROBO_ERR_NOMEM));
+        return app_fail(a, EXIT_ROBOT, "NOMEM", "%s: %s", name_of(r),
+                        grobo_error_text(GROBO_ERR_NOMEM));
     return 0;
 }
 
-static int run(app *a)
+static int run(app *a, bool teaches)
 {
     static recorder r;
     int status;
     memset(&r, 0, sizeof r);
+    r.teaches = teaches;
     status = prepare(&r, a);
     if (!status) {
         status = conn_open_to_move(&r.c, a);
@@ -356,9 +608,23 @@ static int run(app *a)
             status = record(&r);
         status = conn_close(&r.c, status);
     }
+    free_played(&r);
     grobo_motion_free(r.motion);
     return status;
 }
+
+static int run_record(app *a)
+{
+    return run(a, false);
+}
+
+static int run_teach(app *a)
+{
+    return run(a, true);
+}
+
+#define ENDS_HELP                                                                                  \
+    "Ctrl-C, or a lost line, keeps what was recorded too. The name of the file is printed.\n"
 
 const cli_command cmd_record = {
     .name = "record",
@@ -366,6 +632,10 @@ const cli_command cmd_record = {
     .summary = "record a motion that a hand shows",
     .details =
         "All joints, or those named, give way to a hand that turns them and hold when it lets go.\n"
+        "A joint without torque stays so: it is limp and nothing is switched on. --limp switches\n"
+        "the torque of what is taught off: hold the robot, an arm falls. What is not taught stays\n"
+        "as it is.\n"
+        "\n"
         "Postures are kept when a joint has moved by --moved degrees, looked at --rate times a\n"
         "second; with --key only at the press of a key. Pauses are cut to a second.\n"
         "\n"
@@ -378,12 +648,38 @@ const cli_command cmd_record = {
         "  space   keep the posture as it is now\n"
         "  d       drop the last one\n"
         "  s, q    save and end\n"
-        "\n"
-        "Ctrl-C, or a lost line, keeps what was recorded too. The name of the file is printed.\n",
-    .example = "  grctl record\n  grctl record --key -o wave.pseq right_arm\n",
+        "\n" ENDS_HELP,
+    .example = "  grctl record\n  grctl record --key -o wave.pseq right_arm\n"
+               "  grctl record --limp arms\n",
     .options = options,
     .n_options = sizeof options / sizeof options[0],
     .max_arguments = -1,
     .argument = CLI_ARG_JOINT,
-    .run = run,
+    .run = run_record,
+};
+
+const cli_command cmd_teach = {
+    .name = "teach",
+    .arguments = "[JOINT|GROUP]...",
+    .summary = "record postures of limp joints, and play them at once",
+    .details =
+        "Switches the torque of all joints, or of those named, off: hold the robot, an arm falls.\n"
+        "What is not taught stays as it is: what holds, holds.\n"
+        "\n"
+        "Keys, of a terminal or a pipe:\n"
+        "\n"
+        "  space      keep the posture as it is now\n"
+        "  d          drop the last one\n"
+        "  enter, p   play what is kept; the joints are limp again at its end\n"
+        "  s, q       save and end; the joints stay limp\n"
+        "\n"
+        "To play, torque comes on where each joint is, and the first posture is reached slowly.\n"
+        "While it plays, the keys are those of 'grctl play':\n"
+        "\n" PLAY_KEYS_HELP "\n" ENDS_HELP,
+    .example = "  grctl teach\n  grctl teach -o wave.pseq right_arm\n",
+    .options = options,
+    .n_options = TEACH_OPTIONS,
+    .max_arguments = -1,
+    .argument = CLI_ARG_JOINT,
+    .run = run_teach,
 };
