@@ -201,6 +201,9 @@ static size_t take_bytes(grobo_bus *bus, const uint8_t *bytes, size_t n)
 
 void grobo_bus_rx(grobo_bus *bus, int64_t now_us, const uint8_t *bytes, size_t n)
 {
+    if (bus == NULL || (bytes == NULL && n > 0)) {
+        return;
+    }
     bus->now_us = now_us;
     bus->stats.rx_bytes += (uint32_t)n;
     while (n > 0) {

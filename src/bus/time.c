@@ -19,6 +19,9 @@ static uint32_t wire_us(size_t bytes, uint32_t baud_bps)
 
 void grobo_bus_cost_of(const grobo_bus *bus, const grobo_txn *txn, grobo_bus_cost *cost)
 {
+    if (bus == NULL || txn == NULL || cost == NULL) {
+        return;
+    }
     const grobo_bus_config *c = &bus->config;
     const grobo_relay *relay = c->protocol->relay;
     size_t reply = c->protocol->reply_bytes(&txn->reply);
@@ -201,6 +204,9 @@ static int64_t held_until(const grobo_bus *bus, const grobo_txn *txn)
 
 bool grobo_bus_fits(const grobo_bus *bus, int64_t now_us, const grobo_txn *txn)
 {
+    if (bus == NULL || txn == NULL) {
+        return false;
+    }
     grobo_bus_cost cost;
     if (now_us >= bus->reserve_end_us) {
         return true;
@@ -225,11 +231,14 @@ int64_t grobo_i_bus_start_at(const grobo_bus *bus, const grobo_txn *txn, int64_t
 
 void grobo_bus_reserve(grobo_bus *bus, int64_t at_us, uint32_t duration_us)
 {
+    if (bus == NULL) {
+        return;
+    }
     bus->reserve_us = at_us;
     bus->reserve_end_us = at_us == GROBO_NEVER_US ? 0 : at_us + duration_us;
 }
 
 int64_t grobo_bus_free_at(const grobo_bus *bus, int64_t now_us)
 {
-    return grobo_i_later(now_us, bus->free_us);
+    return bus == NULL ? GROBO_NEVER_US : grobo_i_later(now_us, bus->free_us);
 }

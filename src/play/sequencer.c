@@ -282,6 +282,9 @@ static int look(grobo_sequencer *seq, grobo_play_frame *frame)
 
 int grobo_sequencer_next(grobo_sequencer *seq, int64_t now_us, grobo_play_frame *frame)
 {
+    if (frame == NULL || seq == NULL) {
+        return GROBO_ERR_ARG;
+    }
     int result = 0;
     seq->now_us = now_us;
     while (result == 0 && now_us >= grobo_sequencer_deadline(seq)) {
@@ -292,6 +295,9 @@ int grobo_sequencer_next(grobo_sequencer *seq, int64_t now_us, grobo_play_frame 
 
 int64_t grobo_sequencer_deadline(const grobo_sequencer *seq)
 {
+    if (seq == NULL) {
+        return GROBO_NEVER_US;
+    }
     if (seq->waits) {
         return seq->due_us;
     }
@@ -308,6 +314,9 @@ static bool is_active(const grobo_sequencer *seq)
 
 void grobo_sequencer_init(grobo_sequencer *seq, const grobo_model *model)
 {
+    if (seq == NULL) {
+        return;
+    }
     memset(seq, 0, sizeof *seq);
     seq->model = model;
 }
@@ -316,6 +325,9 @@ int grobo_sequencer_play(grobo_sequencer *seq, const grobo_clip *clip,
                          const grobo_play_options *options, const grobo_posture *start,
                          int64_t now_us)
 {
+    if (seq == NULL || clip == NULL) {
+        return GROBO_ERR_ARG;
+    }
     if (seq->state != GROBO_SEQUENCER_IDLE && seq->state != GROBO_SEQUENCER_FINISHED) {
         return GROBO_ERR_STATE;
     }
@@ -341,6 +353,9 @@ int grobo_sequencer_play(grobo_sequencer *seq, const grobo_clip *clip,
 int grobo_sequencer_enqueue(grobo_sequencer *seq, const grobo_clip *clip,
                             const grobo_play_options *options)
 {
+    if (seq == NULL || clip == NULL) {
+        return GROBO_ERR_ARG;
+    }
     if (!is_active(seq)) {
         return GROBO_ERR_STATE;
     }
@@ -395,6 +410,9 @@ static int32_t stop_time(const grobo_sequencer *seq)
 
 int grobo_sequencer_pause(grobo_sequencer *seq, int64_t now_us)
 {
+    if (seq == NULL) {
+        return GROBO_ERR_ARG;
+    }
     if (!is_under_way(seq)) {
         return GROBO_ERR_STATE;
     }
@@ -412,6 +430,9 @@ static int set_off(grobo_sequencer *seq, int64_t now_us)
 
 int grobo_sequencer_resume(grobo_sequencer *seq, int64_t now_us)
 {
+    if (seq == NULL) {
+        return GROBO_ERR_ARG;
+    }
     if (seq->state != GROBO_SEQUENCER_PAUSED) {
         return GROBO_ERR_STATE;
     }
@@ -420,6 +441,9 @@ int grobo_sequencer_resume(grobo_sequencer *seq, int64_t now_us)
 
 int grobo_sequencer_stop(grobo_sequencer *seq, bool at_once, int64_t now_us)
 {
+    if (seq == NULL) {
+        return GROBO_ERR_ARG;
+    }
     bool stopping = seq->state == GROBO_SEQUENCER_STOPPING;
     if (!is_active(seq) && !stopping) {
         return GROBO_ERR_STATE;
@@ -434,6 +458,9 @@ int grobo_sequencer_stop(grobo_sequencer *seq, bool at_once, int64_t now_us)
 
 int grobo_sequencer_seek(grobo_sequencer *seq, int64_t pos_us, int64_t now_us)
 {
+    if (seq == NULL) {
+        return GROBO_ERR_ARG;
+    }
     if (!is_active(seq)) {
         return GROBO_ERR_STATE;
     }
@@ -477,6 +504,9 @@ static void change_speed(grobo_sequencer *seq, uint16_t speed_pct)
 
 int grobo_sequencer_set_speed(grobo_sequencer *seq, int speed_pct, int64_t now_us)
 {
+    if (seq == NULL) {
+        return GROBO_ERR_ARG;
+    }
     if (!is_active(seq)) {
         return GROBO_ERR_STATE;
     }
@@ -493,6 +523,9 @@ int grobo_sequencer_set_speed(grobo_sequencer *seq, int speed_pct, int64_t now_u
 
 int grobo_sequencer_fail(grobo_sequencer *seq, int error)
 {
+    if (seq == NULL) {
+        return GROBO_ERR_ARG;
+    }
     if (!is_active(seq) && seq->state != GROBO_SEQUENCER_STOPPING) {
         return GROBO_ERR_STATE;
     }
@@ -505,6 +538,9 @@ int grobo_sequencer_fail(grobo_sequencer *seq, int error)
 
 void grobo_sequencer_reset(grobo_sequencer *seq)
 {
+    if (seq == NULL) {
+        return;
+    }
     seq->state = GROBO_SEQUENCER_IDLE;
     seq->error = 0;
     seq->queue_n = 0;

@@ -19,6 +19,9 @@ static void free_event(struct event **event)
 
 void grobo_serial_close(grobo_serial *serial)
 {
+    if (serial == NULL) {
+        return;
+    }
     serial->to_tell = 0;
     serial->ready = false;
     serial->paused = false;
@@ -35,7 +38,7 @@ void grobo_serial_close(grobo_serial *serial)
 
 bool grobo_serial_is_open(const grobo_serial *serial)
 {
-    return serial->ops != NULL;
+    return serial != NULL && serial->ops != NULL;
 }
 
 void grobo_i_serial_tell(grobo_serial *serial, unsigned what)
@@ -257,6 +260,9 @@ static int send_sync(grobo_serial *serial, const uint8_t *bytes, size_t size)
 
 int grobo_serial_read(grobo_serial *serial, void *buf, size_t size)
 {
+    if (buf == NULL || serial == NULL) {
+        return GROBO_ERR_ARG;
+    }
     size_t most = size < INT_MAX ? size : INT_MAX;
 
     if (!grobo_serial_is_open(serial)) {
@@ -272,6 +278,9 @@ int grobo_serial_read(grobo_serial *serial, void *buf, size_t size)
 
 int grobo_serial_write(grobo_serial *serial, const void *bytes, size_t size)
 {
+    if ((bytes == NULL && size > 0) || serial == NULL) {
+        return GROBO_ERR_ARG;
+    }
     size_t most = size < INT_MAX ? size : INT_MAX;
 
     if (!grobo_serial_is_open(serial)) {
@@ -287,6 +296,9 @@ int grobo_serial_write(grobo_serial *serial, const void *bytes, size_t size)
 
 int grobo_serial_receive(grobo_serial *serial, void *buf, size_t size)
 {
+    if (buf == NULL || serial == NULL) {
+        return GROBO_ERR_ARG;
+    }
     uint8_t *to = buf;
     int64_t end_us = silence_end(serial);
     size_t got = 0;
@@ -317,7 +329,7 @@ int grobo_serial_receive(grobo_serial *serial, void *buf, size_t size)
 
 int grobo_serial_send(grobo_serial *serial, const void *bytes, size_t size)
 {
-    if (size > INT_MAX) {
+    if ((bytes == NULL && size > 0) || serial == NULL || size > INT_MAX) {
         return GROBO_ERR_ARG;
     }
     if (!grobo_serial_is_open(serial)) {
@@ -332,11 +344,14 @@ int grobo_serial_send(grobo_serial *serial, const void *bytes, size_t size)
 
 size_t grobo_serial_pending(const grobo_serial *serial)
 {
-    return serial->used;
+    return serial == NULL ? 0 : serial->used;
 }
 
 size_t grobo_serial_unsent(const grobo_serial *serial)
 {
+    if (serial == NULL) {
+        return 0;
+    }
     bool tells = serial->ops != NULL && serial->ops->unsent != NULL;
 
     return serial->used + (tells ? (size_t)serial->ops->unsent(serial->port) : 0);
@@ -356,6 +371,9 @@ void grobo_i_serial_take_back(grobo_serial *serial, size_t size, size_t behind)
 
 int grobo_serial_waiting(grobo_serial *serial)
 {
+    if (serial == NULL) {
+        return GROBO_ERR_ARG;
+    }
     int r;
 
     if (!grobo_serial_is_open(serial)) {
@@ -367,6 +385,9 @@ int grobo_serial_waiting(grobo_serial *serial)
 
 int grobo_serial_discard(grobo_serial *serial)
 {
+    if (serial == NULL) {
+        return GROBO_ERR_ARG;
+    }
     uint8_t scratch[READ_BYTES];
     int dropped = 0;
     int got = 1;
@@ -388,6 +409,9 @@ int grobo_serial_discard(grobo_serial *serial)
 
 void grobo_serial_discard_output(grobo_serial *serial)
 {
+    if (serial == NULL) {
+        return;
+    }
     serial->head = 0;
     serial->used = 0;
     if (grobo_serial_is_open(serial)) {

@@ -125,6 +125,9 @@ static void serve(grobo_control *control)
 
 int64_t grobo_control_get_period_us(grobo_control *control)
 {
+    if (control == NULL) {
+        return 0;
+    }
     RETURN_LOCKED(control, int64_t, control->period_us);
 }
 
@@ -233,9 +236,21 @@ static int call_and_wait(grobo_control *control, const call_wish *wish)
     return result;
 }
 
+/* These two are where a control that is NULL is refused, for all public functions that come by. */
+static int wait_outside(grobo_control *control, const call_wish *wish)
+{
+    if (control == NULL) {
+        return GROBO_ERR_ARG;
+    }
+    return grobo_i_control_inside(control) ? GROBO_ERR_STATE : call_and_wait(control, wish);
+}
+
 /* In a callback at once, else handed over. */
 static int call(grobo_control *control, const call_wish *wish)
 {
+    if (control == NULL) {
+        return GROBO_ERR_ARG;
+    }
     if (!grobo_i_control_inside(control)) {
         return call_and_wait(control, wish);
     }
@@ -261,7 +276,7 @@ int grobo_i_control_wait(grobo_control *control, grobo_control_fn fn, void *arg,
 {
     const call_wish wish = {.fn = fn, .arg = arg, .timeout_us = timeout_us};
 
-    return grobo_i_control_inside(control) ? GROBO_ERR_STATE : call_and_wait(control, &wish);
+    return wait_outside(control, &wish);
 }
 
 /* ---- jobs --------------------------------------------------------------------------------- */
@@ -299,7 +314,7 @@ int grobo_i_control_job(grobo_control *control, control_job *job, grobo_control_
                             .timeout_us = timeout_us,
                             .urgent = job->urgent};
 
-    return grobo_i_control_inside(control) ? GROBO_ERR_STATE : call_and_wait(control, &wish);
+    return wait_outside(control, &wish);
 }
 
 /* ---- the public functions ----------------------------------------------------------------- */
@@ -313,6 +328,9 @@ int grobo_control_call(grobo_control *control, grobo_control_fn fn, void *arg)
 
 int grobo_control_post(grobo_control *control, grobo_control_fn fn, void *arg)
 {
+    if (control == NULL) {
+        return GROBO_ERR_ARG;
+    }
     int r = GROBO_ERR_ARG;
 
     if (fn != NULL) {
