@@ -7,9 +7,9 @@
  */
 #include <grobo/bus.h>
 
-#include <assert.h>
 #include <string.h>
 
+#include "src/base/assert.h"
 #include "src/base/instant.h"
 #include "src/bus/framer.h"
 #include "src/bus/queue.h"
@@ -66,6 +66,7 @@ void grobo_bus_step(grobo_bus *bus, int64_t now_us)
         }
     }
     end_stale(bus, now_us);
+    grobo_i_bus_assert(bus);
 }
 
 int64_t grobo_bus_deadline(const grobo_bus *bus, int64_t now_us)
@@ -127,6 +128,7 @@ static void start_clock(grobo_bus *bus, const grobo_txn *txn, int64_t now_us)
 
 static void start(grobo_bus *bus, grobo_txn *txn, int64_t now_us)
 {
+    GROBO_ASSERT(bus->active == NULL && txn->pending_);
     bool wants_reply = txn->reply.kind != GROBO_REPLY_NONE;
     /* What is no packet is not known again: its echo is rubbish. */
     bool echoes = bus->config.echo && bus->config.protocol->measure(txn->frame, txn->frame_bytes,
@@ -192,9 +194,10 @@ int grobo_bus_tx(grobo_bus *bus, int64_t now_us, uint8_t *buf, size_t cap)
         }
         grobo_i_bus_take_out(bus, txn);
         if (may_leave(bus, txn)) {
-            assert(txn->frame_bytes > 0 && txn->frame_bytes <= size);
+            GROBO_ASSERT(txn->frame_bytes > 0 && txn->frame_bytes <= size);
             memcpy(buf, txn->frame, txn->frame_bytes);
             start(bus, txn, now_us);
+            grobo_i_bus_assert(bus);
             return txn->frame_bytes;
         }
     }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "src/bus/time.h"
+#include "src/base/assert.h"
 
 #include <string.h>
 
@@ -80,6 +81,7 @@ static int32_t clip(int64_t late_us, int32_t most_us)
  * nothing, since nobody knows which of its attempts was answered. */
 void grobo_i_bus_learn(grobo_bus *bus)
 {
+    GROBO_ASSERT(bus->active != NULL && bus->active->attempts_ == 1);
     int32_t sample_us = clip(bus->now_us - bus->over_us, GROBO_BUS_MARGIN_MAX_US);
     if (sample_us > bus->worst_us) {
         bus->worst_us = sample_us;
@@ -161,6 +163,7 @@ bool grobo_i_bus_settle(grobo_bus *bus, uint32_t key)
         return false;
     }
     learn_late(bus, hold->due_us);
+    GROBO_ASSERT(hold->owed > 0);
     hold->due_us = bus->over_us; /* the rest are to later attempts */
     hold->owed--;
     return true;

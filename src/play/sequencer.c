@@ -5,6 +5,7 @@
  * it begins. Playing at a rate is the exception: its frames lie on a grid.
  */
 #include "src/play/sequencer.h"
+#include "src/base/assert.h"
 
 #include <string.h>
 
@@ -13,6 +14,28 @@
 #define SECOND_US 1000000u
 
 _Static_assert(GROBO_QUEUE_MAX < 256, "queue_head and queue_n are bytes");
+
+/* What always holds between two calls. */
+static void assert_sound(const grobo_sequencer *seq)
+{
+    const grobo_play_options *options = &seq->item.options;
+    GROBO_ASSERT(seq->queue_head < GROBO_QUEUE_MAX && seq->queue_n <= GROBO_QUEUE_MAX);
+    GROBO_ASSERT((seq->state == GROBO_SEQUENCER_FAILED) == (seq->error < 0));
+    if (seq->state == GROBO_SEQUENCER_IDLE || seq->state == GROBO_SEQUENCER_FINISHED ||
+        seq->state == GROBO_SEQUENCER_FAILED) {
+        GROBO_ASSERT(!seq->waits && seq->queue_n == 0);
+        return;
+    }
+    GROBO_ASSERT(seq->state != GROBO_SEQUENCER_STOPPING || seq->queue_n == 0);
+    GROBO_ASSERT(seq->to.n_joints == seq->item.clip.n_joints);
+    GROBO_ASSERT(options->speed_pct > 0 && options->speed_pct <= GROBO_PLAY_SPEED_MAX_PCT);
+    GROBO_ASSERT(options->mode == GROBO_PLAY_KEY || options->rate_hz > 0);
+    GROBO_ASSERT(seq->pass >= 1 && seq->pass <= options->repeat);
+    GROBO_ASSERT(seq->anchor_pos_us >= 0 && seq->anchor_pos_us <= seq->item.span_us);
+    bool on_grid = seq->state == GROBO_SEQUENCER_PLAYING && options->mode == GROBO_PLAY_RATE;
+    GROBO_ASSERT(on_grid || seq->from_us <= seq->to_us);
+    GROBO_ASSERT(options->mode != GROBO_PLAY_KEY || seq->key.i < seq->item.clip.n_keys);
+}
 
 static bool is_under_way(const grobo_sequencer *seq)
 {
@@ -66,6 +89,7 @@ static int32_t time_of_frame(const grobo_sequencer *seq)
 
 static int hand_out(grobo_sequencer *seq, grobo_play_frame *frame)
 {
+    GROBO_ASSERT(seq->waits && seq->due_us <= seq->now_us);
     frame->posture = seq->to;
     frame->posture.time_us = longer(time_of_frame(seq), GROBO_PLAY_TIME_UNIT_US);
     frame->due_us = seq->due_us;
@@ -84,10 +108,12 @@ static int hand_out(grobo_sequencer *seq, grobo_play_frame *frame)
 
 static int fail(grobo_sequencer *seq, int error)
 {
+    GROBO_ASSERT(error < 0);
     seq->state = GROBO_SEQUENCER_FAILED;
     seq->error = error;
     seq->queue_n = 0;
     seq->waits = false;
+    assert_sound(seq);
     return error;
 }
 
@@ -142,6 +168,7 @@ static int begin(grobo_sequencer *seq, bool soft)
     seq->state = GROBO_SEQUENCER_APPROACHING;
     seq->anchor_us = seq->to_us;
     set_move(seq, time_us > 0 && seq->to.set != 0, seq->to_us + time_us);
+    assert_sound(seq);
     return 0;
 }
 
@@ -290,7 +317,9 @@ int grobo_sequencer_next(grobo_sequencer *seq, int64_t now_us, grobo_play_frame 
     while (result == 0 && now_us >= grobo_sequencer_deadline(seq)) {
         result = look(seq, frame);
     }
-    return result < 0 ? fail(seq, result) : result;
+    result = result < 0 ? fail(seq, result) : result;
+    assert_sound(seq);
+    return result;
 }
 
 int64_t grobo_sequencer_deadline(const grobo_sequencer *seq)
@@ -399,6 +428,7 @@ static int hold(grobo_sequencer *seq, grobo_sequencer_state state, int32_t time_
     seq->anchor_us = now_us;
     set_move(seq, seq->to.set != 0, now_us + longer(time_us, GROBO_PLAY_TIME_UNIT_US));
     seq->state = state;
+    assert_sound(seq);
     return 0;
 }
 
@@ -518,6 +548,7 @@ int grobo_sequencer_set_speed(grobo_sequencer *seq, int speed_pct, int64_t now_u
         change_speed(seq, (uint16_t)speed_pct);
     }
     seq->item.options.speed_pct = (uint16_t)speed_pct;
+    assert_sound(seq);
     return 0;
 }
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* An open serial port: its bytes, the queue, the calls that wait, its end. */
-#include <assert.h>
 #include <limits.h>
 #include <string.h>
 
+#include "src/base/assert.h"
 #include "src/link/serial/loop.h"
 #include "src/link/serial/serial.h"
 
@@ -124,6 +124,7 @@ static int put(grobo_serial *serial, const void *bytes, size_t size)
     if (done < 0) {
         return grobo_i_serial_lose(serial, done);
     }
+    GROBO_ASSERT((size_t)done <= size);
     if ((size_t)done < size) {
         serial->counters.short_writes++;
     }
@@ -141,6 +142,7 @@ static void enqueue(grobo_serial *serial, const uint8_t *bytes, size_t size)
     size_t tail = (serial->head + serial->used) % capacity;
     size_t first = size < capacity - tail ? size : capacity - tail;
 
+    GROBO_ASSERT(serial->head < capacity && size <= capacity - serial->used);
     memcpy(serial->queue + tail, bytes, first);
     memcpy(serial->queue, bytes + first, size - first);
     serial->used += size;
@@ -361,7 +363,7 @@ void grobo_i_serial_take_back(grobo_serial *serial, size_t size, size_t behind)
 {
     size_t capacity = serial->config.tx_queue_bytes;
 
-    assert(serial->used <= size); /* a frame is sent only when nothing waits */
+    GROBO_ASSERT(serial->used <= size); /* a frame is sent only when nothing waits */
     if (serial->used == size || (serial->used == 0 && grobo_serial_unsent(serial) >= size)) {
         grobo_serial_discard_output(serial);
     } else if (serial->used > behind) {

@@ -4,6 +4,7 @@
  * its function, again and again, until it is over. The caller sleeps at the condition meanwhile;
  * or, where no thread runs the loop, runs it itself. Nothing of this takes a descriptor or memory.
  */
+#include "src/base/assert.h"
 #include "src/link/session/session.h"
 #include "src/link/thread/thread.h"
 
@@ -21,6 +22,7 @@ static control_slot *take_slot(grobo_control *control, size_t most)
 
 static void hand_over(grobo_control *control, control_slot *slot, grobo_control_fn fn, void *arg)
 {
+    GROBO_ASSERT(slot->state == CALL_FREE && fn != NULL);
     slot->fn = fn;
     slot->arg = arg;
     slot->job = NULL;
@@ -64,6 +66,7 @@ static control_slot *next_call(grobo_control *control, uint64_t after)
 
 static void settle(grobo_control *control, control_slot *slot, int result)
 {
+    GROBO_ASSERT(slot->state == CALL_RUNNING);
     if (result == CALL_PENDING) {
         slot->state = CALL_OPEN;
     } else if (slot->posted) {
@@ -189,6 +192,7 @@ static int wait_for(grobo_control *control, control_slot *slot, int64_t end_us)
     if (slot->state == CALL_DONE) {
         result = slot->result;
     }
+    GROBO_ASSERT(slot->state == CALL_DONE || slot->state == CALL_OPEN);
     slot->job = NULL;
     slot->state = CALL_FREE;
     return result;

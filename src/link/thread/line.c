@@ -383,7 +383,7 @@ int grobo_control_set_command(grobo_control *control, const void *packet, size_t
 
 int grobo_control_get_command(grobo_control *control, void *packet, size_t capacity)
 {
-    if (control == NULL || packet == NULL) {
+    if (control == NULL || (packet == NULL && capacity > 0)) {
         return GROBO_ERR_ARG;
     }
     int r = GROBO_ERR_SPACE;

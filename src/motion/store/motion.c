@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#include <assert.h>
 #include <math.h>
 #include <string.h>
 
+#include "src/base/assert.h"
 #include "src/base/memory.h"
 #include "src/motion/store/container.h"
 #include "src/motion/text/utf8.h"
@@ -82,7 +82,7 @@ void grobo_i_take_rows(grobo_motion *to, grobo_motion *from)
 {
     grobo_motion empty = *to;
 
-    assert(to->size == 0 && to->mem == from->mem);
+    GROBO_ASSERT(to->size == 0 && to->mem == from->mem);
     to->chunks = from->chunks;
     to->n_chunks = from->n_chunks;
     to->chunk_room = from->chunk_room;
