@@ -9,6 +9,7 @@
  *
  * Sources: RPU-10 technical note p.3-4 as quoted by public drivers (S, T), the GROBO library and
  * Choreonoid's GRobotPlugin (A, P, and the frames of GR001). Functions are re-entrant.
+ * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
 #ifndef GROBO_BOARD_H
 #define GROBO_BOARD_H

@@ -8,6 +8,7 @@
  * caller gives. Lengths are metres, angles radians, masses kilograms, times seconds (double: they
  * are what motion files hold). Rotations are row-major 3x3 matrices that turn a link's frame into
  * the world's. A grobo_body belongs to one thread at a time; two bodies share nothing.
+ * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
 #ifndef GROBO_BODY_H
 #define GROBO_BODY_H

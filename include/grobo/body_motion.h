@@ -6,6 +6,7 @@
  * The bridge between grobo_motion (what a .pseq file holds) and grobo_body (what solves it). A
  * body made here lives on the heap; everything in body.h works with it. So does its rule for
  * threads: one at a time for a body and for what plays it; two bodies share nothing.
+ * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
 #ifndef GROBO_BODY_MOTION_H
 #define GROBO_BODY_MOTION_H

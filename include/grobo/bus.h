@@ -47,6 +47,7 @@
  * and the cancel functions; in a callback submit, cancel, reserve and the questions are allowed,
  * also freeing or resubmitting the transaction that ended; rx, step and tx are not. In a `leave`
  * function only the questions are.
+ * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
 #ifndef GROBO_BUS_H
 #define GROBO_BUS_H

@@ -10,6 +10,7 @@
  * A robot of RS30x servos needs data only: grobo_rs30x_driver_init() fills a whole table from a
  * model and a wiring, and single functions may then be replaced. Another kind of servo or board
  * replaces all of them, and brings a protocol of its own (protocol.h).
+ * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
 #ifndef GROBO_DRIVER_H
 #define GROBO_DRIVER_H

@@ -19,6 +19,7 @@
  *
  * The simulator in the same process (GROBO_DEVICE_SIM) has no marks. All functions are thread safe;
  * they read and write small files, and do not wait for any program.
+ * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
 #ifndef GROBO_ESTOP_H
 #define GROBO_ESTOP_H

@@ -11,6 +11,7 @@
  * It works for every model; arrays in motor order are sorted by motor number.
  *
  * One thread at a time per engine.
+ * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
 #ifndef GROBO_GR001_H
 #define GROBO_GR001_H

@@ -33,6 +33,7 @@
  * there leaves the servos on their way.
  *
  * A guard belongs to the thread of the session that has it.
+ * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
 #ifndef GROBO_GUARD_H
 #define GROBO_GUARD_H

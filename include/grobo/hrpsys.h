@@ -34,6 +34,7 @@
  * - There a command is sent as it is. Here it passes the engine's safety like everything else.
  *
  * Angles are radians in joint order. One thread at a time, that of the engine.
+ * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
 #ifndef GROBO_HRPSYS_H
 #define GROBO_HRPSYS_H

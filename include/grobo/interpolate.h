@@ -15,6 +15,7 @@
  * Poses go in in Choreonoid's order, which grobo_spline_order() finds. The rules are those of
  * Choreonoid's PoseSeqInterpolator; nothing here allocates or keeps state of its own, so every
  * function is safe from any thread that owns its arguments.
+ * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
 #ifndef GROBO_INTERPOLATE_H
 #define GROBO_INTERPOLATE_H

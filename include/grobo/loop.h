@@ -4,6 +4,7 @@
  * @brief A libevent loop as robots need it, and timers with absolute deadlines.
  *
  * All of it belongs to the thread that runs the loop. The clock is grobo_now_us() of port.h.
+ * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
 #ifndef GROBO_LOOP_H
 #define GROBO_LOOP_H

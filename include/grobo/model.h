@@ -5,6 +5,7 @@
  *
  * A model is data: a robot of one's own is a table of its own. Joint order (0..n-1) is the order
  * of postures and of Choreonoid's files; motor numbers are the ids on the wire.
+ * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
 #ifndef GROBO_MODEL_H
 #define GROBO_MODEL_H

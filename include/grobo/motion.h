@@ -11,6 +11,7 @@
  * it was. A motion belongs to one thread at a time; const calls on an unchanged motion are safe
  * from many. Storage is chunked: appending costs amortised constant time, a key with n joints
  * takes 28 + 8 n bytes, and what a key has besides is allocated only where it has some.
+ * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
 #ifndef GROBO_MOTION_H
 #define GROBO_MOTION_H

@@ -7,6 +7,7 @@
  * a tree, and what is wrong with it is said with line and column. docs/spec.md is the manual of
  * the formats. Nothing here depends on the locale. Calls on different motions and lists may run
  * in different threads.
+ * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
 #ifndef GROBO_MOTION_IO_H
 #define GROBO_MOTION_IO_H

@@ -9,6 +9,7 @@
  * Nothing here knows an event loop. A byte port hands out a socket that a loop can wait on: on
  * POSIX the descriptor itself, on Win32 one end of a socket pair that a thread of the port pumps
  * from and to the COM handle by overlapped I/O.
+ * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
 #ifndef GROBO_PORT_H
 #define GROBO_PORT_H

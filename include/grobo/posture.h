@@ -6,6 +6,7 @@
  * One truth for an angle: radians in double. Degrees and the wire's 0.1 degree are views, computed
  * by rounding to nearest. All functions are pure or touch only their arguments: safe from any
  * thread that owns the posture.
+ * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
 #ifndef GROBO_POSTURE_H
 #define GROBO_POSTURE_H

@@ -33,6 +33,7 @@
  * - grobo_robot_estop() is ahead of everything, read back joint by joint, latched.
  *
  * Not thread safe: one thread at a time per robot. Requests may be made from the callback.
+ * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
 #ifndef GROBO_ROBOT_H
 #define GROBO_ROBOT_H

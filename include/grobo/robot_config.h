@@ -2,6 +2,8 @@
 /**
  * @file robot_config.h
  * @brief What a robot engine (robot.h) is configured with, and what its line leaves room for.
+ *
+ * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
 #ifndef GROBO_ROBOT_CONFIG_H
 #define GROBO_ROBOT_CONFIG_H

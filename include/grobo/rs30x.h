@@ -10,6 +10,7 @@
  *
  * Sources of the constants: Futaba RS301CR/RS302CD manual v1.0 (packets p.11-15, memory map
  * p.17-29), RS204MD manual p.23-24 (NACK, second spelling of the factory reset).
+ * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
 #ifndef GROBO_RS30X_H
 #define GROBO_RS30X_H

@@ -21,6 +21,7 @@
  * A position counts in motion time from the beginning of one pass in playing direction, so that
  * 0 is where a reversed clip starts as well; real time is that divided by speed_pct/100. A
  * sequencer belongs to one thread at a time.
+ * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
 #ifndef GROBO_SEQUENCER_H
 #define GROBO_SEQUENCER_H

@@ -19,6 +19,7 @@
  *
  * A grobo_serial belongs to one thread, the one that runs its loop. Every function may be called
  * inside its callbacks, grobo_serial_free() too.
+ * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
 #ifndef GROBO_SERIAL_H
 #define GROBO_SERIAL_H

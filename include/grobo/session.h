@@ -22,6 +22,7 @@
  * Other threads and signal handlers may call grobo_session_post_estop(), grobo_session_post_stop(),
  * grobo_session_post_exit() and grobo_session_is_latched(), and nothing else of a session. The
  * program makes sure that none of them is called once the session is being freed.
+ * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
 #ifndef GROBO_SESSION_H
 #define GROBO_SESSION_H

@@ -13,6 +13,7 @@
  *
  * Nothing here is re-entrant; one simulator belongs to one thread. The hook may inspect, but must
  * not call grobo_sim_init, _rx, _tx, _step, _plug or any _set_ function of its simulator.
+ * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
 #ifndef GROBO_SIM_H
 #define GROBO_SIM_H

@@ -6,6 +6,7 @@
  * The simulator of sim.h in real time: bytes reach it and leave it when their time on the wire is
  * over. Programs may come and go, the robot stays as they left it. Any number of servers may run
  * on one loop. A server belongs to the thread that runs its loop; it prints nothing.
+ * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
 #ifndef GROBO_SIM_SERVER_H
 #define GROBO_SIM_SERVER_H

@@ -46,6 +46,7 @@
  * called by the program's own atexit() handler). Where the thread that owns the robot may die
  * without that, owner_timeout_us is the dead-man's handle; for the death of the whole process there
  * is session.guard (guard.h).
+ * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
 #ifndef GROBO_THREAD_H
 #define GROBO_THREAD_H

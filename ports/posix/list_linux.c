@@ -218,7 +218,7 @@ int grobo_i_posix_list(const char *sys_tty, const char *dev,
 
 int grobo_port_list(int (*visit)(void *ctx, const grobo_port_info *info), void *ctx)
 {
-    return grobo_i_posix_list("/sys/class/tty", "/dev", visit, ctx);
+    return visit == NULL ? GROBO_ERR_ARG : grobo_i_posix_list("/sys/class/tty", "/dev", visit, ctx);
 }
 
 int grobo_port_identity(const char *device, char *name, size_t name_bytes)

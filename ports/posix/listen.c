@@ -40,6 +40,9 @@ static int listen_on(int fd, const struct addrinfo *at, grobo_os_cause *cause)
 int grobo_port_listen(const char *device, grobo_socket *listener, int *tcp_port,
                       grobo_os_cause *cause)
 {
+    if (device == NULL || listener == NULL || tcp_port == NULL || cause == NULL) {
+        return GROBO_ERR_ARG;
+    }
     struct addrinfo *at;
     int fd;
     int r = grobo_i_posix_look_up(device, true, &at, cause);
@@ -68,6 +71,9 @@ void grobo_port_listen_close(grobo_socket listener)
 
 int grobo_port_accept(grobo_socket listener, grobo_port *port, grobo_os_cause *cause)
 {
+    if (cause == NULL || port == NULL) {
+        return GROBO_ERR_ARG;
+    }
     int fd = accept(listener, NULL, NULL);
     int r;
 

@@ -59,22 +59,31 @@ bool grobo_thread_is_self(grobo_thread thread)
 
 int grobo_mutex_init(grobo_mutex *mutex)
 {
+    if (mutex == NULL) {
+        return GROBO_ERR_ARG;
+    }
     return pthread_mutex_init(mutex, NULL) == 0 ? GROBO_OK : GROBO_ERR_NOMEM;
 }
 
 void grobo_mutex_lock(grobo_mutex *mutex)
 {
-    (void)pthread_mutex_lock(mutex);
+    if (mutex != NULL) {
+        (void)pthread_mutex_lock(mutex);
+    }
 }
 
 void grobo_mutex_unlock(grobo_mutex *mutex)
 {
-    (void)pthread_mutex_unlock(mutex);
+    if (mutex != NULL) {
+        (void)pthread_mutex_unlock(mutex);
+    }
 }
 
 void grobo_mutex_deinit(grobo_mutex *mutex)
 {
-    (void)pthread_mutex_destroy(mutex);
+    if (mutex != NULL) {
+        (void)pthread_mutex_destroy(mutex);
+    }
 }
 
 /* ---- conditions --------------------------------------------------------------------------- */
@@ -129,6 +138,9 @@ static void sleep_at(grobo_cond *cond, grobo_mutex *mutex, int64_t span_us)
 
 int grobo_cond_init(grobo_cond *cond)
 {
+    if (cond == NULL) {
+        return GROBO_ERR_ARG;
+    }
     return make_cond(cond) == 0 ? GROBO_OK : GROBO_ERR_NOMEM;
 }
 
@@ -136,19 +148,23 @@ void grobo_cond_wait(grobo_cond *cond, grobo_mutex *mutex, int64_t until_us)
 {
     int64_t span_us = until_us - grobo_now_us();
 
-    if (span_us > 0) {
+    if (cond != NULL && mutex != NULL && span_us > 0) {
         sleep_at(cond, mutex, span_us < SLEEP_MAX_US ? span_us : SLEEP_MAX_US);
     }
 }
 
 void grobo_cond_wake_all(grobo_cond *cond)
 {
-    (void)pthread_cond_broadcast(cond);
+    if (cond != NULL) {
+        (void)pthread_cond_broadcast(cond);
+    }
 }
 
 void grobo_cond_deinit(grobo_cond *cond)
 {
-    (void)pthread_cond_destroy(cond);
+    if (cond != NULL) {
+        (void)pthread_cond_destroy(cond);
+    }
 }
 
 /* ---- waiting for a descriptor ------------------------------------------------------------- */

@@ -185,6 +185,9 @@ bool grobo_i_posix_exclusive_sticks(dev_t device)
 
 int grobo_port_owner(const char *device, char *name, size_t name_bytes)
 {
+    if (device == NULL || name == NULL) {
+        return GROBO_ERR_ARG;
+    }
     bool locked;
 
     return grobo_i_posix_owner(device, name, name_bytes, &locked);

@@ -154,11 +154,15 @@ const grobo_port_ops *grobo_port_pty_ops(void)
 
 int grobo_port_pty_path(const grobo_port *port, char *path, size_t path_bytes)
 {
-    return grobo_i_port_copy(path, path_bytes, port->path);
+    return port == NULL || path == NULL ? GROBO_ERR_ARG
+                                        : grobo_i_port_copy(path, path_bytes, port->path);
 }
 
 int grobo_port_pty_baud(const grobo_port *port)
 {
+    if (port == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_os_cause cause;
     int baud_bps = grobo_i_posix_get_baud(port->slave, &cause);
 
@@ -168,6 +172,9 @@ int grobo_port_pty_baud(const grobo_port *port)
 /* A line that nobody else has open has hung up as soon as the port has let go of it. */
 bool grobo_port_pty_in_use(grobo_port *port)
 {
+    if (port == NULL) {
+        return false;
+    }
     struct pollfd line = {.fd = port->fd};
 
     if (port->slave >= 0) {

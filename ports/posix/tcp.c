@@ -191,5 +191,7 @@ static int find_numeric(const char *device, grobo_i_tcp_name *at, grobo_os_cause
 int grobo_port_resolve(const char *device, char *numeric, size_t numeric_bytes,
                        grobo_os_cause *cause)
 {
-    return grobo_i_tcp_resolve(device, numeric, numeric_bytes, find_numeric, cause);
+    return device == NULL || numeric == NULL || cause == NULL
+               ? GROBO_ERR_ARG
+               : grobo_i_tcp_resolve(device, numeric, numeric_bytes, find_numeric, cause);
 }

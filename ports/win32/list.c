@@ -157,6 +157,9 @@ static void find_device(HDEVINFO set, grobo_port_info *info)
 
 int grobo_port_list(int (*visit)(void *ctx, const grobo_port_info *info), void *ctx)
 {
+    if (visit == NULL) {
+        return GROBO_ERR_ARG;
+    }
     names found;
     HDEVINFO set;
     int r = 0;

@@ -34,6 +34,9 @@ static int listen_on(SOCKET made, const struct addrinfo *at, grobo_os_cause *cau
 int grobo_port_listen(const char *device, grobo_socket *listener, int *tcp_port,
                       grobo_os_cause *cause)
 {
+    if (device == NULL || listener == NULL || tcp_port == NULL || cause == NULL) {
+        return GROBO_ERR_ARG;
+    }
     struct addrinfo *at;
     SOCKET made;
     int r = grobo_i_win32_look_up(device, true, &at, cause);
@@ -64,6 +67,9 @@ void grobo_port_listen_close(grobo_socket listener)
 
 int grobo_port_accept(grobo_socket listener, grobo_port *port, grobo_os_cause *cause)
 {
+    if (port == NULL || cause == NULL) {
+        return GROBO_ERR_ARG;
+    }
     SOCKET made = accept((SOCKET)listener, NULL, NULL);
     int r;
 

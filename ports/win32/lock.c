@@ -84,6 +84,9 @@ static void program_of(DWORD pid, char *name, size_t name_bytes)
 
 int grobo_port_owner(const char *device, char *name, size_t name_bytes)
 {
+    if (device == NULL || name == NULL) {
+        return GROBO_ERR_ARG;
+    }
     char its[GROBO_DEVICE_MAX_BYTES + 16];
     HANDLE lock;
     DWORD pid;

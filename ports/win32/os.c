@@ -78,18 +78,25 @@ _Static_assert(sizeof(grobo_mutex) == sizeof(SRWLOCK), "port_os.h has room for a
 
 int grobo_mutex_init(grobo_mutex *mutex)
 {
+    if (mutex == NULL) {
+        return GROBO_ERR_ARG;
+    }
     InitializeSRWLock((SRWLOCK *)mutex);
     return GROBO_OK;
 }
 
 void grobo_mutex_lock(grobo_mutex *mutex)
 {
-    AcquireSRWLockExclusive((SRWLOCK *)mutex);
+    if (mutex != NULL) {
+        AcquireSRWLockExclusive((SRWLOCK *)mutex);
+    }
 }
 
 void grobo_mutex_unlock(grobo_mutex *mutex)
 {
-    ReleaseSRWLockExclusive((SRWLOCK *)mutex);
+    if (mutex != NULL) {
+        ReleaseSRWLockExclusive((SRWLOCK *)mutex);
+    }
 }
 
 void grobo_mutex_deinit(grobo_mutex *mutex)
@@ -105,6 +112,9 @@ _Static_assert(sizeof(grobo_cond) == sizeof(CONDITION_VARIABLE),
 
 int grobo_cond_init(grobo_cond *cond)
 {
+    if (cond == NULL) {
+        return GROBO_ERR_ARG;
+    }
     InitializeConditionVariable((CONDITION_VARIABLE *)cond);
     return GROBO_OK;
 }
@@ -114,7 +124,7 @@ void grobo_cond_wait(grobo_cond *cond, grobo_mutex *mutex, int64_t until_us)
     const int64_t most_ms = 3600000;
     int64_t span_us = until_us - grobo_now_us();
 
-    if (span_us > 0) {
+    if (cond != NULL && mutex != NULL && span_us > 0) {
         int64_t span_ms = (span_us - 1) / 1000 + 1;
 
         (void)SleepConditionVariableSRW((CONDITION_VARIABLE *)cond, (SRWLOCK *)mutex,
@@ -124,7 +134,9 @@ void grobo_cond_wait(grobo_cond *cond, grobo_mutex *mutex, int64_t until_us)
 
 void grobo_cond_wake_all(grobo_cond *cond)
 {
-    WakeAllConditionVariable((CONDITION_VARIABLE *)cond);
+    if (cond != NULL) {
+        WakeAllConditionVariable((CONDITION_VARIABLE *)cond);
+    }
 }
 
 void grobo_cond_deinit(grobo_cond *cond)

@@ -9,20 +9,16 @@ const grobo_port_ops *grobo_port_pty_ops(void)
 
 int grobo_port_pty_path(const grobo_port *port, char *path, size_t path_bytes)
 {
-    (void)port;
-    (void)path;
     (void)path_bytes;
-    return GROBO_ERR_UNSUPPORTED;
+    return port == NULL || path == NULL ? GROBO_ERR_ARG : GROBO_ERR_UNSUPPORTED;
 }
 
 int grobo_port_pty_baud(const grobo_port *port)
 {
-    (void)port;
-    return 0;
+    return port == NULL ? GROBO_ERR_ARG : 0;
 }
 
 bool grobo_port_pty_in_use(grobo_port *port)
 {
-    (void)port;
-    return true;
+    return port != NULL;
 }

@@ -43,7 +43,7 @@ static int link_of(const grobo_body_model *model, const grobo_ik_link *from)
 
 bool grobo_body_wanted(const grobo_body_model *model, const grobo_motion *motion)
 {
-    for (size_t n = 0; n < grobo_motion_size(motion); n++) {
+    for (size_t n = 0; model != NULL && n < grobo_motion_size(motion); n++) {
         size_t count = 0;
         const grobo_ik_link *links = grobo_motion_ik_links(motion, n, &count);
 
@@ -163,6 +163,9 @@ static int solve_block(grobo_body **body, const grobo_body_setup *setup, const g
 int grobo_body_new(grobo_body **body, const grobo_body_model *model, const grobo_motion *motion,
                    const grobo_body_options *options, const grobo_mem *mem)
 {
+    if (body == NULL || motion == NULL) {
+        return GROBO_ERR_ARG;
+    }
     struct key_block block = {.mem = mem != NULL ? mem : grobo_mem_default()};
     grobo_body_setup setup = {.model = model, .n_keys = grobo_motion_size(motion)};
     int result;
@@ -238,6 +241,9 @@ static int clip_sample(void *ctx, int64_t t_us, grobo_posture *posture)
 
 void grobo_body_clip(grobo_body *body, bool stop_unreachable, grobo_clip *clip)
 {
+    if (body == NULL || clip == NULL) {
+        return;
+    }
     const double last_s = (body->n_frames - 1) / body->options.rate_hz;
 
     body->stop_unreachable = stop_unreachable;
@@ -251,6 +257,9 @@ void grobo_body_clip(grobo_body *body, bool stop_unreachable, grobo_clip *clip)
 
 int grobo_body_frames(grobo_body *body, const grobo_mem *mem, grobo_motion **frames)
 {
+    if (body == NULL || frames == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_motion *made = NULL;
     int unreached = 0;
     int result = grobo_motion_new(&made, GROBO_MOTION_FRAMES, body->model->n_joints, mem);

@@ -294,6 +294,9 @@ static void check_frame(struct checking *now, const struct moment *at, const str
 
 int grobo_body_check(grobo_body *body, const grobo_body_check_options *options)
 {
+    if (body == NULL || options == NULL) {
+        return GROBO_ERR_ARG;
+    }
     struct checking now = {.body = body, .options = options};
     const double speed = options->speed_pct > 0 ? options->speed_pct / 100.0 : 1;
     grobo_momentum last = {{0, 0, 0}, {0, 0, 0}};

@@ -7,11 +7,14 @@
 
 int grobo_body_frame_count(const grobo_body *body)
 {
-    return body->n_frames;
+    return body == NULL ? GROBO_ERR_ARG : body->n_frames;
 }
 
 grobo_joint_mask grobo_body_joints(const grobo_body *body)
 {
+    if (body == NULL) {
+        return 0;
+    }
     const bool waist = body->options.ik != GROBO_BODY_IK_OFF && body->target[GROBO_I_WAIST].n > 0;
     grobo_joint_mask joints = 0;
 
@@ -59,6 +62,9 @@ static void solve(grobo_body *body, double time_s, const double shift_m[2], doub
 
 int grobo_body_frame(grobo_body *body, int frame, double *q_rad, grobo_body_report *report)
 {
+    if (q_rad == NULL || body == NULL) {
+        return GROBO_ERR_ARG;
+    }
     static const double none[2] = {0, 0};
 
     if (frame < 0 || frame >= body->n_frames) {
@@ -71,6 +77,9 @@ int grobo_body_frame(grobo_body *body, int frame, double *q_rad, grobo_body_repo
 
 int grobo_body_sample(grobo_body *body, double time_s, double *q_rad, grobo_body_report *report)
 {
+    if (body == NULL || q_rad == NULL) {
+        return GROBO_ERR_ARG;
+    }
     double shift_m[2];
 
     if (!isfinite(time_s)) {

@@ -188,6 +188,9 @@ bool grobo_i_leg_exact(const grobo_body_model *model, const struct grobo_i_leg *
 int grobo_body_leg_exact(const grobo_body_model *model, int foot, const grobo_transform *target,
                          double q_rad[GROBO_BODY_LEG_JOINTS])
 {
+    if (target == NULL || q_rad == NULL) {
+        return GROBO_ERR_ARG;
+    }
     struct grobo_i_leg leg;
 
     if (model == NULL || foot < 0 || foot > 1 || grobo_i_leg_find(model, foot, &leg) < 0) {

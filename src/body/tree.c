@@ -91,6 +91,9 @@ void grobo_i_step_up(const grobo_body_link *link, double angle_rad, const grobo_
 void grobo_body_forward(const grobo_body_model *model, const grobo_transform *root,
                         const double *q_rad, grobo_transform *links)
 {
+    if (model == NULL || q_rad == NULL || links == NULL) {
+        return;
+    }
     static const grobo_transform upright = {{0, 0, 0}, {1, 0, 0, 0, 1, 0, 0, 0, 1}};
 
     if (root != NULL) {
@@ -108,6 +111,9 @@ void grobo_body_forward(const grobo_body_model *model, const grobo_transform *ro
 
 double grobo_body_com(const grobo_body_model *model, const grobo_transform *links, double com_m[3])
 {
+    if (model == NULL || links == NULL || com_m == NULL) {
+        return 0;
+    }
     double sum[3] = {0, 0, 0};
     double mass_kg = 0;
 
@@ -149,6 +155,9 @@ static void momentum_of_link(const grobo_body_link *link, const grobo_transform 
 void grobo_body_momentum(const grobo_body_model *model, const grobo_transform *links,
                          const grobo_body_velocity *velocity, grobo_momentum *momentum)
 {
+    if (model == NULL || links == NULL || velocity == NULL || momentum == NULL) {
+        return;
+    }
     double v[GROBO_BODY_LINKS_MAX][3], w[GROBO_BODY_LINKS_MAX][3];
 
     memset(momentum, 0, sizeof *momentum);
@@ -173,6 +182,9 @@ void grobo_body_momentum(const grobo_body_model *model, const grobo_transform *l
 void grobo_body_zmp(const double com_m[3], double mass_kg, const grobo_momentum *rate,
                     double zmp_m[3])
 {
+    if (com_m == NULL || rate == NULL || zmp_m == NULL) {
+        return;
+    }
     const double weight = mass_kg * GROBO_BODY_GRAVITY_M_S2;
     const double *dp = rate->p_kgm_s;
     const double *dl = rate->l_kgm2_s;

@@ -7,9 +7,9 @@
  */
 #include <grobo/bus.h>
 
-#include <assert.h>
 #include <string.h>
 
+#include "src/base/assert.h"
 #include "src/base/instant.h"
 #include "src/bus/framer.h"
 #include "src/bus/queue.h"
@@ -54,6 +54,9 @@ static void end_stale(grobo_bus *bus, int64_t now_us)
 
 void grobo_bus_step(grobo_bus *bus, int64_t now_us)
 {
+    if (bus == NULL) {
+        return;
+    }
     bus->now_us = now_us;
     if (now_us >= limit_of_active(bus)) {
         if (bus->phase == GROBO_BUS_GOING) {
@@ -63,10 +66,14 @@ void grobo_bus_step(grobo_bus *bus, int64_t now_us)
         }
     }
     end_stale(bus, now_us);
+    grobo_i_bus_assert(bus);
 }
 
 int64_t grobo_bus_deadline(const grobo_bus *bus, int64_t now_us)
 {
+    if (bus == NULL) {
+        return GROBO_NEVER_US;
+    }
     int64_t at_us = limit_of_active(bus);
     for (int p = 0; p < GROBO_PRIORITIES; p++) {
         const grobo_txn *txn = bus->head[p];
@@ -121,6 +128,7 @@ static void start_clock(grobo_bus *bus, const grobo_txn *txn, int64_t now_us)
 
 static void start(grobo_bus *bus, grobo_txn *txn, int64_t now_us)
 {
+    GROBO_ASSERT(bus->active == NULL && txn->pending_);
     bool wants_reply = txn->reply.kind != GROBO_REPLY_NONE;
     /* What is no packet is not known again: its echo is rubbish. */
     bool echoes = bus->config.echo && bus->config.protocol->measure(txn->frame, txn->frame_bytes,
@@ -171,6 +179,9 @@ static bool may_leave(grobo_bus *bus, grobo_txn *txn)
 
 int grobo_bus_tx(grobo_bus *bus, int64_t now_us, uint8_t *buf, size_t cap)
 {
+    if (bus == NULL || buf == NULL) {
+        return GROBO_ERR_ARG;
+    }
     /* Bounded by what waits now: a callback may submit again what is refused again. */
     for (unsigned left = bus->waiting; left > 0 && bus->phase == GROBO_BUS_IDLE; left--) {
         grobo_txn *txn = choose(bus, now_us);
@@ -183,9 +194,10 @@ int grobo_bus_tx(grobo_bus *bus, int64_t now_us, uint8_t *buf, size_t cap)
         }
         grobo_i_bus_take_out(bus, txn);
         if (may_leave(bus, txn)) {
-            assert(txn->frame_bytes > 0 && txn->frame_bytes <= size);
+            GROBO_ASSERT(txn->frame_bytes > 0 && txn->frame_bytes <= size);
             memcpy(buf, txn->frame, txn->frame_bytes);
             start(bus, txn, now_us);
+            grobo_i_bus_assert(bus);
             return txn->frame_bytes;
         }
     }
@@ -227,6 +239,9 @@ int grobo_bus_init(grobo_bus *bus, const grobo_bus_config *config)
 
 int grobo_txn_init(grobo_txn *txn, const grobo_protocol *protocol, const uint8_t *frame, size_t n)
 {
+    if (txn == NULL || protocol == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_reply reply;
     int result = protocol->reply_to(frame, n, &reply);
     if (result < 0) {
@@ -244,6 +259,9 @@ int grobo_txn_init(grobo_txn *txn, const grobo_protocol *protocol, const uint8_t
 
 int grobo_bus_submit(grobo_bus *bus, grobo_txn *txn)
 {
+    if (bus == NULL || txn == NULL) {
+        return GROBO_ERR_ARG;
+    }
     if (txn->pending_) {
         return GROBO_ERR_BUSY;
     }
@@ -263,7 +281,7 @@ int grobo_bus_submit(grobo_bus *bus, grobo_txn *txn)
 
 bool grobo_txn_is_pending(const grobo_txn *txn)
 {
-    return txn->pending_;
+    return txn != NULL && txn->pending_;
 }
 
 /* Takes a transaction away; the reply of the active one may come and must find nobody. */
@@ -281,7 +299,7 @@ static int take_back(grobo_bus *bus, grobo_txn *txn, int result)
 
 int grobo_bus_raise(grobo_bus *bus, grobo_txn *txn, grobo_priority priority)
 {
-    if ((unsigned)priority >= GROBO_PRIORITIES) {
+    if (bus == NULL || txn == NULL || (unsigned)priority >= GROBO_PRIORITIES) {
         return GROBO_ERR_ARG;
     }
     if (!txn->pending_ || bus->active == txn || !grobo_i_bus_take_out(bus, txn)) {
@@ -294,7 +312,7 @@ int grobo_bus_raise(grobo_bus *bus, grobo_txn *txn, grobo_priority priority)
 
 int grobo_bus_cancel(grobo_bus *bus, grobo_txn *txn)
 {
-    return take_back(bus, txn, GROBO_ERR_CANCELED);
+    return bus == NULL || txn == NULL ? GROBO_ERR_ARG : take_back(bus, txn, GROBO_ERR_CANCELED);
 }
 
 static int length_of(const grobo_txn *txn)
@@ -308,6 +326,9 @@ static int length_of(const grobo_txn *txn)
 
 int grobo_bus_cancel_all(grobo_bus *bus, unsigned priority_bits, int result)
 {
+    if (bus == NULL) {
+        return GROBO_ERR_ARG;
+    }
     int ended = 0;
     if (bus->active != NULL && (priority_bits & GROBO_PRIORITY_BIT(bus->active->priority)) != 0) {
         (void)take_back(bus, bus->active, result);
@@ -326,5 +347,8 @@ int grobo_bus_cancel_all(grobo_bus *bus, unsigned priority_bits, int result)
 
 int grobo_bus_pending(const grobo_bus *bus)
 {
+    if (bus == NULL) {
+        return GROBO_ERR_ARG;
+    }
     return bus->waiting + (bus->active != NULL ? 1 : 0);
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "src/bus/framer.h"
+#include "src/base/assert.h"
 
 #include <string.h>
 
@@ -11,6 +12,7 @@ void grobo_i_framer_init(grobo_framer *framer)
 /* Drops the first n bytes, which are at least those of the frame that was handed out. */
 static void discard(grobo_framer *framer, size_t n)
 {
+    GROBO_ASSERT(framer->taken <= n && n <= framer->used);
     framer->used = (uint16_t)(framer->used - n);
     framer->taken = 0;
     memmove(framer->buf, framer->buf + n, framer->used);
@@ -26,6 +28,7 @@ size_t grobo_i_framer_feed(grobo_framer *framer, const uint8_t *bytes, size_t n)
     size_t took = n < room ? n : room;
     memcpy(framer->buf + framer->used, bytes, took);
     framer->used = (uint16_t)(framer->used + took);
+    GROBO_ASSERT(framer->used <= sizeof framer->buf);
     return took;
 }
 
@@ -50,6 +53,7 @@ size_t grobo_i_framer_next(grobo_framer *framer, grobo_i_measure measure, unsign
         framer->ending = false;
         return 0;
     }
+    GROBO_ASSERT(size > 0 && size <= framer->used);
     framer->taken = (uint16_t)size;
     framer->stats.frames++;
     framer->stats.frame_bytes += (uint32_t)size;
@@ -71,5 +75,6 @@ void grobo_i_framer_reset(grobo_framer *framer)
 
 size_t grobo_i_framer_pending(const grobo_framer *framer)
 {
+    GROBO_ASSERT(framer->taken <= framer->used);
     return (size_t)(framer->used - framer->taken);
 }

@@ -1,11 +1,43 @@
 /* SPDX-License-Identifier: MIT */
 #include "src/bus/queue.h"
+#include "src/base/assert.h"
 
 #include "src/base/instant.h"
 #include "src/bus/time.h"
 
+/* It is in no queue. */
+static void assert_apart(const grobo_bus *bus, const grobo_txn *txn)
+{
+    for (int p = 0; GROBO_ASSERTS && p < GROBO_PRIORITIES; p++) {
+        for (const grobo_txn *at = bus->head[p]; at != NULL; at = at->next_) {
+            GROBO_ASSERT(at != txn);
+        }
+    }
+}
+
+void grobo_i_bus_assert(const grobo_bus *bus)
+{
+    unsigned queued = 0;
+    for (int p = 0; GROBO_ASSERTS && p < GROBO_PRIORITIES; p++) {
+        for (const grobo_txn *at = bus->head[p]; at != NULL; at = at->next_) {
+            GROBO_ASSERT(at->pending_ && (int)at->priority == p);
+            queued++;
+        }
+    }
+    GROBO_ASSERT(queued == bus->waiting);
+    GROBO_ASSERT((bus->active == NULL) == (bus->phase == GROBO_BUS_IDLE));
+    assert_apart(bus, bus->active);
+    GROBO_ASSERT(bus->active == NULL || (bus->active->pending_ && bus->active->attempts_ > 0));
+    GROBO_ASSERT(bus->phase != GROBO_BUS_GOING || bus->active->reply.kind == GROBO_REPLY_NONE);
+    GROBO_ASSERT(bus->phase != GROBO_BUS_AWAITING || bus->active->reply.kind != GROBO_REPLY_NONE);
+    GROBO_ASSERT(bus->overhead_us >= 0 && bus->deviation_us >= 0 && bus->worst_us >= 0);
+    GROBO_ASSERT(bus->reserve_end_us == 0 || bus->reserve_end_us >= bus->reserve_us);
+}
+
 void grobo_i_bus_put_last(grobo_bus *bus, grobo_txn *txn)
 {
+    GROBO_ASSERT(txn->pending_);
+    assert_apart(bus, txn);
     grobo_txn **at = &bus->head[txn->priority];
     while (*at != NULL) {
         at = &(*at)->next_;
@@ -17,6 +49,8 @@ void grobo_i_bus_put_last(grobo_bus *bus, grobo_txn *txn)
 
 static void put_first(grobo_bus *bus, grobo_txn *txn)
 {
+    GROBO_ASSERT(txn->pending_);
+    assert_apart(bus, txn);
     txn->next_ = bus->head[txn->priority];
     bus->head[txn->priority] = txn;
     bus->waiting++;
@@ -31,6 +65,7 @@ bool grobo_i_bus_take_out(grobo_bus *bus, grobo_txn *txn)
     if (*at == NULL) {
         return false;
     }
+    GROBO_ASSERT(bus->waiting > 0);
     *at = txn->next_;
     bus->waiting--;
     return true;
@@ -44,6 +79,8 @@ void grobo_i_bus_finish(grobo_bus *bus, grobo_txn *txn, int result, const grobo_
         bus->active = NULL;
         bus->phase = GROBO_BUS_IDLE;
     }
+    GROBO_ASSERT(txn->pending_);
+    assert_apart(bus, txn);
     txn->pending_ = false;
     if (txn->done != NULL) {
         txn->done(txn->ctx, txn, result, reply);
@@ -62,6 +99,7 @@ void grobo_i_bus_ask_for_quiet(grobo_bus *bus)
 void grobo_i_bus_fail(grobo_bus *bus, int error)
 {
     grobo_txn *txn = bus->active;
+    GROBO_ASSERT(txn != NULL && error < 0);
     if (error == GROBO_ERR_TIMEOUT || error == GROBO_ERR_SHORT) {
         bus->stats.timeouts++;
     }

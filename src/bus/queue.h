@@ -5,6 +5,9 @@
 
 #include <grobo/bus.h>
 
+/* Asserts what always holds of a bus between two calls; nothing with NDEBUG. */
+void grobo_i_bus_assert(const grobo_bus *bus);
+
 void grobo_i_bus_put_last(grobo_bus *bus, grobo_txn *txn);
 
 /* True if it was there. */

@@ -7,6 +7,7 @@
  * and what the parser holds are all that came.
  */
 #include "src/bus/receive.h"
+#include "src/base/assert.h"
 
 #include <string.h>
 
@@ -109,6 +110,7 @@ static void take_ack(grobo_bus *bus, const grobo_packet *p)
 static void end_echo(grobo_bus *bus)
 {
     grobo_txn *txn = bus->active;
+    GROBO_ASSERT(bus->phase == GROBO_BUS_ECHOING && txn != NULL);
     if (txn->reply.kind == GROBO_REPLY_NONE) {
         grobo_i_bus_finish(bus, txn, GROBO_OK, NULL);
         return;
@@ -201,13 +203,18 @@ static size_t take_bytes(grobo_bus *bus, const uint8_t *bytes, size_t n)
 
 void grobo_bus_rx(grobo_bus *bus, int64_t now_us, const uint8_t *bytes, size_t n)
 {
+    if (bus == NULL || (bytes == NULL && n > 0)) {
+        return;
+    }
     bus->now_us = now_us;
     bus->stats.rx_bytes += (uint32_t)n;
     while (n > 0) {
         size_t took = take_bytes(bus, bytes, n);
+        GROBO_ASSERT(took > 0 && took <= n);
         bytes += took;
         n -= took;
     }
+    grobo_i_bus_assert(bus);
 }
 
 void grobo_i_bus_end_silence(grobo_bus *bus)

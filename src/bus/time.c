@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "src/bus/time.h"
+#include "src/base/assert.h"
 
 #include <string.h>
 
@@ -19,6 +20,9 @@ static uint32_t wire_us(size_t bytes, uint32_t baud_bps)
 
 void grobo_bus_cost_of(const grobo_bus *bus, const grobo_txn *txn, grobo_bus_cost *cost)
 {
+    if (bus == NULL || txn == NULL || cost == NULL) {
+        return;
+    }
     const grobo_bus_config *c = &bus->config;
     const grobo_relay *relay = c->protocol->relay;
     size_t reply = c->protocol->reply_bytes(&txn->reply);
@@ -77,6 +81,7 @@ static int32_t clip(int64_t late_us, int32_t most_us)
  * nothing, since nobody knows which of its attempts was answered. */
 void grobo_i_bus_learn(grobo_bus *bus)
 {
+    GROBO_ASSERT(bus->active != NULL && bus->active->attempts_ == 1);
     int32_t sample_us = clip(bus->now_us - bus->over_us, GROBO_BUS_MARGIN_MAX_US);
     if (sample_us > bus->worst_us) {
         bus->worst_us = sample_us;
@@ -158,6 +163,7 @@ bool grobo_i_bus_settle(grobo_bus *bus, uint32_t key)
         return false;
     }
     learn_late(bus, hold->due_us);
+    GROBO_ASSERT(hold->owed > 0);
     hold->due_us = bus->over_us; /* the rest are to later attempts */
     hold->owed--;
     return true;
@@ -201,6 +207,9 @@ static int64_t held_until(const grobo_bus *bus, const grobo_txn *txn)
 
 bool grobo_bus_fits(const grobo_bus *bus, int64_t now_us, const grobo_txn *txn)
 {
+    if (bus == NULL || txn == NULL) {
+        return false;
+    }
     grobo_bus_cost cost;
     if (now_us >= bus->reserve_end_us) {
         return true;
@@ -225,11 +234,14 @@ int64_t grobo_i_bus_start_at(const grobo_bus *bus, const grobo_txn *txn, int64_t
 
 void grobo_bus_reserve(grobo_bus *bus, int64_t at_us, uint32_t duration_us)
 {
+    if (bus == NULL) {
+        return;
+    }
     bus->reserve_us = at_us;
     bus->reserve_end_us = at_us == GROBO_NEVER_US ? 0 : at_us + duration_us;
 }
 
 int64_t grobo_bus_free_at(const grobo_bus *bus, int64_t now_us)
 {
-    return grobo_i_later(now_us, bus->free_us);
+    return bus == NULL ? GROBO_NEVER_US : grobo_i_later(now_us, bus->free_us);
 }

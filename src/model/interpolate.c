@@ -33,6 +33,9 @@ static void sift_down(const double *t_s, size_t *heap, size_t root, size_t n)
 
 void grobo_spline_order(const double *t_s, size_t n, size_t *order)
 {
+    if (t_s == NULL || order == NULL) {
+        return;
+    }
     for (size_t i = 0; i < n; i++) {
         order[i] = i;
     }
@@ -52,6 +55,9 @@ void grobo_spline_order(const double *t_s, size_t n, size_t *order)
 int grobo_spline_append(grobo_spline_track *track, double t_s, double value,
                         double max_transition_s, bool stationary)
 {
+    if (track == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_spline_key *last = track->n > 0 ? &track->keys[track->n - 1] : NULL;
 
     if (!isfinite(t_s) || !isfinite(value) || !isfinite(max_transition_s)) {
@@ -97,6 +103,9 @@ static double inner_slope(const grobo_spline_key *key)
 
 void grobo_spline_prepare(grobo_spline_key *keys, size_t n)
 {
+    if (keys == NULL) {
+        return;
+    }
     for (size_t i = 0; i < n; i++) {
         keys[i].slope = i > 0 && i + 1 < n ? inner_slope(&keys[i]) : 0.0;
     }
@@ -106,6 +115,9 @@ void grobo_spline_prepare(grobo_spline_key *keys, size_t n)
 
 double grobo_spline_cubic(const grobo_spline_key *a, const grobo_spline_key *b, double t_s)
 {
+    if (a == NULL || b == NULL) {
+        return 0;
+    }
     double length_s = b->t_s - a->t_s;
     if (length_s < GROBO_SPLINE_JUMP_S) {
         return b->value;
@@ -153,6 +165,9 @@ static size_t count_from(const grobo_spline_key *keys, size_t n, double t_s, siz
 
 double grobo_spline_at(const grobo_spline_key *keys, size_t n, double t_s, size_t *cursor)
 {
+    if (keys == NULL && n > 0) {
+        return 0;
+    }
     size_t i = cursor != NULL ? count_from(keys, n, t_s, *cursor) : count_until(keys, n, t_s);
     if (cursor != NULL) {
         *cursor = i;

@@ -104,6 +104,9 @@ int grobo_model_check(const grobo_model *model)
 
 double grobo_model_take_slack(const grobo_model *model, int joint, double angle_rad)
 {
+    if (model == NULL) {
+        return 0;
+    }
     const grobo_joint *limits = &model->joints[joint];
     const bool low = angle_rad < limits->min_rad;
     const double limit_rad = low ? limits->min_rad : limits->max_rad;
@@ -120,6 +123,9 @@ double grobo_model_take_slack(const grobo_model *model, int joint, double angle_
 
 int grobo_model_joint_of_motor(const grobo_model *model, int motor)
 {
+    if (model == NULL) {
+        return GROBO_ERR_ARG;
+    }
     for (int j = 0; j < model->n_joints; j++) {
         if (model->joints[j].motor == motor) {
             return j;
@@ -130,7 +136,7 @@ int grobo_model_joint_of_motor(const grobo_model *model, int motor)
 
 int grobo_model_motor_of_joint(const grobo_model *model, int joint)
 {
-    if (joint < 0 || joint >= model->n_joints) {
+    if (model == NULL || joint < 0 || joint >= model->n_joints) {
         return GROBO_ERR_ARG;
     }
     return model->joints[joint].motor;
@@ -138,6 +144,9 @@ int grobo_model_motor_of_joint(const grobo_model *model, int joint)
 
 int grobo_model_find_joint(const grobo_model *model, const char *name, size_t length)
 {
+    if (model == NULL || (name == NULL && length > 0)) {
+        return GROBO_ERR_ARG;
+    }
     for (int j = 0; j < model->n_joints; j++) {
         if (is_name(model->joints[j].name, name, length)) {
             return j;
@@ -168,6 +177,9 @@ int grobo_joints_count(grobo_joint_mask joints)
 int grobo_model_find_joints(const grobo_model *model, const char *name, size_t length,
                             grobo_joint_mask *joints)
 {
+    if ((name == NULL && length > 0) || model == NULL || joints == NULL) {
+        return GROBO_ERR_ARG;
+    }
     int number = small_number(name, length);
     for (int g = 0; g < model->n_groups; g++) {
         if (g == number || is_name(model->groups[g].name, name, length)) {

@@ -38,6 +38,9 @@ double grobo_rad_from_ddeg(int angle_ddeg)
 
 int grobo_posture_init(grobo_posture *posture, int n_joints)
 {
+    if (posture == NULL) {
+        return GROBO_ERR_ARG;
+    }
     if (n_joints < 0 || n_joints > GROBO_JOINTS_MAX) {
         return GROBO_ERR_CAP;
     }
@@ -49,6 +52,9 @@ int grobo_posture_init(grobo_posture *posture, int n_joints)
 
 void grobo_posture_init_pose(grobo_posture *posture, const grobo_model *model)
 {
+    if (posture == NULL || model == NULL) {
+        return;
+    }
     (void)grobo_posture_init(posture, model->n_joints);
     for (int j = 0; j < model->n_joints; j++) {
         posture->angle_rad[j] = model->joints[j].init_rad;
@@ -68,7 +74,7 @@ static bool is_set(const grobo_posture *posture, int joint)
 
 int grobo_posture_set_rad(grobo_posture *posture, int joint, double angle_rad)
 {
-    if (!has_joint(posture, joint)) {
+    if (posture == NULL || !has_joint(posture, joint)) {
         return GROBO_ERR_ARG;
     }
     if (!isfinite(angle_rad)) {
@@ -86,7 +92,7 @@ int grobo_posture_set_deg(grobo_posture *posture, int joint, double angle_deg)
 
 int grobo_posture_get_rad(const grobo_posture *posture, int joint, double *angle_rad)
 {
-    if (!has_joint(posture, joint)) {
+    if (posture == NULL || angle_rad == NULL || !has_joint(posture, joint)) {
         return GROBO_ERR_ARG;
     }
     if (!is_set(posture, joint)) {
@@ -98,6 +104,9 @@ int grobo_posture_get_rad(const grobo_posture *posture, int joint, double *angle
 
 int grobo_posture_get_deg(const grobo_posture *posture, int joint, double *angle_deg)
 {
+    if (angle_deg == NULL) {
+        return GROBO_ERR_ARG;
+    }
     double angle_rad;
     int result = grobo_posture_get_rad(posture, joint, &angle_rad);
     if (result == 0) {
@@ -108,6 +117,9 @@ int grobo_posture_get_deg(const grobo_posture *posture, int joint, double *angle
 
 int grobo_posture_all_rad(const grobo_posture *posture, double *angle_rad, size_t capacity)
 {
+    if (posture == NULL || angle_rad == NULL) {
+        return GROBO_ERR_ARG;
+    }
     if (capacity < posture->n_joints) {
         return GROBO_ERR_SPACE;
     }
@@ -119,6 +131,9 @@ int grobo_posture_all_rad(const grobo_posture *posture, double *angle_rad, size_
 
 int grobo_posture_all_deg(const grobo_posture *posture, double *angle_deg, size_t capacity)
 {
+    if (angle_deg == NULL) {
+        return GROBO_ERR_ARG;
+    }
     int n = grobo_posture_all_rad(posture, angle_deg, capacity);
     for (int j = 0; j < n; j++) {
         angle_deg[j] = grobo_deg_from_rad(angle_deg[j]);
@@ -128,7 +143,7 @@ int grobo_posture_all_deg(const grobo_posture *posture, double *angle_deg, size_
 
 int grobo_posture_set_time_ms(grobo_posture *posture, double time_ms)
 {
-    if (!(time_ms >= 0.0 && time_ms <= TIME_MAX_MS)) {
+    if (posture == NULL || !(time_ms >= 0.0 && time_ms <= TIME_MAX_MS)) {
         return GROBO_ERR_ARG;
     }
     posture->time_us = (int64_t)round(time_ms * 1000.0);
@@ -137,7 +152,7 @@ int grobo_posture_set_time_ms(grobo_posture *posture, double time_ms)
 
 int grobo_posture_copy(grobo_posture *dst, const grobo_posture *src, int offset)
 {
-    if (offset < 0 || offset > src->n_joints) {
+    if (dst == NULL || src == NULL || offset < 0 || offset > src->n_joints) {
         return GROBO_ERR_ARG;
     }
     int n = src->n_joints - offset;
@@ -157,6 +172,9 @@ int grobo_posture_copy(grobo_posture *dst, const grobo_posture *src, int offset)
 
 void grobo_posture_merge(grobo_posture *posture, const grobo_posture *over)
 {
+    if (posture == NULL || over == NULL) {
+        return;
+    }
     int n = over->n_joints < posture->n_joints ? over->n_joints : posture->n_joints;
     for (int j = 0; j < n; j++) {
         if (is_set(over, j)) {
@@ -173,7 +191,7 @@ static bool same_joints(const grobo_posture *a, const grobo_posture *b)
 
 bool grobo_posture_equal(const grobo_posture *a, const grobo_posture *b)
 {
-    if (!same_joints(a, b)) {
+    if (a == NULL || b == NULL || !same_joints(a, b)) {
         return false;
     }
     for (int j = 0; j < a->n_joints; j++) {
@@ -186,7 +204,7 @@ bool grobo_posture_equal(const grobo_posture *a, const grobo_posture *b)
 
 bool grobo_posture_near(const grobo_posture *a, const grobo_posture *b, double delta_rad)
 {
-    if (!same_joints(a, b)) {
+    if (a == NULL || b == NULL || !same_joints(a, b)) {
         return false;
     }
     for (int j = 0; j < a->n_joints; j++) {
@@ -199,7 +217,7 @@ bool grobo_posture_near(const grobo_posture *a, const grobo_posture *b, double d
 
 int grobo_posture_mirror(grobo_posture *posture, const grobo_model *model)
 {
-    if (posture->n_joints != model->n_joints) {
+    if (posture == NULL || model == NULL || posture->n_joints != model->n_joints) {
         return GROBO_ERR_ARG;
     }
     grobo_posture before = *posture;
@@ -224,7 +242,7 @@ static bool within_limits(const grobo_joint *joint, double angle_rad)
 
 int grobo_posture_check(const grobo_posture *posture, const grobo_model *model, int *joint)
 {
-    if (posture->n_joints != model->n_joints ||
+    if (posture == NULL || model == NULL || posture->n_joints != model->n_joints ||
         (posture->set & ~GROBO_JOINTS_ALL(model->n_joints)) != 0) {
         return GROBO_ERR_ARG;
     }
@@ -250,6 +268,9 @@ int grobo_posture_check(const grobo_posture *posture, const grobo_model *model, 
 
 int grobo_posture_clamp(grobo_posture *posture, const grobo_model *model)
 {
+    if (posture == NULL || model == NULL) {
+        return GROBO_ERR_ARG;
+    }
     int result = grobo_posture_check(posture, model, NULL);
     if (result == GROBO_ERR_ARG) {
         return result;
@@ -326,6 +347,9 @@ static int next_by_motor(const grobo_model *model, int motor)
 int grobo_posture_parse(grobo_posture *posture, const grobo_model *model, const char *text,
                         size_t length)
 {
+    if ((text == NULL && length > 0) || posture == NULL || model == NULL) {
+        return GROBO_ERR_ARG;
+    }
     cursor c = {text, text + length};
     grobo_posture parsed;
     int32_t number;

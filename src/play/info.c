@@ -4,7 +4,7 @@
 
 grobo_sequencer_state grobo_sequencer_get_state(const grobo_sequencer *seq)
 {
-    return seq->state;
+    return seq == NULL ? GROBO_SEQUENCER_IDLE : seq->state;
 }
 
 void grobo_i_see_if_late(grobo_sequencer *seq)
@@ -21,5 +21,5 @@ void grobo_i_count_skipped(grobo_sequencer *seq)
 
 const grobo_play_stats *grobo_sequencer_stats(const grobo_sequencer *seq)
 {
-    return &seq->stats;
+    return seq == NULL ? NULL : &seq->stats;
 }

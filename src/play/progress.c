@@ -34,6 +34,9 @@ static void count_steps(const grobo_sequencer *seq, grobo_play_progress *progres
 void grobo_sequencer_progress(const grobo_sequencer *seq, int64_t now_us,
                               grobo_play_progress *progress)
 {
+    if (seq == NULL || progress == NULL) {
+        return;
+    }
     memset(progress, 0, sizeof *progress);
     progress->state = seq->state;
     progress->error = seq->error;

@@ -5,6 +5,7 @@
  * it begins. Playing at a rate is the exception: its frames lie on a grid.
  */
 #include "src/play/sequencer.h"
+#include "src/base/assert.h"
 
 #include <string.h>
 
@@ -13,6 +14,28 @@
 #define SECOND_US 1000000u
 
 _Static_assert(GROBO_QUEUE_MAX < 256, "queue_head and queue_n are bytes");
+
+/* What always holds between two calls. */
+static void assert_sound(const grobo_sequencer *seq)
+{
+    const grobo_play_options *options = &seq->item.options;
+    GROBO_ASSERT(seq->queue_head < GROBO_QUEUE_MAX && seq->queue_n <= GROBO_QUEUE_MAX);
+    GROBO_ASSERT((seq->state == GROBO_SEQUENCER_FAILED) == (seq->error < 0));
+    if (seq->state == GROBO_SEQUENCER_IDLE || seq->state == GROBO_SEQUENCER_FINISHED ||
+        seq->state == GROBO_SEQUENCER_FAILED) {
+        GROBO_ASSERT(!seq->waits && seq->queue_n == 0);
+        return;
+    }
+    GROBO_ASSERT(seq->state != GROBO_SEQUENCER_STOPPING || seq->queue_n == 0);
+    GROBO_ASSERT(seq->to.n_joints == seq->item.clip.n_joints);
+    GROBO_ASSERT(options->speed_pct > 0 && options->speed_pct <= GROBO_PLAY_SPEED_MAX_PCT);
+    GROBO_ASSERT(options->mode == GROBO_PLAY_KEY || options->rate_hz > 0);
+    GROBO_ASSERT(seq->pass >= 1 && seq->pass <= options->repeat);
+    GROBO_ASSERT(seq->anchor_pos_us >= 0 && seq->anchor_pos_us <= seq->item.span_us);
+    bool on_grid = seq->state == GROBO_SEQUENCER_PLAYING && options->mode == GROBO_PLAY_RATE;
+    GROBO_ASSERT(on_grid || seq->from_us <= seq->to_us);
+    GROBO_ASSERT(options->mode != GROBO_PLAY_KEY || seq->key.i < seq->item.clip.n_keys);
+}
 
 static bool is_under_way(const grobo_sequencer *seq)
 {
@@ -66,6 +89,7 @@ static int32_t time_of_frame(const grobo_sequencer *seq)
 
 static int hand_out(grobo_sequencer *seq, grobo_play_frame *frame)
 {
+    GROBO_ASSERT(seq->waits && seq->due_us <= seq->now_us);
     frame->posture = seq->to;
     frame->posture.time_us = longer(time_of_frame(seq), GROBO_PLAY_TIME_UNIT_US);
     frame->due_us = seq->due_us;
@@ -84,10 +108,12 @@ static int hand_out(grobo_sequencer *seq, grobo_play_frame *frame)
 
 static int fail(grobo_sequencer *seq, int error)
 {
+    GROBO_ASSERT(error < 0);
     seq->state = GROBO_SEQUENCER_FAILED;
     seq->error = error;
     seq->queue_n = 0;
     seq->waits = false;
+    assert_sound(seq);
     return error;
 }
 
@@ -142,6 +168,7 @@ static int begin(grobo_sequencer *seq, bool soft)
     seq->state = GROBO_SEQUENCER_APPROACHING;
     seq->anchor_us = seq->to_us;
     set_move(seq, time_us > 0 && seq->to.set != 0, seq->to_us + time_us);
+    assert_sound(seq);
     return 0;
 }
 
@@ -287,16 +314,24 @@ static int look(grobo_sequencer *seq, grobo_play_frame *frame)
 
 int grobo_sequencer_next(grobo_sequencer *seq, int64_t now_us, grobo_play_frame *frame)
 {
+    if (frame == NULL || seq == NULL) {
+        return GROBO_ERR_ARG;
+    }
     int result = 0;
     seq->now_us = now_us;
     while (result == 0 && now_us >= grobo_sequencer_deadline(seq)) {
         result = look(seq, frame);
     }
-    return result < 0 ? fail(seq, result) : result;
+    result = result < 0 ? fail(seq, result) : result;
+    assert_sound(seq);
+    return result;
 }
 
 int64_t grobo_sequencer_deadline(const grobo_sequencer *seq)
 {
+    if (seq == NULL) {
+        return GROBO_NEVER_US;
+    }
     if (seq->waits) {
         return seq->due_us;
     }
@@ -313,6 +348,9 @@ static bool is_active(const grobo_sequencer *seq)
 
 void grobo_sequencer_init(grobo_sequencer *seq, const grobo_model *model)
 {
+    if (seq == NULL) {
+        return;
+    }
     memset(seq, 0, sizeof *seq);
     seq->model = model;
 }
@@ -321,6 +359,9 @@ int grobo_sequencer_play(grobo_sequencer *seq, const grobo_clip *clip,
                          const grobo_play_options *options, const grobo_posture *start,
                          int64_t now_us)
 {
+    if (seq == NULL || clip == NULL) {
+        return GROBO_ERR_ARG;
+    }
     if (seq->state != GROBO_SEQUENCER_IDLE && seq->state != GROBO_SEQUENCER_FINISHED) {
         return GROBO_ERR_STATE;
     }
@@ -346,6 +387,9 @@ int grobo_sequencer_play(grobo_sequencer *seq, const grobo_clip *clip,
 int grobo_sequencer_enqueue(grobo_sequencer *seq, const grobo_clip *clip,
                             const grobo_play_options *options)
 {
+    if (seq == NULL || clip == NULL) {
+        return GROBO_ERR_ARG;
+    }
     if (!is_active(seq)) {
         return GROBO_ERR_STATE;
     }
@@ -389,6 +433,7 @@ static int hold(grobo_sequencer *seq, grobo_sequencer_state state, int32_t time_
     seq->anchor_us = now_us;
     set_move(seq, seq->to.set != 0, now_us + longer(time_us, GROBO_PLAY_TIME_UNIT_US));
     seq->state = state;
+    assert_sound(seq);
     return 0;
 }
 
@@ -400,6 +445,9 @@ static int32_t stop_time(const grobo_sequencer *seq)
 
 int grobo_sequencer_pause(grobo_sequencer *seq, int64_t now_us)
 {
+    if (seq == NULL) {
+        return GROBO_ERR_ARG;
+    }
     if (!is_under_way(seq)) {
         return GROBO_ERR_STATE;
     }
@@ -417,6 +465,9 @@ static int set_off(grobo_sequencer *seq, int64_t now_us)
 
 int grobo_sequencer_resume(grobo_sequencer *seq, int64_t now_us)
 {
+    if (seq == NULL) {
+        return GROBO_ERR_ARG;
+    }
     if (seq->state != GROBO_SEQUENCER_PAUSED) {
         return GROBO_ERR_STATE;
     }
@@ -425,6 +476,9 @@ int grobo_sequencer_resume(grobo_sequencer *seq, int64_t now_us)
 
 int grobo_sequencer_stop(grobo_sequencer *seq, bool at_once, int64_t now_us)
 {
+    if (seq == NULL) {
+        return GROBO_ERR_ARG;
+    }
     bool stopping = seq->state == GROBO_SEQUENCER_STOPPING;
     if (!is_active(seq) && !stopping) {
         return GROBO_ERR_STATE;
@@ -439,6 +493,9 @@ int grobo_sequencer_stop(grobo_sequencer *seq, bool at_once, int64_t now_us)
 
 int grobo_sequencer_seek(grobo_sequencer *seq, int64_t pos_us, int64_t now_us)
 {
+    if (seq == NULL) {
+        return GROBO_ERR_ARG;
+    }
     if (!is_active(seq)) {
         return GROBO_ERR_STATE;
     }
@@ -482,6 +539,9 @@ static void change_speed(grobo_sequencer *seq, uint16_t speed_pct)
 
 int grobo_sequencer_set_speed(grobo_sequencer *seq, int speed_pct, int64_t now_us)
 {
+    if (seq == NULL) {
+        return GROBO_ERR_ARG;
+    }
     if (!is_active(seq)) {
         return GROBO_ERR_STATE;
     }
@@ -493,11 +553,15 @@ int grobo_sequencer_set_speed(grobo_sequencer *seq, int speed_pct, int64_t now_u
         change_speed(seq, (uint16_t)speed_pct);
     }
     seq->item.options.speed_pct = (uint16_t)speed_pct;
+    assert_sound(seq);
     return 0;
 }
 
 int grobo_sequencer_fail(grobo_sequencer *seq, int error)
 {
+    if (seq == NULL) {
+        return GROBO_ERR_ARG;
+    }
     if (!is_active(seq) && seq->state != GROBO_SEQUENCER_STOPPING) {
         return GROBO_ERR_STATE;
     }
@@ -510,6 +574,9 @@ int grobo_sequencer_fail(grobo_sequencer *seq, int error)
 
 void grobo_sequencer_reset(grobo_sequencer *seq)
 {
+    if (seq == NULL) {
+        return;
+    }
     seq->state = GROBO_SEQUENCER_IDLE;
     seq->error = 0;
     seq->queue_n = 0;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Where a joint is, by what it was sent to and by what was read last. */
+#include "src/base/assert.h"
 #include "src/base/instant.h"
 #include "src/robot/robot.h"
 
@@ -111,6 +112,7 @@ grobo_joint_mask grobo_i_all_joints(const grobo_robot *robot)
 
 int grobo_i_lowest(grobo_joint_mask joints)
 {
+    GROBO_ASSERT(joints != 0);
     int j = 0;
     while ((joints & GROBO_JOINT_BIT(j)) == 0) {
         j++;

@@ -83,6 +83,9 @@ int grobo_i_budget(const grobo_bus *bus, const grobo_driver *driver, void *ctx,
 int grobo_budget_init(grobo_budget *budget, const grobo_driver *driver, void *ctx,
                       const grobo_bus_config *line)
 {
+    if (budget == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_bus bus;
     grobo_bus_config config = {0};
     if (grobo_driver_check(driver) < 0) {
@@ -98,5 +101,7 @@ int grobo_budget_init(grobo_budget *budget, const grobo_driver *driver, void *ct
 
 int grobo_robot_budget(const grobo_robot *robot, grobo_budget *budget)
 {
-    return grobo_i_budget(&robot->bus, robot->driver, robot->driver_ctx, budget);
+    return robot == NULL || budget == NULL
+               ? GROBO_ERR_ARG
+               : grobo_i_budget(&robot->bus, robot->driver, robot->driver_ctx, budget);
 }

@@ -15,12 +15,18 @@ static int controlled(grobo_robot *robot, int result)
 
 int grobo_robot_pause(grobo_robot *robot, int64_t now_us)
 {
+    if (robot == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_i_enter(robot, now_us);
     return controlled(robot, grobo_sequencer_pause(&robot->sequencer, robot->now_us));
 }
 
 int grobo_robot_resume(grobo_robot *robot, int64_t now_us)
 {
+    if (robot == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_i_enter(robot, now_us);
     int result = robot->trip.latched ? GROBO_ERR_LATCHED
                                      : grobo_sequencer_resume(&robot->sequencer, robot->now_us);
@@ -29,6 +35,9 @@ int grobo_robot_resume(grobo_robot *robot, int64_t now_us)
 
 int grobo_robot_stop(grobo_robot *robot, bool at_once, int64_t now_us)
 {
+    if (robot == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_i_enter(robot, now_us);
     int result = grobo_sequencer_stop(&robot->sequencer, at_once, robot->now_us);
     grobo_i_make_way(robot); /* it might send again what is stopped here */
@@ -44,12 +53,18 @@ int grobo_robot_stop(grobo_robot *robot, bool at_once, int64_t now_us)
 
 int grobo_robot_seek(grobo_robot *robot, int64_t clip_us, int64_t now_us)
 {
+    if (robot == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_i_enter(robot, now_us);
     return controlled(robot, grobo_sequencer_seek(&robot->sequencer, clip_us, robot->now_us));
 }
 
 int grobo_robot_speed(grobo_robot *robot, int speed_pct, int64_t now_us)
 {
+    if (robot == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_i_enter(robot, now_us);
     return controlled(robot,
                       grobo_sequencer_set_speed(&robot->sequencer, speed_pct, robot->now_us));
@@ -58,6 +73,9 @@ int grobo_robot_speed(grobo_robot *robot, int speed_pct, int64_t now_us)
 int grobo_robot_enqueue(grobo_robot *robot, const grobo_clip *clip,
                         const grobo_play_options *options, int64_t now_us)
 {
+    if (clip == NULL || robot == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_i_enter(robot, now_us);
     grobo_play_options chosen;
     grobo_joint_mask joints = 0;

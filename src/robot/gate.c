@@ -13,10 +13,10 @@
  */
 #include "src/robot/robot.h"
 
-#include <assert.h>
 #include <math.h>
 #include <string.h>
 
+#include "src/base/assert.h"
 #include "src/base/instant.h"
 
 /* What the frame of an order says. */
@@ -354,7 +354,7 @@ static int judge(grobo_robot *robot, const grobo_robot_order *order, const grobo
     case GROBO_I_DEED_COMMAND:
         return judge_alone(robot);
     }
-    assert(false); /* each deed returns above */
+    GROBO_ASSERT(false); /* each deed returns above */
     return GROBO_ERR_ARG;
 }
 
@@ -579,12 +579,32 @@ static bool is_passed(const grobo_robot *robot, const grobo_robot_slot *slot)
     return false;
 }
 
+/* Whatever was judged above: what no frame that leaves may do. */
+static void assert_leaving(const grobo_robot_slot *slot, const saying *says)
+{
+    const grobo_robot *robot = slot->robot;
+    const grobo_robot_order *order = &slot->order;
+    const grobo_posture *to = &says->target.posture;
+    grobo_joint_mask on = says->torqued[GROBO_TORQUE_ON];
+    GROBO_ASSERT(slot->exchange.frame_bytes > 0);
+    GROBO_ASSERT((to->set & ~grobo_i_all_joints(robot)) == 0 && (on & ~order->joints) == 0);
+    GROBO_ASSERT(to->set == 0 || grobo_posture_check(to, robot->driver->model, NULL) == GROBO_OK);
+    GROBO_ASSERT(!robot->trip.latched || on == 0);
+    GROBO_ASSERT(!robot->trip.latched || to->set == 0 || order->stops);
+    GROBO_ASSERT((to->set & robot->free_joints) == 0 || order->deed == GROBO_I_DEED_HOLD ||
+                 order->deed == GROBO_I_DEED_HALT);
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        GROBO_ASSERT(!is_in(to->set, j) || says->target.joint_time_us[j] > 0 ||
+                     order->deed == GROBO_I_DEED_RAW);
+    }
+}
+
 int grobo_i_gate_leave(grobo_robot_slot *slot)
 {
     grobo_robot *robot = slot->robot;
     bool again = slot->txn.sent_us >= 0;
     saying says;
-    assert(slot->use != GROBO_I_USE_FREE && robot->link);
+    GROBO_ASSERT(slot->use != GROBO_I_USE_FREE && robot->link);
     int result = is_passed(robot, slot) ? GROBO_ERR_STALE
                                         : judge(robot, &slot->order, &slot->exchange, again, &says);
     if (result >= 0 && is_built(&slot->order)) {
@@ -594,6 +614,7 @@ int grobo_i_gate_leave(grobo_robot_slot *slot)
     if (result < 0) {
         return result;
     }
+    assert_leaving(slot, &says);
     note(robot, slot, &says);
     return GROBO_OK;
 }

@@ -11,6 +11,9 @@ static const grobo_model *model_of(const grobo_hrpsys *hrpsys)
 
 void grobo_hrpsys_init(grobo_hrpsys *hrpsys, grobo_robot *robot)
 {
+    if (hrpsys == NULL || robot == NULL) {
+        return;
+    }
     memset(hrpsys, 0, sizeof *hrpsys);
     hrpsys->robot = robot;
     (void)grobo_posture_init(&hrpsys->command, model_of(hrpsys)->n_joints);
@@ -42,6 +45,9 @@ static bool is_number(const char *text)
 
 int grobo_hrpsys_find(const grobo_hrpsys *hrpsys, const char *name, grobo_joint_mask *joints)
 {
+    if (hrpsys == NULL || name == NULL || joints == NULL) {
+        return GROBO_ERR_ARG;
+    }
     const grobo_model *model = model_of(hrpsys);
     if (is_same(name, "all")) { /* whether or not the model has a group of that name */
         *joints = GROBO_JOINTS_ALL(model->n_joints);
@@ -62,6 +68,9 @@ int grobo_hrpsys_find(const grobo_hrpsys *hrpsys, const char *name, grobo_joint_
 int grobo_hrpsys_add_joint_group(grobo_hrpsys *hrpsys, const char *name, const char *const *joints,
                                  size_t n)
 {
+    if (hrpsys == NULL || name == NULL || (joints == NULL && n > 0)) {
+        return GROBO_ERR_ARG;
+    }
     grobo_joint_mask found = 0;
     grobo_joint_mask group = 0;
     size_t length = strlen(name);
@@ -93,6 +102,9 @@ int grobo_hrpsys_add_joint_group(grobo_hrpsys *hrpsys, const char *name, const c
 int grobo_hrpsys_names_to_ids(const grobo_hrpsys *hrpsys, const char *const *names, size_t n,
                               int *ids)
 {
+    if (hrpsys == NULL || (names == NULL && n > 0) || ids == NULL) {
+        return GROBO_ERR_ARG;
+    }
     const grobo_model *model = model_of(hrpsys);
     for (size_t i = 0; i < n; i++) {
         if (grobo_model_find_joint(model, names[i], strlen(names[i])) < 0) {
@@ -108,6 +120,9 @@ int grobo_hrpsys_names_to_ids(const grobo_hrpsys *hrpsys, const char *const *nam
 int grobo_hrpsys_names_to_motors(const grobo_hrpsys *hrpsys, const char *const *names, size_t n,
                                  int *motors)
 {
+    if (hrpsys == NULL || motors == NULL) {
+        return GROBO_ERR_ARG;
+    }
     int result = grobo_hrpsys_names_to_ids(hrpsys, names, n, motors);
     for (int i = 0; i < result; i++) {
         motors[i] = grobo_model_motor_of_joint(model_of(hrpsys), motors[i]);
@@ -129,7 +144,7 @@ static int switch_joints(grobo_hrpsys *hrpsys, grobo_joint_mask joints, bool on,
 
 int grobo_hrpsys_servo(grobo_hrpsys *hrpsys, int joint, bool on, int64_t now_us)
 {
-    if (joint < 0 || joint >= model_of(hrpsys)->n_joints) {
+    if (hrpsys == NULL || joint < 0 || joint >= model_of(hrpsys)->n_joints) {
         return GROBO_ERR_ARG;
     }
     return switch_joints(hrpsys, GROBO_JOINT_BIT(joint), on, now_us);
@@ -147,6 +162,9 @@ int grobo_hrpsys_servo_name(grobo_hrpsys *hrpsys, const char *name, bool on, int
 int grobo_hrpsys_read_joint_angles(const grobo_hrpsys *hrpsys, double *angle_rad, size_t capacity,
                                    int64_t max_age_us, int64_t now_us)
 {
+    if (hrpsys == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_posture posture;
     int known = grobo_robot_posture(hrpsys->robot, now_us, max_age_us, &posture);
     int written = grobo_posture_all_rad(&posture, angle_rad, capacity);
@@ -155,7 +173,7 @@ int grobo_hrpsys_read_joint_angles(const grobo_hrpsys *hrpsys, double *angle_rad
 
 int grobo_hrpsys_write_joint_commands(grobo_hrpsys *hrpsys, const double *angle_rad, size_t n)
 {
-    if (n != hrpsys->command.n_joints) {
+    if (hrpsys == NULL || angle_rad == NULL || n != hrpsys->command.n_joints) {
         return GROBO_ERR_ARG;
     }
     for (size_t j = 0; j < n; j++) {
@@ -193,6 +211,9 @@ static grobo_joint_mask holding(const grobo_hrpsys *hrpsys, int64_t now_us)
 
 int grobo_hrpsys_one_step(grobo_hrpsys *hrpsys, int64_t now_us)
 {
+    if (hrpsys == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_posture target = hrpsys->command;
     grobo_trip_info trip;
     if (target.set == 0) {
@@ -249,6 +270,9 @@ static const telling tellings[] = {
 int grobo_hrpsys_check_emergency(const grobo_hrpsys *hrpsys, char *reason, size_t reason_bytes,
                                  int *joint)
 {
+    if (hrpsys == NULL || reason == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_trip_info trip;
     writing w = {.used = 0};
     grobo_robot_tripped(hrpsys->robot, &trip);

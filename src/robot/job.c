@@ -2,13 +2,14 @@
 /* Runs the script of a job: one step after the other, waiting where a step says so. */
 #include "src/robot/robot.h"
 
-#include <assert.h>
 #include <string.h>
+
+#include "src/base/assert.h"
 
 int grobo_i_job_start(grobo_robot *robot, grobo_job_kind kind, const grobo_robot_step_fn *script)
 {
     grobo_robot_task *job = &robot->job;
-    assert(job->kind == GROBO_JOB_NONE);
+    GROBO_ASSERT(job->kind == GROBO_JOB_NONE);
     robot->last_number = robot->last_number == INT32_MAX ? 1 : robot->last_number + 1;
     job->script = script;
     job->number = robot->last_number;
@@ -33,6 +34,7 @@ int grobo_i_job_start(grobo_robot *robot, grobo_job_kind kind, const grobo_robot
 void grobo_i_job_end(grobo_robot *robot, int result)
 {
     grobo_robot_task *job = &robot->job;
+    GROBO_ASSERT(job->kind != GROBO_JOB_NONE && result <= GROBO_OK);
     grobo_event event = {.kind = GROBO_EVENT_JOB};
     event.u.job.number = job->number;
     event.u.job.kind = job->kind;
@@ -55,6 +57,7 @@ void grobo_i_job_end(grobo_robot *robot, int result)
 void grobo_i_job_fail_joint(grobo_robot *robot, int joint, int error, double value)
 {
     grobo_robot_task *job = &robot->job;
+    GROBO_ASSERT(error < 0 && joint >= 0 && joint < robot->driver->model->n_joints);
     if (job->failed == 0) {
         job->result = error;
         job->joint = joint;
@@ -69,7 +72,7 @@ void grobo_i_job_goto(grobo_robot *robot, grobo_robot_step_fn step)
     while (robot->job.script[at] != NULL && robot->job.script[at] != step) {
         at++;
     }
-    assert(robot->job.script[at] == step);
+    GROBO_ASSERT(robot->job.script[at] == step);
     robot->job.at = at;
 }
 
@@ -154,6 +157,7 @@ static int advance(grobo_robot *robot)
     if (activity < 0) {
         return activity;
     }
+    GROBO_ASSERT(activity <= GROBO_I_WAIT);
     job->activity = (uint8_t)activity;
     return 0;
 }

@@ -183,6 +183,9 @@ static int64_t quantile(const grobo_robot *robot, uint64_t frames, unsigned pct)
 
 void grobo_robot_jitter(const grobo_robot *robot, grobo_jitter *jitter)
 {
+    if (robot == NULL || jitter == NULL) {
+        return;
+    }
     uint64_t frames = 0;
     for (int bin = 0; bin < GROBO_ROBOT_JITTER_BINS; bin++) {
         frames += robot->late_bins[bin];

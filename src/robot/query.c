@@ -9,7 +9,7 @@ static int64_t age(int64_t read_us, int64_t now_us)
 
 int grobo_robot_joint(const grobo_robot *robot, int joint, int64_t now_us, grobo_joint_info *info)
 {
-    if (joint < 0 || joint >= robot->driver->model->n_joints) {
+    if (robot == NULL || info == NULL || joint < 0 || joint >= robot->driver->model->n_joints) {
         return GROBO_ERR_ARG;
     }
     const grobo_robot_axis *axis = &robot->axes[joint];
@@ -26,6 +26,9 @@ int grobo_robot_joint(const grobo_robot *robot, int joint, int64_t now_us, grobo
 int grobo_robot_posture(const grobo_robot *robot, int64_t now_us, int64_t max_age_us,
                         grobo_posture *posture)
 {
+    if (robot == NULL || posture == NULL) {
+        return GROBO_ERR_ARG;
+    }
     (void)grobo_posture_init(posture, robot->driver->model->n_joints);
     for (int j = 0; j < posture->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
@@ -39,6 +42,9 @@ int grobo_robot_posture(const grobo_robot *robot, int64_t now_us, int64_t max_ag
 
 int grobo_robot_target(const grobo_robot *robot, grobo_posture *posture)
 {
+    if (robot == NULL || posture == NULL) {
+        return GROBO_ERR_ARG;
+    }
     (void)grobo_posture_init(posture, robot->driver->model->n_joints);
     for (int j = 0; j < posture->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
@@ -52,12 +58,15 @@ int grobo_robot_target(const grobo_robot *robot, grobo_posture *posture)
 
 bool grobo_robot_moving(const grobo_robot *robot, int64_t now_us)
 {
-    return grobo_i_in_motion(robot) || robot->job.kind == GROBO_JOB_PLAY ||
-           grobo_i_moving(robot, now_us);
+    return robot != NULL && (grobo_i_in_motion(robot) || robot->job.kind == GROBO_JOB_PLAY ||
+                             grobo_i_moving(robot, now_us));
 }
 
 bool grobo_robot_stops(const grobo_robot *robot, int64_t now_us)
 {
+    if (robot == NULL) {
+        return false;
+    }
     bool waits = false;
     for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
         const grobo_robot_slot *slot = &robot->slots[i];
@@ -71,21 +80,29 @@ bool grobo_robot_stops(const grobo_robot *robot, int64_t now_us)
 
 bool grobo_robot_settling(const grobo_robot *robot)
 {
-    return robot->link && (robot->settling || robot->job.kind == GROBO_JOB_SETTLE);
+    return robot != NULL && robot->link && (robot->settling || robot->job.kind == GROBO_JOB_SETTLE);
 }
 
 grobo_job_kind grobo_robot_job(const grobo_robot *robot)
 {
+    if (robot == NULL) {
+        return GROBO_JOB_NONE;
+    }
     return robot->job.kind == GROBO_JOB_SETTLE ? GROBO_JOB_NONE : robot->job.kind;
 }
 
 void grobo_robot_tripped(const grobo_robot *robot, grobo_trip_info *info)
 {
-    *info = robot->trip;
+    if (robot != NULL && info != NULL) {
+        *info = robot->trip;
+    }
 }
 
 int grobo_robot_fault(const grobo_robot *robot, double *value_deg)
 {
+    if (robot == NULL) {
+        return GROBO_ERR_ARG;
+    }
     if (robot->fault_joint >= 0 && value_deg != NULL) {
         *value_deg = robot->fault_deg;
     }
@@ -94,26 +111,29 @@ int grobo_robot_fault(const grobo_robot *robot, double *value_deg)
 
 const grobo_robot_counters *grobo_robot_get_counters(const grobo_robot *robot)
 {
-    return &robot->counters;
+    return robot == NULL ? NULL : &robot->counters;
 }
 
 const grobo_bus_stats *grobo_robot_get_bus_stats(const grobo_robot *robot)
 {
-    return &robot->bus.stats;
+    return robot == NULL ? NULL : &robot->bus.stats;
 }
 
 grobo_sequencer_state grobo_robot_play_state(const grobo_robot *robot)
 {
-    return grobo_sequencer_get_state(&robot->sequencer);
+    return robot == NULL ? GROBO_SEQUENCER_IDLE : grobo_sequencer_get_state(&robot->sequencer);
 }
 
 bool grobo_robot_is_quiet(const grobo_robot *robot)
 {
-    return grobo_bus_pending(&robot->bus) == 0;
+    return robot != NULL && grobo_bus_pending(&robot->bus) == 0;
 }
 
 bool grobo_robot_is_playing(const grobo_robot *robot)
 {
+    if (robot == NULL) {
+        return false;
+    }
     switch (grobo_sequencer_get_state(&robot->sequencer)) {
     case GROBO_SEQUENCER_APPROACHING:
     case GROBO_SEQUENCER_PLAYING:
@@ -130,12 +150,14 @@ bool grobo_robot_is_playing(const grobo_robot *robot)
 
 void grobo_robot_progress(const grobo_robot *robot, int64_t now_us, grobo_play_progress *progress)
 {
-    grobo_sequencer_progress(&robot->sequencer, now_us, progress);
+    if (robot != NULL) {
+        grobo_sequencer_progress(&robot->sequencer, now_us, progress);
+    }
 }
 
 const grobo_driver *grobo_robot_driver(const grobo_robot *robot)
 {
-    return robot->driver;
+    return robot == NULL ? NULL : robot->driver;
 }
 
 bool grobo_i_in_motion(const grobo_robot *robot)

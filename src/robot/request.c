@@ -36,6 +36,9 @@ static int refuse(grobo_robot *robot, int error)
 
 int grobo_robot_check(grobo_robot *robot, int64_t now_us)
 {
+    if (robot == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_i_enter(robot, now_us);
     int result = admit(robot, false);
     if (result >= 0 && robot->driver->check == NULL) {
@@ -55,6 +58,9 @@ static bool joints_sound(const grobo_robot *robot, grobo_joint_mask joints)
 int grobo_robot_sense(grobo_robot *robot, grobo_joint_mask joints, grobo_sense_kind kind,
                       int64_t now_us)
 {
+    if (robot == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_i_enter(robot, now_us);
     int result = admit(robot, false);
     if (!joints_sound(robot, joints) || (unsigned)kind > GROBO_SENSE_ALL) {
@@ -72,6 +78,9 @@ int grobo_robot_sense(grobo_robot *robot, grobo_joint_mask joints, grobo_sense_k
 int grobo_robot_torque(grobo_robot *robot, grobo_joint_mask joints, grobo_torque mode,
                        int64_t now_us)
 {
+    if (robot == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_i_enter(robot, now_us);
     bool on = mode == GROBO_TORQUE_ON;
     int result = admit(robot, on);
@@ -97,6 +106,9 @@ int grobo_robot_torque(grobo_robot *robot, grobo_joint_mask joints, grobo_torque
 
 int grobo_robot_move(grobo_robot *robot, const grobo_posture *target, int64_t now_us)
 {
+    if (robot == NULL || target == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_i_enter(robot, now_us);
     grobo_posture checked = *target;
     int result = admit(robot, true);
@@ -153,6 +165,9 @@ static bool is_taken(const grobo_robot *robot)
 
 int grobo_robot_send(grobo_robot *robot, const grobo_posture *target, int64_t now_us)
 {
+    if (robot == NULL || target == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_i_enter(robot, now_us);
     grobo_i_motion how = {
         .priority = GROBO_PRIORITY_MOTION, .due_us = GROBO_NEVER_US, .each = true, .single = true};
@@ -172,6 +187,9 @@ int grobo_robot_send(grobo_robot *robot, const grobo_posture *target, int64_t no
 
 int grobo_robot_retarget(grobo_robot *robot, const grobo_posture *target, int64_t now_us)
 {
+    if (robot == NULL || target == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_i_enter(robot, now_us);
     grobo_posture checked = *target;
     int result = admit_target(robot, target);
@@ -217,6 +235,9 @@ static int admit_clip(grobo_robot *robot, const grobo_clip *clip, grobo_play_opt
 int grobo_robot_play(grobo_robot *robot, const grobo_clip *clip, const grobo_play_options *options,
                      int64_t now_us)
 {
+    if (robot == NULL || clip == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_i_enter(robot, now_us);
     grobo_play_options chosen;
     grobo_joint_mask joints = 0;
@@ -259,6 +280,9 @@ int grobo_robot_raw(grobo_robot *robot, const uint8_t *frame, size_t size, int64
 int grobo_robot_raw_until(grobo_robot *robot, const uint8_t *frame, size_t size, int64_t until_us,
                           int64_t now_us)
 {
+    if ((frame == NULL && size > 0) || robot == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_exchange exchange = {0};
     grobo_robot_order order;
     grobo_i_enter(robot, now_us);
@@ -307,6 +331,9 @@ static int admit_write(grobo_robot *robot, const grobo_register_io *io, grobo_ro
 
 int grobo_robot_registers(grobo_robot *robot, const grobo_register_io *io, int64_t now_us)
 {
+    if (robot == NULL || io == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_exchange exchange = {0};
     grobo_robot_order order = {.deed = GROBO_I_DEED_NONE};
     grobo_i_enter(robot, now_us);
@@ -332,6 +359,9 @@ int grobo_robot_registers(grobo_robot *robot, const grobo_register_io *io, int64
 
 int grobo_robot_command(grobo_robot *robot, int id, grobo_servo_command command, int64_t now_us)
 {
+    if (robot == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_exchange exchange = {0};
     grobo_robot_order order = {.deed = GROBO_I_DEED_COMMAND};
     grobo_i_enter(robot, now_us);
@@ -357,6 +387,9 @@ int grobo_robot_command(grobo_robot *robot, int id, grobo_servo_command command,
 
 int grobo_robot_stored(grobo_robot *robot, grobo_stored_kind kind, int number, int64_t now_us)
 {
+    if (robot == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_exchange exchange = {0};
     grobo_robot_order order = {
         .deed = GROBO_I_DEED_UNKNOWN, .joints = grobo_i_all_joints(robot), .moves = true};
@@ -399,6 +432,9 @@ static void displace(grobo_robot *robot, bool all)
 
 int grobo_robot_cancel(grobo_robot *robot, int64_t now_us)
 {
+    if (robot == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_i_enter(robot, now_us);
     int result = GROBO_OK;
     if (robot->job.kind == GROBO_JOB_NONE || robot->job.kind == GROBO_JOB_ESTOP ||
@@ -427,6 +463,9 @@ static const grobo_robot_step_fn *exit_script(const grobo_robot *robot, grobo_ex
 
 int grobo_robot_exit(grobo_robot *robot, grobo_exit_policy policy, int64_t now_us)
 {
+    if (robot == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_i_enter(robot, now_us);
     if (!robot->link || (unsigned)policy > GROBO_EXIT_SIT || robot->job.kind == GROBO_JOB_ESTOP) {
         return refuse(robot, !robot->link                        ? GROBO_ERR_CLOSED
@@ -465,6 +504,9 @@ int grobo_i_estop_start(grobo_robot *robot)
 
 int grobo_robot_estop(grobo_robot *robot, int64_t now_us)
 {
+    if (robot == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_i_enter(robot, now_us);
     if (robot->job.kind != GROBO_JOB_NONE) {
         grobo_i_job_end(robot, GROBO_ERR_CANCELED);
@@ -481,6 +523,9 @@ int grobo_robot_estop(grobo_robot *robot, int64_t now_us)
 
 int grobo_robot_latch(grobo_robot *robot, int64_t now_us)
 {
+    if (robot == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_i_enter(robot, now_us);
     int result = grobo_i_in_motion(robot) ? GROBO_ERR_STATE : GROBO_OK;
     if (result >= 0 && robot->trip.trip != GROBO_TRIP_ESTOP) {
@@ -492,6 +537,9 @@ int grobo_robot_latch(grobo_robot *robot, int64_t now_us)
 
 int grobo_robot_reset(grobo_robot *robot, int64_t now_us)
 {
+    if (robot == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_i_enter(robot, now_us);
     int result = robot->job.kind == GROBO_JOB_ESTOP ? GROBO_ERR_STATE : GROBO_OK;
     if (result >= 0) {
@@ -508,6 +556,9 @@ int grobo_robot_reset(grobo_robot *robot, int64_t now_us)
 
 int grobo_robot_free(grobo_robot *robot, grobo_joint_mask joints, bool on, int64_t now_us)
 {
+    if (robot == NULL) {
+        return GROBO_ERR_ARG;
+    }
     if (!on) {
         return grobo_robot_torque(robot, joints, GROBO_TORQUE_ON, now_us);
     }

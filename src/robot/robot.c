@@ -65,6 +65,9 @@ static const grobo_robot_config defaults;
 int grobo_robot_init(grobo_robot *robot, const grobo_driver *driver, void *driver_ctx,
                      const grobo_robot_config *config, int64_t now_us)
 {
+    if (robot == NULL) {
+        return GROBO_ERR_ARG;
+    }
     const grobo_robot_config *c = config == NULL ? &defaults : config;
     if (grobo_driver_check(driver) < 0 || !config_sound(c)) {
         return GROBO_ERR_ARG;
@@ -94,12 +97,18 @@ int grobo_robot_init(grobo_robot *robot, const grobo_driver *driver, void *drive
 
 void grobo_robot_on_event(grobo_robot *robot, grobo_event_fn on_event, void *ctx)
 {
+    if (robot == NULL) {
+        return;
+    }
     robot->on_event = on_event;
     robot->event_ctx = ctx;
 }
 
 int grobo_robot_configure(grobo_robot *robot, const grobo_robot_config *config)
 {
+    if (robot == NULL) {
+        return GROBO_ERR_ARG;
+    }
     const grobo_robot_config *c = config == NULL ? &defaults : config;
     if (!config_sound(c)) {
         return GROBO_ERR_ARG;
@@ -121,6 +130,9 @@ static void tell_kind(grobo_robot *robot, grobo_event_kind kind)
 
 void grobo_robot_rx(grobo_robot *robot, const uint8_t *bytes, size_t size, int64_t now_us)
 {
+    if (robot == NULL || (bytes == NULL && size > 0)) {
+        return;
+    }
     grobo_i_enter(robot, now_us);
     if (robot->link) {
         grobo_bus_rx(&robot->bus, robot->now_us, bytes, size);
@@ -132,6 +144,9 @@ void grobo_robot_rx(grobo_robot *robot, const uint8_t *bytes, size_t size, int64
  * step: a callback must not come between this frame and its way to the line. */
 int grobo_robot_tx(grobo_robot *robot, uint8_t *buf, size_t capacity, int64_t now_us)
 {
+    if (robot == NULL || buf == NULL) {
+        return GROBO_ERR_ARG;
+    }
     if (now_us > robot->now_us) {
         robot->now_us = now_us;
     }
@@ -140,6 +155,9 @@ int grobo_robot_tx(grobo_robot *robot, uint8_t *buf, size_t capacity, int64_t no
 
 void grobo_robot_step(grobo_robot *robot, int64_t now_us)
 {
+    if (robot == NULL) {
+        return;
+    }
     grobo_i_enter(robot, now_us);
     if (robot->link) {
         grobo_bus_step(&robot->bus, robot->now_us);
@@ -159,7 +177,7 @@ static int64_t earlier(int64_t a_us, int64_t b_us)
 
 int64_t grobo_robot_deadline(const grobo_robot *robot, int64_t now_us)
 {
-    if (!robot->link) {
+    if (robot == NULL || !robot->link) {
         return GROBO_NEVER_US;
     }
     if (robot->events_n > 0 || robot->told_state != grobo_robot_play_state(robot)) {
@@ -176,6 +194,9 @@ int64_t grobo_robot_deadline(const grobo_robot *robot, int64_t now_us)
 
 void grobo_robot_link_up(grobo_robot *robot, int64_t now_us)
 {
+    if (robot == NULL) {
+        return;
+    }
     grobo_i_enter(robot, now_us);
     if (!robot->link) {
         robot->link = true;
@@ -209,6 +230,9 @@ static void forget(grobo_robot *robot)
 
 void grobo_robot_link_down(grobo_robot *robot, int64_t now_us)
 {
+    if (robot == NULL) {
+        return;
+    }
     grobo_i_enter(robot, now_us);
     if (robot->link) {
         robot->link = false;

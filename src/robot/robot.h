@@ -75,6 +75,11 @@ bool grobo_i_all_on(const grobo_robot *robot, grobo_joint_mask joints);
 /* True while joints are being moved, by a job or by the sequencer. */
 bool grobo_i_in_motion(const grobo_robot *robot);
 
+/* ---- holds.c --------------------------------------------------------------------------------- */
+
+/* Asserts what always holds between two calls; nothing with NDEBUG. */
+void grobo_i_robot_assert(const grobo_robot *robot);
+
 /* ---- slot.c ---------------------------------------------------------------------------------- */
 
 /* What a frame under way is for. */

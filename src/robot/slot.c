@@ -2,8 +2,9 @@
 /* Frames under way: from an exchange to a transaction of the bus and back. */
 #include "src/robot/robot.h"
 
-#include <assert.h>
 #include <string.h>
+
+#include "src/base/assert.h"
 
 /* Slots that only a halt may take: there is always room for what stops the robot. */
 #define SLOTS_TO_HALT 3
@@ -30,6 +31,7 @@ grobo_robot_slot *grobo_i_slot_take(grobo_robot *robot, grobo_i_use use)
         return NULL;
     }
     grobo_robot_slot *found = &robot->slots[at];
+    GROBO_ASSERT(use != GROBO_I_USE_FREE && !grobo_txn_is_pending(&found->txn));
     memset(found, 0, sizeof *found);
     found->robot = robot;
     found->due_us = GROBO_NEVER_US;
@@ -40,6 +42,7 @@ grobo_robot_slot *grobo_i_slot_take(grobo_robot *robot, grobo_i_use use)
 
 void grobo_i_slot_drop(grobo_robot_slot *slot)
 {
+    GROBO_ASSERT(!grobo_txn_is_pending(&slot->txn));
     slot->use = GROBO_I_USE_FREE;
 }
 
@@ -49,7 +52,7 @@ static int on_leave(void *ctx, grobo_txn *txn)
     int result = slot->robot->leave(slot);
     slot->refused = result < 0;
     if (result >= 0) {
-        assert(slot->exchange.frame_bytes > 0);
+        GROBO_ASSERT(slot->exchange.frame_bytes > 0);
         slot->asked_us = txn->sent_us < 0 ? slot->robot->now_us : slot->asked_us;
         txn->frame_bytes = slot->exchange.frame_bytes;
         txn->reply = slot->exchange.reply;
@@ -60,7 +63,7 @@ static int on_leave(void *ctx, grobo_txn *txn)
 static void on_done(void *ctx, grobo_txn *txn, int result, const grobo_packet *reply)
 {
     grobo_robot_slot slot = *(grobo_robot_slot *)ctx;
-    assert(slot.use != GROBO_I_USE_FREE && txn == &((grobo_robot_slot *)ctx)->txn);
+    GROBO_ASSERT(slot.use != GROBO_I_USE_FREE && txn == &((grobo_robot_slot *)ctx)->txn);
     grobo_i_slot_drop(ctx);
     slot.robot->over(&slot, result, reply);
 }
@@ -68,7 +71,7 @@ static void on_done(void *ctx, grobo_txn *txn, int result, const grobo_packet *r
 int grobo_i_slot_send(grobo_robot_slot *slot, grobo_priority priority)
 {
     const grobo_robot_config *config = &slot->robot->config;
-    assert(slot->use != GROBO_I_USE_FREE && !grobo_txn_is_pending(&slot->txn));
+    GROBO_ASSERT(slot->use != GROBO_I_USE_FREE && !grobo_txn_is_pending(&slot->txn));
     bool had_its_chance = slot->reads && slot->robot->axes[slot->joint].lost > 0;
     bool once = had_its_chance && slot->use == GROBO_I_USE_SENSE;
     slot->txn.frame = slot->exchange.frame;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Stops for safety. */
+#include "src/base/assert.h"
 #include "src/robot/robot.h"
 
 static const char *const trip_names[] = {
@@ -48,6 +49,7 @@ static bool job_must_end(const grobo_robot *robot)
 
 void grobo_i_trip(grobo_robot *robot, grobo_trip reason, int joint, double value, bool latched)
 {
+    GROBO_ASSERT(reason != GROBO_TRIP_NONE && joint < robot->driver->model->n_joints);
     if (robot->trip.latched && reason != GROBO_TRIP_ESTOP) {
         return; /* the first reason stays */
     }

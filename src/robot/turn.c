@@ -3,11 +3,13 @@
  * The end of a call, and of a frame: what was read is judged, what waited for it goes on, a motion
  * that is over is settled, and events are told.
  */
+#include "src/base/assert.h"
 #include "src/robot/robot.h"
 
 /* Takes what a slot has read of its joint, or the reason why there is nothing, and judges it. */
 static int take_reading(const grobo_robot_slot *slot, int result, const grobo_packet *reply)
 {
+    GROBO_ASSERT(slot->reads && slot->joint < slot->robot->driver->model->n_joints);
     grobo_robot *robot = slot->robot;
     grobo_joint_state got;
     int taken = grobo_i_reading_take(slot, result, reply, &got);
@@ -55,6 +57,7 @@ void grobo_i_frame_over(grobo_robot_slot *slot, int result, const grobo_packet *
 
 void grobo_i_enter(grobo_robot *robot, int64_t now_us)
 {
+    GROBO_ASSERT(robot->driver != NULL); /* initialised */
     robot->depth++;
     if (now_us > robot->now_us) {
         robot->now_us = now_us;
@@ -75,6 +78,7 @@ static void settle(grobo_robot *robot)
 
 void grobo_i_leave(grobo_robot *robot)
 {
+    GROBO_ASSERT(robot->depth > 0);
     if (robot->depth == 1) {
         grobo_i_play_tell(robot);
         while (robot->events_n > 0) {
@@ -89,4 +93,7 @@ void grobo_i_leave(grobo_robot *robot)
         settle(robot);
     }
     robot->depth--;
+    if (robot->depth == 0) {
+        grobo_i_robot_assert(robot);
+    }
 }

@@ -7,6 +7,7 @@
  * servo was told to go. Frames are built when they leave, so that a renewal lies on the way
  * whenever that is.
  */
+#include "src/base/assert.h"
 #include "src/robot/robot.h"
 
 #include <math.h>
@@ -94,6 +95,7 @@ void grobo_i_segments_begin(grobo_robot *robot, int joint, int64_t time_us)
     if (grobo_i_ways_renewed(robot) == 0) {
         robot->renewed_us = robot->now_us;
     }
+    GROBO_ASSERT(axis->has_target && time_us > 0);
     axis->in_segments = true;
     axis->told_to_us = robot->now_us + next_us(robot, time_us);
 }

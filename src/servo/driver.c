@@ -63,5 +63,8 @@ int grobo_driver_check(const grobo_driver *driver)
 
 grobo_wiring grobo_driver_wiring(const grobo_driver *driver)
 {
+    if (driver == NULL) {
+        return GROBO_WIRING_BOARD;
+    }
     return driver->protocol->relay != NULL ? GROBO_WIRING_BOARD : GROBO_WIRING_BUS;
 }

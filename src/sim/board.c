@@ -2,6 +2,7 @@
 /* The controller board: takes a frame, relays its payload, waits, returns what came. */
 #include <string.h>
 
+#include "src/base/assert.h"
 #include "src/sim/board.h"
 #include "src/sim/bus.h"
 #include "src/sim/fault.h"
@@ -34,6 +35,7 @@ static void reply(grobo_sim *sim, const uint8_t *bytes, size_t n, int64_t t_ns)
 
 static void relay(grobo_sim *sim, const grobo_board_frame *frame, int64_t t_ns)
 {
+    GROBO_ASSERT(frame->packet_bytes > 0 && frame->packet_bytes <= sizeof sim->send);
     memcpy(sim->send, frame->packet, frame->packet_bytes);
     sim->send_used = (uint8_t)frame->packet_bytes;
     sim->sent = 0;
@@ -85,6 +87,7 @@ static void listen(grobo_sim *sim, int64_t t_ns)
         } else if (sim->fifo_used > 0) {
             (void)grobo_board_parser_feed(&sim->board, sim->now_us, &sim->fifo[sim->fifo_head], 1);
             sim->fifo_head = (uint16_t)((sim->fifo_head + 1) % GROBO_SIM_FIFO_BYTES);
+            GROBO_ASSERT(sim->fifo_used <= GROBO_SIM_FIFO_BYTES);
             sim->fifo_used--;
         } else {
             return;
@@ -110,6 +113,7 @@ void grobo_i_sim_board_got(grobo_sim *sim, uint8_t byte, int64_t t_ns)
         sim->stats.stray_bytes++;
         return;
     }
+    GROBO_ASSERT(sim->got_used < sim->want);
     sim->got[sim->got_used++] = byte;
     sim->board_at_ns = t_ns + (int64_t)sim->config.board_silence_us * 1000;
     if (sim->got_used == sim->want) {
@@ -134,6 +138,7 @@ void grobo_i_sim_board_act(grobo_sim *sim, int64_t t_ns)
     case GROBO_SIM_BOARD_IDLE:
         break;
     case GROBO_SIM_BOARD_SENDING:
+        GROBO_ASSERT(sim->sent < sim->send_used);
         grobo_i_sim_bus_hear(sim, sim->send[sim->sent], t_ns);
         sim->sent++;
         if (sim->sent < sim->send_used) {

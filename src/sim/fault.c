@@ -18,6 +18,9 @@ const char *grobo_sim_fault_name(int fault)
 
 int grobo_sim_fault_find(const char *name, size_t length)
 {
+    if (name == NULL && length > 0) {
+        return GROBO_ERR_ARG;
+    }
     for (int i = 0; i < (int)GROBO_SIM_FAULTS; i++) {
         if (strlen(names[i]) == length && memcmp(names[i], name, length) == 0) {
             return i;
@@ -136,7 +139,7 @@ void grobo_i_sim_reply(grobo_sim *sim, const grobo_sim_event *reply, int64_t sta
 
 int grobo_sim_set_fault(grobo_sim *sim, int fault, double rate)
 {
-    if (fault < 0 || fault >= (int)GROBO_SIM_FAULTS || !(rate >= 0 && rate <= 1)) {
+    if (sim == NULL || fault < 0 || fault >= (int)GROBO_SIM_FAULTS || !(rate >= 0 && rate <= 1)) {
         return GROBO_ERR_ARG;
     }
     sim->fault_below[fault] = (uint32_t)(rate * UINT32_MAX);
@@ -187,6 +190,9 @@ static int parse_one(const char *text, size_t n, double *rates)
 
 int grobo_sim_set_faults(grobo_sim *sim, const char *list, size_t length)
 {
+    if (sim == NULL || (list == NULL && length > 0)) {
+        return GROBO_ERR_ARG;
+    }
     double rates[GROBO_SIM_FAULTS];
     for (int i = 0; i < (int)GROBO_SIM_FAULTS; i++) {
         rates[i] = -1;

@@ -10,7 +10,7 @@
 /* The servo, settled; NULL when there is none of this index. */
 static grobo_sim_servo *servo_at(grobo_sim *sim, int index)
 {
-    if (index < 0 || index >= sim->n_servos) {
+    if (sim == NULL || index < 0 || index >= sim->n_servos) {
         return NULL;
     }
     grobo_i_sim_settle(sim, index);
@@ -21,11 +21,14 @@ static grobo_sim_servo *servo_at(grobo_sim *sim, int index)
 
 int grobo_sim_servos(const grobo_sim *sim)
 {
-    return sim->n_servos;
+    return sim == NULL ? GROBO_ERR_ARG : sim->n_servos;
 }
 
 int grobo_sim_find(const grobo_sim *sim, int id)
 {
+    if (sim == NULL) {
+        return GROBO_ERR_ARG;
+    }
     for (int i = 0; i < sim->n_servos; i++) {
         if (sim->servo[i].reg[GROBO_RS30X_ID] == id) {
             return i;
@@ -36,6 +39,9 @@ int grobo_sim_find(const grobo_sim *sim, int id)
 
 int grobo_sim_look(grobo_sim *sim, int index, grobo_sim_view *view)
 {
+    if (view == NULL) {
+        return GROBO_ERR_ARG;
+    }
     const grobo_sim_servo *servo = servo_at(sim, index);
     if (servo == NULL) {
         return GROBO_ERR_ARG;
@@ -69,6 +75,9 @@ static const grobo_rs30x_register *register_from(int address)
 
 int grobo_sim_get_register(grobo_sim *sim, int index, int address, int32_t *value)
 {
+    if (value == NULL) {
+        return GROBO_ERR_ARG;
+    }
     const grobo_rs30x_register *reg = register_from(address);
     if (servo_at(sim, index) == NULL || reg == NULL) {
         return GROBO_ERR_ARG;
@@ -80,6 +89,9 @@ int grobo_sim_get_register(grobo_sim *sim, int index, int address, int32_t *valu
 
 int grobo_sim_get_flash(grobo_sim *sim, int index, uint8_t flash[GROBO_SIM_FLASH_BYTES])
 {
+    if (flash == NULL) {
+        return GROBO_ERR_ARG;
+    }
     const grobo_sim_servo *servo = servo_at(sim, index);
     if (servo == NULL) {
         return GROBO_ERR_ARG;
@@ -108,7 +120,7 @@ int grobo_sim_set_register(grobo_sim *sim, int index, int address, int32_t value
 
 int grobo_sim_set_flash(grobo_sim *sim, int index, const uint8_t flash[GROBO_SIM_FLASH_BYTES])
 {
-    if (servo_at(sim, index) == NULL) {
+    if (flash == NULL || servo_at(sim, index) == NULL) {
         return GROBO_ERR_ARG;
     }
     if (!grobo_i_sim_flash_fits(flash)) {
@@ -178,6 +190,9 @@ int grobo_sim_set_cable(grobo_sim *sim, int index, grobo_sim_cable cable)
 
 void grobo_sim_set_supply(grobo_sim *sim, uint32_t supply_mv)
 {
+    if (sim == NULL) {
+        return;
+    }
     for (int i = 0; i < sim->n_servos; i++) {
         grobo_i_sim_settle(sim, i);
     }

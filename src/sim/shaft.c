@@ -5,6 +5,7 @@
  */
 #include <math.h>
 
+#include "src/base/assert.h"
 #include "src/sim/note.h"
 #include "src/sim/registers.h"
 #include "src/sim/shaft.h"
@@ -52,6 +53,7 @@ int32_t grobo_i_sim_angle_mdeg(const grobo_sim_servo *servo, int64_t t_us)
     if (!grobo_i_sim_moving(servo, t_us)) {
         return servo->to_mdeg;
     }
+    GROBO_ASSERT(servo->move_us > 0);
     int64_t way = servo->to_mdeg - servo->from_mdeg;
     int64_t done_us = t_us > servo->start_us ? t_us - servo->start_us : 0;
     return servo->from_mdeg + round_div(way * done_us, servo->move_us);
@@ -112,6 +114,7 @@ void grobo_i_sim_drive(grobo_sim *sim, int index)
     if (!servo->blocked) {
         servo->to_mdeg = clamp(goal_mdeg, servo->stop_min_mdeg, servo->stop_max_mdeg);
     }
+    GROBO_ASSERT(servo->stop_min_mdeg <= servo->stop_max_mdeg);
     servo->stalled = servo->to_mdeg != goal_mdeg;
     int64_t wanted = distance(servo->from_mdeg, goal_mdeg);
     int64_t way = distance(servo->from_mdeg, servo->to_mdeg);
@@ -123,6 +126,7 @@ void grobo_i_sim_drive(grobo_sim *sim, int index)
     int64_t left_us = servo->due_us - sim->now_us;
     servo->plan_us = left_us > least_us ? left_us : least_us;
     servo->move_us = servo->plan_us * way / wanted;
+    GROBO_ASSERT(servo->move_us >= 0 && servo->move_us <= servo->plan_us);
 }
 
 void grobo_i_sim_go_on(grobo_sim *sim, int index)

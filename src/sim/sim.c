@@ -85,6 +85,9 @@ static bool step_once(grobo_sim *sim, int64_t limit_ns)
 
 void grobo_sim_step(grobo_sim *sim, int64_t now_us)
 {
+    if (sim == NULL) {
+        return;
+    }
     now_us = now_us > sim->now_us ? now_us : sim->now_us;
     while (step_once(sim, now_us * 1000)) {
     }
@@ -186,6 +189,9 @@ static int64_t deadline_us(int64_t at_ns)
 
 int64_t grobo_sim_deadline(const grobo_sim *sim)
 {
+    if (sim == NULL) {
+        return GROBO_NEVER_US;
+    }
     int64_t at_ns = earlier(grobo_i_sim_wire_next(&sim->out), inner_deadline_ns(sim));
     if (sim->config.wiring == GROBO_WIRING_BUS) { /* these reach the host as they are over */
         at_ns = earlier(at_ns, grobo_i_sim_talk_next(sim));
@@ -196,18 +202,22 @@ int64_t grobo_sim_deadline(const grobo_sim *sim)
 
 int64_t grobo_sim_packet_deadline(const grobo_sim *sim)
 {
-    return deadline_us(earlier(burst_end_ns(sim), inner_deadline_ns(sim)));
+    return sim == NULL ? GROBO_NEVER_US
+                       : deadline_us(earlier(burst_end_ns(sim), inner_deadline_ns(sim)));
 }
 
 /* ---- the host's end ------------------------------------------------------------------------ */
 
 size_t grobo_sim_rx_room(const grobo_sim *sim)
 {
-    return GROBO_SIM_WIRE_BYTES - (size_t)sim->in.used;
+    return sim == NULL ? 0 : GROBO_SIM_WIRE_BYTES - (size_t)sim->in.used;
 }
 
 size_t grobo_sim_rx(grobo_sim *sim, const uint8_t *bytes, size_t n, int64_t now_us)
 {
+    if (sim == NULL || (bytes == NULL && n > 0)) {
+        return 0;
+    }
     grobo_sim_step(sim, now_us);
     if (sim->gone) {
         return n;
@@ -224,6 +234,9 @@ size_t grobo_sim_rx(grobo_sim *sim, const uint8_t *bytes, size_t n, int64_t now_
 
 size_t grobo_sim_tx(grobo_sim *sim, uint8_t *buf, size_t cap, int64_t now_us)
 {
+    if (sim == NULL || buf == NULL) {
+        return 0;
+    }
     grobo_sim_step(sim, now_us);
     size_t n = 0;
     while (n < cap && grobo_i_sim_wire_next(&sim->out) <= sim->now_ns) {
@@ -237,6 +250,9 @@ size_t grobo_sim_tx(grobo_sim *sim, uint8_t *buf, size_t cap, int64_t now_us)
 
 void grobo_sim_plug(grobo_sim *sim, bool in, int64_t now_us)
 {
+    if (sim == NULL) {
+        return;
+    }
     grobo_sim_step(sim, now_us);
     grobo_i_sim_cut(sim);
     sim->gone = !in;
@@ -244,12 +260,12 @@ void grobo_sim_plug(grobo_sim *sim, bool in, int64_t now_us)
 
 bool grobo_sim_hung_up(const grobo_sim *sim)
 {
-    return sim->gone;
+    return sim != NULL && sim->gone;
 }
 
 int grobo_sim_set_line_bps(grobo_sim *sim, uint32_t line_bps)
 {
-    if (line_bps < LOWEST_BPS) {
+    if (sim == NULL || line_bps < LOWEST_BPS) {
         return GROBO_ERR_ARG;
     }
     sim->line_bps = line_bps;
@@ -312,6 +328,9 @@ static void use_defaults(grobo_sim_config *config)
 
 int grobo_sim_init(grobo_sim *sim, const grobo_sim_config *config, int64_t now_us)
 {
+    if (sim == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_sim_config with = config == NULL ? (grobo_sim_config){0} : *config;
     use_defaults(&with);
     if (grobo_model_check(with.model) < 0 || with.baud_bps < LOWEST_BPS || with.ambient_c < -40 ||

@@ -5,6 +5,7 @@
  */
 #include <string.h>
 
+#include "src/base/assert.h"
 #include "src/sim/note.h"
 #include "src/sim/talk.h"
 
@@ -81,6 +82,7 @@ static void join(grobo_sim *sim, grobo_sim_talk *talk, const uint8_t *bytes, siz
 
 void grobo_i_sim_talk(grobo_sim *sim, const uint8_t *bytes, size_t n, int64_t start_ns)
 {
+    GROBO_ASSERT(n > 0 && n <= sizeof sim->talk[0].byte);
     grobo_sim_talk *spare = NULL;
     for (size_t i = 0; i < GROBO_SIM_TALKS_MAX; i++) {
         grobo_sim_talk *talk = &sim->talk[i];
@@ -139,6 +141,7 @@ int64_t grobo_i_sim_talks_end(const grobo_sim *sim)
 uint8_t grobo_i_sim_talk_take(grobo_sim *sim, int64_t t_ns)
 {
     int first = next_talk(sim);
+    GROBO_ASSERT(first >= 0 && sim->talk[first].said < sim->talk[first].used);
     grobo_sim_talk *talk = &sim->talk[first];
     uint8_t byte = talk->byte[talk->said++];
     bool with_master = clash_with_master(sim, t_ns, &byte), clashed = with_master;

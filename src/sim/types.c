@@ -39,6 +39,9 @@ static bool is_called(const grobo_sim_type *type, const char *name, size_t lengt
 
 const grobo_sim_type *grobo_sim_type_named(const char *name, size_t length)
 {
+    if (name == NULL && length > 0) {
+        return NULL;
+    }
     for (size_t i = 0; i < TYPES; i++) {
         if (is_called(&types[i], name, length)) {
             return &types[i];

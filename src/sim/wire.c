@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "src/sim/wire.h"
+#include "src/base/assert.h"
 #include "src/sim/fault.h"
 
 bool grobo_i_sim_wire_put(grobo_sim_wire *wire, uint8_t byte, int64_t at_ns)
@@ -9,6 +10,7 @@ bool grobo_i_sim_wire_put(grobo_sim_wire *wire, uint8_t byte, int64_t at_ns)
         return false;
     }
     size_t at = (size_t)(wire->head + wire->used++) % GROBO_SIM_WIRE_BYTES;
+    GROBO_ASSERT(wire->used <= GROBO_SIM_WIRE_BYTES);
     wire->byte[at] = byte;
     wire->at_ns[at] = at_ns;
     return true;
@@ -16,6 +18,7 @@ bool grobo_i_sim_wire_put(grobo_sim_wire *wire, uint8_t byte, int64_t at_ns)
 
 uint8_t grobo_i_sim_wire_take(grobo_sim_wire *wire)
 {
+    GROBO_ASSERT(wire->used > 0 && wire->head < GROBO_SIM_WIRE_BYTES);
     uint8_t byte = wire->byte[wire->head];
     wire->head = (uint16_t)((wire->head + 1) % GROBO_SIM_WIRE_BYTES);
     wire->used--;

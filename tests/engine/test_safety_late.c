@@ -134,7 +134,10 @@ static void a_halt_finds_room(void **state)
     assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
     rig_run(&rig, 500000);
     int taken = 0;
-    while (grobo_i_slot_take(&rig.robot, GROBO_I_USE_PLAIN) != NULL) {
+    grobo_robot_slot *slot;
+    while ((slot = grobo_i_slot_take(&rig.robot, GROBO_I_USE_PLAIN)) != NULL) {
+        assert_int_equal(rig.driver->check(rig.driver, NULL, 0, &slot->exchange), 1);
+        assert_int_equal(grobo_i_slot_send(slot, GROBO_PRIORITY_SENSE), GROBO_OK);
         taken++;
     }
     assert_true(taken >= 8); /* five small holds, a reading, a job's, a target */

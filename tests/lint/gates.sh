@@ -214,6 +214,32 @@ $cc -shared -fPIC -o alien.so lib.c
 check 'symbols: a name without grobo_' \
     refuses 'helper does not begin with grobo_' sh "$gates/symbols.sh" alien.so
 
+# ---- null ----------------------------------------------------------------------------------
+
+fresh
+sample include/grobo/a.h <<'C'
+GROBO_API int grobo_a(int x,
+                      const char *text);
+GROBO_API int grobo_number(int x);
+C
+sample tests/unit/test_null.c <<'C'
+static void refuse(void)
+{
+    assert_int_equal(grobo_a(1,
+                             NULL),
+                     GROBO_ERR_ARG);
+}
+C
+check 'null: each that takes a pointer is tried' sh "$gates/null.sh"
+echo 'GROBO_API void grobo_b(double at[3]);' >>include/grobo/a.h
+check 'null: one that nobody tried' \
+    refuses 'include/grobo/a.h:1: null: no tests/*/test_null*.c gives NULL to grobo_b' \
+    sh "$gates/null.sh"
+echo '/* grobo_b() takes NULL: all zero. */' >>tests/unit/test_null.c
+check 'null: one that takes it' sh "$gates/null.sh"
+echo 'GROBO_API void grobo_c(grobo_c_fn fn);' >>include/grobo/a.h
+check 'null: a function is a pointer' refuses 'to grobo_c' sh "$gates/null.sh"
+
 # ---- headers -------------------------------------------------------------------------------
 
 fresh

@@ -339,9 +339,15 @@ OPERATORS = (constants, units, conditions, comparisons, statements, joints, argu
 
 
 def asserted(f):
-    """Spans that only the builds of developers have."""
-    return [(t.start, f.tokens[f.tokens[i + 1].pair].end) for i, t in enumerate(f.tokens)
-            if t.text in ("assert", "_Static_assert", "_Alignof")]
+    """Spans that only builds with assertions have: these, and functions of nothing else, which are
+    called assert_... or ..._assert."""
+    def asserts(name):
+        return name in ("GROBO_ASSERT", "_Static_assert", "_Alignof") or re.search(
+            r"^assert_|_assert$", name)
+    if asserts(f.name):
+        return [(f.start, f.tokens[-1].end + 1)]
+    return [(t.start, f.tokens[f.tokens[i + 1].pair].end + 1) for i, t in enumerate(f.tokens)
+            if asserts(t.text)]
 
 
 def mutants_of(f, path):

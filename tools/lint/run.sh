@@ -73,6 +73,7 @@ everything=$(texts)
     gate help sh "$gates/help.sh"
     gate tree sh "$gates/tree.sh"
     gate seed-map sh "$gates/seed_map.sh"
+    gate null sh "$gates/null.sh"
     gate safety named_tests safety docs/guide/safety.md
 }
 if [ "$1" = --all ]; then

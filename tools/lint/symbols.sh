@@ -4,6 +4,7 @@
 #
 # usage: symbols.sh LIBRARY      compare
 #        symbols.sh --declared   print the declared names, one a line
+#        symbols.sh --pointers   only functions that take a pointer
 set -u
 
 nm=${NM:-nm}
@@ -11,13 +12,16 @@ nm=${NM:-nm}
 # A declaration may go over several lines; its name stands before the first bracket that is not an
 # attribute's, or before [ or ; for data.
 declared() {
-    cat include/grobo/*.h ports/posix/include/grobo/*.h 2>/dev/null | awk '
+    cat include/grobo/*.h ports/posix/include/grobo/*.h 2>/dev/null | awk -v pointers="${1:-}" '
     /^GROBO_API/ { text = ""; open = 1 }
     open { text = text " " $0 }
     open && /;/ {
         open = 0
         sub(/GROBO_API/, "", text)
         while (sub(/__attribute__ *\(\([^()]*(\([^()]*\))?[^()]*\)\)/, "", text)) {
+        }
+        if (pointers && text !~ /\(.*([*[]|_fn )/) {
+            next
         }
         sub(/[(;[].*/, "", text)
         sub(/ *$/, "", text)
@@ -26,10 +30,10 @@ declared() {
     }' | sort -u
 }
 
-if [ "${1:-}" = --declared ]; then
-    declared
-    exit 0
-fi
+case ${1:-} in
+--declared) declared && exit ;;
+--pointers) declared yes && exit ;;
+esac
 
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT

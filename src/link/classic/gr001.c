@@ -27,6 +27,9 @@ int grobo_i_gr001_order(const grobo_model *model, uint8_t *joints)
 
 int grobo_gr001_torque(grobo_robot *robot, int motor, grobo_torque mode, int64_t now_us)
 {
+    if (robot == NULL) {
+        return GROBO_ERR_ARG;
+    }
     int joint = grobo_model_joint_of_motor(model_of(robot), motor);
     return joint < 0 ? joint : grobo_robot_torque(robot, GROBO_JOINT_BIT(joint), mode, now_us);
 }
@@ -34,6 +37,9 @@ int grobo_gr001_torque(grobo_robot *robot, int motor, grobo_torque mode, int64_t
 int grobo_gr001_servo(grobo_robot *robot, grobo_gr001_group group, grobo_torque mode,
                       int64_t now_us)
 {
+    if (robot == NULL) {
+        return GROBO_ERR_ARG;
+    }
     const grobo_model *model = model_of(robot);
     if ((unsigned)group >= model->n_groups) {
         return GROBO_ERR_NOTFOUND;
@@ -48,6 +54,9 @@ static bool is_time(int time_cs)
 
 int grobo_gr001_move(grobo_robot *robot, int motor, int angle_ddeg, int time_cs, int64_t now_us)
 {
+    if (robot == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_posture target;
     const grobo_model *model = model_of(robot);
     int joint = grobo_model_joint_of_motor(model, motor);
@@ -66,6 +75,9 @@ int grobo_gr001_move(grobo_robot *robot, int motor, int angle_ddeg, int time_cs,
 
 int grobo_gr001_sense(grobo_robot *robot, int motor, int64_t now_us)
 {
+    if (robot == NULL) {
+        return GROBO_ERR_ARG;
+    }
     int joint = grobo_model_joint_of_motor(model_of(robot), motor);
     return joint < 0 ? joint
                      : grobo_robot_sense(robot, GROBO_JOINT_BIT(joint), GROBO_SENSE_FULL, now_us);
@@ -74,6 +86,9 @@ int grobo_gr001_sense(grobo_robot *robot, int motor, int64_t now_us)
 int grobo_gr001_angle(const grobo_robot *robot, int motor, int64_t now_us, int64_t max_age_us,
                       int *angle_ddeg)
 {
+    if (robot == NULL || angle_ddeg == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_joint_info info;
     int joint = grobo_model_joint_of_motor(model_of(robot), motor);
     if (joint < 0) {
@@ -89,6 +104,9 @@ int grobo_gr001_angle(const grobo_robot *robot, int motor, int64_t now_us, int64
 
 int grobo_gr001_pack_goal(int angle_ddeg, int time_cs, uint8_t *data, size_t cap)
 {
+    if (data == NULL) {
+        return GROBO_ERR_ARG;
+    }
     if (angle_ddeg < -1500 || angle_ddeg > 1500 || !is_time(time_cs)) {
         return GROBO_ERR_LIMIT;
     }
@@ -108,6 +126,9 @@ int grobo_gr001_pack_goal(int angle_ddeg, int time_cs, uint8_t *data, size_t cap
 int grobo_gr001_posture(const grobo_model *model, const int16_t *angle_ddeg, size_t n, int time_cs,
                         grobo_posture *posture)
 {
+    if (model == NULL || (angle_ddeg == NULL && n > 0) || posture == NULL) {
+        return GROBO_ERR_ARG;
+    }
     uint8_t joints[GROBO_JOINTS_MAX];
     if (n > (size_t)grobo_i_gr001_order(model, joints)) {
         return GROBO_ERR_CAP;
@@ -126,6 +147,9 @@ int grobo_gr001_posture(const grobo_model *model, const int16_t *angle_ddeg, siz
 int grobo_gr001_set_angles(grobo_robot *robot, const double *angle_rad, size_t n, int64_t time_us,
                            int64_t now_us)
 {
+    if (robot == NULL || angle_rad == NULL) {
+        return GROBO_ERR_ARG;
+    }
     uint8_t joints[GROBO_JOINTS_MAX];
     grobo_posture target;
     const grobo_model *model = model_of(robot);
@@ -144,6 +168,9 @@ int grobo_gr001_set_angles(grobo_robot *robot, const double *angle_rad, size_t n
 int grobo_gr001_get_angles(const grobo_robot *robot, int64_t now_us, int64_t max_age_us,
                            double *angle_rad, size_t capacity)
 {
+    if (robot == NULL || angle_rad == NULL) {
+        return GROBO_ERR_ARG;
+    }
     uint8_t joints[GROBO_JOINTS_MAX];
     double by_joint[GROBO_JOINTS_MAX];
     grobo_posture sensed;
@@ -182,6 +209,9 @@ static int values(const grobo_robot *robot, grobo_field field, int64_t now_us, i
 int grobo_gr001_voltages(const grobo_robot *robot, int64_t now_us, int64_t max_age_us,
                          int32_t *voltage_mv, size_t capacity)
 {
+    if (robot == NULL || voltage_mv == NULL) {
+        return GROBO_ERR_ARG;
+    }
     return capacity < model_of(robot)->n_joints
                ? GROBO_ERR_SPACE
                : values(robot, GROBO_FIELD_VOLTAGE, now_us, max_age_us, voltage_mv);
@@ -190,6 +220,9 @@ int grobo_gr001_voltages(const grobo_robot *robot, int64_t now_us, int64_t max_a
 int grobo_gr001_currents(const grobo_robot *robot, int64_t now_us, int64_t max_age_us,
                          int32_t *current_ma, size_t capacity)
 {
+    if (robot == NULL || current_ma == NULL) {
+        return GROBO_ERR_ARG;
+    }
     return capacity < model_of(robot)->n_joints
                ? GROBO_ERR_SPACE
                : values(robot, GROBO_FIELD_CURRENT, now_us, max_age_us, current_ma);
@@ -197,6 +230,9 @@ int grobo_gr001_currents(const grobo_robot *robot, int64_t now_us, int64_t max_a
 
 int grobo_gr001_mean_voltage_mv(const grobo_robot *robot, int64_t now_us, int64_t max_age_us)
 {
+    if (robot == NULL) {
+        return GROBO_ERR_ARG;
+    }
     int32_t voltage_mv[GROBO_JOINTS_MAX];
     int n = values(robot, GROBO_FIELD_VOLTAGE, now_us, max_age_us, voltage_mv);
     double sum_mv = 0;
@@ -214,6 +250,9 @@ int grobo_gr001_mean_voltage_mv(const grobo_robot *robot, int64_t now_us, int64_
 int grobo_gr001_record(grobo_motion *record, const grobo_robot *robot, int64_t time_us,
                        int64_t now_us)
 {
+    if (record == NULL || robot == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_posture sensed;
     int fresh = grobo_robot_posture(robot, now_us, GROBO_GR001_RECORD_AGE_US, &sensed);
     if (fresh < sensed.n_joints) {
@@ -227,6 +266,9 @@ int grobo_gr001_record(grobo_motion *record, const grobo_robot *robot, int64_t t
 int grobo_gr001_play_record(const grobo_motion *record, grobo_robot *robot,
                             const grobo_play_options *options, grobo_clip *clip, int64_t now_us)
 {
+    if (record == NULL || clip == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_clip made;
     int result = grobo_motion_clip(record, NULL, &made);
     if (result < 0) {

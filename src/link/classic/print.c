@@ -36,6 +36,9 @@ static int print_values(const grobo_model *model, const int32_t *value, int deci
 
 int grobo_gr001_print_voltages(const grobo_robot *robot, int64_t now_us, FILE *stream)
 {
+    if (robot == NULL || stream == NULL) {
+        return GROBO_ERR_ARG;
+    }
     int32_t voltage_mv[GROBO_JOINTS_MAX];
     char line[LINE_BYTES] = "mean -\n";
     (void)grobo_gr001_voltages(robot, now_us, GROBO_NEVER_US, voltage_mv, GROBO_JOINTS_MAX);
@@ -49,6 +52,9 @@ int grobo_gr001_print_voltages(const grobo_robot *robot, int64_t now_us, FILE *s
 
 int grobo_gr001_print_currents(const grobo_robot *robot, int64_t now_us, FILE *stream)
 {
+    if (robot == NULL || stream == NULL) {
+        return GROBO_ERR_ARG;
+    }
     int32_t current_ma[GROBO_JOINTS_MAX];
     (void)grobo_gr001_currents(robot, now_us, GROBO_NEVER_US, current_ma, GROBO_JOINTS_MAX);
     return print_values(grobo_robot_driver(robot)->model, current_ma, 0, "mA", stream);
@@ -88,7 +94,7 @@ static void cell(const grobo_posture *posture, int joint, char *text, size_t byt
 
 int grobo_gr001_print_posture(const grobo_posture *posture, FILE *stream)
 {
-    if (posture->n_joints != grobo_gr001_model.n_joints) {
+    if (stream == NULL || posture == NULL || posture->n_joints != grobo_gr001_model.n_joints) {
         return GROBO_ERR_ARG;
     }
     int result = put(stream, "                   right  middle    left\n");

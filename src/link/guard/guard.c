@@ -80,6 +80,9 @@ void grobo_guard_free(grobo_guard *guard)
 
 int grobo_guard_pid(const grobo_guard *guard)
 {
+    if (guard == NULL) {
+        return GROBO_ERR_ARG;
+    }
     return guard->ended ? 0 : guard->process.pid;
 }
 

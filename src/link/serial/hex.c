@@ -5,6 +5,9 @@ static const char digits[] = "0123456789ABCDEF";
 
 int grobo_hex(char *text, size_t text_bytes, const void *bytes, size_t size)
 {
+    if (text == NULL || (bytes == NULL && size > 0)) {
+        return GROBO_ERR_ARG;
+    }
     const uint8_t *from = bytes;
     char *to = text;
 
@@ -24,6 +27,9 @@ int grobo_hex(char *text, size_t text_bytes, const void *bytes, size_t size)
 
 int grobo_hex_print(FILE *stream, const void *bytes, size_t size)
 {
+    if (stream == NULL || (bytes == NULL && size > 0)) {
+        return GROBO_ERR_ARG;
+    }
     const uint8_t *from = bytes;
 
     for (size_t i = 0; i < size; i++) {

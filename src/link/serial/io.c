@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* An open serial port: its bytes, the queue, the calls that wait, its end. */
-#include <assert.h>
 #include <limits.h>
 #include <string.h>
 
+#include "src/base/assert.h"
 #include "src/link/serial/loop.h"
 #include "src/link/serial/serial.h"
 
@@ -19,6 +19,9 @@ static void free_event(struct event **event)
 
 void grobo_serial_close(grobo_serial *serial)
 {
+    if (serial == NULL) {
+        return;
+    }
     serial->to_tell = 0;
     serial->ready = false;
     serial->paused = false;
@@ -35,7 +38,7 @@ void grobo_serial_close(grobo_serial *serial)
 
 bool grobo_serial_is_open(const grobo_serial *serial)
 {
-    return serial->ops != NULL;
+    return serial != NULL && serial->ops != NULL;
 }
 
 void grobo_i_serial_tell(grobo_serial *serial, unsigned what)
@@ -121,6 +124,7 @@ static int put(grobo_serial *serial, const void *bytes, size_t size)
     if (done < 0) {
         return grobo_i_serial_lose(serial, done);
     }
+    GROBO_ASSERT((size_t)done <= size);
     if ((size_t)done < size) {
         serial->counters.short_writes++;
     }
@@ -138,6 +142,7 @@ static void enqueue(grobo_serial *serial, const uint8_t *bytes, size_t size)
     size_t tail = (serial->head + serial->used) % capacity;
     size_t first = size < capacity - tail ? size : capacity - tail;
 
+    GROBO_ASSERT(serial->head < capacity && size <= capacity - serial->used);
     memcpy(serial->queue + tail, bytes, first);
     memcpy(serial->queue, bytes + first, size - first);
     serial->used += size;
@@ -257,6 +262,9 @@ static int send_sync(grobo_serial *serial, const uint8_t *bytes, size_t size)
 
 int grobo_serial_read(grobo_serial *serial, void *buf, size_t size)
 {
+    if (buf == NULL || serial == NULL) {
+        return GROBO_ERR_ARG;
+    }
     size_t most = size < INT_MAX ? size : INT_MAX;
 
     if (!grobo_serial_is_open(serial)) {
@@ -272,6 +280,9 @@ int grobo_serial_read(grobo_serial *serial, void *buf, size_t size)
 
 int grobo_serial_write(grobo_serial *serial, const void *bytes, size_t size)
 {
+    if ((bytes == NULL && size > 0) || serial == NULL) {
+        return GROBO_ERR_ARG;
+    }
     size_t most = size < INT_MAX ? size : INT_MAX;
 
     if (!grobo_serial_is_open(serial)) {
@@ -287,6 +298,9 @@ int grobo_serial_write(grobo_serial *serial, const void *bytes, size_t size)
 
 int grobo_serial_receive(grobo_serial *serial, void *buf, size_t size)
 {
+    if (buf == NULL || serial == NULL) {
+        return GROBO_ERR_ARG;
+    }
     uint8_t *to = buf;
     int64_t end_us = silence_end(serial);
     size_t got = 0;
@@ -317,7 +331,7 @@ int grobo_serial_receive(grobo_serial *serial, void *buf, size_t size)
 
 int grobo_serial_send(grobo_serial *serial, const void *bytes, size_t size)
 {
-    if (size > INT_MAX) {
+    if ((bytes == NULL && size > 0) || serial == NULL || size > INT_MAX) {
         return GROBO_ERR_ARG;
     }
     if (!grobo_serial_is_open(serial)) {
@@ -332,11 +346,14 @@ int grobo_serial_send(grobo_serial *serial, const void *bytes, size_t size)
 
 size_t grobo_serial_pending(const grobo_serial *serial)
 {
-    return serial->used;
+    return serial == NULL ? 0 : serial->used;
 }
 
 size_t grobo_serial_unsent(const grobo_serial *serial)
 {
+    if (serial == NULL) {
+        return 0;
+    }
     bool tells = serial->ops != NULL && serial->ops->unsent != NULL;
 
     return serial->used + (tells ? (size_t)serial->ops->unsent(serial->port) : 0);
@@ -346,7 +363,7 @@ void grobo_i_serial_take_back(grobo_serial *serial, size_t size, size_t behind)
 {
     size_t capacity = serial->config.tx_queue_bytes;
 
-    assert(serial->used <= size); /* a frame is sent only when nothing waits */
+    GROBO_ASSERT(serial->used <= size); /* a frame is sent only when nothing waits */
     if (serial->used == size || (serial->used == 0 && grobo_serial_unsent(serial) >= size)) {
         grobo_serial_discard_output(serial);
     } else if (serial->used > behind) {
@@ -356,6 +373,9 @@ void grobo_i_serial_take_back(grobo_serial *serial, size_t size, size_t behind)
 
 int grobo_serial_waiting(grobo_serial *serial)
 {
+    if (serial == NULL) {
+        return GROBO_ERR_ARG;
+    }
     int r;
 
     if (!grobo_serial_is_open(serial)) {
@@ -367,6 +387,9 @@ int grobo_serial_waiting(grobo_serial *serial)
 
 int grobo_serial_discard(grobo_serial *serial)
 {
+    if (serial == NULL) {
+        return GROBO_ERR_ARG;
+    }
     uint8_t scratch[READ_BYTES];
     int dropped = 0;
     int got = 1;
@@ -388,6 +411,9 @@ int grobo_serial_discard(grobo_serial *serial)
 
 void grobo_serial_discard_output(grobo_serial *serial)
 {
+    if (serial == NULL) {
+        return;
+    }
     serial->head = 0;
     serial->used = 0;
     if (grobo_serial_is_open(serial)) {

@@ -108,6 +108,9 @@ void grobo_timer_free(grobo_timer *timer)
 
 int grobo_timer_set(grobo_timer *timer, int64_t deadline_us)
 {
+    if (timer == NULL) {
+        return GROBO_ERR_ARG;
+    }
     int64_t now_us = grobo_now_us();
     bool is_due = timer->deadline_us <= now_us;
 
@@ -126,5 +129,5 @@ int grobo_timer_set(grobo_timer *timer, int64_t deadline_us)
 
 int64_t grobo_timer_deadline(const grobo_timer *timer)
 {
-    return timer->deadline_us;
+    return timer == NULL ? GROBO_NEVER_US : timer->deadline_us;
 }

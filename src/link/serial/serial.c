@@ -234,6 +234,9 @@ void grobo_serial_free(grobo_serial *serial)
 
 int grobo_serial_set_device(grobo_serial *serial, const char *device)
 {
+    if (serial == NULL) {
+        return GROBO_ERR_ARG;
+    }
     if (grobo_serial_is_open(serial)) {
         return GROBO_ERR_STATE;
     }
@@ -251,11 +254,17 @@ int grobo_serial_set_device(grobo_serial *serial, const char *device)
 
 const char *grobo_serial_device(const grobo_serial *serial)
 {
+    if (serial == NULL) {
+        return NULL;
+    }
     return serial->has_device ? serial->device : NULL;
 }
 
 int grobo_serial_set_mode(grobo_serial *serial, grobo_serial_mode mode)
 {
+    if (serial == NULL) {
+        return GROBO_ERR_ARG;
+    }
     int r = check_mode(&serial->config, mode);
 
     if (grobo_serial_is_open(serial)) {
@@ -269,11 +278,14 @@ int grobo_serial_set_mode(grobo_serial *serial, grobo_serial_mode mode)
 
 grobo_serial_mode grobo_serial_get_mode(const grobo_serial *serial)
 {
-    return serial->config.mode;
+    return serial == NULL ? GROBO_SERIAL_SYNC : serial->config.mode;
 }
 
 int grobo_serial_set_baud(grobo_serial *serial, int baud_bps)
 {
+    if (serial == NULL) {
+        return GROBO_ERR_ARG;
+    }
     int r = baud_bps;
 
     if (baud_bps <= 0) {
@@ -290,11 +302,14 @@ int grobo_serial_set_baud(grobo_serial *serial, int baud_bps)
 
 int grobo_serial_baud(const grobo_serial *serial)
 {
-    return serial->config.baud_bps;
+    return serial == NULL ? GROBO_ERR_ARG : serial->config.baud_bps;
 }
 
 int grobo_serial_set_low_latency(grobo_serial *serial)
 {
+    if (serial == NULL) {
+        return GROBO_ERR_ARG;
+    }
     if (!grobo_serial_is_open(serial)) {
         return GROBO_ERR_CLOSED;
     }
@@ -304,6 +319,9 @@ int grobo_serial_set_low_latency(grobo_serial *serial)
 
 int grobo_serial_low_latency(const grobo_serial *serial)
 {
+    if (serial == NULL) {
+        return GROBO_ERR_ARG;
+    }
     return grobo_serial_is_open(serial) ? serial->quick_result : GROBO_ERR_CLOSED;
 }
 
@@ -384,6 +402,9 @@ static int start_sync(grobo_serial *serial)
 
 int grobo_serial_open(grobo_serial *serial)
 {
+    if (serial == NULL) {
+        return GROBO_ERR_ARG;
+    }
     int r;
 
     if (grobo_serial_is_open(serial)) {
@@ -405,15 +426,20 @@ int grobo_serial_open(grobo_serial *serial)
 
 grobo_handle grobo_serial_handle(const grobo_serial *serial)
 {
+    if (serial == NULL) {
+        return GROBO_HANDLE_NULL;
+    }
     return serial->ops != NULL ? serial->ops->handle(serial->port) : GROBO_HANDLE_NULL;
 }
 
 const grobo_os_cause *grobo_serial_cause(const grobo_serial *serial)
 {
-    return &serial->cause;
+    return serial == NULL ? NULL : &serial->cause;
 }
 
 void grobo_serial_get_counters(const grobo_serial *serial, grobo_serial_counters *counters)
 {
-    *counters = serial->counters;
+    if (serial != NULL && counters != NULL) {
+        *counters = serial->counters;
+    }
 }

@@ -407,6 +407,9 @@ static int64_t next_look_us(const grobo_sim_server *server)
 
 void grobo_sim_server_pump(grobo_sim_server *server)
 {
+    if (server == NULL) {
+        return;
+    }
     answer(server);
     for (int i = 0; i < ENDS; i++) {
         if (server->ends[i].paused) {
@@ -435,6 +438,9 @@ static void on_time(grobo_timer *timer, int64_t late_us, void *ctx)
 
 int grobo_sim_server_plug(grobo_sim_server *server, bool in)
 {
+    if (server == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_os_cause cause;
     int r = GROBO_OK;
 
@@ -574,15 +580,18 @@ void grobo_sim_server_free(grobo_sim_server *server)
 
 const char *grobo_sim_server_device(const grobo_sim_server *server)
 {
-    return server->device;
+    return server == NULL ? NULL : server->device;
 }
 
 int grobo_sim_server_tcp_port(const grobo_sim_server *server)
 {
+    if (server == NULL) {
+        return GROBO_ERR_ARG;
+    }
     return server->callers != NULL ? server->tcp_port : 0;
 }
 
 grobo_sim *grobo_sim_server_sim(grobo_sim_server *server)
 {
-    return &server->sim;
+    return server == NULL ? NULL : &server->sim;
 }

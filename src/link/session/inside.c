@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Being inside of a session: calls that may call back, and the user's callbacks. */
+#include "src/base/assert.h"
 #include "src/link/session/session.h"
 
 void grobo_i_session_enter(grobo_session *session)
@@ -9,6 +10,7 @@ void grobo_i_session_enter(grobo_session *session)
 
 void grobo_i_session_leave(grobo_session *session)
 {
+    GROBO_ASSERT(session->depth > 0);
     session->on_leave(session);
 }
 
@@ -25,6 +27,7 @@ void grobo_i_session_leave_callback(grobo_session *session, grobo_callback callb
 {
     int64_t held_us = grobo_now_us() - since_us;
 
+    GROBO_ASSERT(session->in_callback > 0);
     session->in_callback--;
     if (session->in_callback > 0 || held_us <= GROBO_CALLBACK_SLOW_US) {
         return;

@@ -2,6 +2,7 @@
 /* What a session speaks over: a serial port, or the simulator. And the ports that may be one. */
 #include <string.h>
 
+#include "src/base/assert.h"
 #include "src/link/serial/loop.h"
 #include "src/link/serial/serial.h"
 #include "src/link/session/session.h"
@@ -125,6 +126,7 @@ static void sim_give(grobo_session *session, const uint8_t *frame, size_t size)
     if (taken > 0) {
         grobo_i_session_tell_tap(GROBO_DIR_TX, now_us, frame, taken, session);
     }
+    GROBO_ASSERT(taken <= size && size - taken <= sizeof session->backlog);
     session->backlog_bytes = size - taken;
     memmove(session->backlog, frame + taken, session->backlog_bytes);
 }
@@ -139,6 +141,7 @@ static bool sim_has_room(grobo_session *session)
 
 static void sim_take_back(grobo_session *session, size_t size, size_t behind)
 {
+    GROBO_ASSERT(session->backlog_bytes <= size);
     if (session->backlog_bytes == size) {
         session->backlog_bytes = 0;
     } else if (session->backlog_bytes > behind) {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The bytes of a session: engine to line, line to engine, and when to look again. */
+#include "src/base/assert.h"
 #include "src/link/session/session.h"
 
 /* How long to leave a line alone that takes no more bytes; it also tells when it does. */
@@ -43,6 +44,7 @@ static size_t behind_sum(const grobo_session *session, const uint8_t *frame, siz
 
 static void give(grobo_session *session, const uint8_t *frame, size_t size, bool stops)
 {
+    GROBO_ASSERT(size > 0 && size <= GROBO_FRAME_MAX_BYTES);
     session->given_bytes = stops ? 0 : size;
     session->given_behind = behind_sum(session, frame, size);
     session->line->give(session, frame, size);

@@ -464,6 +464,9 @@ int grobo_session_new(const grobo_session_config *config, grobo_session **sessio
 
 void grobo_session_pump(grobo_session *session)
 {
+    if (session == NULL) {
+        return;
+    }
     grobo_i_session_enter(session);
     grobo_i_session_leave(session);
 }
@@ -481,6 +484,9 @@ void grobo_session_free(grobo_session *session)
 
 int grobo_session_open(grobo_session *session)
 {
+    if (session == NULL) {
+        return GROBO_ERR_ARG;
+    }
     int r;
 
     if (session->state != GROBO_SESSION_CLOSED || session->closing) {
@@ -505,6 +511,9 @@ int grobo_session_open(grobo_session *session)
 
 void grobo_session_close(grobo_session *session)
 {
+    if (session == NULL) {
+        return;
+    }
     grobo_i_session_enter(session);
     session->closing = true;
     grobo_i_session_leave(session);
@@ -512,7 +521,7 @@ void grobo_session_close(grobo_session *session)
 
 int grobo_session_set_device(grobo_session *session, const char *device)
 {
-    if (device == NULL) {
+    if (session == NULL || device == NULL) {
         return GROBO_ERR_ARG;
     }
     return session->state != GROBO_SESSION_CLOSED ? GROBO_ERR_STATE : set_device(session, device);
@@ -520,6 +529,9 @@ int grobo_session_set_device(grobo_session *session, const char *device)
 
 int grobo_session_configure(grobo_session *session, const grobo_robot_config *config)
 {
+    if (session == NULL) {
+        return GROBO_ERR_ARG;
+    }
     static const grobo_robot_config defaults;
     int r = grobo_robot_configure(&session->robot, config);
 
@@ -538,36 +550,39 @@ int grobo_session_configure(grobo_session *session, const grobo_robot_config *co
 
 grobo_session_state grobo_session_get_state(const grobo_session *session)
 {
-    return session->state;
+    return session == NULL ? GROBO_SESSION_CLOSED : session->state;
 }
 
 const char *grobo_session_device(const grobo_session *session)
 {
-    return session->used;
+    return session == NULL ? NULL : session->used;
 }
 
 const grobo_os_cause *grobo_session_cause(const grobo_session *session)
 {
-    return &session->cause;
+    return session == NULL ? NULL : &session->cause;
 }
 
 grobo_robot *grobo_session_robot(grobo_session *session)
 {
-    return &session->robot;
+    return session == NULL ? NULL : &session->robot;
 }
 
 grobo_sim *grobo_session_sim(grobo_session *session)
 {
-    return session->sim;
+    return session == NULL ? NULL : session->sim;
 }
 
 grobo_serial *grobo_session_serial(grobo_session *session)
 {
-    return session->serial;
+    return session == NULL ? NULL : session->serial;
 }
 
 void grobo_session_bytes(const grobo_session *session, uint64_t *tx_bytes, uint64_t *rx_bytes)
 {
+    if (session == NULL || tx_bytes == NULL || rx_bytes == NULL) {
+        return;
+    }
     grobo_serial_counters counters;
 
     grobo_serial_get_counters(session->serial, &counters);

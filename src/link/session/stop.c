@@ -78,6 +78,9 @@ int grobo_session_post_exit(grobo_session *session, grobo_exit_policy policy)
 
 bool grobo_session_is_latched(const grobo_session *session)
 {
+    if (session == NULL) {
+        return false;
+    }
     /* In this order: take() clears the bit when `latched` is set. */
     return (atomic_load(&session->asked) & ASK_ESTOP) != 0 || atomic_load(&session->latched);
 }

@@ -4,6 +4,7 @@
  * its function, again and again, until it is over. The caller sleeps at the condition meanwhile;
  * or, where no thread runs the loop, runs it itself. Nothing of this takes a descriptor or memory.
  */
+#include "src/base/assert.h"
 #include "src/link/session/session.h"
 #include "src/link/thread/thread.h"
 
@@ -21,6 +22,7 @@ static control_slot *take_slot(grobo_control *control, size_t most)
 
 static void hand_over(grobo_control *control, control_slot *slot, grobo_control_fn fn, void *arg)
 {
+    GROBO_ASSERT(slot->state == CALL_FREE && fn != NULL);
     slot->fn = fn;
     slot->arg = arg;
     slot->job = NULL;
@@ -64,6 +66,7 @@ static control_slot *next_call(grobo_control *control, uint64_t after)
 
 static void settle(grobo_control *control, control_slot *slot, int result)
 {
+    GROBO_ASSERT(slot->state == CALL_RUNNING);
     if (result == CALL_PENDING) {
         slot->state = CALL_OPEN;
     } else if (slot->posted) {
@@ -125,6 +128,9 @@ static void serve(grobo_control *control)
 
 int64_t grobo_control_get_period_us(grobo_control *control)
 {
+    if (control == NULL) {
+        return 0;
+    }
     RETURN_LOCKED(control, int64_t, control->period_us);
 }
 
@@ -186,6 +192,7 @@ static int wait_for(grobo_control *control, control_slot *slot, int64_t end_us)
     if (slot->state == CALL_DONE) {
         result = slot->result;
     }
+    GROBO_ASSERT(slot->state == CALL_DONE || slot->state == CALL_OPEN);
     slot->job = NULL;
     slot->state = CALL_FREE;
     return result;
@@ -233,9 +240,21 @@ static int call_and_wait(grobo_control *control, const call_wish *wish)
     return result;
 }
 
+/* These two are where a control that is NULL is refused, for all public functions that come by. */
+static int wait_outside(grobo_control *control, const call_wish *wish)
+{
+    if (control == NULL) {
+        return GROBO_ERR_ARG;
+    }
+    return grobo_i_control_inside(control) ? GROBO_ERR_STATE : call_and_wait(control, wish);
+}
+
 /* In a callback at once, else handed over. */
 static int call(grobo_control *control, const call_wish *wish)
 {
+    if (control == NULL) {
+        return GROBO_ERR_ARG;
+    }
     if (!grobo_i_control_inside(control)) {
         return call_and_wait(control, wish);
     }
@@ -261,7 +280,7 @@ int grobo_i_control_wait(grobo_control *control, grobo_control_fn fn, void *arg,
 {
     const call_wish wish = {.fn = fn, .arg = arg, .timeout_us = timeout_us};
 
-    return grobo_i_control_inside(control) ? GROBO_ERR_STATE : call_and_wait(control, &wish);
+    return wait_outside(control, &wish);
 }
 
 /* ---- jobs --------------------------------------------------------------------------------- */
@@ -299,7 +318,7 @@ int grobo_i_control_job(grobo_control *control, control_job *job, grobo_control_
                             .timeout_us = timeout_us,
                             .urgent = job->urgent};
 
-    return grobo_i_control_inside(control) ? GROBO_ERR_STATE : call_and_wait(control, &wish);
+    return wait_outside(control, &wish);
 }
 
 /* ---- the public functions ----------------------------------------------------------------- */
@@ -313,6 +332,9 @@ int grobo_control_call(grobo_control *control, grobo_control_fn fn, void *arg)
 
 int grobo_control_post(grobo_control *control, grobo_control_fn fn, void *arg)
 {
+    if (control == NULL) {
+        return GROBO_ERR_ARG;
+    }
     int r = GROBO_ERR_ARG;
 
     if (fn != NULL) {

@@ -7,12 +7,12 @@
 
 grobo_session *grobo_control_session(grobo_control *control)
 {
-    return control->session;
+    return control == NULL ? NULL : control->session;
 }
 
 grobo_serial *grobo_control_serial(grobo_control *control)
 {
-    return grobo_session_serial(control->session);
+    return control == NULL ? NULL : grobo_session_serial(control->session);
 }
 
 /* ---- the line ----------------------------------------------------------------------------- */
@@ -46,6 +46,9 @@ static int get_device(grobo_control *control, void *arg)
 
 int grobo_control_get_device(grobo_control *control, char *device, size_t device_bytes)
 {
+    if (device == NULL) {
+        return GROBO_ERR_ARG;
+    }
     char name[GROBO_DEVICE_MAX_BYTES];
     int r = grobo_i_control_call(control, get_device, name);
 
@@ -162,6 +165,9 @@ int grobo_control_connect(grobo_control *control, int64_t timeout_us)
 
 bool grobo_control_is_connected(grobo_control *control)
 {
+    if (control == NULL) {
+        return false;
+    }
     RETURN_LOCKED(control, bool, control->up);
 }
 
@@ -175,6 +181,9 @@ static int get_cause(grobo_control *control, void *arg)
 
 int grobo_control_get_cause(grobo_control *control, grobo_os_cause *cause)
 {
+    if (cause == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_os_cause said;
     int r = grobo_i_control_call(control, get_cause, &said);
 
@@ -215,6 +224,9 @@ static int get_states(grobo_control *control, void *arg)
 
 int grobo_control_get_servo_states(grobo_control *control, int *states, size_t capacity)
 {
+    if (control == NULL || states == NULL) {
+        return GROBO_ERR_ARG;
+    }
     int state[GROBO_JOINTS_MAX];
     int r = GROBO_ERR_SPACE;
 
@@ -229,6 +241,9 @@ int grobo_control_get_servo_states(grobo_control *control, int *states, size_t c
 
 int grobo_control_get_servo_state(grobo_control *control, int joint)
 {
+    if (control == NULL) {
+        return GROBO_ERR_ARG;
+    }
     int state[GROBO_JOINTS_MAX];
     int r;
 
@@ -255,6 +270,9 @@ int grobo_control_set_servo_states(grobo_control *control, grobo_joint_mask join
 int grobo_control_set_servo_state(grobo_control *control, int joint, grobo_torque state,
                                   int64_t timeout_us)
 {
+    if (control == NULL) {
+        return GROBO_ERR_ARG;
+    }
     int r = GROBO_ERR_ARG;
 
     if (joint >= 0 && joint < control->driver->model->n_joints) {
@@ -272,6 +290,9 @@ static int get_posture(grobo_control *control, void *arg)
 
 int grobo_control_get_current_posture(grobo_control *control, grobo_posture *posture)
 {
+    if (posture == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_posture sensed;
     int r = grobo_i_control_call(control, get_posture, &sensed);
 
@@ -305,6 +326,9 @@ static int sense(grobo_control *control, void *arg)
 
 int grobo_control_read_posture(grobo_control *control, grobo_posture *posture, int64_t timeout_us)
 {
+    if (control == NULL || posture == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_posture sensed;
     control_job job = {
         .start = sense_job,
@@ -323,6 +347,9 @@ int grobo_control_read_posture(grobo_control *control, grobo_posture *posture, i
 int grobo_control_read_angle(grobo_control *control, int joint, double *angle_rad,
                              int64_t timeout_us)
 {
+    if (angle_rad == NULL || control == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_posture sensed;
     control_job job = {.start = sense_job, .sense = GROBO_SENSE_POSITION, .posture = &sensed};
     int r;
@@ -339,6 +366,9 @@ int grobo_control_read_angle(grobo_control *control, int joint, double *angle_ra
 
 int grobo_control_set_command(grobo_control *control, const void *packet, size_t size)
 {
+    if ((packet == NULL && size > 0) || control == NULL) {
+        return GROBO_ERR_ARG;
+    }
     if (size > sizeof control->command) {
         return GROBO_ERR_CAP;
     }
@@ -353,6 +383,9 @@ int grobo_control_set_command(grobo_control *control, const void *packet, size_t
 
 int grobo_control_get_command(grobo_control *control, void *packet, size_t capacity)
 {
+    if (control == NULL || (packet == NULL && capacity > 0)) {
+        return GROBO_ERR_ARG;
+    }
     int r = GROBO_ERR_SPACE;
 
     grobo_i_control_lock(control);
@@ -440,6 +473,9 @@ static int receive(grobo_control *control, void *arg)
 
 int grobo_control_receive(grobo_control *control, void *bytes, size_t size)
 {
+    if (bytes == NULL) {
+        return GROBO_ERR_ARG;
+    }
     uint8_t taken[GROBO_CONTROL_RECEIVE_BYTES];
     receive_call call = {taken, size, grobo_now_us() + INT64_C(1000) * GROBO_SILENCE_DEFAULT_MS};
     int r = GROBO_ERR_CAP;
@@ -462,7 +498,7 @@ int grobo_control_estop(grobo_control *control)
 
 bool grobo_control_is_latched(const grobo_control *control)
 {
-    return grobo_session_is_latched(control->session);
+    return control != NULL && grobo_session_is_latched(control->session);
 }
 
 /* Not where an emergency stop came after the call. */
@@ -477,6 +513,9 @@ static int reset(grobo_control *control, void *arg)
 
 int grobo_control_reset(grobo_control *control)
 {
+    if (control == NULL) {
+        return GROBO_ERR_ARG;
+    }
     unsigned estops = atomic_load(&control->session->estops);
 
     return grobo_i_control_call(control, reset, &estops);

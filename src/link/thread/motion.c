@@ -53,6 +53,9 @@ static int adopt(grobo_control *control, grobo_motion *motion)
 
 int grobo_control_set_motion(grobo_control *control, const grobo_motion *motion)
 {
+    if (control == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_motion *copy;
     int r = grobo_motion_dup(motion, &copy);
 
@@ -61,6 +64,9 @@ int grobo_control_set_motion(grobo_control *control, const grobo_motion *motion)
 
 int grobo_control_get_motion(grobo_control *control, grobo_motion **motion)
 {
+    if (control == NULL || motion == NULL) {
+        return GROBO_ERR_ARG;
+    }
     int r;
 
     grobo_i_control_lock(control);
@@ -71,11 +77,17 @@ int grobo_control_get_motion(grobo_control *control, grobo_motion **motion)
 
 size_t grobo_control_motion_size(grobo_control *control)
 {
+    if (control == NULL) {
+        return 0;
+    }
     RETURN_LOCKED(control, size_t, grobo_motion_size(control->motion));
 }
 
 void grobo_control_clear_motion(grobo_control *control)
 {
+    if (control == NULL) {
+        return;
+    }
     grobo_i_control_lock(control);
     grobo_motion_renew(control->motion, GROBO_MOTION_POSTURES);
     grobo_i_control_unlock(control);
@@ -104,11 +116,17 @@ static int want_move(grobo_control *control)
 
 int grobo_control_start_motion(grobo_control *control)
 {
+    if (control == NULL) {
+        return GROBO_ERR_ARG;
+    }
     RETURN_LOCKED(control, int, want_move(control));
 }
 
 int grobo_control_init_position(grobo_control *control)
 {
+    if (control == NULL) {
+        return GROBO_ERR_ARG;
+    }
     int r;
 
     grobo_i_control_lock(control);
@@ -155,11 +173,17 @@ static int want_play(grobo_control *control, const grobo_play_options *options)
 
 int grobo_control_play_motion(grobo_control *control, const grobo_play_options *options)
 {
+    if (control == NULL) {
+        return GROBO_ERR_ARG;
+    }
     RETURN_LOCKED(control, int, want_play(control, options));
 }
 
 bool grobo_control_is_playing(grobo_control *control)
 {
+    if (control == NULL) {
+        return false;
+    }
     RETURN_LOCKED(control, bool, control->play != PLAY_NONE);
 }
 
@@ -307,6 +331,9 @@ static int get_nth(const grobo_control *control, size_t n, grobo_posture *postur
 
 int grobo_control_get_nth_posture(grobo_control *control, size_t n, grobo_posture *posture)
 {
+    if (control == NULL || posture == NULL) {
+        return GROBO_ERR_ARG;
+    }
     RETURN_LOCKED(control, int, get_nth(control, n, posture));
 }
 
@@ -317,12 +344,18 @@ int grobo_control_get_first_posture(grobo_control *control, grobo_posture *postu
 
 int grobo_control_get_last_posture(grobo_control *control, grobo_posture *posture)
 {
+    if (posture == NULL || control == NULL) {
+        return GROBO_ERR_ARG;
+    }
     /* Of an empty motion the number wraps around, to one that is not there. */
     RETURN_LOCKED(control, int, get_nth(control, grobo_motion_size(control->motion) - 1, posture));
 }
 
 int grobo_control_do_nth_motion(grobo_control *control, size_t n)
 {
+    if (control == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_posture posture;
     int r;
 
@@ -364,6 +397,9 @@ static int find(grobo_control *control, const char *name, char *path, size_t pat
 int grobo_control_load_motion_format(grobo_control *control, grobo_motion_format format,
                                      const char *name, grobo_diagnostics *list)
 {
+    if (control == NULL) {
+        return GROBO_ERR_ARG;
+    }
     char path[GROBO_PATH_MAX_BYTES];
     char file[GROBO_PATH_MAX_BYTES];
     const grobo_read_options options = {
@@ -432,6 +468,9 @@ static int save_next(grobo_control *control, const grobo_motion *motion,
 int grobo_control_save_motion(grobo_control *control, grobo_motion_format format, const char *name,
                               char *path, size_t path_bytes)
 {
+    if (control == NULL) {
+        return GROBO_ERR_ARG;
+    }
     char used[GROBO_PATH_MAX_BYTES];
     const grobo_write_options options = {
         .format = format,

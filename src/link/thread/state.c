@@ -12,19 +12,19 @@
 
 const char *grobo_control_name(const grobo_control *control)
 {
-    return control->name;
+    return control == NULL ? NULL : control->name;
 }
 
 int grobo_control_joints(const grobo_control *control)
 {
-    return control->driver->model->n_joints;
+    return control == NULL ? GROBO_ERR_ARG : control->driver->model->n_joints;
 }
 
 /* ---- settings ----------------------------------------------------------------------------- */
 
 int grobo_control_set_motion_dir(grobo_control *control, const char *dir)
 {
-    if (dir == NULL) {
+    if (control == NULL || dir == NULL) {
         return GROBO_ERR_ARG;
     }
     if (strlen(dir) >= sizeof control->motion_dir) {
@@ -38,6 +38,9 @@ int grobo_control_set_motion_dir(grobo_control *control, const char *dir)
 
 int grobo_control_get_motion_dir(grobo_control *control, char *dir, size_t dir_bytes)
 {
+    if (control == NULL || dir == NULL) {
+        return GROBO_ERR_ARG;
+    }
     size_t length;
 
     grobo_i_control_lock(control);
@@ -92,6 +95,9 @@ int64_t grobo_i_control_default_us(const grobo_control *control)
 
 int64_t grobo_control_get_default_time_us(grobo_control *control)
 {
+    if (control == NULL) {
+        return 0;
+    }
     RETURN_LOCKED(control, int64_t, grobo_i_control_default_us(control));
 }
 
@@ -106,6 +112,9 @@ int grobo_control_set_sense_interval_us(grobo_control *control, int64_t interval
 
 int64_t grobo_control_get_sense_interval_us(grobo_control *control)
 {
+    if (control == NULL) {
+        return 0;
+    }
     int64_t interval_us;
 
     grobo_i_control_lock(control);
@@ -116,6 +125,9 @@ int64_t grobo_control_get_sense_interval_us(grobo_control *control)
 
 int grobo_control_set_motion_count(grobo_control *control, int count)
 {
+    if (control == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_i_control_lock(control);
     control->motion_count = count;
     grobo_i_control_unlock(control);
@@ -124,11 +136,17 @@ int grobo_control_set_motion_count(grobo_control *control, int count)
 
 int grobo_control_get_motion_count(grobo_control *control)
 {
+    if (control == NULL) {
+        return GROBO_ERR_ARG;
+    }
     RETURN_LOCKED(control, int, control->motion_count);
 }
 
 void grobo_control_set_reverse(grobo_control *control, bool reverse)
 {
+    if (control == NULL) {
+        return;
+    }
     grobo_i_control_lock(control);
     control->reverse = reverse;
     grobo_i_control_unlock(control);
@@ -136,6 +154,9 @@ void grobo_control_set_reverse(grobo_control *control, bool reverse)
 
 bool grobo_control_is_reverse(grobo_control *control)
 {
+    if (control == NULL) {
+        return false;
+    }
     RETURN_LOCKED(control, bool, control->reverse || control->motion_count < 0);
 }
 
@@ -176,26 +197,33 @@ static void get_posture(grobo_control *control, const grobo_posture *from, grobo
 
 int grobo_control_set_init_posture(grobo_control *control, const grobo_posture *posture)
 {
-    return set_posture(control, &control->init, posture);
+    return control == NULL ? GROBO_ERR_ARG : set_posture(control, &control->init, posture);
 }
 
 void grobo_control_get_init_posture(grobo_control *control, grobo_posture *posture)
 {
-    get_posture(control, &control->init, posture);
+    if (control != NULL && posture != NULL) {
+        get_posture(control, &control->init, posture);
+    }
 }
 
 int grobo_control_set_target_posture(grobo_control *control, const grobo_posture *posture)
 {
-    return set_posture(control, &control->target, posture);
+    return control == NULL ? GROBO_ERR_ARG : set_posture(control, &control->target, posture);
 }
 
 void grobo_control_get_target_posture(grobo_control *control, grobo_posture *posture)
 {
-    get_posture(control, &control->target, posture);
+    if (control != NULL && posture != NULL) {
+        get_posture(control, &control->target, posture);
+    }
 }
 
 int grobo_control_set_joint(grobo_control *control, int joint, double angle_rad)
 {
+    if (control == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_posture changed;
     int r;
 
@@ -214,7 +242,7 @@ int grobo_control_set_joint(grobo_control *control, int joint, double angle_rad)
 
 int grobo_control_set_motion_time_us(grobo_control *control, int64_t time_us)
 {
-    if (time_us < 0 || time_us > GROBO_PLAY_TIME_MAX_US) {
+    if (control == NULL || time_us < 0 || time_us > GROBO_PLAY_TIME_MAX_US) {
         return GROBO_ERR_ARG;
     }
     grobo_i_control_lock(control);

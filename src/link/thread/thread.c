@@ -129,6 +129,9 @@ static void join(grobo_control *control)
 
 int grobo_control_start_thread(grobo_control *control)
 {
+    if (control == NULL) {
+        return GROBO_ERR_ARG;
+    }
     int r = GROBO_ERR_STATE;
 
     grobo_i_control_lock(control);
@@ -149,6 +152,9 @@ int grobo_control_start_thread(grobo_control *control)
 
 int grobo_control_run(grobo_control *control)
 {
+    if (control == NULL) {
+        return GROBO_ERR_ARG;
+    }
     bool mine;
 
     if (grobo_i_control_inside(control)) {
@@ -182,6 +188,9 @@ static void await_end(grobo_control *control)
 
 int grobo_control_stop_thread(grobo_control *control)
 {
+    if (control == NULL) {
+        return GROBO_ERR_ARG;
+    }
     int r = GROBO_ERR_STATE;
 
     grobo_i_control_lock(control);
@@ -200,11 +209,17 @@ int grobo_control_stop_thread(grobo_control *control)
 
 bool grobo_control_is_active(grobo_control *control)
 {
+    if (control == NULL) {
+        return false;
+    }
     RETURN_LOCKED(control, bool, control->running && !control->stopping);
 }
 
 int grobo_control_thread(grobo_control *control, grobo_thread *thread)
 {
+    if (control == NULL || thread == NULL) {
+        return GROBO_ERR_ARG;
+    }
     int r = GROBO_ERR_STATE;
 
     grobo_i_control_lock(control);
@@ -218,6 +233,9 @@ int grobo_control_thread(grobo_control *control, grobo_thread *thread)
 
 int grobo_control_svc(grobo_control *control)
 {
+    if (control == NULL) {
+        return GROBO_ERR_ARG;
+    }
     int64_t end_us = grobo_now_us() + grobo_control_get_period_us(control);
     int r = 0;
 

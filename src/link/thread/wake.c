@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What everything else of a control uses: the lock, waking, and who is in a round. */
+#include "src/base/assert.h"
 #include "src/link/session/session.h"
 #include "src/link/thread/thread.h"
 
@@ -14,6 +15,7 @@ void grobo_i_control_begin_round(round_frame *frame, const grobo_control *contro
 
 void grobo_i_control_end_round(const round_frame *frame)
 {
+    GROBO_ASSERT(rounds == frame);
     rounds = frame->outer;
 }
 
@@ -57,6 +59,7 @@ void grobo_i_control_sleep(grobo_control *control, int64_t end_us)
 {
     control->sleepers++;
     grobo_cond_wait(&control->changed, &control->lock, end_us);
+    GROBO_ASSERT(control->sleepers > 0);
     control->sleepers--;
 }
 

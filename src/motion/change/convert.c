@@ -444,6 +444,9 @@ static int run(conversion *conv, grobo_motion_kind kind)
 
 int grobo_motion_resolve(grobo_motion *motion, const grobo_posture *start)
 {
+    if (start == NULL || motion == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_clip view;
     int64_t at_us;
 
@@ -486,6 +489,9 @@ int grobo_motion_convert(const grobo_motion *motion, grobo_motion_kind kind,
                          const grobo_write_options *options, grobo_diagnostics *list,
                          grobo_motion **converted)
 {
+    if (motion == NULL || converted == NULL) {
+        return GROBO_ERR_ARG;
+    }
     static const grobo_write_options defaults;
     conversion conv = {.from = motion, .list = list};
 

@@ -124,6 +124,9 @@ static int crop(cut *c)
 
 int grobo_motion_crop(grobo_motion *motion, int64_t from_us, int64_t to_us)
 {
+    if (motion == NULL) {
+        return GROBO_ERR_ARG;
+    }
     cut c = {.from = motion, .first_s = (double)from_us / 1e6, .last_s = (double)to_us / 1e6};
 
     if (from_us < 0 || to_us < from_us) {

@@ -104,6 +104,9 @@ static int mirror_all(grobo_motion *motion, const grobo_model *model)
 
 int grobo_motion_mirror(grobo_motion *motion, const grobo_model *model)
 {
+    if (motion == NULL || model == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_motion *made;
 
     if (model->n_joints != motion->n_joints) {

@@ -31,6 +31,9 @@ static int scale_steps(grobo_motion *motion, double factor)
 
 int grobo_motion_scale_time(grobo_motion *motion, double factor)
 {
+    if (motion == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_i_row row;
 
     if (!isfinite(factor) || !(factor > 0)) {
@@ -327,6 +330,9 @@ static int turn_rows(const grobo_motion *from, grobo_motion *made)
 
 int grobo_motion_reverse(grobo_motion *motion)
 {
+    if (motion == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_motion *sorted = NULL, *made = NULL;
     int result = motion->kind == GROBO_MOTION_KEYS ? sorted_keys(motion, &sorted) : 0;
 

@@ -149,6 +149,9 @@ static void compare(verification *v)
 int grobo_motion_verify(const grobo_motion *source, const grobo_motion *copy,
                         const grobo_write_options *options, grobo_diagnostics *list)
 {
+    if (source == NULL || copy == NULL) {
+        return GROBO_ERR_ARG;
+    }
     static const grobo_write_options defaults;
     verification v = {
         .source = source, .copy = copy, .list = list, .near_rad = NEAR_RAD, .near_s = NEAR_S};

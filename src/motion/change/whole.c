@@ -115,6 +115,9 @@ static int convert_for(const grobo_motion *motion, const grobo_motion *other, gr
 
 int grobo_motion_append_motion(grobo_motion *motion, const grobo_motion *other)
 {
+    if (motion == NULL || other == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_motion *made = NULL;
     int result = is_alike(motion, other) ? 0 : convert_for(motion, other, &made);
 
@@ -191,6 +194,9 @@ static int concat_into(grobo_motion *made, const grobo_motion *other, double ble
 
 int grobo_motion_concat(grobo_motion *motion, const grobo_motion *other, int64_t blend_us)
 {
+    if (other == NULL || motion == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_motion *made = NULL;
     grobo_motion *converted = NULL;
 

@@ -59,6 +59,9 @@ static int save(const grobo_motion *motion, const grobo_files *files, const char
 int grobo_motion_save(const grobo_motion *motion, const grobo_files *files, const char *path,
                       const grobo_write_options *options, grobo_diagnostics *list)
 {
+    if (files == NULL || path == NULL || motion == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_write_options named = {.name = path};
 
     if (options != NULL) {
@@ -92,6 +95,9 @@ int grobo_motion_save_next(const grobo_motion *motion, const grobo_files *files,
                            const char *directory, const grobo_write_options *options, char *path,
                            size_t path_bytes)
 {
+    if (motion == NULL || files == NULL || directory == NULL || path == NULL) {
+        return GROBO_ERR_ARG;
+    }
     char tried[GROBO_PATH_MAX_BYTES];
     char found[GROBO_PATH_MAX_BYTES];
     int raced = 0;
@@ -101,7 +107,7 @@ int grobo_motion_save_next(const grobo_motion *motion, const grobo_files *files,
         (void)snprintf(name, sizeof name, "Motion%d.m", n);
         int length = snprintf(tried, sizeof tried, "%s%s%s", directory,
                               directory[0] != '\0' ? "/" : "", name);
-        if (length < 0 || (size_t)length >= sizeof tried || (size_t)length >= path_bytes) {
+        if ((size_t)length >= sizeof tried || (size_t)length >= path_bytes) {
             return GROBO_ERR_SPACE;
         }
         int result =
@@ -143,6 +149,9 @@ static bool stays_below(const char *name)
 int grobo_motion_find(const grobo_files *files, const char *directory, const char *name, char *path,
                       size_t path_bytes)
 {
+    if (directory == NULL || name == NULL || path == NULL || files == NULL) {
+        return GROBO_ERR_ARG;
+    }
     static const char *const extensions[] = {".m", ".yaml", ".pseq", ".mseq"};
     char tried[GROBO_PATH_MAX_BYTES];
 
@@ -174,6 +183,9 @@ static int write_stream(void *ctx, const void *data, size_t size)
 
 int grobo_motion_print(const grobo_motion *motion, const grobo_model *model, FILE *stream)
 {
+    if (stream == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_write_options options = {.model = model};
     grobo_sink sink = {write_stream, stream};
 
@@ -182,6 +194,9 @@ int grobo_motion_print(const grobo_motion *motion, const grobo_model *model, FIL
 
 int grobo_posture_print(const grobo_posture *posture, FILE *stream)
 {
+    if (stream == NULL || posture == NULL) {
+        return GROBO_ERR_ARG;
+    }
     for (int j = 0; j < posture->n_joints; j++) {
         char text[GROBO_NAME_MAX_BYTES];
         int length = snprintf(text, sizeof text, "%s-", j > 0 ? " " : "");

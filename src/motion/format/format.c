@@ -24,6 +24,9 @@ static bool same_word(const char *a, const char *b)
 
 int grobo_motion_format_find(const char *name)
 {
+    if (name == NULL) {
+        return GROBO_ERR_ARG;
+    }
     for (int format = GROBO_FORMAT_AUTO; format <= GROBO_FORMAT_YAML; format++) {
         if (same_word(name, grobo_motion_format_name((grobo_motion_format)format))) {
             return format;
@@ -37,6 +40,9 @@ int grobo_motion_format_find(const char *name)
 
 grobo_motion_format grobo_motion_format_of_path(const char *path)
 {
+    if (path == NULL) {
+        return GROBO_FORMAT_AUTO;
+    }
     const char *dot = strrchr(path, '.');
     int format = dot != NULL ? grobo_motion_format_find(dot + 1) : GROBO_FORMAT_AUTO;
 

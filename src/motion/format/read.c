@@ -61,6 +61,9 @@ static int read_as(grobo_i_reader *reader)
 int grobo_motion_read(const grobo_source *source, const grobo_read_options *options,
                       grobo_diagnostics *list, grobo_motion **motion)
 {
+    if (source == NULL || motion == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_i_reader reader = {.list = list, .input = {.source = source, .size = BUFFER_BYTES}};
 
     if (options != NULL) {
@@ -110,6 +113,9 @@ static int read_memory(void *ctx, void *buffer, size_t size)
 int grobo_motion_read_memory(const void *data, size_t size, const grobo_read_options *options,
                              grobo_diagnostics *list, grobo_motion **motion)
 {
+    if ((data == NULL && size > 0) || motion == NULL) {
+        return GROBO_ERR_ARG;
+    }
     memory_source memory = {data, size};
 
     return grobo_motion_read(&(grobo_source){read_memory, &memory}, options, list, motion);
@@ -142,6 +148,9 @@ static int read_stream(void *ctx, void *buffer, size_t size)
 int grobo_motion_read_file(const char *path, const grobo_read_options *options,
                            grobo_diagnostics *list, grobo_motion **motion)
 {
+    if (path == NULL || motion == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_read_options named = {.name = path};
 
     if (options != NULL) {

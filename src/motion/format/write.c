@@ -21,6 +21,9 @@ int grobo_motion_write(const grobo_motion *motion, grobo_motion_format format,
                        const grobo_write_options *options, const grobo_sink *sink,
                        grobo_diagnostics *list)
 {
+    if (sink == NULL || motion == NULL) {
+        return GROBO_ERR_ARG;
+    }
     static const grobo_write_options defaults;
     grobo_i_out out;
     grobo_i_writing writing = {options != NULL ? options : &defaults, list, &out};

@@ -463,6 +463,9 @@ static grobo_posture start_of(const check *c)
 int grobo_motion_check(const grobo_motion *motion, const grobo_model *model,
                        const grobo_check_options *options, grobo_diagnostics *list)
 {
+    if (motion == NULL || model == NULL) {
+        return GROBO_ERR_ARG;
+    }
     static const grobo_check_options defaults;
     check c;
 

@@ -342,6 +342,9 @@ int grobo_i_clip_fill(const grobo_clip *clip, const grobo_posture *start)
 int grobo_motion_clip(const grobo_motion *motion, const grobo_clip_options *options,
                       grobo_clip *clip)
 {
+    if (motion == NULL || clip == NULL) {
+        return GROBO_ERR_ARG;
+    }
     static const grobo_clip_options defaults;
     grobo_clip made;
 
@@ -361,6 +364,9 @@ int grobo_motion_clip(const grobo_motion *motion, const grobo_clip_options *opti
 
 void grobo_motion_clip_free(grobo_clip *clip)
 {
+    if (clip == NULL) {
+        return;
+    }
     if (clip->ctx != NULL) {
         clip_free(clip->ctx);
     }

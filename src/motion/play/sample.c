@@ -218,6 +218,9 @@ static int add_frames(const grobo_clip *clip, grobo_motion *frames, size_t count
 int grobo_motion_resample(const grobo_clip *clip, double rate_hz, const grobo_mem *mem,
                           grobo_motion **frames)
 {
+    if (clip == NULL || frames == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_motion *made;
 
     if (clip->sample == NULL) {

@@ -85,8 +85,9 @@ static bool rows_equal(const grobo_motion *a, const grobo_motion *b, size_t n)
 
 bool grobo_motion_equal(const grobo_motion *a, const grobo_motion *b)
 {
-    if (a->kind != b->kind || a->size != b->size || a->n_joints != b->n_joints ||
-        a->frame_rate_hz != b->frame_rate_hz || a->frame_times != b->frame_times ||
+    if (a == NULL || b == NULL || a->kind != b->kind || a->size != b->size ||
+        a->n_joints != b->n_joints || a->frame_rate_hz != b->frame_rate_hz ||
+        a->frame_times != b->frame_times ||
         strcmp(grobo_motion_name(a), grobo_motion_name(b)) != 0 ||
         strcmp(grobo_motion_target_body(a), grobo_motion_target_body(b)) != 0 ||
         !kept_equal(a->kept, b->kept)) {
@@ -121,7 +122,7 @@ static bool rows_near(const grobo_motion *a, const grobo_motion *b, size_t n, do
 bool grobo_motion_near(const grobo_motion *a, const grobo_motion *b, double delta_rad,
                        double delta_s)
 {
-    if (a->kind != b->kind || a->size != b->size) {
+    if (a == NULL || b == NULL || a->kind != b->kind || a->size != b->size) {
         return false;
     }
     for (size_t n = 0; n < a->size; n++) {

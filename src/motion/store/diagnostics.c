@@ -29,6 +29,9 @@ struct grobo_diagnostics {
 
 int grobo_diagnostics_new(grobo_diagnostics **list, const grobo_mem *mem)
 {
+    if (list == NULL) {
+        return GROBO_ERR_ARG;
+    }
     mem = mem != NULL ? mem : grobo_mem_default();
     grobo_diagnostics *made = grobo_i_new(mem, sizeof *made);
     if (made == NULL) {
@@ -41,6 +44,9 @@ int grobo_diagnostics_new(grobo_diagnostics **list, const grobo_mem *mem)
 
 void grobo_diagnostics_clear(grobo_diagnostics *list)
 {
+    if (list == NULL) {
+        return;
+    }
     grobo_i_free(list->mem, list->entries, list->room * sizeof *list->entries);
     for (int i = 0; i < list->n_files; i++) {
         grobo_i_free_text(list->mem, list->files[i]);
@@ -139,7 +145,7 @@ static void cut_copy(char *to, size_t size, const char *text)
 
 void grobo_diagnostics_add(grobo_diagnostics *list, const grobo_diagnostic *diagnostic)
 {
-    if (list == NULL || (unsigned)diagnostic->severity >= SEVERITIES) {
+    if (list == NULL || diagnostic == NULL || (unsigned)diagnostic->severity >= SEVERITIES) {
         return;
     }
     list->totals[diagnostic->severity]++;

@@ -87,16 +87,20 @@ static int time_of_step(const grobo_motion *motion, size_t n, const grobo_postur
 
 int grobo_motion_append(grobo_motion *motion, const grobo_posture *posture)
 {
-    return grobo_motion_insert(motion, motion->size, posture);
+    return motion == NULL ? GROBO_ERR_ARG : grobo_motion_insert(motion, motion->size, posture);
 }
 
 int grobo_motion_append_at(grobo_motion *motion, double time_s, const grobo_posture *posture)
 {
-    return insert_row(motion, motion->size, time_s, posture);
+    return motion == NULL || posture == NULL ? GROBO_ERR_ARG
+                                             : insert_row(motion, motion->size, time_s, posture);
 }
 
 int grobo_motion_insert(grobo_motion *motion, size_t n, const grobo_posture *posture)
 {
+    if (motion == NULL || posture == NULL) {
+        return GROBO_ERR_ARG;
+    }
     double time_s;
     int result = time_of_step(motion, n, posture, &time_s);
 
@@ -111,6 +115,9 @@ int grobo_motion_insert(grobo_motion *motion, size_t n, const grobo_posture *pos
 
 int grobo_motion_insert_at(grobo_motion *motion, double time_s, const grobo_posture *posture)
 {
+    if (posture == NULL || motion == NULL) {
+        return GROBO_ERR_ARG;
+    }
     size_t n = motion->size;
 
     if (motion->kind != GROBO_MOTION_KEYS && !motion->frame_times) {
@@ -125,7 +132,7 @@ int grobo_motion_insert_at(grobo_motion *motion, double time_s, const grobo_post
 
 int grobo_motion_delete(grobo_motion *motion, size_t n)
 {
-    if (n >= motion->size) {
+    if (motion == NULL || n >= motion->size) {
         return GROBO_ERR_ARG;
     }
     double step_s = grobo_i_time_s(motion, n) - (n > 0 ? grobo_i_time_s(motion, n - 1) : 0);
@@ -138,7 +145,7 @@ int grobo_motion_delete(grobo_motion *motion, size_t n)
 
 int grobo_motion_delete_keep_times(grobo_motion *motion, size_t n)
 {
-    if (n >= motion->size) {
+    if (motion == NULL || n >= motion->size) {
         return GROBO_ERR_ARG;
     }
     grobo_i_row_remove(motion, n);
@@ -147,6 +154,9 @@ int grobo_motion_delete_keep_times(grobo_motion *motion, size_t n)
 
 int grobo_motion_set(grobo_motion *motion, size_t n, const grobo_posture *posture)
 {
+    if (motion == NULL || posture == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_i_row row;
     int result = check_posture(motion, posture);
 
@@ -161,6 +171,9 @@ int grobo_motion_set(grobo_motion *motion, size_t n, const grobo_posture *postur
 
 int grobo_motion_set_time_s(grobo_motion *motion, size_t n, double time_s)
 {
+    if (motion == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_i_row row;
 
     if (!grobo_i_row_at(motion, n, &row) || grobo_i_at_rate(motion)) {

@@ -28,6 +28,9 @@ static bool link_ok(const grobo_ik_link *link)
 
 int grobo_motion_get_key(const grobo_motion *motion, size_t n, grobo_key_info *info)
 {
+    if (motion == NULL || info == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_i_row row;
 
     if (!grobo_i_row_at(motion, n, &row)) {
@@ -43,6 +46,9 @@ int grobo_motion_get_key(const grobo_motion *motion, size_t n, grobo_key_info *i
 
 int grobo_motion_set_key(grobo_motion *motion, size_t n, const grobo_key_info *info)
 {
+    if (motion == NULL || info == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_i_row row;
 
     if (!grobo_i_row_at(motion, n, &row)) {
@@ -64,6 +70,9 @@ int grobo_motion_set_key(grobo_motion *motion, size_t n, const grobo_key_info *i
 
 const char *grobo_motion_key_name(const grobo_motion *motion, size_t n)
 {
+    if (motion == NULL) {
+        return NULL;
+    }
     grobo_i_row row;
 
     if (!grobo_i_row_at(motion, n, &row) || *row.extra == NULL || (*row.extra)->name == NULL) {
@@ -74,6 +83,9 @@ const char *grobo_motion_key_name(const grobo_motion *motion, size_t n)
 
 int grobo_motion_set_key_name(grobo_motion *motion, size_t n, const char *name)
 {
+    if (motion == NULL || name == NULL) {
+        return GROBO_ERR_ARG;
+    }
     size_t length = strlen(name);
     grobo_i_row row;
 
@@ -95,6 +107,9 @@ int grobo_motion_set_key_name(grobo_motion *motion, size_t n, const char *name)
 
 const grobo_ik_link *grobo_motion_ik_links(const grobo_motion *motion, size_t n, size_t *count)
 {
+    if (motion == NULL || count == NULL) {
+        return NULL;
+    }
     grobo_i_row row;
 
     if (!grobo_i_row_at(motion, n, &row) || *row.extra == NULL) {
@@ -126,6 +141,9 @@ static int check_links(const grobo_ik_link *links, size_t count)
 int grobo_motion_set_ik_links(grobo_motion *motion, size_t n, const grobo_ik_link *links,
                               size_t count)
 {
+    if ((links == NULL && count > 0) || motion == NULL) {
+        return GROBO_ERR_ARG;
+    }
     size_t bytes = count * sizeof *links;
     grobo_ik_link *copy = NULL;
     grobo_i_row row;
@@ -173,6 +191,9 @@ static grobo_i_kept *const *kept_list(const grobo_motion *motion, size_t n)
 
 size_t grobo_motion_kept_count(const grobo_motion *motion, size_t n)
 {
+    if (motion == NULL) {
+        return 0;
+    }
     grobo_i_kept *const *list = kept_list(motion, n);
     size_t count = 0;
 
@@ -184,6 +205,9 @@ size_t grobo_motion_kept_count(const grobo_motion *motion, size_t n)
 
 int grobo_motion_get_kept(const grobo_motion *motion, size_t n, size_t i, grobo_kept *kept)
 {
+    if (motion == NULL || kept == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_i_kept *const *list = kept_list(motion, n);
     const grobo_i_kept *found = list != NULL ? *list : NULL;
 
@@ -203,6 +227,9 @@ int grobo_motion_get_kept(const grobo_motion *motion, size_t n, size_t i, grobo_
 
 int grobo_motion_keep(grobo_motion *motion, size_t n, const grobo_kept *kept)
 {
+    if (kept == NULL) {
+        return GROBO_ERR_ARG;
+    }
     bool top = n == GROBO_MOTION_TOP;
     bool of_top = kept->level == GROBO_KEPT_TOP || kept->level == GROBO_KEPT_COMPONENT;
     grobo_i_row row;

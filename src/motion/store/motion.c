@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#include <assert.h>
 #include <math.h>
 #include <string.h>
 
+#include "src/base/assert.h"
 #include "src/base/memory.h"
 #include "src/motion/store/container.h"
 #include "src/motion/text/utf8.h"
@@ -12,7 +12,8 @@
 int grobo_motion_new(grobo_motion **motion, grobo_motion_kind kind, int n_joints,
                      const grobo_mem *mem)
 {
-    if (kind < GROBO_MOTION_POSTURES || kind > GROBO_MOTION_FRAMES || n_joints < 0) {
+    if (motion == NULL || kind < GROBO_MOTION_POSTURES || kind > GROBO_MOTION_FRAMES ||
+        n_joints < 0) {
         return GROBO_ERR_ARG;
     }
     if (n_joints > GROBO_JOINTS_MAX) {
@@ -81,7 +82,7 @@ void grobo_i_take_rows(grobo_motion *to, grobo_motion *from)
 {
     grobo_motion empty = *to;
 
-    assert(to->size == 0 && to->mem == from->mem);
+    GROBO_ASSERT(to->size == 0 && to->mem == from->mem);
     to->chunks = from->chunks;
     to->n_chunks = from->n_chunks;
     to->chunk_room = from->chunk_room;
@@ -94,6 +95,9 @@ void grobo_i_take_rows(grobo_motion *to, grobo_motion *from)
 
 int grobo_motion_dup(const grobo_motion *motion, grobo_motion **copy)
 {
+    if (motion == NULL || copy == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_motion *made;
     int result = grobo_i_new_like(motion, &made);
 
@@ -112,6 +116,9 @@ int grobo_motion_dup(const grobo_motion *motion, grobo_motion **copy)
 
 void grobo_motion_renew(grobo_motion *motion, grobo_motion_kind kind)
 {
+    if (motion == NULL) {
+        return;
+    }
     if ((unsigned)kind > GROBO_MOTION_FRAMES) {
         return;
     }
@@ -137,12 +144,15 @@ bool grobo_i_is_named_for(const grobo_motion *motion, const grobo_model *model)
 
 bool grobo_motion_is_for(const grobo_motion *motion, const grobo_model *model)
 {
-    return model != NULL && motion->n_joints <= model->n_joints &&
+    return motion != NULL && model != NULL && motion->n_joints <= model->n_joints &&
            grobo_i_is_named_for(motion, model);
 }
 
 void grobo_motion_start(const grobo_motion *motion, const grobo_model *model, grobo_posture *start)
 {
+    if (motion == NULL || start == NULL) {
+        return;
+    }
     if (grobo_motion_is_for(motion, model)) {
         grobo_posture_init_pose(start, model);
     } else {
@@ -165,21 +175,24 @@ void grobo_i_start(const grobo_motion *motion, const grobo_model *model, const g
 
 size_t grobo_motion_size(const grobo_motion *motion)
 {
-    return motion->size;
+    return motion == NULL ? 0 : motion->size;
 }
 
 grobo_motion_kind grobo_motion_get_kind(const grobo_motion *motion)
 {
-    return motion->kind;
+    return motion == NULL ? GROBO_MOTION_POSTURES : motion->kind;
 }
 
 int grobo_motion_joints(const grobo_motion *motion)
 {
-    return motion->n_joints;
+    return motion == NULL ? GROBO_ERR_ARG : motion->n_joints;
 }
 
 int grobo_motion_set_joints(grobo_motion *motion, int n_joints)
 {
+    if (motion == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_i_row row;
 
     if (n_joints < 0) {
@@ -218,31 +231,42 @@ static int set_text(const grobo_mem *mem, char **text, const char *value)
 
 const char *grobo_motion_name(const grobo_motion *motion)
 {
+    if (motion == NULL) {
+        return NULL;
+    }
     return motion->name != NULL ? motion->name : "";
 }
 
 int grobo_motion_set_name(grobo_motion *motion, const char *name)
 {
-    return set_text(motion->mem, &motion->name, name);
+    return motion == NULL || name == NULL ? GROBO_ERR_ARG
+                                          : set_text(motion->mem, &motion->name, name);
 }
 
 const char *grobo_motion_target_body(const grobo_motion *motion)
 {
+    if (motion == NULL) {
+        return NULL;
+    }
     return motion->target_body != NULL ? motion->target_body : "";
 }
 
 int grobo_motion_set_target_body(grobo_motion *motion, const char *name)
 {
-    return set_text(motion->mem, &motion->target_body, name);
+    return motion == NULL || name == NULL ? GROBO_ERR_ARG
+                                          : set_text(motion->mem, &motion->target_body, name);
 }
 
 double grobo_motion_frame_rate(const grobo_motion *motion)
 {
-    return motion->frame_rate_hz;
+    return motion == NULL ? 0 : motion->frame_rate_hz;
 }
 
 int grobo_motion_set_frame_rate(grobo_motion *motion, double rate_hz)
 {
+    if (motion == NULL) {
+        return GROBO_ERR_ARG;
+    }
     /* Slower than this, and times would not stay within GROBO_I_TIME_MAX_S. */
     double least_hz = GROBO_MOTION_FRAMES_MAX / GROBO_I_TIME_MAX_S;
 
@@ -255,11 +279,14 @@ int grobo_motion_set_frame_rate(grobo_motion *motion, double rate_hz)
 
 bool grobo_motion_has_frame_times(const grobo_motion *motion)
 {
-    return motion->frame_times;
+    return motion != NULL && motion->frame_times;
 }
 
 int grobo_motion_set_frame_times(grobo_motion *motion, bool own)
 {
+    if (motion == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_i_row row;
 
     if (motion->kind != GROBO_MOTION_FRAMES) {
@@ -278,6 +305,9 @@ int grobo_motion_set_frame_times(grobo_motion *motion, bool own)
 
 int grobo_motion_get(const grobo_motion *motion, size_t n, grobo_posture *posture)
 {
+    if (motion == NULL || posture == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_i_row row;
 
     if (!grobo_i_row_at(motion, n, &row)) {
@@ -296,7 +326,7 @@ int grobo_motion_get(const grobo_motion *motion, size_t n, grobo_posture *postur
 
 int grobo_motion_rget(const grobo_motion *motion, size_t n, grobo_posture *posture)
 {
-    if (n == 0 || n > motion->size) {
+    if (motion == NULL || n == 0 || n > motion->size) {
         return GROBO_ERR_ARG;
     }
     return grobo_motion_get(motion, motion->size - n, posture);
@@ -304,7 +334,7 @@ int grobo_motion_rget(const grobo_motion *motion, size_t n, grobo_posture *postu
 
 int grobo_motion_time_s(const grobo_motion *motion, size_t n, double *time_s)
 {
-    if (n >= motion->size) {
+    if (motion == NULL || time_s == NULL || n >= motion->size) {
         return GROBO_ERR_ARG;
     }
     *time_s = grobo_i_time_s(motion, n);
@@ -313,6 +343,9 @@ int grobo_motion_time_s(const grobo_motion *motion, size_t n, double *time_s)
 
 int64_t grobo_motion_step_us(const grobo_motion *motion, size_t n)
 {
+    if (motion == NULL) {
+        return 0;
+    }
     if (n >= motion->size) {
         return GROBO_ERR_ARG;
     }
@@ -322,6 +355,9 @@ int64_t grobo_motion_step_us(const grobo_motion *motion, size_t n)
 
 int64_t grobo_motion_length_us(const grobo_motion *motion, int64_t default_us)
 {
+    if (motion == NULL) {
+        return 0;
+    }
     int64_t length_us = 0;
 
     if (motion->size == 0) {
@@ -342,6 +378,9 @@ int64_t grobo_motion_length_us(const grobo_motion *motion, int64_t default_us)
 
 uint32_t grobo_motion_line(const grobo_motion *motion, size_t n)
 {
+    if (motion == NULL) {
+        return 0;
+    }
     grobo_i_row row;
 
     return grobo_i_row_at(motion, n, &row) ? *row.line : 0;
@@ -350,6 +389,9 @@ uint32_t grobo_motion_line(const grobo_motion *motion, size_t n)
 bool grobo_motion_position(const grobo_motion *motion, size_t n, int joint, uint32_t *line,
                            uint32_t *column)
 {
+    if (motion == NULL || line == NULL || column == NULL) {
+        return false;
+    }
     grobo_i_row row;
 
     if (!grobo_i_row_at(motion, n, &row) || *row.extra == NULL || joint < 0 ||
@@ -365,28 +407,36 @@ bool grobo_motion_position(const grobo_motion *motion, size_t n, int joint, uint
 
 bool grobo_motion_set_reverse(grobo_motion *motion, bool reverse)
 {
+    if (motion == NULL) {
+        return false;
+    }
     motion->reverse = reverse;
     return reverse;
 }
 
 bool grobo_motion_is_reverse(const grobo_motion *motion)
 {
-    return motion->reverse;
+    return motion != NULL && motion->reverse;
 }
 
 void grobo_motion_reset(grobo_motion *motion)
 {
-    /* Of an empty motion the last is SIZE_MAX: behind the end, as it must be. */
-    motion->place = motion->reverse ? motion->size - 1 : 0;
+    if (motion != NULL) {
+        /* Of an empty motion the last is SIZE_MAX: behind the end, as it must be. */
+        motion->place = motion->reverse ? motion->size - 1 : 0;
+    }
 }
 
 size_t grobo_motion_current(const grobo_motion *motion)
 {
-    return motion->place;
+    return motion == NULL ? 0 : motion->place;
 }
 
 int grobo_motion_next(grobo_motion *motion, grobo_posture *posture)
 {
+    if (posture == NULL || motion == NULL) {
+        return GROBO_ERR_ARG;
+    }
     if (grobo_motion_get(motion, motion->place, posture) < 0) {
         return 0;
     }

@@ -283,6 +283,9 @@ void grobo_i_row_remove(grobo_motion *motion, size_t n)
 
 void grobo_motion_clear(grobo_motion *motion)
 {
+    if (motion == NULL) {
+        return;
+    }
     for (size_t k = 0; k < motion->n_chunks; k++) {
         for (size_t i = 0; i < motion->chunks[k].count; i++) {
             grobo_i_extra_free(motion->mem, motion->chunks[k].extra[i]);

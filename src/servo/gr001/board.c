@@ -20,6 +20,9 @@ enum {
 
 int grobo_board_check(uint8_t *buf, size_t cap)
 {
+    if (buf == NULL) {
+        return GROBO_ERR_ARG;
+    }
     if (cap < CHECK_BYTES) {
         return GROBO_ERR_SPACE;
     }
@@ -41,12 +44,12 @@ static int build_play(uint8_t what, uint8_t k, uint8_t *buf, size_t cap)
 
 int grobo_board_slot(uint8_t k, uint8_t *buf, size_t cap)
 {
-    return build_play(PLAY_SLOT, k, buf, cap);
+    return buf == NULL ? GROBO_ERR_ARG : build_play(PLAY_SLOT, k, buf, cap);
 }
 
 int grobo_board_scenario(uint8_t k, uint8_t *buf, size_t cap)
 {
-    return build_play(PLAY_SCENARIO, k, buf, cap);
+    return buf == NULL ? GROBO_ERR_ARG : build_play(PLAY_SCENARIO, k, buf, cap);
 }
 
 /* r is the byte behind the packet, or < 0 for none. */
@@ -73,7 +76,8 @@ static int build_relay(const uint8_t *packet, size_t n, int r, uint8_t *buf, siz
 
 int grobo_board_send(const uint8_t *packet, size_t n, uint8_t *buf, size_t cap)
 {
-    return build_relay(packet, n, -1, buf, cap);
+    return (packet == NULL && n > 0) || buf == NULL ? GROBO_ERR_ARG
+                                                    : build_relay(packet, n, -1, buf, cap);
 }
 
 int grobo_board_ask(const uint8_t *packet, size_t n, uint8_t r, uint8_t *buf, size_t cap)
@@ -83,6 +87,9 @@ int grobo_board_ask(const uint8_t *packet, size_t n, uint8_t r, uint8_t *buf, si
 
 int grobo_board_relay(const uint8_t *packet, size_t n, uint8_t *buf, size_t cap)
 {
+    if (buf == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_reply reply;
     int r = grobo_rs30x_reply_to(packet, n, &reply);
     return r < 0 ? r : build_relay(packet, n, r == 0 ? -1 : r, buf, cap);
@@ -148,6 +155,9 @@ static void unpack(const uint8_t *bytes, size_t n, grobo_board_frame *frame)
 
 int grobo_board_peek(const uint8_t *bytes, size_t n, grobo_board_frame *frame)
 {
+    if ((bytes == NULL && n > 0) || frame == NULL) {
+        return GROBO_ERR_ARG;
+    }
     int size = n > 0 ? measure(bytes, n) : 0;
     if (size > 0) {
         unpack(bytes, (size_t)size, frame);
@@ -157,6 +167,9 @@ int grobo_board_peek(const uint8_t *bytes, size_t n, grobo_board_frame *frame)
 
 int grobo_board_parse(const uint8_t *bytes, size_t n, grobo_board_frame *frame)
 {
+    if ((bytes == NULL && n > 0) || frame == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_board_frame found;
     int size = grobo_board_peek(bytes, n, &found);
     if (size <= 0 || (size_t)size != n) {

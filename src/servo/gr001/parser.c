@@ -14,6 +14,9 @@ static int measure(const uint8_t *bytes, size_t n, unsigned accept)
 
 void grobo_board_parser_init(grobo_board_parser *parser, uint32_t stall_us)
 {
+    if (parser == NULL) {
+        return;
+    }
     grobo_i_framer_init(&parser->framer);
     parser->stalls = 0;
     parser->stall_us = stall_us != 0 ? stall_us : GROBO_BOARD_STALL_US;
@@ -31,6 +34,9 @@ static void abandon_what_stands_still(grobo_board_parser *parser, int64_t now_us
 size_t grobo_board_parser_feed(grobo_board_parser *parser, int64_t now_us, const uint8_t *bytes,
                                size_t n)
 {
+    if ((bytes == NULL && n > 0) || parser == NULL) {
+        return 0;
+    }
     abandon_what_stands_still(parser, now_us);
     size_t took = grobo_i_framer_feed(&parser->framer, bytes, n);
     if (took > 0) {
@@ -41,6 +47,9 @@ size_t grobo_board_parser_feed(grobo_board_parser *parser, int64_t now_us, const
 
 int grobo_board_parser_next(grobo_board_parser *parser, int64_t now_us, grobo_board_frame *frame)
 {
+    if (frame == NULL || parser == NULL) {
+        return GROBO_ERR_ARG;
+    }
     abandon_what_stands_still(parser, now_us);
     size_t size = grobo_i_framer_next(&parser->framer, measure, 0);
     if (size == 0) {
@@ -51,7 +60,7 @@ int grobo_board_parser_next(grobo_board_parser *parser, int64_t now_us, grobo_bo
 
 int64_t grobo_board_parser_deadline(const grobo_board_parser *parser)
 {
-    if (grobo_i_framer_pending(&parser->framer) == 0) {
+    if (parser == NULL || grobo_i_framer_pending(&parser->framer) == 0) {
         return GROBO_NEVER_US;
     }
     return parser->last_us + parser->stall_us;
@@ -59,5 +68,7 @@ int64_t grobo_board_parser_deadline(const grobo_board_parser *parser)
 
 void grobo_board_parser_reset(grobo_board_parser *parser)
 {
-    grobo_i_framer_reset(&parser->framer);
+    if (parser != NULL) {
+        grobo_i_framer_reset(&parser->framer);
+    }
 }

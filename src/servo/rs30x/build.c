@@ -36,6 +36,9 @@ static bool data_fits(const uint8_t *header, const grobo_rs30x_packet *packet)
 
 int grobo_rs30x_build(const grobo_rs30x_packet *packet, uint8_t *buf, size_t cap)
 {
+    if (packet == NULL || buf == NULL) {
+        return GROBO_ERR_ARG;
+    }
     if (packet->kind == GROBO_RS30X_ACK_BYTE || packet->kind == GROBO_RS30X_NACK_BYTE) {
         bool ack = packet->kind == GROBO_RS30X_ACK_BYTE;
         return build_byte(ack ? GROBO_RS30X_ACK : GROBO_RS30X_NACK, buf, cap);
@@ -164,6 +167,9 @@ static int put_goal(const grobo_rs30x_goal *goal, uint8_t *at)
 
 int grobo_rs30x_write_goal(const grobo_rs30x_goal *goal, uint8_t *buf, size_t cap)
 {
+    if (goal == NULL) {
+        return GROBO_ERR_ARG;
+    }
     const uint8_t target[] = {goal->id, 0, GROBO_RS30X_GOAL};
     uint8_t data[GOAL_BYTES];
     int result = put_goal(goal, data);
@@ -198,6 +204,9 @@ static bool is_servo(uint8_t id)
 
 int grobo_rs30x_write_goals(const grobo_rs30x_goal *goals, size_t n, uint8_t *buf, size_t cap)
 {
+    if ((goals == NULL && n > 0) || buf == NULL) {
+        return GROBO_ERR_ARG;
+    }
     const size_t each = 1 + GOAL_BYTES;
     int result = check_long(n, each, cap);
     for (size_t i = 0; i < n && result >= 0; i++) {
@@ -211,6 +220,9 @@ int grobo_rs30x_write_goals(const grobo_rs30x_goal *goals, size_t n, uint8_t *bu
 int grobo_rs30x_write_bytes(uint8_t address, const grobo_rs30x_byte *bytes, size_t n, uint8_t *buf,
                             size_t cap)
 {
+    if (buf == NULL || (bytes == NULL && n > 0)) {
+        return GROBO_ERR_ARG;
+    }
     const size_t each = 2;
     int result = check_long(n, each, cap);
     if (address >= GROBO_REGISTERS) {

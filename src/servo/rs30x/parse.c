@@ -157,6 +157,9 @@ static void unpack(const uint8_t *bytes, size_t n, grobo_rs30x_packet *packet)
 int grobo_rs30x_peek(const uint8_t *bytes, size_t n, unsigned accept, grobo_rs30x_packet *packet,
                      bool *sum_ok)
 {
+    if ((bytes == NULL && n > 0) || packet == NULL || sum_ok == NULL) {
+        return GROBO_ERR_ARG;
+    }
     int size = n > 0 ? measure_form(bytes, n, accept) : 0;
     if (size > 0) {
         unpack(bytes, (size_t)size, packet);
@@ -167,17 +170,25 @@ int grobo_rs30x_peek(const uint8_t *bytes, size_t n, unsigned accept, grobo_rs30
 
 void grobo_rs30x_parser_init(grobo_rs30x_parser *parser, unsigned accept)
 {
+    if (parser == NULL) {
+        return;
+    }
     grobo_i_framer_init(&parser->framer);
     parser->accept = accept;
 }
 
 size_t grobo_rs30x_parser_feed(grobo_rs30x_parser *parser, const uint8_t *bytes, size_t n)
 {
-    return grobo_i_framer_feed(&parser->framer, bytes, n);
+    return parser == NULL || (bytes == NULL && n > 0)
+               ? 0
+               : grobo_i_framer_feed(&parser->framer, bytes, n);
 }
 
 int grobo_rs30x_parser_next(grobo_rs30x_parser *parser, grobo_rs30x_packet *packet)
 {
+    if (packet == NULL || parser == NULL) {
+        return GROBO_ERR_ARG;
+    }
     size_t size = grobo_i_framer_next(&parser->framer, grobo_i_rs30x_measure, parser->accept);
     if (size == 0) {
         return 0;
@@ -188,21 +199,28 @@ int grobo_rs30x_parser_next(grobo_rs30x_parser *parser, grobo_rs30x_packet *pack
 
 void grobo_rs30x_parser_end(grobo_rs30x_parser *parser)
 {
-    grobo_i_framer_end(&parser->framer);
+    if (parser != NULL) {
+        grobo_i_framer_end(&parser->framer);
+    }
 }
 
 void grobo_rs30x_parser_reset(grobo_rs30x_parser *parser)
 {
-    grobo_i_framer_reset(&parser->framer);
+    if (parser != NULL) {
+        grobo_i_framer_reset(&parser->framer);
+    }
 }
 
 size_t grobo_rs30x_parser_pending(const grobo_rs30x_parser *parser)
 {
-    return grobo_i_framer_pending(&parser->framer);
+    return parser == NULL ? 0 : grobo_i_framer_pending(&parser->framer);
 }
 
 size_t grobo_rs30x_reply_bytes(const grobo_reply *reply)
 {
+    if (reply == NULL) {
+        return 0;
+    }
     switch (reply->kind) {
     case GROBO_REPLY_NONE:
         return 0;
@@ -243,6 +261,9 @@ static int reply_to_nibble(const uint8_t *packet, grobo_reply *reply)
 
 int grobo_rs30x_reply_to(const uint8_t *packet, size_t n, grobo_reply *reply)
 {
+    if ((packet == NULL && n > 0) || reply == NULL) {
+        return GROBO_ERR_ARG;
+    }
     grobo_reply found = {GROBO_REPLY_NONE, 0, 0, 0};
     int size = n > 0 ? grobo_i_rs30x_measure(packet, n, GROBO_ACCEPT_COMMANDS) : 0;
     if (size < 0) {

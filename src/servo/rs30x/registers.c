@@ -41,6 +41,9 @@ static bool same_text(const char *a, const char *b)
 
 const grobo_rs30x_register *grobo_rs30x_register_named(const char *name)
 {
+    if (name == NULL) {
+        return NULL;
+    }
     for (size_t i = 0; i < grobo_rs30x_register_count(); i++) {
         if (same_text(rows[i].name, name)) {
             return &rows[i];
@@ -61,6 +64,9 @@ const grobo_rs30x_register *grobo_rs30x_register_at(uint8_t address)
 
 int32_t grobo_rs30x_register_get(const grobo_rs30x_register *reg, const uint8_t *bytes)
 {
+    if (reg == NULL || bytes == NULL) {
+        return 0;
+    }
     if (reg->bytes == 1) {
         return bytes[0];
     }
@@ -69,6 +75,9 @@ int32_t grobo_rs30x_register_get(const grobo_rs30x_register *reg, const uint8_t 
 
 int grobo_rs30x_register_put(const grobo_rs30x_register *reg, int32_t value, uint8_t *bytes)
 {
+    if (reg == NULL || bytes == NULL) {
+        return GROBO_ERR_ARG;
+    }
     if (value < reg->min || value > reg->max) {
         return GROBO_ERR_LIMIT;
     }

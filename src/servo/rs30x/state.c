@@ -29,6 +29,9 @@ enum { WINDOW_AT = GROBO_RS30X_TORQUE, WINDOW_BYTES = GROBO_RS30X_VOLTAGE + 2 - 
 int grobo_rs30x_state_decode(uint8_t address, const uint8_t *data, size_t n,
                              grobo_rs30x_state *state)
 {
+    if ((data == NULL && n > 0) || state == NULL) {
+        return GROBO_ERR_ARG;
+    }
     const grobo_i_span block = {data, n};
     uint8_t window[WINDOW_BYTES] = {0};
     int found = 0;

@@ -1,0 +1,107 @@
+/* SPDX-License-Identifier: MIT */
+/* What always holds of the engine, when nobody is inside of it (docs/design.md). */
+#include <math.h>
+
+#include "src/base/assert.h"
+#include "src/robot/robot.h"
+
+/* True if a frame waits that carries the joint's next target. */
+static bool next_waits(const grobo_robot *robot, int joint)
+{
+    for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
+        const grobo_robot_slot *slot = &robot->slots[i];
+        if (slot->use == GROBO_I_USE_MOTION && slot->txn.sent_us < 0 &&
+            slot->order.number == robot->axes[joint].next &&
+            (slot->order.joints & GROBO_JOINT_BIT(joint)) != 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* A target is never outside the limits; it may be a rounding beside them. */
+static bool is_inside(const grobo_robot *robot, int joint, double angle_rad)
+{
+    const grobo_joint *limits = &robot->driver->model->joints[joint];
+    const double rounding_rad = 1e-9;
+    return angle_rad >= limits->min_rad - rounding_rad &&
+           angle_rad <= limits->max_rad + rounding_rad;
+}
+
+static void assert_axis(const grobo_robot *robot, int joint)
+{
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    GROBO_ASSERT(axis->way.from_us <= axis->way.to_us);
+    bool on_way = axis->has_target && axis->way.from_us < axis->way.to_us;
+    GROBO_ASSERT(!on_way || is_inside(robot, joint, axis->way.to_rad));
+    GROBO_ASSERT(axis->next == 0 || is_inside(robot, joint, axis->next_rad));
+    GROBO_ASSERT(axis->next == 0 || next_waits(robot, joint));
+    GROBO_ASSERT(!axis->sensed || isfinite(axis->state.angle_rad));
+    GROBO_ASSERT(!axis->sensed || axis->angle_us != GROBO_NEVER_US);
+    GROBO_ASSERT(!axis->held || axis->sensed);
+    GROBO_ASSERT(!axis->torque_known || (axis->state.valid & GROBO_FIELD_TORQUE) != 0);
+    GROBO_ASSERT(!grobo_i_way_is_short(axis) || axis->told_to_us > axis->way.from_us);
+}
+
+static void assert_slot(const grobo_robot *robot, const grobo_robot_slot *slot)
+{
+    const bool used = slot->use != GROBO_I_USE_FREE;
+    GROBO_ASSERT(used == grobo_txn_is_pending(&slot->txn));
+    if (!used) {
+        return;
+    }
+    GROBO_ASSERT(robot->link);
+    GROBO_ASSERT(slot->robot == robot);
+    GROBO_ASSERT(slot->exchange.frame_bytes > 0);
+    GROBO_ASSERT(slot->txn.frame == slot->exchange.frame);
+    GROBO_ASSERT(!slot->reads || slot->joint < robot->driver->model->n_joints);
+    GROBO_ASSERT(slot->use != GROBO_I_USE_JOB || grobo_i_job_has(slot));
+    GROBO_ASSERT((slot->order.joints & ~grobo_i_all_joints(robot)) == 0);
+    /* What waits to move a joint ends with the stop; what brings a motion to rest may leave. */
+    bool goal = slot->order.deed == GROBO_I_DEED_GOAL || slot->order.deed == GROBO_I_DEED_SEGMENT;
+    GROBO_ASSERT(!robot->trip.latched || !goal || slot->order.stops || slot->txn.sent_us >= 0);
+}
+
+static void assert_job(const grobo_robot *robot)
+{
+    const grobo_robot_task *job = &robot->job;
+    if (job->kind == GROBO_JOB_NONE) {
+        return;
+    }
+    GROBO_ASSERT(robot->link);
+    GROBO_ASSERT(job->script != NULL && job->number > 0 && job->number == robot->last_number);
+    GROBO_ASSERT(job->activity <= GROBO_I_WAIT);
+    GROBO_ASSERT((job->todo & ~grobo_i_all_joints(robot)) == 0);
+    GROBO_ASSERT((job->failed & ~grobo_i_all_joints(robot)) == 0);
+    GROBO_ASSERT(job->activity != GROBO_I_ASK || grobo_i_slots_busy(robot, GROBO_I_USE_JOB));
+}
+
+static void assert_stop(const grobo_robot *robot)
+{
+    const grobo_trip_info *trip = &robot->trip;
+    GROBO_ASSERT(trip->latched == (trip->trip != GROBO_TRIP_NONE));
+    GROBO_ASSERT(!trip->latched || robot->free_joints == 0);
+    GROBO_ASSERT(!robot->stop_owed || trip->trip == GROBO_TRIP_ESTOP);
+    GROBO_ASSERT(robot->job.kind != GROBO_JOB_ESTOP || trip->trip == GROBO_TRIP_ESTOP);
+    GROBO_ASSERT(trip->trip != GROBO_TRIP_ESTOP || !grobo_robot_is_playing(robot));
+}
+
+void grobo_i_robot_assert(const grobo_robot *robot)
+{
+    int used = 0;
+    for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
+        assert_slot(robot, &robot->slots[i]);
+        used += robot->slots[i].use != GROBO_I_USE_FREE;
+    }
+    GROBO_ASSERT(used == grobo_bus_pending(&robot->bus));
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        assert_axis(robot, j);
+    }
+    assert_job(robot);
+    assert_stop(robot);
+    GROBO_ASSERT(robot->acting == 0);
+    GROBO_ASSERT(robot->link || !grobo_robot_is_playing(robot));
+    GROBO_ASSERT(robot->events_head < GROBO_ROBOT_EVENTS && robot->events_n <= GROBO_ROBOT_EVENTS);
+    grobo_joint_mask told = robot->round | robot->other_round | robot->free_joints;
+    GROBO_ASSERT(((told | robot->raw_joints) & ~grobo_i_all_joints(robot)) == 0);
+}

@@ -1,0 +1,314 @@
+/* SPDX-License-Identifier: MIT */
+/* Bus, sequencer, engine and simulator refuse NULL for each thing that must be there. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include <grobo/board.h>
+#include <grobo/hrpsys.h>
+#include <grobo/robot.h>
+#include <grobo/sim.h>
+
+#define REFUSES(call) assert_int_equal(call, GROBO_ERR_ARG)
+
+static uint8_t bytes[256];
+static char text[] = "CHEST";
+static double reals[64];
+static int ints[64];
+static int32_t wides[64];
+static grobo_clip clip;
+static grobo_bus bus;
+static grobo_bus_config bus_config;
+static grobo_txn txn;
+static grobo_bus_cost cost;
+static const grobo_driver *driver;
+static grobo_robot robot;
+static grobo_posture posture;
+static grobo_play_options play_options;
+static grobo_hrpsys hrpsys;
+static grobo_joint_mask joints;
+static const char *const names[] = {"CHEST", NULL};
+static grobo_robot_config robot_config;
+static grobo_register_io io;
+static grobo_joint_info joint_info;
+static grobo_trip_info trip;
+static grobo_play_progress progress;
+static grobo_budget budget;
+static grobo_jitter jitter;
+static grobo_sequencer seq;
+static grobo_play_frame frame;
+static grobo_sim_config sim_config;
+static grobo_sim sim;
+static grobo_sim_view view;
+
+static void on_event(void *ctx, const grobo_event *event)
+{
+    (void)ctx;
+    (void)event;
+}
+
+static int set_up(void **state)
+{
+    (void)state;
+    driver = grobo_gr001_driver(GROBO_WIRING_BOARD);
+    bus_config.protocol = driver->protocol;
+    assert_int_equal(grobo_bus_init(&bus, &bus_config), GROBO_OK);
+    assert_int_equal(grobo_board_check(bytes, sizeof bytes), 2);
+    assert_int_equal(grobo_txn_init(&txn, driver->protocol, bytes, 2), GROBO_OK);
+    assert_int_equal(grobo_robot_init(&robot, driver, NULL, NULL, 0), GROBO_OK);
+    grobo_robot_link_up(&robot, 0);
+    grobo_hrpsys_init(&hrpsys, &robot);
+    grobo_sequencer_init(&seq, driver->model);
+    assert_int_equal(grobo_sim_init(&sim, NULL, 0), GROBO_OK);
+    grobo_posture_init_pose(&posture, driver->model);
+    io = (grobo_register_io){.id = 1, .length = 1};
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    return 0;
+}
+
+static void bus_refuses_null(void **state)
+{
+    (void)state;
+    REFUSES(grobo_bus_init(NULL, &bus_config));
+    REFUSES(grobo_bus_init(&bus, NULL));
+    REFUSES(grobo_txn_init(NULL, &grobo_rs30x_protocol, bytes, 1));
+    REFUSES(grobo_txn_init(&txn, NULL, bytes, 1));
+    REFUSES(grobo_txn_init(&txn, &grobo_rs30x_protocol, NULL, 1));
+    REFUSES(grobo_bus_submit(NULL, &txn));
+    REFUSES(grobo_bus_submit(&bus, NULL));
+    assert_false(grobo_txn_is_pending(NULL));
+    REFUSES(grobo_bus_cancel(NULL, &txn));
+    REFUSES(grobo_bus_cancel(&bus, NULL));
+    REFUSES(grobo_bus_raise(NULL, &txn, 0));
+    REFUSES(grobo_bus_raise(&bus, NULL, 0));
+    REFUSES(grobo_bus_cancel_all(NULL, 0, 0));
+    grobo_bus_rx(NULL, 1000, bytes, 1);
+    grobo_bus_rx(&bus, 1000, NULL, 1);
+    grobo_bus_step(NULL, 1000);
+    REFUSES(grobo_bus_tx(NULL, 1000, bytes, sizeof bytes));
+    REFUSES(grobo_bus_tx(&bus, 1000, NULL, sizeof bytes));
+    assert_true(grobo_bus_deadline(NULL, 1000) == GROBO_NEVER_US);
+    grobo_bus_reserve(NULL, 0, 0);
+    assert_false(grobo_bus_fits(NULL, 1000, &txn));
+    assert_false(grobo_bus_fits(&bus, 1000, NULL));
+    assert_true(grobo_bus_free_at(NULL, 1000) == GROBO_NEVER_US);
+    REFUSES(grobo_bus_pending(NULL));
+    grobo_bus_cost_of(NULL, &txn, &cost);
+    grobo_bus_cost_of(&bus, NULL, &cost);
+    grobo_bus_cost_of(&bus, &txn, NULL);
+}
+
+static void hrpsys_refuses_null(void **state)
+{
+    (void)state;
+    grobo_hrpsys_init(NULL, &robot);
+    grobo_hrpsys_init(&hrpsys, NULL);
+    REFUSES(grobo_hrpsys_find(NULL, text, &joints));
+    REFUSES(grobo_hrpsys_find(&hrpsys, NULL, &joints));
+    REFUSES(grobo_hrpsys_find(&hrpsys, text, NULL));
+    REFUSES(grobo_hrpsys_add_joint_group(NULL, text, names, 1));
+    REFUSES(grobo_hrpsys_add_joint_group(&hrpsys, NULL, names, 1));
+    REFUSES(grobo_hrpsys_add_joint_group(&hrpsys, text, NULL, 1));
+    REFUSES(grobo_hrpsys_names_to_ids(NULL, names, 1, ints));
+    REFUSES(grobo_hrpsys_names_to_ids(&hrpsys, NULL, 1, ints));
+    REFUSES(grobo_hrpsys_names_to_ids(&hrpsys, names, 1, NULL));
+    REFUSES(grobo_hrpsys_names_to_motors(NULL, names, 1, ints));
+    REFUSES(grobo_hrpsys_names_to_motors(&hrpsys, NULL, 1, ints));
+    REFUSES(grobo_hrpsys_names_to_motors(&hrpsys, names, 1, NULL));
+    REFUSES(grobo_hrpsys_servo(NULL, 1, true, 1000));
+    REFUSES(grobo_hrpsys_servo_name(NULL, text, true, 1000));
+    REFUSES(grobo_hrpsys_servo_name(&hrpsys, NULL, true, 1000));
+    REFUSES(grobo_hrpsys_read_joint_angles(NULL, reals, sizeof bytes, 0, 1000));
+    REFUSES(grobo_hrpsys_read_joint_angles(&hrpsys, NULL, sizeof bytes, 0, 1000));
+    REFUSES(grobo_hrpsys_write_joint_commands(NULL, reals, 1));
+    REFUSES(grobo_hrpsys_write_joint_commands(&hrpsys, NULL, 1));
+    REFUSES(grobo_hrpsys_set_period_us(NULL, 0));
+    REFUSES(grobo_hrpsys_one_step(NULL, 1000));
+    REFUSES(grobo_hrpsys_check_emergency(NULL, text, sizeof bytes, ints));
+    REFUSES(grobo_hrpsys_check_emergency(&hrpsys, NULL, sizeof bytes, ints));
+}
+
+static void robot_refuses_null_in_its_first_functions(void **state)
+{
+    (void)state;
+    REFUSES(grobo_robot_init(NULL, driver, NULL, &robot_config, 1000));
+    REFUSES(grobo_robot_init(&robot, NULL, NULL, &robot_config, 1000));
+    grobo_robot_on_event(NULL, on_event, NULL);
+    REFUSES(grobo_robot_configure(NULL, &robot_config));
+    grobo_robot_rx(NULL, bytes, 1, 1000);
+    grobo_robot_rx(&robot, NULL, 1, 1000);
+    REFUSES(grobo_robot_tx(NULL, bytes, sizeof bytes, 1000));
+    REFUSES(grobo_robot_tx(&robot, NULL, sizeof bytes, 1000));
+    grobo_robot_step(NULL, 1000);
+    assert_false(grobo_robot_stops(NULL, 1000));
+    assert_true(grobo_robot_deadline(NULL, 1000) == GROBO_NEVER_US);
+    grobo_robot_link_up(NULL, 1000);
+    grobo_robot_link_down(NULL, 1000);
+    REFUSES(grobo_robot_check(NULL, 1000));
+    REFUSES(grobo_robot_sense(NULL, 1, 0, 1000));
+    REFUSES(grobo_robot_torque(NULL, 1, 0, 1000));
+    REFUSES(grobo_robot_move(NULL, &posture, 1000));
+    REFUSES(grobo_robot_move(&robot, NULL, 1000));
+    REFUSES(grobo_robot_retarget(NULL, &posture, 1000));
+    REFUSES(grobo_robot_retarget(&robot, NULL, 1000));
+    REFUSES(grobo_robot_send(NULL, &posture, 1000));
+    REFUSES(grobo_robot_send(&robot, NULL, 1000));
+    REFUSES(grobo_robot_raw(NULL, bytes, 1, 1000));
+}
+
+static void robot_refuses_null_in_its_second_functions(void **state)
+{
+    (void)state;
+    REFUSES(grobo_robot_raw(&robot, NULL, 1, 1000));
+    REFUSES(grobo_robot_raw_until(NULL, bytes, 1, 1000, 1000));
+    REFUSES(grobo_robot_raw_until(&robot, NULL, 1, 1000, 1000));
+    REFUSES(grobo_robot_registers(NULL, &io, 1000));
+    REFUSES(grobo_robot_registers(&robot, NULL, 1000));
+    REFUSES(grobo_robot_command(NULL, 1, 0, 1000));
+    REFUSES(grobo_robot_stored(NULL, 0, 1, 1000));
+    REFUSES(grobo_robot_exit(NULL, 0, 1000));
+    REFUSES(grobo_robot_estop(NULL, 1000));
+    REFUSES(grobo_robot_latch(NULL, 1000));
+    REFUSES(grobo_robot_reset(NULL, 1000));
+    REFUSES(grobo_robot_cancel(NULL, 1000));
+    REFUSES(grobo_robot_play(NULL, &clip, &play_options, 1000));
+    REFUSES(grobo_robot_play(&robot, NULL, &play_options, 1000));
+    REFUSES(grobo_robot_enqueue(NULL, &clip, &play_options, 1000));
+    REFUSES(grobo_robot_enqueue(&robot, NULL, &play_options, 1000));
+    REFUSES(grobo_robot_pause(NULL, 1000));
+    REFUSES(grobo_robot_resume(NULL, 1000));
+    REFUSES(grobo_robot_stop(NULL, true, 1000));
+    REFUSES(grobo_robot_seek(NULL, 0, 1000));
+    REFUSES(grobo_robot_speed(NULL, 0, 1000));
+    REFUSES(grobo_robot_free(NULL, 1, true, 1000));
+    REFUSES(grobo_robot_joint(NULL, 1, 1000, &joint_info));
+}
+
+static void robot_refuses_null_in_its_third_functions(void **state)
+{
+    (void)state;
+    REFUSES(grobo_robot_joint(&robot, 1, 1000, NULL));
+    REFUSES(grobo_robot_posture(NULL, 1000, 0, &posture));
+    REFUSES(grobo_robot_posture(&robot, 1000, 0, NULL));
+    REFUSES(grobo_robot_target(NULL, &posture));
+    REFUSES(grobo_robot_target(&robot, NULL));
+    assert_false(grobo_robot_moving(NULL, 1000));
+    assert_false(grobo_robot_settling(NULL));
+    assert_int_equal(grobo_robot_job(NULL), GROBO_JOB_NONE);
+    grobo_robot_tripped(NULL, &trip);
+    grobo_robot_tripped(&robot, NULL);
+    REFUSES(grobo_robot_fault(NULL, reals));
+    assert_null(grobo_robot_get_counters(NULL));
+    assert_null(grobo_robot_get_bus_stats(NULL));
+    assert_int_equal(grobo_robot_play_state(NULL), GROBO_SEQUENCER_IDLE);
+    assert_false(grobo_robot_is_playing(NULL));
+    assert_false(grobo_robot_is_quiet(NULL));
+    grobo_robot_progress(NULL, 1000, &progress);
+    grobo_robot_progress(&robot, 1000, NULL);
+    REFUSES(grobo_robot_budget(NULL, &budget));
+    REFUSES(grobo_robot_budget(&robot, NULL));
+    grobo_robot_jitter(NULL, &jitter);
+    grobo_robot_jitter(&robot, NULL);
+    assert_null(grobo_robot_driver(NULL));
+}
+
+static void robot_config_refuses_null(void **state)
+{
+    (void)state;
+    REFUSES(grobo_budget_init(NULL, driver, NULL, &bus_config));
+    REFUSES(grobo_budget_init(&budget, NULL, NULL, &bus_config));
+}
+
+static void sequencer_refuses_null(void **state)
+{
+    (void)state;
+    grobo_sequencer_init(NULL, &grobo_gr001_model);
+    REFUSES(grobo_sequencer_play(NULL, &clip, &play_options, &posture, 1000));
+    REFUSES(grobo_sequencer_play(&seq, NULL, &play_options, &posture, 1000));
+    REFUSES(grobo_sequencer_enqueue(NULL, &clip, &play_options));
+    REFUSES(grobo_sequencer_enqueue(&seq, NULL, &play_options));
+    REFUSES(grobo_sequencer_pause(NULL, 1000));
+    REFUSES(grobo_sequencer_resume(NULL, 1000));
+    REFUSES(grobo_sequencer_stop(NULL, true, 1000));
+    REFUSES(grobo_sequencer_seek(NULL, 0, 1000));
+    REFUSES(grobo_sequencer_set_speed(NULL, 0, 1000));
+    REFUSES(grobo_sequencer_fail(NULL, 0));
+    grobo_sequencer_reset(NULL);
+    REFUSES(grobo_sequencer_next(NULL, 1000, &frame));
+    REFUSES(grobo_sequencer_next(&seq, 1000, NULL));
+    assert_true(grobo_sequencer_deadline(NULL) == GROBO_NEVER_US);
+    assert_int_equal(grobo_sequencer_get_state(NULL), GROBO_SEQUENCER_IDLE);
+    grobo_sequencer_progress(NULL, 1000, &progress);
+    grobo_sequencer_progress(&seq, 1000, NULL);
+    assert_null(grobo_sequencer_stats(NULL));
+}
+
+static void sim_refuses_null_in_its_first_functions(void **state)
+{
+    (void)state;
+    REFUSES(grobo_sim_fault_find(NULL, 4));
+    assert_null(grobo_sim_type_named(NULL, 4));
+    REFUSES(grobo_sim_init(NULL, &sim_config, 1000));
+    assert_int_equal(grobo_sim_rx(NULL, bytes, 1, 1000), 0);
+    assert_int_equal(grobo_sim_rx(&sim, NULL, 1, 1000), 0);
+    assert_int_equal(grobo_sim_tx(NULL, bytes, sizeof bytes, 1000), 0);
+    assert_int_equal(grobo_sim_tx(&sim, NULL, sizeof bytes, 1000), 0);
+    grobo_sim_step(NULL, 1000);
+    assert_true(grobo_sim_deadline(NULL) == GROBO_NEVER_US);
+    assert_true(grobo_sim_packet_deadline(NULL) == GROBO_NEVER_US);
+    assert_int_equal(grobo_sim_rx_room(NULL), 0);
+    assert_false(grobo_sim_hung_up(NULL));
+    grobo_sim_plug(NULL, true, 1000);
+    REFUSES(grobo_sim_set_line_bps(NULL, 115200));
+    REFUSES(grobo_sim_servos(NULL));
+    REFUSES(grobo_sim_find(NULL, 1));
+    REFUSES(grobo_sim_look(NULL, 0, &view));
+}
+
+static void sim_refuses_null_in_its_second_functions(void **state)
+{
+    (void)state;
+    REFUSES(grobo_sim_look(&sim, 0, NULL));
+    REFUSES(grobo_sim_get_register(NULL, 0, 0, wides));
+    REFUSES(grobo_sim_get_register(&sim, 0, 0, NULL));
+    REFUSES(grobo_sim_set_register(NULL, 0, 0, 0));
+    REFUSES(grobo_sim_get_flash(NULL, 0, bytes));
+    REFUSES(grobo_sim_get_flash(&sim, 0, NULL));
+    REFUSES(grobo_sim_set_flash(NULL, 0, bytes));
+    REFUSES(grobo_sim_set_flash(&sim, 0, NULL));
+    REFUSES(grobo_sim_set_angle(NULL, 0, 0, 1000));
+    REFUSES(grobo_sim_set_blocked(NULL, 0, true));
+    REFUSES(grobo_sim_set_load(NULL, 0, 0));
+    REFUSES(grobo_sim_set_temperature(NULL, 0, 0));
+    REFUSES(grobo_sim_set_cable(NULL, 0, 0));
+    grobo_sim_set_supply(NULL, 0);
+    REFUSES(grobo_sim_set_fault(NULL, 0, 0));
+    REFUSES(grobo_sim_set_faults(NULL, text, 4));
+    REFUSES(grobo_sim_set_faults(&sim, NULL, 4));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(bus_refuses_null),
+        cmocka_unit_test(hrpsys_refuses_null),
+        cmocka_unit_test(robot_refuses_null_in_its_first_functions),
+        cmocka_unit_test(robot_refuses_null_in_its_second_functions),
+        cmocka_unit_test(robot_refuses_null_in_its_third_functions),
+        cmocka_unit_test(robot_config_refuses_null),
+        cmocka_unit_test(sequencer_refuses_null),
+        cmocka_unit_test(sim_refuses_null_in_its_first_functions),
+        cmocka_unit_test(sim_refuses_null_in_its_second_functions),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}

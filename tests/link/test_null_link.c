@@ -1,0 +1,433 @@
+/* SPDX-License-Identifier: MIT */
+/* Ports, sessions, threads and their like refuse NULL for each thing that must be there.
+ * grobo_guard_run() takes it: NULL stands for all defaults. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+#include <event2/event.h>
+
+#include <grobo/estop.h>
+#include <grobo/gr001.h>
+#include <grobo/guard.h>
+#include <grobo/loop.h>
+#include <grobo/session.h>
+#include <grobo/sim_server.h>
+#include <grobo/thread.h>
+
+#define REFUSES(call) assert_int_equal(call, GROBO_ERR_ARG)
+
+static uint8_t bytes[256];
+static char text[] = "CHEST";
+static double reals[64];
+static int ints[64];
+static int32_t wides[64];
+static int16_t shorts[4];
+static uint64_t counts[2];
+static grobo_motion *motion;
+static grobo_motion *made_motion;
+static grobo_clip clip;
+static grobo_estop mark;
+static grobo_os_cause cause;
+static grobo_estop_holder holder;
+static grobo_robot robot;
+static grobo_posture posture;
+static FILE *stream;
+static grobo_play_options play_options;
+static grobo_guard_config guard_config;
+static struct event_base *base;
+static grobo_timer *timer;
+static grobo_timer *made_timer;
+static grobo_diagnostics *list;
+static grobo_thread thread;
+static grobo_robot_config robot_config;
+static grobo_register_io io;
+static grobo_serial_config serial_config;
+static grobo_serial *serial;
+static grobo_serial_counters counters;
+static grobo_session_config session_config;
+static grobo_session *session;
+static grobo_session *made_session;
+static grobo_sim_server_config server_config;
+static grobo_sim_server *made_server;
+static grobo_control_config control_config;
+static grobo_control *control;
+static grobo_control *made_control;
+
+static void on_timer(grobo_timer *from, int64_t late_us, void *ctx)
+{
+    (void)from;
+    (void)late_us;
+    (void)ctx;
+}
+
+static int on_control(grobo_control *from, void *arg)
+{
+    (void)from;
+    (void)arg;
+    return 0;
+}
+
+static int set_up(void **state)
+{
+    (void)state;
+    base = grobo_loop_new();
+    assert_non_null(base);
+    assert_int_equal(grobo_timer_new(base, on_timer, NULL, NULL, &timer), GROBO_OK);
+    assert_int_equal(grobo_serial_new(NULL, &serial), GROBO_OK);
+    session_config = (grobo_session_config){.base = base, .device = GROBO_DEVICE_SIM};
+    assert_int_equal(grobo_session_new(&session_config, &session), GROBO_OK);
+    control_config.session.device = GROBO_DEVICE_SIM;
+    assert_int_equal(grobo_control_new(&control_config, &control), GROBO_OK);
+    assert_int_equal(grobo_motion_new(&motion, GROBO_MOTION_POSTURES, 20, NULL), GROBO_OK);
+    assert_int_equal(
+        grobo_robot_init(&robot, grobo_gr001_driver(GROBO_WIRING_BOARD), NULL, NULL, 0), GROBO_OK);
+    grobo_posture_init_pose(&posture, &grobo_gr001_model);
+    stream = tmpfile();
+    assert_non_null(stream);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    (void)fclose(stream);
+    grobo_motion_free(motion);
+    assert_int_equal(grobo_control_free(control), GROBO_OK);
+    grobo_session_free(session);
+    grobo_serial_free(serial);
+    grobo_timer_free(timer);
+    event_base_free(base);
+    return 0;
+}
+
+static void estop_refuses_null(void **state)
+{
+    (void)state;
+    REFUSES(grobo_estop_set(NULL, &mark, &cause));
+    REFUSES(grobo_estop_clear(NULL, &cause));
+    assert_false(grobo_estop_stands(NULL));
+    REFUSES(grobo_estop_ask(NULL, &mark, &holder));
+    REFUSES(grobo_estop_ask(text, &mark, NULL));
+}
+
+static void gr001_refuses_null(void **state)
+{
+    (void)state;
+    REFUSES(grobo_gr001_torque(NULL, 1, 0, 1000));
+    REFUSES(grobo_gr001_servo(NULL, 0, 0, 1000));
+    REFUSES(grobo_gr001_move(NULL, 1, 0, 0, 1000));
+    REFUSES(grobo_gr001_sense(NULL, 1, 1000));
+    REFUSES(grobo_gr001_angle(NULL, 1, 1000, 0, ints));
+    REFUSES(grobo_gr001_angle(&robot, 1, 1000, 0, NULL));
+    REFUSES(grobo_gr001_pack_goal(0, 0, NULL, sizeof bytes));
+    REFUSES(grobo_gr001_posture(NULL, shorts, 1, 0, &posture));
+    REFUSES(grobo_gr001_posture(&grobo_gr001_model, NULL, 1, 0, &posture));
+    REFUSES(grobo_gr001_posture(&grobo_gr001_model, shorts, 1, 0, NULL));
+    REFUSES(grobo_gr001_set_angles(NULL, reals, 1, 1000, 1000));
+    REFUSES(grobo_gr001_set_angles(&robot, NULL, 1, 1000, 1000));
+    REFUSES(grobo_gr001_get_angles(NULL, 1000, 0, reals, sizeof bytes));
+    REFUSES(grobo_gr001_get_angles(&robot, 1000, 0, NULL, sizeof bytes));
+    REFUSES(grobo_gr001_voltages(NULL, 1000, 0, wides, sizeof bytes));
+    REFUSES(grobo_gr001_voltages(&robot, 1000, 0, NULL, sizeof bytes));
+    REFUSES(grobo_gr001_currents(NULL, 1000, 0, wides, sizeof bytes));
+    REFUSES(grobo_gr001_currents(&robot, 1000, 0, NULL, sizeof bytes));
+    REFUSES(grobo_gr001_mean_voltage_mv(NULL, 1000, 0));
+    REFUSES(grobo_gr001_print_voltages(NULL, 1000, stream));
+    REFUSES(grobo_gr001_print_voltages(&robot, 1000, NULL));
+    REFUSES(grobo_gr001_print_currents(NULL, 1000, stream));
+    REFUSES(grobo_gr001_print_currents(&robot, 1000, NULL));
+    REFUSES(grobo_gr001_print_posture(NULL, stream));
+    REFUSES(grobo_gr001_print_posture(&posture, NULL));
+    REFUSES(grobo_gr001_record(NULL, &robot, 1000, 1000));
+    REFUSES(grobo_gr001_record(motion, NULL, 1000, 1000));
+    REFUSES(grobo_gr001_play_record(NULL, &robot, &play_options, &clip, 1000));
+    REFUSES(grobo_gr001_play_record(motion, NULL, &play_options, &clip, 1000));
+    REFUSES(grobo_gr001_play_record(motion, &robot, &play_options, NULL, 1000));
+}
+
+static void guard_refuses_null(void **state)
+{
+    (void)state;
+    REFUSES(grobo_guard_new(&guard_config, NULL));
+    grobo_guard_free(NULL);
+    REFUSES(grobo_guard_pid(NULL));
+}
+
+static void loop_refuses_null(void **state)
+{
+    (void)state;
+    REFUSES(grobo_timer_new(NULL, on_timer, NULL, grobo_mem_default(), &made_timer));
+    REFUSES(grobo_timer_new(base, NULL, NULL, grobo_mem_default(), &made_timer));
+    REFUSES(grobo_timer_new(base, on_timer, NULL, grobo_mem_default(), NULL));
+    grobo_timer_free(NULL);
+    REFUSES(grobo_timer_set(NULL, 0));
+    assert_true(grobo_timer_deadline(NULL) == GROBO_NEVER_US);
+}
+
+static void serial_refuses_null_in_its_first_functions(void **state)
+{
+    (void)state;
+    REFUSES(grobo_serial_new(&serial_config, NULL));
+    grobo_serial_free(NULL);
+    REFUSES(grobo_serial_set_device(NULL, text));
+    assert_null(grobo_serial_device(NULL));
+    REFUSES(grobo_serial_set_mode(NULL, 0));
+    assert_int_equal(grobo_serial_get_mode(NULL), GROBO_SERIAL_SYNC);
+    REFUSES(grobo_serial_set_baud(NULL, 115200));
+    REFUSES(grobo_serial_baud(NULL));
+    REFUSES(grobo_serial_set_low_latency(NULL));
+    REFUSES(grobo_serial_low_latency(NULL));
+    REFUSES(grobo_serial_open(NULL));
+    grobo_serial_close(NULL);
+    assert_false(grobo_serial_is_open(NULL));
+    assert_int_equal(grobo_serial_handle(NULL), GROBO_HANDLE_NULL);
+    assert_null(grobo_serial_cause(NULL));
+    grobo_serial_get_counters(NULL, &counters);
+    grobo_serial_get_counters(serial, NULL);
+}
+
+static void serial_refuses_null_in_its_second_functions(void **state)
+{
+    (void)state;
+    REFUSES(grobo_serial_read(NULL, bytes, 1));
+    REFUSES(grobo_serial_read(serial, NULL, 1));
+    REFUSES(grobo_serial_write(NULL, bytes, 1));
+    REFUSES(grobo_serial_write(serial, NULL, 1));
+    REFUSES(grobo_serial_receive(NULL, bytes, 1));
+    REFUSES(grobo_serial_receive(serial, NULL, 1));
+    REFUSES(grobo_serial_send(NULL, bytes, 1));
+    REFUSES(grobo_serial_send(serial, NULL, 1));
+    assert_int_equal(grobo_serial_pending(NULL), 0);
+    assert_int_equal(grobo_serial_unsent(NULL), 0);
+    REFUSES(grobo_serial_waiting(NULL));
+    REFUSES(grobo_serial_discard(NULL));
+    grobo_serial_discard_output(NULL);
+    REFUSES(grobo_hex(NULL, sizeof bytes, bytes, 1));
+    REFUSES(grobo_hex(text, sizeof bytes, NULL, 1));
+    REFUSES(grobo_hex_print(NULL, bytes, 1));
+    REFUSES(grobo_hex_print(stream, NULL, 1));
+}
+
+static void session_refuses_null_in_its_first_functions(void **state)
+{
+    (void)state;
+    REFUSES(grobo_session_new(NULL, &made_session));
+    REFUSES(grobo_session_new(&session_config, NULL));
+    grobo_session_free(NULL);
+    REFUSES(grobo_session_open(NULL));
+    grobo_session_close(NULL);
+    REFUSES(grobo_session_set_device(NULL, text));
+    REFUSES(grobo_session_set_device(session, NULL));
+    REFUSES(grobo_session_configure(NULL, &robot_config));
+    assert_int_equal(grobo_session_get_state(NULL), GROBO_SESSION_CLOSED);
+    assert_null(grobo_session_device(NULL));
+    assert_null(grobo_session_cause(NULL));
+    assert_null(grobo_session_robot(NULL));
+    assert_null(grobo_session_sim(NULL));
+    assert_null(grobo_session_serial(NULL));
+    grobo_session_pump(NULL);
+    grobo_session_bytes(NULL, counts, counts);
+    grobo_session_bytes(session, NULL, counts);
+    grobo_session_bytes(session, counts, NULL);
+    REFUSES(grobo_session_check(NULL));
+    REFUSES(grobo_session_sense(NULL, 1, 0));
+    REFUSES(grobo_session_torque(NULL, 1, 0));
+    REFUSES(grobo_session_move(NULL, &posture));
+    REFUSES(grobo_session_move(session, NULL));
+    REFUSES(grobo_session_retarget(NULL, &posture));
+    REFUSES(grobo_session_retarget(session, NULL));
+    REFUSES(grobo_session_raw(NULL, bytes, 1));
+}
+
+static void session_refuses_null_in_its_second_functions(void **state)
+{
+    (void)state;
+    REFUSES(grobo_session_raw(session, NULL, 1));
+    REFUSES(grobo_session_raw_until(NULL, bytes, 1, 1000));
+    REFUSES(grobo_session_raw_until(session, NULL, 1, 1000));
+    REFUSES(grobo_session_registers(NULL, &io));
+    REFUSES(grobo_session_registers(session, NULL));
+    REFUSES(grobo_session_command(NULL, 1, 0));
+    REFUSES(grobo_session_stored(NULL, 0, 1));
+    REFUSES(grobo_session_exit(NULL, 0));
+    REFUSES(grobo_session_estop(NULL));
+    REFUSES(grobo_session_reset(NULL));
+    REFUSES(grobo_session_cancel(NULL));
+    REFUSES(grobo_session_play(NULL, &clip, &play_options));
+    REFUSES(grobo_session_play(session, NULL, &play_options));
+    REFUSES(grobo_session_enqueue(NULL, &clip, &play_options));
+    REFUSES(grobo_session_enqueue(session, NULL, &play_options));
+    REFUSES(grobo_session_pause(NULL));
+    REFUSES(grobo_session_resume(NULL));
+    REFUSES(grobo_session_stop(NULL, true));
+    REFUSES(grobo_session_seek(NULL, 0));
+    REFUSES(grobo_session_speed(NULL, 0));
+    REFUSES(grobo_session_free_mode(NULL, 1, true));
+    REFUSES(grobo_session_post_estop(NULL));
+    REFUSES(grobo_session_post_stop(NULL, true));
+    REFUSES(grobo_session_post_exit(NULL, 0));
+    assert_false(grobo_session_is_latched(NULL));
+}
+
+static void sim_server_refuses_null(void **state)
+{
+    (void)state;
+    REFUSES(grobo_sim_server_new(NULL, &made_server, &cause));
+    REFUSES(grobo_sim_server_new(&server_config, NULL, &cause));
+    grobo_sim_server_free(NULL);
+    assert_null(grobo_sim_server_device(NULL));
+    REFUSES(grobo_sim_server_tcp_port(NULL));
+    assert_null(grobo_sim_server_sim(NULL));
+    grobo_sim_server_pump(NULL);
+    REFUSES(grobo_sim_server_plug(NULL, true));
+}
+
+static void thread_refuses_null_in_its_first_functions(void **state)
+{
+    (void)state;
+    REFUSES(grobo_control_new(NULL, &made_control));
+    REFUSES(grobo_control_new(&control_config, NULL));
+    assert_int_equal(grobo_control_free(NULL), GROBO_OK);
+    REFUSES(grobo_control_start_thread(NULL));
+    REFUSES(grobo_control_stop_thread(NULL));
+    assert_false(grobo_control_is_active(NULL));
+    REFUSES(grobo_control_thread(NULL, &thread));
+    REFUSES(grobo_control_thread(control, NULL));
+    REFUSES(grobo_control_svc(NULL));
+    REFUSES(grobo_control_run(NULL));
+    REFUSES(grobo_control_call(NULL, on_control, NULL));
+    REFUSES(grobo_control_call(control, NULL, NULL));
+    REFUSES(grobo_control_post(NULL, on_control, NULL));
+    REFUSES(grobo_control_post(control, NULL, NULL));
+    assert_null(grobo_control_session(NULL));
+    assert_null(grobo_control_serial(NULL));
+    assert_null(grobo_control_name(NULL));
+    REFUSES(grobo_control_joints(NULL));
+    REFUSES(grobo_control_set_motion_dir(NULL, text));
+    REFUSES(grobo_control_set_motion_dir(control, NULL));
+    REFUSES(grobo_control_get_motion_dir(NULL, text, sizeof bytes));
+    REFUSES(grobo_control_get_motion_dir(control, NULL, sizeof bytes));
+    REFUSES(grobo_control_set_default_time_us(NULL, 1000));
+    assert_true(grobo_control_get_default_time_us(NULL) == 0);
+    REFUSES(grobo_control_set_sense_interval_us(NULL, 0));
+    assert_true(grobo_control_get_sense_interval_us(NULL) == 0);
+    REFUSES(grobo_control_set_period_us(NULL, 0));
+}
+
+static void thread_refuses_null_in_its_second_functions(void **state)
+{
+    (void)state;
+    assert_true(grobo_control_get_period_us(NULL) == 0);
+    REFUSES(grobo_control_set_motion_count(NULL, 1));
+    REFUSES(grobo_control_get_motion_count(NULL));
+    grobo_control_set_reverse(NULL, true);
+    assert_false(grobo_control_is_reverse(NULL));
+    REFUSES(grobo_control_set_device(NULL, text));
+    REFUSES(grobo_control_set_device(control, NULL));
+    REFUSES(grobo_control_get_device(NULL, text, sizeof bytes));
+    REFUSES(grobo_control_get_device(control, NULL, sizeof bytes));
+    REFUSES(grobo_control_open_port(NULL));
+    REFUSES(grobo_control_close_port(NULL, 1000));
+    REFUSES(grobo_control_connect(NULL, 1000));
+    REFUSES(grobo_control_check_connection(NULL, 1000));
+    assert_false(grobo_control_is_connected(NULL));
+    REFUSES(grobo_control_get_cause(NULL, &cause));
+    REFUSES(grobo_control_get_cause(control, NULL));
+    REFUSES(grobo_control_get_servo_state(NULL, 1));
+    REFUSES(grobo_control_get_servo_states(NULL, ints, sizeof bytes));
+    REFUSES(grobo_control_get_servo_states(control, NULL, sizeof bytes));
+    REFUSES(grobo_control_set_servo_state(NULL, 1, 0, 1000));
+    REFUSES(grobo_control_set_servo_states(NULL, 1, 0, 1000));
+    REFUSES(grobo_control_get_current_posture(NULL, &posture));
+    REFUSES(grobo_control_get_current_posture(control, NULL));
+    REFUSES(grobo_control_read_posture(NULL, &posture, 1000));
+    REFUSES(grobo_control_read_posture(control, NULL, 1000));
+    REFUSES(grobo_control_read_angle(NULL, 1, reals, 1000));
+    REFUSES(grobo_control_read_angle(control, 1, NULL, 1000));
+}
+
+static void thread_refuses_null_in_its_third_functions(void **state)
+{
+    (void)state;
+    REFUSES(grobo_control_set_init_posture(NULL, &posture));
+    REFUSES(grobo_control_set_init_posture(control, NULL));
+    grobo_control_get_init_posture(NULL, &posture);
+    grobo_control_get_init_posture(control, NULL);
+    REFUSES(grobo_control_set_target_posture(NULL, &posture));
+    REFUSES(grobo_control_set_target_posture(control, NULL));
+    grobo_control_get_target_posture(NULL, &posture);
+    grobo_control_get_target_posture(control, NULL);
+    REFUSES(grobo_control_set_joint(NULL, 1, 0));
+    REFUSES(grobo_control_set_motion_time_us(NULL, 1000));
+    REFUSES(grobo_control_start_motion(NULL));
+    REFUSES(grobo_control_init_position(NULL));
+    REFUSES(grobo_control_command_count(NULL));
+    REFUSES(grobo_control_is_moving(NULL));
+    REFUSES(grobo_control_wait(NULL, 1000));
+    REFUSES(grobo_control_set_motion(NULL, motion));
+    REFUSES(grobo_control_set_motion(control, NULL));
+    REFUSES(grobo_control_get_motion(NULL, &made_motion));
+    REFUSES(grobo_control_get_motion(control, NULL));
+    assert_int_equal(grobo_control_motion_size(NULL), 0);
+    grobo_control_clear_motion(NULL);
+    REFUSES(grobo_control_append_current_posture(NULL));
+    REFUSES(grobo_control_append_current_posture_us(NULL, 1000));
+    REFUSES(grobo_control_load_motion(NULL, text, list));
+    REFUSES(grobo_control_load_motion(control, NULL, list));
+    REFUSES(grobo_control_load_motion_format(NULL, 0, text, list));
+    REFUSES(grobo_control_load_motion_format(control, 0, NULL, list));
+}
+
+static void thread_refuses_null_in_its_fourth_functions(void **state)
+{
+    (void)state;
+    REFUSES(grobo_control_save_motion(NULL, 0, text, text, sizeof bytes));
+    REFUSES(grobo_control_get_nth_posture(NULL, 1, &posture));
+    REFUSES(grobo_control_get_nth_posture(control, 1, NULL));
+    REFUSES(grobo_control_get_first_posture(NULL, &posture));
+    REFUSES(grobo_control_get_first_posture(control, NULL));
+    REFUSES(grobo_control_get_last_posture(NULL, &posture));
+    REFUSES(grobo_control_get_last_posture(control, NULL));
+    REFUSES(grobo_control_do_nth_motion(NULL, 1));
+    REFUSES(grobo_control_play_motion(NULL, &play_options));
+    REFUSES(grobo_control_stop_motion(NULL, true));
+    assert_false(grobo_control_is_playing(NULL));
+    REFUSES(grobo_control_set_command(NULL, bytes, 1));
+    REFUSES(grobo_control_set_command(control, NULL, 1));
+    REFUSES(grobo_control_get_command(NULL, bytes, sizeof bytes));
+    REFUSES(grobo_control_get_command(control, NULL, sizeof bytes));
+    REFUSES(grobo_control_send_command(NULL, bytes, 1, 1000));
+    REFUSES(grobo_control_receive(NULL, bytes, 1));
+    REFUSES(grobo_control_receive(control, NULL, 1));
+    REFUSES(grobo_control_estop(NULL));
+    assert_false(grobo_control_is_latched(NULL));
+    REFUSES(grobo_control_reset(NULL));
+    REFUSES(grobo_control_exit(NULL, 0, 1000));
+    REFUSES(grobo_control_post_exit(NULL, 0));
+    REFUSES(grobo_control_post_stop(NULL, true));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(estop_refuses_null),
+        cmocka_unit_test(gr001_refuses_null),
+        cmocka_unit_test(guard_refuses_null),
+        cmocka_unit_test(loop_refuses_null),
+        cmocka_unit_test(serial_refuses_null_in_its_first_functions),
+        cmocka_unit_test(serial_refuses_null_in_its_second_functions),
+        cmocka_unit_test(session_refuses_null_in_its_first_functions),
+        cmocka_unit_test(session_refuses_null_in_its_second_functions),
+        cmocka_unit_test(sim_server_refuses_null),
+        cmocka_unit_test(thread_refuses_null_in_its_first_functions),
+        cmocka_unit_test(thread_refuses_null_in_its_second_functions),
+        cmocka_unit_test(thread_refuses_null_in_its_third_functions),
+        cmocka_unit_test(thread_refuses_null_in_its_fourth_functions),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
