@@ -14,6 +14,7 @@ cat >"$work/rows" <<'END'
 0|lines[0]["ok"] and lines[0]["checks"]|-d sim doctor
 0|len(lines[0]["servos"]) == 20|-d sim scan
 0|lines[0]["robot"] == "GR001"|-d sim info
+0|lines[0]["joints"][3]["name"] == "R_KNEE_P" and lines[0]["joints"][3]["joint"] == 3|joints
 0|len(lines[0]["joints"]) == 20 and "tx_frames" in lines[0]["link"]|-d sim status
 0|{j["torque"] for j in lines[0]["joints"]} == {"on"}|-d sim servo on arms
 0|lines[0]["max_error_deg"] <= 0.1|-d sim init --time 300

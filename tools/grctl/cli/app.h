@@ -22,6 +22,7 @@ typedef struct app {
     struct conn_link *link; /* the shell's, NULL: every command opens and closes its own */
     const struct grobo_motion *record; /* the shell's @record, or NULL */
     const struct config_robot *robot;  /* the configured one, or NULL */
+    const char *nearest_device;        /* to a name that no robot has: a robot or word, or NULL */
     char place[128];                   /* "FILE:LINE: " of a script, for messages */
     bool json;
     int verbosity; /* -1 quiet, 0, 1, 2 */

@@ -217,13 +217,38 @@ static const char *open_trouble(const conn *c, int error)
     return grobo_error_text(error);
 }
 
-static int fail_open(conn *c, int error)
+static int try_port(void *ctx, const grobo_port_info *info)
+{
+    static char nearest[GROBO_DEVICE_MAX_BYTES];
+    cli_guess *guess = ctx;
+    const char *before = guess->best;
+    int edits = guess->edits;
+    cli_guess_try(guess, info->path);
+    if (guess->best && (!before || guess->edits != edits)) { /* the info lives for this call */
+        snprintf(nearest, sizeof nearest, "%s", info->path);
+        guess->best = nearest;
+    }
+    return 0;
+}
+
+/* The robot or port that is nearest to the name of a device that is none, or NULL. */
+static const char *near_device(const app *a, const char *name)
+{
+    cli_guess guess = {.name = name, .length = strlen(name)};
+    if (a->nearest_device)
+        return a->nearest_device;
+    if (strchr(name, '/') && !is_tcp(name))
+        grobo_port_list(try_port, &guess);
+    return guess.best;
+}
+
+/* Why the device that was asked for is not open. */
+static int fail_closed(conn *c, int error)
 {
     const grobo_os_cause *cause = grobo_session_cause(c->session);
     /* Of the others the system only says again what the error says. */
     bool tells = *cause->text && (error == GROBO_ERR_BUSY || error == GROBO_ERR_IO ||
                                   error == GROBO_ERR_UNSUPPORTED || error == GROBO_ERR_UNPLUGGED);
-    c->open_error = error;
     if (error == GROBO_ERR_TIMEOUT && is_tcp(conn_device(c)) && !bytes_passed(c, GROBO_DIR_TX))
         return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error),
                         "%s: %s; is the address right, and that machine on?", conn_device(c),
@@ -237,6 +262,17 @@ static int fail_open(conn *c, int error)
                     error == GROBO_ERR_NOTFOUND ? "auto" : conn_device(c), open_trouble(c, error),
                     tells ? " (" : "", tells ? cause->text : "", tells ? ")" : "",
                     advice(error, conn_device(c)));
+}
+
+static int fail_open(conn *c, int error)
+{
+    const char *nearest;
+    c->open_error = error;
+    nearest = error == GROBO_ERR_NOENT ? near_device(c->a, conn_requested(c->a)) : NULL;
+    if (nearest)
+        return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error), "%s: %s (did you mean '%s'?)",
+                        conn_device(c), open_trouble(c, error), nearest);
+    return fail_closed(c, error);
 }
 
 uint32_t conn_baud(const app *a)

@@ -407,6 +407,16 @@ const shell_word *shell_word_row(size_t i)
     return i < sizeof table / sizeof table[0] ? &table[i] : NULL;
 }
 
+const char *shell_nearest(const char *name)
+{
+    cli_guess guess = {.name = name, .length = strlen(name)};
+    for (size_t i = 0; i < cli_n_commands; i++)
+        cli_guess_try(&guess, cli_commands[i]->name);
+    for (size_t i = 0; i < sizeof table / sizeof table[0]; i++)
+        cli_guess_try(&guess, table[i].word);
+    return guess.best;
+}
+
 const shell_word *shell_word_find(const char *name)
 {
     for (size_t i = 0; *name && i < sizeof table / sizeof table[0]; i++)

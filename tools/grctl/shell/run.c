@@ -14,6 +14,7 @@ void shell_inherit(shell *s)
             s->one.line.global[i] = s->a->line.global[i];
     }
     s->one.robot = s->a->robot;
+    s->one.nearest_device = s->a->nearest_device;
     s->one.moves = true;
     s->one.tty_in = s->a->tty_in && !s->file;
 }
