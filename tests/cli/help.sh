@@ -80,7 +80,7 @@ check "an angle that is none" fails 2 "'up' is not an angle" "$GRCTL" move m3 up
 check "not a number as an angle" fails 2 "'nan' is not an angle" "$GRCTL" move m3 nan
 json_mistake() {
     exits 2 "$GRCTL" status --nonsense --json || return 1
-    json 'lines[0]["error"]["code"] == "usage"'
+    json 'lines[0]["error"]["code"] == "arg"'
 }
 if have_json; then
     check "with --json a mistake is JSON too" json_mistake

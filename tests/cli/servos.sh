@@ -33,6 +33,16 @@ tell id 3 12
 check "two servos with one id are named" both exits 1 on_robot scan --first 10 --last 13 --- \
     said '^id 12 answers, but: .* (two servos with one id?)$'
 check "nobody else is" both finds 3 --- said '^not sure: '
+if have_json; then
+    twice_as_json() {
+        exits 1 on_robot scan --json --first 10 --last 13 &&
+            json '[(s["id"], s["name"]) for s in lines[0]["failed"]] == [(12, "R_KNEE_P")] and
+                lines[0]["failed"][0]["status"] in ("checksum", "mismatch", "short")'
+    }
+    check "and in JSON, with the error" twice_as_json
+else
+    skip "and in JSON" "no python3"
+fi
 tell id 3 3
 check "--first behind --last" fails 2 'first is behind' on_robot scan --first 5 --last 3
 check "--all-baud through the board" fails 2 'needs --wiring bus' on_robot scan --all-baud

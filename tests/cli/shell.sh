@@ -186,15 +186,24 @@ r
 Reverse
 t 300
 version
-' --json && json 'len(lines) == 5 and lines[1]["postures"] == 1 and lines[3]["time_ms"] == 300'
+' --json && json '[l["line"] for l in lines[1::2]] == [1, 2, 3, 4, 5] and
+            lines[2]["postures"] == 1 and lines[6]["time_ms"] == 300'
     }
-    check "with --json a line a command" lines_of_json
+    check "with --json a line a command, and its mark" lines_of_json
+    marks() {
+        script 4 'move m5 99
+# nothing
+status "m3
+' -k --json && json '[(l["line"], l["status"]) for l in lines if "line" in l] ==
+            [(1, 4), (2, 0), (3, 2)]'
+    }
+    check "with the exit status of each" marks
     json_error() {
         script 2 'nonsense' --json && json '"standard input:1: " in lines[0]["error"]["message"]'
     }
     check "mistakes too" json_error
     json_refused() {
-        script 2 'status "m3' --json && json 'lines[0]["error"]["code"] == "usage"'
+        script 2 'status "m3' --json && json 'lines[0]["error"]["code"] == "arg"'
     }
     check "and lines that are no commands" json_refused
     json_words() {

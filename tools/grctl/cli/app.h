@@ -8,7 +8,7 @@
 
 #include <jansson.h>
 
-#include <grobo/types.h>
+#include <grobo/robot_event.h>
 
 #include "tools/grctl/cli/cli.h"
 
@@ -48,10 +48,13 @@ double app_number(const app *a, int i, double otherwise);
 /*
  * Says one line of what went wrong ("grctl: ...") and returns the exit status it was given. With
  * --json the same goes to standard output as {"error": {"code": ..., "message": ...}}.
- * code: a stable word, such as grobo_error_name() gives; capitals are told as small letters.
+ * code: as grobo_error_name() gives it, and nothing else; JSON has it in small letters.
  */
 int app_fail(app *a, int status, const char *code, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
+/* So where the robot stopped for safety: EXIT_SAFETY; JSON has the trip as a word too. */
+int app_fail_trip(app *a, grobo_trip trip, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 /* The exit status that fits a library error. */
 int app_status_of(int error);
 

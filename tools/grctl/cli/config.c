@@ -37,7 +37,7 @@ static int complain(reader *r, const yaml_mark_t *at, const char *format, const 
     char text[256];
     snprintf(text, sizeof text, format, what);
     if (!r->status)
-        r->status = app_fail(r->a, EXIT_FILE, "CONFIG", "%s:%zu:%zu: %s", r->path, at->line + 1,
+        r->status = app_fail(r->a, EXIT_FILE, "SYNTAX", "%s:%zu:%zu: %s", r->path, at->line + 1,
                              at->column + 1, text);
     return r->status;
 }
@@ -279,7 +279,7 @@ static int find(reader *r)
             errno = 0;
             file = os_config_path(i, r->path, sizeof r->path) ? fopen(r->path, "r") : NULL;
             if (!file && errno == EACCES)
-                return r->status = app_fail(r->a, EXIT_FILE, "CONFIG", "%s: %s", r->path,
+                return r->status = app_fail(r->a, EXIT_FILE, "PERM", "%s: %s", r->path,
                                             app_cause_text(errno));
             if (!file)
                 break;
@@ -333,7 +333,7 @@ static int no_robot(reader *r, bool asked)
     r->a->nearest_device = *nearest ? nearest : NULL;
     if (asked || !*r->wanted)
         return 0;
-    return app_fail(r->a, EXIT_FILE, "CONFIG", "%s: default '%s' is no robot of the file%s%s%s",
+    return app_fail(r->a, EXIT_FILE, "NOTFOUND", "%s: default '%s' is no robot of the file%s%s%s",
                     r->default_path, r->wanted, *nearest ? "; did you mean '" : "", nearest,
                     *nearest ? "'?" : "");
 }

@@ -97,9 +97,8 @@ static int no_command(app *a, const char *name)
 {
     const char *nearest = a->link ? shell_nearest(name) : cli_nearest_command(name);
     if (nearest)
-        return app_fail(a, EXIT_USAGE, "USAGE", "no command '%s'; did you mean '%s'?", name,
-                        nearest);
-    return app_fail(a, EXIT_USAGE, "USAGE", "no command '%s'; see '%shelp'", name,
+        return app_fail(a, EXIT_USAGE, "ARG", "no command '%s'; did you mean '%s'?", name, nearest);
+    return app_fail(a, EXIT_USAGE, "ARG", "no command '%s'; see '%shelp'", name,
                     a->link ? "" : "grctl ");
 }
 

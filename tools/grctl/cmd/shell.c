@@ -45,7 +45,7 @@ static int refuse(shell *s, const char *why)
     shell_begin(s);
     shell_inherit(s);
     app_settle(&s->one);
-    return app_fail(&s->one, EXIT_USAGE, "USAGE", "%s", why);
+    return app_fail(&s->one, EXIT_USAGE, "ARG", "%s", why);
 }
 
 static int run_words(shell *s, int n, char **words)
@@ -98,7 +98,10 @@ static int run_next(shell *s, shell_script *in, int next)
     if (next == LINE_NEWS)
         return conn_link_news(&s->link, s->a);
     s->line++;
-    return in->wrong ? refuse(s, in->wrong) : run_text(s, in->line);
+    next = in->wrong ? refuse(s, in->wrong) : run_text(s, in->line);
+    if (s->a->json) /* the mark by which a program knows that the command has ended */
+        app_print_json(json_pack("{s:i,s:i}", "line", s->line, "status", next));
+    return next;
 }
 
 static int run_script(shell *s, shell_script *in)

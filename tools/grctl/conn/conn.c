@@ -448,7 +448,7 @@ static int open_device(conn *c, app *a, bool check)
     if (c->session)
         return take_over(c, check);
     if (!*asked)
-        return app_fail(a, EXIT_USAGE, "USAGE", "--device: an empty name; see 'grctl ports'");
+        return app_fail(a, EXIT_USAGE, "ARG", "--device: an empty name; see 'grctl ports'");
     error = grobo_port_resolve(asked, device, sizeof device, &cause);
     if (error)
         return app_fail(a, app_status_of(error), grobo_error_name(error), "%s: %s", asked,

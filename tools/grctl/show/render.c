@@ -38,7 +38,7 @@ json_t *render_joint_json(const conn *c, int joint, int64_t now_us)
     const grobo_joint *j = &model_of(c)->joints[joint];
     grobo_joint_info i;
     bool fresh;
-    json_t *o = json_pack("{s:i,s:i,s:s}", "id", joint, "motor", j->motor, "name", j->name);
+    json_t *o = json_pack("{s:i,s:i,s:s}", "joint", joint, "motor", j->motor, "name", j->name);
     if (grobo_robot_joint(c->robot, joint, now_us, &i) < 0)
         return o;
     fresh = i.angle_age_us != GROBO_NEVER_US;
