@@ -23,6 +23,9 @@ robots:
   cellar: {device: $work/none, wiring: bus, trim: {m5: 1}}
 EOF
 check "the default robot" both exits 0 "$GRCTL" -v status m3 --- says R_SHOULDER_P
+if [ -z "${NATIVE_GRCTL:-}" ]; then
+    check "the port used last is remembered" grep -qx -e "$robot" "$work/state/grctl/last-port"
+fi
 check "a named one" both exits 0 "$GRCTL" -d kitchen status m3 --- says R_SHOULDER_P
 in_environment() {
     exits 0 env GRCTL_DEVICE=kitchen "$GRCTL" status m3 && says R_SHOULDER_P

@@ -6,6 +6,7 @@
 #include <grobo/port.h>
 
 #include "tools/grctl/cli/output.h"
+#include "tools/grctl/conn/auto_ports.h"
 #include "tools/grctl/conn/conn.h"
 #include "tools/grctl/conn/guard.h"
 #include "tools/grctl/os/os.h"
@@ -206,7 +207,7 @@ static const char *open_trouble(const conn *c, int error)
     const grobo_os_cause *cause = grobo_session_cause(c->session);
     switch (error) {
     case GROBO_ERR_NOTFOUND:
-        return "no robot answers on any serial port";
+        return "no robot answers on any USB adapter that may be opened";
     case GROBO_ERR_TIMEOUT:
         return "no robot answers";
     case GROBO_ERR_TYPE:
@@ -299,6 +300,18 @@ grobo_robot_config conn_robot_config(const app *a)
     return config;
 }
 
+/* What `auto` tries: for the life of the session. NULL, all ports: for any other device, or where
+ * the system cannot list ports. */
+static const char *const *ports_of_auto(const app *a)
+{
+    static choice all;
+    if (!conn_is_auto(a) || auto_ports(&all) < 0)
+        return NULL;
+    if (!a->hushed)
+        auto_report(a, &all);
+    return all.scan;
+}
+
 static int make_session(conn *c, const char *device, bool check)
 {
     app *a = c->a;
@@ -320,6 +333,7 @@ static int make_session(conn *c, const char *device, bool check)
                                    .driver = driver,
                                    .driver_ctx = a->robot ? &c->link->trims : NULL,
                                    .robot = &robot,
+                                   .scan = ports_of_auto(a),
                                    .skip_check = !check,
                                    .reconnect = a->reconnects,
                                    .on_event = on_session,
@@ -396,7 +410,10 @@ static void say_found(conn *c)
 {
     const grobo_serial *serial = grobo_session_serial(c->session);
     int answer = serial ? grobo_serial_low_latency(serial) : GROBO_ERR_CLOSED;
+    bool is_port = strcmp(conn_device(c), GROBO_DEVICE_SIM) != 0 && !is_tcp(conn_device(c));
     app_detail(c->a, "robot found on %s", conn_device(c));
+    if (is_port && !c->a->stops && !c->a->hushed)
+        auto_used(c->a, conn_device(c), conn_is_auto(c->a));
     if (answer < 0 && answer != GROBO_ERR_UNSUPPORTED && answer != GROBO_ERR_CLOSED)
         app_detail(c->a, "low latency: %s; 'grctl doctor' tells more", grobo_error_text(answer));
 }
