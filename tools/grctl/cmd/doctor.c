@@ -5,6 +5,7 @@
 
 #include <grobo/estop.h>
 
+#include "tools/grctl/cli/progress.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/auto_ports.h"
 #include "tools/grctl/conn/servos.h"
@@ -62,12 +63,20 @@ static void set_baud(app *a, int baud_bps)
 static int find_answer(patient *p, int asked_bps)
 {
     app *a = p->k.a;
+    const size_t n_bauds = sizeof usual_bauds / sizeof usual_bauds[0];
     char said[APP_LINE_BYTES];
-    for (size_t i = 0; i < sizeof usual_bauds / sizeof usual_bauds[0] && !p->c.signal; i++) {
+    progress bar;
+    bool found;
+    progress_start(&bar, a);
+    for (size_t i = 0; i < n_bauds && !p->c.signal; i++) {
         if (usual_bauds[i] == asked_bps)
             continue;
         set_baud(a, usual_bauds[i]);
-        if (ask(p, said))
+        snprintf(said, sizeof said, "no reply at %d bps; asking at %d", asked_bps, usual_bauds[i]);
+        progress_draw(&bar, (double)i / (double)n_bauds, said);
+        found = ask(p, said);
+        progress_clear(&bar);
+        if (found)
             return usual_bauds[i];
     }
     set_baud(a, asked_bps);

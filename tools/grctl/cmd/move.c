@@ -49,18 +49,33 @@ static void report(const conn *c, const grobo_posture *target)
     }
 }
 
+/* The engine gave the joints more time than was asked for. */
+static void report_longer(const conn *c, const grobo_posture *target, int64_t began_us)
+{
+    double asked_ms = (double)target->time_us / 1e3;
+    double took_ms = (double)(grobo_now_us() - began_us) / 1e3;
+    grobo_robot_counters n;
+    conn_counters(c, &n);
+    if (n.stretched > 0 && took_ms > asked_ms)
+        app_note(c->a, "it took %.0f ms, not %.0f: no joint moves faster than its servo can",
+                 took_ms, asked_ms);
+}
+
 static int go(app *a, const grobo_posture *target, const char *doing)
 {
     conn c;
     int status = conn_open_to_move(&c, a);
     if (!status) {
+        int64_t began_us = grobo_now_us();
         int error, job = grobo_session_move(c.session, target);
         c.moving = job > 0; /* refused at once: nothing moves, nothing is to be left */
         error = conn_wait(&c, job);
         if (error)
             status = conn_fail(&c, error, doing);
-        else
+        else {
             report(&c, target);
+            report_longer(&c, target, began_us);
+        }
     }
     return conn_close(&c, status);
 }

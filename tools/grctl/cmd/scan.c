@@ -2,6 +2,7 @@
 /* scan and info: which servos answer, and what they are. */
 #include <string.h>
 
+#include "tools/grctl/cli/progress.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/servos.h"
 #include "tools/grctl/conn/wire.h"
@@ -36,6 +37,8 @@ typedef struct found {
     int n, silent;
     bool unsure;              /* the line was disturbed, or an id answers in no way that fits */
     int64_t took_us, wire_us; /* of asking */
+    progress bar;
+    int rate, n_rates; /* the rate that is asked at, of so many */
 } found;
 
 static const char *model_name(const uint8_t *identity)
@@ -92,6 +95,7 @@ static void report_failed(found *f, int id, int baud_bps, int error)
 
 /* One baud rate. Every whole reply on the line counts for its servo, whenever it comes. */
 typedef struct pass {
+    found *f;
     bool there[GROBO_SERVO_ID_MAX + 1];
     int why[GROBO_SERVO_ID_MAX + 1]; /* the error of one that answered in no way that fits, or 0 */
     uint8_t identity[GROBO_SERVO_ID_MAX + 1][IDENTITY_BYTES];
@@ -183,15 +187,29 @@ static uint32_t patience(const pass *p)
     return (uint32_t)(2 * p->worst_us) + SERVOS_PATIENT_US;
 }
 
+/* On a terminal only: 127 silent ids take a second, and eleven rates more than ten. */
+static void show_progress(const pass *p, int id)
+{
+    char text[48];
+    double part = (double)(id - p->first) / (p->last - p->first + 1);
+    if (!p->f->bar.shown)
+        return;
+    snprintf(text, sizeof text, "%d bps, id %d", p->baud_bps, id);
+    progress_draw(&p->f->bar, (p->f->rate + part) / p->f->n_rates, text);
+}
+
 /* Asks all ids that are missing, and listens to what is still on its way. */
 static int look(conn *c, pass *p, uint32_t margin_us)
 {
     int error = servos_wait(c, p->baud_bps, IDENTITY_BYTES, margin_us, -1, &p->timeout_us);
     p->late = false;
     p->rubbish = p->parser.framer.stats.dropped_bytes;
-    for (int id = p->first; id <= p->last && !error; id++)
+    for (int id = p->first; id <= p->last && !error; id++) {
+        show_progress(p, id);
         if (!p->there[id])
             error = ask(c, p, id);
+    }
+    progress_clear(&p->f->bar);
     if (!error)
         error = listen_on(c, p);
     p->rubbish = p->parser.framer.stats.dropped_bytes - p->rubbish;
@@ -285,7 +303,8 @@ static int ask_all(conn *c, found *f, pass *p)
 
 static int scan_ids(conn *c, found *f, int baud_bps)
 {
-    pass p = {.baud_bps = baud_bps,
+    pass p = {.f = f,
+              .baud_bps = baud_bps,
               .first = (int)app_number(c->a, OPT_FIRST, 1),
               .last = (int)app_number(c->a, OPT_LAST, GROBO_SERVO_ID_MAX)};
     int error = ask_all(c, f, &p);
@@ -305,6 +324,7 @@ static int scan_all_bauds(conn *c, found *f)
     grobo_serial *serial = grobo_session_serial(c->session);
     for (int code = 0; code <= GROBO_RS30X_BAUD_CODE_MAX; code++) {
         int baud_bps = grobo_rs30x_baud_bps((uint8_t)code);
+        f->rate = code;
         int error = grobo_serial_set_baud(serial, baud_bps);
         if (error < 0) {
             app_note(c->a, "%d bps: %s", baud_bps, grobo_error_text(error));
@@ -324,7 +344,10 @@ static int scan(conn *c)
     bool all = app_option(c->a, OPT_ALL_BAUD)->given > 0;
     found f = {.list = c->a->json ? json_array() : NULL,
                .failed = c->a->json ? json_array() : NULL};
-    int error = all ? scan_all_bauds(c, &f) : scan_ids(c, &f, baud_bps);
+    int error;
+    f.n_rates = all ? GROBO_RS30X_BAUD_CODE_MAX + 1 : 1;
+    progress_start(&f.bar, c->a);
+    error = all ? scan_all_bauds(c, &f) : scan_ids(c, &f, baud_bps);
     if (error) {
         json_decref(f.list);
         json_decref(f.failed);
