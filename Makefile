@@ -215,6 +215,7 @@ test: all $(chosen) $(CROSS_TOOLS) $(left_out) ## the tests alone; RING="unit en
 
 check-san: ## the tests of our own code under AddressSanitizer and UBSan
 	@TEST_TIMEOUT_S=600 $(MAKE) --no-print-directory test BUILD=$(BUILD)/san SAN=address,undefined CFLAGS='-O1 -g' \
+	    CPPFLAGS='$(CPPFLAGS) -DGROBO_WALKS' \
 	    RING='$(filter-out lint export,$(RING))'
 
 check-tsan: ## the tests of what threads share under ThreadSanitizer
@@ -308,11 +309,11 @@ MUTANT_TESTS := $(patsubst %.c,$(MUTANT_DIR)/%.o,$(filter tests/engine/%,$(TEST_
 MUTANT_LIBS := $(patsubst %,$(MUTANT_DIR)/lib%.a,support grctl grobo)
 check-mutants: ## sabotage the core in COUNT=300 ways that SEED=1 chooses: a test must notice each
 	-@tools/setup.sh --mutants
-	@$(MAKE) --no-print-directory BUILD=$(MUTANT_DIR) CFLAGS=-O2 \
+	@$(MAKE) --no-print-directory BUILD=$(MUTANT_DIR) CFLAGS=-O2 CPPFLAGS='$(CPPFLAGS) -DGROBO_WALKS' \
 	    $(MUTANT_TESTS) $(MUTANT_LIBS)
 	@nice python3 tests/mutants/run.py --seed $(SEED) --count $(or $(COUNT),300) $(if $(ONLY),--only $(ONLY)) \
 	    --work $(MUTANT_DIR)/work --sources "$(CORE_SRCS)" --tests "$(MUTANT_TESTS)" \
-	    --compile '$(CC) $(ALL_CPPFLAGS) $(SRC_INCLUDE) -std=c11 -fPIC -O2' --link '$(CC)' \
+	    --compile '$(CC) $(ALL_CPPFLAGS) -DGROBO_WALKS $(SRC_INCLUDE) -std=c11 -fPIC -O2' --link '$(CC)' \
 	    --libs '$(MUTANT_LIBS) $(CMOCKA_LIBS) $(TOOL_LIBS) $(LIBS)' \
 	    --scope tests/mutants/scope --survivors tests/mutants/survivors --named tests/mutants/named
 
@@ -320,7 +321,7 @@ MAP_TESTS := $(patsubst %.c,$(MUTANT_DIR)/%.o,$(filter tests/unit/% tests/engine
     tests/link/% tests/port/%,$(TEST_SRCS)))
 check-map: ## sabotage the function of each row of docs/seed-map.md; COUNT=40 rows that SEED=1 chooses
 	-@tools/setup.sh --mutants
-	@$(MAKE) --no-print-directory -s BUILD=$(MUTANT_DIR) CFLAGS=-O2 $(MAP_TESTS) $(MUTANT_LIBS)
+	@$(MAKE) --no-print-directory -s BUILD=$(MUTANT_DIR) CFLAGS=-O2 CPPFLAGS='$(CPPFLAGS) -DGROBO_WALKS' $(MAP_TESTS) $(MUTANT_LIBS)
 	@nice python3 tests/mutants/rows.py --seed $(SEED) --count $(or $(COUNT),0) $(if $(ONLY),--only "$(ONLY)") \
 	    --map docs/seed-map.md --rows tests/mutants/rows --work $(MUTANT_DIR)/work \
 	    --sources "$(CORE_SRCS) $(OTHER_SRCS)" --objects $(MUTANT_DIR)/tests \

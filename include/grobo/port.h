@@ -291,6 +291,8 @@ typedef struct grobo_port_info {
     int latency_ms;                     /**< the FTDI driver's latency timer, -1 unknown */
     int owner_pid;                      /**< a process that has it open, 0 none or not known */
     char owner_name[64];                /**< the name of that process */
+    bool console;    /**< the system's console: what is printed at boot, a login (Linux) */
+    bool bluetooth;  /**< a Bluetooth chip is wired to it (Linux) */
     int open_result; /**< GROBO_OK: may be opened; else GROBO_ERR_PERM, GROBO_ERR_BUSY, ... */
 } grobo_port_info;
 

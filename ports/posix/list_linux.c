@@ -115,6 +115,42 @@ static void add_access(grobo_port_info *info)
     }
 }
 
+/* Is the name a word of /proc/consoles, or the value of a console= of the kernel's command line? */
+static bool is_console(const char *proc, const char *name)
+{
+    static const char option[] = "console=";
+    size_t size = strlen(name);
+    char path[PATH_MAX];
+    char line[4096];
+    bool found = false;
+    FILE *consoles = join(path, sizeof path, proc, "consoles") ? fopen(path, "re") : NULL;
+
+    while (consoles != NULL && !found && fgets(line, sizeof line, consoles) != NULL) {
+        found = strncmp(line, name, size) == 0 && (line[size] == ' ' || line[size] == '\n');
+    }
+    if (consoles != NULL) {
+        (void)fclose(consoles);
+    }
+    if (found || !read_line(proc, "cmdline", line, sizeof line)) {
+        return found;
+    }
+    for (const char *at = line; !found && (at = strstr(at, option)) != NULL;) {
+        bool whole = at == line || at[-1] == ' ';
+
+        at += sizeof option - 1;
+        found = whole && strncmp(at, name, size) == 0 && strchr(", ", at[size]) != NULL;
+    }
+    return found;
+}
+
+/* The device tree has the chip as a node below the UART's. */
+static bool has_bluetooth(const char *device)
+{
+    char path[PATH_MAX];
+
+    return join(path, sizeof path, device, "of_node/bluetooth") && access(path, F_OK) == 0;
+}
+
 /* Fills info for a terminal of sysfs; false for one without a device behind it. */
 static bool describe(const char *sys_tty, const char *dev, const char *name, grobo_port_info *info)
 {
@@ -141,6 +177,7 @@ static bool describe(const char *sys_tty, const char *dev, const char *name, gro
     if (realpath(device, folder) != NULL) {
         add_usb(folder, info);
     }
+    info->bluetooth = has_bluetooth(device);
     find_by_id(dev, info->path, info->by_id, sizeof info->by_id);
     add_access(info);
     return true;
@@ -164,7 +201,7 @@ static bool describe_node(const char *dev, const char *name, grobo_port_info *in
     return true;
 }
 
-int grobo_i_posix_list(const char *sys_tty, const char *dev,
+int grobo_i_posix_list(const char *sys_tty, const char *proc, const char *dev,
                        int (*visit)(void *ctx, const grobo_port_info *info), void *ctx)
 {
     struct dirent **names;
@@ -184,6 +221,7 @@ int grobo_i_posix_list(const char *sys_tty, const char *dev,
         if (r == 0 && name[0] != '.' &&
             (has_sysfs ? describe(sys_tty, dev, name, &info) : describe_node(dev, name, &info))) {
             found++;
+            info.console = is_console(proc, name);
             r = visit(ctx, &info);
         }
         free(names[i]);
@@ -204,10 +242,11 @@ static void find_by_id(const char *dev, const char *device, char *found, size_t 
     (void)found_bytes;
 }
 
-int grobo_i_posix_list(const char *sys_tty, const char *dev,
+int grobo_i_posix_list(const char *sys_tty, const char *proc, const char *dev,
                        int (*visit)(void *ctx, const grobo_port_info *info), void *ctx)
 {
     (void)sys_tty;
+    (void)proc;
     (void)dev;
     (void)visit;
     (void)ctx;
@@ -218,7 +257,8 @@ int grobo_i_posix_list(const char *sys_tty, const char *dev,
 
 int grobo_port_list(int (*visit)(void *ctx, const grobo_port_info *info), void *ctx)
 {
-    return visit == NULL ? GROBO_ERR_ARG : grobo_i_posix_list("/sys/class/tty", "/dev", visit, ctx);
+    return visit == NULL ? GROBO_ERR_ARG
+                         : grobo_i_posix_list("/sys/class/tty", "/proc", "/dev", visit, ctx);
 }
 
 int grobo_port_identity(const char *device, char *name, size_t name_bytes)

@@ -104,7 +104,7 @@ int grobo_i_posix_watch_state(pid_t pid);
 bool grobo_i_posix_is_stopped(int fd);
 
 /* grobo_port_list() with the places where it looks, so that a test can bring its own. */
-int grobo_i_posix_list(const char *sys_tty, const char *dev,
+int grobo_i_posix_list(const char *sys_tty, const char *proc, const char *dev,
                        int (*visit)(void *ctx, const grobo_port_info *info), void *ctx);
 
 #endif

@@ -89,6 +89,9 @@ static void assert_stop(const grobo_robot *robot)
 void grobo_i_robot_assert(const grobo_robot *robot)
 {
     int used = 0;
+    if (!GROBO_ASSERT_WALKS) {
+        return;
+    }
     for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
         assert_slot(robot, &robot->slots[i]);
         used += robot->slots[i].use != GROBO_I_USE_FREE;

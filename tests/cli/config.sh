@@ -23,6 +23,9 @@ robots:
   cellar: {device: $work/none, wiring: bus, trim: {m5: 1}}
 EOF
 check "the default robot" both exits 0 "$GRCTL" -v status m3 --- says R_SHOULDER_P
+if [ -z "${NATIVE_GRCTL:-}" ]; then
+    check "the port used last is remembered" grep -qx -e "$robot" "$work/state/grctl/last-port"
+fi
 check "a named one" both exits 0 "$GRCTL" -d kitchen status m3 --- says R_SHOULDER_P
 in_environment() {
     exits 0 env GRCTL_DEVICE=kitchen "$GRCTL" status m3 && says R_SHOULDER_P
@@ -30,6 +33,10 @@ in_environment() {
 check "in the environment" in_environment
 check "another one" fails 1 'none: no such file' "$GRCTL" -d cellar status
 check "what is no name is a device" fails 1 'attic: no such file' "$GRCTL" -d attic status
+check "a name nearly right" fails 1 "kitchne: no such file or device (did you mean 'kitchen'?)" \
+    "$GRCTL" -d kitchne status
+check "so for an emergency stop" fails 1 "(did you mean 'kitchen'?); NOT stopped" \
+    "$GRCTL" -d kitchne estop
 
 # ---- trims ------------------------------------------------------------------------------------
 
@@ -52,6 +59,8 @@ check "where the servo is at its limit" both exits 0 on_robot status m5 --- \
     says 'R_ELBOW_P  *50\.0'
 check "another trim beside it" exits 0 "$GRCTL" calibrate m12 -1
 check "both are there" grep -q 'trim: {R_KNEE_P: -1\.0, R_ELBOW_P: 2\.5}' "$config"
+check "the table of joints has no trims" both exits 0 "$GRCTL" joints m5 --- \
+    says '^R_ELBOW_P .* -130  *50  *-20  '
 check "a robot in braces" both exits 0 "$GRCTL" -d cellar calibrate m5 3 --- \
     grep -q 'trim: {R_ELBOW_P: 3\.0}}$' "$config"
 check "not more than a tooth" fails 4 'does its horn sit right' "$GRCTL" calibrate m5 30
@@ -147,7 +156,8 @@ check "it does not keep others from working" exits 0 "$GRCTL" check motions/gree
 written <<'EOF'
 default: attic
 EOF
-check "a default that is none" fails 3 "default 'attic' is no robot" "$GRCTL" status
+check "a default that is none" fails 3 "config/grctl/config.yaml: default 'attic' is no robot" \
+    "$GRCTL" status
 written <<'EOF'
 # nothing yet
 EOF

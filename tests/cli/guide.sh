@@ -9,11 +9,15 @@ ln -s "$GRCTL" "$work/bin/grctl"
 ln -s "$here/motions" "$work/desk/motions"
 
 # Files after "<!-- file NAME -->" and commands after "<!-- run -->", in the order of the guide.
-awk -v desk="$work/desk" -v commands="$work/commands" '
+python=
+have_json && python=yes
+awk -v desk="$work/desk" -v commands="$work/commands" -v python=$python '
     /^<!-- file / { file = desk "/" $3 }
     /^<!-- run -->/ { file = commands }
+    /^<!-- run python3 -->/ && python { file = commands }
     /^```/ { open = !open && file != ""; if (!open) { close(file); file = "" }; next }
-    open { print >>file }' docs/guide/motions.md docs/guide/whole-body.md
+    open { print >>file }' docs/guide/motions.md docs/guide/whole-body.md \
+    docs/guide/scripts.md
 
 check "the guide has commands and a file" [ -s "$work/commands" ] && [ -s "$work/desk/no.pseq" ]
 PATH=$work/bin:$PATH
@@ -29,4 +33,14 @@ drawn() {
         [ -s "$work/desk/greet.m" ]
 }
 check "its files are there" drawn
+if have_json; then
+    morning() {
+        cp "$work/desk/morning.json" "$work/out" &&
+            json '[(l["line"], l["status"]) for l in lines if "line" in l] ==
+                [(1, 0), (2, 0), (3, 0), (4, 0)]'
+    }
+    check "each line of a script is marked" morning
+else
+    skip "each line of a script is marked, and nod.py" "no python3"
+fi
 done_testing

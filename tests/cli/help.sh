@@ -44,6 +44,23 @@ check "of a joint" fails 2 "no joint called 'r_kne_p'; did you mean R_KNEE_P?$" 
 check "a group where one joint is wanted" fails 2 "^grctl: 'legs' is a group; one joint is wanted" \
     "$GRCTL" move legs 3
 check "of a group" fails 2 'did you mean right_arm?$' "$GRCTL" status rightarm
+check "a group is no guess for one joint" fails 2 "joint called 'right_arn'; joints are named" \
+    "$GRCTL" move right_arn 3
+check "the joints" both exits 0 "$GRCTL" joints --- \
+    says '^R_KNEE_P  *j3  *m12  *12  *-130  *0  *-40  right_leg legs$'
+check "all of them" [ "$(wc -l <"$work/out")" -eq 21 ]
+only_body() {
+    exits 0 "$GRCTL" joints body && [ "$(grep -c '  body$' "$work/out")" -eq 2 ] &&
+        [ "$(wc -l <"$work/out")" -eq 3 ]
+}
+check "those named" only_body
+check_json "joints as JSON" \
+    'lines[0]["joints"][0] == {"joint": 12, "motor": 1, "id": 1, "name": "CHEST_P",
+        "limits_deg": [-95, 0], "init_deg": 0, "groups": ["all", "body"]}' \
+    "$GRCTL" joints m1 --json
+check "a joint that is none, in joints" fails 2 'did you mean R_KNEE_P?$' "$GRCTL" joints R_KNE_P
+check "a word for a device, misspelled" fails 1 "^grctl: sin: .*(did you mean 'sim'?)$" \
+    "$GRCTL" -d sin status
 check "a file without a name" fails 2 'an empty name is no file' "$GRCTL" play ''
 check "an option without a value" fails 2 'output needs a value: OUT' "$GRCTL" plot -o '' x
 check "a posture of no file" fails 2 "'@:2' is not @FILE or @FILE:N" "$GRCTL" pose @:2
@@ -63,7 +80,7 @@ check "an angle that is none" fails 2 "'up' is not an angle" "$GRCTL" move m3 up
 check "not a number as an angle" fails 2 "'nan' is not an angle" "$GRCTL" move m3 nan
 json_mistake() {
     exits 2 "$GRCTL" status --nonsense --json || return 1
-    json 'lines[0]["error"]["code"] == "usage"'
+    json 'lines[0]["error"]["code"] == "arg"'
 }
 if have_json; then
     check "with --json a mistake is JSON too" json_mistake

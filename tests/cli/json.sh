@@ -14,6 +14,9 @@ cat >"$work/rows" <<'END'
 0|lines[0]["ok"] and lines[0]["checks"]|-d sim doctor
 0|len(lines[0]["servos"]) == 20|-d sim scan
 0|lines[0]["robot"] == "GR001"|-d sim info
+0|lines[0]["joints"][3]["name"] == "R_KNEE_P"|joints
+0|lines[0]["joints"][0]["joint"] == 16 and lines[0]["joints"][0]["status"] == "ok"|-d sim status m5
+0|{"id": 5, "joint": 16, "name": "R_ELBOW_P"}.items() <= lines[0]["servos"][4].items()|-d sim scan
 0|len(lines[0]["joints"]) == 20 and "tx_frames" in lines[0]["link"]|-d sim status
 0|{j["torque"] for j in lines[0]["joints"]} == {"on"}|-d sim servo on arms
 0|lines[0]["max_error_deg"] <= 0.1|-d sim init --time 300
@@ -47,7 +50,7 @@ cat >"$work/rows" <<'END'
 0|lines[0]["manual"]|help --man
 0|lines[0]["joints"][5]["trim_deg"] == 1.5|-d here calibrate R_ANKLE_R 1.5
 1|lines[0]["error"]["code"] == "noent"|-d /dev/none status
-2|lines[0]["error"]["code"] == "usage"|status --nonsense
+2|lines[0]["error"]["code"] == "arg"|status --nonsense
 3|lines[0]["error"]["message"]|play /dev/null
 4|lines[0]["error"]["code"] == "limit"|-d sim move m5 120
 END
@@ -105,6 +108,8 @@ def keys(rule):
         return "; or ".join(keys(one) for one in rule["anyOf"])
     if "$ref" in rule:
         return "a *%s*" % referred(rule)
+    if "enum" in rule:
+        return "one of " + " ".join("`%s`" % word for word in rule["enum"])
     return ", ".join("`%s`%s%s" % (key, inside(of, "a"), "" if key in rule["required"] else "?")
                      for key, of in rule["properties"].items())
 
@@ -189,7 +194,7 @@ in_shell() {
     printf 'Clear\nPush\nt 500\nReverse\nversion\n' |
         exits_with_keys "$GRCTL" --json -d sim shell
 }
-check "--json shell" both in_shell --- json 'len(lines) == 5'
+check "--json shell" both in_shell --- json 'len(lines) == 10'
 check "as the schema says" fits shell,version
 
 rows names | sort -u >"$work/names"
@@ -215,6 +220,28 @@ page_has_schema() {
 }
 check "docs/grctl-json.md has the schema's keys" page_has_schema
 awk -f tools/json_page.awk docs/grctl-json.md >"$work/grctl-json.5"
+# The words of error codes are those of error.h, in the schema as in what grctl's source names.
+cat >"$work/codes.py" <<'END'
+import glob, json, re, sys
+names = re.findall(r"^    X\((\w+), -\d+", open("include/grobo/error.h").read(), re.M)
+library = [name.lower() for name in names]
+schema = json.load(open("docs/grctl.schema.json"))["$defs"]
+if schema["code"]["enum"] != library:
+    sys.exit("$defs/code is not error.h's list")
+calls = 0
+for path in glob.glob("tools/grctl/**/*.c", recursive=True):
+    for code in re.findall(r'\bapp_fail\(\s*[^,]+,\s*[^,]+,\s*"(\w+)"', open(path).read()):
+        calls += 1
+        if code.lower() not in library or not code.isupper():
+            sys.exit("%s: %s is no name of an error" % (path, code))
+if calls < 50:
+    sys.exit("only %d calls were found" % calls)
+trips = re.findall(r'TRIP_\w+\] = "([^"]+)"', open("src/robot/trip.c").read())[1:]
+if schema["error"]["properties"]["error"]["properties"]["trip"]["enum"] != [
+        re.sub("[ -]", "_", trip) for trip in trips]:
+    sys.exit("the schema's trips are not those of trip.c")
+END
+check "error codes are the names of error.h" python3 "$work/codes.py"
 check "grctl-json(5) is made of it" grep -q '^\.It doctor$' "$work/grctl-json.5"
 if command -v mandoc >/dev/null 2>&1; then
     check "mandoc has nothing to say of it" mandoc -Tlint -Wwarning "$work/grctl-json.5"

@@ -117,6 +117,7 @@ on_screen resize-window -x 50 -y 12
 check "too small a window" until_screen 'a larger window, please'
 on_screen resize-window -x 120 -y 40
 check "a large one: longer bars" until_screen 'NECK_Y  *[-0-9.]* .\{25,\} on '
+check "and what was said before" until_screen '^play: stopped'
 
 # Hundredths of a second of the processor, of those that have passed since the screen came.
 little_of_a_core() {
@@ -166,6 +167,25 @@ type_line "NO_COLOR=1 LC_ALL=C $monitor"
 check "plain letters where nothing else is known" until_screen 'NECK_Y .* -*#-* '
 keys q
 until_screen '^status 0'
+type_line "$monitor"
+until_screen '^GR001'
+keys Right
+until_screen ' 1>CHEST_P'
+keys t
+until_screen '^torque on: done'
+keys -l ']'
+check "at a limit a nudge is no move" until_screen '^CHEST_P is at its limit: 0 deg'
+keys q
+until_screen '^status 0'
+on_screen pipe-pane "cat >'$work/raw'"
+type_line "'$GRCTL' -d '$work/robot' scan; echo status \$?"
+until_screen '^status 0'
+check "a scan shows where it is" written "$work/raw" '115200 bps, id [0-9]'
+cleared() {
+    ! grep -q 'bps, id' "$work/screen"
+}
+check "and leaves nothing of that behind" cleared
+on_screen pipe-pane
 type_line "'$GRCTL' -d '$work/none' monitor"
 check "no such device" until_screen 'none: no such file'
 on_screen kill-server

@@ -75,7 +75,7 @@ check "limits and speeds are marked" plots "$work/fast.m" '1 joint beyond its li
     '1 joint faster than its servo' 'class="fast"' 'class="beyond"' '20 to 170°, 750°/s'
 fast_json='lines[0]["joints"][14]["too_fast_ms"] == [[100, 300]] and
     lines[0]["joints"][14]["beyond_limits"] and
-    not any(j["beyond_limits"] for j in lines[0]["joints"] if j["id"] != 14) and
+    not any(j["beyond_limits"] for j in lines[0]["joints"] if j["joint"] != 14) and
     lines[0]["joints"][14]["limits_deg"] == [-150, 150] and
     lines[0]["joints"][14]["peak_dps"] == 750'
 check_json "and told as JSON" "$fast_json" "$GRCTL" plot --json -o "$work/fast.svg" "$work/fast.m"

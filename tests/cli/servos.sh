@@ -29,10 +29,31 @@ tell fault delay=1
 check "who answers late is found" both exits 0 on_robot scan --first 10 --last 15 --- \
     says '^ 12 .*R_KNEE_P'
 tell fault delay=0
+check "a move as asked" exits 0 on_robot move m5 -40 1500
+as_asked() {
+    ! grep -q 'it took' "$work/err"
+}
+check "needs no word on its time" as_asked
+check "status of another process knows the target" both exits 0 on_robot status m5 --- \
+    says '^    5  R_ELBOW_P  *-40\.0  *-40\.0  on '
+check "a joint without torque has none" both exits 0 on_robot status m4 --- \
+    says '^    4  R_SHOULDER_R  *[-0-9.]*  *-  off '
+check "a move that took longer" both exits 0 on_robot move m5 40 10 --- \
+    said '^it took [0-9]* ms, not 10: no joint moves faster'
 tell id 3 12
 check "two servos with one id are named" both exits 1 on_robot scan --first 10 --last 13 --- \
     said '^id 12 answers, but: .* (two servos with one id?)$'
 check "nobody else is" both finds 3 --- said '^not sure: '
+if have_json; then
+    twice_as_json() {
+        exits 1 on_robot scan --json --first 10 --last 13 &&
+            json '[(s["id"], s["name"]) for s in lines[0]["failed"]] == [(12, "R_KNEE_P")] and
+                lines[0]["failed"][0]["status"] in ("checksum", "mismatch", "short")'
+    }
+    check "and in JSON, with the error" twice_as_json
+else
+    skip "and in JSON" "no python3"
+fi
 tell id 3 3
 check "--first behind --last" fails 2 'first is behind' on_robot scan --first 5 --last 3
 check "--all-baud through the board" fails 2 'needs --wiring bus' on_robot scan --all-baud
@@ -52,8 +73,8 @@ check "-v: the bytes too" both exits 1 on_robot -v servo on m12 --- \
     said '^sent 54 09 FA AF 0C 0F 1E 18 00 05 20; received nothing$'
 tell silent 12 off
 check "-vv: every byte" both exits 0 on_robot -vv status m12 --- \
-    said '^ *[0-9.]*  >  54 09 FA AF 0C 0F 24 12 00 35 1A$'
-check "and what came" said '^ *[0-9.]*  <  FD DF 0C 00 24 12 01 '
+    said '^ *[0-9.]*  >  54 09 FA AF 0C 0F 1E 18 00 05 20$'
+check "and what came" said '^ *[0-9.]*  <  FD DF 0C 00 1E 18 01 '
 
 # ---- registers -------------------------------------------------------------------------------
 

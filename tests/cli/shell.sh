@@ -59,6 +59,24 @@ check "one that is not there" fails 3 'none: no such file$' "$GRCTL" shell "$wor
 check "exit, as elsewhere" both script 0 'exit
 nonsense' --- [ ! -s "$work/err" ]
 check "a folder is none" fails 3 ': is a directory$' "$GRCTL" shell "$work"
+check "a word nearly right" both script 2 'claer
+' --- told "input:1: no command 'claer'; did you mean 'Clear'?$"
+check "a command nearly right" both script 2 'stauts
+' --- told "no command 'stauts'; did you mean 'status'?$"
+check "help on a command" both script 0 'help move
+' --- says '^usage: grctl move JOINT DEG'
+check "help on a letter" both script 0 'help m
+' --- says '^ *m  *JOINT DEG \[MS\]$'
+check "help on a word" both script 0 'help Rec
+' --- says 'append one every 100 ms'
+check "help on the beginning of one" both script 0 'help w
+' --- says '^ *wait MS$'
+check "help on what is none" both script 2 'help Puhs
+' --- told "no command 'Puhs'; did you mean 'Push'?$"
+check "help lists commands" both script 0 'help
+' --- says '^  play  '
+check "and words" says '^ *f  *Free '
+check "elsewhere help knows no letters" fails 2 "no command 'w'; see 'grctl help'" "$GRCTL" help w
 
 # ---- one connection --------------------------------------------------------------------------
 
@@ -168,13 +186,30 @@ r
 Reverse
 t 300
 version
-' --json && json 'len(lines) == 5 and lines[1]["postures"] == 1 and lines[3]["time_ms"] == 300'
+' --json && json '[l["line"] for l in lines[1::2]] == [1, 2, 3, 4, 5] and
+            lines[2]["postures"] == 1 and lines[6]["time_ms"] == 300'
     }
-    check "with --json a line a command" lines_of_json
+    check "with --json a line a command, and its mark" lines_of_json
+    marks() {
+        script 4 'move m5 99
+# nothing
+status "m3
+' -k --json && json '[(l["line"], l["status"]) for l in lines if "line" in l] ==
+            [(1, 4), (2, 0), (3, 2)]'
+    }
+    check "with the exit status of each" marks
     json_error() {
         script 2 'nonsense' --json && json '"standard input:1: " in lines[0]["error"]["message"]'
     }
     check "mistakes too" json_error
+    json_refused() {
+        script 2 'status "m3' --json && json 'lines[0]["error"]["code"] == "arg"'
+    }
+    check "and lines that are no commands" json_refused
+    json_words() {
+        script 0 'help w' --json && json 'lines[0]["words"][0]["word"] == "wait"'
+    }
+    check "and words that are asked for" json_words
 else
     skip "--json" "no python3 to parse JSON with"
 fi

@@ -14,8 +14,8 @@ status_is_traced() {
     "$GRCTL" -d sim --timeout 500 --trace "$work/status" status >/dev/null || return 1
     [ "$(frames "$work/status" ' host .*check the board; reply: ACK')" -ge 1 ] &&
         [ "$(frames "$work/status" ' robot .*ACK; .* ms after its request')" -ge 1 ] &&
-        [ "$(frames "$work/status" ' host .*read No.36-53 of servo')" -ge 20 ] &&
-        [ "$(frames "$work/status" ' robot .*returns No.36-53: .* its request')" -ge 20 ] &&
+        [ "$(frames "$work/status" ' host .*read No.30-53 of servo')" -ge 20 ] &&
+        [ "$(frames "$work/status" ' robot .*returns No.30-53: .* its request')" -ge 20 ] &&
         [ "$(frames "$work/status" 'rubbish\|cut\|wrong\|nobody')" -eq 0 ]
 }
 check 'status: twenty questions, twenty answers' status_is_traced
@@ -68,7 +68,7 @@ check 'a trace that breaks off: the command is done, and it is told' a_watcher_g
 over_a_pty() {
     "$GRCTL" -d "$robot" --timeout 500 --trace "$work/pty" status >/dev/null || return 1
     "$GRCTL" decode --json "$work/pty" | grep -qF '"device":"'"$robot"'"' &&
-        [ "$(frames "$work/pty" 'returns No.36-53')" -ge 20 ]
+        [ "$(frames "$work/pty" 'returns No.30-53')" -ge 20 ]
 }
 check 'a robot behind a port' over_a_pty
 

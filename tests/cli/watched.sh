@@ -35,7 +35,13 @@ recovers() {
 check "heat of another joint ends a move" stops "$heat" temperature 12 70 --- move m5 -120 20000
 check "it moves again when it is cool" recovers temperature 12 25
 check "low voltage ends a pose" stops 'stopped for safety: low voltage' voltage 5 --- \
-    pose --time 20000 R_ELBOW_P=-120
+    --json pose --time 20000 R_ELBOW_P=-120
+if have_json; then
+    check "and JSON says why" json 'lines[-1]["error"]["code"] == "latched" and
+        lines[-1]["error"]["trip"] == "low_voltage"'
+else
+    skip "and JSON says why" "no python3"
+fi
 check "it moves again with a full battery" recovers voltage 7.4
 check "a joint that is blocked ends a move" stops 'stopped for safety: .*motor 5 (R_ELBOW_P)' \
     block 5 on --- move m5 -120 20000

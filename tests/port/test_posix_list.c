@@ -81,7 +81,8 @@ static int collect(void *ctx, const grobo_port_info *info)
 
 static int list(found *f)
 {
-    return grobo_i_posix_list(in_folder("class/tty"), in_folder("dev"), collect, f);
+    return grobo_i_posix_list(in_folder("class/tty"), in_folder("proc"), in_folder("dev"), collect,
+                              f);
 }
 
 static void each_port_with_a_device_is_described(void **state)
@@ -116,7 +117,8 @@ static void without_sysfs_adapters_are_found_by_their_names(void **state)
     found f = {.count = 0};
 
     (void)state;
-    assert_int_equal(grobo_i_posix_list("/no/such/folder", in_folder("dev"), collect, &f), 1);
+    assert_int_equal(grobo_i_posix_list("/no/such/folder", "/none", in_folder("dev"), collect, &f),
+                     1);
     assert_string_equal(f.info[0].path, in_folder("dev/ttyUSB0"));
     assert_string_equal(strrchr(f.info[0].by_id, '/'),
                         "/usb-FTDI_FT232R_USB_UART_A1B2C3-if00-port0");
@@ -124,10 +126,39 @@ static void without_sysfs_adapters_are_found_by_their_names(void **state)
     assert_int_equal(f.info[0].usb_vendor, -1);
     assert_int_equal(f.info[0].latency_ms, -1);
     assert_int_equal(f.info[0].open_result, GROBO_OK);
-    assert_int_equal(grobo_i_posix_list("/no/such/folder", "/nor/this", collect, &f), 0);
+    assert_int_equal(grobo_i_posix_list("/no/such/folder", "/none", "/nor/this", collect, &f), 0);
 }
 
 /* ttyUSB2 before ttyUSB10: the order in which adapters are tried. */
+/* ttyAMA0 has a Bluetooth chip, ttyAMA10 is a console, ttyS0 one of the kernel's command line. */
+static void consoles_and_bluetooth_are_told_apart(void **state)
+{
+    static const struct {
+        const char *name;
+        bool console, bluetooth;
+    } want[] = {{"ttyAMA0", false, true},
+                {"ttyAMA1", false, false},
+                {"ttyAMA10", true, false},
+                {"ttyS0", true, false},
+                {"ttyUSB0", false, false}};
+    found f = {.count = 0};
+
+    (void)state;
+    shell("mkdir proc && printf 'tty0   -WU (EC p  ) 4:7\\nttyAMA10 -W- (EC   ) 204:64\\n' "
+          ">proc/consoles");
+    shell("echo 'quiet earlyconsole=ttyAMA1 console=ttyS0,115200 rw' >proc/cmdline");
+    shell("for n in 0 1 10; do mkdir -p devices/uart$n/of_node && : >dev/ttyAMA$n && "
+          "ln -s ../../devices/uart$n class/tty/ttyAMA$n && ln -s . devices/uart$n/device; done && "
+          "mkdir devices/uart0/of_node/bluetooth");
+    assert_int_equal(list(&f), 5);
+    for (int i = 0; i < f.count; i++) {
+        assert_string_equal(strrchr(f.info[i].path, '/') + 1, want[i].name);
+        assert_int_equal(f.info[i].console, want[i].console);
+        assert_int_equal(f.info[i].bluetooth, want[i].bluetooth);
+    }
+    shell("rm -r proc devices/uart* class/tty/ttyAMA* dev/ttyAMA*");
+}
+
 static void ports_are_in_the_order_of_their_numbers(void **state)
 {
     static const char *const names[] = {"ttyS0", "ttyUSB0", "ttyUSB1", "ttyUSB2", "ttyUSB10"};
@@ -142,7 +173,8 @@ static void ports_are_in_the_order_of_their_numbers(void **state)
         assert_string_equal(strrchr(f.info[i].path, '/') + 1, names[i]);
     }
     f.count = 0;
-    assert_int_equal(grobo_i_posix_list("/no/such/folder", in_folder("dev"), collect, &f), 4);
+    assert_int_equal(grobo_i_posix_list("/no/such/folder", "/none", in_folder("dev"), collect, &f),
+                     4);
     for (int i = 0; i < f.count; i++) {
         assert_string_equal(strrchr(f.info[i].path, '/') + 1, names[i + 1]);
     }
@@ -232,6 +264,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_port_with_a_device_is_described),
         cmocka_unit_test(without_sysfs_adapters_are_found_by_their_names),
+        cmocka_unit_test(consoles_and_bluetooth_are_told_apart),
         cmocka_unit_test(ports_are_in_the_order_of_their_numbers),
         cmocka_unit_test(a_visit_can_be_ended),
         cmocka_unit_test(a_port_in_use_names_its_owner),

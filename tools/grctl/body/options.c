@@ -51,7 +51,7 @@ int body_options_read(app *a, int base, double rate_hz, grobo_body_options *opti
     o.rate_hz = rate_hz;
     *options = o;
     if (o.ik == GROBO_BODY_IK_OFF && o.balance != GROBO_BODY_BALANCE_OFF)
-        return app_fail(a, EXIT_USAGE, "USAGE",
+        return app_fail(a, EXIT_USAGE, "ARG",
                         "%s: --ik off and a balancer cannot be used together; add --balance off",
                         a->line.command->name);
     return 0;

@@ -56,15 +56,22 @@ void app_make_one_line(char *text)
             *text = '?';
 }
 
-int app_fail(app *a, int status, const char *code, const char *format, ...)
+/* The word of a trip: "low_voltage". */
+static json_t *trip_json(grobo_trip trip)
+{
+    char word[32];
+    snprintf(word, sizeof word, "%s", grobo_trip_name(trip));
+    for (char *c = word; *c; c++)
+        *c = *c == ' ' || *c == '-' ? '_' : *c;
+    return json_string(word);
+}
+
+static int fail(app *a, int status, const char *code, grobo_trip trip, const char *format,
+                va_list list)
 {
     char text[APP_LINE_BYTES];
-    va_list list;
-    int n;
-    va_start(list, format);
-    n = snprintf(text, sizeof text, "%s", a->place);
+    int n = snprintf(text, sizeof text, "%s", a->place);
     vsnprintf(text + n, sizeof text - (size_t)n, format, list);
-    va_end(list);
     app_make_one_line(text);
     if (a->hushed) {
         memcpy(a->hushed, text, sizeof text);
@@ -73,10 +80,33 @@ int app_fail(app *a, int status, const char *code, const char *format, ...)
     output_flush();
     output_complain("%sgrctl:%s %s\n", a->color_err ? "\033[1;31m" : "",
                     a->color_err ? "\033[0m" : "", text);
-    if (a->json)
-        app_print_json(json_pack("{s:{s:o,s:o}}", "error", "code", app_json_code(code), "message",
-                                 app_json_text(text)));
+    if (a->json) {
+        json_t *error =
+            json_pack("{s:o,s:o}", "code", app_json_code(code), "message", app_json_text(text));
+        if (trip != GROBO_TRIP_NONE)
+            json_object_set_new(error, "trip", trip_json(trip));
+        app_print_json(json_pack("{s:o}", "error", error));
+    }
     return status;
+}
+
+int app_fail(app *a, int status, const char *code, const char *format, ...)
+{
+    va_list list;
+    va_start(list, format);
+    status = fail(a, status, code, GROBO_TRIP_NONE, format, list);
+    va_end(list);
+    return status;
+}
+
+int app_fail_trip(app *a, grobo_trip trip, const char *format, ...)
+{
+    int error = trip == GROBO_TRIP_HOST_STALL ? GROBO_ERR_STALLED : GROBO_ERR_LATCHED;
+    va_list list;
+    va_start(list, format);
+    fail(a, EXIT_SAFETY, grobo_error_name(error), trip, format, list);
+    va_end(list);
+    return EXIT_SAFETY;
 }
 
 int app_status_of(int error)

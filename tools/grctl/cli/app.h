@@ -8,7 +8,7 @@
 
 #include <jansson.h>
 
-#include <grobo/types.h>
+#include <grobo/robot_event.h>
 
 #include "tools/grctl/cli/cli.h"
 
@@ -22,6 +22,7 @@ typedef struct app {
     struct conn_link *link; /* the shell's, NULL: every command opens and closes its own */
     const struct grobo_motion *record; /* the shell's @record, or NULL */
     const struct config_robot *robot;  /* the configured one, or NULL */
+    const char *nearest_device;        /* to a name that no robot has: a robot or word, or NULL */
     char place[128];                   /* "FILE:LINE: " of a script, for messages */
     bool json;
     int verbosity; /* -1 quiet, 0, 1, 2 */
@@ -47,10 +48,13 @@ double app_number(const app *a, int i, double otherwise);
 /*
  * Says one line of what went wrong ("grctl: ...") and returns the exit status it was given. With
  * --json the same goes to standard output as {"error": {"code": ..., "message": ...}}.
- * code: a stable word, such as grobo_error_name() gives; capitals are told as small letters.
+ * code: as grobo_error_name() gives it, and nothing else; JSON has it in small letters.
  */
 int app_fail(app *a, int status, const char *code, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
+/* So where the robot stopped for safety: EXIT_SAFETY; JSON has the trip as a word too. */
+int app_fail_trip(app *a, grobo_trip trip, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 /* The exit status that fits a library error. */
 int app_status_of(int error);
 

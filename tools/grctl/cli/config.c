@@ -6,9 +6,11 @@
 #include <yaml.h>
 
 #include <grobo/model.h>
+#include <grobo/session.h>
 
 #include "tools/grctl/cli/config.h"
 #include "tools/grctl/cli/file.h"
+#include "tools/grctl/cli/joints.h"
 #include "tools/grctl/os/node.h"
 #include "tools/grctl/os/os.h"
 
@@ -21,8 +23,11 @@ typedef struct reader {
     int status; /* of the first complaint */
     char wanted[CONFIG_NAME_BYTES];
     bool wants_default;
+    char default_path[CONFIG_PATH_BYTES]; /* of the file that names the default */
     config_robot *robot;
     bool has_warn_fall, warn_fall;
+    cli_guess guess; /* the robot whose name is nearest to the wanted one */
+    char nearest[CONFIG_NAME_BYTES];
 } reader;
 
 /* ---- events --------------------------------------------------------------------------------- */
@@ -32,7 +37,7 @@ static int complain(reader *r, const yaml_mark_t *at, const char *format, const 
     char text[256];
     snprintf(text, sizeof text, format, what);
     if (!r->status)
-        r->status = app_fail(r->a, EXIT_FILE, "CONFIG", "%s:%zu:%zu: %s", r->path, at->line + 1,
+        r->status = app_fail(r->a, EXIT_FILE, "SYNTAX", "%s:%zu:%zu: %s", r->path, at->line + 1,
                              at->column + 1, text);
     return r->status;
 }
@@ -117,6 +122,15 @@ static int take_text(reader *r, char *text, size_t capacity)
     return 0;
 }
 
+static int unknown_joint(reader *r, const char *name)
+{
+    char text[2 * CONFIG_NAME_BYTES];
+    const char *nearest = joints_nearest(&grobo_gr001_model, name, strlen(name), false);
+    snprintf(text, sizeof text, "no joint called '%.*s'%s%s%s", CONFIG_NAME_BYTES, name,
+             nearest ? "; did you mean " : "", nearest ? nearest : "", nearest ? "?" : "");
+    return complain(r, &r->event.start_mark, "%s", text);
+}
+
 /* {JOINT: degrees, ...}; at_end: behind the last character of the mapping's text. */
 static int take_degrees(reader *r, double *deg, size_t *at, size_t *at_end)
 {
@@ -131,7 +145,7 @@ static int take_degrees(reader *r, double *deg, size_t *at, size_t *at_end)
         const char *name = scalar(r);
         int joint = name ? grobo_model_find_joint(&grobo_gr001_model, name, strlen(name)) : -1;
         if (joint < 0)
-            return complain(r, &r->event.start_mark, "no joint called '%s'", name ? name : "");
+            return unknown_joint(r, name ? name : "");
         if (next(r))
             return r->status;
         if (!scalar(r) || !cli_read_number(scalar(r), &deg[joint]) ||
@@ -175,6 +189,19 @@ static int take_field(reader *r, const char *key)
                     key);
 }
 
+/* The name of a robot lives no longer than its event: the nearest one is copied. */
+static void try_name(reader *r, const char *name)
+{
+    int edits = r->guess.best ? r->guess.edits : -1;
+    r->guess.name = r->wanted;
+    r->guess.length = strlen(r->wanted);
+    cli_guess_try(&r->guess, name);
+    if (r->guess.best && r->guess.edits != edits) {
+        snprintf(r->nearest, sizeof r->nearest, "%s", name);
+        r->guess.best = r->nearest;
+    }
+}
+
 /* Every robot is checked; the one that is wanted is kept. */
 static int take_robot(reader *r, const char *name)
 {
@@ -196,6 +223,7 @@ static int take_robot(reader *r, const char *name)
         snprintf(kept->name, sizeof kept->name, "%s", name);
         snprintf(kept->path, sizeof kept->path, "%s", r->path);
     }
+    try_name(r, name);
     return r->status;
 }
 
@@ -212,8 +240,10 @@ static int take_top(reader *r, const char *key)
         return complain(r, &r->event.start_mark,
                         "no key '%s'; there are default, robots, warn_fall", key);
     if (take_text(r, name, sizeof name) == 0 && r->wants_default) {
-        if (*r->robot->name == '\0' && *r->wanted == '\0')
+        if (*r->robot->name == '\0' && *r->wanted == '\0') {
             snprintf(r->wanted, sizeof r->wanted, "%s", name);
+            snprintf(r->default_path, sizeof r->default_path, "%s", r->path);
+        }
     }
     return r->status;
 }
@@ -249,7 +279,7 @@ static int find(reader *r)
             errno = 0;
             file = os_config_path(i, r->path, sizeof r->path) ? fopen(r->path, "r") : NULL;
             if (!file && errno == EACCES)
-                return r->status = app_fail(r->a, EXIT_FILE, "CONFIG", "%s: %s", r->path,
+                return r->status = app_fail(r->a, EXIT_FILE, "PERM", "%s: %s", r->path,
                                             app_cause_text(errno));
             if (!file)
                 break;
@@ -267,9 +297,9 @@ static int find(reader *r)
 /* Commands that speak to no robot: a bad configuration does not keep them from working. */
 static bool is_offline(const cli_command *command)
 {
-    static const char *const names[] = {"ports",      "check",   "show",  "plot",
-                                        "convert",    "decode",  "sim",   "help",
-                                        "completion", "version", "budget"};
+    static const char *const names[] = {"ports",      "check",   "show",   "plot",
+                                        "convert",    "decode",  "sim",    "help",
+                                        "completion", "version", "budget", "joints"};
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
         if (strcmp(command->name, names[i]) == 0)
             return true;
@@ -289,6 +319,25 @@ static void set_option(app *a, int global, const cli_value *value)
         a->line.global[global] = *value;
 }
 
+/* No robot has the name: where it was asked for, it may be a device; conn_open() finds out. */
+static int no_robot(reader *r, bool asked)
+{
+    static char nearest[CONFIG_NAME_BYTES];
+    r->guess.name = r->wanted;
+    r->guess.length = strlen(r->wanted);
+    if (asked) {
+        cli_guess_try(&r->guess, GROBO_DEVICE_AUTO);
+        cli_guess_try(&r->guess, GROBO_DEVICE_SIM);
+    }
+    snprintf(nearest, sizeof nearest, "%s", r->guess.best ? r->guess.best : "");
+    r->a->nearest_device = *nearest ? nearest : NULL;
+    if (asked || !*r->wanted)
+        return 0;
+    return app_fail(r->a, EXIT_FILE, "NOTFOUND", "%s: default '%s' is no robot of the file%s%s%s",
+                    r->default_path, r->wanted, *nearest ? "; did you mean '" : "", nearest,
+                    *nearest ? "'?" : "");
+}
+
 int config_apply(app *a)
 {
     static config_robot robot;
@@ -296,6 +345,7 @@ int config_apply(app *a)
     const char *fallback = getenv("GRCTL_DEVICE");
     const char *asked = device->given ? device->text : fallback && *fallback ? fallback : NULL;
     reader r = {.a = a, .robot = &robot, .wants_default = asked == NULL};
+    a->nearest_device = NULL;
     if (is_offline(a->line.command) || (asked && !may_be_name(asked)))
         return 0;
     memset(&robot, 0, sizeof robot);
@@ -303,11 +353,7 @@ int config_apply(app *a)
         snprintf(r.wanted, sizeof r.wanted, "%s", asked);
     find(&r);
     if (!*robot.name)
-        return r.status ? r.status
-               : r.wants_default && *r.wanted
-                   ? app_fail(a, EXIT_FILE, "CONFIG", "%s: default '%s' is no robot of the file",
-                              r.path, r.wanted)
-                   : 0;
+        return r.status ? r.status : no_robot(&r, asked != NULL);
     a->line.global[GLOBAL_DEVICE] = (cli_value){.given = 1, .text = robot.device};
     set_option(a, GLOBAL_WIRING, &robot.wiring);
     set_option(a, GLOBAL_ECHO, &robot.echo);

@@ -3,20 +3,25 @@
 
 #include "tools/grctl/cli/joints.h"
 
-static int unknown(app *a, const char *what, const char *name, size_t length)
+const char *joints_nearest(const grobo_model *model, const char *name, size_t length, bool groups)
 {
-    const grobo_model *model = &grobo_gr001_model;
     cli_guess guess = {.name = name, .length = length};
     for (int i = 0; i < model->n_joints; i++)
         cli_guess_try(&guess, model->joints[i].name);
-    for (int i = 0; i < model->n_groups; i++)
+    for (int i = 0; groups && i < model->n_groups; i++)
         cli_guess_try(&guess, model->groups[i].name);
-    if (guess.best)
+    return guess.best;
+}
+
+static int unknown(app *a, const char *what, const char *name, size_t length, bool groups)
+{
+    const char *nearest = joints_nearest(&grobo_gr001_model, name, length, groups);
+    if (nearest)
         return app_fail(a, EXIT_USAGE, "NOTFOUND", "no %s called '%.*s'; did you mean %s?", what,
-                        (int)length, name, guess.best);
+                        (int)length, name, nearest);
     return app_fail(a, EXIT_USAGE, "NOTFOUND",
                     "no %s called '%.*s'; joints are named as R_KNEE_P, m12 or j3, groups are all "
-                    "body right_arm left_arm arms right_leg left_leg legs",
+                    "body right_arm left_arm arms right_leg left_leg legs; see 'grctl joints'",
                     what, (int)length, name);
 }
 
@@ -25,7 +30,7 @@ int joints_parse(app *a, const char *name, grobo_joint_mask *joints)
     size_t length = strlen(name);
     grobo_joint_mask found;
     if (grobo_model_find_joints(&grobo_gr001_model, name, length, &found) < 0)
-        return unknown(a, "joint or group", name, length);
+        return unknown(a, "joint or group", name, length, true);
     *joints |= found;
     return 0;
 }
@@ -54,7 +59,7 @@ int joints_parse_motion(app *a, const char *list, const grobo_model *model, int 
         if (number >= 0 && number < n_joints)
             found = GROBO_JOINT_BIT(number);
         else if (model && grobo_model_find_joints(model, list, length, &found) < 0)
-            return unknown(a, "joint or group", list, length);
+            return unknown(a, "joint or group", list, length, true);
         else if (!model)
             return app_fail(a, EXIT_USAGE, "NOTFOUND",
                             "no joint called '%.*s'; those of a body we do not know are j0 to j%d",
@@ -77,7 +82,7 @@ int joints_parse_one(app *a, const char *name, size_t length, int *status)
                            "'%.*s' is a group; one joint is wanted, named as R_KNEE_P, m12 or j3",
                            (int)length, name);
     else
-        *status = unknown(a, "joint", name, length);
+        *status = unknown(a, "joint", name, length, false);
     return -1;
 }
 

@@ -7,6 +7,8 @@
 
 #include "tools/grctl/cli/app.h"
 
+/* The joint, or also the group, whose name is nearest to a mistyped one; NULL: none is near. */
+const char *joints_nearest(const grobo_model *model, const char *name, size_t length, bool groups);
 /* One name of a joint or group; on failure says so and returns the exit status, else 0. */
 int joints_parse(app *a, const char *name, grobo_joint_mask *joints);
 /*

@@ -30,9 +30,9 @@ static int fail(app *a, const char *complaint)
 {
     const cli_command *command = a->line.command;
     if (complaint[strlen(complaint) - 1] == '?') /* what was meant says enough */
-        return app_fail(a, EXIT_USAGE, "USAGE", "%s", complaint);
-    return app_fail(a, EXIT_USAGE, "USAGE", "%s; see 'grctl help%s%s'", complaint,
-                    command ? " " : "", command ? command->name : "");
+        return app_fail(a, EXIT_USAGE, "ARG", "%s", complaint);
+    return app_fail(a, EXIT_USAGE, "ARG", "%s; see 'grctl help%s%s'", complaint, command ? " " : "",
+                    command ? command->name : "");
 }
 
 static const char echo_alone[] = "--echo needs --wiring bus: the board returns nothing";
@@ -92,7 +92,7 @@ static int stop_first(app *a, const char *complaint, int (*prepare)(void *ctx, a
         suspend_by(SIG_DFL);
     if (later) {
         *a->place = '\0'; /* it stands in the message */
-        app_fail(a, later, later == EXIT_FILE ? "CONFIG" : "USAGE", "%s", hushed);
+        app_fail(a, later, later == EXIT_FILE ? "SYNTAX" : "ARG", "%s", hushed);
     }
     if (complaint)
         later = fail(a, complaint);

@@ -24,7 +24,7 @@ static void show(const app *a, const config_robot *before, const config_robot *a
         if (!a->json && after->trim_deg[j] != before->trim_deg[j])
             app_print("%5d  %-12s  %6.1f -> %6.1f deg\n", model->joints[j].motor,
                       model->joints[j].name, before->trim_deg[j], after->trim_deg[j]);
-        json_array_append_new(list, json_pack("{s:i,s:i,s:s,s:o,s:o}", "id", j, "motor",
+        json_array_append_new(list, json_pack("{s:i,s:i,s:s,s:o,s:o}", "joint", j, "motor",
                                               model->joints[j].motor, "name", model->joints[j].name,
                                               "before_deg", app_json_number(before->trim_deg[j], 1),
                                               "trim_deg", app_json_number(after->trim_deg[j], 1)));
@@ -111,11 +111,11 @@ static int run(app *a)
     double deg;
     int joint, status = 0;
     if (!a->robot)
-        return app_fail(a, EXIT_USAGE, "USAGE",
+        return app_fail(a, EXIT_USAGE, "ARG",
                         "calibrate: -d must name a robot of ~/.config/grctl/config.yaml; see "
                         "'grctl help calibrate'");
     if (a->line.n_arguments == 1)
-        return app_fail(a, EXIT_USAGE, "USAGE", "calibrate needs JOINT DEG, or neither");
+        return app_fail(a, EXIT_USAGE, "ARG", "calibrate needs JOINT DEG, or neither");
     after = *a->robot;
     if (a->line.n_arguments == 0) {
         status = measure(a, &after);
@@ -125,7 +125,7 @@ static int run(app *a)
         if (joint < 0)
             return status;
         if (!cli_read_number(a->line.argument[1], &deg))
-            return app_fail(a, EXIT_USAGE, "USAGE", "calibrate: '%s' is not an angle in degrees",
+            return app_fail(a, EXIT_USAGE, "ARG", "calibrate: '%s' is not an angle in degrees",
                             a->line.argument[1]);
         status = set_trim(a, &after, joint, deg);
     }

@@ -11,6 +11,7 @@
     X(doctor)                                                                                      \
     X(scan)                                                                                        \
     X(info)                                                                                        \
+    X(joints)                                                                                      \
     X(status)                                                                                      \
     X(monitor)                                                                                     \
     X(servo)                                                                                       \

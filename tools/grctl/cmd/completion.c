@@ -22,7 +22,7 @@ static int run(app *a)
             all[i].print(output_stream());
         return EXIT_DONE;
     }
-    return app_fail(a, EXIT_USAGE, "USAGE", "completion: '%s' is none of bash, zsh, fish", shell);
+    return app_fail(a, EXIT_USAGE, "ARG", "completion: '%s' is none of bash, zsh, fish", shell);
 }
 
 const cli_command cmd_completion = {

@@ -245,10 +245,10 @@ static int run(app *a)
         to = grobo_motion_format_of_path(out);
     how.format = to;
     if (how.exact && app_option(a, OPT_INTEGERS)->given)
-        return app_fail(a, EXIT_USAGE, "USAGE",
+        return app_fail(a, EXIT_USAGE, "ARG",
                         "convert: --exact and --integers cannot be used together");
     if (to == GROBO_FORMAT_AUTO)
-        return app_fail(a, EXIT_USAGE, "USAGE",
+        return app_fail(a, EXIT_USAGE, "ARG",
                         "%s: its name tells no format; give --to " FILE_FORMATS, out);
     error = refuse_out(a, out, to);
     if (error)

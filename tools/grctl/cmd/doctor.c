@@ -5,7 +5,9 @@
 
 #include <grobo/estop.h>
 
+#include "tools/grctl/cli/progress.h"
 #include "tools/grctl/cmd/commands.h"
+#include "tools/grctl/conn/auto_ports.h"
 #include "tools/grctl/conn/servos.h"
 #include "tools/grctl/doctor/checkup.h"
 
@@ -27,15 +29,6 @@ static const int usual_bauds[] = {9600, 19200, 38400, 57600, 115200, 230400, 460
 static bool is_path(const char *device)
 {
     return strcmp(device, GROBO_DEVICE_SIM) != 0 && strncmp(device, "tcp:", 4) != 0;
-}
-
-static int keep_usb(void *ctx, const grobo_port_info *info)
-{
-    char *path = ctx;
-    if (info->usb_vendor < 0)
-        return 0;
-    snprintf(path, GROBO_DEVICE_MAX_BYTES, "%s", info->path);
-    return 1;
 }
 
 /* ---- the line -------------------------------------------------------------------------------- */
@@ -70,12 +63,20 @@ static void set_baud(app *a, int baud_bps)
 static int find_answer(patient *p, int asked_bps)
 {
     app *a = p->k.a;
+    const size_t n_bauds = sizeof usual_bauds / sizeof usual_bauds[0];
     char said[APP_LINE_BYTES];
-    for (size_t i = 0; i < sizeof usual_bauds / sizeof usual_bauds[0] && !p->c.signal; i++) {
+    progress bar;
+    bool found;
+    progress_start(&bar, a);
+    for (size_t i = 0; i < n_bauds && !p->c.signal; i++) {
         if (usual_bauds[i] == asked_bps)
             continue;
         set_baud(a, usual_bauds[i]);
-        if (ask(p, said))
+        snprintf(said, sizeof said, "no reply at %d bps; asking at %d", asked_bps, usual_bauds[i]);
+        progress_draw(&bar, (double)i / (double)n_bauds, said);
+        found = ask(p, said);
+        progress_clear(&bar);
+        if (found)
             return usual_bauds[i];
     }
     set_baud(a, asked_bps);
@@ -267,6 +268,33 @@ static void check_latch(checkup *k, const char *device)
         checkup_found(k, "estop", fix, "an emergency stop stands: nothing will move");
 }
 
+/* The first adapter that `auto` would try; one that is blocked is looked at where there is none. */
+static bool choose_adapter(checkup *k, char *device)
+{
+    static choice all;
+    char fix[FIX_BYTES + GROBO_DEVICE_MAX_BYTES];
+    if (auto_ports(&all) < 0)
+        choose_begin(&all);
+    for (int i = 0; i < all.n_blocked && all.n_usb > 0; i++) {
+        choose_fix(&all.blocked[i], fix, sizeof fix);
+        checkup_found(k, "port", fix, "%s: %s", all.blocked[i].path,
+                      grobo_error_text(all.blocked[i].open_result));
+    }
+    if (all.n_usb + all.n_blocked > 0) {
+        snprintf(device, GROBO_DEVICE_MAX_BYTES, "%s",
+                 all.n_usb ? all.usb[0].path : all.blocked[0].path);
+        return true;
+    }
+    snprintf(fix, sizeof fix,
+             "plug the robot's cable in, or name its port: -d DEV; 'grctl ports' lists them");
+    if (all.n_uart > 0)
+        snprintf(fix, sizeof fix,
+                 "plug the robot's cable in, or where it is wired to this machine: -d %s",
+                 all.uart[0].path);
+    checkup_found(k, "device", fix, "no USB serial adapter is here");
+    return false;
+}
+
 /* The device to look at: auto is the first USB adapter. False: there is none. */
 static bool choose_device(checkup *k, char *device)
 {
@@ -276,11 +304,7 @@ static bool choose_device(checkup *k, char *device)
     const char *name = asked->given ? asked->text : fallback && *fallback ? fallback : "auto";
     if (strcmp(name, GROBO_DEVICE_AUTO) != 0) {
         snprintf(device, GROBO_DEVICE_MAX_BYTES, "%s", name);
-    } else if (grobo_port_list(keep_usb, device) <= 0 || !*device) {
-        checkup_found(
-            k, "device",
-            "plug the robot's cable in, or name its port: -d DEV; 'grctl ports' lists them",
-            "no USB serial adapter is here");
+    } else if (!choose_adapter(k, device)) {
         return false;
     }
     asked->given = 1;

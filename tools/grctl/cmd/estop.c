@@ -264,6 +264,15 @@ static int stop_unknown(app *a, const char *name, const char *why)
                            : "nothing was sent; see 'grctl ports'");
 }
 
+static const char *unknown_name(const app *a)
+{
+    static char text[2 * CONFIG_NAME_BYTES];
+    snprintf(text, sizeof text, "no robot of the configuration, no device%s%s%s",
+             a->nearest_device ? " (did you mean '" : "",
+             a->nearest_device ? a->nearest_device : "", a->nearest_device ? "'?)" : "");
+    return text;
+}
+
 /* The device that is meant: that of the shell, or as given. NULL, or why there is none. */
 static const char *find_device(const app *a, char *device)
 {
@@ -275,7 +284,7 @@ static const char *find_device(const app *a, char *device)
         return NULL;
     }
     if (config_is_unknown_name(a, asked))
-        return "no robot of the configuration, no device";
+        return unknown_name(a);
     int error = grobo_port_resolve(asked, device, GROBO_DEVICE_MAX_BYTES, &cause);
     if (error)
         return *cause.text ? cause.text : grobo_error_text(error);

@@ -4,6 +4,7 @@
 #include "tools/grctl/cli/app.h"
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/cmd/commands.h"
+#include "tools/grctl/shell/shell.h"
 
 enum { OPT_MAN };
 
@@ -30,34 +31,123 @@ static json_t *command_json(const cli_command *command)
                      "summary", command->summary, "options", list);
 }
 
+/* ---- the letters and words of a shell ------------------------------------------------------- */
+
+/* The rows that a name asks for: NULL all, else its own, or those that begin with it. */
+typedef struct asked {
+    const char *name;
+    bool beginning;
+} asked;
+
+static bool is_asked(const asked *what, const shell_word *w)
+{
+    if (!what->name)
+        return true;
+    if (what->beginning)
+        return strncmp(w->word, what->name, strlen(what->name)) == 0;
+    return *what->name && (strcmp(w->letter, what->name) == 0 || strcmp(w->word, what->name) == 0);
+}
+
+static void print_words(const asked *what)
+{
+    const shell_word *w;
+    for (size_t i = 0; (w = shell_word_row(i)) != NULL; i++)
+        if (is_asked(what, w))
+            app_print("  %-2s %s%s%s\n      %s\n", w->letter, w->word,
+                      *w->word && *w->arguments ? " " : "", w->arguments, w->help);
+}
+
+static json_t *words_json(const asked *what)
+{
+    json_t *list = json_array();
+    const shell_word *w;
+    for (size_t i = 0; (w = shell_word_row(i)) != NULL; i++)
+        if (is_asked(what, w))
+            json_array_append_new(list,
+                                  json_pack("{s:s,s:s,s:s,s:s}", "letter", w->letter, "word",
+                                            w->word, "arguments", w->arguments, "help", w->help));
+    return list;
+}
+
+static bool knows_words(const asked *what)
+{
+    const shell_word *w;
+    for (size_t i = 0; (w = shell_word_row(i)) != NULL; i++)
+        if (is_asked(what, w))
+            return true;
+    return false;
+}
+
+/* Help on a letter or word, in a shell. False: it is none. */
+static bool help_word(const app *a, const char *name)
+{
+    asked what = {.name = name, .beginning = shell_word_find(name) == NULL};
+    if (!*name || !knows_words(&what))
+        return false;
+    if (a->json)
+        app_print_json(json_pack("{s:o}", "words", words_json(&what)));
+    else
+        print_words(&what);
+    return true;
+}
+
+/* ---- help ----------------------------------------------------------------------------------- */
+
+static int no_command(app *a, const char *name)
+{
+    const char *nearest = a->link ? shell_nearest(name) : cli_nearest_command(name);
+    if (nearest)
+        return app_fail(a, EXIT_USAGE, "ARG", "no command '%s'; did you mean '%s'?", name, nearest);
+    return app_fail(a, EXIT_USAGE, "ARG", "no command '%s'; see '%shelp'", name,
+                    a->link ? "" : "grctl ");
+}
+
+static json_t *commands_json(const cli_command *about)
+{
+    json_t *list = json_array();
+    for (size_t i = 0; i < cli_n_commands; i++)
+        if (!about || about == cli_commands[i])
+            json_array_append_new(list, command_json(cli_commands[i]));
+    return list;
+}
+
+static const asked all_words = {NULL, false};
+
+static void print_json(const app *a, const cli_command *about)
+{
+    json_t *o = app_option(a, OPT_MAN)->given
+                    ? json_pack("{s:o}", "manual", app_json_printed(cli_print_manual))
+                    : json_pack("{s:o}", "commands", commands_json(about));
+    if (a->link && !about && !app_option(a, OPT_MAN)->given)
+        json_object_set_new(o, "words", words_json(&all_words));
+    app_print_json(o);
+}
+
+static void print_overview(const app *a)
+{
+    cli_print_overview(output_stream());
+    if (!a->link)
+        return;
+    app_print("\nLetters and words of this shell:\n");
+    print_words(&all_words);
+}
+
 static int run(app *a)
 {
-    const cli_command *about = NULL;
-    if (a->line.n_arguments) {
-        const char *name = a->line.argument[0], *nearest;
-        about = cli_find_command(name);
-        nearest = cli_nearest_command(name);
-        if (!about && nearest)
-            return app_fail(a, EXIT_USAGE, "USAGE", "no command '%s'; did you mean '%s'?", name,
-                            nearest);
-        if (!about)
-            return app_fail(a, EXIT_USAGE, "USAGE", "no command '%s'; see 'grctl help'", name);
-    }
-    if (a->json && app_option(a, OPT_MAN)->given) {
-        app_print_json(json_pack("{s:o}", "manual", app_json_printed(cli_print_manual)));
-    } else if (a->json) {
-        json_t *list = json_array();
-        for (size_t i = 0; i < cli_n_commands; i++)
-            if (!about || about == cli_commands[i])
-                json_array_append_new(list, command_json(cli_commands[i]));
-        app_print_json(json_pack("{s:o}", "commands", list));
-    } else if (app_option(a, OPT_MAN)->given) {
+    const char *name = a->line.n_arguments ? a->line.argument[0] : NULL;
+    const cli_command *about = name ? cli_find_command(name) : NULL;
+    if (name && !about && a->link && help_word(a, name))
+        return EXIT_DONE;
+    if (name && !about)
+        return no_command(a, name);
+    if (a->json)
+        print_json(a, about);
+    else if (app_option(a, OPT_MAN)->given)
         cli_print_manual(output_stream());
-    } else if (about) {
+    else if (about)
         cli_print_command(output_stream(), about);
-    } else {
-        cli_print_overview(output_stream());
-    }
+    else
+        print_overview(a);
     return EXIT_DONE;
 }
 
@@ -65,7 +155,8 @@ const cli_command cmd_help = {
     .name = "help",
     .arguments = "[COMMAND]",
     .summary = "what grctl can do, or what a command does",
-    .details = "Prints the list of commands, or everything about one of them.\n",
+    .details = "Prints the list of commands, or everything about one of them. In a shell it knows\n"
+               "the letters and words of the shell too, also by their first letters.\n",
     .example = "  grctl help play\n  grctl help --man | man -l -\n",
     .options = options,
     .n_options = sizeof options / sizeof options[0],

@@ -17,6 +17,9 @@ enum { DRAW_US = 50000, SENSE_US = 300000, NUDGE_MS = 300, INIT_MS = 3000, GROUP
 __attribute__((format(printf, 3, 4))) static void say(monitor *m, bool bad, const char *format, ...)
 {
     va_list list;
+    if (*m->said)
+        snprintf(m->log[m->n_log++ % MONITOR_LOG], MONITOR_TEXT_BYTES, "%.*s",
+                 MONITOR_TEXT_BYTES - 1, m->said);
     va_start(list, format);
     vsnprintf(m->said, sizeof m->said, format, list);
     va_end(list);
@@ -100,10 +103,18 @@ static void toggle_torque(monitor *m)
         switch_torque(m, GROBO_TORQUE_ON, "torque on");
 }
 
+/* Would the way lead out of the limits, from where the joint already stands? */
+static bool is_at_limit(const grobo_joint *j, double from_rad, double by_deg)
+{
+    double near_rad = grobo_rad_from_deg(0.05);
+    return by_deg > 0 ? from_rad > j->max_rad - near_rad : from_rad < j->min_rad + near_rad;
+}
+
 /* Only what holds is nudged: a limp joint may stand where its weight took it. */
 static void nudge(monitor *m, double by_deg)
 {
     grobo_posture target;
+    const grobo_joint *at_limit = NULL;
     if (!may_move(m))
         return;
     grobo_posture_init(&target, m->model->n_joints);
@@ -114,7 +125,16 @@ static void nudge(monitor *m, double by_deg)
             grobo_robot_joint(m->c.robot, j, grobo_now_us(), &i) < 0)
             continue;
         from_rad = i.has_target ? i.target_rad : i.state.angle_rad;
+        if (is_at_limit(&m->model->joints[j], from_rad, by_deg)) {
+            at_limit = &m->model->joints[j];
+            continue;
+        }
         grobo_posture_set_rad(&target, j, from_rad + grobo_rad_from_deg(by_deg));
+    }
+    if (!target.set && at_limit) {
+        say(m, true, "%s is at its limit: %.0f deg", at_limit->name,
+            grobo_deg_from_rad(by_deg > 0 ? at_limit->max_rad : at_limit->min_rad));
+        return;
     }
     if (!target.set) {
         say(m, true, "no torque there: t switches it on");

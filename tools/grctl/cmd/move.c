@@ -49,18 +49,33 @@ static void report(const conn *c, const grobo_posture *target)
     }
 }
 
+/* The engine gave the joints more time than was asked for. */
+static void report_longer(const conn *c, const grobo_posture *target, int64_t began_us)
+{
+    double asked_ms = (double)target->time_us / 1e3;
+    double took_ms = (double)(grobo_now_us() - began_us) / 1e3;
+    grobo_robot_counters n;
+    conn_counters(c, &n);
+    if (n.stretched > 0 && took_ms > asked_ms)
+        app_note(c->a, "it took %.0f ms, not %.0f: no joint moves faster than its servo can",
+                 took_ms, asked_ms);
+}
+
 static int go(app *a, const grobo_posture *target, const char *doing)
 {
     conn c;
     int status = conn_open_to_move(&c, a);
     if (!status) {
+        int64_t began_us = grobo_now_us();
         int error, job = grobo_session_move(c.session, target);
         c.moving = job > 0; /* refused at once: nothing moves, nothing is to be left */
         error = conn_wait(&c, job);
         if (error)
             status = conn_fail(&c, error, doing);
-        else
+        else {
             report(&c, target);
+            report_longer(&c, target, began_us);
+        }
     }
     return conn_close(&c, status);
 }
@@ -85,9 +100,9 @@ static int run_move(app *a)
     if (joint < 0)
         return status;
     if (!cli_read_number(angle, &deg))
-        return app_fail(a, EXIT_USAGE, "USAGE", "move: '%s' is not an angle in degrees", angle);
+        return app_fail(a, EXIT_USAGE, "ARG", "move: '%s' is not an angle in degrees", angle);
     if (time && (!cli_read_number(time, &ms) || ms < 0 || ms > LONGEST_MS))
-        return app_fail(a, EXIT_USAGE, "USAGE", "move: '%s' is not a time of 0 to %d ms", time,
+        return app_fail(a, EXIT_USAGE, "ARG", "move: '%s' is not a time of 0 to %d ms", time,
                         LONGEST_MS);
     grobo_posture_init(&target, grobo_gr001_model.n_joints);
     grobo_posture_set_deg(&target, joint, deg);
@@ -112,7 +127,7 @@ static int pose_of_file(app *a, const char *spec, grobo_posture *target)
         length = (size_t)(colon - spec);
     if (length == 0 || length >= sizeof path || number < 1 || number > 1e9 ||
         number != floor(number))
-        return app_fail(a, EXIT_USAGE, "USAGE", "pose: '@%s' is not @FILE or @FILE:N", spec);
+        return app_fail(a, EXIT_USAGE, "ARG", "pose: '@%s' is not @FILE or @FILE:N", spec);
     memcpy(path, spec, length);
     path[length] = '\0';
     status = file_load(a, path, &read, &motion);
@@ -120,7 +135,7 @@ static int pose_of_file(app *a, const char *spec, grobo_posture *target)
         return status;
     status = file_fits(a, path, motion);
     if (!status && grobo_motion_get(motion, (size_t)number - 1, target) < 0)
-        status = app_fail(a, EXIT_USAGE, "USAGE", "pose: %s has %zu postures, no number %.0f", path,
+        status = app_fail(a, EXIT_USAGE, "ARG", "pose: %s has %zu postures, no number %.0f", path,
                           grobo_motion_size(motion), number);
     target->n_joints = grobo_gr001_model.n_joints;
     grobo_motion_free(motion);
@@ -137,7 +152,7 @@ static int pose_of_joint(app *a, const char *text, grobo_posture *target)
     if (joint < 0)
         return status;
     if (text[length] != '=' || !cli_read_number(text + length + 1, &deg))
-        return app_fail(a, EXIT_USAGE, "USAGE", "pose: '%s' is not JOINT=DEG", text);
+        return app_fail(a, EXIT_USAGE, "ARG", "pose: '%s' is not JOINT=DEG", text);
     grobo_posture_set_deg(target, joint, deg);
     return 0;
 }
@@ -158,7 +173,7 @@ static int pose_of_motors(app *a, grobo_posture *target)
         double deg;
         int joint = grobo_model_joint_of_motor(&grobo_gr001_model, i + 1);
         if (joint < 0 || !cli_read_number(a->line.argument[i], &deg))
-            return app_fail(a, EXIT_USAGE, "USAGE", "pose: '%s' is not an angle in degrees",
+            return app_fail(a, EXIT_USAGE, "ARG", "pose: '%s' is not an angle in degrees",
                             a->line.argument[i]);
         grobo_posture_set_deg(target, joint, deg);
     }
@@ -176,7 +191,7 @@ static int run_pose(app *a)
     else if (n == grobo_gr001_model.n_joints && !strchr(first, '='))
         status = pose_of_motors(a, &target);
     else if (all_numbers(a))
-        return app_fail(a, EXIT_USAGE, "USAGE",
+        return app_fail(a, EXIT_USAGE, "ARG",
                         "pose takes %d angles, in the order of the motors, not %d",
                         grobo_gr001_model.n_joints, n);
     else

@@ -293,8 +293,8 @@ static int after_estop(conn *c, int error)
         error = conn_end_estop(c);
     if (error)
         return conn_fail(c, error, "estop");
-    return app_fail(c->a, EXIT_SAFETY, grobo_trip_name(GROBO_TRIP_ESTOP),
-                    "play: emergency stop; 'grctl estop --reset' takes it back");
+    return app_fail_trip(c->a, GROBO_TRIP_ESTOP,
+                         "play: emergency stop; 'grctl estop --reset' takes it back");
 }
 
 /* Plays to the end, then reads where the joints are. */

@@ -61,12 +61,12 @@ static int settle(app *a, order *o)
     if (!out->given && (a->tty_out || a->json))
         return choose_name(a, o);
     if (strcmp(o->out, "-") == 0)
-        return a->json ? app_fail(a, EXIT_USAGE, "USAGE",
+        return a->json ? app_fail(a, EXIT_USAGE, "ARG",
                                   "--json and the picture cannot both go to standard output")
                        : 0;
     o->format = picture_format_of(o->out);
     if (o->format == PICTURE_NONE)
-        return app_fail(a, EXIT_USAGE, "USAGE", "%s: pictures are .svg or .png", o->out);
+        return app_fail(a, EXIT_USAGE, "ARG", "%s: pictures are .svg or .png", o->out);
     return 0;
 }
 
@@ -94,7 +94,7 @@ static json_t *spans_json(const plot_curve *curve)
 
 static json_t *joint_json(const plot_curve *curve)
 {
-    json_t *o = json_pack("{s:i,s:s}", "id", curve->joint, "name", curve->name);
+    json_t *o = json_pack("{s:i,s:s}", "joint", curve->joint, "name", curve->name);
     if (curve->limits) {
         json_object_set_new(o, "motor", json_integer(curve->limits->motor));
         json_object_set_new(

@@ -30,6 +30,8 @@ static json_t *port_json(const grobo_port_info *info)
                         info->owner_pid ? json_pack("{s:i,s:o}", "pid", info->owner_pid, "name",
                                                     app_json_text(info->owner_name))
                                         : json_null());
+    json_object_set_new(port, "console", json_boolean(info->console));
+    json_object_set_new(port, "bluetooth", json_boolean(info->bluetooth));
     json_object_set_new(port, "usable", json_boolean(info->open_result == GROBO_OK));
     json_object_set_new(port, "reason",
                         info->open_result == GROBO_OK
@@ -45,6 +47,8 @@ static void print_port(const grobo_port_info *info)
         app_print("  free");
     else
         app_print("  %s", grobo_error_text(info->open_result));
+    if (info->console || info->bluetooth)
+        app_print(", the system's %s", info->console ? "console" : "Bluetooth");
     if (info->owner_pid)
         app_print(", open in %s (pid %d)", info->owner_name, info->owner_pid);
     if (info->usb_vendor >= 0)

@@ -578,7 +578,7 @@ static int prepare(recorder *r, app *a)
     r->moved_deg = r->teaches ? 0 : app_number(a, OPT_MOVED, seed_moved_deg);
     r->last_moved = -1;
     if (out && grobo_motion_format_of_path(out) == GROBO_FORMAT_AUTO)
-        return app_fail(a, EXIT_USAGE, "USAGE",
+        return app_fail(a, EXIT_USAGE, "ARG",
                         "%s: -o %s: its name tells no format; .m, .pseq, .mseq or .yaml",
                         name_of(r), out);
     for (int i = 0; i < a->line.n_arguments && !status; i++)

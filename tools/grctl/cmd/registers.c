@@ -295,7 +295,7 @@ static int set_rate(conn *c, const change *what, int32_t before)
     int at_bps, error;
     uint8_t code = 0;
     if (strncmp(conn_device(c), "tcp:", 4) == 0)
-        return app_fail(c->a, EXIT_SAFETY, "REFUSED",
+        return app_fail(c->a, EXIT_SAFETY, "UNSUPPORTED",
                         "servo-set: the rate of a line behind TCP is not set from here; a servo "
                         "with another one could not be reached");
     error = tune(c, new_bps); /* before anything is written: the line must know the rate */
@@ -386,22 +386,22 @@ static int parse_change(app *a, change *what)
     if (!what->reg)
         return status;
     if (what->reg->access == GROBO_RS30X_ACCESS_R)
-        return app_fail(a, EXIT_USAGE, "USAGE", "servo-set: register %s is read only",
+        return app_fail(a, EXIT_USAGE, "ARG", "servo-set: register %s is read only",
                         what->reg->name);
     if (moves_motor(what->reg))
-        return app_fail(a, EXIT_SAFETY, "REFUSED", "servo-set: %s moves the motor; use 'grctl %s'",
-                        what->reg->name,
+        return app_fail(a, EXIT_SAFETY, "UNSUPPORTED",
+                        "servo-set: %s moves the motor; use 'grctl %s'", what->reg->name,
                         what->reg->address == GROBO_RS30X_TORQUE ? "servo" : "move");
     if (!read_value(what->reg, a->line.argument[2], &what->value))
         return app_fail(a, EXIT_USAGE, "LIMIT", "servo-set: '%s': %s takes %d to %d (counts of %s)",
                         a->line.argument[2], what->reg->name, what->reg->min, what->reg->max,
                         *what->reg->unit ? what->reg->unit : "1");
     if (what->reg->kept == GROBO_RS30X_KEPT_RAM && app_option(a, OPT_FLASH)->given)
-        return app_fail(a, EXIT_USAGE, "USAGE", "servo-set: flash does not keep register %s",
+        return app_fail(a, EXIT_USAGE, "ARG", "servo-set: flash does not keep register %s",
                         what->reg->name);
     if (what->reg->address == GROBO_RS30X_BAUD && what->value != GROBO_RS30X_BAUD_CODE_DEFAULT &&
         app_global(a, GLOBAL_WIRING)->choice == GROBO_WIRING_BOARD)
-        return app_fail(a, EXIT_SAFETY, "REFUSED",
+        return app_fail(a, EXIT_SAFETY, "UNSUPPORTED",
                         "servo-set: the bus behind the board has %d bps; a servo with another "
                         "baud rate could not be reached",
                         GROBO_BAUD_DEFAULT_BPS);

@@ -38,7 +38,7 @@ static int run(app *a)
     r.path = a->line.argument[0];
     r.first_us = -1;
     if (strcmp(r.path, "-") == 0)
-        return app_fail(a, EXIT_USAGE, "USAGE", "replay: a trace is read twice: name a file");
+        return app_fail(a, EXIT_USAGE, "ARG", "replay: a trace is read twice: name a file");
     status = replay_read(&r, take_first, &r);
     if (status > 0)
         return status;

@@ -2,6 +2,7 @@
 /* scan and info: which servos answer, and what they are. */
 #include <string.h>
 
+#include "tools/grctl/cli/progress.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/servos.h"
 #include "tools/grctl/conn/wire.h"
@@ -32,16 +33,28 @@ static const cli_option options[] = {
 };
 
 typedef struct found {
-    json_t *list; /* NULL: as text */
+    json_t *list, *failed; /* NULL: as text */
     int n, silent;
     bool unsure;              /* the line was disturbed, or an id answers in no way that fits */
     int64_t took_us, wire_us; /* of asking */
+    progress bar;
+    int rate, n_rates; /* the rate that is asked at, of so many */
 } found;
 
 static const char *model_name(const uint8_t *identity)
 {
     const char *name = grobo_rs30x_model_name((uint16_t)(identity[0] | identity[1] << 8));
     return name ? name : "unknown model";
+}
+
+/* A servo's id, and the joint that it moves on GR001. */
+static json_t *servo_json(int id)
+{
+    int joint = grobo_model_joint_of_motor(&grobo_gr001_model, id);
+    if (joint < 0)
+        return json_pack("{s:i,s:n,s:n}", "id", id, "joint", "name");
+    return json_pack("{s:i,s:i,s:s}", "id", id, "joint", joint, "name",
+                     grobo_gr001_model.joints[joint].name);
 }
 
 /* The name of the joint that this id moves on GR001, "" for none. */
@@ -54,19 +67,35 @@ static const char *joint_name(int id)
 static void report(found *f, int id, int baud_bps, const uint8_t *identity)
 {
     f->n++;
-    if (f->list)
-        json_array_append_new(f->list, json_pack("{s:i,s:s,s:i,s:i,s:s}", "id", id, "model",
-                                                 model_name(identity), "firmware", identity[2],
-                                                 "baud_bps", baud_bps, "joint", joint_name(id)));
-    else
+    if (f->list) {
+        json_t *o = servo_json(id);
+        json_object_set_new(o, "model", json_string(model_name(identity)));
+        json_object_set_new(o, "firmware", json_integer(identity[2]));
+        json_object_set_new(o, "baud_bps", json_integer(baud_bps));
+        json_array_append_new(f->list, o);
+    } else {
         app_print("%3d  %-8s  firmware %3d  %6d bps  %s\n", id, model_name(identity), identity[2],
                   baud_bps, joint_name(id));
+    }
+}
+
+/* An id that answers wrongly, or not at all where it should. */
+static void report_failed(found *f, int id, int baud_bps, int error)
+{
+    json_t *o;
+    if (!f->failed)
+        return;
+    o = servo_json(id);
+    json_object_set_new(o, "baud_bps", json_integer(baud_bps));
+    json_object_set_new(o, "status", app_json_code(grobo_error_name(error)));
+    json_array_append_new(f->failed, o);
 }
 
 /* ---- what comes ------------------------------------------------------------------------------ */
 
 /* One baud rate. Every whole reply on the line counts for its servo, whenever it comes. */
 typedef struct pass {
+    found *f;
     bool there[GROBO_SERVO_ID_MAX + 1];
     int why[GROBO_SERVO_ID_MAX + 1]; /* the error of one that answered in no way that fits, or 0 */
     uint8_t identity[GROBO_SERVO_ID_MAX + 1][IDENTITY_BYTES];
@@ -158,15 +187,29 @@ static uint32_t patience(const pass *p)
     return (uint32_t)(2 * p->worst_us) + SERVOS_PATIENT_US;
 }
 
+/* On a terminal only: 127 silent ids take a second, and eleven rates more than ten. */
+static void show_progress(const pass *p, int id)
+{
+    char text[48];
+    double part = (double)(id - p->first) / (p->last - p->first + 1);
+    if (!p->f->bar.shown)
+        return;
+    snprintf(text, sizeof text, "%d bps, id %d", p->baud_bps, id);
+    progress_draw(&p->f->bar, (p->f->rate + part) / p->f->n_rates, text);
+}
+
 /* Asks all ids that are missing, and listens to what is still on its way. */
 static int look(conn *c, pass *p, uint32_t margin_us)
 {
     int error = servos_wait(c, p->baud_bps, IDENTITY_BYTES, margin_us, -1, &p->timeout_us);
     p->late = false;
     p->rubbish = p->parser.framer.stats.dropped_bytes;
-    for (int id = p->first; id <= p->last && !error; id++)
+    for (int id = p->first; id <= p->last && !error; id++) {
+        show_progress(p, id);
         if (!p->there[id])
             error = ask(c, p, id);
+    }
+    progress_clear(&p->f->bar);
     if (!error)
         error = listen_on(c, p);
     p->rubbish = p->parser.framer.stats.dropped_bytes - p->rubbish;
@@ -260,15 +303,18 @@ static int ask_all(conn *c, found *f, pass *p)
 
 static int scan_ids(conn *c, found *f, int baud_bps)
 {
-    pass p = {.baud_bps = baud_bps,
+    pass p = {.f = f,
+              .baud_bps = baud_bps,
               .first = (int)app_number(c->a, OPT_FIRST, 1),
               .last = (int)app_number(c->a, OPT_LAST, GROBO_SERVO_ID_MAX)};
     int error = ask_all(c, f, &p);
     for (int id = p.first; id <= p.last; id++) {
         if (p.there[id])
             report(f, id, baud_bps, p.identity[id]);
+        else if (p.why[id])
+            report_failed(f, id, baud_bps, p.why[id]);
         else
-            f->silent += !p.why[id];
+            f->silent++;
     }
     return error;
 }
@@ -278,6 +324,7 @@ static int scan_all_bauds(conn *c, found *f)
     grobo_serial *serial = grobo_session_serial(c->session);
     for (int code = 0; code <= GROBO_RS30X_BAUD_CODE_MAX; code++) {
         int baud_bps = grobo_rs30x_baud_bps((uint8_t)code);
+        f->rate = code;
         int error = grobo_serial_set_baud(serial, baud_bps);
         if (error < 0) {
             app_note(c->a, "%d bps: %s", baud_bps, grobo_error_text(error));
@@ -295,15 +342,20 @@ static int scan(conn *c)
     const cli_value *baud = app_global(c->a, GLOBAL_BAUD);
     int baud_bps = baud->given ? (int)baud->number : GROBO_BAUD_DEFAULT_BPS;
     bool all = app_option(c->a, OPT_ALL_BAUD)->given > 0;
-    found f = {.list = c->a->json ? json_array() : NULL};
-    int error = all ? scan_all_bauds(c, &f) : scan_ids(c, &f, baud_bps);
+    found f = {.list = c->a->json ? json_array() : NULL,
+               .failed = c->a->json ? json_array() : NULL};
+    int error;
+    f.n_rates = all ? GROBO_RS30X_BAUD_CODE_MAX + 1 : 1;
+    progress_start(&f.bar, c->a);
+    error = all ? scan_all_bauds(c, &f) : scan_ids(c, &f, baud_bps);
     if (error) {
         json_decref(f.list);
+        json_decref(f.failed);
         return conn_fail(c, error, "scan");
     }
     if (c->a->json)
-        app_print_json(json_pack("{s:o,s:i,s:b,s:o,s:o}", "servos", f.list, "silent", f.silent,
-                                 "sure", !f.unsure, "took_ms",
+        app_print_json(json_pack("{s:o,s:o,s:i,s:b,s:o,s:o}", "servos", f.list, "failed", f.failed,
+                                 "silent", f.silent, "sure", !f.unsure, "took_ms",
                                  app_json_number((double)f.took_us / 1e3, 1), "wire_ms",
                                  app_json_number((double)f.wire_us / 1e3, 1)));
     else
@@ -320,17 +372,17 @@ static int run_scan(app *a)
     conn c;
     int status;
     if (app_option(a, OPT_ALL_BAUD)->given && app_global(a, GLOBAL_WIRING)->choice != 1)
-        return app_fail(a, EXIT_USAGE, "USAGE",
+        return app_fail(a, EXIT_USAGE, "ARG",
                         "scan: --all-baud needs --wiring bus: the board knows one rate only");
     if (app_number(a, OPT_FIRST, 1) > app_number(a, OPT_LAST, GROBO_SERVO_ID_MAX))
-        return app_fail(a, EXIT_USAGE, "USAGE", "scan: --first is behind --last");
+        return app_fail(a, EXIT_USAGE, "ARG", "scan: --first is behind --last");
     status = conn_open_unchecked(&c, a);
     if (!status && app_option(a, OPT_ALL_BAUD)->given && grobo_session_sim(c.session))
-        status = app_fail(a, EXIT_USAGE, "USAGE",
+        status = app_fail(a, EXIT_USAGE, "ARG",
                           "scan: --all-baud needs a line; 'grctl sim --wiring bus' makes one");
     else if (!status && app_option(a, OPT_ALL_BAUD)->given &&
              strncmp(conn_device(&c), "tcp:", 4) == 0)
-        status = app_fail(a, EXIT_USAGE, "USAGE",
+        status = app_fail(a, EXIT_USAGE, "ARG",
                           "scan: --all-baud: the rate of a line behind TCP is not set from here");
     else if (!status)
         status = scan(&c);
@@ -343,7 +395,8 @@ static int info(conn *c)
 {
     const grobo_model *model = grobo_robot_driver(c->robot)->model;
     bool board = app_global(c->a, GLOBAL_WIRING)->choice == 0;
-    found f = {.list = c->a->json ? json_array() : NULL};
+    found f = {.list = c->a->json ? json_array() : NULL,
+               .failed = c->a->json ? json_array() : NULL};
     const cli_value *baud = app_global(c->a, GLOBAL_BAUD);
     int baud_bps = baud->given ? (int)baud->number : GROBO_BAUD_DEFAULT_BPS;
     int silent = 0;
@@ -355,6 +408,7 @@ static int info(conn *c)
         int error = servos_read(c, motor, GROBO_RS30X_MODEL, IDENTITY_BYTES, identity);
         if (c->signal || c->link_error) {
             json_decref(f.list);
+            json_decref(f.failed);
             return conn_fail(c, error, "info");
         }
         if (error == GROBO_OK) {
@@ -362,12 +416,13 @@ static int info(conn *c)
             continue;
         }
         silent++;
+        report_failed(&f, motor, baud_bps, error);
         app_note(c->a, "motor %d (%s): %s", motor, joint_name(motor), grobo_error_text(error));
     }
     if (c->a->json)
-        app_print_json(json_pack("{s:s,s:s,s:s,s:o}", "robot", model->name, "device",
+        app_print_json(json_pack("{s:s,s:s,s:s,s:o,s:o}", "robot", model->name, "device",
                                  conn_device(c), "wiring", board ? "board" : "bus", "servos",
-                                 f.list));
+                                 f.list, "failed", f.failed));
     return silent ? EXIT_ROBOT : EXIT_DONE;
 }
 

@@ -27,7 +27,7 @@ static void print_json(const conn *c, grobo_joint_mask joints)
         if (!(joints & GROBO_JOINT_BIT(j)) ||
             grobo_robot_joint(c->robot, j, grobo_now_us(), &i) < 0)
             continue;
-        json_array_append_new(list, json_pack("{s:i,s:i,s:s,s:s}", "id", j, "motor",
+        json_array_append_new(list, json_pack("{s:i,s:i,s:s,s:s}", "joint", j, "motor",
                                               model->joints[j].motor, "name", model->joints[j].name,
                                               "torque", render_torque(&i)));
     }
@@ -58,7 +58,7 @@ static int run(app *a)
     const char *word = a->line.argument[0];
     int status = 0;
     if (!parse_mode(word, &mode))
-        return app_fail(a, EXIT_USAGE, "USAGE", "servo: '%s' is none of on, off, brake", word);
+        return app_fail(a, EXIT_USAGE, "ARG", "servo: '%s' is none of on, off, brake", word);
     for (int i = 1; i < a->line.n_arguments && !status; i++)
         status = joints_parse(a, a->line.argument[i], &joints);
     if (status)

@@ -40,9 +40,23 @@ static int run_command_of(shell *s, const shell_word *w, int n, char **words)
     return shell_run(s, m, all);
 }
 
+static int refuse(shell *s, const char *why)
+{
+    shell_begin(s);
+    shell_inherit(s);
+    app_settle(&s->one);
+    return app_fail(&s->one, EXIT_USAGE, "ARG", "%s", why);
+}
+
 static int run_words(shell *s, int n, char **words)
 {
     const shell_word *w = shell_word_find(words[0]);
+    const char *nearest = shell_nearest(words[0]);
+    char why[128];
+    if (!w && nearest && !cli_find_command(nearest)) {
+        snprintf(why, sizeof why, "no command '%.40s'; did you mean '%s'?", words[0], nearest);
+        return refuse(s, why);
+    }
     if (!w)
         return shell_run(s, n, words);
     if (w->command)
@@ -52,13 +66,6 @@ static int run_words(shell *s, int n, char **words)
     app_settle(&s->one);
     s->one.tty_in = s->one.tty_in && !s->file;
     return w->run(s, n, words);
-}
-
-static int refuse(shell *s, const char *why)
-{
-    shell_begin(s);
-    app_settle(&s->one);
-    return app_fail(&s->one, EXIT_USAGE, "USAGE", "%s", why);
 }
 
 static int run_text(shell *s, char *line)
@@ -91,7 +98,10 @@ static int run_next(shell *s, shell_script *in, int next)
     if (next == LINE_NEWS)
         return conn_link_news(&s->link, s->a);
     s->line++;
-    return in->wrong ? refuse(s, in->wrong) : run_text(s, in->line);
+    next = in->wrong ? refuse(s, in->wrong) : run_text(s, in->line);
+    if (s->a->json) /* the mark by which a program knows that the command has ended */
+        app_print_json(json_pack("{s:i,s:i}", "line", s->line, "status", next));
+    return next;
 }
 
 static int run_script(shell *s, shell_script *in)

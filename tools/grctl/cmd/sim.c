@@ -269,7 +269,7 @@ static int add_robot(farm *f, int robot)
     f->n = robot + 1;
     if (faults &&
         grobo_sim_set_faults(grobo_sim_server_sim(f->server[robot]), faults, strlen(faults)) < 0)
-        return app_fail(f->a, EXIT_USAGE, "USAGE",
+        return app_fail(f->a, EXIT_USAGE, "ARG",
                         "sim: --fault: '%s' is no list such as drop=0.01,flip=0.02; see "
                         "'grctl help sim'",
                         faults);

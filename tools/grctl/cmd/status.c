@@ -43,7 +43,7 @@ static void show(conn *c, grobo_joint_mask joints)
 /* One round; the exit status: a joint that stays silent is shown, and makes it 1. */
 static int sense_and_show(conn *c, grobo_joint_mask joints)
 {
-    int error = conn_wait(c, grobo_session_sense(c->session, joints, GROBO_SENSE_FULL));
+    int error = conn_wait(c, grobo_session_sense(c->session, joints, GROBO_SENSE_ALL));
     if (error && c->job.failed == 0)
         return conn_fail(c, error, "status");
     show(c, joints);

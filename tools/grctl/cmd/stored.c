@@ -11,8 +11,7 @@ static int start(app *a, grobo_stored_kind kind, const char *what)
     int status, error;
     if (!cli_read_number(text, &number) || number < 0 || number > 255 ||
         number != (double)(int)number)
-        return app_fail(a, EXIT_USAGE, "USAGE", "%s: '%s' is not a number from 0 to 255", what,
-                        text);
+        return app_fail(a, EXIT_USAGE, "ARG", "%s: '%s' is not a number from 0 to 255", what, text);
     status = conn_open_to_move(&c, a);
     if (!status) {
         error = conn_wait(&c, grobo_session_stored(c.session, kind, (int)number));

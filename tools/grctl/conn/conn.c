@@ -6,6 +6,7 @@
 #include <grobo/port.h>
 
 #include "tools/grctl/cli/output.h"
+#include "tools/grctl/conn/auto_ports.h"
 #include "tools/grctl/conn/conn.h"
 #include "tools/grctl/conn/guard.h"
 #include "tools/grctl/os/os.h"
@@ -206,7 +207,7 @@ static const char *open_trouble(const conn *c, int error)
     const grobo_os_cause *cause = grobo_session_cause(c->session);
     switch (error) {
     case GROBO_ERR_NOTFOUND:
-        return "no robot answers on any serial port";
+        return "no robot answers on any USB adapter that may be opened";
     case GROBO_ERR_TIMEOUT:
         return "no robot answers";
     case GROBO_ERR_TYPE:
@@ -217,13 +218,38 @@ static const char *open_trouble(const conn *c, int error)
     return grobo_error_text(error);
 }
 
-static int fail_open(conn *c, int error)
+static int try_port(void *ctx, const grobo_port_info *info)
+{
+    static char nearest[GROBO_DEVICE_MAX_BYTES];
+    cli_guess *guess = ctx;
+    const char *before = guess->best;
+    int edits = guess->edits;
+    cli_guess_try(guess, info->path);
+    if (guess->best && (!before || guess->edits != edits)) { /* the info lives for this call */
+        snprintf(nearest, sizeof nearest, "%s", info->path);
+        guess->best = nearest;
+    }
+    return 0;
+}
+
+/* The robot or port that is nearest to the name of a device that is none, or NULL. */
+static const char *near_device(const app *a, const char *name)
+{
+    cli_guess guess = {.name = name, .length = strlen(name)};
+    if (a->nearest_device)
+        return a->nearest_device;
+    if (strchr(name, '/') && !is_tcp(name))
+        grobo_port_list(try_port, &guess);
+    return guess.best;
+}
+
+/* Why the device that was asked for is not open. */
+static int fail_closed(conn *c, int error)
 {
     const grobo_os_cause *cause = grobo_session_cause(c->session);
     /* Of the others the system only says again what the error says. */
     bool tells = *cause->text && (error == GROBO_ERR_BUSY || error == GROBO_ERR_IO ||
                                   error == GROBO_ERR_UNSUPPORTED || error == GROBO_ERR_UNPLUGGED);
-    c->open_error = error;
     if (error == GROBO_ERR_TIMEOUT && is_tcp(conn_device(c)) && !bytes_passed(c, GROBO_DIR_TX))
         return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error),
                         "%s: %s; is the address right, and that machine on?", conn_device(c),
@@ -237,6 +263,17 @@ static int fail_open(conn *c, int error)
                     error == GROBO_ERR_NOTFOUND ? "auto" : conn_device(c), open_trouble(c, error),
                     tells ? " (" : "", tells ? cause->text : "", tells ? ")" : "",
                     advice(error, conn_device(c)));
+}
+
+static int fail_open(conn *c, int error)
+{
+    const char *nearest;
+    c->open_error = error;
+    nearest = error == GROBO_ERR_NOENT ? near_device(c->a, conn_requested(c->a)) : NULL;
+    if (nearest)
+        return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error), "%s: %s (did you mean '%s'?)",
+                        conn_device(c), open_trouble(c, error), nearest);
+    return fail_closed(c, error);
 }
 
 uint32_t conn_baud(const app *a)
@@ -263,6 +300,18 @@ grobo_robot_config conn_robot_config(const app *a)
     return config;
 }
 
+/* What `auto` tries: for the life of the session. NULL, all ports: for any other device, or where
+ * the system cannot list ports. */
+static const char *const *ports_of_auto(const app *a)
+{
+    static choice all;
+    if (!conn_is_auto(a) || auto_ports(&all) < 0)
+        return NULL;
+    if (!a->hushed)
+        auto_report(a, &all);
+    return all.scan;
+}
+
 static int make_session(conn *c, const char *device, bool check)
 {
     app *a = c->a;
@@ -284,6 +333,7 @@ static int make_session(conn *c, const char *device, bool check)
                                    .driver = driver,
                                    .driver_ctx = a->robot ? &c->link->trims : NULL,
                                    .robot = &robot,
+                                   .scan = ports_of_auto(a),
                                    .skip_check = !check,
                                    .reconnect = a->reconnects,
                                    .on_event = on_session,
@@ -360,7 +410,10 @@ static void say_found(conn *c)
 {
     const grobo_serial *serial = grobo_session_serial(c->session);
     int answer = serial ? grobo_serial_low_latency(serial) : GROBO_ERR_CLOSED;
+    bool is_port = strcmp(conn_device(c), GROBO_DEVICE_SIM) != 0 && !is_tcp(conn_device(c));
     app_detail(c->a, "robot found on %s", conn_device(c));
+    if (is_port && !c->a->stops && !c->a->hushed)
+        auto_used(c->a, conn_device(c), conn_is_auto(c->a));
     if (answer < 0 && answer != GROBO_ERR_UNSUPPORTED && answer != GROBO_ERR_CLOSED)
         app_detail(c->a, "low latency: %s; 'grctl doctor' tells more", grobo_error_text(answer));
 }
@@ -412,7 +465,7 @@ static int open_device(conn *c, app *a, bool check)
     if (c->session)
         return take_over(c, check);
     if (!*asked)
-        return app_fail(a, EXIT_USAGE, "USAGE", "--device: an empty name; see 'grctl ports'");
+        return app_fail(a, EXIT_USAGE, "ARG", "--device: an empty name; see 'grctl ports'");
     error = grobo_port_resolve(asked, device, sizeof device, &cause);
     if (error)
         return app_fail(a, app_status_of(error), grobo_error_name(error), "%s: %s", asked,

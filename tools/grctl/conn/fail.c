@@ -81,12 +81,11 @@ static int fail_trip(conn *c, const char *doing)
     if (*trip_unit(t->trip))
         snprintf(value, sizeof value, " (%.4g%s)", t->value, trip_unit(t->trip));
     if (t->joint >= 0 && t->joint < model->n_joints)
-        return app_fail(c->a, EXIT_SAFETY, grobo_trip_name(t->trip),
-                        "%s: stopped for safety: %s%s at motor %d (%s)", doing,
-                        grobo_trip_name(t->trip), value, model->joints[t->joint].motor,
-                        model->joints[t->joint].name);
-    return app_fail(c->a, EXIT_SAFETY, grobo_trip_name(t->trip), "%s: stopped for safety: %s%s",
-                    doing, grobo_trip_name(t->trip), value);
+        return app_fail_trip(c->a, t->trip, "%s: stopped for safety: %s%s at motor %d (%s)", doing,
+                             grobo_trip_name(t->trip), value, model->joints[t->joint].motor,
+                             model->joints[t->joint].name);
+    return app_fail_trip(c->a, t->trip, "%s: stopped for safety: %s%s", doing,
+                         grobo_trip_name(t->trip), value);
 }
 
 bool conn_is_of_reply(int error)
@@ -141,10 +140,11 @@ int conn_fail(conn *c, int error, const char *doing)
     if (c->signal && !c->a->stops)
         return EXIT_SIGNAL + c->signal;
     if (c->link_error == GROBO_ERR_STALLED)
-        return app_fail(c->a, EXIT_SAFETY, grobo_trip_name(GROBO_TRIP_HOST_STALL),
-                        "%s: stopped for safety: host stalled: grctl was stopped by a signal, and "
-                        "the guard stopped the robot",
-                        doing);
+        return app_fail_trip(
+            c->a, GROBO_TRIP_HOST_STALL,
+            "%s: stopped for safety: host stalled: grctl was stopped by a signal, and "
+            "the guard stopped the robot",
+            doing);
     if (c->link_error)
         return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error), "%s: %s while busy with %s",
                         conn_device(c), grobo_error_text(error), doing);

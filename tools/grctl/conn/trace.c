@@ -32,7 +32,7 @@ static void describe(const app *a, char *text, size_t capacity)
 
 static int fail(app *a, const trace *t, int cause)
 {
-    return app_fail(a, EXIT_FILE, "TRACE", "%s: the trace cannot be written: %s", t->path,
+    return app_fail(a, EXIT_FILE, "IO", "%s: the trace cannot be written: %s", t->path,
                     cause == ENOENT ? file_write_error_text(GROBO_ERR_NOENT)
                                     : app_cause_text(cause));
 }
@@ -112,7 +112,7 @@ int trace_close(trace *t, app *a, int status)
     if (error)
         error = fail(a, t, error);
     else if (dropped)
-        error = app_fail(a, EXIT_FILE, "TRACE",
+        error = app_fail(a, EXIT_FILE, "IO",
                          "%s: the trace lacks %llu packets: its reader was too slow", t->path,
                          (unsigned long long)dropped);
     else

@@ -81,8 +81,8 @@ static void judge_frame(void *ctx, const frame *f)
         words_say(f, false, "", text, sizeof text);
         text[strcspn(text, "\n")] = '\0';
         p->status =
-            app_fail(r->a, EXIT_SAFETY, "REFUSED", "replay: at %.3f ms: not to a real robot: %s",
-                     (double)f->time_us / 1e3, text);
+            app_fail(r->a, EXIT_SAFETY, "UNSUPPORTED",
+                     "replay: at %.3f ms: not to a real robot: %s", (double)f->time_us / 1e3, text);
     }
 }
 
@@ -101,13 +101,13 @@ static int ask(const plan *p)
     if (p->moves == 0 || app_global(a, GLOBAL_YES)->given)
         return 0;
     if (!a->tty_err || !a->tty_in)
-        return app_fail(a, EXIT_SAFETY, "REFUSED",
+        return app_fail(a, EXIT_SAFETY, "UNSUPPORTED",
                         "replay: %llu frames move joints of a real robot; say --yes if it may",
                         (unsigned long long)p->moves);
     output_complain("%llu frames move joints of the robot at %s. Send them? [y/N] ",
                     (unsigned long long)p->moves, app_global(a, GLOBAL_DEVICE)->text);
     if (!fgets(answer, sizeof answer, stdin) || (answer[0] != 'y' && answer[0] != 'Y'))
-        return app_fail(a, EXIT_SAFETY, "REFUSED", "replay: nothing was sent");
+        return app_fail(a, EXIT_SAFETY, "UNSUPPORTED", "replay: nothing was sent");
     return 0;
 }
 

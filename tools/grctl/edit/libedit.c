@@ -11,6 +11,7 @@
 #include <histedit.h>
 
 #include "tools/grctl/edit/edit.h"
+#include "tools/grctl/os/os.h"
 
 enum { HISTORY_LINES = 1000, CANDIDATES_MAX = 256, WORD_BYTES = 256, PATH_BYTES = 1024 };
 
@@ -161,29 +162,6 @@ static unsigned char complete(EditLine *edit, int key)
 
 /* ---- history -------------------------------------------------------------------------------- */
 
-/* $XDG_STATE_HOME/grctl/history, its folders made where they are missing. */
-static void find_history(line_reader *reader)
-{
-    const char *state = getenv("XDG_STATE_HOME"), *home = getenv("HOME");
-    int n = state && *state == '/'
-                ? snprintf(reader->path, sizeof reader->path, "%s/grctl/history", state)
-                : snprintf(reader->path, sizeof reader->path, "%s/.local/state/grctl/history",
-                           home ? home : "");
-    if (n < 0 || (size_t)n >= sizeof reader->path || *reader->path != '/' ||
-        (!(state && *state == '/') && !(home && *home))) {
-        *reader->path = '\0';
-        return;
-    }
-    for (char *slash = strchr(reader->path + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
-        *slash = '\0';
-        if (mkdir(reader->path, 0700) < 0 && errno != EEXIST) {
-            *reader->path = '\0';
-            return;
-        }
-        *slash = '/';
-    }
-}
-
 static void open_history(line_reader *reader)
 {
     HistEvent event;
@@ -192,7 +170,8 @@ static void open_history(line_reader *reader)
         return;
     history(reader->history, &event, H_SETSIZE, HISTORY_LINES);
     history(reader->history, &event, H_SETUNIQUE, 1);
-    find_history(reader);
+    if (!os_state_path("history", reader->path, sizeof reader->path))
+        *reader->path = '\0';
     if (*reader->path)
         history(reader->history, &event, H_LOAD, reader->path);
     el_set(reader->edit, EL_HIST, history, reader->history);

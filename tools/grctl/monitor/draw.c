@@ -8,7 +8,7 @@
 
 enum { LEAST_ROWS = 20, LEAST_COLUMNS = 80, BAR_MOST = 40, GAP = 2 };
 /* Columns of a joint beside its bar: motor, mark, name, angle; torque, heat, current. */
-enum { BEFORE_BAR = 20, AFTER_BAR = 12, STALE_US = 2000000, WARM_BELOW = 10 };
+enum { BEFORE_BAR = 20, AFTER_BAR = 12, STALE_US = 2000000, WARM_BELOW = 10, BEYOND_DEG = 2 };
 enum { ROW_TITLE, ROW_BODY = 2, ROW_LINK = 15, ROW_PLAY = 16, ROW_SAID = 18, ROW_HELP = 20 };
 
 /* Where joints stand on the screen: the robot's right side left, as one sees who faces us. */
@@ -71,16 +71,16 @@ static int place_in_bar(const grobo_joint *j, double angle_rad, int width)
 static void draw_bar(const monitor *m, const grobo_joint *j, const grobo_joint_info *i, int row,
                      int column, int width)
 {
-    double edge_rad = (j->max_rad - j->min_rad) / width;
-    bool at_limit = i->state.angle_rad < j->min_rad + edge_rad / 2 ||
-                    i->state.angle_rad > j->max_rad - edge_rad / 2;
+    double slack_rad = grobo_rad_from_deg(BEYOND_DEG); /* at a limit is where many postures are */
+    bool beyond =
+        i->state.angle_rad < j->min_rad - slack_rad || i->state.angle_rad > j->max_rad + slack_rad;
     for (int k = 0; k < width; k++)
         screen_put(row, column + k, SCREEN_DIM, m->blocks ? "─" : "-");
     if (i->has_target)
         screen_put(row, column + place_in_bar(j, i->target_rad, width), SCREEN_BOLD,
                    m->blocks ? "│" : "|");
     screen_put(row, column + place_in_bar(j, i->state.angle_rad, width),
-               at_limit ? SCREEN_BAD : torque_style(i), m->blocks ? "█" : "#");
+               beyond ? SCREEN_BAD : torque_style(i), m->blocks ? "█" : "#");
 }
 
 static void draw_values(const monitor *m, const grobo_joint_info *i, int row, int column)
@@ -205,6 +205,23 @@ static void draw_play(const monitor *m, int columns)
     screen_put(ROW_PLAY, width + GAP, busy ? SCREEN_WARN : SCREEN_PLAIN, busy ? busy : text);
 }
 
+/* At the bottom; on a terminal of 24 rows a line below stays free. */
+static int help_row(int rows)
+{
+    return rows == ROW_HELP + 4 ? ROW_HELP : rows - 3;
+}
+
+/* A tall terminal has room for what was said before, the latest first. */
+static void draw_log(const monitor *m, int rows)
+{
+    for (int i = 0; i < m->n_log && ROW_SAID + 1 + i < help_row(rows) - 1; i++) {
+        int at = (m->n_log - 1 - i) % MONITOR_LOG;
+        screen_put(ROW_SAID + 1 + i, 0, SCREEN_DIM, m->log[at]);
+        if (i == MONITOR_LOG - 1)
+            return;
+    }
+}
+
 static void draw_help(const monitor *m, int rows)
 {
     static const char *const lines[] = {
@@ -212,7 +229,7 @@ static void draw_help(const monitor *m, int rows)
         "e EMERGENCY STOP   R take it back   q quit",
     };
     static const char *const play = "p play   space pause   + - speed   s stop";
-    int row = rows < ROW_HELP + 4 ? rows - 3 : ROW_HELP;
+    int row = help_row(rows);
     screen_put(row, 0, SCREEN_DIM, lines[0]);
     screen_put(row + 1, 0, SCREEN_BOLD, lines[1]);
     if (m->list.n)
@@ -239,6 +256,7 @@ void monitor_draw(const monitor *m)
     draw_link(m);
     draw_play(m, columns);
     screen_put(ROW_SAID, 0, m->bad ? SCREEN_BAD : SCREEN_PLAIN, m->said);
+    draw_log(m, rows);
     draw_help(m, rows);
     screen_end();
 }

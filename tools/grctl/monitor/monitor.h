@@ -8,7 +8,7 @@
 #include "tools/grctl/play/keys.h"
 #include "tools/grctl/play/play.h"
 
-enum { MONITOR_TEXT_BYTES = 256 };
+enum { MONITOR_TEXT_BYTES = 256, MONITOR_LOG = 32 };
 
 typedef struct monitor {
     conn c;
@@ -19,9 +19,11 @@ typedef struct monitor {
     grobo_joint_mask chosen; /* what torque and nudges are for */
     int cursor;              /* place of the joint */
     char said[APP_LINE_BYTES];
-    bool bad;          /* what was said is a complaint */
-    const char *doing; /* what the last job is, for people */
-    int job;           /* its number, 0 when it is over */
+    bool bad;                                  /* what was said is a complaint */
+    char log[MONITOR_LOG][MONITOR_TEXT_BYTES]; /* what was said before, a ring */
+    int n_log;                                 /* how often something was said before */
+    const char *doing;                         /* what the last job is, for people */
+    int job;                                   /* its number, 0 when it is over */
     bool over;
     bool blocks;    /* the terminal knows UTF-8 */
     int64_t up_us;  /* since when the line stands or is lost */

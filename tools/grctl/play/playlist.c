@@ -142,9 +142,9 @@ int playlist_load(playlist *list, app *a)
     int status;
     memset(list, 0, sizeof *list);
     if (app_option(a, PLAY_RATE)->given && app_option(a, PLAY_KEY)->given)
-        return app_fail(a, EXIT_USAGE, "USAGE", "play: --rate and --key exclude each other");
+        return app_fail(a, EXIT_USAGE, "ARG", "play: --rate and --key exclude each other");
     if (a->line.n_arguments > PLAY_FILES_MAX)
-        return app_fail(a, EXIT_USAGE, "USAGE", "play: more than %d files", PLAY_FILES_MAX);
+        return app_fail(a, EXIT_USAGE, "ARG", "play: more than %d files", PLAY_FILES_MAX);
     status = find_rate(a, &line);
     if (status)
         return status;
@@ -233,9 +233,8 @@ int playlist_prepare(playlist *list, app *a, const grobo_posture *start)
             return fail(a, list->path[i], error);
         play_within_slack(&list->view[i], &list->clip[i]);
         if (list->options[i].from_us > list->clip[i].length_us)
-            return app_fail(a, EXIT_USAGE, "USAGE",
-                            "play: --from is beyond the end of %s (%.0f ms)", list->path[i],
-                            (double)list->clip[i].length_us / 1e3);
+            return app_fail(a, EXIT_USAGE, "ARG", "play: --from is beyond the end of %s (%.0f ms)",
+                            list->path[i], (double)list->clip[i].length_us / 1e3);
     }
     list->options[0].also = joints_behind(list);
     return 0;

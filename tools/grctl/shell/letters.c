@@ -14,7 +14,7 @@ enum { CAPTURE_MS = 100, LONGEST_MS = 3600000, KNOWN_US = 2000000 };
 
 static int usage(shell *s, const char *format, const char *what)
 {
-    return app_fail(&s->one, EXIT_USAGE, "USAGE", format, what);
+    return app_fail(&s->one, EXIT_USAGE, "ARG", format, what);
 }
 
 /* A time of 1 ms to an hour. */
@@ -393,7 +393,9 @@ const char shell_details[] =
     "without 'grctl', and the letters and words of the original programs below. Words are split\n"
     "at blanks, quotes and backslashes keep them together, # begins a comment. Commands come from\n"
     "a person, who gets history and completion (TAB), or from FILE or a pipe: then the first that\n"
-    "fails ends the shell with its exit status, and the message names the line. Ctrl-C stops the\n"
+    "fails ends the shell with its exit status, and the message names the line. With --json each\n"
+    "line of a script ends with {\"line\":N,\"status\":S}, so that a program can lead a robot\n"
+    "through a pipe (docs/guide/scripts.md). Ctrl-C stops the\n"
     "command that runs; at the prompt it clears the line. What --on-exit asks for is carried out\n"
     "once, at the end.\n\n"
     "Between two commands an open robot is watched: a lost line, an alarm of a servo, and an\n"
@@ -405,6 +407,16 @@ const char shell_details[] =
 const shell_word *shell_word_row(size_t i)
 {
     return i < sizeof table / sizeof table[0] ? &table[i] : NULL;
+}
+
+const char *shell_nearest(const char *name)
+{
+    cli_guess guess = {.name = name, .length = strlen(name)};
+    for (size_t i = 0; i < cli_n_commands; i++)
+        cli_guess_try(&guess, cli_commands[i]->name);
+    for (size_t i = 0; i < sizeof table / sizeof table[0]; i++)
+        cli_guess_try(&guess, table[i].word);
+    return guess.best;
 }
 
 const shell_word *shell_word_find(const char *name)

@@ -14,6 +14,7 @@ void shell_inherit(shell *s)
             s->one.line.global[i] = s->a->line.global[i];
     }
     s->one.robot = s->a->robot;
+    s->one.nearest_device = s->a->nearest_device;
     s->one.moves = true;
     s->one.tty_in = s->a->tty_in && !s->file;
 }
@@ -39,10 +40,10 @@ static int prepare(void *ctx, app *a)
     app_settle(a);
     a->tty_in = a->tty_in && !s->file;
     if (touches)
-        return app_fail(a, EXIT_USAGE, "USAGE",
+        return app_fail(a, EXIT_USAGE, "ARG",
                         "a shell has one line; 'connect DEV' takes another device");
     if (a->line.command == s->a->line.command)
-        return app_fail(a, EXIT_USAGE, "USAGE", "this is a shell already");
+        return app_fail(a, EXIT_USAGE, "ARG", "this is a shell already");
     return 0;
 }
 

@@ -54,6 +54,8 @@ typedef struct shell_word {
 const shell_word *shell_word_row(size_t i);
 /* That of a letter or word, NULL for none. */
 const shell_word *shell_word_find(const char *name);
+/* The command or word that is nearest to a name, or NULL; a command that it is comes first. */
+const char *shell_nearest(const char *name);
 /* The table as paragraphs, for help and manual. */
 extern const char shell_details[];
 

@@ -28,6 +28,18 @@ const char *render_torque(const grobo_joint_info *info)
     return "?";
 }
 
+/*
+ * Where the joint was sent: by this process, or as its servo reports. A servo without torque keeps
+ * an old goal that it does not go to.
+ */
+static bool target_of(const grobo_joint_info *info, double *target_rad)
+{
+    bool told =
+        has(info, GROBO_FIELD_GOAL) && info->torque_known && info->state.torque == GROBO_TORQUE_ON;
+    *target_rad = info->has_target ? info->target_rad : info->state.goal_rad;
+    return info->has_target || told;
+}
+
 static json_t *integer_or_null(bool known, long value)
 {
     return known ? json_integer(value) : json_null();
@@ -37,8 +49,9 @@ json_t *render_joint_json(const conn *c, int joint, int64_t now_us)
 {
     const grobo_joint *j = &model_of(c)->joints[joint];
     grobo_joint_info i;
+    double target_rad;
     bool fresh;
-    json_t *o = json_pack("{s:i,s:i,s:s}", "id", joint, "motor", j->motor, "name", j->name);
+    json_t *o = json_pack("{s:i,s:i,s:s}", "joint", joint, "motor", j->motor, "name", j->name);
     if (grobo_robot_joint(c->robot, joint, now_us, &i) < 0)
         return o;
     fresh = i.angle_age_us != GROBO_NEVER_US;
@@ -46,8 +59,9 @@ json_t *render_joint_json(const conn *c, int joint, int64_t now_us)
                         fresh ? app_json_number(grobo_deg_from_rad(i.state.angle_rad), 1)
                               : json_null());
     json_object_set_new(o, "target_deg",
-                        i.has_target ? app_json_number(grobo_deg_from_rad(i.target_rad), 1)
-                                     : json_null());
+                        target_of(&i, &target_rad)
+                            ? app_json_number(grobo_deg_from_rad(target_rad), 1)
+                            : json_null());
     json_object_set_new(o, "torque", i.torque_known ? json_string(render_torque(&i)) : json_null());
     json_object_set_new(o, "speed_dps",
                         integer_or_null(has(&i, GROBO_FIELD_SPEED), i.state.speed_dps));
@@ -80,13 +94,15 @@ void render_status(const conn *c, grobo_joint_mask joints, int64_t now_us)
     app_print("motor  joint         angle  target  torque  speed  current  temp  volts  age ms\n");
     for (int k = 0; k < model->n_joints; k++) {
         grobo_joint_info i;
-        bool known;
+        double target_rad;
+        bool known, targeted;
         if (!(joints & GROBO_JOINT_BIT(k)) || grobo_robot_joint(c->robot, k, now_us, &i) < 0)
             continue;
         known = i.angle_age_us != GROBO_NEVER_US;
         app_print("%5d  %-12s", model->joints[k].motor, model->joints[k].name);
         cell(known, 5, 1, grobo_deg_from_rad(i.state.angle_rad));
-        cell(i.has_target, 6, 1, grobo_deg_from_rad(i.target_rad));
+        targeted = target_of(&i, &target_rad);
+        cell(targeted, 6, 1, grobo_deg_from_rad(target_rad));
         app_print("  %-6s", render_torque(&i));
         cell(has(&i, GROBO_FIELD_SPEED), 5, 0, i.state.speed_dps);
         cell(has(&i, GROBO_FIELD_CURRENT), 7, 0, i.state.current_ma);

@@ -13,7 +13,7 @@ static int refuse(app *a, const char *item, size_t length, const char *why)
     char shown[64];
     snprintf(shown, sizeof shown, "%.*s", (int)(length < 40 ? length : 40), item);
     app_make_one_line(shown);
-    return app_fail(a, EXIT_USAGE, "USAGE", "sim: --servo: '%s': %s", shown, why);
+    return app_fail(a, EXIT_USAGE, "ARG", "sim: --servo: '%s': %s", shown, why);
 }
 
 static int refuse_type(app *a, const char *item, size_t length)

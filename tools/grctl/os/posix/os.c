@@ -212,6 +212,27 @@ void os_unlock_file(os_lock *lock)
     close((int)lock->handle);
 }
 
+bool os_state_path(const char *name, char *path, size_t capacity)
+{
+    const char *state = getenv("XDG_STATE_HOME"), *home = getenv("HOME");
+    int n;
+    if (state && *state == '/')
+        n = snprintf(path, capacity, "%s/grctl/%s", state, name);
+    else if (home && *home == '/')
+        n = snprintf(path, capacity, "%s/.local/state/grctl/%s", home, name);
+    else
+        return false;
+    if (n < 0 || (size_t)n >= capacity)
+        return false;
+    for (char *slash = strchr(path + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
+        *slash = '\0';
+        if (mkdir(path, 0700) < 0 && errno != EEXIST)
+            return false;
+        *slash = '/';
+    }
+    return true;
+}
+
 bool os_config_path(int which, char *path, size_t capacity)
 {
     const char *config = getenv("XDG_CONFIG_HOME"), *home = getenv("HOME");

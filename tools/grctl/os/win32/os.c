@@ -307,6 +307,20 @@ static bool known_folder(int which, char *path)
            S_OK;
 }
 
+bool os_state_path(const char *name, char *path, size_t capacity)
+{
+    char folder[MAX_PATH];
+    int n;
+    if (!known_folder(CSIDL_LOCAL_APPDATA, folder))
+        return false;
+    n = snprintf(path, capacity, "%s\\grctl", folder);
+    if (n < 0 || (size_t)n >= capacity ||
+        (!CreateDirectoryA(path, NULL) && GetLastError() != ERROR_ALREADY_EXISTS))
+        return false;
+    n = snprintf(path, capacity, "%s\\grctl\\%s", folder, name);
+    return n > 0 && (size_t)n < capacity;
+}
+
 bool os_config_path(int which, char *path, size_t capacity)
 {
     const char *config = getenv("XDG_CONFIG_HOME"); /* of a shell that came from elsewhere */

@@ -1,0 +1,93 @@
+/* SPDX-License-Identifier: MIT */
+/* joints: the robot's table of joints. Offline. */
+#include <string.h>
+
+#include <grobo/model.h>
+
+#include "tools/grctl/cli/joints.h"
+#include "tools/grctl/cmd/commands.h"
+
+enum { NAMES_BYTES = 128 };
+
+/* The groups of a joint, split by blanks, without those of every joint. */
+static void group_names(const grobo_model *model, int joint, char *names)
+{
+    size_t at = 0;
+    *names = '\0';
+    for (int i = 0; i < model->n_groups && at < NAMES_BYTES; i++) {
+        const grobo_group *group = &model->groups[i];
+        bool has = (group->joints & GROBO_JOINT_BIT(joint)) != 0;
+        if (has && group->joints != GROBO_JOINTS_ALL(model->n_joints))
+            at +=
+                (size_t)snprintf(names + at, NAMES_BYTES - at, "%s%s", at ? " " : "", group->name);
+    }
+}
+
+static void print_joint(const grobo_model *model, int joint)
+{
+    const grobo_joint *j = &model->joints[joint];
+    char number[8], motor[8], names[NAMES_BYTES];
+    snprintf(number, sizeof number, "j%d", joint);
+    snprintf(motor, sizeof motor, "m%d", j->motor);
+    group_names(model, joint, names);
+    app_print("%-12s  %5s  %5s  %6d  %4.0f  %4.0f  %4.0f  %s\n", j->name, number, motor, j->motor,
+              grobo_deg_from_rad(j->min_rad), grobo_deg_from_rad(j->max_rad),
+              grobo_deg_from_rad(j->init_rad), names);
+}
+
+static json_t *joint_json(const grobo_model *model, int joint)
+{
+    const grobo_joint *j = &model->joints[joint];
+    json_t *groups = json_array();
+    for (int i = 0; i < model->n_groups; i++)
+        if (model->groups[i].joints & GROBO_JOINT_BIT(joint))
+            json_array_append_new(groups, json_string(model->groups[i].name));
+    return json_pack("{s:i,s:i,s:i,s:s,s:[o,o],s:o,s:o}", "joint", joint, "motor", j->motor, "id",
+                     j->motor, "name", j->name, "limits_deg",
+                     app_json_number(grobo_deg_from_rad(j->min_rad), 1),
+                     app_json_number(grobo_deg_from_rad(j->max_rad), 1), "init_deg",
+                     app_json_number(grobo_deg_from_rad(j->init_rad), 1), "groups", groups);
+}
+
+static int run(app *a)
+{
+    const grobo_model *model = &grobo_gr001_model;
+    grobo_joint_mask joints = 0;
+    json_t *list;
+    for (int i = 0; i < a->line.n_arguments; i++) {
+        int status = joints_parse(a, a->line.argument[i], &joints);
+        if (status)
+            return status;
+    }
+    if (!a->line.n_arguments)
+        joints = GROBO_JOINTS_ALL(model->n_joints);
+    list = a->json ? json_array() : NULL;
+    if (!list)
+        app_print("name          joint  motor     id   min   max  init  groups\n");
+    for (int j = 0; j < model->n_joints; j++) {
+        if (!(joints & GROBO_JOINT_BIT(j)))
+            continue;
+        if (list)
+            json_array_append_new(list, joint_json(model, j));
+        else
+            print_joint(model, j);
+    }
+    if (list)
+        app_print_json(json_pack("{s:s,s:o}", "robot", model->name, "joints", list));
+    return EXIT_DONE;
+}
+
+const cli_command cmd_joints = {
+    .name = "joints",
+    .arguments = "[JOINT|GROUP]...",
+    .summary = "list joints: names, motors, servo ids, limits, groups",
+    .details = "Prints the robot's joints, or those named: the three names that a command takes\n"
+               "(R_KNEE_P, j3, m9), the servo's id on the bus, the limits and the initial posture\n"
+               "in degrees, and the groups. Every joint is also in the group all. The table is\n"
+               "that of the robot's model: no robot is asked, and trims of a configured robot are\n"
+               "not in it.\n",
+    .example = "  grctl joints\n  grctl joints right_arm --json\n",
+    .max_arguments = -1,
+    .argument = CLI_ARG_JOINT,
+    .run = run,
+};
