@@ -352,6 +352,28 @@ static void no_read_starts_that_would_reach_into_the_reserved_span(void **state)
     assert_int_equal(p.sent_count, 4);
 }
 
+/* What nothing answers takes its wire time, however late replies are. */
+static void lateness_of_replies_delays_no_frame_without_one(void **state)
+{
+    (void)state;
+    peer p;
+    request goal, read;
+    peer_init(&p, NULL);
+    peer_read(&p, &read, 1, 2, GROBO_PRIORITY_USER);
+    const grobo_rs30x_goal to = {1, 0, 0};
+    int n = grobo_frame_goal(p.bus.config.protocol, &to, goal.frame, sizeof goal.frame);
+    peer_txn(&p, &goal.txn, goal.frame, n, GROBO_PRIORITY_USER);
+    grobo_bus_cost of_goal, of_read;
+    grobo_bus_cost_of(&p.bus, &goal.txn, &of_goal);
+    grobo_bus_cost_of(&p.bus, &read.txn, &of_read);
+    p.bus.overhead_us = 700;
+    grobo_bus_reserve(&p.bus, 20 * MS, MS);
+    assert_true(grobo_bus_fits(&p.bus, 20 * MS - of_goal.total_us, &goal.txn));
+    assert_false(grobo_bus_fits(&p.bus, 20 * MS - of_goal.total_us + 1, &goal.txn));
+    assert_true(grobo_bus_fits(&p.bus, 20 * MS - of_read.total_us - 700, &read.txn));
+    assert_false(grobo_bus_fits(&p.bus, 20 * MS - of_read.total_us - 699, &read.txn));
+}
+
 static void a_short_request_goes_where_a_long_one_does_not_fit(void **state)
 {
     (void)state;
@@ -455,6 +477,7 @@ int main(void)
         cmocka_unit_test(patience_has_its_limits),
         cmocka_unit_test(a_patient_read_delays_no_motion_frame),
         cmocka_unit_test(no_read_starts_that_would_reach_into_the_reserved_span),
+        cmocka_unit_test(lateness_of_replies_delays_no_frame_without_one),
         cmocka_unit_test(a_short_request_goes_where_a_long_one_does_not_fit),
         cmocka_unit_test(the_gaps_are_filled_and_the_frames_are_on_time),
         cmocka_unit_test(a_silent_servo_does_not_delay_the_frames),
