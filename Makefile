@@ -72,7 +72,9 @@ say = $(if $(filter 1,$(V)),@:,@printf '  %-5s %s\n')
 WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow \
     -Wstrict-prototypes -Wmissing-prototypes -Wswitch-enum -Wvla $(WERROR)
 SAN_FLAGS := $(if $(SAN),-fsanitize=$(SAN) -fno-sanitize-recover=all -fno-omit-frame-pointer)
-ALL_CPPFLAGS = -Iinclude -Iports/$(PORT)/include $(CPPFLAGS)
+# All slots, joints and queues are walked through to assert (src/base/assert.h): WALKS=-DGROBO_WALKS.
+WALKS ?=
+ALL_CPPFLAGS = -Iinclude -Iports/$(PORT)/include $(WALKS) $(CPPFLAGS)
 ALL_CFLAGS = -std=c11 $(WARNINGS) $(TARGET_CFLAGS) -fvisibility=hidden -fPIC $(SAN_FLAGS) $(COV_FLAGS) $(CFLAGS)
 # Without a number of jobs gcc warns at each link.
 LTO_FLAGS = $(if $(filter -flto,$(CFLAGS)),-flto=auto)
@@ -215,7 +217,7 @@ test: all $(chosen) $(CROSS_TOOLS) $(left_out) ## the tests alone; RING="unit en
 
 check-san: ## the tests of our own code under AddressSanitizer and UBSan
 	@TEST_TIMEOUT_S=600 $(MAKE) --no-print-directory test BUILD=$(BUILD)/san SAN=address,undefined CFLAGS='-O1 -g' \
-	    CPPFLAGS='$(CPPFLAGS) -DGROBO_WALKS' \
+	    WALKS=-DGROBO_WALKS \
 	    RING='$(filter-out lint export,$(RING))'
 
 check-tsan: ## the tests of what threads share under ThreadSanitizer
@@ -309,7 +311,7 @@ MUTANT_TESTS := $(patsubst %.c,$(MUTANT_DIR)/%.o,$(filter tests/engine/%,$(TEST_
 MUTANT_LIBS := $(patsubst %,$(MUTANT_DIR)/lib%.a,support grctl grobo)
 check-mutants: ## sabotage the core in COUNT=300 ways that SEED=1 chooses: a test must notice each
 	-@tools/setup.sh --mutants
-	@$(MAKE) --no-print-directory BUILD=$(MUTANT_DIR) CFLAGS=-O2 CPPFLAGS='$(CPPFLAGS) -DGROBO_WALKS' \
+	@$(MAKE) --no-print-directory BUILD=$(MUTANT_DIR) CFLAGS=-O2 WALKS=-DGROBO_WALKS \
 	    $(MUTANT_TESTS) $(MUTANT_LIBS)
 	@nice python3 tests/mutants/run.py --seed $(SEED) --count $(or $(COUNT),300) $(if $(ONLY),--only $(ONLY)) \
 	    --work $(MUTANT_DIR)/work --sources "$(CORE_SRCS)" --tests "$(MUTANT_TESTS)" \
@@ -321,7 +323,7 @@ MAP_TESTS := $(patsubst %.c,$(MUTANT_DIR)/%.o,$(filter tests/unit/% tests/engine
     tests/link/% tests/port/%,$(TEST_SRCS)))
 check-map: ## sabotage the function of each row of docs/seed-map.md; COUNT=40 rows that SEED=1 chooses
 	-@tools/setup.sh --mutants
-	@$(MAKE) --no-print-directory -s BUILD=$(MUTANT_DIR) CFLAGS=-O2 CPPFLAGS='$(CPPFLAGS) -DGROBO_WALKS' $(MAP_TESTS) $(MUTANT_LIBS)
+	@$(MAKE) --no-print-directory -s BUILD=$(MUTANT_DIR) CFLAGS=-O2 WALKS=-DGROBO_WALKS $(MAP_TESTS) $(MUTANT_LIBS)
 	@nice python3 tests/mutants/rows.py --seed $(SEED) --count $(or $(COUNT),0) $(if $(ONLY),--only "$(ONLY)") \
 	    --map docs/seed-map.md --rows tests/mutants/rows --work $(MUTANT_DIR)/work \
 	    --sources "$(CORE_SRCS) $(OTHER_SRCS)" --objects $(MUTANT_DIR)/tests \
