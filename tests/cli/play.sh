@@ -225,7 +225,7 @@ check "a table at the end" both exits 0 on_robot play --speed 500 --table "$gree
 check "how far off it was, and which joint" both exits 0 on_robot play "$greet" --- \
     says '^largest error on the way [0-9.]* deg ([A-Z_]*)$'
 check "it ends where the motion ends" both exits 0 on_robot status m12 --- \
-    says 'R_KNEE_P  *-40\.0  *-  on '
+    says 'R_KNEE_P  *-40\.0  *-40\.0  *on '
 
 # On a terminal, which script makes: a bar that fits into the line and is cleared away.
 bar() {

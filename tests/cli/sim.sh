@@ -10,7 +10,7 @@ start_sim
 check "the path is a terminal's" [ -c "$sim_pty" ]
 check "two programs, one after the other" both exits 0 on_robot move m2 20 200 --- \
     exits 0 on_robot status m2
-check "the robot stays as it was left" says 'NECK_Y  *20\.0  *-  on '
+check "the robot stays as it was left" says 'NECK_Y  *20\.0  *20\.0  *on '
 ignores_int() {
     kill -s INT "$sim_pid"
     exits 0 on_robot status m2

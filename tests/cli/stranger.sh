@@ -24,7 +24,7 @@ has() {
 start_sim --wiring bus
 check "a client that writes and reads byte by byte" has byte_by_byte
 stop_sim
-start_sim --wiring bus
+start_sim --wiring bus --baud-at-once
 check "one that changes rates" has other_rate
 check "one that never reads" has never_reads
 check "and the servos are there for the next one" both \
