@@ -38,7 +38,8 @@ size_t grobo_i_framer_next(grobo_framer *framer, grobo_i_measure measure, unsign
     int size = 0;
     while (at < framer->used) {
         size = measure(framer->buf + at, framer->used - at, accept);
-        if (size > 0 || (size == 0 && !framer->ending)) {
+        bool may_grow = framer->used - at < sizeof framer->buf && !framer->ending;
+        if (size > 0 || (size == 0 && may_grow)) {
             break;
         }
         if (size == GROBO_ERR_CHECKSUM) {

@@ -138,6 +138,7 @@ int grobo_i_play_start(grobo_robot *robot)
             here.angle_rad[j] = grobo_i_axis_commanded(&robot->axes[j], robot->now_us);
         }
     }
+    robot->played_joints = 0;
     memset(robot->late_bins, 0, sizeof robot->late_bins);
     robot->late_max_us = 0;
     int result =

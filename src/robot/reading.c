@@ -158,6 +158,14 @@ bool grobo_i_is_loss(int result)
            result == GROBO_ERR_CHECKSUM || result == GROBO_ERR_MISMATCH;
 }
 
+/* A driver may make anything of what comes off the wire. */
+static bool is_finite(const grobo_joint_state *got)
+{
+    bool angle = (got->valid & GROBO_FIELD_ANGLE) == 0 || isfinite(got->angle_rad);
+    bool goal = (got->valid & GROBO_FIELD_GOAL) == 0 || isfinite(got->goal_rad);
+    return angle && goal;
+}
+
 int grobo_i_reading_take(const grobo_robot_slot *slot, int result, const grobo_packet *reply,
                          grobo_joint_state *got)
 {
@@ -170,6 +178,9 @@ int grobo_i_reading_take(const grobo_robot_slot *slot, int result, const grobo_p
     }
     if (result >= 0) {
         result = driver->parse(driver, robot->driver_ctx, joint, reply, got);
+    }
+    if (result >= 0 && !is_finite(got)) {
+        result = GROBO_ERR_MISMATCH;
     }
     if (result >= 0) {
         result = GROBO_OK;

@@ -574,6 +574,9 @@ int grobo_robot_free(grobo_robot *robot, grobo_joint_mask joints, bool on, int64
         result = GROBO_ERR_UNSUPPORTED;
     }
     if (result >= 0) {
+        for (int j = 0; j < robot->driver->model->n_joints; j++) {
+            robot->axes[j].away_rad = INFINITY; /* it may be on a way */
+        }
         robot->free_joints |= joints;
         robot->sense_us = robot->now_us;
     }

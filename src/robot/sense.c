@@ -9,9 +9,6 @@
 /* In free mode a hand has so long to get a joint going, or to turn it back, before it holds. */
 #define GRIP_US 100000
 
-/* A joint that moves this far from the goal that it holds is turned by a hand. */
-#define TURNED_RAD (2 * 0.017453292519943295)
-
 /* While a motion is played joints are read so often, and in free mode the others, also where
  * nothing is read else. */
 #define WATCH_INTERVAL_US (GROBO_WATCH_US / 2)
@@ -30,14 +27,17 @@ static void switch_once(grobo_robot *robot, grobo_joint_mask joint, grobo_torque
     }
 }
 
-/* True if something else than its servo turns a joint: it holds, has no way to go, and moves this
- * far from its goal. A leg's current stays below its limit under a hand that is not slow. */
-static bool is_turned(const grobo_robot *robot, const grobo_robot_axis *axis)
+/* True if something else than its servo turns a joint: it has torque, and moves farther from its
+ * goal than it was when it was read last. A leg's current stays below its limit under a hand that
+ * is not slow. */
+static bool is_turned(grobo_robot *robot, int joint)
 {
+    grobo_robot_axis *axis = &robot->axes[joint];
     const grobo_joint_state *state = &axis->state;
-    double away_rad = fabs(state->angle_rad - state->goal_rad);
+    double before_rad = axis->away_rad;
+    axis->away_rad = fabs(state->angle_rad - state->goal_rad);
     return state->torque == GROBO_TORQUE_ON && abs(state->speed_dps) >= GROBO_I_SLOW_DPS &&
-           away_rad > TURNED_RAD && grobo_i_axis_until(axis) <= robot->now_us;
+           !grobo_i_goal_holds(robot, joint) && axis->away_rad > before_rad;
 }
 
 /* After each reading (protocol 5): above the joint's current, or turned, brake; slow, hold. To
@@ -47,11 +47,12 @@ static void free_joint(grobo_robot *robot, int joint)
     grobo_robot_axis *axis = &robot->axes[joint];
     const grobo_joint_state *state = &axis->state;
     int limit_ma = robot->driver->model->joints[joint].free_current_ma;
-    bool pushed = (limit_ma > 0 && state->current_ma > limit_ma) || is_turned(robot, axis);
     grobo_joint_mask bit = GROBO_JOINT_BIT(joint);
     if (axis->goal_us != robot->now_us) {
         return; /* a reading from before, without the goal */
     }
+    bool turned = is_turned(robot, joint);
+    bool pushed = (limit_ma > 0 && state->current_ma > limit_ma) || turned;
     if (pushed || abs(state->speed_dps) >= GROBO_I_SLOW_DPS) {
         axis->gave_way_us = robot->now_us;
         grobo_i_slots_keep_off(robot, bit);

@@ -485,6 +485,9 @@ static int step_quiet(grobo_robot *robot)
 /* Nearer than this to its goal, a servo is there. */
 #define THERE_RAD (0.2 * 0.017453292519943295)
 
+/* Where nobody knows to: it moves until its halt has left, and the halt is refused no sooner. */
+#define ASTRAY_US 100000
+
 /* True if the servo, just read, says that it is on a way; notes that way. */
 static bool is_astray(grobo_robot *robot, int joint)
 {
@@ -502,7 +505,7 @@ static bool is_astray(grobo_robot *robot, int joint)
     }
     grobo_i_axis_here(axis, robot->now_us);
     /* To where nobody knows: it stops where it was. */
-    axis->way.to_us = grobo_i_later(axis->way.to_us, robot->now_us + 1);
+    axis->way.to_us = grobo_i_later(axis->way.to_us, robot->now_us + ASTRAY_US);
     axis->has_target = true;
     return true;
 }
@@ -517,7 +520,7 @@ static int step_strays(grobo_robot *robot)
             astray |= GROBO_JOINT_BIT(j);
         }
     }
-    if (astray != 0 && job->rounds < ROUNDS) {
+    if (astray != 0 && (job->kind == GROBO_JOB_ESTOP || job->rounds < ROUNDS)) {
         grobo_i_gate_halt(robot, grobo_i_all_joints(robot));
     }
     return again(robot, astray, step_quiet);

@@ -52,13 +52,9 @@ static void force(int joint, double dps, int64_t time_us)
 
 typedef void (*hand_fn)(int joint, double dps, int64_t time_us);
 
-/* Turns a joint that has rested for this time, and expects that it goes along and stays there. */
-static double turn(int joint, grobo_joint_mask taught, hand_fn hand, double dps, int64_t rest_us)
+/* A hand turns a joint, which is expected to go along and to stay there. */
+static double turn_once(int joint, hand_fn hand, double dps)
 {
-    rig_start(&rig, &quiet, NULL);
-    rig_power(&rig);
-    assert_int_equal(grobo_robot_free(&rig.robot, taught, true, rig.now_us), GROBO_OK);
-    rig_run(&rig, rest_us);
     double from_deg = rig_angle_deg(&rig, joint);
     hand(joint, dps, (int64_t)(WAY_DEG / fabs(dps) * 1e6));
     double left_deg = rig_angle_deg(&rig, joint);
@@ -69,6 +65,17 @@ static double turn(int joint, grobo_joint_mask taught, hand_fn hand, double dps,
     assert_true(moved_deg >= WAY_DEG - fabs(dps) * GIVES_WAY_S);
     assert_true(fabs(dps) > HAND_DPS || moved_deg >= HAND_PART * WAY_DEG);
     return moved_deg;
+}
+
+/* Turns a joint that has rested for this time, and turns it back: it holds again then. */
+static double turn(int joint, grobo_joint_mask taught, hand_fn hand, double dps, int64_t rest_us)
+{
+    rig_start(&rig, &quiet, NULL);
+    rig_power(&rig);
+    assert_int_equal(grobo_robot_free(&rig.robot, taught, true, rig.now_us), GROBO_OK);
+    rig_run(&rig, rest_us);
+    double there_deg = turn_once(joint, hand, dps);
+    return fmin(there_deg, turn_once(joint, hand, -dps));
 }
 
 /* The least of a joint's ways, whenever in the round of readings the hand comes. */

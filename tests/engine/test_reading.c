@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What a reading tells of where a joint is. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -114,6 +115,35 @@ static void an_angle_alone_tells_nothing_of_how_a_joint_moves(void **state)
     assert_false(neck()->adrift);
 }
 
+static int parse_nonsense(const grobo_driver *self, void *ctx, int joint, const grobo_packet *reply,
+                          grobo_joint_state *got)
+{
+    (void)self;
+    (void)ctx;
+    (void)joint;
+    (void)reply;
+    got->angle_rad = NAN;
+    got->valid = GROBO_FIELD_ANGLE;
+    return GROBO_OK;
+}
+
+static void a_driver_that_makes_no_number_of_a_reply_has_read_nothing(void **state)
+{
+    (void)state;
+    on_the_way();
+    read_state(20, 0);
+    grobo_driver odd = *rig.driver;
+    odd.parse = parse_nonsense;
+    rig.robot.driver = &odd;
+    const grobo_robot_slot slot = {.robot = &rig.robot, .joint = NECK, .reads = true};
+    const grobo_packet reply = {.kind = GROBO_PACKET_RETURN, .id = NECK_ID};
+    grobo_joint_state got;
+    assert_int_equal(grobo_i_reading_take(&slot, GROBO_OK, &reply, &got), GROBO_ERR_MISMATCH);
+    assert_float_equal(neck()->state.angle_rad, RAD(20), 1e-3);
+    assert_int_equal(neck()->lost, 1);
+    rig.robot.driver = rig.driver;
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -121,6 +151,7 @@ int main(void)
         cmocka_unit_test(a_joint_that_moves_beside_its_way_is_late_and_on_it),
         cmocka_unit_test(a_joint_that_was_sent_nowhere_is_off_no_way),
         cmocka_unit_test(off_its_way_a_joint_is_on_its_own_or_where_it_was_read),
+        cmocka_unit_test(a_driver_that_makes_no_number_of_a_reply_has_read_nothing),
         cmocka_unit_test(an_angle_alone_tells_nothing_of_how_a_joint_moves),
     };
     return cmocka_run_group_tests_name("reading", tests, NULL, NULL);

@@ -12,6 +12,7 @@
 
 #include <grobo/rs30x.h>
 
+#include "src/bus/framer.h"
 #include "tests/support/vectors.h"
 
 enum { MAX = GROBO_RS30X_PACKET_MAX_BYTES };
@@ -330,9 +331,35 @@ static void collected_vectors_parse_and_build_byte_for_byte(void **state)
     vectors_check(check_vector, 40);
 }
 
+/* What a protocol of one's own may say of rubbish, for ever. */
+static int always_more(const uint8_t *bytes, size_t n, unsigned accept)
+{
+    (void)bytes;
+    (void)n;
+    (void)accept;
+    return 0;
+}
+
+static void a_full_buffer_waits_for_nothing(void **state)
+{
+    (void)state;
+    static const uint8_t bytes[4 * GROBO_FRAME_MAX_BYTES];
+    static grobo_framer framer;
+    size_t at = 0;
+    grobo_i_framer_init(&framer);
+    while (at < sizeof bytes) {
+        size_t took = grobo_i_framer_feed(&framer, bytes + at, sizeof bytes - at);
+        assert_true(took > 0);
+        at += took;
+        assert_int_equal(grobo_i_framer_next(&framer, always_more, 0), 0);
+    }
+    assert_int_equal(framer.stats.dropped_bytes + grobo_i_framer_pending(&framer), sizeof bytes);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_full_buffer_waits_for_nothing),
         cmocka_unit_test(every_split_of_every_packet_gives_it_back),
         cmocka_unit_test(rubbish_before_and_behind_is_dropped_and_counted),
         cmocka_unit_test(packets_behind_a_false_start_are_found),

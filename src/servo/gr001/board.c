@@ -82,7 +82,8 @@ int grobo_board_send(const uint8_t *packet, size_t n, uint8_t *buf, size_t cap)
 
 int grobo_board_ask(const uint8_t *packet, size_t n, uint8_t r, uint8_t *buf, size_t cap)
 {
-    return build_relay(packet, n, r, buf, cap);
+    return (packet == NULL && n > 0) || buf == NULL ? GROBO_ERR_ARG
+                                                    : build_relay(packet, n, r, buf, cap);
 }
 
 int grobo_board_relay(const uint8_t *packet, size_t n, uint8_t *buf, size_t cap)
