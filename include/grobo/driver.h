@@ -8,7 +8,7 @@
  * engine's calls, so they must not call the engine back.
  *
  * A robot of RS30x servos needs data only: grobo_rs30x_driver_init() fills a whole table from a
- * model and a wiring, and single functions may then be replaced. Another kind of servo or board
+ * model and a protocol, and single functions may then be replaced. Another kind of servo or board
  * replaces all of them, and brings a protocol of its own (protocol.h).
  * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
