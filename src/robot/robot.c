@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Life, pump and link of the engine. */
 #include "src/robot/robot.h"
+#include "src/base/instant.h"
 
 #include <math.h>
 #include <string.h>
@@ -170,11 +171,6 @@ void grobo_robot_step(grobo_robot *robot, int64_t now_us)
     grobo_i_leave(robot);
 }
 
-static int64_t earlier(int64_t a_us, int64_t b_us)
-{
-    return a_us < b_us ? a_us : b_us;
-}
-
 int64_t grobo_robot_deadline(const grobo_robot *robot, int64_t now_us)
 {
     if (robot == NULL || !robot->link) {
@@ -184,10 +180,10 @@ int64_t grobo_robot_deadline(const grobo_robot *robot, int64_t now_us)
         return now_us; /* to be told by the next step */
     }
     int64_t at_us = grobo_bus_deadline(&robot->bus, now_us);
-    at_us = earlier(at_us, grobo_sequencer_deadline(&robot->sequencer));
-    at_us = earlier(at_us, grobo_i_segments_deadline(robot));
-    at_us = earlier(at_us, grobo_i_job_deadline(robot));
-    return earlier(at_us, grobo_i_sense_deadline(robot));
+    at_us = grobo_i_sooner(at_us, grobo_sequencer_deadline(&robot->sequencer));
+    at_us = grobo_i_sooner(at_us, grobo_i_segments_deadline(robot));
+    at_us = grobo_i_sooner(at_us, grobo_i_job_deadline(robot));
+    return grobo_i_sooner(at_us, grobo_i_sense_deadline(robot));
 }
 
 /* ---- link ------------------------------------------------------------------------------------ */
