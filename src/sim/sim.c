@@ -7,6 +7,7 @@
  */
 #include <string.h>
 
+#include "src/base/instant.h"
 #include "src/sim/board.h"
 #include "src/sim/bus.h"
 #include "src/sim/fault.h"
@@ -57,17 +58,12 @@ static void said(grobo_sim *sim, int64_t t_ns)
 
 /* ---- time ---------------------------------------------------------------------------------- */
 
-static int64_t earlier(int64_t a, int64_t b)
-{
-    return a < b ? a : b;
-}
-
 /* Does what is due first, if it is due by limit_ns. */
 static bool step_once(grobo_sim *sim, int64_t limit_ns)
 {
     int64_t talk_ns = grobo_i_sim_talk_next(sim), in_ns = grobo_i_sim_wire_next(&sim->in);
     int64_t board_ns = grobo_i_sim_board_next(sim);
-    int64_t t_ns = earlier(talk_ns, earlier(in_ns, board_ns));
+    int64_t t_ns = grobo_i_sooner(talk_ns, grobo_i_sooner(in_ns, board_ns));
     if (t_ns > limit_ns) {
         return false;
     }
@@ -159,12 +155,12 @@ static int64_t inner_deadline_ns(const grobo_sim *sim)
 {
     int64_t at_ns = grobo_i_sim_talks_end(sim);
     if (sim->config.wiring == GROBO_WIRING_BUS) {
-        return earlier(at_ns, next_whole_ns(sim));
+        return grobo_i_sooner(at_ns, next_whole_ns(sim));
     }
     if (sim->board_state == GROBO_SIM_BOARD_IDLE) {
-        at_ns = earlier(at_ns, next_whole_ns(sim));
+        at_ns = grobo_i_sooner(at_ns, next_whole_ns(sim));
     }
-    return earlier(at_ns, board_step_ns(sim));
+    return grobo_i_sooner(at_ns, board_step_ns(sim));
 }
 
 /* When the last of the bytes is ready that follow each other to the host without a pause. */
@@ -192,10 +188,10 @@ int64_t grobo_sim_deadline(const grobo_sim *sim)
     if (sim == NULL) {
         return GROBO_NEVER_US;
     }
-    int64_t at_ns = earlier(grobo_i_sim_wire_next(&sim->out), inner_deadline_ns(sim));
+    int64_t at_ns = grobo_i_sooner(grobo_i_sim_wire_next(&sim->out), inner_deadline_ns(sim));
     if (sim->config.wiring == GROBO_WIRING_BUS) { /* these reach the host as they are over */
-        at_ns = earlier(at_ns, grobo_i_sim_talk_next(sim));
-        at_ns = sim->config.echo ? earlier(at_ns, grobo_i_sim_wire_next(&sim->in)) : at_ns;
+        at_ns = grobo_i_sooner(at_ns, grobo_i_sim_talk_next(sim));
+        at_ns = sim->config.echo ? grobo_i_sooner(at_ns, grobo_i_sim_wire_next(&sim->in)) : at_ns;
     }
     return deadline_us(at_ns);
 }
@@ -203,7 +199,7 @@ int64_t grobo_sim_deadline(const grobo_sim *sim)
 int64_t grobo_sim_packet_deadline(const grobo_sim *sim)
 {
     return sim == NULL ? GROBO_NEVER_US
-                       : deadline_us(earlier(burst_end_ns(sim), inner_deadline_ns(sim)));
+                       : deadline_us(grobo_i_sooner(burst_end_ns(sim), inner_deadline_ns(sim)));
 }
 
 /* ---- the host's end ------------------------------------------------------------------------ */
