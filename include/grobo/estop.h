@@ -9,7 +9,7 @@
  * GROBO_ESTOP_WATCH_US of the mark, or before the next frame leaves where its program was held up
  * for longer. A session that opens the device of a stop that has not reached the robot carries the
  * stop out before anything else; where it has, the session is latched and sends nothing for it.
- * grobo_session_reset() and grobo_estop_clear() clear a mark.
+ * grobo_robot_reset() and grobo_estop_clear() clear a mark.
  *
  * Marks are files in directories that the user owns and nobody else may enter: "grobo" in
  * $XDG_RUNTIME_DIR, and "grobo-UID" in /tmp (Windows: in the local AppData). Directories or files
@@ -68,7 +68,7 @@ GROBO_API int grobo_estop_set(const char *device, grobo_estop *stop, grobo_os_ca
 
 /**
  * Clears the marks of a device. Nothing moves by itself: a session that has obeyed the mark stays
- * latched until its own grobo_session_reset().
+ * latched until its own grobo_robot_reset().
  * @param[out] cause why the system refused, or NULL.
  * @return GROBO_OK, also where none stood; GROBO_ERR_ARG; GROBO_ERR_PERM or GROBO_ERR_IO: one
  *   still stands.

@@ -41,11 +41,10 @@ typedef enum grobo_gr001_group {
  * Switches torque of one motor: grobo_robot_torque().
  * @return a job number > 0, GROBO_ERR_NOTFOUND (no such motor), or its errors.
  */
-GROBO_API int grobo_gr001_torque(grobo_robot *robot, int motor, grobo_torque mode, int64_t now_us);
+GROBO_API int grobo_gr001_torque(grobo_robot *robot, int motor, grobo_torque mode);
 
 /** Switches torque of a group; otherwise as grobo_gr001_torque(). */
-GROBO_API int grobo_gr001_servo(grobo_robot *robot, grobo_gr001_group group, grobo_torque mode,
-                                int64_t now_us);
+GROBO_API int grobo_gr001_servo(grobo_robot *robot, grobo_gr001_group group, grobo_torque mode);
 
 /**
  * Moves one motor at once: grobo_robot_move() of one joint, a short packet.
@@ -54,11 +53,10 @@ GROBO_API int grobo_gr001_servo(grobo_robot *robot, grobo_gr001_group group, gro
  * @return a job number > 0, GROBO_ERR_NOTFOUND (no such motor), GROBO_ERR_ARG (time), or the errors
  *   of grobo_robot_move().
  */
-GROBO_API int grobo_gr001_move(grobo_robot *robot, int motor, int angle_ddeg, int time_cs,
-                               int64_t now_us);
+GROBO_API int grobo_gr001_move(grobo_robot *robot, int motor, int angle_ddeg, int time_cs);
 
 /** Reads one motor: grobo_robot_sense(). @return a job number > 0, GROBO_ERR_NOTFOUND, or its. */
-GROBO_API int grobo_gr001_sense(grobo_robot *robot, int motor, int64_t now_us);
+GROBO_API int grobo_gr001_sense(grobo_robot *robot, int motor);
 
 /**
  * The angle of a motor as it was read last. No number stands for a failure.
@@ -66,8 +64,8 @@ GROBO_API int grobo_gr001_sense(grobo_robot *robot, int motor, int64_t now_us);
  * @param[out] angle_ddeg untouched on error.
  * @return 0, GROBO_ERR_NOTFOUND (no such motor), GROBO_ERR_STALE (never read, or longer ago).
  */
-GROBO_API int grobo_gr001_angle(const grobo_robot *robot, int motor, int64_t now_us,
-                                int64_t max_age_us, int *angle_ddeg);
+GROBO_API int grobo_gr001_angle(const grobo_robot *robot, int motor, int64_t max_age_us,
+                                int *angle_ddeg);
 
 /**
  * Goal and time as they stand in a packet (registers No.30-33, little endian): what setDegMs puts
@@ -95,30 +93,29 @@ GROBO_API int grobo_gr001_posture(const grobo_model *model, const int16_t *angle
  * @return a job number > 0, GROBO_ERR_ARG (another n), or its errors.
  */
 GROBO_API int grobo_gr001_set_angles(grobo_robot *robot, const double *angle_rad, size_t n,
-                                     int64_t time_us, int64_t now_us);
+                                     int64_t time_us);
 
 /**
  * The angles read last, in motor order; NaN for those older than max_age_us.
  * @return number of motors that have an angle; GROBO_ERR_SPACE (capacity below the joints).
  */
-GROBO_API int grobo_gr001_get_angles(const grobo_robot *robot, int64_t now_us, int64_t max_age_us,
+GROBO_API int grobo_gr001_get_angles(const grobo_robot *robot, int64_t max_age_us,
                                      double *angle_rad, size_t capacity);
 
 /**
  * Supply voltages read last, in motor order; -1 for those older than max_age_us or never read.
  * @return number of motors that have one; GROBO_ERR_SPACE (capacity below the joints).
  */
-GROBO_API int grobo_gr001_voltages(const grobo_robot *robot, int64_t now_us, int64_t max_age_us,
+GROBO_API int grobo_gr001_voltages(const grobo_robot *robot, int64_t max_age_us,
                                    int32_t *voltage_mv, size_t capacity);
 /** Motor currents read last; otherwise as grobo_gr001_voltages(). */
-GROBO_API int grobo_gr001_currents(const grobo_robot *robot, int64_t now_us, int64_t max_age_us,
+GROBO_API int grobo_gr001_currents(const grobo_robot *robot, int64_t max_age_us,
                                    int32_t *current_ma, size_t capacity);
 /**
  * Mean of the voltages that are not older than max_age_us, rounded.
  * @return mV, or GROBO_ERR_STALE where there is none.
  */
-GROBO_API int grobo_gr001_mean_voltage_mv(const grobo_robot *robot, int64_t now_us,
-                                          int64_t max_age_us);
+GROBO_API int grobo_gr001_mean_voltage_mv(const grobo_robot *robot, int64_t max_age_us);
 
 /* ---- for people ------------------------------------------------------------------------------ */
 
@@ -126,9 +123,9 @@ GROBO_API int grobo_gr001_mean_voltage_mv(const grobo_robot *robot, int64_t now_
  * Prints the voltage of each motor that was ever read, a line each, and their mean.
  * @param stream the caller's. @return 0 or GROBO_ERR_IO.
  */
-GROBO_API int grobo_gr001_print_voltages(const grobo_robot *robot, int64_t now_us, FILE *stream);
+GROBO_API int grobo_gr001_print_voltages(const grobo_robot *robot, FILE *stream);
 /** Prints the current of each motor that was ever read. @return 0 or GROBO_ERR_IO. */
-GROBO_API int grobo_gr001_print_currents(const grobo_robot *robot, int64_t now_us, FILE *stream);
+GROBO_API int grobo_gr001_print_currents(const grobo_robot *robot, FILE *stream);
 /**
  * Prints a posture of GR001 in degrees, each joint where it sits in the body as seen from the
  * front: its right side at the left. "-" for joints not set.
@@ -149,8 +146,7 @@ GROBO_API int grobo_gr001_print_posture(const grobo_posture *posture, FILE *stre
  * @return number of postures then; GROBO_ERR_STALE (a joint was not read lately), or the errors of
  *   grobo_motion_append().
  */
-GROBO_API int grobo_gr001_record(grobo_motion *record, const grobo_robot *robot, int64_t time_us,
-                                 int64_t now_us);
+GROBO_API int grobo_gr001_record(grobo_motion *record, const grobo_robot *robot, int64_t time_us);
 
 /**
  * Plays a motion by keys: grobo_motion_clip(), then grobo_robot_play().
@@ -160,8 +156,7 @@ GROBO_API int grobo_gr001_record(grobo_motion *record, const grobo_robot *robot,
  * @return a job number > 0, GROBO_ERR_EMPTY, or the errors of both.
  */
 GROBO_API int grobo_gr001_play_record(const grobo_motion *record, grobo_robot *robot,
-                                      const grobo_play_options *options, grobo_clip *clip,
-                                      int64_t now_us);
+                                      const grobo_play_options *options, grobo_clip *clip);
 
 GROBO_END_DECLS
 

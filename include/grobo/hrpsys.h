@@ -4,17 +4,16 @@
  * @brief A robot in the manner of hrpsys-base: servo, readJointAngles, writeJointCommands, oneStep.
  *
  * For programs that were written for hrpsys (members GR36..GR43 of the reference document). A view
- * on an engine (robot.h), so it works wherever the engine does: whoever pumps the engine does so
- * after each call that takes now_us (on a session: grobo_session_pump(); with a control thread all
- * of it inside grobo_control_call()). Nothing here waits; what takes time is a job of the engine.
+ * on an engine (robot.h), so it works wherever the engine does. Nothing here waits; what takes
+ * time is a job of the engine.
  * A control loop:
  * @code
- *   grobo_hrpsys_servo_name(&h, "all", true, now);          // a job: wait for its end
+ *   grobo_hrpsys_servo_name(&h, "all", true);          // a job: wait for its end
  *   for (each period) {
- *       grobo_hrpsys_read_joint_angles(&h, angle_rad, 20, max_age_us, now);
+ *       grobo_hrpsys_read_joint_angles(&h, angle_rad, 20, max_age_us);
  *       ...
  *       grobo_hrpsys_write_joint_commands(&h, command_rad, 20);
- *       grobo_hrpsys_one_step(&h, now);
+ *       grobo_hrpsys_one_step(&h);
  *       if (grobo_hrpsys_check_emergency(&h, reason, sizeof reason, &joint) > 0) ...
  *   }
  * @endcode
@@ -103,14 +102,13 @@ GROBO_API int grobo_hrpsys_names_to_motors(const grobo_hrpsys *hrpsys, const cha
  * @param joint 0..n-1; anything else, -1 too, is GROBO_ERR_ARG.
  * @return job number, or an error of grobo_robot_torque().
  */
-GROBO_API int grobo_hrpsys_servo(grobo_hrpsys *hrpsys, int joint, bool on, int64_t now_us);
+GROBO_API int grobo_hrpsys_servo(grobo_hrpsys *hrpsys, int joint, bool on);
 
 /**
  * servo(jname, turnon): of whatever grobo_hrpsys_find() finds.
  * @return job number, GROBO_ERR_NOTFOUND, or an error of grobo_robot_torque().
  */
-GROBO_API int grobo_hrpsys_servo_name(grobo_hrpsys *hrpsys, const char *name, bool on,
-                                      int64_t now_us);
+GROBO_API int grobo_hrpsys_servo_name(grobo_hrpsys *hrpsys, const char *name, bool on);
 
 /* ---- angles --------------------------------------------------------------------------------- */
 
@@ -120,7 +118,7 @@ GROBO_API int grobo_hrpsys_servo_name(grobo_hrpsys *hrpsys, const char *name, bo
  * @return number of joints that have an angle, or GROBO_ERR_SPACE (capacity < joints).
  */
 GROBO_API int grobo_hrpsys_read_joint_angles(const grobo_hrpsys *hrpsys, double *angle_rad,
-                                             size_t capacity, int64_t max_age_us, int64_t now_us);
+                                             size_t capacity, int64_t max_age_us);
 
 /**
  * writeJointCommands: the targets of the next oneStep. Nothing is sent.
@@ -140,7 +138,7 @@ GROBO_API int grobo_hrpsys_set_period_us(grobo_hrpsys *hrpsys, int64_t period_us
  * @return GROBO_OK; GROBO_ERR_EMPTY (nothing written since the joints were switched),
  *         GROBO_ERR_STATE (no joint has torque), or an error of grobo_robot_send().
  */
-GROBO_API int grobo_hrpsys_one_step(grobo_hrpsys *hrpsys, int64_t now_us);
+GROBO_API int grobo_hrpsys_one_step(grobo_hrpsys *hrpsys);
 
 /* ---- emergency ------------------------------------------------------------------------------ */
 

@@ -72,7 +72,8 @@ GROBO_API int grobo_thread_join(grobo_thread thread);
 /** True when the calling thread is `thread`. */
 GROBO_API bool grobo_thread_is_self(grobo_thread thread);
 
-/** Makes a lock in caller's storage. @return GROBO_OK, GROBO_ERR_NOMEM. */
+/** Makes a lock in caller's storage, with priority inheritance where the system has it.
+ *  @return GROBO_OK, GROBO_ERR_NOMEM. */
 GROBO_API int grobo_mutex_init(grobo_mutex *mutex);
 
 /** Takes the lock, waits for it. Not recursive: taking it twice in one thread is a fault. */

@@ -11,7 +11,8 @@
  *   n = grobo_robot_tx(&robot, buf, sizeof buf, now);     // > 0: write buf, all of it
  *   wake_up_at(grobo_robot_deadline(&robot, now));        // <= now: again at once
  * @endcode
- * session.h does that on an event_base, a test in virtual time.
+ * session.h does that on an event_base, a test in virtual time. Requests and questions take no
+ * time: theirs is the pump's, or that of the clock that grobo_robot_set_host() brings.
  *
  * What the engine does is asked for by requests and told by one callback, grobo_event. Requests
  * return at once. Most are jobs: one runs at a time (a second is refused with GROBO_ERR_STATE),
@@ -32,7 +33,8 @@
  * - A stalled host skips what is late; after a long stall the motion ends (GROBO_TRIP_HOST_STALL).
  * - grobo_robot_estop() is ahead of everything, read back joint by joint, latched.
  *
- * Not thread safe: one thread at a time per robot. Requests may be made from the callback.
+ * One thread at a time per robot, unless its host brings a lock: then requests and questions come
+ * from any thread (thread.h). Requests may be made from the callback.
  * NULL where something must be is GROBO_ERR_ARG (error.h).
  */
 #ifndef GROBO_ROBOT_H
@@ -53,6 +55,25 @@ GROBO_BEGIN_DECLS
 #define GROBO_ROBOT_JITTER_BINS 64
 
 struct grobo_robot;
+
+/**
+ * Whoever pumps an engine, as the engine sees it. A function that is NULL is not called. What they
+ * call of the engine is grobo_robot_deadline() at most, and from `wake` the pump.
+ */
+typedef struct grobo_robot_host {
+    /** The time of requests and questions, by the pump's clock. NULL: that of its last call. */
+    int64_t (*clock)(void *ctx);
+    /** A request was made: there may be a frame to send, an event to tell or a sooner deadline.
+     *  With this function no request tells events, only the pump does. Called without the lock. */
+    void (*wake)(void *ctx);
+    /** May a latched stop be taken back? @return 0, or the error of grobo_robot_reset(). */
+    int (*may_reset)(void *ctx);
+    /** Where several threads use the engine: held during every call, but not during callbacks. A
+     *  thread that has it may take it again. */
+    void (*lock)(void *ctx);
+    void (*unlock)(void *ctx);
+    void *ctx; /**< handed to them */
+} grobo_robot_host;
 
 /** A step of a job. Private. */
 typedef int (*grobo_robot_step_fn)(struct grobo_robot *robot);
@@ -170,6 +191,7 @@ typedef struct grobo_robot {
     void *driver_ctx;
     int (*leave)(grobo_robot_slot *slot); /* a frame would leave: judges it */
     void (*over)(grobo_robot_slot *slot, int result, const grobo_packet *reply); /* it is over */
+    grobo_robot_host host;
     grobo_robot_config config; /* defaults filled in */
     grobo_event_fn on_event;
     void *event_ctx;
@@ -224,6 +246,9 @@ GROBO_API int grobo_robot_init(grobo_robot *robot, const grobo_driver *driver, v
 /** Who is told of events; on_event may be NULL. */
 GROBO_API void grobo_robot_on_event(grobo_robot *robot, grobo_event_fn on_event, void *ctx);
 
+/** Who pumps it; copied, NULL: nobody in particular. Before anything is asked of the engine. */
+GROBO_API void grobo_robot_set_host(grobo_robot *robot, const grobo_robot_host *host);
+
 /**
  * Changes the configuration (copied; NULL: all defaults); what is under way goes on under the new
  * one, and the line's physics stay as they are.
@@ -273,18 +298,16 @@ GROBO_API void grobo_robot_link_down(grobo_robot *robot, int64_t now_us);
  * GROBO_ERR_UNSUPPORTED (not in the driver), and what is said at each. */
 
 /** Is the robot there? Result GROBO_ERR_TIMEOUT if nothing answers. */
-GROBO_API int grobo_robot_check(grobo_robot *robot, int64_t now_us);
+GROBO_API int grobo_robot_check(grobo_robot *robot);
 
 /** Reads joints; those that stay silent are in `failed`, the others are delivered. */
-GROBO_API int grobo_robot_sense(grobo_robot *robot, grobo_joint_mask joints, grobo_sense_kind kind,
-                                int64_t now_us);
+GROBO_API int grobo_robot_sense(grobo_robot *robot, grobo_joint_mask joints, grobo_sense_kind kind);
 
 /**
  * Switches torque and reads it back. ON: senses first, sets goal := present, then switches; a
  * joint that cannot be sensed stays as it is and is in `failed`.
  */
-GROBO_API int grobo_robot_torque(grobo_robot *robot, grobo_joint_mask joints, grobo_torque mode,
-                                 int64_t now_us);
+GROBO_API int grobo_robot_torque(grobo_robot *robot, grobo_joint_mask joints, grobo_torque mode);
 
 /**
  * Moves the joints that `target` sets, in target->time_us or as much longer as is safe, then reads
@@ -292,7 +315,7 @@ GROBO_API int grobo_robot_torque(grobo_robot *robot, grobo_joint_mask joints, gr
  * grobo_robot_fault()), GROBO_ERR_ARG; later GROBO_ERR_SPEED: the wire has no time that is long
  * enough; also GROBO_ERR_STATE while a motion is played.
  */
-GROBO_API int grobo_robot_move(grobo_robot *robot, const grobo_posture *target, int64_t now_us);
+GROBO_API int grobo_robot_move(grobo_robot *robot, const grobo_posture *target);
 
 /**
  * Gives the move under way another target, which leaves next: the job ends when the joints are at
@@ -303,7 +326,7 @@ GROBO_API int grobo_robot_move(grobo_robot *robot, const grobo_posture *target, 
  *         where no move is under way, or none that may be redirected yet: its first target waits to
  *         leave, or is the slow first one and was not read back. Others as grobo_robot_move().
  */
-GROBO_API int grobo_robot_retarget(grobo_robot *robot, const grobo_posture *target, int64_t now_us);
+GROBO_API int grobo_robot_retarget(grobo_robot *robot, const grobo_posture *target);
 
 /**
  * Sends a target once and lets go: no job, no event, nothing read before or after. For a control
@@ -314,7 +337,7 @@ GROBO_API int grobo_robot_retarget(grobo_robot *robot, const grobo_posture *targ
  *         from before the line was there), a joint has no torque or is in free mode,
  *         GROBO_ERR_STALE for a joint not sensed, and those of grobo_robot_move().
  */
-GROBO_API int grobo_robot_send(grobo_robot *robot, const grobo_posture *target, int64_t now_us);
+GROBO_API int grobo_robot_send(grobo_robot *robot, const grobo_posture *target);
 
 /**
  * Sends a frame of the caller's as it is and waits for the reply it calls for, if any. The driver
@@ -325,34 +348,30 @@ GROBO_API int grobo_robot_send(grobo_robot *robot, const grobo_posture *target, 
  * accept_unknown_raw: other motors than the model's, ids, directions, limits, flash and restarts,
  * motions of the board's own. After one that was accepted all joints must be read anew.
  */
-GROBO_API int grobo_robot_raw(grobo_robot *robot, const uint8_t *frame, size_t size,
-                              int64_t now_us);
+GROBO_API int grobo_robot_raw(grobo_robot *robot, const uint8_t *frame, size_t size);
 /**
  * The same for who waits until until_us only: no attempt leaves after that; the job ends with
  * GROBO_ERR_STALE then.
  */
 GROBO_API int grobo_robot_raw_until(grobo_robot *robot, const uint8_t *frame, size_t size,
-                                    int64_t until_us, int64_t now_us);
+                                    int64_t until_us);
 
 /**
  * Reads (data NULL) or writes registers of a servo. Goal and torque registers are refused, and id,
  * direction and limits where the servo would jump: GROBO_ERR_STATE for a joint that holds,
  * GROBO_ERR_STALE for one not sensed.
  */
-GROBO_API int grobo_robot_registers(grobo_robot *robot, const grobo_register_io *io,
-                                    int64_t now_us);
+GROBO_API int grobo_robot_registers(grobo_robot *robot, const grobo_register_io *io);
 
 /**
  * Flash, reboot or factory reset of one servo, with the silence it needs afterwards: nothing is
  * read in the background, and GROBO_ERR_STATE while anything moves.
  */
-GROBO_API int grobo_robot_command(grobo_robot *robot, int id, grobo_servo_command command,
-                                  int64_t now_us);
+GROBO_API int grobo_robot_command(grobo_robot *robot, int id, grobo_servo_command command);
 
 /** Starts a motion kept in the robot. Its targets are the robot's own: nothing checks them. Ends
  *  free mode; GROBO_ERR_STATE while anything moves. */
-GROBO_API int grobo_robot_stored(grobo_robot *robot, grobo_stored_kind kind, int number,
-                                 int64_t now_us);
+GROBO_API int grobo_robot_stored(grobo_robot *robot, grobo_stored_kind kind, int number);
 
 /**
  * What servos do when a program ends: stops a motion, carries the policy out and reads it back,
@@ -360,7 +379,7 @@ GROBO_API int grobo_robot_stored(grobo_robot *robot, grobo_stored_kind kind, int
  * GROBO_ERR_CANCELED). Works when tripped; then GROBO_EXIT_SIT is carried out as GROBO_EXIT_HOLD.
  * @param policy GROBO_EXIT_DEFAULT: the configuration's.
  */
-GROBO_API int grobo_robot_exit(grobo_robot *robot, grobo_exit_policy policy, int64_t now_us);
+GROBO_API int grobo_robot_exit(grobo_robot *robot, grobo_exit_policy policy);
 
 /**
  * Emergency stop: drops everything that waits, sends torque off or brake ahead of all else, reads
@@ -369,25 +388,25 @@ GROBO_API int grobo_robot_exit(grobo_robot *robot, grobo_exit_policy policy, int
  * grobo_robot_reset(). Never refused but for GROBO_ERR_CLOSED, where it is latched all the same,
  * and carried out as soon as the line is there: so is one that the line was lost under.
  */
-GROBO_API int grobo_robot_estop(grobo_robot *robot, int64_t now_us);
+GROBO_API int grobo_robot_estop(grobo_robot *robot);
 
 /**
  * Latches as grobo_robot_estop() does, and sends nothing: for a robot that another program has
  * stopped. @return 0, or GROBO_ERR_STATE while a move or a motion runs.
  */
-GROBO_API int grobo_robot_latch(grobo_robot *robot, int64_t now_us);
+GROBO_API int grobo_robot_latch(grobo_robot *robot);
 
 /**
  * Takes back a latched stop. Nothing moves; the next move or play senses first.
  * @return 0, or GROBO_ERR_STATE while the emergency stop is still being carried out.
  */
-GROBO_API int grobo_robot_reset(grobo_robot *robot, int64_t now_us);
+GROBO_API int grobo_robot_reset(grobo_robot *robot);
 
 /**
  * Ends the job with GROBO_ERR_CANCELED; a move stops where it is. An emergency stop cannot be
  * canceled. @return 0, or GROBO_ERR_STATE.
  */
-GROBO_API int grobo_robot_cancel(grobo_robot *robot, int64_t now_us);
+GROBO_API int grobo_robot_cancel(grobo_robot *robot);
 
 /* ---- playing --------------------------------------------------------------------------------- */
 
@@ -401,7 +420,7 @@ GROBO_API int grobo_robot_cancel(grobo_robot *robot, int64_t now_us);
  *        GROBO_ERR_UNWATCHED unless `unwatched`; then GROBO_EVENT_UNWATCHED comes when it begins.
  */
 GROBO_API int grobo_robot_play(grobo_robot *robot, const grobo_clip *clip,
-                               const grobo_play_options *options, int64_t now_us);
+                               const grobo_play_options *options);
 
 /**
  * Puts a clip behind the one being played; see grobo_sequencer_enqueue().
@@ -410,18 +429,18 @@ GROBO_API int grobo_robot_play(grobo_robot *robot, const grobo_clip *clip,
  *         of the first one.
  */
 GROBO_API int grobo_robot_enqueue(grobo_robot *robot, const grobo_clip *clip,
-                                  const grobo_play_options *options, int64_t now_us);
+                                  const grobo_play_options *options);
 
 /** @name While playing: return 0, or GROBO_ERR_STATE if there is nothing to do that to. */
 /**@{*/
-GROBO_API int grobo_robot_pause(grobo_robot *robot, int64_t now_us);
-GROBO_API int grobo_robot_resume(grobo_robot *robot, int64_t now_us);
+GROBO_API int grobo_robot_pause(grobo_robot *robot);
+GROBO_API int grobo_robot_resume(grobo_robot *robot);
 /** Ends the motion: smoothly, or at the present posture at once. Also a move, what was only sent,
  *  and a raw frame that moves: their jobs end with GROBO_ERR_CANCELED. */
-GROBO_API int grobo_robot_stop(grobo_robot *robot, bool at_once, int64_t now_us);
-GROBO_API int grobo_robot_seek(grobo_robot *robot, int64_t clip_us, int64_t now_us);
+GROBO_API int grobo_robot_stop(grobo_robot *robot, bool at_once);
+GROBO_API int grobo_robot_seek(grobo_robot *robot, int64_t clip_us);
 /** @param speed_pct 1..1000 */
-GROBO_API int grobo_robot_speed(grobo_robot *robot, int speed_pct, int64_t now_us);
+GROBO_API int grobo_robot_speed(grobo_robot *robot, int speed_pct);
 /**@}*/
 
 /* ---- free (teaching) mode ----------------------------------------------------------------------
@@ -436,28 +455,26 @@ GROBO_API int grobo_robot_speed(grobo_robot *robot, int speed_pct, int64_t now_u
  * Puts joints into free mode, or back: off is a job that makes them hold where they are.
  * @return 0 for on, a job number for off, or an error as for requests.
  */
-GROBO_API int grobo_robot_free(grobo_robot *robot, grobo_joint_mask joints, bool on,
-                               int64_t now_us);
+GROBO_API int grobo_robot_free(grobo_robot *robot, grobo_joint_mask joints, bool on);
 
 /* ---- queries ------------------------------------------------------------------------------- */
 
 /** What is known of a joint. @return 0 or GROBO_ERR_ARG. */
-GROBO_API int grobo_robot_joint(const grobo_robot *robot, int joint, int64_t now_us,
-                                grobo_joint_info *info);
+GROBO_API int grobo_robot_joint(const grobo_robot *robot, int joint, grobo_joint_info *info);
 
 /**
  * The posture sensed last; joints whose angle is older than max_age_us are not set.
  * @param max_age_us GROBO_NEVER_US: any age.
  * @return number of joints set.
  */
-GROBO_API int grobo_robot_posture(const grobo_robot *robot, int64_t now_us, int64_t max_age_us,
+GROBO_API int grobo_robot_posture(const grobo_robot *robot, int64_t max_age_us,
                                   grobo_posture *posture);
 
 /** The posture asked for last; joints never asked for are not set. @return joints set. */
 GROBO_API int grobo_robot_target(const grobo_robot *robot, grobo_posture *posture);
 
 /** True from the request that starts a motion until its last posture's time is over. */
-GROBO_API bool grobo_robot_moving(const grobo_robot *robot, int64_t now_us);
+GROBO_API bool grobo_robot_moving(const grobo_robot *robot);
 
 /**
  * True from a motion's end until its last posture has been read back, and repeated where it was
@@ -490,8 +507,7 @@ GROBO_API bool grobo_robot_is_playing(const grobo_robot *robot);
 GROBO_API bool grobo_robot_is_quiet(const grobo_robot *robot);
 
 /** Where the motion is. */
-GROBO_API void grobo_robot_progress(const grobo_robot *robot, int64_t now_us,
-                                    grobo_play_progress *progress);
+GROBO_API void grobo_robot_progress(const grobo_robot *robot, grobo_play_progress *progress);
 
 /** The budget of its line. @return 0, or an error of the driver. */
 GROBO_API int grobo_robot_budget(const grobo_robot *robot, grobo_budget *budget);

@@ -6,10 +6,12 @@
  * The line is a serial port, a connection, or a simulator in the same process. The session opens
  * it, asks whether a robot answers, moves bytes both ways, calls the engine at its deadlines, and
  * where so configured comes back when the line was lost. It adds nothing to what the engine
- * decides: requests are the engine's, with the present time filled in.
+ * decides: every request and question of robot.h works on grobo_session_robot(), at the present
+ * time, and what a request wants sent leaves at once. Its events come from the loop, never from
+ * within the request.
  *
  * It obeys emergency stops that other programs ask for (estop.h), except with GROBO_DEVICE_SIM.
- * grobo_session_reset() clears the mark of such a stop, where the latched stop is an emergency
+ * grobo_robot_reset() clears the mark of such a stop, where the latched stop is an emergency
  * stop. Where that fails (GROBO_ERR_PERM, GROBO_ERR_IO), and while a stop that was just asked for
  * is carried out (GROBO_ERR_STATE), the session stays latched.
  *
@@ -114,7 +116,7 @@ typedef struct grobo_session_config {
  */
 GROBO_API int grobo_session_new(const grobo_session_config *config, grobo_session **session);
 
-/** Closes and frees; NULL is fine. No exit policy is carried out: grobo_session_exit() before. */
+/** Closes and frees; NULL is fine. No exit policy is carried out: grobo_robot_exit() before. */
 GROBO_API void grobo_session_free(grobo_session *session);
 
 /**
@@ -168,41 +170,6 @@ GROBO_API void grobo_session_pump(grobo_session *session);
 GROBO_API void grobo_session_bytes(const grobo_session *session, uint64_t *tx_bytes,
                                    uint64_t *rx_bytes);
 
-/* ---- requests ------------------------------------------------------------------------------
- * Each is the function of robot.h of the same name, now, followed by grobo_session_pump(). All
- * return GROBO_ERR_CLOSED while the session is not up. */
-
-/** @name See robot.h. */
-/**@{*/
-GROBO_API int grobo_session_check(grobo_session *session);
-GROBO_API int grobo_session_sense(grobo_session *session, grobo_joint_mask joints,
-                                  grobo_sense_kind kind);
-GROBO_API int grobo_session_torque(grobo_session *session, grobo_joint_mask joints,
-                                   grobo_torque mode);
-GROBO_API int grobo_session_move(grobo_session *session, const grobo_posture *target);
-GROBO_API int grobo_session_retarget(grobo_session *session, const grobo_posture *target);
-GROBO_API int grobo_session_raw(grobo_session *session, const uint8_t *frame, size_t size);
-GROBO_API int grobo_session_raw_until(grobo_session *session, const uint8_t *frame, size_t size,
-                                      int64_t until_us);
-GROBO_API int grobo_session_registers(grobo_session *session, const grobo_register_io *io);
-GROBO_API int grobo_session_command(grobo_session *session, int id, grobo_servo_command command);
-GROBO_API int grobo_session_stored(grobo_session *session, grobo_stored_kind kind, int number);
-GROBO_API int grobo_session_exit(grobo_session *session, grobo_exit_policy policy);
-GROBO_API int grobo_session_estop(grobo_session *session);
-GROBO_API int grobo_session_reset(grobo_session *session);
-GROBO_API int grobo_session_cancel(grobo_session *session);
-GROBO_API int grobo_session_play(grobo_session *session, const grobo_clip *clip,
-                                 const grobo_play_options *options);
-GROBO_API int grobo_session_enqueue(grobo_session *session, const grobo_clip *clip,
-                                    const grobo_play_options *options);
-GROBO_API int grobo_session_pause(grobo_session *session);
-GROBO_API int grobo_session_resume(grobo_session *session);
-GROBO_API int grobo_session_stop(grobo_session *session, bool at_once);
-GROBO_API int grobo_session_seek(grobo_session *session, int64_t clip_us);
-GROBO_API int grobo_session_speed(grobo_session *session, int speed_pct);
-GROBO_API int grobo_session_free_mode(grobo_session *session, grobo_joint_mask joints, bool on);
-/**@}*/
-
 /* ---- requests of other threads and signal handlers ------------------------------------------
  * They take no lock, no memory and no descriptor, keep errno, and never wait: what is asked for is
  * noted in an atomic word, and the loop is woken. It is kept until the loop has carried it out, and
@@ -211,24 +178,24 @@ GROBO_API int grobo_session_free_mode(grobo_session *session, grobo_joint_mask j
  * kind that the loop finds together are one. All return GROBO_OK, or GROBO_ERR_ARG. */
 
 /**
- * grobo_session_estop(), by the loop. The stop counts as latched from the return of this call on;
+ * grobo_robot_estop(), by the loop. The stop counts as latched from the return of this call on;
  * without a line it is carried out when the line is there.
  */
 GROBO_API int grobo_session_post_estop(grobo_session *session);
 
-/** grobo_session_stop(), by the loop. At once prevails over smoothly, an emergency stop over both.
+/** grobo_robot_stop(), by the loop. At once prevails over smoothly, an emergency stop over both.
  *  Without a robot nothing is done. */
 GROBO_API int grobo_session_post_stop(grobo_session *session, bool at_once);
 
 /**
- * grobo_session_exit(), by the loop, after an emergency stop that is being carried out; its end is
+ * grobo_robot_exit(), by the loop, after an emergency stop that is being carried out; its end is
  * a job event. The last policy prevails. Without a robot nothing is done.
  */
 GROBO_API int grobo_session_post_exit(grobo_session *session, grobo_exit_policy policy);
 
 /**
  * True from a safety stop, or from the return of grobo_session_post_estop(), until the loop has
- * carried out a grobo_session_reset() that came after it: whatever is asked for in between that
+ * carried out a grobo_robot_reset() that came after it: whatever is asked for in between that
  * moves or switches torque on is refused. It says that a stop is certain, not that it has been
  * carried out: that is the end of the job GROBO_JOB_ESTOP, or grobo_robot_tripped() on the loop.
  */

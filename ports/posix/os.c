@@ -62,7 +62,17 @@ int grobo_mutex_init(grobo_mutex *mutex)
     if (mutex == NULL) {
         return GROBO_ERR_ARG;
     }
-    return pthread_mutex_init(mutex, NULL) == 0 ? GROBO_OK : GROBO_ERR_NOMEM;
+    pthread_mutexattr_t how;
+    int r = pthread_mutexattr_init(&how);
+
+    if (r == 0) {
+#if defined(_POSIX_THREAD_PRIO_INHERIT) && _POSIX_THREAD_PRIO_INHERIT > 0
+        (void)pthread_mutexattr_setprotocol(&how, PTHREAD_PRIO_INHERIT);
+#endif
+        r = pthread_mutex_init(mutex, &how);
+        (void)pthread_mutexattr_destroy(&how);
+    }
+    return r == 0 ? GROBO_OK : GROBO_ERR_NOMEM;
 }
 
 void grobo_mutex_lock(grobo_mutex *mutex)

@@ -9,36 +9,36 @@ static int controlled(grobo_robot *robot, int result)
         robot->told_state != GROBO_SEQUENCER_FAILED) {
         grobo_i_gate_halt(robot, grobo_i_all_joints(robot));
     }
-    grobo_i_leave(robot);
+    grobo_i_end(robot);
     return result;
 }
 
-int grobo_robot_pause(grobo_robot *robot, int64_t now_us)
+int grobo_robot_pause(grobo_robot *robot)
 {
     if (robot == NULL) {
         return GROBO_ERR_ARG;
     }
-    grobo_i_enter(robot, now_us);
+    grobo_i_begin(robot);
     return controlled(robot, grobo_sequencer_pause(&robot->sequencer, robot->now_us));
 }
 
-int grobo_robot_resume(grobo_robot *robot, int64_t now_us)
+int grobo_robot_resume(grobo_robot *robot)
 {
     if (robot == NULL) {
         return GROBO_ERR_ARG;
     }
-    grobo_i_enter(robot, now_us);
+    grobo_i_begin(robot);
     int result = robot->trip.latched ? GROBO_ERR_LATCHED
                                      : grobo_sequencer_resume(&robot->sequencer, robot->now_us);
     return controlled(robot, result);
 }
 
-int grobo_robot_stop(grobo_robot *robot, bool at_once, int64_t now_us)
+int grobo_robot_stop(grobo_robot *robot, bool at_once)
 {
     if (robot == NULL) {
         return GROBO_ERR_ARG;
     }
-    grobo_i_enter(robot, now_us);
+    grobo_i_begin(robot);
     int result = grobo_sequencer_stop(&robot->sequencer, at_once, robot->now_us);
     grobo_i_make_way(robot); /* it might send again what is stopped here */
     bool job = robot->job.kind == GROBO_JOB_PLAY || grobo_i_job_moves(robot);
@@ -47,36 +47,36 @@ int grobo_robot_stop(grobo_robot *robot, bool at_once, int64_t now_us)
         grobo_i_job_end(robot, GROBO_ERR_CANCELED);
     }
     grobo_i_stop_moves(robot);
-    grobo_i_leave(robot);
+    grobo_i_end(robot);
     return moves ? GROBO_OK : result;
 }
 
-int grobo_robot_seek(grobo_robot *robot, int64_t clip_us, int64_t now_us)
+int grobo_robot_seek(grobo_robot *robot, int64_t clip_us)
 {
     if (robot == NULL) {
         return GROBO_ERR_ARG;
     }
-    grobo_i_enter(robot, now_us);
+    grobo_i_begin(robot);
     return controlled(robot, grobo_sequencer_seek(&robot->sequencer, clip_us, robot->now_us));
 }
 
-int grobo_robot_speed(grobo_robot *robot, int speed_pct, int64_t now_us)
+int grobo_robot_speed(grobo_robot *robot, int speed_pct)
 {
     if (robot == NULL) {
         return GROBO_ERR_ARG;
     }
-    grobo_i_enter(robot, now_us);
+    grobo_i_begin(robot);
     return controlled(robot,
                       grobo_sequencer_set_speed(&robot->sequencer, speed_pct, robot->now_us));
 }
 
 int grobo_robot_enqueue(grobo_robot *robot, const grobo_clip *clip,
-                        const grobo_play_options *options, int64_t now_us)
+                        const grobo_play_options *options)
 {
     if (clip == NULL || robot == NULL) {
         return GROBO_ERR_ARG;
     }
-    grobo_i_enter(robot, now_us);
+    grobo_i_begin(robot);
     grobo_play_options chosen;
     grobo_joint_mask joints = 0;
     grobo_i_play_options(robot, options, &chosen);
@@ -90,6 +90,6 @@ int grobo_robot_enqueue(grobo_robot *robot, const grobo_clip *clip,
     if (result >= 0) {
         result = grobo_sequencer_enqueue(&robot->sequencer, clip, &chosen);
     }
-    grobo_i_leave(robot);
+    grobo_i_end(robot);
     return result;
 }

@@ -132,41 +132,41 @@ int grobo_hrpsys_names_to_motors(const grobo_hrpsys *hrpsys, const char *const *
 
 /* ---- servo ---------------------------------------------------------------------------------- */
 
-static int switch_joints(grobo_hrpsys *hrpsys, grobo_joint_mask joints, bool on, int64_t now_us)
+static int switch_joints(grobo_hrpsys *hrpsys, grobo_joint_mask joints, bool on)
 {
     grobo_torque mode = on ? GROBO_TORQUE_ON : GROBO_TORQUE_OFF;
-    int number = grobo_robot_torque(hrpsys->robot, joints, mode, now_us);
+    int number = grobo_robot_torque(hrpsys->robot, joints, mode);
     if (number > 0) {
         hrpsys->command.set &= ~joints;
     }
     return number;
 }
 
-int grobo_hrpsys_servo(grobo_hrpsys *hrpsys, int joint, bool on, int64_t now_us)
+int grobo_hrpsys_servo(grobo_hrpsys *hrpsys, int joint, bool on)
 {
     if (hrpsys == NULL || joint < 0 || joint >= model_of(hrpsys)->n_joints) {
         return GROBO_ERR_ARG;
     }
-    return switch_joints(hrpsys, GROBO_JOINT_BIT(joint), on, now_us);
+    return switch_joints(hrpsys, GROBO_JOINT_BIT(joint), on);
 }
 
-int grobo_hrpsys_servo_name(grobo_hrpsys *hrpsys, const char *name, bool on, int64_t now_us)
+int grobo_hrpsys_servo_name(grobo_hrpsys *hrpsys, const char *name, bool on)
 {
     grobo_joint_mask joints = 0;
     int found = grobo_hrpsys_find(hrpsys, name, &joints);
-    return found < 0 ? found : switch_joints(hrpsys, joints, on, now_us);
+    return found < 0 ? found : switch_joints(hrpsys, joints, on);
 }
 
 /* ---- angles --------------------------------------------------------------------------------- */
 
 int grobo_hrpsys_read_joint_angles(const grobo_hrpsys *hrpsys, double *angle_rad, size_t capacity,
-                                   int64_t max_age_us, int64_t now_us)
+                                   int64_t max_age_us)
 {
     if (hrpsys == NULL) {
         return GROBO_ERR_ARG;
     }
     grobo_posture posture;
-    int known = grobo_robot_posture(hrpsys->robot, now_us, max_age_us, &posture);
+    int known = grobo_robot_posture(hrpsys->robot, max_age_us, &posture);
     int written = grobo_posture_all_rad(&posture, angle_rad, capacity);
     return written < 0 ? written : known;
 }
@@ -196,12 +196,12 @@ int grobo_hrpsys_set_period_us(grobo_hrpsys *hrpsys, int64_t period_us)
 }
 
 /* Joints that are known to hold. */
-static grobo_joint_mask holding(const grobo_hrpsys *hrpsys, int64_t now_us)
+static grobo_joint_mask holding(const grobo_hrpsys *hrpsys)
 {
     grobo_joint_mask joints = 0;
     for (int j = 0; j < hrpsys->command.n_joints; j++) {
         grobo_joint_info info;
-        (void)grobo_robot_joint(hrpsys->robot, j, now_us, &info);
+        (void)grobo_robot_joint(hrpsys->robot, j, &info);
         if (info.torque_known && info.state.torque == GROBO_TORQUE_ON) {
             joints |= GROBO_JOINT_BIT(j);
         }
@@ -209,7 +209,7 @@ static grobo_joint_mask holding(const grobo_hrpsys *hrpsys, int64_t now_us)
     return joints;
 }
 
-int grobo_hrpsys_one_step(grobo_hrpsys *hrpsys, int64_t now_us)
+int grobo_hrpsys_one_step(grobo_hrpsys *hrpsys)
 {
     if (hrpsys == NULL) {
         return GROBO_ERR_ARG;
@@ -223,8 +223,8 @@ int grobo_hrpsys_one_step(grobo_hrpsys *hrpsys, int64_t now_us)
     if (trip.latched) { /* the better reason, where it took the torque too */
         return GROBO_ERR_LATCHED;
     }
-    target.set &= holding(hrpsys, now_us);
-    return target.set == 0 ? GROBO_ERR_STATE : grobo_robot_send(hrpsys->robot, &target, now_us);
+    target.set &= holding(hrpsys);
+    return target.set == 0 ? GROBO_ERR_STATE : grobo_robot_send(hrpsys->robot, &target);
 }
 
 /* ---- emergency ------------------------------------------------------------------------------ */

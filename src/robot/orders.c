@@ -105,7 +105,7 @@ static int stabilize(grobo_robot *robot, grobo_posture *target)
         return GROBO_OK;
     }
     grobo_posture sensed;
-    (void)grobo_robot_posture(robot, robot->now_us, GROBO_NEVER_US, &sensed);
+    (void)grobo_robot_posture(robot, GROBO_NEVER_US, &sensed);
     return driver->stabilize(driver, robot->driver_ctx, &sensed, target);
 }
 

@@ -2,16 +2,38 @@
 /* What may be asked of the engine. */
 #include "src/robot/robot.h"
 
+void grobo_i_lock(const grobo_robot *robot)
+{
+    if (robot->host.lock != NULL) {
+        robot->host.lock(robot->host.ctx);
+    }
+}
+
+void grobo_i_unlock(const grobo_robot *robot)
+{
+    if (robot->host.unlock != NULL) {
+        robot->host.unlock(robot->host.ctx);
+    }
+}
+
+int64_t grobo_i_now(const grobo_robot *robot)
+{
+    int64_t now_us = robot->host.clock != NULL ? robot->host.clock(robot->host.ctx) : 0;
+    return now_us > robot->now_us ? now_us : robot->now_us;
+}
+
 static int64_t age(int64_t read_us, int64_t now_us)
 {
     return read_us == GROBO_NEVER_US ? GROBO_NEVER_US : now_us - read_us;
 }
 
-int grobo_robot_joint(const grobo_robot *robot, int joint, int64_t now_us, grobo_joint_info *info)
+int grobo_robot_joint(const grobo_robot *robot, int joint, grobo_joint_info *info)
 {
     if (robot == NULL || info == NULL || joint < 0 || joint >= robot->driver->model->n_joints) {
         return GROBO_ERR_ARG;
     }
+    grobo_i_lock(robot);
+    int64_t now_us = grobo_i_now(robot);
     const grobo_robot_axis *axis = &robot->axes[joint];
     info->state = axis->state;
     info->angle_age_us = age(axis->angle_us, now_us);
@@ -20,16 +42,18 @@ int grobo_robot_joint(const grobo_robot *robot, int joint, int64_t now_us, grobo
     info->status = axis->status;
     info->has_target = axis->has_target || axis->next != 0;
     info->torque_known = axis->torque_known;
+    grobo_i_unlock(robot);
     return GROBO_OK;
 }
 
-int grobo_robot_posture(const grobo_robot *robot, int64_t now_us, int64_t max_age_us,
-                        grobo_posture *posture)
+int grobo_robot_posture(const grobo_robot *robot, int64_t max_age_us, grobo_posture *posture)
 {
     if (robot == NULL || posture == NULL) {
         return GROBO_ERR_ARG;
     }
     (void)grobo_posture_init(posture, robot->driver->model->n_joints);
+    grobo_i_lock(robot);
+    int64_t now_us = grobo_i_now(robot);
     for (int j = 0; j < posture->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
         if (axis->angle_us != GROBO_NEVER_US && age(axis->angle_us, now_us) <= max_age_us) {
@@ -37,6 +61,7 @@ int grobo_robot_posture(const grobo_robot *robot, int64_t now_us, int64_t max_ag
             posture->set |= GROBO_JOINT_BIT(j);
         }
     }
+    grobo_i_unlock(robot);
     return grobo_joints_count(posture->set);
 }
 
@@ -46,6 +71,7 @@ int grobo_robot_target(const grobo_robot *robot, grobo_posture *posture)
         return GROBO_ERR_ARG;
     }
     (void)grobo_posture_init(posture, robot->driver->model->n_joints);
+    grobo_i_lock(robot);
     for (int j = 0; j < posture->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
         if (axis->has_target || axis->next != 0) {
@@ -53,13 +79,20 @@ int grobo_robot_target(const grobo_robot *robot, grobo_posture *posture)
             posture->set |= GROBO_JOINT_BIT(j);
         }
     }
+    grobo_i_unlock(robot);
     return grobo_joints_count(posture->set);
 }
 
-bool grobo_robot_moving(const grobo_robot *robot, int64_t now_us)
+bool grobo_robot_moving(const grobo_robot *robot)
 {
-    return robot != NULL && (grobo_i_in_motion(robot) || robot->job.kind == GROBO_JOB_PLAY ||
-                             grobo_i_moving(robot, now_us));
+    if (robot == NULL) {
+        return false;
+    }
+    grobo_i_lock(robot);
+    bool moving = grobo_i_in_motion(robot) || robot->job.kind == GROBO_JOB_PLAY ||
+                  grobo_i_moving(robot, grobo_i_now(robot));
+    grobo_i_unlock(robot);
+    return moving;
 }
 
 bool grobo_robot_stops(const grobo_robot *robot, int64_t now_us)
@@ -68,6 +101,7 @@ bool grobo_robot_stops(const grobo_robot *robot, int64_t now_us)
         return false;
     }
     bool waits = false;
+    grobo_i_lock(robot);
     for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
         const grobo_robot_slot *slot = &robot->slots[i];
         bool stops = slot->order.stops || (slot->txn.priority == GROBO_PRIORITY_STOP &&
@@ -75,12 +109,20 @@ bool grobo_robot_stops(const grobo_robot *robot, int64_t now_us)
         waits =
             waits || (slot->use != GROBO_I_USE_FREE && grobo_txn_is_pending(&slot->txn) && stops);
     }
-    return waits && robot->bus.active == NULL && grobo_bus_free_at(&robot->bus, now_us) <= now_us;
+    waits = waits && robot->bus.active == NULL && grobo_bus_free_at(&robot->bus, now_us) <= now_us;
+    grobo_i_unlock(robot);
+    return waits;
 }
 
 bool grobo_robot_settling(const grobo_robot *robot)
 {
-    return robot != NULL && robot->link && (robot->settling || robot->job.kind == GROBO_JOB_SETTLE);
+    if (robot == NULL) {
+        return false;
+    }
+    grobo_i_lock(robot);
+    bool settling = robot->link && (robot->settling || robot->job.kind == GROBO_JOB_SETTLE);
+    grobo_i_unlock(robot);
+    return settling;
 }
 
 grobo_job_kind grobo_robot_job(const grobo_robot *robot)
@@ -88,13 +130,18 @@ grobo_job_kind grobo_robot_job(const grobo_robot *robot)
     if (robot == NULL) {
         return GROBO_JOB_NONE;
     }
-    return robot->job.kind == GROBO_JOB_SETTLE ? GROBO_JOB_NONE : robot->job.kind;
+    grobo_i_lock(robot);
+    grobo_job_kind kind = robot->job.kind;
+    grobo_i_unlock(robot);
+    return kind == GROBO_JOB_SETTLE ? GROBO_JOB_NONE : kind;
 }
 
 void grobo_robot_tripped(const grobo_robot *robot, grobo_trip_info *info)
 {
     if (robot != NULL && info != NULL) {
+        grobo_i_lock(robot);
         *info = robot->trip;
+        grobo_i_unlock(robot);
     }
 }
 
@@ -103,10 +150,13 @@ int grobo_robot_fault(const grobo_robot *robot, double *value_deg)
     if (robot == NULL) {
         return GROBO_ERR_ARG;
     }
-    if (robot->fault_joint >= 0 && value_deg != NULL) {
+    grobo_i_lock(robot);
+    int joint = robot->fault_joint;
+    if (joint >= 0 && value_deg != NULL) {
         *value_deg = robot->fault_deg;
     }
-    return robot->fault_joint;
+    grobo_i_unlock(robot);
+    return joint;
 }
 
 const grobo_robot_counters *grobo_robot_get_counters(const grobo_robot *robot)
@@ -121,20 +171,29 @@ const grobo_bus_stats *grobo_robot_get_bus_stats(const grobo_robot *robot)
 
 grobo_sequencer_state grobo_robot_play_state(const grobo_robot *robot)
 {
-    return robot == NULL ? GROBO_SEQUENCER_IDLE : grobo_sequencer_get_state(&robot->sequencer);
+    if (robot == NULL) {
+        return GROBO_SEQUENCER_IDLE;
+    }
+    grobo_i_lock(robot);
+    grobo_sequencer_state state = grobo_sequencer_get_state(&robot->sequencer);
+    grobo_i_unlock(robot);
+    return state;
 }
 
 bool grobo_robot_is_quiet(const grobo_robot *robot)
 {
-    return robot != NULL && grobo_bus_pending(&robot->bus) == 0;
+    if (robot == NULL) {
+        return false;
+    }
+    grobo_i_lock(robot);
+    bool quiet = grobo_bus_pending(&robot->bus) == 0;
+    grobo_i_unlock(robot);
+    return quiet;
 }
 
 bool grobo_robot_is_playing(const grobo_robot *robot)
 {
-    if (robot == NULL) {
-        return false;
-    }
-    switch (grobo_sequencer_get_state(&robot->sequencer)) {
+    switch (grobo_robot_play_state(robot)) {
     case GROBO_SEQUENCER_APPROACHING:
     case GROBO_SEQUENCER_PLAYING:
     case GROBO_SEQUENCER_PAUSED:
@@ -148,10 +207,12 @@ bool grobo_robot_is_playing(const grobo_robot *robot)
     return false;
 }
 
-void grobo_robot_progress(const grobo_robot *robot, int64_t now_us, grobo_play_progress *progress)
+void grobo_robot_progress(const grobo_robot *robot, grobo_play_progress *progress)
 {
     if (robot != NULL) {
-        grobo_sequencer_progress(&robot->sequencer, now_us, progress);
+        grobo_i_lock(robot);
+        grobo_sequencer_progress(&robot->sequencer, grobo_i_now(robot), progress);
+        grobo_i_unlock(robot);
     }
 }
 

@@ -24,22 +24,22 @@ static int admit(grobo_robot *robot, bool moves)
 static int begin(grobo_robot *robot, int number)
 {
     grobo_i_job_run(robot);
-    grobo_i_leave(robot);
+    grobo_i_end(robot);
     return number;
 }
 
 static int refuse(grobo_robot *robot, int error)
 {
-    grobo_i_leave(robot);
+    grobo_i_end(robot);
     return error;
 }
 
-int grobo_robot_check(grobo_robot *robot, int64_t now_us)
+int grobo_robot_check(grobo_robot *robot)
 {
     if (robot == NULL) {
         return GROBO_ERR_ARG;
     }
-    grobo_i_enter(robot, now_us);
+    grobo_i_begin(robot);
     int result = admit(robot, false);
     if (result >= 0 && robot->driver->check == NULL) {
         result = GROBO_ERR_UNSUPPORTED;
@@ -55,13 +55,12 @@ static bool joints_sound(const grobo_robot *robot, grobo_joint_mask joints)
     return joints != 0 && (joints & ~grobo_i_all_joints(robot)) == 0;
 }
 
-int grobo_robot_sense(grobo_robot *robot, grobo_joint_mask joints, grobo_sense_kind kind,
-                      int64_t now_us)
+int grobo_robot_sense(grobo_robot *robot, grobo_joint_mask joints, grobo_sense_kind kind)
 {
     if (robot == NULL) {
         return GROBO_ERR_ARG;
     }
-    grobo_i_enter(robot, now_us);
+    grobo_i_begin(robot);
     int result = admit(robot, false);
     if (!joints_sound(robot, joints) || (unsigned)kind > GROBO_SENSE_ALL) {
         result = GROBO_ERR_ARG;
@@ -75,13 +74,12 @@ int grobo_robot_sense(grobo_robot *robot, grobo_joint_mask joints, grobo_sense_k
     return begin(robot, number);
 }
 
-int grobo_robot_torque(grobo_robot *robot, grobo_joint_mask joints, grobo_torque mode,
-                       int64_t now_us)
+int grobo_robot_torque(grobo_robot *robot, grobo_joint_mask joints, grobo_torque mode)
 {
     if (robot == NULL) {
         return GROBO_ERR_ARG;
     }
-    grobo_i_enter(robot, now_us);
+    grobo_i_begin(robot);
     bool on = mode == GROBO_TORQUE_ON;
     int result = admit(robot, on);
     if (result >= 0 && on && grobo_robot_is_playing(robot)) {
@@ -104,12 +102,12 @@ int grobo_robot_torque(grobo_robot *robot, grobo_joint_mask joints, grobo_torque
     return begin(robot, number);
 }
 
-int grobo_robot_move(grobo_robot *robot, const grobo_posture *target, int64_t now_us)
+int grobo_robot_move(grobo_robot *robot, const grobo_posture *target)
 {
     if (robot == NULL || target == NULL) {
         return GROBO_ERR_ARG;
     }
-    grobo_i_enter(robot, now_us);
+    grobo_i_begin(robot);
     grobo_posture checked = *target;
     int result = admit(robot, true);
     if (result >= 0 && grobo_robot_is_playing(robot)) {
@@ -163,12 +161,12 @@ static bool is_taken(const grobo_robot *robot)
            robot->job.kind == GROBO_JOB_EXIT || robot->job.kind == GROBO_JOB_COMMAND;
 }
 
-int grobo_robot_send(grobo_robot *robot, const grobo_posture *target, int64_t now_us)
+int grobo_robot_send(grobo_robot *robot, const grobo_posture *target)
 {
     if (robot == NULL || target == NULL) {
         return GROBO_ERR_ARG;
     }
-    grobo_i_enter(robot, now_us);
+    grobo_i_begin(robot);
     grobo_i_motion how = {
         .priority = GROBO_PRIORITY_MOTION, .due_us = GROBO_NEVER_US, .each = true, .single = true};
     int result = admit_target(robot, target);
@@ -181,16 +179,16 @@ int grobo_robot_send(grobo_robot *robot, const grobo_posture *target, int64_t no
         grobo_i_slots_cancel_goals(robot);
         result = grobo_i_gate_send(robot, target, &how);
     }
-    grobo_i_leave(robot);
+    grobo_i_end(robot);
     return result < 0 ? result : GROBO_OK;
 }
 
-int grobo_robot_retarget(grobo_robot *robot, const grobo_posture *target, int64_t now_us)
+int grobo_robot_retarget(grobo_robot *robot, const grobo_posture *target)
 {
     if (robot == NULL || target == NULL) {
         return GROBO_ERR_ARG;
     }
-    grobo_i_enter(robot, now_us);
+    grobo_i_begin(robot);
     grobo_posture checked = *target;
     int result = admit_target(robot, target);
     bool sent = grobo_i_move_is_sent(robot) && !robot->soft;
@@ -207,7 +205,7 @@ int grobo_robot_retarget(grobo_robot *robot, const grobo_posture *target, int64_
         result = robot->job.number;
         grobo_i_move_retarget(robot, &checked);
     }
-    grobo_i_leave(robot);
+    grobo_i_end(robot);
     return result;
 }
 
@@ -232,13 +230,12 @@ static int admit_clip(grobo_robot *robot, const grobo_clip *clip, grobo_play_opt
     return result < 0 ? result : grobo_i_play_rate(robot, options);
 }
 
-int grobo_robot_play(grobo_robot *robot, const grobo_clip *clip, const grobo_play_options *options,
-                     int64_t now_us)
+int grobo_robot_play(grobo_robot *robot, const grobo_clip *clip, const grobo_play_options *options)
 {
     if (robot == NULL || clip == NULL) {
         return GROBO_ERR_ARG;
     }
-    grobo_i_enter(robot, now_us);
+    grobo_i_begin(robot);
     grobo_play_options chosen;
     grobo_joint_mask joints = 0;
     grobo_i_play_options(robot, options, &chosen);
@@ -272,20 +269,19 @@ static int begin_exchange(grobo_robot *robot, grobo_job_kind kind, const grobo_r
     return begin(robot, start_exchange(robot, kind, order, exchange));
 }
 
-int grobo_robot_raw(grobo_robot *robot, const uint8_t *frame, size_t size, int64_t now_us)
+int grobo_robot_raw(grobo_robot *robot, const uint8_t *frame, size_t size)
 {
-    return grobo_robot_raw_until(robot, frame, size, GROBO_NEVER_US, now_us);
+    return grobo_robot_raw_until(robot, frame, size, GROBO_NEVER_US);
 }
 
-int grobo_robot_raw_until(grobo_robot *robot, const uint8_t *frame, size_t size, int64_t until_us,
-                          int64_t now_us)
+int grobo_robot_raw_until(grobo_robot *robot, const uint8_t *frame, size_t size, int64_t until_us)
 {
     if ((frame == NULL && size > 0) || robot == NULL) {
         return GROBO_ERR_ARG;
     }
     grobo_exchange exchange = {0};
     grobo_robot_order order;
-    grobo_i_enter(robot, now_us);
+    grobo_i_begin(robot);
     int result = admit(robot, false);
     if (size == 0 || size > sizeof exchange.frame) {
         result = GROBO_ERR_ARG;
@@ -329,14 +325,14 @@ static int admit_write(grobo_robot *robot, const grobo_register_io *io, grobo_ro
     return grobo_i_gate_judge(robot, order, NULL);
 }
 
-int grobo_robot_registers(grobo_robot *robot, const grobo_register_io *io, int64_t now_us)
+int grobo_robot_registers(grobo_robot *robot, const grobo_register_io *io)
 {
     if (robot == NULL || io == NULL) {
         return GROBO_ERR_ARG;
     }
     grobo_exchange exchange = {0};
     grobo_robot_order order = {.deed = GROBO_I_DEED_NONE};
-    grobo_i_enter(robot, now_us);
+    grobo_i_begin(robot);
     int result = admit(robot, false);
     if (io->id < 1 || io->id > GROBO_SERVO_ID_MAX || io->length < 1 ||
         io->address + io->length > GROBO_REGISTERS) {
@@ -357,14 +353,14 @@ int grobo_robot_registers(grobo_robot *robot, const grobo_register_io *io, int64
     return begin_exchange(robot, GROBO_JOB_REGISTERS, &order, &exchange);
 }
 
-int grobo_robot_command(grobo_robot *robot, int id, grobo_servo_command command, int64_t now_us)
+int grobo_robot_command(grobo_robot *robot, int id, grobo_servo_command command)
 {
     if (robot == NULL) {
         return GROBO_ERR_ARG;
     }
     grobo_exchange exchange = {0};
     grobo_robot_order order = {.deed = GROBO_I_DEED_COMMAND};
-    grobo_i_enter(robot, now_us);
+    grobo_i_begin(robot);
     int result = admit(robot, false);
     if (result >= 0) {
         result = grobo_i_gate_judge(robot, &order, NULL);
@@ -385,7 +381,7 @@ int grobo_robot_command(grobo_robot *robot, int id, grobo_servo_command command,
     return begin_exchange(robot, GROBO_JOB_COMMAND, &order, &exchange);
 }
 
-int grobo_robot_stored(grobo_robot *robot, grobo_stored_kind kind, int number, int64_t now_us)
+int grobo_robot_stored(grobo_robot *robot, grobo_stored_kind kind, int number)
 {
     if (robot == NULL) {
         return GROBO_ERR_ARG;
@@ -393,7 +389,7 @@ int grobo_robot_stored(grobo_robot *robot, grobo_stored_kind kind, int number, i
     grobo_exchange exchange = {0};
     grobo_robot_order order = {
         .deed = GROBO_I_DEED_UNKNOWN, .joints = grobo_i_all_joints(robot), .moves = true};
-    grobo_i_enter(robot, now_us);
+    grobo_i_begin(robot);
     int result = admit(robot, true);
     if (result >= 0) {
         result = grobo_i_gate_judge(robot, &order, NULL);
@@ -430,12 +426,12 @@ static void displace(grobo_robot *robot, bool all)
     }
 }
 
-int grobo_robot_cancel(grobo_robot *robot, int64_t now_us)
+int grobo_robot_cancel(grobo_robot *robot)
 {
     if (robot == NULL) {
         return GROBO_ERR_ARG;
     }
-    grobo_i_enter(robot, now_us);
+    grobo_i_begin(robot);
     int result = GROBO_OK;
     if (robot->job.kind == GROBO_JOB_NONE || robot->job.kind == GROBO_JOB_ESTOP ||
         robot->job.kind == GROBO_JOB_SETTLE) {
@@ -443,7 +439,7 @@ int grobo_robot_cancel(grobo_robot *robot, int64_t now_us)
     } else {
         displace(robot, false);
     }
-    grobo_i_leave(robot);
+    grobo_i_end(robot);
     return result;
 }
 
@@ -461,12 +457,12 @@ static const grobo_robot_step_fn *exit_script(const grobo_robot *robot, grobo_ex
     return grobo_i_script_exit_hold;
 }
 
-int grobo_robot_exit(grobo_robot *robot, grobo_exit_policy policy, int64_t now_us)
+int grobo_robot_exit(grobo_robot *robot, grobo_exit_policy policy)
 {
     if (robot == NULL) {
         return GROBO_ERR_ARG;
     }
-    grobo_i_enter(robot, now_us);
+    grobo_i_begin(robot);
     if (!robot->link || (unsigned)policy > GROBO_EXIT_SIT || robot->job.kind == GROBO_JOB_ESTOP) {
         return refuse(robot, !robot->link                        ? GROBO_ERR_CLOSED
                              : (unsigned)policy > GROBO_EXIT_SIT ? GROBO_ERR_ARG
@@ -502,12 +498,12 @@ int grobo_i_estop_start(grobo_robot *robot)
     return number;
 }
 
-int grobo_robot_estop(grobo_robot *robot, int64_t now_us)
+int grobo_robot_estop(grobo_robot *robot)
 {
     if (robot == NULL) {
         return GROBO_ERR_ARG;
     }
-    grobo_i_enter(robot, now_us);
+    grobo_i_begin(robot);
     if (robot->job.kind != GROBO_JOB_NONE) {
         grobo_i_job_end(robot, GROBO_ERR_CANCELED);
     }
@@ -515,54 +511,58 @@ int grobo_robot_estop(grobo_robot *robot, int64_t now_us)
     grobo_bus_reserve(&robot->bus, GROBO_NEVER_US, 0);
     (void)grobo_bus_cancel_all(&robot->bus, GROBO_PRIORITY_ALL, GROBO_ERR_CANCELED);
     grobo_i_trip(robot, GROBO_TRIP_ESTOP, -1, 0, true);
+    robot->counters.estops++;
     robot->stop_owed = true;
     int number = robot->link ? grobo_i_estop_start(robot) : GROBO_ERR_CLOSED;
-    grobo_i_leave(robot);
+    grobo_i_end(robot);
     return number;
 }
 
-int grobo_robot_latch(grobo_robot *robot, int64_t now_us)
+int grobo_robot_latch(grobo_robot *robot)
 {
     if (robot == NULL) {
         return GROBO_ERR_ARG;
     }
-    grobo_i_enter(robot, now_us);
+    grobo_i_begin(robot);
     int result = grobo_i_in_motion(robot) ? GROBO_ERR_STATE : GROBO_OK;
     if (result >= 0 && robot->trip.trip != GROBO_TRIP_ESTOP) {
         grobo_i_trip(robot, GROBO_TRIP_ESTOP, -1, 0, true);
     }
-    grobo_i_leave(robot);
+    grobo_i_end(robot);
     return result;
 }
 
-int grobo_robot_reset(grobo_robot *robot, int64_t now_us)
+int grobo_robot_reset(grobo_robot *robot)
 {
     if (robot == NULL) {
         return GROBO_ERR_ARG;
     }
-    grobo_i_enter(robot, now_us);
-    int result = robot->job.kind == GROBO_JOB_ESTOP ? GROBO_ERR_STATE : GROBO_OK;
+    grobo_i_begin(robot);
+    int result = robot->host.may_reset != NULL ? robot->host.may_reset(robot->host.ctx) : GROBO_OK;
+    if (robot->job.kind == GROBO_JOB_ESTOP) {
+        result = GROBO_ERR_STATE;
+    }
     if (result >= 0) {
         robot->trip = (grobo_trip_info){.joint = -1};
         grobo_i_gate_soften(robot);
         robot->low_readings = 0;
         robot->stop_owed = false;
     }
-    grobo_i_leave(robot);
+    grobo_i_end(robot);
     return result;
 }
 
 /* ---- free mode ------------------------------------------------------------------------------- */
 
-int grobo_robot_free(grobo_robot *robot, grobo_joint_mask joints, bool on, int64_t now_us)
+int grobo_robot_free(grobo_robot *robot, grobo_joint_mask joints, bool on)
 {
     if (robot == NULL) {
         return GROBO_ERR_ARG;
     }
     if (!on) {
-        return grobo_robot_torque(robot, joints, GROBO_TORQUE_ON, now_us);
+        return grobo_robot_torque(robot, joints, GROBO_TORQUE_ON);
     }
-    grobo_i_enter(robot, now_us);
+    grobo_i_begin(robot);
     int result = admit(robot, true);
     if (result >= 0 && grobo_robot_is_playing(robot)) {
         result = GROBO_ERR_STATE;
@@ -580,6 +580,6 @@ int grobo_robot_free(grobo_robot *robot, grobo_joint_mask joints, bool on, int64
         robot->free_joints |= joints;
         robot->sense_us = robot->now_us;
     }
-    grobo_i_leave(robot);
+    grobo_i_end(robot);
     return result < 0 ? result : GROBO_OK;
 }

@@ -105,6 +105,13 @@ void grobo_robot_on_event(grobo_robot *robot, grobo_event_fn on_event, void *ctx
     robot->event_ctx = ctx;
 }
 
+void grobo_robot_set_host(grobo_robot *robot, const grobo_robot_host *host)
+{
+    if (robot != NULL) {
+        robot->host = host != NULL ? *host : (grobo_robot_host){.ctx = NULL};
+    }
+}
+
 int grobo_robot_configure(grobo_robot *robot, const grobo_robot_config *config)
 {
     if (robot == NULL) {
@@ -114,10 +121,12 @@ int grobo_robot_configure(grobo_robot *robot, const grobo_robot_config *config)
     if (!config_sound(c)) {
         return GROBO_ERR_ARG;
     }
+    grobo_i_lock(robot);
     grobo_bus_config bus = robot->config.bus;
     robot->config = *c;
     config_fill(&robot->config, robot->driver);
     robot->config.bus = bus; /* the line stays what it is */
+    grobo_i_unlock(robot);
     return GROBO_OK;
 }
 
@@ -148,10 +157,13 @@ int grobo_robot_tx(grobo_robot *robot, uint8_t *buf, size_t capacity, int64_t no
     if (robot == NULL || buf == NULL) {
         return GROBO_ERR_ARG;
     }
+    grobo_i_lock(robot);
     if (now_us > robot->now_us) {
         robot->now_us = now_us;
     }
-    return robot->link ? grobo_bus_tx(&robot->bus, robot->now_us, buf, capacity) : 0;
+    int size = robot->link ? grobo_bus_tx(&robot->bus, robot->now_us, buf, capacity) : 0;
+    grobo_i_unlock(robot);
+    return size;
 }
 
 void grobo_robot_step(grobo_robot *robot, int64_t now_us)
@@ -171,9 +183,9 @@ void grobo_robot_step(grobo_robot *robot, int64_t now_us)
     grobo_i_leave(robot);
 }
 
-int64_t grobo_robot_deadline(const grobo_robot *robot, int64_t now_us)
+static int64_t deadline(const grobo_robot *robot, int64_t now_us)
 {
-    if (robot == NULL || !robot->link) {
+    if (!robot->link) {
         return GROBO_NEVER_US;
     }
     if (robot->events_n > 0 || robot->told_state != grobo_robot_play_state(robot)) {
@@ -184,6 +196,17 @@ int64_t grobo_robot_deadline(const grobo_robot *robot, int64_t now_us)
     at_us = grobo_i_sooner(at_us, grobo_i_segments_deadline(robot));
     at_us = grobo_i_sooner(at_us, grobo_i_job_deadline(robot));
     return grobo_i_sooner(at_us, grobo_i_sense_deadline(robot));
+}
+
+int64_t grobo_robot_deadline(const grobo_robot *robot, int64_t now_us)
+{
+    if (robot == NULL) {
+        return GROBO_NEVER_US;
+    }
+    grobo_i_lock(robot);
+    int64_t at_us = deadline(robot, now_us);
+    grobo_i_unlock(robot);
+    return at_us;
 }
 
 /* ---- link ------------------------------------------------------------------------------------ */

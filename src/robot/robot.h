@@ -72,6 +72,13 @@ bool grobo_i_all_on(const grobo_robot *robot, grobo_joint_mask joints);
 
 /* ---- query.c --------------------------------------------------------------------------------- */
 
+/* Around whatever is told or asked of the engine, where several threads may; see
+ * grobo_robot_host. */
+void grobo_i_lock(const grobo_robot *robot);
+void grobo_i_unlock(const grobo_robot *robot);
+/* The time of a request or a question. */
+int64_t grobo_i_now(const grobo_robot *robot);
+
 /* True while joints are being moved, by a job or by the sequencer. */
 bool grobo_i_in_motion(const grobo_robot *robot);
 
@@ -355,10 +362,13 @@ void grobo_i_move_retarget(grobo_robot *robot, const grobo_posture *target);
 
 /* ---- turn.c ---------------------------------------------------------------------------------- */
 
-/* Every public call that may change something stands between these two: the outermost leave tells
- * the events. */
+/* Every call of the pump that may change something stands between these two: the outermost leave
+ * tells the events, without the lock. */
 void grobo_i_enter(grobo_robot *robot, int64_t now_us);
 void grobo_i_leave(grobo_robot *robot);
+/* The same around every request. Where a host is woken, the pump tells the events. */
+void grobo_i_begin(grobo_robot *robot);
+void grobo_i_end(grobo_robot *robot);
 /* A frame is over: grobo_robot.over. The slot is a copy. */
 void grobo_i_frame_over(grobo_robot_slot *slot, int result, const grobo_packet *reply);
 

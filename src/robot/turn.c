@@ -58,6 +58,7 @@ void grobo_i_frame_over(grobo_robot_slot *slot, int result, const grobo_packet *
 void grobo_i_enter(grobo_robot *robot, int64_t now_us)
 {
     GROBO_ASSERT(robot->driver != NULL); /* initialised */
+    grobo_i_lock(robot);
     robot->depth++;
     if (now_us > robot->now_us) {
         robot->now_us = now_us;
@@ -86,7 +87,9 @@ void grobo_i_leave(grobo_robot *robot)
             robot->events_head = (robot->events_head + 1) % GROBO_ROBOT_EVENTS;
             robot->events_n--;
             if (robot->on_event != NULL) {
+                grobo_i_unlock(robot);
                 robot->on_event(robot->event_ctx, &event);
+                grobo_i_lock(robot);
             }
             grobo_i_play_tell(robot);
         }
@@ -96,4 +99,25 @@ void grobo_i_leave(grobo_robot *robot)
     if (robot->depth == 0) {
         grobo_i_robot_assert(robot);
     }
+    grobo_i_unlock(robot);
+}
+
+void grobo_i_begin(grobo_robot *robot)
+{
+    grobo_i_enter(robot, grobo_i_now(robot));
+}
+
+void grobo_i_end(grobo_robot *robot)
+{
+    if (robot->host.wake == NULL) {
+        grobo_i_leave(robot);
+        return;
+    }
+    GROBO_ASSERT(robot->depth > 0);
+    robot->depth--;
+    if (robot->depth == 0) {
+        grobo_i_robot_assert(robot);
+    }
+    grobo_i_unlock(robot);
+    robot->host.wake(robot->host.ctx);
 }

@@ -233,7 +233,7 @@ static void check_reading(grobo_test_rig *rig, const grobo_event_joint *event)
     if (event->result != GROBO_OK || rig->robot.config.readback_correction) {
         return; /* nothing was read, or it is not what was said */
     }
-    assert_int_equal(grobo_robot_joint(&rig->robot, event->joint, rig->now_us, &info), 0);
+    assert_int_equal(grobo_robot_joint(&rig->robot, event->joint, &info), 0);
     witness_believed(&rig->witness, event->joint, &info.state, rig->now_us);
     look_for_ways(rig, event->joint, &info.state);
 }
@@ -264,6 +264,18 @@ static void note_sim(const grobo_sim_event *event, void *ctx)
 
 /* ---- the pump ---------------------------------- */
 
+static int64_t rig_clock(void *ctx)
+{
+    const grobo_test_rig *rig = ctx;
+    return rig->now_us;
+}
+
+void rig_host(grobo_test_rig *rig)
+{
+    const grobo_robot_host host = {.clock = rig_clock, .ctx = rig};
+    grobo_robot_set_host(&rig->robot, &host);
+}
+
 void rig_start_driver(grobo_test_rig *rig, const grobo_driver *driver,
                       const grobo_robot_config *config, const grobo_sim_config *sim)
 {
@@ -284,6 +296,7 @@ void rig_start_driver(grobo_test_rig *rig, const grobo_driver *driver,
     witness_init(&rig->witness, driver->model, &rig->sim);
     assert_int_equal(grobo_sim_init(&rig->sim, &sim_config, rig->now_us), 0);
     assert_int_equal(grobo_robot_init(&rig->robot, driver, NULL, config, rig->now_us), 0);
+    rig_host(rig);
     grobo_robot_on_event(&rig->robot, note_event, rig);
     grobo_robot_link_up(&rig->robot, rig->now_us);
 }
@@ -458,8 +471,7 @@ grobo_joint_mask rig_all(const grobo_test_rig *rig)
 
 void rig_power(grobo_test_rig *rig)
 {
-    rig_expect(rig, grobo_robot_torque(&rig->robot, rig_all(rig), GROBO_TORQUE_ON, rig->now_us),
-               GROBO_OK);
+    rig_expect(rig, grobo_robot_torque(&rig->robot, rig_all(rig), GROBO_TORQUE_ON), GROBO_OK);
 }
 
 grobo_posture rig_posture(const grobo_test_rig *rig, int joint, double angle_deg, int time_ms)
@@ -578,6 +590,6 @@ void rig_start_at(grobo_test_rig *rig, double deg, const grobo_robot_config *con
     rig_start(rig, config, NULL);
     rig_power(rig);
     grobo_posture target = rig_posture(rig, NECK, deg, 1000);
-    rig_expect(rig, grobo_robot_move(&rig->robot, &target, rig->now_us), GROBO_OK);
+    rig_expect(rig, grobo_robot_move(&rig->robot, &target), GROBO_OK);
     rig_forget(rig);
 }

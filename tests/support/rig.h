@@ -92,6 +92,8 @@ struct CMUnitTest;
 int rig_on_both_wirings(const struct CMUnitTest *tests, size_t n);
 /* GR001, all defaults, link up at once. config, sim NULL: defaults. */
 void rig_start(grobo_test_rig *rig, const grobo_robot_config *config, const grobo_sim_config *sim);
+/* The clock of the rig for its engine, where a test made that anew. */
+void rig_host(grobo_test_rig *rig);
 /* The same with a driver of one's own. */
 void rig_start_driver(grobo_test_rig *rig, const grobo_driver *driver,
                       const grobo_robot_config *config, const grobo_sim_config *sim);

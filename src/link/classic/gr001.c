@@ -25,17 +25,16 @@ int grobo_i_gr001_order(const grobo_model *model, uint8_t *joints)
 
 /* ---- one motor, a group of motors ------------------------------------------------------------ */
 
-int grobo_gr001_torque(grobo_robot *robot, int motor, grobo_torque mode, int64_t now_us)
+int grobo_gr001_torque(grobo_robot *robot, int motor, grobo_torque mode)
 {
     if (robot == NULL) {
         return GROBO_ERR_ARG;
     }
     int joint = grobo_model_joint_of_motor(model_of(robot), motor);
-    return joint < 0 ? joint : grobo_robot_torque(robot, GROBO_JOINT_BIT(joint), mode, now_us);
+    return joint < 0 ? joint : grobo_robot_torque(robot, GROBO_JOINT_BIT(joint), mode);
 }
 
-int grobo_gr001_servo(grobo_robot *robot, grobo_gr001_group group, grobo_torque mode,
-                      int64_t now_us)
+int grobo_gr001_servo(grobo_robot *robot, grobo_gr001_group group, grobo_torque mode)
 {
     if (robot == NULL) {
         return GROBO_ERR_ARG;
@@ -44,7 +43,7 @@ int grobo_gr001_servo(grobo_robot *robot, grobo_gr001_group group, grobo_torque 
     if ((unsigned)group >= model->n_groups) {
         return GROBO_ERR_NOTFOUND;
     }
-    return grobo_robot_torque(robot, model->groups[group].joints, mode, now_us);
+    return grobo_robot_torque(robot, model->groups[group].joints, mode);
 }
 
 static bool is_time(int time_cs)
@@ -52,7 +51,7 @@ static bool is_time(int time_cs)
     return time_cs >= 0 && time_cs <= GROBO_PLAY_TIME_MAX_US / GROBO_PLAY_TIME_UNIT_US;
 }
 
-int grobo_gr001_move(grobo_robot *robot, int motor, int angle_ddeg, int time_cs, int64_t now_us)
+int grobo_gr001_move(grobo_robot *robot, int motor, int angle_ddeg, int time_cs)
 {
     if (robot == NULL) {
         return GROBO_ERR_ARG;
@@ -70,21 +69,19 @@ int grobo_gr001_move(grobo_robot *robot, int motor, int angle_ddeg, int time_cs,
     (void)grobo_posture_set_rad(&target, joint, grobo_rad_from_ddeg(angle_ddeg));
     /* One unit, which the engine stretches to what the joint can do. */
     target.time_us = (time_cs == 0 ? 1 : time_cs) * (int64_t)GROBO_PLAY_TIME_UNIT_US;
-    return grobo_robot_move(robot, &target, now_us);
+    return grobo_robot_move(robot, &target);
 }
 
-int grobo_gr001_sense(grobo_robot *robot, int motor, int64_t now_us)
+int grobo_gr001_sense(grobo_robot *robot, int motor)
 {
     if (robot == NULL) {
         return GROBO_ERR_ARG;
     }
     int joint = grobo_model_joint_of_motor(model_of(robot), motor);
-    return joint < 0 ? joint
-                     : grobo_robot_sense(robot, GROBO_JOINT_BIT(joint), GROBO_SENSE_FULL, now_us);
+    return joint < 0 ? joint : grobo_robot_sense(robot, GROBO_JOINT_BIT(joint), GROBO_SENSE_FULL);
 }
 
-int grobo_gr001_angle(const grobo_robot *robot, int motor, int64_t now_us, int64_t max_age_us,
-                      int *angle_ddeg)
+int grobo_gr001_angle(const grobo_robot *robot, int motor, int64_t max_age_us, int *angle_ddeg)
 {
     if (robot == NULL || angle_ddeg == NULL) {
         return GROBO_ERR_ARG;
@@ -94,7 +91,7 @@ int grobo_gr001_angle(const grobo_robot *robot, int motor, int64_t now_us, int64
     if (joint < 0) {
         return joint;
     }
-    (void)grobo_robot_joint(robot, joint, now_us, &info);
+    (void)grobo_robot_joint(robot, joint, &info);
     if (info.angle_age_us == GROBO_NEVER_US || info.angle_age_us > max_age_us) {
         return GROBO_ERR_STALE;
     }
@@ -144,8 +141,7 @@ int grobo_gr001_posture(const grobo_model *model, const int16_t *angle_ddeg, siz
     return (int)n;
 }
 
-int grobo_gr001_set_angles(grobo_robot *robot, const double *angle_rad, size_t n, int64_t time_us,
-                           int64_t now_us)
+int grobo_gr001_set_angles(grobo_robot *robot, const double *angle_rad, size_t n, int64_t time_us)
 {
     if (robot == NULL || angle_rad == NULL) {
         return GROBO_ERR_ARG;
@@ -162,11 +158,11 @@ int grobo_gr001_set_angles(grobo_robot *robot, const double *angle_rad, size_t n
     }
     target.set = GROBO_JOINTS_ALL(model->n_joints);
     target.time_us = time_us;
-    return grobo_robot_move(robot, &target, now_us);
+    return grobo_robot_move(robot, &target);
 }
 
-int grobo_gr001_get_angles(const grobo_robot *robot, int64_t now_us, int64_t max_age_us,
-                           double *angle_rad, size_t capacity)
+int grobo_gr001_get_angles(const grobo_robot *robot, int64_t max_age_us, double *angle_rad,
+                           size_t capacity)
 {
     if (robot == NULL || angle_rad == NULL) {
         return GROBO_ERR_ARG;
@@ -178,7 +174,7 @@ int grobo_gr001_get_angles(const grobo_robot *robot, int64_t now_us, int64_t max
     if (capacity < (size_t)n) {
         return GROBO_ERR_SPACE;
     }
-    int fresh = grobo_robot_posture(robot, now_us, max_age_us, &sensed);
+    int fresh = grobo_robot_posture(robot, max_age_us, &sensed);
     (void)grobo_posture_all_rad(&sensed, by_joint, GROBO_JOINTS_MAX);
     for (int i = 0; i < n; i++) {
         angle_rad[i] = by_joint[joints[i]];
@@ -187,15 +183,14 @@ int grobo_gr001_get_angles(const grobo_robot *robot, int64_t now_us, int64_t max
 }
 
 /* Values of one field in motor order. */
-static int values(const grobo_robot *robot, grobo_field field, int64_t now_us, int64_t max_age_us,
-                  int32_t *value)
+static int values(const grobo_robot *robot, grobo_field field, int64_t max_age_us, int32_t *value)
 {
     uint8_t joints[GROBO_JOINTS_MAX];
     int n = grobo_i_gr001_order(model_of(robot), joints);
     int known = 0;
     for (int i = 0; i < n; i++) {
         grobo_joint_info info;
-        (void)grobo_robot_joint(robot, joints[i], now_us, &info);
+        (void)grobo_robot_joint(robot, joints[i], &info);
         bool fresh = (info.state.valid & field) != 0 && info.full_age_us != GROBO_NEVER_US &&
                      info.full_age_us <= max_age_us;
         int32_t measured =
@@ -206,35 +201,35 @@ static int values(const grobo_robot *robot, grobo_field field, int64_t now_us, i
     return known;
 }
 
-int grobo_gr001_voltages(const grobo_robot *robot, int64_t now_us, int64_t max_age_us,
-                         int32_t *voltage_mv, size_t capacity)
+int grobo_gr001_voltages(const grobo_robot *robot, int64_t max_age_us, int32_t *voltage_mv,
+                         size_t capacity)
 {
     if (robot == NULL || voltage_mv == NULL) {
         return GROBO_ERR_ARG;
     }
     return capacity < model_of(robot)->n_joints
                ? GROBO_ERR_SPACE
-               : values(robot, GROBO_FIELD_VOLTAGE, now_us, max_age_us, voltage_mv);
+               : values(robot, GROBO_FIELD_VOLTAGE, max_age_us, voltage_mv);
 }
 
-int grobo_gr001_currents(const grobo_robot *robot, int64_t now_us, int64_t max_age_us,
-                         int32_t *current_ma, size_t capacity)
+int grobo_gr001_currents(const grobo_robot *robot, int64_t max_age_us, int32_t *current_ma,
+                         size_t capacity)
 {
     if (robot == NULL || current_ma == NULL) {
         return GROBO_ERR_ARG;
     }
     return capacity < model_of(robot)->n_joints
                ? GROBO_ERR_SPACE
-               : values(robot, GROBO_FIELD_CURRENT, now_us, max_age_us, current_ma);
+               : values(robot, GROBO_FIELD_CURRENT, max_age_us, current_ma);
 }
 
-int grobo_gr001_mean_voltage_mv(const grobo_robot *robot, int64_t now_us, int64_t max_age_us)
+int grobo_gr001_mean_voltage_mv(const grobo_robot *robot, int64_t max_age_us)
 {
     if (robot == NULL) {
         return GROBO_ERR_ARG;
     }
     int32_t voltage_mv[GROBO_JOINTS_MAX];
-    int n = values(robot, GROBO_FIELD_VOLTAGE, now_us, max_age_us, voltage_mv);
+    int n = values(robot, GROBO_FIELD_VOLTAGE, max_age_us, voltage_mv);
     double sum_mv = 0;
     if (n == 0) {
         return GROBO_ERR_STALE;
@@ -247,14 +242,13 @@ int grobo_gr001_mean_voltage_mv(const grobo_robot *robot, int64_t now_us, int64_
 
 /* ---- the record ------------------------------------------------------------------------------ */
 
-int grobo_gr001_record(grobo_motion *record, const grobo_robot *robot, int64_t time_us,
-                       int64_t now_us)
+int grobo_gr001_record(grobo_motion *record, const grobo_robot *robot, int64_t time_us)
 {
     if (record == NULL || robot == NULL) {
         return GROBO_ERR_ARG;
     }
     grobo_posture sensed;
-    int fresh = grobo_robot_posture(robot, now_us, GROBO_GR001_RECORD_AGE_US, &sensed);
+    int fresh = grobo_robot_posture(robot, GROBO_GR001_RECORD_AGE_US, &sensed);
     if (fresh < sensed.n_joints) {
         return GROBO_ERR_STALE;
     }
@@ -264,7 +258,7 @@ int grobo_gr001_record(grobo_motion *record, const grobo_robot *robot, int64_t t
 }
 
 int grobo_gr001_play_record(const grobo_motion *record, grobo_robot *robot,
-                            const grobo_play_options *options, grobo_clip *clip, int64_t now_us)
+                            const grobo_play_options *options, grobo_clip *clip)
 {
     if (record == NULL || clip == NULL) {
         return GROBO_ERR_ARG;
@@ -274,7 +268,7 @@ int grobo_gr001_play_record(const grobo_motion *record, grobo_robot *robot,
     if (result < 0) {
         return result;
     }
-    int number = grobo_robot_play(robot, &made, options, now_us);
+    int number = grobo_robot_play(robot, &made, options);
     if (number < 0) {
         grobo_motion_clip_free(&made);
         return number;

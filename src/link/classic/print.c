@@ -34,29 +34,29 @@ static int print_values(const grobo_model *model, const int32_t *value, int deci
     return result;
 }
 
-int grobo_gr001_print_voltages(const grobo_robot *robot, int64_t now_us, FILE *stream)
+int grobo_gr001_print_voltages(const grobo_robot *robot, FILE *stream)
 {
     if (robot == NULL || stream == NULL) {
         return GROBO_ERR_ARG;
     }
     int32_t voltage_mv[GROBO_JOINTS_MAX];
     char line[LINE_BYTES] = "mean -\n";
-    (void)grobo_gr001_voltages(robot, now_us, GROBO_NEVER_US, voltage_mv, GROBO_JOINTS_MAX);
+    (void)grobo_gr001_voltages(robot, GROBO_NEVER_US, voltage_mv, GROBO_JOINTS_MAX);
     int result = print_values(grobo_robot_driver(robot)->model, voltage_mv, 2, "V", stream);
-    int mean_mv = grobo_gr001_mean_voltage_mv(robot, now_us, GROBO_NEVER_US);
+    int mean_mv = grobo_gr001_mean_voltage_mv(robot, GROBO_NEVER_US);
     if (mean_mv >= 0) {
         (void)snprintf(line, sizeof line, "mean            %6.2f V\n", mean_mv / 1000.0);
     }
     return result < 0 ? result : put(stream, line);
 }
 
-int grobo_gr001_print_currents(const grobo_robot *robot, int64_t now_us, FILE *stream)
+int grobo_gr001_print_currents(const grobo_robot *robot, FILE *stream)
 {
     if (robot == NULL || stream == NULL) {
         return GROBO_ERR_ARG;
     }
     int32_t current_ma[GROBO_JOINTS_MAX];
-    (void)grobo_gr001_currents(robot, now_us, GROBO_NEVER_US, current_ma, GROBO_JOINTS_MAX);
+    (void)grobo_gr001_currents(robot, GROBO_NEVER_US, current_ma, GROBO_JOINTS_MAX);
     return print_values(grobo_robot_driver(robot)->model, current_ma, 0, "mA", stream);
 }
 

@@ -266,7 +266,7 @@ static int do_job(guard_run *run, int job, int64_t end_us)
 
 static int exit_by(guard_run *run, grobo_exit_policy policy, int64_t end_us)
 {
-    return do_job(run, grobo_robot_exit(&run->robot, policy, grobo_now_us()), end_us);
+    return do_job(run, grobo_robot_exit(&run->robot, policy), end_us);
 }
 
 static int stop_robot(guard_run *run, guard_policy policy)
@@ -287,7 +287,7 @@ static int stop_robot(guard_run *run, guard_policy policy)
     grobo_robot_link_up(&run->robot, grobo_now_us());
     switch (policy) {
     case GUARD_ESTOP:
-        return do_job(run, grobo_robot_estop(&run->robot, grobo_now_us()), end_us);
+        return do_job(run, grobo_robot_estop(&run->robot), end_us);
     case GUARD_OFF:
         r = exit_by(run, GROBO_EXIT_HOLD, end_us - OFF_US);
         return r == GROBO_ERR_UNPLUGGED ? r : exit_by(run, GROBO_EXIT_OFF, end_us);

@@ -119,6 +119,6 @@ void grobo_i_session_guard_tell(grobo_session *session)
 {
     if (session->guard_news != NULL) {
         grobo_i_guard_tell(session->config.guard, policy_of(session),
-                           grobo_robot_moving(&session->robot, grobo_now_us()));
+                           grobo_robot_moving(&session->robot));
     }
 }

@@ -165,9 +165,8 @@ static void be_up(grobo_session *session)
 /* Who is there? Asked anew behind an emergency stop, which goes before everything. */
 static void ask_who(grobo_session *session)
 {
-    session->check_job = session->config.skip_check
-                             ? GROBO_ERR_UNSUPPORTED
-                             : grobo_robot_check(&session->robot, grobo_now_us());
+    session->check_job =
+        session->config.skip_check ? GROBO_ERR_UNSUPPORTED : grobo_robot_check(&session->robot);
     if (session->check_job < 0 && grobo_robot_job(&session->robot) != GROBO_JOB_ESTOP) {
         /* A driver without a check takes who is there for its robot. */
         session->check_result =
@@ -232,6 +231,101 @@ static void on_robot(void *ctx, const grobo_event *event)
     if (!checking || stop) {
         grobo_i_session_tell_robot(session, event);
     }
+}
+
+/* ---- the engine's host --------------------------------------------------------------------- */
+
+static int64_t on_clock(void *ctx)
+{
+    (void)ctx;
+    return grobo_now_us();
+}
+
+static bool is_elsewhere(const grobo_session *session)
+{
+    return session->share.is_elsewhere != NULL && session->share.is_elsewhere(session->share.ctx);
+}
+
+/* Emergency stops that were not posted count as those do, see grobo_control_reset(). */
+static void count_estops(grobo_session *session)
+{
+    unsigned estops = (unsigned)grobo_robot_get_counters(&session->robot)->estops;
+
+    if (atomic_exchange(&session->seen_estops, estops) != estops &&
+        !atomic_load(&session->obeying)) {
+        atomic_fetch_add(&session->estops, 1);
+    }
+}
+
+static void on_request(void *ctx)
+{
+    grobo_session *session = ctx;
+
+    count_estops(session);
+    if (is_elsewhere(session)) {
+        grobo_i_session_wake(session);
+    } else {
+        grobo_session_pump(session);
+    }
+}
+
+static void on_lock(void *ctx)
+{
+    const grobo_session *session = ctx;
+
+    session->share.lock(session->share.ctx);
+}
+
+static void on_unlock(void *ctx)
+{
+    const grobo_session *session = ctx;
+
+    session->share.unlock(session->share.ctx);
+}
+
+/* One that was set since the last look is obeyed, not cleared. */
+static int on_reset(void *ctx)
+{
+    grobo_session *session = ctx;
+    grobo_trip_info trip;
+    int r = GROBO_OK;
+
+    if (is_elsewhere(session)) {
+        return GROBO_ERR_STATE; /* the marks of other programs belong to the loop */
+    }
+    grobo_i_session_enter(session);
+    grobo_i_session_obey(session); /* what was posted came before */
+    session->estop.looked_us = 0;
+    grobo_i_session_estop_look(session);
+    grobo_robot_tripped(&session->robot, &trip);
+    if (grobo_robot_job(&session->robot) == GROBO_JOB_ESTOP) {
+        r = GROBO_ERR_STATE;
+    } else if (session->estop.on && trip.trip == GROBO_TRIP_ESTOP) {
+        r = grobo_i_estop_clear(&session->estop.names, &session->cause);
+    }
+    session->depth--; /* the request itself pumps */
+    return r;
+}
+
+static void set_host(grobo_session *session)
+{
+    const bool shared = session->share.lock != NULL;
+    const grobo_robot_host host = {
+        .clock = on_clock,
+        .wake = on_request,
+        .may_reset = on_reset,
+        .lock = shared ? on_lock : NULL,
+        .unlock = shared ? on_unlock : NULL,
+        .ctx = session,
+    };
+
+    grobo_robot_set_host(&session->robot, &host);
+}
+
+void grobo_i_session_share(grobo_session *session, const session_share *share)
+{
+    session->share = *share;
+    set_host(session);
 }
 
 /* ---- the loop's calls --------------------------------------------------------------------- */
@@ -405,8 +499,10 @@ static int fill(grobo_session *session, const grobo_session_config *config)
     if (session->sim_config.baud_bps == 0) {
         session->sim_config.baud_bps = (uint32_t)baud_bps;
     }
-    return grobo_robot_init(&session->robot, driver, config->driver_ctx, &session->robot_config,
-                            grobo_now_us());
+    r = grobo_robot_init(&session->robot, driver, config->driver_ctx, &session->robot_config,
+                         grobo_now_us());
+    set_host(session);
+    return r;
 }
 
 static int make_parts(grobo_session *session)

@@ -45,6 +45,14 @@ typedef struct session_line {
 
 extern const session_line grobo_i_session_port, grobo_i_session_sim;
 
+/* How a session's engine is used by other threads than the loop's; zeroed: it is not. */
+typedef struct session_share {
+    void (*lock)(void *ctx);
+    void (*unlock)(void *ctx);
+    bool (*is_elsewhere)(const void *ctx); /* this thread is not the loop's */
+    void *ctx;
+} session_share;
+
 struct grobo_session {
     grobo_session_config config;         /* pointers to copied things are NULL */
     char device[GROBO_DEVICE_MAX_BYTES]; /* as configured */
@@ -81,6 +89,8 @@ struct grobo_session {
     atomic_uint asked;
     atomic_bool latched;         /* the engine's trip, as of the last time it was looked at */
     atomic_uint estops;          /* emergency stops asked for; wraps around */
+    atomic_uint seen_estops;     /* of the engine's */
+    atomic_bool obeying;         /* one that was posted, or that another program asked for */
     grobo_socket wake_socket[2]; /* a byte from 1 to 0 wakes the loop */
     struct event *wake;
     bool always_listens; /* also while closed */
@@ -98,6 +108,8 @@ struct grobo_session {
     void (*on_leave)(grobo_session *session); /* of session.c: counts down, and settles */
     bool closing;                             /* closed in a callback */
     bool freed;                               /* freed in a callback */
+
+    session_share share; /* of the engine with other threads */
 };
 
 /* ---- inside.c ---- */
@@ -214,6 +226,9 @@ int grobo_i_session_step(grobo_session *session);
 void grobo_i_session_on_data(grobo_serial *serial, const uint8_t *bytes, size_t size, void *ctx);
 
 /* ---- session.c ---- */
+
+/* From now on other threads may use the engine. */
+void grobo_i_session_share(grobo_session *session, const session_share *share);
 
 /* Reads what the line has now, and lets the engine's time pass. */
 void grobo_i_session_look(grobo_session *session);

@@ -127,7 +127,7 @@ static void exit_when_due(grobo_session *session)
         session->exit_owed = false;
         if (up) {
             /* Its end is a job event. Cannot be refused: the policy has been checked. */
-            (void)grobo_robot_exit(&session->robot, session->exit_policy, grobo_now_us());
+            (void)grobo_robot_exit(&session->robot, session->exit_policy);
         }
     }
 }
@@ -135,9 +135,14 @@ static void exit_when_due(grobo_session *session)
 /* One that is being carried out serves for both: begun anew each time, it would never end. */
 static int estop(grobo_session *session)
 {
-    return grobo_robot_job(&session->robot) != GROBO_JOB_ESTOP
-               ? grobo_robot_estop(&session->robot, grobo_now_us())
-               : GROBO_OK;
+    int r = GROBO_OK;
+
+    if (grobo_robot_job(&session->robot) != GROBO_JOB_ESTOP) {
+        atomic_store(&session->obeying, true);
+        r = grobo_robot_estop(&session->robot);
+        atomic_store(&session->obeying, false);
+    }
+    return r;
 }
 
 void grobo_i_session_obey(grobo_session *session)
@@ -150,7 +155,7 @@ void grobo_i_session_obey(grobo_session *session)
     if ((asked & ASK_ESTOP) != 0) {
         (void)estop(session);
     } else if ((asked & (ASK_STOP | ASK_STOP_AT_ONCE)) != 0 && session->state == GROBO_SESSION_UP) {
-        (void)grobo_robot_stop(&session->robot, (asked & ASK_STOP_AT_ONCE) != 0, grobo_now_us());
+        (void)grobo_robot_stop(&session->robot, (asked & ASK_STOP_AT_ONCE) != 0);
     }
     if ((asked & ASK_EXIT) != 0) {
         session->exit_owed = true;
@@ -176,7 +181,8 @@ static void on_wake(evutil_socket_t socket, short what, void *ctx)
     (void)what;
     while (recv(socket, bytes, sizeof bytes, 0) == (int)sizeof bytes) {
     }
-    grobo_i_session_attend(session);
+    grobo_i_session_enter(session);
+    grobo_i_session_leave(session); /* obeys, and sends what was asked for */
 }
 
 /* ---- of other programs -------------------------------------------------------------------- */
@@ -214,7 +220,7 @@ void grobo_i_session_estop_arm(grobo_session *session)
     if (pending) {
         obey_mark(session);
     } else {
-        (void)grobo_robot_latch(&session->robot, grobo_now_us());
+        (void)grobo_robot_latch(&session->robot);
     }
 }
 

@@ -91,7 +91,7 @@ static int leave_job(grobo_control *control, control_job *job)
         return GROBO_OK;
     }
     (void)grobo_i_control_forget(control);
-    return grobo_session_exit(control->session, GROBO_EXIT_DEFAULT);
+    return grobo_robot_exit(grobo_session_robot(control->session), GROBO_EXIT_DEFAULT);
 }
 
 int grobo_i_control_leave(grobo_control *control, int64_t timeout_us, bool *looked)
@@ -196,7 +196,7 @@ int grobo_control_get_cause(grobo_control *control, grobo_os_cause *cause)
 static int check_job(grobo_control *control, control_job *job)
 {
     (void)job;
-    return grobo_session_check(control->session);
+    return grobo_robot_check(grobo_session_robot(control->session));
 }
 
 int grobo_control_check_connection(grobo_control *control, int64_t timeout_us)
@@ -215,7 +215,7 @@ static int get_states(grobo_control *control, void *arg)
 
     for (int j = 0; j < n_joints; j++) {
         grobo_joint_info info;
-        int r = grobo_robot_joint(control_robot(control), j, grobo_now_us(), &info);
+        int r = grobo_robot_joint(control_robot(control), j, &info);
 
         state[j] = r >= 0 && info.torque_known ? (int)info.state.torque : GROBO_ERR_EMPTY;
     }
@@ -256,7 +256,7 @@ int grobo_control_get_servo_state(grobo_control *control, int joint)
 
 static int torque_job(grobo_control *control, control_job *job)
 {
-    return grobo_session_torque(control->session, job->joints, job->torque);
+    return grobo_robot_torque(grobo_session_robot(control->session), job->joints, job->torque);
 }
 
 int grobo_control_set_servo_states(grobo_control *control, grobo_joint_mask joints,
@@ -285,7 +285,7 @@ int grobo_control_set_servo_state(grobo_control *control, int joint, grobo_torqu
 
 static int get_posture(grobo_control *control, void *arg)
 {
-    return grobo_robot_posture(control_robot(control), grobo_now_us(), GROBO_NEVER_US, arg);
+    return grobo_robot_posture(control_robot(control), GROBO_NEVER_US, arg);
 }
 
 int grobo_control_get_current_posture(grobo_control *control, grobo_posture *posture)
@@ -304,7 +304,7 @@ int grobo_control_get_current_posture(grobo_control *control, grobo_posture *pos
 
 static int sense_job(grobo_control *control, control_job *job)
 {
-    return grobo_session_sense(control->session, job->joints, job->sense);
+    return grobo_robot_sense(grobo_session_robot(control->session), job->joints, job->sense);
 }
 
 /* A reading, and then the joints that have been read since it began. */
@@ -318,7 +318,7 @@ static int sense(grobo_control *control, void *arg)
     if (!job->ended || r == GROBO_ERR_UNPLUGGED || r == GROBO_ERR_CANCELED) {
         return r;
     }
-    (void)grobo_robot_posture(control_robot(control), now_us, now_us - job->begun_us, job->posture);
+    (void)grobo_robot_posture(control_robot(control), now_us - job->begun_us, job->posture);
     job->posture->set &= job->joints;
     n = grobo_joints_count(job->posture->set);
     return n > 0 ? n : r;
@@ -410,7 +410,8 @@ static int raw_job(grobo_control *control, control_job *job)
     memcpy(control->raw, job->frame, job->size);
     control->raw_bytes = job->size;
     /* Who is told that it took too long is not to see it leave afterwards. */
-    r = grobo_session_raw_until(control->session, job->frame, job->size, job->end_us - 1);
+    r = grobo_robot_raw_until(grobo_session_robot(control->session), job->frame, job->size,
+                              job->end_us - 1);
     if (r < 0) {
         control->raw_bytes = 0;
     }
@@ -508,7 +509,7 @@ static int reset(grobo_control *control, void *arg)
 
     return atomic_load(&control->session->estops) != *estops
                ? GROBO_ERR_STATE
-               : grobo_session_reset(control->session);
+               : grobo_robot_reset(grobo_session_robot(control->session));
 }
 
 int grobo_control_reset(grobo_control *control)
@@ -524,7 +525,7 @@ int grobo_control_reset(grobo_control *control)
 static int exit_job(grobo_control *control, control_job *job)
 {
     (void)grobo_i_control_forget(control);
-    return grobo_session_exit(control->session, job->policy);
+    return grobo_robot_exit(grobo_session_robot(control->session), job->policy);
 }
 
 int grobo_control_exit(grobo_control *control, grobo_exit_policy policy, int64_t timeout_us)

@@ -194,7 +194,7 @@ static int stop_motion(grobo_control *control, void *arg)
     const bool *at_once = arg;
     bool stopped = grobo_i_control_forget(control);
 
-    stopped = grobo_session_stop(control->session, *at_once) >= 0 || stopped;
+    stopped = grobo_robot_stop(grobo_session_robot(control->session), *at_once) >= 0 || stopped;
     return stopped ? GROBO_OK : GROBO_ERR_STATE;
 }
 
@@ -218,7 +218,7 @@ static uint64_t frames_left(grobo_control *control)
 {
     grobo_play_progress progress;
 
-    grobo_robot_progress(control_robot(control), grobo_now_us(), &progress);
+    grobo_robot_progress(control_robot(control), &progress);
     if (progress.steps > INT_MAX) {
         return INT_MAX;
     }
@@ -256,8 +256,7 @@ static int is_moving(grobo_control *control, void *arg)
     grobo_i_control_lock(control);
     wanted = control->move_wanted || control->play != PLAY_NONE;
     grobo_i_control_unlock(control);
-    return wanted || control->move_job != 0 ||
-           grobo_robot_moving(control_robot(control), grobo_now_us());
+    return wanted || control->move_job != 0 || grobo_robot_moving(control_robot(control));
 }
 
 int grobo_control_is_moving(grobo_control *control)

@@ -41,13 +41,15 @@ int grobo_i_control_send_target(grobo_control *control, void *arg)
     }
     if (is_up(control) && is_at_work(control)) {
         /* The target before it makes way once it was sent; anything else comes to its end. */
-        r = control->move_job != 0 ? grobo_session_retarget(control->session, &target)
-                                   : GROBO_ERR_STATE;
+        r = control->move_job != 0
+                ? grobo_robot_retarget(grobo_session_robot(control->session), &target)
+                : GROBO_ERR_STATE;
         if (r < 0) {
             return CALL_PENDING;
         }
     } else {
-        r = is_up(control) ? grobo_session_move(control->session, &target) : GROBO_ERR_UNPLUGGED;
+        r = is_up(control) ? grobo_robot_move(grobo_session_robot(control->session), &target)
+                           : GROBO_ERR_UNPLUGGED;
     }
     if (r > 0 && control->last_job != r) {
         control->move_job = r;
@@ -90,13 +92,14 @@ static int begin_play(grobo_control *control)
 
     /* By keys the sequencer counts a motion of increments from where the robot is then. */
     if (control->play_options.mode == GROBO_PLAY_RATE &&
-        grobo_robot_posture(control_robot(control), grobo_now_us(), GROBO_NEVER_US, &start) > 0) {
+        grobo_robot_posture(control_robot(control), GROBO_NEVER_US, &start) > 0) {
         options.start = &start;
     }
     r = grobo_motion_clip(control->playing, &options, &control->clip);
     if (r >= 0) {
         control->play_error = GROBO_OK;
-        r = grobo_session_play(control->session, &control->clip, &control->play_options);
+        r = grobo_robot_play(grobo_session_robot(control->session), &control->clip,
+                             &control->play_options);
     }
     if (r > 0 && control->last_job == r) {
         control->play_error = control->last_result;
@@ -138,7 +141,7 @@ static int play_result(grobo_control *control)
 {
     grobo_play_progress progress;
 
-    grobo_robot_progress(control_robot(control), grobo_now_us(), &progress);
+    grobo_robot_progress(control_robot(control), &progress);
     switch (progress.state) {
     case GROBO_SEQUENCER_FAILED:
         return progress.error;

@@ -303,6 +303,9 @@ static int make_session(grobo_control *control)
     config.on_tap = grobo_i_control_on_tap;
     config.ctx = control;
     r = grobo_session_new(&config, &control->session);
+    if (r >= 0) {
+        grobo_i_control_share(control);
+    }
     return r < 0 ? r : grobo_i_session_listen(control->session, true);
 }
 
@@ -354,6 +357,7 @@ static void destroy(grobo_control *control)
     grobo_motion_free(control->motion);
     grobo_cond_deinit(&control->changed);
     grobo_mutex_deinit(&control->lock);
+    grobo_mutex_deinit(&control->engine);
     grobo_i_free(control->mem, control, sizeof *control);
 }
 
@@ -362,17 +366,19 @@ static bool is_period(int64_t period_us)
     return period_us >= PERIOD_MIN_US && period_us <= PERIOD_MAX_US;
 }
 
-static int make_lock(grobo_control *control)
+static int make_locks(grobo_control *control)
 {
-    int r = grobo_mutex_init(&control->lock);
-
-    if (r >= 0) {
-        r = grobo_cond_init(&control->changed);
-        if (r < 0) {
-            grobo_mutex_deinit(&control->lock);
-        }
+    if (grobo_mutex_init(&control->lock) < 0) {
+        return GROBO_ERR_NOMEM;
     }
-    return r;
+    if (grobo_mutex_init(&control->engine) >= 0) {
+        if (grobo_cond_init(&control->changed) >= 0) {
+            return GROBO_OK;
+        }
+        grobo_mutex_deinit(&control->engine);
+    }
+    grobo_mutex_deinit(&control->lock);
+    return GROBO_ERR_NOMEM;
 }
 
 int grobo_control_new(const grobo_control_config *config, grobo_control **control)
@@ -389,7 +395,7 @@ int grobo_control_new(const grobo_control_config *config, grobo_control **contro
     if (made == NULL) {
         return GROBO_ERR_NOMEM;
     }
-    r = make_lock(made);
+    r = make_locks(made);
     if (r < 0) {
         grobo_i_free(config->session.mem, made, sizeof *made);
         return r;

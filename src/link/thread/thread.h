@@ -69,6 +69,7 @@ typedef enum play_stage { PLAY_NONE = 0, PLAY_WANTED, PLAY_BEGUN } play_stage;
 struct grobo_control {
     const grobo_mem *mem;
     grobo_mutex lock;
+    grobo_mutex engine; /* of the session's engine */
     const grobo_driver *driver;
     grobo_control_fn on_svc;
     grobo_session_config user; /* its callbacks */
@@ -154,6 +155,9 @@ void grobo_i_control_end_round(const round_frame *frame);
 
 /* True on the thread that is in a round of this control. */
 bool grobo_i_control_inside(const grobo_control *control);
+
+/* How other threads use the engine. It is never held while `lock` is taken. */
+void grobo_i_control_share(grobo_control *control);
 
 /* Takes the lock, and takes note that somebody is there. */
 void grobo_i_control_lock(grobo_control *control);

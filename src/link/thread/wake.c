@@ -45,6 +45,52 @@ void grobo_i_control_unlock(grobo_control *control)
     grobo_mutex_unlock(&control->lock);
 }
 
+/* ---- the engine's lock -------------------------------------------------------------------- */
+
+/* The engine that this thread holds, and how often: within a call to one no other is called. */
+static _Thread_local const grobo_control *held;
+static _Thread_local unsigned times_held;
+
+static void engine_lock(void *ctx)
+{
+    grobo_control *control = ctx;
+
+    GROBO_ASSERT(times_held == 0 || held == control);
+    if (times_held == 0) {
+        if (!grobo_i_control_inside(control)) {
+            grobo_i_control_lock(control); /* somebody is there */
+            grobo_i_control_unlock(control);
+        }
+        grobo_mutex_lock(&control->engine);
+        held = control;
+    }
+    times_held++;
+}
+
+static void engine_unlock(void *ctx)
+{
+    grobo_control *control = ctx;
+
+    GROBO_ASSERT(times_held > 0 && held == control);
+    times_held--;
+    if (times_held == 0) {
+        held = NULL;
+        grobo_mutex_unlock(&control->engine);
+    }
+}
+
+static bool is_elsewhere(const void *ctx)
+{
+    return !grobo_i_control_inside(ctx);
+}
+
+void grobo_i_control_share(grobo_control *control)
+{
+    const session_share share = {engine_lock, engine_unlock, is_elsewhere, control};
+
+    grobo_i_session_share(control->session, &share);
+}
+
 /* ---- waking ------------------------------------------------------------------------------- */
 
 void grobo_i_control_wake(grobo_control *control)

@@ -45,14 +45,14 @@ static json_t *integer_or_null(bool known, long value)
     return known ? json_integer(value) : json_null();
 }
 
-json_t *render_joint_json(const conn *c, int joint, int64_t now_us)
+json_t *render_joint_json(const conn *c, int joint)
 {
     const grobo_joint *j = &model_of(c)->joints[joint];
     grobo_joint_info i;
     double target_rad;
     bool fresh;
     json_t *o = json_pack("{s:i,s:i,s:s}", "joint", joint, "motor", j->motor, "name", j->name);
-    if (grobo_robot_joint(c->robot, joint, now_us, &i) < 0)
+    if (grobo_robot_joint(c->robot, joint, &i) < 0)
         return o;
     fresh = i.angle_age_us != GROBO_NEVER_US;
     json_object_set_new(o, "angle_deg",
@@ -87,7 +87,7 @@ static void cell(bool known, int width, int decimals, double value)
         app_print("  %*s", width, "-");
 }
 
-void render_status(const conn *c, grobo_joint_mask joints, int64_t now_us)
+void render_status(const conn *c, grobo_joint_mask joints)
 {
     const grobo_model *model = model_of(c);
     bool color = c->a->color_out;
@@ -96,7 +96,7 @@ void render_status(const conn *c, grobo_joint_mask joints, int64_t now_us)
         grobo_joint_info i;
         double target_rad;
         bool known, targeted;
-        if (!(joints & GROBO_JOINT_BIT(k)) || grobo_robot_joint(c->robot, k, now_us, &i) < 0)
+        if (!(joints & GROBO_JOINT_BIT(k)) || grobo_robot_joint(c->robot, k, &i) < 0)
             continue;
         known = i.angle_age_us != GROBO_NEVER_US;
         app_print("%5d  %-12s", model->joints[k].motor, model->joints[k].name);
@@ -116,14 +116,14 @@ void render_status(const conn *c, grobo_joint_mask joints, int64_t now_us)
     }
 }
 
-double render_worst_error(const conn *c, int64_t now_us, int *joint)
+double render_worst_error(const conn *c, int *joint)
 {
     double worst = 0;
     *joint = -1;
     for (int k = 0; k < model_of(c)->n_joints; k++) {
         grobo_joint_info i;
         double error;
-        if (grobo_robot_joint(c->robot, k, now_us, &i) < 0 || !i.has_target ||
+        if (grobo_robot_joint(c->robot, k, &i) < 0 || !i.has_target ||
             i.angle_age_us == GROBO_NEVER_US || i.status != GROBO_OK)
             continue;
         error = fabs(grobo_deg_from_rad(i.state.angle_rad - i.target_rad));
@@ -135,14 +135,14 @@ double render_worst_error(const conn *c, int64_t now_us, int *joint)
     return worst;
 }
 
-void render_reached(const conn *c, int64_t now_us)
+void render_reached(const conn *c)
 {
     const grobo_model *model = model_of(c);
     app_print("motor  joint         target  reached  error deg\n");
     for (int k = 0; k < model->n_joints; k++) {
         grobo_joint_info i;
         bool both;
-        if (grobo_robot_joint(c->robot, k, now_us, &i) < 0)
+        if (grobo_robot_joint(c->robot, k, &i) < 0)
             continue;
         both = i.has_target && i.status == GROBO_OK && i.angle_age_us != GROBO_NEVER_US;
         app_print("%5d  %-12s", model->joints[k].motor, model->joints[k].name);

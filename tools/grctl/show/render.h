@@ -6,15 +6,15 @@
 #include "tools/grctl/conn/conn.h"
 
 /* One joint as `status --json` promises it. */
-json_t *render_joint_json(const conn *c, int joint, int64_t now_us);
+json_t *render_joint_json(const conn *c, int joint);
 
 /* The table of `status`; joints in the mask only. */
-void render_status(const conn *c, grobo_joint_mask joints, int64_t now_us);
+void render_status(const conn *c, grobo_joint_mask joints);
 
 /* Name, target, reached and error of every joint that has a target. */
-void render_reached(const conn *c, int64_t now_us);
+void render_reached(const conn *c);
 /* The largest error among them in degrees, its joint in *joint (-1: none is known). */
-double render_worst_error(const conn *c, int64_t now_us, int *joint);
+double render_worst_error(const conn *c, int *joint);
 
 /* "on", "off", "brake" or "?". */
 const char *render_torque(const grobo_joint_info *info);
