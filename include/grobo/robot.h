@@ -49,6 +49,12 @@ GROBO_BEGIN_DECLS
 
 /** Frames that the engine may have under way at a time. */
 #define GROBO_ROBOT_SLOTS 12
+/** Jobs that run side by side, the last of them one that takes torque away. */
+#define GROBO_ROBOT_JOBS 4
+/** Moves and readings that wait for others to end. */
+#define GROBO_ROBOT_QUEUE 4
+/** How long they wait at most. */
+#define GROBO_ROBOT_QUEUE_US 2000000
 /** Events that may wait for the callback at a time. */
 #define GROBO_ROBOT_EVENTS 32
 /** Bins of the jitter histogram: four an octave, from 1 us to 65 ms. */
@@ -148,7 +154,7 @@ typedef struct grobo_robot_axis {
     bool adrift;       /* moves though we sent it nowhere, and did not tell where to */
 } grobo_robot_axis;
 
-/** The job that runs. Private. */
+/** A job that runs. Private. */
 typedef struct grobo_robot_task {
     /* private */
     const grobo_robot_step_fn *script;
@@ -159,7 +165,8 @@ typedef struct grobo_robot_task {
     int result;               /* first error */
     int joint;                /* and its joint */
     double value;             /* and its value */
-    grobo_joint_mask joints;  /* asked for */
+    grobo_joint_mask joints;  /* asked for, and not superseded */
+    grobo_joint_mask superseded;
     grobo_joint_mask todo;    /* of the activity */
     grobo_joint_mask pending; /* not yet as it was asked for */
     grobo_joint_mask failed;
@@ -184,6 +191,17 @@ typedef struct grobo_robot_task {
     uint8_t data[GROBO_REGISTERS];
 } grobo_robot_task;
 
+/** A move or a reading that waits for its turn. Private. */
+typedef struct grobo_robot_wish {
+    /* private */
+    int number;
+    grobo_job_kind kind;
+    grobo_joint_mask joints;
+    grobo_sense_kind sense;
+    int64_t begin_by_us;
+    grobo_posture target;
+} grobo_robot_wish;
+
 /** A robot engine. Caller storage; read it through the functions below. */
 typedef struct grobo_robot {
     /* private */
@@ -198,7 +216,10 @@ typedef struct grobo_robot {
     grobo_bus bus;
     grobo_sequencer sequencer;
     grobo_sequencer_state told_state; /* of the sequencer, to the callback */
-    grobo_robot_task job;
+    grobo_robot_task jobs[GROBO_ROBOT_JOBS]; /* where one runs, the first does */
+    grobo_robot_task *job;                   /* of jobs: whose step runs, else the first */
+    grobo_robot_wish queue[GROBO_ROBOT_QUEUE]; /* the first is the oldest */
+    unsigned queued;
     grobo_robot_axis axes[GROBO_JOINTS_MAX];
     grobo_robot_slot slots[GROBO_ROBOT_SLOTS];
     grobo_event events[GROBO_ROBOT_EVENTS]; /* ring */
@@ -216,6 +237,7 @@ typedef struct grobo_robot {
     uint32_t motion_us;     /* wire time of the last motion frames */
     grobo_joint_mask round; /* joints still to be read in this background round */
     grobo_joint_mask free_joints;
+    grobo_joint_mask clip_joints;   /* of the motion that is played, and those behind it */
     grobo_joint_mask played_joints; /* sent where they go by the sequencer */
     grobo_joint_mask other_round;   /* in free mode: of the joints that are not free */
     uint8_t reply[GROBO_REGISTERS];
@@ -227,6 +249,7 @@ typedef struct grobo_robot {
     int acting;            /* number of the job whose step runs; 0: none */
     bool other_read;       /* in free mode: the last reading was of a joint that is not free */
     bool link;
+    bool queue_may_go;  /* a job has ended since the queue was looked at */
     bool settling;      /* a motion is over, its end not yet looked at */
     bool soft;          /* the next move is the first from a sensed posture */
     bool stop_owed;     /* an emergency stop that no line has carried yet */

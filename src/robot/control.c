@@ -41,11 +41,10 @@ int grobo_robot_stop(grobo_robot *robot, bool at_once)
     grobo_i_begin(robot);
     int result = grobo_sequencer_stop(&robot->sequencer, at_once, robot->now_us);
     grobo_i_make_way(robot); /* it might send again what is stopped here */
-    bool job = robot->job.kind == GROBO_JOB_PLAY || grobo_i_job_moves(robot);
-    bool moves = job || grobo_i_moving(robot, robot->now_us);
-    if (job) {
-        grobo_i_job_end(robot, GROBO_ERR_CANCELED);
-    }
+    bool moves = grobo_i_jobs_any(robot, grobo_i_job_moves) || robot->queued > 0 ||
+                 grobo_i_moving(robot, robot->now_us);
+    grobo_i_jobs_end(robot, grobo_i_job_moves, GROBO_ERR_CANCELED);
+    grobo_i_queue_end(robot, GROBO_ERR_CANCELED);
     grobo_i_stop_moves(robot);
     grobo_i_end(robot);
     return moves ? GROBO_OK : result;
@@ -84,11 +83,15 @@ int grobo_robot_enqueue(grobo_robot *robot, const grobo_clip *clip,
     if (result >= 0) {
         result = grobo_i_play_joints(robot, clip, &chosen, &joints);
     }
+    if (result >= 0 && (grobo_i_joints_of_moves(robot) & joints) != 0) {
+        result = GROBO_ERR_STATE; /* it moves them beside the motion */
+    }
     if (result >= 0 && !grobo_i_gate_ready(robot, joints)) {
         result = GROBO_ERR_STATE; /* it would move in frames only */
     }
     if (result >= 0) {
         result = grobo_sequencer_enqueue(&robot->sequencer, clip, &chosen);
+        robot->clip_joints |= result >= 0 ? joints : 0;
     }
     grobo_i_end(robot);
     return result;

@@ -64,18 +64,30 @@ static void assert_slot(const grobo_robot *robot, const grobo_robot_slot *slot)
     GROBO_ASSERT(!robot->trip.latched || !goal || slot->order.stops || slot->txn.sent_us >= 0);
 }
 
-static void assert_job(const grobo_robot *robot)
+/* Jobs that others may run beside. */
+static bool is_shared(grobo_job_kind kind)
 {
-    const grobo_robot_task *job = &robot->job;
+    return kind == GROBO_JOB_MOVE || kind == GROBO_JOB_SENSE || kind == GROBO_JOB_TORQUE ||
+           kind == GROBO_JOB_RAW || kind == GROBO_JOB_REGISTERS;
+}
+
+static void assert_job(const grobo_robot *robot, const grobo_robot_task *job)
+{
     if (job->kind == GROBO_JOB_NONE) {
         return;
     }
     GROBO_ASSERT(robot->link);
-    GROBO_ASSERT(job->script != NULL && job->number > 0 && job->number == robot->last_number);
+    GROBO_ASSERT(job->script != NULL && job->number > 0);
     GROBO_ASSERT(job->activity <= GROBO_I_WAIT);
     GROBO_ASSERT((job->todo & ~grobo_i_all_joints(robot)) == 0);
     GROBO_ASSERT((job->failed & ~grobo_i_all_joints(robot)) == 0);
-    GROBO_ASSERT(job->activity != GROBO_I_ASK || grobo_i_slots_busy(robot, GROBO_I_USE_JOB));
+    GROBO_ASSERT((job->joints & job->superseded) == 0);
+    GROBO_ASSERT(job == robot->jobs || is_shared(job->kind));
+    for (const grobo_robot_task *other = robot->jobs; other < job; other++) {
+        GROBO_ASSERT(other->kind == GROBO_JOB_NONE || other->number != job->number);
+        GROBO_ASSERT(other->kind != GROBO_JOB_MOVE || job->kind != GROBO_JOB_MOVE ||
+                     (other->joints & job->joints) == 0);
+    }
 }
 
 static void assert_stop(const grobo_robot *robot)
@@ -84,7 +96,7 @@ static void assert_stop(const grobo_robot *robot)
     GROBO_ASSERT(trip->latched == (trip->trip != GROBO_TRIP_NONE));
     GROBO_ASSERT(!trip->latched || robot->free_joints == 0);
     GROBO_ASSERT(!robot->stop_owed || trip->trip == GROBO_TRIP_ESTOP);
-    GROBO_ASSERT(robot->job.kind != GROBO_JOB_ESTOP || trip->trip == GROBO_TRIP_ESTOP);
+    GROBO_ASSERT(robot->job->kind != GROBO_JOB_ESTOP || trip->trip == GROBO_TRIP_ESTOP);
     GROBO_ASSERT(trip->trip != GROBO_TRIP_ESTOP || !grobo_robot_is_playing(robot));
 }
 
@@ -102,7 +114,15 @@ void grobo_i_robot_assert(const grobo_robot *robot)
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         assert_axis(robot, j);
     }
-    assert_job(robot);
+    for (int i = 0; i < GROBO_ROBOT_JOBS; i++) {
+        assert_job(robot, &robot->jobs[i]);
+    }
+    GROBO_ASSERT(robot->job == robot->jobs);
+    GROBO_ASSERT(robot->queued <= GROBO_ROBOT_QUEUE);
+    GROBO_ASSERT(robot->queued == 0 || robot->link);
+    for (unsigned i = 0; i < robot->queued; i++) {
+        GROBO_ASSERT(robot->queue[i].kind == GROBO_JOB_SENSE || !robot->trip.latched);
+    }
     assert_stop(robot);
     GROBO_ASSERT(robot->acting == 0);
     GROBO_ASSERT(robot->link || !grobo_robot_is_playing(robot));

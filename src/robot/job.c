@@ -5,20 +5,63 @@
 #include <string.h>
 
 #include "src/base/assert.h"
+#include "src/base/instant.h"
 
-int grobo_i_job_start(grobo_robot *robot, grobo_job_kind kind, const grobo_robot_step_fn *script)
+/* ---- which jobs there are -------------------------------------------------------------------- */
+
+int grobo_i_job_number(grobo_robot *robot)
 {
-    grobo_robot_task *job = &robot->job;
-    GROBO_ASSERT(job->kind == GROBO_JOB_NONE);
     robot->last_number = robot->last_number == INT32_MAX ? 1 : robot->last_number + 1;
+    return robot->last_number;
+}
+
+static grobo_robot_task *free_job(grobo_robot *robot, int n)
+{
+    for (int i = 0; i < n; i++) {
+        if (robot->jobs[i].kind == GROBO_JOB_NONE) {
+            return &robot->jobs[i];
+        }
+    }
+    return NULL;
+}
+
+bool grobo_i_jobs_have_room(const grobo_robot *robot, bool last)
+{
+    int n = last ? GROBO_ROBOT_JOBS : GROBO_ROBOT_JOBS - 1;
+    for (int i = 0; i < n; i++) {
+        if (robot->jobs[i].kind == GROBO_JOB_NONE) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool grobo_i_jobs_any(const grobo_robot *robot, bool (*is)(const grobo_robot_task *job))
+{
+    for (int i = 0; i < GROBO_ROBOT_JOBS; i++) {
+        const grobo_robot_task *job = &robot->jobs[i];
+        if (job->kind != GROBO_JOB_NONE && (is == NULL || is(job))) {
+            return true;
+        }
+    }
+    return false;
+}
+
+int grobo_i_job_start(grobo_robot *robot, grobo_job_kind kind, const grobo_robot_step_fn *script,
+                      int number)
+{
+    grobo_robot_task *job = free_job(robot, GROBO_ROBOT_JOBS);
+    GROBO_ASSERT(job != NULL && kind != GROBO_JOB_NONE);
+    robot->job = job;
     job->script = script;
-    job->number = robot->last_number;
+    job->number = number != 0 ? number : grobo_i_job_number(robot);
     job->kind = kind;
     job->at = 0;
     job->activity = GROBO_I_NEXT;
     job->result = GROBO_OK;
     job->joint = -1;
     job->value = 0;
+    job->joints = job->superseded = job->todo = 0;
     job->failed = job->pending = 0;
     job->order = (grobo_robot_order){0};
     job->leave_by_us = 0;
@@ -33,30 +76,87 @@ int grobo_i_job_start(grobo_robot *robot, grobo_job_kind kind, const grobo_robot
 
 void grobo_i_job_end(grobo_robot *robot, int result)
 {
-    grobo_robot_task *job = &robot->job;
+    grobo_robot_task *job = robot->job;
     GROBO_ASSERT(job->kind != GROBO_JOB_NONE && result <= GROBO_OK);
+    if (result == GROBO_OK && job->superseded != 0) {
+        result = GROBO_ERR_SUPERSEDED;
+    }
     grobo_event event = {.kind = GROBO_EVENT_JOB};
     event.u.job.number = job->number;
     event.u.job.kind = job->kind;
     event.u.job.result = result;
     event.u.job.joint = job->joint;
     event.u.job.value = job->value;
-    event.u.job.failed = job->failed;
+    event.u.job.failed = job->failed | job->superseded;
     event.u.job.data = robot->reply;
     event.u.job.size = job->reply_bytes;
     if (job->kind == GROBO_JOB_ESTOP && result != GROBO_ERR_UNPLUGGED) {
         robot->stop_owed = false;
     }
     job->kind = GROBO_JOB_NONE;
+    robot->queue_may_go = true;
     grobo_i_slots_cancel_job(robot, job->number);
     if (event.u.job.kind != GROBO_JOB_SETTLE) {
         grobo_i_tell(robot, &event);
     }
 }
 
+void grobo_i_jobs_end(grobo_robot *robot, bool (*is)(const grobo_robot_task *job), int result)
+{
+    grobo_robot_task *current = robot->job;
+    for (int i = 0; i < GROBO_ROBOT_JOBS; i++) {
+        robot->job = &robot->jobs[i];
+        if (robot->job->kind != GROBO_JOB_NONE && (is == NULL || is(robot->job))) {
+            grobo_i_job_end(robot, result);
+        }
+    }
+    robot->job = current;
+}
+
+/* Frames of its own that carry joints of both are lost, too: a move sends again what was not
+ * taken. */
+void grobo_i_jobs_leave(grobo_robot *robot, grobo_joint_mask joints)
+{
+    grobo_robot_task *current = robot->job;
+    for (int i = 0; i < GROBO_ROBOT_JOBS; i++) {
+        grobo_robot_task *job = &robot->jobs[i];
+        grobo_joint_mask left = job->joints & joints;
+        bool leaves = job->kind == GROBO_JOB_MOVE || job->kind == GROBO_JOB_TORQUE;
+        if (!leaves || left == 0) {
+            continue;
+        }
+        job->superseded |= left;
+        job->joints &= ~left;
+        job->target.set &= ~left;
+        job->todo &= ~left;
+        job->pending &= ~left;
+        job->failed &= ~left;
+        job->result = job->failed == 0 ? GROBO_OK : job->result;
+        robot->job = job;
+        if (job->joints == 0) {
+            grobo_i_job_end(robot, GROBO_OK);
+        }
+    }
+    robot->job = current;
+    grobo_i_slots_cancel_goals(robot, joints, false);
+}
+
+void grobo_i_queue_end(grobo_robot *robot, int result)
+{
+    for (unsigned i = 0; i < robot->queued; i++) {
+        const grobo_robot_wish *wish = &robot->queue[i];
+        grobo_event event = {.kind = GROBO_EVENT_JOB};
+        event.u.job = (grobo_event_job){
+            .number = wish->number, .kind = wish->kind, .result = result, .joint = -1};
+        event.u.job.failed = wish->joints;
+        grobo_i_tell(robot, &event);
+    }
+    robot->queued = 0;
+}
+
 void grobo_i_job_fail_joint(grobo_robot *robot, int joint, int error, double value)
 {
-    grobo_robot_task *job = &robot->job;
+    grobo_robot_task *job = robot->job;
     GROBO_ASSERT(error < 0 && joint >= 0 && joint < robot->driver->model->n_joints);
     if (job->failed == 0) {
         job->result = error;
@@ -69,24 +169,36 @@ void grobo_i_job_fail_joint(grobo_robot *robot, int joint, int error, double val
 void grobo_i_job_goto(grobo_robot *robot, grobo_robot_step_fn step)
 {
     unsigned at = 0;
-    while (robot->job.script[at] != NULL && robot->job.script[at] != step) {
+    while (robot->job->script[at] != NULL && robot->job->script[at] != step) {
         at++;
     }
-    GROBO_ASSERT(robot->job.script[at] == step);
-    robot->job.at = at;
+    GROBO_ASSERT(robot->job->script[at] == step);
+    robot->job->at = at;
 }
 
 /* ---- activities: 1 under way, 0 over, < 0 the job has failed --------------------------------- */
 
+/* True if an answer to this job is awaited. */
+static bool is_asking(const grobo_robot *robot, const grobo_robot_task *job)
+{
+    for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
+        const grobo_robot_slot *slot = &robot->slots[i];
+        if (slot->use == GROBO_I_USE_JOB && slot->job == job->number) {
+            return true;
+        }
+    }
+    return false;
+}
+
 static int keep_asking(grobo_robot *robot)
 {
-    return grobo_i_slots_busy(robot, GROBO_I_USE_JOB) ? 1 : 0;
+    return is_asking(robot, robot->job) ? 1 : 0;
 }
 
 static int keep_reading(grobo_robot *robot)
 {
-    grobo_robot_task *job = &robot->job;
-    if (grobo_i_slots_busy(robot, GROBO_I_USE_JOB)) {
+    grobo_robot_task *job = robot->job;
+    if (is_asking(robot, job)) {
         return 1;
     }
     if (job->todo == 0) {
@@ -95,7 +207,7 @@ static int keep_reading(grobo_robot *robot)
     const grobo_driver *driver = robot->driver;
     grobo_robot_slot *slot = grobo_i_slot_take(robot, GROBO_I_USE_JOB);
     if (slot == NULL) {
-        return GROBO_ERR_FULL;
+        return robot->job == robot->jobs ? GROBO_ERR_FULL : 1; /* those before it give some back */
     }
     slot->joint = (uint8_t)grobo_i_lowest(job->todo);
     slot->reads = true;
@@ -108,11 +220,11 @@ static int keep_reading(grobo_robot *robot)
     return result < 0 ? result : 1;
 }
 
-static bool frames_out(const grobo_robot *robot)
+static bool frames_out(const grobo_robot *robot, const grobo_robot_task *job)
 {
     for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
         const grobo_robot_slot *slot = &robot->slots[i];
-        if (slot->use != GROBO_I_USE_FREE && slot->job == robot->job.number) {
+        if (slot->use != GROBO_I_USE_FREE && slot->job == job->number) {
             return false;
         }
     }
@@ -121,12 +233,12 @@ static bool frames_out(const grobo_robot *robot)
 
 static int keep_draining(grobo_robot *robot)
 {
-    return frames_out(robot) ? 0 : 1;
+    return frames_out(robot, robot->job) ? 0 : 1;
 }
 
 static int keep_waiting(grobo_robot *robot)
 {
-    return robot->now_us < robot->job.until_us ? 1 : 0;
+    return robot->now_us < robot->job->until_us ? 1 : 0;
 }
 
 static int (*const keep[])(grobo_robot *robot) = {
@@ -139,7 +251,7 @@ static int (*const keep[])(grobo_robot *robot) = {
 /* One go: carries on with the activity, or takes the next step. 0: go on, 1: wait. */
 static int advance(grobo_robot *robot)
 {
-    grobo_robot_task *job = &robot->job;
+    grobo_robot_task *job = robot->job;
     if (job->activity != GROBO_I_NEXT) {
         int going = keep[job->activity](robot);
         if (going != 0) {
@@ -162,15 +274,15 @@ static int advance(grobo_robot *robot)
     return 0;
 }
 
-void grobo_i_job_run(grobo_robot *robot)
+static void run(grobo_robot *robot)
 {
-    while (robot->job.kind != GROBO_JOB_NONE) {
-        if (robot->now_us >= robot->job.bound_us) {
-            robot->job.failed |= robot->job.pending;
+    while (robot->job->kind != GROBO_JOB_NONE) {
+        if (robot->now_us >= robot->job->bound_us) {
+            robot->job->failed |= robot->job->pending;
             grobo_i_job_end(robot, GROBO_ERR_TIMEOUT);
             return;
         }
-        robot->acting = robot->job.number;
+        robot->acting = robot->job->number;
         int going = advance(robot);
         robot->acting = 0;
         if (going < 0) {
@@ -181,25 +293,59 @@ void grobo_i_job_run(grobo_robot *robot)
     }
 }
 
-int64_t grobo_i_job_deadline(const grobo_robot *robot)
+void grobo_i_job_run(grobo_robot *robot)
 {
-    const grobo_robot_task *job = &robot->job;
+    if (robot->acting != 0) {
+        return; /* whoever runs comes by */
+    }
+    for (int i = 0; i < GROBO_ROBOT_JOBS; i++) {
+        robot->job = &robot->jobs[i];
+        run(robot);
+    }
+    robot->job = robot->jobs;
+}
+
+void grobo_i_jobs_close_up(grobo_robot *robot)
+{
+    GROBO_ASSERT(robot->acting == 0);
+    robot->job = robot->jobs;
+    for (int i = 1; i < GROBO_ROBOT_JOBS && robot->jobs[0].kind == GROBO_JOB_NONE; i++) {
+        if (robot->jobs[i].kind != GROBO_JOB_NONE) {
+            robot->jobs[0] = robot->jobs[i];
+            robot->jobs[i].kind = GROBO_JOB_NONE;
+        }
+    }
+}
+
+static int64_t deadline_of(const grobo_robot *robot, const grobo_robot_task *job)
+{
     if (job->kind == GROBO_JOB_NONE) {
         return GROBO_NEVER_US;
     }
+    bool asks = job->activity == GROBO_I_ASK || job->activity == GROBO_I_READ;
     int64_t at_us = job->activity == GROBO_I_WAIT ? job->until_us : GROBO_NEVER_US;
     /* Drained frames and a job just begun have no event of their own: look again at once. */
-    if (job->activity == GROBO_I_NEXT || (job->activity == GROBO_I_DRAIN && frames_out(robot))) {
+    if (job->activity == GROBO_I_NEXT || (asks && !is_asking(robot, job)) ||
+        (job->activity == GROBO_I_DRAIN && frames_out(robot, job))) {
         at_us = robot->now_us;
     }
     return at_us < job->bound_us ? at_us : job->bound_us;
+}
+
+int64_t grobo_i_job_deadline(const grobo_robot *robot)
+{
+    int64_t at_us = GROBO_NEVER_US;
+    for (int i = 0; i < GROBO_ROBOT_JOBS; i++) {
+        at_us = grobo_i_sooner(at_us, deadline_of(robot, &robot->jobs[i]));
+    }
+    return at_us;
 }
 
 /* ---- what comes back ------------------------------------------------------------------------- */
 
 static void take_answer(grobo_robot *robot, int result, const grobo_packet *reply)
 {
-    grobo_robot_task *job = &robot->job;
+    grobo_robot_task *job = robot->job;
     job->reply_bytes = 0;
     /* An ACK has no data, and then no place of it. */
     if (reply != NULL && reply->data_bytes > 0 && reply->data_bytes <= sizeof robot->reply) {
@@ -209,25 +355,51 @@ static void take_answer(grobo_robot *robot, int result, const grobo_packet *repl
     job->result = result;
 }
 
+static grobo_robot_task *job_of(const grobo_robot_slot *slot)
+{
+    for (int i = 0; i < GROBO_ROBOT_JOBS; i++) {
+        grobo_robot_task *job = &slot->robot->jobs[i];
+        if (job->kind != GROBO_JOB_NONE && slot->job == job->number) {
+            return job;
+        }
+    }
+    return NULL;
+}
+
 bool grobo_i_job_has(const grobo_robot_slot *slot)
 {
-    const grobo_robot_task *job = &slot->robot->job;
-    return job->kind != GROBO_JOB_NONE && slot->job == job->number;
+    return job_of(slot) != NULL;
 }
 
 void grobo_i_job_done(const grobo_robot_slot *slot, int result, const grobo_packet *reply)
 {
     grobo_robot *robot = slot->robot;
-    if (!grobo_i_job_has(slot)) {
+    grobo_robot_task *current = robot->job;
+    grobo_robot_task *job = job_of(slot);
+    if (job == NULL) {
         return; /* what was read has ended it */
     }
-    if (slot->reads) {
-        robot->job.todo &= ~GROBO_JOINT_BIT(slot->joint);
+    robot->job = job;
+    if (!slot->reads) {
+        take_answer(robot, result, reply);
+    } else if ((job->joints & GROBO_JOINT_BIT(slot->joint)) != 0) {
+        job->todo &= ~GROBO_JOINT_BIT(slot->joint);
         if (result < 0) {
             grobo_i_job_fail_joint(robot, slot->joint, result, 0);
         }
-    } else {
-        take_answer(robot, result, reply);
     }
+    robot->job = current;
     grobo_i_job_run(robot);
+}
+
+void grobo_i_job_refused(const grobo_robot_slot *slot, int result)
+{
+    grobo_robot *robot = slot->robot;
+    grobo_robot_task *current = robot->job;
+    grobo_robot_task *job = job_of(slot);
+    if (job != NULL) {
+        robot->job = job;
+        grobo_i_job_end(robot, result);
+        robot->job = current;
+    }
 }

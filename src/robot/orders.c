@@ -205,7 +205,7 @@ void grobo_i_gate_halt(grobo_robot *robot, grobo_joint_mask joints)
 
 static grobo_priority priority_of_job(const grobo_robot *robot)
 {
-    return robot->job.kind == GROBO_JOB_NONE ? GROBO_PRIORITY_USER : robot->job.priority;
+    return robot->job->kind == GROBO_JOB_NONE ? GROBO_PRIORITY_USER : robot->job->priority;
 }
 
 int grobo_i_gate_hold(grobo_robot *robot, grobo_joint_mask joints, grobo_i_chunk chunk)

@@ -127,7 +127,7 @@ static void tell_unwatched(grobo_robot *robot)
 
 int grobo_i_play_start(grobo_robot *robot)
 {
-    grobo_robot_task *job = &robot->job;
+    grobo_robot_task *job = robot->job;
     if (grobo_sequencer_get_state(&robot->sequencer) == GROBO_SEQUENCER_FAILED) {
         grobo_sequencer_reset(&robot->sequencer);
     }
@@ -233,9 +233,8 @@ void grobo_i_play_done(grobo_robot_slot *slot, int result)
         if (slot->refused) {
             give_up(robot, result);
         }
-    } else if (slot->refused && robot->job.kind != GROBO_JOB_NONE &&
-               slot->job == robot->job.number) {
-        grobo_i_job_end(robot, result);
+    } else if (slot->refused) {
+        grobo_i_job_refused(slot, result);
     }
 }
 
@@ -247,7 +246,7 @@ static bool send_frame(grobo_robot *robot, const grobo_play_frame *frame)
                           .stops = frame->phase == GROBO_SEQUENCER_STOPPING,
                           .rests = frame->phase == GROBO_SEQUENCER_STOPPING ||
                                    frame->phase == GROBO_SEQUENCER_PAUSED};
-    grobo_i_slots_cancel_goals(robot);
+    grobo_i_slots_cancel_goals(robot, frame->posture.set, true);
     int result = grobo_i_gate_send(robot, &frame->posture, &how);
     if (result < 0) {
         give_up(robot, result);

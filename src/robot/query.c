@@ -89,7 +89,7 @@ bool grobo_robot_moving(const grobo_robot *robot)
         return false;
     }
     grobo_i_lock(robot);
-    bool moving = grobo_i_in_motion(robot) || robot->job.kind == GROBO_JOB_PLAY ||
+    bool moving = grobo_i_in_motion(robot) || robot->job->kind == GROBO_JOB_PLAY ||
                   grobo_i_moving(robot, grobo_i_now(robot));
     grobo_i_unlock(robot);
     return moving;
@@ -120,7 +120,7 @@ bool grobo_robot_settling(const grobo_robot *robot)
         return false;
     }
     grobo_i_lock(robot);
-    bool settling = robot->link && (robot->settling || robot->job.kind == GROBO_JOB_SETTLE);
+    bool settling = robot->link && (robot->settling || robot->job->kind == GROBO_JOB_SETTLE);
     grobo_i_unlock(robot);
     return settling;
 }
@@ -131,7 +131,7 @@ grobo_job_kind grobo_robot_job(const grobo_robot *robot)
         return GROBO_JOB_NONE;
     }
     grobo_i_lock(robot);
-    grobo_job_kind kind = robot->job.kind;
+    grobo_job_kind kind = robot->job->kind;
     grobo_i_unlock(robot);
     return kind == GROBO_JOB_SETTLE ? GROBO_JOB_NONE : kind;
 }
@@ -221,7 +221,12 @@ const grobo_driver *grobo_robot_driver(const grobo_robot *robot)
     return robot == NULL ? NULL : robot->driver;
 }
 
+static bool is_move(const grobo_robot_task *job)
+{
+    return job->kind == GROBO_JOB_MOVE;
+}
+
 bool grobo_i_in_motion(const grobo_robot *robot)
 {
-    return robot->job.kind == GROBO_JOB_MOVE || grobo_robot_is_playing(robot);
+    return grobo_i_jobs_any(robot, is_move) || grobo_robot_is_playing(robot);
 }

@@ -7,17 +7,11 @@
 
 #include "src/base/instant.h"
 
-/* May a job begin now? */
-static int admit(grobo_robot *robot, bool moves)
+/* May a job of this kind begin now? */
+static int admit(grobo_robot *robot, grobo_job_kind kind, grobo_joint_mask joints, bool moves)
 {
-    if (!robot->link) {
-        return GROBO_ERR_CLOSED;
-    }
-    grobo_i_make_way(robot);
-    if (robot->job.kind != GROBO_JOB_NONE) {
-        return GROBO_ERR_STATE;
-    }
-    return moves && robot->trip.latched ? GROBO_ERR_LATCHED : GROBO_OK;
+    int result = grobo_i_admit(robot, kind, joints, moves);
+    return result == GROBO_I_LATER ? GROBO_ERR_STATE : result;
 }
 
 /* Runs a job just begun as far as it goes, and leaves. */
@@ -40,14 +34,14 @@ int grobo_robot_check(grobo_robot *robot)
         return GROBO_ERR_ARG;
     }
     grobo_i_begin(robot);
-    int result = admit(robot, false);
+    int result = admit(robot, GROBO_JOB_CHECK, 0, false);
     if (result >= 0 && robot->driver->check == NULL) {
         result = GROBO_ERR_UNSUPPORTED;
     }
     if (result < 0) {
         return refuse(robot, result);
     }
-    return begin(robot, grobo_i_job_start(robot, GROBO_JOB_CHECK, grobo_i_script_check));
+    return begin(robot, grobo_i_job_start(robot, GROBO_JOB_CHECK, grobo_i_script_check, 0));
 }
 
 static bool joints_sound(const grobo_robot *robot, grobo_joint_mask joints)
@@ -61,17 +55,51 @@ int grobo_robot_sense(grobo_robot *robot, grobo_joint_mask joints, grobo_sense_k
         return GROBO_ERR_ARG;
     }
     grobo_i_begin(robot);
-    int result = admit(robot, false);
-    if (!joints_sound(robot, joints) || (unsigned)kind > GROBO_SENSE_ALL) {
-        result = GROBO_ERR_ARG;
+    const grobo_robot_wish wish = {.kind = GROBO_JOB_SENSE, .joints = joints, .sense = kind};
+    int result = joints_sound(robot, joints) && (unsigned)kind <= GROBO_SENSE_ALL
+                     ? grobo_i_queue_ask(robot, &wish)
+                     : GROBO_ERR_ARG;
+    grobo_i_end(robot);
+    return result;
+}
+
+/* A motion that is being prepared goes no further. */
+static void stop_prepared(grobo_robot *robot)
+{
+    if (robot->job->kind == GROBO_JOB_PLAY && grobo_robot_is_playing(robot)) {
+        (void)grobo_sequencer_stop(&robot->sequencer, false, robot->now_us);
+        grobo_i_slots_cancel_goals(robot, grobo_i_all_joints(robot), true);
     }
-    if (result < 0) {
-        return refuse(robot, result);
+}
+
+/* Taking torque away goes before what the joints do, but not before what leaves a servo deaf. */
+static bool is_patient(const grobo_robot_task *job)
+{
+    return job->kind == GROBO_JOB_COMMAND || job->kind == GROBO_JOB_EXIT ||
+           job->kind == GROBO_JOB_ESTOP;
+}
+
+static bool is_alone(const grobo_robot_task *job)
+{
+    return job->kind == GROBO_JOB_CHECK || job->kind == GROBO_JOB_PLAY ||
+           job->kind == GROBO_JOB_STORED;
+}
+
+static int admit_torque(grobo_robot *robot, grobo_joint_mask joints, bool on)
+{
+    if (on) {
+        int result = admit(robot, GROBO_JOB_TORQUE, joints, true);
+        /* Frames of a motion would part goal and present angle again. */
+        return result >= 0 && grobo_robot_is_playing(robot) ? GROBO_ERR_STATE : result;
     }
-    int number = grobo_i_job_start(robot, GROBO_JOB_SENSE, grobo_i_script_sense);
-    robot->job.joints = joints;
-    robot->job.sense = kind;
-    return begin(robot, number);
+    if (!robot->link) {
+        return GROBO_ERR_CLOSED;
+    }
+    grobo_i_make_way(robot);
+    if (grobo_i_jobs_any(robot, is_patient)) {
+        return GROBO_ERR_STATE;
+    }
+    return GROBO_OK;
 }
 
 int grobo_robot_torque(grobo_robot *robot, grobo_joint_mask joints, grobo_torque mode)
@@ -81,10 +109,7 @@ int grobo_robot_torque(grobo_robot *robot, grobo_joint_mask joints, grobo_torque
     }
     grobo_i_begin(robot);
     bool on = mode == GROBO_TORQUE_ON;
-    int result = admit(robot, on);
-    if (result >= 0 && on && grobo_robot_is_playing(robot)) {
-        result = GROBO_ERR_STATE; /* its frames would part goal and present angle again */
-    }
+    int result = admit_torque(robot, joints, on);
     if (result >= 0 && robot->driver->torque == NULL) {
         result = GROBO_ERR_UNSUPPORTED;
     }
@@ -94,10 +119,20 @@ int grobo_robot_torque(grobo_robot *robot, grobo_joint_mask joints, grobo_torque
     if (result < 0) {
         return refuse(robot, result);
     }
+    if (!on) {
+        stop_prepared(robot);
+        grobo_i_jobs_end(robot, is_alone, GROBO_ERR_CANCELED);
+        grobo_i_jobs_leave(robot, joints);
+        grobo_i_queue_end(robot, GROBO_ERR_CANCELED);
+        if (!grobo_i_jobs_have_room(robot, true)) {
+            grobo_i_jobs_end(robot, NULL, GROBO_ERR_CANCELED); /* torques of others, all of them */
+        }
+        grobo_i_jobs_close_up(robot);
+    }
     int number = grobo_i_job_start(robot, GROBO_JOB_TORQUE,
-                                   on ? grobo_i_script_torque_on : grobo_i_script_torque_off);
-    robot->job.joints = joints;
-    robot->job.torque = mode;
+                                   on ? grobo_i_script_torque_on : grobo_i_script_torque_off, 0);
+    robot->job->joints = joints;
+    robot->job->torque = mode;
     robot->free_joints &= ~joints;
     return begin(robot, number);
 }
@@ -108,22 +143,17 @@ int grobo_robot_move(grobo_robot *robot, const grobo_posture *target)
         return GROBO_ERR_ARG;
     }
     grobo_i_begin(robot);
-    grobo_posture checked = *target;
-    int result = admit(robot, true);
-    if (result >= 0 && grobo_robot_is_playing(robot)) {
-        result = GROBO_ERR_STATE;
-    }
+    grobo_robot_wish wish = {.kind = GROBO_JOB_MOVE, .joints = target->set, .target = *target};
+    int result = !robot->link             ? GROBO_ERR_CLOSED
+                 : robot->trip.latched    ? GROBO_ERR_LATCHED
+                 : wish.target.set == 0   ? GROBO_ERR_ARG
+                                          : grobo_i_gate_target(robot, &wish.target);
     if (result >= 0) {
-        result = target->set == 0 ? GROBO_ERR_ARG : grobo_i_gate_target(robot, &checked);
+        wish.joints = wish.target.set;
+        result = grobo_i_queue_ask(robot, &wish);
     }
-    if (result < 0) {
-        return refuse(robot, result);
-    }
-    int number = grobo_i_job_start(robot, GROBO_JOB_MOVE, grobo_i_script_move);
-    robot->job.joints = checked.set;
-    robot->job.target = checked;
-    robot->free_joints &= ~checked.set;
-    return begin(robot, number);
+    grobo_i_end(robot);
+    return result;
 }
 
 /* One that was not sensed either is refused for that. */
@@ -157,8 +187,8 @@ static int admit_target(const grobo_robot *robot, const grobo_posture *target)
 /* True while something moves the robot that a target of the caller's stream must not disturb. */
 static bool is_taken(const grobo_robot *robot)
 {
-    return grobo_i_in_motion(robot) || robot->job.kind == GROBO_JOB_PLAY ||
-           robot->job.kind == GROBO_JOB_EXIT || robot->job.kind == GROBO_JOB_COMMAND;
+    return grobo_i_in_motion(robot) || robot->queued > 0 || robot->job->kind == GROBO_JOB_PLAY ||
+           robot->job->kind == GROBO_JOB_EXIT || robot->job->kind == GROBO_JOB_COMMAND;
 }
 
 int grobo_robot_send(grobo_robot *robot, const grobo_posture *target)
@@ -176,7 +206,7 @@ int grobo_robot_send(grobo_robot *robot, const grobo_posture *target)
     if (result >= 0) {
         grobo_i_make_way(robot);
         grobo_i_gate_single(robot);
-        grobo_i_slots_cancel_goals(robot);
+        grobo_i_slots_cancel_goals(robot, grobo_i_all_joints(robot), false);
         result = grobo_i_gate_send(robot, target, &how);
     }
     grobo_i_end(robot);
@@ -192,7 +222,7 @@ int grobo_robot_retarget(grobo_robot *robot, const grobo_posture *target)
     grobo_posture checked = *target;
     int result = admit_target(robot, target);
     bool sent = grobo_i_move_is_sent(robot) && !robot->soft;
-    if (result >= 0 && (!sent || (robot->job.joints & ~target->set) != 0)) {
+    if (result >= 0 && (!sent || (robot->job->joints & ~target->set) != 0)) {
         result = GROBO_ERR_STATE;
     }
     if (result >= 0) {
@@ -202,7 +232,7 @@ int grobo_robot_retarget(grobo_robot *robot, const grobo_posture *target)
         result = GROBO_ERR_STALE;
     }
     if (result >= 0) {
-        result = robot->job.number;
+        result = robot->job->number;
         grobo_i_move_retarget(robot, &checked);
     }
     grobo_i_end(robot);
@@ -213,7 +243,7 @@ int grobo_robot_retarget(grobo_robot *robot, const grobo_posture *target)
 static int admit_clip(grobo_robot *robot, const grobo_clip *clip, grobo_play_options *options,
                       grobo_joint_mask *joints)
 {
-    int result = admit(robot, true);
+    int result = admit(robot, GROBO_JOB_PLAY, 0, true);
     if (result >= 0 && grobo_robot_is_playing(robot)) {
         result = GROBO_ERR_STATE;
     }
@@ -243,10 +273,11 @@ int grobo_robot_play(grobo_robot *robot, const grobo_clip *clip, const grobo_pla
     if (result < 0) {
         return refuse(robot, result);
     }
-    int number = grobo_i_job_start(robot, GROBO_JOB_PLAY, grobo_i_script_play);
-    robot->job.joints = joints;
-    robot->job.clip = *clip;
-    robot->job.options = chosen;
+    int number = grobo_i_job_start(robot, GROBO_JOB_PLAY, grobo_i_script_play, 0);
+    robot->job->joints = joints;
+    robot->job->clip = *clip;
+    robot->job->options = chosen;
+    robot->clip_joints = joints;
     robot->free_joints = 0;
     return begin(robot, number);
 }
@@ -257,9 +288,10 @@ int grobo_robot_play(grobo_robot *robot, const grobo_clip *clip, const grobo_pla
 static int start_exchange(grobo_robot *robot, grobo_job_kind kind, const grobo_robot_order *order,
                           const grobo_exchange *exchange)
 {
-    int number = grobo_i_job_start(robot, kind, grobo_i_script_ask);
-    robot->job.exchange = *exchange;
-    robot->job.order = *order;
+    int number = grobo_i_job_start(robot, kind, grobo_i_script_ask, 0);
+    robot->job->exchange = *exchange;
+    robot->job->order = *order;
+    robot->job->joints = order->joints;
     return number;
 }
 
@@ -282,7 +314,7 @@ int grobo_robot_raw_until(grobo_robot *robot, const uint8_t *frame, size_t size,
     grobo_exchange exchange = {0};
     grobo_robot_order order;
     grobo_i_begin(robot);
-    int result = admit(robot, false);
+    int result = admit(robot, GROBO_JOB_RAW, 0, false);
     if (size == 0 || size > sizeof exchange.frame) {
         result = GROBO_ERR_ARG;
     }
@@ -294,6 +326,9 @@ int grobo_robot_raw_until(grobo_robot *robot, const uint8_t *frame, size_t size,
         exchange.frame_bytes = (uint8_t)size;
         result = grobo_i_gate_raw(robot, &exchange, &order);
     }
+    if (result >= 0) {
+        result = admit(robot, GROBO_JOB_RAW, order.joints, false);
+    }
     if (result < 0) {
         return refuse(robot, result);
     }
@@ -301,7 +336,7 @@ int grobo_robot_raw_until(grobo_robot *robot, const uint8_t *frame, size_t size,
         exchange.reply.kind = GROBO_REPLY_NONE;
     }
     int number = start_exchange(robot, GROBO_JOB_RAW, &order, &exchange);
-    robot->job.leave_by_us = until_us == GROBO_NEVER_US ? 0 : until_us;
+    robot->job->leave_by_us = until_us == GROBO_NEVER_US ? 0 : until_us;
     return begin(robot, number);
 }
 
@@ -333,7 +368,7 @@ int grobo_robot_registers(grobo_robot *robot, const grobo_register_io *io)
     grobo_exchange exchange = {0};
     grobo_robot_order order = {.deed = GROBO_I_DEED_NONE};
     grobo_i_begin(robot);
-    int result = admit(robot, false);
+    int result = admit(robot, GROBO_JOB_REGISTERS, joint_of(robot, io->id), false);
     if (io->id < 1 || io->id > GROBO_SERVO_ID_MAX || io->length < 1 ||
         io->address + io->length > GROBO_REGISTERS) {
         result = GROBO_ERR_ARG;
@@ -361,7 +396,7 @@ int grobo_robot_command(grobo_robot *robot, int id, grobo_servo_command command)
     grobo_exchange exchange = {0};
     grobo_robot_order order = {.deed = GROBO_I_DEED_COMMAND};
     grobo_i_begin(robot);
-    int result = admit(robot, false);
+    int result = admit(robot, GROBO_JOB_COMMAND, 0, false);
     if (result >= 0) {
         result = grobo_i_gate_judge(robot, &order, NULL);
     }
@@ -390,7 +425,7 @@ int grobo_robot_stored(grobo_robot *robot, grobo_stored_kind kind, int number)
     grobo_robot_order order = {
         .deed = GROBO_I_DEED_UNKNOWN, .joints = grobo_i_all_joints(robot), .moves = true};
     grobo_i_begin(robot);
-    int result = admit(robot, true);
+    int result = admit(robot, GROBO_JOB_STORED, 0, true);
     if (result >= 0) {
         result = grobo_i_gate_judge(robot, &order, NULL);
     }
@@ -409,18 +444,14 @@ int grobo_robot_stored(grobo_robot *robot, grobo_stored_kind kind, int number)
 
 /* ---- ends ------------------------------------------------------------------------------------ */
 
-/* Ends the job that runs to make place for another; what it moves is stopped, or all that moves. */
+/* Ends what runs and what waits; what is moved by it is stopped, or all that moves. */
 static void displace(grobo_robot *robot, bool all)
 {
     /* What a motion has sent before it plays is on its way, too. */
-    bool moves = all || grobo_i_job_moves(robot) || robot->job.kind == GROBO_JOB_PLAY;
-    if (robot->job.kind == GROBO_JOB_PLAY && grobo_robot_is_playing(robot)) {
-        (void)grobo_sequencer_stop(&robot->sequencer, false, robot->now_us);
-        grobo_i_slots_cancel_goals(robot);
-    }
-    if (robot->job.kind != GROBO_JOB_NONE) {
-        grobo_i_job_end(robot, GROBO_ERR_CANCELED);
-    }
+    bool moves = all || grobo_i_jobs_any(robot, grobo_i_job_moves);
+    stop_prepared(robot);
+    grobo_i_jobs_end(robot, NULL, GROBO_ERR_CANCELED);
+    grobo_i_queue_end(robot, GROBO_ERR_CANCELED);
     if (moves) {
         grobo_i_stop_moves(robot);
     }
@@ -433,8 +464,8 @@ int grobo_robot_cancel(grobo_robot *robot)
     }
     grobo_i_begin(robot);
     int result = GROBO_OK;
-    if (robot->job.kind == GROBO_JOB_NONE || robot->job.kind == GROBO_JOB_ESTOP ||
-        robot->job.kind == GROBO_JOB_SETTLE) {
+    if (robot->job->kind == GROBO_JOB_NONE || robot->job->kind == GROBO_JOB_ESTOP ||
+        robot->job->kind == GROBO_JOB_SETTLE) {
         result = GROBO_ERR_STATE;
     } else {
         displace(robot, false);
@@ -463,7 +494,7 @@ int grobo_robot_exit(grobo_robot *robot, grobo_exit_policy policy)
         return GROBO_ERR_ARG;
     }
     grobo_i_begin(robot);
-    if (!robot->link || (unsigned)policy > GROBO_EXIT_SIT || robot->job.kind == GROBO_JOB_ESTOP) {
+    if (!robot->link || (unsigned)policy > GROBO_EXIT_SIT || robot->job->kind == GROBO_JOB_ESTOP) {
         return refuse(robot, !robot->link                        ? GROBO_ERR_CLOSED
                              : (unsigned)policy > GROBO_EXIT_SIT ? GROBO_ERR_ARG
                                                                  : GROBO_ERR_STATE);
@@ -473,10 +504,10 @@ int grobo_robot_exit(grobo_robot *robot, grobo_exit_policy policy)
     }
     displace(robot, true);
     grobo_i_slots_cancel(robot, GROBO_I_USE_PLAIN); /* such as torque that free mode asked for */
-    int number = grobo_i_job_start(robot, GROBO_JOB_EXIT, exit_script(robot, policy));
-    robot->job.joints = grobo_i_all_joints(robot);
-    robot->job.torque = GROBO_TORQUE_OFF;
-    robot->job.bound_us =
+    int number = grobo_i_job_start(robot, GROBO_JOB_EXIT, exit_script(robot, policy), 0);
+    robot->job->joints = grobo_i_all_joints(robot);
+    robot->job->torque = GROBO_TORQUE_OFF;
+    robot->job->bound_us =
         robot->now_us + grobo_i_sooner(robot->config.exit_bound_us, GROBO_NEVER_US - robot->now_us);
     robot->free_joints = 0;
     return begin(robot, number);
@@ -487,12 +518,12 @@ int grobo_robot_exit(grobo_robot *robot, grobo_exit_policy policy)
 
 int grobo_i_estop_start(grobo_robot *robot)
 {
-    int number = grobo_i_job_start(robot, GROBO_JOB_ESTOP, grobo_i_script_torque_off);
-    robot->job.joints = grobo_i_all_joints(robot);
-    robot->job.torque =
+    int number = grobo_i_job_start(robot, GROBO_JOB_ESTOP, grobo_i_script_torque_off, 0);
+    robot->job->joints = grobo_i_all_joints(robot);
+    robot->job->torque =
         robot->config.estop_torque == GROBO_ESTOP_OFF ? GROBO_TORQUE_OFF : GROBO_TORQUE_BRAKE;
-    robot->job.priority = GROBO_PRIORITY_STOP;
-    robot->job.bound_us = robot->now_us + ESTOP_BOUND_US;
+    robot->job->priority = GROBO_PRIORITY_STOP;
+    robot->job->bound_us = robot->now_us + ESTOP_BOUND_US;
     robot->holds_at_stop = false;
     grobo_i_job_run(robot);
     return number;
@@ -504,9 +535,8 @@ int grobo_robot_estop(grobo_robot *robot)
         return GROBO_ERR_ARG;
     }
     grobo_i_begin(robot);
-    if (robot->job.kind != GROBO_JOB_NONE) {
-        grobo_i_job_end(robot, GROBO_ERR_CANCELED);
-    }
+    grobo_i_jobs_end(robot, NULL, GROBO_ERR_CANCELED);
+    grobo_i_queue_end(robot, GROBO_ERR_CANCELED);
     grobo_sequencer_reset(&robot->sequencer);
     grobo_bus_reserve(&robot->bus, GROBO_NEVER_US, 0);
     (void)grobo_bus_cancel_all(&robot->bus, GROBO_PRIORITY_ALL, GROBO_ERR_CANCELED);
@@ -539,7 +569,7 @@ int grobo_robot_reset(grobo_robot *robot)
     }
     grobo_i_begin(robot);
     int result = robot->host.may_reset != NULL ? robot->host.may_reset(robot->host.ctx) : GROBO_OK;
-    if (robot->job.kind == GROBO_JOB_ESTOP) {
+    if (robot->job->kind == GROBO_JOB_ESTOP) {
         result = GROBO_ERR_STATE;
     }
     if (result >= 0) {
@@ -563,7 +593,7 @@ int grobo_robot_free(grobo_robot *robot, grobo_joint_mask joints, bool on)
         return grobo_robot_torque(robot, joints, GROBO_TORQUE_ON);
     }
     grobo_i_begin(robot);
-    int result = admit(robot, true);
+    int result = admit(robot, GROBO_JOB_TORQUE, joints, true);
     if (result >= 0 && grobo_robot_is_playing(robot)) {
         result = GROBO_ERR_STATE;
     }
@@ -577,6 +607,7 @@ int grobo_robot_free(grobo_robot *robot, grobo_joint_mask joints, bool on)
         for (int j = 0; j < robot->driver->model->n_joints; j++) {
             robot->axes[j].away_rad = INFINITY; /* it may be on a way */
         }
+        grobo_i_queue_end(robot, GROBO_ERR_CANCELED);
         robot->free_joints |= joints;
         robot->sense_us = robot->now_us;
     }

@@ -75,6 +75,7 @@ int grobo_robot_init(grobo_robot *robot, const grobo_driver *driver, void *drive
     }
     memset(robot, 0, sizeof *robot);
     robot->driver = driver;
+    robot->job = robot->jobs;
     robot->driver_ctx = driver_ctx;
     robot->leave = grobo_i_gate_leave;
     robot->over = grobo_i_frame_over;
@@ -178,6 +179,7 @@ void grobo_robot_step(grobo_robot *robot, int64_t now_us)
         grobo_i_play_step(robot);
         grobo_i_play_reserve(robot);
         grobo_i_job_run(robot);
+        grobo_i_queue_step(robot);
         grobo_i_sense_step(robot);
     }
     grobo_i_leave(robot);
@@ -195,6 +197,7 @@ static int64_t deadline(const grobo_robot *robot, int64_t now_us)
     at_us = grobo_i_sooner(at_us, grobo_sequencer_deadline(&robot->sequencer));
     at_us = grobo_i_sooner(at_us, grobo_i_segments_deadline(robot));
     at_us = grobo_i_sooner(at_us, grobo_i_job_deadline(robot));
+    at_us = grobo_i_sooner(at_us, grobo_i_queue_deadline(robot));
     return grobo_i_sooner(at_us, grobo_i_sense_deadline(robot));
 }
 
@@ -259,10 +262,11 @@ void grobo_robot_link_down(grobo_robot *robot, int64_t now_us)
         if (grobo_robot_is_playing(robot)) {
             (void)grobo_sequencer_fail(&robot->sequencer, GROBO_ERR_UNPLUGGED);
         }
-        if (robot->job.kind != GROBO_JOB_NONE) {
-            robot->job.failed |= robot->job.pending;
-            grobo_i_job_end(robot, GROBO_ERR_UNPLUGGED);
+        for (int i = 0; i < GROBO_ROBOT_JOBS; i++) {
+            robot->jobs[i].failed |= robot->jobs[i].pending;
         }
+        grobo_i_jobs_end(robot, NULL, GROBO_ERR_UNPLUGGED);
+        grobo_i_queue_end(robot, GROBO_ERR_UNPLUGGED);
         (void)grobo_bus_cancel_all(&robot->bus, GROBO_PRIORITY_ALL, GROBO_ERR_UNPLUGGED);
         grobo_bus_reserve(&robot->bus, GROBO_NEVER_US, 0);
         forget(robot);

@@ -22,6 +22,7 @@
  *   sense.c      when the background reads which joint, free mode
  *   steps.c      the steps that scripts are made of
  *   turn.c       the end of a call and of a frame
+ *   queue.c      which jobs run side by side, and what waits for its turn
  *   request.c    the public requests: checks, then starts a script
  *   control.c    the public controls of a motion
  *   robot.c      life, pump, link
@@ -126,8 +127,9 @@ void grobo_i_slot_drop(grobo_robot_slot *slot);
 void grobo_i_slots_cancel(grobo_robot *robot, grobo_i_use use);
 /* Takes back every frame that a step of this job made. */
 void grobo_i_slots_cancel_job(grobo_robot *robot, int number);
-/* Takes back targets that have not left. */
-void grobo_i_slots_cancel_goals(grobo_robot *robot);
+/* Takes back targets that have not left and move one of these joints; `played`: and those of the
+ * motion that is played. */
+void grobo_i_slots_cancel_goals(grobo_robot *robot, grobo_joint_mask joints, bool played);
 /* Takes back frames that would switch the torque of one of these joints on. */
 void grobo_i_slots_keep_off(grobo_robot *robot, grobo_joint_mask joints);
 /* True if a frame that does this to the joint waits for the line; `torque` OFF for another deed. */
@@ -259,21 +261,40 @@ typedef enum grobo_i_activity {
     GROBO_I_WAIT      /* until job.until_us */
 } grobo_i_activity;
 
-/* Starts a job; its number, or the reason why not. `script` ends with NULL. */
-int grobo_i_job_start(grobo_robot *robot, grobo_job_kind kind, const grobo_robot_step_fn *script);
-/* Goes on with the job as far as it goes now. */
+/* A number for a job. */
+int grobo_i_job_number(grobo_robot *robot);
+/* True if there is room for one more; `last`: in the place that is kept for what takes torque
+ * away, too. */
+bool grobo_i_jobs_have_room(const grobo_robot *robot, bool last);
+/* Starts a job, which robot.job points to until the next grobo_i_job_run(). `number` 0: a new one.
+ * `script` ends with NULL. @return its number. */
+int grobo_i_job_start(grobo_robot *robot, grobo_job_kind kind, const grobo_robot_step_fn *script,
+                      int number);
+/* Goes on with every job as far as it goes now. */
 void grobo_i_job_run(grobo_robot *robot);
-/* Ends the job and tells so. */
+/* Where one runs, the first place is not free. At the end of every call. */
+void grobo_i_jobs_close_up(grobo_robot *robot);
+/* Ends robot.job and tells so. */
 void grobo_i_job_end(grobo_robot *robot, int result);
+/* The same for each job of which that is true; NULL: of all. */
+void grobo_i_jobs_end(grobo_robot *robot, bool (*is)(const grobo_robot_task *job), int result);
+/* True if that is true of a job that runs; NULL: if one runs. */
+bool grobo_i_jobs_any(const grobo_robot *robot, bool (*is)(const grobo_robot_task *job));
+/* Moves and torques that run leave these joints to another; one that has no joint left ends. */
+void grobo_i_jobs_leave(grobo_robot *robot, grobo_joint_mask joints);
+/* Ends what waits for its turn. */
+void grobo_i_queue_end(grobo_robot *robot, int result);
 /* One joint failed; the job goes on with the others. The first error is the job's result. */
 void grobo_i_job_fail_joint(grobo_robot *robot, int joint, int error, double value);
 /* The step to go on with instead of the next one; it must be in the script. */
 void grobo_i_job_goto(grobo_robot *robot, grobo_robot_step_fn step);
-/* When the job wants to be run though nothing happens. */
+/* When a job wants to be run though nothing happens. */
 int64_t grobo_i_job_deadline(const grobo_robot *robot);
 
-/* True if the frame is of the job that runs. */
+/* True if the frame is of a job that runs. */
 bool grobo_i_job_has(const grobo_robot_slot *slot);
+/* A target of the job was refused as it would have left: the job ends so. */
+void grobo_i_job_refused(const grobo_robot_slot *slot, int result);
 /* A frame of the job is over; a reading was taken. */
 void grobo_i_job_done(const grobo_robot_slot *slot, int result, const grobo_packet *reply);
 
@@ -284,8 +305,8 @@ void grobo_i_make_way(grobo_robot *robot);
 /* Cancels targets that wait, and halts what moves; while a motion is played, which ends by itself,
  * only what was sent beside it. */
 void grobo_i_stop_moves(grobo_robot *robot);
-/* True if the job that runs moves joints, or would: a stop ends it. */
-bool grobo_i_job_moves(const grobo_robot *robot);
+/* True if a job moves joints, or would: a stop ends it. */
+bool grobo_i_job_moves(const grobo_robot_task *job);
 
 /* ---- trip.c ---------------------------------------------------------------------------------- */
 
@@ -371,6 +392,20 @@ void grobo_i_begin(grobo_robot *robot);
 void grobo_i_end(grobo_robot *robot);
 /* A frame is over: grobo_robot.over. The slot is a copy. */
 void grobo_i_frame_over(grobo_robot_slot *slot, int result, const grobo_packet *reply);
+
+/* ---- queue.c --------------------------------------------------------------------------------- */
+
+/* May a job of this kind begin on these joints? GROBO_I_LATER: when others have ended. */
+#define GROBO_I_LATER 1
+int grobo_i_admit(grobo_robot *robot, grobo_job_kind kind, grobo_joint_mask joints, bool moves);
+/* Joints of the moves that run or wait. */
+grobo_joint_mask grobo_i_joints_of_moves(const grobo_robot *robot);
+/* Begins a move or a reading, or has it wait. @return its number, or the reason why not. */
+int grobo_i_queue_ask(grobo_robot *robot, const grobo_robot_wish *wish);
+/* Begins what waits and may go; ends what has waited too long. */
+void grobo_i_queue_step(grobo_robot *robot);
+/* When that is next. */
+int64_t grobo_i_queue_deadline(const grobo_robot *robot);
 
 /* ---- request.c ------------------------------------------------------------------------------- */
 

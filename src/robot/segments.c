@@ -14,10 +14,15 @@ static bool has_stopped(const grobo_robot_axis *axis, int64_t now_us)
     return grobo_i_way_is_short(axis) && axis->told_to_us <= now_us;
 }
 
+static bool goes_on(const grobo_robot_task *job)
+{
+    return job->kind == GROBO_JOB_MOVE || job->kind == GROBO_JOB_PLAY ||
+           job->kind == GROBO_JOB_SETTLE;
+}
+
 /* As where the host stalls in a motion: what moves is over, and nothing is latched. */
 static void give_up(grobo_robot *robot)
 {
-    grobo_job_kind kind = robot->job.kind;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         grobo_robot_axis *axis = &robot->axes[j];
         if (grobo_i_way_is_short(axis)) {
@@ -34,9 +39,8 @@ static void give_up(grobo_robot *robot)
     grobo_i_trip(robot, GROBO_TRIP_HOST_STALL, -1,
                  (double)(robot->now_us - robot->renewed_us - GROBO_SEGMENT_RENEW_US) / 1000.0,
                  false);
-    if (kind == GROBO_JOB_MOVE || kind == GROBO_JOB_PLAY || kind == GROBO_JOB_SETTLE) {
-        grobo_i_job_end(robot, GROBO_ERR_CANCELED);
-    }
+    grobo_i_jobs_end(robot, goes_on, GROBO_ERR_CANCELED);
+    grobo_i_queue_end(robot, GROBO_ERR_CANCELED);
 }
 
 void grobo_i_segments_step(grobo_robot *robot)

@@ -77,7 +77,7 @@ static void free_joint(grobo_robot *robot, int joint)
 /* Not in the silence after a flash write or a restart. */
 static bool background_wanted(const grobo_robot *robot)
 {
-    if (robot->job.kind == GROBO_JOB_COMMAND) {
+    if (robot->job->kind == GROBO_JOB_COMMAND) {
         return false;
     }
     return robot->config.sense_interval_us != GROBO_SENSE_NEVER || robot->free_joints != 0;

@@ -30,7 +30,7 @@ static bool is_set(grobo_joint_mask joints, int joint)
 
 static grobo_i_chunk chunk_of(const grobo_robot *robot)
 {
-    return robot->job.rounds == 0 ? GROBO_I_WHOLE : GROBO_I_SMALL;
+    return robot->job->rounds == 0 ? GROBO_I_WHOLE : GROBO_I_SMALL;
 }
 
 static bool near_rad(double a_rad, double b_rad, double within_rad)
@@ -42,11 +42,11 @@ static bool near_rad(double a_rad, double b_rad, double within_rad)
  * emergency stop for one that was heard lately, within its bound: it may restart all the time. */
 static int64_t patient_until(const grobo_robot *robot, grobo_joint_mask bad)
 {
-    int64_t from_us = robot->job.begun_us;
+    int64_t from_us = robot->job->begun_us;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
         bool heard = is_set(bad, j) && axis->angle_us != GROBO_NEVER_US;
-        if (heard && robot->job.kind == GROBO_JOB_ESTOP) {
+        if (heard && robot->job->kind == GROBO_JOB_ESTOP) {
             from_us = grobo_i_later(from_us, axis->angle_us);
         }
     }
@@ -56,7 +56,7 @@ static int64_t patient_until(const grobo_robot *robot, grobo_joint_mask bad)
 /* What did not take gets another round from `step` on; without rounds left it has failed. */
 static int again(grobo_robot *robot, grobo_joint_mask bad, grobo_robot_step_fn step)
 {
-    grobo_robot_task *job = &robot->job;
+    grobo_robot_task *job = robot->job;
     bool ends = job->kind == GROBO_JOB_ESTOP || job->kind == GROBO_JOB_EXIT;
     int rounds = job->kind == GROBO_JOB_ESTOP ? ROUNDS_ESTOP : ROUNDS;
     if (bad == 0) {
@@ -86,31 +86,31 @@ static int ask(grobo_robot *robot, const grobo_exchange *exchange)
         return GROBO_ERR_FULL;
     }
     slot->exchange = *exchange;
-    slot->order = robot->job.order;
-    slot->txn.start_by_us = robot->job.leave_by_us;
-    int result = grobo_i_slot_send(slot, robot->job.priority);
+    slot->order = robot->job->order;
+    slot->txn.start_by_us = robot->job->leave_by_us;
+    int result = grobo_i_slot_send(slot, robot->job->priority);
     return result < 0 ? result : GROBO_I_ASK;
 }
 
 static int step_ask(grobo_robot *robot)
 {
-    return ask(robot, &robot->job.exchange);
+    return ask(robot, &robot->job->exchange);
 }
 
 /* Flash and reboot need silence after them. */
 static int step_settle(grobo_robot *robot)
 {
-    if (robot->job.result < 0 || robot->job.exchange.settle_us == 0) {
-        return robot->job.result;
+    if (robot->job->result < 0 || robot->job->exchange.settle_us == 0) {
+        return robot->job->result;
     }
-    robot->job.until_us = robot->now_us + robot->job.exchange.settle_us;
+    robot->job->until_us = robot->now_us + robot->job->exchange.settle_us;
     return GROBO_I_WAIT;
 }
 
 static int step_check(grobo_robot *robot)
 {
     const grobo_driver *driver = robot->driver;
-    grobo_robot_task *job = &robot->job;
+    grobo_robot_task *job = robot->job;
     memset(&job->exchange, 0, sizeof job->exchange);
     int more = driver->check(driver, robot->driver_ctx, job->part, &job->exchange);
     if (more == 0) {
@@ -121,8 +121,8 @@ static int step_check(grobo_robot *robot)
 
 static int step_check_next(grobo_robot *robot)
 {
-    if (robot->job.result < 0) {
-        robot->job.part++;
+    if (robot->job->result < 0) {
+        robot->job->part++;
         grobo_i_job_goto(robot, step_check);
     }
     return GROBO_I_NEXT;
@@ -132,13 +132,13 @@ static int step_check_next(grobo_robot *robot)
 
 static int step_read(grobo_robot *robot)
 {
-    robot->job.todo = robot->job.joints;
+    robot->job->todo = robot->job->joints;
     return GROBO_I_READ;
 }
 
 static int step_read_again(grobo_robot *robot)
 {
-    grobo_robot_task *job = &robot->job;
+    grobo_robot_task *job = robot->job;
     job->todo = job->failed;
     job->failed = 0;
     job->result = GROBO_OK;
@@ -147,22 +147,22 @@ static int step_read_again(grobo_robot *robot)
 
 static int step_read_pending(grobo_robot *robot)
 {
-    robot->job.todo = robot->job.pending;
-    robot->job.sense = GROBO_SENSE_GOAL;
+    robot->job->todo = robot->job->pending;
+    robot->job->sense = GROBO_SENSE_GOAL;
     return GROBO_I_READ;
 }
 
 /* From here on every joint is needed. */
 static int step_require(grobo_robot *robot)
 {
-    return robot->job.failed == 0 ? GROBO_I_NEXT : robot->job.result;
+    return robot->job->failed == 0 ? GROBO_I_NEXT : robot->job->result;
 }
 
 /* Motions begin where the joints were just seen, not where they were told to be. */
 static int step_from_here(grobo_robot *robot)
 {
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if (is_set(robot->job.joints & ~robot->job.failed, j)) {
+        if (is_set(robot->job->joints & ~robot->job->failed, j)) {
             grobo_i_axis_here(&robot->axes[j], robot->now_us);
         }
     }
@@ -185,7 +185,7 @@ static grobo_joint_mask joints_with(const grobo_robot *robot, grobo_joint_mask j
 
 static int step_pick_off(grobo_robot *robot)
 {
-    grobo_robot_task *job = &robot->job;
+    grobo_robot_task *job = robot->job;
     grobo_joint_mask read = job->joints & ~job->failed;
     job->pending = read & ~joints_with(robot, read, GROBO_TORQUE_ON);
     job->torque = GROBO_TORQUE_ON;
@@ -202,7 +202,7 @@ static int step_pick_off(grobo_robot *robot)
 
 static int step_hold(grobo_robot *robot)
 {
-    grobo_robot_task *job = &robot->job;
+    grobo_robot_task *job = robot->job;
     grobo_joint_mask loose = 0;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         if (is_set(job->pending, j) && isnan(grobo_i_hold_rad(robot, j))) {
@@ -219,7 +219,7 @@ static int step_hold(grobo_robot *robot)
 
 static int step_hold_check(grobo_robot *robot)
 {
-    grobo_robot_task *job = &robot->job;
+    grobo_robot_task *job = robot->job;
     grobo_joint_mask bad = 0;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         if (is_set(job->pending, j)) {
@@ -236,15 +236,15 @@ static int step_hold_check(grobo_robot *robot)
 static int stop_by_halt(grobo_robot *robot)
 {
     robot->holds_at_stop = true;
-    robot->job.script = grobo_i_script_exit_hold;
-    robot->job.at = 0;
+    robot->job->script = grobo_i_script_exit_hold;
+    robot->job->at = 0;
     grobo_i_gate_halt(robot, grobo_i_all_joints(robot));
     return GROBO_I_NEXT;
 }
 
 static int step_torque(grobo_robot *robot)
 {
-    grobo_robot_task *job = &robot->job;
+    grobo_robot_task *job = robot->job;
     int result = grobo_i_gate_torque(robot, job->pending, job->torque, chunk_of(robot));
     if (result < 0 && result != GROBO_ERR_FULL) {
         return job->kind == GROBO_JOB_ESTOP ? stop_by_halt(robot) : result;
@@ -255,13 +255,13 @@ static int step_torque(grobo_robot *robot)
 static bool torque_taken(const grobo_robot *robot, int joint)
 {
     grobo_torque has = robot->axes[joint].state.torque;
-    return has == robot->job.torque ||
-           (robot->job.kind == GROBO_JOB_ESTOP && has == GROBO_TORQUE_OFF);
+    return has == robot->job->torque ||
+           (robot->job->kind == GROBO_JOB_ESTOP && has == GROBO_TORQUE_OFF);
 }
 
 static int step_torque_check(grobo_robot *robot)
 {
-    grobo_robot_task *job = &robot->job;
+    grobo_robot_task *job = robot->job;
     grobo_joint_mask bad = 0;
     bool on = job->torque == GROBO_TORQUE_ON;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
@@ -286,10 +286,10 @@ static int step_torque_check(grobo_robot *robot)
 
 static int step_pick_all(grobo_robot *robot)
 {
-    robot->job.pending = robot->job.joints;
-    robot->job.rounds = 0;
-    robot->job.failed = 0;
-    robot->job.result = GROBO_OK;
+    robot->job->pending = robot->job->joints;
+    robot->job->rounds = 0;
+    robot->job->failed = 0;
+    robot->job->result = GROBO_OK;
     return GROBO_I_NEXT;
 }
 
@@ -297,14 +297,14 @@ static int step_pick_all(grobo_robot *robot)
 
 static int step_aim(grobo_robot *robot)
 {
-    robot->job.pending = robot->job.target.set;
-    robot->job.rounds = 0;
+    robot->job->pending = robot->job->target.set;
+    robot->job->rounds = 0;
     return GROBO_I_NEXT;
 }
 
 static int step_send(grobo_robot *robot)
 {
-    grobo_robot_task *job = &robot->job;
+    grobo_robot_task *job = robot->job;
     grobo_i_motion how = {.priority = job->priority,
                           .due_us = GROBO_NEVER_US,
                           .as_is = job->kind == GROBO_JOB_SETTLE, /* the stabilizer has seen it */
@@ -329,7 +329,7 @@ static int step_send(grobo_robot *robot)
 /* Until those that were sent are there: they got their time when their frames left. */
 static int step_arrive(grobo_robot *robot)
 {
-    grobo_robot_task *job = &robot->job;
+    grobo_robot_task *job = robot->job;
     int64_t there_us = robot->now_us;
     if (job->pending == 0) {
         return GROBO_I_NEXT;
@@ -366,7 +366,7 @@ static bool has_taken(const grobo_robot_axis *axis)
 /* Of the joints just read, those whose goal is not the one they were sent to. */
 static grobo_joint_mask not_taken(const grobo_robot *robot)
 {
-    grobo_joint_mask read = robot->job.pending & ~robot->job.failed;
+    grobo_joint_mask read = robot->job->pending & ~robot->job->failed;
     grobo_joint_mask bad = 0;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         if (is_set(read, j) && !has_taken(&robot->axes[j])) {
@@ -386,15 +386,15 @@ static int step_missed(grobo_robot *robot)
             grobo_i_axis_here(&robot->axes[j], robot->now_us);
         }
     }
-    robot->job.pending = bad;
-    robot->job.failed = 0;
-    robot->job.result = GROBO_OK;
+    robot->job->pending = bad;
+    robot->job->failed = 0;
+    robot->job->result = GROBO_OK;
     return GROBO_I_NEXT;
 }
 
 static int step_arrived(grobo_robot *robot)
 {
-    grobo_robot_task *job = &robot->job;
+    grobo_robot_task *job = robot->job;
     grobo_joint_mask lost = job->pending & job->failed;
     if (lost != 0) {
         job->pending = lost | not_taken(robot);
@@ -412,7 +412,7 @@ static int step_arrived(grobo_robot *robot)
 
 static int step_play(grobo_robot *robot)
 {
-    grobo_robot_task *job = &robot->job;
+    grobo_robot_task *job = robot->job;
     int result = grobo_i_play_start(robot);
     job->pending = 0;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
@@ -431,7 +431,7 @@ static int step_play(grobo_robot *robot)
  * Once another one was sent, what was read back says nothing any more. */
 static int step_approached(grobo_robot *robot)
 {
-    grobo_robot_task *job = &robot->job;
+    grobo_robot_task *job = robot->job;
     bool approaching = grobo_robot_play_state(robot) == GROBO_SEQUENCER_APPROACHING &&
                        robot->motion == job->motion;
     grobo_joint_mask lost = approaching ? job->pending & job->failed : 0;
@@ -458,7 +458,7 @@ static int step_approached(grobo_robot *robot)
 /* The last posture of a motion: what was lost of it is sent once more, softly. */
 static int step_aim_last(grobo_robot *robot)
 {
-    grobo_robot_task *job = &robot->job;
+    grobo_robot_task *job = robot->job;
     (void)grobo_robot_target(robot, &job->target);
     job->target.set &= job->joints;
     grobo_i_gate_soften(robot);
@@ -478,7 +478,7 @@ static int step_quiet(grobo_robot *robot)
         return GROBO_I_NEXT;
     }
     grobo_i_job_goto(robot, step_quiet);
-    robot->job.until_us = robot->now_us + QUIET_US;
+    robot->job->until_us = robot->now_us + QUIET_US;
     return GROBO_I_WAIT;
 }
 
@@ -513,7 +513,7 @@ static bool is_astray(grobo_robot *robot, int joint)
 /* Nothing goes on behind our back: a halt may be lost, or another program may have been killed. */
 static int step_strays(grobo_robot *robot)
 {
-    grobo_robot_task *job = &robot->job;
+    grobo_robot_task *job = robot->job;
     grobo_joint_mask astray = 0;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         if (is_set(job->joints & ~job->failed, j) && is_astray(robot, j)) {
@@ -530,7 +530,7 @@ static int step_strays(grobo_robot *robot)
 static int step_aim_rest(grobo_robot *robot)
 {
     const grobo_driver *driver = robot->driver;
-    grobo_robot_task *job = &robot->job;
+    grobo_robot_task *job = robot->job;
     grobo_posture_init_pose(&job->target, driver->model);
     for (int j = 0; driver->rest_rad != NULL && j < driver->model->n_joints; j++) {
         job->target.angle_rad[j] = driver->rest_rad[j];
@@ -571,7 +571,7 @@ const grobo_robot_step_fn grobo_i_script_exit_sit[] = {
 
 bool grobo_i_move_is_sent(const grobo_robot *robot)
 {
-    const grobo_robot_task *job = &robot->job;
+    const grobo_robot_task *job = robot->job;
     unsigned sending = 0;
     if (job->kind != GROBO_JOB_MOVE) {
         return false;
@@ -585,8 +585,8 @@ bool grobo_i_move_is_sent(const grobo_robot *robot)
 /* A reading on the wire comes to its end; whatever else the job waits for is over. */
 void grobo_i_move_retarget(grobo_robot *robot, const grobo_posture *target)
 {
-    grobo_robot_task *job = &robot->job;
-    grobo_i_slots_cancel_goals(robot);
+    grobo_robot_task *job = robot->job;
+    grobo_i_slots_cancel_goals(robot, job->joints, false);
     job->target = *target;
     job->joints = job->pending = target->set;
     job->rounds = 0;

@@ -24,9 +24,9 @@ const char *grobo_trip_name(grobo_trip trip)
 }
 
 /* Jobs that a latched stop ends: those that move, or that switch torque on. */
-static bool job_must_end(const grobo_robot *robot)
+static bool must_end(const grobo_robot_task *job)
 {
-    switch (robot->job.kind) {
+    switch (job->kind) {
     case GROBO_JOB_MOVE:
     case GROBO_JOB_PLAY:
     case GROBO_JOB_STORED:
@@ -34,7 +34,7 @@ static bool job_must_end(const grobo_robot *robot)
     case GROBO_JOB_SETTLE:
         return true;
     case GROBO_JOB_TORQUE:
-        return robot->job.torque == GROBO_TORQUE_ON;
+        return job->torque == GROBO_TORQUE_ON;
     case GROBO_JOB_NONE:
     case GROBO_JOB_CHECK:
     case GROBO_JOB_SENSE:
@@ -59,17 +59,18 @@ void grobo_i_trip(grobo_robot *robot, grobo_trip reason, int joint, double value
         robot->trip = event.u.trip;
         robot->free_joints = 0;
     }
-    grobo_i_slots_cancel_goals(robot);
+    grobo_i_slots_cancel_goals(robot, grobo_i_all_joints(robot), true);
     robot->counters.trips++;
     grobo_i_tell(robot, &event);
     if (grobo_robot_is_playing(robot)) {
         (void)grobo_sequencer_stop(&robot->sequencer, false, robot->now_us);
     }
-    if (latched && job_must_end(robot)) {
-        grobo_i_job_end(robot, GROBO_ERR_LATCHED);
+    grobo_i_queue_end(robot, latched ? GROBO_ERR_LATCHED : GROBO_ERR_CANCELED);
+    if (latched) {
+        grobo_i_jobs_end(robot, must_end, GROBO_ERR_LATCHED);
     }
     /* Before an emergency stop nothing goes out, and who leaves is on the way already. */
-    if (latched && reason != GROBO_TRIP_ESTOP && robot->job.kind != GROBO_JOB_EXIT) {
+    if (latched && reason != GROBO_TRIP_ESTOP && robot->jobs[0].kind != GROBO_JOB_EXIT) {
         grobo_i_stop_moves(robot);
     }
 }

@@ -68,12 +68,12 @@ void grobo_i_enter(grobo_robot *robot, int64_t now_us)
 /* After a motion, unless somebody asked for something else: its last posture is read back. */
 static void settle(grobo_robot *robot)
 {
-    if (!robot->settling || robot->job.kind != GROBO_JOB_NONE || !robot->link) {
+    if (!robot->settling || robot->job->kind != GROBO_JOB_NONE || !robot->link) {
         return;
     }
     robot->settling = false;
-    (void)grobo_i_job_start(robot, GROBO_JOB_SETTLE, grobo_i_script_settle);
-    robot->job.joints = grobo_i_all_joints(robot);
+    (void)grobo_i_job_start(robot, GROBO_JOB_SETTLE, grobo_i_script_settle, 0);
+    robot->job->joints = grobo_i_all_joints(robot);
     grobo_i_job_run(robot);
 }
 
@@ -93,7 +93,9 @@ void grobo_i_leave(grobo_robot *robot)
             }
             grobo_i_play_tell(robot);
         }
+        grobo_i_jobs_close_up(robot);
         settle(robot);
+        grobo_i_jobs_close_up(robot);
     }
     robot->depth--;
     if (robot->depth == 0) {
@@ -114,6 +116,7 @@ void grobo_i_end(grobo_robot *robot)
         return;
     }
     GROBO_ASSERT(robot->depth > 0);
+    grobo_i_jobs_close_up(robot);
     robot->depth--;
     if (robot->depth == 0) {
         grobo_i_robot_assert(robot);

@@ -1,0 +1,151 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Which jobs run side by side, and what waits for its turn. Moves, readings, torque, registers and
+ * raw frames of different joints do not disturb each other; a reading disturbs nobody. A move takes
+ * its joints from the move before it. What else there is has the robot for itself. Moves and
+ * readings that cannot begin yet wait, in their order.
+ */
+#include "src/robot/robot.h"
+
+#include <string.h>
+
+#include "src/base/assert.h"
+#include "src/base/instant.h"
+
+/* ---- side by side ---------------------------------------------------------------------------- */
+
+static bool is_shared(grobo_job_kind kind)
+{
+    return kind == GROBO_JOB_MOVE || kind == GROBO_JOB_SENSE || kind == GROBO_JOB_TORQUE ||
+           kind == GROBO_JOB_RAW || kind == GROBO_JOB_REGISTERS;
+}
+
+static bool is_alone(const grobo_robot_task *job)
+{
+    return !is_shared(job->kind);
+}
+
+/* Joints that jobs use in another way than this kind could join in. */
+static grobo_joint_mask taken_from(const grobo_robot *robot, grobo_job_kind kind)
+{
+    grobo_joint_mask taken = 0;
+    for (int i = 0; i < GROBO_ROBOT_JOBS; i++) {
+        const grobo_robot_task *job = &robot->jobs[i];
+        bool joins = job->kind == GROBO_JOB_NONE || job->kind == GROBO_JOB_SENSE ||
+                     (job->kind == GROBO_JOB_MOVE && kind == GROBO_JOB_MOVE);
+        taken |= joins || kind == GROBO_JOB_SENSE ? 0 : job->joints;
+    }
+    return taken;
+}
+
+int grobo_i_admit(grobo_robot *robot, grobo_job_kind kind, grobo_joint_mask joints, bool moves)
+{
+    if (!robot->link) {
+        return GROBO_ERR_CLOSED;
+    }
+    grobo_i_make_way(robot);
+    grobo_i_jobs_close_up(robot);
+    if (moves && robot->trip.latched) {
+        return GROBO_ERR_LATCHED;
+    }
+    bool apart = !is_shared(kind) && grobo_i_jobs_any(robot, NULL);
+    if (apart || grobo_i_jobs_any(robot, is_alone) || !grobo_i_jobs_have_room(robot, false) ||
+        (taken_from(robot, kind) & joints) != 0) {
+        return GROBO_I_LATER;
+    }
+    return GROBO_OK;
+}
+
+grobo_joint_mask grobo_i_joints_of_moves(const grobo_robot *robot)
+{
+    grobo_joint_mask joints = 0;
+    for (int i = 0; i < GROBO_ROBOT_JOBS; i++) {
+        joints |= robot->jobs[i].kind == GROBO_JOB_MOVE ? robot->jobs[i].joints : 0;
+    }
+    for (unsigned i = 0; i < robot->queued; i++) {
+        joints |= robot->queue[i].kind == GROBO_JOB_MOVE ? robot->queue[i].joints : 0;
+    }
+    return joints;
+}
+
+/* ---- moves and readings ---------------------------------------------------------------------- */
+
+static int admit(grobo_robot *robot, const grobo_robot_wish *wish)
+{
+    bool moves = wish->kind == GROBO_JOB_MOVE;
+    int result = grobo_i_admit(robot, wish->kind, wish->joints, moves);
+    if (result < 0) {
+        return result;
+    }
+    /* What a motion sets is the motion's; who wants to move that stops it first. */
+    bool played = grobo_robot_is_playing(robot) && (robot->clip_joints & wish->joints) != 0;
+    bool leaving = robot->job->kind == GROBO_JOB_EXIT || robot->job->kind == GROBO_JOB_ESTOP;
+    return moves && (played || leaving) ? GROBO_ERR_STATE : result;
+}
+
+static int begin(grobo_robot *robot, const grobo_robot_wish *wish)
+{
+    bool moves = wish->kind == GROBO_JOB_MOVE;
+    if (moves) {
+        grobo_i_jobs_leave(robot, wish->joints);
+        grobo_i_jobs_close_up(robot);
+        robot->free_joints &= ~wish->joints;
+    }
+    int number = grobo_i_job_start(
+        robot, wish->kind, moves ? grobo_i_script_move : grobo_i_script_sense, wish->number);
+    robot->job->joints = wish->joints;
+    robot->job->target = wish->target;
+    robot->job->sense = wish->sense;
+    grobo_i_job_run(robot);
+    return number;
+}
+
+int grobo_i_queue_ask(grobo_robot *robot, const grobo_robot_wish *wish)
+{
+    int result = admit(robot, wish);
+    if (result < 0) {
+        return result;
+    }
+    if (result == GROBO_OK && robot->queued == 0) {
+        return begin(robot, wish);
+    }
+    if (robot->queued == GROBO_ROBOT_QUEUE) {
+        return GROBO_ERR_FULL;
+    }
+    grobo_robot_wish *last = &robot->queue[robot->queued++];
+    *last = *wish;
+    last->number = grobo_i_job_number(robot);
+    last->begin_by_us = robot->now_us + GROBO_ROBOT_QUEUE_US;
+    return last->number;
+}
+
+void grobo_i_queue_step(grobo_robot *robot)
+{
+    robot->queue_may_go = false;
+    while (robot->queued > 0) {
+        grobo_robot_wish first = robot->queue[0];
+        int result = robot->now_us < first.begin_by_us ? admit(robot, &first) : GROBO_ERR_STALE;
+        if (result == GROBO_I_LATER) {
+            return;
+        }
+        robot->queued--;
+        memmove(&robot->queue[0], &robot->queue[1], robot->queued * sizeof robot->queue[0]);
+        if (result == GROBO_OK) {
+            (void)begin(robot, &first);
+        } else {
+            grobo_event event = {.kind = GROBO_EVENT_JOB};
+            event.u.job = (grobo_event_job){
+                .number = first.number, .kind = first.kind, .result = result, .joint = -1};
+            event.u.job.failed = first.joints;
+            grobo_i_tell(robot, &event);
+        }
+    }
+}
+
+int64_t grobo_i_queue_deadline(const grobo_robot *robot)
+{
+    if (robot->queued == 0) {
+        return GROBO_NEVER_US;
+    }
+    return robot->queue_may_go ? robot->now_us : robot->queue[0].begin_by_us;
+}
