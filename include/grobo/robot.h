@@ -15,8 +15,17 @@
  * time: theirs is the pump's, or that of the clock that grobo_robot_set_host() brings.
  *
  * What the engine does is asked for by requests and told by one callback, grobo_event. Requests
- * return at once. Most are jobs: one runs at a time (a second is refused with GROBO_ERR_STATE),
- * each has a number > 0, and each ends with exactly one GROBO_EVENT_JOB of that number.
+ * return at once. Most are jobs: each has a number > 0, and each ends with exactly one
+ * GROBO_EVENT_JOB of that number. Jobs run side by side where they do not disturb each other:
+ * - Moves of different joints run together. A new move of a joint takes it from the move before,
+ *   which goes on with its other joints and ends with GROBO_ERR_SUPERSEDED.
+ * - Readings run beside everything but what has the robot for itself: the check, the preparation
+ *   of a play, flash and restart, a stored motion, the exit, the emergency stop.
+ * - Moves and readings that cannot begin yet wait in their order (GROBO_ROBOT_QUEUE of them, then
+ *   GROBO_ERR_FULL) for GROBO_ROBOT_QUEUE_US at most (GROBO_ERR_STALE). A stop, a trip, a lost
+ *   line and free mode end what waits.
+ * - Torque off and brake, stop, exit and the emergency stop take the place of what is in their way.
+ * - All others are refused with GROBO_ERR_STATE while their joints are busy.
  * Playing is not a job: grobo_robot_play() prepares as a job, then the sequencer runs beside the
  * jobs until GROBO_EVENT_PLAY tells its end.
  *
@@ -160,12 +169,12 @@ typedef struct grobo_robot_task {
     const grobo_robot_step_fn *script;
     int number;
     grobo_job_kind kind;
-    unsigned at;              /* step of the script that comes next */
-    uint8_t activity;         /* what the step before began */
-    int result;               /* first error */
-    int joint;                /* and its joint */
-    double value;             /* and its value */
-    grobo_joint_mask joints;  /* asked for, and not superseded */
+    unsigned at;             /* step of the script that comes next */
+    uint8_t activity;        /* what the step before began */
+    int result;              /* first error */
+    int joint;               /* and its joint */
+    double value;            /* and its value */
+    grobo_joint_mask joints; /* asked for, and not superseded */
     grobo_joint_mask superseded;
     grobo_joint_mask todo;    /* of the activity */
     grobo_joint_mask pending; /* not yet as it was asked for */
@@ -215,9 +224,9 @@ typedef struct grobo_robot {
     void *event_ctx;
     grobo_bus bus;
     grobo_sequencer sequencer;
-    grobo_sequencer_state told_state; /* of the sequencer, to the callback */
-    grobo_robot_task jobs[GROBO_ROBOT_JOBS]; /* where one runs, the first does */
-    grobo_robot_task *job;                   /* of jobs: whose step runs, else the first */
+    grobo_sequencer_state told_state;          /* of the sequencer, to the callback */
+    grobo_robot_task jobs[GROBO_ROBOT_JOBS];   /* where one runs, the first does */
+    grobo_robot_task *job;                     /* of jobs: whose step runs, else the first */
     grobo_robot_wish queue[GROBO_ROBOT_QUEUE]; /* the first is the oldest */
     unsigned queued;
     grobo_robot_axis axes[GROBO_JOINTS_MAX];
@@ -316,9 +325,9 @@ GROBO_API void grobo_robot_link_up(grobo_robot *robot, int64_t now_us);
 GROBO_API void grobo_robot_link_down(grobo_robot *robot, int64_t now_us);
 
 /* ---- requests --------------------------------------------------------------------------------
- * All return a job number > 0 or an error: GROBO_ERR_CLOSED (link down), GROBO_ERR_STATE (a job
- * is running), GROBO_ERR_LATCHED (tripped, for what would move or switch torque on),
- * GROBO_ERR_UNSUPPORTED (not in the driver), and what is said at each. */
+ * All return a job number > 0 or an error: GROBO_ERR_CLOSED (link down), GROBO_ERR_STATE (not
+ * beside what runs, see above), GROBO_ERR_LATCHED (tripped, for what would move or switch torque
+ * on), GROBO_ERR_UNSUPPORTED (not in the driver), and what is said at each. */
 
 /** Is the robot there? Result GROBO_ERR_TIMEOUT if nothing answers. */
 GROBO_API int grobo_robot_check(grobo_robot *robot);
@@ -336,7 +345,7 @@ GROBO_API int grobo_robot_torque(grobo_robot *robot, grobo_joint_mask joints, gr
  * Moves the joints that `target` sets, in target->time_us or as much longer as is safe, then reads
  * them. Ends when they are there. Errors at once: GROBO_ERR_LIMIT, GROBO_ERR_NAN (see
  * grobo_robot_fault()), GROBO_ERR_ARG; later GROBO_ERR_SPEED: the wire has no time that is long
- * enough; also GROBO_ERR_STATE while a motion is played.
+ * enough; also GROBO_ERR_STATE for a joint that the motion being played sets.
  */
 GROBO_API int grobo_robot_move(grobo_robot *robot, const grobo_posture *target);
 
@@ -426,8 +435,8 @@ GROBO_API int grobo_robot_latch(grobo_robot *robot);
 GROBO_API int grobo_robot_reset(grobo_robot *robot);
 
 /**
- * Ends the job with GROBO_ERR_CANCELED; a move stops where it is. An emergency stop cannot be
- * canceled. @return 0, or GROBO_ERR_STATE.
+ * Ends what runs and what waits with GROBO_ERR_CANCELED; moves stop where they are. An emergency
+ * stop cannot be canceled. @return 0, or GROBO_ERR_STATE.
  */
 GROBO_API int grobo_robot_cancel(grobo_robot *robot);
 
@@ -505,8 +514,11 @@ GROBO_API bool grobo_robot_moving(const grobo_robot *robot);
  */
 GROBO_API bool grobo_robot_settling(const grobo_robot *robot);
 
-/** Kind of the job that runs, GROBO_JOB_NONE for none. */
+/** Kind of a job that runs, the oldest in general; GROBO_JOB_NONE for none. */
 GROBO_API grobo_job_kind grobo_robot_job(const grobo_robot *robot);
+
+/** True while the job of this number runs or waits, or its end has not been told. */
+GROBO_API bool grobo_robot_is_pending(const grobo_robot *robot, int number);
 
 /** The latched stop, or trip GROBO_TRIP_NONE. */
 GROBO_API void grobo_robot_tripped(const grobo_robot *robot, grobo_trip_info *info);
@@ -514,10 +526,10 @@ GROBO_API void grobo_robot_tripped(const grobo_robot *robot, grobo_trip_info *in
 /** Joint and value that made the last request fail with LIMIT or NAN. @return joint or -1. */
 GROBO_API int grobo_robot_fault(const grobo_robot *robot, double *value_deg);
 
-/** The engine's counters. Borrowed, lives with the robot. */
+/** The engine's counters. Borrowed, lives with the robot; for the thread that pumps it. */
 GROBO_API const grobo_robot_counters *grobo_robot_get_counters(const grobo_robot *robot);
 
-/** The wire's counters. Borrowed, lives with the robot. */
+/** The wire's counters. Borrowed, lives with the robot; for the thread that pumps it. */
 GROBO_API const grobo_bus_stats *grobo_robot_get_bus_stats(const grobo_robot *robot);
 
 /** State of the sequencer. */

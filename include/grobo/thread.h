@@ -59,6 +59,8 @@ GROBO_BEGIN_DECLS
 
 /** Calls that may wait for the loop at a time. */
 #define GROBO_CONTROL_CALLS_MAX 32
+/** Ends of jobs that a control remembers. */
+#define GROBO_CONTROL_ENDS 32
 /** Timeout where none is given or configured. */
 #define GROBO_CONTROL_TIMEOUT_US INT64_C(5000000)
 /** Control period where none is given. */
@@ -164,6 +166,22 @@ GROBO_API int grobo_control_call(grobo_control *control, grobo_control_fn fn, vo
  *   grobo_control_free() calls as its last: nobody would call another).
  */
 GROBO_API int grobo_control_post(grobo_control *control, grobo_control_fn fn, void *arg);
+
+/**
+ * The robot: any thread may make every request and ask every question of robot.h, which takes a
+ * lock for as long as that takes, and never waits for the loop. What goes with it (pumping,
+ * grobo_robot_on_event() and the like) is the control's. grobo_robot_reset() is for callbacks;
+ * other threads have grobo_control_reset(). Valid as long as the control.
+ */
+GROBO_API grobo_robot *grobo_control_robot(grobo_control *control);
+
+/**
+ * Waits for the end of a job of grobo_control_robot(). Waits.
+ * @param job what the request returned; an error of it is returned at once.
+ * @return the job's result; GROBO_ERR_NOTFOUND of a job that nobody knows any more: of those that
+ *   have ended the last GROBO_CONTROL_ENDS are known.
+ */
+GROBO_API int grobo_control_wait_job(grobo_control *control, int job, int64_t timeout_us);
 
 /** The session. It belongs to the loop: use it in callbacks and in grobo_control_call() only. */
 GROBO_API grobo_session *grobo_control_session(grobo_control *control);

@@ -136,6 +136,38 @@ grobo_job_kind grobo_robot_job(const grobo_robot *robot)
     return kind == GROBO_JOB_SETTLE ? GROBO_JOB_NONE : kind;
 }
 
+static bool is_pending(const grobo_robot *robot, int number)
+{
+    for (int i = 0; i < GROBO_ROBOT_JOBS; i++) {
+        if (robot->jobs[i].kind != GROBO_JOB_NONE && robot->jobs[i].number == number) {
+            return true;
+        }
+    }
+    for (unsigned i = 0; i < robot->queued; i++) {
+        if (robot->queue[i].number == number) {
+            return true;
+        }
+    }
+    for (unsigned i = 0; i < robot->events_n; i++) {
+        const grobo_event *event = &robot->events[(robot->events_head + i) % GROBO_ROBOT_EVENTS];
+        if (event->kind == GROBO_EVENT_JOB && event->u.job.number == number) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool grobo_robot_is_pending(const grobo_robot *robot, int number)
+{
+    if (robot == NULL || number <= 0) {
+        return false;
+    }
+    grobo_i_lock(robot);
+    bool pending = is_pending(robot, number);
+    grobo_i_unlock(robot);
+    return pending;
+}
+
 void grobo_robot_tripped(const grobo_robot *robot, grobo_trip_info *info)
 {
     if (robot != NULL && info != NULL) {

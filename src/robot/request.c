@@ -144,10 +144,10 @@ int grobo_robot_move(grobo_robot *robot, const grobo_posture *target)
     }
     grobo_i_begin(robot);
     grobo_robot_wish wish = {.kind = GROBO_JOB_MOVE, .joints = target->set, .target = *target};
-    int result = !robot->link             ? GROBO_ERR_CLOSED
-                 : robot->trip.latched    ? GROBO_ERR_LATCHED
-                 : wish.target.set == 0   ? GROBO_ERR_ARG
-                                          : grobo_i_gate_target(robot, &wish.target);
+    int result = !robot->link           ? GROBO_ERR_CLOSED
+                 : robot->trip.latched  ? GROBO_ERR_LATCHED
+                 : wish.target.set == 0 ? GROBO_ERR_ARG
+                                        : grobo_i_gate_target(robot, &wish.target);
     if (result >= 0) {
         wish.joints = wish.target.set;
         result = grobo_i_queue_ask(robot, &wish);

@@ -106,7 +106,9 @@ void grobo_i_leave(grobo_robot *robot)
 
 void grobo_i_begin(grobo_robot *robot)
 {
+    grobo_i_lock(robot);
     grobo_i_enter(robot, grobo_i_now(robot));
+    grobo_i_unlock(robot); /* taken twice: it is held until the end */
 }
 
 void grobo_i_end(grobo_robot *robot)

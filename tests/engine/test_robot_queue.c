@@ -196,10 +196,8 @@ static void what_waits_ends_with_what_ends_the_rest(void **state)
         int (*end)(void);
         int result;
     } rows[] = {
-        {do_stop, GROBO_ERR_CANCELED},
-        {do_cancel, GROBO_ERR_CANCELED},
-        {do_exit, GROBO_ERR_CANCELED},
-        {do_estop, GROBO_ERR_CANCELED},
+        {do_stop, GROBO_ERR_CANCELED},       {do_cancel, GROBO_ERR_CANCELED},
+        {do_exit, GROBO_ERR_CANCELED},       {do_estop, GROBO_ERR_CANCELED},
         {do_link_down, GROBO_ERR_UNPLUGGED},
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {

@@ -368,6 +368,8 @@ static void thread_refuses_null_in_its_third_functions(void **state)
     REFUSES(grobo_control_init_position(NULL));
     REFUSES(grobo_control_command_count(NULL));
     REFUSES(grobo_control_is_moving(NULL));
+    REFUSES(grobo_control_wait_job(NULL, 1, 0));
+    assert_null(grobo_control_robot(NULL));
     REFUSES(grobo_control_wait(NULL, 1000));
     REFUSES(grobo_control_set_motion(NULL, motion));
     REFUSES(grobo_control_set_motion(control, NULL));

@@ -246,11 +246,32 @@ static bool is_elsewhere(const grobo_session *session)
     return session->share.is_elsewhere != NULL && session->share.is_elsewhere(session->share.ctx);
 }
 
+static void on_lock(void *ctx)
+{
+    const grobo_session *session = ctx;
+
+    session->share.lock(session->share.ctx);
+}
+
+static void on_unlock(void *ctx)
+{
+    const grobo_session *session = ctx;
+
+    session->share.unlock(session->share.ctx);
+}
+
 /* Emergency stops that were not posted count as those do, see grobo_control_reset(). */
 static void count_estops(grobo_session *session)
 {
-    unsigned estops = (unsigned)grobo_robot_get_counters(&session->robot)->estops;
+    unsigned estops;
 
+    if (session->share.lock != NULL) {
+        on_lock(session);
+    }
+    estops = (unsigned)grobo_robot_get_counters(&session->robot)->estops;
+    if (session->share.lock != NULL) {
+        on_unlock(session);
+    }
     if (atomic_exchange(&session->seen_estops, estops) != estops &&
         !atomic_load(&session->obeying)) {
         atomic_fetch_add(&session->estops, 1);
@@ -267,20 +288,6 @@ static void on_request(void *ctx)
     } else {
         grobo_session_pump(session);
     }
-}
-
-static void on_lock(void *ctx)
-{
-    const grobo_session *session = ctx;
-
-    session->share.lock(session->share.ctx);
-}
-
-static void on_unlock(void *ctx)
-{
-    const grobo_session *session = ctx;
-
-    session->share.unlock(session->share.ctx);
 }
 
 /* One that was set since the last look is obeyed, not cleared. */

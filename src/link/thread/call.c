@@ -25,7 +25,6 @@ static void hand_over(grobo_control *control, control_slot *slot, grobo_control_
     GROBO_ASSERT(slot->state == CALL_FREE && fn != NULL);
     slot->fn = fn;
     slot->arg = arg;
-    slot->job = NULL;
     slot->users = false;
     slot->impatient = false;
     slot->ticket = ++control->tickets;
@@ -193,7 +192,6 @@ static int wait_for(grobo_control *control, control_slot *slot, int64_t end_us)
         result = slot->result;
     }
     GROBO_ASSERT(slot->state == CALL_DONE || slot->state == CALL_OPEN);
-    slot->job = NULL;
     slot->state = CALL_FREE;
     return result;
 }
@@ -228,7 +226,6 @@ static int call_and_wait(grobo_control *control, const call_wish *wish)
     slot = take_slot(control, wish->urgent ? CONTROL_SLOTS : GROBO_CONTROL_CALLS_MAX);
     if (slot != NULL) {
         hand_over(control, slot, wish->fn, wish->arg);
-        slot->job = wish->job;
         slot->users = wish->users;
         if (wish->job != NULL) {
             wish->job->seen_losses = control->losses;
@@ -285,6 +282,18 @@ int grobo_i_control_wait(grobo_control *control, grobo_control_fn fn, void *arg,
 
 /* ---- jobs --------------------------------------------------------------------------------- */
 
+/* On the loop: how a job has ended. */
+static int result_of(grobo_control *control, int number)
+{
+    for (int i = 0; i < GROBO_CONTROL_ENDS; i++) {
+        if (control->job_ends[i].number == number) {
+            return control->job_ends[i].result;
+        }
+    }
+    return grobo_robot_is_pending(control_robot(control), number) ? CALL_PENDING
+                                                                  : GROBO_ERR_NOTFOUND;
+}
+
 int grobo_i_control_poll_job(grobo_control *control, void *arg)
 {
     control_job *job = arg;
@@ -294,19 +303,33 @@ int grobo_i_control_poll_job(grobo_control *control, void *arg)
         int r =
             job->seen_losses != control->losses ? GROBO_ERR_UNPLUGGED : job->start(control, job);
 
-        if (r == GROBO_ERR_STATE && grobo_robot_job(control_robot(control)) != GROBO_JOB_NONE) {
-            return CALL_PENDING; /* behind the one that runs */
+        if (r == GROBO_ERR_FULL ||
+            (r == GROBO_ERR_STATE && grobo_robot_job(control_robot(control)) != GROBO_JOB_NONE)) {
+            return CALL_PENDING; /* behind those that run */
         }
         if (r <= 0) {
             return r;
         }
         job->number = r;
-        if (control->last_job == r) {
-            job->ended = true;
-            job->result = control->last_result;
-        }
     }
-    return job->ended ? job->result : CALL_PENDING;
+    job->result = result_of(control, job->number);
+    job->ended = job->result != CALL_PENDING;
+    return job->result;
+}
+
+static int poll_number(grobo_control *control, void *arg)
+{
+    const int *number = arg;
+
+    return result_of(control, *number);
+}
+
+int grobo_control_wait_job(grobo_control *control, int job, int64_t timeout_us)
+{
+    if (control == NULL || job == 0) {
+        return GROBO_ERR_ARG;
+    }
+    return job < 0 ? job : grobo_i_control_wait(control, poll_number, &job, timeout_us);
 }
 
 int grobo_i_control_job(grobo_control *control, control_job *job, grobo_control_fn fn,

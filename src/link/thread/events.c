@@ -55,17 +55,8 @@ bool grobo_i_control_has_exited(grobo_control *control)
 /* Tells a job's end to who waits for it. */
 static void end_job(grobo_control *control, const grobo_event_job *ended)
 {
-    control->last_job = ended->number;
-    control->last_result = ended->result;
+    control->job_ends[control->next_end++ % GROBO_CONTROL_ENDS] = *ended;
     grobo_i_control_lock(control);
-    for (size_t i = 0; i < CONTROL_SLOTS; i++) {
-        control_job *job = control->slot[i].job;
-
-        if (job != NULL && job->number == ended->number) {
-            job->ended = true;
-            job->result = ended->result;
-        }
-    }
     if (control->move_job == ended->number) {
         control->motion_result = ended->result;
     }

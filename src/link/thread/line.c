@@ -10,6 +10,11 @@ grobo_session *grobo_control_session(grobo_control *control)
     return control == NULL ? NULL : control->session;
 }
 
+grobo_robot *grobo_control_robot(grobo_control *control)
+{
+    return control == NULL ? NULL : control_robot(control);
+}
+
 grobo_serial *grobo_control_serial(grobo_control *control)
 {
     return control == NULL ? NULL : grobo_session_serial(control->session);

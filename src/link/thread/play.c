@@ -51,14 +51,12 @@ int grobo_i_control_send_target(grobo_control *control, void *arg)
         r = is_up(control) ? grobo_robot_move(grobo_session_robot(control->session), &target)
                            : GROBO_ERR_UNPLUGGED;
     }
-    if (r > 0 && control->last_job != r) {
+    if (r > 0) {
         control->move_job = r;
     }
     grobo_i_control_lock(control);
     control->move_wanted = false;
-    if (r < 0 || control->last_job == r) {
-        control->motion_result = r < 0 ? r : control->last_result;
-    }
+    control->motion_result = r < 0 ? r : control->motion_result;
     grobo_i_control_unlock(control);
     return GROBO_OK;
 }
@@ -101,9 +99,7 @@ static int begin_play(grobo_control *control)
         r = grobo_robot_play(grobo_session_robot(control->session), &control->clip,
                              &control->play_options);
     }
-    if (r > 0 && control->last_job == r) {
-        control->play_error = control->last_result;
-    } else if (r > 0) {
+    if (r > 0) {
         control->play_job = r;
     }
     return r;

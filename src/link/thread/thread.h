@@ -56,7 +56,6 @@ typedef struct control_slot {
     uint64_t ticket;     /* the order of the calls */
     grobo_control_fn fn; /* returns CALL_PENDING to be called again */
     void *arg;
-    control_job *job; /* what fn waits for, if a job */
     int result;
     bool users;     /* fn is the user's */
     bool posted;    /* nobody waits */
@@ -117,12 +116,13 @@ struct grobo_control {
     /* loop */
     struct event_base *base;
     grobo_timer *timer;
-    int64_t tick_us;           /* end of the control period */
-    grobo_session *session;    /* set by grobo_control_new() for good */
-    unsigned obeyed;           /* of the session, as of the last look at it */
-    int line_error;            /* of the last event of the line */
-    int last_job, last_result; /* the job that ended last */
-    int move_job;              /* number, 0 none */
+    int64_t tick_us;                              /* end of the control period */
+    grobo_session *session;                       /* set by grobo_control_new() for good */
+    unsigned obeyed;                              /* of the session, as of the last look at it */
+    int line_error;                               /* of the last event of the line */
+    grobo_event_job job_ends[GROBO_CONTROL_ENDS]; /* a ring */
+    unsigned next_end;
+    int move_job; /* number, 0 none */
     int play_job, play_error;
     grobo_motion *playing;           /* what the clip reads; under lock while PLAY_WANTED */
     grobo_play_options play_options; /* as `playing` */

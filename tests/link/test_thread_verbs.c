@@ -1,0 +1,124 @@
+/* SPDX-License-Identifier: MIT */
+/* One set of verbs: the engine of a control, used by any thread. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <grobo/gr001.h>
+
+#include "tests/support/control_kit.h"
+
+enum { THREADS = 4, ROUNDS = 25 };
+
+static const int joints[THREADS] = {12, 13, 16, 19};
+
+static grobo_posture target_of(int joint, double angle_deg, int time_ms)
+{
+    grobo_posture target;
+    assert_int_equal(grobo_posture_init(&target, 20), GROBO_OK);
+    assert_int_equal(grobo_posture_set_deg(&target, joint, angle_deg), GROBO_OK);
+    assert_int_equal(grobo_posture_set_time_ms(&target, time_ms), GROBO_OK);
+    return target;
+}
+
+static void a_program_is_three_lines(void **state)
+{
+    (void)state;
+    control_come_up();
+    grobo_robot *robot = grobo_control_robot(control);
+    grobo_posture target = target_of(13, 20, 200);
+    assert_int_equal(grobo_control_wait_job(control, grobo_robot_move(robot, &target), 0),
+                     GROBO_OK);
+    double angle_rad = 0;
+    assert_int_equal(grobo_control_read_angle(control, 13, &angle_rad, 0), GROBO_OK);
+    assert_in_range((unsigned)grobo_ddeg_from_rad(angle_rad), 195, 205);
+}
+
+static void an_error_of_the_request_is_the_result(void **state)
+{
+    (void)state;
+    control_come_up();
+    grobo_robot *robot = grobo_control_robot(control);
+    grobo_posture target = target_of(13, 400, 200);
+    assert_int_equal(grobo_control_wait_job(control, grobo_robot_move(robot, &target), 0),
+                     GROBO_ERR_LIMIT);
+    assert_int_equal(grobo_control_wait_job(control, 0, 0), GROBO_ERR_ARG);
+    assert_int_equal(grobo_control_wait_job(control, 1000000, 0), GROBO_ERR_NOTFOUND);
+    assert_int_equal(grobo_control_wait_job(NULL, 1, 0), GROBO_ERR_ARG);
+    assert_null(grobo_control_robot(NULL));
+}
+
+/* What a thread found, to be asserted by the test's own. */
+typedef struct caller {
+    grobo_thread thread;
+    int joint;
+    int bad; /* the first result that was not wanted */
+} caller;
+
+static GROBO_THREAD_FUNC move_to_and_fro(void *arg)
+{
+    caller *c = arg;
+    grobo_robot *robot = grobo_control_robot(control);
+    for (int i = 0; i < ROUNDS && c->bad == GROBO_OK; i++) {
+        grobo_posture target;
+        grobo_joint_info info;
+        (void)grobo_posture_init(&target, 20);
+        (void)grobo_posture_set_deg(&target, c->joint, i % 2 == 0 ? -3 : -1);
+        (void)grobo_posture_set_time_ms(&target, 20);
+        int result = grobo_control_wait_job(control, grobo_robot_move(robot, &target), 0);
+        if (result == GROBO_ERR_FULL) {
+            continue; /* there are more threads than places */
+        }
+        c->bad = result;
+        if (grobo_robot_joint(robot, c->joint, &info) < 0 || info.status < 0) {
+            c->bad = GROBO_ERR_IO;
+        }
+    }
+    GROBO_THREAD_RETURN;
+}
+
+static void threads_move_joints_of_their_own(void **state)
+{
+    (void)state;
+    caller callers[THREADS];
+    control_come_up();
+    for (int i = 0; i < THREADS; i++) {
+        callers[i] = (caller){.joint = joints[i]};
+        assert_int_equal(grobo_thread_start(&callers[i].thread, move_to_and_fro, &callers[i]),
+                         GROBO_OK);
+    }
+    for (int i = 0; i < THREADS; i++) {
+        assert_int_equal(grobo_thread_join(callers[i].thread), GROBO_OK);
+        assert_int_equal(callers[i].bad, GROBO_OK);
+    }
+}
+
+static void an_emergency_stop_ends_the_moves_of_all_threads(void **state)
+{
+    (void)state;
+    control_come_up();
+    grobo_robot *robot = grobo_control_robot(control);
+    grobo_posture target = target_of(13, 30, 5000);
+    int job = grobo_robot_move(robot, &target);
+    assert_true(job > 0);
+    assert_true(grobo_robot_is_pending(robot, job));
+    assert_int_equal(grobo_control_estop(control), GROBO_OK);
+    int result = grobo_control_wait_job(control, job, 0);
+    assert_true(result == GROBO_ERR_CANCELED || result == GROBO_ERR_LATCHED);
+    assert_int_equal(grobo_robot_move(robot, &target), GROBO_ERR_LATCHED);
+    assert_int_equal(grobo_robot_reset(robot), GROBO_ERR_STATE); /* the loop's alone */
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        WITH_AND_WITHOUT_THREAD(a_program_is_three_lines),
+        WITH_AND_WITHOUT_THREAD(an_error_of_the_request_is_the_result),
+        WITH_AND_WITHOUT_THREAD(threads_move_joints_of_their_own),
+        WITH_AND_WITHOUT_THREAD(an_emergency_stop_ends_the_moves_of_all_threads),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
