@@ -53,7 +53,7 @@ FUZZ_S ?= 60
 WERROR ?= $(if $(wildcard .git),-Werror)
 SONAME ?= libgrobo.so.0
 LINK_NAME ?= libgrobo.so
-SHARED_FLAGS ?= -Wl,-soname,$(SONAME) $(if $(SAN),,-Wl,-z,defs)
+SHARED_FLAGS ?= -Wl,-soname,$(SONAME) -Wl,--version-script=src/libgrobo.map $(if $(SAN),,-Wl,-z,defs)
 OS_FLAGS ?= -D_DEFAULT_SOURCE -D_XOPEN_SOURCE=700 -D_FILE_OFFSET_BITS=64 -pthread
 OS_LIBS ?= -lm -pthread
 ifeq ($(origin CC),default)
@@ -458,9 +458,9 @@ $(BUILD)/tools/grctl/os/posix/node.o: $(BUILD)/.datadir
 $(BUILD)/.datadir: FORCE
 	$(call keep,$(call quote,$(DATADIR)))
 
-$(SHARED_LIB): $(LIB_OBJS)
+$(SHARED_LIB): $(LIB_OBJS) src/libgrobo.map
 	$(say) LD $@
-	$(Q)$(CC) -shared $(SHARED_FLAGS) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
+	$(Q)$(CC) -shared $(SHARED_FLAGS) $(ALL_LDFLAGS) -o $@ $(LIB_OBJS) $(LIBS)
 	$(if $(IMPORT_LIB),,@ln -sf $(SONAME) $(BUILD)/$(LINK_NAME))
 
 $(BUILD)/grctl$(EXE): $(filter %/main.o,$(TOOL_OBJS)) $(TOOL_LIB) $(STATIC_LIB)

@@ -9,8 +9,8 @@
  */
 #include <stdio.h>
 
-#include <grobo/robot.h>
 #include <grobo/sim.h>
+#include <grobo/static.h>
 
 #define RAD(deg) ((deg)*0.017453292519943295)
 

@@ -73,7 +73,7 @@ GROBO_API extern const grobo_body_model grobo_gr001_body;
  * total mass, and legs of the structure described at grobo_body_model.
  * @return 0, or GROBO_ERR_ARG. Pure; thread safe.
  */
-GROBO_API int grobo_body_model_check(const grobo_body_model *model);
+GROBO_CORE int grobo_body_model_check(const grobo_body_model *model);
 
 /**
  * Forward kinematics: where every link is.
@@ -81,16 +81,16 @@ GROBO_API int grobo_body_model_check(const grobo_body_model *model);
  * @param q_rad n_joints angles
  * @param[out] links n_links transforms
  */
-GROBO_API void grobo_body_forward(const grobo_body_model *model, const grobo_transform *root,
-                                  const double *q_rad, grobo_transform *links);
+GROBO_CORE void grobo_body_forward(const grobo_body_model *model, const grobo_transform *root,
+                                   const double *q_rad, grobo_transform *links);
 
 /**
  * Centre of mass of a pose that grobo_body_forward() gave.
  * @param[out] com_m in the world
  * @return the total mass in kg
  */
-GROBO_API double grobo_body_com(const grobo_body_model *model, const grobo_transform *links,
-                                double com_m[3]);
+GROBO_CORE double grobo_body_com(const grobo_body_model *model, const grobo_transform *links,
+                                 double com_m[3]);
 
 /** How a body moves; the root's velocities are those of its origin, along the world's axes. */
 typedef struct grobo_body_velocity {
@@ -106,8 +106,8 @@ typedef struct grobo_momentum {
 } grobo_momentum;
 
 /** Momentum of a pose that grobo_body_forward() gave, moving so. */
-GROBO_API void grobo_body_momentum(const grobo_body_model *model, const grobo_transform *links,
-                                   const grobo_body_velocity *velocity, grobo_momentum *momentum);
+GROBO_CORE void grobo_body_momentum(const grobo_body_model *model, const grobo_transform *links,
+                                    const grobo_body_velocity *velocity, grobo_momentum *momentum);
 
 /**
  * Zero-moment point: where in the plane of height zmp_m[2] the ground's force acts. In free fall
@@ -116,8 +116,8 @@ GROBO_API void grobo_body_momentum(const grobo_body_model *model, const grobo_tr
  * @param rate rate of change of momentum (N and Nm in the fields of grobo_momentum)
  * @param[in,out] zmp_m z is read, x and y are written
  */
-GROBO_API void grobo_body_zmp(const double com_m[3], double mass_kg, const grobo_momentum *rate,
-                              double zmp_m[3]);
+GROBO_CORE void grobo_body_zmp(const double com_m[3], double mass_kg, const grobo_momentum *rate,
+                               double zmp_m[3]);
 
 /**
  * Leg IK in closed form: exact, no seed, the same answer for the same target.
@@ -127,9 +127,9 @@ GROBO_API void grobo_body_zmp(const double com_m[3], double mass_kg, const grobo
  * @return 0, or GROBO_ERR_UNREACHABLE (out of reach, or toes pointing along the leg). Joint limits
  * are not looked at. Thread safe.
  */
-GROBO_API int grobo_body_leg_exact(const grobo_body_model *model, int foot,
-                                   const grobo_transform *target,
-                                   double q_rad[GROBO_BODY_LEG_JOINTS]);
+GROBO_CORE int grobo_body_leg_exact(const grobo_body_model *model, int foot,
+                                    const grobo_transform *target,
+                                    double q_rad[GROBO_BODY_LEG_JOINTS]);
 
 /* ---- a motion being solved --------------------------------------------------------------- */
 
@@ -225,7 +225,7 @@ typedef struct grobo_body_report {
  * @return 0, GROBO_ERR_ARG (model, options, a number beyond GROBO_BODY_NUMBER_MAX, balancer without
  * IK), GROBO_ERR_NAN or GROBO_ERR_CAP (more than GROBO_MOTION_FRAMES_MAX frames).
  */
-GROBO_API int grobo_body_workspace_bytes(const grobo_body_setup *setup, size_t *bytes);
+GROBO_CORE int grobo_body_workspace_bytes(const grobo_body_setup *setup, size_t *bytes);
 
 /**
  * Makes a body ready at its first frame. With the balancer this solves the whole motion several
@@ -234,14 +234,14 @@ GROBO_API int grobo_body_workspace_bytes(const grobo_body_setup *setup, size_t *
  * @param workspace aligned as malloc() aligns; to be kept while the body is in use
  * @return 0, GROBO_ERR_SPACE, or as grobo_body_workspace_bytes().
  */
-GROBO_API int grobo_body_init(grobo_body **body, const grobo_body_setup *setup, void *workspace,
-                              size_t workspace_bytes);
+GROBO_CORE int grobo_body_init(grobo_body **body, const grobo_body_setup *setup, void *workspace,
+                               size_t workspace_bytes);
 
 /** Number of frames, at least 1. With the balancer they last one second beyond the last key. */
-GROBO_API int grobo_body_frame_count(const grobo_body *body);
+GROBO_CORE int grobo_body_frame_count(const grobo_body *body);
 
 /** Joints that the motion moves: those with keys, and of legs between waist and foot targets. */
-GROBO_API grobo_joint_mask grobo_body_joints(const grobo_body *body);
+GROBO_CORE grobo_joint_mask grobo_body_joints(const grobo_body *body);
 
 /**
  * Solves one frame. Frames may be asked for in any order; joints that the motion gives no key and
@@ -252,8 +252,8 @@ GROBO_API grobo_joint_mask grobo_body_joints(const grobo_body *body);
  * @param[out] report may be NULL
  * @return 0, or GROBO_ERR_ARG. An unreachable target is no error: see the report.
  */
-GROBO_API int grobo_body_frame(grobo_body *body, int frame, double *q_rad,
-                               grobo_body_report *report);
+GROBO_CORE int grobo_body_frame(grobo_body *body, int frame, double *q_rad,
+                                grobo_body_report *report);
 
 /**
  * As grobo_body_frame() at any time; before the first and after the last key the pose is constant.

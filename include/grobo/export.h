@@ -3,8 +3,10 @@
  * @file export.h
  * @brief Visibility and linkage of public names.
  *
- * The library is compiled with hidden visibility: what carries GROBO_API is the whole of its
- * binary interface. On Windows define GROBO_STATIC when linking the static library.
+ * What carries GROBO_API is the whole of the shared library's binary interface; src/libgrobo.map
+ * lists it. What carries GROBO_CORE is in the static libraries alone: it works in storage of the
+ * caller's, whose size changes from version to version (static.h). On Windows define GROBO_STATIC
+ * when linking a static library.
  */
 #ifndef GROBO_EXPORT_H
 #define GROBO_EXPORT_H
@@ -28,5 +30,8 @@
 #else
 #define GROBO_API
 #endif
+
+/** In the static libraries alone. */
+#define GROBO_CORE
 
 #endif

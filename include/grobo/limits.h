@@ -14,6 +14,26 @@
 #define GROBO_JOINTS_MAX 64
 #endif
 
+/*
+ * A program and its library must have the same cap, as postures are as long as that. So another cap
+ * than the default is part of the names of what makes things: a mismatch fails where the program is
+ * linked. The shared library has the default.
+ */
+#if GROBO_JOINTS_MAX != 64
+#define GROBO_CAPPED__(name, cap) name##_##cap
+#define GROBO_CAPPED_(name, cap) GROBO_CAPPED__(name, cap)
+#define grobo_posture_init GROBO_CAPPED_(grobo_posture_init, GROBO_JOINTS_MAX)
+#define grobo_posture_init_pose GROBO_CAPPED_(grobo_posture_init_pose, GROBO_JOINTS_MAX)
+#define grobo_robot_init_sized GROBO_CAPPED_(grobo_robot_init_sized, GROBO_JOINTS_MAX)
+#define grobo_sequencer_init GROBO_CAPPED_(grobo_sequencer_init, GROBO_JOINTS_MAX)
+#define grobo_sim_init GROBO_CAPPED_(grobo_sim_init, GROBO_JOINTS_MAX)
+#define grobo_session_new GROBO_CAPPED_(grobo_session_new, GROBO_JOINTS_MAX)
+#define grobo_control_new GROBO_CAPPED_(grobo_control_new, GROBO_JOINTS_MAX)
+#define grobo_motion_new GROBO_CAPPED_(grobo_motion_new, GROBO_JOINTS_MAX)
+#define grobo_motion_read GROBO_CAPPED_(grobo_motion_read, GROBO_JOINTS_MAX)
+#define grobo_motion_read_file GROBO_CAPPED_(grobo_motion_read_file, GROBO_JOINTS_MAX)
+#endif
+
 /** Longest packet inside a relay frame of the board: its length has 7 bits (protocol 2). */
 #define GROBO_RELAY_MAX_BYTES 127
 

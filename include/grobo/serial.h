@@ -192,8 +192,8 @@ GROBO_API grobo_handle grobo_serial_handle(const grobo_serial *serial);
 GROBO_API const grobo_os_cause *grobo_serial_cause(const grobo_serial *serial);
 
 /** Copies the counters. */
-GROBO_API void grobo_serial_get_counters(const grobo_serial *serial,
-                                         grobo_serial_counters *counters);
+GROBO_CORE void grobo_serial_get_counters(const grobo_serial *serial,
+                                          grobo_serial_counters *counters);
 
 /* ---- bytes -------------------------------------------------------------------------------- */
 
@@ -232,13 +232,13 @@ GROBO_API int grobo_serial_receive(grobo_serial *serial, void *buf, size_t size)
 GROBO_API int grobo_serial_send(grobo_serial *serial, const void *bytes, size_t size);
 
 /** Bytes queued to be sent that the system has not taken yet. */
-GROBO_API size_t grobo_serial_pending(const grobo_serial *serial);
+GROBO_CORE size_t grobo_serial_pending(const grobo_serial *serial);
 
 /**
  * These, and those that the system has taken and not put on the line yet, as far as it tells (Linux
  * tells of serial ports and connections; 0 of a pseudo-terminal, and on Windows).
  */
-GROBO_API size_t grobo_serial_unsent(const grobo_serial *serial);
+GROBO_CORE size_t grobo_serial_unsent(const grobo_serial *serial);
 
 /**
  * Bytes received and not read yet; the system may cap the number (Linux: 4095).
@@ -253,7 +253,7 @@ GROBO_API int grobo_serial_waiting(grobo_serial *serial);
 GROBO_API int grobo_serial_discard(grobo_serial *serial);
 
 /** Drops the bytes not sent yet, in the queue and, where it can be done, in the system. */
-GROBO_API void grobo_serial_discard_output(grobo_serial *serial);
+GROBO_CORE void grobo_serial_discard_output(grobo_serial *serial);
 
 /* ---- hex ---------------------------------------------------------------------------------- */
 

@@ -58,9 +58,9 @@ typedef enum grobo_sim_fault {
 #define GROBO_SIM_SPLIT_MAX_US 5000
 
 /** "drop" of GROBO_SIM_FAULT_DROP; NULL for a number that is no fault. Static string. */
-GROBO_API const char *grobo_sim_fault_name(int fault);
+GROBO_CORE const char *grobo_sim_fault_name(int fault);
 /** The fault called name[0..length-1], or GROBO_ERR_NOTFOUND. */
-GROBO_API int grobo_sim_fault_find(const char *name, size_t length);
+GROBO_CORE int grobo_sim_fault_find(const char *name, size_t length);
 
 /* ---- events --------------------------------------------------------------------------------- */
 
@@ -123,9 +123,9 @@ typedef struct grobo_sim_type {
 } grobo_sim_type;
 
 /** The row of the table, NULL behind its end. Static storage; thread safe. */
-GROBO_API const grobo_sim_type *grobo_sim_type_row(size_t index);
+GROBO_CORE const grobo_sim_type *grobo_sim_type_row(size_t index);
 /** The servo called name[0..length-1], in any case; NULL for none. Static storage; thread safe. */
-GROBO_API const grobo_sim_type *grobo_sim_type_named(const char *name, size_t length);
+GROBO_CORE const grobo_sim_type *grobo_sim_type_named(const char *name, size_t length);
 
 /* ---- configuration -------------------------------------------------------------------------- */
 
@@ -298,7 +298,7 @@ typedef struct grobo_sim {
  *         wiring) not one of the servos', or an echo through the board; GROBO_ERR_CAP for more
  *         than GROBO_SIM_SERVOS_MAX joints
  */
-GROBO_API int grobo_sim_init(grobo_sim *sim, const grobo_sim_config *config, int64_t now_us);
+GROBO_CORE int grobo_sim_init(grobo_sim *sim, const grobo_sim_config *config, int64_t now_us);
 
 /**
  * The host writes. With pacing the bytes take their time on the wire, one after another, before
@@ -306,16 +306,16 @@ GROBO_API int grobo_sim_init(grobo_sim *sim, const grobo_sim_config *config, int
  * @return bytes taken: fewer than n when the wire's queue is full (write the rest later, as after
  *         a short write; deadline tells when); n when the port is gone (they are lost)
  */
-GROBO_API size_t grobo_sim_rx(grobo_sim *sim, const uint8_t *bytes, size_t n, int64_t now_us);
+GROBO_CORE size_t grobo_sim_rx(grobo_sim *sim, const uint8_t *bytes, size_t n, int64_t now_us);
 
 /**
  * The host reads: bytes whose time on the wire is over by now.
  * @return bytes put into buf, 0 when there are none yet
  */
-GROBO_API size_t grobo_sim_tx(grobo_sim *sim, uint8_t *buf, size_t cap, int64_t now_us);
+GROBO_CORE size_t grobo_sim_tx(grobo_sim *sim, uint8_t *buf, size_t cap, int64_t now_us);
 
 /** Lets everything happen that is due by now. _rx and _tx do it too. */
-GROBO_API void grobo_sim_step(grobo_sim *sim, int64_t now_us);
+GROBO_CORE void grobo_sim_step(grobo_sim *sim, int64_t now_us);
 
 /**
  * When to call again: a byte is ready for the host (at or before the latest time when it is ready
@@ -323,20 +323,20 @@ GROBO_API void grobo_sim_step(grobo_sim *sim, int64_t now_us);
  * functions of time.
  * @return GROBO_NEVER_US when nothing will happen without the host
  */
-GROBO_API int64_t grobo_sim_deadline(const grobo_sim *sim);
+GROBO_CORE int64_t grobo_sim_deadline(const grobo_sim *sim);
 
 /**
  * As grobo_sim_deadline(), for a host that needs packets, not bytes: when the last of the bytes is
  * ready that come to the host without a pause. The bytes before it wait in the simulator, so that
  * a reading wakes the host once for each packet on a wire, not for each byte.
  */
-GROBO_API int64_t grobo_sim_packet_deadline(const grobo_sim *sim);
+GROBO_CORE int64_t grobo_sim_packet_deadline(const grobo_sim *sim);
 
 /** Room for bytes of the host: what grobo_sim_rx would take now. */
-GROBO_API size_t grobo_sim_rx_room(const grobo_sim *sim);
+GROBO_CORE size_t grobo_sim_rx_room(const grobo_sim *sim);
 
 /** True from a hang-up to the next grobo_sim_plug(): whoever serves the port closes it. */
-GROBO_API bool grobo_sim_hung_up(const grobo_sim *sim);
+GROBO_CORE bool grobo_sim_hung_up(const grobo_sim *sim);
 
 /**
  * Takes the host's cable out (in = false) or puts it back. Out: bytes on the line are lost, the
@@ -350,43 +350,43 @@ GROBO_API void grobo_sim_plug(grobo_sim *sim, bool in, int64_t now_us);
  * another do not understand it: grobo_sim_view.baud_bps.
  * @return 0, or GROBO_ERR_ARG below 300 bps
  */
-GROBO_API int grobo_sim_set_line_bps(grobo_sim *sim, uint32_t line_bps);
+GROBO_CORE int grobo_sim_set_line_bps(grobo_sim *sim, uint32_t line_bps);
 
 /** Number of servos. */
-GROBO_API int grobo_sim_servos(const grobo_sim *sim);
+GROBO_CORE int grobo_sim_servos(const grobo_sim *sim);
 
 /** First servo whose register ID is id, or GROBO_ERR_NOTFOUND. */
-GROBO_API int grobo_sim_find(const grobo_sim *sim, int id);
+GROBO_CORE int grobo_sim_find(const grobo_sim *sim, int id);
 
 /** What a servo does at the latest time. @return 0 or GROBO_ERR_ARG (no such servo). */
-GROBO_API int grobo_sim_look(grobo_sim *sim, int servo, grobo_sim_view *view);
+GROBO_CORE int grobo_sim_look(grobo_sim *sim, int servo, grobo_sim_view *view);
 
 /**
  * Reads a register, present values as a read packet would give them.
  * @return 0, or GROBO_ERR_ARG (no such servo, or no register begins at this address)
  */
-GROBO_API int grobo_sim_get_register(grobo_sim *sim, int servo, int address, int32_t *value);
+GROBO_CORE int grobo_sim_get_register(grobo_sim *sim, int servo, int address, int32_t *value);
 
 /**
  * Writes a register as a write packet would, with all that follows from it; read-only registers
  * of kind ROM and FLASH may be written here, present values may not.
  * @return 0, GROBO_ERR_ARG (no such servo or register, present value), GROBO_ERR_LIMIT (range)
  */
-GROBO_API int grobo_sim_set_register(grobo_sim *sim, int servo, int address, int32_t value);
+GROBO_CORE int grobo_sim_set_register(grobo_sim *sim, int servo, int address, int32_t value);
 
 /**
  * What a servo's flash holds: registers No.4-29 as they were saved last.
  * @return 0 or GROBO_ERR_ARG (no such servo)
  */
-GROBO_API int grobo_sim_get_flash(grobo_sim *sim, int servo, uint8_t flash[GROBO_SIM_FLASH_BYTES]);
+GROBO_CORE int grobo_sim_get_flash(grobo_sim *sim, int servo, uint8_t flash[GROBO_SIM_FLASH_BYTES]);
 
 /**
  * Gives a servo another flash, and power off and on at once: it is limp afterwards.
  * @return 0; GROBO_ERR_ARG (no such servo); GROBO_ERR_LIMIT (a value that no servo can have, or a
  *         reserved byte that is not 0): nothing has changed
  */
-GROBO_API int grobo_sim_set_flash(grobo_sim *sim, int servo,
-                                  const uint8_t flash[GROBO_SIM_FLASH_BYTES]);
+GROBO_CORE int grobo_sim_set_flash(grobo_sim *sim, int servo,
+                                   const uint8_t flash[GROBO_SIM_FLASH_BYTES]);
 
 /**
  * Somebody turns a shaft: from where it is to angle_mdeg (kept within the mechanical stops) in
@@ -400,13 +400,13 @@ GROBO_API int grobo_sim_set_angle(grobo_sim *sim, int servo, int32_t angle_mdeg,
 GROBO_API int grobo_sim_set_blocked(grobo_sim *sim, int servo, bool blocked);
 
 /** Extra current while torque is on, as a hand or a weight causes: 0..5000 mA. @return 0/ARG. */
-GROBO_API int grobo_sim_set_load(grobo_sim *sim, int servo, int32_t load_ma);
+GROBO_CORE int grobo_sim_set_load(grobo_sim *sim, int servo, int32_t load_ma);
 
 /** Sets the temperature of a servo, -40..150. @return 0 or GROBO_ERR_ARG. */
 GROBO_API int grobo_sim_set_temperature(grobo_sim *sim, int servo, double temperature_c);
 
 /** Connects or disconnects a servo. @return 0 or GROBO_ERR_ARG. */
-GROBO_API int grobo_sim_set_cable(grobo_sim *sim, int servo, grobo_sim_cable cable);
+GROBO_CORE int grobo_sim_set_cable(grobo_sim *sim, int servo, grobo_sim_cable cable);
 
 /**
  * Sets the battery's voltage. Speeds follow it; below GROBO_SIM_BROWN_OUT_MV the servos are
@@ -418,13 +418,13 @@ GROBO_API void grobo_sim_set_supply(grobo_sim *sim, uint32_t supply_mv);
 #define GROBO_SIM_BROWN_OUT_MV 4500
 
 /** Sets the rate of a fault from now on. @return 0, or GROBO_ERR_ARG (no fault, rate not 0..1). */
-GROBO_API int grobo_sim_set_fault(grobo_sim *sim, int fault, double rate);
+GROBO_CORE int grobo_sim_set_fault(grobo_sim *sim, int fault, double rate);
 
 /**
  * Sets rates by a list "drop=0.01,flip=0.02"; "all=R" means all but hang-up.
  * @return number of rates set; GROBO_ERR_NOTFOUND (name) or GROBO_ERR_ARG (number): none was set
  */
-GROBO_API int grobo_sim_set_faults(grobo_sim *sim, const char *list, size_t length);
+GROBO_CORE int grobo_sim_set_faults(grobo_sim *sim, const char *list, size_t length);
 
 GROBO_END_DECLS
 

@@ -63,10 +63,10 @@ static void config_fill(grobo_robot_config *c, const grobo_driver *driver)
 
 static const grobo_robot_config defaults;
 
-int grobo_robot_init(grobo_robot *robot, const grobo_driver *driver, void *driver_ctx,
-                     const grobo_robot_config *config, int64_t now_us)
+int grobo_robot_init_sized(grobo_robot *robot, size_t robot_bytes, const grobo_driver *driver,
+                           void *driver_ctx, const grobo_robot_config *config, int64_t now_us)
 {
-    if (robot == NULL) {
+    if (robot == NULL || robot_bytes != sizeof *robot) {
         return GROBO_ERR_ARG;
     }
     const grobo_robot_config *c = config == NULL ? &defaults : config;

@@ -31,7 +31,7 @@
 #ifndef GROBO_CORE_ROBOT_H
 #define GROBO_CORE_ROBOT_H
 
-#include <grobo/robot.h>
+#include <grobo/static.h>
 
 /* ---- event.c --------------------------------------------------------------------------------- */
 

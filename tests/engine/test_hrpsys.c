@@ -10,6 +10,7 @@
 
 #include <grobo/board.h>
 #include <grobo/hrpsys.h>
+#include <grobo/static.h>
 
 #include "tests/support/rig.h"
 

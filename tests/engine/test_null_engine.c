@@ -11,8 +11,8 @@
 
 #include <grobo/board.h>
 #include <grobo/hrpsys.h>
-#include <grobo/robot.h>
 #include <grobo/sim.h>
+#include <grobo/static.h>
 
 #define REFUSES(call) assert_int_equal(call, GROBO_ERR_ARG)
 
@@ -142,6 +142,8 @@ static void robot_refuses_null_in_its_first_functions(void **state)
 {
     (void)state;
     grobo_robot_set_host(NULL, NULL);
+    REFUSES(grobo_robot_init_sized(&robot, sizeof robot - 1, driver, NULL, &robot_config, 1000));
+    REFUSES(grobo_robot_init_sized(NULL, sizeof robot, driver, NULL, &robot_config, 1000));
     REFUSES(grobo_robot_init(NULL, driver, NULL, &robot_config, 1000));
     REFUSES(grobo_robot_init(&robot, NULL, NULL, &robot_config, 1000));
     grobo_robot_on_event(NULL, on_event, NULL);

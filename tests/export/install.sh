@@ -73,6 +73,21 @@ compilers() {
         "C, clang: clang $c11" "C++, clang: clang++ $cxx11"
 }
 
+# A program for another number of joints finds nothing to make a posture with.
+other_cap() {
+    cat >"$work/posture.c" <<'C'
+#include <grobo/posture.h>
+int main(void)
+{
+    grobo_posture posture;
+    return grobo_posture_init(&posture, 3);
+}
+C
+    builds "${CC:-gcc} $c11" "$work/posture.c" "$@" &&
+        ! builds "${CC:-gcc} $c11 -DGROBO_JOINTS_MAX=20" "$work/posture.c" "$@" 2>"$work/said" &&
+        grep -q 'grobo_[a-z_]*_20' "$work/said"
+}
+
 # by_each OPTION...: by each compiler a program, with these options for pkg-config.
 by_each() {
     mode=${1:-shared}
@@ -104,8 +119,10 @@ check 'completion for fish' grep -q '^complete ' "$share/fish/vendor_completions
 check 'pkg-config tells the version of the headers' same_version
 compilers >"$work/compilers"
 by_each
+check 'another GROBO_JOINTS_MAX fails to link' other_cap
 rm -f "$library"/libgrobo.so*
 by_each --static
+check 'another GROBO_JOINTS_MAX fails to link statically' other_cap --static
 check 'uninstall' make_target uninstall
 check 'uninstall leaves no file' test -z "$(find "$tree" -type f -o -type l ! -path "$tree/usr")"
 done_testing

@@ -17,6 +17,7 @@
 #include <grobo/loop.h>
 #include <grobo/session.h>
 #include <grobo/sim_server.h>
+#include <grobo/static.h>
 #include <grobo/thread.h>
 
 #define REFUSES(call) assert_int_equal(call, GROBO_ERR_ARG)

@@ -11,6 +11,7 @@
 #include <event2/event.h>
 
 #include <grobo/session.h>
+#include <grobo/static.h>
 
 #include "tests/support/line.h"
 #include "tests/support/loop.h"

@@ -7,8 +7,8 @@
 #define GROBO_TEST_RIG_H
 
 #include <grobo/board.h>
-#include <grobo/robot.h>
 #include <grobo/sim.h>
+#include <grobo/static.h>
 
 #include "tests/support/witness.h"
 

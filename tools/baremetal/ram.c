@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* What things take in memory, as the sizes of symbols: tools/baremetal/size.sh reads them. */
-#include <grobo/robot.h>
 #include <grobo/sim.h>
+#include <grobo/static.h>
 
 enum {
     JOINTS = 20,

@@ -35,11 +35,12 @@ for header in include/grobo/*.h ports/*/include/grobo/*.h; do
         try "$header" C++11 $cxx -x c++ -std=c++11 $warnings $flags -I.
     fi
 done
-# The umbrella is for those who do not want to know which header; export.h comes with any of them.
+# The umbrella is for those who do not want to know which header; export.h comes with any of them,
+# and static.h is for those who keep an engine themselves.
 if [ -f include/grobo/grobo.h ]; then
     for header in include/grobo/*.h; do
         name=${header##*/}
-        case $name in grobo.h | export.h) continue ;; esac
+        case $name in grobo.h | export.h | static.h) continue ;; esac
         grep -q "<grobo/$name>" include/grobo/grobo.h && continue
         echo "include/grobo/grobo.h:1: headers: does not include <grobo/$name>"
         bad=1

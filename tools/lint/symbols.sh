@@ -3,8 +3,9 @@
 # Gate: the shared library exports exactly what headers declare with GROBO_API.
 #
 # usage: symbols.sh LIBRARY      compare
-#        symbols.sh --declared   print the declared names, one a line
-#        symbols.sh --pointers   only functions that take a pointer
+#        symbols.sh --declared   print the declared names, one a line, of all libraries
+#        symbols.sh --pointers   of them only functions that take a pointer
+#        symbols.sh --map        print the version script, which is kept in src/libgrobo.map
 set -u
 
 nm=${NM:-nm}
@@ -12,12 +13,12 @@ nm=${NM:-nm}
 # A declaration may go over several lines; its name stands before the first bracket that is not an
 # attribute's, or before [ or ; for data.
 declared() {
-    cat include/grobo/*.h ports/posix/include/grobo/*.h 2>/dev/null | awk -v pointers="${1:-}" '
-    /^GROBO_API/ { text = ""; open = 1 }
+    cat include/grobo/*.h ports/posix/include/grobo/*.h 2>/dev/null | awk -v pointers="${2:-}" '
+    /^GROBO_'"$1"'/ { text = ""; open = 1 }
     open { text = text " " $0 }
     open && /;/ {
         open = 0
-        sub(/GROBO_API/, "", text)
+        sub(/GROBO_(API|CORE)/, "", text)
         while (sub(/__attribute__ *\(\([^()]*(\([^()]*\))?[^()]*\)\)/, "", text)) {
         }
         if (pointers && text !~ /\(.*([*[]|_fn )/) {
@@ -30,17 +31,33 @@ declared() {
     }' | sort -u
 }
 
+# The list of what is exported, for whoever reviews a change of it, and for the linker.
+map() {
+    echo '# What the shared library exports: tools/lint/symbols.sh --map'
+    echo 'GROBO_0 {'
+    echo '    global:'
+    declared API | sed 's/.*/        &;/'
+    printf '    local:\n        *;\n};\n'
+}
+
 case ${1:-} in
---declared) declared && exit ;;
---pointers) declared yes && exit ;;
+--map) map && exit ;;
+--declared) declared '(API|CORE)' && exit ;;
+--pointers) declared '(API|CORE)' yes && exit ;;
 esac
 
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
-declared >"$work/declared"
+declared API >"$work/declared"
 # The sanitizers and gcov add names of their own; the library that is checked has none of them.
-"$nm" -D --defined-only "$1" | awk 'NF == 3 { print $3 }' | sort -u >"$work/exported"
+"$nm" -D --defined-only "$1" | awk 'NF == 3 && $2 != "A" { sub(/@.*/, "", $3); print $3 }' |
+    sort -u >"$work/exported"
 bad=0
+map >"$work/map"
+if [ -f src/libgrobo.map ] && ! cmp -s "$work/map" src/libgrobo.map; then
+    echo "src/libgrobo.map:1: symbols: not what the headers declare (tools/lint/symbols.sh --map)"
+    bad=1
+fi
 for name in $(comm -13 "$work/declared" "$work/exported"); do
     echo "$1:1: symbols: exports $name, which no header declares with GROBO_API"
     bad=1

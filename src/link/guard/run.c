@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include <grobo/serial.h>
+#include <grobo/static.h>
 
 #include "src/link/guard/guard.h"
 #include "src/link/serial/loop.h"

@@ -8,6 +8,7 @@
 #include <math.h>
 
 #include <grobo/session.h>
+#include <grobo/static.h>
 
 #include "tools/grctl/conn/conn.h"
 #include "tools/grctl/conn/trace.h"

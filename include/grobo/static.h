@@ -1,0 +1,289 @@
+/* SPDX-License-Identifier: MIT */
+/**
+ * @file static.h
+ * @brief The engine in storage of one's own, pumped by oneself: for firmware and for loops that
+ * are not libevent's.
+ *
+ * What is in here is in the static libraries alone (libgrobo-core.a, libgrobo.a): the sizes below
+ * change from version to version. With the shared library a robot comes from session.h or thread.h.
+ *
+ * Whoever owns the line pumps the engine, whenever bytes came, a request was made or the deadline
+ * is reached, always in this order:
+ * @code
+ *   grobo_robot_rx(&robot, bytes, n, now);                // what has arrived, first
+ *   grobo_robot_step(&robot, now);                        // timeouts, frames that are due
+ *   n = grobo_robot_tx(&robot, buf, sizeof buf, now);     // > 0: write buf, all of it
+ *   wake_up_at(grobo_robot_deadline(&robot, now));        // <= now: again at once
+ * @endcode
+ * NULL where something must be is GROBO_ERR_ARG (error.h).
+ */
+#ifndef GROBO_STATIC_H
+#define GROBO_STATIC_H
+
+#include <grobo/bus.h>
+#include <grobo/robot.h>
+#include <grobo/sequencer.h>
+
+GROBO_BEGIN_DECLS
+
+/* ---- what is in an engine ------------------------------------------------------------------- */
+
+/** Frames that the engine may have under way at a time. */
+#define GROBO_ROBOT_SLOTS 12
+/** Events that may wait for the callback at a time. */
+#define GROBO_ROBOT_EVENTS 32
+/** Bins of the jitter histogram: four an octave, from 1 us to 65 ms. */
+#define GROBO_ROBOT_JITTER_BINS 64
+
+/**
+ * Whoever pumps an engine, as the engine sees it. A function that is NULL is not called. What they
+ * call of the engine is grobo_robot_deadline() at most, and from `wake` the pump.
+ */
+typedef struct grobo_robot_host {
+    /** The time of requests and questions, by the pump's clock. NULL: that of its last call. */
+    int64_t (*clock)(void *ctx);
+    /** A request was made: there may be a frame to send, an event to tell or a sooner deadline.
+     *  With this function no request tells events, only the pump does. Called without the lock. */
+    void (*wake)(void *ctx);
+    /** May a latched stop be taken back? @return 0, or the error of grobo_robot_reset(). */
+    int (*may_reset)(void *ctx);
+    /** Where several threads use the engine: held during every call, but not during callbacks. A
+     *  thread that has it may take it again. */
+    void (*lock)(void *ctx);
+    void (*unlock)(void *ctx);
+    void *ctx; /**< handed to them */
+} grobo_robot_host;
+
+/** A step of a job. Private. */
+typedef int (*grobo_robot_step_fn)(struct grobo_robot *robot);
+
+/** What a frame does to joints, judged at the moment it leaves. Private. */
+typedef struct grobo_robot_order {
+    /* private */
+    grobo_joint_mask joints; /* that it moves, switches, or leaves unknown */
+    uint32_t number;         /* of its target, see grobo_robot_axis.next */
+    int64_t asked_us;        /* a halt, torque: when it was asked for */
+    uint8_t deed;            /* what it does; 0: nothing to any joint */
+    uint8_t torque;          /* the grobo_torque that it switches to */
+    uint8_t part;            /* which of the driver's frames for one joint */
+    bool each;               /* more time only for joints that need it, not for all alike */
+    bool soft;               /* slow, whenever it leaves: asked for as the first move */
+    bool single;             /* from a stream of the caller's own */
+    bool moves;              /* a stop must cancel it */
+    bool stops;              /* leaves after a latched stop as well */
+    bool rests;              /* ends a motion: joints come to rest near where they are by then */
+} grobo_robot_order;
+
+/** A frame under way. Private. */
+typedef struct grobo_robot_slot {
+    /* private */
+    grobo_txn txn;
+    grobo_exchange exchange;
+    grobo_robot_order order;
+    struct grobo_robot *robot;
+    int64_t due_us;   /* when it should leave; GROBO_NEVER_US: as soon as may be */
+    int64_t given_us; /* when the bus got it */
+    int64_t asked_us; /* when its first attempt left */
+    int job;          /* number of the job whose step made it; 0: none */
+    bool refused;     /* at the moment it would have left */
+    bool reads;       /* it asks where this joint is */
+    uint8_t use;      /* 0: free */
+    uint8_t joint;
+} grobo_robot_slot;
+
+/** A move of a joint, straight in time. Private. */
+typedef struct grobo_robot_way {
+    /* private */
+    double from_rad, to_rad;
+    int64_t from_us, to_us;
+} grobo_robot_way;
+
+/** What is known of a joint. Private. */
+typedef struct grobo_robot_axis {
+    /* private */
+    grobo_joint_state state;
+    int64_t goal_us;           /* when its goal was read back */
+    int64_t own_until_us;      /* when the move that the servo told of is over */
+    int64_t angle_us, full_us; /* when read; GROBO_NEVER_US: never */
+    int64_t gave_way_us;       /* in free mode: when a hand pushed or turned it last */
+    int64_t current_since_us;  /* above its limit since; GROBO_NEVER_US: it is not */
+    int64_t told_us;           /* when a frame that moves or switches it left last */
+    grobo_robot_way way;       /* the move that the last frame sent it on */
+    uint32_t last;             /* number of the target that left last; 0: what had none */
+    uint32_t next;             /* number of the target that waits for the line; 0: none */
+    double next_rad;           /* that target */
+    double away_rad;           /* in free mode: how far from its goal when it was read last */
+    int64_t next_time_us;      /* and its time, so far */
+    int status;                /* of the last reading */
+    uint16_t lost;             /* readings lost in a row */
+    int64_t told_to_us;        /* in segments: until when on its way the servo was told to go */
+    bool in_segments;          /* it is told its way in parts */
+    bool sensed;               /* since the link came up */
+    bool has_target;           /* sent somewhere since then */
+    bool torque_known;
+    bool wants_torque; /* we switched it on: to be without is a fault */
+    bool held;         /* goal read back to be the present angle: torque may come on */
+    bool off_way;      /* read to be elsewhere: it lost the frame of its way */
+    bool adrift;       /* moves though we sent it nowhere, and did not tell where to */
+} grobo_robot_axis;
+
+/** A job that runs. Private. */
+typedef struct grobo_robot_task {
+    /* private */
+    const grobo_robot_step_fn *script;
+    int number;
+    grobo_job_kind kind;
+    unsigned at;             /* step of the script that comes next */
+    uint8_t activity;        /* what the step before began */
+    int result;              /* first error */
+    int joint;               /* and its joint */
+    double value;            /* and its value */
+    grobo_joint_mask joints; /* asked for, and not superseded */
+    grobo_joint_mask superseded;
+    grobo_joint_mask todo;    /* of the activity */
+    grobo_joint_mask pending; /* not yet as it was asked for */
+    grobo_joint_mask failed;
+    grobo_sense_kind sense; /* of the activity */
+    grobo_torque torque;
+    grobo_priority priority;
+    grobo_posture target;
+    grobo_clip clip;
+    grobo_play_options options;
+    grobo_exchange exchange;
+    grobo_robot_order order; /* of the exchange */
+    int64_t leave_by_us;     /* after that it does not leave; 0: always */
+    int part;
+    int rounds;      /* of repeating what was not taken */
+    int restarts;    /* of all of it */
+    uint32_t motion; /* number of the target that is read back */
+    size_t reply_bytes;
+    int64_t begun_us; /* when it started */
+    int64_t until_us; /* end of waiting */
+    int64_t bound_us; /* end of patience */
+    grobo_register_io io;
+    uint8_t data[GROBO_REGISTERS];
+} grobo_robot_task;
+
+/** A move or a reading that waits for its turn. Private. */
+typedef struct grobo_robot_wish {
+    /* private */
+    int number;
+    grobo_job_kind kind;
+    grobo_joint_mask joints;
+    grobo_sense_kind sense;
+    int64_t begin_by_us;
+    grobo_posture target;
+} grobo_robot_wish;
+
+/** A robot engine. Caller storage; read it through the functions below. */
+struct grobo_robot {
+    /* private */
+    const grobo_driver *driver;
+    void *driver_ctx;
+    int (*leave)(grobo_robot_slot *slot); /* a frame would leave: judges it */
+    void (*over)(grobo_robot_slot *slot, int result, const grobo_packet *reply); /* it is over */
+    grobo_robot_host host;
+    grobo_robot_config config; /* defaults filled in */
+    grobo_event_fn on_event;
+    void *event_ctx;
+    grobo_bus bus;
+    grobo_sequencer sequencer;
+    grobo_sequencer_state told_state;          /* of the sequencer, to the callback */
+    grobo_robot_task jobs[GROBO_ROBOT_JOBS];   /* where one runs, the first does */
+    grobo_robot_task *job;                     /* of jobs: whose step runs, else the first */
+    grobo_robot_wish queue[GROBO_ROBOT_QUEUE]; /* the first is the oldest */
+    unsigned queued;
+    grobo_robot_axis axes[GROBO_JOINTS_MAX];
+    grobo_robot_slot slots[GROBO_ROBOT_SLOTS];
+    grobo_event events[GROBO_ROBOT_EVENTS]; /* ring */
+    unsigned events_head, events_n;
+    grobo_robot_counters counters;
+    grobo_trip_info trip;
+    uint64_t late_bins[GROBO_ROBOT_JITTER_BINS];
+    int64_t late_max_us;
+    int64_t now_us;         /* of the call that runs */
+    int64_t soft_us;        /* grobo_robot_send(): when its first target is reached */
+    int64_t sense_us;       /* when the background reads next */
+    uint32_t motion;        /* number of the last target */
+    int64_t renewed_us;     /* when the ways in segments were told further */
+    uint32_t told_item;     /* clip of the sequencer of which it was said that none watches it */
+    uint32_t motion_us;     /* wire time of the last motion frames */
+    grobo_joint_mask round; /* joints still to be read in this background round */
+    grobo_joint_mask free_joints;
+    grobo_joint_mask clip_joints;   /* of the motion that is played, and those behind it */
+    grobo_joint_mask played_joints; /* sent where they go by the sequencer */
+    grobo_joint_mask other_round;   /* in free mode: of the joints that are not free */
+    uint8_t reply[GROBO_REGISTERS];
+    double fault_deg;
+    int fault_joint;
+    int last_number;
+    unsigned low_readings; /* of the voltage, in a row */
+    unsigned depth;        /* calls into the engine, one inside another */
+    int acting;            /* number of the job whose step runs; 0: none */
+    bool other_read;       /* in free mode: the last reading was of a joint that is not free */
+    bool link;
+    bool queue_may_go;  /* a job has ended since the queue was looked at */
+    bool settling;      /* a motion is over, its end not yet looked at */
+    bool soft;          /* the next move is the first from a sensed posture */
+    bool stop_owed;     /* an emergency stop that no line has carried yet */
+    bool holds_at_stop; /* the driver switches no torque: an emergency stop halts */
+};
+
+/* ---- its life and its pump ------------------------------------------------------------------ */
+
+/**
+ * Makes an engine in the caller's storage. The link counts as down until grobo_robot_link_up().
+ * @param driver borrowed, checked with grobo_driver_check().
+ * @param driver_ctx handed to the driver's functions; may be NULL.
+ * @param config copied; NULL for all defaults.
+ * @return 0, or GROBO_ERR_ARG (driver or a field of config out of its range; an engine of another
+ *         size than the library's).
+ */
+#define grobo_robot_init(robot, driver, driver_ctx, config, now_us)                                \
+    grobo_robot_init_sized(robot, sizeof(grobo_robot), driver, driver_ctx, config, now_us)
+GROBO_CORE int grobo_robot_init_sized(grobo_robot *robot, size_t robot_bytes,
+                                      const grobo_driver *driver, void *driver_ctx,
+                                      const grobo_robot_config *config, int64_t now_us);
+
+/** Who pumps it; copied, NULL: nobody in particular. Before anything is asked of the engine. */
+GROBO_CORE void grobo_robot_set_host(grobo_robot *robot, const grobo_robot_host *host);
+
+/** Bytes came from the line. */
+GROBO_CORE void grobo_robot_rx(grobo_robot *robot, const uint8_t *bytes, size_t size,
+                               int64_t now_us);
+
+/**
+ * Takes the next frame for the line, whole; it counts as sent at now_us, so take it only when the
+ * line can take all of it and nothing waits before it. Frames are judged here: one that must not
+ * leave any more is dropped and the next one is given. Calls nothing back; what that ends is told
+ * by the next grobo_robot_step(), which grobo_robot_deadline() wants at once then.
+ * @param capacity GROBO_RS30X_PACKET_MAX_BYTES is always enough.
+ * @return number of bytes, 0 for nothing now, GROBO_ERR_SPACE.
+ */
+GROBO_CORE int grobo_robot_tx(grobo_robot *robot, uint8_t *buf, size_t capacity, int64_t now_us);
+
+/** Lets time pass: timeouts, frames that are due, sensing. Call at grobo_robot_deadline(). */
+GROBO_CORE void grobo_robot_step(grobo_robot *robot, int64_t now_us);
+
+/**
+ * True if a frame that stops the robot (a halt, an emergency stop) could leave now, as far as the
+ * wire is concerned. Where the line still holds bytes of an earlier frame back they are late, and
+ * the owner of the line should drop them if it can.
+ */
+GROBO_CORE bool grobo_robot_stops(const grobo_robot *robot, int64_t now_us);
+
+/**
+ * When grobo_robot_step() and then grobo_robot_tx() are next wanted; GROBO_NEVER_US for not before
+ * something else happens. After every call that may change anything, ask again.
+ */
+GROBO_CORE int64_t grobo_robot_deadline(const grobo_robot *robot, int64_t now_us);
+
+/** The line is open: nothing moves; after a link_down the posture is sensed again. */
+GROBO_CORE void grobo_robot_link_up(grobo_robot *robot, int64_t now_us);
+
+/** The line is gone: the job ends with GROBO_ERR_UNPLUGGED, a motion fails with it too. */
+GROBO_CORE void grobo_robot_link_down(grobo_robot *robot, int64_t now_us);
+
+GROBO_END_DECLS
+
+#endif
