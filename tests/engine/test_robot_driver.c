@@ -366,6 +366,46 @@ static void an_emergency_stop_without_torque_halts(void **state)
     }
 }
 
+/* It missed the halt, and its reading is lost: the stop is over when it was heard again. */
+static void an_emergency_stop_without_torque_reaches_who_was_deaf(void **state)
+{
+    (void)state;
+    grobo_driver driver = *grobo_gr001_driver(rig_wiring);
+    rig_start_driver(&rig, &driver, &quiet, NULL);
+    rig_power(&rig);
+    grobo_posture target = rig_posture(&rig, NECK, 10, 500);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
+    driver.torque = NULL;
+    rig.halts_at_estop = true;
+    target = rig_posture(&rig, NECK, -40, 9000);
+    assert_true(grobo_robot_move(&rig.robot, &target, rig.now_us) > 0);
+    rig_run(&rig, 1000000);
+    assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_MUTE), 0);
+    int number = grobo_robot_estop(&rig.robot, rig.now_us);
+    rig_run(&rig, 2000000);
+    assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_IN), 0);
+    rig_expect(&rig, number, GROBO_OK);
+    expect_neck_stands();
+}
+
+/* It never answers: the stop ends, names it, and the others were read. */
+static void an_emergency_stop_without_torque_gives_up_who_is_silent(void **state)
+{
+    (void)state;
+    grobo_driver driver = *grobo_gr001_driver(rig_wiring);
+    rig_start_driver(&rig, &driver, &quiet, NULL);
+    rig_power(&rig);
+    driver.torque = NULL;
+    rig.halts_at_estop = true;
+    assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_MUTE), 0);
+    int64_t begun_us = rig.now_us;
+    int number = grobo_robot_estop(&rig.robot, rig.now_us);
+    const grobo_event_job *job = rig_expect(&rig, number, GROBO_ERR_TIMEOUT);
+    assert_true(job->failed == GROBO_JOINT_BIT(NECK));
+    assert_int_equal(job->joint, NECK);
+    assert_true(rig.now_us - begun_us < 5000000);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -376,6 +416,8 @@ int main(void)
         cmocka_unit_test(an_order_leaves_whole_or_not_at_all),
         cmocka_unit_test(what_is_told_again_is_told_in_small_frames),
         cmocka_unit_test(an_emergency_stop_without_torque_halts),
+        cmocka_unit_test(an_emergency_stop_without_torque_reaches_who_was_deaf),
+        cmocka_unit_test(an_emergency_stop_without_torque_gives_up_who_is_silent),
     };
     return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }
