@@ -409,12 +409,29 @@ static int make_frame(const grobo_robot *robot, const grobo_robot_order *order, 
                : driver->posture(driver, robot->driver_ctx, target, part, exchange);
 }
 
+/* What waits takes the room of all its joints: one that has no part in it yet may have one by the
+ * time it leaves. */
+static void says_all(const grobo_robot *robot, const grobo_robot_order *order, saying *says)
+{
+    if (order->deed == GROBO_I_DEED_TORQUE) {
+        says->torqued[order->torque] = order->joints;
+        return;
+    }
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if (is_in(order->joints & ~says->target.posture.set, j)) {
+            says->target.joint_time_us[j] = robot->driver->time_step_us;
+        }
+    }
+    says->target.posture.set = order->joints;
+}
+
 int grobo_i_gate_build(grobo_robot *robot, const grobo_robot_order *order, grobo_exchange *exchange)
 {
     saying says;
     grobo_exchange next;
     int result = judge(robot, order, NULL, false, &says);
     if (result >= 0) {
+        says_all(robot, order, &says);
         result = make_frame(robot, order, &says, order->part, exchange);
     }
     bool several = order->part == 0 && grobo_joints_count(order->joints) > 1;
@@ -547,8 +564,10 @@ static void note(grobo_robot *robot, const grobo_robot_slot *slot, const saying 
         forget(robot, slot->order.joints, true); /* the servo is without torque afterwards */
         break;
     }
+    bool halts = slot->order.deed == GROBO_I_DEED_HALT; /* of its joints those that move */
+    grobo_joint_mask told = halts ? says->target.posture.set : slot->order.joints;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if (is_in(slot->order.joints, j)) {
+        if (is_in(told, j)) {
             robot->axes[j].told_us = robot->now_us;
             robot->axes[j].last = slot->order.number;
         }

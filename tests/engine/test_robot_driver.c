@@ -239,6 +239,27 @@ static void a_halt_of_several_frames_stops_all(void **state)
     assert_true(fabs(rig_angle_deg(&rig, NECK) - grobo_deg_from_rad(target.angle_rad[NECK])) > 3);
 }
 
+/* Most of the frames would have no joint that moves. */
+static void a_halt_of_several_frames_stops_one(void **state)
+{
+    (void)state;
+    for (int j = 0; j < 20; j++) {
+        start(&quiet);
+        rig_power(&rig);
+        grobo_posture target = all_at(0, 500);
+        rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
+        const grobo_joint *limits = &rig.driver->model->joints[j];
+        double from_deg = rig_angle_deg(&rig, j);
+        bool down = from_deg * 2 > grobo_deg_from_rad(limits->min_rad + limits->max_rad);
+        target = rig_posture(&rig, j, from_deg + (down ? -5 : 5), 2000);
+        assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+        rig_run(&rig, 1000000);
+        assert_int_equal(grobo_robot_stop(&rig.robot, false, rig.now_us), GROBO_OK);
+        rig_run(&rig, 2000000);
+        assert_in_range(lround(10 * fabs(rig_angle_deg(&rig, j) - from_deg)), 22, 32);
+    }
+}
+
 /* A target for which the driver has no frame is no move. */
 static void an_order_without_a_frame_is_over(void **state)
 {
@@ -412,6 +433,7 @@ int main(void)
         cmocka_unit_test(every_function_gets_the_context),
         cmocka_unit_test(an_order_of_several_frames_is_whole),
         cmocka_unit_test(a_halt_of_several_frames_stops_all),
+        cmocka_unit_test(a_halt_of_several_frames_stops_one),
         cmocka_unit_test(an_order_without_a_frame_is_over),
         cmocka_unit_test(an_order_leaves_whole_or_not_at_all),
         cmocka_unit_test(what_is_told_again_is_told_in_small_frames),

@@ -266,7 +266,7 @@ static void a_stop_ends_the_way_of_a_joint_that_lost_its_frame(void **state)
 }
 
 /* A reading that was on the line tells of one more joint that moves, sent there by nobody here. */
-static void a_halt_is_no_longer_when_it_leaves(void **state)
+static void a_halt_is_for_what_moves_when_it_leaves(void **state)
 {
     (void)state;
     uint8_t frame[GROBO_FRAME_MAX_BYTES];
@@ -285,9 +285,39 @@ static void a_halt_is_no_longer_when_it_leaves(void **state)
     rig_run(&rig, 1000);
     assert_int_equal(grobo_robot_stop(&rig.robot, true, rig.now_us), GROBO_OK);
     rig_run(&rig, 300000);
-    double here_deg = rig_angle_deg(&rig, SHOULDER);
+    double shoulder_deg = rig_angle_deg(&rig, SHOULDER);
+    double neck_deg = rig_angle_deg(&rig, NECK);
     rig_run(&rig, 1000000);
-    assert_true(fabs(rig_angle_deg(&rig, SHOULDER) - here_deg) < 0.01);
+    assert_true(fabs(rig_angle_deg(&rig, SHOULDER) - shoulder_deg) < 0.01);
+    assert_true(fabs(rig_angle_deg(&rig, NECK) - neck_deg) < 0.01);
+}
+
+/* Asked before the halt left and answered after it: of a joint that it does not stop it tells. */
+static void a_halt_makes_no_reading_of_others_stale(void **state)
+{
+    (void)state;
+    rig_start(&rig, &quiet, NULL);
+    grobo_posture target = rig_posture(&rig, NECK, 10, 500);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
+    target = rig_posture(&rig, NECK, -45, 5000);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    rig_run(&rig, 500000);
+    rig_forget(&rig);
+    assert_int_equal(grobo_sim_set_cable(&rig.sim, R_KNEE, GROBO_SIM_CABLE_MUTE), 0);
+    int number =
+        grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(R_KNEE), GROBO_SENSE_ALL, rig.now_us);
+    rig_run(&rig, 1000);
+    assert_int_equal(rig.n_sent, 1);
+    assert_int_equal(grobo_robot_stop(&rig.robot, true, rig.now_us), GROBO_OK);
+    while (goals_sent() == 0) {
+        rig_run(&rig, 100);
+    }
+    assert_int_equal(grobo_sim_set_cable(&rig.sim, R_KNEE, GROBO_SIM_CABLE_IN), 0);
+    rig_expect(&rig, number, GROBO_OK);
+    target = rig_posture(&rig, R_KNEE, rig_angle_deg(&rig, R_KNEE), 1000);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_ERR_STATE); /* limp */
+    target = rig_posture(&rig, CHEST, 0, 1000);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_ERR_STALE);
 }
 
 /* It was told to let go, did not hear that, and is known to hold, or not known not to. */
@@ -670,7 +700,8 @@ int main(void)
         cmocka_unit_test(a_stop_after_a_motion_is_not_undone_by_its_end),
         cmocka_unit_test(a_stop_moves_no_joint_that_lost_its_frame),
         cmocka_unit_test(a_stop_ends_the_way_of_a_joint_that_lost_its_frame),
-        cmocka_unit_test(a_halt_is_no_longer_when_it_leaves),
+        cmocka_unit_test(a_halt_is_for_what_moves_when_it_leaves),
+        cmocka_unit_test(a_halt_makes_no_reading_of_others_stale),
         cmocka_unit_test(a_stop_reaches_a_joint_that_was_to_let_go),
         cmocka_unit_test(a_stop_reaches_a_servo_that_was_deaf),
         cmocka_unit_test(leaving_lets_go_when_the_joints_stand),
