@@ -105,6 +105,7 @@ typedef struct grobo_robot_axis {
     int64_t goal_us;           /* when its goal was read back */
     int64_t own_until_us;      /* when the move that the servo told of is over */
     int64_t angle_us, full_us; /* when read; GROBO_NEVER_US: never */
+    int64_t torque_us;         /* when its torque was, if that is known */
     int64_t gave_way_us;       /* in free mode: when a hand pushed or turned it last */
     int64_t current_since_us;  /* above its limit since; GROBO_NEVER_US: it is not */
     int64_t told_us;           /* when a frame that moves or switches it left last */
@@ -321,7 +322,8 @@ GROBO_API int grobo_robot_send(grobo_robot *robot, const grobo_posture *target, 
  * reads its meaning first and it is checked as any other target, now and again when it leaves: by
  * then the job may end with GROBO_ERR_SPEED, _STALE, _STATE or _LATCHED, and nothing was sent. A
  * stop ends it with GROBO_ERR_CANCELED, if it moves. A joint in free mode is refused
- * (GROBO_ERR_STATE); what the driver cannot read is refused with GROBO_ERR_UNSUPPORTED unless
+ * (GROBO_ERR_STATE), and so is torque for a joint that does not hold; one whose torque was read more
+ * than 2 s ago is GROBO_ERR_STALE. What the driver cannot read is GROBO_ERR_UNSUPPORTED unless
  * accept_unknown_raw: other motors than the model's, ids, directions, limits, flash and restarts,
  * motions of the board's own. After one that was accepted all joints must be read anew.
  */

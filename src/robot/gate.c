@@ -254,6 +254,22 @@ static int judge_torque(const grobo_robot *robot, const grobo_robot_order *order
     return may == 0 ? GROBO_ERR_STATE : GROBO_OK;
 }
 
+/* A raw frame that switches on what holds already changes nothing: what was read to hold just now.
+ * Everything else is a torque job's. */
+static int judge_raw_torque(const grobo_robot *robot, grobo_joint_mask on)
+{
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        const grobo_robot_axis *axis = &robot->axes[j];
+        if (is_in(on, j) && !grobo_i_axis_is_on(axis)) {
+            return GROBO_ERR_STATE;
+        }
+        if (is_in(on, j) && robot->now_us - axis->torque_us > ON_WAITS_US) {
+            return GROBO_ERR_STALE;
+        }
+    }
+    return GROBO_OK;
+}
+
 /* A caller who times his own targets may be early or late by a little. */
 #define RAW_TOLERANCE 1.02
 
@@ -275,8 +291,11 @@ static int judge_raw(grobo_robot *robot, const grobo_exchange *exchange, saying 
         return GROBO_ERR_LATCHED;
     }
     result = judge_joints(robot, target->posture.set | on);
-    if (result < 0 || !grobo_i_all_on(robot, on)) {
-        return result < 0 ? result : GROBO_ERR_STATE; /* a torque job does it safely */
+    if (result >= 0) {
+        result = judge_raw_torque(robot, on);
+    }
+    if (result < 0) {
+        return result;
     }
     grobo_i_gate_single(robot);
     for (int j = 0; j < driver->model->n_joints; j++) {

@@ -25,6 +25,7 @@ typedef struct plan {
     grobo_joint_mask torqued; /* joints whose torque the trace switches on */
     int64_t start_us;         /* of the replay, by our clock */
     int status;               /* why it has to end, 0: it need not */
+    bool reads;               /* for itself: these replies are not compared */
 } plan;
 
 /* ---- judging ------------------------------------------------------------------------------- */
@@ -117,7 +118,7 @@ static void on_bytes(conn *c, grobo_direction direction, int64_t now_us, const u
                      size_t size)
 {
     plan *p = c->ctx;
-    if (direction == GROBO_DIR_RX)
+    if (direction == GROBO_DIR_RX && !p->reads)
         replay_answer(p->r, REPLAY_REPLAYED, now_us - p->start_us, bytes, size);
 }
 
@@ -125,6 +126,20 @@ static void on_bytes(conn *c, grobo_direction direction, int64_t now_us, const u
 static bool is_reply_trouble(int error)
 {
     return conn_is_of_reply(error) || error == GROBO_ERR_NACK;
+}
+
+/* Torque comes on only where the joints were read just now: a frame that would not leave for that
+ * is sent after a reading, whose replies are not those of the trace. */
+static int send_one(plan *p, const frame *f)
+{
+    int error = conn_wait(&p->c, grobo_session_raw(p->c.session, f->bytes, f->size));
+    if (error == GROBO_ERR_STALE && p->torqued) {
+        p->reads = true;
+        (void)conn_wait(&p->c, grobo_session_sense(p->c.session, p->torqued, GROBO_SENSE_FULL));
+        p->reads = false;
+        error = conn_wait(&p->c, grobo_session_raw(p->c.session, f->bytes, f->size));
+    }
+    return error;
 }
 
 static void send_frame(void *ctx, const frame *f)
@@ -138,7 +153,7 @@ static void send_frame(void *ctx, const frame *f)
     replay_ask(r, f);
     error = conn_sleep_until(&p->c, p->start_us + f->time_us);
     if (!error)
-        error = conn_wait(&p->c, grobo_session_raw(p->c.session, f->bytes, f->size));
+        error = send_one(p, f);
     if (error && !is_reply_trouble(error)) {
         snprintf(doing, sizeof doing, "replay: the frame at %.3f ms", (double)f->time_us / 1e3);
         p->status = conn_fail(&p->c, error, doing);
