@@ -510,7 +510,7 @@ static void note_hold(grobo_robot *robot, grobo_joint_mask joints)
         if (is_in(joints, j)) {
             grobo_i_axis_rest(&robot->axes[j], robot->now_us);
             robot->axes[j].own_until_us = 0;
-            robot->axes[j].held = robot->axes[j].has_target = false;
+            robot->axes[j].has_target = false;
         }
     }
 }

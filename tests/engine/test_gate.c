@@ -162,6 +162,29 @@ static void what_begins_to_hold_is_on_no_way(void **state)
     assert_int_equal(rig_sent_ms(&rig, NECK_ID), -1);
 }
 
+/* It goes on meanwhile, and a stop finds it on its way. */
+static void what_begins_to_hold_leaves_its_neighbour_on_its_way(void **state)
+{
+    (void)state;
+    rig_start_at(&rig, 0, &quiet);
+    for (int j = NECK; j >= CHEST; j--) { /* each once */
+        int moved = j == NECK ? CHEST : NECK;
+        double from_deg = rig_angle_deg(&rig, moved);
+        rig_expect(&rig, grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(j), 0, rig.now_us), 0);
+        assert_int_equal(send(moved, from_deg - 40, 5000), GROBO_OK);
+        rig_run(&rig, 500000);
+        rig_expect(
+            &rig,
+            grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(j), GROBO_TORQUE_ON, rig.now_us), 0);
+        assert_int_equal(grobo_robot_stop(&rig.robot, true, rig.now_us), GROBO_OK);
+        rig_run(&rig, 500000);
+        double here_deg = rig_angle_deg(&rig, moved);
+        assert_true(here_deg < from_deg - 2 && here_deg > from_deg - 15);
+        rig_run(&rig, 500000);
+        assert_true(fabs(rig_angle_deg(&rig, moved) - here_deg) < 0.01);
+    }
+}
+
 /* ---- stops ----------------------------------------------------------------------------------- */
 
 /* Its approach takes a while and is read back: until then the motion is a job. */
@@ -250,6 +273,7 @@ int main(void)
         cmocka_unit_test(a_goal_holds_within_two_degrees),
         cmocka_unit_test(free_mode_is_not_as_urgent_as_a_stop),
         cmocka_unit_test(what_begins_to_hold_is_on_no_way),
+        cmocka_unit_test(what_begins_to_hold_leaves_its_neighbour_on_its_way),
         cmocka_unit_test(a_cancel_stops_a_motion_that_begins),
         cmocka_unit_test(a_short_reading_changes_nothing_else),
         cmocka_unit_test(a_reading_of_the_first_moment_is_of_then),

@@ -31,9 +31,17 @@ static void count(const grobo_driver *self, void *ctx, int what)
     calls[what]++;
 }
 
+/* So it comes to a driver, which need not say what it does not want. */
+static void expect_zeroed(const grobo_exchange *exchange)
+{
+    static const grobo_exchange zeroed;
+    assert_memory_equal(exchange, &zeroed, sizeof zeroed);
+}
+
 static int check(const grobo_driver *self, void *ctx, int part, grobo_exchange *exchange)
 {
     count(self, ctx, 0);
+    expect_zeroed(exchange);
     return inner->check(inner, NULL, part, exchange);
 }
 
@@ -55,6 +63,7 @@ static int posture(const grobo_driver *self, void *ctx, const grobo_target *targ
                    grobo_exchange *exchange)
 {
     count(self, ctx, 1);
+    expect_zeroed(exchange);
     if (has_no_frame) {
         return 0;
     }
@@ -71,6 +80,7 @@ static int torque(const grobo_driver *self, void *ctx, grobo_joint_mask joints, 
                   int part, grobo_exchange *exchange)
 {
     count(self, ctx, 2);
+    expect_zeroed(exchange);
     grobo_joint_mask mine = part_of(joints, part);
     return mine == 0 ? 0 : inner->torque(inner, NULL, mine, mode, 0, exchange);
 }
@@ -79,6 +89,7 @@ static int sense(const grobo_driver *self, void *ctx, int joint, grobo_sense_kin
                  grobo_exchange *exchange)
 {
     count(self, ctx, 3);
+    expect_zeroed(exchange);
     return inner->sense(inner, NULL, joint, kind, exchange);
 }
 
@@ -93,6 +104,7 @@ static int registers(const grobo_driver *self, void *ctx, const grobo_register_i
                      grobo_exchange *exchange)
 {
     count(self, ctx, 5);
+    expect_zeroed(exchange);
     return inner->registers(inner, NULL, io, exchange);
 }
 
@@ -100,6 +112,7 @@ static int command(const grobo_driver *self, void *ctx, int id, grobo_servo_comm
                    grobo_exchange *exchange)
 {
     count(self, ctx, 6);
+    expect_zeroed(exchange);
     return inner->command(inner, NULL, id, what, exchange);
 }
 
