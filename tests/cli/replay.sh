@@ -167,4 +167,13 @@ torque_late() {
         says '^2 frames sent, 0 call for a reply' && ! says 'nobody asked'
 }
 check 'torque is sent though the joint was read a while ago' torque_late
+shows_how_far() {
+    script -qec "stty cols 60; '$GRCTL' -d '$robot' --yes replay '$work/late'" \
+        /dev/null </dev/null >"$work/screen" && grep -q 'replay: [0-9.]* of 3\.0 s' "$work/screen"
+}
+if command -v script >/dev/null 2>&1 && script -qec true /dev/null </dev/null >/dev/null 2>&1; then
+    check 'a terminal shows how far it is' shows_how_far
+else
+    skip 'a terminal shows how far it is' 'no script(1) to make a terminal'
+fi
 done_testing

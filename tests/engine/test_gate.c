@@ -173,9 +173,9 @@ static void what_begins_to_hold_leaves_its_neighbour_on_its_way(void **state)
         rig_expect(&rig, grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(j), 0, rig.now_us), 0);
         assert_int_equal(send(moved, from_deg - 40, 5000), GROBO_OK);
         rig_run(&rig, 500000);
-        rig_expect(
-            &rig,
-            grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(j), GROBO_TORQUE_ON, rig.now_us), 0);
+        rig_expect(&rig,
+                   grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(j), GROBO_TORQUE_ON, rig.now_us),
+                   0);
         assert_int_equal(grobo_robot_stop(&rig.robot, true, rig.now_us), GROBO_OK);
         rig_run(&rig, 500000);
         double here_deg = rig_angle_deg(&rig, moved);
