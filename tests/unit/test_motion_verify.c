@@ -94,28 +94,31 @@ static bool has_times_to(grobo_motion_format format)
     return format == GROBO_FORMAT_M || format == GROBO_FORMAT_MSEQ;
 }
 
+/* True for frames that reach the format by way of a posture at 0, which takes the default time:
+ * then keys lie between frames. */
+static bool lie_between(grobo_motion_kind kind, grobo_motion_format by, grobo_motion_format to)
+{
+    return kind == GROBO_MOTION_FRAMES && has_times_to(by) && to == GROBO_FORMAT_YAML;
+}
+
 /* To each format, and from there to each. */
 static void expect_lossless(grobo_motion *motion, grobo_joint_mask joints, bool exact,
                             double wanted[KEYS][GROBO_JOINTS_MAX])
 {
     grobo_motion_kind kind = grobo_motion_get_kind(motion);
+    double begin_s = kind == GROBO_MOTION_FRAMES ? 0 : KEY_S;
 
-    for (int by = GROBO_FORMAT_M; by <= GROBO_FORMAT_YAML; by++) {
-        grobo_motion *copy = through(motion, (grobo_motion_format)by, exact);
+    for (grobo_motion_format by = GROBO_FORMAT_M; by <= GROBO_FORMAT_YAML; by++) {
+        grobo_motion *copy = through(motion, by, exact);
         bool frames = kind == GROBO_MOTION_FRAMES || (by == GROBO_FORMAT_YAML && !exact);
-        for (int to = GROBO_FORMAT_M; to <= GROBO_FORMAT_YAML; to++) {
-            bool whole = !exact && (by == GROBO_FORMAT_M || to == GROBO_FORMAT_M);
-            grobo_motion *second = through(copy, (grobo_motion_format)to, exact);
-            /* A first frame at 0 takes the default time where a posture needs one, and frames made
-             * of that posture have it: then keys lie between frames. */
-            bool between = kind == GROBO_MOTION_FRAMES && !exact && has_times_to(by) &&
-                           to == GROBO_FORMAT_YAML;
+        for (grobo_motion_format to = GROBO_FORMAT_M; to <= GROBO_FORMAT_YAML; to++) {
+            grobo_motion *second = through(copy, to, exact);
+            bool between = !exact && lie_between(kind, by, to);
             bool waits = between || (frames && has_times_to(to));
-            double first_s = (kind == GROBO_MOTION_FRAMES ? 0 : KEY_S) +
-                             (waits ? GROBO_MOTION_DEFAULT_US / 1e6 : 0);
+            double first_s = begin_s + (waits ? GROBO_MOTION_DEFAULT_US / 1e6 : 0);
             double rad = difference(second, joints, wanted, first_s);
-            double bound_deg = between ? 2 : whole ? 0.0501 : 1e-7;
-            assert_true(rad <= grobo_rad_from_deg(bound_deg));
+            /* Angles are multiples of 0.1 degrees, which all formats have. */
+            assert_true(rad <= grobo_rad_from_deg(between ? 2 : 1e-7));
             worst_rad[kind][by][to] = fmax(worst_rad[kind][by][to], rad);
             grobo_motion_free(second);
         }
