@@ -20,12 +20,12 @@ static const rig_key nod[] = {{0, {{NECK, 40}}}, {500, {{NECK, 30}}}};
 static int send(int joint, double deg, int time_ms)
 {
     grobo_posture target = rig_posture(&rig, joint, deg, time_ms);
-    return grobo_robot_send(&rig.robot, &target, rig.now_us);
+    return grobo_robot_send(&rig.robot, &target);
 }
 
 static void sense(grobo_joint_mask joints, grobo_sense_kind kind)
 {
-    rig_expect(&rig, grobo_robot_sense(&rig.robot, joints, kind, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_sense(&rig.robot, joints, kind), GROBO_OK);
 }
 
 static int id_of(int joint)
@@ -71,7 +71,7 @@ static void the_first_target_after_a_reset_is_slow(void **state)
     (void)state;
     rig_start_at(&rig, 0, &quiet);
     grobo_i_trip(&rig.robot, GROBO_TRIP_TEMPERATURE, CHEST, 75, true);
-    assert_int_equal(grobo_robot_reset(&rig.robot, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_reset(&rig.robot), GROBO_OK);
     assert_int_equal(send(NECK, 20, 100), GROBO_OK);
     rig_run(&rig, 50000);
     assert_in_range(rig_sent_ms(&rig, NECK_ID), 320, 340); /* at 60 deg/s */
@@ -85,7 +85,7 @@ static void a_target_that_waits_does_not_reach_a_joint_that_is_free_by_then(void
     (void)state;
     rig_start_at(&rig, 0, &quiet);
     assert_int_equal(send(NECK, 20, 500), GROBO_OK);
-    assert_int_equal(grobo_robot_free(&rig.robot, GROBO_JOINT_BIT(NECK), true, rig.now_us), 0);
+    assert_int_equal(grobo_robot_free(&rig.robot, GROBO_JOINT_BIT(NECK), true), 0);
     rig_run(&rig, 100000);
     assert_int_equal(rig_sent_ms(&rig, NECK_ID), -1);
     assert_true(fabs(rig_angle_deg(&rig, NECK)) < 0.1);
@@ -101,9 +101,8 @@ static void a_second_file_moves_no_joint_without_torque(void **state)
     clip.only = GROBO_JOINT_BIT(NECK);
     other.only = GROBO_JOINT_BIT(R_KNEE);
     sense(rig_all(&rig), GROBO_SENSE_ALL);
-    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL, rig.now_us), GROBO_OK);
-    assert_int_equal(grobo_robot_enqueue(&rig.robot, &other.clip, NULL, rig.now_us),
-                     GROBO_ERR_STATE);
+    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL), GROBO_OK);
+    assert_int_equal(grobo_robot_enqueue(&rig.robot, &other.clip, NULL), GROBO_ERR_STATE);
 }
 
 /* ---- torque ---------------------------------------------------------------------------------- */
@@ -127,9 +126,9 @@ static void free_mode_is_not_as_urgent_as_a_stop(void **state)
     (void)state;
     bool seen = false;
     rig_start_at(&rig, 0, &quiet);
-    rig_expect(&rig, grobo_robot_estop(&rig.robot, rig.now_us), GROBO_OK);
-    assert_int_equal(grobo_robot_reset(&rig.robot, rig.now_us), GROBO_OK);
-    assert_int_equal(grobo_robot_free(&rig.robot, rig_all(&rig), true, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_estop(&rig.robot), GROBO_OK);
+    assert_int_equal(grobo_robot_reset(&rig.robot), GROBO_OK);
+    assert_int_equal(grobo_robot_free(&rig.robot, rig_all(&rig), true), GROBO_OK);
     for (int i = 0; i < 10000 && rig_torque(&rig, NECK) != GROBO_TORQUE_ON; i++) {
         for (int s = 0; s < GROBO_ROBOT_SLOTS; s++) {
             const grobo_robot_slot *slot = &rig.robot.slots[s];
@@ -151,13 +150,13 @@ static void what_begins_to_hold_is_on_no_way(void **state)
     sense(rig_all(&rig), GROBO_SENSE_ALL);
     rig_expect(&rig, raw_goal(&rig, NECK, 10, 10000), GROBO_OK);
     rig_run(&rig, 5000000);
-    (void)grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(NECK), GROBO_TORQUE_ON, rig.now_us);
+    (void)grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(NECK), GROBO_TORQUE_ON);
     while (rig.torque_on == 0) {
         rig_run(&rig, 100);
     }
-    assert_false(grobo_robot_moving(&rig.robot, rig.now_us));
+    assert_false(grobo_robot_moving(&rig.robot));
     rig_forget(&rig);
-    (void)grobo_robot_stop(&rig.robot, true, rig.now_us);
+    (void)grobo_robot_stop(&rig.robot, true);
     rig_run(&rig, 100000);
     assert_int_equal(rig_sent_ms(&rig, NECK_ID), -1);
 }
@@ -170,13 +169,11 @@ static void what_begins_to_hold_leaves_its_neighbour_on_its_way(void **state)
     for (int j = NECK; j >= CHEST; j--) { /* each once */
         int moved = j == NECK ? CHEST : NECK;
         double from_deg = rig_angle_deg(&rig, moved);
-        rig_expect(&rig, grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(j), 0, rig.now_us), 0);
+        rig_expect(&rig, grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(j), 0), 0);
         assert_int_equal(send(moved, from_deg - 40, 5000), GROBO_OK);
         rig_run(&rig, 500000);
-        rig_expect(&rig,
-                   grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(j), GROBO_TORQUE_ON, rig.now_us),
-                   0);
-        assert_int_equal(grobo_robot_stop(&rig.robot, true, rig.now_us), GROBO_OK);
+        rig_expect(&rig, grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(j), GROBO_TORQUE_ON), 0);
+        assert_int_equal(grobo_robot_stop(&rig.robot, true), GROBO_OK);
         rig_run(&rig, 500000);
         double here_deg = rig_angle_deg(&rig, moved);
         assert_true(here_deg < from_deg - 2 && here_deg > from_deg - 15);
@@ -194,12 +191,12 @@ static void a_cancel_stops_a_motion_that_begins(void **state)
     rig_start_at(&rig, -45, &quiet);
     rig_clip_init(&clip, nod, 2);
     clip.only = GROBO_JOINT_BIT(NECK);
-    int number = grobo_robot_play(&rig.robot, &clip.clip, NULL, rig.now_us);
+    int number = grobo_robot_play(&rig.robot, &clip.clip, NULL);
     while (grobo_robot_play_state(&rig.robot) != GROBO_SEQUENCER_APPROACHING) {
         rig_run(&rig, 100);
     }
     assert_int_equal(grobo_robot_job(&rig.robot), GROBO_JOB_PLAY);
-    assert_int_equal(grobo_robot_cancel(&rig.robot, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_cancel(&rig.robot), GROBO_OK);
     rig_expect(&rig, number, GROBO_ERR_CANCELED);
     rig_run(&rig, 500000);
     assert_int_equal(grobo_robot_play_state(&rig.robot), GROBO_SEQUENCER_IDLE);
@@ -258,7 +255,7 @@ static void a_reading_of_the_first_moment_is_of_then(void **state)
     }
     assert_int_equal(rig_last(&rig, GROBO_EVENT_JOINT)->u.joint.joint, HIP);
     assert_int_equal(rig_last(&rig, GROBO_EVENT_JOINT)->u.joint.result, GROBO_OK);
-    assert_int_equal(grobo_robot_joint(&rig.robot, HIP, rig.now_us, &info), 0);
+    assert_int_equal(grobo_robot_joint(&rig.robot, HIP, &info), 0);
     assert_false(info.torque_known);
 }
 

@@ -175,8 +175,10 @@ static bool take_port(conn *c, target *t)
 /* With the port: the session may have carried it out when it was opened. */
 static int stop_here(conn *c, const target *t)
 {
-    int error = c->estop_ended ? c->estop_result
-                               : conn_wait_shown(c, grobo_session_estop(c->session), "estop", 0);
+    int error =
+        c->estop_ended
+            ? c->estop_result
+            : conn_wait_shown(c, grobo_robot_estop(grobo_session_robot(c->session)), "estop", 0);
     return error ? fail_verify(t, "", error) : succeed(t, "");
 }
 
@@ -321,7 +323,7 @@ static int reset(app *a, const char *device)
     }
     int status = conn_is_auto(a) ? conn_open(&c, a) : conn_open_unchecked(&c, a);
     if (!status) {
-        int error = grobo_session_reset(c.session);
+        int error = grobo_robot_reset(grobo_session_robot(c.session));
         status = report_reset(a, conn_device(&c), error, NULL);
     }
     return conn_close(&c, status);

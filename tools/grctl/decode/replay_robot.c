@@ -136,12 +136,15 @@ static bool is_reply_trouble(int error)
  * is sent after a reading, whose replies are not those of the trace. */
 static int send_one(plan *p, const frame *f)
 {
-    int error = conn_wait(&p->c, grobo_session_raw(p->c.session, f->bytes, f->size));
+    int error =
+        conn_wait(&p->c, grobo_robot_raw(grobo_session_robot(p->c.session), f->bytes, f->size));
     if (error == GROBO_ERR_STALE && p->torqued) {
         p->reads = true;
-        (void)conn_wait(&p->c, grobo_session_sense(p->c.session, p->torqued, GROBO_SENSE_FULL));
+        (void)conn_wait(&p->c, grobo_robot_sense(grobo_session_robot(p->c.session), p->torqued,
+                                                 GROBO_SENSE_FULL));
         p->reads = false;
-        error = conn_wait(&p->c, grobo_session_raw(p->c.session, f->bytes, f->size));
+        error =
+            conn_wait(&p->c, grobo_robot_raw(grobo_session_robot(p->c.session), f->bytes, f->size));
     }
     return error;
 }
@@ -198,9 +201,11 @@ static int prepare(plan *p)
     grobo_robot_config config = conn_robot_config(p->r->a);
     int error = 0;
     if (p->moves)
-        error = conn_wait(&p->c, grobo_session_sense(p->c.session, all, GROBO_SENSE_FULL));
+        error = conn_wait(
+            &p->c, grobo_robot_sense(grobo_session_robot(p->c.session), all, GROBO_SENSE_FULL));
     if (!error && p->torqued)
-        error = conn_wait(&p->c, grobo_session_torque(p->c.session, p->torqued, GROBO_TORQUE_ON));
+        error = conn_wait(&p->c, grobo_robot_torque(grobo_session_robot(p->c.session), p->torqued,
+                                                    GROBO_TORQUE_ON));
     config.retries = -1;
     if (!error)
         error = grobo_robot_configure(p->c.robot, &config);
