@@ -105,6 +105,7 @@ typedef struct grobo_robot_axis {
     int64_t goal_us;           /* when its goal was read back */
     int64_t own_until_us;      /* when the move that the servo told of is over */
     int64_t angle_us, full_us; /* when read; GROBO_NEVER_US: never */
+    int64_t torque_us;         /* when its torque was, if that is known */
     int64_t gave_way_us;       /* in free mode: when a hand pushed or turned it last */
     int64_t current_since_us;  /* above its limit since; GROBO_NEVER_US: it is not */
     int64_t told_us;           /* when a frame that moves or switches it left last */

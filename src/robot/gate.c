@@ -254,6 +254,22 @@ static int judge_torque(const grobo_robot *robot, const grobo_robot_order *order
     return may == 0 ? GROBO_ERR_STATE : GROBO_OK;
 }
 
+/* A raw frame that switches on what holds already changes nothing: what was read to hold just now.
+ * Everything else is a torque job's. */
+static int judge_raw_torque(const grobo_robot *robot, grobo_joint_mask on)
+{
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        const grobo_robot_axis *axis = &robot->axes[j];
+        if (is_in(on, j) && !grobo_i_axis_is_on(axis)) {
+            return GROBO_ERR_STATE;
+        }
+        if (is_in(on, j) && robot->now_us - axis->torque_us > ON_WAITS_US) {
+            return GROBO_ERR_STALE;
+        }
+    }
+    return GROBO_OK;
+}
+
 /* A caller who times his own targets may be early or late by a little. */
 #define RAW_TOLERANCE 1.02
 
@@ -275,8 +291,11 @@ static int judge_raw(grobo_robot *robot, const grobo_exchange *exchange, saying 
         return GROBO_ERR_LATCHED;
     }
     result = judge_joints(robot, target->posture.set | on);
-    if (result < 0 || !grobo_i_all_on(robot, on)) {
-        return result < 0 ? result : GROBO_ERR_STATE; /* a torque job does it safely */
+    if (result >= 0) {
+        result = judge_raw_torque(robot, on);
+    }
+    if (result < 0) {
+        return result;
     }
     grobo_i_gate_single(robot);
     for (int j = 0; j < driver->model->n_joints; j++) {
@@ -409,12 +428,29 @@ static int make_frame(const grobo_robot *robot, const grobo_robot_order *order, 
                : driver->posture(driver, robot->driver_ctx, target, part, exchange);
 }
 
+/* What waits takes the room of all its joints: one that has no part in it yet may have one by the
+ * time it leaves. */
+static void says_all(const grobo_robot *robot, const grobo_robot_order *order, saying *says)
+{
+    if (order->deed == GROBO_I_DEED_TORQUE) {
+        says->torqued[order->torque] = order->joints;
+        return;
+    }
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if (is_in(order->joints & ~says->target.posture.set, j)) {
+            says->target.joint_time_us[j] = robot->driver->time_step_us;
+        }
+    }
+    says->target.posture.set = order->joints;
+}
+
 int grobo_i_gate_build(grobo_robot *robot, const grobo_robot_order *order, grobo_exchange *exchange)
 {
     saying says;
     grobo_exchange next;
     int result = judge(robot, order, NULL, false, &says);
     if (result >= 0) {
+        says_all(robot, order, &says);
         result = make_frame(robot, order, &says, order->part, exchange);
     }
     bool several = order->part == 0 && grobo_joints_count(order->joints) > 1;
@@ -474,7 +510,7 @@ static void note_hold(grobo_robot *robot, grobo_joint_mask joints)
         if (is_in(joints, j)) {
             grobo_i_axis_rest(&robot->axes[j], robot->now_us);
             robot->axes[j].own_until_us = 0;
-            robot->axes[j].held = robot->axes[j].has_target = false;
+            robot->axes[j].has_target = false;
         }
     }
 }
@@ -547,8 +583,10 @@ static void note(grobo_robot *robot, const grobo_robot_slot *slot, const saying 
         forget(robot, slot->order.joints, true); /* the servo is without torque afterwards */
         break;
     }
+    bool halts = slot->order.deed == GROBO_I_DEED_HALT; /* of its joints those that move */
+    grobo_joint_mask told = halts ? says->target.posture.set : slot->order.joints;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if (is_in(slot->order.joints, j)) {
+        if (is_in(told, j)) {
             robot->axes[j].told_us = robot->now_us;
             robot->axes[j].last = slot->order.number;
         }

@@ -66,6 +66,7 @@ static int send_order(grobo_robot *robot, grobo_robot_order order, const way_out
             result = GROBO_OK;
             continue;
         }
+        result = result == GROBO_ERR_EMPTY ? 0 : result; /* nothing for these, but for others */
         left = rest;
         if (result == 0 && chunk > 1) {
             grobo_i_gate_unwait(robot, &order);
@@ -175,21 +176,8 @@ void grobo_i_gate_renew(grobo_robot *robot, grobo_joint_mask joints)
 
 /* ---- halting --------------------------------------------------------------------------------- */
 
-/* No joint comes to them later: the frame is never longer than it is now. */
-static grobo_joint_mask moving_of(const grobo_robot *robot, grobo_joint_mask joints)
-{
-    for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        const grobo_robot_axis *axis = &robot->axes[j];
-        if (!axis->sensed || !grobo_i_axis_moves(axis, robot->now_us)) {
-            joints &= ~GROBO_JOINT_BIT(j);
-        }
-    }
-    return joints;
-}
-
 void grobo_i_gate_halt(grobo_robot *robot, grobo_joint_mask joints)
 {
-    joints = moving_of(robot, joints);
     grobo_robot_order order = {.joints = joints,
                                .asked_us = robot->now_us,
                                .deed = GROBO_I_DEED_HALT,

@@ -127,6 +127,7 @@ static void take_place(grobo_robot *robot, int joint, int64_t asked_us,
     }
     if ((got->valid & GROBO_FIELD_TORQUE) != 0) {
         axis->torque_known = true;
+        axis->torque_us = robot->now_us;
     }
 }
 

@@ -510,18 +510,24 @@ static bool is_astray(grobo_robot *robot, int joint)
     return true;
 }
 
-/* Nothing goes on behind our back: a halt may be lost, or another program may have been killed. */
+/* Nothing goes on behind our back: a halt may be lost, or another program may have been killed. An
+ * emergency stop is not over before each joint was read to stand. */
 static int step_strays(grobo_robot *robot)
 {
     grobo_robot_task *job = robot->job;
+    bool emergency = job->kind == GROBO_JOB_ESTOP;
     grobo_joint_mask astray = 0;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         if (is_set(job->joints & ~job->failed, j) && is_astray(robot, j)) {
             astray |= GROBO_JOINT_BIT(j);
         }
     }
-    if (astray != 0 && (job->kind == GROBO_JOB_ESTOP || job->rounds < ROUNDS)) {
+    if (astray != 0 && (emergency || job->rounds < ROUNDS)) {
         grobo_i_gate_halt(robot, grobo_i_all_joints(robot));
+    }
+    if (emergency) {
+        job->joints = astray | job->failed;
+        return again(robot, job->joints, step_quiet);
     }
     return again(robot, astray, step_quiet);
 }

@@ -10,12 +10,22 @@ void grobo_i_make_way(grobo_robot *robot)
     }
 }
 
+/* Joints that the sequencer moves, or brings to rest: then those of its last frame alone. One that
+ * a clip before has left behind is none of them. */
+static grobo_joint_mask joints_of_motion(const grobo_robot *robot)
+{
+    const grobo_sequencer *sequencer = &robot->sequencer;
+    if (!grobo_robot_is_playing(robot)) {
+        return 0;
+    }
+    return grobo_sequencer_get_state(sequencer) == GROBO_SEQUENCER_STOPPING
+               ? robot->played_joints & sequencer->to.set
+               : robot->played_joints;
+}
+
 void grobo_i_stop_moves(grobo_robot *robot)
 {
-    grobo_joint_mask joints = grobo_i_all_joints(robot);
-    if (grobo_robot_is_playing(robot)) {
-        joints &= ~robot->played_joints; /* the sequencer brings these to rest */
-    }
+    grobo_joint_mask joints = grobo_i_all_joints(robot) & ~joints_of_motion(robot);
     grobo_i_slots_cancel_goals(robot, grobo_i_all_joints(robot), true);
     if (joints != 0) {
         grobo_i_gate_halt(robot, joints);

@@ -228,20 +228,27 @@ check "it ends where the motion ends" both exits 0 on_robot status m12 --- \
     says 'R_KNEE_P  *-40\.0  *-40\.0  *on '
 
 # On a terminal, which script makes: a bar that fits into the line and is cleared away.
+# bar WORD PATTERN COMMAND...: lines with the word; one is like the pattern.
 bar() {
-    bar_command="'$GRCTL' -d '$robot' --timeout 500 play --speed 400 $greet"
-    LC_ALL=$1 TERM=xterm script -qec "stty cols 60; $bar_command" \
+    bar_word=$1
+    bar_like=$2
+    shift 2
+    LC_ALL=C TERM=xterm script -qec "stty cols 60; '$GRCTL' -d '$robot' --timeout 500 $*" \
         /dev/null </dev/null >"$work/screen" || return 1
-    tr '\r' '\n' <"$work/screen" | grep 'playing' >"$work/bars"
-    grep -q "$2" "$work/bars" || { echo "no bar like '$2'"; cat -v "$work/screen"; return 1; }
+    tr '\r' '\n' <"$work/screen" | grep "$bar_word" >"$work/bars"
+    grep -q "$bar_like" "$work/bars" || { echo "no '$bar_like'"; cat -v "$work/screen"; return 1; }
     awk '{ sub(/\033\[K$/, ""); if (length > 57) exit 1 }' "$work/bars" && return
     echo "longer than the line"
     return 1
 }
 if command -v script >/dev/null 2>&1 && script -qec true /dev/null </dev/null >/dev/null 2>&1; then
-    check "a bar of plain letters" bar C '^\[#[#-]*\] playing [0-9.]* of 5.0 s, .* s left'
+    check "a bar of plain letters" bar playing \
+        '^\[#[#-]*\] playing [0-9.]* of 5.0 s, .* s left' play --speed 400 "$greet"
+    check "a bar of a long move" bar 'move: ' '^\[##*--*\] move: [12]\.[0-9] of 2\.5 s' \
+        move R_KNEE_P -60 2500
 else
     skip "a bar of plain letters" "no script(1) to make a terminal"
+    skip "a bar of a long move" "no script(1) to make a terminal"
 fi
 
 # ---- how it leaves --------------------------------------------------------------------------

@@ -159,4 +159,21 @@ too_fast() {
         exits 0 on_robot status R_KNEE_P && says '-45.0'
 }
 check 'a goal too fast for the joint is refused by the engine' too_fast
+# The engine takes torque only for a joint read just now: replay reads it, and compares nothing.
+torque_late() {
+    on='53 09 FA AF 0C 00 24 01 01 01 29'
+    printf 'out %d %s\n' 0 "$on" 3000000 "$on" | make_trace >"$work/late"
+    exits 0 on_robot --yes replay "$work/late" &&
+        says '^2 frames sent, 0 call for a reply' && ! says 'nobody asked'
+}
+check 'torque is sent though the joint was read a while ago' torque_late
+shows_how_far() {
+    script -qec "stty cols 60; '$GRCTL' -d '$robot' --yes replay '$work/late'" \
+        /dev/null </dev/null >"$work/screen" && grep -q 'replay: [0-9.]* of 3\.0 s' "$work/screen"
+}
+if command -v script >/dev/null 2>&1 && script -qec true /dev/null </dev/null >/dev/null 2>&1; then
+    check 'a terminal shows how far it is' shows_how_far
+else
+    skip 'a terminal shows how far it is' 'no script(1) to make a terminal'
+fi
 done_testing

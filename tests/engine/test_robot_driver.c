@@ -31,9 +31,17 @@ static void count(const grobo_driver *self, void *ctx, int what)
     calls[what]++;
 }
 
+/* So it comes to a driver, which need not say what it does not want. */
+static void expect_zeroed(const grobo_exchange *exchange)
+{
+    static const grobo_exchange zeroed;
+    assert_memory_equal(exchange, &zeroed, sizeof zeroed);
+}
+
 static int check(const grobo_driver *self, void *ctx, int part, grobo_exchange *exchange)
 {
     count(self, ctx, 0);
+    expect_zeroed(exchange);
     return inner->check(inner, NULL, part, exchange);
 }
 
@@ -55,6 +63,7 @@ static int posture(const grobo_driver *self, void *ctx, const grobo_target *targ
                    grobo_exchange *exchange)
 {
     count(self, ctx, 1);
+    expect_zeroed(exchange);
     if (has_no_frame) {
         return 0;
     }
@@ -71,6 +80,7 @@ static int torque(const grobo_driver *self, void *ctx, grobo_joint_mask joints, 
                   int part, grobo_exchange *exchange)
 {
     count(self, ctx, 2);
+    expect_zeroed(exchange);
     grobo_joint_mask mine = part_of(joints, part);
     return mine == 0 ? 0 : inner->torque(inner, NULL, mine, mode, 0, exchange);
 }
@@ -79,6 +89,7 @@ static int sense(const grobo_driver *self, void *ctx, int joint, grobo_sense_kin
                  grobo_exchange *exchange)
 {
     count(self, ctx, 3);
+    expect_zeroed(exchange);
     return inner->sense(inner, NULL, joint, kind, exchange);
 }
 
@@ -93,6 +104,7 @@ static int registers(const grobo_driver *self, void *ctx, const grobo_register_i
                      grobo_exchange *exchange)
 {
     count(self, ctx, 5);
+    expect_zeroed(exchange);
     return inner->registers(inner, NULL, io, exchange);
 }
 
@@ -100,6 +112,7 @@ static int command(const grobo_driver *self, void *ctx, int id, grobo_servo_comm
                    grobo_exchange *exchange)
 {
     count(self, ctx, 6);
+    expect_zeroed(exchange);
     return inner->command(inner, NULL, id, what, exchange);
 }
 
@@ -238,6 +251,27 @@ static void a_halt_of_several_frames_stops_all(void **state)
     assert_true(fabs(rig_angle_deg(&rig, NECK) - grobo_deg_from_rad(target.angle_rad[NECK])) > 3);
 }
 
+/* Most of the frames would have no joint that moves. */
+static void a_halt_of_several_frames_stops_one(void **state)
+{
+    (void)state;
+    for (int j = 0; j < 20; j++) {
+        start(&quiet);
+        rig_power(&rig);
+        grobo_posture target = all_at(0, 500);
+        rig_expect(&rig, grobo_robot_move(&rig.robot, &target), GROBO_OK);
+        const grobo_joint *limits = &rig.driver->model->joints[j];
+        double from_deg = rig_angle_deg(&rig, j);
+        bool down = from_deg * 2 > grobo_deg_from_rad(limits->min_rad + limits->max_rad);
+        target = rig_posture(&rig, j, from_deg + (down ? -5 : 5), 2000);
+        assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
+        rig_run(&rig, 1000000);
+        assert_int_equal(grobo_robot_stop(&rig.robot, false), GROBO_OK);
+        rig_run(&rig, 2000000);
+        assert_in_range(lround(10 * fabs(rig_angle_deg(&rig, j) - from_deg)), 22, 32);
+    }
+}
+
 /* A target for which the driver has no frame is no move. */
 static void an_order_without_a_frame_is_over(void **state)
 {
@@ -364,16 +398,59 @@ static void an_emergency_stop_without_torque_halts(void **state)
     }
 }
 
+/* It missed the halt, and its reading is lost: the stop is over when it was heard again. */
+static void an_emergency_stop_without_torque_reaches_who_was_deaf(void **state)
+{
+    (void)state;
+    grobo_driver driver = *grobo_gr001_driver(rig_wiring);
+    rig_start_driver(&rig, &driver, &quiet, NULL);
+    rig_power(&rig);
+    grobo_posture target = rig_posture(&rig, NECK, 10, 500);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &target), GROBO_OK);
+    driver.torque = NULL;
+    rig.halts_at_estop = true;
+    target = rig_posture(&rig, NECK, -40, 9000);
+    assert_true(grobo_robot_move(&rig.robot, &target) > 0);
+    rig_run(&rig, 1000000);
+    assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_MUTE), 0);
+    int number = grobo_robot_estop(&rig.robot);
+    rig_run(&rig, 2000000);
+    assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_IN), 0);
+    rig_expect(&rig, number, GROBO_OK);
+    expect_neck_stands();
+}
+
+/* It never answers: the stop ends, names it, and the others were read. */
+static void an_emergency_stop_without_torque_gives_up_who_is_silent(void **state)
+{
+    (void)state;
+    grobo_driver driver = *grobo_gr001_driver(rig_wiring);
+    rig_start_driver(&rig, &driver, &quiet, NULL);
+    rig_power(&rig);
+    driver.torque = NULL;
+    rig.halts_at_estop = true;
+    assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_MUTE), 0);
+    int64_t begun_us = rig.now_us;
+    int number = grobo_robot_estop(&rig.robot);
+    const grobo_event_job *job = rig_expect(&rig, number, GROBO_ERR_TIMEOUT);
+    assert_true(job->failed == GROBO_JOINT_BIT(NECK));
+    assert_int_equal(job->joint, NECK);
+    assert_true(rig.now_us - begun_us < 5000000);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_function_gets_the_context),
         cmocka_unit_test(an_order_of_several_frames_is_whole),
         cmocka_unit_test(a_halt_of_several_frames_stops_all),
+        cmocka_unit_test(a_halt_of_several_frames_stops_one),
         cmocka_unit_test(an_order_without_a_frame_is_over),
         cmocka_unit_test(an_order_leaves_whole_or_not_at_all),
         cmocka_unit_test(what_is_told_again_is_told_in_small_frames),
         cmocka_unit_test(an_emergency_stop_without_torque_halts),
+        cmocka_unit_test(an_emergency_stop_without_torque_reaches_who_was_deaf),
+        cmocka_unit_test(an_emergency_stop_without_torque_gives_up_who_is_silent),
     };
     return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

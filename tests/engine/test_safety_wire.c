@@ -388,6 +388,31 @@ static void nothing_unknown_is_sent_under_a_motion(void **state)
     rig_expect(&rig, number, GROBO_ERR_STATE);
 }
 
+/* Lets time pass until so long after the neck's torque was read. */
+static void read_neck_and_wait(int64_t us)
+{
+    rig_expect(&rig, grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(NECK), 0), GROBO_OK);
+    rig_run(&rig, rig_last(&rig, GROBO_EVENT_JOINT)->now_us + us - rig.now_us);
+}
+
+/* Somebody may have taken the joint's torque since it was read, and a hand may have turned it. */
+static void a_raw_frame_switches_on_what_was_read_just_now(void **state)
+{
+    (void)state;
+    rig_start(&rig, &quiet, NULL);
+    rig_power(&rig);
+    read_neck_and_wait(2000000);
+    rig_expect(&rig, raw_torque(&rig, NECK, GROBO_TORQUE_ON), GROBO_OK);
+    assert_int_equal(raw_torque(&rig, NECK, GROBO_TORQUE_ON), GROBO_ERR_STALE);
+    rig_expect(&rig, raw_torque(&rig, SHOULDER, GROBO_TORQUE_OFF), GROBO_OK); /* off is no risk */
+    read_neck_and_wait(2000001);
+    assert_int_equal(raw_torque(&rig, NECK, GROBO_TORQUE_ON), GROBO_ERR_STALE);
+    read_neck_and_wait(1000000);
+    int number = raw_torque(&rig, NECK, GROBO_TORQUE_ON);
+    rig_stall(&rig, 1100000); /* it waits meanwhile */
+    rig_expect(&rig, number, GROBO_ERR_STALE);
+}
+
 /* It is the first target of a stream: until it is reached, the next ones are slow, too. */
 static void a_raw_goal_begins_softly(void **state)
 {
@@ -515,6 +540,7 @@ int main(void)
         cmocka_unit_test(what_is_unknown_is_noted_when_the_frame_leaves),
         cmocka_unit_test(a_late_answer_restores_nothing),
         cmocka_unit_test(nothing_unknown_is_sent_under_a_motion),
+        cmocka_unit_test(a_raw_frame_switches_on_what_was_read_just_now),
         cmocka_unit_test(a_raw_goal_begins_softly),
         cmocka_unit_test(after_what_is_unknown_torque_is_still_wanted),
         cmocka_unit_test(a_latched_robot_is_not_halted),

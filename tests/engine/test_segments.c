@@ -348,6 +348,7 @@ static void a_long_stall_ends_the_move(void **state)
     assert_non_null(trip);
     assert_int_equal(trip->u.trip.trip, GROBO_TRIP_HOST_STALL);
     assert_false(trip->u.trip.latched);
+    assert_int_equal(trip->u.trip.joint, -1);
     assert_in_range(trip->u.trip.value, 800, 1000);
     grobo_joint_info info;
     assert_int_equal(grobo_robot_joint(&rig.robot, NECK, &info), 0);

@@ -11,7 +11,7 @@
 
 #include <grobo/board.h>
 
-#include "tests/support/rig.h"
+#include "tests/support/raw_frames.h"
 
 static grobo_test_rig rig;
 static rig_clip clip;
@@ -108,17 +108,6 @@ static void a_stop_begins_where_a_joint_is_that_is_behind(void **state)
     }
 }
 
-/* Asks for a raw goal of one joint. */
-static int raw_goal(int joint, int16_t ddeg, uint16_t time_cs)
-{
-    uint8_t packet[GROBO_RS30X_PACKET_MAX_BYTES];
-    uint8_t frame[GROBO_FRAME_MAX_BYTES];
-    const grobo_rs30x_goal goal = {rig.driver->model->joints[joint].motor, ddeg, time_cs};
-    int n = grobo_rs30x_write_goal(&goal, packet, sizeof packet);
-    n = grobo_frame_wrap(rig.driver->protocol, packet, (size_t)n, frame, sizeof frame);
-    return grobo_robot_raw(&rig.robot, frame, (size_t)n);
-}
-
 /* The clip has the neck at 30 degrees by then. */
 static void a_stop_leaves_a_joint_where_a_raw_goal_sent_it(void **state)
 {
@@ -127,12 +116,58 @@ static void a_stop_leaves_a_joint_where_a_raw_goal_sent_it(void **state)
         rig_start_at(&rig, -45, &quiet);
         begin_to_play(GROBO_PLAY_KEY);
         rig_run(&rig, 500000);
-        rig_expect(&rig, raw_goal(NECK, -450, 100), GROBO_OK);
+        rig_expect(&rig, raw_goal(&rig, NECK, -45, 1000), GROBO_OK);
         rig_run(&rig, 1100000);
         assert_true(fabs(rig_angle_deg(&rig, NECK) + 45) < 0.1);
         stop_by(way);
         rig_run(&rig, 1500000);
         assert_true(fabs(rig_angle_deg(&rig, NECK) + 45) < 0.5);
+    }
+}
+
+/* The motion goes on, and its next frame is seconds away. */
+static void a_cancel_halts_what_a_raw_goal_moves_in_a_motion(void **state)
+{
+    (void)state;
+    rig_start_at(&rig, -45, &quiet);
+    begin_to_play(GROBO_PLAY_KEY);
+    rig_run(&rig, 500000);
+    int number = raw_goal_with_ack(&rig, NECK, 40, 400);
+    while (raw_times_sent(&rig) == 0) {
+        rig_run(&rig, 100);
+    }
+    assert_int_equal(grobo_robot_cancel(&rig.robot), GROBO_OK);
+    rig_expect(&rig, number, GROBO_ERR_CANCELED);
+    rig_run(&rig, 300000);
+    double here_deg = rig_angle_deg(&rig, NECK);
+    assert_true(here_deg < 0);
+    rig_run(&rig, 500000);
+    assert_true(fabs(rig_angle_deg(&rig, NECK) - here_deg) < 0.01);
+    assert_true(grobo_robot_is_playing(&rig.robot));
+}
+
+/* The shoulder needs longer than its clip, and the next one does not move it. */
+static void a_stop_reaches_a_joint_of_the_clip_before(void **state)
+{
+    (void)state;
+    static const rig_key leap[] = {{0, {{SHOULDER, 100}}}, {100, {{SHOULDER, -100}}}};
+    static rig_clip next;
+    for (int way = 0; way < PAUSE; way++) {
+        const grobo_play_options options = {.also = GROBO_JOINT_BIT(NECK)};
+        rig_start_at(&rig, -45, &quiet);
+        rig_clip_init(&clip, leap, 2);
+        rig_clip_init(&next, rise, 3);
+        clip.only = GROBO_JOINT_BIT(SHOULDER);
+        next.only = GROBO_JOINT_BIT(NECK);
+        rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options), GROBO_OK);
+        assert_int_equal(grobo_robot_enqueue(&rig.robot, &next.clip, NULL), 1);
+        rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
+        rig_run(&rig, 200000);
+        stop_by(way);
+        double asked_deg = rig_angle_deg(&rig, SHOULDER);
+        assert_true(asked_deg > 0);
+        rig_run(&rig, 1500000);
+        assert_true(fabs(rig_angle_deg(&rig, SHOULDER) - asked_deg) < stop_way_deg(STOP));
     }
 }
 
@@ -151,7 +186,7 @@ static void a_stop_is_smooth_where_a_raw_goal_was_before(void **state)
 {
     (void)state;
     rig_start_at(&rig, -45, &quiet);
-    rig_expect(&rig, raw_goal(NECK, -440, 20), GROBO_OK);
+    rig_expect(&rig, raw_goal(&rig, NECK, -44, 200), GROBO_OK);
     begin_to_play(GROBO_PLAY_KEY);
     rig_run(&rig, 1000000);
     rig_forget(&rig);
@@ -169,7 +204,7 @@ static void a_stop_after_a_motion_is_not_undone_by_its_end(void **state)
         rig_start_at(&rig, -45, &quiet);
         begin_to_play(GROBO_PLAY_KEY);
         rig_run(&rig, 3800000);
-        rig_expect(&rig, raw_goal(SHOULDER, 1200, 250), GROBO_OK);
+        rig_expect(&rig, raw_goal(&rig, SHOULDER, 120, 2500), GROBO_OK);
         rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
         rig_run(&rig, ms * 1000);
         settles = grobo_robot_settling(&rig.robot);
@@ -228,7 +263,7 @@ static void a_stop_ends_the_way_of_a_joint_that_lost_its_frame(void **state)
 }
 
 /* A reading that was on the line tells of one more joint that moves, sent there by nobody here. */
-static void a_halt_is_no_longer_when_it_leaves(void **state)
+static void a_halt_is_for_what_moves_when_it_leaves(void **state)
 {
     (void)state;
     uint8_t frame[GROBO_FRAME_MAX_BYTES];
@@ -246,9 +281,38 @@ static void a_halt_is_no_longer_when_it_leaves(void **state)
     rig_run(&rig, 1000);
     assert_int_equal(grobo_robot_stop(&rig.robot, true), GROBO_OK);
     rig_run(&rig, 300000);
-    double here_deg = rig_angle_deg(&rig, SHOULDER);
+    double shoulder_deg = rig_angle_deg(&rig, SHOULDER);
+    double neck_deg = rig_angle_deg(&rig, NECK);
     rig_run(&rig, 1000000);
-    assert_true(fabs(rig_angle_deg(&rig, SHOULDER) - here_deg) < 0.01);
+    assert_true(fabs(rig_angle_deg(&rig, SHOULDER) - shoulder_deg) < 0.01);
+    assert_true(fabs(rig_angle_deg(&rig, NECK) - neck_deg) < 0.01);
+}
+
+/* Asked before the halt left and answered after it: of a joint that it does not stop it tells. */
+static void a_halt_makes_no_reading_of_others_stale(void **state)
+{
+    (void)state;
+    rig_start(&rig, &quiet, NULL);
+    grobo_posture target = rig_posture(&rig, NECK, 10, 500);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &target), GROBO_OK);
+    target = rig_posture(&rig, NECK, -45, 5000);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
+    rig_run(&rig, 500000);
+    rig_forget(&rig);
+    assert_int_equal(grobo_sim_set_cable(&rig.sim, R_KNEE, GROBO_SIM_CABLE_MUTE), 0);
+    int number = grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(R_KNEE), GROBO_SENSE_ALL);
+    rig_run(&rig, 1000);
+    assert_int_equal(rig.n_sent, 1);
+    assert_int_equal(grobo_robot_stop(&rig.robot, true), GROBO_OK);
+    while (goals_sent() == 0) {
+        rig_run(&rig, 100);
+    }
+    assert_int_equal(grobo_sim_set_cable(&rig.sim, R_KNEE, GROBO_SIM_CABLE_IN), 0);
+    rig_expect(&rig, number, GROBO_OK);
+    target = rig_posture(&rig, R_KNEE, rig_angle_deg(&rig, R_KNEE), 1000);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_ERR_STATE); /* limp */
+    target = rig_posture(&rig, CHEST, 0, 1000);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_ERR_STALE);
 }
 
 /* It was told to let go, did not hear that, and is known to hold, or not known not to. */
@@ -625,11 +689,14 @@ int main(void)
         cmocka_unit_test(whatever_stops_a_motion_throws_no_joint_back),
         cmocka_unit_test(a_stop_begins_where_a_joint_is_that_is_behind),
         cmocka_unit_test(a_stop_leaves_a_joint_where_a_raw_goal_sent_it),
+        cmocka_unit_test(a_cancel_halts_what_a_raw_goal_moves_in_a_motion),
+        cmocka_unit_test(a_stop_reaches_a_joint_of_the_clip_before),
         cmocka_unit_test(a_stop_is_smooth_where_a_raw_goal_was_before),
         cmocka_unit_test(a_stop_after_a_motion_is_not_undone_by_its_end),
         cmocka_unit_test(a_stop_moves_no_joint_that_lost_its_frame),
         cmocka_unit_test(a_stop_ends_the_way_of_a_joint_that_lost_its_frame),
-        cmocka_unit_test(a_halt_is_no_longer_when_it_leaves),
+        cmocka_unit_test(a_halt_is_for_what_moves_when_it_leaves),
+        cmocka_unit_test(a_halt_makes_no_reading_of_others_stale),
         cmocka_unit_test(a_stop_reaches_a_joint_that_was_to_let_go),
         cmocka_unit_test(a_stop_reaches_a_servo_that_was_deaf),
         cmocka_unit_test(leaving_lets_go_when_the_joints_stand),

@@ -51,49 +51,78 @@ static grobo_motion *random_motion(grobo_motion_kind kind, grobo_joint_mask join
     return motion;
 }
 
-/* What a file plays at the times of the keys. */
-static void expect_played(const char *text, grobo_motion_format format, grobo_joint_mask joints,
-                          double wanted[KEYS][GROBO_JOINTS_MAX], double near_rad, double first_s)
+/* The largest difference of any joint at any key, by kind of source and by the formats it went
+ * through. */
+static double worst_rad[GROBO_MOTION_FRAMES + 1][GROBO_FORMAT_YAML + 1][GROBO_FORMAT_YAML + 1];
+
+/* How far what a motion plays is from what is wanted, at the times of the keys. */
+static double difference(grobo_motion *motion, grobo_joint_mask joints,
+                         double wanted[KEYS][GROBO_JOINTS_MAX], double first_s)
 {
-    grobo_motion *motion = motion_of(text, format);
     grobo_posture start, at;
     grobo_clip clip;
+    double most_rad = 0;
 
     grobo_motion_start(motion, &grobo_gr001_model, &start);
     assert_int_equal(grobo_motion_clip(motion, &(grobo_clip_options){.start = &start}, &clip), 0);
     for (int k = 0; k < KEYS; k++) {
         int64_t at_us = (int64_t)((first_s + k * KEY_S) * 1e6 + 0.5);
         assert_int_equal(clip.sample(clip.ctx, at_us, &at), 0);
+        assert_int_equal(joints & ~at.set, 0);
         for (int j = 0; j < 20; j++) {
             if ((joints & GROBO_JOINT_BIT(j)) != 0) {
-                assert_float_equal(at.angle_rad[j], wanted[k][j], near_rad);
+                most_rad = fmax(most_rad, fabs(at.angle_rad[j] - wanted[k][j]));
             }
         }
     }
     grobo_motion_clip_free(&clip);
-    grobo_motion_free(motion);
+    return most_rad;
 }
 
+static grobo_motion *through(grobo_motion *motion, grobo_motion_format format, bool exact)
+{
+    const grobo_write_options options = {.model = &grobo_gr001_model, .exact = exact};
+    char *text = written_as(motion, format, &options, NULL);
+    grobo_motion *copy = motion_of(text, format);
+    assert_int_equal(grobo_motion_verify(motion, copy, &options, NULL), 0);
+    free(text);
+    return copy;
+}
+
+static bool has_times_to(grobo_motion_format format)
+{
+    return format == GROBO_FORMAT_M || format == GROBO_FORMAT_MSEQ;
+}
+
+/* True for frames that reach the format by way of a posture at 0, which takes the default time:
+ * then keys lie between frames. */
+static bool lie_between(grobo_motion_kind kind, grobo_motion_format by, grobo_motion_format to)
+{
+    return kind == GROBO_MOTION_FRAMES && has_times_to(by) && to == GROBO_FORMAT_YAML;
+}
+
+/* To each format, and from there to each. */
 static void expect_lossless(grobo_motion *motion, grobo_joint_mask joints, bool exact,
                             double wanted[KEYS][GROBO_JOINTS_MAX])
 {
-    bool frames = grobo_motion_get_kind(motion) == GROBO_MOTION_FRAMES;
-    const grobo_write_options options = {.model = &grobo_gr001_model, .exact = exact};
+    grobo_motion_kind kind = grobo_motion_get_kind(motion);
+    double begin_s = kind == GROBO_MOTION_FRAMES ? 0 : KEY_S;
 
-    for (int format = GROBO_FORMAT_M; format <= GROBO_FORMAT_YAML; format++) {
-        bool whole = format == GROBO_FORMAT_M && !exact;
-        char *text = written_as(motion, (grobo_motion_format)format, &options, NULL);
-        grobo_motion *copy = motion_of(text, (grobo_motion_format)format);
-        /* A first frame at 0 takes the default time where a posture needs one. */
-        double first_s = !frames ? KEY_S
-                         : format == GROBO_FORMAT_M || format == GROBO_FORMAT_MSEQ
-                             ? GROBO_MOTION_DEFAULT_US / 1e6
-                             : 0;
-        expect_played(text, (grobo_motion_format)format, joints, wanted,
-                      whole ? grobo_rad_from_deg(0.0501) : 1e-9, first_s);
-        assert_int_equal(grobo_motion_verify(motion, copy, &options, NULL), 0);
+    for (grobo_motion_format by = GROBO_FORMAT_M; by <= GROBO_FORMAT_YAML; by++) {
+        grobo_motion *copy = through(motion, by, exact);
+        bool frames = kind == GROBO_MOTION_FRAMES || (by == GROBO_FORMAT_YAML && !exact);
+        for (grobo_motion_format to = GROBO_FORMAT_M; to <= GROBO_FORMAT_YAML; to++) {
+            grobo_motion *second = through(copy, to, exact);
+            bool between = !exact && lie_between(kind, by, to);
+            bool waits = between || (frames && has_times_to(to));
+            double first_s = begin_s + (waits ? GROBO_MOTION_DEFAULT_US / 1e6 : 0);
+            double rad = difference(second, joints, wanted, first_s);
+            /* Angles are multiples of 0.1 degrees, which all formats have. */
+            assert_true(rad <= grobo_rad_from_deg(between ? 2 : 1e-7));
+            worst_rad[kind][by][to] = fmax(worst_rad[kind][by][to], rad);
+            grobo_motion_free(second);
+        }
         grobo_motion_free(copy);
-        free(text);
     }
 }
 
@@ -102,6 +131,7 @@ static void test_nothing_is_lost(void **state)
 {
     (void)state;
     static const char *const bodies[] = {"", "GR001", "SerialRobot"};
+    static const char *const kinds[] = {"postures", "keys", "steps", "frames"};
     uint32_t seed = 1;
 
     for (int trial = 0; trial < TRIALS; trial++) {
@@ -118,6 +148,16 @@ static void test_nothing_is_lost(void **state)
             assert_int_equal(grobo_motion_set_target_body(motion, bodies[trial % 3]), 0);
             expect_lossless(motion, joints, trial % 2 == 0, wanted);
             grobo_motion_free(motion);
+        }
+    }
+    for (int kind = GROBO_MOTION_POSTURES; kind <= GROBO_MOTION_FRAMES; kind++) {
+        for (int by = GROBO_FORMAT_M; by <= GROBO_FORMAT_YAML; by++) {
+            for (int to = GROBO_FORMAT_M; to <= GROBO_FORMAT_YAML; to++) {
+                print_message("%-8s  %-4s then %-4s  %.2g deg\n", kinds[kind],
+                              grobo_motion_format_name((grobo_motion_format)by),
+                              grobo_motion_format_name((grobo_motion_format)to),
+                              grobo_deg_from_rad(worst_rad[kind][by][to]));
+            }
         }
     }
 }

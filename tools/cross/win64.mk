@@ -50,7 +50,7 @@ TEST_END = ; status=$$?; $(EMULATOR) --end; exit $$status
 PORTABLE := $(patsubst %,tests/link/test_%.c,control_life loop session_joints thread thread_motion \
     thread_leave thread_race thread_stop views) $(patsubst %,tests/cli/%.sh,check completion config \
     convert decode doctor estop guide help input json leaving play play_keys plot readme record replay robot ser2net servos \
-    shell show sim sim_console stranger trace wireshark)
+    shell show sim sim_console stranger teach trace wireshark)
 LEFT_OUT_WHY := Windows has no pseudo-terminals, signals, file modes or links as it wants them
 LEFT_OUT := $(filter-out $(PORTABLE),$(wildcard tests/link/test_*.c tests/cli/*.sh)) \
     $(addprefix tests/,unit/test_motion_links.c fault/test_serial_io.c export/examples.sh \

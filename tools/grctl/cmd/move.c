@@ -68,7 +68,7 @@ static int go(app *a, const grobo_posture *target, const char *doing)
         int64_t began_us = grobo_now_us();
         int error, job = grobo_robot_move(grobo_session_robot(c.session), target);
         c.moving = job > 0; /* refused at once: nothing moves, nothing is to be left */
-        error = conn_wait(&c, job);
+        error = conn_wait_shown(&c, job, doing, target->time_us);
         if (error)
             status = conn_fail(&c, error, doing);
         else {

@@ -165,8 +165,9 @@ static int write_it(conn *c, const change *what)
     grobo_rs30x_register_put(what->reg, what->value, bytes);
     error = conn_wait(c, grobo_robot_registers(grobo_session_robot(c->session), &io));
     if (!error && what->flash)
-        error = conn_wait(
-            c, grobo_robot_command(grobo_session_robot(c->session), id, GROBO_SERVO_FLASH));
+        error = conn_wait_shown(
+            c, grobo_robot_command(grobo_session_robot(c->session), id, GROBO_SERVO_FLASH), "flash",
+            0);
     return error;
 }
 
@@ -280,11 +281,13 @@ static int move_rate(conn *c, const change *what, int old_bps, int new_bps, uint
     at_bps = find_rate(c, what, old_bps, new_bps, code);
     if (at_bps < 0 || *code != what->value || !what->flash)
         return at_bps;
-    error = conn_wait(
-        c, grobo_robot_command(grobo_session_robot(c->session), what->id, GROBO_SERVO_FLASH));
+    error = conn_wait_shown(
+        c, grobo_robot_command(grobo_session_robot(c->session), what->id, GROBO_SERVO_FLASH),
+        "flash", 0);
     if (!error)
-        error = conn_wait(
-            c, grobo_robot_command(grobo_session_robot(c->session), what->id, GROBO_SERVO_REBOOT));
+        error = conn_wait_shown(
+            c, grobo_robot_command(grobo_session_robot(c->session), what->id, GROBO_SERVO_REBOOT),
+            "restart", 0);
     return error ? error : find_rate(c, what, new_bps, old_bps, code);
 }
 

@@ -38,7 +38,8 @@ static int switch_torque(conn *c, grobo_joint_mask joints, grobo_torque mode, co
     int error, n;
     if (mode == GROBO_TORQUE_ON)
         c->moving = true;
-    error = conn_wait(c, grobo_robot_torque(grobo_session_robot(c->session), joints, mode));
+    error = conn_wait_shown(c, grobo_robot_torque(grobo_session_robot(c->session), joints, mode),
+                            "servo", 0);
     if (error)
         return conn_fail(c, error, "servo");
     n = grobo_joints_count(joints);

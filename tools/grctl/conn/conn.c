@@ -6,6 +6,7 @@
 #include <grobo/port.h>
 
 #include "tools/grctl/cli/output.h"
+#include "tools/grctl/cli/progress.h"
 #include "tools/grctl/conn/auto_ports.h"
 #include "tools/grctl/conn/conn.h"
 #include "tools/grctl/conn/guard.h"
@@ -131,6 +132,51 @@ int conn_wait(conn *c, int job)
     error = conn_wait_until(c, job_done);
     c->waiting_for = 0;
     return error ? error : c->job.result;
+}
+
+/* What a person sees of it. */
+enum { SHOW_US = 100000, LONG_US = 2000000 };
+
+typedef struct waiting {
+    progress bar;
+    const char *doing;
+    int64_t began_us, expected_us;
+} waiting;
+
+static void on_show(evutil_socket_t fd, short what, void *ctx)
+{
+    waiting *w = ctx;
+    int64_t took_us = grobo_now_us() - w->began_us;
+    bool in_time = took_us < w->expected_us;
+    char text[64];
+    (void)fd;
+    (void)what;
+    if (took_us < LONG_US && w->expected_us < LONG_US)
+        return;
+    if (in_time)
+        snprintf(text, sizeof text, "%s: %.1f of %.1f s", w->doing, (double)took_us / 1e6,
+                 (double)w->expected_us / 1e6);
+    else
+        snprintf(text, sizeof text, "%s: %.1f s", w->doing, (double)took_us / 1e6);
+    progress_draw(&w->bar, in_time ? (double)took_us / (double)w->expected_us : -1, text);
+}
+
+int conn_wait_shown(conn *c, int job, const char *doing, int64_t expected_us)
+{
+    const struct timeval period = {0, SHOW_US};
+    waiting w = {.doing = doing, .began_us = grobo_now_us(), .expected_us = expected_us};
+    struct event *tick = NULL;
+    int error;
+    progress_start(&w.bar, c->a);
+    if (job > 0 && w.bar.shown)
+        tick = event_new(c->base, -1, EV_PERSIST, on_show, &w);
+    if (tick)
+        event_add(tick, &period);
+    error = conn_wait(c, job);
+    if (tick)
+        event_free(tick);
+    progress_clear(&w.bar);
+    return error;
 }
 
 static void on_wake(evutil_socket_t fd, short what, void *ctx)
@@ -594,7 +640,8 @@ static int carry_out_policy(conn *c, int status)
     if (policy == GROBO_EXIT_DEFAULT || !c->up || c->link_error)
         return EXIT_DONE;
     c->leaving = true;
-    error = conn_wait(c, grobo_robot_exit(grobo_session_robot(c->session), policy));
+    error =
+        conn_wait_shown(c, grobo_robot_exit(grobo_session_robot(c->session), policy), "leaving", 0);
     if (error && !c->signal && !app_global(c->a, GLOBAL_ON_EXIT)->given)
         return status; /* nobody asked for it, and why the command failed has been said */
     if (error)

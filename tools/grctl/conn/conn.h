@@ -107,6 +107,12 @@ void conn_watch(conn *c, bool on);
  */
 int conn_wait(conn *c, int job);
 
+/*
+ * The same, and a terminal shows for how long: after 2 s, or at once where it should take longer.
+ * expected_us: how long it should take, 0 where nobody knows. `doing`: "move".
+ */
+int conn_wait_shown(conn *c, int job, const char *doing, int64_t expected_us);
+
 /* Runs the loop until `done` says so, a signal comes or the link is lost; as conn_wait(). */
 int conn_wait_until(conn *c, bool (*done)(conn *c));
 

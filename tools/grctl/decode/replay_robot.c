@@ -8,6 +8,7 @@
 #include <grobo/driver.h>
 
 #include "tools/grctl/cli/output.h"
+#include "tools/grctl/cli/progress.h"
 #include "tools/grctl/conn/conn.h"
 #include "tools/grctl/decode/replay.h"
 #include "tools/grctl/decode/words.h"
@@ -24,7 +25,10 @@ typedef struct plan {
     uint64_t moves;
     grobo_joint_mask torqued; /* joints whose torque the trace switches on */
     int64_t start_us;         /* of the replay, by our clock */
-    int status;               /* why it has to end, 0: it need not */
+    int64_t last_us;          /* of its last frame, from there */
+    progress bar;
+    int status; /* why it has to end, 0: it need not */
+    bool reads; /* for itself: these replies are not compared */
 } plan;
 
 /* ---- judging ------------------------------------------------------------------------------- */
@@ -70,6 +74,7 @@ static void judge_frame(void *ctx, const frame *f)
     plan *p = r->ctx;
     if (p->status || f->kind == FRAME_CUT || f->kind == FRAME_RUBBISH)
         return;
+    p->last_us = f->time_us;
     switch (judge(f)) {
     case HARMLESS:
         return;
@@ -117,7 +122,7 @@ static void on_bytes(conn *c, grobo_direction direction, int64_t now_us, const u
                      size_t size)
 {
     plan *p = c->ctx;
-    if (direction == GROBO_DIR_RX)
+    if (direction == GROBO_DIR_RX && !p->reads)
         replay_answer(p->r, REPLAY_REPLAYED, now_us - p->start_us, bytes, size);
 }
 
@@ -125,6 +130,33 @@ static void on_bytes(conn *c, grobo_direction direction, int64_t now_us, const u
 static bool is_reply_trouble(int error)
 {
     return conn_is_of_reply(error) || error == GROBO_ERR_NACK;
+}
+
+/* Torque comes on only where the joints were read just now: a frame that would not leave for that
+ * is sent after a reading, whose replies are not those of the trace. */
+static int send_one(plan *p, const frame *f)
+{
+    int error =
+        conn_wait(&p->c, grobo_robot_raw(grobo_session_robot(p->c.session), f->bytes, f->size));
+    if (error == GROBO_ERR_STALE && p->torqued) {
+        p->reads = true;
+        (void)conn_wait(&p->c, grobo_robot_sense(grobo_session_robot(p->c.session), p->torqued,
+                                                 GROBO_SENSE_FULL));
+        p->reads = false;
+        error =
+            conn_wait(&p->c, grobo_robot_raw(grobo_session_robot(p->c.session), f->bytes, f->size));
+    }
+    return error;
+}
+
+static void show_progress(plan *p, int64_t at_us)
+{
+    char text[64];
+    if (p->last_us < 2000000)
+        return;
+    snprintf(text, sizeof text, "replay: %.1f of %.1f s", (double)at_us / 1e6,
+             (double)p->last_us / 1e6);
+    progress_draw(&p->bar, (double)at_us / (double)p->last_us, text);
 }
 
 static void send_frame(void *ctx, const frame *f)
@@ -136,11 +168,12 @@ static void send_frame(void *ctx, const frame *f)
     if (p->status || f->kind == FRAME_CUT || f->kind == FRAME_RUBBISH)
         return;
     replay_ask(r, f);
+    show_progress(p, f->time_us);
     error = conn_sleep_until(&p->c, p->start_us + f->time_us);
     if (!error)
-        error =
-            conn_wait(&p->c, grobo_robot_raw(grobo_session_robot(p->c.session), f->bytes, f->size));
+        error = send_one(p, f);
     if (error && !is_reply_trouble(error)) {
+        progress_clear(&p->bar);
         snprintf(doing, sizeof doing, "replay: the frame at %.3f ms", (double)f->time_us / 1e3);
         p->status = conn_fail(&p->c, error, doing);
     }
@@ -191,6 +224,7 @@ static int send_all(plan *p)
         status = prepare(p);
     if (!status) {
         replay_begin(p->r, send_frame);
+        progress_start(&p->bar, p->r->a);
         p->start_us = grobo_now_us();
         p->c.on_bytes = on_bytes;
         status = replay_read(p->r, send_chunk, p);
@@ -198,6 +232,7 @@ static int send_all(plan *p)
             frames_end(&p->r->host);
             status = p->status;
         }
+        progress_clear(&p->bar);
         p->c.on_bytes = NULL; /* the exit policy is no part of it, and may try again */
         config = conn_robot_config(p->r->a);
         grobo_robot_configure(p->c.robot, &config);
