@@ -40,6 +40,30 @@ typedef struct cli_option {
     bool optional;   /* the word of a choice may be missing: taken if the next word is one */
 } cli_option;
 
+/* Rows of a table of options; letter 0: none. */
+#define OPTION_FLAG(name_, letter_, help_)                                                         \
+    {                                                                                              \
+        .name = (name_), .letter = (letter_), .kind = CLI_FLAG, .help = (help_)                    \
+    }
+#define OPTION_TEXT(name_, letter_, value_, help_)                                                 \
+    {                                                                                              \
+        .name = (name_), .letter = (letter_), .kind = CLI_TEXT, .value = (value_), .help = (help_) \
+    }
+#define OPTION_CHOICE(name_, letter_, words_, help_)                                               \
+    {                                                                                              \
+        .name = (name_), .letter = (letter_), .kind = CLI_CHOICE, .value = (words_),               \
+        .help = (help_)                                                                            \
+    }
+#define OPTION_NUMBER(name_, letter_, value_, min_, max_, real_, help_)                            \
+    {                                                                                              \
+        .name = (name_), .letter = (letter_), .kind = CLI_NUMBER, .value = (value_),               \
+        .help = (help_), .min = (min_), .max = (max_), .real = (real_)                             \
+    }
+#define OPTION_WHOLE(name, letter, value, min, max, help)                                          \
+    OPTION_NUMBER(name, letter, value, min, max, false, help)
+#define OPTION_REAL(name, letter, value, min, max, help)                                           \
+    OPTION_NUMBER(name, letter, value, min, max, true, help)
+
 typedef struct cli_value {
     int given;        /* how often */
     const char *text; /* as typed */
@@ -56,6 +80,9 @@ typedef enum cli_argument {
     CLI_ARG_WORD,
     CLI_ARG_DEVICE
 } cli_argument;
+
+/* A command's table of options. */
+#define COMMAND_OPTIONS(table) .options = (table), .n_options = sizeof(table) / sizeof(table)[0]
 
 struct app;
 typedef struct cli_command {

@@ -9,14 +9,7 @@
 enum { OPT_RATE };
 
 static const cli_option options[] = {
-    [OPT_RATE] = {.name = "rate",
-                  .letter = 'r',
-                  .kind = CLI_NUMBER,
-                  .value = "HZ",
-                  .help = "motion frames a second (as play has it)",
-                  .min = 0,
-                  .max = 1000,
-                  .real = true},
+    [OPT_RATE] = OPTION_REAL("rate", 'r', "HZ", 0, 1000, "motion frames a second (as play has it)"),
 };
 
 /* Reads of one kind that fit between two motion frames; between none, those of a second. */
@@ -104,7 +97,6 @@ const cli_command cmd_budget = {
         "how long a motion frame and a reading take, how many frames a second fit, and how\n"
         "often all joints can be read beside them. Touches no port.\n",
     .example = "  grctl budget --rate 20\n  grctl budget --wiring bus -b 460800\n",
-    .options = options,
-    .n_options = sizeof options / sizeof options[0],
+    COMMAND_OPTIONS(options),
     .run = run,
 };

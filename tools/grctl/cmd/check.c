@@ -10,7 +10,7 @@
 enum { OPT_FORCE, OPT_BODY, OPT_BALANCE = OPT_BODY + BODY_BALANCE };
 
 static const cli_option options[] = {
-    [OPT_FORCE] = {.name = "force", .kind = CLI_FLAG, .help = "do not warn of a fall"},
+    [OPT_FORCE] = OPTION_FLAG("force", 0, "do not warn of a fall"),
     BODY_LOOK_ROWS(OPT_BODY),
 };
 
@@ -162,8 +162,7 @@ const cli_command cmd_check = {
         "limit: one warning counts them.\n",
     .example = "  grctl check motions/*\n  grctl check --json walk.pseq\n"
                "  grctl check --balance walk.pseq\n",
-    .options = options,
-    .n_options = sizeof options / sizeof options[0],
+    COMMAND_OPTIONS(options),
     .min_arguments = 1,
     .max_arguments = -1,
     .argument = CLI_ARG_FILE,

@@ -11,36 +11,19 @@
 enum { OPT_RATE, OPT_FROM, OPT_TO, OPT_EXACT, OPT_LOSSY, OPT_REPLACE, OPT_INTEGERS, OPT_BODY };
 
 static const cli_option options[] = {
-    [OPT_RATE] = {.name = "rate",
-                  .letter = 'r',
-                  .kind = CLI_NUMBER,
-                  .value = "HZ",
-                  .help = "to yaml: frames per second (50, or the source's own)",
-                  .min = 0.1,
-                  .max = 1000,
-                  .real = true},
-    [OPT_FROM] = {.name = "from",
-                  .kind = CLI_CHOICE,
-                  .value = FILE_FORMATS,
-                  .help = "format of IN, whatever its name says"},
-    [OPT_TO] = {.name = "to",
-                .kind = CLI_CHOICE,
-                .value = FILE_FORMATS,
-                .help = "format of OUT, whatever its name says"},
-    [OPT_EXACT] = {.name = "exact",
-                   .kind = CLI_FLAG,
-                   .help = "write exact angles (m) and times (yaml), which the original and "
-                           "Choreonoid before 2.1 cannot read"},
-    [OPT_LOSSY] = {.name = "lossy",
-                   .kind = CLI_FLAG,
-                   .help = "write OUT also where it does not play what IN plays"},
-    [OPT_REPLACE] = {.name = "replace",
-                     .kind = CLI_FLAG,
-                     .help = "write OUT also where it holds something other than a motion of its "
-                             "format"},
-    [OPT_INTEGERS] = {.name = "integers",
-                      .kind = CLI_FLAG,
-                      .help = "to m: whole ms and 0.1 degrees; the default"},
+    [OPT_RATE] = OPTION_REAL("rate", 'r', "HZ", 0.1, 1000,
+                             "to yaml: frames per second (50, or the source's own)"),
+    [OPT_FROM] = OPTION_CHOICE("from", 0, FILE_FORMATS, "format of IN, whatever its name says"),
+    [OPT_TO] = OPTION_CHOICE("to", 0, FILE_FORMATS, "format of OUT, whatever its name says"),
+    [OPT_EXACT] = OPTION_FLAG("exact", 0,
+                              "write exact angles (m) and times (yaml), which the original and "
+                              "Choreonoid before 2.1 cannot read"),
+    [OPT_LOSSY] = OPTION_FLAG("lossy", 0, "write OUT also where it does not play what IN plays"),
+    [OPT_REPLACE] =
+        OPTION_FLAG("replace", 0,
+                    "write OUT also where it holds something other than a motion of its "
+                    "format"),
+    [OPT_INTEGERS] = OPTION_FLAG("integers", 0, "to m: whole ms and 0.1 degrees; the default"),
     BODY_OPTION_ROWS(OPT_BODY),
 };
 
@@ -286,8 +269,7 @@ const cli_command cmd_convert = {
                "a motion of the same format, unless --replace is given.\n",
     .example = "  grctl convert greet.pseq greet.m\n"
                "  grctl convert --rate 50 greet.pseq greet.yaml\n",
-    .options = options,
-    .n_options = sizeof options / sizeof options[0],
+    COMMAND_OPTIONS(options),
     .min_arguments = 2,
     .max_arguments = 2,
     .argument = CLI_ARG_FILE,

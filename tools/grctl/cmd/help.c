@@ -9,7 +9,7 @@
 enum { OPT_MAN };
 
 static const cli_option options[] = {
-    [OPT_MAN] = {.name = "man", .kind = CLI_FLAG, .help = "print the man page grctl(1), as mdoc"},
+    [OPT_MAN] = OPTION_FLAG("man", 0, "print the man page grctl(1), as mdoc"),
 };
 
 static json_t *option_json(const cli_option *o)
@@ -158,8 +158,7 @@ const cli_command cmd_help = {
     .details = "Prints the list of commands, or everything about one of them. In a shell it knows\n"
                "the letters and words of the shell too, also by their first letters.\n",
     .example = "  grctl help play\n  grctl help --man | man -l -\n",
-    .options = options,
-    .n_options = sizeof options / sizeof options[0],
+    COMMAND_OPTIONS(options),
     .max_arguments = 1,
     .argument = CLI_ARG_COMMAND,
     .run = run,

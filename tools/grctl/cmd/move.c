@@ -12,23 +12,13 @@ enum { OPT_TIME };
 enum { MOVE_MS = 1000, INIT_MS = 2000, LONGEST_MS = 163830 };
 
 static const cli_option init_options[] = {
-    [OPT_TIME] = {.name = "time",
-                  .letter = 't',
-                  .kind = CLI_NUMBER,
-                  .value = "MS",
-                  .help = "time to get there; more where that is safer (2000)",
-                  .min = 0,
-                  .max = LONGEST_MS},
+    [OPT_TIME] = OPTION_WHOLE("time", 't', "MS", 0, LONGEST_MS,
+                              "time to get there; more where that is safer (2000)"),
 };
 
 static const cli_option pose_options[] = {
-    [OPT_TIME] = {.name = "time",
-                  .letter = 't',
-                  .kind = CLI_NUMBER,
-                  .value = "MS",
-                  .help = "time to get there; more where that is safer (1000)",
-                  .min = 0,
-                  .max = LONGEST_MS},
+    [OPT_TIME] = OPTION_WHOLE("time", 't', "MS", 0, LONGEST_MS,
+                              "time to get there; more where that is safer (1000)"),
 };
 
 static void report(const conn *c, const grobo_posture *target)
@@ -213,8 +203,7 @@ const cli_command cmd_pose = {
                "exit status 4, and nothing moves.\n",
     .example = "  grctl pose R_ELBOW_P=-45 L_ELBOW_P=45\n"
                "  grctl pose --time 3000 @motions/greet.pseq:2\n",
-    .options = pose_options,
-    .n_options = sizeof pose_options / sizeof pose_options[0],
+    COMMAND_OPTIONS(pose_options),
     .min_arguments = 1,
     .max_arguments = -1,
     .argument = CLI_ARG_JOINT,
@@ -228,8 +217,7 @@ const cli_command cmd_init = {
     .details = "Switches torque on where it is off, goes to the initial posture and reads back\n"
                "where the joints are. The first move from an unknown posture is slow.\n",
     .example = "  grctl init\n  grctl init --time 5000\n",
-    .options = init_options,
-    .n_options = sizeof init_options / sizeof init_options[0],
+    COMMAND_OPTIONS(init_options),
     .run = run_init,
 };
 

@@ -12,11 +12,8 @@
 enum { OPT_OUT, OPT_JOINTS, OPT_RATE, OPT_BODY, OPT_BALANCE = OPT_BODY + BODY_BALANCE };
 
 static const cli_option options[] = {
-    [OPT_OUT] = {.name = "output",
-                 .letter = 'o',
-                 .kind = CLI_TEXT,
-                 .value = "OUT",
-                 .help = "OUT.svg, OUT.png, or - for SVG to standard output"},
+    [OPT_OUT] =
+        OPTION_TEXT("output", 'o', "OUT", "OUT.svg, OUT.png, or - for SVG to standard output"),
     MOTION_LOOK_ROWS(OPT_JOINTS, OPT_RATE, "draw what is sent at this rate, straight between"),
     BODY_LOOK_ROWS(OPT_BODY),
 };
@@ -252,8 +249,7 @@ const cli_command cmd_plot = {
     .example = "  grctl plot motions/greet.pseq\n"
                "  grctl plot -o greet.png -j right_arm,NECK_Y motions/greet.pseq\n"
                "  grctl plot --balance -o step.svg motions/step.pseq\n",
-    .options = options,
-    .n_options = sizeof options / sizeof options[0],
+    COMMAND_OPTIONS(options),
     .min_arguments = 1,
     .max_arguments = 1,
     .argument = CLI_ARG_FILE,

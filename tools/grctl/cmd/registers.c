@@ -11,9 +11,7 @@
 enum { OPT_FLASH };
 
 static const cli_option set_options[] = {
-    [OPT_FLASH] = {.name = "flash",
-                   .kind = CLI_FLAG,
-                   .help = "keep it over power-off too; takes a second"},
+    [OPT_FLASH] = OPTION_FLAG("flash", 0, "keep it over power-off too; takes a second"),
 };
 
 static const grobo_rs30x_register *find_register(app *a, const char *name, int *status)
@@ -453,8 +451,7 @@ const cli_command cmd_servo_set = {
         "-b then reaches it. Without --flash the servo goes on at the old rate and forgets the\n"
         "new one when it restarts.\n",
     .example = "  grctl servo-set 12 delay 2 --flash\n  grctl servo-set 1 id 21\n",
-    .options = set_options,
-    .n_options = sizeof set_options / sizeof set_options[0],
+    COMMAND_OPTIONS(set_options),
     .min_arguments = 3,
     .max_arguments = 3,
     .argument = CLI_ARG_JOINT,

@@ -15,21 +15,10 @@ enum { IDENTITY_BYTES = 3, FEW = 4 }; /* No.0-1 model, No.2 firmware */
 enum { LOOKS_MAX = 4, LISTEN_US = 150000, LISTEN_MAX_US = 2000000 };
 
 static const cli_option options[] = {
-    [OPT_ALL_BAUD] = {.name = "all-baud",
-                      .kind = CLI_FLAG,
-                      .help = "at every baud rate that servos know (with --wiring bus)"},
-    [OPT_FIRST] = {.name = "first",
-                   .kind = CLI_NUMBER,
-                   .value = "ID",
-                   .help = "begin with this id (1)",
-                   .min = 1,
-                   .max = GROBO_SERVO_ID_MAX},
-    [OPT_LAST] = {.name = "last",
-                  .kind = CLI_NUMBER,
-                  .value = "ID",
-                  .help = "end with this id (127)",
-                  .min = 1,
-                  .max = GROBO_SERVO_ID_MAX},
+    [OPT_ALL_BAUD] =
+        OPTION_FLAG("all-baud", 0, "at every baud rate that servos know (with --wiring bus)"),
+    [OPT_FIRST] = OPTION_WHOLE("first", 0, "ID", 1, GROBO_SERVO_ID_MAX, "begin with this id (1)"),
+    [OPT_LAST] = OPTION_WHOLE("last", 0, "ID", 1, GROBO_SERVO_ID_MAX, "end with this id (127)"),
 };
 
 typedef struct found {
@@ -445,8 +434,7 @@ const cli_command cmd_scan = {
                "patience. --timeout MS gives each more time. Exit status 1 if none answers, or if\n"
                "it is not sure who does. Nothing moves.\n",
     .example = "  grctl scan --last 20\n  grctl scan --wiring bus --all-baud\n",
-    .options = options,
-    .n_options = sizeof options / sizeof options[0],
+    COMMAND_OPTIONS(options),
     .run = run_scan,
 };
 

@@ -13,10 +13,8 @@
 enum { OPT_KEEP_GOING };
 
 static const cli_option options[] = {
-    [OPT_KEEP_GOING] = {.name = "keep-going",
-                        .letter = 'k',
-                        .kind = CLI_FLAG,
-                        .help = "go on behind a command that fails; its exit status stays"},
+    [OPT_KEEP_GOING] =
+        OPTION_FLAG("keep-going", 'k', "go on behind a command that fails; its exit status stays"),
 };
 
 /* While no command has the robot, a signal is only noted: it ends the shell, or a script. */
@@ -212,8 +210,7 @@ const cli_command cmd_shell = {
     .details = shell_details,
     .example = "  grctl shell\n  printf 'init\\nm R_ELBOW_P -45\\n' | grctl -d sim shell\n"
                "  grctl shell -k morning.txt\n",
-    .options = options,
-    .n_options = sizeof options / sizeof options[0],
+    COMMAND_OPTIONS(options),
     .max_arguments = 1,
     .argument = CLI_ARG_FILE,
     .run = run,

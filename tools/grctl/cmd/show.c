@@ -212,8 +212,7 @@ const cli_command cmd_show = {
                "initial posture.\n",
     .example = "  grctl show motions/greet.pseq\n  grctl show -j right_arm,NECK_Y greet.pseq\n"
                "  grctl show --rate 10 --ik exact -j legs motions/step.pseq\n",
-    .options = options,
-    .n_options = sizeof options / sizeof options[0],
+    COMMAND_OPTIONS(options),
     .min_arguments = 1,
     .max_arguments = 1,
     .argument = CLI_ARG_FILE,

@@ -7,17 +7,9 @@
 enum { OPT_WATCH, OPT_INTERVAL };
 
 static const cli_option options[] = {
-    [OPT_WATCH] = {.name = "watch",
-                   .letter = 'w',
-                   .kind = CLI_FLAG,
-                   .help = "again and again, until a signal"},
-    [OPT_INTERVAL] = {.name = "interval",
-                      .letter = 'i',
-                      .kind = CLI_NUMBER,
-                      .value = "MS",
-                      .help = "time between two rounds of --watch (1000)",
-                      .min = 20,
-                      .max = 3600000},
+    [OPT_WATCH] = OPTION_FLAG("watch", 'w', "again and again, until a signal"),
+    [OPT_INTERVAL] = OPTION_WHOLE("interval", 'i', "MS", 20, 3600000,
+                                  "time between two rounds of --watch (1000)"),
 };
 
 static void show(conn *c, grobo_joint_mask joints)
@@ -91,8 +83,7 @@ const cli_command cmd_status = {
                "shown all the same. Nothing moves.\n",
     .example = "  grctl status\n  grctl status right_arm --json\n"
                "  grctl status --watch --interval 200\n",
-    .options = options,
-    .n_options = sizeof options / sizeof options[0],
+    COMMAND_OPTIONS(options),
     .max_arguments = -1,
     .argument = CLI_ARG_JOINT,
     .run = run,
