@@ -99,6 +99,16 @@ int app_fail(app *a, int status, const char *code, const char *format, ...)
     return status;
 }
 
+int app_fail_error(app *a, int status, int error, const char *format, ...)
+{
+    char text[APP_LINE_BYTES];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(text, sizeof text, format, list);
+    va_end(list);
+    return app_fail(a, status, grobo_error_name(error), "%s: %s", text, grobo_error_text(error));
+}
+
 int app_fail_trip(app *a, grobo_trip trip, const char *format, ...)
 {
     int error = trip == GROBO_TRIP_HOST_STALL ? GROBO_ERR_STALLED : GROBO_ERR_LATCHED;
@@ -143,9 +153,11 @@ const char *app_cause_text(int number)
     return strerror(number);
 }
 
-static void say(const char *format, va_list list)
+static void say(const app *a, int least, const char *format, va_list list)
 {
     char text[APP_LINE_BYTES];
+    if (a->verbosity < least)
+        return;
     vsnprintf(text, sizeof text, format, list);
     app_make_one_line(text);
     output_complain("%s\n", text);
@@ -154,20 +166,16 @@ static void say(const char *format, va_list list)
 void app_note(const app *a, const char *format, ...)
 {
     va_list list;
-    if (a->verbosity < 0)
-        return;
     va_start(list, format);
-    say(format, list);
+    say(a, 0, format, list);
     va_end(list);
 }
 
 void app_detail(const app *a, const char *format, ...)
 {
     va_list list;
-    if (a->verbosity < 1)
-        return;
     va_start(list, format);
-    say(format, list);
+    say(a, 1, format, list);
     va_end(list);
 }
 

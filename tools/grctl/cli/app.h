@@ -52,6 +52,9 @@ double app_number(const app *a, int i, double otherwise);
  */
 int app_fail(app *a, int status, const char *code, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
+/* The same for an error of the library; its text stands behind a colon. */
+int app_fail_error(app *a, int status, int error, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
 /* So where the robot stopped for safety: EXIT_SAFETY; JSON has the trip as a word too. */
 int app_fail_trip(app *a, grobo_trip trip, const char *format, ...)
     __attribute__((format(printf, 3, 4)));

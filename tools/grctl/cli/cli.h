@@ -81,6 +81,9 @@ typedef enum cli_argument {
     CLI_ARG_DEVICE
 } cli_argument;
 
+/* Its arguments: as help has them, how many (-1: any number), and what they are. */
+#define COMMAND_ARGUMENTS(words, least, most, kind)                                                \
+    .arguments = (words), .min_arguments = (least), .max_arguments = (most), .argument = (kind)
 /* A command's table of options. */
 #define COMMAND_OPTIONS(table) .options = (table), .n_options = sizeof(table) / sizeof(table)[0]
 

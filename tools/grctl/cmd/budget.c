@@ -78,8 +78,7 @@ static int run(app *a)
     if (!error)
         error = wire_budget(driver, baud_bps, &line);
     if (error)
-        return app_fail(a, EXIT_USAGE, grobo_error_name(error), "budget: %s",
-                        grobo_error_text(error));
+        return app_fail_error(a, EXIT_USAGE, error, "budget");
     rate_hz = app_number(a, OPT_RATE, line.default_hz);
     if (a->json)
         app_print_json(to_json(costs, &line, baud_bps, rate_hz, driver->model->n_joints));

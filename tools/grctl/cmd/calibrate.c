@@ -134,7 +134,7 @@ static int run(app *a)
 
 const cli_command cmd_calibrate = {
     .name = "calibrate",
-    .arguments = "[JOINT DEG]",
+    COMMAND_ARGUMENTS("[JOINT DEG]", 0, 2, CLI_ARG_JOINT),
     .summary = "write the trims of a configured robot",
     .details =
         "Switch torque off, put the robot by hand into its initial posture, and run it: what the\n"
@@ -156,7 +156,5 @@ const cli_command cmd_calibrate = {
     .example = "  grctl -d kitchen servo off\n  grctl -d kitchen calibrate\n"
                "  grctl -d kitchen calibrate R_KNEE_P 1.5\n",
     COMMAND_OPTIONS(options),
-    .max_arguments = 2,
-    .argument = CLI_ARG_JOINT,
     .run = run,
 };

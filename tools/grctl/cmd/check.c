@@ -144,7 +144,7 @@ static int run(app *a)
 
 const cli_command cmd_check = {
     .name = "check",
-    .arguments = "FILE...",
+    COMMAND_ARGUMENTS("FILE...", 1, -1, CLI_ARG_FILE),
     .summary = "what is wrong with motion files",
     .details =
         "Reads motion files (.m .pseq .mseq .yaml .seq) and says every problem with its\n"
@@ -163,8 +163,5 @@ const cli_command cmd_check = {
     .example = "  grctl check motions/*\n  grctl check --json walk.pseq\n"
                "  grctl check --balance walk.pseq\n",
     COMMAND_OPTIONS(options),
-    .min_arguments = 1,
-    .max_arguments = -1,
-    .argument = CLI_ARG_FILE,
     .run = run,
 };

@@ -74,14 +74,11 @@ static int run(app *a)
 
 const cli_command cmd_completion = {
     .name = "completion",
-    .arguments = "bash|zsh|fish",
+    COMMAND_ARGUMENTS("bash|zsh|fish", 1, 1, CLI_ARG_WORD),
     .summary = "a script that completes command lines",
     .details = "Prints the script that makes a shell complete commands, options, joints, groups\n"
                "and files of grctl. 'make install' puts it where the shells look for it.\n",
     .example = "  source <(grctl completion bash)\n"
                "  grctl completion fish >~/.config/fish/completions/grctl.fish\n",
-    .min_arguments = 1,
-    .max_arguments = 1,
-    .argument = CLI_ARG_WORD,
     .run = run,
 };

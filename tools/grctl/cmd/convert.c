@@ -108,7 +108,7 @@ static int verify(app *a, const grobo_motion *motion, const char *path, const fi
             app_fail(a, EXIT_FILE, first.code, "%s; --lossy writes %s all the same", said, path);
     }
     if (lost < 0 && grobo_diagnostics_count(list) == 0)
-        app_fail(a, EXIT_FILE, grobo_error_name(lost), "%s: %s", path, grobo_error_text(lost));
+        app_fail_error(a, EXIT_FILE, lost, "%s", path);
     grobo_motion_free(copy);
     grobo_diagnostics_free(list);
     return lost ? EXIT_FILE : 0;
@@ -141,9 +141,7 @@ static int refuse_out(app *a, const char *out, grobo_motion_format to)
         return app_fail(a, EXIT_FILE, grobo_error_name(error),
                         "%s: holds something other than a .%s motion; --replace writes over it",
                         out, grobo_motion_format_name(to));
-    return error ? app_fail(a, EXIT_FILE, grobo_error_name(error), "%s: %s", out,
-                            grobo_error_text(error))
-                 : 0;
+    return error ? app_fail_error(a, EXIT_FILE, error, "%s", out) : 0;
 }
 
 /* ---- converting ----------------------------------------------------------------------------- */
@@ -259,7 +257,7 @@ static int run(app *a)
 
 const cli_command cmd_convert = {
     .name = "convert",
-    .arguments = "IN OUT",
+    COMMAND_ARGUMENTS("IN OUT", 2, 2, CLI_ARG_FILE),
     .summary = "turn a motion file into another format",
     .details = "Converts between .m, .pseq, .mseq and .yaml (.seq), both ways. The formats follow\n"
                "from the names unless --from or --to say otherwise; - is standard input or\n"
@@ -270,8 +268,5 @@ const cli_command cmd_convert = {
     .example = "  grctl convert greet.pseq greet.m\n"
                "  grctl convert --rate 50 greet.pseq greet.yaml\n",
     COMMAND_OPTIONS(options),
-    .min_arguments = 2,
-    .max_arguments = 2,
-    .argument = CLI_ARG_FILE,
     .run = run,
 };

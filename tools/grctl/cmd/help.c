@@ -153,13 +153,11 @@ static int run(app *a)
 
 const cli_command cmd_help = {
     .name = "help",
-    .arguments = "[COMMAND]",
+    COMMAND_ARGUMENTS("[COMMAND]", 0, 1, CLI_ARG_COMMAND),
     .summary = "what grctl can do, or what a command does",
     .details = "Prints the list of commands, or everything about one of them. In a shell it knows\n"
                "the letters and words of the shell too, also by their first letters.\n",
     .example = "  grctl help play\n  grctl help --man | man -l -\n",
     COMMAND_OPTIONS(options),
-    .max_arguments = 1,
-    .argument = CLI_ARG_COMMAND,
     .run = run,
 };

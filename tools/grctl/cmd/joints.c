@@ -79,7 +79,7 @@ static int run(app *a)
 
 const cli_command cmd_joints = {
     .name = "joints",
-    .arguments = "[JOINT|GROUP]...",
+    COMMAND_ARGUMENTS("[JOINT|GROUP]...", 0, -1, CLI_ARG_JOINT),
     .summary = "list joints: names, motors, servo ids, limits, groups",
     .details = "Prints the robot's joints, or those named: the three names that a command takes\n"
                "(R_KNEE_P, j3, m9), the servo's id on the bus, the limits and the initial posture\n"
@@ -87,7 +87,5 @@ const cli_command cmd_joints = {
                "that of the robot's model: no robot is asked, and trims of a configured robot are\n"
                "not in it.\n",
     .example = "  grctl joints\n  grctl joints right_arm --json\n",
-    .max_arguments = -1,
-    .argument = CLI_ARG_JOINT,
     .run = run,
 };

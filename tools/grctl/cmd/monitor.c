@@ -429,7 +429,7 @@ static int run(app *a)
 
 const cli_command cmd_monitor = {
     .name = "monitor",
-    .arguments = "[FILE]...",
+    COMMAND_ARGUMENTS("[FILE]...", 0, -1, CLI_ARG_FILE),
     .summary = "full-screen live view, with keys",
     .details =
         "Shows all joints between their limits, their torque, temperature and current, the\n"
@@ -445,7 +445,5 @@ const cli_command cmd_monitor = {
         "\n"
         "Without a terminal that can show it (or with --json) it is 'status --watch'.\n",
     .example = "  grctl monitor\n  grctl -d sim monitor motions/greet.pseq\n",
-    .max_arguments = -1,
-    .argument = CLI_ARG_FILE,
     .run = run,
 };

@@ -195,7 +195,7 @@ static int run_pose(app *a)
 
 const cli_command cmd_pose = {
     .name = "pose",
-    .arguments = "DEG x20 | JOINT=DEG... | @FILE[:N]",
+    COMMAND_ARGUMENTS("DEG x20 | JOINT=DEG... | @FILE[:N]", 1, -1, CLI_ARG_JOINT),
     .summary = "move many joints at once",
     .details = "Moves all joints (20 angles in the order of the motors 1..20, as a line of a .m\n"
                "file has them), those named, or to posture N of a motion file (the first). All\n"
@@ -204,9 +204,6 @@ const cli_command cmd_pose = {
     .example = "  grctl pose R_ELBOW_P=-45 L_ELBOW_P=45\n"
                "  grctl pose --time 3000 @motions/greet.pseq:2\n",
     COMMAND_OPTIONS(pose_options),
-    .min_arguments = 1,
-    .max_arguments = -1,
-    .argument = CLI_ARG_JOINT,
     .run = run_pose,
 };
 
@@ -223,14 +220,11 @@ const cli_command cmd_init = {
 
 const cli_command cmd_move = {
     .name = "move",
-    .arguments = "JOINT DEG [MS]",
+    COMMAND_ARGUMENTS("JOINT DEG [MS]", 2, 3, CLI_ARG_JOINT),
     .summary = "move one joint",
     .details = "Moves one joint to an angle, in the time given (1000 ms) or as much longer as the\n"
                "servo needs, and reads back where it is. Torque comes on where it is off. An\n"
                "angle outside the joint's limits is refused with exit status 4.\n",
     .example = "  grctl move R_KNEE_P -40\n  grctl move m2 15 500\n",
-    .min_arguments = 2,
-    .max_arguments = 3,
-    .argument = CLI_ARG_JOINT,
     .run = run_move,
 };

@@ -328,7 +328,7 @@ static int run(app *a)
 
 const cli_command cmd_play = {
     .name = "play",
-    .arguments = "FILE...",
+    COMMAND_ARGUMENTS("FILE...", 1, -1, CLI_ARG_FILE),
     .summary = "play motion files",
     .details =
         "Plays .m, .pseq, .mseq, .yaml and .seq files, one after the other. Every file is\n"
@@ -352,8 +352,5 @@ const cli_command cmd_play = {
                "  grctl play --dry-run --key greet.pseq | head\n",
     .options = options,
     .n_options = PLAY_OPTIONS,
-    .min_arguments = 1,
-    .max_arguments = -1,
-    .argument = CLI_ARG_FILE,
     .run = run,
 };

@@ -234,7 +234,7 @@ static int run(app *a)
 
 const cli_command cmd_plot = {
     .name = "plot",
-    .arguments = "FILE",
+    COMMAND_ARGUMENTS("FILE", 1, 1, CLI_ARG_FILE),
     .summary = "a picture of a motion file: angle over time",
     .details =
         "Draws every joint of a motion over time, as it is played: key poses by Choreonoid's\n"
@@ -250,8 +250,5 @@ const cli_command cmd_plot = {
                "  grctl plot -o greet.png -j right_arm,NECK_Y motions/greet.pseq\n"
                "  grctl plot --balance -o step.svg motions/step.pseq\n",
     COMMAND_OPTIONS(options),
-    .min_arguments = 1,
-    .max_arguments = 1,
-    .argument = CLI_ARG_FILE,
     .run = run,
 };

@@ -79,8 +79,7 @@ static int run(app *a)
     int n = grobo_port_list(visit, list);
     if (n < 0) {
         json_decref(list);
-        return app_fail(a, EXIT_ROBOT, grobo_error_name(n), "cannot list serial ports: %s",
-                        grobo_error_text(n));
+        return app_fail_error(a, EXIT_ROBOT, n, "cannot list serial ports");
     }
     if (a->json)
         app_print_json(json_pack("{s:o}", "ports", list));

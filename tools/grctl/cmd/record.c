@@ -564,8 +564,7 @@ static int prepare(recorder *r, app *a)
     if (!r->joints)
         r->joints = GROBO_JOINTS_ALL(grobo_gr001_model.n_joints);
     if (grobo_motion_new(&r->motion, GROBO_MOTION_POSTURES, grobo_gr001_model.n_joints, NULL) < 0)
-        return app_fail(a, EXIT_ROBOT, "NOMEM", "%s: %s", name_of(r),
-                        grobo_error_text(GROBO_ERR_NOMEM));
+        return app_fail_error(a, EXIT_ROBOT, GROBO_ERR_NOMEM, "%s", name_of(r));
     return 0;
 }
 
@@ -602,7 +601,7 @@ static int run_teach(app *a)
 
 const cli_command cmd_record = {
     .name = "record",
-    .arguments = "[JOINT|GROUP]...",
+    COMMAND_ARGUMENTS("[JOINT|GROUP]...", 0, -1, CLI_ARG_JOINT),
     .summary = "record a motion that a hand shows",
     .details =
         "All joints, or those named, give way to a hand that turns them and hold when it lets go.\n"
@@ -626,14 +625,12 @@ const cli_command cmd_record = {
     .example = "  grctl record\n  grctl record --key -o wave.pseq right_arm\n"
                "  grctl record --limp arms\n",
     COMMAND_OPTIONS(options),
-    .max_arguments = -1,
-    .argument = CLI_ARG_JOINT,
     .run = run_record,
 };
 
 const cli_command cmd_teach = {
     .name = "teach",
-    .arguments = "[JOINT|GROUP]...",
+    COMMAND_ARGUMENTS("[JOINT|GROUP]...", 0, -1, CLI_ARG_JOINT),
     .summary = "record postures of limp joints, and play them at once",
     .details =
         "Switches the torque of all joints, or of those named, off: hold the robot, an arm falls.\n"
@@ -652,7 +649,5 @@ const cli_command cmd_teach = {
     .example = "  grctl teach\n  grctl teach -o wave.pseq right_arm\n",
     .options = options,
     .n_options = TEACH_OPTIONS,
-    .max_arguments = -1,
-    .argument = CLI_ARG_JOINT,
     .run = run_teach,
 };

@@ -422,21 +422,18 @@ static int run_set(app *a)
 
 const cli_command cmd_servo_get = {
     .name = "servo-get",
-    .arguments = "ID [KEY]",
+    COMMAND_ARGUMENTS("ID [KEY]", 1, 2, CLI_ARG_JOINT),
     .summary = "read a servo's registers by name",
     .details =
         "Prints every register of a servo, or one: address, name, value as it is stored and\n"
         "what that means. ID is the servo's id or the name of a joint.\n",
     .example = "  grctl servo-get 12\n  grctl servo-get R_KNEE_P delay\n",
-    .min_arguments = 1,
-    .max_arguments = 2,
-    .argument = CLI_ARG_JOINT,
     .run = run_get,
 };
 
 const cli_command cmd_servo_set = {
     .name = "servo-set",
-    .arguments = "ID KEY VALUE",
+    COMMAND_ARGUMENTS("ID KEY VALUE", 3, 3, CLI_ARG_JOINT),
     .summary = "write a servo's register by name",
     .details =
         "Writes one register and reads it back. The value is what the register stores (see\n"
@@ -452,8 +449,5 @@ const cli_command cmd_servo_set = {
         "new one when it restarts.\n",
     .example = "  grctl servo-set 12 delay 2 --flash\n  grctl servo-set 1 id 21\n",
     COMMAND_OPTIONS(set_options),
-    .min_arguments = 3,
-    .max_arguments = 3,
-    .argument = CLI_ARG_JOINT,
     .run = run_set,
 };

@@ -73,14 +73,11 @@ static int run(app *a)
 
 const cli_command cmd_servo = {
     .name = "servo",
-    .arguments = "on|off|brake [JOINT|GROUP]...",
+    COMMAND_ARGUMENTS("on|off|brake [JOINT|GROUP]...", 1, -1, CLI_ARG_JOINT),
     .summary = "switch torque",
     .details = "Switches the torque of all joints, or of those named, and reads it back. Before\n"
                "torque comes on, each joint's target is set to where the joint is: nothing jumps.\n"
                "Hold the robot when you switch it off: it falls.\n",
     .example = "  grctl servo on\n  grctl servo off right_arm\n  grctl servo brake legs\n",
-    .min_arguments = 1,
-    .max_arguments = -1,
-    .argument = CLI_ARG_JOINT,
     .run = run,
 };

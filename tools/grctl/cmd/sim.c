@@ -326,7 +326,7 @@ static int run(app *a)
     os_take_signals();
     f.base = grobo_loop_new();
     if (!f.base || watch_signals(&f) != GROBO_OK)
-        status = app_fail(a, EXIT_ROBOT, "NOMEM", "sim: %s", grobo_error_text(GROBO_ERR_NOMEM));
+        status = app_fail_error(a, EXIT_ROBOT, GROBO_ERR_NOMEM, "sim");
     f.model = &grobo_gr001_model;
     if (app_option(a, OPT_SERVO)->given && !status) {
         f.model = &f.chain.model;

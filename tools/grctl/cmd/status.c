@@ -76,7 +76,7 @@ static int run(app *a)
 
 const cli_command cmd_status = {
     .name = "status",
-    .arguments = "[JOINT|GROUP]...",
+    COMMAND_ARGUMENTS("[JOINT|GROUP]...", 0, -1, CLI_ARG_JOINT),
     .summary = "angle, torque, current, temperature and voltage of the joints",
     .details = "Reads every joint, or those named, and prints what it reports. A joint that does\n"
                "not answer is shown with the reason and makes the exit status 1; the others are\n"
@@ -84,7 +84,5 @@ const cli_command cmd_status = {
     .example = "  grctl status\n  grctl status right_arm --json\n"
                "  grctl status --watch --interval 200\n",
     COMMAND_OPTIONS(options),
-    .max_arguments = -1,
-    .argument = CLI_ARG_JOINT,
     .run = run,
 };

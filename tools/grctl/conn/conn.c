@@ -477,8 +477,7 @@ static int open_device(conn *c, app *a, bool check)
         return error;
     error = make_session(c, device, check);
     if (error)
-        return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s: %s", device,
-                        grobo_error_text(error));
+        return app_fail_error(a, EXIT_ROBOT, error, "%s", device);
     c->base = c->link->base;
     c->session = c->link->session;
     c->robot = grobo_session_robot(c->session);

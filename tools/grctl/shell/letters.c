@@ -39,9 +39,7 @@ static int run_text(shell *s, int n, const char *const *words)
 
 static int keep(shell *s, int error)
 {
-    return error < 0 ? app_fail(&s->one, EXIT_ROBOT, grobo_error_name(error), "record: %s",
-                                grobo_error_text(error))
-                     : 0;
+    return error < 0 ? app_fail_error(&s->one, EXIT_ROBOT, error, "record") : 0;
 }
 
 /* An empty record where there is none. */
@@ -189,8 +187,7 @@ static int do_save(shell *s, int n, char **words)
         return usage(s, "%s: the record is empty", words[0]);
     error = grobo_motion_save_next(s->record, grobo_files_os(), ".", &write, path, sizeof path);
     if (error < 0)
-        return app_fail(&s->one, EXIT_FILE, grobo_error_name(error), "%s: %s", words[0],
-                        grobo_error_text(error));
+        return app_fail_error(&s->one, EXIT_FILE, error, "%s", words[0]);
     if (s->one.json)
         app_print_json(json_pack("{s:o}", "output", app_json_text(path)));
     else
