@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
 
+#include <grobo/files.h>
+
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/os/os.h"
 #include "tools/grctl/os/pipe.h"
@@ -115,6 +117,20 @@ int file_read(const char *path, const grobo_read_options *options, grobo_diagnos
                              : grobo_motion_read_file(path, options, list, motion);
     named.name = file_shown_name(path);
     return grobo_motion_read(&source, &named, list, motion);
+}
+
+int file_save(const char *path, const void *bytes, size_t size)
+{
+    const grobo_files *files = grobo_files_os();
+    grobo_file file;
+    int error = files->create(&file, path, false);
+    if (error)
+        return error;
+    error = files->write(&file, bytes, size);
+    if (!error)
+        return files->commit(&file);
+    files->discard(&file);
+    return error;
 }
 
 /* A copy of what the shell has recorded. */

@@ -37,6 +37,9 @@ int file_read(const char *path, const grobo_read_options *options, grobo_diagnos
 int file_load_listed(app *a, const char *path, const grobo_read_options *options,
                      grobo_diagnostics *list, grobo_motion **motion);
 
+/* Replaces a file, or what a symbolic link leads to, once the new one is safely written. */
+int file_save(const char *path, const void *bytes, size_t size);
+
 /* What a file is called in messages: "-" is standard input. */
 const char *file_shown_name(const char *path);
 

@@ -57,31 +57,14 @@ static int write_text(void *ctx, const void *data, size_t size)
     return 0;
 }
 
-static int write_error(void)
-{
-    return errno == ENOSPC ? GROBO_ERR_DISK : GROBO_ERR_IO;
-}
-
 static int put_out(const file_text *t, const char *path)
 {
-    const grobo_files *files = grobo_files_os();
-    grobo_file file;
-    int error;
-    if (strcmp(path, "-") == 0) {
-        errno = 0;
-        return fwrite(t->bytes, 1, t->size, stdout) == t->size && fflush(stdout) == 0
-                   ? 0
-                   : write_error();
-    }
-    error = files->create(&file, path, false);
-    if (error)
-        return error;
-    error = files->write(&file, t->bytes, t->size);
-    if (error) {
-        files->discard(&file);
-        return error;
-    }
-    return files->commit(&file);
+    if (strcmp(path, "-") != 0)
+        return file_save(path, t->bytes, t->size);
+    errno = 0;
+    if (fwrite(t->bytes, 1, t->size, stdout) == t->size && fflush(stdout) == 0)
+        return 0;
+    return errno == ENOSPC ? GROBO_ERR_DISK : GROBO_ERR_IO;
 }
 
 /* Reads the text and looks whether it plays what the motion does. 0, or the status. */
