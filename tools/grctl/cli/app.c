@@ -56,16 +56,6 @@ void app_make_one_line(char *text)
             *text = '?';
 }
 
-/* The word of a trip: "low_voltage". */
-static json_t *trip_json(grobo_trip trip)
-{
-    char word[32];
-    snprintf(word, sizeof word, "%s", grobo_trip_name(trip));
-    for (char *c = word; *c; c++)
-        *c = *c == ' ' || *c == '-' ? '_' : *c;
-    return json_string(word);
-}
-
 static int fail(app *a, int status, const char *code, grobo_trip trip, const char *format,
                 va_list list)
 {
@@ -84,7 +74,7 @@ static int fail(app *a, int status, const char *code, grobo_trip trip, const cha
         json_t *error =
             json_pack("{s:o,s:o}", "code", app_json_code(code), "message", app_json_text(text));
         if (trip != GROBO_TRIP_NONE)
-            json_object_set_new(error, "trip", trip_json(trip));
+            json_object_set_new(error, "trip", app_json_code(grobo_trip_name(trip)));
         app_print_json(json_pack("{s:o}", "error", error));
     }
     return status;
@@ -257,8 +247,11 @@ json_t *app_json_code(const char *name)
 {
     char code[32];
     size_t n = 0;
-    for (; name[n] && n < sizeof code; n++)
-        code[n] = (char)(name[n] >= 'A' && name[n] <= 'Z' ? name[n] - 'A' + 'a' : name[n]);
+    for (; name[n] && n < sizeof code; n++) {
+        bool large = name[n] >= 'A' && name[n] <= 'Z'; /* whatever the locale says */
+        bool joins = name[n] == ' ' || name[n] == '-';
+        code[n] = joins ? '_' : (char)(large ? name[n] - 'A' + 'a' : name[n]);
+    }
     return json_stringn(code, n);
 }
 

@@ -89,7 +89,7 @@ void app_print(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void app_print_json(json_t *object);
 /* A JSON string of bytes that may be no UTF-8. */
 json_t *app_json_text(const char *text);
-/* A stable word, as every code is spelled: in small letters. */
+/* A stable word, as every code is spelled: in small letters, with _ between words. */
 json_t *app_json_code(const char *name);
 /* A JSON string of what a function prints. */
 json_t *app_json_printed(void (*print)(FILE *to));

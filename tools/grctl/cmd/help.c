@@ -48,47 +48,36 @@ static bool is_asked(const asked *what, const shell_word *w)
     return *what->name && (strcmp(w->letter, what->name) == 0 || strcmp(w->word, what->name) == 0);
 }
 
-static void print_words(const asked *what)
+/* Prints the rows, or adds them to a list. Returns how many there are. */
+static int tell_words(const asked *what, json_t *list)
 {
     const shell_word *w;
-    for (size_t i = 0; (w = shell_word_row(i)) != NULL; i++)
-        if (is_asked(what, w))
-            app_print("  %-2s %s%s%s\n      %s\n", w->letter, w->word,
-                      *w->word && *w->arguments ? " " : "", w->arguments, w->help);
-}
-
-static json_t *words_json(const asked *what)
-{
-    json_t *list = json_array();
-    const shell_word *w;
-    for (size_t i = 0; (w = shell_word_row(i)) != NULL; i++)
-        if (is_asked(what, w))
+    int n = 0;
+    for (size_t i = 0; (w = shell_word_row(i)) != NULL; i++) {
+        if (!is_asked(what, w))
+            continue;
+        n++;
+        if (list)
             json_array_append_new(list,
                                   json_pack("{s:s,s:s,s:s,s:s}", "letter", w->letter, "word",
                                             w->word, "arguments", w->arguments, "help", w->help));
-    return list;
-}
-
-static bool knows_words(const asked *what)
-{
-    const shell_word *w;
-    for (size_t i = 0; (w = shell_word_row(i)) != NULL; i++)
-        if (is_asked(what, w))
-            return true;
-    return false;
+        else
+            app_print("  %-2s %s%s%s\n      %s\n", w->letter, w->word,
+                      *w->word && *w->arguments ? " " : "", w->arguments, w->help);
+    }
+    return n;
 }
 
 /* Help on a letter or word, in a shell. False: it is none. */
 static bool help_word(const app *a, const char *name)
 {
     asked what = {.name = name, .beginning = shell_word_find(name) == NULL};
-    if (!*name || !knows_words(&what))
-        return false;
-    if (a->json)
-        app_print_json(json_pack("{s:o}", "words", words_json(&what)));
-    else
-        print_words(&what);
-    return true;
+    json_t *list = a->json ? json_array() : NULL;
+    bool found = *name && tell_words(&what, list) > 0;
+    if (found && list)
+        app_print_json(json_pack("{s:O}", "words", list));
+    json_decref(list);
+    return found;
 }
 
 /* ---- help ----------------------------------------------------------------------------------- */
@@ -118,8 +107,11 @@ static void print_json(const app *a, const cli_command *about)
     json_t *o = app_option(a, OPT_MAN)->given
                     ? json_pack("{s:o}", "manual", app_json_printed(cli_print_manual))
                     : json_pack("{s:o}", "commands", commands_json(about));
-    if (a->link && !about && !app_option(a, OPT_MAN)->given)
-        json_object_set_new(o, "words", words_json(&all_words));
+    if (a->link && !about && !app_option(a, OPT_MAN)->given) {
+        json_t *words = json_array();
+        tell_words(&all_words, words);
+        json_object_set_new(o, "words", words);
+    }
     app_print_json(o);
 }
 
@@ -129,7 +121,7 @@ static void print_overview(const app *a)
     if (!a->link)
         return;
     app_print("\nLetters and words of this shell:\n");
-    print_words(&all_words);
+    tell_words(&all_words, NULL);
 }
 
 static int run(app *a)
