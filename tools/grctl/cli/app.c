@@ -169,12 +169,22 @@ void app_detail(const app *a, const char *format, ...)
     va_end(list);
 }
 
+void app_tell(const app *a, json_t *object, const char *format, ...)
+{
+    va_list list;
+    if (a->json) {
+        app_print_json(object);
+        return;
+    }
+    json_decref(object);
+    va_start(list, format);
+    say(a, 0, format, list);
+    va_end(list);
+}
+
 void app_done(const app *a, const char *text)
 {
-    if (a->json)
-        app_print_json(json_pack("{s:b}", "done", 1));
-    else
-        app_note(a, "%s", text);
+    app_tell(a, json_pack("{s:b}", "done", 1), "%s", text);
 }
 
 static bool dropped; /* some of standard output */

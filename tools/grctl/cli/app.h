@@ -61,6 +61,10 @@ int app_fail_trip(app *a, grobo_trip trip, const char *format, ...)
 /* The exit status that fits a library error. */
 int app_status_of(int error);
 
+/* A result: with --json the object, else a line as app_note() says it. Takes the reference. */
+void app_tell(const app *a, json_t *object, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
 /* Says that a command which moves nothing more is done: {"done": true}, or the text. */
 void app_done(const app *a, const char *text);
 

@@ -332,20 +332,16 @@ static bool is_over(conn *c)
 /* Until somebody quits. Returns why it ended otherwise, or 0. */
 static int watch(monitor *m)
 {
-    struct timeval period = {0, DRAW_US};
-    struct event *tick = event_new(m->c.base, -1, EV_PERSIST, on_draw, m);
+    struct event *tick = conn_every(&m->c, DRAW_US, on_draw, m);
     struct event *input = event_new(m->c.base, STDIN_FILENO, EV_READ | EV_PERSIST, on_input, m);
     int error = tick && input ? GROBO_OK : GROBO_ERR_NOMEM;
     if (!error) {
-        event_add(tick, &period);
         event_add(input, NULL);
         monitor_draw(m);
         error = conn_wait_until(&m->c, is_over);
     }
-    if (tick)
-        event_free(tick);
-    if (input)
-        event_free(input);
+    conn_forget(tick);
+    conn_forget(input);
     return error;
 }
 

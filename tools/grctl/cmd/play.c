@@ -43,7 +43,6 @@ typedef struct show {
     progress bar;
     keys input;
     play_keys keys;
-    struct event *tick;
     int ticks;
     bool started, over, unwatched;
     int error;           /* why it failed, 0: it did not */
@@ -234,18 +233,13 @@ static int start(conn *c, show *s)
 /* Shows how it goes, and takes keys, until it is over. */
 static int watch_it(conn *c, show *s)
 {
-    struct timeval period = {0, TICK_US};
-    int error;
     progress_start(&s->bar, c->a);
     s->keys = (play_keys){.c = c, .speed_pct = (int)app_number(c->a, PLAY_SPEED, 100)};
     if (keys_start(&s->input, c->base, false, on_key, c) && s->bar.shown)
         app_note(c->a, "space: pause   + -: speed   s: stop   e: EMERGENCY STOP");
-    s->tick = event_new(c->base, -1, EV_PERSIST, on_tick, c);
-    if (s->tick)
-        event_add(s->tick, &period);
-    error = conn_wait_until(c, is_over);
-    if (s->tick)
-        event_free(s->tick);
+    struct event *tick = conn_every(c, TICK_US, on_tick, c);
+    int error = conn_wait_until(c, is_over);
+    conn_forget(tick);
     keys_stop(&s->input);
     progress_clear(&s->bar);
     return error;

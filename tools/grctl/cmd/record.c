@@ -286,22 +286,6 @@ static int play_kept(recorder *r)
 
 /* ---- what comes from the loop ---------------------------------------------------------------- */
 
-static void on_look(evutil_socket_t fd, short what, void *ctx)
-{
-    recorder *r = ctx;
-    (void)fd;
-    (void)what;
-    r->look_is_due = true;
-}
-
-static void on_live(evutil_socket_t fd, short what, void *ctx)
-{
-    recorder *r = ctx;
-    (void)fd;
-    (void)what;
-    r->live_is_due = true;
-}
-
 /* While it plays, keys are for that. A key too many is lost: nobody has pressed it. */
 static void on_key(void *ctx, int key)
 {
@@ -367,15 +351,6 @@ static int mind(recorder *r)
             error = r->n_keys > 0 ? take_key(r) : take_time(r);
     }
     return error;
-}
-
-static struct event *every(recorder *r, int64_t period_us, event_callback_fn fn)
-{
-    struct timeval period = {(int)(period_us / 1000000), (int)(period_us % 1000000)};
-    struct event *timer = event_new(r->c.base, -1, EV_PERSIST, fn, r);
-    if (timer)
-        event_add(timer, &period);
-    return timer;
 }
 
 /* ---- from the beginning to the end ----------------------------------------------------------- */
@@ -455,18 +430,15 @@ static int teach(recorder *r)
     progress_start(&r->line, c->a);
     if (!r->by_key) {
         double rate_hz = app_number(c->a, OPT_RATE, seed_rate_hz);
-        r->look = every(r, (int64_t)(1e6 / rate_hz), on_look);
+        r->look = conn_every(c, (int64_t)(1e6 / rate_hz), conn_note, &r->look_is_due);
     }
-    r->live = every(r, LIVE_US, on_live);
+    r->live = conn_every(c, LIVE_US, conn_note, &r->live_is_due);
     if (!error)
         error = mind(r);
     keys_stop(&r->input);
     progress_clear(&r->line);
-    for (int i = 0; i < 2; i++) {
-        struct event *timer = i ? r->live : r->look;
-        if (timer)
-            event_free(timer);
-    }
+    conn_forget(r->look);
+    conn_forget(r->live);
     if (!error && r->held) /* out of the hands: they hold where they are */
         error = conn_wait(c, grobo_session_free_mode(c->session, r->held, false));
     return error;
@@ -547,7 +519,6 @@ static int record(recorder *r)
 static int prepare(recorder *r, app *a)
 {
     const char *out = app_option(a, OPT_OUT)->text;
-    int status = 0;
     r->by_key = r->teaches || app_option(a, OPT_KEY)->given > 0;
     r->moved_deg = r->teaches ? 0 : app_number(a, OPT_MOVED, seed_moved_deg);
     r->last_moved = -1;
@@ -555,14 +526,11 @@ static int prepare(recorder *r, app *a)
         return app_fail(a, EXIT_USAGE, "ARG",
                         "%s: -o %s: its name tells no format; .m, .pseq, .mseq or .yaml",
                         name_of(r), out);
-    for (int i = 0; i < a->line.n_arguments && !status; i++)
-        status = joints_parse(a, a->line.argument[i], &r->joints);
+    int status = joints_parse_all(a, a->line.n_arguments, a->line.argument, &r->joints);
     if (!status)
         status = try_to_write(a);
     if (status)
         return status;
-    if (!r->joints)
-        r->joints = GROBO_JOINTS_ALL(grobo_gr001_model.n_joints);
     if (grobo_motion_new(&r->motion, GROBO_MOTION_POSTURES, grobo_gr001_model.n_joints, NULL) < 0)
         return app_fail_error(a, EXIT_ROBOT, GROBO_ERR_NOMEM, "%s", name_of(r));
     return 0;

@@ -60,14 +60,10 @@ static int watch(conn *c, grobo_joint_mask joints)
 static int run(app *a)
 {
     conn c;
-    grobo_joint_mask joints = 0;
-    int status = 0;
-    for (int i = 0; i < a->line.n_arguments && !status; i++)
-        status = joints_parse(a, a->line.argument[i], &joints);
+    grobo_joint_mask joints;
+    int status = joints_parse_all(a, a->line.n_arguments, a->line.argument, &joints);
     if (status)
         return status;
-    if (!joints)
-        joints = GROBO_JOINTS_ALL(grobo_gr001_model.n_joints);
     status = conn_open(&c, a);
     if (!status)
         status = app_option(a, OPT_WATCH)->given ? watch(&c, joints) : sense_and_show(&c, joints);

@@ -17,10 +17,9 @@ static int start(app *a, grobo_stored_kind kind, const char *what)
         error = conn_wait(&c, grobo_session_stored(c.session, kind, (int)number));
         if (error)
             status = conn_fail(&c, error, what);
-        else if (a->json)
-            app_print_json(json_pack("{s:i}", what, (int)number));
         else
-            app_note(a, "%s %d was asked for; the board does not say whether it plays", what,
+            app_tell(a, json_pack("{s:i}", what, (int)number),
+                     "%s %d was asked for; the board does not say whether it plays", what,
                      (int)number);
     }
     return conn_close(&c, status);
