@@ -146,8 +146,6 @@ void decoder_summary(decoder *d)
     app_note(a,
              "%llu frames, %llu with a wrong sum, %llu cut off, %llu bytes of rubbish; of %llu "
              "requests %llu were answered; %llu replies nobody asked for",
-             (unsigned long long)d->count.frames, (unsigned long long)d->count.bad_sums,
-             (unsigned long long)d->count.cut, (unsigned long long)d->count.rubbish_bytes,
-             (unsigned long long)d->asked.requests, (unsigned long long)d->count.answered,
-             (unsigned long long)d->count.unasked);
+             d->count.frames, d->count.bad_sums, d->count.cut, d->count.rubbish_bytes,
+             (unsigned long long)d->asked.requests, d->count.answered, d->count.unasked);
 }
