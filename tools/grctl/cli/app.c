@@ -71,11 +71,9 @@ static int fail(app *a, int status, const char *code, grobo_trip trip, const cha
     output_complain("%sgrctl:%s %s\n", a->color_err ? "\033[1;31m" : "",
                     a->color_err ? "\033[0m" : "", text);
     if (a->json) {
-        json_t *error =
-            json_pack("{s:o,s:o}", "code", app_json_code(code), "message", app_json_text(text));
-        if (trip != GROBO_TRIP_NONE)
-            json_object_set_new(error, "trip", app_json_code(grobo_trip_name(trip)));
-        app_print_json(json_pack("{s:o}", "error", error));
+        json_t *word = trip == GROBO_TRIP_NONE ? NULL : app_json_code(grobo_trip_name(trip));
+        app_print_json(json_pack("{s:{s:o,s:o,s:o*}}", "error", "code", app_json_code(code),
+                                 "message", app_json_text(text), "trip", word));
     }
     return status;
 }

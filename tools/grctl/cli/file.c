@@ -53,12 +53,17 @@ void file_format(const grobo_diagnostic *d, bool with_code, char *text, size_t c
     app_make_one_line(text);
 }
 
-json_t *file_json(const grobo_diagnostic *d)
+json_t *file_json(const grobo_diagnostics *list)
 {
-    return json_pack("{s:o,s:I,s:I,s:s,s:s,s:o}", "file", app_json_text(d->file), "line",
-                     (json_int_t)d->line, "column", (json_int_t)d->column, "severity",
-                     grobo_severity_name(d->severity), "code", d->code, "message",
-                     app_json_text(d->message));
+    json_t *all = json_array();
+    grobo_diagnostic d;
+    for (size_t i = 0; grobo_diagnostics_get(list, i, &d) == 0; i++)
+        json_array_append_new(all,
+                              json_pack("{s:o,s:I,s:I,s:s,s:s,s:o}", "file", app_json_text(d.file),
+                                        "line", (json_int_t)d.line, "column", (json_int_t)d.column,
+                                        "severity", grobo_severity_name(d.severity), "code", d.code,
+                                        "message", app_json_text(d.message)));
+    return all;
 }
 
 void file_say_one(const app *a, const grobo_diagnostic *d)

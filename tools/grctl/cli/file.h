@@ -46,8 +46,8 @@ const char *file_shown_name(const char *path);
 /* One line of a diagnostic: "file:line:column: warning: message [code]". */
 void file_format(const grobo_diagnostic *d, bool with_code, char *text, size_t capacity);
 
-/* A diagnostic as JSON. */
-json_t *file_json(const grobo_diagnostic *d);
+/* Diagnostics as a list of JSON. */
+json_t *file_json(const grobo_diagnostics *list);
 
 /* Words of --from, --to: CLI_CHOICE of these gives the format at choice + 1. */
 #define FILE_FORMATS "m|pseq|mseq|yaml"

@@ -94,15 +94,6 @@ static void print_text(const app *a, const grobo_diagnostics *list)
     }
 }
 
-static void print_json(const grobo_diagnostics *list, bool ok)
-{
-    json_t *all = json_array();
-    grobo_diagnostic d;
-    for (size_t i = 0; grobo_diagnostics_get(list, i, &d) == 0; i++)
-        json_array_append_new(all, file_json(&d));
-    app_print_json(json_pack("{s:b,s:o}", "ok", ok, "diagnostics", all));
-}
-
 static unsigned how_to_balance(const app *a)
 {
     if (app_option(a, OPT_BALANCE)->given)
@@ -130,7 +121,7 @@ static int run(app *a)
     t.errors = grobo_diagnostics_total(list, GROBO_SEVERITY_ERROR);
     t.warnings = grobo_diagnostics_total(list, GROBO_SEVERITY_WARNING);
     if (a->json)
-        print_json(list, t.errors == 0);
+        app_print_json(json_pack("{s:b,s:o}", "ok", t.errors == 0, "diagnostics", file_json(list)));
     else
         print_text(a, list);
     grobo_diagnostics_free(list);

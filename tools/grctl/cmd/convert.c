@@ -174,20 +174,16 @@ static int solve_legs(app *a, const char *path, const grobo_write_options *how,
 static void report(app *a, const grobo_motion *motion, const char *out,
                    const grobo_diagnostics *list)
 {
-    size_t n = grobo_diagnostics_count(list);
+    grobo_diagnostic d;
     if (a->json && strcmp(out, "-") != 0) {
-        json_t *all = json_array();
-        grobo_diagnostic d;
-        for (size_t i = 0; grobo_diagnostics_get(list, i, &d) == 0; i++)
-            json_array_append_new(all, file_json(&d));
         app_print_json(json_pack("{s:o,s:I,s:o}", "file", app_json_text(out), "postures",
-                                 (json_int_t)grobo_motion_size(motion), "diagnostics", all));
+                                 (json_int_t)grobo_motion_size(motion), "diagnostics",
+                                 file_json(list)));
         return;
     }
-    for (size_t i = 0; i < n; i++) { /* what is lost is worth a line even when it is a note */
+    /* what is lost is worth a line even when it is a note */
+    for (size_t i = 0; grobo_diagnostics_get(list, i, &d) == 0; i++) {
         char text[1024];
-        grobo_diagnostic d;
-        grobo_diagnostics_get(list, i, &d);
         file_format(&d, false, text, sizeof text);
         app_note(a, "%s", text);
     }

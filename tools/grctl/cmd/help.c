@@ -14,12 +14,9 @@ static const cli_option options[] = {
 
 static json_t *option_json(const cli_option *o)
 {
-    json_t *object = json_pack("{s:s,s:s}", "name", o->name, "help", o->help);
-    if (o->letter)
-        json_object_set_new(object, "letter", json_stringn(&o->letter, 1));
-    if (o->kind != CLI_FLAG)
-        json_object_set_new(object, "value", json_string(o->value));
-    return object;
+    return json_pack("{s:s,s:s,s:o*,s:o*}", "name", o->name, "help", o->help, "letter",
+                     o->letter ? json_stringn(&o->letter, 1) : NULL, "value",
+                     o->kind == CLI_FLAG ? NULL : json_string(o->value));
 }
 
 static json_t *command_json(const cli_command *command)

@@ -178,11 +178,9 @@ static void report(const conn *c, int id, const change *what, int32_t before, in
     if (baud_bps && !what->flash && baud_bps != grobo_rs30x_baud_bps((uint8_t)what->value))
         kept = "; takes effect at a restart, and is lost there without --flash";
     if (c->a->json) {
-        json_t *o = json_pack("{s:i,s:s,s:i,s:i,s:b}", "id", id, "name", what->reg->name, "before",
-                              before, "value", what->value, "flash", what->flash);
-        if (baud_bps)
-            json_object_set_new(o, "baud_bps", json_integer(baud_bps));
-        app_print_json(o);
+        app_print_json(json_pack("{s:i,s:s,s:i,s:i,s:b,s:o*}", "id", id, "name", what->reg->name,
+                                 "before", before, "value", what->value, "flash", what->flash,
+                                 "baud_bps", baud_bps ? json_integer(baud_bps) : NULL));
     } else {
         app_note(c->a, "servo %d: %s%s%s", id, text, kept, where);
     }

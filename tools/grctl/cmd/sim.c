@@ -253,10 +253,9 @@ static bool announce(const farm *f)
     json_t *list = json_array();
     for (int i = 0; i < f->n; i++) {
         int port = grobo_sim_server_tcp_port(f->server[i]);
-        json_t *one = json_pack("{s:s}", "device", grobo_sim_server_device(f->server[i]));
-        if (port > 0)
-            json_object_set_new(one, "tcp_port", json_integer(port));
-        json_array_append_new(list, one);
+        json_array_append_new(list, json_pack("{s:s,s:o*}", "device",
+                                              grobo_sim_server_device(f->server[i]), "tcp_port",
+                                              port > 0 ? json_integer(port) : NULL));
         if (!f->a->json)
             app_print("%s\n", grobo_sim_server_device(f->server[i]));
         if (port > 0 && grobo_port_pty_ops() != NULL) {
