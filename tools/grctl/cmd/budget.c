@@ -4,6 +4,7 @@
 
 #include "tools/grctl/cli/app.h"
 #include "tools/grctl/cmd/commands.h"
+#include "tools/grctl/conn/conn.h"
 #include "tools/grctl/conn/wire.h"
 
 enum { OPT_RATE };
@@ -69,8 +70,7 @@ static int run(app *a)
 {
     grobo_wiring wiring = (grobo_wiring)app_global(a, GLOBAL_WIRING)->choice;
     const grobo_driver *driver = grobo_gr001_driver(wiring);
-    const cli_value *baud = app_global(a, GLOBAL_BAUD);
-    int baud_bps = baud->given ? (int)baud->number : GROBO_BAUD_DEFAULT_BPS;
+    int baud_bps = (int)conn_baud(a);
     double rate_hz;
     grobo_budget line;
     wire_cost costs[WIRE_COSTS];
