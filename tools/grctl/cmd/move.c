@@ -27,12 +27,8 @@ static void report(const conn *c, const grobo_posture *target)
     int joint;
     double worst = render_worst_error(c, now_us, &joint);
     if (c->a->json) {
-        json_t *list = json_array();
-        for (int j = 0; j < target->n_joints; j++)
-            if (target->set & GROBO_JOINT_BIT(j))
-                json_array_append_new(list, render_joint_json(c, j, now_us));
-        app_print_json(json_pack("{s:o,s:o}", "joints", list, "max_error_deg",
-                                 joint < 0 ? json_null() : app_json_number(worst, 2)));
+        app_print_json(json_pack("{s:o,s:o}", "joints", render_joints_json(c, target->set, now_us),
+                                 "max_error_deg", app_json_number(joint < 0 ? NAN : worst, 2)));
     } else if (joint >= 0) {
         app_note(c->a, "there; largest error %.1f deg (%s)", worst,
                  grobo_robot_driver(c->robot)->model->joints[joint].name);

@@ -16,7 +16,6 @@ static void show(conn *c, grobo_joint_mask joints)
 {
     int64_t now_us = grobo_now_us();
     const grobo_model *model = grobo_robot_driver(c->robot)->model;
-    json_t *list;
     if (!c->a->json) {
         if (c->a->tty_out && app_option(c->a, OPT_WATCH)->given)
             app_print("\033[H\033[J");
@@ -24,12 +23,9 @@ static void show(conn *c, grobo_joint_mask joints)
         output_flush();
         return;
     }
-    list = json_array();
-    for (int j = 0; j < model->n_joints; j++)
-        if (joints & GROBO_JOINT_BIT(j))
-            json_array_append_new(list, render_joint_json(c, j, now_us));
     app_print_json(json_pack("{s:s,s:s,s:o,s:o}", "robot", model->name, "device", conn_device(c),
-                             "joints", list, "link", conn_link_json(c)));
+                             "joints", render_joints_json(c, joints, now_us), "link",
+                             conn_link_json(c)));
 }
 
 /* One round; the exit status: a joint that stays silent is shown, and makes it 1. */

@@ -46,7 +46,7 @@ static json_t *integer_or_null(bool known, long value)
     return known ? json_integer(value) : NULL;
 }
 
-json_t *render_joint_json(const conn *c, int joint, int64_t now_us)
+static json_t *joint_json(const conn *c, int joint, int64_t now_us)
 {
     const grobo_joint *j = &model_of(c)->joints[joint];
     grobo_joint_info i;
@@ -66,6 +66,15 @@ json_t *render_joint_json(const conn *c, int joint, int64_t now_us)
         app_json_number(has(&i, GROBO_FIELD_VOLTAGE) ? i.state.voltage_mv / 1e3 : NAN, 2), "age_ms",
         integer_or_null(fresh, fresh ? (long)(i.angle_age_us / 1000) : 0), "status",
         app_json_code(grobo_error_name(i.status)));
+}
+
+json_t *render_joints_json(const conn *c, grobo_joint_mask joints, int64_t now_us)
+{
+    json_t *list = json_array();
+    for (int j = 0; j < model_of(c)->n_joints; j++)
+        if (joints & GROBO_JOINT_BIT(j))
+            json_array_append_new(list, joint_json(c, j, now_us));
+    return list;
 }
 
 static void cell(bool known, int width, int decimals, double value)
