@@ -25,7 +25,7 @@ void plot_scale_text(const plot_scale *scale, double value, const char *unit, ch
 /* "−12.5" and a unit; whole degrees where they are. */
 void plot_degrees(double angle_deg, const char *unit, char *text, size_t capacity);
 
-/* The ticks of both axes in a box, those of the value with their texts; zero: the class of its 0. */
+/* Both axes in a box: their ticks, and the texts of the value's. zero: the class of its 0. */
 void plot_grid(svg *s, const svg_box *box, const plot_scale *time, const plot_scale *value,
                const char *unit, const char *zero);
 /* The texts of a time axis whose low end is at x. */
