@@ -167,7 +167,7 @@ void app_detail(const app *a, const char *format, ...)
     va_end(list);
 }
 
-void app_tell(const app *a, json_t *object, const char *format, ...)
+void app_report(const app *a, json_t *object, const char *format, ...)
 {
     va_list list;
     if (a->json) {
@@ -182,7 +182,7 @@ void app_tell(const app *a, json_t *object, const char *format, ...)
 
 void app_done(const app *a, const char *text)
 {
-    app_tell(a, json_pack("{s:b}", "done", 1), "%s", text);
+    app_report(a, json_pack("{s:b}", "done", 1), "%s", text);
 }
 
 static bool dropped; /* some of standard output */

@@ -62,7 +62,7 @@ int app_fail_trip(app *a, grobo_trip trip, const char *format, ...)
 int app_status_of(int error);
 
 /* A result: with --json the object, else a line as app_note() says it. Takes the reference. */
-void app_tell(const app *a, json_t *object, const char *format, ...)
+void app_report(const app *a, json_t *object, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
 /* Says that a command which moves nothing more is done: {"done": true}, or the text. */

@@ -46,7 +46,7 @@ static bool is_asked(const asked *what, const shell_word *w)
 }
 
 /* Prints the rows, or adds them to a list. Returns how many there are. */
-static int tell_words(const asked *what, json_t *list)
+static int list_words(const asked *what, json_t *list)
 {
     const shell_word *w;
     int n = 0;
@@ -70,7 +70,7 @@ static bool help_word(const app *a, const char *name)
 {
     asked what = {.name = name, .beginning = shell_word_find(name) == NULL};
     json_t *list = a->json ? json_array() : NULL;
-    bool found = *name && tell_words(&what, list) > 0;
+    bool found = *name && list_words(&what, list) > 0;
     if (found && list)
         app_print_json(json_pack("{s:O}", "words", list));
     json_decref(list);
@@ -106,7 +106,7 @@ static void print_json(const app *a, const cli_command *about)
                     : json_pack("{s:o}", "commands", commands_json(about));
     if (a->link && !about && !app_option(a, OPT_MAN)->given) {
         json_t *words = json_array();
-        tell_words(&all_words, words);
+        list_words(&all_words, words);
         json_object_set_new(o, "words", words);
     }
     app_print_json(o);
@@ -118,7 +118,7 @@ static void print_overview(const app *a)
     if (!a->link)
         return;
     app_print("\nLetters and words of this shell:\n");
-    tell_words(&all_words, NULL);
+    list_words(&all_words, NULL);
 }
 
 static int run(app *a)

@@ -18,9 +18,9 @@ static int start(app *a, grobo_stored_kind kind, const char *what)
         if (error)
             status = conn_fail(&c, error, what);
         else
-            app_tell(a, json_pack("{s:i}", what, (int)number),
-                     "%s %d was asked for; the board does not say whether it plays", what,
-                     (int)number);
+            app_report(a, json_pack("{s:i}", what, (int)number),
+                       "%s %d was asked for; the board does not say whether it plays", what,
+                       (int)number);
     }
     return conn_close(&c, status);
 }

@@ -77,8 +77,8 @@ static int push(conn *c, shell *s, double ms)
 static void tell_size(shell *s)
 {
     size_t n = s->record ? grobo_motion_size(s->record) : 0;
-    app_tell(&s->one, json_pack("{s:I}", "postures", (json_int_t)n), "%zu posture%s in the record",
-             n, n == 1 ? "" : "s");
+    app_report(&s->one, json_pack("{s:I}", "postures", (json_int_t)n),
+               "%zu posture%s in the record", n, n == 1 ? "" : "s");
 }
 
 static int do_push(shell *s, int n, char **words)
@@ -166,8 +166,8 @@ static int do_reverse(shell *s, int n, char **words)
     (void)n;
     (void)words;
     s->reverse = !s->reverse;
-    app_tell(&s->one, json_pack("{s:b}", "reverse", s->reverse), "the record plays %s",
-             s->reverse ? "backwards" : "forwards");
+    app_report(&s->one, json_pack("{s:b}", "reverse", s->reverse), "the record plays %s",
+               s->reverse ? "backwards" : "forwards");
     return EXIT_DONE;
 }
 
@@ -184,7 +184,7 @@ static int do_save(shell *s, int n, char **words)
     error = grobo_motion_save_next(s->record, grobo_files_os(), ".", &write, path, sizeof path);
     if (error < 0)
         return app_fail_error(&s->one, EXIT_FILE, error, "%s", words[0]);
-    app_tell(&s->one, json_pack("{s:o}", "output", app_json_text(path)), "saved as %s", path);
+    app_report(&s->one, json_pack("{s:o}", "output", app_json_text(path)), "saved as %s", path);
     return EXIT_DONE;
 }
 
@@ -273,8 +273,8 @@ static int do_time(shell *s, int n, char **words)
 {
     if (n > 1 && !take_ms(words[1], &s->time_ms))
         return usage(s, "'%s' is not a time of 1 to 3600000 ms", words[1]);
-    app_tell(&s->one, json_pack("{s:f}", "time_ms", s->time_ms), "postures and moves take %g ms",
-             s->time_ms);
+    app_report(&s->one, json_pack("{s:f}", "time_ms", s->time_ms), "postures and moves take %g ms",
+               s->time_ms);
     return EXIT_DONE;
 }
 
