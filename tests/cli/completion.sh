@@ -28,14 +28,9 @@ missing() {
 in_manual() {
     sed -n "/^\.Ss $1\$/,/^\.S[sh] /p" "$work/grctl.1"
 }
-in_bash() {
-    sed -n "/^_grctl_command()/,/^}/{/^    $1)\$/,/;;/p}" "$work/complete.bash"
-}
-in_zsh() {
-    sed -n "/^  ($1)\$/,/;;/p" "$work/complete.zsh"
-}
-in_fish() {
-    grep -e "__fish_seen_subcommand_from $1'" "$work/complete.fish"
+# offered WORD...: what may stand in the place of the last word.
+offered() {
+    "$GRCTL" __complete "$@" | cut -f 1
 }
 
 # has_options COMMAND: each option of its help is known to parser, man page and completion.
@@ -49,20 +44,19 @@ has_options() {
             { missing "--$option" "the parser"; return 1; }
         in_manual "$1" | grep -q -e "^\.It.* Fl ..$roff_name\( \|\$\)" ||
             { missing "--$option" "the man page"; return 1; }
-        in_bash "$1" | grep -q -e " --$option[ ']" || { missing "--$option" bash; return 1; }
-        in_zsh "$1" | grep -q -e "--$option[[}]" || { missing "--$option" zsh; return 1; }
-        in_fish "$1" | grep -q -e " -l $option " || { missing "--$option" fish; return 1; }
+        offered "$1" "--$option" | grep -q -x -e "--$option" ||
+            { missing "--$option" completion; return 1; }
         roff=$((roff + 1))
     done <"$work/options"
     [ "$(in_manual "$1" | grep -c '^\.It ')" -eq $roff ] || missing "as many options" "the man page"
 }
 
+offered '' >"$work/offered"
+offered -- >"$work/offered_options"
 while read -r command; do
     check "$command: the parser knows it" exits 0 "$GRCTL" "$command" --help
     check "$command: a section of the man page" grep -q -e "^\.Ss $command\$" "$work/grctl.1"
-    check "$command: zsh" grep -q -e "^    '$command:" "$work/complete.zsh"
-    check "$command: fish" grep -q -e "use_subcommand -a $command " "$work/complete.fish"
-    check "$command: bash" grep -q -e "^_grctl_commands=.*[' ]$command[' ]" "$work/complete.bash"
+    check "$command: completion" grep -q -x -e "$command" "$work/offered"
     check "$command: its options everywhere" has_options "$command"
 done <"$work/commands"
 check "the man page has no other sections" \
@@ -70,9 +64,7 @@ check "the man page has no other sections" \
 while read -r option; do
     roff_name=$(printf '%s' "$option" | sed 's/-/\\\\-/g')
     check "--$option: man page" grep -q -e "^\.It.* Fl ..$roff_name\( \|\$\)" "$work/grctl.1"
-    check "--$option: bash" grep -q -e "^_grctl_global=.* --$option[ ']" "$work/complete.bash"
-    check "--$option: zsh" grep -q -e "--$option[[}]" "$work/complete.zsh"
-    check "--$option: fish" grep -q -e " -l $option " "$work/complete.fish"
+    check "--$option: completion" grep -q -x -e "--$option" "$work/offered_options"
 done <"$work/global"
 
 # quiet COMMAND...: nothing is said.
@@ -98,19 +90,26 @@ fi
 
 # ---- in the shells ---------------------------------------------------------------------------
 
+# The shells look for the command where they are started.
+case $GRCTL in
+/*) grctl=$GRCTL ;;
+*) grctl=$PWD/$GRCTL ;;
+esac
+
 # completes WANT WORD...: bash completes the last word to just that (words, in any order).
 cat >"$work/try.bash" <<'EOF'
 . "$1"
 shift
 COMP_WORDS=("$@")
 COMP_CWORD=$(($# - 1))
-_grctl
+_grctl "$COMMAND"
 echo "${COMPREPLY[@]}"
 EOF
 completes() {
     completes_want=$1
     shift
-    completes_got=$(cd "$work/files" && bash "$work/try.bash" "$work/complete.bash" grctl "$@" 2>&1)
+    completes_got=$(cd "$work/files" &&
+        COMMAND=$grctl bash "$work/try.bash" "$work/complete.bash" grctl "$@" 2>&1)
     [ "$completes_got" = "$completes_want" ] && return
     echo "'$completes_got', not '$completes_want'"
     return 1
@@ -147,19 +146,43 @@ if command -v zsh >/dev/null 2>&1; then
     check "zsh: it registers itself" zsh -f -c '
         autoload -U compinit && compinit -D -u && . "$0" && [[ $_comps[grctl] == _grctl ]]' \
         "$work/complete.zsh"
+    # What zsh would be given: _describe and _files are its own.
+    zsh_completes() {
+        zsh_want=$1
+        shift
+        zsh_got=$(cd "$work/files" && zsh -f -c '
+            compdef() { :; }
+            . "$1"
+            _describe() { (( ! $#found )) || print -l -- ${found%%:*}; }
+            _files() { print files; }
+            shift
+            words=("$@")
+            CURRENT=$#
+            _grctl' zsh "$work/complete.zsh" "$grctl" "$@" | tr '\n' ' ')
+        [ "$zsh_got" = "$zsh_want " ] || { echo "'$zsh_got', not '$zsh_want '"; return 1; }
+    }
+    check "zsh: a command" zsh_completes status stat
+    check "zsh: an option" zsh_completes --speed play --sp
+    check "zsh: choices" zsh_completes 'board bus' --wiring b
+    check "zsh: a joint" zsh_completes R_KNEE_P status R_KN
+    check "zsh: a file" zsh_completes files play w
 else
     skip "completion in zsh" "no zsh here"
 fi
 if command -v fish >/dev/null 2>&1; then
     fish_completes() {
-        fish_got=$(HOME=$work fish -N -c "source $work/complete.fish; complete -C '$1'" |
+        fish_got=$(cd "$work/files" && HOME=$work fish -N -c "source $work/complete.fish
+            function grctl; $grctl \$argv; end
+            complete -C '$1'" |
             cut -f 1 | tr '\n' ' ')
         [ "$fish_got" = "$2 " ] || { echo "'$fish_got', not '$2 '"; return 1; }
     }
     check "fish: a command" fish_completes 'grctl stat' status
     check "fish: an option" fish_completes 'grctl play --sp' --speed
     check "fish: choices" fish_completes 'grctl --wiring b' 'board bus'
+    check "fish: --color=al" fish_completes 'grctl --color=al' --color=always
     check "fish: a joint" fish_completes 'grctl status R_KN' R_KNEE_P
+    check "fish: a file" fish_completes 'grctl play wa' walk.pseq
 else
     skip "completion in fish" "no fish here"
 fi

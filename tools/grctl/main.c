@@ -22,6 +22,10 @@ int main(int argc, char **argv)
     cli_n_commands = sizeof commands / sizeof commands[0];
     if (argc == 2 && strcmp(argv[1], "guard") == 0)
         return guard_main();
+    if (argc > 1 && strcmp(argv[1], "__complete") == 0) { /* by the script of a shell */
+        cli_print_completions(stdout, argc - 2, argv + 2);
+        return EXIT_DONE;
+    }
     guard_note_program(argv[0]);
     setlocale(LC_CTYPE, "");
     return app_finish(&a, run_line(&a, argc, argv, NULL, NULL));

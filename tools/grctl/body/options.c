@@ -12,8 +12,7 @@ bool body_options_given(const app *a, int base)
 
 static int fail(app *a, const char *path, int error)
 {
-    return app_fail(a, EXIT_FILE, grobo_error_name(error), "%s: legs cannot be solved: %s", path,
-                    grobo_error_text(error));
+    return app_fail_error(a, EXIT_FILE, error, "%s: legs cannot be solved", path);
 }
 
 /* What --like names: a file as Choreonoid's window shows it by default; as 1.1 made motions for the

@@ -14,31 +14,21 @@ enum { BODY_LIKE, BODY_IK, BODY_STEP, BODY_ZMP, BODY_BALANCE, BODY_OPTIONS };
  * order of the enums of body.h. How legs are solved, */
 #define BODY_LEG_ROWS(base)                                                                        \
     [(base) +                                                                                      \
-        BODY_LIKE] = {.name = "like",                                                              \
-                      .kind = CLI_CHOICE,                                                          \
-                      .value = "choreonoid|choreonoid-1.1|robot",                                  \
-                      .help = "solve legs as these do; the options below change it"},              \
-        [(base) + BODY_IK] = {.name = "ik",                                                        \
-                              .kind = CLI_CHOICE,                                                  \
-                              .value = "exact|numeric|off",                                        \
-                              .help = "solve legs given by ikLinks (exact), or ignore them"},      \
-        [(base) + BODY_STEP] = {.name = "step",                                                    \
-                                .kind = CLI_CHOICE,                                                \
-                                .value = "none|stealthy",                                          \
-                                .help = "soften lift and landing of feet (none)"},                 \
-        [(base) + BODY_ZMP] = {.name = "zmp",                                                      \
-                               .kind = CLI_CHOICE,                                                 \
-                               .value = "auto|file",                                               \
-                               .help = "source of the desired ZMP (file; auto with a balancer)"}
+        BODY_LIKE] = OPTION_CHOICE("like", 0, "choreonoid|choreonoid-1.1|robot",                   \
+                                   "solve legs as these do; the options below change it"),         \
+        [(base) + BODY_IK] = OPTION_CHOICE("ik", 0, "exact|numeric|off",                           \
+                                           "solve legs given by ikLinks (exact), or ignore them"), \
+        [(base) + BODY_STEP] =                                                                     \
+            OPTION_CHOICE("step", 0, "none|stealthy", "soften lift and landing of feet (none)"),   \
+        [(base) + BODY_ZMP] = OPTION_CHOICE(                                                       \
+            "zmp", 0, "auto|file", "source of the desired ZMP (file; auto with a balancer)")
 
 /* and whether the waist is moved; for play and convert, */
 #define BODY_OPTION_ROWS(base)                                                                     \
     BODY_LEG_ROWS(base),                                                                           \
-        [(base) + BODY_BALANCE] = {                                                                \
-            .name = "balance",                                                                     \
-            .kind = CLI_CHOICE,                                                                    \
-            .value = "off|on|compat11",                                                            \
-            .help = "shift the waist to keep balance (off); compat11 as Choreonoid 1.1"}
+        [(base) + BODY_BALANCE] =                                                                  \
+            OPTION_CHOICE("balance", 0, "off|on|compat11",                                         \
+                          "shift the waist to keep balance (off); compat11 as Choreonoid 1.1")
 
 /* for check and plot, which look at the balance when the option is given, even without a word. */
 #define BODY_LOOK_ROWS(base)                                                                       \
@@ -51,19 +41,8 @@ enum { BODY_LIKE, BODY_IK, BODY_STEP, BODY_ZMP, BODY_BALANCE, BODY_OPTIONS };
 
 /* Beside them, for show and plot: which joints, and the motion as it is sent. */
 #define MOTION_LOOK_ROWS(joints, rate, rate_help)                                                  \
-    [joints] = {.name = "joints",                                                                  \
-                .letter = 'j',                                                                     \
-                .kind = CLI_TEXT,                                                                  \
-                .value = "LIST",                                                                   \
-                .help = "only these joints or groups, split by commas"},                           \
-    [rate] = {.name = "rate",                                                                      \
-              .letter = 'r',                                                                       \
-              .kind = CLI_NUMBER,                                                                  \
-              .value = "HZ",                                                                       \
-              .help = (rate_help),                                                                 \
-              .min = 0.1,                                                                          \
-              .max = 1000,                                                                         \
-              .real = true}
+    [joints] = OPTION_TEXT("joints", 'j', "LIST", "only these joints or groups, split by commas"), \
+    [rate] = OPTION_REAL("rate", 'r', "HZ", 0.1, 1000, rate_help)
 
 /*
  * The options as given, at a rate (0: the default): what --like names, changed by the others. A

@@ -56,16 +56,6 @@ void app_make_one_line(char *text)
             *text = '?';
 }
 
-/* The word of a trip: "low_voltage". */
-static json_t *trip_json(grobo_trip trip)
-{
-    char word[32];
-    snprintf(word, sizeof word, "%s", grobo_trip_name(trip));
-    for (char *c = word; *c; c++)
-        *c = *c == ' ' || *c == '-' ? '_' : *c;
-    return json_string(word);
-}
-
 static int fail(app *a, int status, const char *code, grobo_trip trip, const char *format,
                 va_list list)
 {
@@ -81,11 +71,9 @@ static int fail(app *a, int status, const char *code, grobo_trip trip, const cha
     output_complain("%sgrctl:%s %s\n", a->color_err ? "\033[1;31m" : "",
                     a->color_err ? "\033[0m" : "", text);
     if (a->json) {
-        json_t *error =
-            json_pack("{s:o,s:o}", "code", app_json_code(code), "message", app_json_text(text));
-        if (trip != GROBO_TRIP_NONE)
-            json_object_set_new(error, "trip", trip_json(trip));
-        app_print_json(json_pack("{s:o}", "error", error));
+        json_t *word = trip == GROBO_TRIP_NONE ? NULL : app_json_code(grobo_trip_name(trip));
+        app_print_json(json_pack("{s:{s:o,s:o,s:o*}}", "error", "code", app_json_code(code),
+                                 "message", app_json_text(text), "trip", word));
     }
     return status;
 }
@@ -97,6 +85,16 @@ int app_fail(app *a, int status, const char *code, const char *format, ...)
     status = fail(a, status, code, GROBO_TRIP_NONE, format, list);
     va_end(list);
     return status;
+}
+
+int app_fail_error(app *a, int status, int error, const char *format, ...)
+{
+    char text[APP_LINE_BYTES];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(text, sizeof text, format, list);
+    va_end(list);
+    return app_fail(a, status, grobo_error_name(error), "%s: %s", text, grobo_error_text(error));
 }
 
 int app_fail_trip(app *a, grobo_trip trip, const char *format, ...)
@@ -143,9 +141,11 @@ const char *app_cause_text(int number)
     return strerror(number);
 }
 
-static void say(const char *format, va_list list)
+static void say(const app *a, int least, const char *format, va_list list)
 {
     char text[APP_LINE_BYTES];
+    if (a->verbosity < least)
+        return;
     vsnprintf(text, sizeof text, format, list);
     app_make_one_line(text);
     output_complain("%s\n", text);
@@ -154,29 +154,35 @@ static void say(const char *format, va_list list)
 void app_note(const app *a, const char *format, ...)
 {
     va_list list;
-    if (a->verbosity < 0)
-        return;
     va_start(list, format);
-    say(format, list);
+    say(a, 0, format, list);
     va_end(list);
 }
 
 void app_detail(const app *a, const char *format, ...)
 {
     va_list list;
-    if (a->verbosity < 1)
-        return;
     va_start(list, format);
-    say(format, list);
+    say(a, 1, format, list);
+    va_end(list);
+}
+
+void app_report(const app *a, json_t *object, const char *format, ...)
+{
+    va_list list;
+    if (a->json) {
+        app_print_json(object);
+        return;
+    }
+    json_decref(object);
+    va_start(list, format);
+    say(a, 0, format, list);
     va_end(list);
 }
 
 void app_done(const app *a, const char *text)
 {
-    if (a->json)
-        app_print_json(json_pack("{s:b}", "done", 1));
-    else
-        app_note(a, "%s", text);
+    app_report(a, json_pack("{s:b}", "done", 1), "%s", text);
 }
 
 static bool dropped; /* some of standard output */
@@ -249,8 +255,11 @@ json_t *app_json_code(const char *name)
 {
     char code[32];
     size_t n = 0;
-    for (; name[n] && n < sizeof code; n++)
-        code[n] = (char)(name[n] >= 'A' && name[n] <= 'Z' ? name[n] - 'A' + 'a' : name[n]);
+    for (; name[n] && n < sizeof code; n++) {
+        bool large = name[n] >= 'A' && name[n] <= 'Z'; /* whatever the locale says */
+        bool joins = name[n] == ' ' || name[n] == '-';
+        code[n] = joins ? '_' : (char)(large ? name[n] - 'A' + 'a' : name[n]);
+    }
     return json_stringn(code, n);
 }
 

@@ -52,11 +52,18 @@ double app_number(const app *a, int i, double otherwise);
  */
 int app_fail(app *a, int status, const char *code, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
+/* The same for an error of the library; its text stands behind a colon. */
+int app_fail_error(app *a, int status, int error, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
 /* So where the robot stopped for safety: EXIT_SAFETY; JSON has the trip as a word too. */
 int app_fail_trip(app *a, grobo_trip trip, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 /* The exit status that fits a library error. */
 int app_status_of(int error);
+
+/* A result: with --json the object, else a line as app_note() says it. Takes the reference. */
+void app_report(const app *a, json_t *object, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 
 /* Says that a command which moves nothing more is done: {"done": true}, or the text. */
 void app_done(const app *a, const char *text);
@@ -86,7 +93,7 @@ void app_print(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void app_print_json(json_t *object);
 /* A JSON string of bytes that may be no UTF-8. */
 json_t *app_json_text(const char *text);
-/* A stable word, as every code is spelled: in small letters. */
+/* A stable word, as every code is spelled: in small letters, with _ between words. */
 json_t *app_json_code(const char *name);
 /* A JSON string of what a function prints. */
 json_t *app_json_printed(void (*print)(FILE *to));

@@ -40,6 +40,30 @@ typedef struct cli_option {
     bool optional;   /* the word of a choice may be missing: taken if the next word is one */
 } cli_option;
 
+/* Rows of a table of options; letter 0: none. */
+#define OPTION_FLAG(name_, letter_, help_)                                                         \
+    {                                                                                              \
+        .name = (name_), .letter = (letter_), .kind = CLI_FLAG, .help = (help_)                    \
+    }
+#define OPTION_TEXT(name_, letter_, value_, help_)                                                 \
+    {                                                                                              \
+        .name = (name_), .letter = (letter_), .kind = CLI_TEXT, .value = (value_), .help = (help_) \
+    }
+#define OPTION_CHOICE(name_, letter_, words_, help_)                                               \
+    {                                                                                              \
+        .name = (name_), .letter = (letter_), .kind = CLI_CHOICE, .value = (words_),               \
+        .help = (help_)                                                                            \
+    }
+#define OPTION_NUMBER(name_, letter_, value_, min_, max_, real_, help_)                            \
+    {                                                                                              \
+        .name = (name_), .letter = (letter_), .kind = CLI_NUMBER, .value = (value_),               \
+        .help = (help_), .min = (min_), .max = (max_), .real = (real_)                             \
+    }
+#define OPTION_WHOLE(name, letter, value, min, max, help)                                          \
+    OPTION_NUMBER(name, letter, value, min, max, false, help)
+#define OPTION_REAL(name, letter, value, min, max, help)                                           \
+    OPTION_NUMBER(name, letter, value, min, max, true, help)
+
 typedef struct cli_value {
     int given;        /* how often */
     const char *text; /* as typed */
@@ -56,6 +80,12 @@ typedef enum cli_argument {
     CLI_ARG_WORD,
     CLI_ARG_DEVICE
 } cli_argument;
+
+/* Its arguments: as help has them, how many (-1: any number), and what they are. */
+#define COMMAND_ARGUMENTS(words, least, most, kind)                                                \
+    .arguments = (words), .min_arguments = (least), .max_arguments = (most), .argument = (kind)
+/* A command's table of options. */
+#define COMMAND_OPTIONS(table) .options = (table), .n_options = sizeof(table) / sizeof(table)[0]
 
 struct app;
 typedef struct cli_command {
@@ -135,19 +165,38 @@ bool cli_take_value(const cli_option *option, cli_value *value, const char *text
 /* Reads a whole text as a finite number; false if it is none. Knows no locale. */
 bool cli_read_number(const char *text, double *number);
 
-/* ---- what may stand where: for completion --------------------------------------------------- */
+/* ---- completion ----------------------------------------------------------------------------- */
+
+/* Takes what may stand in the place of a word that begins with `prefix`; help may be "". */
+typedef struct cli_offer {
+    const char *prefix;
+    void (*found)(void *ctx, const char *word, const char *help);
+    void *ctx;
+} cli_offer;
+
+void cli_offer_word(const cli_offer *to, const char *word, const char *help);
+/* Words of that kind; files are the caller's. */
+void cli_offer_kind(const cli_offer *to, cli_argument kind);
+
+/* What is known at the end of a command line that is not complete. */
+typedef struct cli_place {
+    const cli_command *command; /* NULL: none yet */
+    const cli_option *option;   /* that waits for its value, or NULL */
+    int n_arguments;
+    bool unknown; /* the command does not exist */
+} cli_place;
+
+/* Behind these words; where `command` is NULL, the first that is no option names it. */
+cli_place cli_find_place(const cli_command *command, int n, char *const *words);
+
+/* Offers what may stand there. CLI_ARG_FILE and CLI_ARG_DEVICE: a name of a file may, too. */
+cli_argument cli_offer_at(const cli_offer *to, const cli_place *place);
 
 /*
- * Goes through the words of "a|b|c": gives the next one and its length, moves *words behind it.
- * Returns NULL at the end. A text without | is one word.
+ * For a shell of the system: what may stand in the place of the last of the words behind "grctl",
+ * one a line, with a tab and its help; ":files" where it may be the name of a file.
  */
-const char *cli_next_word(const char **words, size_t *length);
-
-/* What the value of an option is, told by its name in the table: FILE, DEV, LIST (of joints). */
-cli_argument cli_option_argument(const cli_option *option);
-
-/* The words that the first argument of a command is one of ("on|off|brake"), or NULL. Of length. */
-const char *cli_first_argument(const cli_command *command, size_t *length);
+void cli_print_completions(FILE *to, int n, char *const *words);
 
 /* ---- texts made from the tables ------------------------------------------------------------- */
 
@@ -155,9 +204,5 @@ void cli_print_overview(FILE *to);
 void cli_print_command(FILE *to, const cli_command *command);
 /* The man page grctl(1), in mdoc. */
 void cli_print_manual(FILE *to);
-/* Completion for a shell. */
-void cli_print_bash(FILE *to);
-void cli_print_zsh(FILE *to);
-void cli_print_fish(FILE *to);
 
 #endif

@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <grobo/files.h>
 #include <grobo/model.h>
 
 #include "tools/grctl/cli/config.h"
@@ -90,21 +89,6 @@ static void put_file(draft *to, const char *text, const config_robot *robot)
     put(to, text + end, strlen(text + end));
 }
 
-/* The file behind a symbolic link is replaced, not the link. */
-static int replace(const char *path, const draft *made)
-{
-    const grobo_files *files = grobo_files_os();
-    grobo_file file;
-    int error = files->create(&file, path, false);
-    if (error)
-        return error;
-    error = files->write(&file, made->text, made->used);
-    if (!error)
-        return files->commit(&file);
-    files->discard(&file);
-    return error;
-}
-
 int config_write_trims(app *a, const config_robot *robot)
 {
     draft made = {.capacity = CONFIG_FILE_MAX_BYTES};
@@ -118,7 +102,7 @@ int config_write_trims(app *a, const config_robot *robot)
     if (!made.text || made.full) {
         status = fail(a, robot->path, made.text ? "too long" : "not enough memory");
     } else {
-        error = replace(robot->path, &made);
+        error = file_save(robot->path, made.text, made.used);
         status = error ? fail(a, robot->path, file_error_text(error)) : EXIT_DONE;
     }
     free(made.text);

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
 
+#include <grobo/files.h>
+
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/os/os.h"
 #include "tools/grctl/os/pipe.h"
@@ -51,12 +53,17 @@ void file_format(const grobo_diagnostic *d, bool with_code, char *text, size_t c
     app_make_one_line(text);
 }
 
-json_t *file_json(const grobo_diagnostic *d)
+json_t *file_json(const grobo_diagnostics *list)
 {
-    return json_pack("{s:o,s:I,s:I,s:s,s:s,s:o}", "file", app_json_text(d->file), "line",
-                     (json_int_t)d->line, "column", (json_int_t)d->column, "severity",
-                     grobo_severity_name(d->severity), "code", d->code, "message",
-                     app_json_text(d->message));
+    json_t *all = json_array();
+    grobo_diagnostic d;
+    for (size_t i = 0; grobo_diagnostics_get(list, i, &d) == 0; i++)
+        json_array_append_new(all,
+                              json_pack("{s:o,s:I,s:I,s:s,s:s,s:o}", "file", app_json_text(d.file),
+                                        "line", (json_int_t)d.line, "column", (json_int_t)d.column,
+                                        "severity", grobo_severity_name(d.severity), "code", d.code,
+                                        "message", app_json_text(d.message)));
+    return all;
 }
 
 void file_say_one(const app *a, const grobo_diagnostic *d)
@@ -115,6 +122,20 @@ int file_read(const char *path, const grobo_read_options *options, grobo_diagnos
                              : grobo_motion_read_file(path, options, list, motion);
     named.name = file_shown_name(path);
     return grobo_motion_read(&source, &named, list, motion);
+}
+
+int file_save(const char *path, const void *bytes, size_t size)
+{
+    const grobo_files *files = grobo_files_os();
+    grobo_file file;
+    int error = files->create(&file, path, false);
+    if (error)
+        return error;
+    error = files->write(&file, bytes, size);
+    if (!error)
+        return files->commit(&file);
+    files->discard(&file);
+    return error;
 }
 
 /* A copy of what the shell has recorded. */

@@ -37,14 +37,17 @@ int file_read(const char *path, const grobo_read_options *options, grobo_diagnos
 int file_load_listed(app *a, const char *path, const grobo_read_options *options,
                      grobo_diagnostics *list, grobo_motion **motion);
 
+/* Replaces a file, or what a symbolic link leads to, once the new one is safely written. */
+int file_save(const char *path, const void *bytes, size_t size);
+
 /* What a file is called in messages: "-" is standard input. */
 const char *file_shown_name(const char *path);
 
 /* One line of a diagnostic: "file:line:column: warning: message [code]". */
 void file_format(const grobo_diagnostic *d, bool with_code, char *text, size_t capacity);
 
-/* A diagnostic as JSON. */
-json_t *file_json(const grobo_diagnostic *d);
+/* Diagnostics as a list of JSON. */
+json_t *file_json(const grobo_diagnostics *list);
 
 /* Words of --from, --to: CLI_CHOICE of these gives the format at choice + 1. */
 #define FILE_FORMATS "m|pseq|mseq|yaml"

@@ -25,14 +25,18 @@ static int unknown(app *a, const char *what, const char *name, size_t length, bo
                     what, (int)length, name);
 }
 
-int joints_parse(app *a, const char *name, grobo_joint_mask *joints)
+int joints_parse_all(app *a, int n, const char *const *names, grobo_joint_mask *joints)
 {
-    size_t length = strlen(name);
-    grobo_joint_mask found;
-    if (grobo_model_find_joints(&grobo_gr001_model, name, length, &found) < 0)
-        return unknown(a, "joint or group", name, length, true);
-    *joints |= found;
-    return 0;
+    int status = 0;
+    *joints = n > 0 ? 0 : GROBO_JOINTS_ALL(grobo_gr001_model.n_joints);
+    for (int i = 0; i < n && !status; i++) {
+        grobo_joint_mask found;
+        if (grobo_model_find_joints(&grobo_gr001_model, names[i], strlen(names[i]), &found) < 0)
+            status = unknown(a, "joint or group", names[i], strlen(names[i]), true);
+        else
+            *joints |= found;
+    }
+    return status;
 }
 
 /* The number behind the j of "j12", or -1. */

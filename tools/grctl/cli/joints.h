@@ -9,11 +9,11 @@
 
 /* The joint, or also the group, whose name is nearest to a mistyped one; NULL: none is near. */
 const char *joints_nearest(const grobo_model *model, const char *name, size_t length, bool groups);
-/* One name of a joint or group; on failure says so and returns the exit status, else 0. */
-int joints_parse(app *a, const char *name, grobo_joint_mask *joints);
+/* Names of joints and groups, none: all; on failure says so and returns the exit status, else 0. */
+int joints_parse_all(app *a, int n, const char *const *names, grobo_joint_mask *joints);
 /*
  * Names split by commas, of a motion's joints: j0, j1 .. always, other names by its model (NULL:
- * none). As joints_parse().
+ * none). As joints_parse_all().
  */
 int joints_parse_motion(app *a, const char *list, const grobo_model *model, int n_joints,
                         grobo_joint_mask *joints);

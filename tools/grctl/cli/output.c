@@ -28,7 +28,7 @@ bool output_flush(void)
     if (out) {
         writer_put(out, stage, staged);
         staged = 0;
-        note_error(writer_error(out));
+        note_error(writer_look(out).error);
         return flush_errno == 0;
     }
     int cause = ferror(stdout) ? EIO : 0; /* a write within printf(), which keeps no reason */
@@ -100,7 +100,7 @@ void output_complain(const char *format, ...)
 
 bool output_is_behind(void)
 {
-    return err && writer_is_behind(err);
+    return err && writer_look(err).behind;
 }
 
 bool output_detach(void)
@@ -125,8 +125,8 @@ output_dropped output_attach(void)
     output_flush();
     writer_drain(out);
     writer_drain(err);
-    note_error(writer_error(out));
-    dropped = (output_dropped){writer_dropped(out), writer_dropped(err)};
+    note_error(writer_look(out).error);
+    dropped = (output_dropped){writer_look(out).dropped, writer_look(err).dropped};
     writer_free(out);
     writer_free(err);
     out = err = NULL;

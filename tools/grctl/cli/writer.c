@@ -182,31 +182,12 @@ void writer_put(writer *w, const void *bytes, size_t size)
     grobo_mutex_unlock(&all.lock);
 }
 
-bool writer_is_behind(const writer *w)
+writer_state writer_look(const writer *w)
 {
-    bool behind;
     grobo_mutex_lock(&all.lock);
-    behind = is_behind(w);
+    writer_state state = {is_behind(w), w->error, w->dropped};
     grobo_mutex_unlock(&all.lock);
-    return behind;
-}
-
-uint64_t writer_dropped(const writer *w)
-{
-    uint64_t dropped;
-    grobo_mutex_lock(&all.lock);
-    dropped = w->dropped;
-    grobo_mutex_unlock(&all.lock);
-    return dropped;
-}
-
-int writer_error(const writer *w)
-{
-    int error;
-    grobo_mutex_lock(&all.lock);
-    error = w->error;
-    grobo_mutex_unlock(&all.lock);
-    return error;
+    return state;
 }
 
 void writer_drain(writer *w)

@@ -24,17 +24,15 @@ typedef struct writer writer;
  */
 writer *writer_new(FILE *to, size_t capacity);
 
-/* Queues a record. Once the file has failed, records vanish: see writer_error(). */
+/* Queues a record. Once the file has failed, records vanish: see writer_look(). */
 void writer_put(writer *w, const void *bytes, size_t size);
 
-/* True while something is queued or being written. */
-bool writer_is_behind(const writer *w);
-
-/* How many records were dropped because the queue was full. */
-uint64_t writer_dropped(const writer *w);
-
-/* errno of the first write that failed, 0 none. */
-int writer_error(const writer *w);
+typedef struct writer_state {
+    bool behind;      /* something is queued or being written */
+    int error;        /* errno of the first write that failed, 0 none */
+    uint64_t dropped; /* records, because the queue was full */
+} writer_state;
+writer_state writer_look(const writer *w);
 
 /* Waits until everything queued is written or the file has failed. */
 void writer_drain(writer *w);

@@ -4,19 +4,13 @@
 
 #include "tools/grctl/cli/app.h"
 #include "tools/grctl/cmd/commands.h"
+#include "tools/grctl/conn/conn.h"
 #include "tools/grctl/conn/wire.h"
 
 enum { OPT_RATE };
 
 static const cli_option options[] = {
-    [OPT_RATE] = {.name = "rate",
-                  .letter = 'r',
-                  .kind = CLI_NUMBER,
-                  .value = "HZ",
-                  .help = "motion frames a second (as play has it)",
-                  .min = 0,
-                  .max = 1000,
-                  .real = true},
+    [OPT_RATE] = OPTION_REAL("rate", 'r', "HZ", 0, 1000, "motion frames a second (as play has it)"),
 };
 
 /* Reads of one kind that fit between two motion frames; between none, those of a second. */
@@ -76,8 +70,7 @@ static int run(app *a)
 {
     grobo_wiring wiring = (grobo_wiring)app_global(a, GLOBAL_WIRING)->choice;
     const grobo_driver *driver = grobo_gr001_driver(wiring);
-    const cli_value *baud = app_global(a, GLOBAL_BAUD);
-    int baud_bps = baud->given ? (int)baud->number : GROBO_BAUD_DEFAULT_BPS;
+    int baud_bps = (int)conn_baud(a);
     double rate_hz;
     grobo_budget line;
     wire_cost costs[WIRE_COSTS];
@@ -85,8 +78,7 @@ static int run(app *a)
     if (!error)
         error = wire_budget(driver, baud_bps, &line);
     if (error)
-        return app_fail(a, EXIT_USAGE, grobo_error_name(error), "budget: %s",
-                        grobo_error_text(error));
+        return app_fail_error(a, EXIT_USAGE, error, "budget");
     rate_hz = app_number(a, OPT_RATE, line.default_hz);
     if (a->json)
         app_print_json(to_json(costs, &line, baud_bps, rate_hz, driver->model->n_joints));
@@ -104,7 +96,6 @@ const cli_command cmd_budget = {
         "how long a motion frame and a reading take, how many frames a second fit, and how\n"
         "often all joints can be read beside them. Touches no port.\n",
     .example = "  grctl budget --rate 20\n  grctl budget --wiring bus -b 460800\n",
-    .options = options,
-    .n_options = sizeof options / sizeof options[0],
+    COMMAND_OPTIONS(options),
     .run = run,
 };

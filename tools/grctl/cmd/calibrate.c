@@ -13,7 +13,7 @@
 enum { OPT_DRY_RUN };
 
 static const cli_option options[] = {
-    [OPT_DRY_RUN] = {.name = "dry-run", .kind = CLI_FLAG, .help = "show the trims, write nothing"},
+    [OPT_DRY_RUN] = OPTION_FLAG("dry-run", 0, "show the trims, write nothing"),
 };
 
 static void show(const app *a, const config_robot *before, const config_robot *after)
@@ -135,7 +135,7 @@ static int run(app *a)
 
 const cli_command cmd_calibrate = {
     .name = "calibrate",
-    .arguments = "[JOINT DEG]",
+    COMMAND_ARGUMENTS("[JOINT DEG]", 0, 2, CLI_ARG_JOINT),
     .summary = "write the trims of a configured robot",
     .details =
         "Switch torque off, put the robot by hand into its initial posture, and run it: what the\n"
@@ -156,9 +156,6 @@ const cli_command cmd_calibrate = {
         "stored.\n",
     .example = "  grctl -d kitchen servo off\n  grctl -d kitchen calibrate\n"
                "  grctl -d kitchen calibrate R_KNEE_P 1.5\n",
-    .options = options,
-    .n_options = sizeof options / sizeof options[0],
-    .max_arguments = 2,
-    .argument = CLI_ARG_JOINT,
+    COMMAND_OPTIONS(options),
     .run = run,
 };

@@ -10,7 +10,7 @@
 enum { OPT_FORCE, OPT_BODY, OPT_BALANCE = OPT_BODY + BODY_BALANCE };
 
 static const cli_option options[] = {
-    [OPT_FORCE] = {.name = "force", .kind = CLI_FLAG, .help = "do not warn of a fall"},
+    [OPT_FORCE] = OPTION_FLAG("force", 0, "do not warn of a fall"),
     BODY_LOOK_ROWS(OPT_BODY),
 };
 
@@ -94,15 +94,6 @@ static void print_text(const app *a, const grobo_diagnostics *list)
     }
 }
 
-static void print_json(const grobo_diagnostics *list, bool ok)
-{
-    json_t *all = json_array();
-    grobo_diagnostic d;
-    for (size_t i = 0; grobo_diagnostics_get(list, i, &d) == 0; i++)
-        json_array_append_new(all, file_json(&d));
-    app_print_json(json_pack("{s:b,s:o}", "ok", ok, "diagnostics", all));
-}
-
 static unsigned how_to_balance(const app *a)
 {
     if (app_option(a, OPT_BALANCE)->given)
@@ -130,7 +121,7 @@ static int run(app *a)
     t.errors = grobo_diagnostics_total(list, GROBO_SEVERITY_ERROR);
     t.warnings = grobo_diagnostics_total(list, GROBO_SEVERITY_WARNING);
     if (a->json)
-        print_json(list, t.errors == 0);
+        app_print_json(json_pack("{s:b,s:o}", "ok", t.errors == 0, "diagnostics", file_json(list)));
     else
         print_text(a, list);
     grobo_diagnostics_free(list);
@@ -144,7 +135,7 @@ static int run(app *a)
 
 const cli_command cmd_check = {
     .name = "check",
-    .arguments = "FILE...",
+    COMMAND_ARGUMENTS("FILE...", 1, -1, CLI_ARG_FILE),
     .summary = "what is wrong with motion files",
     .details =
         "Reads motion files (.m .pseq .mseq .yaml .seq) and says every problem with its\n"
@@ -162,10 +153,6 @@ const cli_command cmd_check = {
         "limit: one warning counts them.\n",
     .example = "  grctl check motions/*\n  grctl check --json walk.pseq\n"
                "  grctl check --balance walk.pseq\n",
-    .options = options,
-    .n_options = sizeof options / sizeof options[0],
-    .min_arguments = 1,
-    .max_arguments = -1,
-    .argument = CLI_ARG_FILE,
+    COMMAND_OPTIONS(options),
     .run = run,
 };

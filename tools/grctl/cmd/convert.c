@@ -11,36 +11,19 @@
 enum { OPT_RATE, OPT_FROM, OPT_TO, OPT_EXACT, OPT_LOSSY, OPT_REPLACE, OPT_INTEGERS, OPT_BODY };
 
 static const cli_option options[] = {
-    [OPT_RATE] = {.name = "rate",
-                  .letter = 'r',
-                  .kind = CLI_NUMBER,
-                  .value = "HZ",
-                  .help = "to yaml: frames per second (50, or the source's own)",
-                  .min = 0.1,
-                  .max = 1000,
-                  .real = true},
-    [OPT_FROM] = {.name = "from",
-                  .kind = CLI_CHOICE,
-                  .value = FILE_FORMATS,
-                  .help = "format of IN, whatever its name says"},
-    [OPT_TO] = {.name = "to",
-                .kind = CLI_CHOICE,
-                .value = FILE_FORMATS,
-                .help = "format of OUT, whatever its name says"},
-    [OPT_EXACT] = {.name = "exact",
-                   .kind = CLI_FLAG,
-                   .help = "write exact angles (m) and times (yaml), which the original and "
-                           "Choreonoid before 2.1 cannot read"},
-    [OPT_LOSSY] = {.name = "lossy",
-                   .kind = CLI_FLAG,
-                   .help = "write OUT also where it does not play what IN plays"},
-    [OPT_REPLACE] = {.name = "replace",
-                     .kind = CLI_FLAG,
-                     .help = "write OUT also where it holds something other than a motion of its "
-                             "format"},
-    [OPT_INTEGERS] = {.name = "integers",
-                      .kind = CLI_FLAG,
-                      .help = "to m: whole ms and 0.1 degrees; the default"},
+    [OPT_RATE] = OPTION_REAL("rate", 'r', "HZ", 0.1, 1000,
+                             "to yaml: frames per second (50, or the source's own)"),
+    [OPT_FROM] = OPTION_CHOICE("from", 0, FILE_FORMATS, "format of IN, whatever its name says"),
+    [OPT_TO] = OPTION_CHOICE("to", 0, FILE_FORMATS, "format of OUT, whatever its name says"),
+    [OPT_EXACT] = OPTION_FLAG("exact", 0,
+                              "write exact angles (m) and times (yaml), which the original and "
+                              "Choreonoid before 2.1 cannot read"),
+    [OPT_LOSSY] = OPTION_FLAG("lossy", 0, "write OUT also where it does not play what IN plays"),
+    [OPT_REPLACE] =
+        OPTION_FLAG("replace", 0,
+                    "write OUT also where it holds something other than a motion of its "
+                    "format"),
+    [OPT_INTEGERS] = OPTION_FLAG("integers", 0, "to m: whole ms and 0.1 degrees; the default"),
     BODY_OPTION_ROWS(OPT_BODY),
 };
 
@@ -74,31 +57,14 @@ static int write_text(void *ctx, const void *data, size_t size)
     return 0;
 }
 
-static int write_error(void)
-{
-    return errno == ENOSPC ? GROBO_ERR_DISK : GROBO_ERR_IO;
-}
-
 static int put_out(const file_text *t, const char *path)
 {
-    const grobo_files *files = grobo_files_os();
-    grobo_file file;
-    int error;
-    if (strcmp(path, "-") == 0) {
-        errno = 0;
-        return fwrite(t->bytes, 1, t->size, stdout) == t->size && fflush(stdout) == 0
-                   ? 0
-                   : write_error();
-    }
-    error = files->create(&file, path, false);
-    if (error)
-        return error;
-    error = files->write(&file, t->bytes, t->size);
-    if (error) {
-        files->discard(&file);
-        return error;
-    }
-    return files->commit(&file);
+    if (strcmp(path, "-") != 0)
+        return file_save(path, t->bytes, t->size);
+    errno = 0;
+    if (fwrite(t->bytes, 1, t->size, stdout) == t->size && fflush(stdout) == 0)
+        return 0;
+    return errno == ENOSPC ? GROBO_ERR_DISK : GROBO_ERR_IO;
 }
 
 /* Reads the text and looks whether it plays what the motion does. 0, or the status. */
@@ -125,7 +91,7 @@ static int verify(app *a, const grobo_motion *motion, const char *path, const fi
             app_fail(a, EXIT_FILE, first.code, "%s; --lossy writes %s all the same", said, path);
     }
     if (lost < 0 && grobo_diagnostics_count(list) == 0)
-        app_fail(a, EXIT_FILE, grobo_error_name(lost), "%s: %s", path, grobo_error_text(lost));
+        app_fail_error(a, EXIT_FILE, lost, "%s", path);
     grobo_motion_free(copy);
     grobo_diagnostics_free(list);
     return lost ? EXIT_FILE : 0;
@@ -158,9 +124,7 @@ static int refuse_out(app *a, const char *out, grobo_motion_format to)
         return app_fail(a, EXIT_FILE, grobo_error_name(error),
                         "%s: holds something other than a .%s motion; --replace writes over it",
                         out, grobo_motion_format_name(to));
-    return error ? app_fail(a, EXIT_FILE, grobo_error_name(error), "%s: %s", out,
-                            grobo_error_text(error))
-                 : 0;
+    return error ? app_fail_error(a, EXIT_FILE, error, "%s", out) : 0;
 }
 
 /* ---- converting ----------------------------------------------------------------------------- */
@@ -210,20 +174,16 @@ static int solve_legs(app *a, const char *path, const grobo_write_options *how,
 static void report(app *a, const grobo_motion *motion, const char *out,
                    const grobo_diagnostics *list)
 {
-    size_t n = grobo_diagnostics_count(list);
+    grobo_diagnostic d;
     if (a->json && strcmp(out, "-") != 0) {
-        json_t *all = json_array();
-        grobo_diagnostic d;
-        for (size_t i = 0; grobo_diagnostics_get(list, i, &d) == 0; i++)
-            json_array_append_new(all, file_json(&d));
         app_print_json(json_pack("{s:o,s:I,s:o}", "file", app_json_text(out), "postures",
-                                 (json_int_t)grobo_motion_size(motion), "diagnostics", all));
+                                 (json_int_t)grobo_motion_size(motion), "diagnostics",
+                                 file_json(list)));
         return;
     }
-    for (size_t i = 0; i < n; i++) { /* what is lost is worth a line even when it is a note */
+    /* what is lost is worth a line even when it is a note */
+    for (size_t i = 0; grobo_diagnostics_get(list, i, &d) == 0; i++) {
         char text[1024];
-        grobo_diagnostic d;
-        grobo_diagnostics_get(list, i, &d);
         file_format(&d, false, text, sizeof text);
         app_note(a, "%s", text);
     }
@@ -276,7 +236,7 @@ static int run(app *a)
 
 const cli_command cmd_convert = {
     .name = "convert",
-    .arguments = "IN OUT",
+    COMMAND_ARGUMENTS("IN OUT", 2, 2, CLI_ARG_FILE),
     .summary = "turn a motion file into another format",
     .details = "Converts between .m, .pseq, .mseq and .yaml (.seq), both ways. The formats follow\n"
                "from the names unless --from or --to say otherwise; - is standard input or\n"
@@ -286,10 +246,6 @@ const cli_command cmd_convert = {
                "a motion of the same format, unless --replace is given.\n",
     .example = "  grctl convert greet.pseq greet.m\n"
                "  grctl convert --rate 50 greet.pseq greet.yaml\n",
-    .options = options,
-    .n_options = sizeof options / sizeof options[0],
-    .min_arguments = 2,
-    .max_arguments = 2,
-    .argument = CLI_ARG_FILE,
+    COMMAND_OPTIONS(options),
     .run = run,
 };

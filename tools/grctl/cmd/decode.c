@@ -157,7 +157,7 @@ static int run(app *a)
 
 const cli_command cmd_decode = {
     .name = "decode",
-    .arguments = "[HEX | FILE]",
+    COMMAND_ARGUMENTS("[HEX | FILE]", 0, -1, CLI_ARG_FILE),
     .summary = "frames in words, from hex or a trace",
     .details =
         "Says what bytes mean: frames of the board, packets to servos and from them, registers by\n"
@@ -171,7 +171,5 @@ const cli_command cmd_decode = {
     .example = "  grctl decode 53 0C FA AF 03 00 1E 04 01 F6 FF 00 00 11\n"
                "  grctl play --dry-run motions/greet.pseq | grctl decode\n"
                "  grctl decode walk.pcapng\n",
-    .max_arguments = -1,
-    .argument = CLI_ARG_FILE,
     .run = run,
 };

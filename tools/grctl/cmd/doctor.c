@@ -33,12 +33,6 @@ static bool is_path(const char *device)
 
 /* ---- the line -------------------------------------------------------------------------------- */
 
-static int baud_of(const app *a)
-{
-    const cli_value *baud = app_global(a, GLOBAL_BAUD);
-    return baud->given ? (int)baud->number : GROBO_BAUD_DEFAULT_BPS;
-}
-
 /* Opens the line and asks; what is said of it is in `said`. True: somebody answered. */
 static bool ask(patient *p, char *said)
 {
@@ -46,7 +40,7 @@ static bool ask(patient *p, char *said)
     bool ok;
     a->hushed = said;
     ok = conn_open(&p->c, a) == EXIT_DONE &&
-         servos_wait(&p->c, baud_of(a), READ_BYTES, SERVOS_PATIENT_US, 0, NULL) == GROBO_OK;
+         servos_wait(&p->c, (int)conn_baud(a), READ_BYTES, SERVOS_PATIENT_US, 0, NULL) == GROBO_OK;
     if (!ok)
         conn_close(&p->c, EXIT_DONE);
     a->hushed = NULL;
@@ -88,7 +82,7 @@ static bool check_reply(patient *p, const char *device)
 {
     app *a = p->k.a;
     char said[APP_LINE_BYTES] = "", fix[FIX_BYTES];
-    int asked_bps = baud_of(a), found_bps;
+    int asked_bps = (int)conn_baud(a), found_bps;
     int wiring = app_global(a, GLOBAL_WIRING)->choice;
     if (ask(p, said)) {
         checkup_found(&p->k, "reply", NULL, "the %s answers at %d bps",

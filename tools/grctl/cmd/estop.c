@@ -27,9 +27,7 @@ enum { AGAIN_US = 20000, SILENT_US = 3000000, HEARD_US = 12000000 };
 enum { ROBOTS = 8 };
 
 static const cli_option estop_options[] = {
-    [OPT_RESET] = {.name = "reset",
-                   .kind = CLI_FLAG,
-                   .help = "clear the emergency stop; nothing moves"},
+    [OPT_RESET] = OPTION_FLAG("reset", 0, "clear the emergency stop; nothing moves"),
 };
 
 /* A device that is to be stopped. */
@@ -364,8 +362,7 @@ const cli_command cmd_estop = {
         "A mistake on the command line, a bad configuration and a trace that cannot be written\n"
         "are reported after the stop, with their exit status. Signals wait for it.\n",
     .example = "  grctl estop\n  grctl estop --reset\n",
-    .options = estop_options,
-    .n_options = sizeof estop_options / sizeof estop_options[0],
+    COMMAND_OPTIONS(estop_options),
     .stops = true,
     .run = run_estop,
 };

@@ -9,17 +9,14 @@
 enum { OPT_MAN };
 
 static const cli_option options[] = {
-    [OPT_MAN] = {.name = "man", .kind = CLI_FLAG, .help = "print the man page grctl(1), as mdoc"},
+    [OPT_MAN] = OPTION_FLAG("man", 0, "print the man page grctl(1), as mdoc"),
 };
 
 static json_t *option_json(const cli_option *o)
 {
-    json_t *object = json_pack("{s:s,s:s}", "name", o->name, "help", o->help);
-    if (o->letter)
-        json_object_set_new(object, "letter", json_stringn(&o->letter, 1));
-    if (o->kind != CLI_FLAG)
-        json_object_set_new(object, "value", json_string(o->value));
-    return object;
+    return json_pack("{s:s,s:s,s:o*,s:o*}", "name", o->name, "help", o->help, "letter",
+                     o->letter ? json_stringn(&o->letter, 1) : NULL, "value",
+                     o->kind == CLI_FLAG ? NULL : json_string(o->value));
 }
 
 static json_t *command_json(const cli_command *command)
@@ -48,47 +45,36 @@ static bool is_asked(const asked *what, const shell_word *w)
     return *what->name && (strcmp(w->letter, what->name) == 0 || strcmp(w->word, what->name) == 0);
 }
 
-static void print_words(const asked *what)
+/* Prints the rows, or adds them to a list. Returns how many there are. */
+static int list_words(const asked *what, json_t *list)
 {
     const shell_word *w;
-    for (size_t i = 0; (w = shell_word_row(i)) != NULL; i++)
-        if (is_asked(what, w))
-            app_print("  %-2s %s%s%s\n      %s\n", w->letter, w->word,
-                      *w->word && *w->arguments ? " " : "", w->arguments, w->help);
-}
-
-static json_t *words_json(const asked *what)
-{
-    json_t *list = json_array();
-    const shell_word *w;
-    for (size_t i = 0; (w = shell_word_row(i)) != NULL; i++)
-        if (is_asked(what, w))
+    int n = 0;
+    for (size_t i = 0; (w = shell_word_row(i)) != NULL; i++) {
+        if (!is_asked(what, w))
+            continue;
+        n++;
+        if (list)
             json_array_append_new(list,
                                   json_pack("{s:s,s:s,s:s,s:s}", "letter", w->letter, "word",
                                             w->word, "arguments", w->arguments, "help", w->help));
-    return list;
-}
-
-static bool knows_words(const asked *what)
-{
-    const shell_word *w;
-    for (size_t i = 0; (w = shell_word_row(i)) != NULL; i++)
-        if (is_asked(what, w))
-            return true;
-    return false;
+        else
+            app_print("  %-2s %s%s%s\n      %s\n", w->letter, w->word,
+                      *w->word && *w->arguments ? " " : "", w->arguments, w->help);
+    }
+    return n;
 }
 
 /* Help on a letter or word, in a shell. False: it is none. */
 static bool help_word(const app *a, const char *name)
 {
     asked what = {.name = name, .beginning = shell_word_find(name) == NULL};
-    if (!*name || !knows_words(&what))
-        return false;
-    if (a->json)
-        app_print_json(json_pack("{s:o}", "words", words_json(&what)));
-    else
-        print_words(&what);
-    return true;
+    json_t *list = a->json ? json_array() : NULL;
+    bool found = *name && list_words(&what, list) > 0;
+    if (found && list)
+        app_print_json(json_pack("{s:O}", "words", list));
+    json_decref(list);
+    return found;
 }
 
 /* ---- help ----------------------------------------------------------------------------------- */
@@ -118,8 +104,11 @@ static void print_json(const app *a, const cli_command *about)
     json_t *o = app_option(a, OPT_MAN)->given
                     ? json_pack("{s:o}", "manual", app_json_printed(cli_print_manual))
                     : json_pack("{s:o}", "commands", commands_json(about));
-    if (a->link && !about && !app_option(a, OPT_MAN)->given)
-        json_object_set_new(o, "words", words_json(&all_words));
+    if (a->link && !about && !app_option(a, OPT_MAN)->given) {
+        json_t *words = json_array();
+        list_words(&all_words, words);
+        json_object_set_new(o, "words", words);
+    }
     app_print_json(o);
 }
 
@@ -129,7 +118,7 @@ static void print_overview(const app *a)
     if (!a->link)
         return;
     app_print("\nLetters and words of this shell:\n");
-    print_words(&all_words);
+    list_words(&all_words, NULL);
 }
 
 static int run(app *a)
@@ -153,14 +142,11 @@ static int run(app *a)
 
 const cli_command cmd_help = {
     .name = "help",
-    .arguments = "[COMMAND]",
+    COMMAND_ARGUMENTS("[COMMAND]", 0, 1, CLI_ARG_COMMAND),
     .summary = "what grctl can do, or what a command does",
     .details = "Prints the list of commands, or everything about one of them. In a shell it knows\n"
                "the letters and words of the shell too, also by their first letters.\n",
     .example = "  grctl help play\n  grctl help --man | man -l -\n",
-    .options = options,
-    .n_options = sizeof options / sizeof options[0],
-    .max_arguments = 1,
-    .argument = CLI_ARG_COMMAND,
+    COMMAND_OPTIONS(options),
     .run = run,
 };

@@ -52,16 +52,11 @@ static json_t *joint_json(const grobo_model *model, int joint)
 static int run(app *a)
 {
     const grobo_model *model = &grobo_gr001_model;
-    grobo_joint_mask joints = 0;
-    json_t *list;
-    for (int i = 0; i < a->line.n_arguments; i++) {
-        int status = joints_parse(a, a->line.argument[i], &joints);
-        if (status)
-            return status;
-    }
-    if (!a->line.n_arguments)
-        joints = GROBO_JOINTS_ALL(model->n_joints);
-    list = a->json ? json_array() : NULL;
+    grobo_joint_mask joints;
+    int status = joints_parse_all(a, a->line.n_arguments, a->line.argument, &joints);
+    if (status)
+        return status;
+    json_t *list = a->json ? json_array() : NULL;
     if (!list)
         app_print("name          joint  motor     id   min   max  init  groups\n");
     for (int j = 0; j < model->n_joints; j++) {
@@ -79,7 +74,7 @@ static int run(app *a)
 
 const cli_command cmd_joints = {
     .name = "joints",
-    .arguments = "[JOINT|GROUP]...",
+    COMMAND_ARGUMENTS("[JOINT|GROUP]...", 0, -1, CLI_ARG_JOINT),
     .summary = "list joints: names, motors, servo ids, limits, groups",
     .details = "Prints the robot's joints, or those named: the three names that a command takes\n"
                "(R_KNEE_P, j3, m9), the servo's id on the bus, the limits and the initial posture\n"
@@ -87,7 +82,5 @@ const cli_command cmd_joints = {
                "that of the robot's model: no robot is asked, and trims of a configured robot are\n"
                "not in it.\n",
     .example = "  grctl joints\n  grctl joints right_arm --json\n",
-    .max_arguments = -1,
-    .argument = CLI_ARG_JOINT,
     .run = run,
 };

@@ -335,20 +335,16 @@ static bool is_over(conn *c)
 /* Until somebody quits. Returns why it ended otherwise, or 0. */
 static int watch(monitor *m)
 {
-    struct timeval period = {0, DRAW_US};
-    struct event *tick = event_new(m->c.base, -1, EV_PERSIST, on_draw, m);
+    struct event *tick = conn_every(&m->c, DRAW_US, on_draw, m);
     struct event *input = event_new(m->c.base, STDIN_FILENO, EV_READ | EV_PERSIST, on_input, m);
     int error = tick && input ? GROBO_OK : GROBO_ERR_NOMEM;
     if (!error) {
-        event_add(tick, &period);
         event_add(input, NULL);
         monitor_draw(m);
         error = conn_wait_until(&m->c, is_over);
     }
-    if (tick)
-        event_free(tick);
-    if (input)
-        event_free(input);
+    conn_forget(tick);
+    conn_forget(input);
     return error;
 }
 
@@ -432,7 +428,7 @@ static int run(app *a)
 
 const cli_command cmd_monitor = {
     .name = "monitor",
-    .arguments = "[FILE]...",
+    COMMAND_ARGUMENTS("[FILE]...", 0, -1, CLI_ARG_FILE),
     .summary = "full-screen live view, with keys",
     .details =
         "Shows all joints between their limits, their torque, temperature and current, the\n"
@@ -448,7 +444,5 @@ const cli_command cmd_monitor = {
         "\n"
         "Without a terminal that can show it (or with --json) it is 'status --watch'.\n",
     .example = "  grctl monitor\n  grctl -d sim monitor motions/greet.pseq\n",
-    .max_arguments = -1,
-    .argument = CLI_ARG_FILE,
     .run = run,
 };

@@ -12,23 +12,13 @@ enum { OPT_TIME };
 enum { MOVE_MS = 1000, INIT_MS = 2000, LONGEST_MS = 163830 };
 
 static const cli_option init_options[] = {
-    [OPT_TIME] = {.name = "time",
-                  .letter = 't',
-                  .kind = CLI_NUMBER,
-                  .value = "MS",
-                  .help = "time to get there; more where that is safer (2000)",
-                  .min = 0,
-                  .max = LONGEST_MS},
+    [OPT_TIME] = OPTION_WHOLE("time", 't', "MS", 0, LONGEST_MS,
+                              "time to get there; more where that is safer (2000)"),
 };
 
 static const cli_option pose_options[] = {
-    [OPT_TIME] = {.name = "time",
-                  .letter = 't',
-                  .kind = CLI_NUMBER,
-                  .value = "MS",
-                  .help = "time to get there; more where that is safer (1000)",
-                  .min = 0,
-                  .max = LONGEST_MS},
+    [OPT_TIME] = OPTION_WHOLE("time", 't', "MS", 0, LONGEST_MS,
+                              "time to get there; more where that is safer (1000)"),
 };
 
 static void report(const conn *c, const grobo_posture *target)
@@ -36,12 +26,8 @@ static void report(const conn *c, const grobo_posture *target)
     int joint;
     double worst = render_worst_error(c, &joint);
     if (c->a->json) {
-        json_t *list = json_array();
-        for (int j = 0; j < target->n_joints; j++)
-            if (target->set & GROBO_JOINT_BIT(j))
-                json_array_append_new(list, render_joint_json(c, j));
-        app_print_json(json_pack("{s:o,s:o}", "joints", list, "max_error_deg",
-                                 joint < 0 ? json_null() : app_json_number(worst, 2)));
+        app_print_json(json_pack("{s:o,s:o}", "joints", render_joints_json(c, target->set),
+                                 "max_error_deg", app_json_number(joint < 0 ? NAN : worst, 2)));
     } else if (joint >= 0) {
         app_note(c->a, "there; largest error %.1f deg (%s)", worst,
                  grobo_robot_driver(c->robot)->model->joints[joint].name);
@@ -204,7 +190,7 @@ static int run_pose(app *a)
 
 const cli_command cmd_pose = {
     .name = "pose",
-    .arguments = "DEG x20 | JOINT=DEG... | @FILE[:N]",
+    COMMAND_ARGUMENTS("DEG x20 | JOINT=DEG... | @FILE[:N]", 1, -1, CLI_ARG_JOINT),
     .summary = "move many joints at once",
     .details = "Moves all joints (20 angles in the order of the motors 1..20, as a line of a .m\n"
                "file has them), those named, or to posture N of a motion file (the first). All\n"
@@ -212,11 +198,7 @@ const cli_command cmd_pose = {
                "exit status 4, and nothing moves.\n",
     .example = "  grctl pose R_ELBOW_P=-45 L_ELBOW_P=45\n"
                "  grctl pose --time 3000 @motions/greet.pseq:2\n",
-    .options = pose_options,
-    .n_options = sizeof pose_options / sizeof pose_options[0],
-    .min_arguments = 1,
-    .max_arguments = -1,
-    .argument = CLI_ARG_JOINT,
+    COMMAND_OPTIONS(pose_options),
     .run = run_pose,
 };
 
@@ -227,21 +209,17 @@ const cli_command cmd_init = {
     .details = "Switches torque on where it is off, goes to the initial posture and reads back\n"
                "where the joints are. The first move from an unknown posture is slow.\n",
     .example = "  grctl init\n  grctl init --time 5000\n",
-    .options = init_options,
-    .n_options = sizeof init_options / sizeof init_options[0],
+    COMMAND_OPTIONS(init_options),
     .run = run_init,
 };
 
 const cli_command cmd_move = {
     .name = "move",
-    .arguments = "JOINT DEG [MS]",
+    COMMAND_ARGUMENTS("JOINT DEG [MS]", 2, 3, CLI_ARG_JOINT),
     .summary = "move one joint",
     .details = "Moves one joint to an angle, in the time given (1000 ms) or as much longer as the\n"
                "servo needs, and reads back where it is. Torque comes on where it is off. An\n"
                "angle outside the joint's limits is refused with exit status 4.\n",
     .example = "  grctl move R_KNEE_P -40\n  grctl move m2 15 500\n",
-    .min_arguments = 2,
-    .max_arguments = 3,
-    .argument = CLI_ARG_JOINT,
     .run = run_move,
 };

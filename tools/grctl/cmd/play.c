@@ -12,56 +12,21 @@
 #include "tools/grctl/show/render.h"
 
 static const cli_option options[PLAY_OPTIONS] = {
-    [PLAY_REPEAT] = {.name = "repeat",
-                     .letter = 'n',
-                     .kind = CLI_NUMBER,
-                     .value = "N",
-                     .help = "play N times",
-                     .min = 1,
-                     .max = 1000000},
-    [PLAY_REVERSE] = {.name = "reverse",
-                      .letter = 'r',
-                      .kind = CLI_FLAG,
-                      .help = "from the end to the beginning"},
-    [PLAY_MIRROR] = {.name = "mirror", .letter = 'm', .kind = CLI_FLAG, .help = "left for right"},
-    [PLAY_SPEED] = {.name = "speed",
-                    .letter = 's',
-                    .kind = CLI_NUMBER,
-                    .value = "PCT",
-                    .help = "speed in percent (100)",
-                    .min = 1,
-                    .max = GROBO_PLAY_SPEED_MAX_PCT},
-    [PLAY_FROM] = {.name = "from",
-                   .letter = 'f',
-                   .kind = CLI_NUMBER,
-                   .value = "MS",
-                   .help = "begin so far into the first file",
-                   .min = 0,
-                   .max = 1e9,
-                   .real = true},
-    [PLAY_RATE] = {.name = "rate",
-                   .kind = CLI_NUMBER,
-                   .value = "HZ",
-                   .help = "interpolate, so many frames a second (pseq and yaml)",
-                   .min = 1,
-                   .max = GROBO_PLAY_RATE_MAX_HZ},
-    [PLAY_KEY] = {.name = "key",
-                  .letter = 'k',
-                  .kind = CLI_FLAG,
-                  .help = "one frame a key pose, the servos interpolate (m and mseq)"},
-    [PLAY_CLAMP] = {.name = "clamp",
-                    .kind = CLI_FLAG,
-                    .help = "play angles outside a joint's limits at the limit"},
-    [PLAY_UNWATCHED] = {.name = "unwatched",
-                        .kind = CLI_FLAG,
-                        .help = "allow a rate at which joints cannot be read"},
-    [PLAY_FORCE] = {.name = "force", .kind = CLI_FLAG, .help = "do not warn of a fall"},
-    [PLAY_DRY_RUN] = {.name = "dry-run",
-                      .kind = CLI_FLAG,
-                      .help = "print 'time_ms hex' a frame; touch no port"},
-    [PLAY_TABLE] = {.name = "table",
-                    .kind = CLI_FLAG,
-                    .help = "at the end, target, reached and error of every joint"},
+    [PLAY_REPEAT] = OPTION_WHOLE("repeat", 'n', "N", 1, 1000000, "play N times"),
+    [PLAY_REVERSE] = OPTION_FLAG("reverse", 'r', "from the end to the beginning"),
+    [PLAY_MIRROR] = OPTION_FLAG("mirror", 'm', "left for right"),
+    [PLAY_SPEED] =
+        OPTION_WHOLE("speed", 's', "PCT", 1, GROBO_PLAY_SPEED_MAX_PCT, "speed in percent (100)"),
+    [PLAY_FROM] = OPTION_REAL("from", 'f', "MS", 0, 1e9, "begin so far into the first file"),
+    [PLAY_RATE] = OPTION_WHOLE("rate", 0, "HZ", 1, GROBO_PLAY_RATE_MAX_HZ,
+                               "interpolate, so many frames a second (pseq and yaml)"),
+    [PLAY_KEY] =
+        OPTION_FLAG("key", 'k', "one frame a key pose, the servos interpolate (m and mseq)"),
+    [PLAY_CLAMP] = OPTION_FLAG("clamp", 0, "play angles outside a joint's limits at the limit"),
+    [PLAY_UNWATCHED] = OPTION_FLAG("unwatched", 0, "allow a rate at which joints cannot be read"),
+    [PLAY_FORCE] = OPTION_FLAG("force", 0, "do not warn of a fall"),
+    [PLAY_DRY_RUN] = OPTION_FLAG("dry-run", 0, "print 'time_ms hex' a frame; touch no port"),
+    [PLAY_TABLE] = OPTION_FLAG("table", 0, "at the end, target, reached and error of every joint"),
     BODY_OPTION_ROWS(PLAY_BODY),
 };
 
@@ -78,7 +43,6 @@ typedef struct show {
     progress bar;
     keys input;
     play_keys keys;
-    struct event *tick;
     int ticks;
     bool started, over, unwatched;
     int error;           /* why it failed, 0: it did not */
@@ -268,18 +232,13 @@ static int start(conn *c, show *s)
 /* Shows how it goes, and takes keys, until it is over. */
 static int watch_it(conn *c, show *s)
 {
-    struct timeval period = {0, TICK_US};
-    int error;
     progress_start(&s->bar, c->a);
     s->keys = (play_keys){.c = c, .speed_pct = (int)app_number(c->a, PLAY_SPEED, 100)};
     if (keys_start(&s->input, c->base, false, on_key, c) && s->bar.shown)
         app_note(c->a, "space: pause   + -: speed   s: stop   e: EMERGENCY STOP");
-    s->tick = event_new(c->base, -1, EV_PERSIST, on_tick, c);
-    if (s->tick)
-        event_add(s->tick, &period);
-    error = conn_wait_until(c, is_over);
-    if (s->tick)
-        event_free(s->tick);
+    struct event *tick = conn_every(c, TICK_US, on_tick, c);
+    int error = conn_wait_until(c, is_over);
+    conn_forget(tick);
     keys_stop(&s->input);
     progress_clear(&s->bar);
     return error;
@@ -363,7 +322,7 @@ static int run(app *a)
 
 const cli_command cmd_play = {
     .name = "play",
-    .arguments = "FILE...",
+    COMMAND_ARGUMENTS("FILE...", 1, -1, CLI_ARG_FILE),
     .summary = "play motion files",
     .details =
         "Plays .m, .pseq, .mseq, .yaml and .seq files, one after the other. Every file is\n"
@@ -387,8 +346,5 @@ const cli_command cmd_play = {
                "  grctl play --dry-run --key greet.pseq | head\n",
     .options = options,
     .n_options = PLAY_OPTIONS,
-    .min_arguments = 1,
-    .max_arguments = -1,
-    .argument = CLI_ARG_FILE,
     .run = run,
 };

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include <math.h>
 #include <string.h>
 
 #include "tools/grctl/body/options.h"
@@ -12,11 +13,8 @@
 enum { OPT_OUT, OPT_JOINTS, OPT_RATE, OPT_BODY, OPT_BALANCE = OPT_BODY + BODY_BALANCE };
 
 static const cli_option options[] = {
-    [OPT_OUT] = {.name = "output",
-                 .letter = 'o',
-                 .kind = CLI_TEXT,
-                 .value = "OUT",
-                 .help = "OUT.svg, OUT.png, or - for SVG to standard output"},
+    [OPT_OUT] =
+        OPTION_TEXT("output", 'o', "OUT", "OUT.svg, OUT.png, or - for SVG to standard output"),
     MOTION_LOOK_ROWS(OPT_JOINTS, OPT_RATE, "draw what is sent at this rate, straight between"),
     BODY_LOOK_ROWS(OPT_BODY),
 };
@@ -92,57 +90,56 @@ static json_t *spans_json(const plot_curve *curve)
     return all;
 }
 
+static json_t *degrees_json(double angle_rad)
+{
+    return app_json_number(grobo_deg_from_rad(angle_rad), 3);
+}
+
 static json_t *joint_json(const plot_curve *curve)
 {
+    const grobo_joint *limits = curve->limits;
     json_t *o = json_pack("{s:i,s:s}", "joint", curve->joint, "name", curve->name);
-    if (curve->limits) {
-        json_object_set_new(o, "motor", json_integer(curve->limits->motor));
-        json_object_set_new(
-            o, "limits_deg",
-            json_pack("[o,o]", app_json_number(grobo_deg_from_rad(curve->limits->min_rad), 3),
-                      app_json_number(grobo_deg_from_rad(curve->limits->max_rad), 3)));
-        json_object_set_new(o, "limit_dps",
-                            app_json_number(grobo_deg_from_rad(curve->limits->max_speed_rad_s), 3));
-    }
-    json_object_set_new(o, "min_deg",
-                        curve->set ? app_json_number(curve->min_deg, 3) : json_null());
-    json_object_set_new(o, "max_deg",
-                        curve->set ? app_json_number(curve->max_deg, 3) : json_null());
-    json_object_set_new(o, "peak_dps",
-                        curve->set ? app_json_number(curve->peak_speed_dps, 1) : json_null());
-    json_object_set_new(o, "beyond_limits", json_boolean(plot_beyond(curve)));
-    json_object_set_new(o, "too_fast_ms", spans_json(curve));
+    json_t *limited = !limits
+                          ? NULL
+                          : json_pack("{s:i,s:[o,o],s:o}", "motor", limits->motor, "limits_deg",
+                                      degrees_json(limits->min_rad), degrees_json(limits->max_rad),
+                                      "limit_dps", degrees_json(limits->max_speed_rad_s));
+    json_t *seen = json_pack("{s:o,s:o,s:o,s:b,s:o}", "min_deg",
+                             app_json_number(curve->set ? curve->min_deg : NAN, 3), "max_deg",
+                             app_json_number(curve->set ? curve->max_deg : NAN, 3), "peak_dps",
+                             app_json_number(curve->set ? curve->peak_speed_dps : NAN, 1),
+                             "beyond_limits", plot_beyond(curve), "too_fast_ms", spans_json(curve));
+    json_object_update(o, limited);
+    json_object_update(o, seen);
+    json_decref(limited);
+    json_decref(seen);
     return o;
 }
 
 static json_t *balance_json(const plot_balance *b)
 {
-    json_t *o = json_pack("{s:b,s:b,s:i}", "stands_always", b->stands_always, "assumed", b->assumed,
-                          "problems", b->n_problems);
-    if (b->stands_ever) {
-        json_object_set_new(o, "margin_mm", app_json_number(b->points[b->worst].margin_m * 1e3, 2));
-        json_object_set_new(o, "at_ms", app_json_number(b->points[b->worst].t_s * 1e3, 3));
-    }
-    return o;
+    const plot_balance_point *worst = b->stands_ever ? &b->points[b->worst] : NULL;
+    return json_pack("{s:b,s:b,s:i,s:o*,s:o*}", "stands_always", b->stands_always, "assumed",
+                     b->assumed, "problems", b->n_problems, "margin_mm",
+                     worst ? app_json_number(worst->margin_m * 1e3, 2) : NULL, "at_ms",
+                     worst ? app_json_number(worst->t_s * 1e3, 3) : NULL);
 }
 
 static void report(const app *a, const order *o, const plot_data *data)
 {
-    json_t *joints, *all;
     if (!a->json) {
         if (strcmp(o->out, "-") != 0)
             app_note(a, "wrote %s", o->out);
         return;
     }
-    joints = json_array();
+    json_t *joints = json_array();
     for (int i = 0; i < data->n_curves; i++)
         json_array_append_new(joints, joint_json(&data->curves[i]));
-    all = json_pack("{s:o,s:o,s:I,s:o,s:o}", "file", app_json_text(o->in), "output",
-                    app_json_text(o->out), "postures", (json_int_t)plot_keys(data), "length_ms",
-                    app_json_number(data->length_s * 1e3, 3), "joints", joints);
-    if (data->of.balance)
-        json_object_set_new(all, "balance", balance_json(data->of.balance));
-    app_print_json(all);
+    app_print_json(json_pack("{s:o,s:o,s:I,s:o,s:o,s:o*}", "file", app_json_text(o->in), "output",
+                             app_json_text(o->out), "postures", (json_int_t)plot_keys(data),
+                             "length_ms", app_json_number(data->length_s * 1e3, 3), "joints",
+                             joints, "balance",
+                             data->of.balance ? balance_json(data->of.balance) : NULL));
 }
 
 /* What a picture needs besides the motion. */
@@ -237,7 +234,7 @@ static int run(app *a)
 
 const cli_command cmd_plot = {
     .name = "plot",
-    .arguments = "FILE",
+    COMMAND_ARGUMENTS("FILE", 1, 1, CLI_ARG_FILE),
     .summary = "a picture of a motion file: angle over time",
     .details =
         "Draws every joint of a motion over time, as it is played: key poses by Choreonoid's\n"
@@ -252,10 +249,6 @@ const cli_command cmd_plot = {
     .example = "  grctl plot motions/greet.pseq\n"
                "  grctl plot -o greet.png -j right_arm,NECK_Y motions/greet.pseq\n"
                "  grctl plot --balance -o step.svg motions/step.pseq\n",
-    .options = options,
-    .n_options = sizeof options / sizeof options[0],
-    .min_arguments = 1,
-    .max_arguments = 1,
-    .argument = CLI_ARG_FILE,
+    COMMAND_OPTIONS(options),
     .run = run,
 };

@@ -4,40 +4,32 @@
 #include "tools/grctl/cli/app.h"
 #include "tools/grctl/cmd/commands.h"
 
+/* NULL is null. */
 static json_t *text_or_null(const char *text)
 {
-    return *text ? app_json_text(text) : json_null();
+    return *text ? app_json_text(text) : NULL;
 }
 
 static json_t *port_json(const grobo_port_info *info)
 {
-    json_t *port =
-        json_pack("{s:o,s:o,s:o,s:o,s:o,s:o}", "path", app_json_text(info->path), "by_id",
-                  text_or_null(info->by_id), "driver", text_or_null(info->driver), "manufacturer",
-                  text_or_null(info->manufacturer), "product", text_or_null(info->product),
-                  "serial_number", text_or_null(info->serial_number));
-    if (info->usb_vendor >= 0) {
-        char ids[16];
-        snprintf(ids, sizeof ids, "%04x:%04x", (unsigned)info->usb_vendor & 0xffff,
+    bool usable = info->open_result == GROBO_OK;
+    char usb_id[16] = "";
+    json_t *owner = NULL;
+    if (info->usb_vendor >= 0)
+        snprintf(usb_id, sizeof usb_id, "%04x:%04x", (unsigned)info->usb_vendor & 0xffff,
                  (unsigned)info->usb_product & 0xffff);
-        json_object_set_new(port, "usb_id", json_string(ids));
-    } else {
-        json_object_set_new(port, "usb_id", json_null());
-    }
-    json_object_set_new(port, "latency_ms",
-                        info->latency_ms >= 0 ? json_integer(info->latency_ms) : json_null());
-    json_object_set_new(port, "owner",
-                        info->owner_pid ? json_pack("{s:i,s:o}", "pid", info->owner_pid, "name",
-                                                    app_json_text(info->owner_name))
-                                        : json_null());
-    json_object_set_new(port, "console", json_boolean(info->console));
-    json_object_set_new(port, "bluetooth", json_boolean(info->bluetooth));
-    json_object_set_new(port, "usable", json_boolean(info->open_result == GROBO_OK));
-    json_object_set_new(port, "reason",
-                        info->open_result == GROBO_OK
-                            ? json_null()
-                            : app_json_code(grobo_error_name(info->open_result)));
-    return port;
+    if (info->owner_pid)
+        owner =
+            json_pack("{s:i,s:o}", "pid", info->owner_pid, "name", app_json_text(info->owner_name));
+    return json_pack("{s:o,s:o?,s:o?,s:o?,s:o?,s:o?,s:o?,s:o?,s:o?,s:b,s:b,s:b,s:o?}", "path",
+                     app_json_text(info->path), "by_id", text_or_null(info->by_id), "driver",
+                     text_or_null(info->driver), "manufacturer", text_or_null(info->manufacturer),
+                     "product", text_or_null(info->product), "serial_number",
+                     text_or_null(info->serial_number), "usb_id", text_or_null(usb_id),
+                     "latency_ms", info->latency_ms >= 0 ? json_integer(info->latency_ms) : NULL,
+                     "owner", owner, "console", info->console, "bluetooth", info->bluetooth,
+                     "usable", usable, "reason",
+                     usable ? NULL : app_json_code(grobo_error_name(info->open_result)));
 }
 
 static void print_port(const grobo_port_info *info)
@@ -79,8 +71,7 @@ static int run(app *a)
     int n = grobo_port_list(visit, list);
     if (n < 0) {
         json_decref(list);
-        return app_fail(a, EXIT_ROBOT, grobo_error_name(n), "cannot list serial ports: %s",
-                        grobo_error_text(n));
+        return app_fail_error(a, EXIT_ROBOT, n, "cannot list serial ports");
     }
     if (a->json)
         app_print_json(json_pack("{s:o}", "ports", list));

@@ -29,41 +29,15 @@ enum { KEY_MS = 1000, PAUSE_US = 1000000, LIVE_US = 100000, KEYS_MAX = 32 };
 static const double seed_rate_hz = 4, seed_moved_deg = 10;
 
 static const cli_option options[] = {
-    [OPT_OUT] = {.name = "out",
-                 .letter = 'o',
-                 .kind = CLI_TEXT,
-                 .value = "FILE",
-                 .help = ".m, .pseq, .mseq or .yaml (the first free MotionN.m)"},
-    [OPT_TIME] = {.name = "time",
-                  .letter = 't',
-                  .kind = CLI_NUMBER,
-                  .value = "MS",
-                  .help = "time to reach a posture kept by a key press (1000)",
-                  .min = 10,
-                  .max = 9990},
-    [OPT_RATE] = {.name = "rate",
-                  .letter = 'r',
-                  .kind = CLI_NUMBER,
-                  .value = "HZ",
-                  .help = "look so many times a second (4)",
-                  .min = 0.1,
-                  .max = 50,
-                  .real = true},
-    [OPT_KEY] = {.name = "key",
-                 .letter = 'k',
-                 .kind = CLI_FLAG,
-                 .help = "a posture a key press: space"},
-    [OPT_MOVED] = {.name = "moved",
-                   .letter = 'm',
-                   .kind = CLI_NUMBER,
-                   .value = "DEG",
-                   .help = "keep a posture when a joint moved by so much (10); 0: every one",
-                   .min = 0,
-                   .max = 180,
-                   .real = true},
-    [OPT_LIMP] = {.name = "limp",
-                  .kind = CLI_FLAG,
-                  .help = "switch torque off; the default where it is off"},
+    [OPT_OUT] =
+        OPTION_TEXT("out", 'o', "FILE", ".m, .pseq, .mseq or .yaml (the first free MotionN.m)"),
+    [OPT_TIME] = OPTION_WHOLE("time", 't', "MS", 10, 9990,
+                              "time to reach a posture kept by a key press (1000)"),
+    [OPT_RATE] = OPTION_REAL("rate", 'r', "HZ", 0.1, 50, "look so many times a second (4)"),
+    [OPT_KEY] = OPTION_FLAG("key", 'k', "a posture a key press: space"),
+    [OPT_MOVED] = OPTION_REAL("moved", 'm', "DEG", 0, 180,
+                              "keep a posture when a joint moved by so much (10); 0: every one"),
+    [OPT_LIMP] = OPTION_FLAG("limp", 0, "switch torque off; the default where it is off"),
 };
 
 typedef struct recorder {
@@ -314,22 +288,6 @@ static int play_kept(recorder *r)
 
 /* ---- what comes from the loop ---------------------------------------------------------------- */
 
-static void on_look(evutil_socket_t fd, short what, void *ctx)
-{
-    recorder *r = ctx;
-    (void)fd;
-    (void)what;
-    r->look_is_due = true;
-}
-
-static void on_live(evutil_socket_t fd, short what, void *ctx)
-{
-    recorder *r = ctx;
-    (void)fd;
-    (void)what;
-    r->live_is_due = true;
-}
-
 /* While it plays, keys are for that. A key too many is lost: nobody has pressed it. */
 static void on_key(void *ctx, int key)
 {
@@ -395,15 +353,6 @@ static int mind(recorder *r)
             error = r->n_keys > 0 ? take_key(r) : take_time(r);
     }
     return error;
-}
-
-static struct event *every(recorder *r, int64_t period_us, event_callback_fn fn)
-{
-    struct timeval period = {(int)(period_us / 1000000), (int)(period_us % 1000000)};
-    struct event *timer = event_new(r->c.base, -1, EV_PERSIST, fn, r);
-    if (timer)
-        event_add(timer, &period);
-    return timer;
 }
 
 /* ---- from the beginning to the end ----------------------------------------------------------- */
@@ -483,18 +432,15 @@ static int teach(recorder *r)
     progress_start(&r->line, c->a);
     if (!r->by_key) {
         double rate_hz = app_number(c->a, OPT_RATE, seed_rate_hz);
-        r->look = every(r, (int64_t)(1e6 / rate_hz), on_look);
+        r->look = conn_every(c, (int64_t)(1e6 / rate_hz), conn_note, &r->look_is_due);
     }
-    r->live = every(r, LIVE_US, on_live);
+    r->live = conn_every(c, LIVE_US, conn_note, &r->live_is_due);
     if (!error)
         error = mind(r);
     keys_stop(&r->input);
     progress_clear(&r->line);
-    for (int i = 0; i < 2; i++) {
-        struct event *timer = i ? r->live : r->look;
-        if (timer)
-            event_free(timer);
-    }
+    conn_forget(r->look);
+    conn_forget(r->live);
     if (!error && r->held) /* out of the hands: they hold where they are */
         error = conn_wait(c, grobo_robot_free(grobo_session_robot(c->session), r->held, false));
     return error;
@@ -575,7 +521,6 @@ static int record(recorder *r)
 static int prepare(recorder *r, app *a)
 {
     const char *out = app_option(a, OPT_OUT)->text;
-    int status = 0;
     r->by_key = r->teaches || app_option(a, OPT_KEY)->given > 0;
     r->moved_deg = r->teaches ? 0 : app_number(a, OPT_MOVED, seed_moved_deg);
     r->last_moved = -1;
@@ -583,17 +528,13 @@ static int prepare(recorder *r, app *a)
         return app_fail(a, EXIT_USAGE, "ARG",
                         "%s: -o %s: its name tells no format; .m, .pseq, .mseq or .yaml",
                         name_of(r), out);
-    for (int i = 0; i < a->line.n_arguments && !status; i++)
-        status = joints_parse(a, a->line.argument[i], &r->joints);
+    int status = joints_parse_all(a, a->line.n_arguments, a->line.argument, &r->joints);
     if (!status)
         status = try_to_write(a);
     if (status)
         return status;
-    if (!r->joints)
-        r->joints = GROBO_JOINTS_ALL(grobo_gr001_model.n_joints);
     if (grobo_motion_new(&r->motion, GROBO_MOTION_POSTURES, grobo_gr001_model.n_joints, NULL) < 0)
-        return app_fail(a, EXIT_ROBOT, "NOMEM", "%s: %s", name_of(r),
-                        grobo_error_text(GROBO_ERR_NOMEM));
+        return app_fail_error(a, EXIT_ROBOT, GROBO_ERR_NOMEM, "%s", name_of(r));
     return 0;
 }
 
@@ -630,7 +571,7 @@ static int run_teach(app *a)
 
 const cli_command cmd_record = {
     .name = "record",
-    .arguments = "[JOINT|GROUP]...",
+    COMMAND_ARGUMENTS("[JOINT|GROUP]...", 0, -1, CLI_ARG_JOINT),
     .summary = "record a motion that a hand shows",
     .details =
         "All joints, or those named, give way to a hand that turns them and hold when it lets go.\n"
@@ -653,16 +594,13 @@ const cli_command cmd_record = {
         "\n" ENDS_HELP,
     .example = "  grctl record\n  grctl record --key -o wave.pseq right_arm\n"
                "  grctl record --limp arms\n",
-    .options = options,
-    .n_options = sizeof options / sizeof options[0],
-    .max_arguments = -1,
-    .argument = CLI_ARG_JOINT,
+    COMMAND_OPTIONS(options),
     .run = run_record,
 };
 
 const cli_command cmd_teach = {
     .name = "teach",
-    .arguments = "[JOINT|GROUP]...",
+    COMMAND_ARGUMENTS("[JOINT|GROUP]...", 0, -1, CLI_ARG_JOINT),
     .summary = "record postures of limp joints, and play them at once",
     .details =
         "Switches the torque of all joints, or of those named, off: hold the robot, an arm falls.\n"
@@ -681,7 +619,5 @@ const cli_command cmd_teach = {
     .example = "  grctl teach\n  grctl teach -o wave.pseq right_arm\n",
     .options = options,
     .n_options = TEACH_OPTIONS,
-    .max_arguments = -1,
-    .argument = CLI_ARG_JOINT,
     .run = run_teach,
 };

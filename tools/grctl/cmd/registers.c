@@ -11,9 +11,7 @@
 enum { OPT_FLASH };
 
 static const cli_option set_options[] = {
-    [OPT_FLASH] = {.name = "flash",
-                   .kind = CLI_FLAG,
-                   .help = "keep it over power-off too; takes a second"},
+    [OPT_FLASH] = OPTION_FLAG("flash", 0, "keep it over power-off too; takes a second"),
 };
 
 static const grobo_rs30x_register *find_register(app *a, const char *name, int *status)
@@ -182,11 +180,9 @@ static void report(const conn *c, int id, const change *what, int32_t before, in
     if (baud_bps && !what->flash && baud_bps != grobo_rs30x_baud_bps((uint8_t)what->value))
         kept = "; takes effect at a restart, and is lost there without --flash";
     if (c->a->json) {
-        json_t *o = json_pack("{s:i,s:s,s:i,s:i,s:b}", "id", id, "name", what->reg->name, "before",
-                              before, "value", what->value, "flash", what->flash);
-        if (baud_bps)
-            json_object_set_new(o, "baud_bps", json_integer(baud_bps));
-        app_print_json(o);
+        app_print_json(json_pack("{s:i,s:s,s:i,s:i,s:b,s:o*}", "id", id, "name", what->reg->name,
+                                 "before", before, "value", what->value, "flash", what->flash,
+                                 "baud_bps", baud_bps ? json_integer(baud_bps) : NULL));
     } else {
         app_note(c->a, "servo %d: %s%s%s", id, text, kept, where);
     }
@@ -430,21 +426,18 @@ static int run_set(app *a)
 
 const cli_command cmd_servo_get = {
     .name = "servo-get",
-    .arguments = "ID [KEY]",
+    COMMAND_ARGUMENTS("ID [KEY]", 1, 2, CLI_ARG_JOINT),
     .summary = "read a servo's registers by name",
     .details =
         "Prints every register of a servo, or one: address, name, value as it is stored and\n"
         "what that means. ID is the servo's id or the name of a joint.\n",
     .example = "  grctl servo-get 12\n  grctl servo-get R_KNEE_P delay\n",
-    .min_arguments = 1,
-    .max_arguments = 2,
-    .argument = CLI_ARG_JOINT,
     .run = run_get,
 };
 
 const cli_command cmd_servo_set = {
     .name = "servo-set",
-    .arguments = "ID KEY VALUE",
+    COMMAND_ARGUMENTS("ID KEY VALUE", 3, 3, CLI_ARG_JOINT),
     .summary = "write a servo's register by name",
     .details =
         "Writes one register and reads it back. The value is what the register stores (see\n"
@@ -459,10 +452,6 @@ const cli_command cmd_servo_set = {
         "-b then reaches it. Without --flash the servo goes on at the old rate and forgets the\n"
         "new one when it restarts.\n",
     .example = "  grctl servo-set 12 delay 2 --flash\n  grctl servo-set 1 id 21\n",
-    .options = set_options,
-    .n_options = sizeof set_options / sizeof set_options[0],
-    .min_arguments = 3,
-    .max_arguments = 3,
-    .argument = CLI_ARG_JOINT,
+    COMMAND_OPTIONS(set_options),
     .run = run_set,
 };

@@ -50,7 +50,7 @@ static int run(app *a)
 
 const cli_command cmd_replay = {
     .name = "replay",
-    .arguments = "TRACE",
+    COMMAND_ARGUMENTS("TRACE", 1, 1, CLI_ARG_FILE),
     .summary = "run a trace again and compare the replies",
     .details =
         "Sends what the host said in a trace of --trace, at the same times, and compares the\n"
@@ -63,8 +63,5 @@ const cli_command cmd_replay = {
         "(settings, flash, stored motions) is refused before anything is sent.\n",
     .example = "  grctl -d sim --trace walk.pcapng play motions/greet.pseq\n"
                "  grctl replay walk.pcapng\n",
-    .min_arguments = 1,
-    .max_arguments = 1,
-    .argument = CLI_ARG_FILE,
     .run = run,
 };

@@ -15,21 +15,10 @@ enum { IDENTITY_BYTES = 3, FEW = 4 }; /* No.0-1 model, No.2 firmware */
 enum { LOOKS_MAX = 4, LISTEN_US = 150000, LISTEN_MAX_US = 2000000 };
 
 static const cli_option options[] = {
-    [OPT_ALL_BAUD] = {.name = "all-baud",
-                      .kind = CLI_FLAG,
-                      .help = "at every baud rate that servos know (with --wiring bus)"},
-    [OPT_FIRST] = {.name = "first",
-                   .kind = CLI_NUMBER,
-                   .value = "ID",
-                   .help = "begin with this id (1)",
-                   .min = 1,
-                   .max = GROBO_SERVO_ID_MAX},
-    [OPT_LAST] = {.name = "last",
-                  .kind = CLI_NUMBER,
-                  .value = "ID",
-                  .help = "end with this id (127)",
-                  .min = 1,
-                  .max = GROBO_SERVO_ID_MAX},
+    [OPT_ALL_BAUD] =
+        OPTION_FLAG("all-baud", 0, "at every baud rate that servos know (with --wiring bus)"),
+    [OPT_FIRST] = OPTION_WHOLE("first", 0, "ID", 1, GROBO_SERVO_ID_MAX, "begin with this id (1)"),
+    [OPT_LAST] = OPTION_WHOLE("last", 0, "ID", 1, GROBO_SERVO_ID_MAX, "end with this id (127)"),
 };
 
 typedef struct found {
@@ -47,48 +36,39 @@ static const char *model_name(const uint8_t *identity)
     return name ? name : "unknown model";
 }
 
-/* A servo's id, and the joint that it moves on GR001. */
-static json_t *servo_json(int id)
-{
-    int joint = grobo_model_joint_of_motor(&grobo_gr001_model, id);
-    if (joint < 0)
-        return json_pack("{s:i,s:n,s:n}", "id", id, "joint", "name");
-    return json_pack("{s:i,s:i,s:s}", "id", id, "joint", joint, "name",
-                     grobo_gr001_model.joints[joint].name);
-}
-
-/* The name of the joint that this id moves on GR001, "" for none. */
+/* The name of the joint that this id moves on GR001, NULL for none. */
 static const char *joint_name(int id)
 {
     int joint = grobo_model_joint_of_motor(&grobo_gr001_model, id);
-    return joint < 0 ? "" : grobo_gr001_model.joints[joint].name;
+    return joint < 0 ? NULL : grobo_gr001_model.joints[joint].name;
+}
+
+/* One that answers with its identity, or (NULL) wrongly, or not at all where it should. */
+static json_t *servo_json(int id, int baud_bps, const uint8_t *identity, int error)
+{
+    int joint = grobo_model_joint_of_motor(&grobo_gr001_model, id);
+    return json_pack("{s:i,s:o?,s:s?,s:o*,s:o*,s:i,s:o*}", "id", id, "joint",
+                     joint < 0 ? NULL : json_integer(joint), "name", joint_name(id), "model",
+                     identity ? json_string(model_name(identity)) : NULL, "firmware",
+                     identity ? json_integer(identity[2]) : NULL, "baud_bps", baud_bps, "status",
+                     identity ? NULL : app_json_code(grobo_error_name(error)));
 }
 
 static void report(found *f, int id, int baud_bps, const uint8_t *identity)
 {
+    const char *name = joint_name(id);
     f->n++;
-    if (f->list) {
-        json_t *o = servo_json(id);
-        json_object_set_new(o, "model", json_string(model_name(identity)));
-        json_object_set_new(o, "firmware", json_integer(identity[2]));
-        json_object_set_new(o, "baud_bps", json_integer(baud_bps));
-        json_array_append_new(f->list, o);
-    } else {
+    if (f->list)
+        json_array_append_new(f->list, servo_json(id, baud_bps, identity, 0));
+    else
         app_print("%3d  %-8s  firmware %3d  %6d bps  %s\n", id, model_name(identity), identity[2],
-                  baud_bps, joint_name(id));
-    }
+                  baud_bps, name ? name : "");
 }
 
-/* An id that answers wrongly, or not at all where it should. */
 static void report_failed(found *f, int id, int baud_bps, int error)
 {
-    json_t *o;
-    if (!f->failed)
-        return;
-    o = servo_json(id);
-    json_object_set_new(o, "baud_bps", json_integer(baud_bps));
-    json_object_set_new(o, "status", app_json_code(grobo_error_name(error)));
-    json_array_append_new(f->failed, o);
+    if (f->failed)
+        json_array_append_new(f->failed, servo_json(id, baud_bps, NULL, error));
 }
 
 /* ---- what comes ------------------------------------------------------------------------------ */
@@ -339,15 +319,13 @@ static int scan_all_bauds(conn *c, found *f)
 
 static int scan(conn *c)
 {
-    const cli_value *baud = app_global(c->a, GLOBAL_BAUD);
-    int baud_bps = baud->given ? (int)baud->number : GROBO_BAUD_DEFAULT_BPS;
     bool all = app_option(c->a, OPT_ALL_BAUD)->given > 0;
     found f = {.list = c->a->json ? json_array() : NULL,
                .failed = c->a->json ? json_array() : NULL};
     int error;
     f.n_rates = all ? GROBO_RS30X_BAUD_CODE_MAX + 1 : 1;
     progress_start(&f.bar, c->a);
-    error = all ? scan_all_bauds(c, &f) : scan_ids(c, &f, baud_bps);
+    error = all ? scan_all_bauds(c, &f) : scan_ids(c, &f, (int)conn_baud(c->a));
     if (error) {
         json_decref(f.list);
         json_decref(f.failed);
@@ -397,9 +375,7 @@ static int info(conn *c)
     bool board = app_global(c->a, GLOBAL_WIRING)->choice == 0;
     found f = {.list = c->a->json ? json_array() : NULL,
                .failed = c->a->json ? json_array() : NULL};
-    const cli_value *baud = app_global(c->a, GLOBAL_BAUD);
-    int baud_bps = baud->given ? (int)baud->number : GROBO_BAUD_DEFAULT_BPS;
-    int silent = 0;
+    int baud_bps = (int)conn_baud(c->a), silent = 0;
     if (!c->a->json)
         app_print("%s on %s, %s\n", model->name, conn_device(c),
                   board ? "through its board, which answers" : "servos straight on the bus");
@@ -445,8 +421,7 @@ const cli_command cmd_scan = {
                "patience. --timeout MS gives each more time. Exit status 1 if none answers, or if\n"
                "it is not sure who does. Nothing moves.\n",
     .example = "  grctl scan --last 20\n  grctl scan --wiring bus --all-baud\n",
-    .options = options,
-    .n_options = sizeof options / sizeof options[0],
+    COMMAND_OPTIONS(options),
     .run = run_scan,
 };
 

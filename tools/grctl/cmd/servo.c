@@ -53,18 +53,14 @@ static int switch_torque(conn *c, grobo_joint_mask joints, grobo_torque mode, co
 static int run(app *a)
 {
     conn c;
-    grobo_joint_mask joints = 0;
+    grobo_joint_mask joints;
     grobo_torque mode;
     const char *word = a->line.argument[0];
-    int status = 0;
     if (!parse_mode(word, &mode))
         return app_fail(a, EXIT_USAGE, "ARG", "servo: '%s' is none of on, off, brake", word);
-    for (int i = 1; i < a->line.n_arguments && !status; i++)
-        status = joints_parse(a, a->line.argument[i], &joints);
+    int status = joints_parse_all(a, a->line.n_arguments - 1, a->line.argument + 1, &joints);
     if (status)
         return status;
-    if (!joints)
-        joints = GROBO_JOINTS_ALL(grobo_gr001_model.n_joints);
     status = mode == GROBO_TORQUE_ON ? conn_open_to_move(&c, a) : conn_open(&c, a);
     if (!status)
         status = switch_torque(&c, joints, mode, word);
@@ -73,14 +69,11 @@ static int run(app *a)
 
 const cli_command cmd_servo = {
     .name = "servo",
-    .arguments = "on|off|brake [JOINT|GROUP]...",
+    COMMAND_ARGUMENTS("on|off|brake [JOINT|GROUP]...", 1, -1, CLI_ARG_JOINT),
     .summary = "switch torque",
     .details = "Switches the torque of all joints, or of those named, and reads it back. Before\n"
                "torque comes on, each joint's target is set to where the joint is: nothing jumps.\n"
                "Hold the robot when you switch it off: it falls.\n",
     .example = "  grctl servo on\n  grctl servo off right_arm\n  grctl servo brake legs\n",
-    .min_arguments = 1,
-    .max_arguments = -1,
-    .argument = CLI_ARG_JOINT,
     .run = run,
 };

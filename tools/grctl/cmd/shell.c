@@ -13,10 +13,8 @@
 enum { OPT_KEEP_GOING };
 
 static const cli_option options[] = {
-    [OPT_KEEP_GOING] = {.name = "keep-going",
-                        .letter = 'k',
-                        .kind = CLI_FLAG,
-                        .help = "go on behind a command that fails; its exit status stays"},
+    [OPT_KEEP_GOING] =
+        OPTION_FLAG("keep-going", 'k', "go on behind a command that fails; its exit status stays"),
 };
 
 /* While no command has the robot, a signal is only noted: it ends the shell, or a script. */
@@ -137,7 +135,7 @@ static int run_prompt(shell *s)
     line_reader *reader = line_open(&owner);
     int status = EXIT_DONE, n;
     if (!reader)
-        return app_fail(s->a, EXIT_ROBOT, "NOMEM", "shell: %s", grobo_error_text(GROBO_ERR_NOMEM));
+        return app_fail_error(s->a, EXIT_ROBOT, GROBO_ERR_NOMEM, "shell");
     while (!ends(s, status)) {
         conn_link_idle(&s->link, s->a);
         output_stream(); /* what was printed stands before the prompt */
@@ -196,7 +194,7 @@ static int run(app *a)
     a->moves = true;
     guard_start(a, conn_requested(a));
     if (conn_link_init(&s.link) != GROBO_OK)
-        status = app_fail(a, EXIT_ROBOT, "NOMEM", "shell: %s", grobo_error_text(GROBO_ERR_NOMEM));
+        status = app_fail_error(a, EXIT_ROBOT, GROBO_ERR_NOMEM, "shell");
     else
         status = run_shell(&s);
     status = conn_link_close(&s.link, a, status);
@@ -207,14 +205,11 @@ static int run(app *a)
 
 const cli_command cmd_shell = {
     .name = "shell",
-    .arguments = "[FILE]",
+    COMMAND_ARGUMENTS("[FILE]", 0, 1, CLI_ARG_FILE),
     .summary = "many commands over one connection, typed or from a script",
     .details = shell_details,
     .example = "  grctl shell\n  printf 'init\\nm R_ELBOW_P -45\\n' | grctl -d sim shell\n"
                "  grctl shell -k morning.txt\n",
-    .options = options,
-    .n_options = sizeof options / sizeof options[0],
-    .max_arguments = 1,
-    .argument = CLI_ARG_FILE,
+    COMMAND_OPTIONS(options),
     .run = run,
 };

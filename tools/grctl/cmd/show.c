@@ -201,7 +201,7 @@ static int run(app *a)
 
 const cli_command cmd_show = {
     .name = "show",
-    .arguments = "FILE",
+    COMMAND_ARGUMENTS("FILE", 1, 1, CLI_ARG_FILE),
     .summary = "a motion file as a table of angles",
     .details = "Prints every posture of a motion file: its time in milliseconds and the angles of\n"
                "its joints in degrees; a dot for a joint that the posture leaves alone. On a\n"
@@ -212,10 +212,6 @@ const cli_command cmd_show = {
                "initial posture.\n",
     .example = "  grctl show motions/greet.pseq\n  grctl show -j right_arm,NECK_Y greet.pseq\n"
                "  grctl show --rate 10 --ik exact -j legs motions/step.pseq\n",
-    .options = options,
-    .n_options = sizeof options / sizeof options[0],
-    .min_arguments = 1,
-    .max_arguments = 1,
-    .argument = CLI_ARG_FILE,
+    COMMAND_OPTIONS(options),
     .run = run,
 };

@@ -33,69 +33,36 @@ enum {
 enum { ROBOTS_MAX = 16 };
 
 static const cli_option options[] = {
-    [OPT_LINK] = {.name = "link",
-                  .letter = 'l',
-                  .kind = CLI_TEXT,
-                  .value = "PATH",
-                  .help = "keep a symbolic link to the pty; PATH2, PATH3... of more robots"},
-    [OPT_TCP] = {.name = "tcp",
-                 .kind = CLI_NUMBER,
-                 .value = "PORT",
-                 .help = "listen on 127.0.0.1 too; 0: any port; the next ones for more robots",
-                 .min = 0,
-                 .max = 65535},
-    [OPT_SERVO] = {.name = "servo",
-                   .kind = CLI_TEXT,
-                   .value = "ID=TYPE,...",
-                   .help = "simulate these servos, on a bus, instead of GR001: RS301CR RS302CD "
-                           "RS303MR RS304MD"},
-    [OPT_NO_STOPS] = {.name = "no-stops",
-                      .kind = CLI_FLAG,
-                      .help = "shafts meet no mechanical stops"},
-    [OPT_NO_PACING] = {.name = "no-pacing",
-                       .kind = CLI_FLAG,
-                       .help = "bytes take no time on the wire"},
-    [OPT_LATENCY] = {.name = "latency",
-                     .kind = CLI_NUMBER,
-                     .value = "MS",
-                     .help = "bytes wait so long for others, as in an adapter (0; FTDI: 16)",
-                     .min = 0,
-                     .max = 255},
-    [OPT_ROBOTS] = {.name = "robots",
-                    .letter = 'n',
-                    .kind = CLI_NUMBER,
-                    .value = "N",
-                    .help = "so many robots, each behind a pty of its own (1)",
-                    .min = 1,
-                    .max = ROBOTS_MAX},
-    [OPT_SEED] = {.name = "seed",
-                  .kind = CLI_NUMBER,
-                  .value = "N",
-                  .help = "of everything random",
-                  .min = 0,
-                  .max = 4294967295.0},
-    [OPT_START] = {.name = "start",
-                   .kind = CLI_CHOICE,
-                   .value = "init|zero|limp",
-                   .help = "where the joints are at power-up; limp: anywhere (init)"},
-    [OPT_FAULT] = {.name = "fault",
-                   .kind = CLI_TEXT,
-                   .value = "LIST",
-                   .help = "KIND=RATE,...: drop flip duplicate delay split rubbish silent dupid "
-                           "hangup brownout, or all; rates 0 to 1"},
-    [OPT_STRICT] = {.name = "strict",
-                    .kind = CLI_FLAG,
-                    .help = "report each offence of a client against the protocol; then the exit "
-                            "status is 3, else 0"},
-    [OPT_STATE] = {.name = "state",
-                   .kind = CLI_TEXT,
-                   .value = "FILE",
-                   .help = "keep the servos' flash in FILE from one simulator to the next; FILE2, "
-                           "FILE3... of more robots"},
-    [OPT_BAUD_AT_ONCE] = {.name = "baud-at-once",
-                          .kind = CLI_FLAG,
-                          .help = "servos change their baud rate when it is written, not when "
-                                  "they restart"},
+    [OPT_LINK] = OPTION_TEXT("link", 'l', "PATH",
+                             "keep a symbolic link to the pty; PATH2, PATH3... of more robots"),
+    [OPT_TCP] = OPTION_WHOLE("tcp", 0, "PORT", 0, 65535,
+                             "listen on 127.0.0.1 too; 0: any port; the next ones for more robots"),
+    [OPT_SERVO] = OPTION_TEXT("servo", 0, "ID=TYPE,...",
+                              "simulate these servos, on a bus, instead of GR001: RS301CR RS302CD "
+                              "RS303MR RS304MD"),
+    [OPT_NO_STOPS] = OPTION_FLAG("no-stops", 0, "shafts meet no mechanical stops"),
+    [OPT_NO_PACING] = OPTION_FLAG("no-pacing", 0, "bytes take no time on the wire"),
+    [OPT_LATENCY] = OPTION_WHOLE("latency", 0, "MS", 0, 255,
+                                 "bytes wait so long for others, as in an adapter (0; FTDI: 16)"),
+    [OPT_ROBOTS] = OPTION_WHOLE("robots", 'n', "N", 1, ROBOTS_MAX,
+                                "so many robots, each behind a pty of its own (1)"),
+    [OPT_SEED] = OPTION_WHOLE("seed", 0, "N", 0, 4294967295.0, "of everything random"),
+    [OPT_START] = OPTION_CHOICE("start", 0, "init|zero|limp",
+                                "where the joints are at power-up; limp: anywhere (init)"),
+    [OPT_FAULT] = OPTION_TEXT("fault", 0, "LIST",
+                              "KIND=RATE,...: drop flip duplicate delay split rubbish silent dupid "
+                              "hangup brownout, or all; rates 0 to 1"),
+    [OPT_STRICT] =
+        OPTION_FLAG("strict", 0,
+                    "report each offence of a client against the protocol; then the exit "
+                    "status is 3, else 0"),
+    [OPT_STATE] =
+        OPTION_TEXT("state", 0, "FILE",
+                    "keep the servos' flash in FILE from one simulator to the next; FILE2, "
+                    "FILE3... of more robots"),
+    [OPT_BAUD_AT_ONCE] = OPTION_FLAG("baud-at-once", 0,
+                                     "servos change their baud rate when it is written, not when "
+                                     "they restart"),
 };
 
 /* What goes with a robot. */
@@ -286,10 +253,9 @@ static bool announce(const farm *f)
     json_t *list = json_array();
     for (int i = 0; i < f->n; i++) {
         int port = grobo_sim_server_tcp_port(f->server[i]);
-        json_t *one = json_pack("{s:s}", "device", grobo_sim_server_device(f->server[i]));
-        if (port > 0)
-            json_object_set_new(one, "tcp_port", json_integer(port));
-        json_array_append_new(list, one);
+        json_array_append_new(list, json_pack("{s:s,s:o*}", "device",
+                                              grobo_sim_server_device(f->server[i]), "tcp_port",
+                                              port > 0 ? json_integer(port) : NULL));
         if (!f->a->json)
             app_print("%s\n", grobo_sim_server_device(f->server[i]));
         if (port > 0 && grobo_port_pty_ops() != NULL) {
@@ -359,7 +325,7 @@ static int run(app *a)
     os_take_signals();
     f.base = grobo_loop_new();
     if (!f.base || watch_signals(&f) != GROBO_OK)
-        status = app_fail(a, EXIT_ROBOT, "NOMEM", "sim: %s", grobo_error_text(GROBO_ERR_NOMEM));
+        status = app_fail_error(a, EXIT_ROBOT, GROBO_ERR_NOMEM, "sim");
     f.model = &grobo_gr001_model;
     if (app_option(a, OPT_SERVO)->given && !status) {
         f.model = &f.chain.model;
@@ -395,7 +361,6 @@ const cli_command cmd_sim = {
     .example = "  grctl sim --link /tmp/gr001\n"
                "  grctl sim --wiring bus --fault drop=0.01,flip=0.001 --seed 7\n"
                "  grctl sim --servo 1=RS304MD,2=RS302CD --no-stops --state servos.state\n",
-    .options = options,
-    .n_options = sizeof options / sizeof options[0],
+    COMMAND_OPTIONS(options),
     .run = run,
 };

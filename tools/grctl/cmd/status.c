@@ -7,23 +7,14 @@
 enum { OPT_WATCH, OPT_INTERVAL };
 
 static const cli_option options[] = {
-    [OPT_WATCH] = {.name = "watch",
-                   .letter = 'w',
-                   .kind = CLI_FLAG,
-                   .help = "again and again, until a signal"},
-    [OPT_INTERVAL] = {.name = "interval",
-                      .letter = 'i',
-                      .kind = CLI_NUMBER,
-                      .value = "MS",
-                      .help = "time between two rounds of --watch (1000)",
-                      .min = 20,
-                      .max = 3600000},
+    [OPT_WATCH] = OPTION_FLAG("watch", 'w', "again and again, until a signal"),
+    [OPT_INTERVAL] = OPTION_WHOLE("interval", 'i', "MS", 20, 3600000,
+                                  "time between two rounds of --watch (1000)"),
 };
 
 static void show(conn *c, grobo_joint_mask joints)
 {
     const grobo_model *model = grobo_robot_driver(c->robot)->model;
-    json_t *list;
     if (!c->a->json) {
         if (c->a->tty_out && app_option(c->a, OPT_WATCH)->given)
             app_print("\033[H\033[J");
@@ -31,12 +22,8 @@ static void show(conn *c, grobo_joint_mask joints)
         output_flush();
         return;
     }
-    list = json_array();
-    for (int j = 0; j < model->n_joints; j++)
-        if (joints & GROBO_JOINT_BIT(j))
-            json_array_append_new(list, render_joint_json(c, j));
     app_print_json(json_pack("{s:s,s:s,s:o,s:o}", "robot", model->name, "device", conn_device(c),
-                             "joints", list, "link", conn_link_json(c)));
+                             "joints", render_joints_json(c, joints), "link", conn_link_json(c)));
 }
 
 /* One round; the exit status: a joint that stays silent is shown, and makes it 1. */
@@ -68,14 +55,10 @@ static int watch(conn *c, grobo_joint_mask joints)
 static int run(app *a)
 {
     conn c;
-    grobo_joint_mask joints = 0;
-    int status = 0;
-    for (int i = 0; i < a->line.n_arguments && !status; i++)
-        status = joints_parse(a, a->line.argument[i], &joints);
+    grobo_joint_mask joints;
+    int status = joints_parse_all(a, a->line.n_arguments, a->line.argument, &joints);
     if (status)
         return status;
-    if (!joints)
-        joints = GROBO_JOINTS_ALL(grobo_gr001_model.n_joints);
     status = conn_open(&c, a);
     if (!status)
         status = app_option(a, OPT_WATCH)->given ? watch(&c, joints) : sense_and_show(&c, joints);
@@ -84,16 +67,13 @@ static int run(app *a)
 
 const cli_command cmd_status = {
     .name = "status",
-    .arguments = "[JOINT|GROUP]...",
+    COMMAND_ARGUMENTS("[JOINT|GROUP]...", 0, -1, CLI_ARG_JOINT),
     .summary = "angle, torque, current, temperature and voltage of the joints",
     .details = "Reads every joint, or those named, and prints what it reports. A joint that does\n"
                "not answer is shown with the reason and makes the exit status 1; the others are\n"
                "shown all the same. Nothing moves.\n",
     .example = "  grctl status\n  grctl status right_arm --json\n"
                "  grctl status --watch --interval 200\n",
-    .options = options,
-    .n_options = sizeof options / sizeof options[0],
-    .max_arguments = -1,
-    .argument = CLI_ARG_JOINT,
+    COMMAND_OPTIONS(options),
     .run = run,
 };

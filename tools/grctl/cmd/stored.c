@@ -18,11 +18,10 @@ static int start(app *a, grobo_stored_kind kind, const char *what)
             conn_wait(&c, grobo_robot_stored(grobo_session_robot(c.session), kind, (int)number));
         if (error)
             status = conn_fail(&c, error, what);
-        else if (a->json)
-            app_print_json(json_pack("{s:i}", what, (int)number));
         else
-            app_note(a, "%s %d was asked for; the board does not say whether it plays", what,
-                     (int)number);
+            app_report(a, json_pack("{s:i}", what, (int)number),
+                       "%s %d was asked for; the board does not say whether it plays", what,
+                       (int)number);
     }
     return conn_close(&c, status);
 }
@@ -39,25 +38,19 @@ static int run_scenario(app *a)
 
 const cli_command cmd_slot = {
     .name = "slot",
-    .arguments = "N",
+    COMMAND_ARGUMENTS("N", 1, 1, CLI_ARG_WORD),
     .summary = "play a motion stored in the board",
     .details = "Asks the board to play motion N of its own memory. Its angles are the board's:\n"
                "nothing here can check them, and the board sends no answer.\n",
-    .min_arguments = 1,
-    .max_arguments = 1,
-    .argument = CLI_ARG_WORD,
     .run = run_slot,
 };
 
 const cli_command cmd_scenario = {
     .name = "scenario",
-    .arguments = "N",
+    COMMAND_ARGUMENTS("N", 1, 1, CLI_ARG_WORD),
     .summary = "play a scenario stored in the board",
     .details = "Asks the board to play scenario N of its own memory, a sequence of motions. Its\n"
                "angles are the board's: nothing here can check them, and the board sends no\n"
                "answer.\n",
-    .min_arguments = 1,
-    .max_arguments = 1,
-    .argument = CLI_ARG_WORD,
     .run = run_scenario,
 };

@@ -179,26 +179,41 @@ int conn_wait_shown(conn *c, int job, const char *doing, int64_t expected_us)
     return error;
 }
 
-static void on_wake(evutil_socket_t fd, short what, void *ctx)
+void conn_note(evutil_socket_t fd, short what, void *ctx)
 {
-    bool *awake = ctx;
+    bool *flag = ctx;
     (void)fd;
     (void)what;
-    *awake = true;
+    *flag = true;
+}
+
+static struct timeval timeval_of(int64_t us)
+{
+    return (struct timeval){.tv_sec = (int)(us / 1000000), .tv_usec = (int)(us % 1000000)};
+}
+
+struct event *conn_every(conn *c, int64_t period_us, event_callback_fn fn, void *ctx)
+{
+    struct timeval period = timeval_of(period_us);
+    struct event *timer = event_new(c->base, -1, EV_PERSIST, fn, ctx);
+    if (timer)
+        event_add(timer, &period);
+    return timer;
+}
+
+void conn_forget(struct event *event)
+{
+    if (event)
+        event_free(event);
 }
 
 int conn_sleep_until(conn *c, int64_t at_us)
 {
     bool awake = false;
     int64_t rest_us = at_us - grobo_now_us();
-    struct timeval rest = {0};
-    struct event *timer;
+    struct timeval rest = timeval_of(rest_us > 0 ? rest_us : 0);
+    struct event *timer = evtimer_new(c->base, conn_note, &awake);
     int error = GROBO_OK;
-    if (rest_us > 0) {
-        rest.tv_sec = (int)(rest_us / 1000000);
-        rest.tv_usec = (int)(rest_us % 1000000);
-    }
-    timer = evtimer_new(c->base, on_wake, &awake);
     if (!timer)
         return GROBO_ERR_NOMEM;
     evtimer_add(timer, &rest);
@@ -523,8 +538,7 @@ static int open_device(conn *c, app *a, bool check)
         return error;
     error = make_session(c, device, check);
     if (error)
-        return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s: %s", device,
-                        grobo_error_text(error));
+        return app_fail_error(a, EXIT_ROBOT, error, "%s", device);
     c->base = c->link->base;
     c->session = c->link->session;
     c->robot = grobo_session_robot(c->session);

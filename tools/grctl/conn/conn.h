@@ -119,6 +119,15 @@ int conn_wait_until(conn *c, bool (*done)(conn *c));
 /* Waits for a moment of grobo_now_us(); as conn_wait(). */
 int conn_sleep_until(conn *c, int64_t at_us);
 
+/* For an event of the loop: sets the bool that ctx points to. */
+void conn_note(evutil_socket_t fd, short what, void *ctx);
+
+/* Has fn called again and again. NULL: there is no memory. */
+struct event *conn_every(conn *c, int64_t period_us, event_callback_fn fn, void *ctx);
+
+/* Ends an event; NULL is allowed. */
+void conn_forget(struct event *event);
+
 /*
  * Says why a job failed, naming joint and cause, and returns the exit status. `doing`: "move".
  * A signal is not complained about: conn_close() gives its status.

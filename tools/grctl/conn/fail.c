@@ -130,8 +130,8 @@ int conn_fail_job(conn *c, int error, const char *prefix)
                         conn_device(c), prefix);
     if (conn_is_of_reply(error))
         return fail_reply(c, error, model->joints[joint].motor, prefix, who);
-    return app_fail(c->a, app_status_of(error), grobo_error_name(error), "%s: %s%s: %s",
-                    conn_device(c), prefix, who, grobo_error_text(error));
+    return app_fail_error(c->a, app_status_of(error), error, "%s: %s%s", conn_device(c), prefix,
+                          who);
 }
 
 int conn_fail(conn *c, int error, const char *doing)
@@ -162,8 +162,7 @@ int conn_fail_servo(conn *c, int error, int id)
     snprintf(who, sizeof who, "servo %d", id);
     if (conn_is_of_reply(error))
         return fail_reply(c, error, id, "", who);
-    return app_fail(c->a, app_status_of(error), grobo_error_name(error), "%s: %s: %s",
-                    conn_device(c), who, grobo_error_text(error));
+    return app_fail_error(c->a, app_status_of(error), error, "%s: %s", conn_device(c), who);
 }
 
 int conn_link_news(conn_link *link, app *a)
@@ -178,7 +177,6 @@ int conn_link_news(conn_link *link, app *a)
     if (c.trip.trip != GROBO_TRIP_NONE)
         status = fail_trip(&c, conn_device(&c));
     if (link->link_error)
-        status = app_fail(a, EXIT_ROBOT, grobo_error_name(link->link_error), "%s: %s",
-                          conn_device(&c), grobo_error_text(link->link_error));
+        status = app_fail_error(a, EXIT_ROBOT, link->link_error, "%s", conn_device(&c));
     return status;
 }

@@ -25,7 +25,6 @@ enum {
     SECTION_BYTES = 16,     /* fixed fields */
     INTERFACE_BYTES = 8,
     PACKET_BYTES = 20,
-    TAIL_BYTES = 16,
     OPTION_HEAD_BYTES = 4,
 
     RESOLUTION_US = 6, /* if_tsresol: ten to the minus six */
@@ -34,11 +33,14 @@ enum {
 
 /* ---- writing -------------------------------------------------------------------------------- */
 
-/* A block under construction; the caps of the texts keep it in bounds. */
+/* A block under construction. */
 typedef struct block {
-    uint8_t bytes[BLOCK_FRAME_BYTES + SECTION_BYTES + 3 * (PCAPNG_TEXT_BYTES + 8) + 64];
+    uint8_t *bytes;
     size_t used;
 } block;
+
+/* The caps of the texts keep the head's blocks in bounds. */
+enum { HEAD_BYTES = BLOCK_FRAME_BYTES + SECTION_BYTES + 3 * (PCAPNG_TEXT_BYTES + 8) + 64 };
 
 static void put(uint8_t *to, uint64_t value, int bytes)
 {
@@ -64,54 +66,61 @@ static void add_bytes(block *b, const void *bytes, size_t n)
     b->used += padded(n);
 }
 
-static void add_text(block *b, unsigned option, const char *text)
+static void add_option(block *b, unsigned option, const void *value, size_t n)
 {
-    size_t n = text ? strnlen(text, PCAPNG_TEXT_BYTES - 1) : 0;
-    if (n == 0)
-        return;
     add(b, option, 2);
     add(b, n, 2);
-    add_bytes(b, text, n);
+    add_bytes(b, value, n);
+}
+
+static void add_text(block *b, unsigned option, const char *text)
+{
+    if (text && *text)
+        add_option(b, option, text, strnlen(text, PCAPNG_TEXT_BYTES - 1));
 }
 
 static void add_number(block *b, unsigned option, uint64_t value, int bytes)
 {
     uint8_t raw[8];
     put(raw, value, bytes);
-    add(b, option, 2);
-    add(b, (unsigned)bytes, 2);
-    add_bytes(b, raw, (size_t)bytes);
+    add_option(b, option, raw, (size_t)bytes);
 }
 
-static void begin(block *b, uint32_t type)
+static block begin(uint8_t *bytes, uint32_t type)
 {
-    b->used = 0;
-    add(b, type, 4);
-    add(b, 0, 4); /* the length, by finish() */
+    block b = {.bytes = bytes};
+    add(&b, type, 4);
+    add(&b, 0, 4); /* the length, by finish() */
+    return b;
 }
 
-static int finish(block *b, FILE *to)
+static size_t finish(block *b)
 {
     add(b, OPTION_END, 4);
     add(b, b->used + 4, 4);
     put(b->bytes + 4, b->used, 4);
-    return fwrite(b->bytes, 1, b->used, to) == b->used ? GROBO_OK : GROBO_ERR_IO;
+    return b->used;
+}
+
+static int write_all(FILE *to, const uint8_t *bytes, size_t size)
+{
+    return fwrite(bytes, 1, size, to) == size ? GROBO_OK : GROBO_ERR_IO;
 }
 
 int pcapng_write_head(FILE *to, const char *program, const char *comment,
                       const pcapng_interface *interface)
 {
-    block b;
-    begin(&b, BLOCK_SECTION);
+    uint8_t bytes[HEAD_BYTES];
+    block b = begin(bytes, BLOCK_SECTION);
     add(&b, BYTE_ORDER_MAGIC, 4);
     add(&b, 1, 2); /* version 1.0 */
     add(&b, 0, 2);
     add(&b, UINT64_MAX, 8); /* the section's length is not known */
     add_text(&b, OPTION_COMMENT, comment);
     add_text(&b, OPTION_PROGRAM, program);
-    if (finish(&b, to) < 0)
+    if (write_all(to, bytes, finish(&b)) < 0)
         return GROBO_ERR_IO;
-    begin(&b, BLOCK_INTERFACE);
+    b = begin(bytes, BLOCK_INTERFACE);
     add(&b, PCAPNG_LINK_USER0, 2);
     add(&b, 0, 2);
     add(&b, 0, 4); /* no limit to a packet's length */
@@ -120,30 +129,21 @@ int pcapng_write_head(FILE *to, const char *program, const char *comment,
     if (interface->speed_bps)
         add_number(&b, OPTION_SPEED, interface->speed_bps, 8);
     add_number(&b, OPTION_RESOLUTION, RESOLUTION_US, 1);
-    return finish(&b, to);
+    return write_all(to, bytes, finish(&b));
 }
 
 size_t pcapng_make_chunk(uint8_t *packet, int64_t time_us, pcapng_direction direction,
                          const uint8_t *bytes, size_t size)
 {
-    size_t padding = padded(size) - size;
-    uint8_t *tail = packet + BLOCK_HEAD_BYTES + PACKET_BYTES + size + padding;
-    size_t total = (size_t)(tail - packet) + TAIL_BYTES;
-    put(packet, BLOCK_PACKET, 4);
-    put(packet + 4, total, 4);
-    put(packet + 8, 0, 4); /* the only interface */
-    put(packet + 12, (uint64_t)time_us >> 32, 4);
-    put(packet + 16, (uint64_t)time_us & 0xFFFFFFFFu, 4);
-    put(packet + 20, size, 4);
-    put(packet + 24, size, 4);
-    memcpy(packet + BLOCK_HEAD_BYTES + PACKET_BYTES, bytes, size);
-    memset(tail - padding, 0, padding);
-    put(tail, OPTION_FLAGS, 2);
-    put(tail + 2, 4, 2);
-    put(tail + 4, (uint64_t)direction, 4);
-    put(tail + 8, OPTION_END, 4);
-    put(tail + 12, total, 4);
-    return total;
+    block b = begin(packet, BLOCK_PACKET);
+    add(&b, 0, 4); /* the only interface */
+    add(&b, (uint64_t)time_us >> 32, 4);
+    add(&b, (uint64_t)time_us & 0xFFFFFFFFu, 4);
+    add(&b, size, 4);
+    add(&b, size, 4);
+    add_bytes(&b, bytes, size);
+    add_number(&b, OPTION_FLAGS, (uint64_t)direction, 4);
+    return finish(&b);
 }
 
 int pcapng_write_chunk(FILE *to, int64_t time_us, pcapng_direction direction, const uint8_t *bytes,
@@ -152,8 +152,7 @@ int pcapng_write_chunk(FILE *to, int64_t time_us, pcapng_direction direction, co
     uint8_t packet[PCAPNG_PACKET_BYTES];
     if (size == 0 || size > PCAPNG_CHUNK_BYTES)
         return GROBO_ERR_ARG;
-    size_t total = pcapng_make_chunk(packet, time_us, direction, bytes, size);
-    return fwrite(packet, 1, total, to) == total ? GROBO_OK : GROBO_ERR_IO;
+    return write_all(to, packet, pcapng_make_chunk(packet, time_us, direction, bytes, size));
 }
 
 /* ---- reading -------------------------------------------------------------------------------- */

@@ -100,8 +100,9 @@ int trace_close(trace *t, app *a, int status)
     uint64_t dropped = 0;
     if (t->queue) {
         writer_drain(t->queue);
-        error = error ? error : writer_error(t->queue);
-        dropped = writer_dropped(t->queue);
+        writer_state state = writer_look(t->queue);
+        error = error ? error : state.error;
+        dropped = state.dropped;
         writer_free(t->queue);
         t->queue = NULL;
     }

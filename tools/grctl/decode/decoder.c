@@ -51,17 +51,17 @@ static void print_text(const decoder *d, const frame *f, const char *note)
 
 static void print_json(const decoder *d, const frame *f, bool answer, bool fits, int64_t asked_us)
 {
-    json_t *line = json_object();
+    double reply_ms = (double)(f->end_us - asked_us) / 1e3;
+    json_t *line =
+        json_pack("{s:o*}", "time_ms", d->timed ? app_json_number(ms_of(d, f->time_us), 3) : NULL);
     json_t *words = words_json(f);
-    if (d->timed)
-        json_object_set_new(line, "time_ms", app_json_number(ms_of(d, f->time_us), 3));
+    json_t *reply = json_pack("{s:o*,s:o*}", "reply_time_ms",
+                              answer && fits && d->timed ? app_json_number(reply_ms, 3) : NULL,
+                              "asked_for", answer ? json_boolean(fits) : NULL);
     json_object_update(line, words);
+    json_object_update(line, reply);
     json_decref(words);
-    if (answer && fits && d->timed)
-        json_object_set_new(line, "reply_time_ms",
-                            app_json_number((double)(f->end_us - asked_us) / 1e3, 3));
-    if (answer)
-        json_object_set_new(line, "asked_for", json_boolean(fits));
+    json_decref(reply);
     app_print_json(line);
 }
 
@@ -146,8 +146,6 @@ void decoder_summary(decoder *d)
     app_note(a,
              "%llu frames, %llu with a wrong sum, %llu cut off, %llu bytes of rubbish; of %llu "
              "requests %llu were answered; %llu replies nobody asked for",
-             (unsigned long long)d->count.frames, (unsigned long long)d->count.bad_sums,
-             (unsigned long long)d->count.cut, (unsigned long long)d->count.rubbish_bytes,
-             (unsigned long long)d->asked.requests, (unsigned long long)d->count.answered,
-             (unsigned long long)d->count.unasked);
+             d->count.frames, d->count.bad_sums, d->count.cut, d->count.rubbish_bytes,
+             (unsigned long long)d->asked.requests, d->count.answered, d->count.unasked);
 }

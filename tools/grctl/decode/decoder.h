@@ -17,7 +17,7 @@ typedef struct decoder {
     int64_t first_us; /* what times are counted from */
     char note[96];
     struct {
-        uint64_t frames, bad_sums, cut, rubbish_bytes, answered, unanswered, unasked;
+        unsigned long long frames, bad_sums, cut, rubbish_bytes, answered, unanswered, unasked;
     } count;
 } decoder;
 

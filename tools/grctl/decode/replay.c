@@ -45,7 +45,7 @@ int replay_read(replay *r, replay_fn use, void *ctx)
 
 /* ---- comparing ----------------------------------------------------------------------------- */
 
-static const char *verdict_of(replay *r, const ledger_entry *entry, uint64_t **counter)
+static const char *verdict_of(replay *r, const ledger_entry *entry, unsigned long long **counter)
 {
     const ledger_answer *recorded = &entry->answer[REPLAY_RECORDED];
     const ledger_answer *replayed = &entry->answer[REPLAY_REPLAYED];
@@ -116,7 +116,7 @@ static void print_difference(const replay *r, const ledger_entry *e, const char 
 static void on_settled(void *ctx, const ledger_entry *entry)
 {
     replay *r = ctx;
-    uint64_t *counter, differences;
+    unsigned long long *counter, differences;
     const char *verdict = verdict_of(r, entry, &counter);
     (*counter)++;
     if (counter == &r->count.equal || counter == &r->count.silent)
@@ -173,7 +173,7 @@ void replay_answer(replay *r, int who, int64_t time_us, const uint8_t *bytes, si
 
 static bool is_same(const replay *r)
 {
-    const uint64_t *stray = r->count.stray, *rubbish = r->count.rubbish_bytes;
+    const unsigned long long *stray = r->count.stray, *rubbish = r->count.rubbish_bytes;
     return r->count.differ + r->count.missing + r->count.extra == 0 &&
            stray[REPLAY_RECORDED] == stray[REPLAY_REPLAYED] &&
            rubbish[REPLAY_RECORDED] == rubbish[REPLAY_REPLAYED];
@@ -201,15 +201,12 @@ int replay_report(replay *r)
     }
     app_print("%llu frames sent, %llu call for a reply: %llu equal, %llu differ, %llu missing, "
               "%llu extra, %llu silent both times\n",
-              (unsigned long long)r->count.frames, (unsigned long long)r->asked.requests,
-              (unsigned long long)r->count.equal, (unsigned long long)r->count.differ,
-              (unsigned long long)r->count.missing, (unsigned long long)r->count.extra,
-              (unsigned long long)r->count.silent);
+              r->count.frames, (unsigned long long)r->asked.requests, r->count.equal,
+              r->count.differ, r->count.missing, r->count.extra, r->count.silent);
     for (int who = 0; who < LEDGER_SIDES; who++)
         if (r->count.stray[who] || r->count.rubbish_bytes[who])
             app_print("%s: %llu replies nobody asked for, %llu bytes that are no reply\n",
-                      who == REPLAY_RECORDED ? "recorded" : "replayed",
-                      (unsigned long long)r->count.stray[who],
-                      (unsigned long long)r->count.rubbish_bytes[who]);
+                      who == REPLAY_RECORDED ? "recorded" : "replayed", r->count.stray[who],
+                      r->count.rubbish_bytes[who]);
     return ok ? EXIT_DONE : EXIT_ROBOT;
 }

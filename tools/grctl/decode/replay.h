@@ -22,8 +22,8 @@ typedef struct replay {
     frames robot[LEDGER_SIDES];
     ledger asked;
     struct {
-        uint64_t frames, equal, differ, missing, extra, silent;
-        uint64_t stray[LEDGER_SIDES], rubbish_bytes[LEDGER_SIDES];
+        unsigned long long frames, equal, differ, missing, extra, silent;
+        unsigned long long stray[LEDGER_SIDES], rubbish_bytes[LEDGER_SIDES];
     } count;
 } replay;
 

@@ -6,10 +6,8 @@
 #include <grobo/model.h>
 #include <grobo/serial.h>
 
-#include "tools/grctl/decode/words.h"
-#include "tools/grctl/decode/words_i.h"
-
 #include "tools/grctl/decode/registers.h"
+#include "tools/grctl/decode/words.h"
 
 /* Text that grows up to a cap; what does not fit is left out. */
 typedef struct text {
@@ -55,9 +53,10 @@ const char *words_side(frames_side side)
     return "unknown";
 }
 
-/* ---- what both kinds of output share ------------------------------------------------------- */
+/* ---- what text and JSON share -------------------------------------------------------------- */
 
-const char *words_i_joint(uint8_t id)
+/* A joint of GR001 by its servo's id, or NULL. */
+static const char *joint_name(uint8_t id)
 {
     const grobo_model *model = &grobo_gr001_model;
     for (int j = 0; j < model->n_joints; j++)
@@ -66,22 +65,40 @@ const char *words_i_joint(uint8_t id)
     return NULL;
 }
 
-int words_i_share(const grobo_rs30x_packet *p, int index, words_i_part *part)
+/* What a packet holds for one servo. */
+typedef struct packet_part {
+    uint8_t id;
+    uint8_t address;
+    const uint8_t *data;
+    size_t n;
+} packet_part;
+
+/* Part number `index` of a packet: 1, or 0 behind the last. */
+static int find_part(const grobo_rs30x_packet *p, int index, packet_part *part)
 {
     if (p->kind == GROBO_RS30X_LONG) {
         const uint8_t *entry = p->data + (size_t)index * p->length;
         if (index >= p->count)
             return 0;
-        *part = (words_i_part){entry[0], p->address, entry + 1, (size_t)p->length - 1};
+        *part = (packet_part){entry[0], p->address, entry + 1, (size_t)p->length - 1};
         return 1;
     }
     if (index > 0 || p->data_bytes == 0)
         return 0;
-    *part = (words_i_part){p->id, p->address, p->data, p->data_bytes};
+    *part = (packet_part){p->id, p->address, p->data, p->data_bytes};
     return 1;
 }
 
-size_t words_i_value(const words_i_part *part, size_t at, words_i_item *item)
+/* A register in a part; a byte of none (reg NULL), or of one that is not there as a whole. */
+typedef struct packet_item {
+    const grobo_rs30x_register *reg;
+    unsigned address;
+    int32_t value;
+    bool whole;
+} packet_item;
+
+/* What stands at offset `at` of a part: how many bytes it takes. */
+static size_t find_item(const packet_part *part, size_t at, packet_item *item)
 {
     unsigned address = part->address + (unsigned)at;
     const grobo_rs30x_register *reg =
@@ -93,7 +110,8 @@ size_t words_i_value(const words_i_part *part, size_t at, words_i_item *item)
     return item->whole ? reg->bytes : 1;
 }
 
-const char *words_i_action(const grobo_rs30x_packet *p)
+/* "write", "read", "ping", "flash", "reboot", "flash and reboot", "factory reset", "return". */
+static const char *action_of(const grobo_rs30x_packet *p)
 {
     if (p->kind == GROBO_RS30X_RETURN)
         return "return";
@@ -112,15 +130,20 @@ const char *words_i_action(const grobo_rs30x_packet *p)
     return (p->flags & 0x0F) == GROBO_RS30X_WANT_NOTHING ? "nothing" : "read";
 }
 
-const words_i_flag words_i_status[] = {
+/* The flags of a return packet. */
+static const struct {
+    uint8_t bit;
+    const char *key, *text;
+} status_flags[] = {
     {GROBO_RS30X_STATUS_OVERHEATED, "overheated", "too hot, torque was cut"},
     {GROBO_RS30X_STATUS_HOT, "hot", "temperature alarm"},
     {GROBO_RS30X_STATUS_FLASH_ERROR, "flash_error", "writing to flash failed"},
     {GROBO_RS30X_STATUS_REFUSED, "refused", "the command could not be processed"},
 };
-const size_t words_i_n_status = sizeof words_i_status / sizeof words_i_status[0];
+enum { N_STATUS = sizeof status_flags / sizeof status_flags[0] };
 
-int words_i_right_sum(const grobo_rs30x_packet *p)
+/* The sum that a packet should have, or -1 for one that cannot be built. */
+static int right_sum(const grobo_rs30x_packet *p)
 {
     uint8_t bytes[GROBO_RS30X_PACKET_MAX_BYTES];
     int n = grobo_rs30x_build(p, bytes, sizeof bytes);
@@ -131,7 +154,7 @@ int words_i_right_sum(const grobo_rs30x_packet *p)
 
 static void say_servo(text *t, uint8_t id)
 {
-    const char *name = words_i_joint(id);
+    const char *name = joint_name(id);
     if (id == GROBO_RS30X_ID_ALL)
         say(t, "all servos");
     else if (name)
@@ -149,13 +172,13 @@ static void say_span(text *t, unsigned address, unsigned length)
 }
 
 /* Registers of a servo; reserved bytes are said where they are not 0. */
-static void say_registers(text *t, const words_i_part *part)
+static void say_registers(text *t, const packet_part *part)
 {
     const char *comma = "";
     for (size_t at = 0; at < part->n;) {
         char value[REGISTERS_TEXT_BYTES];
-        words_i_item item;
-        size_t size = words_i_value(part, at, &item);
+        packet_item item;
+        size_t size = find_item(part, at, &item);
         at += size;
         if (!item.reg && item.value == 0)
             continue;
@@ -178,12 +201,12 @@ static void say_registers(text *t, const words_i_part *part)
 static void say_names(text *t, const grobo_rs30x_packet *p)
 {
     const char *comma = "";
-    words_i_part part;
-    if (words_i_share(p, 0, &part) == 0)
+    packet_part part;
+    if (find_part(p, 0, &part) == 0)
         return;
     for (size_t at = 0; at < part.n;) {
-        words_i_item item;
-        at += words_i_value(&part, at, &item);
+        packet_item item;
+        at += find_item(&part, at, &item);
         if (item.whole)
             say(t, "%s%s", comma, item.reg->name);
         else
@@ -195,7 +218,7 @@ static void say_names(text *t, const grobo_rs30x_packet *p)
 /* What a command without data wants to see, or does. */
 static void say_bare(text *t, const grobo_rs30x_packet *p, const grobo_reply *reply, int known)
 {
-    const char *action = words_i_action(p);
+    const char *action = action_of(p);
     if (strcmp(action, "read") != 0) {
         say(t, "%s ", strcmp(action, "nothing") == 0 ? "nothing for" : action);
         say_servo(t, p->id);
@@ -213,13 +236,13 @@ static void say_bare(text *t, const grobo_rs30x_packet *p, const grobo_reply *re
 static void say_command(text *t, const frame *f, const grobo_reply *reply, int known)
 {
     const grobo_rs30x_packet *p = &f->packet;
-    const char *action = words_i_action(p);
+    const char *action = action_of(p);
     bool only_writes = strcmp(action, "write") == 0;
-    words_i_part part;
+    packet_part part;
     if (p->kind == GROBO_RS30X_LONG) {
         say(t, "write %u servos: ", p->count);
         say_names(t, p);
-    } else if ((only_writes || p->address < GROBO_REGISTERS) && words_i_share(p, 0, &part)) {
+    } else if ((only_writes || p->address < GROBO_REGISTERS) && find_part(p, 0, &part)) {
         say(t, "write ");
         say_servo(t, p->id);
         say(t, ": ");
@@ -237,19 +260,19 @@ static void say_return(text *t, const frame *f)
 {
     const grobo_rs30x_packet *p = &f->packet;
     const char *comma = "; ";
-    words_i_part part;
+    packet_part part;
     say_servo(t, p->id);
     say(t, " returns");
-    if (words_i_share(p, 0, &part)) {
+    if (find_part(p, 0, &part)) {
         say(t, " ");
         say_span(t, p->address, p->length);
         say(t, ": ");
         say_registers(t, &part);
     }
-    for (size_t i = 0; i < words_i_n_status; i++) {
-        if (p->flags & words_i_status[i].bit) {
+    for (int i = 0; i < N_STATUS; i++) {
+        if (p->flags & status_flags[i].bit) {
             say(t, "%s", comma);
-            say_bad(t, words_i_status[i].text);
+            say_bad(t, status_flags[i].text);
             comma = ", ";
         }
     }
@@ -263,7 +286,7 @@ static void say_sum(text *t, const frame *f)
     if (f->sum_ok) {
         say(t, "; sum %02X right", sum);
     } else {
-        int right = words_i_right_sum(&f->packet);
+        int right = right_sum(&f->packet);
         if (right >= 0)
             snprintf(bad, sizeof bad, "sum %02X wrong, should be %02X", sum, (unsigned)right);
         else
@@ -328,7 +351,11 @@ static bool is_command(const frame *f)
             (f->packet.kind == GROBO_RS30X_SHORT || f->packet.kind == GROBO_RS30X_LONG));
 }
 
-int words_i_expects(const frame *f, grobo_reply *reply)
+/*
+ * As frame_reply(); GROBO_ERR_TYPE for what is no command, GROBO_ERR_MISMATCH (with *reply) for a
+ * relay frame that wants another number of bytes than its packet will return.
+ */
+static int expects(const frame *f, grobo_reply *reply)
 {
     grobo_reply inner;
     int known;
@@ -367,8 +394,8 @@ static void say_reply(text *t, const grobo_reply *reply, int known)
 
 static void say_shares(text *t, const grobo_rs30x_packet *p)
 {
-    words_i_part part;
-    for (int i = 0; words_i_share(p, i, &part); i++) {
+    packet_part part;
+    for (int i = 0; find_part(p, i, &part); i++) {
         say(t, "    ");
         say_servo(t, part.id);
         say(t, ": ");
@@ -381,7 +408,7 @@ void words_say(const frame *f, bool color, const char *note, char *to, size_t ca
 {
     text t = {to, capacity, 0, color};
     grobo_reply reply;
-    int known = words_i_expects(f, &reply);
+    int known = expects(f, &reply);
     *to = '\0';
     switch (f->kind) {
     case FRAME_BOARD:
@@ -408,4 +435,108 @@ void words_say(const frame *f, bool color, const char *note, char *to, size_t ca
     say(&t, "%s\n", note);
     if (f->has_packet && f->packet.kind == GROBO_RS30X_LONG && f->kind != FRAME_ECHO)
         say_shares(&t, &f->packet);
+}
+
+/* ---- JSON ---------------------------------------------------------------------------------- */
+
+static const char *kind_of(const frame *f)
+{
+    static const char *const board[] = {"check", "relay", "relay_return", "slot", "scenario"};
+    static const char *const packet[] = {"packet", "packet", "return", "ack", "nack"};
+    switch (f->kind) {
+    case FRAME_BOARD:
+        return board[f->board.kind];
+    case FRAME_PACKET:
+        return packet[f->packet.kind];
+    case FRAME_ECHO:
+        return "echo";
+    case FRAME_CUT:
+        return "cut";
+    case FRAME_RUBBISH:
+        return "rubbish";
+    }
+    return "rubbish";
+}
+
+/* Reserved bytes are told where they are not 0. */
+static json_t *part_json(const packet_part *part)
+{
+    const char *name = joint_name(part->id);
+    json_t *registers = json_object();
+    json_t *other = json_object();
+    for (size_t at = 0; at < part->n;) {
+        char key[REGISTERS_TEXT_BYTES];
+        packet_item item;
+        at += find_item(part, at, &item);
+        if (item.whole) {
+            registers_key(item.reg, key, sizeof key);
+            json_object_set_new(registers, key, registers_json(item.reg, item.value));
+        } else if (item.reg || item.value) {
+            snprintf(key, sizeof key, "%u", item.address);
+            json_object_set_new(other, key, json_integer(item.value));
+        }
+    }
+    bool others = json_object_size(other) > 0;
+    json_t *o = json_pack("{s:i,s:s?,s:o,s:O*}", "id", part->id, "name", name, "registers",
+                          registers, "other_bytes", others ? other : NULL);
+    json_decref(other);
+    return o;
+}
+
+static json_t *status_json(const grobo_rs30x_packet *p)
+{
+    json_t *list = json_array();
+    for (int i = 0; i < N_STATUS; i++)
+        if (p->flags & status_flags[i].bit)
+            json_array_append_new(list, json_string(status_flags[i].key));
+    return list;
+}
+
+static json_t *packet_json(const frame *f)
+{
+    static const char *const kinds[] = {"short", "long", "return", "ack", "nack"};
+    const grobo_rs30x_packet *p = &f->packet;
+    const uint8_t *bytes = f->kind == FRAME_BOARD ? f->board.packet : f->bytes;
+    int right = right_sum(p);
+    json_t *servos = json_array();
+    packet_part part;
+    for (int i = 0; find_part(p, i, &part); i++)
+        json_array_append_new(servos, part_json(&part));
+    return json_pack("{s:s,s:s,s:i,s:i,s:i,s:i,s:i,s:i,s:b,s:o*,s:o*,s:o}", "kind", kinds[p->kind],
+                     "action", action_of(p), "id", p->id, "flags", p->flags, "address", p->address,
+                     "length", p->length, "count", p->count, "sum", bytes[f->packet_size - 1],
+                     "sum_ok", f->sum_ok, "right_sum",
+                     !f->sum_ok && right >= 0 ? json_integer(right) : NULL, "status",
+                     p->kind == GROBO_RS30X_RETURN ? status_json(p) : NULL, "servos", servos);
+}
+
+static json_t *reply_json(const frame *f, const grobo_reply *reply, int known)
+{
+    static const char *const kinds[] = {"none", "ack", "return"};
+    if (known < 0 && known != GROBO_ERR_MISMATCH)
+        return json_pack("{s:o}", "error", app_json_code(grobo_error_name(known)));
+    bool returns = reply->kind == GROBO_REPLY_RETURN, differs = known == GROBO_ERR_MISMATCH;
+    return json_pack("{s:s,s:I,s:o*,s:o*,s:o*,s:o*}", "kind", kinds[reply->kind], "bytes",
+                     (json_int_t)grobo_rs30x_reply_bytes(reply), "id",
+                     returns ? json_integer(reply->id) : NULL, "address",
+                     returns ? json_integer(reply->address) : NULL, "length",
+                     returns ? json_integer(reply->length) : NULL, "asked_bytes",
+                     differs ? json_integer(f->board.reply_bytes) : NULL);
+}
+
+json_t *words_json(const frame *f)
+{
+    char hex[3 * FRAMES_BUFFER_BYTES + 1];
+    grobo_reply reply;
+    int known = expects(f, &reply);
+    if (grobo_hex(hex, sizeof hex, f->bytes, f->size) < 0)
+        hex[0] = '\0';
+    bool numbered = f->kind == FRAME_BOARD &&
+                    (f->board.kind == GROBO_BOARD_SLOT || f->board.kind == GROBO_BOARD_SCENARIO);
+    bool replies = known != GROBO_ERR_TYPE && f->kind != FRAME_ECHO;
+    return json_pack("{s:s,s:s,s:I,s:s,s:o*,s:o*,s:o*}", "from", words_side(f->side), "kind",
+                     kind_of(f), "bytes", (json_int_t)f->size, "hex", hex, "number",
+                     numbered ? json_integer(f->board.number) : NULL, "packet",
+                     f->has_packet && f->packet_size > 1 ? packet_json(f) : NULL, "reply",
+                     replies ? reply_json(f, &reply, known) : NULL);
 }

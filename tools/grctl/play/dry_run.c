@@ -148,7 +148,6 @@ int play_dry_run(playlist *list, app *a)
         error = play(&r, list);
     }
     if (error < 0)
-        status = app_fail(a, app_status_of(error), grobo_error_name(error), "play: %s",
-                          grobo_error_text(error));
+        status = app_fail_error(a, app_status_of(error), error, "play");
     return trace_close(&r.trace, a, status);
 }

@@ -34,7 +34,7 @@ static bool find_refused(const app *a, const grobo_diagnostics *found, grobo_dia
 
 static int fail(app *a, const char *path, int error)
 {
-    return app_fail(a, EXIT_FILE, grobo_error_name(error), "%s: %s", path, grobo_error_text(error));
+    return app_fail_error(a, EXIT_FILE, error, "%s", path);
 }
 
 /* Says the first thing that would be refused in play, with its place in the file. */
@@ -83,8 +83,7 @@ static int find_rate(app *a, grobo_budget *line)
     double rate_hz = app_number(a, PLAY_RATE, 0);
     int error = wire_budget(grobo_gr001_driver(wiring), (int)conn_baud(a), line);
     if (error < 0)
-        return app_fail(a, EXIT_USAGE, grobo_error_name(error), "play: %s",
-                        grobo_error_text(error));
+        return app_fail_error(a, EXIT_USAGE, error, "play");
     if (rate_hz > line->watched_hz && !app_option(a, PLAY_UNWATCHED)->given)
         return app_fail(a, EXIT_SAFETY, grobo_error_name(GROBO_ERR_UNWATCHED),
                         "play: %.0f frames a second leave no time to read the joints (at most %d); "

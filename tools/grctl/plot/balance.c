@@ -204,34 +204,17 @@ static plot_scale margin_scale(const plot_balance *b)
     return scale;
 }
 
-static void draw_margin_grid(svg *s, const svg_box *box, const plot_scale *time,
-                             const plot_scale *margin)
-{
-    double zero = box->y + box->height - plot_scale_at(margin, 0);
-    svg_rect(s, "area", box);
-    svg_rect(s, "beyond", &(svg_box){box->x, zero, box->width, box->y + box->height - zero});
-    for (int i = 0; i < plot_scale_ticks(time); i++) {
-        double x = box->x + plot_scale_at(time, plot_scale_tick(time, i));
-        svg_line(s, "grid", x, box->y, x, box->y + box->height);
-    }
-    for (int i = 0; i < plot_scale_ticks(margin); i++) {
-        char text[32];
-        double tick = plot_scale_tick(margin, i);
-        double y = box->y + box->height - plot_scale_at(margin, tick);
-        plot_scale_text(margin, tick, " mm", text, sizeof text);
-        svg_line(s, "grid", box->x, y, box->x + box->width, y);
-        svg_text(s, "tick", box->x - 5, y + 3.5, "end", text);
-    }
-    svg_line(s, "limit", box->x, zero, box->x + box->width, zero);
-}
-
 /* The margin while a foot stands: a line for each stretch of time. */
 static void draw_margin(svg *s, const plot_balance *b, const svg_box *box, const plot_scale *time)
 {
     plot_scale margin = margin_scale(b);
     plot_thinner thin;
     bool drawing = false;
-    draw_margin_grid(s, box, time, &margin);
+    double zero = box->y + box->height - plot_scale_at(&margin, 0);
+    svg_rect(s, "area", box);
+    svg_rect(s, "beyond", &(svg_box){box->x, zero, box->width, box->y + box->height - zero});
+    plot_grid(s, box, time, &margin, " mm", "grid");
+    svg_line(s, "limit", box->x, zero, box->x + box->width, zero);
     for (size_t i = 0; i <= b->n_points; i++) {
         const plot_balance_point *p = &b->points[i];
         bool stands = i < b->n_points && (p->standing[0] || p->standing[1]);
@@ -317,11 +300,5 @@ void plot_balance_draw(svg *s, const plot_balance *balance, double length_s, dou
     for (int foot = 0; foot < 2; foot++)
         draw_stance(s, balance, &(svg_box){box.x, below + foot * STRIP_PITCH, box.width, STRIP},
                     &time, foot);
-    for (int i = 0; i < plot_scale_ticks(&time); i++) {
-        char text[32];
-        double tick = plot_scale_tick(&time, i);
-        plot_scale_text(&time, tick, " s", text, sizeof text);
-        svg_text(s, "tick", box.x + plot_scale_at(&time, tick), below + STRIP_PITCH + STRIP + 14,
-                 "middle", text);
-    }
+    plot_time_texts(s, &time, box.x, below + STRIP_PITCH + STRIP + 14);
 }

@@ -85,23 +85,6 @@ static void draw_hurry(const pen *p, const plot_panel *panel)
     }
 }
 
-static void draw_grid(const pen *p, const plot_panel *panel, const plot_scale *angle)
-{
-    const svg_box *box = &panel->box;
-    for (int i = 0; i < plot_scale_ticks(&p->time); i++) {
-        double x = x_at(p, panel, plot_scale_tick(&p->time, i));
-        svg_line(p->s, "grid", x, box->y, x, box->y + box->height);
-    }
-    for (int i = 0; i < plot_scale_ticks(angle); i++) {
-        char text[32];
-        double tick = plot_scale_tick(angle, i);
-        double y = y_at(panel, angle, tick);
-        plot_scale_text(angle, tick, "°", text, sizeof text);
-        svg_line(p->s, tick == 0 ? "zero" : "grid", box->x, y, box->x + box->width, y);
-        svg_text(p->s, "tick", box->x - 5, y + 3.5, "end", text);
-    }
-}
-
 /* The points of a curve between two times; those that a straight line replaces are left out. */
 static void draw_curve(const pen *p, const plot_panel *panel, const plot_scale *angle,
                        const char *style_class, const plot_span *span)
@@ -197,7 +180,7 @@ static void draw_panel(const pen *p, const plot_panel *panel)
     write_facts(p, panel);
     svg_rect(p->s, "area", &panel->box);
     draw_hurry(p, panel);
-    draw_grid(p, panel, &angle);
+    plot_grid(p->s, &panel->box, &p->time, &angle, "°", "zero");
     if (c->limits && !panel->slim) {
         draw_limit(p, panel, &angle, grobo_deg_from_rad(c->limits->min_rad), false);
         draw_limit(p, panel, &angle, grobo_deg_from_rad(c->limits->max_rad), true);
@@ -215,15 +198,10 @@ static void draw_panel(const pen *p, const plot_panel *panel)
 
 static void draw_section(const pen *p, const plot_section *section)
 {
-    char style_class[32], text[32];
+    char style_class[32];
     snprintf(style_class, sizeof style_class, "heading %s", section->side);
     svg_text(p->s, style_class, section->x, section->y + 18, "start", section->title);
-    for (int i = 0; i < plot_scale_ticks(&p->time); i++) {
-        double tick = plot_scale_tick(&p->time, i);
-        plot_scale_text(&p->time, tick, " s", text, sizeof text);
-        svg_text(p->s, "tick", section->plot_x + plot_scale_at(&p->time, tick),
-                 section->axis_y + 14, "middle", text);
-    }
+    plot_time_texts(p->s, &p->time, section->plot_x, section->axis_y + 14);
 }
 
 /* The beginning of a text that may be long, cut between characters. */

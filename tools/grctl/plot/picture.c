@@ -51,21 +51,6 @@ static int refuse(app *a, const char *path, int error)
                     file_write_error_text(error));
 }
 
-static int save_bytes(app *a, const char *path, const void *data, size_t size)
-{
-    const grobo_files *files = grobo_files_os();
-    grobo_file file;
-    int error = files->create(&file, path, false);
-    if (error)
-        return refuse(a, path, error);
-    error = files->write(&file, data, size);
-    if (error)
-        files->discard(&file);
-    else
-        error = files->commit(&file);
-    return error ? refuse(a, path, error) : 0;
-}
-
 static int save_stream(app *a, const char *path, FILE *from)
 {
     const grobo_files *files = grobo_files_os();
@@ -150,8 +135,10 @@ int picture_save(app *a, const svg *drawing, const char *path, picture_format fo
 {
     if (format == PICTURE_PNG)
         return save_png(a, drawing, path);
-    if (strcmp(path, "-") != 0)
-        return save_bytes(a, path, drawing->data, drawing->size);
+    if (strcmp(path, "-") != 0) {
+        int error = file_save(path, drawing->data, drawing->size);
+        return error ? refuse(a, path, error) : 0;
+    }
     output_bytes(drawing->data, drawing->size); /* the end of the program says if it failed */
     return 0;
 }

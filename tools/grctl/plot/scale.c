@@ -102,6 +102,33 @@ void plot_degrees(double angle_deg, const char *unit, char *text, size_t capacit
     format(tenths, tenths == round(tenths) ? 0 : 1, unit, text, capacity);
 }
 
+void plot_grid(svg *s, const svg_box *box, const plot_scale *time, const plot_scale *value,
+               const char *unit, const char *zero)
+{
+    for (int i = 0; i < plot_scale_ticks(time); i++) {
+        double x = box->x + plot_scale_at(time, plot_scale_tick(time, i));
+        svg_line(s, "grid", x, box->y, x, box->y + box->height);
+    }
+    for (int i = 0; i < plot_scale_ticks(value); i++) {
+        char text[32];
+        double tick = plot_scale_tick(value, i);
+        double y = box->y + box->height - plot_scale_at(value, tick);
+        plot_scale_text(value, tick, unit, text, sizeof text);
+        svg_line(s, tick == 0 ? zero : "grid", box->x, y, box->x + box->width, y);
+        svg_text(s, "tick", box->x - 5, y + 3.5, "end", text);
+    }
+}
+
+void plot_time_texts(svg *s, const plot_scale *time, double x, double y)
+{
+    for (int i = 0; i < plot_scale_ticks(time); i++) {
+        char text[32];
+        double tick = plot_scale_tick(time, i);
+        plot_scale_text(time, tick, " s", text, sizeof text);
+        svg_text(s, "tick", x + plot_scale_at(time, tick), y, "middle", text);
+    }
+}
+
 /* ---- thinning ------------------------------------------------------------------------------ */
 
 void plot_thin_begin(plot_thinner *t, svg *s)

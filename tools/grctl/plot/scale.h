@@ -25,6 +25,12 @@ void plot_scale_text(const plot_scale *scale, double value, const char *unit, ch
 /* "−12.5" and a unit; whole degrees where they are. */
 void plot_degrees(double angle_deg, const char *unit, char *text, size_t capacity);
 
+/* Both axes in a box: their ticks, and the texts of the value's. zero: the class of its 0. */
+void plot_grid(svg *s, const svg_box *box, const plot_scale *time, const plot_scale *value,
+               const char *unit, const char *zero);
+/* The texts of a time axis whose low end is at x. */
+void plot_time_texts(svg *s, const plot_scale *time, double x, double y);
+
 /* A polyline without the points that lie on the straight line between their neighbours. */
 typedef struct plot_thinner {
     svg *s;

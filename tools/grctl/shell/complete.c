@@ -4,52 +4,31 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include <grobo/model.h>
 #include <grobo/motion_io.h>
 
 #include "tools/grctl/shell/shell.h"
 
 typedef struct search {
-    const char *prefix; /* the word so far, without its backslashes */
-    size_t length;
+    cli_offer to;
+    size_t length; /* of to.prefix, the word so far without its backslashes */
     line_found_fn found;
     void *ctx;
 } search;
 
-static void offer(const search *s, const char *word, size_t length)
+static void on_found(void *ctx, const char *word, const char *help)
 {
-    char text[256];
-    if (length >= sizeof text || length < s->length || strncmp(word, s->prefix, s->length) != 0)
-        return;
-    snprintf(text, sizeof text, "%.*s", (int)length, word);
-    s->found(s->ctx, text, true);
+    const search *s = ctx;
+    (void)help;
+    s->found(s->ctx, word, true);
 }
 
-static void offer_words(const search *s, const char *words, size_t length)
-{
-    const char *end = words + length;
-    size_t n;
-    for (const char *word; words < end && (word = cli_next_word(&words, &n)) != NULL;)
-        offer(s, word, word + n > end ? (size_t)(end - word) : n);
-}
-
-static void offer_commands(const search *s, bool with_words)
+static void offer_first(const search *s)
 {
     const shell_word *w;
-    for (size_t i = 0; i < cli_n_commands; i++)
-        offer(s, cli_commands[i]->name, strlen(cli_commands[i]->name));
-    for (size_t i = 0; with_words && (w = shell_word_row(i)) != NULL; i++)
+    cli_offer_kind(&s->to, CLI_ARG_COMMAND);
+    for (size_t i = 0; (w = shell_word_row(i)) != NULL; i++)
         if (*w->word)
-            offer(s, w->word, strlen(w->word));
-}
-
-static void offer_joints(const search *s)
-{
-    const grobo_model *model = &grobo_gr001_model;
-    for (int i = 0; i < model->n_groups; i++)
-        offer(s, model->groups[i].name, strlen(model->groups[i].name));
-    for (int i = 0; i < model->n_joints; i++)
-        offer(s, model->joints[i].name, strlen(model->joints[i].name));
+            cli_offer_word(&s->to, w->word, w->help);
 }
 
 /* A name as it is typed: shell_split() takes the backslashes away. */
@@ -74,7 +53,7 @@ static void offer_motions(const search *s)
     while (all && (entry = readdir(all)) != NULL) {
         char name[256];
         if (grobo_motion_format_of_path(entry->d_name) == GROBO_FORMAT_AUTO ||
-            strncmp(entry->d_name, s->prefix, s->length) != 0)
+            strncmp(entry->d_name, s->to.prefix, s->length) != 0)
             continue;
         snprintf(name, sizeof name, "%.*s", (int)(strrchr(entry->d_name, '.') - entry->d_name),
                  entry->d_name);
@@ -89,16 +68,16 @@ static void offer_motions(const search *s)
 static void offer_files(const search *s)
 {
     char folder[1024], path[2048];
-    const char *slash = s->prefix + s->length;
+    const char *slash = s->to.prefix + s->length;
     struct dirent *entry;
     DIR *all;
-    while (slash > s->prefix && slash[-1] != '/')
+    while (slash > s->to.prefix && slash[-1] != '/')
         slash--;
-    snprintf(folder, sizeof folder, "%.*s", (int)(slash - s->prefix), s->prefix);
+    snprintf(folder, sizeof folder, "%.*s", (int)(slash - s->to.prefix), s->to.prefix);
     all = opendir(*folder ? folder : ".");
     while (all && (entry = readdir(all)) != NULL) {
         struct stat status;
-        size_t typed = s->length - (size_t)(slash - s->prefix);
+        size_t typed = s->length - (size_t)(slash - s->to.prefix);
         bool is_folder;
         if (strncmp(entry->d_name, slash, typed) != 0 || (*entry->d_name == '.' && typed == 0))
             continue;
@@ -112,73 +91,18 @@ static void offer_files(const search *s)
         closedir(all);
 }
 
-static void offer_kind(const search *s, cli_argument kind)
+/* The command that stands for a letter or word, or one that takes no arguments. */
+static const cli_command *command_of(const shell_word *w)
 {
-    switch (kind) {
-    case CLI_ARG_NONE:
-    case CLI_ARG_WORD:
-        return;
-    case CLI_ARG_COMMAND:
-        offer_commands(s, false);
-        return;
-    case CLI_ARG_JOINT:
-        offer_joints(s);
-        return;
-    case CLI_ARG_FILE:
-        offer(s, "@record", strlen("@record"));
-        offer_files(s);
-        return;
-    case CLI_ARG_DEVICE:
-        offer_words(s, "auto|sim", strlen("auto|sim"));
-        offer_files(s);
-        return;
-    }
-}
-
-static void offer_names(const search *s, const cli_option *options, size_t n)
-{
-    char name[64];
-    for (size_t i = 0; i < n; i++) {
-        snprintf(name, sizeof name, "--%s", options[i].name);
-        offer(s, name, strlen(name));
-    }
-}
-
-static const cli_option *find_in(const cli_option *options, size_t n, const char *word)
-{
-    for (size_t i = 0; i < n; i++)
-        if ((word[1] == '-' && strcmp(word + 2, options[i].name) == 0) ||
-            (word[1] == options[i].letter && word[1] && word[2] == '\0'))
-            return &options[i];
-    return NULL;
-}
-
-/* The option that waits for its value when this word stands before, or NULL. */
-static const cli_option *waiting(const cli_command *command, const char *word)
-{
-    const cli_option *o = NULL;
-    if (word[0] != '-')
-        return NULL;
-    if (command)
-        o = find_in(command->options, command->n_options, word);
-    if (!o)
-        o = find_in(cli_global_options, GLOBAL_COUNT, word);
-    return o && o->kind != CLI_FLAG && !o->optional ? o : NULL;
-}
-
-/* The command that a word stands for. */
-static const cli_command *command_of(const char *word)
-{
-    const shell_word *w = shell_word_find(word);
+    static const cli_command none = {.arguments = ""};
     char name[32];
-    if (!w)
-        return cli_find_command(word);
-    snprintf(name, sizeof name, "%.*s", w->command ? (int)strcspn(w->command, " ") : 0,
-             w->command ? w->command : "");
+    if (!w->command)
+        return &none;
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(w->command, " "), w->command);
     return cli_find_command(name);
 }
 
-/* What the arguments of a letter or word are, told by their names in the table. */
+/* What the arguments of a letter or word are, by their names in the table. */
 static cli_argument argument_of(const shell_word *w)
 {
     if (strstr(w->arguments, "JOINT"))
@@ -188,25 +112,21 @@ static cli_argument argument_of(const shell_word *w)
     return strstr(w->arguments, "DEV") ? CLI_ARG_DEVICE : CLI_ARG_NONE;
 }
 
-static void offer_argument(const search *s, const char *first, int n)
+static void offer_next(const search *s, int n, char *const *words)
 {
-    const shell_word *w = shell_word_find(first);
-    const cli_command *command = command_of(first);
-    const char *words;
-    size_t length;
-    if (s->length && s->prefix[0] == '-') {
-        if (command)
-            offer_names(s, command->options, command->n_options);
-        offer_names(s, cli_global_options, GLOBAL_COUNT);
-    } else if (w) {
-        offer_kind(s, argument_of(w));
-        if (strstr(w->arguments, "NAME"))
-            offer_motions(s);
-    } else if (command && n == 1 && (words = cli_first_argument(command, &length)) != NULL) {
-        offer_words(s, words, length);
-    } else if (command) {
-        offer_kind(s, command->argument);
-    }
+    const shell_word *w = shell_word_find(words[0]);
+    cli_place place =
+        w ? cli_find_place(command_of(w), n - 1, words + 1) : cli_find_place(NULL, n, words);
+    bool is_argument = w && !place.option && s->to.prefix[0] != '-';
+    cli_argument kind = is_argument ? argument_of(w) : cli_offer_at(&s->to, &place);
+    if (is_argument)
+        cli_offer_kind(&s->to, kind);
+    if (kind == CLI_ARG_FILE)
+        cli_offer_word(&s->to, "@record", "");
+    if (kind == CLI_ARG_FILE || kind == CLI_ARG_DEVICE)
+        offer_files(s);
+    if (is_argument && strstr(w->arguments, "NAME"))
+        offer_motions(s);
 }
 
 static bool is_escaped(const char *line, size_t at)
@@ -231,26 +151,18 @@ size_t shell_complete(const char *line, size_t length, line_found_fn found, void
 {
     char text[SHELL_LINE_BYTES], word[SHELL_LINE_BYTES];
     char *words[SHELL_WORDS_MAX];
-    search s = {.prefix = word, .found = found, .ctx = ctx};
-    const cli_option *o;
-    size_t begin;
-    int n;
+    search s = {.to = {.prefix = word, .found = on_found, .ctx = &s}, .found = found, .ctx = ctx};
     if (length >= sizeof text)
         return 0;
-    begin = last_word(line, length, word);
+    size_t begin = last_word(line, length, word);
     s.length = strlen(word);
     snprintf(text, sizeof text, "%.*s", (int)begin, line);
-    n = shell_split(text, words, SHELL_WORDS_MAX);
+    int n = shell_split(text, words, SHELL_WORDS_MAX);
     if (n < 0)
         return 0;
-    o = n > 0 ? waiting(command_of(words[0]), words[n - 1]) : NULL;
     if (n == 0)
-        offer_commands(&s, true);
-    else if (o && o->kind == CLI_CHOICE)
-        offer_words(&s, o->value, strlen(o->value));
-    else if (o)
-        offer_kind(&s, cli_option_argument(o));
+        offer_first(&s);
     else
-        offer_argument(&s, words[0], n);
+        offer_next(&s, n, words);
     return length - begin;
 }

@@ -39,9 +39,7 @@ static int run_text(shell *s, int n, const char *const *words)
 
 static int keep(shell *s, int error)
 {
-    return error < 0 ? app_fail(&s->one, EXIT_ROBOT, grobo_error_name(error), "record: %s",
-                                grobo_error_text(error))
-                     : 0;
+    return error < 0 ? app_fail_error(&s->one, EXIT_ROBOT, error, "record") : 0;
 }
 
 /* An empty record where there is none. */
@@ -79,10 +77,8 @@ static int push(conn *c, shell *s, double ms)
 static void tell_size(shell *s)
 {
     size_t n = s->record ? grobo_motion_size(s->record) : 0;
-    if (s->one.json)
-        app_print_json(json_pack("{s:I}", "postures", (json_int_t)n));
-    else
-        app_note(&s->one, "%zu posture%s in the record", n, n == 1 ? "" : "s");
+    app_report(&s->one, json_pack("{s:I}", "postures", (json_int_t)n),
+               "%zu posture%s in the record", n, n == 1 ? "" : "s");
 }
 
 static int do_push(shell *s, int n, char **words)
@@ -170,10 +166,8 @@ static int do_reverse(shell *s, int n, char **words)
     (void)n;
     (void)words;
     s->reverse = !s->reverse;
-    if (s->one.json)
-        app_print_json(json_pack("{s:b}", "reverse", s->reverse));
-    else
-        app_note(&s->one, "the record plays %s", s->reverse ? "backwards" : "forwards");
+    app_report(&s->one, json_pack("{s:b}", "reverse", s->reverse), "the record plays %s",
+               s->reverse ? "backwards" : "forwards");
     return EXIT_DONE;
 }
 
@@ -189,12 +183,8 @@ static int do_save(shell *s, int n, char **words)
         return usage(s, "%s: the record is empty", words[0]);
     error = grobo_motion_save_next(s->record, grobo_files_os(), ".", &write, path, sizeof path);
     if (error < 0)
-        return app_fail(&s->one, EXIT_FILE, grobo_error_name(error), "%s: %s", words[0],
-                        grobo_error_text(error));
-    if (s->one.json)
-        app_print_json(json_pack("{s:o}", "output", app_json_text(path)));
-    else
-        app_note(&s->one, "saved as %s", path);
+        return app_fail_error(&s->one, EXIT_FILE, error, "%s", words[0]);
+    app_report(&s->one, json_pack("{s:o}", "output", app_json_text(path)), "saved as %s", path);
     return EXIT_DONE;
 }
 
@@ -203,14 +193,10 @@ static int do_save(shell *s, int n, char **words)
 static int do_free(shell *s, int n, char **words)
 {
     conn c;
-    grobo_joint_mask joints = 0;
-    int status = 0, error;
-    for (int i = 1; i < n && !status; i++)
-        status = joints_parse(&s->one, words[i], &joints);
+    grobo_joint_mask joints;
+    int status = joints_parse_all(&s->one, n - 1, (const char *const *)words + 1, &joints), error;
     if (status)
         return status;
-    if (!joints)
-        joints = GROBO_JOINTS_ALL(grobo_gr001_model.n_joints);
     status = conn_open_to_move(&c, &s->one);
     if (!status) {
         error = grobo_robot_free(grobo_session_robot(c.session), joints, true);
@@ -288,10 +274,8 @@ static int do_time(shell *s, int n, char **words)
 {
     if (n > 1 && !take_ms(words[1], &s->time_ms))
         return usage(s, "'%s' is not a time of 1 to 3600000 ms", words[1]);
-    if (s->one.json)
-        app_print_json(json_pack("{s:f}", "time_ms", s->time_ms));
-    else
-        app_note(&s->one, "postures and moves take %g ms", s->time_ms);
+    app_report(&s->one, json_pack("{s:f}", "time_ms", s->time_ms), "postures and moves take %g ms",
+               s->time_ms);
     return EXIT_DONE;
 }
 

@@ -2,14 +2,6 @@
 /* Waiting for lines in the loop, so that the robot is looked after meanwhile. */
 #include "tools/grctl/shell/shell.h"
 
-static void on_readable(evutil_socket_t fd, short what, void *ctx)
-{
-    bool *readable = ctx;
-    (void)fd;
-    (void)what;
-    *readable = true;
-}
-
 volatile sig_atomic_t shell_noted;
 
 int shell_wait(void *s)
@@ -18,7 +10,7 @@ int shell_wait(void *s)
     evutil_socket_t fd = os_input_await();
     bool readable = fd == (evutil_socket_t)EVUTIL_INVALID_SOCKET;
     struct event *input =
-        readable ? NULL : event_new(link->base, fd, EV_READ, on_readable, &readable);
+        readable ? NULL : event_new(link->base, fd, EV_READ, conn_note, &readable);
     if (!input || event_add(input, NULL) != 0)
         readable = true; /* then the reading itself waits */
     conn_link_watch(link);
@@ -30,8 +22,7 @@ int shell_wait(void *s)
         if (event_base_loop(link->base, EVLOOP_ONCE) != 0)
             break;
     conn_link_unwatch(link);
-    if (input)
-        event_free(input);
+    conn_forget(input);
     return link->signal ? LINE_INTERRUPTED : link->news ? LINE_NEWS : 0;
 }
 

@@ -40,42 +40,41 @@ static bool target_of(const grobo_joint_info *info, double *target_rad)
     return info->has_target || told;
 }
 
+/* NULL is null. */
 static json_t *integer_or_null(bool known, long value)
 {
-    return known ? json_integer(value) : json_null();
+    return known ? json_integer(value) : NULL;
 }
 
-json_t *render_joint_json(const conn *c, int joint)
+static json_t *joint_json(const conn *c, int joint)
 {
     const grobo_joint *j = &model_of(c)->joints[joint];
     grobo_joint_info i;
     double target_rad;
-    bool fresh;
-    json_t *o = json_pack("{s:i,s:i,s:s}", "joint", joint, "motor", j->motor, "name", j->name);
     if (grobo_robot_joint(c->robot, joint, &i) < 0)
-        return o;
-    fresh = i.angle_age_us != GROBO_NEVER_US;
-    json_object_set_new(o, "angle_deg",
-                        fresh ? app_json_number(grobo_deg_from_rad(i.state.angle_rad), 1)
-                              : json_null());
-    json_object_set_new(o, "target_deg",
-                        target_of(&i, &target_rad)
-                            ? app_json_number(grobo_deg_from_rad(target_rad), 1)
-                            : json_null());
-    json_object_set_new(o, "torque", i.torque_known ? json_string(render_torque(&i)) : json_null());
-    json_object_set_new(o, "speed_dps",
-                        integer_or_null(has(&i, GROBO_FIELD_SPEED), i.state.speed_dps));
-    json_object_set_new(o, "current_ma",
-                        integer_or_null(has(&i, GROBO_FIELD_CURRENT), i.state.current_ma));
-    json_object_set_new(o, "temperature_c",
-                        integer_or_null(has(&i, GROBO_FIELD_TEMPERATURE), i.state.temperature_c));
-    json_object_set_new(o, "voltage_v",
-                        has(&i, GROBO_FIELD_VOLTAGE) ? app_json_number(i.state.voltage_mv / 1e3, 2)
-                                                     : json_null());
-    json_object_set_new(o, "age_ms",
-                        integer_or_null(fresh, fresh ? (long)(i.angle_age_us / 1000) : 0));
-    json_object_set_new(o, "status", app_json_code(grobo_error_name(i.status)));
-    return o;
+        return json_pack("{s:i,s:i,s:s}", "joint", joint, "motor", j->motor, "name", j->name);
+    bool fresh = i.angle_age_us != GROBO_NEVER_US, targeted = target_of(&i, &target_rad);
+    return json_pack(
+        "{s:i,s:i,s:s,s:o,s:o,s:s?,s:o?,s:o?,s:o?,s:o,s:o?,s:o}", "joint", joint, "motor", j->motor,
+        "name", j->name, "angle_deg",
+        app_json_number(fresh ? grobo_deg_from_rad(i.state.angle_rad) : NAN, 1), "target_deg",
+        app_json_number(targeted ? grobo_deg_from_rad(target_rad) : NAN, 1), "torque",
+        i.torque_known ? render_torque(&i) : NULL, "speed_dps",
+        integer_or_null(has(&i, GROBO_FIELD_SPEED), i.state.speed_dps), "current_ma",
+        integer_or_null(has(&i, GROBO_FIELD_CURRENT), i.state.current_ma), "temperature_c",
+        integer_or_null(has(&i, GROBO_FIELD_TEMPERATURE), i.state.temperature_c), "voltage_v",
+        app_json_number(has(&i, GROBO_FIELD_VOLTAGE) ? i.state.voltage_mv / 1e3 : NAN, 2), "age_ms",
+        integer_or_null(fresh, fresh ? (long)(i.angle_age_us / 1000) : 0), "status",
+        app_json_code(grobo_error_name(i.status)));
+}
+
+json_t *render_joints_json(const conn *c, grobo_joint_mask joints)
+{
+    json_t *list = json_array();
+    for (int j = 0; j < model_of(c)->n_joints; j++)
+        if (joints & GROBO_JOINT_BIT(j))
+            json_array_append_new(list, joint_json(c, j));
+    return list;
 }
 
 static void cell(bool known, int width, int decimals, double value)

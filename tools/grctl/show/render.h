@@ -5,8 +5,8 @@
 
 #include "tools/grctl/conn/conn.h"
 
-/* One joint as `status --json` promises it. */
-json_t *render_joint_json(const conn *c, int joint);
+/* The joints of a mask, as `status --json` promises them. */
+json_t *render_joints_json(const conn *c, grobo_joint_mask joints);
 
 /* The table of `status`; joints in the mask only. */
 void render_status(const conn *c, grobo_joint_mask joints);

@@ -9,7 +9,6 @@
 #include <errno.h>
 #include <string.h>
 
-#include <grobo/files.h>
 #include <grobo/serial.h>
 
 #include "tools/grctl/cli/file.h"
@@ -48,23 +47,13 @@ static size_t put_servo(const sim_state *s, int servo, char *text, size_t room)
 
 static int write_file(sim_state *s)
 {
-    const grobo_files *files = grobo_files_os();
-    static grobo_file file;
     char text[FILE_BYTES];
     size_t used = sizeof head - 1;
-    int error;
     memcpy(text, head, used);
     for (int i = 0; i < grobo_sim_servos(sim_of(s)); i++)
         used += put_servo(s, i, text + used, sizeof text - used);
     s->dirty = false;
-    error = files->create(&file, s->path, false);
-    if (error)
-        return error;
-    error = files->write(&file, text, used);
-    if (!error)
-        return files->commit(&file);
-    files->discard(&file);
-    return error;
+    return file_save(s->path, text, used);
 }
 
 static void keep(sim_state *s)

@@ -212,17 +212,22 @@ void os_unlock_file(os_lock *lock)
     close((int)lock->handle);
 }
 
+/* A file of the user's, below the folder of a variable, or the usual one at home. */
+static bool user_path(const char *variable, const char *usual, const char *name, char *path,
+                      size_t capacity)
+{
+    const char *folder = getenv(variable), *home = getenv("HOME");
+    int n = -1;
+    if (folder && *folder == '/')
+        n = snprintf(path, capacity, "%s/grctl/%s", folder, name);
+    else if (home && *home == '/')
+        n = snprintf(path, capacity, "%s/%s/grctl/%s", home, usual, name);
+    return n > 0 && (size_t)n < capacity;
+}
+
 bool os_state_path(const char *name, char *path, size_t capacity)
 {
-    const char *state = getenv("XDG_STATE_HOME"), *home = getenv("HOME");
-    int n;
-    if (state && *state == '/')
-        n = snprintf(path, capacity, "%s/grctl/%s", state, name);
-    else if (home && *home == '/')
-        n = snprintf(path, capacity, "%s/.local/state/grctl/%s", home, name);
-    else
-        return false;
-    if (n < 0 || (size_t)n >= capacity)
+    if (!user_path("XDG_STATE_HOME", ".local/state", name, path, capacity))
         return false;
     for (char *slash = strchr(path + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
         *slash = '\0';
@@ -235,15 +240,7 @@ bool os_state_path(const char *name, char *path, size_t capacity)
 
 bool os_config_path(int which, char *path, size_t capacity)
 {
-    const char *config = getenv("XDG_CONFIG_HOME"), *home = getenv("HOME");
-    int n;
-    if (which == 1)
-        n = snprintf(path, capacity, "/etc/grctl/config.yaml");
-    else if (config && *config == '/')
-        n = snprintf(path, capacity, "%s/grctl/config.yaml", config);
-    else if (home && *home == '/')
-        n = snprintf(path, capacity, "%s/.config/grctl/config.yaml", home);
-    else
-        return false;
-    return n > 0 && (size_t)n < capacity;
+    if (which == 0)
+        return user_path("XDG_CONFIG_HOME", ".config", "config.yaml", path, capacity);
+    return (size_t)snprintf(path, capacity, "/etc/grctl/config.yaml") < capacity;
 }
