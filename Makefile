@@ -90,7 +90,8 @@ EVENT_CFLAGS = $(call once,EVENT_CFLAGS,$(call flags,--cflags,libevent_core))
 CMOCKA_CFLAGS = $(call once,CMOCKA_CFLAGS,$(call flags,--cflags,cmocka))
 CMOCKA_LIBS = $(call once,CMOCKA_LIBS,$(call flags,--libs,cmocka))
 JSON_CFLAGS = $(call once,JSON_CFLAGS,$(call flags,--cflags,jansson))
-TOOL_LIBS = $(call once,TOOL_LIBS,$(call flags,--libs,jansson) $(EDIT_LIBS) $(SCREEN_LIBS))
+JSON_LIBS = $(call once,JSON_LIBS,$(call flags,--libs,jansson))
+TOOL_LIBS = $(call once,TOOL_LIBS,$(JSON_LIBS) $(EDIT_LIBS) $(SCREEN_LIBS))
 # The shell edits lines where libedit is there, else it reads them plainly.
 EDIT := $(if $(shell $(PKG_CONFIG) --exists libedit 2>/dev/null && echo yes),libedit,plain)
 EDIT_CFLAGS = $(if $(filter libedit,$(EDIT)),$(call once,EDIT_CFLAGS_FOUND,$(call flags,--cflags,libedit)))
@@ -474,7 +475,7 @@ $(BUILD)/run/grctl: $(GRCTL)
 
 $(sort $(TEST_PROGRAMS) $(DRIVER_PROGRAMS)): $(BUILD)/%$(EXE): $(BUILD)/%.o $(SUPPORT_LIB) $(TOOL_LIB) $(STATIC_LIB)
 	$(say) LD $@
-	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(CMOCKA_LIBS) $(LIBS)
+	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(CMOCKA_LIBS) $(JSON_LIBS) $(LIBS)
 
 $(FUZZ_REPLAYS): $(BUILD)/%$(EXE): $(BUILD)/%.o $(BUILD)/tests/support/replay_main.o $(TOOL_LIB) \
     $(STATIC_LIB)

@@ -12,6 +12,8 @@
 #include <grobo/board.h>
 #include <grobo/body_motion.h>
 #include <grobo/driver.h>
+#include <grobo/dxl2.h>
+#include <grobo/feetech.h>
 #include <grobo/interpolate.h>
 #include <grobo/motion_io.h>
 #include <grobo/rs30x.h>
@@ -190,6 +192,49 @@ static void body_motion_refuses_null(void **state)
     grobo_body_clip(body, true, NULL);
     REFUSES(grobo_body_frames(NULL, grobo_mem_default(), &made_motion));
     REFUSES(grobo_body_frames(body, grobo_mem_default(), NULL));
+}
+
+static void dxl_refuses_null(void **state)
+{
+    (void)state;
+    static grobo_dxl2_packet packet2;
+    static grobo_dxl1_packet packet1;
+    const grobo_servo_model *model = &grobo_sts_table.models[0];
+    const grobo_servo_register *reg = grobo_servo_register_of(model, GROBO_ROLE_GOAL);
+    REFUSES(grobo_dxl2_measure(NULL, 1, GROBO_ACCEPT_RETURNS));
+    REFUSES(grobo_dxl2_parse(NULL, 1, bytes, sizeof bytes, &packet2));
+    REFUSES(grobo_dxl2_parse(bytes, 1, NULL, sizeof bytes, &packet2));
+    REFUSES(grobo_dxl2_parse(bytes, 1, bytes, sizeof bytes, NULL));
+    REFUSES(grobo_dxl2_build(NULL, bytes, sizeof bytes));
+    REFUSES(grobo_dxl2_build(&packet2, NULL, sizeof bytes));
+    packet2.data_bytes = 1;
+    REFUSES(grobo_dxl2_build(&packet2, bytes, sizeof bytes));
+    REFUSES(grobo_dxl2_block(NULL, 30, 8, 4, &packet2));
+    REFUSES(grobo_dxl2_block(bytes, 30, 8, 4, NULL));
+    assert_int_equal(grobo_dxl2_crc(1, NULL, 4), 1);
+    REFUSES(grobo_dxl1_measure(NULL, 1, GROBO_ACCEPT_RETURNS));
+    REFUSES(grobo_dxl1_answer(NULL, 1, bytes, 1));
+    REFUSES(grobo_dxl1_answer(bytes, 1, NULL, 1));
+    REFUSES(grobo_dxl1_parse(NULL, 1, false, &packet1));
+    REFUSES(grobo_dxl1_parse(bytes, 1, false, NULL));
+    REFUSES(grobo_dxl1_build(NULL, bytes, sizeof bytes));
+    REFUSES(grobo_dxl1_build(&packet1, NULL, sizeof bytes));
+    packet1.data_bytes = 1;
+    REFUSES(grobo_dxl1_build(&packet1, bytes, sizeof bytes));
+    assert_null(grobo_servo_model_named(NULL, "STS3215"));
+    assert_null(grobo_servo_model_named(&grobo_sts_table, NULL));
+    assert_null(grobo_servo_model_numbered(NULL, 777));
+    assert_null(grobo_servo_register_row(NULL, 0));
+    assert_null(grobo_servo_register_named(NULL, "id"));
+    assert_null(grobo_servo_register_named(model, NULL));
+    assert_null(grobo_servo_register_at(NULL, 0));
+    assert_null(grobo_servo_register_of(NULL, GROBO_ROLE_ID));
+    assert_int_equal(grobo_servo_register_get(NULL, reg, bytes), 0);
+    assert_int_equal(grobo_servo_register_get(model, NULL, bytes), 0);
+    assert_int_equal(grobo_servo_register_get(model, reg, NULL), 0);
+    REFUSES(grobo_servo_register_put(NULL, reg, 0, bytes));
+    REFUSES(grobo_servo_register_put(model, NULL, 0, bytes));
+    REFUSES(grobo_servo_register_put(model, reg, 0, NULL));
 }
 
 static void driver_refuses_null(void **state)
@@ -497,6 +542,7 @@ int main(void)
         cmocka_unit_test(body_refuses_null),
         cmocka_unit_test(body_motion_refuses_null),
         cmocka_unit_test(driver_refuses_null),
+        cmocka_unit_test(dxl_refuses_null),
         cmocka_unit_test(interpolate_refuses_null),
         cmocka_unit_test(model_refuses_null),
         cmocka_unit_test(motion_refuses_null_in_its_first_functions),
