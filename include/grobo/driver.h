@@ -75,6 +75,8 @@ typedef struct grobo_joint_state {
 typedef struct grobo_target {
     grobo_posture posture;                   /**< checked: finite, within limits */
     int64_t joint_time_us[GROBO_JOINTS_MAX]; /**< by joint, multiples of the driver's time step */
+    double from_rad[GROBO_JOINTS_MAX];       /**< where each is when the frame leaves: families
+                                                  without a goal time make a speed of it */
 } grobo_target;
 
 /** A motion kept in the robot itself. */
@@ -138,6 +140,9 @@ struct grobo_driver {
     const grobo_model *model;       /**< joints, motors, limits */
     const grobo_protocol *protocol; /**< how its servos talk, and over what line */
     int64_t time_step_us;           /**< unit of a goal time on the wire, > 0 (RS30x: 10 ms) */
+    int64_t time_max_us;            /**< longest goal time of the wire, >= time_step_us, at most
+                                         GROBO_PLAY_TIME_MAX_US */
+    double angle_step_rad;          /**< goals are rounded to multiples of this, > 0 */
     grobo_safety_limits limits;     /**< safety limits of this robot */
     grobo_exit_policy on_exit;      /**< what GROBO_EXIT_DEFAULT stands for; not DEFAULT itself */
     bool arm;                       /**< its joints do not stand on each other, so that it may stop
@@ -145,6 +150,7 @@ struct grobo_driver {
     const double *rest_rad; /**< resting posture by joint for GROBO_EXIT_SIT; NULL: initial one */
     const grobo_readback *readback; /**< n_readback corrections, used if the engine is told to */
     uint8_t n_readback;
+    const void *family; /**< for the table's own functions */
 
     /** Is the robot there? Parts are tried one after the other until one is answered. */
     int (*check)(const grobo_driver *self, void *ctx, int part, grobo_exchange *exchange);
@@ -157,9 +163,15 @@ struct grobo_driver {
     /** Asks one joint for its state. @return 0 or an error. */
     int (*sense)(const grobo_driver *self, void *ctx, int joint, grobo_sense_kind kind,
                  grobo_exchange *exchange);
+    /** Asks several joints for their state in one exchange: each answers with a packet of its id,
+     *  or one packet that has an id of no servo answers for all. NULL: they are asked one by one.
+     *  @return 0 or an error. */
+    int (*sense_many)(const grobo_driver *self, void *ctx, grobo_joint_mask joints,
+                      grobo_sense_kind kind, grobo_exchange *exchange);
     /**
      * Reads what a joint returned; the packet has been checked against the exchange's reply.
-     * Sets the fields it finds and their bits in state->valid. @return 0 or an error.
+     * Sets the fields it finds and their bits in state->valid. @return 0 or an error: a joint that
+     * is read with one was never sensed, so that it is not moved either.
      */
     int (*parse)(const grobo_driver *self, void *ctx, int joint, const grobo_packet *reply,
                  grobo_joint_state *state);

@@ -75,8 +75,8 @@ static void take_move(grobo_robot *robot, int joint, const grobo_joint_state *go
  * what the fastest one does while a frame is on its way. */
 #define OFF_WAY_RAD (12 * 0.017453292519943295)
 
-/* The goals of a way are on the wire's grid. */
-#define SAME_GOAL_RAD (0.06 * 0.017453292519943295)
+/* The goals of a way are on the wire's grid: this part of its step is no other goal. */
+#define SAME_GOAL_STEPS 0.6
 
 /* True if the servo has told since the last frame that its goal is another one; or did so before
  * this reading, and does not move but on the way it told of then. */
@@ -86,7 +86,8 @@ static bool has_not_taken(const grobo_robot *robot, const grobo_robot_axis *axis
     bool as_told = abs(got->speed_dps) < GROBO_I_SLOW_DPS || axis->own_until_us > robot->now_us;
     bool before = axis->goal_us != GROBO_NEVER_US && axis->goal_us >= axis->told_us && as_told;
     bool told = (got->valid & GROBO_FIELD_GOAL) != 0 || before;
-    return told && fabs(axis->state.goal_rad - axis->way.to_rad) > SAME_GOAL_RAD;
+    double same_rad = SAME_GOAL_STEPS * robot->driver->angle_step_rad;
+    return told && fabs(axis->state.goal_rad - axis->way.to_rad) > same_rad;
 }
 
 /* A joint that stands still, or creeps, beside its way has lost the frame, and so has one whose

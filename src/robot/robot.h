@@ -359,6 +359,8 @@ void grobo_i_move_retarget(grobo_robot *robot, const grobo_posture *target);
  * the events. */
 void grobo_i_enter(grobo_robot *robot, int64_t now_us);
 void grobo_i_leave(grobo_robot *robot);
+/* One of several joints has answered: grobo_robot.each. */
+void grobo_i_reply_came(grobo_robot_slot *slot, const grobo_packet *reply);
 /* A frame is over: grobo_robot.over. The slot is a copy. */
 void grobo_i_frame_over(grobo_robot_slot *slot, int result, const grobo_packet *reply);
 
