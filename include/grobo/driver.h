@@ -151,6 +151,8 @@ struct grobo_driver {
     const grobo_readback *readback; /**< n_readback corrections, used if the engine is told to */
     uint8_t n_readback;
     const void *family; /**< for the table's own functions */
+    bool all_first;     /**< a joint's first reading is always a GROBO_SENSE_ALL, in which parse()
+                             looks at how its servo is set up */
 
     /** Is the robot there? Parts are tried one after the other until one is answered. */
     int (*check)(const grobo_driver *self, void *ctx, int part, grobo_exchange *exchange);
@@ -226,6 +228,34 @@ GROBO_API grobo_wiring grobo_driver_wiring(const grobo_driver *driver);
  */
 GROBO_API int grobo_rs30x_driver_init(grobo_driver *driver, const grobo_model *model,
                                       const grobo_protocol *protocol);
+
+/**
+ * Fills a table for a robot of DYNAMIXEL X servos (Protocol 2.0). grobo_joint.servo_model names the
+ * servo by its model number. Goals come with a duration, which the servo takes for a profile: its
+ * drive mode must be 4 (time, not reversed), and its operating mode 3, or 4 for a joint of several
+ * turns, or 5. All joints are read in one frame. Torque on does not move a servo whose goal is where
+ * it stands; whether it keeps an old goal depends on its firmware, so that the engine always sets
+ * it. An error of its register shutdown cuts the torque until a reboot.
+ * Limits: 65 deg C, 5 lost replies, 60 deg/s for the first move; exit policy hold; an arm.
+ * @param[out] driver the caller's table; change what is different in it afterwards.
+ * @param model borrowed.
+ * @return 0, or GROBO_ERR_ARG: a bad model, a servo that is not known, a joint beyond its reach.
+ * Joints whose servo is set up otherwise are read with GROBO_ERR_SETUP, and never move.
+ */
+GROBO_API int grobo_dxl2_driver_init(grobo_driver *driver, const grobo_model *model);
+
+/** The same for AX and MX servos with Protocol 1.0. They have no time of a move: its speed is that
+ *  of the whole way. Joints are read one by one. An error of the register shutdown sets the torque
+ *  limit to 0, which counts as torque lost. */
+GROBO_API int grobo_dxl1_driver_init(grobo_driver *driver, const grobo_model *model);
+
+/**
+ * The same for Feetech's STS, SMS and SCS servos. STS have no time of a move but a speed, counted in
+ * single steps (bit 2 of the register phase); all joints of STS are read in one frame. Torque on
+ * with an old goal runs there: the engine sets the goal before. An overload bounds the output until
+ * there is another goal or torque was off; it counts neither as heat nor as torque lost.
+ */
+GROBO_API int grobo_feetech_driver_init(grobo_driver *driver, const grobo_model *model);
 
 /**
  * The table of HPI's GR001.

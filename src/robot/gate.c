@@ -261,6 +261,9 @@ static int judge_raw(grobo_robot *robot, const grobo_exchange *exchange, saying 
     const grobo_driver *driver = robot->driver;
     const grobo_target *target = &says->target;
     grobo_joint_mask on;
+    for (int j = 0; j < driver->model->n_joints; j++) {
+        says->target.from_rad[j] = grobo_i_axis_commanded(&robot->axes[j], robot->now_us);
+    }
     int result = driver->inspect(driver, robot->driver_ctx, exchange->frame, exchange->frame_bytes,
                                  &says->target, says->torqued);
     if (result >= 0) {

@@ -185,7 +185,8 @@ static grobo_sense_kind kind_of(const grobo_robot *robot, int joint)
     if ((robot->free_joints & GROBO_JOINT_BIT(joint)) != 0) {
         return GROBO_SENSE_ALL;
     }
-    if (robot->free_joints == 0 && robot->config.sense_position_only) {
+    bool first = robot->driver->all_first && !robot->axes[joint].sensed;
+    if (robot->free_joints == 0 && robot->config.sense_position_only && !first) {
         return GROBO_SENSE_POSITION;
     }
     return robot->axes[joint].sensed ? GROBO_SENSE_FULL : GROBO_SENSE_ALL;
@@ -209,9 +210,11 @@ static int ask_all(grobo_robot *robot, grobo_robot_slot *slot)
     const grobo_driver *driver = robot->driver;
     grobo_joint_mask all = grobo_i_all_joints(robot);
     int unknown;
-    grobo_sense_kind kind = robot->config.sense_position_only          ? GROBO_SENSE_POSITION
-                            : grobo_i_all_sensed(robot, all, &unknown) ? GROBO_SENSE_FULL
-                                                                       : GROBO_SENSE_ALL;
+    bool first = !grobo_i_all_sensed(robot, all, &unknown);
+    bool angles = robot->config.sense_position_only && !(first && driver->all_first);
+    grobo_sense_kind kind = angles  ? GROBO_SENSE_POSITION
+                            : first ? GROBO_SENSE_ALL
+                                    : GROBO_SENSE_FULL;
     robot->sense_us = grobo_i_later(robot->sense_us + interval_of(robot), robot->now_us);
     robot->round = 0;
     slot->many = true;
