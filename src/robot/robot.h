@@ -44,6 +44,8 @@ grobo_joint_mask grobo_i_all_joints(const grobo_robot *robot);
 
 /* The first of these joints, of which there is one at least. */
 int grobo_i_lowest(grobo_joint_mask joints);
+/* Goals that differ by no more are the same on the wire. */
+double grobo_i_same_goal_rad(const grobo_robot *robot);
 /* Where a way is by then. */
 double grobo_i_way_at(const grobo_robot_way *way, int64_t now_us);
 /* Where a joint is by now on the move it was sent on. */
