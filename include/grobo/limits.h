@@ -57,6 +57,10 @@
 #ifndef GROBO_SIM_FIFO_BYTES
 #define GROBO_SIM_FIFO_BYTES 512
 #endif
+/** Longest packet that simulated servos hear. */
+#ifndef GROBO_SIM_EAR_BYTES
+#define GROBO_SIM_EAR_BYTES 1024
+#endif
 /** Replies under way at the same time on the simulated servos' bus. */
 #define GROBO_SIM_TALKS_MAX 8
 

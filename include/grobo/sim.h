@@ -20,6 +20,7 @@
 
 #include <grobo/board.h>
 #include <grobo/model.h>
+#include <grobo/registers.h>
 #include <grobo/rs30x.h>
 
 GROBO_BEGIN_DECLS
@@ -127,6 +128,12 @@ GROBO_API const grobo_sim_type *grobo_sim_type_row(size_t index);
 /** The servo called name[0..length-1], in any case; NULL for none. Static storage; thread safe. */
 GROBO_API const grobo_sim_type *grobo_sim_type_named(const char *name, size_t length);
 
+/** How the servos of a family talk, what they remember and do. Private. */
+typedef struct grobo_sim_family grobo_sim_family;
+
+/** Futaba RS30x. A simulator knows them without being told. */
+GROBO_API extern const grobo_sim_family grobo_sim_rs30x;
+
 /* ---- configuration -------------------------------------------------------------------------- */
 
 /** Where the limp joints are at power-up. */
@@ -138,9 +145,13 @@ typedef enum grobo_sim_start {
 
 /** Zero in a field means its default. */
 typedef struct grobo_sim_config {
-    const grobo_model *model;  /**< NULL: GR001. Borrowed for the life of the simulator */
-    grobo_wiring wiring;       /**< default: board */
-    uint32_t baud_bps;         /**< board: its host port; bus: the servos' line. 115200 */
+    const grobo_model *model; /**< NULL: GR001. Borrowed for the life of the simulator */
+    grobo_wiring wiring;      /**< default: board */
+    const grobo_servo_model *const *servos;  /**< bus: of each joint, NULL: an RS30x, the joint's
+                                                 servo_model; NULL: all are RS30x. Borrowed */
+    const grobo_sim_family *const *families; /**< of those servos, NULL behind the last. Borrowed */
+    uint32_t baud_bps;         /**< board: its host port; bus: the servos' line. 115200; 1000000
+                                    where the first servo is no RS30x */
     bool unpaced;              /**< bytes take no time on any wire */
     uint32_t seed;             /**< of every random choice */
     grobo_sim_start start;     /**< posture at power-up */
@@ -204,8 +215,25 @@ typedef struct grobo_sim_view {
 
 /* ---- the simulator -------------------------------------------------------------------------- */
 
-/** Registers No.4-29, those that flash keeps. */
+/** Registers No.4-29 of an RS30x, those that flash keeps. */
 #define GROBO_SIM_FLASH_BYTES 26
+/** Bytes of registers of a servo, and those of them that survive power-off. Private. */
+#define GROBO_SIM_REGISTER_BYTES 160
+#define GROBO_SIM_KEPT_BYTES 64
+/** Families on one line. Private. */
+#define GROBO_SIM_FAMILIES_MAX 4
+
+/** What a servo wants and can do, by its registers. Private. */
+typedef struct grobo_sim_plant {
+    /* private */
+    double heat_c_per_ma2;     /* above ambient, of a current that lasts */
+    int32_t goal_mdeg;         /* where it wants its shaft */
+    int32_t speed_mdeg_s;      /* without load at nominal_mv */
+    int32_t stall_ma, most_ma; /* at a stop: by the motor, by the registers */
+    int32_t limit_c, nominal_mv;
+    uint8_t torque; /* grobo_torque */
+    uint8_t id;
+} grobo_sim_plant;
 
 /** One servo. Private: use the functions. */
 typedef struct grobo_sim_servo {
@@ -222,10 +250,13 @@ typedef struct grobo_sim_servo {
     int32_t stop_min_mdeg, stop_max_mdeg; /* mechanical stops */
     int32_t load_ma;                      /* extra current of a hand or a weight */
     int32_t baud_bps;                     /* of register BAUD at the last restart */
-    uint8_t reg[GROBO_REGISTERS];         /* present values are filled in when read */
-    uint8_t flash[GROBO_SIM_FLASH_BYTES];
-    uint8_t status; /* flags of the next return packet */
-    uint8_t cable;  /* grobo_sim_cable */
+    const grobo_sim_family *family;
+    const grobo_servo_model *model;        /* NULL: an RS30x */
+    grobo_sim_plant plant;                 /* follows the registers */
+    uint8_t reg[GROBO_SIM_REGISTER_BYTES]; /* present values are filled in when read */
+    uint8_t flash[GROBO_SIM_KEPT_BYTES];   /* registers that survive power-off */
+    uint8_t status;                        /* flags of the next return packet */
+    uint8_t cable;                         /* grobo_sim_cable */
     bool powered, blocked, stalled, by_hand, reboots_after_save;
 } grobo_sim_servo;
 
@@ -245,6 +276,14 @@ typedef struct grobo_sim_talk {
     uint16_t used, said;
     uint8_t byte[GROBO_REPLY_MAX_BYTES];
 } grobo_sim_talk;
+
+/** What servos of a family hear: one for all, as they hear the same. Private. */
+typedef struct grobo_sim_ear {
+    /* private */
+    const grobo_sim_family *family;
+    uint16_t used;
+    uint8_t byte[GROBO_SIM_EAR_BYTES];
+} grobo_sim_ear;
 
 /** What the board is doing. Private. */
 typedef enum grobo_sim_board_state {
@@ -285,8 +324,9 @@ typedef struct grobo_sim {
     uint8_t got[UINT8_MAX]; /* of the reply */
     uint8_t got_used;
 
-    grobo_rs30x_parser bus; /* what the servos hear: one for all, as they hear the same */
-    int64_t bus_heard_ns;   /* end of the last byte they heard */
+    grobo_sim_ear ear[GROBO_SIM_FAMILIES_MAX];
+    uint8_t n_ears;
+    int64_t bus_heard_ns;                     /* end of the last byte they heard */
     grobo_sim_talk talk[GROBO_SIM_TALKS_MAX]; /* used 0: free */
 } grobo_sim;
 

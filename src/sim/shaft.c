@@ -6,16 +6,15 @@
 #include <math.h>
 
 #include "src/base/assert.h"
+#include "src/sim/family.h"
 #include "src/sim/note.h"
-#include "src/sim/registers.h"
 #include "src/sim/shaft.h"
 
 /* Assumptions (docs/simulator.md): mA of the circuit, of holding, of moving at full speed. */
 #define IDLE_MA 6
 #define HOLD_MA 40
 #define MOVE_MA 260
-/* Copper loss: degrees above ambient for a current that lasts, and how fast they come. */
-#define HEAT_C_PER_MA2 8.5e-5
+/* How fast the heat of a current comes. */
 #define HEAT_TAU_US 300e6
 
 #define MDEG_PER_RAD (180000.0 / 3.14159265358979323846)
@@ -30,17 +29,6 @@ static int32_t round_div(int64_t n, int64_t d)
 int32_t grobo_i_sim_mdeg_of_rad(double angle_rad)
 {
     return (int32_t)lround(angle_rad * MDEG_PER_RAD);
-}
-
-int32_t grobo_i_sim_ddeg(const grobo_sim_servo *servo, int32_t mdeg)
-{
-    int32_t ddeg = round_div(mdeg, 100);
-    return servo->reg[GROBO_RS30X_REVERSE] ? -ddeg : ddeg;
-}
-
-static int32_t mdeg_of_ddeg(const grobo_sim_servo *servo, int32_t ddeg)
-{
-    return (servo->reg[GROBO_RS30X_REVERSE] ? -ddeg : ddeg) * 100;
 }
 
 bool grobo_i_sim_moving(const grobo_sim_servo *servo, int64_t t_us)
@@ -110,7 +98,7 @@ void grobo_i_sim_drive(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
     grobo_i_sim_halt(sim, index);
-    int32_t goal_mdeg = mdeg_of_ddeg(servo, grobo_i_sim_value(servo, GROBO_RS30X_GOAL));
+    int32_t goal_mdeg = servo->plant.goal_mdeg;
     if (!servo->blocked) {
         servo->to_mdeg = clamp(goal_mdeg, servo->stop_min_mdeg, servo->stop_max_mdeg);
     }
@@ -121,7 +109,7 @@ void grobo_i_sim_drive(grobo_sim *sim, int index)
     if (wanted == 0) {
         return;
     }
-    int64_t speed = (int64_t)grobo_i_sim_type_of(servo)->speed_mdeg_s * sim->supply_mv / 7400;
+    int64_t speed = (int64_t)servo->plant.speed_mdeg_s * sim->supply_mv / servo->plant.nominal_mv;
     int64_t least_us = speed > 0 ? wanted * 1000000 / speed : 0;
     int64_t left_us = servo->due_us - sim->now_us;
     servo->plan_us = left_us > least_us ? left_us : least_us;
@@ -132,7 +120,7 @@ void grobo_i_sim_drive(grobo_sim *sim, int index)
 void grobo_i_sim_go_on(grobo_sim *sim, int index)
 {
     const grobo_sim_servo *servo = &sim->servo[index];
-    if (servo->powered && !servo->by_hand && servo->reg[GROBO_RS30X_TORQUE] == GROBO_TORQUE_ON) {
+    if (servo->powered && !servo->by_hand && servo->plant.torque == GROBO_TORQUE_ON) {
         grobo_i_sim_drive(sim, index);
     }
 }
@@ -142,7 +130,7 @@ void grobo_i_sim_go_on(grobo_sim *sim, int index)
 void grobo_i_sim_torque(grobo_sim *sim, int index, grobo_torque before)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    grobo_torque torque = (grobo_torque)servo->reg[GROBO_RS30X_TORQUE];
+    grobo_torque torque = (grobo_torque)servo->plant.torque;
     if (torque == before) {
         return;
     }
@@ -150,10 +138,9 @@ void grobo_i_sim_torque(grobo_sim *sim, int index, grobo_torque before)
     if (!servo->by_hand) {
         grobo_i_sim_halt(sim, index);
     }
-    if (on && !sim->config.jump_on_torque) {
-        int32_t here_mdeg = grobo_i_sim_angle_mdeg(servo, sim->now_us);
-        grobo_i_sim_hold(servo, GROBO_RS30X_GOAL, grobo_i_sim_ddeg(servo, here_mdeg));
-    } else if (on && !servo->by_hand) { /* from under a hand at the end of its way */
+    int32_t here_mdeg = grobo_i_sim_angle_mdeg(servo, sim->now_us);
+    bool starts = on && servo->family->starts(sim, index, here_mdeg);
+    if (starts && !servo->by_hand) { /* from under a hand at the end of its way */
         servo->due_us = sim->now_us;
         grobo_i_sim_drive(sim, index);
         servo->begun_us = sim->now_us;
@@ -168,15 +155,14 @@ int32_t grobo_i_sim_current_ma(const grobo_sim_servo *servo, int64_t t_us)
     if (!servo->powered) {
         return 0;
     }
-    if (servo->reg[GROBO_RS30X_TORQUE] != GROBO_TORQUE_ON) {
+    if (servo->plant.torque != GROBO_TORQUE_ON) {
         return IDLE_MA;
     }
-    const grobo_sim_type *type = grobo_i_sim_type_of(servo);
-    int32_t most_ma = type->stall_ma * servo->reg[GROBO_RS30X_MAX_TORQUE] / 100;
+    int32_t most_ma = servo->plant.most_ma;
     int32_t ma = HOLD_MA + servo->load_ma;
     if (grobo_i_sim_moving(servo, t_us)) {
         ma += (int32_t)((int64_t)MOVE_MA * grobo_i_sim_speed_dps(servo, t_us) * 1000 /
-                        type->speed_mdeg_s);
+                        servo->plant.speed_mdeg_s);
     } else if (servo->stalled) {
         ma = most_ma;
     }
@@ -186,8 +172,7 @@ int32_t grobo_i_sim_current_ma(const grobo_sim_servo *servo, int64_t t_us)
 static void overheat(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    servo->reg[GROBO_RS30X_TORQUE] = GROBO_TORQUE_OFF;
-    servo->status |= GROBO_RS30X_STATUS_OVERHEATED;
+    servo->family->cut(sim, index, true);
     grobo_i_sim_note(sim, GROBO_SIM_OVERHEAT, index, (int32_t)lround(servo->temperature_c));
     grobo_i_sim_torque(sim, index, GROBO_TORQUE_ON);
 }
@@ -199,9 +184,9 @@ static void warm_once(grobo_sim *sim, int index, int64_t until_us)
     int64_t from_us = servo->settled_us, end_us = servo->start_us + servo->move_us;
     int64_t to_us = from_us < end_us && end_us < until_us ? end_us : until_us;
     double ma = grobo_i_sim_current_ma(servo, from_us);
-    double last_c = sim->config.ambient_c + HEAT_C_PER_MA2 * ma * ma;
-    double limit_c = grobo_i_sim_value(servo, GROBO_RS30X_TEMPERATURE_LIMIT);
-    bool on = servo->powered && servo->reg[GROBO_RS30X_TORQUE] != GROBO_TORQUE_OFF;
+    double last_c = sim->config.ambient_c + servo->plant.heat_c_per_ma2 * ma * ma;
+    double limit_c = servo->plant.limit_c;
+    bool on = servo->powered && servo->plant.torque != GROBO_TORQUE_OFF;
     bool cut = on && servo->temperature_c >= limit_c;
     if (on && !cut && last_c > limit_c) {
         double left_us = HEAT_TAU_US * log((last_c - servo->temperature_c) / (last_c - limit_c));
