@@ -34,7 +34,7 @@ typedef enum grobo_sense_kind {
 /** One frame to send and the reply it waits for. Plain data. */
 typedef struct grobo_exchange {
     uint8_t frame[GROBO_FRAME_MAX_BYTES]; /**< what is sent */
-    uint8_t frame_bytes;                  /**< how much of it */
+    uint16_t frame_bytes;                 /**< how much of it */
     grobo_reply reply;                    /**< what must come back */
     int64_t settle_us;                    /**< silence the device needs afterwards, 0: none */
 } grobo_exchange;
@@ -85,9 +85,9 @@ typedef enum grobo_stored_kind {
 
 /** A register transfer of one servo. */
 typedef struct grobo_register_io {
-    uint8_t id;          /**< servo id, 1..127 */
-    uint8_t address;     /**< first register */
-    uint8_t length;      /**< bytes, 1..GROBO_REGISTERS - address */
+    uint8_t id;          /**< servo id, as its protocol has them */
+    uint16_t address;    /**< first register */
+    uint16_t length;     /**< bytes, > 0 */
     const uint8_t *data; /**< bytes to write, or NULL to read */
 } grobo_register_io;
 
@@ -165,7 +165,8 @@ struct grobo_driver {
                  grobo_joint_state *state);
     /** What writing these registers would do; the worst counts. Must be there with `registers`. */
     grobo_write_kind (*write_kind)(const grobo_driver *self, const grobo_register_io *io);
-    /** Reads or writes registers of one servo. @return 0 or an error. */
+    /** Reads or writes registers of one servo. @return 0 or an error: GROBO_ERR_ARG where there are
+     *  no such registers. */
     int (*registers)(const grobo_driver *self, void *ctx, const grobo_register_io *io,
                      grobo_exchange *exchange);
     /** Flash, reboot, factory reset; sets exchange->settle_us. @return 0 or an error. */

@@ -23,7 +23,7 @@ typedef struct grobo_joint {
     double init_rad;          /**< angle in the initial posture */
     uint16_t servo_model;     /**< register No.0-1 of the servo, 0 where it does not matter */
     uint16_t free_current_ma; /**< free (teaching) mode brakes above this current, 0: never */
-    uint8_t motor;            /**< id on the wire, 1..127 */
+    uint8_t motor;            /**< id on the wire, 0..GROBO_SERVO_ID_MAX */
     uint8_t mirror;           /**< joint that takes this one's place in the mirror, or itself */
     int8_t mirror_sign;       /**< +1 or -1: sign of the angle in the mirror */
 } grobo_joint;
@@ -49,9 +49,9 @@ typedef struct grobo_model {
 } grobo_model;
 
 /**
- * Checks a table: counts within caps, names present and unique, motors unique and within 1..127,
- * limits finite with min <= init <= max, speed > 0, mirrors pairing up with equal signs, a slack
- * within its range.
+ * Checks a table: counts within caps, names present and unique, motors unique and within
+ * 0..GROBO_SERVO_ID_MAX (its family may have fewer: grobo_driver_check()), limits finite with
+ * min <= init <= max, speed > 0, mirrors pairing up with equal signs, a slack within its range.
  * @return 0, or GROBO_ERR_ARG. Pure; thread safe.
  */
 GROBO_API int grobo_model_check(const grobo_model *model);
@@ -68,7 +68,7 @@ GROBO_API double grobo_model_take_slack(const grobo_model *model, int joint, dou
 /** Joint moved by a motor. @return joint 0..n-1, or GROBO_ERR_NOTFOUND. Thread safe. */
 GROBO_API int grobo_model_joint_of_motor(const grobo_model *model, int motor);
 
-/** Motor of a joint. @return motor id 1..127, or GROBO_ERR_ARG. Thread safe. */
+/** Motor of a joint. @return motor id, or GROBO_ERR_ARG. Thread safe. */
 GROBO_API int grobo_model_motor_of_joint(const grobo_model *model, int joint);
 
 /**

@@ -159,8 +159,6 @@ typedef struct grobo_robot_task {
     int64_t begun_us; /* when it started */
     int64_t until_us; /* end of waiting */
     int64_t bound_us; /* end of patience */
-    grobo_register_io io;
-    uint8_t data[GROBO_REGISTERS];
 } grobo_robot_task;
 
 /** A robot engine. Caller storage; read it through the functions below. */
@@ -196,7 +194,7 @@ typedef struct grobo_robot {
     grobo_joint_mask free_joints;
     grobo_joint_mask played_joints; /* sent where they go by the sequencer */
     grobo_joint_mask other_round;   /* in free mode: of the joints that are not free */
-    uint8_t reply[GROBO_REGISTERS];
+    uint8_t reply[GROBO_FRAME_MAX_BYTES];
     double fault_deg;
     int fault_joint;
     int last_number;

@@ -39,8 +39,7 @@ static int small_number(const char *text, size_t length)
 static bool is_joint_good(const grobo_model *model, int j)
 {
     const grobo_joint *joint = &model->joints[j];
-    if (joint->name == NULL || joint->name[0] == '\0' || joint->motor < 1 ||
-        joint->motor > GROBO_SERVO_ID_MAX) {
+    if (joint->name == NULL || joint->name[0] == '\0' || joint->motor > GROBO_SERVO_ID_MAX) {
         return false;
     }
     if (!isfinite(joint->min_rad) || !isfinite(joint->max_rad) ||

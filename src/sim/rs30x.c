@@ -320,8 +320,8 @@ static void speak_registers(grobo_sim *sim, int index, const grobo_reply *want)
     const grobo_rs30x_packet packet = {.kind = GROBO_RS30X_RETURN,
                                        .id = servo->reg[GROBO_RS30X_ID],
                                        .flags = status_flags(servo),
-                                       .address = want->address,
-                                       .length = want->length,
+                                       .address = (uint8_t)want->address,
+                                       .length = (uint8_t)want->length,
                                        .count = 1,
                                        .data = &servo->reg[want->address],
                                        .data_bytes = want->length};

@@ -99,6 +99,7 @@ static void bus_refuses_null(void **state)
     REFUSES(grobo_bus_tx(&bus, 1000, NULL, sizeof bytes));
     assert_true(grobo_bus_deadline(NULL, 1000) == GROBO_NEVER_US);
     grobo_bus_reserve(NULL, 0, 0);
+    assert_false(grobo_bus_several(NULL, NULL));
     assert_false(grobo_bus_fits(NULL, 1000, &txn));
     assert_false(grobo_bus_fits(&bus, 1000, NULL));
     assert_true(grobo_bus_free_at(NULL, 1000) == GROBO_NEVER_US);

@@ -262,8 +262,7 @@ static void a_faulty_joint_is_refused(void **state)
     assert_refused(arm[0].name = NULL);
     assert_refused(arm[0].name = "");
     assert_refused(arm[0].name = "right");
-    assert_refused(arm[0].motor = 0);
-    assert_refused(arm[0].motor = 128);
+    assert_refused(arm[0].motor = GROBO_SERVO_ID_MAX + 1);
     assert_refused(arm[0].motor = 2);
     assert_refused(arm[1].min_rad = (double)NAN);
     assert_refused(arm[1].max_rad = (double)INFINITY);

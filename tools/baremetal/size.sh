@@ -22,11 +22,13 @@ work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 : >"$work/now"
 
-# What belongs together. Codec, bus and sequencer need of the others only postures.
-rooms='codec bus sequencer names postures robot engine simulator'
+# What belongs together. Codec, bus and sequencer need of the others only postures; several replies to
+# one frame are linked by families that have them, and RS30x has none.
+rooms='codec bus several sequencer names postures robot engine simulator'
 codec='servo/gr001/board servo/rs30x/frame bus/framer servo/rs30x/build servo/rs30x/parse
     servo/rs30x/state'
 bus='bus/bus bus/queue bus/receive bus/time base/instant'
+several='bus/several'
 sequencer='play/sequencer play/clip play/info'
 names='base/error servo/rs30x/registers play/names base/version'
 postures='model/posture model/model model/interpolate'

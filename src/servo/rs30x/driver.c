@@ -20,7 +20,7 @@ static int finish(const grobo_driver *self, int size, grobo_exchange *exchange)
     if (size < 0) {
         return size;
     }
-    exchange->frame_bytes = (uint8_t)size;
+    exchange->frame_bytes = (uint16_t)size;
     int reply = self->protocol->reply_to(exchange->frame, (size_t)size, &exchange->reply);
     return reply < 0 ? reply : GROBO_OK;
 }
@@ -175,7 +175,8 @@ int grobo_i_rs30x_parse(const grobo_driver *self, void *ctx, int joint, const gr
     (void)ctx;
     (void)joint;
     grobo_rs30x_state got;
-    int found = grobo_rs30x_state_decode(reply->address, reply->data, reply->data_bytes, &got);
+    int found =
+        grobo_rs30x_state_decode((uint8_t)reply->address, reply->data, reply->data_bytes, &got);
     if (found <= 0 || !plausible(&got)) {
         return GROBO_ERR_MISMATCH;
     }
@@ -226,16 +227,21 @@ int grobo_i_rs30x_registers(const grobo_driver *self, void *ctx, const grobo_reg
     (void)ctx;
     uint8_t *buf = exchange->frame;
     size_t cap = sizeof exchange->frame;
+    if (io->address + io->length > GROBO_REGISTERS) {
+        return GROBO_ERR_ARG;
+    }
+    const uint8_t address = (uint8_t)io->address;
+    const uint8_t length = (uint8_t)io->length;
     if (io->data == NULL) {
-        int size = grobo_frame_read(self->protocol, io->id, io->address, io->length, buf, cap);
+        int size = grobo_frame_read(self->protocol, io->id, address, length, buf, cap);
         return finish(self, size, exchange);
     }
     grobo_rs30x_packet packet = {
         .kind = GROBO_RS30X_SHORT,
         .id = io->id,
         .flags = GROBO_RS30X_WANT_ACK,
-        .address = io->address,
-        .length = io->length,
+        .address = address,
+        .length = length,
         .count = 1,
         .data = io->data,
         .data_bytes = io->length,

@@ -23,13 +23,13 @@ static const cli_option options[] = {
                    .value = "ID",
                    .help = "begin with this id (1)",
                    .min = 1,
-                   .max = GROBO_SERVO_ID_MAX},
+                   .max = GROBO_RS30X_ID_MAX},
     [OPT_LAST] = {.name = "last",
                   .kind = CLI_NUMBER,
                   .value = "ID",
                   .help = "end with this id (127)",
                   .min = 1,
-                  .max = GROBO_SERVO_ID_MAX},
+                  .max = GROBO_RS30X_ID_MAX},
 };
 
 typedef struct found {
@@ -96,10 +96,10 @@ static void report_failed(found *f, int id, int baud_bps, int error)
 /* One baud rate. Every whole reply on the line counts for its servo, whenever it comes. */
 typedef struct pass {
     found *f;
-    bool there[GROBO_SERVO_ID_MAX + 1];
-    int why[GROBO_SERVO_ID_MAX + 1]; /* the error of one that answered in no way that fits, or 0 */
-    uint8_t identity[GROBO_SERVO_ID_MAX + 1][IDENTITY_BYTES];
-    int64_t asked_us[GROBO_SERVO_ID_MAX + 1];
+    bool there[GROBO_RS30X_ID_MAX + 1];
+    int why[GROBO_RS30X_ID_MAX + 1]; /* the error of one that answered in no way that fits, or 0 */
+    uint8_t identity[GROBO_RS30X_ID_MAX + 1][IDENTITY_BYTES];
+    int64_t asked_us[GROBO_RS30X_ID_MAX + 1];
     int baud_bps, first, last, asking;
     int64_t heard_us;             /* when the last byte came, 0: none has */
     int64_t worst_us;             /* the longest that a reply took */
@@ -306,7 +306,7 @@ static int scan_ids(conn *c, found *f, int baud_bps)
     pass p = {.f = f,
               .baud_bps = baud_bps,
               .first = (int)app_number(c->a, OPT_FIRST, 1),
-              .last = (int)app_number(c->a, OPT_LAST, GROBO_SERVO_ID_MAX)};
+              .last = (int)app_number(c->a, OPT_LAST, GROBO_RS30X_ID_MAX)};
     int error = ask_all(c, f, &p);
     for (int id = p.first; id <= p.last; id++) {
         if (p.there[id])
@@ -374,7 +374,7 @@ static int run_scan(app *a)
     if (app_option(a, OPT_ALL_BAUD)->given && app_global(a, GLOBAL_WIRING)->choice != 1)
         return app_fail(a, EXIT_USAGE, "ARG",
                         "scan: --all-baud needs --wiring bus: the board knows one rate only");
-    if (app_number(a, OPT_FIRST, 1) > app_number(a, OPT_LAST, GROBO_SERVO_ID_MAX))
+    if (app_number(a, OPT_FIRST, 1) > app_number(a, OPT_LAST, GROBO_RS30X_ID_MAX))
         return app_fail(a, EXIT_USAGE, "ARG", "scan: --first is behind --last");
     status = conn_open_unchecked(&c, a);
     if (!status && app_option(a, OPT_ALL_BAUD)->given && grobo_session_sim(c.session))

@@ -332,7 +332,7 @@ int words_i_expects(const frame *f, grobo_reply *reply)
 {
     grobo_reply inner;
     int known;
-    *reply = (grobo_reply){GROBO_REPLY_NONE, 0, 0, 0};
+    *reply = (grobo_reply){.kind = GROBO_REPLY_NONE};
     if (!is_command(f))
         return GROBO_ERR_TYPE;
     known = frame_reply(f, reply);
@@ -351,8 +351,7 @@ static void say_reply(text *t, const grobo_reply *reply, int known)
     say(t, "; ");
     if (known == GROBO_ERR_MISMATCH) {
         char bad[80];
-        snprintf(bad, sizeof bad, "but the packet is answered by %zu bytes",
-                 grobo_rs30x_reply_bytes(reply));
+        snprintf(bad, sizeof bad, "but the packet is answered by %u bytes", reply->bytes);
         say_bad(t, bad);
     } else if (known < 0) {
         say_bad(t, "asks for registers that do not exist");
@@ -361,7 +360,7 @@ static void say_reply(text *t, const grobo_reply *reply, int known)
     } else if (reply->kind == GROBO_REPLY_ACK) {
         say(t, "reply: ACK");
     } else {
-        say(t, "reply: %zu bytes", grobo_rs30x_reply_bytes(reply));
+        say(t, "reply: %u bytes", reply->bytes);
     }
 }
 

@@ -89,8 +89,7 @@ static json_t *reply_json(const frame *f, const grobo_reply *reply, int known)
     json_t *o;
     if (known < 0 && known != GROBO_ERR_MISMATCH)
         return json_pack("{s:o}", "error", app_json_code(grobo_error_name(known)));
-    o = json_pack("{s:s,s:I}", "kind", kinds[reply->kind], "bytes",
-                  (json_int_t)grobo_rs30x_reply_bytes(reply));
+    o = json_pack("{s:s,s:I}", "kind", kinds[reply->kind], "bytes", (json_int_t)reply->bytes);
     if (reply->kind == GROBO_REPLY_RETURN) {
         json_object_set_new(o, "id", json_integer(reply->id));
         json_object_set_new(o, "address", json_integer(reply->address));

@@ -52,7 +52,7 @@ static int read_one(app *a, sim_chain *chain, const char *item, size_t length)
         return refuse(a, item, length, "expected ID=TYPE, such as 1=RS304MD");
     for (size_t i = 0; i < digits; i++)
         id = id * 10 + (item[i] - '0');
-    if (id < 1 || id > GROBO_SERVO_ID_MAX)
+    if (id < 1 || id > GROBO_RS30X_ID_MAX)
         return refuse(a, item, length, "the id must be from 1 to 127");
     if (grobo_model_joint_of_motor(&chain->model, id) >= 0)
         return refuse(a, item, length, "the id is used twice");
