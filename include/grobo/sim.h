@@ -133,6 +133,10 @@ typedef struct grobo_sim_family grobo_sim_family;
 
 /** Futaba RS30x. A simulator knows them without being told. */
 GROBO_API extern const grobo_sim_family grobo_sim_rs30x;
+/** Models of grobo_dxl2_table. */
+GROBO_API extern const grobo_sim_family grobo_sim_dxl2;
+/** Models of grobo_dxl1_table, grobo_sts_table and grobo_scs_table. */
+GROBO_API extern const grobo_sim_family grobo_sim_dxl1;
 
 /* ---- configuration -------------------------------------------------------------------------- */
 
@@ -220,6 +224,8 @@ typedef struct grobo_sim_view {
 /** Bytes of registers of a servo, and those of them that survive power-off. Private. */
 #define GROBO_SIM_REGISTER_BYTES 160
 #define GROBO_SIM_KEPT_BYTES 64
+/** Longest write that a servo keeps until its action. Private. */
+#define GROBO_SIM_WRITE_BYTES 32
 /** Families on one line. Private. */
 #define GROBO_SIM_FAMILIES_MAX 4
 
@@ -231,9 +237,21 @@ typedef struct grobo_sim_plant {
     int32_t speed_mdeg_s;      /* without load at nominal_mv */
     int32_t stall_ma, most_ma; /* at a stop: by the motor, by the registers */
     int32_t limit_c, nominal_mv;
+    int32_t cap_mdeg_s;           /* top speed of a move by the registers; 0: none */
+    int32_t accel_mdeg_s2;        /* of a move; 0: at once */
+    int32_t time_us, ramp_us;     /* a move by its duration; 0: not so */
+    int32_t wheel_mdeg_s;         /* speed where it turns on and on */
+    bool wheel;
     uint8_t torque; /* grobo_torque */
     uint8_t id;
 } grobo_sim_plant;
+
+/** A move with ramps: signed speeds in 0.001 degree a second, times in seconds. Private. */
+typedef struct grobo_sim_ramps {
+    /* private */
+    double start, peak, end_accel; /* speed at its begin and in its middle; how it ends */
+    double ramp_s, even_s, brake_s;
+} grobo_sim_ramps;
 
 /** One servo. Private: use the functions. */
 typedef struct grobo_sim_servo {
@@ -250,6 +268,12 @@ typedef struct grobo_sim_servo {
     int32_t stop_min_mdeg, stop_max_mdeg; /* mechanical stops */
     int32_t load_ma;                      /* extra current of a hand or a weight */
     int32_t baud_bps;                     /* of register BAUD at the last restart */
+    grobo_sim_ramps ramps;                /* of the present move */
+    int64_t heard_us;                     /* the last instruction for it */
+    int32_t turns_ticks;                  /* what a restart made of turns before */
+    uint8_t kept[GROBO_SIM_WRITE_BYTES];  /* a write that waits for its action */
+    uint16_t kept_address;
+    uint8_t kept_bytes; /* 0: none */
     const grobo_sim_family *family;
     const grobo_servo_model *model;        /* NULL: an RS30x */
     grobo_sim_plant plant;                 /* follows the registers */
@@ -257,7 +281,7 @@ typedef struct grobo_sim_servo {
     uint8_t flash[GROBO_SIM_KEPT_BYTES];   /* registers that survive power-off */
     uint8_t status;                        /* flags of the next return packet */
     uint8_t cable;                         /* grobo_sim_cable */
-    bool powered, blocked, stalled, by_hand, reboots_after_save;
+    bool powered, blocked, stalled, by_hand, reboots_after_save, ramped;
 } grobo_sim_servo;
 
 /** Bytes on a wire, each with the time at which it is over. Private. */
@@ -269,12 +293,15 @@ typedef struct grobo_sim_wire {
     int64_t free_ns; /* the last byte's end */
 } grobo_sim_wire;
 
+/** Longest reply of a simulated servo. Private. */
+#define GROBO_SIM_TALK_BYTES 256
+
 /** Bytes that servos say in one go, from start_ns on without a pause. Private. */
 typedef struct grobo_sim_talk {
     /* private */
     int64_t start_ns;
     uint16_t used, said;
-    uint8_t byte[GROBO_REPLY_MAX_BYTES];
+    uint8_t byte[GROBO_SIM_TALK_BYTES];
 } grobo_sim_talk;
 
 /** What servos of a family hear: one for all, as they hear the same. Private. */

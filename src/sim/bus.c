@@ -64,6 +64,8 @@ static void listen(grobo_sim *sim, grobo_sim_ear *ear, uint8_t byte)
         }
         if (size > 0) {
             hear_packet(sim, ear, (size_t)size);
+        } else if (size == GROBO_ERR_CHECKSUM && ear->family->broken != NULL) {
+            ear->family->broken(sim, ear->byte, ear->used);
         }
         ear->used = (uint16_t)(ear->used - (size > 0 ? size : 1));
         memmove(ear->byte, ear->byte + (size > 0 ? size : 1), ear->used);

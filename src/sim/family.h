@@ -32,6 +32,12 @@ struct grobo_sim_family {
     void (*refresh)(grobo_sim *sim, int servo);
     /* The rate at which a servo listens and speaks; negative: its register has no such code. */
     int32_t (*bps)(const grobo_sim *sim, int servo);
+    /* When a servo does something by itself that is no heat (GROBO_NEVER_US: nothing), and doing
+     * it. NULL: never. */
+    int64_t (*next_us)(const grobo_sim *sim, int servo);
+    void (*act)(grobo_sim *sim, int servo);
+    /* Bytes have the form of a packet and a wrong sum; NULL: nothing follows. */
+    void (*broken)(grobo_sim *sim, const uint8_t *bytes, size_t n);
     /* For inspection: GROBO_ERR_ARG where no register begins at the address. set: as the factory
      * would, with what follows from it. */
     int (*get)(grobo_sim *sim, int servo, int address, int32_t *value);

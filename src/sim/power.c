@@ -63,24 +63,43 @@ static void saved(grobo_sim *sim, int index)
     }
 }
 
+/* The first thing that a servo does by itself, and when. */
+typedef enum self_act { SAVED, HAND_ENDS, OWN } self_act;
+
+static self_act next_act(const grobo_sim *sim, int index, int64_t *at_us)
+{
+    const grobo_sim_servo *servo = &sim->servo[index];
+    int64_t hand_us = servo->by_hand ? servo->start_us + servo->move_us : GROBO_NEVER_US;
+    int64_t own_us =
+        servo->family->next_us != NULL ? servo->family->next_us(sim, index) : GROBO_NEVER_US;
+    own_us = own_us < servo->settled_us ? servo->settled_us : own_us;
+    *at_us = servo->saved_us <= hand_us ? servo->saved_us : hand_us;
+    self_act act = servo->saved_us <= hand_us ? SAVED : HAND_ENDS;
+    if (own_us < *at_us) {
+        *at_us = own_us;
+        act = OWN;
+    }
+    return act;
+}
+
 void grobo_i_sim_settle(grobo_sim *sim, int index)
 {
-    grobo_sim_servo *servo = &sim->servo[index];
     const int64_t now_us = sim->now_us;
     for (;;) {
-        int64_t hand_us = servo->by_hand ? servo->start_us + servo->move_us : GROBO_NEVER_US;
-        bool is_saved = servo->saved_us <= hand_us;
-        int64_t t_us = is_saved ? servo->saved_us : hand_us;
+        int64_t t_us = now_us;
+        self_act act = next_act(sim, index, &t_us);
         if (t_us > now_us) {
             break;
         }
         grobo_i_sim_warm(sim, index, t_us);
         sim->now_us = t_us;
-        if (is_saved) {
+        if (act == SAVED) {
             saved(sim, index);
-        } else {
+        } else if (act == HAND_ENDS) {
             grobo_i_sim_halt(sim, index);
             grobo_i_sim_go_on(sim, index);
+        } else {
+            sim->servo[index].family->act(sim, index);
         }
     }
     grobo_i_sim_warm(sim, index, now_us);

@@ -17,6 +17,9 @@
 /* How fast the heat of a current comes. */
 #define HEAT_TAU_US 300e6
 
+/* Further than anything turns. */
+#define SPIN_MDEG 500000000
+
 #define MDEG_PER_RAD (180000.0 / 3.14159265358979323846)
 
 /* ---- position ------------------------------------------------------------------------------ */
@@ -36,15 +39,56 @@ bool grobo_i_sim_moving(const grobo_sim_servo *servo, int64_t t_us)
     return t_us < servo->start_us + servo->move_us;
 }
 
+/* Signed way since the begin of a move with ramps, and the speed then. */
+static double ramped_way(const grobo_sim_ramps *r, double t_s, double *speed)
+{
+    double ramp_s = t_s < r->ramp_s ? t_s : r->ramp_s;
+    double accel = r->ramp_s > 0 ? (r->peak - r->start) / r->ramp_s : 0;
+    double way = r->start * ramp_s + accel * ramp_s * ramp_s / 2;
+    *speed = r->start + accel * ramp_s;
+    if (t_s > r->ramp_s) {
+        double even_s = t_s - r->ramp_s < r->even_s ? t_s - r->ramp_s : r->even_s;
+        double brake_s = t_s - r->ramp_s - even_s;
+        brake_s = brake_s < r->brake_s ? brake_s : r->brake_s;
+        way += r->peak * (even_s + brake_s) + r->end_accel * brake_s * brake_s / 2;
+        *speed = r->peak + r->end_accel * brake_s;
+    }
+    return way;
+}
+
 int32_t grobo_i_sim_angle_mdeg(const grobo_sim_servo *servo, int64_t t_us)
 {
     if (!grobo_i_sim_moving(servo, t_us)) {
         return servo->to_mdeg;
     }
     GROBO_ASSERT(servo->move_us > 0);
-    int64_t way = servo->to_mdeg - servo->from_mdeg;
     int64_t done_us = t_us > servo->start_us ? t_us - servo->start_us : 0;
+    if (servo->ramped) {
+        double speed;
+        double way = ramped_way(&servo->ramps, (double)done_us / 1e6, &speed);
+        double at = servo->from_mdeg + way;
+        at = at < servo->stop_min_mdeg ? servo->stop_min_mdeg : at;
+        return (int32_t)lround(at > servo->stop_max_mdeg ? servo->stop_max_mdeg : at);
+    }
+    int64_t way = (int64_t)servo->to_mdeg - servo->from_mdeg;
+    if (servo->model != NULL) { /* a wheel's way is beyond the integers */
+        return servo->from_mdeg +
+               (int32_t)lround((double)way * (double)done_us / (double)servo->move_us);
+    }
     return servo->from_mdeg + round_div(way * done_us, servo->move_us);
+}
+
+double grobo_i_sim_speed_mdeg_s(const grobo_sim_servo *servo, int64_t t_us)
+{
+    if (!grobo_i_sim_moving(servo, t_us)) {
+        return 0;
+    }
+    if (servo->ramped) {
+        double speed;
+        (void)ramped_way(&servo->ramps, (double)(t_us - servo->start_us) / 1e6, &speed);
+        return speed;
+    }
+    return ((double)servo->to_mdeg - servo->from_mdeg) * 1e6 / (double)servo->move_us;
 }
 
 int32_t grobo_i_sim_speed_dps(const grobo_sim_servo *servo, int64_t t_us)
@@ -52,7 +96,10 @@ int32_t grobo_i_sim_speed_dps(const grobo_sim_servo *servo, int64_t t_us)
     if (!grobo_i_sim_moving(servo, t_us)) {
         return 0;
     }
-    int64_t way = servo->to_mdeg - servo->from_mdeg;
+    if (servo->ramped) {
+        return (int32_t)lround(fabs(grobo_i_sim_speed_mdeg_s(servo, t_us)) / 1000);
+    }
+    int64_t way = (int64_t)servo->to_mdeg - servo->from_mdeg;
     return round_div((way < 0 ? -way : way) * 1000, servo->move_us);
 }
 
@@ -87,7 +134,76 @@ void grobo_i_sim_halt(grobo_sim *sim, int index)
     servo->begun_us += rested_us > 0 ? rested_us : 0; /* to rest is not to move */
     servo->start_us = sim->now_us;
     servo->move_us = servo->plan_us = 0;
-    servo->stalled = servo->by_hand = false;
+    servo->stalled = servo->by_hand = servo->ramped = false;
+}
+
+/* Turns on and on, until it is told otherwise: its end is too far away to come. */
+static void spin(grobo_sim_servo *servo)
+{
+    int64_t speed = servo->plant.wheel_mdeg_s;
+    if (servo->blocked || speed == 0) {
+        servo->stalled = speed != 0;
+        return;
+    }
+    servo->to_mdeg = speed > 0 ? servo->from_mdeg + SPIN_MDEG : servo->from_mdeg - SPIN_MDEG;
+    servo->to_mdeg = clamp(servo->to_mdeg, servo->stop_min_mdeg, servo->stop_max_mdeg);
+    servo->plan_us = servo->move_us =
+        distance(servo->from_mdeg, servo->to_mdeg) * 1000000 / (speed < 0 ? -speed : speed);
+    servo->stalled = servo->to_mdeg == servo->from_mdeg;
+}
+
+/* A move of this way that begins at a speed, with the acceleration, and ends at rest. */
+static void ramp(grobo_sim_servo *servo, double way, double begin, double top, double accel)
+{
+    double dir = way - begin * fabs(begin) / (2 * accel) < 0 ? -1 : 1;
+    double start = begin * dir;
+    double peak = sqrt(fmax(accel * way * dir + start * start / 2, 0));
+    peak = peak < top ? peak : top;
+    grobo_sim_ramps *r = &servo->ramps;
+    r->ramp_s = fabs(peak - start) / accel;
+    r->brake_s = peak / accel;
+    double even = way * dir - (start + peak) / 2 * r->ramp_s - peak / 2 * r->brake_s;
+    r->even_s = peak > 0 && even > 0 ? even / peak : 0;
+    r->start = begin;
+    r->peak = peak * dir;
+    r->end_accel = -accel * dir;
+    servo->ramped = true;
+    servo->plan_us = (int64_t)ceil((r->ramp_s + r->even_s + r->brake_s) * 1e6);
+    servo->move_us = servo->plan_us;
+}
+
+/* A move with ramps that a stop ends: when it gets there. */
+static void ramp_to_stop(grobo_sim_servo *servo)
+{
+    int64_t before_us = 0, behind_us = servo->plan_us;
+    double wanted = servo->to_mdeg - servo->from_mdeg, speed;
+    while (behind_us - before_us > 1) {
+        int64_t us = before_us + (behind_us - before_us) / 2;
+        double way = ramped_way(&servo->ramps, (double)us / 1e6, &speed);
+        if (wanted < 0 ? way <= wanted : way >= wanted) {
+            behind_us = us;
+        } else {
+            before_us = us;
+        }
+    }
+    servo->move_us = behind_us;
+}
+
+/* The servo's own choice of ramps for a way; false where it has none. */
+static bool plan_ramps(grobo_sim_servo *servo, double way, double begin, double top)
+{
+    const grobo_sim_plant *plant = &servo->plant;
+    double accel = plant->accel_mdeg_s2;
+    if (plant->ramp_us > 0) {
+        double cap = fabs(way) * 1e6 / (plant->time_us - plant->ramp_us);
+        accel = cap * 1e6 / plant->ramp_us;
+        top = cap < top ? cap : top;
+    }
+    if (accel <= 0 || top <= 0 || (way == 0 && begin == 0)) {
+        return false;
+    }
+    ramp(servo, way, begin, top, accel);
+    return true;
 }
 
 /*
@@ -97,7 +213,12 @@ void grobo_i_sim_halt(grobo_sim *sim, int index)
 void grobo_i_sim_drive(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
+    double begin = servo->by_hand ? 0 : grobo_i_sim_speed_mdeg_s(servo, sim->now_us);
     grobo_i_sim_halt(sim, index);
+    if (servo->plant.wheel) {
+        spin(servo);
+        return;
+    }
     int32_t goal_mdeg = servo->plant.goal_mdeg;
     if (!servo->blocked) {
         servo->to_mdeg = clamp(goal_mdeg, servo->stop_min_mdeg, servo->stop_max_mdeg);
@@ -106,10 +227,20 @@ void grobo_i_sim_drive(grobo_sim *sim, int index)
     servo->stalled = servo->to_mdeg != goal_mdeg;
     int64_t wanted = distance(servo->from_mdeg, goal_mdeg);
     int64_t way = distance(servo->from_mdeg, servo->to_mdeg);
+    int64_t speed =
+        (int64_t)servo->plant.speed_mdeg_s * sim->supply_mv / servo->plant.nominal_mv;
+    int64_t cap = servo->plant.cap_mdeg_s;
+    speed = cap > 0 && cap < speed ? cap : speed;
+    if (!servo->blocked && plan_ramps(servo, (double)goal_mdeg - servo->from_mdeg, begin,
+                                      (double)speed)) {
+        if (servo->stalled) {
+            ramp_to_stop(servo);
+        }
+        return;
+    }
     if (wanted == 0) {
         return;
     }
-    int64_t speed = (int64_t)servo->plant.speed_mdeg_s * sim->supply_mv / servo->plant.nominal_mv;
     int64_t least_us = speed > 0 ? wanted * 1000000 / speed : 0;
     int64_t left_us = servo->due_us - sim->now_us;
     servo->plan_us = left_us > least_us ? left_us : least_us;

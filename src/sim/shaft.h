@@ -7,6 +7,8 @@
 
 int32_t grobo_i_sim_angle_mdeg(const grobo_sim_servo *servo, int64_t t_us);
 int32_t grobo_i_sim_speed_dps(const grobo_sim_servo *servo, int64_t t_us);
+/* Signed, unrounded. */
+double grobo_i_sim_speed_mdeg_s(const grobo_sim_servo *servo, int64_t t_us);
 int32_t grobo_i_sim_current_ma(const grobo_sim_servo *servo, int64_t t_us);
 int64_t grobo_i_sim_move_age_us(const grobo_sim_servo *servo, int64_t t_us);
 bool grobo_i_sim_moving(const grobo_sim_servo *servo, int64_t t_us);

@@ -29,6 +29,8 @@
 #define OTHERS_BPS 1000000
 /* As far as register POSITION can tell. */
 #define NO_STOP_MDEG 3276700
+/* As far as a wheel turns. */
+#define WHEEL_MDEG 1500000000
 
 static int64_t byte_ns(const grobo_sim *sim, uint32_t bps)
 {
@@ -344,8 +346,8 @@ static int init_servo(grobo_sim *sim, int index)
     servo->stop_max_mdeg = grobo_i_sim_mdeg_of_rad(joint->max_rad);
     servo->from_mdeg = servo->to_mdeg = start_mdeg(sim, servo, joint->init_rad);
     if (sim->config.no_stops) {
-        servo->stop_min_mdeg = -NO_STOP_MDEG;
-        servo->stop_max_mdeg = NO_STOP_MDEG;
+        servo->stop_max_mdeg = servo->model == NULL ? NO_STOP_MDEG : WHEEL_MDEG;
+        servo->stop_min_mdeg = -servo->stop_max_mdeg;
     }
     servo->start_us = servo->due_us = servo->settled_us = sim->now_us;
     servo->saved_us = GROBO_NEVER_US;

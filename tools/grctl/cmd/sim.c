@@ -169,6 +169,8 @@ static grobo_sim_config sim_config(const farm *f, int robot)
     grobo_sim_config config = {
         .model = f->model,
         .wiring = bus ? GROBO_WIRING_BUS : (grobo_wiring)wiring->choice,
+        .servos = app_option(a, OPT_SERVO)->given && !f->chain.only_rs30x ? f->chain.servos : NULL,
+        .families = f->chain.families,
         .no_stops = app_option(a, OPT_NO_STOPS)->given > 0,
         .baud_bps = baud->given ? (uint32_t)baud->number : 0,
         .latency_us = (uint32_t)app_number(a, OPT_LATENCY, 0) * 1000,
