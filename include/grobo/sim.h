@@ -237,10 +237,10 @@ typedef struct grobo_sim_plant {
     int32_t speed_mdeg_s;      /* without load at nominal_mv */
     int32_t stall_ma, most_ma; /* at a stop: by the motor, by the registers */
     int32_t limit_c, nominal_mv;
-    int32_t cap_mdeg_s;           /* top speed of a move by the registers; 0: none */
-    int32_t accel_mdeg_s2;        /* of a move; 0: at once */
-    int32_t time_us, ramp_us;     /* a move by its duration; 0: not so */
-    int32_t wheel_mdeg_s;         /* speed where it turns on and on */
+    int32_t cap_mdeg_s;       /* top speed of a move by the registers; 0: none */
+    int32_t accel_mdeg_s2;    /* of a move; 0: at once */
+    int32_t time_us, ramp_us; /* a move by its duration; 0: not so */
+    int32_t wheel_mdeg_s;     /* speed where it turns on and on */
     bool wheel;
     uint8_t torque; /* grobo_torque */
     uint8_t id;
@@ -362,8 +362,10 @@ typedef struct grobo_sim {
  * for the ids of the model and, on bus wiring, the rate of the line. The hook hears nothing of it.
  * @param config NULL: all defaults. Copied; the model is borrowed.
  * @return 0; GROBO_ERR_ARG for a bad model, ambient temperature, baud rate below 300 or (bus
- *         wiring) not one of the servos', or an echo through the board; GROBO_ERR_CAP for more
- *         than GROBO_SIM_SERVOS_MAX joints
+ *         wiring) not one of the servos', an id that a servo cannot have, an echo or other servos
+ *         than RS30x through the board; GROBO_ERR_CAP for more than GROBO_SIM_SERVOS_MAX joints;
+ *         GROBO_ERR_UNSUPPORTED for a servo that no family knows. After an error the simulator
+ *         must not be used.
  */
 GROBO_API int grobo_sim_init(grobo_sim *sim, const grobo_sim_config *config, int64_t now_us);
 
@@ -441,15 +443,18 @@ GROBO_API int grobo_sim_get_register(grobo_sim *sim, int servo, int address, int
  */
 GROBO_API int grobo_sim_set_register(grobo_sim *sim, int servo, int address, int32_t value);
 
+/** Gives a servo another id, perhaps that of another one. @return as grobo_sim_set_register(). */
+GROBO_API int grobo_sim_set_id(grobo_sim *sim, int servo, int id);
+
 /**
- * What a servo's flash holds: registers No.4-29 as they were saved last.
- * @return 0 or GROBO_ERR_ARG (no such servo)
+ * What an RS30x's flash holds: registers No.4-29 as they were saved last.
+ * @return 0, GROBO_ERR_ARG (no such servo), GROBO_ERR_UNSUPPORTED (no RS30x)
  */
 GROBO_API int grobo_sim_get_flash(grobo_sim *sim, int servo, uint8_t flash[GROBO_SIM_FLASH_BYTES]);
 
 /**
- * Gives a servo another flash, and power off and on at once: it is limp afterwards.
- * @return 0; GROBO_ERR_ARG (no such servo); GROBO_ERR_LIMIT (a value that no servo can have, or a
+ * Gives an RS30x another flash, and power off and on at once: it is limp afterwards.
+ * @return 0; GROBO_ERR_ARG (no such servo); GROBO_ERR_UNSUPPORTED (no RS30x); GROBO_ERR_LIMIT (a value that no servo can have, or a
  *         reserved byte that is not 0): nothing has changed
  */
 GROBO_API int grobo_sim_set_flash(grobo_sim *sim, int servo,

@@ -25,8 +25,7 @@ static const grobo_servo_register *row_of(const grobo_sim_servo *servo, grobo_re
 int32_t grobo_i_dxl_get(const grobo_sim_servo *servo, grobo_register_role role)
 {
     const grobo_servo_register *reg = row_of(servo, role);
-    return reg == NULL ? 0
-                       : grobo_servo_register_get(servo->model, reg, &servo->reg[reg->address]);
+    return reg == NULL ? 0 : grobo_servo_register_get(servo->model, reg, &servo->reg[reg->address]);
 }
 
 static void hold(grobo_sim_servo *servo, const grobo_servo_register *reg, int64_t value)
@@ -154,8 +153,8 @@ void grobo_i_dxl_follow(grobo_sim *sim, int index)
     plant->stall_ma = plant->most_ma = model->current_ma;
     plant->limit_c = grobo_i_dxl_get(servo, GROBO_ROLE_TEMPERATURE_LIMIT);
     plant->nominal_mv = (int32_t)sim->config.supply_mv; /* each has a supply of its own kind */
-    plant->torque = grobo_i_dxl_get(servo, GROBO_ROLE_TORQUE) == 1 ? GROBO_TORQUE_ON
-                                                                  : GROBO_TORQUE_OFF;
+    plant->torque =
+        grobo_i_dxl_get(servo, GROBO_ROLE_TORQUE) == 1 ? GROBO_TORQUE_ON : GROBO_TORQUE_OFF;
     plant->id = (uint8_t)grobo_i_dxl_get(servo, GROBO_ROLE_ID);
     plant->cap_mdeg_s = plant->accel_mdeg_s2 = plant->time_us = plant->ramp_us = 0;
     plant->wheel_mdeg_s = 0;

@@ -67,7 +67,7 @@ static double speed_mdeg_s(const grobo_sim_servo *servo)
         return 0.114 * 6000;
     case STS:
         return (named(servo, "phase") & (int)GROBO_STS_PHASE_FINE_SPEED) != 0 ? tick_mdeg
-                                                                             : 50 * tick_mdeg;
+                                                                              : 50 * tick_mdeg;
     case SCS:
         break;
     }
@@ -139,8 +139,8 @@ static int32_t position_at(const grobo_sim_servo *servo, int32_t angle_mdeg)
 static void one_turn(const grobo_sim *sim, grobo_sim_servo *servo)
 {
     int32_t turn = grobo_i_dxl_turn(servo);
-    int32_t ticks = grobo_i_dxl_ticks(servo, reverses(servo),
-                                      grobo_i_sim_angle_mdeg(servo, sim->now_us));
+    int32_t ticks =
+        grobo_i_dxl_ticks(servo, reverses(servo), grobo_i_sim_angle_mdeg(servo, sim->now_us));
     servo->turns_ticks = turn > 0 ? ticks - grobo_i_dxl_wrap(ticks, turn) : 0;
 }
 
@@ -203,8 +203,8 @@ static void follow_move(grobo_sim_servo *servo)
 {
     grobo_sim_plant *plant = &servo->plant;
     int32_t speed = grobo_i_dxl_get(servo, GROBO_ROLE_SPEED);
-    bool zero_stops = series_of(servo) == STS &&
-                      (named(servo, "phase") & (int)GROBO_STS_PHASE_ZERO_FULL) == 0;
+    bool zero_stops =
+        series_of(servo) == STS && (named(servo, "phase") & (int)GROBO_STS_PHASE_ZERO_FULL) == 0;
     speed = series_of(servo) == STS ? (speed < 0 ? -speed : speed) : speed & 0x3FFF;
     if (series_of(servo) == SCS && speed == 0) {
         plant->time_us = grobo_i_dxl_get(servo, GROBO_ROLE_GOAL_TIME) * 1000;
@@ -349,7 +349,8 @@ static stall_limit limit_of(const grobo_sim_servo *servo)
     if (series_of(servo) == STS) {
         double most = grobo_i_dxl_get(servo, GROBO_ROLE_CURRENT_LIMIT) * STS_COUNT_MA;
         if (most > 0 && servo->plant.most_ma > most) {
-            return (stall_limit){GROBO_FEETECH_OVERCURRENT, named(servo, "overcurrent_time") * 10000LL};
+            return (stall_limit){GROBO_FEETECH_OVERCURRENT,
+                                 named(servo, "overcurrent_time") * 10000LL};
         }
     }
     int64_t unit_us = series_of(servo) == STS ? 10000 : 40000;
@@ -419,13 +420,6 @@ static bool factory(grobo_sim *sim, int index, uint8_t id, uint32_t baud_bps)
     return true;
 }
 
-static void saved(grobo_sim *sim, int index, bool whole)
-{
-    (void)sim;
-    (void)index;
-    (void)whole; /* EEPROM holds at once */
-}
-
 /* ---- writing ------------------------------------------------------------------------------- */
 
 /* AX and MX judge a value, Feetech's servos take any. */
@@ -483,8 +477,8 @@ static void calibrate(grobo_sim *sim, int index, int32_t position)
 {
     grobo_sim_servo *servo = &sim->servo[index];
     int32_t turn = grobo_i_dxl_turn(servo);
-    int32_t ticks = grobo_i_dxl_ticks(servo, reverses(servo),
-                                      grobo_i_sim_angle_mdeg(servo, sim->now_us));
+    int32_t ticks =
+        grobo_i_dxl_ticks(servo, reverses(servo), grobo_i_sim_angle_mdeg(servo, sim->now_us));
     int32_t offset = turn > 0 ? grobo_i_dxl_wrap(ticks - position, turn) : 0;
     const grobo_servo_register *reg = grobo_servo_register_of(servo->model, GROBO_ROLE_OFFSET);
     if (turn > 0 && reg != NULL) {
@@ -508,7 +502,7 @@ static void took_effect(grobo_sim *sim, int index, const grobo_servo_register *r
     bool goal = reg->role == GROBO_ROLE_GOAL;
     if (reg->role == GROBO_ROLE_TORQUE) {
         servo->status &= (uint8_t)~GROBO_FEETECH_OVERLOAD;
-        servo->status &= (uint8_t)~(is_feetech(servo) ? GROBO_FEETECH_OVERCURRENT : 0);
+        servo->status &= (uint8_t) ~(is_feetech(servo) ? GROBO_FEETECH_OVERCURRENT : 0);
     }
     if (reg->role == GROBO_ROLE_TORQUE_LIMIT && !is_feetech(servo)) {
         servo->status &= (uint8_t)~GROBO_DXL1_OVERLOAD;
@@ -691,10 +685,9 @@ static void for_one(grobo_sim *sim, int index, const grobo_dxl1_packet *packet)
         return;
     }
     uint8_t id = servo->plant.id;
-    bool answered = is_answered(servo, packet);
     uint8_t error = carry_out(sim, index, packet);
     error = is_feetech(servo) ? 0 : error;
-    if (answered) {
+    if (is_answered(servo, packet)) {
         uint8_t now = servo->plant.id;
         servo->plant.id = is_feetech(servo) ? now : id; /* Feetech answers with a new one at once */
         answer(sim, index, &round, error, NULL, 0);
@@ -850,18 +843,11 @@ static int set(grobo_sim *sim, int index, int address, int32_t value)
     return n < 0 ? n : GROBO_OK;
 }
 
-static bool flash_fits(const uint8_t *flash)
-{
-    (void)flash;
-    return false; /* its EEPROM is not an RS30x's flash */
-}
-
 const grobo_sim_family grobo_sim_dxl1 = {.knows = knows,
                                          .measure = measure,
                                          .packet = packet,
                                          .factory = factory,
                                          .boot = restart,
-                                         .saved = saved,
                                          .cut = cut,
                                          .starts = starts,
                                          .refresh = refresh,
@@ -870,5 +856,4 @@ const grobo_sim_family grobo_sim_dxl1 = {.knows = knows,
                                          .act = act,
                                          .broken = broken,
                                          .get = grobo_i_dxl_look,
-                                         .set = set,
-                                         .flash_fits = flash_fits};
+                                         .set = set};

@@ -26,8 +26,8 @@
 #define PWM_LIMIT 36
 #define HOMING_ONE_TURN 1024
 
-static const int32_t rates_bps[] = {9600, 57600, 115200, 1000000, 2000000, 3000000, 4000000,
-                                    4500000};
+static const int32_t rates_bps[] = {9600,    57600,   115200,  1000000,
+                                    2000000, 3000000, 4000000, 4500000};
 enum { RATES = sizeof rates_bps / sizeof *rates_bps };
 
 static int mode_of(const grobo_sim_servo *servo)
@@ -67,8 +67,8 @@ static int32_t position_at(const grobo_sim_servo *servo, int32_t angle_mdeg)
 /* Turns before now are forgotten. */
 static void one_turn(const grobo_sim *sim, grobo_sim_servo *servo)
 {
-    int32_t ticks = grobo_i_dxl_ticks(servo, reverses(servo),
-                                      grobo_i_sim_angle_mdeg(servo, sim->now_us));
+    int32_t ticks =
+        grobo_i_dxl_ticks(servo, reverses(servo), grobo_i_sim_angle_mdeg(servo, sim->now_us));
     servo->turns_ticks = ticks - grobo_i_dxl_wrap(ticks, grobo_i_dxl_turn(servo));
 }
 
@@ -90,8 +90,10 @@ static void follow_wheel(grobo_sim_servo *servo, int mode)
     if (mode == GROBO_DXL2_MODE_VELOCITY) {
         speed = grobo_i_dxl_get(servo, GROBO_ROLE_GOAL_SPEED) * SPEED_MDEG_S;
     } else if (mode == GROBO_DXL2_MODE_PWM) {
-        const grobo_servo_register *pwm = grobo_servo_register_of(servo->model, GROBO_ROLE_GOAL_PWM);
-        speed = (double)plant->speed_mdeg_s * grobo_i_dxl_get(servo, GROBO_ROLE_GOAL_PWM) / pwm->max;
+        const grobo_servo_register *pwm =
+            grobo_servo_register_of(servo->model, GROBO_ROLE_GOAL_PWM);
+        speed =
+            (double)plant->speed_mdeg_s * grobo_i_dxl_get(servo, GROBO_ROLE_GOAL_PWM) / pwm->max;
     } else { /* a current without a load: as fast as it can */
         int32_t current = grobo_i_dxl_get(servo, GROBO_ROLE_GOAL_CURRENT);
         speed = (current > 0) - (current < 0);
@@ -113,15 +115,15 @@ static void follow(grobo_sim *sim, int index)
     if (mode == GROBO_DXL2_MODE_GRIP) {
         const grobo_servo_register *current =
             grobo_servo_register_of(servo->model, GROBO_ROLE_GOAL_CURRENT);
-        plant->most_ma = plant->stall_ma *
-                         abs(grobo_i_dxl_get(servo, GROBO_ROLE_GOAL_CURRENT)) / current->max;
+        plant->most_ma =
+            plant->stall_ma * abs(grobo_i_dxl_get(servo, GROBO_ROLE_GOAL_CURRENT)) / current->max;
     }
     if (!places(mode)) {
         follow_wheel(servo, mode);
     } else if (drives_by_time(servo)) {
         plant->time_us = velocity * 1000;
-        plant->ramp_us = acceleration * 1000 < plant->time_us / 2 ? acceleration * 1000
-                                                                  : plant->time_us / 2;
+        plant->ramp_us =
+            acceleration * 1000 < plant->time_us / 2 ? acceleration * 1000 : plant->time_us / 2;
     } else {
         plant->cap_mdeg_s = (int32_t)lround(velocity * SPEED_MDEG_S);
         plant->accel_mdeg_s2 = (int32_t)lround(fmin(acceleration * ACCEL_MDEG_S2, INT32_MAX));
@@ -160,8 +162,7 @@ static void cut(grobo_sim *sim, int index, bool hot)
 static void refresh(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    const grobo_servo_register *current =
-        grobo_servo_register_of(servo->model, GROBO_ROLE_CURRENT);
+    const grobo_servo_register *current = grobo_servo_register_of(servo->model, GROBO_ROLE_CURRENT);
     int64_t now_us = sim->now_us;
     grobo_i_sim_settle(sim, index);
     double count_ma = current == NULL ? 0 : current->unit[0] == '1' ? 1 : 2.69;
@@ -295,13 +296,6 @@ static bool factory(grobo_sim *sim, int index, uint8_t id, uint32_t baud_bps)
     return true;
 }
 
-static void saved(grobo_sim *sim, int index, bool whole)
-{
-    (void)sim;
-    (void)index;
-    (void)whole; /* EEPROM holds at once */
-}
-
 /* ---- writing ------------------------------------------------------------------------------- */
 
 static uint8_t outside_limits(const grobo_sim_servo *servo, const grobo_servo_register *reg,
@@ -378,8 +372,7 @@ static uint8_t judge(const grobo_sim_servo *servo, int address, const uint8_t *b
         if (reg->address < address || reg->address + reg->bytes > end) {
             return GROBO_DXL2_BAD_LENGTH;
         }
-        uint8_t error =
-            judge_value(servo, reg, grobo_i_dxl_value_in(servo, reg, address, bytes));
+        uint8_t error = judge_value(servo, reg, grobo_i_dxl_value_in(servo, reg, address, bytes));
         if (error != GROBO_DXL2_DONE) {
             return error;
         }
@@ -696,8 +689,8 @@ static size_t fast_part(grobo_sim *sim, int index, const item *one, uint8_t *byt
 /* One status that all of the list make together; whoever is silent ends it. */
 static void read_fast(grobo_sim *sim, const grobo_dxl2_packet *packet, const grobo_sim_event *raw)
 {
-    uint8_t bytes[GROBO_SIM_TALK_BYTES] = {0xFF, 0xFF, 0xFD, 0x00, GROBO_DXL2_ID_ALL, 0, 0,
-                                           GROBO_DXL2_STATUS};
+    uint8_t bytes[GROBO_SIM_TALK_BYTES] = {
+        0xFF, 0xFF, 0xFD, 0x00, GROBO_DXL2_ID_ALL, 0, 0, GROBO_DXL2_STATUS};
     size_t length = 1, n = 8;
     uint16_t crc = 0;
     int64_t at_ns = -1;
@@ -826,18 +819,11 @@ static int set(grobo_sim *sim, int index, int address, int32_t value)
     return n < 0 ? n : GROBO_OK;
 }
 
-static bool flash_fits(const uint8_t *flash)
-{
-    (void)flash;
-    return false; /* its EEPROM is not an RS30x's flash */
-}
-
 const grobo_sim_family grobo_sim_dxl2 = {.knows = knows,
                                          .measure = measure,
                                          .packet = packet,
                                          .factory = factory,
                                          .boot = restart,
-                                         .saved = saved,
                                          .cut = cut,
                                          .starts = starts,
                                          .refresh = refresh,
@@ -845,5 +831,4 @@ const grobo_sim_family grobo_sim_dxl2 = {.knows = knows,
                                          .next_us = next_us,
                                          .act = act,
                                          .get = grobo_i_dxl_look,
-                                         .set = set,
-                                         .flash_fits = flash_fits};
+                                         .set = set};

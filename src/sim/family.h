@@ -22,7 +22,7 @@ struct grobo_sim_family {
     bool (*factory)(grobo_sim *sim, int servo, uint8_t id, uint32_t baud_bps);
     /* Registers after a restart, and the rate of the line. */
     void (*boot)(grobo_sim *sim, int servo);
-    /* The flash write that began SAVE before is over; or power was lost within it. */
+    /* A flash write is over; or power was lost within it. NULL: it has none. */
     void (*saved)(grobo_sim *sim, int servo, bool whole);
     /* The torque goes by itself: registers say so. hot: for the temperature. */
     void (*cut)(grobo_sim *sim, int servo, bool hot);
@@ -42,7 +42,7 @@ struct grobo_sim_family {
      * would, with what follows from it. */
     int (*get)(grobo_sim *sim, int servo, int address, int32_t *value);
     int (*set)(grobo_sim *sim, int servo, int address, int32_t value);
-    /* Another flash, where it may have these bytes. */
+    /* Whether it may have these bytes as its flash; NULL: it has none. */
     bool (*flash_fits)(const uint8_t *flash);
 };
 

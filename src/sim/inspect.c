@@ -77,6 +77,16 @@ int grobo_sim_get_register(grobo_sim *sim, int index, int address, int32_t *valu
     return servo->family->get(sim, index, address, value);
 }
 
+int grobo_sim_set_id(grobo_sim *sim, int index, int id)
+{
+    const grobo_sim_servo *servo = servo_at(sim, index);
+    if (servo == NULL) {
+        return GROBO_ERR_ARG;
+    }
+    const grobo_servo_register *reg = grobo_servo_register_of(servo->model, GROBO_ROLE_ID);
+    return servo->family->set(sim, index, reg != NULL ? reg->address : GROBO_RS30X_ID, id);
+}
+
 int grobo_sim_get_flash(grobo_sim *sim, int index, uint8_t flash[GROBO_SIM_FLASH_BYTES])
 {
     if (flash == NULL) {
@@ -85,6 +95,9 @@ int grobo_sim_get_flash(grobo_sim *sim, int index, uint8_t flash[GROBO_SIM_FLASH
     const grobo_sim_servo *servo = servo_at(sim, index);
     if (servo == NULL) {
         return GROBO_ERR_ARG;
+    }
+    if (servo->family->flash_fits == NULL) {
+        return GROBO_ERR_UNSUPPORTED;
     }
     memcpy(flash, servo->flash, GROBO_SIM_FLASH_BYTES);
     return 0;
@@ -106,6 +119,9 @@ int grobo_sim_set_flash(grobo_sim *sim, int index, const uint8_t flash[GROBO_SIM
     const grobo_sim_servo *servo = servo_at(sim, index);
     if (servo == NULL) {
         return GROBO_ERR_ARG;
+    }
+    if (servo->family->flash_fits == NULL) {
+        return GROBO_ERR_UNSUPPORTED;
     }
     if (!servo->family->flash_fits(flash)) {
         return GROBO_ERR_LIMIT;

@@ -227,12 +227,11 @@ void grobo_i_sim_drive(grobo_sim *sim, int index)
     servo->stalled = servo->to_mdeg != goal_mdeg;
     int64_t wanted = distance(servo->from_mdeg, goal_mdeg);
     int64_t way = distance(servo->from_mdeg, servo->to_mdeg);
-    int64_t speed =
-        (int64_t)servo->plant.speed_mdeg_s * sim->supply_mv / servo->plant.nominal_mv;
+    int64_t speed = (int64_t)servo->plant.speed_mdeg_s * sim->supply_mv / servo->plant.nominal_mv;
     int64_t cap = servo->plant.cap_mdeg_s;
     speed = cap > 0 && cap < speed ? cap : speed;
-    if (!servo->blocked && plan_ramps(servo, (double)goal_mdeg - servo->from_mdeg, begin,
-                                      (double)speed)) {
+    if (!servo->blocked &&
+        plan_ramps(servo, (double)goal_mdeg - servo->from_mdeg, begin, (double)speed)) {
         if (servo->stalled) {
             ramp_to_stop(servo);
         }

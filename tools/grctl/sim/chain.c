@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
-#include <strings.h>
 
 #include <grobo/dxl2.h>
 #include <grobo/feetech.h>
@@ -35,24 +34,31 @@ static int refuse_type(app *a, const char *item, size_t length)
         used += (size_t)snprintf(why + used, sizeof why - used, " %s", grobo_sim_type_row(i)->name);
     for (int t = 0; t < TABLES; t++)
         for (int m = 0; m < tables[t]->model_count && used < sizeof why; m++)
-            used += (size_t)snprintf(why + used, sizeof why - used, " %s",
-                                     tables[t]->models[m].name);
+            used +=
+                (size_t)snprintf(why + used, sizeof why - used, " %s", tables[t]->models[m].name);
     return refuse(a, item, length, why);
 }
 
 /* The model called name[0..length-1], in any case. */
 static const grobo_servo_model *model_named(const char *name, size_t length)
 {
-    for (int t = 0; t < TABLES; t++)
-        for (int m = 0; m < tables[t]->model_count; m++)
-            if (strlen(tables[t]->models[m].name) == length &&
-                strncasecmp(tables[t]->models[m].name, name, length) == 0)
-                return &tables[t]->models[m];
+    char upper[32];
+    if (length >= sizeof upper)
+        return NULL;
+    for (size_t i = 0; i < length; i++)
+        upper[i] = name[i] >= 'a' && name[i] <= 'z' ? (char)(name[i] - 'a' + 'A') : name[i];
+    upper[length] = '\0';
+    for (int t = 0; t < TABLES; t++) {
+        const grobo_servo_model *model = grobo_servo_model_named(tables[t], upper);
+        if (model)
+            return model;
+    }
     return NULL;
 }
 
 /* A joint for a servo of either kind. */
-static void add(sim_chain *chain, int id, const grobo_sim_type *type, const grobo_servo_model *model)
+static void add(sim_chain *chain, int id, const grobo_sim_type *type,
+                const grobo_servo_model *model)
 {
     int i = chain->model.n_joints++;
     double range_deg = model && model->span_deg == 360 ? TURNS_DEG : RANGE_DEG;
@@ -83,14 +89,17 @@ static int read_one(app *a, sim_chain *chain, const char *item, size_t length)
         return refuse(a, item, length, "expected ID=TYPE, such as 1=RS304MD");
     for (size_t i = 0; i < digits; i++)
         id = id * 10 + (item[i] - '0');
-    if (id < 1 || id > GROBO_RS30X_ID_MAX)
-        return refuse(a, item, length, "the id must be from 1 to 127");
     if (grobo_model_joint_of_motor(&chain->model, id) >= 0)
         return refuse(a, item, length, "the id is used twice");
     type = grobo_sim_type_named(equals + 1, length - digits - 1);
     model = type ? NULL : model_named(equals + 1, length - digits - 1);
     if (!type && !model)
         return refuse_type(a, item, length);
+    if (type && (id < 1 || id > GROBO_RS30X_ID_MAX))
+        return refuse(a, item, length, "the id must be from 1 to 127");
+    if (model && id > (model->table == &grobo_dxl2_table ? GROBO_DXL2_ID_MAX : GROBO_DXL1_ID_MAX))
+        return refuse(a, item, length,
+                      "the id must be from 0 to 252, with AX, MX and Feetech to 253");
     if (chain->model.n_joints == GROBO_SIM_SERVOS_MAX)
         return refuse(a, item, length, "too many servos");
     add(chain, id, type, model);
