@@ -62,8 +62,12 @@
 #ifndef GROBO_SIM_FIFO_BYTES
 #define GROBO_SIM_FIFO_BYTES 512
 #endif
+/** Longest packet that simulated servos hear. */
+#ifndef GROBO_SIM_EAR_BYTES
+#define GROBO_SIM_EAR_BYTES GROBO_FRAME_MAX_BYTES
+#endif
 /** Replies under way at the same time on the simulated servos' bus. */
-#define GROBO_SIM_TALKS_MAX 8
+#define GROBO_SIM_TALKS_MAX (GROBO_SIM_SERVOS_MAX + 8)
 
 /** Motion files: bytes read at most. */
 #define GROBO_FILE_MAX_BYTES (1024L * 1024L * 1024L)

@@ -282,6 +282,7 @@ static void sim_refuses_null_in_its_second_functions(void **state)
     REFUSES(grobo_sim_look(&sim, 0, NULL));
     REFUSES(grobo_sim_get_register(NULL, 0, 0, wides));
     REFUSES(grobo_sim_get_register(&sim, 0, 0, NULL));
+    REFUSES(grobo_sim_set_id(NULL, 0, 1));
     REFUSES(grobo_sim_set_register(NULL, 0, 0, 0));
     REFUSES(grobo_sim_get_flash(NULL, 0, bytes));
     REFUSES(grobo_sim_get_flash(&sim, 0, NULL));
