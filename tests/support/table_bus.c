@@ -65,11 +65,14 @@ static double place(const table_servo *s, int64_t now_us)
     return s->from_ticks + (s->to_ticks - s->from_ticks) * part;
 }
 
-static void refresh(table_servo *s, int64_t now_us)
+static void refresh(table_servo *s, uint8_t error, int64_t now_us)
 {
     bool moves = now_us < s->to_us && fabs(s->to_ticks - s->from_ticks) > 3;
     put(s, GROBO_ROLE_POSITION, (int32_t)lround(place(s, now_us)));
     put(s, GROBO_ROLE_PRESENT_SPEED, moves ? 200 : 0);
+    if (s->servo->table != &grobo_dxl2_table) {
+        put(s, GROBO_ROLE_ERROR, error); /* there it is a number of its own */
+    }
 }
 
 static double ticks_per_s(const table_servo *s, int32_t speed)
@@ -132,7 +135,7 @@ static void answer(table_bus *bus, int64_t *at_us, table_servo *s, uint16_t addr
 {
     uint8_t b[256];
     int size;
-    refresh(s, bus->now_us);
+    refresh(s, bus->error, bus->now_us);
     if (is_new(bus)) {
         size = grobo_dxl2_build(&(grobo_dxl2_packet){.id = (uint8_t)get(s, GROBO_ROLE_ID),
                                                      .instruction = GROBO_DXL2_STATUS,

@@ -6,6 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* What a servo may say. A shaft may stand a little outside of its turn. */
+enum { OUTSIDE_TICKS = 256, VOLTAGE_MAX_MV = 30000, HEAT_MAX_C = 120, TORQUE_MAX = 2 };
+
 /* A block of registers of one servo. */
 typedef struct block {
     const grobo_servo_model *servo;
@@ -92,6 +95,24 @@ static void take_torque(const grobo_i_family *family, const block *b, grobo_join
     state->valid |= GROBO_FIELD_TORQUE;
 }
 
+/* A sum of bytes does not notice what two faults make up for: what no servo says is not believed.
+ * Where a status and a register tell the same errors, both must. */
+static bool plausible(const grobo_i_family *family, const grobo_joint *joint, const block *b,
+                      uint8_t flags)
+{
+    int32_t ticks = b->servo->middle, torque = 0, error = 0, celsius = 0;
+    double mv = 0;
+    (void)measure_of(b, GROBO_ROLE_VOLTAGE, &mv);
+    (void)value_of(b, GROBO_ROLE_TEMPERATURE, &celsius);
+    (void)value_of(b, GROBO_ROLE_TORQUE, &torque);
+    (void)value_of(b, GROBO_ROLE_POSITION, &ticks);
+    bool told = family->pace == GROBO_I_PACE_PROFILE || !value_of(b, GROBO_ROLE_ERROR, &error) ||
+                error == flags;
+    bool turn = ticks >= -OUTSIDE_TICKS && ticks < b->servo->span_ticks + OUTSIDE_TICKS;
+    return told && (turn || joint->turns) && mv <= VOLTAGE_MAX_MV && celsius <= HEAT_MAX_C &&
+           torque >= 0 && torque <= TORQUE_MAX;
+}
+
 int grobo_i_table_parse(const grobo_driver *self, void *ctx, int joint, const grobo_packet *reply,
                         grobo_joint_state *state)
 {
@@ -105,6 +126,9 @@ int grobo_i_table_parse(const grobo_driver *self, void *ctx, int joint, const gr
     int result = family->setup(moved, b.servo, b.address, b.data, b.n);
     if (result < 0) {
         return result;
+    }
+    if (!plausible(family, moved, &b, reply->flags)) {
+        return GROBO_ERR_MISMATCH;
     }
     state->flags = reply->flags;
     take_angles(self, joint, &b, state);
