@@ -12,6 +12,7 @@
 #ifndef GROBO_DXL1_H
 #define GROBO_DXL1_H
 
+#include <grobo/protocol.h>
 #include <grobo/registers.h>
 
 GROBO_BEGIN_DECLS
@@ -97,6 +98,12 @@ GROBO_API int grobo_dxl1_parse(const uint8_t *frame, size_t n, bool status,
  *         say), GROBO_ERR_SPACE
  */
 GROBO_API int grobo_dxl1_build(const grobo_dxl1_packet *packet, uint8_t *buf, size_t cap);
+
+/** How long servos may take to answer a ping to all: LeRobot waits so for Feetech's. */
+#define GROBO_DXL1_CALL_US 772000
+
+/** The protocol, for the bus. Servos must have a reply level of 2, as they leave the factory. */
+GROBO_API extern const grobo_protocol grobo_dxl1_protocol;
 
 /** Registers of AX and MX with Protocol 1.0, and their models. */
 GROBO_API extern const grobo_servo_table grobo_dxl1_table;

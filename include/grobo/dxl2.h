@@ -11,6 +11,7 @@
 #ifndef GROBO_DXL2_H
 #define GROBO_DXL2_H
 
+#include <grobo/protocol.h>
 #include <grobo/registers.h>
 
 GROBO_BEGIN_DECLS
@@ -147,6 +148,9 @@ GROBO_API int grobo_dxl2_block(const uint8_t *frame, size_t n, size_t at, uint16
 
 /** The CRC of Protocol 2.0 over n more bytes; starts with 0. */
 GROBO_API uint16_t grobo_dxl2_crc(uint16_t crc, const uint8_t *bytes, size_t n);
+
+/** The protocol, for the bus. Servos must have a reply level of 2, as they leave the factory. */
+GROBO_API extern const grobo_protocol grobo_dxl2_protocol;
 
 /** Registers of the X series, and its models. */
 GROBO_API extern const grobo_servo_table grobo_dxl2_table;

@@ -40,6 +40,9 @@ typedef enum grobo_sts_mode {
 #define GROBO_STS_PHASE_ZERO_FULL 0x08u  /**< a speed of 0 is full speed, else none */
 #define GROBO_STS_PHASE_TURNS 0x10u      /**< the position counts turns */
 
+/** The protocol, for the bus. Servos must have a reply level of 1, as they leave the factory. */
+GROBO_API extern const grobo_protocol grobo_feetech_protocol;
+
 /** Registers of STS and SMS, and their models. */
 GROBO_API extern const grobo_servo_table grobo_sts_table;
 

@@ -105,13 +105,6 @@ typedef struct grobo_relay {
     int (*stored)(bool scenario, uint8_t number, uint8_t *buf, size_t cap);
 } grobo_relay;
 
-/** A line's parity bit. */
-typedef enum grobo_parity {
-    GROBO_PARITY_NONE = 0, /**< no such bit: a byte takes 10 bits on the wire, else 11 */
-    GROBO_PARITY_EVEN = 1,
-    GROBO_PARITY_ODD = 2
-} grobo_parity;
-
 struct grobo_bus;
 
 /**

@@ -87,8 +87,10 @@ typedef struct grobo_robot_slot {
     int job;          /* number of the job whose step made it; 0: none */
     bool refused;     /* at the moment it would have left */
     bool reads;       /* it asks where this joint is */
+    bool many;        /* it asks where several are */
     uint8_t use;      /* 0: free */
     uint8_t joint;
+    grobo_joint_mask unread; /* of a reading of many joints, those that have not answered */
 } grobo_robot_slot;
 
 /** A move of a joint, straight in time. Private. */
@@ -168,7 +170,8 @@ typedef struct grobo_robot {
     void *driver_ctx;
     int (*leave)(grobo_robot_slot *slot); /* a frame would leave: judges it */
     void (*over)(grobo_robot_slot *slot, int result, const grobo_packet *reply); /* it is over */
-    grobo_robot_config config; /* defaults filled in */
+    void (*each)(grobo_robot_slot *slot, const grobo_packet *reply); /* one of several replies */
+    grobo_robot_config config;                                       /* defaults filled in */
     grobo_event_fn on_event;
     void *event_ctx;
     grobo_bus bus;

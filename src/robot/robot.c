@@ -78,6 +78,7 @@ int grobo_robot_init(grobo_robot *robot, const grobo_driver *driver, void *drive
     robot->driver_ctx = driver_ctx;
     robot->leave = grobo_i_gate_leave;
     robot->over = grobo_i_frame_over;
+    robot->each = grobo_i_reply_came;
     robot->config = *c;
     config_fill(&robot->config, driver);
     if (grobo_bus_init(&robot->bus, &robot->config.bus) < 0) {

@@ -45,6 +45,12 @@ static bool readback_sound(const grobo_driver *driver)
     return true;
 }
 
+static bool times_sound(const grobo_driver *driver)
+{
+    return driver->time_step_us > 0 && driver->time_max_us >= driver->time_step_us &&
+           isfinite(driver->angle_step_rad) && driver->angle_step_rad > 0;
+}
+
 static bool ids_sound(const grobo_driver *driver)
 {
     for (int j = 0; j < driver->model->n_joints; j++) {
@@ -64,7 +70,7 @@ int grobo_driver_check(const grobo_driver *driver)
     }
     bool policy = driver->on_exit == GROBO_EXIT_OFF || driver->on_exit == GROBO_EXIT_HOLD ||
                   driver->on_exit == GROBO_EXIT_SIT;
-    if (!policy || driver->protocol == NULL || !ids_sound(driver) || driver->time_step_us <= 0 ||
+    if (!policy || driver->protocol == NULL || !ids_sound(driver) || !times_sound(driver) ||
         !functions_present(driver) || !limits_sound(&driver->limits) || !rest_sound(driver) ||
         !readback_sound(driver)) {
         return GROBO_ERR_ARG;

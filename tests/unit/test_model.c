@@ -241,8 +241,8 @@ static grobo_model two;
 
 static void make_two(void)
 {
-    arm[0] = (grobo_joint){"LEFT", -1, 1, 5, 0, 0, 0, 1, 1, -1};
-    arm[1] = (grobo_joint){"RIGHT", -1, 1, 5, 0, 0, 0, 2, 0, -1};
+    arm[0] = (grobo_joint){"LEFT", -1, 1, 5, 0, 0, 0, 1, 1, -1, 1, false, 0, 1};
+    arm[1] = (grobo_joint){"RIGHT", -1, 1, 5, 0, 0, 0, 2, 0, -1, 1, false, 0, 1};
     arm_groups[0] = (grobo_group){"both", 3};
     arm_groups[1] = (grobo_group){"one", 1};
     two = (grobo_model){"TWO", arm, arm_groups, 2, 2, 0};
