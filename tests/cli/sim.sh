@@ -159,8 +159,8 @@ others() {
 check "servos of other families" both others --- says 'SERVO_2  *45\.0 deg'
 for wrong in '--strict' "--state $work/other.state" '--wiring board'; do
     # shellcheck disable=SC2086
-    check "$wrong is for RS30x" fails 2 "^grctl: sim: ${wrong%% "$work"*}: " timeout 5 "$GRCTL" sim \
-        --servo 1=STS3215 $wrong
+    check "$wrong is for RS30x" fails 2 "^grctl: sim: ${wrong%% "$work"*}: " \
+        timeout 5 "$GRCTL" sim --servo 1=STS3215 $wrong
 done
 # The knee's stop is at 0: a hand turns it beyond only without stops.
 turned() {
