@@ -21,7 +21,7 @@ void chain_start(chain_kit *chain, const grobo_servo_model *servo, int n,
     assert_non_null(servo);
     memset(chain, 0, sizeof *chain);
     for (int i = 0; i < n; i++) {
-        (void)snprintf(chain->names[i], sizeof chain->names[i], "S%d", i + 1);
+        (void)snprintf(chain->names[i], sizeof chain->names[i], "S%u", (uint8_t)(i + 1));
         chain->servos[i] = servo;
         chain->joints[i] = (grobo_joint){.name = chain->names[i],
                                          .min_rad = -3,
