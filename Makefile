@@ -160,7 +160,7 @@ include tools/baremetal/baremetal.mk
 
 .PHONY: help all lib demo check lint lint-quick format test check-san check-tsan check-memcheck install uninstall
 .PHONY: clean tidy fuzz soak cov dist bench plots captures cross check-cross check-drivers
-.PHONY: check-ports check-long check-mutants check-map install-lib FORCE
+.PHONY: check-families check-ports check-long check-mutants check-map install-lib FORCE
 .PHONY: firmware size check-firmware
 
 help: ## this list
@@ -220,6 +220,12 @@ check-san: ## the tests of our own code under AddressSanitizer and UBSan
 	@TEST_TIMEOUT_S=600 $(MAKE) --no-print-directory test BUILD=$(BUILD)/san SAN=address,undefined CFLAGS='-O1 -g' \
 	    WALKS=-DGROBO_WALKS \
 	    RING='$(filter-out lint export,$(RING))'
+
+FAMILY_CLIENTS := dynamixel-sdk==4.1.0 rustypot==1.13.1 feetech-servo-sdk==1.0.0
+check-families: all ## clients of other servos (from PyPI) against the simulator
+	@python3 -m venv $(BUILD)/families && $(BUILD)/families/bin/pip install -q --disable-pip-version-check $(FAMILY_CLIENTS)
+	@GRCTL="$(call whole,$(GRCTL_RUN))" PYTHON=$(BUILD)/families/bin/python BUILD="$(BUILD)" \
+	    TEST_LOGS="$(BUILD)/logs" tests/run.sh tests/families/clients.sh
 
 check-tsan: ## the tests of what threads share under ThreadSanitizer
 	@$(MAKE) --no-print-directory test BUILD=$(BUILD)/tsan SAN=thread CFLAGS='-O1 -g' RING=link

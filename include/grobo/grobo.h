@@ -25,6 +25,7 @@
 #include <grobo/interpolate.h>
 #include <grobo/limits.h>
 #include <grobo/loop.h>
+#include <grobo/lx16a.h>
 #include <grobo/mem.h>
 #include <grobo/model.h>
 #include <grobo/motion.h>

@@ -454,8 +454,8 @@ GROBO_API int grobo_sim_get_flash(grobo_sim *sim, int servo, uint8_t flash[GROBO
 
 /**
  * Gives an RS30x another flash, and power off and on at once: it is limp afterwards.
- * @return 0; GROBO_ERR_ARG (no such servo); GROBO_ERR_UNSUPPORTED (no RS30x); GROBO_ERR_LIMIT (a value that no servo can have, or a
- *         reserved byte that is not 0): nothing has changed
+ * @return 0; GROBO_ERR_ARG (no such servo); GROBO_ERR_UNSUPPORTED (no RS30x); GROBO_ERR_LIMIT (a
+ *         value that no servo can have, or a reserved byte that is not 0): nothing has changed
  */
 GROBO_API int grobo_sim_set_flash(grobo_sim *sim, int servo,
                                   const uint8_t flash[GROBO_SIM_FLASH_BYTES]);

@@ -630,41 +630,37 @@ static void reset(grobo_sim *sim, int index)
     grobo_i_sim_reboot(sim, index);
 }
 
-/* What Feetech has beside; true where the instruction is one of these. */
+/* What Feetech has beside; false where the instruction is none of these. */
 static bool extra(grobo_sim *sim, int index, const grobo_dxl1_packet *packet)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    switch (packet->instruction) {
-    case GROBO_DXL1_REBOOT:
-        return true; /* when the answer is made */
-    case GROBO_DXL1_RESET_TURNS:
+    if (packet->instruction == GROBO_DXL1_RESET_TURNS) {
         one_turn(sim, servo);
-        return true;
-    case GROBO_DXL1_CALIBRATE:
-        calibrate(sim, index,
-                  packet->data_bytes == 2 ? grobo_i_get_u16(packet->data) : servo->model->middle);
+    } else if (packet->instruction == GROBO_DXL1_CALIBRATE) {
+        bool given = packet->data_bytes == 2;
+        calibrate(sim, index, given ? grobo_i_get_u16(packet->data) : servo->model->middle);
         follow(sim, index);
-        return true;
-    default:
-        return false;
+    } else {
+        return packet->instruction == GROBO_DXL1_REBOOT; /* when the answer is made */
     }
+    return true;
 }
 
 static uint8_t carry_out(grobo_sim *sim, int index, const grobo_dxl1_packet *packet)
 {
-    const grobo_sim_servo *servo = &sim->servo[index];
-    switch (packet->instruction) {
-    case GROBO_DXL1_WRITE:
+    uint8_t code = packet->instruction;
+    if (code == GROBO_DXL1_WRITE) {
         return write(sim, index, packet->address, packet->data, packet->data_bytes);
-    case GROBO_DXL1_REG_WRITE:
-        return keep(sim, index, packet);
-    case GROBO_DXL1_ACTION:
-        return do_kept(sim, index);
-    case GROBO_DXL1_FACTORY_RESET:
-        return 0;
-    default:
-        return is_feetech(servo) && extra(sim, index, packet) ? 0 : GROBO_DXL1_BAD_INSTRUCTION;
     }
+    if (code == GROBO_DXL1_REG_WRITE) {
+        return keep(sim, index, packet);
+    }
+    if (code == GROBO_DXL1_ACTION) {
+        return do_kept(sim, index);
+    }
+    bool known = code == GROBO_DXL1_FACTORY_RESET || /* when the answer is made */
+                 (is_feetech(&sim->servo[index]) && extra(sim, index, packet));
+    return known ? 0 : GROBO_DXL1_BAD_INSTRUCTION;
 }
 
 static bool is_answered(const grobo_sim_servo *servo, const grobo_dxl1_packet *packet)

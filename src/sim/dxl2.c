@@ -22,8 +22,7 @@
 /* A motor that works this hard for this long is overloaded. An assumption. */
 #define OVERLOAD_EFFORT 0.8
 #define OVERLOAD_US 1000000
-/* Registers that no role names. */
-#define PWM_LIMIT 36
+/* The largest homing offset that counts where a position is within one turn. */
 #define HOMING_ONE_TURN 1024
 
 static const int32_t rates_bps[] = {9600,    57600,   115200,  1000000,
@@ -324,28 +323,28 @@ static bool is_goal(const grobo_servo_register *reg)
            reg->role == GROBO_ROLE_GOAL_CURRENT || reg->role == GROBO_ROLE_GOAL_PWM;
 }
 
+static bool has_mode(const grobo_sim_servo *servo, int32_t mode)
+{
+    bool by_current = mode == GROBO_DXL2_MODE_CURRENT || mode == GROBO_DXL2_MODE_GRIP;
+    return by_current
+               ? grobo_servo_register_of(servo->model, GROBO_ROLE_GOAL_CURRENT) != NULL
+               : places(mode) || mode == GROBO_DXL2_MODE_VELOCITY || mode == GROBO_DXL2_MODE_PWM;
+}
+
 /* Whether a register may get a value. */
 static uint8_t judge_value(const grobo_sim_servo *servo, const grobo_servo_register *reg,
                            int32_t value)
 {
-    static const uint8_t with_current[] = {0, 1, 3, 4, 5, 16};
-    bool has_current = grobo_servo_register_of(servo->model, GROBO_ROLE_GOAL_CURRENT) != NULL;
-    if (value < reg->min || value > reg->max) {
+    bool stopped = is_goal(reg) && grobo_i_dxl_get(servo, GROBO_ROLE_WATCHDOG) < 0;
+    if (value < reg->min || value > reg->max || stopped) {
         return GROBO_DXL2_BAD_RANGE;
     }
-    if (reg->role == GROBO_ROLE_MODE &&
-        (value > 16 || memchr(with_current, value, sizeof with_current) == NULL ||
-         (!has_current && (value == 0 || value == 5)))) {
+    if ((reg->role == GROBO_ROLE_MODE && !has_mode(servo, value)) ||
+        (reg->role == GROBO_ROLE_WATCHDOG && value < 0)) {
         return GROBO_DXL2_BAD_RANGE;
     }
-    if (reg->role == GROBO_ROLE_WATCHDOG && value < 0) {
-        return GROBO_DXL2_BAD_RANGE;
-    }
-    if (is_goal(reg) && grobo_i_dxl_get(servo, GROBO_ROLE_WATCHDOG) < 0) {
-        return GROBO_DXL2_BAD_RANGE;
-    }
-    if (reg->role == GROBO_ROLE_TORQUE && value == 1 &&
-        (servo->status & (unsigned)grobo_i_dxl_get(servo, GROBO_ROLE_SHUTDOWN)) != 0) {
+    int32_t shutdown = grobo_i_dxl_get(servo, GROBO_ROLE_SHUTDOWN);
+    if (reg->role == GROBO_ROLE_TORQUE && value == 1 && (servo->status & shutdown) != 0) {
         return GROBO_DXL2_FAILED;
     }
     return outside_limits(servo, reg, value);
@@ -560,21 +559,21 @@ static uint8_t reset(grobo_sim *sim, int index, const grobo_dxl2_packet *packet)
 
 static uint8_t carry_out(grobo_sim *sim, int index, const grobo_dxl2_packet *packet)
 {
-    switch (packet->instruction) {
-    case GROBO_DXL2_WRITE:
+    uint8_t code = packet->instruction;
+    if (code == GROBO_DXL2_WRITE) {
         return write(sim, index, packet->address, packet->data, packet->data_bytes);
-    case GROBO_DXL2_REG_WRITE:
-        return keep(sim, index, packet);
-    case GROBO_DXL2_ACTION:
-        return do_kept(sim, index);
-    case GROBO_DXL2_CLEAR:
-        return forget_turns(sim, index, packet);
-    case GROBO_DXL2_REBOOT:
-    case GROBO_DXL2_FACTORY_RESET:
-        return GROBO_DXL2_DONE; /* when the answer is made */
-    default:
-        return GROBO_DXL2_BAD_INSTRUCTION;
     }
+    if (code == GROBO_DXL2_REG_WRITE) {
+        return keep(sim, index, packet);
+    }
+    if (code == GROBO_DXL2_ACTION) {
+        return do_kept(sim, index);
+    }
+    if (code == GROBO_DXL2_CLEAR) {
+        return forget_turns(sim, index, packet);
+    }
+    bool later = code == GROBO_DXL2_REBOOT || code == GROBO_DXL2_FACTORY_RESET;
+    return later ? GROBO_DXL2_DONE : GROBO_DXL2_BAD_INSTRUCTION;
 }
 
 static void for_one(grobo_sim *sim, int index, const grobo_dxl2_packet *packet)
@@ -777,27 +776,17 @@ static void packet(grobo_sim *sim, const grobo_sim_event *raw)
     uint8_t data[GROBO_DXL2_FRAME_MAX_BYTES];
     grobo_dxl2_packet parts = {.id = raw->bytes[4], .instruction = raw->bytes[7]};
     int result = grobo_dxl2_parse(raw->bytes, raw->n_bytes, data, sizeof data, &parts);
-    bool all = parts.id == GROBO_DXL2_ID_ALL;
-    switch (parts.instruction) {
-    case GROBO_DXL2_SYNC_READ:
-    case GROBO_DXL2_BULK_READ:
+    uint8_t code = parts.instruction;
+    if (code == GROBO_DXL2_SYNC_READ || code == GROBO_DXL2_BULK_READ) {
         read_each(sim, &parts, raw);
-        break;
-    case GROBO_DXL2_FAST_SYNC_READ:
-    case GROBO_DXL2_FAST_BULK_READ:
+    } else if (code == GROBO_DXL2_FAST_SYNC_READ || code == GROBO_DXL2_FAST_BULK_READ) {
         read_fast(sim, &parts, raw);
-        break;
-    case GROBO_DXL2_SYNC_WRITE:
-    case GROBO_DXL2_BULK_WRITE:
+    } else if (is_write(&parts)) {
         write_each(sim, &parts, raw);
-        break;
-    default:
-        if (all && parts.instruction == GROBO_DXL2_PING) {
-            ping_all(sim, raw);
-        } else {
-            spread(sim, &parts, result, raw);
-        }
-        break;
+    } else if (parts.id == GROBO_DXL2_ID_ALL && code == GROBO_DXL2_PING) {
+        ping_all(sim, raw);
+    } else {
+        spread(sim, &parts, result, raw);
     }
 }
 

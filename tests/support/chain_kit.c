@@ -21,7 +21,7 @@ void chain_start(chain_kit *chain, const grobo_servo_model *servo, int n,
     assert_non_null(servo);
     memset(chain, 0, sizeof *chain);
     for (int i = 0; i < n; i++) {
-        (void)snprintf(chain->names[i], sizeof chain->names[i], "S%d", i + 1);
+        (void)snprintf(chain->names[i], sizeof chain->names[i], "S%u", (uint8_t)(i + 1));
         chain->servos[i] = servo;
         chain->joints[i] = (grobo_joint){.name = chain->names[i],
                                          .min_rad = -3,
@@ -56,29 +56,19 @@ static void send(chain_kit *chain, const uint8_t *bytes, int n)
     simkit_ask(&chain->kit, hex, 50000);
 }
 
-void chain_send(chain_kit *chain, int id, int instruction, int address, int length,
-                const uint8_t *data, size_t n)
+void chain_send_packet(chain_kit *chain, const grobo_dxl2_packet *packet)
 {
     uint8_t bytes[300];
-    int size;
-    if (chain->servos[0]->table == &grobo_dxl2_table) {
-        size = grobo_dxl2_build(&(grobo_dxl2_packet){.id = (uint8_t)id,
-                                                     .instruction = (uint8_t)instruction,
-                                                     .address = (uint16_t)address,
-                                                     .length = (uint16_t)length,
-                                                     .data = data,
-                                                     .data_bytes = n},
-                                bytes, sizeof bytes);
-    } else {
-        size = grobo_dxl1_build(&(grobo_dxl1_packet){.id = (uint8_t)id,
-                                                     .instruction = (uint8_t)instruction,
-                                                     .address = (uint8_t)address,
-                                                     .length = (uint8_t)length,
-                                                     .data = data,
-                                                     .data_bytes = n},
-                                bytes, sizeof bytes);
-    }
-    send(chain, bytes, size);
+    const grobo_dxl1_packet other = {.id = packet->id,
+                                     .instruction = packet->instruction,
+                                     .address = (uint8_t)packet->address,
+                                     .length = (uint8_t)packet->length,
+                                     .data = packet->data,
+                                     .data_bytes = packet->data_bytes};
+    send(chain, bytes,
+         chain->servos[0]->table == &grobo_dxl2_table
+             ? grobo_dxl2_build(packet, bytes, sizeof bytes)
+             : grobo_dxl1_build(&other, bytes, sizeof bytes));
 }
 
 int chain_write(chain_kit *chain, int id, grobo_register_role role, int32_t value)
@@ -88,7 +78,7 @@ int chain_write(chain_kit *chain, int id, grobo_register_role role, int32_t valu
     assert_non_null(reg);
     int n = grobo_servo_register_put(chain->servos[0], reg, value, data);
     assert_true(n > 0);
-    chain_send(chain, id, GROBO_DXL1_WRITE, reg->address, 0, data, (size_t)n);
+    chain_send(chain, (uint8_t)id, GROBO_DXL1_WRITE, reg->address, 0, data, (size_t)n);
     if (chain->kit.n_got == 0) {
         return -1;
     }

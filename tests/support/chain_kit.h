@@ -3,6 +3,8 @@
 #ifndef GROBO_TEST_CHAIN_KIT_H
 #define GROBO_TEST_CHAIN_KIT_H
 
+#include <grobo/dxl2.h>
+
 #include "tests/support/simkit.h"
 
 enum { CHAIN_MAX = 20 };
@@ -24,7 +26,13 @@ int32_t chain_register(chain_kit *chain, int servo, grobo_register_role role);
 /* Writes it as its family's WRITE would, and returns the error of the status, -1 for silence. */
 int chain_write(chain_kit *chain, int id, grobo_register_role role, int32_t value);
 /* Sends an instruction of the family of the chain: address and length count where it has them. */
-void chain_send(chain_kit *chain, int id, int instruction, int address, int length,
-                const uint8_t *data, size_t n);
+void chain_send_packet(chain_kit *chain, const grobo_dxl2_packet *packet);
+#define chain_send(chain, to, code, first, each, bytes, n)                                         \
+    chain_send_packet((chain), &(grobo_dxl2_packet){.id = (to),                                    \
+                                                    .instruction = (code),                         \
+                                                    .address = (first),                            \
+                                                    .length = (each),                              \
+                                                    .data = (bytes),                               \
+                                                    .data_bytes = (n)})
 
 #endif

@@ -34,7 +34,7 @@ static size_t take_list(wire_bytes *to, const json_t *list)
 static int number(const json_t *object, const char *key)
 {
     const json_t *value = json_object_get(object, key);
-    return value != NULL ? (int)json_integer_value(value) : -1;
+    return json_is_integer(value) ? (int)json_integer_value(value) : -1;
 }
 
 static const char *text(const json_t *object, const char *key)
@@ -56,7 +56,8 @@ static void take(wire_vector *v, const json_t *from)
                        .id = number(meaning, "id"),
                        .error = number(meaning, "error"),
                        .address = number(meaning, "address"),
-                       .count = number(meaning, "count")};
+                       .count = number(meaning, "count"),
+                       .command = number(meaning, "command")};
     take_bytes(&v->whole, json_object_get(from, "bytes"));
     take_bytes(&v->sent, json_object_get(from, "sent"));
     take_bytes(&v->data, data != NULL ? data : params);

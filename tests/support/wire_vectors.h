@@ -26,7 +26,7 @@ typedef struct wire_vector {
     wire_bytes chunks[WIRE_LIST_MAX]; /* how it arrives; at least one */
     wire_bytes data;                  /* of the meaning */
     size_t frame_count, chunk_count;
-    int id, error, address, count;
+    int id, error, address, count, command;
 } wire_vector;
 
 /* Checks every vector of vectors/FILE; skips the test where the file is missing. Prints the name

@@ -15,6 +15,7 @@
 #include <grobo/dxl2.h>
 #include <grobo/feetech.h>
 #include <grobo/interpolate.h>
+#include <grobo/lx16a.h>
 #include <grobo/motion_io.h>
 #include <grobo/rs30x.h>
 
@@ -235,6 +236,21 @@ static void dxl_refuses_null(void **state)
     REFUSES(grobo_servo_register_put(NULL, reg, 0, bytes));
     REFUSES(grobo_servo_register_put(model, NULL, 0, bytes));
     REFUSES(grobo_servo_register_put(model, reg, 0, NULL));
+}
+
+static void lx16a_refuses_null(void **state)
+{
+    (void)state;
+    static grobo_lx16a_packet lx16a;
+    REFUSES(grobo_lx16a_measure(NULL, 1, GROBO_ACCEPT_RETURNS));
+    REFUSES(grobo_lx16a_answer(NULL, 1, bytes, 1));
+    REFUSES(grobo_lx16a_answer(bytes, 1, NULL, 1));
+    REFUSES(grobo_lx16a_parse(NULL, 1, &lx16a));
+    REFUSES(grobo_lx16a_parse(bytes, 1, NULL));
+    REFUSES(grobo_lx16a_build(NULL, bytes, sizeof bytes));
+    REFUSES(grobo_lx16a_build(&lx16a, NULL, sizeof bytes));
+    lx16a.data_bytes = 1;
+    REFUSES(grobo_lx16a_build(&lx16a, bytes, sizeof bytes));
 }
 
 static void driver_refuses_null(void **state)
@@ -543,6 +559,7 @@ int main(void)
         cmocka_unit_test(body_motion_refuses_null),
         cmocka_unit_test(driver_refuses_null),
         cmocka_unit_test(dxl_refuses_null),
+        cmocka_unit_test(lx16a_refuses_null),
         cmocka_unit_test(interpolate_refuses_null),
         cmocka_unit_test(model_refuses_null),
         cmocka_unit_test(motion_refuses_null_in_its_first_functions),

@@ -62,7 +62,7 @@ static void add(sim_chain *chain, int id, const grobo_sim_type *type,
 {
     int i = chain->model.n_joints++;
     double range_deg = model && model->span_deg == 360 ? TURNS_DEG : RANGE_DEG;
-    snprintf(chain->names[i], sizeof chain->names[i], "SERVO_%d", id);
+    snprintf(chain->names[i], sizeof chain->names[i], "SERVO_%u", (uint8_t)id);
     chain->servos[i] = model;
     chain->only_rs30x = chain->only_rs30x && !model;
     chain->joints[i] = (grobo_joint){
@@ -75,6 +75,14 @@ static void add(sim_chain *chain, int id, const grobo_sim_type *type,
         .mirror = (uint8_t)i,
         .mirror_sign = 1,
     };
+}
+
+/* The highest id, and from where they are counted. */
+static bool id_fits(int id, const grobo_servo_model *model)
+{
+    if (!model)
+        return id >= 1 && id <= GROBO_RS30X_ID_MAX;
+    return id <= (model->table == &grobo_dxl2_table ? GROBO_DXL2_ID_MAX : GROBO_DXL1_ID_MAX);
 }
 
 /* One ID=TYPE of the list. */
@@ -95,11 +103,10 @@ static int read_one(app *a, sim_chain *chain, const char *item, size_t length)
     model = type ? NULL : model_named(equals + 1, length - digits - 1);
     if (!type && !model)
         return refuse_type(a, item, length);
-    if (type && (id < 1 || id > GROBO_RS30X_ID_MAX))
-        return refuse(a, item, length, "the id must be from 1 to 127");
-    if (model && id > (model->table == &grobo_dxl2_table ? GROBO_DXL2_ID_MAX : GROBO_DXL1_ID_MAX))
+    if (!id_fits(id, model))
         return refuse(a, item, length,
-                      "the id must be from 0 to 252, with AX, MX and Feetech to 253");
+                      model ? "the id must be from 0 to 252 (AX, MX, Feetech: 253)"
+                            : "the id must be from 1 to 127");
     if (chain->model.n_joints == GROBO_SIM_SERVOS_MAX)
         return refuse(a, item, length, "too many servos");
     add(chain, id, type, model);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A chain of servos to simulate, as `sim --servo 1=RS304MD,2=RS302CD` or `1=XL330-M288` names it. */
+/* A chain of servos to simulate, as `sim --servo 1=RS304MD,2=XL330-M288` names it. */
 #ifndef GRCTL_SIM_CHAIN_H
 #define GRCTL_SIM_CHAIN_H
 
