@@ -25,7 +25,8 @@
  * - A deadline is computed: wire time of the request at the baud rate, forwarding by the board,
  *   return delay, wire time of the reply, plus a margin learnt from the replies so far.
  * - A reply is believed when header, id, length and sum are those expected, and the address where
- *   the family's replies tell one, and it came after its request was sent. After a failure the line must be quiet for a moment before
+ *   the family's replies tell one, and it came after its request was sent. After a failure the line
+ *   must be quiet for a moment before
  *   the next request that wants a reply. An ACK is one byte without a name: it must be the first
  *   byte after the request.
  * - A late reply is credited: it ends the transaction that waits for its next attempt. The replies

@@ -233,9 +233,10 @@ GROBO_API int grobo_rs30x_driver_init(grobo_driver *driver, const grobo_model *m
  * Fills a table for a robot of DYNAMIXEL X servos (Protocol 2.0). grobo_joint.servo_model names the
  * servo by its model number. Goals come with a duration, which the servo takes for a profile: its
  * drive mode must be 4 (time, not reversed), and its operating mode 3, or 4 for a joint of several
- * turns, or 5. All joints are read in one frame. Torque on does not move a servo whose goal is where
- * it stands; whether it keeps an old goal depends on its firmware, so that the engine always sets
- * it. An error of its register shutdown cuts the torque until a reboot.
+ * turns, or 5. All joints are read in one frame. Torque on does not move a servo whose goal is
+ * where it stands; whether it keeps an old goal depends on its firmware, so that the engine always
+ * sets it. An error of its register shutdown cuts the torque until a reboot. No brake: torque is on
+ * or off, and an emergency stop holds unless it is to let go.
  * Limits: 65 deg C, 5 lost replies, 60 deg/s for the first move; exit policy hold; an arm.
  * @param[out] driver the caller's table; change what is different in it afterwards.
  * @param model borrowed.
@@ -250,8 +251,8 @@ GROBO_API int grobo_dxl2_driver_init(grobo_driver *driver, const grobo_model *mo
 GROBO_API int grobo_dxl1_driver_init(grobo_driver *driver, const grobo_model *model);
 
 /**
- * The same for Feetech's STS, SMS and SCS servos. STS have no time of a move but a speed, counted in
- * single steps (bit 2 of the register phase); all joints of STS are read in one frame. Torque on
+ * The same for Feetech's STS, SMS and SCS servos. STS have no time of a move but a speed, counted
+ * in single steps (bit 2 of the register phase); all joints of STS are read in one frame. Torque on
  * with an old goal runs there: the engine sets the goal before. An overload bounds the output until
  * there is another goal or torque was off; it counts neither as heat nor as torque lost.
  */

@@ -53,6 +53,11 @@ double grobo_joint_from_servo(const grobo_joint *joint, double servo_rad)
     return joint == NULL ? 0 : (servo_rad - joint->zero_rad) / ratio_of(joint);
 }
 
+static bool is_mount_good(const grobo_joint *joint)
+{
+    return isfinite(joint->zero_rad) && joint->gear >= 0 && isfinite(joint->gear);
+}
+
 static bool is_joint_good(const grobo_model *model, int j)
 {
     const grobo_joint *joint = &model->joints[j];
@@ -64,7 +69,7 @@ static bool is_joint_good(const grobo_model *model, int j)
         !(joint->max_speed_rad_s > 0.0 && isfinite(joint->max_speed_rad_s))) {
         return false;
     }
-    if (!isfinite(joint->zero_rad) || !(joint->gear >= 0 && isfinite(joint->gear))) {
+    if (!is_mount_good(joint)) {
         return false;
     }
     if (joint->mirror >= model->n_joints || model->joints[joint->mirror].mirror != j ||

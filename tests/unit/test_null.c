@@ -258,6 +258,13 @@ static void driver_refuses_null(void **state)
     (void)state;
     REFUSES(grobo_driver_check(NULL));
     assert_int_equal(grobo_driver_wiring(NULL), GROBO_WIRING_BOARD);
+    REFUSES(grobo_dxl2_driver_init(NULL, &grobo_gr001_model));
+    REFUSES(grobo_dxl2_driver_init(&made_driver, NULL));
+    REFUSES(grobo_dxl1_driver_init(NULL, &grobo_gr001_model));
+    REFUSES(grobo_dxl1_driver_init(&made_driver, NULL));
+    REFUSES(grobo_feetech_driver_init(NULL, &grobo_gr001_model));
+    REFUSES(grobo_feetech_driver_init(&made_driver, NULL));
+    assert_true(grobo_joint_to_servo(NULL, 1) >= 0 && grobo_joint_from_servo(NULL, 1) >= 0);
     REFUSES(grobo_rs30x_driver_init(NULL, &grobo_gr001_model, &grobo_rs30x_protocol));
     REFUSES(grobo_rs30x_driver_init(&made_driver, NULL, &grobo_rs30x_protocol));
     REFUSES(grobo_rs30x_driver_init(&made_driver, &grobo_gr001_model, NULL));

@@ -117,23 +117,18 @@ static int reply_of_one(const grobo_dxl2_packet *packet, uint16_t length, grobo_
 
 static int find_reply(const grobo_dxl2_packet *packet, grobo_reply *reply)
 {
-    switch (packet->instruction) {
-    case GROBO_DXL2_PING:
-        return reply_of_one(packet, PING_BYTES, reply);
-    case GROBO_DXL2_READ:
-        return reply_of_one(packet, packet->length, reply);
-    case GROBO_DXL2_SYNC_READ:
-    case GROBO_DXL2_BULK_READ:
+    uint8_t code = packet->instruction;
+    if (code == GROBO_DXL2_SYNC_READ || code == GROBO_DXL2_BULK_READ) {
         return reply_of_several(packet, false, reply);
-    case GROBO_DXL2_FAST_SYNC_READ:
-    case GROBO_DXL2_FAST_BULK_READ:
-        return reply_of_several(packet, true, reply);
-    case GROBO_DXL2_SYNC_WRITE:
-    case GROBO_DXL2_BULK_WRITE:
-        return GROBO_OK;
-    default:
-        return reply_of_one(packet, 0, reply);
     }
+    if (code == GROBO_DXL2_FAST_SYNC_READ || code == GROBO_DXL2_FAST_BULK_READ) {
+        return reply_of_several(packet, true, reply);
+    }
+    if (code == GROBO_DXL2_SYNC_WRITE || code == GROBO_DXL2_BULK_WRITE) {
+        return GROBO_OK;
+    }
+    uint16_t length = code == GROBO_DXL2_PING ? PING_BYTES : packet->length; /* of a read */
+    return reply_of_one(packet, length, reply);
 }
 
 static int reply_to(const uint8_t *frame, size_t n, grobo_reply *reply)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A driver for servos that are registers: what it reads and writes are the registers of these roles,
- * so that a family is its table, its frames and the few things below.
+ * A driver for servos that are registers: what it reads and writes are the registers of certain
+ * roles, so that a family is its table, its frames and the few things below.
  */
 #ifndef GROBO_CORE_TABLE_FAMILY_H
 #define GROBO_CORE_TABLE_FAMILY_H

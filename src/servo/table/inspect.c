@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* What writing registers would do, and the wish in a frame that a user hands in. */
 #include <math.h>
+#include <string.h>
 
 #include "src/servo/table/family.h"
 
@@ -170,20 +171,17 @@ static int inspect_packet(const grobo_driver *self, const grobo_dxl2_packet *pac
                           grobo_target *target, grobo_joint_mask *torqued)
 {
     share s = {packet->address, packet->data, packet->data_bytes};
-    switch (packet->instruction) {
-    case GROBO_DXL2_PING:
-    case GROBO_DXL2_READ:
-    case GROBO_DXL2_SYNC_READ:
-    case GROBO_DXL2_FAST_SYNC_READ:
-    case GROBO_DXL2_BULK_READ:
-    case GROBO_DXL2_FAST_BULK_READ:
+    static const uint8_t reads[] = {GROBO_DXL2_PING,      GROBO_DXL2_READ,
+                                    GROBO_DXL2_SYNC_READ, GROBO_DXL2_FAST_SYNC_READ,
+                                    GROBO_DXL2_BULK_READ, GROBO_DXL2_FAST_BULK_READ};
+    if (memchr(reads, packet->instruction, sizeof reads) != NULL) {
         return GROBO_OK;
-    case GROBO_DXL2_WRITE:
+    }
+    if (packet->instruction == GROBO_DXL2_WRITE) {
         return inspect_share(self, &s, packet->id, target, torqued);
-    case GROBO_DXL2_SYNC_WRITE:
-        break;
-    default: /* what is done later, or changes what a goal means */
-        return GROBO_ERR_UNSUPPORTED;
+    }
+    if (packet->instruction != GROBO_DXL2_SYNC_WRITE) {
+        return GROBO_ERR_UNSUPPORTED; /* done later, or it changes what a goal means */
     }
     const size_t each = (size_t)packet->length + 1;
     int result = packet->data_bytes % each == 0 ? GROBO_OK : GROBO_ERR_UNSUPPORTED;

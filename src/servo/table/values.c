@@ -3,7 +3,6 @@
 #include "src/servo/table/family.h"
 
 #include <math.h>
-#include <string.h>
 
 #define RAD_PER_DEG 0.017453292519943295
 
@@ -30,13 +29,7 @@ bool grobo_i_table_value(const grobo_servo_model *servo, grobo_register_role rol
     return true;
 }
 
-static bool ends_with(const char *text, const char *end)
-{
-    size_t n = strlen(text);
-    size_t m = strlen(end);
-    return n >= m && strcmp(text + (n - m), end) == 0;
-}
-
+/* The number, and what it is of: of "0.229 rpm" 6 * 0.229 deg/s, of "0.1 V" 100 mV. */
 double grobo_i_table_unit(const grobo_servo_register *reg)
 {
     double value = 0;
@@ -50,8 +43,10 @@ double grobo_i_table_unit(const grobo_servo_register *reg)
             value = place > 0 ? value + place * (*at - '0') : value * 10 + (*at - '0');
         }
     }
-    bool volts = ends_with(reg->unit, " V");
-    return value * (strstr(reg->unit, " rpm") != NULL ? 6 : volts ? 1000 : 1);
+    if (at[0] != ' ') {
+        return value;
+    }
+    return value * (at[1] == 'r' ? 6 : at[1] == 'V' ? 1000 : 1);
 }
 
 static double tick_rad(const grobo_servo_model *servo)
