@@ -172,6 +172,35 @@ static void a_whole_robot_is_read_in_one_frame(void **state)
     }
 }
 
+/* As fast as the wire allows: 98 % of what the bytes of request and replies let through. */
+static void the_wire_sets_the_rate_of_readings(void **state)
+{
+    (void)state;
+    static const grobo_robot_config fast = {.sense_interval_us = 1};
+    for (int i = 0; i < FAMILIES; i++) {
+        if (!families[i].many) {
+            continue;
+        }
+        begin(&families[i]);
+        grobo_robot_config config = fast;
+        config.bus.return_delay_us = 1;
+        table_start(&bus, &config);
+        table_run(&bus, 100 * MS);
+        size_t before = table_count(&bus, GROBO_DXL2_SYNC_READ);
+        grobo_bus_cost cost;
+        grobo_exchange exchange = {0};
+        assert_int_equal(bus.driver.sense_many(&bus.driver, NULL, GROBO_JOINTS_ALL(JOINTS),
+                                               GROBO_SENSE_FULL, &exchange),
+                         GROBO_OK);
+        const grobo_txn txn = {
+            .frame = exchange.frame, .frame_bytes = exchange.frame_bytes, .reply = exchange.reply};
+        grobo_bus_cost_of(&bus.robot.bus, &txn, &cost);
+        table_run(&bus, S);
+        size_t reads = table_count(&bus, GROBO_DXL2_SYNC_READ) - before;
+        assert_true(reads * cost.total_us >= 98 * (S / 100));
+    }
+}
+
 /* One that falls silent is missed, and the others are read on. */
 static void a_silent_joint_trips_a_motion_and_hides_no_other(void **state)
 {
@@ -395,6 +424,7 @@ int main(void)
         cmocka_unit_test(postures_are_played),
         cmocka_unit_test(ways_are_straight_in_time),
         cmocka_unit_test(a_whole_robot_is_read_in_one_frame),
+        cmocka_unit_test(the_wire_sets_the_rate_of_readings),
         cmocka_unit_test(a_silent_joint_trips_a_motion_and_hides_no_other),
         cmocka_unit_test(heat_stops_for_safety),
         cmocka_unit_test(an_emergency_stop_holds_or_lets_go),
