@@ -58,7 +58,7 @@ static void on_event(void *ctx, const grobo_event *event)
 
 static void pump(void)
 {
-    uint8_t buf[GROBO_RS30X_PACKET_MAX_BYTES];
+    uint8_t buf[GROBO_FRAME_MAX_BYTES];
     size_t got;
     while ((got = grobo_sim_tx(&sim, buf, sizeof buf, now_us)) > 0) {
         grobo_robot_rx(&robot, buf, got, now_us);

@@ -241,7 +241,7 @@ GROBO_API void grobo_robot_rx(grobo_robot *robot, const uint8_t *bytes, size_t s
  * line can take all of it and nothing waits before it. Frames are judged here: one that must not
  * leave any more is dropped and the next one is given. Calls nothing back; what that ends is told
  * by the next grobo_robot_step(), which grobo_robot_deadline() wants at once then.
- * @param capacity GROBO_RS30X_PACKET_MAX_BYTES is always enough.
+ * @param capacity GROBO_FRAME_MAX_BYTES is always enough.
  * @return number of bytes, 0 for nothing now, GROBO_ERR_SPACE.
  */
 GROBO_API int grobo_robot_tx(grobo_robot *robot, uint8_t *buf, size_t capacity, int64_t now_us);
