@@ -110,7 +110,7 @@ static void postures_are_played(void **state)
         table_put(&bus, 0, GROBO_ROLE_GOAL, 100);
         grobo_posture p = posture(-20, 40, 15, 1000);
         int64_t from_us = bus.now_us;
-        assert_int_equal(table_wait(&bus, grobo_robot_move(&bus.robot, &p, bus.now_us)), GROBO_OK);
+        assert_int_equal(table_wait(&bus, grobo_robot_move(&bus.robot, &p)), GROBO_OK);
         at(0, -20);
         at(1, 40);
         at(2, 15);
@@ -120,13 +120,13 @@ static void postures_are_played(void **state)
             assert_int_equal(bus.servo[j].jumps, 0);
         }
         p = posture(79, -79, 50, 200); /* faster than the servos: they get more time */
-        assert_int_equal(table_wait(&bus, grobo_robot_move(&bus.robot, &p, bus.now_us)), GROBO_OK);
+        assert_int_equal(table_wait(&bus, grobo_robot_move(&bus.robot, &p)), GROBO_OK);
         at(0, 79);
         at(1, -79);
         at(2, 50);
         assert_int_equal(bus.servo[0].jumps + bus.servo[1].jumps + bus.servo[2].jumps, 0);
         p = posture(81, 0, 0, 1000);
-        assert_int_equal(grobo_robot_move(&bus.robot, &p, bus.now_us), GROBO_ERR_LIMIT);
+        assert_int_equal(grobo_robot_move(&bus.robot, &p), GROBO_ERR_LIMIT);
     }
 }
 
@@ -137,9 +137,9 @@ static void ways_are_straight_in_time(void **state)
     for (int i = 0; i < FAMILIES; i++) {
         start(&families[i], &quiet);
         grobo_posture p = posture(0, 0, 0, 500);
-        assert_int_equal(table_wait(&bus, grobo_robot_move(&bus.robot, &p, bus.now_us)), GROBO_OK);
+        assert_int_equal(table_wait(&bus, grobo_robot_move(&bus.robot, &p)), GROBO_OK);
         p = posture(60, -60, 30, 2000);
-        assert_true(grobo_robot_move(&bus.robot, &p, bus.now_us) > 0);
+        assert_true(grobo_robot_move(&bus.robot, &p) > 0);
         table_run(&bus, 1100 * MS);
         assert_true(fabs(table_angle_deg(&bus, 0) - 32) < 6);
         assert_true(fabs(table_angle_deg(&bus, 1) + 32) < 6);
@@ -157,7 +157,7 @@ static void a_whole_robot_is_read_in_one_frame(void **state)
         table_run(&bus, S);
         for (int j = 0; j < JOINTS; j++) {
             grobo_joint_info got;
-            assert_int_equal(grobo_robot_joint(&bus.robot, j, bus.now_us, &got), GROBO_OK);
+            assert_int_equal(grobo_robot_joint(&bus.robot, j, &got), GROBO_OK);
             double deg = grobo_deg_from_rad(got.state.angle_rad);
             assert_true(fabs(deg - table_angle_deg(&bus, j)) < 0.2);
             assert_int_equal(got.state.temperature_c, 30);
@@ -209,9 +209,9 @@ static void a_silent_joint_trips_a_motion_and_hides_no_other(void **state)
         const grobo_robot_config busy = {.sense_interval_us = 20 * MS};
         start(&families[i], &busy);
         grobo_posture p = posture(0, 0, 0, 500);
-        assert_int_equal(table_wait(&bus, grobo_robot_move(&bus.robot, &p, bus.now_us)), GROBO_OK);
+        assert_int_equal(table_wait(&bus, grobo_robot_move(&bus.robot, &p)), GROBO_OK);
         p = posture(40, 40, 40, 3000);
-        assert_true(grobo_robot_move(&bus.robot, &p, bus.now_us) > 0);
+        assert_true(grobo_robot_move(&bus.robot, &p) > 0);
         table_run(&bus, 500 * MS);
         bus.servo[1].silent = true;
         table_run(&bus, 2 * S);
@@ -221,7 +221,7 @@ static void a_silent_joint_trips_a_motion_and_hides_no_other(void **state)
         assert_int_equal(trip->u.trip.joint, 1);
         assert_true(table_angle_deg(&bus, 0) < 38); /* it stopped on its way */
         grobo_joint_info got;
-        assert_int_equal(grobo_robot_joint(&bus.robot, 0, bus.now_us, &got), GROBO_OK);
+        assert_int_equal(grobo_robot_joint(&bus.robot, 0, &got), GROBO_OK);
         assert_true(got.angle_age_us < 200 * MS);
     }
 }
@@ -233,7 +233,7 @@ static void heat_stops_for_safety(void **state)
         const grobo_robot_config busy = {.sense_interval_us = 20 * MS};
         start(&families[i], &busy);
         grobo_posture p = posture(0, 0, 0, 500);
-        assert_int_equal(table_wait(&bus, grobo_robot_move(&bus.robot, &p, bus.now_us)), GROBO_OK);
+        assert_int_equal(table_wait(&bus, grobo_robot_move(&bus.robot, &p)), GROBO_OK);
         if (families[i].in_status) {
             bus.error = families[i].hot;
         } else {
@@ -243,7 +243,7 @@ static void heat_stops_for_safety(void **state)
         assert_non_null(last(GROBO_EVENT_TRIP));
         assert_int_equal(last(GROBO_EVENT_TRIP)->u.trip.trip, GROBO_TRIP_OVERHEATED);
         start(&families[i], &busy);
-        assert_int_equal(table_wait(&bus, grobo_robot_move(&bus.robot, &p, bus.now_us)), GROBO_OK);
+        assert_int_equal(table_wait(&bus, grobo_robot_move(&bus.robot, &p)), GROBO_OK);
         table_put(&bus, 2, GROBO_ROLE_TEMPERATURE, 66);
         table_run(&bus, S);
         assert_int_equal(last(GROBO_EVENT_TRIP)->u.trip.trip, GROBO_TRIP_TEMPERATURE);
@@ -260,12 +260,12 @@ static void an_emergency_stop_holds_or_lets_go(void **state)
             config.estop_torque = off ? GROBO_ESTOP_OFF : GROBO_ESTOP_BRAKE;
             start(&families[i], &config);
             grobo_posture p = posture(0, 0, 0, 500);
-            int job = grobo_robot_move(&bus.robot, &p, bus.now_us);
+            int job = grobo_robot_move(&bus.robot, &p);
             assert_int_equal(table_wait(&bus, job), GROBO_OK);
             p = posture(70, -70, 70, 2000);
-            assert_true(grobo_robot_move(&bus.robot, &p, bus.now_us) > 0);
+            assert_true(grobo_robot_move(&bus.robot, &p) > 0);
             table_run(&bus, 700 * MS);
-            job = grobo_robot_estop(&bus.robot, bus.now_us);
+            job = grobo_robot_estop(&bus.robot);
             assert_int_equal(table_wait(&bus, job), GROBO_OK);
             double stopped_deg = table_angle_deg(&bus, 0);
             table_run(&bus, S);
@@ -274,7 +274,7 @@ static void an_emergency_stop_holds_or_lets_go(void **state)
             for (int j = 0; j < JOINTS; j++) {
                 assert_int_equal(table_get(&bus, j, GROBO_ROLE_TORQUE), off ? 0 : 1);
             }
-            assert_int_equal(grobo_robot_move(&bus.robot, &p, bus.now_us), GROBO_ERR_LATCHED);
+            assert_int_equal(grobo_robot_move(&bus.robot, &p), GROBO_ERR_LATCHED);
         }
     }
 }
@@ -286,7 +286,7 @@ static void refused(const family *f, int joint, grobo_register_role role, int32_
     start(f, &quiet);
     table_put(&bus, joint, role, value);
     grobo_posture p = posture(10, 10, 10, 500);
-    int result = table_wait(&bus, grobo_robot_move(&bus.robot, &p, bus.now_us));
+    int result = table_wait(&bus, grobo_robot_move(&bus.robot, &p));
     if (result != GROBO_ERR_SETUP) {
         fail_msg("%s, role %d, %d: %d", f->model->name, (int)role, (int)value, result);
     }
@@ -321,7 +321,7 @@ static int write_register(grobo_register_role role)
         return GROBO_ERR_UNSUPPORTED;
     }
     const grobo_register_io io = {1, reg->address, reg->bytes, zeros};
-    return grobo_robot_registers(&bus.robot, &io, bus.now_us);
+    return grobo_robot_registers(&bus.robot, &io);
 }
 
 /* Goals and torque are for requests; a setting needs a servo that holds nothing. */
@@ -337,7 +337,7 @@ static void guarded_registers_are_refused(void **state)
     for (int i = 0; i < FAMILIES; i++) {
         start(&families[i], &quiet);
         grobo_posture p = posture(0, 0, 0, 500);
-        assert_int_equal(table_wait(&bus, grobo_robot_move(&bus.robot, &p, bus.now_us)), GROBO_OK);
+        assert_int_equal(table_wait(&bus, grobo_robot_move(&bus.robot, &p)), GROBO_OK);
         for (size_t k = 0; k < sizeof motor / sizeof motor[0]; k++) {
             assert_int_equal(write_register(motor[k]), GROBO_ERR_UNSUPPORTED);
         }
@@ -346,11 +346,9 @@ static void guarded_registers_are_refused(void **state)
         }
         static const uint8_t byte[1];
         const grobo_register_io nowhere = {1, 200, 1, byte}; /* as an indirect one would be */
-        assert_int_equal(grobo_robot_registers(&bus.robot, &nowhere, bus.now_us),
-                         GROBO_ERR_UNSUPPORTED);
+        assert_int_equal(grobo_robot_registers(&bus.robot, &nowhere), GROBO_ERR_UNSUPPORTED);
         const grobo_register_io read = {1, 0, 4, NULL};
-        assert_int_equal(table_wait(&bus, grobo_robot_registers(&bus.robot, &read, bus.now_us)),
-                         GROBO_OK);
+        assert_int_equal(table_wait(&bus, grobo_robot_registers(&bus.robot, &read)), GROBO_OK);
     }
 }
 
@@ -371,7 +369,7 @@ static int raw(uint8_t id, uint8_t code, uint16_t address, const uint8_t *data, 
         size = grobo_dxl1_build(&p, b, sizeof b);
     }
     assert_true(size > 0);
-    return grobo_robot_raw(&bus.robot, b, (size_t)size, bus.now_us);
+    return grobo_robot_raw(&bus.robot, b, (size_t)size);
 }
 
 /* A raw goal is checked as one of the engine's own; what nobody can read is refused. */
@@ -382,7 +380,7 @@ static void raw_frames_are_judged(void **state)
         static const uint8_t ends[4];
         start(&families[i], &quiet);
         grobo_posture p = posture(0, 0, 0, 500);
-        assert_int_equal(table_wait(&bus, grobo_robot_move(&bus.robot, &p, bus.now_us)), GROBO_OK);
+        assert_int_equal(table_wait(&bus, grobo_robot_move(&bus.robot, &p)), GROBO_OK);
         const grobo_servo_register *goal =
             grobo_servo_register_of(bus.servo[0].servo, GROBO_ROLE_GOAL);
         assert_int_equal(raw(1, GROBO_DXL2_WRITE, goal->address, ends, goal->bytes),

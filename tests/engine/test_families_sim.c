@@ -179,7 +179,7 @@ static grobo_posture posture(double deg, int time_ms)
 static int move(double deg, int time_ms)
 {
     grobo_posture p = posture(deg, time_ms);
-    return wait_job(grobo_robot_move(&robot, &p, now_us));
+    return wait_job(grobo_robot_move(&robot, &p));
 }
 
 static void at(const family *f, double deg)
@@ -246,11 +246,11 @@ static void an_emergency_stop_stops(void **state)
         start(&families[i], &watched);
         assert_int_equal(move(30, 1000), GROBO_OK);
         grobo_posture p = posture(-60, 3000);
-        assert_true(grobo_robot_move(&robot, &p, now_us) > 0);
+        assert_true(grobo_robot_move(&robot, &p) > 0);
         run(1000 * MS);
         double before_deg = angle_deg(0);
         assert_true(before_deg < 20 && before_deg > -30);
-        assert_int_equal(wait_job(grobo_robot_estop(&robot, now_us)), GROBO_OK);
+        assert_int_equal(wait_job(grobo_robot_estop(&robot)), GROBO_OK);
         run(S);
         assert_true(fabs(angle_deg(0) - before_deg) < 8);
         for (int j = 0; j < JOINTS; j++) {
@@ -259,7 +259,7 @@ static void an_emergency_stop_stops(void **state)
             assert_int_equal(view.torque, GROBO_TORQUE_ON);
             assert_false(view.moving);
         }
-        assert_int_equal(grobo_robot_move(&robot, &p, now_us), GROBO_ERR_LATCHED);
+        assert_int_equal(grobo_robot_move(&robot, &p), GROBO_ERR_LATCHED);
     }
 }
 
@@ -271,7 +271,7 @@ static void without_its_host_an_arm_stops(void **state)
         start(&families[i], &watched);
         assert_int_equal(move(40, 1000), GROBO_OK);
         grobo_posture p = posture(-50, 4000);
-        assert_true(grobo_robot_move(&robot, &p, now_us) > 0);
+        assert_true(grobo_robot_move(&robot, &p) > 0);
         run(1000 * MS);
         double then_deg = angle_deg(0);
         now_us += 3 * (int64_t)S;
