@@ -90,7 +90,8 @@ EVENT_CFLAGS = $(call once,EVENT_CFLAGS,$(call flags,--cflags,libevent_core))
 CMOCKA_CFLAGS = $(call once,CMOCKA_CFLAGS,$(call flags,--cflags,cmocka))
 CMOCKA_LIBS = $(call once,CMOCKA_LIBS,$(call flags,--libs,cmocka))
 JSON_CFLAGS = $(call once,JSON_CFLAGS,$(call flags,--cflags,jansson))
-TOOL_LIBS = $(call once,TOOL_LIBS,$(call flags,--libs,jansson) $(EDIT_LIBS) $(SCREEN_LIBS))
+JSON_LIBS = $(call once,JSON_LIBS,$(call flags,--libs,jansson))
+TOOL_LIBS = $(call once,TOOL_LIBS,$(JSON_LIBS) $(EDIT_LIBS) $(SCREEN_LIBS))
 # The shell edits lines where libedit is there, else it reads them plainly.
 EDIT := $(if $(shell $(PKG_CONFIG) --exists libedit 2>/dev/null && echo yes),libedit,plain)
 EDIT_CFLAGS = $(if $(filter libedit,$(EDIT)),$(call once,EDIT_CFLAGS_FOUND,$(call flags,--cflags,libedit)))
@@ -159,7 +160,7 @@ include tools/baremetal/baremetal.mk
 
 .PHONY: help all lib demo check lint lint-quick format test check-san check-tsan check-memcheck install uninstall
 .PHONY: clean tidy fuzz soak cov dist bench plots captures cross check-cross check-drivers
-.PHONY: check-ports check-long check-mutants check-map install-lib FORCE
+.PHONY: check-families check-ports check-long check-mutants check-map install-lib FORCE
 .PHONY: firmware size check-firmware
 
 help: ## this list
@@ -219,6 +220,12 @@ check-san: ## the tests of our own code under AddressSanitizer and UBSan
 	@TEST_TIMEOUT_S=600 $(MAKE) --no-print-directory test BUILD=$(BUILD)/san SAN=address,undefined CFLAGS='-O1 -g' \
 	    WALKS=-DGROBO_WALKS \
 	    RING='$(filter-out lint export,$(RING))'
+
+FAMILY_CLIENTS := dynamixel-sdk==4.1.0 rustypot==1.13.1 feetech-servo-sdk==1.0.0
+check-families: all ## clients of other servos (from PyPI) against the simulator
+	@python3 -m venv $(BUILD)/families && $(BUILD)/families/bin/pip install -q --disable-pip-version-check $(FAMILY_CLIENTS)
+	@GRCTL="$(call whole,$(GRCTL_RUN))" PYTHON=$(BUILD)/families/bin/python BUILD="$(BUILD)" \
+	    TEST_LOGS="$(BUILD)/logs" tests/run.sh tests/families/clients.sh
 
 check-tsan: ## the tests of what threads share under ThreadSanitizer
 	@$(MAKE) --no-print-directory test BUILD=$(BUILD)/tsan SAN=thread CFLAGS='-O1 -g' RING=link
@@ -474,7 +481,7 @@ $(BUILD)/run/grctl: $(GRCTL)
 
 $(sort $(TEST_PROGRAMS) $(DRIVER_PROGRAMS)): $(BUILD)/%$(EXE): $(BUILD)/%.o $(SUPPORT_LIB) $(TOOL_LIB) $(STATIC_LIB)
 	$(say) LD $@
-	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(CMOCKA_LIBS) $(LIBS)
+	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(CMOCKA_LIBS) $(JSON_LIBS) $(LIBS)
 
 $(FUZZ_REPLAYS): $(BUILD)/%$(EXE): $(BUILD)/%.o $(BUILD)/tests/support/replay_main.o $(TOOL_LIB) \
     $(STATIC_LIB)

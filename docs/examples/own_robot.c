@@ -19,10 +19,10 @@
 enum { BASE, SHOULDER, ELBOW, WRIST, JOINTS };
 
 static const grobo_joint joints[JOINTS] = {
-    {"BASE", RAD(-150), RAD(150), RAD(375), 0, 0x3030, 0, 11, BASE, 1},
-    {"SHOULDER", RAD(-90), RAD(90), RAD(375), RAD(-30), 0x3030, 0, 12, SHOULDER, 1},
-    {"ELBOW", RAD(-120), RAD(120), RAD(375), RAD(60), 0x3030, 0, 13, ELBOW, 1},
-    {"WRIST", RAD(-100), RAD(100), RAD(375), RAD(-30), 0x3030, 0, 14, WRIST, 1},
+    {"BASE", RAD(-150), RAD(150), RAD(375), 0, 0x3030, 0, 11, BASE, 1, 1, false, 0, 1},
+    {"SHOULDER", RAD(-90), RAD(90), RAD(375), RAD(-30), 0x3030, 0, 12, SHOULDER, 1, 1, false, 0, 1},
+    {"ELBOW", RAD(-120), RAD(120), RAD(375), RAD(60), 0x3030, 0, 13, ELBOW, 1, 1, false, 0, 1},
+    {"WRIST", RAD(-100), RAD(100), RAD(375), RAD(-30), 0x3030, 0, 14, WRIST, 1, 1, false, 0, 1},
 };
 static const grobo_group groups[] = {{"all", 0xF}, {"arm", 0x7}};
 static const grobo_model model = {"ARM", joints, groups, JOINTS, 2, 0};
@@ -58,7 +58,7 @@ static void on_event(void *ctx, const grobo_event *event)
 
 static void pump(void)
 {
-    uint8_t buf[GROBO_RS30X_PACKET_MAX_BYTES];
+    uint8_t buf[GROBO_FRAME_MAX_BYTES];
     size_t got;
     while ((got = grobo_sim_tx(&sim, buf, sizeof buf, now_us)) > 0) {
         grobo_robot_rx(&robot, buf, got, now_us);

@@ -24,8 +24,9 @@
  *   (GROBO_RS30X_STATUS_REFUSED) is never retried.
  * - A deadline is computed: wire time of the request at the baud rate, forwarding by the board,
  *   return delay, wire time of the reply, plus a margin learnt from the replies so far.
- * - A reply is believed when header, id, flags, address, length and sum are those expected, and
- *   it came after its request was sent. After a failure the line must be quiet for a moment before
+ * - A reply is believed when header, id, length and sum are those expected, and the address where
+ *   the family's replies tell one, and it came after its request was sent. After a failure the line
+ *   must be quiet for a moment before
  *   the next request that wants a reply. An ACK is one byte without a name: it must be the first
  *   byte after the request.
  * - A late reply is credited: it ends the transaction that waits for its next attempt. The replies
@@ -77,7 +78,9 @@ typedef struct grobo_txn grobo_txn;
  * @param result GROBO_OK; GROBO_ERR_TIMEOUT (nothing came), GROBO_ERR_SHORT (some bytes came),
  *               GROBO_ERR_CHECKSUM, GROBO_ERR_MISMATCH (the echo was broken, or an ACK came
  *               among other bytes), GROBO_ERR_NACK, GROBO_ERR_STALE (start_by_us passed), what
- *               `leave` returned, or what the cancel function was given
+ *               `leave` returned, or what the cancel function was given. Of several replies:
+ *               GROBO_OK when all came, or it was not known who is there; GROBO_ERR_SHORT when
+ *               some came, GROBO_ERR_TIMEOUT when none did
  * @param reply  the return packet or ACK that ended it, valid during the call; NULL when there is
  *               none. GROBO_ERR_NACK comes with it: its flags say why.
  */
@@ -91,12 +94,19 @@ typedef void (*grobo_txn_done)(void *ctx, grobo_txn *txn, int result, const grob
 typedef int (*grobo_txn_leave)(void *ctx, grobo_txn *txn);
 
 /**
+ * One of several replies to a transaction; `done` follows, with no packet. After a retry those of
+ * the attempt before come again.
+ * @param reply valid during the call; `refused` may be set
+ */
+typedef void (*grobo_txn_each)(void *ctx, grobo_txn *txn, const grobo_packet *reply);
+
+/**
  * A transaction. The caller owns the struct and the frame's bytes; both must stay as they are until
  * done, but for what `leave` changes. Start from grobo_txn_init, then set what differs.
  */
 struct grobo_txn {
     const uint8_t *frame;    /**< borrowed: what is sent */
-    uint8_t frame_bytes;     /**< 1..GROBO_FRAME_MAX_BYTES */
+    uint16_t frame_bytes;    /**< 1..GROBO_FRAME_MAX_BYTES */
     uint8_t retries;         /**< attempts after the first, 0 none */
     bool patient;            /**< the last attempt is given GROBO_BUS_MARGIN_MAX_US above the wire
                                   time, where neither timeout_us nor margin_us says otherwise. Not
@@ -109,8 +119,9 @@ struct grobo_txn {
     bool pending_;           /**< private: belongs to a bus */
     int64_t start_by_us;     /**< not worth sending after this time; 0: always */
     grobo_txn_leave leave;   /**< NULL: every attempt leaves */
+    grobo_txn_each each;     /**< gets the replies where there are several; may be NULL */
     grobo_txn_done done;     /**< may be NULL */
-    void *ctx;               /**< handed back to leave and done */
+    void *ctx;               /**< handed back to leave, each and done */
     int64_t sent_us;         /**< out: when the last attempt was given out; -1: never */
     grobo_txn *next_;        /**< private */
 };
@@ -186,31 +197,33 @@ typedef struct grobo_bus_hold {
 typedef struct grobo_bus {
     /* private; small and busy members first, where a Cortex-M0 reaches them in one instruction */
     grobo_bus_phase phase;
-    bool learnt;              /* overhead_us and deviation_us come from a reply */
-    uint8_t next_hold;        /* the slot used last, of 1.. */
-    uint16_t waiting;         /* transactions in the queues */
-    grobo_txn *active;        /* on the wire; NULL when idle */
-    int32_t overhead_us;      /* smoothed: how much later than computed replies come */
-    int32_t deviation_us;     /* smoothed deviation of that */
-    int32_t worst_us;         /* the worst of that, slowly forgotten; at most half of hold_us */
+    bool learnt;          /* overhead_us and deviation_us come from a reply */
+    uint8_t next_hold;    /* the slot used last, of 1.. */
+    uint8_t accept;       /* packets that are believed now */
+    uint16_t waiting;     /* transactions in the queues */
+    grobo_txn *active;    /* on the wire; NULL when idle */
+    int32_t overhead_us;  /* smoothed: how much later than computed replies come */
+    int32_t deviation_us; /* smoothed deviation of that */
+    int32_t worst_us;     /* the worst of that, slowly forgotten; at most half of hold_us */
+    grobo_txn *head[GROBO_PRIORITIES];
     uint32_t bad_sums_before; /* the parser's counters when the active frame was sent */
     uint32_t dropped_before;
-    int64_t now_us;      /* of the rx or step that is running */
-    int64_t over_us;     /* when the active one is over if all goes well */
-    int64_t limit_us;    /* when it has failed; when it is over if nothing answers it */
-    int64_t free_us;     /* when the line is free for the next frame */
-    int64_t servo_us;    /* when the bus behind the board is free */
-    int64_t quiet_us;    /* when the silence after a failure is long enough */
-    int64_t quiet_by_us; /* when it is long enough in any case */
+    grobo_bus_config config; /* no zeros left in it, but margin_us */
+    int64_t now_us;          /* of the rx or step that is running */
+    int64_t over_us;         /* when the active one is over if all goes well */
+    int64_t limit_us;        /* when it has failed; when it is over if nothing answers it */
+    int64_t free_us;         /* when the line is free for the next frame */
+    int64_t servo_us;        /* when the bus behind the board is free */
+    int64_t quiet_us;        /* when the silence after a failure is long enough */
+    int64_t quiet_by_us;     /* when it is long enough in any case */
     int64_t reserve_us;
     int64_t reserve_end_us; /* 0: no span */
-    grobo_txn *head[GROBO_PRIORITIES];
     /* public */
     grobo_bus_stats stats; /**< read freely */
     /* private */
-    grobo_bus_config config; /* no zeros left in it, but margin_us */
     grobo_framer framer;
-    unsigned accept; /* packets that are believed now */
+    uint64_t came;    /* of several replies, by their places, those that have come */
+    uint32_t came_to; /* tx_frames of the attempt that they came to */
     grobo_bus_hold hold[GROBO_BUS_HOLDS];
 } grobo_bus;
 
@@ -289,6 +302,15 @@ GROBO_CORE void grobo_bus_reserve(grobo_bus *bus, int64_t at_us, uint32_t durati
 
 /** True if this transaction, started at now_us, would be over before the reserved span. */
 GROBO_CORE bool grobo_bus_fits(const grobo_bus *bus, int64_t now_us, const grobo_txn *txn);
+
+/**
+ * grobo_protocol.several: takes a packet that may be one of several replies to the frame on the
+ * wire, or NULL: their time is over. Replies are known by id, tag and length. When the last one of
+ * the list has come no other is waited for, as servos answer in the order of the list. Called by
+ * the bus only.
+ * @return true when it was for such a frame
+ */
+GROBO_API bool grobo_bus_several(grobo_bus *bus, const grobo_packet *packet);
 
 /** When the line will be free for the next frame, as far as is known: now_us if it is. */
 GROBO_CORE int64_t grobo_bus_free_at(const grobo_bus *bus, int64_t now_us);

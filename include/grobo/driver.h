@@ -34,7 +34,7 @@ typedef enum grobo_sense_kind {
 /** One frame to send and the reply it waits for. Plain data. */
 typedef struct grobo_exchange {
     uint8_t frame[GROBO_FRAME_MAX_BYTES]; /**< what is sent */
-    uint8_t frame_bytes;                  /**< how much of it */
+    uint16_t frame_bytes;                 /**< how much of it */
     grobo_reply reply;                    /**< what must come back */
     int64_t settle_us;                    /**< silence the device needs afterwards, 0: none */
 } grobo_exchange;
@@ -75,6 +75,8 @@ typedef struct grobo_joint_state {
 typedef struct grobo_target {
     grobo_posture posture;                   /**< checked: finite, within limits */
     int64_t joint_time_us[GROBO_JOINTS_MAX]; /**< by joint, multiples of the driver's time step */
+    double from_rad[GROBO_JOINTS_MAX];       /**< where each is when the frame leaves: families
+                                                  without a goal time make a speed of it */
 } grobo_target;
 
 /** A motion kept in the robot itself. */
@@ -85,9 +87,9 @@ typedef enum grobo_stored_kind {
 
 /** A register transfer of one servo. */
 typedef struct grobo_register_io {
-    uint8_t id;          /**< servo id, 1..127 */
-    uint8_t address;     /**< first register */
-    uint8_t length;      /**< bytes, 1..GROBO_REGISTERS - address */
+    uint8_t id;          /**< servo id, as its protocol has them */
+    uint16_t address;    /**< first register */
+    uint16_t length;     /**< bytes, > 0 */
     const uint8_t *data; /**< bytes to write, or NULL to read */
 } grobo_register_io;
 
@@ -138,6 +140,9 @@ struct grobo_driver {
     const grobo_model *model;       /**< joints, motors, limits */
     const grobo_protocol *protocol; /**< how its servos talk, and over what line */
     int64_t time_step_us;           /**< unit of a goal time on the wire, > 0 (RS30x: 10 ms) */
+    int64_t time_max_us;            /**< longest goal time of the wire, >= time_step_us, at most
+                                         GROBO_PLAY_TIME_MAX_US */
+    double angle_step_rad;          /**< goals are rounded to multiples of this, > 0 */
     grobo_safety_limits limits;     /**< safety limits of this robot */
     grobo_exit_policy on_exit;      /**< what GROBO_EXIT_DEFAULT stands for; not DEFAULT itself */
     bool arm;                       /**< its joints do not stand on each other, so that it may stop
@@ -145,6 +150,9 @@ struct grobo_driver {
     const double *rest_rad; /**< resting posture by joint for GROBO_EXIT_SIT; NULL: initial one */
     const grobo_readback *readback; /**< n_readback corrections, used if the engine is told to */
     uint8_t n_readback;
+    const void *family; /**< for the table's own functions */
+    bool all_first;     /**< a joint's first reading is always a GROBO_SENSE_ALL, in which parse()
+                             looks at how its servo is set up */
 
     /** Is the robot there? Parts are tried one after the other until one is answered. */
     int (*check)(const grobo_driver *self, void *ctx, int part, grobo_exchange *exchange);
@@ -157,15 +165,22 @@ struct grobo_driver {
     /** Asks one joint for its state. @return 0 or an error. */
     int (*sense)(const grobo_driver *self, void *ctx, int joint, grobo_sense_kind kind,
                  grobo_exchange *exchange);
+    /** Asks several joints for their state in one exchange: each answers with a packet of its id,
+     *  or one packet that has an id of no servo answers for all. NULL: they are asked one by one.
+     *  @return 0 or an error. */
+    int (*sense_many)(const grobo_driver *self, void *ctx, grobo_joint_mask joints,
+                      grobo_sense_kind kind, grobo_exchange *exchange);
     /**
      * Reads what a joint returned; the packet has been checked against the exchange's reply.
-     * Sets the fields it finds and their bits in state->valid. @return 0 or an error.
+     * Sets the fields it finds and their bits in state->valid. @return 0 or an error: a joint that
+     * is read with one was never sensed, so that it is not moved either.
      */
     int (*parse)(const grobo_driver *self, void *ctx, int joint, const grobo_packet *reply,
                  grobo_joint_state *state);
     /** What writing these registers would do; the worst counts. Must be there with `registers`. */
     grobo_write_kind (*write_kind)(const grobo_driver *self, const grobo_register_io *io);
-    /** Reads or writes registers of one servo. @return 0 or an error. */
+    /** Reads or writes registers of one servo. @return 0 or an error: GROBO_ERR_ARG where there are
+     *  no such registers. */
     int (*registers)(const grobo_driver *self, void *ctx, const grobo_register_io *io,
                      grobo_exchange *exchange);
     /** Flash, reboot, factory reset; sets exchange->settle_us. @return 0 or an error. */
@@ -213,6 +228,35 @@ GROBO_API grobo_wiring grobo_driver_wiring(const grobo_driver *driver);
  */
 GROBO_API int grobo_rs30x_driver_init(grobo_driver *driver, const grobo_model *model,
                                       const grobo_protocol *protocol);
+
+/**
+ * Fills a table for a robot of DYNAMIXEL X servos (Protocol 2.0). grobo_joint.servo_model names the
+ * servo by its model number. Goals come with a duration, which the servo takes for a profile: its
+ * drive mode must be 4 (time, not reversed), and its operating mode 3, or 4 for a joint of several
+ * turns, or 5. All joints are read in one frame. Torque on does not move a servo whose goal is
+ * where it stands; whether it keeps an old goal depends on its firmware, so that the engine always
+ * sets it. An error of its register shutdown cuts the torque until a reboot. No brake: torque is on
+ * or off, and an emergency stop holds unless it is to let go.
+ * Limits: 65 deg C, 5 lost replies, 60 deg/s for the first move; exit policy hold; an arm.
+ * @param[out] driver the caller's table; change what is different in it afterwards.
+ * @param model borrowed.
+ * @return 0, or GROBO_ERR_ARG: a bad model, a servo that is not known, a joint beyond its reach.
+ * Joints whose servo is set up otherwise are read with GROBO_ERR_SETUP, and never move.
+ */
+GROBO_API int grobo_dxl2_driver_init(grobo_driver *driver, const grobo_model *model);
+
+/** The same for AX and MX servos with Protocol 1.0. They have no time of a move: its speed is that
+ *  of the whole way. Joints are read one by one. An error of the register shutdown sets the torque
+ *  limit to 0, which counts as torque lost. */
+GROBO_API int grobo_dxl1_driver_init(grobo_driver *driver, const grobo_model *model);
+
+/**
+ * The same for Feetech's STS, SMS and SCS servos. STS have no time of a move but a speed, counted
+ * in single steps (bit 2 of the register phase); all joints of STS are read in one frame. Torque on
+ * with an old goal runs there: the engine sets the goal before. An overload bounds the output until
+ * there is another goal or torque was off; it counts neither as heat nor as torque lost.
+ */
+GROBO_API int grobo_feetech_driver_init(grobo_driver *driver, const grobo_model *model);
 
 /**
  * The table of HPI's GR001.

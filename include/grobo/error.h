@@ -54,7 +54,8 @@ GROBO_BEGIN_DECLS
     X(DISK, -33, "no room left on the disk")                                                       \
     X(UNWATCHED, -34, "rate leaves no time to read the joints")                                    \
     X(STALLED, -35, "stopped by the guard while the program stood still")                          \
-    X(SUPERSEDED, -36, "another request took its joints")
+    X(SUPERSEDED, -36, "another request took its joints")                                          \
+    X(SETUP, -37, "servo is not set up as its joint needs")
 
 /** The errors as an enum: GROBO_ERR_ARG, GROBO_ERR_NOMEM, ... */
 typedef enum grobo_error {

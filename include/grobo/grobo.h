@@ -13,8 +13,11 @@
 #include <grobo/callback.h>
 #include <grobo/clip.h>
 #include <grobo/driver.h>
+#include <grobo/dxl1.h>
+#include <grobo/dxl2.h>
 #include <grobo/error.h>
 #include <grobo/estop.h>
+#include <grobo/feetech.h>
 #include <grobo/files.h>
 #include <grobo/gr001.h>
 #include <grobo/guard.h>
@@ -22,6 +25,7 @@
 #include <grobo/interpolate.h>
 #include <grobo/limits.h>
 #include <grobo/loop.h>
+#include <grobo/lx16a.h>
 #include <grobo/mem.h>
 #include <grobo/model.h>
 #include <grobo/motion.h>
@@ -29,6 +33,7 @@
 #include <grobo/port.h>
 #include <grobo/posture.h>
 #include <grobo/protocol.h>
+#include <grobo/registers.h>
 #include <grobo/robot.h>
 #include <grobo/robot_config.h>
 #include <grobo/robot_event.h>

@@ -40,15 +40,20 @@
 /** Longest return packet: No.0..139 of the memory map with header and sum (protocol 3, 4). */
 #define GROBO_REPLY_MAX_BYTES 148
 
-/** Longest frame we send over either wiring: on a servo bus a packet may be as long as a reply, and
- *  a relay frame is shorter (2 + GROBO_RELAY_MAX_BYTES). */
-#define GROBO_FRAME_MAX_BYTES GROBO_REPLY_MAX_BYTES
+/** Longest frame on a line, sent or received, of any family. Firmware lowers it to what its family
+ *  needs: RS30x takes GROBO_REPLY_MAX_BYTES, which is the least (a relay frame is shorter). */
+#ifndef GROBO_FRAME_MAX_BYTES
+#define GROBO_FRAME_MAX_BYTES 1024
+#endif
 
 /** Registers of an RS30x servo: No.0..139 (protocol 3: FLAGS 0F reads 0..139). */
 #define GROBO_REGISTERS 140
 
-/** Highest servo id; 255 addresses all (protocol 3). */
-#define GROBO_SERVO_ID_MAX 127
+/** Highest servo id of any family; a protocol has its own (grobo_protocol.id_max). */
+#define GROBO_SERVO_ID_MAX 253
+
+/** Replies that one frame may ask for by name. */
+#define GROBO_REPLIES_MAX 64
 
 /** Motions that may wait behind the one being played. */
 #ifndef GROBO_QUEUE_MAX
@@ -77,8 +82,12 @@
 #ifndef GROBO_SIM_FIFO_BYTES
 #define GROBO_SIM_FIFO_BYTES 512
 #endif
+/** Longest packet that simulated servos hear. */
+#ifndef GROBO_SIM_EAR_BYTES
+#define GROBO_SIM_EAR_BYTES GROBO_FRAME_MAX_BYTES
+#endif
 /** Replies under way at the same time on the simulated servos' bus. */
-#define GROBO_SIM_TALKS_MAX 8
+#define GROBO_SIM_TALKS_MAX (GROBO_SIM_SERVOS_MAX + 8)
 
 /** Motion files: bytes read at most. */
 #define GROBO_FILE_MAX_BYTES (1024L * 1024L * 1024L)

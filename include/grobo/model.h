@@ -23,10 +23,20 @@ typedef struct grobo_joint {
     double init_rad;          /**< angle in the initial posture */
     uint16_t servo_model;     /**< register No.0-1 of the servo, 0 where it does not matter */
     uint16_t free_current_ma; /**< free (teaching) mode brakes above this current, 0: never */
-    uint8_t motor;            /**< id on the wire, 1..127 */
+    uint8_t motor;            /**< id on the wire, 0..GROBO_SERVO_ID_MAX */
     uint8_t mirror;           /**< joint that takes this one's place in the mirror, or itself */
     int8_t mirror_sign;       /**< +1 or -1: sign of the angle in the mirror */
+    int8_t sign;              /**< -1: the servo turns against the joint; else with it */
+    bool turns;               /**< the servo counts several turns; else its angle is within one */
+    double zero_rad;          /**< angle of the servo, from its middle, where the joint is at 0 */
+    double gear;              /**< turns of the servo for one of the joint; 0: 1 */
 } grobo_joint;
+
+/** The angle of a joint's servo, from the middle of its range, where the joint is at an angle. */
+GROBO_API double grobo_joint_to_servo(const grobo_joint *joint, double angle_rad);
+
+/** The angle of a joint where its servo is at an angle, from the middle of its range. */
+GROBO_API double grobo_joint_from_servo(const grobo_joint *joint, double servo_rad);
 
 /** A named set of joints. */
 typedef struct grobo_group {
@@ -49,9 +59,10 @@ typedef struct grobo_model {
 } grobo_model;
 
 /**
- * Checks a table: counts within caps, names present and unique, motors unique and within 1..127,
- * limits finite with min <= init <= max, speed > 0, mirrors pairing up with equal signs, a slack
- * within its range.
+ * Checks a table: counts within caps, names present and unique, motors unique and within
+ * 0..GROBO_SERVO_ID_MAX (its family may have fewer: grobo_driver_check()), limits finite with
+ * min <= init <= max, speed > 0, mirrors pairing up with equal signs, a finite zero, a gear that is
+ * not negative, a slack within its range.
  * @return 0, or GROBO_ERR_ARG. Pure; thread safe.
  */
 GROBO_API int grobo_model_check(const grobo_model *model);
@@ -68,7 +79,7 @@ GROBO_API double grobo_model_take_slack(const grobo_model *model, int joint, dou
 /** Joint moved by a motor. @return joint 0..n-1, or GROBO_ERR_NOTFOUND. Thread safe. */
 GROBO_API int grobo_model_joint_of_motor(const grobo_model *model, int motor);
 
-/** Motor of a joint. @return motor id 1..127, or GROBO_ERR_ARG. Thread safe. */
+/** Motor of a joint. @return motor id, or GROBO_ERR_ARG. Thread safe. */
 GROBO_API int grobo_model_motor_of_joint(const grobo_model *model, int joint);
 
 /**

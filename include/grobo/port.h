@@ -106,6 +106,14 @@ GROBO_CORE void grobo_cond_deinit(grobo_cond *cond);
 
 /* ---- byte ports --------------------------------------------------------------------------- */
 
+/** The form of a byte on a serial line, and how a line is driven; all zero: 8N1. */
+typedef struct grobo_line_format {
+    grobo_parity parity; /**< bytes with a wrong parity are dropped */
+    int stop_bits;       /**< 1 or 2; 0: 1 */
+    bool rs485;          /**< the driver enables the transmitter by RTS while bytes leave; false:
+                              the adapter does, or it is no RS-485 line */
+} grobo_line_format;
+
 /** An open byte port: storage of grobo_port_ops.size_bytes that the caller provides. */
 typedef struct grobo_port grobo_port;
 
@@ -170,6 +178,13 @@ typedef struct grobo_port_ops {
      *   for a kind without a speed: baud_bps.
      */
     int (*set_baud)(grobo_port *port, int baud_bps, grobo_os_cause *cause);
+
+    /**
+     * Changes the form of the bytes of an open port, which stays so until it is closed.
+     * @return GROBO_OK, also for a kind that has no such form (a pseudo-terminal takes a parity and
+     *   drops it); GROBO_ERR_UNSUPPORTED where device or system cannot, GROBO_ERR_ARG.
+     */
+    int (*set_format)(grobo_port *port, const grobo_line_format *format, grobo_os_cause *cause);
 
     /**
      * Asks the driver to hand over received bytes at once (FTDI: latency timer 1 ms for 16).

@@ -21,17 +21,22 @@ GROBO_BEGIN_DECLS
 
 /** What a frame is answered by. */
 typedef enum grobo_reply_kind {
-    GROBO_REPLY_NONE = 0,  /**< nothing */
-    GROBO_REPLY_ACK = 1,   /**< one byte without a name (RS30x: 07 or 08) */
-    GROBO_REPLY_RETURN = 2 /**< a packet of this id, address and length */
+    GROBO_REPLY_NONE = 0,   /**< nothing */
+    GROBO_REPLY_ACK = 1,    /**< one byte without a name (RS30x: 07 or 08) */
+    GROBO_REPLY_RETURN = 2, /**< packets of these ids and lengths: one, or several by one frame */
+    GROBO_REPLY_ANY = 3     /**< packets of whoever is there, until the time is over */
 } grobo_reply_kind;
 
-/** The reply to expect. id, address and length count for GROBO_REPLY_RETURN only. */
+/** The reply to expect. Of GROBO_REPLY_NONE and _ACK only kind and bytes count. */
 typedef struct grobo_reply {
     grobo_reply_kind kind;
-    uint8_t id;
-    uint8_t address;
-    uint8_t length; /**< data bytes */
+    uint8_t id;       /**< of the servo; of several, or of one packet for all: the id of all */
+    uint8_t tag;      /**< what a reply repeats of the request beside its id (RS30x: the address;
+                           0 where a reply repeats nothing) */
+    uint8_t count;    /**< packets: 1, or at most GROBO_REPLIES_MAX of several; of ANY 0 */
+    uint16_t address; /**< first register asked for; the bus hands it on in grobo_packet.address */
+    uint16_t length;  /**< data bytes of each packet; of several, of the first */
+    uint32_t bytes;   /**< on the wire, all packets together; of ANY 0 */
 } grobo_reply;
 
 /* ---- packets ------------------------------------------------------------------------------- */
@@ -49,8 +54,8 @@ typedef struct grobo_packet {
     bool refused;        /**< the servo says that it did not do what it was told */
     uint8_t id;          /**< RETURN: the servo's */
     uint8_t flags;       /**< RETURN: the servo's status, in bits of its family */
-    uint8_t address;     /**< RETURN: first register */
-    uint8_t length;      /**< RETURN: data bytes */
+    uint16_t address;    /**< RETURN: first register. unpack() gives what the packet repeats of its
+                              request, as grobo_reply.tag; the bus the address asked for */
     const uint8_t *data; /**< borrowed */
     size_t data_bytes;   /**< number of them */
 } grobo_packet;
@@ -100,7 +105,15 @@ typedef struct grobo_relay {
     int (*stored)(bool scenario, uint8_t number, uint8_t *buf, size_t cap);
 } grobo_relay;
 
-/** A protocol. Everything but `relay` must be there. */
+struct grobo_bus;
+
+/**
+ * What a bus does with several replies to one frame: grobo_bus_several() (bus.h). A table that has
+ * no such frames has NULL, and then a program is linked without it.
+ */
+typedef bool (*grobo_several)(struct grobo_bus *bus, const grobo_packet *packet);
+
+/** A protocol. Everything but `relay`, `several` and `reply_at` must be there. */
 typedef struct grobo_protocol {
     const char *name; /**< "RS30x" */
     /**
@@ -110,15 +123,22 @@ typedef struct grobo_protocol {
      * @param accept GROBO_ACCEPT_... or-ed
      */
     int (*measure)(const uint8_t *bytes, size_t n, unsigned accept);
-    /** Takes the packet of n bytes apart that measure() found; packet->data points into bytes. */
-    void (*unpack)(const uint8_t *bytes, size_t n, grobo_packet *packet);
+    /** Takes the packet of n bytes apart that measure() found; packet->data points into bytes,
+     *  which this may change (to take stuffing out). What tells nothing worth believing, as a
+     *  servo that received a broken request, is a GROBO_PACKET_COMMAND. */
+    void (*unpack)(uint8_t *bytes, size_t n, grobo_packet *packet);
     /** What a frame of n bytes is answered by. @return bytes of the reply (0: none), or
      *  GROBO_ERR_FRAME, GROBO_ERR_CHECKSUM: no whole frame, GROBO_ERR_ARG: it asks for nothing
-     *  that there is */
+     *  that there is, GROBO_ERR_CAP: for more than GROBO_REPLIES_MAX */
     int (*reply_to)(const uint8_t *frame, size_t n, grobo_reply *reply);
-    /** Bytes of a reply on the wire. */
-    size_t (*reply_bytes)(const grobo_reply *reply);
+    /** Of a frame that reply_to() said to have several replies: id, tag and length of reply k,
+     *  0..count-1, in the order in which servos answer. NULL with `several`. */
+    void (*reply_at)(const uint8_t *frame, size_t n, unsigned k, grobo_reply *reply);
+    grobo_several several;
     uint32_t return_delay_us; /**< before a servo replies, as it leaves the factory */
+    uint32_t call_us;         /**< of GROBO_REPLY_ANY: how long whoever is there may take */
+    grobo_parity parity;      /**< of its lines */
+    uint8_t id_min, id_max;   /**< ids that a servo can have */
     const grobo_relay *relay; /**< the board in between; NULL: the line is the servos' own bus */
 } grobo_protocol;
 

@@ -23,7 +23,10 @@ GROBO_BEGIN_DECLS
 #define GROBO_RS30X_OVERHEAD_BYTES 8
 
 /** Longest packet built or parsed, in both directions (28 servos with goal and time fit in it). */
-#define GROBO_RS30X_PACKET_MAX_BYTES GROBO_FRAME_MAX_BYTES
+#define GROBO_RS30X_PACKET_MAX_BYTES GROBO_REPLY_MAX_BYTES
+
+/** Highest id of a servo; the lowest is 1. */
+#define GROBO_RS30X_ID_MAX 127
 
 /** Address of every servo; nobody replies to it. */
 #define GROBO_RS30X_ID_ALL 255
@@ -287,9 +290,6 @@ GROBO_CORE int grobo_rs30x_ping(uint8_t id, grobo_rs30x_ping_form form, uint8_t 
  *         no whole command packet, GROBO_ERR_ARG when it asks for registers that do not exist
  */
 GROBO_CORE int grobo_rs30x_reply_to(const uint8_t *packet, size_t n, grobo_reply *reply);
-
-/** Bytes of a reply on the wire: 0, 1, or length + 8. */
-GROBO_CORE size_t grobo_rs30x_reply_bytes(const grobo_reply *reply);
 
 /* ---- frames ---------------------------------------------------------------------------------
  * A packet as it goes over the line: itself on a servo bus, in a frame of the board in between.

@@ -3,7 +3,8 @@
  * @file serial.h
  * @brief A serial port: asynchronous on a caller's event loop, or synchronous without one.
  *
- * Always 8 data bits, no parity, 1 stop bit, raw, no flow control, opened for this process alone.
+ * Always 8 data bits, raw, no flow control, opened for this process alone; no parity and 1 stop bit
+ * unless asked otherwise.
  * The device is a serial port's name (see grobo_port_serial_ops()) or "tcp:HOST:PORT".
  *
  * Asynchronous mode: bytes received come by a callback on the loop, bytes to send go through a
@@ -94,12 +95,14 @@ typedef void (*grobo_serial_tap_fn)(grobo_direction direction, int64_t now_us, c
 
 /** What a port is made of. All zero is a valid one: synchronous, no device yet. */
 typedef struct grobo_serial_config {
-    const char *device;      /**< copied; NULL: none yet (grobo_serial_set_device) */
-    int baud_bps;            /**< 0: GROBO_BAUD_DEFAULT_BPS; any positive rate, standard or not */
-    int silence_ms;          /**< bound of each call that waits; 0: GROBO_SILENCE_DEFAULT_MS */
-    struct event_base *base; /**< borrowed; NULL: synchronous mode only */
-    grobo_serial_mode mode;  /**< ASYNC needs base and on_data */
-    size_t tx_queue_bytes;   /**< 0: GROBO_SERIAL_QUEUE_BYTES, which is the most as well */
+    const char *device;       /**< copied; NULL: none yet (grobo_serial_set_device) */
+    int baud_bps;             /**< 0: GROBO_BAUD_DEFAULT_BPS; any positive rate, standard or not */
+    grobo_line_format format; /**< set when the port is opened; zero: 8N1. What the device cannot is
+                                   an error of grobo_serial_open() */
+    int silence_ms;           /**< bound of each call that waits; 0: GROBO_SILENCE_DEFAULT_MS */
+    struct event_base *base;  /**< borrowed; NULL: synchronous mode only */
+    grobo_serial_mode mode;   /**< ASYNC needs base and on_data */
+    size_t tx_queue_bytes;    /**< 0: GROBO_SERIAL_QUEUE_BYTES, which is the most as well */
     grobo_serial_data_fn on_data;   /**< needed in ASYNC mode */
     grobo_serial_event_fn on_event; /**< NULL: not told */
     grobo_serial_tap_fn on_tap;     /**< NULL: no trace */

@@ -85,6 +85,7 @@ typedef struct grobo_session_config {
     const char *device;              /**< copied; needed: a serial port, "tcp:HOST:PORT",
                                           GROBO_DEVICE_SIM or GROBO_DEVICE_AUTO */
     int baud_bps;                    /**< 0: GROBO_BAUD_DEFAULT_BPS */
+    grobo_line_format format;        /**< stop bits, RS-485; the parity is the driver's */
     const grobo_driver *driver;      /**< borrowed; NULL: GR001 through its board */
     void *driver_ctx;                /**< borrowed, handed to the driver */
     const grobo_robot_config *robot; /**< copied; NULL: defaults; baud_bps 0: the session's */

@@ -20,6 +20,7 @@
 
 #include <grobo/board.h>
 #include <grobo/model.h>
+#include <grobo/registers.h>
 #include <grobo/rs30x.h>
 
 GROBO_BEGIN_DECLS
@@ -127,6 +128,16 @@ GROBO_CORE const grobo_sim_type *grobo_sim_type_row(size_t index);
 /** The servo called name[0..length-1], in any case; NULL for none. Static storage; thread safe. */
 GROBO_CORE const grobo_sim_type *grobo_sim_type_named(const char *name, size_t length);
 
+/** How the servos of a family talk, what they remember and do. Private. */
+typedef struct grobo_sim_family grobo_sim_family;
+
+/** Futaba RS30x. A simulator knows them without being told. */
+GROBO_API extern const grobo_sim_family grobo_sim_rs30x;
+/** Models of grobo_dxl2_table. */
+GROBO_API extern const grobo_sim_family grobo_sim_dxl2;
+/** Models of grobo_dxl1_table, grobo_sts_table and grobo_scs_table. */
+GROBO_API extern const grobo_sim_family grobo_sim_dxl1;
+
 /* ---- configuration -------------------------------------------------------------------------- */
 
 /** Where the limp joints are at power-up. */
@@ -138,9 +149,13 @@ typedef enum grobo_sim_start {
 
 /** Zero in a field means its default. */
 typedef struct grobo_sim_config {
-    const grobo_model *model;  /**< NULL: GR001. Borrowed for the life of the simulator */
-    grobo_wiring wiring;       /**< default: board */
-    uint32_t baud_bps;         /**< board: its host port; bus: the servos' line. 115200 */
+    const grobo_model *model; /**< NULL: GR001. Borrowed for the life of the simulator */
+    grobo_wiring wiring;      /**< default: board */
+    const grobo_servo_model *const *servos;  /**< bus: of each joint, NULL: an RS30x, the joint's
+                                                 servo_model; NULL: all are RS30x. Borrowed */
+    const grobo_sim_family *const *families; /**< of those servos, NULL behind the last. Borrowed */
+    uint32_t baud_bps;         /**< board: its host port; bus: the servos' line. 115200; 1000000
+                                    where the first servo is no RS30x */
     bool unpaced;              /**< bytes take no time on any wire */
     uint32_t seed;             /**< of every random choice */
     grobo_sim_start start;     /**< posture at power-up */
@@ -204,8 +219,39 @@ typedef struct grobo_sim_view {
 
 /* ---- the simulator -------------------------------------------------------------------------- */
 
-/** Registers No.4-29, those that flash keeps. */
+/** Registers No.4-29 of an RS30x, those that flash keeps. */
 #define GROBO_SIM_FLASH_BYTES 26
+/** Bytes of registers of a servo, and those of them that survive power-off. Private. */
+#define GROBO_SIM_REGISTER_BYTES 160
+#define GROBO_SIM_KEPT_BYTES 64
+/** Longest write that a servo keeps until its action. Private. */
+#define GROBO_SIM_WRITE_BYTES 32
+/** Families on one line. Private. */
+#define GROBO_SIM_FAMILIES_MAX 4
+
+/** What a servo wants and can do, by its registers. Private. */
+typedef struct grobo_sim_plant {
+    /* private */
+    double heat_c_per_ma2;     /* above ambient, of a current that lasts */
+    int32_t goal_mdeg;         /* where it wants its shaft */
+    int32_t speed_mdeg_s;      /* without load at nominal_mv */
+    int32_t stall_ma, most_ma; /* at a stop: by the motor, by the registers */
+    int32_t limit_c, nominal_mv;
+    int32_t cap_mdeg_s;       /* top speed of a move by the registers; 0: none */
+    int32_t accel_mdeg_s2;    /* of a move; 0: at once */
+    int32_t time_us, ramp_us; /* a move by its duration; 0: not so */
+    int32_t wheel_mdeg_s;     /* speed where it turns on and on */
+    bool wheel;
+    uint8_t torque; /* grobo_torque */
+    uint8_t id;
+} grobo_sim_plant;
+
+/** A move with ramps: signed speeds in 0.001 degree a second, times in seconds. Private. */
+typedef struct grobo_sim_ramps {
+    /* private */
+    double start, peak, end_accel; /* speed at its begin and in its middle; how it ends */
+    double ramp_s, even_s, brake_s;
+} grobo_sim_ramps;
 
 /** One servo. Private: use the functions. */
 typedef struct grobo_sim_servo {
@@ -222,11 +268,20 @@ typedef struct grobo_sim_servo {
     int32_t stop_min_mdeg, stop_max_mdeg; /* mechanical stops */
     int32_t load_ma;                      /* extra current of a hand or a weight */
     int32_t baud_bps;                     /* of register BAUD at the last restart */
-    uint8_t reg[GROBO_REGISTERS];         /* present values are filled in when read */
-    uint8_t flash[GROBO_SIM_FLASH_BYTES];
-    uint8_t status; /* flags of the next return packet */
-    uint8_t cable;  /* grobo_sim_cable */
-    bool powered, blocked, stalled, by_hand, reboots_after_save;
+    grobo_sim_ramps ramps;                /* of the present move */
+    int64_t heard_us;                     /* the last instruction for it */
+    int32_t turns_ticks;                  /* what a restart made of turns before */
+    uint8_t kept[GROBO_SIM_WRITE_BYTES];  /* a write that waits for its action */
+    uint16_t kept_address;
+    uint8_t kept_bytes; /* 0: none */
+    const grobo_sim_family *family;
+    const grobo_servo_model *model;        /* NULL: an RS30x */
+    grobo_sim_plant plant;                 /* follows the registers */
+    uint8_t reg[GROBO_SIM_REGISTER_BYTES]; /* present values are filled in when read */
+    uint8_t flash[GROBO_SIM_KEPT_BYTES];   /* registers that survive power-off */
+    uint8_t status;                        /* flags of the next return packet */
+    uint8_t cable;                         /* grobo_sim_cable */
+    bool powered, blocked, stalled, by_hand, reboots_after_save, ramped;
 } grobo_sim_servo;
 
 /** Bytes on a wire, each with the time at which it is over. Private. */
@@ -238,13 +293,24 @@ typedef struct grobo_sim_wire {
     int64_t free_ns; /* the last byte's end */
 } grobo_sim_wire;
 
+/** Longest reply of a simulated servo. Private. */
+#define GROBO_SIM_TALK_BYTES 256
+
 /** Bytes that servos say in one go, from start_ns on without a pause. Private. */
 typedef struct grobo_sim_talk {
     /* private */
     int64_t start_ns;
     uint16_t used, said;
-    uint8_t byte[GROBO_REPLY_MAX_BYTES];
+    uint8_t byte[GROBO_SIM_TALK_BYTES];
 } grobo_sim_talk;
+
+/** What servos of a family hear: one for all, as they hear the same. Private. */
+typedef struct grobo_sim_ear {
+    /* private */
+    const grobo_sim_family *family;
+    uint16_t used;
+    uint8_t byte[GROBO_SIM_EAR_BYTES];
+} grobo_sim_ear;
 
 /** What the board is doing. Private. */
 typedef enum grobo_sim_board_state {
@@ -285,8 +351,9 @@ typedef struct grobo_sim {
     uint8_t got[UINT8_MAX]; /* of the reply */
     uint8_t got_used;
 
-    grobo_rs30x_parser bus; /* what the servos hear: one for all, as they hear the same */
-    int64_t bus_heard_ns;   /* end of the last byte they heard */
+    grobo_sim_ear ear[GROBO_SIM_FAMILIES_MAX];
+    uint8_t n_ears;
+    int64_t bus_heard_ns;                     /* end of the last byte they heard */
     grobo_sim_talk talk[GROBO_SIM_TALKS_MAX]; /* used 0: free */
 } grobo_sim;
 
@@ -295,8 +362,10 @@ typedef struct grobo_sim {
  * for the ids of the model and, on bus wiring, the rate of the line. The hook hears nothing of it.
  * @param config NULL: all defaults. Copied; the model is borrowed.
  * @return 0; GROBO_ERR_ARG for a bad model, ambient temperature, baud rate below 300 or (bus
- *         wiring) not one of the servos', or an echo through the board; GROBO_ERR_CAP for more
- *         than GROBO_SIM_SERVOS_MAX joints
+ *         wiring) not one of the servos', an id that a servo cannot have, an echo or other servos
+ *         than RS30x through the board; GROBO_ERR_CAP for more than GROBO_SIM_SERVOS_MAX joints;
+ *         GROBO_ERR_UNSUPPORTED for a servo that no family knows. After an error the simulator
+ *         must not be used.
  */
 GROBO_CORE int grobo_sim_init(grobo_sim *sim, const grobo_sim_config *config, int64_t now_us);
 
@@ -374,16 +443,19 @@ GROBO_CORE int grobo_sim_get_register(grobo_sim *sim, int servo, int address, in
  */
 GROBO_CORE int grobo_sim_set_register(grobo_sim *sim, int servo, int address, int32_t value);
 
+/** Gives a servo another id, perhaps that of another one. @return as grobo_sim_set_register(). */
+GROBO_API int grobo_sim_set_id(grobo_sim *sim, int servo, int id);
+
 /**
- * What a servo's flash holds: registers No.4-29 as they were saved last.
- * @return 0 or GROBO_ERR_ARG (no such servo)
+ * What an RS30x's flash holds: registers No.4-29 as they were saved last.
+ * @return 0, GROBO_ERR_ARG (no such servo), GROBO_ERR_UNSUPPORTED (no RS30x)
  */
 GROBO_CORE int grobo_sim_get_flash(grobo_sim *sim, int servo, uint8_t flash[GROBO_SIM_FLASH_BYTES]);
 
 /**
- * Gives a servo another flash, and power off and on at once: it is limp afterwards.
- * @return 0; GROBO_ERR_ARG (no such servo); GROBO_ERR_LIMIT (a value that no servo can have, or a
- *         reserved byte that is not 0): nothing has changed
+ * Gives an RS30x another flash, and power off and on at once: it is limp afterwards.
+ * @return 0; GROBO_ERR_ARG (no such servo); GROBO_ERR_UNSUPPORTED (no RS30x); GROBO_ERR_LIMIT (a
+ *         value that no servo can have, or a reserved byte that is not 0): nothing has changed
  */
 GROBO_CORE int grobo_sim_set_flash(grobo_sim *sim, int servo,
                                    const uint8_t flash[GROBO_SIM_FLASH_BYTES]);

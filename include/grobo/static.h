@@ -87,8 +87,10 @@ typedef struct grobo_robot_slot {
     int job;          /* number of the job whose step made it; 0: none */
     bool refused;     /* at the moment it would have left */
     bool reads;       /* it asks where this joint is */
+    bool many;        /* it asks where several are */
     uint8_t use;      /* 0: free */
     uint8_t joint;
+    grobo_joint_mask unread; /* of a reading of many joints, those that have not answered */
 } grobo_robot_slot;
 
 /** A move of a joint, straight in time. Private. */
@@ -161,8 +163,6 @@ typedef struct grobo_robot_task {
     int64_t begun_us; /* when it started */
     int64_t until_us; /* end of waiting */
     int64_t bound_us; /* end of patience */
-    grobo_register_io io;
-    uint8_t data[GROBO_REGISTERS];
 } grobo_robot_task;
 
 /** A move or a reading that waits for its turn. Private. */
@@ -183,6 +183,7 @@ struct grobo_robot {
     void *driver_ctx;
     int (*leave)(grobo_robot_slot *slot); /* a frame would leave: judges it */
     void (*over)(grobo_robot_slot *slot, int result, const grobo_packet *reply); /* it is over */
+    void (*each)(grobo_robot_slot *slot, const grobo_packet *reply); /* one of several replies */
     grobo_robot_host host;
     grobo_robot_config config; /* defaults filled in */
     grobo_event_fn on_event;
@@ -214,7 +215,7 @@ struct grobo_robot {
     grobo_joint_mask clip_joints;   /* of the motion that is played, and those behind it */
     grobo_joint_mask played_joints; /* sent where they go by the sequencer */
     grobo_joint_mask other_round;   /* in free mode: of the joints that are not free */
-    uint8_t reply[GROBO_REGISTERS];
+    uint8_t reply[GROBO_FRAME_MAX_BYTES];
     double fault_deg;
     int fault_joint;
     int last_number;
@@ -258,7 +259,7 @@ GROBO_CORE void grobo_robot_rx(grobo_robot *robot, const uint8_t *bytes, size_t 
  * line can take all of it and nothing waits before it. Frames are judged here: one that must not
  * leave any more is dropped and the next one is given. Calls nothing back; what that ends is told
  * by the next grobo_robot_step(), which grobo_robot_deadline() wants at once then.
- * @param capacity GROBO_RS30X_PACKET_MAX_BYTES is always enough.
+ * @param capacity GROBO_FRAME_MAX_BYTES is always enough.
  * @return number of bytes, 0 for nothing now, GROBO_ERR_SPACE.
  */
 GROBO_CORE int grobo_robot_tx(grobo_robot *robot, uint8_t *buf, size_t capacity, int64_t now_us);

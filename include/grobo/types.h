@@ -50,6 +50,13 @@ typedef enum grobo_exit_policy {
     GROBO_EXIT_SIT = 3      /**< go to the driver's resting posture, then torque off */
 } grobo_exit_policy;
 
+/** A line's parity bit. */
+typedef enum grobo_parity {
+    GROBO_PARITY_NONE = 0, /**< no such bit: a byte takes 10 bits on the wire, else 11 */
+    GROBO_PARITY_EVEN = 1,
+    GROBO_PARITY_ODD = 2
+} grobo_parity;
+
 /** How the servos are reached. */
 typedef enum grobo_wiring {
     GROBO_WIRING_BOARD = 0, /**< through GR001's controller board (relay frames) */

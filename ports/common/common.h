@@ -48,5 +48,8 @@ int grobo_i_tcp_resolve(const char *device, char *numeric, size_t numeric_bytes,
 void grobo_i_tcp_discard_output(grobo_port *port);
 int grobo_i_tcp_set_baud(grobo_port *port, int baud_bps, grobo_os_cause *cause);
 int grobo_i_tcp_set_low_latency(grobo_port *port, grobo_os_cause *cause);
+/* Of any kind whose bytes have no form of their own. */
+int grobo_i_port_set_format(grobo_port *port, const grobo_line_format *format,
+                            grobo_os_cause *cause);
 
 #endif

@@ -98,3 +98,12 @@ int grobo_i_tcp_set_low_latency(grobo_port *port, grobo_os_cause *cause)
     (void)port;
     return grobo_i_port_refuse(cause, GROBO_ERR_UNSUPPORTED, "a connection, not a serial port");
 }
+
+int grobo_i_port_set_format(grobo_port *port, const grobo_line_format *format,
+                            grobo_os_cause *cause)
+{
+    (void)port;
+    (void)format;
+    (void)cause;
+    return GROBO_OK;
+}

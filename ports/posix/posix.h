@@ -74,6 +74,9 @@ int grobo_i_posix_custom_baud(int fd);
 /* The rate that the chip behind a descriptor makes of one its driver has taken. */
 int grobo_i_posix_divided_baud(int fd, int baud_bps);
 
+/* Has the driver switch the transmitter of an RS-485 line. */
+int grobo_i_posix_set_rs485(int fd, grobo_os_cause *cause);
+
 /* grobo_port_ops.set_low_latency for a descriptor. */
 int grobo_i_posix_set_low_latency(int fd, grobo_os_cause *cause);
 

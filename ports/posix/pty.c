@@ -144,6 +144,7 @@ const grobo_port_ops *grobo_port_pty_ops(void)
         .waiting = grobo_i_posix_waiting,
         .discard_output = pty_discard_output,
         .set_baud = pty_set_baud,
+        .set_format = grobo_i_port_set_format,
         .set_low_latency = pty_set_low_latency,
         .socket = grobo_i_posix_socket,
         .handle = grobo_i_posix_handle,

@@ -11,8 +11,8 @@
 
 #include "ports/posix/posix.h"
 
-/* On the wire, with start and stop bit. */
-enum { BITS_A_BYTE = 10 };
+/* On the wire, with start, parity and stop bits. */
+enum { BITS_A_BYTE = 12 };
 
 #define GRACE_US INT64_C(100000)
 
@@ -169,6 +169,48 @@ static int serial_set_baud(grobo_port *port, int baud_bps, grobo_os_cause *cause
     return grobo_i_posix_set_baud(port->fd, baud_bps, cause);
 }
 
+/* True for the flags that were asked for, or where the device is none that could have them. */
+static bool took(int fd, tcflag_t asked)
+{
+    const tcflag_t form = PARENB | PARODD | CSTOPB;
+    struct termios tio;
+    struct stat st;
+
+    if (tcgetattr(fd, &tio) != 0 || fstat(fd, &st) != 0) {
+        return false;
+    }
+    return (tio.c_cflag & form) == asked || grobo_i_posix_exclusive_sticks(st.st_rdev);
+}
+
+static int serial_set_format(grobo_port *port, const grobo_line_format *format,
+                             grobo_os_cause *cause)
+{
+    tcflag_t asked = (format->parity != GROBO_PARITY_NONE ? PARENB : 0u) |
+                     (format->parity == GROBO_PARITY_ODD ? PARODD : 0u) |
+                     (format->stop_bits == 2 ? CSTOPB : 0u);
+    struct termios tio;
+
+    if ((unsigned)format->parity > GROBO_PARITY_ODD || format->stop_bits < 0 ||
+        format->stop_bits > 2) {
+        return GROBO_ERR_ARG;
+    }
+    if (tcgetattr(port->fd, &tio) != 0) {
+        return grobo_i_posix_fail(cause, errno, "tcgetattr");
+    }
+    tio.c_cflag &= (tcflag_t) ~(PARENB | PARODD | CSTOPB);
+    tio.c_cflag |= asked;
+    tio.c_iflag &= (tcflag_t) ~(INPCK | IGNPAR);
+    tio.c_iflag |= (asked & PARENB) != 0 ? (tcflag_t)(INPCK | IGNPAR) : 0u;
+    /* A pseudo-terminal drops the parity, and then glibc says EINVAL: look at what it took. */
+    if (tcsetattr(port->fd, TCSANOW, &tio) != 0 && errno != EINVAL) {
+        return grobo_i_posix_fail(cause, errno, "tcsetattr");
+    }
+    if (!took(port->fd, asked)) {
+        return grobo_i_port_refuse(cause, GROBO_ERR_UNSUPPORTED, "no such parity or stop bits");
+    }
+    return format->rs485 ? grobo_i_posix_set_rs485(port->fd, cause) : GROBO_OK;
+}
+
 static int serial_set_low_latency(grobo_port *port, grobo_os_cause *cause)
 {
     return grobo_i_posix_set_low_latency(port->fd, cause);
@@ -187,6 +229,7 @@ const grobo_port_ops *grobo_port_serial_ops(void)
         .waiting = grobo_i_posix_waiting,
         .discard_output = serial_discard_output,
         .set_baud = serial_set_baud,
+        .set_format = serial_set_format,
         .set_low_latency = serial_set_low_latency,
         .socket = grobo_i_posix_socket,
         .handle = grobo_i_posix_handle,

@@ -165,6 +165,7 @@ const grobo_port_ops *grobo_port_tcp_ops(void)
         .waiting = grobo_i_posix_waiting,
         .discard_output = grobo_i_tcp_discard_output,
         .set_baud = grobo_i_tcp_set_baud,
+        .set_format = grobo_i_port_set_format,
         .set_low_latency = grobo_i_tcp_set_low_latency,
         .socket = grobo_i_posix_socket,
         .handle = grobo_i_posix_handle,

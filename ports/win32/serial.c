@@ -31,7 +31,8 @@ static int set_state(HANDLE com, DCB *dcb, grobo_os_cause *cause)
 }
 
 /* Sets a speed, and all that makes a line raw; reads back what speed it is. */
-static int set_line(HANDLE com, int baud_bps, grobo_os_cause *cause)
+static int set_line(HANDLE com, int baud_bps, const grobo_line_format *format,
+                    grobo_os_cause *cause)
 {
     DCB dcb;
     DWORD before;
@@ -45,11 +46,14 @@ static int set_line(HANDLE com, int baud_bps, grobo_os_cause *cause)
     dcb.DCBlength = sizeof dcb;
     dcb.BaudRate = (DWORD)baud_bps;
     dcb.ByteSize = 8;
-    dcb.Parity = NOPARITY;
-    dcb.StopBits = ONESTOPBIT;
+    dcb.Parity = format->parity == GROBO_PARITY_NONE   ? NOPARITY
+                 : format->parity == GROBO_PARITY_EVEN ? EVENPARITY
+                                                       : ODDPARITY;
+    dcb.fParity = format->parity != GROBO_PARITY_NONE;
+    dcb.StopBits = format->stop_bits == 2 ? TWOSTOPBITS : ONESTOPBIT;
     dcb.fBinary = TRUE;
     dcb.fDtrControl = DTR_CONTROL_ENABLE;
-    dcb.fRtsControl = RTS_CONTROL_ENABLE;
+    dcb.fRtsControl = format->rs485 ? RTS_CONTROL_TOGGLE : RTS_CONTROL_ENABLE;
     r = set_state(com, &dcb, cause);
     if (r >= 0) {
         DCB now;
@@ -70,7 +74,28 @@ static int set_line(HANDLE com, int baud_bps, grobo_os_cause *cause)
 
 static int serial_set_baud(grobo_port *port, int baud_bps, grobo_os_cause *cause)
 {
-    return set_line(port->com, baud_bps, cause);
+    return set_line(port->com, baud_bps, &port->format, cause);
+}
+
+static int serial_set_format(grobo_port *port, const grobo_line_format *format,
+                             grobo_os_cause *cause)
+{
+    DCB dcb;
+    int r;
+
+    if ((unsigned)format->parity > GROBO_PARITY_ODD || format->stop_bits < 0 ||
+        format->stop_bits > 2) {
+        return GROBO_ERR_ARG;
+    }
+    r = get_state(port->com, &dcb, cause);
+    if (r >= 0) {
+        r = set_line(port->com, (int)dcb.BaudRate, format, cause);
+    }
+    if (r >= 0) {
+        port->format = *format;
+        r = GROBO_OK;
+    }
+    return r;
 }
 
 /* ---- opening ------------------------------------------------------------------------------ */
@@ -128,7 +153,7 @@ static int make_raw(HANDLE com, int baud_bps, grobo_os_cause *cause)
     }
     /* A hint; drivers choose. */
     (void)SetupComm(com, 16384, 4096);
-    r = set_line(com, baud_bps, cause);
+    r = set_line(com, baud_bps, &(grobo_line_format){0}, cause);
     if (r < 0) {
         return r;
     }
@@ -185,6 +210,7 @@ static int serial_open(grobo_port *port, const char *device, int baud_bps, grobo
     r = open_com(device, baud_bps, &com, cause);
     if (r >= 0) {
         port->com = com;
+        port->format = (grobo_line_format){0};
         r = grobo_i_win32_pump_start(port, cause);
         if (r < 0) {
             CloseHandle(com);
@@ -271,6 +297,7 @@ const grobo_port_ops *grobo_port_serial_ops(void)
         .waiting = grobo_i_win32_waiting,
         .discard_output = grobo_i_win32_pump_discard,
         .set_baud = serial_set_baud,
+        .set_format = serial_set_format,
         .set_low_latency = serial_set_low_latency,
         .socket = grobo_i_win32_socket,
         .handle = serial_handle,

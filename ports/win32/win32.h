@@ -44,6 +44,7 @@ struct grobo_port {
     /* of a serial port only */
     HANDLE com;
     HANDLE lock;
+    grobo_line_format format;
     grobo_i_win32_pump pump;
 };
 

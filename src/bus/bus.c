@@ -249,7 +249,7 @@ int grobo_txn_init(grobo_txn *txn, const grobo_protocol *protocol, const uint8_t
     }
     memset(txn, 0, sizeof *txn);
     txn->frame = frame;
-    txn->frame_bytes = (uint8_t)n;
+    txn->frame_bytes = (uint16_t)n;
     txn->retries = RETRIES_DEFAULT;
     txn->priority = GROBO_PRIORITY_USER;
     txn->reply = reply;

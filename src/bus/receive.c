@@ -63,6 +63,13 @@ static grobo_txn *find_asker(grobo_bus *bus, const grobo_packet *p, uint32_t key
     return NULL;
 }
 
+/* Of a frame with several replies: one of them, or their time is over (NULL). */
+static bool take_several(grobo_bus *bus, grobo_packet *p)
+{
+    grobo_several several = bus->config.protocol->several;
+    return several != NULL && several(bus, p);
+}
+
 /* A reply to this transaction: a return packet or an ACK byte. */
 static void take_reply(grobo_bus *bus, grobo_txn *txn, const grobo_packet *p, uint32_t key)
 {
@@ -139,23 +146,29 @@ static void take_late(grobo_bus *bus, size_t size, uint32_t key)
     }
 }
 
-static void take_packet(grobo_bus *bus, const grobo_packet *p)
+/* What the framer has found. An echo first: of some families it looks like a reply. */
+static void take_packet(grobo_bus *bus)
 {
-    const grobo_framer *framer = &bus->framer;
+    grobo_framer *framer = &bus->framer;
     const grobo_txn *active = bus->active;
     size_t size = framer->taken;
+    grobo_packet packet;
+    grobo_packet *p = &packet;
+    if (bus->phase == GROBO_BUS_ECHOING && size == active->frame_bytes &&
+        memcmp(framer->buf, active->frame, size) == 0) {
+        end_echo(bus);
+        return;
+    }
+    bus->config.protocol->unpack(framer->buf, size, p);
     bool returned = p->kind == GROBO_PACKET_RETURN;
-    const grobo_reply reply = {GROBO_REPLY_RETURN, p->id, p->address, p->length};
-    uint32_t key = returned ? grobo_i_bus_key(&reply) : 0;
+    uint32_t key = returned ? grobo_i_bus_packet_key(p) : 0;
     grobo_txn *txn = returned ? find_asker(bus, p, key) : NULL;
     if (txn != NULL) {
+        p->address = txn->reply.address;
         take_reply(bus, txn, p, key);
     } else if (p->kind == GROBO_PACKET_ACK && bus->phase == GROBO_BUS_AWAITING) {
         take_ack(bus, p);
-    } else if (bus->phase == GROBO_BUS_ECHOING && size == active->frame_bytes &&
-               memcmp(framer->buf, active->frame, size) == 0) {
-        end_echo(bus);
-    } else {
+    } else if (!returned || !take_several(bus, p)) {
         take_late(bus, size, key);
     }
 }
@@ -167,9 +180,12 @@ static void take_packet(grobo_bus *bus, const grobo_packet *p)
 static void give_up_on_rubbish(grobo_bus *bus)
 {
     bool echoing = bus->phase == GROBO_BUS_ECHOING;
-    if (!is_asked(bus) || grobo_i_framer_pending(&bus->framer) > 0 ||
-        rubbish(bus) < (echoing ? bus->active->frame_bytes
-                                : bus->config.protocol->reply_bytes(&bus->active->reply))) {
+    if (!is_asked(bus) || grobo_i_framer_pending(&bus->framer) > 0) {
+        return;
+    }
+    /* Where nobody knows how many will answer the bytes are 0, and no rubbish is too much. */
+    uint32_t bytes = echoing ? bus->active->frame_bytes : bus->active->reply.bytes;
+    if (rubbish(bus) <= bytes - 1) {
         return;
     }
     bool bad_sum = bus->framer.stats.bad_sums != bus->bad_sums_before;
@@ -184,12 +200,9 @@ static size_t take_bytes(grobo_bus *bus, const uint8_t *bytes, size_t n)
     uint32_t *counter = is_asked(bus) ? &bus->stats.resync_bytes : &bus->stats.late_bytes;
     uint32_t before = stats->dropped_bytes;
     size_t took = grobo_i_framer_feed(&bus->framer, bytes, n);
-    size_t size;
-    while ((size = grobo_i_framer_next(&bus->framer, protocol->measure, bus->accept)) > 0) {
-        grobo_packet p;
-        protocol->unpack(bus->framer.buf, size, &p);
+    while (grobo_i_framer_next(&bus->framer, protocol->measure, bus->accept) > 0) {
         bus->stats.rx_frames++;
-        take_packet(bus, &p);
+        take_packet(bus);
     }
     give_up_on_rubbish(bus);
     uint32_t dropped = stats->dropped_bytes - before;
@@ -220,6 +233,9 @@ void grobo_bus_rx(grobo_bus *bus, int64_t now_us, const uint8_t *bytes, size_t n
 void grobo_i_bus_end_silence(grobo_bus *bus)
 {
     bool some = rubbish(bus) > 0;
+    if (take_several(bus, NULL)) {
+        return;
+    }
     grobo_i_bus_fail(bus, some && bus->phase == GROBO_BUS_ECHOING            ? GROBO_ERR_MISMATCH
                           : some || grobo_i_framer_pending(&bus->framer) > 0 ? GROBO_ERR_SHORT
                                                                              : GROBO_ERR_TIMEOUT);

@@ -8,14 +8,17 @@
 
 enum {
     BITS_PER_BYTE = 10, /* 8N1 */
-    US_PER_S = 1000000
+    US_PER_MS = 1000,
+    MS_PER_S = 1000
 };
 
-/* At most 429 bytes, so that the product fits 32 bits: no 64-bit division on small machines. */
-static uint32_t wire_us(size_t bytes, uint32_t baud_bps)
+/* In two steps, so that products fit 32 bits: no 64-bit division on small machines. */
+static uint32_t wire_us(const grobo_bus *bus, size_t bytes, uint32_t baud_bps)
 {
-    uint32_t bits = (uint32_t)bytes * BITS_PER_BYTE;
-    return (bits * US_PER_S + baud_bps - 1) / baud_bps;
+    bool parity = bus->config.protocol->parity != GROBO_PARITY_NONE;
+    uint32_t kbits = (uint32_t)bytes * (BITS_PER_BYTE + parity) * MS_PER_S;
+    uint32_t rest = kbits % baud_bps * US_PER_MS;
+    return kbits / baud_bps * US_PER_MS + (rest + baud_bps - 1) / baud_bps;
 }
 
 void grobo_bus_cost_of(const grobo_bus *bus, const grobo_txn *txn, grobo_bus_cost *cost)
@@ -25,18 +28,18 @@ void grobo_bus_cost_of(const grobo_bus *bus, const grobo_txn *txn, grobo_bus_cos
     }
     const grobo_bus_config *c = &bus->config;
     const grobo_relay *relay = c->protocol->relay;
-    size_t reply = c->protocol->reply_bytes(&txn->reply);
-    uint32_t delay_us = reply > 0 ? c->return_delay_us : 0;
-    cost->request_us = wire_us(txn->frame_bytes, c->baud_bps);
+    size_t reply = txn->reply.bytes;
+    uint32_t delay_us = c->return_delay_us * txn->reply.count;
+    cost->request_us = wire_us(bus, txn->frame_bytes, c->baud_bps);
     cost->servo_us = 0;
-    cost->reply_us = wire_us(reply, c->baud_bps);
+    cost->reply_us = wire_us(bus, reply, c->baud_bps);
     if (relay == NULL) {
         cost->reply_us += delay_us;
     } else {
         size_t forwarded = relay->forwarded(txn->frame, txn->frame_bytes);
         if (forwarded > 0) {
-            cost->servo_us = wire_us(forwarded, c->servo_baud_bps) + delay_us +
-                             wire_us(reply, c->servo_baud_bps);
+            cost->servo_us = wire_us(bus, forwarded, c->servo_baud_bps) + delay_us +
+                             wire_us(bus, reply, c->servo_baud_bps);
         }
     }
     cost->total_us = cost->request_us + cost->servo_us + cost->reply_us;
@@ -98,10 +101,20 @@ void grobo_i_bus_learn(grobo_bus *bus)
     bus->deviation_us += ((error_us < 0 ? -error_us : error_us) - bus->deviation_us) / 4;
 }
 
+static uint32_t key_of(uint32_t length, uint32_t tag, uint32_t id)
+{
+    return UINT32_C(1) << 31 | length << 16 | tag << 8 | id;
+}
+
 uint32_t grobo_i_bus_key(const grobo_reply *reply)
 {
-    uint32_t name = (uint32_t)reply->id << 16 | (uint32_t)reply->address << 8 | reply->length;
-    return (uint32_t)reply->kind << 24 | (reply->kind == GROBO_REPLY_RETURN ? name : 0);
+    return reply->kind < GROBO_REPLY_RETURN ? reply->kind
+                                            : key_of(reply->length, reply->tag, reply->id);
+}
+
+uint32_t grobo_i_bus_packet_key(const grobo_packet *packet)
+{
+    return key_of((uint32_t)packet->data_bytes, packet->address, packet->id);
 }
 
 /* The hold for replies that would be taken for this one, though none may be owed; or NULL. */

@@ -16,6 +16,8 @@ void grobo_i_bus_learn(grobo_bus *bus);
 
 /* Two replies of the same key would be taken for one another. An ACK has no name. */
 uint32_t grobo_i_bus_key(const grobo_reply *reply);
+/* The same of a return packet. */
+uint32_t grobo_i_bus_packet_key(const grobo_packet *packet);
 
 /*
  * Counts one more reply to this transaction that may yet come, that of its active attempt. Until it

@@ -19,10 +19,12 @@
 #define RS302_MODEL 0x3020
 #define RS302_SPEED RAD(60.0 / 0.16)
 
-#define JOINT(name, motor, min_deg, max_deg, init_deg, servo, free_ma, mirror, sign)               \
+#define JOINT(name_, motor_, min_deg, max_deg, init_deg, servo, free_ma, mirror_, sign_)           \
     {                                                                                              \
-        name, RAD(min_deg), RAD(max_deg), servo##_SPEED, RAD(init_deg), servo##_MODEL, free_ma,    \
-            motor, mirror, sign                                                                    \
+        .name = (name_), .min_rad = RAD(min_deg), .max_rad = RAD(max_deg),                         \
+        .max_speed_rad_s = servo##_SPEED, .init_rad = RAD(init_deg), .servo_model = servo##_MODEL, \
+        .free_current_ma = (free_ma), .motor = (motor_), .mirror = (mirror_),                      \
+        .mirror_sign = (sign_)                                                                     \
     }
 
 /*

@@ -36,16 +36,40 @@ static int small_number(const char *text, size_t length)
     return value;
 }
 
+/* Of the servo for the joint, with its sense. */
+static double ratio_of(const grobo_joint *joint)
+{
+    double gear = joint->gear > 0 ? joint->gear : 1;
+    return joint->sign < 0 ? -gear : gear;
+}
+
+double grobo_joint_to_servo(const grobo_joint *joint, double angle_rad)
+{
+    return joint == NULL ? 0 : angle_rad * ratio_of(joint) + joint->zero_rad;
+}
+
+double grobo_joint_from_servo(const grobo_joint *joint, double servo_rad)
+{
+    return joint == NULL ? 0 : (servo_rad - joint->zero_rad) / ratio_of(joint);
+}
+
+static bool is_mount_good(const grobo_joint *joint)
+{
+    return isfinite(joint->zero_rad) && joint->gear >= 0 && isfinite(joint->gear);
+}
+
 static bool is_joint_good(const grobo_model *model, int j)
 {
     const grobo_joint *joint = &model->joints[j];
-    if (joint->name == NULL || joint->name[0] == '\0' || joint->motor < 1 ||
-        joint->motor > GROBO_SERVO_ID_MAX) {
+    if (joint->name == NULL || joint->name[0] == '\0' || joint->motor > GROBO_SERVO_ID_MAX) {
         return false;
     }
     if (!isfinite(joint->min_rad) || !isfinite(joint->max_rad) ||
         !(joint->min_rad <= joint->init_rad && joint->init_rad <= joint->max_rad) ||
         !(joint->max_speed_rad_s > 0.0 && isfinite(joint->max_speed_rad_s))) {
+        return false;
+    }
+    if (!is_mount_good(joint)) {
         return false;
     }
     if (joint->mirror >= model->n_joints || model->joints[joint->mirror].mirror != j ||

@@ -4,6 +4,14 @@
 #include "src/base/instant.h"
 #include "src/robot/robot.h"
 
+/* The goals of a way are on the wire's grid: this part of its step is no other goal. */
+#define SAME_GOAL_STEPS 0.6
+
+double grobo_i_same_goal_rad(const grobo_robot *robot)
+{
+    return SAME_GOAL_STEPS * robot->driver->angle_step_rad;
+}
+
 double grobo_i_way_at(const grobo_robot_way *way, int64_t now_us)
 {
     int64_t at_us = grobo_i_later(now_us, way->from_us);

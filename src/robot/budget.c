@@ -31,11 +31,18 @@ static int motion_cost(const grobo_bus *bus, const grobo_driver *driver, void *c
     return more;
 }
 
-/* The costliest joint counts: they are read in turn. */
+/* The costliest joint counts: they are read in turn, unless one frame reads all. */
 static int reading_cost(const grobo_bus *bus, const grobo_driver *driver, void *ctx, uint32_t *us)
 {
     int result = GROBO_OK;
     *us = 0;
+    if (driver->sense_many != NULL) {
+        grobo_exchange exchange = {0};
+        result = driver->sense_many(driver, ctx, GROBO_JOINTS_ALL(driver->model->n_joints),
+                                    GROBO_SENSE_FULL, &exchange);
+        *us = result < 0 ? 0 : cost_of(bus, &exchange);
+        return result;
+    }
     for (int j = 0; j < driver->model->n_joints && result >= 0; j++) {
         grobo_exchange exchange = {0};
         result = driver->sense(driver, ctx, j, GROBO_SENSE_FULL, &exchange);
@@ -73,7 +80,8 @@ int grobo_i_budget(const grobo_bus *bus, const grobo_driver *driver, void *ctx,
     if (result < 0) {
         return result;
     }
-    found.watched_hz = watched_rate(&found, driver->model->n_joints);
+    found.watched_hz =
+        watched_rate(&found, driver->sense_many != NULL ? 1 : driver->model->n_joints);
     found.default_hz =
         found.watched_hz < GROBO_PLAY_RATE_HZ ? found.watched_hz : GROBO_PLAY_RATE_HZ;
     *budget = found;

@@ -82,15 +82,14 @@ static double speed_limit(const grobo_robot *robot, int joint, bool soft)
 #define HALT_AHEAD_US 50000
 #define HALT_LEAST_US 25000
 #define HALT_TIME_US 100000
-/* Angles are rounded to 0.1 degree on the wire: that much further is not faster. */
-#define ROUNDING_RAD (0.1 * 0.017453292519943295)
 
 /* The least time from where the joint is now, in microseconds. */
 static double time_of_way(const grobo_robot *robot, int joint, double to_rad, bool soft)
 {
     const grobo_robot_axis *axis = &robot->axes[joint];
     double from_rad = grobo_i_axis_commanded(axis, robot->now_us);
-    double way_rad = fmax(fabs(to_rad - from_rad) - ROUNDING_RAD, 0);
+    /* Angles are rounded on the wire: that much further is not faster. */
+    double way_rad = fmax(fabs(to_rad - from_rad) - robot->driver->angle_step_rad, 0);
     double time_us = way_rad / speed_limit(robot, joint, soft) * 1e6;
     /* One that moves goes on until the frame is there. */
     return soft && axis->way.to_us > robot->now_us ? fmax(time_us, HALT_TIME_US) : time_us;
@@ -102,7 +101,7 @@ static int64_t time_needed(const grobo_robot *robot, int joint, double to_rad, b
     int64_t step_us = robot->driver->time_step_us;
     double needed_us = time_of_way(robot, joint, to_rad, soft);
     double steps = fmax(ceil(needed_us / (double)step_us), 1);
-    double most = (double)(GROBO_PLAY_TIME_MAX_US / step_us);
+    double most = (double)(robot->driver->time_max_us / step_us);
     return steps > most ? GROBO_NEVER_US : (int64_t)steps * step_us;
 }
 
@@ -278,6 +277,9 @@ static int judge_raw(grobo_robot *robot, const grobo_exchange *exchange, saying 
     const grobo_driver *driver = robot->driver;
     const grobo_target *target = &says->target;
     grobo_joint_mask on;
+    for (int j = 0; j < driver->model->n_joints; j++) {
+        says->target.from_rad[j] = grobo_i_axis_commanded(&robot->axes[j], robot->now_us);
+    }
     int result = driver->inspect(driver, robot->driver_ctx, exchange->frame, exchange->frame_bytes,
                                  &says->target, says->torqued);
     if (result >= 0) {
@@ -416,16 +418,18 @@ static int make_frame(const grobo_robot *robot, const grobo_robot_order *order, 
                       int part, grobo_exchange *exchange)
 {
     const grobo_driver *driver = robot->driver;
-    const grobo_target *target = &says->target;
-    grobo_target part_way;
+    grobo_target target = says->target;
     memset(exchange, 0, sizeof *exchange);
-    if (order->deed == GROBO_I_DEED_GOAL && grobo_i_segments_cut(robot, order, target, &part_way)) {
-        target = &part_way;
+    if (order->deed == GROBO_I_DEED_GOAL) {
+        (void)grobo_i_segments_cut(robot, order, &says->target, &target);
+    }
+    for (int j = 0; j < driver->model->n_joints; j++) {
+        target.from_rad[j] = grobo_i_axis_commanded(&robot->axes[j], robot->now_us);
     }
     return order->deed == GROBO_I_DEED_TORQUE
                ? driver->torque(driver, robot->driver_ctx, says->torqued[order->torque],
                                 (grobo_torque)order->torque, part, exchange)
-               : driver->posture(driver, robot->driver_ctx, target, part, exchange);
+               : driver->posture(driver, robot->driver_ctx, &target, part, exchange);
 }
 
 /* What waits takes the room of all its joints: one that has no part in it yet may have one by the

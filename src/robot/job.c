@@ -211,7 +211,9 @@ static int keep_reading(grobo_robot *robot)
     }
     slot->joint = (uint8_t)grobo_i_lowest(job->todo);
     slot->reads = true;
-    int result = driver->sense(driver, robot->driver_ctx, slot->joint, job->sense, &slot->exchange);
+    bool first = driver->all_first && !robot->axes[slot->joint].sensed;
+    grobo_sense_kind kind = first ? GROBO_SENSE_ALL : job->sense;
+    int result = driver->sense(driver, robot->driver_ctx, slot->joint, kind, &slot->exchange);
     if (result < 0) {
         grobo_i_slot_drop(slot);
         return result;

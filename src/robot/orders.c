@@ -95,7 +95,7 @@ static int64_t time_asked(const grobo_robot *robot, const grobo_posture *posture
 {
     int64_t step_us = robot->driver->time_step_us;
     int64_t time_us = posture->time_us > 0 ? posture->time_us : robot->config.default_time_us;
-    time_us = grobo_i_sooner(time_us, GROBO_PLAY_TIME_MAX_US);
+    time_us = grobo_i_sooner(time_us, robot->driver->time_max_us);
     return grobo_i_later((time_us + step_us / 2) / step_us, 1) * step_us;
 }
 

@@ -75,9 +75,6 @@ static void take_move(grobo_robot *robot, int joint, const grobo_joint_state *go
  * what the fastest one does while a frame is on its way. */
 #define OFF_WAY_RAD (12 * 0.017453292519943295)
 
-/* The goals of a way are on the wire's grid. */
-#define SAME_GOAL_RAD (0.06 * 0.017453292519943295)
-
 /* True if the servo has told since the last frame that its goal is another one; or did so before
  * this reading, and does not move but on the way it told of then. */
 static bool has_not_taken(const grobo_robot *robot, const grobo_robot_axis *axis,
@@ -86,7 +83,7 @@ static bool has_not_taken(const grobo_robot *robot, const grobo_robot_axis *axis
     bool as_told = abs(got->speed_dps) < GROBO_I_SLOW_DPS || axis->own_until_us > robot->now_us;
     bool before = axis->goal_us != GROBO_NEVER_US && axis->goal_us >= axis->told_us && as_told;
     bool told = (got->valid & GROBO_FIELD_GOAL) != 0 || before;
-    return told && fabs(axis->state.goal_rad - axis->way.to_rad) > SAME_GOAL_RAD;
+    return told && fabs(axis->state.goal_rad - axis->way.to_rad) > grobo_i_same_goal_rad(robot);
 }
 
 /* A joint that stands still, or creeps, beside its way has lost the frame, and so has one whose
@@ -145,7 +142,7 @@ static void take_reading(grobo_robot *robot, int joint, int64_t asked_us, grobo_
     if ((got->valid & GROBO_FIELD_ANGLE) != 0) {
         axis->angle_us = robot->now_us;
     }
-    if ((got->valid & GROBO_FIELD_CURRENT) != 0) {
+    if ((got->valid & GROBO_FIELD_TEMPERATURE) != 0) { /* not every family measures a current */
         axis->full_us = robot->now_us;
     }
     if (asked_us >= axis->told_us) {

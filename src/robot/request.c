@@ -323,7 +323,7 @@ int grobo_robot_raw_until(grobo_robot *robot, const uint8_t *frame, size_t size,
     }
     if (result >= 0) {
         memcpy(exchange.frame, frame, size);
-        exchange.frame_bytes = (uint8_t)size;
+        exchange.frame_bytes = (uint16_t)size;
         result = grobo_i_gate_raw(robot, &exchange, &order);
     }
     if (result >= 0) {
@@ -332,12 +332,17 @@ int grobo_robot_raw_until(grobo_robot *robot, const uint8_t *frame, size_t size,
     if (result < 0) {
         return refuse(robot, result);
     }
-    if (robot->driver->protocol->reply_to(frame, size, &exchange.reply) < 0) {
-        exchange.reply.kind = GROBO_REPLY_NONE;
-    }
+    /* A frame that asks for nothing that there is, is sent all the same. */
+    (void)robot->driver->protocol->reply_to(frame, size, &exchange.reply);
     int number = start_exchange(robot, GROBO_JOB_RAW, &order, &exchange);
     robot->job->leave_by_us = until_us == GROBO_NEVER_US ? 0 : until_us;
     return begin(robot, number);
+}
+
+static bool is_servo(const grobo_robot *robot, int id)
+{
+    const grobo_protocol *protocol = robot->driver->protocol;
+    return id >= protocol->id_min && id <= protocol->id_max;
 }
 
 /* The joint of a motor, none where it is not the model's. */
@@ -369,8 +374,7 @@ int grobo_robot_registers(grobo_robot *robot, const grobo_register_io *io)
     grobo_robot_order order = {.deed = GROBO_I_DEED_NONE};
     grobo_i_begin(robot);
     int result = admit(robot, GROBO_JOB_REGISTERS, joint_of(robot, io->id), false);
-    if (io->id < 1 || io->id > GROBO_SERVO_ID_MAX || io->length < 1 ||
-        io->address + io->length > GROBO_REGISTERS) {
+    if (!is_servo(robot, io->id) || io->length < 1) {
         result = GROBO_ERR_ARG;
     }
     if (result >= 0 && robot->driver->registers == NULL) {
@@ -400,7 +404,7 @@ int grobo_robot_command(grobo_robot *robot, int id, grobo_servo_command command)
     if (result >= 0) {
         result = grobo_i_gate_judge(robot, &order, NULL);
     }
-    if (id < 1 || id > GROBO_SERVO_ID_MAX || (unsigned)command > GROBO_SERVO_FACTORY_RESET) {
+    if (!is_servo(robot, id) || (unsigned)command > GROBO_SERVO_FACTORY_RESET) {
         result = GROBO_ERR_ARG;
     }
     if (result >= 0 && robot->driver->command == NULL) {

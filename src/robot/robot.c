@@ -79,6 +79,7 @@ int grobo_robot_init_sized(grobo_robot *robot, size_t robot_bytes, const grobo_d
     robot->driver_ctx = driver_ctx;
     robot->leave = grobo_i_gate_leave;
     robot->over = grobo_i_frame_over;
+    robot->each = grobo_i_reply_came;
     robot->config = *c;
     config_fill(&robot->config, driver);
     if (grobo_bus_init(&robot->bus, &robot->config.bus) < 0) {

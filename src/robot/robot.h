@@ -45,6 +45,8 @@ grobo_joint_mask grobo_i_all_joints(const grobo_robot *robot);
 
 /* The first of these joints, of which there is one at least. */
 int grobo_i_lowest(grobo_joint_mask joints);
+/* Goals that differ by no more are the same on the wire. */
+double grobo_i_same_goal_rad(const grobo_robot *robot);
 /* Where a way is by then. */
 double grobo_i_way_at(const grobo_robot_way *way, int64_t now_us);
 /* Where a joint is by now on the move it was sent on. */
@@ -391,6 +393,8 @@ void grobo_i_leave(grobo_robot *robot);
 /* The same around every request. Where a host is woken, the pump tells the events. */
 void grobo_i_begin(grobo_robot *robot);
 void grobo_i_end(grobo_robot *robot);
+/* One of several joints has answered: grobo_robot.each. */
+void grobo_i_reply_came(grobo_robot_slot *slot, const grobo_packet *reply);
 /* A frame is over: grobo_robot.over. The slot is a copy. */
 void grobo_i_frame_over(grobo_robot_slot *slot, int result, const grobo_packet *reply);
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* When the background reads which joint, and free mode. */
+#include "src/base/instant.h"
 #include "src/bus/time.h"
 #include "src/robot/robot.h"
 
@@ -154,7 +155,8 @@ static int64_t hurry_at(const grobo_robot *robot)
     grobo_txn first = slot->txn;
     first.priority = GROBO_PRIORITY_MOTION;
     int64_t since_us = slot->txn.sent_us > slot->given_us ? slot->txn.sent_us : slot->given_us;
-    int64_t late_us = since_us + GROBO_WATCH_US / HURRY_PART / robot->driver->model->n_joints;
+    int readings = slot->many ? 1 : robot->driver->model->n_joints;
+    int64_t late_us = since_us + GROBO_WATCH_US / HURRY_PART / readings;
     int64_t free_us = grobo_bus_free_at(&robot->bus, robot->now_us);
     int64_t may_us = grobo_i_bus_start_at(&robot->bus, &first, robot->now_us);
     return may_us > free_us && may_us > late_us ? may_us : late_us;
@@ -183,7 +185,8 @@ static grobo_sense_kind kind_of(const grobo_robot *robot, int joint)
     if ((robot->free_joints & GROBO_JOINT_BIT(joint)) != 0) {
         return GROBO_SENSE_ALL;
     }
-    if (robot->free_joints == 0 && robot->config.sense_position_only) {
+    bool first = robot->driver->all_first && !robot->axes[joint].sensed;
+    if (robot->free_joints == 0 && robot->config.sense_position_only && !first) {
         return GROBO_SENSE_POSITION;
     }
     return robot->axes[joint].sensed ? GROBO_SENSE_FULL : GROBO_SENSE_ALL;
@@ -201,9 +204,35 @@ static int next_reading(grobo_robot *robot)
                              : next_of(&robot->round, robot->free_joints);
 }
 
-void grobo_i_sense_step(grobo_robot *robot)
+/* All of them in one frame. Any that nothing is known of is asked where it is going, too. */
+static int ask_all(grobo_robot *robot, grobo_robot_slot *slot)
 {
     const grobo_driver *driver = robot->driver;
+    grobo_joint_mask all = grobo_i_all_joints(robot);
+    int unknown;
+    bool first = !grobo_i_all_sensed(robot, all, &unknown);
+    bool angles = robot->config.sense_position_only && !(first && driver->all_first);
+    grobo_sense_kind kind = angles  ? GROBO_SENSE_POSITION
+                            : first ? GROBO_SENSE_ALL
+                                    : GROBO_SENSE_FULL;
+    robot->sense_us = grobo_i_later(robot->sense_us + interval_of(robot), robot->now_us);
+    robot->round = 0;
+    slot->many = true;
+    slot->unread = all;
+    return driver->sense_many(driver, robot->driver_ctx, all, kind, &slot->exchange);
+}
+
+static int ask_next(grobo_robot *robot, grobo_robot_slot *slot)
+{
+    const grobo_driver *driver = robot->driver;
+    slot->joint = (uint8_t)next_reading(robot);
+    slot->reads = true;
+    return driver->sense(driver, robot->driver_ctx, slot->joint, kind_of(robot, slot->joint),
+                         &slot->exchange);
+}
+
+void grobo_i_sense_step(grobo_robot *robot)
+{
     bool due = robot->free_joints != 0 || robot->now_us >= robot->sense_us;
     hurry(robot);
     if (!due || !background_wanted(robot) || grobo_i_slots_busy(robot, GROBO_I_USE_SENSE)) {
@@ -213,10 +242,8 @@ void grobo_i_sense_step(grobo_robot *robot)
     if (slot == NULL) {
         return;
     }
-    slot->joint = (uint8_t)next_reading(robot);
-    slot->reads = true;
-    grobo_sense_kind kind = kind_of(robot, slot->joint);
-    if (driver->sense(driver, robot->driver_ctx, slot->joint, kind, &slot->exchange) < 0) {
+    bool many = robot->driver->sense_many != NULL && robot->free_joints == 0;
+    if ((many ? ask_all(robot, slot) : ask_next(robot, slot)) < 0) {
         grobo_i_slot_drop(slot);
         return;
     }
@@ -227,7 +254,7 @@ void grobo_i_sense_done(const grobo_robot_slot *slot, int result)
 {
     grobo_robot *robot = slot->robot;
     int joint = slot->joint;
-    bool is_free = (robot->free_joints & GROBO_JOINT_BIT(joint)) != 0;
+    bool is_free = !slot->many && (robot->free_joints & GROBO_JOINT_BIT(joint)) != 0;
     if (result >= 0 && is_free) {
         free_joint(robot, joint);
     }

@@ -60,6 +60,13 @@ static int on_leave(void *ctx, grobo_txn *txn)
     return result;
 }
 
+static void on_each(void *ctx, grobo_txn *txn, const grobo_packet *reply)
+{
+    grobo_robot_slot *slot = ctx;
+    GROBO_ASSERT(slot->use != GROBO_I_USE_FREE && txn == &slot->txn);
+    slot->robot->each(slot, reply);
+}
+
 static void on_done(void *ctx, grobo_txn *txn, int result, const grobo_packet *reply)
 {
     grobo_robot_slot slot = *(grobo_robot_slot *)ctx;
@@ -73,7 +80,8 @@ int grobo_i_slot_send(grobo_robot_slot *slot, grobo_priority priority)
     const grobo_robot_config *config = &slot->robot->config;
     GROBO_ASSERT(slot->use != GROBO_I_USE_FREE && !grobo_txn_is_pending(&slot->txn));
     bool had_its_chance = slot->reads && slot->robot->axes[slot->joint].lost > 0;
-    bool once = had_its_chance && slot->use == GROBO_I_USE_SENSE;
+    /* Where several are asked the next round asks again. */
+    bool once = slot->many || (had_its_chance && slot->use == GROBO_I_USE_SENSE);
     slot->txn.frame = slot->exchange.frame;
     slot->txn.frame_bytes = slot->exchange.frame_bytes;
     slot->txn.reply = slot->exchange.reply;
@@ -84,6 +92,7 @@ int grobo_i_slot_send(grobo_robot_slot *slot, grobo_priority priority)
     slot->txn.sent_us = -1;
     slot->given_us = slot->robot->now_us;
     slot->txn.leave = on_leave;
+    slot->txn.each = on_each;
     slot->txn.done = on_done;
     slot->txn.ctx = slot;
     int result = grobo_bus_submit(&slot->robot->bus, &slot->txn);

@@ -20,9 +20,6 @@
 #define ARRIVAL_US 40000
 /* How often a quieting robot is looked at. */
 #define QUIET_US 5000
-/* A goal is the one that was written if it is the same in the wire's unit. */
-#define SAME_GOAL_RAD (0.06 * 0.017453292519943295)
-
 static bool is_set(grobo_joint_mask joints, int joint)
 {
     return (joints & GROBO_JOINT_BIT(joint)) != 0;
@@ -351,16 +348,17 @@ static int step_read_back(grobo_robot *robot)
 
 /* True if the goal read is the one that the joint was sent to, or of a way told in segments lies
  * ahead of where the joint was by then. */
-static bool has_taken(const grobo_robot_axis *axis)
+static bool has_taken(const grobo_robot *robot, const grobo_robot_axis *axis)
 {
+    double same_rad = grobo_i_same_goal_rad(robot);
     const grobo_robot_way *way = &axis->way;
     double goal_rad = axis->state.goal_rad;
     if (!axis->in_segments || axis->goal_us >= way->to_us) {
-        return near_rad(goal_rad, way->to_rad, SAME_GOAL_RAD);
+        return near_rad(goal_rad, way->to_rad, same_rad);
     }
     double here_rad = grobo_i_way_at(way, axis->goal_us);
-    return goal_rad >= fmin(here_rad, way->to_rad) - SAME_GOAL_RAD &&
-           goal_rad <= fmax(here_rad, way->to_rad) + SAME_GOAL_RAD;
+    return goal_rad >= fmin(here_rad, way->to_rad) - same_rad &&
+           goal_rad <= fmax(here_rad, way->to_rad) + same_rad;
 }
 
 /* Of the joints just read, those whose goal is not the one they were sent to. */
@@ -369,7 +367,7 @@ static grobo_joint_mask not_taken(const grobo_robot *robot)
     grobo_joint_mask read = robot->job->pending & ~robot->job->failed;
     grobo_joint_mask bad = 0;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if (is_set(read, j) && !has_taken(&robot->axes[j])) {
+        if (is_set(read, j) && !has_taken(robot, &robot->axes[j])) {
             bad |= GROBO_JOINT_BIT(j);
         }
     }

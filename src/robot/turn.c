@@ -9,7 +9,7 @@
 /* Takes what a slot has read of its joint, or the reason why there is nothing, and judges it. */
 static int take_reading(const grobo_robot_slot *slot, int result, const grobo_packet *reply)
 {
-    GROBO_ASSERT(slot->reads && slot->joint < slot->robot->driver->model->n_joints);
+    GROBO_ASSERT((slot->reads || slot->many) && slot->joint < slot->robot->driver->model->n_joints);
     grobo_robot *robot = slot->robot;
     grobo_joint_state got;
     int taken = grobo_i_reading_take(slot, result, reply, &got);
@@ -23,6 +23,29 @@ static int take_reading(const grobo_robot_slot *slot, int result, const grobo_pa
     event.u.joint.result = taken;
     grobo_i_tell(robot, &event);
     return taken;
+}
+
+void grobo_i_reply_came(grobo_robot_slot *slot, const grobo_packet *reply)
+{
+    int joint = grobo_model_joint_of_motor(slot->robot->driver->model, reply->id);
+    if (joint < 0 || (slot->unread & GROBO_JOINT_BIT(joint)) == 0) {
+        return;
+    }
+    slot->unread &= ~GROBO_JOINT_BIT(joint);
+    grobo_robot_slot one = *slot; /* what is read may end the frame */
+    one.joint = (uint8_t)joint;
+    (void)take_reading(&one, reply->refused ? GROBO_ERR_NACK : GROBO_OK, reply);
+}
+
+/* Joints that have not answered; or the packet that answers for all. */
+static void take_unread(grobo_robot_slot *slot, int result, const grobo_packet *reply)
+{
+    for (int j = 0; j < slot->robot->driver->model->n_joints; j++) {
+        if ((slot->unread & GROBO_JOINT_BIT(j)) != 0) {
+            slot->joint = (uint8_t)j;
+            (void)take_reading(slot, result, reply);
+        }
+    }
 }
 
 void grobo_i_frame_over(grobo_robot_slot *slot, int result, const grobo_packet *reply)
@@ -43,7 +66,12 @@ void grobo_i_frame_over(grobo_robot_slot *slot, int result, const grobo_packet *
         break;
     case GROBO_I_USE_SENSE:
         if (result != GROBO_ERR_CANCELED && result != GROBO_ERR_UNPLUGGED) {
-            grobo_i_sense_done(slot, take_reading(slot, result, reply));
+            if (slot->many) {
+                take_unread(slot, result, reply);
+            } else {
+                result = take_reading(slot, result, reply);
+            }
+            grobo_i_sense_done(slot, result);
         }
         break;
     case GROBO_I_USE_SEGMENT:

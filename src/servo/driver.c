@@ -45,6 +45,23 @@ static bool readback_sound(const grobo_driver *driver)
     return true;
 }
 
+static bool times_sound(const grobo_driver *driver)
+{
+    return driver->time_step_us > 0 && driver->time_max_us >= driver->time_step_us &&
+           isfinite(driver->angle_step_rad) && driver->angle_step_rad > 0;
+}
+
+static bool ids_sound(const grobo_driver *driver)
+{
+    for (int j = 0; j < driver->model->n_joints; j++) {
+        uint8_t id = driver->model->joints[j].motor;
+        if (id < driver->protocol->id_min || id > driver->protocol->id_max) {
+            return false;
+        }
+    }
+    return true;
+}
+
 int grobo_driver_check(const grobo_driver *driver)
 {
     if (driver == NULL || driver->name == NULL || driver->model == NULL ||
@@ -53,7 +70,7 @@ int grobo_driver_check(const grobo_driver *driver)
     }
     bool policy = driver->on_exit == GROBO_EXIT_OFF || driver->on_exit == GROBO_EXIT_HOLD ||
                   driver->on_exit == GROBO_EXIT_SIT;
-    if (!policy || driver->protocol == NULL || driver->time_step_us <= 0 ||
+    if (!policy || driver->protocol == NULL || !ids_sound(driver) || !times_sound(driver) ||
         !functions_present(driver) || !limits_sound(&driver->limits) || !rest_sound(driver) ||
         !readback_sound(driver)) {
         return GROBO_ERR_ARG;

@@ -1,10 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* What servos hear: bytes of the board or host, and the packets that they make. */
 #include "src/sim/bus.h"
+
+#include <string.h>
+
+#include "src/base/assert.h"
+#include "src/sim/family.h"
 #include "src/sim/fault.h"
 #include "src/sim/note.h"
 #include "src/sim/power.h"
-#include "src/sim/servo.h"
 #include "src/sim/talk.h"
 #include "src/sim/wire.h"
 
@@ -21,37 +25,51 @@ void grobo_i_sim_frame_faults(grobo_sim *sim)
     }
 }
 
-static void hear_packet(grobo_sim *sim, const grobo_rs30x_packet *packet)
+static void hear_packet(grobo_sim *sim, const grobo_sim_ear *ear, size_t n)
 {
-    uint8_t bytes[GROBO_RS30X_PACKET_MAX_BYTES];
-    int n = grobo_rs30x_build(packet, bytes, sizeof bytes);
-    if (n < 0) {
-        return;
-    }
     sim->stats.packets++;
     const grobo_sim_event raw = {.kind = GROBO_SIM_PACKET,
                                  .time_us = sim->now_us,
                                  .servo = -1,
-                                 .bytes = bytes,
-                                 .n_bytes = (size_t)n};
+                                 .bytes = ear->byte,
+                                 .n_bytes = n};
     grobo_i_sim_tell(sim, &raw);
     if (sim->config.wiring == GROBO_WIRING_BUS) {
         grobo_i_sim_frame_faults(sim);
     }
-    grobo_i_sim_packet(sim, packet, &raw);
+    ear->family->packet(sim, &raw);
 }
 
 /* What has come of a packet is forgotten. */
-static void stalled(grobo_sim *sim)
+static void stalled(grobo_sim *sim, grobo_sim_ear *ear)
 {
-    const grobo_framer *framer = &sim->bus.framer;
     sim->stats.stalls++;
     grobo_i_sim_tell(sim, &(grobo_sim_event){.kind = GROBO_SIM_STALLED,
                                              .time_us = sim->now_us,
                                              .servo = -1,
-                                             .bytes = framer->buf + framer->taken,
-                                             .n_bytes = grobo_rs30x_parser_pending(&sim->bus)});
-    grobo_rs30x_parser_reset(&sim->bus);
+                                             .bytes = ear->byte,
+                                             .n_bytes = ear->used});
+    ear->used = 0;
+}
+
+/* After a false start goes on with the byte behind it, which may start a true packet. */
+static void listen(grobo_sim *sim, grobo_sim_ear *ear, uint8_t byte)
+{
+    GROBO_ASSERT(ear->used < sizeof ear->byte);
+    ear->byte[ear->used++] = byte;
+    while (ear->used > 0) {
+        int size = ear->family->measure(ear->byte, ear->used, true);
+        if (size == 0 && ear->used < sizeof ear->byte) {
+            return;
+        }
+        if (size > 0) {
+            hear_packet(sim, ear, (size_t)size);
+        } else if (size == GROBO_ERR_CHECKSUM && ear->family->broken != NULL) {
+            ear->family->broken(sim, ear->byte, ear->used);
+        }
+        ear->used = (uint16_t)(ear->used - (size > 0 ? size : 1));
+        memmove(ear->byte, ear->byte + (size > 0 ? size : 1), ear->used);
+    }
 }
 
 void grobo_i_sim_bus_hear(grobo_sim *sim, uint8_t byte, int64_t t_ns)
@@ -60,13 +78,12 @@ void grobo_i_sim_bus_hear(grobo_sim *sim, uint8_t byte, int64_t t_ns)
     if (sim->config.echo) {
         grobo_i_sim_to_host(sim, byte, t_ns);
     }
-    if (t_ns - sim->bus_heard_ns > SERVO_STALL_NS && grobo_rs30x_parser_pending(&sim->bus) > 0) {
-        stalled(sim);
-    }
+    bool still = t_ns - sim->bus_heard_ns > SERVO_STALL_NS;
     sim->bus_heard_ns = t_ns;
-    (void)grobo_rs30x_parser_feed(&sim->bus, &byte, 1);
-    grobo_rs30x_packet packet;
-    while (grobo_rs30x_parser_next(&sim->bus, &packet) > 0) {
-        hear_packet(sim, &packet);
+    for (int i = 0; i < sim->n_ears; i++) {
+        if (still && sim->ear[i].used > 0) {
+            stalled(sim, &sim->ear[i]);
+        }
+        listen(sim, &sim->ear[i], byte);
     }
 }

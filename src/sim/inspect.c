@@ -2,8 +2,8 @@
 /* What a test, or a person at the simulator, sees and changes behind the robot's back. */
 #include <string.h>
 
+#include "src/sim/family.h"
 #include "src/sim/power.h"
-#include "src/sim/registers.h"
 #include "src/sim/servo.h"
 #include "src/sim/shaft.h"
 
@@ -30,7 +30,7 @@ int grobo_sim_find(const grobo_sim *sim, int id)
         return GROBO_ERR_ARG;
     }
     for (int i = 0; i < sim->n_servos; i++) {
-        if (sim->servo[i].reg[GROBO_RS30X_ID] == id) {
+        if (sim->servo[i].plant.id == id) {
             return i;
         }
     }
@@ -53,24 +53,15 @@ int grobo_sim_look(grobo_sim *sim, int index, grobo_sim_view *view)
         .speed_dps = grobo_i_sim_speed_dps(servo, sim->now_us),
         .current_ma = grobo_i_sim_current_ma(servo, sim->now_us),
         .temperature_c = servo->temperature_c,
-        .torque = (grobo_torque)servo->reg[GROBO_RS30X_TORQUE],
+        .torque = (grobo_torque)servo->plant.torque,
         .cable = (grobo_sim_cable)servo->cable,
         .moving = grobo_i_sim_moving(servo, sim->now_us),
         .stalled = servo->stalled && !grobo_i_sim_moving(servo, sim->now_us),
         .deaf = grobo_i_sim_deaf(sim, index),
-        .id = servo->reg[GROBO_RS30X_ID],
+        .id = servo->plant.id,
         .baud_bps = bps < 0 ? 0 : (uint32_t)bps,
     };
     return 0;
-}
-
-static const grobo_rs30x_register *register_from(int address)
-{
-    if (address < 0 || address >= GROBO_REGISTERS) {
-        return NULL;
-    }
-    const grobo_rs30x_register *reg = grobo_rs30x_register_at((uint8_t)address);
-    return reg != NULL && reg->address == address ? reg : NULL;
 }
 
 int grobo_sim_get_register(grobo_sim *sim, int index, int address, int32_t *value)
@@ -78,13 +69,22 @@ int grobo_sim_get_register(grobo_sim *sim, int index, int address, int32_t *valu
     if (value == NULL) {
         return GROBO_ERR_ARG;
     }
-    const grobo_rs30x_register *reg = register_from(address);
-    if (servo_at(sim, index) == NULL || reg == NULL) {
+    const grobo_sim_servo *servo = servo_at(sim, index);
+    if (servo == NULL) {
         return GROBO_ERR_ARG;
     }
-    grobo_i_sim_refresh(sim, index);
-    *value = grobo_i_sim_value(&sim->servo[index], reg->address);
-    return 0;
+    servo->family->refresh(sim, index);
+    return servo->family->get(sim, index, address, value);
+}
+
+int grobo_sim_set_id(grobo_sim *sim, int index, int id)
+{
+    const grobo_sim_servo *servo = servo_at(sim, index);
+    if (servo == NULL) {
+        return GROBO_ERR_ARG;
+    }
+    const grobo_servo_register *reg = grobo_servo_register_of(servo->model, GROBO_ROLE_ID);
+    return servo->family->set(sim, index, reg != NULL ? reg->address : GROBO_RS30X_ID, id);
 }
 
 int grobo_sim_get_flash(grobo_sim *sim, int index, uint8_t flash[GROBO_SIM_FLASH_BYTES])
@@ -96,7 +96,10 @@ int grobo_sim_get_flash(grobo_sim *sim, int index, uint8_t flash[GROBO_SIM_FLASH
     if (servo == NULL) {
         return GROBO_ERR_ARG;
     }
-    memcpy(flash, servo->flash, sizeof servo->flash);
+    if (servo->family->flash_fits == NULL) {
+        return GROBO_ERR_UNSUPPORTED;
+    }
+    memcpy(flash, servo->flash, GROBO_SIM_FLASH_BYTES);
     return 0;
 }
 
@@ -104,26 +107,23 @@ int grobo_sim_get_flash(grobo_sim *sim, int index, uint8_t flash[GROBO_SIM_FLASH
 
 int grobo_sim_set_register(grobo_sim *sim, int index, int address, int32_t value)
 {
-    const grobo_rs30x_register *reg = register_from(address);
-    if (servo_at(sim, index) == NULL || reg == NULL ||
-        (reg->access == GROBO_RS30X_ACCESS_R && reg->kept == GROBO_RS30X_KEPT_RAM)) {
-        return GROBO_ERR_ARG;
-    }
-    uint8_t bytes[2];
-    int n = grobo_rs30x_register_put(reg, value, bytes);
-    if (n < 0) {
-        return n;
-    }
-    grobo_i_sim_store(sim, index, address, bytes, (size_t)n);
-    return 0;
+    const grobo_sim_servo *servo = servo_at(sim, index);
+    return servo == NULL ? GROBO_ERR_ARG : servo->family->set(sim, index, address, value);
 }
 
 int grobo_sim_set_flash(grobo_sim *sim, int index, const uint8_t flash[GROBO_SIM_FLASH_BYTES])
 {
-    if (flash == NULL || servo_at(sim, index) == NULL) {
+    if (flash == NULL) {
         return GROBO_ERR_ARG;
     }
-    if (!grobo_i_sim_flash_fits(flash)) {
+    const grobo_sim_servo *servo = servo_at(sim, index);
+    if (servo == NULL) {
+        return GROBO_ERR_ARG;
+    }
+    if (servo->family->flash_fits == NULL) {
+        return GROBO_ERR_UNSUPPORTED;
+    }
+    if (!servo->family->flash_fits(flash)) {
         return GROBO_ERR_LIMIT;
     }
     grobo_i_sim_exchange_flash(sim, index, flash);

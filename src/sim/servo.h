@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: MIT */
-/* What packets do to a servo. */
+/* A servo at its line, whatever its family. */
 #ifndef GROBO_SIM_SERVO_H
 #define GROBO_SIM_SERVO_H
 
 #include <grobo/sim.h>
 
-/* Every servo that hears the packet carries it out and may reply; raw holds its bytes. */
-void grobo_i_sim_packet(grobo_sim *sim, const grobo_rs30x_packet *packet,
-                        const grobo_sim_event *raw);
-/* Writes what is given and lets it take effect; the caller has checked it. */
-void grobo_i_sim_store(grobo_sim *sim, int servo, int address, const uint8_t *bytes, size_t n);
-/* Fills in the present values. */
-void grobo_i_sim_refresh(grobo_sim *sim, int servo);
+/* Whether a servo that a packet is for hears it now; tells of those that miss it. */
+bool grobo_i_sim_hears(grobo_sim *sim, int servo, const grobo_sim_event *raw);
+/* A servo answers after_ns from now. Its own replies go straight to the bus; on its way to the host
+ * a reply may suffer, and the bytes with it. */
+void grobo_i_sim_speak(grobo_sim *sim, int servo, uint8_t *bytes, size_t n, int64_t after_ns);
+/* The supply as it is under the present load. */
+int32_t grobo_i_sim_supply_mv(const grobo_sim *sim);
 /* True while it neither hears nor speaks, whatever the rate. */
 bool grobo_i_sim_deaf(const grobo_sim *sim, int servo);
 /* The rate at which a servo listens and speaks; negative: none has this code. */

@@ -6,17 +6,19 @@
 #include <math.h>
 
 #include "src/base/assert.h"
+#include "src/sim/family.h"
 #include "src/sim/note.h"
-#include "src/sim/registers.h"
 #include "src/sim/shaft.h"
 
 /* Assumptions (docs/simulator.md): mA of the circuit, of holding, of moving at full speed. */
 #define IDLE_MA 6
 #define HOLD_MA 40
 #define MOVE_MA 260
-/* Copper loss: degrees above ambient for a current that lasts, and how fast they come. */
-#define HEAT_C_PER_MA2 8.5e-5
+/* How fast the heat of a current comes. */
 #define HEAT_TAU_US 300e6
+
+/* Further than anything turns. */
+#define SPIN_MDEG 500000000
 
 #define MDEG_PER_RAD (180000.0 / 3.14159265358979323846)
 
@@ -32,20 +34,26 @@ int32_t grobo_i_sim_mdeg_of_rad(double angle_rad)
     return (int32_t)lround(angle_rad * MDEG_PER_RAD);
 }
 
-int32_t grobo_i_sim_ddeg(const grobo_sim_servo *servo, int32_t mdeg)
-{
-    int32_t ddeg = round_div(mdeg, 100);
-    return servo->reg[GROBO_RS30X_REVERSE] ? -ddeg : ddeg;
-}
-
-static int32_t mdeg_of_ddeg(const grobo_sim_servo *servo, int32_t ddeg)
-{
-    return (servo->reg[GROBO_RS30X_REVERSE] ? -ddeg : ddeg) * 100;
-}
-
 bool grobo_i_sim_moving(const grobo_sim_servo *servo, int64_t t_us)
 {
     return t_us < servo->start_us + servo->move_us;
+}
+
+/* Signed way since the begin of a move with ramps, and the speed then. */
+static double ramped_way(const grobo_sim_ramps *r, double t_s, double *speed)
+{
+    double ramp_s = t_s < r->ramp_s ? t_s : r->ramp_s;
+    double accel = r->ramp_s > 0 ? (r->peak - r->start) / r->ramp_s : 0;
+    double way = r->start * ramp_s + accel * ramp_s * ramp_s / 2;
+    *speed = r->start + accel * ramp_s;
+    if (t_s > r->ramp_s) {
+        double even_s = t_s - r->ramp_s < r->even_s ? t_s - r->ramp_s : r->even_s;
+        double brake_s = t_s - r->ramp_s - even_s;
+        brake_s = brake_s < r->brake_s ? brake_s : r->brake_s;
+        way += r->peak * (even_s + brake_s) + r->end_accel * brake_s * brake_s / 2;
+        *speed = r->peak + r->end_accel * brake_s;
+    }
+    return way;
 }
 
 int32_t grobo_i_sim_angle_mdeg(const grobo_sim_servo *servo, int64_t t_us)
@@ -54,9 +62,33 @@ int32_t grobo_i_sim_angle_mdeg(const grobo_sim_servo *servo, int64_t t_us)
         return servo->to_mdeg;
     }
     GROBO_ASSERT(servo->move_us > 0);
-    int64_t way = servo->to_mdeg - servo->from_mdeg;
     int64_t done_us = t_us > servo->start_us ? t_us - servo->start_us : 0;
+    if (servo->ramped) {
+        double speed;
+        double way = ramped_way(&servo->ramps, (double)done_us / 1e6, &speed);
+        double at = servo->from_mdeg + way;
+        at = at < servo->stop_min_mdeg ? servo->stop_min_mdeg : at;
+        return (int32_t)lround(at > servo->stop_max_mdeg ? servo->stop_max_mdeg : at);
+    }
+    int64_t way = (int64_t)servo->to_mdeg - servo->from_mdeg;
+    if (servo->model != NULL) { /* a wheel's way is beyond the integers */
+        return servo->from_mdeg +
+               (int32_t)lround((double)way * (double)done_us / (double)servo->move_us);
+    }
     return servo->from_mdeg + round_div(way * done_us, servo->move_us);
+}
+
+double grobo_i_sim_speed_mdeg_s(const grobo_sim_servo *servo, int64_t t_us)
+{
+    if (!grobo_i_sim_moving(servo, t_us)) {
+        return 0;
+    }
+    if (servo->ramped) {
+        double speed;
+        (void)ramped_way(&servo->ramps, (double)(t_us - servo->start_us) / 1e6, &speed);
+        return speed;
+    }
+    return ((double)servo->to_mdeg - servo->from_mdeg) * 1e6 / (double)servo->move_us;
 }
 
 int32_t grobo_i_sim_speed_dps(const grobo_sim_servo *servo, int64_t t_us)
@@ -64,7 +96,10 @@ int32_t grobo_i_sim_speed_dps(const grobo_sim_servo *servo, int64_t t_us)
     if (!grobo_i_sim_moving(servo, t_us)) {
         return 0;
     }
-    int64_t way = servo->to_mdeg - servo->from_mdeg;
+    if (servo->ramped) {
+        return (int32_t)lround(fabs(grobo_i_sim_speed_mdeg_s(servo, t_us)) / 1000);
+    }
+    int64_t way = (int64_t)servo->to_mdeg - servo->from_mdeg;
     return round_div((way < 0 ? -way : way) * 1000, servo->move_us);
 }
 
@@ -99,7 +134,76 @@ void grobo_i_sim_halt(grobo_sim *sim, int index)
     servo->begun_us += rested_us > 0 ? rested_us : 0; /* to rest is not to move */
     servo->start_us = sim->now_us;
     servo->move_us = servo->plan_us = 0;
-    servo->stalled = servo->by_hand = false;
+    servo->stalled = servo->by_hand = servo->ramped = false;
+}
+
+/* Turns on and on, until it is told otherwise: its end is too far away to come. */
+static void spin(grobo_sim_servo *servo)
+{
+    int64_t speed = servo->plant.wheel_mdeg_s;
+    if (servo->blocked || speed == 0) {
+        servo->stalled = speed != 0;
+        return;
+    }
+    servo->to_mdeg = speed > 0 ? servo->from_mdeg + SPIN_MDEG : servo->from_mdeg - SPIN_MDEG;
+    servo->to_mdeg = clamp(servo->to_mdeg, servo->stop_min_mdeg, servo->stop_max_mdeg);
+    servo->plan_us = servo->move_us =
+        distance(servo->from_mdeg, servo->to_mdeg) * 1000000 / (speed < 0 ? -speed : speed);
+    servo->stalled = servo->to_mdeg == servo->from_mdeg;
+}
+
+/* A move of this way that begins at a speed, with the acceleration, and ends at rest. */
+static void ramp(grobo_sim_servo *servo, double way, double begin, double top, double accel)
+{
+    double dir = way - begin * fabs(begin) / (2 * accel) < 0 ? -1 : 1;
+    double start = begin * dir;
+    double peak = sqrt(fmax(accel * way * dir + start * start / 2, 0));
+    peak = peak < top ? peak : top;
+    grobo_sim_ramps *r = &servo->ramps;
+    r->ramp_s = fabs(peak - start) / accel;
+    r->brake_s = peak / accel;
+    double even = way * dir - (start + peak) / 2 * r->ramp_s - peak / 2 * r->brake_s;
+    r->even_s = peak > 0 && even > 0 ? even / peak : 0;
+    r->start = begin;
+    r->peak = peak * dir;
+    r->end_accel = -accel * dir;
+    servo->ramped = true;
+    servo->plan_us = (int64_t)ceil((r->ramp_s + r->even_s + r->brake_s) * 1e6);
+    servo->move_us = servo->plan_us;
+}
+
+/* A move with ramps that a stop ends: when it gets there. */
+static void ramp_to_stop(grobo_sim_servo *servo)
+{
+    int64_t before_us = 0, behind_us = servo->plan_us;
+    double wanted = servo->to_mdeg - servo->from_mdeg, speed;
+    while (behind_us - before_us > 1) {
+        int64_t us = before_us + (behind_us - before_us) / 2;
+        double way = ramped_way(&servo->ramps, (double)us / 1e6, &speed);
+        if (wanted < 0 ? way <= wanted : way >= wanted) {
+            behind_us = us;
+        } else {
+            before_us = us;
+        }
+    }
+    servo->move_us = behind_us;
+}
+
+/* The servo's own choice of ramps for a way; false where it has none. */
+static bool plan_ramps(grobo_sim_servo *servo, double way, double begin, double top)
+{
+    const grobo_sim_plant *plant = &servo->plant;
+    double accel = plant->accel_mdeg_s2;
+    if (plant->ramp_us > 0) {
+        double cap = fabs(way) * 1e6 / (plant->time_us - plant->ramp_us);
+        accel = cap * 1e6 / plant->ramp_us;
+        top = cap < top ? cap : top;
+    }
+    if (accel <= 0 || top <= 0 || (way == 0 && begin == 0)) {
+        return false;
+    }
+    ramp(servo, way, begin, top, accel);
+    return true;
 }
 
 /*
@@ -109,8 +213,13 @@ void grobo_i_sim_halt(grobo_sim *sim, int index)
 void grobo_i_sim_drive(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
+    double begin = servo->by_hand ? 0 : grobo_i_sim_speed_mdeg_s(servo, sim->now_us);
     grobo_i_sim_halt(sim, index);
-    int32_t goal_mdeg = mdeg_of_ddeg(servo, grobo_i_sim_value(servo, GROBO_RS30X_GOAL));
+    if (servo->plant.wheel) {
+        spin(servo);
+        return;
+    }
+    int32_t goal_mdeg = servo->plant.goal_mdeg;
     if (!servo->blocked) {
         servo->to_mdeg = clamp(goal_mdeg, servo->stop_min_mdeg, servo->stop_max_mdeg);
     }
@@ -118,10 +227,19 @@ void grobo_i_sim_drive(grobo_sim *sim, int index)
     servo->stalled = servo->to_mdeg != goal_mdeg;
     int64_t wanted = distance(servo->from_mdeg, goal_mdeg);
     int64_t way = distance(servo->from_mdeg, servo->to_mdeg);
+    int64_t speed = (int64_t)servo->plant.speed_mdeg_s * sim->supply_mv / servo->plant.nominal_mv;
+    int64_t cap = servo->plant.cap_mdeg_s;
+    speed = cap > 0 && cap < speed ? cap : speed;
+    if (!servo->blocked &&
+        plan_ramps(servo, (double)goal_mdeg - servo->from_mdeg, begin, (double)speed)) {
+        if (servo->stalled) {
+            ramp_to_stop(servo);
+        }
+        return;
+    }
     if (wanted == 0) {
         return;
     }
-    int64_t speed = (int64_t)grobo_i_sim_type_of(servo)->speed_mdeg_s * sim->supply_mv / 7400;
     int64_t least_us = speed > 0 ? wanted * 1000000 / speed : 0;
     int64_t left_us = servo->due_us - sim->now_us;
     servo->plan_us = left_us > least_us ? left_us : least_us;
@@ -132,7 +250,7 @@ void grobo_i_sim_drive(grobo_sim *sim, int index)
 void grobo_i_sim_go_on(grobo_sim *sim, int index)
 {
     const grobo_sim_servo *servo = &sim->servo[index];
-    if (servo->powered && !servo->by_hand && servo->reg[GROBO_RS30X_TORQUE] == GROBO_TORQUE_ON) {
+    if (servo->powered && !servo->by_hand && servo->plant.torque == GROBO_TORQUE_ON) {
         grobo_i_sim_drive(sim, index);
     }
 }
@@ -142,7 +260,7 @@ void grobo_i_sim_go_on(grobo_sim *sim, int index)
 void grobo_i_sim_torque(grobo_sim *sim, int index, grobo_torque before)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    grobo_torque torque = (grobo_torque)servo->reg[GROBO_RS30X_TORQUE];
+    grobo_torque torque = (grobo_torque)servo->plant.torque;
     if (torque == before) {
         return;
     }
@@ -150,10 +268,9 @@ void grobo_i_sim_torque(grobo_sim *sim, int index, grobo_torque before)
     if (!servo->by_hand) {
         grobo_i_sim_halt(sim, index);
     }
-    if (on && !sim->config.jump_on_torque) {
-        int32_t here_mdeg = grobo_i_sim_angle_mdeg(servo, sim->now_us);
-        grobo_i_sim_hold(servo, GROBO_RS30X_GOAL, grobo_i_sim_ddeg(servo, here_mdeg));
-    } else if (on && !servo->by_hand) { /* from under a hand at the end of its way */
+    int32_t here_mdeg = grobo_i_sim_angle_mdeg(servo, sim->now_us);
+    bool starts = on && servo->family->starts(sim, index, here_mdeg);
+    if (starts && !servo->by_hand) { /* from under a hand at the end of its way */
         servo->due_us = sim->now_us;
         grobo_i_sim_drive(sim, index);
         servo->begun_us = sim->now_us;
@@ -168,15 +285,14 @@ int32_t grobo_i_sim_current_ma(const grobo_sim_servo *servo, int64_t t_us)
     if (!servo->powered) {
         return 0;
     }
-    if (servo->reg[GROBO_RS30X_TORQUE] != GROBO_TORQUE_ON) {
+    if (servo->plant.torque != GROBO_TORQUE_ON) {
         return IDLE_MA;
     }
-    const grobo_sim_type *type = grobo_i_sim_type_of(servo);
-    int32_t most_ma = type->stall_ma * servo->reg[GROBO_RS30X_MAX_TORQUE] / 100;
+    int32_t most_ma = servo->plant.most_ma;
     int32_t ma = HOLD_MA + servo->load_ma;
     if (grobo_i_sim_moving(servo, t_us)) {
         ma += (int32_t)((int64_t)MOVE_MA * grobo_i_sim_speed_dps(servo, t_us) * 1000 /
-                        type->speed_mdeg_s);
+                        servo->plant.speed_mdeg_s);
     } else if (servo->stalled) {
         ma = most_ma;
     }
@@ -186,8 +302,7 @@ int32_t grobo_i_sim_current_ma(const grobo_sim_servo *servo, int64_t t_us)
 static void overheat(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    servo->reg[GROBO_RS30X_TORQUE] = GROBO_TORQUE_OFF;
-    servo->status |= GROBO_RS30X_STATUS_OVERHEATED;
+    servo->family->cut(sim, index, true);
     grobo_i_sim_note(sim, GROBO_SIM_OVERHEAT, index, (int32_t)lround(servo->temperature_c));
     grobo_i_sim_torque(sim, index, GROBO_TORQUE_ON);
 }
@@ -199,9 +314,9 @@ static void warm_once(grobo_sim *sim, int index, int64_t until_us)
     int64_t from_us = servo->settled_us, end_us = servo->start_us + servo->move_us;
     int64_t to_us = from_us < end_us && end_us < until_us ? end_us : until_us;
     double ma = grobo_i_sim_current_ma(servo, from_us);
-    double last_c = sim->config.ambient_c + HEAT_C_PER_MA2 * ma * ma;
-    double limit_c = grobo_i_sim_value(servo, GROBO_RS30X_TEMPERATURE_LIMIT);
-    bool on = servo->powered && servo->reg[GROBO_RS30X_TORQUE] != GROBO_TORQUE_OFF;
+    double last_c = sim->config.ambient_c + servo->plant.heat_c_per_ma2 * ma * ma;
+    double limit_c = servo->plant.limit_c;
+    bool on = servo->powered && servo->plant.torque != GROBO_TORQUE_OFF;
     bool cut = on && servo->temperature_c >= limit_c;
     if (on && !cut && last_c > limit_c) {
         double left_us = HEAT_TAU_US * log((last_c - servo->temperature_c) / (last_c - limit_c));

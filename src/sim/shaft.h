@@ -7,18 +7,18 @@
 
 int32_t grobo_i_sim_angle_mdeg(const grobo_sim_servo *servo, int64_t t_us);
 int32_t grobo_i_sim_speed_dps(const grobo_sim_servo *servo, int64_t t_us);
+/* Signed, unrounded. */
+double grobo_i_sim_speed_mdeg_s(const grobo_sim_servo *servo, int64_t t_us);
 int32_t grobo_i_sim_current_ma(const grobo_sim_servo *servo, int64_t t_us);
 int64_t grobo_i_sim_move_age_us(const grobo_sim_servo *servo, int64_t t_us);
 bool grobo_i_sim_moving(const grobo_sim_servo *servo, int64_t t_us);
-/* The unit of the wire in the servo's own direction. */
-int32_t grobo_i_sim_ddeg(const grobo_sim_servo *servo, int32_t mdeg);
 int32_t grobo_i_sim_mdeg_of_rad(double angle_rad);
-/* Moves towards the goal register from here on; stops and stays here. */
+/* Moves towards the goal of the plant from here on; stops and stays here. */
 void grobo_i_sim_drive(grobo_sim *sim, int servo);
 void grobo_i_sim_halt(grobo_sim *sim, int servo);
 /* What the servo does goes on from where it is, under what has changed. */
 void grobo_i_sim_go_on(grobo_sim *sim, int servo);
-/* Torque goes from what it was to the value in its register. */
+/* Torque goes from what it was to the value in its plant. */
 void grobo_i_sim_torque(grobo_sim *sim, int servo, grobo_torque before);
 /* Warms or cools up to until_us; torque goes where it gets too hot. */
 void grobo_i_sim_warm(grobo_sim *sim, int servo, int64_t until_us);

@@ -10,6 +10,7 @@
 #include "src/base/instant.h"
 #include "src/sim/board.h"
 #include "src/sim/bus.h"
+#include "src/sim/family.h"
 #include "src/sim/fault.h"
 #include "src/sim/note.h"
 #include "src/sim/power.h"
@@ -24,8 +25,12 @@
 #define SILENCE_US 2000
 /* The board's rate towards the servos (protocol 2). */
 #define BUS_BPS 115200
+/* What nearly every robot of other servos uses. */
+#define OTHERS_BPS 1000000
 /* As far as register POSITION can tell. */
 #define NO_STOP_MDEG 3276700
+/* As far as a wheel turns. */
+#define WHEEL_MDEG 1500000000
 
 static int64_t byte_ns(const grobo_sim *sim, uint32_t bps)
 {
@@ -93,43 +98,51 @@ void grobo_sim_step(grobo_sim *sim, int64_t now_us)
 
 /* ---- what comes ---------------------------------------------------------------------------- */
 
-/* Size of the frame (bus: packet) at the start of bytes; 0: not whole yet; negative: none. */
-static int frame_at(const grobo_sim *sim, const uint8_t *bytes, size_t n)
+/* Size of the frame at the start of bytes; 0: not whole yet; negative: none. */
+static int frame_at(const grobo_sim_ear *ear, const uint8_t *bytes, size_t n)
 {
     grobo_board_frame frame;
-    grobo_rs30x_packet packet;
-    bool sum_ok;
-    return sim->config.wiring == GROBO_WIRING_BUS
-               ? grobo_rs30x_peek(bytes, n, GROBO_ACCEPT_COMMANDS, &packet, &sum_ok)
-               : grobo_board_peek(bytes, n, &frame);
+    return ear != NULL ? ear->family->measure(bytes, n, false) : grobo_board_peek(bytes, n, &frame);
 }
 
 /*
- * When the host's next frame or packet is whole: nobody acts on a part of one. What has arrived of
- * it is in the parser, the rest on the line. Where more is missing, or nothing starts, the last
- * byte looked at.
+ * When the next frame of the host is whole for the board (ear NULL) or for an ear: nobody acts on a
+ * part of one. What has arrived of it is kept there, the rest is on the line. Where more is
+ * missing, or nothing starts, the last byte looked at.
  */
-static int64_t next_whole_ns(const grobo_sim *sim)
+static int64_t whole_ns(const grobo_sim *sim, const grobo_sim_ear *ear)
 {
     const grobo_sim_wire *in = &sim->in;
-    const grobo_framer *heard =
-        sim->config.wiring == GROBO_WIRING_BUS ? &sim->bus.framer : &sim->board.framer;
-    uint8_t bytes[2 * GROBO_RS30X_PACKET_MAX_BYTES];
-    size_t arrived = (size_t)(heard->used - heard->taken), n = arrived, at = 0;
+    const grobo_framer *heard = &sim->board.framer;
+    uint8_t bytes[GROBO_SIM_EAR_BYTES + GROBO_RS30X_PACKET_MAX_BYTES];
+    size_t arrived = ear != NULL ? ear->used : (size_t)(heard->used - heard->taken);
+    size_t n = arrived, at = 0;
     int size = -1;
-    if (in->used == 0) {
-        return GROBO_NEVER_US;
-    }
-    memcpy(bytes, heard->buf + heard->taken, arrived);
+    memcpy(bytes, ear != NULL ? ear->byte : heard->buf + heard->taken, arrived);
     for (size_t i = 0; i < in->used && n < sizeof bytes; i++) {
         bytes[n++] = in->byte[(in->head + i) % GROBO_SIM_WIRE_BYTES];
     }
-    while (at < n && (size = frame_at(sim, bytes + at, n - at)) < 0) {
+    while (at < n && (size = frame_at(ear, bytes + at, n - at)) < 0) {
         at++;
     }
     size_t end = size > 0 ? at + (size_t)size : n;
     size_t ahead = end > arrived ? end - arrived : 1;
     return in->at_ns[(in->head + ahead - 1) % GROBO_SIM_WIRE_BYTES];
+}
+
+static int64_t next_whole_ns(const grobo_sim *sim)
+{
+    int64_t at_ns = GROBO_NEVER_US;
+    if (sim->in.used == 0) {
+        return GROBO_NEVER_US;
+    }
+    if (sim->config.wiring == GROBO_WIRING_BOARD) {
+        return whole_ns(sim, NULL);
+    }
+    for (int i = 0; i < sim->n_ears; i++) {
+        at_ns = grobo_i_sooner(at_ns, whole_ns(sim, &sim->ear[i]));
+    }
+    return at_ns;
 }
 
 /* When the board does something that depends on nothing that is still to come. */
@@ -292,29 +305,68 @@ static int32_t start_mdeg(grobo_sim *sim, const grobo_sim_servo *servo, double i
            (int32_t)grobo_i_sim_random(sim, GROBO_I_SIM_CHANCE, (uint32_t)span_mdeg + 1);
 }
 
-static void init_servo(grobo_sim *sim, int index)
+/* The ear of the family of a servo; none where no family that was given has it. */
+static grobo_sim_ear *ear_of(grobo_sim *sim, const grobo_sim_family *family)
+{
+    for (int i = 0; i < sim->n_ears; i++) {
+        if (sim->ear[i].family == family) {
+            return &sim->ear[i];
+        }
+    }
+    if (sim->n_ears == GROBO_SIM_FAMILIES_MAX) {
+        return NULL;
+    }
+    sim->ear[sim->n_ears].family = family;
+    return &sim->ear[sim->n_ears++];
+}
+
+static const grobo_sim_family *family_of(const grobo_sim_config *config, int index)
+{
+    const grobo_servo_model *model = config->servos != NULL ? config->servos[index] : NULL;
+    if (model == NULL) {
+        return &grobo_sim_rs30x;
+    }
+    const grobo_sim_family *const *family = config->families;
+    while (family != NULL && *family != NULL && !(*family)->knows(model)) {
+        family++;
+    }
+    return family != NULL ? *family : NULL;
+}
+
+static int init_servo(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
     const grobo_joint *joint = &sim->config.model->joints[index];
+    servo->family = family_of(&sim->config, index);
+    servo->model = sim->config.servos != NULL ? sim->config.servos[index] : NULL;
+    if (servo->family == NULL || ear_of(sim, servo->family) == NULL) {
+        return GROBO_ERR_UNSUPPORTED;
+    }
     servo->stop_min_mdeg = grobo_i_sim_mdeg_of_rad(joint->min_rad);
     servo->stop_max_mdeg = grobo_i_sim_mdeg_of_rad(joint->max_rad);
     servo->from_mdeg = servo->to_mdeg = start_mdeg(sim, servo, joint->init_rad);
     if (sim->config.no_stops) {
-        servo->stop_min_mdeg = -NO_STOP_MDEG;
-        servo->stop_max_mdeg = NO_STOP_MDEG;
+        servo->stop_max_mdeg = servo->model == NULL ? NO_STOP_MDEG : WHEEL_MDEG;
+        servo->stop_min_mdeg = -servo->stop_max_mdeg;
     }
     servo->start_us = servo->due_us = servo->settled_us = sim->now_us;
     servo->saved_us = GROBO_NEVER_US;
     servo->temperature_c = sim->config.ambient_c;
-    grobo_i_sim_factory(servo, joint->servo_model, joint->motor, sim->bus_bps);
+    if (!servo->family->factory(sim, index, joint->motor, sim->bus_bps)) {
+        return GROBO_ERR_ARG;
+    }
     grobo_i_sim_boot(sim, index, 0);
     grobo_i_sim_feed(sim, index);
+    return GROBO_OK;
 }
 
 static void use_defaults(grobo_sim_config *config)
 {
     config->model = config->model == NULL ? &grobo_gr001_model : config->model;
-    config->baud_bps = config->baud_bps == 0 ? 115200 : config->baud_bps;
+    if (config->baud_bps == 0) {
+        config->baud_bps =
+            config->servos != NULL && config->servos[0] != NULL ? OTHERS_BPS : 115200;
+    }
     config->supply_mv = config->supply_mv == 0 ? SUPPLY_MV : config->supply_mv;
     config->ambient_c = config->ambient_c == 0 ? AMBIENT_C : config->ambient_c;
     if (config->board_silence_us == 0) {
@@ -331,8 +383,7 @@ int grobo_sim_init(grobo_sim *sim, const grobo_sim_config *config, int64_t now_u
     use_defaults(&with);
     if (grobo_model_check(with.model) < 0 || with.baud_bps < LOWEST_BPS || with.ambient_c < -40 ||
         with.ambient_c > 60 ||
-        (with.wiring == GROBO_WIRING_BUS && grobo_rs30x_baud_code(with.baud_bps) < 0) ||
-        (with.wiring == GROBO_WIRING_BOARD && with.echo)) {
+        (with.wiring == GROBO_WIRING_BOARD && (with.echo || with.servos != NULL))) {
         return GROBO_ERR_ARG;
     }
     if (with.model->n_joints > GROBO_SIM_SERVOS_MAX) {
@@ -350,10 +401,12 @@ int grobo_sim_init(grobo_sim *sim, const grobo_sim_config *config, int64_t now_u
     sim->bus_byte_ns = byte_ns(sim, sim->bus_bps);
     (void)grobo_sim_set_line_bps(sim, with.baud_bps);
     grobo_board_parser_init(&sim->board, with.board_stall_us);
-    grobo_rs30x_parser_init(&sim->bus, GROBO_ACCEPT_COMMANDS);
     grobo_i_sim_seed(sim);
     for (int i = 0; i < sim->n_servos; i++) {
-        init_servo(sim, i);
+        int result = init_servo(sim, i);
+        if (result < 0) {
+            return result;
+        }
     }
     sim->config.hook = with.hook;
     return 0;

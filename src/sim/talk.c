@@ -15,6 +15,9 @@
 static bool clash(grobo_sim *sim, grobo_sim_talk *talk, int64_t from_ns, uint8_t *byte)
 {
     const int64_t byte_ns = sim->bus_byte_ns;
+    if (talk->used == 0) {
+        return false;
+    }
     int64_t to_ns = from_ns + byte_ns;
     int64_t first = (from_ns - talk->start_ns) / byte_ns;
     bool clashed = false;

@@ -149,9 +149,19 @@ for wrong in 1=RS999 0=RS301CR 128=RS301CR 1=RS301CR,1=RS302CD 1 1= =RS301CR 1=R
         --servo "$wrong"
 done
 check "an unknown type: the known ones are named" fails 2 \
-    "'1=RS204MD': unknown type; known: RS301CR RS302CD RS303MR RS304MD\$" timeout 5 "$GRCTL" sim \
-    --servo 1=RS204MD
-check "help names them too" both exits 0 "$GRCTL" help sim --- says 'RS301CR RS302CD'
+    "'1=RS204MD': unknown type; known: RS301CR .* XL330-M288 .* AX-12A .* STS3215 .* SCS0009\$" \
+    timeout 5 "$GRCTL" sim --servo 1=RS204MD
+check "help names them too" both exits 0 "$GRCTL" help sim --- says 'RS301CR, XL330-M288'
+others() {
+    printf 'turn m2 45\nid m1 200\nlook\nquit\n' |
+        timeout 20 "$GRCTL" sim --servo 1=XL330-M288,2=sts3215 >"$work/out" 2>&1
+}
+check "servos of other families" both others --- says 'SERVO_2  *45\.0 deg'
+for wrong in '--strict' "--state $work/other.state" '--wiring board'; do
+    # shellcheck disable=SC2086
+    check "$wrong is for RS30x" fails 2 "^grctl: sim: ${wrong%% "$work"*}: " \
+        timeout 5 "$GRCTL" sim --servo 1=STS3215 $wrong
+done
 # The knee's stop is at 0: a hand turns it beyond only without stops.
 turned() {
     printf 'turn m12 45\nlook m12\nquit\n' | timeout 20 "$GRCTL" sim "$@" >"$work/out" 2>&1

@@ -288,7 +288,7 @@ static void nonsense_is_not_submitted(void **state)
     bad = r.txn;
     bad.frame_bytes = 0;
     assert_int_equal(grobo_bus_submit(&p.bus, &bad), GROBO_ERR_ARG);
-    bad.frame_bytes = GROBO_RS30X_PACKET_MAX_BYTES + 1;
+    bad.frame_bytes = GROBO_FRAME_MAX_BYTES + 1;
     assert_int_equal(grobo_bus_submit(&p.bus, &bad), GROBO_ERR_ARG);
     bad = r.txn;
     bad.priority = (grobo_priority)4;

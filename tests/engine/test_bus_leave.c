@@ -90,7 +90,7 @@ static int write_anew(void *ctx, grobo_txn *txn)
     request *r = (request *)(void *)txn;
     int n = grobo_board_check(r->frame, FRAME);
     txn->frame_bytes = (uint8_t)n;
-    txn->reply.kind = GROBO_REPLY_NONE;
+    txn->reply = (grobo_reply){.kind = GROBO_REPLY_NONE};
     return 0;
 }
 

@@ -76,8 +76,9 @@ static size_t make_reply(const request *r, uint8_t *b)
 {
     const grobo_reply *want = &r->txn.reply;
     const uint8_t data[18] = {(uint8_t)(r->number & 0xFF), (uint8_t)(r->number >> 8), 7, 8, 0xFD};
-    grobo_rs30x_packet packet = {GROBO_RS30X_RETURN, want->id, 0,    want->address,
-                                 want->length,       1,        data, want->length};
+    const uint8_t length = (uint8_t)want->length;
+    grobo_rs30x_packet packet = {
+        GROBO_RS30X_RETURN, want->id, 0, want->tag, length, 1, data, length};
     if (want->kind == GROBO_REPLY_ACK) {
         packet.kind = GROBO_RS30X_ACK_BYTE;
     }
@@ -149,7 +150,7 @@ static void ended(void *ctx, grobo_txn *txn, int result, const grobo_packet *rep
         } else {
             assert_int_equal(reply->data[0] | reply->data[1] << 8, r->number & 0xFFFF);
         }
-        s->believed_bytes += grobo_rs30x_reply_bytes(&txn->reply);
+        s->believed_bytes += txn->reply.bytes;
     }
     if (r != &s->pose && draw(s, 8) != 0) {
         submit(s, r);

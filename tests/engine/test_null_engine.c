@@ -207,6 +207,8 @@ static void robot_refuses_null_in_its_third_functions(void **state)
     REFUSES(grobo_robot_target(&robot, NULL));
     assert_false(grobo_robot_moving(NULL));
     assert_false(grobo_robot_is_pending(NULL, 1));
+    assert_false(grobo_bus_several(NULL, NULL));
+    REFUSES(grobo_sim_set_id(NULL, 0, 1));
     assert_false(grobo_robot_settling(NULL));
     assert_int_equal(grobo_robot_job(NULL), GROBO_JOB_NONE);
     grobo_robot_tripped(NULL, &trip);

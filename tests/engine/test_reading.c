@@ -30,7 +30,6 @@ static void read_neck(uint8_t address, const uint8_t *data, uint8_t n)
     const grobo_packet reply = {.kind = GROBO_PACKET_RETURN,
                                 .id = NECK_ID,
                                 .address = address,
-                                .length = n,
                                 .data = data,
                                 .data_bytes = n};
     grobo_joint_state got;

@@ -363,12 +363,16 @@ static void a_crowd_of_one_id_is_only_heard_in_part(void **state)
     simkit_start(&kit, &config);
     for (int i = 0; i < 20; i++) {
         assert_int_equal(grobo_sim_set_register(&kit.sim, i, GROBO_RS30X_ID, 5), 0);
-        assert_int_equal(grobo_sim_set_register(&kit.sim, i, GROBO_RS30X_DELAY, i), 0);
+        assert_int_equal(grobo_sim_set_register(&kit.sim, i, GROBO_RS30X_DELAY, 100 + i), 0);
     }
     simkit_forget(&kit);
-    simkit_packet(&kit, "FA AF 05 0F 24 12 00", 26);
+    /* Four questions before the first answer: 80 replies to come. */
+    simkit_ask(&kit,
+               "FA AF 05 0F 24 12 00 3C FA AF 05 0F 24 12 00 3C"
+               "FA AF 05 0F 24 12 00 3C FA AF 05 0F 24 12 00 3C",
+               100000);
     assert_int_equal(kit.n_got, GROBO_SIM_TALKS_MAX * 26);
-    assert_int_equal(kit.sim.stats.overflows, (20 - GROBO_SIM_TALKS_MAX) * 26);
+    assert_int_equal(kit.sim.stats.overflows, (80 - GROBO_SIM_TALKS_MAX) * 26);
 }
 
 static void an_adapter_may_return_what_it_sends(void **state)

@@ -42,7 +42,7 @@ static void ended(void *ctx, grobo_txn *txn, int result, const grobo_packet *rep
     if (reply != NULL) {
         size_t size =
             reply->kind == GROBO_PACKET_RETURN ? reply->data_bytes + GROBO_RS30X_OVERHEAD_BYTES : 1;
-        CHECK(result == GROBO_ERR_NACK || size == grobo_rs30x_reply_bytes(&txn->reply));
+        CHECK(result == GROBO_ERR_NACK || size == txn->reply.bytes);
         r->believed_bytes += size;
     }
     if (result == GROBO_ERR_TIMEOUT && txn->retries == 2) { /* once more, from the callback */

@@ -46,7 +46,7 @@ static size_t drain_packets(grobo_rs30x_parser *parser)
         heard += (size_t)n;
         grobo_reply reply;
         int r = grobo_rs30x_reply_to(built, (size_t)n, &reply);
-        CHECK(r < 0 || (size_t)r == grobo_rs30x_reply_bytes(&reply));
+        CHECK(r < 0 || (size_t)r == reply.bytes);
         grobo_rs30x_state state;
         if (p.kind == GROBO_RS30X_RETURN) {
             CHECK(grobo_rs30x_state_decode(p.address, p.data, p.data_bytes, &state) <= 7);

@@ -368,10 +368,45 @@ static void a_port_that_is_not_there_is_refused(void **state)
     assert_true(strlen(cause.text) > 0);
 }
 
+/* Whatever the kind, bytes go on; of a serial port the speed may be set afterwards. */
+static void a_form_of_bytes_may_be_asked_for(void **state)
+{
+    static const grobo_line_format formats[] = {
+        {GROBO_PARITY_EVEN, 1, false}, {GROBO_PARITY_ODD, 2, false}, {GROBO_PARITY_NONE, 0, false}};
+    line *l = *state;
+
+    if (l->near_ops == NULL || !l->near_is_open) {
+        skip();
+    }
+    for (size_t i = 0; i < sizeof formats / sizeof formats[0]; i++) {
+        uint8_t byte = 0;
+
+        assert_int_equal(l->near_ops->set_format(l->near_port, &formats[i], &cause), GROBO_OK);
+        assert_int_equal(l->far_ops->set_format(l->far_port, &formats[i], &cause), GROBO_OK);
+        assert_int_equal(l->near_ops->set_baud(l->near_port, 57600, &cause), 57600);
+        (void)l->far_ops->set_baud(l->far_port, 57600, &cause);
+        assert_int_equal(l->near_ops->write(l->near_port, "a", 1, &cause), 1);
+        assert_int_equal(
+            grobo_port_wait(l->far_ops->socket(l->far_port), GROBO_PORT_READABLE, 5000000),
+            GROBO_PORT_READABLE);
+        assert_int_equal(l->far_ops->read(l->far_port, &byte, 1, &cause), 1);
+        assert_int_equal(byte, 'a');
+    }
+    if (l->serial) {
+        static const grobo_line_format three = {GROBO_PARITY_NONE, 3, false};
+        static const grobo_line_format mark = {(grobo_parity)3, 1, false};
+
+        assert_int_equal(l->near_ops->set_format(l->near_port, &three, &cause), GROBO_ERR_ARG);
+        assert_int_equal(l->near_ops->set_format(l->near_port, &mark, &cause), GROBO_ERR_ARG);
+    }
+}
+
 int main(void)
 {
 #define ON(line, test) cmocka_unit_test_setup_teardown(test, set_up_##line, tear_down)
     const struct CMUnitTest tests[] = {
+        ON(serial, a_form_of_bytes_may_be_asked_for),
+        ON(tcp, a_form_of_bytes_may_be_asked_for),
         ON(serial, every_byte_value_passes_in_both_directions),
         ON(serial, nothing_there_is_nothing_and_takes_no_time),
         ON(serial, a_full_line_takes_less_and_never_waits),

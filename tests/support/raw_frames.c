@@ -78,7 +78,7 @@ int raw_cw_limit(grobo_test_rig *rig, int joint, int deg)
     int ddeg = deg * 10;
     const uint8_t data[2] = {(uint8_t)ddeg, (uint8_t)(ddeg >> 8)};
     const grobo_register_io io = {motor_of(rig, joint), GROBO_RS30X_CW_LIMIT, 2, data};
-    remember(grobo_rs30x_write_u16(io.id, GROBO_RS30X_WANT_ACK, io.address, (uint16_t)ddeg,
+    remember(grobo_rs30x_write_u16(io.id, GROBO_RS30X_WANT_ACK, (uint8_t)io.address, (uint16_t)ddeg,
                                    packet.bytes, sizeof packet.bytes));
     return grobo_robot_registers(&rig->robot, &io);
 }

@@ -9,9 +9,9 @@
 #include <cmocka.h>
 
 static const grobo_joint joints[SAMPLE_JOINTS] = {
-    {"LEFT", -3, 3, 6, 0, 0, 0, 1, 1, -1},
-    {"RIGHT", -3, 3, 6, 0, 0, 0, 2, 0, -1},
-    {"MIDDLE", -3, 3, 6, 0, 0, 0, 3, 2, 1},
+    {"LEFT", -3, 3, 6, 0, 0, 0, 1, 1, -1, 1, false, 0, 1},
+    {"RIGHT", -3, 3, 6, 0, 0, 0, 2, 0, -1, 1, false, 0, 1},
+    {"MIDDLE", -3, 3, 6, 0, 0, 0, 3, 2, 1, 1, false, 0, 1},
 };
 
 const grobo_model sample_model = {"SAMPLE", joints, NULL, SAMPLE_JOINTS, 0, 0};

@@ -170,7 +170,6 @@ static int parse(const uint8_t *data, size_t n, uint8_t address, grobo_joint_sta
                                 .id = 1,
                                 .flags = GROBO_RS30X_STATUS_HOT,
                                 .address = address,
-                                .length = (uint8_t)n,
                                 .data = data,
                                 .data_bytes = n};
     memset(got, 0, sizeof *got);
@@ -222,8 +221,9 @@ static void bad_tables_are_refused(void **state)
     (void)state;
     static const grobo_readback nowhere[] = {{0.1, 20}};
     static const double rest_outside[20] = {[3] = 1.0};
-    grobo_driver bad[9];
-    for (int i = 0; i < 9; i++) {
+    static grobo_protocol others;
+    grobo_driver bad[10];
+    for (int i = 0; i < 10; i++) {
         bad[i] = *grobo_gr001_driver(GROBO_WIRING_BOARD);
         assert_int_equal(grobo_driver_check(&bad[i]), 0);
     }
@@ -237,7 +237,10 @@ static void bad_tables_are_refused(void **state)
     bad[6].rest_rad = rest_outside;
     bad[7].protocol = NULL;
     bad[8].model = NULL;
-    for (int i = 0; i < 9; i++) {
+    others = grobo_rs30x_protocol; /* whose ids end at 19: one is outside */
+    others.id_max = 19;
+    bad[9].protocol = &others;
+    for (int i = 0; i < 10; i++) {
         assert_int_equal(grobo_driver_check(&bad[i]), GROBO_ERR_ARG);
     }
     assert_int_equal(grobo_driver_check(NULL), GROBO_ERR_ARG);

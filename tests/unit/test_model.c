@@ -241,8 +241,8 @@ static grobo_model two;
 
 static void make_two(void)
 {
-    arm[0] = (grobo_joint){"LEFT", -1, 1, 5, 0, 0, 0, 1, 1, -1};
-    arm[1] = (grobo_joint){"RIGHT", -1, 1, 5, 0, 0, 0, 2, 0, -1};
+    arm[0] = (grobo_joint){"LEFT", -1, 1, 5, 0, 0, 0, 1, 1, -1, 1, false, 0, 1};
+    arm[1] = (grobo_joint){"RIGHT", -1, 1, 5, 0, 0, 0, 2, 0, -1, 1, false, 0, 1};
     arm_groups[0] = (grobo_group){"both", 3};
     arm_groups[1] = (grobo_group){"one", 1};
     two = (grobo_model){"TWO", arm, arm_groups, 2, 2, 0};
@@ -262,8 +262,7 @@ static void a_faulty_joint_is_refused(void **state)
     assert_refused(arm[0].name = NULL);
     assert_refused(arm[0].name = "");
     assert_refused(arm[0].name = "right");
-    assert_refused(arm[0].motor = 0);
-    assert_refused(arm[0].motor = 128);
+    assert_refused(arm[0].motor = GROBO_SERVO_ID_MAX + 1);
     assert_refused(arm[0].motor = 2);
     assert_refused(arm[1].min_rad = (double)NAN);
     assert_refused(arm[1].max_rad = (double)INFINITY);
@@ -272,10 +271,29 @@ static void a_faulty_joint_is_refused(void **state)
     assert_refused(arm[1].init_rad = (double)NAN);
     assert_refused(arm[1].max_speed_rad_s = 0);
     assert_refused(arm[1].max_speed_rad_s = (double)INFINITY);
+    assert_refused(arm[1].zero_rad = (double)NAN);
+    assert_refused(arm[1].gear = -1);
     assert_refused(arm[1].mirror = 1);
     assert_refused(arm[1].mirror = 2);
     assert_refused(arm[1].mirror_sign = 0);
     assert_refused(arm[1].mirror_sign = 1);
+}
+
+/* Turned round, geared down by 2, and 0.5 away where the joint is at 0. */
+static void a_servo_may_be_mounted_any_way(void **state)
+{
+    (void)state;
+    make_two();
+    assert_true(grobo_joint_to_servo(&arm[0], 0.25) == 0.25);
+    assert_true(grobo_joint_from_servo(&arm[0], 0.25) == 0.25);
+    arm[0].sign = -1;
+    arm[0].gear = 2;
+    arm[0].zero_rad = 0.5;
+    assert_true(grobo_joint_to_servo(&arm[0], 0.25) == 0);
+    assert_true(grobo_joint_from_servo(&arm[0], 1.5) == -0.5);
+    arm[0].sign = 0; /* as in a table that says nothing of it */
+    arm[0].gear = 0;
+    assert_true(grobo_joint_to_servo(&arm[0], 0.25) == 0.75);
 }
 
 static void a_faulty_table_is_refused(void **state)
@@ -306,6 +324,7 @@ int main(void)
         cmocka_unit_test(sets_are_found_by_joint_too),
         cmocka_unit_test(joints_of_a_set_are_counted),
         cmocka_unit_test(a_faulty_joint_is_refused),
+        cmocka_unit_test(a_servo_may_be_mounted_any_way),
         cmocka_unit_test(a_faulty_table_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -12,7 +12,10 @@
 #include <grobo/board.h>
 #include <grobo/body_motion.h>
 #include <grobo/driver.h>
+#include <grobo/dxl2.h>
+#include <grobo/feetech.h>
 #include <grobo/interpolate.h>
+#include <grobo/lx16a.h>
 #include <grobo/motion_io.h>
 #include <grobo/rs30x.h>
 
@@ -192,11 +195,76 @@ static void body_motion_refuses_null(void **state)
     REFUSES(grobo_body_frames(body, grobo_mem_default(), NULL));
 }
 
+static void dxl_refuses_null(void **state)
+{
+    (void)state;
+    static grobo_dxl2_packet packet2;
+    static grobo_dxl1_packet packet1;
+    const grobo_servo_model *model = &grobo_sts_table.models[0];
+    const grobo_servo_register *reg = grobo_servo_register_of(model, GROBO_ROLE_GOAL);
+    REFUSES(grobo_dxl2_measure(NULL, 1, GROBO_ACCEPT_RETURNS));
+    REFUSES(grobo_dxl2_parse(NULL, 1, bytes, sizeof bytes, &packet2));
+    REFUSES(grobo_dxl2_parse(bytes, 1, NULL, sizeof bytes, &packet2));
+    REFUSES(grobo_dxl2_parse(bytes, 1, bytes, sizeof bytes, NULL));
+    REFUSES(grobo_dxl2_build(NULL, bytes, sizeof bytes));
+    REFUSES(grobo_dxl2_build(&packet2, NULL, sizeof bytes));
+    packet2.data_bytes = 1;
+    REFUSES(grobo_dxl2_build(&packet2, bytes, sizeof bytes));
+    REFUSES(grobo_dxl2_block(NULL, 30, 8, 4, &packet2));
+    REFUSES(grobo_dxl2_block(bytes, 30, 8, 4, NULL));
+    assert_int_equal(grobo_dxl2_crc(1, NULL, 4), 1);
+    REFUSES(grobo_dxl1_measure(NULL, 1, GROBO_ACCEPT_RETURNS));
+    REFUSES(grobo_dxl1_answer(NULL, 1, bytes, 1));
+    REFUSES(grobo_dxl1_answer(bytes, 1, NULL, 1));
+    REFUSES(grobo_dxl1_parse(NULL, 1, false, &packet1));
+    REFUSES(grobo_dxl1_parse(bytes, 1, false, NULL));
+    REFUSES(grobo_dxl1_build(NULL, bytes, sizeof bytes));
+    REFUSES(grobo_dxl1_build(&packet1, NULL, sizeof bytes));
+    packet1.data_bytes = 1;
+    REFUSES(grobo_dxl1_build(&packet1, bytes, sizeof bytes));
+    assert_null(grobo_servo_model_named(NULL, "STS3215"));
+    assert_null(grobo_servo_model_named(&grobo_sts_table, NULL));
+    assert_null(grobo_servo_model_numbered(NULL, 777));
+    assert_null(grobo_servo_register_row(NULL, 0));
+    assert_null(grobo_servo_register_named(NULL, "id"));
+    assert_null(grobo_servo_register_named(model, NULL));
+    assert_null(grobo_servo_register_at(NULL, 0));
+    assert_null(grobo_servo_register_of(NULL, GROBO_ROLE_ID));
+    assert_int_equal(grobo_servo_register_get(NULL, reg, bytes), 0);
+    assert_int_equal(grobo_servo_register_get(model, NULL, bytes), 0);
+    assert_int_equal(grobo_servo_register_get(model, reg, NULL), 0);
+    REFUSES(grobo_servo_register_put(NULL, reg, 0, bytes));
+    REFUSES(grobo_servo_register_put(model, NULL, 0, bytes));
+    REFUSES(grobo_servo_register_put(model, reg, 0, NULL));
+}
+
+static void lx16a_refuses_null(void **state)
+{
+    (void)state;
+    static grobo_lx16a_packet lx16a;
+    REFUSES(grobo_lx16a_measure(NULL, 1, GROBO_ACCEPT_RETURNS));
+    REFUSES(grobo_lx16a_answer(NULL, 1, bytes, 1));
+    REFUSES(grobo_lx16a_answer(bytes, 1, NULL, 1));
+    REFUSES(grobo_lx16a_parse(NULL, 1, &lx16a));
+    REFUSES(grobo_lx16a_parse(bytes, 1, NULL));
+    REFUSES(grobo_lx16a_build(NULL, bytes, sizeof bytes));
+    REFUSES(grobo_lx16a_build(&lx16a, NULL, sizeof bytes));
+    lx16a.data_bytes = 1;
+    REFUSES(grobo_lx16a_build(&lx16a, bytes, sizeof bytes));
+}
+
 static void driver_refuses_null(void **state)
 {
     (void)state;
     REFUSES(grobo_driver_check(NULL));
     assert_int_equal(grobo_driver_wiring(NULL), GROBO_WIRING_BOARD);
+    REFUSES(grobo_dxl2_driver_init(NULL, &grobo_gr001_model));
+    REFUSES(grobo_dxl2_driver_init(&made_driver, NULL));
+    REFUSES(grobo_dxl1_driver_init(NULL, &grobo_gr001_model));
+    REFUSES(grobo_dxl1_driver_init(&made_driver, NULL));
+    REFUSES(grobo_feetech_driver_init(NULL, &grobo_gr001_model));
+    REFUSES(grobo_feetech_driver_init(&made_driver, NULL));
+    assert_true(grobo_joint_to_servo(NULL, 1) >= 0 && grobo_joint_from_servo(NULL, 1) >= 0);
     REFUSES(grobo_rs30x_driver_init(NULL, &grobo_gr001_model, &grobo_rs30x_protocol));
     REFUSES(grobo_rs30x_driver_init(&made_driver, NULL, &grobo_rs30x_protocol));
     REFUSES(grobo_rs30x_driver_init(&made_driver, &grobo_gr001_model, NULL));
@@ -454,7 +522,6 @@ static void rs30x_refuses_null_in_its_first_functions(void **state)
     REFUSES(grobo_rs30x_ping(1, 0, NULL, sizeof bytes));
     REFUSES(grobo_rs30x_reply_to(NULL, 1, &reply));
     REFUSES(grobo_rs30x_reply_to(bytes, 1, NULL));
-    assert_int_equal(grobo_rs30x_reply_bytes(NULL), 0);
     REFUSES(grobo_frame_goal(NULL, goals, bytes, sizeof bytes));
     REFUSES(grobo_frame_goal(&grobo_rs30x_protocol, NULL, bytes, sizeof bytes));
     REFUSES(grobo_frame_goal(&grobo_rs30x_protocol, goals, NULL, sizeof bytes));
@@ -498,6 +565,8 @@ int main(void)
         cmocka_unit_test(body_refuses_null),
         cmocka_unit_test(body_motion_refuses_null),
         cmocka_unit_test(driver_refuses_null),
+        cmocka_unit_test(dxl_refuses_null),
+        cmocka_unit_test(lx16a_refuses_null),
         cmocka_unit_test(interpolate_refuses_null),
         cmocka_unit_test(model_refuses_null),
         cmocka_unit_test(motion_refuses_null_in_its_first_functions),

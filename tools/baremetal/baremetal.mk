@@ -3,13 +3,16 @@
 
 BARE_PREFIX ?= arm-none-eabi-
 BARE_CPUS := cortex-m0 cortex-m4
+# The longest frame of RS30x.
+BARE_FRAME := -DGROBO_FRAME_MAX_BYTES=148
 # The caps of limits.h for a robot of 20 joints.
-BARE_CAPS ?= -DGROBO_JOINTS_MAX=20 -DGROBO_QUEUE_MAX=2 -DGROBO_SIM_WIRE_BYTES=256 \
+BARE_CAPS ?= $(BARE_FRAME) -DGROBO_JOINTS_MAX=20 -DGROBO_QUEUE_MAX=2 -DGROBO_SIM_WIRE_BYTES=256 \
     -DGROBO_SIM_FIFO_BYTES=256
 # An assertion would bring the C library's way of printing it.
 BARE_FLAGS := -std=c11 -DNDEBUG $(WARNINGS) -mthumb -Os -ffunction-sections -fdata-sections -fstack-usage \
     -Iinclude -I.
-# What is measured: each processor with these caps, and the smallest with those of limits.h as well.
+# What is measured: each processor with these caps, and the smallest with those of limits.h but for
+# the frame.
 BARE_SIZES := $(BARE_CPUS) cortex-m0-default
 BARE_DIR := $(BUILD)/bare
 FIRMWARE_DIR := docs/examples/firmware
@@ -38,4 +41,4 @@ $(BARE_DIR)/$(1)/%.elf: $(BARE_DIR)/$(1)/$(FIRMWARE_DIR)/%.o \
 	    -Wl,-Map=$$(@:.elf=.map) -T $(FIRMWARE_DIR)/mps2.ld -o $$@ $$(filter %.o %.a,$$^) -lm
 endef
 $(foreach cpu,$(BARE_CPUS),$(eval $(call bare,$(cpu),$(cpu),$(BARE_CAPS))))
-$(eval $(call bare,cortex-m0-default,cortex-m0))
+$(eval $(call bare,cortex-m0-default,cortex-m0,$(BARE_FRAME)))

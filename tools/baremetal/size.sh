@@ -22,8 +22,9 @@ work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 : >"$work/now"
 
-# What belongs together. Codec, bus and sequencer need of the others only postures.
-rooms='codec bus sequencer names postures robot engine simulator'
+# What belongs together. Codec, bus and sequencer need of the others only postures. Other families
+# than RS30x, and several replies to one frame, are linked only where a program names them.
+rooms='codec bus sequencer names postures robot engine simulator families'
 codec='servo/gr001/board servo/rs30x/frame bus/framer servo/rs30x/build servo/rs30x/parse
     servo/rs30x/state'
 bus='bus/bus bus/queue bus/receive bus/time base/instant'
@@ -36,7 +37,12 @@ engine='robot/robot robot/turn robot/job robot/play robot/control robot/query ro
     robot/orders robot/watch robot/trip robot/stop robot/segments robot/sense robot/hrpsys
     robot/budget robot/holds robot/queue'
 simulator='servo/gr001/parser sim/board sim/bus sim/fault sim/inspect sim/note sim/power
-    sim/registers sim/servo sim/shaft sim/sim sim/talk sim/types sim/wire'
+    sim/registers sim/rs30x sim/servo sim/shaft sim/sim sim/talk sim/types sim/wire'
+families='bus/several servo/dxl1/driver servo/dxl1/packet servo/dxl1/protocol servo/dxl1/table
+    servo/dxl2/driver servo/dxl2/packet servo/dxl2/protocol servo/dxl2/table
+    servo/feetech/driver servo/feetech/protocol servo/feetech/scs servo/feetech/sts
+    servo/lx16a/packet servo/registers servo/table/driver servo/table/inspect
+    servo/table/reading servo/table/values sim/dxl sim/dxl1 sim/dxl2'
 
 # figure CPU NAME BYTES: notes it, and prints it beside the one that was kept.
 figure() {

@@ -51,7 +51,7 @@ static void on_event(void *ctx, const grobo_event *event)
 
 int main(void)
 {
-    uint8_t bytes[GROBO_RS30X_PACKET_MAX_BYTES];
+    uint8_t bytes[GROBO_FRAME_MAX_BYTES];
     const grobo_driver *driver = grobo_gr001_driver(GROBO_WIRING_BOARD);
     mcu_start();
     if (grobo_robot_init(&robot, driver, NULL, NULL, mcu_now_us()) < 0) {

@@ -352,6 +352,15 @@ static int open_port(grobo_serial *serial)
     if (r >= 0) {
         grobo_os_cause cause;
 
+        const grobo_line_format *format = &serial->config.format;
+
+        if (format->parity != GROBO_PARITY_NONE || format->stop_bits > 1 || format->rs485) {
+            r = ops->set_format(serial->port, format, &serial->cause);
+        }
+        if (r < 0) {
+            ops->close(serial->port);
+            return r;
+        }
         serial->ops = ops;
         serial->quick_result = ops->set_low_latency(serial->port, &cause);
     }

@@ -478,9 +478,6 @@ static int fill(grobo_sim_server *server, const grobo_sim_server_config *config)
     if (config->sim != NULL) {
         sim = *config->sim;
     }
-    if (sim.baud_bps == 0) {
-        sim.baud_bps = GROBO_BAUD_DEFAULT_BPS;
-    }
     server->config = *config;
     server->config.sim = NULL;
     server->config.link = NULL;
@@ -488,7 +485,6 @@ static int fill(grobo_sim_server *server, const grobo_sim_server_config *config)
     if (server->config.replug_ms == 0) {
         server->config.replug_ms = GROBO_SIM_REPLUG_DEFAULT_MS;
     }
-    server->baud_bps = (int)sim.baud_bps;
     server->paced = !sim.unpaced;
     server->replug_us = GROBO_NEVER_US;
     server->door_us = GROBO_NEVER_US;
@@ -496,7 +492,11 @@ static int fill(grobo_sim_server *server, const grobo_sim_server_config *config)
     if (r >= 0) {
         r = copy_name(server->tcp, config->tcp);
     }
-    return r < 0 ? r : grobo_sim_init(&server->sim, &sim, grobo_now_us());
+    if (r >= 0) {
+        r = grobo_sim_init(&server->sim, &sim, grobo_now_us());
+    }
+    server->baud_bps = (int)server->sim.line_bps;
+    return r;
 }
 
 static int make_ends(grobo_sim_server *server)

@@ -516,6 +516,9 @@ static int make_parts(grobo_session *session)
 {
     const grobo_serial_config serial = {
         .baud_bps = session->config.baud_bps,
+        .format = {.parity = session->robot.driver->protocol->parity,
+                   .stop_bits = session->config.format.stop_bits,
+                   .rs485 = session->config.format.rs485},
         .base = session->config.base,
         .mode = GROBO_SERIAL_ASYNC,
         .on_data = grobo_i_session_on_data,

@@ -7,7 +7,7 @@ bool grobo_i_motor_order(const grobo_model *model, int columns, uint8_t *joints)
     int c = 0;
 
     columns = columns < GROBO_JOINTS_MAX ? columns : GROBO_JOINTS_MAX;
-    for (int motor = 1; by_motor && c < columns && motor <= GROBO_SERVO_ID_MAX; motor++) {
+    for (int motor = 0; by_motor && c < columns && motor <= GROBO_SERVO_ID_MAX; motor++) {
         int joint = grobo_model_joint_of_motor(model, motor);
         if (joint >= 0) {
             joints[c++] = (uint8_t)joint;

@@ -76,14 +76,12 @@ static int build_relay(const uint8_t *packet, size_t n, int r, uint8_t *buf, siz
 
 int grobo_board_send(const uint8_t *packet, size_t n, uint8_t *buf, size_t cap)
 {
-    return (packet == NULL && n > 0) || buf == NULL ? GROBO_ERR_ARG
-                                                    : build_relay(packet, n, -1, buf, cap);
+    return packet == NULL || buf == NULL ? GROBO_ERR_ARG : build_relay(packet, n, -1, buf, cap);
 }
 
 int grobo_board_ask(const uint8_t *packet, size_t n, uint8_t r, uint8_t *buf, size_t cap)
 {
-    return (packet == NULL && n > 0) || buf == NULL ? GROBO_ERR_ARG
-                                                    : build_relay(packet, n, r, buf, cap);
+    return packet == NULL || buf == NULL ? GROBO_ERR_ARG : build_relay(packet, n, r, buf, cap);
 }
 
 int grobo_board_relay(const uint8_t *packet, size_t n, uint8_t *buf, size_t cap)
@@ -214,7 +212,7 @@ static int build_stored(bool scenario, uint8_t number, uint8_t *buf, size_t cap)
 static int reply_to(const uint8_t *bytes, size_t n, grobo_reply *reply)
 {
     grobo_board_frame frame;
-    grobo_reply found = {GROBO_REPLY_NONE, 0, 0, 0};
+    grobo_reply found = {.kind = GROBO_REPLY_NONE};
     int result = grobo_board_parse(bytes, n, &frame);
     if (result >= 0 && frame.packet_bytes > 0) {
         result = grobo_rs30x_reply_to(frame.packet, frame.packet_bytes, &found);
@@ -222,15 +220,16 @@ static int reply_to(const uint8_t *bytes, size_t n, grobo_reply *reply)
     if (result < 0) {
         return result;
     }
-    if (frame.kind == GROBO_BOARD_CHECK) {
-        found.kind = GROBO_REPLY_ACK;
-    } else if (frame.kind != GROBO_BOARD_ASK) {
-        found = (grobo_reply){GROBO_REPLY_NONE, 0, 0, 0};
+    if (frame.kind != GROBO_BOARD_ASK) {
+        bool check = frame.kind == GROBO_BOARD_CHECK;
+        found.kind = check ? GROBO_REPLY_ACK : GROBO_REPLY_NONE;
+        found.count = check;
+        found.bytes = check;
     } else if (frame.reply_bytes != result) {
         return GROBO_ERR_FRAME;
     }
     *reply = found;
-    return (int)grobo_rs30x_reply_bytes(&found);
+    return (int)found.bytes;
 }
 
 static const grobo_relay relay = {
@@ -247,8 +246,9 @@ const grobo_protocol grobo_board_protocol = {
     .measure = grobo_i_rs30x_measure,
     .unpack = grobo_i_rs30x_unpack,
     .reply_to = reply_to,
-    .reply_bytes = grobo_rs30x_reply_bytes,
     .return_delay_us = GROBO_RS30X_DELAY_US(0),
+    .id_min = 1,
+    .id_max = GROBO_RS30X_ID_MAX,
     .relay = &relay,
 };
 

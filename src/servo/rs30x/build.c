@@ -188,18 +188,23 @@ static int check_long(size_t n, size_t each, size_t cap)
     return n * each + GROBO_RS30X_OVERHEAD_BYTES <= cap ? GROBO_OK : GROBO_ERR_SPACE;
 }
 
+static bool is_servo(uint8_t id)
+{
+    return id >= 1 && id <= GROBO_RS30X_ID_MAX;
+}
+
 /* Completes a long packet whose data lies in place. */
 static int finish_long(uint8_t address, size_t each, size_t n, uint8_t *buf, size_t cap)
 {
+    for (size_t i = 0; i < n; i++) {
+        if (!is_servo(buf[GROBO_I_AT_DATA + i * each])) {
+            return GROBO_ERR_ARG;
+        }
+    }
     grobo_rs30x_packet packet = {
         GROBO_RS30X_LONG,      0,       0, address, (uint8_t)each, (uint8_t)n,
         buf + GROBO_I_AT_DATA, n * each};
     return grobo_rs30x_build(&packet, buf, cap);
-}
-
-static bool is_servo(uint8_t id)
-{
-    return id >= 1 && id <= GROBO_SERVO_ID_MAX;
 }
 
 int grobo_rs30x_write_goals(const grobo_rs30x_goal *goals, size_t n, uint8_t *buf, size_t cap)
@@ -212,7 +217,7 @@ int grobo_rs30x_write_goals(const grobo_rs30x_goal *goals, size_t n, uint8_t *bu
     for (size_t i = 0; i < n && result >= 0; i++) {
         uint8_t *at = buf + GROBO_I_AT_DATA + i * each;
         at[0] = goals[i].id;
-        result = is_servo(goals[i].id) ? put_goal(&goals[i], at + 1) : GROBO_ERR_ARG;
+        result = put_goal(&goals[i], at + 1);
     }
     return result < 0 ? result : finish_long(GROBO_RS30X_GOAL, each, n, buf, cap);
 }
@@ -220,19 +225,15 @@ int grobo_rs30x_write_goals(const grobo_rs30x_goal *goals, size_t n, uint8_t *bu
 int grobo_rs30x_write_bytes(uint8_t address, const grobo_rs30x_byte *bytes, size_t n, uint8_t *buf,
                             size_t cap)
 {
-    if (buf == NULL || (bytes == NULL && n > 0)) {
+    if (buf == NULL || (bytes == NULL && n > 0) || address >= GROBO_REGISTERS) {
         return GROBO_ERR_ARG;
     }
     const size_t each = 2;
     int result = check_long(n, each, cap);
-    if (address >= GROBO_REGISTERS) {
-        result = GROBO_ERR_ARG;
-    }
     for (size_t i = 0; i < n && result >= 0; i++) {
         uint8_t *at = buf + GROBO_I_AT_DATA + i * each;
         at[0] = bytes[i].id;
         at[1] = bytes[i].value;
-        result = is_servo(bytes[i].id) ? GROBO_OK : GROBO_ERR_ARG;
     }
     return result < 0 ? result : finish_long(address, each, n, buf, cap);
 }

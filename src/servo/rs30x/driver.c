@@ -20,7 +20,7 @@ static int finish(const grobo_driver *self, int size, grobo_exchange *exchange)
     if (size < 0) {
         return size;
     }
-    exchange->frame_bytes = (uint8_t)size;
+    exchange->frame_bytes = (uint16_t)size;
     int reply = self->protocol->reply_to(exchange->frame, (size_t)size, &exchange->reply);
     return reply < 0 ? reply : GROBO_OK;
 }
@@ -77,9 +77,11 @@ static void fill_goal(const grobo_driver *self, const grobo_target *target, int 
                       grobo_rs30x_goal *goal)
 {
     int64_t steps = (target->joint_time_us[joint] + self->time_step_us / 2) / self->time_step_us;
-    int64_t most = GROBO_PLAY_TIME_MAX_US / self->time_step_us;
-    goal->id = self->model->joints[joint].motor;
-    goal->pos_ddeg = grobo_ddeg_from_rad(target->posture.angle_rad[joint]);
+    int64_t most = self->time_max_us / self->time_step_us;
+    const grobo_joint *moved = &self->model->joints[joint];
+    goal->id = moved->motor;
+    goal->pos_ddeg =
+        grobo_ddeg_from_rad(grobo_joint_to_servo(moved, target->posture.angle_rad[joint]));
     goal->time_cs = (uint16_t)(steps > most ? most : steps);
 }
 
@@ -171,15 +173,15 @@ static bool plausible(const grobo_rs30x_state *s)
 int grobo_i_rs30x_parse(const grobo_driver *self, void *ctx, int joint, const grobo_packet *reply,
                         grobo_joint_state *state)
 {
-    (void)self;
     (void)ctx;
-    (void)joint;
+    const grobo_joint *moved = &self->model->joints[joint];
     grobo_rs30x_state got;
-    int found = grobo_rs30x_state_decode(reply->address, reply->data, reply->data_bytes, &got);
+    int found =
+        grobo_rs30x_state_decode((uint8_t)reply->address, reply->data, reply->data_bytes, &got);
     if (found <= 0 || !plausible(&got)) {
         return GROBO_ERR_MISMATCH;
     }
-    state->angle_rad = grobo_rad_from_ddeg(got.pos_ddeg);
+    state->angle_rad = grobo_joint_from_servo(moved, grobo_rad_from_ddeg(got.pos_ddeg));
     state->time_us = (int64_t)got.time_cs * GROBO_PLAY_TIME_UNIT_US;
     state->speed_dps = got.speed_dps;
     state->current_ma = got.current_ma;
@@ -196,7 +198,8 @@ int grobo_i_rs30x_parse(const grobo_driver *self, void *ctx, int joint, const gr
     if (reply->address == GROBO_RS30X_GOAL && reply->data_bytes >= 4) {
         const grobo_rs30x_register *goal = grobo_rs30x_register_at(GROBO_RS30X_GOAL);
         const grobo_rs30x_register *time = grobo_rs30x_register_at(GROBO_RS30X_GOAL_TIME);
-        state->goal_rad = grobo_rad_from_ddeg(grobo_rs30x_register_get(goal, reply->data));
+        int goal_ddeg = (int)grobo_rs30x_register_get(goal, reply->data);
+        state->goal_rad = grobo_joint_from_servo(moved, grobo_rad_from_ddeg(goal_ddeg));
         state->goal_time_us =
             (int64_t)grobo_rs30x_register_get(time, reply->data + 2) * GROBO_PLAY_TIME_UNIT_US;
         state->valid |= GROBO_FIELD_GOAL;
@@ -226,16 +229,21 @@ int grobo_i_rs30x_registers(const grobo_driver *self, void *ctx, const grobo_reg
     (void)ctx;
     uint8_t *buf = exchange->frame;
     size_t cap = sizeof exchange->frame;
+    if (io->address + io->length > GROBO_REGISTERS) {
+        return GROBO_ERR_ARG;
+    }
+    const uint8_t address = (uint8_t)io->address;
+    const uint8_t length = (uint8_t)io->length;
     if (io->data == NULL) {
-        int size = grobo_frame_read(self->protocol, io->id, io->address, io->length, buf, cap);
+        int size = grobo_frame_read(self->protocol, io->id, address, length, buf, cap);
         return finish(self, size, exchange);
     }
     grobo_rs30x_packet packet = {
         .kind = GROBO_RS30X_SHORT,
         .id = io->id,
         .flags = GROBO_RS30X_WANT_ACK,
-        .address = io->address,
-        .length = io->length,
+        .address = address,
+        .length = length,
         .count = 1,
         .data = io->data,
         .data_bytes = io->length,
@@ -332,7 +340,8 @@ static int inspect_joint(const grobo_driver *self, const share *s, int joint, gr
     if (goal != NULL) {
         int ddeg = (int)grobo_rs30x_register_get(grobo_rs30x_register_at(GROBO_RS30X_GOAL), goal);
         int64_t units = time == NULL ? 0 : time[0] + 256 * time[1];
-        target->posture.angle_rad[joint] = grobo_rad_from_ddeg(ddeg);
+        target->posture.angle_rad[joint] =
+            grobo_joint_from_servo(&self->model->joints[joint], grobo_rad_from_ddeg(ddeg));
         target->posture.set |= bit;
         target->joint_time_us[joint] = units * self->time_step_us;
     }

@@ -40,9 +40,7 @@ int grobo_frame_goal(const grobo_protocol *protocol, const grobo_rs30x_goal *goa
 int grobo_frame_goals(const grobo_protocol *protocol, const grobo_rs30x_goal *goals, size_t n,
                       uint8_t *buf, size_t cap)
 {
-    return buf == NULL
-               ? GROBO_ERR_ARG
-               : wrap_built(protocol, grobo_rs30x_write_goals(goals, n, buf, cap), buf, cap);
+    return wrap_built(protocol, grobo_rs30x_write_goals(goals, n, buf, cap), buf, cap);
 }
 
 static bool is_torque(unsigned value)
@@ -64,7 +62,7 @@ int grobo_frame_torque(const grobo_protocol *protocol, uint8_t id, grobo_torque 
 int grobo_frame_torques(const grobo_protocol *protocol, const grobo_rs30x_byte *torques, size_t n,
                         uint8_t *buf, size_t cap)
 {
-    if (buf == NULL || (torques == NULL && n > 0)) {
+    if (torques == NULL && n > 0) {
         return GROBO_ERR_ARG;
     }
     for (size_t i = 0; i < n; i++) {

@@ -25,6 +25,6 @@ bool grobo_i_rs30x_is_reset(const uint8_t *header);
 
 /* Of grobo_protocol. */
 int grobo_i_rs30x_measure(const uint8_t *bytes, size_t n, unsigned accept);
-void grobo_i_rs30x_unpack(const uint8_t *bytes, size_t n, grobo_packet *packet);
+void grobo_i_rs30x_unpack(uint8_t *bytes, size_t n, grobo_packet *packet);
 
 #endif

@@ -11,7 +11,7 @@ enum { RESET_DATA = 0xFF };
 
 static bool is_servo(uint8_t id)
 {
-    return id >= 1 && id <= GROBO_SERVO_ID_MAX;
+    return id >= 1 && id <= GROBO_RS30X_ID_MAX;
 }
 
 bool grobo_i_rs30x_is_reset(const uint8_t *header)
@@ -216,26 +216,11 @@ size_t grobo_rs30x_parser_pending(const grobo_rs30x_parser *parser)
     return parser == NULL ? 0 : grobo_i_framer_pending(&parser->framer);
 }
 
-size_t grobo_rs30x_reply_bytes(const grobo_reply *reply)
-{
-    if (reply == NULL) {
-        return 0;
-    }
-    switch (reply->kind) {
-    case GROBO_REPLY_NONE:
-        return 0;
-    case GROBO_REPLY_ACK:
-        return 1;
-    case GROBO_REPLY_RETURN:
-        return (size_t)reply->length + GROBO_RS30X_OVERHEAD_BYTES;
-    }
-    return 0;
-}
-
 /* What the low nibble of the flags asks for, for one servo. */
 static int reply_to_nibble(const uint8_t *packet, grobo_reply *reply)
 {
     static const uint8_t blocks[][2] = {{0, 30}, {30, 30}, {20, 10}, {42, 18}, {30, 12}, {60, 68}};
+    const uint8_t *block = &packet[GROBO_I_AT_ADDRESS];
     unsigned nibble = packet[GROBO_I_AT_FLAGS] & 0x0Fu;
     if (nibble == GROBO_RS30X_WANT_NOTHING) {
         return GROBO_OK;
@@ -243,19 +228,21 @@ static int reply_to_nibble(const uint8_t *packet, grobo_reply *reply)
     if ((nibble & 1u) == 0) {
         return GROBO_ERR_ARG;
     }
+    reply->count = 1;
     if (nibble == GROBO_RS30X_WANT_ACK) {
         reply->kind = GROBO_REPLY_ACK;
+        reply->bytes = 1;
         return GROBO_OK;
     }
-    if (nibble == GROBO_RS30X_WANT_GIVEN) {
-        reply->address = packet[GROBO_I_AT_ADDRESS];
-        reply->length = packet[GROBO_I_AT_LENGTH];
-    } else {
-        reply->address = blocks[(nibble - GROBO_RS30X_WANT_0_29) / 2][0];
-        reply->length = blocks[(nibble - GROBO_RS30X_WANT_0_29) / 2][1];
+    if (nibble != GROBO_RS30X_WANT_GIVEN) {
+        block = blocks[(nibble - GROBO_RS30X_WANT_0_29) / 2];
     }
     reply->kind = GROBO_REPLY_RETURN;
     reply->id = packet[GROBO_I_AT_ID];
+    reply->tag = block[0];
+    reply->address = block[0];
+    reply->length = block[1];
+    reply->bytes = (uint32_t)reply->length + GROBO_RS30X_OVERHEAD_BYTES;
     return reply->address + reply->length <= GROBO_REGISTERS ? GROBO_OK : GROBO_ERR_ARG;
 }
 
@@ -264,7 +251,7 @@ int grobo_rs30x_reply_to(const uint8_t *packet, size_t n, grobo_reply *reply)
     if ((packet == NULL && n > 0) || reply == NULL) {
         return GROBO_ERR_ARG;
     }
-    grobo_reply found = {GROBO_REPLY_NONE, 0, 0, 0};
+    grobo_reply found = {.kind = GROBO_REPLY_NONE};
     int size = n > 0 ? grobo_i_rs30x_measure(packet, n, GROBO_ACCEPT_COMMANDS) : 0;
     if (size < 0) {
         return size;
@@ -280,12 +267,12 @@ int grobo_rs30x_reply_to(const uint8_t *packet, size_t n, grobo_reply *reply)
         }
     }
     *reply = found;
-    return (int)grobo_rs30x_reply_bytes(&found);
+    return (int)found.bytes;
 }
 
 /* ---- for the bus --------------------------------------------------------------------------- */
 
-void grobo_i_rs30x_unpack(const uint8_t *bytes, size_t n, grobo_packet *packet)
+void grobo_i_rs30x_unpack(uint8_t *bytes, size_t n, grobo_packet *packet)
 {
     memset(packet, 0, sizeof *packet);
     if (n < GROBO_RS30X_OVERHEAD_BYTES) {
@@ -296,7 +283,6 @@ void grobo_i_rs30x_unpack(const uint8_t *bytes, size_t n, grobo_packet *packet)
     packet->id = bytes[GROBO_I_AT_ID];
     packet->flags = bytes[GROBO_I_AT_FLAGS];
     packet->address = bytes[GROBO_I_AT_ADDRESS];
-    packet->length = bytes[GROBO_I_AT_LENGTH];
     packet->data = bytes + GROBO_I_AT_DATA;
     packet->data_bytes = n - GROBO_RS30X_OVERHEAD_BYTES;
     if (bytes[0] == 0xFD) {
@@ -310,6 +296,7 @@ const grobo_protocol grobo_rs30x_protocol = {
     .measure = grobo_i_rs30x_measure,
     .unpack = grobo_i_rs30x_unpack,
     .reply_to = grobo_rs30x_reply_to,
-    .reply_bytes = grobo_rs30x_reply_bytes,
     .return_delay_us = GROBO_RS30X_DELAY_US(0),
+    .id_min = 1,
+    .id_max = GROBO_RS30X_ID_MAX,
 };

@@ -17,8 +17,8 @@ enum { LOOKS_MAX = 4, LISTEN_US = 150000, LISTEN_MAX_US = 2000000 };
 static const cli_option options[] = {
     [OPT_ALL_BAUD] =
         OPTION_FLAG("all-baud", 0, "at every baud rate that servos know (with --wiring bus)"),
-    [OPT_FIRST] = OPTION_WHOLE("first", 0, "ID", 1, GROBO_SERVO_ID_MAX, "begin with this id (1)"),
-    [OPT_LAST] = OPTION_WHOLE("last", 0, "ID", 1, GROBO_SERVO_ID_MAX, "end with this id (127)"),
+    [OPT_FIRST] = OPTION_WHOLE("first", 0, "ID", 1, GROBO_RS30X_ID_MAX, "begin with this id (1)"),
+    [OPT_LAST] = OPTION_WHOLE("last", 0, "ID", 1, GROBO_RS30X_ID_MAX, "end with this id (127)"),
 };
 
 typedef struct found {
@@ -76,10 +76,10 @@ static void report_failed(found *f, int id, int baud_bps, int error)
 /* One baud rate. Every whole reply on the line counts for its servo, whenever it comes. */
 typedef struct pass {
     found *f;
-    bool there[GROBO_SERVO_ID_MAX + 1];
-    int why[GROBO_SERVO_ID_MAX + 1]; /* the error of one that answered in no way that fits, or 0 */
-    uint8_t identity[GROBO_SERVO_ID_MAX + 1][IDENTITY_BYTES];
-    int64_t asked_us[GROBO_SERVO_ID_MAX + 1];
+    bool there[GROBO_RS30X_ID_MAX + 1];
+    int why[GROBO_RS30X_ID_MAX + 1]; /* the error of one that answered in no way that fits, or 0 */
+    uint8_t identity[GROBO_RS30X_ID_MAX + 1][IDENTITY_BYTES];
+    int64_t asked_us[GROBO_RS30X_ID_MAX + 1];
     int baud_bps, first, last, asking;
     int64_t heard_us;             /* when the last byte came, 0: none has */
     int64_t worst_us;             /* the longest that a reply took */
@@ -286,7 +286,7 @@ static int scan_ids(conn *c, found *f, int baud_bps)
     pass p = {.f = f,
               .baud_bps = baud_bps,
               .first = (int)app_number(c->a, OPT_FIRST, 1),
-              .last = (int)app_number(c->a, OPT_LAST, GROBO_SERVO_ID_MAX)};
+              .last = (int)app_number(c->a, OPT_LAST, GROBO_RS30X_ID_MAX)};
     int error = ask_all(c, f, &p);
     for (int id = p.first; id <= p.last; id++) {
         if (p.there[id])
@@ -352,7 +352,7 @@ static int run_scan(app *a)
     if (app_option(a, OPT_ALL_BAUD)->given && app_global(a, GLOBAL_WIRING)->choice != 1)
         return app_fail(a, EXIT_USAGE, "ARG",
                         "scan: --all-baud needs --wiring bus: the board knows one rate only");
-    if (app_number(a, OPT_FIRST, 1) > app_number(a, OPT_LAST, GROBO_SERVO_ID_MAX))
+    if (app_number(a, OPT_FIRST, 1) > app_number(a, OPT_LAST, GROBO_RS30X_ID_MAX))
         return app_fail(a, EXIT_USAGE, "ARG", "scan: --first is behind --last");
     status = conn_open_unchecked(&c, a);
     if (!status && app_option(a, OPT_ALL_BAUD)->given && grobo_session_sim(c.session))

@@ -38,8 +38,8 @@ static const cli_option options[] = {
     [OPT_TCP] = OPTION_WHOLE("tcp", 0, "PORT", 0, 65535,
                              "listen on 127.0.0.1 too; 0: any port; the next ones for more robots"),
     [OPT_SERVO] = OPTION_TEXT("servo", 0, "ID=TYPE,...",
-                              "simulate these servos, on a bus, instead of GR001: RS301CR RS302CD "
-                              "RS303MR RS304MD"),
+                              "simulate these servos, on a bus, instead of GR001: RS301CR, "
+                              "XL330-M288, STS3215, AX-12A...; an unknown type lists all"),
     [OPT_NO_STOPS] = OPTION_FLAG("no-stops", 0, "shafts meet no mechanical stops"),
     [OPT_NO_PACING] = OPTION_FLAG("no-pacing", 0, "bytes take no time on the wire"),
     [OPT_LATENCY] = OPTION_WHOLE("latency", 0, "MS", 0, 255,
@@ -136,6 +136,8 @@ static grobo_sim_config sim_config(const farm *f, int robot)
     grobo_sim_config config = {
         .model = f->model,
         .wiring = bus ? GROBO_WIRING_BUS : (grobo_wiring)wiring->choice,
+        .servos = app_option(a, OPT_SERVO)->given && !f->chain.only_rs30x ? f->chain.servos : NULL,
+        .families = f->chain.families,
         .no_stops = app_option(a, OPT_NO_STOPS)->given > 0,
         .baud_bps = baud->given ? (uint32_t)baud->number : 0,
         .latency_us = (uint32_t)app_number(a, OPT_LATENCY, 0) * 1000,
@@ -315,6 +317,26 @@ static int serve(farm *f)
     return f->signal ? EXIT_SIGNAL + f->signal : EXIT_DONE;
 }
 
+/* What knows RS30x and GR001's board only. */
+static int check_families(const farm *f)
+{
+    const app *a = f->a;
+    if (!app_option(a, OPT_SERVO)->given || f->chain.only_rs30x)
+        return 0;
+    if (app_option(a, OPT_STRICT)->given)
+        return app_fail(f->a, EXIT_USAGE, "UNSUPPORTED",
+                        "sim: --strict: knows the protocol of RS30x only; use it without other "
+                        "servos");
+    if (app_option(a, OPT_STATE)->given)
+        return app_fail(f->a, EXIT_USAGE, "UNSUPPORTED",
+                        "sim: --state: keeps the flash of RS30x only; use it without other servos");
+    if (app_global(a, GLOBAL_WIRING)->given &&
+        app_global(a, GLOBAL_WIRING)->choice == GROBO_WIRING_BOARD)
+        return app_fail(f->a, EXIT_USAGE, "UNSUPPORTED",
+                        "sim: --wiring board: relays to RS30x only; use --wiring bus");
+    return 0;
+}
+
 static int run(app *a)
 {
     static farm f;
@@ -331,6 +353,8 @@ static int run(app *a)
         f.model = &f.chain.model;
         status = sim_chain_read(a, &f.chain, app_option(a, OPT_SERVO)->text);
     }
+    if (!status)
+        status = check_families(&f);
     for (int i = 0; i < robots && !status; i++)
         status = add_robot(&f, i);
     if (!status && announce(&f))

@@ -42,10 +42,10 @@ int servos_parse_id(app *a, const char *text, int *status)
     double number;
     int joint;
     if (cli_read_number(text, &number)) {
-        if (number >= 1 && number <= GROBO_SERVO_ID_MAX && number == (double)(int)number)
+        if (number >= 1 && number <= GROBO_RS30X_ID_MAX && number == (double)(int)number)
             return (int)number;
         *status = app_fail(a, EXIT_USAGE, "ARG", "'%s' is not an id from 1 to %d", text,
-                           GROBO_SERVO_ID_MAX);
+                           GROBO_RS30X_ID_MAX);
         return -1;
     }
     joint = joints_parse_one(a, text, strlen(text), status);

@@ -359,7 +359,7 @@ static int expects(const frame *f, grobo_reply *reply)
 {
     grobo_reply inner;
     int known;
-    *reply = (grobo_reply){GROBO_REPLY_NONE, 0, 0, 0};
+    *reply = (grobo_reply){.kind = GROBO_REPLY_NONE};
     if (!is_command(f))
         return GROBO_ERR_TYPE;
     known = frame_reply(f, reply);
@@ -378,8 +378,7 @@ static void say_reply(text *t, const grobo_reply *reply, int known)
     say(t, "; ");
     if (known == GROBO_ERR_MISMATCH) {
         char bad[80];
-        snprintf(bad, sizeof bad, "but the packet is answered by %zu bytes",
-                 grobo_rs30x_reply_bytes(reply));
+        snprintf(bad, sizeof bad, "but the packet is answered by %u bytes", reply->bytes);
         say_bad(t, bad);
     } else if (known < 0) {
         say_bad(t, "asks for registers that do not exist");
@@ -388,7 +387,7 @@ static void say_reply(text *t, const grobo_reply *reply, int known)
     } else if (reply->kind == GROBO_REPLY_ACK) {
         say(t, "reply: ACK");
     } else {
-        say(t, "reply: %zu bytes", grobo_rs30x_reply_bytes(reply));
+        say(t, "reply: %u bytes", reply->bytes);
     }
 }
 
@@ -517,7 +516,7 @@ static json_t *reply_json(const frame *f, const grobo_reply *reply, int known)
         return json_pack("{s:o}", "error", app_json_code(grobo_error_name(known)));
     bool returns = reply->kind == GROBO_REPLY_RETURN, differs = known == GROBO_ERR_MISMATCH;
     return json_pack("{s:s,s:I,s:o*,s:o*,s:o*,s:o*}", "kind", kinds[reply->kind], "bytes",
-                     (json_int_t)grobo_rs30x_reply_bytes(reply), "id",
+                     (json_int_t)reply->bytes, "id",
                      returns ? json_integer(reply->id) : NULL, "address",
                      returns ? json_integer(reply->address) : NULL, "length",
                      returns ? json_integer(reply->length) : NULL, "asked_bytes",

@@ -100,8 +100,8 @@ static bool set_temperature(const sim_console *console, int servo)
 static bool set_id(const sim_console *console, int servo)
 {
     double id;
-    return read_number(console, 2, 1, GROBO_SERVO_ID_MAX, &id) &&
-           grobo_sim_set_register(sim_of(console), servo, GROBO_RS30X_ID, (int32_t)id) == 0;
+    return read_number(console, 2, 0, GROBO_SERVO_ID_MAX, &id) &&
+           grobo_sim_set_id(sim_of(console), servo, (int)id) == 0;
 }
 
 static const struct {

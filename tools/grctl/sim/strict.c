@@ -82,8 +82,8 @@ static const char *wrong_packet(const grobo_rs30x_packet *p, const uint8_t *byte
         return "request";
     }
     for (size_t at = 0; writes && step > 0 && at + step <= p->data_bytes; at += step) {
-        if (skip && (p->data[at] < 1 || p->data[at] > GROBO_SERVO_ID_MAX)) {
-            snprintf(why, WHY_BYTES, "id %d is outside 1..%d", p->data[at], GROBO_SERVO_ID_MAX);
+        if (skip && (p->data[at] < 1 || p->data[at] > GROBO_RS30X_ID_MAX)) {
+            snprintf(why, WHY_BYTES, "id %d is outside 1..%d", p->data[at], GROBO_RS30X_ID_MAX);
             return "range";
         }
         if (wrong_data(p->address, p->data + at + skip, step - skip, why))

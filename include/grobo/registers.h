@@ -1,0 +1,153 @@
+/* SPDX-License-Identifier: MIT */
+/**
+ * @file registers.h
+ * @brief Register tables of servos: names, addresses, sizes, units, and what a register does.
+ *
+ * A table holds the registers of a series and its models; one row may serve some of the models
+ * only. Tables are const data: grobo_dxl2_table (dxl2.h), grobo_dxl1_table (dxl1.h),
+ * grobo_sts_table and grobo_scs_table (feetech.h).
+ */
+#ifndef GROBO_REGISTERS_H
+#define GROBO_REGISTERS_H
+
+#include <grobo/types.h>
+
+GROBO_BEGIN_DECLS
+
+/** What a register does, whatever the family. A table has at most one row a model for a role. */
+typedef enum grobo_register_role {
+    GROBO_ROLE_NONE, /**< a setting that the library does not touch */
+    /* identity and line */
+    GROBO_ROLE_MODEL,
+    GROBO_ROLE_FIRMWARE,
+    GROBO_ROLE_ID,
+    GROBO_ROLE_BAUD,
+    GROBO_ROLE_RETURN_DELAY, /**< before a reply */
+    GROBO_ROLE_REPLY_LEVEL,  /**< which instructions are answered */
+    GROBO_ROLE_LOCK,         /**< opens or closes the registers that survive power-off */
+    GROBO_ROLE_WATCHDOG,     /**< stops the servo when the line is silent */
+    /* what a position means and which are allowed */
+    GROBO_ROLE_DIRECTION,
+    GROBO_ROLE_MODE,
+    GROBO_ROLE_OFFSET,
+    GROBO_ROLE_MIN_POSITION,
+    GROBO_ROLE_MAX_POSITION,
+    /* protection */
+    GROBO_ROLE_TEMPERATURE_LIMIT,
+    GROBO_ROLE_MIN_VOLTAGE,
+    GROBO_ROLE_MAX_VOLTAGE,
+    GROBO_ROLE_MAX_TORQUE,    /**< the torque limit after power-on */
+    GROBO_ROLE_CURRENT_LIMIT, /**< cuts or bounds the current */
+    GROBO_ROLE_SPEED_LIMIT,
+    GROBO_ROLE_SHUTDOWN, /**< which errors cut the torque */
+    /* orders */
+    GROBO_ROLE_TORQUE,
+    GROBO_ROLE_TORQUE_LIMIT,
+    GROBO_ROLE_GOAL,
+    GROBO_ROLE_GOAL_TIME,    /**< duration of a move */
+    GROBO_ROLE_SPEED,        /**< top speed of a move (of a profile) */
+    GROBO_ROLE_ACCELERATION, /**< of a move (of a profile) */
+    GROBO_ROLE_GOAL_SPEED,   /**< of a wheel */
+    GROBO_ROLE_GOAL_CURRENT,
+    GROBO_ROLE_GOAL_PWM,
+    /* present values */
+    GROBO_ROLE_ERROR, /**< bits of what is wrong */
+    GROBO_ROLE_REGISTERED,
+    GROBO_ROLE_MOVING,
+    GROBO_ROLE_POSITION,
+    GROBO_ROLE_PRESENT_SPEED,
+    GROBO_ROLE_LOAD,
+    GROBO_ROLE_CURRENT,
+    GROBO_ROLE_VOLTAGE,
+    GROBO_ROLE_TEMPERATURE
+} grobo_register_role;
+
+/** How negative numbers are written; a number above GROBO_SIGN_TWOS is the bit of the sign. */
+#define GROBO_SIGN_NONE 0u
+#define GROBO_SIGN_TWOS 1u
+
+/** What a register is, or-ed. */
+#define GROBO_REGISTER_W 0x1u    /**< may be written */
+#define GROBO_REGISTER_KEPT 0x2u /**< survives power-off (EEPROM) */
+
+/** One register. */
+typedef struct grobo_servo_register {
+    const char *name; /**< "goal_position": the name on the command line */
+    const char *unit; /**< what one count is worth: "0.1 V"; "" for plain numbers */
+    int32_t min, max; /**< range of counts */
+    int32_t factory;  /**< as the servo leaves the factory; 0 for present values */
+    uint16_t address; /**< of the first byte */
+    uint8_t bytes;    /**< 1, 2 or 4 */
+    uint8_t sign;     /**< GROBO_SIGN_..., or the bit that is the sign of a magnitude */
+    uint8_t flags;    /**< GROBO_REGISTER_... */
+    uint8_t role;     /**< grobo_register_role */
+    uint8_t groups;   /**< groups of models that have it, or-ed */
+} grobo_servo_register;
+
+struct grobo_servo_table;
+
+/** One model of a series. */
+typedef struct grobo_servo_model {
+    const char *name;                      /**< "XL330-M288" */
+    uint16_t number;                       /**< as its register MODEL gives it */
+    uint16_t span_ticks;                   /**< counts of position ... */
+    uint16_t span_deg;                     /**< ... in so many degrees */
+    uint16_t middle;                       /**< the position in the middle of the span */
+    uint16_t speed_dps;                    /**< top speed without load at voltage_mv */
+    uint16_t torque_mnm;                   /**< stall torque at voltage_mv, in 0.001 N m */
+    uint16_t current_ma;                   /**< stall current at voltage_mv */
+    uint16_t voltage_mv;                   /**< nominal supply */
+    uint8_t group;                         /**< one bit: the rows that it has */
+    uint8_t firmware;                      /**< a version that is sold */
+    const struct grobo_servo_table *table; /**< of its series */
+} grobo_servo_model;
+
+/** A series: registers by rising address, and models. */
+typedef struct grobo_servo_table {
+    const char *name; /**< "DYNAMIXEL X" */
+    const grobo_servo_register *registers;
+    const grobo_servo_model *models;
+    uint16_t register_count;
+    uint8_t model_count;
+    bool big_endian; /**< the high byte of a value comes first */
+} grobo_servo_table;
+
+/** The model of this name (exact), NULL when there is none. Static storage. */
+GROBO_API const grobo_servo_model *grobo_servo_model_named(const grobo_servo_table *table,
+                                                           const char *name);
+
+/** The first model of this number, NULL when there is none. Static storage. */
+GROBO_API const grobo_servo_model *grobo_servo_model_numbered(const grobo_servo_table *table,
+                                                              uint16_t number);
+
+/** Register number index of a model, by rising address; NULL behind the last. Static storage. */
+GROBO_API const grobo_servo_register *grobo_servo_register_row(const grobo_servo_model *model,
+                                                               size_t index);
+
+/** The register of this text name (exact), NULL when the model has none. Static storage. */
+GROBO_API const grobo_servo_register *grobo_servo_register_named(const grobo_servo_model *model,
+                                                                 const char *name);
+
+/** The register that holds this address, its higher bytes too; NULL when the model has none. */
+GROBO_API const grobo_servo_register *grobo_servo_register_at(const grobo_servo_model *model,
+                                                              uint16_t address);
+
+/** The register of this role; NULL when the model has none. */
+GROBO_API const grobo_servo_register *grobo_servo_register_of(const grobo_servo_model *model,
+                                                              grobo_register_role role);
+
+/** Value of a register from its bytes (reg->bytes of them), in counts; 0 for NULL. */
+GROBO_API int32_t grobo_servo_register_get(const grobo_servo_model *model,
+                                           const grobo_servo_register *reg, const uint8_t *bytes);
+
+/**
+ * Puts a value into reg->bytes bytes.
+ * @return bytes written, or GROBO_ERR_LIMIT outside reg->min..max (nothing is written)
+ */
+GROBO_API int grobo_servo_register_put(const grobo_servo_model *model,
+                                       const grobo_servo_register *reg, int32_t value,
+                                       uint8_t *bytes);
+
+GROBO_END_DECLS
+
+#endif

@@ -1,0 +1,83 @@
+/* SPDX-License-Identifier: MIT */
+/* Robots of AX and MX servos with Protocol 1.0. */
+#include "src/servo/dxl1/driver.h"
+
+#include <string.h>
+
+static grobo_dxl1_packet to_old(const grobo_dxl2_packet *packet)
+{
+    return (grobo_dxl1_packet){.id = packet->id,
+                               .instruction = packet->instruction,
+                               .address = (uint8_t)packet->address,
+                               .length = (uint8_t)packet->length,
+                               .data = packet->data,
+                               .data_bytes = packet->data_bytes};
+}
+
+int grobo_i_dxl1_build_as(const grobo_dxl2_packet *packet, uint8_t *buf, size_t cap)
+{
+    const grobo_dxl1_packet old = to_old(packet);
+    bool fits = packet->address <= UINT8_MAX && packet->length <= UINT8_MAX;
+    return fits ? grobo_dxl1_build(&old, buf, cap) : GROBO_ERR_ARG;
+}
+
+int grobo_i_dxl1_parse_as(const uint8_t *frame, size_t n, uint8_t *data, size_t cap,
+                          grobo_dxl2_packet *packet)
+{
+    grobo_dxl1_packet old;
+    int result = grobo_dxl1_parse(frame, n, false, &old);
+    (void)data;
+    (void)cap;
+    if (result >= 0) {
+        *packet = (grobo_dxl2_packet){.id = old.id,
+                                      .instruction = old.instruction,
+                                      .address = old.address,
+                                      .length = old.length,
+                                      .data = old.data,
+                                      .data_bytes = old.data_bytes};
+    }
+    return result;
+}
+
+/* Both limits 0: a wheel; both at the end: MX count turns (emanual mx_angle_limit). */
+static int setup(const grobo_joint *joint, const grobo_servo_model *servo, uint16_t address,
+                 const uint8_t *data, size_t n)
+{
+    int32_t model, min, max;
+    if (!grobo_i_table_value(servo, GROBO_ROLE_MODEL, address, data, n, &model)) {
+        return GROBO_OK; /* not a reading of the setup */
+    }
+    if (!grobo_i_table_value(servo, GROBO_ROLE_MIN_POSITION, address, data, n, &min) ||
+        !grobo_i_table_value(servo, GROBO_ROLE_MAX_POSITION, address, data, n, &max)) {
+        return GROBO_ERR_SETUP;
+    }
+    bool turns = min == max && min == servo->span_ticks - 1;
+    bool range = joint->turns ? turns : !turns && grobo_i_table_within(joint, servo, min, max);
+    return model == servo->number && range ? GROBO_OK : GROBO_ERR_SETUP;
+}
+
+static bool sync_read(const grobo_servo_model *servo)
+{
+    (void)servo;
+    return false;
+}
+
+/* An error of the register shutdown sets the torque limit to 0, until it is written again
+ * (emanual torque_limit): torque_limit 0 is no torque. */
+static const grobo_i_family family = {
+    .tables = {&grobo_dxl1_table},
+    .build = grobo_i_dxl1_build_as,
+    .parse = grobo_i_dxl1_parse_as,
+    .setup = setup,
+    .frame_max_bytes = GROBO_DXL1_FRAME_MAX_BYTES,
+    .time_max_ms = 65535,
+    .overheated = GROBO_DXL1_OVERHEATED,
+    .resets = true,
+    .sync_read = sync_read,
+    .pace = GROBO_I_PACE_SPEED,
+};
+
+int grobo_dxl1_driver_init(grobo_driver *driver, const grobo_model *model)
+{
+    return grobo_i_table_driver(driver, model, &grobo_dxl1_protocol, &family);
+}

@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: MIT */
+/* Robots of DYNAMIXEL X servos. */
+#include "src/servo/table/family.h"
+
+/* Bits of the drive mode that say what a goal means: its sense, and that it comes with a time. */
+#define DRIVE_BITS (GROBO_DXL2_DRIVE_REVERSE | GROBO_DXL2_DRIVE_TIME)
+
+/* Goals are within one turn in mode 3 and 5 and count turns in mode 4; 5 bounds the current, as a
+ * gripper needs it. Without the bit of time a duration would be taken for a velocity
+ * (emanual drive_mode, opmode_six_2). */
+static int setup(const grobo_joint *joint, const grobo_servo_model *servo, uint16_t address,
+                 const uint8_t *data, size_t n)
+{
+    int32_t model, mode, drive, min, max;
+    if (!grobo_i_table_value(servo, GROBO_ROLE_MODEL, address, data, n, &model)) {
+        return GROBO_OK; /* not a reading of the setup */
+    }
+    bool modes = grobo_i_table_value(servo, GROBO_ROLE_MODE, address, data, n, &mode) &&
+                 (mode == (joint->turns ? GROBO_DXL2_MODE_EXTENDED : GROBO_DXL2_MODE_POSITION) ||
+                  mode == GROBO_DXL2_MODE_GRIP);
+    bool drives = grobo_i_table_value(servo, GROBO_ROLE_DIRECTION, address, data, n, &drive) &&
+                  (drive & (int)DRIVE_BITS) == (int)GROBO_DXL2_DRIVE_TIME;
+    bool limits =
+        grobo_i_table_value(servo, GROBO_ROLE_MIN_POSITION, address, data, n, &min) &&
+        grobo_i_table_value(servo, GROBO_ROLE_MAX_POSITION, address, data, n, &max) &&
+        (mode != GROBO_DXL2_MODE_POSITION || grobo_i_table_within(joint, servo, min, max));
+    return model == servo->number && modes && drives && limits ? GROBO_OK : GROBO_ERR_SETUP;
+}
+
+static bool sync_read(const grobo_servo_model *servo)
+{
+    (void)servo;
+    return true;
+}
+
+/*
+ * A profile of this duration, without ramps, is a straight way in time. A set bit of the register
+ * shutdown that occurs cuts the torque until a reboot (emanual shutdown).
+ */
+static const grobo_i_family family = {
+    .tables = {&grobo_dxl2_table},
+    .build = grobo_dxl2_build,
+    .parse = grobo_dxl2_parse,
+    .setup = setup,
+    .frame_max_bytes = GROBO_DXL2_FRAME_MAX_BYTES,
+    .time_max_ms = 32737,
+    .overheated = GROBO_DXL2_OVERHEATED,
+    .cuts = 0xFF,
+    .reset = {GROBO_DXL2_RESET_ALL},
+    .reset_bytes = 1,
+    .resets = true,
+    .reboots = true,
+    .sync_read = sync_read,
+    .pace = GROBO_I_PACE_PROFILE,
+};
+
+int grobo_dxl2_driver_init(grobo_driver *driver, const grobo_model *model)
+{
+    return grobo_i_table_driver(driver, model, &grobo_dxl2_protocol, &family);
+}

@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: MIT */
+/* Feetech's servos for the bus: the frames of DYNAMIXEL 1.0 with other errors. */
+#include <grobo/bus.h>
+#include <grobo/feetech.h>
+
+#include "src/servo/dxl1/protocol.h"
+
+/* All of its errors say how the servo is; the data are good, and the request was done. */
+static void unpack(uint8_t *bytes, size_t n, grobo_packet *packet)
+{
+    grobo_i_dxl1_unpack(bytes, n, 0, packet);
+}
+
+const grobo_protocol grobo_feetech_protocol = {
+    .name = "Feetech",
+    .measure = grobo_i_dxl1_measure,
+    .unpack = unpack,
+    .reply_to = grobo_i_dxl1_reply_to,
+    .reply_at = grobo_i_dxl1_reply_at,
+    .several = grobo_bus_several,
+    .return_delay_us = 0, /* register 7, as it leaves the factory */
+    .call_us = GROBO_DXL1_CALL_US,
+    .id_min = 0,
+    .id_max = GROBO_DXL1_ID_MAX,
+};

@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: MIT */
+/* SCS: registers and models. Addresses, defaults and units: the maker's SCS memory table. */
+#include <grobo/feetech.h>
+
+/* Groups of models: there is one. */
+enum { ALL = 1 };
+
+enum { R = 0, W = GROBO_REGISTER_W, E = GROBO_REGISTER_KEPT, EW = W | E };
+
+#define ROW(name, address, bytes, sign, flags, role, unit, min, max, factory, groups)              \
+    {                                                                                              \
+        name, unit, (min), (max), (factory), (address), (bytes), (sign), (flags),                  \
+            GROBO_ROLE_##role, (groups)                                                            \
+    }
+
+static const grobo_servo_register rows[] = {
+    ROW("firmware", 0, 1, 0, E, FIRMWARE, "", 0, 255, 0, ALL),
+    ROW("firmware_minor", 1, 1, 0, E, NONE, "", 0, 255, 0, ALL),
+    ROW("byte_order", 2, 1, 0, E, NONE, "", 0, 1, 1, ALL),
+    ROW("model", 3, 2, 0, E, MODEL, "", 0, 65535, 0, ALL),
+    ROW("id", 5, 1, 0, EW, ID, "", 0, 253, 1, ALL),
+    ROW("baud", 6, 1, 0, EW, BAUD, "code", 0, 7, 0, ALL),
+    ROW("return_delay", 7, 1, 0, EW, RETURN_DELAY, "2 us", 0, 254, 0, ALL),
+    ROW("reply_level", 8, 1, 0, EW, REPLY_LEVEL, "", 0, 1, 1, ALL),
+    ROW("min_position", 9, 2, 0, EW, MIN_POSITION, "0.293 deg", 0, 1023, 20, ALL),
+    ROW("max_position", 11, 2, 0, EW, MAX_POSITION, "0.293 deg", 0, 1023, 1003, ALL),
+    ROW("temperature_limit", 13, 1, 0, EW, TEMPERATURE_LIMIT, "deg C", 0, 100, 80, ALL),
+    ROW("max_voltage", 14, 1, 0, EW, MAX_VOLTAGE, "0.1 V", 0, 254, 90, ALL),
+    ROW("min_voltage", 15, 1, 0, EW, MIN_VOLTAGE, "0.1 V", 0, 254, 45, ALL),
+    ROW("max_torque", 16, 2, 0, EW, MAX_TORQUE, "0.1 %", 0, 1000, 1000, ALL),
+    ROW("phase", 18, 1, 0, EW, DIRECTION, "bits", 0, 255, 0, ALL),
+    ROW("unload", 19, 1, 0, EW, SHUTDOWN, "bits", 0, 255, 37, ALL),
+    ROW("led_alarm", 20, 1, 0, EW, NONE, "bits", 0, 255, 37, ALL),
+    ROW("position_p", 21, 1, 0, EW, NONE, "", 0, 254, 15, ALL),
+    ROW("position_d", 22, 1, 0, EW, NONE, "", 0, 254, 15, ALL),
+    ROW("position_i", 23, 1, 0, EW, NONE, "", 0, 254, 0, ALL),
+    ROW("startup_force", 24, 2, 0, EW, NONE, "0.1 %", 0, 1000, 30, ALL),
+    ROW("cw_dead_zone", 26, 1, 0, EW, NONE, "0.293 deg", 0, 32, 1, ALL),
+    ROW("ccw_dead_zone", 27, 1, 0, EW, NONE, "0.293 deg", 0, 32, 1, ALL),
+    ROW("hysteresis", 28, 1, 0, EW, NONE, "0.293 deg", 0, 32, 1, ALL),
+    ROW("protective_torque", 37, 1, 0, EW, NONE, "1 %", 0, 100, 20, ALL),
+    ROW("protection_time", 38, 1, 0, EW, NONE, "40 ms", 0, 254, 100, ALL),
+    ROW("overload_torque", 39, 1, 0, EW, NONE, "1 %", 0, 100, 80, ALL),
+    ROW("torque", 40, 1, 0, W, TORQUE, "", 0, 2, 0, ALL),
+    ROW("goal_position", 42, 2, 0, W, GOAL, "0.293 deg", 0, 1023, 0, ALL),
+    ROW("goal_time", 44, 2, 0, W, GOAL_TIME, "1 ms", 0, 32767, 0, ALL),
+    ROW("goal_speed", 46, 2, 0, W, SPEED, "0.293 deg/s", 0, 32767, 0, ALL),
+    ROW("lock", 48, 1, 0, W, LOCK, "", 0, 1, 1, ALL),
+    ROW("present_position", 56, 2, 0, R, POSITION, "0.293 deg", 0, 1023, 0, ALL),
+    ROW("present_speed", 58, 2, 15, R, PRESENT_SPEED, "0.293 deg/s", -32767, 32767, 0, ALL),
+    ROW("present_load", 60, 2, 10, R, LOAD, "0.1 %", -1023, 1023, 0, ALL),
+    ROW("voltage", 62, 1, 0, R, VOLTAGE, "0.1 V", 0, 255, 0, ALL),
+    ROW("temperature", 63, 1, 0, R, TEMPERATURE, "deg C", 0, 255, 0, ALL),
+    ROW("registered", 64, 1, 0, R, REGISTERED, "", 0, 1, 0, ALL),
+    ROW("status", 65, 1, 0, R, ERROR, "bits", 0, 255, 0, ALL),
+    ROW("moving", 66, 1, 0, R, MOVING, "", 0, 1, 0, ALL),
+};
+
+#undef ROW
+
+static const grobo_servo_model models[] = {
+    {"SCS0009", 1284, 1024, 300, 512, 600, 230, 1000, 6000, ALL, 3, &grobo_scs_table},
+};
+
+const grobo_servo_table grobo_scs_table = {
+    .name = "Feetech SCS",
+    .registers = rows,
+    .models = models,
+    .register_count = sizeof rows / sizeof rows[0],
+    .model_count = sizeof models / sizeof models[0],
+    .big_endian = true,
+};

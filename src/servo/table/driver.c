@@ -1,0 +1,431 @@
+/* SPDX-License-Identifier: MIT */
+/* The driver functions of servos that are registers, and the table of such a robot. */
+#include <grobo/sequencer.h>
+
+#include <math.h>
+#include <string.h>
+
+#include "src/servo/table/family.h"
+
+/* A run of registers. */
+typedef struct span {
+    int from, to; /* addresses; to is behind the last byte */
+} span;
+
+#define MS_US 1000
+/* Rebooting, or taking factory settings. */
+#define RESTART_US 2000000
+/* A family without times keeps its unit all the same: it is what a speed is computed of. */
+#define TIME_STEP_US 1000
+/* A register this far from the goal is not written with it. */
+#define NEAR_BYTES 8
+
+static const grobo_register_role motion[] = {GROBO_ROLE_ACCELERATION, GROBO_ROLE_SPEED,
+                                             GROBO_ROLE_GOAL_TIME, GROBO_ROLE_GOAL};
+
+/* What each kind of sensing reads. The first reading of all looks at the setup, too. */
+static const grobo_register_role setup_roles[] = {GROBO_ROLE_MODEL};
+static const grobo_register_role goal_roles[] = {GROBO_ROLE_TORQUE, GROBO_ROLE_GOAL,
+                                                 GROBO_ROLE_POSITION, GROBO_ROLE_PRESENT_SPEED};
+static const grobo_register_role full_roles[] = {
+    GROBO_ROLE_TORQUE, GROBO_ROLE_POSITION, GROBO_ROLE_PRESENT_SPEED, GROBO_ROLE_VOLTAGE,
+    GROBO_ROLE_ERROR,  GROBO_ROLE_CURRENT,  GROBO_ROLE_TEMPERATURE};
+static const grobo_register_role position_roles[] = {GROBO_ROLE_POSITION};
+
+static const struct {
+    const grobo_register_role *roles;
+    size_t n;
+} kinds[] = {
+    [GROBO_SENSE_FULL] = {full_roles, sizeof full_roles / sizeof full_roles[0]},
+    [GROBO_SENSE_POSITION] = {position_roles, 1},
+    [GROBO_SENSE_GOAL] = {goal_roles, sizeof goal_roles / sizeof goal_roles[0]},
+    [GROBO_SENSE_ALL] = {full_roles, sizeof full_roles / sizeof full_roles[0]},
+};
+
+static const grobo_i_family *family_of(const grobo_driver *self)
+{
+    return self->family;
+}
+
+/* ---- runs of registers ----------------------------------------------------------------------- */
+
+static void widen(span *s, const grobo_servo_model *servo, grobo_register_role role)
+{
+    const grobo_servo_register *reg = grobo_servo_register_of(servo, role);
+    bool far = reg != NULL && s->to > 0 && reg->address > s->to + NEAR_BYTES &&
+               role == GROBO_ROLE_CURRENT; /* behind all others: it is not worth the time */
+    if (reg != NULL && !far) {
+        s->from = s->to == 0 || reg->address < s->from ? reg->address : s->from;
+        s->to = reg->address + reg->bytes > s->to ? reg->address + reg->bytes : s->to;
+    }
+}
+
+static span sense_span(const grobo_servo_model *servo, grobo_sense_kind kind)
+{
+    span s = {0, 0};
+    /* The error cuts the torque where the bit of the other register says so, if that is near. */
+    const grobo_servo_register *torque = grobo_servo_register_of(servo, GROBO_ROLE_TORQUE);
+    const grobo_servo_register *shutdown = grobo_servo_register_of(servo, GROBO_ROLE_SHUTDOWN);
+    for (size_t i = 0; i < kinds[kind].n; i++) {
+        widen(&s, servo, kinds[kind].roles[i]);
+    }
+    if (kind == GROBO_SENSE_FULL && torque != NULL && shutdown != NULL &&
+        torque->address - shutdown->address <= NEAR_BYTES) {
+        widen(&s, servo, GROBO_ROLE_SHUTDOWN);
+    }
+    if (kind == GROBO_SENSE_ALL) {
+        widen(&s, servo, setup_roles[0]);
+        widen(&s, servo, GROBO_ROLE_GOAL);
+    }
+    return s;
+}
+
+static span goal_span(const grobo_servo_model *servo)
+{
+    span s = {0, 0};
+    const grobo_servo_register *goal = grobo_servo_register_of(servo, GROBO_ROLE_GOAL);
+    for (size_t i = 0; i < sizeof motion / sizeof motion[0]; i++) {
+        const grobo_servo_register *reg = grobo_servo_register_of(servo, motion[i]);
+        if (reg != NULL && reg->address + NEAR_BYTES >= goal->address &&
+            reg->address <= goal->address + NEAR_BYTES) {
+            widen(&s, servo, motion[i]);
+        }
+    }
+    return s;
+}
+
+static bool same(span a, span b)
+{
+    return a.from == b.from && a.to == b.to;
+}
+
+/* ---- frames ---------------------------------------------------------------------------------- */
+
+static int finish(const grobo_driver *self, const grobo_dxl2_packet *packet,
+                  grobo_exchange *exchange)
+{
+    int size = family_of(self)->build(packet, exchange->frame, sizeof exchange->frame);
+    if (size < 0) {
+        return size;
+    }
+    exchange->frame_bytes = (uint16_t)size;
+    int reply = self->protocol->reply_to(exchange->frame, (size_t)size, &exchange->reply);
+    return reply < 0 ? reply : GROBO_OK;
+}
+
+static int read_span(const grobo_driver *self, uint8_t id, span s, grobo_exchange *exchange)
+{
+    const grobo_dxl2_packet packet = {.id = id,
+                                      .instruction = GROBO_DXL2_READ,
+                                      .address = (uint16_t)s.from,
+                                      .length = (uint16_t)(s.to - s.from)};
+    return finish(self, &packet, exchange);
+}
+
+/* Servos that a frame writes to, so many bytes each. */
+static int servos_per_frame(const grobo_driver *self, int bytes)
+{
+    const int head = 16; /* header, id, length, instruction, address, length, sum: at most */
+    int most = family_of(self)->frame_max_bytes;
+    most = most < GROBO_FRAME_MAX_BYTES ? most : GROBO_FRAME_MAX_BYTES;
+    return (most - head) / (1 + bytes);
+}
+
+/* The joints of part `part`: those of a frame have the same registers. */
+static grobo_joint_mask joints_of_part(const grobo_driver *self, grobo_joint_mask joints, int part,
+                                       span (*span_of)(const grobo_servo_model *servo), span *s)
+{
+    grobo_joint_mask mine = 0;
+    for (; part >= 0; part--) {
+        int n = 0;
+        mine = 0;
+        for (int j = 0; j < self->model->n_joints; j++) {
+            if ((joints & GROBO_JOINT_BIT(j)) == 0) {
+                continue;
+            }
+            span own = span_of(grobo_i_table_servo(self, j));
+            *s = n == 0 ? own : *s;
+            if (same(own, *s) && n < servos_per_frame(self, own.to - own.from)) {
+                mine |= GROBO_JOINT_BIT(j);
+                n++;
+            }
+        }
+        joints &= ~mine;
+    }
+    return mine;
+}
+
+/* A sync write of these joints; put() fills in what each gets. */
+static int write_part(const grobo_driver *self, grobo_joint_mask joints, span s, const void *what,
+                      void (*put)(const grobo_driver *self, int joint, const void *what, span s,
+                                  uint8_t *to),
+                      grobo_exchange *exchange)
+{
+    uint8_t data[GROBO_FRAME_MAX_BYTES];
+    const size_t each = (size_t)(s.to - s.from);
+    size_t n = 0;
+    if (joints == 0) {
+        return 0;
+    }
+    for (int j = 0; j < self->model->n_joints; j++) {
+        if ((joints & GROBO_JOINT_BIT(j)) != 0) {
+            data[n] = self->model->joints[j].motor;
+            memset(data + n + 1, 0, each);
+            put(self, j, what, s, data + n + 1);
+            n += 1 + each;
+        }
+    }
+    const grobo_dxl2_packet packet = {.id = GROBO_DXL2_ID_ALL,
+                                      .instruction = GROBO_DXL2_SYNC_WRITE,
+                                      .address = (uint16_t)s.from,
+                                      .length = (uint16_t)each,
+                                      .data = data,
+                                      .data_bytes = n};
+    int result = finish(self, &packet, exchange);
+    return result < 0 ? result : 1;
+}
+
+/* ---- goals ----------------------------------------------------------------------------------- */
+
+static void put_role(const grobo_servo_model *servo, grobo_register_role role, double value, span s,
+                     uint8_t *to)
+{
+    const grobo_servo_register *reg = grobo_servo_register_of(servo, role);
+    if (reg != NULL && reg->address >= s.from && reg->address + reg->bytes <= s.to) {
+        value = fmin(fmax(value, reg->min), reg->max);
+        (void)grobo_servo_register_put(servo, reg, (int32_t)value, to + (reg->address - s.from));
+    }
+}
+
+/* The least speed that leads there in time. 0 would mean the fastest. */
+static double speed_counts(const grobo_joint *joint, const grobo_servo_model *servo, double way_rad,
+                           int64_t time_us)
+{
+    double servo_rad = grobo_joint_to_servo(joint, way_rad) - grobo_joint_to_servo(joint, 0);
+    double deg_s = grobo_deg_from_rad(fabs(servo_rad)) * 1e6 / (double)time_us;
+    const grobo_servo_register *reg = grobo_servo_register_of(servo, GROBO_ROLE_SPEED);
+    return fmax(ceil(deg_s / grobo_i_table_unit(reg)), 1);
+}
+
+static void put_goal(const grobo_driver *self, int joint, const void *what, span s, uint8_t *to)
+{
+    const grobo_target *target = what;
+    const grobo_i_family *family = self->family;
+    const grobo_joint *moved = &self->model->joints[joint];
+    const grobo_servo_model *servo = grobo_i_table_servo(self, joint);
+    double angle_rad = target->posture.angle_rad[joint];
+    int64_t time_us = target->joint_time_us[joint] > 0 ? target->joint_time_us[joint] : MS_US;
+    double ms = (double)((time_us + MS_US / 2) / MS_US);
+    put_role(servo, GROBO_ROLE_GOAL, grobo_i_table_ticks(moved, servo, angle_rad), s, to);
+    if (family->pace == GROBO_I_PACE_PROFILE) {
+        put_role(servo, GROBO_ROLE_SPEED, fmax(ms, 1), s, to);
+    } else if (family->pace == GROBO_I_PACE_TIME &&
+               grobo_servo_register_of(servo, GROBO_ROLE_GOAL_TIME) != NULL) {
+        put_role(servo, GROBO_ROLE_GOAL_TIME, fmax(ms, 1), s, to);
+    } else {
+        double way_rad = angle_rad - target->from_rad[joint];
+        put_role(servo, GROBO_ROLE_SPEED, speed_counts(moved, servo, way_rad, time_us), s, to);
+        put_role(servo, GROBO_ROLE_ACCELERATION, INT32_MAX, s, to); /* the way is straight */
+    }
+}
+
+static int posture(const grobo_driver *self, void *ctx, const grobo_target *target, int part,
+                   grobo_exchange *exchange)
+{
+    (void)ctx;
+    span s = {0, 0};
+    grobo_joint_mask joints = joints_of_part(self, target->posture.set, part, goal_span, &s);
+    return write_part(self, joints, s, target, put_goal, exchange);
+}
+
+/* ---- torque ---------------------------------------------------------------------------------- */
+
+static span torque_span(const grobo_servo_model *servo)
+{
+    span s = {0, 0};
+    widen(&s, servo, GROBO_ROLE_TORQUE);
+    return s;
+}
+
+static void put_torque(const grobo_driver *self, int joint, const void *what, span s, uint8_t *to)
+{
+    const grobo_i_family *family = self->family;
+    const grobo_torque *mode = what;
+    (void)joint;
+    (void)s;
+    to[0] = *mode == GROBO_TORQUE_ON ? 1 : *mode == GROBO_TORQUE_OFF ? family->off : family->brake;
+}
+
+static int torque(const grobo_driver *self, void *ctx, grobo_joint_mask joints, grobo_torque mode,
+                  int part, grobo_exchange *exchange)
+{
+    (void)ctx;
+    const grobo_i_family *family = self->family;
+    span s = {0, 0};
+    if (mode == GROBO_TORQUE_BRAKE && family->brake == family->off) {
+        return GROBO_ERR_UNSUPPORTED;
+    }
+    joints = joints_of_part(self, joints, part, torque_span, &s);
+    return write_part(self, joints, s, &mode, put_torque, exchange);
+}
+
+/* ---- reading --------------------------------------------------------------------------------- */
+
+static int check(const grobo_driver *self, void *ctx, int part, grobo_exchange *exchange)
+{
+    (void)ctx;
+    if (part >= self->model->n_joints) {
+        return 0;
+    }
+    span s = {0, 0};
+    widen(&s, grobo_i_table_servo(self, part), GROBO_ROLE_MODEL);
+    int result = read_span(self, self->model->joints[part].motor, s, exchange);
+    return result < 0 ? result : 1;
+}
+
+static int sense(const grobo_driver *self, void *ctx, int joint, grobo_sense_kind kind,
+                 grobo_exchange *exchange)
+{
+    (void)ctx;
+    span s = sense_span(grobo_i_table_servo(self, joint), kind);
+    return read_span(self, self->model->joints[joint].motor, s, exchange);
+}
+
+static int sense_many(const grobo_driver *self, void *ctx, grobo_joint_mask joints,
+                      grobo_sense_kind kind, grobo_exchange *exchange)
+{
+    (void)ctx;
+    uint8_t ids[GROBO_JOINTS_MAX];
+    size_t n = 0;
+    span s = {0, 0};
+    for (int j = 0; j < self->model->n_joints; j++) {
+        if ((joints & GROBO_JOINT_BIT(j)) != 0) {
+            s = sense_span(grobo_i_table_servo(self, j), kind);
+            ids[n++] = self->model->joints[j].motor;
+        }
+    }
+    const grobo_dxl2_packet packet = {.id = GROBO_DXL2_ID_ALL,
+                                      .instruction = GROBO_DXL2_SYNC_READ,
+                                      .address = (uint16_t)s.from,
+                                      .length = (uint16_t)(s.to - s.from),
+                                      .data = ids,
+                                      .data_bytes = n};
+    return finish(self, &packet, exchange);
+}
+
+/* ---- registers and commands ------------------------------------------------------------------ */
+
+static int registers(const grobo_driver *self, void *ctx, const grobo_register_io *io,
+                     grobo_exchange *exchange)
+{
+    (void)ctx;
+    bool read = io->data == NULL;
+    const grobo_dxl2_packet packet = {.id = io->id,
+                                      .instruction = read ? GROBO_DXL2_READ : GROBO_DXL2_WRITE,
+                                      .address = io->address,
+                                      .length = read ? io->length : 0,
+                                      .data = io->data,
+                                      .data_bytes = read ? 0 : io->length};
+    return finish(self, &packet, exchange);
+}
+
+static int command(const grobo_driver *self, void *ctx, int id, grobo_servo_command what,
+                   grobo_exchange *exchange)
+{
+    (void)ctx;
+    const grobo_i_family *family = self->family;
+    bool reset = what == GROBO_SERVO_FACTORY_RESET;
+    if ((reset && !family->resets) || (what == GROBO_SERVO_REBOOT && !family->reboots) ||
+        what == GROBO_SERVO_FLASH) {
+        return GROBO_ERR_UNSUPPORTED;
+    }
+    const grobo_dxl2_packet packet = {.id = (uint8_t)id,
+                                      .instruction =
+                                          reset ? GROBO_DXL2_FACTORY_RESET : GROBO_DXL2_REBOOT,
+                                      .data = family->reset,
+                                      .data_bytes = reset ? family->reset_bytes : 0};
+    exchange->settle_us = RESTART_US;
+    return finish(self, &packet, exchange);
+}
+
+/* ---- the table ------------------------------------------------------------------------------- */
+
+/* Within the range that the goal's register has, and within one turn where it counts no turns. */
+static bool reaches(const grobo_joint *joint, const grobo_servo_model *servo, double angle_rad)
+{
+    int32_t ticks = grobo_i_table_ticks(joint, servo, angle_rad);
+    const grobo_servo_register *goal = grobo_servo_register_of(servo, GROBO_ROLE_GOAL);
+    bool turn = ticks >= 0 && ticks < servo->span_ticks;
+    return ticks >= goal->min && ticks <= goal->max && (joint->turns || turn);
+}
+
+/* Whether one frame can ask all joints. */
+static bool reads_alike(const grobo_driver *self)
+{
+    for (int kind = GROBO_SENSE_FULL; kind <= GROBO_SENSE_ALL; kind++) {
+        span first = sense_span(grobo_i_table_servo(self, 0), (grobo_sense_kind)kind);
+        for (int j = 1; j < self->model->n_joints; j++) {
+            span own = sense_span(grobo_i_table_servo(self, j), (grobo_sense_kind)kind);
+            if (!same(first, own)) {
+                return false;
+            }
+        }
+    }
+    return family_of(self)->sync_read(grobo_i_table_servo(self, 0));
+}
+
+static double coarsest_rad(const grobo_driver *self)
+{
+    double step_rad = 0;
+    for (int j = 0; j < self->model->n_joints; j++) {
+        const grobo_joint *joint = &self->model->joints[j];
+        const grobo_servo_model *servo = grobo_i_table_servo(self, j);
+        double own_rad =
+            fabs(grobo_i_table_angle(joint, servo, 1) - grobo_i_table_angle(joint, servo, 0));
+        step_rad = fmax(step_rad, own_rad);
+    }
+    return step_rad;
+}
+
+int grobo_i_table_driver(grobo_driver *driver, const grobo_model *model,
+                         const grobo_protocol *protocol, const grobo_i_family *family)
+{
+    if (driver == NULL || model == NULL || grobo_model_check(model) < 0) {
+        return GROBO_ERR_ARG;
+    }
+    grobo_driver made = {
+        .name = model->name,
+        .model = model,
+        .protocol = protocol,
+        .time_step_us = TIME_STEP_US,
+        .time_max_us = (int64_t)family->time_max_ms * MS_US,
+        .limits = {.temperature_c = 65,
+                   .lost_replies = 5,
+                   .approach_rad_s = grobo_rad_from_deg(GROBO_PLAY_APPROACH_DEG_S)},
+        .on_exit = GROBO_EXIT_HOLD,
+        .arm = true,
+        .all_first = true,
+        .family = family,
+        .check = check,
+        .posture = posture,
+        .torque = torque,
+        .sense = sense,
+        .parse = grobo_i_table_parse,
+        .write_kind = grobo_i_table_write_kind,
+        .registers = registers,
+        .command = command,
+        .inspect = grobo_i_table_inspect,
+    };
+    for (int j = 0; j < model->n_joints; j++) {
+        const grobo_joint *joint = &model->joints[j];
+        const grobo_servo_model *servo = grobo_i_table_servo(&made, j);
+        if (servo == NULL || !reaches(joint, servo, joint->min_rad) ||
+            !reaches(joint, servo, joint->max_rad)) {
+            return GROBO_ERR_ARG;
+        }
+    }
+    made.angle_step_rad = coarsest_rad(&made);
+    made.sense_many = reads_alike(&made) ? sense_many : NULL;
+    *driver = made;
+    return grobo_driver_check(driver);
+}

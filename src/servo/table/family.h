@@ -1,0 +1,76 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * A driver for servos that are registers: what it reads and writes are the registers of certain
+ * roles, so that a family is its table, its frames and the few things below.
+ */
+#ifndef GROBO_CORE_TABLE_FAMILY_H
+#define GROBO_CORE_TABLE_FAMILY_H
+
+#include <grobo/driver.h>
+#include <grobo/dxl2.h>
+
+enum { GROBO_I_TABLES = 2 };
+
+/* How a family moves in a given time. */
+typedef enum grobo_i_pace {
+    GROBO_I_PACE_TIME,    /* by GOAL_TIME in ms, where there is one; else as SPEED */
+    GROBO_I_PACE_PROFILE, /* SPEED is the duration of the move in ms */
+    GROBO_I_PACE_SPEED    /* SPEED is a speed: what leads there in this time */
+} grobo_i_pace;
+
+typedef struct grobo_i_family {
+    const grobo_servo_table *tables[GROBO_I_TABLES];
+    /* Frames, as those of DYNAMIXEL 2.0: instructions have the same numbers. parse() is of frames
+     * to servos. */
+    int (*build)(const grobo_dxl2_packet *packet, uint8_t *buf, size_t cap);
+    int (*parse)(const uint8_t *frame, size_t n, uint8_t *data, size_t cap,
+                 grobo_dxl2_packet *packet);
+    /* Is this servo set up as the joint needs it, as far as these registers tell?
+     * @return 0 or GROBO_ERR_SETUP */
+    int (*setup)(const grobo_joint *joint, const grobo_servo_model *servo, uint16_t address,
+                 const uint8_t *data, size_t n);
+    uint16_t frame_max_bytes;      /* of one frame, any id */
+    uint16_t time_max_ms;          /* longest time of a move */
+    uint8_t overheated;            /* bits of the register ERROR */
+    uint8_t cuts;                  /* bits of it that come with no torque, as SHUTDOWN says */
+    uint8_t reset[1], reset_bytes; /* data of FACTORY_RESET */
+    bool resets, reboots;          /* instructions that it has */
+    bool (*sync_read)(const grobo_servo_model *servo);
+    uint8_t pace;       /* grobo_i_pace */
+    uint8_t off, brake; /* values of TORQUE; brake == off: it has none */
+} grobo_i_family;
+
+/* Fills a whole table. @return 0, or GROBO_ERR_ARG: a joint whose servo is in no table, or that
+ * does not reach its limits. */
+int grobo_i_table_driver(grobo_driver *driver, const grobo_model *model,
+                         const grobo_protocol *protocol, const grobo_i_family *family);
+
+/* The servo of a joint, NULL: in no table. */
+const grobo_servo_model *grobo_i_table_servo(const grobo_driver *self, int joint);
+
+/* A value out of a block of registers that begins at address. False: it is not in it. */
+bool grobo_i_table_value(const grobo_servo_model *servo, grobo_register_role role, uint16_t address,
+                         const uint8_t *data, size_t n, int32_t *value);
+
+/* Whether a servo that goes from min to max only gets wherever the joint may go. */
+bool grobo_i_table_within(const grobo_joint *joint, const grobo_servo_model *servo, int32_t min,
+                          int32_t max);
+
+/* What one count of a register is worth, in deg/s, mA, mV or whatever its unit says. */
+double grobo_i_table_unit(const grobo_servo_register *reg);
+
+/* Angle of a joint from counts of its servo, and back. */
+double grobo_i_table_angle(const grobo_joint *joint, const grobo_servo_model *servo, int32_t ticks);
+int32_t grobo_i_table_ticks(const grobo_joint *joint, const grobo_servo_model *servo,
+                            double angle_rad);
+
+/* Of grobo_driver; inspect.c */
+grobo_write_kind grobo_i_table_write_kind(const grobo_driver *self, const grobo_register_io *io);
+int grobo_i_table_inspect(const grobo_driver *self, void *ctx, const uint8_t *frame, size_t size,
+                          grobo_target *target, grobo_joint_mask *torqued);
+
+/* parse of grobo_driver; reading.c */
+int grobo_i_table_parse(const grobo_driver *self, void *ctx, int joint, const grobo_packet *reply,
+                        grobo_joint_state *state);
+
+#endif

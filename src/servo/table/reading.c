@@ -1,0 +1,138 @@
+/* SPDX-License-Identifier: MIT */
+/* What a servo's registers say of its joint. */
+#include "src/servo/table/family.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* What a servo may say. A shaft may stand a little outside of its turn. */
+enum { OUTSIDE_TICKS = 256, VOLTAGE_MAX_MV = 30000, HEAT_MAX_C = 120, TORQUE_MAX = 2 };
+
+/* A block of registers of one servo. */
+typedef struct block {
+    const grobo_servo_model *servo;
+    uint16_t address;
+    const uint8_t *data;
+    size_t n;
+} block;
+
+static bool value_of(const block *b, grobo_register_role role, int32_t *value)
+{
+    return grobo_i_table_value(b->servo, role, b->address, b->data, b->n, value);
+}
+
+/* In the unit of the register's table. */
+static bool measure_of(const block *b, grobo_register_role role, double *value)
+{
+    int32_t counts;
+    if (!value_of(b, role, &counts)) {
+        return false;
+    }
+    *value = counts * grobo_i_table_unit(grobo_servo_register_of(b->servo, role));
+    return true;
+}
+
+static void take_angles(const grobo_driver *self, int joint, const block *b,
+                        grobo_joint_state *state)
+{
+    const grobo_i_family *family = self->family;
+    const grobo_joint *moved = &self->model->joints[joint];
+    int32_t ticks, ms;
+    double dps;
+    if (value_of(b, GROBO_ROLE_POSITION, &ticks)) {
+        state->angle_rad = grobo_i_table_angle(moved, b->servo, ticks);
+        state->valid |= GROBO_FIELD_ANGLE;
+    }
+    if (value_of(b, GROBO_ROLE_GOAL, &ticks)) {
+        bool timed = family->pace == GROBO_I_PACE_PROFILE ? value_of(b, GROBO_ROLE_SPEED, &ms)
+                                                          : value_of(b, GROBO_ROLE_GOAL_TIME, &ms);
+        state->goal_rad = grobo_i_table_angle(moved, b->servo, ticks);
+        state->goal_time_us = timed ? (int64_t)ms * 1000 : 0;
+        state->valid |= GROBO_FIELD_GOAL;
+    }
+    if (measure_of(b, GROBO_ROLE_PRESENT_SPEED, &dps)) {
+        double ratio = grobo_joint_from_servo(moved, 1) - grobo_joint_from_servo(moved, 0);
+        state->speed_dps = (int32_t)(dps * ratio);
+        state->valid |= GROBO_FIELD_SPEED;
+    }
+}
+
+static void take_measures(const block *b, grobo_joint_state *state)
+{
+    double value;
+    if (measure_of(b, GROBO_ROLE_CURRENT, &value)) {
+        state->current_ma = (int32_t)fabs(value);
+        state->valid |= GROBO_FIELD_CURRENT;
+    }
+    if (measure_of(b, GROBO_ROLE_VOLTAGE, &value)) {
+        state->voltage_mv = (int32_t)value;
+        state->valid |= GROBO_FIELD_VOLTAGE;
+    }
+    int32_t temperature_c;
+    if (value_of(b, GROBO_ROLE_TEMPERATURE, &temperature_c)) {
+        state->temperature_c = (int16_t)temperature_c;
+        state->valid |= GROBO_FIELD_TEMPERATURE;
+    }
+}
+
+/* A servo that has cut its torque for an error may still have the switch on. */
+static void take_torque(const grobo_i_family *family, const block *b, grobo_joint_state *state)
+{
+    int32_t torque, limit, error = 0, shutdown = 0;
+    (void)value_of(b, GROBO_ROLE_ERROR, &error);
+    error |= family->pace == GROBO_I_PACE_PROFILE ? 0 : state->flags; /* there it is a number */
+    state->overheated = (error & family->overheated) != 0;
+    if (!value_of(b, GROBO_ROLE_TORQUE, &torque)) {
+        return;
+    }
+    bool cut =
+        value_of(b, GROBO_ROLE_SHUTDOWN, &shutdown) && (error & shutdown & family->cuts) != 0;
+    cut = cut || (value_of(b, GROBO_ROLE_TORQUE_LIMIT, &limit) && limit == 0);
+    state->torque = torque == 1 && !cut                                       ? GROBO_TORQUE_ON
+                    : torque == family->brake && family->brake != family->off ? GROBO_TORQUE_BRAKE
+                                                                              : GROBO_TORQUE_OFF;
+    state->valid |= GROBO_FIELD_TORQUE;
+}
+
+/* A sum of bytes does not notice what two faults make up for: what no servo says is not believed.
+ * Where a status and a register tell the same errors, both must. */
+static bool plausible(const grobo_i_family *family, const grobo_joint *joint, const block *b,
+                      uint8_t flags)
+{
+    int32_t ticks = b->servo->middle, torque = 0, error = 0, celsius = 0;
+    double mv = 0;
+    (void)measure_of(b, GROBO_ROLE_VOLTAGE, &mv);
+    (void)value_of(b, GROBO_ROLE_TEMPERATURE, &celsius);
+    (void)value_of(b, GROBO_ROLE_TORQUE, &torque);
+    (void)value_of(b, GROBO_ROLE_POSITION, &ticks);
+    bool told = family->pace == GROBO_I_PACE_PROFILE || !value_of(b, GROBO_ROLE_ERROR, &error) ||
+                error == flags;
+    bool turn = ticks >= -OUTSIDE_TICKS && ticks < b->servo->span_ticks + OUTSIDE_TICKS;
+    return told && (turn || joint->turns) && mv <= VOLTAGE_MAX_MV && celsius <= HEAT_MAX_C &&
+           torque >= 0 && torque <= TORQUE_MAX;
+}
+
+int grobo_i_table_parse(const grobo_driver *self, void *ctx, int joint, const grobo_packet *reply,
+                        grobo_joint_state *state)
+{
+    (void)ctx;
+    const grobo_i_family *family = self->family;
+    const grobo_joint *moved = &self->model->joints[joint];
+    const block b = {.servo = grobo_i_table_servo(self, joint),
+                     .address = reply->address,
+                     .data = reply->data,
+                     .n = reply->data_bytes};
+    int result = family->setup(moved, b.servo, b.address, b.data, b.n);
+    if (result < 0) {
+        return result;
+    }
+    if (!plausible(family, moved, &b, reply->flags)) {
+        return GROBO_ERR_MISMATCH;
+    }
+    state->flags = reply->flags;
+    take_angles(self, joint, &b, state);
+    take_measures(&b, state);
+    take_torque(family, &b, state);
+    return state->valid != 0 ? GROBO_OK : GROBO_ERR_MISMATCH;
+}

@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: MIT */
+/* Values of registers: out of blocks, in their units, as angles. */
+#include "src/servo/table/family.h"
+
+#include <math.h>
+
+#define RAD_PER_DEG 0.017453292519943295
+
+const grobo_servo_model *grobo_i_table_servo(const grobo_driver *self, int joint)
+{
+    const grobo_i_family *family = self->family;
+    const grobo_servo_model *found = NULL;
+    for (int i = 0; found == NULL && i < GROBO_I_TABLES; i++) {
+        found =
+            grobo_servo_model_numbered(family->tables[i], self->model->joints[joint].servo_model);
+    }
+    return found;
+}
+
+bool grobo_i_table_value(const grobo_servo_model *servo, grobo_register_role role, uint16_t address,
+                         const uint8_t *data, size_t n, int32_t *value)
+{
+    const grobo_servo_register *reg = grobo_servo_register_of(servo, role);
+    if (reg == NULL || reg->address < address ||
+        (size_t)(reg->address - address) + reg->bytes > n) {
+        return false;
+    }
+    *value = grobo_servo_register_get(servo, reg, data + (reg->address - address));
+    return true;
+}
+
+/* The number, and what it is of: of "0.229 rpm" 6 * 0.229 deg/s, of "0.1 V" 100 mV. */
+double grobo_i_table_unit(const grobo_servo_register *reg)
+{
+    double value = 0;
+    double place = 0;
+    const char *at = reg->unit;
+    for (; (*at >= '0' && *at <= '9') || *at == '.'; at++) {
+        if (*at == '.') {
+            place = 1;
+        } else {
+            place /= 10;
+            value = place > 0 ? value + place * (*at - '0') : value * 10 + (*at - '0');
+        }
+    }
+    if (at[0] != ' ') {
+        return value;
+    }
+    return value * (at[1] == 'r' ? 6 : at[1] == 'V' ? 1000 : 1);
+}
+
+static double tick_rad(const grobo_servo_model *servo)
+{
+    return servo->span_deg * RAD_PER_DEG / servo->span_ticks;
+}
+
+double grobo_i_table_angle(const grobo_joint *joint, const grobo_servo_model *servo, int32_t ticks)
+{
+    return grobo_joint_from_servo(joint, (ticks - (double)servo->middle) * tick_rad(servo));
+}
+
+int32_t grobo_i_table_ticks(const grobo_joint *joint, const grobo_servo_model *servo,
+                            double angle_rad)
+{
+    double ticks = grobo_joint_to_servo(joint, angle_rad) / tick_rad(servo) + servo->middle;
+    return (int32_t)floor(ticks + 0.5);
+}
+
+bool grobo_i_table_within(const grobo_joint *joint, const grobo_servo_model *servo, int32_t min,
+                          int32_t max)
+{
+    int32_t a = grobo_i_table_ticks(joint, servo, joint->min_rad);
+    int32_t b = grobo_i_table_ticks(joint, servo, joint->max_rad);
+    return a >= min && a <= max && b >= min && b <= max;
+}

@@ -1,0 +1,823 @@
+/* SPDX-License-Identifier: MIT */
+/* The X series of DYNAMIXEL: what packets of Protocol 2.0 do to its registers. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <grobo/dxl2.h>
+#include <grobo/protocol.h>
+
+#include "src/base/bytes.h"
+#include "src/sim/dxl.h"
+#include "src/sim/family.h"
+#include "src/sim/note.h"
+#include "src/sim/power.h"
+#include "src/sim/servo.h"
+#include "src/sim/shaft.h"
+
+/* Counts: 0.229 rpm, 214.577 rev/min2, and of the watchdog 20 ms. */
+#define SPEED_MDEG_S 1374.0
+#define ACCEL_MDEG_S2 21457.7
+#define WATCHDOG_US 20000
+/* A motor that works this hard for this long is overloaded. An assumption. */
+#define OVERLOAD_EFFORT 0.8
+#define OVERLOAD_US 1000000
+/* The largest homing offset that counts where a position is within one turn. */
+#define HOMING_ONE_TURN 1024
+
+static const int32_t rates_bps[] = {9600,    57600,   115200,  1000000,
+                                    2000000, 3000000, 4000000, 4500000};
+enum { RATES = sizeof rates_bps / sizeof *rates_bps };
+
+static int mode_of(const grobo_sim_servo *servo)
+{
+    return grobo_i_dxl_get(servo, GROBO_ROLE_MODE);
+}
+
+static bool places(int mode)
+{
+    return mode == GROBO_DXL2_MODE_POSITION || mode == GROBO_DXL2_MODE_EXTENDED ||
+           mode == GROBO_DXL2_MODE_GRIP;
+}
+
+static bool drives_by_time(const grobo_sim_servo *servo)
+{
+    return (grobo_i_dxl_get(servo, GROBO_ROLE_DIRECTION) & (int)GROBO_DXL2_DRIVE_TIME) != 0;
+}
+
+static bool reverses(const grobo_sim_servo *servo)
+{
+    return (grobo_i_dxl_get(servo, GROBO_ROLE_DIRECTION) & (int)GROBO_DXL2_DRIVE_REVERSE) != 0;
+}
+
+/* ---- positions ----------------------------------------------------------------------------- */
+
+static int32_t position_at(const grobo_sim_servo *servo, int32_t angle_mdeg)
+{
+    int32_t ticks = grobo_i_dxl_ticks(servo, reverses(servo), angle_mdeg);
+    int32_t offset = grobo_i_dxl_get(servo, GROBO_ROLE_OFFSET);
+    if (mode_of(servo) == GROBO_DXL2_MODE_POSITION) {
+        bool counts = offset >= -HOMING_ONE_TURN && offset <= HOMING_ONE_TURN;
+        return grobo_i_dxl_wrap(ticks, grobo_i_dxl_turn(servo)) + (counts ? offset : 0);
+    }
+    return ticks - servo->turns_ticks + offset;
+}
+
+/* Turns before now are forgotten. */
+static void one_turn(const grobo_sim *sim, grobo_sim_servo *servo)
+{
+    int32_t ticks =
+        grobo_i_dxl_ticks(servo, reverses(servo), grobo_i_sim_angle_mdeg(servo, sim->now_us));
+    servo->turns_ticks = ticks - grobo_i_dxl_wrap(ticks, grobo_i_dxl_turn(servo));
+}
+
+/* The shaft's angle at the goal: as far from here as the goal is from the present position. */
+static int32_t goal_mdeg(const grobo_sim *sim, const grobo_sim_servo *servo)
+{
+    int32_t here_mdeg = grobo_i_sim_angle_mdeg(servo, sim->now_us);
+    int32_t way = grobo_i_dxl_get(servo, GROBO_ROLE_GOAL) - position_at(servo, here_mdeg);
+    int32_t ticks = grobo_i_dxl_ticks(servo, false, here_mdeg) + (reverses(servo) ? -way : way);
+    return (int32_t)lround((ticks - servo->model->middle) * grobo_i_dxl_tick_mdeg(servo));
+}
+
+/* ---- the shaft's side ---------------------------------------------------------------------- */
+
+static void follow_wheel(grobo_sim_servo *servo, int mode)
+{
+    grobo_sim_plant *plant = &servo->plant;
+    double speed = 0;
+    if (mode == GROBO_DXL2_MODE_VELOCITY) {
+        speed = grobo_i_dxl_get(servo, GROBO_ROLE_GOAL_SPEED) * SPEED_MDEG_S;
+    } else if (mode == GROBO_DXL2_MODE_PWM) {
+        const grobo_servo_register *pwm =
+            grobo_servo_register_of(servo->model, GROBO_ROLE_GOAL_PWM);
+        speed =
+            (double)plant->speed_mdeg_s * grobo_i_dxl_get(servo, GROBO_ROLE_GOAL_PWM) / pwm->max;
+    } else { /* a current without a load: as fast as it can */
+        int32_t current = grobo_i_dxl_get(servo, GROBO_ROLE_GOAL_CURRENT);
+        speed = (current > 0) - (current < 0);
+        speed *= plant->speed_mdeg_s;
+    }
+    speed = fmin(fmax(speed, -plant->speed_mdeg_s), plant->speed_mdeg_s);
+    plant->wheel = true;
+    plant->wheel_mdeg_s = (int32_t)lround(reverses(servo) ? -speed : speed);
+}
+
+static void follow(grobo_sim *sim, int index)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    grobo_sim_plant *plant = &servo->plant;
+    int mode = mode_of(servo);
+    int32_t velocity = grobo_i_dxl_get(servo, GROBO_ROLE_SPEED);
+    int32_t acceleration = grobo_i_dxl_get(servo, GROBO_ROLE_ACCELERATION);
+    grobo_i_dxl_follow(sim, index);
+    if (mode == GROBO_DXL2_MODE_GRIP) {
+        const grobo_servo_register *current =
+            grobo_servo_register_of(servo->model, GROBO_ROLE_GOAL_CURRENT);
+        plant->most_ma =
+            plant->stall_ma * abs(grobo_i_dxl_get(servo, GROBO_ROLE_GOAL_CURRENT)) / current->max;
+    }
+    if (!places(mode)) {
+        follow_wheel(servo, mode);
+    } else if (drives_by_time(servo)) {
+        plant->time_us = velocity * 1000;
+        plant->ramp_us =
+            acceleration * 1000 < plant->time_us / 2 ? acceleration * 1000 : plant->time_us / 2;
+    } else {
+        plant->cap_mdeg_s = (int32_t)lround(velocity * SPEED_MDEG_S);
+        plant->accel_mdeg_s2 = (int32_t)lround(fmin(acceleration * ACCEL_MDEG_S2, INT32_MAX));
+    }
+}
+
+static void drive(grobo_sim *sim, int index)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    if (servo->plant.torque != GROBO_TORQUE_ON) {
+        return;
+    }
+    servo->due_us = sim->now_us + servo->plant.time_us;
+    servo->plant.goal_mdeg = goal_mdeg(sim, servo);
+    if (!servo->by_hand) {
+        grobo_i_sim_drive(sim, index);
+    }
+    servo->begun_us = sim->now_us;
+}
+
+static bool starts(grobo_sim *sim, int index, int32_t here_mdeg)
+{
+    (void)here_mdeg;
+    sim->servo[index].plant.goal_mdeg = goal_mdeg(sim, &sim->servo[index]);
+    return true;
+}
+
+static void cut(grobo_sim *sim, int index, bool hot)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    grobo_i_dxl_put(servo, GROBO_ROLE_TORQUE, 0);
+    servo->status |= hot ? GROBO_DXL2_OVERHEATED : 0;
+    follow(sim, index);
+}
+
+static void refresh(grobo_sim *sim, int index)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    const grobo_servo_register *current = grobo_servo_register_of(servo->model, GROBO_ROLE_CURRENT);
+    int64_t now_us = sim->now_us;
+    grobo_i_sim_settle(sim, index);
+    double count_ma = current == NULL ? 0 : current->unit[0] == '1' ? 1 : 2.69;
+    grobo_i_dxl_refresh(sim, index, reverses(servo) ? -SPEED_MDEG_S : SPEED_MDEG_S, count_ma);
+    int32_t position = position_at(servo, grobo_i_sim_angle_mdeg(servo, now_us));
+    grobo_i_dxl_put(servo, GROBO_ROLE_POSITION, position);
+    grobo_i_dxl_put(servo, GROBO_ROLE_ERROR, servo->status);
+    static const char *const same[] = {"position_trajectory", "velocity_trajectory", "present_pwm",
+                                       "tick", "moving_status"};
+    bool moves = grobo_i_sim_moving(servo, now_us);
+    const int64_t values[] = {position, grobo_i_dxl_get(servo, GROBO_ROLE_PRESENT_SPEED),
+                              lround(grobo_i_dxl_effort(sim, index) * 885), now_us / 1000 % 32768,
+                              moves ? 0x32 : 0x01};
+    for (size_t i = 0; i < sizeof same / sizeof *same; i++) {
+        const grobo_servo_register *reg = grobo_i_dxl_row(servo, same[i]);
+        (void)grobo_servo_register_put(servo->model, reg, (int32_t)values[i],
+                                       &servo->reg[reg->address]);
+    }
+}
+
+/* ---- what a servo does by itself ----------------------------------------------------------- */
+
+static bool is_fed(const grobo_sim *sim, const grobo_sim_servo *servo)
+{
+    int64_t dv = (int64_t)sim->supply_mv * servo->model->voltage_mv / sim->config.supply_mv / 100;
+    return dv >= grobo_i_dxl_get(servo, GROBO_ROLE_MIN_VOLTAGE) &&
+           dv <= grobo_i_dxl_get(servo, GROBO_ROLE_MAX_VOLTAGE);
+}
+
+static int64_t overload_us(const grobo_sim_servo *servo)
+{
+    bool works = servo->stalled && servo->plant.torque == GROBO_TORQUE_ON &&
+                 servo->plant.most_ma >= OVERLOAD_EFFORT * servo->plant.stall_ma &&
+                 (servo->status & GROBO_DXL2_OVERLOAD) == 0;
+    return works ? servo->start_us + servo->move_us + OVERLOAD_US : GROBO_NEVER_US;
+}
+
+static int64_t watchdog_us(const grobo_sim_servo *servo)
+{
+    int32_t count = grobo_i_dxl_get(servo, GROBO_ROLE_WATCHDOG);
+    return count > 0 && servo->plant.torque == GROBO_TORQUE_ON
+               ? servo->heard_us + (int64_t)count * WATCHDOG_US
+               : GROBO_NEVER_US;
+}
+
+static int64_t next_us(const grobo_sim *sim, int index)
+{
+    const grobo_sim_servo *servo = &sim->servo[index];
+    if (!servo->powered) {
+        return GROBO_NEVER_US;
+    }
+    if ((servo->status & GROBO_DXL2_VOLTAGE) == 0 && !is_fed(sim, servo)) {
+        return sim->now_us;
+    }
+    int64_t load_us = overload_us(servo), dog_us = watchdog_us(servo);
+    return load_us < dog_us ? load_us : dog_us;
+}
+
+/* An error that the register shutdown names takes the torque until a restart. */
+static void fail(grobo_sim *sim, int index, unsigned error)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    grobo_torque before = (grobo_torque)servo->plant.torque;
+    servo->status |= (uint8_t)error;
+    if ((grobo_i_dxl_get(servo, GROBO_ROLE_SHUTDOWN) & (int)error) != 0) {
+        cut(sim, index, false);
+        grobo_i_sim_torque(sim, index, before);
+    }
+}
+
+static void act(grobo_sim *sim, int index)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    if ((servo->status & GROBO_DXL2_VOLTAGE) == 0 && !is_fed(sim, servo)) {
+        fail(sim, index, GROBO_DXL2_VOLTAGE);
+    } else if (overload_us(servo) <= sim->now_us) {
+        fail(sim, index, GROBO_DXL2_OVERLOAD);
+    } else if (watchdog_us(servo) <= sim->now_us) {
+        grobo_i_dxl_put(servo, GROBO_ROLE_WATCHDOG, -1);
+        grobo_i_dxl_put(servo, GROBO_ROLE_ACCELERATION, 0);
+        grobo_i_dxl_put(servo, GROBO_ROLE_SPEED, 0);
+        grobo_i_dxl_put(servo, GROBO_ROLE_GOAL_SPEED, 0);
+        follow(sim, index);
+        grobo_i_sim_halt(sim, index);
+        servo->plant.goal_mdeg = servo->to_mdeg;
+    }
+}
+
+/* ---- restart ------------------------------------------------------------------------------- */
+
+static int32_t bps(const grobo_sim *sim, int index)
+{
+    int32_t code = grobo_i_dxl_get(&sim->servo[index], GROBO_ROLE_BAUD);
+    return code >= 0 && code < RATES ? rates_bps[code] : GROBO_ERR_ARG;
+}
+
+static bool knows(const grobo_servo_model *model)
+{
+    return model->table == &grobo_dxl2_table;
+}
+
+static void restart(grobo_sim *sim, int index)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    grobo_i_dxl_boot(sim, index);
+    grobo_i_dxl_put(servo, GROBO_ROLE_GOAL_PWM, grobo_i_dxl_get(servo, GROBO_ROLE_MAX_TORQUE));
+    grobo_i_dxl_put(servo, GROBO_ROLE_GOAL_CURRENT,
+                    grobo_i_dxl_get(servo, GROBO_ROLE_CURRENT_LIMIT));
+    one_turn(sim, servo);
+    int32_t here_mdeg = grobo_i_sim_angle_mdeg(servo, sim->now_us);
+    grobo_i_dxl_put(servo, GROBO_ROLE_GOAL, position_at(servo, here_mdeg));
+    servo->heard_us = sim->now_us;
+    follow(sim, index);
+}
+
+static bool factory(grobo_sim *sim, int index, uint8_t id, uint32_t baud_bps)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    const grobo_servo_register *rate = grobo_servo_register_of(servo->model, GROBO_ROLE_BAUD);
+    int code = 0;
+    while (code <= rate->max && (uint32_t)rates_bps[code] != baud_bps) {
+        code++;
+    }
+    if (code > rate->max || id > GROBO_DXL2_ID_MAX) {
+        return false;
+    }
+    grobo_i_dxl_factory(servo);
+    grobo_i_dxl_put(servo, GROBO_ROLE_ID, id);
+    grobo_i_dxl_put(servo, GROBO_ROLE_BAUD, code);
+    memcpy(servo->flash, servo->reg, sizeof servo->flash);
+    return true;
+}
+
+/* ---- writing ------------------------------------------------------------------------------- */
+
+static uint8_t outside_limits(const grobo_sim_servo *servo, const grobo_servo_register *reg,
+                              int32_t value)
+{
+    int32_t most = INT32_MAX, least = INT32_MIN;
+    if (reg->role == GROBO_ROLE_GOAL && mode_of(servo) == GROBO_DXL2_MODE_POSITION) {
+        least = grobo_i_dxl_get(servo, GROBO_ROLE_MIN_POSITION);
+        most = grobo_i_dxl_get(servo, GROBO_ROLE_MAX_POSITION);
+    } else if (reg->role == GROBO_ROLE_GOAL_SPEED) {
+        most = grobo_i_dxl_get(servo, GROBO_ROLE_SPEED_LIMIT);
+        least = -most;
+    } else if (reg->role == GROBO_ROLE_GOAL_CURRENT) {
+        most = grobo_i_dxl_get(servo, GROBO_ROLE_CURRENT_LIMIT);
+        least = -most;
+    } else if (reg->role == GROBO_ROLE_GOAL_PWM) {
+        most = grobo_i_dxl_get(servo, GROBO_ROLE_MAX_TORQUE);
+        least = -most;
+    }
+    return value < least || value > most ? GROBO_DXL2_BAD_LIMIT : GROBO_DXL2_DONE;
+}
+
+static bool is_goal(const grobo_servo_register *reg)
+{
+    return reg->role == GROBO_ROLE_GOAL || reg->role == GROBO_ROLE_GOAL_SPEED ||
+           reg->role == GROBO_ROLE_GOAL_CURRENT || reg->role == GROBO_ROLE_GOAL_PWM;
+}
+
+static bool has_mode(const grobo_sim_servo *servo, int32_t mode)
+{
+    bool by_current = mode == GROBO_DXL2_MODE_CURRENT || mode == GROBO_DXL2_MODE_GRIP;
+    return by_current
+               ? grobo_servo_register_of(servo->model, GROBO_ROLE_GOAL_CURRENT) != NULL
+               : places(mode) || mode == GROBO_DXL2_MODE_VELOCITY || mode == GROBO_DXL2_MODE_PWM;
+}
+
+/* Whether a register may get a value. */
+static uint8_t judge_value(const grobo_sim_servo *servo, const grobo_servo_register *reg,
+                           int32_t value)
+{
+    bool stopped = is_goal(reg) && grobo_i_dxl_get(servo, GROBO_ROLE_WATCHDOG) < 0;
+    if (value < reg->min || value > reg->max || stopped) {
+        return GROBO_DXL2_BAD_RANGE;
+    }
+    if ((reg->role == GROBO_ROLE_MODE && !has_mode(servo, value)) ||
+        (reg->role == GROBO_ROLE_WATCHDOG && value < 0)) {
+        return GROBO_DXL2_BAD_RANGE;
+    }
+    int32_t shutdown = grobo_i_dxl_get(servo, GROBO_ROLE_SHUTDOWN);
+    if (reg->role == GROBO_ROLE_TORQUE && value == 1 && (servo->status & shutdown) != 0) {
+        return GROBO_DXL2_FAILED;
+    }
+    return outside_limits(servo, reg, value);
+}
+
+/* Whether all of a write can be done: GROBO_DXL2_DONE, or why not. */
+static uint8_t judge(const grobo_sim_servo *servo, int address, const uint8_t *bytes, size_t n)
+{
+    const grobo_servo_register *reg;
+    bool hit = false;
+    if (n == 0) {
+        return GROBO_DXL2_BAD_LENGTH;
+    }
+    for (size_t i = 0; (reg = grobo_servo_register_row(servo->model, i)) != NULL; i++) {
+        int end = address + (int)n;
+        if (reg->address + reg->bytes <= address || reg->address >= end) {
+            continue;
+        }
+        bool locked = (reg->flags & GROBO_REGISTER_KEPT) != 0 &&
+                      grobo_i_dxl_get(servo, GROBO_ROLE_TORQUE) != 0;
+        if ((reg->flags & GROBO_REGISTER_W) == 0 || locked) {
+            return GROBO_DXL2_NO_ACCESS;
+        }
+        if (reg->address < address || reg->address + reg->bytes > end) {
+            return GROBO_DXL2_BAD_LENGTH;
+        }
+        uint8_t error = judge_value(servo, reg, grobo_i_dxl_value_in(servo, reg, address, bytes));
+        if (error != GROBO_DXL2_DONE) {
+            return error;
+        }
+        hit = true;
+    }
+    return hit ? GROBO_DXL2_DONE : GROBO_DXL2_NO_ACCESS;
+}
+
+/* Gains and profile of the new mode; the same rows as from the factory. */
+static void mode_written(grobo_sim *sim, int index)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    static const char *const gains[] = {"velocity_i", "velocity_p", "position_d", "position_i",
+                                        "position_p"};
+    for (size_t i = 0; i < sizeof gains / sizeof *gains; i++) {
+        const grobo_servo_register *reg = grobo_i_dxl_row(servo, gains[i]);
+        (void)grobo_servo_register_put(servo->model, reg, reg->factory, &servo->reg[reg->address]);
+    }
+    grobo_i_dxl_put(servo, GROBO_ROLE_SPEED, 0);
+    grobo_i_dxl_put(servo, GROBO_ROLE_ACCELERATION, 0);
+    grobo_i_dxl_put(servo, GROBO_ROLE_GOAL_PWM, grobo_i_dxl_get(servo, GROBO_ROLE_MAX_TORQUE));
+    grobo_i_dxl_put(servo, GROBO_ROLE_GOAL_CURRENT,
+                    grobo_i_dxl_get(servo, GROBO_ROLE_CURRENT_LIMIT));
+    one_turn(sim, servo);
+    int32_t here_mdeg = grobo_i_sim_angle_mdeg(servo, sim->now_us);
+    grobo_i_dxl_put(servo, GROBO_ROLE_GOAL, position_at(servo, here_mdeg));
+}
+
+static void took_effect(grobo_sim *sim, int index, const grobo_servo_register *reg)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    grobo_torque before = (grobo_torque)servo->plant.torque;
+    int32_t value = grobo_servo_register_get(servo->model, reg, &servo->reg[reg->address]);
+    if (reg->role == GROBO_ROLE_MODE) {
+        mode_written(sim, index);
+    }
+    follow(sim, index);
+    if (reg->role == GROBO_ROLE_TORQUE) {
+        grobo_i_sim_torque(sim, index, before);
+    } else if (is_goal(reg) && (reg->role == GROBO_ROLE_GOAL || servo->plant.wheel)) {
+        drive(sim, index);
+    }
+    bool goal = reg->role == GROBO_ROLE_GOAL;
+    grobo_i_sim_tell(sim, &(grobo_sim_event){.kind = goal ? GROBO_SIM_GOAL : GROBO_SIM_REGISTER,
+                                             .time_us = sim->now_us,
+                                             .servo = index,
+                                             .value = goal ? value : reg->address,
+                                             .value2 = goal ? 0 : value});
+}
+
+static void store(grobo_sim *sim, int index, int address, const uint8_t *bytes, size_t n)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    const grobo_servo_register *reg;
+    grobo_i_dxl_store(servo, address, bytes, n, true);
+    for (size_t i = 0; (reg = grobo_servo_register_row(servo->model, i)) != NULL; i++) {
+        if (reg->address >= address && reg->address < address + (int)n) {
+            took_effect(sim, index, reg);
+        }
+    }
+}
+
+static uint8_t write(grobo_sim *sim, int index, int address, const uint8_t *bytes, size_t n)
+{
+    uint8_t error = judge(&sim->servo[index], address, bytes, n);
+    if (error == GROBO_DXL2_DONE) {
+        store(sim, index, address, bytes, n);
+    } else {
+        grobo_i_sim_note(sim, GROBO_SIM_REFUSED, index, address);
+    }
+    return error;
+}
+
+/* ---- answers ------------------------------------------------------------------------------- */
+
+static uint8_t with_alert(const grobo_sim_servo *servo, uint8_t error)
+{
+    return (uint8_t)(error | (servo->status != 0 ? GROBO_DXL2_ALERT : 0));
+}
+
+static void answer(grobo_sim *sim, int index, grobo_i_dxl_round *round, uint8_t error,
+                   const uint8_t *data, size_t n)
+{
+    uint8_t bytes[GROBO_SIM_TALK_BYTES];
+    const grobo_dxl2_packet status = {.id = sim->servo[index].plant.id,
+                                      .instruction = GROBO_DXL2_STATUS,
+                                      .error = with_alert(&sim->servo[index], error),
+                                      .data = data,
+                                      .data_bytes = n};
+    int size = grobo_dxl2_build(&status, bytes, sizeof bytes);
+    if (size > 0) {
+        grobo_i_dxl_answer(sim, index, round, bytes, (size_t)size);
+    }
+}
+
+static uint8_t judge_read(const grobo_sim_servo *servo, int address, int length)
+{
+    if (length == 0) {
+        return GROBO_DXL2_BAD_LENGTH;
+    }
+    return address + length > grobo_i_dxl_end(servo) ? GROBO_DXL2_NO_ACCESS : GROBO_DXL2_DONE;
+}
+
+static void answer_read(grobo_sim *sim, int index, grobo_i_dxl_round *round, int address,
+                        int length)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    uint8_t error = judge_read(servo, address, length);
+    if (grobo_i_dxl_get(servo, GROBO_ROLE_REPLY_LEVEL) == 0) {
+        return;
+    }
+    refresh(sim, index);
+    answer(sim, index, round, error, &servo->reg[error == 0 ? address : 0],
+           error == 0 ? (size_t)length : 0);
+}
+
+/* ---- packets for one ----------------------------------------------------------------------- */
+
+static void ping(grobo_sim *sim, int index, grobo_i_dxl_round *round)
+{
+    const uint8_t *reg = sim->servo[index].reg;
+    const grobo_servo_register *firmware =
+        grobo_servo_register_of(sim->servo[index].model, GROBO_ROLE_FIRMWARE);
+    const uint8_t data[] = {reg[0], reg[1], reg[firmware->address]};
+    answer(sim, index, round, GROBO_DXL2_DONE, data, sizeof data);
+}
+
+static uint8_t keep(grobo_sim *sim, int index, const grobo_dxl2_packet *packet)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    uint8_t error = judge(servo, packet->address, packet->data, packet->data_bytes);
+    if (error == GROBO_DXL2_DONE && packet->data_bytes > sizeof servo->kept) {
+        error = GROBO_DXL2_BAD_LENGTH;
+    }
+    if (error == GROBO_DXL2_DONE) {
+        memcpy(servo->kept, packet->data, packet->data_bytes);
+        servo->kept_bytes = (uint8_t)packet->data_bytes;
+        servo->kept_address = packet->address;
+    }
+    return error;
+}
+
+static uint8_t do_kept(grobo_sim *sim, int index)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    size_t n = servo->kept_bytes;
+    servo->kept_bytes = 0;
+    return n == 0 ? GROBO_DXL2_BAD_INSTRUCTION
+                  : write(sim, index, servo->kept_address, servo->kept, n);
+}
+
+static uint8_t forget_turns(grobo_sim *sim, int index, const grobo_dxl2_packet *packet)
+{
+    static const uint8_t key[] = {0x01, 0x44, 0x58, 0x4C, 0x22};
+    if (packet->data_bytes != sizeof key || memcmp(packet->data, key, sizeof key) != 0) {
+        return GROBO_DXL2_BAD_RANGE;
+    }
+    if (grobo_i_sim_moving(&sim->servo[index], sim->now_us)) {
+        return GROBO_DXL2_FAILED;
+    }
+    one_turn(sim, &sim->servo[index]);
+    return GROBO_DXL2_DONE;
+}
+
+static uint8_t reset(grobo_sim *sim, int index, const grobo_dxl2_packet *packet)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    uint8_t what = packet->data_bytes == 1 ? packet->data[0] : 0;
+    bool all = what == GROBO_DXL2_RESET_ALL && packet->id != GROBO_DXL2_ID_ALL;
+    if (!all && what != GROBO_DXL2_RESET_BUT_ID && what != GROBO_DXL2_RESET_BUT_ID_BAUD) {
+        return GROBO_DXL2_BAD_RANGE;
+    }
+    int32_t id = servo->plant.id, rate = grobo_i_dxl_get(servo, GROBO_ROLE_BAUD);
+    grobo_i_dxl_factory(servo);
+    if (!all) {
+        grobo_i_dxl_put(servo, GROBO_ROLE_ID, id);
+    }
+    if (what == GROBO_DXL2_RESET_BUT_ID_BAUD) {
+        grobo_i_dxl_put(servo, GROBO_ROLE_BAUD, rate);
+    }
+    memcpy(servo->flash, servo->reg, sizeof servo->flash);
+    grobo_i_sim_reboot(sim, index);
+    return GROBO_DXL2_DONE;
+}
+
+static uint8_t carry_out(grobo_sim *sim, int index, const grobo_dxl2_packet *packet)
+{
+    uint8_t code = packet->instruction;
+    if (code == GROBO_DXL2_WRITE) {
+        return write(sim, index, packet->address, packet->data, packet->data_bytes);
+    }
+    if (code == GROBO_DXL2_REG_WRITE) {
+        return keep(sim, index, packet);
+    }
+    if (code == GROBO_DXL2_ACTION) {
+        return do_kept(sim, index);
+    }
+    if (code == GROBO_DXL2_CLEAR) {
+        return forget_turns(sim, index, packet);
+    }
+    bool later = code == GROBO_DXL2_REBOOT || code == GROBO_DXL2_FACTORY_RESET;
+    return later ? GROBO_DXL2_DONE : GROBO_DXL2_BAD_INSTRUCTION;
+}
+
+static void for_one(grobo_sim *sim, int index, const grobo_dxl2_packet *packet)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    grobo_i_dxl_round round = {0};
+    bool named = packet->id == servo->plant.id;
+    if (packet->instruction == GROBO_DXL2_READ) {
+        if (named) {
+            answer_read(sim, index, &round, packet->address, packet->length);
+        }
+        return;
+    }
+    uint8_t id = servo->plant.id;
+    uint8_t error = carry_out(sim, index, packet);
+    if (named && grobo_i_dxl_get(servo, GROBO_ROLE_REPLY_LEVEL) == 2) {
+        uint8_t now = servo->plant.id;
+        servo->plant.id = id; /* a new one is for what comes next */
+        answer(sim, index, &round, error, NULL, 0);
+        servo->plant.id = now;
+    }
+    if (packet->instruction == GROBO_DXL2_REBOOT) {
+        grobo_i_sim_reboot(sim, index);
+    } else if (packet->instruction == GROBO_DXL2_FACTORY_RESET) {
+        (void)reset(sim, index, packet);
+    }
+}
+
+/* ---- packets for several ------------------------------------------------------------------- */
+
+/* What a packet asks of the k-th of its list. */
+typedef struct item {
+    uint8_t id;
+    uint16_t address, length;
+    const uint8_t *data;
+} item;
+
+static bool is_bulk(const grobo_dxl2_packet *packet)
+{
+    return packet->instruction == GROBO_DXL2_BULK_READ ||
+           packet->instruction == GROBO_DXL2_FAST_BULK_READ ||
+           packet->instruction == GROBO_DXL2_BULK_WRITE;
+}
+
+static bool is_write(const grobo_dxl2_packet *packet)
+{
+    return packet->instruction == GROBO_DXL2_SYNC_WRITE ||
+           packet->instruction == GROBO_DXL2_BULK_WRITE;
+}
+
+/* The item that begins at *at; false where no whole one does. */
+static bool next_item(const grobo_dxl2_packet *packet, size_t *at, item *found)
+{
+    grobo_i_span span = {packet->data, packet->data_bytes};
+    const uint8_t *head = grobo_i_span_at(span, *at, is_bulk(packet) ? 5 : 1);
+    if (head == NULL) {
+        return false;
+    }
+    *found = (item){head[0], packet->address, packet->length, NULL};
+    *at += 1;
+    if (is_bulk(packet)) {
+        found->address = grobo_i_get_u16(head + 1);
+        found->length = grobo_i_get_u16(head + 3);
+        *at += 4;
+    }
+    if (is_write(packet)) {
+        found->data = grobo_i_span_at(span, *at, found->length);
+        *at += found->length;
+        return found->data != NULL;
+    }
+    return true;
+}
+
+static int hearer(grobo_sim *sim, uint8_t id, const grobo_sim_event *raw)
+{
+    for (int i = 0; i < sim->n_servos; i++) {
+        grobo_sim_servo *servo = &sim->servo[i];
+        if (servo->family == &grobo_sim_dxl2 && servo->plant.id == id &&
+            grobo_i_sim_hears(sim, i, raw)) {
+            servo->heard_us = sim->now_us;
+            return i;
+        }
+    }
+    return -1;
+}
+
+static void read_each(grobo_sim *sim, const grobo_dxl2_packet *packet, const grobo_sim_event *raw)
+{
+    grobo_i_dxl_round round = {0};
+    item one;
+    for (size_t at = 0; next_item(packet, &at, &one);) {
+        int index = hearer(sim, one.id, raw);
+        if (index < 0) {
+            grobo_i_dxl_silence(sim, &round, GROBO_DXL2_STATUS_BYTES + (size_t)one.length);
+        } else {
+            answer_read(sim, index, &round, one.address, one.length);
+        }
+    }
+}
+
+/* The bytes that one servo adds to a fast status: the first the head of all. */
+static size_t fast_part(grobo_sim *sim, int index, const item *one, uint8_t *bytes, size_t n)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    refresh(sim, index);
+    bytes[n++] = with_alert(servo, GROBO_DXL2_DONE);
+    bytes[n++] = one->id;
+    memcpy(bytes + n, &servo->reg[one->address], one->length);
+    return n + one->length;
+}
+
+/* One status that all of the list make together; whoever is silent ends it. */
+static void read_fast(grobo_sim *sim, const grobo_dxl2_packet *packet, const grobo_sim_event *raw)
+{
+    uint8_t bytes[GROBO_SIM_TALK_BYTES] = {
+        0xFF, 0xFF, 0xFD, 0x00, GROBO_DXL2_ID_ALL, 0, 0, GROBO_DXL2_STATUS};
+    size_t length = 1, n = 8;
+    uint16_t crc = 0;
+    int64_t at_ns = -1;
+    item one;
+    for (size_t at = 0; next_item(packet, &at, &one);) {
+        length += 4u + one.length;
+    }
+    grobo_i_put_u16(bytes + 5, (uint16_t)length);
+    for (size_t at = 0; next_item(packet, &at, &one); n = 0) {
+        int index = hearer(sim, one.id, raw);
+        if (index < 0 || one.length > sizeof bytes - 16 ||
+            judge_read(&sim->servo[index], one.address, one.length) != GROBO_DXL2_DONE) {
+            return;
+        }
+        if (at_ns < 0) {
+            at_ns = (int64_t)grobo_i_dxl_get(&sim->servo[index], GROBO_ROLE_RETURN_DELAY) * 2000;
+        }
+        n = fast_part(sim, index, &one, bytes, n);
+        crc = grobo_dxl2_crc(crc, bytes, n);
+        grobo_i_put_u16(bytes + n, crc);
+        crc = grobo_dxl2_crc(crc, bytes + n, 2);
+        grobo_i_sim_speak(sim, index, bytes, n + 2, at_ns);
+        at_ns += (int64_t)(n + 2) * sim->bus_byte_ns;
+    }
+}
+
+static void write_each(grobo_sim *sim, const grobo_dxl2_packet *packet, const grobo_sim_event *raw)
+{
+    item one;
+    for (size_t at = 0; next_item(packet, &at, &one);) {
+        int index = hearer(sim, one.id, raw);
+        if (index >= 0) {
+            (void)write(sim, index, one.address, one.data, one.length);
+        }
+    }
+}
+
+/* Everyone answers, in the order of ids. */
+static void ping_all(grobo_sim *sim, const grobo_sim_event *raw)
+{
+    grobo_i_dxl_round round = {0};
+    for (int id = 0; id <= GROBO_DXL2_ID_MAX; id++) {
+        int index = hearer(sim, (uint8_t)id, raw);
+        if (index >= 0) {
+            ping(sim, index, &round);
+        }
+    }
+}
+
+/* ---- packets ------------------------------------------------------------------------------- */
+
+static bool is_for(const grobo_sim_servo *servo, uint8_t id)
+{
+    int second = servo->reg[12]; /* secondary_id; above the highest id: none */
+    return servo->plant.id == id || id == GROBO_DXL2_ID_ALL ||
+           (second == id && second <= GROBO_DXL2_ID_MAX);
+}
+
+static void spread(grobo_sim *sim, const grobo_dxl2_packet *packet, int result,
+                   const grobo_sim_event *raw)
+{
+    for (int i = 0; i < sim->n_servos; i++) {
+        grobo_sim_servo *servo = &sim->servo[i];
+        grobo_i_dxl_round round = {0};
+        if (servo->family != &grobo_sim_dxl2 || !is_for(servo, packet->id) ||
+            !grobo_i_sim_hears(sim, i, raw)) {
+            continue;
+        }
+        servo->heard_us = sim->now_us;
+        if (result == GROBO_ERR_SHORT) {
+            if (packet->id == servo->plant.id) {
+                answer(sim, i, &round, GROBO_DXL2_BAD_LENGTH, NULL, 0);
+            }
+        } else if (packet->instruction == GROBO_DXL2_PING) {
+            ping(sim, i, &round);
+        } else {
+            for_one(sim, i, packet);
+        }
+    }
+}
+
+static void packet(grobo_sim *sim, const grobo_sim_event *raw)
+{
+    uint8_t data[GROBO_DXL2_FRAME_MAX_BYTES];
+    grobo_dxl2_packet parts = {.id = raw->bytes[4], .instruction = raw->bytes[7]};
+    int result = grobo_dxl2_parse(raw->bytes, raw->n_bytes, data, sizeof data, &parts);
+    uint8_t code = parts.instruction;
+    if (code == GROBO_DXL2_SYNC_READ || code == GROBO_DXL2_BULK_READ) {
+        read_each(sim, &parts, raw);
+    } else if (code == GROBO_DXL2_FAST_SYNC_READ || code == GROBO_DXL2_FAST_BULK_READ) {
+        read_fast(sim, &parts, raw);
+    } else if (is_write(&parts)) {
+        write_each(sim, &parts, raw);
+    } else if (parts.id == GROBO_DXL2_ID_ALL && code == GROBO_DXL2_PING) {
+        ping_all(sim, raw);
+    } else {
+        spread(sim, &parts, result, raw);
+    }
+}
+
+static int measure(const uint8_t *bytes, size_t n, bool good)
+{
+    int size = grobo_dxl2_measure(bytes, n, GROBO_ACCEPT_COMMANDS);
+    return size == GROBO_ERR_CHECKSUM && !good ? 7 + grobo_i_get_u16(bytes + 5) : size;
+}
+
+/* ---- inspection ---------------------------------------------------------------------------- */
+
+static int set(grobo_sim *sim, int index, int address, int32_t value)
+{
+    uint8_t bytes[4];
+    int n = grobo_i_dxl_bytes(&sim->servo[index], address, value, bytes);
+    if (n > 0) {
+        store(sim, index, address, bytes, (size_t)n);
+    }
+    return n < 0 ? n : GROBO_OK;
+}
+
+const grobo_sim_family grobo_sim_dxl2 = {.knows = knows,
+                                         .measure = measure,
+                                         .packet = packet,
+                                         .factory = factory,
+                                         .boot = restart,
+                                         .cut = cut,
+                                         .starts = starts,
+                                         .refresh = refresh,
+                                         .bps = bps,
+                                         .next_us = next_us,
+                                         .act = act,
+                                         .get = grobo_i_dxl_look,
+                                         .set = set};

@@ -1,0 +1,490 @@
+/* SPDX-License-Identifier: MIT */
+/* RS30x: registers, flash, and what packets do to them. */
+#include <math.h>
+#include <string.h>
+
+#include "src/sim/family.h"
+#include "src/sim/note.h"
+#include "src/sim/power.h"
+#include "src/sim/registers.h"
+#include "src/sim/servo.h"
+#include "src/sim/shaft.h"
+
+/* The alarm flag comes this much below the temperature limit. An assumption. */
+#define ALARM_BELOW_LIMIT_C 10
+/* Not in the manuals at hand: the limit of register TEMPERATURE_LIMIT, the firmware's number. */
+#define LIMIT_C 80
+#define FIRMWARE 1
+/* Copper loss of RS301CR. An assumption (docs/simulator.md). */
+#define HEAT_C_PER_MA2 8.5e-5
+
+/* ---- the shaft's side ---------------------------------------------------------------------- */
+
+static int32_t ddeg_of_mdeg(const grobo_sim_servo *servo, int32_t mdeg)
+{
+    int32_t ddeg = (mdeg < 0 ? mdeg - 50 : mdeg + 50) / 100;
+    return servo->reg[GROBO_RS30X_REVERSE] ? -ddeg : ddeg;
+}
+
+/* The plant after a change of registers. */
+static void follow(grobo_sim_servo *servo)
+{
+    const grobo_sim_type *type = grobo_i_sim_type_of(servo);
+    int32_t goal_ddeg = grobo_i_sim_value(servo, GROBO_RS30X_GOAL);
+    servo->plant = (grobo_sim_plant){
+        .heat_c_per_ma2 = HEAT_C_PER_MA2,
+        .goal_mdeg = (servo->reg[GROBO_RS30X_REVERSE] ? -goal_ddeg : goal_ddeg) * 100,
+        .speed_mdeg_s = type->speed_mdeg_s,
+        .stall_ma = type->stall_ma,
+        .most_ma = type->stall_ma * servo->reg[GROBO_RS30X_MAX_TORQUE] / 100,
+        .limit_c = grobo_i_sim_value(servo, GROBO_RS30X_TEMPERATURE_LIMIT),
+        .nominal_mv = 7400,
+        .torque = servo->reg[GROBO_RS30X_TORQUE],
+        .id = servo->reg[GROBO_RS30X_ID]};
+}
+
+static void cut(grobo_sim *sim, int index, bool hot)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    servo->reg[GROBO_RS30X_TORQUE] = GROBO_TORQUE_OFF;
+    servo->status |= hot ? GROBO_RS30X_STATUS_OVERHEATED : 0;
+    follow(servo);
+}
+
+static bool starts(grobo_sim *sim, int index, int32_t here_mdeg)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    if (sim->config.jump_on_torque) {
+        return true;
+    }
+    grobo_i_sim_hold(servo, GROBO_RS30X_GOAL, ddeg_of_mdeg(servo, here_mdeg));
+    follow(servo);
+    return false;
+}
+
+static int32_t bps(const grobo_sim *sim, int index)
+{
+    const grobo_sim_servo *servo = &sim->servo[index];
+    return sim->config.baud_at_once ? grobo_rs30x_baud_bps(servo->reg[GROBO_RS30X_BAUD])
+                                    : servo->baud_bps;
+}
+
+static void refresh(grobo_sim *sim, int index)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    grobo_i_sim_settle(sim, index);
+    int64_t now_us = sim->now_us;
+    int32_t here_ddeg = ddeg_of_mdeg(servo, grobo_i_sim_angle_mdeg(servo, now_us));
+    grobo_i_sim_hold(servo, GROBO_RS30X_POSITION, here_ddeg);
+    grobo_i_sim_hold(servo, GROBO_RS30X_TIME, grobo_i_sim_move_age_us(servo, now_us) / 10000);
+    grobo_i_sim_hold(servo, GROBO_RS30X_SPEED, grobo_i_sim_speed_dps(servo, now_us));
+    grobo_i_sim_hold(servo, GROBO_RS30X_CURRENT, grobo_i_sim_current_ma(servo, now_us));
+    grobo_i_sim_hold(servo, GROBO_RS30X_TEMPERATURE, lround(servo->temperature_c));
+    grobo_i_sim_hold(servo, GROBO_RS30X_VOLTAGE, grobo_i_sim_supply_mv(sim) / 10);
+}
+
+/* ---- flash --------------------------------------------------------------------------------- */
+
+static void put(uint8_t *registers, uint8_t address, int32_t value)
+{
+    (void)grobo_rs30x_register_put(grobo_rs30x_register_at(address), value, &registers[address]);
+}
+
+/* No.4-29 as they leave the factory (RS301CR/RS302CD manual, memory map). */
+static void factory_block(grobo_sim_servo *servo)
+{
+    const grobo_sim_type *type = grobo_i_sim_type_of(servo);
+    memset(&servo->reg[GROBO_RS30X_ID], 0, GROBO_SIM_FLASH_BYTES);
+    put(servo->reg, GROBO_RS30X_ID, 1);
+    put(servo->reg, GROBO_RS30X_BAUD, GROBO_RS30X_BAUD_CODE_DEFAULT);
+    put(servo->reg, GROBO_RS30X_CW_LIMIT, 1500);
+    put(servo->reg, GROBO_RS30X_CCW_LIMIT, -1500);
+    put(servo->reg, GROBO_RS30X_TEMPERATURE_LIMIT, LIMIT_C);
+    put(servo->reg, GROBO_RS30X_CW_MARGIN, 2);
+    put(servo->reg, GROBO_RS30X_CCW_MARGIN, 2);
+    put(servo->reg, GROBO_RS30X_CW_SLOPE, type->slope);
+    put(servo->reg, GROBO_RS30X_CCW_SLOPE, type->slope);
+    put(servo->reg, GROBO_RS30X_PUNCH, type->punch);
+}
+
+static void to_flash(grobo_sim_servo *servo)
+{
+    memcpy(servo->flash, &servo->reg[GROBO_RS30X_ID], GROBO_SIM_FLASH_BYTES);
+}
+
+static bool factory(grobo_sim *sim, int index, uint8_t id, uint32_t baud_bps)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    uint16_t model = sim->config.model->joints[index].servo_model;
+    int code = grobo_rs30x_baud_code(baud_bps);
+    if (code < 0) {
+        return false;
+    }
+    put(servo->reg, GROBO_RS30X_MODEL, model == 0 ? GROBO_RS30X_RS301CR : model);
+    put(servo->reg, GROBO_RS30X_FIRMWARE, FIRMWARE);
+    factory_block(servo);
+    put(servo->reg, GROBO_RS30X_ID, id);
+    put(servo->reg, GROBO_RS30X_BAUD, code);
+    to_flash(servo);
+    return true;
+}
+
+static void boot(grobo_sim *sim, int index)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    memcpy(&servo->reg[GROBO_RS30X_ID], servo->flash, GROBO_SIM_FLASH_BYTES);
+    servo->baud_bps = grobo_rs30x_baud_bps(servo->reg[GROBO_RS30X_BAUD]);
+    memset(&servo->reg[GROBO_RS30X_GOAL], 0, GROBO_REGISTERS - GROBO_RS30X_GOAL);
+    put(servo->reg, GROBO_RS30X_MAX_TORQUE, grobo_i_sim_type_of(servo)->max_torque_pct);
+    servo->status &= GROBO_RS30X_STATUS_FLASH_ERROR;
+    follow(servo);
+}
+
+static void saved(grobo_sim *sim, int index, bool whole)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    if (whole) {
+        to_flash(servo);
+        servo->status &= (uint8_t)~GROBO_RS30X_STATUS_FLASH_ERROR;
+    } else {
+        servo->status |= GROBO_RS30X_STATUS_FLASH_ERROR;
+    }
+}
+
+static bool flash_fits(const uint8_t *flash)
+{
+    uint8_t registers[GROBO_REGISTERS] = {0};
+    memcpy(&registers[GROBO_RS30X_ID], flash, GROBO_SIM_FLASH_BYTES);
+    for (int a = GROBO_RS30X_ID; a < GROBO_RS30X_ID + GROBO_SIM_FLASH_BYTES; a++) {
+        const grobo_rs30x_register *reg = grobo_rs30x_register_at((uint8_t)a);
+        int32_t value =
+            reg == NULL ? registers[a] : grobo_rs30x_register_get(reg, &registers[reg->address]);
+        if (value < (reg == NULL ? 0 : reg->min) || value > (reg == NULL ? 0 : reg->max)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* ---- writing ------------------------------------------------------------------------------- */
+
+static void goal_written(grobo_sim *sim, int index)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    int32_t goal_ddeg = grobo_i_sim_value(servo, GROBO_RS30X_GOAL);
+    int32_t cw_ddeg = grobo_i_sim_value(servo, GROBO_RS30X_CW_LIMIT);
+    int32_t ccw_ddeg = grobo_i_sim_value(servo, GROBO_RS30X_CCW_LIMIT);
+    goal_ddeg = goal_ddeg > cw_ddeg ? cw_ddeg : goal_ddeg;
+    goal_ddeg = goal_ddeg < ccw_ddeg ? ccw_ddeg : goal_ddeg;
+    grobo_i_sim_hold(servo, GROBO_RS30X_GOAL, goal_ddeg);
+    follow(servo);
+    int32_t time_cs = grobo_i_sim_value(servo, GROBO_RS30X_GOAL_TIME);
+    if (servo->reg[GROBO_RS30X_TORQUE] == GROBO_TORQUE_ON) {
+        servo->due_us = sim->now_us + (int64_t)time_cs * 10000;
+        grobo_i_sim_drive(sim, index);
+        servo->begun_us = sim->now_us;
+    }
+    grobo_i_sim_tell(sim, &(grobo_sim_event){.kind = GROBO_SIM_GOAL,
+                                             .time_us = sim->now_us,
+                                             .servo = index,
+                                             .value = goal_ddeg,
+                                             .value2 = time_cs});
+}
+
+/* Registers that take any value and make of it what they can, so that none is refused. */
+static bool bends(const grobo_rs30x_register *reg)
+{
+    return reg->address == GROBO_RS30X_GOAL || reg->address == GROBO_RS30X_MAX_TORQUE ||
+           reg->address == GROBO_RS30X_BAUD;
+}
+
+/* The manual on those beside the goal: over 100 % is 100 %, an unknown rate is 115200 bps. */
+static void bend(grobo_sim_servo *servo, const grobo_rs30x_register *reg)
+{
+    int32_t value = grobo_i_sim_value(servo, reg->address);
+    if (reg->address == GROBO_RS30X_MAX_TORQUE) {
+        grobo_i_sim_hold(servo, GROBO_RS30X_MAX_TORQUE, value);
+    } else if (reg->address == GROBO_RS30X_BAUD && value > reg->max) {
+        grobo_i_sim_hold(servo, GROBO_RS30X_BAUD, GROBO_RS30X_BAUD_CODE_DEFAULT);
+    }
+}
+
+/* Lets a register's new value take effect. */
+static void took_effect(grobo_sim *sim, int index, const grobo_rs30x_register *reg, int32_t before)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    bend(servo, reg);
+    follow(servo);
+    int32_t value = grobo_i_sim_value(servo, reg->address);
+    if (reg->address == GROBO_RS30X_GOAL) {
+        goal_written(sim, index);
+        return;
+    }
+    if (reg->address == GROBO_RS30X_TORQUE) {
+        servo->status &= (uint8_t)~GROBO_RS30X_STATUS_OVERHEATED;
+        grobo_i_sim_torque(sim, index, (grobo_torque)before);
+        return;
+    }
+    if (reg->address == GROBO_RS30X_REVERSE && value != before) {
+        grobo_i_sim_hold(servo, GROBO_RS30X_GOAL, -grobo_i_sim_value(servo, GROBO_RS30X_GOAL));
+        follow(servo);
+    }
+    grobo_i_sim_tell(sim, &(grobo_sim_event){.kind = GROBO_SIM_REGISTER,
+                                             .time_us = sim->now_us,
+                                             .servo = index,
+                                             .value = reg->address,
+                                             .value2 = value});
+}
+
+/* The row of the table that an address begins or continues, if the servo has it. */
+static const grobo_rs30x_register *row_at(const grobo_sim_servo *servo, int address)
+{
+    const grobo_rs30x_register *reg = grobo_rs30x_register_at((uint8_t)address);
+    bool lacks = address == GROBO_RS30X_SILENCE_TORQUE || address == GROBO_RS30X_WARM_UP_TIME;
+    return lacks && grobo_i_sim_type_of(servo)->early ? NULL : reg;
+}
+
+/* True if every register hit may be written and every value is in range. Reserved ones may. */
+static bool may_write(const grobo_sim_servo *servo, int address, const uint8_t *bytes, size_t n)
+{
+    uint8_t after[GROBO_REGISTERS];
+    if (address + (int)n > GROBO_REGISTERS) {
+        return false;
+    }
+    memcpy(after, servo->reg, sizeof after);
+    memcpy(&after[address], bytes, n);
+    for (int a = address; a < address + (int)n; a++) {
+        const grobo_rs30x_register *reg = row_at(servo, a);
+        if (reg == NULL) {
+            continue;
+        }
+        int32_t value = grobo_rs30x_register_get(reg, &after[reg->address]);
+        if (reg->access != GROBO_RS30X_ACCESS_RW ||
+            (!bends(reg) && (value < reg->min || value > reg->max))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static void store(grobo_sim *sim, int index, int address, const uint8_t *bytes, size_t n)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    uint8_t before[GROBO_REGISTERS];
+    memcpy(before, servo->reg, sizeof before);
+    for (size_t i = 0; i < n; i++) {
+        if (row_at(servo, address + (int)i) != NULL) {
+            servo->reg[address + (int)i] = bytes[i];
+        }
+    }
+    for (int a = address; a < address + (int)n; a++) {
+        const grobo_rs30x_register *reg = row_at(servo, a);
+        bool told = reg != NULL && reg->address != a && a > address;
+        if (reg != NULL && !told) {
+            took_effect(sim, index, reg, grobo_rs30x_register_get(reg, &before[reg->address]));
+        }
+    }
+}
+
+static bool write(grobo_sim *sim, int index, int address, const uint8_t *bytes, size_t n)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    if (may_write(servo, address, bytes, n)) {
+        store(sim, index, address, bytes, n);
+        return true;
+    }
+    servo->status |= GROBO_RS30X_STATUS_REFUSED;
+    grobo_i_sim_note(sim, GROBO_SIM_REFUSED, index, address);
+    return false;
+}
+
+/* ---- packets ------------------------------------------------------------------------------- */
+
+static uint8_t status_flags(const grobo_sim_servo *servo)
+{
+    int32_t limit_c = grobo_i_sim_value(servo, GROBO_RS30X_TEMPERATURE_LIMIT);
+    bool hot = servo->temperature_c >= limit_c - ALARM_BELOW_LIMIT_C;
+    return (uint8_t)(servo->status | (hot ? GROBO_RS30X_STATUS_HOT : 0));
+}
+
+static int64_t delay_ns(const grobo_sim_servo *servo)
+{
+    return (int64_t)GROBO_RS30X_DELAY_US(servo->reg[GROBO_RS30X_DELAY]) * 1000;
+}
+
+static void speak_registers(grobo_sim *sim, int index, const grobo_reply *want)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    uint8_t bytes[GROBO_REPLY_MAX_BYTES];
+    refresh(sim, index);
+    const grobo_rs30x_packet packet = {.kind = GROBO_RS30X_RETURN,
+                                       .id = servo->reg[GROBO_RS30X_ID],
+                                       .flags = status_flags(servo),
+                                       .address = (uint8_t)want->address,
+                                       .length = (uint8_t)want->length,
+                                       .count = 1,
+                                       .data = &servo->reg[want->address],
+                                       .data_bytes = want->length};
+    int n = grobo_rs30x_build(&packet, bytes, sizeof bytes);
+    servo->status &= (uint8_t)~GROBO_RS30X_STATUS_REFUSED;
+    if (n > 0) {
+        grobo_i_sim_speak(sim, index, bytes, (size_t)n, delay_ns(servo));
+    }
+}
+
+/* Later models take a question to all as one to themselves; docs/simulator.md says who knows. */
+static int wanted(const grobo_sim_servo *servo, const grobo_sim_event *raw, grobo_reply *want)
+{
+    uint8_t own[GROBO_RS30X_PACKET_MAX_BYTES];
+    uint8_t id = servo->reg[GROBO_RS30X_ID];
+    if (grobo_i_sim_type_of(servo)->early || raw->bytes[2] != GROBO_RS30X_ID_ALL) {
+        return grobo_rs30x_reply_to(raw->bytes, raw->n_bytes, want);
+    }
+    memcpy(own, raw->bytes, raw->n_bytes);
+    own[2] = id;
+    own[raw->n_bytes - 1] ^= GROBO_RS30X_ID_ALL ^ id;
+    return grobo_rs30x_reply_to(own, raw->n_bytes, want);
+}
+
+static void answer(grobo_sim *sim, int index, const grobo_sim_event *raw, bool done)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    grobo_reply want;
+    int result = wanted(servo, raw, &want);
+    bool lacks =
+        (raw->bytes[3] & 0xF) == GROBO_RS30X_WANT_60_127 && grobo_i_sim_type_of(servo)->early;
+    if (result < 0 || lacks) {
+        servo->status |= GROBO_RS30X_STATUS_REFUSED;
+        grobo_i_sim_note(sim, GROBO_SIM_REFUSED, index, raw->bytes[4]);
+    } else if (want.kind == GROBO_REPLY_RETURN) {
+        speak_registers(sim, index, &want);
+    } else if (want.kind == GROBO_REPLY_ACK && (done || sim->config.nack)) {
+        uint8_t byte = done ? GROBO_RS30X_ACK : GROBO_RS30X_NACK;
+        grobo_i_sim_speak(sim, index, &byte, 1, delay_ns(servo));
+    }
+}
+
+static void command(grobo_sim *sim, int index, uint8_t flags)
+{
+    bool reboots = (flags & GROBO_RS30X_REBOOT) != 0;
+    if (flags & GROBO_RS30X_FACTORY) {
+        factory_block(&sim->servo[index]);
+        follow(&sim->servo[index]);
+        grobo_i_sim_save(sim, index, false);
+    } else if (flags & GROBO_RS30X_FLASH) {
+        grobo_i_sim_save(sim, index, reboots);
+    } else if (reboots) {
+        grobo_i_sim_reboot(sim, index);
+    }
+}
+
+static void short_packet(grobo_sim *sim, int index, const grobo_rs30x_packet *packet,
+                         const grobo_sim_event *raw)
+{
+    bool done = true;
+    if (packet->count == 1 && packet->data_bytes > 0 && packet->address < GROBO_REGISTERS) {
+        done = write(sim, index, packet->address, packet->data, packet->data_bytes);
+    }
+    answer(sim, index, raw, done);
+    command(sim, index, packet->flags);
+}
+
+static void long_packet(grobo_sim *sim, int index, const grobo_rs30x_packet *packet)
+{
+    uint8_t id = sim->servo[index].reg[GROBO_RS30X_ID];
+    for (size_t i = 0; i < packet->count; i++) {
+        const uint8_t *part = packet->data + i * packet->length;
+        if (part[0] == id) {
+            (void)write(sim, index, packet->address, part + 1, packet->length - 1u);
+        }
+    }
+}
+
+static bool speaks_to(const grobo_rs30x_packet *packet, uint8_t id)
+{
+    if (packet->kind == GROBO_RS30X_SHORT) {
+        return packet->id == id || packet->id == GROBO_RS30X_ID_ALL;
+    }
+    for (size_t i = 0; i < packet->count; i++) {
+        if (packet->data[i * packet->length] == id) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static void packet(grobo_sim *sim, const grobo_sim_event *raw)
+{
+    grobo_rs30x_packet parts;
+    bool sum_ok;
+    (void)grobo_rs30x_peek(raw->bytes, raw->n_bytes, GROBO_ACCEPT_COMMANDS, &parts, &sum_ok);
+    for (int i = 0; i < sim->n_servos; i++) {
+        grobo_sim_servo *servo = &sim->servo[i];
+        if (servo->family != &grobo_sim_rs30x || !speaks_to(&parts, servo->reg[GROBO_RS30X_ID]) ||
+            !grobo_i_sim_hears(sim, i, raw)) {
+            continue;
+        }
+        if (parts.kind == GROBO_RS30X_SHORT) {
+            short_packet(sim, i, &parts, raw);
+        } else {
+            long_packet(sim, i, &parts);
+        }
+    }
+}
+
+static int measure(const uint8_t *bytes, size_t n, bool good)
+{
+    grobo_rs30x_packet parts;
+    bool sum_ok = true;
+    int size = grobo_rs30x_peek(bytes, n, GROBO_ACCEPT_COMMANDS, &parts, &sum_ok);
+    return size > 0 && good && !sum_ok ? GROBO_ERR_CHECKSUM : size;
+}
+
+/* ---- inspection ---------------------------------------------------------------------------- */
+
+static const grobo_rs30x_register *register_from(int address)
+{
+    if (address < 0 || address >= GROBO_REGISTERS) {
+        return NULL;
+    }
+    const grobo_rs30x_register *reg = grobo_rs30x_register_at((uint8_t)address);
+    return reg != NULL && reg->address == address ? reg : NULL;
+}
+
+static int get(grobo_sim *sim, int index, int address, int32_t *value)
+{
+    const grobo_rs30x_register *reg = register_from(address);
+    if (reg == NULL) {
+        return GROBO_ERR_ARG;
+    }
+    *value = grobo_i_sim_value(&sim->servo[index], reg->address);
+    return 0;
+}
+
+static int set(grobo_sim *sim, int index, int address, int32_t value)
+{
+    const grobo_rs30x_register *reg = register_from(address);
+    if (reg == NULL || (reg->access == GROBO_RS30X_ACCESS_R && reg->kept == GROBO_RS30X_KEPT_RAM)) {
+        return GROBO_ERR_ARG;
+    }
+    uint8_t bytes[2];
+    int n = grobo_rs30x_register_put(reg, value, bytes);
+    if (n < 0) {
+        return n;
+    }
+    store(sim, index, address, bytes, (size_t)n);
+    return 0;
+}
+
+const grobo_sim_family grobo_sim_rs30x = {.measure = measure,
+                                          .packet = packet,
+                                          .factory = factory,
+                                          .boot = boot,
+                                          .saved = saved,
+                                          .cut = cut,
+                                          .starts = starts,
+                                          .refresh = refresh,
+                                          .bps = bps,
+                                          .get = get,
+                                          .set = set,
+                                          .flash_fits = flash_fits};

@@ -1,0 +1,441 @@
+/* SPDX-License-Identifier: MIT */
+/* Several replies to one frame, replies of whoever is there, and what the frames of DYNAMIXEL and
+ * Feetech are answered by, in virtual time. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include <grobo/dxl2.h>
+#include <grobo/feetech.h>
+
+#include "tests/support/bus_peer.h"
+
+enum { MS = 1000, S = 1000000, POSITION = 132, BYTES = 4, BAUD = 1000000 };
+
+static const grobo_bus_config line = {
+    .protocol = &grobo_dxl2_protocol, .baud_bps = BAUD, .margin_us = 5 * MS};
+static const uint8_t ids[] = {3, 1, 7};
+
+/* What `each` was given. */
+static grobo_packet got[8];
+static uint8_t first[8];
+static int n_got;
+static peer p;
+static request r;
+
+static void each(void *ctx, grobo_txn *txn, const grobo_packet *reply)
+{
+    assert_ptr_equal(ctx, &p);
+    assert_true(grobo_txn_is_pending(txn));
+    assert_true(n_got < 8);
+    first[n_got] = reply->data_bytes > 0 ? reply->data[0] : 0;
+    got[n_got++] = *reply;
+}
+
+static void submit(const grobo_dxl2_packet *packet)
+{
+    int n = grobo_dxl2_build(packet, r.frame, sizeof r.frame);
+    peer_txn(&p, &r.txn, r.frame, n, GROBO_PRIORITY_USER);
+    r.txn.each = each;
+    r.txn.retries = 0;
+    n_got = 0;
+    assert_int_equal(grobo_bus_submit(&p.bus, &r.txn), GROBO_OK);
+}
+
+static void submit_sync_read(uint8_t code)
+{
+    peer_init(&p, &line);
+    submit(&(grobo_dxl2_packet){.id = GROBO_DXL2_ID_ALL,
+                                .instruction = code,
+                                .address = POSITION,
+                                .length = BYTES,
+                                .data = ids,
+                                .data_bytes = sizeof ids});
+}
+
+static void status_at(int64_t at_us, uint8_t id, uint8_t error, const uint8_t *data, size_t n)
+{
+    uint8_t b[64];
+    const grobo_dxl2_packet status = {
+        .id = id, .instruction = GROBO_DXL2_STATUS, .error = error, .data = data, .data_bytes = n};
+    int size = grobo_dxl2_build(&status, b, sizeof b);
+    assert_true(size > 0);
+    peer_bytes_at(&p, at_us, b, (size_t)size);
+}
+
+static void position_at(int64_t at_us, uint8_t id)
+{
+    const uint8_t data[BYTES] = {id, 0, 0, 0};
+    status_at(at_us, id, 0, data, sizeof data);
+}
+
+static void ended(int64_t at_us, int result)
+{
+    assert_int_equal(p.ended_count, 1);
+    assert_int_equal(p.ended[0].result, result);
+    assert_int_equal(p.ended[0].at_us, at_us);
+}
+
+/* 17 bytes of request; three times 500 us and 15 bytes. */
+static void all_answer_and_the_time_is_that_of_all(void **state)
+{
+    (void)state;
+    grobo_bus_cost cost;
+    submit_sync_read(GROBO_DXL2_SYNC_READ);
+    grobo_bus_cost_of(&p.bus, &r.txn, &cost);
+    assert_int_equal(cost.request_us, 170);
+    assert_int_equal(cost.reply_us, 3 * (500 + 150));
+    position_at(820, 3);
+    position_at(1470, 1);
+    position_at(2120, 7);
+    peer_run(&p, S);
+    ended(2120, GROBO_OK);
+    assert_false(p.ended[0].has_reply);
+    assert_int_equal(n_got, 3);
+    for (int i = 0; i < 3; i++) {
+        assert_int_equal(got[i].id, ids[i]);
+        assert_int_equal(got[i].address, POSITION);
+        assert_int_equal(got[i].data_bytes, BYTES);
+        assert_int_equal(first[i], ids[i]);
+    }
+    assert_int_equal(p.bus.stats.replies, 1);
+    assert_int_equal(p.bus.stats.late_bytes, 0);
+}
+
+/* The last one ends it: nobody is waited for who comes before it in the list. */
+static void one_that_is_silent_costs_the_others_nothing(void **state)
+{
+    (void)state;
+    submit_sync_read(GROBO_DXL2_SYNC_READ);
+    position_at(820, 3);
+    position_at(2120, 7);
+    peer_run(&p, S);
+    ended(2120, GROBO_ERR_SHORT);
+    assert_int_equal(n_got, 2);
+    submit_sync_read(GROBO_DXL2_SYNC_READ);
+    position_at(820, 3);
+    position_at(1470, 1);
+    peer_run(&p, S);
+    ended(2120 + 5 * MS, GROBO_ERR_SHORT);
+    submit_sync_read(GROBO_DXL2_SYNC_READ);
+    peer_run(&p, S);
+    ended(2120 + 5 * MS, GROBO_ERR_TIMEOUT);
+    assert_int_equal(n_got, 0);
+}
+
+/* A packet of who was not asked, of another length, and one that came before: none is a reply. */
+static void what_was_not_asked_is_no_reply(void **state)
+{
+    (void)state;
+    submit_sync_read(GROBO_DXL2_SYNC_READ);
+    position_at(500, 2);
+    status_at(600, 1, 0, (const uint8_t *)"ab", 2);
+    position_at(820, 3);
+    position_at(900, 3);
+    position_at(1470, 1);
+    position_at(2120, 7);
+    peer_run(&p, S);
+    ended(2120, GROBO_OK);
+    assert_int_equal(n_got, 3);
+    assert_int_equal(p.bus.stats.late_frames, 3);
+}
+
+/* A servo that refuses says so in a status without data. */
+static void a_refusal_is_one_of_the_replies(void **state)
+{
+    (void)state;
+    submit_sync_read(GROBO_DXL2_SYNC_READ);
+    position_at(820, 3);
+    status_at(1400, 1, GROBO_DXL2_NO_ACCESS, NULL, 0);
+    position_at(2120, 7);
+    peer_run(&p, S);
+    ended(2120, GROBO_OK);
+    assert_int_equal(n_got, 3);
+    assert_true(got[1].refused);
+    assert_int_equal(got[1].flags, GROBO_DXL2_NO_ACCESS);
+}
+
+static void cancel_in_each(void *ctx, grobo_txn *txn, const grobo_packet *reply)
+{
+    each(ctx, txn, reply);
+    assert_int_equal(grobo_bus_cancel(&p.bus, txn), GROBO_OK);
+}
+
+static void a_callback_may_cancel(void **state)
+{
+    (void)state;
+    submit_sync_read(GROBO_DXL2_SYNC_READ);
+    r.txn.each = cancel_in_each;
+    position_at(820, 3);
+    position_at(1470, 1);
+    position_at(2120, 7);
+    peer_run(&p, S);
+    ended(820, GROBO_ERR_CANCELED);
+    assert_int_equal(n_got, 1);
+}
+
+/* A retry asks all again, and may be answered by who was late; what is owed is waited for before
+ * anything is asked that it would answer. */
+static void a_late_status_is_no_answer_to_another_question(void **state)
+{
+    (void)state;
+    submit_sync_read(GROBO_DXL2_SYNC_READ);
+    position_at(820, 3);
+    position_at(2120, 7);
+    peer_run(&p, 2500);
+    ended(2120, GROBO_ERR_SHORT);
+    position_at(9 * MS, 1); /* late; then the goal of the same servo is asked, as long */
+    submit(&(grobo_dxl2_packet){
+        .id = 1, .instruction = GROBO_DXL2_READ, .address = 116, .length = BYTES});
+    status_at(200 * MS, 1, 0, (const uint8_t *)"goal", 4);
+    peer_run(&p, S);
+    assert_int_equal(p.ended_count, 2);
+    assert_true(r.txn.sent_us >= 9 * MS);
+    assert_true(p.ended[1].at_us != 9 * MS);
+}
+
+/* 26 bytes: three blocks of 8 behind a head of 8, and one return delay. */
+static void a_fast_read_is_one_packet_of_all(void **state)
+{
+    (void)state;
+    grobo_reply reply;
+    uint8_t data[3 * (4 + BYTES) - 2] = {0, 3, 42};
+    grobo_bus_cost cost;
+    submit_sync_read(GROBO_DXL2_FAST_SYNC_READ);
+    reply = r.txn.reply;
+    assert_int_equal(reply.count, 1);
+    assert_int_equal(reply.id, GROBO_DXL2_ID_ALL);
+    assert_int_equal(reply.length, sizeof data);
+    grobo_bus_cost_of(&p.bus, &r.txn, &cost);
+    assert_int_equal(cost.reply_us, 500 + 10 * (8 + 3 * (4 + BYTES)));
+    status_at(1000, GROBO_DXL2_ID_ALL, 0, data, sizeof data);
+    peer_run(&p, S);
+    ended(1000, GROBO_OK);
+    assert_true(p.ended[0].has_reply);
+    assert_int_equal(p.ended[0].value, 3 << 8);
+}
+
+static void submit_call(void)
+{
+    peer_init(&p, &line);
+    submit(&(grobo_dxl2_packet){.id = GROBO_DXL2_ID_ALL, .instruction = GROBO_DXL2_PING});
+}
+
+static void whoever_is_there_answers_a_call(void **state)
+{
+    (void)state;
+    submit_call();
+    assert_int_equal(r.txn.reply.kind, GROBO_REPLY_ANY);
+    status_at(3 * MS, 1, 0, (const uint8_t *)"\x24\x04\x2D", 3);
+    peer_bytes_at(&p, 50 * MS, (const uint8_t *)"\xFF\xFF\xFD\x00\x02\x07 collided", 16);
+    status_at(600 * MS, 200, GROBO_DXL2_ALERT, (const uint8_t *)"\xFC\x03\x2D", 3);
+    peer_run(&p, 2 * S);
+    ended(772 * MS, GROBO_OK);
+    assert_int_equal(n_got, 2);
+    assert_int_equal(got[0].id, 1);
+    assert_int_equal(got[1].id, 200);
+    assert_false(got[1].refused); /* an alert tells of the servo, not of the request */
+    submit_call();
+    peer_run(&p, 2 * S);
+    ended(772 * MS, GROBO_OK); /* nobody */
+}
+
+static void a_stop_does_not_wait_for_a_call(void **state)
+{
+    (void)state;
+    static request stop;
+    submit_call();
+    peer_run(&p, 100 * MS);
+    int n = grobo_dxl2_build(&(grobo_dxl2_packet){.id = GROBO_DXL2_ID_ALL,
+                                                  .instruction = GROBO_DXL2_SYNC_WRITE,
+                                                  .address = 64,
+                                                  .length = 1,
+                                                  .data = (const uint8_t *)"\x01\x00",
+                                                  .data_bytes = 2},
+                             stop.frame, sizeof stop.frame);
+    peer_txn(&p, &stop.txn, stop.frame, n, GROBO_PRIORITY_STOP);
+    assert_int_equal(stop.txn.reply.kind, GROBO_REPLY_NONE);
+    assert_int_equal(grobo_bus_submit(&p.bus, &stop.txn), GROBO_OK);
+    peer_run(&p, S);
+    assert_int_equal(p.ended_count, 2);
+    assert_int_equal(stop.txn.sent_us, 100 * MS);
+}
+
+/* The servo received rubbish: it is asked again. What it refuses is not. */
+static void a_broken_request_is_repeated_and_a_refused_one_is_not(void **state)
+{
+    (void)state;
+    const grobo_dxl2_packet write = {.id = 1,
+                                     .instruction = GROBO_DXL2_WRITE,
+                                     .address = 65,
+                                     .data = (const uint8_t *)"\x01",
+                                     .data_bytes = 1};
+    peer_init(&p, &line);
+    submit(&write);
+    r.txn.retries = 1;
+    status_at(700, 1, GROBO_DXL2_BAD_CRC, NULL, 0);
+    status_at(8 * MS, 1, 0, NULL, 0);
+    peer_run(&p, S);
+    ended(8 * MS, GROBO_OK);
+    assert_int_equal(p.sent_count, 2);
+    peer_init(&p, &line);
+    submit(&write);
+    r.txn.retries = 1;
+    status_at(700, 1, GROBO_DXL2_BAD_LIMIT, NULL, 0);
+    peer_run(&p, S);
+    ended(700, GROBO_ERR_NACK);
+    assert_int_equal(p.sent_count, 1);
+}
+
+static void stuffing_is_taken_out_of_what_is_read(void **state)
+{
+    (void)state;
+    peer_init(&p, &line);
+    submit(
+        &(grobo_dxl2_packet){.id = 1, .instruction = GROBO_DXL2_READ, .address = 126, .length = 6});
+    status_at(900, 1, 0, (const uint8_t *)"\xFF\xFF\xFD\x01\x02\x03", 6);
+    peer_run(&p, S);
+    ended(900, GROBO_OK);
+    assert_int_equal(p.ended[0].value, -1);
+}
+
+/* ---- Protocol 1.0 ---------------------------------------------------------------------------- */
+
+static void submit_old(const grobo_protocol *protocol, bool echo, const grobo_dxl1_packet *packet)
+{
+    grobo_bus_config config = line;
+    config.protocol = protocol;
+    config.echo = echo;
+    peer_init(&p, &config);
+    int n = grobo_dxl1_build(packet, r.frame, sizeof r.frame);
+    peer_txn(&p, &r.txn, r.frame, n, GROBO_PRIORITY_USER);
+    r.txn.each = each;
+    r.txn.retries = 0;
+    n_got = 0;
+    assert_int_equal(grobo_bus_submit(&p.bus, &r.txn), GROBO_OK);
+}
+
+/* FF FF 01 02 01 FB is a ping of servo 1, and its status that tells a low voltage. */
+static void an_echo_that_looks_like_a_status_is_an_echo(void **state)
+{
+    (void)state;
+    const uint8_t ping[] = {0xFF, 0xFF, 1, 2, 1, 0xFB};
+    submit_old(&grobo_feetech_protocol, true, &(grobo_dxl1_packet){.id = 1, .instruction = 1});
+    peer_bytes_at(&p, 100, ping, sizeof ping);
+    peer_run(&p, S);
+    ended(6 * 10 + 6 * 10 + 5 * MS, GROBO_ERR_TIMEOUT);
+    submit_old(&grobo_feetech_protocol, true, &(grobo_dxl1_packet){.id = 1, .instruction = 1});
+    peer_bytes_at(&p, 100, ping, sizeof ping);
+    peer_bytes_at(&p, 200, ping, sizeof ping);
+    peer_run(&p, S);
+    ended(200, GROBO_OK);
+}
+
+static void feetech_answers_a_sync_read_one_by_one(void **state)
+{
+    (void)state;
+    submit_old(&grobo_feetech_protocol, false,
+               &(grobo_dxl1_packet){.id = GROBO_DXL1_ID_ALL,
+                                    .instruction = GROBO_DXL1_SYNC_READ,
+                                    .address = 56,
+                                    .length = 2,
+                                    .data = ids,
+                                    .data_bytes = sizeof ids});
+    for (int i = 0; i < 3; i++) {
+        uint8_t b[16];
+        int n = grobo_dxl1_build(&(grobo_dxl1_packet){.status = true,
+                                                      .id = ids[i],
+                                                      .error = GROBO_FEETECH_OVERLOAD,
+                                                      .data = (const uint8_t *)"\x00\x08",
+                                                      .data_bytes = 2},
+                                 b, sizeof b);
+        peer_bytes_at(&p, 110 + 80 * (i + 1), b, (size_t)n);
+    }
+    peer_run(&p, S);
+    ended(350, GROBO_OK);
+    assert_int_equal(n_got, 3);
+    assert_int_equal(got[2].id, 7);
+    assert_int_equal(got[2].flags, GROBO_FEETECH_OVERLOAD);
+    assert_false(got[2].refused);
+}
+
+/* Of DYNAMIXEL's errors some tell how the servo is, and some what became of the request. */
+static void errors_of_old_dynamixels_are_told_apart(void **state)
+{
+    (void)state;
+    static const struct {
+        uint8_t error;
+        int result;
+    } rows[] = {{GROBO_DXL1_OVERLOAD, GROBO_OK},
+                {GROBO_DXL1_ANGLE_LIMIT, GROBO_ERR_NACK},
+                {GROBO_DXL1_BAD_RANGE | GROBO_DXL1_VOLTAGE, GROBO_ERR_NACK},
+                {GROBO_DXL1_BAD_SUM, GROBO_ERR_TIMEOUT}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        uint8_t b[16];
+        submit_old(&grobo_dxl1_protocol, false,
+                   &(grobo_dxl1_packet){.id = 9,
+                                        .instruction = GROBO_DXL1_WRITE,
+                                        .address = 30,
+                                        .data = (const uint8_t *)"\x00\x02",
+                                        .data_bytes = 2});
+        int n = grobo_dxl1_build(
+            &(grobo_dxl1_packet){.status = true, .id = 9, .error = rows[i].error}, b, sizeof b);
+        peer_bytes_at(&p, 700, b, (size_t)n);
+        peer_run(&p, S);
+        assert_int_equal(p.ended[0].result, rows[i].result);
+    }
+}
+
+/* ---- time ------------------------------------------------------------------------------------ */
+
+/* A byte with parity has 11 bits. The longest frames at the slowest rate fit the numbers. */
+static void parity_and_length_count(void **state)
+{
+    (void)state;
+    static grobo_protocol odd;
+    grobo_bus bus;
+    grobo_bus_cost cost;
+    odd = grobo_dxl2_protocol;
+    odd.parity = GROBO_PARITY_EVEN;
+    const grobo_bus_config config = {.protocol = &odd, .baud_bps = 115200};
+    assert_int_equal(grobo_bus_init(&bus, &config), GROBO_OK);
+    static const uint8_t frame[GROBO_FRAME_MAX_BYTES];
+    grobo_txn txn = {.frame = frame, .frame_bytes = 6};
+    grobo_bus_cost_of(&bus, &txn, &cost);
+    assert_int_equal(cost.request_us, 573); /* 66 bits */
+    txn.frame_bytes = GROBO_FRAME_MAX_BYTES;
+    txn.reply = (grobo_reply){.kind = GROBO_REPLY_RETURN, .count = 64, .bytes = 64 * 128};
+    grobo_bus_cost_of(&bus, &txn, &cost);
+    assert_int_equal(cost.request_us, 97778);
+    assert_int_equal(cost.reply_us, 782223 + 64 * 500);
+    const grobo_bus_config slow = {.protocol = &odd, .baud_bps = 1200};
+    assert_int_equal(grobo_bus_init(&bus, &slow), GROBO_OK);
+    grobo_bus_cost_of(&bus, &txn, &cost);
+    assert_int_equal(cost.request_us, 9386667);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(all_answer_and_the_time_is_that_of_all),
+        cmocka_unit_test(one_that_is_silent_costs_the_others_nothing),
+        cmocka_unit_test(what_was_not_asked_is_no_reply),
+        cmocka_unit_test(a_refusal_is_one_of_the_replies),
+        cmocka_unit_test(a_callback_may_cancel),
+        cmocka_unit_test(a_late_status_is_no_answer_to_another_question),
+        cmocka_unit_test(a_fast_read_is_one_packet_of_all),
+        cmocka_unit_test(whoever_is_there_answers_a_call),
+        cmocka_unit_test(a_stop_does_not_wait_for_a_call),
+        cmocka_unit_test(a_broken_request_is_repeated_and_a_refused_one_is_not),
+        cmocka_unit_test(stuffing_is_taken_out_of_what_is_read),
+        cmocka_unit_test(an_echo_that_looks_like_a_status_is_an_echo),
+        cmocka_unit_test(feetech_answers_a_sync_read_one_by_one),
+        cmocka_unit_test(errors_of_old_dynamixels_are_told_apart),
+        cmocka_unit_test(parity_and_length_count),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,435 @@
+/* SPDX-License-Identifier: MIT */
+/* The engine on servos of each family that is a table of registers: it plays postures, trips, and
+ * stops; what is set up otherwise, or guarded, is refused. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+#include <math.h>
+
+#include "tests/support/table_bus.h"
+
+#define RAD(deg) ((deg)*0.017453292519943295)
+
+enum { JOINTS = 3, MS = 1000, S = 1000000 };
+
+/* The second is mounted the other way round, the third turned by 20 degrees and geared down. */
+#define JOINT(text, id, number, sense, zero_deg, ratio)                                            \
+    {                                                                                              \
+        .name = (text), .min_rad = RAD(-80), .max_rad = RAD(80), .max_speed_rad_s = RAD(180),      \
+        .servo_model = (number), .motor = (id), .mirror = (id)-1, .mirror_sign = 1,                \
+        .sign = (sense), .zero_rad = RAD(zero_deg), .gear = (ratio)                                \
+    }
+#define ARM(name, number)                                                                          \
+    static const grobo_joint name##_joints[] = {JOINT("A", 1, number, 1, 0, 0),                    \
+                                                JOINT("B", 2, number, -1, 0, 1),                   \
+                                                JOINT("C", 3, number, 1, 20, 1.5)};                \
+    static const grobo_model name = {#name, name##_joints, NULL, JOINTS, 0, 0}
+
+ARM(xl330, 1200);
+ARM(sts3215, 777);
+ARM(scs0009, 1284);
+ARM(ax12, 12);
+
+typedef struct family {
+    const grobo_model *model;
+    int (*init)(grobo_driver *driver, const grobo_model *model);
+    double step_deg; /* of goals */
+    uint8_t hot;     /* an error that tells of heat */
+    bool in_status;  /* in each status, else in the register */
+    bool many;
+} family;
+
+static const family families[] = {
+    {&xl330, grobo_dxl2_driver_init, 0.09, GROBO_DXL2_OVERHEATED, false, true},
+    {&sts3215, grobo_feetech_driver_init, 0.09, GROBO_FEETECH_OVERHEATED, true, true},
+    {&scs0009, grobo_feetech_driver_init, 0.3, GROBO_FEETECH_OVERHEATED, true, false},
+    {&ax12, grobo_dxl1_driver_init, 0.3, GROBO_DXL1_OVERHEATED, true, false},
+};
+enum { FAMILIES = sizeof families / sizeof families[0] };
+
+static const grobo_robot_config quiet = {.sense_interval_us = GROBO_SENSE_NEVER};
+static table_bus bus;
+static const family *now;
+
+static void begin(const family *f)
+{
+    memset(&bus, 0, sizeof bus);
+    now = f;
+    assert_int_equal(f->init(&bus.driver, f->model), GROBO_OK);
+}
+
+static void start(const family *f, const grobo_robot_config *config)
+{
+    begin(f);
+    table_start(&bus, config);
+}
+
+static grobo_posture posture(double a_deg, double b_deg, double c_deg, int time_ms)
+{
+    grobo_posture p;
+    assert_int_equal(grobo_posture_init(&p, JOINTS), 0);
+    p.angle_rad[0] = RAD(a_deg);
+    p.angle_rad[1] = RAD(b_deg);
+    p.angle_rad[2] = RAD(c_deg);
+    p.set = GROBO_JOINTS_ALL(JOINTS);
+    p.time_us = time_ms * (int64_t)MS;
+    return p;
+}
+
+static void at(int joint, double deg)
+{
+    if (fabs(table_angle_deg(&bus, joint) - deg) > now->step_deg) {
+        fail_msg("%s: joint %d is at %f, not %f", now->model->name, joint,
+                 table_angle_deg(&bus, joint), deg);
+    }
+}
+
+static const grobo_event *last(grobo_event_kind kind)
+{
+    for (size_t i = bus.n_events; i > 0; i--) {
+        if (bus.event[i - 1].kind == kind) {
+            return &bus.event[i - 1];
+        }
+    }
+    return NULL;
+}
+
+/* Torque comes on where the joints stand, whatever the goal was; then they go where they are sent,
+ * in the time asked for, and never faster than they can. */
+static void postures_are_played(void **state)
+{
+    (void)state;
+    for (int i = 0; i < FAMILIES; i++) {
+        start(&families[i], &quiet);
+        table_turn(&bus, 0, 30);
+        table_turn(&bus, 1, 10);
+        table_put(&bus, 0, GROBO_ROLE_GOAL, 100);
+        grobo_posture p = posture(-20, 40, 15, 1000);
+        int64_t from_us = bus.now_us;
+        assert_int_equal(table_wait(&bus, grobo_robot_move(&bus.robot, &p)), GROBO_OK);
+        at(0, -20);
+        at(1, 40);
+        at(2, 15);
+        assert_true(bus.now_us - from_us >= 900 * MS && bus.now_us - from_us < 1600 * MS);
+        for (int j = 0; j < JOINTS; j++) {
+            assert_int_equal(table_get(&bus, j, GROBO_ROLE_TORQUE), 1);
+            assert_int_equal(bus.servo[j].jumps, 0);
+        }
+        p = posture(79, -79, 50, 200); /* faster than the servos: they get more time */
+        assert_int_equal(table_wait(&bus, grobo_robot_move(&bus.robot, &p)), GROBO_OK);
+        at(0, 79);
+        at(1, -79);
+        at(2, 50);
+        assert_int_equal(bus.servo[0].jumps + bus.servo[1].jumps + bus.servo[2].jumps, 0);
+        p = posture(81, 0, 0, 1000);
+        assert_int_equal(grobo_robot_move(&bus.robot, &p), GROBO_ERR_LIMIT);
+    }
+}
+
+/* Half-way the way is straight: the host tells it in segments. */
+static void ways_are_straight_in_time(void **state)
+{
+    (void)state;
+    for (int i = 0; i < FAMILIES; i++) {
+        start(&families[i], &quiet);
+        grobo_posture p = posture(0, 0, 0, 500);
+        assert_int_equal(table_wait(&bus, grobo_robot_move(&bus.robot, &p)), GROBO_OK);
+        p = posture(60, -60, 30, 2000);
+        assert_true(grobo_robot_move(&bus.robot, &p) > 0);
+        table_run(&bus, 1100 * MS);
+        assert_true(fabs(table_angle_deg(&bus, 0) - 32) < 6);
+        assert_true(fabs(table_angle_deg(&bus, 1) + 32) < 6);
+    }
+}
+
+/* In DYNAMIXEL's X and in STS one frame asks all joints. */
+static void a_whole_robot_is_read_in_one_frame(void **state)
+{
+    (void)state;
+    for (int i = 0; i < FAMILIES; i++) {
+        const grobo_robot_config busy = {.sense_interval_us = 10 * MS};
+        start(&families[i], &busy);
+        table_turn(&bus, 2, 33);
+        table_run(&bus, S);
+        for (int j = 0; j < JOINTS; j++) {
+            grobo_joint_info got;
+            assert_int_equal(grobo_robot_joint(&bus.robot, j, &got), GROBO_OK);
+            double deg = grobo_deg_from_rad(got.state.angle_rad);
+            assert_true(fabs(deg - table_angle_deg(&bus, j)) < 0.2);
+            assert_int_equal(got.state.temperature_c, 30);
+        }
+        size_t many = table_count(&bus, GROBO_DXL2_SYNC_READ);
+        size_t single = table_count(&bus, GROBO_DXL2_READ);
+        if (families[i].many) {
+            assert_true(many >= 95 && many <= 101 && single == 0);
+        } else {
+            assert_true(single >= 285 && many == 0);
+        }
+    }
+}
+
+/* As fast as the wire allows: 98 % of what the bytes of request and replies let through. */
+static void the_wire_sets_the_rate_of_readings(void **state)
+{
+    (void)state;
+    static const grobo_robot_config fast = {.sense_interval_us = 1};
+    for (int i = 0; i < FAMILIES; i++) {
+        if (!families[i].many) {
+            continue;
+        }
+        begin(&families[i]);
+        grobo_robot_config config = fast;
+        config.bus.return_delay_us = 1;
+        table_start(&bus, &config);
+        table_run(&bus, 100 * MS);
+        size_t before = table_count(&bus, GROBO_DXL2_SYNC_READ);
+        grobo_bus_cost cost;
+        grobo_exchange exchange = {0};
+        assert_int_equal(bus.driver.sense_many(&bus.driver, NULL, GROBO_JOINTS_ALL(JOINTS),
+                                               GROBO_SENSE_FULL, &exchange),
+                         GROBO_OK);
+        const grobo_txn txn = {
+            .frame = exchange.frame, .frame_bytes = exchange.frame_bytes, .reply = exchange.reply};
+        grobo_bus_cost_of(&bus.robot.bus, &txn, &cost);
+        table_run(&bus, S);
+        size_t reads = table_count(&bus, GROBO_DXL2_SYNC_READ) - before;
+        assert_true(reads * cost.total_us >= 98 * (S / 100));
+    }
+}
+
+/* One that falls silent is missed, and the others are read on. */
+static void a_silent_joint_trips_a_motion_and_hides_no_other(void **state)
+{
+    (void)state;
+    for (int i = 0; i < FAMILIES; i++) {
+        const grobo_robot_config busy = {.sense_interval_us = 20 * MS};
+        start(&families[i], &busy);
+        grobo_posture p = posture(0, 0, 0, 500);
+        assert_int_equal(table_wait(&bus, grobo_robot_move(&bus.robot, &p)), GROBO_OK);
+        p = posture(40, 40, 40, 3000);
+        assert_true(grobo_robot_move(&bus.robot, &p) > 0);
+        table_run(&bus, 500 * MS);
+        bus.servo[1].silent = true;
+        table_run(&bus, 2 * S);
+        const grobo_event *trip = last(GROBO_EVENT_TRIP);
+        assert_non_null(trip);
+        assert_int_equal(trip->u.trip.trip, GROBO_TRIP_LOST_REPLIES);
+        assert_int_equal(trip->u.trip.joint, 1);
+        assert_true(table_angle_deg(&bus, 0) < 38); /* it stopped on its way */
+        grobo_joint_info got;
+        assert_int_equal(grobo_robot_joint(&bus.robot, 0, &got), GROBO_OK);
+        assert_true(got.angle_age_us < 200 * MS);
+    }
+}
+
+static void heat_stops_for_safety(void **state)
+{
+    (void)state;
+    for (int i = 0; i < FAMILIES; i++) {
+        const grobo_robot_config busy = {.sense_interval_us = 20 * MS};
+        start(&families[i], &busy);
+        grobo_posture p = posture(0, 0, 0, 500);
+        assert_int_equal(table_wait(&bus, grobo_robot_move(&bus.robot, &p)), GROBO_OK);
+        if (families[i].in_status) {
+            bus.error = families[i].hot;
+        } else {
+            table_put(&bus, 1, GROBO_ROLE_ERROR, families[i].hot);
+        }
+        table_run(&bus, S);
+        assert_non_null(last(GROBO_EVENT_TRIP));
+        assert_int_equal(last(GROBO_EVENT_TRIP)->u.trip.trip, GROBO_TRIP_OVERHEATED);
+        start(&families[i], &busy);
+        assert_int_equal(table_wait(&bus, grobo_robot_move(&bus.robot, &p)), GROBO_OK);
+        table_put(&bus, 2, GROBO_ROLE_TEMPERATURE, 66);
+        table_run(&bus, S);
+        assert_int_equal(last(GROBO_EVENT_TRIP)->u.trip.trip, GROBO_TRIP_TEMPERATURE);
+    }
+}
+
+/* These servos have no brake: by default they stop and hold; torque off is asked for. */
+static void an_emergency_stop_holds_or_lets_go(void **state)
+{
+    (void)state;
+    for (int i = 0; i < FAMILIES; i++) {
+        for (int off = 0; off < 2; off++) {
+            grobo_robot_config config = quiet;
+            config.estop_torque = off ? GROBO_ESTOP_OFF : GROBO_ESTOP_BRAKE;
+            start(&families[i], &config);
+            grobo_posture p = posture(0, 0, 0, 500);
+            int job = grobo_robot_move(&bus.robot, &p);
+            assert_int_equal(table_wait(&bus, job), GROBO_OK);
+            p = posture(70, -70, 70, 2000);
+            assert_true(grobo_robot_move(&bus.robot, &p) > 0);
+            table_run(&bus, 700 * MS);
+            job = grobo_robot_estop(&bus.robot);
+            assert_int_equal(table_wait(&bus, job), GROBO_OK);
+            double stopped_deg = table_angle_deg(&bus, 0);
+            table_run(&bus, S);
+            assert_true(stopped_deg < 40);
+            assert_true(fabs(table_angle_deg(&bus, 0) - stopped_deg) < 1);
+            for (int j = 0; j < JOINTS; j++) {
+                assert_int_equal(table_get(&bus, j, GROBO_ROLE_TORQUE), off ? 0 : 1);
+            }
+            assert_int_equal(grobo_robot_move(&bus.robot, &p), GROBO_ERR_LATCHED);
+        }
+    }
+}
+
+/* ---- refused --------------------------------------------------------------------------------- */
+
+static void refused(const family *f, int joint, grobo_register_role role, int32_t value)
+{
+    start(f, &quiet);
+    table_put(&bus, joint, role, value);
+    grobo_posture p = posture(10, 10, 10, 500);
+    int result = table_wait(&bus, grobo_robot_move(&bus.robot, &p));
+    if (result != GROBO_ERR_SETUP) {
+        fail_msg("%s, role %d, %d: %d", f->model->name, (int)role, (int)value, result);
+    }
+    assert_int_equal(table_count(&bus, GROBO_DXL2_SYNC_WRITE), 0);
+}
+
+static void what_is_set_up_otherwise_does_not_move(void **state)
+{
+    (void)state;
+    const family *x = &families[0], *sts = &families[1], *scs = &families[2], *ax = &families[3];
+    refused(x, 1, GROBO_ROLE_MODEL, 1190);
+    refused(x, 1, GROBO_ROLE_MODE, GROBO_DXL2_MODE_EXTENDED);
+    refused(x, 1, GROBO_ROLE_MODE, GROBO_DXL2_MODE_VELOCITY);
+    refused(x, 1, GROBO_ROLE_DIRECTION, 0);
+    refused(x, 1, GROBO_ROLE_DIRECTION, GROBO_DXL2_DRIVE_TIME | GROBO_DXL2_DRIVE_REVERSE);
+    refused(x, 0, GROBO_ROLE_MAX_POSITION, 2900);
+    refused(sts, 1, GROBO_ROLE_MODE, GROBO_STS_MODE_PWM);
+    refused(sts, 1, GROBO_ROLE_DIRECTION, 8);
+    refused(sts, 1, GROBO_ROLE_DIRECTION, 12 | GROBO_STS_PHASE_TURNS);
+    refused(sts, 0, GROBO_ROLE_MIN_POSITION, 1200);
+    refused(scs, 1, GROBO_ROLE_DIRECTION, 1);
+    refused(scs, 1, GROBO_ROLE_MODEL, 1285);
+    refused(ax, 1, GROBO_ROLE_MODEL, 18);
+    refused(ax, 1, GROBO_ROLE_MAX_POSITION, 0);
+}
+
+static int write_register(grobo_register_role role)
+{
+    const grobo_servo_register *reg = grobo_servo_register_of(bus.servo[0].servo, role);
+    static const uint8_t zeros[4];
+    if (reg == NULL) {
+        return GROBO_ERR_UNSUPPORTED;
+    }
+    const grobo_register_io io = {1, reg->address, reg->bytes, zeros};
+    return grobo_robot_registers(&bus.robot, &io);
+}
+
+/* Goals and torque are for requests; a setting needs a servo that holds nothing. */
+static void guarded_registers_are_refused(void **state)
+{
+    (void)state;
+    static const grobo_register_role motor[] = {GROBO_ROLE_TORQUE,       GROBO_ROLE_GOAL,
+                                                GROBO_ROLE_GOAL_TIME,    GROBO_ROLE_SPEED,
+                                                GROBO_ROLE_GOAL_SPEED,   GROBO_ROLE_GOAL_PWM,
+                                                GROBO_ROLE_GOAL_CURRENT, GROBO_ROLE_ACCELERATION};
+    static const grobo_register_role settings[] = {GROBO_ROLE_ID, GROBO_ROLE_MIN_POSITION,
+                                                   GROBO_ROLE_MAX_POSITION, GROBO_ROLE_BAUD};
+    for (int i = 0; i < FAMILIES; i++) {
+        start(&families[i], &quiet);
+        grobo_posture p = posture(0, 0, 0, 500);
+        assert_int_equal(table_wait(&bus, grobo_robot_move(&bus.robot, &p)), GROBO_OK);
+        for (size_t k = 0; k < sizeof motor / sizeof motor[0]; k++) {
+            assert_int_equal(write_register(motor[k]), GROBO_ERR_UNSUPPORTED);
+        }
+        for (size_t k = 0; k < sizeof settings / sizeof settings[0]; k++) {
+            assert_int_equal(write_register(settings[k]), GROBO_ERR_STATE);
+        }
+        static const uint8_t byte[1];
+        const grobo_register_io nowhere = {1, 200, 1, byte}; /* as an indirect one would be */
+        assert_int_equal(grobo_robot_registers(&bus.robot, &nowhere), GROBO_ERR_UNSUPPORTED);
+        const grobo_register_io read = {1, 0, 4, NULL};
+        assert_int_equal(table_wait(&bus, grobo_robot_registers(&bus.robot, &read)), GROBO_OK);
+    }
+}
+
+static int raw(uint8_t id, uint8_t code, uint16_t address, const uint8_t *data, size_t n)
+{
+    uint8_t b[64];
+    int size;
+    if (bus.driver.protocol == &grobo_dxl2_protocol) {
+        const grobo_dxl2_packet p = {
+            .id = id, .instruction = code, .address = address, .data = data, .data_bytes = n};
+        size = grobo_dxl2_build(&p, b, sizeof b);
+    } else {
+        const grobo_dxl1_packet p = {.id = id,
+                                     .instruction = code,
+                                     .address = (uint8_t)address,
+                                     .data = data,
+                                     .data_bytes = n};
+        size = grobo_dxl1_build(&p, b, sizeof b);
+    }
+    assert_true(size > 0);
+    return grobo_robot_raw(&bus.robot, b, (size_t)size);
+}
+
+/* A raw goal is checked as one of the engine's own; what nobody can read is refused. */
+static void raw_frames_are_judged(void **state)
+{
+    (void)state;
+    for (int i = 0; i < FAMILIES; i++) {
+        static const uint8_t ends[4];
+        start(&families[i], &quiet);
+        grobo_posture p = posture(0, 0, 0, 500);
+        assert_int_equal(table_wait(&bus, grobo_robot_move(&bus.robot, &p)), GROBO_OK);
+        const grobo_servo_register *goal =
+            grobo_servo_register_of(bus.servo[0].servo, GROBO_ROLE_GOAL);
+        assert_int_equal(raw(1, GROBO_DXL2_WRITE, goal->address, ends, goal->bytes),
+                         GROBO_ERR_LIMIT);
+        assert_int_equal(raw(1, GROBO_DXL2_REG_WRITE, goal->address, ends, goal->bytes),
+                         GROBO_ERR_UNSUPPORTED);
+        assert_int_equal(raw(1, GROBO_DXL2_FACTORY_RESET, 0, ends, 1), GROBO_ERR_UNSUPPORTED);
+        uint8_t here[4] = {0};
+        assert_int_equal(
+            grobo_servo_register_put(bus.servo[0].servo, goal, bus.servo[0].servo->middle, here),
+            goal->bytes);
+        assert_true(raw(1, GROBO_DXL2_WRITE, goal->address, here, goal->bytes) > 0);
+    }
+}
+
+static void what_a_servo_cannot_reach_is_no_robot(void **state)
+{
+    (void)state;
+    grobo_joint joints[JOINTS];
+    grobo_driver driver;
+    for (int i = 0; i < FAMILIES; i++) {
+        grobo_model model = *families[i].model;
+        model.joints = joints;
+        memcpy(joints, families[i].model->joints, sizeof joints);
+        assert_int_equal(families[i].init(&driver, &model), GROBO_OK);
+        joints[0].gear = 4;
+        assert_int_equal(families[i].init(&driver, &model), GROBO_ERR_ARG);
+        joints[0].gear = 1;
+        joints[0].servo_model = 9999;
+        assert_int_equal(families[i].init(&driver, &model), GROBO_ERR_ARG);
+        assert_int_equal(families[i].init(NULL, &model), GROBO_ERR_ARG);
+        assert_int_equal(families[i].init(&driver, NULL), GROBO_ERR_ARG);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(postures_are_played),
+        cmocka_unit_test(ways_are_straight_in_time),
+        cmocka_unit_test(a_whole_robot_is_read_in_one_frame),
+        cmocka_unit_test(the_wire_sets_the_rate_of_readings),
+        cmocka_unit_test(a_silent_joint_trips_a_motion_and_hides_no_other),
+        cmocka_unit_test(heat_stops_for_safety),
+        cmocka_unit_test(an_emergency_stop_holds_or_lets_go),
+        cmocka_unit_test(what_is_set_up_otherwise_does_not_move),
+        cmocka_unit_test(guarded_registers_are_refused),
+        cmocka_unit_test(raw_frames_are_judged),
+        cmocka_unit_test(what_a_servo_cannot_reach_is_no_robot),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,336 @@
+/* SPDX-License-Identifier: MIT */
+/* Simulated DYNAMIXEL of the X series: answers, times, registers, modes, shutdowns. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include <grobo/dxl2.h>
+
+#include "tests/support/chain_kit.h"
+
+enum { BYTE_US = 10, DELAY_US = 500 };
+
+static chain_kit chain;
+
+static const grobo_servo_model *model(const char *name)
+{
+    return grobo_servo_model_named(&grobo_dxl2_table, name);
+}
+
+static const uint8_t six[] = {1, 2, 3, 4, 5, 6};
+
+/* Fields of the status that came at an offset. */
+static uint8_t id_at(size_t at)
+{
+    return chain.kit.got[at + 4];
+}
+
+static int32_t value_at(size_t at)
+{
+    const uint8_t *p = &chain.kit.got[at + 9];
+    return (int32_t)((uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 |
+                     (uint32_t)p[3] << 24);
+}
+
+/* The bytes are those of clients' recordings (vectors of dynamixel-sdk 4.1.0). */
+static void answers_are_those_of_a_servo(void **state)
+{
+    (void)state;
+    chain_start(&chain, model("XL330-M288"), 3, NULL);
+    int64_t asked_us = chain.kit.now_us;
+    simkit_ask(&chain.kit, "FF FF FD 00 01 03 00 01 19 4E", 50000);
+    assert_int_equal(chain.kit.n_got, 14);
+    assert_memory_equal(chain.kit.got, "\xFF\xFF\xFD\x00\x01\x07\x00\x55\x00\xB0\x04\x34", 12);
+    assert_int_equal(chain.kit.got_us[13] - asked_us, 10 * BYTE_US + DELAY_US + 14 * BYTE_US);
+    /* Position of id 3: 2048. */
+    simkit_ask(&chain.kit, "FF FF FD 00 03 07 00 02 84 00 04 00 11 35", 50000);
+    simkit_expect(&chain.kit, "FF FF FD 00 03 08 00 55 00 00 08 00 00 DF B4");
+    /* A bad CRC, another id, a status: nothing. */
+    simkit_ask(&chain.kit, "FF FF FD 00 03 07 00 02 84 00 04 00 11 36", 50000);
+    simkit_expect(&chain.kit, "");
+    simkit_ask(&chain.kit, "FF FF FD 00 06 07 00 02 92 00 01 00 09 43", 50000);
+    simkit_expect(&chain.kit, "");
+    simkit_ask(&chain.kit, "FF FF FD 00 01 04 00 55 00 A1 0C", 50000);
+    simkit_expect(&chain.kit, "");
+    /* Torque on keeps the EEPROM; a goal outside the limits; a register that is read only. */
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_TORQUE, 1), GROBO_DXL2_DONE);
+    simkit_ask(&chain.kit, "FF FF FD 00 01 06 00 03 07 00 09 84 E3", 50000);
+    assert_int_equal(chain.kit.n_got, 11);
+    assert_int_equal(chain.kit.got[8], GROBO_DXL2_NO_ACCESS);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_GOAL, 5000), GROBO_DXL2_BAD_LIMIT);
+    simkit_ask(&chain.kit, "FF FF FD 00 03 09 00 03 84 00 01 00 00 00 36 DD", 50000);
+    simkit_expect(&chain.kit, "FF FF FD 00 03 04 00 55 07 43 0C");
+    simkit_ask(&chain.kit, "FF FF FD 00 03 07 00 03 74 00 01 00 42 6B", 50000);
+    assert_int_equal(chain.kit.got[8], GROBO_DXL2_BAD_LENGTH);
+    chain_send(&chain, 2, 0x77, 0, 0, NULL, 0);
+    assert_int_equal(chain.kit.got[8], GROBO_DXL2_BAD_INSTRUCTION);
+    chain_send(&chain, 2, GROBO_DXL2_READ, 140, 20, NULL, 0);
+    assert_int_equal(chain.kit.got[8], GROBO_DXL2_NO_ACCESS);
+    chain_send(&chain, 2, GROBO_DXL2_READ, 132, 0, NULL, 0);
+    assert_int_equal(chain.kit.got[8], GROBO_DXL2_BAD_LENGTH);
+}
+
+/* Host budget of the reference: (14 + n) x 10 us + n x (d + (11 + len) x 10 us). */
+static void servos_of_a_list_answer_in_turn(void **state)
+{
+    (void)state;
+    chain_start(&chain, model("XL330-M288"), 6, NULL);
+    int64_t asked_us = chain.kit.now_us;
+    chain_send(&chain, GROBO_DXL2_ID_ALL, GROBO_DXL2_SYNC_READ, 132, 4, six, sizeof six);
+    assert_int_equal(chain.kit.n_got, 6 * 15);
+    for (size_t i = 0; i < 6; i++) {
+        assert_int_equal(id_at(15 * i), i + 1);
+        assert_int_equal(value_at(15 * i), 2048);
+        int64_t end_us = 20 * BYTE_US + (int64_t)(i + 1) * (DELAY_US + 15 * BYTE_US);
+        assert_int_equal(chain.kit.got_us[15 * i + 14] - asked_us, end_us);
+    }
+    /* One is silent: its time goes by, the others answer. */
+    assert_int_equal(grobo_sim_set_cable(&chain.kit.sim, 1, GROBO_SIM_CABLE_MUTE), 0);
+    chain_send(&chain, GROBO_DXL2_ID_ALL, GROBO_DXL2_SYNC_READ, 132, 4, six, 3);
+    assert_int_equal(chain.kit.n_got, 2 * 15);
+    assert_int_equal(id_at(15), 3);
+    assert_int_equal(chain.kit.got_us[15] - chain.kit.got_us[14], DELAY_US + 16 * BYTE_US);
+}
+
+static void a_fast_read_is_one_status(void **state)
+{
+    (void)state;
+    chain_start(&chain, model("XL430-W250"), 6, NULL);
+    int64_t asked_us = chain.kit.now_us;
+    chain_send(&chain, GROBO_DXL2_ID_ALL, GROBO_DXL2_FAST_SYNC_READ, 132, 4, six, sizeof six);
+    assert_int_equal(chain.kit.n_got, 8 + 6 * 8);
+    assert_int_equal(grobo_dxl2_measure(chain.kit.got, chain.kit.n_got, 2), chain.kit.n_got);
+    assert_int_equal(chain.kit.got_us[55] - asked_us, 20 * BYTE_US + DELAY_US + 56 * BYTE_US);
+    int at = 8;
+    for (int i = 0; i < 6; i++) {
+        grobo_dxl2_packet block;
+        at = grobo_dxl2_block(chain.kit.got, chain.kit.n_got, (size_t)at, 4, &block);
+        assert_true(at > 0);
+        assert_int_equal(block.id, i + 1);
+    }
+    /* After one that is silent nobody can go on. */
+    assert_int_equal(grobo_sim_set_cable(&chain.kit.sim, 2, GROBO_SIM_CABLE_MUTE), 0);
+    chain_send(&chain, GROBO_DXL2_ID_ALL, GROBO_DXL2_FAST_SYNC_READ, 132, 4, six, sizeof six);
+    assert_int_equal(chain.kit.n_got, 8 + 2 * 8);
+}
+
+static void all_are_found_by_one_ping(void **state)
+{
+    (void)state;
+    chain_start(&chain, model("XM430-W350"), 20, NULL);
+    simkit_ask(&chain.kit, "FF FF FD 00 FE 03 00 01 31 42", 100000);
+    assert_int_equal(chain.kit.n_got, 20 * 14);
+    for (size_t i = 0; i < 20; i++) {
+        assert_int_equal(id_at(14 * i), i + 1);
+    }
+}
+
+static void moves_follow_their_profile(void **state)
+{
+    (void)state;
+    chain_start(&chain, model("XL330-M288"), 1, NULL);
+    /* By time: 500 ms for 1000 counts, 200 ms of it to get up to speed. */
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_DIRECTION, 4), 0);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_TORQUE, 1), 0);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_ACCELERATION, 200), 0);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_SPEED, 500), 0);
+    int64_t begun_us = chain.kit.now_us;
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_GOAL, 3048), 0);
+    begun_us = begun_us + 16 * BYTE_US;
+    static const int16_t way[] = {2048, 2131, 2381, 2715, 2965, 3048, 3048};
+    for (size_t i = 0; i < sizeof way / sizeof *way; i++) {
+        simkit_run(&chain.kit, begun_us + (int64_t)i * 100000 - chain.kit.now_us);
+        assert_in_range(chain_register(&chain, 0, GROBO_ROLE_POSITION), way[i] - 2, way[i] + 2);
+    }
+    assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_MOVING), 0);
+    /* By velocity: 100 x 0.229 rpm are 137.4 degrees a second, at once. */
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_TORQUE, 0), 0);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_DIRECTION, 0), 0);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_TORQUE, 1), 0);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_ACCELERATION, 0), 0);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_SPEED, 100), 0);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_GOAL, 0), 0);
+    int32_t from = chain_register(&chain, 0, GROBO_ROLE_POSITION);
+    assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_PRESENT_SPEED), -100);
+    simkit_run(&chain.kit, 500000);
+    assert_in_range(from - chain_register(&chain, 0, GROBO_ROLE_POSITION), 780, 783);
+}
+
+/* A goal in the middle of a move goes on at the speed that there is. */
+static void a_stream_of_goals_flows(void **state)
+{
+    (void)state;
+    chain_start(&chain, model("XL330-M288"), 1, NULL);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_TORQUE, 1), 0);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_ACCELERATION, 40), 0);
+    for (int i = 1; i <= 50; i++) {
+        assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_GOAL, 2048 + 20 * i), 0);
+        simkit_run(&chain.kit, 9000);
+    }
+    assert_in_range(chain_register(&chain, 0, GROBO_ROLE_POSITION), 2780, 3048); /* it lags */
+    assert_in_range(chain_register(&chain, 0, GROBO_ROLE_PRESENT_SPEED), 90, 180);
+    simkit_run(&chain.kit, 1000000);
+    assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_POSITION), 3048);
+}
+
+static void modes_have_their_own_goals(void **state)
+{
+    (void)state;
+    chain_start(&chain, model("XL330-M288"), 1, &(grobo_sim_config){.no_stops = true});
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_MODE, 1), 0);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_TORQUE, 1), 0);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_MODE, 3), GROBO_DXL2_NO_ACCESS);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_GOAL_SPEED, 446), GROBO_DXL2_BAD_LIMIT);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_GOAL_SPEED, -100), 0);
+    simkit_run(&chain.kit, 10000000);
+    assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_PRESENT_SPEED), -100);
+    assert_in_range(chain_register(&chain, 0, GROBO_ROLE_POSITION), 2048 - 15700, 2048 - 15600);
+    /* A mode that counts turns begins within one. */
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_TORQUE, 0), 0);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_MODE, 4), 0);
+    assert_in_range(chain_register(&chain, 0, GROBO_ROLE_POSITION), 0, 4095);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_TORQUE, 1), 0);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_GOAL, -8000), 0);
+    simkit_run(&chain.kit, 5000000);
+    assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_POSITION), -8000);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_MODE, 2), GROBO_DXL2_NO_ACCESS);
+    chain_start(&chain, model("XL430-W250"), 1, NULL);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_MODE, 5), GROBO_DXL2_BAD_RANGE);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_MODE, 2), GROBO_DXL2_BAD_RANGE);
+}
+
+static void the_watchdog_stops_a_servo(void **state)
+{
+    (void)state;
+    chain_start(&chain, model("XL330-M288"), 2, NULL);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_TORQUE, 1), 0);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_SPEED, 20), 0);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_WATCHDOG, 5), 0);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_GOAL, 4095), 0);
+    /* What is for others does not count. */
+    for (int i = 0; i < 4; i++) {
+        chain_send(&chain, 2, GROBO_DXL2_PING, 0, 0, NULL, 0);
+        simkit_run(&chain.kit, 40000);
+    }
+    assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_WATCHDOG), -1);
+    assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_SPEED), 0);
+    assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_TORQUE), 1);
+    assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_MOVING), 0);
+    int32_t here = chain_register(&chain, 0, GROBO_ROLE_POSITION);
+    assert_in_range(here, 2048 + 25, 2048 + 35); /* 100 ms at 27.5 degrees a second */
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_GOAL, 2048), GROBO_DXL2_BAD_RANGE);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_WATCHDOG, 0), 0);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_GOAL, 2048), 0);
+}
+
+static void a_shutdown_lasts_until_the_restart(void **state)
+{
+    (void)state;
+    chain_start(&chain, model("XL330-M288"), 1, NULL);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_TORQUE, 1), 0);
+    assert_int_equal(grobo_sim_set_blocked(&chain.kit.sim, 0, true), 0);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_GOAL, 3000), 0);
+    simkit_run(&chain.kit, 900000);
+    assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_ERROR), 0);
+    simkit_run(&chain.kit, 200000);
+    assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_ERROR), GROBO_DXL2_OVERLOAD);
+    assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_TORQUE), 0);
+    chain_send(&chain, 1, GROBO_DXL2_READ, 132, 4, NULL, 0);
+    assert_int_equal(chain.kit.got[8], GROBO_DXL2_ALERT);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_TORQUE, 1),
+                     GROBO_DXL2_FAILED | GROBO_DXL2_ALERT);
+    chain_send(&chain, 1, GROBO_DXL2_REBOOT, 0, 0, NULL, 0);
+    assert_int_equal(chain.kit.n_got, 11);
+    chain_send(&chain, 1, GROBO_DXL2_PING, 0, 0, NULL, 0);
+    assert_int_equal(chain.kit.n_got, 0);
+    simkit_run(&chain.kit, 600000);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_TORQUE, 1), 0);
+    /* The voltage of XL330 is in its shutdown, that of XL430 is not. */
+    grobo_sim_set_supply(&chain.kit.sim, 7400 * 75 / 50);
+    assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_ERROR), GROBO_DXL2_VOLTAGE);
+    assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_TORQUE), 0);
+    chain_start(&chain, model("XL430-W250"), 1, NULL);
+    assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_VOLTAGE), 120);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_TORQUE, 1), 0);
+    grobo_sim_set_supply(&chain.kit.sim, 7400 * 150 / 120);
+    assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_ERROR), GROBO_DXL2_VOLTAGE);
+    assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_TORQUE), 1);
+    assert_int_equal(grobo_sim_set_temperature(&chain.kit.sim, 0, 80), 0);
+    simkit_run(&chain.kit, 1000);
+    assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_TORQUE), 0);
+    assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_ERROR),
+                     GROBO_DXL2_VOLTAGE | GROBO_DXL2_OVERHEATED);
+}
+
+static void writes_wait_level_and_names_hold(void **state)
+{
+    (void)state;
+    chain_start(&chain, model("XL330-M288"), 2, NULL);
+    static const uint8_t goal[] = {0x00, 0x0A, 0x00, 0x00};
+    chain_send(&chain, 1, GROBO_DXL2_ACTION, 0, 0, NULL, 0);
+    assert_int_equal(chain.kit.got[8], GROBO_DXL2_BAD_INSTRUCTION);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_TORQUE, 1), 0);
+    chain_send(&chain, 1, GROBO_DXL2_REG_WRITE, 116, 0, goal, sizeof goal);
+    assert_int_equal(chain.kit.got[8], 0);
+    assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_REGISTERED), 1);
+    assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_GOAL), 2048);
+    chain_send(&chain, GROBO_DXL2_ID_ALL, GROBO_DXL2_ACTION, 0, 0, NULL, 0);
+    assert_int_equal(chain.kit.n_got, 0);
+    assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_REGISTERED), 0);
+    assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_GOAL), 2560);
+    /* Level 1: reads only; 0: pings only. */
+    assert_int_equal(chain_write(&chain, 2, GROBO_ROLE_REPLY_LEVEL, 1), -1);
+    assert_int_equal(chain_write(&chain, 2, GROBO_ROLE_TORQUE, 1), -1);
+    chain_send(&chain, 2, GROBO_DXL2_READ, 64, 1, NULL, 0);
+    assert_int_equal(chain.kit.got[9], 1);
+    assert_int_equal(chain_write(&chain, 2, GROBO_ROLE_REPLY_LEVEL, 0), -1);
+    chain_send(&chain, 2, GROBO_DXL2_READ, 64, 1, NULL, 0);
+    assert_int_equal(chain.kit.n_got, 0);
+    chain_send(&chain, 2, GROBO_DXL2_PING, 0, 0, NULL, 0);
+    assert_int_equal(chain.kit.n_got, 14);
+    /* The answer to a new id, and to a new rate, comes the old way. */
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_TORQUE, 0), 0);
+    assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_ID, 9), 0);
+    assert_int_equal(chain.kit.got[4], 1);
+    chain_send(&chain, 9, GROBO_DXL2_PING, 0, 0, NULL, 0);
+    assert_int_equal(chain.kit.got[4], 9);
+    assert_int_equal(chain_write(&chain, 9, GROBO_ROLE_BAUD, 1), 0);
+    chain_send(&chain, 9, GROBO_DXL2_PING, 0, 0, NULL, 0);
+    assert_int_equal(chain.kit.n_got, 0);
+    assert_int_equal(grobo_sim_set_line_bps(&chain.kit.sim, 57600), 0);
+    chain_send(&chain, 9, GROBO_DXL2_PING, 0, 0, NULL, 0);
+    assert_int_equal(chain.kit.n_got, 14);
+    /* All but id and rate from the factory. */
+    assert_int_equal(chain_write(&chain, 9, GROBO_ROLE_RETURN_DELAY, 3), 0);
+    static const uint8_t but_both = GROBO_DXL2_RESET_BUT_ID_BAUD, all = GROBO_DXL2_RESET_ALL;
+    chain_send(&chain, 9, GROBO_DXL2_FACTORY_RESET, 0, 0, &but_both, 1);
+    simkit_run(&chain.kit, 600000);
+    chain_send(&chain, 9, GROBO_DXL2_PING, 0, 0, NULL, 0);
+    assert_int_equal(chain.kit.n_got, 14);
+    assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_RETURN_DELAY), 250);
+    chain_send(&chain, 9, GROBO_DXL2_FACTORY_RESET, 0, 0, &all, 1);
+    simkit_run(&chain.kit, 600000);
+    assert_int_equal(chain_register(&chain, 0, GROBO_ROLE_ID), 1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(answers_are_those_of_a_servo),
+        cmocka_unit_test(servos_of_a_list_answer_in_turn),
+        cmocka_unit_test(a_fast_read_is_one_status),
+        cmocka_unit_test(all_are_found_by_one_ping),
+        cmocka_unit_test(moves_follow_their_profile),
+        cmocka_unit_test(a_stream_of_goals_flows),
+        cmocka_unit_test(modes_have_their_own_goals),
+        cmocka_unit_test(the_watchdog_stops_a_servo),
+        cmocka_unit_test(a_shutdown_lasts_until_the_restart),
+        cmocka_unit_test(writes_wait_level_and_names_hold),
+    };
+    return cmocka_run_group_tests_name("sim_dxl2", tests, NULL, NULL);
+}

@@ -1,0 +1,31 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Independent clients of other servos against the simulator. PYTHON has their packages installed;
+# one that is missing is skipped.
+. tests/support/cli.sh
+
+PYTHON=${PYTHON:-python3}
+
+# PACKAGE SERVOS CLIENT...
+against() {
+    package=$1
+    servos=$2
+    shift 2
+    for one in "$@"; do
+        if "$PYTHON" -c "import $package" 2>/dev/null; then
+            start_sim --servo "$servos"
+            check "$one" "$PYTHON" tests/families/clients.py "$one" "$robot"
+            stop_sim
+        else
+            skip "$one" "the package $package is not installed"
+        fi
+    done
+}
+
+against dynamixel_sdk 1=XL330-M288,2=XL430-W250,3=XM430-W350 dynamixel_sdk_2
+against dynamixel_sdk 1=AX-12A,2=MX-28 dynamixel_sdk_1
+against rustypot 1=XL330-M288,2=XL330-M288,3=XL330-M288 rustypot_x
+against rustypot 1=STS3215,2=STS3215,3=STS3215 rustypot_sts
+against scservo_sdk 1=STS3215,2=STS3215,3=STS3215 feetech
+against scservo_sdk 1=SCS0009 feetech_scs
+done_testing

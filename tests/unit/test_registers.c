@@ -1,0 +1,158 @@
+/* SPDX-License-Identifier: MIT */
+/* Register tables of every family: whole, found by name, address and role, values both ways. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include <grobo/dxl2.h>
+#include <grobo/feetech.h>
+
+#include "tests/support/vectors.h"
+
+static const grobo_servo_table *const tables[] = {&grobo_dxl2_table, &grobo_dxl1_table,
+                                                  &grobo_sts_table, &grobo_scs_table};
+enum { TABLES = (int)(sizeof tables / sizeof tables[0]) };
+
+static void row_is_whole(const grobo_servo_model *model, const grobo_servo_register *reg)
+{
+    assert_true(reg->bytes == 1 || reg->bytes == 2 || reg->bytes == 4);
+    assert_true(reg->min <= reg->max);
+    bool writable = (reg->flags & GROBO_REGISTER_W) != 0;
+    /* What a model is made with must be what it may be set to. */
+    assert_true(!writable || (reg->factory >= reg->min && reg->factory <= reg->max));
+    assert_ptr_equal(grobo_servo_register_named(model, reg->name), reg);
+    assert_ptr_equal(grobo_servo_register_at(model, reg->address), reg);
+    assert_ptr_equal(grobo_servo_register_at(model, (uint16_t)(reg->address + reg->bytes - 1)),
+                     reg);
+    if (reg->role != GROBO_ROLE_NONE) {
+        assert_ptr_equal(grobo_servo_register_of(model, (grobo_register_role)reg->role), reg);
+    }
+    const int32_t values[] = {reg->min, reg->max, 0, 1, -1, reg->factory};
+    for (size_t i = 0; i < sizeof values / sizeof values[0]; i++) {
+        uint8_t bytes[4];
+        int result = grobo_servo_register_put(model, reg, values[i], bytes);
+        if (values[i] < reg->min || values[i] > reg->max) {
+            assert_int_equal(result, GROBO_ERR_LIMIT);
+            continue;
+        }
+        assert_int_equal(result, reg->bytes);
+        assert_int_equal(grobo_servo_register_get(model, reg, bytes), values[i]);
+    }
+}
+
+static void tables_are_whole(void **state)
+{
+    (void)state;
+    for (int t = 0; t < TABLES; t++) {
+        for (int m = 0; m < tables[t]->model_count; m++) {
+            const grobo_servo_model *model = &tables[t]->models[m];
+            const grobo_servo_register *reg = NULL;
+            int end = 0;
+            assert_ptr_equal(model->table, tables[t]);
+            assert_ptr_equal(grobo_servo_model_named(tables[t], model->name), model);
+            assert_int_equal(grobo_servo_model_numbered(tables[t], model->number)->number,
+                             model->number);
+            for (size_t i = 0; (reg = grobo_servo_register_row(model, i)) != NULL; i++) {
+                assert_true(reg->address >= end);
+                end = reg->address + reg->bytes;
+                row_is_whole(model, reg);
+            }
+            /* What every driver needs. */
+            static const grobo_register_role needed[] = {
+                GROBO_ROLE_MODEL,        GROBO_ROLE_ID,           GROBO_ROLE_BAUD,
+                GROBO_ROLE_TORQUE,       GROBO_ROLE_GOAL,         GROBO_ROLE_POSITION,
+                GROBO_ROLE_SPEED,        GROBO_ROLE_MIN_POSITION, GROBO_ROLE_VOLTAGE,
+                GROBO_ROLE_MAX_POSITION, GROBO_ROLE_TEMPERATURE,  GROBO_ROLE_SHUTDOWN,
+                GROBO_ROLE_RETURN_DELAY};
+            for (size_t i = 0; i < sizeof needed / sizeof needed[0]; i++) {
+                assert_non_null(grobo_servo_register_of(model, needed[i]));
+            }
+        }
+    }
+}
+
+/* The same item differs by model: what the maker's pages say. */
+static void models_have_their_own_rows(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *model, *name;
+        int address, factory; /* -1: the model has none */
+    } rows[] = {
+        {"XL330-M288", "current_limit", 38, 1750},   {"XM430-W350", "current_limit", 38, 1193},
+        {"XC330-T288", "current_limit", 38, 910},    {"XL430-W250", "current_limit", -1, 0},
+        {"XL330-M288", "shutdown", 63, 53},          {"XL430-W250", "shutdown", 63, 52},
+        {"XL430-W250", "present_load", 126, 0},      {"XL330-M077", "present_current", 126, 0},
+        {"XM430-W350", "position_p", 84, 800},       {"XL430-W250", "position_d", 80, 4000},
+        {"XL330-M288", "max_voltage", 32, 70},       {"XC330-T181", "min_voltage", 34, 55},
+        {"XM430-W210", "temperature_limit", 31, 80}, {"2XL430-W250", "velocity_limit", 44, 265},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        const grobo_servo_model *model = grobo_servo_model_named(&grobo_dxl2_table, rows[i].model);
+        const grobo_servo_register *reg = grobo_servo_register_named(model, rows[i].name);
+        assert_int_equal(reg != NULL ? reg->address : -1, rows[i].address);
+        assert_int_equal(reg != NULL ? reg->factory : 0, rows[i].factory);
+    }
+    assert_null(grobo_servo_model_named(&grobo_dxl2_table, "XL330"));
+    assert_null(grobo_servo_model_numbered(&grobo_dxl2_table, 9999));
+}
+
+/* Bytes as clients send and read them (LeRobot 0.6.1, rustypot 1.13.1, feetech-servo-sdk). */
+static void values_are_written_as_each_series_does(void **state)
+{
+    (void)state;
+    static const struct {
+        const grobo_servo_table *table;
+        const char *model, *name;
+        int32_t value;
+        const char *hex;
+    } rows[] = {
+        {&grobo_sts_table, "STS3215", "goal_position", 2048, "00 08"},
+        {&grobo_scs_table, "SCS0009", "goal_position", 1000, "03 E8"},
+        {&grobo_sts_table, "STS3215", "offset", -195, "C3 08"},
+        {&grobo_sts_table, "STS3215", "offset", 100, "64 00"},
+        {&grobo_sts_table, "STS3215", "goal_speed", -600, "58 82"},
+        {&grobo_sts_table, "STS3215", "present_load", -300, "2C 05"},
+        {&grobo_dxl2_table, "XL330-M288", "goal_velocity", -100, "9C FF FF FF"},
+        {&grobo_dxl2_table, "XL330-M288", "homing_offset", -50, "CE FF FF FF"},
+        {&grobo_dxl2_table, "XL330-M288", "watchdog", -1, "FF"},
+        {&grobo_dxl1_table, "MX-64", "goal_position", -2048, "00 F8"},
+        {&grobo_dxl1_table, "AX-12A", "present_speed", -300, "2C 05"},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        const grobo_servo_model *model = grobo_servo_model_named(rows[i].table, rows[i].model);
+        const grobo_servo_register *reg = grobo_servo_register_named(model, rows[i].name);
+        uint8_t bytes[4];
+        vector_expect(grobo_servo_register_put(model, reg, rows[i].value, bytes), bytes,
+                      rows[i].hex);
+        assert_int_equal(grobo_servo_register_get(model, reg, bytes), rows[i].value);
+    }
+}
+
+static void what_is_not_there_is_null(void **state)
+{
+    (void)state;
+    const grobo_servo_model *model = &grobo_sts_table.models[0];
+    assert_null(grobo_servo_register_at(model, 4000));
+    assert_null(grobo_servo_register_at(model, 50));
+    assert_null(grobo_servo_register_named(model, "goal"));
+    assert_null(grobo_servo_register_of(model, GROBO_ROLE_NONE));
+    assert_null(grobo_servo_register_of(model, GROBO_ROLE_WATCHDOG));
+    assert_null(grobo_servo_register_row(model, 1000));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(tables_are_whole),
+        cmocka_unit_test(models_have_their_own_rows),
+        cmocka_unit_test(values_are_written_as_each_series_does),
+        cmocka_unit_test(what_is_not_there_is_null),
+    };
+    return cmocka_run_group_tests_name("registers", tests, NULL, NULL);
+}
