@@ -8,7 +8,7 @@
 
 #include <grobo/dxl2.h>
 #include <grobo/feetech.h>
-#include <grobo/robot.h>
+#include <grobo/static.h>
 
 enum { TABLE_SERVOS_MAX = 8, TABLE_MEMORY = 256, TABLE_EVENTS = 512, TABLE_FRAMES = 4096 };
 
