@@ -22,6 +22,7 @@
 #include <grobo/gr001.h>
 #include <grobo/guard.h>
 #include <grobo/hrpsys.h>
+#include <grobo/ics.h>
 #include <grobo/interpolate.h>
 #include <grobo/limits.h>
 #include <grobo/loop.h>

@@ -14,6 +14,7 @@
 #include <grobo/driver.h>
 #include <grobo/dxl2.h>
 #include <grobo/feetech.h>
+#include <grobo/ics.h>
 #include <grobo/interpolate.h>
 #include <grobo/lx16a.h>
 #include <grobo/motion_io.h>
@@ -238,10 +239,18 @@ static void dxl_refuses_null(void **state)
     REFUSES(grobo_servo_register_put(model, reg, 0, NULL));
 }
 
-static void lx16a_refuses_null(void **state)
+static void lx16a_and_ics_refuse_null(void **state)
 {
     (void)state;
     static grobo_lx16a_packet lx16a;
+    static grobo_ics_packet ics;
+    REFUSES(grobo_ics_measure(NULL, 1));
+    REFUSES(grobo_ics_answer(NULL, 1, bytes, 1));
+    REFUSES(grobo_ics_answer(bytes, 1, NULL, 1));
+    REFUSES(grobo_ics_parse(NULL, 0, NULL, 1, &ics));
+    REFUSES(grobo_ics_parse(NULL, 0, bytes, 1, NULL));
+    REFUSES(grobo_ics_build(NULL, bytes, sizeof bytes));
+    REFUSES(grobo_ics_build(&ics, NULL, sizeof bytes));
     REFUSES(grobo_lx16a_measure(NULL, 1, GROBO_ACCEPT_RETURNS));
     REFUSES(grobo_lx16a_answer(NULL, 1, bytes, 1));
     REFUSES(grobo_lx16a_answer(bytes, 1, NULL, 1));
@@ -566,7 +575,7 @@ int main(void)
         cmocka_unit_test(body_motion_refuses_null),
         cmocka_unit_test(driver_refuses_null),
         cmocka_unit_test(dxl_refuses_null),
-        cmocka_unit_test(lx16a_refuses_null),
+        cmocka_unit_test(lx16a_and_ics_refuse_null),
         cmocka_unit_test(interpolate_refuses_null),
         cmocka_unit_test(model_refuses_null),
         cmocka_unit_test(motion_refuses_null_in_its_first_functions),
