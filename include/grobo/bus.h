@@ -310,7 +310,7 @@ GROBO_CORE bool grobo_bus_fits(const grobo_bus *bus, int64_t now_us, const grobo
  * the bus only.
  * @return true when it was for such a frame
  */
-GROBO_API bool grobo_bus_several(grobo_bus *bus, const grobo_packet *packet);
+GROBO_CORE bool grobo_bus_several(grobo_bus *bus, const grobo_packet *packet);
 
 /** When the line will be free for the next frame, as far as is known: now_us if it is. */
 GROBO_CORE int64_t grobo_bus_free_at(const grobo_bus *bus, int64_t now_us);

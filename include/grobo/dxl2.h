@@ -113,7 +113,7 @@ typedef struct grobo_dxl2_packet {
  * hosts (dynamixel-sdk 4.1.0 for Python) do not stuff.
  * @param accept GROBO_ACCEPT_COMMANDS, GROBO_ACCEPT_RETURNS (protocol.h) or-ed
  */
-GROBO_API int grobo_dxl2_measure(const uint8_t *bytes, size_t n, unsigned accept);
+GROBO_CORE int grobo_dxl2_measure(const uint8_t *bytes, size_t n, unsigned accept);
 
 /**
  * Takes the good frame of n bytes apart that grobo_dxl2_measure() found.
@@ -123,8 +123,8 @@ GROBO_API int grobo_dxl2_measure(const uint8_t *bytes, size_t n, unsigned accept
  * @return GROBO_OK; GROBO_ERR_FRAME: no frame of n bytes; GROBO_ERR_SPACE: no room;
  *         GROBO_ERR_SHORT: a good frame without the parameters that its instruction needs
  */
-GROBO_API int grobo_dxl2_parse(const uint8_t *frame, size_t n, uint8_t *data, size_t cap,
-                               grobo_dxl2_packet *packet);
+GROBO_CORE int grobo_dxl2_parse(const uint8_t *frame, size_t n, uint8_t *data, size_t cap,
+                                grobo_dxl2_packet *packet);
 
 /**
  * Puts a frame together and stuffs it. packet->data may lie in buf at offset 8, or behind the
@@ -132,7 +132,7 @@ GROBO_API int grobo_dxl2_parse(const uint8_t *frame, size_t n, uint8_t *data, si
  * @return size, or GROBO_ERR_ARG (an id that is none), GROBO_ERR_CAP (longer than
  *         GROBO_DXL2_FRAME_MAX_BYTES), GROBO_ERR_SPACE
  */
-GROBO_API int grobo_dxl2_build(const grobo_dxl2_packet *packet, uint8_t *buf, size_t cap);
+GROBO_CORE int grobo_dxl2_build(const grobo_dxl2_packet *packet, uint8_t *buf, size_t cap);
 
 /**
  * One servo's block of a good fast status of n bytes, the answer of FAST_SYNC_READ and
@@ -143,11 +143,11 @@ GROBO_API int grobo_dxl2_build(const grobo_dxl2_packet *packet, uint8_t *buf, si
  * @return where the next block would start; GROBO_ERR_SHORT: there is no such block;
  *         GROBO_ERR_CHECKSUM: its CRC is wrong
  */
-GROBO_API int grobo_dxl2_block(const uint8_t *frame, size_t n, size_t at, uint16_t length,
-                               grobo_dxl2_packet *block);
+GROBO_CORE int grobo_dxl2_block(const uint8_t *frame, size_t n, size_t at, uint16_t length,
+                                grobo_dxl2_packet *block);
 
 /** The CRC of Protocol 2.0 over n more bytes; starts with 0. */
-GROBO_API uint16_t grobo_dxl2_crc(uint16_t crc, const uint8_t *bytes, size_t n);
+GROBO_CORE uint16_t grobo_dxl2_crc(uint16_t crc, const uint8_t *bytes, size_t n);
 
 /** The protocol, for the bus. Servos must have a reply level of 2, as they leave the factory. */
 GROBO_API extern const grobo_protocol grobo_dxl2_protocol;

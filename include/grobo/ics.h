@@ -62,24 +62,24 @@ typedef struct grobo_ics_packet {
  * Judges n > 0 bytes of a host: the size of the command that they start with; 0 when they may start
  * one and more are needed; GROBO_ERR_FRAME when they cannot.
  */
-GROBO_API int grobo_ics_measure(const uint8_t *bytes, size_t n);
+GROBO_CORE int grobo_ics_measure(const uint8_t *bytes, size_t n);
 
 /**
  * As grobo_ics_measure(), for the reply to the command sent, behind its echo. The servo with id 0
  * may answer a position with the command's own first byte, as ICS 2.0 did.
  * @return GROBO_ERR_ARG where sent is no command
  */
-GROBO_API int grobo_ics_answer(const uint8_t *sent, size_t sent_bytes, const uint8_t *bytes,
-                               size_t n);
+GROBO_CORE int grobo_ics_answer(const uint8_t *sent, size_t sent_bytes, const uint8_t *bytes,
+                                size_t n);
 
 /** Takes a command, or the reply to the command sent, of n bytes apart; packet->data points into
  *  it. sent NULL: a command. @return GROBO_OK, or GROBO_ERR_FRAME: no frame of n bytes. */
-GROBO_API int grobo_ics_parse(const uint8_t *sent, size_t sent_bytes, const uint8_t *frame,
-                              size_t n, grobo_ics_packet *packet);
+GROBO_CORE int grobo_ics_parse(const uint8_t *sent, size_t sent_bytes, const uint8_t *frame,
+                               size_t n, grobo_ics_packet *packet);
 
 /** Puts a frame together. @return size, or GROBO_ERR_ARG (an id, item or value that is none),
  *  GROBO_ERR_SPACE. */
-GROBO_API int grobo_ics_build(const grobo_ics_packet *packet, uint8_t *buf, size_t cap);
+GROBO_CORE int grobo_ics_build(const grobo_ics_packet *packet, uint8_t *buf, size_t cap);
 
 GROBO_END_DECLS
 

@@ -33,10 +33,10 @@ typedef struct grobo_joint {
 } grobo_joint;
 
 /** The angle of a joint's servo, from the middle of its range, where the joint is at an angle. */
-GROBO_API double grobo_joint_to_servo(const grobo_joint *joint, double angle_rad);
+GROBO_CORE double grobo_joint_to_servo(const grobo_joint *joint, double angle_rad);
 
 /** The angle of a joint where its servo is at an angle, from the middle of its range. */
-GROBO_API double grobo_joint_from_servo(const grobo_joint *joint, double servo_rad);
+GROBO_CORE double grobo_joint_from_servo(const grobo_joint *joint, double servo_rad);
 
 /** A named set of joints. */
 typedef struct grobo_group {

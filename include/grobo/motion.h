@@ -131,7 +131,7 @@ GROBO_API int grobo_motion_set_joints(grobo_motion *motion, int n_joints);
 /** The motion's name, "" where it has none. Valid until it is changed or freed. */
 GROBO_API const char *grobo_motion_name(const grobo_motion *motion);
 /** Sets the name (copied). @return 0, GROBO_ERR_ARG (not UTF-8), GROBO_ERR_CAP, GROBO_ERR_NOMEM. */
-GROBO_API int grobo_motion_set_name(grobo_motion *motion, const char *name);
+GROBO_CORE int grobo_motion_set_name(grobo_motion *motion, const char *name);
 /** The body it was made for, "" where it names none. Valid until it is changed or freed. */
 GROBO_CORE const char *grobo_motion_target_body(const grobo_motion *motion);
 /** Sets the target body; as grobo_motion_set_name(). */
@@ -260,7 +260,7 @@ GROBO_API int grobo_motion_next(grobo_motion *motion, grobo_posture *posture);
 /* ---- comparing and editing whole motions -------------------------------------------------- */
 
 /** True if kind, joints, times, postures, details and links are the same to the bit. */
-GROBO_API bool grobo_motion_equal(const grobo_motion *a, const grobo_motion *b);
+GROBO_CORE bool grobo_motion_equal(const grobo_motion *a, const grobo_motion *b);
 /** True if kind, size and set joints agree and every angle and time differs by less than these. */
 GROBO_CORE bool grobo_motion_near(const grobo_motion *a, const grobo_motion *b, double delta_rad,
                                   double delta_s);
@@ -297,7 +297,7 @@ GROBO_API int grobo_motion_reverse(grobo_motion *motion);
  * Makes it take factor times as long (> 0). Steps that mean the default time stay so.
  * @return 0, GROBO_ERR_ARG, or GROBO_ERR_CAP if a step of a .m or .mseq would reach 10 s.
  */
-GROBO_API int grobo_motion_scale_time(grobo_motion *motion, double factor);
+GROBO_CORE int grobo_motion_scale_time(grobo_motion *motion, double factor);
 /**
  * Keeps what lies between two times of the motion, which then starts at 0. Where key poses or
  * .m postures are cut between two, the posture there becomes a key. Steps that give no time count

@@ -444,7 +444,7 @@ GROBO_CORE int grobo_sim_get_register(grobo_sim *sim, int servo, int address, in
 GROBO_CORE int grobo_sim_set_register(grobo_sim *sim, int servo, int address, int32_t value);
 
 /** Gives a servo another id, perhaps that of another one. @return as grobo_sim_set_register(). */
-GROBO_API int grobo_sim_set_id(grobo_sim *sim, int servo, int id);
+GROBO_CORE int grobo_sim_set_id(grobo_sim *sim, int servo, int id);
 
 /**
  * What an RS30x's flash holds: registers No.4-29 as they were saved last.

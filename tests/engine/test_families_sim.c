@@ -11,8 +11,8 @@
 
 #include <grobo/dxl2.h>
 #include <grobo/feetech.h>
-#include <grobo/static.h>
 #include <grobo/sim.h>
+#include <grobo/static.h>
 
 #include "src/base/instant.h"
 

@@ -516,9 +516,8 @@ static json_t *reply_json(const frame *f, const grobo_reply *reply, int known)
         return json_pack("{s:o}", "error", app_json_code(grobo_error_name(known)));
     bool returns = reply->kind == GROBO_REPLY_RETURN, differs = known == GROBO_ERR_MISMATCH;
     return json_pack("{s:s,s:I,s:o*,s:o*,s:o*,s:o*}", "kind", kinds[reply->kind], "bytes",
-                     (json_int_t)reply->bytes, "id",
-                     returns ? json_integer(reply->id) : NULL, "address",
-                     returns ? json_integer(reply->address) : NULL, "length",
+                     (json_int_t)reply->bytes, "id", returns ? json_integer(reply->id) : NULL,
+                     "address", returns ? json_integer(reply->address) : NULL, "length",
                      returns ? json_integer(reply->length) : NULL, "asked_bytes",
                      differs ? json_integer(f->board.reply_bytes) : NULL);
 }
