@@ -87,7 +87,9 @@
 #define GROBO_SIM_EAR_BYTES GROBO_FRAME_MAX_BYTES
 #endif
 /** Replies under way at the same time on the simulated servos' bus. */
+#ifndef GROBO_SIM_TALKS_MAX
 #define GROBO_SIM_TALKS_MAX (GROBO_SIM_SERVOS_MAX + 8)
+#endif
 
 /** Motion files: bytes read at most. */
 #define GROBO_FILE_MAX_BYTES (1024L * 1024L * 1024L)

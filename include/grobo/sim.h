@@ -294,7 +294,9 @@ typedef struct grobo_sim_wire {
 } grobo_sim_wire;
 
 /** Longest reply of a simulated servo. Private. */
+#ifndef GROBO_SIM_TALK_BYTES
 #define GROBO_SIM_TALK_BYTES 256
+#endif
 
 /** Bytes that servos say in one go, from start_ns on without a pause. Private. */
 typedef struct grobo_sim_talk {
