@@ -2,6 +2,7 @@
 /* Sockets: their start, pairs of them, what serial port and connection do alike. */
 #include "ports/win32/win32.h"
 
+#include <winsock2.h>
 #include <timeapi.h>
 
 static BOOL CALLBACK start_once(INIT_ONCE *once, void *arg, void **context)

@@ -449,6 +449,48 @@ check 'size: seven parameters' refuses 'many.c:1: size: f has 7 parameters' scan
 awk 'BEGIN { for (i = 0; i < 1001; i++) print "int x;" }' >file.c
 check 'size: a file of 1001 lines' refuses 'file.c:1001: size: file of 1001' scan size file.c long.c
 
+# ---- braces --------------------------------------------------------------------------------
+
+fresh
+sample a.c <<'C'
+#define RETURN(x) do { return x; } while (0)
+int a(int n)
+{
+    for (int i = 0; i < n; i++) {
+        if (i > 2 &&
+            n > 3) { /* if (i) */
+            return 1;
+        } else if (n > 5) {
+            return 2;
+        } else {
+            n--;
+        }
+    }
+    do {
+        n--;
+    } while (n > 0);
+    return n;
+}
+C
+check 'braces: around every body' scan braces a.c
+sample b.c <<'C'
+int b(int n)
+{
+    if (n > 2 &&
+        n < 5)
+        return 1;
+    for (; n > 9; n--) {
+    }
+    if (n) {
+        n--;
+    } else
+        n++;
+    return n;
+}
+C
+check 'braces: none after a condition of two lines' refuses 'b.c:4: braces' scan braces b.c
+check 'braces: none after else' refuses 'b.c:10: braces' scan braces b.c
+
 # ---- switch --------------------------------------------------------------------------------
 
 fresh

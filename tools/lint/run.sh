@@ -68,6 +68,7 @@ everything=$(texts)
     gate banned scan banned $all
     gate platform scan platform $all
     gate size scan size $all
+    gate braces scan braces $all
     gate switch scan switch $library $library
     gate units scan units $headers
     gate help sh "$gates/help.sh"
