@@ -9,9 +9,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "ports/posix/posix.h"
-
 #include <grobo/files.h>
+
+#include "ports/posix/posix.h"
 
 enum { TEMPORARIES_MAX = 100 }; /* names tried for one */
 

@@ -6,9 +6,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "ports/win32/win32.h"
-
 #include <grobo/files.h>
+
+#include "ports/win32/win32.h"
 
 enum { TEMPORARIES_MAX = 100 }; /* names tried for one */
 

@@ -1,16 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* The serial ports of this machine: names from the registry, what they are from SetupAPI. */
+#include <initguid.h>
+#include <windows.h>
+#include <devguid.h>
+#include <setupapi.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <windows.h>
 
 #include "ports/win32/win32.h"
-
-#include <initguid.h>
-
-#include <devguid.h>
-#include <setupapi.h>
 
 enum { PORTS_MAX = 256, NAME_BYTES = 32 };
 

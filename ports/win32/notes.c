@@ -3,13 +3,12 @@
  * Notes between the programs of one user, in the user's AppData: its access list keeps other users
  * out. The processes that left them; the one name of a device.
  */
+#include <shlobj.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "ports/common/notes.h"
 #include "ports/win32/win32.h"
-
-#include <shlobj.h>
 
 enum { PATH_BYTES = MAX_PATH + NOTE_NAME_BYTES + 32 };
 

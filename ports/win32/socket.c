@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Sockets: their start, pairs of them, what serial port and connection do alike. */
-#include "ports/win32/win32.h"
-
 #include <winsock2.h>
 #include <timeapi.h>
+
+#include "ports/win32/win32.h"
 
 static BOOL CALLBACK start_once(INIT_ONCE *once, void *arg, void **context)
 {

@@ -5,9 +5,8 @@
 
 /* Windows 7 has everything that is called here. */
 #include <winsock2.h>
-#include <ws2tcpip.h>
-
 #include <windows.h>
+#include <ws2tcpip.h>
 
 #include "ports/common/common.h"
 

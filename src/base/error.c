@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <grobo/error.h>
-
 #include <stddef.h>
+
+#include <grobo/error.h>
 
 typedef struct error_entry {
     int value;

@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* The waist balancer: choreonoid-whole-body.md, section of that name, points 1 to 3. The waist is
  * shifted in x and y, frame by frame, until the ZMP of the moving body is the desired one. */
-#include "src/body/balance.h"
-
 #include <string.h>
 
+#include "src/body/balance.h"
 #include "src/body/vec.h"
 
 #define ROUNDS 2

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* From a motion's key poses to the body's, and back to frames. */
-#include <grobo/body_motion.h>
-
 #include <string.h>
+
+#include <grobo/body_motion.h>
 
 #include "src/body/body.h"
 #include "src/body/vec.h"

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#include "src/body/polygon.h"
-
 #include <math.h>
 #include <string.h>
+
+#include "src/body/polygon.h"
 
 /* Twice the area of the triangle o, a, b; positive if it turns left. */
 static double turn(const double o[2], const double a[2], const double b[2])

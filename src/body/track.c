@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#include "src/body/track.h"
-
 #include <math.h>
 #include <string.h>
 
+#include "src/body/track.h"
 #include "src/body/vec.h"
 
 /* Keys closer than this jump. */

@@ -5,9 +5,9 @@
  * of its queue again. What the bytes that come mean is in receive.c.
  * An attempt becomes active only where the owner's `leave` agrees at that moment.
  */
-#include <grobo/bus.h>
-
 #include <string.h>
+
+#include <grobo/bus.h>
 
 #include "src/base/assert.h"
 #include "src/base/instant.h"

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#include "src/bus/framer.h"
-#include "src/base/assert.h"
-
 #include <string.h>
+
+#include "src/base/assert.h"
+#include "src/bus/framer.h"
 
 void grobo_i_framer_init(grobo_framer *framer)
 {

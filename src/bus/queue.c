@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include "src/bus/queue.h"
 #include "src/base/assert.h"
-
 #include "src/base/instant.h"
+#include "src/bus/queue.h"
 #include "src/bus/time.h"
 
 /* It is in no queue. */

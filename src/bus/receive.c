@@ -6,14 +6,13 @@
  * for its next attempt. No byte is counted twice: those believed, late_bytes, resync_bytes, echoes
  * and what the parser holds are all that came.
  */
-#include "src/bus/receive.h"
-#include "src/base/assert.h"
-
 #include <string.h>
 
+#include "src/base/assert.h"
 #include "src/base/instant.h"
 #include "src/bus/framer.h"
 #include "src/bus/queue.h"
+#include "src/bus/receive.h"
 #include "src/bus/time.h"
 
 static bool is_asked(const grobo_bus *bus)

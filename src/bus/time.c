@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-#include "src/bus/time.h"
-#include "src/base/assert.h"
-
 #include <string.h>
 
+#include "src/base/assert.h"
 #include "src/base/instant.h"
+#include "src/bus/time.h"
 
 enum {
     BITS_PER_BYTE = 10, /* 8N1 */

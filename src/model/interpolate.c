@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <grobo/interpolate.h>
-
 #include <math.h>
+
+#include <grobo/interpolate.h>
 
 /* ---- order: a heap sort, as it needs no memory and never degrades ---- */
 

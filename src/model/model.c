@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#include <grobo/posture.h>
-
 #include <math.h>
 #include <string.h>
+
+#include <grobo/posture.h>
 
 static char lower(char c)
 {

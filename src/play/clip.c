@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-#include "src/play/sequencer.h"
-
 #include <float.h>
 #include <math.h>
 #include <string.h>
+
+#include "src/play/sequencer.h"
 
 #define DEG_PER_RAD (180.0 / 3.14159265358979323846)
 

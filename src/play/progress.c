@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* How far a sequencer is: for who shows it, playing needs none of it. */
-#include "src/play/sequencer.h"
-
 #include <string.h>
+
+#include "src/play/sequencer.h"
 
 /* Frames of the grid before a position, counted from the beginning of the pass. */
 static uint64_t frames_until(const grobo_play_options *options, int64_t pos_us)

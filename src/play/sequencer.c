@@ -4,12 +4,11 @@
  * one, the way to a key is one, a hold (pause, stop) is one; each has one frame, handed out when
  * it begins. Playing at a rate is the exception: its frames lie on a grid.
  */
-#include "src/play/sequencer.h"
-#include "src/base/assert.h"
-
 #include <string.h>
 
+#include "src/base/assert.h"
 #include "src/base/instant.h"
+#include "src/play/sequencer.h"
 
 #define SECOND_US 1000000u
 

@@ -11,13 +11,12 @@
  *   grobo_i_gate_leave()   the bus is about to give the frame out: judged, built, noted
  *   grobo_i_gate_judge(), grobo_i_gate_build()   judged when it is asked for, to refuse at once
  */
-#include "src/robot/robot.h"
-
 #include <math.h>
 #include <string.h>
 
 #include "src/base/assert.h"
 #include "src/base/instant.h"
+#include "src/robot/robot.h"
 
 /* What the frame of an order says. */
 typedef struct saying {

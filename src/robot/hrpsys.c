@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#include <grobo/hrpsys.h>
-
 #include <math.h>
 #include <string.h>
+
+#include <grobo/hrpsys.h>
 
 static const grobo_model *model_of(const grobo_hrpsys *hrpsys)
 {

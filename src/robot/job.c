@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Runs the script of a job: one step after the other, waiting where a step says so. */
-#include "src/robot/robot.h"
-
 #include <string.h>
 
 #include "src/base/assert.h"
 #include "src/base/instant.h"
+#include "src/robot/robot.h"
 
 /* ---- which jobs there are -------------------------------------------------------------------- */
 

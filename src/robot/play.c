@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* The sequencer's frames, on time. */
-#include "src/robot/robot.h"
-
 #include <math.h>
 #include <string.h>
+
+#include "src/robot/robot.h"
 
 void grobo_i_play_tell(grobo_robot *robot)
 {

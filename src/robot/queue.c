@@ -5,12 +5,11 @@
  * its joints from the move before it. What else there is has the robot for itself. Moves and
  * readings that cannot begin yet wait, in their order.
  */
-#include "src/robot/robot.h"
-
 #include <string.h>
 
 #include "src/base/assert.h"
 #include "src/base/instant.h"
+#include "src/robot/robot.h"
 
 /* ---- side by side ---------------------------------------------------------------------------- */
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* What a reading tells of a joint. */
-#include "src/robot/robot.h"
-
 #include <math.h>
 #include <stdlib.h>
+
+#include "src/robot/robot.h"
 
 static void merge(grobo_robot_axis *axis, const grobo_joint_state *got)
 {

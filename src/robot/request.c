@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* The public requests: what is asked is checked here, then a script is started. */
-#include "src/robot/robot.h"
-
 #include <math.h>
 #include <string.h>
 
 #include "src/base/instant.h"
+#include "src/robot/robot.h"
 
 /* May a job of this kind begin now? */
 static int admit(grobo_robot *robot, grobo_job_kind kind, grobo_joint_mask joints, bool moves)

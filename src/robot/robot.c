@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Life, pump and link of the engine. */
-#include "src/robot/robot.h"
-#include "src/base/instant.h"
-
 #include <math.h>
 #include <string.h>
+
+#include "src/base/instant.h"
+#include "src/robot/robot.h"
 
 #define STALL_US 250000
 #define EXIT_BOUND_US 10000000

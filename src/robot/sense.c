@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* When the background reads which joint, and free mode. */
+#include <math.h>
+#include <stdlib.h>
+
 #include "src/base/instant.h"
 #include "src/bus/time.h"
 #include "src/robot/robot.h"
-
-#include <math.h>
-#include <stdlib.h>
 
 /* In free mode a hand has so long to get a joint going, or to turn it back, before it holds. */
 #define GRIP_US 100000

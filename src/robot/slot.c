@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Frames under way: from an exchange to a transaction of the bus and back. */
-#include "src/robot/robot.h"
-
 #include <string.h>
 
 #include "src/base/assert.h"
+#include "src/robot/robot.h"
 
 /* Slots that only a halt may take: there is always room for what stops the robot. */
 #define SLOTS_TO_HALT 3

@@ -4,12 +4,11 @@
  * the board, so whatever was written is read back, and written again where it did not take; a
  * budget of rounds ends that.
  */
-#include "src/robot/robot.h"
-
 #include <math.h>
 #include <string.h>
 
 #include "src/base/instant.h"
+#include "src/robot/robot.h"
 
 /* Rounds of writing again; a line that loses a byte in a hundred needs some. */
 #define ROUNDS 10

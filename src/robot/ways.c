@@ -7,10 +7,10 @@
  * servo was told to go. Frames are built when they leave, so that a renewal lies on the way
  * whenever that is.
  */
+#include <math.h>
+
 #include "src/base/assert.h"
 #include "src/robot/robot.h"
-
-#include <math.h>
 
 static bool is_in(grobo_joint_mask joints, int joint)
 {

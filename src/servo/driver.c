@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* What a driver table must have. */
-#include <grobo/driver.h>
-
 #include <math.h>
+
+#include <grobo/driver.h>
 
 static bool functions_present(const grobo_driver *driver)
 {

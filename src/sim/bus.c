@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* What servos hear: bytes of the board or host, and the packets that they make. */
-#include "src/sim/bus.h"
-
 #include <string.h>
 
 #include "src/base/assert.h"
+#include "src/sim/bus.h"
 #include "src/sim/family.h"
 #include "src/sim/fault.h"
 #include "src/sim/note.h"

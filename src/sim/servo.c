@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* A servo at its line, whatever its family: whether it hears, and how it speaks. */
-#include "src/sim/servo.h"
 #include "src/sim/family.h"
 #include "src/sim/fault.h"
 #include "src/sim/note.h"
 #include "src/sim/power.h"
+#include "src/sim/servo.h"
 #include "src/sim/shaft.h"
 #include "src/sim/talk.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include "src/sim/wire.h"
 #include "src/base/assert.h"
 #include "src/sim/fault.h"
+#include "src/sim/wire.h"
 
 bool grobo_i_sim_wire_put(grobo_sim_wire *wire, uint8_t byte, int64_t at_ns)
 {

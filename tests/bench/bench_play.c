@@ -36,8 +36,9 @@ static void deviations(const spy_frame *frames, size_t n, double *deviation_us)
         deviation_us[i] = since_us - PERIOD_US * round(since_us / PERIOD_US);
     }
     middle = quantile(deviation_us, n, 0.5);
-    for (size_t i = 0; i < n; i++)
+    for (size_t i = 0; i < n; i++) {
         deviation_us[i] -= middle;
+    }
 }
 
 int main(void)
@@ -57,8 +58,9 @@ int main(void)
     }
     n = s.n_poses - 1;
     deviations(s.poses + 1, n, deviation_us);
-    for (size_t i = 0; i < n; i++)
+    for (size_t i = 0; i < n; i++) {
         size_us[i] = fabs(deviation_us[i]);
+    }
     drift_us =
         quantile(deviation_us + n - SECOND, SECOND, 0.5) - quantile(deviation_us, SECOND, 0.5);
     median_us = quantile(size_us, n, 0.5);

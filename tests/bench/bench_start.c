@@ -26,8 +26,9 @@ static int64_t run_once(const char *command, const posix_spawn_file_actions_t *f
     int status = -1;
     pid_t pid;
     if (posix_spawn(&pid, command, files, NULL, argv, environ) != 0 ||
-        waitpid(pid, &status, 0) != pid || status != 0)
+        waitpid(pid, &status, 0) != pid || status != 0) {
         return -1;
+    }
     return grobo_now_us() - begun_us;
 }
 

@@ -4,6 +4,7 @@
  * place in the list of ports. GROBO_TEST_SERIAL names two ports joined by a cable, and
  * GROBO_TEST_DRIVER the first one's driver, 8250 or ftdi_sio.
  */
+#include <linux/serial.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -11,11 +12,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
 #include <sys/ioctl.h>
 #include <unistd.h>
-
-#include <linux/serial.h>
 
 #include <cmocka.h>
 

@@ -12,7 +12,6 @@
 #include <grobo/bus.h>
 
 #include "src/bus/time.h"
-
 #include "tests/support/bus_peer.h"
 
 enum { MS = 1000, S = 1000000, FRAME = GROBO_FRAME_MAX_BYTES, READ_US = 3488 };

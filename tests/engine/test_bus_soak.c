@@ -14,9 +14,10 @@
 
 #include <cmocka.h>
 
-#include "src/bus/framer.h"
 #include <grobo/board.h>
 #include <grobo/bus.h>
+
+#include "src/bus/framer.h"
 
 enum {
     MS = 1000,

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Each rule holds for each joint, and for that one alone. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #include <cmocka.h>
-#include <math.h>
-#include <string.h>
 
 #include <grobo/board.h>
 

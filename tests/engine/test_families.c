@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The engine on servos of each family that is a table of registers: it plays postures, trips, and
  * stops; what is set up otherwise, or guarded, is refused. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -8,7 +9,6 @@
 #include <string.h>
 
 #include <cmocka.h>
-#include <math.h>
 
 #include "tests/support/table_bus.h"
 

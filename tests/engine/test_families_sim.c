@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The engine on simulated servos of each family: postures, a faulty line, an overload, stops. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -7,7 +8,6 @@
 #include <string.h>
 
 #include <cmocka.h>
-#include <math.h>
 
 #include <grobo/dxl2.h>
 #include <grobo/feetech.h>

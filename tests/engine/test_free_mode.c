@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* Free mode under a hand that turns a joint at 30 to 200 deg/s, on board and bus. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
 
 #include <cmocka.h>
+
 #include <grobo/gr001.h>
-#include <math.h>
 
 #include "tests/support/rig.h"
 

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* The gate at its bounds, and what it notes when a frame leaves. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #include <cmocka.h>
-#include <math.h>
-#include <string.h>
 
 #include "src/robot/robot.h"
 #include "tests/support/raw_frames.h"

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* GR001 by motor number and in motor order, for people, and its record. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <string.h>
 
 #include <cmocka.h>
-#include <math.h>
-#include <string.h>
 
 #include <grobo/gr001.h>
 

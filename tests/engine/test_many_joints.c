@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* A robot of as many joints as there may be: the last one is a joint like the others, and nothing
  * is looked for behind it. A checked build (make check-san) traps where something is. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #include <cmocka.h>
-#include <math.h>
-#include <string.h>
 
 #include <grobo/board.h>
 

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* The engine's jobs on a robot without faults. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #include <cmocka.h>
-#include <math.h>
-#include <string.h>
 
 #include "tests/support/rig.h"
 

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* The same requests on another clock: the same frames, the same events. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #include <cmocka.h>
-#include <math.h>
-#include <string.h>
 
 #include <grobo/board.h>
 

@@ -14,14 +14,14 @@
  *   alone:                 1 / reading                            a second
  *   beside f frames:       f * floor((1 / f - goals) / reading)   a second: none is cut in two
  */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #include <cmocka.h>
-#include <math.h>
-#include <string.h>
 
 #include "src/robot/robot.h"
 #include "tests/support/rig.h"

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* What the engine owes a driver: its context, every part of an order, and what it answers. */
+#include <limits.h>
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #include <cmocka.h>
-#include <limits.h>
-#include <math.h>
-#include <string.h>
 
 #include <grobo/board.h>
 

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Playing: the frames on the wire, their times, and what a motion may be told on its way. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #include <cmocka.h>
-#include <math.h>
-#include <string.h>
 
 #include "tests/support/rig.h"
 

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Every request in every state of the robot: taken, or refused for the reason that is written. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #include <cmocka.h>
-#include <math.h>
-#include <string.h>
 
 #include <grobo/board.h>
 

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* Targets that come before the one before is reached. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
 
 #include <cmocka.h>
-#include <math.h>
 
 #include "tests/support/rig.h"
 

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Registers, flash and reboot, raw frames, stored motions, free mode, configuration. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #include <cmocka.h>
-#include <math.h>
-#include <string.h>
 
 #include "tests/support/rig.h"
 

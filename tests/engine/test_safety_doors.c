@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Doors to a motor beside the targets, and what is known of joints that others may have moved. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #include <cmocka.h>
-#include <math.h>
-#include <string.h>
 
 #include "tests/support/rig.h"
 

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Frames that wait for the line, and frames that are tried again: what is right when they leave. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #include <cmocka.h>
-#include <math.h>
-#include <string.h>
 
 #include "src/robot/robot.h"
 #include "tests/support/raw_frames.h"

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Limits by every way in, speed under every control, times out of the ordinary. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #include <cmocka.h>
-#include <math.h>
-#include <string.h>
 
 #include <grobo/gr001.h>
 #include <grobo/hrpsys.h>

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* A frame is judged and noted at the moment it leaves, whatever its origin: not when it was asked
  * for. The rig fails where a goal is too fast or torque comes on away from its goal. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #include <cmocka.h>
-#include <math.h>
-#include <string.h>
 
 #include "tests/support/raw_frames.h"
 

@@ -3,15 +3,15 @@
  * Goals in segments: what an arm does when its host is gone, and that it does what a whole goal
  * would while the host is there.
  */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
-
-#include <cmocka.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include <cmocka.h>
 
 #include "tests/support/rig.h"
 

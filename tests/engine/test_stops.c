@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* What ends when the robot stops, what must not come on, and when the watch trips. */
+#include <limits.h>
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #include <cmocka.h>
-#include <limits.h>
-#include <math.h>
-#include <string.h>
 
 #include <grobo/board.h>
 

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Motions that are stopped, by whatever stops them: softly, ahead, and then it is quiet. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #include <cmocka.h>
-#include <math.h>
-#include <string.h>
 
 #include <grobo/board.h>
 

@@ -3,14 +3,14 @@
  * While anything moves, each joint is read at least once in GROBO_WATCH_US: the rate of frames
  * that the line allows, what is refused, and what makes room where frames fill the line.
  */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #include <cmocka.h>
-#include <math.h>
-#include <string.h>
 
 #include "tests/support/many_joints.h"
 #include "tests/support/rig.h"

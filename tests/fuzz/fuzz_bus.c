@@ -9,9 +9,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/bus/framer.h"
 #include <grobo/board.h>
 #include <grobo/bus.h>
+
+#include "src/bus/framer.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

@@ -4,14 +4,13 @@
  * executable is the program and its guard, see guarded.h.
  */
 #include <setjmp.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* What a test starts does not outlive it, see support/leash.h. */
 #include <setjmp.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
-
-#include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 

@@ -4,13 +4,12 @@
  * bounds wide enough for a busy machine; bench_play has the narrow ones.
  */
 #include <setjmp.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <signal.h>
 
 #include <cmocka.h>
 
@@ -57,8 +56,9 @@ static int play(const char *a, const char *b, const char *c)
         print_message("no GRCTL to run\n");
         skip();
     }
-    if (!s.server)
+    if (!s.server) {
         assert_true(spy_open(&s, &sim));
+    }
     return spy_run(&s, arguments, LIMIT_S);
 }
 
@@ -77,8 +77,9 @@ static int key_times_us(const char *path, int64_t times_us[KEYS_MAX])
     char *text = file_text(path, &size);
     int n = 0;
     assert_non_null(text);
-    for (char *at = strstr(text, " time: "); at && n < KEYS_MAX; at = strstr(at + 1, " time: "))
+    for (char *at = strstr(text, " time: "); at && n < KEYS_MAX; at = strstr(at + 1, " time: ")) {
         times_us[n++] = (int64_t)(strtod(at + 7, NULL) * 1e6 + 0.5);
+    }
     free(text);
     return n;
 }
@@ -113,8 +114,9 @@ static void expect_keys(const char *path)
         assert_in_range(frame->at_us, due_us - SEEN_US, due_us + SEEN_US);
         /* A frame that leaves late has so much less time. */
         assert_in_range(10000 * spy_time_cs(frame, 1), length_us - SLACK_US, length_us + 10000);
-        for (int motor = 2; motor <= MOTORS; motor++)
+        for (int motor = 2; motor <= MOTORS; motor++) {
             assert_int_equal(spy_time_cs(frame, motor), spy_time_cs(frame, 1));
+        }
     }
 }
 
@@ -125,8 +127,9 @@ static void test_keys(void **state)
     (void)state;
     assert_int_equal(play("--key", greet, NULL), 0);
     expect_keys(greet);
-    for (int motor = 1; motor <= MOTORS; motor++)
+    for (int motor = 1; motor <= MOTORS; motor++) {
         assert_int_equal(spy_angle_ddeg(&s.poses[10], motor), init_ddeg[motor - 1]);
+    }
     assert_int_equal(spy_angle_ddeg(&s.poses[bow], 1), -200);
     assert_in_range(spy_time_cs(&s.poses[bow], 1), 60 - SLACK_US / 10000, 60); /* less when late */
     assert_int_equal((int)said("frames"), s.n_poses - 1);
@@ -143,8 +146,9 @@ static void test_keys_of_a_real_motion(void **state)
     expect_keys(path);
     free(path);
     assert_true(said("max_error_deg") >= 0 && said("max_error_deg") <= 0.1);
-    for (int motor = 1; motor <= MOTORS; motor++)
+    for (int motor = 1; motor <= MOTORS; motor++) {
         last_ddeg[motor - 1] = spy_angle_ddeg(&s.poses[s.n_poses - 1], motor);
+    }
     expect_end(last_ddeg);
 }
 
@@ -179,8 +183,9 @@ static void on_wake(grobo_timer *timer, int64_t late_us, void *ctx)
 /* A second into the motion the command is stopped, and it goes on a while later. */
 static void on_pose(spy *of)
 {
-    if (of->n_poses != 50)
+    if (of->n_poses != 50) {
         return;
+    }
     kill(of->child, SIGSTOP);
     assert_int_equal(grobo_timer_new(of->base, on_wake, NULL, NULL, &wake), 0);
     assert_int_equal(grobo_timer_set(wake, grobo_now_us() + stall_us), 0);
@@ -218,8 +223,9 @@ static void test_long_stall(void **state)
     size_t after = 0;
     (void)state;
     assert_int_equal(play_with_a_stall(700000), 4);
-    for (size_t i = 0; i < s.n_poses; i++)
+    for (size_t i = 0; i < s.n_poses; i++) {
         after += s.poses[i].at_us >= awake_us;
+    }
     assert_true(after <= 1); /* to hold where it is, no motion */
     assert_true(s.n_poses < 60);
 }

@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* The serial port without a loop: rows SC01..SC22 of the original, on a pty or a cable. */
+#include <fcntl.h>
 #include <setjmp.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <fcntl.h>
-#include <signal.h>
 #include <sys/ioctl.h>
 #include <sys/time.h>
 #include <termios.h>

@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* A process that is held up does not take what waits for it for a servo's silence. */
+#include <poll.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
-
-#include <poll.h>
 
 #include <cmocka.h>
 #include <event2/event.h>

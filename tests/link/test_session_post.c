@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* Stops that signal handlers post, to a control and to a session, with nothing to be had. */
+#include <errno.h>
 #include <setjmp.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
-
-#include <errno.h>
-#include <signal.h>
 #include <sys/resource.h>
 
 #include <cmocka.h>

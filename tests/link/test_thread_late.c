@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* A control that is held up does not take what waits on the line for silence. */
+#include <poll.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
-
-#include <poll.h>
 
 #include <cmocka.h>
 

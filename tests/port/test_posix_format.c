@@ -4,9 +4,9 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <termios.h>
 
 #include <cmocka.h>
-#include <termios.h>
 
 #include "ports/posix/posix.h"
 

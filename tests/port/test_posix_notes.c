@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Notes between the programs of one user: only those that the user alone can have written. */
 #include <setjmp.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <signal.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>

@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Threads of the POSIX port and signals. */
 #include <setjmp.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
-
-#include <signal.h>
 
 #include <cmocka.h>
 

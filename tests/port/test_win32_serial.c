@@ -7,9 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ports/win32/win32.h"
-
 #include <cmocka.h>
+
+#include "ports/win32/win32.h"
 
 static grobo_os_cause cause;
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include "tests/support/body_scaled.h"
-
 #include <string.h>
+
+#include "tests/support/body_scaled.h"
 
 void body_scaled_init(struct body_scaled *scaled, double length, double mass)
 {

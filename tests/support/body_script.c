@@ -1,6 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include "tests/support/body_script.h"
-
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -11,6 +9,7 @@
 #include <cmocka.h>
 
 #include "src/body/body.h"
+#include "tests/support/body_script.h"
 
 grobo_body_key *script_key(struct script *script, double time_s)
 {

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-#include "tests/support/bus_peer.h"
-
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <string.h>
 
 #include <cmocka.h>
+
+#include "tests/support/bus_peer.h"
 
 const grobo_bus_config board_line = {.protocol = &grobo_board_protocol};
 

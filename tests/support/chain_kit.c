@@ -1,6 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include "tests/support/chain_kit.h"
-
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -10,6 +8,8 @@
 
 #include <grobo/dxl2.h>
 #include <grobo/feetech.h>
+
+#include "tests/support/chain_kit.h"
 
 static const grobo_sim_family *const families[] = {&grobo_sim_dxl2, &grobo_sim_dxl1, NULL};
 

@@ -1,6 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include "tests/support/guarded.h"
-
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,6 +8,8 @@
 #include <event2/event.h>
 
 #include <grobo/session.h>
+
+#include "tests/support/guarded.h"
 
 const char guarded_again[] = "exec ${EMULATOR:-} \"$0\" \"$@\"";
 

@@ -1,6 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include "tests/support/leash.h"
-
 #include <setjmp.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -11,6 +9,8 @@
 #include <unistd.h>
 
 #include <cmocka.h>
+
+#include "tests/support/leash.h"
 
 /* Descriptors of the test: its robot's line would stay open. */
 enum { DESCRIPTORS = 1024 };

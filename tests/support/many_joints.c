@@ -1,6 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include "tests/support/many_joints.h"
-
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -9,6 +7,8 @@
 #include <cmocka.h>
 
 #include <grobo/board.h>
+
+#include "tests/support/many_joints.h"
 
 grobo_driver *many_joints(grobo_wiring wiring, int n)
 {

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-#include "tests/support/raw_frames.h"
-
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #include <cmocka.h>
-#include <string.h>
+
+#include "tests/support/raw_frames.h"
 
 static struct {
     uint8_t bytes[GROBO_RS30X_PACKET_MAX_BYTES];

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /* Raw frames and registers. */
-#include "tests/support/restless.h"
-
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdlib.h>
 
 #include <cmocka.h>
-#include <math.h>
-#include <stdlib.h>
+
+#include "tests/support/restless.h"
 
 enum { GOALS_MAX = 4 };
 

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT */
-#include "tests/support/rig.h"
-
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
-
-#include <cmocka.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include <cmocka.h>
+
+#include "tests/support/rig.h"
 
 const grobo_robot_config quiet = {.sense_interval_us = GROBO_SENSE_NEVER};
 grobo_wiring rig_wiring = GROBO_WIRING_BOARD;

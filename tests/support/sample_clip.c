@@ -1,6 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include "tests/support/sample_clip.h"
-
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -8,6 +6,8 @@
 #include <string.h>
 
 #include <cmocka.h>
+
+#include "tests/support/sample_clip.h"
 
 static const grobo_joint joints[SAMPLE_JOINTS] = {
     {"LEFT", -3, 3, 6, 0, 0, 0, 1, 1, -1, 1, false, 0, 1},

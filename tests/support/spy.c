@@ -29,22 +29,25 @@ static void note(spy *s, int64_t now_us)
     static const uint8_t head[] = {0x53, 0x6C, 0xFA, 0xAF, 0x00, 0x00, 0x1E, 0x05, 0x14};
     spy_frame *pose = &s->poses[s->n_poses];
     if (s->part_size != SPY_POSE_BYTES || memcmp(s->part, head, sizeof head) != 0 ||
-        s->n_poses == SPY_FRAMES)
+        s->n_poses == SPY_FRAMES) {
         return;
+    }
     pose->at_us = now_us;
     pose->size = s->part_size;
     memcpy(pose->bytes, s->part, s->part_size);
     s->n_poses++;
-    if (s->on_pose)
+    if (s->on_pose) {
         s->on_pose(s);
+    }
 }
 
 static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes, size_t size,
                    void *ctx)
 {
     spy *s = ctx;
-    if (direction != GROBO_DIR_RX)
+    if (direction != GROBO_DIR_RX) {
         return;
+    }
     s->bytes += size;
     for (size_t i = 0; i < size; i++) {
         s->part[s->part_size++] = bytes[i];
@@ -61,8 +64,9 @@ static void on_child(evutil_socket_t number, short what, void *ctx)
     int status;
     (void)number;
     (void)what;
-    if (waitpid(s->child, &status, WNOHANG) != s->child)
+    if (waitpid(s->child, &status, WNOHANG) != s->child) {
         return;
+    }
     s->running = false;
     s->status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     event_base_loopbreak(s->base);
@@ -75,8 +79,9 @@ bool spy_open(spy *s, const grobo_sim_config *sim)
     memset(s, 0, sizeof *s);
     s->poses = calloc(SPY_FRAMES, sizeof *s->poses);
     s->base = grobo_loop_new();
-    if (!s->poses || !s->base)
+    if (!s->poses || !s->base) {
         return false;
+    }
     config.base = s->base;
     s->ended = evsignal_new(s->base, SIGCHLD, on_child, s);
     return s->ended && evsignal_add(s->ended, NULL) == 0 &&
@@ -86,10 +91,12 @@ bool spy_open(spy *s, const grobo_sim_config *sim)
 static void be_the_child(const spy *s, const char *program, const char *const *arguments)
 {
     const char *all[ARGUMENTS + 4] = {program, "-d", grobo_sim_server_device(s->server)};
-    for (int i = 0; i < ARGUMENTS && arguments[i]; i++)
+    for (int i = 0; i < ARGUMENTS && arguments[i]; i++) {
         all[3 + i] = arguments[i];
-    if (dup2(fileno(s->file), STDOUT_FILENO) >= 0)
+    }
+    if (dup2(fileno(s->file), STDOUT_FILENO) >= 0) {
         execv(program, (char *const *)(uintptr_t)all);
+    }
     _exit(127);
 }
 
@@ -99,15 +106,18 @@ int spy_run(spy *s, const char *const *arguments, int limit_s)
     struct timeval limit = {limit_s, 0};
     size_t n;
     s->file = tmpfile();
-    if (!program || !s->file)
+    if (!program || !s->file) {
         return -1;
+    }
     s->child = fork();
-    if (s->child == 0)
+    if (s->child == 0) {
         be_the_child(s, program, arguments);
+    }
     s->running = s->child > 0;
     event_base_loopexit(s->base, &limit);
-    while (s->running && !event_base_got_exit(s->base))
+    while (s->running && !event_base_got_exit(s->base)) {
         event_base_loop(s->base, EVLOOP_ONCE);
+    }
     if (s->running) {
         kill(s->child, SIGKILL);
         waitpid(s->child, NULL, 0);
@@ -123,10 +133,12 @@ int spy_run(spy *s, const char *const *arguments, int limit_s)
 void spy_close(spy *s)
 {
     grobo_sim_server_free(s->server);
-    if (s->ended)
+    if (s->ended) {
         event_free(s->ended);
-    if (s->base)
+    }
+    if (s->base) {
         event_base_free(s->base);
+    }
     free(s->poses);
 }
 

@@ -1,6 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include "tests/support/table_bus.h"
-
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,6 +7,7 @@
 #include <cmocka.h>
 
 #include "src/base/instant.h"
+#include "tests/support/table_bus.h"
 
 enum { BIT_NS = 1000, BITS = 10 };
 

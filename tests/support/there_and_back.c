@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-#include "tests/support/there_and_back.h"
-
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 
 #include <cmocka.h>
+
+#include "tests/support/there_and_back.h"
 
 const sample_key there_and_back[3] = {
     {0, ALL, {0.0, 0, 0}}, {1000 * MS, ALL, {1.0, 0, 0}}, {2000 * MS, ALL, {0.0, 0, 0}}};

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include "tests/support/transforms.h"
-
 #include <math.h>
+
+#include "tests/support/transforms.h"
 
 double transforms_apart(const grobo_transform *a, const grobo_transform *b)
 {

@@ -1,6 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include "tests/support/vectors.h"
-
 #include <ctype.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -12,6 +10,7 @@
 #include <cmocka.h>
 
 #include "tests/support/files.h"
+#include "tests/support/vectors.h"
 
 enum { STRING_MAX_BYTES = 1024 };
 

@@ -1,6 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include "tests/support/wire_vectors.h"
-
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -11,6 +9,7 @@
 
 #include "tests/support/files.h"
 #include "tests/support/vectors.h"
+#include "tests/support/wire_vectors.h"
 
 static void take_bytes(wire_bytes *to, const json_t *hex)
 {

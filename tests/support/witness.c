@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-#include "tests/support/witness.h"
-
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #include <cmocka.h>
-#include <string.h>
+
+#include "tests/support/witness.h"
 
 /* A reply later than this is nobody's any more. */
 #define LATE_US 1000000

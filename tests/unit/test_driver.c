@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Driver tables: the frames they build, what they read, what is wrong with a table. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #include <cmocka.h>
-#include <math.h>
-#include <string.h>
 
 #include <grobo/board.h>
 #include <grobo/driver.h>

@@ -11,7 +11,6 @@
 #include <cmocka.h>
 
 #include <grobo/motion.h>
-
 #include <grobo/motion_io.h>
 
 #include "tests/support/counted_mem.h"

@@ -34,8 +34,9 @@ static volatile sig_atomic_t child;
 
 static void hand_on(int number)
 {
-    if (child > 0)
+    if (child > 0) {
         kill(child, number);
+    }
 }
 
 static void die(const char *what)
@@ -50,12 +51,14 @@ static void open_end(end *e)
     const char *name;
     e->master = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK);
     if (e->master < 0 || grantpt(e->master) != 0 || unlockpt(e->master) != 0 ||
-        (name = ptsname(e->master)) == NULL)
+        (name = ptsname(e->master)) == NULL) {
         die("posix_openpt");
+    }
     /* Held open: a program that closes its end does not hang the cable up. */
     e->slave = open(name, O_RDWR | O_NOCTTY);
-    if (e->slave < 0 || tcgetattr(e->slave, &tio) != 0)
+    if (e->slave < 0 || tcgetattr(e->slave, &tio) != 0) {
         die(name);
+    }
     cfmakeraw(&tio);
     tcsetattr(e->slave, TCSANOW, &tio);
     fcntl(e->master, F_SETFD, FD_CLOEXEC);
@@ -67,10 +70,12 @@ static void name_end(end *e, const char *folder, int from)
 {
     for (e->com = from; e->com <= LAST_COM; e->com++) {
         snprintf(e->link, sizeof e->link, "%s/com%d", folder, e->com);
-        if (symlink(ptsname(e->master), e->link) == 0)
+        if (symlink(ptsname(e->master), e->link) == 0) {
             return;
-        if (errno != EEXIST)
+        }
+        if (errno != EEXIST) {
             die(e->link);
+        }
     }
     fprintf(stderr, "nullmodem: no free name in %s\n", folder);
     exit(1);
@@ -99,13 +104,16 @@ static void carry_until_over(end ends[ENDS], int over)
             carry(&ends[1 - i], &ends[i]);
             all[i].fd = ends[i].master;
         }
-        for (int i = 0; i < ENDS; i++)
+        for (int i = 0; i < ENDS; i++) {
             all[i].events =
                 (short)((ends[1 - i].used == 0 ? POLLIN : 0) | (ends[i].used > 0 ? POLLOUT : 0));
-        if (poll(all, ENDS + 1, -1) < 0 && errno != EINTR)
+        }
+        if (poll(all, ENDS + 1, -1) < 0 && errno != EINTR) {
             die("poll");
-        if ((all[ENDS].revents & (POLLIN | POLLHUP)) != 0)
+        }
+        if ((all[ENDS].revents & (POLLIN | POLLHUP)) != 0) {
             return;
+        }
     }
 }
 
@@ -113,12 +121,14 @@ static void carry_until_over(end ends[ENDS], int over)
 static int run(char **words)
 {
     int alive[2];
-    if (pipe(alive) != 0)
+    if (pipe(alive) != 0) {
         die("pipe");
+    }
     fcntl(alive[0], F_SETFD, FD_CLOEXEC);
     child = fork();
-    if (child < 0)
+    if (child < 0) {
         die("fork");
+    }
     if (child == 0) {
         /* Of us two alone: wine's server outlives the command. */
         pid_t its = fork();
@@ -154,13 +164,15 @@ int main(int argc, char **argv)
     }
     snprintf(pair, sizeof pair, "COM%d,COM%d", ends[0].com, ends[1].com);
     setenv("GROBO_TEST_SERIAL", pair, 1);
-    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
+    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
         signal(numbers[i], hand_on);
+    }
     over = run(argv + 2);
     carry_until_over(ends, over);
     while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
     }
-    for (int i = 0; i < ENDS; i++)
+    for (int i = 0; i < ENDS; i++) {
         unlink(ends[i].link);
+    }
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }

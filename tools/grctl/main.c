@@ -20,8 +20,9 @@ int main(int argc, char **argv)
     os_start();
     cli_commands = commands;
     cli_n_commands = sizeof commands / sizeof commands[0];
-    if (argc == 2 && strcmp(argv[1], "guard") == 0)
+    if (argc == 2 && strcmp(argv[1], "guard") == 0) {
         return guard_main();
+    }
     if (argc > 1 && strcmp(argv[1], "__complete") == 0) { /* by the script of a shell */
         cli_print_completions(stdout, argc - 2, argv + 2);
         return EXIT_DONE;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* GR001 by motor number and in motor order, on the engine. */
-#include <grobo/gr001.h>
-
 #include <math.h>
+
+#include <grobo/gr001.h>
 
 #include "src/link/classic/gr001.h"
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* GR001 for people, into a stream that the caller gives. */
-#include <grobo/gr001.h>
-
 #include <string.h>
+
+#include <grobo/gr001.h>
 
 #include "src/link/classic/gr001.h"
 

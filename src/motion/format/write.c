@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-#include "src/motion/format/write.h"
 #include "src/motion/change/convert.h"
+#include "src/motion/format/write.h"
 
 /* Postures without joints are no lines. */
 static int check_writable(const grobo_motion *motion, const grobo_i_writing *writing)

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Robots of AX and MX servos with Protocol 1.0. */
-#include "src/servo/dxl1/driver.h"
-
 #include <string.h>
+
+#include "src/servo/dxl1/driver.h"
 
 static grobo_dxl1_packet to_old(const grobo_dxl2_packet *packet)
 {

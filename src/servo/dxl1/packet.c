@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Frames of DYNAMIXEL Protocol 1.0 and of Feetech: measured, taken apart, built. */
-#include <grobo/dxl1.h>
-
 #include <string.h>
 
+#include <grobo/dxl1.h>
 #include <grobo/protocol.h>
 
 enum {

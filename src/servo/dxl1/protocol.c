@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* DYNAMIXEL Protocol 1.0 for the bus: what a frame is answered by, and what a status tells. Nothing
  * in a frame says whether it is a status: the bus compares with what it has sent. */
-#include "src/servo/dxl1/protocol.h"
+#include <string.h>
 
 #include <grobo/bus.h>
 
-#include <string.h>
+#include "src/servo/dxl1/protocol.h"
 
 enum {
     BULK_ITEM_BYTES = 3,  /* length, id, address */

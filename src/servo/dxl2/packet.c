@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Frames of DYNAMIXEL Protocol 2.0: measured, taken apart, built. */
-#include <grobo/dxl2.h>
-
 #include <string.h>
 
+#include <grobo/dxl2.h>
 #include <grobo/protocol.h>
 
 #include "src/base/bytes.h"

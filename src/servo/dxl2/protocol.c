@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* DYNAMIXEL Protocol 2.0 for the bus: what a frame is answered by, and what a status tells. */
+#include <string.h>
+
 #include <grobo/bus.h>
 #include <grobo/dxl2.h>
-
-#include <string.h>
 
 #include "src/base/bytes.h"
 

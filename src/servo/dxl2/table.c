@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* The X series: registers and models. Rows and defaults: the maker's pages of XL330-M288,
  * XC330-M288, XC330-T288, XL430-W250 and XM430-W350; numbers of models: DynamixelSDK's
- * dynamixel.model. Speeds, torques and currents at the nominal supply have not been compared with the
- * data sheets yet. */
+ * dynamixel.model. Speeds, torques and currents are at the nominal supply, and have not been
+ * compared with the data sheets yet. */
 #include <grobo/dxl2.h>
 
 /* Groups of models: XL330, XC330 for 5 V and for 12 V; those that report a load; the larger ones

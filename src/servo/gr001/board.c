@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Frames of GR001's controller board. The push parser, which only its stand-ins need, is apart. */
-#include <grobo/board.h>
-
 #include <string.h>
+
+#include <grobo/board.h>
 
 #include "src/servo/rs30x/packet.h"
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Frames of Kondo KRS servos: measured, taken apart, built. */
-#include <grobo/ics.h>
-
 #include <string.h>
+
+#include <grobo/ics.h>
 
 enum {
     COMMAND_BITS = 0xE0,

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Frames of LewanSoul and Hiwonder servos: measured, taken apart, built. */
-#include <grobo/lx16a.h>
-
 #include <string.h>
+
+#include <grobo/lx16a.h>
 
 enum {
     HEADER = 0x55,

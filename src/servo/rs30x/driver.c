@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* The driver functions of robots made of RS30x servos, on any line. */
-#include <grobo/driver.h>
-
 #include <string.h>
+
+#include <grobo/driver.h>
 
 #include "src/servo/rs30x/driver.h"
 

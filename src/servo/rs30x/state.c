@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* The present values of a servo out of a block of its registers. */
-#include <grobo/rs30x.h>
-
 #include <string.h>
+
+#include <grobo/rs30x.h>
 
 #include "src/base/bytes.h"
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* The driver functions of servos that are registers, and the table of such a robot. */
-#include <grobo/sequencer.h>
-
 #include <math.h>
 #include <string.h>
+
+#include <grobo/sequencer.h>
 
 #include "src/servo/table/family.h"
 

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* What a servo's registers say of its joint. */
-#include "src/servo/table/family.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "src/servo/table/family.h"
 
 /* What a servo may say. A shaft may stand a little outside of its turn. */
 enum { OUTSIDE_TICKS = 256, VOLTAGE_MAX_MV = 30000, HEAT_MAX_C = 120, TORQUE_MAX = 2 };

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Values of registers: out of blocks, in their units, as angles. */
-#include "src/servo/table/family.h"
-
 #include <math.h>
+
+#include "src/servo/table/family.h"
 
 #define RAD_PER_DEG 0.017453292519943295
 

@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: MIT */
+#include <windows.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
-
-#include <windows.h>
 
 #include <cmocka.h>
 

@@ -105,11 +105,12 @@ static void report(const finder *f, const grobo_body_finding *finding, const cha
     d->message = message;
     d->line = line_at(f->motion, finding->begin_s);
     describe(finding, what, sizeof what);
-    if (finding->end_s > finding->begin_s)
+    if (finding->end_s > finding->begin_s) {
         snprintf(message, sizeof message, "%s%s, at %.2f s (from %.2f to %.2f s)", prefix, what,
                  finding->worst_s, finding->begin_s, finding->end_s);
-    else
+    } else {
         snprintf(message, sizeof message, "%s%s, at %.2f s", prefix, what, finding->worst_s);
+    }
     grobo_diagnostics_add(f->list, d);
 }
 
@@ -118,13 +119,16 @@ static void note_fall(finder *f, const grobo_body_finding *finding)
 {
     bool jumps = finding->problem == GROBO_BODY_NO_SUPPORT;
     f->too_fast = f->too_fast || finding->problem == GROBO_BODY_JOINT_SPEED;
-    if (finding->problem == GROBO_BODY_FOOT_SLIP)
+    if (finding->problem == GROBO_BODY_FOOT_SLIP) {
         f->steps = f->steps || finding->worst > step_least_m;
-    if (!jumps && (finding->problem != GROBO_BODY_ZMP_MARGIN || finding->worst >= 0))
+    }
+    if (!jumps && (finding->problem != GROBO_BODY_ZMP_MARGIN || finding->worst >= 0)) {
         return;
+    }
     if (f->falls &&
-        (f->fall.problem == GROBO_BODY_NO_SUPPORT || (!jumps && finding->worst >= f->fall.worst)))
+        (f->fall.problem == GROBO_BODY_NO_SUPPORT || (!jumps && finding->worst >= f->fall.worst))) {
         return;
+    }
     f->falls = true;
     f->fall = *finding;
 }
@@ -135,12 +139,14 @@ static void add(void *ctx, const grobo_body_finding *finding)
     grobo_diagnostic d = {.code = grobo_body_problem_name(finding->problem),
                           .severity = severity_of(finding)};
     note_fall(f, finding);
-    if (!is_wanted(f, finding))
+    if (!is_wanted(f, finding)) {
         return;
-    if (finding->problem == GROBO_BODY_JOINT_LIMIT && f->how->slack && check_takes_slack(finding))
+    }
+    if (finding->problem == GROBO_BODY_JOINT_LIMIT && f->how->slack && check_takes_slack(finding)) {
         check_add_slack(f->how->slack, finding);
-    else
+    } else {
         report(f, finding, "", &d);
+    }
 }
 
 static void see_frame(void *ctx, const grobo_body_balance_frame *frame)
@@ -154,8 +160,9 @@ static void see_frame(void *ctx, const grobo_body_balance_frame *frame)
 static void report_fall(const finder *f)
 {
     grobo_diagnostic d = {.code = "fall", .severity = GROBO_SEVERITY_WARNING};
-    if (f->falls && f->stood && !(f->standing && f->steps))
+    if (f->falls && f->stood && !(f->standing && f->steps)) {
         report(f, &f->fall, "the robot would fall: ", &d);
+    }
 }
 
 static void skip(const char *path, const char *why, grobo_diagnostics *list)
@@ -179,8 +186,9 @@ bool check_takes_slack(const grobo_body_finding *limit)
 void check_add_slack(grobo_slack_taken *slack, const grobo_body_finding *limit)
 {
     slack->n++;
-    if (limit->worst <= slack->worst_rad)
+    if (limit->worst <= slack->worst_rad) {
         return;
+    }
     slack->worst_rad = limit->worst;
     slack->joint = limit->index;
 }
@@ -193,8 +201,9 @@ void check_report_slack(const char *path, const grobo_slack_taken *slack, grobo_
                           .message = message,
                           .line = slack->line,
                           .severity = GROBO_SEVERITY_WARNING};
-    if (slack->n == 0)
+    if (slack->n == 0) {
         return;
+    }
     snprintf(message, sizeof message,
              "%zu angle%s up to %.1f degrees outside %s limits (%s): clamped", slack->n,
              slack->n == 1 ? "" : "s", grobo_deg_from_rad(slack->worst_rad),
@@ -226,8 +235,9 @@ static int look_at(finder *f, grobo_body *body)
     };
     int error = grobo_body_check(body, &look);
     if (error < 0 || f->how->what != CHECK_FALL || !f->falls || !f->too_fast ||
-        look.speed_pct <= 100)
+        look.speed_pct <= 100) {
         return error;
+    }
     look.speed_pct = 100;
     f->falls = false;
     return grobo_body_check(body, &look);
@@ -236,13 +246,15 @@ static int look_at(finder *f, grobo_body *body)
 /* A motion whose balance was asked for and is not known. */
 static int report_unknown(const check_whole_how *how, int error, grobo_diagnostics *list)
 {
-    if (error != GROBO_ERR_TYPE && error != GROBO_ERR_EMPTY)
+    if (error != GROBO_ERR_TYPE && error != GROBO_ERR_EMPTY) {
         return error < 0 ? error : 0;
-    if (how->what & CHECK_BALANCE)
+    }
+    if (how->what & CHECK_BALANCE) {
         skip(how->path,
              error == GROBO_ERR_TYPE ? "not made for GR001: its balance is unknown"
                                      : "has no postures to balance",
              list);
+    }
     return 0;
 }
 
@@ -255,16 +267,19 @@ int check_whole(const grobo_motion *motion, const grobo_body_options *options,
     bool asked = legs || (how->what & CHECK_BALANCE) != 0;
     grobo_body_options used = *options;
     grobo_body *body = NULL;
-    int error;
-    if (!asked && !fall)
+    if (!asked && !fall) {
         return 0;
-    if (!asked)
+    }
+    if (!asked) {
         used.rate_hz = fall_rate(motion);
-    error = whole_body(&body, motion, &used, &f.standing);
-    if (!error)
+    }
+    int error = whole_body(&body, motion, &used, &f.standing);
+    if (!error) {
         error = look_at(&f, body);
+    }
     grobo_body_free(body);
-    if (error >= 0 && fall)
+    if (error >= 0 && fall) {
         report_fall(&f);
+    }
     return report_unknown(how, error, list);
 }

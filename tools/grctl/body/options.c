@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: MIT */
-#include "tools/grctl/body/options.h"
 #include "tools/grctl/body/check.h"
+#include "tools/grctl/body/options.h"
 
 bool body_options_given(const app *a, int base)
 {
-    for (int i = 0; i < BODY_OPTIONS; i++)
-        if (app_option(a, base + i)->given)
+    for (int i = 0; i < BODY_OPTIONS; i++) {
+        if (app_option(a, base + i)->given) {
             return true;
+        }
+    }
     return false;
 }
 
@@ -38,21 +40,24 @@ int body_options_read(app *a, int base, double rate_hz, grobo_body_options *opti
     const cli_value *like = app_option(a, base + BODY_LIKE);
     grobo_body_options o = {.rate_hz = 0};
     int zmp = choice(a, base + BODY_ZMP, -1);
-    if (like->given)
+    if (like->given) {
         o = likes[like->choice];
+    }
     o.ik = (grobo_body_ik)choice(a, base + BODY_IK, (int)o.ik);
     o.step = (grobo_body_step)choice(a, base + BODY_STEP, (int)o.step);
     o.balance = (grobo_body_balance)choice(a, base + BODY_BALANCE, (int)o.balance);
-    if (zmp >= 0)
+    if (zmp >= 0) {
         o.zmp = zmps[zmp];
-    else if (o.balance != GROBO_BODY_BALANCE_OFF)
+    } else if (o.balance != GROBO_BODY_BALANCE_OFF) {
         o.zmp = GROBO_BODY_ZMP_AUTO;
+    }
     o.rate_hz = rate_hz;
     *options = o;
-    if (o.ik == GROBO_BODY_IK_OFF && o.balance != GROBO_BODY_BALANCE_OFF)
+    if (o.ik == GROBO_BODY_IK_OFF && o.balance != GROBO_BODY_BALANCE_OFF) {
         return app_fail(a, EXIT_USAGE, "ARG",
                         "%s: --ik off and a balancer cannot be used together; add --balance off",
                         a->line.command->name);
+    }
     return 0;
 }
 
@@ -61,11 +66,13 @@ int body_make(app *a, int base, const char *path, const grobo_motion *motion, do
 {
     grobo_body_options options;
     int error = body_options_read(a, base, rate_hz, &options);
-    if (error)
+    if (error) {
         return error;
+    }
     if (!whole_applies(motion, &options)) {
-        if (options.balance != GROBO_BODY_BALANCE_OFF)
+        if (options.balance != GROBO_BODY_BALANCE_OFF) {
             app_note(a, "%s: no legs by ikLinks: the balancer has nothing to move", path);
+        }
         return 0;
     }
     error = grobo_body_new(body, &grobo_gr001_body, motion, &options, NULL);
@@ -86,12 +93,14 @@ static void note_finding(void *ctx, const grobo_body_finding *finding)
     bool limit = finding->problem == GROBO_BODY_JOINT_LIMIT;
     bool refused = finding->problem == GROBO_BODY_UNREACHABLE || (limit && !r->clamps);
     if (limit && check_takes_slack(finding)) {
-        if (whole_joints() & GROBO_JOINT_BIT(finding->index)) /* the others are counted by key */
+        if (whole_joints() & GROBO_JOINT_BIT(finding->index)) { /* the others are counted by key */
             check_add_slack(r->slack, finding);
+        }
         return;
     }
-    if (!refused || (r->any && r->first.begin_s <= finding->begin_s))
+    if (!refused || (r->any && r->first.begin_s <= finding->begin_s)) {
         return;
+    }
     r->any = true;
     r->first = *finding;
 }
@@ -102,14 +111,17 @@ int body_refuse(app *a, const char *path, grobo_body *body, grobo_slack_taken *s
     grobo_body_check_options how = {
         .robot = &grobo_gr001_model, .finding = note_finding, .ctx = &r};
     int error = grobo_body_check(body, &how);
-    if (error < 0)
+    if (error < 0) {
         return fail(a, path, error);
-    if (!r.any)
+    }
+    if (!r.any) {
         return 0;
-    if (r.first.problem == GROBO_BODY_UNREACHABLE)
+    }
+    if (r.first.problem == GROBO_BODY_UNREACHABLE) {
         return app_fail(a, EXIT_SAFETY, grobo_error_name(GROBO_ERR_UNREACHABLE),
                         "%s: at %.2f s a leg does not reach its target (%s); see --ik off", path,
                         r.first.begin_s, grobo_gr001_body.links[r.first.index].name);
+    }
     return app_fail(a, EXIT_SAFETY, grobo_error_name(GROBO_ERR_LIMIT),
                     "%s: at %.2f s %s is %.1f deg outside its limits once the legs are solved; "
                     "--clamp plays it at the limit",
@@ -124,29 +136,32 @@ static int keys_motion(grobo_body *body, grobo_motion **out)
 {
     grobo_clip clip;
     grobo_motion *motion = NULL;
-    int error;
     grobo_body_clip(body, false, &clip);
-    error = grobo_motion_new(&motion, GROBO_MOTION_KEYS, clip.n_joints, NULL);
+    int error = grobo_motion_new(&motion, GROBO_MOTION_KEYS, clip.n_joints, NULL);
     for (size_t i = 0; i < clip.n_keys && !error; i++) {
         grobo_posture posture;
         int64_t at_us = 0;
         error = clip.key(clip.ctx, i, &posture, &at_us);
-        if (!error)
+        if (!error) {
             error = grobo_motion_append_at(motion, (double)at_us / 1e6, &posture);
+        }
     }
-    if (error)
+    if (error) {
         grobo_motion_free(motion);
-    else
+    } else {
         *out = motion;
+    }
     return error;
 }
 
 int body_motion(app *a, const char *path, grobo_body *body, double rate_hz, grobo_motion **out)
 {
     int n = rate_hz > 0 ? grobo_body_frames(body, NULL, out) : keys_motion(body, out);
-    if (n < 0)
+    if (n < 0) {
         return fail(a, path, n);
-    if (n > 0)
+    }
+    if (n > 0) {
         app_note(a, "%s: in %d frames a leg does not reach its target", path, n);
+    }
     return 0;
 }

@@ -13,20 +13,22 @@ bool whole_applies(const grobo_motion *motion, const grobo_body_options *options
 int whole_open(whole *w, const grobo_motion *motion, const grobo_clip_options *plain,
                const grobo_body_options *options)
 {
-    int error;
     memset(w, 0, sizeof *w);
-    if (!whole_applies(motion, options))
+    if (!whole_applies(motion, options)) {
         return grobo_motion_clip(motion, plain, &w->clip);
-    error = grobo_body_new(&w->body, &grobo_gr001_body, motion, options, NULL);
-    if (!error)
+    }
+    int error = grobo_body_new(&w->body, &grobo_gr001_body, motion, options, NULL);
+    if (!error) {
         grobo_body_clip(w->body, false, &w->clip);
+    }
     return error;
 }
 
 void whole_close(whole *w)
 {
-    if (!w->body && w->clip.key)
+    if (!w->body && w->clip.key) {
         grobo_motion_clip_free(&w->clip);
+    }
     grobo_body_free(w->body);
     memset(w, 0, sizeof *w);
 }
@@ -35,9 +37,11 @@ grobo_joint_mask whole_joints(void)
 {
     const grobo_body_model *model = &grobo_gr001_body;
     grobo_joint_mask joints = 0;
-    for (int foot = 0; foot < 2; foot++)
-        for (int link = model->feet[foot].link; link > 0; link = model->links[link].parent)
+    for (int foot = 0; foot < 2; foot++) {
+        for (int link = model->feet[foot].link; link > 0; link = model->links[link].parent) {
             joints |= GROBO_JOINT_BIT(model->links[link].joint);
+        }
+    }
     return joints;
 }
 
@@ -77,21 +81,26 @@ int whole_body(grobo_body **body, const grobo_motion *motion, const grobo_body_o
 {
     const grobo_body_options as_they_are = {.rate_hz = options->rate_hz};
     grobo_motion *keys = NULL;
-    int error;
     *standing = !whole_applies(motion, options);
-    if (!*standing)
+    if (!*standing) {
         return grobo_body_new(body, &grobo_gr001_body, motion, options, NULL);
-    if (file_model(motion) != &grobo_gr001_model)
+    }
+    if (file_model(motion) != &grobo_gr001_model) {
         return GROBO_ERR_TYPE;
-    error = to_keys(motion, &keys);
-    if (!error && grobo_motion_size(keys) == 0)
+    }
+    int error = to_keys(motion, &keys);
+    if (!error && grobo_motion_size(keys) == 0) {
         error = GROBO_ERR_EMPTY;
-    for (size_t i = 0; !error && i < grobo_motion_size(keys); i++)
+    }
+    for (size_t i = 0; !error && i < grobo_motion_size(keys); i++) {
         error = grobo_motion_set_ik_links(keys, i, NULL, 0);
-    if (!error)
+    }
+    if (!error) {
         error = stand_on_feet(keys);
-    if (!error)
+    }
+    if (!error) {
         error = grobo_body_new(body, &grobo_gr001_body, keys, &as_they_are, NULL);
+    }
     grobo_motion_free(keys);
     return error;
 }

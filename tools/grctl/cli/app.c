@@ -14,12 +14,15 @@ static bool wants_color(const app *a, bool tty)
     const cli_value *v = app_global(a, GLOBAL_COLOR);
     const char *no_color = getenv("NO_COLOR");
     const char *term = getenv("TERM");
-    if (v->given && v->choice == 1) /* always */
+    if (v->given && v->choice == 1) { /* always */
         return true;
-    if (v->given && v->choice == 2) /* never */
+    }
+    if (v->given && v->choice == 2) { /* never */
         return false;
-    if (no_color && *no_color)
+    }
+    if (no_color && *no_color) {
         return false;
+    }
     return tty && !(term && strcmp(term, "dumb") == 0);
 }
 
@@ -51,9 +54,11 @@ double app_number(const app *a, int i, double otherwise)
 
 void app_make_one_line(char *text)
 {
-    for (; *text; text++)
-        if ((unsigned char)*text < 0x20 || *text == 0x7f)
+    for (; *text; text++) {
+        if ((unsigned char)*text < 0x20 || *text == 0x7f) {
             *text = '?';
+        }
+    }
 }
 
 static int fail(app *a, int status, const char *code, grobo_trip trip, const char *format,
@@ -144,8 +149,9 @@ const char *app_cause_text(int number)
 static void say(const app *a, int least, const char *format, va_list list)
 {
     char text[APP_LINE_BYTES];
-    if (a->verbosity < least)
+    if (a->verbosity < least) {
         return;
+    }
     vsnprintf(text, sizeof text, format, list);
     app_make_one_line(text);
     output_complain("%s\n", text);
@@ -189,9 +195,10 @@ static bool dropped; /* some of standard output */
 
 static void report_dropped(const app *a, const char *name, uint64_t n)
 {
-    if (n > 0)
+    if (n > 0) {
         app_note(a, "standard %s: %llu messages were dropped: its reader was too slow", name,
                  (unsigned long long)n);
+    }
 }
 
 void app_attach(const app *a)
@@ -205,10 +212,12 @@ void app_attach(const app *a)
 int app_finish(app *a, int status)
 {
     app_attach(a);
-    if (output_flush() || status != EXIT_DONE)
+    if (output_flush() || status != EXIT_DONE) {
         return status == EXIT_DONE && dropped ? EXIT_ROBOT : status;
-    if (output_error() == EPIPE)
+    }
+    if (output_error() == EPIPE) {
         return EXIT_SIGNAL + OS_BROKEN_PIPE;
+    }
     a->json = false; /* there is no output left to put it on */
     return app_fail(a, EXIT_ROBOT, "IO", "standard output: cannot write: %s",
                     app_cause_text(output_error()));
@@ -242,9 +251,11 @@ json_t *app_json_text(const char *text)
     json_t *string = json_string(text);
     if (!string) { /* not UTF-8: keep what can be shown */
         char *copy = strdup(text);
-        for (char *c = copy; c && *c; c++)
-            if ((unsigned char)*c >= 0x80)
+        for (char *c = copy; c && *c; c++) {
+            if ((unsigned char)*c >= 0x80) {
                 *c = '?';
+            }
+        }
         string = json_string(copy ? copy : "?");
         free(copy);
     }
@@ -275,7 +286,8 @@ json_t *app_json_number(double number, int decimals)
 {
     double scale = pow(10, decimals);
     double rounded = round(number * scale) / scale;
-    if (!isfinite(rounded))
+    if (!isfinite(rounded)) {
         return json_null();
+    }
     return json_real(rounded == 0 ? 0 : rounded); /* no -0.0 */
 }

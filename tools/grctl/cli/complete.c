@@ -12,8 +12,9 @@ static void offer(const cli_offer *to, const char *word, size_t length, const ch
 {
     char text[256];
     size_t typed = strlen(to->prefix);
-    if (length < typed || length >= sizeof text || strncmp(word, to->prefix, typed) != 0)
+    if (length < typed || length >= sizeof text || strncmp(word, to->prefix, typed) != 0) {
         return;
+    }
     snprintf(text, sizeof text, "%.*s", (int)length, word);
     to->found(to->ctx, text, help);
 }
@@ -42,14 +43,17 @@ void cli_offer_kind(const cli_offer *to, cli_argument kind)
     case CLI_ARG_FILE:
         break;
     case CLI_ARG_COMMAND:
-        for (size_t i = 0; i < cli_n_commands; i++)
+        for (size_t i = 0; i < cli_n_commands; i++) {
             cli_offer_word(to, cli_commands[i]->name, cli_commands[i]->summary);
+        }
         break;
     case CLI_ARG_JOINT:
-        for (int i = 0; i < model->n_groups; i++)
+        for (int i = 0; i < model->n_groups; i++) {
             cli_offer_word(to, model->groups[i].name, "");
-        for (int i = 0; i < model->n_joints; i++)
+        }
+        for (int i = 0; i < model->n_joints; i++) {
             cli_offer_word(to, model->joints[i].name, "");
+        }
         break;
     case CLI_ARG_DEVICE:
         offer_words(to, "auto|sim|tcp:", strlen("auto|sim|tcp:"));
@@ -74,10 +78,12 @@ static void offer_options(const cli_offer *to, const cli_option *options, size_t
 
 static const cli_option *find_in(const cli_option *options, size_t n, const char *word)
 {
-    for (size_t i = 0; i < n; i++)
+    for (size_t i = 0; i < n; i++) {
         if ((word[1] == '-' && strcmp(word + 2, options[i].name) == 0) ||
-            (word[1] == options[i].letter && word[1] && word[2] == '\0'))
+            (word[1] == options[i].letter && word[1] && word[2] == '\0')) {
             return &options[i];
+        }
+    }
     return NULL;
 }
 
@@ -85,8 +91,9 @@ static const cli_option *find_in(const cli_option *options, size_t n, const char
 static const cli_option *find_option(const cli_command *command, const char *word)
 {
     const cli_option *o = command ? find_in(command->options, command->n_options, word) : NULL;
-    if (!o)
+    if (!o) {
         o = find_in(cli_global_options, GLOBAL_COUNT, word);
+    }
     return o && o->kind != CLI_FLAG ? o : NULL;
 }
 
@@ -94,8 +101,9 @@ cli_place cli_find_place(const cli_command *command, int n, char *const *words)
 {
     cli_place place = {.command = command};
     for (int i = 0; i < n && !place.unknown; i++) {
-        if (strcmp(words[i], "=") == 0) /* bash splits --color=auto */
+        if (strcmp(words[i], "=") == 0) { /* bash splits --color=auto */
             continue;
+        }
         if (place.option) {
             place.option = NULL;
         } else if (words[i][0] == '-') {
@@ -114,11 +122,14 @@ cli_place cli_find_place(const cli_command *command, int n, char *const *words)
 static cli_argument value_kind(const cli_option *option)
 {
     static const char *const files[] = {"FILE", "OUT", "PATH", "TRACE"};
-    if (option->kind != CLI_TEXT)
+    if (option->kind != CLI_TEXT) {
         return CLI_ARG_NONE;
-    for (size_t i = 0; i < sizeof files / sizeof files[0]; i++)
-        if (strncmp(option->value, files[i], strlen(files[i])) == 0)
+    }
+    for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
+        if (strncmp(option->value, files[i], strlen(files[i])) == 0) {
             return CLI_ARG_FILE;
+        }
+    }
     return strcmp(option->value, "DEV") == 0    ? CLI_ARG_DEVICE
            : strcmp(option->value, "LIST") == 0 ? CLI_ARG_JOINT
                                                 : CLI_ARG_NONE;
@@ -148,8 +159,9 @@ static cli_argument offer_argument(const cli_offer *to, const cli_place *place)
 static cli_argument offer_value(const cli_offer *to, const cli_option *option)
 {
     cli_argument kind = value_kind(option);
-    if (option->kind == CLI_CHOICE)
+    if (option->kind == CLI_CHOICE) {
         offer_words(to, option->value, strlen(option->value));
+    }
     cli_offer_kind(to, kind);
     return kind;
 }
@@ -157,18 +169,22 @@ static cli_argument offer_value(const cli_offer *to, const cli_option *option)
 cli_argument cli_offer_at(const cli_offer *to, const cli_place *place)
 {
     const cli_command *command = place->command;
-    if (place->unknown)
+    if (place->unknown) {
         return CLI_ARG_NONE;
-    if (place->option && !place->option->optional)
+    }
+    if (place->option && !place->option->optional) {
         return offer_value(to, place->option);
+    }
     if (to->prefix[0] == '-') {
-        if (command)
+        if (command) {
             offer_options(to, command->options, command->n_options);
+        }
         offer_options(to, cli_global_options, GLOBAL_COUNT);
         return CLI_ARG_NONE;
     }
-    if (place->option)
+    if (place->option) {
         (void)offer_value(to, place->option);
+    }
     return offer_argument(to, place);
 }
 
@@ -201,6 +217,7 @@ void cli_print_completions(FILE *to, int n, char *const *words)
     }
     cli_offer offer = {.prefix = p.word + p.lead, .found = print_found, .ctx = &p};
     cli_argument kind = cli_offer_at(&offer, &place);
-    if (kind == CLI_ARG_FILE || kind == CLI_ARG_DEVICE)
+    if (kind == CLI_ARG_FILE || kind == CLI_ARG_DEVICE) {
         fputs(":files\n", to);
+    }
 }

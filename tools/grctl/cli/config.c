@@ -36,22 +36,26 @@ static int complain(reader *r, const yaml_mark_t *at, const char *format, const 
 {
     char text[256];
     snprintf(text, sizeof text, format, what);
-    if (!r->status)
+    if (!r->status) {
         r->status = app_fail(r->a, EXIT_FILE, "SYNTAX", "%s:%zu:%zu: %s", r->path, at->line + 1,
                              at->column + 1, text);
+    }
     return r->status;
 }
 
 static int next(reader *r)
 {
-    if (r->has_event)
+    if (r->has_event) {
         yaml_event_delete(&r->event);
+    }
     r->has_event = yaml_parser_parse(&r->parser, &r->event) != 0;
-    if (!r->has_event)
+    if (!r->has_event) {
         return complain(r, &r->parser.problem_mark, "%s",
                         r->parser.problem ? r->parser.problem : "cannot be read");
-    if (r->event.type == YAML_ALIAS_EVENT)
+    }
+    if (r->event.type == YAML_ALIAS_EVENT) {
         return complain(r, &r->event.start_mark, "%s", "aliases are not known here");
+    }
     return 0;
 }
 
@@ -63,12 +67,14 @@ static const char *scalar(const reader *r)
 /* Calls `take` with each key of the mapping that the last event began, the value being next. */
 static int each_key(reader *r, int (*take)(reader *r, const char *key))
 {
-    if (r->event.type != YAML_MAPPING_START_EVENT)
+    if (r->event.type != YAML_MAPPING_START_EVENT) {
         return complain(r, &r->event.start_mark, "%s", "a mapping is wanted here");
+    }
     while (!r->status && next(r) == 0 && r->event.type != YAML_MAPPING_END_EVENT) {
         char key[CONFIG_NAME_BYTES];
-        if (!scalar(r) || r->event.data.scalar.length >= sizeof key)
+        if (!scalar(r) || r->event.data.scalar.length >= sizeof key) {
             return complain(r, &r->event.start_mark, "%s", "a name is wanted here");
+        }
         snprintf(key, sizeof key, "%s", scalar(r));
         take(r, key);
     }
@@ -82,23 +88,28 @@ static int take_option(reader *r, int global, cli_value *value)
 {
     const cli_option *o = &cli_global_options[global];
     char complaint[128];
-    if (next(r))
+    if (next(r)) {
         return r->status;
-    if (!scalar(r))
+    }
+    if (!scalar(r)) {
         return complain(r, &r->event.start_mark, "%s", "a single value is wanted here");
+    }
     memset(value, 0, sizeof *value);
-    if (!cli_take_value(o, value, scalar(r), complaint, sizeof complaint))
+    if (!cli_take_value(o, value, scalar(r), complaint, sizeof complaint)) {
         return complain(r, &r->event.start_mark, "%s", complaint);
+    }
     value->text = NULL; /* lives no longer than the event */
     return 0;
 }
 
 static int take_truth(reader *r, bool *truth)
 {
-    if (next(r))
+    if (next(r)) {
         return r->status;
-    if (!scalar(r) || (strcmp(scalar(r), "true") != 0 && strcmp(scalar(r), "false") != 0))
+    }
+    if (!scalar(r) || (strcmp(scalar(r), "true") != 0 && strcmp(scalar(r), "false") != 0)) {
         return complain(r, &r->event.start_mark, "%s", "true or false is wanted here");
+    }
     *truth = strcmp(scalar(r), "true") == 0;
     return 0;
 }
@@ -106,18 +117,21 @@ static int take_truth(reader *r, bool *truth)
 static int take_flag(reader *r, cli_value *value)
 {
     bool given = false;
-    if (take_truth(r, &given))
+    if (take_truth(r, &given)) {
         return r->status;
+    }
     value->given = given;
     return 0;
 }
 
 static int take_text(reader *r, char *text, size_t capacity)
 {
-    if (next(r))
+    if (next(r)) {
         return r->status;
-    if (!scalar(r) || !*scalar(r) || r->event.data.scalar.length >= capacity)
+    }
+    if (!scalar(r) || !*scalar(r) || r->event.data.scalar.length >= capacity) {
         return complain(r, &r->event.start_mark, "%s", "a name is wanted here");
+    }
     snprintf(text, capacity, "%s", scalar(r));
     return 0;
 }
@@ -134,27 +148,32 @@ static int unknown_joint(reader *r, const char *name)
 /* {JOINT: degrees, ...}; at_end: behind the last character of the mapping's text. */
 static int take_degrees(reader *r, double *deg, size_t *at, size_t *at_end)
 {
-    bool flow;
-    if (next(r))
+    if (next(r)) {
         return r->status;
-    if (r->event.type != YAML_MAPPING_START_EVENT)
+    }
+    if (r->event.type != YAML_MAPPING_START_EVENT) {
         return complain(r, &r->event.start_mark, "%s", "JOINT: degrees are wanted here");
-    flow = r->event.data.mapping_start.style == YAML_FLOW_MAPPING_STYLE;
+    }
+    bool flow = r->event.data.mapping_start.style == YAML_FLOW_MAPPING_STYLE;
     *at = *at_end = r->event.start_mark.index;
     while (next(r) == 0 && r->event.type != YAML_MAPPING_END_EVENT) {
         const char *name = scalar(r);
         int joint = name ? grobo_model_find_joint(&grobo_gr001_model, name, strlen(name)) : -1;
-        if (joint < 0)
+        if (joint < 0) {
             return unknown_joint(r, name ? name : "");
-        if (next(r))
+        }
+        if (next(r)) {
             return r->status;
+        }
         if (!scalar(r) || !cli_read_number(scalar(r), &deg[joint]) ||
-            deg[joint] < -CONFIG_TRIM_MAX_DEG || deg[joint] > CONFIG_TRIM_MAX_DEG)
+            deg[joint] < -CONFIG_TRIM_MAX_DEG || deg[joint] > CONFIG_TRIM_MAX_DEG) {
             return complain(r, &r->event.start_mark, "%s", "degrees from -20 to 20 are wanted");
+        }
         *at_end = r->event.end_mark.index;
     }
-    if (flow && !r->status)
+    if (flow && !r->status) {
         *at_end = r->event.end_mark.index;
+    }
     return r->status;
 }
 
@@ -166,16 +185,21 @@ static int take_field(reader *r, const char *key)
         robot->first_at = r->event.start_mark.index;
         robot->first_column = r->event.start_mark.column;
     }
-    if (strcmp(key, "device") == 0)
+    if (strcmp(key, "device") == 0) {
         return take_text(r, robot->device, sizeof robot->device);
-    if (strcmp(key, "wiring") == 0)
+    }
+    if (strcmp(key, "wiring") == 0) {
         return take_option(r, GLOBAL_WIRING, &robot->wiring);
-    if (strcmp(key, "echo") == 0)
+    }
+    if (strcmp(key, "echo") == 0) {
         return take_flag(r, &robot->echo);
-    if (strcmp(key, "baud") == 0)
+    }
+    if (strcmp(key, "baud") == 0) {
         return take_option(r, GLOBAL_BAUD, &robot->baud);
-    if (strcmp(key, "on_exit") == 0)
+    }
+    if (strcmp(key, "on_exit") == 0) {
         return take_option(r, GLOBAL_ON_EXIT, &robot->on_exit);
+    }
     if (strcmp(key, "trim") == 0) {
         robot->trimmed = true;
         return take_degrees(r, robot->trim_deg, &robot->trim_at, &robot->trim_end);
@@ -209,15 +233,17 @@ static int take_robot(reader *r, const char *name)
     config_robot *kept = r->robot;
     yaml_mark_t at = r->event.start_mark;
     memset(&one, 0, sizeof one);
-    if (next(r))
+    if (next(r)) {
         return r->status;
+    }
     one.flow = r->event.type == YAML_MAPPING_START_EVENT &&
                r->event.data.mapping_start.style == YAML_FLOW_MAPPING_STYLE;
     r->robot = &one;
     each_key(r, take_field);
     r->robot = kept;
-    if (!r->status && !*one.device)
+    if (!r->status && !*one.device) {
         return complain(r, &at, "robot %s has no device", name);
+    }
     if (!r->status && strcmp(name, r->wanted) == 0) {
         *kept = one;
         snprintf(kept->name, sizeof kept->name, "%s", name);
@@ -230,15 +256,17 @@ static int take_robot(reader *r, const char *name)
 static int take_top(reader *r, const char *key)
 {
     char name[CONFIG_NAME_BYTES];
-    if (strcmp(key, "robots") == 0)
+    if (strcmp(key, "robots") == 0) {
         return next(r) ? r->status : each_key(r, take_robot);
+    }
     if (strcmp(key, "warn_fall") == 0) {
         r->has_warn_fall = take_truth(r, &r->warn_fall) == 0;
         return r->status;
     }
-    if (strcmp(key, "default") != 0)
+    if (strcmp(key, "default") != 0) {
         return complain(r, &r->event.start_mark,
                         "no key '%s'; there are default, robots, warn_fall", key);
+    }
     if (take_text(r, name, sizeof name) == 0 && r->wants_default) {
         if (*r->robot->name == '\0' && *r->wanted == '\0') {
             snprintf(r->wanted, sizeof r->wanted, "%s", name);
@@ -252,18 +280,22 @@ static int take_top(reader *r, const char *key)
 
 static int read_file(reader *r, FILE *file)
 {
-    if (!yaml_parser_initialize(&r->parser))
+    if (!yaml_parser_initialize(&r->parser)) {
         return app_fail(r->a, EXIT_ROBOT, "NOMEM", "%s: not enough memory", r->path);
+    }
     yaml_parser_set_input_file(&r->parser, file);
     r->has_event = false;
     next(r);
-    if (!r->status)
+    if (!r->status) {
         next(r);
+    }
     if (!r->status && r->event.type == YAML_DOCUMENT_START_EVENT && next(r) == 0 &&
-        !(scalar(r) && !*scalar(r))) /* a file of comments alone */
+        !(scalar(r) && !*scalar(r))) { /* a file of comments alone */
         each_key(r, take_top);
-    if (r->has_event)
+    }
+    if (r->has_event) {
         yaml_event_delete(&r->event);
+    }
     yaml_parser_delete(&r->parser);
     return r->status;
 }
@@ -275,18 +307,20 @@ static int find(reader *r)
         /* `default` may stand behind `robots`: then the file is read again for its robot. */
         for (int round = 0; round < 2 && !r->status && !*r->robot->name; round++) {
             bool knew = *r->wanted != '\0';
-            FILE *file;
             errno = 0;
-            file = os_config_path(i, r->path, sizeof r->path) ? fopen(r->path, "r") : NULL;
-            if (!file && errno == EACCES)
+            FILE *file = os_config_path(i, r->path, sizeof r->path) ? fopen(r->path, "r") : NULL;
+            if (!file && errno == EACCES) {
                 return r->status = app_fail(r->a, EXIT_FILE, "PERM", "%s: %s", r->path,
                                             app_cause_text(errno));
-            if (!file)
+            }
+            if (!file) {
                 break;
+            }
             read_file(r, file);
             fclose(file);
-            if (knew)
+            if (knew) {
                 break;
+            }
         }
     }
     return r->status;
@@ -300,9 +334,11 @@ static bool is_offline(const cli_command *command)
     static const char *const names[] = {"ports",      "check",   "show",   "plot",
                                         "convert",    "decode",  "sim",    "help",
                                         "completion", "version", "budget", "joints"};
-    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
-        if (strcmp(command->name, names[i]) == 0)
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        if (strcmp(command->name, names[i]) == 0) {
             return true;
+        }
+    }
     return false;
 }
 
@@ -315,8 +351,9 @@ static bool may_be_name(const char *device)
 
 static void set_option(app *a, int global, const cli_value *value)
 {
-    if (value->given && !a->line.global[global].given)
+    if (value->given && !a->line.global[global].given) {
         a->line.global[global] = *value;
+    }
 }
 
 /* No robot has the name: where it was asked for, it may be a device; conn_open() finds out. */
@@ -331,8 +368,9 @@ static int no_robot(reader *r, bool asked)
     }
     snprintf(nearest, sizeof nearest, "%s", r->guess.best ? r->guess.best : "");
     r->a->nearest_device = *nearest ? nearest : NULL;
-    if (asked || !*r->wanted)
+    if (asked || !*r->wanted) {
         return 0;
+    }
     return app_fail(r->a, EXIT_FILE, "NOTFOUND", "%s: default '%s' is no robot of the file%s%s%s",
                     r->default_path, r->wanted, *nearest ? "; did you mean '" : "", nearest,
                     *nearest ? "'?" : "");
@@ -346,14 +384,17 @@ int config_apply(app *a)
     const char *asked = device->given ? device->text : fallback && *fallback ? fallback : NULL;
     reader r = {.a = a, .robot = &robot, .wants_default = asked == NULL};
     a->nearest_device = NULL;
-    if (is_offline(a->line.command) || (asked && !may_be_name(asked)))
+    if (is_offline(a->line.command) || (asked && !may_be_name(asked))) {
         return 0;
+    }
     memset(&robot, 0, sizeof robot);
-    if (asked)
+    if (asked) {
         snprintf(r.wanted, sizeof r.wanted, "%s", asked);
+    }
     find(&r);
-    if (!*robot.name)
+    if (!*robot.name) {
         return r.status ? r.status : no_robot(&r, asked != NULL);
+    }
     a->line.global[GLOBAL_DEVICE] = (cli_value){.given = 1, .text = robot.device};
     set_option(a, GLOBAL_WIRING, &robot.wiring);
     set_option(a, GLOBAL_ECHO, &robot.echo);
@@ -379,8 +420,9 @@ bool config_warns_of_falls(const app *a)
         FILE *file = os_config_path(i, r.path, sizeof r.path) ? fopen(r.path, "r") : NULL;
         memset(&robot, 0, sizeof robot);
         r.status = 0;
-        if (!file)
+        if (!file) {
             continue;
+        }
         read_file(&r, file);
         fclose(file);
     }

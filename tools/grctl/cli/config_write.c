@@ -18,11 +18,14 @@ static int fail(app *a, const char *path, const char *cause)
 static size_t byte_of(const char *text, size_t characters)
 {
     size_t i = 0;
-    if (strncmp(text, "\xef\xbb\xbf", 3) == 0) /* a byte order mark counts as none */
+    if (strncmp(text, "\xef\xbb\xbf", 3) == 0) { /* a byte order mark counts as none */
         i = 3;
-    for (; text[i] && characters > 0; characters--)
-        for (i++; ((unsigned char)text[i] & 0xc0) == 0x80;)
+    }
+    for (; text[i] && characters > 0; characters--) {
+        for (i++; ((unsigned char)text[i] & 0xc0) == 0x80;) {
             i++;
+        }
+    }
     return i;
 }
 
@@ -35,8 +38,9 @@ static char *read_all(const char *path)
         free(text);
         text = NULL;
     }
-    if (file)
+    if (file) {
         fclose(file);
+    }
     return text;
 }
 
@@ -50,8 +54,9 @@ typedef struct draft {
 static void put(draft *to, const char *text, size_t size)
 {
     to->full |= size > to->capacity - to->used;
-    if (to->full)
+    if (to->full) {
         return;
+    }
     memcpy(to->text + to->used, text, size);
     to->used += size;
 }
@@ -61,8 +66,9 @@ static void put_trims(draft *to, const config_robot *robot)
     const char *before = "{";
     char one[64];
     for (int j = 0; j < grobo_gr001_model.n_joints; j++) {
-        if (robot->trim_deg[j] == 0)
+        if (robot->trim_deg[j] == 0) {
             continue;
+        }
         snprintf(one, sizeof one, "%s%s: %.1f", before, grobo_gr001_model.joints[j].name,
                  robot->trim_deg[j]);
         put(to, one, strlen(one));
@@ -77,15 +83,18 @@ static void put_file(draft *to, const char *text, const config_robot *robot)
     size_t at = byte_of(text, robot->trimmed ? robot->trim_at : robot->first_at);
     size_t end = byte_of(text, robot->trimmed ? robot->trim_end : robot->first_at);
     put(to, text, at);
-    if (!robot->trimmed)
+    if (!robot->trimmed) {
         put(to, "trim: ", strlen("trim: "));
+    }
     put_trims(to, robot);
-    if (!robot->trimmed && robot->flow)
+    if (!robot->trimmed && robot->flow) {
         put(to, ", ", strlen(", "));
-    else if (!robot->trimmed)
+    } else if (!robot->trimmed) {
         put(to, "\n", 1);
-    for (size_t i = 0; !robot->trimmed && !robot->flow && i < robot->first_column; i++)
+    }
+    for (size_t i = 0; !robot->trimmed && !robot->flow && i < robot->first_column; i++) {
         put(to, " ", 1);
+    }
     put(to, text + end, strlen(text + end));
 }
 
@@ -93,16 +102,18 @@ int config_write_trims(app *a, const config_robot *robot)
 {
     draft made = {.capacity = CONFIG_FILE_MAX_BYTES};
     char *text = read_all(robot->path);
-    int status, error;
-    if (!text)
+    int status;
+    if (!text) {
         return fail(a, robot->path, app_cause_text(errno));
+    }
     made.text = malloc(made.capacity);
-    if (made.text)
+    if (made.text) {
         put_file(&made, text, robot);
+    }
     if (!made.text || made.full) {
         status = fail(a, robot->path, made.text ? "too long" : "not enough memory");
     } else {
-        error = file_save(robot->path, made.text, made.used);
+        int error = file_save(robot->path, made.text, made.used);
         status = error ? fail(a, robot->path, file_error_text(error)) : EXIT_DONE;
     }
     free(made.text);

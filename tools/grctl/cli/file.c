@@ -33,8 +33,9 @@ const grobo_model *file_model(const grobo_motion *motion)
 int file_fits(app *a, const char *path, const grobo_motion *motion)
 {
     int n_joints = grobo_motion_joints(motion), has = grobo_gr001_model.n_joints;
-    if (n_joints <= has)
+    if (n_joints <= has) {
         return 0;
+    }
     return app_fail(a, EXIT_FILE, grobo_error_name(GROBO_ERR_ARG),
                     "%s: has %d joints, GR001 has %d", file_shown_name(path), n_joints, has);
 }
@@ -42,10 +43,11 @@ int file_fits(app *a, const char *path, const grobo_motion *motion)
 void file_format(const grobo_diagnostic *d, bool with_code, char *text, size_t capacity)
 {
     char place[32] = "";
-    if (d->line && d->column)
+    if (d->line && d->column) {
         snprintf(place, sizeof place, "%u:%u:", d->line, d->column);
-    else if (d->line)
+    } else if (d->line) {
         snprintf(place, sizeof place, "%u:", d->line);
+    }
     snprintf(text, capacity, "%s:%s %s%s%s%s%s%s", d->file, place,
              d->severity == GROBO_SEVERITY_ERROR ? "" : grobo_severity_name(d->severity),
              d->severity == GROBO_SEVERITY_ERROR ? "" : ": ", d->message, with_code ? " [" : "",
@@ -57,12 +59,13 @@ json_t *file_json(const grobo_diagnostics *list)
 {
     json_t *all = json_array();
     grobo_diagnostic d;
-    for (size_t i = 0; grobo_diagnostics_get(list, i, &d) == 0; i++)
+    for (size_t i = 0; grobo_diagnostics_get(list, i, &d) == 0; i++) {
         json_array_append_new(all,
                               json_pack("{s:o,s:I,s:I,s:s,s:s,s:o}", "file", app_json_text(d.file),
                                         "line", (json_int_t)d.line, "column", (json_int_t)d.column,
                                         "severity", grobo_severity_name(d.severity), "code", d.code,
                                         "message", app_json_text(d.message)));
+    }
     return all;
 }
 
@@ -70,18 +73,20 @@ void file_say_one(const app *a, const grobo_diagnostic *d)
 {
     char text[1024];
     file_format(d, false, text, sizeof text);
-    if (d->severity == GROBO_SEVERITY_WARNING)
+    if (d->severity == GROBO_SEVERITY_WARNING) {
         app_note(a, "%s", text);
-    else
+    } else {
         app_detail(a, "%s", text);
+    }
 }
 
 /* Warnings and notes of reading, on standard error. */
 static void say_all(const app *a, const grobo_diagnostics *list)
 {
     grobo_diagnostic d;
-    for (size_t i = 0; grobo_diagnostics_get(list, i, &d) == 0; i++)
+    for (size_t i = 0; grobo_diagnostics_get(list, i, &d) == 0; i++) {
         file_say_one(a, &d);
+    }
 }
 
 /* The first error of the list, or what happened to the file as a whole. */
@@ -90,8 +95,9 @@ static int complain(app *a, const char *path, int error, const grobo_diagnostics
     char text[1024];
     grobo_diagnostic d;
     for (size_t i = 0; grobo_diagnostics_get(list, i, &d) == 0; i++) {
-        if (d.severity != GROBO_SEVERITY_ERROR || strcmp(d.code, "open") == 0)
+        if (d.severity != GROBO_SEVERITY_ERROR || strcmp(d.code, "open") == 0) {
             continue;
+        }
         file_format(&d, false, text, sizeof text);
         return app_fail(a, EXIT_FILE, d.code, "%s", text);
     }
@@ -115,11 +121,13 @@ int file_read(const char *path, const grobo_read_options *options, grobo_diagnos
 {
     grobo_source source = {.read = read_stream, .ctx = stdin};
     grobo_read_options named = options ? *options : (grobo_read_options){0};
-    if (strcmp(path, "-") != 0 && os_is_folder(path))
+    if (strcmp(path, "-") != 0 && os_is_folder(path)) {
         return GROBO_ERR_ISDIR;
-    if (strcmp(path, "-") != 0)
+    }
+    if (strcmp(path, "-") != 0) {
         return pipe_is(path) ? pipe_read(path, options, list, motion)
                              : grobo_motion_read_file(path, options, list, motion);
+    }
     named.name = file_shown_name(path);
     return grobo_motion_read(&source, &named, list, motion);
 }
@@ -129,11 +137,13 @@ int file_save(const char *path, const void *bytes, size_t size)
     const grobo_files *files = grobo_files_os();
     grobo_file file;
     int error = files->create(&file, path, false);
-    if (error)
+    if (error) {
         return error;
+    }
     error = files->write(&file, bytes, size);
-    if (!error)
+    if (!error) {
         return files->commit(&file);
+    }
     files->discard(&file);
     return error;
 }
@@ -150,10 +160,10 @@ static int load_record(app *a, grobo_motion **motion)
 int file_load_listed(app *a, const char *path, const grobo_read_options *options,
                      grobo_diagnostics *list, grobo_motion **motion)
 {
-    int error;
-    if (strcmp(path, "@record") == 0)
+    if (strcmp(path, "@record") == 0) {
         return load_record(a, motion);
-    error = file_read(path, options, list, motion);
+    }
+    int error = file_read(path, options, list, motion);
     return error ? complain(a, path, error, list) : EXIT_DONE;
 }
 
@@ -161,11 +171,13 @@ int file_load(app *a, const char *path, const grobo_read_options *options, grobo
 {
     grobo_diagnostics *list = NULL;
     int error = grobo_diagnostics_new(&list, NULL);
-    if (error)
+    if (error) {
         return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s", grobo_error_text(error));
+    }
     error = file_load_listed(a, path, options, list, motion);
-    if (!error)
+    if (!error) {
         say_all(a, list);
+    }
     grobo_diagnostics_free(list);
     return error;
 }

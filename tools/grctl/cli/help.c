@@ -50,24 +50,28 @@ static void print_option(FILE *to, const cli_option *o)
 {
     char left[64];
     int n;
-    if (o->letter)
+    if (o->letter) {
         n = snprintf(left, sizeof left, "-%c, --%s", o->letter, o->name);
-    else
+    } else {
         n = snprintf(left, sizeof left, "    --%s", o->name);
-    if (o->kind != CLI_FLAG && n > 0 && (size_t)n < sizeof left)
+    }
+    if (o->kind != CLI_FLAG && n > 0 && (size_t)n < sizeof left) {
         snprintf(left + n, sizeof left - (size_t)n, o->optional ? " [%s]" : " %s", o->value);
-    if (strlen(left) < COLUMN)
+    }
+    if (strlen(left) < COLUMN) {
         fprintf(to, "  %-*s  ", COLUMN, left);
-    else
+    } else {
         fprintf(to, "  %s\n  %-*s  ", left, COLUMN, "");
+    }
     print_words(to, o->help, COLUMN + 4, COLUMN + 4);
 }
 
 static void print_global_options(FILE *to)
 {
     fputs("\nGlobal options, before or after the command:\n", to);
-    for (size_t i = 0; i < GLOBAL_COUNT; i++)
+    for (size_t i = 0; i < GLOBAL_COUNT; i++) {
         print_option(to, &cli_global_options[i]);
+    }
 }
 
 void cli_print_overview(FILE *to)
@@ -75,8 +79,9 @@ void cli_print_overview(FILE *to)
     fputs("grctl drives serial command-servo robots, first of all the GR001 humanoid.\n\n"
           "usage: grctl [GLOBAL OPTIONS] COMMAND [OPTIONS] [ARGUMENTS]\n\nCommands:\n",
           to);
-    for (size_t i = 0; i < cli_n_commands; i++)
+    for (size_t i = 0; i < cli_n_commands; i++) {
         fprintf(to, "  %-12s%s\n", cli_commands[i]->name, cli_commands[i]->summary);
+    }
     print_global_options(to);
     putc('\n', to);
     print_details(
@@ -93,10 +98,12 @@ void cli_print_command(FILE *to, const cli_command *command)
     print_details(to, command->details);
     if (command->n_options) {
         fputs("\nOptions:\n", to);
-        for (size_t i = 0; i < command->n_options; i++)
+        for (size_t i = 0; i < command->n_options; i++) {
             print_option(to, &command->options[i]);
+        }
     }
     print_global_options(to);
-    if (command->example)
+    if (command->example) {
         fprintf(to, "\nExamples:\n%s", command->example);
+    }
 }

@@ -6,19 +6,22 @@
 const char *joints_nearest(const grobo_model *model, const char *name, size_t length, bool groups)
 {
     cli_guess guess = {.name = name, .length = length};
-    for (int i = 0; i < model->n_joints; i++)
+    for (int i = 0; i < model->n_joints; i++) {
         cli_guess_try(&guess, model->joints[i].name);
-    for (int i = 0; groups && i < model->n_groups; i++)
+    }
+    for (int i = 0; groups && i < model->n_groups; i++) {
         cli_guess_try(&guess, model->groups[i].name);
+    }
     return guess.best;
 }
 
 static int unknown(app *a, const char *what, const char *name, size_t length, bool groups)
 {
     const char *nearest = joints_nearest(&grobo_gr001_model, name, length, groups);
-    if (nearest)
+    if (nearest) {
         return app_fail(a, EXIT_USAGE, "NOTFOUND", "no %s called '%.*s'; did you mean %s?", what,
                         (int)length, name, nearest);
+    }
     return app_fail(a, EXIT_USAGE, "NOTFOUND",
                     "no %s called '%.*s'; joints are named as R_KNEE_P, m12 or j3, groups are all "
                     "body right_arm left_arm arms right_leg left_leg legs; see 'grctl joints'",
@@ -31,10 +34,11 @@ int joints_parse_all(app *a, int n, const char *const *names, grobo_joint_mask *
     *joints = n > 0 ? 0 : GROBO_JOINTS_ALL(grobo_gr001_model.n_joints);
     for (int i = 0; i < n && !status; i++) {
         grobo_joint_mask found;
-        if (grobo_model_find_joints(&grobo_gr001_model, names[i], strlen(names[i]), &found) < 0)
+        if (grobo_model_find_joints(&grobo_gr001_model, names[i], strlen(names[i]), &found) < 0) {
             status = unknown(a, "joint or group", names[i], strlen(names[i]), true);
-        else
+        } else {
             *joints |= found;
+        }
     }
     return status;
 }
@@ -43,11 +47,13 @@ int joints_parse_all(app *a, int n, const char *const *names, grobo_joint_mask *
 static int joint_number(const char *name, size_t length)
 {
     int number = 0;
-    if (length < 2 || length > 3 || (name[0] != 'j' && name[0] != 'J'))
+    if (length < 2 || length > 3 || (name[0] != 'j' && name[0] != 'J')) {
         return -1;
+    }
     for (size_t i = 1; i < length; i++) {
-        if (name[i] < '0' || name[i] > '9')
+        if (name[i] < '0' || name[i] > '9') {
             return -1;
+        }
         number = number * 10 + (name[i] - '0');
     }
     return number;
@@ -60,18 +66,20 @@ int joints_parse_motion(app *a, const char *list, const grobo_model *model, int 
         size_t length = strcspn(list, ",");
         int number = joint_number(list, length);
         grobo_joint_mask found = 0;
-        if (number >= 0 && number < n_joints)
+        if (number >= 0 && number < n_joints) {
             found = GROBO_JOINT_BIT(number);
-        else if (model && grobo_model_find_joints(model, list, length, &found) < 0)
+        } else if (model && grobo_model_find_joints(model, list, length, &found) < 0) {
             return unknown(a, "joint or group", list, length, true);
-        else if (!model)
+        } else if (!model) {
             return app_fail(a, EXIT_USAGE, "NOTFOUND",
                             "no joint called '%.*s'; those of a body we do not know are j0 to j%d",
                             (int)length, list, n_joints - 1);
+        }
         *joints |= found & GROBO_JOINTS_ALL(n_joints);
         list += length;
-        if (*list == '\0')
+        if (*list == '\0') {
             return 0;
+        }
     }
 }
 
@@ -79,25 +87,27 @@ int joints_parse_one(app *a, const char *name, size_t length, int *status)
 {
     int joint = grobo_model_find_joint(&grobo_gr001_model, name, length);
     grobo_joint_mask group;
-    if (joint >= 0)
+    if (joint >= 0) {
         return joint;
-    if (grobo_model_find_joints(&grobo_gr001_model, name, length, &group) >= 0)
+    }
+    if (grobo_model_find_joints(&grobo_gr001_model, name, length, &group) >= 0) {
         *status = app_fail(a, EXIT_USAGE, "NOTFOUND",
                            "'%.*s' is a group; one joint is wanted, named as R_KNEE_P, m12 or j3",
                            (int)length, name);
-    else
+    } else {
         *status = unknown(a, "joint", name, length, false);
+    }
     return -1;
 }
 
 int joints_check_limits(app *a, const grobo_posture *posture, const char *doing)
 {
-    const grobo_joint *j;
     int joint = 0;
     int error = grobo_posture_check(posture, &grobo_gr001_model, &joint);
-    if (!error)
+    if (!error) {
         return 0;
-    j = &grobo_gr001_model.joints[joint];
+    }
+    const grobo_joint *j = &grobo_gr001_model.joints[joint];
     return app_fail(a, EXIT_SAFETY, grobo_error_name(error),
                     "%s: %s (motor %d) to %.1f deg is outside its limits %.0f to %.0f", doing,
                     j->name, j->motor, grobo_deg_from_rad(posture->angle_rad[joint]),

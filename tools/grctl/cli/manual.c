@@ -17,16 +17,18 @@ static void put(FILE *to, const char *text, size_t length, bool literal)
     bool begins = true;
     for (size_t i = 0; i < length; i++) {
         char c = !literal && ends_sentence(text, i) ? '\n' : text[i];
-        if (begins && (c == '.' || c == '\''))
+        if (begins && (c == '.' || c == '\'')) {
             fputs("\\&", to);
-        if (c == '\\')
+        }
+        if (c == '\\') {
             fputs("\\e", to);
-        else if (c == '-')
+        } else if (c == '-') {
             fputs("\\-", to);
-        else if (c == '"')
+        } else if (c == '"') {
             fputs("\\(dq", to);
-        else
+        } else {
             putc(c, to);
+        }
         begins = c == '\n';
     }
 }
@@ -64,8 +66,9 @@ static void put_paragraphs(FILE *to, const char *text)
         size_t n = run_of_lines(text, *text == ' ');
         if (*text == '\n') {
             text += strspn(text, "\n");
-            if (*text && *text != ' ')
+            if (*text && *text != ' ') {
                 fputs(".Pp\n", to);
+            }
         } else if (*text == ' ') {
             put_literal(to, text, n);
             text += n;
@@ -82,8 +85,9 @@ static void put_options(FILE *to, const cli_option *options, size_t n)
     for (size_t i = 0; i < n; i++) {
         const cli_option *o = &options[i];
         fputs(".It ", to);
-        if (o->letter)
+        if (o->letter) {
             fprintf(to, "Fl %c , ", o->letter);
+        }
         fputs("Fl \\-", to);
         put(to, o->name, strlen(o->name), true);
         if (o->kind != CLI_FLAG) {
@@ -101,8 +105,9 @@ static void put_command(FILE *to, const cli_command *command)
 {
     fprintf(to, ".Ss %s\n", command->name);
     fprintf(to, ".Nm grctl Cm %s", command->name);
-    if (command->n_options)
+    if (command->n_options) {
         fputs(" Oo Ar OPTIONS Oc", to);
+    }
     if (*command->arguments) {
         fputs(" Ar ", to);
         put_argument(to, command->arguments);
@@ -112,8 +117,9 @@ static void put_command(FILE *to, const cli_command *command)
     put(to, command->summary + 1, strlen(command->summary + 1), false);
     fputs(".\n.Pp\n", to);
     put_paragraphs(to, command->details);
-    if (command->n_options)
+    if (command->n_options) {
         put_options(to, command->options, command->n_options);
+    }
     if (command->example) {
         fputs(".Pp\nExamples:\n", to);
         put_literal(to, command->example, strlen(command->example));
@@ -189,7 +195,8 @@ void cli_print_manual(FILE *to)
     fputs(head, to);
     put_options(to, cli_global_options, GLOBAL_COUNT);
     fputs(".Sh COMMANDS\n", to);
-    for (size_t i = 0; i < cli_n_commands; i++)
+    for (size_t i = 0; i < cli_n_commands; i++) {
         put_command(to, cli_commands[i]);
+    }
     fputs(tail, to);
 }

@@ -19,8 +19,9 @@ static size_t staged;
 
 static void note_error(int cause)
 {
-    if (cause && !flush_errno)
+    if (cause && !flush_errno) {
         flush_errno = os_write_cause(stdout, cause);
+    }
 }
 
 bool output_flush(void)
@@ -32,8 +33,9 @@ bool output_flush(void)
         return flush_errno == 0;
     }
     int cause = ferror(stdout) ? EIO : 0; /* a write within printf(), which keeps no reason */
-    if (fflush(stdout) != 0)
+    if (fflush(stdout) != 0) {
         cause = errno;
+    }
     note_error(cause);
     return flush_errno == 0;
 }
@@ -52,8 +54,9 @@ void output_bytes(const void *bytes, size_t size)
         staged += n;
         from += n;
         size -= n;
-        if (staged == sizeof stage)
+        if (staged == sizeof stage) {
             output_flush();
+        }
     }
 }
 
@@ -69,16 +72,18 @@ void output_print(const char *format, va_list list)
     } else {
         static char text[STAGE_BYTES];
         int n = vsnprintf(text, sizeof text, format, list);
-        if (n > 0)
+        if (n > 0) {
             output_bytes(text, (size_t)n < sizeof text ? (size_t)n : sizeof text - 1);
+        }
     }
 }
 
 FILE *output_stream(void)
 {
     output_flush();
-    if (out)
+    if (out) {
         writer_drain(out);
+    }
     return stdout;
 }
 
@@ -105,14 +110,16 @@ bool output_is_behind(void)
 
 bool output_detach(void)
 {
-    if (out)
+    if (out) {
         return true;
+    }
     output_flush();
     fflush(stderr);
     err = writer_new(stderr, ERR_QUEUE_BYTES);
     out = err ? writer_new(stdout, OUT_QUEUE_BYTES) : NULL;
-    if (!out)
+    if (!out) {
         writer_free(err);
+    }
     err = out ? err : NULL;
     return out != NULL;
 }
@@ -120,8 +127,9 @@ bool output_detach(void)
 output_dropped output_attach(void)
 {
     output_dropped dropped = {0, 0};
-    if (!out)
+    if (!out) {
         return dropped;
+    }
     output_flush();
     writer_drain(out);
     writer_drain(err);

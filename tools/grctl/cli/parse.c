@@ -22,8 +22,9 @@ static bool complain(parser *p, const char *format, ...) __attribute__((format(p
 static bool complain(parser *p, const char *format, ...)
 {
     va_list list;
-    if (p->mistaken)
+    if (p->mistaken) {
         return false;
+    }
     p->mistaken = true;
     va_start(list, format);
     vsnprintf(p->complaint, p->capacity, format, list);
@@ -34,21 +35,24 @@ static bool complain(parser *p, const char *format, ...)
 bool cli_read_number(const char *text, double *number)
 {
     char *end = NULL;
-    double value;
-    if (strspn(text, "0123456789+-.eE") != strlen(text) || *text == '\0')
+    if (strspn(text, "0123456789+-.eE") != strlen(text) || *text == '\0') {
         return false;
-    value = strtod(text, &end);
-    if (end == text || *end != '\0' || !isfinite(value))
+    }
+    double value = strtod(text, &end);
+    if (end == text || *end != '\0' || !isfinite(value)) {
         return false;
+    }
     *number = value;
     return true;
 }
 
 const cli_command *cli_find_command(const char *name)
 {
-    for (size_t i = 0; i < cli_n_commands; i++)
-        if (strcmp(cli_commands[i]->name, name) == 0)
+    for (size_t i = 0; i < cli_n_commands; i++) {
+        if (strcmp(cli_commands[i]->name, name) == 0) {
             return cli_commands[i];
+        }
+    }
     return NULL;
 }
 
@@ -58,10 +62,12 @@ static int choice_index(const char *words, const char *word)
     size_t length = strlen(word);
     for (int i = 0;; i++) {
         size_t n = strcspn(words, "|");
-        if (n == length && strncmp(words, word, n) == 0)
+        if (n == length && strncmp(words, word, n) == 0) {
             return i;
-        if (words[n] == '\0')
+        }
+        if (words[n] == '\0') {
             return -1;
+        }
         words += n + 1;
     }
 }
@@ -70,9 +76,10 @@ static bool take_number(parser *p, const cli_option *o, cli_value *v, const char
 {
     double number;
     if (!cli_read_number(text, &number) || (!o->real && number != floor(number)) ||
-        number < o->min || number > o->max)
+        number < o->min || number > o->max) {
         return complain(p, "--%s: '%s' is not a %s from %.10g to %.10g", o->name, text,
                         o->real ? "number" : "whole number", o->min, o->max);
+    }
     v->number = number;
     return true;
 }
@@ -88,8 +95,9 @@ static bool check_value(parser *p, const cli_option *o, cli_value *v, const char
         return take_number(p, o, v, text);
     case CLI_CHOICE:
         v->choice = choice_index(o->value, text);
-        if (v->choice < 0)
+        if (v->choice < 0) {
             return complain(p, "--%s takes a word: '%s' is none of %s", o->name, text, o->value);
+        }
         return true;
     }
     return false;
@@ -99,8 +107,9 @@ static bool check_value(parser *p, const cli_option *o, cli_value *v, const char
 static bool take_value(parser *p, const cli_option *o, cli_value *v, const char *text)
 {
     cli_value taken = {.given = v->given + 1, .text = text};
-    if (!check_value(p, o, &taken, text))
+    if (!check_value(p, o, &taken, text)) {
         return false;
+    }
     *v = taken;
     return true;
 }
@@ -121,8 +130,9 @@ static const cli_option *nth_option(parser *p, size_t i, cli_value **value)
         *value = &p->line->option[i];
         return &command->options[i];
     }
-    if (i - own >= GLOBAL_COUNT)
+    if (i - own >= GLOBAL_COUNT) {
         return NULL;
+    }
     *value = &p->line->global[i - own];
     return &cli_global_options[i - own];
 }
@@ -130,8 +140,9 @@ static const cli_option *nth_option(parser *p, size_t i, cli_value **value)
 static const cli_option *find_letter(parser *p, char letter, cli_value **value)
 {
     const cli_option *o;
-    for (size_t i = 0; (o = nth_option(p, i, value)) != NULL && o->letter != letter; i++)
+    for (size_t i = 0; (o = nth_option(p, i, value)) != NULL && o->letter != letter; i++) {
         continue;
+    }
     return o;
 }
 
@@ -144,8 +155,9 @@ static const cli_option *find_name(parser *p, const char *name, size_t length, c
     *rival = NULL;
     for (size_t i = 0; (o = nth_option(p, i, &at)) != NULL; i++) {
         bool whole = strlen(o->name) == length;
-        if (length == 0 || strncmp(o->name, name, length) != 0)
+        if (length == 0 || strncmp(o->name, name, length) != 0) {
             continue;
+        }
         if (found && !whole) {
             *rival = *rival ? *rival : o;
             continue;
@@ -165,8 +177,9 @@ static bool unknown_option(parser *p, const char *name, size_t length)
     cli_guess guess = {.name = name, .length = length};
     const cli_option *o;
     cli_value *value;
-    for (size_t i = 0; (o = nth_option(p, i, &value)) != NULL; i++)
+    for (size_t i = 0; (o = nth_option(p, i, &value)) != NULL; i++) {
         cli_guess_try(&guess, o->name);
+    }
     return guess.best ? complain(p, "unknown option --%.*s; did you mean --%s?", (int)length, name,
                                  guess.best)
                       : complain(p, "unknown option --%.*s", (int)length, name);
@@ -186,19 +199,23 @@ static bool parse_long(parser *p, const char *token)
     const char *text = name[length] == '=' ? name + length + 1 : NULL;
     cli_value *value = NULL;
     const cli_option *rival, *o = find_name(p, name, length, &value, &rival);
-    if (!o)
+    if (!o) {
         return unknown_option(p, name, length);
-    if (rival)
+    }
+    if (rival) {
         return complain(p, "--%.*s may be --%s or --%s", (int)length, name, o->name, rival->name);
-    if (o->kind == CLI_FLAG)
+    }
+    if (o->kind == CLI_FLAG) {
         return text ? complain(p, "--%s takes no value", o->name) : take_value(p, o, value, "");
+    }
     if (!text && stands_alone(p, o)) {
         value->given++;
         return true;
     }
     if (!text) {
-        if (p->at >= p->argc)
+        if (p->at >= p->argc) {
             return complain(p, "--%s needs a value: %s", o->name, o->value);
+        }
         text = p->argv[p->at++];
     }
     return take_value(p, o, value, text);
@@ -210,17 +227,21 @@ static bool parse_short(parser *p, const char *token)
     for (const char *c = token + 1; *c; c++) {
         cli_value *value = NULL;
         const cli_option *o = find_letter(p, *c, &value);
-        if (!o)
+        if (!o) {
             return complain(p, "unknown option -%c", *c);
+        }
         if (o->kind == CLI_FLAG) {
-            if (!take_value(p, o, value, ""))
+            if (!take_value(p, o, value, "")) {
                 return false;
+            }
             continue;
         }
-        if (c[1])
+        if (c[1]) {
             return take_value(p, o, value, c + 1);
-        if (p->at >= p->argc)
+        }
+        if (p->at >= p->argc) {
             return complain(p, "-%c needs a value: %s", *c, o->value);
+        }
         return take_value(p, o, value, p->argv[p->at++]);
     }
     return true;
@@ -230,18 +251,20 @@ static bool parse_argument(parser *p, const char *token)
 {
     cli_line *line = p->line;
     if (!line->command) {
-        const char *nearest;
         line->command = cli_find_command(token);
-        if (line->command)
+        if (line->command) {
             return true;
-        nearest = cli_nearest_command(token);
+        }
+        const char *nearest = cli_nearest_command(token);
         return nearest ? complain(p, "no command '%s'; did you mean '%s'?", token, nearest)
                        : complain(p, "no command '%s'", token);
     }
-    if (!*token && line->command->argument == CLI_ARG_FILE)
+    if (!*token && line->command->argument == CLI_ARG_FILE) {
         return complain(p, "an empty name is no file");
-    if (line->n_arguments >= CLI_ARGUMENTS_MAX)
+    }
+    if (line->n_arguments >= CLI_ARGUMENTS_MAX) {
         return complain(p, "more than %d arguments", CLI_ARGUMENTS_MAX);
+    }
     line->argument[line->n_arguments++] = token;
     return true;
 }
@@ -256,13 +279,16 @@ static bool check_count(parser *p)
 {
     const cli_command *command = p->line->command;
     int n = p->line->n_arguments;
-    if (!command || p->line->global[GLOBAL_HELP].given)
+    if (!command || p->line->global[GLOBAL_HELP].given) {
         return true;
-    if (n < command->min_arguments)
+    }
+    if (n < command->min_arguments) {
         return complain(p, "%s needs %s", command->name, command->arguments);
-    if (command->max_arguments >= 0 && n > command->max_arguments)
+    }
+    if (command->max_arguments >= 0 && n > command->max_arguments) {
         return complain(p, "%s: '%s' is one argument too many", command->name,
                         p->line->argument[command->max_arguments]);
+    }
     return true;
 }
 
@@ -281,14 +307,17 @@ bool cli_parse(cli_line *line, int argc, char *const *argv, char *complaint, siz
             p.only_arguments = true;
             continue;
         }
-        if (p.only_arguments || !is_option(token))
+        if (p.only_arguments || !is_option(token)) {
             parse_argument(&p, token);
-        else if (token[1] == '-')
+        } else if (token[1] == '-') {
             parse_long(&p, token);
-        else
+        } else {
             parse_short(&p, token);
-        if (p.mistaken && !line->command && token[0] != '-') /* no command: nothing to go on for */
+        }
+        if (p.mistaken && !line->command &&
+            token[0] != '-') { /* no command: nothing to go on for */
             break;
+        }
     }
     return check_count(&p) && !p.mistaken;
 }

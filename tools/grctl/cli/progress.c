@@ -18,8 +18,9 @@ void progress_start(progress *p, const app *a)
 static size_t append(char *line, size_t at, const char *text)
 {
     size_t n = strlen(text);
-    if (at + n >= LINE_BYTES)
+    if (at + n >= LINE_BYTES) {
         return at;
+    }
     memcpy(line + at, text, n + 1);
     return at + n;
 }
@@ -28,18 +29,19 @@ void progress_draw(progress *p, double fraction, const char *text)
 {
     char line[LINE_BYTES] = "";
     size_t at = 0;
-    int room, bar, full;
-    if (!p->shown || output_is_behind())
+    if (!p->shown || output_is_behind()) {
         return;
-    room = os_columns(stderr) - FREE; /* it may have changed */
-    bar = fraction < 0 ? 0 : room - 3 - (int)strlen(text);
+    }
+    int room = os_columns(stderr) - FREE; /* it may have changed */
+    int bar = fraction < 0 ? 0 : room - 3 - (int)strlen(text);
     bar = bar > BAR_MOST ? BAR_MOST : bar;
     if (bar >= 8) {
-        full = (int)(fraction * bar + 0.5);
+        int full = (int)(fraction * bar + 0.5);
         full = full < 0 ? 0 : full > bar ? bar : full;
         at = append(line, at, p->blocks ? "" : "[");
-        for (int i = 0; i < bar; i++)
+        for (int i = 0; i < bar; i++) {
             at = append(line, at, p->blocks ? (i < full ? "█" : "░") : i < full ? "#" : "-");
+        }
         at = append(line, at, p->blocks ? "  " : "] ");
     }
     output_complain("\r%s%.*s\033[K", line, room > 0 ? room : 0, text);
@@ -48,7 +50,8 @@ void progress_draw(progress *p, double fraction, const char *text)
 
 void progress_clear(progress *p)
 {
-    if (p->drawn)
+    if (p->drawn) {
         output_complain("\r\033[K");
+    }
     p->drawn = false;
 }

@@ -11,26 +11,30 @@
 /* A mistake ends parsing, but not the wish for JSON that stands behind it. */
 static bool wants_json(int argc, char *const *argv)
 {
-    for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++)
-        if (strcmp(argv[i], "--json") == 0)
+    for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++) {
+        if (strcmp(argv[i], "--json") == 0) {
             return true;
+        }
+    }
     return false;
 }
 
 static int help(const cli_command *command)
 {
-    if (command)
+    if (command) {
         cli_print_command(output_stream(), command);
-    else
+    } else {
         cli_print_overview(output_stream());
+    }
     return EXIT_DONE;
 }
 
 static int fail(app *a, const char *complaint)
 {
     const cli_command *command = a->line.command;
-    if (complaint[strlen(complaint) - 1] == '?') /* what was meant says enough */
+    if (complaint[strlen(complaint) - 1] == '?') { /* what was meant says enough */
         return app_fail(a, EXIT_USAGE, "ARG", "%s", complaint);
+    }
     return app_fail(a, EXIT_USAGE, "ARG", "%s; see 'grctl help%s%s'", complaint, command ? " " : "",
                     command ? command->name : "");
 }
@@ -48,17 +52,20 @@ static volatile sig_atomic_t is_over;
 
 static void on_signal(int number)
 {
-    if (is_over) /* only the output is still to be written */
+    if (is_over) { /* only the output is still to be written */
         _Exit(EXIT_SIGNAL + number);
-    if (!noted)
+    }
+    if (!noted) {
         noted = number;
+    }
 }
 
 /* Does Ctrl-Z suspend it? */
 static void suspend_by(void (*handler)(int number))
 {
-    if (os_suspension)
+    if (os_suspension) {
         signal(os_suspension, handler);
+    }
 }
 
 /*
@@ -69,47 +76,53 @@ static void suspend_by(void (*handler)(int number))
 static int stop_first(app *a, const char *complaint, int (*prepare)(void *ctx, app *a), void *ctx)
 {
     char hushed[APP_LINE_BYTES] = "";
-    int later, status;
     if (!a->link) {
         os_take_signals();
         os_catch_endings(on_signal);
         suspend_by(SIG_IGN);
     }
     a->hushed = hushed;
-    later = a->link ? EXIT_DONE : config_apply(a);
-    if (prepare && !later)
+    int later = a->link ? EXIT_DONE : config_apply(a);
+    if (prepare && !later) {
         later = prepare(ctx, a);
+    }
     a->hushed = NULL;
     if (is_echo_alone(a)) {
         complaint = complaint ? complaint : echo_alone;
         a->line.global[GLOBAL_ECHO].given = 0;
     }
     a->stops = true;
-    status = a->line.command->run(a);
+    int status = a->line.command->run(a);
     a->stops = false;
     is_over = true;
-    if (!a->link)
+    if (!a->link) {
         suspend_by(SIG_DFL);
+    }
     if (later) {
         *a->place = '\0'; /* it stands in the message */
         app_fail(a, later, later == EXIT_FILE ? "SYNTAX" : "ARG", "%s", hushed);
     }
-    if (complaint)
+    if (complaint) {
         later = fail(a, complaint);
-    if (noted && status < EXIT_SIGNAL)
+    }
+    if (noted && status < EXIT_SIGNAL) {
         return EXIT_SIGNAL + noted;
+    }
     return status ? status : later;
 }
 
 /* Help and version, and a line without a command: the exit status, or -1 for any other line. */
 static int run_without_robot(app *a)
 {
-    if (app_global(a, GLOBAL_VERSION)->given)
+    if (app_global(a, GLOBAL_VERSION)->given) {
         return cli_find_command("version")->run(a);
-    if (app_global(a, GLOBAL_HELP)->given)
+    }
+    if (app_global(a, GLOBAL_HELP)->given) {
         return help(a->line.command);
-    if (a->line.command)
+    }
+    if (a->line.command) {
         return -1;
+    }
     cli_print_overview(stderr);
     return EXIT_USAGE;
 }
@@ -117,15 +130,19 @@ static int run_without_robot(app *a)
 static int run_command(app *a, int (*prepare)(void *ctx, app *a), void *ctx)
 {
     int status;
-    if (!a->link && (status = config_apply(a)) != 0)
+    if (!a->link && (status = config_apply(a)) != 0) {
         return status;
-    if (is_echo_alone(a))
+    }
+    if (is_echo_alone(a)) {
         return fail(a, echo_alone);
-    if (prepare && (status = prepare(ctx, a)) != 0)
+    }
+    if (prepare && (status = prepare(ctx, a)) != 0) {
         return status;
+    }
     status = a->line.command->run(a);
-    if (status == EXIT_DONE && app_global(a, GLOBAL_TRACE)->given && !a->traced)
+    if (status == EXIT_DONE && app_global(a, GLOBAL_TRACE)->given && !a->traced) {
         app_note(a, "nothing was traced: no robot was spoken to");
+    }
     return status;
 }
 
@@ -135,15 +152,17 @@ int run_line(app *a, int argc, char **argv, int (*prepare)(void *ctx, app *a), v
     bool ok = cli_parse(&a->line, argc, argv, complaint, sizeof complaint);
     const cli_command *command = a->line.command;
     bool json = a->json; /* of the shell */
-    int status;
     app_settle(a);
-    if (!ok)
+    if (!ok) {
         a->json = json || wants_json(argc, argv);
+    }
     if (command && command->stops && !app_global(a, GLOBAL_VERSION)->given &&
-        !app_global(a, GLOBAL_HELP)->given)
+        !app_global(a, GLOBAL_HELP)->given) {
         return stop_first(a, ok ? NULL : complaint, prepare, ctx);
-    if (!ok)
+    }
+    if (!ok) {
         return fail(a, complaint);
-    status = run_without_robot(a);
+    }
+    int status = run_without_robot(a);
     return status < 0 ? run_command(a, prepare, ctx) : status;
 }

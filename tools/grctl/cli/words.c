@@ -16,20 +16,25 @@ static int distance(const char *a, size_t length, const char *b)
     enum { MOST = 24 };
     int d[MOST + 1][MOST + 1];
     int n = length < MOST ? (int)length : MOST, m = (int)strnlen(b, MOST);
-    for (int i = 0; i <= n; i++)
+    for (int i = 0; i <= n; i++) {
         d[i][0] = i;
-    for (int j = 0; j <= m; j++)
+    }
+    for (int j = 0; j <= m; j++) {
         d[0][j] = j;
+    }
     for (int i = 1; i <= n; i++) {
         for (int j = 1; j <= m; j++) {
             int best = d[i - 1][j - 1] + !same(a[i - 1], b[j - 1]);
-            if (d[i - 1][j] + 1 < best)
+            if (d[i - 1][j] + 1 < best) {
                 best = d[i - 1][j] + 1;
-            if (d[i][j - 1] + 1 < best)
+            }
+            if (d[i][j - 1] + 1 < best) {
                 best = d[i][j - 1] + 1;
+            }
             if (i > 1 && j > 1 && same(a[i - 1], b[j - 2]) && same(a[i - 2], b[j - 1]) &&
-                d[i - 2][j - 2] + 1 < best)
+                d[i - 2][j - 2] + 1 < best) {
                 best = d[i - 2][j - 2] + 1;
+            }
             d[i][j] = best;
         }
     }
@@ -49,7 +54,8 @@ void cli_guess_try(cli_guess *guess, const char *candidate)
 const char *cli_nearest_command(const char *name)
 {
     cli_guess guess = {.name = name, .length = strlen(name)};
-    for (size_t i = 0; i < cli_n_commands; i++)
+    for (size_t i = 0; i < cli_n_commands; i++) {
         cli_guess_try(&guess, cli_commands[i]->name);
+    }
     return guess.best;
 }

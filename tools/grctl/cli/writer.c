@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-#include "tools/grctl/cli/writer.h"
-
 #include <stdlib.h>
 #include <string.h>
 
 #include <grobo/port.h>
 
+#include "tools/grctl/cli/writer.h"
 #include "tools/grctl/os/os.h"
 
 /* What is written at once, and how often a file that takes nothing is looked at. */
@@ -71,14 +70,17 @@ static writer *choose(bool *waits)
     writer *oldest = NULL;
     *waits = false;
     for (writer *w = all.first; w; w = w->next) {
-        if (w->used == 0)
+        if (w->used == 0) {
             continue;
-        if (w->record.size == 0)
+        }
+        if (w->record.size == 0) {
             pull(w, &w->record, sizeof w->record);
-        if (!os_takes_bytes(w->to))
+        }
+        if (!os_takes_bytes(w->to)) {
             *waits = true;
-        else if (!oldest || w->record.number < oldest->record.number)
+        } else if (!oldest || w->record.number < oldest->record.number) {
             oldest = w;
+        }
     }
     return oldest;
 }
@@ -87,12 +89,11 @@ static void write_piece(writer *w)
 {
     uint8_t piece[PIECE_BYTES];
     size_t size = w->record.size < sizeof piece ? w->record.size : sizeof piece;
-    int error;
     pull(w, piece, size);
     w->record.size -= size;
     w->writing = true;
     grobo_mutex_unlock(&all.lock);
-    error = os_write(w->to, piece, size);
+    int error = os_write(w->to, piece, size);
     grobo_mutex_lock(&all.lock);
     w->writing = false;
     if (error) {
@@ -109,11 +110,12 @@ static GROBO_THREAD_FUNC run(void *arg)
     while (!all.ending) {
         bool waits;
         writer *w = choose(&waits);
-        if (w)
+        if (w) {
             write_piece(w);
-        else
+        } else {
             grobo_cond_wait(&all.changed, &all.lock,
                             waits ? grobo_now_us() + LOOK_US : GROBO_NEVER_US);
+        }
     }
     grobo_mutex_unlock(&all.lock);
     GROBO_THREAD_RETURN;
@@ -122,11 +124,13 @@ static GROBO_THREAD_FUNC run(void *arg)
 static bool start(void)
 {
     all.ending = false;
-    if (grobo_mutex_init(&all.lock) < 0)
+    if (grobo_mutex_init(&all.lock) < 0) {
         return false;
+    }
     if (grobo_cond_init(&all.changed) == GROBO_OK) {
-        if (grobo_thread_start(&all.thread, run, NULL) == GROBO_OK)
+        if (grobo_thread_start(&all.thread, run, NULL) == GROBO_OK) {
             return true;
+        }
         grobo_cond_deinit(&all.changed);
     }
     grobo_mutex_deinit(&all.lock);
@@ -149,8 +153,9 @@ static void end(void)
 writer *writer_new(FILE *to, size_t capacity)
 {
     writer *w = calloc(1, sizeof *w);
-    if (!w)
+    if (!w) {
         return NULL;
+    }
     w->to = to;
     w->capacity = capacity;
     w->ring = malloc(capacity);
@@ -168,8 +173,9 @@ writer *writer_new(FILE *to, size_t capacity)
 
 void writer_put(writer *w, const void *bytes, size_t size)
 {
-    if (size == 0)
+    if (size == 0) {
         return;
+    }
     grobo_mutex_lock(&all.lock);
     if (!w->error && sizeof(head) + size > w->capacity - w->used) {
         w->dropped++;
@@ -193,24 +199,28 @@ writer_state writer_look(const writer *w)
 void writer_drain(writer *w)
 {
     grobo_mutex_lock(&all.lock);
-    while (is_behind(w))
+    while (is_behind(w)) {
         grobo_cond_wait(&all.changed, &all.lock, GROBO_NEVER_US);
+    }
     grobo_mutex_unlock(&all.lock);
 }
 
 void writer_free(writer *w)
 {
     writer **at = &all.first;
-    if (!w)
+    if (!w) {
         return;
+    }
     writer_drain(w);
     grobo_mutex_lock(&all.lock);
-    while (*at != w)
+    while (*at != w) {
         at = &(*at)->next;
+    }
     *at = w->next;
     grobo_mutex_unlock(&all.lock);
-    if (!all.first)
+    if (!all.first) {
         end();
+    }
     free(w->ring);
     free(w);
 }

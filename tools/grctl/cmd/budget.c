@@ -18,8 +18,9 @@ static double reads_per_s(const wire_cost *motion, const wire_cost *read, double
 {
     double period_us = 1e6 / (rate_hz > 0 ? rate_hz : 1);
     double left_us = rate_hz > 0 ? period_us - motion->total_us : period_us;
-    if (left_us < 0)
+    if (left_us < 0) {
         return 0;
+    }
     return (double)(long)(left_us / read->total_us) * (rate_hz > 0 ? rate_hz : 1);
 }
 
@@ -28,32 +29,36 @@ static void print_text(const wire_cost *costs, const grobo_budget *line, int bau
 {
     double largest_hz = 1e6 / costs[WIRE_MOTION].total_us;
     app_print("at %d bps                 to robot  from robot  wire time\n", baud_bps);
-    for (int i = 0; i < WIRE_COSTS; i++)
+    for (int i = 0; i < WIRE_COSTS; i++) {
         app_print("%-24s  %6d B    %6d B  %6.2f ms\n", costs[i].name, costs[i].frame_bytes,
                   costs[i].reply_bytes, costs[i].total_us / 1e3);
+    }
     app_print("motion frames alone       at most %.1f Hz\n", largest_hz);
     app_print("each joint read in %.0f s    at most %d Hz\n", GROBO_WATCH_US / 1e6,
               line->watched_hz);
-    for (int i = WIRE_READ_FULL; i < WIRE_COSTS; i++)
+    for (int i = WIRE_READ_FULL; i < WIRE_COSTS; i++) {
         app_print("%-24s  %.1f times a second when nothing moves, %.1f beside motion at %g Hz\n",
                   i == WIRE_READ_FULL ? "all joints, full" : "all joints, angle only",
                   reads_per_s(&costs[WIRE_MOTION], &costs[i], 0) / n_joints,
                   reads_per_s(&costs[WIRE_MOTION], &costs[i], rate_hz) / n_joints, rate_hz);
-    if (rate_hz > largest_hz)
+    }
+    if (rate_hz > largest_hz) {
         app_print("motion at %g Hz does not fit: frames would be dropped\n", rate_hz);
-    else if (rate_hz > line->watched_hz)
+    } else if (rate_hz > line->watched_hz) {
         app_print("motion at %g Hz is unwatched: joints would be read too seldom\n", rate_hz);
+    }
 }
 
 static json_t *to_json(const wire_cost *costs, const grobo_budget *line, int baud_bps,
                        double rate_hz, int n_joints)
 {
     json_t *list = json_array();
-    for (int i = 0; i < WIRE_COSTS; i++)
+    for (int i = 0; i < WIRE_COSTS; i++) {
         json_array_append_new(list, json_pack("{s:s,s:i,s:i,s:I}", "name", costs[i].name,
                                               "to_robot_bytes", costs[i].frame_bytes,
                                               "from_robot_bytes", costs[i].reply_bytes, "wire_us",
                                               (json_int_t)costs[i].total_us));
+    }
     return json_pack(
         "{s:i,s:o,s:o,s:o,s:i,s:b,s:o,s:o}", "baud_bps", baud_bps, "rate_hz",
         app_json_number(rate_hz, 3), "costs", list, "motion_max_hz",
@@ -71,19 +76,21 @@ static int run(app *a)
     grobo_wiring wiring = (grobo_wiring)app_global(a, GLOBAL_WIRING)->choice;
     const grobo_driver *driver = grobo_gr001_driver(wiring);
     int baud_bps = (int)conn_baud(a);
-    double rate_hz;
     grobo_budget line;
     wire_cost costs[WIRE_COSTS];
     int error = wire_measure(driver, baud_bps, costs);
-    if (!error)
+    if (!error) {
         error = wire_budget(driver, baud_bps, &line);
-    if (error)
+    }
+    if (error) {
         return app_fail_error(a, EXIT_USAGE, error, "budget");
-    rate_hz = app_number(a, OPT_RATE, line.default_hz);
-    if (a->json)
+    }
+    double rate_hz = app_number(a, OPT_RATE, line.default_hz);
+    if (a->json) {
         app_print_json(to_json(costs, &line, baud_bps, rate_hz, driver->model->n_joints));
-    else
+    } else {
         print_text(costs, &line, baud_bps, rate_hz, driver->model->n_joints);
+    }
     return EXIT_DONE;
 }
 

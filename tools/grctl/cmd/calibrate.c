@@ -21,63 +21,71 @@ static void show(const app *a, const config_robot *before, const config_robot *a
     json_t *list = json_array();
     const grobo_model *model = &grobo_gr001_model;
     for (int j = 0; j < model->n_joints; j++) {
-        if (!a->json && after->trim_deg[j] != before->trim_deg[j])
+        if (!a->json && after->trim_deg[j] != before->trim_deg[j]) {
             app_print("%5d  %-12s  %6.1f -> %6.1f deg\n", model->joints[j].motor,
                       model->joints[j].name, before->trim_deg[j], after->trim_deg[j]);
+        }
         json_array_append_new(list, json_pack("{s:i,s:i,s:s,s:o,s:o}", "joint", j, "motor",
                                               model->joints[j].motor, "name", model->joints[j].name,
                                               "before_deg", app_json_number(before->trim_deg[j], 1),
                                               "trim_deg", app_json_number(after->trim_deg[j], 1)));
     }
-    if (a->json)
+    if (a->json) {
         app_print_json(json_pack("{s:s,s:o,s:b,s:o}", "robot", after->name, "file",
                                  app_json_text(after->path), "written",
                                  !app_option(a, OPT_DRY_RUN)->given, "joints", list));
-    else
+    } else {
         json_decref(list);
+    }
 }
 
 /* Asked on a terminal only; nobody is asked to answer for a script. */
 static bool confirmed(const app *a, const config_robot *robot)
 {
     int answer, c;
-    if (!a->tty_in || app_global(a, GLOBAL_YES)->given)
+    if (!a->tty_in || app_global(a, GLOBAL_YES)->given) {
         return true;
+    }
     output_complain("write these trims of %s to %s? [y/N] ", robot->name, robot->path);
     answer = c = getchar();
-    while (c != '\n' && c != EOF)
+    while (c != '\n' && c != EOF) {
         c = getchar();
+    }
     return answer == 'y' || answer == 'Y';
 }
 
 static int finish(app *a, const config_robot *after)
 {
-    int status;
     if (app_option(a, OPT_DRY_RUN)->given) {
         show(a, a->robot, after);
         return EXIT_DONE;
     }
-    if (!a->json)
+    if (!a->json) {
         show(a, a->robot, after);
-    if (!confirmed(a, after))
+    }
+    if (!confirmed(a, after)) {
         return app_fail(a, EXIT_USAGE, "CANCELED", "calibrate: nothing was written");
-    status = config_write_trims(a, after);
-    if (status)
+    }
+    int status = config_write_trims(a, after);
+    if (status) {
         return status;
-    if (a->json)
+    }
+    if (a->json) {
         show(a, a->robot, after);
-    else
+    } else {
         app_note(a, "trims of %s written to %s", after->name, after->path);
+    }
     return EXIT_DONE;
 }
 
 static int set_trim(app *a, config_robot *after, int joint, double deg)
 {
     deg = round(deg * 10) / 10;
-    if (fabs(deg) > CONFIG_TRIM_MAX_DEG)
+    if (fabs(deg) > CONFIG_TRIM_MAX_DEG) {
         return app_fail(a, EXIT_SAFETY, "LIMIT",
                         "calibrate: %s is %.1f deg off, more than %d; does its horn sit right?",
                         grobo_gr001_model.joints[joint].name, deg, CONFIG_TRIM_MAX_DEG);
+    }
     after->trim_deg[joint] = deg == 0 ? 0 : deg;
     return EXIT_DONE;
 }
@@ -93,12 +101,14 @@ static int measure(app *a, config_robot *after)
             ? 0
             : conn_wait(&c, grobo_robot_sense(grobo_session_robot(c.session),
                                               GROBO_JOINTS_ALL(model->n_joints), GROBO_SENSE_FULL));
-    if (error)
+    if (error) {
         status = conn_fail(&c, error, "calibrate");
+    }
     for (int j = 0; j < model->n_joints && !status; j++) {
         grobo_joint_info i;
-        if (grobo_robot_joint(c.robot, j, &i) < 0)
+        if (grobo_robot_joint(c.robot, j, &i) < 0) {
             continue;
+        }
         status = set_trim(a, after, j,
                           a->robot->trim_deg[j] +
                               grobo_deg_from_rad(i.state.angle_rad - model->joints[j].init_rad));
@@ -108,26 +118,29 @@ static int measure(app *a, config_robot *after)
 
 static int run(app *a)
 {
-    config_robot after;
     double deg;
-    int joint, status = 0;
-    if (!a->robot)
+    int status = 0;
+    if (!a->robot) {
         return app_fail(a, EXIT_USAGE, "ARG",
                         "calibrate: -d must name a robot of ~/.config/grctl/config.yaml; see "
                         "'grctl help calibrate'");
-    if (a->line.n_arguments == 1)
+    }
+    if (a->line.n_arguments == 1) {
         return app_fail(a, EXIT_USAGE, "ARG", "calibrate needs JOINT DEG, or neither");
-    after = *a->robot;
+    }
+    config_robot after = *a->robot;
     if (a->line.n_arguments == 0) {
         status = measure(a, &after);
     } else {
         const char *name = a->line.argument[0];
-        joint = joints_parse_one(a, name, strlen(name), &status);
-        if (joint < 0)
+        int joint = joints_parse_one(a, name, strlen(name), &status);
+        if (joint < 0) {
             return status;
-        if (!cli_read_number(a->line.argument[1], &deg))
+        }
+        if (!cli_read_number(a->line.argument[1], &deg)) {
             return app_fail(a, EXIT_USAGE, "ARG", "calibrate: '%s' is not an angle in degrees",
                             a->line.argument[1]);
+        }
         status = set_trim(a, &after, joint, deg);
     }
     return status ? status : finish(a, &after);

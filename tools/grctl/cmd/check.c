@@ -33,14 +33,15 @@ static bool is_passed_by(const app *a, const char *path, grobo_diagnostics *list
                           .code = "skipped",
                           .message = "no motion file by name or content: skipped",
                           .severity = GROBO_SEVERITY_NOTE};
-    int error;
     if (a->line.n_arguments < 2 || strcmp(path, "-") == 0 ||
-        grobo_motion_format_of_path(path) != GROBO_FORMAT_AUTO)
+        grobo_motion_format_of_path(path) != GROBO_FORMAT_AUTO) {
         return false;
-    error = file_read(path, NULL, NULL, &motion);
+    }
+    int error = file_read(path, NULL, NULL, &motion);
     grobo_motion_free(motion);
-    if (error != GROBO_ERR_SYNTAX && error != GROBO_ERR_TYPE && error != GROBO_ERR_ISDIR)
+    if (error != GROBO_ERR_SYNTAX && error != GROBO_ERR_TYPE && error != GROBO_ERR_ISDIR) {
         return false;
+    }
     grobo_diagnostics_add(list, &d);
     return true;
 }
@@ -59,8 +60,9 @@ static void check_file(const char *path, const order *o, grobo_diagnostics *list
     int error = file_read(path, &read, list, &motion);
     if (!error) {
         error = grobo_motion_check(motion, &grobo_gr001_model, &check, list);
-        if (error >= 0)
+        if (error >= 0) {
             error = check_whole(motion, &o->body, &how, list);
+        }
         check_report_slack(name, &slack, list);
         grobo_motion_free(motion);
     }
@@ -75,8 +77,9 @@ static void check_file(const char *path, const order *o, grobo_diagnostics *list
 
 static const char *color_of(const app *a, grobo_severity severity)
 {
-    if (!a->color_out)
+    if (!a->color_out) {
         return "";
+    }
     return severity == GROBO_SEVERITY_ERROR     ? "\033[31m"
            : severity == GROBO_SEVERITY_WARNING ? "\033[33m"
                                                 : "\033[2m";
@@ -87,8 +90,9 @@ static void print_text(const app *a, const grobo_diagnostics *list)
     char text[1024];
     grobo_diagnostic d;
     for (size_t i = 0; grobo_diagnostics_get(list, i, &d) == 0; i++) {
-        if (d.severity == GROBO_SEVERITY_NOTE && a->verbosity < 1)
+        if (d.severity == GROBO_SEVERITY_NOTE && a->verbosity < 1) {
             continue;
+        }
         file_format(&d, true, text, sizeof text);
         app_print("%s%s%s\n", color_of(a, d.severity), text, a->color_out ? "\033[0m" : "");
     }
@@ -96,8 +100,9 @@ static void print_text(const app *a, const grobo_diagnostics *list)
 
 static unsigned how_to_balance(const app *a)
 {
-    if (app_option(a, OPT_BALANCE)->given)
+    if (app_option(a, OPT_BALANCE)->given) {
         return CHECK_BALANCE;
+    }
     return app_option(a, OPT_FORCE)->given || !config_warns_of_falls(a) ? 0 : CHECK_FALL;
 }
 
@@ -107,29 +112,34 @@ static int run(app *a)
     grobo_diagnostics *list = NULL;
     tally t = {0};
     int error = body_options_read(a, OPT_BODY, 0, &o.body);
-    if (error)
+    if (error) {
         return error;
+    }
     error = grobo_diagnostics_new(&list, NULL);
-    if (error)
+    if (error) {
         return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s", grobo_error_text(error));
+    }
     for (int i = 0; i < a->line.n_arguments; i++) {
-        if (is_passed_by(a, a->line.argument[i], list))
+        if (is_passed_by(a, a->line.argument[i], list)) {
             continue;
+        }
         check_file(a->line.argument[i], &o, list);
         t.files++;
     }
     t.errors = grobo_diagnostics_total(list, GROBO_SEVERITY_ERROR);
     t.warnings = grobo_diagnostics_total(list, GROBO_SEVERITY_WARNING);
-    if (a->json)
+    if (a->json) {
         app_print_json(json_pack("{s:b,s:o}", "ok", t.errors == 0, "diagnostics", file_json(list)));
-    else
+    } else {
         print_text(a, list);
+    }
     grobo_diagnostics_free(list);
-    if (!a->json && (t.errors || t.warnings))
+    if (!a->json && (t.errors || t.warnings)) {
         app_note(a, "%zu error%s, %zu warning%s", t.errors, t.errors == 1 ? "" : "s", t.warnings,
                  t.warnings == 1 ? "" : "s");
-    else if (!a->json)
+    } else if (!a->json) {
         app_note(a, "%d file%s, nothing wrong", t.files, t.files == 1 ? "" : "s");
+    }
     return t.errors ? EXIT_FILE : EXIT_DONE;
 }
 

@@ -61,12 +61,14 @@ static int run(app *a)
 {
     const char *shell = a->line.argument[0];
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
-        if (strcmp(shell, all[i].shell) != 0)
+        if (strcmp(shell, all[i].shell) != 0) {
             continue;
-        if (a->json)
+        }
+        if (a->json) {
             app_print_json(json_pack("{s:s,s:s}", "shell", shell, "script", all[i].script));
-        else
+        } else {
             app_print("%s", all[i].script);
+        }
         return EXIT_DONE;
     }
     return app_fail(a, EXIT_USAGE, "ARG", "completion: '%s' is none of bash, zsh, fish", shell);

@@ -47,8 +47,9 @@ static int write_text(void *ctx, const void *data, size_t size)
     if (size > t->room - t->size) {
         size_t room = 2 * t->room + size;
         char *bytes = realloc(t->bytes, room);
-        if (!bytes)
+        if (!bytes) {
             return GROBO_ERR_NOMEM;
+        }
         t->bytes = bytes;
         t->room = room;
     }
@@ -59,11 +60,13 @@ static int write_text(void *ctx, const void *data, size_t size)
 
 static int put_out(const file_text *t, const char *path)
 {
-    if (strcmp(path, "-") != 0)
+    if (strcmp(path, "-") != 0) {
         return file_save(path, t->bytes, t->size);
+    }
     errno = 0;
-    if (fwrite(t->bytes, 1, t->size, stdout) == t->size && fflush(stdout) == 0)
+    if (fwrite(t->bytes, 1, t->size, stdout) == t->size && fflush(stdout) == 0) {
         return 0;
+    }
     return errno == ENOSPC ? GROBO_ERR_DISK : GROBO_ERR_IO;
 }
 
@@ -77,21 +80,24 @@ static int verify(app *a, const grobo_motion *motion, const char *path, const fi
     grobo_diagnostic first = {.code = "NOMEM"};
     char said[1024] = "no memory is left";
     int lost = grobo_diagnostics_new(&list, NULL);
-    if (!lost)
+    if (!lost) {
         lost = grobo_motion_read_memory(t->bytes ? t->bytes : "", t->size, &read, list, &copy);
+    }
     if (!lost) {
         grobo_diagnostics_clear(list);
         lost = grobo_motion_verify(motion, copy, how, list);
     }
     for (size_t i = 0; grobo_diagnostics_get(list, i, &first) == 0; i++) {
         file_format(&first, false, said, sizeof said);
-        if (i > 0)
+        if (i > 0) {
             app_note(a, "%s", said);
-        else if (lost)
+        } else if (lost) {
             app_fail(a, EXIT_FILE, first.code, "%s; --lossy writes %s all the same", said, path);
+        }
     }
-    if (lost < 0 && grobo_diagnostics_count(list) == 0)
+    if (lost < 0 && grobo_diagnostics_count(list) == 0) {
         app_fail_error(a, EXIT_FILE, lost, "%s", path);
+    }
     grobo_motion_free(copy);
     grobo_diagnostics_free(list);
     return lost ? EXIT_FILE : 0;
@@ -103,13 +109,16 @@ static int write_out(app *a, const grobo_motion *motion, const char *path,
     file_text t = {0};
     grobo_sink sink = {.write = write_text, .ctx = &t};
     int status = 0, error = grobo_motion_write(motion, how->format, how, &sink, list);
-    if (!error && !app_option(a, OPT_LOSSY)->given)
+    if (!error && !app_option(a, OPT_LOSSY)->given) {
         status = verify(a, motion, path, &t, how);
-    if (!error && !status)
+    }
+    if (!error && !status) {
         error = put_out(&t, path);
-    if (error)
+    }
+    if (error) {
         status = app_fail(a, EXIT_FILE, grobo_error_name(error), "%s: cannot write: %s", path,
                           file_write_error_text(error));
+    }
     free(t.bytes);
     return status;
 }
@@ -120,10 +129,11 @@ static int refuse_out(app *a, const char *out, grobo_motion_format to)
     int error = strcmp(out, "-") == 0 || app_option(a, OPT_REPLACE)->given
                     ? 0
                     : grobo_motion_may_save(grobo_files_os(), out, to);
-    if (error == GROBO_ERR_EXISTS)
+    if (error == GROBO_ERR_EXISTS) {
         return app_fail(a, EXIT_FILE, grobo_error_name(error),
                         "%s: holds something other than a .%s motion; --replace writes over it",
                         out, grobo_motion_format_name(to));
+    }
     return error ? app_fail_error(a, EXIT_FILE, error, "%s", out) : 0;
 }
 
@@ -136,10 +146,12 @@ static int refuse_links(app *a, const char *path, const grobo_motion *motion,
     bool keeps = how->format == GROBO_FORMAT_PSEQ || how->format == GROBO_FORMAT_MSEQ;
     size_t n = 0, links;
     const cli_value *ik = app_option(a, OPT_BODY + BODY_IK);
-    for (size_t i = 0; i < grobo_motion_size(motion); i++)
+    for (size_t i = 0; i < grobo_motion_size(motion); i++) {
         n += grobo_motion_ik_links(motion, i, &links) && links;
-    if (!n || keeps || ik->given || app_option(a, OPT_LOSSY)->given)
+    }
+    if (!n || keeps || ik->given || app_option(a, OPT_LOSSY)->given) {
         return 0;
+    }
     return app_fail(a, EXIT_FILE, "ik-links-lost",
                     "%s: %zu of %zu poses have ikLinks, which are solved for GR001 only; --ik off "
                     "converts the listed joints alone",
@@ -152,15 +164,17 @@ static int solve_legs(app *a, const char *path, const grobo_write_options *how,
 {
     grobo_body *body = NULL;
     grobo_motion *solved = NULL;
-    int status;
     double rate_hz = how->rate_hz;
-    if (how->format == GROBO_FORMAT_PSEQ && !body_options_given(a, OPT_BODY))
+    if (how->format == GROBO_FORMAT_PSEQ && !body_options_given(a, OPT_BODY)) {
         return 0;
-    if (how->format == GROBO_FORMAT_YAML && !how->exact && !(rate_hz > 0))
+    }
+    if (how->format == GROBO_FORMAT_YAML && !how->exact && !(rate_hz > 0)) {
         rate_hz = GROBO_MOTION_RATE_HZ;
-    status = body_make(a, OPT_BODY, path, *motion, rate_hz, &body);
-    if (!status && body)
+    }
+    int status = body_make(a, OPT_BODY, path, *motion, rate_hz, &body);
+    if (!status && body) {
         status = body_motion(a, path, body, rate_hz, &solved);
+    }
     grobo_body_free(body);
     if (solved) {
         (void)grobo_motion_set_name(solved, grobo_motion_name(*motion));
@@ -200,35 +214,42 @@ static int run(app *a)
                                .exact = app_option(a, OPT_EXACT)->given > 0};
     grobo_diagnostics *list = NULL;
     grobo_motion *motion = NULL;
-    int error;
-    if (to == GROBO_FORMAT_AUTO)
+    if (to == GROBO_FORMAT_AUTO) {
         to = grobo_motion_format_of_path(out);
+    }
     how.format = to;
-    if (how.exact && app_option(a, OPT_INTEGERS)->given)
+    if (how.exact && app_option(a, OPT_INTEGERS)->given) {
         return app_fail(a, EXIT_USAGE, "ARG",
                         "convert: --exact and --integers cannot be used together");
-    if (to == GROBO_FORMAT_AUTO)
+    }
+    if (to == GROBO_FORMAT_AUTO) {
         return app_fail(a, EXIT_USAGE, "ARG",
                         "%s: its name tells no format; give --to " FILE_FORMATS, out);
-    error = refuse_out(a, out, to);
-    if (error)
+    }
+    int error = refuse_out(a, out, to);
+    if (error) {
         return error;
+    }
     error = grobo_diagnostics_new(&list, NULL);
-    if (error)
+    if (error) {
         return app_fail(a, EXIT_ROBOT, grobo_error_name(error), "%s", grobo_error_text(error));
+    }
     error = file_load_listed(a, in, &read, list, &motion);
-    if (!error)
+    if (!error) {
         error = solve_legs(a, in, &how, &motion);
+    }
     if (error) {
         grobo_diagnostics_free(list);
         grobo_motion_free(motion);
         return error;
     }
     error = refuse_links(a, in, motion, &how);
-    if (!error)
+    if (!error) {
         error = write_out(a, motion, out, &how, list);
-    if (!error)
+    }
+    if (!error) {
         report(a, motion, out, list);
+    }
     grobo_diagnostics_free(list);
     grobo_motion_free(motion);
     return error;

@@ -11,8 +11,9 @@ enum { HEX_BYTES = 65536 };
 static unsigned wiring_of(const app *a)
 {
     const cli_value *wiring = app_global(a, GLOBAL_WIRING);
-    if (!wiring->given)
+    if (!wiring->given) {
         return FRAMES_ANY_WIRING;
+    }
     return (grobo_wiring)wiring->choice == GROBO_WIRING_BOARD ? FRAMES_BOARD : FRAMES_BUS;
 }
 
@@ -25,8 +26,9 @@ static void print_head(const decoder *d, const pcapng_reader *r, const pcapng_ch
     time_t seconds = (time_t)(first->time_us / 1000000);
     const struct tm *utc = gmtime(&seconds);
     char started[40] = "";
-    if (utc)
+    if (utc) {
         strftime(started, sizeof started, "%Y-%m-%dT%H:%M:%SZ", utc);
+    }
     if (d->a->json) {
         app_print_json(json_pack("{s:{s:o,s:o,s:o,s:I,s:s}}", "trace", "comment",
                                  app_json_text(r->comment), "device", app_json_text(i->name),
@@ -42,11 +44,12 @@ static void print_head(const decoder *d, const pcapng_reader *r, const pcapng_ch
 static void print_comment(const decoder *d, const pcapng_chunk *chunk)
 {
     double time_ms = (double)(chunk->time_us - d->first_us) / 1e3;
-    if (d->a->json)
+    if (d->a->json) {
         app_print_json(json_pack("{s:o,s:o}", "time_ms", app_json_number(time_ms, 3), "comment",
                                  app_json_text(chunk->comment)));
-    else
+    } else {
         app_print("%10.3f  %-7s  %s\n", time_ms, "comment", chunk->comment);
+    }
 }
 
 static frames_side side_of(pcapng_direction direction)
@@ -71,11 +74,13 @@ static int decode_trace(decoder *d, input *in)
     d->timed = true;
     pcapng_reader_init(&reader, input_read, in);
     while ((more = pcapng_read(&reader, &chunk)) > 0) {
-        if (!d->begun)
+        if (!d->begun) {
             print_head(d, &reader, &chunk);
+        }
         decoder_feed(d, side_of(chunk.direction), chunk.time_us, chunk.bytes, chunk.size);
-        if (*chunk.comment)
+        if (*chunk.comment) {
             print_comment(d, &chunk);
+        }
     }
     if (more < 0) {
         decoder_end(d);
@@ -90,13 +95,15 @@ static int decode_file(decoder *d, const char *path)
 {
     input in;
     int status = input_open(&in, d->a, path);
-    if (status)
+    if (status) {
         return status;
+    }
     status = input_is_pcapng(&in) ? decode_trace(d, &in) : decode_text(d, &in);
     input_close(&in);
     decoder_end(d);
-    if (!status)
+    if (!status) {
         decoder_summary(d);
+    }
     return status ? status : decoder_status(d);
 }
 
@@ -106,18 +113,20 @@ static bool is_file(const app *a)
     const char *name = a->line.argument[0];
     uint8_t bytes[1];
     size_t at;
-    FILE *file;
-    int n;
-    if (a->line.n_arguments != 1)
+    if (a->line.n_arguments != 1) {
         return false;
-    if (strcmp(name, "-") == 0)
+    }
+    if (strcmp(name, "-") == 0) {
         return true;
-    n = hextext_parse(name, bytes, sizeof bytes, &at);
-    if (n == 1 || n == GROBO_ERR_CAP)
+    }
+    int n = hextext_parse(name, bytes, sizeof bytes, &at);
+    if (n == 1 || n == GROBO_ERR_CAP) {
         return strpbrk(name, "/.") != NULL;
-    file = fopen(name, "rb");
-    if (file)
+    }
+    FILE *file = fopen(name, "rb");
+    if (file) {
         fclose(file);
+    }
     return file || strpbrk(name, "/.");
 }
 
@@ -130,17 +139,20 @@ static int decode_arguments(decoder *d)
         const char *text = a->line.argument[i];
         size_t at = 0;
         int n = hextext_parse(text, bytes + used, sizeof bytes - used, &at);
-        if (n == GROBO_ERR_CAP)
+        if (n == GROBO_ERR_CAP) {
             return app_fail(a, EXIT_USAGE, "CAP", "decode: more than %d bytes; use a file",
                             HEX_BYTES);
-        if (n < 0)
+        }
+        if (n < 0) {
             return app_fail(a, EXIT_USAGE, "SYNTAX",
                             "decode: '%.*s' is neither a byte in hex nor a file",
                             hextext_word(text + at) > 40 ? 40 : hextext_word(text + at), text + at);
+        }
         used += (size_t)n;
     }
-    if (used == 0)
+    if (used == 0) {
         return app_fail(a, EXIT_USAGE, "EMPTY", "decode: no bytes");
+    }
     decoder_feed(d, FRAMES_EITHER, 0, bytes, used);
     decoder_end(d);
     return decoder_status(d);
@@ -150,8 +162,9 @@ static int run(app *a)
 {
     static decoder d;
     decoder_init(&d, a, wiring_of(a));
-    if (a->line.n_arguments == 0)
+    if (a->line.n_arguments == 0) {
         return decode_file(&d, "-");
+    }
     return is_file(a) ? decode_file(&d, a->line.argument[0]) : decode_arguments(&d);
 }
 

@@ -37,12 +37,13 @@ static bool is_path(const char *device)
 static bool ask(patient *p, char *said)
 {
     app *a = p->k.a;
-    bool ok;
     a->hushed = said;
-    ok = conn_open(&p->c, a) == EXIT_DONE &&
-         servos_wait(&p->c, (int)conn_baud(a), READ_BYTES, SERVOS_PATIENT_US, 0, NULL) == GROBO_OK;
-    if (!ok)
+    bool ok =
+        conn_open(&p->c, a) == EXIT_DONE &&
+        servos_wait(&p->c, (int)conn_baud(a), READ_BYTES, SERVOS_PATIENT_US, 0, NULL) == GROBO_OK;
+    if (!ok) {
         conn_close(&p->c, EXIT_DONE);
+    }
     a->hushed = NULL;
     return ok;
 }
@@ -60,18 +61,19 @@ static int find_answer(patient *p, int asked_bps)
     const size_t n_bauds = sizeof usual_bauds / sizeof usual_bauds[0];
     char said[APP_LINE_BYTES];
     progress bar;
-    bool found;
     progress_start(&bar, a);
     for (size_t i = 0; i < n_bauds && !p->c.signal; i++) {
-        if (usual_bauds[i] == asked_bps)
+        if (usual_bauds[i] == asked_bps) {
             continue;
+        }
         set_baud(a, usual_bauds[i]);
         snprintf(said, sizeof said, "no reply at %d bps; asking at %d", asked_bps, usual_bauds[i]);
         progress_draw(&bar, (double)i / (double)n_bauds, said);
-        found = ask(p, said);
+        bool found = ask(p, said);
         progress_clear(&bar);
-        if (found)
+        if (found) {
             return usual_bauds[i];
+        }
     }
     set_baud(a, asked_bps);
     a->line.global[GLOBAL_WIRING].choice = !a->line.global[GLOBAL_WIRING].choice;
@@ -82,15 +84,16 @@ static bool check_reply(patient *p, const char *device)
 {
     app *a = p->k.a;
     char said[APP_LINE_BYTES] = "", fix[FIX_BYTES];
-    int asked_bps = (int)conn_baud(a), found_bps;
+    int asked_bps = (int)conn_baud(a);
     int wiring = app_global(a, GLOBAL_WIRING)->choice;
     if (ask(p, said)) {
         checkup_found(&p->k, "reply", NULL, "the %s answers at %d bps",
                       wiring == GROBO_WIRING_BOARD ? "board" : "robot", asked_bps);
         return true;
     }
-    if (p->c.signal)
+    if (p->c.signal) {
         return false;
+    }
     if (!strstr(said, "no robot answers")) {
         checkup_found(&p->k, "reply",
                       strncmp(device, "tcp:", 4) == 0 ? "start a serial server there (ser2net), or "
@@ -99,16 +102,17 @@ static bool check_reply(patient *p, const char *device)
                       "%s", said);
         return false;
     }
-    found_bps = find_answer(p, asked_bps);
+    int found_bps = find_answer(p, asked_bps);
     if (found_bps == 0) {
         checkup_found(&p->k, "reply", "switch the robot on, push its cables in", "%s", said);
         return false;
     }
-    if (found_bps != asked_bps)
+    if (found_bps != asked_bps) {
         snprintf(fix, sizeof fix, "grctl -d %s -b %d ...", device, found_bps);
-    else
+    } else {
         snprintf(fix, sizeof fix, "grctl -d %s --wiring %s ...", device,
                  wiring == GROBO_WIRING_BOARD ? "bus" : "board");
+    }
     checkup_found(&p->k, "reply", fix, "nobody answers as asked, but somebody does at %d bps%s",
                   found_bps,
                   found_bps != asked_bps         ? ""
@@ -125,8 +129,9 @@ static void check_echo(patient *p, const char *device)
     char fix[FIX_BYTES + GROBO_DEVICE_MAX_BYTES];
     if (app_global(a, GLOBAL_WIRING)->choice == GROBO_WIRING_BOARD ||
         app_global(a, GLOBAL_ECHO)->given || n->replies == 0 ||
-        n->resync_bytes < n->replies * GROBO_RS30X_OVERHEAD_BYTES / 2)
+        n->resync_bytes < n->replies * GROBO_RS30X_OVERHEAD_BYTES / 2) {
         return;
+    }
     snprintf(fix, sizeof fix, "grctl -d %s --wiring bus --echo ...", device);
     checkup_found(&p->k, "echo", fix, "the adapter returns what is sent to it");
 }
@@ -157,30 +162,35 @@ static bool check_state(patient *p, const char *name, int joint, const grobo_joi
     const grobo_joint *j = &p->model->joints[joint];
     char fix[FIX_BYTES];
     snprintf(fix, sizeof fix, "let it cool down: grctl servo off m%d", j->motor);
-    if (s->flags & GROBO_RS30X_STATUS_OVERHEATED)
+    if (s->flags & GROBO_RS30X_STATUS_OVERHEATED) {
         checkup_found(&p->k, name, fix, "%s has cut its torque for heat (%d C)", j->name,
                       s->temperature_c);
-    else if ((s->flags & GROBO_RS30X_STATUS_HOT) || s->temperature_c > driver->limits.temperature_c)
+    } else if ((s->flags & GROBO_RS30X_STATUS_HOT) ||
+               s->temperature_c > driver->limits.temperature_c) {
         checkup_found(&p->k, name, fix, "%s is hot: %d C, at most %d are good for it", j->name,
                       s->temperature_c, driver->limits.temperature_c);
-    else if (s->flags & GROBO_RS30X_STATUS_FLASH_ERROR) {
+    } else if (s->flags & GROBO_RS30X_STATUS_FLASH_ERROR) {
         snprintf(fix, sizeof fix, "write its settings again: grctl servo-set %d id %d --flash",
                  j->motor, j->motor);
         checkup_found(&p->k, name, fix, "%s lost power while it wrote its flash", j->name);
-    } else
+    } else {
         return false;
+    }
     return true;
 }
 
 static void keep_extremes(patient *p, const grobo_joint_state *s)
 {
     p->answered++;
-    if (p->low_mv == 0 || s->voltage_mv < p->low_mv)
+    if (p->low_mv == 0 || s->voltage_mv < p->low_mv) {
         p->low_mv = s->voltage_mv;
-    if (s->voltage_mv > p->high_mv)
+    }
+    if (s->voltage_mv > p->high_mv) {
         p->high_mv = s->voltage_mv;
-    if (s->temperature_c > p->hottest_c)
+    }
+    if (s->temperature_c > p->hottest_c) {
         p->hottest_c = s->temperature_c;
+    }
 }
 
 static void check_model(patient *p, const char *name, int joint, uint16_t model,
@@ -189,13 +199,14 @@ static void check_model(patient *p, const char *name, int joint, uint16_t model,
     const grobo_joint *j = &p->model->joints[joint];
     const char *type = grobo_rs30x_model_name(model);
     const char *expected = grobo_rs30x_model_name(j->servo_model);
-    if (j->servo_model && model != j->servo_model)
+    if (j->servo_model && model != j->servo_model) {
         checkup_found(&p->k, name, "put the right servo there; its speed and torque are others",
                       "%s is %s, not %s", j->name, type ? type : "of an unknown model",
                       expected ? expected : "that");
-    else
+    } else {
         checkup_found(&p->k, name, "", "%s: %s, %d C, %.2f V", j->name, type ? type : "a servo",
                       s->temperature_c, s->voltage_mv / 1e3);
+    }
 }
 
 /* Asking again may hide that two talk at once. */
@@ -213,43 +224,50 @@ static void check_servo(patient *p, int joint)
     uint64_t broken = broken_replies(p);
     int error = servos_read(&p->c, j->motor, GROBO_RS30X_MODEL, IDENTITY_BYTES, identity);
     snprintf(name, sizeof name, "servo_%d", j->motor);
-    if (!error)
+    if (!error) {
         error = conn_wait(&p->c, grobo_robot_sense(grobo_session_robot(p->c.session),
                                                    GROBO_JOINT_BIT(joint), GROBO_SENSE_FULL));
-    if (p->c.signal || p->c.link_error)
+    }
+    if (p->c.signal || p->c.link_error) {
         return;
-    if (!error)
+    }
+    if (!error) {
         error = grobo_robot_joint(p->c.robot, joint, &i);
+    }
     broken = broken_replies(p) - broken;
     if (error || broken) {
         say_silent(p, name, joint, broken && !error ? GROBO_ERR_CHECKSUM : error);
         return;
     }
     keep_extremes(p, &i.state);
-    if (check_state(p, name, joint, &i.state))
+    if (check_state(p, name, joint, &i.state)) {
         return;
+    }
     check_model(p, name, joint, (uint16_t)(identity[0] | identity[1] << 8), &i.state);
 }
 
 static void check_servos(patient *p)
 {
-    int32_t least_mv;
     p->model = grobo_robot_driver(p->c.robot)->model;
-    for (int joint = 0; joint < p->model->n_joints && !p->c.signal && !p->c.link_error; joint++)
+    for (int joint = 0; joint < p->model->n_joints && !p->c.signal && !p->c.link_error; joint++) {
         check_servo(p, joint);
-    if (p->c.signal || p->c.link_error || p->answered == 0)
+    }
+    if (p->c.signal || p->c.link_error || p->answered == 0) {
         return;
-    least_mv = grobo_robot_driver(p->c.robot)->limits.voltage_mv * 11 / 10;
-    if (p->low_mv < least_mv)
+    }
+    int32_t least_mv = grobo_robot_driver(p->c.robot)->limits.voltage_mv * 11 / 10;
+    if (p->low_mv < least_mv) {
         checkup_found(&p->k, "voltage", "charge the battery",
                       "%.2f V at the servos: low; at %.1f V every motion is stopped",
                       p->low_mv / 1e3, grobo_robot_driver(p->c.robot)->limits.voltage_mv / 1e3);
-    else
+    } else {
         checkup_found(&p->k, "voltage", NULL, "%.2f to %.2f V at the servos", p->low_mv / 1e3,
                       p->high_mv / 1e3);
-    if (p->answered == p->model->n_joints)
+    }
+    if (p->answered == p->model->n_joints) {
         checkup_found(&p->k, "servos", NULL, "all %d answer; the warmest has %d C", p->answered,
                       p->hottest_c);
+    }
 }
 
 /* ---- the whole of it ------------------------------------------------------------------------- */
@@ -258,8 +276,9 @@ static void check_latch(checkup *k, const char *device)
 {
     char fix[FIX_BYTES + GROBO_DEVICE_MAX_BYTES];
     snprintf(fix, sizeof fix, "grctl -d %s estop --reset", device);
-    if (grobo_estop_stands(device))
+    if (grobo_estop_stands(device)) {
         checkup_found(k, "estop", fix, "an emergency stop stands: nothing will move");
+    }
 }
 
 /* The first adapter that `auto` would try; one that is blocked is looked at where there is none. */
@@ -267,8 +286,9 @@ static bool choose_adapter(checkup *k, char *device)
 {
     static choice all;
     char fix[FIX_BYTES + GROBO_DEVICE_MAX_BYTES];
-    if (auto_ports(&all) < 0)
+    if (auto_ports(&all) < 0) {
         choose_begin(&all);
+    }
     for (int i = 0; i < all.n_blocked && all.n_usb > 0; i++) {
         choose_fix(&all.blocked[i], fix, sizeof fix);
         checkup_found(k, "port", fix, "%s: %s", all.blocked[i].path,
@@ -281,10 +301,11 @@ static bool choose_adapter(checkup *k, char *device)
     }
     snprintf(fix, sizeof fix,
              "plug the robot's cable in, or name its port: -d DEV; 'grctl ports' lists them");
-    if (all.n_uart > 0)
+    if (all.n_uart > 0) {
         snprintf(fix, sizeof fix,
                  "plug the robot's cable in, or where it is wired to this machine: -d %s",
                  all.uart[0].path);
+    }
     checkup_found(k, "device", fix, "no USB serial adapter is here");
     return false;
 }
@@ -317,11 +338,13 @@ static int run(app *a)
         check_latch(&p.k, device);
         if (check_reply(&p, device)) {
             check_servos(&p);
-            if (!p.c.signal && !p.c.link_error)
+            if (!p.c.signal && !p.c.link_error) {
                 check_echo(&p, device);
-            if (p.c.link_error)
+            }
+            if (p.c.link_error) {
                 checkup_found(&p.k, "link", "push the cable in at both ends",
                               "%s was lost on the way", device);
+            }
             conn_close(&p.c, EXIT_DONE);
         }
         signal = p.c.signal;

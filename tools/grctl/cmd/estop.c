@@ -61,10 +61,11 @@ static int fail(const target *t, int error, const char *format, ...)
     va_start(list, format);
     vsnprintf(text, sizeof text, format, list);
     va_end(list);
-    if (t->marked < 0)
+    if (t->marked < 0) {
         return app_fail(t->a, EXIT_ROBOT, grobo_error_name(error),
                         "%s; the mark could not be written (%s): other programs may move the robot",
                         text, t->cause.text);
+    }
     return app_fail(t->a, EXIT_ROBOT, grobo_error_name(error),
                     "%s; programs refuse to move it until 'grctl estop --reset'", text);
 }
@@ -73,8 +74,9 @@ static int fail(const target *t, int error, const char *format, ...)
 static int succeed(const target *t, const char *by)
 {
     char text[APP_LINE_BYTES];
-    if (t->marked < 0)
+    if (t->marked < 0) {
         return fail(t, t->marked, "%s: stopped%s and verified, but not kept so", t->device, by);
+    }
     snprintf(text, sizeof text, "stopped%s and verified; 'grctl estop --reset' takes it back", by);
     app_done(t->a, text);
     return EXIT_DONE;
@@ -92,11 +94,12 @@ static int fail_verify(const target *t, const char *by, int error)
 static int fail_silent(const target *t)
 {
     const grobo_estop_holder *h = &t->holder;
-    if (h->stopped && !h->resumed)
+    if (h->stopped && !h->resumed) {
         return fail(t, GROBO_ERR_BUSY,
                     "%s: NOT stopped: process %d has the port, is stopped itself, and was not "
                     "resumed, because it would continue to move the robot; switch the robot off",
                     t->device, h->pid);
+    }
     return fail(t, GROBO_ERR_BUSY,
                 "%s: NOT stopped: process %d has the port%s and has not answered in %d s; end it "
                 "('kill -9 %d') and repeat, or switch the robot off",
@@ -124,11 +127,12 @@ static int report_holder(const target *t, int error)
     case GROBO_ESTOP_NOBODY:
         break;
     }
-    if (error == GROBO_ERR_BUSY)
+    if (error == GROBO_ERR_BUSY) {
         return fail(t, error,
                     "%s; NOT stopped, nothing was sent: no program of this user that obeys has the "
                     "port; end that program and repeat, or switch the robot off",
                     t->said);
+    }
     return fail(t, error ? error : GROBO_ERR_IO, "%s; NOT stopped, nothing was sent", t->said);
 }
 
@@ -142,8 +146,9 @@ static bool is_over(grobo_estop_answer answer)
 /* How long to wait, for what is known of the holder. */
 static int64_t patience_us(const target *t, const conn *c)
 {
-    if (t->holder.answer == GROBO_ESTOP_HEARD)
+    if (t->holder.answer == GROBO_ESTOP_HEARD) {
         return HEARD_US;
+    }
     return t->holder.answer == GROBO_ESTOP_SILENT || c->open_error == GROBO_ERR_BUSY ? SILENT_US
                                                                                      : 0;
 }
@@ -156,13 +161,15 @@ static bool take_port(conn *c, target *t)
         t->a->hushed = t->said;
         int status = conn_open_unchecked(c, t->a);
         t->a->hushed = NULL;
-        if (!status)
+        if (!status) {
             return true;
+        }
         grobo_estop_ask(t->device, &t->stop, &t->holder);
         c->link_error = 0;
         if (is_over(t->holder.answer) || grobo_now_us() - begin_us >= patience_us(t, c) ||
-            conn_sleep_until(c, grobo_now_us() + AGAIN_US) < 0)
+            conn_sleep_until(c, grobo_now_us() + AGAIN_US) < 0) {
             return false;
+        }
         char again[APP_LINE_BYTES]; /* of a trace: the last attempt says it */
         t->a->hushed = again;
         conn_close(c, status);
@@ -201,11 +208,13 @@ static int mark_busy(void *ctx, const grobo_port_info *info)
 {
     busy_ports *busy = ctx;
     grobo_estop_holder holder;
-    if (info->open_result != GROBO_ERR_BUSY || busy->n == ROBOTS)
+    if (info->open_result != GROBO_ERR_BUSY || busy->n == ROBOTS) {
         return 0;
+    }
     grobo_estop_ask(info->path, NULL, &holder);
-    if (busy->all || holder.answer != GROBO_ESTOP_NOBODY)
+    if (busy->all || holder.answer != GROBO_ESTOP_NOBODY) {
         mark(&busy->t[busy->n++], busy->a, info->path);
+    }
     return 0;
 }
 
@@ -234,8 +243,9 @@ static int stop_any(app *a)
     static target t;
     conn c;
     int status = stop_busy(a, false, NONE);
-    if (status != NONE)
+    if (status != NONE) {
         return status;
+    }
     t.a = a;
     a->hushed = t.said;
     status = conn_open(&c, a);
@@ -248,8 +258,9 @@ static int stop_any(app *a)
     status = conn_close(&c, status);
     if (error == GROBO_ERR_NOTFOUND) {
         int busy = stop_busy(a, true, NONE);
-        if (busy != NONE)
+        if (busy != NONE) {
             return busy;
+        }
     }
     app_fail(a, status, grobo_error_name(error), "%s; NOT stopped, nothing was sent", t.said);
     return status;
@@ -284,11 +295,13 @@ static const char *find_device(const app *a, char *device)
         snprintf(device, GROBO_DEVICE_MAX_BYTES, "%s", grobo_session_device(link->session));
         return NULL;
     }
-    if (config_is_unknown_name(a, asked))
+    if (config_is_unknown_name(a, asked)) {
         return unknown_name(a);
+    }
     int error = grobo_port_resolve(asked, device, GROBO_DEVICE_MAX_BYTES, &cause);
-    if (error)
+    if (error) {
         return *cause.text ? cause.text : grobo_error_text(error);
+    }
     return NULL;
 }
 
@@ -297,15 +310,17 @@ static const char *find_device(const app *a, char *device)
 static int report_reset(app *a, const char *device, int error, const char *cause)
 {
     grobo_estop_holder holder;
-    if (error)
+    if (error) {
         return app_fail(a, EXIT_ROBOT, grobo_error_name(error),
                         "%s: cannot take the emergency stop back: %s", device,
                         cause && *cause ? cause : grobo_error_text(error));
+    }
     app_done(a, "emergency stop taken back; torque stays as it is");
     if (!a->link && grobo_estop_ask(device, NULL, &holder) == GROBO_OK &&
-        holder.answer != GROBO_ESTOP_NOBODY)
+        holder.answer != GROBO_ESTOP_NOBODY) {
         app_note(a, "process %d, which has the port, stays stopped until it is reset or restarted",
                  holder.pid);
+    }
     return EXIT_DONE;
 }
 
@@ -333,15 +348,19 @@ static int run_estop(app *a)
     char device[GROBO_DEVICE_MAX_BYTES];
     bool resets = app_option(a, OPT_RESET)->given > 0;
     const char *why = find_device(a, device);
-    if (why && resets)
+    if (why && resets) {
         return app_fail(a, EXIT_ROBOT, grobo_error_name(GROBO_ERR_NOENT), "%s: %s",
                         conn_requested(a), why);
-    if (why)
+    }
+    if (why) {
         return stop_unknown(a, conn_requested(a), why);
-    if (resets)
+    }
+    if (resets) {
         return reset(a, device);
-    if (strcmp(device, GROBO_DEVICE_AUTO) == 0)
+    }
+    if (strcmp(device, GROBO_DEVICE_AUTO) == 0) {
         return stop_any(a);
+    }
     mark(&t, a, device);
     return stop_marked(&t);
 }

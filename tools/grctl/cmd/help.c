@@ -22,8 +22,9 @@ static json_t *option_json(const cli_option *o)
 static json_t *command_json(const cli_command *command)
 {
     json_t *list = json_array();
-    for (size_t i = 0; i < command->n_options; i++)
+    for (size_t i = 0; i < command->n_options; i++) {
         json_array_append_new(list, option_json(&command->options[i]));
+    }
     return json_pack("{s:s,s:s,s:s,s:o}", "name", command->name, "arguments", command->arguments,
                      "summary", command->summary, "options", list);
 }
@@ -38,10 +39,12 @@ typedef struct asked {
 
 static bool is_asked(const asked *what, const shell_word *w)
 {
-    if (!what->name)
+    if (!what->name) {
         return true;
-    if (what->beginning)
+    }
+    if (what->beginning) {
         return strncmp(w->word, what->name, strlen(what->name)) == 0;
+    }
     return *what->name && (strcmp(w->letter, what->name) == 0 || strcmp(w->word, what->name) == 0);
 }
 
@@ -51,16 +54,18 @@ static int list_words(const asked *what, json_t *list)
     const shell_word *w;
     int n = 0;
     for (size_t i = 0; (w = shell_word_row(i)) != NULL; i++) {
-        if (!is_asked(what, w))
+        if (!is_asked(what, w)) {
             continue;
+        }
         n++;
-        if (list)
+        if (list) {
             json_array_append_new(list,
                                   json_pack("{s:s,s:s,s:s,s:s}", "letter", w->letter, "word",
                                             w->word, "arguments", w->arguments, "help", w->help));
-        else
+        } else {
             app_print("  %-2s %s%s%s\n      %s\n", w->letter, w->word,
                       *w->word && *w->arguments ? " " : "", w->arguments, w->help);
+        }
     }
     return n;
 }
@@ -71,8 +76,9 @@ static bool help_word(const app *a, const char *name)
     asked what = {.name = name, .beginning = shell_word_find(name) == NULL};
     json_t *list = a->json ? json_array() : NULL;
     bool found = *name && list_words(&what, list) > 0;
-    if (found && list)
+    if (found && list) {
         app_print_json(json_pack("{s:O}", "words", list));
+    }
     json_decref(list);
     return found;
 }
@@ -82,8 +88,9 @@ static bool help_word(const app *a, const char *name)
 static int no_command(app *a, const char *name)
 {
     const char *nearest = a->link ? shell_nearest(name) : cli_nearest_command(name);
-    if (nearest)
+    if (nearest) {
         return app_fail(a, EXIT_USAGE, "ARG", "no command '%s'; did you mean '%s'?", name, nearest);
+    }
     return app_fail(a, EXIT_USAGE, "ARG", "no command '%s'; see '%shelp'", name,
                     a->link ? "" : "grctl ");
 }
@@ -91,9 +98,11 @@ static int no_command(app *a, const char *name)
 static json_t *commands_json(const cli_command *about)
 {
     json_t *list = json_array();
-    for (size_t i = 0; i < cli_n_commands; i++)
-        if (!about || about == cli_commands[i])
+    for (size_t i = 0; i < cli_n_commands; i++) {
+        if (!about || about == cli_commands[i]) {
             json_array_append_new(list, command_json(cli_commands[i]));
+        }
+    }
     return list;
 }
 
@@ -115,8 +124,9 @@ static void print_json(const app *a, const cli_command *about)
 static void print_overview(const app *a)
 {
     cli_print_overview(output_stream());
-    if (!a->link)
+    if (!a->link) {
         return;
+    }
     app_print("\nLetters and words of this shell:\n");
     list_words(&all_words, NULL);
 }
@@ -125,18 +135,21 @@ static int run(app *a)
 {
     const char *name = a->line.n_arguments ? a->line.argument[0] : NULL;
     const cli_command *about = name ? cli_find_command(name) : NULL;
-    if (name && !about && a->link && help_word(a, name))
+    if (name && !about && a->link && help_word(a, name)) {
         return EXIT_DONE;
-    if (name && !about)
+    }
+    if (name && !about) {
         return no_command(a, name);
-    if (a->json)
+    }
+    if (a->json) {
         print_json(a, about);
-    else if (app_option(a, OPT_MAN)->given)
+    } else if (app_option(a, OPT_MAN)->given) {
         cli_print_manual(output_stream());
-    else if (about)
+    } else if (about) {
         cli_print_command(output_stream(), about);
-    else
+    } else {
         print_overview(a);
+    }
     return EXIT_DONE;
 }
 

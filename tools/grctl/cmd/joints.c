@@ -17,9 +17,10 @@ static void group_names(const grobo_model *model, int joint, char *names)
     for (int i = 0; i < model->n_groups && at < NAMES_BYTES; i++) {
         const grobo_group *group = &model->groups[i];
         bool has = (group->joints & GROBO_JOINT_BIT(joint)) != 0;
-        if (has && group->joints != GROBO_JOINTS_ALL(model->n_joints))
+        if (has && group->joints != GROBO_JOINTS_ALL(model->n_joints)) {
             at +=
                 (size_t)snprintf(names + at, NAMES_BYTES - at, "%s%s", at ? " " : "", group->name);
+        }
     }
 }
 
@@ -39,9 +40,11 @@ static json_t *joint_json(const grobo_model *model, int joint)
 {
     const grobo_joint *j = &model->joints[joint];
     json_t *groups = json_array();
-    for (int i = 0; i < model->n_groups; i++)
-        if (model->groups[i].joints & GROBO_JOINT_BIT(joint))
+    for (int i = 0; i < model->n_groups; i++) {
+        if (model->groups[i].joints & GROBO_JOINT_BIT(joint)) {
             json_array_append_new(groups, json_string(model->groups[i].name));
+        }
+    }
     return json_pack("{s:i,s:i,s:i,s:s,s:[o,o],s:o,s:o}", "joint", joint, "motor", j->motor, "id",
                      j->motor, "name", j->name, "limits_deg",
                      app_json_number(grobo_deg_from_rad(j->min_rad), 1),
@@ -54,21 +57,26 @@ static int run(app *a)
     const grobo_model *model = &grobo_gr001_model;
     grobo_joint_mask joints;
     int status = joints_parse_all(a, a->line.n_arguments, a->line.argument, &joints);
-    if (status)
+    if (status) {
         return status;
-    json_t *list = a->json ? json_array() : NULL;
-    if (!list)
-        app_print("name          joint  motor     id   min   max  init  groups\n");
-    for (int j = 0; j < model->n_joints; j++) {
-        if (!(joints & GROBO_JOINT_BIT(j)))
-            continue;
-        if (list)
-            json_array_append_new(list, joint_json(model, j));
-        else
-            print_joint(model, j);
     }
-    if (list)
+    json_t *list = a->json ? json_array() : NULL;
+    if (!list) {
+        app_print("name          joint  motor     id   min   max  init  groups\n");
+    }
+    for (int j = 0; j < model->n_joints; j++) {
+        if (!(joints & GROBO_JOINT_BIT(j))) {
+            continue;
+        }
+        if (list) {
+            json_array_append_new(list, joint_json(model, j));
+        } else {
+            print_joint(model, j);
+        }
+    }
+    if (list) {
         app_print_json(json_pack("{s:s,s:o}", "robot", model->name, "joints", list));
+    }
     return EXIT_DONE;
 }
 

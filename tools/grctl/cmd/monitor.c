@@ -17,9 +17,10 @@ enum { DRAW_US = 50000, SENSE_US = 300000, NUDGE_MS = 300, INIT_MS = 3000, GROUP
 __attribute__((format(printf, 3, 4))) static void say(monitor *m, bool bad, const char *format, ...)
 {
     va_list list;
-    if (*m->said)
+    if (*m->said) {
         snprintf(m->log[m->n_log++ % MONITOR_LOG], MONITOR_TEXT_BYTES, "%.*s",
                  MONITOR_TEXT_BYTES - 1, m->said);
+    }
     va_start(list, format);
     vsnprintf(m->said, sizeof m->said, format, list);
     va_end(list);
@@ -30,12 +31,13 @@ __attribute__((format(printf, 3, 4))) static void say(monitor *m, bool bad, cons
 static void say_request(monitor *m, int result, const char *doing)
 {
     const char *busy = monitor_busy(m);
-    if (result == GROBO_ERR_STATE)
+    if (result == GROBO_ERR_STATE) {
         say(m, true, "%s: not now, the robot is busy: %s", doing, busy ? busy : "moving");
-    else if (result < 0)
+    } else if (result < 0) {
         say(m, true, "%s: %s", doing, grobo_error_text(result));
-    else
+    } else {
         say(m, false, "%s", doing);
+    }
     if (result > 0) {
         m->job = result;
         m->doing = doing;
@@ -45,8 +47,9 @@ static void say_request(monitor *m, int result, const char *doing)
 /* An emergency stop of another command stands here too. */
 static bool may_move(monitor *m)
 {
-    if (!grobo_estop_stands(conn_device(&m->c)))
+    if (!grobo_estop_stands(conn_device(&m->c))) {
         return true;
+    }
     say(m, true, "an emergency stop stands: R takes it back");
     return false;
 }
@@ -61,8 +64,9 @@ static void choose_place(monitor *m, int place)
 
 static void choose_group(monitor *m, int group)
 {
-    if (group >= m->model->n_groups)
+    if (group >= m->model->n_groups) {
         return;
+    }
     m->chosen = m->model->groups[group].joints;
     say(m, false, "%s", m->model->groups[group].name);
 }
@@ -77,30 +81,33 @@ static bool torque_is_on(const monitor *m, int joint)
 static int first_chosen(const monitor *m)
 {
     int joint = 0;
-    while (!(m->chosen & GROBO_JOINT_BIT(joint)))
+    while (!(m->chosen & GROBO_JOINT_BIT(joint))) {
         joint++;
+    }
     return joint;
 }
 
 /* Less torque does not wait for a move to end: it ends the move. */
 static void switch_torque(monitor *m, grobo_torque mode, const char *doing)
 {
-    int result;
-    if (mode == GROBO_TORQUE_ON && !may_move(m))
+    if (mode == GROBO_TORQUE_ON && !may_move(m)) {
         return;
-    result = grobo_robot_torque(grobo_session_robot(m->c.session), m->chosen, mode);
+    }
+    int result = grobo_robot_torque(grobo_session_robot(m->c.session), m->chosen, mode);
     if (result == GROBO_ERR_STATE && mode != GROBO_TORQUE_ON &&
-        grobo_robot_cancel(grobo_session_robot(m->c.session)) == GROBO_OK)
+        grobo_robot_cancel(grobo_session_robot(m->c.session)) == GROBO_OK) {
         result = grobo_robot_torque(grobo_session_robot(m->c.session), m->chosen, mode);
+    }
     say_request(m, result, doing);
 }
 
 static void toggle_torque(monitor *m)
 {
-    if (torque_is_on(m, first_chosen(m)))
+    if (torque_is_on(m, first_chosen(m))) {
         switch_torque(m, GROBO_TORQUE_OFF, "torque off");
-    else
+    } else {
         switch_torque(m, GROBO_TORQUE_ON, "torque on");
+    }
 }
 
 /* Would the way lead out of the limits, from where the joint already stands? */
@@ -115,16 +122,17 @@ static void nudge(monitor *m, double by_deg)
 {
     grobo_posture target;
     const grobo_joint *at_limit = NULL;
-    if (!may_move(m))
+    if (!may_move(m)) {
         return;
+    }
     grobo_posture_init(&target, m->model->n_joints);
     for (int j = 0; j < m->model->n_joints; j++) {
         grobo_joint_info i;
-        double from_rad;
         if (!(m->chosen & GROBO_JOINT_BIT(j)) || !torque_is_on(m, j) ||
-            grobo_robot_joint(m->c.robot, j, &i) < 0)
+            grobo_robot_joint(m->c.robot, j, &i) < 0) {
             continue;
-        from_rad = i.has_target ? i.target_rad : i.state.angle_rad;
+        }
+        double from_rad = i.has_target ? i.target_rad : i.state.angle_rad;
         if (is_at_limit(&m->model->joints[j], from_rad, by_deg)) {
             at_limit = &m->model->joints[j];
             continue;
@@ -148,8 +156,9 @@ static void nudge(monitor *m, double by_deg)
 static void go_init(monitor *m)
 {
     grobo_posture target;
-    if (!may_move(m))
+    if (!may_move(m)) {
         return;
+    }
     grobo_posture_init_pose(&target, m->model);
     grobo_posture_set_time_ms(&target, INIT_MS);
     say_request(m, grobo_robot_move(grobo_session_robot(m->c.session), &target),
@@ -164,16 +173,19 @@ static void start_play(monitor *m)
         say(m, true, "nothing to play: grctl monitor FILE...");
         return;
     }
-    if (!may_move(m))
+    if (!may_move(m)) {
         return;
+    }
     grobo_robot_posture(m->c.robot, GROBO_NEVER_US, &sensed);
-    if (!m->prepared && playlist_prepare(&m->list, m->c.a, &sensed) != EXIT_DONE)
+    if (!m->prepared && playlist_prepare(&m->list, m->c.a, &sensed) != EXIT_DONE) {
         return; /* it has said why */
+    }
     m->prepared = true;
     job =
         grobo_robot_play(grobo_session_robot(m->c.session), &m->list.clip[0], &m->list.options[0]);
-    if (job > 0)
+    if (job > 0) {
         m->keys.speed_pct = 100;
+    }
     say_request(m, job, "play");
 }
 
@@ -186,14 +198,15 @@ static void reset(monitor *m)
 
 static bool take_choice(monitor *m, int key)
 {
-    if (key >= '0' && key < '0' + GROUP_KEYS)
+    if (key >= '0' && key < '0' + GROUP_KEYS) {
         choose_group(m, key - '0');
-    else if (key == SCREEN_KEY_UP || key == SCREEN_KEY_DOWN)
+    } else if (key == SCREEN_KEY_UP || key == SCREEN_KEY_DOWN) {
         choose_place(m, m->cursor + (key == SCREEN_KEY_DOWN ? 1 : -1));
-    else if (key == SCREEN_KEY_LEFT || key == SCREEN_KEY_RIGHT)
+    } else if (key == SCREEN_KEY_LEFT || key == SCREEN_KEY_RIGHT) {
         choose_place(m, m->cursor + MONITOR_PLACES / 2);
-    else
+    } else {
         return false;
+    }
     return true;
 }
 
@@ -202,8 +215,9 @@ static bool take_nudge(monitor *m, int key)
     static const char nudges[] = "[]{}";
     static const double by_deg[] = {-1, 1, -5, 5};
     const char *found = key > 0 && key < 128 ? strchr(nudges, key) : NULL;
-    if (found)
+    if (found) {
         nudge(m, by_deg[found - nudges]);
+    }
     return found != NULL;
 }
 
@@ -211,11 +225,12 @@ static bool take_nudge(monitor *m, int key)
 static void take_play_key(monitor *m, int key)
 {
     const char *busy = monitor_busy(m);
-    if (grobo_robot_is_playing(m->c.robot) || (key == 's' && busy))
+    if (grobo_robot_is_playing(m->c.robot) || (key == 's' && busy)) {
         play_keys_take(&m->keys, key);
-    else if (key > 0 && key < 128 && strchr(" +=-s", key))
+    } else if (key > 0 && key < 128 && strchr(" +=-s", key)) {
         say(m, true, "nothing is playing%s%s", busy ? "; the robot is busy: " : "",
             busy ? busy : "");
+    }
 }
 
 static void take_key(monitor *m, int key)
@@ -229,26 +244,29 @@ static void take_key(monitor *m, int key)
         say(m, true, "emergency stop");
         return;
     }
-    if (take_choice(m, key))
+    if (take_choice(m, key)) {
         return;
+    }
     if (!m->c.up) {
         say(m, true, "the line is lost");
         return;
     }
-    if (take_nudge(m, key))
+    if (take_nudge(m, key)) {
         return;
-    if (key == 't')
+    }
+    if (key == 't') {
         toggle_torque(m);
-    else if (key == 'b')
+    } else if (key == 'b') {
         switch_torque(m, GROBO_TORQUE_BRAKE, "brake");
-    else if (key == 'i')
+    } else if (key == 'i') {
         go_init(m);
-    else if (key == 'p')
+    } else if (key == 'p') {
         start_play(m);
-    else if (key == 'R')
+    } else if (key == 'R') {
         reset(m);
-    else
+    } else {
         take_play_key(m, key);
+    }
 }
 
 /* ---- what comes from the loop ---------------------------------------------------------------- */
@@ -259,8 +277,9 @@ static void on_input(evutil_socket_t fd, short what, void *ctx)
     int key;
     (void)fd;
     (void)what;
-    while ((key = screen_key()) != SCREEN_KEY_NONE)
+    while ((key = screen_key()) != SCREEN_KEY_NONE) {
         take_key(m, key);
+    }
     monitor_draw(m);
 }
 
@@ -278,8 +297,9 @@ static void queue_others(monitor *m)
     for (int i = 1; i < m->list.n && error >= 0; i++) {
         error = grobo_robot_enqueue(grobo_session_robot(m->c.session), &m->list.clip[i],
                                     &m->list.options[i]);
-        if (error < 0)
+        if (error < 0) {
             say(m, true, "%s: %s", m->list.path[i], grobo_error_text(error));
+        }
     }
 }
 
@@ -287,26 +307,29 @@ static void queue_others(monitor *m)
 static void say_end(monitor *m, const grobo_event_job *job)
 {
     const char *joint = job->joint >= 0 ? m->model->joints[job->joint].name : "";
-    if (job->number != m->job)
+    if (job->number != m->job) {
         return;
+    }
     m->job = 0;
-    if (job->result == GROBO_ERR_CANCELED)
+    if (job->result == GROBO_ERR_CANCELED) {
         say(m, false, "%s: stopped", m->doing);
-    else if (job->result < 0)
+    } else if (job->result < 0) {
         say(m, true, "%s: %s%s%s", m->doing, joint, *joint ? ": " : "",
             grobo_error_text(job->result));
-    else if (job->kind == GROBO_JOB_PLAY)
+    } else if (job->kind == GROBO_JOB_PLAY) {
         queue_others(m);
-    else
+    } else {
         say(m, false, "%s: done", m->doing);
+    }
 }
 
 static void say_play(monitor *m, grobo_sequencer_state to)
 {
-    if (to == GROBO_SEQUENCER_FINISHED)
+    if (to == GROBO_SEQUENCER_FINISHED) {
         say(m, false, "played");
-    else if (to == GROBO_SEQUENCER_IDLE)
+    } else if (to == GROBO_SEQUENCER_IDLE) {
         say(m, false, "play: stopped");
+    }
 }
 
 static void on_event(conn *c, const grobo_event *event)
@@ -364,8 +387,9 @@ static int leave(monitor *m, int error)
 {
     conn *c = &m->c;
     c->moving = c->up && grobo_robot_moving(c->robot);
-    if (!error && c->moving)
+    if (!error && c->moving) {
         error = conn_wait(c, grobo_robot_exit(grobo_session_robot(c->session), GROBO_EXIT_HOLD));
+    }
     return error ? conn_fail(c, error, "monitor") : EXIT_DONE;
 }
 
@@ -373,19 +397,20 @@ static int run_screen(monitor *m)
 {
     conn *c = &m->c;
     app *a = c->a;
-    int error;
     c->ctx = m;
     c->on_event = on_event;
     m->model = grobo_robot_driver(c->robot)->model;
     m->keys = (play_keys){.c = c, .speed_pct = 100};
     m->blocks = os_shows_utf8();
     choose_place(m, 0);
-    error = sense_often(c);
-    if (error)
+    int error = sense_often(c);
+    if (error) {
         return conn_fail(c, error, "monitor");
+    }
     output_stream(); /* what was printed stands before the screen */
-    if (!screen_open(a->color_out))
+    if (!screen_open(a->color_out)) {
         return app_fail(a, EXIT_ROBOT, "UNSUPPORTED", "monitor: cannot use this terminal");
+    }
     a->hushed = m->said;
     error = watch(m);
     a->hushed = NULL;
@@ -400,8 +425,9 @@ static int run_plain(app *a)
     cli_line line = a->line;
     char complaint[1];
     app_note(a, "monitor: no full screen here; this is 'grctl status --watch'");
-    if (!cli_parse(&a->line, 3, (char *const *)words, complaint, sizeof complaint))
+    if (!cli_parse(&a->line, 3, (char *const *)words, complaint, sizeof complaint)) {
         return EXIT_USAGE;
+    }
     memcpy(a->line.global, line.global, sizeof line.global);
     return a->line.command->run(a);
 }
@@ -409,16 +435,16 @@ static int run_plain(app *a)
 static int run(app *a)
 {
     static monitor m;
-    int status;
     memset(&m, 0, sizeof m);
-    status = a->line.n_arguments ? playlist_load(&m.list, a) : EXIT_DONE;
+    int status = a->line.n_arguments ? playlist_load(&m.list, a) : EXIT_DONE;
     if (!status && (a->json || !screen_possible())) {
         status = run_plain(a);
     } else if (!status) {
         a->reconnects = a->moves = true;
         status = conn_open(&m.c, a);
-        if (!status)
+        if (!status) {
             status = run_screen(&m);
+        }
         status = conn_close(&m.c, status);
         a->reconnects = false;
     }

@@ -41,9 +41,10 @@ static void report_longer(const conn *c, const grobo_posture *target, int64_t be
     double took_ms = (double)(grobo_now_us() - began_us) / 1e3;
     grobo_robot_counters n;
     conn_counters(c, &n);
-    if (n.stretched > 0 && took_ms > asked_ms)
+    if (n.stretched > 0 && took_ms > asked_ms) {
         app_note(c->a, "it took %.0f ms, not %.0f: no joint moves faster than its servo can",
                  took_ms, asked_ms);
+    }
 }
 
 static int go(app *a, const grobo_posture *target, const char *doing)
@@ -52,12 +53,12 @@ static int go(app *a, const grobo_posture *target, const char *doing)
     int status = conn_open_to_move(&c, a);
     if (!status) {
         int64_t began_us = grobo_now_us();
-        int error, job = grobo_robot_move(grobo_session_robot(c.session), target);
+        int job = grobo_robot_move(grobo_session_robot(c.session), target);
         c.moving = job > 0; /* refused at once: nothing moves, nothing is to be left */
-        error = conn_wait_shown(&c, job, doing, target->time_us);
-        if (error)
+        int error = conn_wait_shown(&c, job, doing, target->time_us);
+        if (error) {
             status = conn_fail(&c, error, doing);
-        else {
+        } else {
             report(&c, target);
             report_longer(&c, target, began_us);
         }
@@ -82,13 +83,16 @@ static int run_move(app *a)
     double deg, ms = MOVE_MS;
     int status = 0;
     int joint = joints_parse_one(a, name, strlen(name), &status);
-    if (joint < 0)
+    if (joint < 0) {
         return status;
-    if (!cli_read_number(angle, &deg))
+    }
+    if (!cli_read_number(angle, &deg)) {
         return app_fail(a, EXIT_USAGE, "ARG", "move: '%s' is not an angle in degrees", angle);
-    if (time && (!cli_read_number(time, &ms) || ms < 0 || ms > LONGEST_MS))
+    }
+    if (time && (!cli_read_number(time, &ms) || ms < 0 || ms > LONGEST_MS)) {
         return app_fail(a, EXIT_USAGE, "ARG", "move: '%s' is not a time of 0 to %d ms", time,
                         LONGEST_MS);
+    }
     grobo_posture_init(&target, grobo_gr001_model.n_joints);
     grobo_posture_set_deg(&target, joint, deg);
     grobo_posture_set_time_ms(&target, ms);
@@ -107,21 +111,24 @@ static int pose_of_file(app *a, const char *spec, grobo_posture *target)
     grobo_motion *motion = NULL;
     double number = 1;
     size_t length = strlen(spec);
-    int status;
-    if (colon && cli_read_number(colon + 1, &number))
+    if (colon && cli_read_number(colon + 1, &number)) {
         length = (size_t)(colon - spec);
+    }
     if (length == 0 || length >= sizeof path || number < 1 || number > 1e9 ||
-        number != floor(number))
+        number != floor(number)) {
         return app_fail(a, EXIT_USAGE, "ARG", "pose: '@%s' is not @FILE or @FILE:N", spec);
+    }
     memcpy(path, spec, length);
     path[length] = '\0';
-    status = file_load(a, path, &read, &motion);
-    if (status)
+    int status = file_load(a, path, &read, &motion);
+    if (status) {
         return status;
+    }
     status = file_fits(a, path, motion);
-    if (!status && grobo_motion_get(motion, (size_t)number - 1, target) < 0)
+    if (!status && grobo_motion_get(motion, (size_t)number - 1, target) < 0) {
         status = app_fail(a, EXIT_USAGE, "ARG", "pose: %s has %zu postures, no number %.0f", path,
                           grobo_motion_size(motion), number);
+    }
     target->n_joints = grobo_gr001_model.n_joints;
     grobo_motion_free(motion);
     return status;
@@ -134,10 +141,12 @@ static int pose_of_joint(app *a, const char *text, grobo_posture *target)
     double deg;
     int status = 0;
     int joint = joints_parse_one(a, text, length, &status);
-    if (joint < 0)
+    if (joint < 0) {
         return status;
-    if (text[length] != '=' || !cli_read_number(text + length + 1, &deg))
+    }
+    if (text[length] != '=' || !cli_read_number(text + length + 1, &deg)) {
         return app_fail(a, EXIT_USAGE, "ARG", "pose: '%s' is not JOINT=DEG", text);
+    }
     grobo_posture_set_deg(target, joint, deg);
     return 0;
 }
@@ -145,9 +154,11 @@ static int pose_of_joint(app *a, const char *text, grobo_posture *target)
 static bool all_numbers(const app *a)
 {
     double number;
-    for (int i = 0; i < a->line.n_arguments; i++)
-        if (!cli_read_number(a->line.argument[i], &number))
+    for (int i = 0; i < a->line.n_arguments; i++) {
+        if (!cli_read_number(a->line.argument[i], &number)) {
             return false;
+        }
+    }
     return true;
 }
 
@@ -157,9 +168,10 @@ static int pose_of_motors(app *a, grobo_posture *target)
     for (int i = 0; i < a->line.n_arguments; i++) {
         double deg;
         int joint = grobo_model_joint_of_motor(&grobo_gr001_model, i + 1);
-        if (joint < 0 || !cli_read_number(a->line.argument[i], &deg))
+        if (joint < 0 || !cli_read_number(a->line.argument[i], &deg)) {
             return app_fail(a, EXIT_USAGE, "ARG", "pose: '%s' is not an angle in degrees",
                             a->line.argument[i]);
+        }
         grobo_posture_set_deg(target, joint, deg);
     }
     return 0;
@@ -171,19 +183,22 @@ static int run_pose(app *a)
     const char *first = a->line.argument[0];
     int n = a->line.n_arguments, status = 0;
     grobo_posture_init(&target, grobo_gr001_model.n_joints);
-    if (first[0] == '@' && n == 1)
+    if (first[0] == '@' && n == 1) {
         status = pose_of_file(a, first + 1, &target);
-    else if (n == grobo_gr001_model.n_joints && !strchr(first, '='))
+    } else if (n == grobo_gr001_model.n_joints && !strchr(first, '=')) {
         status = pose_of_motors(a, &target);
-    else if (all_numbers(a))
+    } else if (all_numbers(a)) {
         return app_fail(a, EXIT_USAGE, "ARG",
                         "pose takes %d angles, in the order of the motors, not %d",
                         grobo_gr001_model.n_joints, n);
-    else
-        for (int i = 0; i < n && !status; i++)
+    } else {
+        for (int i = 0; i < n && !status; i++) {
             status = pose_of_joint(a, a->line.argument[i], &target);
-    if (!status)
+        }
+    }
+    if (!status) {
         status = joints_check_limits(a, &target, "pose");
+    }
     grobo_posture_set_time_ms(&target, app_number(a, OPT_TIME, MOVE_MS));
     return status ? status : go(a, &target, "pose");
 }

@@ -56,22 +56,22 @@ static void follow(conn *c, show *s, int joint)
     grobo_play_progress p;
     grobo_joint_info info;
     grobo_posture wanted;
-    const grobo_play_options *o;
-    double off_deg;
-    uint32_t i;
     grobo_robot_progress(c->robot, &p);
-    i = p.item - s->items - 1;
-    if (p.state != GROBO_SEQUENCER_PLAYING || i >= (uint32_t)s->list.n)
+    uint32_t i = p.item - s->items - 1;
+    if (p.state != GROBO_SEQUENCER_PLAYING || i >= (uint32_t)s->list.n) {
         return;
-    o = &s->list.options[i];
+    }
+    const grobo_play_options *o = &s->list.options[i];
     if (o->mode != GROBO_PLAY_RATE || !s->list.clip[i].sample || s->list.clip[i].relative ||
         s->list.clip[i].sample(s->list.clip[i].ctx, o->reverse ? p.total_us - p.t_us : p.t_us,
                                &wanted) < 0 ||
-        !(wanted.set & GROBO_JOINT_BIT(joint)) || grobo_robot_joint(c->robot, joint, &info) < 0)
+        !(wanted.set & GROBO_JOINT_BIT(joint)) || grobo_robot_joint(c->robot, joint, &info) < 0) {
         return;
-    off_deg = fabs(grobo_deg_from_rad(info.state.angle_rad - wanted.angle_rad[joint]));
-    if (s->following.joint < 0 || off_deg > s->following.deg)
+    }
+    double off_deg = fabs(grobo_deg_from_rad(info.state.angle_rad - wanted.angle_rad[joint]));
+    if (s->following.joint < 0 || off_deg > s->following.deg) {
         s->following = (deviation){.deg = off_deg, .joint = joint};
+    }
 }
 
 static void report_progress(conn *c, show *s)
@@ -80,10 +80,11 @@ static void report_progress(conn *c, show *s)
     char text[96];
     grobo_robot_progress(c->robot, &p);
     if (c->a->json) {
-        if (s->ticks % REPORT_EVERY == 0)
+        if (s->ticks % REPORT_EVERY == 0) {
             app_print_json(json_pack("{s:I,s:I,s:I,s:I}", "t_ms", (json_int_t)(p.t_us / 1000),
                                      "total_ms", (json_int_t)(p.total_us / 1000), "step",
                                      (json_int_t)p.step, "steps", (json_int_t)p.steps));
+        }
         return;
     }
     snprintf(text, sizeof text, "%s %.1f of %.1f s, %.0f s left at %d %%",
@@ -106,15 +107,17 @@ static void on_key(void *ctx, int key)
 {
     conn *c = ctx;
     show *s = c->ctx;
-    if (play_keys_take(&s->keys, key))
+    if (play_keys_take(&s->keys, key)) {
         report_progress(c, s);
+    }
 }
 
 static void warn_unwatched(const conn *c, const grobo_event_unwatched *told)
 {
     char rate[32] = "by keys";
-    if (told->rate_hz > 0)
+    if (told->rate_hz > 0) {
         snprintf(rate, sizeof rate, "at %d Hz", told->rate_hz);
+    }
     app_note(c->a,
              "play: unwatched %s: heat, current and lost torque may stop nothing "
              "(joints are watched up to %d Hz)",
@@ -129,8 +132,9 @@ static void on_event(conn *c, const grobo_event *event)
         s->started = true;
         s->over = to == GROBO_SEQUENCER_FINISHED || to == GROBO_SEQUENCER_IDLE ||
                   to == GROBO_SEQUENCER_FAILED;
-        if (to == GROBO_SEQUENCER_FAILED)
+        if (to == GROBO_SEQUENCER_FAILED) {
             s->error = event->u.play.error;
+        }
     } else if (event->kind == GROBO_EVENT_JOINT && event->u.joint.result == GROBO_OK) {
         follow(c, s, event->u.joint.joint);
     } else if (event->kind == GROBO_EVENT_UNWATCHED) {
@@ -170,9 +174,10 @@ static json_t *summary_json(const conn *c, deviation following, deviation end)
 
 static void print_deviation(const conn *c, const char *what, deviation d)
 {
-    if (d.joint >= 0)
+    if (d.joint >= 0) {
         app_print("%s %.1f deg (%s)\n", what, d.deg,
                   grobo_robot_driver(c->robot)->model->joints[d.joint].name);
+    }
 }
 
 static void print_summary(const conn *c, deviation following)
@@ -187,18 +192,21 @@ static void print_summary(const conn *c, deviation following)
     }
     conn_counters(c, &n);
     grobo_robot_jitter(c->robot, &jitter);
-    if (app_option(c->a, PLAY_TABLE)->given)
+    if (app_option(c->a, PLAY_TABLE)->given) {
         render_reached(c);
+    }
     app_print("%llu frame%s, %llu late; jitter p50 %lld us, p99 %lld us, largest %lld us\n",
               (unsigned long long)n.motion_frames, n.motion_frames == 1 ? "" : "s",
               (unsigned long long)n.late_frames, (long long)jitter.p50_us, (long long)jitter.p99_us,
               (long long)jitter.max_us);
-    if (n.stretched)
+    if (n.stretched) {
         app_print("%llu move%s too fast for a servo and got more time\n",
                   (unsigned long long)n.stretched, n.stretched == 1 ? " was" : "s were");
-    if (n.clamped)
+    }
+    if (n.clamped) {
         app_print("angles outside a joint's limits, taken to the limit: %llu\n",
                   (unsigned long long)n.clamped);
+    }
     print_deviation(c, "largest error on the way", following);
     print_deviation(c, "largest error at the end", end);
 }
@@ -207,25 +215,27 @@ static void print_summary(const conn *c, deviation following)
 static void warn_of_rate(const conn *c, const grobo_play_options *o)
 {
     grobo_budget line;
-    if (o->mode != GROBO_PLAY_RATE || grobo_robot_budget(c->robot, &line) < 0)
+    if (o->mode != GROBO_PLAY_RATE || grobo_robot_budget(c->robot, &line) < 0) {
         return;
-    if ((double)o->rate_hz * line.motion_us > 1e6)
+    }
+    if ((double)o->rate_hz * line.motion_us > 1e6) {
         app_note(c->a, "%d frames a second exceed what the line carries (%.0f): some are dropped",
                  o->rate_hz, 1e6 / line.motion_us);
+    }
 }
 
 static int start(conn *c, show *s)
 {
     grobo_play_progress before;
-    int error;
     grobo_robot_progress(c->robot, &before);
     s->items = before.item;
     s->following.joint = -1;
-    error = conn_wait(c, grobo_robot_play(grobo_session_robot(c->session), &s->list.clip[0],
-                                          &s->list.options[0]));
-    for (int i = 1; i < s->list.n && error >= 0; i++)
+    int error = conn_wait(c, grobo_robot_play(grobo_session_robot(c->session), &s->list.clip[0],
+                                              &s->list.options[0]));
+    for (int i = 1; i < s->list.n && error >= 0; i++) {
         error = grobo_robot_enqueue(grobo_session_robot(c->session), &s->list.clip[i],
                                     &s->list.options[i]);
+    }
     return error < 0 ? error : 0;
 }
 
@@ -234,8 +244,9 @@ static int watch_it(conn *c, show *s)
 {
     progress_start(&s->bar, c->a);
     s->keys = (play_keys){.c = c, .speed_pct = (int)app_number(c->a, PLAY_SPEED, 100)};
-    if (keys_start(&s->input, c->base, false, on_key, c) && s->bar.shown)
+    if (keys_start(&s->input, c->base, false, on_key, c) && s->bar.shown) {
         app_note(c->a, "space: pause   + -: speed   s: stop   e: EMERGENCY STOP");
+    }
     struct event *tick = conn_every(c, TICK_US, on_tick, c);
     int error = conn_wait_until(c, is_over);
     conn_forget(tick);
@@ -247,10 +258,12 @@ static int watch_it(conn *c, show *s)
 /* The stop is verified joint by joint before anything else is said. */
 static int after_estop(conn *c, int error)
 {
-    if (!error)
+    if (!error) {
         error = conn_end_estop(c);
-    if (error)
+    }
+    if (error) {
         return conn_fail(c, error, "estop");
+    }
     return app_fail_trip(c->a, GROBO_TRIP_ESTOP,
                          "play: emergency stop; 'grctl estop --reset' takes it back");
 }
@@ -259,23 +272,27 @@ static int after_estop(conn *c, int error)
 static int play(conn *c, show *s)
 {
     grobo_joint_mask all = GROBO_JOINTS_ALL(grobo_robot_driver(c->robot)->model->n_joints);
-    int error;
     warn_of_rate(c, &s->list.options[0]);
-    error = start(c, s);
-    if (error)
+    int error = start(c, s);
+    if (error) {
         return conn_fail(c, error, "play");
+    }
     error = watch_it(c, s);
-    if (s->keys.estop || c->trip.trip == GROBO_TRIP_ESTOP)
+    if (s->keys.estop || c->trip.trip == GROBO_TRIP_ESTOP) {
         return after_estop(c, error);
-    if (!error && s->error)
+    }
+    if (!error && s->error) {
         error = s->error;
-    if (error)
+    }
+    if (error) {
         return conn_fail(c, error, "play");
+    }
     c->moving = false;
     conn_watch(c, false);
     error = conn_wait(c, grobo_robot_sense(grobo_session_robot(c->session), all, GROBO_SENSE_FULL));
-    if (error && c->job.failed == 0)
+    if (error && c->job.failed == 0) {
         return conn_fail(c, error, "play");
+    }
     print_summary(c, s->following);
     return EXIT_DONE;
 }
@@ -287,8 +304,9 @@ static int prepare(conn *c, show *s)
     grobo_posture sensed;
     int error =
         conn_wait(c, grobo_robot_sense(grobo_session_robot(c->session), all, GROBO_SENSE_FULL));
-    if (error)
+    if (error) {
         return conn_fail(c, error, "play");
+    }
     grobo_robot_posture(c->robot, GROBO_NEVER_US, &sensed);
     return playlist_prepare(&s->list, c->a, &sensed);
 }
@@ -297,18 +315,18 @@ static int run(app *a)
 {
     static show s;
     conn c;
-    int status;
     memset(&s, 0, sizeof s);
     a->clamps = app_option(a, PLAY_CLAMP)->given > 0;
-    status = playlist_load(&s.list, a);
+    int status = playlist_load(&s.list, a);
     if (!status && app_option(a, PLAY_DRY_RUN)->given) {
         status = play_dry_run(&s.list, a);
     } else if (!status) {
         status = conn_open_to_move(&c, a);
         c.ctx = &s;
         c.on_event = on_event;
-        if (!status)
+        if (!status) {
             status = prepare(&c, &s);
+        }
         if (!status) {
             c.moving = true;
             status = play(&c, &s);

@@ -39,13 +39,15 @@ static int choose_name(app *a, order *o)
     const char *dot = strrchr(base, '.');
     size_t length = dot && dot > base ? (size_t)(dot - base) : strlen(base);
     int n = snprintf(o->name, sizeof o->name, "%.*s.svg", (int)length, base);
-    if (n < 0 || (size_t)n >= sizeof o->name)
+    if (n < 0 || (size_t)n >= sizeof o->name) {
         return app_fail(a, EXIT_USAGE, "SPACE", "%s: its name is too long; give -o OUT.svg", o->in);
+    }
     o->out = o->name;
-    if (picture_is_foreign(o->out))
+    if (picture_is_foreign(o->out)) {
         return app_fail(a, EXIT_FILE, "EXISTS",
                         "%s is there and no plot of ours; give -o OUT.svg to choose a name",
                         o->out);
+    }
     return 0;
 }
 
@@ -56,15 +58,18 @@ static int settle(app *a, order *o)
     o->shown = strcmp(o->in, "-") == 0 ? "standard input" : last_part(o->in);
     o->format = PICTURE_SVG;
     o->out = out->given ? out->text : "-";
-    if (!out->given && (a->tty_out || a->json))
+    if (!out->given && (a->tty_out || a->json)) {
         return choose_name(a, o);
-    if (strcmp(o->out, "-") == 0)
+    }
+    if (strcmp(o->out, "-") == 0) {
         return a->json ? app_fail(a, EXIT_USAGE, "ARG",
                                   "--json and the picture cannot both go to standard output")
                        : 0;
+    }
     o->format = picture_format_of(o->out);
-    if (o->format == PICTURE_NONE)
+    if (o->format == PICTURE_NONE) {
         return app_fail(a, EXIT_USAGE, "ARG", "%s: pictures are .svg or .png", o->out);
+    }
     return 0;
 }
 
@@ -72,21 +77,24 @@ static int choose_joints(app *a, const plot_subject *of, grobo_joint_mask *joint
 {
     const cli_value *list = app_option(a, OPT_JOINTS);
     grobo_posture posture;
-    if (list->given)
+    if (list->given) {
         return joints_parse_motion(a, list->text, of->model, of->clip->n_joints, joints);
+    }
     *joints |= of->solved;
-    for (size_t i = 0; grobo_motion_get(of->motion, i, &posture) == 0; i++)
+    for (size_t i = 0; grobo_motion_get(of->motion, i, &posture) == 0; i++) {
         *joints |= posture.set;
+    }
     return 0;
 }
 
 static json_t *spans_json(const plot_curve *curve)
 {
     json_t *all = json_array();
-    for (size_t i = 0; i < curve->n_fast; i++)
+    for (size_t i = 0; i < curve->n_fast; i++) {
         json_array_append_new(all,
                               json_pack("[o,o]", app_json_number(curve->fast[i].from_s * 1e3, 3),
                                         app_json_number(curve->fast[i].to_s * 1e3, 3)));
+    }
     return all;
 }
 
@@ -128,13 +136,15 @@ static json_t *balance_json(const plot_balance *b)
 static void report(const app *a, const order *o, const plot_data *data)
 {
     if (!a->json) {
-        if (strcmp(o->out, "-") != 0)
+        if (strcmp(o->out, "-") != 0) {
             app_note(a, "wrote %s", o->out);
+        }
         return;
     }
     json_t *joints = json_array();
-    for (int i = 0; i < data->n_curves; i++)
+    for (int i = 0; i < data->n_curves; i++) {
         json_array_append_new(joints, joint_json(&data->curves[i]));
+    }
     app_print_json(json_pack("{s:o,s:o,s:I,s:o,s:o,s:o*}", "file", app_json_text(o->in), "output",
                              app_json_text(o->out), "postures", (json_int_t)plot_keys(data),
                              "length_ms", app_json_number(data->length_s * 1e3, 3), "joints",
@@ -156,18 +166,20 @@ static int solve(const app *a, work *w, const grobo_motion *motion, plot_subject
     grobo_posture start;
     grobo_clip_options plain = {.start = &start};
     bool standing;
-    int error;
     grobo_motion_start(motion, subject->model, &start);
-    error = whole_open(&w->played, motion, &plain, &body);
+    int error = whole_open(&w->played, motion, &plain, &body);
     subject->clip = &w->played.clip;
-    if (w->played.body)
+    if (w->played.body) {
         subject->solved = whole_joints();
-    if (error || !app_option(a, OPT_BALANCE)->given)
+    }
+    if (error || !app_option(a, OPT_BALANCE)->given) {
         return error;
+    }
     body.rate_hz = plot_balance_rate((double)subject->clip->length_us / 1e6);
     error = whole_body(&w->checked, motion, &body, &standing);
-    if (!error)
+    if (!error) {
         error = plot_balance_collect(&w->balance, w->checked, standing);
+    }
     subject->balance = &w->balance;
     return error;
 }
@@ -175,12 +187,13 @@ static int solve(const app *a, work *w, const grobo_motion *motion, plot_subject
 static int draw(app *a, const order *o, const plot_data *data)
 {
     svg drawing;
-    int status;
-    if (!plot_draw(&drawing, data, o->shown))
+    if (!plot_draw(&drawing, data, o->shown)) {
         return app_fail(a, EXIT_ROBOT, "NOMEM", "%s", grobo_error_text(GROBO_ERR_NOMEM));
-    status = picture_save(a, &drawing, o->out, o->format);
-    if (!status)
+    }
+    int status = picture_save(a, &drawing, o->out, o->format);
+    if (!status) {
         report(a, o, data);
+    }
     svg_free(&drawing);
     return status;
 }
@@ -191,24 +204,28 @@ static int plot(app *a, const order *o, const grobo_motion *motion)
     plot_subject subject = {.motion = motion, .model = file_model(motion)};
     plot_options how = {.rate_hz = app_number(a, OPT_RATE, 0)};
     grobo_body_options body;
-    int error, status = body_options_read(a, OPT_BODY, how.rate_hz, &body);
-    if (status)
+    int status = body_options_read(a, OPT_BODY, how.rate_hz, &body);
+    if (status) {
         return status;
-    error = solve(a, &w, motion, &subject, body);
+    }
+    int error = solve(a, &w, motion, &subject, body);
     if (!error) {
         status = choose_joints(a, &subject, &how.joints);
         how.columns = plot_columns(how.joints);
     }
-    if (!error && !status)
+    if (!error && !status) {
         error = plot_collect(&w.data, &subject, &how);
-    if (error == GROBO_ERR_TYPE)
+    }
+    if (error == GROBO_ERR_TYPE) {
         status = app_fail(a, EXIT_FILE, "TYPE", "%s: no motion of GR001's: its balance is unknown",
                           o->in);
-    else if (error)
+    } else if (error) {
         status = app_fail(a, EXIT_FILE, grobo_error_name(error), "%s: %s", o->in,
                           file_error_text(error));
-    if (!error && !status)
+    }
+    if (!error && !status) {
         status = draw(a, o, &w.data);
+    }
     plot_free(&w.data);
     plot_balance_free(&w.balance);
     grobo_body_free(w.checked);
@@ -221,13 +238,14 @@ static int run(app *a)
     static order o;
     grobo_read_options read = {.model = &grobo_gr001_model};
     grobo_motion *motion = NULL;
-    int status;
     memset(&o, 0, sizeof o);
-    status = settle(a, &o);
-    if (!status)
+    int status = settle(a, &o);
+    if (!status) {
         status = file_load(a, o.in, &read, &motion);
-    if (!status)
+    }
+    if (!status) {
         status = plot(a, &o, motion);
+    }
     grobo_motion_free(motion);
     return status;
 }

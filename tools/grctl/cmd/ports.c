@@ -15,12 +15,14 @@ static json_t *port_json(const grobo_port_info *info)
     bool usable = info->open_result == GROBO_OK;
     char usb_id[16] = "";
     json_t *owner = NULL;
-    if (info->usb_vendor >= 0)
+    if (info->usb_vendor >= 0) {
         snprintf(usb_id, sizeof usb_id, "%04x:%04x", (unsigned)info->usb_vendor & 0xffff,
                  (unsigned)info->usb_product & 0xffff);
-    if (info->owner_pid)
+    }
+    if (info->owner_pid) {
         owner =
             json_pack("{s:i,s:o}", "pid", info->owner_pid, "name", app_json_text(info->owner_name));
+    }
     return json_pack("{s:o,s:o?,s:o?,s:o?,s:o?,s:o?,s:o?,s:o?,s:o?,s:b,s:b,s:b,s:o?}", "path",
                      app_json_text(info->path), "by_id", text_or_null(info->by_id), "driver",
                      text_or_null(info->driver), "manufacturer", text_or_null(info->manufacturer),
@@ -35,33 +37,41 @@ static json_t *port_json(const grobo_port_info *info)
 static void print_port(const grobo_port_info *info)
 {
     app_print("%-16s", info->path);
-    if (info->open_result == GROBO_OK)
+    if (info->open_result == GROBO_OK) {
         app_print("  free");
-    else
+    } else {
         app_print("  %s", grobo_error_text(info->open_result));
-    if (info->console || info->bluetooth)
+    }
+    if (info->console || info->bluetooth) {
         app_print(", the system's %s", info->console ? "console" : "Bluetooth");
-    if (info->owner_pid)
+    }
+    if (info->owner_pid) {
         app_print(", open in %s (pid %d)", info->owner_name, info->owner_pid);
-    if (info->usb_vendor >= 0)
+    }
+    if (info->usb_vendor >= 0) {
         app_print("  USB %04x:%04x", (unsigned)info->usb_vendor & 0xffff,
                   (unsigned)info->usb_product & 0xffff);
-    if (*info->product)
+    }
+    if (*info->product) {
         app_print(" %s", info->product);
-    if (*info->driver)
+    }
+    if (*info->driver) {
         app_print("  (%s)", info->driver);
+    }
     app_print("\n");
-    if (*info->by_id)
+    if (*info->by_id) {
         app_print("%-16s  %s\n", "", info->by_id);
+    }
 }
 
 static int visit(void *ctx, const grobo_port_info *info)
 {
     json_t *list = ctx;
-    if (list)
+    if (list) {
         json_array_append_new(list, port_json(info));
-    else
+    } else {
         print_port(info);
+    }
     return 0;
 }
 
@@ -73,10 +83,11 @@ static int run(app *a)
         json_decref(list);
         return app_fail_error(a, EXIT_ROBOT, n, "cannot list serial ports");
     }
-    if (a->json)
+    if (a->json) {
         app_print_json(json_pack("{s:o}", "ports", list));
-    else if (n == 0)
+    } else if (n == 0) {
         app_note(a, "no serial port on this machine; is the robot's cable plugged in?");
+    }
     return EXIT_DONE;
 }
 

@@ -88,10 +88,11 @@ static int keep(recorder *r, grobo_posture *now)
     int64_t now_us = grobo_now_us();
     size_t n = grobo_motion_size(r->motion);
     int64_t took_us = n == 0 ? 0 : now_us - r->last_us;
-    if (r->by_key)
+    if (r->by_key) {
         now->time_us = (int64_t)app_number(r->c.a, OPT_TIME, KEY_MS) * 1000;
-    else
+    } else {
         now->time_us = n == 0 ? KEY_MS * 1000 : took_us < PAUSE_US ? took_us : PAUSE_US;
+    }
     grobo_posture_clamp(now, grobo_robot_driver(r->c.robot)->model);
     r->last = *now;
     r->last_us = now_us;
@@ -104,9 +105,10 @@ static int read_limp(recorder *r, bool *read)
     conn *c = &r->c;
     int error = GROBO_OK;
     *read = true;
-    if (r->limp)
+    if (r->limp) {
         error = conn_wait(
             c, grobo_robot_sense(grobo_session_robot(c->session), r->limp, GROBO_SENSE_POSITION));
+    }
     if (conn_is_of_reply(error)) {
         *read = false;
         error = GROBO_OK;
@@ -119,11 +121,13 @@ static int take(recorder *r, bool anyway)
 {
     grobo_posture now;
     int n = grobo_robot_posture(r->c.robot, GROBO_NEVER_US, &now);
-    if (n < now.n_joints) /* a first round is still under way */
+    if (n < now.n_joints) { /* a first round is still under way */
         return 0;
+    }
     if (anyway || grobo_motion_size(r->motion) == 0 ||
-        furthest(r, &now, &r->last_moved) >= r->moved_deg)
+        furthest(r, &now, &r->last_moved) >= r->moved_deg) {
         return keep(r, &now);
+    }
     return 0;
 }
 
@@ -131,20 +135,24 @@ static int look(recorder *r, bool anyway)
 {
     bool read;
     int error = read_limp(r, &read);
-    if (!error && read)
+    if (!error && read) {
         return take(r, anyway);
-    if (!error && anyway)
+    }
+    if (!error && anyway) {
         app_note(r->c.a, "not kept: a servo did not answer; try again");
+    }
     return error;
 }
 
 static int drop_last(recorder *r)
 {
     size_t n = grobo_motion_size(r->motion);
-    if (n > 0)
+    if (n > 0) {
         grobo_motion_delete(r->motion, n - 1);
-    if (n > 1)
+    }
+    if (n > 1) {
         grobo_motion_get(r->motion, n - 2, &r->last);
+    }
     return 0;
 }
 
@@ -165,17 +173,20 @@ static void draw(recorder *r)
     char text[512];
     grobo_posture now;
     int joint;
-    size_t at;
-    if (!r->line.shown)
+    if (!r->line.shown) {
         return;
+    }
     grobo_robot_posture(r->c.robot, GROBO_NEVER_US, &now);
-    at = (size_t)snprintf(text, sizeof text, "%zu kept", grobo_motion_size(r->motion));
+    size_t at = (size_t)snprintf(text, sizeof text, "%zu kept", grobo_motion_size(r->motion));
     furthest(r, &now, &joint);
-    if (joint >= 0)
+    if (joint >= 0) {
         at += add_angle(r, &now, joint, text + at, sizeof text - at);
-    for (int j = 0; j < now.n_joints && at < sizeof text - 1; j++)
-        if (j != joint && (r->joints & now.set & GROBO_JOINT_BIT(j)))
+    }
+    for (int j = 0; j < now.n_joints && at < sizeof text - 1; j++) {
+        if (j != joint && (r->joints & now.set & GROBO_JOINT_BIT(j))) {
             at += add_angle(r, &now, j, text + at, sizeof text - at);
+        }
+    }
     progress_draw(&r->line, -1, text);
 }
 
@@ -183,8 +194,9 @@ static void draw(recorder *r)
 
 static void free_played(recorder *r)
 {
-    if (r->played)
+    if (r->played) {
         grobo_motion_clip_free(&r->clip);
+    }
     grobo_motion_free(r->played);
     r->played = NULL;
 }
@@ -197,8 +209,9 @@ static int copy_taught(const recorder *r, grobo_motion *copy)
     for (size_t i = 0; i < grobo_motion_size(r->motion) && error >= 0; i++) {
         error = grobo_motion_get(r->motion, i, &posture);
         posture.set &= r->joints;
-        if (error >= 0)
+        if (error >= 0) {
             error = grobo_motion_append(copy, &posture);
+        }
     }
     return error < 0 ? error : 0;
 }
@@ -214,15 +227,18 @@ static int make_clip(recorder *r)
     grobo_motion *copy;
     int error =
         grobo_motion_new(&copy, GROBO_MOTION_POSTURES, grobo_motion_joints(r->motion), NULL);
-    if (error < 0)
+    if (error < 0) {
         return error;
+    }
     error = copy_taught(r, copy);
-    if (error >= 0)
+    if (error >= 0) {
         error = grobo_motion_clip(copy, NULL, &r->clip);
-    if (error < 0)
+    }
+    if (error < 0) {
         grobo_motion_free(copy);
-    else
+    } else {
         r->played = copy;
+    }
     return error < 0 ? error : 0;
 }
 
@@ -231,14 +247,15 @@ static int play(recorder *r)
 {
     conn *c = &r->c;
     grobo_play_progress end = {0};
-    int error;
     r->playing = (play_keys){.c = c, .speed_pct = 100};
     c->moving = true;
-    error = conn_wait(c, grobo_robot_play(grobo_session_robot(c->session), &r->clip, NULL));
-    if (!error)
+    int error = conn_wait(c, grobo_robot_play(grobo_session_robot(c->session), &r->clip, NULL));
+    if (!error) {
         error = conn_wait_until(c, has_played);
-    if (!error && r->playing.estop)
+    }
+    if (!error && r->playing.estop) {
         error = conn_end_estop(c);
+    }
     if (!error) {
         grobo_robot_progress(c->robot, &end);
         error = c->trip.trip != GROBO_TRIP_NONE ? GROBO_ERR_LATCHED : end.error;
@@ -262,7 +279,6 @@ static int let_fall(recorder *r, grobo_joint_mask joints)
 static int play_kept(recorder *r)
 {
     size_t n = grobo_motion_size(r->motion);
-    int error;
     if (n == 0) {
         app_note(r->c.a, "nothing is kept yet: space keeps a posture");
         return 0;
@@ -271,18 +287,21 @@ static int play_kept(recorder *r)
     app_note(r->c.a, "torque comes on, %zu posture%s: space: pause   s: stop   e: EMERGENCY STOP",
              n, n == 1 ? "" : "s");
     free_played(r);
-    error = make_clip(r);
-    if (!error)
+    int error = make_clip(r);
+    if (!error) {
         error = play(r);
+    }
     if (error == GROBO_ERR_LIMIT || conn_is_of_reply(error)) { /* the next try may do better */
         (void)conn_fail(&r->c, error, name_of(r));
         r->c.moving = false;
         return let_fall(r, r->joints);
     }
-    if (!error)
+    if (!error) {
         error = let_fall(r, r->joints);
-    if (!error)
+    }
+    if (!error) {
         app_note(r->c.a, "played; space: keep a posture   enter, p: play them   s: save and end");
+    }
     return error;
 }
 
@@ -292,17 +311,19 @@ static int play_kept(recorder *r)
 static void on_key(void *ctx, int key)
 {
     recorder *r = ctx;
-    if (r->playing.c && key != KEYS_END)
+    if (r->playing.c && key != KEYS_END) {
         (void)play_keys_take(&r->playing, key);
-    else if (r->n_keys < KEYS_MAX)
+    } else if (r->n_keys < KEYS_MAX) {
         r->key[r->n_keys++] = key;
+    }
 }
 
 /* Without a line, so that a program that writes the keys can wait for a posture. */
 static int tell_kept(const recorder *r, int error)
 {
-    if (!error && !r->line.shown)
+    if (!error && !r->line.shown) {
         app_note(r->c.a, "%zu kept", grobo_motion_size(r->motion));
+    }
     return error;
 }
 
@@ -310,14 +331,18 @@ static int take_key(recorder *r)
 {
     int key = r->key[0];
     memmove(r->key, r->key + 1, (size_t)--r->n_keys * sizeof r->key[0]);
-    if (key == ' ')
+    if (key == ' ') {
         return tell_kept(r, look(r, true));
-    if (key == 'd')
+    }
+    if (key == 'd') {
         return tell_kept(r, drop_last(r));
-    if (r->teaches && (key == 'p' || key == '\n' || key == '\r'))
+    }
+    if (r->teaches && (key == 'p' || key == '\n' || key == '\r')) {
         return play_kept(r);
-    if (key == 's' || key == 'q' || (key == KEYS_END && r->by_key))
+    }
+    if (key == 's' || key == 'q' || (key == KEYS_END && r->by_key)) {
         r->over = true;
+    }
     return 0;
 }
 
@@ -333,10 +358,11 @@ static int take_time(recorder *r)
     bool read, looks = r->look_is_due;
     int error = 0;
     r->look_is_due = r->live_is_due = false;
-    if (looks)
+    if (looks) {
         error = look(r, false);
-    else if (r->by_key && r->line.shown)
+    } else if (r->by_key && r->line.shown) {
         error = read_limp(r, &read);
+    }
     draw(r);
     return error;
 }
@@ -347,10 +373,12 @@ static int mind(recorder *r)
     int error = 0;
     while (!error && !r->over) {
         error = conn_wait_until(&r->c, is_due);
-        if (!error && r->c.trip.trip != GROBO_TRIP_NONE)
+        if (!error && r->c.trip.trip != GROBO_TRIP_NONE) {
             error = GROBO_ERR_LATCHED;
-        if (!error)
+        }
+        if (!error) {
             error = r->n_keys > 0 ? take_key(r) : take_time(r);
+        }
     }
     return error;
 }
@@ -362,26 +390,31 @@ static void say_rate(const recorder *r)
     int n = grobo_joints_count(r->joints);
     double rate_hz = app_number(r->c.a, OPT_RATE, seed_rate_hz);
     double line_hz = wire_taught_hz(grobo_robot_driver(r->c.robot), (int)conn_baud(r->c.a), n);
-    if (rate_hz > line_hz)
+    if (rate_hz > line_hz) {
         app_note(r->c.a, "the line reads %s %.3g times a second: a higher --rate sees nothing more",
                  n == 1 ? "the joint" : "each joint", line_hz);
+    }
 }
 
 static void say_how(const recorder *r, bool hears)
 {
-    if (r->held)
+    if (r->held) {
         app_note(r->c.a,
                  "joints are in your hands: each gives way when you turn it, holds when let go");
-    if (r->limp)
+    }
+    if (r->limp) {
         app_note(r->c.a, "%d joint%s limp: move by hand; a released joint does not hold",
                  grobo_joints_count(r->limp), grobo_joints_count(r->limp) == 1 ? " is" : "s are");
-    if (!r->by_key)
+    }
+    if (!r->by_key) {
         say_rate(r);
-    if (!hears)
+    }
+    if (!hears) {
         app_note(r->c.a, "Ctrl-C saves and ends");
-    else
+    } else {
         app_note(r->c.a, "space: keep a posture   d: drop the last   %ss: save and end",
                  r->teaches ? "enter, p: play them   " : "");
+    }
 }
 
 /* Those of the joints that hold, and those that are not limp: braked ones too. */
@@ -390,8 +423,9 @@ static void look_at_torque(const recorder *r, grobo_joint_mask *hold, grobo_join
     *hold = *switched = 0;
     for (int j = 0; j < grobo_robot_driver(r->c.robot)->model->n_joints; j++) {
         grobo_joint_info info;
-        if (!(r->joints & GROBO_JOINT_BIT(j)) || grobo_robot_joint(r->c.robot, j, &info) < 0)
+        if (!(r->joints & GROBO_JOINT_BIT(j)) || grobo_robot_joint(r->c.robot, j, &info) < 0) {
             continue;
+        }
         *hold |= info.state.torque == GROBO_TORQUE_ON ? GROBO_JOINT_BIT(j) : 0;
         *switched |= info.state.torque != GROBO_TORQUE_OFF ? GROBO_JOINT_BIT(j) : 0;
     }
@@ -405,8 +439,9 @@ static int give(recorder *r)
     grobo_joint_mask hold, switched;
     int error =
         conn_wait(c, grobo_robot_sense(grobo_session_robot(c->session), all, GROBO_SENSE_ALL));
-    if (error < 0)
+    if (error < 0) {
         return error;
+    }
     look_at_torque(r, &hold, &switched);
     if (r->teaches || app_option(c->a, OPT_LIMP)->given > 0) {
         error = switched ? let_fall(r, switched) : 0;
@@ -421,13 +456,14 @@ static int give(recorder *r)
 static int teach(recorder *r)
 {
     conn *c = &r->c;
-    bool hears;
     int error = give(r);
-    if (error < 0)
+    if (error < 0) {
         return error;
-    if (!r->by_key)
+    }
+    if (!r->by_key) {
         error = take(r, true);
-    hears = keys_start(&r->input, c->base, true, on_key, r);
+    }
+    bool hears = keys_start(&r->input, c->base, true, on_key, r);
     say_how(r, hears);
     progress_start(&r->line, c->a);
     if (!r->by_key) {
@@ -435,24 +471,27 @@ static int teach(recorder *r)
         r->look = conn_every(c, (int64_t)(1e6 / rate_hz), conn_note, &r->look_is_due);
     }
     r->live = conn_every(c, LIVE_US, conn_note, &r->live_is_due);
-    if (!error)
+    if (!error) {
         error = mind(r);
+    }
     keys_stop(&r->input);
     progress_clear(&r->line);
     conn_forget(r->look);
     conn_forget(r->live);
-    if (!error && r->held) /* out of the hands: they hold where they are */
+    if (!error && r->held) { /* out of the hands: they hold where they are */
         error = conn_wait(c, grobo_robot_free(grobo_session_robot(c->session), r->held, false));
+    }
     return error;
 }
 
 static int fail_to_write(app *a, int error)
 {
     const char *out = app_option(a, OPT_OUT)->text;
-    if (out && error == GROBO_ERR_EXISTS)
+    if (out && error == GROBO_ERR_EXISTS) {
         return app_fail(
             a, EXIT_FILE, grobo_error_name(error),
             "%s: holds something other than a motion of its format; choose another name", out);
+    }
     return app_fail(a, EXIT_FILE, grobo_error_name(error), "%s: cannot write: %s",
                     out ? out : "MotionN.m", file_write_error_text(error));
 }
@@ -465,10 +504,12 @@ static int try_to_write(app *a)
     grobo_file file;
     int error =
         out ? grobo_motion_may_save(files, out, grobo_motion_format_of_path(out)) : GROBO_OK;
-    if (error == GROBO_OK)
+    if (error == GROBO_OK) {
         error = files->create(&file, out ? out : "./Motion.m", false);
-    if (error < 0)
+    }
+    if (error < 0) {
         return fail_to_write(a, error);
+    }
     files->discard(&file);
     return 0;
 }
@@ -482,26 +523,28 @@ static int save(recorder *r)
     const char *name = path + 2; /* behind ./ */
     size_t n = grobo_motion_size(r->motion);
     double length_s = (double)grobo_motion_length_us(r->motion, GROBO_MOTION_DEFAULT_US) / 1e6;
-    int error;
     if (n == 0) {
         app_note(a, "nothing was recorded; no file is written");
         return EXIT_DONE;
     }
-    error = out ? grobo_motion_save(r->motion, grobo_files_os(), out, &how, NULL) : GROBO_OK;
+    int error = out ? grobo_motion_save(r->motion, grobo_files_os(), out, &how, NULL) : GROBO_OK;
     if (error == GROBO_ERR_EXISTS) { /* it was not there when teaching began */
         app_note(a, "%s holds something other than a motion of its format now", out);
         out = NULL;
     }
-    if (!out)
+    if (!out) {
         error = grobo_motion_save_next(r->motion, grobo_files_os(), ".", &how, path, sizeof path);
-    if (error < 0)
+    }
+    if (error < 0) {
         return fail_to_write(a, error);
-    if (a->json)
+    }
+    if (a->json) {
         app_print_json(json_pack("{s:o,s:I,s:o}", "file", app_json_text(out ? out : name),
                                  "postures", (json_int_t)n, "length_ms",
                                  json_integer((json_int_t)(length_s * 1e3 + 0.5))));
-    else
+    } else {
         app_print("%s\n", out ? out : name);
+    }
     app_note(a, "%zu posture%s, %.1f s", n, n == 1 ? "" : "s", length_s);
     return EXIT_DONE;
 }
@@ -510,11 +553,10 @@ static int save(recorder *r)
 static int record(recorder *r)
 {
     conn *c = &r->c;
-    int error, status, saved;
     c->ctx = r;
-    error = teach(r);
-    status = error ? conn_fail(c, error, name_of(r)) : EXIT_DONE;
-    saved = save(r);
+    int error = teach(r);
+    int status = error ? conn_fail(c, error, name_of(r)) : EXIT_DONE;
+    int saved = save(r);
     return status ? status : saved;
 }
 
@@ -524,31 +566,35 @@ static int prepare(recorder *r, app *a)
     r->by_key = r->teaches || app_option(a, OPT_KEY)->given > 0;
     r->moved_deg = r->teaches ? 0 : app_number(a, OPT_MOVED, seed_moved_deg);
     r->last_moved = -1;
-    if (out && grobo_motion_format_of_path(out) == GROBO_FORMAT_AUTO)
+    if (out && grobo_motion_format_of_path(out) == GROBO_FORMAT_AUTO) {
         return app_fail(a, EXIT_USAGE, "ARG",
                         "%s: -o %s: its name tells no format; .m, .pseq, .mseq or .yaml",
                         name_of(r), out);
+    }
     int status = joints_parse_all(a, a->line.n_arguments, a->line.argument, &r->joints);
-    if (!status)
+    if (!status) {
         status = try_to_write(a);
-    if (status)
+    }
+    if (status) {
         return status;
-    if (grobo_motion_new(&r->motion, GROBO_MOTION_POSTURES, grobo_gr001_model.n_joints, NULL) < 0)
+    }
+    if (grobo_motion_new(&r->motion, GROBO_MOTION_POSTURES, grobo_gr001_model.n_joints, NULL) < 0) {
         return app_fail_error(a, EXIT_ROBOT, GROBO_ERR_NOMEM, "%s", name_of(r));
+    }
     return 0;
 }
 
 static int run(app *a, bool teaches)
 {
     static recorder r;
-    int status;
     memset(&r, 0, sizeof r);
     r.teaches = teaches;
-    status = prepare(&r, a);
+    int status = prepare(&r, a);
     if (!status) {
         status = conn_open_to_move(&r.c, a);
-        if (!status)
+        if (!status) {
             status = record(&r);
+        }
         status = conn_close(&r.c, status);
     }
     free_played(&r);

@@ -19,8 +19,9 @@ static const grobo_rs30x_register *find_register(app *a, const char *name, int *
     const grobo_rs30x_register *reg = grobo_rs30x_register_named(name);
     char known[1024] = "";
     size_t at = 0;
-    if (reg)
+    if (reg) {
         return reg;
+    }
     for (size_t i = 0; (reg = grobo_rs30x_register_row(i)) != NULL; i++) {
         int n = snprintf(known + at, sizeof known - at, " %s", reg->name);
         at += n > 0 && (size_t)n < sizeof known - at ? (size_t)n : 0;
@@ -36,8 +37,9 @@ static void print_value(const grobo_rs30x_register *reg, int32_t value)
     snprintf(counts, sizeof counts, "%d", value);
     registers_text(reg, value, text, sizeof text);
     app_print("%3d  %-18s %6s", reg->address, reg->name, counts);
-    if (strcmp(text, counts) != 0)
+    if (strcmp(text, counts) != 0) {
         app_print("  %12s", text);
+    }
     app_print("\n");
 }
 
@@ -49,10 +51,11 @@ static json_t *value_json(const grobo_rs30x_register *reg, int32_t value)
                           value, "unit", reg->unit);
     json_t *meaning = registers_json(reg, value);
     registers_key(reg, key, sizeof key);
-    if (strcmp(key, reg->name) != 0)
+    if (strcmp(key, reg->name) != 0) {
         json_object_set(o, key, meaning);
-    else if (json_is_string(meaning))
+    } else if (json_is_string(meaning)) {
         json_object_set(o, "word", meaning);
+    }
     json_decref(meaning);
     return o;
 }
@@ -77,15 +80,18 @@ static int get(conn *c, int id, const grobo_rs30x_register *only)
     }
     for (size_t i = 0; (reg = grobo_rs30x_register_row(i)) != NULL; i++) {
         int32_t value = grobo_rs30x_register_get(reg, memory + reg->address);
-        if (only && reg != only)
+        if (only && reg != only) {
             continue;
-        if (c->a->json)
+        }
+        if (c->a->json) {
             json_array_append_new(list, value_json(reg, value));
-        else
+        } else {
             print_value(reg, value);
+        }
     }
-    if (c->a->json)
+    if (c->a->json) {
         app_print_json(json_pack("{s:i,s:O}", "id", id, "registers", list));
+    }
     json_decref(list);
     return EXIT_DONE;
 }
@@ -96,13 +102,16 @@ static int run_get(app *a)
     int status = 0;
     const grobo_rs30x_register *only = NULL;
     int id = servos_parse_id(a, a->line.argument[0], &status);
-    if (id < 0)
+    if (id < 0) {
         return status;
-    if (a->line.n_arguments > 1 && !(only = find_register(a, a->line.argument[1], &status)))
+    }
+    if (a->line.n_arguments > 1 && !(only = find_register(a, a->line.argument[1], &status))) {
         return status;
+    }
     status = conn_open(&c, a);
-    if (!status)
+    if (!status) {
         status = get(&c, id, only);
+    }
     return conn_close(&c, status);
 }
 
@@ -121,11 +130,12 @@ static void change_text(const change *what, int32_t before, char *text, size_t c
     char was[REGISTERS_TEXT_BYTES], is[REGISTERS_TEXT_BYTES];
     registers_text(what->reg, before, was, sizeof was);
     registers_text(what->reg, what->value, is, sizeof is);
-    if (*what->reg->unit)
+    if (*what->reg->unit) {
         snprintf(text, capacity, "%s %d (%s) -> %d (%s)", what->reg->name, before, was, what->value,
                  is);
-    else
+    } else {
         snprintf(text, capacity, "%s %d -> %d", what->reg->name, before, what->value);
+    }
 }
 
 /* A rate that the line does not have. Only what it has can be asked through the board. */
@@ -140,13 +150,15 @@ static bool changes_rate(const conn *c, const change *what)
 static bool confirmed(conn *c, const change *what, int32_t before)
 {
     char answer[8], text[4 * REGISTERS_TEXT_BYTES];
-    if (!what->flash)
+    if (!what->flash) {
         return true;
+    }
     change_text(what, before, text, sizeof text);
     app_note(c->a, "servo %d: %s, and No.4-29 go to flash%s: keep its power on", what->id, text,
              changes_rate(c, what) ? ", then it restarts" : "");
-    if (app_global(c->a, GLOBAL_YES)->given || !c->a->tty_in)
+    if (app_global(c->a, GLOBAL_YES)->given || !c->a->tty_in) {
         return true;
+    }
     output_complain("Write it? [y/N] ");
     return fgets(answer, sizeof answer, stdin) && (answer[0] == 'y' || answer[0] == 'Y');
 }
@@ -159,13 +171,13 @@ static int write_it(conn *c, const change *what)
                             .length = what->reg->bytes,
                             .data = bytes};
     int id = what->reg->address == GROBO_RS30X_ID ? (int)what->value : what->id;
-    int error;
     grobo_rs30x_register_put(what->reg, what->value, bytes);
-    error = conn_wait(c, grobo_robot_registers(grobo_session_robot(c->session), &io));
-    if (!error && what->flash)
+    int error = conn_wait(c, grobo_robot_registers(grobo_session_robot(c->session), &io));
+    if (!error && what->flash) {
         error = conn_wait_shown(
             c, grobo_robot_command(grobo_session_robot(c->session), id, GROBO_SERVO_FLASH), "flash",
             0);
+    }
     return error;
 }
 
@@ -175,10 +187,12 @@ static void report(const conn *c, int id, const change *what, int32_t before, in
     char text[4 * REGISTERS_TEXT_BYTES], where[32] = "";
     const char *kept = what->flash ? ", kept in flash" : "; lost at power-off without --flash";
     change_text(what, before, text, sizeof text);
-    if (baud_bps)
+    if (baud_bps) {
         snprintf(where, sizeof where, "; it answers at %d bps", baud_bps);
-    if (baud_bps && !what->flash && baud_bps != grobo_rs30x_baud_bps((uint8_t)what->value))
+    }
+    if (baud_bps && !what->flash && baud_bps != grobo_rs30x_baud_bps((uint8_t)what->value)) {
         kept = "; takes effect at a restart, and is lost there without --flash";
+    }
     if (c->a->json) {
         app_print_json(json_pack("{s:i,s:s,s:i,s:i,s:b,s:o*}", "id", id, "name", what->reg->name,
                                  "before", before, "value", what->value, "flash", what->flash,
@@ -201,18 +215,21 @@ static int expect_loose(conn *c, const change *what)
 {
     int joint = grobo_model_joint_of_motor(grobo_robot_driver(c->robot)->model, what->id);
     uint8_t torque = GROBO_TORQUE_OFF;
-    int error;
     bool restarts = what->flash && changes_rate(c, what);
-    if (!changes_goal(what->reg) && !restarts)
+    if (!changes_goal(what->reg) && !restarts) {
         return EXIT_DONE;
-    error = servos_read(c, what->id, GROBO_RS30X_TORQUE, 1, &torque);
-    if (!error && joint >= 0)
+    }
+    int error = servos_read(c, what->id, GROBO_RS30X_TORQUE, 1, &torque);
+    if (!error && joint >= 0) {
         error = conn_wait(c, grobo_robot_sense(grobo_session_robot(c->session),
                                                GROBO_JOINT_BIT(joint), GROBO_SENSE_FULL));
-    if (error)
+    }
+    if (error) {
         return conn_fail_servo(c, error, what->id);
-    if (torque != GROBO_TORQUE_ON)
+    }
+    if (torque != GROBO_TORQUE_ON) {
         return EXIT_DONE;
+    }
     return app_fail(c->a, EXIT_SAFETY, "STATE",
                     "servo-set: servo %d holds, and would %s with another %s; first: grctl servo "
                     "off m%d",
@@ -223,14 +240,16 @@ static int expect_loose(conn *c, const change *what)
 static int expect_free_id(conn *c, const change *what)
 {
     uint8_t model[2];
-    int error;
-    if (what->reg->address != GROBO_RS30X_ID || what->value == what->id)
+    if (what->reg->address != GROBO_RS30X_ID || what->value == what->id) {
         return EXIT_DONE;
-    error = servos_read(c, what->value, GROBO_RS30X_MODEL, sizeof model, model);
-    if (error == GROBO_ERR_TIMEOUT)
+    }
+    int error = servos_read(c, what->value, GROBO_RS30X_MODEL, sizeof model, model);
+    if (error == GROBO_ERR_TIMEOUT) {
         return EXIT_DONE;
-    if (error)
+    }
+    if (error) {
         return conn_fail_servo(c, error, what->value);
+    }
     return app_fail(
         c->a, EXIT_SAFETY, "EXISTS",
         "servo-set: a servo with the id %d is there already; two of one id cannot be told "
@@ -256,12 +275,15 @@ static int find_rate(conn *c, const change *what, int first_bps, int second_bps,
     int error = GROBO_OK;
     for (int i = 0; i < 2; i++) {
         error = tune(c, rates_bps[i]);
-        if (!error)
+        if (!error) {
             error = servos_read(c, what->id, GROBO_RS30X_BAUD, 1, code);
-        if (!error)
+        }
+        if (!error) {
             return rates_bps[i];
-        if (!conn_is_of_reply(error))
+        }
+        if (!conn_is_of_reply(error)) {
             break;
+        }
     }
     return error;
 }
@@ -271,19 +293,22 @@ static int find_rate(conn *c, const change *what, int first_bps, int second_bps,
 static int move_rate(conn *c, const change *what, int old_bps, int new_bps, uint8_t *code)
 {
     const change only = {.id = what->id, .reg = what->reg, .value = what->value};
-    int at_bps, error = write_it(c, &only);
-    if (error)
+    int error = write_it(c, &only);
+    if (error) {
         return error;
-    at_bps = find_rate(c, what, old_bps, new_bps, code);
-    if (at_bps < 0 || *code != what->value || !what->flash)
+    }
+    int at_bps = find_rate(c, what, old_bps, new_bps, code);
+    if (at_bps < 0 || *code != what->value || !what->flash) {
         return at_bps;
+    }
     error = conn_wait_shown(
         c, grobo_robot_command(grobo_session_robot(c->session), what->id, GROBO_SERVO_FLASH),
         "flash", 0);
-    if (!error)
+    if (!error) {
         error = conn_wait_shown(
             c, grobo_robot_command(grobo_session_robot(c->session), what->id, GROBO_SERVO_REBOOT),
             "restart", 0);
+    }
     return error ? error : find_rate(c, what, new_bps, old_bps, code);
 }
 
@@ -294,32 +319,37 @@ static int move_rate(conn *c, const change *what, int old_bps, int new_bps, uint
 static int set_rate(conn *c, const change *what, int32_t before)
 {
     int old_bps = (int)conn_baud(c->a), new_bps = grobo_rs30x_baud_bps((uint8_t)what->value);
-    int at_bps, error;
     uint8_t code = 0;
-    if (strncmp(conn_device(c), "tcp:", 4) == 0)
+    if (strncmp(conn_device(c), "tcp:", 4) == 0) {
         return app_fail(c->a, EXIT_SAFETY, "UNSUPPORTED",
                         "servo-set: the rate of a line behind TCP is not set from here; a servo "
                         "with another one could not be reached");
-    error = tune(c, new_bps); /* before anything is written: the line must know the rate */
-    if (!error)
+    }
+    int error = tune(c, new_bps); /* before anything is written: the line must know the rate */
+    if (!error) {
         error = tune(c, old_bps);
-    if (error)
+    }
+    if (error) {
         return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error),
                         "servo-set: %s at %d bps: %s; nothing was written", conn_device(c), new_bps,
                         grobo_error_text(error));
-    at_bps = move_rate(c, what, old_bps, new_bps, &code);
+    }
+    int at_bps = move_rate(c, what, old_bps, new_bps, &code);
     error = tune(c, old_bps);
-    if (conn_is_of_reply(at_bps))
+    if (conn_is_of_reply(at_bps)) {
         return app_fail(c->a, EXIT_ROBOT, grobo_error_name(at_bps),
                         "servo %d answers neither at %d nor at %d bps after writing; look for it "
                         "with 'grctl scan --all-baud'",
                         what->id, old_bps, new_bps);
-    if (at_bps < 0 || error < 0)
+    }
+    if (at_bps < 0 || error < 0) {
         return conn_fail_servo(c, at_bps < 0 ? at_bps : error, what->id);
-    if (code != what->value || (what->flash && at_bps != new_bps))
+    }
+    if (code != what->value || (what->flash && at_bps != new_bps)) {
         return app_fail(c->a, EXIT_ROBOT, "MISMATCH",
                         "servo %d answers at %d bps, and its baud is %d, not %d, after writing%s",
                         what->id, at_bps, code, what->value, what->flash ? " and a restart" : "");
+    }
     report(c, what->id, what, before, at_bps);
     return EXIT_DONE;
 }
@@ -327,30 +357,37 @@ static int set_rate(conn *c, const change *what, int32_t before)
 static int set(conn *c, const change *what)
 {
     uint8_t bytes[2] = {0};
-    int32_t before;
     int id = what->reg->address == GROBO_RS30X_ID ? (int)what->value : what->id;
     int error = expect_loose(c, what);
-    if (!error)
+    if (!error) {
         error = expect_free_id(c, what);
-    if (error)
+    }
+    if (error) {
         return error;
+    }
     error = servos_read(c, what->id, what->reg->address, what->reg->bytes, bytes);
-    if (error)
+    if (error) {
         return conn_fail_servo(c, error, what->id);
-    before = grobo_rs30x_register_get(what->reg, bytes);
-    if (!confirmed(c, what, before))
+    }
+    int32_t before = grobo_rs30x_register_get(what->reg, bytes);
+    if (!confirmed(c, what, before)) {
         return app_fail(c->a, EXIT_USAGE, "CANCELED", "servo-set: nothing was written");
-    if (changes_rate(c, what))
+    }
+    if (changes_rate(c, what)) {
         return set_rate(c, what, before);
+    }
     error = write_it(c, what);
-    if (!error)
+    if (!error) {
         error = servos_read(c, id, what->reg->address, what->reg->bytes, bytes);
-    if (error)
+    }
+    if (error) {
         return conn_fail_servo(c, error, id);
-    if (grobo_rs30x_register_get(what->reg, bytes) != what->value)
+    }
+    if (grobo_rs30x_register_get(what->reg, bytes) != what->value) {
         return app_fail(c->a, EXIT_ROBOT, "MISMATCH", "servo %d: %s is %d, not %d, after writing",
                         id, what->reg->name, grobo_rs30x_register_get(what->reg, bytes),
                         what->value);
+    }
     report(c, id, what, before, 0);
     return EXIT_DONE;
 }
@@ -366,14 +403,18 @@ static bool moves_motor(const grobo_rs30x_register *reg)
 static bool read_value(const grobo_rs30x_register *reg, const char *text, int32_t *counts)
 {
     double value;
-    if (!cli_read_number(text, &value))
+    if (!cli_read_number(text, &value)) {
         return false;
+    }
     for (uint8_t code = 0; reg->address == GROBO_RS30X_BAUD && code <= GROBO_RS30X_BAUD_CODE_MAX;
-         code++)
-        if (value == grobo_rs30x_baud_bps(code))
+         code++) {
+        if (value == grobo_rs30x_baud_bps(code)) {
             value = code;
-    if (value < reg->min || value > reg->max || value != floor(value))
+        }
+    }
+    if (value < reg->min || value > reg->max || value != floor(value)) {
         return false;
+    }
     *counts = (int32_t)value;
     return true;
 }
@@ -382,31 +423,38 @@ static int parse_change(app *a, change *what)
 {
     int status = 0;
     what->id = servos_parse_id(a, a->line.argument[0], &status);
-    if (what->id < 0)
+    if (what->id < 0) {
         return status;
+    }
     what->reg = find_register(a, a->line.argument[1], &status);
-    if (!what->reg)
+    if (!what->reg) {
         return status;
-    if (what->reg->access == GROBO_RS30X_ACCESS_R)
+    }
+    if (what->reg->access == GROBO_RS30X_ACCESS_R) {
         return app_fail(a, EXIT_USAGE, "ARG", "servo-set: register %s is read only",
                         what->reg->name);
-    if (moves_motor(what->reg))
+    }
+    if (moves_motor(what->reg)) {
         return app_fail(a, EXIT_SAFETY, "UNSUPPORTED",
                         "servo-set: %s moves the motor; use 'grctl %s'", what->reg->name,
                         what->reg->address == GROBO_RS30X_TORQUE ? "servo" : "move");
-    if (!read_value(what->reg, a->line.argument[2], &what->value))
+    }
+    if (!read_value(what->reg, a->line.argument[2], &what->value)) {
         return app_fail(a, EXIT_USAGE, "LIMIT", "servo-set: '%s': %s takes %d to %d (counts of %s)",
                         a->line.argument[2], what->reg->name, what->reg->min, what->reg->max,
                         *what->reg->unit ? what->reg->unit : "1");
-    if (what->reg->kept == GROBO_RS30X_KEPT_RAM && app_option(a, OPT_FLASH)->given)
+    }
+    if (what->reg->kept == GROBO_RS30X_KEPT_RAM && app_option(a, OPT_FLASH)->given) {
         return app_fail(a, EXIT_USAGE, "ARG", "servo-set: flash does not keep register %s",
                         what->reg->name);
+    }
     if (what->reg->address == GROBO_RS30X_BAUD && what->value != GROBO_RS30X_BAUD_CODE_DEFAULT &&
-        app_global(a, GLOBAL_WIRING)->choice == GROBO_WIRING_BOARD)
+        app_global(a, GLOBAL_WIRING)->choice == GROBO_WIRING_BOARD) {
         return app_fail(a, EXIT_SAFETY, "UNSUPPORTED",
                         "servo-set: the bus behind the board has %d bps; a servo with another "
                         "baud rate could not be reached",
                         GROBO_BAUD_DEFAULT_BPS);
+    }
     what->flash = app_option(a, OPT_FLASH)->given > 0;
     return 0;
 }
@@ -416,11 +464,13 @@ static int run_set(app *a)
     conn c;
     change what = {0};
     int status = parse_change(a, &what);
-    if (status)
+    if (status) {
         return status;
+    }
     status = conn_open(&c, a);
-    if (!status)
+    if (!status) {
         status = set(&c, &what);
+    }
     return conn_close(&c, status);
 }
 

@@ -15,11 +15,13 @@ static void take_line(replay *r, const pcapng_chunk *chunk)
     uint64_t speed_bps = chunk->interface->speed_bps;
     r->first_us = chunk->time_us;
     r->wiring = GROBO_WIRING_BOARD;
-    if (!trace_wiring(chunk->interface, &r->wiring) || wiring->given)
+    if (!trace_wiring(chunk->interface, &r->wiring) || wiring->given) {
         r->wiring = (grobo_wiring)wiring->choice;
+    }
     r->baud_bps = speed_bps <= INT32_MAX ? (int)speed_bps : 0;
-    if (baud->given)
+    if (baud->given) {
         r->baud_bps = (int)baud->number;
+    }
 }
 
 static int take_first(void *ctx, const pcapng_chunk *chunk)
@@ -33,17 +35,19 @@ static int run(app *a)
     static replay r;
     const cli_value *device = app_global(a, GLOBAL_DEVICE);
     bool to_sim = !device->given || strcmp(device->text, GROBO_DEVICE_SIM) == 0;
-    int status;
     r.a = a;
     r.path = a->line.argument[0];
     r.first_us = -1;
-    if (strcmp(r.path, "-") == 0)
+    if (strcmp(r.path, "-") == 0) {
         return app_fail(a, EXIT_USAGE, "ARG", "replay: a trace is read twice: name a file");
-    status = replay_read(&r, take_first, &r);
-    if (status > 0)
+    }
+    int status = replay_read(&r, take_first, &r);
+    if (status > 0) {
         return status;
-    if (status == 0)
+    }
+    if (status == 0) {
         return app_fail(a, EXIT_FILE, "EMPTY", "%s: nothing went over the line", r.path);
+    }
     status = to_sim ? replay_to_sim(&r) : replay_to_robot(&r);
     return status ? status : replay_report(&r);
 }

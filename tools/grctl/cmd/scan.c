@@ -58,17 +58,19 @@ static void report(found *f, int id, int baud_bps, const uint8_t *identity)
 {
     const char *name = joint_name(id);
     f->n++;
-    if (f->list)
+    if (f->list) {
         json_array_append_new(f->list, servo_json(id, baud_bps, identity, 0));
-    else
+    } else {
         app_print("%3d  %-8s  firmware %3d  %6d bps  %s\n", id, model_name(identity), identity[2],
                   baud_bps, name ? name : "");
+    }
 }
 
 static void report_failed(found *f, int id, int baud_bps, int error)
 {
-    if (f->failed)
+    if (f->failed) {
         json_array_append_new(f->failed, servo_json(id, baud_bps, NULL, error));
+    }
 }
 
 /* ---- what comes ------------------------------------------------------------------------------ */
@@ -101,11 +103,13 @@ static void take_replies(pass *p, int64_t now_us)
     grobo_rs30x_packet packet;
     while (grobo_rs30x_parser_next(&p->parser, &packet) > 0) {
         int id = packet.id;
-        if (!tells_identity(&packet) || p->asked_us[id] == 0)
+        if (!tells_identity(&packet) || p->asked_us[id] == 0) {
             continue;
+        }
         int64_t took_us = now_us - p->asked_us[id];
-        if (took_us > p->worst_us)
+        if (took_us > p->worst_us) {
             p->worst_us = took_us;
+        }
         p->late |= took_us > p->timeout_us;
         p->there[id] = true;
         memcpy(p->identity[id], packet.data, IDENTITY_BYTES);
@@ -172,8 +176,9 @@ static void show_progress(const pass *p, int id)
 {
     char text[48];
     double part = (double)(id - p->first) / (p->last - p->first + 1);
-    if (!p->f->bar.shown)
+    if (!p->f->bar.shown) {
         return;
+    }
     snprintf(text, sizeof text, "%d bps, id %d", p->baud_bps, id);
     progress_draw(&p->f->bar, (p->f->rate + part) / p->f->n_rates, text);
 }
@@ -186,16 +191,19 @@ static int look(conn *c, pass *p, uint32_t margin_us)
     p->rubbish = p->parser.framer.stats.dropped_bytes;
     for (int id = p->first; id <= p->last && !error; id++) {
         show_progress(p, id);
-        if (!p->there[id])
+        if (!p->there[id]) {
             error = ask(c, p, id);
+        }
     }
     progress_clear(&p->f->bar);
-    if (!error)
+    if (!error) {
         error = listen_on(c, p);
+    }
     p->rubbish = p->parser.framer.stats.dropped_bytes - p->rubbish;
     p->n = 0;
-    for (int id = p->first; id <= p->last; id++)
+    for (int id = p->first; id <= p->last; id++) {
         p->n += p->there[id];
+    }
     return error;
 }
 
@@ -205,17 +213,20 @@ static bool misses_joint(const conn *c, const pass *p)
     const grobo_model *model = grobo_robot_driver(c->robot)->model;
     for (int joint = 0; joint < model->n_joints && p->heard_us; joint++) {
         int id = grobo_model_motor_of_joint(model, joint);
-        if (id >= p->first && id <= p->last && !p->there[id])
+        if (id >= p->first && id <= p->last && !p->there[id]) {
             return true;
+        }
     }
     return false;
 }
 
 static bool has_suspects(const pass *p)
 {
-    for (int id = p->first; id <= p->last; id++)
-        if (p->why[id] && !p->there[id])
+    for (int id = p->first; id <= p->last; id++) {
+        if (p->why[id] && !p->there[id]) {
             return true;
+        }
+    }
     return false;
 }
 
@@ -227,10 +238,10 @@ static bool has_suspects(const pass *p)
 static int look_until_sure(conn *c, pass *p, bool *sure)
 {
     bool few = p->last - p->first < FEW;
-    int error = GROBO_OK, looks = 0, before;
+    int error = GROBO_OK, looks = 0;
     *sure = false;
     for (; !error && !*sure && looks < LOOKS_MAX; looks++) {
-        before = p->n;
+        int before = p->n;
         error = look(c, p,
                      looks > 1      ? patience(p)
                      : looks || few ? SERVOS_PATIENT_US
@@ -248,14 +259,17 @@ static int question_suspects(conn *c, pass *p, bool *sure)
 {
     int error = servos_wait(c, p->baud_bps, IDENTITY_BYTES, patience(p), -1, NULL);
     for (int id = p->first; id <= p->last && !error; id++) {
-        if (!p->why[id] || p->there[id])
+        if (!p->why[id] || p->there[id]) {
             continue;
+        }
         error = ask(c, p, id);
-        if (!error)
+        if (!error) {
             error = listen_on(c, p);
-        if (p->why[id] && !p->there[id] && !error)
+        }
+        if (p->why[id] && !p->there[id] && !error) {
             app_note(c->a, "id %d answers, but: %s (two servos with one id?)", id,
                      grobo_error_text(p->why[id]));
+        }
     }
     *sure = *sure && !has_suspects(p);
     return error;
@@ -270,10 +284,12 @@ static int ask_all(conn *c, found *f, pass *p)
     grobo_rs30x_parser_init(&p->parser, GROBO_ACCEPT_COMMANDS | GROBO_ACCEPT_RETURNS);
     c->ctx = p;
     c->on_bytes = on_bytes;
-    if (!error)
+    if (!error) {
         error = look_until_sure(c, p, &sure);
-    if (!error)
+    }
+    if (!error) {
         error = question_suspects(c, p, &sure);
+    }
     c->on_bytes = NULL;
     f->unsure |= !sure;
     f->took_us += grobo_now_us() - began_us;
@@ -289,12 +305,13 @@ static int scan_ids(conn *c, found *f, int baud_bps)
               .last = (int)app_number(c->a, OPT_LAST, GROBO_RS30X_ID_MAX)};
     int error = ask_all(c, f, &p);
     for (int id = p.first; id <= p.last; id++) {
-        if (p.there[id])
+        if (p.there[id]) {
             report(f, id, baud_bps, p.identity[id]);
-        else if (p.why[id])
+        } else if (p.why[id]) {
             report_failed(f, id, baud_bps, p.why[id]);
-        else
+        } else {
             f->silent++;
+        }
     }
     return error;
 }
@@ -311,8 +328,9 @@ static int scan_all_bauds(conn *c, found *f)
             continue;
         }
         error = scan_ids(c, f, baud_bps);
-        if (error)
+        if (error) {
             return error;
+        }
     }
     return GROBO_OK;
 }
@@ -322,48 +340,51 @@ static int scan(conn *c)
     bool all = app_option(c->a, OPT_ALL_BAUD)->given > 0;
     found f = {.list = c->a->json ? json_array() : NULL,
                .failed = c->a->json ? json_array() : NULL};
-    int error;
     f.n_rates = all ? GROBO_RS30X_BAUD_CODE_MAX + 1 : 1;
     progress_start(&f.bar, c->a);
-    error = all ? scan_all_bauds(c, &f) : scan_ids(c, &f, (int)conn_baud(c->a));
+    int error = all ? scan_all_bauds(c, &f) : scan_ids(c, &f, (int)conn_baud(c->a));
     if (error) {
         json_decref(f.list);
         json_decref(f.failed);
         return conn_fail(c, error, "scan");
     }
-    if (c->a->json)
+    if (c->a->json) {
         app_print_json(json_pack("{s:o,s:o,s:i,s:b,s:o,s:o}", "servos", f.list, "failed", f.failed,
                                  "silent", f.silent, "sure", !f.unsure, "took_ms",
                                  app_json_number((double)f.took_us / 1e3, 1), "wire_ms",
                                  app_json_number((double)f.wire_us / 1e3, 1)));
-    else
+    } else {
         app_note(c->a, "%d servo%s; %d silent; %.0f ms, of which the wire took %.0f", f.n,
                  f.n == 1 ? "" : "s", f.silent, (double)f.took_us / 1e3, (double)f.wire_us / 1e3);
-    if (f.unsure)
+    }
+    if (f.unsure) {
         app_note(c->a, "not sure: bytes came that are of no whole reply; scan again, see "
                        "'grctl doctor'");
+    }
     return f.n && !f.unsure ? EXIT_DONE : EXIT_ROBOT;
 }
 
 static int run_scan(app *a)
 {
     conn c;
-    int status;
-    if (app_option(a, OPT_ALL_BAUD)->given && app_global(a, GLOBAL_WIRING)->choice != 1)
+    if (app_option(a, OPT_ALL_BAUD)->given && app_global(a, GLOBAL_WIRING)->choice != 1) {
         return app_fail(a, EXIT_USAGE, "ARG",
                         "scan: --all-baud needs --wiring bus: the board knows one rate only");
-    if (app_number(a, OPT_FIRST, 1) > app_number(a, OPT_LAST, GROBO_RS30X_ID_MAX))
+    }
+    if (app_number(a, OPT_FIRST, 1) > app_number(a, OPT_LAST, GROBO_RS30X_ID_MAX)) {
         return app_fail(a, EXIT_USAGE, "ARG", "scan: --first is behind --last");
-    status = conn_open_unchecked(&c, a);
-    if (!status && app_option(a, OPT_ALL_BAUD)->given && grobo_session_sim(c.session))
+    }
+    int status = conn_open_unchecked(&c, a);
+    if (!status && app_option(a, OPT_ALL_BAUD)->given && grobo_session_sim(c.session)) {
         status = app_fail(a, EXIT_USAGE, "ARG",
                           "scan: --all-baud needs a line; 'grctl sim --wiring bus' makes one");
-    else if (!status && app_option(a, OPT_ALL_BAUD)->given &&
-             strncmp(conn_device(&c), "tcp:", 4) == 0)
+    } else if (!status && app_option(a, OPT_ALL_BAUD)->given &&
+               strncmp(conn_device(&c), "tcp:", 4) == 0) {
         status = app_fail(a, EXIT_USAGE, "ARG",
                           "scan: --all-baud: the rate of a line behind TCP is not set from here");
-    else if (!status)
+    } else if (!status) {
         status = scan(&c);
+    }
     return conn_close(&c, status);
 }
 
@@ -376,9 +397,10 @@ static int info(conn *c)
     found f = {.list = c->a->json ? json_array() : NULL,
                .failed = c->a->json ? json_array() : NULL};
     int baud_bps = (int)conn_baud(c->a), silent = 0;
-    if (!c->a->json)
+    if (!c->a->json) {
         app_print("%s on %s, %s\n", model->name, conn_device(c),
                   board ? "through its board, which answers" : "servos straight on the bus");
+    }
     for (int motor = 1; motor <= model->n_joints; motor++) {
         uint8_t identity[IDENTITY_BYTES];
         int error = servos_read(c, motor, GROBO_RS30X_MODEL, IDENTITY_BYTES, identity);
@@ -395,10 +417,11 @@ static int info(conn *c)
         report_failed(&f, motor, baud_bps, error);
         app_note(c->a, "motor %d (%s): %s", motor, joint_name(motor), grobo_error_text(error));
     }
-    if (c->a->json)
+    if (c->a->json) {
         app_print_json(json_pack("{s:s,s:s,s:s,s:o,s:o}", "robot", model->name, "device",
                                  conn_device(c), "wiring", board ? "board" : "bus", "servos",
                                  f.list, "failed", f.failed));
+    }
     return silent ? EXIT_ROBOT : EXIT_DONE;
 }
 
@@ -406,8 +429,9 @@ static int run_info(app *a)
 {
     conn c;
     int status = conn_open(&c, a);
-    if (!status)
+    if (!status) {
         status = info(&c);
+    }
     return conn_close(&c, status);
 }
 

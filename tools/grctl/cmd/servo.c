@@ -7,14 +7,15 @@
 
 static bool parse_mode(const char *word, grobo_torque *mode)
 {
-    if (strcmp(word, "on") == 0)
+    if (strcmp(word, "on") == 0) {
         *mode = GROBO_TORQUE_ON;
-    else if (strcmp(word, "off") == 0)
+    } else if (strcmp(word, "off") == 0) {
         *mode = GROBO_TORQUE_OFF;
-    else if (strcmp(word, "brake") == 0)
+    } else if (strcmp(word, "brake") == 0) {
         *mode = GROBO_TORQUE_BRAKE;
-    else
+    } else {
         return false;
+    }
     return true;
 }
 
@@ -24,8 +25,9 @@ static void print_json(const conn *c, grobo_joint_mask joints)
     const grobo_model *model = grobo_robot_driver(c->robot)->model;
     for (int j = 0; j < model->n_joints; j++) {
         grobo_joint_info i;
-        if (!(joints & GROBO_JOINT_BIT(j)) || grobo_robot_joint(c->robot, j, &i) < 0)
+        if (!(joints & GROBO_JOINT_BIT(j)) || grobo_robot_joint(c->robot, j, &i) < 0) {
             continue;
+        }
         json_array_append_new(list, json_pack("{s:i,s:i,s:s,s:s}", "joint", j, "motor",
                                               model->joints[j].motor, "name", model->joints[j].name,
                                               "torque", render_torque(&i)));
@@ -35,18 +37,20 @@ static void print_json(const conn *c, grobo_joint_mask joints)
 
 static int switch_torque(conn *c, grobo_joint_mask joints, grobo_torque mode, const char *word)
 {
-    int error, n;
-    if (mode == GROBO_TORQUE_ON)
+    if (mode == GROBO_TORQUE_ON) {
         c->moving = true;
-    error = conn_wait_shown(c, grobo_robot_torque(grobo_session_robot(c->session), joints, mode),
-                            "servo", 0);
-    if (error)
+    }
+    int error = conn_wait_shown(
+        c, grobo_robot_torque(grobo_session_robot(c->session), joints, mode), "servo", 0);
+    if (error) {
         return conn_fail(c, error, "servo");
-    n = grobo_joints_count(joints);
-    if (c->a->json)
+    }
+    int n = grobo_joints_count(joints);
+    if (c->a->json) {
         print_json(c, joints);
-    else
+    } else {
         app_note(c->a, "torque of %d joint%s is %s", n, n == 1 ? "" : "s", word);
+    }
     return EXIT_DONE;
 }
 
@@ -56,14 +60,17 @@ static int run(app *a)
     grobo_joint_mask joints;
     grobo_torque mode;
     const char *word = a->line.argument[0];
-    if (!parse_mode(word, &mode))
+    if (!parse_mode(word, &mode)) {
         return app_fail(a, EXIT_USAGE, "ARG", "servo: '%s' is none of on, off, brake", word);
+    }
     int status = joints_parse_all(a, a->line.n_arguments - 1, a->line.argument + 1, &joints);
-    if (status)
+    if (status) {
         return status;
+    }
     status = mode == GROBO_TORQUE_ON ? conn_open_to_move(&c, a) : conn_open(&c, a);
-    if (!status)
+    if (!status) {
         status = switch_torque(&c, joints, mode, word);
+    }
     return conn_close(&c, status);
 }
 

@@ -30,11 +30,11 @@ static int run_command_of(shell *s, const shell_word *w, int n, char **words)
 {
     char text[64];
     char *all[SHELL_WORDS_MAX];
-    int m;
     snprintf(text, sizeof text, "%s", w->command);
-    m = shell_split(text, all, 4);
-    for (int i = 1; i < n && m < SHELL_WORDS_MAX; i++)
+    int m = shell_split(text, all, 4);
+    for (int i = 1; i < n && m < SHELL_WORDS_MAX; i++) {
         all[m++] = words[i];
+    }
     return shell_run(s, m, all);
 }
 
@@ -55,10 +55,12 @@ static int run_words(shell *s, int n, char **words)
         snprintf(why, sizeof why, "no command '%.40s'; did you mean '%s'?", words[0], nearest);
         return refuse(s, why);
     }
-    if (!w)
+    if (!w) {
         return shell_run(s, n, words);
-    if (w->command)
+    }
+    if (w->command) {
         return run_command_of(s, w, n, words);
+    }
     shell_begin(s);
     shell_inherit(s);
     app_settle(&s->one);
@@ -70,12 +72,13 @@ static int run_text(shell *s, char *line)
 {
     char *words[SHELL_WORDS_MAX];
     int n = shell_split(line, words, SHELL_WORDS_MAX - 4);
-    int status;
-    if (n < 0)
+    if (n < 0) {
         return refuse(s, n == SHELL_TOO_MANY ? "too many words" : "a quote is not closed");
-    if (n == 0)
+    }
+    if (n == 0) {
         return EXIT_DONE;
-    status = run_words(s, n, words);
+    }
+    int status = run_words(s, n, words);
     output_flush();
     return status;
 }
@@ -85,20 +88,23 @@ static int run_text(shell *s, char *line)
 static bool ends(const shell *s, int status)
 {
     bool ended = s->over;
-    for (int i = 0; i < os_n_endings; i++)
+    for (int i = 0; i < os_n_endings; i++) {
         ended |= i != OS_INTERRUPT && status == EXIT_SIGNAL + os_endings[i];
+    }
     return ended;
 }
 
 /* A line of a script, or what happened while it was waited for. */
 static int run_next(shell *s, shell_script *in, int next)
 {
-    if (next == LINE_NEWS)
+    if (next == LINE_NEWS) {
         return conn_link_news(&s->link, s->a);
+    }
     s->line++;
     next = in->wrong ? refuse(s, in->wrong) : run_text(s, in->line);
-    if (s->a->json) /* the mark by which a program knows that the command has ended */
+    if (s->a->json) { /* the mark by which a program knows that the command has ended */
         app_print_json(json_pack("{s:i,s:i}", "line", s->line, "status", next));
+    }
     return next;
 }
 
@@ -108,17 +114,21 @@ static int run_script(shell *s, shell_script *in)
     int first = EXIT_DONE, status = EXIT_DONE;
     while (!ends(s, status) && !shell_noted && (!status || go_on)) {
         int next = shell_script_next(s, in);
-        if (next == LINE_END || next == LINE_INTERRUPTED)
+        if (next == LINE_END || next == LINE_INTERRUPTED) {
             break;
+        }
         status = run_next(s, in, next);
-        if (status && !first)
+        if (status && !first) {
             first = status;
-        if (status == EXIT_SIGNAL + os_endings[OS_INTERRUPT])
+        }
+        if (status == EXIT_SIGNAL + os_endings[OS_INTERRUPT]) {
             break;
+        }
     }
-    if (in->file && ferror(in->file)) /* where nothing ran, the reason is still known */
+    if (in->file && ferror(in->file)) { /* where nothing ran, the reason is still known */
         first = app_fail(s->a, EXIT_FILE, "IO", "%s: %s", s->file,
                          s->line ? "it could not be read to its end" : app_cause_text(errno));
+    }
     return shell_noted ? EXIT_SIGNAL + (int)shell_noted : first;
 }
 
@@ -133,28 +143,32 @@ static int run_prompt(shell *s)
     char line[SHELL_LINE_BYTES];
     line_owner owner = {s, s->link.base, shell_wait, tell_news, shell_complete};
     line_reader *reader = line_open(&owner);
-    int status = EXIT_DONE, n;
-    if (!reader)
+    int status = EXIT_DONE;
+    if (!reader) {
         return app_fail_error(s->a, EXIT_ROBOT, GROBO_ERR_NOMEM, "shell");
+    }
     while (!ends(s, status)) {
         conn_link_idle(&s->link, s->a);
         output_stream(); /* what was printed stands before the prompt */
-        n = line_read(reader, "grctl> ", line, sizeof line);
-        if (n == LINE_END)
+        int n = line_read(reader, "grctl> ", line, sizeof line);
+        if (n == LINE_END) {
             break;
+        }
         if (n == LINE_INTERRUPTED && s->link.signal == os_endings[OS_INTERRUPT]) {
             s->link.signal = 0;
             continue;
         }
-        if (n == LINE_INTERRUPTED)
+        if (n == LINE_INTERRUPTED) {
             break;
+        }
         shell_noted = 0;
         status = n == LINE_TOO_LONG ? refuse(s, "the line is too long") : run_text(s, line);
         if (status == EXIT_SIGNAL + os_endings[OS_INTERRUPT]) {
             output_complain("\n"); /* behind the terminal's ^C */
         }
-        if (shell_noted && shell_noted != os_endings[OS_INTERRUPT])
+        if (shell_noted && shell_noted != os_endings[OS_INTERRUPT]) {
             status = EXIT_SIGNAL + (int)shell_noted;
+        }
     }
     line_close(reader);
     return ends(s, status) && !s->over ? status : EXIT_DONE;
@@ -165,18 +179,20 @@ static int run_shell(shell *s)
     static shell_script in;
     const char *path = s->a->line.n_arguments ? s->a->line.argument[0] : NULL;
     FILE *from = NULL;
-    int status;
-    if (!path && s->a->tty_in)
+    if (!path && s->a->tty_in) {
         return run_prompt(s);
+    }
     memset(&in, 0, sizeof in);
     s->file = path ? path : "standard input";
-    if (path && !(from = fopen(path, "r")))
+    if (path && !(from = fopen(path, "r"))) {
         return app_fail(s->a, EXIT_FILE, "NOENT", "%s: %s", path,
                         app_cause_text(os_is_folder(path) ? EISDIR : errno));
+    }
     in.file = from && !os_input_take(from) ? from : NULL;
-    status = run_script(s, &in);
-    if (from)
+    int status = run_script(s, &in);
+    if (from) {
         fclose(from);
+    }
     return status;
 }
 
@@ -193,10 +209,11 @@ static int run(app *a)
     os_catch_endings(on_signal);
     a->moves = true;
     guard_start(a, conn_requested(a));
-    if (conn_link_init(&s.link) != GROBO_OK)
+    if (conn_link_init(&s.link) != GROBO_OK) {
         status = app_fail_error(a, EXIT_ROBOT, GROBO_ERR_NOMEM, "shell");
-    else
+    } else {
         status = run_shell(&s);
+    }
     status = conn_link_close(&s.link, a, status);
     conn_link_deinit(&s.link);
     grobo_motion_free(s.record);

@@ -22,26 +22,29 @@ static int choose_rows(app *a, show_rows *rows)
     grobo_body_options body;
     grobo_posture start;
     grobo_clip_options plain = {.start = &start};
-    int error;
     rows->n = grobo_motion_size(rows->motion);
     rows->rate_hz = app_number(a, OPT_RATE, 0);
-    error = body_options_read(a, OPT_BODY, rows->rate_hz, &body);
-    if (error)
+    int error = body_options_read(a, OPT_BODY, rows->rate_hz, &body);
+    if (error) {
         return error;
+    }
     rows->as_played = rows->rate_hz > 0 || body_options_given(a, OPT_BODY);
-    if (!rows->as_played)
+    if (!rows->as_played) {
         return 0;
+    }
     grobo_motion_start(rows->motion, rows->model, &start);
     error = whole_open(&rows->played, rows->motion, &plain, &body);
-    if (error)
+    if (error) {
         return app_fail(a, EXIT_FILE, grobo_error_name(error), "%s: %s", a->line.argument[0],
                         file_error_text(error));
+    }
     rows->n = rows->played.clip.n_keys;
     if (rows->rate_hz > 0 && rows->n) {
         double n = (double)rows->played.clip.length_us * rows->rate_hz / 1e6 + 1e-6;
-        if (n >= GROBO_MOTION_FRAMES_MAX)
+        if (n >= GROBO_MOTION_FRAMES_MAX) {
             return app_fail(a, EXIT_FILE, "CAP", "%s: more than %d rows", a->line.argument[0],
                             GROBO_MOTION_FRAMES_MAX);
+        }
         rows->n = (size_t)n + 1;
     }
     return 0;
@@ -57,15 +60,19 @@ static int choose_joints(app *a, show_rows *rows)
     double time_s;
     if (list->given) {
         int status = joints_parse_motion(a, list->text, rows->model, n_joints, &joints);
-        if (status)
+        if (status) {
             return status;
+        }
     } else {
-        for (size_t i = 0; i < rows->n && show_row(rows, i, &posture, &time_s) == 0; i++)
+        for (size_t i = 0; i < rows->n && show_row(rows, i, &posture, &time_s) == 0; i++) {
             joints |= posture.set;
+        }
     }
-    for (int j = 0; j < n_joints; j++)
-        if (joints & GROBO_JOINT_BIT(j))
+    for (int j = 0; j < n_joints; j++) {
+        if (joints & GROBO_JOINT_BIT(j)) {
             rows->joint[rows->n_joints++] = j;
+        }
+    }
     return 0;
 }
 
@@ -75,10 +82,11 @@ static json_t *key_json(const show_rows *rows, double time_s, const grobo_postur
 {
     json_t *angles = json_array();
     double deg;
-    for (int c = 0; c < rows->n_joints; c++)
+    for (int c = 0; c < rows->n_joints; c++) {
         json_array_append_new(angles, grobo_posture_get_deg(posture, rows->joint[c], &deg) == 0
                                           ? app_json_number(deg, 6)
                                           : json_null());
+    }
     return json_pack("{s:o,s:o}", "time_ms", app_json_number(time_s * 1e3, 6), "angle_deg", angles);
 }
 
@@ -89,10 +97,12 @@ static void print_json(const show_rows *rows, const char *path, const char *form
     double time_s, length_us = rows->as_played ? (double)rows->played.clip.length_us
                                                : (double)grobo_motion_length_us(rows->motion, -1);
     json_t *names = json_array(), *keys = json_array();
-    for (int c = 0; c < rows->n_joints; c++)
+    for (int c = 0; c < rows->n_joints; c++) {
         json_array_append_new(names, json_string(show_joint_name(rows, c, buffer, sizeof buffer)));
-    for (size_t i = 0; i < rows->n && show_row(rows, i, &posture, &time_s) == 0; i++)
+    }
+    for (size_t i = 0; i < rows->n && show_row(rows, i, &posture, &time_s) == 0; i++) {
         json_array_append_new(keys, key_json(rows, time_s, &posture));
+    }
     app_print_json(json_pack("{s:o,s:s,s:o,s:o,s:o,s:o}", "file", app_json_text(path), "format",
                              format, "name", app_json_text(grobo_motion_name(rows->motion)),
                              "length_ms", app_json_number(length_us / 1e3, 3), "joints", names,
@@ -111,8 +121,9 @@ static void print_text(const char *text)
 
 static const char *row_word(const show_rows *rows)
 {
-    if (rows->rate_hz > 0)
+    if (rows->rate_hz > 0) {
         return "rows";
+    }
     switch (grobo_motion_get_kind(rows->motion)) {
     case GROBO_MOTION_KEYS:
         return "key poses";
@@ -130,8 +141,9 @@ static const char *row_word(const show_rows *rows)
 static size_t count_linked(const grobo_motion *motion)
 {
     size_t n = 0, links;
-    for (size_t i = 0; i < grobo_motion_size(motion); i++)
+    for (size_t i = 0; i < grobo_motion_size(motion); i++) {
         n += grobo_motion_ik_links(motion, i, &links) && links;
+    }
     return n;
 }
 
@@ -153,15 +165,17 @@ static void print_head(const show_rows *rows, const char *path, const char *form
         print_text(grobo_motion_target_body(motion));
     }
     app_print(", %zu %s", rows->n, row_word(rows));
-    if (grobo_motion_frame_rate(motion) > 0 && !grobo_motion_has_frame_times(motion))
+    if (grobo_motion_frame_rate(motion) > 0 && !grobo_motion_has_frame_times(motion)) {
         app_print(" at %.5g Hz", grobo_motion_frame_rate(motion));
+    }
     app_print(", %.3f s, angles in degrees\n", length_us / 1e6);
-    if (rows->played.body)
+    if (rows->played.body) {
         app_print("legs by inverse kinematics\n");
-    else if (linked)
+    } else if (linked) {
         app_print("%zu of %zu poses give legs by ikLinks: %s\n", linked, grobo_motion_size(motion),
                   rows->model ? "--ik exact shows their angles"
                               : "only GR001's are solved, this is for another robot");
+    }
 }
 
 static int show(app *a, show_rows *rows)
@@ -170,10 +184,12 @@ static int show(app *a, show_rows *rows)
     const char *format =
         grobo_motion_format_name(grobo_motion_kind_format(grobo_motion_get_kind(rows->motion)));
     int status = choose_rows(a, rows);
-    if (!status)
+    if (!status) {
         status = choose_joints(a, rows);
-    if (status)
+    }
+    if (status) {
         return status;
+    }
     if (a->json) {
         print_json(rows, path, format);
     } else {
@@ -189,8 +205,9 @@ static int run(app *a)
     grobo_read_options read = {.model = &grobo_gr001_model};
     grobo_motion *motion = NULL;
     int status = file_load(a, a->line.argument[0], &read, &motion);
-    if (status)
+    if (status) {
         return status;
+    }
     rows.motion = motion;
     rows.model = file_model(motion);
     status = show(a, &rows);

@@ -90,8 +90,9 @@ static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *byt
                    void *ctx)
 {
     watched *w = ctx;
-    if (direction == GROBO_DIR_RX)
+    if (direction == GROBO_DIR_RX) {
         sim_strict_bytes(&w->strict, now_us, bytes, size);
+    }
     trace_bytes(&w->trace, direction == GROBO_DIR_RX ? GROBO_DIR_TX : GROBO_DIR_RX, now_us, bytes,
                 size);
 }
@@ -119,11 +120,13 @@ static void on_signal(evutil_socket_t number, short what, void *ctx)
 static int watch_signals(farm *f)
 {
     for (int i = 0; i < os_n_endings; i++) {
-        if (os_is_ignored(os_endings[i]))
+        if (os_is_ignored(os_endings[i])) {
             continue;
+        }
         f->signals[i] = evsignal_new(f->base, os_endings[i], on_signal, f);
-        if (!f->signals[i] || evsignal_add(f->signals[i], NULL) != 0)
+        if (!f->signals[i] || evsignal_add(f->signals[i], NULL) != 0) {
             return GROBO_ERR_NOMEM;
+        }
     }
     return GROBO_OK;
 }
@@ -181,16 +184,19 @@ static int find_place(app *a, int robot, place *at, grobo_sim_server_config *con
     int port = (int)app_number(a, OPT_TCP, 0);
     config->no_pty = grobo_port_pty_ops() == NULL;
     at->name = config->no_pty ? at->tcp : "pty";
-    if (path && config->no_pty)
+    if (path && config->no_pty) {
         return app_fail(a, EXIT_USAGE, "UNSUPPORTED",
                         "sim: --link: there are no pseudo-terminals here; --tcp serves programs");
+    }
     if (path) {
-        if (!number_path(path, robot, at->link, sizeof at->link))
+        if (!number_path(path, robot, at->link, sizeof at->link)) {
             return app_fail(a, EXIT_USAGE, "CAP", "sim: --link: the path is too long");
+        }
         config->link = at->name = at->link;
     }
-    if (port + robot > 65535)
+    if (port + robot > 65535) {
         return app_fail(a, EXIT_USAGE, "LIMIT", "sim: --tcp: %d is the last port there is", 65535);
+    }
     if (app_option(a, OPT_TCP)->given || config->no_pty) {
         snprintf(at->tcp, sizeof at->tcp, "tcp:127.0.0.1:%d", port ? port + robot : 0);
         config->tcp = at->tcp;
@@ -208,10 +214,12 @@ static int open_state(farm *f, int robot)
 {
     const char *path = app_option(f->a, OPT_STATE)->text;
     char numbered[1024];
-    if (!path)
+    if (!path) {
         return 0;
-    if (!number_path(path, robot, numbered, sizeof numbered))
+    }
+    if (!number_path(path, robot, numbered, sizeof numbered)) {
         return app_fail(f->a, EXIT_USAGE, "CAP", "sim: --state: the path is too long");
+    }
     return sim_state_start(&f->watched[robot].state, f->a, f->base, f->server[robot], numbered);
 }
 
@@ -224,24 +232,28 @@ static int add_robot(farm *f, int robot)
     grobo_os_cause cause = {0};
     place at;
     int error = find_place(f->a, robot, &at, &config);
-    if (error)
+    if (error) {
         return error;
+    }
     sim.hook = on_sim;
     sim.hook_ctx = &f->watched[robot];
-    if (app_option(f->a, OPT_STRICT)->given)
+    if (app_option(f->a, OPT_STRICT)->given) {
         sim_strict_start(&f->watched[robot].strict, f->a, robot + 1, sim.wiring, grobo_now_us());
+    }
     error = grobo_sim_server_new(&config, &f->server[robot], &cause);
-    if (error)
+    if (error) {
         return app_fail(f->a, EXIT_ROBOT, grobo_error_name(error), "sim: %s: %s%s%s",
                         name_of_failed(&at, &cause), grobo_error_text(error),
                         *cause.text ? ": " : "", cause.text);
+    }
     f->n = robot + 1;
     if (faults &&
-        grobo_sim_set_faults(grobo_sim_server_sim(f->server[robot]), faults, strlen(faults)) < 0)
+        grobo_sim_set_faults(grobo_sim_server_sim(f->server[robot]), faults, strlen(faults)) < 0) {
         return app_fail(f->a, EXIT_USAGE, "ARG",
                         "sim: --fault: '%s' is no list such as drop=0.01,flip=0.02; see "
                         "'grctl help sim'",
                         faults);
+    }
     error = open_state(f, robot);
     return error ? error : open_trace(f, robot);
 }
@@ -258,19 +270,22 @@ static bool announce(const farm *f)
         json_array_append_new(list, json_pack("{s:s,s:o*}", "device",
                                               grobo_sim_server_device(f->server[i]), "tcp_port",
                                               port > 0 ? json_integer(port) : NULL));
-        if (!f->a->json)
+        if (!f->a->json) {
             app_print("%s\n", grobo_sim_server_device(f->server[i]));
+        }
         if (port > 0 && grobo_port_pty_ops() != NULL) {
             output_flush();
             app_note(f->a, "also at tcp:127.0.0.1:%d", port);
         }
     }
-    if (f->a->json)
+    if (f->a->json) {
         app_print_json(json_pack("{s:b,s:o}", "simulated", 1, "robots", list));
-    else
+    } else {
         json_decref(list);
-    if (!output_flush())
+    }
+    if (!output_flush()) {
         return false;
+    }
     app_note(f->a, "SIMULATED robot%s, no motor moves anywhere; Ctrl-C ends it",
              f->n == 1 ? "" : "s");
     return true;
@@ -283,11 +298,14 @@ static int close_farm(farm *f, int status)
         grobo_sim_server_free(f->server[i]);
         status = trace_close(&f->watched[i].trace, f->a, status);
     }
-    for (int i = 0; i < os_n_endings; i++)
-        if (f->signals[i])
+    for (int i = 0; i < os_n_endings; i++) {
+        if (f->signals[i]) {
             event_free(f->signals[i]);
-    if (f->base)
+        }
+    }
+    if (f->base) {
         event_base_free(f->base);
+    }
     return status;
 }
 
@@ -312,8 +330,9 @@ static int serve(farm *f)
     sim_console_start(&f->console);
     event_base_dispatch(f->base);
     sim_console_stop(&f->console);
-    if (app_option(f->a, OPT_STRICT)->given)
+    if (app_option(f->a, OPT_STRICT)->given) {
         return strict_status(f);
+    }
     return f->signal ? EXIT_SIGNAL + f->signal : EXIT_DONE;
 }
 
@@ -321,19 +340,23 @@ static int serve(farm *f)
 static int check_families(const farm *f)
 {
     const app *a = f->a;
-    if (!app_option(a, OPT_SERVO)->given || f->chain.only_rs30x)
+    if (!app_option(a, OPT_SERVO)->given || f->chain.only_rs30x) {
         return 0;
-    if (app_option(a, OPT_STRICT)->given)
+    }
+    if (app_option(a, OPT_STRICT)->given) {
         return app_fail(f->a, EXIT_USAGE, "UNSUPPORTED",
                         "sim: --strict: knows the protocol of RS30x only; use it without other "
                         "servos");
-    if (app_option(a, OPT_STATE)->given)
+    }
+    if (app_option(a, OPT_STATE)->given) {
         return app_fail(f->a, EXIT_USAGE, "UNSUPPORTED",
                         "sim: --state: keeps the flash of RS30x only; use it without other servos");
+    }
     if (app_global(a, GLOBAL_WIRING)->given &&
-        app_global(a, GLOBAL_WIRING)->choice == GROBO_WIRING_BOARD)
+        app_global(a, GLOBAL_WIRING)->choice == GROBO_WIRING_BOARD) {
         return app_fail(f->a, EXIT_USAGE, "UNSUPPORTED",
                         "sim: --wiring board: relays to RS30x only; use --wiring bus");
+    }
     return 0;
 }
 
@@ -346,19 +369,23 @@ static int run(app *a)
     f.a = a;
     os_take_signals();
     f.base = grobo_loop_new();
-    if (!f.base || watch_signals(&f) != GROBO_OK)
+    if (!f.base || watch_signals(&f) != GROBO_OK) {
         status = app_fail_error(a, EXIT_ROBOT, GROBO_ERR_NOMEM, "sim");
+    }
     f.model = &grobo_gr001_model;
     if (app_option(a, OPT_SERVO)->given && !status) {
         f.model = &f.chain.model;
         status = sim_chain_read(a, &f.chain, app_option(a, OPT_SERVO)->text);
     }
-    if (!status)
+    if (!status) {
         status = check_families(&f);
-    for (int i = 0; i < robots && !status; i++)
+    }
+    for (int i = 0; i < robots && !status; i++) {
         status = add_robot(&f, i);
-    if (!status && announce(&f))
+    }
+    if (!status && announce(&f)) {
         status = serve(&f);
+    }
     return close_farm(&f, status);
 }
 

@@ -16,8 +16,9 @@ static void show(conn *c, grobo_joint_mask joints)
 {
     const grobo_model *model = grobo_robot_driver(c->robot)->model;
     if (!c->a->json) {
-        if (c->a->tty_out && app_option(c->a, OPT_WATCH)->given)
+        if (c->a->tty_out && app_option(c->a, OPT_WATCH)->given) {
             app_print("\033[H\033[J");
+        }
         render_status(c, joints);
         output_flush();
         return;
@@ -31,8 +32,9 @@ static int sense_and_show(conn *c, grobo_joint_mask joints)
 {
     int error =
         conn_wait(c, grobo_robot_sense(grobo_session_robot(c->session), joints, GROBO_SENSE_ALL));
-    if (error && c->job.failed == 0)
+    if (error && c->job.failed == 0) {
         return conn_fail(c, error, "status");
+    }
     show(c, joints);
     return error ? EXIT_ROBOT : EXIT_DONE;
 }
@@ -45,8 +47,9 @@ static int watch(conn *c, grobo_joint_mask joints)
     do {
         status = sense_and_show(c, joints);
         next_us += interval_us;
-        if (next_us < grobo_now_us())
+        if (next_us < grobo_now_us()) {
             next_us = grobo_now_us();
+        }
     } while (output_flush() && !c->signal && !c->link_error &&
              (slept = conn_sleep_until(c, next_us)) == GROBO_OK);
     return slept < 0 && c->link_error ? conn_fail(c, c->link_error, "status") : status;
@@ -57,11 +60,13 @@ static int run(app *a)
     conn c;
     grobo_joint_mask joints;
     int status = joints_parse_all(a, a->line.n_arguments, a->line.argument, &joints);
-    if (status)
+    if (status) {
         return status;
+    }
     status = conn_open(&c, a);
-    if (!status)
+    if (!status) {
         status = app_option(a, OPT_WATCH)->given ? watch(&c, joints) : sense_and_show(&c, joints);
+    }
     return conn_close(&c, status);
 }
 

@@ -10,10 +10,11 @@ static int run_stop(app *a)
     if (!status) {
         int error = conn_wait_shown(
             &c, grobo_robot_exit(grobo_session_robot(c.session), GROBO_EXIT_HOLD), "stop", 0);
-        if (error)
+        if (error) {
             status = conn_fail(&c, error, "stop");
-        else
+        } else {
             app_done(a, "stopped; joints with torque hold where they are");
+        }
     }
     return conn_close(&c, status);
 }

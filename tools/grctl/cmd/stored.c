@@ -8,20 +8,22 @@ static int start(app *a, grobo_stored_kind kind, const char *what)
     conn c;
     double number;
     const char *text = a->line.argument[0];
-    int status, error;
+    int error;
     if (!cli_read_number(text, &number) || number < 0 || number > 255 ||
-        number != (double)(int)number)
+        number != (double)(int)number) {
         return app_fail(a, EXIT_USAGE, "ARG", "%s: '%s' is not a number from 0 to 255", what, text);
-    status = conn_open_to_move(&c, a);
+    }
+    int status = conn_open_to_move(&c, a);
     if (!status) {
         error =
             conn_wait(&c, grobo_robot_stored(grobo_session_robot(c.session), kind, (int)number));
-        if (error)
+        if (error) {
             status = conn_fail(&c, error, what);
-        else
+        } else {
             app_report(a, json_pack("{s:i}", what, (int)number),
                        "%s %d was asked for; the board does not say whether it plays", what,
                        (int)number);
+        }
     }
     return conn_close(&c, status);
 }

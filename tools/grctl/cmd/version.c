@@ -6,10 +6,11 @@
 
 static int run(app *a)
 {
-    if (a->json)
+    if (a->json) {
         app_print_json(json_pack("{s:s,s:s}", "name", "grctl", "version", grobo_version()));
-    else
+    } else {
         app_print("grctl %s\n", grobo_version());
+    }
     return EXIT_DONE;
 }
 

@@ -11,19 +11,20 @@ static void read_last(char *last, size_t capacity)
 {
     char path[1024];
     FILE *file = os_state_path(state_name, path, sizeof path) ? fopen(path, "r") : NULL;
-    if (!file || !fgets(last, (int)capacity, file))
+    if (!file || !fgets(last, (int)capacity, file)) {
         *last = '\0';
+    }
     last[strcspn(last, "\n")] = '\0';
-    if (file)
+    if (file) {
         fclose(file);
+    }
 }
 
 int auto_ports(choice *all)
 {
     char last[GROBO_DEVICE_MAX_BYTES];
-    int found;
     choose_begin(all);
-    found = grobo_port_list(choose_take, all);
+    int found = grobo_port_list(choose_take, all);
     read_last(last, sizeof last);
     choose_end(all, last);
     return found;
@@ -53,12 +54,14 @@ void auto_used(const app *a, const char *device, bool is_auto)
 {
     char path[1024], name[GROBO_DEVICE_MAX_BYTES], last[GROBO_DEVICE_MAX_BYTES];
     FILE *file;
-    if (is_auto)
+    if (is_auto) {
         app_note(a, "auto: %s", device);
+    }
     read_last(last, sizeof last);
     if (grobo_port_identity(device, name, sizeof name) < 0 || strcmp(name, last) == 0 ||
-        !os_state_path(state_name, path, sizeof path) || !(file = fopen(path, "w")))
+        !os_state_path(state_name, path, sizeof path) || !(file = fopen(path, "w"))) {
         return;
+    }
     fprintf(file, "%s\n", name);
     fclose(file);
 }

@@ -15,8 +15,9 @@
 const char *conn_requested(const app *a)
 {
     const char *fallback = getenv("GRCTL_DEVICE");
-    if (app_global(a, GLOBAL_DEVICE)->given)
+    if (app_global(a, GLOBAL_DEVICE)->given) {
         return app_global(a, GLOBAL_DEVICE)->text;
+    }
     return fallback && *fallback ? fallback : GROBO_DEVICE_AUTO;
 }
 
@@ -37,16 +38,18 @@ static void on_session(grobo_session *session, grobo_session_event event, int er
         break;
     case GROBO_SESSION_EVENT_LOST:
         link->up = false;
-        if (!link->user || !link->user->a->reconnects || link->kept)
+        if (!link->user || !link->user->a->reconnects || link->kept) {
             link->link_error = error ? error : GROBO_ERR_UNPLUGGED;
+        }
         break;
     case GROBO_SESSION_EVENT_FAILED:
         link->link_error = error ? error : GROBO_ERR_UNPLUGGED;
         break;
     case GROBO_SESSION_EVENT_UNGUARDED:
-        if (link->user)
+        if (link->user) {
             app_note(link->user->a,
                      "the guard has ended: if grctl is killed, joints go on to their goals");
+        }
         break;
     }
     if (link->user) {
@@ -64,8 +67,9 @@ static void on_robot(void *ctx, const grobo_event *event)
         link->trip = event->u.trip;
         link->news = true;
     }
-    if (!c)
+    if (!c) {
         return;
+    }
     if (event->kind == GROBO_EVENT_JOB && event->u.job.kind == GROBO_JOB_ESTOP) {
         c->estop_ended = true;
         c->estop_result = event->u.job.result;
@@ -73,13 +77,16 @@ static void on_robot(void *ctx, const grobo_event *event)
     if (event->kind == GROBO_EVENT_JOB && event->u.job.number == c->waiting_for) {
         c->job = event->u.job;
         c->waiting_for = 0;
-        if (c->data && c->job.size)
+        if (c->data && c->job.size) {
             memcpy(c->data, c->job.data, c->job.size < c->data_bytes ? c->job.size : c->data_bytes);
+        }
     }
-    if (event->kind == GROBO_EVENT_TRIP)
+    if (event->kind == GROBO_EVENT_TRIP) {
         c->trip = event->u.trip;
-    if (c->on_event)
+    }
+    if (c->on_event) {
         c->on_event(c, event);
+    }
 }
 
 static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *bytes, size_t size,
@@ -88,12 +95,14 @@ static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *byt
     conn_link *link = ctx;
     conn *c = link->user;
     trace_bytes(&link->trace, direction, now_us, bytes, size);
-    if (!c)
+    if (!c) {
         return;
+    }
     trace_bytes(&c->trace, direction, now_us, bytes, size);
     conn_note_bytes(c, direction, now_us, bytes, size);
-    if (c->on_bytes)
+    if (c->on_bytes) {
         c->on_bytes(c, direction, now_us, bytes, size);
+    }
 }
 
 /* ---- waiting -------------------------------------------------------------------------------- */
@@ -112,24 +121,27 @@ static bool is_interrupted(const conn *c)
 int conn_wait_until(conn *c, bool (*done)(conn *c))
 {
     while (!done(c)) {
-        if (is_interrupted(c))
+        if (is_interrupted(c)) {
             return GROBO_ERR_CANCELED;
-        if (c->link_error)
+        }
+        if (c->link_error) {
             return c->link_error;
-        if (event_base_loop(c->base, EVLOOP_ONCE) != 0)
+        }
+        if (event_base_loop(c->base, EVLOOP_ONCE) != 0) {
             return GROBO_ERR_IO;
+        }
     }
     return GROBO_OK;
 }
 
 int conn_wait(conn *c, int job)
 {
-    int error;
     memset(&c->job, 0, sizeof c->job);
-    if (job < 0)
+    if (job < 0) {
         return job;
+    }
     c->waiting_for = job;
-    error = conn_wait_until(c, job_done);
+    int error = conn_wait_until(c, job_done);
     c->waiting_for = 0;
     return error ? error : c->job.result;
 }
@@ -151,13 +163,15 @@ static void on_show(evutil_socket_t fd, short what, void *ctx)
     char text[64];
     (void)fd;
     (void)what;
-    if (took_us < LONG_US && w->expected_us < LONG_US)
+    if (took_us < LONG_US && w->expected_us < LONG_US) {
         return;
-    if (in_time)
+    }
+    if (in_time) {
         snprintf(text, sizeof text, "%s: %.1f of %.1f s", w->doing, (double)took_us / 1e6,
                  (double)w->expected_us / 1e6);
-    else
+    } else {
         snprintf(text, sizeof text, "%s: %.1f s", w->doing, (double)took_us / 1e6);
+    }
     progress_draw(&w->bar, in_time ? (double)took_us / (double)w->expected_us : -1, text);
 }
 
@@ -166,15 +180,17 @@ int conn_wait_shown(conn *c, int job, const char *doing, int64_t expected_us)
     const struct timeval period = {0, SHOW_US};
     waiting w = {.doing = doing, .began_us = grobo_now_us(), .expected_us = expected_us};
     struct event *tick = NULL;
-    int error;
     progress_start(&w.bar, c->a);
-    if (job > 0 && w.bar.shown)
+    if (job > 0 && w.bar.shown) {
         tick = event_new(c->base, -1, EV_PERSIST, on_show, &w);
-    if (tick)
+    }
+    if (tick) {
         event_add(tick, &period);
-    error = conn_wait(c, job);
-    if (tick)
+    }
+    int error = conn_wait(c, job);
+    if (tick) {
         event_free(tick);
+    }
     progress_clear(&w.bar);
     return error;
 }
@@ -196,15 +212,17 @@ struct event *conn_every(conn *c, int64_t period_us, event_callback_fn fn, void 
 {
     struct timeval period = timeval_of(period_us);
     struct event *timer = event_new(c->base, -1, EV_PERSIST, fn, ctx);
-    if (timer)
+    if (timer) {
         event_add(timer, &period);
+    }
     return timer;
 }
 
 void conn_forget(struct event *event)
 {
-    if (event)
+    if (event) {
         event_free(event);
+    }
 }
 
 int conn_sleep_until(conn *c, int64_t at_us)
@@ -214,15 +232,19 @@ int conn_sleep_until(conn *c, int64_t at_us)
     struct timeval rest = timeval_of(rest_us > 0 ? rest_us : 0);
     struct event *timer = evtimer_new(c->base, conn_note, &awake);
     int error = GROBO_OK;
-    if (!timer)
+    if (!timer) {
         return GROBO_ERR_NOMEM;
+    }
     evtimer_add(timer, &rest);
-    while (!awake && (!c->signal || c->a->stops) && !c->link_error && !error)
-        if (event_base_loop(c->base, EVLOOP_ONCE) != 0)
+    while (!awake && (!c->signal || c->a->stops) && !c->link_error && !error) {
+        if (event_base_loop(c->base, EVLOOP_ONCE) != 0) {
             error = GROBO_ERR_IO;
+        }
+    }
     event_free(timer);
-    if (c->signal && !c->a->stops)
+    if (c->signal && !c->a->stops) {
         return GROBO_ERR_CANCELED;
+    }
     return c->link_error ? c->link_error : error;
 }
 
@@ -297,10 +319,12 @@ static int try_port(void *ctx, const grobo_port_info *info)
 static const char *near_device(const app *a, const char *name)
 {
     cli_guess guess = {.name = name, .length = strlen(name)};
-    if (a->nearest_device)
+    if (a->nearest_device) {
         return a->nearest_device;
-    if (strchr(name, '/') && !is_tcp(name))
+    }
+    if (strchr(name, '/') && !is_tcp(name)) {
         grobo_port_list(try_port, &guess);
+    }
     return guess.best;
 }
 
@@ -311,15 +335,17 @@ static int fail_closed(conn *c, int error)
     /* Of the others the system only says again what the error says. */
     bool tells = *cause->text && (error == GROBO_ERR_BUSY || error == GROBO_ERR_IO ||
                                   error == GROBO_ERR_UNSUPPORTED || error == GROBO_ERR_UNPLUGGED);
-    if (error == GROBO_ERR_TIMEOUT && is_tcp(conn_device(c)) && !bytes_passed(c, GROBO_DIR_TX))
+    if (error == GROBO_ERR_TIMEOUT && is_tcp(conn_device(c)) && !bytes_passed(c, GROBO_DIR_TX)) {
         return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error),
                         "%s: %s; is the address right, and that machine on?", conn_device(c),
                         cause->text);
-    if (conn_is_of_reply(error) && bytes_passed(c, GROBO_DIR_RX))
+    }
+    if (conn_is_of_reply(error) && bytes_passed(c, GROBO_DIR_RX)) {
         return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error),
                         "%s: bytes come, but no reply in them; is the baud rate right, and is it a "
                         "robot? see 'grctl doctor'",
                         conn_device(c));
+    }
     return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error), "%s: %s%s%s%s%s",
                     error == GROBO_ERR_NOTFOUND ? "auto" : conn_device(c), open_trouble(c, error),
                     tells ? " (" : "", tells ? cause->text : "", tells ? ")" : "",
@@ -328,12 +354,12 @@ static int fail_closed(conn *c, int error)
 
 static int fail_open(conn *c, int error)
 {
-    const char *nearest;
     c->open_error = error;
-    nearest = error == GROBO_ERR_NOENT ? near_device(c->a, conn_requested(c->a)) : NULL;
-    if (nearest)
+    const char *nearest = error == GROBO_ERR_NOENT ? near_device(c->a, conn_requested(c->a)) : NULL;
+    if (nearest) {
         return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error), "%s: %s (did you mean '%s'?)",
                         conn_device(c), open_trouble(c, error), nearest);
+    }
     return fail_closed(c, error);
 }
 
@@ -350,14 +376,18 @@ grobo_robot_config conn_robot_config(const app *a)
     const cli_value *timeout = app_global(a, GLOBAL_TIMEOUT);
     const cli_value *retries = app_global(a, GLOBAL_RETRIES);
     const cli_value *on_exit = app_global(a, GLOBAL_ON_EXIT);
-    if (a->clamps)
+    if (a->clamps) {
         config.limit_policy = GROBO_LIMIT_CLAMP;
-    if (timeout->given)
+    }
+    if (timeout->given) {
         config.timeout_us = (uint32_t)(timeout->number * 1000);
-    if (retries->given)
+    }
+    if (retries->given) {
         config.retries = retries->number > 0 ? (int)retries->number : -1;
-    if (on_exit->given)
+    }
+    if (on_exit->given) {
         config.on_exit = (grobo_exit_policy)(on_exit->choice + GROBO_EXIT_OFF);
+    }
     return config;
 }
 
@@ -366,10 +396,12 @@ grobo_robot_config conn_robot_config(const app *a)
 static const char *const *ports_of_auto(const app *a)
 {
     static choice all;
-    if (!conn_is_auto(a) || auto_ports(&all) < 0)
+    if (!conn_is_auto(a) || auto_ports(&all) < 0) {
         return NULL;
-    if (!a->hushed)
+    }
+    if (!a->hushed) {
         auto_report(a, &all);
+    }
     return all.scan;
 }
 
@@ -377,17 +409,20 @@ static int make_session(conn *c, const char *device, bool check)
 {
     app *a = c->a;
     int error = conn_link_init(c->link);
-    if (!error && !output_detach() && !a->stops)
+    if (!error && !output_detach() && !a->stops) {
         error = GROBO_ERR_NOMEM;
-    if (error)
+    }
+    if (error) {
         return error;
+    }
     grobo_wiring wiring = (grobo_wiring)app_global(a, GLOBAL_WIRING)->choice;
     const cli_value *baud = app_global(a, GLOBAL_BAUD);
     grobo_robot_config robot = conn_robot_config(a);
     robot.bus.echo = app_global(a, GLOBAL_ECHO)->given > 0;
     const grobo_driver *driver = grobo_gr001_driver(wiring);
-    if (a->robot)
+    if (a->robot) {
         driver = trims_driver(&c->link->trims, driver, a->robot);
+    }
     grobo_session_config config = {.base = c->link->base,
                                    .device = device,
                                    .baud_bps = baud->given ? (int)baud->number : 0,
@@ -418,8 +453,9 @@ static int open_trace(conn *c, app *a, trace *t, const char *device)
 static int open_traces(conn *c, const char *device)
 {
     int status = open_trace(c, c->a, &c->trace, device);
-    if (!status && c->link->owner)
+    if (!status && c->link->owner) {
         status = open_trace(c, c->link->owner, &c->link->trace, device);
+    }
     return status;
 }
 
@@ -450,19 +486,22 @@ static int take_over(conn *c, bool check)
 {
     grobo_robot_config config = conn_robot_config(c->a);
     int status = open_trace(c, c->a, &c->trace, conn_device(c));
-    int error;
-    if (status)
+    if (status) {
         return status;
+    }
     conn_link_watch(c->link);
     config.bus.baud_bps = conn_baud(c->a);
     c->before = *grobo_robot_get_counters(c->robot);
-    error = grobo_robot_configure(c->robot, &config);
-    if (!error) /* an emergency stop from before the command, maybe */
+    int error = grobo_robot_configure(c->robot, &config);
+    if (!error) { /* an emergency stop from before the command, maybe */
         error = conn_wait_until(c, is_idle);
-    if (!error && check && !c->link->answered)
+    }
+    if (!error && check && !c->link->answered) {
         error = conn_wait(c, grobo_robot_check(grobo_session_robot(c->session)));
-    if (error && !is_interrupted(c))
+    }
+    if (error && !is_interrupted(c)) {
         return fail_open(c, error);
+    }
     c->link->answered |= check;
     return error ? EXIT_ROBOT : EXIT_DONE;
 }
@@ -473,10 +512,12 @@ static void say_found(conn *c)
     int answer = serial ? grobo_serial_low_latency(serial) : GROBO_ERR_CLOSED;
     bool is_port = strcmp(conn_device(c), GROBO_DEVICE_SIM) != 0 && !is_tcp(conn_device(c));
     app_detail(c->a, "robot found on %s", conn_device(c));
-    if (is_port && !c->a->stops && !c->a->hushed)
+    if (is_port && !c->a->stops && !c->a->hushed) {
         auto_used(c->a, conn_device(c), conn_is_auto(c->a));
-    if (answer < 0 && answer != GROBO_ERR_UNSUPPORTED && answer != GROBO_ERR_CLOSED)
+    }
+    if (answer < 0 && answer != GROBO_ERR_UNSUPPORTED && answer != GROBO_ERR_CLOSED) {
         app_detail(c->a, "low latency: %s; 'grctl doctor' tells more", grobo_error_text(answer));
+    }
 }
 
 /* How long a guard is waited for, and how often it is looked at. */
@@ -505,11 +546,13 @@ static int open_session(conn *c)
     while (waits && (error == GROBO_ERR_BUSY || error == GROBO_ERR_NOTFOUND)) {
         waits = guard_has(conn_is_auto(c->a) ? GROBO_DEVICE_AUTO : conn_device(c)) &&
                 grobo_now_us() < until_us;
-        if (!waits && !waited && error == GROBO_ERR_NOTFOUND)
+        if (!waits && !waited && error == GROBO_ERR_NOTFOUND) {
             break;
+        }
         c->link_error = c->link->link_error = 0;
-        if (waits && conn_sleep_until(c, grobo_now_us() + GUARD_LOOK_US) < 0)
+        if (waits && conn_sleep_until(c, grobo_now_us() + GUARD_LOOK_US) < 0) {
             break;
+        }
         waited = true;
         error = try_once(c);
     }
@@ -521,37 +564,45 @@ static int open_device(conn *c, app *a, bool check)
     char device[GROBO_DEVICE_MAX_BYTES];
     const char *asked = conn_requested(a);
     grobo_os_cause cause = {0};
-    int error;
     take(c, a);
-    if (c->session)
+    if (c->session) {
         return take_over(c, check);
-    if (!*asked)
+    }
+    if (!*asked) {
         return app_fail(a, EXIT_USAGE, "ARG", "--device: an empty name; see 'grctl ports'");
-    error = grobo_port_resolve(asked, device, sizeof device, &cause);
-    if (error)
+    }
+    int error = grobo_port_resolve(asked, device, sizeof device, &cause);
+    if (error) {
         return app_fail(a, app_status_of(error), grobo_error_name(error), "%s: %s", asked,
                         *cause.text ? cause.text : grobo_error_text(error));
-    if (a->moves)
+    }
+    if (a->moves) {
         guard_start(a, device);
+    }
     error = open_traces(c, device);
-    if (error)
+    if (error) {
         return error;
+    }
     error = make_session(c, device, check);
-    if (error)
+    if (error) {
         return app_fail_error(a, EXIT_ROBOT, error, "%s", device);
+    }
     c->base = c->link->base;
     c->session = c->link->session;
     c->robot = grobo_session_robot(c->session);
     conn_link_watch(c->link);
     error = open_session(c);
-    if (error && !is_interrupted(c))
+    if (error && !is_interrupted(c)) {
         return fail_open(c, error);
+    }
     c->link->answered = check && !error;
     c->trip = (grobo_trip_info){.trip = GROBO_TRIP_NONE}; /* of a stop that stands */
-    if (!error)                                           /* one that had not reached the robot */
+    if (!error) {                                         /* one that had not reached the robot */
         error = conn_wait_until(c, is_idle);
-    if (!error)
+    }
+    if (!error) {
         say_found(c);
+    }
     return error ? EXIT_ROBOT : EXIT_DONE;
 }
 
@@ -568,31 +619,34 @@ int conn_open_unchecked(conn *c, app *a)
 void conn_watch(conn *c, bool on)
 {
     grobo_robot_config config = conn_robot_config(c->a);
-    if (on)
+    if (on) {
         config.sense_interval_us = 0; /* the engine's default */
+    }
     (void)grobo_robot_configure(c->robot, &config);
 }
 
 int conn_open_to_move(conn *c, app *a)
 {
-    int status;
     a->moves = true;
-    status = conn_open(c, a);
-    if (status)
+    int status = conn_open(c, a);
+    if (status) {
         return status;
+    }
     conn_watch(c, true);
-    if (grobo_estop_stands(conn_device(c)))
+    if (grobo_estop_stands(conn_device(c))) {
         return app_fail(a, EXIT_SAFETY, grobo_error_name(GROBO_ERR_LATCHED),
                         "%s: stopped by 'grctl estop'; 'grctl estop --reset' takes it back",
                         conn_device(c));
+    }
     return EXIT_DONE;
 }
 
 void conn_link_idle(conn_link *link, app *a)
 {
     conn c = {.a = a};
-    if (!link->session || !link->up)
+    if (!link->session || !link->up) {
         return;
+    }
     c.robot = grobo_session_robot(link->session);
     conn_watch(&c, true);
     grobo_session_pump(link->session);
@@ -603,8 +657,9 @@ void conn_link_idle(conn_link *link, app *a)
 /* After Ctrl-Z: what moves stands before the process is suspended. */
 static void suspend(conn *c)
 {
-    if (c->signal != os_suspension || !c->up || c->link_error)
+    if (c->signal != os_suspension || !c->up || c->link_error) {
         return;
+    }
     c->leaving = true;
     (void)conn_wait(c, grobo_robot_exit(grobo_session_robot(c->session), GROBO_EXIT_HOLD));
     conn_suspend();
@@ -612,8 +667,9 @@ static void suspend(conn *c)
 
 int conn_end_estop(conn *c)
 {
-    if (c->trip.trip != GROBO_TRIP_ESTOP || !c->up)
+    if (c->trip.trip != GROBO_TRIP_ESTOP || !c->up) {
         return GROBO_OK;
+    }
     c->moving = false;
     c->leaving = true;
     return conn_wait_until(c, is_idle);
@@ -623,10 +679,12 @@ int conn_end_estop(conn *c)
 static grobo_exit_policy policy_now(const conn *c, int status)
 {
     const cli_value *asked = app_global(c->a, GLOBAL_ON_EXIT);
-    if (asked->given)
+    if (asked->given) {
         return (grobo_exit_policy)(asked->choice + GROBO_EXIT_OFF);
-    if (c->moving && (c->signal || status != EXIT_DONE))
+    }
+    if (c->moving && (c->signal || status != EXIT_DONE)) {
         return grobo_robot_driver(c->robot)->on_exit;
+    }
     return GROBO_EXIT_DEFAULT;
 }
 
@@ -649,19 +707,24 @@ static int carry_out_policy(conn *c, int status)
 {
     int error = conn_end_estop(c); /* which comes before any policy */
     grobo_exit_policy policy = policy_now(c, status);
-    if (error)
+    if (error) {
         return conn_fail_job(c, error, "the emergency stop could not be verified: ");
-    if (policy == GROBO_EXIT_DEFAULT || !c->up || c->link_error)
+    }
+    if (policy == GROBO_EXIT_DEFAULT || !c->up || c->link_error) {
         return EXIT_DONE;
+    }
     c->leaving = true;
     error =
         conn_wait_shown(c, grobo_robot_exit(grobo_session_robot(c->session), policy), "leaving", 0);
-    if (error && !c->signal && !app_global(c->a, GLOBAL_ON_EXIT)->given)
+    if (error && !c->signal && !app_global(c->a, GLOBAL_ON_EXIT)->given) {
         return status; /* nobody asked for it, and why the command failed has been said */
-    if (error)
+    }
+    if (error) {
         return conn_fail_job(c, error, "the servos could not be left as asked: ");
-    if (c->signal)
+    }
+    if (c->signal) {
         app_note(c->a, "interrupted: the servos %s", policy_words(policy));
+    }
     app_detail(c->a, "exit policy carried out");
     return EXIT_DONE;
 }
@@ -678,10 +741,12 @@ static void give_back(conn *c)
         c->link->session = NULL;
         return;
     }
-    if (grobo_robot_job(c->robot) != GROBO_JOB_NONE)
+    if (grobo_robot_job(c->robot) != GROBO_JOB_NONE) {
         grobo_robot_cancel(grobo_session_robot(c->session));
-    if (serial && grobo_serial_baud(serial) != baud_bps)
+    }
+    if (serial && grobo_serial_baud(serial) != baud_bps) {
         grobo_serial_set_baud(serial, baud_bps);
+    }
 }
 
 static bool is_quiet(conn *c)
@@ -692,8 +757,9 @@ static bool is_quiet(conn *c)
 /* The answer to a reading in the background is not left on the line for who comes next. */
 static void await_quiet(conn *c)
 {
-    if (c->up && !c->link_error)
+    if (c->up && !c->link_error) {
         (void)conn_wait_until(c, is_quiet);
+    }
 }
 
 int conn_close(conn *c, int status)
@@ -706,18 +772,20 @@ int conn_close(conn *c, int status)
         await_quiet(c);
     }
     conn_show_answer(c);
-    if (failed)
+    if (failed) {
         status = failed;
-    else if (c->signal)
+    } else if (c->signal) {
         status = EXIT_SIGNAL + c->signal;
+    }
     if (c->link->kept) {
         give_back(c);
     } else {
         grobo_session_free(c->session);
         c->link->session = NULL;
         conn_link_deinit(c->link);
-        if (!c->a->stops) /* it may be an attempt that is repeated */
+        if (!c->a->stops) { /* it may be an attempt that is repeated */
             app_attach(c->a);
+        }
     }
     return trace_close(&c->trace, c->a, status);
 }
@@ -726,8 +794,9 @@ int conn_close(conn *c, int status)
 
 int conn_link_init(conn_link *link)
 {
-    if (link->base)
+    if (link->base) {
         return GROBO_OK;
+    }
     link->base = grobo_loop_new();
     return link->base && conn_signals_init(link) ? GROBO_OK : GROBO_ERR_NOMEM;
 }
@@ -744,10 +813,11 @@ int conn_link_close(conn_link *link, app *a, int status)
         failed = carry_out_policy(&c, status);
         conn_link_unwatch(link);
     }
-    if (failed)
+    if (failed) {
         status = failed;
-    else if (c.signal)
+    } else if (c.signal) {
         status = EXIT_SIGNAL + c.signal;
+    }
     grobo_session_free(c.session);
     link->session = NULL;
     link->user = NULL;
@@ -760,8 +830,9 @@ int conn_link_close(conn_link *link, app *a, int status)
 void conn_link_deinit(conn_link *link)
 {
     conn_signals_deinit(link);
-    if (link->base)
+    if (link->base) {
         event_base_free(link->base);
+    }
     memset(link, 0, sizeof *link);
     guard_end();
 }

@@ -19,10 +19,12 @@ const char *conn_device(const conn *c)
 static void show_bytes(conn *c, char direction, int64_t at_us, const uint8_t *bytes, size_t size)
 {
     char text[HEX_BYTES];
-    if (c->a->verbosity < 2 || c->a->hushed || size == 0)
+    if (c->a->verbosity < 2 || c->a->hushed || size == 0) {
         return;
-    if (!c->shown_us)
+    }
+    if (!c->shown_us) {
         c->shown_us = at_us;
+    }
     grobo_hex(text, sizeof text, bytes, size);
     output_complain("%10.3f  %c  %s\n", (double)(at_us - c->shown_us) / 1e3, direction, text);
 }
@@ -30,8 +32,9 @@ static void show_bytes(conn *c, char direction, int64_t at_us, const uint8_t *by
 void conn_show_answer(conn *c)
 {
     const last_frame *last = last_frames_newest(&c->last);
-    if (last)
+    if (last) {
         show_bytes(c, '<', last->got_us, last->got, last->n_got);
+    }
 }
 
 void conn_note_bytes(conn *c, grobo_direction direction, int64_t now_us, const uint8_t *bytes,
@@ -78,12 +81,14 @@ static int fail_trip(conn *c, const char *doing)
     const grobo_trip_info *t = &c->trip;
     const grobo_model *model = grobo_robot_driver(c->robot)->model;
     char value[48] = "";
-    if (*trip_unit(t->trip))
+    if (*trip_unit(t->trip)) {
         snprintf(value, sizeof value, " (%.4g%s)", t->value, trip_unit(t->trip));
-    if (t->joint >= 0 && t->joint < model->n_joints)
+    }
+    if (t->joint >= 0 && t->joint < model->n_joints) {
         return app_fail_trip(c->a, t->trip, "%s: stopped for safety: %s%s at motor %d (%s)", doing,
                              grobo_trip_name(t->trip), value, model->joints[t->joint].motor,
                              model->joints[t->joint].name);
+    }
     return app_fail_trip(c->a, t->trip, "%s: stopped for safety: %s%s", doing,
                          grobo_trip_name(t->trip), value);
 }
@@ -100,9 +105,10 @@ static int fail_reply(conn *c, int error, int id, const char *prefix, const char
     last_try last = last_frames_to(&c->last, id, grobo_now_us());
     char took[48] = "", bytes[8 * LAST_FRAME_BYTES];
     int status;
-    if (last.frame)
+    if (last.frame) {
         snprintf(took, sizeof took, " in %.1f ms after %d %s", (double)last.took_us / 1e3,
                  last.attempts - 1, last.attempts == 2 ? "retry" : "retries");
+    }
     status =
         app_fail(c->a, EXIT_ROBOT, grobo_error_name(error),
                  "%s: %s%s from %s%s; is its cable in? see 'grctl doctor'", conn_device(c), prefix,
@@ -119,17 +125,20 @@ int conn_fail_job(conn *c, int error, const char *prefix)
     const grobo_model *model = grobo_robot_driver(c->robot)->model;
     int joint = c->job.kind == GROBO_JOB_NONE ? -1 : c->job.joint;
     char who[64];
-    if (joint < 0 || joint >= model->n_joints)
+    if (joint < 0 || joint >= model->n_joints) {
         return app_fail(c->a, app_status_of(error), grobo_error_name(error), "%s: %s%s",
                         conn_device(c), prefix, grobo_error_text(error));
+    }
     snprintf(who, sizeof who, "motor %d (%s)", model->joints[joint].motor,
              model->joints[joint].name);
-    if (conn_is_of_reply(error) && c->job.failed == GROBO_JOINTS_ALL(model->n_joints))
+    if (conn_is_of_reply(error) && c->job.failed == GROBO_JOINTS_ALL(model->n_joints)) {
         return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error),
                         "%s: %sno servo answers; are they powered? see 'grctl doctor'",
                         conn_device(c), prefix);
-    if (conn_is_of_reply(error))
+    }
+    if (conn_is_of_reply(error)) {
         return fail_reply(c, error, model->joints[joint].motor, prefix, who);
+    }
     return app_fail_error(c->a, app_status_of(error), error, "%s: %s%s", conn_device(c), prefix,
                           who);
 }
@@ -137,19 +146,23 @@ int conn_fail_job(conn *c, int error, const char *prefix)
 int conn_fail(conn *c, int error, const char *doing)
 {
     char prefix[64];
-    if (c->signal && !c->a->stops)
+    if (c->signal && !c->a->stops) {
         return EXIT_SIGNAL + c->signal;
-    if (c->link_error == GROBO_ERR_STALLED)
+    }
+    if (c->link_error == GROBO_ERR_STALLED) {
         return app_fail_trip(
             c->a, GROBO_TRIP_HOST_STALL,
             "%s: stopped for safety: host stalled: grctl was stopped by a signal, and "
             "the guard stopped the robot",
             doing);
-    if (c->link_error)
+    }
+    if (c->link_error) {
         return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error), "%s: %s while busy with %s",
                         conn_device(c), grobo_error_text(error), doing);
-    if (c->trip.trip != GROBO_TRIP_NONE)
+    }
+    if (c->trip.trip != GROBO_TRIP_NONE) {
         return fail_trip(c, doing);
+    }
     snprintf(prefix, sizeof prefix, "%s: ", doing);
     return conn_fail_job(c, error, conn_is_of_reply(error) ? "" : prefix);
 }
@@ -157,11 +170,13 @@ int conn_fail(conn *c, int error, const char *doing)
 int conn_fail_servo(conn *c, int error, int id)
 {
     char who[32];
-    if ((c->signal && !c->a->stops) || c->link_error)
+    if ((c->signal && !c->a->stops) || c->link_error) {
         return conn_fail(c, error, "servo");
+    }
     snprintf(who, sizeof who, "servo %d", id);
-    if (conn_is_of_reply(error))
+    if (conn_is_of_reply(error)) {
         return fail_reply(c, error, id, "", who);
+    }
     return app_fail_error(c->a, app_status_of(error), error, "%s: %s", conn_device(c), who);
 }
 
@@ -169,14 +184,17 @@ int conn_link_news(conn_link *link, app *a)
 {
     conn c = {.a = a, .link = link, .session = link->session, .trip = link->trip};
     int status = EXIT_DONE;
-    if (!link->news || !c.session)
+    if (!link->news || !c.session) {
         return EXIT_DONE;
+    }
     link->news = false;
     link->trip = (grobo_trip_info){.trip = GROBO_TRIP_NONE};
     c.robot = grobo_session_robot(c.session);
-    if (c.trip.trip != GROBO_TRIP_NONE)
+    if (c.trip.trip != GROBO_TRIP_NONE) {
         status = fail_trip(&c, conn_device(&c));
-    if (link->link_error)
+    }
+    if (link->link_error) {
         status = app_fail_error(a, EXIT_ROBOT, link->link_error, "%s", conn_device(&c));
+    }
     return status;
 }

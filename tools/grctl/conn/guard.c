@@ -30,10 +30,12 @@ static const grobo_driver *find_driver(void *ctx, const char *name, grobo_wiring
     guard_robot given;
     const grobo_driver *inner = grobo_gr001_driver(wiring);
     (void)ctx;
-    if (!inner || strcmp(name, inner->name) != 0 || (bytes && bytes != sizeof given))
+    if (!inner || strcmp(name, inner->name) != 0 || (bytes && bytes != sizeof given)) {
         return NULL;
-    if (!bytes)
+    }
+    if (!bytes) {
         return inner;
+    }
     memcpy(&given, data, sizeof given);
     memcpy(robot.trim_deg, given.trim_deg, sizeof robot.trim_deg);
     memcpy(robot.offset_deg, given.offset_deg, sizeof robot.offset_deg);
@@ -46,14 +48,16 @@ static void on_stop(void *ctx, grobo_guard_cause cause, int result)
 {
     (void)ctx;
     /* One that is only stopped says so when it continues. Nobody may be left to read this. */
-    if ((cause != GROBO_GUARD_DIED && result >= 0) || !os_takes_line(stderr))
+    if ((cause != GROBO_GUARD_DIED && result >= 0) || !os_takes_line(stderr)) {
         return;
-    if (result < 0)
+    }
+    if (result < 0) {
         fprintf(stderr,
                 "grctl was killed; not every joint is seen to stand: %s; switch the robot off\n",
                 grobo_error_text(result));
-    else
+    } else {
         fprintf(stderr, "grctl was killed; its guard stopped the robot\n");
+    }
     fflush(stderr);
 }
 
@@ -61,8 +65,9 @@ int guard_main(void)
 {
     static const grobo_guard_program program = {.driver = find_driver, .on_stop = on_stop};
     int error = grobo_guard_run(&program);
-    if (error == GROBO_ERR_ARG || error == GROBO_ERR_UNSUPPORTED)
+    if (error == GROBO_ERR_ARG || error == GROBO_ERR_UNSUPPORTED) {
         fprintf(stderr, "grctl: guard: is started by grctl itself, to stop a robot\n");
+    }
     return error == GROBO_ERR_ARG || error == GROBO_ERR_UNSUPPORTED ? EXIT_USAGE
            : error                                                  ? EXIT_ROBOT
                                                                     : EXIT_DONE;
@@ -72,23 +77,26 @@ int guard_main(void)
 
 void guard_note_program(const char *argv0)
 {
-    if (argv0 && *argv0)
+    if (argv0 && *argv0) {
         called = argv0;
+    }
 }
 
 void guard_start(const app *a, const char *device)
 {
     const char *chosen = getenv("GRCTL_GUARD");
     grobo_guard_config config = {.program = chosen ? chosen : os_own_program(called)};
-    int error;
-    if (guard || strcmp(device, GROBO_DEVICE_SIM) == 0 || !*config.program)
+    if (guard || strcmp(device, GROBO_DEVICE_SIM) == 0 || !*config.program) {
         return;
-    error = grobo_guard_new(&config, &guard);
-    if (!error)
+    }
+    int error = grobo_guard_new(&config, &guard);
+    if (!error) {
         app_detail(a, "guarded by process %d", grobo_guard_pid(guard));
-    if (error && error != GROBO_ERR_UNSUPPORTED)
+    }
+    if (error && error != GROBO_ERR_UNSUPPORTED) {
         app_note(a, "no guard: %s; if grctl is killed, joints go on to their goals",
                  grobo_error_text(error));
+    }
 }
 
 grobo_guard *guard_started(void)
@@ -100,8 +108,9 @@ const void *guard_data(const config_robot *robot, size_t *bytes)
 {
     static guard_robot given;
     *bytes = robot ? sizeof given : 0;
-    if (!robot)
+    if (!robot) {
         return NULL;
+    }
     memset(&given, 0, sizeof given);
     memcpy(given.trim_deg, robot->trim_deg, sizeof given.trim_deg);
     memcpy(given.offset_deg, robot->offset_deg, sizeof given.offset_deg);
@@ -126,7 +135,8 @@ static int is_with_guard(void *ctx, const grobo_port_info *info)
 bool guard_has(const char *device)
 {
     char name[64];
-    if (strcmp(device, GROBO_DEVICE_AUTO) == 0)
+    if (strcmp(device, GROBO_DEVICE_AUTO) == 0) {
         return grobo_port_list(is_with_guard, NULL) == 1;
+    }
     return grobo_port_owner(device, name, sizeof name) && strcmp(name, GROBO_GUARD_NAME) == 0;
 }

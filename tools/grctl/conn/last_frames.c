@@ -25,8 +25,9 @@ void last_frames_note(last_frames *all, grobo_direction direction, int64_t now_u
         frame->n_got = 0;
     } else if (all->n > 0) {
         frame = &all->frame[(all->n - 1) % LAST_FRAMES];
-        if (frame->n_got == 0)
+        if (frame->n_got == 0) {
             frame->got_us = now_us;
+        }
         frame->n_got = append(frame->got, frame->n_got, bytes, size);
     }
 }
@@ -39,9 +40,11 @@ const last_frame *last_frames_newest(const last_frames *all)
 /* A packet to one servo, bare or in a frame of the board: FA AF ID. */
 static bool is_to(const last_frame *frame, int id)
 {
-    for (size_t i = 0; i + 2 < frame->n_sent; i++)
-        if (frame->sent[i] == 0xfa && frame->sent[i + 1] == 0xaf)
+    for (size_t i = 0; i + 2 < frame->n_sent; i++) {
+        if (frame->sent[i] == 0xfa && frame->sent[i + 1] == 0xaf) {
             return frame->sent[i + 2] == id;
+        }
+    }
     return false;
 }
 
@@ -57,8 +60,9 @@ last_try last_frames_to(const last_frames *all, int id, int64_t now_us)
     int64_t end_us = now_us;
     for (unsigned i = 1; i <= known; i++) {
         const last_frame *frame = &all->frame[(all->n - i) % LAST_FRAMES];
-        if (found.frame && !is_same(frame, found.frame))
+        if (found.frame && !is_same(frame, found.frame)) {
             break;
+        }
         if (!found.frame && is_to(frame, id)) {
             found.frame = frame;
             found.took_us = end_us - frame->at_us;
@@ -72,9 +76,11 @@ last_try last_frames_to(const last_frames *all, int id, int64_t now_us)
 void last_frames_text(const last_frame *frame, char *text, size_t capacity)
 {
     char sent[3 * LAST_FRAME_BYTES + 1], got[3 * LAST_FRAME_BYTES + 1];
-    if (grobo_hex(sent, sizeof sent, frame->sent, frame->n_sent) < 0)
+    if (grobo_hex(sent, sizeof sent, frame->sent, frame->n_sent) < 0) {
         sent[0] = '\0';
-    if (frame->n_got == 0 || grobo_hex(got, sizeof got, frame->got, frame->n_got) < 0)
+    }
+    if (frame->n_got == 0 || grobo_hex(got, sizeof got, frame->got, frame->n_got) < 0) {
         snprintf(got, sizeof got, "nothing");
+    }
     snprintf(text, capacity, "sent %s; received %s", sent, got);
 }

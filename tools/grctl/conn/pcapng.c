@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#include "tools/grctl/conn/pcapng.h"
-
 #include <stdarg.h>
 #include <string.h>
+
+#include "tools/grctl/conn/pcapng.h"
 
 enum {
     BLOCK_SECTION = 0x0A0D0D0A, /* the same in either byte order */
@@ -44,8 +44,9 @@ enum { HEAD_BYTES = BLOCK_FRAME_BYTES + SECTION_BYTES + 3 * (PCAPNG_TEXT_BYTES +
 
 static void put(uint8_t *to, uint64_t value, int bytes)
 {
-    for (int i = 0; i < bytes; i++)
+    for (int i = 0; i < bytes; i++) {
         to[i] = (uint8_t)(value >> (8 * i));
+    }
 }
 
 static void add(block *b, uint64_t value, int bytes)
@@ -75,8 +76,9 @@ static void add_option(block *b, unsigned option, const void *value, size_t n)
 
 static void add_text(block *b, unsigned option, const char *text)
 {
-    if (text && *text)
+    if (text && *text) {
         add_option(b, option, text, strnlen(text, PCAPNG_TEXT_BYTES - 1));
+    }
 }
 
 static void add_number(block *b, unsigned option, uint64_t value, int bytes)
@@ -118,16 +120,18 @@ int pcapng_write_head(FILE *to, const char *program, const char *comment,
     add(&b, UINT64_MAX, 8); /* the section's length is not known */
     add_text(&b, OPTION_COMMENT, comment);
     add_text(&b, OPTION_PROGRAM, program);
-    if (write_all(to, bytes, finish(&b)) < 0)
+    if (write_all(to, bytes, finish(&b)) < 0) {
         return GROBO_ERR_IO;
+    }
     b = begin(bytes, BLOCK_INTERFACE);
     add(&b, PCAPNG_LINK_USER0, 2);
     add(&b, 0, 2);
     add(&b, 0, 4); /* no limit to a packet's length */
     add_text(&b, OPTION_NAME, interface->name);
     add_text(&b, OPTION_DESCRIPTION, interface->description);
-    if (interface->speed_bps)
+    if (interface->speed_bps) {
         add_number(&b, OPTION_SPEED, interface->speed_bps, 8);
+    }
     add_number(&b, OPTION_RESOLUTION, RESOLUTION_US, 1);
     return write_all(to, bytes, finish(&b));
 }
@@ -150,8 +154,9 @@ int pcapng_write_chunk(FILE *to, int64_t time_us, pcapng_direction direction, co
                        size_t size)
 {
     uint8_t packet[PCAPNG_PACKET_BYTES];
-    if (size == 0 || size > PCAPNG_CHUNK_BYTES)
+    if (size == 0 || size > PCAPNG_CHUNK_BYTES) {
         return GROBO_ERR_ARG;
+    }
     return write_all(to, packet, pcapng_make_chunk(packet, time_us, direction, bytes, size));
 }
 
@@ -163,11 +168,10 @@ static int fail(pcapng_reader *r, int error, const char *format, ...)
 static int fail(pcapng_reader *r, int error, const char *format, ...)
 {
     va_list list;
-    size_t used;
     va_start(list, format);
     vsnprintf(r->problem, sizeof r->problem, format, list);
     va_end(list);
-    used = strlen(r->problem);
+    size_t used = strlen(r->problem);
     snprintf(r->problem + used, sizeof r->problem - used, " (byte %llu)",
              (unsigned long long)r->at);
     r->error = error;
@@ -177,18 +181,19 @@ static int fail(pcapng_reader *r, int error, const char *format, ...)
 static uint64_t get(const pcapng_reader *r, const uint8_t *from, int bytes)
 {
     uint64_t value = 0;
-    for (int i = 0; i < bytes; i++)
+    for (int i = 0; i < bytes; i++) {
         value = value << 8 | from[r->big_endian ? i : bytes - 1 - i];
+    }
     return value;
 }
 
 /* Takes n bytes of the present block; nothing but the block's own bytes. */
 static int take(pcapng_reader *r, void *buffer, size_t n)
 {
-    size_t got;
-    if (n > r->block_left)
+    if (n > r->block_left) {
         return fail(r, GROBO_ERR_SYNTAX, "a block is too short for what it holds");
-    got = r->source(r->ctx, buffer, n);
+    }
+    size_t got = r->source(r->ctx, buffer, n);
     r->at += got;
     r->block_left -= (uint32_t)got;
     return got == n ? GROBO_OK : fail(r, GROBO_ERR_SHORT, "cut off in the middle of a block");
@@ -209,10 +214,12 @@ static int skip(pcapng_reader *r, size_t n)
 /* Text of an option: kept up to our cap, without control characters. */
 static void keep_text(char *to, const uint8_t *from, size_t n)
 {
-    if (n > PCAPNG_TEXT_BYTES - 1)
+    if (n > PCAPNG_TEXT_BYTES - 1) {
         n = PCAPNG_TEXT_BYTES - 1;
-    for (size_t i = 0; i < n; i++)
+    }
+    for (size_t i = 0; i < n; i++) {
         to[i] = from[i] < 0x20 || from[i] == 0x7F ? ' ' : (char)from[i];
+    }
     to[n] = '\0';
 }
 
@@ -230,15 +237,19 @@ static int read_options(pcapng_reader *r, option_fn use, void *to)
         unsigned code = (unsigned)get(r, head, 2);
         size_t length = (size_t)get(r, head + 2, 2);
         size_t kept = length < sizeof value ? length : sizeof value;
-        if (error || code == OPTION_END)
+        if (error || code == OPTION_END) {
             return error;
-        if (padded(length) > r->block_left)
+        }
+        if (padded(length) > r->block_left) {
             return fail(r, GROBO_ERR_SYNTAX, "an option is longer than its block");
+        }
         error = take(r, value, kept);
-        if (!error)
+        if (!error) {
             error = skip(r, padded(length) - kept);
-        if (error)
+        }
+        if (error) {
             return error;
+        }
         use(r, to, code, value, kept);
     }
     return GROBO_OK;
@@ -248,24 +259,26 @@ static void section_option(pcapng_reader *r, void *to, unsigned code, const uint
                            size_t n)
 {
     (void)r;
-    if (code == OPTION_COMMENT)
+    if (code == OPTION_COMMENT) {
         keep_text(to, value, n);
+    }
 }
 
 static void interface_option(pcapng_reader *r, void *to, unsigned code, const uint8_t *value,
                              size_t n)
 {
     pcapng_interface *interface = to;
-    if (code == OPTION_NAME)
+    if (code == OPTION_NAME) {
         keep_text(interface->name, value, n);
-    else if (code == OPTION_DESCRIPTION)
+    } else if (code == OPTION_DESCRIPTION) {
         keep_text(interface->description, value, n);
-    else if (code == OPTION_SPEED && n == 8)
+    } else if (code == OPTION_SPEED && n == 8) {
         interface->speed_bps = get(r, value, 8);
-    else if (code == OPTION_RESOLUTION && n == 1)
+    } else if (code == OPTION_RESOLUTION && n == 1) {
         interface->resolution = value[0];
-    else if (code == OPTION_TIME_OFFSET && n == 8)
+    } else if (code == OPTION_TIME_OFFSET && n == 8) {
         interface->offset_s = (int64_t)get(r, value, 8);
+    }
 }
 
 static void packet_option(pcapng_reader *r, void *to, unsigned code, const uint8_t *value, size_t n)
@@ -285,29 +298,32 @@ static void packet_option(pcapng_reader *r, void *to, unsigned code, const uint8
 static int read_section(pcapng_reader *r, const uint8_t *length)
 {
     uint8_t fixed[SECTION_BYTES];
-    uint64_t total;
-    int error;
     r->block_left = 4;
-    error = take(r, fixed, 4);
-    if (error)
+    int error = take(r, fixed, 4);
+    if (error) {
         return error;
+    }
     r->big_endian = false;
     if (get(r, fixed, 4) != BYTE_ORDER_MAGIC) {
         r->big_endian = true;
-        if (get(r, fixed, 4) != BYTE_ORDER_MAGIC)
+        if (get(r, fixed, 4) != BYTE_ORDER_MAGIC) {
             return fail(r, GROBO_ERR_SYNTAX, "the section has no byte order");
+        }
     }
-    total = get(r, length, 4);
+    uint64_t total = get(r, length, 4);
     if (total % 4 != 0 || total < BLOCK_FRAME_BYTES + SECTION_BYTES ||
-        total > PCAPNG_BLOCK_MAX_BYTES)
+        total > PCAPNG_BLOCK_MAX_BYTES) {
         return fail(r, GROBO_ERR_SYNTAX, "the section's head has an impossible length");
+    }
     r->block_left = (uint32_t)total - BLOCK_FRAME_BYTES - 4;
     error = take(r, fixed + 4, SECTION_BYTES - 4);
-    if (error)
+    if (error) {
         return error;
-    if (get(r, fixed + 4, 2) != 1)
+    }
+    if (get(r, fixed + 4, 2) != 1) {
         return fail(r, GROBO_ERR_SYNTAX, "version %llu of the format is not known",
                     (unsigned long long)get(r, fixed + 4, 2));
+    }
     r->n_interfaces = 0;
     r->comment[0] = '\0';
     return read_options(r, section_option, r->comment);
@@ -317,12 +333,13 @@ static int read_interface(pcapng_reader *r)
 {
     uint8_t fixed[INTERFACE_BYTES];
     pcapng_interface *interface = &r->interfaces[r->n_interfaces];
-    int error;
-    if (r->n_interfaces == PCAPNG_INTERFACES_MAX)
+    if (r->n_interfaces == PCAPNG_INTERFACES_MAX) {
         return fail(r, GROBO_ERR_CAP, "more than %d interfaces", PCAPNG_INTERFACES_MAX);
-    error = take(r, fixed, sizeof fixed);
-    if (error)
+    }
+    int error = take(r, fixed, sizeof fixed);
+    if (error) {
         return error;
+    }
     memset(interface, 0, sizeof *interface);
     interface->link_type = (uint16_t)get(r, fixed, 2);
     interface->resolution = RESOLUTION_US;
@@ -335,51 +352,58 @@ static int64_t to_us(const pcapng_interface *interface, uint64_t counts)
 {
     const uint64_t most_s = 4000000000000u, million = 1000000u;
     unsigned exponent = interface->resolution & 0x7Fu;
-    uint64_t per_s = 1, s, us;
+    uint64_t per_s = 1, us;
     int64_t offset_s = interface->offset_s;
     bool binary = interface->resolution & 0x80u;
-    for (unsigned i = 0; i < exponent && per_s <= UINT64_MAX / 10; i++)
+    for (unsigned i = 0; i < exponent && per_s <= UINT64_MAX / 10; i++) {
         per_s *= binary ? 2 : 10;
-    s = counts / per_s;
-    if (binary)
+    }
+    uint64_t s = counts / per_s;
+    if (binary) {
         us = (uint64_t)((double)(counts % per_s) / (double)per_s * 1e6 + 0.5);
-    else if (per_s <= million)
+    } else if (per_s <= million) {
         us = counts % per_s * (million / per_s);
-    else
+    } else {
         us = counts % per_s / (per_s / million);
-    if (s > most_s)
+    }
+    if (s > most_s) {
         s = most_s;
-    if (offset_s > (int64_t)most_s || offset_s < -(int64_t)most_s)
+    }
+    if (offset_s > (int64_t)most_s || offset_s < -(int64_t)most_s) {
         offset_s = 0;
+    }
     return ((int64_t)s + offset_s) * (int64_t)million + (int64_t)us;
 }
 
 static int read_packet(pcapng_reader *r, pcapng_chunk *chunk)
 {
     uint8_t fixed[PACKET_BYTES];
-    const pcapng_interface *interface;
-    uint64_t index, size;
     int error = take(r, fixed, sizeof fixed);
-    if (error)
+    if (error) {
         return error;
-    index = get(r, fixed, 4);
-    size = get(r, fixed + 12, 4);
-    if (index >= r->n_interfaces)
+    }
+    uint64_t index = get(r, fixed, 4);
+    uint64_t size = get(r, fixed + 12, 4);
+    if (index >= r->n_interfaces) {
         return fail(r, GROBO_ERR_SYNTAX, "a packet of an interface that was not described");
-    interface = &r->interfaces[index];
-    if (interface->link_type != PCAPNG_LINK_USER0)
+    }
+    const pcapng_interface *interface = &r->interfaces[index];
+    if (interface->link_type != PCAPNG_LINK_USER0) {
         return fail(r, GROBO_ERR_TYPE, "link type %u: not a trace of grctl (%d)",
                     interface->link_type, PCAPNG_LINK_USER0);
-    if (size > sizeof r->bytes)
+    }
+    if (size > sizeof r->bytes) {
         return fail(r, GROBO_ERR_CAP, "a packet of more than %zu bytes", sizeof r->bytes);
+    }
     memset(chunk, 0, sizeof *chunk);
     chunk->interface = interface;
     chunk->time_us = to_us(interface, get(r, fixed + 4, 4) << 32 | get(r, fixed + 8, 4));
     chunk->bytes = r->bytes;
     chunk->size = (size_t)size;
     error = take(r, r->bytes, chunk->size);
-    if (!error)
+    if (!error) {
         error = skip(r, padded(chunk->size) - chunk->size);
+    }
     return error ? error : read_options(r, packet_option, chunk);
 }
 
@@ -388,12 +412,14 @@ static int end_block(pcapng_reader *r, const uint8_t *length)
 {
     uint8_t again[4];
     int error = skip(r, r->block_left);
-    if (error)
+    if (error) {
         return error;
+    }
     r->block_left = sizeof again;
     error = take(r, again, sizeof again);
-    if (!error && memcmp(again, length, sizeof again) != 0)
+    if (!error && memcmp(again, length, sizeof again) != 0) {
         return fail(r, GROBO_ERR_SYNTAX, "a block's two lengths differ");
+    }
     return error;
 }
 
@@ -402,15 +428,17 @@ static int read_block(pcapng_reader *r, uint32_t type, const uint8_t *length, pc
 {
     uint64_t total = get(r, length, 4);
     int found = 0;
-    if (total % 4 != 0 || total < BLOCK_FRAME_BYTES || total > PCAPNG_BLOCK_MAX_BYTES)
+    if (total % 4 != 0 || total < BLOCK_FRAME_BYTES || total > PCAPNG_BLOCK_MAX_BYTES) {
         return fail(r, GROBO_ERR_SYNTAX, "a block has an impossible length");
+    }
     r->block_left = (uint32_t)total - BLOCK_FRAME_BYTES;
     if (type == BLOCK_INTERFACE) {
         found = read_interface(r);
     } else if (type == BLOCK_PACKET) {
         found = read_packet(r, chunk);
-        if (!found)
+        if (!found) {
             found = chunk->size > 0;
+        }
     } else {
         r->skipped++;
     }
@@ -437,19 +465,22 @@ int pcapng_read(pcapng_reader *reader, pcapng_chunk *chunk)
     while (!reader->error && found == 0) {
         size_t got = reader->source(reader->ctx, head, sizeof head);
         reader->at += got;
-        if (got == 0 && reader->begun)
+        if (got == 0 && reader->begun) {
             return 0;
-        if (got == sizeof head && pcapng_is_start(head))
+        }
+        if (got == sizeof head && pcapng_is_start(head)) {
             found = read_section(reader, head + 4);
-        else if (!reader->begun)
+        } else if (!reader->begun) {
             return fail(reader, GROBO_ERR_TYPE, "is no pcapng file");
-        else if (got < sizeof head)
+        } else if (got < sizeof head) {
             return fail(reader, GROBO_ERR_SHORT, "cut off in the head of a block");
-        else
+        } else {
             found = read_block(reader, (uint32_t)get(reader, head, 4), head + 4, chunk);
+        }
         reader->begun = true;
-        if (found >= 0 && end_block(reader, head + 4) < 0)
+        if (found >= 0 && end_block(reader, head + 4) < 0) {
             break;
+        }
     }
     return reader->error ? reader->error : found;
 }

@@ -26,28 +26,32 @@ int servos_wait(conn *c, int baud_bps, int length, uint32_t margin_us, int retri
     grobo_robot_config config = conn_robot_config(c->a);
     uint32_t wire_us;
     int error = wire_read_us(grobo_robot_driver(c->robot), baud_bps, length, &wire_us);
-    if (error)
+    if (error) {
         return error;
-    if (!config.retries)
+    }
+    if (!config.retries) {
         config.retries = retries;
-    if (!config.timeout_us)
+    }
+    if (!config.timeout_us) {
         config.timeout_us = wire_us + (remote ? TCP_MARGIN_US : margin_us);
-    if (timeout_us)
+    }
+    if (timeout_us) {
         *timeout_us = config.timeout_us;
+    }
     return grobo_robot_configure(c->robot, &config);
 }
 
 int servos_parse_id(app *a, const char *text, int *status)
 {
     double number;
-    int joint;
     if (cli_read_number(text, &number)) {
-        if (number >= 1 && number <= GROBO_RS30X_ID_MAX && number == (double)(int)number)
+        if (number >= 1 && number <= GROBO_RS30X_ID_MAX && number == (double)(int)number) {
             return (int)number;
+        }
         *status = app_fail(a, EXIT_USAGE, "ARG", "'%s' is not an id from 1 to %d", text,
                            GROBO_RS30X_ID_MAX);
         return -1;
     }
-    joint = joints_parse_one(a, text, strlen(text), status);
+    int joint = joints_parse_one(a, text, strlen(text), status);
     return joint < 0 ? -1 : grobo_model_motor_of_joint(&grobo_gr001_model, joint);
 }

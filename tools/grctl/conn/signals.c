@@ -11,8 +11,9 @@ static void on_signal(evutil_socket_t number, short what, void *ctx)
     conn_link *link = ctx;
     int *signal = link->user ? &link->user->signal : &link->signal;
     (void)what;
-    if (!*signal)
+    if (!*signal) {
         *signal = (int)number;
+    }
 }
 
 /* The terminal is as it was while the process is suspended. */
@@ -31,51 +32,60 @@ static void on_suspend(evutil_socket_t number, short what, void *ctx)
 {
     conn_link *link = ctx;
     conn *c = link->user;
-    if (c && c->a->stops)
+    if (c && c->a->stops) {
         return; /* in a moment it has ended */
+    }
     bool moves = c && c->up && !c->link_error && (c->moving || grobo_robot_moving(c->robot));
-    if (!moves)
+    if (!moves) {
         conn_suspend();
-    else if (!c->leaving)
+    } else if (!c->leaving) {
         on_signal(number, what, ctx);
+    }
 }
 
 /* One of these to be heard: false where there is no memory. */
 static bool hear(conn_link *link, int number, event_callback_fn fn)
 {
     struct event *event = evsignal_new(link->base, number, fn, link);
-    if (event)
+    if (event) {
         link->signals[link->n_signals++] = event;
+    }
     return event != NULL;
 }
 
 bool conn_signals_init(conn_link *link)
 {
     os_take_signals();
-    for (int i = 0; i < os_n_endings; i++)
-        if (!hear(link, os_endings[i], on_signal))
+    for (int i = 0; i < os_n_endings; i++) {
+        if (!hear(link, os_endings[i], on_signal)) {
             return false;
+        }
+    }
     return !os_suspension || os_is_ignored(os_suspension) || hear(link, os_suspension, on_suspend);
 }
 
 void conn_signals_deinit(conn_link *link)
 {
-    for (int i = 0; i < link->n_signals; i++)
+    for (int i = 0; i < link->n_signals; i++) {
         event_free(link->signals[i]);
+    }
     link->n_signals = 0;
 }
 
 /* A command that stops the robot hears them itself (run.c): it opens more than one loop. */
 void conn_link_watch(conn_link *link)
 {
-    if (link->user && link->user->a->stops && !link->user->a->link)
+    if (link->user && link->user->a->stops && !link->user->a->link) {
         return;
-    for (int i = 0; i < link->n_signals; i++)
+    }
+    for (int i = 0; i < link->n_signals; i++) {
         event_add(link->signals[i], NULL);
+    }
 }
 
 void conn_link_unwatch(conn_link *link)
 {
-    for (int i = 0; i < link->n_signals; i++)
+    for (int i = 0; i < link->n_signals; i++) {
         event_del(link->signals[i]);
+    }
 }

@@ -26,8 +26,9 @@ static int64_t wall_us(void)
 static void describe(const app *a, char *text, size_t capacity)
 {
     size_t used = (size_t)snprintf(text, capacity, "grctl %s", a->line.command->name);
-    for (int i = 0; i < a->line.n_arguments && used < capacity; i++)
+    for (int i = 0; i < a->line.n_arguments && used < capacity; i++) {
         used += (size_t)snprintf(text + used, capacity - used, " %s", a->line.argument[i]);
+    }
 }
 
 static int fail(app *a, const trace *t, int cause)
@@ -40,8 +41,9 @@ static int fail(app *a, const trace *t, int cause)
 /* No trace keeps a robot from being stopped: then trace_close() reports it. */
 static int give_up(app *a, trace *t, int cause)
 {
-    if (!a->stops)
+    if (!a->stops) {
         return fail(a, t, cause);
+    }
     t->error = cause;
     return 0;
 }
@@ -51,19 +53,21 @@ int trace_open(trace *t, app *a, const trace_line *line, int64_t now_us)
     pcapng_interface interface = {.link_type = PCAPNG_LINK_USER0};
     char comment[PCAPNG_TEXT_BYTES];
     const char *path = app_global(a, GLOBAL_TRACE)->text;
-    int n;
     memset(t, 0, sizeof *t);
-    if (!path)
+    if (!path) {
         return 0;
+    }
     a->traced = true;
-    n = line->number > 1 ? snprintf(t->path, sizeof t->path, "%s%d", path, line->number)
-                         : snprintf(t->path, sizeof t->path, "%s", path);
-    if (n < 0 || (size_t)n >= sizeof t->path)
+    int n = line->number > 1 ? snprintf(t->path, sizeof t->path, "%s%d", path, line->number)
+                             : snprintf(t->path, sizeof t->path, "%s", path);
+    if (n < 0 || (size_t)n >= sizeof t->path) {
         return give_up(a, t, ENAMETOOLONG);
+    }
     t->to_wall_us = wall_us() - now_us;
     t->file = os_create(t->path, !a->stops);
-    if (!t->file)
+    if (!t->file) {
         return give_up(a, t, os_is_folder(t->path) ? EISDIR : errno);
+    }
     snprintf(interface.name, sizeof interface.name, "%s", line->device);
     snprintf(interface.description, sizeof interface.description, "%s", descriptions[line->wiring]);
     interface.speed_bps = (uint64_t)(line->baud_bps ? line->baud_bps : GROBO_BAUD_DEFAULT_BPS);
@@ -106,18 +110,20 @@ int trace_close(trace *t, app *a, int status)
         writer_free(t->queue);
         t->queue = NULL;
     }
-    if (t->file && fclose(t->file) != 0 && !error)
+    if (t->file && fclose(t->file) != 0 && !error) {
         error = errno;
+    }
     t->file = NULL;
     t->error = 0;
-    if (error)
+    if (error) {
         error = fail(a, t, error);
-    else if (dropped)
+    } else if (dropped) {
         error = app_fail(a, EXIT_FILE, "IO",
                          "%s: the trace lacks %llu packets: its reader was too slow", t->path,
                          (unsigned long long)dropped);
-    else
+    } else {
         return status;
+    }
     return status == EXIT_DONE ? error : status;
 }
 

@@ -9,8 +9,9 @@ static int posture(const grobo_driver *self, void *ctx, const grobo_target *targ
 {
     const trims *t = ctx;
     grobo_target moved = *target;
-    for (int j = 0; j < t->model.n_joints; j++)
+    for (int j = 0; j < t->model.n_joints; j++) {
         moved.posture.angle_rad[j] += t->trim_rad[j];
+    }
     return t->inner->posture(self, NULL, &moved, part, exchange);
 }
 
@@ -19,12 +20,15 @@ static int parse(const grobo_driver *self, void *ctx, int joint, const grobo_pac
 {
     const trims *t = ctx;
     int error = t->inner->parse(self, NULL, joint, reply, state);
-    if (error < 0)
+    if (error < 0) {
         return error;
-    if (state->valid & GROBO_FIELD_ANGLE)
+    }
+    if (state->valid & GROBO_FIELD_ANGLE) {
         state->angle_rad -= t->trim_rad[joint];
-    if (state->valid & GROBO_FIELD_GOAL)
+    }
+    if (state->valid & GROBO_FIELD_GOAL) {
         state->goal_rad -= t->trim_rad[joint];
+    }
     return error;
 }
 
@@ -33,9 +37,11 @@ static int inspect(const grobo_driver *self, void *ctx, const uint8_t *frame, si
 {
     const trims *t = ctx;
     int error = t->inner->inspect(self, NULL, frame, size, target, torqued);
-    for (int j = 0; error == 0 && j < t->model.n_joints; j++)
-        if (target->posture.set & GROBO_JOINT_BIT(j))
+    for (int j = 0; error == 0 && j < t->model.n_joints; j++) {
+        if (target->posture.set & GROBO_JOINT_BIT(j)) {
             target->posture.angle_rad[j] -= t->trim_rad[j];
+        }
+    }
     return error;
 }
 
@@ -54,20 +60,23 @@ static void narrow(trims *t, int joint)
 {
     grobo_joint *j = &t->joints[joint];
     double trim_rad = t->trim_rad[joint];
-    if (trim_rad > 0)
+    if (trim_rad > 0) {
         j->max_rad -= trim_rad;
-    else
+    } else {
         j->min_rad -= trim_rad;
+    }
     j->init_rad = clamp(j->init_rad, j->min_rad, j->max_rad);
 }
 
 /* Where the narrowed limits cut the resting posture off, it ends there. */
 static void narrow_rest(trims *t)
 {
-    if (!t->inner->rest_rad)
+    if (!t->inner->rest_rad) {
         return;
-    for (int j = 0; j < t->model.n_joints; j++)
+    }
+    for (int j = 0; j < t->model.n_joints; j++) {
         t->rest_rad[j] = clamp(t->inner->rest_rad[j], t->joints[j].min_rad, t->joints[j].max_rad);
+    }
     t->driver.rest_rad = t->rest_rad;
 }
 
@@ -76,10 +85,12 @@ static void take_offsets(trims *t, const config_robot *robot)
 {
     t->driver.readback = t->readback;
     t->driver.n_readback = 0;
-    for (int j = 0; j < t->model.n_joints; j++)
-        if (robot->offset_deg[j] != 0)
+    for (int j = 0; j < t->model.n_joints; j++) {
+        if (robot->offset_deg[j] != 0) {
             t->readback[t->driver.n_readback++] =
                 (grobo_readback){grobo_rad_from_deg(robot->offset_deg[j]), (uint8_t)j};
+        }
+    }
 }
 
 const grobo_driver *trims_driver(trims *t, const grobo_driver *inner, const config_robot *robot)
@@ -94,14 +105,16 @@ const grobo_driver *trims_driver(trims *t, const grobo_driver *inner, const conf
     t->driver.posture = posture;
     t->driver.parse = parse;
     t->driver.inspect = inner->inspect ? inspect : NULL;
-    if (robot->on_exit.given)
+    if (robot->on_exit.given) {
         t->driver.on_exit = (grobo_exit_policy)(robot->on_exit.choice + GROBO_EXIT_OFF);
+    }
     for (int j = 0; j < t->model.n_joints; j++) {
         t->trim_rad[j] = wire_rad(robot->trim_deg[j]);
         narrow(t, j);
     }
     narrow_rest(t);
-    if (robot->offsets)
+    if (robot->offsets) {
         take_offsets(t, robot);
+    }
     return &t->driver;
 }

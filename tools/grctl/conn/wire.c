@@ -7,8 +7,9 @@ static void measure(const grobo_bus *bus, const grobo_exchange *exchange, wire_c
 {
     grobo_txn txn;
     grobo_bus_cost found = {0};
-    if (grobo_txn_init(&txn, bus->config.protocol, exchange->frame, exchange->frame_bytes) < 0)
+    if (grobo_txn_init(&txn, bus->config.protocol, exchange->frame, exchange->frame_bytes) < 0) {
         return;
+    }
     grobo_bus_cost_of(bus, &txn, &found);
     to->frame_bytes += exchange->frame_bytes;
     to->reply_bytes += (int)txn.reply.bytes;
@@ -22,8 +23,9 @@ static void measure_motion(const grobo_bus *bus, const grobo_driver *driver, wir
     grobo_posture_init_pose(&target.posture, driver->model);
     for (int part = 0;; part++) {
         grobo_exchange exchange = {0};
-        if (driver->posture(driver, NULL, &target, part, &exchange) != 1)
+        if (driver->posture(driver, NULL, &target, part, &exchange) != 1) {
             return;
+        }
         measure(bus, &exchange, to);
     }
 }
@@ -32,8 +34,9 @@ static void measure_read(const grobo_bus *bus, const grobo_driver *driver, grobo
                          wire_cost *to)
 {
     grobo_exchange exchange = {0};
-    if (driver->sense(driver, NULL, 0, kind, &exchange) >= 0)
+    if (driver->sense(driver, NULL, 0, kind, &exchange) >= 0) {
         measure(bus, &exchange, to);
+    }
 }
 
 static int make_bus(const grobo_driver *driver, int baud_bps, grobo_bus *bus)
@@ -55,10 +58,12 @@ int wire_read_us(const grobo_driver *driver, int baud_bps, int length, uint32_t 
     wire_cost cost = {0};
     grobo_bus bus;
     int error = make_bus(driver, baud_bps, &bus);
-    if (!error)
+    if (!error) {
         error = driver->registers(driver, NULL, &io, &exchange);
-    if (error < 0)
+    }
+    if (error < 0) {
         return error;
+    }
     measure(&bus, &exchange, &cost);
     *time_us = cost.total_us;
     return GROBO_OK;
@@ -68,12 +73,13 @@ double wire_taught_hz(const grobo_driver *driver, int baud_bps, int n)
 {
     wire_cost taught = {0}, other = {0};
     grobo_bus bus;
-    double left_us;
-    if (make_bus(driver, baud_bps, &bus) < 0)
+    if (make_bus(driver, baud_bps, &bus) < 0) {
         return 0;
+    }
     measure_read(&bus, driver, GROBO_SENSE_ALL, &taught);
     measure_read(&bus, driver, GROBO_SENSE_FULL, &other);
-    left_us = 1e6 - (double)(driver->model->n_joints - n) * other.total_us; /* each in a second */
+    double left_us =
+        1e6 - (double)(driver->model->n_joints - n) * other.total_us; /* each in a second */
     return fmax(left_us / taught.total_us, 1e6 / (taught.total_us + other.total_us)) / n;
 }
 
@@ -81,8 +87,9 @@ int wire_measure(const grobo_driver *driver, int baud_bps, wire_cost *costs)
 {
     grobo_bus bus;
     int error = make_bus(driver, baud_bps, &bus);
-    if (error)
+    if (error) {
         return error;
+    }
     costs[WIRE_MOTION] = (wire_cost){.name = "motion, 20 joints"};
     costs[WIRE_READ_FULL] = (wire_cost){.name = "one joint, full"};
     costs[WIRE_READ_ANGLE] = (wire_cost){.name = "one joint, angle only"};

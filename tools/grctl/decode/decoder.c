@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-#include "tools/grctl/decode/decoder.h"
-
 #include <stdio.h>
 
 #include <grobo/serial.h>
 
 #include "tools/grctl/cli/output.h"
+#include "tools/grctl/decode/decoder.h"
 #include "tools/grctl/decode/words.h"
 
 static double ms_of(const decoder *d, int64_t time_us)
@@ -34,19 +33,22 @@ static void count(decoder *d, const frame *f)
 static void print_hex(const frame *f)
 {
     char hex[3 * FRAMES_BUFFER_BYTES + 1];
-    if (grobo_hex(hex, sizeof hex, f->bytes, f->size) > 0)
+    if (grobo_hex(hex, sizeof hex, f->bytes, f->size) > 0) {
         app_print("    %s\n", hex);
+    }
 }
 
 static void print_text(const decoder *d, const frame *f, const char *note)
 {
     static char text[WORDS_BYTES];
     words_say(f, d->a->color_out, note, text, sizeof text);
-    if (d->timed)
+    if (d->timed) {
         app_print("%10.3f  %-7s  ", ms_of(d, f->time_us), words_side(f->side));
+    }
     app_print("%s", text);
-    if (d->a->verbosity > 0)
+    if (d->a->verbosity > 0) {
         print_hex(f);
+    }
 }
 
 static void print_json(const decoder *d, const frame *f, bool answer, bool fits, int64_t asked_us)
@@ -79,49 +81,56 @@ static void on_frame(void *ctx, const frame *f)
         answer = true;
         fits = ledger_take(&d->asked, 0, f, &asked_us);
         d->count.unasked += !fits;
-        if (fits && d->timed)
+        if (fits && d->timed) {
             snprintf(note, sizeof note, "; %.3f ms after its request",
                      (double)(f->end_us - asked_us) / 1e3);
-        else if (!fits)
+        } else if (!fits) {
             snprintf(note, sizeof note, "; nobody asked for it");
+        }
     }
-    if (d->a->json)
+    if (d->a->json) {
         print_json(d, f, answer, fits, asked_us);
-    else
+    } else {
         print_text(d, f, note);
+    }
 }
 
 static void on_settled(void *ctx, const ledger_entry *entry)
 {
     decoder *d = ctx;
-    if (entry->answer[0].state == LEDGER_ANSWERED)
+    if (entry->answer[0].state == LEDGER_ANSWERED) {
         d->count.answered++;
-    else
+    } else {
         d->count.unanswered++;
+    }
 }
 
 void decoder_init(decoder *d, app *a, unsigned wiring)
 {
     *d = (decoder){.a = a};
-    for (int side = FRAMES_EITHER; side <= FRAMES_ROBOT; side++)
+    for (int side = FRAMES_EITHER; side <= FRAMES_ROBOT; side++) {
         frames_init(&d->lines[side], (frames_side)side, wiring, on_frame, d);
+    }
     ledger_init(&d->asked, 1, on_settled, d);
 }
 
 void decoder_feed(decoder *d, frames_side side, int64_t time_us, const uint8_t *bytes, size_t n)
 {
-    if (!d->begun)
+    if (!d->begun) {
         d->first_us = time_us;
+    }
     d->begun = true;
-    for (int i = FRAMES_EITHER; i <= FRAMES_ROBOT; i++)
+    for (int i = FRAMES_EITHER; i <= FRAMES_ROBOT; i++) {
         frames_pass(&d->lines[i], time_us);
+    }
     frames_feed(&d->lines[side], time_us, bytes, n);
 }
 
 void decoder_end(decoder *d)
 {
-    for (int side = FRAMES_EITHER; side <= FRAMES_ROBOT; side++)
+    for (int side = FRAMES_EITHER; side <= FRAMES_ROBOT; side++) {
         frames_end(&d->lines[side]);
+    }
     ledger_end(&d->asked);
 }
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include "tools/grctl/decode/frames.h"
-
 #include <string.h>
+
+#include "tools/grctl/decode/frames.h"
 
 /* What of packets is believed outside of relay frames. */
 static unsigned accepted(frames_side side, unsigned wiring)
@@ -29,8 +29,9 @@ int frame_peek(frames_side side, unsigned wiring, const uint8_t *bytes, size_t n
         size = grobo_board_peek(bytes, n, &out->board);
         out->kind = FRAME_BOARD;
         out->sum_ok = true;
-        if (size > 0)
+        if (size > 0) {
             look_inside(out);
+        }
     }
     if (size < 0) {
         size = grobo_rs30x_peek(bytes, n, accepted(side, wiring), &out->packet, &out->sum_ok);
@@ -58,10 +59,12 @@ static void drop(frames *f, size_t n)
 /* Where nobody told who speaks, the frame itself tells. */
 static frames_side speaker(const frame *f)
 {
-    if (f->kind == FRAME_BOARD)
+    if (f->kind == FRAME_BOARD) {
         return FRAMES_HOST;
-    if (f->kind != FRAME_PACKET)
+    }
+    if (f->kind != FRAME_PACKET) {
         return FRAMES_EITHER;
+    }
     return f->packet.kind == GROBO_RS30X_SHORT || f->packet.kind == GROBO_RS30X_LONG ? FRAMES_HOST
                                                                                      : FRAMES_ROBOT;
 }
@@ -83,8 +86,9 @@ static void hand_out_rubbish(frames *f)
     frame out = {.kind = FRAME_RUBBISH};
     size_t n = f->rubbish;
     f->rubbish = 0;
-    if (n > 0)
+    if (n > 0) {
         hand_out(f, &out, n);
+    }
 }
 
 /* A single byte proves nothing inside of something else. */
@@ -103,8 +107,9 @@ static size_t next_start(const frames *f, size_t at, size_t size)
     for (size_t i = 1; i < size; i++) {
         frame inner;
         int found = look(f, at + i, &inner);
-        if (is_whole(&inner, found))
+        if (is_whole(&inner, found)) {
             return open && !f->ending ? 0 : i;
+        }
         open = open || found == 0;
     }
     return open && !f->ending ? 0 : size;
@@ -116,12 +121,14 @@ static bool judge(frames *f)
     frame out;
     size_t left = f->used - f->rubbish;
     int size = look(f, f->rubbish, &out);
-    if (size == 0 && !f->ending)
+    if (size == 0 && !f->ending) {
         return false;
+    }
     if (size < 0) {
         f->rubbish++;
-        if (f->rubbish == FRAMES_RUBBISH_MAX_BYTES)
+        if (f->rubbish == FRAMES_RUBBISH_MAX_BYTES) {
             hand_out_rubbish(f);
+        }
         return true;
     }
     if (size > 0 && out.sum_ok) {
@@ -134,8 +141,9 @@ static bool judge(frames *f)
     /* A packet with a wrong sum, or one whose rest never came: a good one may begin inside. */
     size_t end = size > 0 ? (size_t)size : left;
     size_t n = next_start(f, f->rubbish, end);
-    if (n == 0)
+    if (n == 0) {
         return false;
+    }
     hand_out_rubbish(f);
     if (size > 0 && n == end) {
         look(f, 0, &out);
@@ -149,8 +157,8 @@ static bool judge(frames *f)
 
 static void scan(frames *f)
 {
-    while (f->rubbish < f->used && judge(f))
-        ;
+    while (f->rubbish < f->used && judge(f)) {
+    }
 }
 
 void frames_init(frames *f, frames_side side, unsigned wiring, frames_fn use, void *ctx)
@@ -164,8 +172,9 @@ void frames_init(frames *f, frames_side side, unsigned wiring, frames_fn use, vo
 
 void frames_pass(frames *f, int64_t now_us)
 {
-    if (f->used > 0 && now_us - f->time_us[f->used - 1] >= FRAMES_STALL_US)
+    if (f->used > 0 && now_us - f->time_us[f->used - 1] >= FRAMES_STALL_US) {
         frames_end(f);
+    }
 }
 
 void frames_feed(frames *f, int64_t time_us, const uint8_t *bytes, size_t n)
@@ -176,11 +185,13 @@ void frames_feed(frames *f, int64_t time_us, const uint8_t *bytes, size_t n)
         f->time_us[f->used] = time_us;
         f->used++;
         scan(f);
-        if (f->used == FRAMES_BUFFER_BYTES)
+        if (f->used == FRAMES_BUFFER_BYTES) {
             frames_end(f);
+        }
     }
-    if (f->rubbish == f->used)
+    if (f->rubbish == f->used) {
         hand_out_rubbish(f);
+    }
 }
 
 void frames_end(frames *f)
@@ -193,18 +204,21 @@ void frames_end(frames *f)
 
 int frame_reply(const frame *f, grobo_reply *reply)
 {
-    if (f->kind == FRAME_BOARD)
+    if (f->kind == FRAME_BOARD) {
         return grobo_board_protocol.reply_to(f->bytes, f->size, reply);
-    if (f->kind != FRAME_PACKET && f->kind != FRAME_ECHO)
+    }
+    if (f->kind != FRAME_PACKET && f->kind != FRAME_ECHO) {
         return GROBO_ERR_FRAME;
+    }
     return grobo_rs30x_reply_to(f->bytes, f->size, reply);
 }
 
 bool frame_is_reply(const frame *f, const grobo_reply *expected)
 {
     const grobo_rs30x_packet *p = &f->packet;
-    if (f->kind != FRAME_PACKET || !f->sum_ok)
+    if (f->kind != FRAME_PACKET || !f->sum_ok) {
         return false;
+    }
     switch (expected->kind) {
     case GROBO_REPLY_NONE:
         return false;

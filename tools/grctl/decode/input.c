@@ -17,8 +17,9 @@ int input_open(input *in, app *a, const char *path)
         in->file = fopen(path, "rb");
         in->name = path;
     }
-    if (in->file)
+    if (in->file) {
         in->n_peeked = fread(in->peeked, 1, sizeof in->peeked, in->file);
+    }
     if (!in->file || ferror(in->file)) {
         int cause = in->name == path && os_is_folder(path) ? EISDIR : errno;
         input_close(in);
@@ -30,8 +31,9 @@ int input_open(input *in, app *a, const char *path)
 
 void input_close(input *in)
 {
-    if (in->file && in->file != stdin)
+    if (in->file && in->file != stdin) {
         fclose(in->file);
+    }
     in->file = NULL;
 }
 
@@ -44,8 +46,9 @@ size_t input_read(void *ctx, void *buffer, size_t size)
 {
     input *in = ctx;
     size_t n = in->n_peeked - in->given;
-    if (n > size)
+    if (n > size) {
         n = size;
+    }
     memcpy(buffer, in->peeked + in->given, n);
     in->given += n;
     return n + fread((uint8_t *)buffer + n, 1, size - n, in->file);
@@ -58,8 +61,9 @@ int input_getc(input *in)
 
 int input_fail(const input *in, app *a, const pcapng_reader *reader)
 {
-    if (ferror(in->file))
+    if (ferror(in->file)) {
         return app_fail(a, EXIT_FILE, "IO", "%s: it could not be read to its end", in->name);
+    }
     return app_fail(a, EXIT_FILE, grobo_error_name(reader->error), "%s: %s", in->name,
                     reader->problem);
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include "tools/grctl/decode/ledger.h"
-
 #include <string.h>
+
+#include "tools/grctl/decode/ledger.h"
 
 static ledger_entry *entry_at(ledger *l, unsigned i)
 {
@@ -10,22 +10,26 @@ static ledger_entry *entry_at(ledger *l, unsigned i)
 
 static bool is_settled(const ledger *l, const ledger_entry *entry)
 {
-    for (int side = 0; side < l->n_sides; side++)
-        if (entry->answer[side].state == LEDGER_WAITING)
+    for (int side = 0; side < l->n_sides; side++) {
+        if (entry->answer[side].state == LEDGER_WAITING) {
             return false;
+        }
+    }
     return true;
 }
 
 static void give_up(ledger_answer *answer)
 {
-    if (answer->state == LEDGER_WAITING)
+    if (answer->state == LEDGER_WAITING) {
         answer->state = LEDGER_SILENT;
+    }
 }
 
 static void give_up_all(const ledger *l, ledger_entry *entry)
 {
-    for (int side = 0; side < l->n_sides; side++)
+    for (int side = 0; side < l->n_sides; side++) {
         give_up(&entry->answer[side]);
+    }
 }
 
 static void settle(ledger *l)
@@ -51,10 +55,12 @@ void ledger_ask(ledger *l, const frame *f)
     grobo_reply reply;
     ledger_entry *entry;
     if (frame_reply(f, &reply) < 0 || reply.kind == GROBO_REPLY_NONE ||
-        f->size > sizeof entry->bytes)
+        f->size > sizeof entry->bytes) {
         return;
-    if (l->n == LEDGER_ENTRIES)
+    }
+    if (l->n == LEDGER_ENTRIES) {
         give_up_all(l, entry_at(l, 0));
+    }
     settle(l);
     entry = entry_at(l, l->n++);
     memset(entry, 0, sizeof *entry);
@@ -77,8 +83,9 @@ static ledger_entry *find(ledger *l, int side, const frame *f)
     for (unsigned i = 0; i < l->n; i++) {
         ledger_entry *entry = entry_at(l, i);
         if (entry->answer[side].state == LEDGER_WAITING && frame_is_reply(f, &entry->reply) &&
-            (!found || is_repeat(entry, found)))
+            (!found || is_repeat(entry, found))) {
             found = entry;
+        }
     }
     return found;
 }
@@ -91,24 +98,28 @@ bool ledger_take(ledger *l, int side, const frame *f, int64_t *asked_us)
 {
     ledger_entry *entry = find(l, side, f);
     ledger_answer *answer;
-    if (!entry || f->size > sizeof answer->bytes)
+    if (!entry || f->size > sizeof answer->bytes) {
         return false;
+    }
     answer = &entry->answer[side];
     answer->state = LEDGER_ANSWERED;
     answer->time_us = f->end_us;
     answer->size = f->size;
     memcpy(answer->bytes, f->bytes, f->size);
     *asked_us = entry->time_us;
-    for (unsigned i = 0; entry_at(l, i) != entry; i++)
-        if (!is_repeat(entry_at(l, i), entry))
+    for (unsigned i = 0; entry_at(l, i) != entry; i++) {
+        if (!is_repeat(entry_at(l, i), entry)) {
             give_up(&entry_at(l, i)->answer[side]);
+        }
+    }
     settle(l);
     return true;
 }
 
 void ledger_end(ledger *l)
 {
-    for (unsigned i = 0; i < l->n; i++)
+    for (unsigned i = 0; i < l->n; i++) {
         give_up_all(l, entry_at(l, i));
+    }
     settle(l);
 }

@@ -26,8 +26,9 @@ static const scale *scale_of(const grobo_rs30x_register *reg)
 {
     const size_t last = sizeof scales / sizeof scales[0] - 1;
     size_t i = 0;
-    while (i < last && strcmp(scales[i].unit, reg->unit) != 0)
+    while (i < last && strcmp(scales[i].unit, reg->unit) != 0) {
         i++;
+    }
     return &scales[i];
 }
 
@@ -35,10 +36,12 @@ static const scale *scale_of(const grobo_rs30x_register *reg)
 static const char *word_of(const grobo_rs30x_register *reg, int32_t counts)
 {
     static const char *const torques[] = {"off", "on", "brake"};
-    if (reg->address == GROBO_RS30X_TORQUE && counts >= 0 && counts <= GROBO_TORQUE_BRAKE)
+    if (reg->address == GROBO_RS30X_TORQUE && counts >= 0 && counts <= GROBO_TORQUE_BRAKE) {
         return torques[counts];
-    if (reg->address == GROBO_RS30X_MODEL)
+    }
+    if (reg->address == GROBO_RS30X_MODEL) {
         return grobo_rs30x_model_name((uint16_t)counts);
+    }
     return NULL;
 }
 
@@ -57,12 +60,13 @@ void registers_text(const grobo_rs30x_register *reg, int32_t counts, char *text,
 {
     const scale *s = scale_of(reg);
     const char *word = word_of(reg, counts);
-    if (word)
+    if (word) {
         snprintf(text, capacity, "%s", word);
-    else if (reg->address == GROBO_RS30X_BAUD && counts > GROBO_RS30X_BAUD_CODE_MAX)
+    } else if (reg->address == GROBO_RS30X_BAUD && counts > GROBO_RS30X_BAUD_CODE_MAX) {
         snprintf(text, capacity, "code %d", (int)counts);
-    else
+    } else {
         snprintf(text, capacity, "%.*f%s", s->decimals, value_of(reg, counts), s->text);
+    }
 }
 
 void registers_key(const grobo_rs30x_register *reg, char *key, size_t capacity)
@@ -74,9 +78,11 @@ json_t *registers_json(const grobo_rs30x_register *reg, int32_t counts)
 {
     const scale *s = scale_of(reg);
     const char *word = word_of(reg, counts);
-    if (word)
+    if (word) {
         return json_string(word);
-    if (s->decimals == 0)
+    }
+    if (s->decimals == 0) {
         return json_integer((json_int_t)value_of(reg, counts));
+    }
     return app_json_number(value_of(reg, counts), s->decimals);
 }

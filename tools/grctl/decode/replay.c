@@ -14,8 +14,9 @@ enum { SHOWN = 5 };
 /* A clock that was set, or nonsense, is not to be waited for. */
 static int refuse_length(const replay *r, int64_t at_us)
 {
-    if (r->first_us < 0 || at_us <= LENGTH_MAX_US)
+    if (r->first_us < 0 || at_us <= LENGTH_MAX_US) {
         return 0;
+    }
     return app_fail(r->a, EXIT_FILE, "CAP",
                     "%s: a packet %.0f s after the first: a trace of more than a day is not "
                     "replayed",
@@ -29,16 +30,19 @@ int replay_read(replay *r, replay_fn use, void *ctx)
     input in;
     int more = 0;
     int status = input_open(&in, r->a, r->path);
-    if (status)
+    if (status) {
         return status;
+    }
     pcapng_reader_init(&reader, input_read, &in);
     while (!status && (more = pcapng_read(&reader, &chunk)) > 0) {
         status = refuse_length(r, chunk.time_us - r->first_us);
-        if (!status)
+        if (!status) {
             status = use(ctx, &chunk);
+        }
     }
-    if (more < 0)
+    if (more < 0) {
         status = input_fail(&in, r->a, &reader);
+    }
     input_close(&in);
     return status;
 }
@@ -82,10 +86,11 @@ static void print_one(const replay *r, const char *who, frames_side side, const 
 {
     static char text[WORDS_BYTES];
     frame f;
-    if (n == 0)
+    if (n == 0) {
         snprintf(text, sizeof text, "nothing\n");
-    else if (frame_of(r, side, bytes, n, &f))
+    } else if (frame_of(r, side, bytes, n, &f)) {
         words_say(&f, r->a->color_out, "", text, sizeof text);
+    }
     app_print("    %-9s %s", who, text);
 }
 
@@ -116,22 +121,25 @@ static void print_difference(const replay *r, const ledger_entry *e, const char 
 static void on_settled(void *ctx, const ledger_entry *entry)
 {
     replay *r = ctx;
-    unsigned long long *counter, differences;
+    unsigned long long *counter;
     const char *verdict = verdict_of(r, entry, &counter);
     (*counter)++;
-    if (counter == &r->count.equal || counter == &r->count.silent)
+    if (counter == &r->count.equal || counter == &r->count.silent) {
         return;
-    differences = r->count.differ + r->count.missing + r->count.extra;
-    if (r->a->json || r->a->verbosity > 0 || differences <= SHOWN)
+    }
+    unsigned long long differences = r->count.differ + r->count.missing + r->count.extra;
+    if (r->a->json || r->a->verbosity > 0 || differences <= SHOWN) {
         print_difference(r, entry, verdict);
+    }
 }
 
 static void on_answer(replay *r, int who, const frame *f)
 {
     int64_t asked_us;
     if (f->kind == FRAME_PACKET && f->sum_ok) {
-        if (!ledger_take(&r->asked, who, f, &asked_us))
+        if (!ledger_take(&r->asked, who, f, &asked_us)) {
             r->count.stray[who]++;
+        }
     } else if (f->kind != FRAME_ECHO) {
         r->count.rubbish_bytes[who] += f->size;
     }
@@ -158,8 +166,9 @@ void replay_begin(replay *r, frames_fn on_host)
 
 void replay_ask(replay *r, const frame *f)
 {
-    if (f->kind == FRAME_CUT || f->kind == FRAME_RUBBISH)
+    if (f->kind == FRAME_CUT || f->kind == FRAME_RUBBISH) {
         return;
+    }
     r->count.frames++;
     ledger_ask(&r->asked, f);
 }
@@ -181,11 +190,10 @@ static bool is_same(const replay *r)
 
 int replay_report(replay *r)
 {
-    bool ok;
     frames_end(&r->robot[REPLAY_RECORDED]);
     frames_end(&r->robot[REPLAY_REPLAYED]);
     ledger_end(&r->asked);
-    ok = is_same(r);
+    bool ok = is_same(r);
     if (r->a->json) {
         app_print_json(
             json_pack("{s:b,s:b,s:I,s:I,s:I,s:I,s:I,s:I,s:I,s:{s:I,s:I},s:{s:I,s:I}}", "done", 1,
@@ -203,10 +211,12 @@ int replay_report(replay *r)
               "%llu extra, %llu silent both times\n",
               r->count.frames, (unsigned long long)r->asked.requests, r->count.equal,
               r->count.differ, r->count.missing, r->count.extra, r->count.silent);
-    for (int who = 0; who < LEDGER_SIDES; who++)
-        if (r->count.stray[who] || r->count.rubbish_bytes[who])
+    for (int who = 0; who < LEDGER_SIDES; who++) {
+        if (r->count.stray[who] || r->count.rubbish_bytes[who]) {
             app_print("%s: %llu replies nobody asked for, %llu bytes that are no reply\n",
                       who == REPLAY_RECORDED ? "recorded" : "replayed", r->count.stray[who],
                       r->count.rubbish_bytes[who]);
+        }
+    }
     return ok ? EXIT_DONE : EXIT_ROBOT;
 }

@@ -43,17 +43,21 @@ static danger judge(const frame *f)
 {
     const grobo_rs30x_packet *p = &f->packet;
     const unsigned acts = GROBO_RS30X_FLASH | GROBO_RS30X_REBOOT | GROBO_RS30X_FACTORY;
-    size_t n;
-    if (f->kind == FRAME_BOARD && f->board.kind == GROBO_BOARD_CHECK)
+    if (f->kind == FRAME_BOARD && f->board.kind == GROBO_BOARD_CHECK) {
         return HARMLESS;
-    if (!f->has_packet || !f->sum_ok || (p->flags & (acts | 0x80)))
+    }
+    if (!f->has_packet || !f->sum_ok || (p->flags & (acts | 0x80))) {
         return REFUSED;
-    if (p->data_bytes == 0)
+    }
+    if (p->data_bytes == 0) {
         return HARMLESS;
-    n = p->kind == GROBO_RS30X_LONG ? (size_t)p->length - 1 : p->data_bytes;
-    for (size_t i = 0; i < n; i++)
-        if (!is_motion_register(p->address + (unsigned)i))
+    }
+    size_t n = p->kind == GROBO_RS30X_LONG ? (size_t)p->length - 1 : p->data_bytes;
+    for (size_t i = 0; i < n; i++) {
+        if (!is_motion_register(p->address + (unsigned)i)) {
             return REFUSED;
+        }
+    }
     return MOVES;
 }
 
@@ -63,8 +67,9 @@ static void note_torque(plan *p, const frame *f)
     grobo_target target = {0};
     grobo_joint_mask torqued[GROBO_TORQUE_BRAKE + 1] = {0};
     grobo_posture_init(&target.posture, driver->model->n_joints);
-    if (driver->inspect(driver, NULL, f->bytes, f->size, &target, torqued) >= 0)
+    if (driver->inspect(driver, NULL, f->bytes, f->size, &target, torqued) >= 0) {
         p->torqued |= torqued[GROBO_TORQUE_ON];
+    }
 }
 
 static void judge_frame(void *ctx, const frame *f)
@@ -72,8 +77,9 @@ static void judge_frame(void *ctx, const frame *f)
     static char text[WORDS_BYTES];
     replay *r = ctx;
     plan *p = r->ctx;
-    if (p->status || f->kind == FRAME_CUT || f->kind == FRAME_RUBBISH)
+    if (p->status || f->kind == FRAME_CUT || f->kind == FRAME_RUBBISH) {
         return;
+    }
     p->last_us = f->time_us;
     switch (judge(f)) {
     case HARMLESS:
@@ -94,8 +100,9 @@ static void judge_frame(void *ctx, const frame *f)
 static int judge_chunk(void *ctx, const pcapng_chunk *chunk)
 {
     plan *p = ctx;
-    if (chunk->direction == PCAPNG_OUT)
+    if (chunk->direction == PCAPNG_OUT) {
         frames_feed(&p->r->host, chunk->time_us - p->r->first_us, chunk->bytes, chunk->size);
+    }
     return p->status;
 }
 
@@ -103,16 +110,19 @@ static int ask(const plan *p)
 {
     app *a = p->r->a;
     char answer[8] = "";
-    if (p->moves == 0 || app_global(a, GLOBAL_YES)->given)
+    if (p->moves == 0 || app_global(a, GLOBAL_YES)->given) {
         return 0;
-    if (!a->tty_err || !a->tty_in)
+    }
+    if (!a->tty_err || !a->tty_in) {
         return app_fail(a, EXIT_SAFETY, "UNSUPPORTED",
                         "replay: %llu frames move joints of a real robot; say --yes if it may",
                         (unsigned long long)p->moves);
+    }
     output_complain("%llu frames move joints of the robot at %s. Send them? [y/N] ",
                     (unsigned long long)p->moves, app_global(a, GLOBAL_DEVICE)->text);
-    if (!fgets(answer, sizeof answer, stdin) || (answer[0] != 'y' && answer[0] != 'Y'))
+    if (!fgets(answer, sizeof answer, stdin) || (answer[0] != 'y' && answer[0] != 'Y')) {
         return app_fail(a, EXIT_SAFETY, "UNSUPPORTED", "replay: nothing was sent");
+    }
     return 0;
 }
 
@@ -122,8 +132,9 @@ static void on_bytes(conn *c, grobo_direction direction, int64_t now_us, const u
                      size_t size)
 {
     plan *p = c->ctx;
-    if (direction == GROBO_DIR_RX && !p->reads)
+    if (direction == GROBO_DIR_RX && !p->reads) {
         replay_answer(p->r, REPLAY_REPLAYED, now_us - p->start_us, bytes, size);
+    }
 }
 
 /* What a robot may do to a frame that the comparison will tell; everything else ends it. */
@@ -152,8 +163,9 @@ static int send_one(plan *p, const frame *f)
 static void show_progress(plan *p, int64_t at_us)
 {
     char text[64];
-    if (p->last_us < 2000000)
+    if (p->last_us < 2000000) {
         return;
+    }
     snprintf(text, sizeof text, "replay: %.1f of %.1f s", (double)at_us / 1e6,
              (double)p->last_us / 1e6);
     progress_draw(&p->bar, (double)at_us / (double)p->last_us, text);
@@ -164,14 +176,15 @@ static void send_frame(void *ctx, const frame *f)
     replay *r = ctx;
     plan *p = r->ctx;
     char doing[48];
-    int error;
-    if (p->status || f->kind == FRAME_CUT || f->kind == FRAME_RUBBISH)
+    if (p->status || f->kind == FRAME_CUT || f->kind == FRAME_RUBBISH) {
         return;
+    }
     replay_ask(r, f);
     show_progress(p, f->time_us);
-    error = conn_sleep_until(&p->c, p->start_us + f->time_us);
-    if (!error)
+    int error = conn_sleep_until(&p->c, p->start_us + f->time_us);
+    if (!error) {
         error = send_one(p, f);
+    }
     if (error && !is_reply_trouble(error)) {
         progress_clear(&p->bar);
         snprintf(doing, sizeof doing, "replay: the frame at %.3f ms", (double)f->time_us / 1e3);
@@ -183,10 +196,11 @@ static int send_chunk(void *ctx, const pcapng_chunk *chunk)
 {
     plan *p = ctx;
     int64_t at_us = chunk->time_us - p->r->first_us;
-    if (chunk->direction == PCAPNG_OUT)
+    if (chunk->direction == PCAPNG_OUT) {
         frames_feed(&p->r->host, at_us, chunk->bytes, chunk->size);
-    else if (chunk->direction == PCAPNG_IN)
+    } else if (chunk->direction == PCAPNG_IN) {
         replay_answer(p->r, REPLAY_RECORDED, at_us, chunk->bytes, chunk->size);
+    }
     return p->status;
 }
 
@@ -200,28 +214,32 @@ static int prepare(plan *p)
     grobo_joint_mask all = GROBO_JOINTS_ALL(grobo_robot_driver(p->c.robot)->model->n_joints);
     grobo_robot_config config = conn_robot_config(p->r->a);
     int error = 0;
-    if (p->moves)
+    if (p->moves) {
         error = conn_wait(
             &p->c, grobo_robot_sense(grobo_session_robot(p->c.session), all, GROBO_SENSE_FULL));
-    if (!error && p->torqued)
+    }
+    if (!error && p->torqued) {
         error = conn_wait(&p->c, grobo_robot_torque(grobo_session_robot(p->c.session), p->torqued,
                                                     GROBO_TORQUE_ON));
+    }
     config.retries = -1;
-    if (!error)
+    if (!error) {
         error = grobo_robot_configure(p->c.robot, &config);
-    if (!error)
+    }
+    if (!error) {
         error = conn_sleep_until(&p->c, grobo_now_us() + GROBO_BUS_HOLD_US);
+    }
     return error ? conn_fail(&p->c, error, "replay") : 0;
 }
 
 static int send_all(plan *p)
 {
-    grobo_robot_config config;
     int status = p->moves ? conn_open_to_move(&p->c, p->r->a) : conn_open(&p->c, p->r->a);
     p->c.ctx = p;
     p->c.moving = p->moves > 0;
-    if (!status)
+    if (!status) {
         status = prepare(p);
+    }
     if (!status) {
         replay_begin(p->r, send_frame);
         progress_start(&p->bar, p->r->a);
@@ -234,7 +252,7 @@ static int send_all(plan *p)
         }
         progress_clear(&p->bar);
         p->c.on_bytes = NULL; /* the exit policy is no part of it, and may try again */
-        config = conn_robot_config(p->r->a);
+        grobo_robot_config config = conn_robot_config(p->r->a);
         grobo_robot_configure(p->c.robot, &config);
     }
     return conn_close(&p->c, status);
@@ -243,16 +261,16 @@ static int send_all(plan *p)
 int replay_to_robot(replay *r)
 {
     static plan p;
-    int status;
     p.r = r;
     r->ctx = &p;
     replay_begin(r, judge_frame);
-    status = replay_read(r, judge_chunk, &p);
+    int status = replay_read(r, judge_chunk, &p);
     if (!status) {
         frames_end(&r->host);
         status = p.status;
     }
-    if (!status)
+    if (!status) {
         status = ask(&p);
+    }
     return status ? status : send_all(&p);
 }

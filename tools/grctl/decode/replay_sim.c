@@ -22,18 +22,21 @@ static void listen(stage *s)
 {
     uint8_t bytes[256];
     size_t n;
-    while ((n = grobo_sim_tx(&s->sim, bytes, sizeof bytes, s->now_us)) > 0)
+    while ((n = grobo_sim_tx(&s->sim, bytes, sizeof bytes, s->now_us)) > 0) {
         replay_answer(s->r, REPLAY_REPLAYED, s->now_us, bytes, n);
+    }
 }
 
 /* One step of the simulator towards a time; false when it has nothing to do before it. */
 static bool step_towards(stage *s, int64_t until_us)
 {
     int64_t next_us = grobo_sim_deadline(&s->sim);
-    if (next_us > until_us)
+    if (next_us > until_us) {
         return false;
-    if (next_us > s->now_us)
+    }
+    if (next_us > s->now_us) {
         s->now_us = next_us;
+    }
     listen(s);
     grobo_sim_step(&s->sim, s->now_us);
     return true;
@@ -41,10 +44,11 @@ static bool step_towards(stage *s, int64_t until_us)
 
 static void run_until(stage *s, int64_t until_us)
 {
-    while (step_towards(s, until_us))
-        ;
-    if (until_us > s->now_us)
+    while (step_towards(s, until_us)) {
+    }
+    if (until_us > s->now_us) {
         s->now_us = until_us;
+    }
     listen(s);
 }
 
@@ -55,8 +59,9 @@ static void speak(stage *s, const uint8_t *bytes, size_t n)
         size_t took = grobo_sim_rx(&s->sim, bytes, n, s->now_us);
         bytes += took;
         n -= took;
-        if (took == 0 && !step_towards(s, GROBO_NEVER_US - 1))
+        if (took == 0 && !step_towards(s, GROBO_NEVER_US - 1)) {
             return;
+        }
     }
 }
 
@@ -78,16 +83,17 @@ int replay_to_sim(replay *r)
 {
     static stage s;
     grobo_sim_config config = {.wiring = r->wiring, .baud_bps = (uint32_t)r->baud_bps};
-    int status;
     int error = grobo_sim_init(&s.sim, &config, 0);
-    if (error)
+    if (error) {
         return app_fail(r->a, EXIT_FILE, grobo_error_name(error),
                         "%s: the simulator does not run at %d bps; see -b and --wiring", r->path,
                         r->baud_bps);
+    }
     s.r = r;
     replay_begin(r, on_host);
-    status = replay_read(r, on_chunk, &s);
-    if (!status)
+    int status = replay_read(r, on_chunk, &s);
+    if (!status) {
         run_until(&s, s.now_us + TAIL_US);
+    }
     return status;
 }

@@ -30,10 +30,12 @@ static int read_line(reader *r)
     int c;
     r->line++;
     while ((c = input_getc(r->in)) != EOF && c != '\n') {
-        if (c == '\0' || (c >= 0x7F) || (c < 0x20 && c != '\t' && c != '\r'))
+        if (c == '\0' || (c >= 0x7F) || (c < 0x20 && c != '\t' && c != '\r')) {
             return -fail(r, n, "neither hex nor a pcapng trace", "");
-        if (n == sizeof r->text - 1)
+        }
+        if (n == sizeof r->text - 1) {
             return -fail(r, n, "the line is too long", "");
+        }
         r->text[n++] = (char)c;
     }
     r->text[n] = '\0';
@@ -46,8 +48,9 @@ static bool begins_frame(const uint8_t *bytes, int n)
     grobo_board_frame board;
     grobo_rs30x_packet packet;
     bool sum_ok;
-    if (n <= 0)
+    if (n <= 0) {
         return false;
+    }
     return grobo_board_peek(bytes, (size_t)n, &board) >= 0 ||
            grobo_rs30x_peek(bytes, (size_t)n, GROBO_ACCEPT_COMMANDS | GROBO_ACCEPT_RETURNS, &packet,
                             &sum_ok) >= 0;
@@ -63,19 +66,22 @@ static const char *behind_time(reader *r, const char *text, double *time_ms)
     size_t n = strspn(text, "0123456789.");
     size_t at;
     const char *rest = text + n;
-    int whole, behind;
-    if (n == 0 || n >= sizeof number || !strchr(" \t", *rest) || *rest == '\0')
+    if (n == 0 || n >= sizeof number || !strchr(" \t", *rest) || *rest == '\0') {
         return text;
+    }
     memcpy(number, text, n);
     number[n] = '\0';
-    if (!cli_read_number(number, time_ms))
+    if (!cli_read_number(number, time_ms)) {
         return text;
-    if (r->d->timed || n % 2 != 0 || strchr(number, '.'))
+    }
+    if (r->d->timed || n % 2 != 0 || strchr(number, '.')) {
         return rest;
-    whole = hextext_parse(text, r->bytes, sizeof r->bytes, &at);
-    if (begins_frame(r->bytes, whole))
+    }
+    int whole = hextext_parse(text, r->bytes, sizeof r->bytes, &at);
+    if (begins_frame(r->bytes, whole)) {
         return text;
-    behind = hextext_parse(rest, r->bytes, sizeof r->bytes, &at);
+    }
+    int behind = hextext_parse(rest, r->bytes, sizeof r->bytes, &at);
     return begins_frame(r->bytes, behind) ? rest : text;
 }
 
@@ -83,10 +89,12 @@ static int feed_hex(reader *r, frames_side side, const char *text, double time_m
 {
     size_t at = 0;
     int n = hextext_parse(text, r->bytes, sizeof r->bytes, &at);
-    if (n < 0)
+    if (n < 0) {
         return fail(r, (size_t)(text - r->text) + at, "' is no byte in hex", text + at);
-    if (n > 0)
+    }
+    if (n > 0) {
         decoder_feed(r->d, side, (int64_t)(time_ms * 1e3), r->bytes, (size_t)n);
+    }
     return 0;
 }
 
@@ -100,20 +108,23 @@ static int feed_json(reader *r)
     const char *from = json_string_value(json_object_get(line, "from"));
     frames_side side = FRAMES_EITHER;
     int status = 0;
-    if (!line)
+    if (!line) {
         return fail(r, error.column > 0 ? (size_t)error.column - 1 : 0, "malformed JSON", "");
-    if (from)
+    }
+    if (from) {
         side = strcmp(from, "host") == 0    ? FRAMES_HOST
                : strcmp(from, "robot") == 0 ? FRAMES_ROBOT
                                             : FRAMES_EITHER;
+    }
     r->d->timed = r->d->timed || json_is_number(time);
     if (json_is_string(hex)) {
         size_t at = 0;
         int n = hextext_parse(json_string_value(hex), r->bytes, sizeof r->bytes, &at);
-        if (n < 0)
+        if (n < 0) {
             status = fail(r, 0, "' is no byte in hex", json_string_value(hex) + at);
-        else if (n > 0)
+        } else if (n > 0) {
             decoder_feed(r->d, side, (int64_t)(json_number_value(time) * 1e3), r->bytes, (size_t)n);
+        }
     }
     json_decref(line);
     return status;
@@ -122,15 +133,16 @@ static int feed_json(reader *r)
 static int feed_line(reader *r)
 {
     double time_ms = 0;
-    const char *bytes;
     size_t comment = strcspn(r->text, "#");
     const char *text = r->text + strspn(r->text, " \t\r");
-    if (*text == '{')
+    if (*text == '{') {
         return feed_json(r);
+    }
     r->text[comment] = '\0';
-    bytes = behind_time(r, text, &time_ms);
-    if (bytes != text)
+    const char *bytes = behind_time(r, text, &time_ms);
+    if (bytes != text) {
         r->d->timed = true;
+    }
     return feed_hex(r, FRAMES_EITHER, bytes, time_ms);
 }
 
@@ -139,7 +151,8 @@ int decode_text(decoder *d, input *in)
     static reader r;
     int more, status = 0;
     r = (reader){.d = d, .in = in};
-    while (!status && (more = read_line(&r)) != 0)
+    while (!status && (more = read_line(&r)) != 0) {
         status = more < 0 ? -more : feed_line(&r);
+    }
     return status;
 }

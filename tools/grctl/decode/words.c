@@ -21,12 +21,12 @@ static void say(text *t, const char *format, ...) __attribute__((format(printf, 
 static void say(text *t, const char *format, ...)
 {
     va_list list;
-    int n;
     va_start(list, format);
-    n = vsnprintf(t->to + t->used, t->capacity - t->used, format, list);
+    int n = vsnprintf(t->to + t->used, t->capacity - t->used, format, list);
     va_end(list);
-    if (n > 0)
+    if (n > 0) {
         t->used += (size_t)n < t->capacity - t->used ? (size_t)n : t->capacity - t->used - 1;
+    }
 }
 
 static void say_bad(text *t, const char *what)
@@ -36,8 +36,9 @@ static void say_bad(text *t, const char *what)
 
 static void say_hex(text *t, const uint8_t *bytes, size_t n)
 {
-    for (size_t i = 0; i < n; i++)
+    for (size_t i = 0; i < n; i++) {
         say(t, " %02X", bytes[i]);
+    }
 }
 
 const char *words_side(frames_side side)
@@ -59,9 +60,11 @@ const char *words_side(frames_side side)
 static const char *joint_name(uint8_t id)
 {
     const grobo_model *model = &grobo_gr001_model;
-    for (int j = 0; j < model->n_joints; j++)
-        if (model->joints[j].motor == id)
+    for (int j = 0; j < model->n_joints; j++) {
+        if (model->joints[j].motor == id) {
             return model->joints[j].name;
+        }
+    }
     return NULL;
 }
 
@@ -78,13 +81,15 @@ static int find_part(const grobo_rs30x_packet *p, int index, packet_part *part)
 {
     if (p->kind == GROBO_RS30X_LONG) {
         const uint8_t *entry = p->data + (size_t)index * p->length;
-        if (index >= p->count)
+        if (index >= p->count) {
             return 0;
+        }
         *part = (packet_part){entry[0], p->address, entry + 1, (size_t)p->length - 1};
         return 1;
     }
-    if (index > 0 || p->data_bytes == 0)
+    if (index > 0 || p->data_bytes == 0) {
         return 0;
+    }
     *part = (packet_part){p->id, p->address, p->data, p->data_bytes};
     return 1;
 }
@@ -113,20 +118,27 @@ static size_t find_item(const packet_part *part, size_t at, packet_item *item)
 /* "write", "read", "ping", "flash", "reboot", "flash and reboot", "factory reset", "return". */
 static const char *action_of(const grobo_rs30x_packet *p)
 {
-    if (p->kind == GROBO_RS30X_RETURN)
+    if (p->kind == GROBO_RS30X_RETURN) {
         return "return";
-    if (p->flags & GROBO_RS30X_FACTORY)
+    }
+    if (p->flags & GROBO_RS30X_FACTORY) {
         return "factory reset";
-    if ((p->flags & GROBO_RS30X_FLASH) && (p->flags & GROBO_RS30X_REBOOT))
+    }
+    if ((p->flags & GROBO_RS30X_FLASH) && (p->flags & GROBO_RS30X_REBOOT)) {
         return "flash and reboot";
-    if (p->flags & GROBO_RS30X_FLASH)
+    }
+    if (p->flags & GROBO_RS30X_FLASH) {
         return "flash";
-    if (p->flags & GROBO_RS30X_REBOOT)
+    }
+    if (p->flags & GROBO_RS30X_REBOOT) {
         return "reboot";
-    if (p->data_bytes > 0)
+    }
+    if (p->data_bytes > 0) {
         return "write";
-    if ((p->flags & 0x0F) == GROBO_RS30X_WANT_ACK)
+    }
+    if ((p->flags & 0x0F) == GROBO_RS30X_WANT_ACK) {
         return "ping";
+    }
     return (p->flags & 0x0F) == GROBO_RS30X_WANT_NOTHING ? "nothing" : "read";
 }
 
@@ -155,20 +167,22 @@ static int right_sum(const grobo_rs30x_packet *p)
 static void say_servo(text *t, uint8_t id)
 {
     const char *name = joint_name(id);
-    if (id == GROBO_RS30X_ID_ALL)
+    if (id == GROBO_RS30X_ID_ALL) {
         say(t, "all servos");
-    else if (name)
+    } else if (name) {
         say(t, "servo %u (%s)", id, name);
-    else
+    } else {
         say(t, "servo %u", id);
+    }
 }
 
 static void say_span(text *t, unsigned address, unsigned length)
 {
-    if (length > 1)
+    if (length > 1) {
         say(t, "No.%u-%u", address, address + length - 1);
-    else
+    } else {
         say(t, "No.%u", address);
+    }
 }
 
 /* Registers of a servo; reserved bytes are said where they are not 0. */
@@ -180,21 +194,24 @@ static void say_registers(text *t, const packet_part *part)
         packet_item item;
         size_t size = find_item(part, at, &item);
         at += size;
-        if (!item.reg && item.value == 0)
+        if (!item.reg && item.value == 0) {
             continue;
+        }
         if (item.whole) {
             registers_text(item.reg, item.value, value, sizeof value);
             say(t, "%s%s %s", comma, item.reg->name, value);
-            if (item.reg->address == GROBO_RS30X_GOAL_TIME && item.value == 0)
+            if (item.reg->address == GROBO_RS30X_GOAL_TIME && item.value == 0) {
                 say(t, " (full speed)");
+            }
         } else {
             say(t, "%sNo.%u = %02X%s%s%s", comma, item.address, (unsigned)item.value,
                 item.reg ? " (half of " : "", item.reg ? item.reg->name : "", item.reg ? ")" : "");
         }
         comma = ", ";
     }
-    if (!*comma)
+    if (!*comma) {
         say(t, "nothing but zeros");
+    }
 }
 
 /* Names of the registers that a long packet writes. */
@@ -202,15 +219,17 @@ static void say_names(text *t, const grobo_rs30x_packet *p)
 {
     const char *comma = "";
     packet_part part;
-    if (find_part(p, 0, &part) == 0)
+    if (find_part(p, 0, &part) == 0) {
         return;
+    }
     for (size_t at = 0; at < part.n;) {
         packet_item item;
         at += find_item(&part, at, &item);
-        if (item.whole)
+        if (item.whole) {
             say(t, "%s%s", comma, item.reg->name);
-        else
+        } else {
             say(t, "%sNo.%u", comma, item.address);
+        }
         comma = ", ";
     }
 }
@@ -225,10 +244,11 @@ static void say_bare(text *t, const grobo_rs30x_packet *p, const grobo_reply *re
         return;
     }
     say(t, "read ");
-    if (known >= 0 && reply->kind == GROBO_REPLY_RETURN)
+    if (known >= 0 && reply->kind == GROBO_REPLY_RETURN) {
         say_span(t, reply->address, reply->length);
-    else
+    } else {
         say_span(t, p->address, p->length);
+    }
     say(t, " of ");
     say_servo(t, p->id);
 }
@@ -247,13 +267,15 @@ static void say_command(text *t, const frame *f, const grobo_reply *reply, int k
         say_servo(t, p->id);
         say(t, ": ");
         say_registers(t, &part);
-        if (!only_writes)
+        if (!only_writes) {
             say(t, ", then %s", action);
+        }
     } else {
         say_bare(t, p, reply, known);
     }
-    if (p->flags & 0x80)
+    if (p->flags & 0x80) {
         say(t, ", unknown flag 80");
+    }
 }
 
 static void say_return(text *t, const frame *f)
@@ -287,10 +309,11 @@ static void say_sum(text *t, const frame *f)
         say(t, "; sum %02X right", sum);
     } else {
         int right = right_sum(&f->packet);
-        if (right >= 0)
+        if (right >= 0) {
             snprintf(bad, sizeof bad, "sum %02X wrong, should be %02X", sum, (unsigned)right);
-        else
+        } else {
             snprintf(bad, sizeof bad, "sum %02X wrong", sum);
+        }
         say(t, "; ");
         say_bad(t, bad);
     }
@@ -358,11 +381,11 @@ static bool is_command(const frame *f)
 static int expects(const frame *f, grobo_reply *reply)
 {
     grobo_reply inner;
-    int known;
     *reply = (grobo_reply){.kind = GROBO_REPLY_NONE};
-    if (!is_command(f))
+    if (!is_command(f)) {
         return GROBO_ERR_TYPE;
-    known = frame_reply(f, reply);
+    }
+    int known = frame_reply(f, reply);
     if (known == GROBO_ERR_FRAME && f->kind == FRAME_BOARD && f->has_packet && f->sum_ok &&
         grobo_rs30x_reply_to(f->board.packet, f->board.packet_bytes, &inner) >= 0) {
         *reply = inner; /* the board was told another number of bytes */
@@ -373,8 +396,9 @@ static int expects(const frame *f, grobo_reply *reply)
 
 static void say_reply(text *t, const grobo_reply *reply, int known)
 {
-    if (known == GROBO_ERR_TYPE || known == GROBO_ERR_CHECKSUM || known == GROBO_ERR_FRAME)
+    if (known == GROBO_ERR_TYPE || known == GROBO_ERR_CHECKSUM || known == GROBO_ERR_FRAME) {
         return;
+    }
     say(t, "; ");
     if (known == GROBO_ERR_MISMATCH) {
         char bad[80];
@@ -429,11 +453,13 @@ void words_say(const frame *f, bool color, const char *note, char *to, size_t ca
         say_hex(&t, f->bytes, f->size);
         break;
     }
-    if (f->kind != FRAME_ECHO)
+    if (f->kind != FRAME_ECHO) {
         say_reply(&t, &reply, known);
+    }
     say(&t, "%s\n", note);
-    if (f->has_packet && f->packet.kind == GROBO_RS30X_LONG && f->kind != FRAME_ECHO)
+    if (f->has_packet && f->packet.kind == GROBO_RS30X_LONG && f->kind != FRAME_ECHO) {
         say_shares(&t, &f->packet);
+    }
 }
 
 /* ---- JSON ---------------------------------------------------------------------------------- */
@@ -485,9 +511,11 @@ static json_t *part_json(const packet_part *part)
 static json_t *status_json(const grobo_rs30x_packet *p)
 {
     json_t *list = json_array();
-    for (int i = 0; i < N_STATUS; i++)
-        if (p->flags & status_flags[i].bit)
+    for (int i = 0; i < N_STATUS; i++) {
+        if (p->flags & status_flags[i].bit) {
             json_array_append_new(list, json_string(status_flags[i].key));
+        }
+    }
     return list;
 }
 
@@ -499,8 +527,9 @@ static json_t *packet_json(const frame *f)
     int right = right_sum(p);
     json_t *servos = json_array();
     packet_part part;
-    for (int i = 0; find_part(p, i, &part); i++)
+    for (int i = 0; find_part(p, i, &part); i++) {
         json_array_append_new(servos, part_json(&part));
+    }
     return json_pack("{s:s,s:s,s:i,s:i,s:i,s:i,s:i,s:i,s:b,s:o*,s:o*,s:o}", "kind", kinds[p->kind],
                      "action", action_of(p), "id", p->id, "flags", p->flags, "address", p->address,
                      "length", p->length, "count", p->count, "sum", bytes[f->packet_size - 1],
@@ -512,8 +541,9 @@ static json_t *packet_json(const frame *f)
 static json_t *reply_json(const frame *f, const grobo_reply *reply, int known)
 {
     static const char *const kinds[] = {"none", "ack", "return"};
-    if (known < 0 && known != GROBO_ERR_MISMATCH)
+    if (known < 0 && known != GROBO_ERR_MISMATCH) {
         return json_pack("{s:o}", "error", app_json_code(grobo_error_name(known)));
+    }
     bool returns = reply->kind == GROBO_REPLY_RETURN, differs = known == GROBO_ERR_MISMATCH;
     return json_pack("{s:s,s:I,s:o*,s:o*,s:o*,s:o*}", "kind", kinds[reply->kind], "bytes",
                      (json_int_t)reply->bytes, "id", returns ? json_integer(reply->id) : NULL,
@@ -527,8 +557,9 @@ json_t *words_json(const frame *f)
     char hex[3 * FRAMES_BUFFER_BYTES + 1];
     grobo_reply reply;
     int known = expects(f, &reply);
-    if (grobo_hex(hex, sizeof hex, f->bytes, f->size) < 0)
+    if (grobo_hex(hex, sizeof hex, f->bytes, f->size) < 0) {
         hex[0] = '\0';
+    }
     bool numbered = f->kind == FRAME_BOARD &&
                     (f->board.kind == GROBO_BOARD_SLOT || f->board.kind == GROBO_BOARD_SCENARIO);
     bool replies = known != GROBO_ERR_TYPE && f->kind != FRAME_ECHO;

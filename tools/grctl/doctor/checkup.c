@@ -42,11 +42,12 @@ void checkup_found(void *ctx, const char *name, const char *fix, const char *for
 
 int checkup_end(checkup *k)
 {
-    if (k->checks)
+    if (k->checks) {
         app_print_json(json_pack("{s:b,s:o}", "ok", k->failed == 0, "checks", k->checks));
-    else if (k->failed)
+    } else if (k->failed) {
         app_note(k->a, "%d of %d check%s failed", k->failed, k->n, k->n == 1 ? "" : "s");
-    else
+    } else {
         app_note(k->a, "all %d checks passed", k->n);
+    }
     return k->failed ? EXIT_ROBOT : EXIT_DONE;
 }

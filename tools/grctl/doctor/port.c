@@ -18,8 +18,9 @@ typedef struct search {
 static int visit(void *ctx, const grobo_port_info *info)
 {
     search *s = ctx;
-    if (strcmp(info->path, s->path) != 0)
+    if (strcmp(info->path, s->path) != 0) {
         return 0;
+    }
     s->info = *info;
     s->found = true;
     return 1;
@@ -34,7 +35,6 @@ static bool check_owner(checkup *k, const char *device)
     grobo_os_cause cause = {0};
     char fix[FIX_BYTES], name[64] = "";
     int error = port ? ops->open(port, device, GROBO_BAUD_DEFAULT_BPS, &cause) : GROBO_ERR_NOMEM;
-    int pid;
     if (!error) {
         (void)ops->set_low_latency(port, &cause);
         ops->close(port);
@@ -44,14 +44,15 @@ static bool check_owner(checkup *k, const char *device)
         checkup_found(k, "owner", NULL, "no other program holds it");
         return true;
     }
-    pid = error == GROBO_ERR_BUSY ? grobo_port_owner(device, name, sizeof name) : 0;
+    int pid = error == GROBO_ERR_BUSY ? grobo_port_owner(device, name, sizeof name) : 0;
     node_end_program(fix, sizeof fix, pid);
-    if (pid > 0)
+    if (pid > 0) {
         checkup_found(k, "owner", fix, "%s (pid %d) holds it", name, pid);
-    else
+    } else {
         checkup_found(k, "open", "end the program that holds it, or plug it out and in",
                       "%s: %s%s%s", device, grobo_error_text(error), *cause.text ? ": " : "",
                       cause.text);
+    }
     return false;
 }
 
@@ -60,8 +61,9 @@ static void check_latency(checkup *k, const char *path)
     search s = {.path = path};
     char fix[FIX_BYTES];
     grobo_port_list(visit, &s);
-    if (!s.found || s.info.latency_ms < 0)
+    if (!s.found || s.info.latency_ms < 0) {
         return;
+    }
     if (s.info.latency_ms <= QUICK_MS) {
         checkup_found(k, "latency", NULL, "its latency timer is %d ms", s.info.latency_ms);
         return;
@@ -74,9 +76,11 @@ static void check_latency(checkup *k, const char *path)
 bool checkup_port(checkup *k, const char *device)
 {
     char path[GROBO_DEVICE_MAX_BYTES];
-    if (!node_look(device, checkup_found, k) || !check_owner(k, device))
+    if (!node_look(device, checkup_found, k) || !check_owner(k, device)) {
         return false;
-    if (node_true_path(device, path, sizeof path))
+    }
+    if (node_true_path(device, path, sizeof path)) {
         check_latency(k, path);
+    }
     return true;
 }

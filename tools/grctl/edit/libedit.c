@@ -52,8 +52,9 @@ static void on_resumed(evutil_socket_t number, short what, void *ctx)
     line_reader *reader = ctx;
     (void)number;
     (void)what;
-    if (!reader->reading || tcgetpgrp(STDIN_FILENO) != getpgrp())
+    if (!reader->reading || tcgetpgrp(STDIN_FILENO) != getpgrp()) {
         return;
+    }
     el_set(reader->edit, EL_PREP_TERM, 0);
     el_set(reader->edit, EL_PREP_TERM, 1);
     el_set(reader->edit, EL_REFRESH, NULL);
@@ -68,7 +69,6 @@ static int get_character(EditLine *edit, wchar_t *out)
     for (;;) {
         int stopped = reader->owner.wait(reader->owner.ctx);
         char byte;
-        size_t n;
         if (stopped == LINE_NEWS) {
             tell_news(reader);
             continue;
@@ -77,15 +77,17 @@ static int get_character(EditLine *edit, wchar_t *out)
             reader->interrupted = true;
             return -1;
         }
-        if (read(STDIN_FILENO, &byte, 1) <= 0)
+        if (read(STDIN_FILENO, &byte, 1) <= 0) {
             return 0;
-        n = mbrtowc(out, &byte, 1, &state);
+        }
+        size_t n = mbrtowc(out, &byte, 1, &state);
         if (n == (size_t)-1) {
             *out = L'?';
             return 1;
         }
-        if (n != (size_t)-2)
+        if (n != (size_t)-2) {
             return 1;
+        }
     }
 }
 
@@ -100,11 +102,14 @@ typedef struct candidates {
 static void take_candidate(void *ctx, const char *word, bool whole)
 {
     candidates *c = ctx;
-    for (int i = 0; i < c->n; i++)
-        if (strcmp(c->word[i], word) == 0)
+    for (int i = 0; i < c->n; i++) {
+        if (strcmp(c->word[i], word) == 0) {
             return;
-    if (c->n >= CANDIDATES_MAX)
+        }
+    }
+    if (c->n >= CANDIDATES_MAX) {
         return;
+    }
     snprintf(c->word[c->n++], WORD_BYTES, "%s", word);
     c->whole = whole;
 }
@@ -113,10 +118,13 @@ static void take_candidate(void *ctx, const char *word, bool whole)
 static size_t common(const candidates *c)
 {
     size_t n = strlen(c->word[0]);
-    for (int i = 1; i < c->n; i++)
-        for (size_t k = 0; k < n; k++)
-            if (c->word[i][k] != c->word[0][k])
+    for (int i = 1; i < c->n; i++) {
+        for (size_t k = 0; k < n; k++) {
+            if (c->word[i][k] != c->word[0][k]) {
                 n = k;
+            }
+        }
+    }
     return n;
 }
 
@@ -129,8 +137,9 @@ static void list_candidates(candidates *c)
 {
     qsort(c->word, (size_t)c->n, WORD_BYTES, compare);
     putchar('\n');
-    for (int i = 0; i < c->n; i++)
+    for (int i = 0; i < c->n; i++) {
         printf("%s%s", c->word[i], i + 1 < c->n ? "  " : "\n");
+    }
     fflush(stdout);
 }
 
@@ -139,15 +148,16 @@ static unsigned char complete(EditLine *edit, int key)
     static candidates found;
     char text[WORD_BYTES + 1];
     const LineInfo *info = el_line(edit);
-    size_t length = (size_t)(info->cursor - info->buffer), replaced, n;
+    size_t length = (size_t)(info->cursor - info->buffer);
     line_reader *reader = NULL;
     (void)key;
     found.n = 0;
     el_get(edit, EL_CLIENTDATA, &reader);
-    replaced = reader->owner.complete(info->buffer, length, take_candidate, &found);
-    if (found.n == 0)
+    size_t replaced = reader->owner.complete(info->buffer, length, take_candidate, &found);
+    if (found.n == 0) {
         return CC_REFRESH_BEEP;
-    n = common(&found);
+    }
+    size_t n = common(&found);
     if (found.n > 1 && n <= replaced) {
         list_candidates(&found);
         return CC_REDISPLAY;
@@ -155,8 +165,9 @@ static unsigned char complete(EditLine *edit, int key)
     snprintf(text, sizeof text, "%.*s%s", (int)n, found.word[0],
              found.n == 1 && found.whole ? " " : "");
     el_deletestr(edit, (int)replaced);
-    if (el_insertstr(edit, text) < 0)
+    if (el_insertstr(edit, text) < 0) {
         return CC_ERROR;
+    }
     return CC_REFRESH;
 }
 
@@ -166,27 +177,31 @@ static void open_history(line_reader *reader)
 {
     HistEvent event;
     reader->history = history_init();
-    if (!reader->history)
+    if (!reader->history) {
         return;
+    }
     history(reader->history, &event, H_SETSIZE, HISTORY_LINES);
     history(reader->history, &event, H_SETUNIQUE, 1);
-    if (!os_state_path("history", reader->path, sizeof reader->path))
+    if (!os_state_path("history", reader->path, sizeof reader->path)) {
         *reader->path = '\0';
-    if (*reader->path)
+    }
+    if (*reader->path) {
         history(reader->history, &event, H_LOAD, reader->path);
+    }
     el_set(reader->edit, EL_HIST, history, reader->history);
 }
 
 static void remember(line_reader *reader, const char *line)
 {
     HistEvent event;
-    mode_t mask;
-    if (!reader->history || line[strspn(line, " \t\n")] == '\0')
+    if (!reader->history || line[strspn(line, " \t\n")] == '\0') {
         return;
+    }
     history(reader->history, &event, H_ENTER, line);
-    if (!*reader->path)
+    if (!*reader->path) {
         return;
-    mask = umask(0077); /* what was typed is nobody else's */
+    }
+    mode_t mask = umask(0077); /* what was typed is nobody else's */
     history(reader->history, &event, H_SAVE, reader->path);
     umask(mask);
 }
@@ -196,8 +211,9 @@ static void remember(line_reader *reader, const char *line)
 line_reader *line_open(const line_owner *owner)
 {
     line_reader *reader = calloc(1, sizeof *reader);
-    if (!reader)
+    if (!reader) {
         return NULL;
+    }
     reader->owner = *owner;
     reader->prompt = "";
     reader->edit = el_init("grctl", stdin, stdout, stderr);
@@ -215,19 +231,19 @@ line_reader *line_open(const line_owner *owner)
     open_history(reader);
     el_source(reader->edit, NULL);
     reader->resumed = evsignal_new(owner->base, SIGCONT, on_resumed, reader);
-    if (reader->resumed)
+    if (reader->resumed) {
         event_add(reader->resumed, NULL);
+    }
     return reader;
 }
 
 int line_read(line_reader *reader, const char *prompt, char *line, size_t capacity)
 {
-    const char *text;
     int n = 0;
     reader->prompt = prompt;
     reader->interrupted = false;
     reader->reading = true;
-    text = el_gets(reader->edit, &n);
+    const char *text = el_gets(reader->edit, &n);
     reader->reading = false;
     if (reader->interrupted) {
         el_reset(reader->edit);
@@ -239,18 +255,21 @@ int line_read(line_reader *reader, const char *prompt, char *line, size_t capaci
         return LINE_END;
     }
     remember(reader, text);
-    if (strcspn(text, "\n") >= capacity)
+    if (strcspn(text, "\n") >= capacity) {
         return LINE_TOO_LONG;
+    }
     snprintf(line, capacity, "%.*s", (int)strcspn(text, "\n"), text);
     return (int)strlen(line);
 }
 
 void line_close(line_reader *reader)
 {
-    if (reader->history)
+    if (reader->history) {
         history_end(reader->history);
-    if (reader->resumed)
+    }
+    if (reader->resumed) {
         event_free(reader->resumed);
+    }
     el_end(reader->edit);
     free(reader);
 }

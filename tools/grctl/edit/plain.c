@@ -14,8 +14,9 @@ struct line_reader {
 line_reader *line_open(const line_owner *owner)
 {
     line_reader *reader = malloc(sizeof *reader);
-    if (reader)
+    if (reader) {
         reader->owner = *owner;
+    }
     return reader;
 }
 
@@ -40,23 +41,25 @@ int line_read(line_reader *reader, const char *prompt, char *line, size_t capaci
     fflush(stdout);
     for (;;) {
         char c;
-        int got;
         if (await_input(&reader->owner, prompt)) {
             putchar('\n');
             return LINE_INTERRUPTED;
         }
-        got = os_input_read(&c, 1);
+        int got = os_input_read(&c, 1);
         if (got < 0) {
             putchar('\n');
             return LINE_END;
         }
-        if (got > 0 && c == '\n')
+        if (got > 0 && c == '\n') {
             break;
-        if (got > 0 && c != '\r' && n < capacity)
+        }
+        if (got > 0 && c != '\r' && n < capacity) {
             line[n++] = c;
+        }
     }
-    if (n == capacity)
+    if (n == capacity) {
         return LINE_TOO_LONG;
+    }
     line[n] = '\0';
     return (int)n;
 }

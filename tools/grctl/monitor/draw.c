@@ -33,12 +33,15 @@ int monitor_joint(const monitor *m, int place)
 const char *monitor_busy(const monitor *m)
 {
     grobo_job_kind kind = grobo_robot_job(m->c.robot);
-    if (kind == GROBO_JOB_ESTOP)
+    if (kind == GROBO_JOB_ESTOP) {
         return "emergency stop";
-    if (kind == GROBO_JOB_PLAY)
+    }
+    if (kind == GROBO_JOB_PLAY) {
         return "getting ready to play";
-    if (m->job)
+    }
+    if (m->job) {
         return m->doing;
+    }
     return grobo_robot_is_playing(m->c.robot)
                ? grobo_sequencer_state_name(grobo_robot_play_state(m->c.robot))
                : NULL;
@@ -48,8 +51,9 @@ const char *monitor_busy(const monitor *m)
 
 static screen_style torque_style(const grobo_joint_info *i)
 {
-    if (!i->torque_known)
+    if (!i->torque_known) {
         return SCREEN_DIM;
+    }
     return i->state.torque == GROBO_TORQUE_ON      ? SCREEN_GOOD
            : i->state.torque == GROBO_TORQUE_BRAKE ? SCREEN_WARN
                                                    : SCREEN_DIM;
@@ -74,11 +78,13 @@ static void draw_bar(const monitor *m, const grobo_joint *j, const grobo_joint_i
     double slack_rad = grobo_rad_from_deg(BEYOND_DEG); /* at a limit is where many postures are */
     bool beyond =
         i->state.angle_rad < j->min_rad - slack_rad || i->state.angle_rad > j->max_rad + slack_rad;
-    for (int k = 0; k < width; k++)
+    for (int k = 0; k < width; k++) {
         screen_put(row, column + k, SCREEN_DIM, m->blocks ? "─" : "-");
-    if (i->has_target)
+    }
+    if (i->has_target) {
         screen_put(row, column + place_in_bar(j, i->target_rad, width), SCREEN_BOLD,
                    m->blocks ? "│" : "|");
+    }
     screen_put(row, column + place_in_bar(j, i->state.angle_rad, width),
                beyond ? SCREEN_BAD : torque_style(i), m->blocks ? "█" : "#");
 }
@@ -113,15 +119,17 @@ static void draw_joint(const monitor *m, int place, int column, int bar)
     char text[64];
     snprintf(text, sizeof text, "%2d%c%-10s", j->motor, chosen ? '>' : ' ', name);
     screen_put(row, column, chosen ? SCREEN_BOLD : SCREEN_PLAIN, text);
-    if (grobo_robot_joint(m->c.robot, joint, &i) < 0)
+    if (grobo_robot_joint(m->c.robot, joint, &i) < 0) {
         return;
+    }
     if (i.angle_age_us == GROBO_NEVER_US || i.angle_age_us > STALE_US) {
-        if (i.status < 0 && i.status != GROBO_ERR_EMPTY)
+        if (i.status < 0 && i.status != GROBO_ERR_EMPTY) {
             snprintf(text, sizeof text, " %.24s", grobo_error_text(i.status));
-        else if (i.angle_age_us == GROBO_NEVER_US)
+        } else if (i.angle_age_us == GROBO_NEVER_US) {
             snprintf(text, sizeof text, " not read yet");
-        else
+        } else {
             snprintf(text, sizeof text, " not read for %.0f s", (double)i.angle_age_us / 1e6);
+        }
         screen_put(row, column + 13, SCREEN_BAD, text);
         return;
     }
@@ -147,15 +155,16 @@ static void draw_title(const monitor *m, int columns)
     grobo_robot_tripped(m->c.robot, &trip);
     snprintf(text, sizeof text, "%s  %s", m->model->name, conn_device(&m->c));
     screen_put(ROW_TITLE, 0, SCREEN_BOLD, text);
-    if (!m->c.up)
+    if (!m->c.up) {
         snprintf(text, sizeof text, " LINE LOST for %.0f s, trying again ",
                  (double)(grobo_now_us() - m->up_us) / 1e6);
-    else if (trip.trip == GROBO_TRIP_ESTOP)
+    } else if (trip.trip == GROBO_TRIP_ESTOP) {
         snprintf(text, sizeof text, " EMERGENCY STOP: R takes it back ");
-    else if (trip.trip != GROBO_TRIP_NONE)
+    } else if (trip.trip != GROBO_TRIP_NONE) {
         snprintf(text, sizeof text, " STOPPED: %s: R takes it back ", grobo_trip_name(trip.trip));
-    else
+    } else {
         return;
+    }
     screen_put(ROW_TITLE, columns - (int)strlen(text), SCREEN_ALARM, text);
 }
 
@@ -168,8 +177,9 @@ static void draw_link(const monitor *m)
     for (int j = 0; j < m->model->n_joints; j++) {
         grobo_joint_info i;
         if (grobo_robot_joint(m->c.robot, j, &i) == 0 && (i.state.valid & GROBO_FIELD_VOLTAGE) &&
-            (!low_mv || i.state.voltage_mv < low_mv))
+            (!low_mv || i.state.voltage_mv < low_mv)) {
             low_mv = i.state.voltage_mv;
+        }
     }
     snprintf(text, sizeof text, "%5.2f V", low_mv / 1e3);
     screen_put(ROW_LINK, 0,
@@ -186,19 +196,20 @@ static void draw_play(const monitor *m, int columns)
 {
     grobo_play_progress p;
     char text[MONITOR_TEXT_BYTES];
-    int width = columns / 3, full;
+    int width = columns / 3;
     const char *busy = m->job ? monitor_busy(m) : NULL;
     if (!m->list.n) {
         screen_put(ROW_PLAY, 0, SCREEN_WARN, busy ? busy : "");
         return;
     }
     grobo_robot_progress(m->c.robot, &p);
-    full = p.total_us ? (int)((double)p.t_us / (double)p.total_us * width + 0.5) : 0;
-    for (int k = 0; k < width; k++)
+    int full = p.total_us ? (int)((double)p.t_us / (double)p.total_us * width + 0.5) : 0;
+    for (int k = 0; k < width; k++) {
         screen_put(ROW_PLAY, k, k < full ? SCREEN_GOOD : SCREEN_DIM,
                    m->blocks  ? (k < full ? "█" : "░")
                    : k < full ? "#"
                               : "-");
+    }
     snprintf(text, sizeof text, "%s %.1f of %.1f s at %d %%  %s",
              grobo_sequencer_state_name(p.state), (double)p.t_us / 1e6, (double)p.total_us / 1e6,
              m->keys.speed_pct, m->list.path[0]);
@@ -217,8 +228,9 @@ static void draw_log(const monitor *m, int rows)
     for (int i = 0; i < m->n_log && ROW_SAID + 1 + i < help_row(rows) - 1; i++) {
         int at = (m->n_log - 1 - i) % MONITOR_LOG;
         screen_put(ROW_SAID + 1 + i, 0, SCREEN_DIM, m->log[at]);
-        if (i == MONITOR_LOG - 1)
+        if (i == MONITOR_LOG - 1) {
             return;
+        }
     }
 }
 
@@ -232,13 +244,14 @@ static void draw_help(const monitor *m, int rows)
     int row = help_row(rows);
     screen_put(row, 0, SCREEN_DIM, lines[0]);
     screen_put(row + 1, 0, SCREEN_BOLD, lines[1]);
-    if (m->list.n)
+    if (m->list.n) {
         screen_put(row + 2, 0, SCREEN_DIM, play);
+    }
 }
 
 void monitor_draw(const monitor *m)
 {
-    int rows, columns, bar;
+    int rows, columns;
     screen_begin(&rows, &columns);
     if (rows < LEAST_ROWS || columns < LEAST_COLUMNS) {
         screen_put(0, 0, SCREEN_WARN, "a larger window, please: 80x24");
@@ -246,13 +259,15 @@ void monitor_draw(const monitor *m)
         screen_end();
         return;
     }
-    bar = (columns - GAP) / 2 - BEFORE_BAR - AFTER_BAR;
+    int bar = (columns - GAP) / 2 - BEFORE_BAR - AFTER_BAR;
     bar = bar > BAR_MOST ? BAR_MOST : bar;
     draw_title(m, columns);
-    for (int side = 0; side < 2; side++)
+    for (int side = 0; side < 2; side++) {
         draw_heads(side * (BEFORE_BAR + bar + AFTER_BAR + GAP), bar);
-    for (int place = 0; place < MONITOR_PLACES; place++)
+    }
+    for (int place = 0; place < MONITOR_PLACES; place++) {
         draw_joint(m, place, places[place].column * (BEFORE_BAR + bar + AFTER_BAR + GAP), bar);
+    }
     draw_link(m);
     draw_play(m, columns);
     screen_put(ROW_SAID, 0, m->bad ? SCREEN_BAD : SCREEN_PLAIN, m->said);

@@ -3,9 +3,8 @@
  * Playing without a port: the same engine that drives a robot drives the simulator in virtual
  * time, and what it would send is printed. The simulated robot stands in the first posture.
  */
-#include <string.h>
-
 #include <math.h>
+#include <string.h>
 
 #include <grobo/session.h>
 #include <grobo/static.h>
@@ -37,8 +36,9 @@ static void on_event(void *ctx, const grobo_event *event)
         r->playing = true;
         r->over = to == GROBO_SEQUENCER_FINISHED || to == GROBO_SEQUENCER_IDLE ||
                   to == GROBO_SEQUENCER_FAILED;
-        if (to == GROBO_SEQUENCER_FAILED)
+        if (to == GROBO_SEQUENCER_FAILED) {
             r->error = event->u.play.error;
+        }
     }
 }
 
@@ -48,20 +48,23 @@ static void print_frame(rehearsal *r, const uint8_t *frame, int size)
     char hex[3 * GROBO_RS30X_PACKET_MAX_BYTES + 1] = "";
     grobo_target target = {0};
     grobo_joint_mask torqued[GROBO_TORQUE_BRAKE + 1] = {0};
-    double time_ms;
     if (!r->playing || driver->inspect(driver, NULL, frame, (size_t)size, &target, torqued) < 0 ||
-        target.posture.set == 0)
+        target.posture.set == 0) {
         return;
-    if (r->start_us < 0)
+    }
+    if (r->start_us < 0) {
         r->start_us = r->now_us;
-    time_ms = (double)(r->now_us - r->start_us) / 1e3;
-    for (int i = 0; i < size; i++)
+    }
+    double time_ms = (double)(r->now_us - r->start_us) / 1e3;
+    for (int i = 0; i < size; i++) {
         snprintf(hex + 3 * i, 4, "%02X%s", frame[i], i + 1 < size ? " " : "");
+    }
     r->frames++;
-    if (r->a->json)
+    if (r->a->json) {
         app_print_json(json_pack("{s:o,s:s}", "time_ms", app_json_number(time_ms, 3), "hex", hex));
-    else
+    } else {
         app_print("%.0f %s\n", time_ms, hex);
+    }
 }
 
 /* One round of the pump; false when nothing will happen any more. */
@@ -70,23 +73,25 @@ static bool turn(rehearsal *r)
     uint8_t buf[256];
     size_t n = grobo_sim_tx(&r->sim, buf, sizeof buf, r->now_us);
     int sent;
-    int64_t next, other;
     trace_bytes(&r->trace, GROBO_DIR_RX, r->now_us, buf, n);
-    if (n)
+    if (n) {
         grobo_robot_rx(&r->robot, buf, n, r->now_us);
+    }
     grobo_robot_step(&r->robot, r->now_us);
     while ((sent = grobo_robot_tx(&r->robot, buf, sizeof buf, r->now_us)) > 0) {
         trace_bytes(&r->trace, GROBO_DIR_TX, r->now_us, buf, (size_t)sent);
         print_frame(r, buf, sent);
         grobo_sim_rx(&r->sim, buf, (size_t)sent, r->now_us);
     }
-    next = grobo_robot_deadline(&r->robot, r->now_us);
-    other = grobo_sim_packet_deadline(&r->sim);
+    int64_t next = grobo_robot_deadline(&r->robot, r->now_us);
+    int64_t other = grobo_sim_packet_deadline(&r->sim);
     next = other < next ? other : next;
-    if (next == GROBO_NEVER_US)
+    if (next == GROBO_NEVER_US) {
         return false;
-    if (next > r->now_us)
+    }
+    if (next > r->now_us) {
         r->now_us = next;
+    }
     return true;
 }
 
@@ -95,26 +100,31 @@ static void take_first_posture(rehearsal *r, const grobo_clip *clip)
 {
     grobo_posture first;
     int64_t at_us;
-    if (clip->relative || clip->key(clip->ctx, 0, &first, &at_us) < 0)
+    if (clip->relative || clip->key(clip->ctx, 0, &first, &at_us) < 0) {
         return;
-    for (int j = 0; j < first.n_joints; j++)
-        if (first.set & GROBO_JOINT_BIT(j))
+    }
+    for (int j = 0; j < first.n_joints; j++) {
+        if (first.set & GROBO_JOINT_BIT(j)) {
             grobo_sim_set_angle(&r->sim, j,
                                 (int32_t)lround(grobo_deg_from_rad(first.angle_rad[j]) * 1e3), 0);
+        }
+    }
 }
 
 static int play(rehearsal *r, playlist *list)
 {
     int error = grobo_robot_play(&r->robot, &list->clip[0], &list->options[0]);
     r->job_result = 1;
-    while (error >= 0 && r->job_result > 0 && turn(r))
-        ;
-    if (error >= 0)
+    while (error >= 0 && r->job_result > 0 && turn(r)) {
+    }
+    if (error >= 0) {
         error = r->job_result > 0 ? GROBO_ERR_TIMEOUT : r->job_result;
-    for (int i = 1; i < list->n && error >= 0; i++)
+    }
+    for (int i = 1; i < list->n && error >= 0; i++) {
         error = grobo_robot_enqueue(&r->robot, &list->clip[i], &list->options[i]);
-    while (error >= 0 && !r->over && turn(r))
-        ;
+    }
+    while (error >= 0 && !r->over && turn(r)) {
+    }
     return error < 0 ? error : r->error;
 }
 
@@ -128,26 +138,29 @@ int play_dry_run(playlist *list, app *a)
                                  .bus = {.baud_bps = conn_baud(a)}};
     trace_line line = {.device = GROBO_DEVICE_SIM, .wiring = wiring};
     grobo_posture start;
-    int error, status;
     memset(&r, 0, sizeof r);
     r.a = a;
     r.start_us = -1;
     grobo_posture_init_pose(&start, &grobo_gr001_model);
-    status = playlist_prepare(list, a, &start);
-    if (!status)
+    int status = playlist_prepare(list, a, &start);
+    if (!status) {
         status = trace_open(&r.trace, a, &line, 0);
-    if (status)
+    }
+    if (status) {
         return status;
-    error = grobo_sim_init(&r.sim, &sim, 0);
-    if (!error)
+    }
+    int error = grobo_sim_init(&r.sim, &sim, 0);
+    if (!error) {
         error = grobo_robot_init(&r.robot, grobo_gr001_driver(wiring), NULL, &config, 0);
+    }
     if (!error) {
         take_first_posture(&r, &list->clip[0]);
         grobo_robot_on_event(&r.robot, on_event, &r);
         grobo_robot_link_up(&r.robot, 0);
         error = play(&r, list);
     }
-    if (error < 0)
+    if (error < 0) {
         status = app_fail_error(a, app_status_of(error), error, "play");
+    }
     return trace_close(&r.trace, a, status);
 }

@@ -7,22 +7,26 @@ enum { SPEED_STEP_PCT = 10 };
 
 static void toggle_pause(conn *c)
 {
-    if (grobo_robot_play_state(c->robot) == GROBO_SEQUENCER_PAUSED)
+    if (grobo_robot_play_state(c->robot) == GROBO_SEQUENCER_PAUSED) {
         grobo_robot_resume(grobo_session_robot(c->session));
-    else
+    } else {
         grobo_robot_pause(grobo_session_robot(c->session));
+    }
 }
 
 /* Kept only where there is something to change the speed of. */
 static void change_speed(play_keys *k, int by_pct)
 {
     int speed_pct = k->speed_pct + by_pct;
-    if (speed_pct < SPEED_STEP_PCT)
+    if (speed_pct < SPEED_STEP_PCT) {
         speed_pct = SPEED_STEP_PCT;
-    if (speed_pct > GROBO_PLAY_SPEED_MAX_PCT)
+    }
+    if (speed_pct > GROBO_PLAY_SPEED_MAX_PCT) {
         speed_pct = GROBO_PLAY_SPEED_MAX_PCT;
-    if (grobo_robot_speed(grobo_session_robot(k->c->session), speed_pct) == GROBO_OK)
+    }
+    if (grobo_robot_speed(grobo_session_robot(k->c->session), speed_pct) == GROBO_OK) {
         k->speed_pct = speed_pct;
+    }
 }
 
 /* The mark is set first, as `grctl estop` does; the engine latches even when the line is down. */
@@ -30,8 +34,9 @@ void play_keys_estop(play_keys *k)
 {
     k->estop = true;
     grobo_os_cause cause;
-    if (grobo_estop_set(conn_device(k->c), NULL, &cause) < 0)
+    if (grobo_estop_set(conn_device(k->c), NULL, &cause) < 0) {
         app_note(k->c->a, "the emergency stop is not kept for other programs: %s", cause.text);
+    }
     grobo_robot_estop(grobo_session_robot(k->c->session));
 }
 

@@ -12,9 +12,11 @@
 static void say_warnings(const app *a, const grobo_diagnostics *found, bool legs_solved)
 {
     grobo_diagnostic d;
-    for (size_t k = 0; grobo_diagnostics_get(found, k, &d) == 0; k++)
-        if (!legs_solved || strcmp(d.code, "legs-by-ik") != 0)
+    for (size_t k = 0; grobo_diagnostics_get(found, k, &d) == 0; k++) {
+        if (!legs_solved || strcmp(d.code, "legs-by-ik") != 0) {
             file_say_one(a, &d);
+        }
+    }
 }
 
 /* An angle outside its joint's limits: --clamp takes it to the limit. */
@@ -26,9 +28,11 @@ static bool is_limit(const grobo_diagnostic *d)
 /* The first error that would be refused in play; false: there is none. */
 static bool find_refused(const app *a, const grobo_diagnostics *found, grobo_diagnostic *d)
 {
-    for (size_t k = 0; grobo_diagnostics_get(found, k, d) == 0; k++)
-        if (d->severity == GROBO_SEVERITY_ERROR && !(a->clamps && is_limit(d)))
+    for (size_t k = 0; grobo_diagnostics_get(found, k, d) == 0; k++) {
+        if (d->severity == GROBO_SEVERITY_ERROR && !(a->clamps && is_limit(d))) {
             return true;
+        }
+    }
     return false;
 }
 
@@ -47,10 +51,12 @@ static int check_one(app *a, const playlist *list, int i, grobo_slack_taken *sla
     grobo_diagnostic d;
     char text[1024];
     int error = grobo_motion_check(list->motion[i], &grobo_gr001_model, &how, found);
-    if (error < 0)
+    if (error < 0) {
         return fail(a, list->path[i], error);
-    if (!find_refused(a, found, &d))
+    }
+    if (!find_refused(a, found, &d)) {
         return list->body[i] ? body_refuse(a, list->path[i], list->body[i], slack) : 0;
+    }
     file_format(&d, false, text, sizeof text);
     return app_fail(a, EXIT_SAFETY, d.code, "%s; %s", text,
                     is_limit(&d) ? "--clamp plays it at the limit"
@@ -67,11 +73,13 @@ static int add_warnings(app *a, const playlist *list, int i, grobo_slack_taken *
                            .slack = slack};
     grobo_body_options body;
     int error = body_options_read(a, PLAY_BODY, 0, &body);
-    if (error)
+    if (error) {
         return error;
+    }
     check_report_slack(list->path[i], slack, found);
-    if (app_option(a, PLAY_FORCE)->given || !config_warns_of_falls(a))
+    if (app_option(a, PLAY_FORCE)->given || !config_warns_of_falls(a)) {
         return 0;
+    }
     error = check_whole(list->motion[i], &body, &how, found);
     return error < 0 ? fail(a, list->path[i], error) : 0;
 }
@@ -82,23 +90,27 @@ static int find_rate(app *a, grobo_budget *line)
     grobo_wiring wiring = (grobo_wiring)app_global(a, GLOBAL_WIRING)->choice;
     double rate_hz = app_number(a, PLAY_RATE, 0);
     int error = wire_budget(grobo_gr001_driver(wiring), (int)conn_baud(a), line);
-    if (error < 0)
+    if (error < 0) {
         return app_fail_error(a, EXIT_USAGE, error, "play");
-    if (rate_hz > line->watched_hz && !app_option(a, PLAY_UNWATCHED)->given)
+    }
+    if (rate_hz > line->watched_hz && !app_option(a, PLAY_UNWATCHED)->given) {
         return app_fail(a, EXIT_SAFETY, grobo_error_name(GROBO_ERR_UNWATCHED),
                         "play: %.0f frames a second leave no time to read the joints (at most %d); "
                         "--unwatched plays them all the same",
                         rate_hz, line->watched_hz);
+    }
     return 0;
 }
 
 static void set_options(grobo_play_options *o, const app *a, grobo_motion_kind kind)
 {
     bool keyed = kind == GROBO_MOTION_POSTURES || kind == GROBO_MOTION_STEPS;
-    if (app_option(a, PLAY_KEY)->given)
+    if (app_option(a, PLAY_KEY)->given) {
         keyed = true;
-    if (app_option(a, PLAY_RATE)->given)
+    }
+    if (app_option(a, PLAY_RATE)->given) {
         keyed = false;
+    }
     o->mode = keyed ? GROBO_PLAY_KEY : GROBO_PLAY_RATE;
     o->rate_hz = (uint16_t)app_number(a, PLAY_RATE, 0);
     o->unwatched = app_option(a, PLAY_UNWATCHED)->given > 0;
@@ -116,14 +128,18 @@ static int solve_and_check(app *a, playlist *list, int i, const grobo_budget *li
     grobo_diagnostics *found = NULL;
     int status = body_make(a, PLAY_BODY, list->path[i], list->motion[i], rate_hz, &list->body[i]);
     int error = status ? 0 : grobo_diagnostics_new(&found, NULL);
-    if (error)
+    if (error) {
         return fail(a, list->path[i], error);
-    if (!status)
+    }
+    if (!status) {
         status = check_one(a, list, i, &slack, found);
-    if (!status)
+    }
+    if (!status) {
         status = add_warnings(a, list, i, &slack, found);
-    if (!status)
+    }
+    if (!status) {
         say_warnings(a, found, list->body[i] != NULL);
+    }
     grobo_diagnostics_free(found);
     return status;
 }
@@ -131,39 +147,46 @@ static int solve_and_check(app *a, playlist *list, int i, const grobo_budget *li
 /* A file has the joints that it lists, the robot all: the others are not set. */
 static void widen(grobo_motion *motion)
 {
-    if (grobo_motion_joints(motion) < grobo_gr001_model.n_joints)
+    if (grobo_motion_joints(motion) < grobo_gr001_model.n_joints) {
         (void)grobo_motion_set_joints(motion, grobo_gr001_model.n_joints);
+    }
 }
 
 int playlist_load(playlist *list, app *a)
 {
     grobo_budget line;
-    int status;
     memset(list, 0, sizeof *list);
-    if (app_option(a, PLAY_RATE)->given && app_option(a, PLAY_KEY)->given)
+    if (app_option(a, PLAY_RATE)->given && app_option(a, PLAY_KEY)->given) {
         return app_fail(a, EXIT_USAGE, "ARG", "play: --rate and --key exclude each other");
-    if (a->line.n_arguments > PLAY_FILES_MAX)
+    }
+    if (a->line.n_arguments > PLAY_FILES_MAX) {
         return app_fail(a, EXIT_USAGE, "ARG", "play: more than %d files", PLAY_FILES_MAX);
-    status = find_rate(a, &line);
-    if (status)
+    }
+    int status = find_rate(a, &line);
+    if (status) {
         return status;
+    }
     for (int i = 0; i < a->line.n_arguments; i++) {
         grobo_read_options read = {.model = &grobo_gr001_model, .keep_positions = true};
         list->path[i] = a->line.argument[i];
         status = file_load(a, list->path[i], &read, &list->motion[i]);
-        if (status)
+        if (status) {
             return status;
+        }
         list->n = i + 1;
         status = file_fits(a, list->path[i], list->motion[i]);
-        if (status)
+        if (status) {
             return status;
+        }
         widen(list->motion[i]);
-        if (grobo_motion_size(list->motion[i]) == 0)
+        if (grobo_motion_size(list->motion[i]) == 0) {
             return app_fail(a, EXIT_FILE, "EMPTY", "%s: has no postures", list->path[i]);
+        }
         set_options(&list->options[i], a, grobo_motion_get_kind(list->motion[i]));
         status = solve_and_check(a, list, i, &line);
-        if (status)
+        if (status) {
             return status;
+        }
     }
     list->options[0].from_us = (int64_t)(app_number(a, PLAY_FROM, 0) * 1000);
     return 0;
@@ -176,11 +199,14 @@ static grobo_joint_mask joints_behind(const playlist *list)
     grobo_posture posture;
     int64_t at_us;
     for (int i = 1; i < list->n; i++) {
-        if (list->options[i].mirror)
+        if (list->options[i].mirror) {
             return GROBO_JOINTS_ALL(grobo_gr001_model.n_joints);
-        for (size_t k = 0; k < list->clip[i].n_keys; k++)
-            if (list->clip[i].key(list->clip[i].ctx, k, &posture, &at_us) >= 0)
+        }
+        for (size_t k = 0; k < list->clip[i].n_keys; k++) {
+            if (list->clip[i].key(list->clip[i].ctx, k, &posture, &at_us) >= 0) {
                 joints |= posture.set;
+            }
+        }
     }
     return joints;
 }
@@ -190,9 +216,11 @@ static grobo_joint_mask joints_behind(const playlist *list)
 static int within_slack(int error, grobo_posture *posture)
 {
     const grobo_model *model = &grobo_gr001_model;
-    for (int j = 0; error >= 0 && j < posture->n_joints && j < model->n_joints; j++)
-        if (posture->set & GROBO_JOINT_BIT(j))
+    for (int j = 0; error >= 0 && j < posture->n_joints && j < model->n_joints; j++) {
+        if (posture->set & GROBO_JOINT_BIT(j)) {
             posture->angle_rad[j] = grobo_model_take_slack(model, j, posture->angle_rad[j]);
+        }
+    }
     return error;
 }
 
@@ -212,8 +240,9 @@ static int slack_sample(void *ctx, int64_t t_us, grobo_posture *posture)
 static void play_within_slack(grobo_clip *view, grobo_clip *clip)
 {
     *clip = *view;
-    if (view->relative)
+    if (view->relative) {
         return;
+    }
     clip->key = slack_key;
     clip->sample = view->sample ? slack_sample : NULL;
     clip->ctx = view;
@@ -224,16 +253,19 @@ int playlist_prepare(playlist *list, app *a, const grobo_posture *start)
     grobo_clip_options how = {.start = start};
     for (int i = 0; i < list->n; i++) {
         int error = 0;
-        if (list->body[i])
+        if (list->body[i]) {
             grobo_body_clip(list->body[i], true, &list->view[i]);
-        else
+        } else {
             error = grobo_motion_clip(list->motion[i], i == 0 ? &how : NULL, &list->view[i]);
-        if (error)
+        }
+        if (error) {
             return fail(a, list->path[i], error);
+        }
         play_within_slack(&list->view[i], &list->clip[i]);
-        if (list->options[i].from_us > list->clip[i].length_us)
+        if (list->options[i].from_us > list->clip[i].length_us) {
             return app_fail(a, EXIT_USAGE, "ARG", "play: --from is beyond the end of %s (%.0f ms)",
                             list->path[i], (double)list->clip[i].length_us / 1e3);
+        }
     }
     list->options[0].also = joints_behind(list);
     return 0;
@@ -242,8 +274,9 @@ int playlist_prepare(playlist *list, app *a, const grobo_posture *start)
 void playlist_free(playlist *list)
 {
     for (int i = 0; i < list->n; i++) {
-        if (list->view[i].key && !list->body[i])
+        if (list->view[i].key && !list->body[i]) {
             grobo_motion_clip_free(&list->view[i]);
+        }
         grobo_body_free(list->body[i]);
         grobo_motion_free(list->motion[i]);
     }

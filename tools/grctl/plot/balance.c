@@ -20,8 +20,9 @@ double plot_balance_rate(double length_s)
 static bool same_sole(const plot_sole *a, const plot_sole *b)
 {
     double most_m = 0;
-    for (int i = 0; i < 8; i++)
+    for (int i = 0; i < 8; i++) {
         most_m = fmax(most_m, fabs(a->corner_m[i / 2][i % 2] - b->corner_m[i / 2][i % 2]));
+    }
     return a->foot == b->foot && most_m < 0.0005;
 }
 
@@ -30,35 +31,40 @@ static void see_sole(plot_balance *b, const grobo_body_balance_frame *frame, int
 {
     plot_sole *sole = &b->soles[b->n_soles];
     bool stood = b->n_points && b->points[b->n_points - 1].standing[foot];
-    if (!frame->standing[foot] || stood || b->n_soles == PLOT_SOLES_MOST)
+    if (!frame->standing[foot] || stood || b->n_soles == PLOT_SOLES_MOST) {
         return;
+    }
     sole->foot = foot;
-    for (int i = 0; i < 4; i++)
+    for (int i = 0; i < 4; i++) {
         memcpy(sole->corner_m[i], frame->sole_m[foot][i], sizeof sole->corner_m[i]);
-    for (int i = 0; i < b->n_soles; i++)
-        if (same_sole(&b->soles[i], sole))
+    }
+    for (int i = 0; i < b->n_soles; i++) {
+        if (same_sole(&b->soles[i], sole)) {
             return;
+        }
+    }
     b->n_soles++;
 }
 
 static void see_frame(void *ctx, const grobo_body_balance_frame *frame)
 {
     plot_balance *b = ctx;
-    plot_balance_point *point;
     bool stands = frame->standing[0] || frame->standing[1];
-    if (b->n_points == b->capacity)
+    if (b->n_points == b->capacity) {
         return;
+    }
     see_sole(b, frame, 0);
     see_sole(b, frame, 1);
-    point = &b->points[b->n_points];
+    plot_balance_point *point = &b->points[b->n_points];
     point->t_s = frame->time_s;
     point->margin_m = frame->margin_m;
     memcpy(point->com_m, frame->com_m, sizeof point->com_m);
     memcpy(point->zmp_m, frame->zmp_m, sizeof point->zmp_m);
     memcpy(point->standing, frame->standing, sizeof point->standing);
     b->stands_always = b->stands_always && stands;
-    if (stands && (!b->stands_ever || point->margin_m < b->points[b->worst].margin_m))
+    if (stands && (!b->stands_ever || point->margin_m < b->points[b->worst].margin_m)) {
         b->worst = b->n_points;
+    }
     b->stands_ever = b->stands_ever || stands;
     b->n_points++;
 }
@@ -69,8 +75,9 @@ int plot_balance_collect(plot_balance *balance, grobo_body *body, bool assumed)
     memset(balance, 0, sizeof *balance);
     balance->capacity = (size_t)grobo_body_frame_count(body);
     balance->points = calloc(balance->capacity, sizeof *balance->points);
-    if (!balance->points)
+    if (!balance->points) {
         return GROBO_ERR_NOMEM;
+    }
     balance->assumed = assumed;
     balance->stands_always = true;
     balance->n_problems = grobo_body_check(body, &how);
@@ -132,8 +139,9 @@ static void draw_soles(const map *m)
     for (int i = 0; i < m->b->n_soles; i++) {
         const plot_sole *sole = &m->b->soles[i];
         svg_polyline(m->s, sole->foot ? "sole left" : "sole right");
-        for (int k = 0; k <= 4; k++)
+        for (int k = 0; k <= 4; k++) {
             svg_point(m->s, map_x(m, sole->corner_m[k % 4]), map_y(m, sole->corner_m[k % 4]));
+        }
         svg_polyline_end(m->s);
     }
 }
@@ -146,8 +154,9 @@ static void draw_way(const map *m, const char *style_class, bool zmp)
     for (size_t i = 0; i < m->b->n_points; i++) {
         const double *at_m = zmp ? m->b->points[i].zmp_m : m->b->points[i].com_m;
         double x = map_x(m, at_m), y = map_y(m, at_m);
-        if (fabs(x - drawn_x) + fabs(y - drawn_y) < 0.4 && i + 1 < m->b->n_points)
+        if (fabs(x - drawn_x) + fabs(y - drawn_y) < 0.4 && i + 1 < m->b->n_points) {
             continue;
+        }
         svg_point(m->s, x, y);
         drawn_x = x;
         drawn_y = y;
@@ -171,15 +180,17 @@ static void draw_map(svg *s, const plot_balance *b, double y, double width)
     map m = make_map(s, b, y, width);
     const plot_balance_point *worst = &b->points[b->worst];
     svg_text(s, "name", m.box.x, y - 5, "start", "From above");
-    if (b->assumed)
+    if (b->assumed) {
         svg_text(s, "fact", m.box.x + width, y - 5, "end", "both feet are taken to stand");
+    }
     svg_rect(s, "area", &m.box);
     draw_soles(&m);
     draw_way(&m, "zmp", true);
     draw_way(&m, "com", false);
-    if (b->stands_ever)
+    if (b->stands_ever) {
         svg_circle(s, worst->margin_m < 0 ? "worst" : "least", map_x(&m, worst->zmp_m),
                    map_y(&m, worst->zmp_m), 3.5, "smallest margin");
+    }
     draw_ruler(&m);
     svg_rect(s, "frame", &m.box);
 }
@@ -218,7 +229,6 @@ static void draw_margin(svg *s, const plot_balance *b, const svg_box *box, const
     for (size_t i = 0; i <= b->n_points; i++) {
         const plot_balance_point *p = &b->points[i];
         bool stands = i < b->n_points && (p->standing[0] || p->standing[1]);
-        double mm;
         if (drawing && !stands) {
             plot_thin_end(&thin);
             svg_polyline_end(s);
@@ -228,9 +238,10 @@ static void draw_margin(svg *s, const plot_balance *b, const svg_box *box, const
             plot_thin_begin(&thin, s);
         }
         drawing = stands;
-        if (!stands)
+        if (!stands) {
             continue;
-        mm = fmax(p->margin_m * 1e3, margin.low);
+        }
+        double mm = fmax(p->margin_m * 1e3, margin.low);
         plot_thin_point(&thin, box->x + plot_scale_at(time, p->t_s),
                         box->y + box->height - plot_scale_at(&margin, mm));
     }
@@ -249,11 +260,13 @@ static void draw_stance(svg *s, const plot_balance *b, const svg_box *box, const
     for (size_t i = 0; i <= b->n_points; i++) {
         bool stands = i < b->n_points && b->points[i].standing[foot];
         double x = i < b->n_points ? box->x + plot_scale_at(time, b->points[i].t_s) : end;
-        if (stands && !stood)
+        if (stands && !stood) {
             from = x;
-        if (!stands && stood && x > from)
+        }
+        if (!stands && stood && x > from) {
             svg_rect(s, foot ? "stance left" : "stance right",
                      &(svg_box){from, box->y, fmin(x, end) - from, box->height});
+        }
         stood = stands;
     }
     svg_rect(s, "frame", box);
@@ -264,15 +277,16 @@ static void write_verdict(svg *s, const plot_balance *b, double x, double y)
     char text[192];
     const plot_balance_point *worst = &b->points[b->worst];
     bool falls = !b->stands_always || worst->margin_m < 0;
-    if (!b->stands_ever)
+    if (!b->stands_ever) {
         snprintf(text, sizeof text, "no foot ever stands");
-    else if (worst->margin_m < 0)
+    } else if (worst->margin_m < 0) {
         snprintf(text, sizeof text, "falls: the ZMP is %.0f mm outside the soles at %.2f s",
                  -worst->margin_m * 1e3, worst->t_s);
-    else
+    } else {
         snprintf(text, sizeof text, "%sat least %.1f mm inside the soles' edge (at %.2f s)",
                  b->stands_always ? "" : "at times no foot stands; else ", worst->margin_m * 1e3,
                  worst->t_s);
+    }
     svg_text(s, falls ? "bad" : "fact", x, y, "end", text);
 }
 
@@ -286,7 +300,7 @@ static void draw_key(svg *s, double x, double y)
 
 void plot_balance_draw(svg *s, const plot_balance *balance, double length_s, double y)
 {
-    double top = y + 30 + PLOT_NAME, below;
+    double top = y + 30 + PLOT_NAME;
     double width = (PLOT_WIDTH - 2 * PLOT_MARGIN - PLOT_GAP) / 2.0 - PLOT_GUTTER;
     plot_scale time = plot_time_scale(length_s, width);
     svg_box box = {PLOT_WIDTH - PLOT_MARGIN - width, top, width, MARGIN_HEIGHT};
@@ -296,9 +310,10 @@ void plot_balance_draw(svg *s, const plot_balance *balance, double length_s, dou
     svg_text(s, "name", box.x, top - 5, "start", "Margin");
     write_verdict(s, balance, box.x + box.width, top - 5);
     draw_margin(s, balance, &box, &time);
-    below = top + MARGIN_HEIGHT + PLOT_NAME + 12;
-    for (int foot = 0; foot < 2; foot++)
+    double below = top + MARGIN_HEIGHT + PLOT_NAME + 12;
+    for (int foot = 0; foot < 2; foot++) {
         draw_stance(s, balance, &(svg_box){box.x, below + foot * STRIP_PITCH, box.width, STRIP},
                     &time, foot);
+    }
     plot_time_texts(s, &time, box.x, below + STRIP_PITCH + STRIP + 14);
 }

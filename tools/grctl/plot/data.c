@@ -38,13 +38,15 @@ static walk begin_walk(const plot_data *data, double rate_hz)
 {
     bool curved = grobo_motion_get_kind(data->of.motion) == GROBO_MOTION_KEYS;
     walk w = {.clip = data->of.clip, .keys = rate_hz <= 0};
-    if (rate_hz > 0)
+    if (rate_hz > 0) {
         w.grid_us = 1e6 / rate_hz;
-    else if (curved)
+    } else if (curved) {
         w.grid_us = fmax(fmin(STEP_MOST_US, (double)w.clip->length_us / 1000),
                          (double)w.clip->length_us / SAMPLES_MOST);
-    if (w.grid_us < 1)
+    }
+    if (w.grid_us < 1) {
         w.grid_us = w.clip->length_us > 0 && (rate_hz > 0 || curved) ? 1 : 0;
+    }
     return w;
 }
 
@@ -55,19 +57,23 @@ static int64_t next_time(walk *w, int64_t before_us)
     grobo_posture posture;
     while (w->grid_us > 0 && at_us == GROBO_NEVER_US) {
         int64_t grid_us = (int64_t)round((double)w->grid * w->grid_us);
-        if (grid_us > w->clip->length_us)
+        if (grid_us > w->clip->length_us) {
             break;
-        if (grid_us > before_us)
+        }
+        if (grid_us > before_us) {
             at_us = grid_us;
-        else
+        } else {
             w->grid++;
+        }
     }
     while (w->keys && w->key < w->clip->n_keys) {
         int64_t key_us = 0;
-        if (w->clip->key(w->clip->ctx, w->key, &posture, &key_us) < 0)
+        if (w->clip->key(w->clip->ctx, w->key, &posture, &key_us) < 0) {
             break;
-        if (key_us > before_us)
+        }
+        if (key_us > before_us) {
             return key_us < at_us ? key_us : at_us;
+        }
         w->key++;
     }
     return at_us == GROBO_NEVER_US ? -1 : at_us;
@@ -78,15 +84,17 @@ static int64_t next_time(walk *w, int64_t before_us)
 static void emit(plot_curve *curve, const plot_point *point)
 {
     const plot_point *before = curve->n_points ? &curve->points[curve->n_points - 1] : NULL;
-    if (!before || before->t_s < point->t_s)
+    if (!before || before->t_s < point->t_s) {
         curve->points[curve->n_points++] = *point;
+    }
 }
 
 static void close_bin(plot_curve *curve, bin *b)
 {
     bool rising = b->low.t_s < b->high.t_s;
-    if (!b->open)
+    if (!b->open) {
         return;
+    }
     emit(curve, &b->first);
     emit(curve, rising ? &b->low : &b->high);
     emit(curve, rising ? &b->high : &b->low);
@@ -98,10 +106,11 @@ static void close_bin(plot_curve *curve, bin *b)
 static void add_fast(plot_curve *curve, double from_s, double to_s, double column_s)
 {
     plot_span *last = curve->n_fast ? &curve->fast[curve->n_fast - 1] : NULL;
-    if (last && from_s - last->to_s <= 2 * column_s)
+    if (last && from_s - last->to_s <= 2 * column_s) {
         last->to_s = to_s;
-    else
+    } else {
         curve->fast[curve->n_fast++] = (plot_span){from_s, to_s};
+    }
 }
 
 /* As in grctl check: a little more than the servo can is none, nor is half of a wire's unit. */
@@ -112,8 +121,9 @@ static void see_speed(const collector *c, plot_curve *curve, const plot_point *b
     double speed_dps = way_deg / (now->t_s - before->t_s);
     curve->peak_speed_dps = fmax(curve->peak_speed_dps, speed_dps);
     if (curve->limits && way_deg > 0.05 &&
-        grobo_rad_from_deg(speed_dps) > curve->limits->max_speed_rad_s * 1.001)
+        grobo_rad_from_deg(speed_dps) > curve->limits->max_speed_rad_s * 1.001) {
         add_fast(curve, before->t_s, now->t_s, c->data->length_s / c->columns);
+    }
 }
 
 static void see(collector *c, int i, const plot_point *now)
@@ -122,21 +132,26 @@ static void see(collector *c, int i, const plot_point *now)
     bin *b = &c->bins[i];
     double length_s = c->data->length_s;
     int column = length_s > 0 ? (int)(now->t_s / length_s * c->columns) : 0;
-    if (curve->set)
+    if (curve->set) {
         see_speed(c, curve, &b->last, now);
-    else
+    } else {
         curve->min_deg = curve->max_deg = now->angle_deg;
+    }
     curve->min_deg = fmin(curve->min_deg, now->angle_deg);
     curve->max_deg = fmax(curve->max_deg, now->angle_deg);
     curve->set = true;
-    if (b->open && b->column != column)
+    if (b->open && b->column != column) {
         close_bin(curve, b);
-    if (!b->open)
+    }
+    if (!b->open) {
         *b = (bin){.first = *now, .low = *now, .high = *now, .column = column, .open = true};
-    if (now->angle_deg < b->low.angle_deg)
+    }
+    if (now->angle_deg < b->low.angle_deg) {
         b->low = *now;
-    if (now->angle_deg > b->high.angle_deg)
+    }
+    if (now->angle_deg > b->high.angle_deg) {
         b->high = *now;
+    }
     b->last = *now;
 }
 
@@ -145,22 +160,26 @@ static int follow(collector *c, double rate_hz)
     plot_data *data = c->data;
     walk w = begin_walk(data, rate_hz);
     grobo_posture posture;
-    if (data->length_s * rate_hz > GROBO_MOTION_FRAMES_MAX)
+    if (data->length_s * rate_hz > GROBO_MOTION_FRAMES_MAX) {
         return GROBO_ERR_CAP;
+    }
     for (int64_t t_us = next_time(&w, -1); t_us >= 0; t_us = next_time(&w, t_us)) {
         int error = data->of.clip->sample(data->of.clip->ctx, t_us, &posture);
-        if (error)
+        if (error) {
             return error;
+        }
         for (int i = 0; i < data->n_curves; i++) {
             plot_point now = {(double)t_us / 1e6, 0};
-            if (grobo_posture_get_deg(&posture, data->curves[i].joint, &now.angle_deg) < 0)
+            if (grobo_posture_get_deg(&posture, data->curves[i].joint, &now.angle_deg) < 0) {
                 continue;
+            }
             now.angle_deg = fmin(fmax(now.angle_deg, -angle_most_deg), angle_most_deg);
             see(c, i, &now);
         }
     }
-    for (int i = 0; i < data->n_curves; i++)
+    for (int i = 0; i < data->n_curves; i++) {
         close_bin(&data->curves[i], &c->bins[i]);
+    }
     return 0;
 }
 
@@ -169,10 +188,11 @@ static int follow(collector *c, double rate_hz)
 /* The model's, else "j12". */
 static void joint_name(const grobo_model *model, int joint, char *name, size_t capacity)
 {
-    if (model && joint < model->n_joints)
+    if (model && joint < model->n_joints) {
         snprintf(name, capacity, "%s", model->joints[joint].name);
-    else
+    } else {
         snprintf(name, capacity, "j%d", joint);
+    }
 }
 
 bool plot_beyond(const plot_curve *curve)
@@ -189,8 +209,9 @@ static int add_curve(plot_data *data, int joint, int columns)
     plot_curve *curve = &data->curves[data->n_curves++];
     curve->joint = joint;
     joint_name(data->of.model, joint, curve->name, sizeof curve->name);
-    if (data->of.model && joint < data->of.model->n_joints)
+    if (data->of.model && joint < data->of.model->n_joints) {
         curve->limits = &data->of.model->joints[joint];
+    }
     curve->points = calloc((size_t)(columns + 1) * POINTS_A_COLUMN, sizeof *curve->points);
     curve->fast = calloc((size_t)columns + 2, sizeof *curve->fast);
     return curve->points && curve->fast ? 0 : GROBO_ERR_NOMEM;
@@ -207,13 +228,16 @@ static int solved_key(const plot_data *data, size_t i, grobo_posture *posture, d
     grobo_joint_mask set;
     size_t links = 0;
     int error = grobo_motion_get(data->of.motion, i, posture);
-    if (!error)
+    if (!error) {
         error = grobo_motion_time_s(data->of.motion, i, t_s);
-    if (error)
+    }
+    if (error) {
         return error;
+    }
     set = posture->set;
-    if (grobo_motion_ik_links(data->of.motion, i, &links) && links)
+    if (grobo_motion_ik_links(data->of.motion, i, &links) && links) {
         set |= data->of.solved;
+    }
     error = data->of.clip->sample(data->of.clip->ctx, (int64_t)round(*t_s * 1e6), posture);
     posture->set &= set;
     return error;
@@ -222,10 +246,10 @@ static int solved_key(const plot_data *data, size_t i, grobo_posture *posture, d
 int plot_key(const plot_data *data, size_t i, grobo_posture *posture, double *t_s)
 {
     int64_t at_us = 0;
-    int error;
-    if (data->of.solved)
+    if (data->of.solved) {
         return solved_key(data, i, posture, t_s);
-    error = data->of.clip->key(data->of.clip->ctx, i, posture, &at_us);
+    }
+    int error = data->of.clip->key(data->of.clip->ctx, i, posture, &at_us);
     *t_s = (double)at_us / 1e6;
     return error;
 }
@@ -237,13 +261,17 @@ int plot_collect(plot_data *data, const plot_subject *subject, const plot_option
     memset(data, 0, sizeof *data);
     data->of = *subject;
     data->length_s = (double)subject->clip->length_us / 1e6;
-    for (int j = 0; j < GROBO_JOINTS_MAX && !error; j++)
-        if (options->joints & GROBO_JOINT_BIT(j))
+    for (int j = 0; j < GROBO_JOINTS_MAX && !error; j++) {
+        if (options->joints & GROBO_JOINT_BIT(j)) {
             error = add_curve(data, j, c.columns);
-    if (!error && subject->clip->n_keys)
+        }
+    }
+    if (!error && subject->clip->n_keys) {
         error = follow(&c, options->rate_hz);
-    if (error)
+    }
+    if (error) {
         plot_free(data);
+    }
     return error;
 }
 

@@ -67,10 +67,12 @@ static void draw_limit(const pen *p, const plot_panel *panel, const plot_scale *
     const svg_box *box = &panel->box;
     double y = y_at(panel, angle, limit_deg), bottom = box->y + box->height;
     svg_box beyond = {box->x, upper ? box->y : y, box->width, upper ? y - box->y : bottom - y};
-    if (y < box->y || y > bottom)
+    if (y < box->y || y > bottom) {
         return;
-    if (beyond.height > 0)
+    }
+    if (beyond.height > 0) {
         svg_rect(p->s, "beyond", &beyond);
+    }
     svg_line(p->s, "limit", box->x, y, box->x + box->width, y);
 }
 
@@ -97,8 +99,9 @@ static void draw_curve(const pen *p, const plot_panel *panel, const plot_scale *
         const plot_point *at = &c->points[i];
         bool before = i + 1 < c->n_points && c->points[i + 1].t_s <= span->from_s;
         bool behind = i > 0 && c->points[i - 1].t_s >= span->to_s;
-        if (!before && !behind)
+        if (!before && !behind) {
             plot_thin_point(&thin, x_at(p, panel, at->t_s), y_at(panel, angle, at->angle_deg));
+        }
     }
     plot_thin_end(&thin);
     svg_polyline_end(p->s);
@@ -107,8 +110,9 @@ static void draw_curve(const pen *p, const plot_panel *panel, const plot_scale *
 static double mark_radius(const plot_data *data)
 {
     bool frames = grobo_motion_get_kind(data->of.motion) == GROBO_MOTION_FRAMES;
-    if (plot_keys(data) > MARKS_MOST || (frames && plot_keys(data) > BIG_MARKS_MOST))
+    if (plot_keys(data) > MARKS_MOST || (frames && plot_keys(data) > BIG_MARKS_MOST)) {
         return 0;
+    }
     return plot_keys(data) > BIG_MARKS_MOST ? 1.2 : 2.6;
 }
 
@@ -121,8 +125,9 @@ static void draw_marks(const pen *p, const plot_panel *panel, const plot_scale *
     for (size_t i = 0; radius > 0 && i < n; i++) {
         grobo_posture posture;
         if (plot_key(p->data, i, &posture, &t_s) < 0 ||
-            grobo_posture_get_deg(&posture, panel->curve->joint, &deg) < 0)
+            grobo_posture_get_deg(&posture, panel->curve->joint, &deg) < 0) {
             continue;
+        }
         plot_degrees(deg, "°", angle_text, sizeof angle_text);
         snprintf(tip, sizeof tip, "%s %s at %.3f s", panel->curve->name, angle_text, t_s);
         svg_circle(p->s, style_class, x_at(p, panel, t_s), y_at(panel, angle, deg), radius,
@@ -150,9 +155,10 @@ static void write_facts(const pen *p, const plot_panel *panel)
         plot_degrees(grobo_deg_from_rad(c->limits->min_rad), "", low, sizeof low);
         plot_degrees(grobo_deg_from_rad(c->limits->max_rad), "°", high, sizeof high);
         n += snprintf(text + n, sizeof text - (size_t)n, "  (limits %s to %s", low, high);
-        if (!plot_is_still(c))
+        if (!plot_is_still(c)) {
             n += snprintf(text + n, sizeof text - (size_t)n, ", %.0f°/s",
                           grobo_deg_from_rad(c->limits->max_speed_rad_s));
+        }
         snprintf(text + n, sizeof text - (size_t)n, ")");
     }
     svg_text(p->s, plot_beyond(c) || c->n_fast ? "bad" : "fact", box->x + box->width, box->y - 5,
@@ -163,10 +169,11 @@ static void write_name(const pen *p, const plot_panel *panel)
 {
     const plot_curve *c = panel->curve;
     char text[TEXT_BYTES];
-    if (c->limits)
+    if (c->limits) {
         snprintf(text, sizeof text, "%s  m%d", c->name, c->limits->motor);
-    else
+    } else {
         snprintf(text, sizeof text, "%s", c->name);
+    }
     svg_text(p->s, "name", panel->box.x, panel->box.y - 5, "start", text);
 }
 
@@ -187,10 +194,12 @@ static void draw_panel(const pen *p, const plot_panel *panel)
     }
     svg_rect(p->s, "frame", &panel->box);
     snprintf(style_class, sizeof style_class, "curve %s", panel->side);
-    for (size_t i = 0; i < c->n_fast; i++)
+    for (size_t i = 0; i < c->n_fast; i++) {
         draw_curve(p, panel, &angle, "fast", &c->fast[i]);
-    if (c->n_points)
+    }
+    if (c->n_points) {
         draw_curve(p, panel, &angle, style_class, &all);
+    }
     draw_marks(p, panel, &angle);
 }
 
@@ -209,8 +218,9 @@ static void shorten(const char *text, size_t most, char *out, size_t capacity)
 {
     size_t length = 0, characters = 0;
     while (text[length] && length + 4 < capacity) {
-        if ((text[length] & 0xc0) != 0x80 && ++characters > most)
+        if ((text[length] & 0xc0) != 0x80 && ++characters > most) {
             break;
+        }
         length++;
     }
     snprintf(out, capacity, "%.*s%s", (int)length, text, text[length] ? "…" : "");
@@ -240,11 +250,13 @@ static void write_about(const pen *p, const char *file)
     double rate_hz = grobo_motion_frame_rate(data->of.motion);
     char text[3 * TEXT_BYTES], rate[48] = "", name[TEXT_BYTES] = "", robot[TEXT_BYTES];
     size_t n = plot_keys(data);
-    if (*grobo_motion_name(data->of.motion))
+    if (*grobo_motion_name(data->of.motion)) {
         shorten(file, 60, name, sizeof name);
+    }
     shorten(body, 30, robot, sizeof robot);
-    if (rate_hz > 0 && !grobo_motion_has_frame_times(data->of.motion))
+    if (rate_hz > 0 && !grobo_motion_has_frame_times(data->of.motion)) {
         snprintf(rate, sizeof rate, " at %.5g Hz", rate_hz);
+    }
     snprintf(text, sizeof text, "%s%s%s%s%s, %zu %s%s%s, %.3f s%s%s", name, *name ? ": " : "",
              grobo_motion_format_name(grobo_motion_kind_format(kind)), *body ? " for " : "", robot,
              n, key_word(data), n == 1 ? "" : "s", rate, data->length_s,
@@ -262,14 +274,17 @@ static void write_problems(const pen *p)
         beyond += plot_beyond(&p->data->curves[i]);
         fast += p->data->curves[i].n_fast > 0;
     }
-    if (beyond)
+    if (beyond) {
         n = snprintf(text, sizeof text, "%d joint%s beyond %s limits%s", beyond,
                      beyond == 1 ? "" : "s", beyond == 1 ? "its" : "their", fast ? "; " : "");
-    if (fast)
+    }
+    if (fast) {
         n += snprintf(text + n, sizeof text - (size_t)n, "%d joint%s faster than %s servo", fast,
                       fast == 1 ? "" : "s", fast == 1 ? "its" : "their");
-    if (n > 0)
+    }
+    if (n > 0) {
         svg_text(p->s, "warn", PLOT_WIDTH - PLOT_MARGIN, 86, "end", text);
+    }
 }
 
 /* One entry of the legend; returns where the next begins. */
@@ -316,11 +331,12 @@ static void draw_head(const pen *p, const char *file)
     svg_text(p->s, "title", PLOT_MARGIN, 42, "start", text);
     write_about(p, file);
     write_problems(p);
-    if (p->data->n_curves)
+    if (p->data->n_curves) {
         draw_legend(p);
-    else
+    } else {
         svg_text(p->s, "about", PLOT_MARGIN, 90, "start",
                  plot_keys(p->data) ? "No posture sets a joint." : "No postures.");
+    }
 }
 
 bool plot_draw(svg *s, const plot_data *data, const char *file)
@@ -331,11 +347,14 @@ bool plot_draw(svg *s, const plot_data *data, const char *file)
     p.time = plot_time_scale(data->length_s, layout.n_sections ? layout.sections[0].plot_w : 1);
     svg_open(s, PLOT_WIDTH, layout.height, style);
     draw_head(&p, file);
-    if (data->of.balance)
+    if (data->of.balance) {
         plot_balance_draw(s, data->of.balance, data->length_s, PLOT_HEAD);
-    for (int i = 0; i < layout.n_sections; i++)
+    }
+    for (int i = 0; i < layout.n_sections; i++) {
         draw_section(&p, &layout.sections[i]);
-    for (int i = 0; i < layout.n_panels; i++)
+    }
+    for (int i = 0; i < layout.n_panels; i++) {
         draw_panel(&p, &layout.panels[i]);
+    }
     return svg_close(s);
 }

@@ -35,25 +35,30 @@ typedef struct column {
 
 static grobo_joint_mask group_of(const grobo_model *model, const char *name)
 {
-    for (int i = 0; model && name && i < model->n_groups; i++)
-        if (strcmp(model->groups[i].name, name) == 0)
+    for (int i = 0; model && name && i < model->n_groups; i++) {
+        if (strcmp(model->groups[i].name, name) == 0) {
             return model->groups[i].joints;
+        }
+    }
     return 0;
 }
 
 static grobo_joint_mask limbs_of(const grobo_model *model)
 {
     grobo_joint_mask limbs = 0;
-    for (int b = 0; b < BLOCKS; b++)
+    for (int b = 0; b < BLOCKS; b++) {
         limbs |= group_of(model, blocks[b].group[0]) | group_of(model, blocks[b].group[1]);
+    }
     return limbs;
 }
 
 static void choose(column *c, const plot_data *data, grobo_joint_mask joints)
 {
-    for (int i = 0; i < data->n_curves; i++)
-        if (joints & GROBO_JOINT_BIT(data->curves[i].joint))
+    for (int i = 0; i < data->n_curves; i++) {
+        if (joints & GROBO_JOINT_BIT(data->curves[i].joint)) {
             c->curves[c->n++] = &data->curves[i];
+        }
+    }
 }
 
 /* One set alone takes both columns, row by row. */
@@ -62,8 +67,9 @@ static void spread(column columns[2])
     column all = columns[columns[0].n ? 0 : 1];
     columns[0] = (column){.title = all.title, .side = all.side};
     columns[1] = (column){.side = all.side};
-    for (int i = 0; i < all.n; i++)
+    for (int i = 0; i < all.n; i++) {
         columns[i % 2].curves[columns[i % 2].n++] = all.curves[i];
+    }
 }
 
 static void fill(column columns[2], const block *b, const plot_data *data)
@@ -71,15 +77,18 @@ static void fill(column columns[2], const block *b, const plot_data *data)
     grobo_joint_mask limbs = limbs_of(data->of.model);
     for (int side = 0; side < 2; side++) {
         columns[side] = (column){.title = b->title[side], .side = b->side[side]};
-        if (b->group[side])
+        if (b->group[side]) {
             choose(&columns[side], data, group_of(data->of.model, b->group[side]));
-        else if (side == 0)
+        } else if (side == 0) {
             choose(&columns[side], data, ~limbs);
+        }
     }
-    if (!limbs)
+    if (!limbs) {
         columns[0].title = "Joints";
-    if (!columns[0].n || !columns[1].n)
+    }
+    if (!columns[0].n || !columns[1].n) {
         spread(columns);
+    }
 }
 
 bool plot_is_still(const plot_curve *curve)
@@ -96,9 +105,11 @@ static double height_of(const plot_curve *curve, double tall)
 static double row_height(const column columns[2], int row, double tall)
 {
     double height = 0;
-    for (int side = 0; side < 2; side++)
-        if (row < columns[side].n && height_of(columns[side].curves[row], tall) > height)
+    for (int side = 0; side < 2; side++) {
+        if (row < columns[side].n && height_of(columns[side].curves[row], tall) > height) {
             height = height_of(columns[side].curves[row], tall);
+        }
+    }
     return height;
 }
 
@@ -115,21 +126,23 @@ static void begin_section(plot_layout *l, const column *c, double x, double y, d
 /* Places the rows of a block from y on. Returns where it ends. */
 static double place(plot_layout *l, const column columns[2], double y, double width, double tall)
 {
-    double top, bottom = y + HEADING;
+    double bottom = y + HEADING;
     int first = l->n_sections;
     int rows = columns[0].n > columns[1].n ? columns[0].n : columns[1].n;
-    for (int side = 0; side < 2; side++)
-        if (columns[side].n)
+    for (int side = 0; side < 2; side++) {
+        if (columns[side].n) {
             begin_section(l, &columns[side], PLOT_MARGIN + side * (width + PLOT_GAP), y, width);
+        }
+    }
     for (int row = 0; row < rows; row++) {
-        top = bottom + (row ? BETWEEN : 0) + PLOT_NAME;
+        double top = bottom + (row ? BETWEEN : 0) + PLOT_NAME;
         bottom = top + row_height(columns, row, tall);
         for (int side = 0; side < 2; side++) {
             plot_section *section = &l->sections[first + (columns[0].n ? side : 0)];
-            double height;
-            if (row >= columns[side].n)
+            if (row >= columns[side].n) {
                 continue;
-            height = height_of(columns[side].curves[row], tall);
+            }
+            double height = height_of(columns[side].curves[row], tall);
             section->axis_y = top + height;
             l->panels[l->n_panels++] =
                 (plot_panel){.curve = columns[side].curves[row],
@@ -151,8 +164,9 @@ void plot_arrange(plot_layout *layout, const plot_data *data)
     layout->height = PLOT_HEAD + (data->of.balance ? PLOT_BALANCE_HEIGHT : 0);
     for (int b = 0; b < BLOCKS; b++) {
         fill(columns, &blocks[b], data);
-        if (columns[0].n || columns[1].n)
+        if (columns[0].n || columns[1].n) {
             layout->height = place(layout, columns, layout->height, width, tall);
+        }
     }
     layout->height += data->n_curves ? PLOT_MARGIN / 2.0 : PLOT_MARGIN;
 }

@@ -24,21 +24,24 @@ picture_format picture_format_of(const char *path)
 {
     const char *slash = strrchr(path, '/');
     const char *dot = strrchr(slash ? slash : path, '.');
-    if (dot && strcasecmp(dot, ".svg") == 0)
+    if (dot && strcasecmp(dot, ".svg") == 0) {
         return PICTURE_SVG;
-    if (dot && strcasecmp(dot, ".png") == 0)
+    }
+    if (dot && strcasecmp(dot, ".png") == 0) {
         return PICTURE_PNG;
+    }
     return PICTURE_NONE;
 }
 
 bool picture_is_foreign(const char *path)
 {
     char start[128];
-    size_t signature = strlen(svg_signature), n;
+    size_t signature = strlen(svg_signature);
     FILE *file = fopen(path, "rb");
-    if (!file)
+    if (!file) {
         return errno != ENOENT;
-    n = fread(start, 1, sizeof start, file);
+    }
+    size_t n = fread(start, 1, sizeof start, file);
     fclose(file);
     return n < signature || memcmp(start, svg_signature, signature) != 0;
 }
@@ -58,10 +61,12 @@ static int save_stream(app *a, const char *path, FILE *from)
     grobo_file file;
     size_t n;
     int error = files->create(&file, path, false);
-    if (error)
+    if (error) {
         return refuse(a, path, error);
-    while (!error && (n = fread(buffer, 1, sizeof buffer, from)) > 0)
+    }
+    while (!error && (n = fread(buffer, 1, sizeof buffer, from)) > 0) {
         error = files->write(&file, buffer, n);
+    }
     if (error || ferror(from)) {
         files->discard(&file);
         return refuse(a, path, error ? error : GROBO_ERR_IO);
@@ -77,8 +82,9 @@ static bool is_png(FILE *file)
     static const unsigned char magic[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
     unsigned char start[sizeof magic];
     rewind(file);
-    if (fread(start, 1, sizeof start, file) != sizeof start)
+    if (fread(start, 1, sizeof start, file) != sizeof start) {
         return false;
+    }
     rewind(file);
     return memcmp(start, magic, sizeof magic) == 0;
 }
@@ -87,16 +93,18 @@ static bool is_png(FILE *file)
 static const char *rasterise(const app *a, FILE *in, FILE *out, const char **tried)
 {
     for (int i = 0; i < RASTERISERS; i++) {
-        int status;
         rewind(in);
-        if (ftruncate(fileno(out), 0) != 0 || lseek(fileno(in), 0, SEEK_SET) != 0)
+        if (ftruncate(fileno(out), 0) != 0 || lseek(fileno(in), 0, SEEK_SET) != 0) {
             return NULL;
+        }
         rewind(out);
-        status = os_run(rasterisers[i], in, out);
-        if (status == 0 && is_png(out))
+        int status = os_run(rasterisers[i], in, out);
+        if (status == 0 && is_png(out)) {
             return rasterisers[i][0];
-        if (status < 0)
+        }
+        if (status < 0) {
             continue; /* it is not here */
+        }
         *tried = rasterisers[i][0];
         app_detail(a, "%s did not draw it", *tried);
     }
@@ -113,28 +121,32 @@ static int save_png(app *a, const svg *drawing, const char *path)
         status = app_fail(a, EXIT_FILE, "IO", "%s: no room for temporary files", path);
     } else {
         used = rasterise(a, in, out, &tried);
-        if (used)
+        if (used) {
             status = save_stream(a, path, out);
-        else if (tried)
+        } else if (tried) {
             status = app_fail(a, EXIT_FILE, "IO", "%s: %s could not draw it; write .svg instead",
                               path, tried);
-        else
+        } else {
             status = app_fail(a, EXIT_FILE, "UNSUPPORTED",
                               "%s: PNG needs rsvg-convert, inkscape or ImageMagick; install one "
                               "(Debian: librsvg2-bin) or write .svg",
                               path);
+        }
     }
-    if (in)
+    if (in) {
         fclose(in);
-    if (out)
+    }
+    if (out) {
         fclose(out);
+    }
     return status;
 }
 
 int picture_save(app *a, const svg *drawing, const char *path, picture_format format)
 {
-    if (format == PICTURE_PNG)
+    if (format == PICTURE_PNG) {
         return save_png(a, drawing, path);
+    }
     if (strcmp(path, "-") != 0) {
         int error = file_save(path, drawing->data, drawing->size);
         return error ? refuse(a, path, error) : 0;

@@ -21,11 +21,14 @@ static double round_step(double least)
 static double angle_step(double least_deg)
 {
     static const double steps[] = {10, 15, 30, 45, 60, 90, 180, 360};
-    if (least_deg <= 5)
+    if (least_deg <= 5) {
         return round_step(least_deg);
-    for (size_t i = 0; i < sizeof steps / sizeof steps[0]; i++)
-        if (steps[i] >= least_deg)
+    }
+    for (size_t i = 0; i < sizeof steps / sizeof steps[0]; i++) {
+        if (steps[i] >= least_deg) {
             return steps[i];
+        }
+    }
     return 360 * round_step(least_deg / 360);
 }
 
@@ -38,10 +41,12 @@ plot_scale plot_time_scale(double length_s, double pixels)
 /* Takes a limit into the picture when it is near what is shown. */
 static void take_limit(plot_scale *scale, double limit_deg, double span_deg)
 {
-    if (limit_deg < scale->low && limit_deg > scale->low - span_deg * 0.3)
+    if (limit_deg < scale->low && limit_deg > scale->low - span_deg * 0.3) {
         scale->low = limit_deg;
-    if (limit_deg > scale->high && limit_deg < scale->high + span_deg * 0.3)
+    }
+    if (limit_deg > scale->high && limit_deg < scale->high + span_deg * 0.3) {
         scale->high = limit_deg;
+    }
 }
 
 plot_scale plot_angle_scale(const plot_curve *curve, double pixels, bool slim)
@@ -57,8 +62,9 @@ plot_scale plot_angle_scale(const plot_curve *curve, double pixels, bool slim)
     span = scale.high - scale.low;
     scale.low -= span * 0.08;
     scale.high += span * 0.08;
-    if (!slim)
+    if (!slim) {
         scale.step = angle_step((scale.high - scale.low) * 20 / pixels);
+    }
     return scale;
 }
 
@@ -69,8 +75,9 @@ double plot_scale_at(const plot_scale *scale, double value)
 
 int plot_scale_ticks(const plot_scale *scale)
 {
-    if (scale->step <= 0)
+    if (scale->step <= 0) {
         return 0;
+    }
     return (int)(floor(scale->high / scale->step + 1e-9) - ceil(scale->low / scale->step - 1e-9)) +
            1;
 }
@@ -160,8 +167,9 @@ void plot_thin_point(plot_thinner *t, double x, double y)
         draw(t, x, y);
         return;
     }
-    if (t->holds && !reaches(t, x, y))
+    if (t->holds && !reaches(t, x, y)) {
         draw(t, t->held_x, t->held_y);
+    }
     if (x > t->x) {
         t->low = fmax(t->low, (y - thin_px - t->y) / (x - t->x));
         t->high = fmin(t->high, (y + thin_px - t->y) / (x - t->x));
@@ -173,6 +181,7 @@ void plot_thin_point(plot_thinner *t, double x, double y)
 
 void plot_thin_end(plot_thinner *t)
 {
-    if (t->holds)
+    if (t->holds) {
         draw(t, t->held_x, t->held_y);
+    }
 }

@@ -16,13 +16,15 @@ const char svg_signature[] =
 
 static void put_bytes(svg *s, const char *bytes, size_t n)
 {
-    if (s->failed)
+    if (s->failed) {
         return;
+    }
     if (n > s->capacity - s->size) {
         size_t capacity = s->capacity ? s->capacity : FIRST_BYTES;
         char *data;
-        while (n > capacity - s->size)
+        while (n > capacity - s->size) {
             capacity *= 2;
+        }
         data = realloc(s->data, capacity);
         if (!data) {
             s->failed = true;
@@ -46,15 +48,17 @@ static void put_number(svg *s, double number)
     char text[32];
     size_t at = sizeof text;
     double nearest = round(fabs(number) * DECIMALS);
-    uint64_t rest;
-    if (!(nearest <= number_most * DECIMALS))
+    if (!(nearest <= number_most * DECIMALS)) {
         nearest = isnan(number) ? 0 : number_most * DECIMALS;
-    rest = (uint64_t)nearest;
-    if (number < 0 && rest > 0)
+    }
+    uint64_t rest = (uint64_t)nearest;
+    if (number < 0 && rest > 0) {
         put(s, "-");
+    }
     if (rest % DECIMALS) {
-        if (rest % 10)
+        if (rest % 10) {
             text[--at] = (char)('0' + rest % 10);
+        }
         text[--at] = (char)('0' + rest / 10 % 10);
         text[--at] = '.';
     }
@@ -77,20 +81,23 @@ static long decode(const unsigned char *text, size_t *length)
                : text[0] < 0xe0 ? 2
                : text[0] < 0xf0 ? 3
                                 : 4;
-    long c;
     *length = 1;
-    if (n == 1)
+    if (n == 1) {
         return text[0];
-    if (n == 0 || text[0] > 0xf4)
+    }
+    if (n == 0 || text[0] > 0xf4) {
         return -1;
-    c = text[0] & (0x7f >> n);
+    }
+    long c = text[0] & (0x7f >> n);
     for (size_t i = 1; i < n; i++) {
-        if ((text[i] & 0xc0) != 0x80)
+        if ((text[i] & 0xc0) != 0x80) {
             return -1;
+        }
         c = c << 6 | (text[i] & 0x3f);
     }
-    if (c < least[n] || c > 0x10ffff)
+    if (c < least[n] || c > 0x10ffff) {
         return -1;
+    }
     *length = n;
     return c;
 }
@@ -124,12 +131,13 @@ static void put_text(svg *s, const char *text)
 {
     for (size_t length; *text; text += length) {
         long c = decode((const unsigned char *)text, &length);
-        if (c < 0 || !is_fit(c))
+        if (c < 0 || !is_fit(c)) {
             put(s, "\xef\xbf\xbd"); /* U+FFFD */
-        else if (entity(c))
+        } else if (entity(c)) {
             put(s, entity(c));
-        else
+        } else {
             put_bytes(s, text, length);
+        }
     }
 }
 
@@ -172,8 +180,9 @@ void svg_open(svg *s, double width, double height, const char *style)
 bool svg_close(svg *s)
 {
     put(s, "</svg>\n");
-    if (s->failed)
+    if (s->failed) {
         svg_free(s);
+    }
     return s->data != NULL;
 }
 

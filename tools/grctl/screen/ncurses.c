@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* curses.h declares bool its own way unless told not to. */
 #define NCURSES_ENABLE_STDBOOL_H 1
-#include <curses.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/ioctl.h>
-#include <term.h>
 #include <unistd.h>
+
+#include <curses.h>
+#include <term.h>
 
 #undef columns /* a capability in term.h, a parameter in ours */
 
@@ -38,12 +39,14 @@ static void choose_attributes(bool color)
                                                 [SCREEN_BAD] = A_REVERSE,
                                                 [SCREEN_ALARM] = A_REVERSE | A_BOLD};
     color = color && start_color() == OK && has_colors();
-    if (color)
+    if (color) {
         use_default_colors();
+    }
     for (int i = 0; i < SCREEN_STYLES; i++) {
         attributes[i] = plain[i];
-        if (!color || !colors[i])
+        if (!color || !colors[i]) {
             continue;
+        }
         init_pair((short)i, colors[i], -1);
         attributes[i] = (attr_t)COLOR_PAIR(i) | (i == SCREEN_ALARM ? A_REVERSE | A_BOLD : 0);
     }
@@ -52,12 +55,14 @@ static void choose_attributes(bool color)
 bool screen_open(bool color)
 {
     static bool registered;
-    if (!registered && atexit(screen_close) != 0)
+    if (!registered && atexit(screen_close) != 0) {
         return false;
+    }
     registered = true;
     terminal = newterm(NULL, stdout, stdin);
-    if (!terminal)
+    if (!terminal) {
         return false;
+    }
     input = newpad(1, 1);
     if (!input) {
         screen_close();
@@ -75,11 +80,13 @@ bool screen_open(bool color)
 
 void screen_close(void)
 {
-    if (!terminal)
+    if (!terminal) {
         return;
+    }
     endwin();
-    if (input)
+    if (input) {
         delwin(input);
+    }
     delscreen(terminal);
     input = NULL;
     terminal = NULL;
@@ -87,8 +94,9 @@ void screen_close(void)
 
 void screen_pause(void)
 {
-    if (terminal)
+    if (terminal) {
         endwin();
+    }
 }
 
 void screen_begin(int *rows, int *columns)
@@ -106,17 +114,20 @@ void screen_begin(int *rows, int *columns)
 
 void screen_put(int row, int column, screen_style style, const char *text)
 {
-    if (row < 0 || row >= LINES || column < 0 || column >= COLS)
+    if (row < 0 || row >= LINES || column < 0 || column >= COLS) {
         return;
+    }
     attrset((int)attributes[style]);
     move(row, column);
     /* One character after the other until the row is full: a whole text would go on in the next. */
     while (*text && getcury(stdscr) == row) {
         int n = 1;
-        while (((unsigned char)text[n] & 0xC0) == 0x80)
+        while (((unsigned char)text[n] & 0xC0) == 0x80) {
             n++;
-        if (addnstr(text, n) == ERR)
+        }
+        if (addnstr(text, n) == ERR) {
             break;
+        }
         text += n;
     }
 }
@@ -124,8 +135,9 @@ void screen_put(int row, int column, screen_style style, const char *text)
 void screen_end(void)
 {
     /* Not to a terminal that has been stopped (Ctrl-S): the next picture is as good. */
-    if (os_takes_bytes(stdout))
+    if (os_takes_bytes(stdout)) {
         refresh();
+    }
 }
 
 int screen_key(void)

@@ -21,8 +21,9 @@ static int usage(shell *s, const char *format, const char *what)
 static bool take_ms(const char *text, double *ms)
 {
     double number;
-    if (!cli_read_number(text, &number) || number < 1 || number > LONGEST_MS)
+    if (!cli_read_number(text, &number) || number < 1 || number > LONGEST_MS) {
         return false;
+    }
     *ms = number;
     return true;
 }
@@ -30,8 +31,9 @@ static bool take_ms(const char *text, double *ms)
 static int run_text(shell *s, int n, const char *const *words)
 {
     char *list[SHELL_WORDS_MAX];
-    for (int i = 0; i < n; i++)
+    for (int i = 0; i < n; i++) {
         list[i] = (char *)words[i];
+    }
     return shell_run(s, n, list);
 }
 
@@ -45,8 +47,9 @@ static int keep(shell *s, int error)
 /* An empty record where there is none. */
 static int need_record(shell *s)
 {
-    if (s->record)
+    if (s->record) {
         return 0;
+    }
     return keep(
         s, grobo_motion_new(&s->record, GROBO_MOTION_POSTURES, grobo_gr001_model.n_joints, NULL));
 }
@@ -67,8 +70,9 @@ static int push(conn *c, shell *s, double ms)
     int error = conn_wait(c, grobo_robot_sense(grobo_session_robot(c->session),
                                                joints_that_move(c, s), GROBO_SENSE_FULL));
     int status = error ? conn_fail(c, error, "record") : need_record(s);
-    if (status)
+    if (status) {
         return status;
+    }
     grobo_robot_posture(c->robot, GROBO_NEVER_US, &posture);
     grobo_posture_set_time_ms(&posture, ms);
     return keep(s, grobo_motion_append(s->record, &posture));
@@ -85,14 +89,16 @@ static int do_push(shell *s, int n, char **words)
 {
     conn c;
     double ms = s->time_ms;
-    int status;
-    if (n > 1 && !take_ms(words[1], &ms))
+    if (n > 1 && !take_ms(words[1], &ms)) {
         return usage(s, "'%s' is not a time of 1 to 3600000 ms", words[1]);
-    status = conn_open(&c, &s->one);
-    if (!status)
+    }
+    int status = conn_open(&c, &s->one);
+    if (!status) {
         status = push(&c, s, ms);
-    if (!status)
+    }
+    if (!status) {
         tell_size(s);
+    }
     return conn_close(&c, status);
 }
 
@@ -112,20 +118,22 @@ static int read_motion(shell *s, const char *name, grobo_motion **motion)
     char path[GROBO_PATH_MAX_BYTES];
     grobo_read_options read = {.model = &grobo_gr001_model};
     if (grobo_motion_find(grobo_files_os(), ".", name, path, sizeof path) == 0 ||
-        grobo_motion_find(grobo_files_os(), "motions", name, path, sizeof path) == 0)
+        grobo_motion_find(grobo_files_os(), "motions", name, path, sizeof path) == 0) {
         return file_load(&s->one, path, &read, motion);
+    }
     return file_load(&s->one, name, &read, motion);
 }
 
 static int do_load(shell *s, int n, char **words)
 {
     grobo_motion *motion = NULL;
-    int status;
-    if (n != 2)
+    if (n != 2) {
         return usage(s, "%s needs NAME", words[0]);
-    status = read_motion(s, words[1], &motion);
-    if (status)
+    }
+    int status = read_motion(s, words[1], &motion);
+    if (status) {
         return status;
+    }
     grobo_motion_free(s->record);
     s->record = motion;
     tell_size(s);
@@ -136,17 +144,20 @@ static int do_append(shell *s, int n, char **words)
 {
     grobo_motion *motion = NULL;
     double ms;
-    int status;
-    if (n < 2 || take_ms(words[1], &ms))
+    if (n < 2 || take_ms(words[1], &ms)) {
         return do_push(s, n, words);
-    if (!s->record)
+    }
+    if (!s->record) {
         return do_load(s, n, words);
-    status = read_motion(s, words[1], &motion);
-    if (!status)
+    }
+    int status = read_motion(s, words[1], &motion);
+    if (!status) {
         status = keep(s, grobo_motion_append_motion(s->record, motion));
+    }
     grobo_motion_free(motion);
-    if (!status)
+    if (!status) {
         tell_size(s);
+    }
     return status;
 }
 
@@ -154,10 +165,12 @@ static int do_play(shell *s, int n, char **words)
 {
     const char *line[SHELL_WORDS_MAX] = {"play", "@record"};
     int at = 2;
-    if (s->reverse)
+    if (s->reverse) {
         line[at++] = "--reverse";
-    for (int i = 1; i < n && at < SHELL_WORDS_MAX; i++)
+    }
+    for (int i = 1; i < n && at < SHELL_WORDS_MAX; i++) {
         line[at++] = words[i];
+    }
     return run_text(s, at, line);
 }
 
@@ -176,14 +189,16 @@ static int do_save(shell *s, int n, char **words)
     char path[GROBO_PATH_MAX_BYTES];
     grobo_write_options write = {.model = &grobo_gr001_model};
     const char *line[] = {"convert", "@record", n > 1 ? words[1] : ""};
-    int error;
-    if (n > 1)
+    if (n > 1) {
         return run_text(s, 3, line);
-    if (!s->record)
+    }
+    if (!s->record) {
         return usage(s, "%s: the record is empty", words[0]);
-    error = grobo_motion_save_next(s->record, grobo_files_os(), ".", &write, path, sizeof path);
-    if (error < 0)
+    }
+    int error = grobo_motion_save_next(s->record, grobo_files_os(), ".", &write, path, sizeof path);
+    if (error < 0) {
         return app_fail_error(&s->one, EXIT_FILE, error, "%s", words[0]);
+    }
     app_report(&s->one, json_pack("{s:o}", "output", app_json_text(path)), "saved as %s", path);
     return EXIT_DONE;
 }
@@ -194,17 +209,19 @@ static int do_free(shell *s, int n, char **words)
 {
     conn c;
     grobo_joint_mask joints;
-    int status = joints_parse_all(&s->one, n - 1, (const char *const *)words + 1, &joints), error;
-    if (status)
+    int status = joints_parse_all(&s->one, n - 1, (const char *const *)words + 1, &joints);
+    if (status) {
         return status;
+    }
     status = conn_open_to_move(&c, &s->one);
     if (!status) {
-        error = grobo_robot_free(grobo_session_robot(c.session), joints, true);
+        int error = grobo_robot_free(grobo_session_robot(c.session), joints, true);
         status = error < 0 ? conn_fail(&c, error, "free") : 0;
         s->link.free_joints |= status ? 0 : joints;
     }
-    if (!status)
+    if (!status) {
         app_note(&s->one, "free: move the joints by hand; 'End' makes them hold");
+    }
     return conn_close(&c, status);
 }
 
@@ -212,14 +229,14 @@ static int do_end(shell *s, int n, char **words)
 {
     const char *line[] = {"stop"};
     conn c;
-    int status, error;
     (void)n;
     (void)words;
-    if (!s->link.free_joints)
+    if (!s->link.free_joints) {
         return run_text(s, 1, line);
-    status = conn_open(&c, &s->one);
+    }
+    int status = conn_open(&c, &s->one);
     if (!status) {
-        error = conn_wait(
+        int error = conn_wait(
             &c, grobo_robot_free(grobo_session_robot(c.session), s->link.free_joints, false));
         status = error < 0 ? conn_fail(&c, error, "end") : 0;
         s->link.free_joints = 0;
@@ -235,8 +252,9 @@ static int capture(conn *c, shell *s, double every_ms, double for_ms)
     while (!status && !c->signal && (double)(next_us - begin_us) <= for_ms * 1000) {
         status = push(c, s, every_ms);
         next_us += (int64_t)(every_ms * 1000);
-        if (!status && conn_sleep_until(c, next_us) != GROBO_OK && c->link_error)
+        if (!status && conn_sleep_until(c, next_us) != GROBO_OK && c->link_error) {
             status = conn_fail(c, c->link_error, "record");
+        }
     }
     if (c->signal == os_endings[OS_INTERRUPT]) {
         c->signal = 0;
@@ -250,13 +268,14 @@ static int do_rec(shell *s, int n, char **words)
 {
     conn c;
     double every_ms = CAPTURE_MS, for_ms = LONGEST_MS;
-    int status;
-    if ((n > 1 && !take_ms(words[1], &for_ms)) || (n > 2 && !take_ms(words[2], &every_ms)))
+    if ((n > 1 && !take_ms(words[1], &for_ms)) || (n > 2 && !take_ms(words[2], &every_ms))) {
         return usage(s, "'%s' is not a time of 1 to 3600000 ms",
                      n > 2 && take_ms(words[1], &for_ms) ? words[2] : words[1]);
-    status = conn_open(&c, &s->one);
-    if (!status)
+    }
+    int status = conn_open(&c, &s->one);
+    if (!status) {
         status = capture(&c, s, every_ms, for_ms);
+    }
     return conn_close(&c, status);
 }
 
@@ -272,8 +291,9 @@ static int do_quit(shell *s, int n, char **words)
 
 static int do_time(shell *s, int n, char **words)
 {
-    if (n > 1 && !take_ms(words[1], &s->time_ms))
+    if (n > 1 && !take_ms(words[1], &s->time_ms)) {
         return usage(s, "'%s' is not a time of 1 to 3600000 ms", words[1]);
+    }
     app_report(&s->one, json_pack("{s:f}", "time_ms", s->time_ms), "postures and moves take %g ms",
                s->time_ms);
     return EXIT_DONE;
@@ -283,11 +303,13 @@ static int do_move(shell *s, int n, char **words)
 {
     char ms[32];
     const char *line[] = {"move", n > 1 ? words[1] : "", n > 2 ? words[2] : "", ms};
-    if (n < 3 || n > 4)
+    if (n < 3 || n > 4) {
         return usage(s, "%s needs JOINT DEG [MS]", words[0]);
+    }
     snprintf(ms, sizeof ms, "%g", s->time_ms);
-    if (n == 4)
+    if (n == 4) {
         line[3] = words[3];
+    }
     return run_text(s, 4, line);
 }
 
@@ -295,12 +317,12 @@ static int do_wait(shell *s, int n, char **words)
 {
     conn c;
     double ms;
-    int status, error;
-    if (n != 2 || !take_ms(words[1], &ms))
+    if (n != 2 || !take_ms(words[1], &ms)) {
         return usage(s, "%s needs a time of 1 to 3600000 ms", words[0]);
-    status = conn_open(&c, &s->one);
+    }
+    int status = conn_open(&c, &s->one);
     if (!status) {
-        error = conn_sleep_until(&c, grobo_now_us() + (int64_t)(ms * 1000));
+        int error = conn_sleep_until(&c, grobo_now_us() + (int64_t)(ms * 1000));
         status = error ? conn_fail(&c, error, "wait") : EXIT_DONE;
     }
     return conn_close(&c, status);
@@ -318,22 +340,27 @@ static int do_connect(shell *s, int n, char **words)
 {
     conn c;
     int status = do_close(s, 1, words);
-    if (status || n > 2)
+    if (status || n > 2) {
         return n > 2 ? usage(s, "'%s' is one argument too many", words[2]) : status;
-    if (n == 2 && (size_t)snprintf(s->device, sizeof s->device, "%s", words[1]) >= sizeof s->device)
+    }
+    if (n == 2 &&
+        (size_t)snprintf(s->device, sizeof s->device, "%s", words[1]) >= sizeof s->device) {
         return usage(s, "%s: the name is too long", words[1]);
+    }
     if (n == 2) {
         s->a->line.global[GLOBAL_DEVICE] = (cli_value){.given = 1, .text = s->device};
         s->a->robot = NULL;
         status = config_apply(s->a);
     }
-    if (status)
+    if (status) {
         return status;
+    }
     s->one.line.global[GLOBAL_DEVICE].given = 0;
     shell_inherit(s);
     status = conn_open(&c, &s->one);
-    if (!status)
+    if (!status) {
         app_note(&s->one, "connected: %s", conn_device(&c));
+    }
     return conn_close(&c, status);
 }
 
@@ -397,17 +424,21 @@ const shell_word *shell_word_row(size_t i)
 const char *shell_nearest(const char *name)
 {
     cli_guess guess = {.name = name, .length = strlen(name)};
-    for (size_t i = 0; i < cli_n_commands; i++)
+    for (size_t i = 0; i < cli_n_commands; i++) {
         cli_guess_try(&guess, cli_commands[i]->name);
-    for (size_t i = 0; i < sizeof table / sizeof table[0]; i++)
+    }
+    for (size_t i = 0; i < sizeof table / sizeof table[0]; i++) {
         cli_guess_try(&guess, table[i].word);
+    }
     return guess.best;
 }
 
 const shell_word *shell_word_find(const char *name)
 {
-    for (size_t i = 0; *name && i < sizeof table / sizeof table[0]; i++)
-        if (strcmp(table[i].letter, name) == 0 || strcmp(table[i].word, name) == 0)
+    for (size_t i = 0; *name && i < sizeof table / sizeof table[0]; i++) {
+        if (strcmp(table[i].letter, name) == 0 || strcmp(table[i].word, name) == 0) {
             return &table[i];
+        }
+    }
     return NULL;
 }

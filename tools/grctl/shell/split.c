@@ -8,14 +8,15 @@ static char *take_word(char *from, char **to)
 {
     char quote = '\0';
     for (; *from && (quote || !strchr(" \t\r\n", *from)); from++) {
-        if (*from == '\\' && quote != '\'' && from[1])
+        if (*from == '\\' && quote != '\'' && from[1]) {
             *(*to)++ = *++from;
-        else if (quote && *from == quote)
+        } else if (quote && *from == quote) {
             quote = '\0';
-        else if (!quote && (*from == '"' || *from == '\''))
+        } else if (!quote && (*from == '"' || *from == '\'')) {
             quote = *from;
-        else
+        } else {
             *(*to)++ = *from;
+        }
     }
     return quote ? NULL : from;
 }
@@ -25,19 +26,21 @@ int shell_split(char *line, char **words, int most)
     int n = 0;
     for (char *from = line + strspn(line, " \t\r\n"); *from && *from != '#' && n < most;) {
         char *to = from;
-        bool more;
         words[n++] = to;
         from = take_word(from, &to);
-        if (!from)
+        if (!from) {
             return SHELL_OPEN_QUOTE;
-        more = *from != '\0';
+        }
+        bool more = *from != '\0';
         *to = '\0';
-        if (!more)
+        if (!more) {
             break;
+        }
         from++;
         from += strspn(from, " \t\r\n");
-        if (n == most && *from && *from != '#')
+        if (n == most && *from && *from != '#') {
             return SHELL_TOO_MANY;
+        }
     }
     return n;
 }

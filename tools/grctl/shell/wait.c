@@ -11,16 +11,19 @@ int shell_wait(void *s)
     bool readable = fd == (evutil_socket_t)EVUTIL_INVALID_SOCKET;
     struct event *input =
         readable ? NULL : event_new(link->base, fd, EV_READ, conn_note, &readable);
-    if (!input || event_add(input, NULL) != 0)
+    if (!input || event_add(input, NULL) != 0) {
         readable = true; /* then the reading itself waits */
+    }
     conn_link_watch(link);
     if (!link->signal) {
         link->signal = (int)shell_noted;
         shell_noted = 0;
     }
-    while (!readable && !link->signal && !link->news)
-        if (event_base_loop(link->base, EVLOOP_ONCE) != 0)
+    while (!readable && !link->signal && !link->news) {
+        if (event_base_loop(link->base, EVLOOP_ONCE) != 0) {
             break;
+        }
+    }
     conn_link_unwatch(link);
     conn_forget(input);
     return link->signal ? LINE_INTERRUPTED : link->news ? LINE_NEWS : 0;
@@ -40,8 +43,9 @@ static int fill(shell *s, shell_script *in)
     conn_link_idle(&s->link, s->a);
     while (n == 0) {
         int stopped = shell_wait(s);
-        if (stopped)
+        if (stopped) {
             return stopped;
+        }
         n = os_input_read(in->block, sizeof in->block);
     }
     in->held = n > 0 ? (size_t)n : 0;
@@ -56,26 +60,30 @@ static void take(shell_script *in, char c)
         in->wrong = NULL;
     }
     in->ended = c == '\n';
-    if (in->ended)
+    if (in->ended) {
         return;
-    if (c == '\0')
+    }
+    if (c == '\0') {
         in->wrong = "a NUL byte; is it text?";
-    if (in->used == sizeof in->line - 1)
+    }
+    if (in->used == sizeof in->line - 1) {
         in->wrong = "the line is too long";
-    else
+    } else {
         in->line[in->used++] = c;
+    }
 }
 
 int shell_script_next(shell *s, shell_script *in)
 {
     do {
         int stopped = in->at < in->held ? 0 : fill(s, in);
-        if (stopped == LINE_END && in->used > 0 && !in->ended)
+        if (stopped == LINE_END && in->used > 0 && !in->ended) {
             in->ended = true; /* the last line needs no end */
-        else if (stopped)
+        } else if (stopped) {
             return stopped;
-        else
+        } else {
             take(in, in->block[in->at++]);
+        }
     } while (!in->ended);
     in->line[in->used] = '\0';
     return (int)in->used;

@@ -15,8 +15,9 @@ static bool has(const grobo_joint_info *info, grobo_field field)
 
 const char *render_torque(const grobo_joint_info *info)
 {
-    if (!info->torque_known)
+    if (!info->torque_known) {
         return "?";
+    }
     switch (info->state.torque) {
     case GROBO_TORQUE_OFF:
         return "off";
@@ -51,8 +52,9 @@ static json_t *joint_json(const conn *c, int joint)
     const grobo_joint *j = &model_of(c)->joints[joint];
     grobo_joint_info i;
     double target_rad;
-    if (grobo_robot_joint(c->robot, joint, &i) < 0)
+    if (grobo_robot_joint(c->robot, joint, &i) < 0) {
         return json_pack("{s:i,s:i,s:s}", "joint", joint, "motor", j->motor, "name", j->name);
+    }
     bool fresh = i.angle_age_us != GROBO_NEVER_US, targeted = target_of(&i, &target_rad);
     return json_pack(
         "{s:i,s:i,s:s,s:o,s:o,s:s?,s:o?,s:o?,s:o?,s:o,s:o?,s:o}", "joint", joint, "motor", j->motor,
@@ -71,19 +73,22 @@ static json_t *joint_json(const conn *c, int joint)
 json_t *render_joints_json(const conn *c, grobo_joint_mask joints)
 {
     json_t *list = json_array();
-    for (int j = 0; j < model_of(c)->n_joints; j++)
-        if (joints & GROBO_JOINT_BIT(j))
+    for (int j = 0; j < model_of(c)->n_joints; j++) {
+        if (joints & GROBO_JOINT_BIT(j)) {
             json_array_append_new(list, joint_json(c, j));
+        }
+    }
     return list;
 }
 
 static void cell(bool known, int width, int decimals, double value)
 {
     double unit = pow(10, -decimals);
-    if (known)
+    if (known) {
         app_print("  %*.*f", width, decimals, fabs(value) < unit / 2 ? 0.0 : value); /* no -0.0 */
-    else
+    } else {
         app_print("  %*s", width, "-");
+    }
 }
 
 void render_status(const conn *c, grobo_joint_mask joints)
@@ -94,13 +99,13 @@ void render_status(const conn *c, grobo_joint_mask joints)
     for (int k = 0; k < model->n_joints; k++) {
         grobo_joint_info i;
         double target_rad;
-        bool known, targeted;
-        if (!(joints & GROBO_JOINT_BIT(k)) || grobo_robot_joint(c->robot, k, &i) < 0)
+        if (!(joints & GROBO_JOINT_BIT(k)) || grobo_robot_joint(c->robot, k, &i) < 0) {
             continue;
-        known = i.angle_age_us != GROBO_NEVER_US;
+        }
+        bool known = i.angle_age_us != GROBO_NEVER_US;
         app_print("%5d  %-12s", model->joints[k].motor, model->joints[k].name);
         cell(known, 5, 1, grobo_deg_from_rad(i.state.angle_rad));
-        targeted = target_of(&i, &target_rad);
+        bool targeted = target_of(&i, &target_rad);
         cell(targeted, 6, 1, grobo_deg_from_rad(target_rad));
         app_print("  %-6s", render_torque(&i));
         cell(has(&i, GROBO_FIELD_SPEED), 5, 0, i.state.speed_dps);
@@ -108,9 +113,10 @@ void render_status(const conn *c, grobo_joint_mask joints)
         cell(has(&i, GROBO_FIELD_TEMPERATURE), 4, 0, i.state.temperature_c);
         cell(has(&i, GROBO_FIELD_VOLTAGE), 5, 2, i.state.voltage_mv / 1e3);
         cell(known, 6, 0, known ? (double)(i.angle_age_us / 1000) : 0);
-        if (i.status != GROBO_OK)
+        if (i.status != GROBO_OK) {
             app_print("  %s%s%s", color ? "\033[31m" : "", grobo_error_text(i.status),
                       color ? "\033[0m" : "");
+        }
         app_print("\n");
     }
 }
@@ -121,11 +127,11 @@ double render_worst_error(const conn *c, int *joint)
     *joint = -1;
     for (int k = 0; k < model_of(c)->n_joints; k++) {
         grobo_joint_info i;
-        double error;
         if (grobo_robot_joint(c->robot, k, &i) < 0 || !i.has_target ||
-            i.angle_age_us == GROBO_NEVER_US || i.status != GROBO_OK)
+            i.angle_age_us == GROBO_NEVER_US || i.status != GROBO_OK) {
             continue;
-        error = fabs(grobo_deg_from_rad(i.state.angle_rad - i.target_rad));
+        }
+        double error = fabs(grobo_deg_from_rad(i.state.angle_rad - i.target_rad));
         if (*joint < 0 || error > worst) {
             worst = error;
             *joint = k;
@@ -140,16 +146,17 @@ void render_reached(const conn *c)
     app_print("motor  joint         target  reached  error deg\n");
     for (int k = 0; k < model->n_joints; k++) {
         grobo_joint_info i;
-        bool both;
-        if (grobo_robot_joint(c->robot, k, &i) < 0)
+        if (grobo_robot_joint(c->robot, k, &i) < 0) {
             continue;
-        both = i.has_target && i.status == GROBO_OK && i.angle_age_us != GROBO_NEVER_US;
+        }
+        bool both = i.has_target && i.status == GROBO_OK && i.angle_age_us != GROBO_NEVER_US;
         app_print("%5d  %-12s", model->joints[k].motor, model->joints[k].name);
         cell(i.has_target, 6, 1, grobo_deg_from_rad(i.target_rad));
         cell(i.angle_age_us != GROBO_NEVER_US, 7, 1, grobo_deg_from_rad(i.state.angle_rad));
         cell(both, 9, 2, grobo_deg_from_rad(i.state.angle_rad - i.target_rad));
-        if (i.status != GROBO_OK)
+        if (i.status != GROBO_OK) {
             app_print("  %s", grobo_error_text(i.status));
+        }
         app_print("\n");
     }
 }

@@ -20,8 +20,9 @@ typedef struct table {
 const char *show_joint_name(const show_rows *rows, int c, char *buffer, size_t capacity)
 {
     int joint = rows->joint[c];
-    if (rows->model && joint < rows->model->n_joints)
+    if (rows->model && joint < rows->model->n_joints) {
         return rows->model->joints[joint].name;
+    }
     snprintf(buffer, capacity, "j%d", joint);
     return buffer;
 }
@@ -62,8 +63,9 @@ static const char *name_part(const char *name, int k, size_t *length)
 static int name_parts(const char *name)
 {
     int n = 1;
-    for (; *name; name++)
+    for (; *name; name++) {
         n += *name == '_';
+    }
     return n;
 }
 
@@ -91,8 +93,9 @@ static double tenths(double deg)
 
 static void widen(int *width, int least)
 {
-    if (*width < least)
+    if (*width < least) {
         *width = least;
+    }
 }
 
 static void measure(table *t)
@@ -105,12 +108,15 @@ static void measure(table *t)
         widen(&t->width[c], name_width(t, c) + 2);
     }
     for (size_t i = 0; i < t->rows->n && show_row(t->rows, i, &posture, &time_s) == 0; i++) {
-        if (fabs(time_s * 1e3 - round(time_s * 1e3)) > 1e-6)
+        if (fabs(time_s * 1e3 - round(time_s * 1e3)) > 1e-6) {
             t->decimals = 1;
+        }
         widen(&t->time_width, snprintf(NULL, 0, "%.*f", t->decimals, time_s * 1e3) + 1);
-        for (int c = 0; c < t->rows->n_joints; c++)
-            if (grobo_posture_get_deg(&posture, t->rows->joint[c], &deg) == 0)
+        for (int c = 0; c < t->rows->n_joints; c++) {
+            if (grobo_posture_get_deg(&posture, t->rows->joint[c], &deg) == 0) {
                 widen(&t->width[c], snprintf(NULL, 0, "%.1f", tenths(deg)) + 2);
+            }
+        }
     }
 }
 
@@ -132,11 +138,13 @@ static int fits(const table *t, int from)
     int used = t->time_width, to, limb;
     for (to = from; to < t->rows->n_joints; to++) {
         used += t->width[to];
-        if (t->terminal && used > t->terminal && to > from)
+        if (t->terminal && used > t->terminal && to > from) {
             break;
+        }
     }
-    for (limb = to; limb > from && limb < t->rows->n_joints && same_limb(t, limb - 1, to); limb--)
+    for (limb = to; limb > from && limb < t->rows->n_joints && same_limb(t, limb - 1, to); limb--) {
         continue;
+    }
     return limb > from ? limb : to;
 }
 
@@ -156,15 +164,17 @@ static void print_names(const table *t, int from, int to)
 {
     char buffer[NAME_BYTES];
     int lines = 1;
-    for (int c = from; c < to && t->terminal; c++)
+    for (int c = from; c < to && t->terminal; c++) {
         widen(&lines, name_parts(show_joint_name(t->rows, c, buffer, sizeof buffer)));
+    }
     for (int k = 0; k < lines; k++) {
         app_print("%*s", t->time_width, k + 1 < lines ? "" : "time_ms");
         for (int c = from; c < to; c++) {
-            if (t->terminal)
+            if (t->terminal) {
                 print_part(t, c, k, lines);
-            else
+            } else {
                 app_print("%*s", t->width[c], show_joint_name(t->rows, c, buffer, sizeof buffer));
+            }
         }
         app_print("\n");
     }
@@ -174,10 +184,12 @@ static bool is_outside(const table *t, int c, double deg)
 {
     const grobo_joint *joint;
     int ddeg = grobo_ddeg_from_rad(grobo_rad_from_deg(deg));
-    if (!t->rows->model || t->rows->joint[c] >= t->rows->model->n_joints)
+    if (!t->rows->model || t->rows->joint[c] >= t->rows->model->n_joints) {
         return false;
-    if (grobo_motion_get_kind(t->rows->motion) == GROBO_MOTION_STEPS && !t->rows->as_played)
+    }
+    if (grobo_motion_get_kind(t->rows->motion) == GROBO_MOTION_STEPS && !t->rows->as_played) {
         return false;
+    }
     joint = &t->rows->model->joints[t->rows->joint[c]];
     return ddeg < grobo_ddeg_from_rad(joint->min_rad) || ddeg > grobo_ddeg_from_rad(joint->max_rad);
 }
@@ -185,12 +197,11 @@ static bool is_outside(const table *t, int c, double deg)
 static void print_angle(const table *t, int c, const grobo_posture *posture)
 {
     double deg;
-    bool red;
     if (grobo_posture_get_deg(posture, t->rows->joint[c], &deg) < 0) {
         app_print("%*s", t->width[c], ".");
         return;
     }
-    red = t->a->color_out && is_outside(t, c, deg);
+    bool red = t->a->color_out && is_outside(t, c, deg);
     app_print("%s%*.1f%s", red ? "\033[31m" : "", t->width[c], tenths(deg), red ? "\033[0m" : "");
 }
 
@@ -201,8 +212,9 @@ static void print_rows(const table *t, size_t first, size_t last, int from, int 
     print_names(t, from, to);
     for (size_t i = first; i < last && show_row(t->rows, i, &posture, &time_s) == 0; i++) {
         app_print("%*.*f", t->time_width, t->decimals, time_s * 1e3);
-        for (int c = from; c < to; c++)
+        for (int c = from; c < to; c++) {
             print_angle(t, c, &posture);
+        }
         app_print("\n");
     }
 }
@@ -210,18 +222,18 @@ static void print_rows(const table *t, size_t first, size_t last, int from, int 
 void show_table(const app *a, const show_rows *rows)
 {
     static table t;
-    bool split;
     t.a = a;
     t.rows = rows;
     t.terminal = a->tty_out ? os_columns(stdout) : 0;
     measure(&t);
-    split = fits(&t, 0) < rows->n_joints;
+    bool split = fits(&t, 0) < rows->n_joints;
     for (size_t first = 0, last; first < rows->n; first = last) {
         last = split && rows->n - first > PAGE_ROWS ? first + PAGE_ROWS : rows->n;
         for (int from = 0, to; from < rows->n_joints; from = to) {
             to = fits(&t, from);
-            if (first || from)
+            if (first || from) {
                 app_print("\n");
+            }
             print_rows(&t, first, last, from, to);
         }
     }

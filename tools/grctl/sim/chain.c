@@ -30,12 +30,15 @@ static int refuse_type(app *a, const char *item, size_t length)
 {
     char why[512];
     size_t used = (size_t)snprintf(why, sizeof why, "unknown type; known:");
-    for (size_t i = 0; grobo_sim_type_row(i) && used < sizeof why; i++)
+    for (size_t i = 0; grobo_sim_type_row(i) && used < sizeof why; i++) {
         used += (size_t)snprintf(why + used, sizeof why - used, " %s", grobo_sim_type_row(i)->name);
-    for (int t = 0; t < TABLES; t++)
-        for (int m = 0; m < tables[t]->model_count && used < sizeof why; m++)
+    }
+    for (int t = 0; t < TABLES; t++) {
+        for (int m = 0; m < tables[t]->model_count && used < sizeof why; m++) {
             used +=
                 (size_t)snprintf(why + used, sizeof why - used, " %s", tables[t]->models[m].name);
+        }
+    }
     return refuse(a, item, length, why);
 }
 
@@ -43,15 +46,18 @@ static int refuse_type(app *a, const char *item, size_t length)
 static const grobo_servo_model *model_named(const char *name, size_t length)
 {
     char upper[32];
-    if (length >= sizeof upper)
+    if (length >= sizeof upper) {
         return NULL;
-    for (size_t i = 0; i < length; i++)
+    }
+    for (size_t i = 0; i < length; i++) {
         upper[i] = name[i] >= 'a' && name[i] <= 'z' ? (char)(name[i] - 'a' + 'A') : name[i];
+    }
     upper[length] = '\0';
     for (int t = 0; t < TABLES; t++) {
         const grobo_servo_model *model = grobo_servo_model_named(tables[t], upper);
-        if (model)
+        if (model) {
             return model;
+        }
     }
     return NULL;
 }
@@ -80,8 +86,9 @@ static void add(sim_chain *chain, int id, const grobo_sim_type *type,
 /* The highest id, and from where they are counted. */
 static bool id_fits(int id, const grobo_servo_model *model)
 {
-    if (!model)
+    if (!model) {
         return id >= 1 && id <= GROBO_RS30X_ID_MAX;
+    }
     return id <= (model->table == &grobo_dxl2_table ? GROBO_DXL2_ID_MAX : GROBO_DXL1_ID_MAX);
 }
 
@@ -90,25 +97,29 @@ static int read_one(app *a, sim_chain *chain, const char *item, size_t length)
 {
     const char *equals = memchr(item, '=', length);
     size_t digits = equals ? (size_t)(equals - item) : 0;
-    const grobo_sim_type *type;
-    const grobo_servo_model *model;
     int id = 0;
-    if (digits == 0 || digits > 3 || strspn(item, "0123456789") != digits)
+    if (digits == 0 || digits > 3 || strspn(item, "0123456789") != digits) {
         return refuse(a, item, length, "expected ID=TYPE, such as 1=RS304MD");
-    for (size_t i = 0; i < digits; i++)
+    }
+    for (size_t i = 0; i < digits; i++) {
         id = id * 10 + (item[i] - '0');
-    if (grobo_model_joint_of_motor(&chain->model, id) >= 0)
+    }
+    if (grobo_model_joint_of_motor(&chain->model, id) >= 0) {
         return refuse(a, item, length, "the id is used twice");
-    type = grobo_sim_type_named(equals + 1, length - digits - 1);
-    model = type ? NULL : model_named(equals + 1, length - digits - 1);
-    if (!type && !model)
+    }
+    const grobo_sim_type *type = grobo_sim_type_named(equals + 1, length - digits - 1);
+    const grobo_servo_model *model = type ? NULL : model_named(equals + 1, length - digits - 1);
+    if (!type && !model) {
         return refuse_type(a, item, length);
-    if (!id_fits(id, model))
+    }
+    if (!id_fits(id, model)) {
         return refuse(a, item, length,
                       model ? "the id must be from 0 to 252 (AX, MX, Feetech: 253)"
                             : "the id must be from 1 to 127");
-    if (chain->model.n_joints == GROBO_SIM_SERVOS_MAX)
+    }
+    if (chain->model.n_joints == GROBO_SIM_SERVOS_MAX) {
         return refuse(a, item, length, "too many servos");
+    }
     add(chain, id, type, model);
     return 0;
 }
@@ -121,8 +132,9 @@ int sim_chain_read(app *a, sim_chain *chain, const char *list)
     for (;;) {
         size_t length = strcspn(list, ",");
         int status = read_one(a, chain, list, length);
-        if (status || list[length] == '\0')
+        if (status || list[length] == '\0') {
             return status;
+        }
         list += length + 1;
     }
 }

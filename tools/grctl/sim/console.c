@@ -26,15 +26,17 @@ static bool read_number(const sim_console *console, int i, double min, double ma
 static bool read_servos(const sim_console *console, grobo_joint_mask *joints)
 {
     double motor;
-    int joint;
-    if (console->n_words < 2)
+    if (console->n_words < 2) {
         return false;
-    if (!cli_read_number(console->word[1], &motor))
+    }
+    if (!cli_read_number(console->word[1], &motor)) {
         return grobo_model_find_joints(console->model, console->word[1], strlen(console->word[1]),
                                        joints) > 0;
-    joint = grobo_model_joint_of_motor(console->model, (int)motor);
-    if (joint < 0)
+    }
+    int joint = grobo_model_joint_of_motor(console->model, (int)motor);
+    if (joint < 0) {
         return false;
+    }
     *joints = GROBO_JOINT_BIT(joint);
     return true;
 }
@@ -77,8 +79,9 @@ static bool turn(const sim_console *console, int servo)
 {
     double deg, ms = 0;
     if (!read_number(console, 2, -180, 180, &deg) ||
-        (console->n_words > 3 && !read_number(console, 3, 0, 60000, &ms)))
+        (console->n_words > 3 && !read_number(console, 3, 0, 60000, &ms))) {
         return false;
+    }
     return grobo_sim_set_angle(sim_of(console), servo, (int32_t)lround(deg * 1000),
                                (int64_t)(ms * 1000)) == 0;
 }
@@ -121,11 +124,14 @@ static const struct {
 static const char *act_on_servos(const sim_console *console, size_t i)
 {
     grobo_joint_mask joints;
-    if (!read_servos(console, &joints))
+    if (!read_servos(console, &joints)) {
         return servo_commands[i].usage;
-    for (int servo = 0; servo < console->model->n_joints; servo++)
-        if ((joints & GROBO_JOINT_BIT(servo)) && !servo_commands[i].act(console, servo))
+    }
+    for (int servo = 0; servo < console->model->n_joints; servo++) {
+        if ((joints & GROBO_JOINT_BIT(servo)) && !servo_commands[i].act(console, servo)) {
             return servo_commands[i].usage;
+        }
+    }
     return NULL;
 }
 
@@ -134,8 +140,9 @@ static void say_servo(const sim_console *console, int servo)
     static const char *const cables[] = {"", ", mute", ", cable out"};
     static const char *const torques[] = {"off", "on", "brake"};
     grobo_sim_view v;
-    if (grobo_sim_look(sim_of(console), servo, &v) < 0)
+    if (grobo_sim_look(sim_of(console), servo, &v) < 0) {
         return;
+    }
     app_note(console->a, "%3d  %-12s  %7.1f deg  to %7.1f  torque %-5s  %4d mA  %5.1f C%s%s%s",
              (int)v.id, console->model->joints[servo].name, v.angle_mdeg / 1e3, v.target_mdeg / 1e3,
              torques[v.torque], (int)v.current_ma, v.temperature_c, cables[v.cable],
@@ -145,20 +152,24 @@ static void say_servo(const sim_console *console, int servo)
 static const char *look(const sim_console *console)
 {
     grobo_joint_mask joints = GROBO_JOINTS_ALL(console->model->n_joints);
-    if (console->n_words > 1 && !read_servos(console, &joints))
+    if (console->n_words > 1 && !read_servos(console, &joints)) {
         return "look [SERVO]";
+    }
     grobo_sim_step(sim_of(console), grobo_now_us());
-    for (int servo = 0; servo < console->model->n_joints; servo++)
-        if (joints & GROBO_JOINT_BIT(servo))
+    for (int servo = 0; servo < console->model->n_joints; servo++) {
+        if (joints & GROBO_JOINT_BIT(servo)) {
             say_servo(console, servo);
+        }
+    }
     return NULL;
 }
 
 static const char *choose_robot(sim_console *console)
 {
     double number;
-    if (!read_number(console, 1, 1, console->n, &number))
+    if (!read_number(console, 1, 1, console->n, &number)) {
         return "robot N, one of those that run";
+    }
     console->robot = (int)number - 1;
     return NULL;
 }
@@ -166,8 +177,9 @@ static const char *choose_robot(sim_console *console)
 static const char *set_voltage(const sim_console *console)
 {
     double v;
-    if (!read_number(console, 1, 0, 20, &v))
+    if (!read_number(console, 1, 0, 20, &v)) {
         return "voltage V (0 to 20)";
+    }
     grobo_sim_set_supply(sim_of(console), (uint32_t)lround(v * 1000));
     return NULL;
 }
@@ -175,38 +187,46 @@ static const char *set_voltage(const sim_console *console)
 static const char *set_faults(const sim_console *console)
 {
     if (console->n_words < 2 ||
-        grobo_sim_set_faults(sim_of(console), console->word[1], strlen(console->word[1])) < 0)
+        grobo_sim_set_faults(sim_of(console), console->word[1], strlen(console->word[1])) < 0) {
         return "fault KIND=RATE,... (drop flip duplicate delay split rubbish silent dupid hangup "
                "brownout all; 0 to 1)";
+    }
     return NULL;
 }
 
 static const char *plug(const sim_console *console)
 {
     bool in = is_word(console, 1, "in");
-    int error;
-    if (!in && !is_word(console, 1, "out"))
+    if (!in && !is_word(console, 1, "out")) {
         return "plug in|out";
-    error = grobo_sim_server_plug(console->server[console->robot], in);
+    }
+    int error = grobo_sim_server_plug(console->server[console->robot], in);
     return error < 0 ? grobo_error_text(error) : NULL;
 }
 
 /* NULL: done. Else how the command is to be said. */
 static const char *carry_out(sim_console *console)
 {
-    for (size_t i = 0; i < sizeof servo_commands / sizeof servo_commands[0]; i++)
-        if (is_word(console, 0, servo_commands[i].name))
+    for (size_t i = 0; i < sizeof servo_commands / sizeof servo_commands[0]; i++) {
+        if (is_word(console, 0, servo_commands[i].name)) {
             return act_on_servos(console, i);
-    if (is_word(console, 0, "look"))
+        }
+    }
+    if (is_word(console, 0, "look")) {
         return look(console);
-    if (is_word(console, 0, "robot"))
+    }
+    if (is_word(console, 0, "robot")) {
         return choose_robot(console);
-    if (is_word(console, 0, "voltage"))
+    }
+    if (is_word(console, 0, "voltage")) {
         return set_voltage(console);
-    if (is_word(console, 0, "fault"))
+    }
+    if (is_word(console, 0, "fault")) {
         return set_faults(console);
-    if (is_word(console, 0, "plug"))
+    }
+    if (is_word(console, 0, "plug")) {
         return plug(console);
+    }
     if (is_word(console, 0, "quit")) {
         event_base_loopbreak(console->base);
         return NULL;
@@ -223,14 +243,17 @@ static bool split(sim_console *console)
     console->n_words = 0;
     for (;;) {
         rest += strspn(rest, " \t\r");
-        if (*rest == '\0' || *rest == '#')
+        if (*rest == '\0' || *rest == '#') {
             return true;
-        if (console->n_words == (int)(sizeof console->word / sizeof console->word[0]))
+        }
+        if (console->n_words == (int)(sizeof console->word / sizeof console->word[0])) {
             return false;
+        }
         console->word[console->n_words++] = rest;
         rest += strcspn(rest, " \t\r");
-        if (*rest)
+        if (*rest) {
             *rest++ = '\0';
+        }
     }
 }
 
@@ -239,42 +262,47 @@ static void on_line(sim_console *console)
     const char *usage;
     char said[SIM_CONSOLE_BYTES];
     snprintf(said, sizeof said, "%s", console->line);
-    if (!split(console))
+    if (!split(console)) {
         usage = "at most 4 words";
-    else if (console->n_words == 0)
+    } else if (console->n_words == 0) {
         return;
-    else
+    } else {
         usage = carry_out(console);
-    if (usage)
+    }
+    if (usage) {
         app_note(console->a, "sim: '%s'? say: %s", said, usage);
-    else if (strcmp(console->word[0], "look") != 0)
+    } else if (strcmp(console->word[0], "look") != 0) {
         app_note(console->a, "sim: %s", said);
+    }
     grobo_sim_server_pump(console->server[console->robot]);
 }
 
 static void take(sim_console *console, char c)
 {
     if (c != '\n') {
-        if (console->used < sizeof console->line - 1)
+        if (console->used < sizeof console->line - 1) {
             console->line[console->used++] = c;
-        else
+        } else {
             console->too_long = true;
+        }
         return;
     }
     console->line[console->used] = '\0';
     console->used = 0;
-    if (console->too_long)
+    if (console->too_long) {
         app_note(console->a, "sim: a line of more than %d bytes is left out",
                  SIM_CONSOLE_BYTES - 1);
-    else
+    } else {
         on_line(console);
+    }
     console->too_long = false;
 }
 
 static void on_input(void *ctx, const char *bytes, size_t size)
 {
-    for (size_t i = 0; i < size; i++)
+    for (size_t i = 0; i < size; i++) {
         take(ctx, bytes[i]);
+    }
 }
 
 void sim_console_start(sim_console *console)

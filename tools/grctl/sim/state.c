@@ -4,8 +4,6 @@
  * its model and its registers No.4-29, all in hexadecimal. It is replaced whole after each flash
  * write, so that a simulator that is killed leaves the file of before or after it.
  */
-#include "tools/grctl/sim/state.h"
-
 #include <errno.h>
 #include <string.h>
 
@@ -13,6 +11,7 @@
 
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/os/pipe.h"
+#include "tools/grctl/sim/state.h"
 
 /* A flash write takes 1 s; it is looked for a little later, and then once a second. */
 #define FIRST_LOOK_US 1050000
@@ -50,8 +49,9 @@ static int write_file(sim_state *s)
     char text[FILE_BYTES];
     size_t used = sizeof head - 1;
     memcpy(text, head, used);
-    for (int i = 0; i < grobo_sim_servos(sim_of(s)); i++)
+    for (int i = 0; i < grobo_sim_servos(sim_of(s)); i++) {
         used += put_servo(s, i, text + used, sizeof text - used);
+    }
     s->dirty = false;
     return file_save(s->path, text, used);
 }
@@ -59,8 +59,9 @@ static int write_file(sim_state *s)
 static void keep(sim_state *s)
 {
     int error = s->dirty ? write_file(s) : 0;
-    if (error && !s->failed)
+    if (error && !s->failed) {
         (void)fail(s, file_write_error_text(error));
+    }
     s->failed |= error < 0;
 }
 
@@ -70,16 +71,18 @@ static bool settle(sim_state *s)
     bool busy = false;
     grobo_sim_view view;
     grobo_sim_step(sim_of(s), grobo_now_us());
-    for (int i = 0; grobo_sim_look(sim_of(s), i, &view) == 0; i++)
+    for (int i = 0; grobo_sim_look(sim_of(s), i, &view) == 0; i++) {
         busy |= view.deaf && view.cable == GROBO_SIM_CABLE_IN;
+    }
     return busy;
 }
 
 static void look_again(sim_state *s, long us)
 {
     const struct timeval after = {.tv_sec = us / 1000000, .tv_usec = us % 1000000};
-    if (!evtimer_pending(s->settle, NULL))
+    if (!evtimer_pending(s->settle, NULL)) {
         (void)evtimer_add(s->settle, &after);
+    }
 }
 
 static void on_settle(evutil_socket_t fd, short what, void *ctx)
@@ -89,19 +92,22 @@ static void on_settle(evutil_socket_t fd, short what, void *ctx)
     (void)fd;
     (void)what;
     keep(s);
-    if (busy)
+    if (busy) {
         look_again(s, NEXT_LOOK_US);
+    }
 }
 
 void sim_state_event(sim_state *s, const grobo_sim_event *event)
 {
-    if (!s->a)
+    if (!s->a) {
         return;
-    if (event->kind == GROBO_SIM_SAVED)
+    }
+    if (event->kind == GROBO_SIM_SAVED) {
         s->dirty = true;
-    else if (event->kind == GROBO_SIM_PACKET &&
-             (event->bytes[3] & (GROBO_RS30X_FLASH | GROBO_RS30X_FACTORY)) != 0)
+    } else if (event->kind == GROBO_SIM_PACKET &&
+               (event->bytes[3] & (GROBO_RS30X_FLASH | GROBO_RS30X_FACTORY)) != 0) {
         look_again(s, FIRST_LOOK_US);
+    }
 }
 
 /* ---- reading --------------------------------------------------------------------------------- */
@@ -125,12 +131,14 @@ static const char *read_servo(const sim_state *s, int servo, const char *line)
     int high = read_byte(line), low = high < 0 ? -1 : read_byte(line + 2);
     int32_t model = 0;
     (void)grobo_sim_get_register(sim_of(s), servo, GROBO_RS30X_MODEL, &model);
-    if (low < 0 || high * 256 + low != model)
+    if (low < 0 || high * 256 + low != model) {
         return "another servo than the one to simulate";
+    }
     for (int i = 0; i < GROBO_SIM_FLASH_BYTES; i++) {
         int byte = line[4 + 3 * i] == ' ' ? read_byte(line + 5 + 3 * i) : -1;
-        if (byte < 0)
+        if (byte < 0) {
             return "no registers in hexadecimal";
+        }
         flash[i] = (uint8_t)byte;
     }
     return grobo_sim_set_flash(sim_of(s), servo, flash) < 0
@@ -143,15 +151,17 @@ static const char *read_text(const sim_state *s, const char *text, size_t size, 
     int n = grobo_sim_servos(sim_of(s));
     const char *wrong = NULL;
     *line = 1;
-    if (size < sizeof head - 1 || memcmp(text, head, sizeof head - 1) != 0)
+    if (size < sizeof head - 1 || memcmp(text, head, sizeof head - 1) != 0) {
         return "is not a state of 'grctl sim'";
+    }
     text += sizeof head - 1;
     size -= sizeof head - 1;
     for (int i = 0; i < n && !wrong; i++) {
         const char *end = memchr(text, '\n', size);
         ++*line;
-        if (!end || end - text != LINE_BYTES - 2)
+        if (!end || end - text != LINE_BYTES - 2) {
             return end ? "is no line of a servo" : "is cut off";
+        }
         wrong = read_servo(s, i, text);
         size -= (size_t)(end + 1 - text);
         text = end + 1;
@@ -171,30 +181,35 @@ static int read_file(sim_state *s, FILE *file)
     int line = 1;
     const char *wrong = ferror(file) ? "cannot be read" : NULL;
     fclose(file);
-    if (!wrong && size == sizeof text)
+    if (!wrong && size == sizeof text) {
         wrong = "is not a state of 'grctl sim'";
-    if (!wrong)
+    }
+    if (!wrong) {
         wrong = read_text(s, text, size, &line);
-    if (!wrong)
+    }
+    if (!wrong) {
         return 0;
+    }
     snprintf(why, sizeof why, "line %d: %s; name another file", line, wrong);
     return fail(s, why);
 }
 
 static int load(sim_state *s)
 {
-    FILE *file;
-    int error;
-    if (os_is_folder(s->path))
+    if (os_is_folder(s->path)) {
         return fail(s, grobo_error_text(GROBO_ERR_ISDIR));
-    if (pipe_is(s->path))
+    }
+    if (pipe_is(s->path)) {
         return fail(s, "is not a regular file");
-    file = fopen(s->path, "rb");
-    if (file)
+    }
+    FILE *file = fopen(s->path, "rb");
+    if (file) {
         return read_file(s, file);
-    if (errno != ENOENT)
+    }
+    if (errno != ENOENT) {
         return fail(s, app_cause_text(errno));
-    error = write_file(s);
+    }
+    int error = write_file(s);
     return error ? fail(s, file_write_error_text(error)) : 0;
 }
 
@@ -203,10 +218,9 @@ static int load(sim_state *s)
 int sim_state_start(sim_state *s, app *a, struct event_base *base, grobo_sim_server *server,
                     const char *path)
 {
-    int status;
     *s = (sim_state){.a = a, .server = server};
     snprintf(s->path, sizeof s->path, "%s", path);
-    status = os_lock_file(&s->lock, s->path);
+    int status = os_lock_file(&s->lock, s->path);
     if (status) {
         s->a = NULL;
         return app_fail(a, EXIT_FILE, status == EWOULDBLOCK ? "BUSY" : "IO", "sim: --state: %s: %s",
@@ -215,15 +229,17 @@ int sim_state_start(sim_state *s, app *a, struct event_base *base, grobo_sim_ser
                                               : app_cause_text(status));
     }
     s->settle = evtimer_new(base, on_settle, s);
-    if (!s->settle)
+    if (!s->settle) {
         return fail(s, grobo_error_text(GROBO_ERR_NOMEM));
+    }
     return load(s);
 }
 
 int sim_state_end(sim_state *s, int status)
 {
-    if (!s->a)
+    if (!s->a) {
         return status;
+    }
     if (s->settle) {
         (void)settle(s);
         keep(s);

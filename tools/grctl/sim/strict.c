@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-#include "tools/grctl/sim/strict.h"
-
 #include <stdarg.h>
 #include <string.h>
 
 #include <grobo/serial.h>
 
 #include "tools/grctl/os/os.h"
+#include "tools/grctl/sim/strict.h"
 
 /* Bytes that collide within this time are one offence. */
 #define ONE_COLLISION_US 20000
@@ -18,8 +17,9 @@ enum { WHY_BYTES = 128 };
 static void report_text(const sim_strict *s, const char *code, int64_t at_us, const char *hex,
                         const char *why)
 {
-    if (!os_takes_line(stderr))
+    if (!os_takes_line(stderr)) {
         return; /* nobody reads: the count remains */
+    }
     fprintf(stderr, "grctl: sim: robot %d: %.3f ms: %s: %s: %s\n", s->robot,
             (double)(at_us - s->start_us) / 1e3, code, why, hex);
     fflush(stderr);
@@ -31,12 +31,13 @@ static void report(sim_strict *s, const char *code, int64_t at_us, const uint8_t
     char hex[3 * FRAMES_BUFFER_BYTES + 1] = "";
     s->offences++;
     (void)grobo_hex(hex, sizeof hex, bytes, n);
-    if (s->a->json)
+    if (s->a->json) {
         app_print_json(json_pack("{s:s,s:i,s:o,s:s,s:s}", "offence", code, "robot", s->robot,
                                  "time_ms", app_json_number((double)(at_us - s->start_us) / 1e3, 3),
                                  "bytes", hex, "message", why));
-    else
+    } else {
         report_text(s, code, at_us, hex, why);
+    }
 }
 
 /* ---- what a packet says ---------------------------------------------------------------------- */
@@ -51,14 +52,16 @@ static bool wrong_data(uint8_t address, const uint8_t *data, size_t n, char *why
     }
     for (size_t i = 0; i < n; i++) {
         const grobo_rs30x_register *reg = grobo_rs30x_register_at((uint8_t)(address + i));
-        if (!reg)
+        if (!reg) {
             continue;
+        }
         if (reg->access == GROBO_RS30X_ACCESS_R) {
             snprintf(why, WHY_BYTES, "it writes %s, which is read-only", reg->name);
             return true;
         }
-        if (reg->address != address + i || i + reg->bytes > n)
+        if (reg->address != address + i || i + reg->bytes > n) {
             continue; /* a half of it */
+        }
         int32_t value = grobo_rs30x_register_get(reg, data + i);
         if (value < reg->min || value > reg->max) {
             snprintf(why, WHY_BYTES, "%s %d is outside %d..%d", reg->name, (int)value,
@@ -86,8 +89,9 @@ static const char *wrong_packet(const grobo_rs30x_packet *p, const uint8_t *byte
             snprintf(why, WHY_BYTES, "id %d is outside 1..%d", p->data[at], GROBO_RS30X_ID_MAX);
             return "range";
         }
-        if (wrong_data(p->address, p->data + at + skip, step - skip, why))
+        if (wrong_data(p->address, p->data + at + skip, step - skip, why)) {
             return "range";
+        }
     }
     return NULL;
 }
@@ -100,8 +104,9 @@ static bool wrong_relay(const frame *f, char *why)
     grobo_reply reply;
     int bytes = grobo_rs30x_reply_to(f->board.packet, f->board.packet_bytes, &reply);
     int asked = f->board.kind == GROBO_BOARD_ASK ? f->board.reply_bytes : 0;
-    if (f->board.kind > GROBO_BOARD_ASK || bytes < 0 || bytes == asked)
+    if (f->board.kind > GROBO_BOARD_ASK || bytes < 0 || bytes == asked) {
         return false;
+    }
     snprintf(why, WHY_BYTES, "it asks the board for %d bytes, the servo returns %d", asked, bytes);
     return true;
 }
@@ -110,16 +115,17 @@ static void on_whole(sim_strict *s, const frame *f)
 {
     char why[WHY_BYTES] = "";
     const uint8_t *bytes = f->kind == FRAME_BOARD ? f->board.packet : f->bytes;
-    const char *code;
     if (f->has_packet && !f->sum_ok) {
         report(s, "sum", f->end_us, f->bytes, f->size, "the sum is wrong");
         return;
     }
-    code = f->has_packet ? wrong_packet(&f->packet, bytes, f->packet_size, why) : NULL;
-    if (!code && f->kind == FRAME_BOARD && f->has_packet && wrong_relay(f, why))
+    const char *code = f->has_packet ? wrong_packet(&f->packet, bytes, f->packet_size, why) : NULL;
+    if (!code && f->kind == FRAME_BOARD && f->has_packet && wrong_relay(f, why)) {
         code = "relay";
-    if (code)
+    }
+    if (code) {
         report(s, code, f->end_us, f->bytes, f->size, why);
+    }
 }
 
 static void on_frame(void *ctx, const frame *f)
@@ -157,8 +163,9 @@ static void on_refused(sim_strict *s, const grobo_sim_event *event)
     grobo_rs30x_packet packet;
     bool sum_ok;
     int size = grobo_rs30x_peek(s->packet, s->n_packet, GROBO_ACCEPT_COMMANDS, &packet, &sum_ok);
-    if (s->told || size <= 0 || wrong_packet(&packet, s->packet, s->n_packet, why))
+    if (s->told || size <= 0 || wrong_packet(&packet, s->packet, s->n_packet, why)) {
         return;
+    }
     s->told = true;
     snprintf(why, sizeof why, "the servo cannot do it (No.%d)", (int)event->value);
     report(s, "refused", event->time_us, s->packet, s->n_packet, why);
@@ -168,8 +175,9 @@ static void on_refused(sim_strict *s, const grobo_sim_event *event)
 static void on_missed(sim_strict *s, const grobo_sim_event *event)
 {
     bool writes = event->bytes[2] == 0 || (event->bytes[3] & 0xF0) != 0 || event->n_bytes > 8;
-    if (s->told || !writes)
+    if (s->told || !writes) {
         return;
+    }
     s->told = true;
     report(s, "busy", event->time_us, event->bytes, event->n_bytes,
            event->value == GROBO_SIM_BUSY_FLASH ? "the servo writes its flash"
@@ -179,28 +187,32 @@ static void on_missed(sim_strict *s, const grobo_sim_event *event)
 static void on_collision(sim_strict *s, const grobo_sim_event *event)
 {
     bool again = s->collision_us != 0 && event->time_us - s->collision_us < ONE_COLLISION_US;
-    if (event->value == 0 || s->wiring != GROBO_WIRING_BUS)
+    if (event->value == 0 || s->wiring != GROBO_WIRING_BUS) {
         return;
+    }
     s->collision_us = event->time_us;
-    if (!again)
+    if (!again) {
         report(s, "talk", event->time_us, s->last, s->n_last, "it is sent while a servo replies");
+    }
 }
 
 void sim_strict_event(sim_strict *s, const grobo_sim_event *event)
 {
-    if (!s->a)
+    if (!s->a) {
         return;
-    if (event->kind == GROBO_SIM_PACKET)
+    }
+    if (event->kind == GROBO_SIM_PACKET) {
         on_packet(s, event);
-    else if (event->kind == GROBO_SIM_REFUSED)
+    } else if (event->kind == GROBO_SIM_REFUSED) {
         on_refused(s, event);
-    else if (event->kind == GROBO_SIM_MISSED)
+    } else if (event->kind == GROBO_SIM_MISSED) {
         on_missed(s, event);
-    else if (event->kind == GROBO_SIM_COLLISION)
+    } else if (event->kind == GROBO_SIM_COLLISION) {
         on_collision(s, event);
-    else if (event->kind == GROBO_SIM_STALLED)
+    } else if (event->kind == GROBO_SIM_STALLED) {
         report(s, "stall", event->time_us, event->bytes, event->n_bytes,
                "it pauses for more than 10 ms, and the servos forget it");
+    }
 }
 
 /* ---- from begin to end ----------------------------------------------------------------------- */
@@ -215,8 +227,9 @@ void sim_strict_start(sim_strict *s, app *a, int robot, grobo_wiring wiring, int
 
 void sim_strict_bytes(sim_strict *s, int64_t now_us, const uint8_t *bytes, size_t n)
 {
-    if (!s->a)
+    if (!s->a) {
         return;
+    }
     s->n_last = n < sizeof s->last ? n : sizeof s->last;
     memcpy(s->last, bytes, s->n_last);
     frames_feed(&s->host, now_us, bytes, n);
@@ -224,6 +237,7 @@ void sim_strict_bytes(sim_strict *s, int64_t now_us, const uint8_t *bytes, size_
 
 void sim_strict_end(sim_strict *s)
 {
-    if (s->a)
+    if (s->a) {
         frames_end(&s->host);
+    }
 }

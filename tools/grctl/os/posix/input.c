@@ -29,8 +29,9 @@ evutil_socket_t os_input_await(void)
 int os_input_read(void *bytes, size_t capacity)
 {
     ssize_t n = read(STDIN_FILENO, bytes, capacity);
-    if (n > 0)
+    if (n > 0) {
         return (int)n;
+    }
     return n < 0 && (errno == EAGAIN || errno == EINTR) ? 0 : -1;
 }
 
@@ -41,17 +42,20 @@ static void on_readable(evutil_socket_t fd, short what, void *ctx)
     int n = os_input_read(bytes, sizeof bytes);
     (void)fd;
     (void)what;
-    if (n > 0)
+    if (n > 0) {
         input->fn(input->ctx, bytes, (size_t)n);
-    if (n < 0) /* its end, or in the background */
+    }
+    if (n < 0) { /* its end, or in the background */
         event_del(input->readable);
+    }
 }
 
 /* Reading a terminal from the background would stop the process. */
 static bool may_listen(void)
 {
-    if (isatty(STDIN_FILENO))
+    if (isatty(STDIN_FILENO)) {
         return tcgetpgrp(STDIN_FILENO) == getpgrp();
+    }
     return is_stream(STDIN_FILENO);
 }
 
@@ -60,8 +64,9 @@ static void on_resumed(evutil_socket_t number, short what, void *ctx)
     os_input *input = ctx;
     (void)number;
     (void)what;
-    if (may_listen())
+    if (may_listen()) {
         event_add(input->readable, NULL);
+    }
 }
 
 void os_input_start(os_input *input, struct event_base *base, os_input_fn fn, void *ctx)
@@ -70,18 +75,23 @@ void os_input_start(os_input *input, struct event_base *base, os_input_fn fn, vo
     *input = (os_input){.fn = fn, .ctx = ctx};
     input->readable = event_new(base, STDIN_FILENO, EV_READ | EV_PERSIST, on_readable, input);
     input->resumed = evsignal_new(base, SIGCONT, on_resumed, input);
-    if (!input->readable)
+    if (!input->readable) {
         return;
-    if (input->resumed)
+    }
+    if (input->resumed) {
         event_add(input->resumed, NULL);
-    if (may_listen())
+    }
+    if (may_listen()) {
         event_add(input->readable, NULL);
+    }
 }
 
 void os_input_stop(os_input *input)
 {
-    if (input->readable)
+    if (input->readable) {
         event_free(input->readable);
-    if (input->resumed)
+    }
+    if (input->resumed) {
         event_free(input->resumed);
+    }
 }

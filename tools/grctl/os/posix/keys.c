@@ -15,8 +15,9 @@ static bool raw;
 
 static void restore(void)
 {
-    if (raw)
+    if (raw) {
         tcsetattr(STDIN_FILENO, TCSANOW, &before);
+    }
     raw = false;
 }
 
@@ -27,10 +28,10 @@ static bool in_foreground(void)
 
 static bool make_raw(void)
 {
-    struct termios now;
-    if (!in_foreground() || tcgetattr(STDIN_FILENO, &before) < 0)
+    if (!in_foreground() || tcgetattr(STDIN_FILENO, &before) < 0) {
         return false;
-    now = before;
+    }
+    struct termios now = before;
     now.c_lflag &= ~(tcflag_t)(ICANON | ECHO);
     now.c_cc[VMIN] = 1;
     now.c_cc[VTIME] = 0;
@@ -45,12 +46,14 @@ static void on_input(evutil_socket_t fd, short what, void *ctx)
     unsigned char bytes[64];
     ssize_t n = read(fd, bytes, sizeof bytes);
     (void)what;
-    for (ssize_t i = 0; i < n && k->on_key; i++)
+    for (ssize_t i = 0; i < n && k->on_key; i++) {
         k->on_key(k->ctx, bytes[i]);
+    }
     if (n == 0 || (n < 0 && errno != EAGAIN && errno != EINTR)) {
         event_del(k->events[0]);
-        if (k->on_key)
+        if (k->on_key) {
             k->on_key(k->ctx, KEYS_END);
+        }
     }
 }
 
@@ -59,8 +62,9 @@ static void on_continue(evutil_socket_t number, short what, void *ctx)
     (void)number;
     (void)what;
     (void)ctx;
-    if (!raw)
+    if (!raw) {
         make_raw();
+    }
 }
 
 static bool is_pipe(void)
@@ -74,19 +78,23 @@ bool keys_start(keys *k, struct event_base *base, bool pipes, keys_fn on_key, vo
     static bool registered;
     memset(k, 0, sizeof *k);
     if (!(pipes && is_pipe())) {
-        if (!registered && atexit(restore) != 0)
+        if (!registered && atexit(restore) != 0) {
             return false;
+        }
         registered = true;
-        if (!make_raw())
+        if (!make_raw()) {
             return false;
+        }
         k->events[1] = evsignal_new(base, SIGCONT, on_continue, k);
     }
     k->on_key = on_key;
     k->ctx = ctx;
     k->events[0] = event_new(base, STDIN_FILENO, EV_READ | EV_PERSIST, on_input, k);
-    for (int i = 0; i < KEYS_EVENTS; i++)
-        if (k->events[i])
+    for (int i = 0; i < KEYS_EVENTS; i++) {
+        if (k->events[i]) {
             event_add(k->events[i], NULL);
+        }
+    }
     return true;
 }
 
@@ -97,9 +105,11 @@ void keys_pause(void)
 
 void keys_stop(keys *k)
 {
-    for (int i = 0; i < KEYS_EVENTS; i++)
-        if (k->events[i])
+    for (int i = 0; i < KEYS_EVENTS; i++) {
+        if (k->events[i]) {
             event_free(k->events[i]);
+        }
+    }
     memset(k, 0, sizeof *k);
     restore();
 }

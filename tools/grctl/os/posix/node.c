@@ -24,9 +24,11 @@ static const char *user_name(void)
 /* In /etc/group, though perhaps not yet in this log-in. */
 static bool is_member(const struct group *group)
 {
-    for (char **member = group->gr_mem; *member; member++)
-        if (strcmp(*member, user_name()) == 0)
+    for (char **member = group->gr_mem; *member; member++) {
+        if (strcmp(*member, user_name()) == 0) {
             return true;
+        }
+    }
     return false;
 }
 
@@ -34,13 +36,14 @@ static void say_forbidden(const char *device, const struct stat *s, node_found_f
 {
     char fix[FIX_BYTES];
     const struct group *group = getgrgid(s->st_gid);
-    if (!group || (s->st_mode & 060) != 060)
+    if (!group || (s->st_mode & 060) != 060) {
         snprintf(fix, sizeof fix, "sudo chmod a+rw %s", device);
-    else if (is_member(group))
+    } else if (is_member(group)) {
         snprintf(fix, sizeof fix, "log out and in again: you are in %s since", group->gr_name);
-    else
+    } else {
         snprintf(fix, sizeof fix, "sudo usermod -aG %s %s; then log out and in again",
                  group->gr_name, user_name());
+    }
     found(ctx, "permission", fix, "%s belongs to group %s, mode %03o: %s may not open it", device,
           group ? group->gr_name : "?", (unsigned)s->st_mode & 0777, user_name());
 }

@@ -23,9 +23,11 @@ void os_start(void)
 {
     /* Reading from and writing to those filled in fails as with closed ones. */
     static const int wrong_way[] = {O_WRONLY, O_RDONLY, O_RDONLY};
-    for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; fd++)
-        if (fcntl(fd, F_GETFD) < 0 && open("/dev/null", wrong_way[fd]) != fd)
+    for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; fd++) {
+        if (fcntl(fd, F_GETFD) < 0 && open("/dev/null", wrong_way[fd]) != fd) {
             _exit(EXIT_FAILURE);
+        }
+    }
     signal(SIGXFSZ, SIG_IGN); /* a file that may not grow is an error of writing it, not the end */
 }
 
@@ -59,10 +61,11 @@ int os_write(FILE *stream, const void *bytes, size_t size)
     struct pollfd one = {.fd = fileno(stream), .events = POLLOUT};
     while (size > 0) {
         ssize_t n = write(one.fd, from, size);
-        if (n < 0 && errno == EAGAIN) /* by another program that has it too */
+        if (n < 0 && errno == EAGAIN) { /* by another program that has it too */
             poll(&one, 1, -1);
-        else if (n < 0 && errno != EINTR)
+        } else if (n < 0 && errno != EINTR) {
             return errno;
+        }
         from += n > 0 ? n : 0;
         size -= n > 0 ? (size_t)n : 0;
     }
@@ -91,8 +94,9 @@ FILE *os_create(const char *path, bool waits)
     int flags = O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC;
     int fd = open(path, flags | (waits ? 0 : O_NONBLOCK), 0666);
     FILE *file = NULL;
-    if (fd >= 0 && (waits || fcntl(fd, F_SETFL, O_WRONLY) == 0))
+    if (fd >= 0 && (waits || fcntl(fd, F_SETFL, O_WRONLY) == 0)) {
         file = fdopen(fd, "wb");
+    }
     if (fd >= 0 && !file) {
         int cause = errno;
         close(fd);
@@ -111,8 +115,9 @@ char *os_printed(void (*print)(FILE *to))
     char *text = NULL;
     size_t size = 0;
     FILE *memory = open_memstream(&text, &size);
-    if (!memory)
+    if (!memory) {
         return NULL;
+    }
     print(memory);
     return fclose(memory) == 0 ? text : NULL;
 }
@@ -121,21 +126,27 @@ int os_run(const char *const *words, FILE *in, FILE *out)
 {
     posix_spawn_file_actions_t actions;
     pid_t child;
-    int status = -1, error;
-    if (posix_spawn_file_actions_init(&actions) != 0)
+    int status = -1;
+    if (posix_spawn_file_actions_init(&actions) != 0) {
         return -1;
-    error = posix_spawn_file_actions_adddup2(&actions, fileno(in), STDIN_FILENO);
-    if (!error)
+    }
+    int error = posix_spawn_file_actions_adddup2(&actions, fileno(in), STDIN_FILENO);
+    if (!error) {
         error = posix_spawn_file_actions_adddup2(&actions, fileno(out), STDOUT_FILENO);
-    if (!error) /* it does not write to the words */
+    }
+    if (!error) { /* it does not write to the words */
         error =
             posix_spawnp(&child, words[0], &actions, NULL, (char *const *)(intptr_t)words, environ);
+    }
     posix_spawn_file_actions_destroy(&actions);
-    if (error)
+    if (error) {
         return -1;
-    while (waitpid(child, &status, 0) < 0)
-        if (errno != EINTR)
+    }
+    while (waitpid(child, &status, 0) < 0) {
+        if (errno != EINTR) {
             return -1;
+        }
+    }
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128;
 }
 
@@ -149,8 +160,9 @@ const int os_suspension = SIGTSTP;
 void os_catch_endings(void (*handler)(int number))
 {
     struct sigaction action = {.sa_handler = handler};
-    for (int i = 0; i < os_n_endings; i++)
+    for (int i = 0; i < os_n_endings; i++) {
         sigaction(os_endings[i], &action, NULL);
+    }
 }
 
 bool os_is_ignored(int number)
@@ -182,9 +194,9 @@ static int try_lock(os_lock *lock)
 {
     struct stat ours, named;
     int fd = open(lock->path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
-    int cause;
-    if (fd < 0)
+    if (fd < 0) {
         return errno;
+    }
     if (flock(fd, LOCK_EX | LOCK_NB) == 0) {
         if (fstat(fd, &ours) == 0 && lstat(lock->path, &named) == 0 &&
             ours.st_ino == named.st_ino && ours.st_dev == named.st_dev) {
@@ -193,7 +205,7 @@ static int try_lock(os_lock *lock)
         }
         errno = EAGAIN;
     }
-    cause = errno;
+    int cause = errno;
     close(fd);
     return cause == EAGAIN ? EWOULDBLOCK : cause;
 }
@@ -218,21 +230,24 @@ static bool user_path(const char *variable, const char *usual, const char *name,
 {
     const char *folder = getenv(variable), *home = getenv("HOME");
     int n = -1;
-    if (folder && *folder == '/')
+    if (folder && *folder == '/') {
         n = snprintf(path, capacity, "%s/grctl/%s", folder, name);
-    else if (home && *home == '/')
+    } else if (home && *home == '/') {
         n = snprintf(path, capacity, "%s/%s/grctl/%s", home, usual, name);
+    }
     return n > 0 && (size_t)n < capacity;
 }
 
 bool os_state_path(const char *name, char *path, size_t capacity)
 {
-    if (!user_path("XDG_STATE_HOME", ".local/state", name, path, capacity))
+    if (!user_path("XDG_STATE_HOME", ".local/state", name, path, capacity)) {
         return false;
+    }
     for (char *slash = strchr(path + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
         *slash = '\0';
-        if (mkdir(path, 0700) < 0 && errno != EEXIST)
+        if (mkdir(path, 0700) < 0 && errno != EEXIST) {
             return false;
+        }
         *slash = '/';
     }
     return true;
@@ -240,7 +255,8 @@ bool os_state_path(const char *name, char *path, size_t capacity)
 
 bool os_config_path(int which, char *path, size_t capacity)
 {
-    if (which == 0)
+    if (which == 0) {
         return user_path("XDG_CONFIG_HOME", ".config", "config.yaml", path, capacity);
+    }
     return (size_t)snprintf(path, capacity, "/etc/grctl/config.yaml") < capacity;
 }

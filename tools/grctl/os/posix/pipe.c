@@ -34,15 +34,15 @@ static ssize_t read_first(pipe_source *p, void *buffer, size_t size)
 {
     struct pollfd one = {.fd = p->fd, .events = POLLIN};
     ssize_t n = read_some(p->fd, buffer, size);
-    bool silent;
     if (n == 0) {
         (void)poll(&one, 1, WRITER_MS);
         n = read_some(p->fd, buffer, size);
     }
-    silent = n < 0 && errno == EAGAIN;
+    bool silent = n < 0 && errno == EAGAIN;
     p->begun = true;
-    if (fcntl(p->fd, F_SETFL, 0) != 0)
+    if (fcntl(p->fd, F_SETFL, 0) != 0) {
         return -1;
+    }
     return silent ? read_some(p->fd, buffer, size) : n;
 }
 
@@ -59,11 +59,11 @@ int pipe_read(const char *path, const grobo_read_options *options, grobo_diagnos
     pipe_source pipe = {.fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC)};
     grobo_source source = {.read = read_pipe, .ctx = &pipe};
     grobo_read_options named = options ? *options : (grobo_read_options){0};
-    int result;
-    if (pipe.fd < 0)
+    if (pipe.fd < 0) {
         return errno == EACCES ? GROBO_ERR_PERM : GROBO_ERR_IO;
+    }
     named.name = path;
-    result = grobo_motion_read(&source, &named, list, motion);
+    int result = grobo_motion_read(&source, &named, list, motion);
     (void)close(pipe.fd);
     return result;
 }

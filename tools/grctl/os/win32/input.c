@@ -5,9 +5,7 @@
  * questions it leaves a console to others.
  */
 #include <winsock2.h>
-
 #include <windows.h>
-
 #include <io.h>
 #include <process.h>
 
@@ -33,11 +31,13 @@ static unsigned __stdcall pump(void *arg)
         SetLastError(ERROR_SUCCESS);
         /* Ctrl-C ends a read of a console without its being the end of it. */
         if (!ReadFile(in, bytes, sizeof bytes, &n, NULL) ||
-            (n == 0 && GetLastError() != ERROR_OPERATION_ABORTED))
+            (n == 0 && GetLastError() != ERROR_OPERATION_ABORTED)) {
             break;
+        }
         InterlockedExchange(&stdin_pump.reading, 0);
-        if (n > 0 && send((SOCKET)stdin_pump.far_end, bytes, (int)n, 0) < 0)
+        if (n > 0 && send((SOCKET)stdin_pump.far_end, bytes, (int)n, 0) < 0) {
             break;
+        }
     }
     shutdown((SOCKET)stdin_pump.far_end, SD_SEND);
     return 0;
@@ -48,13 +48,15 @@ static bool start(void)
 {
     evutil_socket_t pair[2];
     uintptr_t thread = 0;
-    if (evutil_socketpair(AF_INET, SOCK_STREAM, 0, pair) != 0)
+    if (evutil_socketpair(AF_INET, SOCK_STREAM, 0, pair) != 0) {
         return false;
+    }
     stdin_pump.near_end = pair[0];
     stdin_pump.far_end = pair[1];
     stdin_pump.wanted = CreateEventA(NULL, FALSE, FALSE, NULL);
-    if (stdin_pump.wanted && evutil_make_socket_nonblocking(pair[0]) == 0)
+    if (stdin_pump.wanted && evutil_make_socket_nonblocking(pair[0]) == 0) {
         thread = _beginthreadex(NULL, 0, pump, NULL, 0, NULL);
+    }
     if (thread) {
         CloseHandle((HANDLE)thread);
         return true;
@@ -73,19 +75,22 @@ bool os_input_take(FILE *from)
 evutil_socket_t os_input_await(void)
 {
     u_long there = 0;
-    if (!stdin_pump.started && !(stdin_pump.started = start()))
+    if (!stdin_pump.started && !(stdin_pump.started = start())) {
         return EVUTIL_INVALID_SOCKET;
+    }
     if (ioctlsocket((SOCKET)stdin_pump.near_end, (long)FIONREAD, &there) == 0 && there == 0 &&
-        InterlockedCompareExchange(&stdin_pump.reading, 1, 0) == 0)
+        InterlockedCompareExchange(&stdin_pump.reading, 1, 0) == 0) {
         SetEvent(stdin_pump.wanted);
+    }
     return stdin_pump.near_end;
 }
 
 int os_input_read(void *bytes, size_t capacity)
 {
     int n = recv((SOCKET)stdin_pump.near_end, bytes, (int)capacity, 0);
-    if (n > 0)
+    if (n > 0) {
         return n;
+    }
     return n < 0 && WSAGetLastError() == WSAEWOULDBLOCK ? 0 : -1;
 }
 
@@ -96,12 +101,14 @@ static void on_readable(evutil_socket_t fd, short what, void *ctx)
     int n = os_input_read(bytes, sizeof bytes);
     (void)fd;
     (void)what;
-    if (n > 0)
+    if (n > 0) {
         input->fn(input->ctx, bytes, (size_t)n);
-    if (n < 0)
+    }
+    if (n < 0) {
         event_del(input->readable);
-    else
+    } else {
         os_input_await();
+    }
 }
 
 /* A file has all its bytes at once, which is not how somebody speaks. */
@@ -115,15 +122,18 @@ static bool may_listen(void)
 void os_input_start(os_input *input, struct event_base *base, os_input_fn fn, void *ctx)
 {
     *input = (os_input){.fn = fn, .ctx = ctx};
-    if (!may_listen())
+    if (!may_listen()) {
         return;
+    }
     input->readable = event_new(base, os_input_await(), EV_READ | EV_PERSIST, on_readable, input);
-    if (input->readable)
+    if (input->readable) {
         event_add(input->readable, NULL);
+    }
 }
 
 void os_input_stop(os_input *input)
 {
-    if (input->readable)
+    if (input->readable) {
         event_free(input->readable);
+    }
 }

@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Single keys of a console: a thread takes its events and sends characters through a pair. */
 #include <winsock2.h>
-
 #include <windows.h>
-
 #include <process.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,8 +19,9 @@ static struct {
 
 static void restore(void)
 {
-    if (console.raw)
+    if (console.raw) {
         SetConsoleMode(console.in, console.before);
+    }
     console.raw = false;
 }
 
@@ -30,8 +29,9 @@ static void restore(void)
 static bool make_raw(void)
 {
     console.in = GetStdHandle(STD_INPUT_HANDLE);
-    if (!GetConsoleMode(console.in, &console.before))
+    if (!GetConsoleMode(console.in, &console.before)) {
         return false;
+    }
     console.raw =
         SetConsoleMode(console.in, ENABLE_PROCESSED_INPUT | ENABLE_VIRTUAL_TERMINAL_INPUT) ||
         SetConsoleMode(console.in, ENABLE_PROCESSED_INPUT);
@@ -46,18 +46,21 @@ static unsigned __stdcall listen_to_keys(void *arg)
         INPUT_RECORD record;
         DWORD n = 0;
         const KEY_EVENT_RECORD *key = &record.Event.KeyEvent;
-        if (!ReadConsoleInputA(console.in, &record, 1, &n))
+        if (!ReadConsoleInputA(console.in, &record, 1, &n)) {
             break;
-        if (n == 1 && record.EventType == KEY_EVENT && key->bKeyDown && key->uChar.AsciiChar)
+        }
+        if (n == 1 && record.EventType == KEY_EVENT && key->bKeyDown && key->uChar.AsciiChar) {
             send((SOCKET)console.far_end, &key->uChar.AsciiChar, 1, 0);
+        }
     }
     return 0;
 }
 
 static void stop_listening(void)
 {
-    if (!console.thread)
+    if (!console.thread) {
         return;
+    }
     SetEvent(console.stop);
     WaitForSingleObject(console.thread, INFINITE);
     CloseHandle(console.thread);
@@ -70,17 +73,21 @@ static void stop_listening(void)
 static bool listen_to_console(void)
 {
     evutil_socket_t pair[2];
-    if (evutil_socketpair(AF_INET, SOCK_STREAM, 0, pair) != 0)
+    if (evutil_socketpair(AF_INET, SOCK_STREAM, 0, pair) != 0) {
         return false;
+    }
     console.near_end = pair[0];
     console.far_end = pair[1];
     console.stop = CreateEventA(NULL, TRUE, FALSE, NULL);
-    if (console.stop && evutil_make_socket_nonblocking(pair[0]) == 0)
+    if (console.stop && evutil_make_socket_nonblocking(pair[0]) == 0) {
         console.thread = (HANDLE)_beginthreadex(NULL, 0, listen_to_keys, NULL, 0, NULL);
-    if (console.thread)
+    }
+    if (console.thread) {
         return true;
-    if (console.stop)
+    }
+    if (console.stop) {
         CloseHandle(console.stop);
+    }
     evutil_closesocket(pair[0]);
     evutil_closesocket(pair[1]);
     return false;
@@ -93,17 +100,20 @@ static void on_input(evutil_socket_t fd, short what, void *ctx)
     int n = console.thread ? recv((SOCKET)fd, (char *)bytes, sizeof bytes, 0)
                            : os_input_read(bytes, sizeof bytes);
     (void)what;
-    for (int i = 0; i < n && k->on_key; i++)
+    for (int i = 0; i < n && k->on_key; i++) {
         k->on_key(k->ctx, bytes[i]);
-    if (console.thread)
+    }
+    if (console.thread) {
         return;
+    }
     if (n >= 0) {
         os_input_await();
         return;
     }
     event_del(k->events[0]);
-    if (k->on_key)
+    if (k->on_key) {
         k->on_key(k->ctx, KEYS_END);
+    }
 }
 
 bool keys_start(keys *k, struct event_base *base, bool pipes, keys_fn on_key, void *ctx)
@@ -112,11 +122,13 @@ bool keys_start(keys *k, struct event_base *base, bool pipes, keys_fn on_key, vo
     bool pipe = pipes && GetFileType(GetStdHandle(STD_INPUT_HANDLE)) == FILE_TYPE_PIPE;
     memset(k, 0, sizeof *k);
     if (!pipe) {
-        if (!registered && atexit(restore) != 0)
+        if (!registered && atexit(restore) != 0) {
             return false;
+        }
         registered = true;
-        if (!make_raw())
+        if (!make_raw()) {
             return false;
+        }
         if (!listen_to_console()) {
             restore();
             return false;
@@ -126,8 +138,9 @@ bool keys_start(keys *k, struct event_base *base, bool pipes, keys_fn on_key, vo
     k->ctx = ctx;
     k->events[0] = event_new(base, pipe ? os_input_await() : console.near_end, EV_READ | EV_PERSIST,
                              on_input, k);
-    if (k->events[0])
+    if (k->events[0]) {
         event_add(k->events[0], NULL);
+    }
     return true;
 }
 
@@ -137,8 +150,9 @@ void keys_pause(void)
 
 void keys_stop(keys *k)
 {
-    if (k->events[0])
+    if (k->events[0]) {
         event_free(k->events[0]);
+    }
     memset(k, 0, sizeof *k);
     stop_listening();
     restore();

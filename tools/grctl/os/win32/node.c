@@ -14,8 +14,9 @@ bool node_look(const char *device, node_found_fn found, void *ctx)
     grobo_port *port = malloc(ops->size_bytes);
     grobo_os_cause cause = {0};
     int error = port ? ops->open(port, device, GROBO_BAUD_DEFAULT_BPS, &cause) : GROBO_ERR_NOMEM;
-    if (!error)
+    if (!error) {
         ops->close(port);
+    }
     free(port);
     if (error == GROBO_ERR_NOENT) {
         found(ctx, "device", "plug the robot's cable in; 'grctl ports' lists what there is",

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include <windows.h>
-
 #include <errno.h>
 #include <fcntl.h>
 #include <io.h>
@@ -27,8 +26,9 @@ static HANDLE handle_of(FILE *stream)
 static void understand_escapes(FILE *stream)
 {
     DWORD mode;
-    if (GetConsoleMode(handle_of(stream), &mode))
+    if (GetConsoleMode(handle_of(stream), &mode)) {
         SetConsoleMode(handle_of(stream), mode | ENABLE_VIRTUAL_TERMINAL_PROCESSING);
+    }
 }
 
 static void end_tick(void)
@@ -40,8 +40,9 @@ void os_start(void)
 {
     FILE *streams[] = {stdin, stdout, stderr};
     for (int i = 0; i < 3; i++) {
-        if (_fileno(streams[i]) < 0 && !freopen("NUL", i == 0 ? "r" : "w", streams[i]))
+        if (_fileno(streams[i]) < 0 && !freopen("NUL", i == 0 ? "r" : "w", streams[i])) {
             exit(EXIT_FAILURE);
+        }
         _setmode(_fileno(streams[i]), _O_BINARY);
     }
     SetConsoleOutputCP(CP_UTF8);
@@ -54,8 +55,9 @@ void os_start(void)
     setvbuf(stdout, NULL, _IOFBF, BUFSIZ);
     setvbuf(stderr, NULL, _IOFBF, BUFSIZ);
     /* Also for a robot in the same process, where no port asks for it. */
-    if (timeBeginPeriod(1) == TIMERR_NOERROR)
+    if (timeBeginPeriod(1) == TIMERR_NOERROR) {
         atexit(end_tick);
+    }
 }
 
 bool os_is_terminal(FILE *stream)
@@ -73,8 +75,9 @@ int os_write_cause(FILE *stream, int cause)
 int os_columns(FILE *stream)
 {
     CONSOLE_SCREEN_BUFFER_INFO info;
-    if (!GetConsoleScreenBufferInfo(handle_of(stream), &info))
+    if (!GetConsoleScreenBufferInfo(handle_of(stream), &info)) {
         return 80;
+    }
     return info.srWindow.Right - info.srWindow.Left + 1;
 }
 
@@ -87,21 +90,21 @@ bool os_shows_utf8(void)
 FILE *os_temporary(void)
 {
     char folder[MAX_PATH], path[MAX_PATH];
-    HANDLE made;
-    FILE *file;
-    int fd;
-    if (!GetTempPathA(sizeof folder, folder) || !GetTempFileNameA(folder, "grc", 0, path))
+    if (!GetTempPathA(sizeof folder, folder) || !GetTempFileNameA(folder, "grc", 0, path)) {
         return NULL;
-    made = CreateFileA(path, GENERIC_READ | GENERIC_WRITE | DELETE, 0, NULL, CREATE_ALWAYS,
-                       FILE_ATTRIBUTE_TEMPORARY | FILE_FLAG_DELETE_ON_CLOSE, NULL);
-    if (made == INVALID_HANDLE_VALUE)
+    }
+    HANDLE made = CreateFileA(path, GENERIC_READ | GENERIC_WRITE | DELETE, 0, NULL, CREATE_ALWAYS,
+                              FILE_ATTRIBUTE_TEMPORARY | FILE_FLAG_DELETE_ON_CLOSE, NULL);
+    if (made == INVALID_HANDLE_VALUE) {
         return NULL;
-    fd = _open_osfhandle((intptr_t)made, _O_RDWR | _O_BINARY);
-    file = fd < 0 ? NULL : _fdopen(fd, "w+b");
-    if (!file && fd >= 0)
+    }
+    int fd = _open_osfhandle((intptr_t)made, _O_RDWR | _O_BINARY);
+    FILE *file = fd < 0 ? NULL : _fdopen(fd, "w+b");
+    if (!file && fd >= 0) {
         _close(fd);
-    else if (!file)
+    } else if (!file) {
         CloseHandle(made);
+    }
     return file;
 }
 
@@ -110,14 +113,17 @@ char *os_printed(void (*print)(FILE *to))
     FILE *file = os_temporary();
     char *text = NULL;
     long size = -1;
-    if (!file)
+    if (!file) {
         return NULL;
+    }
     print(file);
-    if (fseek(file, 0, SEEK_END) == 0)
+    if (fseek(file, 0, SEEK_END) == 0) {
         size = ftell(file);
+    }
     rewind(file);
-    if (size >= 0)
+    if (size >= 0) {
         text = calloc(1, (size_t)size + 1);
+    }
     if (text && fread(text, 1, (size_t)size, file) != (size_t)size) {
         free(text);
         text = NULL;
@@ -132,8 +138,9 @@ char *os_printed(void (*print)(FILE *to))
 static bool join_words(const char *const *words, char *line, size_t capacity)
 {
     size_t used = 0;
-    for (int i = 0; words[i] && used < capacity; i++)
+    for (int i = 0; words[i] && used < capacity; i++) {
         used += (size_t)snprintf(line + used, capacity - used, "%s\"%s\"", i ? " " : "", words[i]);
+    }
     return used < capacity;
 }
 
@@ -141,8 +148,9 @@ static bool join_words(const char *const *words, char *line, size_t capacity)
 static HANDLE lend(FILE *stream)
 {
     HANDLE lent = NULL, self = GetCurrentProcess();
-    if (!DuplicateHandle(self, handle_of(stream), self, &lent, 0, TRUE, DUPLICATE_SAME_ACCESS))
+    if (!DuplicateHandle(self, handle_of(stream), self, &lent, 0, TRUE, DUPLICATE_SAME_ACCESS)) {
         return NULL;
+    }
     return lent;
 }
 
@@ -156,8 +164,9 @@ int os_run(const char *const *words, FILE *in, FILE *out)
     start.hStdInput = lend(in);
     start.hStdOutput = lend(out);
     start.hStdError = handle_of(stderr);
-    if (start.hStdInput && start.hStdOutput && join_words(words, line, sizeof line))
+    if (start.hStdInput && start.hStdOutput && join_words(words, line, sizeof line)) {
         begun = CreateProcessA(NULL, line, NULL, NULL, TRUE, 0, NULL, NULL, &start, &child);
+    }
     if (begun) {
         WaitForSingleObject(child.hProcess, INFINITE);
         GetExitCodeProcess(child.hProcess, &status);
@@ -212,8 +221,9 @@ int os_write(FILE *stream, const void *bytes, size_t size)
     const char *from = bytes;
     while (size > 0) {
         int n = _write(_fileno(stream), from, (unsigned)size);
-        if (n <= 0)
+        if (n <= 0) {
             return n < 0 ? errno : EIO;
+        }
         from += n;
         size -= (size_t)n;
     }
@@ -238,8 +248,9 @@ const char *os_own_program(const char *argv0)
 void os_take_signals(void)
 {
     static bool taken;
-    if (!taken)
+    if (!taken) {
         taken = SetConsoleCtrlHandler(on_console, TRUE);
+    }
 }
 
 /* The C library takes a handler back when it calls it. */
@@ -253,8 +264,9 @@ void os_catch_endings(void (*handler)(int number))
 {
     on_ending = handler;
     os_take_signals();
-    for (int i = 0; i < os_n_endings; i++)
+    for (int i = 0; i < os_n_endings; i++) {
         signal(os_endings[i], again);
+    }
 }
 
 bool os_is_ignored(int number)
@@ -275,12 +287,12 @@ int os_lock_file(os_lock *lock, const char *path)
 {
     char full[MAX_PATH];
     DWORD size = GetFullPathNameA(path, sizeof full, full, NULL);
-    HANDLE handle;
-    if (size == 0 || size >= sizeof full)
+    if (size == 0 || size >= sizeof full) {
         return ENAMETOOLONG;
+    }
     snprintf(lock->path, sizeof lock->path, "%s.lock", full);
-    handle = CreateFileA(lock->path, GENERIC_WRITE, 0, NULL, OPEN_ALWAYS,
-                         FILE_ATTRIBUTE_NORMAL | FILE_FLAG_DELETE_ON_CLOSE, NULL);
+    HANDLE handle = CreateFileA(lock->path, GENERIC_WRITE, 0, NULL, OPEN_ALWAYS,
+                                FILE_ATTRIBUTE_NORMAL | FILE_FLAG_DELETE_ON_CLOSE, NULL);
     if (handle == INVALID_HANDLE_VALUE) {
         switch (GetLastError()) {
         case ERROR_SHARING_VIOLATION:
@@ -310,13 +322,14 @@ static bool known_folder(int which, char *path)
 bool os_state_path(const char *name, char *path, size_t capacity)
 {
     char folder[MAX_PATH];
-    int n;
-    if (!known_folder(CSIDL_LOCAL_APPDATA, folder))
+    if (!known_folder(CSIDL_LOCAL_APPDATA, folder)) {
         return false;
-    n = snprintf(path, capacity, "%s\\grctl", folder);
+    }
+    int n = snprintf(path, capacity, "%s\\grctl", folder);
     if (n < 0 || (size_t)n >= capacity ||
-        (!CreateDirectoryA(path, NULL) && GetLastError() != ERROR_ALREADY_EXISTS))
+        (!CreateDirectoryA(path, NULL) && GetLastError() != ERROR_ALREADY_EXISTS)) {
         return false;
+    }
     n = snprintf(path, capacity, "%s\\grctl\\%s", folder, name);
     return n > 0 && (size_t)n < capacity;
 }
@@ -326,11 +339,12 @@ bool os_config_path(int which, char *path, size_t capacity)
     const char *config = getenv("XDG_CONFIG_HOME"); /* of a shell that came from elsewhere */
     char folder[MAX_PATH];
     int n;
-    if (which == 0 && config && *config)
+    if (which == 0 && config && *config) {
         n = snprintf(path, capacity, "%s/grctl/config.yaml", config);
-    else if (known_folder(which == 1 ? CSIDL_COMMON_APPDATA : CSIDL_APPDATA, folder))
+    } else if (known_folder(which == 1 ? CSIDL_COMMON_APPDATA : CSIDL_APPDATA, folder)) {
         n = snprintf(path, capacity, "%s\\grctl\\config.yaml", folder);
-    else
+    } else {
         return false;
+    }
     return n > 0 && (size_t)n < capacity;
 }
