@@ -131,6 +131,8 @@ int conn_wait_until(conn *c, bool (*done)(conn *c))
             return GROBO_ERR_IO;
         }
     }
+    /* The engine may know what its events have not told yet: a stop that came by a key, say. */
+    (void)event_base_loop(c->base, EVLOOP_NONBLOCK);
     return GROBO_OK;
 }
 
