@@ -1,0 +1,1214 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The gate, frame by frame: what each deed is refused for, what its frame says, and what is noted
+ * of which joint when it leaves. Of each joint all is compared, so that nothing is noted beside it.
+ * Every joint has its own speed, and there are as many as there may be.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <math.h>
+#include <string.h>
+
+#include <grobo/board.h>
+
+#include "src/robot/robot.h"
+#include "tests/support/many_joints.h"
+#include "tests/support/rig.h"
+
+#define RAD(deg) ((deg)*0.017453292519943295)
+
+enum { N = GROBO_JOINTS_MAX, NUMBER = 7, MS = 1000, S = 1000000 };
+static const int64_t NOW = 50 * S;
+
+static grobo_joint joints[N];
+static grobo_model model;
+static grobo_driver driver;
+static grobo_robot robot;
+static grobo_robot_axis before[N];
+static grobo_robot_slot *slot;
+
+/* ---- a robot in a known state ---------------------------------------------------------------- */
+
+static double here_rad(int joint)
+{
+    return RAD(joint - 20);
+}
+
+/* 100 degrees a second and more. */
+static double speed_dps(int joint)
+{
+    return 100 + 5 * joint;
+}
+
+static int other_of(int joint)
+{
+    return (joint * 7 + 3) % N == joint ? (joint + 1) % N : (joint * 7 + 3) % N;
+}
+
+static int third_of(int joint)
+{
+    return (joint + 5) % N == other_of(joint) ? (joint + 6) % N : (joint + 5) % N;
+}
+
+static void make_driver(void)
+{
+    driver = *many_joints(rig_wiring, N);
+    model = *driver.model;
+    for (int j = 0; j < N; j++) {
+        joints[j] = model.joints[j];
+        joints[j].min_rad = -RAD(70 + j);
+        joints[j].max_rad = RAD(70 + j);
+        joints[j].init_rad = 0;
+        joints[j].max_speed_rad_s = RAD(speed_dps(j));
+    }
+    model.joints = joints;
+    driver.model = &model;
+}
+
+/* All joints hold, were sent to where they are, and all that may be set is set otherwise than a
+ * frame that leaves would set it. */
+static void start_with(const grobo_robot_config *config)
+{
+    make_driver();
+    assert_int_equal(grobo_robot_init(&robot, &driver, NULL, config, NOW), GROBO_OK);
+    grobo_robot_link_up(&robot, NOW);
+    robot.soft = false;
+    robot.played_joints = GROBO_JOINTS_ALL(N);
+    for (int j = 0; j < N; j++) {
+        grobo_robot_axis *axis = &robot.axes[j];
+        axis->state = (grobo_joint_state){.angle_rad = here_rad(j),
+                                          .goal_rad = here_rad(j),
+                                          .valid = 0xFF,
+                                          .torque = GROBO_TORQUE_ON};
+        axis->way = (grobo_robot_way){here_rad(j), here_rad(j), NOW - 20, NOW - 10};
+        axis->angle_us = axis->full_us = axis->goal_us = NOW - 5;
+        axis->own_until_us = NOW - 3;
+        axis->told_us = axis->told_to_us = NOW - 7;
+        axis->last = 3;
+        axis->sensed = axis->has_target = axis->torque_known = true;
+        axis->wants_torque = axis->held = true;
+    }
+    slot = NULL;
+}
+
+static void start(void)
+{
+    start_with(NULL);
+}
+
+static void make_limp(int joint)
+{
+    robot.axes[joint].state.torque = GROBO_TORQUE_OFF;
+    robot.axes[joint].wants_torque = false;
+}
+
+static void latch(grobo_trip reason)
+{
+    robot.trip = (grobo_trip_info){.trip = reason, .joint = -1, .latched = true};
+}
+
+static grobo_joint_mask bits(int joint, int other)
+{
+    return GROBO_JOINT_BIT(joint) | GROBO_JOINT_BIT(other);
+}
+
+/* A target waits for this joint: so many degrees from where it is. */
+static void await(int joint, double way_deg, int64_t time_us)
+{
+    grobo_robot_axis *axis = &robot.axes[joint];
+    axis->next = NUMBER;
+    axis->next_rad = here_rad(joint) + RAD(way_deg);
+    axis->next_time_us = time_us;
+}
+
+/* The joint moves at 10 degrees a second, and has been for a second. */
+static void set_going(int joint)
+{
+    robot.axes[joint].way =
+        (grobo_robot_way){here_rad(joint), here_rad(joint) + RAD(20), NOW - S, NOW + S};
+}
+
+/* A slot with this order; what its exchange holds is of no frame. */
+static void take(grobo_robot_order order)
+{
+    slot = grobo_i_slot_take(&robot, GROBO_I_USE_PLAIN);
+    assert_non_null(slot);
+    slot->order = order;
+    slot->txn.sent_us = -1;
+    memset(&slot->exchange, 0xA5, sizeof slot->exchange);
+    memcpy(before, robot.axes, sizeof before);
+}
+
+static int leave(grobo_robot_order order)
+{
+    take(order);
+    return grobo_i_gate_leave(slot);
+}
+
+static void drop(void)
+{
+    grobo_i_slot_drop(slot);
+}
+
+/* ---- comparing ------------------------------------------------------------------------------- */
+
+#define SAME(field)                                                                                \
+    if (is->field != be->field) {                                                                  \
+        fail_msg("joint %d: " #field " is %.9g, not %.9g", joint, (double)is->field,               \
+                 (double)be->field);                                                               \
+    }
+
+static void expect_axis(int joint, const grobo_robot_axis *be)
+{
+    const grobo_robot_axis *is = &robot.axes[joint];
+    SAME(state.angle_rad)
+    SAME(state.goal_rad)
+    SAME(state.torque)
+    SAME(goal_us)
+    SAME(own_until_us)
+    SAME(angle_us)
+    SAME(told_us)
+    SAME(way.from_rad)
+    SAME(way.to_rad)
+    SAME(way.from_us)
+    SAME(way.to_us)
+    SAME(last)
+    SAME(next)
+    SAME(next_rad)
+    SAME(next_time_us)
+    SAME(told_to_us)
+    SAME(in_segments)
+    SAME(sensed)
+    SAME(has_target)
+    SAME(torque_known)
+    SAME(wants_torque)
+    SAME(held)
+    SAME(off_way)
+    SAME(adrift)
+}
+
+/* Those of the mask are as in `before`, which the test has changed to what they should be. */
+static void expect_axes(void)
+{
+    for (int j = 0; j < N; j++) {
+        expect_axis(j, &before[j]);
+    }
+}
+
+/* The frame that leaves is this packet. */
+static void expect_packet(const uint8_t *packet, int size)
+{
+    grobo_exchange be = {0};
+    assert_true(size > 0);
+    int n = grobo_frame_wrap(driver.protocol, packet, (size_t)size, be.frame, sizeof be.frame);
+    assert_int_equal(slot->exchange.frame_bytes, n);
+    assert_memory_equal(slot->exchange.frame, be.frame, (size_t)n);
+    assert_int_equal(driver.protocol->reply_to(be.frame, (size_t)n, &be.reply), 0);
+    assert_int_equal(slot->exchange.reply.kind, be.reply.kind);
+    assert_int_equal(slot->exchange.settle_us, 0);
+}
+
+/* Of one joint or two, in the order of motors. */
+static void expect_goals(grobo_joint_mask of, double way_deg, int64_t time_us)
+{
+    uint8_t packet[GROBO_RS30X_PACKET_MAX_BYTES];
+    grobo_rs30x_goal goals[N];
+    size_t n = 0;
+    for (int j = 0; j < N; j++) {
+        if ((of & GROBO_JOINT_BIT(j)) != 0) {
+            goals[n++] =
+                (grobo_rs30x_goal){(uint8_t)(j + 1), (int16_t)lround((j - 20 + way_deg) * 10),
+                                   (uint16_t)(time_us / 10000)};
+        }
+    }
+    int size = n == 1 ? grobo_rs30x_write_goal(goals, packet, sizeof packet)
+                      : grobo_rs30x_write_goals(goals, n, packet, sizeof packet);
+    expect_packet(packet, size);
+}
+
+static void expect_torque(int joint, grobo_torque torque)
+{
+    uint8_t packet[GROBO_RS30X_PACKET_MAX_BYTES];
+    expect_packet(packet,
+                  grobo_rs30x_write_u8((uint8_t)(joint + 1), GROBO_RS30X_WANT_NOTHING,
+                                       GROBO_RS30X_TORQUE, (uint8_t)torque, packet, sizeof packet));
+}
+
+static void expect_equal(double is, double be, const char *what)
+{
+    if (!(fabs(is - be) < 1e-9)) {
+        fail_msg("%s is %.9g, not %.9g", what, is, be);
+    }
+}
+
+/* ---- what is noted --------------------------------------------------------------------------- */
+
+static void note_goal(int joint, double way_deg, int64_t time_us)
+{
+    grobo_robot_axis *axis = &before[joint];
+    axis->way =
+        (grobo_robot_way){here_rad(joint), here_rad(joint) + RAD(way_deg), NOW, NOW + time_us};
+    axis->own_until_us = 0;
+    axis->has_target = true;
+    axis->adrift = axis->held = axis->in_segments = axis->off_way = false;
+    axis->told_us = NOW;
+    axis->last = NUMBER;
+    axis->next = 0;
+}
+
+static void a_goal_is_noted_of_its_joints_alone(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        for (int played = 0; played < 2; played++) {
+            start();
+            const grobo_joint_mask both = bits(j, other_of(j));
+            const grobo_robot_order order = {
+                .joints = both, .number = NUMBER, .deed = GROBO_I_DEED_GOAL, .each = true};
+            robot.played_joints = played ? GROBO_JOINT_BIT(third_of(j)) : GROBO_JOINTS_ALL(N);
+            robot.axes[j].off_way = true; /* it stands where it was read */
+            robot.axes[j].way.to_rad += RAD(30);
+            robot.axes[j].has_target = false;
+            await(j, 5, 2 * S);
+            await(other_of(j), 5, 2 * S);
+            await(third_of(j), 5, 2 * S); /* its frame is another one */
+            take(order);
+            slot->due_us = played ? NOW : GROBO_NEVER_US;
+            assert_int_equal(grobo_i_gate_leave(slot), GROBO_OK);
+            expect_goals(both, 5, 2 * S);
+            note_goal(j, 5, 2 * S);
+            note_goal(other_of(j), 5, 2 * S);
+            expect_axes();
+            assert_true(robot.played_joints == (played ? both | GROBO_JOINT_BIT(third_of(j))
+                                                       : GROBO_JOINTS_ALL(N) & ~both));
+            drop();
+        }
+    }
+}
+
+static void a_halt_is_noted_of_what_moves(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        start();
+        set_going(j);
+        take((grobo_robot_order){.joints = GROBO_JOINTS_ALL(N),
+                                 .asked_us = NOW - 10 * MS,
+                                 .deed = GROBO_I_DEED_HALT,
+                                 .each = true,
+                                 .stops = true});
+        assert_int_equal(grobo_i_gate_leave(slot), GROBO_OK);
+        for (int k = 0; k < N; k++) {
+            before[k].told_us = NOW;
+            before[k].last = 0;
+        }
+        /* 50 ms after it was asked for: 10.4 degrees on the way. */
+        note_goal(j, 0, 100 * MS);
+        before[j].way.from_rad = here_rad(j) + RAD(10);
+        before[j].way.to_rad = robot.axes[j].way.to_rad;
+        before[j].last = 0;
+        expect_equal(robot.axes[j].way.to_rad, here_rad(j) + RAD(10.4), "where it stops");
+        expect_equal(robot.axes[j].way.from_rad, here_rad(j) + RAD(10), "from where");
+        before[j].way.from_rad = robot.axes[j].way.from_rad;
+        expect_axes();
+        expect_goals(GROBO_JOINT_BIT(j), 10.4, 100 * MS);
+        assert_true(robot.played_joints == (GROBO_JOINTS_ALL(N) & ~GROBO_JOINT_BIT(j)));
+        drop();
+    }
+}
+
+static void a_hold_is_noted_of_its_joints_alone(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        start();
+        make_limp(j);
+        make_limp(other_of(j));
+        set_going(j);
+        robot.axes[j].in_segments = robot.axes[other_of(j)].off_way = true;
+        assert_int_equal(leave((grobo_robot_order){.joints = bits(j, other_of(j)),
+                                                   .deed = GROBO_I_DEED_HOLD,
+                                                   .each = true}),
+                         GROBO_OK);
+        expect_goals(bits(j, other_of(j)), 0, driver.time_step_us);
+        for (int i = 0; i < 2; i++) {
+            int k = i == 0 ? j : other_of(j);
+            before[k].way = (grobo_robot_way){here_rad(k), here_rad(k), NOW, NOW};
+            before[k].in_segments = before[k].off_way = false;
+            before[k].own_until_us = 0;
+            before[k].held = before[k].has_target = false;
+            before[k].told_us = NOW;
+            before[k].last = 0;
+        }
+        expect_axes();
+        assert_true(robot.played_joints == GROBO_JOINTS_ALL(N));
+        drop();
+    }
+}
+
+static void torque_is_noted_of_its_joints_alone(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        for (int mode = GROBO_TORQUE_OFF; mode <= GROBO_TORQUE_BRAKE; mode++) {
+            for (int limp = 0; limp < 2; limp++) {
+                bool on = mode == GROBO_TORQUE_ON;
+                start();
+                if (limp) {
+                    make_limp(j);
+                }
+                assert_int_equal(leave((grobo_robot_order){.joints = GROBO_JOINT_BIT(j),
+                                                           .asked_us = NOW,
+                                                           .deed = GROBO_I_DEED_TORQUE,
+                                                           .torque = (uint8_t)mode}),
+                                 GROBO_OK);
+                expect_torque(j, (grobo_torque)mode);
+                before[j].told_us = NOW;
+                before[j].last = 0;
+                before[j].torque_known = on && !limp;
+                if (!on) {
+                    before[j].wants_torque = before[j].held = before[j].has_target = false;
+                }
+                expect_axes();
+                assert_int_equal(robot.soft, on && limp); /* a hand may have moved it */
+                assert_true(!robot.soft || robot.soft_us == GROBO_NEVER_US);
+                drop();
+            }
+        }
+    }
+}
+
+/* What nobody can read, a setting, a restart: what is known of the joint is no longer true. */
+static void what_leaves_joints_unknown_is_noted_of_them_alone(void **state)
+{
+    (void)state;
+    static const grobo_i_deed deeds[] = {GROBO_I_DEED_UNKNOWN, GROBO_I_DEED_SETTING,
+                                         GROBO_I_DEED_COMMAND};
+    for (int j = 0; j < N; j++) {
+        for (int i = 0; i < 3; i++) {
+            start();
+            if (deeds[i] == GROBO_I_DEED_SETTING) {
+                robot.axes[j].state.torque = GROBO_TORQUE_OFF;
+                robot.axes[other_of(j)].state.torque = GROBO_TORQUE_OFF;
+            }
+            assert_int_equal(leave((grobo_robot_order){.joints = bits(j, other_of(j)),
+                                                       .deed = (uint8_t)deeds[i]}),
+                             GROBO_OK);
+            for (int k = 0; k < N; k++) {
+                if (k == j || k == other_of(j)) {
+                    before[k].sensed = before[k].has_target = before[k].held = false;
+                    before[k].wants_torque = before[k].torque_known =
+                        deeds[i] == GROBO_I_DEED_UNKNOWN;
+                    before[k].own_until_us = 0;
+                    before[k].told_us = NOW;
+                    before[k].last = 0;
+                }
+            }
+            expect_axes();
+            assert_true(robot.soft && robot.soft_us == GROBO_NEVER_US);
+            drop();
+        }
+    }
+}
+
+/* Nor does it make known what was not: wanted or not, known or not. */
+static void what_is_unknown_already_stays_so(void **state)
+{
+    (void)state;
+    start();
+    for (int j = 0; j < N; j++) {
+        robot.axes[j].wants_torque = j % 2 != 0;
+        robot.axes[j].torque_known = j % 3 != 0;
+    }
+    assert_int_equal(
+        leave((grobo_robot_order){.joints = GROBO_JOINTS_ALL(N), .deed = GROBO_I_DEED_UNKNOWN}),
+        GROBO_OK);
+    for (int j = 0; j < N; j++) {
+        assert_int_equal(robot.axes[j].wants_torque, j % 2 != 0);
+        assert_int_equal(robot.axes[j].torque_known, j % 3 != 0);
+    }
+    drop();
+}
+
+static void what_does_nothing_to_a_joint_notes_nothing(void **state)
+{
+    (void)state;
+    start();
+    assert_int_equal(leave((grobo_robot_order){.deed = GROBO_I_DEED_NONE}), GROBO_OK);
+    expect_axes();
+    assert_false(robot.soft);
+    assert_true(robot.played_joints == GROBO_JOINTS_ALL(N));
+    drop();
+}
+
+/* Only how far along its way the joint was told. */
+static void a_segment_is_noted_of_its_joints_alone(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        start();
+        for (int k = 0; k < N; k++) {
+            set_going(k);
+            robot.axes[k].in_segments = true;
+            robot.axes[k].told_to_us = NOW + 50 * MS;
+        }
+        assert_int_equal(leave((grobo_robot_order){.joints = bits(j, other_of(j)),
+                                                   .deed = GROBO_I_DEED_SEGMENT,
+                                                   .each = true}),
+                         GROBO_OK);
+        expect_goals(bits(j, other_of(j)), 13.8, GROBO_SEGMENT_US); /* 10, and 3.8 ahead */
+        before[j].told_to_us = before[other_of(j)].told_to_us = NOW + GROBO_SEGMENT_US;
+        expect_axes();
+        drop();
+    }
+}
+
+/* ---- raw frames ------------------------------------------------------------------------------ */
+
+static int raw(const uint8_t *packet, int size, grobo_robot_order *order)
+{
+    grobo_exchange exchange = {0};
+    assert_true(size > 0);
+    int n = grobo_frame_wrap(driver.protocol, packet, (size_t)size, exchange.frame,
+                             sizeof exchange.frame);
+    exchange.frame_bytes = (uint8_t)n;
+    int result = grobo_i_gate_raw(&robot, &exchange, order);
+    if (result >= 0) {
+        take(*order);
+        slot->exchange = exchange;
+    }
+    return result;
+}
+
+static int raw_goal_of(int joint, double way_deg, int time_ms, grobo_robot_order *order)
+{
+    uint8_t packet[GROBO_RS30X_PACKET_MAX_BYTES];
+    const grobo_rs30x_goal goal = {(uint8_t)(joint + 1),
+                                   (int16_t)lround((joint - 20 + way_deg) * 10),
+                                   (uint16_t)(time_ms / 10)};
+    return raw(packet, grobo_rs30x_write_goal(&goal, packet, sizeof packet), order);
+}
+
+static int raw_torque_of(int joint, grobo_torque torque, grobo_robot_order *order)
+{
+    uint8_t packet[GROBO_RS30X_PACKET_MAX_BYTES];
+    return raw(packet,
+               grobo_rs30x_write_u8((uint8_t)(joint + 1), GROBO_RS30X_WANT_NOTHING,
+                                    GROBO_RS30X_TORQUE, (uint8_t)torque, packet, sizeof packet),
+               order);
+}
+
+static void a_raw_goal_is_noted_like_one_of_ours(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        grobo_robot_order order;
+        start();
+        assert_int_equal(raw_goal_of(j, 5, 2000, &order), GROBO_OK);
+        assert_int_equal(order.deed, GROBO_I_DEED_RAW);
+        assert_true(order.joints == GROBO_JOINT_BIT(j) && order.moves && order.single);
+        assert_int_equal(grobo_i_gate_leave(slot), GROBO_OK);
+        note_goal(j, 5, 2 * S);
+        before[j].last = 0;
+        expect_equal(robot.axes[j].way.to_rad, before[j].way.to_rad, "goal");
+        before[j].way.to_rad = robot.axes[j].way.to_rad;
+        expect_axes();
+        assert_true(robot.played_joints == (GROBO_JOINTS_ALL(N) & ~GROBO_JOINT_BIT(j)));
+        drop();
+    }
+}
+
+static void a_raw_torque_is_noted_like_one_of_ours(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        for (int mode = GROBO_TORQUE_OFF; mode <= GROBO_TORQUE_BRAKE; mode++) {
+            grobo_robot_order order;
+            bool on = mode == GROBO_TORQUE_ON;
+            start();
+            assert_int_equal(raw_torque_of(j, (grobo_torque)mode, &order), GROBO_OK);
+            assert_int_equal(order.deed, GROBO_I_DEED_RAW);
+            assert_true(order.joints == GROBO_JOINT_BIT(j) && order.moves == on);
+            assert_int_equal(grobo_i_gate_leave(slot), GROBO_OK);
+            before[j].told_us = NOW;
+            before[j].last = 0;
+            if (!on) {
+                before[j].wants_torque = before[j].held = false;
+                before[j].has_target = before[j].torque_known = false;
+            }
+            expect_axes();
+            drop();
+        }
+    }
+}
+
+static void a_raw_frame_that_reads_is_about_no_joint(void **state)
+{
+    (void)state;
+    uint8_t packet[GROBO_RS30X_PACKET_MAX_BYTES];
+    grobo_robot_order order;
+    start();
+    latch(GROBO_TRIP_ESTOP);
+    assert_int_equal(raw(packet, grobo_rs30x_read(2, 42, 2, packet, sizeof packet), &order),
+                     GROBO_OK);
+    assert_int_equal(order.deed, GROBO_I_DEED_NONE);
+    assert_true(order.joints == 0 && !order.moves);
+    drop();
+}
+
+/* 2 % less than the joint needs is taken for late, and no more. */
+static void a_raw_goal_has_the_time_of_its_joint(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        grobo_robot_order order;
+        for (int soft = 0; soft < 2; soft++) {
+            for (int ms = 100; ms <= 1000; ms += 300) {
+                double most_deg = (soft ? 60 : speed_dps(j)) * ms * 1.02 / 1000 + 0.1;
+                int way_ddeg = (int)floor(most_deg * 10 - 0.01);
+                int beyond_ddeg = (int)floor(most_deg * 10 + 0.01) + 1;
+                double side = j < 20 ? 0.1 : -0.1; /* towards the middle */
+                if (way_ddeg > 700) {
+                    continue;
+                }
+                start();
+                robot.soft = soft;
+                robot.soft_us = GROBO_NEVER_US;
+                assert_int_equal(raw_goal_of(j, side * beyond_ddeg, ms, &order), GROBO_ERR_SPEED);
+                assert_int_equal(robot.fault_joint, j);
+                int result = raw_goal_of(j, side * way_ddeg, ms, &order);
+                if (result != GROBO_OK) {
+                    fail_msg("joint %d: %d00 mdeg in %d ms: %s", j, way_ddeg, ms,
+                             grobo_error_name(result));
+                }
+                drop();
+            }
+        }
+    }
+}
+
+static void a_raw_frame_is_refused_by_name(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        grobo_robot_order order;
+        start();
+        robot.axes[j].sensed = false;
+        robot.axes[other_of(j)].torque_known = false;
+        assert_int_equal(raw_goal_of(j, 0, 1000, &order), GROBO_ERR_STALE);
+        assert_int_equal(robot.fault_joint, j);
+        robot.fault_joint = -1;
+        assert_int_equal(raw_torque_of(j, GROBO_TORQUE_ON, &order), GROBO_ERR_STALE);
+        assert_int_equal(robot.fault_joint, j);
+        assert_int_equal(raw_torque_of(other_of(j), GROBO_TORQUE_ON, &order), GROBO_ERR_STATE);
+        assert_int_equal(raw_torque_of(j, GROBO_TORQUE_OFF, &order), GROBO_OK);
+        drop();
+        start();
+        robot.free_joints = GROBO_JOINT_BIT(j);
+        robot.axes[other_of(j)].adrift = true;
+        assert_int_equal(raw_goal_of(j, 0, 1000, &order), GROBO_ERR_STATE);
+        assert_int_equal(raw_goal_of(other_of(j), 0, 1000, &order), GROBO_ERR_STATE);
+        start();
+        latch(GROBO_TRIP_VOLTAGE);
+        assert_int_equal(raw_goal_of(j, 0, 1000, &order), GROBO_ERR_LATCHED);
+        assert_int_equal(raw_torque_of(j, GROBO_TORQUE_ON, &order), GROBO_ERR_LATCHED);
+        assert_int_equal(raw_torque_of(j, GROBO_TORQUE_BRAKE, &order), GROBO_OK);
+        drop();
+        start();
+        double end_deg = 70 + j - (j - 20);
+        assert_int_equal(raw_goal_of(j, end_deg + 0.1, 2000, &order), GROBO_ERR_LIMIT);
+        assert_int_equal(robot.fault_joint, j);
+        assert_int_equal(raw_goal_of(j, end_deg, 2000, &order), GROBO_OK);
+        drop();
+    }
+}
+
+/* ---- what is refused ------------------------------------------------------------------------- */
+
+static int judge(grobo_robot_order order)
+{
+    return grobo_i_gate_judge(&robot, &order, NULL);
+}
+
+static void a_goal_is_judged_as_it_leaves(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        grobo_robot_order order = {
+            .joints = bits(j, other_of(j)), .number = NUMBER, .deed = GROBO_I_DEED_GOAL};
+        start();
+        assert_int_equal(judge(order), GROBO_ERR_STALE); /* none waits */
+        await(j, 1, S);
+        assert_int_equal(judge(order), GROBO_OK);
+        robot.axes[other_of(j)].sensed = false; /* another one's is not needed any more */
+        assert_int_equal(judge(order), GROBO_OK);
+        robot.axes[j].sensed = false;
+        robot.fault_joint = -1;
+        assert_int_equal(leave(order), GROBO_ERR_STALE);
+        assert_int_equal(robot.fault_joint, j);
+        expect_axes();
+        drop();
+        robot.axes[j].sensed = true;
+        robot.free_joints = GROBO_JOINT_BIT(other_of(j));
+        assert_int_equal(judge(order), GROBO_OK);
+        robot.free_joints = GROBO_JOINT_BIT(j);
+        assert_int_equal(judge(order), GROBO_ERR_STATE);
+        robot.free_joints = 0;
+        robot.axes[other_of(j)].adrift = true;
+        assert_int_equal(judge(order), GROBO_OK);
+        robot.axes[j].adrift = true;
+        assert_int_equal(judge(order), GROBO_ERR_STATE);
+        robot.axes[j].adrift = false;
+        latch(GROBO_TRIP_LOST_REPLIES);
+        assert_int_equal(judge(order), GROBO_ERR_LATCHED);
+        order.stops = true;
+        assert_int_equal(judge(order), GROBO_OK);
+        latch(GROBO_TRIP_ESTOP);
+        assert_int_equal(judge(order), GROBO_ERR_LATCHED);
+    }
+}
+
+/* What has left goes again, or its next part, until another one waits or has left. */
+static void a_goal_goes_again_until_another_takes_its_place(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        const grobo_robot_order order = {
+            .joints = GROBO_JOINT_BIT(j), .number = NUMBER, .deed = GROBO_I_DEED_GOAL};
+        start();
+        await(j, 5, 2 * S);
+        robot.axes[j].next = 0;
+        robot.axes[j].last = NUMBER;
+        assert_int_equal(leave(order), GROBO_OK);
+        expect_goals(order.joints, 5, 2 * S);
+        drop();
+        robot.axes[j].next = NUMBER + 1;
+        assert_int_equal(judge(order), GROBO_ERR_STALE);
+        robot.axes[j].next = 0;
+        robot.axes[j].last = NUMBER + 1;
+        assert_int_equal(judge(order), GROBO_ERR_STALE);
+    }
+}
+
+static void a_halt_is_refused_by_name(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        const grobo_robot_order order = {
+            .joints = GROBO_JOINT_BIT(j), .asked_us = NOW, .deed = GROBO_I_DEED_HALT, .each = true};
+        start();
+        set_going(other_of(j));
+        assert_int_equal(judge(order), GROBO_ERR_EMPTY);
+        set_going(j);
+        assert_int_equal(judge(order), GROBO_OK);
+        robot.axes[j].sensed = false;
+        assert_int_equal(judge(order), GROBO_ERR_EMPTY);
+        robot.axes[j].sensed = true;
+        make_limp(j);
+        assert_int_equal(judge(order), GROBO_ERR_EMPTY);
+        robot.axes[j].torque_known = false; /* it may have torque all the same */
+        assert_int_equal(judge(order), GROBO_OK);
+        latch(GROBO_TRIP_CURRENT);
+        assert_int_equal(judge(order), GROBO_OK);
+        latch(GROBO_TRIP_ESTOP);
+        assert_int_equal(judge(order), GROBO_ERR_LATCHED);
+        robot.holds_at_stop = true;
+        assert_int_equal(judge(order), GROBO_OK);
+    }
+}
+
+/* 50 ms after it was asked for, or 25 ms from now; drawn to the limits; half the speed. */
+static void a_halt_stops_ahead_of_where_joints_are(void **state)
+{
+    (void)state;
+    static const struct {
+        int ago_ms;
+        double way_deg;
+    } rows[] = {{0, 10.5}, {1, 10.49}, {24, 10.26}, {25, 10.25}, {26, 10.25}, {500, 10.25}};
+    for (int j = 0; j < N; j++) {
+        for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+            start();
+            set_going(j);
+            assert_int_equal(leave((grobo_robot_order){.joints = GROBO_JOINT_BIT(j),
+                                                       .asked_us = NOW - rows[i].ago_ms * MS,
+                                                       .deed = GROBO_I_DEED_HALT,
+                                                       .each = true,
+                                                       .stops = true}),
+                             GROBO_OK);
+            expect_equal(robot.axes[j].way.to_rad, here_rad(j) + RAD(rows[i].way_deg), "its rest");
+            assert_true(robot.axes[j].way.to_us == NOW + 100 * MS);
+            drop();
+        }
+    }
+}
+
+static void a_hold_is_refused_by_name(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        const grobo_robot_order order = {
+            .joints = GROBO_JOINT_BIT(j), .deed = GROBO_I_DEED_HOLD, .each = true};
+        start();
+        make_limp(other_of(j));
+        assert_int_equal(judge(order), GROBO_ERR_STATE); /* it has torque */
+        make_limp(j);
+        assert_int_equal(judge(order), GROBO_OK);
+        robot.axes[j].sensed = false;
+        assert_int_equal(judge(order), GROBO_ERR_STATE);
+        robot.axes[j].sensed = true;
+        for (int end = -1; end <= 1; end += 2) { /* 3 degrees outside at most */
+            robot.axes[j].state.angle_rad = end * RAD(70 + j + 3.01);
+            assert_int_equal(judge(order), GROBO_ERR_STATE);
+            robot.axes[j].state.angle_rad = end * RAD(70 + j + 2.99);
+            robot.axes[j].state.torque = GROBO_TORQUE_OFF;
+            assert_int_equal(leave(order), GROBO_OK);
+            expect_goals(order.joints, end * (70 + j) - (j - 20), driver.time_step_us);
+            drop();
+        }
+        latch(GROBO_TRIP_LIMIT);
+        assert_int_equal(judge(order), GROBO_ERR_LATCHED);
+    }
+}
+
+static void torque_is_refused_by_name(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        grobo_robot_order order = {.joints = GROBO_JOINT_BIT(j),
+                                   .asked_us = NOW,
+                                   .deed = GROBO_I_DEED_TORQUE,
+                                   .torque = GROBO_TORQUE_ON};
+        start();
+        make_limp(j);
+        robot.axes[other_of(j)].held = false;
+        assert_int_equal(judge(order), GROBO_OK);
+        order.asked_us = NOW - 2 * S;
+        assert_int_equal(judge(order), GROBO_OK);
+        order.asked_us = NOW - 2 * S - 1; /* waited for too long */
+        assert_int_equal(judge(order), GROBO_ERR_STATE);
+        order.asked_us = NOW;
+        robot.axes[j].held = false;
+        assert_int_equal(judge(order), GROBO_ERR_STATE);
+        robot.axes[j].held = true;
+        for (int end = -1; end <= 1; end += 2) { /* 2 degrees from its goal at most */
+            robot.axes[j].state.goal_rad = here_rad(j) + end * RAD(2.01);
+            assert_false(grobo_i_goal_holds(&robot, j));
+            assert_int_equal(judge(order), GROBO_ERR_STATE);
+            robot.axes[j].state.goal_rad = here_rad(j) + end * RAD(1.99);
+            assert_true(grobo_i_goal_holds(&robot, j));
+            assert_int_equal(judge(order), GROBO_OK);
+        }
+        latch(GROBO_TRIP_LIMIT);
+        assert_int_equal(judge(order), GROBO_ERR_LATCHED);
+        order.torque = GROBO_TORQUE_BRAKE;
+        assert_int_equal(judge(order), GROBO_OK);
+        order.torque = GROBO_TORQUE_OFF;
+        robot.axes[j].held = false;
+        assert_int_equal(judge(order), GROBO_OK);
+    }
+}
+
+/* A frame for two joints of which one is not held switches the other alone. */
+static void torque_comes_on_for_those_that_are_held(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        start();
+        make_limp(j);
+        make_limp(other_of(j));
+        robot.axes[other_of(j)].held = false;
+        assert_int_equal(leave((grobo_robot_order){.joints = bits(j, other_of(j)),
+                                                   .asked_us = NOW,
+                                                   .deed = GROBO_I_DEED_TORQUE,
+                                                   .torque = GROBO_TORQUE_ON}),
+                         GROBO_OK);
+        expect_torque(j, GROBO_TORQUE_ON);
+        drop();
+    }
+}
+
+static void a_segment_is_refused_by_name(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        const grobo_robot_order order = {
+            .joints = GROBO_JOINT_BIT(j), .deed = GROBO_I_DEED_SEGMENT, .each = true};
+        start();
+        set_going(j);
+        set_going(other_of(j));
+        robot.axes[other_of(j)].in_segments = true;
+        robot.axes[other_of(j)].told_to_us = NOW + 1;
+        assert_int_equal(judge(order), GROBO_ERR_EMPTY);
+        robot.axes[j].in_segments = true;
+        robot.axes[j].told_to_us = NOW;
+        assert_int_equal(judge(order), GROBO_ERR_EMPTY); /* it stands */
+        robot.axes[j].told_to_us = NOW + 1;
+        assert_int_equal(judge(order), GROBO_OK);
+        robot.axes[j].sensed = false;
+        assert_int_equal(judge(order), GROBO_ERR_STALE);
+        robot.axes[j].sensed = true;
+        robot.free_joints = GROBO_JOINT_BIT(j);
+        assert_int_equal(judge(order), GROBO_ERR_STATE);
+        robot.free_joints = 0;
+        latch(GROBO_TRIP_CURRENT);
+        assert_int_equal(judge(order), GROBO_ERR_LATCHED);
+    }
+}
+
+static void a_setting_is_refused_by_name(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        const grobo_robot_order order = {.joints = GROBO_JOINT_BIT(j),
+                                         .deed = GROBO_I_DEED_SETTING};
+        start();
+        make_limp(j);
+        assert_int_equal(judge(order), GROBO_OK);
+        for (int has = GROBO_TORQUE_OFF; has <= GROBO_TORQUE_BRAKE; has++) {
+            robot.axes[j].state.torque = (grobo_torque)has;
+            assert_int_equal(judge(order), has == GROBO_TORQUE_ON ? GROBO_ERR_STATE : GROBO_OK);
+        }
+        robot.axes[j].torque_known = false;
+        assert_int_equal(judge(order), GROBO_ERR_STALE);
+        take(order); /* its first attempt is why: a second may leave */
+        assert_int_equal(grobo_i_gate_leave(slot), GROBO_ERR_STALE);
+        slot->txn.sent_us = NOW - 5;
+        slot->exchange.frame_bytes = 1;
+        assert_int_equal(grobo_i_gate_leave(slot), GROBO_OK);
+        drop();
+    }
+}
+
+static void what_needs_silence_is_refused_while_something_moves(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        const grobo_robot_order command = {.joints = GROBO_JOINT_BIT(other_of(j)),
+                                           .deed = GROBO_I_DEED_COMMAND};
+        const grobo_robot_order unknown = {.joints = GROBO_JOINTS_ALL(N),
+                                           .deed = GROBO_I_DEED_UNKNOWN};
+        start();
+        assert_int_equal(judge(command), GROBO_OK);
+        assert_int_equal(judge(unknown), GROBO_OK);
+        set_going(j);
+        assert_int_equal(judge(command), GROBO_ERR_STATE);
+        assert_int_equal(judge(unknown), GROBO_ERR_STATE);
+        start();
+        await(j, 0, S);
+        assert_int_equal(judge(command), GROBO_ERR_STATE);
+        assert_int_equal(judge(unknown), GROBO_ERR_STATE);
+        start();
+        latch(GROBO_TRIP_ESTOP);
+        assert_int_equal(judge(command), GROBO_OK);
+        assert_int_equal(judge(unknown), GROBO_ERR_LATCHED);
+    }
+}
+
+/* Another frame has told one of its joints something since the first attempt. */
+static void a_second_attempt_is_passed_by_what_left_since(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        start();
+        take((grobo_robot_order){.joints = bits(j, other_of(j)),
+                                 .deed = GROBO_I_DEED_TORQUE,
+                                 .torque = GROBO_TORQUE_OFF});
+        slot->txn.sent_us = NOW - 7; /* all were told something then */
+        robot.axes[third_of(j)].told_us = NOW;
+        assert_int_equal(grobo_i_gate_leave(slot), GROBO_OK);
+        for (int i = 0; i < 2; i++) {
+            robot.axes[j].told_us = robot.axes[other_of(j)].told_us = NOW - 7;
+            robot.axes[i == 0 ? j : other_of(j)].told_us = NOW - 6;
+            memcpy(before, robot.axes, sizeof before);
+            assert_int_equal(grobo_i_gate_leave(slot), GROBO_ERR_STALE);
+            expect_axes();
+        }
+        slot->txn.sent_us = -1; /* a first attempt is passed by nothing */
+        assert_int_equal(grobo_i_gate_leave(slot), GROBO_OK);
+        slot->txn.sent_us = 0; /* the clock may begin there */
+        assert_int_equal(grobo_i_gate_leave(slot), GROBO_ERR_STALE);
+        drop();
+    }
+}
+
+static void only_the_target_of_that_number_waits_no_more(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        start();
+        await(j, 1, S);
+        await(other_of(j), 1, S);
+        robot.axes[third_of(j)].next = NUMBER + 1;
+        memcpy(before, robot.axes, sizeof before);
+        grobo_i_gate_unwait(&robot, &(grobo_robot_order){.joints = GROBO_JOINTS_ALL(N)});
+        grobo_i_gate_unwait(&robot, &(grobo_robot_order){.joints = GROBO_JOINTS_ALL(N) &
+                                                                   ~GROBO_JOINT_BIT(j) &
+                                                                   ~GROBO_JOINT_BIT(other_of(j)),
+                                                         .number = NUMBER});
+        expect_axes();
+        grobo_i_gate_unwait(&robot,
+                            &(grobo_robot_order){.joints = bits(j, third_of(j)), .number = NUMBER});
+        before[j].next = 0;
+        expect_axes();
+    }
+}
+
+/* ---- time ------------------------------------------------------------------------------------ */
+
+static int64_t steps_up(double time_us)
+{
+    return (int64_t)ceil(time_us / 10000 - 1e-9) * 10000;
+}
+
+static void times_are_what_speeds_make_them(void **state)
+{
+    (void)state;
+    static const struct {
+        int pct;
+        double approach_dps;
+        bool soft;
+    } rows[] = {{100, 60, false}, {10, 60, false}, {99, 60, false}, {1, 60, false},
+                {100, 60, true},  {100, 7, true},  {10, 60, true},  {10, 500, true}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        const grobo_robot_config config = {.speed_limit_pct = rows[i].pct,
+                                           .approach_dps = rows[i].approach_dps};
+        for (int j = 0; j < N; j++) {
+            grobo_robot_order order = {.each = true, .soft = rows[i].soft};
+            grobo_target target = {0};
+            start_with(&config);
+            double way_deg = j < 20 ? 50.037 : -50.037;
+            double limit_dps = speed_dps(j) * rows[i].pct / 100;
+            double dps = rows[i].soft ? fmin(rows[i].approach_dps, limit_dps) : limit_dps;
+            int64_t be_us = steps_up((50.037 - 0.1) / dps * 1e6);
+            assert_int_equal(grobo_posture_init(&target.posture, N), 0);
+            target.posture.set = bits(j, other_of(j));
+            target.posture.angle_rad[j] = here_rad(j) + RAD(way_deg);
+            target.posture.angle_rad[other_of(j)] = here_rad(other_of(j));
+            for (int each = 1; each >= 0; each--) {
+                order.each = each;
+                assert_int_equal(grobo_i_gate_time(&robot, &order, &target), GROBO_OK);
+                for (int k = 0; k < N; k++) {
+                    int64_t needs_us = k == j ? be_us : k == other_of(j) ? 10000 : 0;
+                    int64_t gets_us = each ? needs_us : be_us;
+                    if (target.joint_time_us[k] != gets_us) {
+                        fail_msg("joint %d of %d: %lld us, not %lld", k, j,
+                                 (long long)target.joint_time_us[k], (long long)gets_us);
+                    }
+                }
+            }
+            assert_int_equal(robot.counters.stretched, 1);
+        }
+    }
+}
+
+/* The wire has no more than so many steps. */
+static void a_time_longer_than_the_wire_has_is_refused(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        const grobo_robot_order order = {.each = true, .soft = true};
+        const double most_deg = 0.5 * (double)GROBO_PLAY_TIME_MAX_US / 1e6 + 0.1;
+        for (int beyond = 0; beyond < 2; beyond++) {
+            grobo_target target = {0};
+            start_with(&(grobo_robot_config){.approach_dps = 0.5});
+            robot.axes[j].way.to_rad = RAD(-40);
+            assert_int_equal(grobo_posture_init(&target.posture, N), 0);
+            target.posture.set = bits(j, other_of(j));
+            target.posture.angle_rad[j] = RAD(-40 + most_deg + (beyond ? 0.001 : -0.001));
+            target.posture.angle_rad[other_of(j)] = here_rad(other_of(j));
+            robot.fault_joint = -1;
+            assert_int_equal(grobo_i_gate_time(&robot, &order, &target),
+                             beyond ? GROBO_ERR_SPEED : GROBO_OK);
+            assert_int_equal(robot.fault_joint, beyond ? j : -1);
+            assert_true(beyond || target.joint_time_us[j] == GROBO_PLAY_TIME_MAX_US);
+        }
+    }
+}
+
+/* A slow first move takes no less than a halt where the joint still moves. */
+static void one_that_moves_is_not_caught_up_softly(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        for (int soft = 0; soft < 2; soft++) {
+            for (int moves = 0; moves < 2; moves++) {
+                const grobo_robot_order order = {.each = true, .soft = soft};
+                grobo_target target = {0};
+                start();
+                robot.axes[j].way.to_us = NOW + moves;
+                assert_int_equal(grobo_posture_init(&target.posture, N), 0);
+                target.posture.set = GROBO_JOINT_BIT(j);
+                target.posture.angle_rad[j] = here_rad(j);
+                assert_int_equal(grobo_i_gate_time(&robot, &order, &target), GROBO_OK);
+                assert_int_equal(target.joint_time_us[j], soft && moves ? 100000 : 10000);
+                target.joint_time_us[j] = 150000; /* one that is long enough stays */
+                assert_int_equal(grobo_i_gate_time(&robot, &order, &target), GROBO_OK);
+                assert_int_equal(target.joint_time_us[j], 150000);
+            }
+        }
+    }
+}
+
+static void a_target_of_no_joint_takes_no_time(void **state)
+{
+    (void)state;
+    grobo_target target = {0};
+    start();
+    assert_int_equal(grobo_i_gate_time(&robot, &(grobo_robot_order){0}, &target), GROBO_OK);
+    for (int j = 0; j < N; j++) {
+        assert_int_equal(target.joint_time_us[j], 0);
+    }
+    assert_int_equal(robot.counters.stretched, 0);
+}
+
+/* The end of a motion: at most half of what the joint could do in its time, from where it is. */
+static void a_motion_rests_near_where_joints_are(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        for (int side = -1; side <= 1; side += 2) {
+            for (int far = 0; far < 2; far++) {
+                const grobo_robot_order order = {.joints = GROBO_JOINT_BIT(j),
+                                                 .number = NUMBER,
+                                                 .deed = GROBO_I_DEED_GOAL,
+                                                 .each = true,
+                                                 .rests = true};
+                double most_deg = speed_dps(j) * 0.04 / 2;
+                double way_deg = side * (most_deg + (far ? 1 : -1));
+                start();
+                await(j, way_deg, 40 * MS);
+                assert_int_equal(leave(order), GROBO_OK);
+                expect_equal(robot.axes[j].way.to_rad,
+                             here_rad(j) + RAD(far ? side * most_deg : way_deg), "its rest");
+                drop();
+            }
+        }
+    }
+}
+
+/* By a raw frame or a halt: the joint stops where it is 50 ms later, wherever the clip is. */
+static void a_motion_rests_where_others_have_joints_stand(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        start();
+        set_going(j);
+        await(j, 30, 40 * MS);
+        robot.axes[j].last = 0;
+        assert_int_equal(leave((grobo_robot_order){.joints = GROBO_JOINT_BIT(j),
+                                                   .number = NUMBER,
+                                                   .deed = GROBO_I_DEED_GOAL,
+                                                   .each = true,
+                                                   .rests = true}),
+                         GROBO_OK);
+        expect_equal(robot.axes[j].way.to_rad, here_rad(j) + RAD(10.5), "its rest");
+        drop();
+    }
+}
+
+/* ---- the slow first move --------------------------------------------------------------------- */
+
+/* Of a caller's own stream the first is slow until it is there; of played frames the first. */
+static void the_slow_move_is_over_when_its_first_target_is_reached(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        for (int how = 0; how < 3; how++) { /* of a stream, of a job, played */
+            start();
+            grobo_i_gate_soften(&robot);
+            await(j, 5, 300 * MS);
+            await(other_of(j), 5, 200 * MS);
+            take((grobo_robot_order){.joints = bits(j, other_of(j)),
+                                     .number = NUMBER,
+                                     .deed = GROBO_I_DEED_GOAL,
+                                     .each = true,
+                                     .single = how == 0});
+            slot->due_us = how == 2 ? NOW : GROBO_NEVER_US;
+            assert_int_equal(grobo_i_gate_leave(slot), GROBO_OK);
+            assert_int_equal(robot.soft, how != 2);
+            assert_true(robot.soft_us == (how == 0 ? NOW + 300 * MS : GROBO_NEVER_US));
+            drop();
+            if (how == 0) { /* a second one does not make it longer, and may be 10 ms early */
+                robot.now_us = NOW + 290 * MS - 1;
+                grobo_i_gate_single(&robot);
+                assert_true(robot.soft);
+                await(j, 5, 300 * MS);
+                assert_int_equal(leave((grobo_robot_order){.joints = GROBO_JOINT_BIT(j),
+                                                           .number = NUMBER,
+                                                           .deed = GROBO_I_DEED_GOAL,
+                                                           .single = true}),
+                                 GROBO_OK);
+                drop();
+                assert_true(robot.soft_us == NOW + 300 * MS);
+                robot.now_us = NOW + 290 * MS;
+                grobo_i_gate_single(&robot);
+                assert_false(robot.soft);
+            }
+        }
+    }
+}
+
+/* ---- what may be asked ----------------------------------------------------------------------- */
+
+static void joints_are_ready_that_were_read_and_hold(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        start();
+        assert_true(grobo_i_gate_ready(&robot, GROBO_JOINTS_ALL(N)));
+        robot.axes[j].sensed = false; /* it is known to hold */
+        assert_false(grobo_i_gate_ready(&robot, GROBO_JOINTS_ALL(N)));
+        assert_true(grobo_i_gate_ready(&robot, ~GROBO_JOINT_BIT(j)));
+        robot.axes[j].sensed = true;
+        robot.axes[j].torque_known = false;
+        assert_false(grobo_i_gate_ready(&robot, GROBO_JOINTS_ALL(N)));
+        robot.axes[j].torque_known = true;
+        make_limp(j);
+        assert_false(grobo_i_gate_ready(&robot, GROBO_JOINTS_ALL(N)));
+        assert_true(grobo_i_gate_ready(&robot, ~GROBO_JOINT_BIT(j)));
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_goal_is_noted_of_its_joints_alone),
+        cmocka_unit_test(a_halt_is_noted_of_what_moves),
+        cmocka_unit_test(a_hold_is_noted_of_its_joints_alone),
+        cmocka_unit_test(torque_is_noted_of_its_joints_alone),
+        cmocka_unit_test(what_leaves_joints_unknown_is_noted_of_them_alone),
+        cmocka_unit_test(what_is_unknown_already_stays_so),
+        cmocka_unit_test(what_does_nothing_to_a_joint_notes_nothing),
+        cmocka_unit_test(a_segment_is_noted_of_its_joints_alone),
+        cmocka_unit_test(a_raw_goal_is_noted_like_one_of_ours),
+        cmocka_unit_test(a_raw_torque_is_noted_like_one_of_ours),
+        cmocka_unit_test(a_raw_frame_that_reads_is_about_no_joint),
+        cmocka_unit_test(a_raw_goal_has_the_time_of_its_joint),
+        cmocka_unit_test(a_raw_frame_is_refused_by_name),
+        cmocka_unit_test(a_goal_is_judged_as_it_leaves),
+        cmocka_unit_test(a_goal_goes_again_until_another_takes_its_place),
+        cmocka_unit_test(a_halt_is_refused_by_name),
+        cmocka_unit_test(a_halt_stops_ahead_of_where_joints_are),
+        cmocka_unit_test(a_hold_is_refused_by_name),
+        cmocka_unit_test(torque_is_refused_by_name),
+        cmocka_unit_test(torque_comes_on_for_those_that_are_held),
+        cmocka_unit_test(a_segment_is_refused_by_name),
+        cmocka_unit_test(a_setting_is_refused_by_name),
+        cmocka_unit_test(what_needs_silence_is_refused_while_something_moves),
+        cmocka_unit_test(a_second_attempt_is_passed_by_what_left_since),
+        cmocka_unit_test(only_the_target_of_that_number_waits_no_more),
+        cmocka_unit_test(times_are_what_speeds_make_them),
+        cmocka_unit_test(a_time_longer_than_the_wire_has_is_refused),
+        cmocka_unit_test(one_that_moves_is_not_caught_up_softly),
+        cmocka_unit_test(a_target_of_no_joint_takes_no_time),
+        cmocka_unit_test(a_motion_rests_near_where_joints_are),
+        cmocka_unit_test(a_motion_rests_where_others_have_joints_stand),
+        cmocka_unit_test(the_slow_move_is_over_when_its_first_target_is_reached),
+        cmocka_unit_test(joints_are_ready_that_were_read_and_hold),
+    };
+    return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
+}
