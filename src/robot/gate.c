@@ -323,7 +323,7 @@ static int judge_alone(const grobo_robot *robot)
 
 static saying nothing_said(const grobo_robot *robot)
 {
-    saying says = {0};
+    saying says = {.torqued = {0}};
     (void)grobo_posture_init(&says.target.posture, robot->driver->model->n_joints);
     return says;
 }

@@ -24,8 +24,6 @@
 enum { N = GROBO_JOINTS_MAX, NUMBER = 7, MS = 1000, S = 1000000 };
 static const int64_t NOW = 50 * S;
 
-static grobo_joint joints[N];
-static grobo_model model;
 static grobo_driver driver;
 static grobo_robot robot;
 static grobo_robot_axis before[N];
@@ -54,28 +52,48 @@ static int third_of(int joint)
     return (joint + 5) % N == other_of(joint) ? (joint + 6) % N : (joint + 5) % N;
 }
 
-static void make_driver(void)
+/* The driver's functions, called with the context that the robot was given. */
+static int driver_ctx;
+static int inspected; /* what reading the next raw frame results in, where it is an error */
+
+static int posture_in_context(const grobo_driver *self, void *ctx, const grobo_target *target,
+                              int part, grobo_exchange *exchange)
 {
-    driver = *many_joints(rig_wiring, N);
-    model = *driver.model;
-    for (int j = 0; j < N; j++) {
-        joints[j] = model.joints[j];
-        joints[j].min_rad = -RAD(70 + j);
-        joints[j].max_rad = RAD(70 + j);
-        joints[j].init_rad = 0;
-        joints[j].max_speed_rad_s = RAD(speed_dps(j));
-    }
-    model.joints = joints;
-    driver.model = &model;
+    assert_ptr_equal(ctx, &driver_ctx);
+    return many_joints(rig_wiring, N)->posture(self, NULL, target, part, exchange);
+}
+
+static int torque_in_context(const grobo_driver *self, void *ctx, grobo_joint_mask joints,
+                             grobo_torque mode, int part, grobo_exchange *exchange)
+{
+    assert_ptr_equal(ctx, &driver_ctx);
+    return many_joints(rig_wiring, N)->torque(self, NULL, joints, mode, part, exchange);
+}
+
+static int inspect_in_context(const grobo_driver *self, void *ctx, const uint8_t *frame,
+                              size_t size, grobo_target *target, grobo_joint_mask *torqued)
+{
+    assert_ptr_equal(ctx, &driver_ctx);
+    int result = many_joints(rig_wiring, N)->inspect(self, NULL, frame, size, target, torqued);
+    return inspected < 0 ? inspected : result;
+}
+
+static void make_robot(int n_joints, const grobo_robot_config *config)
+{
+    driver = *many_unlike_joints(rig_wiring, n_joints);
+    driver.posture = posture_in_context;
+    driver.torque = torque_in_context;
+    driver.inspect = inspect_in_context;
+    inspected = GROBO_OK;
+    assert_int_equal(grobo_robot_init(&robot, &driver, &driver_ctx, config, NOW), GROBO_OK);
+    grobo_robot_link_up(&robot, NOW);
 }
 
 /* All joints hold, were sent to where they are, and all that may be set is set otherwise than a
  * frame that leaves would set it. */
 static void start_with(const grobo_robot_config *config)
 {
-    make_driver();
-    assert_int_equal(grobo_robot_init(&robot, &driver, NULL, config, NOW), GROBO_OK);
-    grobo_robot_link_up(&robot, NOW);
+    make_robot(N, config);
     robot.soft = false;
     robot.played_joints = GROBO_JOINTS_ALL(N);
     for (int j = 0; j < N; j++) {
@@ -212,6 +230,8 @@ static void expect_packet(const uint8_t *packet, int size)
     assert_int_equal(slot->exchange.settle_us, 0);
 }
 
+static int far_goal = -1; /* a joint that goes twice as far in the frame expected; -1: none */
+
 /* Of one joint or two, in the order of motors. */
 static void expect_goals(grobo_joint_mask of, double way_deg, int64_t time_us)
 {
@@ -220,9 +240,9 @@ static void expect_goals(grobo_joint_mask of, double way_deg, int64_t time_us)
     size_t n = 0;
     for (int j = 0; j < N; j++) {
         if ((of & GROBO_JOINT_BIT(j)) != 0) {
-            goals[n++] =
-                (grobo_rs30x_goal){(uint8_t)(j + 1), (int16_t)lround((j - 20 + way_deg) * 10),
-                                   (uint16_t)(time_us / 10000)};
+            double deg = j - 20 + way_deg * (j == far_goal ? 2 : 1);
+            goals[n++] = (grobo_rs30x_goal){(uint8_t)(j + 1), (int16_t)lround(deg * 10),
+                                            (uint16_t)(time_us / 10000)};
         }
     }
     int size = n == 1 ? grobo_rs30x_write_goal(goals, packet, sizeof packet)
@@ -236,6 +256,11 @@ static void expect_torque(int joint, grobo_torque torque)
     expect_packet(packet,
                   grobo_rs30x_write_u8((uint8_t)(joint + 1), GROBO_RS30X_WANT_NOTHING,
                                        GROBO_RS30X_TORQUE, (uint8_t)torque, packet, sizeof packet));
+}
+
+static int64_t steps_up(double time_us)
+{
+    return (int64_t)ceil(time_us / 10000 - 1e-9) * 10000;
 }
 
 static void expect_equal(double is, double be, const char *what)
@@ -467,6 +492,37 @@ static void a_segment_is_noted_of_its_joints_alone(void **state)
     }
 }
 
+/* Of a longer way its frame asks for a part, and it is told more of it in time. */
+static void a_goal_in_segments_is_noted_of_its_joints_alone(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        for (int whole = 0; whole < 2; whole++) {
+            const int64_t time_us = whole ? GROBO_SEGMENT_US : GROBO_SEGMENT_US * 2;
+            start_with(&(grobo_robot_config){.goals = GROBO_GOALS_SEGMENTS});
+            robot.renewed_us = NOW - 1;
+            await(j, 10, time_us);
+            await(other_of(j), 5, GROBO_SEGMENT_US);
+            await(third_of(j), 5, 2 * S); /* in another frame */
+            assert_int_equal(leave((grobo_robot_order){.joints = bits(j, other_of(j)),
+                                                       .number = NUMBER,
+                                                       .deed = GROBO_I_DEED_GOAL,
+                                                       .each = true}),
+                             GROBO_OK);
+            far_goal = whole ? j : -1;
+            expect_goals(bits(j, other_of(j)), 5, GROBO_SEGMENT_US);
+            far_goal = -1;
+            note_goal(j, 10, time_us);
+            note_goal(other_of(j), 5, GROBO_SEGMENT_US);
+            before[j].in_segments = !whole;
+            before[j].told_to_us = whole ? NOW - 7 : NOW + GROBO_SEGMENT_US;
+            expect_axes();
+            assert_true(robot.renewed_us == (whole ? NOW - 1 : NOW));
+            drop();
+        }
+    }
+}
+
 /* ---- raw frames ------------------------------------------------------------------------------ */
 
 static int raw(const uint8_t *packet, int size, grobo_robot_order *order)
@@ -624,6 +680,71 @@ static void a_raw_frame_is_refused_by_name(void **state)
         assert_int_equal(robot.fault_joint, j);
         assert_int_equal(raw_goal_of(j, end_deg, 2000, &order), GROBO_OK);
         drop();
+    }
+}
+
+/* With no time at all: where it is is not too far, and the slow move is over at once. */
+static void a_raw_goal_to_where_its_joint_is_needs_no_time(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        grobo_robot_order order;
+        start();
+        grobo_i_gate_soften(&robot);
+        assert_int_equal(raw_goal_of(j, 0, 0, &order), GROBO_OK);
+        assert_int_equal(grobo_i_gate_leave(slot), GROBO_OK);
+        assert_true(robot.soft && robot.soft_us == NOW);
+        drop();
+        assert_int_equal(raw_goal_of(j, j < 20 ? 9 : -9, 100, &order), GROBO_OK); /* 90 deg/s */
+        assert_false(robot.soft);
+        drop();
+    }
+}
+
+/* It is no first move: the next one is as slow as it would have been. */
+static void a_raw_torque_ends_no_slow_move(void **state)
+{
+    (void)state;
+    grobo_robot_order order;
+    start();
+    grobo_i_gate_soften(&robot);
+    assert_int_equal(raw_torque_of(3, GROBO_TORQUE_OFF, &order), GROBO_OK);
+    assert_int_equal(grobo_i_gate_leave(slot), GROBO_OK);
+    assert_true(robot.soft && robot.soft_us == GROBO_NEVER_US);
+    drop();
+}
+
+static void a_raw_frame_that_nobody_can_read_is_refused_unless_asked(void **state)
+{
+    (void)state;
+    for (int accept = 0; accept < 2; accept++) {
+        for (int can_read = 0; can_read < 2; can_read++) {
+            uint8_t packet[GROBO_RS30X_PACKET_MAX_BYTES];
+            grobo_robot_order order;
+            start_with(&(grobo_robot_config){.accept_unknown_raw = accept});
+            inspected = GROBO_ERR_UNSUPPORTED;
+            driver.inspect = can_read ? driver.inspect : NULL;
+            int size = grobo_rs30x_read(2, 42, 2, packet, sizeof packet);
+            assert_int_equal(raw(packet, size, &order), accept ? GROBO_OK : GROBO_ERR_UNSUPPORTED);
+            if (accept) {
+                assert_int_equal(order.deed, GROBO_I_DEED_UNKNOWN);
+                assert_true(order.joints == GROBO_JOINTS_ALL(N) && order.moves && order.single);
+                assert_int_equal(grobo_i_gate_leave(slot), GROBO_OK);
+                drop();
+            }
+        }
+    }
+    for (int at_once = 0; at_once < 2; at_once++) { /* any other error is what it is */
+        grobo_robot_order order;
+        start_with(&(grobo_robot_config){.accept_unknown_raw = true});
+        inspected = at_once ? GROBO_ERR_FRAME : GROBO_OK;
+        assert_int_equal(raw_goal_of(1, 0, 1000, &order), inspected);
+        if (!at_once) {
+            inspected = GROBO_ERR_FRAME;
+            assert_int_equal(grobo_i_gate_leave(slot), GROBO_ERR_FRAME);
+            expect_axes();
+            drop();
+        }
     }
 }
 
@@ -802,6 +923,9 @@ static void torque_is_refused_by_name(void **state)
             assert_true(grobo_i_goal_holds(&robot, j));
             assert_int_equal(judge(order), GROBO_OK);
         }
+        robot.axes[j].state.angle_rad = 0;
+        robot.axes[j].state.goal_rad = grobo_rad_from_deg(2);
+        assert_true(grobo_i_goal_holds(&robot, j));
         latch(GROBO_TRIP_LIMIT);
         assert_int_equal(judge(order), GROBO_ERR_LATCHED);
         order.torque = GROBO_TORQUE_BRAKE;
@@ -879,6 +1003,8 @@ static void a_setting_is_refused_by_name(void **state)
         slot->txn.sent_us = NOW - 5;
         slot->exchange.frame_bytes = 1;
         assert_int_equal(grobo_i_gate_leave(slot), GROBO_OK);
+        slot->txn.sent_us = robot.axes[j].told_us = 0; /* where the clock may begin */
+        assert_int_equal(grobo_i_gate_leave(slot), GROBO_OK);
         drop();
     }
 }
@@ -935,6 +1061,107 @@ static void a_second_attempt_is_passed_by_what_left_since(void **state)
     }
 }
 
+/* The driver has no such part, and so nothing leaves. */
+static void a_frame_that_there_is_not_does_not_leave(void **state)
+{
+    (void)state;
+    for (int deed = 0; deed < 2; deed++) {
+        start();
+        await(4, 1, S);
+        assert_int_equal(leave((grobo_robot_order){
+                             .joints = GROBO_JOINT_BIT(4),
+                             .number = NUMBER,
+                             .deed = (uint8_t)(deed ? GROBO_I_DEED_TORQUE : GROBO_I_DEED_GOAL),
+                             .part = 1}),
+                         GROBO_ERR_EMPTY);
+        expect_axes();
+        drop();
+    }
+}
+
+/* What does not fit the first frame is in the second; in one frame is asked for or refused. */
+static void each_part_has_joints_of_its_own(void **state)
+{
+    (void)state;
+    grobo_robot_order order = {.joints = GROBO_JOINTS_ALL(N), .number = 1};
+    for (int deed = 0; deed < 2; deed++) {
+        int next = 0;
+        start();
+        for (int j = 0; j < N; j++) {
+            await(j, 0, S);
+            robot.axes[j].next = 1;
+        }
+        order.deed = deed ? GROBO_I_DEED_TORQUE : GROBO_I_DEED_GOAL;
+        order.part = 0;
+        grobo_exchange exchange;
+        int result = grobo_i_gate_build(&robot, &order, &exchange);
+        for (; leave(order) == GROBO_OK; order.part++) {
+            rig_frame frame = {.size = slot->exchange.frame_bytes};
+            memcpy(frame.bytes, slot->exchange.frame, frame.size);
+            const uint8_t *packet;
+            assert_true(rig_packet(&frame, &packet) > 8);
+            for (int i = 0; i < packet[6]; i++) {
+                assert_int_equal(packet[7 + i * packet[5]], ++next);
+            }
+            drop();
+            if (order.part > 0) {
+                order.number = 1;
+                assert_int_equal(grobo_i_gate_build(&robot, &order, &exchange), 1);
+                assert_memory_equal(exchange.frame, frame.bytes, frame.size);
+            }
+        }
+        drop();
+        assert_int_equal(next, N);
+        assert_int_equal(result, order.part > 1 ? GROBO_ERR_CAP : 1);
+        assert_int_equal(grobo_i_gate_build(&robot, &order, &exchange), 0);
+        assert_true(deed == 1 || robot.axes[0].next == 0);
+    }
+}
+
+static int parts; /* that the driver needs, whatever for */
+
+static int posture_in_parts(const grobo_driver *self, void *ctx, const grobo_target *target,
+                            int part, grobo_exchange *exchange)
+{
+    int result = posture_in_context(self, ctx, target, 0, exchange);
+    return part < parts ? result : parts < 0 ? GROBO_ERR_SPACE : 0;
+}
+
+/* Several joints go into one frame, or are asked for in smaller frames; one may need more. */
+static void several_joints_go_in_one_frame(void **state)
+{
+    (void)state;
+    static const struct {
+        int joints, parts, part, result;
+    } rows[] = {{1, 1, 0, 1},
+                {1, 2, 0, 1},
+                {1, 2, 1, 1},
+                {1, 2, 2, 0},
+                {1, 0, 0, 0},
+                {2, 1, 0, 1},
+                {2, 2, 0, GROBO_ERR_CAP},
+                {2, 3, 0, GROBO_ERR_CAP},
+                {2, 2, 1, 1},
+                {2, 2, 2, 0},
+                {2, 0, 0, 0},
+                {2, -1, 0, GROBO_ERR_SPACE},
+                {1, -1, 0, GROBO_ERR_SPACE}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        const grobo_robot_order order = {.joints = rows[i].joints == 1 ? 1 : 3,
+                                         .number = NUMBER,
+                                         .deed = GROBO_I_DEED_GOAL,
+                                         .part = (uint8_t)rows[i].part};
+        grobo_exchange exchange;
+        start();
+        driver.posture = posture_in_parts;
+        parts = rows[i].parts;
+        assert_int_equal(grobo_i_gate_build(&robot, &order, &exchange), GROBO_ERR_STALE);
+        await(0, 1, S);
+        await(1, 1, S);
+        assert_int_equal(grobo_i_gate_build(&robot, &order, &exchange), rows[i].result);
+    }
+}
+
 static void only_the_target_of_that_number_waits_no_more(void **state)
 {
     (void)state;
@@ -958,11 +1185,6 @@ static void only_the_target_of_that_number_waits_no_more(void **state)
 }
 
 /* ---- time ------------------------------------------------------------------------------------ */
-
-static int64_t steps_up(double time_us)
-{
-    return (int64_t)ceil(time_us / 10000 - 1e-9) * 10000;
-}
 
 static void times_are_what_speeds_make_them(void **state)
 {
@@ -1001,6 +1223,51 @@ static void times_are_what_speeds_make_them(void **state)
                 }
             }
             assert_int_equal(robot.counters.stretched, 1);
+            target.joint_time_us[j] -= 10000; /* any of it counts, and all of it once */
+            assert_int_equal(grobo_i_gate_time(&robot, &order, &target), GROBO_OK);
+            assert_int_equal(robot.counters.stretched, 2);
+        }
+    }
+}
+
+/* Of an odd number of joints, too, and of none beyond them. */
+static void all_joints_of_a_move_get_its_time(void **state)
+{
+    (void)state;
+    for (int n = N - 1; n <= N; n++) {
+        grobo_target target = {0};
+        make_robot(n, NULL);
+        assert_int_equal(grobo_posture_init(&target.posture, n), 0);
+        target.posture.set = 2;
+        target.posture.angle_rad[1] = RAD(50);
+        assert_int_equal(grobo_i_gate_time(&robot, &(grobo_robot_order){0}, &target), GROBO_OK);
+        for (int j = 0; j < N; j++) {
+            assert_int_equal(target.joint_time_us[j], j < n ? 840000 : 0); /* 49.9 at 60 deg/s */
+        }
+    }
+}
+
+/* From where the joint is on its way by now, whatever the target asks for. */
+static void a_goal_that_leaves_late_gets_the_time_from_there(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        for (int soft = 0; soft < 2; soft++) {
+            start();
+            set_going(j);
+            await(j, -30, 10 * MS);
+            take((grobo_robot_order){.joints = GROBO_JOINT_BIT(j),
+                                     .number = NUMBER,
+                                     .deed = GROBO_I_DEED_GOAL,
+                                     .soft = soft,
+                                     .each = true});
+            assert_int_equal(grobo_i_gate_leave(slot), GROBO_OK);
+            int64_t be_us = steps_up((40 - 0.1) / (soft ? 60 : speed_dps(j)) * 1e6);
+            if (robot.axes[j].way.to_us != NOW + be_us) {
+                fail_msg("joint %d: %lld us, not %lld", j,
+                         (long long)(robot.axes[j].way.to_us - NOW), (long long)be_us);
+            }
+            drop();
         }
     }
 }
@@ -1071,21 +1338,51 @@ static void a_motion_rests_near_where_joints_are(void **state)
     (void)state;
     for (int j = 0; j < N; j++) {
         for (int side = -1; side <= 1; side += 2) {
-            for (int far = 0; far < 2; far++) {
-                const grobo_robot_order order = {.joints = GROBO_JOINT_BIT(j),
-                                                 .number = NUMBER,
-                                                 .deed = GROBO_I_DEED_GOAL,
-                                                 .each = true,
-                                                 .rests = true};
-                double most_deg = speed_dps(j) * 0.04 / 2;
-                double way_deg = side * (most_deg + (far ? 1 : -1));
+            for (int how = 0; how < 8; how++) {
+                bool far = how % 2 != 0;
+                bool soft = how / 2 == 1 || how / 2 == 2; /* the robot, or the order */
+                double most_deg = (soft ? 60 : speed_dps(j)) * 0.04 / 2;
+                double way_deg = side * (most_deg + (far ? 1 : -0.5));
                 start();
-                await(j, way_deg, 40 * MS);
-                assert_int_equal(leave(order), GROBO_OK);
+                robot.soft = how / 2 == 1;
+                set_going(j); /* is 10 degrees from where it was */
+                await(j, 10 + way_deg, 40 * MS);
+                assert_int_equal(leave((grobo_robot_order){.joints = GROBO_JOINT_BIT(j),
+                                                           .number = NUMBER,
+                                                           .deed = GROBO_I_DEED_GOAL,
+                                                           .each = true,
+                                                           .soft = how / 2 == 2,
+                                                           .rests = true}),
+                                 GROBO_OK);
                 expect_equal(robot.axes[j].way.to_rad,
-                             here_rad(j) + RAD(far ? side * most_deg : way_deg), "its rest");
+                             here_rad(j) + RAD(10 + (far ? side * most_deg : way_deg)), "its rest");
                 drop();
             }
+        }
+    }
+}
+
+/* A joint may have sagged outside its limits: it rests, or stops, at them. */
+static void nothing_rests_outside_the_limits(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        for (int halts = 0; halts < 2; halts++) {
+            start();
+            robot.axes[j].way = (grobo_robot_way){RAD(72 + j), RAD(78 + j), NOW - S, NOW + S};
+            robot.axes[j].next = NUMBER;
+            robot.axes[j].next_rad = RAD(70 + j);
+            robot.axes[j].next_time_us = 10 * MS;
+            assert_int_equal(
+                leave((grobo_robot_order){.joints = GROBO_JOINT_BIT(j),
+                                          .number = NUMBER,
+                                          .asked_us = NOW,
+                                          .deed = halts ? GROBO_I_DEED_HALT : GROBO_I_DEED_GOAL,
+                                          .each = true,
+                                          .rests = true}),
+                GROBO_OK);
+            expect_equal(robot.axes[j].way.to_rad, RAD(70 + j), "its rest");
+            drop();
         }
     }
 }
@@ -1154,6 +1451,50 @@ static void the_slow_move_is_over_when_its_first_target_is_reached(void **state)
 
 /* ---- what may be asked ----------------------------------------------------------------------- */
 
+static void a_target_is_checked_for_numbers_and_limits(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        for (int clamp = 0; clamp < 2; clamp++) {
+            grobo_posture target;
+            start_with(&(grobo_robot_config){.limit_policy =
+                                                 clamp ? GROBO_LIMIT_CLAMP : GROBO_LIMIT_REFUSE});
+            assert_int_equal(grobo_posture_init(&target, N), 0);
+            target.set = bits(j, other_of(j));
+            target.angle_rad[j] = RAD(70 + j);
+            robot.fault_joint = 99;
+            robot.fault_deg = 99;
+            assert_int_equal(grobo_i_gate_target(&robot, &target), GROBO_OK);
+            assert_int_equal(robot.fault_joint, -1);
+            expect_equal(robot.fault_deg, 0, "no fault");
+            assert_int_equal(robot.counters.clamped, 0);
+            target.angle_rad[j] = -RAD(71 + j);
+            assert_int_equal(grobo_i_gate_target(&robot, &target),
+                             clamp ? GROBO_OK : GROBO_ERR_LIMIT);
+            expect_equal(target.angle_rad[j], -RAD(clamp ? 70 + j : 71 + j), "target");
+            assert_int_equal(robot.counters.clamped, clamp);
+            if (!clamp) {
+                assert_int_equal(robot.fault_joint, j);
+                expect_equal(robot.fault_deg, -71 - j, "fault");
+            }
+            target.angle_rad[j] = NAN;
+            target.angle_rad[other_of(j)] = RAD(200);
+            robot.fault_joint = 99;
+            robot.fault_deg = 99;
+            int result = grobo_i_gate_target(&robot, &target);
+            bool first = j < other_of(j); /* one behind a limit is found when that is drawn in */
+            assert_int_equal(result, first || clamp ? GROBO_ERR_NAN : GROBO_ERR_LIMIT);
+            assert_int_equal(robot.fault_joint, first ? j : clamp ? -1 : other_of(j));
+            if (first) {
+                assert_true(isnan(robot.fault_deg));
+            } else {
+                expect_equal(robot.fault_deg, clamp ? 0 : 200, "fault");
+            }
+            assert_int_equal(robot.counters.clamped, clamp);
+        }
+    }
+}
+
 static void joints_are_ready_that_were_read_and_hold(void **state)
 {
     (void)state;
@@ -1184,11 +1525,15 @@ int main(void)
         cmocka_unit_test(what_is_unknown_already_stays_so),
         cmocka_unit_test(what_does_nothing_to_a_joint_notes_nothing),
         cmocka_unit_test(a_segment_is_noted_of_its_joints_alone),
+        cmocka_unit_test(a_goal_in_segments_is_noted_of_its_joints_alone),
         cmocka_unit_test(a_raw_goal_is_noted_like_one_of_ours),
         cmocka_unit_test(a_raw_torque_is_noted_like_one_of_ours),
         cmocka_unit_test(a_raw_frame_that_reads_is_about_no_joint),
         cmocka_unit_test(a_raw_goal_has_the_time_of_its_joint),
         cmocka_unit_test(a_raw_frame_is_refused_by_name),
+        cmocka_unit_test(a_raw_goal_to_where_its_joint_is_needs_no_time),
+        cmocka_unit_test(a_raw_torque_ends_no_slow_move),
+        cmocka_unit_test(a_raw_frame_that_nobody_can_read_is_refused_unless_asked),
         cmocka_unit_test(a_goal_is_judged_as_it_leaves),
         cmocka_unit_test(a_goal_goes_again_until_another_takes_its_place),
         cmocka_unit_test(a_halt_is_refused_by_name),
@@ -1200,14 +1545,21 @@ int main(void)
         cmocka_unit_test(a_setting_is_refused_by_name),
         cmocka_unit_test(what_needs_silence_is_refused_while_something_moves),
         cmocka_unit_test(a_second_attempt_is_passed_by_what_left_since),
+        cmocka_unit_test(a_frame_that_there_is_not_does_not_leave),
+        cmocka_unit_test(each_part_has_joints_of_its_own),
+        cmocka_unit_test(several_joints_go_in_one_frame),
         cmocka_unit_test(only_the_target_of_that_number_waits_no_more),
         cmocka_unit_test(times_are_what_speeds_make_them),
+        cmocka_unit_test(all_joints_of_a_move_get_its_time),
+        cmocka_unit_test(a_goal_that_leaves_late_gets_the_time_from_there),
         cmocka_unit_test(a_time_longer_than_the_wire_has_is_refused),
         cmocka_unit_test(one_that_moves_is_not_caught_up_softly),
         cmocka_unit_test(a_target_of_no_joint_takes_no_time),
         cmocka_unit_test(a_motion_rests_near_where_joints_are),
+        cmocka_unit_test(nothing_rests_outside_the_limits),
         cmocka_unit_test(a_motion_rests_where_others_have_joints_stand),
         cmocka_unit_test(the_slow_move_is_over_when_its_first_target_is_reached),
+        cmocka_unit_test(a_target_is_checked_for_numbers_and_limits),
         cmocka_unit_test(joints_are_ready_that_were_read_and_hold),
     };
     return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
