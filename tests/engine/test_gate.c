@@ -16,123 +16,14 @@
 #include <grobo/board.h>
 
 #include "src/robot/robot.h"
-#include "tests/support/many_joints.h"
+#include "tests/support/axes_kit.h"
 #include "tests/support/rig.h"
 
-#define RAD(deg) ((deg)*0.017453292519943295)
+enum { NUMBER = 7 };
 
-enum { N = GROBO_JOINTS_MAX, NUMBER = 7, MS = 1000, S = 1000000 };
-static const int64_t NOW = 50 * S;
-
-static grobo_driver driver;
-static grobo_robot robot;
-static grobo_robot_axis before[N];
 static grobo_robot_slot *slot;
 
-/* ---- a robot in a known state ---------------------------------------------------------------- */
-
-static double here_rad(int joint)
-{
-    return RAD(joint - 20);
-}
-
-/* 100 degrees a second and more. */
-static double speed_dps(int joint)
-{
-    return 100 + 5 * joint;
-}
-
-static int other_of(int joint)
-{
-    return (joint * 7 + 3) % N == joint ? (joint + 1) % N : (joint * 7 + 3) % N;
-}
-
-static int third_of(int joint)
-{
-    return (joint + 5) % N == other_of(joint) ? (joint + 6) % N : (joint + 5) % N;
-}
-
-/* The driver's functions, called with the context that the robot was given. */
-static int driver_ctx;
-static int inspected; /* what reading the next raw frame results in, where it is an error */
-
-static int posture_in_context(const grobo_driver *self, void *ctx, const grobo_target *target,
-                              int part, grobo_exchange *exchange)
-{
-    assert_ptr_equal(ctx, &driver_ctx);
-    return many_joints(rig_wiring, N)->posture(self, NULL, target, part, exchange);
-}
-
-static int torque_in_context(const grobo_driver *self, void *ctx, grobo_joint_mask joints,
-                             grobo_torque mode, int part, grobo_exchange *exchange)
-{
-    assert_ptr_equal(ctx, &driver_ctx);
-    return many_joints(rig_wiring, N)->torque(self, NULL, joints, mode, part, exchange);
-}
-
-static int inspect_in_context(const grobo_driver *self, void *ctx, const uint8_t *frame,
-                              size_t size, grobo_target *target, grobo_joint_mask *torqued)
-{
-    assert_ptr_equal(ctx, &driver_ctx);
-    int result = many_joints(rig_wiring, N)->inspect(self, NULL, frame, size, target, torqued);
-    return inspected < 0 ? inspected : result;
-}
-
-static void make_robot(int n_joints, const grobo_robot_config *config)
-{
-    driver = *many_unlike_joints(rig_wiring, n_joints);
-    driver.posture = posture_in_context;
-    driver.torque = torque_in_context;
-    driver.inspect = inspect_in_context;
-    inspected = GROBO_OK;
-    assert_int_equal(grobo_robot_init(&robot, &driver, &driver_ctx, config, NOW), GROBO_OK);
-    grobo_robot_link_up(&robot, NOW);
-}
-
-/* All joints hold, were sent to where they are, and all that may be set is set otherwise than a
- * frame that leaves would set it. */
-static void start_with(const grobo_robot_config *config)
-{
-    make_robot(N, config);
-    robot.soft = false;
-    robot.played_joints = GROBO_JOINTS_ALL(N);
-    for (int j = 0; j < N; j++) {
-        grobo_robot_axis *axis = &robot.axes[j];
-        axis->state = (grobo_joint_state){.angle_rad = here_rad(j),
-                                          .goal_rad = here_rad(j),
-                                          .valid = 0xFF,
-                                          .torque = GROBO_TORQUE_ON};
-        axis->way = (grobo_robot_way){here_rad(j), here_rad(j), NOW - 20, NOW - 10};
-        axis->angle_us = axis->full_us = axis->goal_us = NOW - 5;
-        axis->own_until_us = NOW - 3;
-        axis->told_us = axis->told_to_us = NOW - 7;
-        axis->last = 3;
-        axis->sensed = axis->has_target = axis->torque_known = true;
-        axis->wants_torque = axis->held = true;
-    }
-    slot = NULL;
-}
-
-static void start(void)
-{
-    start_with(NULL);
-}
-
-static void make_limp(int joint)
-{
-    robot.axes[joint].state.torque = GROBO_TORQUE_OFF;
-    robot.axes[joint].wants_torque = false;
-}
-
-static void latch(grobo_trip reason)
-{
-    robot.trip = (grobo_trip_info){.trip = reason, .joint = -1, .latched = true};
-}
-
-static grobo_joint_mask bits(int joint, int other)
-{
-    return GROBO_JOINT_BIT(joint) | GROBO_JOINT_BIT(other);
-}
+/* ---- frames that leave ----------------------------------------------------------------------- */
 
 /* A target waits for this joint: so many degrees from where it is. */
 static void await(int joint, double way_deg, int64_t time_us)
@@ -143,13 +34,6 @@ static void await(int joint, double way_deg, int64_t time_us)
     axis->next_time_us = time_us;
 }
 
-/* The joint moves at 10 degrees a second, and has been for a second. */
-static void set_going(int joint)
-{
-    robot.axes[joint].way =
-        (grobo_robot_way){here_rad(joint), here_rad(joint) + RAD(20), NOW - S, NOW + S};
-}
-
 /* A slot with this order; what its exchange holds is of no frame. */
 static void take(grobo_robot_order order)
 {
@@ -158,7 +42,7 @@ static void take(grobo_robot_order order)
     slot->order = order;
     slot->txn.sent_us = -1;
     memset(&slot->exchange, 0xA5, sizeof slot->exchange);
-    memcpy(before, robot.axes, sizeof before);
+    keep_axes();
 }
 
 static int leave(grobo_robot_order order)
@@ -170,51 +54,6 @@ static int leave(grobo_robot_order order)
 static void drop(void)
 {
     grobo_i_slot_drop(slot);
-}
-
-/* ---- comparing ------------------------------------------------------------------------------- */
-
-#define SAME(field)                                                                                \
-    if (is->field != be->field) {                                                                  \
-        fail_msg("joint %d: " #field " is %.9g, not %.9g", joint, (double)is->field,               \
-                 (double)be->field);                                                               \
-    }
-
-static void expect_axis(int joint, const grobo_robot_axis *be)
-{
-    const grobo_robot_axis *is = &robot.axes[joint];
-    SAME(state.angle_rad)
-    SAME(state.goal_rad)
-    SAME(state.torque)
-    SAME(goal_us)
-    SAME(own_until_us)
-    SAME(angle_us)
-    SAME(told_us)
-    SAME(way.from_rad)
-    SAME(way.to_rad)
-    SAME(way.from_us)
-    SAME(way.to_us)
-    SAME(last)
-    SAME(next)
-    SAME(next_rad)
-    SAME(next_time_us)
-    SAME(told_to_us)
-    SAME(in_segments)
-    SAME(sensed)
-    SAME(has_target)
-    SAME(torque_known)
-    SAME(wants_torque)
-    SAME(held)
-    SAME(off_way)
-    SAME(adrift)
-}
-
-/* Those of the mask are as in `before`, which the test has changed to what they should be. */
-static void expect_axes(void)
-{
-    for (int j = 0; j < N; j++) {
-        expect_axis(j, &before[j]);
-    }
 }
 
 /* The frame that leaves is this packet. */
@@ -261,13 +100,6 @@ static void expect_torque(int joint, grobo_torque torque)
 static int64_t steps_up(double time_us)
 {
     return (int64_t)ceil(time_us / 10000 - 1e-9) * 10000;
-}
-
-static void expect_equal(double is, double be, const char *what)
-{
-    if (!(fabs(is - be) < 1e-9)) {
-        fail_msg("%s is %.9g, not %.9g", what, is, be);
-    }
 }
 
 /* ---- what is noted --------------------------------------------------------------------------- */
@@ -1049,7 +881,7 @@ static void a_second_attempt_is_passed_by_what_left_since(void **state)
         for (int i = 0; i < 2; i++) {
             robot.axes[j].told_us = robot.axes[other_of(j)].told_us = NOW - 7;
             robot.axes[i == 0 ? j : other_of(j)].told_us = NOW - 6;
-            memcpy(before, robot.axes, sizeof before);
+            keep_axes();
             assert_int_equal(grobo_i_gate_leave(slot), GROBO_ERR_STALE);
             expect_axes();
         }
@@ -1119,11 +951,12 @@ static void each_part_has_joints_of_its_own(void **state)
 }
 
 static int parts; /* that the driver needs, whatever for */
+static grobo_driver whole;
 
 static int posture_in_parts(const grobo_driver *self, void *ctx, const grobo_target *target,
                             int part, grobo_exchange *exchange)
 {
-    int result = posture_in_context(self, ctx, target, 0, exchange);
+    int result = whole.posture(self, ctx, target, 0, exchange);
     return part < parts ? result : parts < 0 ? GROBO_ERR_SPACE : 0;
 }
 
@@ -1153,6 +986,7 @@ static void several_joints_go_in_one_frame(void **state)
                                          .part = (uint8_t)rows[i].part};
         grobo_exchange exchange;
         start();
+        whole = driver;
         driver.posture = posture_in_parts;
         parts = rows[i].parts;
         assert_int_equal(grobo_i_gate_build(&robot, &order, &exchange), GROBO_ERR_STALE);
@@ -1170,7 +1004,7 @@ static void only_the_target_of_that_number_waits_no_more(void **state)
         await(j, 1, S);
         await(other_of(j), 1, S);
         robot.axes[third_of(j)].next = NUMBER + 1;
-        memcpy(before, robot.axes, sizeof before);
+        keep_axes();
         grobo_i_gate_unwait(&robot, &(grobo_robot_order){.joints = GROBO_JOINTS_ALL(N)});
         grobo_i_gate_unwait(&robot, &(grobo_robot_order){.joints = GROBO_JOINTS_ALL(N) &
                                                                    ~GROBO_JOINT_BIT(j) &
