@@ -1,0 +1,458 @@
+/* SPDX-License-Identifier: MIT */
+/* Frames under way: which slots are taken, what the bus is told of them, and which are taken back. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <string.h>
+
+#include "tests/support/axes_kit.h"
+#include "tests/support/rig.h"
+
+enum { SLOTS = GROBO_ROBOT_SLOTS };
+
+/* A frame of this kind waits for the line, in the slot of that index. */
+static grobo_robot_slot *submit(int at, grobo_i_use use, grobo_robot_order order)
+{
+    grobo_robot_slot *slot = grobo_i_slot_take(&robot, use);
+    assert_ptr_equal(slot, &robot.slots[at]);
+    slot->order = order;
+    assert_int_equal(driver.sense(&driver, NULL, 0, GROBO_SENSE_ALL, &slot->exchange), 0);
+    assert_int_equal(grobo_i_slot_send(slot, GROBO_PRIORITY_USER), GROBO_OK);
+    return slot;
+}
+
+/* What lies behind the slots looks like a slot of no robot that must not be taken for one: who
+ * looks at it crashes. */
+static void put_behind_the_slots(const grobo_robot_slot *image)
+{
+    grobo_robot_slot ghost = *image;
+    assert_true(sizeof robot.events >= sizeof ghost);
+    assert_int_equal(offsetof(grobo_robot, events),
+                     offsetof(grobo_robot, slots) + sizeof robot.slots);
+    ghost.robot = NULL;
+    robot.events_n = 0;
+    memcpy(robot.events, &ghost, sizeof ghost);
+}
+
+static void expect_used(unsigned be)
+{
+    unsigned used = 0;
+    for (int i = 0; i < SLOTS; i++) {
+        used |= robot.slots[i].use != GROBO_I_USE_FREE ? 1U << i : 0;
+    }
+    assert_int_equal(used, be);
+}
+
+/* ---- taking ---------------------------------------------------------------------------------- */
+
+static void three_slots_are_kept_for_halts(void **state)
+{
+    (void)state;
+    start();
+    robot.acting = 9;
+    for (int i = 0; i < SLOTS; i++) {
+        grobo_i_use use = i < SLOTS - 3 ? GROBO_I_USE_PLAIN : GROBO_I_USE_HALT;
+        assert_int_equal(grobo_i_slot_find(&robot, GROBO_I_USE_HALT), i);
+        assert_int_equal(grobo_i_slot_find(&robot, GROBO_I_USE_PLAIN), i < SLOTS - 3 ? i : -1);
+        grobo_robot_slot *slot = grobo_i_slot_take(&robot, use);
+        assert_ptr_equal(slot, &robot.slots[i]);
+        assert_ptr_equal(slot->robot, &robot);
+        assert_int_equal(slot->use, use);
+        assert_int_equal(slot->job, use == GROBO_I_USE_HALT ? 0 : 9); /* it outlives its job */
+        assert_true(slot->due_us == GROBO_NEVER_US);
+    }
+    put_behind_the_slots(&(grobo_robot_slot){.use = GROBO_I_USE_FREE});
+    assert_int_equal(grobo_i_slot_find(&robot, GROBO_I_USE_HALT), -1);
+    assert_null(grobo_i_slot_take(&robot, GROBO_I_USE_HALT));
+    assert_null(grobo_i_slot_take(&robot, GROBO_I_USE_JOB));
+    grobo_i_slot_drop(&robot.slots[4]); /* one that a halt may take, no other */
+    assert_int_equal(grobo_i_slot_find(&robot, GROBO_I_USE_HALT), 4);
+    assert_int_equal(grobo_i_slot_find(&robot, GROBO_I_USE_PLAIN), 4); /* three halts have theirs */
+    grobo_i_slot_drop(&robot.slots[SLOTS - 1]);
+    assert_int_equal(grobo_i_slot_find(&robot, GROBO_I_USE_PLAIN), 4);
+    (void)grobo_i_slot_take(&robot, GROBO_I_USE_PLAIN);
+    assert_int_equal(grobo_i_slot_find(&robot, GROBO_I_USE_PLAIN), -1);
+    assert_int_equal(grobo_i_slot_find(&robot, GROBO_I_USE_HALT), SLOTS - 1);
+}
+
+static void a_slot_is_taken_clean(void **state)
+{
+    (void)state;
+    start();
+    memset(&robot.slots[0], 0xA5, sizeof robot.slots[0]);
+    robot.slots[0].use = GROBO_I_USE_FREE;
+    robot.slots[0].txn.pending_ = false;
+    grobo_robot_slot be = {.robot = &robot, .due_us = GROBO_NEVER_US, .use = GROBO_I_USE_SENSE};
+    const grobo_robot_slot *slot = grobo_i_slot_take(&robot, GROBO_I_USE_SENSE);
+    assert_ptr_equal(slot, &robot.slots[0]);
+    assert_memory_equal(&slot->exchange, &be.exchange, sizeof be.exchange);
+    assert_memory_equal(&slot->order, &be.order, sizeof be.order);
+    assert_true(slot->due_us == be.due_us && slot->given_us == 0 && slot->asked_us == 0);
+    assert_false(slot->refused || slot->reads);
+    assert_int_equal(slot->joint, 0);
+}
+
+/* ---- what the bus is told -------------------------------------------------------------------- */
+
+/* A joint that was lost is asked once by the background, and nobody waits long for it. */
+static void what_the_bus_is_told_of_a_frame(void **state)
+{
+    (void)state;
+    static const struct {
+        grobo_i_use use;
+        bool reads;
+        int lost, retries; /* lost: readings of that joint; retries: configured, -1 for none */
+        int tries;
+        bool patient;
+    } rows[] = {
+        {GROBO_I_USE_SENSE, true, 0, 2, 2, true},  {GROBO_I_USE_SENSE, true, 1, 2, 0, false},
+        {GROBO_I_USE_JOB, true, 1, 2, 2, false},   {GROBO_I_USE_JOB, true, 0, 2, 2, true},
+        {GROBO_I_USE_JOB, true, 0, -1, 0, false},  {GROBO_I_USE_JOB, false, 1, 3, 3, true},
+        {GROBO_I_USE_SENSE, false, 1, 1, 1, true},
+    };
+    for (int j = 0; j < N; j++) {
+        for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+            start_with(&(grobo_robot_config){.retries = rows[i].retries, .timeout_us = 1234});
+            robot.axes[j].lost = (uint16_t)rows[i].lost;
+            grobo_robot_slot *slot = grobo_i_slot_take(&robot, rows[i].use);
+            slot->joint = (uint8_t)j;
+            slot->reads = rows[i].reads;
+            assert_int_equal(driver.sense(&driver, NULL, j, GROBO_SENSE_ALL, &slot->exchange), 0);
+            assert_int_equal(grobo_i_slot_send(slot, GROBO_PRIORITY_SENSE), GROBO_OK);
+            const grobo_txn *txn = &slot->txn;
+            assert_int_equal(txn->retries, rows[i].tries);
+            assert_int_equal(txn->patient, rows[i].patient);
+            assert_int_equal(txn->priority, GROBO_PRIORITY_SENSE);
+            assert_int_equal(txn->timeout_us, 1234);
+            assert_ptr_equal(txn->frame, slot->exchange.frame);
+            assert_int_equal(txn->frame_bytes, slot->exchange.frame_bytes);
+            assert_memory_equal(&txn->reply, &slot->exchange.reply, sizeof txn->reply);
+            assert_ptr_equal(txn->ctx, slot);
+            assert_true(txn->sent_us == -1 && slot->given_us == NOW);
+        }
+    }
+}
+
+static void what_the_bus_does_not_take_is_free_again(void **state)
+{
+    (void)state;
+    start();
+    grobo_robot_slot *slot = grobo_i_slot_take(&robot, GROBO_I_USE_JOB);
+    assert_int_equal(grobo_i_slot_send(slot, GROBO_PRIORITY_USER), GROBO_ERR_ARG); /* no frame */
+    expect_used(0);
+}
+
+static int leave_result;
+
+static int leave_as_told(grobo_robot_slot *slot)
+{
+    slot->exchange.frame_bytes = 5;
+    slot->exchange.reply.kind = GROBO_REPLY_ACK;
+    return leave_result;
+}
+
+/* Its question is as old as its first attempt, and the frame is the one built for this attempt. */
+static void a_frame_is_asked_for_when_its_first_attempt_leaves(void **state)
+{
+    (void)state;
+    static const int64_t sent_us[] = {-1, 0, 1, NOW - 1};
+    for (size_t i = 0; i < sizeof sent_us / sizeof sent_us[0]; i++) {
+        for (int refused = 0; refused < 2; refused++) {
+            start();
+            grobo_robot_slot *slot = submit(0, GROBO_I_USE_JOB, (grobo_robot_order){0});
+            robot.leave = leave_as_told;
+            leave_result = refused ? GROBO_ERR_STATE : GROBO_OK;
+            slot->asked_us = 77;
+            slot->txn.sent_us = sent_us[i];
+            uint8_t bytes = slot->txn.frame_bytes;
+            assert_int_equal(slot->txn.leave(slot->txn.ctx, &slot->txn), leave_result);
+            assert_int_equal(slot->refused, refused);
+            assert_true(slot->asked_us == (i == 0 && !refused ? NOW : 77));
+            assert_int_equal(slot->txn.frame_bytes, refused ? bytes : 5);
+            assert_int_equal(slot->txn.reply.kind, refused ? GROBO_REPLY_RETURN : GROBO_REPLY_ACK);
+        }
+    }
+}
+
+/* ---- taking back ----------------------------------------------------------------------------- */
+
+static const grobo_i_use uses[] = {GROBO_I_USE_JOB,     GROBO_I_USE_SENSE, GROBO_I_USE_MOTION,
+                                   GROBO_I_USE_SEGMENT, GROBO_I_USE_HALT,  GROBO_I_USE_PLAIN};
+enum { USES = sizeof uses / sizeof uses[0] };
+
+/* One of each use, of jobs 1 to 6 in turn, in the first slots. */
+static void submit_all_uses(void)
+{
+    start();
+    for (int i = 0; i < USES; i++) {
+        submit(i, uses[i], (grobo_robot_order){0})->job = i + 1;
+    }
+    robot.over = NULL; /* nothing goes on from here */
+}
+
+static int ended;
+
+static void count_ended(grobo_robot_slot *slot, int result, const grobo_packet *reply)
+{
+    (void)slot;
+    assert_int_equal(result, GROBO_ERR_CANCELED);
+    assert_null(reply);
+    ended++;
+}
+
+static void frames_of_one_use_are_taken_back(void **state)
+{
+    (void)state;
+    for (int i = 0; i < USES; i++) {
+        for (int of_job = 0; of_job < 2; of_job++) {
+            submit_all_uses();
+            robot.over = count_ended;
+            ended = 0;
+            put_behind_the_slots(&robot.slots[i]);
+            assert_true(grobo_i_slots_busy(&robot, uses[i]));
+            if (of_job) {
+                grobo_i_slots_cancel_job(&robot, i + 1);
+            } else {
+                grobo_i_slots_cancel(&robot, uses[i]);
+            }
+            expect_used(((1U << USES) - 1) & ~(1U << i));
+            assert_int_equal(ended, 1);
+            assert_false(grobo_i_slots_busy(&robot, uses[i]));
+            grobo_i_slots_cancel_job(&robot, USES + 1);
+            assert_int_equal(ended, 1);
+        }
+    }
+}
+
+/* Wherever they are, up to the last slot. */
+static void every_slot_is_looked_at(void **state)
+{
+    (void)state;
+    for (int at = 0; at < SLOTS; at++) {
+        start();
+        for (int i = 0; i < SLOTS; i++) {
+            grobo_i_use use = i == at ? GROBO_I_USE_MOTION : GROBO_I_USE_SENSE;
+            grobo_robot_slot *slot = &robot.slots[i];
+            slot->robot = &robot;
+            slot->use = (uint8_t)use;
+            slot->job = i == at ? 4 : 5;
+            assert_int_equal(driver.sense(&driver, NULL, 0, GROBO_SENSE_ALL, &slot->exchange), 0);
+            assert_int_equal(
+                grobo_i_slot_send(slot, i == at ? GROBO_PRIORITY_MOTION : GROBO_PRIORITY_SENSE),
+                GROBO_OK);
+        }
+        robot.over = count_ended;
+        ended = 0;
+        assert_true(grobo_i_slots_busy(&robot, GROBO_I_USE_MOTION));
+        switch (at % 3) {
+        case 0:
+            grobo_i_slots_cancel_goals(&robot);
+            break;
+        case 1:
+            grobo_i_slots_cancel_job(&robot, 4);
+            break;
+        default:
+            grobo_i_slots_cancel(&robot, GROBO_I_USE_MOTION);
+            break;
+        }
+        expect_used(((1U << SLOTS) - 1) & ~(1U << at));
+    }
+}
+
+/* Those that have left are on their way already. */
+static void goals_that_wait_are_taken_back(void **state)
+{
+    (void)state;
+    for (int sent = -1; sent <= 1; sent++) {
+        submit_all_uses();
+        robot.over = count_ended;
+        ended = 0;
+        put_behind_the_slots(&robot.slots[2]);
+        robot.slots[2].txn.sent_us = sent;
+        grobo_i_slots_cancel_goals(&robot);
+        expect_used(((1U << USES) - 1) & ~(1U << 3) & ~(sent < 0 ? 1U << 2 : 0));
+        assert_int_equal(ended, sent < 0 ? 2 : 1);
+    }
+}
+
+/* Torque that waits to come on for one of these joints; nothing else, and no other's. */
+static void torque_that_waits_is_kept_off(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        const grobo_robot_order on = {
+            .joints = bits(j, other_of(j)), .deed = GROBO_I_DEED_TORQUE, .torque = GROBO_TORQUE_ON};
+        grobo_robot_order off = on;
+        grobo_robot_order hold = on;
+        grobo_robot_order others = on;
+        off.torque = GROBO_TORQUE_BRAKE;
+        hold.deed = GROBO_I_DEED_HOLD;
+        others.joints = ~on.joints;
+        for (int i = 0; i < 3; i++) {
+            start();
+            submit(0, GROBO_I_USE_PLAIN, off);
+            submit(1, GROBO_I_USE_PLAIN, hold);
+            submit(2, GROBO_I_USE_PLAIN, others);
+            submit(3, GROBO_I_USE_PLAIN, on);
+            submit(4, GROBO_I_USE_PLAIN, on);
+            put_behind_the_slots(&robot.slots[4]);
+            robot.slots[4].txn.sent_us = 0; /* has left */
+            robot.over = count_ended;
+            ended = 0;
+            grobo_joint_mask to = i == 0   ? GROBO_JOINT_BIT(j)
+                                  : i == 1 ? GROBO_JOINT_BIT(other_of(j))
+                                           : GROBO_JOINT_BIT(third_of(j));
+            grobo_i_slots_keep_off(&robot, to);
+            expect_used(i < 2 ? 1U | 2U | 4U | 16U : 1U | 2U | 8U | 16U);
+            assert_int_equal(ended, 1);
+        }
+    }
+}
+
+static void a_frame_that_waits_is_known_by_what_it_does(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        const grobo_joint_mask bit = GROBO_JOINT_BIT(j);
+        start();
+        grobo_robot_slot *slot = submit(0, GROBO_I_USE_PLAIN,
+                                        (grobo_robot_order){.joints = bits(j, other_of(j)),
+                                                            .deed = GROBO_I_DEED_TORQUE,
+                                                            .torque = GROBO_TORQUE_ON});
+        put_behind_the_slots(&(grobo_robot_slot){
+            .use = GROBO_I_USE_PLAIN,
+            .txn = {.sent_us = -1},
+            .order = {.joints = GROBO_JOINTS_ALL(N), .deed = GROBO_I_DEED_HOLD}});
+        assert_true(grobo_i_slots_wait(&robot, bit, GROBO_I_DEED_TORQUE, GROBO_TORQUE_ON));
+        assert_false(grobo_i_slots_wait(&robot, bit, GROBO_I_DEED_TORQUE, GROBO_TORQUE_BRAKE));
+        assert_false(grobo_i_slots_wait(&robot, bit, GROBO_I_DEED_HOLD, GROBO_TORQUE_ON));
+        assert_false(grobo_i_slots_wait(&robot, bit, GROBO_I_DEED_HOLD, GROBO_TORQUE_OFF));
+        assert_false(grobo_i_slots_wait(&robot, GROBO_JOINT_BIT(third_of(j)), GROBO_I_DEED_TORQUE,
+                                        GROBO_TORQUE_ON));
+        slot->txn.sent_us = 0;
+        assert_false(grobo_i_slots_wait(&robot, bit, GROBO_I_DEED_TORQUE, GROBO_TORQUE_ON));
+    }
+}
+
+/* ---- orders ---------------------------------------------------------------------------------- */
+
+/* As urgent as the job that asks; what the engine asks for by itself is as urgent as a user. */
+static void torque_is_as_urgent_as_what_asks_for_it(void **state)
+{
+    (void)state;
+    for (int by_job = 0; by_job < 2; by_job++) {
+        for (int j = 0; j < N; j++) {
+            start();
+            robot.job.kind = by_job ? GROBO_JOB_ESTOP : GROBO_JOB_NONE;
+            robot.job.priority = GROBO_PRIORITY_STOP; /* of the last one, where none runs */
+            assert_int_equal(
+                grobo_i_gate_torque(&robot, GROBO_JOINT_BIT(j), GROBO_TORQUE_BRAKE, GROBO_I_WHOLE),
+                GROBO_OK);
+            expect_used(1);
+            const grobo_robot_slot *slot = &robot.slots[0];
+            assert_int_equal(slot->txn.priority,
+                             by_job ? GROBO_PRIORITY_STOP : GROBO_PRIORITY_USER);
+            assert_int_equal(slot->use, GROBO_I_USE_PLAIN);
+            assert_int_equal(slot->order.deed, GROBO_I_DEED_TORQUE);
+            assert_int_equal(slot->order.torque, GROBO_TORQUE_BRAKE);
+            assert_true(slot->order.joints == GROBO_JOINT_BIT(j));
+            assert_true(slot->order.asked_us == NOW && slot->due_us == GROBO_NEVER_US);
+        }
+    }
+}
+
+static void torque_that_may_not_come_on_is_refused_by_name(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        start();
+        make_limp(j);
+        robot.axes[j].held = false;
+        assert_int_equal(
+            grobo_i_gate_torque(&robot, GROBO_JOINT_BIT(j), GROBO_TORQUE_ON, GROBO_I_WHOLE),
+            GROBO_ERR_STATE);
+        expect_used(0);
+        driver.torque = NULL;
+        assert_int_equal(
+            grobo_i_gate_torque(&robot, GROBO_JOINT_BIT(j), GROBO_TORQUE_OFF, GROBO_I_WHOLE),
+            GROBO_ERR_UNSUPPORTED);
+    }
+}
+
+/* Four at a time, the lowest first. */
+static void small_frames_have_four_joints(void **state)
+{
+    (void)state;
+    start();
+    grobo_joint_mask left = GROBO_JOINTS_ALL(10) & ~GROBO_JOINT_BIT(1);
+    assert_true(grobo_i_take_chunk(&left, GROBO_I_SMALL) == 0x1D); /* 0, 2, 3, 4 */
+    assert_true(left == 0x3E0);
+    assert_true(grobo_i_take_chunk(&left, GROBO_I_WHOLE) == 0x3E0);
+    assert_true(left == 0);
+    left = GROBO_JOINTS_ALL(N);
+    assert_true(grobo_i_take_chunk(&left, GROBO_I_WHOLE) == GROBO_JOINTS_ALL(N));
+    for (int j = 0; j < 10; j++) {
+        make_limp(j);
+    }
+    assert_int_equal(grobo_i_gate_hold(&robot, GROBO_JOINTS_ALL(10), GROBO_I_SMALL), GROBO_OK);
+    expect_used(7);
+    static const grobo_joint_mask be[] = {0xF, 0xF0, 0x300};
+    for (int i = 0; i < 3; i++) {
+        assert_true(robot.slots[i].order.joints == be[i]);
+        assert_int_equal(robot.slots[i].order.deed, GROBO_I_DEED_HOLD);
+        assert_int_equal(robot.slots[i].txn.priority, GROBO_PRIORITY_USER);
+        assert_int_equal(robot.slots[i].use, GROBO_I_USE_PLAIN);
+    }
+}
+
+/* Of those that move, first of all; targets that wait are gone by then. */
+static void a_halt_goes_to_what_moves(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        start();
+        submit(0, GROBO_I_USE_MOTION, (grobo_robot_order){0});
+        submit(1, GROBO_I_USE_SEGMENT, (grobo_robot_order){0});
+        submit(2, GROBO_I_USE_SENSE, (grobo_robot_order){0});
+        robot.over = count_ended;
+        ended = 0;
+        set_going(j);
+        set_going(other_of(j));
+        set_going(third_of(j));
+        robot.axes[third_of(j)].sensed = false;
+        grobo_i_gate_halt(&robot, ~GROBO_JOINT_BIT(other_of(j)));
+        assert_int_equal(ended, 2);
+        expect_used(1U | 4U);
+        const grobo_robot_slot *slot = &robot.slots[0];
+        assert_int_equal(slot->use, GROBO_I_USE_HALT);
+        assert_int_equal(slot->txn.priority, GROBO_PRIORITY_STOP);
+        assert_int_equal(slot->order.deed, GROBO_I_DEED_HALT);
+        assert_true(slot->order.joints == GROBO_JOINT_BIT(j));
+        assert_true(slot->order.asked_us == NOW && slot->order.each && slot->order.stops);
+        assert_int_equal(slot->order.number, 0);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(three_slots_are_kept_for_halts),
+        cmocka_unit_test(a_slot_is_taken_clean),
+        cmocka_unit_test(what_the_bus_is_told_of_a_frame),
+        cmocka_unit_test(what_the_bus_does_not_take_is_free_again),
+        cmocka_unit_test(a_frame_is_asked_for_when_its_first_attempt_leaves),
+        cmocka_unit_test(frames_of_one_use_are_taken_back),
+        cmocka_unit_test(every_slot_is_looked_at),
+        cmocka_unit_test(goals_that_wait_are_taken_back),
+        cmocka_unit_test(torque_that_waits_is_kept_off),
+        cmocka_unit_test(a_frame_that_waits_is_known_by_what_it_does),
+        cmocka_unit_test(torque_is_as_urgent_as_what_asks_for_it),
+        cmocka_unit_test(torque_that_may_not_come_on_is_refused_by_name),
+        cmocka_unit_test(small_frames_have_four_joints),
+        cmocka_unit_test(a_halt_goes_to_what_moves),
+    };
+    return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
+}
