@@ -75,7 +75,7 @@ static int far_goal = -1; /* a joint that goes twice as far in the frame expecte
 static void expect_goals(grobo_joint_mask of, double way_deg, int64_t time_us)
 {
     uint8_t packet[GROBO_RS30X_PACKET_MAX_BYTES];
-    grobo_rs30x_goal goals[N];
+    grobo_rs30x_goal goals[GROBO_JOINTS_MAX];
     size_t n = 0;
     for (int j = 0; j < N; j++) {
         if ((of & GROBO_JOINT_BIT(j)) != 0) {
@@ -173,7 +173,7 @@ static void a_halt_is_noted_of_what_moves(void **state)
         before[j].way.from_rad = robot.axes[j].way.from_rad;
         expect_axes();
         expect_goals(GROBO_JOINT_BIT(j), 10.4, 100 * MS);
-        assert_true(robot.played_joints == (GROBO_JOINTS_ALL(N) & ~GROBO_JOINT_BIT(j)));
+        assert_true(robot.played_joints == (GROBO_JOINTS_ALL(N) & all_but(j)));
         drop();
     }
 }
@@ -405,7 +405,7 @@ static void a_raw_goal_is_noted_like_one_of_ours(void **state)
         expect_equal(robot.axes[j].way.to_rad, before[j].way.to_rad, "goal");
         before[j].way.to_rad = robot.axes[j].way.to_rad;
         expect_axes();
-        assert_true(robot.played_joints == (GROBO_JOINTS_ALL(N) & ~GROBO_JOINT_BIT(j)));
+        assert_true(robot.played_joints == (GROBO_JOINTS_ALL(N) & all_but(j)));
         drop();
     }
 }
@@ -1008,7 +1008,7 @@ static void only_the_target_of_that_number_waits_no_more(void **state)
         grobo_i_gate_unwait(&robot, &(grobo_robot_order){.joints = GROBO_JOINTS_ALL(N)});
         grobo_i_gate_unwait(&robot, &(grobo_robot_order){.joints = GROBO_JOINTS_ALL(N) &
                                                                    ~GROBO_JOINT_BIT(j) &
-                                                                   ~GROBO_JOINT_BIT(other_of(j)),
+                                                                   all_but(other_of(j)),
                                                          .number = NUMBER});
         expect_axes();
         grobo_i_gate_unwait(&robot,
@@ -1337,14 +1337,14 @@ static void joints_are_ready_that_were_read_and_hold(void **state)
         assert_true(grobo_i_gate_ready(&robot, GROBO_JOINTS_ALL(N)));
         robot.axes[j].sensed = false; /* it is known to hold */
         assert_false(grobo_i_gate_ready(&robot, GROBO_JOINTS_ALL(N)));
-        assert_true(grobo_i_gate_ready(&robot, ~GROBO_JOINT_BIT(j)));
+        assert_true(grobo_i_gate_ready(&robot, all_but(j)));
         robot.axes[j].sensed = true;
         robot.axes[j].torque_known = false;
         assert_false(grobo_i_gate_ready(&robot, GROBO_JOINTS_ALL(N)));
         robot.axes[j].torque_known = true;
         make_limp(j);
         assert_false(grobo_i_gate_ready(&robot, GROBO_JOINTS_ALL(N)));
-        assert_true(grobo_i_gate_ready(&robot, ~GROBO_JOINT_BIT(j)));
+        assert_true(grobo_i_gate_ready(&robot, all_but(j)));
     }
 }
 
@@ -1396,5 +1396,5 @@ int main(void)
         cmocka_unit_test(a_target_is_checked_for_numbers_and_limits),
         cmocka_unit_test(joints_are_ready_that_were_read_and_hold),
     };
-    return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
+    return axes_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

@@ -154,7 +154,7 @@ static void who_leaves_does_not_look_at_what_was_not_read(void **state)
         let_go_astray(j, &tellings[0]);
         let_go_astray(other_of(j), &tellings[0]);
         let_go_astray(third_of(j), &tellings[0]);
-        robot.job.joints = ~GROBO_JOINT_BIT(third_of(j));
+        robot.job.joints = all_but(third_of(j));
         robot.job.failed = GROBO_JOINT_BIT(other_of(j)) | GROBO_JOINT_BIT(j ^ 1);
         robot.job.result = GROBO_ERR_TIMEOUT;
         assert_int_equal(take_step(), GROBO_I_NEXT);
@@ -210,7 +210,7 @@ static void who_leaves_gives_up_on_a_joint_that_goes_on(void **state)
 static void who_sits_down_aims_at_the_rest_of_what_holds(void **state)
 {
     (void)state;
-    double rest_rad[N];
+    double rest_rad[GROBO_JOINTS_MAX];
     for (int j = 0; j < N; j++) {
         for (int has = 0; has < 2; has++) {
             start();
@@ -220,11 +220,11 @@ static void who_sits_down_aims_at_the_rest_of_what_holds(void **state)
             driver.rest_rad = has ? rest_rad : NULL;
             begin_job(GROBO_JOB_EXIT, grobo_i_script_exit_sit, AIM_REST);
             robot.job.rounds = 3;
-            robot.job.joints = ~GROBO_JOINT_BIT(other_of(j));
+            robot.job.joints = all_but(other_of(j));
             robot.axes[third_of(j)].state.torque = GROBO_TORQUE_BRAKE;
             make_limp(j);
             assert_int_equal(take_step(), GROBO_I_NEXT);
-            grobo_joint_mask be = ~bits(j, other_of(j)) & ~GROBO_JOINT_BIT(third_of(j));
+            grobo_joint_mask be = ~bits(j, other_of(j)) & all_but(third_of(j));
             assert_true(robot.job.target.set == be && robot.job.pending == be);
             assert_int_equal(robot.job.rounds, 0);
             assert_true(robot.soft && robot.soft_us == GROBO_NEVER_US);
@@ -423,5 +423,5 @@ int main(void)
         cmocka_unit_test(a_reset_makes_the_next_move_slow),
         cmocka_unit_test(an_approach_is_stopped_whatever_stops_it),
     };
-    return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
+    return axes_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

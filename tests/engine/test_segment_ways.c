@@ -124,7 +124,7 @@ static void joints_are_asked_for_by_their_bits(void **state)
         assert_int_equal(grobo_i_lowest(GROBO_JOINT_BIT(j) | GROBO_JOINT_BIT(N - 1)), j);
         robot.axes[j].adrift = true;
         assert_true(grobo_i_adrift(&robot, GROBO_JOINT_BIT(j)));
-        assert_false(grobo_i_adrift(&robot, ~GROBO_JOINT_BIT(j)));
+        assert_false(grobo_i_adrift(&robot, all_but(j)));
         robot.axes[j].next = 1;
         assert_true(grobo_i_moving(&robot, NOW));
         robot.axes[j].next = 0;
@@ -135,11 +135,11 @@ static void joints_are_asked_for_by_their_bits(void **state)
         assert_false(grobo_i_moving(&robot, NOW));
         assert_false(grobo_i_all_sensed(&robot, GROBO_JOINTS_ALL(N), &joint));
         assert_int_equal(joint, j);
-        assert_true(grobo_i_all_sensed(&robot, ~GROBO_JOINT_BIT(j), &joint));
+        assert_true(grobo_i_all_sensed(&robot, all_but(j), &joint));
         assert_true(grobo_i_all_on(&robot, GROBO_JOINTS_ALL(N)));
         make_limp(j);
         assert_false(grobo_i_all_on(&robot, GROBO_JOINT_BIT(j)));
-        assert_true(grobo_i_all_on(&robot, ~GROBO_JOINT_BIT(j)));
+        assert_true(grobo_i_all_on(&robot, all_but(j)));
     }
 }
 
@@ -379,9 +379,11 @@ static void a_way_that_was_not_told_on_is_given_up(void **state)
         for (size_t i = 0; i < sizeof jobs / sizeof jobs[0]; i++) {
             for (int over = 0; over < 2; over++) {
                 start();
-                robot.events_n = 0;
+                robot.events_n = robot.events_head = 0;
                 robot.job.kind = jobs[i].kind;
                 robot.job.number = 5;
+                bool plays = jobs[i].kind == GROBO_JOB_PLAY;
+                robot.sequencer.state = plays ? GROBO_SEQUENCER_PLAYING : GROBO_SEQUENCER_FINISHED;
                 robot.renewed_us = NOW - 250500;
                 set_going_in_segments(j);
                 set_going_in_segments(other_of(j));
@@ -391,6 +393,9 @@ static void a_way_that_was_not_told_on_is_given_up(void **state)
                 grobo_i_segments_step(&robot);
                 assert_int_equal(robot.counters.stalls, over);
                 assert_int_equal(robot.soft, over);
+                assert_int_equal(robot.sequencer.state, !plays ? GROBO_SEQUENCER_FINISHED
+                                                        : over ? GROBO_SEQUENCER_IDLE
+                                                               : GROBO_SEQUENCER_PLAYING);
                 assert_true(!over || robot.soft_us == GROBO_NEVER_US);
                 assert_int_equal(robot.job.kind,
                                  over && jobs[i].ends ? GROBO_JOB_NONE : jobs[i].kind);
@@ -407,6 +412,9 @@ static void a_way_that_was_not_told_on_is_given_up(void **state)
                     expect_equal(event->u.trip.value, 150.5, "ms late");
                     assert_false(event->u.trip.latched);
                     assert_false(robot.trip.latched);
+                    bool tells = jobs[i].ends && jobs[i].kind != GROBO_JOB_SETTLE;
+                    assert_int_equal(robot.events_n, tells ? 2 : 1);
+                    assert_true(!tells || event[1].u.job.result == GROBO_ERR_CANCELED);
                 }
                 expect_axes();
                 /* The other one is still on its way. */
@@ -434,5 +442,5 @@ int main(void)
         cmocka_unit_test(a_way_that_was_not_told_on_is_looked_at_when_it_is_over),
         cmocka_unit_test(a_way_that_was_not_told_on_is_given_up),
     };
-    return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
+    return axes_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

@@ -239,6 +239,10 @@ static void every_slot_is_looked_at(void **state)
             slot->robot = &robot;
             slot->use = (uint8_t)use;
             slot->job = i == at ? 4 : 5;
+            slot->order =
+                (grobo_robot_order){.joints = 2,
+                                    .deed = GROBO_I_DEED_TORQUE,
+                                    .torque = i == at ? GROBO_TORQUE_ON : GROBO_TORQUE_BRAKE};
             assert_int_equal(driver.sense(&driver, NULL, 0, GROBO_SENSE_ALL, &slot->exchange), 0);
             assert_int_equal(
                 grobo_i_slot_send(slot, i == at ? GROBO_PRIORITY_MOTION : GROBO_PRIORITY_SENSE),
@@ -247,18 +251,58 @@ static void every_slot_is_looked_at(void **state)
         robot.over = count_ended;
         ended = 0;
         assert_true(grobo_i_slots_busy(&robot, GROBO_I_USE_MOTION));
-        switch (at % 3) {
+        assert_true(grobo_i_slots_wait(&robot, 2, GROBO_I_DEED_TORQUE, GROBO_TORQUE_ON));
+        switch ((at + (n_joints & 1)) % 4) { /* on both wirings all of the last slots */
         case 0:
             grobo_i_slots_cancel_goals(&robot);
             break;
         case 1:
             grobo_i_slots_cancel_job(&robot, 4);
             break;
+        case 2:
+            grobo_i_slots_keep_off(&robot, 2);
+            break;
         default:
             grobo_i_slots_cancel(&robot, GROBO_I_USE_MOTION);
             break;
         }
         expect_used(((1U << SLOTS) - 1) & ~(1U << at));
+    }
+}
+
+static void count_in_order(grobo_robot_slot *slot, int result, const grobo_packet *reply)
+{
+    (void)reply;
+    assert_int_equal(result, GROBO_ERR_CANCELED);
+    assert_int_equal(slot->order.part, ended);
+    ended++;
+}
+
+static void frames_are_taken_back_in_the_order_of_their_slots(void **state)
+{
+    (void)state;
+    for (int how = 0; how < 4; how++) {
+        start();
+        for (int i = 0; i < 4; i++) {
+            submit(i, GROBO_I_USE_MOTION,
+                   (grobo_robot_order){.joints = 2,
+                                       .part = (uint8_t)i,
+                                       .deed = GROBO_I_DEED_TORQUE,
+                                       .torque = GROBO_TORQUE_ON})
+                ->job = 4;
+        }
+        robot.over = count_in_order;
+        ended = 0;
+        if (how == 0) {
+            grobo_i_slots_cancel(&robot, GROBO_I_USE_MOTION);
+        } else if (how == 1) {
+            grobo_i_slots_cancel_job(&robot, 4);
+        } else if (how == 2) {
+            grobo_i_slots_cancel_goals(&robot);
+        } else {
+            grobo_i_slots_keep_off(&robot, 2);
+        }
+        assert_int_equal(ended, 4);
     }
 }
 
@@ -387,7 +431,7 @@ static void small_frames_have_four_joints(void **state)
 {
     (void)state;
     start();
-    grobo_joint_mask left = GROBO_JOINTS_ALL(10) & ~GROBO_JOINT_BIT(1);
+    grobo_joint_mask left = GROBO_JOINTS_ALL(10) & all_but(1);
     assert_true(grobo_i_take_chunk(&left, GROBO_I_SMALL) == 0x1D); /* 0, 2, 3, 4 */
     assert_true(left == 0x3E0);
     assert_true(grobo_i_take_chunk(&left, GROBO_I_WHOLE) == 0x3E0);
@@ -423,7 +467,7 @@ static void a_halt_goes_to_what_moves(void **state)
         set_going(other_of(j));
         set_going(third_of(j));
         robot.axes[third_of(j)].sensed = false;
-        grobo_i_gate_halt(&robot, ~GROBO_JOINT_BIT(other_of(j)));
+        grobo_i_gate_halt(&robot, all_but(other_of(j)));
         assert_int_equal(ended, 2);
         expect_used(1U | 4U);
         const grobo_robot_slot *slot = &robot.slots[0];
@@ -446,6 +490,7 @@ int main(void)
         cmocka_unit_test(a_frame_is_asked_for_when_its_first_attempt_leaves),
         cmocka_unit_test(frames_of_one_use_are_taken_back),
         cmocka_unit_test(every_slot_is_looked_at),
+        cmocka_unit_test(frames_are_taken_back_in_the_order_of_their_slots),
         cmocka_unit_test(goals_that_wait_are_taken_back),
         cmocka_unit_test(torque_that_waits_is_kept_off),
         cmocka_unit_test(a_frame_that_waits_is_known_by_what_it_does),
@@ -454,5 +499,5 @@ int main(void)
         cmocka_unit_test(small_frames_have_four_joints),
         cmocka_unit_test(a_halt_goes_to_what_moves),
     };
-    return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
+    return axes_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

@@ -15,7 +15,8 @@
 
 grobo_robot robot;
 grobo_driver driver;
-grobo_robot_axis before[N];
+int n_joints = GROBO_JOINTS_MAX;
+grobo_robot_axis before[GROBO_JOINTS_MAX];
 int inspected;
 
 static grobo_driver plain;
@@ -47,9 +48,9 @@ static int inspect_in_context(const grobo_driver *self, void *ctx, const uint8_t
 
 /* ---- a robot in a known state ---------------------------------------------------------------- */
 
-void make_robot(int n_joints, const grobo_robot_config *config)
+void make_robot(int n, const grobo_robot_config *config)
 {
-    plain = *many_unlike_joints(rig_wiring, n_joints);
+    plain = *many_unlike_joints(rig_wiring, n);
     driver = plain;
     driver.posture = posture_in_context;
     driver.torque = torque_in_context;
@@ -77,6 +78,15 @@ void start_with(const grobo_robot_config *config)
         axis->last = 3;
         axis->sensed = axis->has_target = axis->torque_known = true;
         axis->wants_torque = axis->held = true;
+    }
+    for (int j = N; j < GROBO_JOINTS_MAX; j++) { /* of no joint: who looks there finds one moving */
+        robot.axes[j] = (grobo_robot_axis){.way = {0, 1, NOW - S, NOW + 9 * S},
+                                           .told_to_us = NOW,
+                                           .next = 1,
+                                           .in_segments = true,
+                                           .sensed = true,
+                                           .has_target = true,
+                                           .adrift = true};
     }
     keep_axes();
 }
@@ -111,6 +121,11 @@ grobo_joint_mask bits(int joint, int other)
     return GROBO_JOINT_BIT(joint) | GROBO_JOINT_BIT(other);
 }
 
+grobo_joint_mask all_but(int joint)
+{
+    return GROBO_JOINTS_ALL(N) & ~GROBO_JOINT_BIT(joint);
+}
+
 void make_limp(int joint)
 {
     robot.axes[joint].state.torque = GROBO_TORQUE_OFF;
@@ -126,6 +141,17 @@ void set_going(int joint)
 void latch(grobo_trip reason)
 {
     robot.trip = (grobo_trip_info){.trip = reason, .joint = -1, .latched = true};
+}
+
+int axes_on_both_wirings(const struct CMUnitTest *tests, size_t n)
+{
+    int failed = 0;
+    for (int bus = 0; bus < 2; bus++) {
+        rig_wiring = bus ? GROBO_WIRING_BUS : GROBO_WIRING_BOARD;
+        n_joints = GROBO_JOINTS_MAX - bus;
+        failed += _cmocka_run_group_tests(bus ? "on a bus" : "on the board", tests, n, NULL, NULL);
+    }
+    return failed;
 }
 
 /* ---- comparing ------------------------------------------------------------------------------- */
@@ -173,7 +199,7 @@ static void expect_axis(int joint)
 
 void expect_axes(void)
 {
-    for (int j = 0; j < N; j++) {
+    for (int j = 0; j < GROBO_JOINTS_MAX; j++) {
         expect_axis(j);
     }
 }

@@ -11,15 +11,23 @@
 
 #define RAD(deg) ((deg)*0.017453292519943295)
 
-enum { N = GROBO_JOINTS_MAX, MS = 1000, S = 1000000, NOW = 50 * S };
+enum { MS = 1000, S = 1000000, NOW = 50 * S };
+
+/* How many joints there are: as many as there may be, or one less, which is odd. */
+extern int n_joints;
+#define N n_joints
 
 extern grobo_robot robot;
 extern grobo_driver driver;
-extern grobo_robot_axis before[N]; /* what robot.axes should be */
-extern int inspected;              /* what reading a raw frame results in, where it is an error */
+extern grobo_robot_axis before[GROBO_JOINTS_MAX]; /* what robot.axes should be */
+extern int inspected; /* what reading a raw frame results in, where it is an error */
+
+struct CMUnitTest;
+/* Runs tests on both wirings, each with another number of joints; how many failed. */
+int axes_on_both_wirings(const struct CMUnitTest *tests, size_t n);
 
 /* Of so many joints, none of which was read; the link is up. */
-void make_robot(int n_joints, const grobo_robot_config *config);
+void make_robot(int n, const grobo_robot_config *config);
 /* N joints hold where they were sent, and whatever a frame that leaves sets is set otherwise. */
 void start_with(const grobo_robot_config *config);
 void start(void);
@@ -30,6 +38,7 @@ double speed_dps(int joint);
 int other_of(int joint);
 int third_of(int joint);
 grobo_joint_mask bits(int joint, int other);
+grobo_joint_mask all_but(int joint);
 
 void make_limp(int joint);
 /* It moves 20 degrees on, at 10 degrees a second, and has been for a second. */
