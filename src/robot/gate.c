@@ -46,7 +46,7 @@ int grobo_i_gate_target(grobo_robot *robot, grobo_posture *target)
         result = clamped; /* a joint behind the first one has no number at all */
         joint = -1;
     }
-    robot->fault_joint = result < 0 ? joint : -1;
+    robot->fault_joint = joint;
     robot->fault_deg = joint >= 0 ? grobo_deg_from_rad(target->angle_rad[joint]) : 0;
     return result;
 }
