@@ -266,6 +266,10 @@ static void an_exit_is_carried_out_as_it_is_asked_for(void **state)
             grobo_i_trip(&rig.robot, GROBO_TRIP_TEMPERATURE, CHEST, 75, true);
         }
         rig_run(&rig, 100000);
+        rig_expect(
+            &rig,
+            grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(CHEST), GROBO_SENSE_POSITION, rig.now_us),
+            GROBO_OK);
         assert_int_equal(
             grobo_i_gate_torque(&rig.robot, GROBO_JOINT_BIT(NECK), GROBO_TORQUE_ON, GROBO_I_WHOLE),
             rows[i].latched ? GROBO_ERR_LATCHED : GROBO_OK);
@@ -295,6 +299,7 @@ static void an_exit_is_refused_by_name(void **state)
     int number = grobo_robot_estop(&rig.robot, rig.now_us);
     assert_true(number > 0);
     assert_int_equal(grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD, rig.now_us), GROBO_ERR_STATE);
+    assert_int_equal(grobo_robot_exit(&rig.robot, GROBO_EXIT_SIT, rig.now_us), GROBO_ERR_STATE);
     assert_int_equal(grobo_robot_cancel(&rig.robot, rig.now_us), GROBO_ERR_STATE);
     assert_int_equal(grobo_robot_reset(&rig.robot, rig.now_us), GROBO_ERR_STATE);
     rig_expect(&rig, number, GROBO_OK);
@@ -304,6 +309,57 @@ static void an_exit_is_refused_by_name(void **state)
     assert_int_equal(grobo_robot_exit(&rig.robot, (grobo_exit_policy)9, rig.now_us),
                      GROBO_ERR_CLOSED);
     assert_int_equal(grobo_robot_estop(&rig.robot, rig.now_us), GROBO_ERR_CLOSED);
+}
+
+/* What stops the robot is not cancelled, nor what the engine does by itself. */
+static void a_job_is_cancelled_that_somebody_asked_for(void **state)
+{
+    (void)state;
+    for (int kind = GROBO_JOB_NONE; kind <= GROBO_JOB_SETTLE; kind++) {
+        bool stays = kind == GROBO_JOB_NONE || kind == GROBO_JOB_ESTOP || kind == GROBO_JOB_SETTLE;
+        start();
+        begin_job((grobo_job_kind)kind, grobo_i_script_exit_hold, QUIET);
+        robot.last_number = robot.job.number;
+        if (kind == GROBO_JOB_ESTOP) {
+            latch(GROBO_TRIP_ESTOP);
+        }
+        assert_int_equal(grobo_robot_cancel(&robot, NOW), stays ? GROBO_ERR_STATE : GROBO_OK);
+        assert_int_equal(robot.job.kind, stays ? kind : GROBO_JOB_NONE);
+    }
+}
+
+/* Another job than the one that began it. */
+static void a_motion_goes_on_when_a_reading_is_cancelled(void **state)
+{
+    (void)state;
+    static const rig_key slow[] = {{0, {{NECK, 0}}}, {3000, {{NECK, 30}}}};
+    rig_start_at(&rig, 0, &quiet);
+    rig_clip_init(&clip, slow, 2);
+    clip.only = bits(NECK, CHEST);
+    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL, rig.now_us), GROBO_OK);
+    rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
+    rig_run(&rig, S);
+    int number = grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL, rig.now_us);
+    assert_int_equal(grobo_robot_cancel(&rig.robot, rig.now_us), GROBO_OK);
+    rig_expect(&rig, number, GROBO_ERR_CANCELED);
+    rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
+    rig_run(&rig, 200000);
+    assert_true(fabs(rig_angle_deg(&rig, NECK) - 30) < 0.1);
+}
+
+/* One that no line has carried is forgotten with the stop. */
+static void a_reset_owes_no_stop_to_the_next_line(void **state)
+{
+    (void)state;
+    for (int resets = 0; resets < 2; resets++) {
+        rig_start(&rig, &quiet, NULL);
+        rig_power(&rig);
+        grobo_robot_link_down(&rig.robot, rig.now_us);
+        assert_int_equal(grobo_robot_estop(&rig.robot, rig.now_us), GROBO_ERR_CLOSED);
+        assert_true(!resets || grobo_robot_reset(&rig.robot, rig.now_us) == GROBO_OK);
+        grobo_robot_link_up(&rig.robot, rig.now_us);
+        assert_int_equal(grobo_robot_job(&rig.robot), resets ? GROBO_JOB_NONE : GROBO_JOB_ESTOP);
+    }
 }
 
 static void an_emergency_stop_is_for_all_joints_and_bounded(void **state)
@@ -419,6 +475,9 @@ int main(void)
         cmocka_unit_test(who_sits_down_aims_at_the_rest_of_what_holds),
         cmocka_unit_test(an_exit_is_carried_out_as_it_is_asked_for),
         cmocka_unit_test(an_exit_is_refused_by_name),
+        cmocka_unit_test(a_job_is_cancelled_that_somebody_asked_for),
+        cmocka_unit_test(a_motion_goes_on_when_a_reading_is_cancelled),
+        cmocka_unit_test(a_reset_owes_no_stop_to_the_next_line),
         cmocka_unit_test(an_emergency_stop_is_for_all_joints_and_bounded),
         cmocka_unit_test(a_reset_makes_the_next_move_slow),
         cmocka_unit_test(an_approach_is_stopped_whatever_stops_it),
