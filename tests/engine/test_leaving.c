@@ -288,6 +288,21 @@ static void an_exit_is_carried_out_as_it_is_asked_for(void **state)
     }
 }
 
+static void an_exit_stops_what_moves_whatever_the_job(void **state)
+{
+    (void)state;
+    static const grobo_job_kind kinds[] = {GROBO_JOB_NONE, GROBO_JOB_SENSE, GROBO_JOB_MOVE};
+    for (int i = 0; i < 3; i++) {
+        start();
+        begin_job(kinds[i], grobo_i_script_sense, QUIET);
+        robot.last_number = robot.job.number;
+        set_going(3);
+        assert_int_equal(grobo_robot_exit(&robot, GROBO_EXIT_HOLD, NOW), 6);
+        assert_int_equal(robot.job.kind, GROBO_JOB_EXIT);
+        assert_true(halted() == GROBO_JOINT_BIT(3));
+    }
+}
+
 static void an_exit_is_refused_by_name(void **state)
 {
     (void)state;
@@ -315,16 +330,23 @@ static void an_exit_is_refused_by_name(void **state)
 static void a_job_is_cancelled_that_somebody_asked_for(void **state)
 {
     (void)state;
-    for (int kind = GROBO_JOB_NONE; kind <= GROBO_JOB_SETTLE; kind++) {
+    for (int i = 2 * GROBO_JOB_NONE; i <= 2 * GROBO_JOB_SETTLE + 1; i++) {
+        int kind = i / 2;
+        bool frame_moves = i % 2 != 0;
         bool stays = kind == GROBO_JOB_NONE || kind == GROBO_JOB_ESTOP || kind == GROBO_JOB_SETTLE;
         start();
         begin_job((grobo_job_kind)kind, grobo_i_script_exit_hold, QUIET);
         robot.last_number = robot.job.number;
+        robot.job.order.moves = frame_moves;
+        set_going(3);
         if (kind == GROBO_JOB_ESTOP) {
             latch(GROBO_TRIP_ESTOP);
         }
         assert_int_equal(grobo_robot_cancel(&robot, NOW), stays ? GROBO_ERR_STATE : GROBO_OK);
         assert_int_equal(robot.job.kind, stays ? kind : GROBO_JOB_NONE);
+        /* What it moves is stopped, and no other job's. */
+        bool moves = kind == GROBO_JOB_MOVE || kind == GROBO_JOB_PLAY || frame_moves;
+        assert_true(halted() == (!stays && moves ? GROBO_JOINT_BIT(3) : 0));
     }
 }
 
@@ -474,6 +496,7 @@ int main(void)
         cmocka_unit_test(who_leaves_gives_up_on_a_joint_that_goes_on),
         cmocka_unit_test(who_sits_down_aims_at_the_rest_of_what_holds),
         cmocka_unit_test(an_exit_is_carried_out_as_it_is_asked_for),
+        cmocka_unit_test(an_exit_stops_what_moves_whatever_the_job),
         cmocka_unit_test(an_exit_is_refused_by_name),
         cmocka_unit_test(a_job_is_cancelled_that_somebody_asked_for),
         cmocka_unit_test(a_motion_goes_on_when_a_reading_is_cancelled),

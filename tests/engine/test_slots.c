@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include <cmocka.h>
+#include <math.h>
 #include <string.h>
 
 #include "tests/support/axes_kit.h"
@@ -383,6 +384,245 @@ static void a_frame_that_waits_is_known_by_what_it_does(void **state)
 
 /* ---- orders ---------------------------------------------------------------------------------- */
 
+/* A target of one joint, so far from where it is. */
+static grobo_posture target_of(int joint, double way_deg, int64_t time_us)
+{
+    grobo_posture target;
+    assert_int_equal(grobo_posture_init(&target, N), 0);
+    target.set = GROBO_JOINT_BIT(joint);
+    target.angle_rad[joint] = here_rad(joint) + RAD(way_deg);
+    target.time_us = time_us;
+    return target;
+}
+
+static const grobo_i_motion plainly = {.priority = GROBO_PRIORITY_MOTION, .due_us = GROBO_NEVER_US};
+
+/* In whole steps of the wire, one at least. */
+static void a_target_gets_the_time_that_it_asks_for(void **state)
+{
+    (void)state;
+    static const struct {
+        int64_t asked_us, gets_us;
+    } rows[] = {{0, 1230000},          {1, 10000},     {10000, 10000},
+                {14999, 10000},        {15000, 20000}, {2000000, 2000000},
+                {4999, 10000},         {5000, 10000},  {GROBO_PLAY_TIME_MAX_US, 163830000},
+                {INT64_MAX, 163830000}};
+    for (int j = 0; j < N; j++) {
+        for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+            start_with(&(grobo_robot_config){.default_time_us = 1234567});
+            const grobo_posture target = target_of(j, 0.1, rows[i].asked_us);
+            robot.motion = i == 0 ? UINT32_MAX : 41;
+            robot.motion_us = 7;
+            keep_axes();
+            assert_int_equal(grobo_i_gate_send(&robot, &target, &plainly), GROBO_OK);
+            before[j].next = i == 0 ? 1 : 42;
+            before[j].next_rad = target.angle_rad[j];
+            before[j].next_time_us = rows[i].gets_us;
+            expect_axes();
+            grobo_bus_cost cost;
+            grobo_bus_cost_of(&robot.bus, &robot.slots[0].txn, &cost);
+            assert_int_equal(robot.motion_us, cost.total_us);
+            expect_used(1);
+        }
+    }
+}
+
+/* The others of a move get as much; the end of a motion takes no longer. */
+static void a_target_that_is_too_fast_gets_more_time(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        for (int how = 0; how < 4; how++) { /* all alike, each, the end of a motion, slowly */
+            grobo_i_motion motion = plainly;
+            start();
+            grobo_posture target = target_of(j, j < 20 ? 20.05 : -20.05, 10000);
+            target.set = bits(j, other_of(j));
+            target.angle_rad[other_of(j)] = here_rad(other_of(j));
+            motion.each = how == 1;
+            motion.rests = how == 2;
+            robot.soft = how == 3;
+            assert_int_equal(grobo_i_gate_send(&robot, &target, &motion), GROBO_OK);
+            double dps = how == 3 ? 60 : speed_dps(j);
+            int64_t be_us = (int64_t)ceil((20.05 - 0.1) / dps * 100) * 10000;
+            assert_int_equal(robot.axes[j].next_time_us, how == 2 ? 10000 : be_us);
+            assert_int_equal(robot.axes[other_of(j)].next_time_us,
+                             how == 1 || how == 2 ? 10000 : be_us);
+        }
+    }
+}
+
+static void how_a_target_is_sent_is_in_its_order(void **state)
+{
+    (void)state;
+    for (int bit = 0; bit < 64; bit++) {
+        start();
+        robot.acting = 9;
+        robot.soft = (bit & 1) != 0;
+        const grobo_i_motion how = {.priority = (bit & 16) != 0 ? GROBO_PRIORITY_USER
+                                                                : GROBO_PRIORITY_MOTION,
+                                    .due_us = (bit & 32) != 0 ? NOW - 1 : GROBO_NEVER_US,
+                                    .each = (bit & 2) != 0,
+                                    .single = (bit & 4) != 0,
+                                    .stops = (bit & 8) != 0,
+                                    .rests = (bit & 3) == 3};
+        const grobo_posture target = target_of(bit % N, 0.1, S);
+        assert_int_equal(grobo_i_gate_send(&robot, &target, &how), GROBO_OK);
+        const grobo_robot_slot *slot = &robot.slots[0];
+        assert_int_equal(slot->order.deed, GROBO_I_DEED_GOAL);
+        assert_true(slot->order.joints == GROBO_JOINT_BIT(bit % N));
+        assert_int_equal(slot->order.number, 1);
+        assert_int_equal(slot->order.soft, (bit & 1) != 0);
+        assert_int_equal(slot->order.each, how.each);
+        assert_int_equal(slot->order.single, how.single);
+        assert_int_equal(slot->order.stops, how.stops);
+        assert_int_equal(slot->order.rests, how.rests);
+        assert_true(slot->order.moves);
+        assert_int_equal(slot->use, GROBO_I_USE_MOTION);
+        assert_int_equal(slot->txn.priority, how.priority);
+        assert_true(slot->due_us == how.due_us);
+        assert_int_equal(slot->job, (bit & 32) != 0 ? 0 : 9); /* a played one is of no job */
+    }
+}
+
+static int stabilized;
+
+static int turn_by_a_degree(const grobo_driver *self, void *ctx, const grobo_posture *sensed,
+                            grobo_posture *target)
+{
+    assert_ptr_equal(self, &driver);
+    assert_non_null(ctx);
+    assert_true(sensed->set == GROBO_JOINTS_ALL(N));
+    for (int j = 0; j < N; j++) {
+        expect_equal(sensed->angle_rad[j], here_rad(j), "sensed");
+        target->angle_rad[j] += RAD(1);
+    }
+    return stabilized;
+}
+
+/* All of it waits, or nothing; what waited before goes on waiting. */
+static void a_target_that_is_refused_does_not_wait(void **state)
+{
+    (void)state;
+    static const struct {
+        int result;
+        bool unread, beyond, as_is, full;
+    } rows[] = {
+        {GROBO_OK, false, false, false, false},        {GROBO_OK, false, false, true, false},
+        {GROBO_ERR_STALE, true, false, true, false},   {GROBO_ERR_LIMIT, false, true, true, false},
+        {GROBO_ERR_SPACE, false, false, false, false}, {GROBO_ERR_FULL, false, false, true, true}};
+    for (int j = 0; j < N; j++) {
+        for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+            const int result = rows[i].result;
+            start();
+            grobo_posture target = target_of(j, rows[i].beyond ? 300 : 2, S);
+            const grobo_i_motion how = {.priority = GROBO_PRIORITY_MOTION,
+                                        .due_us = GROBO_NEVER_US,
+                                        .as_is = rows[i].as_is};
+            robot.axes[j].sensed = !rows[i].unread;
+            robot.axes[other_of(j)].next = 1000;
+            robot.fault_joint = 99;
+            driver.stabilize = turn_by_a_degree;
+            stabilized = result == GROBO_ERR_SPACE ? GROBO_ERR_SPACE : GROBO_OK;
+            for (int k = 0; rows[i].full && k < SLOTS; k++) {
+                robot.slots[k].use = GROBO_I_USE_PLAIN;
+            }
+            assert_int_equal(grobo_i_gate_send(&robot, &target, &how), result);
+            bool waits = result == GROBO_OK;
+            assert_int_equal(robot.axes[j].next, waits);
+            assert_int_equal(robot.axes[other_of(j)].next, 1000);
+            if (waits) {
+                expect_equal(robot.axes[j].next_rad, here_rad(j) + RAD(rows[i].as_is ? 2 : 3),
+                             "target");
+            }
+            assert_true(rows[i].full || robot.slots[0].use == (waits ? GROBO_I_USE_MOTION : 0));
+            int fault = rows[i].unread || rows[i].beyond ? j : result == GROBO_ERR_SPACE ? 99 : -1;
+            assert_int_equal(robot.fault_joint, fault);
+        }
+    }
+}
+
+static int joints_fit;  /* into one frame of this driver */
+static int frames_each; /* that it needs for one joint; less than 0: it fails */
+static grobo_driver roomy;
+
+static int posture_of_few(const grobo_driver *self, void *ctx, const grobo_target *target, int part,
+                          grobo_exchange *exchange)
+{
+    int count = grobo_joints_count(target->posture.set);
+    if (frames_each < 0) {
+        return GROBO_ERR_SPACE;
+    }
+    int frames = count > joints_fit ? 2 : count == 1 ? frames_each : 1;
+    int result = roomy.posture(self, ctx, target, 0, exchange);
+    return part < frames ? result : 0;
+}
+
+/* As few frames as the driver can do with, of joints of their own. */
+static void a_target_is_parted_as_the_driver_needs_it(void **state)
+{
+    (void)state;
+    static const struct {
+        int joints, fit, each, frames;
+        grobo_joint_mask be[4];
+    } rows[] = {
+        {6, 6, 1, 1, {0x3F}},       {6, 5, 1, 2, {0x07, 0x38}},
+        {6, 3, 1, 2, {0x07, 0x38}}, {6, 2, 1, 3, {0x03, 0x0C, 0x30}},
+        {5, 3, 1, 2, {0x07, 0x18}}, {4, 1, 1, 4, {1, 2, 4, 8}},
+        {2, 1, 2, 4, {1, 1, 2, 2}}, {1, 6, 1, 1, {1}},
+        {1, 6, 3, 3, {1, 1, 1}},    {1, 6, 0, 0, {0}},
+        {2, 1, 0, 0, {0}},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        start();
+        grobo_posture target = target_of(0, 1, S);
+        roomy = driver;
+        driver.posture = posture_of_few;
+        joints_fit = rows[i].fit;
+        frames_each = rows[i].each;
+        target.set = GROBO_JOINTS_ALL(rows[i].joints);
+        for (int j = 0; j < rows[i].joints; j++) {
+            target.angle_rad[j] = here_rad(j);
+        }
+        assert_int_equal(grobo_i_gate_send(&robot, &target, &plainly), GROBO_OK);
+        expect_used((1U << rows[i].frames) - 1);
+        for (int k = 0; k < rows[i].frames; k++) {
+            const grobo_robot_order *order = &robot.slots[k].order;
+            if (order->joints != rows[i].be[k]) {
+                fail_msg("row %zu, frame %d: joints %llx", i, k, (unsigned long long)order->joints);
+            }
+            bool again = k > 0 && rows[i].be[k] == rows[i].be[k - 1];
+            assert_int_equal(order->part, again ? robot.slots[k - 1].order.part + 1 : 0);
+        }
+        for (int j = 0; j < N; j++) { /* no frame, no waiting */
+            assert_int_equal(robot.axes[j].next, j < rows[i].joints && rows[i].frames > 0);
+        }
+        frames_each = -1;
+        target.set = 1;
+        assert_int_equal(grobo_i_gate_send(&robot, &target, &plainly), GROBO_ERR_SPACE);
+        expect_used((1U << rows[i].frames) - 1);
+    }
+}
+
+static void a_renewal_goes_with_the_motion_frames(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        start();
+        set_going(j);
+        robot.axes[j].in_segments = true;
+        robot.axes[j].told_to_us = NOW + 1;
+        grobo_i_gate_renew(&robot, bits(j, other_of(j)));
+        const grobo_robot_slot *slot = &robot.slots[0];
+        expect_used(1);
+        assert_int_equal(slot->use, GROBO_I_USE_SEGMENT);
+        assert_int_equal(slot->txn.priority, GROBO_PRIORITY_MOTION);
+        assert_int_equal(slot->order.deed, GROBO_I_DEED_SEGMENT);
+        assert_true(slot->order.joints == bits(j, other_of(j)));
+        assert_true(slot->order.each && slot->order.moves && !slot->order.stops);
+        assert_true(slot->due_us == GROBO_NEVER_US);
+    }
+}
+
 /* As urgent as the job that asks; what the engine asks for by itself is as urgent as a user. */
 static void torque_is_as_urgent_as_what_asks_for_it(void **state)
 {
@@ -494,6 +734,12 @@ int main(void)
         cmocka_unit_test(goals_that_wait_are_taken_back),
         cmocka_unit_test(torque_that_waits_is_kept_off),
         cmocka_unit_test(a_frame_that_waits_is_known_by_what_it_does),
+        cmocka_unit_test(a_target_gets_the_time_that_it_asks_for),
+        cmocka_unit_test(a_target_that_is_too_fast_gets_more_time),
+        cmocka_unit_test(how_a_target_is_sent_is_in_its_order),
+        cmocka_unit_test(a_target_that_is_refused_does_not_wait),
+        cmocka_unit_test(a_target_is_parted_as_the_driver_needs_it),
+        cmocka_unit_test(a_renewal_goes_with_the_motion_frames),
         cmocka_unit_test(torque_is_as_urgent_as_what_asks_for_it),
         cmocka_unit_test(torque_that_may_not_come_on_is_refused_by_name),
         cmocka_unit_test(small_frames_have_four_joints),
