@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Who leaves, and who stops: the steps of leaving by themselves, and what the requests begin with. */
+/* Who leaves, and who stops: the steps of leaving by themselves, and how requests begin. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

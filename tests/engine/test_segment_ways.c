@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include <cmocka.h>
+#include <math.h>
 #include <string.h>
 
 #include "tests/support/axes_kit.h"
@@ -225,50 +226,78 @@ static void no_part_lies_outside_the_limits(void **state)
     }
 }
 
-/* A segment ahead, or what is left, in whole steps; to the end again while there is time. */
+/* A joint in segments has so much left of a way of 10 degrees, and was told so much of it. */
+typedef struct told_way {
+    int64_t left_us, told_us, time_us; /* time_us: what the next frame asks for; 0: nothing */
+} told_way;
+
+static const told_way told_ways[] = {{S, 1, 380000},      {S, 0, 0},
+                                     {S, -1, 0},          {380001, 1, 380000},
+                                     {380000, 1, 380000}, {370001, 1, 380000},
+                                     {370000, 1, 370000}, {100000, 100000, 100000},
+                                     {99999, 99999, 0},   {99999, 99998, 100000},
+                                     {5000, 4999, 10000}, {5000, 5000, 0}};
+enum { TOLD_WAYS = sizeof told_ways / sizeof told_ways[0] };
+
+static grobo_robot_axis *start_on(int joint, const told_way *row)
+{
+    grobo_robot_axis *axis = &robot.axes[joint];
+    start();
+    set_going(third_of(joint)); /* a whole goal */
+    axis->way = (grobo_robot_way){0, RAD(10), NOW, NOW + row->left_us};
+    axis->told_to_us = NOW + row->told_us;
+    axis->in_segments = true;
+    return axis;
+}
+
+static void expect_aim(grobo_joint_mask of, int joint, const told_way *row, int64_t time_us)
+{
+    grobo_target target = {0};
+    double part = fmin((double)time_us / (double)row->left_us, 1);
+    grobo_i_segments_aim(&robot, of, &target);
+    assert_true(target.posture.set == (time_us > 0 ? GROBO_JOINT_BIT(joint) : 0));
+    for (int k = 0; k < N; k++) {
+        assert_true(target.joint_time_us[k] == (k == joint ? time_us : 0));
+        expect_equal(target.posture.angle_rad[k], k == joint ? RAD(10) * part : 0, "part");
+    }
+}
+
+/* A segment ahead, or what is left, in whole steps. */
 static void the_next_frame_asks_for_more_of_each_way(void **state)
 {
     (void)state;
-    static const struct {
-        int64_t left_us, told_us, time_us; /* time_us 0: nothing */
-    } rows[] = {{S, 1, 380000},      {S, 0, 0},
-                {S, -1, 0},          {380001, 1, 380000},
-                {380000, 1, 380000}, {370001, 1, 380000},
-                {370000, 1, 370000}, {100000, 100000, 100000},
-                {99999, 99999, 0},   {99999, 99998, 100000},
-                {5000, 4999, 10000}, {5000, 5000, 0}};
     for (int j = 0; j < N; j++) {
-        for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-            for (int how = 0; how < 4; how++) {
-                grobo_target target = {0};
-                grobo_robot_axis *axis = &robot.axes[j];
-                start();
-                set_going(third_of(j)); /* a whole goal */
-                axis->way = (grobo_robot_way){0, RAD(10), NOW, NOW + rows[i].left_us};
-                axis->told_to_us = NOW + rows[i].told_us;
-                axis->in_segments = how != 1;
-                axis->has_target = how != 2;
-                grobo_joint_mask of = how == 3 ? ~GROBO_JOINT_BIT(j) : GROBO_JOINTS_ALL(N);
-                int64_t be_us = how == 0 ? rows[i].time_us : 0;
-                grobo_i_segments_aim(&robot, of, &target);
-                assert_true(target.posture.set == (be_us > 0 ? GROBO_JOINT_BIT(j) : 0));
-                for (int k = 0; k < N; k++) {
-                    assert_true(target.joint_time_us[k] == (k == j ? be_us : 0));
-                    double part =
-                        be_us > rows[i].left_us ? 1 : (double)be_us / (double)rows[i].left_us;
-                    expect_equal(target.posture.angle_rad[k], k == j ? RAD(10) * part : 0, "part");
-                }
-                bool on = how == 0 || how == 3;
-                bool is_short = on && rows[i].told_us < rows[i].left_us;
-                bool again = on && (is_short || rows[i].left_us >= 100000);
-                assert_int_equal(grobo_i_way_is_short(axis), is_short);
-                assert_true(grobo_i_ways_renewed(&robot) == (again ? GROBO_JOINT_BIT(j) : 0));
-                assert_true(grobo_i_segments_due(&robot) ==
-                            (again ? GROBO_SEGMENT_RENEW_US : GROBO_NEVER_US));
-                robot.renewed_us = NOW;
-                assert_true(grobo_i_segments_due(&robot) ==
-                            (again ? NOW + GROBO_SEGMENT_RENEW_US : GROBO_NEVER_US));
-            }
+        for (int i = 0; i < TOLD_WAYS; i++) {
+            const told_way *row = &told_ways[i];
+            grobo_robot_axis *axis = start_on(j, row);
+            expect_aim(GROBO_JOINTS_ALL(N), j, row, row->time_us);
+            expect_aim(all_but(j), j, row, 0);
+            axis->has_target = false;
+            expect_aim(GROBO_JOINTS_ALL(N), j, row, 0);
+            axis->has_target = true;
+            axis->in_segments = false;
+            expect_aim(GROBO_JOINTS_ALL(N), j, row, 0);
+        }
+    }
+}
+
+/* To the end again while there is time for it. */
+static void ways_are_told_on_until_they_end(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        for (int i = 0; i < 3 * TOLD_WAYS; i++) {
+            const told_way *row = &told_ways[i / 3];
+            grobo_robot_axis *axis = start_on(j, row);
+            axis->in_segments = i % 3 != 1;
+            axis->has_target = i % 3 != 2;
+            bool is_short = i % 3 == 0 && row->told_us < row->left_us;
+            bool again = is_short || (i % 3 == 0 && row->left_us >= 100000);
+            assert_int_equal(grobo_i_way_is_short(axis), is_short);
+            assert_true(grobo_i_ways_renewed(&robot) == (again ? GROBO_JOINT_BIT(j) : 0));
+            robot.renewed_us = NOW;
+            assert_true(grobo_i_segments_due(&robot) ==
+                        (again ? NOW + GROBO_SEGMENT_RENEW_US : GROBO_NEVER_US));
         }
     }
 }
@@ -437,6 +466,7 @@ int main(void)
         cmocka_unit_test(the_first_frame_asks_for_a_segment),
         cmocka_unit_test(no_part_lies_outside_the_limits),
         cmocka_unit_test(the_next_frame_asks_for_more_of_each_way),
+        cmocka_unit_test(ways_are_told_on_until_they_end),
         cmocka_unit_test(the_first_way_sets_the_time_for_the_others),
         cmocka_unit_test(more_is_asked_for_on_a_grid),
         cmocka_unit_test(a_way_that_was_not_told_on_is_looked_at_when_it_is_over),

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Frames under way: which slots are taken, what the bus is told of them, and which are taken back. */
+/* Frames under way: which slots are taken, what the bus is told, and what is taken back. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
