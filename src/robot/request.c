@@ -420,7 +420,6 @@ static void displace(grobo_robot *robot, bool all)
     bool moves = all || grobo_i_job_moves(robot) || robot->job.kind == GROBO_JOB_PLAY;
     if (robot->job.kind == GROBO_JOB_PLAY && grobo_robot_is_playing(robot)) {
         (void)grobo_sequencer_stop(&robot->sequencer, false, robot->now_us);
-        grobo_i_slots_cancel_goals(robot);
     }
     if (robot->job.kind != GROBO_JOB_NONE) {
         grobo_i_job_end(robot, GROBO_ERR_CANCELED);

@@ -238,6 +238,32 @@ static void what_is_learnt_of_each_reply(void **state)
     p.bus.active = NULL;
 }
 
+/* What comes late counts as that, up to half of what is waited for it; the next one is due then. */
+static void a_late_reply_is_the_worst_up_to_half_of_the_hold(void **state)
+{
+    (void)state;
+    static const struct {
+        int64_t late_us;
+        int32_t worst_us;
+    } rows[] = {{0, 1000},      {999, 1000},    {1001, 1001},   {29999, 29999},
+                {30000, 30000}, {30001, 30000}, {60000, 30000}, {INT32_MAX, 30000}};
+    const grobo_bus_config config = {.hold_us = 60000};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        peer p;
+        peer_init(&p, &config);
+        grobo_bus_hold *hold = &p.bus.hold[2];
+        *hold = (grobo_bus_hold){.key = 5, .owed = 2, .due_us = S};
+        p.bus.worst_us = 1000;
+        p.bus.over_us = 77;
+        p.bus.now_us = S + rows[i].late_us;
+        assert_false(grobo_i_bus_settle(&p.bus, 6));
+        assert_true(grobo_i_bus_settle(&p.bus, 5));
+        assert_int_equal(p.bus.worst_us, rows[i].worst_us);
+        assert_int_equal(hold->owed, 1);
+        assert_int_equal(hold->due_us, 77);
+    }
+}
+
 static size_t forwarded;
 
 static size_t forward_some(const uint8_t *frame, size_t n)
@@ -532,6 +558,7 @@ int main(void)
         cmocka_unit_test(a_late_pump_still_takes_what_came_in_time),
         cmocka_unit_test(the_margin_is_learnt_from_the_replies),
         cmocka_unit_test(what_is_learnt_of_each_reply),
+        cmocka_unit_test(a_late_reply_is_the_worst_up_to_half_of_the_hold),
         cmocka_unit_test(what_a_board_forwards_takes_its_time),
         cmocka_unit_test(the_margin_doubles_with_every_retry),
         cmocka_unit_test(a_patient_read_outlasts_a_stall_at_the_other_end),

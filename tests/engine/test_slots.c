@@ -720,6 +720,29 @@ static void a_halt_goes_to_what_moves(void **state)
     }
 }
 
+/* While a motion is played, of what it does not move: that it brings to rest by itself. */
+static void a_stop_takes_back_what_waits_and_halts_what_is_not_played(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        for (int how = 0; how < 3; how++) { /* none played, some, all */
+            start();
+            submit(0, GROBO_I_USE_MOTION, (grobo_robot_order){0});
+            robot.over = count_ended;
+            ended = 0;
+            set_going(j);
+            set_going(other_of(j));
+            robot.sequencer.state = how == 0 ? GROBO_SEQUENCER_IDLE : GROBO_SEQUENCER_PLAYING;
+            robot.played_joints = how == 1 ? all_but(j) : GROBO_JOINTS_ALL(N);
+            grobo_i_stop_moves(&robot);
+            assert_int_equal(ended, 1);
+            expect_used(how < 2 ? 1 : 0);
+            assert_true(how == 2 || robot.slots[0].order.joints ==
+                                        (how == 0 ? bits(j, other_of(j)) : GROBO_JOINT_BIT(j)));
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -744,6 +767,7 @@ int main(void)
         cmocka_unit_test(torque_that_may_not_come_on_is_refused_by_name),
         cmocka_unit_test(small_frames_have_four_joints),
         cmocka_unit_test(a_halt_goes_to_what_moves),
+        cmocka_unit_test(a_stop_takes_back_what_waits_and_halts_what_is_not_played),
     };
     return axes_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

@@ -179,41 +179,65 @@ static void lost_replies_trip_while_something_moves(void **state)
 
 /* ---- what a trip ends ------------------------------------------------------------------------ */
 
+/* How it trips: latched, not latched, an emergency stop. */
+enum { LATCHED, NOT_LATCHED, ESTOP, HOWS };
+
+static void trip_in_a_job(grobo_job_kind kind, grobo_torque torque, int how)
+{
+    start();
+    robot.events_n = robot.events_head = 0;
+    robot.job.kind = kind;
+    robot.job.torque = torque;
+    robot.free_joints = 6;
+    set_going(3);
+    grobo_i_trip(&robot, how == ESTOP ? GROBO_TRIP_ESTOP : GROBO_TRIP_LIMIT, 3, 7.5,
+                 how != NOT_LATCHED);
+}
+
+static bool moves_or_switches_on(grobo_job_kind kind, grobo_torque torque)
+{
+    static const bool always[GROBO_JOB_SETTLE + 1] = {[GROBO_JOB_MOVE] = true,
+                                                      [GROBO_JOB_PLAY] = true,
+                                                      [GROBO_JOB_STORED] = true,
+                                                      [GROBO_JOB_RAW] = true,
+                                                      [GROBO_JOB_SETTLE] = true};
+    return always[kind] || (kind == GROBO_JOB_TORQUE && torque == GROBO_TORQUE_ON);
+}
+
 static void a_trip_ends_what_moves_or_switches_on(void **state)
 {
     (void)state;
-    for (int i = 2 * GROBO_JOB_NONE; i <= 2 * GROBO_JOB_SETTLE + 1; i++) {
-        int kind = i / 2;
-        for (int how = 0; how < 3; how++) { /* latched, not latched, an emergency stop */
-            bool on = i % 2 != 0;
-            bool moves = kind == GROBO_JOB_MOVE || kind == GROBO_JOB_PLAY ||
-                         kind == GROBO_JOB_STORED || kind == GROBO_JOB_RAW ||
-                         kind == GROBO_JOB_SETTLE || (kind == GROBO_JOB_TORQUE && on);
-            start();
-            robot.events_n = robot.events_head = 0;
-            robot.job.kind = (grobo_job_kind)kind;
-            robot.job.torque = on ? GROBO_TORQUE_ON : GROBO_TORQUE_BRAKE;
-            robot.free_joints = 6;
-            set_going(3);
-            grobo_i_trip(&robot, how == 2 ? GROBO_TRIP_ESTOP : GROBO_TRIP_LIMIT, 3, 7.5, how != 1);
-            assert_int_equal(robot.job.kind, moves && how != 1 ? GROBO_JOB_NONE : kind);
-            assert_int_equal(robot.trip.trip, how == 0   ? GROBO_TRIP_LIMIT
-                                              : how == 2 ? GROBO_TRIP_ESTOP
-                                                         : GROBO_TRIP_NONE);
-            assert_true(robot.free_joints == (how == 1 ? 6 : 0));
-            assert_int_equal(robot.counters.trips, 1);
-            const grobo_event *event = &robot.events[0];
-            assert_int_equal(event->kind, GROBO_EVENT_TRIP);
-            assert_int_equal(event->u.trip.joint, 3);
-            expect_equal(event->u.trip.value, 7.5, "value");
-            assert_true(event->u.trip.at_us == NOW && event->u.trip.latched == (how != 1));
-            bool tells = moves && how != 1 && kind != GROBO_JOB_SETTLE;
-            assert_int_equal(robot.events_n, tells ? 2 : 1);
-            assert_true(!tells || robot.events[1].u.job.result == GROBO_ERR_LATCHED);
-            /* Who leaves stops it already, and an emergency stop lets go of it. */
-            bool halts = how == 0 && kind != GROBO_JOB_EXIT;
-            assert_int_equal(robot.slots[0].use, halts ? GROBO_I_USE_HALT : 0);
-        }
+    for (int i = 0; i < (GROBO_JOB_SETTLE + 1) * 3 * HOWS; i++) {
+        grobo_job_kind kind = (grobo_job_kind)(i / HOWS / 3);
+        grobo_torque torque = (grobo_torque)(i / HOWS % 3);
+        bool latched = i % HOWS != NOT_LATCHED;
+        bool ends = latched && moves_or_switches_on(kind, torque);
+        trip_in_a_job(kind, torque, i % HOWS);
+        assert_int_equal(robot.job.kind, ends ? GROBO_JOB_NONE : kind);
+        bool tells = ends && kind != GROBO_JOB_SETTLE; /* which nobody asked for */
+        assert_int_equal(robot.events_n, tells ? 2 : 1);
+        assert_true(!tells || robot.events[1].u.job.result == GROBO_ERR_LATCHED);
+        assert_true(robot.free_joints == (latched ? 0 : 6));
+        /* Who leaves stops it already, and an emergency stop lets go of it. */
+        bool halts = i % HOWS == LATCHED && kind != GROBO_JOB_EXIT;
+        assert_int_equal(robot.slots[0].use, halts ? GROBO_I_USE_HALT : 0);
+    }
+}
+
+static void a_trip_is_told_and_kept_where_it_latches(void **state)
+{
+    (void)state;
+    static const grobo_trip kept[] = {GROBO_TRIP_LIMIT, GROBO_TRIP_NONE, GROBO_TRIP_ESTOP};
+    for (int how = 0; how < HOWS; how++) {
+        trip_in_a_job(GROBO_JOB_NONE, GROBO_TORQUE_OFF, how);
+        assert_int_equal(robot.trip.trip, kept[how]);
+        assert_int_equal(robot.counters.trips, 1);
+        const grobo_event *event = &robot.events[0];
+        assert_int_equal(event->kind, GROBO_EVENT_TRIP);
+        assert_int_equal(event->u.trip.joint, 3);
+        expect_equal(event->u.trip.value, 7.5, "value");
+        assert_true(event->u.trip.at_us == NOW);
+        assert_int_equal(event->u.trip.latched, how != NOT_LATCHED);
     }
 }
 
@@ -240,6 +264,7 @@ int main(void)
         cmocka_unit_test(torque_that_is_lost_trips),
         cmocka_unit_test(lost_replies_trip_while_something_moves),
         cmocka_unit_test(a_trip_ends_what_moves_or_switches_on),
+        cmocka_unit_test(a_trip_is_told_and_kept_where_it_latches),
         cmocka_unit_test(the_first_reason_stays_but_for_an_emergency_stop),
     };
     return axes_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
