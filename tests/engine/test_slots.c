@@ -514,7 +514,7 @@ static void a_target_that_is_refused_does_not_wait(void **state)
         for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
             const int result = rows[i].result;
             start();
-            grobo_posture target = target_of(j, rows[i].beyond ? 300 : 2, S);
+            grobo_posture target = target_of(j, rows[i].beyond ? 300 : 2, rows[i].unread ? 1 : S);
             const grobo_i_motion how = {.priority = GROBO_PRIORITY_MOTION,
                                         .due_us = GROBO_NEVER_US,
                                         .as_is = rows[i].as_is};
@@ -530,6 +530,7 @@ static void a_target_that_is_refused_does_not_wait(void **state)
             bool waits = result == GROBO_OK;
             assert_int_equal(robot.axes[j].next, waits);
             assert_int_equal(robot.axes[other_of(j)].next, 1000);
+            assert_int_equal(robot.counters.stretched, 0); /* refused before it is timed */
             if (waits) {
                 expect_equal(robot.axes[j].next_rad, here_rad(j) + RAD(rows[i].as_is ? 2 : 3),
                              "target");
@@ -658,6 +659,8 @@ static void torque_that_may_not_come_on_is_refused_by_name(void **state)
         assert_int_equal(
             grobo_i_gate_torque(&robot, GROBO_JOINT_BIT(j), GROBO_TORQUE_ON, GROBO_I_WHOLE),
             GROBO_ERR_STATE);
+        assert_int_equal(grobo_i_gate_torque(&robot, 0, GROBO_TORQUE_ON, GROBO_I_WHOLE), GROBO_OK);
+        assert_int_equal(grobo_i_gate_hold(&robot, 0, GROBO_I_WHOLE), GROBO_OK);
         expect_used(0);
         driver.torque = NULL;
         assert_int_equal(
@@ -720,6 +723,28 @@ static void a_halt_goes_to_what_moves(void **state)
     }
 }
 
+/* Frames that move joints count, readings and the like do not. */
+static void what_a_frame_was_for_decides_what_its_end_counts(void **state)
+{
+    (void)state;
+    for (int i = 0; i < USES; i++) {
+        for (int lost = 0; lost < 2; lost++) {
+            start();
+            robot.link = false; /* nothing goes on from here */
+            grobo_robot_slot over = {.robot = &robot,
+                                     .use = (uint8_t)uses[i],
+                                     .due_us = GROBO_NEVER_US,
+                                     .txn = {.sent_us = NOW}};
+            bool moves = uses[i] == GROBO_I_USE_MOTION || uses[i] == GROBO_I_USE_SEGMENT;
+            over.reads = uses[i] == GROBO_I_USE_SENSE;
+            grobo_i_frame_over(&over, lost ? GROBO_ERR_TIMEOUT : GROBO_OK, NULL);
+            assert_int_equal(robot.counters.motion_frames, moves && !lost);
+            assert_int_equal(robot.counters.late_frames, 0);
+            assert_int_equal(robot.axes[0].lost, over.reads); /* of no reply nothing is read */
+        }
+    }
+}
+
 /* While a motion is played, of what it does not move: that it brings to rest by itself. */
 static void a_stop_takes_back_what_waits_and_halts_what_is_not_played(void **state)
 {
@@ -767,6 +792,7 @@ int main(void)
         cmocka_unit_test(torque_that_may_not_come_on_is_refused_by_name),
         cmocka_unit_test(small_frames_have_four_joints),
         cmocka_unit_test(a_halt_goes_to_what_moves),
+        cmocka_unit_test(what_a_frame_was_for_decides_what_its_end_counts),
         cmocka_unit_test(a_stop_takes_back_what_waits_and_halts_what_is_not_played),
     };
     return axes_on_both_wirings(tests, sizeof tests / sizeof tests[0]);

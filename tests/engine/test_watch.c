@@ -241,6 +241,32 @@ static void a_trip_is_told_and_kept_where_it_latches(void **state)
     }
 }
 
+/* Whether it latches or not: a stalled host begins anew. */
+static void a_trip_takes_back_targets_that_wait(void **state)
+{
+    (void)state;
+    for (int latched = 0; latched < 2; latched++) {
+        start();
+        grobo_robot_slot *slot = grobo_i_slot_take(&robot, GROBO_I_USE_MOTION);
+        assert_int_equal(driver.sense(&driver, NULL, 0, GROBO_SENSE_ALL, &slot->exchange), 0);
+        assert_int_equal(grobo_i_slot_send(slot, GROBO_PRIORITY_MOTION), GROBO_OK);
+        grobo_i_trip(&robot, GROBO_TRIP_HOST_STALL, -1, 0, latched);
+        assert_int_equal(slot->use, GROBO_I_USE_FREE);
+    }
+}
+
+static void each_reason_has_a_name_of_its_own(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"none",         "over-temperature", "servo overheated",
+                                        "over-current", "low voltage",      "lost replies",
+                                        "torque lost",  "outside limits",   "not a number",
+                                        "host stalled", "emergency stop",   "unknown"};
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        assert_string_equal(grobo_trip_name((grobo_trip)i), names[i]);
+    }
+}
+
 static void the_first_reason_stays_but_for_an_emergency_stop(void **state)
 {
     (void)state;
@@ -265,6 +291,8 @@ int main(void)
         cmocka_unit_test(lost_replies_trip_while_something_moves),
         cmocka_unit_test(a_trip_ends_what_moves_or_switches_on),
         cmocka_unit_test(a_trip_is_told_and_kept_where_it_latches),
+        cmocka_unit_test(a_trip_takes_back_targets_that_wait),
+        cmocka_unit_test(each_reason_has_a_name_of_its_own),
         cmocka_unit_test(the_first_reason_stays_but_for_an_emergency_stop),
     };
     return axes_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
