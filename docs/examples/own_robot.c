@@ -113,16 +113,15 @@ int main(void)
     (void)grobo_posture_set_deg(&reach, WRIST, 0); /* the stabilizer knows better */
     (void)grobo_posture_set_time_ms(&reach, 800);
 
-    if (finish(grobo_robot_check(&robot, now_us)) < 0 ||
-        finish(grobo_robot_move(&robot, &reach, now_us)) < 0) {
+    if (finish(grobo_robot_check(&robot)) < 0 || finish(grobo_robot_move(&robot, &reach)) < 0) {
         return 1;
     }
     grobo_posture here;
-    (void)grobo_robot_posture(&robot, now_us, GROBO_NEVER_US, &here);
+    (void)grobo_robot_posture(&robot, GROBO_NEVER_US, &here);
     for (int j = 0; j < JOINTS; j++) {
         double angle_deg = 0;
         (void)grobo_posture_get_deg(&here, j, &angle_deg);
         printf("%-8s motor %d %7.1f deg\n", joints[j].name, joints[j].motor, angle_deg);
     }
-    return finish(grobo_robot_exit(&robot, GROBO_EXIT_DEFAULT, now_us)) < 0 ? 1 : 0;
+    return finish(grobo_robot_exit(&robot, GROBO_EXIT_DEFAULT)) < 0 ? 1 : 0;
 }

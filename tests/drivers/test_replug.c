@@ -58,13 +58,13 @@ static void sense(int16_t *angle_ddeg, size_t n)
 {
     grobo_robot *robot = grobo_session_robot(session);
 
-    assert_int_equal(
-        session_kit_await(grobo_session_sense(session, GROBO_JOINTS_ALL((int)n), GROBO_SENSE_FULL)),
-        GROBO_OK);
+    assert_int_equal(session_kit_await(grobo_robot_sense(
+                         grobo_session_robot(session), GROBO_JOINTS_ALL((int)n), GROBO_SENSE_FULL)),
+                     GROBO_OK);
     for (size_t i = 0; i < n; i++) {
         grobo_joint_info info;
 
-        assert_int_equal(grobo_robot_joint(robot, (int)i, grobo_now_us(), &info), GROBO_OK);
+        assert_int_equal(grobo_robot_joint(robot, (int)i, &info), GROBO_OK);
         angle_ddeg[i] = (int16_t)(grobo_deg_from_rad(info.state.angle_rad) * 10.0);
     }
 }
@@ -82,13 +82,13 @@ static int set_going(void)
 {
     grobo_posture far_off;
 
-    assert_int_equal(
-        session_kit_await(grobo_session_torque(session, GROBO_JOINTS_ALL(JOINTS), GROBO_TORQUE_ON)),
-        GROBO_OK);
+    assert_int_equal(session_kit_await(grobo_robot_torque(
+                         grobo_session_robot(session), GROBO_JOINTS_ALL(JOINTS), GROBO_TORQUE_ON)),
+                     GROBO_OK);
     assert_int_equal(grobo_posture_init(&far_off, JOINTS), GROBO_OK);
     assert_int_equal(grobo_posture_set_deg(&far_off, 13, 30.0), GROBO_OK);
     far_off.time_us = 20000000;
-    return grobo_session_move(session, &far_off);
+    return grobo_robot_move(grobo_session_robot(session), &far_off);
 }
 
 static void lose_it(int job)

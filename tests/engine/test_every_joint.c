@@ -35,7 +35,7 @@ static int raw_goal(int joint, double deg, int time_ms)
                              (uint16_t)(time_ms / 10)};
     int n = grobo_frame_goals(grobo_wiring_protocol(rig_wiring), &goal, 1, frame, sizeof frame);
     assert_true(n > 0);
-    return grobo_robot_raw(&rig.robot, frame, (size_t)n, rig.now_us);
+    return grobo_robot_raw(&rig.robot, frame, (size_t)n);
 }
 
 static int raw_torque(int joint, grobo_torque torque)
@@ -44,13 +44,13 @@ static int raw_torque(int joint, grobo_torque torque)
     int n = grobo_frame_torque(grobo_wiring_protocol(rig_wiring), (uint8_t)joint_of(joint)->motor,
                                torque, frame, sizeof frame);
     assert_true(n > 0);
-    return grobo_robot_raw(&rig.robot, frame, (size_t)n, rig.now_us);
+    return grobo_robot_raw(&rig.robot, frame, (size_t)n);
 }
 
 static int send(int joint, double deg, int time_ms)
 {
     grobo_posture target = rig_posture(&rig, joint, deg, time_ms);
-    return grobo_robot_send(&rig.robot, &target, rig.now_us);
+    return grobo_robot_send(&rig.robot, &target);
 }
 
 static grobo_posture middle(void)
@@ -70,7 +70,7 @@ static void start_in_the_middle(const grobo_robot_config *config)
     rig_start(&rig, config, NULL);
     rig_power(&rig);
     grobo_posture target = middle();
-    rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &target), GROBO_OK);
     rig_forget(&rig);
 }
 
@@ -89,10 +89,10 @@ static void one_that_was_not_read_is_not_moved(void **state)
     for (int j = 0; j < JOINTS; j++) {
         double value;
         rig_start(&rig, &quiet, NULL);
-        rig_expect(&rig,
-                   grobo_robot_sense(&rig.robot, rig_all(&rig) & ~GROBO_JOINT_BIT(j),
-                                     GROBO_SENSE_ALL, rig.now_us),
-                   GROBO_OK);
+        rig_expect(
+            &rig,
+            grobo_robot_sense(&rig.robot, rig_all(&rig) & ~GROBO_JOINT_BIT(j), GROBO_SENSE_ALL),
+            GROBO_OK);
         assert_int_equal(send(j, middle_deg(j), 5000), GROBO_ERR_STALE);
         assert_int_equal(grobo_robot_fault(&rig.robot, &value), j);
         assert_int_equal(raw_goal(j, middle_deg(j), 5000), GROBO_ERR_STALE);
@@ -108,8 +108,7 @@ static void one_without_torque_is_not_sent_anywhere(void **state)
     (void)state;
     start_in_the_middle(&quiet);
     for (int j = 0; j < JOINTS; j++) {
-        rig_expect(&rig,
-                   grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(j), GROBO_TORQUE_OFF, rig.now_us),
+        rig_expect(&rig, grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(j), GROBO_TORQUE_OFF),
                    GROBO_OK);
         for (int k = 0; k < JOINTS; k++) {
             assert_int_equal(send(k, middle_deg(k), 500), k == j ? GROBO_ERR_STATE : GROBO_OK);
@@ -117,8 +116,7 @@ static void one_without_torque_is_not_sent_anywhere(void **state)
             assert_int_equal(rig_torque(&rig, k), k == j ? GROBO_TORQUE_OFF : GROBO_TORQUE_ON);
         }
         assert_int_equal(raw_torque(j, GROBO_TORQUE_ON), GROBO_ERR_STATE);
-        rig_expect(&rig,
-                   grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(j), GROBO_TORQUE_ON, rig.now_us),
+        rig_expect(&rig, grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(j), GROBO_TORQUE_ON),
                    GROBO_OK);
         assert_int_equal(rig_torque(&rig, j), GROBO_TORQUE_ON);
     }
@@ -144,8 +142,7 @@ static void one_alone_is_switched_on_where_it_is(void **state)
     for (int j = 0; j < JOINTS; j++) {
         grobo_sim_config limp = {.seed = (uint32_t)j, .start = GROBO_SIM_START_LIMP};
         rig_start(&rig, &quiet, &limp);
-        rig_expect(&rig,
-                   grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(j), GROBO_TORQUE_ON, rig.now_us),
+        rig_expect(&rig, grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(j), GROBO_TORQUE_ON),
                    GROBO_OK);
         for (int k = 0; k < JOINTS; k++) {
             assert_int_equal(rig_torque(&rig, k), k == j ? GROBO_TORQUE_ON : GROBO_TORQUE_OFF);
@@ -251,7 +248,7 @@ static void in_a_move_all_take_the_longest_time(void **state)
         }
         target.time_us = 10000;
         rig_forget(&rig);
-        rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
+        rig_expect(&rig, grobo_robot_move(&rig.robot, &target), GROBO_OK);
         const uint8_t *p = NULL;
         for (size_t i = 0; i < rig.n_sent; i++) {
             const uint8_t *at;
@@ -266,7 +263,7 @@ static void in_a_move_all_take_the_longest_time(void **state)
             assert_int_equal((entry[3] | entry[4] << 8) * 10, least_ms(slow, 9, most_dps));
         }
         target = middle();
-        rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
+        rig_expect(&rig, grobo_robot_move(&rig.robot, &target), GROBO_OK);
     }
 }
 
@@ -275,10 +272,9 @@ static void in_a_move_all_take_the_longest_time(void **state)
 static grobo_joint_state read_state(int joint)
 {
     grobo_joint_info info;
-    int number =
-        grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(joint), GROBO_SENSE_FULL, rig.now_us);
+    int number = grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(joint), GROBO_SENSE_FULL);
     rig_expect(&rig, number, GROBO_OK);
-    assert_int_equal(grobo_robot_joint(&rig.robot, joint, rig.now_us, &info), 0);
+    assert_int_equal(grobo_robot_joint(&rig.robot, joint, &info), 0);
     return info.state;
 }
 
@@ -286,7 +282,7 @@ static grobo_joint_state read_state(int joint)
 static grobo_trip tripped_by(const grobo_robot_config *config)
 {
     grobo_trip_info trip;
-    assert_int_equal(grobo_robot_reset(&rig.robot, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_reset(&rig.robot), GROBO_OK);
     assert_int_equal(grobo_robot_configure(&rig.robot, config), GROBO_OK);
     for (int i = 0; i < 15; i++) {
         (void)read_state(R_KNEE);
@@ -344,8 +340,8 @@ static void lost_replies_are_counted(void **state)
         for (int i = 1; i <= limit; i++) {
             grobo_robot_tripped(&rig.robot, &trip);
             assert_int_equal(trip.trip, GROBO_TRIP_NONE);
-            (void)rig_wait(&rig, grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(R_KNEE),
-                                                   GROBO_SENSE_FULL, rig.now_us));
+            (void)rig_wait(
+                &rig, grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(R_KNEE), GROBO_SENSE_FULL));
         }
         grobo_robot_tripped(&rig.robot, &trip);
         assert_int_equal(trip.trip, GROBO_TRIP_LOST_REPLIES);
@@ -363,14 +359,14 @@ static void each_is_stopped_where_it_is(void **state)
     for (int j = 0; j < JOINTS; j++) {
         assert_int_equal(send(j, middle_deg(j) + 9, 3000), GROBO_OK);
         rig_run(&rig, 1000000);
-        assert_int_equal(grobo_robot_stop(&rig.robot, false, rig.now_us), GROBO_OK);
+        assert_int_equal(grobo_robot_stop(&rig.robot, false), GROBO_OK);
         rig_run(&rig, 300000);
         double gone_deg = rig_angle_deg(&rig, j) - middle_deg(j);
         assert_true(gone_deg > 2.8 && gone_deg < 3.4);
-        assert_false(grobo_robot_moving(&rig.robot, rig.now_us));
+        assert_false(grobo_robot_moving(&rig.robot));
         rig_run(&rig, 1000000);
         assert_true(fabs(rig_angle_deg(&rig, j) - middle_deg(j) - gone_deg) < 0.01);
-        assert_int_equal(grobo_robot_stop(&rig.robot, false, rig.now_us), GROBO_ERR_STATE);
+        assert_int_equal(grobo_robot_stop(&rig.robot, false), GROBO_ERR_STATE);
         assert_int_equal(send(j, middle_deg(j), 500), GROBO_OK);
         rig_run(&rig, 600000);
         expect_others_stay(-1);
@@ -385,7 +381,7 @@ static void each_is_let_go_where_it_stands(void **state)
         start_in_the_middle(&quiet);
         assert_int_equal(send(j, middle_deg(j) + 9, 500), GROBO_OK);
         rig_run(&rig, 200000);
-        int number = grobo_robot_exit(&rig.robot, GROBO_EXIT_OFF, rig.now_us);
+        int number = grobo_robot_exit(&rig.robot, GROBO_EXIT_OFF);
         double before_deg = 0;
         while (rig_torque(&rig, j) == GROBO_TORQUE_ON) {
             before_deg = rig_angle_deg(&rig, j);

@@ -72,7 +72,7 @@ static double turn(int joint, grobo_joint_mask taught, hand_fn hand, double dps,
 {
     rig_start(&rig, &quiet, NULL);
     rig_power(&rig);
-    assert_int_equal(grobo_robot_free(&rig.robot, taught, true, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_free(&rig.robot, taught, true), GROBO_OK);
     rig_run(&rig, rest_us);
     double there_deg = turn_once(joint, hand, dps);
     return fmin(there_deg, turn_once(joint, hand, -dps));
@@ -123,9 +123,9 @@ static void a_way_under_way_is_no_hand(void **state)
     target.angle_rad[R_KNEE] = grobo_rad_from_deg(to_deg);
     target.set = GROBO_JOINT_BIT(R_KNEE);
     target.time_us = 2000000;
-    assert_true(grobo_robot_send(&rig.robot, &target, rig.now_us) >= 0);
+    assert_true(grobo_robot_send(&rig.robot, &target) >= 0);
     rig_run(&rig, 300000);
-    assert_int_equal(grobo_robot_free(&rig.robot, target.set, true, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_free(&rig.robot, target.set, true), GROBO_OK);
     rig_run(&rig, 2500000);
     assert_true(fabs(rig_angle_deg(&rig, R_KNEE) - to_deg) < 0.2);
 }

@@ -23,8 +23,7 @@ static void start(void)
 
 static void read_all(void)
 {
-    rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL, rig.now_us),
-               GROBO_OK);
+    rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL), GROBO_OK);
 }
 
 /* ---- one motor, a group of motors ------------------------------------------------------------ */
@@ -35,14 +34,12 @@ static void a_motor_is_switched_by_its_number(void **state)
     static const grobo_torque modes[] = {GROBO_TORQUE_ON, GROBO_TORQUE_BRAKE, GROBO_TORQUE_OFF};
     start();
     for (int i = 0; i < 3; i++) {
-        rig_expect(&rig, grobo_gr001_torque(&rig.robot, NECK_ID, modes[i], rig.now_us), GROBO_OK);
+        rig_expect(&rig, grobo_gr001_torque(&rig.robot, NECK_ID, modes[i]), GROBO_OK);
         assert_int_equal(rig_torque(&rig, NECK), modes[i]);
         assert_int_equal(rig_torque(&rig, 1), GROBO_TORQUE_OFF);
     }
-    assert_int_equal(grobo_gr001_torque(&rig.robot, 0, GROBO_TORQUE_ON, rig.now_us),
-                     GROBO_ERR_NOTFOUND);
-    assert_int_equal(grobo_gr001_torque(&rig.robot, 21, GROBO_TORQUE_ON, rig.now_us),
-                     GROBO_ERR_NOTFOUND);
+    assert_int_equal(grobo_gr001_torque(&rig.robot, 0, GROBO_TORQUE_ON), GROBO_ERR_NOTFOUND);
+    assert_int_equal(grobo_gr001_torque(&rig.robot, 21, GROBO_TORQUE_ON), GROBO_ERR_NOTFOUND);
 }
 
 static void groups_are_switched_by_their_number(void **state)
@@ -53,8 +50,7 @@ static void groups_are_switched_by_their_number(void **state)
                                      {3, 8},  {9, 14}, {15, 20}, {9, 20}};
     for (int g = GROBO_GR001_ALL; g <= GROBO_GR001_LEGS; g++) {
         start();
-        rig_expect(&rig,
-                   grobo_gr001_servo(&rig.robot, (grobo_gr001_group)g, GROBO_TORQUE_ON, rig.now_us),
+        rig_expect(&rig, grobo_gr001_servo(&rig.robot, (grobo_gr001_group)g, GROBO_TORQUE_ON),
                    GROBO_OK);
         for (int j = 0; j < 20; j++) {
             int motor = grobo_model_motor_of_joint(rig.driver->model, j);
@@ -62,12 +58,10 @@ static void groups_are_switched_by_their_number(void **state)
             assert_int_equal(rig_torque(&rig, j), on ? GROBO_TORQUE_ON : GROBO_TORQUE_OFF);
         }
     }
-    assert_int_equal(
-        grobo_gr001_servo(&rig.robot, (grobo_gr001_group)8, GROBO_TORQUE_ON, rig.now_us),
-        GROBO_ERR_NOTFOUND);
-    assert_int_equal(
-        grobo_gr001_servo(&rig.robot, (grobo_gr001_group)-1, GROBO_TORQUE_ON, rig.now_us),
-        GROBO_ERR_NOTFOUND);
+    assert_int_equal(grobo_gr001_servo(&rig.robot, (grobo_gr001_group)8, GROBO_TORQUE_ON),
+                     GROBO_ERR_NOTFOUND);
+    assert_int_equal(grobo_gr001_servo(&rig.robot, (grobo_gr001_group)-1, GROBO_TORQUE_ON),
+                     GROBO_ERR_NOTFOUND);
 }
 
 static void a_motor_is_moved_by_a_short_packet(void **state)
@@ -75,25 +69,25 @@ static void a_motor_is_moved_by_a_short_packet(void **state)
     (void)state;
     start();
     rig_power(&rig);
-    rig_expect(&rig, grobo_gr001_move(&rig.robot, NECK_ID, 0, 10, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_gr001_move(&rig.robot, NECK_ID, 0, 10), GROBO_OK);
     rig_forget(&rig);
-    rig_expect(&rig, grobo_gr001_move(&rig.robot, NECK_ID, 300, 50, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_gr001_move(&rig.robot, NECK_ID, 300, 50), GROBO_OK);
     assert_true(rig_packet_was_sent(&rig, "\xFA\xAF\x02\x00\x1E\x04\x01\x2C\x01\x32\x00\x06", 12));
     assert_true(fabs(rig_angle_deg(&rig, NECK) - 30) < 0.1);
     /* 0 is as fast as the servo can: 60 degrees in 0.16 s. */
     int64_t begun_us = rig.now_us;
-    rig_expect(&rig, grobo_gr001_move(&rig.robot, NECK_ID, -300, 0, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_gr001_move(&rig.robot, NECK_ID, -300, 0), GROBO_OK);
     assert_in_range(rig.now_us - begun_us, 150000, 300000);
     assert_true(fabs(rig_angle_deg(&rig, NECK) + 30) < 0.1);
-    assert_int_equal(grobo_gr001_move(&rig.robot, NECK_ID, 600, 50, rig.now_us), GROBO_ERR_LIMIT);
-    assert_int_equal(grobo_gr001_move(&rig.robot, NECK_ID, 0, -1, rig.now_us), GROBO_ERR_ARG);
-    assert_int_equal(grobo_gr001_move(&rig.robot, NECK_ID, 0, 16384, rig.now_us), GROBO_ERR_ARG);
-    assert_int_equal(grobo_gr001_move(&rig.robot, 99, 0, 10, rig.now_us), GROBO_ERR_NOTFOUND);
+    assert_int_equal(grobo_gr001_move(&rig.robot, NECK_ID, 600, 50), GROBO_ERR_LIMIT);
+    assert_int_equal(grobo_gr001_move(&rig.robot, NECK_ID, 0, -1), GROBO_ERR_ARG);
+    assert_int_equal(grobo_gr001_move(&rig.robot, NECK_ID, 0, 16384), GROBO_ERR_ARG);
+    assert_int_equal(grobo_gr001_move(&rig.robot, 99, 0, 10), GROBO_ERR_NOTFOUND);
 }
 
 static int angle(int motor, int64_t max_age_us, int *angle_ddeg)
 {
-    return grobo_gr001_angle(&rig.robot, motor, rig.now_us, max_age_us, angle_ddeg);
+    return grobo_gr001_angle(&rig.robot, motor, max_age_us, angle_ddeg);
 }
 
 static void a_motor_is_read_by_its_number(void **state)
@@ -102,7 +96,7 @@ static void a_motor_is_read_by_its_number(void **state)
     int angle_ddeg = 7777;
     start();
     assert_int_equal(angle(R_ELBOW_ID, GROBO_NEVER_US, &angle_ddeg), GROBO_ERR_STALE);
-    rig_expect(&rig, grobo_gr001_sense(&rig.robot, R_ELBOW_ID, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_gr001_sense(&rig.robot, R_ELBOW_ID), GROBO_OK);
     assert_int_equal(rig_count(&rig, GROBO_EVENT_JOINT), 1);
     assert_int_equal(angle(R_ELBOW_ID, GROBO_NEVER_US, &angle_ddeg), GROBO_OK);
     assert_int_equal(angle_ddeg, -200);
@@ -110,10 +104,10 @@ static void a_motor_is_read_by_its_number(void **state)
     angle_ddeg = 7777;
     assert_int_equal(grobo_sim_set_cable(&rig.sim, R_ELBOW, GROBO_SIM_CABLE_MUTE), 0);
     rig_run(&rig, 300000);
-    rig_wait(&rig, grobo_gr001_sense(&rig.robot, R_ELBOW_ID, rig.now_us));
+    rig_wait(&rig, grobo_gr001_sense(&rig.robot, R_ELBOW_ID));
     assert_int_equal(angle(R_ELBOW_ID, 300000, &angle_ddeg), GROBO_ERR_STALE);
     assert_int_equal(angle(0, GROBO_NEVER_US, &angle_ddeg), GROBO_ERR_NOTFOUND);
-    assert_int_equal(grobo_gr001_sense(&rig.robot, 0, rig.now_us), GROBO_ERR_NOTFOUND);
+    assert_int_equal(grobo_gr001_sense(&rig.robot, 0), GROBO_ERR_NOTFOUND);
     assert_int_equal(angle_ddeg, 7777);
 }
 
@@ -168,28 +162,24 @@ static void angles_are_set_and_got_in_motor_order(void **state)
         const grobo_joint *joint = &rig.driver->model->joints[j];
         angle_rad[joint->motor - 1] = (joint->min_rad + 3 * joint->max_rad) / 4;
     }
-    assert_int_equal(grobo_gr001_set_angles(&rig.robot, angle_rad, 19, 500000, rig.now_us),
-                     GROBO_ERR_ARG);
-    assert_int_equal(grobo_gr001_set_angles(&rig.robot, angle_rad, 21, 500000, rig.now_us),
-                     GROBO_ERR_ARG);
+    assert_int_equal(grobo_gr001_set_angles(&rig.robot, angle_rad, 19, 500000), GROBO_ERR_ARG);
+    assert_int_equal(grobo_gr001_set_angles(&rig.robot, angle_rad, 21, 500000), GROBO_ERR_ARG);
     int64_t begun_us = rig.now_us;
-    rig_expect(&rig, grobo_gr001_set_angles(&rig.robot, angle_rad, 20, 5000000, rig.now_us), 0);
+    rig_expect(&rig, grobo_gr001_set_angles(&rig.robot, angle_rad, 20, 5000000), 0);
     assert_in_range(rig.now_us - begun_us, 5000000, 6500000);
     for (int j = 0; j < 20; j++) {
         double want_rad = angle_rad[rig.driver->model->joints[j].motor - 1];
         assert_true(fabs(rig_angle_deg(&rig, j) - grobo_deg_from_rad(want_rad)) < 0.1);
     }
     double got_rad[20];
-    assert_int_equal(grobo_gr001_get_angles(&rig.robot, rig.now_us, GROBO_NEVER_US, got_rad, 19),
+    assert_int_equal(grobo_gr001_get_angles(&rig.robot, GROBO_NEVER_US, got_rad, 19),
                      GROBO_ERR_SPACE);
-    assert_int_equal(grobo_gr001_get_angles(&rig.robot, rig.now_us, GROBO_NEVER_US, got_rad, 20),
-                     20);
+    assert_int_equal(grobo_gr001_get_angles(&rig.robot, GROBO_NEVER_US, got_rad, 20), 20);
     for (int i = 0; i < 20; i++) {
         assert_true(fabs(got_rad[i] - angle_rad[i]) < 0.002);
     }
     angle_rad[4] = NAN;
-    assert_int_equal(grobo_gr001_set_angles(&rig.robot, angle_rad, 20, 500000, rig.now_us),
-                     GROBO_ERR_NAN);
+    assert_int_equal(grobo_gr001_set_angles(&rig.robot, angle_rad, 20, 500000), GROBO_ERR_NAN);
 }
 
 static void angles_not_read_are_no_numbers(void **state)
@@ -197,14 +187,13 @@ static void angles_not_read_are_no_numbers(void **state)
     (void)state;
     double angle_rad[20];
     start();
-    rig_expect(&rig, grobo_gr001_sense(&rig.robot, 11, rig.now_us), GROBO_OK); /* R_HIP_R */
-    assert_int_equal(grobo_gr001_get_angles(&rig.robot, rig.now_us, GROBO_NEVER_US, angle_rad, 20),
-                     1);
+    rig_expect(&rig, grobo_gr001_sense(&rig.robot, 11), GROBO_OK); /* R_HIP_R */
+    assert_int_equal(grobo_gr001_get_angles(&rig.robot, GROBO_NEVER_US, angle_rad, 20), 1);
     for (int i = 0; i < 20; i++) {
         assert_int_equal(isnan(angle_rad[i]) != 0, i != 10);
     }
     rig_run(&rig, 1000000);
-    assert_int_equal(grobo_gr001_get_angles(&rig.robot, rig.now_us, 900000, angle_rad, 20), 0);
+    assert_int_equal(grobo_gr001_get_angles(&rig.robot, 900000, angle_rad, 20), 0);
 }
 
 static void voltages_and_currents_are_got_in_motor_order(void **state)
@@ -212,40 +201,36 @@ static void voltages_and_currents_are_got_in_motor_order(void **state)
     (void)state;
     int32_t value[20];
     start();
-    assert_int_equal(grobo_gr001_mean_voltage_mv(&rig.robot, rig.now_us, GROBO_NEVER_US),
-                     GROBO_ERR_STALE);
+    assert_int_equal(grobo_gr001_mean_voltage_mv(&rig.robot, GROBO_NEVER_US), GROBO_ERR_STALE);
     rig_power(&rig);
     assert_int_equal(grobo_sim_set_load(&rig.sim, R_ELBOW, 200), 0);
     read_all();
-    assert_int_equal(grobo_gr001_currents(&rig.robot, rig.now_us, GROBO_NEVER_US, value, 20), 20);
+    assert_int_equal(grobo_gr001_currents(&rig.robot, GROBO_NEVER_US, value, 20), 20);
     for (int i = 0; i < 20; i++) {
         assert_int_equal(value[i] > 150, i == R_ELBOW_ID - 1);
     }
-    assert_int_equal(grobo_gr001_currents(&rig.robot, rig.now_us, GROBO_NEVER_US, value, 19),
-                     GROBO_ERR_SPACE);
-    assert_int_equal(grobo_gr001_voltages(&rig.robot, rig.now_us, GROBO_NEVER_US, value, 19),
-                     GROBO_ERR_SPACE);
-    assert_int_equal(grobo_gr001_voltages(&rig.robot, rig.now_us, GROBO_NEVER_US, value, 20), 20);
+    assert_int_equal(grobo_gr001_currents(&rig.robot, GROBO_NEVER_US, value, 19), GROBO_ERR_SPACE);
+    assert_int_equal(grobo_gr001_voltages(&rig.robot, GROBO_NEVER_US, value, 19), GROBO_ERR_SPACE);
+    assert_int_equal(grobo_gr001_voltages(&rig.robot, GROBO_NEVER_US, value, 20), 20);
     int32_t sum_mv = 0;
     for (int i = 0; i < 20; i++) {
         assert_in_range(value[i], 7000, 7500);
         sum_mv += value[i];
     }
-    int mean_mv = grobo_gr001_mean_voltage_mv(&rig.robot, rig.now_us, GROBO_NEVER_US);
+    int mean_mv = grobo_gr001_mean_voltage_mv(&rig.robot, GROBO_NEVER_US);
     assert_true(fabs(mean_mv - sum_mv / 20.0) <= 0.5);
     /* Only one motor is read later: it alone counts. */
     grobo_sim_set_supply(&rig.sim, 6500);
     rig_run(&rig, 2000000);
-    rig_expect(&rig, grobo_gr001_sense(&rig.robot, NECK_ID, rig.now_us), GROBO_OK);
-    assert_int_equal(grobo_gr001_voltages(&rig.robot, rig.now_us, 1000000, value, 20), 1);
+    rig_expect(&rig, grobo_gr001_sense(&rig.robot, NECK_ID), GROBO_OK);
+    assert_int_equal(grobo_gr001_voltages(&rig.robot, 1000000, value, 20), 1);
     assert_int_equal(value[0], -1);
-    assert_int_equal(grobo_gr001_currents(&rig.robot, rig.now_us, 1000000, value, 20), 1);
+    assert_int_equal(grobo_gr001_currents(&rig.robot, 1000000, value, 20), 1);
     for (int i = 0; i < 20; i++) {
         assert_int_equal(value[i] >= 0, i == NECK_ID - 1);
     }
-    assert_int_equal(grobo_gr001_voltages(&rig.robot, rig.now_us, 1000000, value, 20), 1);
-    assert_int_equal(grobo_gr001_mean_voltage_mv(&rig.robot, rig.now_us, 1000000),
-                     value[NECK_ID - 1]);
+    assert_int_equal(grobo_gr001_voltages(&rig.robot, 1000000, value, 20), 1);
+    assert_int_equal(grobo_gr001_mean_voltage_mv(&rig.robot, 1000000), value[NECK_ID - 1]);
 }
 
 /* ---- for people ------------------------------------------------------------------------------ */
@@ -265,12 +250,12 @@ static const char *printed(int (*print)(FILE *stream))
 
 static int print_voltages(FILE *stream)
 {
-    return grobo_gr001_print_voltages(&rig.robot, rig.now_us, stream);
+    return grobo_gr001_print_voltages(&rig.robot, stream);
 }
 
 static int print_currents(FILE *stream)
 {
-    return grobo_gr001_print_currents(&rig.robot, rig.now_us, stream);
+    return grobo_gr001_print_currents(&rig.robot, stream);
 }
 
 static int print_body(FILE *stream)
@@ -291,12 +276,12 @@ static void voltages_and_currents_are_printed(void **state)
     assert_string_equal(printed(print_voltages), "mean -\n");
     assert_string_equal(printed(print_currents), "");
     read_all();
-    (void)grobo_gr001_currents(&rig.robot, rig.now_us, GROBO_NEVER_US, current_ma, 20);
-    (void)grobo_gr001_voltages(&rig.robot, rig.now_us, GROBO_NEVER_US, voltage_mv, 20);
+    (void)grobo_gr001_currents(&rig.robot, GROBO_NEVER_US, current_ma, 20);
+    (void)grobo_gr001_voltages(&rig.robot, GROBO_NEVER_US, voltage_mv, 20);
     const char *text = printed(print_voltages);
     snprintf(line, sizeof line, " 1 CHEST_P      %6.2f V\n 2 NECK_Y ", voltage_mv[0] / 1000.0);
     assert_memory_equal(text, line, strlen(line));
-    int mean_mv = grobo_gr001_mean_voltage_mv(&rig.robot, rig.now_us, GROBO_NEVER_US);
+    int mean_mv = grobo_gr001_mean_voltage_mv(&rig.robot, GROBO_NEVER_US);
     snprintf(line, sizeof line, "\nmean            %6.2f V\n", mean_mv / 1000.0);
     assert_string_equal(strstr(text, "\nmean"), line);
     text = printed(print_currents);
@@ -348,7 +333,7 @@ static void a_stream_that_takes_nothing_is_told(void **state)
 
 static int record(grobo_motion *motion, int64_t time_us)
 {
-    return grobo_gr001_record(motion, &rig.robot, time_us, rig.now_us);
+    return grobo_gr001_record(motion, &rig.robot, time_us);
 }
 
 static void turn(double neck_deg)
@@ -367,8 +352,7 @@ static void a_record_is_made_by_hand_and_played(void **state)
     start();
     assert_int_equal(grobo_motion_new(&motion, GROBO_MOTION_POSTURES, 20, NULL), 0);
     assert_int_equal(record(motion, 0), GROBO_ERR_STALE);
-    assert_int_equal(grobo_gr001_play_record(motion, &rig.robot, NULL, &clip, rig.now_us),
-                     GROBO_ERR_EMPTY);
+    assert_int_equal(grobo_gr001_play_record(motion, &rig.robot, NULL, &clip), GROBO_ERR_EMPTY);
     turn(20);
     assert_int_equal(record(motion, 400000), 1);
     turn(-30);
@@ -382,9 +366,8 @@ static void a_record_is_made_by_hand_and_played(void **state)
 
     grobo_play_options back = {.repeat = -1};
     rig_forget(&rig);
-    rig_expect(&rig, grobo_gr001_play_record(motion, &rig.robot, &back, &clip, rig.now_us), 0);
-    assert_int_equal(grobo_gr001_play_record(motion, &rig.robot, NULL, &clip, rig.now_us),
-                     GROBO_ERR_STATE);
+    rig_expect(&rig, grobo_gr001_play_record(motion, &rig.robot, &back, &clip), 0);
+    assert_int_equal(grobo_gr001_play_record(motion, &rig.robot, NULL, &clip), GROBO_ERR_STATE);
     rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
     rig_run(&rig, 100000); /* the last frame took its time on the line */
     assert_true(fabs(rig_angle_deg(&rig, NECK) - 20) < 0.2);

@@ -26,11 +26,11 @@ static void servo_switches_one_joint(void **state)
 {
     (void)state;
     start();
-    rig_expect(&rig, grobo_hrpsys_servo(&hrpsys, NECK, true, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_hrpsys_servo(&hrpsys, NECK, true), GROBO_OK);
     for (int j = 0; j < 20; j++) {
         assert_int_equal(rig_torque(&rig, j), j == NECK ? GROBO_TORQUE_ON : GROBO_TORQUE_OFF);
     }
-    rig_expect(&rig, grobo_hrpsys_servo(&hrpsys, NECK, false, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_hrpsys_servo(&hrpsys, NECK, false), GROBO_OK);
     assert_int_equal(rig_torque(&rig, NECK), GROBO_TORQUE_OFF);
 }
 
@@ -39,8 +39,8 @@ static void minus_one_is_not_all(void **state)
     (void)state;
     start();
     rig_power(&rig);
-    assert_int_equal(grobo_hrpsys_servo(&hrpsys, -1, false, rig.now_us), GROBO_ERR_ARG);
-    assert_int_equal(grobo_hrpsys_servo(&hrpsys, 20, false, rig.now_us), GROBO_ERR_ARG);
+    assert_int_equal(grobo_hrpsys_servo(&hrpsys, -1, false), GROBO_ERR_ARG);
+    assert_int_equal(grobo_hrpsys_servo(&hrpsys, 20, false), GROBO_ERR_ARG);
     rig_run(&rig, 100000);
     assert_int_equal(rig_torque(&rig, NECK), GROBO_TORQUE_ON);
 }
@@ -51,18 +51,17 @@ static void servo_knows_joints_and_groups_by_name(void **state)
     static const char *const knees[] = {"R_KNEE_P", "L_KNEE_P"};
     start();
     assert_int_equal(grobo_hrpsys_add_joint_group(&hrpsys, "knees", knees, 2), 2);
-    rig_expect(&rig, grobo_hrpsys_servo_name(&hrpsys, "Knees", true, rig.now_us), GROBO_OK);
-    rig_expect(&rig, grobo_hrpsys_servo_name(&hrpsys, "NECK_Y", true, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_hrpsys_servo_name(&hrpsys, "Knees", true), GROBO_OK);
+    rig_expect(&rig, grobo_hrpsys_servo_name(&hrpsys, "NECK_Y", true), GROBO_OK);
     for (int j = 0; j < 20; j++) {
         bool on = j == 3 || j == 9 || j == NECK;
         assert_int_equal(rig_torque(&rig, j), on ? GROBO_TORQUE_ON : GROBO_TORQUE_OFF);
     }
-    rig_expect(&rig, grobo_hrpsys_servo_name(&hrpsys, "all", false, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_hrpsys_servo_name(&hrpsys, "all", false), GROBO_OK);
     assert_int_equal(rig_torque(&rig, R_KNEE), GROBO_TORQUE_OFF);
     static const char *const unknown[] = {"TAIL", "", "3", "-1", "alle"};
     for (size_t i = 0; i < sizeof unknown / sizeof unknown[0]; i++) {
-        assert_int_equal(grobo_hrpsys_servo_name(&hrpsys, unknown[i], true, rig.now_us),
-                         GROBO_ERR_NOTFOUND);
+        assert_int_equal(grobo_hrpsys_servo_name(&hrpsys, unknown[i], true), GROBO_ERR_NOTFOUND);
     }
 }
 
@@ -118,7 +117,7 @@ static void groups_have_names_of_their_own(void **state)
 
 static int read_angles(double *angles, size_t capacity, int64_t max_age_us)
 {
-    return grobo_hrpsys_read_joint_angles(&hrpsys, angles, capacity, max_age_us, rig.now_us);
+    return grobo_hrpsys_read_joint_angles(&hrpsys, angles, capacity, max_age_us);
 }
 
 static void angles_not_read_are_no_numbers(void **state)
@@ -127,7 +126,7 @@ static void angles_not_read_are_no_numbers(void **state)
     double angles[20];
     start();
     assert_int_equal(read_angles(angles, 19, GROBO_NEVER_US), GROBO_ERR_SPACE);
-    rig_expect(&rig, grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(R_KNEE), 0, rig.now_us), 0);
+    rig_expect(&rig, grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(R_KNEE), 0), 0);
     rig_run(&rig, 50000);
     assert_int_equal(read_angles(angles, 20, GROBO_NEVER_US), 1);
     assert_true(fabs(grobo_deg_from_rad(angles[R_KNEE]) + 40) < 0.06);
@@ -151,18 +150,18 @@ static void commands_go_out_with_one_step(void **state)
     (void)state;
     const double commands[20] = {0};
     start();
-    assert_int_equal(grobo_hrpsys_one_step(&hrpsys, rig.now_us), GROBO_ERR_EMPTY);
+    assert_int_equal(grobo_hrpsys_one_step(&hrpsys), GROBO_ERR_EMPTY);
     rig_power(&rig);
     assert_int_equal(grobo_hrpsys_write_joint_commands(&hrpsys, commands, 19), GROBO_ERR_ARG);
     assert_int_equal(write_pose(NAN), GROBO_ERR_NAN);
-    assert_int_equal(grobo_hrpsys_one_step(&hrpsys, rig.now_us), GROBO_ERR_EMPTY);
+    assert_int_equal(grobo_hrpsys_one_step(&hrpsys), GROBO_ERR_EMPTY);
     assert_int_equal(write_pose(115), GROBO_OK);
-    assert_int_equal(grobo_hrpsys_one_step(&hrpsys, rig.now_us), GROBO_ERR_LIMIT);
+    assert_int_equal(grobo_hrpsys_one_step(&hrpsys), GROBO_ERR_LIMIT);
     assert_int_equal(write_pose(20), GROBO_OK);
     assert_int_equal(write_pose(NAN), GROBO_ERR_NAN); /* and the one before stays */
     assert_int_equal(grobo_hrpsys_set_period_us(&hrpsys, 0), GROBO_ERR_ARG);
     assert_int_equal(grobo_hrpsys_set_period_us(&hrpsys, 500000), GROBO_OK);
-    assert_int_equal(grobo_hrpsys_one_step(&hrpsys, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_hrpsys_one_step(&hrpsys), GROBO_OK);
     rig_run(&rig, 600000);
     assert_true(fabs(rig_angle_deg(&rig, NECK) - 20) < 0.1);
 
@@ -174,7 +173,7 @@ static void commands_go_out_with_one_step(void **state)
     }
     assert_int_equal(grobo_hrpsys_write_joint_commands(&hrpsys, each, 20), GROBO_OK);
     assert_int_equal(grobo_hrpsys_set_period_us(&hrpsys, 1000000), GROBO_OK);
-    assert_int_equal(grobo_hrpsys_one_step(&hrpsys, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_hrpsys_one_step(&hrpsys), GROBO_OK);
     rig_run(&rig, 1500000);
     for (int j = 0; j < 20; j++) {
         assert_true(fabs(rig_angle_deg(&rig, j) - grobo_deg_from_rad(each[j])) < 0.1);
@@ -186,18 +185,18 @@ static void a_loop_of_steps_is_followed(void **state)
     (void)state;
     double angles[20];
     start();
-    rig_expect(&rig, grobo_hrpsys_servo_name(&hrpsys, "all", true, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_hrpsys_servo_name(&hrpsys, "all", true), GROBO_OK);
     assert_int_equal(grobo_hrpsys_set_period_us(&hrpsys, 20000), GROBO_OK);
     for (int i = 0; i < 150; i++) {
         assert_int_equal(write_pose(30 * sin(i * 0.04)), GROBO_OK);
-        assert_int_equal(grobo_hrpsys_one_step(&hrpsys, rig.now_us), GROBO_OK);
+        assert_int_equal(grobo_hrpsys_one_step(&hrpsys), GROBO_OK);
         rig_run(&rig, 20000);
         if (i > 50) { /* the first step is slow */
             assert_true(fabs(rig_angle_deg(&rig, NECK) - 30 * sin(i * 0.04)) < 3);
         }
     }
     rig_run(&rig, 200000);
-    rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), 0, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), 0), GROBO_OK);
     assert_int_equal(read_angles(angles, 20, GROBO_NEVER_US), 20);
     assert_true(fabs(grobo_deg_from_rad(angles[NECK]) - 30 * sin(149 * 0.04)) < 0.1);
 }
@@ -207,11 +206,11 @@ static void joints_without_torque_are_left_out(void **state)
     (void)state;
     start();
     assert_int_equal(write_pose(20), GROBO_OK);
-    assert_int_equal(grobo_hrpsys_one_step(&hrpsys, rig.now_us), GROBO_ERR_STATE);
-    rig_expect(&rig, grobo_hrpsys_servo_name(&hrpsys, "right_arm", true, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_hrpsys_one_step(&hrpsys), GROBO_ERR_STATE);
+    rig_expect(&rig, grobo_hrpsys_servo_name(&hrpsys, "right_arm", true), GROBO_OK);
     assert_int_equal(write_pose(20), GROBO_OK);
     rig_forget(&rig);
-    assert_int_equal(grobo_hrpsys_one_step(&hrpsys, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_hrpsys_one_step(&hrpsys), GROBO_OK);
     rig_run(&rig, 200000);
     assert_int_equal(rig.n_sent, 1);
     const uint8_t *packet;
@@ -224,10 +223,10 @@ static void switching_forgets_what_was_written(void **state)
     (void)state;
     start();
     assert_int_equal(write_pose(20), GROBO_OK);
-    rig_expect(&rig, grobo_hrpsys_servo(&hrpsys, NECK, true, rig.now_us), GROBO_OK);
-    assert_int_equal(grobo_hrpsys_one_step(&hrpsys, rig.now_us), GROBO_ERR_STATE);
-    rig_expect(&rig, grobo_hrpsys_servo_name(&hrpsys, "all", true, rig.now_us), GROBO_OK);
-    assert_int_equal(grobo_hrpsys_one_step(&hrpsys, rig.now_us), GROBO_ERR_EMPTY);
+    rig_expect(&rig, grobo_hrpsys_servo(&hrpsys, NECK, true), GROBO_OK);
+    assert_int_equal(grobo_hrpsys_one_step(&hrpsys), GROBO_ERR_STATE);
+    rig_expect(&rig, grobo_hrpsys_servo_name(&hrpsys, "all", true), GROBO_OK);
+    assert_int_equal(grobo_hrpsys_one_step(&hrpsys), GROBO_ERR_EMPTY);
     rig_run(&rig, 500000);
     assert_true(fabs(rig_angle_deg(&rig, NECK)) < 0.1);
 }
@@ -237,7 +236,7 @@ static const char *emergency(int *joint)
 {
     static char reason[GROBO_HRPSYS_REASON_MAX_BYTES];
     *joint = -7;
-    rig_wait(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), 0, rig.now_us));
+    rig_wait(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), 0));
     if (grobo_hrpsys_check_emergency(&hrpsys, reason, sizeof reason, joint) == 0) {
         assert_int_equal(*joint, -7);
         return "none";
@@ -260,7 +259,7 @@ static void emergencies_are_told(void **state)
                      GROBO_ERR_SPACE);
     assert_int_equal(small[0], '.');
     assert_int_equal(write_pose(5), GROBO_OK);
-    assert_int_equal(grobo_hrpsys_one_step(&hrpsys, rig.now_us), GROBO_ERR_LATCHED);
+    assert_int_equal(grobo_hrpsys_one_step(&hrpsys), GROBO_ERR_LATCHED);
 
     start();
     rig_power(&rig);
@@ -276,7 +275,7 @@ static void emergencies_are_told(void **state)
     assert_memory_equal(emergency(&joint), "low voltage: ", 13);
 
     start();
-    rig_expect(&rig, grobo_robot_estop(&rig.robot, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_estop(&rig.robot), GROBO_OK);
     assert_string_equal(emergency(&joint), "emergency stop");
     assert_int_equal(joint, -1);
 }
@@ -291,7 +290,7 @@ static void lost_replies_in_motion_are_an_emergency(void **state)
     rig_power(&rig);
     assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_MUTE), 0);
     grobo_posture target = rig_posture(&rig, R_KNEE, -60, 5000);
-    rig_wait(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us));
+    rig_wait(&rig, grobo_robot_move(&rig.robot, &target));
     assert_string_equal(emergency(&joint), "lost replies: NECK_Y, 5 in a row");
     assert_int_equal(joint, NECK);
 }

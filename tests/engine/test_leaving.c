@@ -266,15 +266,14 @@ static void an_exit_is_carried_out_as_it_is_asked_for(void **state)
             grobo_i_trip(&rig.robot, GROBO_TRIP_TEMPERATURE, CHEST, 75, true);
         }
         rig_run(&rig, 100000);
-        rig_expect(
-            &rig,
-            grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(CHEST), GROBO_SENSE_POSITION, rig.now_us),
-            GROBO_OK);
+        rig_expect(&rig,
+                   grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(CHEST), GROBO_SENSE_POSITION),
+                   GROBO_OK);
         assert_int_equal(
             grobo_i_gate_torque(&rig.robot, GROBO_JOINT_BIT(NECK), GROBO_TORQUE_ON, GROBO_I_WHOLE),
             rows[i].latched ? GROBO_ERR_LATCHED : GROBO_OK);
         rig.robot.free_joints = rows[i].latched ? 0 : GROBO_JOINT_BIT(CHEST);
-        int number = grobo_robot_exit(&rig.robot, rows[i].asked, rig.now_us);
+        int number = grobo_robot_exit(&rig.robot, rows[i].asked);
         const grobo_robot_task *job = &rig.robot.job;
         assert_int_equal(job->number, number);
         assert_int_equal(job->kind, GROBO_JOB_EXIT);
@@ -297,7 +296,7 @@ static void an_exit_stops_what_moves_whatever_the_job(void **state)
         begin_job(kinds[i], grobo_i_script_sense, QUIET);
         robot.last_number = robot.job.number;
         set_going(3);
-        assert_int_equal(grobo_robot_exit(&robot, GROBO_EXIT_HOLD, NOW), 6);
+        assert_int_equal(grobo_robot_exit(&robot), 6);
         assert_int_equal(robot.job.kind, GROBO_JOB_EXIT);
         assert_true(halted() == GROBO_JOINT_BIT(3));
     }
@@ -308,22 +307,20 @@ static void an_exit_is_refused_by_name(void **state)
     (void)state;
     rig_start(&rig, &quiet, NULL);
     rig_power(&rig);
-    assert_int_equal(
-        grobo_robot_exit(&rig.robot, (grobo_exit_policy)(GROBO_EXIT_SIT + 1), rig.now_us),
-        GROBO_ERR_ARG);
-    int number = grobo_robot_estop(&rig.robot, rig.now_us);
+    assert_int_equal(grobo_robot_exit(&rig.robot, (grobo_exit_policy)(GROBO_EXIT_SIT + 1)),
+                     GROBO_ERR_ARG);
+    int number = grobo_robot_estop(&rig.robot);
     assert_true(number > 0);
-    assert_int_equal(grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD, rig.now_us), GROBO_ERR_STATE);
-    assert_int_equal(grobo_robot_exit(&rig.robot, GROBO_EXIT_SIT, rig.now_us), GROBO_ERR_STATE);
-    assert_int_equal(grobo_robot_cancel(&rig.robot, rig.now_us), GROBO_ERR_STATE);
-    assert_int_equal(grobo_robot_reset(&rig.robot, rig.now_us), GROBO_ERR_STATE);
+    assert_int_equal(grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD), GROBO_ERR_STATE);
+    assert_int_equal(grobo_robot_exit(&rig.robot, GROBO_EXIT_SIT), GROBO_ERR_STATE);
+    assert_int_equal(grobo_robot_cancel(&rig.robot), GROBO_ERR_STATE);
+    assert_int_equal(grobo_robot_reset(&rig.robot), GROBO_ERR_STATE);
     rig_expect(&rig, number, GROBO_OK);
-    assert_int_equal(grobo_robot_cancel(&rig.robot, rig.now_us), GROBO_ERR_STATE);
-    rig_expect(&rig, grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_cancel(&rig.robot), GROBO_ERR_STATE);
+    rig_expect(&rig, grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD), GROBO_OK);
     grobo_robot_link_down(&rig.robot, rig.now_us);
-    assert_int_equal(grobo_robot_exit(&rig.robot, (grobo_exit_policy)9, rig.now_us),
-                     GROBO_ERR_CLOSED);
-    assert_int_equal(grobo_robot_estop(&rig.robot, rig.now_us), GROBO_ERR_CLOSED);
+    assert_int_equal(grobo_robot_exit(&rig.robot, (grobo_exit_policy)9), GROBO_ERR_CLOSED);
+    assert_int_equal(grobo_robot_estop(&rig.robot), GROBO_ERR_CLOSED);
 }
 
 /* What stops the robot is not cancelled, nor what the engine does by itself. */
@@ -342,7 +339,7 @@ static void a_job_is_cancelled_that_somebody_asked_for(void **state)
         if (kind == GROBO_JOB_ESTOP) {
             latch(GROBO_TRIP_ESTOP);
         }
-        assert_int_equal(grobo_robot_cancel(&robot, NOW), stays ? GROBO_ERR_STATE : GROBO_OK);
+        assert_int_equal(grobo_robot_cancel(&robot), stays ? GROBO_ERR_STATE : GROBO_OK);
         assert_int_equal(robot.job.kind, stays ? kind : GROBO_JOB_NONE);
         /* What it moves is stopped, and no other job's. */
         bool moves = kind == GROBO_JOB_MOVE || kind == GROBO_JOB_PLAY || frame_moves;
@@ -358,11 +355,11 @@ static void a_motion_goes_on_when_a_reading_is_cancelled(void **state)
     rig_start_at(&rig, 0, &quiet);
     rig_clip_init(&clip, slow, 2);
     clip.only = bits(NECK, CHEST);
-    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL), GROBO_OK);
     rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
     rig_run(&rig, S);
-    int number = grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL, rig.now_us);
-    assert_int_equal(grobo_robot_cancel(&rig.robot, rig.now_us), GROBO_OK);
+    int number = grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL);
+    assert_int_equal(grobo_robot_cancel(&rig.robot), GROBO_OK);
     rig_expect(&rig, number, GROBO_ERR_CANCELED);
     rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
     rig_run(&rig, 200000);
@@ -377,8 +374,8 @@ static void a_reset_owes_no_stop_to_the_next_line(void **state)
         rig_start(&rig, &quiet, NULL);
         rig_power(&rig);
         grobo_robot_link_down(&rig.robot, rig.now_us);
-        assert_int_equal(grobo_robot_estop(&rig.robot, rig.now_us), GROBO_ERR_CLOSED);
-        assert_true(!resets || grobo_robot_reset(&rig.robot, rig.now_us) == GROBO_OK);
+        assert_int_equal(grobo_robot_estop(&rig.robot), GROBO_ERR_CLOSED);
+        assert_true(!resets || grobo_robot_reset(&rig.robot) == GROBO_OK);
         grobo_robot_link_up(&rig.robot, rig.now_us);
         assert_int_equal(grobo_robot_job(&rig.robot), resets ? GROBO_JOB_NONE : GROBO_JOB_ESTOP);
     }
@@ -417,7 +414,7 @@ static void a_reset_makes_the_next_move_slow(void **state)
             rig.robot.low_readings = 2;
             grobo_i_trip(&rig.robot, GROBO_TRIP_TEMPERATURE, CHEST, 75, true);
             rig_run(&rig, 1000);
-            assert_int_equal(grobo_robot_reset(&rig.robot, rig.now_us), GROBO_OK);
+            assert_int_equal(grobo_robot_reset(&rig.robot), GROBO_OK);
         }
         grobo_robot_tripped(&rig.robot, &trip);
         assert_int_equal(trip.trip, GROBO_TRIP_NONE);
@@ -427,7 +424,7 @@ static void a_reset_makes_the_next_move_slow(void **state)
         assert_false(rig.robot.stop_owed);
         grobo_posture target = rig_posture(&rig, NECK, 40, 10);
         rig_forget(&rig);
-        assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+        assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
         rig_run(&rig, 5000);
         assert_int_equal(rig_sent_ms(&rig, NECK_ID), resets ? 670 : 110); /* 60, 375 deg/s */
     }
@@ -441,13 +438,13 @@ static void stop_by(int way)
 {
     switch (way) {
     case CANCEL:
-        assert_int_equal(grobo_robot_cancel(&rig.robot, rig.now_us), GROBO_OK);
+        assert_int_equal(grobo_robot_cancel(&rig.robot), GROBO_OK);
         break;
     case STOP:
-        assert_int_equal(grobo_robot_stop(&rig.robot, false, rig.now_us), GROBO_OK);
+        assert_int_equal(grobo_robot_stop(&rig.robot, false), GROBO_OK);
         break;
     case EXIT:
-        assert_true(grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD, rig.now_us) > 0);
+        assert_true(grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD) > 0);
         break;
     default:
         grobo_i_trip(&rig.robot, GROBO_TRIP_TEMPERATURE, CHEST, 75, true);
@@ -467,7 +464,7 @@ static void an_approach_is_stopped_whatever_stops_it(void **state)
         rig_start_at(&rig, 0, &config);
         rig_clip_init(&clip, far, 2);
         clip.only = bits(NECK, CHEST);
-        int number = grobo_robot_play(&rig.robot, &clip.clip, NULL, rig.now_us);
+        int number = grobo_robot_play(&rig.robot, &clip.clip, NULL);
         rig_wait_play(&rig, GROBO_SEQUENCER_APPROACHING);
         assert_int_equal(rig.robot.job.kind, GROBO_JOB_PLAY);
         assert_int_equal(rig.robot.job.number, number);

@@ -60,13 +60,13 @@ static void all_move_and_stop(void **state)
     for (int arm = 0; arm < 2; arm++) {
         start(arm != 0, &quiet);
         grobo_posture target = all_at(5);
-        rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
+        rig_expect(&rig, grobo_robot_move(&rig.robot, &target), GROBO_OK);
         expect_there(&target);
         target = all_at(-5);
         target.time_us = 3000000;
-        assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+        assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
         rig_run(&rig, 1000000);
-        assert_int_equal(grobo_robot_stop(&rig.robot, false, rig.now_us), GROBO_OK);
+        assert_int_equal(grobo_robot_stop(&rig.robot, false), GROBO_OK);
         rig_run(&rig, 400000);
         double here_deg = rig_angle_deg(&rig, LAST);
         assert_true(fabs(here_deg - target_deg(&target, LAST)) > 3);
@@ -102,12 +102,12 @@ static void all_are_played_and_watched(void **state)
         const grobo_play_options options = {
             .mode = i == 0 ? GROBO_PLAY_KEY : GROBO_PLAY_RATE, .rate_hz = 4, .unwatched = true};
         start(i == 0, &reading);
-        rig_expect(&rig, grobo_robot_play(&rig.robot, &sway, &options, rig.now_us), GROBO_OK);
+        rig_expect(&rig, grobo_robot_play(&rig.robot, &sway, &options), GROBO_OK);
         rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
         rig_run(&rig, 500000);
-        assert_int_equal(grobo_robot_pause(&rig.robot, rig.now_us), GROBO_OK);
+        assert_int_equal(grobo_robot_pause(&rig.robot), GROBO_OK);
         rig_run(&rig, 500000);
-        assert_int_equal(grobo_robot_resume(&rig.robot, rig.now_us), GROBO_OK);
+        assert_int_equal(grobo_robot_resume(&rig.robot), GROBO_OK);
         rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
         rig_run(&rig, 5000000);
         grobo_posture last = all_at(-5);
@@ -124,7 +124,7 @@ static int raw_goal(double deg, uint16_t time_cs)
     uint8_t frame[GROBO_FRAME_MAX_BYTES];
     const grobo_rs30x_goal goal = {LAST + 1, (int16_t)lround(deg * 10), time_cs};
     int n = grobo_frame_goal(grobo_wiring_protocol(rig_wiring), &goal, frame, sizeof frame);
-    return grobo_robot_raw(&rig.robot, frame, (size_t)n, rig.now_us);
+    return grobo_robot_raw(&rig.robot, frame, (size_t)n);
 }
 
 /* Raw frames, settings and free mode. */
@@ -139,9 +139,8 @@ static void the_last_is_one_of_them(void **state)
     rig_run(&rig, 1200000);
     assert_true(fabs(rig_angle_deg(&rig, LAST) - here_deg - 5) < 0.1);
     assert_int_equal(raw_goal(here_deg - 90, 1), GROBO_ERR_SPEED);
-    assert_int_equal(grobo_robot_registers(&rig.robot, &io, rig.now_us), GROBO_ERR_STATE);
-    assert_int_equal(grobo_robot_free(&rig.robot, GROBO_JOINT_BIT(LAST) | 1, true, rig.now_us),
-                     GROBO_OK);
+    assert_int_equal(grobo_robot_registers(&rig.robot, &io), GROBO_ERR_STATE);
+    assert_int_equal(grobo_robot_free(&rig.robot, GROBO_JOINT_BIT(LAST) | 1, true), GROBO_OK);
     assert_int_equal(grobo_sim_set_load(&rig.sim, LAST, 900), 0);
     rig_run(&rig, 500000);
     assert_int_equal(rig_torque(&rig, LAST), GROBO_TORQUE_BRAKE);
@@ -161,7 +160,7 @@ static void an_odd_number_moves_together(void **state)
         assert_int_equal(grobo_posture_set_deg(&target, j, rig_angle_deg(&rig, j) + 1), 0);
     }
     rig_forget(&rig);
-    rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &target), GROBO_OK);
     const uint8_t *p = NULL;
     for (size_t i = 0; i < rig.n_sent; i++) {
         const uint8_t *at;
@@ -183,12 +182,11 @@ static void all_are_left_well(void **state)
     for (int i = 0; i < 4; i++) {
         start(false, &quiet);
         grobo_posture target = all_at(5);
-        assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+        assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
         rig_run(&rig, 300000);
-        rig_expect(&rig,
-                   i < 3 ? grobo_robot_exit(&rig.robot, policies[i], rig.now_us)
-                         : grobo_robot_estop(&rig.robot, rig.now_us),
-                   GROBO_OK);
+        rig_expect(
+            &rig, i < 3 ? grobo_robot_exit(&rig.robot, policies[i]) : grobo_robot_estop(&rig.robot),
+            GROBO_OK);
         double here_deg = rig_angle_deg(&rig, LAST);
         assert_int_equal(rig_torque(&rig, LAST) == GROBO_TORQUE_ON, i == 0);
         rig_run(&rig, 2000000);

@@ -125,15 +125,15 @@ static void hrpsys_refuses_null(void **state)
     REFUSES(grobo_hrpsys_names_to_motors(NULL, names, 1, ints));
     REFUSES(grobo_hrpsys_names_to_motors(&hrpsys, NULL, 1, ints));
     REFUSES(grobo_hrpsys_names_to_motors(&hrpsys, names, 1, NULL));
-    REFUSES(grobo_hrpsys_servo(NULL, 1, true, 1000));
-    REFUSES(grobo_hrpsys_servo_name(NULL, text, true, 1000));
-    REFUSES(grobo_hrpsys_servo_name(&hrpsys, NULL, true, 1000));
-    REFUSES(grobo_hrpsys_read_joint_angles(NULL, reals, sizeof bytes, 0, 1000));
-    REFUSES(grobo_hrpsys_read_joint_angles(&hrpsys, NULL, sizeof bytes, 0, 1000));
+    REFUSES(grobo_hrpsys_servo(NULL, 1, true));
+    REFUSES(grobo_hrpsys_servo_name(NULL, text, true));
+    REFUSES(grobo_hrpsys_servo_name(&hrpsys, NULL, true));
+    REFUSES(grobo_hrpsys_read_joint_angles(NULL, reals, sizeof bytes, 0));
+    REFUSES(grobo_hrpsys_read_joint_angles(&hrpsys, NULL, sizeof bytes, 0));
     REFUSES(grobo_hrpsys_write_joint_commands(NULL, reals, 1));
     REFUSES(grobo_hrpsys_write_joint_commands(&hrpsys, NULL, 1));
     REFUSES(grobo_hrpsys_set_period_us(NULL, 0));
-    REFUSES(grobo_hrpsys_one_step(NULL, 1000));
+    REFUSES(grobo_hrpsys_one_step(NULL));
     REFUSES(grobo_hrpsys_check_emergency(NULL, text, sizeof bytes, ints));
     REFUSES(grobo_hrpsys_check_emergency(&hrpsys, NULL, sizeof bytes, ints));
 }
@@ -154,55 +154,55 @@ static void robot_refuses_null_in_its_first_functions(void **state)
     assert_true(grobo_robot_deadline(NULL, 1000) == GROBO_NEVER_US);
     grobo_robot_link_up(NULL, 1000);
     grobo_robot_link_down(NULL, 1000);
-    REFUSES(grobo_robot_check(NULL, 1000));
-    REFUSES(grobo_robot_sense(NULL, 1, 0, 1000));
-    REFUSES(grobo_robot_torque(NULL, 1, 0, 1000));
-    REFUSES(grobo_robot_move(NULL, &posture, 1000));
-    REFUSES(grobo_robot_move(&robot, NULL, 1000));
-    REFUSES(grobo_robot_retarget(NULL, &posture, 1000));
-    REFUSES(grobo_robot_retarget(&robot, NULL, 1000));
-    REFUSES(grobo_robot_send(NULL, &posture, 1000));
-    REFUSES(grobo_robot_send(&robot, NULL, 1000));
-    REFUSES(grobo_robot_raw(NULL, bytes, 1, 1000));
+    REFUSES(grobo_robot_check(NULL));
+    REFUSES(grobo_robot_sense(NULL, 1, 0));
+    REFUSES(grobo_robot_torque(NULL, 1, 0));
+    REFUSES(grobo_robot_move(NULL, &posture));
+    REFUSES(grobo_robot_move(&robot, NULL));
+    REFUSES(grobo_robot_retarget(NULL, &posture));
+    REFUSES(grobo_robot_retarget(&robot, NULL));
+    REFUSES(grobo_robot_send(NULL, &posture));
+    REFUSES(grobo_robot_send(&robot, NULL));
+    REFUSES(grobo_robot_raw(NULL, bytes, 1));
 }
 
 static void robot_refuses_null_in_its_second_functions(void **state)
 {
     (void)state;
-    REFUSES(grobo_robot_raw(&robot, NULL, 1, 1000));
-    REFUSES(grobo_robot_raw_until(NULL, bytes, 1, 1000, 1000));
-    REFUSES(grobo_robot_raw_until(&robot, NULL, 1, 1000, 1000));
-    REFUSES(grobo_robot_registers(NULL, &io, 1000));
-    REFUSES(grobo_robot_registers(&robot, NULL, 1000));
-    REFUSES(grobo_robot_command(NULL, 1, 0, 1000));
-    REFUSES(grobo_robot_stored(NULL, 0, 1, 1000));
-    REFUSES(grobo_robot_exit(NULL, 0, 1000));
-    REFUSES(grobo_robot_estop(NULL, 1000));
-    REFUSES(grobo_robot_latch(NULL, 1000));
-    REFUSES(grobo_robot_reset(NULL, 1000));
-    REFUSES(grobo_robot_cancel(NULL, 1000));
-    REFUSES(grobo_robot_play(NULL, &clip, &play_options, 1000));
-    REFUSES(grobo_robot_play(&robot, NULL, &play_options, 1000));
-    REFUSES(grobo_robot_enqueue(NULL, &clip, &play_options, 1000));
-    REFUSES(grobo_robot_enqueue(&robot, NULL, &play_options, 1000));
-    REFUSES(grobo_robot_pause(NULL, 1000));
-    REFUSES(grobo_robot_resume(NULL, 1000));
-    REFUSES(grobo_robot_stop(NULL, true, 1000));
-    REFUSES(grobo_robot_seek(NULL, 0, 1000));
-    REFUSES(grobo_robot_speed(NULL, 0, 1000));
-    REFUSES(grobo_robot_free(NULL, 1, true, 1000));
-    REFUSES(grobo_robot_joint(NULL, 1, 1000, &joint_info));
+    REFUSES(grobo_robot_raw(&robot, NULL, 1));
+    REFUSES(grobo_robot_raw_until(NULL, bytes, 1, 1000));
+    REFUSES(grobo_robot_raw_until(&robot, NULL, 1, 1000));
+    REFUSES(grobo_robot_registers(NULL, &io));
+    REFUSES(grobo_robot_registers(&robot, NULL));
+    REFUSES(grobo_robot_command(NULL, 1, 0));
+    REFUSES(grobo_robot_stored(NULL, 0, 1));
+    REFUSES(grobo_robot_exit(NULL, 0));
+    REFUSES(grobo_robot_estop(NULL));
+    REFUSES(grobo_robot_latch(NULL));
+    REFUSES(grobo_robot_reset(NULL));
+    REFUSES(grobo_robot_cancel(NULL));
+    REFUSES(grobo_robot_play(NULL, &clip, &play_options));
+    REFUSES(grobo_robot_play(&robot, NULL, &play_options));
+    REFUSES(grobo_robot_enqueue(NULL, &clip, &play_options));
+    REFUSES(grobo_robot_enqueue(&robot, NULL, &play_options));
+    REFUSES(grobo_robot_pause(NULL));
+    REFUSES(grobo_robot_resume(NULL));
+    REFUSES(grobo_robot_stop(NULL, true));
+    REFUSES(grobo_robot_seek(NULL, 0));
+    REFUSES(grobo_robot_speed(NULL, 0));
+    REFUSES(grobo_robot_free(NULL, 1, true));
+    REFUSES(grobo_robot_joint(NULL, 1, &joint_info));
 }
 
 static void robot_refuses_null_in_its_third_functions(void **state)
 {
     (void)state;
-    REFUSES(grobo_robot_joint(&robot, 1, 1000, NULL));
-    REFUSES(grobo_robot_posture(NULL, 1000, 0, &posture));
-    REFUSES(grobo_robot_posture(&robot, 1000, 0, NULL));
+    REFUSES(grobo_robot_joint(&robot, 1, NULL));
+    REFUSES(grobo_robot_posture(NULL, 0, &posture));
+    REFUSES(grobo_robot_posture(&robot, 0, NULL));
     REFUSES(grobo_robot_target(NULL, &posture));
     REFUSES(grobo_robot_target(&robot, NULL));
-    assert_false(grobo_robot_moving(NULL, 1000));
+    assert_false(grobo_robot_moving(NULL));
     assert_false(grobo_robot_settling(NULL));
     assert_int_equal(grobo_robot_job(NULL), GROBO_JOB_NONE);
     grobo_robot_tripped(NULL, &trip);
@@ -213,8 +213,8 @@ static void robot_refuses_null_in_its_third_functions(void **state)
     assert_int_equal(grobo_robot_play_state(NULL), GROBO_SEQUENCER_IDLE);
     assert_false(grobo_robot_is_playing(NULL));
     assert_false(grobo_robot_is_quiet(NULL));
-    grobo_robot_progress(NULL, 1000, &progress);
-    grobo_robot_progress(&robot, 1000, NULL);
+    grobo_robot_progress(NULL, &progress);
+    grobo_robot_progress(&robot, NULL);
     REFUSES(grobo_robot_budget(NULL, &budget));
     REFUSES(grobo_robot_budget(&robot, NULL));
     grobo_robot_jitter(NULL, &jitter);

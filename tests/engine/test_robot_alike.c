@@ -42,7 +42,7 @@ static void send_targets(void)
 {
     for (unsigned left = pick(20); left > 0; left--) {
         grobo_posture target = any_target();
-        (void)grobo_robot_send(&rig.robot, &target, rig.now_us);
+        (void)grobo_robot_send(&rig.robot, &target);
         rig_run(&rig, 20000);
     }
 }
@@ -58,7 +58,7 @@ static void send_raw(void)
                            : grobo_frame_goals(grobo_wiring_protocol(rig_wiring), &goal, 1, frame,
                                                sizeof frame);
     assert_true(n > 0);
-    (void)grobo_robot_raw(&rig.robot, frame, (size_t)n, rig.now_us);
+    (void)grobo_robot_raw(&rig.robot, frame, (size_t)n);
 }
 
 static void play(void)
@@ -68,32 +68,32 @@ static void play(void)
                                   .repeat = 1 + (int32_t)pick(3),
                                   .mirror = pick(4) == 0,
                                   .speed_pct = (uint16_t)(50 + pick(200))};
-    (void)grobo_robot_play(&rig.robot, &clip.clip, &options, rig.now_us);
+    (void)grobo_robot_play(&rig.robot, &clip.clip, &options);
 }
 
 static void control(void)
 {
     switch (pick(7)) {
     case 0:
-        (void)grobo_robot_pause(&rig.robot, rig.now_us);
+        (void)grobo_robot_pause(&rig.robot);
         break;
     case 1:
-        (void)grobo_robot_resume(&rig.robot, rig.now_us);
+        (void)grobo_robot_resume(&rig.robot);
         break;
     case 2:
-        (void)grobo_robot_stop(&rig.robot, pick(2) == 0, rig.now_us);
+        (void)grobo_robot_stop(&rig.robot, pick(2) == 0);
         break;
     case 3:
-        (void)grobo_robot_seek(&rig.robot, (int64_t)pick(2500000), rig.now_us);
+        (void)grobo_robot_seek(&rig.robot, (int64_t)pick(2500000));
         break;
     case 4:
-        (void)grobo_robot_speed(&rig.robot, 20 + (int)pick(300), rig.now_us);
+        (void)grobo_robot_speed(&rig.robot, 20 + (int)pick(300));
         break;
     case 5:
-        (void)grobo_robot_enqueue(&rig.robot, &other.clip, NULL, rig.now_us);
+        (void)grobo_robot_enqueue(&rig.robot, &other.clip, NULL);
         break;
     default:
-        (void)grobo_robot_cancel(&rig.robot, rig.now_us);
+        (void)grobo_robot_cancel(&rig.robot);
         break;
     }
 }
@@ -107,7 +107,7 @@ static void request(void)
     case 0:
     case 1:
     case 2:
-        (void)grobo_robot_move(&rig.robot, &target, rig.now_us);
+        (void)grobo_robot_move(&rig.robot, &target);
         break;
     case 3:
     case 4:
@@ -121,22 +121,22 @@ static void request(void)
         break;
     case 7:
         (void)grobo_robot_torque(&rig.robot, pick(2) ? rig_all(&rig) : GROBO_JOINT_BIT(pick(20)),
-                                 (grobo_torque)pick(3), rig.now_us);
+                                 (grobo_torque)pick(3));
         break;
     case 8:
-        (void)grobo_robot_registers(&rig.robot, &io, rig.now_us);
+        (void)grobo_robot_registers(&rig.robot, &io);
         break;
     case 9:
-        (void)grobo_robot_free(&rig.robot, GROBO_JOINT_BIT(NECK), true, rig.now_us);
+        (void)grobo_robot_free(&rig.robot, GROBO_JOINT_BIT(NECK), true);
         break;
     case 10:
-        (void)grobo_robot_exit(&rig.robot, (grobo_exit_policy)pick(4), rig.now_us);
+        (void)grobo_robot_exit(&rig.robot, (grobo_exit_policy)pick(4));
         break;
     case 11:
-        (void)grobo_robot_estop(&rig.robot, rig.now_us);
+        (void)grobo_robot_estop(&rig.robot);
         break;
     case 12:
-        (void)grobo_robot_command(&rig.robot, NECK_ID, GROBO_SERVO_REBOOT, rig.now_us);
+        (void)grobo_robot_command(&rig.robot, NECK_ID, GROBO_SERVO_REBOOT);
         break;
     default:
         control();
@@ -167,7 +167,7 @@ static void live(uint32_t seed, int64_t epoch_us)
         grobo_robot_tripped(&rig.robot, &trip);
         if (trip.latched) {
             rig.now_us += 777;
-            (void)grobo_robot_reset(&rig.robot, rig.now_us);
+            (void)grobo_robot_reset(&rig.robot);
         }
     }
 }

@@ -80,7 +80,7 @@ static void start(const use *u)
     if (u->frames_hz > 0) {
         grobo_play_options options = {
             .mode = GROBO_PLAY_RATE, .rate_hz = (uint16_t)u->frames_hz, .unwatched = true};
-        rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options, rig.now_us), GROBO_OK);
+        rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options), GROBO_OK);
         rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
         rig_run(&rig, SECOND_US);
     }
@@ -181,7 +181,7 @@ static void expect_free_rate(grobo_wiring wiring, grobo_joint_mask joints, int n
     rig_start_driver(&rig, grobo_gr001_driver(wiring), &config, NULL);
     rig.on_event = on_event;
     rig_power(&rig);
-    assert_int_equal(grobo_robot_free(&rig.robot, joints, true, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_free(&rig.robot, joints, true), GROBO_OK);
     rig_run(&rig, SECOND_US);
     memset(taken, 0, sizeof taken);
     rig_run(&rig, LENGTH_S * SECOND_US);
@@ -230,8 +230,7 @@ static void a_reading_without_room_does_not_spin(void **state)
         last = slot;
     }
     assert_non_null(last);
-    assert_int_equal(grobo_robot_free(&rig.robot, GROBO_JOINT_BIT(NECK), true, rig.now_us),
-                     GROBO_OK);
+    assert_int_equal(grobo_robot_free(&rig.robot, GROBO_JOINT_BIT(NECK), true), GROBO_OK);
     rig_run(&rig, 10000);
     assert_true(grobo_robot_deadline(&rig.robot, rig.now_us) > rig.now_us);
     assert_int_equal(grobo_bus_cancel(&rig.robot.bus, &last->txn), GROBO_OK);

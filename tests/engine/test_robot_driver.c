@@ -171,22 +171,21 @@ static void every_function_gets_the_context(void **state)
     uint8_t frame[GROBO_RS30X_PACKET_MAX_BYTES];
     const grobo_robot_config config = {.sense_interval_us = 200000};
     start(&config);
-    rig_expect(&rig, grobo_robot_check(&rig.robot, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_check(&rig.robot), GROBO_OK);
     rig_power(&rig);
     grobo_posture target = rig_posture(&rig, NECK, 10, 500);
-    rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
-    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &target), GROBO_OK);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
     rig_clip_init(&clip, nod, 2);
-    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL), GROBO_OK);
     rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
     grobo_register_io io = {R_ELBOW_ID, 42, 2, NULL};
-    rig_expect(&rig, grobo_robot_registers(&rig.robot, &io, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_registers(&rig.robot, &io), GROBO_OK);
     int n =
         grobo_frame_read(grobo_wiring_protocol(rig_wiring), NECK_ID, 42, 2, frame, sizeof frame);
-    rig_expect(&rig, grobo_robot_raw(&rig.robot, frame, (size_t)n, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_raw(&rig.robot, frame, (size_t)n), GROBO_OK);
     rig_run(&rig, 1000000);
-    rig_expect(&rig, grobo_robot_command(&rig.robot, NECK_ID, GROBO_SERVO_REBOOT, rig.now_us),
-               GROBO_OK);
+    rig_expect(&rig, grobo_robot_command(&rig.robot, NECK_ID, GROBO_SERVO_REBOOT), GROBO_OK);
     for (size_t i = 0; i < sizeof calls / sizeof calls[0]; i++) {
         assert_true(calls[i] > 0);
     }
@@ -202,14 +201,13 @@ static void an_order_of_several_frames_is_whole(void **state)
         assert_int_equal(rig_torque(&rig, j), GROBO_TORQUE_ON);
     }
     grobo_posture target = all_at(5, 500);
-    rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &target), GROBO_OK);
     expect_all_at(&target);
     target = all_at(-5, 500);
-    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
     rig_run(&rig, 700000);
     expect_all_at(&target);
-    rig_expect(&rig, grobo_robot_torque(&rig.robot, rig_all(&rig), GROBO_TORQUE_BRAKE, rig.now_us),
-               GROBO_OK);
+    rig_expect(&rig, grobo_robot_torque(&rig.robot, rig_all(&rig), GROBO_TORQUE_BRAKE), GROBO_OK);
     for (int j = 0; j < 20; j++) {
         assert_int_equal(rig_torque(&rig, j), GROBO_TORQUE_BRAKE);
     }
@@ -221,11 +219,11 @@ static void a_halt_of_several_frames_stops_all(void **state)
     start(&quiet);
     rig_power(&rig);
     grobo_posture target = all_at(5, 500);
-    rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &target), GROBO_OK);
     target = all_at(-5, 5000);
-    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
     rig_run(&rig, 1000000);
-    assert_int_equal(grobo_robot_stop(&rig.robot, false, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_stop(&rig.robot, false), GROBO_OK);
     rig_run(&rig, 400000);
     double here_deg[20];
     for (int j = 0; j < 20; j++) {
@@ -246,21 +244,21 @@ static void an_order_without_a_frame_is_over(void **state)
     start(&quiet);
     rig_power(&rig);
     grobo_posture target = all_at(5, 500);
-    rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &target), GROBO_OK);
     rig_forget(&rig);
     has_no_frame = true;
     target = all_at(-5, 5000);
-    (void)grobo_robot_send(&rig.robot, &target, rig.now_us);
+    (void)grobo_robot_send(&rig.robot, &target);
     rig_run(&rig, 100000);
     assert_int_equal(rig.n_sent, 0);
-    assert_false(grobo_robot_moving(&rig.robot, rig.now_us));
+    assert_false(grobo_robot_moving(&rig.robot));
     target = rig_posture(&rig, NECK, 10, 5000);
-    (void)grobo_robot_send(&rig.robot, &target, rig.now_us);
+    (void)grobo_robot_send(&rig.robot, &target);
     rig_run(&rig, 100000);
-    assert_false(grobo_robot_moving(&rig.robot, rig.now_us));
+    assert_false(grobo_robot_moving(&rig.robot));
     has_no_frame = false;
     target = all_at(0, 500);
-    rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &target), GROBO_OK);
     expect_all_at(&target);
 }
 
@@ -272,17 +270,17 @@ static void an_order_leaves_whole_or_not_at_all(void **state)
         start(&quiet);
         rig_power(&rig);
         grobo_posture target = all_at(5, 500);
-        rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
+        rig_expect(&rig, grobo_robot_move(&rig.robot, &target), GROBO_OK);
         rig_forget(&rig);
         frames = n;
         target = all_at(-5, 5000);
-        int result = grobo_robot_send(&rig.robot, &target, rig.now_us);
+        int result = grobo_robot_send(&rig.robot, &target);
         frames = UINT_MAX;
         rig_run(&rig, 100000);
         if (result < 0) {
             assert_int_equal(result, GROBO_ERR_SPACE);
             assert_int_equal(rig.n_sent, 0);
-            assert_false(grobo_robot_moving(&rig.robot, rig.now_us));
+            assert_false(grobo_robot_moving(&rig.robot));
         }
     }
 }
@@ -294,8 +292,7 @@ static void what_is_told_again_is_told_in_small_frames(void **state)
     unsigned of_four = 0;
     rig_start(&rig, &quiet, NULL);
     assert_int_equal(grobo_sim_set_fault(&rig.sim, GROBO_SIM_FAULT_SILENT, 0.3), 0);
-    (void)rig_wait(&rig,
-                   grobo_robot_torque(&rig.robot, rig_all(&rig), GROBO_TORQUE_ON, rig.now_us));
+    (void)rig_wait(&rig, grobo_robot_torque(&rig.robot, rig_all(&rig), GROBO_TORQUE_ON));
     unsigned whole = 0;
     for (size_t i = 0; i < rig.n_sent; i++) {
         const uint8_t *p;
@@ -341,19 +338,19 @@ static void an_emergency_stop_without_torque_halts(void **state)
         rig_start_driver(&rig, &driver, &quiet, NULL);
         rig_power(&rig);
         target = rig_posture(&rig, NECK, 10, 500);
-        rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
+        rig_expect(&rig, grobo_robot_move(&rig.robot, &target), GROBO_OK);
         driver.torque = way % 2 == 0 ? NULL : torque_that_fails;
         rig.halts_at_estop = true;
         target = rig_posture(&rig, NECK, -40, 3000);
-        int move = grobo_robot_move(&rig.robot, &target, rig.now_us);
+        int move = grobo_robot_move(&rig.robot, &target);
         rig_run(&rig, 1000000);
         if (way < 2) {
-            int number = grobo_robot_estop(&rig.robot, rig.now_us);
+            int number = grobo_robot_estop(&rig.robot);
             assert_true(number > move);
             rig_expect(&rig, number, GROBO_OK);
         } else {
             grobo_robot_link_down(&rig.robot, rig.now_us);
-            assert_int_equal(grobo_robot_estop(&rig.robot, rig.now_us), GROBO_ERR_CLOSED);
+            assert_int_equal(grobo_robot_estop(&rig.robot), GROBO_ERR_CLOSED);
             rig_forget(&rig);
             grobo_robot_link_up(&rig.robot, rig.now_us);
             rig_run(&rig, 600000);
@@ -361,8 +358,8 @@ static void an_emergency_stop_without_torque_halts(void **state)
             assert_int_equal(rig_last(&rig, GROBO_EVENT_JOB)->u.job.result, GROBO_OK);
         }
         expect_neck_stands();
-        assert_int_equal(grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_ERR_LATCHED);
-        assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_ERR_LATCHED);
+        assert_int_equal(grobo_robot_move(&rig.robot, &target), GROBO_ERR_LATCHED);
+        assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_ERR_LATCHED);
     }
 }
 

@@ -34,10 +34,10 @@ static void nothing_is_asked_of_a_line_that_is_down(void **state)
     rig_start(&rig, &quiet, NULL);
     unplug();
     target = rig_posture(&rig, NECK, 1, 100);
-    assert_int_equal(grobo_robot_check(&rig.robot, rig.now_us), GROBO_ERR_CLOSED);
-    assert_int_equal(grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_ERR_CLOSED);
-    assert_int_equal(grobo_robot_exit(&rig.robot, GROBO_EXIT_OFF, rig.now_us), GROBO_ERR_CLOSED);
-    assert_int_equal(grobo_robot_estop(&rig.robot, rig.now_us), GROBO_ERR_CLOSED);
+    assert_int_equal(grobo_robot_check(&rig.robot), GROBO_ERR_CLOSED);
+    assert_int_equal(grobo_robot_move(&rig.robot, &target), GROBO_ERR_CLOSED);
+    assert_int_equal(grobo_robot_exit(&rig.robot, GROBO_EXIT_OFF), GROBO_ERR_CLOSED);
+    assert_int_equal(grobo_robot_estop(&rig.robot), GROBO_ERR_CLOSED);
     assert_true(grobo_robot_deadline(&rig.robot, rig.now_us) == GROBO_NEVER_US);
     rig_run(&rig, 1000000);
     assert_int_equal(rig.n_sent, 0);
@@ -50,14 +50,14 @@ static void a_job_ends_when_the_line_goes(void **state)
 {
     (void)state;
     rig_start(&rig, &quiet, NULL);
-    int number = grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL, rig.now_us);
+    int number = grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL);
     rig_run(&rig, 30000);
     unplug();
     const grobo_event_job *job = rig_expect(&rig, number, GROBO_ERR_UNPLUGGED);
     assert_int_equal(job->kind, GROBO_JOB_SENSE);
     assert_int_equal(rig_count(&rig, GROBO_EVENT_LINK_DOWN), 1);
     grobo_joint_info info;
-    assert_int_equal(grobo_robot_joint(&rig.robot, 0, rig.now_us, &info), 0);
+    assert_int_equal(grobo_robot_joint(&rig.robot, 0, &info), 0);
     assert_int_equal(info.status, GROBO_ERR_UNPLUGGED);
     assert_false(info.torque_known);
 }
@@ -68,7 +68,7 @@ static void a_motion_ends_when_the_line_goes_and_does_not_come_back(void **state
     rig_start(&rig, NULL, NULL);
     rig_clip_init(&clip, sway, 3);
     rig_power(&rig);
-    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL), GROBO_OK);
     rig_run(&rig, 500000);
     unplug();
     assert_int_equal(grobo_robot_play_state(&rig.robot), GROBO_SEQUENCER_FAILED);
@@ -84,7 +84,7 @@ static void a_motion_ends_when_the_line_goes_and_does_not_come_back(void **state
     for (size_t i = 0; i < rig.n_sent; i++) {
         assert_int_equal(rig.sent[i].bytes[0], 0x54); /* reads, nothing else */
     }
-    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL), GROBO_OK);
     rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
 }
 
@@ -113,9 +113,9 @@ static void replug_under_way(int time_ms)
     rig_start(&rig, NULL, NULL);
     rig_power(&rig);
     grobo_posture target = rig_posture(&rig, HIP, -140, 100);
-    rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &target), GROBO_OK);
     target = rig_posture(&rig, HIP, 20, time_ms);
-    assert_true(grobo_robot_move(&rig.robot, &target, rig.now_us) > 0);
+    assert_true(grobo_robot_move(&rig.robot, &target) > 0);
     rig_run(&rig, 500000);
     unplug();
     rig_run(&rig, 50000);
@@ -133,7 +133,7 @@ static void a_move_after_a_replug_throws_no_joint_back(void **state)
         for (int j = 1; j < 12; j++) { /* more to read: more time between reading and moving */
             assert_int_equal(grobo_posture_set_deg(&target, j, rig_angle_deg(&rig, j)), 0);
         }
-        double most_dps = fastest_dps(grobo_robot_move(&rig.robot, &target, rig.now_us), HIP);
+        double most_dps = fastest_dps(grobo_robot_move(&rig.robot, &target), HIP);
         assert_true(most_dps < 120);
         assert_true(fabs(rig_angle_deg(&rig, HIP) - to_deg) < 0.2);
     }
@@ -148,7 +148,7 @@ static void a_target_after_a_replug_throws_no_joint_that_creeps(void **state)
         replug_under_way(24000);
         rig_run(&rig, wait_ms * 1000);
         grobo_posture target = rig_posture(&rig, HIP, -140, 10);
-        assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+        assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
         double before_deg = rig_angle_deg(&rig, HIP);
         rig_run(&rig, 50000);
         assert_true(fabs(rig_angle_deg(&rig, HIP) - before_deg) < 0.06 * 60);
@@ -162,8 +162,7 @@ static void a_play_after_a_replug_throws_no_joint_back(void **state)
         replug_under_way(1500);
         const rig_key keys[] = {{0, {{HIP, to_deg}}}, {1000, {{HIP, to_deg}}}};
         rig_clip_init(&clip, keys, 2);
-        double most_dps =
-            fastest_dps(grobo_robot_play(&rig.robot, &clip.clip, NULL, rig.now_us), HIP);
+        double most_dps = fastest_dps(grobo_robot_play(&rig.robot, &clip.clip, NULL), HIP);
         assert_true(most_dps < 120);
         rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
         assert_true(fabs(rig_angle_deg(&rig, HIP) - to_deg) < 0.2);
@@ -178,7 +177,7 @@ static void an_exit_after_a_replug_throws_no_joint_back(void **state)
         replug_under_way(1500);
         rig_run(&rig, more_ms * 1000);
         double asked_deg = rig_angle_deg(&rig, HIP);
-        int number = grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD, rig.now_us);
+        int number = grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD);
         assert_true(fastest_dps(number, HIP) < 120);
         double stood_deg = rig_angle_deg(&rig, HIP);
         assert_true(stood_deg > asked_deg - 1 && stood_deg < 21);
@@ -191,7 +190,7 @@ static void a_stop_after_a_replug_ends_the_way_of_before(void **state)
     replug_under_way(12000);
     rig_run(&rig, 500000); /* all are read */
     double asked_deg = rig_angle_deg(&rig, HIP);
-    assert_int_equal(grobo_robot_stop(&rig.robot, false, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_stop(&rig.robot, false), GROBO_OK);
     rig_run(&rig, 300000);
     double here_deg = rig_angle_deg(&rig, HIP);
     assert_true(fabs(here_deg - asked_deg) < 5);
@@ -204,37 +203,33 @@ static void nothing_is_sent_to_a_joint_that_moves_by_itself(void **state)
 {
     (void)state;
     replug_under_way(1500);
-    rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL, rig.now_us),
-               GROBO_OK);
+    rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL), GROBO_OK);
     grobo_posture target = rig_posture(&rig, HIP, 0, 100);
-    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_ERR_STATE);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_ERR_STATE);
     rig_run(&rig, 1500000); /* it has arrived */
-    rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL, rig.now_us),
-               GROBO_OK);
-    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL), GROBO_OK);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
 }
 
 /* Reads all joints, then twice without the knee: how much longer that took, each time. */
 static void measure_silence(const grobo_robot_config *config, int64_t costs_us[2])
 {
     rig_start(&rig, config, NULL);
-    rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL, rig.now_us),
-               GROBO_OK);
+    rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL), GROBO_OK);
     int64_t begun_us = rig.now_us;
-    rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL, rig.now_us),
-               GROBO_OK);
+    rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL), GROBO_OK);
     int64_t usual_us = rig.now_us - begun_us;
     assert_int_equal(grobo_sim_set_cable(&rig.sim, R_KNEE, GROBO_SIM_CABLE_MUTE), 0);
     for (int i = 0; i < 2; i++) {
         begun_us = rig.now_us;
-        const grobo_event_job *job = rig_expect(
-            &rig, grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL, rig.now_us),
-            GROBO_ERR_TIMEOUT);
+        const grobo_event_job *job =
+            rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL),
+                       GROBO_ERR_TIMEOUT);
         assert_true(job->failed == GROBO_JOINT_BIT(R_KNEE));
         assert_int_equal(job->joint, R_KNEE);
         for (int j = 0; j < 20; j++) {
             grobo_joint_info info;
-            assert_int_equal(grobo_robot_joint(&rig.robot, j, rig.now_us, &info), 0);
+            assert_int_equal(grobo_robot_joint(&rig.robot, j, &info), 0);
             assert_int_equal(info.status, j == R_KNEE ? GROBO_ERR_TIMEOUT : GROBO_OK);
             assert_true(j == R_KNEE ? info.angle_age_us > usual_us : info.angle_age_us < 250000);
         }
@@ -264,12 +259,12 @@ static void a_stale_angle_is_not_in_a_fresh_posture(void **state)
     (void)state;
     grobo_posture posture;
     rig_start(&rig, &quiet, NULL);
-    assert_int_equal(grobo_robot_posture(&rig.robot, rig.now_us, GROBO_NEVER_US, &posture), 0);
-    rig_expect(&rig, grobo_robot_sense(&rig.robot, 0x7, GROBO_SENSE_POSITION, rig.now_us), 0);
+    assert_int_equal(grobo_robot_posture(&rig.robot, GROBO_NEVER_US, &posture), 0);
+    rig_expect(&rig, grobo_robot_sense(&rig.robot, 0x7, GROBO_SENSE_POSITION), 0);
     rig_run(&rig, 500000);
-    rig_expect(&rig, grobo_robot_sense(&rig.robot, 0x3, GROBO_SENSE_POSITION, rig.now_us), 0);
-    assert_int_equal(grobo_robot_posture(&rig.robot, rig.now_us, GROBO_NEVER_US, &posture), 3);
-    assert_int_equal(grobo_robot_posture(&rig.robot, rig.now_us, 100000, &posture), 2);
+    rig_expect(&rig, grobo_robot_sense(&rig.robot, 0x3, GROBO_SENSE_POSITION), 0);
+    assert_int_equal(grobo_robot_posture(&rig.robot, GROBO_NEVER_US, &posture), 3);
+    assert_int_equal(grobo_robot_posture(&rig.robot, 100000, &posture), 2);
     assert_true(posture.set == 0x3);
 }
 
@@ -287,10 +282,10 @@ static void broken_replies_are_retried_and_never_believed(void **state)
     int good = 0;
     for (int i = 0; i < 100; i++) {
         const grobo_event_job *job =
-            rig_wait(&rig, grobo_robot_sense(&rig.robot, 0x7, GROBO_SENSE_POSITION, rig.now_us));
+            rig_wait(&rig, grobo_robot_sense(&rig.robot, 0x7, GROBO_SENSE_POSITION));
         for (int j = 0; j < 3; j++) {
             grobo_joint_info info;
-            assert_int_equal(grobo_robot_joint(&rig.robot, j, rig.now_us, &info), 0);
+            assert_int_equal(grobo_robot_joint(&rig.robot, j, &info), 0);
             if ((job->failed & GROBO_JOINT_BIT(j)) == 0) {
                 double deg = grobo_deg_from_rad(info.state.angle_rad);
                 assert_true(fabs(deg - stands_deg[j]) < 0.06);
@@ -331,12 +326,12 @@ static void on_chain(grobo_test_rig *r, const grobo_event *event)
     }
     chain++;
     if (chain == 1) {
-        last_number = grobo_robot_torque(&r->robot, 0x3, GROBO_TORQUE_ON, event->now_us);
+        last_number = grobo_robot_torque(&r->robot, 0x3, GROBO_TORQUE_ON);
     } else if (chain == 2) {
         grobo_posture target = rig_posture(r, NECK, 10, 300);
-        last_number = grobo_robot_move(&r->robot, &target, event->now_us);
+        last_number = grobo_robot_move(&r->robot, &target);
     } else if (chain == 3) {
-        last_number = grobo_robot_estop(&r->robot, event->now_us);
+        last_number = grobo_robot_estop(&r->robot);
     }
     assert_true(last_number > 0);
 }
@@ -347,7 +342,7 @@ static void requests_may_come_from_the_callback(void **state)
     rig_start(&rig, NULL, NULL);
     chain = 0;
     rig.on_event = on_chain;
-    last_number = grobo_robot_check(&rig.robot, rig.now_us);
+    last_number = grobo_robot_check(&rig.robot);
     rig_run(&rig, 3000000);
     assert_int_equal(chain, 4);
     assert_int_equal(rig_torque(&rig, NECK), GROBO_TORQUE_BRAKE);
@@ -356,7 +351,7 @@ static void requests_may_come_from_the_callback(void **state)
 static void on_joint_stop(grobo_test_rig *r, const grobo_event *event)
 {
     if (event->kind == GROBO_EVENT_JOINT && event->u.joint.joint == 5 && chain == 0) {
-        chain = grobo_robot_estop(&r->robot, event->now_us);
+        chain = grobo_robot_estop(&r->robot);
     }
 }
 
@@ -366,7 +361,7 @@ static void a_job_may_be_displaced_from_its_own_events(void **state)
     rig_start(&rig, &quiet, NULL);
     chain = 0;
     rig.on_event = on_joint_stop;
-    int number = grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL, rig.now_us);
+    int number = grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL);
     rig_expect(&rig, number, GROBO_ERR_CANCELED);
     assert_true(chain > number);
     rig_expect(&rig, chain, GROBO_OK);
@@ -380,19 +375,19 @@ static void an_emergency_stop_that_found_no_line_is_made_up_for(void **state)
         rig_start(&rig, &quiet, NULL);
         rig_power(&rig);
         if (under_way) {
-            int number = grobo_robot_estop(&rig.robot, rig.now_us);
+            int number = grobo_robot_estop(&rig.robot);
             grobo_robot_link_down(&rig.robot, rig.now_us);
             rig_expect(&rig, number, GROBO_ERR_UNPLUGGED);
         } else {
             grobo_robot_link_down(&rig.robot, rig.now_us);
-            assert_int_equal(grobo_robot_estop(&rig.robot, rig.now_us), GROBO_ERR_CLOSED);
+            assert_int_equal(grobo_robot_estop(&rig.robot), GROBO_ERR_CLOSED);
         }
         rig_run(&rig, 1000000);
         assert_int_equal(rig_torque(&rig, NECK), GROBO_TORQUE_ON);
         rig_forget(&rig);
         grobo_robot_link_up(&rig.robot, rig.now_us);
         assert_int_equal(grobo_robot_job(&rig.robot), GROBO_JOB_ESTOP);
-        assert_int_equal(grobo_robot_check(&rig.robot, rig.now_us), GROBO_ERR_STATE);
+        assert_int_equal(grobo_robot_check(&rig.robot), GROBO_ERR_STATE);
         rig_run(&rig, 1000000);
         assert_int_equal(rig.sent[0].size, 50); /* torque of all, before anything else */
         assert_int_equal(rig_last(&rig, GROBO_EVENT_JOB)->u.job.result, GROBO_OK);
@@ -416,8 +411,8 @@ static void an_emergency_stop_taken_back_is_not_made_up_for(void **state)
     rig_start(&rig, &quiet, NULL);
     rig_power(&rig);
     grobo_robot_link_down(&rig.robot, rig.now_us);
-    assert_int_equal(grobo_robot_estop(&rig.robot, rig.now_us), GROBO_ERR_CLOSED);
-    assert_int_equal(grobo_robot_reset(&rig.robot, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_estop(&rig.robot), GROBO_ERR_CLOSED);
+    assert_int_equal(grobo_robot_reset(&rig.robot), GROBO_OK);
     grobo_robot_link_up(&rig.robot, rig.now_us);
     rig_run(&rig, 1000000);
     assert_int_equal(rig_torque(&rig, NECK), GROBO_TORQUE_ON);

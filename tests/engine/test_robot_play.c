@@ -53,7 +53,7 @@ static void play(const grobo_play_options *options)
 {
     rig_power(&rig);
     rig_forget(&rig);
-    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, options, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, options), GROBO_OK);
 }
 
 static void keys_are_frames_with_their_times(void **state)
@@ -112,7 +112,7 @@ static int64_t first_leaves_at(double neck_deg, int64_t start_us)
     start(&quiet);
     rig_power(&rig);
     const grobo_posture turned = rig_posture(&rig, NECK, neck_deg, 1000);
-    rig_expect(&rig, grobo_robot_move(&rig.robot, &turned, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &turned), GROBO_OK);
     play(&options);
     rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
     assert_true(motion_frames(frames, 64) >= 2);
@@ -239,20 +239,20 @@ static void pause_resume_and_stop(void **state)
     play(NULL);
     rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
     rig_run(&rig, 300000);
-    assert_int_equal(grobo_robot_pause(&rig.robot, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_pause(&rig.robot), GROBO_OK);
     rig_run(&rig, 1000000);
     assert_int_equal(grobo_robot_play_state(&rig.robot), GROBO_SEQUENCER_PAUSED);
     double held_deg = rig_angle_deg(&rig, NECK);
     rig_run(&rig, 1000000);
     assert_true(fabs(rig_angle_deg(&rig, NECK) - held_deg) < 0.01);
-    assert_int_equal(grobo_robot_resume(&rig.robot, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_resume(&rig.robot), GROBO_OK);
     rig_run(&rig, 500000);
     assert_int_equal(grobo_robot_play_state(&rig.robot), GROBO_SEQUENCER_PLAYING);
-    assert_int_equal(grobo_robot_stop(&rig.robot, false, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_stop(&rig.robot, false), GROBO_OK);
     rig_run(&rig, 400000);
     assert_int_equal(grobo_robot_play_state(&rig.robot), GROBO_SEQUENCER_IDLE);
-    assert_false(grobo_robot_moving(&rig.robot, rig.now_us));
-    assert_int_equal(grobo_robot_stop(&rig.robot, false, rig.now_us), GROBO_ERR_STATE);
+    assert_false(grobo_robot_moving(&rig.robot));
+    assert_int_equal(grobo_robot_stop(&rig.robot, false), GROBO_ERR_STATE);
 }
 
 static void only_one_motion_at_a_time(void **state)
@@ -261,9 +261,9 @@ static void only_one_motion_at_a_time(void **state)
     start(&quiet);
     play(NULL);
     grobo_posture target = rig_posture(&rig, NECK, 0, 100);
-    assert_int_equal(grobo_robot_play(&rig.robot, &clip.clip, NULL, rig.now_us), GROBO_ERR_STATE);
-    assert_int_equal(grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_ERR_STATE);
-    assert_int_equal(grobo_robot_enqueue(&rig.robot, &clip.clip, NULL, rig.now_us), 1);
+    assert_int_equal(grobo_robot_play(&rig.robot, &clip.clip, NULL), GROBO_ERR_STATE);
+    assert_int_equal(grobo_robot_move(&rig.robot, &target), GROBO_ERR_STATE);
+    assert_int_equal(grobo_robot_enqueue(&rig.robot, &clip.clip, NULL), 1);
     rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
 }
 
@@ -326,7 +326,7 @@ static void what_the_engine_does_afterwards_makes_way(void **state)
     play(NULL);
     rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
     grobo_posture target = rig_posture(&rig, NECK, 0, 500);
-    rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &target), GROBO_OK);
     assert_false(grobo_robot_settling(&rig.robot));
     assert_true(fabs(rig_angle_deg(&rig, NECK)) < 0.1);
 }
@@ -340,7 +340,7 @@ static void a_single_target_is_not_taken_back_afterwards(void **state)
         rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
         rig_run(&rig, ms * 1000);
         grobo_posture target = rig_posture(&rig, NECK, -10, 200);
-        assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+        assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
         rig_run(&rig, 3000000);
         assert_true(fabs(rig_angle_deg(&rig, NECK) + 10) < 0.1);
     }
@@ -354,7 +354,7 @@ static void a_lost_approach_is_repeated(void **state)
     rig_clip_init(&clip, far, 2);
     rig_power(&rig);
     rig_forget(&rig);
-    int number = grobo_robot_play(&rig.robot, &clip.clip, NULL, rig.now_us);
+    int number = grobo_robot_play(&rig.robot, &clip.clip, NULL);
     while (grobo_robot_play_state(&rig.robot) == GROBO_SEQUENCER_IDLE) {
         rig_run(&rig, 1000);
     }
@@ -383,7 +383,7 @@ static void an_approach_is_judged_by_its_own_readings(void **state)
             grobo_sim_set_angle(&rig.sim, j, (int32_t)lround((init_deg + off_deg) * 1000), 0), 0);
     }
     rig_power(&rig);
-    int number = grobo_robot_play(&rig.robot, &clip.clip, &options, rig.now_us);
+    int number = grobo_robot_play(&rig.robot, &clip.clip, &options);
     while (grobo_robot_play_state(&rig.robot) == GROBO_SEQUENCER_IDLE) {
         rig_run(&rig, 1000);
     }
@@ -459,14 +459,14 @@ static void a_cancel_stops_an_approach_that_begins_anew(void **state)
     static const rig_key far[] = {{0, {{NECK, 40}, {SHOULDER, 90}}}, {500, {{NECK, 40}}}};
     rig_start_at(&rig, 0, &quiet);
     rig_clip_init(&clip, far, 2);
-    int number = grobo_robot_play(&rig.robot, &clip.clip, NULL, rig.now_us);
+    int number = grobo_robot_play(&rig.robot, &clip.clip, NULL);
     rig_wait_play(&rig, GROBO_SEQUENCER_APPROACHING);
     assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_MUTE), 0);
     rig_run(&rig, 30000);
     assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_IN), 0);
     rig_wait_play(&rig, GROBO_SEQUENCER_IDLE);
     assert_int_equal(grobo_robot_job(&rig.robot), GROBO_JOB_PLAY);
-    assert_int_equal(grobo_robot_cancel(&rig.robot, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_cancel(&rig.robot), GROBO_OK);
     rig_expect(&rig, number, GROBO_ERR_CANCELED);
     rig_run(&rig, 300000);
     double here_deg = rig_angle_deg(&rig, SHOULDER);

@@ -43,22 +43,21 @@ static void make_new(void)
 static void make_limp(void)
 {
     make_new();
-    rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_ALL, rig.now_us),
-               GROBO_OK);
+    rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_ALL), GROBO_OK);
 }
 
 static void make_moving(void)
 {
     make_ready();
     grobo_posture target = rig_posture(&rig, NECK, 40, 5000);
-    assert_true(grobo_robot_move(&rig.robot, &target, rig.now_us) > 0);
+    assert_true(grobo_robot_move(&rig.robot, &target) > 0);
     rig_run(&rig, 1500000);
 }
 
 static void make_playing(void)
 {
     make_ready();
-    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL), GROBO_OK);
     rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
     rig_run(&rig, 300000);
 }
@@ -66,7 +65,7 @@ static void make_playing(void)
 static void make_paused(void)
 {
     make_playing();
-    assert_int_equal(grobo_robot_pause(&rig.robot, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_pause(&rig.robot), GROBO_OK);
     rig_run(&rig, 1000000);
 }
 
@@ -75,14 +74,14 @@ static void make_sent(void)
 {
     make_ready();
     grobo_posture target = rig_posture(&rig, NECK, 40, 20000);
-    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
     rig_run(&rig, 1000000);
 }
 
 static void make_reading(void)
 {
     make_ready();
-    assert_true(grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_ALL, rig.now_us) > 0);
+    assert_true(grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_ALL) > 0);
     rig_run(&rig, 20000);
 }
 
@@ -90,8 +89,7 @@ static void make_latched(void)
 {
     make_ready();
     assert_int_equal(grobo_sim_set_temperature(&rig.sim, R_KNEE, 75), 0);
-    rig_expect(&rig,
-               grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(R_KNEE), GROBO_SENSE_FULL, rig.now_us),
+    rig_expect(&rig, grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(R_KNEE), GROBO_SENSE_FULL),
                GROBO_OK);
     rig_run(&rig, 500000);
 }
@@ -99,14 +97,14 @@ static void make_latched(void)
 static void make_stopping(void)
 {
     make_ready();
-    assert_true(grobo_robot_estop(&rig.robot, rig.now_us) > 0);
+    assert_true(grobo_robot_estop(&rig.robot) > 0);
     rig_run(&rig, 20000);
 }
 
 static void make_leaving(void)
 {
     make_ready();
-    assert_true(grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD, rig.now_us) > 0);
+    assert_true(grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD) > 0);
     rig_run(&rig, 20000);
 }
 
@@ -114,44 +112,44 @@ static void make_leaving(void)
 
 static int do_check(void)
 {
-    return grobo_robot_check(&rig.robot, rig.now_us);
+    return grobo_robot_check(&rig.robot);
 }
 
 static int do_sense(void)
 {
-    return grobo_robot_sense(&rig.robot, 1, GROBO_SENSE_FULL, rig.now_us);
+    return grobo_robot_sense(&rig.robot, 1, GROBO_SENSE_FULL);
 }
 
 static int do_on(void)
 {
-    return grobo_robot_torque(&rig.robot, 1, GROBO_TORQUE_ON, rig.now_us);
+    return grobo_robot_torque(&rig.robot, 1, GROBO_TORQUE_ON);
 }
 
 static int do_off(void)
 {
-    return grobo_robot_torque(&rig.robot, 1, GROBO_TORQUE_OFF, rig.now_us);
+    return grobo_robot_torque(&rig.robot, 1, GROBO_TORQUE_OFF);
 }
 
 static int do_move(void)
 {
     grobo_posture target = rig_posture(&rig, NECK, 10, 1000);
-    return grobo_robot_move(&rig.robot, &target, rig.now_us);
+    return grobo_robot_move(&rig.robot, &target);
 }
 
 static int do_send(void)
 {
     grobo_posture target = rig_posture(&rig, NECK, 10, 1000);
-    return grobo_robot_send(&rig.robot, &target, rig.now_us);
+    return grobo_robot_send(&rig.robot, &target);
 }
 
 static int do_play(void)
 {
-    return grobo_robot_play(&rig.robot, &clip.clip, NULL, rig.now_us);
+    return grobo_robot_play(&rig.robot, &clip.clip, NULL);
 }
 
 static int do_enqueue(void)
 {
-    return grobo_robot_enqueue(&rig.robot, &clip.clip, NULL, rig.now_us);
+    return grobo_robot_enqueue(&rig.robot, &clip.clip, NULL);
 }
 
 static int do_raw(void)
@@ -159,7 +157,7 @@ static int do_raw(void)
     uint8_t frame[GROBO_RS30X_PACKET_MAX_BYTES];
     int n =
         grobo_frame_read(grobo_wiring_protocol(rig_wiring), NECK_ID, 42, 2, frame, sizeof frame);
-    return grobo_robot_raw(&rig.robot, frame, (size_t)n, rig.now_us);
+    return grobo_robot_raw(&rig.robot, frame, (size_t)n);
 }
 
 static int do_raw_goal(void)
@@ -167,68 +165,68 @@ static int do_raw_goal(void)
     uint8_t frame[GROBO_RS30X_PACKET_MAX_BYTES];
     const grobo_rs30x_goal goal = {R_ELBOW_ID, 0, 300};
     int n = grobo_frame_goals(grobo_wiring_protocol(rig_wiring), &goal, 1, frame, sizeof frame);
-    return grobo_robot_raw(&rig.robot, frame, (size_t)n, rig.now_us);
+    return grobo_robot_raw(&rig.robot, frame, (size_t)n);
 }
 
 static int do_registers(void)
 {
     const grobo_register_io io = {NECK_ID, 42, 2, NULL};
-    return grobo_robot_registers(&rig.robot, &io, rig.now_us);
+    return grobo_robot_registers(&rig.robot, &io);
 }
 
 static int do_reboot(void)
 {
-    return grobo_robot_command(&rig.robot, NECK_ID, GROBO_SERVO_REBOOT, rig.now_us);
+    return grobo_robot_command(&rig.robot, NECK_ID, GROBO_SERVO_REBOOT);
 }
 
 static int do_exit(void)
 {
-    return grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD, rig.now_us);
+    return grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD);
 }
 
 static int do_estop(void)
 {
-    return grobo_robot_estop(&rig.robot, rig.now_us);
+    return grobo_robot_estop(&rig.robot);
 }
 
 static int do_reset(void)
 {
-    return grobo_robot_reset(&rig.robot, rig.now_us);
+    return grobo_robot_reset(&rig.robot);
 }
 
 static int do_cancel(void)
 {
-    return grobo_robot_cancel(&rig.robot, rig.now_us);
+    return grobo_robot_cancel(&rig.robot);
 }
 
 static int do_stop(void)
 {
-    return grobo_robot_stop(&rig.robot, false, rig.now_us);
+    return grobo_robot_stop(&rig.robot, false);
 }
 
 static int do_pause(void)
 {
-    return grobo_robot_pause(&rig.robot, rig.now_us);
+    return grobo_robot_pause(&rig.robot);
 }
 
 static int do_resume(void)
 {
-    return grobo_robot_resume(&rig.robot, rig.now_us);
+    return grobo_robot_resume(&rig.robot);
 }
 
 static int do_seek(void)
 {
-    return grobo_robot_seek(&rig.robot, 100000, rig.now_us);
+    return grobo_robot_seek(&rig.robot, 100000);
 }
 
 static int do_speed(void)
 {
-    return grobo_robot_speed(&rig.robot, 50, rig.now_us);
+    return grobo_robot_speed(&rig.robot, 50);
 }
 
 static int do_free(void)
 {
-    return grobo_robot_free(&rig.robot, GROBO_JOINT_BIT(CHEST), true, rig.now_us);
+    return grobo_robot_free(&rig.robot, GROBO_JOINT_BIT(CHEST), true);
 }
 
 static int (*const requests[])(void) = {
@@ -287,14 +285,12 @@ static void leaving_takes_a_policy_that_there_is(void **state)
 {
     (void)state;
     make_moving();
-    assert_int_equal(
-        grobo_robot_exit(&rig.robot, (grobo_exit_policy)(GROBO_EXIT_SIT + 1), rig.now_us),
-        GROBO_ERR_ARG);
+    assert_int_equal(grobo_robot_exit(&rig.robot, (grobo_exit_policy)(GROBO_EXIT_SIT + 1)),
+                     GROBO_ERR_ARG);
     assert_int_equal(grobo_robot_job(&rig.robot), GROBO_JOB_MOVE);
     for (int policy = GROBO_EXIT_DEFAULT; policy <= GROBO_EXIT_SIT; policy++) {
         make_ready();
-        rig_expect(&rig, grobo_robot_exit(&rig.robot, (grobo_exit_policy)policy, rig.now_us),
-                   GROBO_OK);
+        rig_expect(&rig, grobo_robot_exit(&rig.robot, (grobo_exit_policy)policy), GROBO_OK);
         bool lets_go = policy == GROBO_EXIT_OFF || policy == GROBO_EXIT_SIT;
         assert_int_equal(rig_torque(&rig, NECK), lets_go ? GROBO_TORQUE_OFF : GROBO_TORQUE_ON);
         assert_int_equal(rig_angle_deg(&rig, R_KNEE), policy == GROBO_EXIT_SIT ? -120 : -40);

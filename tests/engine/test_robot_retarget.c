@@ -29,13 +29,13 @@ static int goals_sent(void)
 static int move(double angle_deg, int time_ms)
 {
     grobo_posture target = rig_posture(&rig, NECK, angle_deg, time_ms);
-    return grobo_robot_move(&rig.robot, &target, rig.now_us);
+    return grobo_robot_move(&rig.robot, &target);
 }
 
 static int retarget(double angle_deg, int time_ms)
 {
     grobo_posture target = rig_posture(&rig, NECK, angle_deg, time_ms);
-    return grobo_robot_retarget(&rig.robot, &target, rig.now_us);
+    return grobo_robot_retarget(&rig.robot, &target);
 }
 
 /* Torque is on, and the slow first move is over. */
@@ -122,9 +122,9 @@ static void the_joints_before_go_along(void **state)
     int number = move(5, 500);
     rig_run(&rig, 60000);
     grobo_posture target = rig_posture(&rig, L_ELBOW, 20, 500);
-    assert_int_equal(grobo_robot_retarget(&rig.robot, &target, rig.now_us), GROBO_ERR_STATE);
+    assert_int_equal(grobo_robot_retarget(&rig.robot, &target), GROBO_ERR_STATE);
     assert_int_equal(grobo_posture_set_deg(&target, NECK, 8), 0);
-    assert_int_equal(grobo_robot_retarget(&rig.robot, &target, rig.now_us), number);
+    assert_int_equal(grobo_robot_retarget(&rig.robot, &target), number);
     rig_expect(&rig, number, GROBO_OK);
     assert_true(fabs(rig_angle_deg(&rig, NECK) - 8) < 0.2);
     assert_true(fabs(rig_angle_deg(&rig, L_ELBOW) - 20) < 0.2);
@@ -150,23 +150,21 @@ static void what_must_not_be_redirected_is_not(void **state)
     assert_int_equal(retarget(-60, 100), GROBO_ERR_LIMIT);
     grobo_posture bad = rig_posture(&rig, NECK, 0, 100);
     bad.angle_rad[NECK] = NAN;
-    assert_int_equal(grobo_robot_retarget(&rig.robot, &bad, rig.now_us), GROBO_ERR_NAN);
+    assert_int_equal(grobo_robot_retarget(&rig.robot, &bad), GROBO_ERR_NAN);
     bad.set = 0;
-    assert_int_equal(grobo_robot_retarget(&rig.robot, &bad, rig.now_us), GROBO_ERR_ARG);
+    assert_int_equal(grobo_robot_retarget(&rig.robot, &bad), GROBO_ERR_ARG);
     rig_expect(&rig, number, GROBO_OK);
     assert_true(fabs(rig_angle_deg(&rig, NECK)) < 0.2);
 
     /* A joint that is limp does not join. */
-    rig_expect(
-        &rig,
-        grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(L_ELBOW), GROBO_TORQUE_OFF, rig.now_us),
-        GROBO_OK);
+    rig_expect(&rig, grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(L_ELBOW), GROBO_TORQUE_OFF),
+               GROBO_OK);
     number = move(5, 500);
     rig_run(&rig, 60000);
     grobo_posture both = rig_posture(&rig, NECK, 8, 100);
     assert_int_equal(grobo_posture_set_deg(&both, L_ELBOW, 0), 0);
-    assert_int_equal(grobo_robot_retarget(&rig.robot, &both, rig.now_us), GROBO_ERR_STATE);
-    (void)grobo_robot_estop(&rig.robot, rig.now_us);
+    assert_int_equal(grobo_robot_retarget(&rig.robot, &both), GROBO_ERR_STATE);
+    (void)grobo_robot_estop(&rig.robot);
     assert_int_equal(retarget(6, 100), GROBO_ERR_LATCHED);
     grobo_robot_link_down(&rig.robot, rig.now_us);
     assert_int_equal(retarget(6, 100), GROBO_ERR_CLOSED);

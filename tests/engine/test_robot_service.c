@@ -30,7 +30,7 @@ static void keep_reply(grobo_test_rig *r, const grobo_event *event)
 static int io(uint8_t id, uint8_t address, uint8_t length, const uint8_t *data)
 {
     grobo_register_io request = {id, address, length, data};
-    return grobo_robot_registers(&rig.robot, &request, rig.now_us);
+    return grobo_robot_registers(&rig.robot, &request);
 }
 
 static void registers_are_read_and_written(void **state)
@@ -71,10 +71,10 @@ static void flash_and_reboot_wait(void **state)
     uint8_t margin = 7;
     rig_expect(&rig, io(NECK_ID, GROBO_RS30X_CW_MARGIN, 1, &margin), GROBO_OK);
     int64_t begun_us = rig.now_us;
-    rig_expect(&rig, grobo_robot_command(&rig.robot, NECK_ID, GROBO_SERVO_FLASH, rig.now_us), 0);
+    rig_expect(&rig, grobo_robot_command(&rig.robot, NECK_ID, GROBO_SERVO_FLASH), 0);
     assert_true(rig.now_us - begun_us >= 1000000);
     begun_us = rig.now_us;
-    rig_expect(&rig, grobo_robot_command(&rig.robot, NECK_ID, GROBO_SERVO_REBOOT, rig.now_us), 0);
+    rig_expect(&rig, grobo_robot_command(&rig.robot, NECK_ID, GROBO_SERVO_REBOOT), 0);
     assert_true(rig.now_us - begun_us >= 2000000);
     rig.on_event = keep_reply;
     rig_expect(&rig, io(NECK_ID, GROBO_RS30X_CW_MARGIN, 1, NULL), GROBO_OK);
@@ -87,7 +87,7 @@ static void a_reboot_that_was_asked_for_is_no_loss_of_torque(void **state)
     grobo_robot_config config = {.sense_interval_us = 200000};
     rig_start(&rig, &config, NULL);
     rig_power(&rig);
-    rig_expect(&rig, grobo_robot_command(&rig.robot, NECK_ID, GROBO_SERVO_REBOOT, rig.now_us), 0);
+    rig_expect(&rig, grobo_robot_command(&rig.robot, NECK_ID, GROBO_SERVO_REBOOT), 0);
     rig_run(&rig, 1000000);
     assert_int_equal(rig_torque(&rig, NECK), GROBO_TORQUE_OFF);
     assert_null(rig_last(&rig, GROBO_EVENT_TRIP));
@@ -97,7 +97,7 @@ static void a_reboot_that_was_asked_for_is_no_loss_of_torque(void **state)
 
 static int raw(const char *bytes, size_t size)
 {
-    return grobo_robot_raw(&rig.robot, (const uint8_t *)bytes, size, rig.now_us);
+    return grobo_robot_raw(&rig.robot, (const uint8_t *)bytes, size);
 }
 
 static void raw_reads_bring_their_reply(void **state)
@@ -120,7 +120,7 @@ static void raw_targets_pass_the_same_gate(void **state)
     const char *hard = "\x53\x0C\xFA\xAF\x02\x00\x1E\x04\x01\x64\x00\x00\x00\x7D";
     const char *on = "\x53\x09\xFA\xAF\x02\x00\x24\x01\x01\x01\x27";
     assert_int_equal(raw(soft, 14), GROBO_ERR_STALE);
-    rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), 0, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), 0), GROBO_OK);
     assert_int_equal(raw(far, 14), GROBO_ERR_LIMIT);
     assert_int_equal(raw(hard, 14), GROBO_ERR_SPEED);
     assert_int_equal(raw(on, 11), GROBO_ERR_STATE);
@@ -129,7 +129,7 @@ static void raw_targets_pass_the_same_gate(void **state)
     rig_run(&rig, 1100000);
     assert_true(fabs(rig_angle_deg(&rig, NECK) - 10) < 0.1);
     rig_expect(&rig, raw(on, 11), GROBO_OK);
-    rig_expect(&rig, grobo_robot_estop(&rig.robot, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_estop(&rig.robot), GROBO_OK);
     assert_int_equal(raw(soft, 14), GROBO_ERR_LATCHED);
 }
 
@@ -156,17 +156,15 @@ static void stored_motions_are_started(void **state)
 {
     (void)state;
     rig_start(&rig, &quiet, NULL);
-    rig_expect(&rig, grobo_robot_stored(&rig.robot, GROBO_STORED_SLOT, 3, rig.now_us), GROBO_OK);
-    rig_expect(&rig, grobo_robot_stored(&rig.robot, GROBO_STORED_SCENARIO, 4, rig.now_us), 0);
+    rig_expect(&rig, grobo_robot_stored(&rig.robot, GROBO_STORED_SLOT, 3), GROBO_OK);
+    rig_expect(&rig, grobo_robot_stored(&rig.robot, GROBO_STORED_SCENARIO, 4), 0);
     rig_run(&rig, 10000);
     assert_int_equal(rig.sim.stats.slots, 1);
     assert_int_equal(rig.sim.stats.last_slot, 3);
     assert_int_equal(rig.sim.stats.last_scenario, 4);
-    assert_int_equal(grobo_robot_stored(&rig.robot, GROBO_STORED_SLOT, 256, rig.now_us),
-                     GROBO_ERR_ARG);
+    assert_int_equal(grobo_robot_stored(&rig.robot, GROBO_STORED_SLOT, 256), GROBO_ERR_ARG);
     rig_start_driver(&rig, grobo_gr001_driver(GROBO_WIRING_BUS), &quiet, NULL);
-    assert_int_equal(grobo_robot_stored(&rig.robot, GROBO_STORED_SLOT, 3, rig.now_us),
-                     GROBO_ERR_UNSUPPORTED);
+    assert_int_equal(grobo_robot_stored(&rig.robot, GROBO_STORED_SLOT, 3), GROBO_ERR_UNSUPPORTED);
 }
 
 /* ---- free mode -------------------------------------------------------------- */
@@ -176,7 +174,7 @@ static void free_mode_gives_way_and_holds(void **state)
     (void)state;
     rig_start(&rig, &quiet, NULL);
     rig_power(&rig);
-    assert_int_equal(grobo_robot_free(&rig.robot, rig_all(&rig), true, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_free(&rig.robot, rig_all(&rig), true), GROBO_OK);
     rig_run(&rig, 500000);
     assert_int_equal(rig_torque(&rig, NECK), GROBO_TORQUE_ON);
     assert_int_equal(grobo_sim_set_load(&rig.sim, NECK, 200), 0); /* a hand pushes */
@@ -190,7 +188,7 @@ static void free_mode_gives_way_and_holds(void **state)
     rig_run(&rig, 1000000);
     assert_int_equal(rig_torque(&rig, NECK), GROBO_TORQUE_ON);
     assert_true(fabs(rig_angle_deg(&rig, NECK) - 25) < 1);
-    rig_expect(&rig, grobo_robot_free(&rig.robot, rig_all(&rig), false, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_free(&rig.robot, rig_all(&rig), false), GROBO_OK);
     rig_forget(&rig);
     rig_run(&rig, 500000);
     assert_int_equal(rig.n_sent, 0);
@@ -202,7 +200,7 @@ static void a_joint_that_gave_way_is_not_gripped_at_once(void **state)
     (void)state;
     rig_start(&rig, &quiet, NULL);
     rig_power(&rig);
-    assert_int_equal(grobo_robot_free(&rig.robot, GROBO_JOINT_BIT(NECK), true, rig.now_us), 0);
+    assert_int_equal(grobo_robot_free(&rig.robot, GROBO_JOINT_BIT(NECK), true), 0);
     rig_run(&rig, 500000);
     assert_int_equal(grobo_sim_set_load(&rig.sim, NECK, 200), 0);
     rig_run(&rig, 50000);
@@ -225,7 +223,7 @@ static void limp_joints_hold_in_free_mode_where_they_are(void **state)
     (void)state;
     grobo_sim_config limp = {.start = GROBO_SIM_START_LIMP, .seed = 9, .jump_on_torque = true};
     rig_start(&rig, &quiet, &limp);
-    assert_int_equal(grobo_robot_free(&rig.robot, rig_all(&rig), true, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_free(&rig.robot, rig_all(&rig), true), GROBO_OK);
     rig_run(&rig, 1500000);
     assert_int_equal(rig.torque_on, 20); /* and the rig saw that each was at its goal */
 }
@@ -242,8 +240,8 @@ static void free_mode_believes_no_goal_read_before(void **state)
         rig_run(&rig, 100000);
         grobo_sim_set_supply(&rig.sim, 7400);
         rig_run(&rig, 4000000 + 6300 * i);
-        assert_int_equal(grobo_robot_reset(&rig.robot, rig.now_us), GROBO_OK);
-        assert_int_equal(grobo_robot_free(&rig.robot, rig_all(&rig), true, rig.now_us), 0);
+        assert_int_equal(grobo_robot_reset(&rig.robot), GROBO_OK);
+        assert_int_equal(grobo_robot_free(&rig.robot, rig_all(&rig), true), 0);
         rig_run(&rig, 1000000);
         assert_int_equal(rig_torque(&rig, R_KNEE), GROBO_TORQUE_ON);
         assert_true(fabs(rig_angle_deg(&rig, R_KNEE) + 40) < 1);
@@ -292,13 +290,13 @@ static void read_back_correction_is_an_option(void **state)
     grobo_robot_config config = quiet;
     grobo_joint_info info;
     rig_start(&rig, &quiet, NULL);
-    rig_expect(&rig, grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(R_KNEE), 0, rig.now_us), 0);
-    assert_int_equal(grobo_robot_joint(&rig.robot, R_KNEE, rig.now_us, &info), 0);
+    rig_expect(&rig, grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(R_KNEE), 0), 0);
+    assert_int_equal(grobo_robot_joint(&rig.robot, R_KNEE, &info), 0);
     assert_true(fabs(grobo_deg_from_rad(info.state.angle_rad) + 40) < 0.06);
     config.readback_correction = true;
     assert_int_equal(grobo_robot_configure(&rig.robot, &config), GROBO_OK);
-    rig_expect(&rig, grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(R_KNEE), 0, rig.now_us), 0);
-    assert_int_equal(grobo_robot_joint(&rig.robot, R_KNEE, rig.now_us, &info), 0);
+    rig_expect(&rig, grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(R_KNEE), 0), 0);
+    assert_int_equal(grobo_robot_joint(&rig.robot, R_KNEE, &info), 0);
     assert_true(fabs(grobo_deg_from_rad(info.state.angle_rad) + 38) < 0.06);
 }
 
@@ -314,11 +312,9 @@ static void a_corrected_joint_is_held_where_its_servo_says(void **state)
         rig_power(&rig);
         rig_run(&rig, 500000);
         assert_true(fabs(rig_angle_deg(&rig, R_KNEE) + 40) < 0.1);
-        rig_expect(&rig,
-                   grobo_robot_torque(&rig.robot, rig_all(&rig), GROBO_TORQUE_OFF, rig.now_us),
-                   GROBO_OK);
+        rig_expect(&rig, grobo_robot_torque(&rig.robot, rig_all(&rig), GROBO_TORQUE_OFF), GROBO_OK);
     }
-    assert_int_equal(grobo_robot_free(&rig.robot, rig_all(&rig), true, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_free(&rig.robot, rig_all(&rig), true), GROBO_OK);
     rig_run(&rig, 2000000);
     assert_int_equal(rig_torque(&rig, R_KNEE), GROBO_TORQUE_ON);
     assert_true(fabs(rig_angle_deg(&rig, R_KNEE) + 40) < 0.1);
@@ -329,15 +325,15 @@ static void cancel_stops_a_move_where_it_is(void **state)
     (void)state;
     rig_start(&rig, &quiet, NULL);
     rig_power(&rig);
-    assert_int_equal(grobo_robot_cancel(&rig.robot, rig.now_us), GROBO_ERR_STATE);
+    assert_int_equal(grobo_robot_cancel(&rig.robot), GROBO_ERR_STATE);
     grobo_posture target = rig_posture(&rig, NECK, 40, 2000);
-    int number = grobo_robot_move(&rig.robot, &target, rig.now_us);
+    int number = grobo_robot_move(&rig.robot, &target);
     rig_run(&rig, 1000000);
-    assert_true(grobo_robot_moving(&rig.robot, rig.now_us));
-    assert_int_equal(grobo_robot_cancel(&rig.robot, rig.now_us), GROBO_OK);
+    assert_true(grobo_robot_moving(&rig.robot));
+    assert_int_equal(grobo_robot_cancel(&rig.robot), GROBO_OK);
     rig_expect(&rig, number, GROBO_ERR_CANCELED);
     rig_run(&rig, 200000);
-    assert_false(grobo_robot_moving(&rig.robot, rig.now_us));
+    assert_false(grobo_robot_moving(&rig.robot));
     double here_deg = rig_angle_deg(&rig, NECK);
     assert_true(here_deg > 5 && here_deg < 25);
     rig_run(&rig, 1000000);

@@ -23,7 +23,7 @@ static void start_playing(const grobo_robot_config *config)
     rig_clip_init(&clip, sway, 4);
     grobo_play_options options = {.repeat = 100};
     rig_power(&rig);
-    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options), GROBO_OK);
     rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
     rig_run(&rig, 700000);
     rig_forget(&rig);
@@ -52,23 +52,22 @@ static void expect_latched(grobo_trip reason)
     assert_true(info.latched && info.trip == reason);
     rig_run(&rig, 500000);
     assert_int_equal(grobo_robot_play_state(&rig.robot), GROBO_SEQUENCER_IDLE);
-    assert_false(grobo_robot_moving(&rig.robot, rig.now_us));
+    assert_false(grobo_robot_moving(&rig.robot));
     double here_deg = rig_angle_deg(&rig, NECK);
     rig_run(&rig, 1000000);
     assert_true(fabs(rig_angle_deg(&rig, NECK) - here_deg) < 0.01);
     grobo_posture target = rig_posture(&rig, NECK, 10, 500);
-    assert_int_equal(grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_ERR_LATCHED);
-    assert_int_equal(grobo_robot_play(&rig.robot, &clip.clip, NULL, rig.now_us), GROBO_ERR_LATCHED);
-    assert_int_equal(grobo_robot_torque(&rig.robot, 1, GROBO_TORQUE_ON, rig.now_us),
-                     GROBO_ERR_LATCHED);
-    rig_expect(&rig, grobo_robot_sense(&rig.robot, 1, GROBO_SENSE_FULL, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_move(&rig.robot, &target), GROBO_ERR_LATCHED);
+    assert_int_equal(grobo_robot_play(&rig.robot, &clip.clip, NULL), GROBO_ERR_LATCHED);
+    assert_int_equal(grobo_robot_torque(&rig.robot, 1, GROBO_TORQUE_ON), GROBO_ERR_LATCHED);
+    rig_expect(&rig, grobo_robot_sense(&rig.robot, 1, GROBO_SENSE_FULL), GROBO_OK);
 }
 
 static void expect_reset_works(void)
 {
-    assert_int_equal(grobo_robot_reset(&rig.robot, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_reset(&rig.robot), GROBO_OK);
     grobo_posture target = rig_posture(&rig, NECK, 10, 500);
-    rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &target), GROBO_OK);
     assert_true(fabs(rig_angle_deg(&rig, NECK) - 10) < 0.1);
 }
 
@@ -78,17 +77,17 @@ static void bad_targets_are_refused_at_once(void **state)
     double value = 0;
     rig_start(&rig, &quiet, NULL);
     grobo_posture target = rig_posture(&rig, NECK, 50.1, 500);
-    assert_int_equal(grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_ERR_LIMIT);
+    assert_int_equal(grobo_robot_move(&rig.robot, &target), GROBO_ERR_LIMIT);
     assert_int_equal(grobo_robot_fault(&rig.robot, &value), NECK);
     assert_true(fabs(value - 50.1) < 1e-9);
     target.angle_rad[NECK] = NAN;
-    assert_int_equal(grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_ERR_NAN);
+    assert_int_equal(grobo_robot_move(&rig.robot, &target), GROBO_ERR_NAN);
     target.angle_rad[NECK] = INFINITY;
-    assert_true(grobo_robot_move(&rig.robot, &target, rig.now_us) < 0);
+    assert_true(grobo_robot_move(&rig.robot, &target) < 0);
     target.n_joints = 19;
-    assert_int_equal(grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_ERR_ARG);
+    assert_int_equal(grobo_robot_move(&rig.robot, &target), GROBO_ERR_ARG);
     target = rig_posture(&rig, NECK, 50, 500);
-    rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &target), GROBO_OK);
 }
 
 static void a_joint_that_cannot_be_sensed_is_not_moved(void **state)
@@ -99,11 +98,11 @@ static void a_joint_that_cannot_be_sensed_is_not_moved(void **state)
     rig_run(&rig, 10000);
     grobo_posture target = rig_posture(&rig, NECK, 10, 500);
     const grobo_event_job *job =
-        rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_ERR_TIMEOUT);
+        rig_expect(&rig, grobo_robot_move(&rig.robot, &target), GROBO_ERR_TIMEOUT);
     assert_int_equal(job->joint, NECK);
     assert_int_equal(rig_angle_deg(&rig, NECK), 0);
     rig_clip_init(&clip, sway, 4);
-    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL, rig.now_us), GROBO_ERR_TIMEOUT);
+    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL), GROBO_ERR_TIMEOUT);
     assert_int_equal(grobo_robot_play_state(&rig.robot), GROBO_SEQUENCER_IDLE);
 }
 
@@ -113,9 +112,8 @@ static void torque_of_the_others_comes_on(void **state)
     rig_start(&rig, &quiet, NULL);
     assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_MUTE), 0);
     rig_run(&rig, 10000);
-    const grobo_event_job *job =
-        rig_expect(&rig, grobo_robot_torque(&rig.robot, rig_all(&rig), GROBO_TORQUE_ON, rig.now_us),
-                   GROBO_ERR_TIMEOUT);
+    const grobo_event_job *job = rig_expect(
+        &rig, grobo_robot_torque(&rig.robot, rig_all(&rig), GROBO_TORQUE_ON), GROBO_ERR_TIMEOUT);
     assert_true(job->failed == GROBO_JOINT_BIT(NECK));
     for (int j = 0; j < 20; j++) {
         assert_int_equal(rig_torque(&rig, j), j == NECK ? GROBO_TORQUE_OFF : GROBO_TORQUE_ON);
@@ -129,9 +127,8 @@ static void a_joint_outside_its_limits_is_not_switched_on(void **state)
     rig_start_narrow(&rig);
 
     assert_int_equal(grobo_sim_set_angle(&rig.sim, NECK, 25000, 0), 0);
-    const grobo_event_job *job =
-        rig_expect(&rig, grobo_robot_torque(&rig.robot, rig_all(&rig), GROBO_TORQUE_ON, rig.now_us),
-                   GROBO_ERR_LIMIT);
+    const grobo_event_job *job = rig_expect(
+        &rig, grobo_robot_torque(&rig.robot, rig_all(&rig), GROBO_TORQUE_ON), GROBO_ERR_LIMIT);
     assert_true(job->failed == GROBO_JOINT_BIT(NECK) && job->joint == NECK);
     assert_true(fabs(job->value - 25) < 0.1);
     assert_int_equal(rig_torque(&rig, NECK), GROBO_TORQUE_OFF);
@@ -177,7 +174,7 @@ static void the_first_reason_stays(void **state)
     rig_run(&rig, 1000000);
     assert_int_equal(rig_count(&rig, GROBO_EVENT_TRIP), 1);
     expect_latched(GROBO_TRIP_TEMPERATURE);
-    rig_expect(&rig, grobo_robot_estop(&rig.robot, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_estop(&rig.robot), GROBO_OK);
     grobo_trip_info info;
     grobo_robot_tripped(&rig.robot, &info);
     assert_int_equal(info.trip, GROBO_TRIP_ESTOP); /* but for what a person said */
@@ -189,7 +186,7 @@ static void a_trip_ends_a_move_where_it_is(void **state)
     rig_start(&rig, &watching, NULL);
     rig_power(&rig);
     grobo_posture target = rig_posture(&rig, NECK, 45, 5000);
-    int number = grobo_robot_move(&rig.robot, &target, rig.now_us);
+    int number = grobo_robot_move(&rig.robot, &target);
     rig_run(&rig, 1000000);
     assert_int_equal(grobo_sim_set_temperature(&rig.sim, L_ELBOW, 67), 0);
     rig_expect(&rig, number, GROBO_ERR_LATCHED);
@@ -204,10 +201,10 @@ static void a_tripped_robot_holds_instead_of_sitting_down(void **state)
     start_playing(&watching);
     assert_int_equal(grobo_sim_set_temperature(&rig.sim, L_ELBOW, 67), 0);
     expect_trip(GROBO_TRIP_TEMPERATURE, 1000000);
-    rig_expect(&rig, grobo_robot_exit(&rig.robot, GROBO_EXIT_SIT, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_exit(&rig.robot, GROBO_EXIT_SIT), GROBO_OK);
     assert_true(fabs(rig_angle_deg(&rig, R_KNEE) + 40) < 0.1);
     assert_int_equal(rig_torque(&rig, R_KNEE), GROBO_TORQUE_ON);
-    rig_expect(&rig, grobo_robot_exit(&rig.robot, GROBO_EXIT_OFF, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_exit(&rig.robot, GROBO_EXIT_OFF), GROBO_OK);
     assert_int_equal(rig_torque(&rig, R_KNEE), GROBO_TORQUE_OFF);
 }
 
@@ -215,9 +212,8 @@ static void torque_does_not_come_on_in_a_motion(void **state)
 {
     (void)state;
     start_playing(&quiet);
-    rig_expect(&rig, grobo_robot_torque(&rig.robot, 1, GROBO_TORQUE_OFF, rig.now_us), GROBO_OK);
-    assert_int_equal(grobo_robot_torque(&rig.robot, 1, GROBO_TORQUE_ON, rig.now_us),
-                     GROBO_ERR_STATE);
+    rig_expect(&rig, grobo_robot_torque(&rig.robot, 1, GROBO_TORQUE_OFF), GROBO_OK);
+    assert_int_equal(grobo_robot_torque(&rig.robot, 1, GROBO_TORQUE_ON), GROBO_ERR_STATE);
 }
 
 static void sustained_over_current_stops(void **state)
@@ -265,7 +261,7 @@ static void a_silent_servo_of_a_resting_robot_trips_nothing(void **state)
     rig_run(&rig, 5000000);
     assert_null(rig_last(&rig, GROBO_EVENT_TRIP));
     grobo_joint_info info;
-    assert_int_equal(grobo_robot_joint(&rig.robot, R_KNEE, rig.now_us, &info), 0);
+    assert_int_equal(grobo_robot_joint(&rig.robot, R_KNEE, &info), 0);
     assert_int_equal(info.status, GROBO_ERR_TIMEOUT);
 }
 
@@ -286,7 +282,7 @@ static void emergency_stop_is_first_verified_and_latched(void **state)
     (void)state;
     start_playing(&watching);
     int64_t asked_us = rig.now_us;
-    int number = grobo_robot_estop(&rig.robot, rig.now_us);
+    int number = grobo_robot_estop(&rig.robot);
     assert_true(number > 0);
     const grobo_event_job *job = rig_expect(&rig, number, GROBO_OK);
     assert_true(job->failed == 0 && job->kind == GROBO_JOB_ESTOP);
@@ -306,11 +302,11 @@ static void emergency_stop_waits_for_no_silent_servo(void **state)
     (void)state;
     rig_start(&rig, &quiet, NULL);
     assert_int_equal(grobo_sim_set_cable(&rig.sim, 0, GROBO_SIM_CABLE_MUTE), 0);
-    (void)grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL, rig.now_us);
+    (void)grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL);
     rig_run(&rig, 1000); /* the first reading waits 20 ms and more for its reply */
     rig_forget(&rig);
     int64_t asked_us = rig.now_us;
-    (void)grobo_robot_estop(&rig.robot, rig.now_us);
+    (void)grobo_robot_estop(&rig.robot);
     rig_run(&rig, 15000);
     const uint8_t *packet;
     assert_true(rig.n_sent >= 1 && rig_packet(&rig.sent[0], &packet) == 48);
@@ -325,19 +321,19 @@ static void nothing_queued_follows_an_emergency_stop(void **state)
     rig_start(&rig, &watching, NULL);
     rig_clip_init(&clip, sway, 4);
     rig_power(&rig);
-    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options), GROBO_OK);
     rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
     for (int i = 0; i < 10; i++) { /* whatever waits just then */
         rig_run(&rig, 503000 + 1700 * i);
         rig_forget(&rig);
-        rig_expect(&rig, grobo_robot_estop(&rig.robot, rig.now_us), GROBO_OK);
+        rig_expect(&rig, grobo_robot_estop(&rig.robot), GROBO_OK);
         rig_run(&rig, 200000);
         for (size_t k = 0; k < rig.n_sent; k++) {
             const uint8_t *packet;
             assert_int_not_equal(rig_packet(&rig.sent[k], &packet), 108);
         }
-        assert_int_equal(grobo_robot_reset(&rig.robot, rig.now_us), GROBO_OK);
-        rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options, rig.now_us), 0);
+        assert_int_equal(grobo_robot_reset(&rig.robot), GROBO_OK);
+        rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options), 0);
     }
 }
 
@@ -359,7 +355,7 @@ static void emergency_stop_does_not_give_up_who_answers(void **state)
     (void)state;
     rig_start_at(&rig, 0, &quiet);
     rig.on_frame = mute_for_torque;
-    int number = grobo_robot_estop(&rig.robot, rig.now_us);
+    int number = grobo_robot_estop(&rig.robot);
     for (int ms = 0; ms < 5000; ms += 100) {
         rig_run(&rig, 100000);
         rig.n_sent = 0;
@@ -380,7 +376,7 @@ static void emergency_stop_gives_up_where_nobody_answers(void **state)
         assert_int_equal(grobo_sim_set_cable(&rig.sim, j, GROBO_SIM_CABLE_MUTE), 0);
     }
     int64_t asked_us = rig.now_us;
-    rig_expect(&rig, grobo_robot_estop(&rig.robot, rig.now_us), GROBO_ERR_TIMEOUT);
+    rig_expect(&rig, grobo_robot_estop(&rig.robot), GROBO_ERR_TIMEOUT);
     assert_in_range(rig.now_us - asked_us, 5000000, 10100000);
     grobo_trip_info info;
     grobo_robot_tripped(&rig.robot, &info);
@@ -394,8 +390,7 @@ static void emergency_stop_repeats_until_it_took(void **state)
     config.estop_torque = GROBO_ESTOP_OFF;
     start_playing(&config);
     assert_int_equal(grobo_sim_set_fault(&rig.sim, GROBO_SIM_FAULT_SILENT, 0.3), 0);
-    const grobo_event_job *job =
-        rig_expect(&rig, grobo_robot_estop(&rig.robot, rig.now_us), GROBO_OK);
+    const grobo_event_job *job = rig_expect(&rig, grobo_robot_estop(&rig.robot), GROBO_OK);
     assert_true(job->failed == 0);
     for (int j = 0; j < 20; j++) {
         assert_int_equal(rig_torque(&rig, j), GROBO_TORQUE_OFF);
@@ -408,11 +403,11 @@ static void emergency_stop_takes_the_place_of_a_job(void **state)
     rig_start(&rig, &quiet, NULL);
     rig_power(&rig);
     grobo_posture target = rig_posture(&rig, NECK, 40, 2000);
-    int move = grobo_robot_move(&rig.robot, &target, rig.now_us);
+    int move = grobo_robot_move(&rig.robot, &target);
     rig_run(&rig, 800000);
-    int stop = grobo_robot_estop(&rig.robot, rig.now_us);
-    assert_int_equal(grobo_robot_reset(&rig.robot, rig.now_us), GROBO_ERR_STATE);
-    assert_int_equal(grobo_robot_cancel(&rig.robot, rig.now_us), GROBO_ERR_STATE);
+    int stop = grobo_robot_estop(&rig.robot);
+    assert_int_equal(grobo_robot_reset(&rig.robot), GROBO_ERR_STATE);
+    assert_int_equal(grobo_robot_cancel(&rig.robot), GROBO_ERR_STATE);
     rig_expect(&rig, move, GROBO_ERR_CANCELED);
     rig_expect(&rig, stop, GROBO_OK);
 }
@@ -421,13 +416,13 @@ static void exit_holds_sits_or_lets_go(void **state)
 {
     (void)state;
     start_playing(&quiet);
-    rig_expect(&rig, grobo_robot_exit(&rig.robot, GROBO_EXIT_DEFAULT, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_exit(&rig.robot, GROBO_EXIT_DEFAULT), GROBO_OK);
     assert_int_equal(grobo_robot_play_state(&rig.robot), GROBO_SEQUENCER_IDLE);
     assert_int_equal(rig_torque(&rig, NECK), GROBO_TORQUE_ON);
-    assert_false(grobo_robot_moving(&rig.robot, rig.now_us));
+    assert_false(grobo_robot_moving(&rig.robot));
 
     int64_t asked_us = rig.now_us;
-    rig_expect(&rig, grobo_robot_exit(&rig.robot, GROBO_EXIT_SIT, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_exit(&rig.robot, GROBO_EXIT_SIT), GROBO_OK);
     assert_in_range(rig.now_us - asked_us, 1000000, 10000000);
     assert_true(fabs(rig_angle_deg(&rig, R_KNEE) + 120) < 0.1);
     for (int j = 0; j < 20; j++) {
@@ -435,7 +430,7 @@ static void exit_holds_sits_or_lets_go(void **state)
     }
 
     start_playing(&quiet);
-    rig_expect(&rig, grobo_robot_exit(&rig.robot, GROBO_EXIT_OFF, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_exit(&rig.robot, GROBO_EXIT_OFF), GROBO_OK);
     assert_int_equal(rig_torque(&rig, NECK), GROBO_TORQUE_OFF);
     assert_int_equal(rig_torque(&rig, R_KNEE), GROBO_TORQUE_OFF);
 }
@@ -448,13 +443,13 @@ static void exit_takes_the_place_of_a_job_and_is_bounded(void **state)
     rig_start(&rig, &config, NULL);
     rig_power(&rig);
     grobo_posture target = rig_posture(&rig, NECK, 40, 2000);
-    int move = grobo_robot_move(&rig.robot, &target, rig.now_us);
+    int move = grobo_robot_move(&rig.robot, &target);
     rig_run(&rig, 800000);
     for (int j = 0; j < 20; j++) {
         assert_int_equal(grobo_sim_set_cable(&rig.sim, j, GROBO_SIM_CABLE_MUTE), 0);
     }
     int64_t asked_us = rig.now_us;
-    int number = grobo_robot_exit(&rig.robot, GROBO_EXIT_OFF, rig.now_us);
+    int number = grobo_robot_exit(&rig.robot, GROBO_EXIT_OFF);
     rig_expect(&rig, number, GROBO_ERR_TIMEOUT);
     assert_in_range(rig.now_us - asked_us, 250000, 320000);
 
@@ -463,14 +458,14 @@ static void exit_takes_the_place_of_a_job_and_is_bounded(void **state)
     config.exit_bound_us = GROBO_NEVER_US;
     rig_start(&rig, &config, NULL);
     rig_power(&rig);
-    rig_expect(&rig, grobo_robot_exit(&rig.robot, GROBO_EXIT_OFF, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_exit(&rig.robot, GROBO_EXIT_OFF), GROBO_OK);
 }
 
 static void a_limp_robot_is_not_made_to_sit(void **state)
 {
     (void)state;
     rig_start(&rig, &quiet, NULL);
-    rig_expect(&rig, grobo_robot_exit(&rig.robot, GROBO_EXIT_SIT, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_exit(&rig.robot, GROBO_EXIT_SIT), GROBO_OK);
     assert_int_equal(rig.torque_on, 0);
     assert_true(fabs(rig_angle_deg(&rig, R_KNEE) + 40) < 0.1);
 }
@@ -483,10 +478,10 @@ static void nothing_is_switched_on_after_a_trip(void **state)
     for (int ms = 100; ms < 400; ms++) {
         grobo_sim_config limp = {.start = GROBO_SIM_START_LIMP};
         rig_start(&rig, &quiet, &limp);
-        assert_int_equal(grobo_robot_free(&rig.robot, rig_all(&rig), true, rig.now_us), 0);
+        assert_int_equal(grobo_robot_free(&rig.robot, rig_all(&rig), true), 0);
         rig_run(&rig, ms * 1000);
         assert_int_equal(grobo_sim_set_temperature(&rig.sim, 0, 75), 0);
-        rig_wait(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL, rig.now_us));
+        rig_wait(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL));
         rig_run(&rig, 100000); /* the rig looks at every frame */
         grobo_trip_info trip;
         grobo_robot_tripped(&rig.robot, &trip);
@@ -502,7 +497,7 @@ static void who_holds_is_watched_while_others_are_taught(void **state)
         grobo_trip_info trip;
         rig_start(&rig, &quiet, NULL);
         rig_power(&rig);
-        assert_int_equal(grobo_robot_free(&rig.robot, GROBO_JOINT_BIT(NECK), true, rig.now_us), 0);
+        assert_int_equal(grobo_robot_free(&rig.robot, GROBO_JOINT_BIT(NECK), true), 0);
         rig_run(&rig, 5000000);
         if (low) {
             grobo_sim_set_supply(&rig.sim, 5000);

@@ -16,13 +16,13 @@ static rig_clip clip, other;
 
 static int raw(const char *bytes, size_t size)
 {
-    return grobo_robot_raw(&rig.robot, (const uint8_t *)bytes, size, rig.now_us);
+    return grobo_robot_raw(&rig.robot, (const uint8_t *)bytes, size);
 }
 
 static void move_to(int joint, double deg)
 {
     grobo_posture target = rig_posture(&rig, joint, deg, 100);
-    rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &target), GROBO_OK);
 }
 
 /* ---- soft first move ------------------------------------------------------------------------- */
@@ -32,7 +32,7 @@ static void a_joint_that_a_hand_may_have_moved_begins_softly(void **state)
     (void)state;
     rig_start(&rig, &quiet, NULL);
     move_to(NECK, 10);
-    rig_expect(&rig, grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(NECK), 0, rig.now_us), 0);
+    rig_expect(&rig, grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(NECK), 0), 0);
     assert_int_equal(grobo_sim_set_angle(&rig.sim, NECK, 40000, 0), 0);
     rig_forget(&rig);
     move_to(NECK, -20);
@@ -47,14 +47,14 @@ static void free_mode_is_left_softly(void **state)
     (void)state;
     rig_start(&rig, &quiet, NULL);
     move_to(NECK, 10);
-    assert_int_equal(grobo_robot_free(&rig.robot, rig_all(&rig), true, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_free(&rig.robot, rig_all(&rig), true), GROBO_OK);
     assert_int_equal(grobo_sim_set_load(&rig.sim, NECK, 200), 0);
     rig_run(&rig, 1000000);
     assert_int_equal(grobo_sim_set_angle(&rig.sim, NECK, 40000, 500000), 0);
     rig_run(&rig, 500000);
     assert_int_equal(grobo_sim_set_load(&rig.sim, NECK, 0), 0);
     rig_run(&rig, 2000000);
-    rig_expect(&rig, grobo_robot_free(&rig.robot, rig_all(&rig), false, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_free(&rig.robot, rig_all(&rig), false), GROBO_OK);
     double way_deg = rig_angle_deg(&rig, NECK) + 20;
     rig_forget(&rig);
     move_to(NECK, -20);
@@ -73,11 +73,11 @@ static void after_targets_that_are_not_ours_joints_are_read_anew(void **state)
         move_to(NECK, 10);
         rig_expect(&rig,
                    by_raw ? raw("\x50\x4D\x03", 3)
-                          : grobo_robot_stored(&rig.robot, GROBO_STORED_SLOT, 3, rig.now_us),
+                          : grobo_robot_stored(&rig.robot, GROBO_STORED_SLOT, 3),
                    GROBO_OK);
         grobo_posture target = rig_posture(&rig, NECK, 12, 10);
-        assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_ERR_STALE);
-        rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), 0, rig.now_us), GROBO_OK);
+        assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_ERR_STALE);
+        rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), 0), GROBO_OK);
         move_to(NECK, -20);
         assert_in_range(rig_sent_ms(&rig, NECK_ID), 490, 600); /* 30 deg */
     }
@@ -93,14 +93,13 @@ static void a_second_file_moves_what_was_made_ready(void **state)
     rig_clip_init(&other, one, 2);
     clip.only = GROBO_JOINT_BIT(NECK);
     other.only = GROBO_JOINT_BIT(R_KNEE);
-    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL, rig.now_us), GROBO_OK);
-    assert_int_equal(grobo_robot_enqueue(&rig.robot, &clip.clip, NULL, rig.now_us), 1);
-    assert_int_equal(grobo_robot_enqueue(&rig.robot, &other.clip, NULL, rig.now_us),
-                     GROBO_ERR_STATE);
+    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL), GROBO_OK);
+    assert_int_equal(grobo_robot_enqueue(&rig.robot, &clip.clip, NULL), 1);
+    assert_int_equal(grobo_robot_enqueue(&rig.robot, &other.clip, NULL), GROBO_ERR_STATE);
     rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
     grobo_play_options options = {.also = GROBO_JOINT_BIT(R_KNEE)};
-    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options, rig.now_us), GROBO_OK);
-    assert_int_equal(grobo_robot_enqueue(&rig.robot, &other.clip, NULL, rig.now_us), 1);
+    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options), GROBO_OK);
+    assert_int_equal(grobo_robot_enqueue(&rig.robot, &other.clip, NULL), 1);
     assert_int_equal(rig_torque(&rig, R_KNEE), GROBO_TORQUE_ON);
     assert_int_equal(rig_torque(&rig, 0), GROBO_TORQUE_OFF);
     rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
@@ -117,8 +116,8 @@ static void a_second_file_is_approached_as_slowly_as_the_first(void **state)
     rig_power(&rig);
     rig_clip_init(&clip, near, 2);
     rig_clip_init(&other, far, 2);
-    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL, rig.now_us), GROBO_OK);
-    assert_int_equal(grobo_robot_enqueue(&rig.robot, &other.clip, NULL, rig.now_us), 1);
+    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL), GROBO_OK);
+    assert_int_equal(grobo_robot_enqueue(&rig.robot, &other.clip, NULL), 1);
     int64_t begun_us = rig.now_us;
     rig_wait_play(&rig, GROBO_SEQUENCER_FINISHED);
     assert_true(rig.now_us - begun_us > 2500000); /* 50 deg at 20 deg/s, and what is played */
@@ -185,9 +184,9 @@ static void an_unknown_frame_is_not_sent_while_latched(void **state)
     grobo_robot_config config = quiet;
     config.accept_unknown_raw = true;
     rig_start(&rig, &config, NULL);
-    rig_expect(&rig, grobo_robot_estop(&rig.robot, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_estop(&rig.robot), GROBO_OK);
     assert_int_equal(raw("\x50\x4D\x01", 3), GROBO_ERR_LATCHED);
-    assert_int_equal(grobo_robot_reset(&rig.robot, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_reset(&rig.robot), GROBO_OK);
     rig_expect(&rig, raw("\x50\x4D\x01", 3), GROBO_OK);
 }
 
@@ -198,14 +197,14 @@ static void a_raw_target_that_never_left_is_not_where_a_joint_is(void **state)
     move_to(NECK, -40);
     int number = raw("\x53\x0C\xFA\xAF\x02\x00\x1E\x04\x01\x90\x01\xF4\x01\x7D", 14); /* 40, 5 s */
     assert_true(number > 0);
-    assert_int_equal(grobo_robot_cancel(&rig.robot, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_cancel(&rig.robot), GROBO_OK);
     rig_forget(&rig);
     rig_run(&rig, 6000000);
     if (rig.n_sent > 0) {
         skip(); /* it had left */
     }
     grobo_posture target = rig_posture(&rig, NECK, 40, 10);
-    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
     rig_run(&rig, 20000);
     assert_in_range(rig_sent_ms(&rig, NECK_ID), 200, 400); /* 80 deg at 375 deg/s */
 }
@@ -221,7 +220,7 @@ static void torque_switched_off_by_a_raw_frame_is_no_loss(void **state)
     assert_int_equal(rig_torque(&rig, NECK), GROBO_TORQUE_OFF);
     assert_null(rig_last(&rig, GROBO_EVENT_TRIP));
     grobo_posture target = rig_posture(&rig, NECK, 10, 500);
-    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_ERR_STATE);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_ERR_STATE);
 }
 
 /* ---- what the caller gets wrong ------------------------------------------------------------- */
@@ -233,7 +232,7 @@ static void raw_reads_of_any_register_pass(void **state)
     for (uint8_t at = 0; at < 54; at++) {
         uint8_t frame[16];
         int n = grobo_frame_read(&grobo_board_protocol, NECK_ID, at, 1, frame, sizeof frame);
-        rig_expect(&rig, grobo_robot_raw(&rig.robot, frame, (size_t)n, rig.now_us), GROBO_OK);
+        rig_expect(&rig, grobo_robot_raw(&rig.robot, frame, (size_t)n), GROBO_OK);
     }
 }
 
@@ -244,8 +243,8 @@ static void joints_that_there_are_not_are_refused(void **state)
     rig_power(&rig);
     grobo_posture target = rig_posture(&rig, NECK, 10, 500);
     target.set |= GROBO_JOINT_BIT(25);
-    assert_int_equal(grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_ERR_ARG);
-    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_ERR_ARG);
+    assert_int_equal(grobo_robot_move(&rig.robot, &target), GROBO_ERR_ARG);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_ERR_ARG);
 }
 
 /* ---- settings of servos ---------------------------------------------------------------------- */
@@ -261,15 +260,14 @@ static void settings_that_move_a_holding_servo_are_refused(void **state)
     rig_power(&rig);
     for (size_t i = 0; i < sizeof addresses; i++) {
         grobo_register_io io = {NECK_ID, addresses[i], addresses[i] < 8 ? 1 : 2, data};
-        assert_int_equal(grobo_robot_registers(&rig.robot, &io, rig.now_us), GROBO_ERR_STATE);
+        assert_int_equal(grobo_robot_registers(&rig.robot, &io), GROBO_ERR_STATE);
     }
-    rig_expect(&rig, grobo_robot_torque(&rig.robot, rig_all(&rig), GROBO_TORQUE_OFF, rig.now_us),
-               GROBO_OK);
+    rig_expect(&rig, grobo_robot_torque(&rig.robot, rig_all(&rig), GROBO_TORQUE_OFF), GROBO_OK);
     grobo_register_io io = {NECK_ID, GROBO_RS30X_REVERSE, 1, data};
-    rig_expect(&rig, grobo_robot_registers(&rig.robot, &io, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_registers(&rig.robot, &io), GROBO_OK);
     /* What is known of it is from before: nothing moves it unread. */
     grobo_posture target = rig_posture(&rig, NECK, 10, 500);
-    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_ERR_STALE);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_ERR_STALE);
 }
 
 static void flash_has_the_silence_it_needs(void **state)
@@ -278,7 +276,7 @@ static void flash_has_the_silence_it_needs(void **state)
     grobo_robot_config config = {.sense_interval_us = 1};
     rig_start(&rig, &config, NULL);
     rig_run(&rig, 100000);
-    int number = grobo_robot_command(&rig.robot, NECK_ID, GROBO_SERVO_FLASH, rig.now_us);
+    int number = grobo_robot_command(&rig.robot, NECK_ID, GROBO_SERVO_FLASH);
     assert_true(number > 0);
     rig_run(&rig, 60000); /* what was under way is over, and the command is sent */
     rig_forget(&rig);
@@ -296,12 +294,11 @@ static void a_servo_is_not_restarted_under_a_motion(void **state)
     rig_start(&rig, &quiet, NULL);
     rig_power(&rig);
     rig_clip_init(&clip, sway, 3);
-    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL), GROBO_OK);
     rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
     for (int c = GROBO_SERVO_FLASH; c <= GROBO_SERVO_FACTORY_RESET; c++) {
-        assert_int_equal(
-            grobo_robot_command(&rig.robot, NECK_ID, (grobo_servo_command)c, rig.now_us),
-            GROBO_ERR_STATE);
+        assert_int_equal(grobo_robot_command(&rig.robot, NECK_ID, (grobo_servo_command)c),
+                         GROBO_ERR_STATE);
     }
 }
 
@@ -317,9 +314,9 @@ static void a_joint_outside_its_limits_can_be_stopped(void **state)
     rig_run(&rig, 1000000);
     grobo_posture target = rig_posture(&rig, NECK, 10, 20000);
     assert_int_equal(grobo_posture_set_deg(&target, R_KNEE, -100), 0);
-    int number = grobo_robot_move(&rig.robot, &target, rig.now_us);
+    int number = grobo_robot_move(&rig.robot, &target);
     rig_run(&rig, 1000000);
-    assert_int_equal(grobo_robot_cancel(&rig.robot, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_cancel(&rig.robot), GROBO_OK);
     rig_expect(&rig, number, GROBO_ERR_CANCELED);
     rig_run(&rig, 500000);
     double knee_deg = rig_angle_deg(&rig, R_KNEE);
@@ -339,17 +336,17 @@ static void leaving_stops_what_was_only_sent(void **state)
             rig_expect(&rig, raw("\x53\x0C\xFA\xAF\x02\x00\x1E\x04\x01\x90\x01\xB8\x0B\x3B", 14),
                        GROBO_OK);
         } else {
-            assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+            assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
         }
         rig_run(&rig, 3000000);
         int64_t asked_us = rig.now_us;
-        rig_expect(&rig, grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD, rig.now_us), GROBO_OK);
+        rig_expect(&rig, grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD), GROBO_OK);
         assert_true(rig.now_us - asked_us < 2000000);
         double here_deg = rig_angle_deg(&rig, NECK);
         assert_true(here_deg > 2 && here_deg < 6);
         rig_run(&rig, 2000000);
         assert_true(fabs(rig_angle_deg(&rig, NECK) - here_deg) < 0.01);
-        rig_expect(&rig, grobo_robot_exit(&rig.robot, GROBO_EXIT_OFF, rig.now_us), GROBO_OK);
+        rig_expect(&rig, grobo_robot_exit(&rig.robot, GROBO_EXIT_OFF), GROBO_OK);
         assert_int_equal(rig_torque(&rig, NECK), GROBO_TORQUE_OFF);
     }
 }
@@ -362,14 +359,14 @@ static void leaving_stops_what_another_program_set_going(void **state)
         rig_start(&rig, &quiet, NULL);
         rig_power(&rig);
         grobo_posture target = rig_posture(&rig, NECK, slow ? 20 : 45, slow ? 60000 : 5000);
-        (void)grobo_robot_move(&rig.robot, &target, rig.now_us);
+        (void)grobo_robot_move(&rig.robot, &target);
         rig_run(&rig, 2000000);
         grobo_event_fn on_event = rig.robot.on_event;
         assert_int_equal(grobo_robot_init(&rig.robot, rig.driver, NULL, &quiet, rig.now_us), 0);
         grobo_robot_on_event(&rig.robot, on_event, &rig);
         grobo_robot_link_up(&rig.robot, rig.now_us);
         rig_forget(&rig);
-        rig_expect(&rig, grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD, rig.now_us), GROBO_OK);
+        rig_expect(&rig, grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD), GROBO_OK);
         double here_deg = rig_angle_deg(&rig, NECK);
         rig_run(&rig, 3000000);
         assert_true(fabs(rig_angle_deg(&rig, NECK) - here_deg) < 0.01);
@@ -383,9 +380,9 @@ static void leaving_stops_though_the_first_frame_is_lost(void **state)
     rig_start(&rig, &quiet, NULL);
     rig_power(&rig);
     grobo_posture target = rig_posture(&rig, NECK, 45, 20000);
-    (void)grobo_robot_move(&rig.robot, &target, rig.now_us);
+    (void)grobo_robot_move(&rig.robot, &target);
     rig_run(&rig, 2000000);
-    int number = grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD, rig.now_us);
+    int number = grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD);
     assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_MUTE), 0);
     rig_run(&rig, 30000);
     assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_IN), 0);
@@ -404,7 +401,7 @@ static void a_trip_stops_what_was_only_sent(void **state)
     rig_start(&rig, &config, NULL);
     rig_power(&rig);
     grobo_posture target = rig_posture(&rig, NECK, 40, 30000);
-    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
     rig_run(&rig, 3000000);
     assert_int_equal(grobo_sim_set_temperature(&rig.sim, R_KNEE, 67), 0);
     rig_run(&rig, 1000000);
@@ -423,7 +420,7 @@ static void lost_replies_stop_what_was_only_sent(void **state)
     assert_int_equal(grobo_sim_set_cable(&rig.sim, R_KNEE, GROBO_SIM_CABLE_MUTE), 0);
     for (int i = 0; i < 200 && rig_last(&rig, GROBO_EVENT_TRIP) == NULL; i++) {
         grobo_posture target = rig_posture(&rig, NECK, 30 * sin(i * 0.1), 50);
-        assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+        assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
         rig_run(&rig, 50000);
     }
     const grobo_event *event = rig_last(&rig, GROBO_EVENT_TRIP);

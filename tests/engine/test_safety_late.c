@@ -41,7 +41,7 @@ static void a_raw_goal_is_not_tried_again_over_a_later_target(void **state)
     rig_run(&rig, 1000);
     assert_int_equal(raw_times_sent(&rig), 1);
     grobo_posture target = rig_posture(&rig, NECK, -5, 1000);
-    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
     rig_expect(&rig, number, GROBO_ERR_STALE);
     assert_int_equal(raw_times_sent(&rig), 1);
 }
@@ -51,7 +51,7 @@ static void a_setting_is_tried_again(void **state)
 {
     (void)state;
     rig_start(&rig, &quiet, NULL);
-    rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), 0, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), 0), GROBO_OK);
     assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_MUTE), 0);
     rig_run(&rig, 1000);
     rig_forget(&rig);
@@ -83,14 +83,14 @@ static void a_target_that_waits_gets_its_time_when_it_leaves(void **state)
     rig_start(&rig, &quiet, NULL);
     rig_power(&rig);
     grobo_posture target = rig_posture(&rig, NECK, -45, 1000);
-    rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &target), GROBO_OK);
     target = rig_posture(&rig, NECK, 45, 250);
-    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
     rig_run(&rig, 125000);
     grobo_robot_rx(&rig.robot, (const uint8_t *)"\x55", 1, rig.now_us);
     target = rig_posture(&rig, NECK, -45, 10);
     rig_forget(&rig);
-    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
     babble(60000);
     rig_run(&rig, 100000);
     int64_t least_ms = rig_wiring == GROBO_WIRING_BUS ? 160 : 120; /* from 60 ms on, or from here */
@@ -107,12 +107,12 @@ static void a_halt_that_leaves_late_throws_no_joint_back(void **state)
         rig_start(&rig, &quiet, NULL);
         rig_power(&rig);
         grobo_posture target = rig_posture(&rig, NECK, 45, 500);
-        assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+        assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
         rig_run(&rig, 1000000);
         target = rig_posture(&rig, NECK, -45, 500);
-        assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+        assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
         rig_run(&rig, 200000);
-        assert_int_equal(grobo_robot_stop(&rig.robot, false, rig.now_us), GROBO_OK);
+        assert_int_equal(grobo_robot_stop(&rig.robot, false), GROBO_OK);
         rig_stall(&rig, stall_us);
         double last_deg = rig_angle_deg(&rig, NECK);
         for (int ms = 0; ms < 400; ms++) {
@@ -131,7 +131,7 @@ static void a_halt_finds_room(void **state)
     rig_start(&rig, &quiet, NULL);
     rig_power(&rig);
     grobo_posture target = rig_posture(&rig, NECK, 45, 2000);
-    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
     rig_run(&rig, 500000);
     int taken = 0;
     grobo_robot_slot *slot;
@@ -141,8 +141,8 @@ static void a_halt_finds_room(void **state)
         taken++;
     }
     assert_true(taken >= 8); /* five small holds, a reading, a job's, a target */
-    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_ERR_FULL);
-    assert_int_equal(grobo_robot_stop(&rig.robot, false, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_ERR_FULL);
+    assert_int_equal(grobo_robot_stop(&rig.robot, false), GROBO_OK);
     rig_run(&rig, 300000);
     assert_true(rig_angle_deg(&rig, NECK) < 20);
 }
@@ -155,8 +155,8 @@ static int switch_neck_on(const grobo_robot_config *config, int64_t after_us)
 {
     rig_start(&rig, config, NULL);
     rig_power(&rig);
-    rig_expect(&rig, grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(NECK), 0, rig.now_us), 0);
-    int number = grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(NECK), GROBO_TORQUE_ON, rig.now_us);
+    rig_expect(&rig, grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(NECK), 0), 0);
+    int number = grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(NECK), GROBO_TORQUE_ON);
     rig_run(&rig, after_us);
     return number;
 }
@@ -167,7 +167,7 @@ static void fill_line(int64_t us)
     grobo_posture_init_pose(&others, rig.driver->model);
     others.set &= ~GROBO_JOINT_BIT(NECK);
     for (int64_t end_us = rig.now_us + us; rig.now_us < end_us;) {
-        assert_int_equal(grobo_robot_send(&rig.robot, &others, rig.now_us), GROBO_OK);
+        assert_int_equal(grobo_robot_send(&rig.robot, &others), GROBO_OK);
         rig_run(&rig, 1000);
     }
 }
@@ -183,7 +183,7 @@ static void torque_does_not_come_on_after_a_cancel(void **state)
             break;
         }
         unsigned on = rig.torque_on;
-        assert_int_equal(grobo_robot_cancel(&rig.robot, rig.now_us), GROBO_OK);
+        assert_int_equal(grobo_robot_cancel(&rig.robot), GROBO_OK);
         rig_run(&rig, 100000);
         rig_expect(&rig, number, GROBO_ERR_CANCELED);
         assert_int_equal(rig.torque_on, on);
@@ -208,7 +208,7 @@ static void torque_comes_on_where_the_joint_was_read_last(void **state)
         int64_t moved_us = rig.now_us;
         do {
             fill_line(1000);
-            assert_int_equal(grobo_robot_joint(&rig.robot, NECK, rig.now_us, &info), 0);
+            assert_int_equal(grobo_robot_joint(&rig.robot, NECK, &info), 0);
             assert_true(rig.now_us - moved_us < 2000000);
         } while (rig.now_us - info.angle_age_us < moved_us);
         rig_expect(&rig, number, GROBO_OK);
@@ -252,8 +252,8 @@ static void let_go_of_neck_until(bool (*waits)(void))
     rig_start(&rig, &reads, NULL);
     rig_power(&rig);
     grobo_posture target = rig_posture(&rig, NECK, 0, 100); /* the slow first move is behind */
-    rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
-    assert_int_equal(grobo_robot_free(&rig.robot, GROBO_JOINT_BIT(NECK), true, rig.now_us), 0);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &target), GROBO_OK);
+    assert_int_equal(grobo_robot_free(&rig.robot, GROBO_JOINT_BIT(NECK), true), 0);
     assert_int_equal(grobo_sim_set_load(&rig.sim, NECK, 200), 0);
     rig_run(&rig, 300000);
     assert_int_equal(rig_torque(&rig, NECK), GROBO_TORQUE_BRAKE);
@@ -293,8 +293,7 @@ static void a_joint_to_be_limp_is_not_switched_on_first(void **state)
     (void)state;
     let_go_of_neck();
     unsigned on = rig.torque_on;
-    rig_expect(&rig, grobo_robot_torque(&rig.robot, rig_all(&rig), GROBO_TORQUE_OFF, rig.now_us),
-               GROBO_OK);
+    rig_expect(&rig, grobo_robot_torque(&rig.robot, rig_all(&rig), GROBO_TORQUE_OFF), GROBO_OK);
     assert_int_equal(rig.torque_on, on);
 }
 
@@ -304,7 +303,7 @@ static void nothing_is_switched_on_by_leaving(void **state)
     (void)state;
     let_go_of_neck();
     unsigned on = rig.torque_on;
-    rig_expect(&rig, grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD), GROBO_OK);
     assert_int_equal(rig.torque_on, on);
     assert_int_equal(rig_torque(&rig, NECK), GROBO_TORQUE_BRAKE);
 }
@@ -322,7 +321,7 @@ static void a_joint_that_begins_to_hold_slows_no_other(void **state)
         rig_run(&rig, 100);
     }
     grobo_posture target = rig_posture(&rig, SHOULDER, rig_angle_deg(&rig, SHOULDER) + 20, 100);
-    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
     rig_run(&rig, 5000);
     assert_int_equal(rig_sent_ms(&rig, id), 100);
 }
@@ -335,7 +334,7 @@ static void nothing_that_waits_comes_on_after_a_stop(void **state)
         let_go_of_neck_until(way % 2 == 0 ? torque_waits : hold_waits);
         unsigned on = rig.torque_on;
         if (way < 2) {
-            assert_int_equal(grobo_robot_latch(&rig.robot, rig.now_us), GROBO_OK);
+            assert_int_equal(grobo_robot_latch(&rig.robot), GROBO_OK);
         } else {
             grobo_i_trip(&rig.robot, GROBO_TRIP_TEMPERATURE, CHEST, 75, true);
         }

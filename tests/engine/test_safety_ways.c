@@ -30,18 +30,18 @@ static grobo_hrpsys hrpsys;
 static int by_move(void)
 {
     grobo_posture target = rig_posture(&rig, NECK, TOO_FAR_DEG, 3000);
-    return grobo_robot_move(&rig.robot, &target, rig.now_us);
+    return grobo_robot_move(&rig.robot, &target);
 }
 
 static int by_send(void)
 {
     grobo_posture target = rig_posture(&rig, NECK, TOO_FAR_DEG, 3000);
-    return grobo_robot_send(&rig.robot, &target, rig.now_us);
+    return grobo_robot_send(&rig.robot, &target);
 }
 
 static int by_motor(void)
 {
-    return grobo_gr001_move(&rig.robot, NECK_ID, 502, 300, rig.now_us);
+    return grobo_gr001_move(&rig.robot, NECK_ID, 502, 300);
 }
 
 static int by_motors(void)
@@ -53,7 +53,7 @@ static int by_motors(void)
         angle_rad[grobo_gr001_model.joints[j].motor - 1] = target.angle_rad[j];
     }
     angle_rad[NECK_ID - 1] = grobo_rad_from_deg(TOO_FAR_DEG);
-    return grobo_gr001_set_angles(&rig.robot, angle_rad, 20, 3000000, rig.now_us);
+    return grobo_gr001_set_angles(&rig.robot, angle_rad, 20, 3000000);
 }
 
 static int by_hrpsys(void)
@@ -63,13 +63,13 @@ static int by_hrpsys(void)
     target.angle_rad[NECK] = grobo_rad_from_deg(TOO_FAR_DEG);
     grobo_hrpsys_init(&hrpsys, &rig.robot);
     assert_int_equal(grobo_hrpsys_write_joint_commands(&hrpsys, target.angle_rad, 20), 0);
-    return grobo_hrpsys_one_step(&hrpsys, rig.now_us);
+    return grobo_hrpsys_one_step(&hrpsys);
 }
 
 static int play(const rig_key *keys, const grobo_play_options *options)
 {
     rig_clip_init(&clip, keys, 2);
-    return grobo_robot_play(&rig.robot, &clip.clip, options, rig.now_us);
+    return grobo_robot_play(&rig.robot, &clip.clip, options);
 }
 
 static int by_keys(void)
@@ -100,7 +100,7 @@ static int as_the_second(void)
     int number = play(within, NULL);
     rig_expect(&rig, number, GROBO_OK);
     rig_clip_init(&other, beyond, 2);
-    assert_int_equal(grobo_robot_enqueue(&rig.robot, &other.clip, NULL, rig.now_us), 1);
+    assert_int_equal(grobo_robot_enqueue(&rig.robot, &other.clip, NULL), 1);
     return number;
 }
 
@@ -168,32 +168,32 @@ static void control(int which)
 {
     switch (which) {
     case 0:
-        (void)grobo_robot_pause(&rig.robot, rig.now_us);
+        (void)grobo_robot_pause(&rig.robot);
         rig_run(&rig, 700000);
-        (void)grobo_robot_resume(&rig.robot, rig.now_us);
+        (void)grobo_robot_resume(&rig.robot);
         break;
     case 1:
-        (void)grobo_robot_speed(&rig.robot, 1000, rig.now_us);
+        (void)grobo_robot_speed(&rig.robot, 1000);
         break;
     case 2:
-        (void)grobo_robot_seek(&rig.robot, 900000, rig.now_us);
+        (void)grobo_robot_seek(&rig.robot, 900000);
         break;
     case 3:
-        (void)grobo_robot_enqueue(&rig.robot, &other.clip, NULL, rig.now_us);
+        (void)grobo_robot_enqueue(&rig.robot, &other.clip, NULL);
         break;
     case 4:
-        (void)grobo_robot_pause(&rig.robot, rig.now_us);
-        (void)grobo_robot_seek(&rig.robot, 100000, rig.now_us);
-        (void)grobo_robot_resume(&rig.robot, rig.now_us);
+        (void)grobo_robot_pause(&rig.robot);
+        (void)grobo_robot_seek(&rig.robot, 100000);
+        (void)grobo_robot_resume(&rig.robot);
         break;
     case 5:
-        (void)grobo_robot_stop(&rig.robot, true, rig.now_us);
-        (void)grobo_robot_play(&rig.robot, &other.clip, NULL, rig.now_us);
+        (void)grobo_robot_stop(&rig.robot, true);
+        (void)grobo_robot_play(&rig.robot, &other.clip, NULL);
         break;
     case 6:
-        (void)grobo_robot_stop(&rig.robot, false, rig.now_us);
+        (void)grobo_robot_stop(&rig.robot, false);
         rig_run(&rig, 400000);
-        (void)grobo_robot_play(&rig.robot, &other.clip, NULL, rig.now_us);
+        (void)grobo_robot_play(&rig.robot, &other.clip, NULL);
         break;
     default:
         rig_stall(&rig, 200000);
@@ -219,7 +219,7 @@ static void no_control_of_a_motion_makes_it_too_fast(void **state)
         rig_clip_init(&clip, wild, 4);
         rig_clip_init(&other, back, 2);
         rig_power(&rig);
-        rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options, rig.now_us), GROBO_OK);
+        rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options), GROBO_OK);
         rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
         rig_run(&rig, 37000 * (1 + i % 7));
         control(i / 2 % 8);
@@ -240,7 +240,7 @@ static void a_move_that_cannot_be_slow_enough_is_refused(void **state)
     rig_start(&rig, &config, NULL);
     rig_power(&rig);
     grobo_posture target = rig_posture(&rig, NECK, 40, 100);
-    rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_ERR_SPEED);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &target), GROBO_ERR_SPEED);
     assert_true(fabs(rig_angle_deg(&rig, NECK)) < 0.1);
 }
 
@@ -252,10 +252,10 @@ static void a_time_out_of_all_reason_is_the_longest_there_is(void **state)
     grobo_posture target = rig_posture(&rig, NECK, 40, 0);
     target.time_us = INT64_MAX;
     rig_forget(&rig);
-    int number = grobo_robot_move(&rig.robot, &target, rig.now_us);
+    int number = grobo_robot_move(&rig.robot, &target);
     rig_run(&rig, 1000000);
     assert_int_equal(rig_sent_ms(&rig, NECK_ID), 163830);
-    assert_int_equal(grobo_robot_cancel(&rig.robot, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_cancel(&rig.robot), GROBO_OK);
     rig_expect(&rig, number, GROBO_ERR_CANCELED);
 }
 
@@ -270,16 +270,16 @@ static void a_goal_that_was_not_taken_is_no_way(void **state)
     rig_start_at(&rig, -45, &quiet);
     grobo_posture target = rig_posture(&rig, NECK, 45, 3000);
     assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_MUTE), 0);
-    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
     rig_run(&rig, 50000);
     assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_IN), 0);
     for (int i = 0; i < 2; i++) { /* the second tells nothing of the goal */
-        int number = grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(NECK), kinds[i], rig.now_us);
+        int number = grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(NECK), kinds[i]);
         rig_expect(&rig, number, GROBO_OK);
     }
     rig_run(&rig, 1000000);
     target = rig_posture(&rig, NECK, 0, 20);
-    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
     rig_run(&rig, 20000);
     assert_true(rig_sent_ms(&rig, NECK_ID) >= 45 * 1000 / 375);
 }

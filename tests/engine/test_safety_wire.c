@@ -30,7 +30,7 @@ static void play_on_full_line(const grobo_robot_config *config)
     rig_start(&rig, config, NULL);
     rig_clip_init(&clip, waits_then_turns, 3);
     rig_power(&rig);
-    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &full, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &full), GROBO_OK);
     rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
     rig_run(&rig, 500000);
     rig_forget(&rig);
@@ -61,17 +61,14 @@ static void a_raw_goal_that_nobody_waits_for_does_not_leave(void **state)
     play_on_full_line(&quiet);
     int n = grobo_frame_goal(rig.driver->protocol, &goal, frame, sizeof frame);
     int64_t until_us = rig.now_us + 1000000;
-    int number = grobo_robot_raw_until(&rig.robot, frame, (size_t)n, until_us, rig.now_us);
+    int number = grobo_robot_raw_until(&rig.robot, frame, (size_t)n, until_us);
     rig_expect(&rig, number, GROBO_ERR_STALE);
     assert_in_range(rig.now_us, until_us, until_us + 2000);
     rig_run(&rig, 6000000);
     assert_int_equal(rig_sent_ms(&rig, NECK_ID), -1);
-    assert_int_equal(
-        grobo_robot_raw_until(&rig.robot, frame, (size_t)n, rig.now_us - 1, rig.now_us),
-        GROBO_ERR_STALE);
-    rig_expect(&rig,
-               grobo_robot_raw_until(&rig.robot, frame, (size_t)n, rig.now_us + 1, rig.now_us),
-               GROBO_OK);
+    assert_int_equal(grobo_robot_raw_until(&rig.robot, frame, (size_t)n, rig.now_us - 1),
+                     GROBO_ERR_STALE);
+    rig_expect(&rig, grobo_robot_raw_until(&rig.robot, frame, (size_t)n, rig.now_us + 1), GROBO_OK);
 }
 
 static void a_raw_goal_that_is_slow_enough_leaves_late(void **state)
@@ -88,27 +85,27 @@ static void a_raw_goal_that_is_slow_enough_leaves_late(void **state)
 
 static void ask_stop(void)
 {
-    assert_int_equal(grobo_robot_stop(&rig.robot, false, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_stop(&rig.robot, false), GROBO_OK);
 }
 
 static void ask_stop_at_once(void)
 {
-    assert_int_equal(grobo_robot_stop(&rig.robot, true, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_stop(&rig.robot, true), GROBO_OK);
 }
 
 static void ask_cancel(void)
 {
-    assert_int_equal(grobo_robot_cancel(&rig.robot, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_cancel(&rig.robot), GROBO_OK);
 }
 
 static void ask_estop(void)
 {
-    assert_true(grobo_robot_estop(&rig.robot, rig.now_us) > 0);
+    assert_true(grobo_robot_estop(&rig.robot) > 0);
 }
 
 static void ask_exit(void)
 {
-    assert_true(grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD, rig.now_us) > 0);
+    assert_true(grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD) > 0);
 }
 
 static void lose_line(void)
@@ -148,7 +145,7 @@ static void a_stop_halts_what_a_raw_goal_moves_beside_a_motion(void **state)
     rig_clip_init(&clip, waits_then_turns, 3);
     clip.only = GROBO_JOINT_BIT(NECK);
     rig_power(&rig);
-    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &slow, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &slow), GROBO_OK);
     rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
     rig_expect(&rig, raw_goal(&rig, SHOULDER, 60, 6000), GROBO_OK);
     rig_run(&rig, 1000000);
@@ -170,8 +167,8 @@ static void a_stop_halts_what_was_sent_before_a_motion(void **state)
     rig_clip_init(&clip, waits_then_turns, 3);
     clip.only = GROBO_JOINT_BIT(NECK);
     grobo_posture target = rig_posture(&rig, SHOULDER, 60, 6000);
-    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
-    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &slow, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
+    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &slow), GROBO_OK);
     rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
     ask_stop();
     rig_run(&rig, 300000);
@@ -185,7 +182,7 @@ static void a_stop_halts_what_was_sent_before_a_motion(void **state)
 static void refuse_send(void)
 {
     grobo_posture target = rig_posture(&rig, SHOULDER, -60, 500);
-    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_ERR_STATE);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_ERR_STATE);
 }
 
 static void refuse_raw(void)
@@ -206,7 +203,7 @@ static void push_and_ask(int64_t after_us, void (*ask)(void))
     const grobo_sim_config jumps = {.jump_on_torque = true};
     rig_start(&rig, NULL, &jumps);
     rig_power(&rig);
-    assert_int_equal(grobo_robot_free(&rig.robot, rig_all(&rig), true, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_free(&rig.robot, rig_all(&rig), true), GROBO_OK);
     rig_run(&rig, 200000);
     assert_int_equal(grobo_sim_set_load(&rig.sim, SHOULDER, 900), 0);
     while (rig_torque(&rig, SHOULDER) != GROBO_TORQUE_BRAKE) {
@@ -233,15 +230,15 @@ static void moving_a_joint_takes_it_out_of_free_mode(void **state)
     (void)state;
     rig_start(&rig, NULL, NULL);
     rig_power(&rig);
-    assert_int_equal(grobo_robot_free(&rig.robot, rig_all(&rig), true, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_free(&rig.robot, rig_all(&rig), true), GROBO_OK);
     rig_run(&rig, 500000);
     refuse_send();
     grobo_posture target = rig_posture(&rig, SHOULDER, -20, 500);
-    rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &target), GROBO_OK);
     target = rig_posture(&rig, SHOULDER, -25, 500);
-    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
     target = rig_posture(&rig, NECK, 5, 500);
-    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_ERR_STATE);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_ERR_STATE);
     rig_run(&rig, 1000000);
     assert_true(fabs(rig_angle_deg(&rig, SHOULDER) + 25) < 0.2);
 }
@@ -251,12 +248,12 @@ static void moving_a_joint_takes_it_out_of_free_mode(void **state)
 /* A frame after which joints are not where they were known to be. */
 static int ask_stored(void)
 {
-    return grobo_robot_stored(&rig.robot, GROBO_STORED_SLOT, 3, rig.now_us);
+    return grobo_robot_stored(&rig.robot, GROBO_STORED_SLOT, 3);
 }
 
 static int ask_unknown(void)
 {
-    return grobo_robot_raw(&rig.robot, (const uint8_t *)"\x50\x4D\x03", 3, rig.now_us);
+    return grobo_robot_raw(&rig.robot, (const uint8_t *)"\x50\x4D\x03", 3);
 }
 
 static int ask_raw_off(void)
@@ -316,8 +313,7 @@ static void what_is_unknown_is_noted_when_the_frame_leaves(void **state)
         rig_power(&rig);
         grobo_posture target = rig_posture(&rig, NECK, 1, 500);
         if (unsettling[i].limp) {
-            rig_expect(&rig, grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(NECK), 0, rig.now_us),
-                       GROBO_OK);
+            rig_expect(&rig, grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(NECK), 0), GROBO_OK);
         }
         while (!neck_is_being_read()) {
             rig_run(&rig, 100);
@@ -328,7 +324,7 @@ static void what_is_unknown_is_noted_when_the_frame_leaves(void **state)
             rig_run(&rig, 100);
         }
         assert_true(rig_count(&rig, GROBO_EVENT_JOINT) > 0);
-        assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), unsettling[i].result);
+        assert_int_equal(grobo_robot_send(&rig.robot, &target), unsettling[i].result);
     }
 }
 
@@ -357,11 +353,11 @@ static void a_late_answer_restores_nothing(void **state)
         event = rig_last(&rig, GROBO_EVENT_JOINT);
     }
     grobo_joint_info info;
-    assert_int_equal(grobo_robot_joint(&rig.robot, NECK, rig.now_us, &info), 0);
+    assert_int_equal(grobo_robot_joint(&rig.robot, NECK, &info), 0);
     assert_int_equal(event->u.joint.result, GROBO_OK);
     assert_false(info.torque_known);
     rig_run(&rig, 1000000);
-    assert_int_equal(grobo_robot_joint(&rig.robot, NECK, rig.now_us, &info), 0);
+    assert_int_equal(grobo_robot_joint(&rig.robot, NECK, &info), 0);
     assert_true(info.torque_known);
 }
 
@@ -376,7 +372,7 @@ static void nothing_unknown_is_sent_under_a_motion(void **state)
     rig_start(&rig, &config, NULL);
     rig_power(&rig);
     grobo_posture target = rig_posture(&rig, NECK, 40, 2000);
-    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
     for (int i = 0; i < 2; i++) { /* it waits for the line; it is on its way */
         assert_int_equal(ask_stored(), GROBO_ERR_STATE);
         assert_int_equal(ask_unknown(), GROBO_ERR_STATE);
@@ -385,10 +381,10 @@ static void nothing_unknown_is_sent_under_a_motion(void **state)
     rig_run(&rig, 1500000);
     rig_expect(&rig, ask_stored(), GROBO_OK);
     /* Asked for while nothing moved, but a target goes first. */
-    rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), 0, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), 0), GROBO_OK);
     int number = ask_stored();
     target.angle_rad[NECK] = 0;
-    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
     rig_expect(&rig, number, GROBO_ERR_STATE);
 }
 
@@ -402,7 +398,7 @@ static void a_raw_goal_begins_softly(void **state)
     double here_deg = rig_angle_deg(&rig, SHOULDER);
     grobo_posture target = rig_posture(&rig, SHOULDER, here_deg + 20, 100);
     for (int i = 0; i < 2; i++) {
-        assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+        assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
         rig_run(&rig, 1200000);
         int time_ms = rig_sent_ms(&rig, rig.driver->model->joints[SHOULDER].motor);
         assert_in_range(time_ms, i == 0 ? 320 : 100, i == 0 ? 340 : 100);
@@ -421,7 +417,7 @@ static void after_what_is_unknown_torque_is_still_wanted(void **state)
     rig_power(&rig);
     rig_expect(&rig, ask_stored(), GROBO_OK);
     assert_int_equal(grobo_sim_set_register(&rig.sim, NECK, GROBO_RS30X_TORQUE, 0), 0);
-    rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), 0, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), 0), GROBO_OK);
     assert_non_null(rig_last(&rig, GROBO_EVENT_TRIP));
     assert_int_equal(rig_last(&rig, GROBO_EVENT_TRIP)->u.trip.trip, GROBO_TRIP_TORQUE_LOST);
 }
@@ -434,9 +430,9 @@ static void a_latched_robot_is_not_halted(void **state)
     rig_start(&rig, &quiet, NULL);
     rig_power(&rig);
     grobo_posture target = rig_posture(&rig, NECK, 40, 5000);
-    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
     rig_run(&rig, 1000000);
-    assert_int_equal(grobo_robot_latch(&rig.robot, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_latch(&rig.robot), GROBO_OK);
     ask_stop();
     rig_run(&rig, 1000000);
 }
@@ -450,9 +446,9 @@ static void nothing_unknown_is_sent_in_a_pause(void **state)
     rig_start(&rig, &config, NULL);
     rig_clip_init(&clip, waits_then_turns, 3);
     rig_power(&rig);
-    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL), GROBO_OK);
     rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
-    assert_int_equal(grobo_robot_pause(&rig.robot, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_pause(&rig.robot), GROBO_OK);
     rig_run(&rig, 1000000);
     assert_int_equal(raw_reboot(&rig, NECK), GROBO_ERR_STATE);
     if (rig_wiring == GROBO_WIRING_BOARD) {

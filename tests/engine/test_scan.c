@@ -27,14 +27,14 @@ static void scan(grobo_wiring wiring, int baud_bps)
     int64_t begun_us = rig.now_us;
     for (int i = 0; i < SILENT; i++) {
         grobo_register_io io = {.id = (uint8_t)(FIRST_ID + i), .length = IDENTITY_BYTES};
-        rig_expect(&rig, grobo_robot_registers(&rig.robot, &io, rig.now_us), GROBO_ERR_TIMEOUT);
+        rig_expect(&rig, grobo_robot_registers(&rig.robot, &io), GROBO_ERR_TIMEOUT);
     }
     assert_in_range(rig.now_us - begun_us, (uint64_t)SILENT * wire_us,
                     (uint64_t)SILENT * (wire_us + SILENCE_US));
     print_message("# %d silent ids at %d bps: %.1f ms, of which the wire %.1f ms\n", SILENT,
                   baud_bps, (double)(rig.now_us - begun_us) / 1e3, SILENT * wire_us / 1e3);
     grobo_register_io io = {.id = 1, .length = IDENTITY_BYTES};
-    rig_expect(&rig, grobo_robot_registers(&rig.robot, &io, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_registers(&rig.robot, &io), GROBO_OK);
 }
 
 static void silent_servos_cost_4_ms_each_through_the_board(void **state)

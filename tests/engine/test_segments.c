@@ -37,14 +37,14 @@ static void start(const grobo_robot_config *config, const grobo_sim_config *sim)
     rig_start_driver(&rig, &arm, config, sim);
     rig_power(&rig);
     grobo_posture there = rig_posture(&rig, NECK, FROM_DEG, 1000);
-    rig_expect(&rig, grobo_robot_move(&rig.robot, &there, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &there), GROBO_OK);
     rig_forget(&rig);
 }
 
 static int begin_move(void)
 {
     grobo_posture target = rig_posture(&rig, NECK, TO_DEG, MOVE_MS);
-    return grobo_robot_move(&rig.robot, &target, rig.now_us);
+    return grobo_robot_move(&rig.robot, &target);
 }
 
 /* Until the neck moves. */
@@ -145,7 +145,7 @@ static void a_dead_host_stops_all_joints(void **state)
         rig_start_driver(&rig, &arm, NULL, &limp);
         rig_power(&rig);
         grobo_posture_init_pose(&init, arm.model);
-        assert_true(grobo_robot_move(&rig.robot, &init, rig.now_us) > 0);
+        assert_true(grobo_robot_move(&rig.robot, &init) > 0);
         rig_forget(&rig); /* holding before torque came on was a goal, too */
         while (sent_goals() == 0) {
             rig_run(&rig, 1000);
@@ -164,7 +164,7 @@ static void a_dead_host_stops_an_approach(void **state)
         grobo_play_options options = {.mode = (grobo_play_mode)mode};
         start(NULL, NULL);
         rig_clip_init(&clip, far, 2);
-        (void)grobo_robot_play(&rig.robot, &clip.clip, &options, rig.now_us);
+        (void)grobo_robot_play(&rig.robot, &clip.clip, &options);
         wait_for_move();
         rig_run(&rig, 300000);
         assert_int_equal(grobo_robot_play_state(&rig.robot), GROBO_SEQUENCER_APPROACHING);
@@ -179,7 +179,7 @@ static void a_dead_host_stops_a_long_key(void **state)
     static const rig_key slow[] = {{0, {{NECK, FROM_DEG}}}, {9000, {{NECK, 45}}}};
     start(NULL, NULL);
     rig_clip_init(&clip, slow, 2);
-    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL), GROBO_OK);
     rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
     rig_run(&rig, 3LL * SECOND_US);
     double deg = travel_of_the_dead();
@@ -200,7 +200,7 @@ static void a_humanoid_finishes_its_move_unless_asked(void **state)
             rig_power(&rig);
         }
         grobo_posture target = rig_posture(&rig, NECK, TO_DEG, MOVE_MS);
-        (void)grobo_robot_move(&rig.robot, &target, rig.now_us);
+        (void)grobo_robot_move(&rig.robot, &target);
         wait_for_move();
         rig_run(&rig, 500000);
         bool whole =
@@ -321,7 +321,7 @@ static void a_move_within_a_segment_is_one_frame(void **state)
     (void)state;
     start(&quiet, NULL);
     grobo_posture target = rig_posture(&rig, NECK, FROM_DEG + 10, GROBO_SEGMENT_US / 1000);
-    rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &target), GROBO_OK);
     assert_int_equal(rig_sent_ms(&rig, NECK_ID), GROBO_SEGMENT_US / 1000);
 }
 
@@ -350,13 +350,13 @@ static void a_long_stall_ends_the_move(void **state)
     assert_false(trip->u.trip.latched);
     assert_in_range(trip->u.trip.value, 800, 1000);
     grobo_joint_info info;
-    assert_int_equal(grobo_robot_joint(&rig.robot, NECK, rig.now_us, &info), 0);
+    assert_int_equal(grobo_robot_joint(&rig.robot, NECK, &info), 0);
     assert_true(fabs(grobo_deg_from_rad(info.target_rad) - rig_angle_deg(&rig, NECK)) < 0.1);
     assert_int_equal(grobo_robot_get_counters(&rig.robot)->stalls, 1);
     expect_at_rest();
     rig_forget(&rig);
     grobo_posture first = rig_posture(&rig, SHOULDER, rig_angle_deg(&rig, SHOULDER) + 20, 100);
-    assert_int_equal(grobo_robot_send(&rig.robot, &first, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_send(&rig.robot, &first), GROBO_OK);
     rig_run(&rig, 500000);
     /* A slow one: 20 degrees at 60 deg/s. */
     assert_in_range(rig_sent_ms(&rig, rig.driver->model->joints[SHOULDER].motor), 320, 340);
@@ -370,7 +370,7 @@ static void a_long_stall_ends_an_approach(void **state)
     static const rig_key far[] = {{0, {{NECK, 45}}}, {9000, {{NECK, -45}}}};
     start(NULL, NULL);
     rig_clip_init(&clip, far, 2);
-    int number = grobo_robot_play(&rig.robot, &clip.clip, NULL, rig.now_us);
+    int number = grobo_robot_play(&rig.robot, &clip.clip, NULL);
     assert_true(number > 0);
     wait_for_move();
     rig_run(&rig, 300000);
@@ -384,12 +384,12 @@ static void a_long_stall_ends_an_approach(void **state)
 
 static void stop_move(void)
 {
-    assert_int_equal(grobo_robot_stop(&rig.robot, false, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_stop(&rig.robot, false), GROBO_OK);
 }
 
 static void cancel_move(void)
 {
-    assert_int_equal(grobo_robot_cancel(&rig.robot, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_cancel(&rig.robot), GROBO_OK);
 }
 
 static void trip_move(void)
@@ -402,12 +402,12 @@ static void trip_move(void)
 
 static void estop_move(void)
 {
-    assert_true(grobo_robot_estop(&rig.robot, rig.now_us) > 0);
+    assert_true(grobo_robot_estop(&rig.robot) > 0);
 }
 
 static void leave_move(void)
 {
-    assert_true(grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD, rig.now_us) > 0);
+    assert_true(grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD) > 0);
 }
 
 static void what_stops_a_move_stops_its_segments(void **state)
@@ -458,7 +458,7 @@ static void a_motion_takes_the_place_of_its_approach(void **state)
         grobo_play_options options = {.mode = GROBO_PLAY_RATE};
         start(&config, NULL);
         rig_clip_init(&clip, far, 3);
-        assert_true(grobo_robot_play(&rig.robot, &clip.clip, &options, rig.now_us) > 0);
+        assert_true(grobo_robot_play(&rig.robot, &clip.clip, &options) > 0);
         wait_for_move();
         for (int k = 0; k < LOOKS; k++) {
             deg[i][k] = rig_angle_deg(&rig, NECK);

@@ -25,7 +25,7 @@ static int raw_goal(int id, int tenths, int units)
     grobo_rs30x_goal goal = {(uint8_t)id, (int16_t)tenths, (uint16_t)units};
     int n = grobo_frame_goals(grobo_wiring_protocol(rig_wiring), &goal, 1, frame, sizeof frame);
     assert_true(n > 0);
-    return grobo_robot_raw(&rig.robot, frame, (size_t)n, rig.now_us);
+    return grobo_robot_raw(&rig.robot, frame, (size_t)n);
 }
 
 static int raw_torque(int id, grobo_torque torque)
@@ -34,14 +34,13 @@ static int raw_torque(int id, grobo_torque torque)
     int n = grobo_frame_torque(grobo_wiring_protocol(rig_wiring), (uint8_t)id, torque, frame,
                                sizeof frame);
     assert_true(n > 0);
-    return grobo_robot_raw(&rig.robot, frame, (size_t)n, rig.now_us);
+    return grobo_robot_raw(&rig.robot, frame, (size_t)n);
 }
 
 /* A reading of one joint, with heat, current and voltage. */
 static void read_joint(int joint)
 {
-    int number =
-        grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(joint), GROBO_SENSE_FULL, rig.now_us);
+    int number = grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(joint), GROBO_SENSE_FULL);
     rig_expect(&rig, number, GROBO_OK);
 }
 
@@ -72,7 +71,7 @@ static void start_at(double deg)
     rig_start(&rig, &quiet, NULL);
     rig_power(&rig);
     target = rig_posture(&rig, NECK, deg, 500);
-    rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &target), GROBO_OK);
     rig_forget(&rig);
 }
 
@@ -105,7 +104,7 @@ static void three_low_readings_in_a_row_trip(void **state)
     read_joint(CHEST);
     assert_int_equal(tripped(), GROBO_TRIP_VOLTAGE);
     /* After a reset they are counted anew. */
-    assert_int_equal(grobo_robot_reset(&rig.robot, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_reset(&rig.robot), GROBO_OK);
     read_joint(NECK);
     read_joint(R_KNEE);
     assert_int_equal(tripped(), GROBO_TRIP_NONE);
@@ -159,20 +158,20 @@ static void a_stop_cancels_what_waits_for_the_line(void **state)
         grobo_posture all;
         grobo_posture_init_pose(&all, rig.driver->model);
         all.time_us = 200000;
-        assert_int_equal(grobo_robot_send(&rig.robot, &all, rig.now_us), GROBO_OK);
+        assert_int_equal(grobo_robot_send(&rig.robot, &all), GROBO_OK);
         rig_run(&rig, 1000);
         assert_int_equal(rig.n_sent, 1);
         grobo_posture target = rig_posture(&rig, NECK, 40, 5000);
-        assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+        assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
         switch (way) {
         case 0:
-            assert_int_equal(grobo_robot_stop(&rig.robot, false, rig.now_us), GROBO_OK);
+            assert_int_equal(grobo_robot_stop(&rig.robot, false), GROBO_OK);
             break;
         case 1:
-            assert_true(grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD, rig.now_us) > 0);
+            assert_true(grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD) > 0);
             break;
         default:
-            assert_true(grobo_robot_estop(&rig.robot, rig.now_us) > 0);
+            assert_true(grobo_robot_estop(&rig.robot) > 0);
             break;
         }
         rig_run(&rig, 500000);
@@ -188,14 +187,13 @@ static void a_stop_does_not_wait_for_a_silent_servo(void **state)
     start_at(-40);
     assert_int_equal(grobo_sim_set_cable(&rig.sim, R_KNEE, GROBO_SIM_CABLE_MUTE), 0);
     grobo_posture target = rig_posture(&rig, NECK, 40, 5000);
-    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
     rig_run(&rig, 1000000);
-    assert_true(
-        grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(R_KNEE), GROBO_SENSE_FULL, rig.now_us) > 0);
+    assert_true(grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(R_KNEE), GROBO_SENSE_FULL) > 0);
     rig_run(&rig, 8000); /* its request is out */
     rig_forget(&rig);
     int64_t asked_us = rig.now_us;
-    assert_int_equal(grobo_robot_stop(&rig.robot, false, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_stop(&rig.robot, false), GROBO_OK);
     rig_run(&rig, 15000);
     const rig_frame *halt = goal_sent(0);
     assert_non_null(halt);
@@ -210,14 +208,14 @@ static void a_stopped_joint_never_goes_back(void **state)
     for (int ms = 240, busy = 0; ms <= 2000; ms += busy * 220, busy = !busy) {
         start_at(-45);
         grobo_posture target = rig_posture(&rig, NECK, 45, ms);
-        assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+        assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
         rig_run(&rig, ms * 400);
         grobo_posture others;
         grobo_posture_init_pose(&others, rig.driver->model);
         others.set &= ~GROBO_JOINT_BIT(NECK);
-        assert_true(!busy || grobo_robot_send(&rig.robot, &others, rig.now_us) == GROBO_OK);
+        assert_true(!busy || grobo_robot_send(&rig.robot, &others) == GROBO_OK);
         rig_run(&rig, 500);
-        assert_int_equal(grobo_robot_stop(&rig.robot, false, rig.now_us), GROBO_OK);
+        assert_int_equal(grobo_robot_stop(&rig.robot, false), GROBO_OK);
         double asked_deg = rig_angle_deg(&rig, NECK);
         double last_deg = asked_deg;
         for (int t = 0; t < 300; t++) {
@@ -244,13 +242,12 @@ static void a_smooth_stop_is_no_longer_after_a_reset(void **state)
     for (int pauses = 0; pauses < 2; pauses++) {
         start_at(0);
         rig_clip_init(&clip, leap, 3);
-        rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options, rig.now_us), GROBO_OK);
+        rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options), GROBO_OK);
         rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
         rig_run(&rig, 200000);
-        assert_int_equal(grobo_robot_reset(&rig.robot, rig.now_us), GROBO_OK);
-        assert_int_equal(pauses ? grobo_robot_pause(&rig.robot, rig.now_us)
-                                : grobo_robot_stop(&rig.robot, false, rig.now_us),
-                         GROBO_OK);
+        assert_int_equal(grobo_robot_reset(&rig.robot), GROBO_OK);
+        assert_int_equal(
+            pauses ? grobo_robot_pause(&rig.robot) : grobo_robot_stop(&rig.robot, false), GROBO_OK);
         rig_run(&rig, 300000);
         double here_deg = rig_angle_deg(&rig, SHOULDER);
         rig_run(&rig, 1000000);
@@ -264,18 +261,18 @@ static void a_joint_sent_while_torque_comes_on_is_stopped_where_it_is(void **sta
     (void)state;
     const grobo_sim_config limp = {.start = GROBO_SIM_START_LIMP, .seed = 7};
     rig_start(&rig, NULL, &limp);
-    int number = grobo_robot_torque(&rig.robot, rig_all(&rig), GROBO_TORQUE_ON, rig.now_us);
+    int number = grobo_robot_torque(&rig.robot, rig_all(&rig), GROBO_TORQUE_ON);
     double here_deg = rig_angle_deg(&rig, HIP);
     grobo_posture target = rig_posture(&rig, HIP, here_deg + (here_deg < -60 ? 90 : -90), 3000);
     int result = GROBO_ERR_STATE;
     while (result < 0 && grobo_robot_job(&rig.robot) == GROBO_JOB_TORQUE) {
         rig_run(&rig, 1000);
-        result = grobo_robot_send(&rig.robot, &target, rig.now_us);
+        result = grobo_robot_send(&rig.robot, &target);
     }
     assert_int_equal(result, GROBO_OK);
     rig_expect(&rig, number, GROBO_OK);
     rig_run(&rig, 200000);
-    assert_int_equal(grobo_robot_stop(&rig.robot, false, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_stop(&rig.robot, false), GROBO_OK);
     rig_run(&rig, 300000);
     here_deg = rig_angle_deg(&rig, HIP);
     rig_run(&rig, 1000000);
@@ -288,12 +285,11 @@ static void a_stop_sends_no_joint_that_has_no_torque(void **state)
     (void)state;
     start_at(0);
     grobo_joint_mask neck = GROBO_JOINT_BIT(NECK);
-    rig_expect(&rig, grobo_robot_torque(&rig.robot, neck, GROBO_TORQUE_BRAKE, rig.now_us),
-               GROBO_OK);
+    rig_expect(&rig, grobo_robot_torque(&rig.robot, neck, GROBO_TORQUE_BRAKE), GROBO_OK);
     rig_expect(&rig, raw_goal(NECK_ID, 400, 200), GROBO_OK);
     rig_run(&rig, 500000);
     rig_forget(&rig);
-    (void)grobo_robot_stop(&rig.robot, true, rig.now_us);
+    (void)grobo_robot_stop(&rig.robot, true);
     rig_run(&rig, 100000);
     assert_null(goal_sent(0));
 }
@@ -308,17 +304,16 @@ static void a_stop_empties_the_queue(void **state)
         rig_power(&rig);
         rig_clip_init(&clip, sway, 3);
         rig_clip_init(&other, sway, 3);
-        rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL, rig.now_us), GROBO_OK);
+        rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL), GROBO_OK);
         rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
         rig_run(&rig, 500000);
-        assert_int_equal(grobo_robot_enqueue(&rig.robot, &other.clip, NULL, rig.now_us), 1);
-        assert_int_equal(grobo_robot_enqueue(&rig.robot, &other.clip, NULL, rig.now_us), 2);
+        assert_int_equal(grobo_robot_enqueue(&rig.robot, &other.clip, NULL), 1);
+        assert_int_equal(grobo_robot_enqueue(&rig.robot, &other.clip, NULL), 2);
         for (int i = 0; i <= twice; i++) {
-            assert_int_equal(grobo_robot_stop(&rig.robot, i == 2, rig.now_us), GROBO_OK);
-            grobo_robot_progress(&rig.robot, rig.now_us, &progress);
+            assert_int_equal(grobo_robot_stop(&rig.robot, i == 2), GROBO_OK);
+            grobo_robot_progress(&rig.robot, &progress);
             assert_int_equal(progress.queued, 0);
-            assert_int_equal(grobo_robot_enqueue(&rig.robot, &other.clip, NULL, rig.now_us),
-                             GROBO_ERR_STATE);
+            assert_int_equal(grobo_robot_enqueue(&rig.robot, &other.clip, NULL), GROBO_ERR_STATE);
             rig_run(&rig, 30000);
         }
         rig_run(&rig, 1000000);
@@ -364,7 +359,7 @@ static void a_trip_ends_torque_that_comes_on(void **state)
     int without = 0;
     for (int ms = 0; ms < 400; ms += 7) {
         rig_start(&rig, &quiet, NULL);
-        int number = grobo_robot_torque(&rig.robot, rig_all(&rig), GROBO_TORQUE_ON, rig.now_us);
+        int number = grobo_robot_torque(&rig.robot, rig_all(&rig), GROBO_TORQUE_ON);
         rig_run(&rig, ms * 1000);
         assert_int_equal(grobo_sim_set_temperature(&rig.sim, NECK, 75), 0);
         const grobo_event_job *job = rig_wait(&rig, number);
@@ -389,8 +384,7 @@ static void a_trip_does_not_end_torque_that_goes_off(void **state)
     rig_start(&rig, &quiet, NULL);
     rig_power(&rig);
     assert_int_equal(grobo_sim_set_temperature(&rig.sim, NECK, 75), 0);
-    rig_expect(&rig, grobo_robot_torque(&rig.robot, rig_all(&rig), GROBO_TORQUE_OFF, rig.now_us),
-               GROBO_OK);
+    rig_expect(&rig, grobo_robot_torque(&rig.robot, rig_all(&rig), GROBO_TORQUE_OFF), GROBO_OK);
     for (int j = 0; j < 20; j++) {
         assert_int_equal(rig_torque(&rig, j), GROBO_TORQUE_OFF);
     }
@@ -415,7 +409,7 @@ static void a_raw_goal_is_refused_for_a_joint_that_others_move(void **state)
     rig_run(&rig, 1000000);
     assert_int_equal(raw_goal(NECK_ID, 250, 100), GROBO_ERR_STATE);
     grobo_posture target = rig_posture(&rig, NECK, 25, 1000);
-    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_ERR_STATE);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_ERR_STATE);
     rig_run(&rig, 5000000); /* it is at rest again */
     rig_expect(&rig, raw_goal(NECK_ID, 10, 100), GROBO_OK);
 }
@@ -429,14 +423,14 @@ static void torque_taken_by_a_raw_frame_is_gone(void **state)
         start_at(0);
         rig_expect(&rig, raw_torque(NECK_ID, modes[i]), GROBO_OK);
         grobo_posture target = rig_posture(&rig, NECK, 10, 500);
-        assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_ERR_STATE);
+        assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_ERR_STATE);
         assert_int_equal(raw_torque(NECK_ID, GROBO_TORQUE_ON), GROBO_ERR_STATE);
         rig_run(&rig, 100000);
         assert_int_equal(rig_torque(&rig, NECK), modes[i]);
         read_joint(NECK);
         assert_int_equal(tripped(), GROBO_TRIP_NONE); /* it was asked for */
         rig_power(&rig);
-        assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+        assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
         rig_run(&rig, 1000000);
         assert_true(fabs(rig_angle_deg(&rig, NECK) - 10) < 0.1);
     }
@@ -456,13 +450,13 @@ static void a_move_begins_when_its_frame_leaves(void **state)
     grobo_posture all;
     grobo_posture_init_pose(&all, rig.driver->model);
     all.time_us = 5000000;
-    rig_expect(&rig, grobo_robot_move(&rig.robot, &all, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_move(&rig.robot, &all), GROBO_OK);
     all.time_us = 100000;
-    assert_int_equal(grobo_robot_send(&rig.robot, &all, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_send(&rig.robot, &all), GROBO_OK);
     rig_run(&rig, 10000);
     grobo_posture target = rig_posture(&rig, NECK, 40, by_board ? 1000 : 200);
-    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
-    while (grobo_robot_moving(&rig.robot, rig.now_us)) {
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
+    while (grobo_robot_moving(&rig.robot)) {
         rig_run(&rig, 10000);
     }
     assert_true(rig_angle_deg(&rig, NECK) > 30); /* but for the frame's own time */
@@ -484,8 +478,7 @@ static void an_approach_that_never_takes_is_given_up(void **state)
     rig_power(&rig);
     assert_int_equal(grobo_sim_set_register(&rig.sim, NECK, GROBO_RS30X_CW_LIMIT, 100), 0);
     rig_clip_init(&clip, far, 2);
-    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL, rig.now_us),
-               GROBO_ERR_MISMATCH);
+    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL), GROBO_ERR_MISMATCH);
     assert_int_equal(grobo_robot_play_state(&rig.robot), GROBO_SEQUENCER_IDLE);
     rig_run(&rig, 300000);
     double knee_deg = rig_angle_deg(&rig, R_KNEE);
@@ -514,7 +507,7 @@ static void a_clip_that_breaks_stops_the_robot(void **state)
     clip.only = GROBO_JOINT_BIT(NECK);
     sound_sample = clip.clip.sample;
     clip.clip.sample = sample_that_breaks;
-    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options), GROBO_OK);
     rig_wait_play(&rig, GROBO_SEQUENCER_FAILED);
     assert_int_equal(rig_last(&rig, GROBO_EVENT_PLAY)->u.play.error, GROBO_ERR_EMPTY);
     assert_true(rig_angle_deg(&rig, NECK) > -45);
@@ -553,15 +546,15 @@ static void a_target_that_makes_no_frame_ends_what_asked_for_it(void **state)
         switch (way) {
         case 0:
             goals_left = 0;
-            rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_ERR_SPACE);
+            rig_expect(&rig, grobo_robot_move(&rig.robot, &target), GROBO_ERR_SPACE);
             break;
         case 1:
             goals_left = 0;
-            assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_ERR_SPACE);
+            assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_ERR_SPACE);
             break;
         default:
             rig_clip_init(&clip, sway, 3);
-            rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options, rig.now_us), 0);
+            rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options), 0);
             rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
             goals_left = 10;
             rig_wait_play(&rig, GROBO_SEQUENCER_FAILED);
@@ -573,7 +566,7 @@ static void a_target_that_makes_no_frame_ends_what_asked_for_it(void **state)
         expect_rest();
         assert_null(goal_sent(0));
         goals_left = UINT_MAX; /* the robot is not lost for it */
-        rig_expect(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us), GROBO_OK);
+        rig_expect(&rig, grobo_robot_move(&rig.robot, &target), GROBO_OK);
         assert_true(fabs(rig_angle_deg(&rig, NECK) - 10) < 0.1);
     }
 }

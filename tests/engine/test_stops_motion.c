@@ -26,7 +26,7 @@ static void begin_to_play(grobo_play_mode mode)
     grobo_play_options options = {.mode = mode, .rate_hz = 30};
     rig_clip_init(&clip, rise, 3);
     clip.only = GROBO_JOINT_BIT(NECK);
-    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options), GROBO_OK);
     rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
 }
 
@@ -35,20 +35,18 @@ static void stop_by(int way)
     switch (way) {
     case STOP:
     case STOP_AT_ONCE:
-        assert_int_equal(grobo_robot_stop(&rig.robot, way == STOP_AT_ONCE, rig.now_us), GROBO_OK);
+        assert_int_equal(grobo_robot_stop(&rig.robot, way == STOP_AT_ONCE), GROBO_OK);
         break;
     case EXIT:
-        assert_true(grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD, rig.now_us) > 0);
+        assert_true(grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD) > 0);
         break;
     case TRIP:
         assert_int_equal(grobo_sim_set_temperature(&rig.sim, R_KNEE, 75), 0);
-        rig_expect(
-            &rig,
-            grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(R_KNEE), GROBO_SENSE_FULL, rig.now_us),
-            GROBO_OK);
+        rig_expect(&rig, grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(R_KNEE), GROBO_SENSE_FULL),
+                   GROBO_OK);
         break;
     default:
-        assert_int_equal(grobo_robot_pause(&rig.robot, rig.now_us), GROBO_OK);
+        assert_int_equal(grobo_robot_pause(&rig.robot), GROBO_OK);
         break;
     }
 }
@@ -99,7 +97,7 @@ static void a_stop_begins_where_a_joint_is_that_is_behind(void **state)
     for (int way = 0; way < WAYS; way++) {
         rig_start_at(&rig, 0, &quiet);
         rig_clip_init(&clip, leap, 3);
-        rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options, rig.now_us), GROBO_OK);
+        rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options), GROBO_OK);
         rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
         rig_run(&rig, 200000);
         stop_by(way);
@@ -118,7 +116,7 @@ static int raw_goal(int joint, int16_t ddeg, uint16_t time_cs)
     const grobo_rs30x_goal goal = {rig.driver->model->joints[joint].motor, ddeg, time_cs};
     int n = grobo_rs30x_write_goal(&goal, packet, sizeof packet);
     n = grobo_frame_wrap(rig.driver->protocol, packet, (size_t)n, frame, sizeof frame);
-    return grobo_robot_raw(&rig.robot, frame, (size_t)n, rig.now_us);
+    return grobo_robot_raw(&rig.robot, frame, (size_t)n);
 }
 
 /* The clip has the neck at 30 degrees by then. */
@@ -176,7 +174,7 @@ static void a_stop_after_a_motion_is_not_undone_by_its_end(void **state)
         rig_run(&rig, ms * 1000);
         settles = grobo_robot_settling(&rig.robot);
         assert_true(settles || ms > 50);
-        assert_int_equal(grobo_robot_stop(&rig.robot, true, rig.now_us), GROBO_OK);
+        assert_int_equal(grobo_robot_stop(&rig.robot, true), GROBO_OK);
         double asked_deg = rig_angle_deg(&rig, SHOULDER);
         rig_run(&rig, 3000000);
         assert_true(fabs(rig_angle_deg(&rig, SHOULDER) - asked_deg) < 5);
@@ -191,14 +189,14 @@ static void a_stop_moves_no_joint_that_lost_its_frame(void **state)
     rig_start_at(&rig, -45, &reading);
     grobo_posture target = rig_posture(&rig, NECK, 45, 3000);
     assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_MUTE), 0);
-    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
     rig_run(&rig, 15000);
     assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_IN), 0);
     rig_run(&rig, 1500000);
-    assert_int_equal(grobo_robot_stop(&rig.robot, true, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_stop(&rig.robot, true), GROBO_OK);
     rig_run(&rig, 1000000);
     assert_true(fabs(rig_angle_deg(&rig, NECK) + 45) < 0.1);
-    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
     rig_run(&rig, 3500000);
     assert_true(fabs(rig_angle_deg(&rig, NECK) - 45) < 0.1);
 }
@@ -210,21 +208,20 @@ static void a_stop_ends_the_way_of_a_joint_that_lost_its_frame(void **state)
     for (int angle_too = 0; angle_too < 2; angle_too++) {
         rig_start_at(&rig, -45, &quiet);
         grobo_posture target = rig_posture(&rig, NECK, 45, 13000);
-        assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+        assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
         rig_run(&rig, 500000);
         target.time_us = 3000000;
         assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_MUTE), 0);
-        assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+        assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
         rig_run(&rig, 15000);
         assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_IN), 0);
         rig_run(&rig, 1000000);
         for (int i = 0; i <= angle_too; i++) { /* the angle alone tells nothing new */
             grobo_sense_kind kind = i == 0 ? GROBO_SENSE_ALL : GROBO_SENSE_POSITION;
-            rig_expect(&rig, grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(NECK), kind, rig.now_us),
-                       GROBO_OK);
+            rig_expect(&rig, grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(NECK), kind), GROBO_OK);
         }
         double asked_deg = rig_angle_deg(&rig, NECK);
-        assert_int_equal(grobo_robot_stop(&rig.robot, true, rig.now_us), GROBO_OK);
+        assert_int_equal(grobo_robot_stop(&rig.robot, true), GROBO_OK);
         rig_run(&rig, 3000000);
         assert_true(fabs(rig_angle_deg(&rig, NECK) - asked_deg) < 2);
     }
@@ -238,17 +235,16 @@ static void a_halt_is_no_longer_when_it_leaves(void **state)
     const grobo_rs30x_goal goal = {NECK_ID, -400, 500};
     rig_start_at(&rig, 0, &quiet);
     grobo_posture target = rig_posture(&rig, NECK, 10, 200);
-    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
     rig_run(&rig, 500000);
     int n = grobo_frame_goals(rig.driver->protocol, &goal, 1, frame, sizeof frame);
     assert_int_equal(grobo_sim_rx(&rig.sim, frame, (size_t)n, rig.now_us), n);
     target = rig_posture(&rig, SHOULDER, 90, 5000);
-    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
     rig_run(&rig, 500000);
-    assert_true(grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(NECK), GROBO_SENSE_ALL, rig.now_us) >
-                0);
+    assert_true(grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(NECK), GROBO_SENSE_ALL) > 0);
     rig_run(&rig, 1000);
-    assert_int_equal(grobo_robot_stop(&rig.robot, true, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_stop(&rig.robot, true), GROBO_OK);
     rig_run(&rig, 300000);
     double here_deg = rig_angle_deg(&rig, SHOULDER);
     rig_run(&rig, 1000000);
@@ -263,19 +259,19 @@ static void a_stop_reaches_a_joint_that_was_to_let_go(void **state)
         rig_start_at(&rig, -45, &quiet);
         grobo_joint_mask neck = GROBO_JOINT_BIT(NECK);
         grobo_posture target = rig_posture(&rig, NECK, 45, 4000);
-        assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+        assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
         rig_run(&rig, 500000);
         assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_MUTE), 0);
-        int number = grobo_robot_torque(&rig.robot, neck, GROBO_TORQUE_OFF, rig.now_us);
+        int number = grobo_robot_torque(&rig.robot, neck, GROBO_TORQUE_OFF);
         rig_run(&rig, 4000);
-        assert_int_equal(grobo_robot_cancel(&rig.robot, rig.now_us), GROBO_OK);
+        assert_int_equal(grobo_robot_cancel(&rig.robot), GROBO_OK);
         rig_expect(&rig, number, GROBO_ERR_CANCELED);
         assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_IN), 0);
         if (reads) {
-            number = grobo_robot_sense(&rig.robot, neck, GROBO_SENSE_ALL, rig.now_us);
+            number = grobo_robot_sense(&rig.robot, neck, GROBO_SENSE_ALL);
             rig_expect(&rig, number, GROBO_OK);
         }
-        assert_int_equal(grobo_robot_stop(&rig.robot, true, rig.now_us), GROBO_OK);
+        assert_int_equal(grobo_robot_stop(&rig.robot, true), GROBO_OK);
         rig_run(&rig, 300000);
         double here_deg = rig_angle_deg(&rig, NECK);
         rig_run(&rig, 1000000);
@@ -290,8 +286,8 @@ static void a_stop_reaches_a_servo_that_was_deaf(void **state)
     for (int exits = 0; exits < 2; exits++) {
         rig_start_at(&rig, 0, &quiet);
         assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_MUTE), 0);
-        int number = exits ? grobo_robot_exit(&rig.robot, GROBO_EXIT_OFF, rig.now_us)
-                           : grobo_robot_estop(&rig.robot, rig.now_us);
+        int number =
+            exits ? grobo_robot_exit(&rig.robot, GROBO_EXIT_OFF) : grobo_robot_estop(&rig.robot);
         rig_run(&rig, 2200000);
         assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_IN), 0);
         rig_expect(&rig, number, GROBO_OK);
@@ -310,10 +306,10 @@ static void leaving_lets_go_when_the_joints_stand(void **state)
                 begin_to_play(GROBO_PLAY_KEY);
             } else {
                 grobo_posture target = rig_posture(&rig, NECK, 45, 2000);
-                assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+                assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
             }
             rig_run(&rig, ms * 1000);
-            int number = grobo_robot_exit(&rig.robot, GROBO_EXIT_OFF, rig.now_us);
+            int number = grobo_robot_exit(&rig.robot, GROBO_EXIT_OFF);
             double before_deg = 0;
             while (rig_torque(&rig, NECK) == GROBO_TORQUE_ON) {
                 before_deg = rig_angle_deg(&rig, NECK);
@@ -331,19 +327,19 @@ static void what_is_stopped_says_that_it_was_canceled(void **state)
     rig_start_at(&rig, 0, &quiet);
     grobo_posture target = rig_posture(&rig, NECK, 40, 2000);
     for (int at_once = 0; at_once < 2; at_once++) {
-        int number = grobo_robot_move(&rig.robot, &target, rig.now_us);
+        int number = grobo_robot_move(&rig.robot, &target);
         rig_run(&rig, 800000);
-        assert_int_equal(grobo_robot_stop(&rig.robot, at_once, rig.now_us), GROBO_OK);
+        assert_int_equal(grobo_robot_stop(&rig.robot, at_once), GROBO_OK);
         rig_expect(&rig, number, GROBO_ERR_CANCELED);
         rig_run(&rig, 500000);
         rig_clip_init(&clip, rise, 3);
-        number = grobo_robot_play(&rig.robot, &clip.clip, NULL, rig.now_us);
+        number = grobo_robot_play(&rig.robot, &clip.clip, NULL);
         rig_run(&rig, 50000); /* it still reads the joints */
-        assert_int_equal(grobo_robot_stop(&rig.robot, at_once, rig.now_us), GROBO_OK);
+        assert_int_equal(grobo_robot_stop(&rig.robot, at_once), GROBO_OK);
         rig_expect(&rig, number, GROBO_ERR_CANCELED);
         rig_run(&rig, 500000);
-        assert_int_equal(grobo_robot_stop(&rig.robot, at_once, rig.now_us), GROBO_ERR_STATE);
-        assert_int_equal(grobo_robot_cancel(&rig.robot, rig.now_us), GROBO_ERR_STATE);
+        assert_int_equal(grobo_robot_stop(&rig.robot, at_once), GROBO_ERR_STATE);
+        assert_int_equal(grobo_robot_cancel(&rig.robot), GROBO_ERR_STATE);
     }
 }
 
@@ -354,7 +350,7 @@ static void a_stop_is_dated_by_its_call(void **state)
     rig_start_at(&rig, 0, &quiet);
     rig_run(&rig, 500000);
     rig.now_us += 3210;
-    assert_true(grobo_robot_estop(&rig.robot, rig.now_us) > 0);
+    assert_true(grobo_robot_estop(&rig.robot) > 0);
     grobo_trip_info trip;
     grobo_robot_tripped(&rig.robot, &trip);
     assert_true(trip.at_us == rig.now_us);
@@ -370,9 +366,9 @@ static void the_frame_that_stops_is_there_at_once(void **state)
     uint8_t buf[GROBO_RS30X_PACKET_MAX_BYTES];
     rig_start_at(&rig, 0, &quiet);
     grobo_posture target = rig_posture(&rig, NECK, 40, 2000);
-    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
     rig_run(&rig, 500000);
-    assert_true(grobo_robot_estop(&rig.robot, rig.now_us) > 0);
+    assert_true(grobo_robot_estop(&rig.robot) > 0);
     rig_frame first = {0};
     int n = grobo_robot_tx(&rig.robot, buf, sizeof buf, rig.now_us);
     assert_true(n > 0);
@@ -390,13 +386,13 @@ static void a_move_begins_where_the_joint_is(void **state)
     rig_start_at(&rig, 0, &quiet);
     assert_int_equal(grobo_sim_set_blocked(&rig.sim, NECK, true), 0);
     grobo_posture target = rig_posture(&rig, NECK, 40, 500);
-    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
     rig_run(&rig, 2000000);
     assert_true(fabs(rig_angle_deg(&rig, NECK)) < 1);
     assert_int_equal(grobo_sim_set_blocked(&rig.sim, NECK, false), 0);
     rig_forget(&rig);
     target = rig_posture(&rig, NECK, 40, 10);
-    (void)rig_wait(&rig, grobo_robot_move(&rig.robot, &target, rig.now_us));
+    (void)rig_wait(&rig, grobo_robot_move(&rig.robot, &target));
     double asked_deg = fabs(rig_angle_deg(&rig, NECK));
     assert_true(asked_deg > 39);
     assert_in_range(rig_sent_ms(&rig, NECK_ID), 100, 120); /* 40 deg at 375 deg/s */
@@ -415,7 +411,7 @@ static void leaving_is_bounded_by_its_call(void **state)
     rig_run(&rig, 500000);
     int64_t late_us = rig.now_us;
     rig.now_us += 70000;
-    int number = grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD, rig.now_us);
+    int number = grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD);
     const grobo_event_job *job = rig_expect(&rig, number, GROBO_ERR_TIMEOUT);
     assert_int_equal(job->number, number);
     assert_in_range(rig_last(&rig, GROBO_EVENT_JOB)->now_us - late_us, 170000, 170000);
@@ -429,10 +425,10 @@ static void nobody_sits_down_after_an_emergency_stop(void **state)
     bool sits = false;
     for (int ms = 0; !sits; ms += 2) {
         rig_start_at(&rig, -30, &quiet);
-        int number = grobo_robot_exit(&rig.robot, GROBO_EXIT_SIT, rig.now_us);
+        int number = grobo_robot_exit(&rig.robot, GROBO_EXIT_SIT);
         rig_run(&rig, ms * 1000);
         sits = goals_sent() > 0;
-        assert_int_equal(grobo_robot_latch(&rig.robot, rig.now_us), GROBO_OK);
+        assert_int_equal(grobo_robot_latch(&rig.robot), GROBO_OK);
         rig_forget(&rig);
         const grobo_event_job *job = rig_wait(&rig, number);
         assert_true(sits || job->result == GROBO_ERR_LATCHED);
@@ -458,11 +454,11 @@ static void a_clip_that_breaks_under_a_command_stops_the_robot(void **state)
     sound_key = clip.clip.key;
     clip.clip.key = key_that_breaks;
     broken = false;
-    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL), GROBO_OK);
     rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
     rig_run(&rig, 500000);
     broken = true;
-    assert_int_equal(grobo_robot_seek(&rig.robot, 100000, rig.now_us), GROBO_ERR_EMPTY);
+    assert_int_equal(grobo_robot_seek(&rig.robot, 100000), GROBO_ERR_EMPTY);
     assert_int_equal(grobo_robot_play_state(&rig.robot), GROBO_SEQUENCER_FAILED);
     rig_run(&rig, 200000);
     double here_deg = rig_angle_deg(&rig, NECK);
@@ -471,12 +467,12 @@ static void a_clip_that_breaks_under_a_command_stops_the_robot(void **state)
     assert_true(fabs(rig_angle_deg(&rig, NECK) - here_deg) < 0.01);
     /* A command that finds nothing to play stops nothing. */
     grobo_posture target = rig_posture(&rig, NECK, 30, 1000);
-    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
     rig_run(&rig, 300000);
-    assert_int_equal(grobo_robot_seek(&rig.robot, 100000, rig.now_us), GROBO_ERR_STATE);
-    assert_int_equal(grobo_robot_pause(&rig.robot, rig.now_us), GROBO_ERR_STATE);
-    assert_int_equal(grobo_robot_resume(&rig.robot, rig.now_us), GROBO_ERR_STATE);
-    assert_int_equal(grobo_robot_speed(&rig.robot, 50, rig.now_us), GROBO_ERR_STATE);
+    assert_int_equal(grobo_robot_seek(&rig.robot, 100000), GROBO_ERR_STATE);
+    assert_int_equal(grobo_robot_pause(&rig.robot), GROBO_ERR_STATE);
+    assert_int_equal(grobo_robot_resume(&rig.robot), GROBO_ERR_STATE);
+    assert_int_equal(grobo_robot_speed(&rig.robot, 50), GROBO_ERR_STATE);
     rig_run(&rig, 2000000);
     assert_true(fabs(rig_angle_deg(&rig, NECK) - 30) < 0.1);
 }
@@ -499,7 +495,7 @@ static void nothing_of_a_broken_clip_leaves_any_more(void **state)
         sound_sample = clip.clip.sample;
         clip.clip.sample = sample_that_breaks;
         broken = false;
-        rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options, rig.now_us), GROBO_OK);
+        rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options), GROBO_OK);
         rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
         rig_run(&rig, 300000 + ms * 1000);
         broken = true;
@@ -529,7 +525,7 @@ static void a_trip_ends_a_raw_job_that_waits_for_the_end_of_a_motion(void **stat
     grobo_rs30x_goal goals[20];
     rig_start_at(&rig, -45, &config);
     rig_clip_init(&clip, rise, 3);
-    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, &options), GROBO_OK);
     rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
     rig_run(&rig, 500000);
     for (int j = 0; j < 20; j++) {
@@ -539,7 +535,7 @@ static void a_trip_ends_a_raw_job_that_waits_for_the_end_of_a_motion(void **stat
     }
     int n = grobo_frame_goals(grobo_wiring_protocol(rig_wiring), goals, 20, frame, sizeof frame);
     assert_true(n > 0);
-    int number = grobo_robot_raw(&rig.robot, frame, (size_t)n, rig.now_us);
+    int number = grobo_robot_raw(&rig.robot, frame, (size_t)n);
     assert_true(number > 0);
     rig_run(&rig, 300000);
     assert_int_equal(grobo_robot_job(&rig.robot), GROBO_JOB_RAW);
@@ -566,13 +562,13 @@ static void a_raw_goal_is_not_tried_again_behind_a_later_target(void **state)
                              sizeof frame);
         assert_true(n > 0);
         assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_MUTE), 0);
-        int number = grobo_robot_raw(&rig.robot, frame, (size_t)n, rig.now_us);
+        int number = grobo_robot_raw(&rig.robot, frame, (size_t)n);
         assert_true(number > 0);
         rig_run(&rig, 5000); /* it is out, and nobody has it */
         assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_IN), 0);
         if (later) {
             grobo_posture target = rig_posture(&rig, NECK, -10, 1000);
-            assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+            assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
         }
         rig_expect(&rig, number, later ? GROBO_ERR_STALE : GROBO_OK);
         rig_run(&rig, 2000000);
@@ -606,7 +602,7 @@ static void torque_that_waited_long_comes_on_for_nobody(void **state)
         const grobo_sim_config jumps = {.jump_on_torque = true};
         rig_start(&rig, &quiet, &jumps);
         int number = grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(NECK) | GROBO_JOINT_BIT(CHEST),
-                                        GROBO_TORQUE_ON, rig.now_us);
+                                        GROBO_TORQUE_ON);
         assert_true(number > 0);
         rig_run(&rig, ms * 100);
         bool on_its_way = rig_torque(&rig, NECK) != GROBO_TORQUE_ON;

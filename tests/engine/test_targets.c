@@ -38,7 +38,7 @@ static void times_are_rounded_to_the_unit(void **state)
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         grobo_posture target = rig_posture(&rig, NECK, 0, 0);
         target.time_us = rows[i].asked_us;
-        assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+        assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
         rig_run(&rig, 30000);
         assert_int_equal(rig_sent_ms(&rig, NECK_ID), rows[i].sent_ms);
     }
@@ -51,11 +51,11 @@ static void a_time_beyond_the_wire_ends_with_the_longest(void **state)
     rig_start_at(&rig, 0, &quiet);
     grobo_posture target = rig_posture(&rig, NECK, 5, 0);
     target.time_us = INT64_C(1000000000000);
-    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
     rig_run(&rig, 163000000);
-    assert_true(grobo_robot_moving(&rig.robot, rig.now_us));
+    assert_true(grobo_robot_moving(&rig.robot));
     rig_run(&rig, 1000000);
-    assert_false(grobo_robot_moving(&rig.robot, rig.now_us));
+    assert_false(grobo_robot_moving(&rig.robot));
 }
 
 /* One joint is clamped; another that has no number at all ends it. */
@@ -69,11 +69,11 @@ static void clamping_counts_joints_and_takes_no_others(void **state)
     grobo_posture target = rig_posture(&rig, NECK, 60, 3000);
     assert_int_equal(grobo_posture_set_deg(&target, CHEST, 170), 0);
     assert_int_equal(grobo_posture_set_deg(&target, R_KNEE, -20), 0);
-    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
     assert_int_equal(grobo_robot_get_counters(&rig.robot)->clamped, 2);
     target.angle_rad[R_ELBOW] = NAN;
     target.set |= GROBO_JOINT_BIT(R_ELBOW);
-    assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_ERR_NAN);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_ERR_NAN);
     assert_int_equal(grobo_robot_fault(&rig.robot, &value), -1);
     assert_int_equal(grobo_robot_get_counters(&rig.robot)->clamped, 2);
 }
@@ -86,7 +86,7 @@ static void motion_frames_are_those_that_left(void **state)
     uint64_t before = grobo_robot_get_counters(&rig.robot)->motion_frames;
     for (int i = 0; i < 4; i++) { /* the first leaves, the last takes the place of the others */
         grobo_posture target = rig_posture(&rig, NECK, i + 1, 500);
-        assert_int_equal(grobo_robot_send(&rig.robot, &target, rig.now_us), GROBO_OK);
+        assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
         if (i == 0) {
             rig_run(&rig, 100);
         }

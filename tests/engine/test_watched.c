@@ -37,7 +37,7 @@ static void on_event(grobo_test_rig *r, const grobo_event *event)
         return;
     }
     int joint = event->u.joint.joint;
-    assert_int_equal(grobo_robot_joint(&r->robot, joint, r->now_us, &info), 0);
+    assert_int_equal(grobo_robot_joint(&r->robot, joint, &info), 0);
     if (info.full_age_us == 0) {
         note_age(joint);
         read_us[joint] = r->now_us;
@@ -67,7 +67,7 @@ static void start_playing(const grobo_robot_config *config, const grobo_sim_conf
     rig_start(&rig, config, sim);
     rig_clip_init(&clip, sway, sizeof sway / sizeof *sway);
     rig_power(&rig);
-    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, options, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, options), GROBO_OK);
     rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
 }
 
@@ -169,7 +169,7 @@ static void play_at_watched_rate(uint32_t baud_bps, const grobo_budget *budget)
                       .n_keys = 31,
                       .length_us = 30LL * SECOND_US};
     rig_power(&rig);
-    rig_expect(&rig, grobo_robot_play(&rig.robot, &nod, &options, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_play(&rig.robot, &nod, &options), GROBO_OK);
     rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
     int64_t unread_us = longest_unread(8LL * SECOND_US);
     print_message("# %s, %u bps, %d joints: %d Hz, each read every %lld ms\n",
@@ -211,8 +211,7 @@ static void on_too_slow_a_line_no_rate_is_watched(void **state)
     assert_int_equal(budget.default_hz, 0);
     rig_start_driver(&rig, driver, &config, NULL);
     rig_clip_init(&clip, sway, sizeof sway / sizeof *sway);
-    assert_int_equal(grobo_robot_play(&rig.robot, &clip.clip, &at_default, rig.now_us),
-                     GROBO_ERR_UNWATCHED);
+    assert_int_equal(grobo_robot_play(&rig.robot, &clip.clip, &at_default), GROBO_ERR_UNWATCHED);
     line.baud_bps = 100;
     assert_int_equal(grobo_budget_init(&budget, driver, NULL, &line), GROBO_ERR_ARG);
     driver->sense = NULL;
@@ -263,7 +262,7 @@ static void keys_that_fill_the_line_hide_no_joint(void **state)
     dense_clip =
         (grobo_clip){.key = dense_key, .n_joints = JOINTS, .n_keys = 2000, .length_us = 19990000};
     rig_power(&rig);
-    rig_expect(&rig, grobo_robot_play(&rig.robot, &dense_clip, NULL, rig.now_us), GROBO_OK);
+    rig_expect(&rig, grobo_robot_play(&rig.robot, &dense_clip, NULL), GROBO_OK);
     rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
     rig_forget(&rig);
     assert_true(longest_unread(8LL * SECOND_US) <= GROBO_WATCH_US);
@@ -281,7 +280,7 @@ static void targets_that_fill_the_line_hide_no_joint(void **state)
     (void)state;
     rig_start(&rig, NULL, NULL);
     rig_power(&rig);
-    rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL, rig.now_us), 0);
+    rig_expect(&rig, grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL), 0);
     longest_us = 0;
     for (int j = 0; j < JOINTS; j++) {
         read_us[j] = rig.now_us;
@@ -292,7 +291,7 @@ static void targets_that_fill_the_line_hide_no_joint(void **state)
         grobo_posture_init_pose(&target, rig.driver->model);
         target.angle_rad[NECK] = grobo_rad_from_deg(0.05 * i);
         target.time_us = 100000;
-        (void)grobo_robot_send(&rig.robot, &target, rig.now_us);
+        (void)grobo_robot_send(&rig.robot, &target);
         rig_run(&rig, 7000);
     }
     for (int j = 0; j < JOINTS; j++) {
@@ -309,7 +308,7 @@ static int64_t others_unread(int64_t us)
         rig_run(&rig, 100000);
         for (int j = 0; j < JOINTS; j++) {
             grobo_joint_info info;
-            assert_int_equal(grobo_robot_joint(&rig.robot, j, rig.now_us, &info), 0);
+            assert_int_equal(grobo_robot_joint(&rig.robot, j, &info), 0);
             if (j != R_KNEE && info.full_age_us > unread_us) {
                 unread_us = info.full_age_us;
             }
@@ -354,8 +353,7 @@ static void a_reading_that_may_not_leave_delays_no_frame(void **state)
     start_playing(&config, NULL, &at_default);
     assert_int_equal(grobo_sim_set_cable(&rig.sim, R_KNEE, GROBO_SIM_CABLE_MUTE), 0);
     for (int i = 0; i < 60; i++) {
-        int number =
-            grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(R_KNEE), GROBO_SENSE_FULL, rig.now_us);
+        int number = grobo_robot_sense(&rig.robot, GROBO_JOINT_BIT(R_KNEE), GROBO_SENSE_FULL);
         rig_expect(&rig, number, GROBO_ERR_TIMEOUT);
         rig_run(&rig, 5000);
     }
@@ -380,7 +378,7 @@ static void expect_trip(grobo_trip reason, int joint, int64_t within_us)
     assert_true(joint < 0 || trip->u.trip.joint == joint);
     assert_true(trip->u.trip.latched);
     rig_run(&rig, SECOND_US);
-    assert_false(grobo_robot_moving(&rig.robot, rig.now_us));
+    assert_false(grobo_robot_moving(&rig.robot));
 }
 
 static void heat_stops_at_the_default_rate(void **state)
@@ -424,18 +422,16 @@ static void a_rate_that_leaves_no_time_is_refused(void **state)
     start_playing(NULL, NULL, &at_default);
     grobo_play_options options = {.mode = GROBO_PLAY_RATE,
                                   .rate_hz = (uint16_t)(budget_now().watched_hz + 1)};
-    assert_int_equal(grobo_robot_enqueue(&rig.robot, &clip.clip, &options, rig.now_us),
-                     GROBO_ERR_UNWATCHED);
-    assert_int_equal(grobo_robot_stop(&rig.robot, false, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_enqueue(&rig.robot, &clip.clip, &options), GROBO_ERR_UNWATCHED);
+    assert_int_equal(grobo_robot_stop(&rig.robot, false), GROBO_OK);
     rig_wait_play(&rig, GROBO_SEQUENCER_IDLE);
     rig_run(&rig, SECOND_US);
     rig_forget(&rig);
-    assert_int_equal(grobo_robot_play(&rig.robot, &clip.clip, &options, rig.now_us),
-                     GROBO_ERR_UNWATCHED);
+    assert_int_equal(grobo_robot_play(&rig.robot, &clip.clip, &options), GROBO_ERR_UNWATCHED);
     assert_int_equal(grobo_robot_job(&rig.robot), GROBO_JOB_NONE);
     assert_int_equal(grobo_robot_play_state(&rig.robot), GROBO_SEQUENCER_IDLE);
     options.rate_hz--;
-    assert_true(grobo_robot_play(&rig.robot, &clip.clip, &options, rig.now_us) > 0);
+    assert_true(grobo_robot_play(&rig.robot, &clip.clip, &options) > 0);
     assert_int_equal(rig_count(&rig, GROBO_EVENT_UNWATCHED), 0);
 }
 
@@ -457,14 +453,14 @@ static void an_unwatched_motion_says_so_and_waits_for_no_reading(void **state)
     grobo_robot_jitter(&rig.robot, &jitter);
     assert_int_equal(jitter.max_us, 0);
     /* The one behind it is watched, so it says nothing. */
-    assert_int_equal(grobo_robot_enqueue(&rig.robot, &clip.clip, &at_default, rig.now_us), 1);
-    assert_int_equal(grobo_robot_seek(&rig.robot, 59000000, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_enqueue(&rig.robot, &clip.clip, &at_default), 1);
+    assert_int_equal(grobo_robot_seek(&rig.robot, 59000000), GROBO_OK);
     rig_run(&rig, 6LL * SECOND_US);
     assert_int_equal(rig_count(&rig, GROBO_EVENT_UNWATCHED), 1);
     assert_true(longest_unread(5LL * SECOND_US) <= GROBO_WATCH_US);
     /* And one behind that which is not says so again. */
-    assert_int_equal(grobo_robot_enqueue(&rig.robot, &clip.clip, &options, rig.now_us), 1);
-    assert_int_equal(grobo_robot_seek(&rig.robot, 59000000, rig.now_us), GROBO_OK);
+    assert_int_equal(grobo_robot_enqueue(&rig.robot, &clip.clip, &options), 1);
+    assert_int_equal(grobo_robot_seek(&rig.robot, 59000000), GROBO_OK);
     rig_run(&rig, 6LL * SECOND_US);
     assert_int_equal(rig_count(&rig, GROBO_EVENT_UNWATCHED), 2);
 }

@@ -114,7 +114,7 @@ static int move(grobo_session *session, double angle_deg, int64_t time_us)
     assert_int_equal(grobo_posture_init(&target, 20), GROBO_OK);
     assert_int_equal(grobo_posture_set_deg(&target, ELBOW, angle_deg), GROBO_OK);
     target.time_us = time_us;
-    return grobo_session_move(session, &target);
+    return grobo_robot_move(grobo_session_robot(session), &target);
 }
 
 static grobo_sim_view look(void)
@@ -129,11 +129,13 @@ static grobo_sim_view look(void)
 static void assert_latched(grobo_session *session)
 {
     assert_int_equal(move(session, -20, 500000), GROBO_ERR_LATCHED);
-    assert_int_equal(grobo_session_torque(session, GROBO_JOINT_BIT(ELBOW), GROBO_TORQUE_ON),
+    assert_int_equal(
+        grobo_robot_torque(grobo_session_robot(session), GROBO_JOINT_BIT(ELBOW), GROBO_TORQUE_ON),
+        GROBO_ERR_LATCHED);
+    assert_int_equal(grobo_robot_free(grobo_session_robot(session), GROBO_JOINT_BIT(ELBOW), true),
                      GROBO_ERR_LATCHED);
-    assert_int_equal(grobo_session_free_mode(session, GROBO_JOINT_BIT(ELBOW), true),
-                     GROBO_ERR_LATCHED);
-    assert_true(grobo_session_sense(session, GROBO_JOINT_BIT(ELBOW), GROBO_SENSE_FULL) > 0);
+    assert_true(grobo_robot_sense(grobo_session_robot(session), GROBO_JOINT_BIT(ELBOW),
+                                  GROBO_SENSE_FULL) > 0);
     loop_run_for(base, 100000);
 }
 
@@ -188,7 +190,7 @@ static void a_reset_clears_it_for_all(void **state)
     assert_int_equal(grobo_estop_set(device, NULL, NULL), GROBO_OK);
     session = open_session();
     assert_latched(session);
-    assert_int_equal(grobo_session_reset(session), GROBO_OK);
+    assert_int_equal(grobo_robot_reset(grobo_session_robot(session)), GROBO_OK);
     assert_false(grobo_estop_stands(device));
     assert_true(move(session, -5, 200000) > 0);
     grobo_session_free(session);
@@ -210,7 +212,7 @@ static void cleared_by_another_program_the_session_stays_latched(void **state)
     assert_int_equal(grobo_estop_clear(device, NULL), GROBO_OK);
     loop_run_for(base, 3 * GROBO_ESTOP_WATCH_US);
     assert_latched(session);
-    assert_int_equal(grobo_session_reset(session), GROBO_OK);
+    assert_int_equal(grobo_robot_reset(grobo_session_robot(session)), GROBO_OK);
     assert_true(move(session, -5, 200000) > 0);
     grobo_session_free(session);
 }
@@ -222,7 +224,7 @@ static void a_reset_obeys_a_mark_that_was_just_set(void **state)
 
     (void)state;
     assert_int_equal(grobo_estop_set(device, NULL, NULL), GROBO_OK);
-    assert_int_equal(grobo_session_reset(session), GROBO_ERR_STATE);
+    assert_int_equal(grobo_robot_reset(grobo_session_robot(session)), GROBO_ERR_STATE);
     assert_true(grobo_estop_stands(device));
     loop_run_until(base, &at.estops, 1);
     assert_latched(session);
@@ -266,7 +268,8 @@ static void a_moving_robot_stops(void **state)
     int64_t set_us;
 
     (void)state;
-    assert_true(grobo_session_torque(session, GROBO_JOINT_BIT(ELBOW), GROBO_TORQUE_ON) > 0);
+    assert_true(grobo_robot_torque(grobo_session_robot(session), GROBO_JOINT_BIT(ELBOW),
+                                   GROBO_TORQUE_ON) > 0);
     loop_run_for(base, 300000);
     assert_true(move(session, -100, 20000000) > 0);
     for (int i = 0; i < 1000 && look().angle_mdeg > before_mdeg - 3000; i++) {
@@ -315,12 +318,12 @@ static void who_was_held_up_looks_before_it_sends(void **state)
 
     (void)state;
     at.listens = true;
-    assert_true(grobo_session_estop(session) > 0);
+    assert_true(grobo_robot_estop(grobo_session_robot(session)) > 0);
     stop_bytes = at.size;
     assert_true(stop_bytes > 0);
     memcpy(stop_frame, at.frame, stop_bytes);
     loop_run_until(base, &at.estops, 1);
-    assert_int_equal(grobo_session_reset(session), GROBO_OK);
+    assert_int_equal(grobo_robot_reset(grobo_session_robot(session)), GROBO_OK);
     loop_run_for(base, 200000);
 
     end_us = grobo_now_us() + 4 * GROBO_ESTOP_WATCH_US;

@@ -122,7 +122,7 @@ static void a_lost_port_is_told_within_10_ms_and_found_within_250(void **state)
         int64_t from_us = grobo_now_us();
         unplug();
         told += seen.at_us - from_us <= 10000;
-        assert_int_equal(grobo_session_check(session), GROBO_ERR_CLOSED);
+        assert_int_equal(grobo_robot_check(grobo_session_robot(session)), GROBO_ERR_CLOSED);
         loop_run_for(base, 20000 * i); /* at any moment between two attempts */
         from_us = grobo_now_us();
         plug();
@@ -186,17 +186,18 @@ static void nothing_moves_by_itself_after_a_move_was_cut(void **state)
 
     (void)state;
     loop_run_until(base, &seen.ups, 1);
-    assert_int_equal(
-        session_kit_await(grobo_session_torque(session, GROBO_JOINTS_ALL(20), GROBO_TORQUE_ON)),
-        GROBO_OK);
-    move = grobo_session_move(session, &target);
+    assert_int_equal(session_kit_await(grobo_robot_torque(grobo_session_robot(session),
+                                                          GROBO_JOINTS_ALL(20), GROBO_TORQUE_ON)),
+                     GROBO_OK);
+    move = grobo_robot_move(grobo_session_robot(session), &target);
     loop_run_for(base, 200000);
     unplug();
     assert_int_equal(session_kit_await(move), GROBO_ERR_UNPLUGGED);
     expect_stillness();
     /* Asked, it moves. */
     target = neck(-10, 100000);
-    assert_int_equal(session_kit_await(grobo_session_move(session, &target)), GROBO_OK);
+    assert_int_equal(session_kit_await(grobo_robot_move(grobo_session_robot(session), &target)),
+                     GROBO_OK);
     assert_true(heard.writes > 0);
     assert_in_range(look(NECK).angle_mdeg + 20000, 9900, 10100);
 }
@@ -218,12 +219,14 @@ static void nothing_moves_by_itself_after_a_motion_was_cut(void **state)
 
     (void)state;
     loop_run_until(base, &seen.ups, 1);
-    assert_int_equal(session_kit_await(grobo_session_play(session, &nod, NULL)), GROBO_OK);
+    assert_int_equal(session_kit_await(grobo_robot_play(grobo_session_robot(session), &nod, NULL)),
+                     GROBO_OK);
     loop_run_for(base, 1000000);
     unplug();
     assert_int_equal(play_error, GROBO_ERR_UNPLUGGED);
     expect_stillness();
-    assert_int_equal(session_kit_await(grobo_session_play(session, &nod, NULL)), GROBO_OK);
+    assert_int_equal(session_kit_await(grobo_robot_play(grobo_session_robot(session), &nod, NULL)),
+                     GROBO_OK);
 }
 
 #define RECONNECT(f) cmocka_unit_test_setup_teardown(f, set_up, tear_down)

@@ -74,18 +74,20 @@ static void assert_it_works(void)
     uint64_t rx_bytes;
     double angle_deg;
 
-    assert_int_equal(session_kit_await(grobo_session_sense(session, all, GROBO_SENSE_FULL)),
-                     GROBO_OK);
     assert_int_equal(
-        grobo_robot_posture(grobo_session_robot(session), grobo_now_us(), GROBO_NEVER_US, &now),
-        model->n_joints);
+        session_kit_await(grobo_robot_sense(grobo_session_robot(session), all, GROBO_SENSE_FULL)),
+        GROBO_OK);
+    assert_int_equal(grobo_robot_posture(grobo_session_robot(session), GROBO_NEVER_US, &now),
+                     model->n_joints);
     assert_int_equal(grobo_posture_init(&target, model->n_joints), GROBO_OK);
     assert_int_equal(grobo_posture_set_deg(&target, 13, 5.0), GROBO_OK);
     target.time_us = 100000;
-    assert_int_equal(session_kit_await(grobo_session_move(session, &target)), GROBO_OK);
-    assert_int_equal(session_kit_await(grobo_session_sense(session, all, GROBO_SENSE_FULL)),
+    assert_int_equal(session_kit_await(grobo_robot_move(grobo_session_robot(session), &target)),
                      GROBO_OK);
-    grobo_robot_posture(grobo_session_robot(session), grobo_now_us(), GROBO_NEVER_US, &now);
+    assert_int_equal(
+        session_kit_await(grobo_robot_sense(grobo_session_robot(session), all, GROBO_SENSE_FULL)),
+        GROBO_OK);
+    grobo_robot_posture(grobo_session_robot(session), GROBO_NEVER_US, &now);
     assert_int_equal(grobo_posture_get_deg(&now, 13, &angle_deg), GROBO_OK);
     assert_true(angle_deg > 4.89 && angle_deg < 5.11);
     grobo_session_bytes(session, &tx_bytes, &rx_bytes);
@@ -121,9 +123,9 @@ static void a_simulator_keeps_its_state_while_closed(void **state)
     (void)state;
     session_kit_make((grobo_session_config){.device = "sim"});
     come_up();
-    assert_int_equal(
-        session_kit_await(grobo_session_torque(session, GROBO_JOINT_BIT(3), GROBO_TORQUE_ON)),
-        GROBO_OK);
+    assert_int_equal(session_kit_await(grobo_robot_torque(grobo_session_robot(session),
+                                                          GROBO_JOINT_BIT(3), GROBO_TORQUE_ON)),
+                     GROBO_OK);
     grobo_session_close(session);
     assert_int_equal(grobo_session_get_state(session), GROBO_SESSION_CLOSED);
     come_up();
@@ -264,18 +266,22 @@ static void requests_need_a_robot(void **state)
 
     (void)state;
     session_kit_make((grobo_session_config){.device = "sim"});
-    assert_int_equal(grobo_session_check(session), GROBO_ERR_CLOSED);
-    assert_int_equal(grobo_session_sense(session, 1, GROBO_SENSE_FULL), GROBO_ERR_CLOSED);
-    assert_int_equal(grobo_session_exit(session, GROBO_EXIT_HOLD), GROBO_ERR_CLOSED);
+    assert_int_equal(grobo_robot_check(grobo_session_robot(session)), GROBO_ERR_CLOSED);
+    assert_int_equal(grobo_robot_sense(grobo_session_robot(session), 1, GROBO_SENSE_FULL),
+                     GROBO_ERR_CLOSED);
+    assert_int_equal(grobo_robot_exit(grobo_session_robot(session), GROBO_EXIT_HOLD),
+                     GROBO_ERR_CLOSED);
     /* A stop is latched all the same. */
-    assert_int_equal(grobo_session_estop(session), GROBO_ERR_CLOSED);
+    assert_int_equal(grobo_robot_estop(grobo_session_robot(session)), GROBO_ERR_CLOSED);
     grobo_robot_tripped(grobo_session_robot(session), &trip);
     assert_int_equal(trip.trip, GROBO_TRIP_ESTOP);
     come_up();
-    assert_int_equal(grobo_session_torque(session, 1, GROBO_TORQUE_ON), GROBO_ERR_LATCHED);
-    assert_int_equal(grobo_session_reset(session), GROBO_OK);
-    assert_int_equal(session_kit_await(grobo_session_torque(session, 1, GROBO_TORQUE_ON)),
-                     GROBO_OK);
+    assert_int_equal(grobo_robot_torque(grobo_session_robot(session), 1, GROBO_TORQUE_ON),
+                     GROBO_ERR_LATCHED);
+    assert_int_equal(grobo_robot_reset(grobo_session_robot(session)), GROBO_OK);
+    assert_int_equal(
+        session_kit_await(grobo_robot_torque(grobo_session_robot(session), 1, GROBO_TORQUE_ON)),
+        GROBO_OK);
 }
 
 /* ---- lost and back ------------------------------------------------------------------------ */
@@ -291,17 +297,18 @@ static void a_lost_port_is_found_again(void **state)
     server = loop_serve(base, (grobo_sim_server_config){.link = link});
     session_kit_make((grobo_session_config){.device = link, .reconnect = true});
     come_up();
-    assert_int_equal(session_kit_await(grobo_session_torque(session, 1, GROBO_TORQUE_ON)),
-                     GROBO_OK);
+    assert_int_equal(
+        session_kit_await(grobo_robot_torque(grobo_session_robot(session), 1, GROBO_TORQUE_ON)),
+        GROBO_OK);
 
     /* A job that runs ends with the line. */
-    sense = grobo_session_sense(session, 0xfffff, GROBO_SENSE_FULL);
+    sense = grobo_robot_sense(grobo_session_robot(session), 0xfffff, GROBO_SENSE_FULL);
     assert_int_equal(grobo_sim_server_plug(server, false), GROBO_OK);
     assert_int_equal(session_kit_await(sense), GROBO_ERR_UNPLUGGED);
     loop_run_until(base, &seen.losts, 1);
     assert_int_equal(seen.error, GROBO_ERR_UNPLUGGED);
     assert_int_equal(grobo_session_get_state(session), GROBO_SESSION_WAITING);
-    assert_int_equal(grobo_session_check(session), GROBO_ERR_CLOSED);
+    assert_int_equal(grobo_robot_check(grobo_session_robot(session)), GROBO_ERR_CLOSED);
 
     assert_int_equal(grobo_sim_server_plug(server, true), GROBO_OK);
     loop_run_until(base, &seen.ups, 2);
@@ -319,7 +326,7 @@ static void a_simulator_that_hung_up_is_plugged_in_again(void **state)
     come_up();
     grobo_sim_plug(grobo_session_sim(session), false, grobo_now_us());
     /* The engine finds out when it next looks. */
-    assert_true(grobo_session_sense(session, 1, GROBO_SENSE_FULL) > 0);
+    assert_true(grobo_robot_sense(grobo_session_robot(session), 1, GROBO_SENSE_FULL) > 0);
     loop_run_until(base, &seen.losts, 1);
     loop_run_until(base, &seen.ups, 2);
     assert_it_works();
@@ -339,27 +346,27 @@ static void an_emergency_stop_reaches_a_robot_that_is_lost_or_just_found(void **
     (void)state;
     session_kit_make((grobo_session_config){.device = "sim", .reconnect = true});
     come_up();
-    assert_int_equal(
-        session_kit_await(grobo_session_torque(session, GROBO_JOINTS_ALL(20), GROBO_TORQUE_ON)),
-        GROBO_OK);
+    assert_int_equal(session_kit_await(grobo_robot_torque(grobo_session_robot(session),
+                                                          GROBO_JOINTS_ALL(20), GROBO_TORQUE_ON)),
+                     GROBO_OK);
     grobo_sim_plug(grobo_session_sim(session), false, grobo_now_us());
-    assert_true(grobo_session_sense(session, 1, GROBO_SENSE_FULL) > 0);
+    assert_true(grobo_robot_sense(grobo_session_robot(session), 1, GROBO_SENSE_FULL) > 0);
     loop_run_until(base, &seen.losts, 1);
-    assert_int_equal(grobo_session_estop(session), GROBO_ERR_CLOSED);
+    assert_int_equal(grobo_robot_estop(grobo_session_robot(session)), GROBO_ERR_CLOSED);
     loop_run_until(base, &seen.ups, 2);
     assert_int_equal(torque_of(0), GROBO_TORQUE_BRAKE);
     assert_int_equal(torque_of(19), GROBO_TORQUE_BRAKE);
-    assert_int_equal(grobo_session_reset(session), GROBO_OK);
+    assert_int_equal(grobo_robot_reset(grobo_session_robot(session)), GROBO_OK);
 
-    assert_int_equal(
-        session_kit_await(grobo_session_torque(session, GROBO_JOINTS_ALL(20), GROBO_TORQUE_ON)),
-        GROBO_OK);
+    assert_int_equal(session_kit_await(grobo_robot_torque(grobo_session_robot(session),
+                                                          GROBO_JOINTS_ALL(20), GROBO_TORQUE_ON)),
+                     GROBO_OK);
     grobo_session_close(session);
     assert_int_equal(grobo_session_open(session), GROBO_OK);
     while (grobo_session_get_state(session) != GROBO_SESSION_CHECKING) {
         assert_int_equal(event_base_loop(base, EVLOOP_ONCE), 0);
     }
-    assert_int_equal(session_kit_await(grobo_session_estop(session)), GROBO_OK);
+    assert_int_equal(session_kit_await(grobo_robot_estop(grobo_session_robot(session))), GROBO_OK);
     loop_run_until(base, &seen.ups, 3); /* who is there was asked afterwards */
     assert_int_equal(torque_of(0), GROBO_TORQUE_BRAKE);
     assert_int_equal(torque_of(19), GROBO_TORQUE_BRAKE);
@@ -404,7 +411,7 @@ static void it_may_be_freed_in_an_event_of_the_engine(void **state)
     session_kit_make((grobo_session_config){.device = "sim"});
     come_up();
     seen.then_robot = free_it_then;
-    assert_true(grobo_session_sense(session, 3, GROBO_SENSE_FULL) > 0);
+    assert_true(grobo_robot_sense(grobo_session_robot(session), 3, GROBO_SENSE_FULL) > 0);
     assert_false(loop_run(base, 5000000));
     assert_null(session);
     assert_int_equal(seen.robot, 1);
@@ -430,7 +437,7 @@ static void it_may_be_opened_again_when_lost(void **state)
     come_up();
     seen.then_line = open_it;
     grobo_sim_plug(grobo_session_sim(session), false, grobo_now_us());
-    assert_true(grobo_session_check(session) > 0);
+    assert_true(grobo_robot_check(grobo_session_robot(session)) > 0);
     loop_run_until(base, &seen.losts, 1);
     loop_run_until(base, &seen.ups, 2);
     assert_it_works();

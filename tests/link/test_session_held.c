@@ -71,8 +71,9 @@ static int set_up(void **state)
         (grobo_session_config){.device = far.link, .baud_bps = FAR_ROBOT_BPS, .robot = &quiet});
     assert_int_equal(grobo_session_open(session), GROBO_OK);
     loop_run_until(base, &seen.ups, 1);
-    assert_int_equal(session_kit_await(grobo_session_torque(session, all, GROBO_TORQUE_ON)),
-                     GROBO_OK);
+    assert_int_equal(
+        session_kit_await(grobo_robot_torque(grobo_session_robot(session), all, GROBO_TORQUE_ON)),
+        GROBO_OK);
     true_ops = session->serial->ops;
     slow_ops = *true_ops;
     slow_ops.write = write_slowly;
@@ -104,7 +105,7 @@ static void send_goals(int taken_bytes)
     target.time_us = 2000000;
     target.angle_rad[NECK] = grobo_rad_from_deg(40);
     budget_bytes = taken_bytes;
-    assert_int_equal(grobo_robot_send(robot(), &target, grobo_now_us()), GROBO_OK);
+    assert_int_equal(grobo_robot_send(robot(), &target), GROBO_OK);
     grobo_session_pump(session);
     assert_int_equal(n_written, taken_bytes);
 }
@@ -131,9 +132,10 @@ static double neck_deg(void)
     grobo_joint_info info;
     grobo_joint_mask neck = GROBO_JOINT_BIT(NECK);
 
-    assert_int_equal(session_kit_await(grobo_session_sense(session, neck, GROBO_SENSE_FULL)),
-                     GROBO_OK);
-    assert_int_equal(grobo_robot_joint(robot(), NECK, grobo_now_us(), &info), 0);
+    assert_int_equal(
+        session_kit_await(grobo_robot_sense(grobo_session_robot(session), neck, GROBO_SENSE_FULL)),
+        GROBO_OK);
+    assert_int_equal(grobo_robot_joint(robot(), NECK, &info), 0);
     return grobo_deg_from_rad(info.state.angle_rad);
 }
 
@@ -143,7 +145,7 @@ static int stop_and_let_go(int taken_bytes)
     int job;
 
     send_goals(taken_bytes);
-    job = grobo_session_estop(session);
+    job = grobo_robot_estop(grobo_session_robot(session));
     assert_true(job > 0);
     assert_true(loop_run(base, 60000)); /* the frame would be over by now */
     budget_bytes = UNLIMITED;
@@ -174,11 +176,11 @@ static void a_torn_frame_is_spoilt_by_a_stop(void **state)
         assert_stop_at(GOALS);
         assert_int_equal(far_robot_torqued(&far), 0);
         assert_true(neck_deg() < 0.2);
-        assert_int_equal(grobo_session_reset(session), GROBO_OK);
+        assert_int_equal(grobo_robot_reset(grobo_session_robot(session)), GROBO_OK);
         n_written = 0;
-        assert_int_equal(
-            session_kit_await(grobo_session_torque(session, GROBO_JOINTS_ALL(20), GROBO_TORQUE_ON)),
-            GROBO_OK);
+        assert_int_equal(session_kit_await(grobo_robot_torque(
+                             grobo_session_robot(session), GROBO_JOINTS_ALL(20), GROBO_TORQUE_ON)),
+                         GROBO_OK);
     }
 }
 
@@ -189,7 +191,7 @@ static void a_stop_is_not_taken_back(void **state)
 
     (void)state;
     budget_bytes = 20;
-    job = grobo_session_estop(session);
+    job = grobo_robot_estop(grobo_session_robot(session));
     assert_true(loop_run(base, 60000));
     assert_int_equal(n_written, 20);
     budget_bytes = UNLIMITED;
@@ -207,7 +209,7 @@ static void no_frame_is_taken_behind_one_that_has_not_left(void **state)
     assert_true(loop_run(base, 60000));
     grobo_posture target;
     grobo_posture_init_pose(&target, &grobo_gr001_model);
-    assert_int_equal(grobo_robot_send(robot(), &target, grobo_now_us()), GROBO_OK);
+    assert_int_equal(grobo_robot_send(robot(), &target), GROBO_OK);
     grobo_session_pump(session);
     assert_true(loop_run(base, 20000));
     assert_int_equal(n_written, GOALS);

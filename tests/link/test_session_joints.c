@@ -60,7 +60,7 @@ static void move_all(const grobo_model *model, grobo_wiring wiring)
     for (int j = 0; j < model->n_joints; j++) {
         assert_int_equal(grobo_posture_set_rad(&target, j, 0.05), GROBO_OK);
     }
-    assert_true(grobo_session_move(session, &target) > 0);
+    assert_true(grobo_robot_move(grobo_session_robot(session), &target) > 0);
     loop_run_until(base, &ends, 2);
     assert_int_equal(result, GROBO_OK);
     grobo_session_free(session);

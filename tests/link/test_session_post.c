@@ -281,7 +281,8 @@ static void a_session_takes_all_three(void **state)
 
     (void)state;
     come_up();
-    assert_int_equal(session_kit_await(grobo_session_torque(session, EVERY_JOINT, GROBO_TORQUE_ON)),
+    assert_int_equal(session_kit_await(grobo_robot_torque(grobo_session_robot(session), EVERY_JOINT,
+                                                          GROBO_TORQUE_ON)),
                      GROBO_OK);
     posted = estops = exits = 0;
     seen.then_robot = post_it;
@@ -289,10 +290,9 @@ static void a_session_takes_all_three(void **state)
     assert_int_equal(exit_result, GROBO_OK);
     assert_int_equal(estops, 1);
     assert_true(grobo_session_is_latched(session));
-    assert_int_equal(grobo_robot_joint(grobo_session_robot(session), ELBOW, grobo_now_us(), &info),
-                     0);
+    assert_int_equal(grobo_robot_joint(grobo_session_robot(session), ELBOW, &info), 0);
     assert_int_equal(info.state.torque, GROBO_TORQUE_OFF);
-    assert_int_equal(grobo_session_reset(session), GROBO_OK);
+    assert_int_equal(grobo_robot_reset(grobo_session_robot(session)), GROBO_OK);
     assert_false(grobo_session_is_latched(session));
     assert_int_equal(grobo_session_post_estop(NULL), GROBO_ERR_ARG);
     assert_int_equal(grobo_session_post_stop(NULL, true), GROBO_ERR_ARG);
@@ -342,7 +342,7 @@ static void nothing_is_sent_before_a_posted_stop(void **state)
     seen.then_robot = post_it;
     for (int stop = 0; stop < 2; stop++) {
         sent = seen.tapped[GROBO_DIR_TX];
-        assert_true(grobo_robot_check(&session->robot, grobo_now_us()) > 0);
+        assert_true(grobo_robot_check(&session->robot) > 0);
         if (stop) {
             assert_int_equal(grobo_session_post_estop(session), GROBO_OK);
         }
@@ -375,9 +375,10 @@ static void a_closed_session_keeps_no_loop_alive(void **state)
     loop_run_until(base, &estops, 1);
     assert_int_equal(exits, 0);
     assert_true(grobo_session_is_latched(session));
-    assert_int_equal(grobo_session_reset(session), GROBO_OK); /* a reset clears what came before */
+    assert_int_equal(grobo_robot_reset(grobo_session_robot(session)),
+                     GROBO_OK); /* a reset clears what came before */
     assert_int_equal(grobo_session_post_estop(session), GROBO_OK);
-    assert_int_equal(grobo_session_reset(session), GROBO_ERR_STATE);
+    assert_int_equal(grobo_robot_reset(grobo_session_robot(session)), GROBO_ERR_STATE);
     loop_run_until(base, &estops, 2);
 }
 

@@ -103,7 +103,8 @@ static void each_target_of_a_stream_is_sent(void **state)
 /* Asks for a move behind a reading that is under way: it has to wait for its turn. */
 static int ask_behind_a_reading(grobo_control *from, void *arg)
 {
-    int r = grobo_session_sense(grobo_control_session(from), EVERY_JOINT, GROBO_SENSE_FULL);
+    int r = grobo_robot_sense(grobo_session_robot(grobo_control_session(from)), EVERY_JOINT,
+                              GROBO_SENSE_FULL);
 
     (void)arg;
     for (int i = 0; i < 2 && r >= 0; i++) {
@@ -302,8 +303,7 @@ static int total_ms(grobo_control *from, void *arg)
     grobo_play_progress progress;
 
     (void)arg;
-    grobo_robot_progress(grobo_session_robot(grobo_control_session(from)), grobo_now_us(),
-                         &progress);
+    grobo_robot_progress(grobo_session_robot(grobo_control_session(from)), &progress);
     return (int)(progress.total_us / 1000);
 }
 
@@ -344,8 +344,7 @@ static int passes_of(grobo_control *from, void *arg)
     grobo_play_progress progress;
 
     (void)arg;
-    grobo_robot_progress(grobo_session_robot(grobo_control_session(from)), grobo_now_us(),
-                         &progress);
+    grobo_robot_progress(grobo_session_robot(grobo_control_session(from)), &progress);
     return progress.passes;
 }
 

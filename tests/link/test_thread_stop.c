@@ -90,7 +90,8 @@ static void stop_when_up(grobo_session *session, grobo_session_event event, int 
     (void)ctx;
     if (event == GROBO_SESSION_EVENT_UP) {
         saw.listen = true;
-        assert_true(grobo_session_sense(session, EVERY_JOINT, GROBO_SENSE_FULL) > 0);
+        assert_true(grobo_robot_sense(grobo_session_robot(session), EVERY_JOINT, GROBO_SENSE_FULL) >
+                    0);
         assert_int_equal(grobo_session_post_estop(session), GROBO_OK);
     }
 }
@@ -203,7 +204,7 @@ static void a_reset_does_not_clear_a_later_stop(void **state)
 
 static int stop_session(grobo_control *from)
 {
-    return grobo_session_estop(grobo_control_session(from));
+    return grobo_robot_estop(grobo_session_robot(grobo_control_session(from)));
 }
 
 static void nor_one_that_a_callback_made(void **state)

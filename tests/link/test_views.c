@@ -66,12 +66,12 @@ static void assert_neck_comes_to(int angle_ddeg)
 
 static int arms_on(grobo_robot *robot, int64_t now_us)
 {
-    return grobo_gr001_servo(robot, GROBO_GR001_ARMS, GROBO_TORQUE_ON, now_us);
+    return grobo_gr001_servo(robot, GROBO_GR001_ARMS, GROBO_TORQUE_ON);
 }
 
 static int neck_to_twelve(grobo_robot *robot, int64_t now_us)
 {
-    return grobo_gr001_move(robot, NECK_ID, 120, 20, now_us);
+    return grobo_gr001_move(robot, NECK_ID, 120, 20);
 }
 
 static void a_motor_moves_by_its_number(void **state)
@@ -90,18 +90,18 @@ static int hrpsys_on(grobo_robot *robot, int64_t now_us)
 {
     grobo_hrpsys_init(&hrpsys, robot);
     assert_int_equal(grobo_hrpsys_set_period_us(&hrpsys, 100000), GROBO_OK);
-    return grobo_hrpsys_servo_name(&hrpsys, "all", true, now_us);
+    return grobo_hrpsys_servo_name(&hrpsys, "all", true);
 }
 
 static int hrpsys_step(grobo_robot *robot, int64_t now_us)
 {
     double angle_rad[20];
     (void)robot;
-    int known = grobo_hrpsys_read_joint_angles(&hrpsys, angle_rad, 20, GROBO_NEVER_US, now_us);
+    int known = grobo_hrpsys_read_joint_angles(&hrpsys, angle_rad, 20, GROBO_NEVER_US);
     assert_int_equal(known, 20);
     angle_rad[NECK] = grobo_rad_from_deg(5);
     assert_int_equal(grobo_hrpsys_write_joint_commands(&hrpsys, angle_rad, 20), GROBO_OK);
-    return grobo_hrpsys_one_step(&hrpsys, now_us);
+    return grobo_hrpsys_one_step(&hrpsys);
 }
 
 static void a_step_moves_as_hrpsys_does(void **state)

@@ -78,7 +78,7 @@ static void on_line(grobo_session *session, grobo_session_event event, int error
         grobo_posture_set_deg(
             &target, grobo_model_joint_of_motor(&grobo_gr001_model, GUARDED_MOTOR), GUARDED_TO_DEG);
         target.time_us = is_mode("rest") ? 300000 : 20000000;
-        if (grobo_session_move(session, &target) < 0) {
+        if (grobo_robot_move(grobo_session_robot(session), &target) < 0) {
             end_program("moves-not");
         }
         say("up");
@@ -136,7 +136,7 @@ static void on_tick(evutil_socket_t fd, short what, void *ctx)
 {
     static int ticks;
     grobo_robot *robot = grobo_session_robot(its_session);
-    bool moving = grobo_robot_moving(robot, grobo_now_us());
+    bool moving = grobo_robot_moving(robot);
 
     (void)fd;
     (void)what;
@@ -156,7 +156,7 @@ static void on_tick(evutil_socket_t fd, short what, void *ctx)
         say("moving");
     }
     if (is_mode("estop") && ticks == ESTOP_TICKS) {
-        (void)grobo_session_estop(its_session);
+        (void)grobo_robot_estop(grobo_session_robot(its_session));
     }
     if (ticks == (is_mode("estop") ? ESTOP_DIES_TICKS : MOVING_TICKS)) {
         do_as_the_mode_says();

@@ -454,7 +454,7 @@ void judge_event(judge *w, const grobo_event *event)
         break;
     case GROBO_EVENT_JOINT:
         if (event->u.joint.result == GROBO_OK &&
-            grobo_robot_joint(&w->rig->robot, event->u.joint.joint, now_us, &info) == 0) {
+            grobo_robot_joint(&w->rig->robot, event->u.joint.joint, &info) == 0) {
             w->axes[event->u.joint.joint].read_deg = grobo_deg_from_rad(info.state.angle_rad);
         }
         break;

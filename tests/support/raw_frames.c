@@ -32,7 +32,7 @@ static int ask(grobo_test_rig *rig, int size)
     remember(size);
     int n = grobo_frame_wrap(rig->driver->protocol, packet.bytes, packet.size, frame, sizeof frame);
     assert_true(n > 0);
-    return grobo_robot_raw(&rig->robot, frame, (size_t)n, rig->now_us);
+    return grobo_robot_raw(&rig->robot, frame, (size_t)n);
 }
 
 int raw_goal(grobo_test_rig *rig, int joint, double deg, int time_ms)
@@ -70,7 +70,7 @@ int raw_reboot(grobo_test_rig *rig, int joint)
 {
     remember(grobo_rs30x_control(motor_of(rig, joint), GROBO_RS30X_REBOOT, packet.bytes,
                                  sizeof packet.bytes));
-    return grobo_robot_command(&rig->robot, motor_of(rig, joint), GROBO_SERVO_REBOOT, rig->now_us);
+    return grobo_robot_command(&rig->robot, motor_of(rig, joint), GROBO_SERVO_REBOOT);
 }
 
 int raw_cw_limit(grobo_test_rig *rig, int joint, int deg)
@@ -80,7 +80,7 @@ int raw_cw_limit(grobo_test_rig *rig, int joint, int deg)
     const grobo_register_io io = {motor_of(rig, joint), GROBO_RS30X_CW_LIMIT, 2, data};
     remember(grobo_rs30x_write_u16(io.id, GROBO_RS30X_WANT_ACK, io.address, (uint16_t)ddeg,
                                    packet.bytes, sizeof packet.bytes));
-    return grobo_robot_registers(&rig->robot, &io, rig->now_us);
+    return grobo_robot_registers(&rig->robot, &io);
 }
 
 size_t raw_times_sent(const grobo_test_rig *rig)

@@ -91,7 +91,7 @@ static grobo_posture any_target(restless *u, uint32_t longest_ms)
 static void ask_move(restless *u)
 {
     grobo_posture target = any_target(u, 2000);
-    int result = grobo_robot_move(&u->rig->robot, &target, u->rig->now_us);
+    int result = grobo_robot_move(&u->rig->robot, &target);
     restless_told(u, GROBO_JOB_MOVE, result, RESTLESS_MOVES);
     u->moved = result < 0 ? u->moved : target.set;
 }
@@ -114,16 +114,15 @@ static void ask_play(restless *u)
 {
     grobo_play_options options = any_options(u);
     const grobo_clip *clip = &u->clips[restless_pick(u, RESTLESS_CLIPS)].clip;
-    restless_told(u, GROBO_JOB_PLAY,
-                  grobo_robot_play(&u->rig->robot, clip, &options, u->rig->now_us), RESTLESS_MOVES);
+    restless_told(u, GROBO_JOB_PLAY, grobo_robot_play(&u->rig->robot, clip, &options),
+                  RESTLESS_MOVES);
 }
 
 static void ask_enqueue(restless *u)
 {
     grobo_play_options options = any_options(u);
     const grobo_clip *clip = &u->clips[restless_pick(u, RESTLESS_CLIPS)].clip;
-    restless_told(u, GROBO_JOB_NONE,
-                  grobo_robot_enqueue(&u->rig->robot, clip, &options, u->rig->now_us),
+    restless_told(u, GROBO_JOB_NONE, grobo_robot_enqueue(&u->rig->robot, clip, &options),
                   RESTLESS_MOVES);
 }
 
@@ -135,7 +134,7 @@ static void redirect(restless *u, grobo_posture target)
             assert_int_equal(grobo_posture_set_deg(&target, j, restless_angle_deg(u, j)), 0);
         }
     }
-    int result = grobo_robot_retarget(&u->rig->robot, &target, u->rig->now_us);
+    int result = grobo_robot_retarget(&u->rig->robot, &target);
     restless_told(u, GROBO_JOB_NONE, result < 0 ? result : GROBO_OK, RESTLESS_MOVES);
     u->moved = result < 0 ? u->moved : target.set;
 }
@@ -143,7 +142,7 @@ static void redirect(restless *u, grobo_posture target)
 static void ask_send(restless *u)
 {
     grobo_posture target = any_target(u, 400);
-    int result = grobo_robot_send(&u->rig->robot, &target, u->rig->now_us);
+    int result = grobo_robot_send(&u->rig->robot, &target);
     restless_told(u, GROBO_JOB_NONE, result, RESTLESS_MOVES);
     if (grobo_robot_job(&u->rig->robot) == GROBO_JOB_MOVE) {
         redirect(u, target);
@@ -164,7 +163,7 @@ static void stream_on(restless *u)
     grobo_posture target = rig_posture(u->rig, u->stream_joint, u->stream_deg, TICK_US / 1000);
     u->asked_by = RESTLESS_send;
     u->asked[RESTLESS_send]++;
-    int result = grobo_robot_send(&u->rig->robot, &target, u->rig->now_us);
+    int result = grobo_robot_send(&u->rig->robot, &target);
     restless_told(u, GROBO_JOB_NONE, result, RESTLESS_MOVES);
     if (result < 0 && restless_pick(u, 4) == 0) {
         u->stream_until_us = 0;
@@ -186,8 +185,7 @@ static void ask_torque(restless *u)
                                          GROBO_TORQUE_OFF, GROBO_TORQUE_BRAKE};
     grobo_torque mode = modes[restless_pick(u, 5)];
     grobo_joint_mask joints = any_joints(u);
-    restless_told(u, GROBO_JOB_TORQUE,
-                  grobo_robot_torque(&u->rig->robot, joints, mode, u->rig->now_us),
+    restless_told(u, GROBO_JOB_TORQUE, grobo_robot_torque(&u->rig->robot, joints, mode),
                   mode == GROBO_TORQUE_ON ? RESTLESS_MOVES : RESTLESS_NOTHING);
 }
 
@@ -195,7 +193,7 @@ static void ask_free(restless *u)
 {
     bool on = restless_pick(u, 4) != 0;
     grobo_joint_mask joints = any_joints(u);
-    int result = grobo_robot_free(&u->rig->robot, joints, on, u->rig->now_us);
+    int result = grobo_robot_free(&u->rig->robot, joints, on);
     restless_told(u, on ? GROBO_JOB_NONE : GROBO_JOB_TORQUE, result, RESTLESS_MOVES);
 }
 
@@ -206,16 +204,16 @@ static void ask_control(restless *u)
     int result = 0;
     switch (restless_pick(u, 4)) {
     case 0:
-        result = grobo_robot_pause(robot, now_us);
+        result = grobo_robot_pause(robot);
         break;
     case 1:
-        result = grobo_robot_resume(robot, now_us);
+        result = grobo_robot_resume(robot);
         break;
     case 2:
-        result = grobo_robot_seek(robot, (int64_t)restless_pick(u, 2500000), now_us);
+        result = grobo_robot_seek(robot, (int64_t)restless_pick(u, 2500000));
         break;
     default:
-        result = grobo_robot_speed(robot, 20 + (int)restless_pick(u, 300), now_us);
+        result = grobo_robot_speed(robot, 20 + (int)restless_pick(u, 300));
         break;
     }
     restless_told(u, GROBO_JOB_NONE, result, RESTLESS_MOVES);
@@ -248,31 +246,27 @@ static void ask_command(restless *u)
 {
     int id = u->rig->driver->model->joints[any_joint(u)].motor;
     grobo_servo_command command = restless_pick(u, 3) ? GROBO_SERVO_REBOOT : GROBO_SERVO_FLASH;
-    restless_told(u, GROBO_JOB_COMMAND,
-                  grobo_robot_command(&u->rig->robot, id, command, u->rig->now_us),
+    restless_told(u, GROBO_JOB_COMMAND, grobo_robot_command(&u->rig->robot, id, command),
                   RESTLESS_NOTHING);
 }
 
 static void ask_stored(restless *u)
 {
     grobo_stored_kind kind = restless_pick(u, 2) ? GROBO_STORED_SLOT : GROBO_STORED_SCENARIO;
-    restless_told(u, GROBO_JOB_STORED, grobo_robot_stored(&u->rig->robot, kind, 2, u->rig->now_us),
-                  RESTLESS_MOVES);
+    restless_told(u, GROBO_JOB_STORED, grobo_robot_stored(&u->rig->robot, kind, 2), RESTLESS_MOVES);
 }
 
 static void ask_sense(restless *u)
 {
     grobo_joint_mask joints = any_joints(u);
     grobo_sense_kind kind = (grobo_sense_kind)restless_pick(u, 4);
-    restless_told(u, GROBO_JOB_SENSE,
-                  grobo_robot_sense(&u->rig->robot, joints, kind, u->rig->now_us),
+    restless_told(u, GROBO_JOB_SENSE, grobo_robot_sense(&u->rig->robot, joints, kind),
                   RESTLESS_NOTHING);
 }
 
 static void ask_check(restless *u)
 {
-    restless_told(u, GROBO_JOB_CHECK, grobo_robot_check(&u->rig->robot, u->rig->now_us),
-                  RESTLESS_NOTHING);
+    restless_told(u, GROBO_JOB_CHECK, grobo_robot_check(&u->rig->robot), RESTLESS_NOTHING);
 }
 
 /* ---- ends ------------------------------------------------------------------------------------ */
@@ -289,7 +283,7 @@ static void ask_stop(restless *u)
 {
     bool at_once = restless_pick(u, 2) == 0;
     grobo_job_kind job = grobo_robot_job(&u->rig->robot);
-    int result = grobo_robot_stop(&u->rig->robot, at_once, u->rig->now_us);
+    int result = grobo_robot_stop(&u->rig->robot, at_once);
     restless_told(u, GROBO_JOB_NONE, result, RESTLESS_NOTHING);
     judge_raws_stopped(&u->judge, false);
     if (result >= 0 && job != GROBO_JOB_EXIT) {
@@ -301,7 +295,7 @@ static void ask_stop(restless *u)
 static void ask_cancel(restless *u)
 {
     grobo_job_kind job = grobo_robot_job(&u->rig->robot);
-    int result = grobo_robot_cancel(&u->rig->robot, u->rig->now_us);
+    int result = grobo_robot_cancel(&u->rig->robot);
     restless_told(u, GROBO_JOB_NONE, result, RESTLESS_NOTHING);
     if (result >= 0 && job == GROBO_JOB_MOVE) {
         judge_stop_asked(&u->judge, u->moved, false);
@@ -311,7 +305,7 @@ static void ask_cancel(restless *u)
 
 static void ask_estop(restless *u)
 {
-    int result = grobo_robot_estop(&u->rig->robot, u->rig->now_us);
+    int result = grobo_robot_estop(&u->rig->robot);
     restless_told(u, GROBO_JOB_NONE, result, RESTLESS_NOTHING);
     judge_estop_asked(&u->judge, result);
     end_stream(u);
@@ -320,7 +314,7 @@ static void ask_estop(restless *u)
 static void ask_exit(restless *u)
 {
     grobo_exit_policy policy = (grobo_exit_policy)restless_pick(u, 4);
-    int result = grobo_robot_exit(&u->rig->robot, policy, u->rig->now_us);
+    int result = grobo_robot_exit(&u->rig->robot, policy);
     restless_told(u, GROBO_JOB_NONE, result, RESTLESS_NOTHING);
     if (result > 0) {
         judge_exit_asked(&u->judge, result,
@@ -388,8 +382,7 @@ static void ask(restless *u)
 {
     grobo_trip_info trip;
     grobo_robot_tripped(&u->rig->robot, &trip);
-    if (trip.latched && restless_pick(u, 2) == 0 &&
-        grobo_robot_reset(&u->rig->robot, u->rig->now_us) == GROBO_OK) {
+    if (trip.latched && restless_pick(u, 2) == 0 && grobo_robot_reset(&u->rig->robot) == GROBO_OK) {
         chronicle_note(&u->judge.notes, u->rig->now_us, "reset");
         judge_reset_done(&u->judge);
     }

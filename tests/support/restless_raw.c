@@ -25,7 +25,7 @@ static void send_raw(restless *u, const uint8_t *packet, int n, restless_effect 
         assert_true(n > 0);
         packet = frame;
     }
-    int result = grobo_robot_raw(&u->rig->robot, packet, (size_t)n, u->rig->now_us);
+    int result = grobo_robot_raw(&u->rig->robot, packet, (size_t)n);
     judge_raw_asked(&u->judge, packet, (size_t)n, result);
     restless_told(u, GROBO_JOB_NONE, result, effect);
 }
@@ -138,7 +138,7 @@ void restless_raw_other(restless *u)
         }
         /* A motion of the board's own, or rubbish where it is refused. */
         size = u->rig->robot.config.accept_unknown_raw || restless_pick(u, 2) == 0 ? 3 : 16;
-        int result = grobo_robot_raw(&u->rig->robot, packet, (size_t)size, u->rig->now_us);
+        int result = grobo_robot_raw(&u->rig->robot, packet, (size_t)size);
         judge_raw_asked(&u->judge, packet, (size_t)size, result);
         restless_told(u, GROBO_JOB_NONE, result, RESTLESS_MOVES);
         return;
@@ -175,6 +175,6 @@ void restless_registers(restless *u)
         io.length = writes[i].length;
         io.data = writes[i].data;
     }
-    int result = grobo_robot_registers(&u->rig->robot, &io, u->rig->now_us);
+    int result = grobo_robot_registers(&u->rig->robot, &io);
     restless_told(u, GROBO_JOB_REGISTERS, result, RESTLESS_NOTHING);
 }

@@ -233,7 +233,7 @@ static void check_reading(grobo_test_rig *rig, const grobo_event_joint *event)
     if (event->result != GROBO_OK || rig->robot.config.readback_correction) {
         return; /* nothing was read, or it is not what was said */
     }
-    assert_int_equal(grobo_robot_joint(&rig->robot, event->joint, rig->now_us, &info), 0);
+    assert_int_equal(grobo_robot_joint(&rig->robot, event->joint, &info), 0);
     witness_believed(&rig->witness, event->joint, &info.state, rig->now_us);
     look_for_ways(rig, event->joint, &info.state);
 }
@@ -458,8 +458,7 @@ grobo_joint_mask rig_all(const grobo_test_rig *rig)
 
 void rig_power(grobo_test_rig *rig)
 {
-    rig_expect(rig, grobo_robot_torque(&rig->robot, rig_all(rig), GROBO_TORQUE_ON, rig->now_us),
-               GROBO_OK);
+    rig_expect(rig, grobo_robot_torque(&rig->robot, rig_all(rig), GROBO_TORQUE_ON), GROBO_OK);
 }
 
 grobo_posture rig_posture(const grobo_test_rig *rig, int joint, double angle_deg, int time_ms)
@@ -578,6 +577,6 @@ void rig_start_at(grobo_test_rig *rig, double deg, const grobo_robot_config *con
     rig_start(rig, config, NULL);
     rig_power(rig);
     grobo_posture target = rig_posture(rig, NECK, deg, 1000);
-    rig_expect(rig, grobo_robot_move(&rig->robot, &target, rig->now_us), GROBO_OK);
+    rig_expect(rig, grobo_robot_move(&rig->robot, &target), GROBO_OK);
     rig_forget(rig);
 }

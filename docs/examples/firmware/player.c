@@ -43,9 +43,9 @@ static void on_event(void *ctx, const grobo_event *event)
         return;
     }
     if (event->u.job.result < 0) {
-        (void)grobo_robot_check(&robot, mcu_now_us());
+        (void)grobo_robot_check(&robot);
     } else if (event->u.job.kind == GROBO_JOB_CHECK) {
-        (void)grobo_robot_play(&robot, &wave, NULL, mcu_now_us());
+        (void)grobo_robot_play(&robot, &wave, NULL);
     }
 }
 
@@ -59,7 +59,7 @@ int main(void)
     }
     grobo_robot_on_event(&robot, on_event, NULL);
     grobo_robot_link_up(&robot, mcu_now_us());
-    (void)grobo_robot_check(&robot, mcu_now_us());
+    (void)grobo_robot_check(&robot);
     for (;;) {
         size_t got = mcu_uart_read(bytes, sizeof bytes);
         grobo_robot_rx(&robot, bytes, got, mcu_now_us());

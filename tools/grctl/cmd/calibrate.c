@@ -89,14 +89,15 @@ static int measure(app *a, config_robot *after)
     const grobo_model *model = &grobo_gr001_model;
     int status = conn_open(&c, a);
     int error =
-        status ? 0
-               : conn_wait(&c, grobo_session_sense(c.session, GROBO_JOINTS_ALL(model->n_joints),
-                                                   GROBO_SENSE_FULL));
+        status
+            ? 0
+            : conn_wait(&c, grobo_robot_sense(grobo_session_robot(c.session),
+                                              GROBO_JOINTS_ALL(model->n_joints), GROBO_SENSE_FULL));
     if (error)
         status = conn_fail(&c, error, "calibrate");
     for (int j = 0; j < model->n_joints && !status; j++) {
         grobo_joint_info i;
-        if (grobo_robot_joint(c.robot, j, grobo_now_us(), &i) < 0)
+        if (grobo_robot_joint(c.robot, j, &i) < 0)
             continue;
         status = set_trim(a, after, j,
                           a->robot->trim_deg[j] +

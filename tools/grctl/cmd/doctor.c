@@ -220,12 +220,12 @@ static void check_servo(patient *p, int joint)
     int error = servos_read(&p->c, j->motor, GROBO_RS30X_MODEL, IDENTITY_BYTES, identity);
     snprintf(name, sizeof name, "servo_%d", j->motor);
     if (!error)
-        error = conn_wait(
-            &p->c, grobo_session_sense(p->c.session, GROBO_JOINT_BIT(joint), GROBO_SENSE_FULL));
+        error = conn_wait(&p->c, grobo_robot_sense(grobo_session_robot(p->c.session),
+                                                   GROBO_JOINT_BIT(joint), GROBO_SENSE_FULL));
     if (p->c.signal || p->c.link_error)
         return;
     if (!error)
-        error = grobo_robot_joint(p->c.robot, joint, grobo_now_us(), &i);
+        error = grobo_robot_joint(p->c.robot, joint, &i);
     broken = broken_replies(p) - broken;
     if (error || broken) {
         say_silent(p, name, joint, broken && !error ? GROBO_ERR_CHECKSUM : error);

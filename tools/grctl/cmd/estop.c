@@ -175,7 +175,8 @@ static bool take_port(conn *c, target *t)
 /* With the port: the session may have carried it out when it was opened. */
 static int stop_here(conn *c, const target *t)
 {
-    int error = c->estop_ended ? c->estop_result : conn_wait(c, grobo_session_estop(c->session));
+    int error = c->estop_ended ? c->estop_result
+                               : conn_wait(c, grobo_robot_estop(grobo_session_robot(c->session)));
     return error ? fail_verify(t, "", error) : succeed(t, "");
 }
 
@@ -320,7 +321,7 @@ static int reset(app *a, const char *device)
     }
     int status = conn_is_auto(a) ? conn_open(&c, a) : conn_open_unchecked(&c, a);
     if (!status) {
-        int error = grobo_session_reset(c.session);
+        int error = grobo_robot_reset(grobo_session_robot(c.session));
         status = report_reset(a, conn_device(&c), error, NULL);
     }
     return conn_close(&c, status);

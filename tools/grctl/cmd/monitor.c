@@ -70,7 +70,7 @@ static void choose_group(monitor *m, int group)
 static bool torque_is_on(const monitor *m, int joint)
 {
     grobo_joint_info i;
-    return grobo_robot_joint(m->c.robot, joint, grobo_now_us(), &i) == 0 && i.torque_known &&
+    return grobo_robot_joint(m->c.robot, joint, &i) == 0 && i.torque_known &&
            i.state.torque == GROBO_TORQUE_ON;
 }
 
@@ -88,10 +88,10 @@ static void switch_torque(monitor *m, grobo_torque mode, const char *doing)
     int result;
     if (mode == GROBO_TORQUE_ON && !may_move(m))
         return;
-    result = grobo_session_torque(m->c.session, m->chosen, mode);
+    result = grobo_robot_torque(grobo_session_robot(m->c.session), m->chosen, mode);
     if (result == GROBO_ERR_STATE && mode != GROBO_TORQUE_ON &&
-        grobo_session_cancel(m->c.session) == GROBO_OK)
-        result = grobo_session_torque(m->c.session, m->chosen, mode);
+        grobo_robot_cancel(grobo_session_robot(m->c.session)) == GROBO_OK)
+        result = grobo_robot_torque(grobo_session_robot(m->c.session), m->chosen, mode);
     say_request(m, result, doing);
 }
 
@@ -122,7 +122,7 @@ static void nudge(monitor *m, double by_deg)
         grobo_joint_info i;
         double from_rad;
         if (!(m->chosen & GROBO_JOINT_BIT(j)) || !torque_is_on(m, j) ||
-            grobo_robot_joint(m->c.robot, j, grobo_now_us(), &i) < 0)
+            grobo_robot_joint(m->c.robot, j, &i) < 0)
             continue;
         from_rad = i.has_target ? i.target_rad : i.state.angle_rad;
         if (is_at_limit(&m->model->joints[j], from_rad, by_deg)) {
@@ -142,7 +142,7 @@ static void nudge(monitor *m, double by_deg)
     }
     grobo_posture_clamp(&target, m->model);
     grobo_posture_set_time_ms(&target, NUDGE_MS);
-    say_request(m, grobo_session_move(m->c.session, &target), "nudge");
+    say_request(m, grobo_robot_move(grobo_session_robot(m->c.session), &target), "nudge");
 }
 
 static void go_init(monitor *m)
@@ -152,7 +152,8 @@ static void go_init(monitor *m)
         return;
     grobo_posture_init_pose(&target, m->model);
     grobo_posture_set_time_ms(&target, INIT_MS);
-    say_request(m, grobo_session_move(m->c.session, &target), "move to the initial posture");
+    say_request(m, grobo_robot_move(grobo_session_robot(m->c.session), &target),
+                "move to the initial posture");
 }
 
 static void start_play(monitor *m)
@@ -165,11 +166,12 @@ static void start_play(monitor *m)
     }
     if (!may_move(m))
         return;
-    grobo_robot_posture(m->c.robot, grobo_now_us(), GROBO_NEVER_US, &sensed);
+    grobo_robot_posture(m->c.robot, GROBO_NEVER_US, &sensed);
     if (!m->prepared && playlist_prepare(&m->list, m->c.a, &sensed) != EXIT_DONE)
         return; /* it has said why */
     m->prepared = true;
-    job = grobo_session_play(m->c.session, &m->list.clip[0], &m->list.options[0]);
+    job =
+        grobo_robot_play(grobo_session_robot(m->c.session), &m->list.clip[0], &m->list.options[0]);
     if (job > 0)
         m->keys.speed_pct = 100;
     say_request(m, job, "play");
@@ -177,7 +179,7 @@ static void start_play(monitor *m)
 
 static void reset(monitor *m)
 {
-    int error = grobo_session_reset(m->c.session);
+    int error = grobo_robot_reset(grobo_session_robot(m->c.session));
     say_request(m, error, "stop taken back; nothing moves by itself");
     m->c.trip = (grobo_trip_info){0};
 }
@@ -274,7 +276,8 @@ static void queue_others(monitor *m)
 {
     int error = GROBO_OK;
     for (int i = 1; i < m->list.n && error >= 0; i++) {
-        error = grobo_session_enqueue(m->c.session, &m->list.clip[i], &m->list.options[i]);
+        error = grobo_robot_enqueue(grobo_session_robot(m->c.session), &m->list.clip[i],
+                                    &m->list.options[i]);
         if (error < 0)
             say(m, true, "%s: %s", m->list.path[i], grobo_error_text(error));
     }
@@ -364,9 +367,9 @@ static int sense_often(conn *c)
 static int leave(monitor *m, int error)
 {
     conn *c = &m->c;
-    c->moving = c->up && grobo_robot_moving(c->robot, grobo_now_us());
+    c->moving = c->up && grobo_robot_moving(c->robot);
     if (!error && c->moving)
-        error = conn_wait(c, grobo_session_exit(c->session, GROBO_EXIT_HOLD));
+        error = conn_wait(c, grobo_robot_exit(grobo_session_robot(c->session), GROBO_EXIT_HOLD));
     return error ? conn_fail(c, error, "monitor") : EXIT_DONE;
 }
 

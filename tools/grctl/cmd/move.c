@@ -35,12 +35,12 @@ static void report(const conn *c, const grobo_posture *target)
 {
     int64_t now_us = grobo_now_us();
     int joint;
-    double worst = render_worst_error(c, now_us, &joint);
+    double worst = render_worst_error(c, &joint);
     if (c->a->json) {
         json_t *list = json_array();
         for (int j = 0; j < target->n_joints; j++)
             if (target->set & GROBO_JOINT_BIT(j))
-                json_array_append_new(list, render_joint_json(c, j, now_us));
+                json_array_append_new(list, render_joint_json(c, j));
         app_print_json(json_pack("{s:o,s:o}", "joints", list, "max_error_deg",
                                  joint < 0 ? json_null() : app_json_number(worst, 2)));
     } else if (joint >= 0) {
@@ -67,7 +67,7 @@ static int go(app *a, const grobo_posture *target, const char *doing)
     int status = conn_open_to_move(&c, a);
     if (!status) {
         int64_t began_us = grobo_now_us();
-        int error, job = grobo_session_move(c.session, target);
+        int error, job = grobo_robot_move(grobo_session_robot(c.session), target);
         c.moving = job > 0; /* refused at once: nothing moves, nothing is to be left */
         error = conn_wait(&c, job);
         if (error)

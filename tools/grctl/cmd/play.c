@@ -96,7 +96,7 @@ static void follow(conn *c, show *s, int joint)
     const grobo_play_options *o;
     double off_deg;
     uint32_t i;
-    grobo_robot_progress(c->robot, now_us, &p);
+    grobo_robot_progress(c->robot, &p);
     i = p.item - s->items - 1;
     if (p.state != GROBO_SEQUENCER_PLAYING || i >= (uint32_t)s->list.n)
         return;
@@ -104,8 +104,7 @@ static void follow(conn *c, show *s, int joint)
     if (o->mode != GROBO_PLAY_RATE || !s->list.clip[i].sample || s->list.clip[i].relative ||
         s->list.clip[i].sample(s->list.clip[i].ctx, o->reverse ? p.total_us - p.t_us : p.t_us,
                                &wanted) < 0 ||
-        !(wanted.set & GROBO_JOINT_BIT(joint)) ||
-        grobo_robot_joint(c->robot, joint, now_us, &info) < 0)
+        !(wanted.set & GROBO_JOINT_BIT(joint)) || grobo_robot_joint(c->robot, joint, &info) < 0)
         return;
     off_deg = fabs(grobo_deg_from_rad(info.state.angle_rad - wanted.angle_rad[joint]));
     if (s->following.joint < 0 || off_deg > s->following.deg)
@@ -116,7 +115,7 @@ static void report_progress(conn *c, show *s)
 {
     grobo_play_progress p;
     char text[96];
-    grobo_robot_progress(c->robot, grobo_now_us(), &p);
+    grobo_robot_progress(c->robot, &p);
     if (c->a->json) {
         if (s->ticks % REPORT_EVERY == 0)
             app_print_json(json_pack("{s:I,s:I,s:I,s:I}", "t_ms", (json_int_t)(p.t_us / 1000),
@@ -219,7 +218,7 @@ static void print_summary(const conn *c, deviation following)
     grobo_jitter jitter;
     int64_t now_us = grobo_now_us();
     deviation end;
-    end.deg = render_worst_error(c, now_us, &end.joint);
+    end.deg = render_worst_error(c, &end.joint);
     if (c->a->json) {
         app_print_json(summary_json(c, following, end));
         return;
@@ -227,7 +226,7 @@ static void print_summary(const conn *c, deviation following)
     conn_counters(c, &n);
     grobo_robot_jitter(c->robot, &jitter);
     if (app_option(c->a, PLAY_TABLE)->given)
-        render_reached(c, now_us);
+        render_reached(c);
     app_print("%llu frame%s, %llu late; jitter p50 %lld us, p99 %lld us, largest %lld us\n",
               (unsigned long long)n.motion_frames, n.motion_frames == 1 ? "" : "s",
               (unsigned long long)n.late_frames, (long long)jitter.p50_us, (long long)jitter.p99_us,
@@ -257,12 +256,14 @@ static int start(conn *c, show *s)
 {
     grobo_play_progress before;
     int error;
-    grobo_robot_progress(c->robot, grobo_now_us(), &before);
+    grobo_robot_progress(c->robot, &before);
     s->items = before.item;
     s->following.joint = -1;
-    error = conn_wait(c, grobo_session_play(c->session, &s->list.clip[0], &s->list.options[0]));
+    error = conn_wait(c, grobo_robot_play(grobo_session_robot(c->session), &s->list.clip[0],
+                                          &s->list.options[0]));
     for (int i = 1; i < s->list.n && error >= 0; i++)
-        error = grobo_session_enqueue(c->session, &s->list.clip[i], &s->list.options[i]);
+        error = grobo_robot_enqueue(grobo_session_robot(c->session), &s->list.clip[i],
+                                    &s->list.options[i]);
     return error < 0 ? error : 0;
 }
 
@@ -315,7 +316,7 @@ static int play(conn *c, show *s)
         return conn_fail(c, error, "play");
     c->moving = false;
     conn_watch(c, false);
-    error = conn_wait(c, grobo_session_sense(c->session, all, GROBO_SENSE_FULL));
+    error = conn_wait(c, grobo_robot_sense(grobo_session_robot(c->session), all, GROBO_SENSE_FULL));
     if (error && c->job.failed == 0)
         return conn_fail(c, error, "play");
     print_summary(c, s->following);
@@ -327,10 +328,11 @@ static int prepare(conn *c, show *s)
 {
     grobo_joint_mask all = GROBO_JOINTS_ALL(grobo_robot_driver(c->robot)->model->n_joints);
     grobo_posture sensed;
-    int error = conn_wait(c, grobo_session_sense(c->session, all, GROBO_SENSE_FULL));
+    int error =
+        conn_wait(c, grobo_robot_sense(grobo_session_robot(c->session), all, GROBO_SENSE_FULL));
     if (error)
         return conn_fail(c, error, "play");
-    grobo_robot_posture(c->robot, grobo_now_us(), GROBO_NEVER_US, &sensed);
+    grobo_robot_posture(c->robot, GROBO_NEVER_US, &sensed);
     return playlist_prepare(&s->list, c->a, &sensed);
 }
 

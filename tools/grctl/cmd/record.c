@@ -131,7 +131,8 @@ static int read_limp(recorder *r, bool *read)
     int error = GROBO_OK;
     *read = true;
     if (r->limp)
-        error = conn_wait(c, grobo_session_sense(c->session, r->limp, GROBO_SENSE_POSITION));
+        error = conn_wait(
+            c, grobo_robot_sense(grobo_session_robot(c->session), r->limp, GROBO_SENSE_POSITION));
     if (conn_is_of_reply(error)) {
         *read = false;
         error = GROBO_OK;
@@ -143,7 +144,7 @@ static int read_limp(recorder *r, bool *read)
 static int take(recorder *r, bool anyway)
 {
     grobo_posture now;
-    int n = grobo_robot_posture(r->c.robot, grobo_now_us(), GROBO_NEVER_US, &now);
+    int n = grobo_robot_posture(r->c.robot, GROBO_NEVER_US, &now);
     if (n < now.n_joints) /* a first round is still under way */
         return 0;
     if (anyway || grobo_motion_size(r->motion) == 0 ||
@@ -193,7 +194,7 @@ static void draw(recorder *r)
     size_t at;
     if (!r->line.shown)
         return;
-    grobo_robot_posture(r->c.robot, grobo_now_us(), GROBO_NEVER_US, &now);
+    grobo_robot_posture(r->c.robot, GROBO_NEVER_US, &now);
     at = (size_t)snprintf(text, sizeof text, "%zu kept", grobo_motion_size(r->motion));
     furthest(r, &now, &joint);
     if (joint >= 0)
@@ -259,13 +260,13 @@ static int play(recorder *r)
     int error;
     r->playing = (play_keys){.c = c, .speed_pct = 100};
     c->moving = true;
-    error = conn_wait(c, grobo_session_play(c->session, &r->clip, NULL));
+    error = conn_wait(c, grobo_robot_play(grobo_session_robot(c->session), &r->clip, NULL));
     if (!error)
         error = conn_wait_until(c, has_played);
     if (!error && r->playing.estop)
         error = conn_end_estop(c);
     if (!error) {
-        grobo_robot_progress(c->robot, grobo_now_us(), &end);
+        grobo_robot_progress(c->robot, &end);
         error = c->trip.trip != GROBO_TRIP_NONE ? GROBO_ERR_LATCHED : end.error;
     }
     c->moving = error < 0;
@@ -280,7 +281,8 @@ static int let_fall(recorder *r, grobo_joint_mask joints)
     int n = grobo_joints_count(joints);
     app_note(c->a, "torque of %d joint%s goes off: hold the robot; what is raised falls", n,
              n == 1 ? "" : "s");
-    return conn_wait(c, grobo_session_torque(c->session, joints, GROBO_TORQUE_OFF));
+    return conn_wait(c,
+                     grobo_robot_torque(grobo_session_robot(c->session), joints, GROBO_TORQUE_OFF));
 }
 
 static int play_kept(recorder *r)
@@ -439,8 +441,7 @@ static void look_at_torque(const recorder *r, grobo_joint_mask *hold, grobo_join
     *hold = *switched = 0;
     for (int j = 0; j < grobo_robot_driver(r->c.robot)->model->n_joints; j++) {
         grobo_joint_info info;
-        if (!(r->joints & GROBO_JOINT_BIT(j)) ||
-            grobo_robot_joint(r->c.robot, j, grobo_now_us(), &info) < 0)
+        if (!(r->joints & GROBO_JOINT_BIT(j)) || grobo_robot_joint(r->c.robot, j, &info) < 0)
             continue;
         *hold |= info.state.torque == GROBO_TORQUE_ON ? GROBO_JOINT_BIT(j) : 0;
         *switched |= info.state.torque != GROBO_TORQUE_OFF ? GROBO_JOINT_BIT(j) : 0;
@@ -453,7 +454,8 @@ static int give(recorder *r)
     conn *c = &r->c;
     grobo_joint_mask all = GROBO_JOINTS_ALL(grobo_robot_driver(c->robot)->model->n_joints);
     grobo_joint_mask hold, switched;
-    int error = conn_wait(c, grobo_session_sense(c->session, all, GROBO_SENSE_ALL));
+    int error =
+        conn_wait(c, grobo_robot_sense(grobo_session_robot(c->session), all, GROBO_SENSE_ALL));
     if (error < 0)
         return error;
     look_at_torque(r, &hold, &switched);
@@ -463,7 +465,7 @@ static int give(recorder *r)
     }
     r->held = hold;
     r->limp = r->joints & ~hold;
-    return hold ? grobo_session_free_mode(c->session, hold, true) : error;
+    return hold ? grobo_robot_free(grobo_session_robot(c->session), hold, true) : error;
 }
 
 /* Until somebody says so. Returns why it ended before, or 0. */
@@ -494,7 +496,7 @@ static int teach(recorder *r)
             event_free(timer);
     }
     if (!error && r->held) /* out of the hands: they hold where they are */
-        error = conn_wait(c, grobo_session_free_mode(c->session, r->held, false));
+        error = conn_wait(c, grobo_robot_free(grobo_session_robot(c->session), r->held, false));
     return error;
 }
 

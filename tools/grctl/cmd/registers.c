@@ -163,9 +163,10 @@ static int write_it(conn *c, const change *what)
     int id = what->reg->address == GROBO_RS30X_ID ? (int)what->value : what->id;
     int error;
     grobo_rs30x_register_put(what->reg, what->value, bytes);
-    error = conn_wait(c, grobo_session_registers(c->session, &io));
+    error = conn_wait(c, grobo_robot_registers(grobo_session_robot(c->session), &io));
     if (!error && what->flash)
-        error = conn_wait(c, grobo_session_command(c->session, id, GROBO_SERVO_FLASH));
+        error = conn_wait(
+            c, grobo_robot_command(grobo_session_robot(c->session), id, GROBO_SERVO_FLASH));
     return error;
 }
 
@@ -209,8 +210,8 @@ static int expect_loose(conn *c, const change *what)
         return EXIT_DONE;
     error = servos_read(c, what->id, GROBO_RS30X_TORQUE, 1, &torque);
     if (!error && joint >= 0)
-        error =
-            conn_wait(c, grobo_session_sense(c->session, GROBO_JOINT_BIT(joint), GROBO_SENSE_FULL));
+        error = conn_wait(c, grobo_robot_sense(grobo_session_robot(c->session),
+                                               GROBO_JOINT_BIT(joint), GROBO_SENSE_FULL));
     if (error)
         return conn_fail_servo(c, error, what->id);
     if (torque != GROBO_TORQUE_ON)
@@ -279,9 +280,11 @@ static int move_rate(conn *c, const change *what, int old_bps, int new_bps, uint
     at_bps = find_rate(c, what, old_bps, new_bps, code);
     if (at_bps < 0 || *code != what->value || !what->flash)
         return at_bps;
-    error = conn_wait(c, grobo_session_command(c->session, what->id, GROBO_SERVO_FLASH));
+    error = conn_wait(
+        c, grobo_robot_command(grobo_session_robot(c->session), what->id, GROBO_SERVO_FLASH));
     if (!error)
-        error = conn_wait(c, grobo_session_command(c->session, what->id, GROBO_SERVO_REBOOT));
+        error = conn_wait(
+            c, grobo_robot_command(grobo_session_robot(c->session), what->id, GROBO_SERVO_REBOOT));
     return error ? error : find_rate(c, what, new_bps, old_bps, code);
 }
 

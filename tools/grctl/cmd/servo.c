@@ -24,8 +24,7 @@ static void print_json(const conn *c, grobo_joint_mask joints)
     const grobo_model *model = grobo_robot_driver(c->robot)->model;
     for (int j = 0; j < model->n_joints; j++) {
         grobo_joint_info i;
-        if (!(joints & GROBO_JOINT_BIT(j)) ||
-            grobo_robot_joint(c->robot, j, grobo_now_us(), &i) < 0)
+        if (!(joints & GROBO_JOINT_BIT(j)) || grobo_robot_joint(c->robot, j, &i) < 0)
             continue;
         json_array_append_new(list, json_pack("{s:i,s:i,s:s,s:s}", "joint", j, "motor",
                                               model->joints[j].motor, "name", model->joints[j].name,
@@ -39,7 +38,7 @@ static int switch_torque(conn *c, grobo_joint_mask joints, grobo_torque mode, co
     int error, n;
     if (mode == GROBO_TORQUE_ON)
         c->moving = true;
-    error = conn_wait(c, grobo_session_torque(c->session, joints, mode));
+    error = conn_wait(c, grobo_robot_torque(grobo_session_robot(c->session), joints, mode));
     if (error)
         return conn_fail(c, error, "servo");
     n = grobo_joints_count(joints);

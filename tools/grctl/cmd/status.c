@@ -28,14 +28,14 @@ static void show(conn *c, grobo_joint_mask joints)
     if (!c->a->json) {
         if (c->a->tty_out && app_option(c->a, OPT_WATCH)->given)
             app_print("\033[H\033[J");
-        render_status(c, joints, now_us);
+        render_status(c, joints);
         output_flush();
         return;
     }
     list = json_array();
     for (int j = 0; j < model->n_joints; j++)
         if (joints & GROBO_JOINT_BIT(j))
-            json_array_append_new(list, render_joint_json(c, j, now_us));
+            json_array_append_new(list, render_joint_json(c, j));
     app_print_json(json_pack("{s:s,s:s,s:o,s:o}", "robot", model->name, "device", conn_device(c),
                              "joints", list, "link", conn_link_json(c)));
 }
@@ -43,7 +43,8 @@ static void show(conn *c, grobo_joint_mask joints)
 /* One round; the exit status: a joint that stays silent is shown, and makes it 1. */
 static int sense_and_show(conn *c, grobo_joint_mask joints)
 {
-    int error = conn_wait(c, grobo_session_sense(c->session, joints, GROBO_SENSE_ALL));
+    int error =
+        conn_wait(c, grobo_robot_sense(grobo_session_robot(c->session), joints, GROBO_SENSE_ALL));
     if (error && c->job.failed == 0)
         return conn_fail(c, error, "status");
     show(c, joints);

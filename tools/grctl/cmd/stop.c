@@ -8,7 +8,8 @@ static int run_stop(app *a)
     conn c;
     int status = conn_open(&c, a);
     if (!status) {
-        int error = conn_wait(&c, grobo_session_exit(c.session, GROBO_EXIT_HOLD));
+        int error =
+            conn_wait(&c, grobo_robot_exit(grobo_session_robot(c.session), GROBO_EXIT_HOLD));
         if (error)
             status = conn_fail(&c, error, "stop");
         else

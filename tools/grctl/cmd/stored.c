@@ -14,7 +14,8 @@ static int start(app *a, grobo_stored_kind kind, const char *what)
         return app_fail(a, EXIT_USAGE, "ARG", "%s: '%s' is not a number from 0 to 255", what, text);
     status = conn_open_to_move(&c, a);
     if (!status) {
-        error = conn_wait(&c, grobo_session_stored(c.session, kind, (int)number));
+        error =
+            conn_wait(&c, grobo_robot_stored(grobo_session_robot(c.session), kind, (int)number));
         if (error)
             status = conn_fail(&c, error, what);
         else if (a->json)

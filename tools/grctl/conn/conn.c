@@ -399,7 +399,7 @@ static int take_over(conn *c, bool check)
     if (!error) /* an emergency stop from before the command, maybe */
         error = conn_wait_until(c, is_idle);
     if (!error && check && !c->link->answered)
-        error = conn_wait(c, grobo_session_check(c->session));
+        error = conn_wait(c, grobo_robot_check(grobo_session_robot(c->session)));
     if (error && !is_interrupted(c))
         return fail_open(c, error);
     c->link->answered |= check;
@@ -546,7 +546,7 @@ static void suspend(conn *c)
     if (c->signal != os_suspension || !c->up || c->link_error)
         return;
     c->leaving = true;
-    (void)conn_wait(c, grobo_session_exit(c->session, GROBO_EXIT_HOLD));
+    (void)conn_wait(c, grobo_robot_exit(grobo_session_robot(c->session), GROBO_EXIT_HOLD));
     conn_suspend();
 }
 
@@ -594,7 +594,7 @@ static int carry_out_policy(conn *c, int status)
     if (policy == GROBO_EXIT_DEFAULT || !c->up || c->link_error)
         return EXIT_DONE;
     c->leaving = true;
-    error = conn_wait(c, grobo_session_exit(c->session, policy));
+    error = conn_wait(c, grobo_robot_exit(grobo_session_robot(c->session), policy));
     if (error && !c->signal && !app_global(c->a, GLOBAL_ON_EXIT)->given)
         return status; /* nobody asked for it, and why the command failed has been said */
     if (error)
@@ -618,7 +618,7 @@ static void give_back(conn *c)
         return;
     }
     if (grobo_robot_job(c->robot) != GROBO_JOB_NONE)
-        grobo_session_cancel(c->session);
+        grobo_robot_cancel(grobo_session_robot(c->session));
     if (serial && grobo_serial_baud(serial) != baud_bps)
         grobo_serial_set_baud(serial, baud_bps);
 }

@@ -14,7 +14,7 @@ int servos_read(conn *c, int id, int address, int length, uint8_t *data)
         .id = (uint8_t)id, .address = (uint8_t)address, .length = (uint8_t)length};
     c->data = data;
     c->data_bytes = (size_t)length;
-    int error = conn_wait(c, grobo_session_registers(c->session, &io));
+    int error = conn_wait(c, grobo_robot_registers(grobo_session_robot(c->session), &io));
     c->data = NULL; /* it is the caller's */
     return error;
 }

@@ -33,8 +33,7 @@ static void on_suspend(evutil_socket_t number, short what, void *ctx)
     conn *c = link->user;
     if (c && c->a->stops)
         return; /* in a moment it has ended */
-    bool moves =
-        c && c->up && !c->link_error && (c->moving || grobo_robot_moving(c->robot, grobo_now_us()));
+    bool moves = c && c->up && !c->link_error && (c->moving || grobo_robot_moving(c->robot));
     if (!moves)
         conn_suspend();
     else if (!c->leaving)

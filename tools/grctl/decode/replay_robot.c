@@ -138,7 +138,8 @@ static void send_frame(void *ctx, const frame *f)
     replay_ask(r, f);
     error = conn_sleep_until(&p->c, p->start_us + f->time_us);
     if (!error)
-        error = conn_wait(&p->c, grobo_session_raw(p->c.session, f->bytes, f->size));
+        error =
+            conn_wait(&p->c, grobo_robot_raw(grobo_session_robot(p->c.session), f->bytes, f->size));
     if (error && !is_reply_trouble(error)) {
         snprintf(doing, sizeof doing, "replay: the frame at %.3f ms", (double)f->time_us / 1e3);
         p->status = conn_fail(&p->c, error, doing);
@@ -167,9 +168,11 @@ static int prepare(plan *p)
     grobo_robot_config config = conn_robot_config(p->r->a);
     int error = 0;
     if (p->moves)
-        error = conn_wait(&p->c, grobo_session_sense(p->c.session, all, GROBO_SENSE_FULL));
+        error = conn_wait(
+            &p->c, grobo_robot_sense(grobo_session_robot(p->c.session), all, GROBO_SENSE_FULL));
     if (!error && p->torqued)
-        error = conn_wait(&p->c, grobo_session_torque(p->c.session, p->torqued, GROBO_TORQUE_ON));
+        error = conn_wait(&p->c, grobo_robot_torque(grobo_session_robot(p->c.session), p->torqued,
+                                                    GROBO_TORQUE_ON));
     config.retries = -1;
     if (!error)
         error = grobo_robot_configure(p->c.robot, &config);

@@ -113,7 +113,7 @@ static void draw_joint(const monitor *m, int place, int column, int bar)
     char text[64];
     snprintf(text, sizeof text, "%2d%c%-10s", j->motor, chosen ? '>' : ' ', name);
     screen_put(row, column, chosen ? SCREEN_BOLD : SCREEN_PLAIN, text);
-    if (grobo_robot_joint(m->c.robot, joint, grobo_now_us(), &i) < 0)
+    if (grobo_robot_joint(m->c.robot, joint, &i) < 0)
         return;
     if (i.angle_age_us == GROBO_NEVER_US || i.angle_age_us > STALE_US) {
         if (i.status < 0 && i.status != GROBO_ERR_EMPTY)
@@ -167,8 +167,8 @@ static void draw_link(const monitor *m)
     char text[MONITOR_TEXT_BYTES];
     for (int j = 0; j < m->model->n_joints; j++) {
         grobo_joint_info i;
-        if (grobo_robot_joint(m->c.robot, j, grobo_now_us(), &i) == 0 &&
-            (i.state.valid & GROBO_FIELD_VOLTAGE) && (!low_mv || i.state.voltage_mv < low_mv))
+        if (grobo_robot_joint(m->c.robot, j, &i) == 0 && (i.state.valid & GROBO_FIELD_VOLTAGE) &&
+            (!low_mv || i.state.voltage_mv < low_mv))
             low_mv = i.state.voltage_mv;
     }
     snprintf(text, sizeof text, "%5.2f V", low_mv / 1e3);
@@ -192,7 +192,7 @@ static void draw_play(const monitor *m, int columns)
         screen_put(ROW_PLAY, 0, SCREEN_WARN, busy ? busy : "");
         return;
     }
-    grobo_robot_progress(m->c.robot, grobo_now_us(), &p);
+    grobo_robot_progress(m->c.robot, &p);
     full = p.total_us ? (int)((double)p.t_us / (double)p.total_us * width + 0.5) : 0;
     for (int k = 0; k < width; k++)
         screen_put(ROW_PLAY, k, k < full ? SCREEN_GOOD : SCREEN_DIM,

@@ -104,14 +104,14 @@ static void take_first_posture(rehearsal *r, const grobo_clip *clip)
 
 static int play(rehearsal *r, playlist *list)
 {
-    int error = grobo_robot_play(&r->robot, &list->clip[0], &list->options[0], r->now_us);
+    int error = grobo_robot_play(&r->robot, &list->clip[0], &list->options[0]);
     r->job_result = 1;
     while (error >= 0 && r->job_result > 0 && turn(r))
         ;
     if (error >= 0)
         error = r->job_result > 0 ? GROBO_ERR_TIMEOUT : r->job_result;
     for (int i = 1; i < list->n && error >= 0; i++)
-        error = grobo_robot_enqueue(&r->robot, &list->clip[i], &list->options[i], r->now_us);
+        error = grobo_robot_enqueue(&r->robot, &list->clip[i], &list->options[i]);
     while (error >= 0 && !r->over && turn(r))
         ;
     return error < 0 ? error : r->error;

@@ -8,9 +8,9 @@ enum { SPEED_STEP_PCT = 10 };
 static void toggle_pause(conn *c)
 {
     if (grobo_robot_play_state(c->robot) == GROBO_SEQUENCER_PAUSED)
-        grobo_session_resume(c->session);
+        grobo_robot_resume(grobo_session_robot(c->session));
     else
-        grobo_session_pause(c->session);
+        grobo_robot_pause(grobo_session_robot(c->session));
 }
 
 /* Kept only where there is something to change the speed of. */
@@ -21,7 +21,7 @@ static void change_speed(play_keys *k, int by_pct)
         speed_pct = SPEED_STEP_PCT;
     if (speed_pct > GROBO_PLAY_SPEED_MAX_PCT)
         speed_pct = GROBO_PLAY_SPEED_MAX_PCT;
-    if (grobo_session_speed(k->c->session, speed_pct) == GROBO_OK)
+    if (grobo_robot_speed(grobo_session_robot(k->c->session), speed_pct) == GROBO_OK)
         k->speed_pct = speed_pct;
 }
 
@@ -32,7 +32,7 @@ void play_keys_estop(play_keys *k)
     grobo_os_cause cause;
     if (grobo_estop_set(conn_device(k->c), NULL, &cause) < 0)
         app_note(k->c->a, "the emergency stop is not kept for other programs: %s", cause.text);
-    grobo_session_estop(k->c->session);
+    grobo_robot_estop(grobo_session_robot(k->c->session));
 }
 
 bool play_keys_take(play_keys *k, int key)
@@ -50,7 +50,7 @@ bool play_keys_take(play_keys *k, int key)
         return true;
     case 's':
     case 'q':
-        k->stopped |= grobo_session_stop(k->c->session, false) == GROBO_OK;
+        k->stopped |= grobo_robot_stop(grobo_session_robot(k->c->session), false) == GROBO_OK;
         return true;
     case 'e':
         play_keys_estop(k);

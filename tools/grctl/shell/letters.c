@@ -57,7 +57,7 @@ static int need_record(shell *s)
 static grobo_joint_mask joints_that_move(conn *c, const shell *s)
 {
     grobo_posture known;
-    int n = grobo_robot_posture(c->robot, grobo_now_us(), KNOWN_US, &known);
+    int n = grobo_robot_posture(c->robot, KNOWN_US, &known);
     return s->link.free_joints && n == known.n_joints ? s->link.free_joints
                                                       : GROBO_JOINTS_ALL(known.n_joints);
 }
@@ -66,12 +66,12 @@ static grobo_joint_mask joints_that_move(conn *c, const shell *s)
 static int push(conn *c, shell *s, double ms)
 {
     grobo_posture posture;
-    int error =
-        conn_wait(c, grobo_session_sense(c->session, joints_that_move(c, s), GROBO_SENSE_FULL));
+    int error = conn_wait(c, grobo_robot_sense(grobo_session_robot(c->session),
+                                               joints_that_move(c, s), GROBO_SENSE_FULL));
     int status = error ? conn_fail(c, error, "record") : need_record(s);
     if (status)
         return status;
-    grobo_robot_posture(c->robot, grobo_now_us(), GROBO_NEVER_US, &posture);
+    grobo_robot_posture(c->robot, GROBO_NEVER_US, &posture);
     grobo_posture_set_time_ms(&posture, ms);
     return keep(s, grobo_motion_append(s->record, &posture));
 }
@@ -213,7 +213,7 @@ static int do_free(shell *s, int n, char **words)
         joints = GROBO_JOINTS_ALL(grobo_gr001_model.n_joints);
     status = conn_open_to_move(&c, &s->one);
     if (!status) {
-        error = grobo_session_free_mode(c.session, joints, true);
+        error = grobo_robot_free(grobo_session_robot(c.session), joints, true);
         status = error < 0 ? conn_fail(&c, error, "free") : 0;
         s->link.free_joints |= status ? 0 : joints;
     }
@@ -233,7 +233,8 @@ static int do_end(shell *s, int n, char **words)
         return run_text(s, 1, line);
     status = conn_open(&c, &s->one);
     if (!status) {
-        error = conn_wait(&c, grobo_session_free_mode(c.session, s->link.free_joints, false));
+        error = conn_wait(
+            &c, grobo_robot_free(grobo_session_robot(c.session), s->link.free_joints, false));
         status = error < 0 ? conn_fail(&c, error, "end") : 0;
         s->link.free_joints = 0;
     }

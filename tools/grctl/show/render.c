@@ -52,7 +52,7 @@ json_t *render_joint_json(const conn *c, int joint, int64_t now_us)
     double target_rad;
     bool fresh;
     json_t *o = json_pack("{s:i,s:i,s:s}", "joint", joint, "motor", j->motor, "name", j->name);
-    if (grobo_robot_joint(c->robot, joint, now_us, &i) < 0)
+    if (grobo_robot_joint(c->robot, joint, &i) < 0)
         return o;
     fresh = i.angle_age_us != GROBO_NEVER_US;
     json_object_set_new(o, "angle_deg",
@@ -96,7 +96,7 @@ void render_status(const conn *c, grobo_joint_mask joints, int64_t now_us)
         grobo_joint_info i;
         double target_rad;
         bool known, targeted;
-        if (!(joints & GROBO_JOINT_BIT(k)) || grobo_robot_joint(c->robot, k, now_us, &i) < 0)
+        if (!(joints & GROBO_JOINT_BIT(k)) || grobo_robot_joint(c->robot, k, &i) < 0)
             continue;
         known = i.angle_age_us != GROBO_NEVER_US;
         app_print("%5d  %-12s", model->joints[k].motor, model->joints[k].name);
@@ -123,7 +123,7 @@ double render_worst_error(const conn *c, int64_t now_us, int *joint)
     for (int k = 0; k < model_of(c)->n_joints; k++) {
         grobo_joint_info i;
         double error;
-        if (grobo_robot_joint(c->robot, k, now_us, &i) < 0 || !i.has_target ||
+        if (grobo_robot_joint(c->robot, k, &i) < 0 || !i.has_target ||
             i.angle_age_us == GROBO_NEVER_US || i.status != GROBO_OK)
             continue;
         error = fabs(grobo_deg_from_rad(i.state.angle_rad - i.target_rad));
@@ -142,7 +142,7 @@ void render_reached(const conn *c, int64_t now_us)
     for (int k = 0; k < model->n_joints; k++) {
         grobo_joint_info i;
         bool both;
-        if (grobo_robot_joint(c->robot, k, now_us, &i) < 0)
+        if (grobo_robot_joint(c->robot, k, &i) < 0)
             continue;
         both = i.has_target && i.status == GROBO_OK && i.angle_age_us != GROBO_NEVER_US;
         app_print("%5d  %-12s", model->joints[k].motor, model->joints[k].name);
