@@ -72,7 +72,7 @@ void start_with(const grobo_robot_config *config)
                                           .valid = 0xFF,
                                           .torque = GROBO_TORQUE_ON};
         axis->way = (grobo_robot_way){here_rad(j), here_rad(j), NOW - 20, NOW - 10};
-        axis->angle_us = axis->full_us = axis->goal_us = NOW - 5;
+        axis->angle_us = axis->full_us = axis->goal_us = axis->torque_us = NOW - 5;
         axis->own_until_us = NOW - 3;
         axis->told_us = axis->told_to_us = NOW - 7;
         axis->last = 3;
@@ -143,6 +143,25 @@ void latch(grobo_trip reason)
     robot.trip = (grobo_trip_info){.trip = reason, .joint = -1, .latched = true};
 }
 
+grobo_joint_mask halting(void)
+{
+    static grobo_robot as_it_is;
+    grobo_joint_mask halted = 0;
+    as_it_is = robot;
+    for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
+        if (robot.slots[i].use != GROBO_I_USE_HALT || robot.slots[i].txn.sent_us >= 0 ||
+            grobo_i_gate_leave(&robot.slots[i]) < 0) {
+            continue;
+        }
+        for (int j = 0; j < N; j++) {
+            bool told = robot.axes[j].told_us != as_it_is.axes[j].told_us;
+            halted |= told ? GROBO_JOINT_BIT(j) : 0;
+        }
+    }
+    robot = as_it_is;
+    return halted;
+}
+
 int axes_on_both_wirings(const struct CMUnitTest *tests, size_t n)
 {
     int failed = 0;
@@ -177,6 +196,7 @@ static void expect_axis(int joint)
     SAME(goal_us)
     SAME(own_until_us)
     SAME(angle_us)
+    SAME(torque_us)
     SAME(told_us)
     SAME(way.from_rad)
     SAME(way.to_rad)

@@ -44,6 +44,8 @@ void make_limp(int joint);
 /* It moves 20 degrees on, at 10 degrees a second, and has been for a second. */
 void set_going(int joint);
 void latch(grobo_trip reason);
+/* The joints that the halts that wait would stop if they left now. */
+grobo_joint_mask halting(void);
 
 /* From here on, what robot.axes is. */
 void keep_axes(void);
