@@ -106,6 +106,32 @@ static void a_raw_frame_that_reads_is_about_no_joint(void **state)
     drop();
 }
 
+/* What was read to hold within two seconds, by then; what comes off is as old as it may be. */
+static void a_raw_torque_comes_on_where_it_was_read_just_now(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        grobo_robot_order order;
+        start();
+        robot.axes[other_of(j)].torque_us = 0;
+        robot.axes[j].torque_us = NOW - 2 * S - 1;
+        assert_int_equal(raw_torque_of(j, GROBO_TORQUE_ON, &order), GROBO_ERR_STALE);
+        assert_int_equal(raw_torque_of(j, GROBO_TORQUE_OFF, &order), GROBO_OK);
+        drop();
+        robot.axes[j].torque_us = NOW - 2 * S;
+        assert_int_equal(raw_torque_of(j, GROBO_TORQUE_ON, &order), GROBO_OK);
+        robot.now_us = NOW + 1;
+        assert_int_equal(grobo_i_gate_leave(slot), GROBO_ERR_STALE);
+        expect_axes();
+        robot.axes[j].torque_us = NOW - 2 * S + 1;
+        assert_int_equal(grobo_i_gate_leave(slot), GROBO_OK);
+        drop();
+        robot.axes[j].state.torque = GROBO_TORQUE_BRAKE; /* and it does not hold, however new */
+        robot.axes[j].torque_us = NOW + 1;
+        assert_int_equal(raw_torque_of(j, GROBO_TORQUE_ON, &order), GROBO_ERR_STATE);
+    }
+}
+
 /* 2 % less than the joint needs is taken for late, and no more. */
 static void a_raw_goal_has_the_time_of_its_joint(void **state)
 {
@@ -243,6 +269,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_raw_goal_is_noted_like_one_of_ours),
         cmocka_unit_test(a_raw_torque_is_noted_like_one_of_ours),
+        cmocka_unit_test(a_raw_torque_comes_on_where_it_was_read_just_now),
         cmocka_unit_test(a_raw_frame_that_reads_is_about_no_joint),
         cmocka_unit_test(a_raw_goal_has_the_time_of_its_joint),
         cmocka_unit_test(a_raw_frame_is_refused_by_name),
