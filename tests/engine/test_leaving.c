@@ -39,17 +39,6 @@ static int take_step(void)
     return robot.job->script[robot.job->at - 1](&robot);
 }
 
-/* The joints that a halt is asked for. */
-static grobo_joint_mask halted(void)
-{
-    for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
-        if (robot.slots[i].use == GROBO_I_USE_HALT) {
-            return robot.slots[i].order.joints;
-        }
-    }
-    return 0;
-}
-
 static void who_leaves_waits_until_all_is_quiet(void **state)
 {
     (void)state;
@@ -137,7 +126,7 @@ static void who_leaves_stops_what_others_set_going(void **state)
                 before[j].has_target = true;
             }
             expect_axes();
-            assert_true(halted() == (row->astray ? GROBO_JOINT_BIT(j) : 0));
+            assert_true(halting() == (row->astray ? GROBO_JOINT_BIT(j) : 0));
             assert_int_equal(robot.job->at, row->astray ? QUIET : STRAYS + 1);
             assert_int_equal(robot.job->rounds, row->astray);
         }
@@ -158,7 +147,7 @@ static void who_leaves_does_not_look_at_what_was_not_read(void **state)
         robot.job->failed = GROBO_JOINT_BIT(other_of(j)) | GROBO_JOINT_BIT(j ^ 1);
         robot.job->result = GROBO_ERR_TIMEOUT;
         assert_int_equal(take_step(), GROBO_I_NEXT);
-        assert_true(halted() == GROBO_JOINT_BIT(j));
+        assert_true(halting() == GROBO_JOINT_BIT(j));
         assert_true(robot.job->failed == (GROBO_JOINT_BIT(other_of(j)) | GROBO_JOINT_BIT(j ^ 1)));
         assert_int_equal(robot.job->result, GROBO_ERR_TIMEOUT);
     }
@@ -194,7 +183,7 @@ static void who_leaves_gives_up_on_a_joint_that_goes_on(void **state)
             robot.axes[j].angle_us = NOW - rows[i].read_us;
             robot.axes[other_of(j)].angle_us = NOW; /* stands, and waits for nobody */
             assert_int_equal(take_step(), GROBO_I_NEXT);
-            if ((halted() != 0) != rows[i].halts) {
+            if ((halting() != 0) != rows[i].halts) {
                 fail_msg("row %zu: joint %d", i, j);
             }
             assert_true(robot.job->failed == (rows[i].fails ? GROBO_JOINT_BIT(j) : 0));
@@ -298,7 +287,7 @@ static void an_exit_stops_what_moves_whatever_the_job(void **state)
         set_going(3);
         assert_int_equal(grobo_robot_exit(&robot, GROBO_EXIT_HOLD), 6);
         assert_int_equal(robot.job->kind, GROBO_JOB_EXIT);
-        assert_true(halted() == GROBO_JOINT_BIT(3));
+        assert_true(halting() == GROBO_JOINT_BIT(3));
     }
 }
 
@@ -343,7 +332,7 @@ static void a_job_is_cancelled_that_somebody_asked_for(void **state)
         assert_int_equal(robot.job->kind, stays ? kind : GROBO_JOB_NONE);
         /* What it moves is stopped, and no other job's. */
         bool moves = kind == GROBO_JOB_MOVE || kind == GROBO_JOB_PLAY || frame_moves;
-        assert_true(halted() == (!stays && moves ? GROBO_JOINT_BIT(3) : 0));
+        assert_true(halting() == (!stays && moves ? GROBO_JOINT_BIT(3) : 0));
     }
 }
 

@@ -307,19 +307,51 @@ static void frames_are_taken_back_in_the_order_of_their_slots(void **state)
     }
 }
 
-/* Those that have left are on their way already. */
+/* Those that have left are on their way already, and what moves other joints goes on waiting. */
 static void goals_that_wait_are_taken_back(void **state)
 {
     (void)state;
-    for (int sent = -1; sent <= 1; sent++) {
-        submit_all_uses();
-        robot.over = count_ended;
-        ended = 0;
-        put_behind_the_slots(&robot.slots[2]);
-        robot.slots[2].txn.sent_us = sent;
-        grobo_i_slots_cancel_goals(&robot, GROBO_JOINTS_ALL(64), true);
-        expect_used(((1U << USES) - 1) & ~(1U << 3) & ~(sent < 0 ? 1U << 2 : 0));
-        assert_int_equal(ended, sent < 0 ? 2 : 1);
+    for (int j = 0; j < N; j++) {
+        const grobo_joint_mask of[] = {GROBO_JOINT_BIT(j), GROBO_JOINT_BIT(other_of(j)),
+                                       GROBO_JOINT_BIT(third_of(j)), GROBO_JOINTS_ALL(N)};
+        for (int i = 0; i < 4; i++) {
+            for (int sent = -1; sent <= 1; sent++) {
+                submit_all_uses();
+                for (int k = 0; k < USES; k++) {
+                    robot.slots[k].order.joints = bits(j, other_of(j));
+                }
+                robot.over = count_ended;
+                ended = 0;
+                put_behind_the_slots(&robot.slots[2]);
+                robot.slots[2].txn.sent_us = sent;
+                grobo_i_slots_cancel_goals(&robot, of[i], false);
+                unsigned taken = i == 2 ? 0 : sent < 0 ? 4U | 8U : 8U;
+                expect_used(((1U << USES) - 1) & ~taken);
+                assert_int_equal(ended, (taken & 4U) / 4 + (taken & 8U) / 8);
+            }
+        }
+    }
+}
+
+/* Whatever joints a motion that is played moves. */
+static void played_goals_that_wait_are_taken_back_if_asked(void **state)
+{
+    (void)state;
+    for (int played = 0; played < 2; played++) {
+        for (int sent = -1; sent <= 1; sent++) {
+            submit_all_uses();
+            for (int k = 0; k < USES; k++) {
+                robot.slots[k].order.joints = 1;
+                robot.slots[k].due_us = k == 3 ? GROBO_NEVER_US : NOW;
+            }
+            robot.slots[2].txn.sent_us = sent;
+            robot.over = count_ended;
+            ended = 0;
+            grobo_i_slots_cancel_goals(&robot, 2, played);
+            unsigned taken = played && sent < 0 ? 4U : 0;
+            expect_used(((1U << USES) - 1) & ~taken);
+            assert_int_equal(ended, taken / 4);
+        }
     }
 }
 
@@ -695,14 +727,14 @@ static void small_frames_have_four_joints(void **state)
     }
 }
 
-/* Of those that move, first of all; targets that wait are gone by then. */
+/* Of those that move by the time it leaves, first of all; targets that wait are gone by then. */
 static void a_halt_goes_to_what_moves(void **state)
 {
     (void)state;
     for (int j = 0; j < N; j++) {
         start();
-        submit(0, GROBO_I_USE_MOTION, (grobo_robot_order){0});
-        submit(1, GROBO_I_USE_SEGMENT, (grobo_robot_order){0});
+        submit(0, GROBO_I_USE_MOTION, (grobo_robot_order){.joints = GROBO_JOINT_BIT(j)});
+        submit(1, GROBO_I_USE_SEGMENT, (grobo_robot_order){.joints = GROBO_JOINT_BIT(other_of(j))});
         submit(2, GROBO_I_USE_SENSE, (grobo_robot_order){0});
         robot.over = count_ended;
         ended = 0;
@@ -717,9 +749,28 @@ static void a_halt_goes_to_what_moves(void **state)
         assert_int_equal(slot->use, GROBO_I_USE_HALT);
         assert_int_equal(slot->txn.priority, GROBO_PRIORITY_STOP);
         assert_int_equal(slot->order.deed, GROBO_I_DEED_HALT);
-        assert_true(slot->order.joints == GROBO_JOINT_BIT(j));
+        const grobo_joint_mask of =
+            slot->order.joints; /* of all asked for, what fits into a frame */
+        assert_true((of & bits(j, other_of(j))) == GROBO_JOINT_BIT(j));
+        assert_true(of != GROBO_JOINT_BIT(j));
         assert_true(slot->order.asked_us == NOW && slot->order.each && slot->order.stops);
         assert_int_equal(slot->order.number, 0);
+        assert_true(halting() == GROBO_JOINT_BIT(j));
+        robot.axes[j].way.to_us = NOW;
+        robot.axes[third_of(j)].sensed = true;
+        assert_true(halting() == (of & GROBO_JOINT_BIT(third_of(j))));
+    }
+}
+
+static void a_halt_of_what_stands_is_not_sent(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        start();
+        set_going(j);
+        grobo_i_gate_halt(&robot, all_but(j));
+        expect_used(0);
+        assert_true(halting() == 0);
     }
 }
 
@@ -745,25 +796,39 @@ static void what_a_frame_was_for_decides_what_its_end_counts(void **state)
     }
 }
 
-/* While a motion is played, of what it does not move: that it brings to rest by itself. */
+/* While a motion is played, of what it does not move: that it brings to rest by itself, and once it
+ * stops, that is what its last frame moves. */
 static void a_stop_takes_back_what_waits_and_halts_what_is_not_played(void **state)
 {
     (void)state;
+    enum { IDLE, SOME, ALL, STOPPING, HOWS };
     for (int j = 0; j < N; j++) {
-        for (int how = 0; how < 3; how++) { /* none played, some, all */
+        for (int how = 0; how < HOWS; how++) {
             start();
-            submit(0, GROBO_I_USE_MOTION, (grobo_robot_order){0});
+            submit(0, GROBO_I_USE_MOTION, (grobo_robot_order){.joints = GROBO_JOINT_BIT(j)});
             robot.over = count_ended;
             ended = 0;
             set_going(j);
             set_going(other_of(j));
-            robot.sequencer.state = how == 0 ? GROBO_SEQUENCER_IDLE : GROBO_SEQUENCER_PLAYING;
-            robot.played_joints = how == 1 ? all_but(j) : GROBO_JOINTS_ALL(N);
+            set_going(third_of(j));
+            robot.sequencer.state = how == IDLE       ? GROBO_SEQUENCER_IDLE
+                                    : how == STOPPING ? GROBO_SEQUENCER_STOPPING
+                                                      : GROBO_SEQUENCER_PLAYING;
+            robot.played_joints = how == SOME || how == STOPPING ? all_but(j) : GROBO_JOINTS_ALL(N);
+            robot.sequencer.to.set = all_but(other_of(j));
+            const grobo_joint_mask be[HOWS] = {[IDLE] = bits(j, other_of(j)) |
+                                                        GROBO_JOINT_BIT(third_of(j)),
+                                               [SOME] = GROBO_JOINT_BIT(j),
+                                               [STOPPING] = bits(j, other_of(j))};
             grobo_i_stop_moves(&robot);
             assert_int_equal(ended, 1);
-            expect_used(how < 2 ? 1 : 0);
-            assert_true(how == 2 || robot.slots[0].order.joints ==
-                                        (how == 0 ? bits(j, other_of(j)) : GROBO_JOINT_BIT(j)));
+            assert_true(halting() == be[how]);
+            for (int i = 0; i < SLOTS; i++) {
+                const grobo_robot_slot *slot = &robot.slots[i];
+                bool halts = slot->use == GROBO_I_USE_HALT;
+                assert_true(halts || slot->use == GROBO_I_USE_FREE);
+                assert_true(!halts || how == IDLE || (slot->order.joints & ~be[how]) == 0);
+            }
         }
     }
 }
@@ -780,6 +845,7 @@ int main(void)
         cmocka_unit_test(every_slot_is_looked_at),
         cmocka_unit_test(frames_are_taken_back_in_the_order_of_their_slots),
         cmocka_unit_test(goals_that_wait_are_taken_back),
+        cmocka_unit_test(played_goals_that_wait_are_taken_back_if_asked),
         cmocka_unit_test(torque_that_waits_is_kept_off),
         cmocka_unit_test(a_frame_that_waits_is_known_by_what_it_does),
         cmocka_unit_test(a_target_gets_the_time_that_it_asks_for),
@@ -792,6 +858,7 @@ int main(void)
         cmocka_unit_test(torque_that_may_not_come_on_is_refused_by_name),
         cmocka_unit_test(small_frames_have_four_joints),
         cmocka_unit_test(a_halt_goes_to_what_moves),
+        cmocka_unit_test(a_halt_of_what_stands_is_not_sent),
         cmocka_unit_test(what_a_frame_was_for_decides_what_its_end_counts),
         cmocka_unit_test(a_stop_takes_back_what_waits_and_halts_what_is_not_played),
     };
