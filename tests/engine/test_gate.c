@@ -743,6 +743,42 @@ static void joints_are_ready_that_were_read_and_hold(void **state)
     }
 }
 
+/* One that has no part in a frame now may have one by the time it leaves. */
+static void what_waits_has_room_for_all_its_joints(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        grobo_exchange is, be;
+        grobo_target target = {0};
+        grobo_robot_order order = {.joints = bits(j, other_of(j)) | GROBO_JOINT_BIT(third_of(j)),
+                                   .asked_us = NOW,
+                                   .deed = GROBO_I_DEED_HALT,
+                                   .each = true,
+                                   .stops = true};
+        start();
+        set_going(j);
+        assert_int_equal(grobo_posture_init(&target.posture, N), 0);
+        target.posture.set = order.joints;
+        target.posture.angle_rad[j] = here_rad(j) + RAD(10.5);
+        target.joint_time_us[j] = 100 * MS;
+        target.joint_time_us[other_of(j)] = target.joint_time_us[third_of(j)] = 10000;
+        assert_int_equal(driver.posture(&driver, robot.driver_ctx, &target, 0, &be), 1);
+        assert_int_equal(grobo_i_gate_build(&robot, &order, &is), 1);
+        assert_int_equal(is.frame_bytes, be.frame_bytes);
+        assert_memory_equal(is.frame, be.frame, be.frame_bytes);
+
+        make_limp(j);
+        robot.axes[j].held = false;
+        order.deed = GROBO_I_DEED_TORQUE;
+        order.torque = GROBO_TORQUE_ON;
+        assert_int_equal(
+            driver.torque(&driver, robot.driver_ctx, order.joints, GROBO_TORQUE_ON, 0, &be), 1);
+        assert_int_equal(grobo_i_gate_build(&robot, &order, &is), 1);
+        assert_int_equal(is.frame_bytes, be.frame_bytes);
+        assert_memory_equal(is.frame, be.frame, be.frame_bytes);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -760,6 +796,7 @@ int main(void)
         cmocka_unit_test(a_frame_that_there_is_not_does_not_leave),
         cmocka_unit_test(each_part_has_joints_of_its_own),
         cmocka_unit_test(several_joints_go_in_one_frame),
+        cmocka_unit_test(what_waits_has_room_for_all_its_joints),
         cmocka_unit_test(only_the_target_of_that_number_waits_no_more),
         cmocka_unit_test(times_are_what_speeds_make_them),
         cmocka_unit_test(all_joints_of_a_move_get_its_time),

@@ -754,6 +754,7 @@ static void a_halt_goes_to_what_moves(void **state)
         assert_true((of & bits(j, other_of(j))) == GROBO_JOINT_BIT(j));
         assert_true(of != GROBO_JOINT_BIT(j));
         assert_true(slot->order.asked_us == NOW && slot->order.each && slot->order.stops);
+        assert_true(slot->due_us == GROBO_NEVER_US);
         assert_int_equal(slot->order.number, 0);
         assert_true(halting() == GROBO_JOINT_BIT(j));
         robot.axes[j].way.to_us = NOW;
