@@ -373,6 +373,30 @@ static void what_has_waited_too_long_ends(void **state)
     }
 }
 
+static void a_trip_ends_all_that_waits(void **state)
+{
+    (void)state;
+    for (int latched = 0; latched < 2; latched++) {
+        start_idle();
+        for (int i = 0; i < QUEUE; i++) {
+            wait_in_queue(wish_of(i % 2 ? GROBO_JOB_SENSE : GROBO_JOB_MOVE, i), NOW + S);
+        }
+        grobo_i_trip(&robot, GROBO_TRIP_HOST_STALL, -1, 0, latched);
+        assert_int_equal(robot.queued, 0);
+        assert_int_equal(robot.events_n, 1 + QUEUE);
+        for (int i = 0; i < QUEUE; i++) {
+            unsigned at = (robot.events_head + 1 + (unsigned)i) % GROBO_ROBOT_EVENTS;
+            const grobo_event *event = &robot.events[at];
+            assert_int_equal(event->kind, GROBO_EVENT_JOB);
+            assert_int_equal(event->u.job.number, 50 + i);
+            assert_int_equal(event->u.job.kind, i % 2 ? GROBO_JOB_SENSE : GROBO_JOB_MOVE);
+            assert_int_equal(event->u.job.result, latched ? GROBO_ERR_LATCHED : GROBO_ERR_CANCELED);
+            assert_int_equal(event->u.job.joint, -1);
+            assert_true(event->u.job.failed == GROBO_JOINT_BIT(i));
+        }
+    }
+}
+
 static void the_queue_is_looked_at_when_something_may_have_changed(void **state)
 {
     (void)state;
@@ -402,6 +426,7 @@ int main(void)
         cmocka_unit_test(what_cannot_begin_waits),
         cmocka_unit_test(what_waits_begins_in_its_order),
         cmocka_unit_test(what_has_waited_too_long_ends),
+        cmocka_unit_test(a_trip_ends_all_that_waits),
         cmocka_unit_test(the_queue_is_looked_at_when_something_may_have_changed),
     };
     return axes_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
