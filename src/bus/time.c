@@ -85,9 +85,7 @@ void grobo_i_bus_learn(grobo_bus *bus)
 {
     GROBO_ASSERT(bus->active != NULL && bus->active->attempts_ == 1);
     int32_t sample_us = clip(bus->now_us - bus->over_us, GROBO_BUS_MARGIN_MAX_US);
-    if (sample_us > bus->worst_us) {
-        bus->worst_us = sample_us;
-    }
+    bus->worst_us = (int32_t)grobo_i_later(bus->worst_us, sample_us);
     bus->worst_us -= (bus->worst_us - sample_us) >> 8; /* slowly forgotten */
     if (!bus->learnt) {
         bus->learnt = true;
@@ -165,7 +163,7 @@ grobo_bus_hold *grobo_i_bus_owed(grobo_bus *bus, uint32_t key)
 static void learn_late(grobo_bus *bus, int64_t due_us)
 {
     int32_t late_us = clip(bus->now_us - due_us, (int32_t)(bus->config.hold_us / 2));
-    bus->worst_us = late_us > bus->worst_us ? late_us : bus->worst_us;
+    bus->worst_us = (int32_t)grobo_i_later(bus->worst_us, late_us);
 }
 
 bool grobo_i_bus_settle(grobo_bus *bus, uint32_t key)

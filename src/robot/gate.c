@@ -45,7 +45,7 @@ int grobo_i_gate_target(grobo_robot *robot, grobo_posture *target)
         result = clamped; /* a joint behind the first one has no number at all */
         joint = -1;
     }
-    robot->fault_joint = result < 0 ? joint : -1;
+    robot->fault_joint = joint;
     robot->fault_deg = joint >= 0 ? grobo_deg_from_rad(target->angle_rad[joint]) : 0;
     return result;
 }
@@ -104,7 +104,7 @@ static int64_t time_needed(const grobo_robot *robot, int joint, double to_rad, b
     return steps > most ? GROBO_NEVER_US : (int64_t)steps * step_us;
 }
 
-int64_t grobo_i_gate_time(grobo_robot *robot, const grobo_robot_order *order, grobo_target *target)
+int grobo_i_gate_time(grobo_robot *robot, const grobo_robot_order *order, grobo_target *target)
 {
     bool soft = robot->soft || order->soft;
     bool stretched = false;
@@ -127,7 +127,7 @@ int64_t grobo_i_gate_time(grobo_robot *robot, const grobo_robot_order *order, gr
     for (int j = 0; !order->each && j < robot->driver->model->n_joints; j++) {
         target->joint_time_us[j] = longest_us;
     }
-    return longest_us;
+    return GROBO_OK;
 }
 
 /* ---- judging --------------------------------------------------------------------------------- */
@@ -176,7 +176,7 @@ static int judge_goal(grobo_robot *robot, const grobo_robot_order *order, grobo_
     }
     (void)grobo_posture_clamp(&target->posture, robot->driver->model); /* one may rest outside */
     int result = judge_joints(robot, target->posture.set);
-    return result < 0 ? result : (int)grobo_i_gate_time(robot, order, target);
+    return result < 0 ? result : grobo_i_gate_time(robot, order, target);
 }
 
 /* What still moves stops ahead of where it is by now, however long this had to wait. */
@@ -199,7 +199,7 @@ static int judge_halt(grobo_robot *robot, const grobo_robot_order *order, grobo_
         return GROBO_ERR_EMPTY;
     }
     (void)grobo_posture_clamp(&target->posture, robot->driver->model); /* one may stand outside */
-    return (int)grobo_i_gate_time(robot, order, target);
+    return grobo_i_gate_time(robot, order, target);
 }
 
 /* The goal of joints without torque to where each was seen last; not of one too far outside. */
@@ -343,7 +343,7 @@ static int judge_alone(const grobo_robot *robot)
 
 static saying nothing_said(const grobo_robot *robot)
 {
-    saying says = {0};
+    saying says = {.torqued = {0}};
     (void)grobo_posture_init(&says.target.posture, robot->driver->model->n_joints);
     return says;
 }
@@ -382,8 +382,7 @@ int grobo_i_gate_judge(grobo_robot *robot, const grobo_robot_order *order,
                        const grobo_exchange *exchange)
 {
     saying says;
-    int result = judge(robot, order, exchange, false, &says);
-    return result < 0 ? result : GROBO_OK;
+    return judge(robot, order, exchange, false, &says);
 }
 
 int grobo_i_gate_raw(grobo_robot *robot, const grobo_exchange *exchange, grobo_robot_order *order)
@@ -501,7 +500,7 @@ static void note_way(grobo_robot *robot, const grobo_robot_order *order, const g
             axis->adrift = axis->held = axis->in_segments = axis->off_way = false;
             if (order->deed == GROBO_I_DEED_GOAL &&
                 grobo_i_segments_wanted(robot, order, target->joint_time_us[j])) {
-                grobo_i_segments_begin(robot, j, target->joint_time_us[j]);
+                grobo_i_segments_begin(robot, j);
             }
         }
     }
@@ -564,7 +563,6 @@ static void note(grobo_robot *robot, const grobo_robot_slot *slot, const saying 
 {
     switch ((grobo_i_deed)slot->order.deed) {
     case GROBO_I_DEED_NONE:
-        return;
     case GROBO_I_DEED_GOAL:
     case GROBO_I_DEED_HALT:
     case GROBO_I_DEED_TORQUE:

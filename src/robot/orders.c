@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Orders to motors: targets, halts, holds and torque, put into the frames that wait for the line.
- * Nothing is noted of them here but what waits; safety_gate.c judges them again as they leave. */
+ * Nothing is noted of them here but what waits; gate.c judges them again as they leave. */
 #include "src/base/instant.h"
 #include "src/robot/robot.h"
 
@@ -120,8 +120,8 @@ static int await_line(grobo_robot *robot, const grobo_robot_order *order,
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         target.joint_time_us[j] = asked_us;
     }
-    int64_t longest_us = grobo_i_gate_time(robot, order, &target);
-    for (int j = 0; longest_us >= 0 && j < robot->driver->model->n_joints; j++) {
+    int result = grobo_i_gate_time(robot, order, &target);
+    for (int j = 0; result >= 0 && j < robot->driver->model->n_joints; j++) {
         if ((order->joints & GROBO_JOINT_BIT(j)) != 0) {
             grobo_robot_axis *axis = &robot->axes[j];
             axis->next = order->number;
@@ -129,7 +129,7 @@ static int await_line(grobo_robot *robot, const grobo_robot_order *order,
             axis->next_time_us = order->rests ? asked_us : target.joint_time_us[j];
         }
     }
-    return longest_us < 0 ? (int)longest_us : GROBO_OK;
+    return result;
 }
 
 int grobo_i_gate_send(grobo_robot *robot, const grobo_posture *wanted, const grobo_i_motion *how)

@@ -48,11 +48,11 @@ double grobo_i_hold_rad(const grobo_robot *robot, int joint)
     return near ? fmin(fmax(angle_rad, limits->min_rad), limits->max_rad) : (double)NAN;
 }
 
-/* Where a servo is going, if it told. One that has time left creeps there, however slowly. A host
- * that was away, or another one, may have sent it. */
+/* Where a servo is going, if it told: its angle was read. One that has time left creeps there,
+ * however slowly. A host that was away, or another one, may have sent it. */
 static void take_move(grobo_robot *robot, int joint, const grobo_joint_state *got)
 {
-    const unsigned move = GROBO_FIELD_ANGLE | GROBO_FIELD_GOAL | GROBO_FIELD_TIME;
+    const unsigned move = GROBO_FIELD_GOAL | GROBO_FIELD_TIME;
     const unsigned pace = GROBO_FIELD_SPEED | GROBO_FIELD_TORQUE;
     grobo_robot_axis *axis = &robot->axes[joint];
     if ((got->valid & pace) != pace) {

@@ -169,8 +169,8 @@ bool grobo_i_segments_wanted(const grobo_robot *robot, const grobo_robot_order *
  * all of it. */
 bool grobo_i_segments_cut(const grobo_robot *robot, const grobo_robot_order *order,
                           const grobo_target *whole, grobo_target *part);
-/* A joint begins the way just noted, which takes this time. */
-void grobo_i_segments_begin(grobo_robot *robot, int joint, int64_t time_us);
+/* A joint begins the way just noted, which is told in parts. */
+void grobo_i_segments_begin(grobo_robot *robot, int joint);
 /* Where these of the joints that are told more go next; and that they were told. */
 void grobo_i_segments_aim(const grobo_robot *robot, grobo_joint_mask joints, grobo_target *target);
 void grobo_i_segments_told(grobo_robot *robot, const grobo_target *target);
@@ -202,8 +202,8 @@ int grobo_i_gate_build(grobo_robot *robot, const grobo_robot_order *order,
 /* The targets of this order wait no more: they have left, or never will. */
 void grobo_i_gate_unwait(grobo_robot *robot, const grobo_robot_order *order);
 /* Gives every joint of a target as much more time as it needs from where it is now.
- * @return the longest, or GROBO_ERR_SPEED where the wire has no time that is long enough. */
-int64_t grobo_i_gate_time(grobo_robot *robot, const grobo_robot_order *order, grobo_target *target);
+ * @return 0, or GROBO_ERR_SPEED where the wire has no time that is long enough. */
+int grobo_i_gate_time(grobo_robot *robot, const grobo_robot_order *order, grobo_target *target);
 /* Checks numbers and limits of a target; clamps if so configured. The fault is kept for
  * grobo_robot_fault(). @return 0, GROBO_ERR_NAN, _LIMIT, _ARG. */
 int grobo_i_gate_target(grobo_robot *robot, grobo_posture *target);

@@ -26,7 +26,7 @@ static void give_up(grobo_robot *robot)
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         grobo_robot_axis *axis = &robot->axes[j];
         if (grobo_i_way_is_short(axis)) {
-            double stands_rad = grobo_i_axis_commanded(axis, robot->now_us);
+            double stands_rad = grobo_i_way_at(&axis->way, axis->told_to_us);
             axis->way = (grobo_robot_way){stands_rad, stands_rad, robot->now_us, robot->now_us};
             axis->in_segments = false;
         }

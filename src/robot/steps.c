@@ -497,8 +497,8 @@ static bool is_astray(grobo_robot *robot, int joint)
         (axis->own_until_us <= robot->now_us && !axis->adrift && !creeps)) {
         return false;
     }
-    if (creeps && axis->own_until_us < axis->goal_us + left_us) {
-        axis->own_until_us = axis->goal_us + left_us;
+    if (creeps) {
+        axis->own_until_us = grobo_i_later(axis->own_until_us, axis->goal_us + left_us);
     }
     grobo_i_axis_here(axis, robot->now_us);
     /* To where nobody knows: it stops where it was. */

@@ -42,7 +42,7 @@ static bool must_end(const grobo_robot_task *job)
     case GROBO_JOB_COMMAND:
     case GROBO_JOB_EXIT:
     case GROBO_JOB_ESTOP:
-        return false;
+        break;
     }
     return false;
 }

@@ -10,6 +10,7 @@
 #include <math.h>
 
 #include "src/base/assert.h"
+#include "src/base/instant.h"
 #include "src/robot/robot.h"
 
 static bool is_in(grobo_joint_mask joints, int joint)
@@ -17,12 +18,18 @@ static bool is_in(grobo_joint_mask joints, int joint)
     return (joints & GROBO_JOINT_BIT(joint)) != 0;
 }
 
-/* What a frame asks for where so much is left to go: a multiple of the wire's unit. */
+/* A whole segment: a multiple of the wire's unit. */
+static int64_t most_us(const grobo_robot *robot)
+{
+    int64_t step_us = robot->driver->time_step_us;
+    return GROBO_SEGMENT_US < step_us ? step_us : GROBO_SEGMENT_US / step_us * step_us;
+}
+
+/* What a frame asks for where so much is left to go. */
 static int64_t next_us(const grobo_robot *robot, int64_t left_us)
 {
     int64_t step_us = robot->driver->time_step_us;
-    int64_t most_us = GROBO_SEGMENT_US < step_us ? step_us : GROBO_SEGMENT_US / step_us * step_us;
-    return left_us > most_us ? most_us : (left_us + step_us - 1) / step_us * step_us;
+    return grobo_i_sooner((left_us + step_us - 1) / step_us * step_us, most_us(robot));
 }
 
 /* Where a way is after so much of its time, and never outside the limits: it may begin there. */
@@ -50,7 +57,7 @@ bool grobo_i_segments_wanted(const grobo_robot *robot, const grobo_robot_order *
     grobo_goals goals = robot->config.goals;
     bool parts =
         goals == GROBO_GOALS_SEGMENTS || (goals == GROBO_GOALS_DEFAULT && robot->driver->arm);
-    return parts && !order->stops && time_us > next_us(robot, time_us);
+    return parts && !order->stops && time_us > most_us(robot);
 }
 
 bool grobo_i_segments_cut(const grobo_robot *robot, const grobo_robot_order *order,
@@ -68,7 +75,7 @@ bool grobo_i_segments_cut(const grobo_robot *robot, const grobo_robot_order *ord
         }
         const grobo_robot_way way = {grobo_i_axis_commanded(&robot->axes[j], robot->now_us),
                                      whole->posture.angle_rad[j], 0, time_us};
-        part->joint_time_us[j] = next_us(robot, time_us);
+        part->joint_time_us[j] = most_us(robot);
         part->posture.angle_rad[j] = place(robot, j, &way, part->joint_time_us[j]);
     }
     return cut;
@@ -89,15 +96,15 @@ grobo_joint_mask grobo_i_ways_renewed(const grobo_robot *robot)
     return grobo_i_joints_that(robot, is_renewed);
 }
 
-void grobo_i_segments_begin(grobo_robot *robot, int joint, int64_t time_us)
+void grobo_i_segments_begin(grobo_robot *robot, int joint)
 {
     grobo_robot_axis *axis = &robot->axes[joint];
     if (grobo_i_ways_renewed(robot) == 0) {
         robot->renewed_us = robot->now_us;
     }
-    GROBO_ASSERT(axis->has_target && time_us > 0);
+    GROBO_ASSERT(axis->has_target);
     axis->in_segments = true;
-    axis->told_to_us = robot->now_us + next_us(robot, time_us);
+    axis->told_to_us = robot->now_us + most_us(robot);
 }
 
 void grobo_i_segments_aim(const grobo_robot *robot, grobo_joint_mask joints, grobo_target *target)

@@ -11,6 +11,7 @@
 #include <grobo/board.h>
 #include <grobo/bus.h>
 
+#include "src/bus/time.h"
 #include "tests/support/bus_peer.h"
 
 enum { MS = 1000, S = 1000000, FRAME = GROBO_FRAME_MAX_BYTES, JOINTS = 20 };
@@ -209,6 +210,90 @@ static void the_margin_is_learnt_from_the_replies(void **state)
     }
     assert_true(timeout_after(&p, 1, 16 * MS) <= GROBO_BUS_MARGIN_MAX_US);
     assert_int_equal(timeout_after(&p, 100, 200), GROBO_BUS_MARGIN_MIN_US);
+}
+
+/* The mean with an eighth of what is new, its deviation with a quarter, the worst slowly
+ * forgotten; by hand. */
+static void what_is_learnt_of_each_reply(void **state)
+{
+    (void)state;
+    static const struct {
+        int late_us, overhead_us, deviation_us, worst_us;
+    } rows[] = {{2000, 2000, 1000, 2000},     {400, 1800, 1150, 1994},  {5000, 2200, 1662, 5000},
+                {-300, 1925, 1796, 4981},     {1925, 1925, 1347, 4970}, {50000, 6684, 10529, 40000},
+                {40000, 10848, 16225, 40000}, {0, 9492, 14881, 39844}};
+    peer p;
+    grobo_txn txn = {.attempts_ = 1};
+    peer_init(&p, NULL);
+    p.bus.active = &txn;
+    p.bus.worst_us = 1000;
+    p.bus.over_us = S;
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        p.bus.now_us = p.bus.over_us + rows[i].late_us;
+        grobo_i_bus_learn(&p.bus);
+        assert_int_equal(p.bus.overhead_us, rows[i].overhead_us);
+        assert_int_equal(p.bus.deviation_us, rows[i].deviation_us);
+        assert_int_equal(p.bus.worst_us, rows[i].worst_us);
+    }
+    p.bus.active = NULL;
+}
+
+/* What comes late counts as that, up to half of what is waited for it; the next one is due then. */
+static void a_late_reply_is_the_worst_up_to_half_of_the_hold(void **state)
+{
+    (void)state;
+    static const struct {
+        int64_t late_us;
+        int32_t worst_us;
+    } rows[] = {{0, 1000},      {999, 1000},    {1001, 1001},   {29999, 29999},
+                {30000, 30000}, {30001, 30000}, {60000, 30000}, {INT32_MAX, 30000}};
+    const grobo_bus_config config = {.hold_us = 60000};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        peer p;
+        peer_init(&p, &config);
+        grobo_bus_hold *hold = &p.bus.hold[2];
+        *hold = (grobo_bus_hold){.key = 5, .owed = 2, .due_us = S};
+        p.bus.worst_us = 1000;
+        p.bus.over_us = 77;
+        p.bus.now_us = S + rows[i].late_us;
+        assert_false(grobo_i_bus_settle(&p.bus, 6));
+        assert_true(grobo_i_bus_settle(&p.bus, 5));
+        assert_int_equal(p.bus.worst_us, rows[i].worst_us);
+        assert_int_equal(hold->owed, 1);
+        assert_int_equal(hold->due_us, 77);
+    }
+}
+
+static size_t forwarded;
+
+static size_t forward_some(const uint8_t *frame, size_t n)
+{
+    (void)frame;
+    (void)n;
+    return forwarded;
+}
+
+/* On the servos' bus is what the board forwards, be it a single byte. */
+static void what_a_board_forwards_takes_its_time(void **state)
+{
+    (void)state;
+    grobo_relay relay = *grobo_board_protocol.relay;
+    grobo_protocol protocol = grobo_board_protocol;
+    static const uint32_t bytes_us[] = {0, 87, 174, 261}; /* rounded up */
+    protocol.relay = &relay;
+    relay.forwarded = forward_some;
+    for (forwarded = 0; forwarded < 4; forwarded++) {
+        const grobo_bus_config config = {.protocol = &protocol};
+        peer p;
+        request r;
+        grobo_bus_cost cost;
+        peer_init(&p, &config);
+        peer_read(&p, &r, 1, 18, GROBO_PRIORITY_SENSE);
+        grobo_bus_cost_of(&p.bus, &r.txn, &cost);
+        uint32_t be_us = forwarded == 0 ? 0 : bytes_us[forwarded] + 100 + 2257;
+        assert_int_equal(cost.servo_us, be_us);
+        assert_int_equal(cost.total_us, 955 + 2257 + be_us);
+    }
 }
 
 static void the_margin_doubles_with_every_retry(void **state)
@@ -472,6 +557,9 @@ int main(void)
         cmocka_unit_test(deadlines_say_when_to_come_back),
         cmocka_unit_test(a_late_pump_still_takes_what_came_in_time),
         cmocka_unit_test(the_margin_is_learnt_from_the_replies),
+        cmocka_unit_test(what_is_learnt_of_each_reply),
+        cmocka_unit_test(a_late_reply_is_the_worst_up_to_half_of_the_hold),
+        cmocka_unit_test(what_a_board_forwards_takes_its_time),
         cmocka_unit_test(the_margin_doubles_with_every_retry),
         cmocka_unit_test(a_patient_read_outlasts_a_stall_at_the_other_end),
         cmocka_unit_test(patience_has_its_limits),

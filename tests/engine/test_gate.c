@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The gate at its bounds, and what it notes when a frame leaves. */
+/* The gate, deed by deed: what each is refused for, by name, and which time it gets. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,271 +9,806 @@
 
 #include <cmocka.h>
 
-#include "src/robot/robot.h"
-#include "tests/support/raw_frames.h"
+#include "tests/support/gate_kit.h"
+#include "tests/support/rig.h"
 
-static grobo_test_rig rig;
-static rig_clip clip, other;
+/* ---- what is refused ------------------------------------------------------------------------- */
 
-static const rig_key nod[] = {{0, {{NECK, 40}}}, {500, {{NECK, 30}}}};
-
-static int send(int joint, double deg, int time_ms)
+static int judge(grobo_robot_order order)
 {
-    grobo_posture target = rig_posture(&rig, joint, deg, time_ms);
-    return grobo_robot_send(&rig.robot, &target);
+    return grobo_i_gate_judge(&robot, &order, NULL);
 }
 
-static void sense(grobo_joint_mask joints, grobo_sense_kind kind)
+static void a_goal_is_judged_as_it_leaves(void **state)
 {
-    rig_expect(&rig, grobo_robot_sense(&rig.robot, joints, kind), GROBO_OK);
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        grobo_robot_order order = {
+            .joints = bits(j, other_of(j)), .number = NUMBER, .deed = GROBO_I_DEED_GOAL};
+        start();
+        assert_int_equal(judge(order), GROBO_ERR_STALE); /* none waits */
+        await(j, 1, S);
+        assert_int_equal(judge(order), GROBO_OK);
+        robot.axes[other_of(j)].sensed = false; /* another one's is not needed any more */
+        assert_int_equal(judge(order), GROBO_OK);
+        robot.axes[j].sensed = false;
+        robot.fault_joint = -1;
+        assert_int_equal(leave(order), GROBO_ERR_STALE);
+        assert_int_equal(robot.fault_joint, j);
+        expect_axes();
+        drop();
+        robot.axes[j].sensed = true;
+        robot.free_joints = GROBO_JOINT_BIT(other_of(j));
+        assert_int_equal(judge(order), GROBO_OK);
+        robot.free_joints = GROBO_JOINT_BIT(j);
+        assert_int_equal(judge(order), GROBO_ERR_STATE);
+        robot.free_joints = 0;
+        robot.axes[other_of(j)].adrift = true;
+        assert_int_equal(judge(order), GROBO_OK);
+        robot.axes[j].adrift = true;
+        assert_int_equal(judge(order), GROBO_ERR_STATE);
+        robot.axes[j].adrift = false;
+        latch(GROBO_TRIP_LOST_REPLIES);
+        assert_int_equal(judge(order), GROBO_ERR_LATCHED);
+        order.stops = true;
+        assert_int_equal(judge(order), GROBO_OK);
+        latch(GROBO_TRIP_ESTOP);
+        assert_int_equal(judge(order), GROBO_ERR_LATCHED);
+    }
 }
 
-static int id_of(int joint)
+/* What has left goes again, or its next part, until another one waits or has left. */
+static void a_goal_goes_again_until_another_takes_its_place(void **state)
 {
-    return rig.driver->model->joints[joint].motor;
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        const grobo_robot_order order = {
+            .joints = GROBO_JOINT_BIT(j), .number = NUMBER, .deed = GROBO_I_DEED_GOAL};
+        start();
+        await(j, 5, 2 * S);
+        robot.axes[j].next = 0;
+        robot.axes[j].last = NUMBER;
+        assert_int_equal(leave(order), GROBO_OK);
+        expect_goals(order.joints, 5, 2 * S);
+        drop();
+        robot.axes[j].next = NUMBER + 1;
+        assert_int_equal(judge(order), GROBO_ERR_STALE);
+        robot.axes[j].next = 0;
+        robot.axes[j].last = NUMBER + 1;
+        assert_int_equal(judge(order), GROBO_ERR_STALE);
+    }
 }
 
-/* ---- speed ----------------------------------------------------------------------------------- */
+static void a_halt_is_refused_by_name(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        const grobo_robot_order order = {
+            .joints = GROBO_JOINT_BIT(j), .asked_us = NOW, .deed = GROBO_I_DEED_HALT, .each = true};
+        start();
+        set_going(other_of(j));
+        assert_int_equal(judge(order), GROBO_ERR_EMPTY);
+        set_going(j);
+        assert_int_equal(judge(order), GROBO_OK);
+        robot.axes[j].sensed = false;
+        assert_int_equal(judge(order), GROBO_ERR_EMPTY);
+        robot.axes[j].sensed = true;
+        make_limp(j);
+        assert_int_equal(judge(order), GROBO_ERR_EMPTY);
+        robot.axes[j].torque_known = false; /* it may have torque all the same */
+        assert_int_equal(judge(order), GROBO_OK);
+        latch(GROBO_TRIP_CURRENT);
+        assert_int_equal(judge(order), GROBO_OK);
+        latch(GROBO_TRIP_ESTOP);
+        assert_int_equal(judge(order), GROBO_ERR_LATCHED);
+        robot.holds_at_stop = true;
+        assert_int_equal(judge(order), GROBO_OK);
+    }
+}
 
-/* 375 deg/s, and 0.1 degree for rounding: a long way shows a limit that is off by a hundredth. */
-static void the_speed_of_a_joint_is_exact(void **state)
+/* 50 ms after it was asked for, or 25 ms from now; drawn to the limits; half the speed. */
+static void a_halt_stops_ahead_of_where_joints_are(void **state)
 {
     (void)state;
     static const struct {
+        int ago_ms;
         double way_deg;
-        int least_ms;
-    } rows[] = {{149.9, 400}, {150.0, 400}, {150.3, 410}};
-    rig_start_at(&rig, 0, &quiet);
-    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-        rig_run(&rig, 1000000);
-        assert_int_equal(send(SHOULDER, -80, 1000), GROBO_OK);
-        rig_run(&rig, 1500000);
-        assert_int_equal(send(SHOULDER, -80 + rows[i].way_deg, 10), GROBO_OK);
-        rig_run(&rig, 50000);
-        assert_int_equal(rig_sent_ms(&rig, id_of(SHOULDER)), rows[i].least_ms);
-    }
-}
-
-/* Where it is already, too: the wire has no time of nothing. */
-static void no_way_takes_the_least_time(void **state)
-{
-    (void)state;
-    rig_start_at(&rig, 0, &quiet);
-    grobo_target target = {.posture = rig_posture(&rig, NECK, 0, 0)};
-    const grobo_robot_order order = {.joints = GROBO_JOINT_BIT(NECK), .each = true};
-    assert_int_equal(grobo_i_gate_time(&rig.robot, &order, &target), 10000);
-    assert_int_equal(target.joint_time_us[NECK], 10000);
-}
-
-/* Why it was stopped may be that somebody took hold of it. */
-static void the_first_target_after_a_reset_is_slow(void **state)
-{
-    (void)state;
-    rig_start_at(&rig, 0, &quiet);
-    grobo_i_trip(&rig.robot, GROBO_TRIP_TEMPERATURE, CHEST, 75, true);
-    assert_int_equal(grobo_robot_reset(&rig.robot), GROBO_OK);
-    assert_int_equal(send(NECK, 20, 100), GROBO_OK);
-    rig_run(&rig, 50000);
-    assert_in_range(rig_sent_ms(&rig, NECK_ID), 320, 340); /* at 60 deg/s */
-}
-
-/* ---- who may be moved ------------------------------------------------------------------------ */
-
-/* The target waits for the line, and a hand takes the joint. */
-static void a_target_that_waits_does_not_reach_a_joint_that_is_free_by_then(void **state)
-{
-    (void)state;
-    rig_start_at(&rig, 0, &quiet);
-    assert_int_equal(send(NECK, 20, 500), GROBO_OK);
-    assert_int_equal(grobo_robot_free(&rig.robot, GROBO_JOINT_BIT(NECK), true), 0);
-    rig_run(&rig, 100000);
-    assert_int_equal(rig_sent_ms(&rig, NECK_ID), -1);
-    assert_true(fabs(rig_angle_deg(&rig, NECK)) < 0.1);
-}
-
-/* It was read, and does not hold: a second file would move it in frames only. */
-static void a_second_file_moves_no_joint_without_torque(void **state)
-{
-    (void)state;
-    rig_start(&rig, &quiet, NULL);
-    rig_clip_init(&clip, nod, 2);
-    rig_clip_init(&other, nod, 2);
-    clip.only = GROBO_JOINT_BIT(NECK);
-    other.only = GROBO_JOINT_BIT(R_KNEE);
-    sense(rig_all(&rig), GROBO_SENSE_ALL);
-    rig_expect(&rig, grobo_robot_play(&rig.robot, &clip.clip, NULL), GROBO_OK);
-    assert_int_equal(grobo_robot_enqueue(&rig.robot, &other.clip, NULL), GROBO_ERR_STATE);
-}
-
-/* ---- torque ---------------------------------------------------------------------------------- */
-
-static void a_goal_holds_within_two_degrees(void **state)
-{
-    (void)state;
-    rig_start_at(&rig, 0, &quiet);
-    for (int sign = -1; sign <= 1; sign += 2) {
-        double here_rad = rig.robot.axes[NECK].state.angle_rad;
-        rig.robot.axes[NECK].state.goal_rad = here_rad + sign * grobo_rad_from_deg(1.95);
-        assert_true(grobo_i_goal_holds(&rig.robot, NECK));
-        rig.robot.axes[NECK].state.goal_rad = here_rad + sign * grobo_rad_from_deg(2.05);
-        assert_false(grobo_i_goal_holds(&rig.robot, NECK));
-    }
-}
-
-/* Whatever ran last: what free mode switches waits behind a stop. */
-static void free_mode_is_not_as_urgent_as_a_stop(void **state)
-{
-    (void)state;
-    bool seen = false;
-    rig_start_at(&rig, 0, &quiet);
-    rig_expect(&rig, grobo_robot_estop(&rig.robot), GROBO_OK);
-    assert_int_equal(grobo_robot_reset(&rig.robot), GROBO_OK);
-    assert_int_equal(grobo_robot_free(&rig.robot, rig_all(&rig), true), GROBO_OK);
-    for (int i = 0; i < 10000 && rig_torque(&rig, NECK) != GROBO_TORQUE_ON; i++) {
-        for (int s = 0; s < GROBO_ROBOT_SLOTS; s++) {
-            const grobo_robot_slot *slot = &rig.robot.slots[s];
-            bool switches =
-                slot->use != GROBO_I_USE_FREE && slot->order.deed == GROBO_I_DEED_TORQUE;
-            assert_true(!switches || slot->txn.priority == GROBO_PRIORITY_USER);
-            seen = seen || switches;
+    } rows[] = {{0, 10.5}, {1, 10.49}, {24, 10.26}, {25, 10.25}, {26, 10.25}, {500, 10.25}};
+    for (int j = 0; j < N; j++) {
+        for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+            start();
+            set_going(j);
+            assert_int_equal(leave((grobo_robot_order){.joints = GROBO_JOINT_BIT(j),
+                                                       .asked_us = NOW - rows[i].ago_ms * MS,
+                                                       .deed = GROBO_I_DEED_HALT,
+                                                       .each = true,
+                                                       .stops = true}),
+                             GROBO_OK);
+            expect_equal(robot.axes[j].way.to_rad, here_rad(j) + RAD(rows[i].way_deg), "its rest");
+            assert_true(robot.axes[j].way.to_us == NOW + 100 * MS);
+            drop();
         }
-        rig_run(&rig, 100);
-    }
-    assert_true(seen);
-}
-
-/* A raw goal has sent it on a long way without torque. Now it holds where it is, and is on none. */
-static void what_begins_to_hold_is_on_no_way(void **state)
-{
-    (void)state;
-    rig_start(&rig, &quiet, NULL);
-    sense(rig_all(&rig), GROBO_SENSE_ALL);
-    rig_expect(&rig, raw_goal(&rig, NECK, 10, 10000), GROBO_OK);
-    rig_run(&rig, 5000000);
-    (void)grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(NECK), GROBO_TORQUE_ON);
-    while (rig.torque_on == 0) {
-        rig_run(&rig, 100);
-    }
-    assert_false(grobo_robot_moving(&rig.robot));
-    rig_forget(&rig);
-    (void)grobo_robot_stop(&rig.robot, true);
-    rig_run(&rig, 100000);
-    assert_int_equal(rig_sent_ms(&rig, NECK_ID), -1);
-}
-
-/* It goes on meanwhile, and a stop finds it on its way. */
-static void what_begins_to_hold_leaves_its_neighbour_on_its_way(void **state)
-{
-    (void)state;
-    rig_start_at(&rig, 0, &quiet);
-    for (int j = NECK; j >= CHEST; j--) { /* each once */
-        int moved = j == NECK ? CHEST : NECK;
-        double from_deg = rig_angle_deg(&rig, moved);
-        rig_expect(&rig, grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(j), 0), 0);
-        assert_int_equal(send(moved, from_deg - 40, 5000), GROBO_OK);
-        rig_run(&rig, 500000);
-        rig_expect(&rig, grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(j), GROBO_TORQUE_ON), 0);
-        assert_int_equal(grobo_robot_stop(&rig.robot, true), GROBO_OK);
-        rig_run(&rig, 500000);
-        double here_deg = rig_angle_deg(&rig, moved);
-        assert_true(here_deg < from_deg - 2 && here_deg > from_deg - 15);
-        rig_run(&rig, 500000);
-        assert_true(fabs(rig_angle_deg(&rig, moved) - here_deg) < 0.01);
     }
 }
 
-/* ---- stops ----------------------------------------------------------------------------------- */
-
-/* Its approach takes a while and is read back: until then the motion is a job. */
-static void a_cancel_stops_a_motion_that_begins(void **state)
+static void a_hold_is_refused_by_name(void **state)
 {
     (void)state;
-    rig_start_at(&rig, -45, &quiet);
-    rig_clip_init(&clip, nod, 2);
-    clip.only = GROBO_JOINT_BIT(NECK);
-    int number = grobo_robot_play(&rig.robot, &clip.clip, NULL);
-    while (grobo_robot_play_state(&rig.robot) != GROBO_SEQUENCER_APPROACHING) {
-        rig_run(&rig, 100);
-    }
-    assert_int_equal(grobo_robot_job(&rig.robot), GROBO_JOB_PLAY);
-    assert_int_equal(grobo_robot_cancel(&rig.robot), GROBO_OK);
-    rig_expect(&rig, number, GROBO_ERR_CANCELED);
-    rig_run(&rig, 500000);
-    assert_int_equal(grobo_robot_play_state(&rig.robot), GROBO_SEQUENCER_IDLE);
-    double here_deg = rig_angle_deg(&rig, NECK);
-    assert_true(here_deg < -30);
-    rig_run(&rig, 2000000);
-    assert_true(fabs(rig_angle_deg(&rig, NECK) - here_deg) < 0.01);
-}
-
-/* ---- readings -------------------------------------------------------------------------------- */
-
-/* What a reading does not bring stays as it was. */
-static void a_short_reading_changes_nothing_else(void **state)
-{
-    (void)state;
-    static const grobo_sense_kind kinds[] = {GROBO_SENSE_POSITION, GROBO_SENSE_GOAL};
-    rig_start_at(&rig, 10, &quiet);
-    assert_int_equal(grobo_sim_set_temperature(&rig.sim, NECK, 40), 0);
-    sense(GROBO_JOINT_BIT(NECK), GROBO_SENSE_ALL);
-    const grobo_joint_state all = rig.robot.axes[NECK].state;
-    assert_true(all.temperature_c > 30 && all.voltage_mv > 6000 && all.current_ma > 0);
-    for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
-        sense(GROBO_JOINT_BIT(NECK), kinds[i]);
-        const grobo_joint_state now = rig.robot.axes[NECK].state;
-        assert_int_equal(now.valid, all.valid);
-        assert_true(fabs(now.angle_rad - all.angle_rad) < 1e-9);
-        assert_true(fabs(now.goal_rad - all.goal_rad) < 1e-9);
-        assert_true(now.goal_time_us == all.goal_time_us && now.time_us == all.time_us);
-        assert_int_equal(now.speed_dps, all.speed_dps);
-        assert_int_equal(now.current_ma, all.current_ma);
-        assert_int_equal(now.temperature_c, all.temperature_c);
-        assert_int_equal(now.voltage_mv, all.voltage_mv);
-        assert_int_equal(now.torque, all.torque);
+    for (int j = 0; j < N; j++) {
+        const grobo_robot_order order = {
+            .joints = GROBO_JOINT_BIT(j), .deed = GROBO_I_DEED_HOLD, .each = true};
+        start();
+        make_limp(other_of(j));
+        assert_int_equal(judge(order), GROBO_ERR_STATE); /* it has torque */
+        make_limp(j);
+        assert_int_equal(judge(order), GROBO_OK);
+        robot.axes[j].sensed = false;
+        assert_int_equal(judge(order), GROBO_ERR_STATE);
+        robot.axes[j].sensed = true;
+        for (int end = -1; end <= 1; end += 2) { /* 3 degrees outside at most */
+            robot.axes[j].state.angle_rad = end * RAD(70 + j + 3.01);
+            assert_int_equal(judge(order), GROBO_ERR_STATE);
+            robot.axes[j].state.angle_rad = end * RAD(70 + j + 2.99);
+            robot.axes[j].state.torque = GROBO_TORQUE_OFF;
+            assert_int_equal(leave(order), GROBO_OK);
+            expect_goals(order.joints, end * (70 + j) - (j - 20), driver.time_step_us);
+            drop();
+        }
+        latch(GROBO_TRIP_LIMIT);
+        assert_int_equal(judge(order), GROBO_ERR_LATCHED);
     }
 }
 
-/* Its first attempt left at 0 on a clock that begins there; torque went before the second. */
-static void a_reading_of_the_first_moment_is_of_then(void **state)
+static void torque_is_refused_by_name(void **state)
 {
     (void)state;
-    const grobo_robot_config config = {.sense_interval_us = 1};
-    grobo_joint_info info;
-    rig_epoch_us = 0;
-    rig_start(&rig, &config, NULL);
-    rig_epoch_us = 1000000;
-    assert_int_equal(grobo_sim_set_cable(&rig.sim, HIP, GROBO_SIM_CABLE_MUTE), 0);
-    rig_run(&rig, 1000);
-    assert_int_equal(rig.sent[0].at_us, 0);
-    assert_true(raw_torque(&rig, HIP, GROBO_TORQUE_OFF) > 0);
-    while (raw_times_sent(&rig) == 0) {
-        rig_run(&rig, 100);
+    for (int j = 0; j < N; j++) {
+        grobo_robot_order order = {.joints = GROBO_JOINT_BIT(j),
+                                   .asked_us = NOW,
+                                   .deed = GROBO_I_DEED_TORQUE,
+                                   .torque = GROBO_TORQUE_ON};
+        start();
+        make_limp(j);
+        robot.axes[other_of(j)].held = false;
+        assert_int_equal(judge(order), GROBO_OK);
+        order.asked_us = NOW - 2 * S;
+        assert_int_equal(judge(order), GROBO_OK);
+        order.asked_us = NOW - 2 * S - 1; /* waited for too long */
+        assert_int_equal(judge(order), GROBO_ERR_STATE);
+        order.asked_us = NOW;
+        robot.axes[j].held = false;
+        assert_int_equal(judge(order), GROBO_ERR_STATE);
+        robot.axes[j].held = true;
+        for (int end = -1; end <= 1; end += 2) { /* 2 degrees from its goal at most */
+            robot.axes[j].state.goal_rad = here_rad(j) + end * RAD(2.01);
+            assert_false(grobo_i_goal_holds(&robot, j));
+            assert_int_equal(judge(order), GROBO_ERR_STATE);
+            robot.axes[j].state.goal_rad = here_rad(j) + end * RAD(1.99);
+            assert_true(grobo_i_goal_holds(&robot, j));
+            assert_int_equal(judge(order), GROBO_OK);
+        }
+        robot.axes[j].state.angle_rad = 0;
+        robot.axes[j].state.goal_rad = grobo_rad_from_deg(2);
+        assert_true(grobo_i_goal_holds(&robot, j));
+        latch(GROBO_TRIP_LIMIT);
+        assert_int_equal(judge(order), GROBO_ERR_LATCHED);
+        order.torque = GROBO_TORQUE_BRAKE;
+        assert_int_equal(judge(order), GROBO_OK);
+        order.torque = GROBO_TORQUE_OFF;
+        robot.axes[j].held = false;
+        assert_int_equal(judge(order), GROBO_OK);
     }
-    assert_int_equal(grobo_sim_set_cable(&rig.sim, HIP, GROBO_SIM_CABLE_IN), 0);
-    while (rig_count(&rig, GROBO_EVENT_JOINT) == 0) {
-        rig_run(&rig, 100);
+}
+
+/* A frame for two joints of which one is not held switches the other alone. */
+static void torque_comes_on_for_those_that_are_held(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        start();
+        make_limp(j);
+        make_limp(other_of(j));
+        robot.axes[other_of(j)].held = false;
+        assert_int_equal(leave((grobo_robot_order){.joints = bits(j, other_of(j)),
+                                                   .asked_us = NOW,
+                                                   .deed = GROBO_I_DEED_TORQUE,
+                                                   .torque = GROBO_TORQUE_ON}),
+                         GROBO_OK);
+        expect_torque(j, GROBO_TORQUE_ON);
+        drop();
     }
-    assert_int_equal(rig_last(&rig, GROBO_EVENT_JOINT)->u.joint.joint, HIP);
-    assert_int_equal(rig_last(&rig, GROBO_EVENT_JOINT)->u.joint.result, GROBO_OK);
-    assert_int_equal(grobo_robot_joint(&rig.robot, HIP, &info), 0);
-    assert_false(info.torque_known);
+}
+
+static void a_segment_is_refused_by_name(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        const grobo_robot_order order = {
+            .joints = GROBO_JOINT_BIT(j), .deed = GROBO_I_DEED_SEGMENT, .each = true};
+        start();
+        set_going(j);
+        set_going(other_of(j));
+        robot.axes[other_of(j)].in_segments = true;
+        robot.axes[other_of(j)].told_to_us = NOW + 1;
+        assert_int_equal(judge(order), GROBO_ERR_EMPTY);
+        robot.axes[j].in_segments = true;
+        robot.axes[j].told_to_us = NOW;
+        assert_int_equal(judge(order), GROBO_ERR_EMPTY); /* it stands */
+        robot.axes[j].told_to_us = NOW + 1;
+        assert_int_equal(judge(order), GROBO_OK);
+        robot.axes[j].sensed = false;
+        assert_int_equal(judge(order), GROBO_ERR_STALE);
+        robot.axes[j].sensed = true;
+        robot.free_joints = GROBO_JOINT_BIT(j);
+        assert_int_equal(judge(order), GROBO_ERR_STATE);
+        robot.free_joints = 0;
+        latch(GROBO_TRIP_CURRENT);
+        assert_int_equal(judge(order), GROBO_ERR_LATCHED);
+    }
+}
+
+static void a_setting_is_refused_by_name(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        const grobo_robot_order order = {.joints = GROBO_JOINT_BIT(j),
+                                         .deed = GROBO_I_DEED_SETTING};
+        start();
+        make_limp(j);
+        assert_int_equal(judge(order), GROBO_OK);
+        for (int has = GROBO_TORQUE_OFF; has <= GROBO_TORQUE_BRAKE; has++) {
+            robot.axes[j].state.torque = (grobo_torque)has;
+            assert_int_equal(judge(order), has == GROBO_TORQUE_ON ? GROBO_ERR_STATE : GROBO_OK);
+        }
+        robot.axes[j].torque_known = false;
+        assert_int_equal(judge(order), GROBO_ERR_STALE);
+        take(order); /* its first attempt is why: a second may leave */
+        assert_int_equal(grobo_i_gate_leave(slot), GROBO_ERR_STALE);
+        slot->txn.sent_us = NOW - 5;
+        slot->exchange.frame_bytes = 1;
+        assert_int_equal(grobo_i_gate_leave(slot), GROBO_OK);
+        slot->txn.sent_us = robot.axes[j].told_us = 0; /* where the clock may begin */
+        assert_int_equal(grobo_i_gate_leave(slot), GROBO_OK);
+        drop();
+    }
+}
+
+static void what_needs_silence_is_refused_while_something_moves(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        const grobo_robot_order command = {.joints = GROBO_JOINT_BIT(other_of(j)),
+                                           .deed = GROBO_I_DEED_COMMAND};
+        const grobo_robot_order unknown = {.joints = GROBO_JOINTS_ALL(N),
+                                           .deed = GROBO_I_DEED_UNKNOWN};
+        start();
+        assert_int_equal(judge(command), GROBO_OK);
+        assert_int_equal(judge(unknown), GROBO_OK);
+        set_going(j);
+        assert_int_equal(judge(command), GROBO_ERR_STATE);
+        assert_int_equal(judge(unknown), GROBO_ERR_STATE);
+        start();
+        await(j, 0, S);
+        assert_int_equal(judge(command), GROBO_ERR_STATE);
+        assert_int_equal(judge(unknown), GROBO_ERR_STATE);
+        start();
+        latch(GROBO_TRIP_ESTOP);
+        assert_int_equal(judge(command), GROBO_OK);
+        assert_int_equal(judge(unknown), GROBO_ERR_LATCHED);
+    }
+}
+
+/* Another frame has told one of its joints something since the first attempt. */
+static void a_second_attempt_is_passed_by_what_left_since(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        start();
+        take((grobo_robot_order){.joints = bits(j, other_of(j)),
+                                 .deed = GROBO_I_DEED_TORQUE,
+                                 .torque = GROBO_TORQUE_OFF});
+        slot->txn.sent_us = NOW - 7; /* all were told something then */
+        robot.axes[third_of(j)].told_us = NOW;
+        assert_int_equal(grobo_i_gate_leave(slot), GROBO_OK);
+        for (int i = 0; i < 2; i++) {
+            robot.axes[j].told_us = robot.axes[other_of(j)].told_us = NOW - 7;
+            robot.axes[i == 0 ? j : other_of(j)].told_us = NOW - 6;
+            keep_axes();
+            assert_int_equal(grobo_i_gate_leave(slot), GROBO_ERR_STALE);
+            expect_axes();
+        }
+        slot->txn.sent_us = -1; /* a first attempt is passed by nothing */
+        assert_int_equal(grobo_i_gate_leave(slot), GROBO_OK);
+        slot->txn.sent_us = 0; /* the clock may begin there */
+        assert_int_equal(grobo_i_gate_leave(slot), GROBO_ERR_STALE);
+        drop();
+    }
+}
+
+/* The driver has no such part, and so nothing leaves. */
+static void a_frame_that_there_is_not_does_not_leave(void **state)
+{
+    (void)state;
+    for (int deed = 0; deed < 2; deed++) {
+        start();
+        await(4, 1, S);
+        assert_int_equal(leave((grobo_robot_order){
+                             .joints = GROBO_JOINT_BIT(4),
+                             .number = NUMBER,
+                             .deed = (uint8_t)(deed ? GROBO_I_DEED_TORQUE : GROBO_I_DEED_GOAL),
+                             .part = 1}),
+                         GROBO_ERR_EMPTY);
+        expect_axes();
+        drop();
+    }
+}
+
+/* What does not fit the first frame is in the second; in one frame is asked for or refused. */
+static void each_part_has_joints_of_its_own(void **state)
+{
+    (void)state;
+    grobo_robot_order order = {.joints = GROBO_JOINTS_ALL(N), .number = 1};
+    for (int deed = 0; deed < 2; deed++) {
+        int next = 0;
+        start();
+        for (int j = 0; j < N; j++) {
+            await(j, 0, S);
+            robot.axes[j].next = 1;
+        }
+        order.deed = deed ? GROBO_I_DEED_TORQUE : GROBO_I_DEED_GOAL;
+        order.part = 0;
+        grobo_exchange exchange;
+        int result = grobo_i_gate_build(&robot, &order, &exchange);
+        for (; leave(order) == GROBO_OK; order.part++) {
+            rig_frame frame = {.size = (uint8_t)slot->exchange.frame_bytes};
+            memcpy(frame.bytes, slot->exchange.frame, frame.size);
+            const uint8_t *packet;
+            assert_true(rig_packet(&frame, &packet) > 8);
+            for (int i = 0; i < packet[6]; i++) {
+                assert_int_equal(packet[7 + i * packet[5]], ++next);
+            }
+            drop();
+            if (order.part > 0) {
+                order.number = 1;
+                assert_int_equal(grobo_i_gate_build(&robot, &order, &exchange), 1);
+                assert_memory_equal(exchange.frame, frame.bytes, frame.size);
+            }
+        }
+        drop();
+        assert_int_equal(next, N);
+        assert_int_equal(result, order.part > 1 ? GROBO_ERR_CAP : 1);
+        assert_int_equal(grobo_i_gate_build(&robot, &order, &exchange), 0);
+        assert_true(deed == 1 || robot.axes[0].next == 0);
+    }
+}
+
+static int parts; /* that the driver needs, whatever for */
+static grobo_driver whole;
+
+static int posture_in_parts(const grobo_driver *self, void *ctx, const grobo_target *target,
+                            int part, grobo_exchange *exchange)
+{
+    int result = whole.posture(self, ctx, target, 0, exchange);
+    return part < parts ? result : parts < 0 ? GROBO_ERR_SPACE : 0;
+}
+
+/* Several joints go into one frame, or are asked for in smaller frames; one may need more. */
+static void several_joints_go_in_one_frame(void **state)
+{
+    (void)state;
+    static const struct {
+        int joints, parts, part, result;
+    } rows[] = {{1, 1, 0, 1},
+                {1, 2, 0, 1},
+                {1, 2, 1, 1},
+                {1, 2, 2, 0},
+                {1, 0, 0, 0},
+                {2, 1, 0, 1},
+                {2, 2, 0, GROBO_ERR_CAP},
+                {2, 3, 0, GROBO_ERR_CAP},
+                {2, 2, 1, 1},
+                {2, 2, 2, 0},
+                {2, 0, 0, 0},
+                {2, -1, 0, GROBO_ERR_SPACE},
+                {1, -1, 0, GROBO_ERR_SPACE}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        const grobo_robot_order order = {.joints = rows[i].joints == 1 ? 1 : 3,
+                                         .number = NUMBER,
+                                         .deed = GROBO_I_DEED_GOAL,
+                                         .part = (uint8_t)rows[i].part};
+        grobo_exchange exchange;
+        start();
+        whole = driver;
+        driver.posture = posture_in_parts;
+        parts = rows[i].parts;
+        assert_int_equal(grobo_i_gate_build(&robot, &order, &exchange), GROBO_ERR_STALE);
+        await(0, 1, S);
+        await(1, 1, S);
+        assert_int_equal(grobo_i_gate_build(&robot, &order, &exchange), rows[i].result);
+    }
+}
+
+static void only_the_target_of_that_number_waits_no_more(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        start();
+        await(j, 1, S);
+        await(other_of(j), 1, S);
+        robot.axes[third_of(j)].next = NUMBER + 1;
+        keep_axes();
+        grobo_i_gate_unwait(&robot, &(grobo_robot_order){.joints = GROBO_JOINTS_ALL(N)});
+        grobo_i_gate_unwait(&robot, &(grobo_robot_order){.joints = GROBO_JOINTS_ALL(N) &
+                                                                   ~GROBO_JOINT_BIT(j) &
+                                                                   all_but(other_of(j)),
+                                                         .number = NUMBER});
+        expect_axes();
+        grobo_i_gate_unwait(&robot,
+                            &(grobo_robot_order){.joints = bits(j, third_of(j)), .number = NUMBER});
+        before[j].next = 0;
+        expect_axes();
+    }
+}
+
+/* ---- time ------------------------------------------------------------------------------------ */
+
+static int64_t steps_up(double time_us)
+{
+    return (int64_t)ceil(time_us / 10000 - 1e-9) * 10000;
+}
+
+static void times_are_what_speeds_make_them(void **state)
+{
+    (void)state;
+    static const struct {
+        int pct;
+        double approach_dps;
+        bool soft;
+    } rows[] = {{100, 60, false}, {10, 60, false}, {99, 60, false}, {1, 60, false},
+                {100, 60, true},  {100, 7, true},  {10, 60, true},  {10, 500, true}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        const grobo_robot_config config = {.speed_limit_pct = rows[i].pct,
+                                           .approach_dps = rows[i].approach_dps};
+        for (int j = 0; j < N; j++) {
+            grobo_robot_order order = {.each = true, .soft = rows[i].soft};
+            grobo_target target = {0};
+            start_with(&config);
+            double way_deg = j < 20 ? 50.037 : -50.037;
+            double limit_dps = speed_dps(j) * rows[i].pct / 100;
+            double dps = rows[i].soft ? fmin(rows[i].approach_dps, limit_dps) : limit_dps;
+            int64_t be_us = steps_up((50.037 - 0.1) / dps * 1e6);
+            assert_int_equal(grobo_posture_init(&target.posture, N), 0);
+            target.posture.set = bits(j, other_of(j));
+            target.posture.angle_rad[j] = here_rad(j) + RAD(way_deg);
+            target.posture.angle_rad[other_of(j)] = here_rad(other_of(j));
+            for (int each = 1; each >= 0; each--) {
+                order.each = each;
+                assert_int_equal(grobo_i_gate_time(&robot, &order, &target), GROBO_OK);
+                for (int k = 0; k < N; k++) {
+                    int64_t needs_us = k == j ? be_us : k == other_of(j) ? 10000 : 0;
+                    int64_t gets_us = each ? needs_us : be_us;
+                    if (target.joint_time_us[k] != gets_us) {
+                        fail_msg("joint %d of %d: %lld us, not %lld", k, j,
+                                 (long long)target.joint_time_us[k], (long long)gets_us);
+                    }
+                }
+            }
+            assert_int_equal(robot.counters.stretched, 1);
+            target.joint_time_us[j] -= 10000; /* any of it counts, and all of it once */
+            assert_int_equal(grobo_i_gate_time(&robot, &order, &target), GROBO_OK);
+            assert_int_equal(robot.counters.stretched, 2);
+        }
+    }
+}
+
+/* Of an odd number of joints, too, and of none beyond them. */
+static void all_joints_of_a_move_get_its_time(void **state)
+{
+    (void)state;
+    for (int n = N - 1; n <= N; n++) {
+        grobo_target target = {0};
+        make_robot(n, NULL);
+        assert_int_equal(grobo_posture_init(&target.posture, n), 0);
+        target.posture.set = 2;
+        target.posture.angle_rad[1] = RAD(50);
+        assert_int_equal(grobo_i_gate_time(&robot, &(grobo_robot_order){0}, &target), GROBO_OK);
+        for (int j = 0; j < N; j++) {
+            assert_int_equal(target.joint_time_us[j], j < n ? 840000 : 0); /* 49.9 at 60 deg/s */
+        }
+    }
+}
+
+/* From where the joint is on its way by now, whatever the target asks for. */
+static void a_goal_that_leaves_late_gets_the_time_from_there(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        for (int soft = 0; soft < 2; soft++) {
+            start();
+            set_going(j);
+            await(j, -30, 10 * MS);
+            take((grobo_robot_order){.joints = GROBO_JOINT_BIT(j),
+                                     .number = NUMBER,
+                                     .deed = GROBO_I_DEED_GOAL,
+                                     .soft = soft,
+                                     .each = true});
+            assert_int_equal(grobo_i_gate_leave(slot), GROBO_OK);
+            int64_t be_us = steps_up((40 - 0.1) / (soft ? 60 : speed_dps(j)) * 1e6);
+            if (robot.axes[j].way.to_us != NOW + be_us) {
+                fail_msg("joint %d: %lld us, not %lld", j,
+                         (long long)(robot.axes[j].way.to_us - NOW), (long long)be_us);
+            }
+            drop();
+        }
+    }
+}
+
+/* The wire has no more than so many steps. */
+static void a_time_longer_than_the_wire_has_is_refused(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        const grobo_robot_order order = {.each = true, .soft = true};
+        const double most_deg = 0.5 * (double)GROBO_PLAY_TIME_MAX_US / 1e6 + 0.1;
+        for (int beyond = 0; beyond < 2; beyond++) {
+            grobo_target target = {0};
+            start_with(&(grobo_robot_config){.approach_dps = 0.5});
+            robot.axes[j].way.to_rad = RAD(-40);
+            assert_int_equal(grobo_posture_init(&target.posture, N), 0);
+            target.posture.set = bits(j, other_of(j));
+            target.posture.angle_rad[j] = RAD(-40 + most_deg + (beyond ? 0.001 : -0.001));
+            target.posture.angle_rad[other_of(j)] = here_rad(other_of(j));
+            robot.fault_joint = -1;
+            assert_int_equal(grobo_i_gate_time(&robot, &order, &target),
+                             beyond ? GROBO_ERR_SPEED : GROBO_OK);
+            assert_int_equal(robot.fault_joint, beyond ? j : -1);
+            assert_true(beyond || target.joint_time_us[j] == GROBO_PLAY_TIME_MAX_US);
+        }
+    }
+}
+
+/* A slow first move takes no less than a halt where the joint still moves. */
+static void one_that_moves_is_not_caught_up_softly(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        for (int soft = 0; soft < 2; soft++) {
+            for (int moves = 0; moves < 2; moves++) {
+                const grobo_robot_order order = {.each = true, .soft = soft};
+                grobo_target target = {0};
+                start();
+                robot.axes[j].way.to_us = NOW + moves;
+                assert_int_equal(grobo_posture_init(&target.posture, N), 0);
+                target.posture.set = GROBO_JOINT_BIT(j);
+                target.posture.angle_rad[j] = here_rad(j);
+                assert_int_equal(grobo_i_gate_time(&robot, &order, &target), GROBO_OK);
+                assert_int_equal(target.joint_time_us[j], soft && moves ? 100000 : 10000);
+                target.joint_time_us[j] = 150000; /* one that is long enough stays */
+                assert_int_equal(grobo_i_gate_time(&robot, &order, &target), GROBO_OK);
+                assert_int_equal(target.joint_time_us[j], 150000);
+            }
+        }
+    }
+}
+
+static void a_target_of_no_joint_takes_no_time(void **state)
+{
+    (void)state;
+    grobo_target target = {0};
+    start();
+    assert_int_equal(grobo_i_gate_time(&robot, &(grobo_robot_order){0}, &target), GROBO_OK);
+    for (int j = 0; j < N; j++) {
+        assert_int_equal(target.joint_time_us[j], 0);
+    }
+    assert_int_equal(robot.counters.stretched, 0);
+}
+
+/* The end of a motion: at most half of what the joint could do in its time, from where it is. */
+static void a_motion_rests_near_where_joints_are(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        for (int side = -1; side <= 1; side += 2) {
+            for (int how = 0; how < 8; how++) {
+                bool far = how % 2 != 0;
+                bool soft = how / 2 == 1 || how / 2 == 2; /* the robot, or the order */
+                double most_deg = (soft ? 60 : speed_dps(j)) * 0.04 / 2;
+                double way_deg = side * (most_deg + (far ? 1 : -0.5));
+                start();
+                robot.soft = how / 2 == 1;
+                set_going(j); /* is 10 degrees from where it was */
+                await(j, 10 + way_deg, 40 * MS);
+                assert_int_equal(leave((grobo_robot_order){.joints = GROBO_JOINT_BIT(j),
+                                                           .number = NUMBER,
+                                                           .deed = GROBO_I_DEED_GOAL,
+                                                           .each = true,
+                                                           .soft = how / 2 == 2,
+                                                           .rests = true}),
+                                 GROBO_OK);
+                expect_equal(robot.axes[j].way.to_rad,
+                             here_rad(j) + RAD(10 + (far ? side * most_deg : way_deg)), "its rest");
+                drop();
+            }
+        }
+    }
+}
+
+/* A joint may have sagged outside its limits: it rests, or stops, at them. */
+static void nothing_rests_outside_the_limits(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        for (int halts = 0; halts < 2; halts++) {
+            start();
+            robot.axes[j].way = (grobo_robot_way){RAD(72 + j), RAD(78 + j), NOW - S, NOW + S};
+            robot.axes[j].next = NUMBER;
+            robot.axes[j].next_rad = RAD(70 + j);
+            robot.axes[j].next_time_us = 10 * MS;
+            assert_int_equal(
+                leave((grobo_robot_order){.joints = GROBO_JOINT_BIT(j),
+                                          .number = NUMBER,
+                                          .asked_us = NOW,
+                                          .deed = halts ? GROBO_I_DEED_HALT : GROBO_I_DEED_GOAL,
+                                          .each = true,
+                                          .rests = true}),
+                GROBO_OK);
+            expect_equal(robot.axes[j].way.to_rad, RAD(70 + j), "its rest");
+            drop();
+        }
+    }
+}
+
+/* By a raw frame or a halt: the joint stops where it is 50 ms later, wherever the clip is. */
+static void a_motion_rests_where_others_have_joints_stand(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        start();
+        set_going(j);
+        await(j, 30, 40 * MS);
+        robot.axes[j].last = 0;
+        assert_int_equal(leave((grobo_robot_order){.joints = GROBO_JOINT_BIT(j),
+                                                   .number = NUMBER,
+                                                   .deed = GROBO_I_DEED_GOAL,
+                                                   .each = true,
+                                                   .rests = true}),
+                         GROBO_OK);
+        expect_equal(robot.axes[j].way.to_rad, here_rad(j) + RAD(10.5), "its rest");
+        drop();
+    }
+}
+
+/* ---- what may be asked ----------------------------------------------------------------------- */
+
+static void a_target_is_checked_for_numbers_and_limits(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        for (int clamp = 0; clamp < 2; clamp++) {
+            grobo_posture target;
+            start_with(&(grobo_robot_config){.limit_policy =
+                                                 clamp ? GROBO_LIMIT_CLAMP : GROBO_LIMIT_REFUSE});
+            assert_int_equal(grobo_posture_init(&target, N), 0);
+            target.set = bits(j, other_of(j));
+            target.angle_rad[j] = RAD(70 + j);
+            robot.fault_joint = 99;
+            robot.fault_deg = 99;
+            assert_int_equal(grobo_i_gate_target(&robot, &target), GROBO_OK);
+            assert_int_equal(robot.fault_joint, -1);
+            expect_equal(robot.fault_deg, 0, "no fault");
+            assert_int_equal(robot.counters.clamped, 0);
+            target.angle_rad[j] = -RAD(71 + j);
+            assert_int_equal(grobo_i_gate_target(&robot, &target),
+                             clamp ? GROBO_OK : GROBO_ERR_LIMIT);
+            expect_equal(target.angle_rad[j], -RAD(clamp ? 70 + j : 71 + j), "target");
+            assert_int_equal(robot.counters.clamped, clamp);
+            if (!clamp) {
+                assert_int_equal(robot.fault_joint, j);
+                expect_equal(robot.fault_deg, -71 - j, "fault");
+            }
+            target.angle_rad[j] = NAN;
+            target.angle_rad[other_of(j)] = RAD(200);
+            robot.fault_joint = 99;
+            robot.fault_deg = 99;
+            int result = grobo_i_gate_target(&robot, &target);
+            bool first = j < other_of(j); /* one behind a limit is found when that is drawn in */
+            assert_int_equal(result, first || clamp ? GROBO_ERR_NAN : GROBO_ERR_LIMIT);
+            assert_int_equal(robot.fault_joint, first ? j : clamp ? -1 : other_of(j));
+            if (first) {
+                assert_true(isnan(robot.fault_deg));
+            } else {
+                expect_equal(robot.fault_deg, clamp ? 0 : 200, "fault");
+            }
+            assert_int_equal(robot.counters.clamped, clamp);
+        }
+    }
+}
+
+static void joints_are_ready_that_were_read_and_hold(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        start();
+        assert_true(grobo_i_gate_ready(&robot, GROBO_JOINTS_ALL(N)));
+        robot.axes[j].sensed = false; /* it is known to hold */
+        assert_false(grobo_i_gate_ready(&robot, GROBO_JOINTS_ALL(N)));
+        assert_true(grobo_i_gate_ready(&robot, all_but(j)));
+        robot.axes[j].sensed = true;
+        robot.axes[j].torque_known = false;
+        assert_false(grobo_i_gate_ready(&robot, GROBO_JOINTS_ALL(N)));
+        robot.axes[j].torque_known = true;
+        make_limp(j);
+        assert_false(grobo_i_gate_ready(&robot, GROBO_JOINTS_ALL(N)));
+        assert_true(grobo_i_gate_ready(&robot, all_but(j)));
+    }
+}
+
+/* One that has no part in a frame now may have one by the time it leaves. */
+static void what_waits_has_room_for_all_its_joints(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        grobo_exchange is, be;
+        grobo_target target = {0};
+        grobo_robot_order order = {.joints = bits(j, other_of(j)) | GROBO_JOINT_BIT(third_of(j)),
+                                   .asked_us = NOW,
+                                   .deed = GROBO_I_DEED_HALT,
+                                   .each = true,
+                                   .stops = true};
+        start();
+        set_going(j);
+        assert_int_equal(grobo_posture_init(&target.posture, N), 0);
+        target.posture.set = order.joints;
+        target.posture.angle_rad[j] = here_rad(j) + RAD(10.5);
+        target.joint_time_us[j] = 100 * MS;
+        target.joint_time_us[other_of(j)] = target.joint_time_us[third_of(j)] = 10000;
+        assert_int_equal(driver.posture(&driver, robot.driver_ctx, &target, 0, &be), 1);
+        assert_int_equal(grobo_i_gate_build(&robot, &order, &is), 1);
+        assert_int_equal(is.frame_bytes, be.frame_bytes);
+        assert_memory_equal(is.frame, be.frame, be.frame_bytes);
+
+        make_limp(j);
+        robot.axes[j].held = false;
+        order.deed = GROBO_I_DEED_TORQUE;
+        order.torque = GROBO_TORQUE_ON;
+        assert_int_equal(
+            driver.torque(&driver, robot.driver_ctx, order.joints, GROBO_TORQUE_ON, 0, &be), 1);
+        assert_int_equal(grobo_i_gate_build(&robot, &order, &is), 1);
+        assert_int_equal(is.frame_bytes, be.frame_bytes);
+        assert_memory_equal(is.frame, be.frame, be.frame_bytes);
+    }
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_speed_of_a_joint_is_exact),
-        cmocka_unit_test(no_way_takes_the_least_time),
-        cmocka_unit_test(the_first_target_after_a_reset_is_slow),
-        cmocka_unit_test(a_target_that_waits_does_not_reach_a_joint_that_is_free_by_then),
-        cmocka_unit_test(a_second_file_moves_no_joint_without_torque),
-        cmocka_unit_test(a_goal_holds_within_two_degrees),
-        cmocka_unit_test(free_mode_is_not_as_urgent_as_a_stop),
-        cmocka_unit_test(what_begins_to_hold_is_on_no_way),
-        cmocka_unit_test(what_begins_to_hold_leaves_its_neighbour_on_its_way),
-        cmocka_unit_test(a_cancel_stops_a_motion_that_begins),
-        cmocka_unit_test(a_short_reading_changes_nothing_else),
-        cmocka_unit_test(a_reading_of_the_first_moment_is_of_then),
+        cmocka_unit_test(a_goal_is_judged_as_it_leaves),
+        cmocka_unit_test(a_goal_goes_again_until_another_takes_its_place),
+        cmocka_unit_test(a_halt_is_refused_by_name),
+        cmocka_unit_test(a_halt_stops_ahead_of_where_joints_are),
+        cmocka_unit_test(a_hold_is_refused_by_name),
+        cmocka_unit_test(torque_is_refused_by_name),
+        cmocka_unit_test(torque_comes_on_for_those_that_are_held),
+        cmocka_unit_test(a_segment_is_refused_by_name),
+        cmocka_unit_test(a_setting_is_refused_by_name),
+        cmocka_unit_test(what_needs_silence_is_refused_while_something_moves),
+        cmocka_unit_test(a_second_attempt_is_passed_by_what_left_since),
+        cmocka_unit_test(a_frame_that_there_is_not_does_not_leave),
+        cmocka_unit_test(each_part_has_joints_of_its_own),
+        cmocka_unit_test(several_joints_go_in_one_frame),
+        cmocka_unit_test(what_waits_has_room_for_all_its_joints),
+        cmocka_unit_test(only_the_target_of_that_number_waits_no_more),
+        cmocka_unit_test(times_are_what_speeds_make_them),
+        cmocka_unit_test(all_joints_of_a_move_get_its_time),
+        cmocka_unit_test(a_goal_that_leaves_late_gets_the_time_from_there),
+        cmocka_unit_test(a_time_longer_than_the_wire_has_is_refused),
+        cmocka_unit_test(one_that_moves_is_not_caught_up_softly),
+        cmocka_unit_test(a_target_of_no_joint_takes_no_time),
+        cmocka_unit_test(a_motion_rests_near_where_joints_are),
+        cmocka_unit_test(nothing_rests_outside_the_limits),
+        cmocka_unit_test(a_motion_rests_where_others_have_joints_stand),
+        cmocka_unit_test(a_target_is_checked_for_numbers_and_limits),
+        cmocka_unit_test(joints_are_ready_that_were_read_and_hold),
     };
-    return rig_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
+    return axes_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
 }

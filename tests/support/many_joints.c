@@ -33,3 +33,21 @@ grobo_driver *many_joints(grobo_wiring wiring, int n)
     assert_int_equal(grobo_rs30x_driver_init(&driver, &model, grobo_wiring_protocol(wiring)), 0);
     return &driver;
 }
+
+grobo_driver *many_unlike_joints(grobo_wiring wiring, int n)
+{
+    static grobo_joint joints[GROBO_JOINTS_MAX];
+    static grobo_model model;
+    grobo_driver *driver = many_joints(wiring, n);
+    model = *driver->model;
+    for (int j = 0; j < n; j++) {
+        joints[j] = model.joints[j];
+        joints[j].min_rad = -grobo_rad_from_deg(70 + j);
+        joints[j].max_rad = grobo_rad_from_deg(70 + j);
+        joints[j].init_rad = 0;
+        joints[j].max_speed_rad_s = grobo_rad_from_deg(100 + 5 * j);
+    }
+    model.joints = joints;
+    driver->model = &model;
+    return driver;
+}

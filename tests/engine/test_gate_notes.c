@@ -1,0 +1,309 @@
+/* SPDX-License-Identifier: MIT */
+/* What is noted of which joint when a frame leaves. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "tests/support/gate_kit.h"
+
+/* ---- what is noted --------------------------------------------------------------------------- */
+
+static void a_goal_is_noted_of_its_joints_alone(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        for (int played = 0; played < 2; played++) {
+            start();
+            const grobo_joint_mask both = bits(j, other_of(j));
+            const grobo_robot_order order = {
+                .joints = both, .number = NUMBER, .deed = GROBO_I_DEED_GOAL, .each = true};
+            robot.played_joints = played ? GROBO_JOINT_BIT(third_of(j)) : GROBO_JOINTS_ALL(N);
+            robot.axes[j].off_way = true; /* it stands where it was read */
+            robot.axes[j].way.to_rad += RAD(30);
+            robot.axes[j].has_target = false;
+            await(j, 5, 2 * S);
+            await(other_of(j), 5, 2 * S);
+            await(third_of(j), 5, 2 * S); /* its frame is another one */
+            take(order);
+            slot->due_us = played ? NOW : GROBO_NEVER_US;
+            assert_int_equal(grobo_i_gate_leave(slot), GROBO_OK);
+            expect_goals(both, 5, 2 * S);
+            note_goal(j, 5, 2 * S);
+            note_goal(other_of(j), 5, 2 * S);
+            expect_axes();
+            assert_true(robot.played_joints == (played ? both | GROBO_JOINT_BIT(third_of(j))
+                                                       : GROBO_JOINTS_ALL(N) & ~both));
+            drop();
+        }
+    }
+}
+
+/* The others that it was asked for are told nothing: what was asked of them before goes on. */
+static void a_halt_is_noted_of_what_moves(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        start();
+        set_going(j);
+        take((grobo_robot_order){.joints = GROBO_JOINTS_ALL(N),
+                                 .asked_us = NOW - 10 * MS,
+                                 .deed = GROBO_I_DEED_HALT,
+                                 .each = true,
+                                 .stops = true});
+        assert_int_equal(grobo_i_gate_leave(slot), GROBO_OK);
+        /* 50 ms after it was asked for: 10.4 degrees on the way. */
+        note_goal(j, 0, 100 * MS);
+        before[j].way.from_rad = here_rad(j) + RAD(10);
+        before[j].way.to_rad = robot.axes[j].way.to_rad;
+        before[j].last = 0;
+        expect_equal(robot.axes[j].way.to_rad, here_rad(j) + RAD(10.4), "where it stops");
+        expect_equal(robot.axes[j].way.from_rad, here_rad(j) + RAD(10), "from where");
+        before[j].way.from_rad = robot.axes[j].way.from_rad;
+        expect_axes();
+        expect_goals(GROBO_JOINT_BIT(j), 10.4, 100 * MS);
+        assert_true(robot.played_joints == (GROBO_JOINTS_ALL(N) & all_but(j)));
+        drop();
+    }
+}
+
+static void a_hold_is_noted_of_its_joints_alone(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        start();
+        make_limp(j);
+        make_limp(other_of(j));
+        set_going(j);
+        robot.axes[j].in_segments = robot.axes[other_of(j)].off_way = true;
+        robot.axes[j].held = robot.axes[other_of(j)].held = false; /* until it is read back */
+        assert_int_equal(leave((grobo_robot_order){.joints = bits(j, other_of(j)),
+                                                   .deed = GROBO_I_DEED_HOLD,
+                                                   .each = true}),
+                         GROBO_OK);
+        expect_goals(bits(j, other_of(j)), 0, driver.time_step_us);
+        for (int i = 0; i < 2; i++) {
+            int k = i == 0 ? j : other_of(j);
+            before[k].way = (grobo_robot_way){here_rad(k), here_rad(k), NOW, NOW};
+            before[k].in_segments = before[k].off_way = false;
+            before[k].own_until_us = 0;
+            before[k].has_target = false;
+            before[k].told_us = NOW;
+            before[k].last = 0;
+        }
+        expect_axes();
+        assert_true(robot.played_joints == GROBO_JOINTS_ALL(N));
+        drop();
+    }
+}
+
+static void torque_is_noted_of_its_joints_alone(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        for (int mode = GROBO_TORQUE_OFF; mode <= GROBO_TORQUE_BRAKE; mode++) {
+            for (int limp = 0; limp < 2; limp++) {
+                bool on = mode == GROBO_TORQUE_ON;
+                start();
+                if (limp) {
+                    make_limp(j);
+                }
+                assert_int_equal(leave((grobo_robot_order){.joints = GROBO_JOINT_BIT(j),
+                                                           .asked_us = NOW,
+                                                           .deed = GROBO_I_DEED_TORQUE,
+                                                           .torque = (uint8_t)mode}),
+                                 GROBO_OK);
+                expect_torque(j, (grobo_torque)mode);
+                before[j].told_us = NOW;
+                before[j].last = 0;
+                before[j].torque_known = on && !limp;
+                if (!on) {
+                    before[j].wants_torque = before[j].held = before[j].has_target = false;
+                }
+                expect_axes();
+                assert_int_equal(robot.soft, on && limp); /* a hand may have moved it */
+                assert_true(!robot.soft || robot.soft_us == GROBO_NEVER_US);
+                drop();
+            }
+        }
+    }
+}
+
+/* What nobody can read, a setting, a restart: what is known of the joint is no longer true. */
+static void what_leaves_joints_unknown_is_noted_of_them_alone(void **state)
+{
+    (void)state;
+    static const grobo_i_deed deeds[] = {GROBO_I_DEED_UNKNOWN, GROBO_I_DEED_SETTING,
+                                         GROBO_I_DEED_COMMAND};
+    for (int j = 0; j < N; j++) {
+        for (int i = 0; i < 3; i++) {
+            start();
+            if (deeds[i] == GROBO_I_DEED_SETTING) {
+                robot.axes[j].state.torque = GROBO_TORQUE_OFF;
+                robot.axes[other_of(j)].state.torque = GROBO_TORQUE_OFF;
+            }
+            assert_int_equal(leave((grobo_robot_order){.joints = bits(j, other_of(j)),
+                                                       .deed = (uint8_t)deeds[i]}),
+                             GROBO_OK);
+            for (int k = 0; k < N; k++) {
+                if (k == j || k == other_of(j)) {
+                    before[k].sensed = before[k].has_target = before[k].held = false;
+                    before[k].wants_torque = before[k].torque_known =
+                        deeds[i] == GROBO_I_DEED_UNKNOWN;
+                    before[k].own_until_us = 0;
+                    before[k].told_us = NOW;
+                    before[k].last = 0;
+                }
+            }
+            expect_axes();
+            assert_true(robot.soft && robot.soft_us == GROBO_NEVER_US);
+            drop();
+        }
+    }
+}
+
+/* Nor does it make known what was not: wanted or not, known or not. */
+static void what_is_unknown_already_stays_so(void **state)
+{
+    (void)state;
+    start();
+    for (int j = 0; j < N; j++) {
+        robot.axes[j].wants_torque = j % 2 != 0;
+        robot.axes[j].torque_known = j % 3 != 0;
+    }
+    assert_int_equal(
+        leave((grobo_robot_order){.joints = GROBO_JOINTS_ALL(N), .deed = GROBO_I_DEED_UNKNOWN}),
+        GROBO_OK);
+    for (int j = 0; j < N; j++) {
+        assert_int_equal(robot.axes[j].wants_torque, j % 2 != 0);
+        assert_int_equal(robot.axes[j].torque_known, j % 3 != 0);
+    }
+    drop();
+}
+
+static void what_does_nothing_to_a_joint_notes_nothing(void **state)
+{
+    (void)state;
+    start();
+    assert_int_equal(leave((grobo_robot_order){.deed = GROBO_I_DEED_NONE}), GROBO_OK);
+    expect_axes();
+    assert_false(robot.soft);
+    assert_true(robot.played_joints == GROBO_JOINTS_ALL(N));
+    drop();
+}
+
+/* Only how far along its way the joint was told. */
+static void a_segment_is_noted_of_its_joints_alone(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        start();
+        for (int k = 0; k < N; k++) {
+            set_going(k);
+            robot.axes[k].in_segments = true;
+            robot.axes[k].told_to_us = NOW + 50 * MS;
+        }
+        assert_int_equal(leave((grobo_robot_order){.joints = bits(j, other_of(j)),
+                                                   .deed = GROBO_I_DEED_SEGMENT,
+                                                   .each = true}),
+                         GROBO_OK);
+        expect_goals(bits(j, other_of(j)), 13.8, GROBO_SEGMENT_US); /* 10, and 3.8 ahead */
+        before[j].told_to_us = before[other_of(j)].told_to_us = NOW + GROBO_SEGMENT_US;
+        expect_axes();
+        drop();
+    }
+}
+
+/* Of a longer way its frame asks for a part, and it is told more of it in time. */
+static void a_goal_in_segments_is_noted_of_its_joints_alone(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        for (int whole = 0; whole < 2; whole++) {
+            const int64_t time_us = whole ? GROBO_SEGMENT_US : GROBO_SEGMENT_US * 2;
+            start_with(&(grobo_robot_config){.goals = GROBO_GOALS_SEGMENTS});
+            robot.renewed_us = NOW - 1;
+            await(j, 10, time_us);
+            await(other_of(j), 5, GROBO_SEGMENT_US);
+            await(third_of(j), 5, 2 * S); /* in another frame */
+            assert_int_equal(leave((grobo_robot_order){.joints = bits(j, other_of(j)),
+                                                       .number = NUMBER,
+                                                       .deed = GROBO_I_DEED_GOAL,
+                                                       .each = true}),
+                             GROBO_OK);
+            far_goal = whole ? j : -1;
+            expect_goals(bits(j, other_of(j)), 5, GROBO_SEGMENT_US);
+            far_goal = -1;
+            note_goal(j, 10, time_us);
+            note_goal(other_of(j), 5, GROBO_SEGMENT_US);
+            before[j].in_segments = !whole;
+            before[j].told_to_us = whole ? NOW - 7 : NOW + GROBO_SEGMENT_US;
+            expect_axes();
+            assert_true(robot.renewed_us == (whole ? NOW - 1 : NOW));
+            drop();
+        }
+    }
+}
+
+/* ---- the slow first move --------------------------------------------------------------------- */
+
+/* Of a caller's own stream the first is slow until it is there; of played frames the first. */
+static void the_slow_move_is_over_when_its_first_target_is_reached(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        for (int how = 0; how < 3; how++) { /* of a stream, of a job, played */
+            start();
+            grobo_i_gate_soften(&robot);
+            await(j, 5, 300 * MS);
+            await(other_of(j), 5, 200 * MS);
+            take((grobo_robot_order){.joints = bits(j, other_of(j)),
+                                     .number = NUMBER,
+                                     .deed = GROBO_I_DEED_GOAL,
+                                     .each = true,
+                                     .single = how == 0});
+            slot->due_us = how == 2 ? NOW : GROBO_NEVER_US;
+            assert_int_equal(grobo_i_gate_leave(slot), GROBO_OK);
+            assert_int_equal(robot.soft, how != 2);
+            assert_true(robot.soft_us == (how == 0 ? NOW + 300 * MS : GROBO_NEVER_US));
+            drop();
+            if (how == 0) { /* a second one does not make it longer, and may be 10 ms early */
+                robot.now_us = NOW + 290 * MS - 1;
+                grobo_i_gate_single(&robot);
+                assert_true(robot.soft);
+                await(j, 5, 300 * MS);
+                assert_int_equal(leave((grobo_robot_order){.joints = GROBO_JOINT_BIT(j),
+                                                           .number = NUMBER,
+                                                           .deed = GROBO_I_DEED_GOAL,
+                                                           .single = true}),
+                                 GROBO_OK);
+                drop();
+                assert_true(robot.soft_us == NOW + 300 * MS);
+                robot.now_us = NOW + 290 * MS;
+                grobo_i_gate_single(&robot);
+                assert_false(robot.soft);
+            }
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_goal_is_noted_of_its_joints_alone),
+        cmocka_unit_test(a_halt_is_noted_of_what_moves),
+        cmocka_unit_test(a_hold_is_noted_of_its_joints_alone),
+        cmocka_unit_test(torque_is_noted_of_its_joints_alone),
+        cmocka_unit_test(what_leaves_joints_unknown_is_noted_of_them_alone),
+        cmocka_unit_test(what_is_unknown_already_stays_so),
+        cmocka_unit_test(what_does_nothing_to_a_joint_notes_nothing),
+        cmocka_unit_test(a_segment_is_noted_of_its_joints_alone),
+        cmocka_unit_test(a_goal_in_segments_is_noted_of_its_joints_alone),
+        cmocka_unit_test(the_slow_move_is_over_when_its_first_target_is_reached),
+    };
+    return axes_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
+}

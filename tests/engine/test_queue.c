@@ -1,0 +1,433 @@
+/* SPDX-License-Identifier: MIT */
+/* Which jobs run side by side, and what waits for its turn: the rules by themselves. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "tests/support/axes_kit.h"
+
+enum { LAST_NUMBER = 200, JOBS = GROBO_ROBOT_JOBS, QUEUE = GROBO_ROBOT_QUEUE };
+
+/* Kinds that others may run beside. */
+static const bool shared[GROBO_JOB_SETTLE + 1] = {
+    [GROBO_JOB_MOVE] = true, [GROBO_JOB_SENSE] = true,     [GROBO_JOB_TORQUE] = true,
+    [GROBO_JOB_RAW] = true,  [GROBO_JOB_REGISTERS] = true,
+};
+
+static void start_idle(void)
+{
+    start();
+    robot.last_number = LAST_NUMBER;
+}
+
+/* A job of this kind runs at that place, and waits for something for ever. */
+static void run_job(int at, grobo_job_kind kind, grobo_joint_mask joints)
+{
+    grobo_robot_task *job = &robot.jobs[at];
+    job->script = grobo_i_script_sense;
+    job->number = 100 + at;
+    job->kind = kind;
+    job->activity = GROBO_I_WAIT;
+    job->joints = job->target.set = joints;
+    job->joint = -1;
+    job->until_us = job->bound_us = GROBO_NEVER_US;
+}
+
+static grobo_robot_wish wish_of(grobo_job_kind kind, int joint)
+{
+    grobo_robot_wish wish = {
+        .kind = kind, .joints = GROBO_JOINT_BIT(joint), .sense = GROBO_SENSE_GOAL};
+    assert_int_equal(grobo_posture_init(&wish.target, N), 0);
+    wish.target.set = wish.joints;
+    wish.target.angle_rad[joint] = here_rad(joint) + RAD(3);
+    wish.target.time_us = S;
+    return wish;
+}
+
+/* It waits, and may begin by then. */
+static void wait_in_queue(grobo_robot_wish wish, int64_t begin_by_us)
+{
+    wish.number = 50 + (int)robot.queued;
+    wish.begin_by_us = begin_by_us;
+    robot.queue[robot.queued++] = wish;
+}
+
+static void expect_begun(int at, int number, grobo_job_kind kind, int joint)
+{
+    const grobo_robot_task *job = &robot.jobs[at];
+    const grobo_robot_wish wish = wish_of(kind, joint);
+    bool moves = kind == GROBO_JOB_MOVE;
+    assert_int_equal(job->kind, kind);
+    assert_int_equal(job->number, number);
+    assert_true(job->joints == wish.joints);
+    assert_ptr_equal(job->script, moves ? grobo_i_script_move : grobo_i_script_sense);
+    assert_memory_equal(&job->target, &wish.target, sizeof wish.target);
+    assert_int_equal(job->activity, GROBO_I_READ); /* it has begun already */
+    assert_true(moves || job->sense == GROBO_SENSE_GOAL);
+    assert_true(robot.job == robot.jobs);
+}
+
+/* ---- side by side ---------------------------------------------------------------------------- */
+
+static int be_admitted(grobo_job_kind running, grobo_job_kind kind, bool same)
+{
+    if (running == GROBO_JOB_NONE || running == GROBO_JOB_SETTLE) {
+        return GROBO_OK; /* what nobody asked for makes way */
+    }
+    if (!shared[running] || !shared[kind]) {
+        return GROBO_I_LATER;
+    }
+    bool joins = running == GROBO_JOB_SENSE || kind == GROBO_JOB_SENSE ||
+                 (running == GROBO_JOB_MOVE && kind == GROBO_JOB_MOVE);
+    return same && !joins ? GROBO_I_LATER : GROBO_OK;
+}
+
+static void jobs_run_beside_others_by_their_kinds(void **state)
+{
+    (void)state;
+    for (int running = GROBO_JOB_NONE; running <= GROBO_JOB_SETTLE; running++) {
+        for (int kind = GROBO_JOB_NONE + 1; kind < GROBO_JOB_SETTLE; kind++) {
+            for (int i = 0; i < 2 * N; i++) {
+                int j = i / 2;
+                bool same = i % 2 != 0;
+                start_idle();
+                run_job(0, (grobo_job_kind)running, bits(j, other_of(j)));
+                const grobo_joint_mask of =
+                    same ? bits(j, third_of(j)) : ~bits(j, other_of(j)) & GROBO_JOINTS_ALL(N);
+                int be = be_admitted((grobo_job_kind)running, (grobo_job_kind)kind, same);
+                int is = grobo_i_admit(&robot, (grobo_job_kind)kind, of, false);
+                if (is != be) {
+                    fail_msg("%d beside %d: %d, not %d", kind, running, is, be);
+                }
+                bool gone = running == GROBO_JOB_SETTLE;
+                assert_int_equal(robot.job->kind, gone ? GROBO_JOB_NONE : running);
+            }
+        }
+    }
+}
+
+/* What lies behind the jobs looks like one that has every joint. */
+static void put_behind_the_jobs(void)
+{
+    const grobo_robot_task ghost = {.kind = GROBO_JOB_TORQUE, .joints = GROBO_JOINTS_ALL(N)};
+    const size_t skipped = offsetof(grobo_robot, queue) - offsetof(grobo_robot, job);
+    const size_t end = offsetof(grobo_robot_task, superseded);
+    assert_int_equal(offsetof(grobo_robot, job), offsetof(grobo_robot, jobs) + sizeof robot.jobs);
+    assert_true(offsetof(grobo_robot_task, kind) >= skipped && end <= sizeof robot.queue);
+    memcpy(robot.queue, (const uint8_t *)&ghost + skipped, end - skipped);
+}
+
+/* In the last place as in the first, and no further. */
+static void every_job_that_runs_is_looked_at(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        for (int at = 1; at < JOBS; at++) {
+            start_idle();
+            run_job(0, GROBO_JOB_SENSE, GROBO_JOINTS_ALL(N));
+            run_job(at, GROBO_JOB_TORQUE, GROBO_JOINT_BIT(j));
+            put_behind_the_jobs();
+            assert_int_equal(grobo_i_admit(&robot, GROBO_JOB_MOVE, GROBO_JOINT_BIT(j), true),
+                             GROBO_I_LATER);
+            assert_int_equal(grobo_i_admit(&robot, GROBO_JOB_MOVE, all_but(j), true), GROBO_OK);
+        }
+    }
+}
+
+/* One place is kept for what takes torque away. */
+static void one_job_less_than_there_is_room_for(void **state)
+{
+    (void)state;
+    start_idle();
+    for (int i = 0; i < JOBS; i++) {
+        assert_int_equal(grobo_i_admit(&robot, GROBO_JOB_SENSE, 1, false),
+                         i < JOBS - 1 ? GROBO_OK : GROBO_I_LATER);
+        run_job(i, GROBO_JOB_SENSE, 1);
+    }
+    robot.jobs[0].kind = GROBO_JOB_NONE; /* the last one moves up */
+    robot.jobs[1].kind = GROBO_JOB_NONE;
+    assert_int_equal(grobo_i_admit(&robot, GROBO_JOB_SENSE, 1, false), GROBO_OK);
+    assert_int_equal(robot.jobs[0].kind, GROBO_JOB_SENSE);
+}
+
+static void who_may_not_begin_at_all_is_told_so(void **state)
+{
+    (void)state;
+    for (int moves = 0; moves < 2; moves++) {
+        start_idle();
+        run_job(0, GROBO_JOB_SETTLE, 1);
+        robot.link = false;
+        assert_int_equal(grobo_i_admit(&robot, GROBO_JOB_RAW, 1, moves), GROBO_ERR_CLOSED);
+        assert_int_equal(robot.job->kind, GROBO_JOB_SETTLE);
+        robot.link = true;
+        latch(GROBO_TRIP_VOLTAGE);
+        assert_int_equal(grobo_i_admit(&robot, GROBO_JOB_RAW, 1, moves),
+                         moves ? GROBO_ERR_LATCHED : GROBO_OK);
+    }
+}
+
+static void moves_that_run_or_wait_have_their_joints(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        for (int at = 0; at < JOBS + QUEUE; at++) {
+            for (int kind = GROBO_JOB_NONE; kind <= GROBO_JOB_SETTLE; kind++) {
+                start_idle();
+                for (int i = 0; i < JOBS; i++) {
+                    run_job(i, GROBO_JOB_SENSE, all_but(j));
+                }
+                for (int i = 0; i < QUEUE; i++) {
+                    wait_in_queue(wish_of(GROBO_JOB_SENSE, other_of(j)), NOW);
+                }
+                if (at < JOBS) {
+                    run_job(at, (grobo_job_kind)kind, GROBO_JOINT_BIT(j));
+                } else {
+                    robot.queue[at - JOBS] = wish_of((grobo_job_kind)kind, j);
+                }
+                assert_true(grobo_i_joints_of_moves(&robot) ==
+                            (kind == GROBO_JOB_MOVE ? GROBO_JOINT_BIT(j) : 0));
+                robot.queued = at < JOBS ? 0 : (unsigned)(at - JOBS); /* the others are old */
+                assert_true(grobo_i_joints_of_moves(&robot) ==
+                            (kind == GROBO_JOB_MOVE && at < JOBS ? GROBO_JOINT_BIT(j) : 0));
+            }
+        }
+    }
+}
+
+/* ---- beginning ------------------------------------------------------------------------------- */
+
+static void what_nothing_is_in_the_way_of_begins_at_once(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        for (int moves = 0; moves < 2; moves++) {
+            const grobo_job_kind kind = moves ? GROBO_JOB_MOVE : GROBO_JOB_SENSE;
+            const grobo_robot_wish wish = wish_of(kind, j);
+            start_idle();
+            run_job(0, GROBO_JOB_REGISTERS, GROBO_JOINT_BIT(other_of(j)));
+            robot.free_joints = GROBO_JOINTS_ALL(N);
+            assert_int_equal(grobo_i_queue_ask(&robot, &wish), LAST_NUMBER + 1);
+            expect_begun(1, LAST_NUMBER + 1, kind, j);
+            assert_int_equal(robot.queued, 0);
+            assert_true(robot.free_joints == (moves ? all_but(j) : GROBO_JOINTS_ALL(N)));
+        }
+    }
+}
+
+/* A reading takes it from nobody. Who began before goes on before. */
+static void a_move_takes_its_joints_from_moves_before(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        for (int moves = 0; moves < 2; moves++) {
+            const grobo_job_kind kind = moves ? GROBO_JOB_MOVE : GROBO_JOB_SENSE;
+            const grobo_robot_wish wish = wish_of(kind, j);
+            start_idle();
+            run_job(0, GROBO_JOB_MOVE, bits(j, other_of(j)));
+            assert_int_equal(grobo_i_queue_ask(&robot, &wish), LAST_NUMBER + 1);
+            expect_begun(1, LAST_NUMBER + 1, kind, j);
+            assert_true(robot.jobs[0].joints ==
+                        (moves ? GROBO_JOINT_BIT(other_of(j)) : bits(j, other_of(j))));
+            assert_true(robot.jobs[0].superseded == (moves ? GROBO_JOINT_BIT(j) : 0));
+            assert_int_equal(robot.events_n, 0);
+        }
+        const grobo_robot_wish wish = wish_of(GROBO_JOB_MOVE, j);
+        start_idle();
+        run_job(0, GROBO_JOB_MOVE, GROBO_JOINT_BIT(j));
+        run_job(1, GROBO_JOB_SENSE, GROBO_JOINTS_ALL(N));
+        assert_int_equal(grobo_i_queue_ask(&robot, &wish), LAST_NUMBER + 1);
+        assert_int_equal(robot.jobs[0].number, 101);
+        expect_begun(1, LAST_NUMBER + 1, GROBO_JOB_MOVE, j);
+        assert_int_equal(robot.events_n, 1);
+        const grobo_event_job *end = &robot.events[robot.events_head].u.job;
+        assert_int_equal(end->number, 100);
+        assert_int_equal(end->result, GROBO_ERR_SUPERSEDED);
+    }
+}
+
+static void a_move_of_what_plays_or_leaves_or_tripped_is_refused(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        for (int moves = 0; moves < 2; moves++) {
+            const grobo_job_kind kind = moves ? GROBO_JOB_MOVE : GROBO_JOB_SENSE;
+            const grobo_robot_wish wish = wish_of(kind, j);
+            for (int how = 0; how < 3; how++) { /* played, a joint that is not, not played now */
+                start_idle();
+                robot.sequencer.state = how < 2 ? GROBO_SEQUENCER_PLAYING : GROBO_SEQUENCER_IDLE;
+                robot.clip_joints = how == 1 ? all_but(j) : bits(j, other_of(j));
+                assert_int_equal(grobo_i_queue_ask(&robot, &wish),
+                                 moves && how == 0 ? GROBO_ERR_STATE : LAST_NUMBER + 1);
+            }
+            for (int leaves = GROBO_JOB_NONE + 1; leaves < GROBO_JOB_SETTLE; leaves++) {
+                bool refused = moves && (leaves == GROBO_JOB_EXIT || leaves == GROBO_JOB_ESTOP);
+                start_idle();
+                run_job(0, (grobo_job_kind)leaves, GROBO_JOINT_BIT(other_of(j)));
+                assert_int_equal(grobo_i_queue_ask(&robot, &wish),
+                                 refused ? GROBO_ERR_STATE : LAST_NUMBER + 1);
+                assert_int_equal(robot.queued, !refused && !shared[leaves]);
+            }
+            start_idle();
+            robot.link = false;
+            assert_int_equal(grobo_i_queue_ask(&robot, &wish), GROBO_ERR_CLOSED);
+            robot.link = true;
+            latch(GROBO_TRIP_VOLTAGE);
+            assert_int_equal(grobo_i_queue_ask(&robot, &wish),
+                             moves ? GROBO_ERR_LATCHED : LAST_NUMBER + 1);
+        }
+    }
+}
+
+/* ---- waiting --------------------------------------------------------------------------------- */
+
+/* Behind what waits already, though nothing else is in the way. */
+static void what_cannot_begin_waits(void **state)
+{
+    (void)state;
+    for (int idle = 0; idle < 2; idle++) {
+        for (int j = 0; j < N; j++) {
+            start_idle();
+            run_job(0, idle ? GROBO_JOB_NONE : GROBO_JOB_CHECK, 0);
+            if (idle) {
+                wait_in_queue(wish_of(GROBO_JOB_SENSE, 0), NOW + S);
+            }
+            for (int i = idle; i < QUEUE; i++) {
+                const grobo_job_kind kind = i % 2 ? GROBO_JOB_SENSE : GROBO_JOB_MOVE;
+                grobo_robot_wish wish = wish_of(kind, j);
+                int number = LAST_NUMBER + 1 + i - idle;
+                assert_int_equal(grobo_i_queue_ask(&robot, &wish), number);
+                assert_int_equal(robot.queued, i + 1);
+                wish.number = number;
+                wish.begin_by_us = NOW + 2 * S;
+                assert_memory_equal(&robot.queue[i], &wish, sizeof wish);
+            }
+            const grobo_robot_wish wish = wish_of(GROBO_JOB_SENSE, j);
+            assert_int_equal(grobo_i_queue_ask(&robot, &wish), GROBO_ERR_FULL);
+            assert_int_equal(robot.queued, QUEUE);
+            assert_int_equal(robot.last_number, LAST_NUMBER + QUEUE - idle);
+            assert_int_equal(robot.jobs[0].kind, idle ? GROBO_JOB_NONE : GROBO_JOB_CHECK);
+            assert_int_equal(robot.jobs[1].kind, GROBO_JOB_NONE);
+        }
+    }
+}
+
+/* As many as may, the oldest first; who must wait lets nobody pass. */
+static void what_waits_begins_in_its_order(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        start_idle();
+        run_job(0, GROBO_JOB_TORQUE, GROBO_JOINT_BIT(third_of(j)));
+        wait_in_queue(wish_of(GROBO_JOB_MOVE, j), NOW + 1);
+        wait_in_queue(wish_of(GROBO_JOB_MOVE, third_of(j)), NOW + 1);
+        wait_in_queue(wish_of(GROBO_JOB_SENSE, other_of(j)), NOW + 1);
+        wait_in_queue(wish_of(GROBO_JOB_SENSE, third_of(j)), NOW + 2);
+        robot.queue_may_go = true;
+        grobo_i_queue_step(&robot);
+        assert_false(robot.queue_may_go);
+        expect_begun(1, 50, GROBO_JOB_MOVE, j);
+        assert_int_equal(robot.jobs[2].kind, GROBO_JOB_NONE);
+        assert_int_equal(robot.queued, 3);
+        for (int i = 0; i < 3; i++) {
+            assert_int_equal(robot.queue[i].number, 51 + i);
+        }
+        robot.jobs[0].kind = GROBO_JOB_NONE;
+        grobo_i_queue_step(&robot);
+        assert_int_equal(robot.jobs[0].number, 50);
+        expect_begun(1, 51, GROBO_JOB_MOVE, third_of(j));
+        expect_begun(2, 52, GROBO_JOB_SENSE, other_of(j));
+        assert_int_equal(robot.queued, 1); /* there is no more room */
+        assert_int_equal(robot.queue[0].number, 53);
+        assert_int_equal(robot.events_n, 0);
+    }
+}
+
+/* Or, in its turn, with the reason why it may not begin; those behind it go on. */
+static void what_has_waited_too_long_ends(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        for (int late = 0; late < 2; late++) {
+            start_idle();
+            robot.sequencer.state = late ? GROBO_SEQUENCER_IDLE : GROBO_SEQUENCER_PLAYING;
+            robot.clip_joints = GROBO_JOINT_BIT(j);
+            wait_in_queue(wish_of(GROBO_JOB_MOVE, j), late ? NOW : NOW + 1);
+            wait_in_queue(wish_of(GROBO_JOB_SENSE, other_of(j)), NOW + 1);
+            grobo_i_queue_step(&robot);
+            assert_int_equal(robot.queued, 0);
+            expect_begun(0, 51, GROBO_JOB_SENSE, other_of(j));
+            assert_int_equal(robot.jobs[1].kind, GROBO_JOB_NONE);
+            assert_int_equal(robot.events_n, 1);
+            const grobo_event *event = &robot.events[robot.events_head];
+            assert_int_equal(event->kind, GROBO_EVENT_JOB);
+            assert_int_equal(event->u.job.number, 50);
+            assert_int_equal(event->u.job.kind, GROBO_JOB_MOVE);
+            assert_int_equal(event->u.job.result, late ? GROBO_ERR_STALE : GROBO_ERR_STATE);
+            assert_int_equal(event->u.job.joint, -1);
+            assert_true(event->u.job.failed == GROBO_JOINT_BIT(j));
+        }
+    }
+}
+
+static void a_trip_ends_all_that_waits(void **state)
+{
+    (void)state;
+    for (int latched = 0; latched < 2; latched++) {
+        start_idle();
+        for (int i = 0; i < QUEUE; i++) {
+            wait_in_queue(wish_of(i % 2 ? GROBO_JOB_SENSE : GROBO_JOB_MOVE, i), NOW + S);
+        }
+        grobo_i_trip(&robot, GROBO_TRIP_HOST_STALL, -1, 0, latched);
+        assert_int_equal(robot.queued, 0);
+        assert_int_equal(robot.events_n, 1 + QUEUE);
+        for (int i = 0; i < QUEUE; i++) {
+            unsigned at = (robot.events_head + 1 + (unsigned)i) % GROBO_ROBOT_EVENTS;
+            const grobo_event *event = &robot.events[at];
+            assert_int_equal(event->kind, GROBO_EVENT_JOB);
+            assert_int_equal(event->u.job.number, 50 + i);
+            assert_int_equal(event->u.job.kind, i % 2 ? GROBO_JOB_SENSE : GROBO_JOB_MOVE);
+            assert_int_equal(event->u.job.result, latched ? GROBO_ERR_LATCHED : GROBO_ERR_CANCELED);
+            assert_int_equal(event->u.job.joint, -1);
+            assert_true(event->u.job.failed == GROBO_JOINT_BIT(i));
+        }
+    }
+}
+
+static void the_queue_is_looked_at_when_something_may_have_changed(void **state)
+{
+    (void)state;
+    for (int may = 0; may < 2; may++) {
+        start_idle();
+        robot.queue_may_go = may;
+        robot.queue[0].begin_by_us = NOW + 7; /* of one that has gone */
+        assert_true(grobo_i_queue_deadline(&robot) == GROBO_NEVER_US);
+        wait_in_queue(wish_of(GROBO_JOB_SENSE, 3), NOW + 5);
+        assert_true(grobo_i_queue_deadline(&robot) == (may ? NOW : NOW + 5));
+        wait_in_queue(wish_of(GROBO_JOB_SENSE, 3), NOW + 4);
+        assert_true(grobo_i_queue_deadline(&robot) == (may ? NOW : NOW + 5));
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(jobs_run_beside_others_by_their_kinds),
+        cmocka_unit_test(every_job_that_runs_is_looked_at),
+        cmocka_unit_test(one_job_less_than_there_is_room_for),
+        cmocka_unit_test(who_may_not_begin_at_all_is_told_so),
+        cmocka_unit_test(moves_that_run_or_wait_have_their_joints),
+        cmocka_unit_test(what_nothing_is_in_the_way_of_begins_at_once),
+        cmocka_unit_test(a_move_takes_its_joints_from_moves_before),
+        cmocka_unit_test(a_move_of_what_plays_or_leaves_or_tripped_is_refused),
+        cmocka_unit_test(what_cannot_begin_waits),
+        cmocka_unit_test(what_waits_begins_in_its_order),
+        cmocka_unit_test(what_has_waited_too_long_ends),
+        cmocka_unit_test(a_trip_ends_all_that_waits),
+        cmocka_unit_test(the_queue_is_looked_at_when_something_may_have_changed),
+    };
+    return axes_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
+}

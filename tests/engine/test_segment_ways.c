@@ -1,0 +1,476 @@
+/* SPDX-License-Identifier: MIT */
+/* Ways, and ways told in segments: where a joint is on them, what the next frame asks for, and what
+ * is over. Of each joint all that is known is compared. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "tests/support/axes_kit.h"
+#include "tests/support/rig.h"
+
+/* ---- ways ------------------------------------------------------------------------------------ */
+
+static void a_way_is_straight_in_time(void **state)
+{
+    (void)state;
+    static const grobo_robot_way way = {2, 6, NOW, NOW + 4 * S};
+    static const grobo_robot_way none = {2, 6, NOW, NOW};
+    static const struct {
+        int64_t at_us;
+        double rad;
+    } rows[] = {{NOW - S, 2},     {NOW, 2},         {NOW + 1, 2.000001}, {NOW + S, 3},
+                {NOW + 2 * S, 4}, {NOW + 4 * S, 6}, {NOW + 9 * S, 6}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        expect_equal(grobo_i_way_at(&way, rows[i].at_us), rows[i].rad, "place");
+        expect_equal(grobo_i_way_at(&none, rows[i].at_us), 6, "place on no way");
+    }
+}
+
+/* On its way, as far as it was told; or off it, where it was read, or on the way its servo told. */
+static void a_joint_is_where_it_was_sent_or_read(void **state)
+{
+    (void)state;
+    grobo_robot_axis axis = {.state = {.angle_rad = 10, .goal_rad = 14}, .angle_us = NOW};
+    axis.way = (grobo_robot_way){2, 6, NOW, NOW + 4 * S};
+    axis.told_to_us = NOW + S;
+    axis.own_until_us = NOW + 2 * S;
+    expect_equal(grobo_i_axis_commanded(&axis, NOW + 3 * S), 5, "on its way");
+    assert_true(grobo_i_axis_until(&axis) == NOW + 4 * S);
+    axis.in_segments = true;
+    expect_equal(grobo_i_axis_commanded(&axis, NOW + 3 * S), 3, "as far as it was told");
+    expect_equal(grobo_i_axis_commanded(&axis, NOW + S / 2), 2.5, "before");
+    axis.off_way = true;
+    expect_equal(grobo_i_axis_commanded(&axis, NOW + S), 12, "on its own way");
+    expect_equal(grobo_i_axis_commanded(&axis, NOW + 3 * S), 14, "at its end");
+    assert_true(grobo_i_axis_until(&axis) == NOW + 2 * S);
+    axis.own_until_us = NOW + 1;
+    expect_equal(grobo_i_axis_commanded(&axis, NOW + S), 14, "on its own way, over by now");
+    axis.own_until_us = NOW;
+    expect_equal(grobo_i_axis_commanded(&axis, NOW + S), 10, "where it was read");
+    expect_equal(grobo_i_axis_target(&axis), 6, "target");
+    axis.next_rad = 7;
+    axis.next = 1;
+    expect_equal(grobo_i_axis_target(&axis), 7, "target that waits");
+}
+
+static void a_joint_that_is_not_limp_moves_to_the_end_of_its_way(void **state)
+{
+    (void)state;
+    static const struct {
+        int64_t way_us, own_us; /* ends, from now */
+        bool off, known;
+        grobo_torque torque;
+        bool moves;
+    } rows[] = {
+        {1, 0, false, true, GROBO_TORQUE_ON, true},  {0, 0, false, true, GROBO_TORQUE_ON, false},
+        {0, 5, false, true, GROBO_TORQUE_ON, false}, {0, 1, true, true, GROBO_TORQUE_ON, true},
+        {0, 0, true, true, GROBO_TORQUE_ON, false},  {1, 0, true, true, GROBO_TORQUE_ON, true},
+        {1, 1, true, true, GROBO_TORQUE_OFF, false}, {1, 1, true, true, GROBO_TORQUE_BRAKE, false},
+        {1, 1, true, false, GROBO_TORQUE_OFF, true},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        const grobo_robot_axis axis = {.state = {.torque = rows[i].torque},
+                                       .way = {0, 1, 0, NOW + rows[i].way_us},
+                                       .own_until_us = NOW + rows[i].own_us,
+                                       .off_way = rows[i].off,
+                                       .torque_known = rows[i].known};
+        if (grobo_i_axis_moves(&axis, NOW) != rows[i].moves) {
+            fail_msg("row %zu", i);
+        }
+        assert_int_equal(grobo_i_axis_is_on(&axis),
+                         rows[i].known && rows[i].torque == GROBO_TORQUE_ON);
+    }
+}
+
+static void a_joint_rests_where_it_was_read(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        for (int own = 0; own < 3; own++) {
+            start();
+            grobo_robot_axis *axis = &robot.axes[j];
+            set_going(j);
+            axis->in_segments = axis->off_way = true;
+            axis->state.goal_rad += 1;
+            axis->own_until_us = axis->angle_us + own; /* 0: it told of no way */
+            keep_axes();
+            if (own == 2) {
+                grobo_i_axis_rest(axis, NOW);
+            } else {
+                grobo_i_axis_here(axis, NOW);
+            }
+            before[j].in_segments = before[j].off_way = false;
+            before[j].way = own == 1
+                                ? (grobo_robot_way){here_rad(j), here_rad(j) + 1, NOW - 5, NOW - 4}
+                                : (grobo_robot_way){here_rad(j), here_rad(j), NOW, NOW};
+            expect_axes();
+        }
+    }
+}
+
+static void joints_are_asked_for_by_their_bits(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        int joint = -1;
+        start();
+        assert_false(grobo_i_moving(&robot, NOW));
+        assert_false(grobo_i_adrift(&robot, GROBO_JOINTS_ALL(N)));
+        assert_true(grobo_i_all_joints(&robot) == GROBO_JOINTS_ALL(N));
+        assert_int_equal(grobo_i_lowest(GROBO_JOINT_BIT(j) | GROBO_JOINT_BIT(N - 1)), j);
+        robot.axes[j].adrift = true;
+        assert_true(grobo_i_adrift(&robot, GROBO_JOINT_BIT(j)));
+        assert_false(grobo_i_adrift(&robot, all_but(j)));
+        robot.axes[j].next = 1;
+        assert_true(grobo_i_moving(&robot, NOW));
+        robot.axes[j].next = 0;
+        set_going(j);
+        assert_true(grobo_i_moving(&robot, NOW));
+        assert_false(grobo_i_moving(&robot, NOW + S));
+        robot.axes[j].sensed = false;
+        assert_false(grobo_i_moving(&robot, NOW));
+        assert_false(grobo_i_all_sensed(&robot, GROBO_JOINTS_ALL(N), &joint));
+        assert_int_equal(joint, j);
+        assert_true(grobo_i_all_sensed(&robot, all_but(j), &joint));
+        assert_true(grobo_i_all_on(&robot, GROBO_JOINTS_ALL(N)));
+        make_limp(j);
+        assert_false(grobo_i_all_on(&robot, GROBO_JOINT_BIT(j)));
+        assert_true(grobo_i_all_on(&robot, all_but(j)));
+    }
+}
+
+/* ---- what is told in parts ------------------------------------------------------------------- */
+
+static void a_way_is_told_in_parts_where_that_is_wanted(void **state)
+{
+    (void)state;
+    static const struct {
+        grobo_goals goals;
+        bool arm, stops;
+        int64_t time_us, step_us;
+        bool wanted;
+    } rows[] = {
+        {GROBO_GOALS_DEFAULT, false, false, S, 10000, false},
+        {GROBO_GOALS_DEFAULT, true, false, S, 10000, true},
+        {GROBO_GOALS_WHOLE, true, false, S, 10000, false},
+        {GROBO_GOALS_SEGMENTS, false, false, S, 10000, true},
+        {GROBO_GOALS_SEGMENTS, false, true, S, 10000, false},
+        {GROBO_GOALS_SEGMENTS, false, false, 380001, 10000, true},
+        {GROBO_GOALS_SEGMENTS, false, false, 380000, 10000, false},
+        {GROBO_GOALS_SEGMENTS, false, false, 350001, 50000, true}, /* of that many steps */
+        {GROBO_GOALS_SEGMENTS, false, false, 350000, 50000, false},
+        {GROBO_GOALS_SEGMENTS, false, false, 380001, 380000, true},
+        {GROBO_GOALS_SEGMENTS, false, false, 390000, 390000, false},
+        {GROBO_GOALS_SEGMENTS, false, false, 390001, 390000, true},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        const grobo_robot_order order = {.stops = rows[i].stops};
+        start_with(&(grobo_robot_config){.goals = rows[i].goals});
+        driver.arm = rows[i].arm;
+        driver.time_step_us = rows[i].step_us;
+        if (grobo_i_segments_wanted(&robot, &order, rows[i].time_us) != rows[i].wanted) {
+            fail_msg("row %zu", i);
+        }
+    }
+}
+
+/* The first part of those that go farther than a segment; the others go at once. */
+static void the_first_frame_asks_for_a_segment(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        grobo_target whole = {0};
+        grobo_target part;
+        start_with(&(grobo_robot_config){.goals = GROBO_GOALS_SEGMENTS});
+        set_going(j); /* it is 10 degrees on, and goes back to where it was */
+        assert_int_equal(grobo_posture_init(&whole.posture, N), 0);
+        whole.posture.set = bits(j, other_of(j));
+        whole.posture.angle_rad[j] = here_rad(j);
+        whole.posture.angle_rad[other_of(j)] = 1;
+        whole.joint_time_us[j] = whole.joint_time_us[third_of(j)] = 2 * GROBO_SEGMENT_US;
+        whole.joint_time_us[other_of(j)] = GROBO_SEGMENT_US;
+        memset(&part, 0xA5, sizeof part);
+        assert_true(grobo_i_segments_cut(&robot, &(grobo_robot_order){0}, &whole, &part));
+        whole.joint_time_us[j] = GROBO_SEGMENT_US;
+        expect_equal(part.posture.angle_rad[j], here_rad(j) + RAD(5), "its part");
+        whole.posture.angle_rad[j] = part.posture.angle_rad[j];
+        assert_memory_equal(&part, &whole, sizeof part);
+        grobo_target same = part;
+        assert_false(grobo_i_segments_cut(&robot, &(grobo_robot_order){0}, &whole, &part));
+        assert_memory_equal(&part, &same, sizeof part);
+        expect_equal(robot.axes[j].way.to_rad, here_rad(j) + RAD(20), "nothing is noted");
+    }
+}
+
+/* It may begin outside its limits, and no part of it lies there. */
+static void no_part_lies_outside_the_limits(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        for (int end = -1; end <= 1; end += 2) {
+            grobo_target target = {0};
+            start();
+            robot.axes[j].way =
+                (grobo_robot_way){end * RAD(75 + j), end * RAD(65 + j), NOW, NOW + 2 * S};
+            robot.axes[j].in_segments = true;
+            robot.axes[j].told_to_us = NOW + 1;
+            grobo_i_segments_aim(&robot, GROBO_JOINTS_ALL(N), &target);
+            assert_true(target.posture.set == GROBO_JOINT_BIT(j));
+            expect_equal(target.posture.angle_rad[j], end * RAD(70 + j), "its part");
+        }
+    }
+}
+
+/* A joint in segments has so much left of a way of 10 degrees, and was told so much of it. */
+typedef struct told_way {
+    int64_t left_us, told_us, time_us; /* time_us: what the next frame asks for; 0: nothing */
+} told_way;
+
+static const told_way told_ways[] = {{S, 1, 380000},      {S, 0, 0},
+                                     {S, -1, 0},          {380001, 1, 380000},
+                                     {380000, 1, 380000}, {370001, 1, 380000},
+                                     {370000, 1, 370000}, {100000, 100000, 100000},
+                                     {99999, 99999, 0},   {99999, 99998, 100000},
+                                     {5000, 4999, 10000}, {5000, 5000, 0}};
+enum { TOLD_WAYS = sizeof told_ways / sizeof told_ways[0] };
+
+static grobo_robot_axis *start_on(int joint, const told_way *row)
+{
+    grobo_robot_axis *axis = &robot.axes[joint];
+    start();
+    set_going(third_of(joint)); /* a whole goal */
+    axis->way = (grobo_robot_way){0, RAD(10), NOW, NOW + row->left_us};
+    axis->told_to_us = NOW + row->told_us;
+    axis->in_segments = true;
+    return axis;
+}
+
+static void expect_aim(grobo_joint_mask of, int joint, const told_way *row, int64_t time_us)
+{
+    grobo_target target = {0};
+    double part = fmin((double)time_us / (double)row->left_us, 1);
+    grobo_i_segments_aim(&robot, of, &target);
+    assert_true(target.posture.set == (time_us > 0 ? GROBO_JOINT_BIT(joint) : 0));
+    for (int k = 0; k < N; k++) {
+        assert_true(target.joint_time_us[k] == (k == joint ? time_us : 0));
+        expect_equal(target.posture.angle_rad[k], k == joint ? RAD(10) * part : 0, "part");
+    }
+}
+
+/* A segment ahead, or what is left, in whole steps. */
+static void the_next_frame_asks_for_more_of_each_way(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        for (int i = 0; i < TOLD_WAYS; i++) {
+            const told_way *row = &told_ways[i];
+            grobo_robot_axis *axis = start_on(j, row);
+            expect_aim(GROBO_JOINTS_ALL(N), j, row, row->time_us);
+            expect_aim(all_but(j), j, row, 0);
+            axis->has_target = false;
+            expect_aim(GROBO_JOINTS_ALL(N), j, row, 0);
+            axis->has_target = true;
+            axis->in_segments = false;
+            expect_aim(GROBO_JOINTS_ALL(N), j, row, 0);
+        }
+    }
+}
+
+/* To the end again while there is time for it. */
+static void ways_are_told_on_until_they_end(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        for (int i = 0; i < 3 * TOLD_WAYS; i++) {
+            const told_way *row = &told_ways[i / 3];
+            grobo_robot_axis *axis = start_on(j, row);
+            axis->in_segments = i % 3 != 1;
+            axis->has_target = i % 3 != 2;
+            bool is_short = i % 3 == 0 && row->told_us < row->left_us;
+            bool again = is_short || (i % 3 == 0 && row->left_us >= 100000);
+            assert_int_equal(grobo_i_way_is_short(axis), is_short);
+            assert_true(grobo_i_ways_renewed(&robot) == (again ? GROBO_JOINT_BIT(j) : 0));
+            robot.renewed_us = NOW;
+            assert_true(grobo_i_segments_due(&robot) ==
+                        (again ? NOW + GROBO_SEGMENT_RENEW_US : GROBO_NEVER_US));
+        }
+    }
+}
+
+/* The frames of all ways leave at once: the first of them sets the time. */
+static void the_first_way_sets_the_time_for_the_others(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        start();
+        robot.renewed_us = 1;
+        set_going(j);
+        set_going(other_of(j));
+        keep_axes();
+        grobo_i_segments_begin(&robot, j);
+        assert_true(robot.renewed_us == NOW);
+        before[j].in_segments = true;
+        before[j].told_to_us = NOW + GROBO_SEGMENT_US;
+        expect_axes();
+        robot.renewed_us = 2;
+        robot.now_us = NOW + 10;
+        grobo_i_segments_begin(&robot, other_of(j));
+        assert_true(robot.renewed_us == 2);
+        before[other_of(j)].in_segments = true;
+        before[other_of(j)].told_to_us = NOW + 10 + GROBO_SEGMENT_US;
+        expect_axes();
+    }
+}
+
+/* ---- in time --------------------------------------------------------------------------------- */
+
+static void set_going_in_segments(int joint)
+{
+    set_going(joint);
+    robot.axes[joint].in_segments = true;
+    robot.axes[joint].told_to_us = NOW + 200 * MS;
+}
+
+static grobo_joint_mask asked_for(void)
+{
+    for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
+        if (robot.slots[i].use == GROBO_I_USE_SEGMENT) {
+            assert_int_equal(robot.slots[i].txn.priority, GROBO_PRIORITY_MOTION);
+            return robot.slots[i].order.joints;
+        }
+    }
+    return 0;
+}
+
+/* Every 100 ms on one grid; who comes later than that begins another one. */
+static void more_is_asked_for_on_a_grid(void **state)
+{
+    (void)state;
+    static const struct {
+        int64_t ago_us, renewed_us; /* the grid after it, from now */
+        bool asks;
+    } rows[] = {{99999, -99999, false}, {100000, 0, true},      {100001, -1, true},
+                {150000, -50000, true}, {199999, -99999, true}, {200000, 0, true},
+                {200001, 0, true},      {700000, 0, true}};
+    for (int j = 0; j < N; j++) {
+        for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+            start();
+            set_going_in_segments(j);
+            set_going_in_segments(other_of(j));
+            robot.renewed_us = NOW - rows[i].ago_us;
+            int64_t due_us = NOW - rows[i].ago_us + GROBO_SEGMENT_RENEW_US;
+            assert_true(grobo_i_segments_deadline(&robot) == due_us);
+            grobo_i_segments_step(&robot);
+            assert_true(asked_for() == (rows[i].asks ? bits(j, other_of(j)) : 0));
+            assert_true(robot.renewed_us == NOW + rows[i].renewed_us);
+            if (rows[i].asks) { /* until that has left nothing more is asked for */
+                robot.renewed_us = NOW - S;
+                grobo_i_segments_step(&robot);
+                assert_true(robot.renewed_us == NOW - S);
+                assert_true(grobo_i_segments_deadline(&robot) == NOW + 200 * MS);
+            }
+        }
+    }
+}
+
+static void a_way_that_was_not_told_on_is_looked_at_when_it_is_over(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        start();
+        assert_true(grobo_i_segments_deadline(&robot) == GROBO_NEVER_US);
+        robot.renewed_us = NOW;
+        set_going_in_segments(j);
+        set_going_in_segments(other_of(j));
+        assert_true(grobo_i_segments_deadline(&robot) == NOW + GROBO_SEGMENT_RENEW_US);
+        robot.axes[j].told_to_us = NOW + 50 * MS;
+        assert_true(grobo_i_segments_deadline(&robot) == NOW + 50 * MS);
+        robot.axes[j].told_to_us = NOW + S; /* to its end */
+        assert_true(grobo_i_segments_deadline(&robot) == NOW + GROBO_SEGMENT_RENEW_US);
+    }
+}
+
+/* A joint stands where it was told to go: the host was away, and its move is over. */
+static void a_way_that_was_not_told_on_is_given_up(void **state)
+{
+    (void)state;
+    static const struct {
+        grobo_job_kind kind;
+        bool ends;
+    } jobs[] = {{GROBO_JOB_NONE, false},  {GROBO_JOB_MOVE, true},   {GROBO_JOB_PLAY, true},
+                {GROBO_JOB_SETTLE, true}, {GROBO_JOB_SENSE, false}, {GROBO_JOB_TORQUE, false}};
+    for (int j = 0; j < N; j++) {
+        for (size_t i = 0; i < sizeof jobs / sizeof jobs[0]; i++) {
+            for (int over = 0; over < 2; over++) {
+                start();
+                robot.events_n = robot.events_head = 0;
+                robot.job->kind = jobs[i].kind;
+                robot.job->number = 5;
+                bool plays = jobs[i].kind == GROBO_JOB_PLAY;
+                robot.sequencer.state = plays ? GROBO_SEQUENCER_PLAYING : GROBO_SEQUENCER_FINISHED;
+                robot.renewed_us = NOW - 250500;
+                set_going_in_segments(j);
+                set_going_in_segments(other_of(j));
+                robot.axes[j].told_to_us = NOW + !over;
+                robot.axes[other_of(j)].told_to_us = NOW + S;
+                keep_axes();
+                grobo_i_segments_step(&robot);
+                assert_int_equal(robot.counters.stalls, over);
+                assert_int_equal(robot.soft, over);
+                assert_int_equal(robot.sequencer.state, !plays ? GROBO_SEQUENCER_FINISHED
+                                                        : over ? GROBO_SEQUENCER_IDLE
+                                                               : GROBO_SEQUENCER_PLAYING);
+                assert_true(!over || robot.soft_us == GROBO_NEVER_US);
+                assert_int_equal(robot.job->kind,
+                                 over && jobs[i].ends ? GROBO_JOB_NONE : jobs[i].kind);
+                if (over) {
+                    double stands_rad = here_rad(j) + RAD(10);
+                    expect_equal(robot.axes[j].way.to_rad, stands_rad, "where it stands");
+                    stands_rad = robot.axes[j].way.to_rad;
+                    before[j].way = (grobo_robot_way){stands_rad, stands_rad, NOW, NOW};
+                    before[j].in_segments = false;
+                    const grobo_event *event = &robot.events[robot.events_head];
+                    assert_int_equal(event->kind, GROBO_EVENT_TRIP);
+                    assert_int_equal(event->u.trip.trip, GROBO_TRIP_HOST_STALL);
+                    assert_int_equal(event->u.trip.joint, -1);
+                    expect_equal(event->u.trip.value, 150.5, "ms late");
+                    assert_false(event->u.trip.latched);
+                    assert_false(robot.trip.latched);
+                    bool tells = jobs[i].ends && jobs[i].kind != GROBO_JOB_SETTLE;
+                    assert_int_equal(robot.events_n, tells ? 2 : 1);
+                    assert_true(!tells || event[1].u.job.result == GROBO_ERR_CANCELED);
+                }
+                expect_axes();
+                /* The other one is still on its way. */
+                grobo_joint_mask on = over ? GROBO_JOINT_BIT(other_of(j)) : bits(j, other_of(j));
+                assert_true(asked_for() == on);
+            }
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_way_is_straight_in_time),
+        cmocka_unit_test(a_joint_is_where_it_was_sent_or_read),
+        cmocka_unit_test(a_joint_that_is_not_limp_moves_to_the_end_of_its_way),
+        cmocka_unit_test(a_joint_rests_where_it_was_read),
+        cmocka_unit_test(joints_are_asked_for_by_their_bits),
+        cmocka_unit_test(a_way_is_told_in_parts_where_that_is_wanted),
+        cmocka_unit_test(the_first_frame_asks_for_a_segment),
+        cmocka_unit_test(no_part_lies_outside_the_limits),
+        cmocka_unit_test(the_next_frame_asks_for_more_of_each_way),
+        cmocka_unit_test(ways_are_told_on_until_they_end),
+        cmocka_unit_test(the_first_way_sets_the_time_for_the_others),
+        cmocka_unit_test(more_is_asked_for_on_a_grid),
+        cmocka_unit_test(a_way_that_was_not_told_on_is_looked_at_when_it_is_over),
+        cmocka_unit_test(a_way_that_was_not_told_on_is_given_up),
+    };
+    return axes_on_both_wirings(tests, sizeof tests / sizeof tests[0]);
+}

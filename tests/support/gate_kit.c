@@ -1,0 +1,96 @@
+/* SPDX-License-Identifier: MIT */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include <grobo/board.h>
+
+#include "tests/support/gate_kit.h"
+
+grobo_robot_slot *slot;
+
+void await(int joint, double way_deg, int64_t time_us)
+{
+    grobo_robot_axis *axis = &robot.axes[joint];
+    axis->next = NUMBER;
+    axis->next_rad = here_rad(joint) + RAD(way_deg);
+    axis->next_time_us = time_us;
+}
+
+void take(grobo_robot_order order)
+{
+    slot = grobo_i_slot_take(&robot, GROBO_I_USE_PLAIN);
+    assert_non_null(slot);
+    slot->order = order;
+    slot->txn.sent_us = -1;
+    memset(&slot->exchange, 0xA5, sizeof slot->exchange);
+    keep_axes();
+}
+
+int leave(grobo_robot_order order)
+{
+    take(order);
+    return grobo_i_gate_leave(slot);
+}
+
+void drop(void)
+{
+    grobo_i_slot_drop(slot);
+}
+
+void expect_packet(const uint8_t *packet, int size)
+{
+    grobo_exchange be = {0};
+    assert_true(size > 0);
+    int n = grobo_frame_wrap(driver.protocol, packet, (size_t)size, be.frame, sizeof be.frame);
+    assert_int_equal(slot->exchange.frame_bytes, n);
+    assert_memory_equal(slot->exchange.frame, be.frame, (size_t)n);
+    assert_int_equal(driver.protocol->reply_to(be.frame, (size_t)n, &be.reply), 0);
+    assert_int_equal(slot->exchange.reply.kind, be.reply.kind);
+    assert_int_equal(slot->exchange.settle_us, 0);
+}
+
+int far_goal = -1;
+
+void expect_goals(grobo_joint_mask of, double way_deg, int64_t time_us)
+{
+    uint8_t packet[GROBO_RS30X_PACKET_MAX_BYTES];
+    grobo_rs30x_goal goals[GROBO_JOINTS_MAX];
+    size_t n = 0;
+    for (int j = 0; j < N; j++) {
+        if ((of & GROBO_JOINT_BIT(j)) != 0) {
+            double deg = j - 20 + way_deg * (j == far_goal ? 2 : 1);
+            goals[n++] = (grobo_rs30x_goal){(uint8_t)(j + 1), (int16_t)lround(deg * 10),
+                                            (uint16_t)(time_us / 10000)};
+        }
+    }
+    int size = n == 1 ? grobo_rs30x_write_goal(goals, packet, sizeof packet)
+                      : grobo_rs30x_write_goals(goals, n, packet, sizeof packet);
+    expect_packet(packet, size);
+}
+
+void expect_torque(int joint, grobo_torque torque)
+{
+    uint8_t packet[GROBO_RS30X_PACKET_MAX_BYTES];
+    expect_packet(packet,
+                  grobo_rs30x_write_u8((uint8_t)(joint + 1), GROBO_RS30X_WANT_NOTHING,
+                                       GROBO_RS30X_TORQUE, (uint8_t)torque, packet, sizeof packet));
+}
+
+void note_goal(int joint, double way_deg, int64_t time_us)
+{
+    grobo_robot_axis *axis = &before[joint];
+    axis->way =
+        (grobo_robot_way){here_rad(joint), here_rad(joint) + RAD(way_deg), NOW, NOW + time_us};
+    axis->own_until_us = 0;
+    axis->has_target = true;
+    axis->adrift = axis->held = axis->in_segments = axis->off_way = false;
+    axis->told_us = NOW;
+    axis->last = NUMBER;
+    axis->next = 0;
+}
