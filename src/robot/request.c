@@ -596,7 +596,8 @@ int grobo_robot_free(grobo_robot *robot, grobo_joint_mask joints, bool on)
         return grobo_robot_torque(robot, joints, GROBO_TORQUE_ON);
     }
     grobo_i_begin(robot);
-    int result = admit(robot, GROBO_JOB_TORQUE, joints, true);
+    /* Beside no job: one that is under way may still send joints to where they were. */
+    int result = admit(robot, GROBO_JOB_PLAY, 0, true);
     if (result >= 0 && grobo_robot_is_playing(robot)) {
         result = GROBO_ERR_STATE;
     }

@@ -264,9 +264,9 @@ static void each_is_taken_or_refused_for_its_reason(void **state)
     } rows[] = {
         {make_down, "ccccccc-cccccc=------c"},     {make_new, "+++++?+-+?++++=------="},
         {make_limp, "+++++-+-++++++=------="},     {make_ready, "+++++=+-++++++=------="},
-        {make_moving, "-++++---++--++===----="},   {make_playing, "++-+---++++-++=-==-==-"},
+        {make_moving, "-++++---++--++===-----"},   {make_playing, "++-+---++++-++=-==-==-"},
         {make_paused, "++-+---++++-++=-=-===-"},   {make_sent, "+++++=+-+++-++=-=----="},
-        {make_reading, "-++++=--+++-++==-----="},  {make_latched, "++l+llll+l++++=---l--l"},
+        {make_reading, "-++++=--+++-++==------"},  {make_latched, "++l+llll+l++++=---l--l"},
         {make_stopping, "-+l-llll-----+----l--l"}, {make_leaving, "-+----------++==------"},
     };
     enum { REQUESTS = sizeof requests / sizeof requests[0] };
