@@ -64,13 +64,6 @@ static void assert_slot(const grobo_robot *robot, const grobo_robot_slot *slot)
     GROBO_ASSERT(!robot->trip.latched || !goal || slot->order.stops || slot->txn.sent_us >= 0);
 }
 
-/* Jobs that others may run beside. */
-static bool is_shared(grobo_job_kind kind)
-{
-    return kind == GROBO_JOB_MOVE || kind == GROBO_JOB_SENSE || kind == GROBO_JOB_TORQUE ||
-           kind == GROBO_JOB_RAW || kind == GROBO_JOB_REGISTERS;
-}
-
 static void assert_job(const grobo_robot *robot, const grobo_robot_task *job)
 {
     if (job->kind == GROBO_JOB_NONE) {
@@ -82,7 +75,7 @@ static void assert_job(const grobo_robot *robot, const grobo_robot_task *job)
     GROBO_ASSERT((job->todo & ~grobo_i_all_joints(robot)) == 0);
     GROBO_ASSERT((job->failed & ~grobo_i_all_joints(robot)) == 0);
     GROBO_ASSERT((job->joints & job->superseded) == 0);
-    GROBO_ASSERT(job == robot->jobs || is_shared(job->kind));
+    GROBO_ASSERT(job == robot->jobs || grobo_i_job_is_shared(job->kind));
     for (const grobo_robot_task *other = robot->jobs; other < job; other++) {
         GROBO_ASSERT(other->kind == GROBO_JOB_NONE || other->number != job->number);
         GROBO_ASSERT(other->kind != GROBO_JOB_MOVE || job->kind != GROBO_JOB_MOVE ||

@@ -8,6 +8,12 @@
 
 /* ---- which jobs there are -------------------------------------------------------------------- */
 
+bool grobo_i_job_is_shared(grobo_job_kind kind)
+{
+    return kind == GROBO_JOB_MOVE || kind == GROBO_JOB_SENSE || kind == GROBO_JOB_TORQUE ||
+           kind == GROBO_JOB_RAW || kind == GROBO_JOB_REGISTERS;
+}
+
 int grobo_i_job_number(grobo_robot *robot)
 {
     robot->last_number = robot->last_number == INT32_MAX ? 1 : robot->last_number + 1;
@@ -140,15 +146,19 @@ void grobo_i_jobs_leave(grobo_robot *robot, grobo_joint_mask joints)
     grobo_i_slots_cancel_goals(robot, joints, false);
 }
 
+void grobo_i_queue_tell(grobo_robot *robot, const grobo_robot_wish *wish, int result)
+{
+    grobo_event event = {.kind = GROBO_EVENT_JOB};
+    event.u.job = (grobo_event_job){
+        .number = wish->number, .kind = wish->kind, .result = result, .joint = -1};
+    event.u.job.failed = wish->joints;
+    grobo_i_tell(robot, &event);
+}
+
 void grobo_i_queue_end(grobo_robot *robot, int result)
 {
     for (unsigned i = 0; i < robot->queued; i++) {
-        const grobo_robot_wish *wish = &robot->queue[i];
-        grobo_event event = {.kind = GROBO_EVENT_JOB};
-        event.u.job = (grobo_event_job){
-            .number = wish->number, .kind = wish->kind, .result = result, .joint = -1};
-        event.u.job.failed = wish->joints;
-        grobo_i_tell(robot, &event);
+        grobo_i_queue_tell(robot, &robot->queue[i], result);
     }
     robot->queued = 0;
 }

@@ -13,15 +13,9 @@
 
 /* ---- side by side ---------------------------------------------------------------------------- */
 
-static bool is_shared(grobo_job_kind kind)
-{
-    return kind == GROBO_JOB_MOVE || kind == GROBO_JOB_SENSE || kind == GROBO_JOB_TORQUE ||
-           kind == GROBO_JOB_RAW || kind == GROBO_JOB_REGISTERS;
-}
-
 static bool is_alone(const grobo_robot_task *job)
 {
-    return !is_shared(job->kind);
+    return !grobo_i_job_is_shared(job->kind);
 }
 
 /* Joints that jobs use in another way than this kind could join in. */
@@ -47,7 +41,7 @@ int grobo_i_admit(grobo_robot *robot, grobo_job_kind kind, grobo_joint_mask join
     if (moves && robot->trip.latched) {
         return GROBO_ERR_LATCHED;
     }
-    bool apart = !is_shared(kind) && grobo_i_jobs_any(robot, NULL);
+    bool apart = !grobo_i_job_is_shared(kind) && grobo_i_jobs_any(robot, NULL);
     if (apart || grobo_i_jobs_any(robot, is_alone) || !grobo_i_jobs_have_room(robot, false) ||
         (taken_from(robot, kind) & joints) != 0) {
         return GROBO_I_LATER;
@@ -132,11 +126,7 @@ void grobo_i_queue_step(grobo_robot *robot)
         if (result == GROBO_OK) {
             (void)begin(robot, &first);
         } else {
-            grobo_event event = {.kind = GROBO_EVENT_JOB};
-            event.u.job = (grobo_event_job){
-                .number = first.number, .kind = first.kind, .result = result, .joint = -1};
-            event.u.job.failed = first.joints;
-            grobo_i_tell(robot, &event);
+            grobo_i_queue_tell(robot, &first, result);
         }
     }
 }

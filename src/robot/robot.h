@@ -264,6 +264,8 @@ typedef enum grobo_i_activity {
     GROBO_I_WAIT      /* until job.until_us */
 } grobo_i_activity;
 
+/* True for jobs that others may run beside. */
+bool grobo_i_job_is_shared(grobo_job_kind kind);
 /* A number for a job. */
 int grobo_i_job_number(grobo_robot *robot);
 /* True if there is room for one more; `last`: in the place that is kept for what takes torque
@@ -285,6 +287,8 @@ void grobo_i_jobs_end(grobo_robot *robot, bool (*is)(const grobo_robot_task *job
 bool grobo_i_jobs_any(const grobo_robot *robot, bool (*is)(const grobo_robot_task *job));
 /* Moves and torques that run leave these joints to another; one that has no joint left ends. */
 void grobo_i_jobs_leave(grobo_robot *robot, grobo_joint_mask joints);
+/* Tells how one that waited for its turn has ended. */
+void grobo_i_queue_tell(grobo_robot *robot, const grobo_robot_wish *wish, int result);
 /* Ends what waits for its turn. */
 void grobo_i_queue_end(grobo_robot *robot, int result);
 /* One joint failed; the job goes on with the others. The first error is the job's result. */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The bytes of a session: engine to line, line to engine, and when to look again. */
 #include "src/base/assert.h"
+#include "src/base/instant.h"
 #include "src/link/session/session.h"
 
 /* How long to leave a line alone that takes no more bytes; it also tells when it does. */
@@ -60,11 +61,6 @@ static void take_back(grobo_session *session)
     session->line->take_back(session, size, session->given_behind);
 }
 
-static int64_t earlier(int64_t a_us, int64_t b_us)
-{
-    return a_us < b_us ? a_us : b_us;
-}
-
 /* When to look again. */
 static int64_t deadline_of(const grobo_session *session, bool busy)
 {
@@ -75,7 +71,7 @@ static int64_t deadline_of(const grobo_session *session, bool busy)
     if (busy && deadline_us < now_us + BUSY_US) {
         deadline_us = now_us + BUSY_US;
     }
-    return earlier(deadline_us, session->line->deadline(session));
+    return grobo_i_sooner(deadline_us, session->line->deadline(session));
 }
 
 void grobo_i_session_send(grobo_session *session)
@@ -107,11 +103,12 @@ void grobo_i_session_send(grobo_session *session)
             free = !grobo_i_session_guard_has_it(session) && session->line->has_room(session);
         }
         grobo_i_session_guard_tell(session);
-        deadline_us = earlier(deadline_of(session, !free), grobo_i_session_estop_deadline(session));
+        deadline_us =
+            grobo_i_sooner(deadline_of(session, !free), grobo_i_session_estop_deadline(session));
         break;
     }
     case GROBO_SESSION_WAITING:
-        deadline_us = earlier(session->retry_us, grobo_i_session_estop_deadline(session));
+        deadline_us = grobo_i_sooner(session->retry_us, grobo_i_session_estop_deadline(session));
         break;
     case GROBO_SESSION_OPENING:
         deadline_us = session->line->deadline(session);

@@ -4,17 +4,13 @@
  * sheets at the nominal supply. */
 #include <grobo/dxl1.h>
 
+#include "src/servo/row.h"
+
 /* Groups of models: one each where defaults differ. */
 enum { AX12 = 1, AX18 = 2, MX28 = 4, MX64 = 8, MX106 = 16 };
 enum { AX = AX12 | AX18, CURRENT = MX64 | MX106, MX = MX28 | CURRENT, ALL = AX | MX };
 
 enum { R = 0, W = GROBO_REGISTER_W, E = GROBO_REGISTER_KEPT, EW = W | E };
-
-#define ROW(name, address, bytes, sign, flags, role, unit, min, max, factory, groups)              \
-    {                                                                                              \
-        name, unit, (min), (max), (factory), (address), (bytes), (sign), (flags),                  \
-            GROBO_ROLE_##role, (groups)                                                            \
-    }
 
 static const grobo_servo_register rows[] = {
     ROW("model", 0, 2, 0, E, MODEL, "", 0, 65535, 0, ALL),
@@ -74,8 +70,6 @@ static const grobo_servo_register rows[] = {
     ROW("goal_torque", 71, 2, 10, W, GOAL_CURRENT, "4.5 mA", -1023, 1023, 0, CURRENT),
     ROW("goal_acceleration", 73, 1, 0, W, ACCELERATION, "8.583 deg/s2", 0, 254, 0, MX),
 };
-
-#undef ROW
 
 #define MODEL(name, number, ticks, deg, middle, dps, mnm, ma, group)                               \
     {                                                                                              \

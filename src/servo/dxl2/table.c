@@ -5,6 +5,8 @@
  * compared with the data sheets yet. */
 #include <grobo/dxl2.h>
 
+#include "src/servo/row.h"
+
 /* Groups of models: XL330, XC330 for 5 V and for 12 V; those that report a load; the larger ones
  * that report a current. */
 enum { XL330 = 1, XC330M = 2, XC330T = 4, LOAD = 8, LARGE = 16 };
@@ -12,12 +14,6 @@ enum { XC330 = XC330M | XC330T, LOW = XL330 | XC330M, SMALL = XL330 | XC330 };
 enum { ALL = SMALL | LOAD | LARGE };
 
 enum { R = 0, W = GROBO_REGISTER_W, E = GROBO_REGISTER_KEPT, EW = W | E };
-
-#define ROW(name, address, bytes, sign, flags, role, unit, min, max, factory, groups)              \
-    {                                                                                              \
-        name, unit, (min), (max), (factory), (address), (bytes), (sign), (flags),                  \
-            GROBO_ROLE_##role, (groups)                                                            \
-    }
 
 static const grobo_servo_register rows[] = {
     ROW("model", 0, 2, 0, E, MODEL, "", 0, 65535, 0, ALL),
@@ -110,8 +106,6 @@ static const grobo_servo_register rows[] = {
     ROW("temperature", 146, 1, 0, R, TEMPERATURE, "deg C", 0, 255, 0, ALL),
     ROW("backup_ready", 147, 1, 0, R, NONE, "", 0, 1, 0, ALL),
 };
-
-#undef ROW
 
 #define MODEL(name, number, dps, mnm, ma, mv, group)                                               \
     {                                                                                              \

@@ -2,16 +2,12 @@
 /* SCS: registers and models. Addresses, defaults and units: the maker's SCS memory table. */
 #include <grobo/feetech.h>
 
+#include "src/servo/row.h"
+
 /* Groups of models: there is one. */
 enum { ALL = 1 };
 
 enum { R = 0, W = GROBO_REGISTER_W, E = GROBO_REGISTER_KEPT, EW = W | E };
-
-#define ROW(name, address, bytes, sign, flags, role, unit, min, max, factory, groups)              \
-    {                                                                                              \
-        name, unit, (min), (max), (factory), (address), (bytes), (sign), (flags),                  \
-            GROBO_ROLE_##role, (groups)                                                            \
-    }
 
 static const grobo_servo_register rows[] = {
     ROW("firmware", 0, 1, 0, E, FIRMWARE, "", 0, 255, 0, ALL),
@@ -55,8 +51,6 @@ static const grobo_servo_register rows[] = {
     ROW("status", 65, 1, 0, R, ERROR, "bits", 0, 255, 0, ALL),
     ROW("moving", 66, 1, 0, R, MOVING, "", 0, 1, 0, ALL),
 };
-
-#undef ROW
 
 static const grobo_servo_model models[] = {
     {"SCS0009", 1284, 1024, 300, 512, 600, 230, 1000, 6000, ALL, 3, &grobo_scs_table},

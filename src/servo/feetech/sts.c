@@ -4,16 +4,12 @@
  * model holds two bytes that the maker calls version: 9 and 3 are 777. */
 #include <grobo/feetech.h>
 
+#include "src/servo/row.h"
+
 /* Groups of models: for 7.4 V, for 12 V. */
 enum { V7 = 1, V12 = 2, ALL = V7 | V12 };
 
 enum { R = 0, W = GROBO_REGISTER_W, E = GROBO_REGISTER_KEPT, EW = W | E };
-
-#define ROW(name, address, bytes, sign, flags, role, unit, min, max, factory, groups)              \
-    {                                                                                              \
-        name, unit, (min), (max), (factory), (address), (bytes), (sign), (flags),                  \
-            GROBO_ROLE_##role, (groups)                                                            \
-    }
 
 static const grobo_servo_register rows[] = {
     ROW("firmware", 0, 1, 0, E, FIRMWARE, "", 0, 255, 0, ALL),
@@ -71,8 +67,6 @@ static const grobo_servo_register rows[] = {
     ROW("max_acceleration", 85, 1, 0, W, NONE, "8.79 deg/s2", 0, 254, 0, ALL),
     ROW("acceleration_factor", 86, 1, 0, W, NONE, "", 0, 254, 0, ALL),
 };
-
-#undef ROW
 
 #define MODEL(name, number, dps, mnm, ma, mv, group)                                               \
     {                                                                                              \
