@@ -154,12 +154,15 @@ static int step_require(grobo_robot *robot)
     return robot->job->failed == 0 ? GROBO_I_NEXT : robot->job->result;
 }
 
-/* Motions begin where the joints were just seen, not where they were told to be. */
+/* Motions begin where the joints were just seen, not where they were told to be; those that are on
+ * the way that they were told, where they are on it by now. */
 static int step_from_here(grobo_robot *robot)
 {
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if (is_set(robot->job->joints & ~robot->job->failed, j)) {
-            grobo_i_axis_here(&robot->axes[j], robot->now_us);
+        grobo_robot_axis *axis = &robot->axes[j];
+        bool on_way = axis->has_target && !axis->off_way && axis->way.to_us > robot->now_us;
+        if (is_set(robot->job->joints & ~robot->job->failed, j) && !on_way) {
+            grobo_i_axis_here(axis, robot->now_us);
         }
     }
     return GROBO_I_NEXT;

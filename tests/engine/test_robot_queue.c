@@ -105,6 +105,21 @@ static void a_move_takes_its_joint_from_the_one_before(void **state)
     }
 }
 
+/* The rig fails where a joint is told to be faster than it may, from where it is by then. */
+static void a_move_of_a_fast_joint_begins_where_it_is_when_the_frame_leaves(void **state)
+{
+    (void)state;
+    for (int step = 0; step < 40; step++) {
+        begin();
+        int away = move(NECK, 50, 10);
+        rig_run(&rig, 60000);
+        int back = move(NECK, -10 - step / 10.0, 10);
+        assert_true(back > away);
+        rig_expect(&rig, back, GROBO_OK);
+        expect_at(NECK, -10 - step / 10.0);
+    }
+}
+
 static void a_move_that_has_no_joint_left_ends_at_once(void **state)
 {
     (void)state;
@@ -322,6 +337,7 @@ int main(void)
         cmocka_unit_test(moves_of_different_joints_run_side_by_side),
         cmocka_unit_test(a_reading_runs_beside_a_move),
         cmocka_unit_test(a_move_takes_its_joint_from_the_one_before),
+        cmocka_unit_test(a_move_of_a_fast_joint_begins_where_it_is_when_the_frame_leaves),
         cmocka_unit_test(a_move_that_has_no_joint_left_ends_at_once),
         cmocka_unit_test(moves_and_readings_wait_in_their_order),
         cmocka_unit_test(nobody_waits_longer_than_two_seconds),

@@ -211,7 +211,8 @@ static void check_packet(grobo_test_rig *rig, const uint8_t *p, size_t n)
     } else if (p[6] == 1) {
         check_write(rig, p[2], p[4], p + 7, p[5]);
     } else if (p[3] >= GROBO_RS30X_FACTORY) {
-        leave_ways(rig, rig_all(rig));
+        int j = joint_of(rig, p[2]);
+        leave_ways(rig, j >= 0 ? GROBO_JOINT_BIT(j) : rig_all(rig));
     }
 }
 
