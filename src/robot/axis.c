@@ -85,7 +85,7 @@ bool grobo_i_moving(const grobo_robot *robot, int64_t now_us)
 bool grobo_i_adrift(const grobo_robot *robot, grobo_joint_mask joints)
 {
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if ((joints & GROBO_JOINT_BIT(j)) != 0 && robot->axes[j].adrift) {
+        if (grobo_i_has(joints, j) && robot->axes[j].adrift) {
             return true;
         }
     }
@@ -95,7 +95,7 @@ bool grobo_i_adrift(const grobo_robot *robot, grobo_joint_mask joints)
 bool grobo_i_all_sensed(const grobo_robot *robot, grobo_joint_mask joints, int *joint)
 {
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if ((joints & GROBO_JOINT_BIT(j)) != 0 && !robot->axes[j].sensed) {
+        if (grobo_i_has(joints, j) && !robot->axes[j].sensed) {
             *joint = j;
             return false;
         }
@@ -106,7 +106,7 @@ bool grobo_i_all_sensed(const grobo_robot *robot, grobo_joint_mask joints, int *
 bool grobo_i_all_on(const grobo_robot *robot, grobo_joint_mask joints)
 {
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if ((joints & GROBO_JOINT_BIT(j)) != 0 && !grobo_i_axis_is_on(&robot->axes[j])) {
+        if (grobo_i_has(joints, j) && !grobo_i_axis_is_on(&robot->axes[j])) {
             return false;
         }
     }
@@ -122,7 +122,7 @@ int grobo_i_lowest(grobo_joint_mask joints)
 {
     GROBO_ASSERT(joints != 0);
     int j = 0;
-    while ((joints & GROBO_JOINT_BIT(j)) == 0) {
+    while (!grobo_i_has(joints, j)) {
         j++;
     }
     return j;

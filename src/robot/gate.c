@@ -24,11 +24,6 @@ typedef struct saying {
     grobo_joint_mask torqued[GROBO_TORQUE_BRAKE + 1]; /* what it switches, by mode */
 } saying;
 
-static bool is_in(grobo_joint_mask joints, int joint)
-{
-    return (joints & GROBO_JOINT_BIT(joint)) != 0;
-}
-
 /* ---- numbers and limits ---------------------------------------------------------------------- */
 
 int grobo_i_gate_target(grobo_robot *robot, grobo_posture *target)
@@ -110,7 +105,7 @@ int grobo_i_gate_time(grobo_robot *robot, const grobo_robot_order *order, grobo_
     bool stretched = false;
     int64_t longest_us = 0;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if (!is_in(target->posture.set, j)) {
+        if (!grobo_i_has(target->posture.set, j)) {
             continue;
         }
         int64_t needed_us = time_needed(robot, j, target->posture.angle_rad[j], soft);
@@ -165,7 +160,7 @@ static int judge_goal(grobo_robot *robot, const grobo_robot_order *order, grobo_
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
         bool last = axis->next == 0 && axis->last == order->number; /* again, or its next part */
-        if (is_in(order->joints, j) && (axis->next == order->number || last)) {
+        if (grobo_i_has(order->joints, j) && (axis->next == order->number || last)) {
             target->posture.angle_rad[j] = order->rests ? rest_of(robot, j, soft) : axis->next_rad;
             target->joint_time_us[j] = axis->next_time_us;
             target->posture.set |= GROBO_JOINT_BIT(j);
@@ -189,7 +184,7 @@ static int judge_halt(grobo_robot *robot, const grobo_robot_order *order, grobo_
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
         bool moves = axis->sensed && grobo_i_axis_moves(axis, robot->now_us);
-        if (is_in(order->joints, j) && moves) {
+        if (grobo_i_has(order->joints, j) && moves) {
             target->posture.angle_rad[j] = grobo_i_axis_commanded(axis, rest_us);
             target->joint_time_us[j] = HALT_TIME_US;
             target->posture.set |= GROBO_JOINT_BIT(j);
@@ -212,7 +207,7 @@ static int judge_hold(const grobo_robot *robot, const grobo_robot_order *order,
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
         double hold_rad = grobo_i_hold_rad(robot, j);
-        if (is_in(order->joints, j) && axis->sensed && !isnan(hold_rad) &&
+        if (grobo_i_has(order->joints, j) && axis->sensed && !isnan(hold_rad) &&
             !grobo_i_axis_is_on(axis)) {
             target->posture.angle_rad[j] = hold_rad;
             target->joint_time_us[j] = robot->driver->time_step_us;
@@ -258,10 +253,10 @@ static int judge_raw_torque(const grobo_robot *robot, grobo_joint_mask on)
 {
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
-        if (is_in(on, j) && !grobo_i_axis_is_on(axis)) {
+        if (grobo_i_has(on, j) && !grobo_i_axis_is_on(axis)) {
             return GROBO_ERR_STATE;
         }
-        if (is_in(on, j) && robot->now_us - axis->torque_us > ON_WAITS_US) {
+        if (grobo_i_has(on, j) && robot->now_us - axis->torque_us > ON_WAITS_US) {
             return GROBO_ERR_STALE;
         }
     }
@@ -301,7 +296,7 @@ static int judge_raw(grobo_robot *robot, const grobo_exchange *exchange, saying 
     grobo_i_gate_single(robot);
     for (int j = 0; j < driver->model->n_joints; j++) {
         double most_us = (double)target->joint_time_us[j] * RAW_TOLERANCE;
-        if (is_in(target->posture.set, j) &&
+        if (grobo_i_has(target->posture.set, j) &&
             most_us < time_of_way(robot, j, target->posture.angle_rad[j], robot->soft)) {
             robot->fault_joint = j;
             return GROBO_ERR_SPEED;
@@ -326,7 +321,8 @@ static int judge_setting(const grobo_robot *robot, grobo_joint_mask joints, bool
 {
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
-        if (is_in(joints, j) && (grobo_i_axis_is_on(axis) || (!axis->torque_known && !again))) {
+        if (grobo_i_has(joints, j) &&
+            (grobo_i_axis_is_on(axis) || (!axis->torque_known && !again))) {
             return axis->torque_known ? GROBO_ERR_STATE : GROBO_ERR_STALE;
         }
     }
@@ -439,7 +435,7 @@ static void says_all(const grobo_robot *robot, const grobo_robot_order *order, s
         return;
     }
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if (is_in(order->joints & ~says->target.posture.set, j)) {
+        if (grobo_i_has(order->joints & ~says->target.posture.set, j)) {
             says->target.joint_time_us[j] = robot->driver->time_step_us;
         }
     }
@@ -475,7 +471,7 @@ static void forget(grobo_robot *robot, grobo_joint_mask joints, bool torque_too)
 {
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         grobo_robot_axis *axis = &robot->axes[j];
-        if (is_in(joints, j)) {
+        if (grobo_i_has(joints, j)) {
             axis->sensed = axis->has_target = axis->held = false;
             axis->wants_torque = axis->wants_torque && !torque_too;
             axis->torque_known = axis->torque_known && !torque_too;
@@ -490,7 +486,7 @@ static void note_way(grobo_robot *robot, const grobo_robot_order *order, const g
 {
     int64_t now_us = robot->now_us;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if (is_in(target->posture.set, j)) {
+        if (grobo_i_has(target->posture.set, j)) {
             grobo_robot_axis *axis = &robot->axes[j];
             double from_rad = grobo_i_axis_commanded(axis, now_us);
             axis->way = (grobo_robot_way){from_rad, target->posture.angle_rad[j], now_us,
@@ -509,7 +505,7 @@ static void note_way(grobo_robot *robot, const grobo_robot_order *order, const g
 static void note_hold(grobo_robot *robot, grobo_joint_mask joints)
 {
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if (is_in(joints, j)) {
+        if (grobo_i_has(joints, j)) {
             grobo_i_axis_rest(&robot->axes[j], robot->now_us);
             robot->axes[j].own_until_us = 0;
             robot->axes[j].has_target = false;
@@ -524,9 +520,9 @@ static void note_torque(grobo_robot *robot, const saying *says)
     grobo_joint_mask off = says->torqued[GROBO_TORQUE_OFF] | says->torqued[GROBO_TORQUE_BRAKE];
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         grobo_robot_axis *axis = &robot->axes[j];
-        if (is_in(off, j)) {
+        if (grobo_i_has(off, j)) {
             axis->wants_torque = axis->held = axis->has_target = axis->torque_known = false;
-        } else if (is_in(on, j) && !grobo_i_axis_is_on(axis)) {
+        } else if (grobo_i_has(on, j) && !grobo_i_axis_is_on(axis)) {
             axis->torque_known = false;
             grobo_i_gate_soften(robot); /* a hand may have moved it as long as it was off */
         }
@@ -537,7 +533,7 @@ static void note_pace(grobo_robot *robot, const grobo_robot_slot *slot, const gr
 {
     int64_t longest_us = 0;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        int64_t time_us = is_in(target->posture.set, j) ? target->joint_time_us[j] : 0;
+        int64_t time_us = grobo_i_has(target->posture.set, j) ? target->joint_time_us[j] : 0;
         longest_us = grobo_i_later(longest_us, time_us);
     }
     if (slot->due_us != GROBO_NEVER_US) {
@@ -587,7 +583,7 @@ static void note(grobo_robot *robot, const grobo_robot_slot *slot, const saying 
     bool halts = slot->order.deed == GROBO_I_DEED_HALT; /* of its joints those that move */
     grobo_joint_mask told = halts ? says->target.posture.set : slot->order.joints;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if (is_in(told, j)) {
+        if (grobo_i_has(told, j)) {
             robot->axes[j].told_us = robot->now_us;
             robot->axes[j].last = slot->order.number;
         }
@@ -601,7 +597,7 @@ void grobo_i_gate_unwait(grobo_robot *robot, const grobo_robot_order *order)
 {
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         grobo_robot_axis *axis = &robot->axes[j];
-        if (is_in(order->joints, j) && order->number != 0 && axis->next == order->number) {
+        if (grobo_i_has(order->joints, j) && order->number != 0 && axis->next == order->number) {
             axis->next = 0;
         }
     }
@@ -611,7 +607,7 @@ void grobo_i_gate_unwait(grobo_robot *robot, const grobo_robot_order *order)
 static bool is_passed(const grobo_robot *robot, const grobo_robot_slot *slot)
 {
     for (int j = 0; slot->txn.sent_us >= 0 && j < robot->driver->model->n_joints; j++) {
-        if (is_in(slot->order.joints, j) && robot->axes[j].told_us > slot->txn.sent_us) {
+        if (grobo_i_has(slot->order.joints, j) && robot->axes[j].told_us > slot->txn.sent_us) {
             return true;
         }
     }
@@ -633,7 +629,7 @@ static void assert_leaving(const grobo_robot_slot *slot, const saying *says)
     GROBO_ASSERT((to->set & robot->free_joints) == 0 || order->deed == GROBO_I_DEED_HOLD ||
                  order->deed == GROBO_I_DEED_HALT);
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        GROBO_ASSERT(!is_in(to->set, j) || says->target.joint_time_us[j] > 0 ||
+        GROBO_ASSERT(!grobo_i_has(to->set, j) || says->target.joint_time_us[j] > 0 ||
                      order->deed == GROBO_I_DEED_RAW);
     }
 }

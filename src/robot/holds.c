@@ -12,7 +12,7 @@ static bool next_waits(const grobo_robot *robot, int joint)
         const grobo_robot_slot *slot = &robot->slots[i];
         if (slot->use == GROBO_I_USE_MOTION && slot->txn.sent_us < 0 &&
             slot->order.number == robot->axes[joint].next &&
-            (slot->order.joints & GROBO_JOINT_BIT(joint)) != 0) {
+            grobo_i_has(slot->order.joints, joint)) {
             return true;
         }
     }

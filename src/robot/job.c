@@ -187,12 +187,13 @@ void grobo_i_job_goto(grobo_robot *robot, grobo_robot_step_fn step)
 
 /* ---- activities: 1 under way, 0 over, < 0 the job has failed --------------------------------- */
 
-/* True if an answer to this job is awaited. */
-static bool is_asking(const grobo_robot *robot, const grobo_robot_task *job)
+/* True if a frame of this job is under way; `asks`: one whose answer goes to the job. */
+static bool has_frame(const grobo_robot *robot, const grobo_robot_task *job, bool asks)
 {
     for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
         const grobo_robot_slot *slot = &robot->slots[i];
-        if (slot->use == GROBO_I_USE_JOB && slot->job == job->number) {
+        if (slot->use != GROBO_I_USE_FREE && slot->job == job->number &&
+            (!asks || slot->use == GROBO_I_USE_JOB)) {
             return true;
         }
     }
@@ -201,13 +202,13 @@ static bool is_asking(const grobo_robot *robot, const grobo_robot_task *job)
 
 static int keep_asking(grobo_robot *robot)
 {
-    return is_asking(robot, robot->job) ? 1 : 0;
+    return has_frame(robot, robot->job, true) ? 1 : 0;
 }
 
 static int keep_reading(grobo_robot *robot)
 {
     grobo_robot_task *job = robot->job;
-    if (is_asking(robot, job)) {
+    if (has_frame(robot, job, true)) {
         return 1;
     }
     if (job->todo == 0) {
@@ -231,20 +232,9 @@ static int keep_reading(grobo_robot *robot)
     return result < 0 ? result : 1;
 }
 
-static bool frames_out(const grobo_robot *robot, const grobo_robot_task *job)
-{
-    for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
-        const grobo_robot_slot *slot = &robot->slots[i];
-        if (slot->use != GROBO_I_USE_FREE && slot->job == job->number) {
-            return false;
-        }
-    }
-    return true;
-}
-
 static int keep_draining(grobo_robot *robot)
 {
-    return frames_out(robot, robot->job) ? 0 : 1;
+    return has_frame(robot, robot->job, false) ? 1 : 0;
 }
 
 static int keep_waiting(grobo_robot *robot)
@@ -336,8 +326,8 @@ static int64_t deadline_of(const grobo_robot *robot, const grobo_robot_task *job
     bool asks = job->activity == GROBO_I_ASK || job->activity == GROBO_I_READ;
     int64_t at_us = job->activity == GROBO_I_WAIT ? job->until_us : GROBO_NEVER_US;
     /* Drained frames and a job just begun have no event of their own: look again at once. */
-    if (job->activity == GROBO_I_NEXT || (asks && !is_asking(robot, job)) ||
-        (job->activity == GROBO_I_DRAIN && frames_out(robot, job))) {
+    if (job->activity == GROBO_I_NEXT || (asks && !has_frame(robot, job, true)) ||
+        (job->activity == GROBO_I_DRAIN && !has_frame(robot, job, false))) {
         at_us = robot->now_us;
     }
     return at_us < job->bound_us ? at_us : job->bound_us;
@@ -393,7 +383,7 @@ void grobo_i_job_done(const grobo_robot_slot *slot, int result, const grobo_pack
     robot->job = job;
     if (!slot->reads) {
         take_answer(robot, result, reply);
-    } else if ((job->joints & GROBO_JOINT_BIT(slot->joint)) != 0) {
+    } else if (grobo_i_has(job->joints, slot->joint)) {
         job->todo &= ~GROBO_JOINT_BIT(slot->joint);
         if (result < 0) {
             grobo_i_job_fail_joint(robot, slot->joint, result, 0);

@@ -122,7 +122,7 @@ static int await_line(grobo_robot *robot, const grobo_robot_order *order,
     }
     int result = grobo_i_gate_time(robot, order, &target);
     for (int j = 0; result >= 0 && j < robot->driver->model->n_joints; j++) {
-        if ((order->joints & GROBO_JOINT_BIT(j)) != 0) {
+        if (grobo_i_has(order->joints, j)) {
             grobo_robot_axis *axis = &robot->axes[j];
             axis->next = order->number;
             axis->next_rad = posture->angle_rad[j];

@@ -134,7 +134,7 @@ int grobo_i_play_start(grobo_robot *robot)
     grobo_posture here;
     (void)grobo_robot_posture(robot, GROBO_NEVER_US, &here);
     for (int j = 0; j < here.n_joints; j++) {
-        if ((job->joints & GROBO_JOINT_BIT(j)) != 0) {
+        if (grobo_i_has(job->joints, j)) {
             here.angle_rad[j] = grobo_i_axis_commanded(&robot->axes[j], robot->now_us);
         }
     }

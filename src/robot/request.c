@@ -160,7 +160,7 @@ static bool all_hold(const grobo_robot *robot, grobo_joint_mask joints)
 {
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
-        if ((joints & GROBO_JOINT_BIT(j)) != 0 && axis->sensed && !grobo_i_axis_is_on(axis)) {
+        if (grobo_i_has(joints, j) && axis->sensed && !grobo_i_axis_is_on(axis)) {
             return false;
         }
     }

@@ -40,6 +40,12 @@ void grobo_i_tell(grobo_robot *robot, const grobo_event *event);
 
 /* ---- axis.c ---------------------------------------------------------------------------------- */
 
+/* True if the joint is one of these. */
+static inline bool grobo_i_has(grobo_joint_mask joints, int joint)
+{
+    return (joints & GROBO_JOINT_BIT(joint)) != 0;
+}
+
 /* All joints of the model. */
 grobo_joint_mask grobo_i_all_joints(const grobo_robot *robot);
 

@@ -182,7 +182,7 @@ static void hurry(grobo_robot *robot)
 /* Of a joint in free mode everything, and of one that nothing is known of: it may be on a way. */
 static grobo_sense_kind kind_of(const grobo_robot *robot, int joint)
 {
-    if ((robot->free_joints & GROBO_JOINT_BIT(joint)) != 0) {
+    if (grobo_i_has(robot->free_joints, joint)) {
         return GROBO_SENSE_ALL;
     }
     bool first = robot->driver->all_first && !robot->axes[joint].sensed;
@@ -254,7 +254,7 @@ void grobo_i_sense_done(const grobo_robot_slot *slot, int result)
 {
     grobo_robot *robot = slot->robot;
     int joint = slot->joint;
-    bool is_free = !slot->many && (robot->free_joints & GROBO_JOINT_BIT(joint)) != 0;
+    bool is_free = !slot->many && grobo_i_has(robot->free_joints, joint);
     if (result >= 0 && is_free) {
         free_joint(robot, joint);
     }

@@ -19,11 +19,6 @@
 #define ARRIVAL_US 40000
 /* How often a quieting robot is looked at. */
 #define QUIET_US 5000
-static bool is_set(grobo_joint_mask joints, int joint)
-{
-    return (joints & GROBO_JOINT_BIT(joint)) != 0;
-}
-
 static grobo_i_chunk chunk_of(const grobo_robot *robot)
 {
     return robot->job->rounds == 0 ? GROBO_I_WHOLE : GROBO_I_SMALL;
@@ -41,7 +36,7 @@ static int64_t patient_until(const grobo_robot *robot, grobo_joint_mask bad)
     int64_t from_us = robot->job->begun_us;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
-        bool heard = is_set(bad, j) && axis->angle_us != GROBO_NEVER_US;
+        bool heard = grobo_i_has(bad, j) && axis->angle_us != GROBO_NEVER_US;
         if (heard && robot->job->kind == GROBO_JOB_ESTOP) {
             from_us = grobo_i_later(from_us, axis->angle_us);
         }
@@ -65,7 +60,7 @@ static int again(grobo_robot *robot, grobo_joint_mask bad, grobo_robot_step_fn s
         return GROBO_I_NEXT;
     }
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if (is_set(bad & ~job->failed, j)) {
+        if (grobo_i_has(bad & ~job->failed, j)) {
             grobo_i_job_fail_joint(robot, j, GROBO_ERR_MISMATCH, 0);
         }
     }
@@ -161,7 +156,7 @@ static int step_from_here(grobo_robot *robot)
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         grobo_robot_axis *axis = &robot->axes[j];
         bool on_way = axis->has_target && !axis->off_way && axis->way.to_us > robot->now_us;
-        if (is_set(robot->job->joints & ~robot->job->failed, j) && !on_way) {
+        if (grobo_i_has(robot->job->joints & ~robot->job->failed, j) && !on_way) {
             grobo_i_axis_here(axis, robot->now_us);
         }
     }
@@ -175,7 +170,7 @@ static grobo_joint_mask joints_with(const grobo_robot *robot, grobo_joint_mask j
 {
     grobo_joint_mask found = 0;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if (is_set(joints, j) && robot->axes[j].state.torque == mode) {
+        if (grobo_i_has(joints, j) && robot->axes[j].state.torque == mode) {
             found |= GROBO_JOINT_BIT(j);
         }
     }
@@ -190,8 +185,8 @@ static int step_pick_off(grobo_robot *robot)
     job->torque = GROBO_TORQUE_ON;
     job->rounds = 0;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        robot->axes[j].held = is_set(job->pending, j) ? false : robot->axes[j].held;
-        if (is_set(read & ~job->pending, j)) {
+        robot->axes[j].held = grobo_i_has(job->pending, j) ? false : robot->axes[j].held;
+        if (grobo_i_has(read & ~job->pending, j)) {
             robot->axes[j].wants_torque = true;
         }
     }
@@ -204,11 +199,11 @@ static int step_hold(grobo_robot *robot)
     grobo_robot_task *job = robot->job;
     grobo_joint_mask loose = 0;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if (is_set(job->pending, j) && isnan(grobo_i_hold_rad(robot, j))) {
+        if (grobo_i_has(job->pending, j) && isnan(grobo_i_hold_rad(robot, j))) {
             grobo_i_job_fail_joint(robot, j, GROBO_ERR_LIMIT,
                                    grobo_deg_from_rad(robot->axes[j].state.angle_rad));
             job->pending &= ~GROBO_JOINT_BIT(j);
-        } else if (is_set(job->pending, j) && !robot->axes[j].held) {
+        } else if (grobo_i_has(job->pending, j) && !robot->axes[j].held) {
             loose |= GROBO_JOINT_BIT(j);
         }
     }
@@ -221,10 +216,10 @@ static int step_hold_check(grobo_robot *robot)
     grobo_robot_task *job = robot->job;
     grobo_joint_mask bad = 0;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if (is_set(job->pending, j)) {
+        if (grobo_i_has(job->pending, j)) {
             grobo_robot_axis *axis = &robot->axes[j];
             bool is_new = axis->goal_us != GROBO_NEVER_US && axis->goal_us >= axis->told_us;
-            axis->held = !is_set(job->failed, j) && is_new && grobo_i_goal_holds(robot, j);
+            axis->held = !grobo_i_has(job->failed, j) && is_new && grobo_i_goal_holds(robot, j);
             bad |= axis->held ? 0 : GROBO_JOINT_BIT(j);
         }
     }
@@ -264,10 +259,10 @@ static int step_torque_check(grobo_robot *robot)
     grobo_joint_mask bad = 0;
     bool on = job->torque == GROBO_TORQUE_ON;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if (!is_set(job->pending, j)) {
+        if (!grobo_i_has(job->pending, j)) {
             continue;
         }
-        if (is_set(job->failed, j) || !torque_taken(robot, j)) {
+        if (grobo_i_has(job->failed, j) || !torque_taken(robot, j)) {
             bad |= GROBO_JOINT_BIT(j);
             robot->axes[j].held = false;
         } else {
@@ -334,7 +329,7 @@ static int step_arrive(grobo_robot *robot)
         return GROBO_I_NEXT;
     }
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if (is_set(job->pending, j)) {
+        if (grobo_i_has(job->pending, j)) {
             there_us = grobo_i_later(there_us, robot->axes[j].way.to_us);
         }
     }
@@ -369,7 +364,7 @@ static grobo_joint_mask not_taken(const grobo_robot *robot)
     grobo_joint_mask read = robot->job->pending & ~robot->job->failed;
     grobo_joint_mask bad = 0;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if (is_set(read, j) && !has_taken(robot, &robot->axes[j])) {
+        if (grobo_i_has(read, j) && !has_taken(robot, &robot->axes[j])) {
             bad |= GROBO_JOINT_BIT(j);
         }
     }
@@ -382,7 +377,7 @@ static int step_missed(grobo_robot *robot)
 {
     grobo_joint_mask bad = not_taken(robot);
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if (is_set(bad, j)) {
+        if (grobo_i_has(bad, j)) {
             grobo_i_axis_here(&robot->axes[j], robot->now_us);
         }
     }
@@ -518,7 +513,7 @@ static int step_strays(grobo_robot *robot)
     bool emergency = job->kind == GROBO_JOB_ESTOP;
     grobo_joint_mask astray = 0;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if (is_set(job->joints & ~job->failed, j) && is_astray(robot, j)) {
+        if (grobo_i_has(job->joints & ~job->failed, j) && is_astray(robot, j)) {
             astray |= GROBO_JOINT_BIT(j);
         }
     }

@@ -28,7 +28,7 @@ static int take_reading(const grobo_robot_slot *slot, int result, const grobo_pa
 void grobo_i_reply_came(grobo_robot_slot *slot, const grobo_packet *reply)
 {
     int joint = grobo_model_joint_of_motor(slot->robot->driver->model, reply->id);
-    if (joint < 0 || (slot->unread & GROBO_JOINT_BIT(joint)) == 0) {
+    if (joint < 0 || !grobo_i_has(slot->unread, joint)) {
         return;
     }
     slot->unread &= ~GROBO_JOINT_BIT(joint);
@@ -41,7 +41,7 @@ void grobo_i_reply_came(grobo_robot_slot *slot, const grobo_packet *reply)
 static void take_unread(grobo_robot_slot *slot, int result, const grobo_packet *reply)
 {
     for (int j = 0; j < slot->robot->driver->model->n_joints; j++) {
-        if ((slot->unread & GROBO_JOINT_BIT(j)) != 0) {
+        if (grobo_i_has(slot->unread, j)) {
             slot->joint = (uint8_t)j;
             (void)take_reading(slot, result, reply);
         }

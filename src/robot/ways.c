@@ -13,11 +13,6 @@
 #include "src/base/instant.h"
 #include "src/robot/robot.h"
 
-static bool is_in(grobo_joint_mask joints, int joint)
-{
-    return (joints & GROBO_JOINT_BIT(joint)) != 0;
-}
-
 /* A whole segment: a multiple of the wire's unit. */
 static int64_t most_us(const grobo_robot *robot)
 {
@@ -66,7 +61,8 @@ bool grobo_i_segments_cut(const grobo_robot *robot, const grobo_robot_order *ord
     bool cut = false;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         int64_t time_us = whole->joint_time_us[j];
-        if (!is_in(whole->posture.set, j) || !grobo_i_segments_wanted(robot, order, time_us)) {
+        if (!grobo_i_has(whole->posture.set, j) ||
+            !grobo_i_segments_wanted(robot, order, time_us)) {
             continue;
         }
         if (!cut) {
@@ -111,7 +107,7 @@ void grobo_i_segments_aim(const grobo_robot *robot, grobo_joint_mask joints, gro
 {
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
-        if (is_in(joints, j) && is_renewed(axis, robot->now_us) &&
+        if (grobo_i_has(joints, j) && is_renewed(axis, robot->now_us) &&
             axis->told_to_us > robot->now_us) {
             int64_t time_us = next_us(robot, axis->way.to_us - robot->now_us);
             target->joint_time_us[j] = time_us;
@@ -124,7 +120,7 @@ void grobo_i_segments_aim(const grobo_robot *robot, grobo_joint_mask joints, gro
 void grobo_i_segments_told(grobo_robot *robot, const grobo_target *target)
 {
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
-        if (is_in(target->posture.set, j)) {
+        if (grobo_i_has(target->posture.set, j)) {
             robot->axes[j].told_to_us = robot->now_us + target->joint_time_us[j];
         }
     }
