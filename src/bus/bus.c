@@ -114,8 +114,8 @@ static void start_clock(grobo_bus *bus, const grobo_txn *txn, int64_t now_us)
     bus->over_us = grobo_i_bus_over_at(bus, &cost, now_us);
     bool passing = txn->reply.kind == GROBO_REPLY_NONE && bus->config.overlap;
     bus->free_us = passing ? now_us + cost.request_us : bus->over_us;
-    if (cost.servo_us > 0) {
-        bus->servo_us = bus->over_us - cost.reply_us;
+    if (passing) {
+        bus->servo_us = grobo_i_later(bus->servo_us, bus->over_us);
     }
     if (bus->phase == GROBO_BUS_GOING) {
         bus->limit_us = bus->free_us;

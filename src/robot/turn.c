@@ -123,7 +123,6 @@ void grobo_i_leave(grobo_robot *robot)
         }
         grobo_i_jobs_close_up(robot);
         settle(robot);
-        grobo_i_jobs_close_up(robot);
     }
     robot->depth--;
     if (robot->depth == 0) {

@@ -256,6 +256,24 @@ static void what_is_stale_ends_in_every_queue(void **state)
     assert_int_equal(p.bus.stats.failed, 2 * GROBO_PRIORITIES);
 }
 
+static void all_that_are_too_late_end_at_once(void **state)
+{
+    (void)state;
+    for (int priority = 0; priority < GROBO_PRIORITIES; priority++) {
+        peer p;
+        request r[3];
+        peer_init(&p, NULL);
+        for (int i = 0; i < 3; i++) {
+            peer_read(&p, &r[i], (uint8_t)(i + 1), 2, (grobo_priority)priority);
+            r[i].txn.start_by_us = MS;
+            assert_int_equal(grobo_bus_submit(&p.bus, &r[i].txn), GROBO_OK);
+        }
+        grobo_bus_step(&p.bus, MS + 1);
+        assert_int_equal(p.bus.stats.failed, 3);
+        assert_int_equal(grobo_bus_pending(&p.bus), 0);
+    }
+}
+
 static void what_may_start_by_now_starts(void **state)
 {
     (void)state;
@@ -519,6 +537,29 @@ static void a_stump_of_the_echo_is_short(void **state)
     }
 }
 
+/* Something came before the silence, but nothing of what was waited for. */
+static void rubbish_and_then_silence_is_told_from_silence(void **state)
+{
+    (void)state;
+    static const uint8_t noise[] = {0x11, 0x22, 0x33, 0x44};
+    for (int some = 0; some < 2; some++) {
+        for (int echo = 0; echo < 2; echo++) {
+            peer p;
+            request r;
+            const grobo_bus_config config = {.protocol = &grobo_rs30x_protocol, .echo = echo};
+            peer_init(&p, &config);
+            submit_read(&p, &r, 3, 0, GROBO_PRIORITY_USER);
+            if (some) {
+                peer_bytes_at(&p, 500, noise, sizeof noise);
+            }
+            peer_run(&p, S);
+            assert_int_equal(p.ended[0].result, !some  ? GROBO_ERR_TIMEOUT
+                                                : echo ? GROBO_ERR_MISMATCH
+                                                       : GROBO_ERR_SHORT);
+        }
+    }
+}
+
 /* ---- taking back ----------------------------------------------------------------------------- */
 
 static void only_the_priorities_named_are_taken_back(void **state)
@@ -577,6 +618,7 @@ int main(void)
         cmocka_unit_test(the_urgent_waits_for_no_overdue_reply_but_of_its_equals),
         cmocka_unit_test(a_short_time_out_is_not_made_longer_by_what_waits),
         cmocka_unit_test(what_is_stale_ends_in_every_queue),
+        cmocka_unit_test(all_that_are_too_late_end_at_once),
         cmocka_unit_test(what_may_start_by_now_starts),
         cmocka_unit_test(patience_ends_before_the_span_and_not_sooner_than_usual),
         cmocka_unit_test(the_latest_lost_replies_are_remembered),
@@ -587,6 +629,7 @@ int main(void)
         cmocka_unit_test(rubbish_with_a_head_in_it_is_waited_for),
         cmocka_unit_test(an_ack_that_is_not_believed_is_late),
         cmocka_unit_test(a_stump_of_the_echo_is_short),
+        cmocka_unit_test(rubbish_and_then_silence_is_told_from_silence),
         cmocka_unit_test(only_the_priorities_named_are_taken_back),
         cmocka_unit_test(what_was_never_submitted_is_not_taken_back),
     };

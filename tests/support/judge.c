@@ -339,7 +339,8 @@ void judge_frame(judge *w, const uint8_t *bytes, size_t n)
 static bool moves_on(judge *w, int joint)
 {
     grobo_sim_view view = judge_view(w, joint);
-    return view.torque == GROBO_TORQUE_ON && view.moving &&
+    bool by_hand = w->rig->now_us < w->axes[joint].turned_us;
+    return view.torque == GROBO_TORQUE_ON && view.moving && !by_hand &&
            fabs((view.target_mdeg - view.angle_mdeg) / 1000.0) > THERE_DEG;
 }
 

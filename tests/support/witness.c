@@ -15,6 +15,10 @@
  * same question asked again, and then the answer to that for the answer to the next. Each is the
  * same joint's, and as old as a reading may be. */
 #define DOUBLED_US 20000
+/* A board that waits for the rest of a broken frame keeps what comes behind it, and forwards that
+ * when it has given up (GROBO_BOARD_STALL_US): later than anybody waits who has never seen a reply
+ * as late. What is forwarded in time takes less than this. */
+#define KEPT_US 40000
 /* Longest return packet that the engine asks for. */
 enum { REPLY_MAX = 40 };
 
@@ -105,11 +109,16 @@ void witness_sent(witness *w, const uint8_t *packet, size_t n, const grobo_txn *
 
 static void hear_packet(witness *w, const grobo_sim_event *event)
 {
-    w->heard_us = event->time_us;
+    int64_t sent_us = -1;
     for (unsigned i = 0; i < WITNESS_SENT; i++) {
-        if (same(&w->sent[i], event->bytes, event->n_bytes)) {
-            return;
+        if (same(&w->sent[i], event->bytes, event->n_bytes) && w->sent[i].at_us <= event->time_us) {
+            sent_us = w->sent[i].at_us > sent_us ? w->sent[i].at_us : sent_us;
         }
+    }
+    w->heard_us = event->time_us;
+    w->heard_late = event->time_us - sent_us > KEPT_US;
+    if (sent_us >= 0) {
+        return;
     }
     w->made_up_commands++;
     each_servo(w, event->bytes, mislead);
@@ -135,6 +144,7 @@ static bool is_given(const witness *w, const uint8_t *p, size_t n)
 static void hear_reply(witness *w, const grobo_sim_event *event)
 {
     witness_packet *said = keep(w->said, WITNESS_SAID, &w->n_said, event->bytes, event->n_bytes);
+    said->kept = w->heard_late;
     said->at_us = w->heard_us; /* what it says was true then */
     said->sound = is_given(w, event->bytes, event->n_bytes);
     said->said_number = w->n_said - 1;
@@ -292,7 +302,7 @@ static void believe_said(witness *w, int joint, const witness_packet *seen, int6
     if (said->believed) {
         fail_msg("a reply of %s was believed twice", name);
     }
-    if (said->at_us < asked_us) {
+    if (said->at_us < asked_us && !said->kept) {
         fail_msg("a reply of %s was believed that is older than the question", name);
     }
     said->believed = true;

@@ -30,6 +30,7 @@ typedef struct witness_packet {
     uint8_t bytes[GROBO_RS30X_PACKET_MAX_BYTES];
     bool sound;           /* said: it is what the servo has to say; seen: it was said */
     bool believed;        /* said */
+    bool kept;            /* said: to a question that the board kept behind a broken frame */
     unsigned said_number; /* seen: which one it was */
 } witness_packet;
 
@@ -48,6 +49,7 @@ typedef struct witness {
     uint8_t tail[WITNESS_BYTES]; /* the bytes that arrived last, ring */
     unsigned n_tail;
     int64_t heard_us; /* when servos heard a command last */
+    bool heard_late;  /* the board had kept it */
     witness_question questions[WITNESS_QUESTIONS];
     witness_question answered;            /* by the reading that was believed last */
     int64_t doubled_us[GROBO_JOINTS_MAX]; /* when a doubled reply was believed last */
