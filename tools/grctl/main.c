@@ -24,7 +24,7 @@ int main(int argc, char **argv)
         return guard_main();
     }
     if (argc > 1 && strcmp(argv[1], "__complete") == 0) { /* by the script of a shell */
-        cli_print_completions(stdout, argc - 2, argv + 2);
+        cli_print_completions(stdout, app_model(&a), argc - 2, argv + 2);
         return EXIT_DONE;
     }
     guard_note_program(argv[0]);

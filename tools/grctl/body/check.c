@@ -258,11 +258,11 @@ static int report_unknown(const check_whole_how *how, int error, grobo_diagnosti
     return 0;
 }
 
-int check_whole(const grobo_motion *motion, const grobo_body_options *options,
+int check_whole(const app *a, const grobo_motion *motion, const grobo_body_options *options,
                 const check_whole_how *how, grobo_diagnostics *list)
 {
     finder f = {.how = how, .motion = motion, .list = list};
-    bool legs = (how->what & CHECK_LEGS) != 0 && whole_applies(motion, options);
+    bool legs = (how->what & CHECK_LEGS) != 0 && whole_applies(a, motion, options);
     bool fall = (how->what & CHECK_FALL) != 0 && grobo_motion_size(motion) <= FALL_POSTURES_MOST;
     bool asked = legs || (how->what & CHECK_BALANCE) != 0;
     grobo_body_options used = *options;
@@ -273,7 +273,7 @@ int check_whole(const grobo_motion *motion, const grobo_body_options *options,
     if (!asked) {
         used.rate_hz = fall_rate(motion);
     }
-    int error = whole_body(&body, motion, &used, &f.standing);
+    int error = whole_body(a, &body, motion, &used, &f.standing);
     if (!error) {
         error = look_at(&f, body);
     }

@@ -26,7 +26,7 @@ typedef struct check_whole_how {
  * Adds what is wrong when a motion is played with the whole body to a list; balance is judged for
  * motions without targets too. Returns 0 or a library error.
  */
-int check_whole(const grobo_motion *motion, const grobo_body_options *options,
+int check_whole(const app *a, const grobo_motion *motion, const grobo_body_options *options,
                 const check_whole_how *how, grobo_diagnostics *list);
 
 /* True if a solved angle exceeds its limit by no more than the robot's slack. */

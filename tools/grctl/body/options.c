@@ -69,7 +69,7 @@ int body_make(app *a, int base, const char *path, const grobo_motion *motion, do
     if (error) {
         return error;
     }
-    if (!whole_applies(motion, &options)) {
+    if (!whole_applies(a, motion, &options)) {
         if (options.balance != GROBO_BODY_BALANCE_OFF) {
             app_note(a, "%s: no legs by ikLinks: the balancer has nothing to move", path);
         }

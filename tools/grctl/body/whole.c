@@ -4,17 +4,18 @@
 #include "tools/grctl/body/whole.h"
 #include "tools/grctl/cli/file.h"
 
-bool whole_applies(const grobo_motion *motion, const grobo_body_options *options)
+bool whole_applies(const app *a, const grobo_motion *motion, const grobo_body_options *options)
 {
     return options->ik != GROBO_BODY_IK_OFF && grobo_motion_get_kind(motion) == GROBO_MOTION_KEYS &&
-           file_model(motion) == &grobo_gr001_model && grobo_body_wanted(&grobo_gr001_body, motion);
+           file_model(a, motion) == &grobo_gr001_model &&
+           grobo_body_wanted(&grobo_gr001_body, motion);
 }
 
-int whole_open(whole *w, const grobo_motion *motion, const grobo_clip_options *plain,
+int whole_open(const app *a, whole *w, const grobo_motion *motion, const grobo_clip_options *plain,
                const grobo_body_options *options)
 {
     memset(w, 0, sizeof *w);
-    if (!whole_applies(motion, options)) {
+    if (!whole_applies(a, motion, options)) {
         return grobo_motion_clip(motion, plain, &w->clip);
     }
     int error = grobo_body_new(&w->body, &grobo_gr001_body, motion, options, NULL);
@@ -76,16 +77,16 @@ static int to_keys(const grobo_motion *motion, grobo_motion **keys)
     return grobo_motion_convert(motion, GROBO_MOTION_KEYS, &how, NULL, keys);
 }
 
-int whole_body(grobo_body **body, const grobo_motion *motion, const grobo_body_options *options,
-               bool *standing)
+int whole_body(const app *a, grobo_body **body, const grobo_motion *motion,
+               const grobo_body_options *options, bool *standing)
 {
     const grobo_body_options as_they_are = {.rate_hz = options->rate_hz};
     grobo_motion *keys = NULL;
-    *standing = !whole_applies(motion, options);
+    *standing = !whole_applies(a, motion, options);
     if (!*standing) {
         return grobo_body_new(body, &grobo_gr001_body, motion, options, NULL);
     }
-    if (file_model(motion) != &grobo_gr001_model) {
+    if (file_model(a, motion) != &grobo_gr001_model) {
         return GROBO_ERR_TYPE;
     }
     int error = to_keys(motion, &keys);

@@ -5,18 +5,20 @@
 
 #include <grobo/body_motion.h>
 
+#include "tools/grctl/cli/app.h"
+
 typedef struct whole {
     grobo_body *body; /* NULL: the motion's own angles are played */
     grobo_clip clip;
 } whole;
 
 /* True if the motion has poses of GR001 that give the legs by ikLinks, and IK is on. */
-bool whole_applies(const grobo_motion *motion, const grobo_body_options *options);
+bool whole_applies(const app *a, const grobo_motion *motion, const grobo_body_options *options);
 /*
  * Makes the clip that plays a motion, with the whole body where that applies. The motion must
  * outlive it. Returns 0 or a library error.
  */
-int whole_open(whole *w, const grobo_motion *motion, const grobo_clip_options *plain,
+int whole_open(const app *a, whole *w, const grobo_motion *motion, const grobo_clip_options *plain,
                const grobo_body_options *options);
 void whole_close(whole *w);
 /* The joints that inverse kinematics moves. */
@@ -27,7 +29,7 @@ grobo_joint_mask whole_joints(void);
  * legs follow their angles on two feet that are taken to stand from the first pose on.
  * Returns 0 or a library error: GROBO_ERR_TYPE for what is no motion of GR001's.
  */
-int whole_body(grobo_body **body, const grobo_motion *motion, const grobo_body_options *options,
-               bool *standing);
+int whole_body(const app *a, grobo_body **body, const grobo_motion *motion,
+               const grobo_body_options *options, bool *standing);
 
 #endif

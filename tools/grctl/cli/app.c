@@ -47,6 +47,16 @@ const cli_value *app_global(const app *a, int i)
     return &a->line.global[i];
 }
 
+const grobo_driver *app_driver(const app *a)
+{
+    return grobo_gr001_driver((grobo_wiring)app_global(a, GLOBAL_WIRING)->choice);
+}
+
+const grobo_model *app_model(const app *a)
+{
+    return app_driver(a)->model;
+}
+
 double app_number(const app *a, int i, double otherwise)
 {
     return a->line.option[i].given ? a->line.option[i].number : otherwise;

@@ -8,6 +8,7 @@
 
 #include <jansson.h>
 
+#include <grobo/driver.h>
 #include <grobo/robot_event.h>
 
 #include "tools/grctl/cli/cli.h"
@@ -42,6 +43,12 @@ void app_settle(app *a);
 /* The value of the command's own option number i; of a global option. */
 const cli_value *app_option(const app *a, int i);
 const cli_value *app_global(const app *a, int i);
+/*
+ * The robot of this command: what it talks to is this driver's, through the wiring of the options.
+ * Not NULL; for the life of the process.
+ */
+const grobo_driver *app_driver(const app *a);
+const grobo_model *app_model(const app *a);
 /* Number of an option, or `otherwise` when it was not given. */
 double app_number(const app *a, int i, double otherwise);
 

@@ -170,6 +170,7 @@ bool cli_read_number(const char *text, double *number);
 /* Takes what may stand in the place of a word that begins with `prefix`; help may be "". */
 typedef struct cli_offer {
     const char *prefix;
+    const struct grobo_model *model; /* whose joints and groups */
     void (*found)(void *ctx, const char *word, const char *help);
     void *ctx;
 } cli_offer;
@@ -196,7 +197,7 @@ cli_argument cli_offer_at(const cli_offer *to, const cli_place *place);
  * For a shell of the system: what may stand in the place of the last of the words behind "grctl",
  * one a line, with a tab and its help; ":files" where it may be the name of a file.
  */
-void cli_print_completions(FILE *to, int n, char *const *words);
+void cli_print_completions(FILE *to, const struct grobo_model *model, int n, char *const *words);
 
 /* ---- texts made from the tables ------------------------------------------------------------- */
 

@@ -36,7 +36,7 @@ static void offer_words(const cli_offer *to, const char *words, size_t length)
 
 void cli_offer_kind(const cli_offer *to, cli_argument kind)
 {
-    const grobo_model *model = &grobo_gr001_model;
+    const grobo_model *model = to->model;
     switch (kind) {
     case CLI_ARG_NONE:
     case CLI_ARG_WORD:
@@ -202,7 +202,7 @@ static void print_found(void *ctx, const char *word, const char *help)
     fprintf(p->to, "%.*s%s%s%s\n", p->lead, p->word, word, *help ? "\t" : "", help);
 }
 
-void cli_print_completions(FILE *to, int n, char *const *words)
+void cli_print_completions(FILE *to, const grobo_model *model, int n, char *const *words)
 {
     cli_place place = cli_find_place(NULL, n - 1, words);
     printer p = {.to = to, .word = n > 0 ? words[n - 1] : ""};
@@ -215,7 +215,7 @@ void cli_print_completions(FILE *to, int n, char *const *words)
         p.lead = (int)(equals - p.word) + 1;
         place.option = find_option(place.command, name);
     }
-    cli_offer offer = {.prefix = p.word + p.lead, .found = print_found, .ctx = &p};
+    cli_offer offer = {.prefix = p.word + p.lead, .model = model, .found = print_found, .ctx = &p};
     cli_argument kind = cli_offer_at(&offer, &place);
     if (kind == CLI_ARG_FILE || kind == CLI_ARG_DEVICE) {
         fputs(":files\n", to);

@@ -139,7 +139,7 @@ static int take_text(reader *r, char *text, size_t capacity)
 static int unknown_joint(reader *r, const char *name)
 {
     char text[2 * CONFIG_NAME_BYTES];
-    const char *nearest = joints_nearest(&grobo_gr001_model, name, strlen(name), false);
+    const char *nearest = joints_nearest(app_model(r->a), name, strlen(name), false);
     snprintf(text, sizeof text, "no joint called '%.*s'%s%s%s", CONFIG_NAME_BYTES, name,
              nearest ? "; did you mean " : "", nearest ? nearest : "", nearest ? "?" : "");
     return complain(r, &r->event.start_mark, "%s", text);
@@ -158,7 +158,7 @@ static int take_degrees(reader *r, double *deg, size_t *at, size_t *at_end)
     *at = *at_end = r->event.start_mark.index;
     while (next(r) == 0 && r->event.type != YAML_MAPPING_END_EVENT) {
         const char *name = scalar(r);
-        int joint = name ? grobo_model_find_joint(&grobo_gr001_model, name, strlen(name)) : -1;
+        int joint = name ? grobo_model_find_joint(app_model(r->a), name, strlen(name)) : -1;
         if (joint < 0) {
             return unknown_joint(r, name ? name : "");
         }

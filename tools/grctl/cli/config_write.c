@@ -61,15 +61,15 @@ static void put(draft *to, const char *text, size_t size)
     to->used += size;
 }
 
-static void put_trims(draft *to, const config_robot *robot)
+static void put_trims(const app *a, draft *to, const config_robot *robot)
 {
     const char *before = "{";
     char one[64];
-    for (int j = 0; j < grobo_gr001_model.n_joints; j++) {
+    for (int j = 0; j < app_model(a)->n_joints; j++) {
         if (robot->trim_deg[j] == 0) {
             continue;
         }
-        snprintf(one, sizeof one, "%s%s: %.1f", before, grobo_gr001_model.joints[j].name,
+        snprintf(one, sizeof one, "%s%s: %.1f", before, app_model(a)->joints[j].name,
                  robot->trim_deg[j]);
         put(to, one, strlen(one));
         before = ", ";
@@ -78,7 +78,7 @@ static void put_trims(draft *to, const config_robot *robot)
     put(to, "}", *before == '{' ? 0 : 1);
 }
 
-static void put_file(draft *to, const char *text, const config_robot *robot)
+static void put_file(const app *a, draft *to, const char *text, const config_robot *robot)
 {
     size_t at = byte_of(text, robot->trimmed ? robot->trim_at : robot->first_at);
     size_t end = byte_of(text, robot->trimmed ? robot->trim_end : robot->first_at);
@@ -86,7 +86,7 @@ static void put_file(draft *to, const char *text, const config_robot *robot)
     if (!robot->trimmed) {
         put(to, "trim: ", strlen("trim: "));
     }
-    put_trims(to, robot);
+    put_trims(a, to, robot);
     if (!robot->trimmed && robot->flow) {
         put(to, ", ", strlen(", "));
     } else if (!robot->trimmed) {
@@ -108,7 +108,7 @@ int config_write_trims(app *a, const config_robot *robot)
     }
     made.text = malloc(made.capacity);
     if (made.text) {
-        put_file(&made, text, robot);
+        put_file(a, &made, text, robot);
     }
     if (!made.text || made.full) {
         status = fail(a, robot->path, made.text ? "too long" : "not enough memory");

@@ -25,19 +25,19 @@ const char *file_error_text(int error)
     return grobo_error_text(error);
 }
 
-const grobo_model *file_model(const grobo_motion *motion)
+const grobo_model *file_model(const app *a, const grobo_motion *motion)
 {
-    return grobo_motion_is_for(motion, &grobo_gr001_model) ? &grobo_gr001_model : NULL;
+    return grobo_motion_is_for(motion, app_model(a)) ? app_model(a) : NULL;
 }
 
 int file_fits(app *a, const char *path, const grobo_motion *motion)
 {
-    int n_joints = grobo_motion_joints(motion), has = grobo_gr001_model.n_joints;
+    int n_joints = grobo_motion_joints(motion), has = app_model(a)->n_joints;
     if (n_joints <= has) {
         return 0;
     }
-    return app_fail(a, EXIT_FILE, grobo_error_name(GROBO_ERR_ARG),
-                    "%s: has %d joints, GR001 has %d", file_shown_name(path), n_joints, has);
+    return app_fail(a, EXIT_FILE, grobo_error_name(GROBO_ERR_ARG), "%s: has %d joints, %s has %d",
+                    file_shown_name(path), n_joints, app_model(a)->name, has);
 }
 
 void file_format(const grobo_diagnostic *d, bool with_code, char *text, size_t capacity)

@@ -15,12 +15,12 @@
 int file_load(app *a, const char *path, const grobo_read_options *options, grobo_motion **motion);
 
 /*
- * The model whose joints a motion's are: GR001's, unless the motion names another body or, naming
- * none, has more joints. NULL: none we know.
+ * The model whose joints a motion's are: the robot's, unless the motion names another body or,
+ * naming none, has more joints. NULL: none we know.
  */
-const grobo_model *file_model(const grobo_motion *motion);
+const grobo_model *file_model(const app *a, const grobo_motion *motion);
 
-/* Refuses a motion of more joints than GR001 has. Returns 0, or the exit status with it said. */
+/* Refuses a motion of more joints than the robot has: 0, or the exit status with it said. */
 int file_fits(app *a, const char *path, const grobo_motion *motion);
 
 /* Says a warning on standard error, a note only with -v. */

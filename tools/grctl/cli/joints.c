@@ -17,7 +17,7 @@ const char *joints_nearest(const grobo_model *model, const char *name, size_t le
 
 static int unknown(app *a, const char *what, const char *name, size_t length, bool groups)
 {
-    const char *nearest = joints_nearest(&grobo_gr001_model, name, length, groups);
+    const char *nearest = joints_nearest(app_model(a), name, length, groups);
     if (nearest) {
         return app_fail(a, EXIT_USAGE, "NOTFOUND", "no %s called '%.*s'; did you mean %s?", what,
                         (int)length, name, nearest);
@@ -31,10 +31,10 @@ static int unknown(app *a, const char *what, const char *name, size_t length, bo
 int joints_parse_all(app *a, int n, const char *const *names, grobo_joint_mask *joints)
 {
     int status = 0;
-    *joints = n > 0 ? 0 : GROBO_JOINTS_ALL(grobo_gr001_model.n_joints);
+    *joints = n > 0 ? 0 : GROBO_JOINTS_ALL(app_model(a)->n_joints);
     for (int i = 0; i < n && !status; i++) {
         grobo_joint_mask found;
-        if (grobo_model_find_joints(&grobo_gr001_model, names[i], strlen(names[i]), &found) < 0) {
+        if (grobo_model_find_joints(app_model(a), names[i], strlen(names[i]), &found) < 0) {
             status = unknown(a, "joint or group", names[i], strlen(names[i]), true);
         } else {
             *joints |= found;
@@ -85,12 +85,12 @@ int joints_parse_motion(app *a, const char *list, const grobo_model *model, int 
 
 int joints_parse_one(app *a, const char *name, size_t length, int *status)
 {
-    int joint = grobo_model_find_joint(&grobo_gr001_model, name, length);
+    int joint = grobo_model_find_joint(app_model(a), name, length);
     grobo_joint_mask group;
     if (joint >= 0) {
         return joint;
     }
-    if (grobo_model_find_joints(&grobo_gr001_model, name, length, &group) >= 0) {
+    if (grobo_model_find_joints(app_model(a), name, length, &group) >= 0) {
         *status = app_fail(a, EXIT_USAGE, "NOTFOUND",
                            "'%.*s' is a group; one joint is wanted, named as R_KNEE_P, m12 or j3",
                            (int)length, name);
@@ -103,11 +103,11 @@ int joints_parse_one(app *a, const char *name, size_t length, int *status)
 int joints_check_limits(app *a, const grobo_posture *posture, const char *doing)
 {
     int joint = 0;
-    int error = grobo_posture_check(posture, &grobo_gr001_model, &joint);
+    int error = grobo_posture_check(posture, app_model(a), &joint);
     if (!error) {
         return 0;
     }
-    const grobo_joint *j = &grobo_gr001_model.joints[joint];
+    const grobo_joint *j = &app_model(a)->joints[joint];
     return app_fail(a, EXIT_SAFETY, grobo_error_name(error),
                     "%s: %s (motor %d) to %.1f deg is outside its limits %.0f to %.0f", doing,
                     j->name, j->motor, grobo_deg_from_rad(posture->angle_rad[joint]),

@@ -73,8 +73,7 @@ static json_t *to_json(const wire_cost *costs, const grobo_budget *line, int bau
 
 static int run(app *a)
 {
-    grobo_wiring wiring = (grobo_wiring)app_global(a, GLOBAL_WIRING)->choice;
-    const grobo_driver *driver = grobo_gr001_driver(wiring);
+    const grobo_driver *driver = app_driver(a);
     int baud_bps = (int)conn_baud(a);
     grobo_budget line;
     wire_cost costs[WIRE_COSTS];

@@ -19,7 +19,7 @@ static const cli_option options[] = {
 static void show(const app *a, const config_robot *before, const config_robot *after)
 {
     json_t *list = json_array();
-    const grobo_model *model = &grobo_gr001_model;
+    const grobo_model *model = app_model(a);
     for (int j = 0; j < model->n_joints; j++) {
         if (!a->json && after->trim_deg[j] != before->trim_deg[j]) {
             app_print("%5d  %-12s  %6.1f -> %6.1f deg\n", model->joints[j].motor,
@@ -84,7 +84,7 @@ static int set_trim(app *a, config_robot *after, int joint, double deg)
     if (fabs(deg) > CONFIG_TRIM_MAX_DEG) {
         return app_fail(a, EXIT_SAFETY, "LIMIT",
                         "calibrate: %s is %.1f deg off, more than %d; does its horn sit right?",
-                        grobo_gr001_model.joints[joint].name, deg, CONFIG_TRIM_MAX_DEG);
+                        app_model(a)->joints[joint].name, deg, CONFIG_TRIM_MAX_DEG);
     }
     after->trim_deg[joint] = deg == 0 ? 0 : deg;
     return EXIT_DONE;
@@ -94,7 +94,7 @@ static int set_trim(app *a, config_robot *after, int joint, double deg)
 static int measure(app *a, config_robot *after)
 {
     conn c;
-    const grobo_model *model = &grobo_gr001_model;
+    const grobo_model *model = app_model(a);
     int status = conn_open(&c, a);
     int error =
         status

@@ -47,10 +47,9 @@ static bool is_passed_by(const app *a, const char *path, grobo_diagnostics *list
 }
 
 /* Everything about one file goes to the list: reading it, then playing it on the model. */
-static void check_file(const char *path, const order *o, grobo_diagnostics *list)
+static void check_file(const app *a, const char *path, const order *o, grobo_diagnostics *list)
 {
-    grobo_read_options read = {
-        .model = &grobo_gr001_model, .keep_positions = true, .keep_going = true};
+    grobo_read_options read = {.model = app_model(a), .keep_positions = true, .keep_going = true};
     const char *name = file_shown_name(path);
     grobo_slack_taken slack = {.n = 0};
     grobo_check_options check = {.name = name, .slack = &slack};
@@ -59,9 +58,9 @@ static void check_file(const char *path, const order *o, grobo_diagnostics *list
     size_t before = grobo_diagnostics_total(list, GROBO_SEVERITY_ERROR);
     int error = file_read(path, &read, list, &motion);
     if (!error) {
-        error = grobo_motion_check(motion, &grobo_gr001_model, &check, list);
+        error = grobo_motion_check(motion, app_model(a), &check, list);
         if (error >= 0) {
-            error = check_whole(motion, &o->body, &how, list);
+            error = check_whole(a, motion, &o->body, &how, list);
         }
         check_report_slack(name, &slack, list);
         grobo_motion_free(motion);
@@ -123,7 +122,7 @@ static int run(app *a)
         if (is_passed_by(a, a->line.argument[i], list)) {
             continue;
         }
-        check_file(a->line.argument[i], &o, list);
+        check_file(a, a->line.argument[i], &o, list);
         t.files++;
     }
     t.errors = grobo_diagnostics_total(list, GROBO_SEVERITY_ERROR);

@@ -207,8 +207,8 @@ static int run(app *a)
 {
     const char *in = a->line.argument[0], *out = a->line.argument[1];
     grobo_motion_format to = format_of(a, OPT_TO);
-    grobo_read_options read = {.model = &grobo_gr001_model, .format = format_of(a, OPT_FROM)};
-    grobo_write_options how = {.model = &grobo_gr001_model,
+    grobo_read_options read = {.model = app_model(a), .format = format_of(a, OPT_FROM)};
+    grobo_write_options how = {.model = app_model(a),
                                .name = file_shown_name(in), /* notes tell places in IN */
                                .rate_hz = app_number(a, OPT_RATE, 0),
                                .exact = app_option(a, OPT_EXACT)->given > 0};

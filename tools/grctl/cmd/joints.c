@@ -54,7 +54,7 @@ static json_t *joint_json(const grobo_model *model, int joint)
 
 static int run(app *a)
 {
-    const grobo_model *model = &grobo_gr001_model;
+    const grobo_model *model = app_model(a);
     grobo_joint_mask joints;
     int status = joints_parse_all(a, a->line.n_arguments, a->line.argument, &joints);
     if (status) {

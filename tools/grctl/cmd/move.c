@@ -69,7 +69,7 @@ static int go(app *a, const grobo_posture *target, const char *doing)
 static int run_init(app *a)
 {
     grobo_posture target;
-    grobo_posture_init_pose(&target, &grobo_gr001_model);
+    grobo_posture_init_pose(&target, app_model(a));
     grobo_posture_set_time_ms(&target, app_number(a, OPT_TIME, INIT_MS));
     return go(a, &target, "init");
 }
@@ -93,7 +93,7 @@ static int run_move(app *a)
         return app_fail(a, EXIT_USAGE, "ARG", "move: '%s' is not a time of 0 to %d ms", time,
                         LONGEST_MS);
     }
-    grobo_posture_init(&target, grobo_gr001_model.n_joints);
+    grobo_posture_init(&target, app_model(a)->n_joints);
     grobo_posture_set_deg(&target, joint, deg);
     grobo_posture_set_time_ms(&target, ms);
     status = joints_check_limits(a, &target, "move");
@@ -107,7 +107,7 @@ static int pose_of_file(app *a, const char *spec, grobo_posture *target)
 {
     char path[GROBO_PATH_MAX_BYTES];
     const char *colon = strrchr(spec, ':');
-    grobo_read_options read = {.model = &grobo_gr001_model};
+    grobo_read_options read = {.model = app_model(a)};
     grobo_motion *motion = NULL;
     double number = 1;
     size_t length = strlen(spec);
@@ -129,7 +129,7 @@ static int pose_of_file(app *a, const char *spec, grobo_posture *target)
         status = app_fail(a, EXIT_USAGE, "ARG", "pose: %s has %zu postures, no number %.0f", path,
                           grobo_motion_size(motion), number);
     }
-    target->n_joints = grobo_gr001_model.n_joints;
+    target->n_joints = app_model(a)->n_joints;
     grobo_motion_free(motion);
     return status;
 }
@@ -167,7 +167,7 @@ static int pose_of_motors(app *a, grobo_posture *target)
 {
     for (int i = 0; i < a->line.n_arguments; i++) {
         double deg;
-        int joint = grobo_model_joint_of_motor(&grobo_gr001_model, i + 1);
+        int joint = grobo_model_joint_of_motor(app_model(a), i + 1);
         if (joint < 0 || !cli_read_number(a->line.argument[i], &deg)) {
             return app_fail(a, EXIT_USAGE, "ARG", "pose: '%s' is not an angle in degrees",
                             a->line.argument[i]);
@@ -182,15 +182,15 @@ static int run_pose(app *a)
     grobo_posture target;
     const char *first = a->line.argument[0];
     int n = a->line.n_arguments, status = 0;
-    grobo_posture_init(&target, grobo_gr001_model.n_joints);
+    grobo_posture_init(&target, app_model(a)->n_joints);
     if (first[0] == '@' && n == 1) {
         status = pose_of_file(a, first + 1, &target);
-    } else if (n == grobo_gr001_model.n_joints && !strchr(first, '=')) {
+    } else if (n == app_model(a)->n_joints && !strchr(first, '=')) {
         status = pose_of_motors(a, &target);
     } else if (all_numbers(a)) {
         return app_fail(a, EXIT_USAGE, "ARG",
                         "pose takes %d angles, in the order of the motors, not %d",
-                        grobo_gr001_model.n_joints, n);
+                        app_model(a)->n_joints, n);
     } else {
         for (int i = 0; i < n && !status; i++) {
             status = pose_of_joint(a, a->line.argument[i], &target);

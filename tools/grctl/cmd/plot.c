@@ -167,7 +167,7 @@ static int solve(const app *a, work *w, const grobo_motion *motion, plot_subject
     grobo_clip_options plain = {.start = &start};
     bool standing;
     grobo_motion_start(motion, subject->model, &start);
-    int error = whole_open(&w->played, motion, &plain, &body);
+    int error = whole_open(a, &w->played, motion, &plain, &body);
     subject->clip = &w->played.clip;
     if (w->played.body) {
         subject->solved = whole_joints();
@@ -176,7 +176,7 @@ static int solve(const app *a, work *w, const grobo_motion *motion, plot_subject
         return error;
     }
     body.rate_hz = plot_balance_rate((double)subject->clip->length_us / 1e6);
-    error = whole_body(&w->checked, motion, &body, &standing);
+    error = whole_body(a, &w->checked, motion, &body, &standing);
     if (!error) {
         error = plot_balance_collect(&w->balance, w->checked, standing);
     }
@@ -201,7 +201,7 @@ static int draw(app *a, const order *o, const plot_data *data)
 static int plot(app *a, const order *o, const grobo_motion *motion)
 {
     static work w;
-    plot_subject subject = {.motion = motion, .model = file_model(motion)};
+    plot_subject subject = {.motion = motion, .model = file_model(a, motion)};
     plot_options how = {.rate_hz = app_number(a, OPT_RATE, 0)};
     grobo_body_options body;
     int status = body_options_read(a, OPT_BODY, how.rate_hz, &body);
@@ -236,7 +236,7 @@ static int plot(app *a, const order *o, const grobo_motion *motion)
 static int run(app *a)
 {
     static order o;
-    grobo_read_options read = {.model = &grobo_gr001_model};
+    grobo_read_options read = {.model = app_model(a)};
     grobo_motion *motion = NULL;
     memset(&o, 0, sizeof o);
     int status = settle(a, &o);

@@ -518,7 +518,7 @@ static int save(recorder *r)
 {
     app *a = r->c.a;
     const char *out = app_option(a, OPT_OUT)->text;
-    grobo_write_options how = {.model = &grobo_gr001_model};
+    grobo_write_options how = {.model = app_model(a)};
     char path[GROBO_PATH_MAX_BYTES];
     const char *name = path + 2; /* behind ./ */
     size_t n = grobo_motion_size(r->motion);
@@ -578,7 +578,7 @@ static int prepare(recorder *r, app *a)
     if (status) {
         return status;
     }
-    if (grobo_motion_new(&r->motion, GROBO_MOTION_POSTURES, grobo_gr001_model.n_joints, NULL) < 0) {
+    if (grobo_motion_new(&r->motion, GROBO_MOTION_POSTURES, app_model(a)->n_joints, NULL) < 0) {
         return app_fail_error(a, EXIT_ROBOT, GROBO_ERR_NOMEM, "%s", name_of(r));
     }
     return 0;

@@ -22,6 +22,7 @@ static const cli_option options[] = {
 };
 
 typedef struct found {
+    const app *a;
     json_t *list, *failed; /* NULL: as text */
     int n, silent;
     bool unsure;              /* the line was disturbed, or an id answers in no way that fits */
@@ -36,19 +37,19 @@ static const char *model_name(const uint8_t *identity)
     return name ? name : "unknown model";
 }
 
-/* The name of the joint that this id moves on GR001, NULL for none. */
-static const char *joint_name(int id)
+/* The name of the joint that this id moves, NULL for none. */
+static const char *joint_name(const app *a, int id)
 {
-    int joint = grobo_model_joint_of_motor(&grobo_gr001_model, id);
-    return joint < 0 ? NULL : grobo_gr001_model.joints[joint].name;
+    int joint = grobo_model_joint_of_motor(app_model(a), id);
+    return joint < 0 ? NULL : app_model(a)->joints[joint].name;
 }
 
 /* One that answers with its identity, or (NULL) wrongly, or not at all where it should. */
-static json_t *servo_json(int id, int baud_bps, const uint8_t *identity, int error)
+static json_t *servo_json(const app *a, int id, int baud_bps, const uint8_t *identity, int error)
 {
-    int joint = grobo_model_joint_of_motor(&grobo_gr001_model, id);
+    int joint = grobo_model_joint_of_motor(app_model(a), id);
     return json_pack("{s:i,s:o?,s:s?,s:o*,s:o*,s:i,s:o*}", "id", id, "joint",
-                     joint < 0 ? NULL : json_integer(joint), "name", joint_name(id), "model",
+                     joint < 0 ? NULL : json_integer(joint), "name", joint_name(a, id), "model",
                      identity ? json_string(model_name(identity)) : NULL, "firmware",
                      identity ? json_integer(identity[2]) : NULL, "baud_bps", baud_bps, "status",
                      identity ? NULL : app_json_code(grobo_error_name(error)));
@@ -56,10 +57,10 @@ static json_t *servo_json(int id, int baud_bps, const uint8_t *identity, int err
 
 static void report(found *f, int id, int baud_bps, const uint8_t *identity)
 {
-    const char *name = joint_name(id);
+    const char *name = joint_name(f->a, id);
     f->n++;
     if (f->list) {
-        json_array_append_new(f->list, servo_json(id, baud_bps, identity, 0));
+        json_array_append_new(f->list, servo_json(f->a, id, baud_bps, identity, 0));
     } else {
         app_print("%3d  %-8s  firmware %3d  %6d bps  %s\n", id, model_name(identity), identity[2],
                   baud_bps, name ? name : "");
@@ -69,7 +70,7 @@ static void report(found *f, int id, int baud_bps, const uint8_t *identity)
 static void report_failed(found *f, int id, int baud_bps, int error)
 {
     if (f->failed) {
-        json_array_append_new(f->failed, servo_json(id, baud_bps, NULL, error));
+        json_array_append_new(f->failed, servo_json(f->a, id, baud_bps, NULL, error));
     }
 }
 
@@ -338,7 +339,8 @@ static int scan_all_bauds(conn *c, found *f)
 static int scan(conn *c)
 {
     bool all = app_option(c->a, OPT_ALL_BAUD)->given > 0;
-    found f = {.list = c->a->json ? json_array() : NULL,
+    found f = {.a = c->a,
+               .list = c->a->json ? json_array() : NULL,
                .failed = c->a->json ? json_array() : NULL};
     f.n_rates = all ? GROBO_RS30X_BAUD_CODE_MAX + 1 : 1;
     progress_start(&f.bar, c->a);
@@ -394,7 +396,8 @@ static int info(conn *c)
 {
     const grobo_model *model = grobo_robot_driver(c->robot)->model;
     bool board = app_global(c->a, GLOBAL_WIRING)->choice == 0;
-    found f = {.list = c->a->json ? json_array() : NULL,
+    found f = {.a = c->a,
+               .list = c->a->json ? json_array() : NULL,
                .failed = c->a->json ? json_array() : NULL};
     int baud_bps = (int)conn_baud(c->a), silent = 0;
     if (!c->a->json) {
@@ -415,7 +418,8 @@ static int info(conn *c)
         }
         silent++;
         report_failed(&f, motor, baud_bps, error);
-        app_note(c->a, "motor %d (%s): %s", motor, joint_name(motor), grobo_error_text(error));
+        app_note(c->a, "motor %d (%s): %s", motor, joint_name(c->a, motor),
+                 grobo_error_text(error));
     }
     if (c->a->json) {
         app_print_json(json_pack("{s:s,s:s,s:s,s:o,s:o}", "robot", model->name, "device",

@@ -33,7 +33,7 @@ static int choose_rows(app *a, show_rows *rows)
         return 0;
     }
     grobo_motion_start(rows->motion, rows->model, &start);
-    error = whole_open(&rows->played, rows->motion, &plain, &body);
+    error = whole_open(a, &rows->played, rows->motion, &plain, &body);
     if (error) {
         return app_fail(a, EXIT_FILE, grobo_error_name(error), "%s: %s", a->line.argument[0],
                         file_error_text(error));
@@ -202,14 +202,14 @@ static int show(app *a, show_rows *rows)
 static int run(app *a)
 {
     static show_rows rows;
-    grobo_read_options read = {.model = &grobo_gr001_model};
+    grobo_read_options read = {.model = app_model(a)};
     grobo_motion *motion = NULL;
     int status = file_load(a, a->line.argument[0], &read, &motion);
     if (status) {
         return status;
     }
     rows.motion = motion;
-    rows.model = file_model(motion);
+    rows.model = file_model(a, motion);
     status = show(a, &rows);
     whole_close(&rows.played);
     grobo_motion_free(motion);

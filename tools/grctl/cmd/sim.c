@@ -372,7 +372,7 @@ static int run(app *a)
     if (!f.base || watch_signals(&f) != GROBO_OK) {
         status = app_fail_error(a, EXIT_ROBOT, GROBO_ERR_NOMEM, "sim");
     }
-    f.model = &grobo_gr001_model;
+    f.model = app_model(a);
     if (app_option(a, OPT_SERVO)->given && !status) {
         f.model = &f.chain.model;
         status = sim_chain_read(a, &f.chain, app_option(a, OPT_SERVO)->text);

@@ -417,11 +417,10 @@ static int make_session(conn *c, const char *device, bool check)
     if (error) {
         return error;
     }
-    grobo_wiring wiring = (grobo_wiring)app_global(a, GLOBAL_WIRING)->choice;
     const cli_value *baud = app_global(a, GLOBAL_BAUD);
     grobo_robot_config robot = conn_robot_config(a);
     robot.bus.echo = app_global(a, GLOBAL_ECHO)->given > 0;
-    const grobo_driver *driver = grobo_gr001_driver(wiring);
+    const grobo_driver *driver = app_driver(a);
     if (a->robot) {
         driver = trims_driver(&c->link->trims, driver, a->robot);
     }

@@ -53,5 +53,5 @@ int servos_parse_id(app *a, const char *text, int *status)
         return -1;
     }
     int joint = joints_parse_one(a, text, strlen(text), status);
-    return joint < 0 ? -1 : grobo_model_motor_of_joint(&grobo_gr001_model, joint);
+    return joint < 0 ? -1 : grobo_model_motor_of_joint(app_model(a), joint);
 }

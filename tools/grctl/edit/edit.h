@@ -26,7 +26,8 @@ typedef struct line_owner {
      * What may stand at the end of the `length` bytes of a line: found() is called for each.
      * Returns how many bytes at the end they replace.
      */
-    size_t (*complete)(const char *line, size_t length, line_found_fn found, void *found_ctx);
+    size_t (*complete)(void *ctx, const char *line, size_t length, line_found_fn found,
+                       void *found_ctx);
 } line_owner;
 
 typedef struct line_reader line_reader;

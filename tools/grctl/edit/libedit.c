@@ -153,7 +153,8 @@ static unsigned char complete(EditLine *edit, int key)
     (void)key;
     found.n = 0;
     el_get(edit, EL_CLIENTDATA, &reader);
-    size_t replaced = reader->owner.complete(info->buffer, length, take_candidate, &found);
+    size_t replaced =
+        reader->owner.complete(reader->owner.ctx, info->buffer, length, take_candidate, &found);
     if (found.n == 0) {
         return CC_REFRESH_BEEP;
     }

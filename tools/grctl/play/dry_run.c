@@ -141,7 +141,7 @@ int play_dry_run(playlist *list, app *a)
     memset(&r, 0, sizeof r);
     r.a = a;
     r.start_us = -1;
-    grobo_posture_init_pose(&start, &grobo_gr001_model);
+    grobo_posture_init_pose(&start, app_model(a));
     int status = playlist_prepare(list, a, &start);
     if (!status) {
         status = trace_open(&r.trace, a, &line, 0);
@@ -151,7 +151,7 @@ int play_dry_run(playlist *list, app *a)
     }
     int error = grobo_sim_init(&r.sim, &sim, 0);
     if (!error) {
-        error = grobo_robot_init(&r.robot, grobo_gr001_driver(wiring), NULL, &config, 0);
+        error = grobo_robot_init(&r.robot, app_driver(a), NULL, &config, 0);
     }
     if (!error) {
         take_first_posture(&r, &list->clip[0]);

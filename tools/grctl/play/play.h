@@ -10,13 +10,19 @@
 
 enum { PLAY_FILES_MAX = 1 + GROBO_QUEUE_MAX };
 
+/* A motion or a body as a clip, and whose limits have slack. */
+typedef struct playlist_view {
+    grobo_clip clip;
+    const grobo_model *model;
+} playlist_view;
+
 typedef struct playlist {
     int n;
     const char *path[PLAY_FILES_MAX];
     grobo_motion *motion[PLAY_FILES_MAX];
-    grobo_body *body[PLAY_FILES_MAX]; /* where legs are solved, else NULL */
-    grobo_clip view[PLAY_FILES_MAX];  /* of the motion or the body */
-    grobo_clip clip[PLAY_FILES_MAX];  /* the same within the slack of limits: what is played */
+    grobo_body *body[PLAY_FILES_MAX];   /* where legs are solved, else NULL */
+    playlist_view view[PLAY_FILES_MAX]; /* of the motion or the body */
+    grobo_clip clip[PLAY_FILES_MAX];    /* the same within the slack of limits: what is played */
     grobo_play_options options[PLAY_FILES_MAX];
 } playlist;
 

@@ -50,7 +50,7 @@ static int check_one(app *a, const playlist *list, int i, grobo_slack_taken *sla
         .name = list->path[i], .speed_pct = speed_pct < 100 ? speed_pct : 100, .slack = slack};
     grobo_diagnostic d;
     char text[1024];
-    int error = grobo_motion_check(list->motion[i], &grobo_gr001_model, &how, found);
+    int error = grobo_motion_check(list->motion[i], app_model(a), &how, found);
     if (error < 0) {
         return fail(a, list->path[i], error);
     }
@@ -80,16 +80,15 @@ static int add_warnings(app *a, const playlist *list, int i, grobo_slack_taken *
     if (app_option(a, PLAY_FORCE)->given || !config_warns_of_falls(a)) {
         return 0;
     }
-    error = check_whole(list->motion[i], &body, &how, found);
+    error = check_whole(a, list->motion[i], &body, &how, found);
     return error < 0 ? fail(a, list->path[i], error) : 0;
 }
 
 /* What the robot would refuse is refused before anything is opened. */
 static int find_rate(app *a, grobo_budget *line)
 {
-    grobo_wiring wiring = (grobo_wiring)app_global(a, GLOBAL_WIRING)->choice;
     double rate_hz = app_number(a, PLAY_RATE, 0);
-    int error = wire_budget(grobo_gr001_driver(wiring), (int)conn_baud(a), line);
+    int error = wire_budget(app_driver(a), (int)conn_baud(a), line);
     if (error < 0) {
         return app_fail_error(a, EXIT_USAGE, error, "play");
     }
@@ -145,10 +144,10 @@ static int solve_and_check(app *a, playlist *list, int i, const grobo_budget *li
 }
 
 /* A file has the joints that it lists, the robot all: the others are not set. */
-static void widen(grobo_motion *motion)
+static void widen(const app *a, grobo_motion *motion)
 {
-    if (grobo_motion_joints(motion) < grobo_gr001_model.n_joints) {
-        (void)grobo_motion_set_joints(motion, grobo_gr001_model.n_joints);
+    if (grobo_motion_joints(motion) < app_model(a)->n_joints) {
+        (void)grobo_motion_set_joints(motion, app_model(a)->n_joints);
     }
 }
 
@@ -167,7 +166,7 @@ int playlist_load(playlist *list, app *a)
         return status;
     }
     for (int i = 0; i < a->line.n_arguments; i++) {
-        grobo_read_options read = {.model = &grobo_gr001_model, .keep_positions = true};
+        grobo_read_options read = {.model = app_model(a), .keep_positions = true};
         list->path[i] = a->line.argument[i];
         status = file_load(a, list->path[i], &read, &list->motion[i]);
         if (status) {
@@ -178,7 +177,7 @@ int playlist_load(playlist *list, app *a)
         if (status) {
             return status;
         }
-        widen(list->motion[i]);
+        widen(a, list->motion[i]);
         if (grobo_motion_size(list->motion[i]) == 0) {
             return app_fail(a, EXIT_FILE, "EMPTY", "%s: has no postures", list->path[i]);
         }
@@ -193,14 +192,14 @@ int playlist_load(playlist *list, app *a)
 }
 
 /* Files behind the first may move other joints. */
-static grobo_joint_mask joints_behind(const playlist *list)
+static grobo_joint_mask joints_behind(const app *a, const playlist *list)
 {
     grobo_joint_mask joints = 0;
     grobo_posture posture;
     int64_t at_us;
     for (int i = 1; i < list->n; i++) {
         if (list->options[i].mirror) {
-            return GROBO_JOINTS_ALL(grobo_gr001_model.n_joints);
+            return GROBO_JOINTS_ALL(app_model(a)->n_joints);
         }
         for (size_t k = 0; k < list->clip[i].n_keys; k++) {
             if (list->clip[i].key(list->clip[i].ctx, k, &posture, &at_us) >= 0) {
@@ -213,12 +212,11 @@ static grobo_joint_mask joints_behind(const playlist *list)
 
 /* ---- within the slack of limits ------------------------------------------------------------- */
 
-static int within_slack(int error, grobo_posture *posture)
+static int within_slack(const playlist_view *v, int error, grobo_posture *posture)
 {
-    const grobo_model *model = &grobo_gr001_model;
-    for (int j = 0; error >= 0 && j < posture->n_joints && j < model->n_joints; j++) {
+    for (int j = 0; error >= 0 && j < posture->n_joints && j < v->model->n_joints; j++) {
         if (posture->set & GROBO_JOINT_BIT(j)) {
-            posture->angle_rad[j] = grobo_model_take_slack(model, j, posture->angle_rad[j]);
+            posture->angle_rad[j] = grobo_model_take_slack(v->model, j, posture->angle_rad[j]);
         }
     }
     return error;
@@ -226,25 +224,25 @@ static int within_slack(int error, grobo_posture *posture)
 
 static int slack_key(void *ctx, size_t i, grobo_posture *posture, int64_t *at_us)
 {
-    const grobo_clip *view = ctx;
-    return within_slack(view->key(view->ctx, i, posture, at_us), posture);
+    const playlist_view *v = ctx;
+    return within_slack(v, v->clip.key(v->clip.ctx, i, posture, at_us), posture);
 }
 
 static int slack_sample(void *ctx, int64_t t_us, grobo_posture *posture)
 {
-    const grobo_clip *view = ctx;
-    return within_slack(view->sample(view->ctx, t_us, posture), posture);
+    const playlist_view *v = ctx;
+    return within_slack(v, v->clip.sample(v->clip.ctx, t_us, posture), posture);
 }
 
 /* Increments are no angles: they are played as they are. */
-static void play_within_slack(grobo_clip *view, grobo_clip *clip)
+static void play_within_slack(playlist_view *view, grobo_clip *clip)
 {
-    *clip = *view;
-    if (view->relative) {
+    *clip = view->clip;
+    if (clip->relative) {
         return;
     }
     clip->key = slack_key;
-    clip->sample = view->sample ? slack_sample : NULL;
+    clip->sample = clip->sample ? slack_sample : NULL;
     clip->ctx = view;
 }
 
@@ -254,28 +252,29 @@ int playlist_prepare(playlist *list, app *a, const grobo_posture *start)
     for (int i = 0; i < list->n; i++) {
         int error = 0;
         if (list->body[i]) {
-            grobo_body_clip(list->body[i], true, &list->view[i]);
+            grobo_body_clip(list->body[i], true, &list->view[i].clip);
         } else {
-            error = grobo_motion_clip(list->motion[i], i == 0 ? &how : NULL, &list->view[i]);
+            error = grobo_motion_clip(list->motion[i], i == 0 ? &how : NULL, &list->view[i].clip);
         }
         if (error) {
             return fail(a, list->path[i], error);
         }
+        list->view[i].model = app_model(a);
         play_within_slack(&list->view[i], &list->clip[i]);
         if (list->options[i].from_us > list->clip[i].length_us) {
             return app_fail(a, EXIT_USAGE, "ARG", "play: --from is beyond the end of %s (%.0f ms)",
                             list->path[i], (double)list->clip[i].length_us / 1e3);
         }
     }
-    list->options[0].also = joints_behind(list);
+    list->options[0].also = joints_behind(a, list);
     return 0;
 }
 
 void playlist_free(playlist *list)
 {
     for (int i = 0; i < list->n; i++) {
-        if (list->view[i].key && !list->body[i]) {
-            grobo_motion_clip_free(&list->view[i]);
+        if (list->view[i].clip.key && !list->body[i]) {
+            grobo_motion_clip_free(&list->view[i].clip);
         }
         grobo_body_free(list->body[i]);
         grobo_motion_free(list->motion[i]);

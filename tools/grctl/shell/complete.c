@@ -165,11 +165,14 @@ static size_t last_word(const char *line, size_t length, char *word)
     return begin;
 }
 
-size_t shell_complete(const char *line, size_t length, line_found_fn found, void *ctx)
+size_t shell_complete(void *of, const char *line, size_t length, line_found_fn found, void *ctx)
 {
+    const shell *owner = of;
     char text[SHELL_LINE_BYTES], word[SHELL_LINE_BYTES];
     char *words[SHELL_WORDS_MAX];
-    search s = {.to = {.prefix = word, .found = on_found, .ctx = &s}, .found = found, .ctx = ctx};
+    search s = {.to = {.prefix = word, .model = app_model(owner->a), .found = on_found, .ctx = &s},
+                .found = found,
+                .ctx = ctx};
     if (length >= sizeof text) {
         return 0;
     }

@@ -51,7 +51,7 @@ static int need_record(shell *s)
         return 0;
     }
     return keep(
-        s, grobo_motion_new(&s->record, GROBO_MOTION_POSTURES, grobo_gr001_model.n_joints, NULL));
+        s, grobo_motion_new(&s->record, GROBO_MOTION_POSTURES, app_model(&s->one)->n_joints, NULL));
 }
 
 /* Those that a hand may move: in free mode the others hold, and are read each second anyway. */
@@ -116,7 +116,7 @@ static int do_clear(shell *s, int n, char **words)
 static int read_motion(shell *s, const char *name, grobo_motion **motion)
 {
     char path[GROBO_PATH_MAX_BYTES];
-    grobo_read_options read = {.model = &grobo_gr001_model};
+    grobo_read_options read = {.model = app_model(&s->one)};
     if (grobo_motion_find(grobo_files_os(), ".", name, path, sizeof path) == 0 ||
         grobo_motion_find(grobo_files_os(), "motions", name, path, sizeof path) == 0) {
         return file_load(&s->one, path, &read, motion);
@@ -187,7 +187,7 @@ static int do_reverse(shell *s, int n, char **words)
 static int do_save(shell *s, int n, char **words)
 {
     char path[GROBO_PATH_MAX_BYTES];
-    grobo_write_options write = {.model = &grobo_gr001_model};
+    grobo_write_options write = {.model = app_model(&s->one)};
     const char *line[] = {"convert", "@record", n > 1 ? words[1] : ""};
     if (n > 1) {
         return run_text(s, 3, line);

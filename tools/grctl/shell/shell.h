@@ -98,6 +98,6 @@ extern volatile sig_atomic_t shell_noted;
 int shell_wait(void *s);
 
 /* For line_owner. */
-size_t shell_complete(const char *line, size_t length, line_found_fn found, void *ctx);
+size_t shell_complete(void *of, const char *line, size_t length, line_found_fn found, void *ctx);
 
 #endif
