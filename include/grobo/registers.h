@@ -4,8 +4,8 @@
  * @brief Register tables of servos: names, addresses, sizes, units, and what a register does.
  *
  * A table holds the registers of a series and its models; one row may serve some of the models
- * only. Tables are const data: grobo_dxl2_table (dxl2.h), grobo_dxl1_table (dxl1.h),
- * grobo_sts_table and grobo_scs_table (feetech.h).
+ * only. Tables are const data: grobo_rs30x_table (rs30x.h), grobo_dxl2_table (dxl2.h),
+ * grobo_dxl1_table (dxl1.h), grobo_sts_table and grobo_scs_table (feetech.h).
  */
 #ifndef GROBO_REGISTERS_H
 #define GROBO_REGISTERS_H
@@ -42,7 +42,7 @@ typedef enum grobo_register_role {
     GROBO_ROLE_SHUTDOWN, /**< which errors cut the torque */
     /* orders */
     GROBO_ROLE_TORQUE,
-    GROBO_ROLE_TORQUE_LIMIT,
+    GROBO_ROLE_TORQUE_LIMIT, /**< lost at power-off */
     GROBO_ROLE_GOAL,
     GROBO_ROLE_GOAL_TIME,    /**< duration of a move */
     GROBO_ROLE_SPEED,        /**< top speed of a move (of a profile) */
@@ -84,6 +84,20 @@ typedef struct grobo_servo_register {
     uint8_t groups;   /**< groups of models that have it, or-ed */
 } grobo_servo_register;
 
+/** How what is written to registers of GROBO_REGISTER_KEPT survives power-off. */
+typedef enum grobo_keeps {
+    GROBO_KEEPS_LIMP,   /**< at once; they can be written without torque only */
+    GROBO_KEEPS_LOCK,   /**< at once, while register LOCK is 0; else it lasts until power-off */
+    GROBO_KEEPS_COMMAND /**< when told to write its flash (GROBO_SERVO_FLASH) */
+} grobo_keeps;
+
+/** A rate of the line, and its code in register BAUD. */
+typedef struct grobo_servo_rate {
+    uint8_t code;
+    uint8_t groups; /**< groups of models that have it, or-ed */
+    int32_t bps;
+} grobo_servo_rate;
+
 struct grobo_servo_table;
 
 /** One model of a series. */
@@ -102,13 +116,16 @@ typedef struct grobo_servo_model {
     const struct grobo_servo_table *table; /**< of its series */
 } grobo_servo_model;
 
-/** A series: registers by rising address, and models. */
+/** A series: registers by rising address, models, rates as its manuals list them. */
 typedef struct grobo_servo_table {
     const char *name; /**< "DYNAMIXEL X" */
     const grobo_servo_register *registers;
     const grobo_servo_model *models;
+    const grobo_servo_rate *rates;
     uint16_t register_count;
     uint8_t model_count;
+    uint8_t rate_count;
+    uint8_t keeps;   /**< grobo_keeps */
     bool big_endian; /**< the high byte of a value comes first */
 } grobo_servo_table;
 
@@ -147,6 +164,12 @@ GROBO_CORE int32_t grobo_servo_register_get(const grobo_servo_model *model,
 GROBO_CORE int grobo_servo_register_put(const grobo_servo_model *model,
                                         const grobo_servo_register *reg, int32_t value,
                                         uint8_t *bytes);
+
+/** Line speed in bps of a code of register BAUD; GROBO_ERR_ARG for a code that is not listed. */
+GROBO_CORE int32_t grobo_servo_baud_bps(const grobo_servo_model *model, int32_t code);
+
+/** Code of register BAUD for a line speed in bps; GROBO_ERR_UNSUPPORTED for other speeds. */
+GROBO_CORE int grobo_servo_baud_code(const grobo_servo_model *model, int32_t baud_bps);
 
 GROBO_END_DECLS
 

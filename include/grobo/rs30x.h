@@ -16,6 +16,7 @@
 #define GROBO_RS30X_H
 
 #include <grobo/protocol.h>
+#include <grobo/registers.h>
 
 GROBO_BEGIN_DECLS
 
@@ -74,96 +75,36 @@ typedef enum grobo_rs30x_want {
 
 /* ---- memory map ----------------------------------------------------------------------------- */
 
-/**
- * Every register:
- * X(NAME, text name, address, bytes, is signed, access, unit, minimum, maximum, kept by).
- * Access is R or RW. Kept by: ROM fixed, FLASH survives power-off after a flash write, RAM does
- * not. A unit that starts with a number is what one count is worth. Where the manuals give no
- * range it is that of the register's width. SILENCE_TORQUE and WARM_UP_TIME are not on RS301/302.
- */
-#define GROBO_RS30X_REGISTER_LIST(X)                                                               \
-    X(MODEL, "model", 0, 2, 0, R, "", 0, 65535, ROM)                                               \
-    X(FIRMWARE, "firmware", 2, 1, 0, R, "", 0, 255, ROM)                                           \
-    X(ID, "id", 4, 1, 0, RW, "", 1, 127, FLASH)                                                    \
-    X(REVERSE, "reverse", 5, 1, 0, RW, "", 0, 1, FLASH)                                            \
-    X(BAUD, "baud", 6, 1, 0, RW, "code", 0, 10, FLASH)                                             \
-    X(DELAY, "delay", 7, 1, 0, RW, "50 us", 0, 127, FLASH)                                         \
-    X(CW_LIMIT, "cw_limit", 8, 2, 1, RW, "0.1 deg", -1500, 1500, FLASH)                            \
-    X(CCW_LIMIT, "ccw_limit", 10, 2, 1, RW, "0.1 deg", -1500, 1500, FLASH)                         \
-    X(TEMPERATURE_LIMIT, "temperature_limit", 14, 2, 1, R, "deg C", -32768, 32767, FLASH)          \
-    X(SILENCE_TORQUE, "silence_torque", 22, 1, 0, RW, "", 0, 255, FLASH)                           \
-    X(WARM_UP_TIME, "warm_up_time", 23, 1, 0, RW, "", 0, 255, FLASH)                               \
-    X(CW_MARGIN, "cw_margin", 24, 1, 0, RW, "0.1 deg", 0, 255, FLASH)                              \
-    X(CCW_MARGIN, "ccw_margin", 25, 1, 0, RW, "0.1 deg", 0, 255, FLASH)                            \
-    X(CW_SLOPE, "cw_slope", 26, 1, 0, RW, "1 deg", 0, 255, FLASH)                                  \
-    X(CCW_SLOPE, "ccw_slope", 27, 1, 0, RW, "1 deg", 0, 255, FLASH)                                \
-    X(PUNCH, "punch", 28, 2, 0, RW, "0.01 %", 0, 10000, FLASH)                                     \
-    X(GOAL, "goal", 30, 2, 1, RW, "0.1 deg", -1500, 1500, RAM)                                     \
-    X(GOAL_TIME, "goal_time", 32, 2, 0, RW, "10 ms", 0, 16383, RAM)                                \
-    X(MAX_TORQUE, "max_torque", 35, 1, 0, RW, "1 %", 0, 100, RAM)                                  \
-    X(TORQUE, "torque", 36, 1, 0, RW, "", 0, 2, RAM)                                               \
-    X(POSITION, "position", 42, 2, 1, R, "0.1 deg", -32768, 32767, RAM)                            \
-    X(TIME, "time", 44, 2, 0, R, "10 ms", 0, 65535, RAM)                                           \
-    X(SPEED, "speed", 46, 2, 1, R, "deg/s", -32768, 32767, RAM)                                    \
-    X(CURRENT, "current", 48, 2, 0, R, "mA", 0, 65535, RAM)                                        \
-    X(TEMPERATURE, "temperature", 50, 2, 1, R, "deg C", -32768, 32767, RAM)                        \
-    X(VOLTAGE, "voltage", 52, 2, 0, R, "10 mV", 0, 65535, RAM)
-
-/** Addresses: GROBO_RS30X_MODEL, GROBO_RS30X_GOAL, ... */
+/** Addresses of registers; grobo_rs30x_table has names, units and ranges. */
 typedef enum grobo_rs30x_address {
-#define GROBO_RS30X_ADDRESS_ENUM(name, text, address, bytes, sign, access, unit, min, max, kept)   \
-    GROBO_RS30X_##name = (address),
-    GROBO_RS30X_REGISTER_LIST(GROBO_RS30X_ADDRESS_ENUM)
-#undef GROBO_RS30X_ADDRESS_ENUM
-        GROBO_RS30X_ADDRESS_END = GROBO_REGISTERS /**< one past the last address */
+    GROBO_RS30X_MODEL = 0,
+    GROBO_RS30X_FIRMWARE = 2,
+    GROBO_RS30X_ID = 4,
+    GROBO_RS30X_REVERSE = 5,
+    GROBO_RS30X_BAUD = 6,
+    GROBO_RS30X_DELAY = 7,
+    GROBO_RS30X_CW_LIMIT = 8,
+    GROBO_RS30X_CCW_LIMIT = 10,
+    GROBO_RS30X_TEMPERATURE_LIMIT = 14,
+    GROBO_RS30X_SILENCE_TORQUE = 22,
+    GROBO_RS30X_WARM_UP_TIME = 23,
+    GROBO_RS30X_CW_MARGIN = 24,
+    GROBO_RS30X_CCW_MARGIN = 25,
+    GROBO_RS30X_CW_SLOPE = 26,
+    GROBO_RS30X_CCW_SLOPE = 27,
+    GROBO_RS30X_PUNCH = 28,
+    GROBO_RS30X_GOAL = 30,
+    GROBO_RS30X_GOAL_TIME = 32,
+    GROBO_RS30X_MAX_TORQUE = 35,
+    GROBO_RS30X_TORQUE = 36,
+    GROBO_RS30X_POSITION = 42,
+    GROBO_RS30X_TIME = 44,
+    GROBO_RS30X_SPEED = 46,
+    GROBO_RS30X_CURRENT = 48,
+    GROBO_RS30X_TEMPERATURE = 50,
+    GROBO_RS30X_VOLTAGE = 52,
+    GROBO_RS30X_ADDRESS_END = GROBO_REGISTERS /**< one past the last address */
 } grobo_rs30x_address;
-
-/** Who may write a register. */
-typedef enum grobo_rs30x_access {
-    GROBO_RS30X_ACCESS_R, /**< read only */
-    GROBO_RS30X_ACCESS_RW /**< read and write */
-} grobo_rs30x_access;
-
-/** What a register's value survives. */
-typedef enum grobo_rs30x_kept {
-    GROBO_RS30X_KEPT_ROM,   /**< fixed */
-    GROBO_RS30X_KEPT_FLASH, /**< survives power-off after a flash write */
-    GROBO_RS30X_KEPT_RAM    /**< lost at power-off */
-} grobo_rs30x_kept;
-
-/** One register, a row of GROBO_RS30X_REGISTER_LIST. */
-typedef struct grobo_rs30x_register {
-    const char *name;          /**< "goal_time": the name on the command line */
-    const char *unit;          /**< what one count is worth: "0.1 deg"; "" for plain numbers */
-    int32_t min, max;          /**< range of counts */
-    uint8_t address;           /**< number in the memory map */
-    uint8_t bytes;             /**< 1 or 2, little endian */
-    bool is_signed;            /**< two's complement */
-    grobo_rs30x_access access; /**< R or RW */
-    grobo_rs30x_kept kept;     /**< what it survives */
-} grobo_rs30x_register;
-
-/** Number of registers in the table. */
-GROBO_CORE size_t grobo_rs30x_register_count(void);
-
-/** Row index of the table, by rising address; NULL when there is no such row. Static storage. */
-GROBO_CORE const grobo_rs30x_register *grobo_rs30x_register_row(size_t index);
-
-/** The register of this text name (exact), NULL when there is none. Static storage. */
-GROBO_CORE const grobo_rs30x_register *grobo_rs30x_register_named(const char *name);
-
-/** The register that holds this address, its high byte too; NULL for reserved addresses. */
-GROBO_CORE const grobo_rs30x_register *grobo_rs30x_register_at(uint8_t address);
-
-/** Value of a register from its bytes (reg->bytes of them), in counts. */
-GROBO_CORE int32_t grobo_rs30x_register_get(const grobo_rs30x_register *reg, const uint8_t *bytes);
-
-/**
- * Puts a value into reg->bytes bytes.
- * @return bytes written, or GROBO_ERR_LIMIT outside reg->min..max (nothing is written)
- */
-GROBO_CORE int grobo_rs30x_register_put(const grobo_rs30x_register *reg, int32_t value,
-                                        uint8_t *bytes);
 
 /** Models, as register MODEL gives them. */
 typedef enum grobo_rs30x_model {
@@ -173,19 +114,11 @@ typedef enum grobo_rs30x_model {
     GROBO_RS30X_RS304MD = 0x3040
 } grobo_rs30x_model;
 
-/** "RS301CR" for 0x3010; NULL for a number that is no known model. Static string. */
-GROBO_API const char *grobo_rs30x_model_name(uint16_t model);
+/** Registers of the series, and its models. SILENCE_TORQUE and WARM_UP_TIME came with RS303MR. */
+GROBO_API extern const grobo_servo_table grobo_rs30x_table;
 
-/** Highest code of register BAUD. */
-#define GROBO_RS30X_BAUD_CODE_MAX 10
 /** The factory's code of register BAUD: 115200 bps. */
 #define GROBO_RS30X_BAUD_CODE_DEFAULT 7
-
-/** Line speed of a code of register BAUD in bps; GROBO_ERR_ARG above 10. */
-GROBO_CORE int32_t grobo_rs30x_baud_bps(uint8_t code);
-
-/** Code of register BAUD for a line speed in bps; GROBO_ERR_UNSUPPORTED for other speeds. */
-GROBO_CORE int grobo_rs30x_baud_code(uint32_t baud_bps);
 
 /** Time a servo waits before it returns, in us, for a value of register DELAY: 100 + 50 n. */
 #define GROBO_RS30X_DELAY_US(n) (100 + 50 * (n))

@@ -113,14 +113,11 @@ typedef void (*grobo_sim_hook)(const grobo_sim_event *event, void *ctx);
 
 /** A servo that can be simulated: a row of a table. docs/simulator.md has the sources. */
 typedef struct grobo_sim_type {
-    const char *name;       /**< "RS301CR" */
-    uint16_t model;         /**< register MODEL; of a joint: its servo_model */
-    uint16_t stall_ma;      /**< current at a stop */
-    int32_t speed_mdeg_s;   /**< 0.001 degree a second, without load at 7.4 V */
-    uint16_t punch;         /**< the factory's register PUNCH */
-    uint8_t slope;          /**< the factory's registers CW_SLOPE and CCW_SLOPE */
-    uint8_t max_torque_pct; /**< register MAX_TORQUE at power-up */
-    bool early;             /**< lacks what came with RS303MR: No.22, 23, 60-127, answers to all */
+    const char *name;     /**< "RS301CR" */
+    uint16_t model;       /**< register MODEL; of a joint: its servo_model */
+    uint16_t stall_ma;    /**< current at a stop */
+    int32_t speed_mdeg_s; /**< 0.001 degree a second, without load at 7.4 V */
+    bool early;           /**< lacks what came with RS303MR: No.22, 23, 60-127, answers to all */
 } grobo_sim_type;
 
 /** The row of the table, NULL behind its end. Static storage; thread safe. */

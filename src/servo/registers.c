@@ -29,25 +29,37 @@ const grobo_servo_model *grobo_servo_model_numbered(const grobo_servo_table *tab
     return NULL;
 }
 
-const grobo_servo_register *grobo_servo_register_row(const grobo_servo_model *model, size_t index)
+/* The next register of the model behind one (NULL: its first); NULL behind the last. */
+static const grobo_servo_register *next(const grobo_servo_model *model,
+                                        const grobo_servo_register *reg)
 {
-    for (size_t i = 0; model != NULL && i < model->table->register_count; i++) {
-        const grobo_servo_register *reg = &model->table->registers[i];
-        if ((reg->groups & model->group) != 0 && index-- == 0) {
+    if (model == NULL) {
+        return NULL;
+    }
+    const grobo_servo_register *end = model->table->registers + model->table->register_count;
+    for (reg = reg == NULL ? model->table->registers : reg + 1; reg < end; reg++) {
+        if ((reg->groups & model->group) != 0) {
             return reg;
         }
     }
     return NULL;
 }
 
+const grobo_servo_register *grobo_servo_register_row(const grobo_servo_model *model, size_t index)
+{
+    const grobo_servo_register *reg = next(model, NULL);
+    for (; reg != NULL && index > 0; index--) {
+        reg = next(model, reg);
+    }
+    return reg;
+}
+
 const grobo_servo_register *grobo_servo_register_named(const grobo_servo_model *model,
                                                        const char *name)
 {
-    const grobo_servo_register *reg = NULL;
-    for (size_t i = 0; name != NULL && (reg = grobo_servo_register_row(model, i)) != NULL; i++) {
-        if (same_text(reg->name, name)) {
-            break;
-        }
+    const grobo_servo_register *reg = name == NULL ? NULL : next(model, NULL);
+    while (reg != NULL && !same_text(reg->name, name)) {
+        reg = next(model, reg);
     }
     return reg;
 }
@@ -55,11 +67,9 @@ const grobo_servo_register *grobo_servo_register_named(const grobo_servo_model *
 const grobo_servo_register *grobo_servo_register_at(const grobo_servo_model *model,
                                                     uint16_t address)
 {
-    const grobo_servo_register *reg = NULL;
-    for (size_t i = 0; (reg = grobo_servo_register_row(model, i)) != NULL; i++) {
-        if (address >= reg->address && address < reg->address + reg->bytes) {
-            break;
-        }
+    const grobo_servo_register *reg = next(model, NULL);
+    while (reg != NULL && (address < reg->address || address >= reg->address + reg->bytes)) {
+        reg = next(model, reg);
     }
     return reg;
 }
@@ -67,11 +77,9 @@ const grobo_servo_register *grobo_servo_register_at(const grobo_servo_model *mod
 const grobo_servo_register *grobo_servo_register_of(const grobo_servo_model *model,
                                                     grobo_register_role role)
 {
-    const grobo_servo_register *reg = NULL;
-    for (size_t i = 0; (reg = grobo_servo_register_row(model, i)) != NULL; i++) {
-        if (reg->role == role && role != GROBO_ROLE_NONE) {
-            break;
-        }
+    const grobo_servo_register *reg = role == GROBO_ROLE_NONE ? NULL : next(model, NULL);
+    while (reg != NULL && reg->role != role) {
+        reg = next(model, reg);
     }
     return reg;
 }
@@ -126,4 +134,29 @@ int grobo_servo_register_put(const grobo_servo_model *model, const grobo_servo_r
         bytes[place(model, reg, i)] = (uint8_t)(raw >> 8 * i & 0xFF);
     }
     return reg->bytes;
+}
+
+int32_t grobo_servo_baud_bps(const grobo_servo_model *model, int32_t code)
+{
+    for (int i = 0; model != NULL && i < model->table->rate_count; i++) {
+        const grobo_servo_rate *rate = &model->table->rates[i];
+        if (rate->code == code && (rate->groups & model->group) != 0) {
+            return rate->bps;
+        }
+    }
+    return GROBO_ERR_ARG;
+}
+
+int grobo_servo_baud_code(const grobo_servo_model *model, int32_t baud_bps)
+{
+    if (model == NULL) {
+        return GROBO_ERR_ARG;
+    }
+    for (int i = 0; i < model->table->rate_count; i++) {
+        const grobo_servo_rate *rate = &model->table->rates[i];
+        if (rate->bps == baud_bps && (rate->groups & model->group) != 0) {
+            return rate->code;
+        }
+    }
+    return GROBO_ERR_UNSUPPORTED;
 }

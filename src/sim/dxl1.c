@@ -86,17 +86,9 @@ static double count_ma(const grobo_sim_servo *servo)
 
 static int32_t rate_of(const grobo_sim_servo *servo, int32_t code)
 {
-    static const int32_t feetech_bps[] = {1000000, 500000, 250000, 128000,
-                                          115200,  76800,  57600,  38400};
-    if (is_feetech(servo)) {
-        return code < (int)(sizeof feetech_bps / sizeof *feetech_bps) ? feetech_bps[code]
-                                                                      : GROBO_ERR_ARG;
-    }
-    if (code >= 250) {
-        return series_of(servo) == MX ? 2250000 + (code - 250) * 250000 : GROBO_ERR_ARG;
-    }
-    /* What hosts call 115200 and 57600 is 117647 and 57143 here. */
-    return code == 16 ? 115200 : code == 34 ? 57600 : 2000000 / (code + 1);
+    int32_t listed_bps = grobo_servo_baud_bps(servo->model, code);
+    bool formula = listed_bps < 0 && !is_feetech(servo) && code < 250;
+    return formula ? 2000000 / (code + 1) : listed_bps;
 }
 
 /* ---- positions ----------------------------------------------------------------------------- */
@@ -405,12 +397,8 @@ static void restart(grobo_sim *sim, int index)
 static bool factory(grobo_sim *sim, int index, uint8_t id, uint32_t baud_bps)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    const grobo_servo_register *rate = grobo_servo_register_of(servo->model, GROBO_ROLE_BAUD);
-    int code = 0;
-    while (code <= rate->max && rate_of(servo, code) != (int32_t)baud_bps) {
-        code++;
-    }
-    if (code > rate->max || id > GROBO_DXL1_ID_MAX) {
+    int code = grobo_servo_baud_code(servo->model, (int32_t)baud_bps);
+    if (code < 0 || id > GROBO_DXL1_ID_MAX) {
         return false;
     }
     grobo_i_dxl_factory(servo);

@@ -25,10 +25,6 @@
 /* The largest homing offset that counts where a position is within one turn. */
 #define HOMING_ONE_TURN 1024
 
-static const int32_t rates_bps[] = {9600,    57600,   115200,  1000000,
-                                    2000000, 3000000, 4000000, 4500000};
-enum { RATES = sizeof rates_bps / sizeof *rates_bps };
-
 static int mode_of(const grobo_sim_servo *servo)
 {
     return grobo_i_dxl_get(servo, GROBO_ROLE_MODE);
@@ -254,8 +250,8 @@ static void act(grobo_sim *sim, int index)
 
 static int32_t bps(const grobo_sim *sim, int index)
 {
-    int32_t code = grobo_i_dxl_get(&sim->servo[index], GROBO_ROLE_BAUD);
-    return code >= 0 && code < RATES ? rates_bps[code] : GROBO_ERR_ARG;
+    const grobo_sim_servo *servo = &sim->servo[index];
+    return grobo_servo_baud_bps(servo->model, grobo_i_dxl_get(servo, GROBO_ROLE_BAUD));
 }
 
 static bool knows(const grobo_servo_model *model)
@@ -280,12 +276,8 @@ static void restart(grobo_sim *sim, int index)
 static bool factory(grobo_sim *sim, int index, uint8_t id, uint32_t baud_bps)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    const grobo_servo_register *rate = grobo_servo_register_of(servo->model, GROBO_ROLE_BAUD);
-    int code = 0;
-    while (code <= rate->max && (uint32_t)rates_bps[code] != baud_bps) {
-        code++;
-    }
-    if (code > rate->max || id > GROBO_DXL2_ID_MAX) {
+    int code = grobo_servo_baud_code(servo->model, (int32_t)baud_bps);
+    if (code < 0 || id > GROBO_DXL2_ID_MAX) {
         return false;
     }
     grobo_i_dxl_factory(servo);

@@ -5,6 +5,8 @@
 
 #include <grobo/sim.h>
 
+/* An RS30x as its register MODEL says; one that is not known is the first of the table. */
+const grobo_servo_model *grobo_i_sim_rs30x_model(const grobo_sim_servo *servo);
 int32_t grobo_i_sim_value(const grobo_sim_servo *servo, uint8_t address);
 /* Sets a register, to the end of its range where the value is beyond. */
 void grobo_i_sim_hold(grobo_sim_servo *servo, uint8_t address, int64_t value);

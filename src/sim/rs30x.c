@@ -12,9 +12,6 @@
 
 /* The alarm flag comes this much below the temperature limit. An assumption. */
 #define ALARM_BELOW_LIMIT_C 10
-/* Not in the manuals at hand: the limit of register TEMPERATURE_LIMIT, the firmware's number. */
-#define LIMIT_C 80
-#define FIRMWARE 1
 /* Copper loss of RS301CR. An assumption (docs/simulator.md). */
 #define HEAT_C_PER_MA2 8.5e-5
 
@@ -62,11 +59,15 @@ static bool starts(grobo_sim *sim, int index, int32_t here_mdeg)
     return false;
 }
 
+static int32_t rate_of(const grobo_sim_servo *servo)
+{
+    return grobo_servo_baud_bps(grobo_i_sim_rs30x_model(servo), servo->reg[GROBO_RS30X_BAUD]);
+}
+
 static int32_t bps(const grobo_sim *sim, int index)
 {
     const grobo_sim_servo *servo = &sim->servo[index];
-    return sim->config.baud_at_once ? grobo_rs30x_baud_bps(servo->reg[GROBO_RS30X_BAUD])
-                                    : servo->baud_bps;
+    return sim->config.baud_at_once ? rate_of(servo) : servo->baud_bps;
 }
 
 static void refresh(grobo_sim *sim, int index)
@@ -85,26 +86,23 @@ static void refresh(grobo_sim *sim, int index)
 
 /* ---- flash --------------------------------------------------------------------------------- */
 
-static void put(uint8_t *registers, uint8_t address, int32_t value)
+/* The register that an address begins or continues, if the servo has it. */
+static const grobo_servo_register *row_at(const grobo_sim_servo *servo, int address)
 {
-    (void)grobo_rs30x_register_put(grobo_rs30x_register_at(address), value, &registers[address]);
+    return grobo_servo_register_at(grobo_i_sim_rs30x_model(servo), (uint16_t)address);
 }
 
-/* No.4-29 as they leave the factory (RS301CR/RS302CD manual, memory map). */
+/* No.4-29 as they leave the factory. */
 static void factory_block(grobo_sim_servo *servo)
 {
-    const grobo_sim_type *type = grobo_i_sim_type_of(servo);
+    const grobo_servo_model *model = grobo_i_sim_rs30x_model(servo);
+    const grobo_servo_register *reg;
     memset(&servo->reg[GROBO_RS30X_ID], 0, GROBO_SIM_FLASH_BYTES);
-    put(servo->reg, GROBO_RS30X_ID, 1);
-    put(servo->reg, GROBO_RS30X_BAUD, GROBO_RS30X_BAUD_CODE_DEFAULT);
-    put(servo->reg, GROBO_RS30X_CW_LIMIT, 1500);
-    put(servo->reg, GROBO_RS30X_CCW_LIMIT, -1500);
-    put(servo->reg, GROBO_RS30X_TEMPERATURE_LIMIT, LIMIT_C);
-    put(servo->reg, GROBO_RS30X_CW_MARGIN, 2);
-    put(servo->reg, GROBO_RS30X_CCW_MARGIN, 2);
-    put(servo->reg, GROBO_RS30X_CW_SLOPE, type->slope);
-    put(servo->reg, GROBO_RS30X_CCW_SLOPE, type->slope);
-    put(servo->reg, GROBO_RS30X_PUNCH, type->punch);
+    for (size_t i = 0; (reg = grobo_servo_register_row(model, i)) != NULL; i++) {
+        if (reg->address >= GROBO_RS30X_ID && (reg->flags & GROBO_REGISTER_KEPT) != 0) {
+            grobo_i_sim_hold(servo, (uint8_t)reg->address, reg->factory);
+        }
+    }
 }
 
 static void to_flash(grobo_sim_servo *servo)
@@ -116,15 +114,15 @@ static bool factory(grobo_sim *sim, int index, uint8_t id, uint32_t baud_bps)
 {
     grobo_sim_servo *servo = &sim->servo[index];
     uint16_t model = sim->config.model->joints[index].servo_model;
-    int code = grobo_rs30x_baud_code(baud_bps);
+    int code = grobo_servo_baud_code(&grobo_rs30x_table.models[0], (int32_t)baud_bps);
     if (code < 0) {
         return false;
     }
-    put(servo->reg, GROBO_RS30X_MODEL, model == 0 ? GROBO_RS30X_RS301CR : model);
-    put(servo->reg, GROBO_RS30X_FIRMWARE, FIRMWARE);
+    grobo_i_sim_hold(servo, GROBO_RS30X_MODEL, model == 0 ? GROBO_RS30X_RS301CR : model);
+    grobo_i_sim_hold(servo, GROBO_RS30X_FIRMWARE, grobo_i_sim_rs30x_model(servo)->firmware);
     factory_block(servo);
-    put(servo->reg, GROBO_RS30X_ID, id);
-    put(servo->reg, GROBO_RS30X_BAUD, code);
+    grobo_i_sim_hold(servo, GROBO_RS30X_ID, id);
+    grobo_i_sim_hold(servo, GROBO_RS30X_BAUD, code);
     to_flash(servo);
     return true;
 }
@@ -133,9 +131,9 @@ static void boot(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
     memcpy(&servo->reg[GROBO_RS30X_ID], servo->flash, GROBO_SIM_FLASH_BYTES);
-    servo->baud_bps = grobo_rs30x_baud_bps(servo->reg[GROBO_RS30X_BAUD]);
+    servo->baud_bps = rate_of(servo);
     memset(&servo->reg[GROBO_RS30X_GOAL], 0, GROBO_REGISTERS - GROBO_RS30X_GOAL);
-    put(servo->reg, GROBO_RS30X_MAX_TORQUE, grobo_i_sim_type_of(servo)->max_torque_pct);
+    grobo_i_sim_hold(servo, GROBO_RS30X_MAX_TORQUE, row_at(servo, GROBO_RS30X_MAX_TORQUE)->factory);
     servo->status &= GROBO_RS30X_STATUS_FLASH_ERROR;
     follow(servo);
 }
@@ -153,12 +151,14 @@ static void saved(grobo_sim *sim, int index, bool whole)
 
 static bool flash_fits(const uint8_t *flash)
 {
+    /* The last model has all registers. */
+    const grobo_servo_model *any = &grobo_rs30x_table.models[grobo_rs30x_table.model_count - 1];
     uint8_t registers[GROBO_REGISTERS] = {0};
     memcpy(&registers[GROBO_RS30X_ID], flash, GROBO_SIM_FLASH_BYTES);
     for (int a = GROBO_RS30X_ID; a < GROBO_RS30X_ID + GROBO_SIM_FLASH_BYTES; a++) {
-        const grobo_rs30x_register *reg = grobo_rs30x_register_at((uint8_t)a);
-        int32_t value =
-            reg == NULL ? registers[a] : grobo_rs30x_register_get(reg, &registers[reg->address]);
+        const grobo_servo_register *reg = grobo_servo_register_at(any, (uint16_t)a);
+        int32_t value = reg == NULL ? registers[a]
+                                    : grobo_servo_register_get(any, reg, &registers[reg->address]);
         if (value < (reg == NULL ? 0 : reg->min) || value > (reg == NULL ? 0 : reg->max)) {
             return false;
         }
@@ -192,16 +192,16 @@ static void goal_written(grobo_sim *sim, int index)
 }
 
 /* Registers that take any value and make of it what they can, so that none is refused. */
-static bool bends(const grobo_rs30x_register *reg)
+static bool bends(const grobo_servo_register *reg)
 {
     return reg->address == GROBO_RS30X_GOAL || reg->address == GROBO_RS30X_MAX_TORQUE ||
            reg->address == GROBO_RS30X_BAUD;
 }
 
 /* The manual on those beside the goal: over 100 % is 100 %, an unknown rate is 115200 bps. */
-static void bend(grobo_sim_servo *servo, const grobo_rs30x_register *reg)
+static void bend(grobo_sim_servo *servo, const grobo_servo_register *reg)
 {
-    int32_t value = grobo_i_sim_value(servo, reg->address);
+    int32_t value = grobo_i_sim_value(servo, (uint8_t)reg->address);
     if (reg->address == GROBO_RS30X_MAX_TORQUE) {
         grobo_i_sim_hold(servo, GROBO_RS30X_MAX_TORQUE, value);
     } else if (reg->address == GROBO_RS30X_BAUD && value > reg->max) {
@@ -210,12 +210,12 @@ static void bend(grobo_sim_servo *servo, const grobo_rs30x_register *reg)
 }
 
 /* Lets a register's new value take effect. */
-static void took_effect(grobo_sim *sim, int index, const grobo_rs30x_register *reg, int32_t before)
+static void took_effect(grobo_sim *sim, int index, const grobo_servo_register *reg, int32_t before)
 {
     grobo_sim_servo *servo = &sim->servo[index];
     bend(servo, reg);
     follow(servo);
-    int32_t value = grobo_i_sim_value(servo, reg->address);
+    int32_t value = grobo_i_sim_value(servo, (uint8_t)reg->address);
     if (reg->address == GROBO_RS30X_GOAL) {
         goal_written(sim, index);
         return;
@@ -236,17 +236,10 @@ static void took_effect(grobo_sim *sim, int index, const grobo_rs30x_register *r
                                              .value2 = value});
 }
 
-/* The row of the table that an address begins or continues, if the servo has it. */
-static const grobo_rs30x_register *row_at(const grobo_sim_servo *servo, int address)
-{
-    const grobo_rs30x_register *reg = grobo_rs30x_register_at((uint8_t)address);
-    bool lacks = address == GROBO_RS30X_SILENCE_TORQUE || address == GROBO_RS30X_WARM_UP_TIME;
-    return lacks && grobo_i_sim_type_of(servo)->early ? NULL : reg;
-}
-
 /* True if every register hit may be written and every value is in range. Reserved ones may. */
 static bool may_write(const grobo_sim_servo *servo, int address, const uint8_t *bytes, size_t n)
 {
+    const grobo_servo_model *model = grobo_i_sim_rs30x_model(servo);
     uint8_t after[GROBO_REGISTERS];
     if (address + (int)n > GROBO_REGISTERS) {
         return false;
@@ -254,12 +247,12 @@ static bool may_write(const grobo_sim_servo *servo, int address, const uint8_t *
     memcpy(after, servo->reg, sizeof after);
     memcpy(&after[address], bytes, n);
     for (int a = address; a < address + (int)n; a++) {
-        const grobo_rs30x_register *reg = row_at(servo, a);
+        const grobo_servo_register *reg = row_at(servo, a);
         if (reg == NULL) {
             continue;
         }
-        int32_t value = grobo_rs30x_register_get(reg, &after[reg->address]);
-        if (reg->access != GROBO_RS30X_ACCESS_RW ||
+        int32_t value = grobo_servo_register_get(model, reg, &after[reg->address]);
+        if ((reg->flags & GROBO_REGISTER_W) == 0 ||
             (!bends(reg) && (value < reg->min || value > reg->max))) {
             return false;
         }
@@ -270,6 +263,7 @@ static bool may_write(const grobo_sim_servo *servo, int address, const uint8_t *
 static void store(grobo_sim *sim, int index, int address, const uint8_t *bytes, size_t n)
 {
     grobo_sim_servo *servo = &sim->servo[index];
+    const grobo_servo_model *model = grobo_i_sim_rs30x_model(servo);
     uint8_t before[GROBO_REGISTERS];
     memcpy(before, servo->reg, sizeof before);
     for (size_t i = 0; i < n; i++) {
@@ -278,10 +272,11 @@ static void store(grobo_sim *sim, int index, int address, const uint8_t *bytes, 
         }
     }
     for (int a = address; a < address + (int)n; a++) {
-        const grobo_rs30x_register *reg = row_at(servo, a);
+        const grobo_servo_register *reg = row_at(servo, a);
         bool told = reg != NULL && reg->address != a && a > address;
         if (reg != NULL && !told) {
-            took_effect(sim, index, reg, grobo_rs30x_register_get(reg, &before[reg->address]));
+            took_effect(sim, index, reg,
+                        grobo_servo_register_get(model, reg, &before[reg->address]));
         }
     }
 }
@@ -442,33 +437,34 @@ static int measure(const uint8_t *bytes, size_t n, bool good)
 
 /* ---- inspection ---------------------------------------------------------------------------- */
 
-static const grobo_rs30x_register *register_from(int address)
+static const grobo_servo_register *register_from(const grobo_sim_servo *servo, int address)
 {
     if (address < 0 || address >= GROBO_REGISTERS) {
         return NULL;
     }
-    const grobo_rs30x_register *reg = grobo_rs30x_register_at((uint8_t)address);
+    const grobo_servo_register *reg = row_at(servo, address);
     return reg != NULL && reg->address == address ? reg : NULL;
 }
 
 static int get(grobo_sim *sim, int index, int address, int32_t *value)
 {
-    const grobo_rs30x_register *reg = register_from(address);
+    const grobo_servo_register *reg = register_from(&sim->servo[index], address);
     if (reg == NULL) {
         return GROBO_ERR_ARG;
     }
-    *value = grobo_i_sim_value(&sim->servo[index], reg->address);
+    *value = grobo_i_sim_value(&sim->servo[index], (uint8_t)reg->address);
     return 0;
 }
 
 static int set(grobo_sim *sim, int index, int address, int32_t value)
 {
-    const grobo_rs30x_register *reg = register_from(address);
-    if (reg == NULL || (reg->access == GROBO_RS30X_ACCESS_R && reg->kept == GROBO_RS30X_KEPT_RAM)) {
-        return GROBO_ERR_ARG;
+    const grobo_servo_register *reg = register_from(&sim->servo[index], address);
+    if (reg == NULL || reg->flags == 0) {
+        return GROBO_ERR_ARG; /* what is measured */
     }
     uint8_t bytes[2];
-    int n = grobo_rs30x_register_put(reg, value, bytes);
+    int n =
+        grobo_servo_register_put(grobo_i_sim_rs30x_model(&sim->servo[index]), reg, value, bytes);
     if (n < 0) {
         return n;
     }

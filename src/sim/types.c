@@ -5,15 +5,15 @@
 #include "src/sim/registers.h"
 
 /*
- * Name, model, stall current, speed (0.11 and 0.16 s for 60 degrees at 7.4 V), punch, slope,
- * largest torque, early: RS301CR/RS302CD manual. That RS303MR and RS304MD move as these two do is
+ * Name, model, stall current, speed (0.11 and 0.16 s for 60 degrees at 7.4 V), early:
+ * RS301CR/RS302CD manual. That RS303MR and RS304MD move as these two do is
  * an assumption.
  */
 static const grobo_sim_type types[] = {
-    {"RS301CR", GROBO_RS30X_RS301CR, 1200, 545455, 180, 10, 100, true},
-    {"RS302CD", GROBO_RS30X_RS302CD, 900, 375000, 200, 15, 77, true},
-    {"RS303MR", GROBO_RS30X_RS303MR, 1200, 545455, 180, 10, 100, false},
-    {"RS304MD", GROBO_RS30X_RS304MD, 900, 375000, 200, 15, 77, false},
+    {"RS301CR", GROBO_RS30X_RS301CR, 1200, 545455, true},
+    {"RS302CD", GROBO_RS30X_RS302CD, 900, 375000, true},
+    {"RS303MR", GROBO_RS30X_RS303MR, 1200, 545455, false},
+    {"RS304MD", GROBO_RS30X_RS304MD, 900, 375000, false},
 };
 
 enum { TYPES = sizeof types / sizeof *types };

@@ -81,7 +81,7 @@ check "and what came" said '^ *[0-9.]*  <  FD DF 0C 00 1E 18 01 '
 check "servo-get" both exits 0 on_robot servo-get R_KNEE_P --- says '^ 52  voltage  *738  *7.38 V$'
 check "a word" says '^  0  model  *12304  *RS301CR$'
 check "a code" both exits 0 on_robot servo-get 12 baud --- says '^  6  baud  *7  *115200 bps$'
-check "a register that is none" fails 2 "no register 'tail'; there are: model" \
+check "a register that is none" fails 2 "no register 'tail'; RS301CR has: model" \
     on_robot servo-get 12 tail
 check "an id that is none" fails 2 "'128' is not an id from 1 to 127" on_robot servo-get 128
 check "an id where nobody is" fails 1 'no reply from servo 77 in .* after 2' on_robot servo-get 77

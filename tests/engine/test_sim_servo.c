@@ -418,7 +418,8 @@ static void every_type_is_what_its_row_says(void **state)
                                   .mirror = (uint8_t)i,
                                   .mirror_sign = 1};
         assert_ptr_equal(grobo_sim_type_named(type->name, strlen(type->name)), type);
-        assert_string_equal(grobo_rs30x_model_name(type->model), type->name);
+        const grobo_servo_model *servo = grobo_servo_model_named(&grobo_rs30x_table, type->name);
+        assert_int_equal(servo->number, type->model);
     }
     assert_true(model.n_joints >= 4);
     assert_null(grobo_sim_type_named("RS301", 5));
@@ -429,9 +430,12 @@ static void every_type_is_what_its_row_says(void **state)
     for (int i = 0; i < model.n_joints; i++) {
         type = grobo_sim_type_row((size_t)i);
         assert_int_equal(simkit_register(&kit, i, GROBO_RS30X_MODEL), type->model);
-        assert_int_equal(simkit_register(&kit, i, GROBO_RS30X_PUNCH), type->punch);
-        assert_int_equal(simkit_register(&kit, i, GROBO_RS30X_CW_SLOPE), type->slope);
-        assert_int_equal(simkit_register(&kit, i, GROBO_RS30X_MAX_TORQUE), type->max_torque_pct);
+        const grobo_servo_register *reg;
+        for (size_t k = 0;
+             (reg = grobo_servo_register_row(&grobo_rs30x_table.models[i], k)) != NULL; k++) {
+            bool as_made = reg->factory != 0 && reg->role != GROBO_ROLE_ID;
+            assert_true(!as_made || simkit_register(&kit, i, reg->address) == reg->factory);
+        }
         assert_int_equal(grobo_sim_set_register(&kit.sim, i, GROBO_RS30X_GOAL, 1000), 0);
         kit.now_us += 100000;
         assert_in_range(simkit_look(&kit, i).angle_mdeg, type->speed_mdeg_s / 10 - 1,

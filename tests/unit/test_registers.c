@@ -11,11 +11,12 @@
 
 #include <grobo/dxl2.h>
 #include <grobo/feetech.h>
+#include <grobo/rs30x.h>
 
 #include "tests/support/vectors.h"
 
-static const grobo_servo_table *const tables[] = {&grobo_dxl2_table, &grobo_dxl1_table,
-                                                  &grobo_sts_table, &grobo_scs_table};
+static const grobo_servo_table *const tables[] = {
+    &grobo_rs30x_table, &grobo_dxl2_table, &grobo_dxl1_table, &grobo_sts_table, &grobo_scs_table};
 enum { TABLES = (int)(sizeof tables / sizeof tables[0]) };
 
 static void row_is_whole(const grobo_servo_model *model, const grobo_servo_register *reg)
@@ -66,12 +67,13 @@ static void tables_are_whole(void **state)
             static const grobo_register_role needed[] = {
                 GROBO_ROLE_MODEL,        GROBO_ROLE_ID,           GROBO_ROLE_BAUD,
                 GROBO_ROLE_TORQUE,       GROBO_ROLE_GOAL,         GROBO_ROLE_POSITION,
-                GROBO_ROLE_SPEED,        GROBO_ROLE_MIN_POSITION, GROBO_ROLE_VOLTAGE,
-                GROBO_ROLE_MAX_POSITION, GROBO_ROLE_TEMPERATURE,  GROBO_ROLE_SHUTDOWN,
-                GROBO_ROLE_RETURN_DELAY};
+                GROBO_ROLE_MIN_POSITION, GROBO_ROLE_MAX_POSITION, GROBO_ROLE_VOLTAGE,
+                GROBO_ROLE_TEMPERATURE,  GROBO_ROLE_RETURN_DELAY};
             for (size_t i = 0; i < sizeof needed / sizeof needed[0]; i++) {
                 assert_non_null(grobo_servo_register_of(model, needed[i]));
             }
+            bool locks = grobo_servo_register_of(model, GROBO_ROLE_LOCK) != NULL;
+            assert_true(locks || tables[t]->keeps != GROBO_KEEPS_LOCK);
         }
     }
 }
@@ -123,6 +125,9 @@ static void values_are_written_as_each_series_does(void **state)
         {&grobo_dxl2_table, "XL330-M288", "watchdog", -1, "FF"},
         {&grobo_dxl1_table, "MX-64", "goal_position", -2048, "00 F8"},
         {&grobo_dxl1_table, "AX-12A", "present_speed", -300, "2C 05"},
+        {&grobo_rs30x_table, "RS302CD", "goal", -1500, "24 FA"},
+        {&grobo_rs30x_table, "RS302CD", "speed", -1, "FF FF"},
+        {&grobo_rs30x_table, "RS302CD", "current", 65535, "FF FF"},
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         const grobo_servo_model *model = grobo_servo_model_named(rows[i].table, rows[i].model);
@@ -132,6 +137,37 @@ static void values_are_written_as_each_series_does(void **state)
                       rows[i].hex);
         assert_int_equal(grobo_servo_register_get(model, reg, bytes), rows[i].value);
     }
+}
+
+static void codes_of_rates_go_both_ways(void **state)
+{
+    (void)state;
+    static const struct {
+        const grobo_servo_table *table;
+        const char *model;
+        int code;
+        int32_t bps;
+    } rows[] = {
+        {&grobo_rs30x_table, "RS301CR", 10, 460800}, {&grobo_dxl2_table, "XL430-W250", 7, 4500000},
+        {&grobo_dxl1_table, "AX-12A", 1, 1000000},   {&grobo_dxl1_table, "MX-28", 252, 3000000},
+        {&grobo_sts_table, "STS3215", 4, 115200},    {&grobo_scs_table, "SCS0009", 0, 1000000},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        const grobo_servo_model *model = grobo_servo_model_named(rows[i].table, rows[i].model);
+        const grobo_servo_register *reg = grobo_servo_register_of(model, GROBO_ROLE_BAUD);
+        assert_int_equal(grobo_servo_baud_bps(model, rows[i].code), rows[i].bps);
+        for (int code = 0; code <= reg->max; code++) {
+            int32_t bps = grobo_servo_baud_bps(model, code);
+            assert_true(bps < 0 || grobo_servo_baud_code(model, bps) == code);
+        }
+        assert_true(grobo_servo_baud_bps(model, reg->factory) > 0);
+        assert_int_equal(grobo_servo_baud_bps(model, 255), GROBO_ERR_ARG);
+        assert_int_equal(grobo_servo_baud_code(model, 115201), GROBO_ERR_UNSUPPORTED);
+    }
+    const grobo_servo_model *small = grobo_servo_model_named(&grobo_dxl2_table, "XL330-M288");
+    assert_int_equal(grobo_servo_baud_bps(small, 7), GROBO_ERR_ARG);
+    const grobo_servo_model *ax = grobo_servo_model_named(&grobo_dxl1_table, "AX-12A");
+    assert_int_equal(grobo_servo_baud_bps(ax, 252), GROBO_ERR_ARG);
 }
 
 static void what_is_not_there_is_null(void **state)
@@ -152,6 +188,7 @@ int main(void)
         cmocka_unit_test(tables_are_whole),
         cmocka_unit_test(models_have_their_own_rows),
         cmocka_unit_test(values_are_written_as_each_series_does),
+        cmocka_unit_test(codes_of_rates_go_both_ways),
         cmocka_unit_test(what_is_not_there_is_null),
     };
     return cmocka_run_group_tests_name("registers", tests, NULL, NULL);

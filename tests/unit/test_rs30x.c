@@ -212,62 +212,39 @@ static void no_reply_is_promised_for_broken_commands(void **state)
     assert_int_equal(r.id, 9);
 }
 
-static void registers_are_found_by_row_name_and_address(void **state)
+/* The codec's addresses are those of the table. */
+static void registers_stand_where_the_codec_has_them(void **state)
 {
     (void)state;
-    int last = -1;
-    for (size_t i = 0; i < grobo_rs30x_register_count(); i++) {
-        const grobo_rs30x_register *row = grobo_rs30x_register_row(i);
-        assert_true(row->address > last);
-        assert_ptr_equal(grobo_rs30x_register_named(row->name), row);
-        for (int k = 0; k < row->bytes; k++) {
-            assert_ptr_equal(grobo_rs30x_register_at((uint8_t)(row->address + k)), row);
-        }
-        last = row->address + row->bytes - 1;
+    static const struct {
+        const char *name;
+        int address;
+    } rows[] = {{"model", GROBO_RS30X_MODEL},
+                {"id", GROBO_RS30X_ID},
+                {"baud", GROBO_RS30X_BAUD},
+                {"cw_limit", GROBO_RS30X_CW_LIMIT},
+                {"temperature_limit", GROBO_RS30X_TEMPERATURE_LIMIT},
+                {"warm_up_time", GROBO_RS30X_WARM_UP_TIME},
+                {"ccw_slope", GROBO_RS30X_CCW_SLOPE},
+                {"goal", GROBO_RS30X_GOAL},
+                {"goal_time", GROBO_RS30X_GOAL_TIME},
+                {"max_torque", GROBO_RS30X_MAX_TORQUE},
+                {"torque", GROBO_RS30X_TORQUE},
+                {"position", GROBO_RS30X_POSITION},
+                {"voltage", GROBO_RS30X_VOLTAGE}};
+    const grobo_servo_model *early = grobo_servo_model_named(&grobo_rs30x_table, "RS301CR");
+    const grobo_servo_model *late = grobo_servo_model_numbered(&grobo_rs30x_table, 0x3040);
+    assert_string_equal(late->name, "RS304MD");
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        assert_int_equal(grobo_servo_register_named(late, rows[i].name)->address, rows[i].address);
     }
-    assert_null(grobo_rs30x_register_row(grobo_rs30x_register_count()));
-    assert_null(grobo_rs30x_register_named("goal "));
-    assert_null(grobo_rs30x_register_at(3));
-    assert_null(grobo_rs30x_register_at(139));
-    assert_int_equal(grobo_rs30x_register_named("torque")->address, GROBO_RS30X_TORQUE);
-    assert_int_equal(grobo_rs30x_register_named("position")->access, GROBO_RS30X_ACCESS_R);
-    assert_int_equal(grobo_rs30x_register_named("delay")->kept, GROBO_RS30X_KEPT_FLASH);
-}
-
-static void register_values_keep_their_sign_and_range(void **state)
-{
-    (void)state;
-    uint8_t b[2];
-    const grobo_rs30x_register *goal = grobo_rs30x_register_named("goal");
-    assert_int_equal(grobo_rs30x_register_put(goal, -1500, b), 2);
-    assert_int_equal(b[0], 0x24);
-    assert_int_equal(b[1], 0xFA);
-    assert_int_equal(grobo_rs30x_register_get(goal, b), -1500);
-    assert_int_equal(grobo_rs30x_register_put(goal, -1501, b), GROBO_ERR_LIMIT);
-    assert_int_equal(grobo_rs30x_register_put(goal, 1501, b), GROBO_ERR_LIMIT);
-    assert_int_equal(grobo_rs30x_register_get(goal, b), -1500);
-    const grobo_rs30x_register *id = grobo_rs30x_register_named("id");
-    assert_int_equal(grobo_rs30x_register_put(id, 0, b), GROBO_ERR_LIMIT);
-    assert_int_equal(grobo_rs30x_register_put(id, 127, b), 1);
-    assert_int_equal(grobo_rs30x_register_get(id, b), 127);
-    static const uint8_t high[] = {0xFF, 0xFF};
-    assert_int_equal(grobo_rs30x_register_get(grobo_rs30x_register_named("current"), high), 65535);
-    assert_int_equal(grobo_rs30x_register_get(grobo_rs30x_register_named("speed"), high), -1);
-}
-
-static void codes_of_models_and_bauds_go_both_ways(void **state)
-{
-    (void)state;
-    for (uint8_t code = 0; code <= GROBO_RS30X_BAUD_CODE_MAX; code++) {
-        int32_t bps = grobo_rs30x_baud_bps(code);
-        assert_int_equal(grobo_rs30x_baud_code((uint32_t)bps), code);
-    }
-    assert_int_equal(grobo_rs30x_baud_bps(GROBO_RS30X_BAUD_CODE_DEFAULT), 115200);
-    assert_int_equal(grobo_rs30x_baud_bps(11), GROBO_ERR_ARG);
-    assert_int_equal(grobo_rs30x_baud_code(115201), GROBO_ERR_UNSUPPORTED);
-    assert_string_equal(grobo_rs30x_model_name(0x3010), "RS301CR");
-    assert_string_equal(grobo_rs30x_model_name(0x3020), "RS302CD");
-    assert_null(grobo_rs30x_model_name(0x3011));
+    assert_null(grobo_servo_register_named(early, "warm_up_time"));
+    assert_null(grobo_servo_register_at(late, 3));
+    assert_null(grobo_servo_register_at(late, 139));
+    assert_null(grobo_servo_model_numbered(&grobo_rs30x_table, 0x3011));
+    assert_int_equal(grobo_servo_register_named(early, "punch")->factory, 180);
+    assert_int_equal(grobo_servo_register_named(late, "punch")->factory, 200);
+    assert_int_equal(grobo_servo_baud_bps(late, GROBO_RS30X_BAUD_CODE_DEFAULT), 115200);
     assert_int_equal(GROBO_RS30X_DELAY_US(18), 1000);
 }
 
@@ -313,9 +290,7 @@ int main(void)
         cmocka_unit_test(builders_never_write_past_the_capacity),
         cmocka_unit_test(every_want_has_the_reply_of_the_table),
         cmocka_unit_test(no_reply_is_promised_for_broken_commands),
-        cmocka_unit_test(registers_are_found_by_row_name_and_address),
-        cmocka_unit_test(register_values_keep_their_sign_and_range),
-        cmocka_unit_test(codes_of_models_and_bauds_go_both_ways),
+        cmocka_unit_test(registers_stand_where_the_codec_has_them),
         cmocka_unit_test(states_are_taken_out_of_any_block),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -86,10 +86,20 @@ static const grobo_servo_model models[] = {
 
 #undef MODEL
 
+/* What hosts call 115200 and 57600 is 117647 and 57143. Other codes are 2000000 / (code + 1). */
+static const grobo_servo_rate rates[] = {
+    {1, ALL, 1000000}, {3, ALL, 500000},   {4, ALL, 400000},   {7, ALL, 250000},
+    {9, ALL, 200000},  {16, ALL, 115200},  {34, ALL, 57600},   {103, ALL, 19200},
+    {207, ALL, 9600},  {250, MX, 2250000}, {251, MX, 2500000}, {252, MX, 3000000},
+};
+
 const grobo_servo_table grobo_dxl1_table = {
     .name = "DYNAMIXEL AX, MX",
     .registers = rows,
     .models = models,
+    .rates = rates,
     .register_count = sizeof rows / sizeof rows[0],
     .model_count = sizeof models / sizeof models[0],
+    .rate_count = sizeof rates / sizeof rates[0],
+    .keeps = GROBO_KEEPS_LIMP,
 };

@@ -129,10 +129,18 @@ static const grobo_servo_model models[] = {
 
 #undef MODEL
 
+static const grobo_servo_rate rates[] = {
+    {0, ALL, 9600},    {1, ALL, 57600},   {2, ALL, 115200},  {3, ALL, 1000000},
+    {4, ALL, 2000000}, {5, ALL, 3000000}, {6, ALL, 4000000}, {7, LOAD | LARGE, 4500000},
+};
+
 const grobo_servo_table grobo_dxl2_table = {
     .name = "DYNAMIXEL X",
     .registers = rows,
     .models = models,
+    .rates = rates,
     .register_count = sizeof rows / sizeof rows[0],
     .model_count = sizeof models / sizeof models[0],
+    .rate_count = sizeof rates / sizeof rates[0],
+    .keeps = GROBO_KEEPS_LIMP,
 };

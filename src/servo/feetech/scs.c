@@ -56,11 +56,19 @@ static const grobo_servo_model models[] = {
     {"SCS0009", 1284, 1024, 300, 512, 600, 230, 1000, 6000, ALL, 3, &grobo_scs_table},
 };
 
+static const grobo_servo_rate rates[] = {
+    {0, ALL, 1000000}, {1, ALL, 500000}, {2, ALL, 250000}, {3, ALL, 128000},
+    {4, ALL, 115200},  {5, ALL, 76800},  {6, ALL, 57600},  {7, ALL, 38400},
+};
+
 const grobo_servo_table grobo_scs_table = {
     .name = "Feetech SCS",
     .registers = rows,
     .models = models,
+    .rates = rates,
     .register_count = sizeof rows / sizeof rows[0],
     .model_count = sizeof models / sizeof models[0],
+    .rate_count = sizeof rates / sizeof rates[0],
+    .keeps = GROBO_KEEPS_LOCK,
     .big_endian = true,
 };

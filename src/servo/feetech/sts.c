@@ -83,10 +83,18 @@ static const grobo_servo_model models[] = {
 
 #undef MODEL
 
+static const grobo_servo_rate rates[] = {
+    {0, ALL, 1000000}, {1, ALL, 500000}, {2, ALL, 250000}, {3, ALL, 128000},
+    {4, ALL, 115200},  {5, ALL, 76800},  {6, ALL, 57600},  {7, ALL, 38400},
+};
+
 const grobo_servo_table grobo_sts_table = {
     .name = "Feetech STS",
     .registers = rows,
     .models = models,
+    .rates = rates,
     .register_count = sizeof rows / sizeof rows[0],
     .model_count = sizeof models / sizeof models[0],
+    .rate_count = sizeof rates / sizeof rates[0],
+    .keeps = GROBO_KEEPS_LOCK,
 };

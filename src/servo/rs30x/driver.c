@@ -4,6 +4,7 @@
 
 #include <grobo/driver.h>
 
+#include "src/base/bytes.h"
 #include "src/servo/rs30x/driver.h"
 
 /* A long packet of n servos has 8 + (1 + data) n bytes (protocol 3). */
@@ -196,12 +197,9 @@ int grobo_i_rs30x_parse(const grobo_driver *self, void *ctx, int joint, const gr
         }
     }
     if (reply->address == GROBO_RS30X_GOAL && reply->data_bytes >= 4) {
-        const grobo_rs30x_register *goal = grobo_rs30x_register_at(GROBO_RS30X_GOAL);
-        const grobo_rs30x_register *time = grobo_rs30x_register_at(GROBO_RS30X_GOAL_TIME);
-        int goal_ddeg = (int)grobo_rs30x_register_get(goal, reply->data);
+        int goal_ddeg = grobo_i_get_i16(reply->data);
         state->goal_rad = grobo_joint_from_servo(moved, grobo_rad_from_ddeg(goal_ddeg));
-        state->goal_time_us =
-            (int64_t)grobo_rs30x_register_get(time, reply->data + 2) * GROBO_PLAY_TIME_UNIT_US;
+        state->goal_time_us = (int64_t)grobo_i_get_u16(reply->data + 2) * GROBO_PLAY_TIME_UNIT_US;
         state->valid |= GROBO_FIELD_GOAL;
     }
     return GROBO_OK;
@@ -338,8 +336,8 @@ static int inspect_joint(const grobo_driver *self, const share *s, int joint, gr
         return GROBO_ERR_UNSUPPORTED; /* a torque that there is not, or two goals */
     }
     if (goal != NULL) {
-        int ddeg = (int)grobo_rs30x_register_get(grobo_rs30x_register_at(GROBO_RS30X_GOAL), goal);
-        int64_t units = time == NULL ? 0 : time[0] + 256 * time[1];
+        int ddeg = grobo_i_get_i16(goal);
+        int64_t units = time == NULL ? 0 : grobo_i_get_u16(time);
         target->posture.angle_rad[joint] =
             grobo_joint_from_servo(&self->model->joints[joint], grobo_rad_from_ddeg(ddeg));
         target->posture.set |= bit;

@@ -10,8 +10,9 @@
 #include "tools/grctl/conn/auto_ports.h"
 #include "tools/grctl/conn/servos.h"
 #include "tools/grctl/doctor/checkup.h"
+#include "tools/grctl/servo/family.h"
 
-enum { IDENTITY_BYTES = 3 /* No.0-1 model, No.2 firmware */, READ_BYTES = 30 /* the longest */ };
+enum { READ_BYTES = 30 /* the longest */ };
 enum { NAME_BYTES = 16, FIX_BYTES = 512 };
 
 typedef struct patient {
@@ -193,19 +194,20 @@ static void keep_extremes(patient *p, const grobo_joint_state *s)
     }
 }
 
-static void check_model(patient *p, const char *name, int joint, uint16_t model,
+/* type NULL: a servo that is not known. */
+static void check_model(patient *p, const char *name, int joint, const grobo_servo_model *type,
                         const grobo_joint_state *s)
 {
     const grobo_joint *j = &p->model->joints[joint];
-    const char *type = grobo_rs30x_model_name(model);
-    const char *expected = grobo_rs30x_model_name(j->servo_model);
-    if (j->servo_model && model != j->servo_model) {
+    const grobo_driver *driver = grobo_robot_driver(p->c.robot);
+    const grobo_servo_model *expected = family_numbered(driver, j->servo_model);
+    if (j->servo_model && (!type || type->number != j->servo_model)) {
         checkup_found(&p->k, name, "put the right servo there; its speed and torque are others",
-                      "%s is %s, not %s", j->name, type ? type : "of an unknown model",
-                      expected ? expected : "that");
+                      "%s is %s, not %s", j->name, type ? type->name : "of an unknown model",
+                      expected ? expected->name : "that");
     } else {
-        checkup_found(&p->k, name, "", "%s: %s, %d C, %.2f V", j->name, type ? type : "a servo",
-                      s->temperature_c, s->voltage_mv / 1e3);
+        checkup_found(&p->k, name, "", "%s: %s, %d C, %.2f V", j->name,
+                      type ? type->name : "a servo", s->temperature_c, s->voltage_mv / 1e3);
     }
 }
 
@@ -218,11 +220,14 @@ static uint64_t broken_replies(const patient *p)
 static void check_servo(patient *p, int joint)
 {
     const grobo_joint *j = &p->model->joints[joint];
-    uint8_t identity[IDENTITY_BYTES];
+    const grobo_driver *driver = grobo_robot_driver(p->c.robot);
+    const grobo_servo_model *servo = family_servo(driver, j->motor);
+    const grobo_servo_register *reg = grobo_servo_register_of(servo, GROBO_ROLE_MODEL);
+    uint8_t bytes[4];
     char name[NAME_BYTES];
     grobo_joint_info i = {0};
     uint64_t broken = broken_replies(p);
-    int error = servos_read(&p->c, j->motor, GROBO_RS30X_MODEL, IDENTITY_BYTES, identity);
+    int error = reg ? servos_read(&p->c, j->motor, reg->address, reg->bytes, bytes) : GROBO_OK;
     snprintf(name, sizeof name, "servo_%d", j->motor);
     if (!error) {
         error = conn_wait(&p->c, grobo_robot_sense(grobo_session_robot(p->c.session),
@@ -243,7 +248,7 @@ static void check_servo(patient *p, int joint)
     if (check_state(p, name, joint, &i.state)) {
         return;
     }
-    check_model(p, name, joint, (uint16_t)(identity[0] | identity[1] << 8), &i.state);
+    check_model(p, name, joint, reg ? family_identify(driver, bytes) : servo, &i.state);
 }
 
 static void check_servos(patient *p)

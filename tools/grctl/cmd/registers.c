@@ -6,7 +6,8 @@
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/servos.h"
-#include "tools/grctl/decode/registers.h"
+#include "tools/grctl/servo/family.h"
+#include "tools/grctl/servo/registers.h"
 
 enum { OPT_FLASH };
 
@@ -14,29 +15,51 @@ static const cli_option set_options[] = {
     [OPT_FLASH] = OPTION_FLAG("flash", 0, "keep it over power-off too; takes a second"),
 };
 
-static const grobo_rs30x_register *find_register(app *a, const char *name, int *status)
+/* Nothing longer is read at once: RS30x return at most this much, and lines are shared. */
+enum { BLOCK_BYTES = 30 };
+
+/* A servo of the command line, as far as it is known before it is asked. */
+static int find_servo(app *a, const grobo_servo_model **servo)
 {
-    const grobo_rs30x_register *reg = grobo_rs30x_register_named(name);
-    char known[1024] = "";
+    int status = 0;
+    int id = servos_parse_id(a, a->line.argument[0], &status);
+    if (id < 0) {
+        return -status;
+    }
+    *servo = family_servo(app_driver(a), id);
+    if (!*servo) {
+        return -app_fail(a, EXIT_SAFETY, "UNSUPPORTED", "%s: servos of %s have no registers",
+                         a->line.command->name, app_model(a)->name);
+    }
+    return id;
+}
+
+static const grobo_servo_register *find_register(app *a, const grobo_servo_model *servo,
+                                                 const char *name, int *status)
+{
+    const grobo_servo_register *reg = grobo_servo_register_named(servo, name);
+    char known[2048] = "";
     size_t at = 0;
     if (reg) {
         return reg;
     }
-    for (size_t i = 0; (reg = grobo_rs30x_register_row(i)) != NULL; i++) {
+    for (size_t i = 0; (reg = grobo_servo_register_row(servo, i)) != NULL; i++) {
         int n = snprintf(known + at, sizeof known - at, " %s", reg->name);
         at += n > 0 && (size_t)n < sizeof known - at ? (size_t)n : 0;
     }
-    *status = app_fail(a, EXIT_USAGE, "NOTFOUND", "no register '%s'; there are:%s", name, known);
+    *status = app_fail(a, EXIT_USAGE, "NOTFOUND", "no register '%s'; %s has:%s", name, servo->name,
+                       known);
     return NULL;
 }
 
 /* The counts of the register, which servo-set takes, and what they mean. */
-static void print_value(const grobo_rs30x_register *reg, int32_t value)
+static void print_value(const grobo_servo_model *servo, const grobo_servo_register *reg,
+                        int32_t value)
 {
     char counts[REGISTERS_TEXT_BYTES], text[REGISTERS_TEXT_BYTES];
     snprintf(counts, sizeof counts, "%d", value);
-    registers_text(reg, value, text, sizeof text);
-    app_print("%3d  %-18s %6s", reg->address, reg->name, counts);
+    registers_text(servo, reg, value, text, sizeof text);
+    app_print("%3d  %-20s %6s", reg->address, reg->name, counts);
     if (strcmp(text, counts) != 0) {
         app_print("  %12s", text);
     }
@@ -44,12 +67,13 @@ static void print_value(const grobo_rs30x_register *reg, int32_t value)
 }
 
 /* Beside the counts what they mean: under a key with its unit, or as a word. */
-static json_t *value_json(const grobo_rs30x_register *reg, int32_t value)
+static json_t *value_json(const grobo_servo_model *servo, const grobo_servo_register *reg,
+                          int32_t value)
 {
     char key[REGISTERS_TEXT_BYTES];
     json_t *o = json_pack("{s:s,s:i,s:i,s:s}", "name", reg->name, "address", reg->address, "value",
                           value, "unit", reg->unit);
-    json_t *meaning = registers_json(reg, value);
+    json_t *meaning = registers_json(servo, reg, value);
     registers_key(reg, key, sizeof key);
     if (strcmp(key, reg->name) != 0) {
         json_object_set(o, key, meaning);
@@ -60,52 +84,98 @@ static json_t *value_json(const grobo_rs30x_register *reg, int32_t value)
     return o;
 }
 
-/* Reads the memory in the two halves that every model returns, No.0-59. */
-static int read_all(conn *c, int id, uint8_t *memory)
+static int read_one(conn *c, int id, const grobo_servo_model *servo,
+                    const grobo_servo_register *reg, int32_t *value)
 {
-    int error = servos_read(c, id, 0, 30, memory);
-    return error ? error : servos_read(c, id, 30, 30, memory + 30);
+    uint8_t bytes[4] = {0};
+    int error = servos_read(c, id, reg->address, reg->bytes, bytes);
+    if (!error) {
+        *value = grobo_servo_register_get(servo, reg, bytes);
+    }
+    return error;
 }
 
-static int get(conn *c, int id, const grobo_rs30x_register *only)
+static void show(conn *c, const grobo_servo_model *servo, const grobo_servo_register *reg,
+                 int32_t value, json_t *list)
 {
-    uint8_t memory[GROBO_REGISTERS] = {0};
-    const grobo_rs30x_register *reg;
-    json_t *list = json_array();
-    int error = only ? servos_read(c, id, only->address, only->bytes, memory + only->address)
-                     : read_all(c, id, memory);
+    if (c->a->json) {
+        json_array_append_new(list, value_json(servo, reg, value));
+    } else {
+        print_value(servo, reg, value);
+    }
+}
+
+/* Registers from number `first` on that fit in a block. Returns how many, or the error. */
+static int show_block(conn *c, int id, const grobo_servo_model *servo, size_t first, json_t *list)
+{
+    const grobo_servo_register *begin = grobo_servo_register_row(servo, first), *reg = begin;
+    uint8_t bytes[BLOCK_BYTES] = {0};
+    int length = 0, n = 0;
+    while (reg && reg->address + reg->bytes <= begin->address + BLOCK_BYTES) {
+        length = reg->address + reg->bytes - begin->address;
+        reg = grobo_servo_register_row(servo, first + (size_t)++n);
+    }
+    int error = servos_read(c, id, begin->address, length, bytes);
+    for (int i = 0; i < n && !error; i++) {
+        reg = grobo_servo_register_row(servo, first + (size_t)i);
+        show(c, servo, reg,
+             grobo_servo_register_get(servo, reg, bytes + (reg->address - begin->address)), list);
+    }
+    return error ? error : n;
+}
+
+static int show_all(conn *c, int id, const grobo_servo_model *servo, json_t *list)
+{
+    int n = 1;
+    for (size_t first = 0; n > 0 && grobo_servo_register_row(servo, first); first += (size_t)n) {
+        n = show_block(c, id, servo, first, list);
+        if (n < 0) {
+            return n;
+        }
+    }
+    return GROBO_OK;
+}
+
+static int get(conn *c, int id, const char *only)
+{
+    const grobo_servo_model *servo;
+    const grobo_servo_register *reg = NULL;
+    int32_t value;
+    int status = 0;
+    int error = servos_model(c, id, &servo);
     if (error) {
-        json_decref(list);
         return conn_fail_servo(c, error, id);
     }
-    for (size_t i = 0; (reg = grobo_rs30x_register_row(i)) != NULL; i++) {
-        int32_t value = grobo_rs30x_register_get(reg, memory + reg->address);
-        if (only && reg != only) {
-            continue;
-        }
-        if (c->a->json) {
-            json_array_append_new(list, value_json(reg, value));
-        } else {
-            print_value(reg, value);
-        }
+    if (only && !(reg = find_register(c->a, servo, only, &status))) {
+        return status;
     }
-    if (c->a->json) {
-        app_print_json(json_pack("{s:i,s:O}", "id", id, "registers", list));
+    json_t *list = json_array();
+    if (!reg) {
+        error = show_all(c, id, servo, list);
+    } else if (!(error = read_one(c, id, servo, reg, &value))) {
+        show(c, servo, reg, value, list);
+    }
+    if (!error && c->a->json) {
+        app_print_json(
+            json_pack("{s:i,s:s,s:O}", "id", id, "model", servo->name, "registers", list));
     }
     json_decref(list);
-    return EXIT_DONE;
+    return error ? conn_fail_servo(c, error, id) : EXIT_DONE;
 }
 
 static int run_get(app *a)
 {
     conn c;
     int status = 0;
-    const grobo_rs30x_register *only = NULL;
-    int id = servos_parse_id(a, a->line.argument[0], &status);
+    const grobo_servo_model *servo;
+    const char *only = a->line.n_arguments > 1 ? a->line.argument[1] : NULL;
+    int id = find_servo(a, &servo);
     if (id < 0) {
-        return status;
+        return -id;
     }
-    if (a->line.n_arguments > 1 && !(only = find_register(a, a->line.argument[1], &status))) {
+    /* Before anybody is asked; another servo may have other registers. */
+    if (only && grobo_model_joint_of_motor(app_model(a), id) >= 0 &&
+        !find_register(a, servo, only, &status)) {
         return status;
     }
     status = conn_open(&c, a);
@@ -119,7 +189,8 @@ static int run_get(app *a)
 
 typedef struct change {
     int id;
-    const grobo_rs30x_register *reg;
+    const grobo_servo_model *servo;
+    const grobo_servo_register *reg;
     int32_t value;
     bool flash;
 } change;
@@ -128,8 +199,8 @@ typedef struct change {
 static void change_text(const change *what, int32_t before, char *text, size_t capacity)
 {
     char was[REGISTERS_TEXT_BYTES], is[REGISTERS_TEXT_BYTES];
-    registers_text(what->reg, before, was, sizeof was);
-    registers_text(what->reg, what->value, is, sizeof is);
+    registers_text(what->servo, what->reg, before, was, sizeof was);
+    registers_text(what->servo, what->reg, what->value, is, sizeof is);
     if (*what->reg->unit) {
         snprintf(text, capacity, "%s %d (%s) -> %d (%s)", what->reg->name, before, was, what->value,
                  is);
@@ -138,24 +209,56 @@ static void change_text(const change *what, int32_t before, char *text, size_t c
     }
 }
 
+static bool keeps_as(const change *what, grobo_keeps keeps)
+{
+    return what->servo->table->keeps == keeps;
+}
+
+/* Whether it survives power-off. */
+static bool is_kept(const change *what)
+{
+    return (what->reg->flags & GROBO_REGISTER_KEPT) != 0 &&
+           (what->flash || keeps_as(what, GROBO_KEEPS_LIMP));
+}
+
+/* What RS30x need to keep it. */
+static bool needs_command(const change *what)
+{
+    return what->flash && keeps_as(what, GROBO_KEEPS_COMMAND);
+}
+
+static int new_bps(const change *what)
+{
+    return grobo_servo_baud_bps(what->servo, what->value);
+}
+
+/* Where the servo is after it was written. */
+static int new_id(const change *what)
+{
+    return what->reg->role == GROBO_ROLE_ID ? (int)what->value : what->id;
+}
+
 /* A rate that the line does not have. Only what it has can be asked through the board. */
 static bool changes_rate(const conn *c, const change *what)
 {
-    return what->reg->address == GROBO_RS30X_BAUD &&
-           grobo_rs30x_baud_bps((uint8_t)what->value) != (int32_t)conn_baud(c->a) &&
-           app_global(c->a, GLOBAL_WIRING)->choice == GROBO_WIRING_BUS;
+    return what->reg->role == GROBO_ROLE_BAUD && new_bps(what) != (int32_t)conn_baud(c->a) &&
+           !app_driver(c->a)->protocol->relay;
 }
 
-/* What is asked on a terminal before flash is written; true to go on. */
+/* What is asked on a terminal before anything is kept; true to go on. */
 static bool confirmed(conn *c, const change *what, int32_t before)
 {
     char answer[8], text[4 * REGISTERS_TEXT_BYTES];
-    if (!what->flash) {
+    if (!is_kept(what)) {
         return true;
     }
     change_text(what, before, text, sizeof text);
-    app_note(c->a, "servo %d: %s, and No.4-29 go to flash%s: keep its power on", what->id, text,
-             changes_rate(c, what) ? ", then it restarts" : "");
+    if (needs_command(what)) {
+        app_note(c->a, "servo %d: %s, and No.4-29 go to flash%s: keep its power on", what->id, text,
+                 changes_rate(c, what) ? ", then it restarts" : "");
+    } else {
+        app_note(c->a, "servo %d: %s, kept over power-off", what->id, text);
+    }
     if (app_global(c->a, GLOBAL_YES)->given || !c->a->tty_in) {
         return true;
     }
@@ -163,63 +266,103 @@ static bool confirmed(conn *c, const change *what, int32_t before)
     return fgets(answer, sizeof answer, stdin) && (answer[0] == 'y' || answer[0] == 'Y');
 }
 
+static int write_one(conn *c, const change *what, int id, const grobo_servo_register *reg,
+                     int32_t value)
+{
+    uint8_t bytes[4] = {0};
+    grobo_register_io io = {
+        .id = (uint8_t)id, .address = reg->address, .length = reg->bytes, .data = bytes};
+    grobo_servo_register_put(what->servo, reg, value, bytes);
+    return conn_wait(c, grobo_robot_registers(grobo_session_robot(c->session), &io));
+}
+
+/* Opens or closes what survives power-off, where the servo has a lock for that. */
+static int set_lock(conn *c, const change *what, int id, int closed)
+{
+    bool locks = what->flash && keeps_as(what, GROBO_KEEPS_LOCK);
+    return locks ? write_one(c, what, id, grobo_servo_register_of(what->servo, GROBO_ROLE_LOCK),
+                             closed)
+                 : GROBO_OK;
+}
+
+/* Some servos answer from their new id or at their new rate: that is read back. */
 static int write_it(conn *c, const change *what)
 {
-    uint8_t bytes[2] = {0};
-    grobo_register_io io = {.id = (uint8_t)what->id,
-                            .address = what->reg->address,
-                            .length = what->reg->bytes,
-                            .data = bytes};
-    int id = what->reg->address == GROBO_RS30X_ID ? (int)what->value : what->id;
-    grobo_rs30x_register_put(what->reg, what->value, bytes);
-    int error = conn_wait(c, grobo_robot_registers(grobo_session_robot(c->session), &io));
-    if (!error && what->flash) {
-        error = conn_wait_shown(
-            c, grobo_robot_command(grobo_session_robot(c->session), id, GROBO_SERVO_FLASH), "flash",
-            0);
+    bool moves = what->reg->role == GROBO_ROLE_ID || what->reg->role == GROBO_ROLE_BAUD;
+    int error = set_lock(c, what, what->id, 0);
+    if (error) {
+        return error;
+    }
+    error = write_one(c, what, what->id, what->reg, what->value);
+    if (moves && conn_is_of_reply(error)) {
+        return GROBO_OK;
+    }
+    if (error) {
+        (void)set_lock(c, what, what->id, 1);
     }
     return error;
 }
 
+static int command(conn *c, int id, grobo_servo_command what, const char *doing)
+{
+    return conn_wait_shown(c, grobo_robot_command(grobo_session_robot(c->session), id, what), doing,
+                           0);
+}
+
+/* Makes what was written last. */
+static int keep_it(conn *c, const change *what)
+{
+    return needs_command(what) ? command(c, new_id(what), GROBO_SERVO_FLASH, "flash")
+                               : set_lock(c, what, new_id(what), 1);
+}
+
 /* baud_bps: where the servo answers after its rate was written, 0 where nothing is to be said. */
-static void report(const conn *c, int id, const change *what, int32_t before, int baud_bps)
+static void report(const conn *c, const change *what, int32_t before, int baud_bps)
 {
     char text[4 * REGISTERS_TEXT_BYTES], where[32] = "";
-    const char *kept = what->flash ? ", kept in flash" : "; lost at power-off without --flash";
+    bool ram = (what->reg->flags & GROBO_REGISTER_KEPT) == 0;
+    const char *kept = is_kept(what) ? needs_command(what) ? ", kept in flash" : ", kept"
+                       : ram         ? "; lost at power-off"
+                                     : "; lost at power-off without --flash";
     change_text(what, before, text, sizeof text);
     if (baud_bps) {
         snprintf(where, sizeof where, "; it answers at %d bps", baud_bps);
     }
-    if (baud_bps && !what->flash && baud_bps != grobo_rs30x_baud_bps((uint8_t)what->value)) {
+    if (baud_bps && !is_kept(what) && baud_bps != new_bps(what)) {
         kept = "; takes effect at a restart, and is lost there without --flash";
     }
     if (c->a->json) {
-        app_print_json(json_pack("{s:i,s:s,s:i,s:i,s:b,s:o*}", "id", id, "name", what->reg->name,
-                                 "before", before, "value", what->value, "flash", what->flash,
-                                 "baud_bps", baud_bps ? json_integer(baud_bps) : NULL));
+        app_print_json(json_pack("{s:i,s:s,s:i,s:i,s:b,s:o*}", "id", new_id(what), "name",
+                                 what->reg->name, "before", before, "value", what->value, "flash",
+                                 is_kept(what), "baud_bps",
+                                 baud_bps ? json_integer(baud_bps) : NULL));
     } else {
-        app_note(c->a, "servo %d: %s%s%s", id, text, kept, where);
+        app_note(c->a, "servo %d: %s%s%s", new_id(what), text, kept, where);
     }
 }
 
-/* After these a goal means another angle: a servo that holds would go there at once. */
-static bool changes_goal(const grobo_rs30x_register *reg)
+static grobo_write_kind kind_of(const app *a, const change *what)
 {
-    return reg->address == GROBO_RS30X_ID || reg->address == GROBO_RS30X_REVERSE ||
-           reg->address == GROBO_RS30X_CW_LIMIT || reg->address == GROBO_RS30X_CCW_LIMIT;
+    const uint8_t bytes[4] = {0};
+    const grobo_register_io io = {.id = (uint8_t)what->id,
+                                  .address = what->reg->address,
+                                  .length = what->reg->bytes,
+                                  .data = bytes};
+    return app_driver(a)->write_kind(app_driver(a), &io);
 }
 
-/* Such a register is written to a servo without torque only. The engine refuses it to a joint too,
- * and to one that it has not read. */
+/* After a setting a goal may mean another angle: it is written to a servo without torque only. The
+ * engine refuses it to a joint too, and to one that it has not read. */
 static int expect_loose(conn *c, const change *what)
 {
     int joint = grobo_model_joint_of_motor(grobo_robot_driver(c->robot)->model, what->id);
-    uint8_t torque = GROBO_TORQUE_OFF;
-    bool restarts = what->flash && changes_rate(c, what);
-    if (!changes_goal(what->reg) && !restarts) {
+    const grobo_servo_register *reg = grobo_servo_register_of(what->servo, GROBO_ROLE_TORQUE);
+    int32_t torque = GROBO_TORQUE_OFF;
+    bool restarts = needs_command(what) && changes_rate(c, what);
+    if ((kind_of(c->a, what) != GROBO_WRITE_SETTING && !restarts) || !reg) {
         return EXIT_DONE;
     }
-    int error = servos_read(c, what->id, GROBO_RS30X_TORQUE, 1, &torque);
+    int error = read_one(c, what->id, what->servo, reg, &torque);
     if (!error && joint >= 0) {
         error = conn_wait(c, grobo_robot_sense(grobo_session_robot(c->session),
                                                GROBO_JOINT_BIT(joint), GROBO_SENSE_FULL));
@@ -239,11 +382,11 @@ static int expect_loose(conn *c, const change *what)
 /* Two servos of one id answer together, and nobody could give one of them another. */
 static int expect_free_id(conn *c, const change *what)
 {
-    uint8_t model[2];
-    if (what->reg->address != GROBO_RS30X_ID || what->value == what->id) {
+    int32_t id;
+    if (what->reg->role != GROBO_ROLE_ID || what->value == what->id) {
         return EXIT_DONE;
     }
-    int error = servos_read(c, what->value, GROBO_RS30X_MODEL, sizeof model, model);
+    int error = read_one(c, what->value, what->servo, what->reg, &id);
     if (error == GROBO_ERR_TIMEOUT) {
         return EXIT_DONE;
     }
@@ -269,14 +412,14 @@ static int tune(conn *c, int baud_bps)
 }
 
 /* At which of two rates the servo answers, or an error. The line stays there. */
-static int find_rate(conn *c, const change *what, int first_bps, int second_bps, uint8_t *code)
+static int find_rate(conn *c, const change *what, int first_bps, int second_bps, int32_t *code)
 {
     const int rates_bps[] = {first_bps, second_bps};
     int error = GROBO_OK;
     for (int i = 0; i < 2; i++) {
         error = tune(c, rates_bps[i]);
         if (!error) {
-            error = servos_read(c, what->id, GROBO_RS30X_BAUD, 1, code);
+            error = read_one(c, what->id, what->servo, what->reg, code);
         }
         if (!error) {
             return rates_bps[i];
@@ -288,28 +431,24 @@ static int find_rate(conn *c, const change *what, int first_bps, int second_bps,
     return error;
 }
 
-/* Writes the rate; with --flash keeps it and restarts the servo. Returns the rate at which it
- * answers then, and its register, or an error. */
-static int move_rate(conn *c, const change *what, int old_bps, int new_bps, uint8_t *code)
+/* Writes the rate; with --flash keeps it and restarts a servo that needs that. Returns the rate at
+ * which it answers then, and its register, or an error. */
+static int move_rate(conn *c, const change *what, int old_bps, int32_t *code)
 {
-    const change only = {.id = what->id, .reg = what->reg, .value = what->value};
-    int error = write_it(c, &only);
+    int error = write_it(c, what);
     if (error) {
         return error;
     }
-    int at_bps = find_rate(c, what, old_bps, new_bps, code);
-    if (at_bps < 0 || *code != what->value || !what->flash) {
+    int at_bps = find_rate(c, what, old_bps, new_bps(what), code);
+    if (at_bps < 0 || *code != what->value) {
         return at_bps;
     }
-    error = conn_wait_shown(
-        c, grobo_robot_command(grobo_session_robot(c->session), what->id, GROBO_SERVO_FLASH),
-        "flash", 0);
-    if (!error) {
-        error = conn_wait_shown(
-            c, grobo_robot_command(grobo_session_robot(c->session), what->id, GROBO_SERVO_REBOOT),
-            "restart", 0);
+    error = keep_it(c, what);
+    if (!error && needs_command(what)) {
+        error = command(c, what->id, GROBO_SERVO_REBOOT, "restart");
+        at_bps = error ? error : find_rate(c, what, new_bps(what), old_bps, code);
     }
-    return error ? error : find_rate(c, what, new_bps, old_bps, code);
+    return error ? error : at_bps;
 }
 
 /*
@@ -318,46 +457,69 @@ static int move_rate(conn *c, const change *what, int old_bps, int new_bps, uint
  */
 static int set_rate(conn *c, const change *what, int32_t before)
 {
-    int old_bps = (int)conn_baud(c->a), new_bps = grobo_rs30x_baud_bps((uint8_t)what->value);
-    uint8_t code = 0;
+    int old_bps = (int)conn_baud(c->a);
+    int32_t code = 0;
     if (strncmp(conn_device(c), "tcp:", 4) == 0) {
         return app_fail(c->a, EXIT_SAFETY, "UNSUPPORTED",
                         "servo-set: the rate of a line behind TCP is not set from here; a servo "
                         "with another one could not be reached");
     }
-    int error = tune(c, new_bps); /* before anything is written: the line must know the rate */
+    int error = tune(c, new_bps(what)); /* before anything is written: the line must know it */
     if (!error) {
         error = tune(c, old_bps);
     }
     if (error) {
         return app_fail(c->a, EXIT_ROBOT, grobo_error_name(error),
-                        "servo-set: %s at %d bps: %s; nothing was written", conn_device(c), new_bps,
-                        grobo_error_text(error));
+                        "servo-set: %s at %d bps: %s; nothing was written", conn_device(c),
+                        new_bps(what), grobo_error_text(error));
     }
-    int at_bps = move_rate(c, what, old_bps, new_bps, &code);
+    int at_bps = move_rate(c, what, old_bps, &code);
     error = tune(c, old_bps);
     if (conn_is_of_reply(at_bps)) {
         return app_fail(c->a, EXIT_ROBOT, grobo_error_name(at_bps),
                         "servo %d answers neither at %d nor at %d bps after writing; look for it "
                         "with 'grctl scan --all-baud'",
-                        what->id, old_bps, new_bps);
+                        what->id, old_bps, new_bps(what));
     }
     if (at_bps < 0 || error < 0) {
         return conn_fail_servo(c, at_bps < 0 ? at_bps : error, what->id);
     }
-    if (code != what->value || (what->flash && at_bps != new_bps)) {
+    if (code != what->value || (what->flash && at_bps != new_bps(what))) {
         return app_fail(c->a, EXIT_ROBOT, "MISMATCH",
                         "servo %d answers at %d bps, and its baud is %d, not %d, after writing%s",
-                        what->id, at_bps, code, what->value, what->flash ? " and a restart" : "");
+                        what->id, at_bps, code, what->value,
+                        needs_command(what) ? " and a restart" : "");
     }
-    report(c, what->id, what, before, at_bps);
+    report(c, what, before, at_bps);
+    return EXIT_DONE;
+}
+
+/* ---- everything else ------------------------------------------------------------------------- */
+
+static int write_and_verify(conn *c, const change *what, int32_t before)
+{
+    int32_t after = before;
+    int error = write_it(c, what);
+    if (!error) {
+        error = keep_it(c, what);
+    }
+    if (!error) {
+        error = read_one(c, new_id(what), what->servo, what->reg, &after);
+    }
+    if (error) {
+        return conn_fail_servo(c, error, new_id(what));
+    }
+    if (after != what->value) {
+        return app_fail(c->a, EXIT_ROBOT, "MISMATCH", "servo %d: %s is %d, not %d, after writing",
+                        new_id(what), what->reg->name, after, what->value);
+    }
+    report(c, what, before, 0);
     return EXIT_DONE;
 }
 
 static int set(conn *c, const change *what)
 {
-    uint8_t bytes[2] = {0};
-    int id = what->reg->address == GROBO_RS30X_ID ? (int)what->value : what->id;
+    int32_t before = 0;
     int error = expect_loose(c, what);
     if (!error) {
         error = expect_free_id(c, what);
@@ -365,97 +527,67 @@ static int set(conn *c, const change *what)
     if (error) {
         return error;
     }
-    error = servos_read(c, what->id, what->reg->address, what->reg->bytes, bytes);
+    error = read_one(c, what->id, what->servo, what->reg, &before);
     if (error) {
         return conn_fail_servo(c, error, what->id);
     }
-    int32_t before = grobo_rs30x_register_get(what->reg, bytes);
     if (!confirmed(c, what, before)) {
         return app_fail(c->a, EXIT_USAGE, "CANCELED", "servo-set: nothing was written");
     }
-    if (changes_rate(c, what)) {
-        return set_rate(c, what, before);
-    }
-    error = write_it(c, what);
-    if (!error) {
-        error = servos_read(c, id, what->reg->address, what->reg->bytes, bytes);
-    }
-    if (error) {
-        return conn_fail_servo(c, error, id);
-    }
-    if (grobo_rs30x_register_get(what->reg, bytes) != what->value) {
-        return app_fail(c->a, EXIT_ROBOT, "MISMATCH", "servo %d: %s is %d, not %d, after writing",
-                        id, what->reg->name, grobo_rs30x_register_get(what->reg, bytes),
-                        what->value);
-    }
-    report(c, id, what, before, 0);
-    return EXIT_DONE;
-}
-
-/* These go through the engine's gate only, by other commands. */
-static bool moves_motor(const grobo_rs30x_register *reg)
-{
-    return reg->address == GROBO_RS30X_GOAL || reg->address == GROBO_RS30X_GOAL_TIME ||
-           reg->address == GROBO_RS30X_TORQUE;
+    return changes_rate(c, what) ? set_rate(c, what, before) : write_and_verify(c, what, before);
 }
 
 /* In counts of the register; a baud rate may be given as it is, too. */
-static bool read_value(const grobo_rs30x_register *reg, const char *text, int32_t *counts)
+static bool read_value(const change *what, const char *text, int32_t *counts)
 {
     double value;
     if (!cli_read_number(text, &value)) {
         return false;
     }
-    for (uint8_t code = 0; reg->address == GROBO_RS30X_BAUD && code <= GROBO_RS30X_BAUD_CODE_MAX;
-         code++) {
-        if (value == grobo_rs30x_baud_bps(code)) {
-            value = code;
-        }
+    if (what->reg->role == GROBO_ROLE_BAUD && value >= 1200 && value <= INT32_MAX) {
+        value = grobo_servo_baud_code(what->servo, (int32_t)value);
     }
-    if (value < reg->min || value > reg->max || value != floor(value)) {
+    if (!(value >= what->reg->min && value <= what->reg->max) || value != floor(value)) {
         return false;
     }
     *counts = (int32_t)value;
     return true;
 }
 
+/* What the command line asks for, of the servo that what->servo is. */
 static int parse_change(app *a, change *what)
 {
     int status = 0;
-    what->id = servos_parse_id(a, a->line.argument[0], &status);
-    if (what->id < 0) {
-        return status;
-    }
-    what->reg = find_register(a, a->line.argument[1], &status);
+    what->reg = find_register(a, what->servo, a->line.argument[1], &status);
     if (!what->reg) {
         return status;
     }
-    if (what->reg->access == GROBO_RS30X_ACCESS_R) {
+    if ((what->reg->flags & GROBO_REGISTER_W) == 0) {
         return app_fail(a, EXIT_USAGE, "ARG", "servo-set: register %s is read only",
                         what->reg->name);
     }
-    if (moves_motor(what->reg)) {
+    if (kind_of(a, what) == GROBO_WRITE_MOTOR) {
         return app_fail(a, EXIT_SAFETY, "UNSUPPORTED",
                         "servo-set: %s moves the motor; use 'grctl %s'", what->reg->name,
-                        what->reg->address == GROBO_RS30X_TORQUE ? "servo" : "move");
+                        what->reg->role == GROBO_ROLE_TORQUE ? "servo" : "move");
     }
-    if (!read_value(what->reg, a->line.argument[2], &what->value)) {
+    if (!read_value(what, a->line.argument[2], &what->value)) {
         return app_fail(a, EXIT_USAGE, "LIMIT", "servo-set: '%s': %s takes %d to %d (counts of %s)",
                         a->line.argument[2], what->reg->name, what->reg->min, what->reg->max,
                         *what->reg->unit ? what->reg->unit : "1");
     }
-    if (what->reg->kept == GROBO_RS30X_KEPT_RAM && app_option(a, OPT_FLASH)->given) {
+    what->flash = app_option(a, OPT_FLASH)->given > 0;
+    if ((what->reg->flags & GROBO_REGISTER_KEPT) == 0 && what->flash) {
         return app_fail(a, EXIT_USAGE, "ARG", "servo-set: flash does not keep register %s",
                         what->reg->name);
     }
-    if (what->reg->address == GROBO_RS30X_BAUD && what->value != GROBO_RS30X_BAUD_CODE_DEFAULT &&
-        app_global(a, GLOBAL_WIRING)->choice == GROBO_WIRING_BOARD) {
+    if (what->reg->role == GROBO_ROLE_BAUD && new_bps(what) != GROBO_BAUD_DEFAULT_BPS &&
+        app_driver(a)->protocol->relay) {
         return app_fail(a, EXIT_SAFETY, "UNSUPPORTED",
                         "servo-set: the bus behind the board has %d bps; a servo with another "
                         "baud rate could not be reached",
                         GROBO_BAUD_DEFAULT_BPS);
     }
-    what->flash = app_option(a, OPT_FLASH)->given > 0;
     return 0;
 }
 
@@ -463,11 +595,19 @@ static int run_set(app *a)
 {
     conn c;
     change what = {0};
-    int status = parse_change(a, &what);
+    what.id = find_servo(a, &what.servo);
+    int status = what.id < 0 ? -what.id : parse_change(a, &what);
     if (status) {
         return status;
     }
     status = conn_open(&c, a);
+    const grobo_servo_model *before = what.servo;
+    int error = status ? 0 : servos_model(&c, what.id, &what.servo);
+    if (error) {
+        status = conn_fail_servo(&c, error, what.id);
+    } else if (!status && what.servo != before) {
+        status = parse_change(a, &what);
+    }
     if (!status) {
         status = set(&c, &what);
     }
@@ -493,11 +633,15 @@ const cli_command cmd_servo_set = {
         "Writes one register and reads it back. The value is what the register stores (see\n"
         "servo-get); a baud rate may be given as it is. With --flash the servo also keeps\n"
         "its settings over power-off; that is shown first and, on a terminal, asked for.\n"
-        "Goal and torque are refused: move and servo set them safely; id, reverse and limits\n"
-        "are refused while the servo holds, an id that another servo has, and through the board\n"
-        "a baud rate other than 115200.\n"
+        "Goal and torque are refused: move and servo set them safely; id, direction, limits and\n"
+        "what else decides where a goal is are refused while the servo holds, an id that another\n"
+        "servo has, and through the board a baud rate other than 115200.\n"
         "\n"
-        "On a bus a new baud rate is written at the old one. With --flash the servo keeps it and\n"
+        "What --flash does depends on the servo: RS30x write their flash, Feetech's are opened\n"
+        "(register lock) for the one write and closed again, and DYNAMIXEL keep id, limits and\n"
+        "the like always.\n"
+        "\n"
+        "On a bus a new baud rate is written at the old one. With --flash an RS30x keeps it and\n"
         "restarts, the command follows it to the new rate and verifies that it answers there;\n"
         "-b then reaches it. Without --flash the servo goes on at the old rate and forgets the\n"
         "new one when it restarts.\n",

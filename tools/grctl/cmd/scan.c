@@ -1,14 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /* scan and info: which servos answer, and what they are. */
+#include <math.h>
 #include <string.h>
 
 #include "tools/grctl/cli/progress.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/servos.h"
 #include "tools/grctl/conn/wire.h"
+#include "tools/grctl/servo/family.h"
 
 enum { OPT_ALL_BAUD, OPT_FIRST, OPT_LAST };
-enum { IDENTITY_BYTES = 3, FEW = 4 }; /* No.0-1 model, No.2 firmware */
+enum { IDS = 256, FEW = 4 };
 
 /* Looks at all ids that are missing, at most so many; a line is quiet after LISTEN_US without a
  * byte, or twice the worst lateness seen, and is not listened to for longer than LISTEN_MAX_US. */
@@ -17,12 +19,13 @@ enum { LOOKS_MAX = 4, LISTEN_US = 150000, LISTEN_MAX_US = 2000000 };
 static const cli_option options[] = {
     [OPT_ALL_BAUD] =
         OPTION_FLAG("all-baud", 0, "at every baud rate that servos know (with --wiring bus)"),
-    [OPT_FIRST] = OPTION_WHOLE("first", 0, "ID", 1, GROBO_RS30X_ID_MAX, "begin with this id (1)"),
-    [OPT_LAST] = OPTION_WHOLE("last", 0, "ID", 1, GROBO_RS30X_ID_MAX, "end with this id (127)"),
+    [OPT_FIRST] = OPTION_WHOLE("first", 0, "ID", 0, IDS - 1, "begin with this id (the lowest)"),
+    [OPT_LAST] = OPTION_WHOLE("last", 0, "ID", 0, IDS - 1, "end with this id (the highest)"),
 };
 
 typedef struct found {
     const app *a;
+    const grobo_driver *driver;
     json_t *list, *failed; /* NULL: as text */
     int n, silent;
     bool unsure;              /* the line was disturbed, or an id answers in no way that fits */
@@ -31,46 +34,69 @@ typedef struct found {
     int rate, n_rates; /* the rate that is asked at, of so many */
 } found;
 
-static const char *model_name(const uint8_t *identity)
+/* What the registers of family_identity() say. */
+typedef struct identity {
+    const char *model;
+    int32_t firmware; /* -1: not told */
+} identity;
+
+static identity identity_of(const grobo_driver *driver, const uint8_t *bytes)
 {
-    const char *name = grobo_rs30x_model_name((uint16_t)(identity[0] | identity[1] << 8));
-    return name ? name : "unknown model";
+    const grobo_servo_model *any = family_servo(driver, -1);
+    const grobo_servo_register *reg = grobo_servo_register_of(any, GROBO_ROLE_MODEL);
+    identity is = {.model = any->table->name, .firmware = -1};
+    uint16_t from = 0;
+    (void)family_identity(any, &from);
+    if (reg) {
+        const grobo_servo_model *model = family_identify(driver, bytes + (reg->address - from));
+        is.model = model ? model->name : "unknown model";
+    }
+    reg = grobo_servo_register_of(any, GROBO_ROLE_FIRMWARE);
+    if (reg) {
+        is.firmware = grobo_servo_register_get(any, reg, bytes + (reg->address - from));
+    }
+    return is;
 }
 
 /* The name of the joint that this id moves, NULL for none. */
-static const char *joint_name(const app *a, int id)
+static const char *joint_name(const found *f, int id)
 {
-    int joint = grobo_model_joint_of_motor(app_model(a), id);
-    return joint < 0 ? NULL : app_model(a)->joints[joint].name;
+    int joint = grobo_model_joint_of_motor(f->driver->model, id);
+    return joint < 0 ? NULL : f->driver->model->joints[joint].name;
 }
 
 /* One that answers with its identity, or (NULL) wrongly, or not at all where it should. */
-static json_t *servo_json(const app *a, int id, int baud_bps, const uint8_t *identity, int error)
+static json_t *servo_json(const found *f, int id, int baud_bps, const identity *is, int error)
 {
-    int joint = grobo_model_joint_of_motor(app_model(a), id);
+    int joint = grobo_model_joint_of_motor(f->driver->model, id);
     return json_pack("{s:i,s:o?,s:s?,s:o*,s:o*,s:i,s:o*}", "id", id, "joint",
-                     joint < 0 ? NULL : json_integer(joint), "name", joint_name(a, id), "model",
-                     identity ? json_string(model_name(identity)) : NULL, "firmware",
-                     identity ? json_integer(identity[2]) : NULL, "baud_bps", baud_bps, "status",
-                     identity ? NULL : app_json_code(grobo_error_name(error)));
+                     joint < 0 ? NULL : json_integer(joint), "name", joint_name(f, id), "model",
+                     is ? json_string(is->model) : NULL, "firmware",
+                     is && is->firmware >= 0 ? json_integer(is->firmware) : NULL, "baud_bps",
+                     baud_bps, "status", is ? NULL : app_json_code(grobo_error_name(error)));
 }
 
-static void report(found *f, int id, int baud_bps, const uint8_t *identity)
+static void report(found *f, int id, int baud_bps, const uint8_t *bytes)
 {
-    const char *name = joint_name(f->a, id);
+    const identity is = identity_of(f->driver, bytes);
+    const char *name = joint_name(f, id);
+    char firmware[24] = "";
     f->n++;
+    if (is.firmware >= 0) {
+        snprintf(firmware, sizeof firmware, "firmware %3d", (int)is.firmware);
+    }
     if (f->list) {
-        json_array_append_new(f->list, servo_json(f->a, id, baud_bps, identity, 0));
+        json_array_append_new(f->list, servo_json(f, id, baud_bps, &is, 0));
     } else {
-        app_print("%3d  %-8s  firmware %3d  %6d bps  %s\n", id, model_name(identity), identity[2],
-                  baud_bps, name ? name : "");
+        app_print("%3d  %-8s  %12s  %6d bps  %s\n", id, is.model, firmware, baud_bps,
+                  name ? name : "");
     }
 }
 
 static void report_failed(found *f, int id, int baud_bps, int error)
 {
     if (f->failed) {
-        json_array_append_new(f->failed, servo_json(f->a, id, baud_bps, NULL, error));
+        json_array_append_new(f->failed, servo_json(f, id, baud_bps, NULL, error));
     }
 }
 
@@ -79,41 +105,66 @@ static void report_failed(found *f, int id, int baud_bps, int error)
 /* One baud rate. Every whole reply on the line counts for its servo, whenever it comes. */
 typedef struct pass {
     found *f;
-    bool there[GROBO_RS30X_ID_MAX + 1];
-    int why[GROBO_RS30X_ID_MAX + 1]; /* the error of one that answered in no way that fits, or 0 */
-    uint8_t identity[GROBO_RS30X_ID_MAX + 1][IDENTITY_BYTES];
-    int64_t asked_us[GROBO_RS30X_ID_MAX + 1];
+    bool there[IDS];
+    int why[IDS]; /* the error of one that answered in no way that fits, or 0 */
+    uint8_t identity[IDS][FAMILY_IDENTITY_BYTES];
+    int64_t asked_us[IDS];
+    uint16_t address; /* of the registers that tell the identity */
+    int bytes;        /* of them */
     int baud_bps, first, last, asking;
     int64_t heard_us;             /* when the last byte came, 0: none has */
     int64_t worst_us;             /* the longest that a reply took */
-    uint32_t rubbish;             /* bytes that are of no whole packet, when the look began */
+    uint32_t rubbish;             /* bytes of this look that are of no whole packet */
     int n;                        /* servos found */
     bool late;                    /* a reply came after its time */
     uint32_t wire_us, timeout_us; /* of a reply: its time on the wire, and what it is given */
-    grobo_rs30x_parser parser;
+    const grobo_protocol *protocol;
+    uint8_t kept[GROBO_FRAME_MAX_BYTES]; /* of what came, from where a packet may begin */
+    size_t n_kept;
 } pass;
 
-static bool tells_identity(const grobo_rs30x_packet *p)
+static void take_reply(pass *p, const grobo_packet *packet, int64_t now_us)
 {
-    return p->kind == GROBO_RS30X_RETURN && p->address == GROBO_RS30X_MODEL &&
-           p->length == IDENTITY_BYTES && (p->flags & GROBO_RS30X_STATUS_REFUSED) == 0;
+    int id = packet->id;
+    if (packet->kind != GROBO_PACKET_RETURN || packet->refused || p->asked_us[id] == 0 ||
+        packet->data_bytes != (size_t)p->bytes) {
+        return;
+    }
+    int64_t took_us = now_us - p->asked_us[id];
+    if (took_us > p->worst_us) {
+        p->worst_us = took_us;
+    }
+    p->late |= took_us > p->timeout_us;
+    p->there[id] = true;
+    memcpy(p->identity[id], packet->data, packet->data_bytes);
 }
 
-static void take_replies(pass *p, int64_t now_us)
+static void drop(pass *p, size_t n)
 {
-    grobo_rs30x_packet packet;
-    while (grobo_rs30x_parser_next(&p->parser, &packet) > 0) {
-        int id = packet.id;
-        if (!tells_identity(&packet) || p->asked_us[id] == 0) {
+    p->n_kept -= n;
+    memmove(p->kept, p->kept + n, p->n_kept);
+}
+
+/* Packets of those that came, as far as they are whole; end: nothing more comes. */
+static void take_replies(pass *p, int64_t now_us, bool end)
+{
+    while (p->n_kept > 0) {
+        grobo_packet packet;
+        uint8_t bytes[GROBO_FRAME_MAX_BYTES];
+        int size =
+            p->protocol->measure(p->kept, p->n_kept, GROBO_ACCEPT_COMMANDS | GROBO_ACCEPT_RETURNS);
+        if (size == 0 && !end && p->n_kept < sizeof p->kept) {
+            return;
+        }
+        if (size <= 0) {
+            p->rubbish++;
+            drop(p, 1);
             continue;
         }
-        int64_t took_us = now_us - p->asked_us[id];
-        if (took_us > p->worst_us) {
-            p->worst_us = took_us;
-        }
-        p->late |= took_us > p->timeout_us;
-        p->there[id] = true;
-        memcpy(p->identity[id], packet.data, IDENTITY_BYTES);
+        memcpy(bytes, p->kept, (size_t)size); /* it may be changed */
+        p->protocol->unpack(bytes, (size_t)size, &packet);
+        take_reply(p, &packet, now_us);
+        drop(p, (size_t)size);
     }
 }
 
@@ -127,8 +178,10 @@ static void on_bytes(conn *c, grobo_direction direction, int64_t now_us, const u
     }
     p->heard_us = now_us;
     while (size > 0) {
-        size_t took = grobo_rs30x_parser_feed(&p->parser, bytes, size);
-        take_replies(p, now_us);
+        size_t room = sizeof p->kept - p->n_kept, took = size < room ? size : room;
+        memcpy(p->kept + p->n_kept, bytes, took);
+        p->n_kept += took;
+        take_replies(p, now_us, false);
         bytes += took;
         size -= took;
     }
@@ -149,8 +202,7 @@ static int listen_on(conn *c, pass *p)
         at_us = quiet_at(p, since_us);
         error = conn_sleep_until(c, at_us);
     } while (!error && quiet_at(p, since_us) > at_us && grobo_now_us() < since_us + LISTEN_MAX_US);
-    grobo_rs30x_parser_end(&p->parser); /* a packet that is cut is followed by none of its bytes */
-    take_replies(p, grobo_now_us());
+    take_replies(p, grobo_now_us(), true); /* none of the bytes of a packet that is cut follow */
     return error;
 }
 
@@ -158,9 +210,9 @@ static int listen_on(conn *c, pass *p)
 
 static int ask(conn *c, pass *p, int id)
 {
-    uint8_t identity[IDENTITY_BYTES];
+    uint8_t bytes[FAMILY_IDENTITY_BYTES];
     p->asking = id;
-    int error = servos_read(c, id, GROBO_RS30X_MODEL, IDENTITY_BYTES, identity);
+    int error = servos_read(c, id, p->address, p->bytes, bytes);
     bool silent = error == GROBO_ERR_TIMEOUT || error == GROBO_ERR_SHORT;
     p->why[id] = silent ? 0 : error;
     return c->signal || c->link_error ? error : GROBO_OK;
@@ -187,9 +239,9 @@ static void show_progress(const pass *p, int id)
 /* Asks all ids that are missing, and listens to what is still on its way. */
 static int look(conn *c, pass *p, uint32_t margin_us)
 {
-    int error = servos_wait(c, p->baud_bps, IDENTITY_BYTES, margin_us, -1, &p->timeout_us);
+    int error = servos_wait(c, p->baud_bps, p->bytes, margin_us, -1, &p->timeout_us);
     p->late = false;
-    p->rubbish = p->parser.framer.stats.dropped_bytes;
+    p->rubbish = 0;
     for (int id = p->first; id <= p->last && !error; id++) {
         show_progress(p, id);
         if (!p->there[id]) {
@@ -200,7 +252,6 @@ static int look(conn *c, pass *p, uint32_t margin_us)
     if (!error) {
         error = listen_on(c, p);
     }
-    p->rubbish = p->parser.framer.stats.dropped_bytes - p->rubbish;
     p->n = 0;
     for (int id = p->first; id <= p->last; id++) {
         p->n += p->there[id];
@@ -258,7 +309,7 @@ static int look_until_sure(conn *c, pass *p, bool *sure)
  * One that is silent then is silent. */
 static int question_suspects(conn *c, pass *p, bool *sure)
 {
-    int error = servos_wait(c, p->baud_bps, IDENTITY_BYTES, patience(p), -1, NULL);
+    int error = servos_wait(c, p->baud_bps, p->bytes, patience(p), -1, NULL);
     for (int id = p->first; id <= p->last && !error; id++) {
         if (!p->why[id] || p->there[id]) {
             continue;
@@ -280,9 +331,7 @@ static int ask_all(conn *c, found *f, pass *p)
 {
     int64_t began_us = grobo_now_us();
     bool sure = false;
-    int error =
-        wire_read_us(grobo_robot_driver(c->robot), p->baud_bps, IDENTITY_BYTES, &p->wire_us);
-    grobo_rs30x_parser_init(&p->parser, GROBO_ACCEPT_COMMANDS | GROBO_ACCEPT_RETURNS);
+    int error = wire_read_us(grobo_robot_driver(c->robot), p->baud_bps, p->bytes, &p->wire_us);
     c->ctx = p;
     c->on_bytes = on_bytes;
     if (!error) {
@@ -298,12 +347,22 @@ static int ask_all(conn *c, found *f, pass *p)
     return error;
 }
 
+static int first_id(const app *a, const grobo_driver *driver)
+{
+    return (int)fmax(app_number(a, OPT_FIRST, 0), driver->protocol->id_min);
+}
+
+static int last_id(const app *a, const grobo_driver *driver)
+{
+    return (int)fmin(app_number(a, OPT_LAST, IDS), driver->protocol->id_max);
+}
+
 static int scan_ids(conn *c, found *f, int baud_bps)
 {
-    pass p = {.f = f,
-              .baud_bps = baud_bps,
-              .first = (int)app_number(c->a, OPT_FIRST, 1),
-              .last = (int)app_number(c->a, OPT_LAST, GROBO_RS30X_ID_MAX)};
+    pass p = {.f = f, .baud_bps = baud_bps, .protocol = f->driver->protocol};
+    p.bytes = family_identity(family_servo(f->driver, -1), &p.address);
+    p.first = first_id(c->a, f->driver);
+    p.last = last_id(c->a, f->driver);
     int error = ask_all(c, f, &p);
     for (int id = p.first; id <= p.last; id++) {
         if (p.there[id]) {
@@ -320,9 +379,10 @@ static int scan_ids(conn *c, found *f, int baud_bps)
 static int scan_all_bauds(conn *c, found *f)
 {
     grobo_serial *serial = grobo_session_serial(c->session);
-    for (int code = 0; code <= GROBO_RS30X_BAUD_CODE_MAX; code++) {
-        int baud_bps = grobo_rs30x_baud_bps((uint8_t)code);
-        f->rate = code;
+    const grobo_servo_table *table = family_servo(f->driver, -1)->table;
+    for (int i = 0; i < table->rate_count; i++) {
+        int baud_bps = table->rates[i].bps;
+        f->rate = i;
         int error = grobo_serial_set_baud(serial, baud_bps);
         if (error < 0) {
             app_note(c->a, "%d bps: %s", baud_bps, grobo_error_text(error));
@@ -340,9 +400,10 @@ static int scan(conn *c)
 {
     bool all = app_option(c->a, OPT_ALL_BAUD)->given > 0;
     found f = {.a = c->a,
+               .driver = grobo_robot_driver(c->robot),
                .list = c->a->json ? json_array() : NULL,
                .failed = c->a->json ? json_array() : NULL};
-    f.n_rates = all ? GROBO_RS30X_BAUD_CODE_MAX + 1 : 1;
+    f.n_rates = all ? family_servo(f.driver, -1)->table->rate_count : 1;
     progress_start(&f.bar, c->a);
     int error = all ? scan_all_bauds(c, &f) : scan_ids(c, &f, (int)conn_baud(c->a));
     if (error) {
@@ -369,11 +430,11 @@ static int scan(conn *c)
 static int run_scan(app *a)
 {
     conn c;
-    if (app_option(a, OPT_ALL_BAUD)->given && app_global(a, GLOBAL_WIRING)->choice != 1) {
+    if (app_option(a, OPT_ALL_BAUD)->given && app_driver(a)->protocol->relay) {
         return app_fail(a, EXIT_USAGE, "ARG",
                         "scan: --all-baud needs --wiring bus: the board knows one rate only");
     }
-    if (app_number(a, OPT_FIRST, 1) > app_number(a, OPT_LAST, GROBO_RS30X_ID_MAX)) {
+    if (first_id(a, app_driver(a)) > last_id(a, app_driver(a))) {
         return app_fail(a, EXIT_USAGE, "ARG", "scan: --first is behind --last");
     }
     int status = conn_open_unchecked(&c, a);
@@ -395,8 +456,11 @@ static int run_scan(app *a)
 static int info(conn *c)
 {
     const grobo_model *model = grobo_robot_driver(c->robot)->model;
-    bool board = app_global(c->a, GLOBAL_WIRING)->choice == 0;
+    bool board = grobo_driver_wiring(grobo_robot_driver(c->robot)) == GROBO_WIRING_BOARD;
+    uint16_t address = 0;
+    int length = family_identity(family_servo(grobo_robot_driver(c->robot), -1), &address);
     found f = {.a = c->a,
+               .driver = grobo_robot_driver(c->robot),
                .list = c->a->json ? json_array() : NULL,
                .failed = c->a->json ? json_array() : NULL};
     int baud_bps = (int)conn_baud(c->a), silent = 0;
@@ -404,22 +468,24 @@ static int info(conn *c)
         app_print("%s on %s, %s\n", model->name, conn_device(c),
                   board ? "through its board, which answers" : "servos straight on the bus");
     }
-    for (int motor = 1; motor <= model->n_joints; motor++) {
-        uint8_t identity[IDENTITY_BYTES];
-        int error = servos_read(c, motor, GROBO_RS30X_MODEL, IDENTITY_BYTES, identity);
+    for (int motor = 0; motor <= GROBO_SERVO_ID_MAX; motor++) {
+        uint8_t bytes[FAMILY_IDENTITY_BYTES];
+        if (!joint_name(&f, motor)) {
+            continue;
+        }
+        int error = servos_read(c, motor, address, length, bytes);
         if (c->signal || c->link_error) {
             json_decref(f.list);
             json_decref(f.failed);
             return conn_fail(c, error, "info");
         }
         if (error == GROBO_OK) {
-            report(&f, motor, baud_bps, identity);
+            report(&f, motor, baud_bps, bytes);
             continue;
         }
         silent++;
         report_failed(&f, motor, baud_bps, error);
-        app_note(c->a, "motor %d (%s): %s", motor, joint_name(c->a, motor),
-                 grobo_error_text(error));
+        app_note(c->a, "motor %d (%s): %s", motor, joint_name(&f, motor), grobo_error_text(error));
     }
     if (c->a->json) {
         app_print_json(json_pack("{s:s,s:s,s:s,s:o,s:o}", "robot", model->name, "device",

@@ -4,6 +4,7 @@
 #include "tools/grctl/cli/joints.h"
 #include "tools/grctl/conn/servos.h"
 #include "tools/grctl/conn/wire.h"
+#include "tools/grctl/servo/family.h"
 
 /* Behind a network a reply may take as long as it likes. */
 enum { TCP_MARGIN_US = 50000 };
@@ -11,11 +12,27 @@ enum { TCP_MARGIN_US = 50000 };
 int servos_read(conn *c, int id, int address, int length, uint8_t *data)
 {
     grobo_register_io io = {
-        .id = (uint8_t)id, .address = (uint8_t)address, .length = (uint8_t)length};
+        .id = (uint8_t)id, .address = (uint16_t)address, .length = (uint16_t)length};
     c->data = data;
     c->data_bytes = (size_t)length;
     int error = conn_wait(c, grobo_robot_registers(grobo_session_robot(c->session), &io));
     c->data = NULL; /* it is the caller's */
+    return error;
+}
+
+int servos_model(conn *c, int id, const grobo_servo_model **servo)
+{
+    const grobo_driver *driver = grobo_robot_driver(c->robot);
+    const grobo_servo_register *reg;
+    uint8_t bytes[4];
+    *servo = family_servo(driver, id);
+    reg = grobo_servo_register_of(*servo, GROBO_ROLE_MODEL);
+    if (!reg || grobo_model_joint_of_motor(driver->model, id) >= 0) {
+        return GROBO_OK;
+    }
+    int error = servos_read(c, id, reg->address, reg->bytes, bytes);
+    const grobo_servo_model *found = error ? NULL : family_identify(driver, bytes);
+    *servo = found ? found : *servo;
     return error;
 }
 
@@ -45,11 +62,13 @@ int servos_parse_id(app *a, const char *text, int *status)
 {
     double number;
     if (cli_read_number(text, &number)) {
-        if (number >= 1 && number <= GROBO_RS30X_ID_MAX && number == (double)(int)number) {
+        const grobo_protocol *protocol = app_driver(a)->protocol;
+        if (number >= protocol->id_min && number <= protocol->id_max &&
+            number == (double)(int)number) {
             return (int)number;
         }
-        *status = app_fail(a, EXIT_USAGE, "ARG", "'%s' is not an id from 1 to %d", text,
-                           GROBO_RS30X_ID_MAX);
+        *status = app_fail(a, EXIT_USAGE, "ARG", "'%s' is not an id from %d to %d", text,
+                           protocol->id_min, protocol->id_max);
         return -1;
     }
     int joint = joints_parse_one(a, text, strlen(text), status);

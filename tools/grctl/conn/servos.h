@@ -11,6 +11,12 @@
  */
 int servos_read(conn *c, int id, int address, int length, uint8_t *data);
 
+/*
+ * Which servo an id is: a joint's as the robot has it, another one as it says; where neither is
+ * known, the first of its family. NULL: its family has no registers. Returns GROBO_OK or the error.
+ */
+int servos_model(conn *c, int id, const grobo_servo_model **servo);
+
 /* Beyond the wire's time, where a reply is sure to be wanted and the host may be busy. */
 enum { SERVOS_PATIENT_US = 30000 };
 
@@ -23,7 +29,8 @@ enum { SERVOS_PATIENT_US = 30000 };
 int servos_wait(conn *c, int baud_bps, int length, uint32_t margin_us, int retries,
                 uint32_t *timeout_us);
 
-/* Reads an id of the command line: a number 1..127, or a joint's name. -1: *status is set. */
+/* Reads an id of the command line: one of the robot's protocol, or a joint's name. -1: *status is
+ * set. */
 int servos_parse_id(app *a, const char *text, int *status);
 
 #endif

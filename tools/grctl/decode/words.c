@@ -6,8 +6,8 @@
 #include <grobo/model.h>
 #include <grobo/serial.h>
 
-#include "tools/grctl/decode/registers.h"
 #include "tools/grctl/decode/words.h"
+#include "tools/grctl/servo/registers.h"
 
 /* Text that grows up to a cap; what does not fit is left out. */
 typedef struct text {
@@ -68,6 +68,9 @@ static const char *joint_name(uint8_t id)
     return NULL;
 }
 
+/* The last model has all registers. */
+#define ANY_RS30X (&grobo_rs30x_table.models[grobo_rs30x_table.model_count - 1])
+
 /* What a packet holds for one servo. */
 typedef struct packet_part {
     uint8_t id;
@@ -96,7 +99,7 @@ static int find_part(const grobo_rs30x_packet *p, int index, packet_part *part)
 
 /* A register in a part; a byte of none (reg NULL), or of one that is not there as a whole. */
 typedef struct packet_item {
-    const grobo_rs30x_register *reg;
+    const grobo_servo_register *reg;
     unsigned address;
     int32_t value;
     bool whole;
@@ -106,12 +109,13 @@ typedef struct packet_item {
 static size_t find_item(const packet_part *part, size_t at, packet_item *item)
 {
     unsigned address = part->address + (unsigned)at;
-    const grobo_rs30x_register *reg =
-        address < GROBO_REGISTERS ? grobo_rs30x_register_at((uint8_t)address) : NULL;
+    const grobo_servo_register *reg =
+        address < GROBO_REGISTERS ? grobo_servo_register_at(ANY_RS30X, (uint16_t)address) : NULL;
     item->reg = reg;
     item->address = address;
     item->whole = reg && reg->address == address && at + reg->bytes <= part->n;
-    item->value = item->whole ? grobo_rs30x_register_get(reg, part->data + at) : part->data[at];
+    item->value =
+        item->whole ? grobo_servo_register_get(ANY_RS30X, reg, part->data + at) : part->data[at];
     return item->whole ? reg->bytes : 1;
 }
 
@@ -198,7 +202,7 @@ static void say_registers(text *t, const packet_part *part)
             continue;
         }
         if (item.whole) {
-            registers_text(item.reg, item.value, value, sizeof value);
+            registers_text(ANY_RS30X, item.reg, item.value, value, sizeof value);
             say(t, "%s%s %s", comma, item.reg->name, value);
             if (item.reg->address == GROBO_RS30X_GOAL_TIME && item.value == 0) {
                 say(t, " (full speed)");
@@ -495,7 +499,7 @@ static json_t *part_json(const packet_part *part)
         at += find_item(part, at, &item);
         if (item.whole) {
             registers_key(item.reg, key, sizeof key);
-            json_object_set_new(registers, key, registers_json(item.reg, item.value));
+            json_object_set_new(registers, key, registers_json(ANY_RS30X, item.reg, item.value));
         } else if (item.reg || item.value) {
             snprintf(key, sizeof key, "%u", item.address);
             json_object_set_new(other, key, json_integer(item.value));

@@ -10,6 +10,9 @@
 /* Bytes that collide within this time are one offence. */
 #define ONE_COLLISION_US 20000
 
+/* The last model has all registers. */
+#define ANY (&grobo_rs30x_table.models[grobo_rs30x_table.model_count - 1])
+
 enum { WHY_BYTES = 128 };
 
 /* ---- reporting ------------------------------------------------------------------------------- */
@@ -51,18 +54,18 @@ static bool wrong_data(uint8_t address, const uint8_t *data, size_t n, char *why
         return true;
     }
     for (size_t i = 0; i < n; i++) {
-        const grobo_rs30x_register *reg = grobo_rs30x_register_at((uint8_t)(address + i));
+        const grobo_servo_register *reg = grobo_servo_register_at(ANY, (uint16_t)(address + i));
         if (!reg) {
             continue;
         }
-        if (reg->access == GROBO_RS30X_ACCESS_R) {
+        if ((reg->flags & GROBO_REGISTER_W) == 0) {
             snprintf(why, WHY_BYTES, "it writes %s, which is read-only", reg->name);
             return true;
         }
         if (reg->address != address + i || i + reg->bytes > n) {
             continue; /* a half of it */
         }
-        int32_t value = grobo_rs30x_register_get(reg, data + i);
+        int32_t value = grobo_servo_register_get(ANY, reg, data + i);
         if (value < reg->min || value > reg->max) {
             snprintf(why, WHY_BYTES, "%s %d is outside %d..%d", reg->name, (int)value,
                      (int)reg->min, (int)reg->max);

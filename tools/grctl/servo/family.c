@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: MIT */
+#include <grobo/board.h>
+#include <grobo/dxl2.h>
+#include <grobo/feetech.h>
+#include <grobo/rs30x.h>
+
+#include "tools/grctl/servo/family.h"
+
+static const family families[] = {
+    {"rs30x", &grobo_rs30x_protocol, &grobo_rs30x_table},
+    {"dxl2", &grobo_dxl2_protocol, &grobo_dxl2_table},
+    {"dxl1", &grobo_dxl1_protocol, &grobo_dxl1_table},
+    {"sts", &grobo_feetech_protocol, &grobo_sts_table},
+    {"scs", &grobo_feetech_protocol, &grobo_scs_table},
+};
+
+enum { FAMILIES = sizeof families / sizeof *families };
+
+const family *family_row(size_t i)
+{
+    return i < FAMILIES ? &families[i] : NULL;
+}
+
+/* Behind a board are RS30x. */
+static bool speaks(const family *f, const grobo_driver *driver)
+{
+    return f->protocol == (driver->protocol->relay ? &grobo_rs30x_protocol : driver->protocol);
+}
+
+const grobo_servo_model *family_numbered(const grobo_driver *driver, uint16_t number)
+{
+    const grobo_servo_model *found = NULL;
+    for (size_t i = 0; i < FAMILIES && !found; i++) {
+        if (speaks(&families[i], driver)) {
+            found = grobo_servo_model_numbered(families[i].table, number);
+        }
+    }
+    return found;
+}
+
+const grobo_servo_model *family_servo(const grobo_driver *driver, int id)
+{
+    int joint = grobo_model_joint_of_motor(driver->model, id);
+    const grobo_servo_model *found =
+        joint < 0 ? NULL : family_numbered(driver, driver->model->joints[joint].servo_model);
+    for (size_t i = 0; i < FAMILIES && !found; i++) {
+        found = speaks(&families[i], driver) ? &families[i].table->models[0] : NULL;
+    }
+    return found;
+}
+
+const grobo_servo_model *family_identify(const grobo_driver *driver, const uint8_t *bytes)
+{
+    const grobo_servo_model *found = NULL;
+    for (size_t i = 0; i < FAMILIES && !found; i++) {
+        if (speaks(&families[i], driver)) {
+            const grobo_servo_model *any = &families[i].table->models[0];
+            const grobo_servo_register *model = grobo_servo_register_of(any, GROBO_ROLE_MODEL);
+            int32_t number = grobo_servo_register_get(any, model, bytes);
+            found = grobo_servo_model_numbered(families[i].table, (uint16_t)number);
+        }
+    }
+    return found;
+}
+
+int family_identity(const grobo_servo_model *servo, uint16_t *address)
+{
+    const grobo_servo_register *a = grobo_servo_register_of(servo, GROBO_ROLE_MODEL);
+    const grobo_servo_register *b = grobo_servo_register_of(servo, GROBO_ROLE_FIRMWARE);
+    a = a ? a : grobo_servo_register_of(servo, GROBO_ROLE_ID);
+    b = b ? b : a;
+    if (!a) {
+        return 0;
+    }
+    int end = a->address + a->bytes > b->address + b->bytes ? a->address + a->bytes
+                                                            : b->address + b->bytes;
+    *address = a->address < b->address ? a->address : b->address;
+    return end - *address;
+}
