@@ -134,6 +134,10 @@ GROBO_API extern const grobo_sim_family grobo_sim_rs30x;
 GROBO_API extern const grobo_sim_family grobo_sim_dxl2;
 /** Models of grobo_dxl1_table, grobo_sts_table and grobo_scs_table. */
 GROBO_API extern const grobo_sim_family grobo_sim_dxl1;
+/** Models of grobo_lx16a_table. */
+GROBO_API extern const grobo_sim_family grobo_sim_lx16a;
+/** Models of grobo_ics_table. */
+GROBO_API extern const grobo_sim_family grobo_sim_ics;
 
 /* ---- configuration -------------------------------------------------------------------------- */
 
@@ -151,10 +155,10 @@ typedef struct grobo_sim_config {
     const grobo_servo_model *const *servos;  /**< bus: of each joint, NULL: an RS30x, the joint's
                                                  servo_model; NULL: all are RS30x. Borrowed */
     const grobo_sim_family *const *families; /**< of those servos, NULL behind the last. Borrowed */
-    uint32_t baud_bps;         /**< board: its host port; bus: the servos' line. 115200; 1000000
-                                    where the first servo is no RS30x */
-    bool unpaced;              /**< bytes take no time on any wire */
-    uint32_t seed;             /**< of every random choice */
+    uint32_t baud_bps; /**< board: its host port; bus: the servos' line. 115200, or what servos of
+                            the first one's family have as a rule */
+    bool unpaced;      /**< bytes take no time on any wire */
+    uint32_t seed;     /**< of every random choice */
     grobo_sim_start start;     /**< posture at power-up */
     uint32_t board_silence_us; /**< board gives up a reply after this much silence. 2000 */
     uint32_t board_stall_us;   /**< board forgets a frame that stalls. GROBO_BOARD_STALL_US */
@@ -336,6 +340,7 @@ typedef struct grobo_sim {
     uint32_t fault_below[GROBO_SIM_FAULTS]; /* a fault strikes when its generator gives less */
     uint32_t random[GROBO_SIM_FAULTS + 1];  /* one generator a fault, one for the rest */
     bool gone;                              /* hung up */
+    bool parity;                            /* a byte has 11 bits, and is lost with one wrong */
     uint8_t n_servos;
     grobo_sim_servo servo[GROBO_SIM_SERVOS_MAX];
     grobo_sim_wire in, out; /* from the host, to the host */

@@ -34,7 +34,8 @@
 
 static int64_t byte_ns(const grobo_sim *sim, uint32_t bps)
 {
-    return sim->config.unpaced ? 1 : 10000000000 / bps;
+    int64_t bits = sim->parity ? 11 : 10;
+    return sim->config.unpaced ? 1 : bits * 1000000000 / bps;
 }
 
 static void arrive(grobo_sim *sim, int64_t t_ns)
@@ -53,7 +54,10 @@ static void arrive(grobo_sim *sim, int64_t t_ns)
 /* A byte of a servo is over. */
 static void said(grobo_sim *sim, int64_t t_ns)
 {
-    uint8_t byte = grobo_i_sim_talk_take(sim, t_ns);
+    uint8_t byte;
+    if (!grobo_i_sim_talk_take(sim, t_ns, &byte)) {
+        return;
+    }
     if (sim->config.wiring == GROBO_WIRING_BUS) {
         grobo_i_sim_to_host(sim, byte, t_ns);
     } else {
@@ -311,6 +315,19 @@ static int32_t start_mdeg(grobo_sim *sim, const grobo_sim_servo *servo, const gr
            (int32_t)grobo_i_sim_random(sim, GROBO_I_SIM_CHANCE, (uint32_t)span_mdeg + 1);
 }
 
+static const grobo_sim_family *family_of(const grobo_sim_config *config, int index)
+{
+    const grobo_servo_model *model = config->servos != NULL ? config->servos[index] : NULL;
+    if (model == NULL) {
+        return &grobo_sim_rs30x;
+    }
+    const grobo_sim_family *const *family = config->families;
+    while (family != NULL && *family != NULL && !(*family)->knows(model)) {
+        family++;
+    }
+    return family != NULL ? *family : NULL;
+}
+
 /* The ear of the family of a servo; none where no family that was given has it. */
 static grobo_sim_ear *ear_of(grobo_sim *sim, const grobo_sim_family *family)
 {
@@ -324,19 +341,6 @@ static grobo_sim_ear *ear_of(grobo_sim *sim, const grobo_sim_family *family)
     }
     sim->ear[sim->n_ears].family = family;
     return &sim->ear[sim->n_ears++];
-}
-
-static const grobo_sim_family *family_of(const grobo_sim_config *config, int index)
-{
-    const grobo_servo_model *model = config->servos != NULL ? config->servos[index] : NULL;
-    if (model == NULL) {
-        return &grobo_sim_rs30x;
-    }
-    const grobo_sim_family *const *family = config->families;
-    while (family != NULL && *family != NULL && !(*family)->knows(model)) {
-        family++;
-    }
-    return family != NULL ? *family : NULL;
 }
 
 static int init_servo(grobo_sim *sim, int index)
@@ -371,8 +375,8 @@ static void use_defaults(grobo_sim_config *config)
 {
     config->model = config->model == NULL ? &grobo_gr001_model : config->model;
     if (config->baud_bps == 0) {
-        config->baud_bps =
-            config->servos != NULL && config->servos[0] != NULL ? OTHERS_BPS : 115200;
+        const grobo_sim_family *first = family_of(config, 0);
+        config->baud_bps = first == NULL || first->usual_bps == 0 ? OTHERS_BPS : first->usual_bps;
     }
     config->supply_mv = config->supply_mv == 0 ? SUPPLY_MV : config->supply_mv;
     config->ambient_c = config->ambient_c == 0 ? AMBIENT_C : config->ambient_c;
@@ -404,6 +408,8 @@ int grobo_sim_init(grobo_sim *sim, const grobo_sim_config *config, int64_t now_u
     sim->in.free_ns = sim->out.free_ns = sim->bus_heard_ns = sim->hand_over_ns = sim->now_ns;
     sim->supply_mv = with.supply_mv;
     sim->n_servos = with.model->n_joints;
+    const grobo_sim_family *first = family_of(&with, 0);
+    sim->parity = first != NULL && first->parity;
     sim->bus_bps = BUS_BPS;
     sim->bus_byte_ns = byte_ns(sim, sim->bus_bps);
     (void)grobo_sim_set_line_bps(sim, with.baud_bps);
