@@ -65,6 +65,8 @@ GROBO_BEGIN_DECLS
 #define GROBO_CONTROL_TIMEOUT_US INT64_C(5000000)
 /** Control period where none is given. */
 #define GROBO_CONTROL_PERIOD_US 10000
+/** Events that a control keeps at most. */
+#define GROBO_CONTROL_EVENTS_MAX 4096
 /** Bytes of the command buffer, and of the buffer of received bytes. */
 #define GROBO_CONTROL_COMMAND_BYTES GROBO_FRAME_MAX_BYTES
 #define GROBO_CONTROL_RECEIVE_BYTES 512
@@ -90,6 +92,8 @@ typedef struct grobo_control_config {
                                     session.ctx; its result is ignored; or NULL */
     int64_t timeout_us;        /**< of calls that are given none, and of those handed over; 0:
                                     GROBO_CONTROL_TIMEOUT_US */
+    size_t events;             /**< events kept for grobo_control_next_event(), at most
+                                    GROBO_CONTROL_EVENTS_MAX; each takes some 2.5 kB; 0: none */
 } grobo_control_config;
 
 /* ---- making and freeing ------------------------------------------------------------------- */
@@ -188,6 +192,68 @@ GROBO_API grobo_session *grobo_control_session(grobo_control *control);
 
 /** The serial port; as grobo_control_session(). */
 GROBO_API grobo_serial *grobo_control_serial(grobo_control *control);
+
+/* ---- looking on ------------------------------------------------------------------------------
+ * For programs that want no code of theirs on the loop: other languages, event loops of their own.
+ * Events are kept in a ring, and a descriptor tells that there are some; a snapshot says all that
+ * is known. */
+
+/** An event as it is kept. */
+typedef struct grobo_control_event {
+    size_t size;              /**< GROBO_CONTROL_EVENT_INIT */
+    uint64_t lost;            /**< events lost between the one taken before and this one */
+    bool of_line;             /**< true: `line` and `error`; false: `event` */
+    grobo_session_event line; /**< of the line: as grobo_session_event_fn is told */
+    int error;                /**< of the line */
+    grobo_event event;        /**< of the engine; job.data is in `data` below */
+    uint8_t data[GROBO_FRAME_MAX_BYTES]; /**< job.size bytes of it are set */
+} grobo_control_event;
+/** Begins an initializer of one. */
+#define GROBO_CONTROL_EVENT_INIT GROBO_SIZED(grobo_control_event)
+
+/**
+ * Takes the oldest event. `grobo_control_config.events` are kept of jobs, plays, trips and the
+ * line, and as many readings and rounds besides; where either is full its oldest makes way and is
+ * counted, so that a flood of readings displaces nothing else, and the newest are always there.
+ * What happened before a close can be taken until grobo_control_free(). At once.
+ * @param[in,out] event its `size` is set; job.data points into it.
+ * @return 1; 0 where there is none; GROBO_ERR_ARG (NULL, size), GROBO_ERR_STATE (none are kept).
+ */
+GROBO_API int grobo_control_next_event(grobo_control *control, grobo_control_event *event);
+
+/**
+ * A descriptor that is readable while there are events, for poll(), epoll or a loop; on Win32 a
+ * SOCKET, for select() and WSAPoll(). Only waited on: it is read, and closed, by the control. A
+ * forked child does not use it; a program that is executed does not get it. At once.
+ * @return GROBO_SOCKET_NULL where no events are kept. Valid as long as the control.
+ */
+GROBO_API grobo_socket grobo_control_event_socket(const grobo_control *control);
+
+/** What is known of the robot, all at one moment. */
+typedef struct grobo_snapshot {
+    size_t size;                   /**< GROBO_SNAPSHOT_INIT */
+    int64_t now_us;                /**< when, by grobo_now_us() */
+    bool connected;                /**< as grobo_control_is_connected() */
+    bool latched;                  /**< as grobo_control_is_latched() */
+    bool moving;                   /**< as grobo_robot_moving() */
+    bool settling;                 /**< as grobo_robot_settling() */
+    grobo_job_kind job;            /**< as grobo_robot_job() */
+    grobo_trip_info trip;          /**< as grobo_robot_tripped() */
+    grobo_play_progress play;      /**< as grobo_robot_progress() */
+    grobo_robot_counters counters; /**< as grobo_robot_get_counters() */
+    int n_joints;
+    grobo_joint_info joints[GROBO_JOINTS_MAX]; /**< as grobo_robot_joint(): angle, goal, torque,
+                                                    temperature..., and the ages of readings */
+} grobo_snapshot;
+/** Begins an initializer of one. */
+#define GROBO_SNAPSHOT_INIT GROBO_SIZED(grobo_snapshot)
+
+/**
+ * Takes a snapshot, without waiting for the loop. At once.
+ * @param[in,out] snapshot its `size` is set.
+ * @return number of joints, GROBO_ERR_ARG (NULL, size).
+ */
+GROBO_API int grobo_control_snapshot(grobo_control *control, grobo_snapshot *snapshot);
 
 /* ---- facts and settings: all at once unless said otherwise ---------------------------------- */
 

@@ -153,6 +153,10 @@ void grobo_i_session_attend(grobo_session *session);
 /* Notes for grobo_session_is_latched() what the engine says. */
 void grobo_i_session_note_latch(grobo_session *session);
 
+/* Two sockets that hear each other; both are GROBO_SOCKET_NULL before. GROBO_OK, GROBO_ERR_NOMEM. */
+int grobo_i_session_pair_new(grobo_socket pair[2]);
+void grobo_i_session_pair_free(const grobo_socket pair[2]);
+
 /* Makes and ends the wake-up socket. */
 int grobo_i_session_wake_new(grobo_session *session);
 void grobo_i_session_wake_free(grobo_session *session);

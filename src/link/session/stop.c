@@ -250,7 +250,7 @@ void grobo_i_session_estop_ended(grobo_session *session, int result)
 
 /* ---- making and freeing ------------------------------------------------------------------- */
 
-static int make_pair(grobo_socket pair[2])
+int grobo_i_session_pair_new(grobo_socket pair[2])
 {
     evutil_socket_t made[2];
 
@@ -270,6 +270,15 @@ static int make_pair(grobo_socket pair[2])
     return GROBO_OK;
 }
 
+void grobo_i_session_pair_free(const grobo_socket pair[2])
+{
+    for (int i = 0; i < 2; i++) {
+        if (pair[i] != GROBO_SOCKET_NULL) {
+            evutil_closesocket(pair[i]);
+        }
+    }
+}
+
 int grobo_i_session_listen(grobo_session *session, bool always)
 {
     session->always_listens = session->always_listens || always;
@@ -285,7 +294,7 @@ void grobo_i_session_rest(grobo_session *session)
 
 int grobo_i_session_wake_new(grobo_session *session)
 {
-    int r = make_pair(session->wake_socket);
+    int r = grobo_i_session_pair_new(session->wake_socket);
 
     if (r >= 0) {
         session->wake = event_new(session->config.base, session->wake_socket[0],
@@ -300,9 +309,5 @@ void grobo_i_session_wake_free(grobo_session *session)
     if (session->wake != NULL) {
         event_free(session->wake);
     }
-    for (int i = 0; i < 2; i++) {
-        if (session->wake_socket[i] != GROBO_SOCKET_NULL) {
-            evutil_closesocket(session->wake_socket[i]);
-        }
-    }
+    grobo_i_session_pair_free(session->wake_socket);
 }

@@ -35,6 +35,8 @@ void grobo_i_control_on_event(grobo_session *session, grobo_session_event event,
     case GROBO_SESSION_EVENT_UNGUARDED:
         break;
     }
+    const grobo_control_event kept = {.of_line = true, .line = event, .error = error};
+    grobo_i_control_keep(control, &kept);
     if (control->user.on_event != NULL) {
         control->user.on_event(session, event, error, control->user.ctx);
     }
@@ -88,6 +90,8 @@ void grobo_i_control_on_robot(void *ctx, const grobo_event *event)
     if (event->kind == GROBO_EVENT_JOB) {
         on_job(control, &event->u.job);
     }
+    const grobo_control_event kept = {.event = *event};
+    grobo_i_control_keep(control, &kept);
     if (control->user.on_robot != NULL) {
         control->user.on_robot(control->user.ctx, event);
     }

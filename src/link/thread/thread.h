@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The inside of a grobo_control, each file below the next: wake.c the lock and who is in a round,
- * events.c what the loop is told, play.c what it has the robot do, call.c its rounds and the calls
+ * ring.c what is kept for who looks on, events.c what the loop is told, play.c what it has the robot do, call.c its rounds and the calls
  * of threads, state.c, line.c and motion.c the functions, thread.c its life.
  *
  * `lock` guards what several threads touch; it is never held while anything is called that may
@@ -62,6 +62,12 @@ typedef struct control_slot {
     bool impatient; /* the caller wants to know when fn comes back */
 } control_slot;
 
+/* Events of one sort, the oldest first. */
+typedef struct control_ring {
+    struct control_kept *kept; /* capacity of them */
+    size_t head, n;
+} control_ring;
+
 /* What is played. */
 typedef enum play_stage { PLAY_NONE = 0, PLAY_WANTED, PLAY_BEGUN } play_stage;
 
@@ -112,6 +118,14 @@ struct grobo_control {
     play_stage play;
     unsigned move_after, play_after; /* grobo_i_session_asked() when these were asked for */
     int motion_result;               /* of the last target or motion */
+
+    /* under lock: what is kept for who looks on */
+    size_t capacity;             /* of each ring; 0: nothing is kept */
+    control_ring told, readings; /* the others, and JOINT and ROUND */
+    uint64_t event_number;       /* of the last event */
+    uint64_t taken_number;       /* of the last event taken */
+    bool readable;               /* the socket has its byte */
+    grobo_socket event_socket[2];
 
     /* loop */
     struct event_base *base;
@@ -182,6 +196,15 @@ void grobo_i_control_sleep(grobo_control *control, int64_t end_us);
 
 /* With the lock: wakes everybody who sleeps. */
 void grobo_i_control_wake_all(grobo_control *control);
+
+/* ---- ring.c ---- */
+
+/* Makes and frees what keeps events. */
+int grobo_i_control_ring_new(grobo_control *control, size_t capacity);
+void grobo_i_control_ring_free(grobo_control *control);
+
+/* On the loop: keeps an event, where any are. */
+void grobo_i_control_keep(grobo_control *control, const grobo_control_event *event);
 
 /* ---- events.c ---- */
 
