@@ -165,10 +165,12 @@ int grobo_control_snapshot(grobo_control *control, grobo_snapshot *snapshot)
     }
     const grobo_robot *robot = control_robot(control);
     grobo_snapshot seen = {
-        .connected = grobo_control_is_connected(control),
-        .latched = grobo_control_is_latched(control),
-        .n_joints = grobo_control_joints(control),
+        .latched = grobo_session_is_latched(control->session),
+        .n_joints = control->driver->model->n_joints,
     };
+    grobo_i_control_lock(control);
+    seen.connected = control->up;
+    grobo_i_control_unlock(control);
     grobo_i_lock(robot); /* all at one moment: each function takes it again */
     seen.now_us = grobo_now_us();
     seen.moving = grobo_robot_moving(robot);

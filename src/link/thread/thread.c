@@ -34,7 +34,6 @@ static void look_for_owner(grobo_control *control, int64_t now_us)
     }
     grobo_i_control_unlock(control);
     if (lost && !grobo_i_control_has_exited(control)) {
-        (void)grobo_i_control_forget(control);
         (void)grobo_session_post_exit(control->session, GROBO_EXIT_DEFAULT);
     }
 }
