@@ -176,7 +176,8 @@ GROBO_API void grobo_session_bytes(const grobo_session *session, uint64_t *tx_by
  * noted in an atomic word, and the loop is woken. It is kept until the loop has carried it out, and
  * nothing else leaves before: the next frame on the wire is the stop. Where the loop does not turn,
  * because a callback holds it or no thread runs it, the request waits. Requests of the same
- * kind that the loop finds together are one. All return GROBO_OK, or GROBO_ERR_ARG. */
+ * kind that the loop finds together are one. What other threads ask of the engine meanwhile is
+ * stopped as well. All return GROBO_OK, or GROBO_ERR_ARG. */
 
 /**
  * grobo_robot_estop(), by the loop. The stop counts as latched from the return of this call on;

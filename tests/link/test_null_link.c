@@ -57,6 +57,8 @@ static grobo_sim_server_config server_config;
 static grobo_sim_server *made_server;
 static grobo_control_config control_config;
 static grobo_control *control;
+static grobo_control_event control_event = {GROBO_CONTROL_EVENT_INIT};
+static grobo_snapshot snapshot = {GROBO_SNAPSHOT_INIT};
 static grobo_control *made_control;
 
 static void on_timer(grobo_timer *from, int64_t late_us, void *ctx)
@@ -301,6 +303,11 @@ static void thread_refuses_null_in_its_first_functions(void **state)
     REFUSES(grobo_control_thread(control, NULL));
     REFUSES(grobo_control_svc(NULL));
     REFUSES(grobo_control_run(NULL));
+    REFUSES(grobo_control_next_event(NULL, &control_event));
+    REFUSES(grobo_control_next_event(control, NULL));
+    assert_true(grobo_control_event_socket(NULL) == GROBO_SOCKET_NULL);
+    REFUSES(grobo_control_snapshot(NULL, &snapshot));
+    REFUSES(grobo_control_snapshot(control, NULL));
     REFUSES(grobo_control_call(NULL, on_control, NULL));
     REFUSES(grobo_control_call(control, NULL, NULL));
     REFUSES(grobo_control_post(NULL, on_control, NULL));

@@ -10,9 +10,9 @@
 #include "src/link/thread/thread.h"
 #include "tests/support/stop_kit.h"
 
-static int stop_at_once(grobo_control *from)
+static int leave_off(grobo_control *from)
 {
-    return grobo_control_stop_motion(from, true);
+    return grobo_control_exit(from, GROBO_EXIT_OFF, 0);
 }
 
 static int post_nothing(grobo_control *from, void *arg)
@@ -29,35 +29,26 @@ static void have_no_slot(caller callers[4])
         assert_int_equal(grobo_control_post(control, post_nothing, NULL), GROBO_OK);
     }
     for (int i = 0; i < 4; i++) {
-        begin_call(&callers[i], stop_at_once, GROBO_CONTROL_CALLS_MAX + 1 + i);
+        begin_call(&callers[i], leave_off, GROBO_CONTROL_CALLS_MAX + 1 + i);
     }
 }
 
-static int stop_impatiently(bool at_once)
-{
-    int r;
-
-    control->timeout_us = SHORT_US; /* of this thread's calls, and there are no others */
-    r = grobo_control_stop_motion(control, at_once);
-    control->timeout_us = GROBO_CONTROL_TIMEOUT_US;
-    return r;
-}
-
-static void a_stop_that_nobody_awaits_is_carried_out(void **state)
+/* A stop is the engine's at once, and leaves when the loop turns. */
+static void a_stop_waits_for_no_loop(void **state)
 {
     (void)state;
     for (int at_once = 0; at_once < 2; at_once++) {
         stop_kit_start((grobo_control_config){.skip_exit = true});
         move_for_long();
         hold_begin(&gate);
-        assert_int_equal(stop_impatiently(at_once), GROBO_ERR_TIMEOUT);
+        assert_int_equal(grobo_control_stop_motion(control, at_once), GROBO_OK);
         hold_end(&gate);
         assert_int_equal(grobo_control_wait(control, LONG_US), GROBO_ERR_CANCELED);
         assert_false(grobo_control_is_latched(control));
 
         play_for_long();
         hold_begin(&gate);
-        assert_int_equal(stop_impatiently(at_once), GROBO_ERR_TIMEOUT);
+        assert_int_equal(grobo_control_stop_motion(control, at_once), GROBO_OK);
         hold_end(&gate);
         assert_int_equal(grobo_control_wait(control, LONG_US), GROBO_ERR_CANCELED);
         assert_int_equal(grobo_control_call(control, copy_seen, &told), 0);
@@ -77,7 +68,7 @@ static void calls_give_up_in_the_configured_time(void **state)
     stop_kit_start((grobo_control_config){.skip_exit = true, .timeout_us = SHORT_US});
     hold_begin(&gate);
     begun_us = grobo_now_us();
-    assert_int_equal(grobo_control_is_moving(control), GROBO_ERR_TIMEOUT);
+    assert_int_equal(grobo_control_open_port(control), GROBO_ERR_TIMEOUT);
     assert_in_range(grobo_now_us() - begun_us, SHORT_US, GROBO_CONTROL_TIMEOUT_US - 1);
     hold_end(&gate);
     stop_kit_end();
@@ -196,29 +187,24 @@ static void no_table_is_too_full_for_a_stop(void **state)
     caller callers[4];
 
     (void)state;
-    for (int leave = 0; leave < 2; leave++) {
-        stop_kit_start((grobo_control_config){.skip_exit = true, .timeout_us = LONG_US});
-        hold_begin(&gate);
-        have_no_slot(callers);
-        /* The others' stops are carried out in their turn, before this motion begins. */
-        if (leave) {
-            assert_int_equal(grobo_control_exit(control, GROBO_EXIT_OFF, 0), GROBO_ERR_FULL);
-        } else {
-            assert_int_equal(grobo_control_stop_motion(control, true), GROBO_ERR_FULL);
-        }
-        assert_int_equal(grobo_control_estop(control), GROBO_OK);
-        hold_end(&gate);
-        for (int i = 0; i < 4; i++) {
-            assert_int_equal(end_call(&callers[i]), GROBO_ERR_STATE);
-        }
-        (void)grobo_control_wait(control, 0);
-        assert_int_equal(grobo_control_call(control, copy_seen, &told), 0);
-        assert_int_equal(told.estops, 1);
-        assert_int_equal(told.exits, leave); /* after the emergency stop, which goes first */
-        assert_int_equal(grobo_control_get_servo_state(control, ELBOW),
-                         leave ? GROBO_TORQUE_OFF : GROBO_TORQUE_BRAKE);
-        stop_kit_end();
+    stop_kit_start((grobo_control_config){.skip_exit = true, .timeout_us = LONG_US});
+    move_for_long();
+    hold_begin(&gate);
+    have_no_slot(callers);
+    assert_int_equal(grobo_control_stop_motion(control, true), GROBO_OK);
+    assert_int_equal(grobo_control_exit(control, GROBO_EXIT_OFF, 0), GROBO_ERR_FULL);
+    assert_int_equal(grobo_control_estop(control), GROBO_OK);
+    hold_end(&gate);
+    for (int i = 0; i < 4; i++) {
+        int r = end_call(&callers[i]);
+        assert_true(r == GROBO_OK || r == GROBO_ERR_CANCELED); /* the next one took its place */
     }
+    (void)grobo_control_wait(control, 0);
+    assert_int_equal(grobo_control_call(control, copy_seen, &told), 0);
+    assert_int_equal(told.estops, 1);
+    assert_in_range(told.exits, 4, 5); /* the one that nobody awaits counts where it has begun */
+    assert_int_equal(grobo_control_get_servo_state(control, ELBOW), GROBO_TORQUE_OFF);
+    stop_kit_end();
 }
 
 static int leave_it(grobo_control *from)
@@ -245,7 +231,7 @@ static void a_callback_may_stop_and_leave(void **state)
     stop_kit_end();
 }
 
-static void requests_keep_their_order(void **state)
+static void a_posted_stop_ends_what_is_asked_for_before_its_turn(void **state)
 {
     (void)state;
     stop_kit_start((grobo_control_config){.skip_exit = true});
@@ -260,6 +246,8 @@ static void requests_keep_their_order(void **state)
     assert_int_equal(grobo_control_post_stop(control, false), GROBO_OK);
     assert_int_equal(grobo_control_start_motion(control), GROBO_OK);
     hold_end(&gate);
+    assert_int_equal(grobo_control_wait(control, 0), GROBO_ERR_CANCELED);
+    assert_int_equal(grobo_control_start_motion(control), GROBO_OK);
     assert_int_equal(grobo_control_wait(control, 0), GROBO_OK);
     control_assert_elbow_at(6);
 
@@ -274,6 +262,8 @@ static void requests_keep_their_order(void **state)
     assert_int_equal(grobo_control_post_exit(control, GROBO_EXIT_HOLD), GROBO_OK);
     assert_int_equal(grobo_control_play_motion(control, NULL), GROBO_OK);
     hold_end(&gate);
+    assert_int_equal(grobo_control_wait(control, 0), GROBO_ERR_CANCELED);
+    assert_int_equal(grobo_control_play_motion(control, NULL), GROBO_OK);
     assert_int_equal(grobo_control_wait(control, 0), GROBO_OK);
     control_assert_elbow_at(2);
     assert_int_equal(grobo_control_post_exit(control, (grobo_exit_policy)-1), GROBO_ERR_ARG);
@@ -317,7 +307,7 @@ static void a_port_is_not_closed_before_the_robot_is_left(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_stop_that_nobody_awaits_is_carried_out),
+        cmocka_unit_test(a_stop_waits_for_no_loop),
         cmocka_unit_test(calls_give_up_in_the_configured_time),
         cmocka_unit_test(a_caller_gives_up_when_its_function_returns),
         cmocka_unit_test(an_exit_that_has_begun_is_not_begun_again),
@@ -326,7 +316,7 @@ int main(void)
         cmocka_unit_test(an_exit_that_nobody_awaits_is_carried_out),
         cmocka_unit_test(no_table_is_too_full_for_a_stop),
         cmocka_unit_test(a_callback_may_stop_and_leave),
-        cmocka_unit_test(requests_keep_their_order),
+        cmocka_unit_test(a_posted_stop_ends_what_is_asked_for_before_its_turn),
         cmocka_unit_test(the_last_policy_prevails),
         cmocka_unit_test(a_port_is_not_closed_before_the_robot_is_left),
     };

@@ -81,7 +81,7 @@ static void change(worker *self, int i)
     r = grobo_control_set_command(self->control, "\x41\x00", 2);
     expect(self, r == 2, r);
     r = grobo_control_start_motion(self->control);
-    expect(self, r == GROBO_OK, r);
+    expect(self, r == GROBO_OK || r == GROBO_ERR_FULL, r);
 }
 
 static GROBO_THREAD_FUNC hammer(void *arg)
@@ -266,7 +266,6 @@ static void rounds_may_be_the_callers(void **state)
 
 static void what_is_posted_is_done_once(void **state)
 {
-    grobo_posture posture;
     int n = 0;
 
     (void)state;
@@ -278,7 +277,7 @@ static void what_is_posted_is_done_once(void **state)
     assert_int_equal(n, 0);
     /* The table is full: nothing waits for a place, and nothing that is there is lost. */
     assert_int_equal(grobo_control_post(control, count, &n), GROBO_ERR_FULL);
-    assert_int_equal(grobo_control_get_current_posture(control, &posture), GROBO_ERR_FULL);
+    assert_int_equal(grobo_control_open_port(control), GROBO_ERR_FULL);
     assert_int_equal(grobo_control_connect(control, 0), GROBO_ERR_FULL);
     assert_int_equal(grobo_control_start_thread(control), GROBO_OK);
     assert_int_equal(grobo_control_stop_thread(control), GROBO_OK);

@@ -34,7 +34,6 @@ static void look_for_owner(grobo_control *control, int64_t now_us)
     }
     grobo_i_control_unlock(control);
     if (lost && !grobo_i_control_has_exited(control)) {
-        (void)grobo_i_control_forget(control);
         (void)grobo_session_post_exit(control->session, GROBO_EXIT_DEFAULT);
     }
 }
@@ -320,6 +319,9 @@ static int make_parts(grobo_control *control, const grobo_control_config *config
         r = copy_names(control, config);
     }
     if (r >= 0) {
+        r = grobo_i_control_ring_new(control, config->events);
+    }
+    if (r >= 0) {
         set_postures(control);
         r = grobo_motion_new(&control->motion, GROBO_MOTION_POSTURES,
                              control->driver->model->n_joints, control->mem);
@@ -344,6 +346,7 @@ static void fill(grobo_control *control, const grobo_control_config *config)
         config->control_period_us != 0 ? config->control_period_us : GROBO_CONTROL_PERIOD_US;
     control->tick_us = GROBO_NEVER_US;
     control->called_us = grobo_now_us();
+    control->event_socket[0] = control->event_socket[1] = GROBO_SOCKET_NULL;
 }
 
 static void destroy(grobo_control *control)
@@ -355,6 +358,7 @@ static void destroy(grobo_control *control)
     }
     grobo_i_control_release_clip(control);
     grobo_motion_free(control->motion);
+    grobo_i_control_ring_free(control);
     grobo_cond_deinit(&control->changed);
     grobo_mutex_deinit(&control->lock);
     grobo_mutex_deinit(&control->engine);
@@ -388,6 +392,7 @@ int grobo_control_new(const grobo_control_config *config, grobo_control **contro
 
     if (config == NULL || control == NULL || config->session.base != NULL ||
         config->owner_timeout_us < 0 || config->timeout_us < 0 ||
+        config->events > GROBO_CONTROL_EVENTS_MAX ||
         (config->control_period_us != 0 && !is_period(config->control_period_us))) {
         return GROBO_ERR_ARG;
     }
