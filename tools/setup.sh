@@ -245,6 +245,10 @@ look_wanted() {
     [ $level -ge 3 ] || return
     need valgrind 'to check memory' have_command valgrind -- \
         valgrind valgrind valgrind valgrind valgrind
+    need cmake 'to check the build files for it' have_command cmake -- \
+        cmake cmake cmake cmake cmake
+    need meson 'to check the build files for it' have_command meson -- \
+        meson meson meson meson meson
     need 'clang with libFuzzer' 'to fuzz' have_fuzzer -- \
         'clang libclang-rt-dev' 'clang compiler-rt' 'clang compiler-rt' 'clang compiler-rt' clang
 }
