@@ -160,7 +160,7 @@ include tools/baremetal/baremetal.mk
 # ---- targets -------------------------------------------------------------------------------
 
 .PHONY: help all lib demo check lint lint-quick format test check-san check-tsan check-memcheck install uninstall
-.PHONY: clean sources wrap tidy fuzz soak cov dist bench plots captures cross check-cross check-drivers
+.PHONY: clean sources wrap deb check-deb release tidy fuzz soak cov dist bench plots captures cross check-cross check-drivers
 .PHONY: check-families check-ports check-long check-mutants check-map install-lib FORCE
 .PHONY: firmware size check-firmware
 
@@ -245,8 +245,9 @@ cross: ## build for another machine, in build/arm64 for TARGET=arm64
 check-cross: cross ## the tests of that build, under an emulator; RING= chooses
 	+@$(cross_make) test
 
-check-long: ## all machines, sabotage, fuzzing, the soak, scans of all lines: hours
+check-long: ## all machines, packages, sabotage, fuzzing, the soak, scans of all lines: hours
 	@$(MAKE) --no-print-directory check-ports
+	@$(MAKE) --no-print-directory check-deb
 	@$(MAKE) --no-print-directory check-mutants COUNT=300
 	@$(MAKE) --no-print-directory check-map COUNT=
 	@$(MAKE) --no-print-directory fuzz FUZZ_S=300
@@ -364,6 +365,18 @@ wrap: ## build/subprojects, for the Meson projects that take TARBALL=build/libgr
 	@cp tools/package/meson/meson.build $(BUILD)/subprojects/packagefiles/grobo
 	@sed -e 's|@VERSION@|$(VERSION)|' -e "s|@SHA256@|$$(sha256sum <$(TARBALL) | cut -d ' ' -f 1)|" \
 	    tools/package/meson/grobo.wrap.in >$(BUILD)/subprojects/grobo.wrap
+
+ARCH ?=
+deb: ## Debian packages in build/deb, for this machine or ARCH=arm64
+	@tools/setup.sh --packages
+	@tools/package/deb.sh "$(BUILD)" $(ARCH)
+
+check-deb: ## these for amd64 and arm64: lintian, and installed and purged in fresh Debian and Ubuntu roots
+	-@tools/setup.sh --packages
+	@BUILD="$(BUILD)" TEST_TIMEOUT_S=3600 TEST_LOGS="$(BUILD)/logs/deb" tests/run.sh tests/package/deb.sh
+
+release: ## refuse where a step of a release is missing, else make the tarball
+	@GRCTL="$(GRCTL)" BUILD="$(BUILD)" tools/package/release.sh
 
 # What grctl prints of itself: FILE=ARGUMENTS. It takes a grctl that runs on this machine.
 GRCTL_HERE ?= $(if $(CROSS_COMPILE),,$(GRCTL_RUN))
