@@ -146,7 +146,8 @@ EXAMPLES := $(patsubst %.c,$(BUILD)/%$(EXE),$(EXAMPLE_SRCS))
 STATIC_LIB := $(BUILD)/libgrobo.a
 CORE_LIB := $(BUILD)/libgrobo-core.a
 SHARED_LIB := $(if $(SONAME),$(BUILD)/$(SONAME))
-PC_FILE := $(BUILD)/grobo.pc
+PC_FILES := $(BUILD)/grobo.pc $(BUILD)/grobo-core.pc
+CMAKE_FILES := $(BUILD)/cmake/grobo-config.cmake $(BUILD)/cmake/grobo-config-version.cmake
 GRCTL := $(if $(TOOL_SRCS),$(BUILD)/grctl$(EXE))
 # What runs on this machine: grctl, or a script that gives it to the emulator.
 GRCTL_RUN := $(if $(EMULATOR),$(BUILD)/run/grctl,$(GRCTL))
@@ -161,7 +162,7 @@ include tools/baremetal/baremetal.mk
 
 .PHONY: help all lib demo check robots lint lint-quick format test check-san check-tsan check-memcheck install uninstall
 .PHONY: clean tidy fuzz soak cov dist bench bench-peers bench-count plots captures cross check-cross check-drivers
-.PHONY: check-families check-ports check-long check-mutants check-map install-lib FORCE
+.PHONY: sources wrap deb check-deb release check-families check-ports check-long check-mutants check-map install-lib FORCE
 .PHONY: firmware size check-firmware
 
 help: ## this list
@@ -172,7 +173,7 @@ help: ## this list
 
 all: lib $(GRCTL) $(GRCTL_RUN) $(ALSO) ## libraries and grctl, in build/
 
-lib: $(STATIC_LIB) $(CORE_LIB) $(SHARED_LIB) $(PC_FILE) ## the libraries alone: libevent and libyaml are enough
+lib: $(STATIC_LIB) $(CORE_LIB) $(SHARED_LIB) $(PC_FILES) $(CMAKE_FILES) ## the libraries alone: libevent and libyaml are enough
 
 MOTION ?= motions/greet.pseq
 demo: ## play MOTION=motions/greet.pseq on a simulated robot behind a pty
@@ -249,8 +250,9 @@ cross: ## build for another machine, in build/arm64 for TARGET=arm64
 check-cross: cross ## the tests of that build, under an emulator; RING= chooses
 	+@$(cross_make) test
 
-check-long: ## all machines, sabotage, fuzzing, the soak, scans of all lines: hours
+check-long: ## all machines, packages, sabotage, fuzzing, the soak, scans of all lines: hours
 	@$(MAKE) --no-print-directory check-ports
+	@$(MAKE) --no-print-directory check-deb
 	@$(MAKE) --no-print-directory check-mutants COUNT=300
 	@$(MAKE) --no-print-directory check-map COUNT=
 	@$(MAKE) --no-print-directory fuzz FUZZ_S=300
@@ -363,8 +365,29 @@ dist: ## a tarball of the last commit, in build/
 	@[ -e .git ] && git rev-parse -q --verify HEAD >/dev/null || \
 	    { echo 'dist: not a git checkout: a tarball is made of a commit' >&2; exit 1; }
 	@mkdir -p $(BUILD)
-	git archive --prefix=$(DIST)/ -o $(BUILD)/$(DIST).tar HEAD
+	git -c tar.umask=0022 archive --prefix=$(DIST)/ -o $(BUILD)/$(DIST).tar HEAD
 	@gzip -nf $(BUILD)/$(DIST).tar
+	@$(MAKE) --no-print-directory wrap
+
+TARBALL ?= $(BUILD)/$(DIST).tar.gz
+wrap: ## build/subprojects, for the Meson projects that take TARBALL=build/libgrobo-....tar.gz along
+	@mkdir -p $(BUILD)/subprojects/packagefiles/grobo
+	@cp $(TARBALL) $(BUILD)/subprojects/packagefiles/$(DIST).tar.gz
+	@cp tools/package/meson/meson.build $(BUILD)/subprojects/packagefiles/grobo
+	@sed -e 's|@VERSION@|$(VERSION)|' -e "s|@SHA256@|$$(sha256sum <$(TARBALL) | cut -d ' ' -f 1)|" \
+	    tools/package/meson/grobo.wrap.in >$(BUILD)/subprojects/grobo.wrap
+
+ARCH ?=
+deb: ## Debian packages in build/deb, for this machine or ARCH=arm64
+	@tools/setup.sh --packages
+	@tools/package/deb.sh "$(BUILD)" $(ARCH)
+
+check-deb: ## these for amd64 and arm64: lintian, and installed and purged in fresh Debian and Ubuntu roots
+	-@tools/setup.sh --packages
+	@BUILD="$(BUILD)" TEST_TIMEOUT_S=3600 TEST_LOGS="$(BUILD)/logs/deb" tests/run.sh tests/package/deb.sh
+
+release: ## refuse where a step of a release is missing, else make the tarball
+	@GRCTL="$(GRCTL)" BUILD="$(BUILD)" tools/package/release.sh
 
 # What grctl prints of itself: FILE=ARGUMENTS. It takes a grctl that runs on this machine.
 GRCTL_HERE ?= $(if $(CROSS_COMPILE),,$(GRCTL_RUN))
@@ -389,13 +412,14 @@ install -m 755 $(SHARED_LIB) "$(DESTDIR)$(if $(IMPORT_LIB),$(BINDIR),$(LIBDIR))"
 	    "$(DESTDIR)$(LIBDIR)/$(or $(IMPORT_LIB),$(LINK_NAME))"
 endef
 
-install-lib: lib ## headers, libraries and grobo.pc alone
-	install -d "$(DESTDIR)$(LIBDIR)/pkgconfig" "$(DESTDIR)$(INCLUDEDIR)/grobo" \
+install-lib: lib ## headers, libraries and what finds them: pkg-config, CMake
+	install -d "$(DESTDIR)$(LIBDIR)/pkgconfig" "$(DESTDIR)$(LIBDIR)/cmake/grobo" "$(DESTDIR)$(INCLUDEDIR)/grobo" \
 	    $(if $(IMPORT_LIB),"$(DESTDIR)$(BINDIR)")
 	install -m 644 include/grobo/*.h ports/$(PORT)/include/grobo/*.h "$(DESTDIR)$(INCLUDEDIR)/grobo"
 	install -m 644 $(STATIC_LIB) $(CORE_LIB) "$(DESTDIR)$(LIBDIR)"
 	$(if $(SHARED_LIB),$(install_shared))
-	install -m 644 $(PC_FILE) "$(DESTDIR)$(LIBDIR)/pkgconfig"
+	install -m 644 $(PC_FILES) "$(DESTDIR)$(LIBDIR)/pkgconfig"
+	install -m 644 $(CMAKE_FILES) "$(DESTDIR)$(LIBDIR)/cmake/grobo"
 
 install: all install-lib $(JSON_PAGE) ## into $(DESTDIR)$(PREFIX)
 	install -d "$(DESTDIR)$(BINDIR)"
@@ -409,13 +433,18 @@ install: all install-lib $(JSON_PAGE) ## into $(DESTDIR)$(PREFIX)
 	install -m 644 tools/wireshark/grobo.lua "$(DESTDIR)$(DATADIR)/grobo/wireshark"
 
 uninstall: ## take out what install put in
-	rm -rf "$(DESTDIR)$(INCLUDEDIR)/grobo"
+	rm -rf "$(DESTDIR)$(INCLUDEDIR)/grobo" "$(DESTDIR)$(LIBDIR)/cmake/grobo"
 	rm -f $(foreach file,libgrobo.a libgrobo-core.a $(LINK_NAME) $(SONAME) $(IMPORT_LIB) \
-	    pkgconfig/grobo.pc,"$(DESTDIR)$(LIBDIR)/$(file)")
+	    $(patsubst $(BUILD)/%,pkgconfig/%,$(PC_FILES)),"$(DESTDIR)$(LIBDIR)/$(file)")
 	rm -f $(foreach file,grctl$(EXE) $(if $(IMPORT_LIB),$(SONAME)),"$(DESTDIR)$(BINDIR)/$(file)")
 	rm -f $(foreach page,$(PAGES),"$(DESTDIR)$(DATADIR)/$(firstword $(subst =, ,$(page)))")
 	rm -f "$(DESTDIR)$(DATADIR)/man/man5/grctl-json.5"
 	rm -rf "$(DESTDIR)$(DATADIR)/grobo"
+
+# tools/package has build files for programs that take the source along; this is what they ask for.
+sources: ## version, flags and files of the libraries, for other build systems
+	@printf '%s\n' 'version=$(VERSION)' 'soname=$(SONAME)' 'flags=$(OS_FLAGS)' 'libs=$(OS_LIBS)' \
+	    'guard=$(BINDIR)/grctl' 'core=$(CORE_SRCS)' 'other=$(OTHER_SRCS)'
 
 clean: ## remove $(BUILD)
 	rm -rf $(BUILD)$(if $(SPACED), "$(SPACED)")
@@ -522,12 +551,20 @@ up := $(empty) $(empty)
 from_pc = $(subst $(up),,$(foreach part,$(subst /, ,$(LIBDIR:$(PREFIX)/%=%) pkgconfig),/..))
 pc_prefix = $(if $(filter $(PREFIX)/%,$(LIBDIR)),$${pcfiledir}$(from_pc),$(PREFIX))
 pc_path = $(patsubst $(PREFIX)/%,$${prefix}/%,$(1))
-$(PC_FILE): FORCE
-	$(call keep,'prefix=$(pc_prefix)' 'libdir=$(call pc_path,$(LIBDIR))' \
-	    'includedir=$(call pc_path,$(INCLUDEDIR))' '' \
-	    'Name: grobo' 'Description: Drives serial command-servo robots' 'Version: $(VERSION)' \
-	    'Requires.private: libevent_core yaml-0.1' 'Cflags: -I$${includedir}' \
-	    'Cflags.private: $(WHOLE)' \
-	    'Libs: -L$${libdir} -lgrobo' 'Libs.private: $(OS_LIBS)')
+# $(call pkg_config,DESCRIPTION,CFLAGS,LIBRARY,LINES): the lines of the file that is the target.
+pkg_config = 'prefix=$(pc_prefix)' 'libdir=$(call pc_path,$(LIBDIR))' \
+    'includedir=$(call pc_path,$(INCLUDEDIR))' '' 'Name: $(basename $(@F))' 'Description: $(1)' \
+    'Version: $(VERSION)' 'Cflags: -I$${includedir}$(2)' 'Libs: -L$${libdir} $(3)' $(4)
+$(BUILD)/grobo.pc: FORCE
+	$(call keep,$(call pkg_config,Drives serial command-servo robots,,-lgrobo,'Cflags.private: $(WHOLE)' \
+	    'Requires.private: libevent_core yaml-0.1' 'Libs.private: $(OS_LIBS)'))
+$(BUILD)/grobo-core.pc: FORCE
+	$(call keep,$(call pkg_config,The engine of grobo for loops and firmware of your own, $(WHOLE),-lgrobo-core -lm))
+
+# Its files are found from where it lies itself.
+up_from = $(if $(filter $(PREFIX)/%,$(2)),$${grobo_libdir}$(subst $(up),,$(foreach part,$(subst /, \
+    ,$(1:$(PREFIX)/%=%)),/..))/$(2:$(PREFIX)/%=%),$(2))
+$(BUILD)/cmake/grobo-%.cmake: tools/package/grobo-%.cmake.in FORCE
+	$(call keep,"$$(sed -e 's|@VERSION@|$(VERSION)|' -e 's|@INCLUDEDIR@|$(call up_from,$(LIBDIR),$(INCLUDEDIR))|' $<)")
 
 -include $(shell find $(addprefix $(BUILD)/,src ports tools tests docs bare) -name '*.d' 2>/dev/null)

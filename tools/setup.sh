@@ -3,13 +3,14 @@
 # Installs what is missing to build libgrobo, with the system's package manager.
 #
 # usage: tools/setup.sh [--demo | --check | --ci | --cross TARGET | --drivers | --ports |
-#                        --mutants] [--dry-run]
+#                        --mutants | --packages] [--dry-run]
 #   --demo     what a build and the demo need (default)
 #   --check    that, what `make check` needs, and the programs without which it skips checks
 #   --ci       that, and what the other stages of .ci/run need: clang with libFuzzer, valgrind
 #   --cross    what `make cross TARGET=...` needs (Debian only)
 #   --drivers  what --check needs, and `make check-drivers`
 #   --mutants  what --check needs, and `make check-mutants`
+#   --packages what a build needs, and `make deb` and `make check-deb` (Debian only)
 #   --ports    what --check needs, and every target of `make check-ports`
 #   --dry-run  say what would be installed, touch nothing
 #
@@ -27,6 +28,7 @@ while [ $# -gt 0 ]; do
     --ci) level=3 ;;
     --drivers) level=2 targets=drivers ;;
     --mutants) level=2 targets=mutants ;;
+    --packages) targets=packages ;;
     --ports)
         level=2 targets='arm64 armhf riscv64 s390x musl musl-arm64 win64 macos drivers baremetal'
         ;;
@@ -154,6 +156,13 @@ look_cross() {
         need objcopy 'to make mutants' have_command objcopy -- \
             binutils binutils binutils binutils binutils
         ;;
+    packages)
+        need_debian debhelper 'to build packages' have_command dh -- debhelper
+        need_debian lintian 'to check packages' have_command lintian -- lintian
+        need_debian debootstrap 'to try packages' have_command /usr/sbin/debootstrap -- debootstrap
+        need_debian "Ubuntu's keys" 'to try packages' \
+            [ -e /usr/share/keyrings/ubuntu-archive-keyring.gpg ] -- ubuntu-keyring
+        ;;
     drivers)
         need qemu-system-x86_64 'to boot a kernel' have_command qemu-system-x86_64 -- \
             qemu-system-x86 qemu-system-x86-core qemu-system-x86 qemu-system-x86_64 qemu-x86
@@ -245,6 +254,10 @@ look_wanted() {
     [ $level -ge 3 ] || return
     need valgrind 'to check memory' have_command valgrind -- \
         valgrind valgrind valgrind valgrind valgrind
+    need cmake 'to check the build files for it' have_command cmake -- \
+        cmake cmake cmake cmake cmake
+    need meson 'to check the build files for it' have_command meson -- \
+        meson meson meson meson meson
     need 'clang with libFuzzer' 'to fuzz' have_fuzzer -- \
         'clang libclang-rt-dev' 'clang compiler-rt' 'clang compiler-rt' 'clang compiler-rt' clang
 }

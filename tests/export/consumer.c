@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include <grobo/error.h>
+#include <grobo/thread.h>
 #include <grobo/version.h>
 
 int main(void)
@@ -11,6 +12,15 @@ int main(void)
     if (strcmp(grobo_version(), GROBO_VERSION_STRING) != 0 ||
         grobo_version_number() != GROBO_VERSION_NUMBER) {
         fprintf(stderr, "headers are %s, library is %s\n", GROBO_VERSION_STRING, grobo_version());
+        return 1;
+    }
+    grobo_control_config config;
+    memset(&config, 0, sizeof config);
+    config.session.device = "sim";
+    grobo_control *control = NULL;
+    int result = grobo_control_new(&config, &control);
+    if (result < 0 || grobo_control_free(control) < 0) {
+        fprintf(stderr, "no robot: %s\n", grobo_error_text(result));
         return 1;
     }
     puts(grobo_error_text(GROBO_ERR_TIMEOUT));

@@ -46,6 +46,14 @@ tarball() {
     [ -e "$source/Makefile" ]
 }
 
+same_tarball() {
+    [ -e .git ] || return 0 # this is one
+    first=$(cat "$work"/dist/*.tar.gz | sha256sum)
+    umask 077 && make_in "$here" dist BUILD="$work/dist" &&
+        [ "$(cat "$work"/dist/*.tar.gz | sha256sum)" = "$first" ] &&
+        grep -q "^source_hash = ${first%% *}" "$work/dist/subprojects/grobo.wrap"
+}
+
 dist_needs_git() {
     make_in "$source" dist BUILD="$work/again" >"$work/out" 2>&1 && return 1
     cat "$work/out"
@@ -118,6 +126,7 @@ if [ -n "${CROSS:-}${EMULATOR:-}" ]; then
 fi
 check 'a tarball, unpacked' tarball
 source=$(echo "$work"/libgrobo-*)
+check 'the same commit, the same tarball' same_tarball
 check 'a tarball of a tarball: one line, and no file' dist_needs_git
 check 'a warning is an error in a checkout only' no_werror_in_a_tarball
 check 'the libraries alone need libevent and libyaml' needs_no_more

@@ -1,0 +1,148 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# The Debian packages: lintian finds nothing, and in a fresh root of each distribution they are
+# installed, tried, and purged without a trace. Takes minutes, root and a network: `make check-deb`.
+# environment: BUILD; SUITES="bookworm noble"; ARCHS="amd64 arm64", of which this machine's is run
+set -u
+
+. tests/support/tap.sh
+build=${BUILD:-build}
+here=$(dpkg --print-architecture 2>/dev/null)
+work=$build/package
+mkdir -p "$work/roots" || exit 1
+root=
+trap '[ -z "$root" ] || rm -rf "$root"' EXIT
+
+for command in dh lintian debootstrap; do
+    if ! PATH=$PATH:/usr/sbin command -v $command >/dev/null; then
+        skip 'Debian packages' "no $command (tools/setup.sh --packages installs it)"
+        done_testing
+        exit 0
+    fi
+done
+
+debs() {
+    find "$build/deb/$1" -name '*.deb' ! -name '*dbgsym*'
+}
+
+clean() {
+    lintian --allow-root --fail-on error,warning "$build/deb/$1"/*.changes >"$work/lintian" 2>&1 &&
+        [ ! -s "$work/lintian" ] || { cat "$work/lintian"; return 1; }
+}
+
+# complete ARCH: each package is there, and binaries are that machine's.
+complete() {
+    for package in $packages; do
+        debs "$1" | grep -q -e "/${package}_.*_\($1\|all\)\.deb$" ||
+            { echo "no $package"; return 1; }
+    done
+    case $1 in amd64) machine=X86-64 ;; *) machine=AArch64 ;; esac
+    dpkg-deb --fsys-tarfile "$(debs "$1" | grep /grctl_)" | tar -xOf - ./usr/bin/grctl \
+        >"$work/grctl" && readelf -h "$work/grctl" | grep -q "Machine: .*$machine"
+}
+
+same_needs() {
+    for package in grctl libgrobo0; do
+        for arch in "$here" "$1"; do
+            dpkg-deb -f "$(debs "$arch" | grep "/${package}_")" Depends >"$work/needs-$arch"
+        done
+        diff "$work/needs-$here" "$work/needs-$1" || return 1
+    done
+}
+
+# ---- a fresh root --------------------------------------------------------------------------
+
+# make_root SUITE: kept as a tarball; unpacked into $root.
+make_root() {
+    tarball=$work/roots/$1.tar
+    rm -rf "$root"
+    if [ ! -s "$tarball" ]; then
+        case $1 in
+        noble) set -- noble "$root" http://archive.ubuntu.com/ubuntu gutsy ;;
+        *) set -- "$1" "$root" http://deb.debian.org/debian ;;
+        esac
+        PATH=$PATH:/usr/sbin:/sbin debootstrap --variant=minbase \
+            --include=gcc,libc6-dev,pkg-config "$@" >"$work/debootstrap" 2>&1 ||
+            { tail -n 5 "$work/debootstrap"; return 1; }
+        tar -C "$root" -cf "$tarball.new" --exclude='./proc/*' --exclude='./sys/*' . &&
+            mv "$tarball.new" "$tarball" || return 1
+    else
+        mkdir "$root" && tar -C "$root" -xf "$tarball" || return 1
+    fi
+    cp /etc/resolv.conf "$root/etc/resolv.conf"
+    mkdir "$root/debs" && cp $(debs "$here") "$root/debs" && in_root apt-get -q update
+}
+
+in_root() {
+    env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 \
+        DEBIAN_FRONTEND=noninteractive TMPDIR=/tmp chroot "$root" "$@"
+}
+
+# Names only; what apt keeps for itself is not ours.
+list_files() {
+    (cd "$root" && find . \( -path ./proc -o -path ./sys -o -path ./dev -o -path ./debs -o \
+        -path ./var/cache -o -path ./var/log -o -path ./var/lib/apt -o -path ./tmp \) -prune -o \
+        ! -name '*-old' -print | sort)
+}
+
+installs() {
+    list_files >"$work/before"
+    in_root sh -c 'apt-get -q -y -o APT::Sandbox::User=root --no-install-recommends install \
+        /debs/*.deb' >"$work/apt" 2>&1 || { tail -n 20 "$work/apt"; return 1; }
+}
+
+runs() {
+    in_root grctl -d sim status >"$work/status" 2>&1 && grep -q R_ELBOW_P "$work/status" ||
+        { cat "$work/status"; return 1; }
+}
+
+compiles() {
+    cat >"$root/consumer.c" <tests/export/consumer.c
+    in_root sh -c 'cc -o /consumer /consumer.c $(pkg-config --cflags --libs grobo)' &&
+        [ "$(in_root /consumer)" = 'no reply in time' ]
+}
+
+owns() {
+    for file in /usr/bin/grctl /usr/share/man/man1/grctl.1.gz /usr/share/man/man5/grctl-json.5.gz \
+        /usr/lib/udev/rules.d/60-grobo.rules /usr/share/bash-completion/completions/grctl \
+        /usr/share/zsh/site-functions/_grctl /usr/share/fish/vendor_completions.d/grctl.fish; do
+        in_root dpkg -L grctl | grep -q -Fx "$file" || { echo "no $file"; return 1; }
+    done
+}
+
+purges() {
+    rm -f "$root/consumer" "$root/consumer.c"
+    # shellcheck disable=SC2086
+    in_root apt-get -q -y purge --autoremove $packages >"$work/apt" 2>&1 ||
+        { tail -n 20 "$work/apt"; return 1; }
+    list_files >"$work/after"
+    diff "$work/before" "$work/after"
+}
+
+packages=$(sed -n 's/^Package: //p' tools/package/debian/control)
+for arch in ${ARCHS:-amd64 arm64}; do
+    check "$arch: built" tools/package/deb.sh "$build" "$arch"
+    check "$arch: complete" complete "$arch"
+    check "$arch: lintian finds nothing" clean "$arch"
+    [ "$arch" = "$here" ] || check "$arch: needs the same packages" same_needs "$arch"
+done
+for suite in ${SUITES:-bookworm noble}; do
+    root=$work/root-$suite
+    if [ "$(id -u)" -ne 0 ]; then
+        skip "$suite" 'a fresh root is made by root'
+        continue
+    fi
+    if ! make_root "$suite" >"$work/why" 2>&1; then
+        skip "$suite" "no fresh root: $(tail -n 1 "$work/why")"
+        rm -rf "$root"
+        continue
+    fi
+    check "$suite: installed" installs
+    check "$suite: grctl -d sim status" runs
+    check "$suite: a program is compiled" compiles
+    check "$suite: man pages, completion, udev rule" owns
+    check "$suite: purged without a trace" purges
+    rm -rf "$root"
+done
+root=
+done_testing
