@@ -240,9 +240,9 @@ static int take_field(reader *r, const char *key)
         robot->offsets = true;
         return take_degrees(r, robot->offset_deg, &at, &end);
     }
-    return complain(r, &r->event.start_mark,
-                    "no key '%s'; there are device, robot, wiring, echo, baud, on_exit, trim, offset",
-                    key);
+    return complain(
+        r, &r->event.start_mark,
+        "no key '%s'; there are device, robot, wiring, echo, baud, on_exit, trim, offset", key);
 }
 
 /* The name of a robot lives no longer than its event: the nearest one is copied. */
@@ -364,9 +364,9 @@ static int find(reader *r)
 /* Commands that speak to no robot: a bad configuration does not keep them from working. */
 static bool is_offline(const cli_command *command)
 {
-    static const char *const names[] = {"ports",      "check",   "show",   "plot",
-                                        "convert",    "decode",  "sim",    "help",
-                                        "completion", "version", "budget", "joints"};
+    static const char *const names[] = {"ports",  "check",  "show", "plot",       "convert",
+                                        "decode", "sim",    "help", "completion", "version",
+                                        "budget", "joints", "robot"};
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         if (strcmp(command->name, names[i]) == 0) {
             return true;
