@@ -105,10 +105,10 @@ LIBS = $(call once,LIBS,$(call flags,--libs,yaml-0.1 libevent_core) $(OS_LIBS))
 # ---- sources, by folder: a folder may be empty or missing ----------------------------------
 
 # The core needs no C library but memcpy() and its like, and mathematics.
-CORE_FOLDERS := base model play bus servo servo/* robot sim
+CORE_FOLDERS := base model play bus servo servo/* robot robots sim
 HEAP := src/base/memory.c
 CORE_SRCS := $(filter-out $(HEAP),$(sort $(wildcard $(CORE_FOLDERS:%=src/%/*.c))))
-OTHER_SRCS := $(sort $(HEAP) $(wildcard src/motion/*/*.c src/body/*.c src/link/*/*.c ports/common/*.c \
+OTHER_SRCS := $(sort $(HEAP) $(wildcard src/motion/*/*.c src/robots/file/*.c src/body/*.c src/link/*/*.c ports/common/*.c \
     ports/$(PORT)/*.c))
 TOOL_SRCS := $(if $(wildcard tools/grctl/main.c),$(sort $(filter-out tools/grctl/edit/% tools/grctl/screen/%,\
     $(wildcard tools/grctl/*.c tools/grctl/*/*.c tools/grctl/os/$(PORT)/*.c)) tools/grctl/edit/$(EDIT).c \
@@ -151,6 +151,7 @@ GRCTL := $(if $(TOOL_SRCS),$(BUILD)/grctl$(EXE))
 # What runs on this machine: grctl, or a script that gives it to the emulator.
 GRCTL_RUN := $(if $(EMULATOR),$(BUILD)/run/grctl,$(GRCTL))
 SUPPORT_LIB := $(BUILD)/libsupport.a
+ROBOTS := $(BUILD)/tools/robots/robots
 
 VERSION = $(shell sed -n 's/.*GROBO_VERSION_STRING "\(.*\)"/\1/p' include/grobo/version.h)
 
@@ -158,7 +159,7 @@ include tools/baremetal/baremetal.mk
 
 # ---- targets -------------------------------------------------------------------------------
 
-.PHONY: help all lib demo check lint lint-quick format test check-san check-tsan check-memcheck install uninstall
+.PHONY: help all lib demo check robots lint lint-quick format test check-san check-tsan check-memcheck install uninstall
 .PHONY: clean tidy fuzz soak cov dist bench plots captures cross check-cross check-drivers
 .PHONY: check-families check-ports check-long check-mutants check-map install-lib FORCE
 .PHONY: firmware size check-firmware
@@ -186,11 +187,14 @@ check: ## set up what is missing, build, lint, run every test
 	@echo 'left out: other machines, firmware and real drivers (make check-ports)'
 	@$(MAKE) --no-print-directory test
 
-lint: all ## check the rules of the house: sources, objects, headers, symbols
+lint: all $(ROBOTS) ## check the rules of the house: sources, objects, headers, symbols
 	@tools/lint/run.sh --all $(BUILD)
 
 lint-quick: ## the rules that sources alone can break; takes a second
 	@tools/lint/run.sh --quick
+
+robots: $(ROBOTS) ## make the tables of src/robots from its files
+	@tools/robots/make.sh $(ROBOTS)
 
 format: ## write sources as clang-format 14 does; FILES="src/bus/bus.c" chooses
 	@tools/lint/format.sh --fix $(or $(FILES),$(shell find include src ports tools tests docs -name '*.[ch]'))
@@ -436,9 +440,11 @@ TOOL_INCLUDE := -I. $(WHOLE)
 TEST_INCLUDE := -I. $(WHOLE)
 $(eval $(call compile,src,SRC_INCLUDE))
 $(eval $(call compile,src/motion,SRC_INCLUDE YAML_CFLAGS))
+$(eval $(call compile,src/robots/file,SRC_INCLUDE YAML_CFLAGS))
 $(eval $(call compile,src/link,SRC_INCLUDE OS_FLAGS EVENT_CFLAGS))
 $(eval $(call compile,ports/common,SRC_INCLUDE))
 $(eval $(call compile,ports/$(PORT),SRC_INCLUDE OS_FLAGS))
+$(eval $(call compile,tools/robots,TOOL_INCLUDE))
 $(eval $(call compile,tools/grctl,TOOL_INCLUDE OS_FLAGS EVENT_CFLAGS YAML_CFLAGS JSON_CFLAGS EDIT_CFLAGS SCREEN_CFLAGS))
 $(eval $(call compile,docs/examples,WHOLE OS_FLAGS EVENT_CFLAGS))
 $(eval $(call compile,tests,TEST_INCLUDE OS_FLAGS EVENT_CFLAGS YAML_CFLAGS CMOCKA_CFLAGS JSON_CFLAGS))
@@ -473,6 +479,11 @@ $(SHARED_LIB): $(LIB_OBJS) src/libgrobo.map
 $(BUILD)/grctl$(EXE): $(filter %/main.o,$(TOOL_OBJS)) $(TOOL_LIB) $(STATIC_LIB)
 	$(say) LD $@
 	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(TOOL_LIBS) $(LIBS)
+
+# Of the reader alone: it makes the tables that the library has.
+$(ROBOTS): $(BUILD)/tools/robots/main.o $(STATIC_LIB)
+	$(say) LD $@
+	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
 
 $(BUILD)/run/grctl: $(GRCTL)
 	@mkdir -p $(@D)

@@ -38,6 +38,7 @@
 #include <grobo/robot.h>
 #include <grobo/robot_config.h>
 #include <grobo/robot_event.h>
+#include <grobo/robot_file.h>
 #include <grobo/rs30x.h>
 #include <grobo/sequencer.h>
 #include <grobo/serial.h>

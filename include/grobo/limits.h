@@ -129,6 +129,12 @@
 #define GROBO_IK_LINKS_MAX 16
 /** Names of joints, links, motions: bytes with the final NUL. */
 #define GROBO_NAME_MAX_BYTES 64
+/** Robot files: groups of joints. */
+#define GROBO_ROBOT_GROUPS_MAX 32
+/** Robot files: rigid parts. */
+#define GROBO_ROBOT_LINKS_MAX 64
+/** Robot files: USB ids. */
+#define GROBO_ROBOT_USB_MAX 8
 /** Motion files: diagnostics kept of one file; more are counted only. */
 #define GROBO_DIAGNOSTICS_MAX 1000
 

@@ -283,6 +283,12 @@ static bool factory(grobo_sim *sim, int index, uint8_t id, uint32_t baud_bps)
     grobo_i_dxl_factory(servo);
     grobo_i_dxl_put(servo, GROBO_ROLE_ID, id);
     grobo_i_dxl_put(servo, GROBO_ROLE_BAUD, code);
+    if (sim->config.mounted) {
+        bool turns = sim->config.model->joints[index].turns;
+        grobo_i_dxl_put(servo, GROBO_ROLE_DIRECTION, GROBO_DXL2_DRIVE_TIME);
+        grobo_i_dxl_put(servo, GROBO_ROLE_MODE,
+                        turns ? GROBO_DXL2_MODE_EXTENDED : GROBO_DXL2_MODE_POSITION);
+    }
     memcpy(servo->flash, servo->reg, sizeof servo->flash);
     return true;
 }

@@ -288,12 +288,18 @@ int grobo_sim_set_line_bps(grobo_sim *sim, uint32_t line_bps)
 
 /* ---- power-up ------------------------------------------------------------------------------ */
 
-static int32_t start_mdeg(grobo_sim *sim, const grobo_sim_servo *servo, double init_rad)
+/* Of the shaft of a servo, which may be mounted the other way round, turned or geared down. */
+static int32_t shaft_mdeg(const grobo_joint *joint, double angle_rad)
+{
+    return grobo_i_sim_mdeg_of_rad(grobo_joint_to_servo(joint, angle_rad));
+}
+
+static int32_t start_mdeg(grobo_sim *sim, const grobo_sim_servo *servo, const grobo_joint *joint)
 {
     int32_t span_mdeg = servo->stop_max_mdeg - servo->stop_min_mdeg;
     switch (sim->config.start) {
     case GROBO_SIM_START_INIT:
-        return grobo_i_sim_mdeg_of_rad(init_rad);
+        return shaft_mdeg(joint, joint->init_rad);
     case GROBO_SIM_START_ZERO:
         return servo->stop_min_mdeg > 0   ? servo->stop_min_mdeg
                : servo->stop_max_mdeg < 0 ? servo->stop_max_mdeg
@@ -342,9 +348,10 @@ static int init_servo(grobo_sim *sim, int index)
     if (servo->family == NULL || ear_of(sim, servo->family) == NULL) {
         return GROBO_ERR_UNSUPPORTED;
     }
-    servo->stop_min_mdeg = grobo_i_sim_mdeg_of_rad(joint->min_rad);
-    servo->stop_max_mdeg = grobo_i_sim_mdeg_of_rad(joint->max_rad);
-    servo->from_mdeg = servo->to_mdeg = start_mdeg(sim, servo, joint->init_rad);
+    bool reversed = joint->sign < 0;
+    servo->stop_min_mdeg = shaft_mdeg(joint, reversed ? joint->max_rad : joint->min_rad);
+    servo->stop_max_mdeg = shaft_mdeg(joint, reversed ? joint->min_rad : joint->max_rad);
+    servo->from_mdeg = servo->to_mdeg = start_mdeg(sim, servo, joint);
     if (sim->config.no_stops) {
         servo->stop_max_mdeg = servo->model == NULL ? NO_STOP_MDEG : WHEEL_MDEG;
         servo->stop_min_mdeg = -servo->stop_max_mdeg;

@@ -603,4 +603,12 @@ echo x >notes.txt
 check 'tree: a stray file' refuses 'notes.txt stands at the top' sh "$gates/tree.sh"
 rm -r notes.txt src
 check 'tree: a name too many' refuses 'names src, which is not' sh "$gates/tree.sh"
+
+fresh
+echo 'int x;' | sample src/robots/a-b.yaml
+echo ' int  x;' | sample src/robots/a_b.c
+check 'robots: made of its file' sh "$gates/../robots/make.sh" --check cat
+echo 'int y;' | sample src/robots/a_b.c
+check 'robots: not made of its file' refuses 'src/robots/a_b.c: robots: differs' \
+    sh "$gates/../robots/make.sh" --check cat
 done_testing

@@ -18,6 +18,7 @@
 #include <grobo/interpolate.h>
 #include <grobo/lx16a.h>
 #include <grobo/motion_io.h>
+#include <grobo/robot_file.h>
 #include <grobo/rs30x.h>
 
 #define REFUSES(call) assert_int_equal(call, GROBO_ERR_ARG)
@@ -564,6 +565,23 @@ static void rs30x_refuses_null_in_its_second_functions(void **state)
     REFUSES(grobo_rs30x_state_decode(0, bytes, 1, NULL));
 }
 
+static void robot_file_refuses_null(void **state)
+{
+    (void)state;
+    const grobo_source bytes_of = {0};
+    grobo_robot_def *def = NULL;
+    grobo_driver driver;
+    grobo_robot_sim sim;
+    REFUSES(grobo_robot_def_read(NULL, "", NULL, NULL, &def));
+    REFUSES(grobo_robot_def_read(&bytes_of, NULL, NULL, NULL, &def));
+    REFUSES(grobo_robot_def_read(&bytes_of, "", NULL, NULL, NULL));
+    grobo_robot_def_free(NULL);
+    REFUSES(grobo_robot_def_driver(NULL, GROBO_WIRING_BUS, &driver));
+    REFUSES(grobo_robot_def_driver(grobo_robot_defs[0], GROBO_WIRING_BUS, NULL));
+    REFUSES(grobo_robot_def_sim(NULL, GROBO_WIRING_BUS, &sim));
+    REFUSES(grobo_robot_def_sim(grobo_robot_defs[0], GROBO_WIRING_BUS, NULL));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -582,6 +600,7 @@ int main(void)
         cmocka_unit_test(motion_io_refuses_null_in_its_second_functions),
         cmocka_unit_test(posture_refuses_null_in_its_first_functions),
         cmocka_unit_test(posture_refuses_null_in_its_second_functions),
+        cmocka_unit_test(robot_file_refuses_null),
         cmocka_unit_test(rs30x_refuses_null_in_its_first_functions),
         cmocka_unit_test(rs30x_refuses_null_in_its_second_functions),
     };

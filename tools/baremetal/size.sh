@@ -31,7 +31,7 @@ bus='bus/bus bus/queue bus/receive bus/time base/instant'
 sequencer='play/sequencer play/clip play/info'
 names='base/error servo/rs30x/registers play/names base/version'
 postures='model/posture model/model model/interpolate'
-robot='servo/driver servo/rs30x/driver servo/gr001/driver model/gr001'
+robot='servo/driver servo/rs30x/driver robots/gr001 robots/gr001_driver'
 engine='robot/robot robot/turn robot/job robot/play robot/control robot/query robot/request
     robot/slot robot/steps robot/axis robot/ways play/progress robot/gate robot/event robot/reading
     robot/orders robot/watch robot/trip robot/stop robot/segments robot/sense robot/hrpsys
@@ -42,7 +42,9 @@ families='bus/several servo/dxl1/driver servo/dxl1/packet servo/dxl1/protocol se
     servo/dxl2/driver servo/dxl2/packet servo/dxl2/protocol servo/dxl2/table
     servo/feetech/driver servo/feetech/protocol servo/feetech/scs servo/feetech/sts
     servo/ics/packet servo/lx16a/packet servo/registers servo/table/driver servo/table/inspect
-    servo/table/reading servo/table/values sim/dxl sim/dxl1 sim/dxl2'
+    servo/table/reading servo/table/values robots/driver robots/family_dxl1 robots/family_dxl2
+    robots/family_feetech robots/family_rs30x robots/koch robots/koch_leader
+    robots/openmanipulator_x robots/pan_tilt robots/shipped robots/so101 robots/so101_leader sim/dxl sim/dxl1 sim/dxl2'
 
 # figure CPU NAME BYTES: notes it, and prints it beside the one that was kept.
 figure() {

@@ -80,6 +80,7 @@ everything=$(texts)
 if [ "$1" = --all ]; then
     gate headers sh "$gates/headers.sh"
     gate layers sh "$gates/layers.sh" "$2"
+    gate robots sh tools/robots/make.sh --check "$2/tools/robots/robots"
     gate symbols sh "$gates/symbols.sh" "$2/libgrobo.so.0"
 fi
 

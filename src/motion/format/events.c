@@ -230,6 +230,10 @@ int grobo_i_follow(grobo_i_events *events, int anchor, grobo_i_place place)
 {
     const grobo_i_anchor *node = &events->store.anchors[anchor];
 
+    if (events->refuses_aliases) {
+        return grobo_i_refuse(events->reader, GROBO_ERR_SYNTAX, "alias", place,
+                              "aliases are not known here; write it out");
+    }
     if (++events->n_aliases > GROBO_YAML_ALIASES_MAX) {
         return grobo_i_refuse(events->reader, GROBO_ERR_CAP, "aliases", place,
                               "more than %d aliases", GROBO_YAML_ALIASES_MAX);

@@ -70,6 +70,7 @@ typedef struct grobo_i_events {
     int depth;
     int source_result;    /* what the source failed with */
     uint64_t event_bytes; /* of the input when the last event came */
+    bool refuses_aliases; /* set by who has no use for them */
     bool have;            /* event is looked at and not yet taken */
     bool live_to_delete;
     bool gap_too_long;

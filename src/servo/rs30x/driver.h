@@ -29,9 +29,9 @@ int grobo_i_rs30x_inspect(const grobo_driver *self, void *ctx, const uint8_t *fr
 /* What every table of RS30x servos has: for use in its initialiser. */
 #define GROBO_I_RS30X_FUNCTIONS                                                                    \
     .time_step_us = GROBO_PLAY_TIME_UNIT_US, .time_max_us = GROBO_PLAY_TIME_MAX_US,                \
-    .angle_step_rad = 0.1 * 0.017453292519943295, .on_exit = GROBO_EXIT_HOLD,                      \
-    .check = grobo_i_rs30x_check, .posture = grobo_i_rs30x_posture,                                \
-    .torque = grobo_i_rs30x_torque, .sense = grobo_i_rs30x_sense, .parse = grobo_i_rs30x_parse,    \
+    .angle_step_rad = 0.1 * 0.017453292519943295, .check = grobo_i_rs30x_check,                    \
+    .posture = grobo_i_rs30x_posture, .torque = grobo_i_rs30x_torque,                              \
+    .sense = grobo_i_rs30x_sense, .parse = grobo_i_rs30x_parse,                                    \
     .write_kind = grobo_i_rs30x_write_kind, .registers = grobo_i_rs30x_registers,                  \
     .command = grobo_i_rs30x_command, .inspect = grobo_i_rs30x_inspect
 

@@ -8,6 +8,7 @@
 #include "tools/grctl/cli/config.h"
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/joints.h"
+#include "tools/grctl/cli/robot.h"
 #include "tools/grctl/shell/shell.h"
 
 enum { CAPTURE_MS = 100, LONGEST_MS = 3600000, KNOWN_US = 2000000 };
@@ -351,6 +352,7 @@ static int do_connect(shell *s, int n, char **words)
         s->a->line.global[GLOBAL_DEVICE] = (cli_value){.given = 1, .text = s->device};
         s->a->robot = NULL;
         status = config_apply(s->a);
+        status = status ? status : robot_choose(s->a);
     }
     if (status) {
         return status;

@@ -1,0 +1,114 @@
+/* SPDX-License-Identifier: MIT */
+/**
+ * @file robot_file.h
+ * @brief A robot as a file: what it is made of, how its line is, what is safe.
+ *
+ * A description is data. Those that come with the library are const tables, made from the files in
+ * src/robots; any other is read from a file of the same form (docs/guide/own-robot.md). Either
+ * fills a driver (driver.h) for the engine and the configuration of a simulator (sim.h).
+ * NULL where something must be is GROBO_ERR_ARG (error.h).
+ */
+#ifndef GROBO_ROBOT_FILE_H
+#define GROBO_ROBOT_FILE_H
+
+#include <grobo/driver.h>
+#include <grobo/motion_io.h>
+#include <grobo/registers.h>
+#include <grobo/sim.h>
+
+GROBO_BEGIN_DECLS
+
+/** A family of servos: one way to talk, and the models that talk so. */
+typedef struct grobo_robot_family {
+    const char *name;                       /**< "feetech": as a file names it */
+    const grobo_servo_table *const *tables; /**< NULL behind the last; NULL: RS30x, which have
+                                                 registers of their own (rs30x.h) */
+    uint32_t baud_bps;                      /**< of a file that says nothing */
+    grobo_wiring wiring;                    /**< of a file that says nothing */
+    /** Fills a driver, as grobo_feetech_driver_init() does.
+     *  @return 0, or GROBO_ERR_UNSUPPORTED: it has no such wiring, or GROBO_ERR_ARG */
+    int (*init)(grobo_driver *driver, const grobo_model *model, grobo_wiring wiring);
+} grobo_robot_family;
+
+/** A USB adapter by its numbers. */
+typedef struct grobo_usb_id {
+    uint16_t vendor;
+    uint16_t product;
+} grobo_usb_id;
+
+/** A rigid part. Its frame is that of its joint; angles are roll, pitch, yaw about fixed axes. */
+typedef struct grobo_robot_link {
+    const char *name;
+    int8_t parent;        /**< index of the part that carries it, smaller than its own; -1: none */
+    int8_t joint;         /**< the joint between them; -1: it is fixed */
+    double origin_m[3];   /**< its frame in the parent's, where the joint is at 0 */
+    double origin_rad[3]; /**< roll, pitch, yaw of it */
+    double axis[3];       /**< of the joint, in its own frame, of length 1 */
+    double mass_kg;       /**< 0: unknown */
+} grobo_robot_link;
+
+/** A robot. Plain data; all that it points to lives as long as it. */
+typedef struct grobo_robot_def {
+    const char *name;                 /**< "so101": what it is called on a command line */
+    const char *title;                /**< "SO-101 (follower)": for people */
+    const grobo_robot_family *family; /**< of all of its servos */
+    const grobo_model *model;         /**< joints, groups; its name is `name`, but "GR001" */
+    grobo_wiring wiring;              /**< how it usually is connected */
+    uint32_t baud_bps;                /**< of its line, with 8 data bits and a stop bit; the parity
+                                           is that of the family's protocol */
+    const grobo_usb_id *usb;          /**< n_usb adapters that it is sold with */
+    grobo_safety_limits limits;       /**< as in a driver */
+    grobo_exit_policy on_exit;        /**< what GROBO_EXIT_DEFAULT stands for */
+    const double *rest_rad;         /**< posture for GROBO_EXIT_SIT, by joint; NULL: initial one */
+    const grobo_readback *readback; /**< n_readback corrections of what is read */
+    const grobo_robot_link *links;  /**< n_links parts; none: its geometry is not known */
+    uint8_t n_usb, n_readback, n_links;
+    bool arm; /**< it may stop anywhere: see grobo_driver */
+} grobo_robot_def;
+
+/** The robots that come with the library, NULL behind the last. */
+GROBO_API extern const grobo_robot_def *const grobo_robot_defs[];
+
+/**
+ * Reads the description of a robot. Every mistake is in the list, with its line and column.
+ * @param source where the bytes of the file come from
+ * @param name the file's name in diagnostics
+ * @param list what was said is added to it; NULL: nobody listens
+ * @param mem of the description and of reading; NULL: the C library's
+ * @param[out] def to be freed with grobo_robot_def_free(); untouched on error.
+ * @return 0; GROBO_ERR_SYNTAX (a mistake), GROBO_ERR_NAN, GROBO_ERR_CAP (a cap of limits.h),
+ *   GROBO_ERR_NOMEM, or what the source gave. Every error but NOMEM adds a diagnostic.
+ */
+GROBO_API int grobo_robot_def_read(const grobo_source *source, const char *name,
+                                   grobo_diagnostics *list, const grobo_mem *mem,
+                                   grobo_robot_def **def);
+
+/** Frees what grobo_robot_def_read() gave; NULL is fine. */
+GROBO_API void grobo_robot_def_free(grobo_robot_def *def);
+
+/**
+ * Fills a driver for a robot.
+ * @param def borrowed by the driver
+ * @return 0, GROBO_ERR_ARG, or GROBO_ERR_UNSUPPORTED: its servos cannot be wired so
+ */
+GROBO_API int grobo_robot_def_driver(const grobo_robot_def *def, grobo_wiring wiring,
+                                     grobo_driver *driver);
+
+/** What a simulator of a robot needs beside its configuration. */
+typedef struct grobo_robot_sim {
+    grobo_sim_config config;                           /**< for grobo_sim_init() */
+    const grobo_servo_model *servos[GROBO_JOINTS_MAX]; /**< config points here */
+} grobo_robot_sim;
+
+/**
+ * Fills the configuration of a simulator: model, servos that are set up as the robot needs them,
+ * line, supply. All else is 0, for the caller to change.
+ * @param sim outlives the simulator, as def does
+ * @return 0, or GROBO_ERR_ARG
+ */
+GROBO_API int grobo_robot_def_sim(const grobo_robot_def *def, grobo_wiring wiring,
+                                  grobo_robot_sim *sim);
+
+GROBO_END_DECLS
+
+#endif

@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: MIT */
+#include "src/robots/robots.h"
+
+int grobo_robot_def_driver(const grobo_robot_def *def, grobo_wiring wiring, grobo_driver *driver)
+{
+    grobo_driver made;
+    if (def == NULL || driver == NULL) {
+        return GROBO_ERR_ARG;
+    }
+    int result = def->family->init(&made, def->model, wiring);
+    if (result < 0) {
+        return result;
+    }
+    made.limits = def->limits;
+    made.on_exit = def->on_exit;
+    made.arm = def->arm;
+    made.rest_rad = def->rest_rad;
+    made.readback = def->readback;
+    made.n_readback = def->n_readback;
+    *driver = made;
+    return grobo_driver_check(driver);
+}

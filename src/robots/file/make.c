@@ -1,0 +1,412 @@
+/* SPDX-License-Identifier: MIT */
+/* From a draft to a robot: what belongs together is checked here. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <grobo/posture.h>
+
+#include "src/motion/text/nearest.h"
+#include "src/robots/file/draft.h"
+#include "src/robots/file/families.h"
+
+typedef struct maker {
+    const grobo_i_draft *draft;
+    grobo_i_reader *reader;
+    grobo_i_robot_file *file;
+    grobo_driver driver; /* of the family, for what the file does not say */
+} maker;
+
+static const char *nearest_of(const grobo_i_nearest *nearest)
+{
+    return nearest->word != NULL ? nearest->word : "";
+}
+
+static grobo_i_place place_of(const maker *m, const char *key)
+{
+    return grobo_i_place_of(GROBO_I_BLOCK_ROBOT, m->draft->at, m->draft->place, key);
+}
+
+static grobo_i_place joint_place(const maker *m, int j, const char *key)
+{
+    const grobo_i_joint_draft *joint = &m->draft->joint[j];
+    return grobo_i_place_of(GROBO_I_BLOCK_JOINT, joint->at, joint->place, key);
+}
+
+static bool joint_has(const maker *m, int j, const char *key)
+{
+    return grobo_i_has_key(GROBO_I_BLOCK_JOINT, m->draft->joint[j].at, key);
+}
+
+static int complain(const maker *m, grobo_i_place place, const char *code, const char *text,
+                    const char *name)
+{
+    return grobo_i_complain(m->reader, GROBO_ERR_SYNTAX, code, place, text, name);
+}
+
+/* One of the words, by its index; -1 with a complaint. */
+static int word_of(const maker *m, const char *key, const char *given, const char *const *words)
+{
+    grobo_i_nearest nearest = {NULL, 0};
+    for (int i = 0; words[i] != NULL; i++) {
+        if (strcmp(words[i], given) == 0) {
+            return i;
+        }
+        grobo_i_nearest_try(&nearest, given, words[i]);
+    }
+    char what[64];
+    snprintf(what, sizeof what, "%s called", key);
+    (void)grobo_i_complain_word(m->reader, place_of(m, key), what, given, nearest_of(&nearest));
+    return -1;
+}
+
+/* ---- the whole ------------------------------------------------------------------------------ */
+
+static void make_family(maker *m)
+{
+    static const char *const wirings[] = {"board", "bus", NULL};
+    const char *names[8] = {NULL};
+    for (int i = 0; grobo_i_families[i] != NULL; i++) {
+        names[i] = grobo_i_families[i]->name;
+    }
+    int family = word_of(m, "family", m->draft->family, names);
+    if (family < 0) {
+        return;
+    }
+    grobo_robot_def *def = &m->file->def;
+    def->family = grobo_i_families[family];
+    def->wiring = def->family->wiring;
+    def->baud_bps = def->family->baud_bps;
+    if (*m->draft->wiring != '\0') {
+        int wiring = word_of(m, "wiring", m->draft->wiring, wirings);
+        def->wiring = wiring == 0 ? GROBO_WIRING_BOARD : GROBO_WIRING_BUS;
+    }
+    if (m->draft->line.baud_bps > 0) {
+        def->baud_bps = (uint32_t)m->draft->line.baud_bps;
+    }
+}
+
+static bool has_safety(const maker *m, const char *key)
+{
+    return grobo_i_has_key(GROBO_I_BLOCK_SAFETY, m->draft->safety.at, key);
+}
+
+static void make_safety(maker *m)
+{
+    static const char *const exits[] = {"off", "hold", "sit", NULL};
+    const grobo_i_safety_draft *safety = &m->draft->safety;
+    grobo_robot_def *def = &m->file->def;
+    grobo_safety_limits *limits = &def->limits;
+    *limits = m->driver.limits;
+    def->on_exit = m->driver.on_exit;
+    def->arm =
+        grobo_i_has_key(GROBO_I_BLOCK_ROBOT, m->draft->at, "arm") ? m->draft->arm : m->driver.arm;
+    if (*m->draft->exit != '\0') {
+        int word = word_of(m, "exit", m->draft->exit, exits);
+        def->on_exit = word < 0 ? def->on_exit : (grobo_exit_policy)(word + GROBO_EXIT_OFF);
+    }
+    if (has_safety(m, "temperature_c")) {
+        limits->temperature_c = (int16_t)safety->temperature_c;
+    }
+    if (has_safety(m, "lost_replies")) {
+        limits->lost_replies = (int16_t)safety->lost_replies;
+    }
+    if (has_safety(m, "voltage_mv")) {
+        limits->voltage_mv = (int32_t)safety->voltage_mv;
+    }
+    if (has_safety(m, "current_ma")) {
+        limits->current_ma = (int32_t)safety->current_ma;
+    }
+    if (has_safety(m, "current_ms")) {
+        limits->current_us = (int64_t)safety->current_ms * 1000;
+    }
+    if (has_safety(m, "approach_deg_s")) {
+        limits->approach_rad_s = grobo_rad_from_deg(safety->approach_deg_s);
+    }
+    if ((limits->current_ma > 0) != (limits->current_us > 0)) {
+        (void)complain(m, safety->place, "range", "%s: current_ma and current_ms belong together",
+                       "safety");
+    }
+}
+
+/* ---- joints --------------------------------------------------------------------------------- */
+
+/* A servo that carries something is slower than its maker says. */
+#define OF_ITS_SPEED 0.8
+
+/* The joint's servo: its number, and its speed where the file says none. */
+static void find_servo(const maker *m, int j, grobo_joint *joint)
+{
+    const grobo_i_joint_draft *draft = &m->draft->joint[j];
+    grobo_i_nearest nearest = {NULL, 0};
+    grobo_i_servo servo;
+    for (size_t i = 0; grobo_i_family_row(m->file->def.family, i, &servo); i++) {
+        if (strcmp(servo.name, draft->servo) == 0) {
+            joint->servo_model = servo.model;
+            joint->max_speed_rad_s = grobo_rad_from_deg(joint_has(m, j, "speed_deg_s")
+                                                            ? draft->speed_deg_s
+                                                            : OF_ITS_SPEED * servo.speed_deg_s);
+            return;
+        }
+        grobo_i_nearest_try(&nearest, draft->servo, servo.name);
+    }
+    char what[96];
+    snprintf(what, sizeof what, "servo of family %s called", m->file->def.family->name);
+    (void)grobo_i_complain_word(m->reader, joint_place(m, j, "servo"), what, draft->servo,
+                                nearest_of(&nearest));
+}
+
+/* The joint of this name, else -1 with a complaint at `place`. */
+static int find_joint(const maker *m, const char *name, grobo_i_place place)
+{
+    grobo_i_nearest nearest = {NULL, 0};
+    for (int j = 0; j < m->draft->n_joints; j++) {
+        if (strcmp(m->draft->joint[j].name, name) == 0) {
+            return j;
+        }
+        grobo_i_nearest_try(&nearest, name, m->draft->joint[j].name);
+    }
+    (void)grobo_i_complain_word(m->reader, place, "joint called", name, nearest_of(&nearest));
+    return -1;
+}
+
+static void make_limits(const maker *m, int j, grobo_joint *joint)
+{
+    const grobo_i_joint_draft *draft = &m->draft->joint[j];
+    joint->min_rad = grobo_rad_from_deg(draft->limits_deg[0]);
+    joint->max_rad = grobo_rad_from_deg(draft->limits_deg[1]);
+    joint->init_rad = grobo_rad_from_deg(draft->init_deg);
+    m->file->rest_rad[j] =
+        joint_has(m, j, "rest_deg") ? grobo_rad_from_deg(draft->rest_deg) : joint->init_rad;
+    if (joint->min_rad >= joint->max_rad) {
+        (void)complain(m, joint_place(m, j, "limits_deg"), "limits",
+                       "%s: the lower limit comes first", draft->name);
+    } else if (joint->init_rad < joint->min_rad || joint->init_rad > joint->max_rad) {
+        (void)complain(m, joint_place(m, j, "init_deg"), "limits",
+                       "%s: its initial angle is outside its limits", draft->name);
+    } else if (m->file->rest_rad[j] < joint->min_rad || m->file->rest_rad[j] > joint->max_rad) {
+        (void)complain(m, joint_place(m, j, "rest_deg"), "limits",
+                       "%s: its resting angle is outside its limits", draft->name);
+    }
+}
+
+static void check_unique(const maker *m, int j)
+{
+    const grobo_i_joint_draft *joint = &m->draft->joint[j];
+    for (int i = 0; i < j; i++) {
+        grobo_joint_mask found;
+        const grobo_group as_group = {m->file->joint_names[i], 1};
+        const grobo_model one = {.joints = m->file->joints, .groups = &as_group, .n_groups = 1};
+        if (grobo_model_find_joints(&one, joint->name, strlen(joint->name), &found) >= 0) {
+            (void)complain(m, joint_place(m, j, "name"), "twice", "two joints are called '%s'",
+                           joint->name);
+        }
+        if (m->draft->joint[i].id == joint->id) {
+            (void)complain(m, joint_place(m, j, "id"), "twice", "%s has the id of another joint",
+                           joint->name);
+        }
+    }
+}
+
+static void make_joint(const maker *m, int j)
+{
+    const grobo_i_joint_draft *draft = &m->draft->joint[j];
+    grobo_i_robot_file *file = m->file;
+    grobo_joint *joint = &file->joints[j];
+    memcpy(file->joint_names[j], draft->name, sizeof draft->name);
+    *joint = (grobo_joint){.name = file->joint_names[j],
+                           .free_current_ma = (uint16_t)draft->free_ma,
+                           .motor = (uint8_t)draft->id,
+                           .mirror = (uint8_t)j,
+                           .mirror_sign = (int8_t)draft->mirror_sign,
+                           .sign = draft->sign < 0 ? -1 : 0,
+                           .turns = draft->turns,
+                           .zero_rad = grobo_rad_from_deg(draft->zero_deg),
+                           .gear = draft->gear};
+    if (draft->sign == 0 || draft->mirror_sign == 0) {
+        const char *key = draft->sign == 0 ? "sign" : "mirror_sign";
+        (void)complain(m, joint_place(m, j, key), "range", "%s: 1 or -1 is wanted", key);
+    }
+    make_limits(m, j, joint);
+    find_servo(m, j, joint);
+    check_unique(m, j);
+    if (*draft->mirror != '\0') {
+        int mirror = find_joint(m, draft->mirror, joint_place(m, j, "mirror"));
+        joint->mirror = (uint8_t)(mirror < 0 ? j : mirror);
+    }
+    if (joint_has(m, j, "readback_deg")) {
+        file->readback[file->def.n_readback++] =
+            (grobo_readback){grobo_rad_from_deg(draft->readback_deg), (uint8_t)j};
+        file->def.readback = file->readback;
+    }
+    if (joint_has(m, j, "rest_deg")) {
+        file->def.rest_rad = file->rest_rad;
+    }
+}
+
+static void check_mirrors(const maker *m)
+{
+    const grobo_joint *joints = m->file->joints;
+    for (int j = 0; j < m->draft->n_joints; j++) {
+        const grobo_joint *other = &joints[joints[j].mirror];
+        if (other->mirror != j || other->mirror_sign != joints[j].mirror_sign) {
+            (void)complain(m, joint_place(m, j, "mirror"), "mirror",
+                           "%s: its partner in the mirror must name it, with the same mirror_sign",
+                           joints[j].name);
+        }
+    }
+}
+
+/* The family takes joints one by one here, to find the one that it refuses. */
+static void check_servos(maker *m)
+{
+    const grobo_robot_def *def = &m->file->def;
+    for (int j = 0; j < m->draft->n_joints; j++) {
+        grobo_joint joint = m->file->joints[j];
+        joint.mirror = 0;
+        const grobo_model one = {.name = m->file->model_name, .joints = &joint, .n_joints = 1};
+        int result = def->family->init(&m->driver, &one, def->wiring);
+        if (result == GROBO_ERR_UNSUPPORTED) {
+            (void)complain(m, place_of(m, "wiring"), "wiring",
+                           "servos of family %s cannot be wired so", def->family->name);
+            return;
+        }
+        const grobo_protocol *protocol = m->driver.protocol;
+        if (result == GROBO_OK &&
+            (joint.motor < protocol->id_min || joint.motor > protocol->id_max)) {
+            result = grobo_i_complain(m->reader, GROBO_ERR_SYNTAX, "range", joint_place(m, j, "id"),
+                                      "%s: an id from %d to %d is wanted", joint.name,
+                                      protocol->id_min, protocol->id_max);
+        } else if (result < 0) {
+            (void)complain(m, joint_place(m, j, "limits_deg"), "limits",
+                           "%s: its servo does not reach these limits", joint.name);
+        }
+    }
+}
+
+/* ---- groups, links -------------------------------------------------------------------------- */
+
+static void make_groups(const maker *m)
+{
+    grobo_i_robot_file *file = m->file;
+    for (int g = 0; g < m->draft->n_groups; g++) {
+        const grobo_i_group_draft *draft = &m->draft->group[g];
+        memcpy(file->group_names[g], draft->name, sizeof draft->name);
+        file->groups[g] = (grobo_group){file->group_names[g], draft->joints};
+        file->model.n_groups = (uint8_t)g;
+        grobo_joint_mask found;
+        if (grobo_model_find_joints(&file->model, draft->name, strlen(draft->name), &found) >= 0) {
+            (void)complain(m, draft->place, "twice", "a joint or group is called '%s' already",
+                           draft->name);
+        }
+        if (draft->joints == 0) {
+            (void)complain(m, draft->place, "missing", "group %s has no joints", draft->name);
+        }
+    }
+    file->model.n_groups = (uint8_t)m->draft->n_groups;
+}
+
+static int find_parent(const maker *m, int index, grobo_i_place place)
+{
+    const char *name = m->draft->link[index].parent;
+    grobo_i_nearest nearest = {NULL, 0};
+    for (int i = 0; i < index; i++) {
+        if (strcmp(m->draft->link[i].name, name) == 0) {
+            return i;
+        }
+        grobo_i_nearest_try(&nearest, name, m->draft->link[i].name);
+    }
+    (void)grobo_i_complain_word(m->reader, place, "link above called", name, nearest_of(&nearest));
+    return -1;
+}
+
+static void make_link(const maker *m, int index)
+{
+    const grobo_i_link_draft *draft = &m->draft->link[index];
+    grobo_robot_link *link = &m->file->links[index];
+    const double *axis = draft->axis;
+    double length = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
+    memcpy(m->file->link_names[index], draft->name, sizeof draft->name);
+    *link = (grobo_robot_link){
+        .name = m->file->link_names[index], .parent = -1, .joint = -1, .mass_kg = draft->mass_kg};
+    if (*draft->parent != '\0') {
+        link->parent = (int8_t)find_parent(
+            m, index, grobo_i_place_of(GROBO_I_BLOCK_LINK, draft->at, draft->place, "parent"));
+    } else if (index > 0) {
+        (void)complain(m, draft->place, "missing", "link %s has no 'parent'", draft->name);
+    }
+    if (*draft->joint != '\0') {
+        link->joint = (int8_t)find_joint(
+            m, draft->joint,
+            grobo_i_place_of(GROBO_I_BLOCK_LINK, draft->at, draft->place, "joint"));
+        if (fabs(length - 1) > 1e-6) {
+            (void)complain(m, draft->place, "axis", "link %s: its 'axis' must be of length 1",
+                           draft->name);
+        }
+    }
+    for (int i = 0; i < 3; i++) {
+        link->origin_m[i] = draft->origin_m[i];
+        link->origin_rad[i] = grobo_rad_from_deg(draft->origin_deg[i]);
+        link->axis[i] = draft->axis[i];
+    }
+    for (int i = 0; i < index; i++) {
+        if (strcmp(m->draft->link[i].name, draft->name) == 0) {
+            (void)complain(m, draft->place, "twice", "two links are called '%s'", draft->name);
+        }
+    }
+}
+
+/* ---- all of it ------------------------------------------------------------------------------ */
+
+static void make_names(const maker *m)
+{
+    const grobo_i_draft *draft = m->draft;
+    grobo_i_robot_file *file = m->file;
+    memcpy(file->name, draft->name, sizeof file->name);
+    memcpy(file->title, *draft->title != '\0' ? draft->title : draft->name, sizeof file->title);
+    memcpy(file->model_name, *draft->model != '\0' ? draft->model : draft->name,
+           sizeof file->model_name);
+    memcpy(file->usb, draft->usb, sizeof file->usb);
+    file->model = (grobo_model){.name = file->model_name,
+                                .joints = file->joints,
+                                .groups = file->groups,
+                                .n_joints = (uint8_t)draft->n_joints,
+                                .limit_slack_deg = draft->limit_slack_deg};
+    file->def = (grobo_robot_def){.name = file->name,
+                                  .title = file->title,
+                                  .model = &file->model,
+                                  .usb = file->usb,
+                                  .links = file->links,
+                                  .n_usb = (uint8_t)draft->n_usb,
+                                  .n_links = (uint8_t)draft->n_links};
+}
+
+int grobo_i_robot_make(const grobo_i_draft *draft, grobo_i_robot_file *file)
+{
+    maker m = {.draft = draft, .reader = draft->reader, .file = file};
+    make_names(&m);
+    if (draft->n_joints == 0) {
+        return complain(&m, place_of(&m, "joints"), "missing", "%s has no joints", draft->name);
+    }
+    make_family(&m);
+    for (int j = 0; j < draft->n_joints && file->def.family != NULL; j++) {
+        make_joint(&m, j);
+    }
+    if (m.reader->result < 0) {
+        return m.reader->result;
+    }
+    check_mirrors(&m);
+    check_servos(&m);
+    make_safety(&m);
+    make_groups(&m);
+    for (int i = 0; i < draft->n_links; i++) {
+        make_link(&m, i);
+    }
+    if (m.reader->result < 0) {
+        return m.reader->result;
+    }
+    int result = grobo_robot_def_driver(&file->def, file->def.wiring, &m.driver);
+    return result < 0 ? complain(&m, draft->place, "robot", "%s: the parts do not fit together",
+                                 draft->name)
+                      : result;
+}

@@ -1,0 +1,541 @@
+/* SPDX-License-Identifier: MIT */
+/* From the text of a robot's file to a draft: a mapping is a table of its keys. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "src/base/memory.h"
+#include "src/motion/text/nearest.h"
+#include "src/motion/text/utf8.h"
+#include "src/robots/file/draft.h"
+
+typedef enum key_kind {
+    KEY_NUMBER, /* `count` of them; more than one in a list */
+    KEY_WHOLE,
+    KEY_NAME, /* letters, digits, _ - . */
+    KEY_TEXT,
+    KEY_TRUTH,
+    KEY_CALL
+} key_kind;
+
+typedef struct key_row {
+    const char *name;
+    key_kind kind;
+    int count;
+    bool needed;
+    size_t offset;    /* in the draft of the mapping */
+    double low, high; /* of numbers */
+    int (*read)(grobo_i_events *events, void *draft);
+} key_row;
+
+typedef struct keys {
+    const char *what;
+    const key_row *rows;
+    size_t n;
+} keys;
+
+#define NUMBER(name_, type, field, low_, high_)                                                    \
+    {                                                                                              \
+        .name = (name_), .kind = KEY_NUMBER, .count = 1, .offset = offsetof(type, field),          \
+        .low = (low_), .high = (high_)                                                             \
+    }
+#define NUMBERS(name_, type, field, n, low_, high_)                                                \
+    {                                                                                              \
+        .name = (name_), .kind = KEY_NUMBER, .count = (n), .offset = offsetof(type, field),        \
+        .low = (low_), .high = (high_)                                                             \
+    }
+#define WHOLE(name_, type, field, low_, high_)                                                     \
+    {                                                                                              \
+        .name = (name_), .kind = KEY_WHOLE, .count = 1, .offset = offsetof(type, field),           \
+        .low = (low_), .high = (high_)                                                             \
+    }
+#define NAME(name_, type, field)                                                                   \
+    {                                                                                              \
+        .name = (name_), .kind = KEY_NAME, .offset = offsetof(type, field)                         \
+    }
+#define NEEDED(name_, type, field)                                                                 \
+    {                                                                                              \
+        .name = (name_), .kind = KEY_NAME, .needed = true, .offset = offsetof(type, field)         \
+    }
+#define CALL(name_, fn)                                                                            \
+    {                                                                                              \
+        .name = (name_), .kind = KEY_CALL, .read = (fn)                                            \
+    }
+
+static int read_line(grobo_i_events *events, void *draft);
+static int read_safety(grobo_i_events *events, void *draft);
+static int read_usb(grobo_i_events *events, void *draft);
+static int read_joints(grobo_i_events *events, void *draft);
+static int read_groups(grobo_i_events *events, void *draft);
+static int read_links(grobo_i_events *events, void *draft);
+static int read_members(grobo_i_events *events, void *draft);
+
+#define ROBOT grobo_i_draft
+#define JOINT grobo_i_joint_draft
+#define LINK grobo_i_link_draft
+#define SAFETY grobo_i_safety_draft
+
+static const key_row robot_keys[] = {
+    NEEDED("name", ROBOT, name),
+    {.name = "title", .kind = KEY_TEXT, .offset = offsetof(ROBOT, title)},
+    NAME("model", ROBOT, model),
+    NEEDED("family", ROBOT, family),
+    NAME("wiring", ROBOT, wiring),
+    CALL("line", read_line),
+    CALL("usb", read_usb),
+    CALL("safety", read_safety),
+    NAME("exit", ROBOT, exit),
+    {.name = "arm", .kind = KEY_TRUTH, .offset = offsetof(ROBOT, arm)},
+    NUMBER("limit_slack_deg", ROBOT, limit_slack_deg, 0, GROBO_LIMIT_SLACK_MAX_DEG),
+    {.name = "joints", .kind = KEY_CALL, .needed = true, .read = read_joints},
+    CALL("groups", read_groups),
+    CALL("links", read_links),
+};
+
+static const key_row line_keys[] = {WHOLE("baud", grobo_i_line_draft, baud_bps, 300, 4000000)};
+
+static const key_row safety_keys[] = {
+    WHOLE("temperature_c", SAFETY, temperature_c, 0, 150),
+    WHOLE("lost_replies", SAFETY, lost_replies, 0, 1000),
+    WHOLE("current_ma", SAFETY, current_ma, 0, 100000),
+    WHOLE("current_ms", SAFETY, current_ms, 0, 60000),
+    WHOLE("voltage_mv", SAFETY, voltage_mv, 0, 100000),
+    NUMBER("approach_deg_s", SAFETY, approach_deg_s, 1, 1000),
+};
+
+static const key_row joint_keys[] = {
+    NEEDED("name", JOINT, name),
+    {.name = "id",
+     .kind = KEY_WHOLE,
+     .count = 1,
+     .needed = true,
+     .offset = offsetof(JOINT, id),
+     .high = GROBO_SERVO_ID_MAX},
+    NEEDED("servo", JOINT, servo),
+    {.name = "limits_deg",
+     .kind = KEY_NUMBER,
+     .count = 2,
+     .needed = true,
+     .offset = offsetof(JOINT, limits_deg),
+     .low = -360000,
+     .high = 360000},
+    NUMBER("init_deg", JOINT, init_deg, -360000, 360000),
+    NUMBER("rest_deg", JOINT, rest_deg, -360000, 360000),
+    NUMBER("speed_deg_s", JOINT, speed_deg_s, 1, 10000),
+    WHOLE("free_ma", JOINT, free_ma, 0, 60000),
+    WHOLE("sign", JOINT, sign, -1, 1),
+    NUMBER("zero_deg", JOINT, zero_deg, -360, 360),
+    NUMBER("gear", JOINT, gear, 0.001, 1000),
+    {.name = "turns", .kind = KEY_TRUTH, .offset = offsetof(JOINT, turns)},
+    NAME("mirror", JOINT, mirror),
+    WHOLE("mirror_sign", JOINT, mirror_sign, -1, 1),
+    NUMBER("readback_deg", JOINT, readback_deg, -20, 20),
+};
+
+static const key_row group_keys[] = {
+    NEEDED("name", grobo_i_group_draft, name),
+    {.name = "joints", .kind = KEY_CALL, .needed = true, .read = read_members},
+};
+
+static const key_row link_keys[] = {
+    NEEDED("name", LINK, name),
+    NAME("parent", LINK, parent),
+    NAME("joint", LINK, joint),
+    NUMBERS("origin_m", LINK, origin_m, 3, -100, 100),
+    NUMBERS("origin_deg", LINK, origin_deg, 3, -360, 360),
+    NUMBERS("axis", LINK, axis, 3, -1, 1),
+    NUMBER("mass_kg", LINK, mass_kg, 0, 10000),
+};
+
+#define KEYS(what, rows)                                                                           \
+    {                                                                                              \
+        what, rows, sizeof(rows) / sizeof(rows)[0]                                                 \
+    }
+static const keys blocks[GROBO_I_BLOCKS] = {
+    [GROBO_I_BLOCK_ROBOT] = KEYS("the file", robot_keys),
+    [GROBO_I_BLOCK_LINE] = KEYS("'line'", line_keys),
+    [GROBO_I_BLOCK_SAFETY] = KEYS("'safety'", safety_keys),
+    [GROBO_I_BLOCK_JOINT] = KEYS("a joint", joint_keys),
+    [GROBO_I_BLOCK_GROUP] = KEYS("a group", group_keys),
+    [GROBO_I_BLOCK_LINK] = KEYS("a link", link_keys),
+};
+
+const char *grobo_i_robot_key(grobo_i_block block, size_t index)
+{
+    return index < blocks[block].n ? blocks[block].rows[index].name : NULL;
+}
+
+bool grobo_i_robot_key_needed(grobo_i_block block, size_t index)
+{
+    return blocks[block].rows[index].needed;
+}
+
+static size_t index_of(grobo_i_block block, const char *name)
+{
+    size_t i = 0;
+    while (i < blocks[block].n && strcmp(blocks[block].rows[i].name, name) != 0) {
+        i++;
+    }
+    return i;
+}
+
+bool grobo_i_has_key(grobo_i_block block, const grobo_i_place *at, const char *key)
+{
+    return at[index_of(block, key)].line > 0;
+}
+
+grobo_i_place grobo_i_place_of(grobo_i_block block, const grobo_i_place *at, grobo_i_place whole,
+                               const char *key)
+{
+    return grobo_i_has_key(block, at, key) ? at[index_of(block, key)] : whole;
+}
+
+int grobo_i_complain_word(grobo_i_reader *reader, grobo_i_place place, const char *what,
+                          const char *word, const char *nearest)
+{
+    return grobo_i_complain(reader, GROBO_ERR_SYNTAX, "unknown", place, "no %s '%.*s'%s%s%s", what,
+                            GROBO_NAME_MAX_BYTES, word, *nearest ? "; did you mean '" : "", nearest,
+                            *nearest ? "'?" : "");
+}
+
+/* ---- values -------------------------------------------------------------------------------- */
+
+static bool is_name(const char *text)
+{
+    static const char all[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789.-";
+    return (*text < '0' || *text > '9') && *text != '.' && *text != '-' &&
+           strspn(text, all) == strlen(text);
+}
+
+/* What find_joint() takes for a number of a motor or joint. */
+static bool is_number_of(const char *text)
+{
+    return strchr("mMjJ", text[0]) != NULL && text[1] != '\0' &&
+           strspn(text + 1, "0123456789") == strlen(text + 1);
+}
+
+static int read_text(grobo_i_events *events, const key_row *k, grobo_i_place place, char *to)
+{
+    grobo_i_reader *reader = events->reader;
+    char *text = NULL;
+    int result = grobo_i_read_string(events, k->name, &text);
+    if (result < 0 || text == NULL) {
+        return result;
+    }
+    bool fits = strlen(text) < GROBO_NAME_MAX_BYTES && grobo_i_utf8_ok(text, strlen(text));
+    if (!fits || *text == '\0' || (k->kind == KEY_NAME && !is_name(text))) {
+        result = grobo_i_complain(reader, GROBO_ERR_SYNTAX, "name", place,
+                                  k->kind == KEY_NAME ? "%s: a name has letters, digits, _ - . and "
+                                                        "begins with a letter; at most %d bytes"
+                                                      : "%s: a text of 1 to %d bytes is wanted",
+                                  k->name, GROBO_NAME_MAX_BYTES - 1);
+    } else if (k->kind == KEY_NAME && is_number_of(text)) {
+        result = grobo_i_complain(reader, GROBO_ERR_SYNTAX, "name", place,
+                                  "%s: '%s' is the number of a motor or joint; choose another name",
+                                  k->name, text);
+    } else {
+        snprintf(to, GROBO_NAME_MAX_BYTES, "%s", text);
+    }
+    grobo_i_free_text(reader->mem, text);
+    return result;
+}
+
+static int read_numbers(grobo_i_events *events, const key_row *k, grobo_i_place place, double *to)
+{
+    double found[3] = {NAN, NAN, NAN};
+    int result = k->count == 1 ? grobo_i_read_double(events, k->name, found)
+                               : grobo_i_read_doubles(events, k->name, found, k->count);
+    for (int i = 0; i < k->count && result == 0; i++) {
+        if (isnan(found[i])) { /* complained of */
+            return 0;
+        }
+        bool whole = k->kind != KEY_WHOLE || found[i] == floor(found[i]);
+        if (found[i] < k->low || found[i] > k->high || !whole) {
+            return grobo_i_complain(events->reader, GROBO_ERR_SYNTAX, "range", place,
+                                    "%s: a %snumber from %g to %g is wanted", k->name,
+                                    k->kind == KEY_WHOLE ? "whole " : "", k->low, k->high);
+        }
+        to[i] = found[i];
+    }
+    return result;
+}
+
+/* ---- mappings ------------------------------------------------------------------------------ */
+
+/* A mapping while it is read. */
+typedef struct block {
+    const keys *keys;
+    char *draft;
+    grobo_i_place *at;
+} block;
+
+static int read_value(grobo_i_events *events, const key_row *k, grobo_i_place place, void *draft)
+{
+    void *to = (char *)draft + k->offset;
+    switch (k->kind) {
+    case KEY_NUMBER:
+    case KEY_WHOLE:
+        return read_numbers(events, k, place, to);
+    case KEY_NAME:
+    case KEY_TEXT:
+        return read_text(events, k, place, to);
+    case KEY_TRUTH:
+        return grobo_i_read_bool(events, k->name, to);
+    case KEY_CALL:
+        return k->read(events, draft);
+    }
+    return GROBO_ERR_ARG;
+}
+
+static int take(grobo_i_events *events, void *target, const char *name)
+{
+    const block *b = target;
+    const grobo_i_place key_place = events->event.place;
+    const grobo_i_event *event;
+    grobo_i_nearest nearest = {NULL, 0};
+    for (size_t i = 0; i < b->keys->n; i++) {
+        if (strcmp(b->keys->rows[i].name, name) == 0) {
+            int result = grobo_i_peek(events, &event);
+            if (result < 0) {
+                return result;
+            }
+            b->at[i] = event->place;
+            return read_value(events, &b->keys->rows[i], event->place, b->draft);
+        }
+        grobo_i_nearest_try(&nearest, name, b->keys->rows[i].name);
+    }
+    char what[64];
+    snprintf(what, sizeof what, "key in %s called", b->keys->what);
+    int result = grobo_i_complain_word(events->reader, key_place, what, name,
+                                       nearest.word != NULL ? nearest.word : "");
+    return result < 0 ? result : grobo_i_skip(events);
+}
+
+static int read_block(grobo_i_events *events, grobo_i_block which, void *draft, grobo_i_place *at,
+                      grobo_i_place *place)
+{
+    block b = {&blocks[which], draft, at};
+    const grobo_i_fields fields = {b.keys->what, NULL, 0, take};
+    const grobo_i_event *event;
+    uint32_t seen = 0;
+    int result = grobo_i_peek(events, &event);
+    if (result < 0) {
+        return result;
+    }
+    bool is_map = event->kind == GROBO_I_MAP;
+    *place = event->place;
+    result = grobo_i_read_map(events, &fields, &b, &seen);
+    for (size_t i = 0; i < b.keys->n && result == 0 && is_map; i++) {
+        if (b.keys->rows[i].needed && at[i].line == 0) {
+            result = grobo_i_complain(events->reader, GROBO_ERR_SYNTAX, "missing", *place,
+                                      "%s has no '%s'", b.keys->what, b.keys->rows[i].name);
+        }
+    }
+    return result;
+}
+
+static int read_line(grobo_i_events *events, void *draft)
+{
+    grobo_i_line_draft *line = &((grobo_i_draft *)draft)->line;
+    return read_block(events, GROBO_I_BLOCK_LINE, line, line->at, &line->place);
+}
+
+static int read_safety(grobo_i_events *events, void *draft)
+{
+    grobo_i_safety_draft *safety = &((grobo_i_draft *)draft)->safety;
+    return read_block(events, GROBO_I_BLOCK_SAFETY, safety, safety->at, &safety->place);
+}
+
+/* ---- lists --------------------------------------------------------------------------------- */
+
+/* Room for one more of a list; the place of what comes next. */
+static int need_room(grobo_i_events *events, const char *what, int n, int most)
+{
+    const grobo_i_event *event;
+    int result = grobo_i_peek(events, &event);
+    return result < 0 || n < most ? result
+                                  : grobo_i_refuse(events->reader, GROBO_ERR_CAP, "list-length",
+                                                   event->place, "more than %d %s", most, what);
+}
+
+static int read_joint(grobo_i_events *events, void *target)
+{
+    grobo_i_draft *draft = target;
+    int result = need_room(events, "joints", draft->n_joints, GROBO_JOINTS_MAX);
+    if (result < 0) {
+        return result;
+    }
+    grobo_i_joint_draft *joint = &draft->joint[draft->n_joints++];
+    joint->sign = joint->mirror_sign = 1;
+    return read_block(events, GROBO_I_BLOCK_JOINT, joint, joint->at, &joint->place);
+}
+
+static int read_joints(grobo_i_events *events, void *draft)
+{
+    return grobo_i_read_list(events, "joints", read_joint, draft);
+}
+
+/* A joint, or a group that stands above. */
+static int read_member(grobo_i_events *events, void *target)
+{
+    static const key_row member = {.name = "a joint's name", .kind = KEY_NAME};
+    grobo_i_group_draft *group = target;
+    const grobo_i_draft *draft = group->of;
+    const grobo_i_event *event;
+    grobo_i_nearest nearest = {NULL, 0};
+    grobo_i_name name = "";
+    int result = grobo_i_peek(events, &event);
+    const grobo_i_place place = event->place;
+    result = result < 0 ? result : read_text(events, &member, place, name);
+    if (result < 0 || *name == '\0') {
+        return result;
+    }
+    for (int i = 0; i < draft->n_groups; i++) {
+        if (&draft->group[i] != group && strcmp(draft->group[i].name, name) == 0) {
+            group->joints |= draft->group[i].joints;
+            return 0;
+        }
+        grobo_i_nearest_try(&nearest, name, draft->group[i].name);
+    }
+    for (int j = 0; j < draft->n_joints; j++) {
+        if (strcmp(draft->joint[j].name, name) == 0) {
+            group->joints |= GROBO_JOINT_BIT(j);
+            return 0;
+        }
+        grobo_i_nearest_try(&nearest, name, draft->joint[j].name);
+    }
+    return grobo_i_complain_word(events->reader, place, "joint or group above called", name,
+                                 nearest.word != NULL ? nearest.word : "");
+}
+
+static int read_members(grobo_i_events *events, void *group)
+{
+    return grobo_i_read_list(events, "joints", read_member, group);
+}
+
+static int read_group(grobo_i_events *events, void *target)
+{
+    grobo_i_draft *draft = target;
+    int result = need_room(events, "groups", draft->n_groups, GROBO_ROBOT_GROUPS_MAX);
+    if (result < 0) {
+        return result;
+    }
+    grobo_i_group_draft *group = &draft->group[draft->n_groups++];
+    group->of = draft;
+    return read_block(events, GROBO_I_BLOCK_GROUP, group, group->at, &group->place);
+}
+
+static int read_groups(grobo_i_events *events, void *draft)
+{
+    return grobo_i_read_list(events, "groups", read_group, draft);
+}
+
+static int read_link(grobo_i_events *events, void *target)
+{
+    grobo_i_draft *draft = target;
+    int result = need_room(events, "links", draft->n_links, GROBO_ROBOT_LINKS_MAX);
+    if (result < 0) {
+        return result;
+    }
+    grobo_i_link_draft *link = &draft->link[draft->n_links++];
+    return read_block(events, GROBO_I_BLOCK_LINK, link, link->at, &link->place);
+}
+
+static int read_links(grobo_i_events *events, void *draft)
+{
+    return grobo_i_read_list(events, "links", read_link, draft);
+}
+
+/* Four digits of a hexadecimal number. */
+static bool read_hex(const char *text, uint16_t *value)
+{
+    static const char digits[] = "0123456789abcdef";
+    unsigned found = 0;
+    for (int i = 0; i < 4; i++) {
+        char low = text[i] >= 'A' && text[i] <= 'F' ? (char)(text[i] - 'A' + 'a') : text[i];
+        const char *digit = low != '\0' ? strchr(digits, low) : NULL;
+        if (digit == NULL) {
+            return false;
+        }
+        found = found * 16 + (unsigned)(digit - digits);
+    }
+    *value = (uint16_t)found;
+    return true;
+}
+
+static int read_usb_id(grobo_i_events *events, void *target)
+{
+    static const key_row id = {.name = "a USB id", .kind = KEY_TEXT};
+    grobo_i_draft *draft = target;
+    const grobo_i_event *event;
+    grobo_i_name text = "";
+    int result = need_room(events, "USB ids", draft->n_usb, GROBO_ROBOT_USB_MAX);
+    if (result == 0) {
+        result = grobo_i_peek(events, &event);
+    }
+    if (result < 0) {
+        return result;
+    }
+    const grobo_i_place place = event->place;
+    result = read_text(events, &id, place, text);
+    if (result < 0 || *text == '\0') {
+        return result;
+    }
+    grobo_usb_id *to = &draft->usb[draft->n_usb];
+    if (strlen(text) != 9 || text[4] != ':' || !read_hex(text, &to->vendor) ||
+        !read_hex(text + 5, &to->product)) {
+        return grobo_i_complain(events->reader, GROBO_ERR_SYNTAX, "usb", place,
+                                "'%s' is no USB id; as 0403:6001", text);
+    }
+    draft->n_usb++;
+    return 0;
+}
+
+static int read_usb(grobo_i_events *events, void *draft)
+{
+    return grobo_i_read_list(events, "usb", read_usb_id, draft);
+}
+
+/* ---- all of it ----------------------------------------------------------------------------- */
+
+static int read_document(grobo_i_events *events, grobo_i_draft *draft)
+{
+    const grobo_i_event *event;
+    int result = grobo_i_peek(events, &event);
+    if (result == 0 && event->kind != GROBO_I_MAP) {
+        return grobo_i_refuse(events->reader, GROBO_ERR_SYNTAX, "type", event->place,
+                              "not a robot's file: no mapping at the top");
+    }
+    if (result == 0) {
+        result = read_block(events, GROBO_I_BLOCK_ROBOT, draft, draft->at, &draft->place);
+    }
+    if (result == 0) {
+        result = grobo_i_next(events, &event); /* the document's end */
+    }
+    if (result < 0) {
+        return result;
+    }
+    const grobo_i_place end = event->place;
+    result = grobo_i_another_document(events);
+    return result > 0 ? grobo_i_refuse(events->reader, GROBO_ERR_SYNTAX, "documents", end,
+                                       "another document behind the first")
+                      : result;
+}
+
+int grobo_i_read_draft(grobo_i_reader *reader, grobo_i_draft *draft)
+{
+    grobo_i_events events;
+    int result = grobo_i_input_fill(&reader->input);
+    if (result < 0) {
+        return grobo_i_refuse(reader, result, "read", (grobo_i_place){0, 0}, "%s",
+                              grobo_error_text(result));
+    }
+    result = grobo_i_events_begin(&events, reader);
+    if (result < 0) {
+        return result;
+    }
+    events.refuses_aliases = true;
+    result = read_document(&events, draft);
+    grobo_i_events_end(&events);
+    return result;
+}

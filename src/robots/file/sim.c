@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: MIT */
+/* The simulator of a robot. */
+#include <string.h>
+
+#include "src/robots/file/families.h"
+
+static const grobo_sim_family *const sim_families[] = {&grobo_sim_dxl2, &grobo_sim_dxl1, NULL};
+
+int grobo_robot_def_sim(const grobo_robot_def *def, grobo_wiring wiring, grobo_robot_sim *sim)
+{
+    if (def == NULL || sim == NULL) {
+        return GROBO_ERR_ARG;
+    }
+    memset(sim, 0, sizeof *sim);
+    sim->config.model = def->model;
+    sim->config.wiring = wiring;
+    sim->config.baud_bps = def->baud_bps;
+    if (def->family->tables == NULL) {
+        return GROBO_OK;
+    }
+    for (int j = 0; j < def->model->n_joints; j++) {
+        sim->servos[j] = grobo_i_family_servo(def->family, def->model->joints[j].servo_model);
+    }
+    sim->config.servos = sim->servos;
+    sim->config.families = sim_families;
+    sim->config.supply_mv = sim->servos[0]->voltage_mv;
+    sim->config.mounted = true;
+    return GROBO_OK;
+}

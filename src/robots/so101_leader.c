@@ -1,0 +1,102 @@
+/* SPDX-License-Identifier: MIT */
+/* Made from src/robots/so101-leader.yaml by `make robots`. */
+#include "src/robots/robots.h"
+
+#define PI 3.14159265358979323846
+#define RAD(angle_deg) ((angle_deg)*PI / 180.0)
+
+static const grobo_joint joints[] = {
+    {.name = "shoulder_pan",
+     .min_rad = RAD(-110),
+     .max_rad = RAD(110),
+     .max_speed_rad_s = RAD(240),
+     .init_rad = 0,
+     .servo_model = 0x0309,
+     .free_current_ma = 0,
+     .motor = 1,
+     .mirror = 0,
+     .mirror_sign = 1},
+    {.name = "shoulder_lift",
+     .min_rad = RAD(-100),
+     .max_rad = RAD(100),
+     .max_speed_rad_s = RAD(240),
+     .init_rad = 0,
+     .servo_model = 0x0309,
+     .free_current_ma = 0,
+     .motor = 2,
+     .mirror = 1,
+     .mirror_sign = 1},
+    {.name = "elbow_flex",
+     .min_rad = RAD(-96.83),
+     .max_rad = RAD(96.83),
+     .max_speed_rad_s = RAD(240),
+     .init_rad = 0,
+     .servo_model = 0x0309,
+     .free_current_ma = 0,
+     .motor = 3,
+     .mirror = 2,
+     .mirror_sign = 1},
+    {.name = "wrist_flex",
+     .min_rad = RAD(-95),
+     .max_rad = RAD(95),
+     .max_speed_rad_s = RAD(240),
+     .init_rad = 0,
+     .servo_model = 0x0309,
+     .free_current_ma = 0,
+     .motor = 4,
+     .mirror = 3,
+     .mirror_sign = 1},
+    {.name = "wrist_roll",
+     .min_rad = RAD(-157.21),
+     .max_rad = RAD(162.79),
+     .max_speed_rad_s = RAD(240),
+     .init_rad = 0,
+     .servo_model = 0x0309,
+     .free_current_ma = 0,
+     .motor = 5,
+     .mirror = 4,
+     .mirror_sign = 1},
+    {.name = "gripper",
+     .min_rad = RAD(-10),
+     .max_rad = RAD(100),
+     .max_speed_rad_s = RAD(240),
+     .init_rad = 0,
+     .servo_model = 0x0309,
+     .free_current_ma = 0,
+     .motor = 6,
+     .mirror = 5,
+     .mirror_sign = 1},
+};
+
+static const grobo_group groups[] = {
+    {"all", 0x3F},
+    {"arm", 0x1F},
+};
+
+static const grobo_model model = {.name = "so101-leader",
+                                  .joints = joints,
+                                  .groups = groups,
+                                  .n_groups = 2,
+                                  .n_joints = 6,
+                                  .limit_slack_deg = 0};
+
+static const grobo_usb_id usb[] = {
+    {0x1A86, 0x55D3},
+};
+
+const grobo_robot_def grobo_i_robot_so101_leader = {.name = "so101-leader",
+                                                    .title = "SO-101 leader",
+                                                    .family = &grobo_i_family_feetech,
+                                                    .model = &model,
+                                                    .wiring = GROBO_WIRING_BUS,
+                                                    .baud_bps = 1000000,
+                                                    .usb = usb,
+                                                    .n_usb = 1,
+                                                    .limits = {.temperature_c = 60,
+                                                               .lost_replies = 5,
+                                                               .current_ma = 0,
+                                                               .voltage_mv = 4500,
+                                                               .current_us = 0,
+                                                               .approach_rad_s = RAD(60)},
+                                                    .on_exit = GROBO_EXIT_OFF,
+                                                    .arm = true};
