@@ -61,8 +61,9 @@ static void on_settled(void *ctx, const ledger_entry *entry)
     }
 }
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+static void run(const uint8_t *data, size_t size, const dialect *d)
 {
+    static talk who;
     static pcapng_reader reader;
     static frames sides[3];
     static heard h;
@@ -72,9 +73,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     int64_t now_us = 0;
     int result;
     h.bytes = 0;
+    who = (talk){.dialect = d, .model = &grobo_gr001_model};
     ledger_init(&h.asked, 1, on_settled, &h);
     for (int side = FRAMES_EITHER; side <= FRAMES_ROBOT; side++) {
         frames_init(&sides[side], (frames_side)side, FRAMES_ANY_WIRING, on_frame, &h);
+        frames_set_talk(&sides[side], &who);
     }
     pcapng_reader_init(&reader, take, &in);
     while ((result = pcapng_read(&reader, &chunk)) > 0) {
@@ -94,6 +97,15 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     ledger_end(&h.asked);
     if (h.bytes != fed) {
         abort();
+    }
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    static const dialect *const all[] = {NULL,         &dialect_dxl2,  &dialect_dxl1, &dialect_sts,
+                                         &dialect_scs, &dialect_lx16a, &dialect_ics};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+        run(data, size, all[i]);
     }
     return 0;
 }

@@ -49,6 +49,7 @@ static void take(wire_vector *v, const json_t *from)
     const json_t *data = json_object_get(meaning, "data");
     *v = (wire_vector){.name = text(from, "name"),
                        .series = text(from, "series"),
+                       .fault = text(from, "fault"),
                        .instruction = text(meaning, "instruction"),
                        .valid = json_is_true(json_object_get(from, "valid")),
                        .from_servo = strcmp(text(from, "direction"), "servo_to_host") == 0,

@@ -19,6 +19,7 @@ typedef struct wire_vector {
     const char *name;
     const char *instruction; /* "" where there is none */
     const char *series;
+    const char *fault; /* what is wrong with it; "" */
     bool valid, from_servo;
     wire_bytes whole;
     wire_bytes sent;                  /* the request before, if there is one */

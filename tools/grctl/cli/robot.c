@@ -129,10 +129,10 @@ int robot_choose(app *a)
     const cli_value *option = app_global(a, GLOBAL_ROBOT);
     const char *fallback = getenv("GRCTL_ROBOT");
     const char *configured = a->robot && *a->robot->def ? a->robot->def : NULL;
-    const char *name = option->given                  ? option->text
-                       : configured                   ? configured
-                       : fallback && *fallback        ? fallback
-                                                      : "gr001";
+    const char *name = option->given           ? option->text
+                       : configured            ? configured
+                       : fallback && *fallback ? fallback
+                                               : "gr001";
     char complaint[APP_LINE_BYTES];
     a->def = robot_find(name, complaint, sizeof complaint);
     if (!a->def) {
@@ -179,8 +179,7 @@ const char *robot_path(const app *a)
 void robot_sim(const app *a, grobo_robot_sim *sim)
 {
     const cli_value *baud = app_global(a, GLOBAL_BAUD);
-    (void)grobo_robot_def_sim(robot_of(a), (grobo_wiring)app_global(a, GLOBAL_WIRING)->choice,
-                              sim);
+    (void)grobo_robot_def_sim(robot_of(a), (grobo_wiring)app_global(a, GLOBAL_WIRING)->choice, sim);
     if (baud->given) {
         sim->config.baud_bps = (uint32_t)baud->number;
     }

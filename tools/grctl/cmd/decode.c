@@ -5,8 +5,17 @@
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/decode/decoder.h"
 #include "tools/grctl/decode/hextext.h"
+#include "tools/grctl/servo/family.h"
 
 enum { HEX_BYTES = 65536 };
+enum { OPT_FAMILY };
+
+static const cli_option options[] = {
+    [OPT_FAMILY] = OPTION_CHOICE("family", 0, "rs30x|dxl2|dxl1|sts|scs|lx16a|ics",
+                                 "what the servos are, where the robot's are others"),
+};
+
+static const char *const families[] = {"rs30x", "dxl2", "dxl1", "sts", "scs", "lx16a", "ics"};
 
 static unsigned wiring_of(const app *a)
 {
@@ -161,7 +170,9 @@ static int decode_arguments(decoder *d)
 static int run(app *a)
 {
     static decoder d;
-    decoder_init(&d, a, wiring_of(a));
+    const cli_value *given = app_option(a, OPT_FAMILY);
+    decoder_init(&d, a, wiring_of(a),
+                 given->given ? families[given->choice] : family_name(app_driver(a)));
     if (a->line.n_arguments == 0) {
         return decode_file(&d, "-");
     }
@@ -174,7 +185,12 @@ const cli_command cmd_decode = {
     .summary = "frames in words, from hex or a trace",
     .details =
         "Says what bytes mean: frames of the board, packets to servos and from them, registers by\n"
-        "name and in their units, whether the sum is right, what will be answered. Bytes that are\n"
+        "name and in their units, whether the sum is right, what will be answered. --family says\n"
+        "whose packets: Futaba's (rs30x), DYNAMIXEL 2.0 and 1.0 (dxl2, dxl1), Feetech's (sts,\n"
+        "scs), Hiwonder's (lx16a), Kondo's (ics); without it they are those of the robot. Replies\n"
+        "of most families do not say which registers they bring: the request before does.\n"
+        "Registers are those of the servo's model, where the robot or the bytes tell it, else of\n"
+        "the first model of the family. Bytes that are\n"
         "no frame are shown as what they are. The bytes come as hex on the command line (with or\n"
         "without blanks), from a file or standard input of hex, from what 'play --dry-run'\n"
         "prints, or from a trace of --trace. A name that is hex is hex: say ./cafe for a file.\n"
@@ -183,6 +199,8 @@ const cli_command cmd_decode = {
         "board frames and bare packets are both known.\n",
     .example = "  grctl decode 53 0C FA AF 03 00 1E 04 01 F6 FF 00 00 11\n"
                "  grctl play --dry-run motions/greet.pseq | grctl decode\n"
-               "  grctl decode walk.pcapng\n",
+               "  grctl decode walk.pcapng\n"
+               "  grctl decode --family dxl2 FF FF FD 00 01 03 00 01 19 4E\n",
+    COMMAND_OPTIONS(options),
     .run = run,
 };

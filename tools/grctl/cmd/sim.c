@@ -80,7 +80,7 @@ typedef struct farm {
     grobo_sim_server *server[ROBOTS_MAX];
     watched watched[ROBOTS_MAX];
     sim_console console;
-    sim_chain chain; /* of --servo */
+    sim_chain chain;       /* of --servo */
     grobo_robot_sim robot; /* where it is no chain */
     const grobo_model *model;
     int n;

@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 #include <stdio.h>
+#include <string.h>
 
 #include <grobo/serial.h>
 
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/decode/decoder.h"
 #include "tools/grctl/decode/words.h"
+#include "tools/grctl/servo/family.h"
 
 static double ms_of(const decoder *d, int64_t time_us)
 {
@@ -67,6 +69,17 @@ static void print_json(const decoder *d, const frame *f, bool answer, bool fits,
     app_print_json(line);
 }
 
+/* Who said which servo it is, has its registers from here on. */
+static void learn(decoder *d, const frame *f)
+{
+    static telegram said;
+    if (d->talk.dialect && f->kind == FRAME_PACKET && f->as.reply && f->sum_ok) {
+        memset(&said, 0, sizeof said);
+        d->talk.dialect->explain(f->bytes, f->size, &f->as, &said);
+        talk_learn(&d->talk, &said);
+    }
+}
+
 /* Replies are told apart from what nobody asked for, as far as there are requests at all. */
 static void on_frame(void *ctx, const frame *f)
 {
@@ -88,6 +101,7 @@ static void on_frame(void *ctx, const frame *f)
             snprintf(note, sizeof note, "; nobody asked for it");
         }
     }
+    learn(d, f);
     if (d->a->json) {
         print_json(d, f, answer, fits, asked_us);
     } else {
@@ -105,11 +119,28 @@ static void on_settled(void *ctx, const ledger_entry *entry)
     }
 }
 
-void decoder_init(decoder *d, app *a, unsigned wiring)
+/* The robot's joints have names where its servos are of the family. */
+talk decoder_talk(const app *a, const char *name)
 {
-    *d = (decoder){.a = a};
+    const grobo_driver *driver = app_driver(a);
+    talk t = {.dialect = dialect_named(name)};
+    if (!family_is(driver, name)) {
+        return t;
+    }
+    t.model = driver->model;
+    for (int j = 0; j < t.model->n_joints; j++) {
+        int id = t.model->joints[j].motor;
+        t.servo[id] = family_servo(driver, id);
+    }
+    return t;
+}
+
+void decoder_init(decoder *d, app *a, unsigned wiring, const char *name)
+{
+    *d = (decoder){.a = a, .talk = decoder_talk(a, name)};
     for (int side = FRAMES_EITHER; side <= FRAMES_ROBOT; side++) {
         frames_init(&d->lines[side], (frames_side)side, wiring, on_frame, d);
+        frames_set_talk(&d->lines[side], &d->talk);
     }
     ledger_init(&d->asked, 1, on_settled, d);
 }

@@ -11,6 +11,7 @@
 typedef struct decoder {
     app *a;
     frames lines[3]; /* by frames_side */
+    talk talk;
     ledger asked;
     bool timed;       /* bytes come with their time; it is shown */
     bool begun;       /* first_us is set */
@@ -21,8 +22,12 @@ typedef struct decoder {
     } count;
 } decoder;
 
-/* wiring: FRAMES_BOARD, FRAMES_BUS or both, of what is believed. */
-void decoder_init(decoder *d, app *a, unsigned wiring);
+/* wiring: FRAMES_BOARD, FRAMES_BUS or both, of what is believed of a host that talks to RS30x;
+ * name: the family. */
+void decoder_init(decoder *d, app *a, unsigned wiring, const char *name);
+
+/* Who talks on a line of this family: the robot's joints, where its servos are of it. */
+talk decoder_talk(const app *a, const char *name);
 
 void decoder_feed(decoder *d, frames_side side, int64_t time_us, const uint8_t *bytes, size_t n);
 

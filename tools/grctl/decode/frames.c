@@ -43,9 +43,30 @@ int frame_peek(frames_side side, unsigned wiring, const uint8_t *bytes, size_t n
     return size;
 }
 
+static int peek_dialect(frames_side side, const talk *t, const uint8_t *bytes, size_t n, frame *out)
+{
+    const dialect_look look = {.bytes = bytes,
+                               .n = n,
+                               .from_host = side != FRAMES_ROBOT,
+                               .from_robot = side != FRAMES_HOST,
+                               .sent = t->sent};
+    memset(out, 0, sizeof *out);
+    int size = t->dialect->peek(&look, &out->as);
+    out->kind = out->as.echo ? FRAME_ECHO : FRAME_PACKET;
+    out->side = side;
+    out->bytes = bytes;
+    out->size = size > 0 ? (size_t)size : 0;
+    out->sum_ok = out->as.sum_ok;
+    out->talk = t;
+    return size;
+}
+
 /* What begins at offset `at`. */
 static int look(const frames *f, size_t at, frame *out)
 {
+    if (f->talk && f->talk->dialect) {
+        return peek_dialect(f->side, f->talk, f->bytes + at, f->used - at, out);
+    }
     return frame_peek(f->side, f->wiring, f->bytes + at, f->used - at, out);
 }
 
@@ -65,6 +86,9 @@ static frames_side speaker(const frame *f)
     if (f->kind != FRAME_PACKET) {
         return FRAMES_EITHER;
     }
+    if (f->talk && f->talk->dialect) {
+        return f->as.reply ? FRAMES_ROBOT : FRAMES_HOST;
+    }
     return f->packet.kind == GROBO_RS30X_SHORT || f->packet.kind == GROBO_RS30X_LONG ? FRAMES_HOST
                                                                                      : FRAMES_ROBOT;
 }
@@ -77,7 +101,12 @@ static void hand_out(frames *f, frame *out, size_t n)
     out->size = n;
     out->time_us = f->time_us[0];
     out->end_us = f->time_us[n - 1];
+    out->talk = f->talk;
     f->use(f->ctx, out);
+    if (f->talk && f->talk->dialect && out->kind == FRAME_PACKET && out->side == FRAMES_HOST &&
+        out->sum_ok) {
+        talk_ask(f->talk, out->bytes, out->size);
+    }
     drop(f, n);
 }
 
@@ -170,6 +199,11 @@ void frames_init(frames *f, frames_side side, unsigned wiring, frames_fn use, vo
     f->ctx = ctx;
 }
 
+void frames_set_talk(frames *f, talk *t)
+{
+    f->talk = t;
+}
+
 void frames_pass(frames *f, int64_t now_us)
 {
     if (f->used > 0 && now_us - f->time_us[f->used - 1] >= FRAMES_STALL_US) {
@@ -209,6 +243,9 @@ int frame_reply(const frame *f, grobo_reply *reply)
     }
     if (f->kind != FRAME_PACKET && f->kind != FRAME_ECHO) {
         return GROBO_ERR_FRAME;
+    }
+    if (f->talk && f->talk->dialect) {
+        return f->as.reply ? GROBO_ERR_FRAME : f->talk->dialect->reply_to(f->bytes, f->size, reply);
     }
     return grobo_rs30x_reply_to(f->bytes, f->size, reply);
 }

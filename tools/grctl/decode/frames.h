@@ -1,13 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * A line's bytes as frames, for those who read along: good ones, those with a wrong sum, frames
- * cut off, and rubbish. Every byte that goes in comes out in exactly one of them, in order. It
- * believes what the library's parsers believe, and finds its way back as they do.
+ * cut off, and rubbish. Frames are those of RS30x and GR001's board, or of the talk's dialect.
+ * Every byte that goes in comes out in exactly one of them, in order. It believes what the
+ * library's parsers believe, and finds its way back as they do.
  */
 #ifndef GRCTL_FRAMES_H
 #define GRCTL_FRAMES_H
 
 #include <grobo/board.h>
+
+#include "tools/grctl/decode/dialect.h"
 
 /* Who speaks: decides what is believed. */
 typedef enum frames_side {
@@ -37,7 +40,9 @@ typedef struct frame {
     grobo_rs30x_packet packet; /* if has_packet; FRAME_PACKET and FRAME_ECHO have one */
     size_t packet_size;        /* with its header and sum */
     bool has_packet;
-    bool sum_ok; /* of the packet */
+    bool sum_ok;      /* of the packet */
+    const talk *talk; /* may be NULL */
+    dialect_frame as; /* where the talk has a dialect: then board and packet are empty */
 } frame;
 
 /*
@@ -60,7 +65,7 @@ typedef void (*frames_fn)(void *ctx, const frame *f);
 /*
  * To look behind a packet with a wrong sum takes two packets; rubbish is handed out in pieces.
  */
-enum { FRAMES_BUFFER_BYTES = 512, FRAMES_RUBBISH_MAX_BYTES = 64 };
+enum { FRAMES_BUFFER_BYTES = 2 * DIALECT_FRAME_BYTES, FRAMES_RUBBISH_MAX_BYTES = 64 };
 
 typedef struct frames {
     /* private */
@@ -68,6 +73,7 @@ typedef struct frames {
     unsigned wiring;
     frames_fn use;
     void *ctx;
+    talk *talk;
     size_t used;
     size_t rubbish; /* bytes at the front known to be none */
     bool ending;
@@ -76,6 +82,9 @@ typedef struct frames {
 } frames;
 
 void frames_init(frames *f, frames_side side, unsigned wiring, frames_fn use, void *ctx);
+
+/* Who is on the line; lines of one talk share it. Behind init, before the first byte. */
+void frames_set_talk(frames *f, talk *t);
 
 /* Bytes that came at this time; frames are handed out as soon as they are known. */
 void frames_feed(frames *f, int64_t time_us, const uint8_t *bytes, size_t n);

@@ -18,10 +18,11 @@ static bool is_settled(const ledger *l, const ledger_entry *entry)
     return true;
 }
 
+/* Some of several replies are an answer, too. */
 static void give_up(ledger_answer *answer)
 {
     if (answer->state == LEDGER_WAITING) {
-        answer->state = LEDGER_SILENT;
+        answer->state = answer->frames > 0 ? LEDGER_ANSWERED : LEDGER_SILENT;
     }
 }
 
@@ -76,13 +77,23 @@ static bool is_repeat(const ledger_entry *a, const ledger_entry *b)
     return a->size == b->size && memcmp(a->bytes, b->bytes, a->size) == 0;
 }
 
+/* Where there is a dialect, it has found the request. */
+static bool is_answer(const ledger_entry *entry, const frame *f)
+{
+    if (f->talk && f->talk->dialect) {
+        return f->as.sent && f->as.sent->n == entry->size &&
+               memcmp(f->as.sent->bytes, entry->bytes, entry->size) == 0;
+    }
+    return frame_is_reply(f, &entry->reply);
+}
+
 /* The request that a frame answers: the first that fits, or its last repetition. */
 static ledger_entry *find(ledger *l, int side, const frame *f)
 {
     ledger_entry *found = NULL;
     for (unsigned i = 0; i < l->n; i++) {
         ledger_entry *entry = entry_at(l, i);
-        if (entry->answer[side].state == LEDGER_WAITING && frame_is_reply(f, &entry->reply) &&
+        if (entry->answer[side].state == LEDGER_WAITING && is_answer(entry, f) &&
             (!found || is_repeat(entry, found))) {
             found = entry;
         }
@@ -102,7 +113,9 @@ bool ledger_take(ledger *l, int side, const frame *f, int64_t *asked_us)
         return false;
     }
     answer = &entry->answer[side];
-    answer->state = LEDGER_ANSWERED;
+    answer->frames++;
+    bool more = entry->reply.kind == GROBO_REPLY_ANY || answer->frames < entry->reply.count;
+    answer->state = more ? LEDGER_WAITING : LEDGER_ANSWERED;
     answer->time_us = f->end_us;
     answer->size = f->size;
     memcpy(answer->bytes, f->bytes, f->size);

@@ -18,6 +18,7 @@ typedef struct replay {
     int baud_bps;     /* 0: the trace does not tell */
     int64_t first_us; /* of the trace, by its own clock */
     void *ctx;        /* of the way it goes */
+    talk talk;
     frames host;
     frames robot[LEDGER_SIDES];
     ledger asked;

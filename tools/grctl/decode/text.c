@@ -43,13 +43,20 @@ static int read_line(reader *r)
 }
 
 /* True if bytes could be the beginning of a frame. */
-static bool begins_frame(const uint8_t *bytes, int n)
+static bool begins_frame(const reader *r, const uint8_t *bytes, int n)
 {
+    const dialect *d = r->d->talk.dialect;
     grobo_board_frame board;
     grobo_rs30x_packet packet;
     bool sum_ok;
     if (n <= 0) {
         return false;
+    }
+    if (d) {
+        const dialect_look look = {
+            .bytes = bytes, .n = (size_t)n, .from_host = true, .from_robot = true};
+        dialect_frame found = {0};
+        return d->peek(&look, &found) >= 0;
     }
     return grobo_board_peek(bytes, (size_t)n, &board) >= 0 ||
            grobo_rs30x_peek(bytes, (size_t)n, GROBO_ACCEPT_COMMANDS | GROBO_ACCEPT_RETURNS, &packet,
@@ -78,11 +85,11 @@ static const char *behind_time(reader *r, const char *text, double *time_ms)
         return rest;
     }
     int whole = hextext_parse(text, r->bytes, sizeof r->bytes, &at);
-    if (begins_frame(r->bytes, whole)) {
+    if (begins_frame(r, r->bytes, whole)) {
         return text;
     }
     int behind = hextext_parse(rest, r->bytes, sizeof r->bytes, &at);
-    return begins_frame(r->bytes, behind) ? rest : text;
+    return begins_frame(r, r->bytes, behind) ? rest : text;
 }
 
 static int feed_hex(reader *r, frames_side side, const char *text, double time_ms)

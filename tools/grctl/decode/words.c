@@ -1,45 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <grobo/model.h>
 #include <grobo/serial.h>
 
+#include "tools/grctl/decode/explain.h"
+#include "tools/grctl/decode/saytext.h"
 #include "tools/grctl/decode/words.h"
 #include "tools/grctl/servo/registers.h"
-
-/* Text that grows up to a cap; what does not fit is left out. */
-typedef struct text {
-    char *to;
-    size_t capacity, used;
-    bool color;
-} text;
-
-static void say(text *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
-
-static void say(text *t, const char *format, ...)
-{
-    va_list list;
-    va_start(list, format);
-    int n = vsnprintf(t->to + t->used, t->capacity - t->used, format, list);
-    va_end(list);
-    if (n > 0) {
-        t->used += (size_t)n < t->capacity - t->used ? (size_t)n : t->capacity - t->used - 1;
-    }
-}
-
-static void say_bad(text *t, const char *what)
-{
-    say(t, "%s%s%s", t->color ? "\033[31m" : "", what, t->color ? "\033[0m" : "");
-}
-
-static void say_hex(text *t, const uint8_t *bytes, size_t n)
-{
-    for (size_t i = 0; i < n; i++) {
-        say(t, " %02X", bytes[i]);
-    }
-}
 
 const char *words_side(frames_side side)
 {
@@ -55,18 +23,6 @@ const char *words_side(frames_side side)
 }
 
 /* ---- what text and JSON share -------------------------------------------------------------- */
-
-/* A joint of GR001 by its servo's id, or NULL. */
-static const char *joint_name(uint8_t id)
-{
-    const grobo_model *model = &grobo_gr001_model;
-    for (int j = 0; j < model->n_joints; j++) {
-        if (model->joints[j].motor == id) {
-            return model->joints[j].name;
-        }
-    }
-    return NULL;
-}
 
 /* The last model has all registers. */
 #define ANY_RS30X (&grobo_rs30x_table.models[grobo_rs30x_table.model_count - 1])
@@ -168,15 +124,12 @@ static int right_sum(const grobo_rs30x_packet *p)
 
 /* ---- text ---------------------------------------------------------------------------------- */
 
-static void say_servo(text *t, uint8_t id)
+static void say_who(text *t, uint8_t id)
 {
-    const char *name = joint_name(id);
     if (id == GROBO_RS30X_ID_ALL) {
         say(t, "all servos");
-    } else if (name) {
-        say(t, "servo %u (%s)", id, name);
     } else {
-        say(t, "servo %u", id);
+        say_servo(t, id);
     }
 }
 
@@ -244,7 +197,7 @@ static void say_bare(text *t, const grobo_rs30x_packet *p, const grobo_reply *re
     const char *action = action_of(p);
     if (strcmp(action, "read") != 0) {
         say(t, "%s ", strcmp(action, "nothing") == 0 ? "nothing for" : action);
-        say_servo(t, p->id);
+        say_who(t, p->id);
         return;
     }
     say(t, "read ");
@@ -254,7 +207,7 @@ static void say_bare(text *t, const grobo_rs30x_packet *p, const grobo_reply *re
         say_span(t, p->address, p->length);
     }
     say(t, " of ");
-    say_servo(t, p->id);
+    say_who(t, p->id);
 }
 
 static void say_command(text *t, const frame *f, const grobo_reply *reply, int known)
@@ -268,7 +221,7 @@ static void say_command(text *t, const frame *f, const grobo_reply *reply, int k
         say_names(t, p);
     } else if ((only_writes || p->address < GROBO_REGISTERS) && find_part(p, 0, &part)) {
         say(t, "write ");
-        say_servo(t, p->id);
+        say_who(t, p->id);
         say(t, ": ");
         say_registers(t, &part);
         if (!only_writes) {
@@ -287,7 +240,7 @@ static void say_return(text *t, const frame *f)
     const grobo_rs30x_packet *p = &f->packet;
     const char *comma = "; ";
     packet_part part;
-    say_servo(t, p->id);
+    say_who(t, p->id);
     say(t, " returns");
     if (find_part(p, 0, &part)) {
         say(t, " ");
@@ -373,6 +326,9 @@ static void say_board(text *t, const frame *f, const grobo_reply *reply, int kno
 
 static bool is_command(const frame *f)
 {
+    if (f->talk && f->talk->dialect) {
+        return f->kind <= FRAME_ECHO && !f->as.reply;
+    }
     return f->kind == FRAME_BOARD || f->kind == FRAME_ECHO ||
            (f->kind == FRAME_PACKET &&
             (f->packet.kind == GROBO_RS30X_SHORT || f->packet.kind == GROBO_RS30X_LONG));
@@ -424,17 +380,64 @@ static void say_shares(text *t, const grobo_rs30x_packet *p)
     packet_part part;
     for (int i = 0; find_part(p, i, &part); i++) {
         say(t, "    ");
-        say_servo(t, part.id);
+        say_who(t, part.id);
         say(t, ": ");
         say_registers(t, &part);
         say(t, "\n");
     }
 }
 
+/* ---- frames of a dialect ------------------------------------------------------------------- */
+
+static bool is_telegram(const frame *f)
+{
+    return f->talk && f->talk->dialect && (f->kind == FRAME_PACKET || f->kind == FRAME_ECHO);
+}
+
+static const telegram *telegram_of(const frame *f)
+{
+    static telegram said;
+    memset(&said, 0, sizeof said);
+    f->talk->dialect->explain(f->bytes, f->size, &f->as, &said);
+    return &said;
+}
+
+static void say_telegram(text *t, const frame *f, const char *note)
+{
+    const telegram *said = telegram_of(f);
+    *t->to = '\0';
+    say(t, "%s", f->kind == FRAME_ECHO ? "echo: " : "");
+    explain_say(t, f, said);
+    say(t, "%s\n", note);
+    if (f->kind != FRAME_ECHO) {
+        explain_shares(t, said);
+    }
+}
+
+/* Why no frame begins where rubbish looks like one. */
+static void say_why(text *t, const frame *f)
+{
+    const char *why = NULL;
+    for (size_t i = 0; f->talk && f->talk->dialect && i < f->size && !why; i++) {
+        why = f->talk->dialect->why(f->bytes + i, f->size - i);
+    }
+    if (why) {
+        say(t, " (");
+        say_bad(t, why);
+        say(t, ")");
+    }
+}
+
+/* ---- text of any frame --------------------------------------------------------------------- */
+
 void words_say(const frame *f, bool color, const char *note, char *to, size_t capacity)
 {
-    text t = {to, capacity, 0, color};
+    text t = {to, capacity, 0, color, f->talk};
     grobo_reply reply;
+    if (is_telegram(f)) {
+        say_telegram(&t, f, note);
+        return;
+    }
     int known = expects(f, &reply);
     *to = '\0';
     switch (f->kind) {
@@ -455,6 +458,7 @@ void words_say(const frame *f, bool color, const char *note, char *to, size_t ca
     case FRAME_RUBBISH:
         say_bad(&t, "rubbish:");
         say_hex(&t, f->bytes, f->size);
+        say_why(&t, f);
         break;
     }
     if (f->kind != FRAME_ECHO) {
@@ -476,6 +480,9 @@ static const char *kind_of(const frame *f)
     case FRAME_BOARD:
         return board[f->board.kind];
     case FRAME_PACKET:
+        if (is_telegram(f)) {
+            return f->as.reply ? "return" : "packet";
+        }
         return packet[f->packet.kind];
     case FRAME_ECHO:
         return "echo";
@@ -488,9 +495,9 @@ static const char *kind_of(const frame *f)
 }
 
 /* Reserved bytes are told where they are not 0. */
-static json_t *part_json(const packet_part *part)
+static json_t *part_json(const talk *who, const packet_part *part)
 {
-    const char *name = joint_name(part->id);
+    const char *name = talk_joint(who, part->id);
     json_t *registers = json_object();
     json_t *other = json_object();
     for (size_t at = 0; at < part->n;) {
@@ -532,7 +539,7 @@ static json_t *packet_json(const frame *f)
     json_t *servos = json_array();
     packet_part part;
     for (int i = 0; find_part(p, i, &part); i++) {
-        json_array_append_new(servos, part_json(&part));
+        json_array_append_new(servos, part_json(f->talk, &part));
     }
     return json_pack("{s:s,s:s,s:i,s:i,s:i,s:i,s:i,s:i,s:b,s:o*,s:o*,s:o}", "kind", kinds[p->kind],
                      "action", action_of(p), "id", p->id, "flags", p->flags, "address", p->address,
@@ -544,7 +551,7 @@ static json_t *packet_json(const frame *f)
 
 static json_t *reply_json(const frame *f, const grobo_reply *reply, int known)
 {
-    static const char *const kinds[] = {"none", "ack", "return"};
+    static const char *const kinds[] = {"none", "ack", "return", "any"};
     if (known < 0 && known != GROBO_ERR_MISMATCH) {
         return json_pack("{s:o}", "error", app_json_code(grobo_error_name(known)));
     }
@@ -567,9 +574,11 @@ json_t *words_json(const frame *f)
     bool numbered = f->kind == FRAME_BOARD &&
                     (f->board.kind == GROBO_BOARD_SLOT || f->board.kind == GROBO_BOARD_SCENARIO);
     bool replies = known != GROBO_ERR_TYPE && f->kind != FRAME_ECHO;
+    json_t *said = is_telegram(f)                        ? explain_packet(f, telegram_of(f))
+                   : f->has_packet && f->packet_size > 1 ? packet_json(f)
+                                                         : NULL;
     return json_pack("{s:s,s:s,s:I,s:s,s:o*,s:o*,s:o*}", "from", words_side(f->side), "kind",
                      kind_of(f), "bytes", (json_int_t)f->size, "hex", hex, "number",
-                     numbered ? json_integer(f->board.number) : NULL, "packet",
-                     f->has_packet && f->packet_size > 1 ? packet_json(f) : NULL, "reply",
+                     numbered ? json_integer(f->board.number) : NULL, "packet", said, "reply",
                      replies ? reply_json(f, &reply, known) : NULL);
 }

@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: MIT */
+#include <string.h>
+
 #include <grobo/board.h>
 #include <grobo/dxl2.h>
 #include <grobo/feetech.h>
@@ -25,6 +27,16 @@ const family *family_row(size_t i)
 static bool speaks(const family *f, const grobo_driver *driver)
 {
     return f->protocol == (driver->protocol->relay ? &grobo_rs30x_protocol : driver->protocol);
+}
+
+bool family_is(const grobo_driver *driver, const char *name)
+{
+    for (size_t i = 0; i < FAMILIES; i++) {
+        if (strcmp(families[i].name, name) == 0) {
+            return speaks(&families[i], driver);
+        }
+    }
+    return false;
 }
 
 const grobo_servo_model *family_numbered(const grobo_driver *driver, uint16_t number)
@@ -76,4 +88,14 @@ int family_identity(const grobo_servo_model *servo, uint16_t *address)
                                                             : b->address + b->bytes;
     *address = a->address < b->address ? a->address : b->address;
     return end - *address;
+}
+
+const char *family_name(const grobo_driver *driver)
+{
+    const grobo_servo_model *servo = family_servo(driver, driver->model->joints[0].motor);
+    size_t i = 0;
+    while (i < FAMILIES - 1 && (!servo || families[i].table != servo->table)) {
+        i++;
+    }
+    return families[i].name;
 }

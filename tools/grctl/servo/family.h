@@ -15,6 +15,12 @@ typedef struct family {
 /* Family number i; NULL behind the last. */
 const family *family_row(size_t i);
 
+/* Whether a driver's servos may be of the family of this name; behind a board are RS30x. */
+bool family_is(const grobo_driver *driver, const char *name);
+
+/* The family of a driver's servos: of its first joint, where it has several. */
+const char *family_name(const grobo_driver *driver);
+
 /*
  * The servo of a driver's joint by its id; of an id that is no joint's, and of a joint whose servo
  * is not named, the first model of the family. NULL: the family has no registers.

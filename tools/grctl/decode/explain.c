@@ -1,0 +1,339 @@
+/* SPDX-License-Identifier: MIT */
+#include <string.h>
+
+#include "tools/grctl/decode/explain.h"
+#include "tools/grctl/servo/registers.h"
+
+/* Fewer registers are named, more are told by their addresses. */
+enum { NAMES_MAX = 4 };
+
+/* A register in a part; bytes of none (reg NULL), or of one that is not there as a whole. */
+typedef struct item {
+    const grobo_servo_model *servo;
+    const grobo_servo_register *reg;
+    int address, bytes;
+    int32_t value;
+    bool whole;
+} item;
+
+/* What stands at an offset of a part that has data or asks for them. */
+static item item_at(const talk *t, const telegram_part *part, int at)
+{
+    item i = {.servo = talk_servo(t, part->id), .address = part->address + at, .bytes = 1};
+    i.reg = part->address < 0 ? NULL : grobo_servo_register_at(i.servo, (uint16_t)i.address);
+    i.whole = i.reg && i.reg->address == i.address && at + i.reg->bytes <= part->length;
+    if (i.whole) {
+        i.bytes = i.reg->bytes;
+        i.value = part->data ? grobo_servo_register_get(i.servo, i.reg, part->data + at) : 0;
+    } else if (part->data) {
+        i.value = part->data[at];
+    }
+    return i;
+}
+
+/* ---- text ---------------------------------------------------------------------------------- */
+
+static void say_value(text *t, const item *i, bool write)
+{
+    char value[REGISTERS_TEXT_BYTES], range[64];
+    registers_text(i->servo, i->reg, i->value, value, sizeof value);
+    say(t, "%s %s", i->reg->name, value);
+    if (write && (i->value < i->reg->min || i->value > i->reg->max)) {
+        snprintf(range, sizeof range, "%d is outside %d..%d", (int)i->value, (int)i->reg->min,
+                 (int)i->reg->max);
+        say(t, ", ");
+        say_bad(t, range);
+    } else if (write && (i->reg->flags & GROBO_REGISTER_W) == 0) {
+        say(t, ", ");
+        say_bad(t, "which is read only");
+    }
+}
+
+/* A register or byte in a list of them. */
+static void say_item(text *t, const item *i, bool write)
+{
+    if (i->whole) {
+        say_value(t, i, write);
+    } else {
+        say(t, "%d = %02X%s%s%s", i->address, (unsigned)i->value, i->reg ? " (part of " : "",
+            i->reg ? i->reg->name : "", i->reg ? ")" : "");
+    }
+}
+
+/* Limits that leave no room. */
+static void say_order(text *t, const item *i, int32_t *lowest)
+{
+    if (i->whole && i->reg->role == GROBO_ROLE_MIN_POSITION) {
+        *lowest = i->value;
+    } else if (i->whole && i->reg->role == GROBO_ROLE_MAX_POSITION && i->value < *lowest) {
+        say(t, ", ");
+        say_bad(t, "which is below the other");
+    }
+}
+
+/* Registers of a servo; bytes between them are said where they are not 0. */
+static void say_values(text *t, const telegram_part *part, bool write)
+{
+    const char *comma = "";
+    int32_t lowest = INT32_MIN;
+    if (part->address < 0) {
+        say(t, "%d byte%s", part->length, part->length == 1 ? "" : "s");
+        say_hex(t, part->data, (size_t)part->length);
+        return;
+    }
+    for (int at = 0; at < part->length;) {
+        const item i = item_at(t->talk, part, at);
+        at += i.bytes;
+        if (i.reg || i.value != 0) {
+            say(t, "%s", comma);
+            say_item(t, &i, write);
+            comma = ", ";
+        }
+        if (write) {
+            say_order(t, &i, &lowest);
+        }
+    }
+    if (!*comma && part->length > 0) {
+        say(t, "nothing but zeros");
+    }
+}
+
+/* Behind which address a servo has no registers. */
+static int end_of(const grobo_servo_model *servo)
+{
+    int end = 0;
+    const grobo_servo_register *reg;
+    for (size_t i = 0; (reg = grobo_servo_register_row(servo, i)) != NULL; i++) {
+        end = reg->address + reg->bytes;
+    }
+    return end;
+}
+
+/* "present_position", or "132-147" for many. */
+static void say_names(text *t, const telegram_part *part)
+{
+    const grobo_servo_model *servo = talk_servo(t->talk, part->id);
+    const char *comma = "";
+    char names[256] = "";
+    size_t used = 0;
+    int n = 0;
+    for (int at = 0; at < part->length; n++) {
+        const telegram_part asked = {part->id, part->address, part->length, NULL};
+        const item i = item_at(t->talk, &asked, at);
+        at += i.bytes;
+        n = i.whole ? n : NAMES_MAX;
+        if (i.whole && used < sizeof names) {
+            used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", comma, i.reg->name);
+            comma = ", ";
+        }
+    }
+    if (n > 0 && n <= NAMES_MAX) {
+        say(t, "%s", names);
+    } else {
+        say(t, "%d-%d", part->address, part->address + part->length - 1);
+    }
+    if (part->address + part->length > end_of(servo)) {
+        say(t, " ");
+        say_bad(t, "(behind the last known register)");
+    }
+}
+
+static void say_who(text *t, const telegram *said)
+{
+    if (said->all) {
+        say(t, "all servos");
+    } else if (said->id >= 0) {
+        say_servo(t, said->id);
+    }
+}
+
+static bool alike(const telegram *said)
+{
+    for (size_t i = 1; i < said->n_parts; i++) {
+        if (said->part[i].address != said->part[0].address ||
+            said->part[i].length != said->part[0].length) {
+            return false;
+        }
+    }
+    return said->n_parts > 0;
+}
+
+/* Whether each servo's share has a line of its own. */
+static bool has_lines(const telegram *said)
+{
+    return said->shares && said->n_parts > 0 && (said->part[0].data || !alike(said));
+}
+
+static void say_many(text *t, const telegram *said)
+{
+    bool reads = said->n_parts > 0 && !said->part[0].data;
+    if (said->reply) {
+        say(t, "%zu servos return", said->n_parts);
+        return;
+    }
+    say(t, "%s", said->action);
+    if (!reads || !alike(said)) {
+        say(t, " %zu servos%s", said->n_parts, alike(said) ? ": " : "");
+    }
+    if (alike(said)) {
+        say(t, "%s", reads ? " " : "");
+        say_names(t, &said->part[0]);
+    }
+    for (size_t i = 0; reads && alike(said) && i < said->n_parts; i++) {
+        say(t, "%s", i ? ", " : " of ");
+        say_servo(t, said->part[i].id);
+    }
+}
+
+static void say_one(text *t, const telegram *said)
+{
+    const telegram_part *part = said->n_parts > 0 ? &said->part[0] : NULL;
+    if (said->reply) {
+        say_who(t, said);
+        say(t, "%s", part ? " returns " : " answers");
+    } else if (part && !part->data) {
+        say(t, "%s ", said->action);
+        say_names(t, part);
+        say(t, " of ");
+        say_who(t, said);
+        return;
+    } else {
+        say(t, "%s ", said->action);
+        say_who(t, said);
+        say(t, "%s", part && part->length > 0 ? ": " : "");
+    }
+    for (size_t i = 0; i < said->n_parts; i++) {
+        say(t, "%s", i ? ", " : "");
+        say_values(t, &said->part[i], !said->reply);
+    }
+}
+
+static void say_sum(text *t, const frame *f, const telegram *said)
+{
+    char bad[64];
+    const char *name = said->sum_bytes == 2 ? "CRC" : "sum";
+    int digits = 2 * said->sum_bytes;
+    if (said->sum_bytes == 0) {
+        return;
+    }
+    if (f->sum_ok) {
+        say(t, "; %s %0*X right", name, digits, said->sum);
+        return;
+    }
+    snprintf(bad, sizeof bad, "%s %0*X wrong, should be %0*X", name, digits, said->sum, digits,
+             said->right_sum);
+    say(t, "; ");
+    say_bad(t, bad);
+}
+
+static void say_reply(text *t, const frame *f, const telegram *said)
+{
+    grobo_reply reply;
+    int bytes = frame_reply(f, &reply);
+    if (said->reply || f->kind == FRAME_ECHO || bytes < 0) {
+        return;
+    }
+    if (reply.kind == GROBO_REPLY_NONE) {
+        say(t, "; no reply");
+    } else if (reply.kind == GROBO_REPLY_ANY) {
+        say(t, "; reply: of each that is there");
+    } else {
+        say(t, "; reply: %u bytes", reply.bytes);
+    }
+}
+
+void explain_say(text *t, const frame *f, const telegram *said)
+{
+    const char *comma = "; ";
+    if (!said->action) {
+        char bad[48];
+        snprintf(bad, sizeof bad, "unknown instruction %02X", said->code);
+        say_bad(t, bad);
+        say(t, " to ");
+        say_who(t, said);
+    } else if (said->shares) {
+        say_many(t, said);
+    } else {
+        say_one(t, said);
+    }
+    for (size_t i = 0; i < said->n_status; i++) {
+        say(t, "%s", comma);
+        say_bad(t, said->status[i]);
+        comma = ", ";
+    }
+    if (*said->trouble) {
+        say(t, "; ");
+        say_bad(t, said->trouble);
+    }
+    say_sum(t, f, said);
+    say_reply(t, f, said);
+}
+
+void explain_shares(text *t, const telegram *said)
+{
+    for (size_t i = 0; has_lines(said) && i < said->n_parts; i++) {
+        say(t, "    ");
+        say_servo(t, said->part[i].id);
+        say(t, ": ");
+        if (said->part[i].data) {
+            say_values(t, &said->part[i], !said->reply);
+        } else {
+            say_names(t, &said->part[i]);
+        }
+        say(t, "\n");
+    }
+}
+
+/* ---- JSON ---------------------------------------------------------------------------------- */
+
+static json_t *part_json(const talk *who, const telegram_part *part)
+{
+    json_t *registers = json_object();
+    json_t *other = json_object();
+    for (int at = 0; part->data && at < part->length;) {
+        char key[REGISTERS_TEXT_BYTES];
+        const item i = item_at(who, part, at);
+        if (i.whole) {
+            registers_key(i.reg, key, sizeof key);
+            json_object_set_new(registers, key, registers_json(i.servo, i.reg, i.value));
+        } else if (i.reg || i.value || part->address < 0) {
+            snprintf(key, sizeof key, "%d", part->address < 0 ? at : i.address);
+            json_object_set_new(other, key, json_integer(i.value));
+        }
+        at += i.bytes;
+    }
+    bool others = json_object_size(other) > 0;
+    bool asks = !part->data;
+    json_t *o =
+        json_pack("{s:i,s:s?,s:o*,s:o*,s:o,s:O*}", "id", part->id, "name",
+                  talk_joint(who, part->id), "address", asks ? json_integer(part->address) : NULL,
+                  "length", asks ? json_integer(part->length) : NULL, "registers", registers,
+                  "other_bytes", others ? other : NULL);
+    json_decref(other);
+    return o;
+}
+
+json_t *explain_packet(const frame *f, const telegram *said)
+{
+    char unknown[32];
+    json_t *servos = json_array();
+    json_t *status = json_array();
+    snprintf(unknown, sizeof unknown, "instruction %02X", said->code);
+    for (size_t i = 0; i < said->n_parts; i++) {
+        json_array_append_new(servos, part_json(f->talk, &said->part[i]));
+    }
+    for (size_t i = 0; i < said->n_status; i++) {
+        json_array_append_new(status, json_string(said->status[i]));
+    }
+    if (!said->reply) {
+        json_decref(status);
+        status = NULL;
+    }
+    return json_pack(
+        "{s:s,s:s,s:o*,s:i,s:o*,s:b,s:o*,s:o*,s:o*,s:o}", "kind",
+        said->reply ? "return" : "command", "action", said->action ? said->action : unknown, "id",
+        said->id >= 0 && !said->all ? json_integer(said->id) : NULL, "flags", (int)said->code,
+        "sum", said->sum_bytes ? json_integer(said->sum) : NULL, "sum_ok", f->sum_ok, "right_sum",
+        f->sum_ok ? NULL : json_integer(said->right_sum), "status", status, "trouble",
+        *said->trouble ? json_string(said->trouble) : NULL, "servos", servos);
+}
