@@ -20,16 +20,14 @@ enum {
 /* Size of the reply that begins so; 0: more is needed; negative: none. */
 static int reply_size(const uint8_t *bytes, size_t n)
 {
-    switch (bytes[0] & KIND_BITS) {
-    case 0: /* a position */
+    const uint8_t kind = bytes[0] & KIND_BITS;
+    const bool write = kind == (GROBO_ICS_WRITE & KIND_BITS);
+    if (kind == 0) { /* a position */
         return 3;
-    case GROBO_ICS_READ &KIND_BITS:
-    case GROBO_ICS_WRITE &KIND_BITS:
-        break;
-    default:
+    }
+    if (!write && kind != (GROBO_ICS_READ & KIND_BITS)) {
         return GROBO_ERR_FRAME;
     }
-    bool write = (bytes[0] & KIND_BITS) == (GROBO_ICS_WRITE & KIND_BITS);
     if (n < 2) {
         return 0;
     }
