@@ -81,6 +81,7 @@ typedef void (*grobo_session_event_fn)(grobo_session *session, grobo_session_eve
 
 /** What a session is made of. Zero means default. */
 typedef struct grobo_session_config {
+    size_t size;                     /**< GROBO_SESSION_CONFIG_INIT */
     struct event_base *base;         /**< borrowed; needed */
     const char *device;              /**< copied; needed: a serial port, "tcp:HOST:PORT",
                                           GROBO_DEVICE_SIM or GROBO_DEVICE_AUTO */
@@ -108,6 +109,8 @@ typedef struct grobo_session_config {
     size_t guard_bytes;              /**< of it, at most GROBO_GUARD_DATA_BYTES */
     const grobo_mem *mem;            /**< borrowed allocator; NULL: the C library's */
 } grobo_session_config;
+/** Begins an initializer of one. */
+#define GROBO_SESSION_CONFIG_INIT GROBO_SIZED(grobo_session_config)
 
 /**
  * Makes a session, closed.

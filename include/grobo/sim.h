@@ -150,6 +150,7 @@ typedef enum grobo_sim_start {
 
 /** Zero in a field means its default. */
 typedef struct grobo_sim_config {
+    size_t size;              /**< GROBO_SIM_CONFIG_INIT */
     const grobo_model *model; /**< NULL: GR001. Borrowed for the life of the simulator */
     grobo_wiring wiring;      /**< default: board */
     const grobo_servo_model *const *servos;  /**< bus: of each joint, NULL: an RS30x, the joint's
@@ -175,6 +176,8 @@ typedef struct grobo_sim_config {
     grobo_sim_hook hook;       /**< or NULL */
     void *hook_ctx;            /**< given to the hook */
 } grobo_sim_config;
+/** Begins an initializer of one. */
+#define GROBO_SIM_CONFIG_INIT GROBO_SIZED(grobo_sim_config)
 
 /* ---- inspection ----------------------------------------------------------------------------- */
 

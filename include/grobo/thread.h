@@ -28,8 +28,8 @@
  * has been carried out; grobo_control_exit() leaves it where it cannot wait. What delays it is a
  * callback, or a function of grobo_control_call() or grobo_control_post(), that does not return:
  * while it holds the loop, nothing is read, nothing is watched and nothing is sent, so joints go on
- * to the posture they were sent to last, and a motion that is late by stall_us ends. A callback must
- * not wait for a lock whose owner calls here and waits. One that takes longer than
+ * to the posture they were sent to last, and a motion that is late by stall_us ends. A callback
+ * must not wait for a lock whose owner calls here and waits. One that takes longer than
  * GROBO_CALLBACK_SLOW_US is reported by the event GROBO_EVENT_SLOW_CALLBACK.
  *
  * Besides what is said at each, handed-over and waiting calls may return GROBO_ERR_FULL
@@ -78,9 +78,11 @@ typedef int (*grobo_control_fn)(grobo_control *control, void *arg);
 
 /** What a control is made of. Zero means default. */
 typedef struct grobo_control_config {
-    /** The session; `device` is needed, `base` must be NULL. Its callbacks are called on the thread
-     *  that runs the loop; its allocator must be safe to call from every thread. */
-    grobo_session_config session;
+    size_t size; /**< GROBO_CONTROL_CONFIG_INIT */
+    /** The session, needed, copied; its `device` is needed, `base` must be NULL. Its callbacks are
+     *  called on the thread that runs the loop; its allocator must be safe to call from every
+     *  thread. */
+    const grobo_session_config *session;
     const char *name;          /**< copied; NULL: the driver's */
     const char *motion_dir;    /**< copied; NULL: "." */
     int64_t control_period_us; /**< 1000..1000000; 0: GROBO_CONTROL_PERIOD_US */
@@ -88,12 +90,14 @@ typedef struct grobo_control_config {
                                     the exit policy is carried out, once until the next call */
     bool skip_exit;            /**< leave the robot as it is */
     grobo_control_fn on_svc;   /**< called once each control period while the loop runs, arg being
-                                    session.ctx; its result is ignored; or NULL */
+                                    session->ctx; its result is ignored; or NULL */
     int64_t timeout_us;        /**< of calls that are given none, and of those handed over; 0:
                                     GROBO_CONTROL_TIMEOUT_US */
     size_t events;             /**< events kept for grobo_control_next_event(), at most
                                     GROBO_CONTROL_EVENTS_MAX; each takes some 2.5 kB; 0: none */
 } grobo_control_config;
+/** Begins an initializer of one. */
+#define GROBO_CONTROL_CONFIG_INIT GROBO_SIZED(grobo_control_config)
 
 /* ---- making and freeing ------------------------------------------------------------------- */
 

@@ -18,7 +18,7 @@ static size_t size_of(const void *sized)
 int grobo_i_sized_take(void *to, size_t to_bytes, const void *from)
 {
     const uint8_t *bytes = from;
-    size_t size = size_of(from);
+    size_t size = from != NULL ? size_of(from) : sizeof size;
 
     if (size == 0) {
         return GROBO_ERR_ARG;
@@ -29,7 +29,9 @@ int grobo_i_sized_take(void *to, size_t to_bytes, const void *from)
         }
     }
     memset(to, 0, to_bytes);
-    memcpy(to, from, size < to_bytes ? size : to_bytes);
+    if (from != NULL) {
+        memcpy(to, from, size < to_bytes ? size : to_bytes);
+    }
     memcpy(to, &to_bytes, sizeof to_bytes);
     return GROBO_OK;
 }

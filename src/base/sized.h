@@ -15,8 +15,8 @@
 
 /*
  * Copies a structure of the caller's into one of the library's, whose `size` is that of the library
- * then. GROBO_ERR_ARG: `size` is nonsense, or something is set that this library does not know; the
- * copy is untouched then.
+ * then; NULL for one that is all zero. GROBO_ERR_ARG: `size` is nonsense, or something is set that
+ * this library does not know; the copy is untouched then.
  */
 int grobo_i_sized_take(void *to, size_t to_bytes, const void *from);
 

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "src/base/instant.h"
+#include "src/base/sized.h"
 #include "src/sim/board.h"
 #include "src/sim/bus.h"
 #include "src/sim/family.h"
@@ -390,7 +391,10 @@ int grobo_sim_init(grobo_sim *sim, const grobo_sim_config *config, int64_t now_u
     if (sim == NULL) {
         return GROBO_ERR_ARG;
     }
-    grobo_sim_config with = config == NULL ? (grobo_sim_config){0} : *config;
+    grobo_sim_config with;
+    if (grobo_i_sized_take(&with, sizeof with, config) < 0) {
+        return GROBO_ERR_ARG;
+    }
     use_defaults(&with);
     if (grobo_model_check(with.model) < 0 || with.baud_bps < LOWEST_BPS || with.ambient_c < -40 ||
         with.ambient_c > 60 ||

@@ -13,7 +13,7 @@ enum { JOINTS = FAMILY_JOINTS, MS = 1000, S = 1000000 };
 
 static family_kit kit;
 
-static const grobo_robot_config watched = {.sense_interval_us = 50 * MS};
+static const grobo_robot_config watched = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 50 * MS};
 
 static void postures_are_played(void **state)
 {

@@ -33,7 +33,7 @@ static grobo_play_options play_options;
 static grobo_hrpsys hrpsys;
 static grobo_joint_mask joints;
 static const char *const names[] = {"CHEST", NULL};
-static grobo_robot_config robot_config;
+static grobo_robot_config robot_config = {GROBO_ROBOT_CONFIG_INIT};
 static grobo_register_io io;
 static grobo_joint_info joint_info;
 static grobo_trip_info trip;
@@ -42,7 +42,7 @@ static grobo_budget budget;
 static grobo_jitter jitter;
 static grobo_sequencer seq;
 static grobo_play_frame frame;
-static grobo_sim_config sim_config;
+static grobo_sim_config sim_config = {GROBO_SIM_CONFIG_INIT};
 static grobo_sim sim;
 static grobo_sim_view view;
 

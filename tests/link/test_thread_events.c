@@ -51,14 +51,14 @@ static void on_event(grobo_session *session, grobo_session_event event, int erro
 
 static int set_up(void **state)
 {
-    const grobo_robot_config robot = {.sense_interval_us = GROBO_SENSE_NEVER};
+    const grobo_robot_config robot = {GROBO_ROBOT_CONFIG_INIT,
+                                      .sense_interval_us = GROBO_SENSE_NEVER};
     const grobo_control_config config = {
-        .session = {.device = GROBO_DEVICE_SIM,
-                    .baud_bps = 1000000,
-                    .robot = &robot,
-                    .on_robot = on_robot,
-                    .on_event = on_event,
-                    .ctx = &heard},
+        GROBO_CONTROL_CONFIG_INIT,
+        .session =
+            &(grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = GROBO_DEVICE_SIM,
+                                    .baud_bps = 1000000, .robot = &robot, .on_robot = on_robot,
+                                    .on_event = on_event, .ctx = &heard},
         .skip_exit = true,
         .events = CAPACITY,
     };
@@ -458,7 +458,9 @@ static void an_older_snapshot_gets_what_it_knows(void **state)
 
 static void a_control_without_a_ring_says_so(void **state)
 {
-    grobo_control_config config = {.session = {.device = GROBO_DEVICE_SIM}};
+    grobo_control_config config = {
+        GROBO_CONTROL_CONFIG_INIT,
+        .session = &(grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = GROBO_DEVICE_SIM}};
     grobo_control_event event = {GROBO_CONTROL_EVENT_INIT};
     grobo_control *plain;
     (void)state;

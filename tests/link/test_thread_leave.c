@@ -38,7 +38,7 @@ static void a_stop_waits_for_no_loop(void **state)
 {
     (void)state;
     for (int at_once = 0; at_once < 2; at_once++) {
-        stop_kit_start((grobo_control_config){.skip_exit = true});
+        stop_kit_start((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true});
         move_for_long();
         hold_begin(&gate);
         assert_int_equal(grobo_control_stop_motion(control, at_once), GROBO_OK);
@@ -59,13 +59,17 @@ static void a_stop_waits_for_no_loop(void **state)
 
 static void calls_give_up_in_the_configured_time(void **state)
 {
-    const grobo_control_config bad = {.session.device = GROBO_DEVICE_SIM, .timeout_us = -1};
+    const grobo_control_config bad = {
+        GROBO_CONTROL_CONFIG_INIT,
+        .session = &(grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = GROBO_DEVICE_SIM},
+        .timeout_us = -1};
     grobo_control *made;
     int64_t begun_us;
 
     (void)state;
     assert_int_equal(grobo_control_new(&bad, &made), GROBO_ERR_ARG);
-    stop_kit_start((grobo_control_config){.skip_exit = true, .timeout_us = SHORT_US});
+    stop_kit_start((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true,
+                                          .timeout_us = SHORT_US});
     hold_begin(&gate);
     begun_us = grobo_now_us();
     assert_int_equal(grobo_control_open_port(control), GROBO_ERR_TIMEOUT);
@@ -97,7 +101,7 @@ static void a_caller_gives_up_when_its_function_returns(void **state)
     bool impatient;
 
     (void)state;
-    stop_kit_start((grobo_control_config){.skip_exit = true});
+    stop_kit_start((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true});
     hold_init(&other_gate);
     other_gate.wanted = true;
     begin_call(&other, wait_shortly, 0);
@@ -117,7 +121,7 @@ static void a_caller_gives_up_when_its_function_returns(void **state)
 static void a_posted_stop_is_smooth_or_at_once(void **state)
 {
     (void)state;
-    stop_kit_start((grobo_control_config){.skip_exit = true});
+    stop_kit_start((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true});
     for (int kinds = 1; kinds <= 3; kinds++) {
         play_for_long();
         hold_begin(&gate);
@@ -141,7 +145,7 @@ static void calls_wake_a_loop_that_is_closed(void **state)
     int64_t end_us;
 
     (void)state;
-    stop_kit_make((grobo_control_config){.skip_exit = true});
+    stop_kit_make((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true});
     assert_int_equal(grobo_control_set_period_us(control, 1000000), GROBO_OK);
     assert_int_equal(grobo_control_start_thread(control), GROBO_OK);
     control_come_up();
@@ -157,7 +161,7 @@ static void calls_wake_a_loop_that_is_closed(void **state)
 static void an_exit_that_nobody_awaits_is_carried_out(void **state)
 {
     (void)state;
-    stop_kit_start((grobo_control_config){.skip_exit = true});
+    stop_kit_start((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true});
     move_for_long();
     hold_begin(&gate);
     assert_int_equal(grobo_control_exit(control, GROBO_EXIT_OFF, SHORT_US), GROBO_ERR_TIMEOUT);
@@ -173,7 +177,7 @@ static void an_exit_that_nobody_awaits_is_carried_out(void **state)
 static void an_exit_that_has_begun_is_not_begun_again(void **state)
 {
     (void)state;
-    stop_kit_start((grobo_control_config){.skip_exit = true});
+    stop_kit_start((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true});
     assert_int_equal(grobo_control_exit(control, GROBO_EXIT_SIT, 300000), GROBO_ERR_TIMEOUT);
     (void)grobo_control_wait(control, LONG_US);
     assert_int_equal(grobo_control_call(control, copy_seen, &told), 0);
@@ -187,7 +191,8 @@ static void no_table_is_too_full_for_a_stop(void **state)
     caller callers[4];
 
     (void)state;
-    stop_kit_start((grobo_control_config){.skip_exit = true, .timeout_us = LONG_US});
+    stop_kit_start((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true,
+                                          .timeout_us = LONG_US});
     move_for_long();
     hold_begin(&gate);
     have_no_slot(callers);
@@ -217,7 +222,7 @@ static int leave_it(grobo_control *from)
 static void a_callback_may_stop_and_leave(void **state)
 {
     (void)state;
-    stop_kit_start((grobo_control_config){.skip_exit = true});
+    stop_kit_start((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true});
     move_for_long();
     hold_begin(&gate);
     in_callback = leave_it;
@@ -234,7 +239,7 @@ static void a_callback_may_stop_and_leave(void **state)
 static void a_posted_stop_ends_what_is_asked_for_before_its_turn(void **state)
 {
     (void)state;
-    stop_kit_start((grobo_control_config){.skip_exit = true});
+    stop_kit_start((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true});
     assert_int_equal(grobo_control_set_joint(control, ELBOW, grobo_rad_from_deg(6)), GROBO_OK);
     hold_begin(&gate);
     assert_int_equal(grobo_control_start_motion(control), GROBO_OK);
@@ -275,7 +280,7 @@ static void a_posted_stop_ends_what_is_asked_for_before_its_turn(void **state)
 static void the_last_policy_prevails(void **state)
 {
     (void)state;
-    stop_kit_start((grobo_control_config){.skip_exit = true});
+    stop_kit_start((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true});
     hold_begin(&gate);
     assert_int_equal(grobo_control_post_exit(control, GROBO_EXIT_OFF), GROBO_OK);
     assert_int_equal(grobo_control_post_exit(control, GROBO_EXIT_HOLD), GROBO_OK);
@@ -289,10 +294,14 @@ static void the_last_policy_prevails(void **state)
 
 static void a_port_is_not_closed_before_the_robot_is_left(void **state)
 {
-    static const grobo_robot_config leave_off = {.on_exit = GROBO_EXIT_OFF};
+    static const grobo_robot_config leave_off = {GROBO_ROBOT_CONFIG_INIT,
+                                                 .on_exit = GROBO_EXIT_OFF};
 
     (void)state;
-    stop_kit_start((grobo_control_config){.session.robot = &leave_off, .timeout_us = LONG_US});
+    stop_kit_start((grobo_control_config){
+        GROBO_CONTROL_CONFIG_INIT,
+        .session = &(grobo_session_config){GROBO_SESSION_CONFIG_INIT, .robot = &leave_off},
+        .timeout_us = LONG_US});
     hold_begin(&gate);
     assert_int_equal(grobo_control_close_port(control, SHORT_US), GROBO_ERR_TIMEOUT);
     hold_end(&gate);

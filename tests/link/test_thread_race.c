@@ -298,7 +298,9 @@ static int post_another(grobo_control *of, void *arg)
 
 static void what_is_posted_last_is_done_by_free(void **state)
 {
-    grobo_control_config config = {.session.device = GROBO_DEVICE_SIM};
+    grobo_control_config config = {
+        GROBO_CONTROL_CONFIG_INIT,
+        .session = &(grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = GROBO_DEVICE_SIM}};
     grobo_control *other;
     int n = 0;
     int chain[2] = {0, 0};
@@ -415,11 +417,10 @@ static int order_stop(grobo_control *from, void *arg)
 static void callbacks_may_call(void **state)
 {
     grobo_control_config config = {
-        .session = {.device = GROBO_DEVICE_SIM,
-                    .baud_bps = 1000000,
-                    .on_event = on_event,
-                    .on_robot = on_robot,
-                    .ctx = &seen},
+        GROBO_CONTROL_CONFIG_INIT,
+        .session = &(grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = GROBO_DEVICE_SIM,
+                                           .baud_bps = 1000000, .on_event = on_event,
+                                           .on_robot = on_robot, .ctx = &seen},
         .control_period_us = 2000,
         .on_svc = on_svc,
     };
@@ -476,7 +477,9 @@ static void a_callback_may_wait_for_another_robot(void **state)
 {
     grobo_control *other;
     grobo_control_config config = {
-        .session = {.device = GROBO_DEVICE_SIM, .baud_bps = 1000000, .ctx = &control},
+        GROBO_CONTROL_CONFIG_INIT,
+        .session = &(grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = GROBO_DEVICE_SIM,
+                                           .baud_bps = 1000000, .ctx = &control},
         .control_period_us = 1000,
         .on_svc = on_inner,
     };

@@ -2,6 +2,7 @@
 /* The life of a control, and its thread. */
 #include <string.h>
 
+#include "src/base/sized.h"
 #include "src/link/serial/loop.h"
 #include "src/link/session/session.h"
 #include "src/link/thread/thread.h"
@@ -331,13 +332,9 @@ static int make_parts(grobo_control *control, const grobo_control_config *config
 
 static void fill(grobo_control *control, const grobo_control_config *config)
 {
-    control->user = config->session;
-    control->mem = config->session.mem;
-    control->driver = config->session.driver != NULL ? config->session.driver
-                                                     : grobo_gr001_driver(GROBO_WIRING_BOARD);
-    if (config->session.robot != NULL) {
-        control->robot_config = *config->session.robot;
-    }
+    control->mem = control->user.mem;
+    control->driver = control->user.driver != NULL ? control->user.driver
+                                                   : grobo_gr001_driver(GROBO_WIRING_BOARD);
     control->on_svc = config->on_svc;
     control->owner_timeout_us = config->owner_timeout_us;
     control->skip_exit = config->skip_exit;
@@ -385,26 +382,38 @@ static int make_locks(grobo_control *control)
     return GROBO_ERR_NOMEM;
 }
 
+static bool is_sound(const grobo_control_config *config)
+{
+    return config->owner_timeout_us >= 0 && config->timeout_us >= 0 &&
+           config->events <= GROBO_CONTROL_EVENTS_MAX &&
+           (config->control_period_us == 0 || is_period(config->control_period_us));
+}
+
 int grobo_control_new(const grobo_control_config *config, grobo_control **control)
 {
+    grobo_control_config taken;
+    grobo_session_config session;
+    grobo_robot_config robot;
     grobo_control *made;
     int r;
 
-    if (config == NULL || control == NULL || config->session.base != NULL ||
-        config->owner_timeout_us < 0 || config->timeout_us < 0 ||
-        config->events > GROBO_CONTROL_EVENTS_MAX ||
-        (config->control_period_us != 0 && !is_period(config->control_period_us))) {
+    if (control == NULL || grobo_i_sized_take(&taken, sizeof taken, config) < 0 ||
+        !is_sound(&taken) || grobo_i_sized_take(&session, sizeof session, taken.session) < 0 ||
+        session.base != NULL || grobo_i_sized_take(&robot, sizeof robot, session.robot) < 0) {
         return GROBO_ERR_ARG;
     }
-    made = grobo_i_new(config->session.mem, sizeof *made);
+    made = grobo_i_new(session.mem, sizeof *made);
     if (made == NULL) {
         return GROBO_ERR_NOMEM;
     }
     r = make_locks(made);
     if (r < 0) {
-        grobo_i_free(config->session.mem, made, sizeof *made);
+        grobo_i_free(session.mem, made, sizeof *made);
         return r;
     }
+    config = &taken;
+    made->user = session;
+    made->robot_config = robot;
     fill(made, config);
     r = make_parts(made, config);
     made->user.device = NULL;

@@ -140,6 +140,7 @@ static grobo_sim_config sim_config(const farm *f, int robot)
     grobo_sim_config config = f->robot.config;
     if (app_option(a, OPT_SERVO)->given) {
         config = (grobo_sim_config){
+            GROBO_SIM_CONFIG_INIT,
             .model = f->model,
             .wiring = wiring->given ? (grobo_wiring)wiring->choice : GROBO_WIRING_BUS,
             .servos = f->chain.only_rs30x ? NULL : f->chain.servos,
@@ -231,8 +232,8 @@ static int add_robot(farm *f, int robot)
 {
     const char *faults = app_option(f->a, OPT_FAULT)->text;
     grobo_sim_config sim = sim_config(f, robot);
-    grobo_sim_server_config config = {
-        .base = f->base, .sim = &sim, .on_tap = on_tap, .ctx = &f->watched[robot]};
+    grobo_sim_server_config config = {GROBO_SIM_SERVER_CONFIG_INIT, .base = f->base, .sim = &sim,
+                                      .on_tap = on_tap, .ctx = &f->watched[robot]};
     grobo_os_cause cause = {0};
     place at;
     int error = find_place(f->a, robot, &at, &config);

@@ -82,7 +82,8 @@ static int on_chunk(void *ctx, const pcapng_chunk *chunk)
 int replay_to_sim(replay *r)
 {
     static stage s;
-    grobo_sim_config config = {.wiring = r->wiring, .baud_bps = (uint32_t)r->baud_bps};
+    grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .wiring = r->wiring,
+                               .baud_bps = (uint32_t)r->baud_bps};
     int error = grobo_sim_init(&s.sim, &config, 0);
     if (error) {
         return app_fail(r->a, EXIT_FILE, grobo_error_name(error),
