@@ -89,7 +89,7 @@ static size_t answer_dxl1(const uint8_t *p, size_t n, uint8_t *reply)
 
         memcpy(to, header, sizeof header);
         memset(to + 5, 1, data);
-        to[5 + data] = (uint8_t)~(to[2] + to[3] + data);
+        to[5 + data] = (uint8_t) ~(to[2] + to[3] + data);
         size += 6 + data;
     }
     return size;
@@ -410,7 +410,9 @@ static void on_robot(void *ctx, const grobo_event *event)
     grobo_session **session = ctx;
 
     if (event->kind == (in_background ? GROBO_EVENT_JOINT : GROBO_EVENT_JOB) &&
-        next_transaction((in_background ? event->u.joint.result : event->u.job.result) == GROBO_OK) && !in_background) {
+        next_transaction((in_background ? event->u.joint.result : event->u.job.result) ==
+                         GROBO_OK) &&
+        !in_background) {
         sense(*session);
     }
 }
@@ -424,7 +426,8 @@ static int run_sessions(int lines, char **path)
                                       .motor = 1,
                                       .mirror_sign = 1};
     static const grobo_model model = {.name = "one servo", .joints = &joint, .n_joints = 1};
-    const grobo_robot_config robot = {.sense_interval_us = in_background ? 1 : GROBO_SENSE_NEVER,
+    const grobo_robot_config robot = {GROBO_ROBOT_CONFIG_INIT,
+                                      .sense_interval_us = in_background ? 1 : GROBO_SENSE_NEVER,
                                       .sense_position_only = true};
     grobo_driver driver;
 
@@ -438,14 +441,10 @@ static int run_sessions(int lines, char **path)
         return 1;
     }
     for (int i = 0; i < lines; i++) {
-        const grobo_session_config config = {.base = run.base,
-                                             .device = path[i],
-                                             .driver = &driver,
-                                             .robot = &robot,
-                                             .skip_check = true,
-                                             .on_event = on_line,
-                                             .on_robot = on_robot,
-                                             .ctx = &sessions[i]};
+        const grobo_session_config config = {
+            GROBO_SESSION_CONFIG_INIT, .base = run.base,     .device = path[i],
+            .driver = &driver,         .robot = &robot,      .skip_check = true,
+            .on_event = on_line,       .on_robot = on_robot, .ctx = &sessions[i]};
 
         if (grobo_session_new(&config, &sessions[i]) < 0 || grobo_session_open(sessions[i]) < 0) {
             fputs("bench_line: cannot open a session\n", stderr);
@@ -513,5 +512,5 @@ int main(int argc, char **argv)
     }
     in_background = strcmp(argv[1], "sensing") == 0;
     return in_background || strcmp(argv[1], "session") == 0 ? run_sessions(argc - 3, argv + 3)
-                                           : run_libevent(argc - 3, argv + 3);
+                                                            : run_libevent(argc - 3, argv + 3);
 }

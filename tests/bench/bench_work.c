@@ -123,7 +123,8 @@ static void run_us(int64_t span_us)
 
 static void start(int64_t sense_interval_us)
 {
-    const grobo_robot_config config = {.sense_interval_us = sense_interval_us};
+    const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT,
+                                       .sense_interval_us = sense_interval_us};
     const grobo_sim_config sim = {0};
     const grobo_robot_host host = {.clock = rig_clock};
 
@@ -179,8 +180,7 @@ static void prepare_play(void)
                              .length_us = INT64_C(3600) * SECOND_US,
                              .n_keys = 3601,
                              .n_joints = 20};
-    const grobo_play_options options = {
-        .mode = GROBO_PLAY_RATE, .rate_hz = 50, .unwatched = true};
+    const grobo_play_options options = {.mode = GROBO_PLAY_RATE, .rate_hz = 50, .unwatched = true};
 
     start(SECOND_US);
     (void)grobo_robot_play(&rig.robot, &clip, &options);

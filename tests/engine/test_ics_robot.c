@@ -19,12 +19,12 @@ enum { MS = 1000, S = 1000000 };
 
 static chain_kit chain;
 static family_kit kit;
-static const grobo_robot_config watched = {.sense_interval_us = 50 * MS};
+static const grobo_robot_config watched = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 50 * MS};
 
 static void start_chain(const char *name, int n)
 {
     chain_start(&chain, grobo_servo_model_named(&grobo_ics_table, name), n,
-                &(grobo_sim_config){.no_stops = true});
+                &(grobo_sim_config){GROBO_SIM_CONFIG_INIT, .no_stops = true});
 }
 
 static void start(void)

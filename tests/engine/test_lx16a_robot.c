@@ -18,12 +18,12 @@ enum { MS = 1000, S = 1000000 };
 
 static chain_kit chain;
 static family_kit kit;
-static const grobo_robot_config watched = {.sense_interval_us = 50 * MS};
+static const grobo_robot_config watched = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 50 * MS};
 
 static void start_chain(int n)
 {
     const grobo_servo_model *lx16a = grobo_servo_model_named(&grobo_lx16a_table, "LX-16A");
-    chain_start(&chain, lx16a, n, &(grobo_sim_config){.no_stops = true});
+    chain_start(&chain, lx16a, n, &(grobo_sim_config){GROBO_SIM_CONFIG_INIT, .no_stops = true});
 }
 
 static void start(void)

@@ -33,7 +33,7 @@ static void on_event(void *ctx, const grobo_event *event)
 
 static void start(const grobo_robot_def *def, grobo_wiring wiring)
 {
-    grobo_robot_config config = {.bus = {.baud_bps = def->baud_bps}};
+    grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .bus = {.baud_bps = def->baud_bps}};
     now_us = S;
     assert_int_equal(grobo_robot_def_driver(def, wiring, &driver), GROBO_OK);
     assert_int_equal(grobo_robot_def_sim(def, wiring, &configured), GROBO_OK);

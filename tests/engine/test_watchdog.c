@@ -13,7 +13,8 @@ enum { MS = 1000, S = 1000000 };
 
 static family_kit kit;
 /* Whole goals: without a dead-man a servo would go all the way. */
-static const grobo_robot_config whole = {.sense_interval_us = 50 * MS, .goals = GROBO_GOALS_WHOLE};
+static const grobo_robot_config whole = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 50 * MS,
+                                         .goals = GROBO_GOALS_WHOLE};
 
 static void start(void)
 {

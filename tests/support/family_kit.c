@@ -94,7 +94,8 @@ void family_start(family_kit *kit, const family *f, const grobo_robot_config *co
     static const grobo_sim_family *const known[] = {&grobo_sim_dxl2, &grobo_sim_dxl1,
                                                     &grobo_sim_lx16a, &grobo_sim_ics, NULL};
     grobo_robot_config used = *config;
-    grobo_sim_config with = sim != NULL ? *sim : (grobo_sim_config){.seed = 7};
+    grobo_sim_config with =
+        sim != NULL ? *sim : (grobo_sim_config){GROBO_SIM_CONFIG_INIT, .seed = 7};
     memset(kit, 0, sizeof *kit);
     kit->family = f;
     kit->now_us = S;

@@ -12,6 +12,7 @@ int grobo_robot_def_sim(const grobo_robot_def *def, grobo_wiring wiring, grobo_r
         return GROBO_ERR_ARG;
     }
     memset(sim, 0, sizeof *sim);
+    sim->config.size = sizeof sim->config;
     sim->config.model = def->model;
     sim->config.wiring = wiring;
     sim->config.baud_bps = def->baud_bps;
