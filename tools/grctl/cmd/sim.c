@@ -400,9 +400,9 @@ const cli_command cmd_sim = {
     .arguments = "",
     .summary = "a simulated robot behind a pty, for any program",
     .details =
-        "Runs a simulated robot (GR001, or that of --robot), or a chain of servos, until a signal.\n"
-        "Prints the path of its pty, one line a robot, when it can be opened; where there are no ptys (Windows) that of\n"
-        "its TCP port. The robot is honest at register level and bytes take their time on the\n"
+        "Runs a simulated robot (GR001, or that of --robot), or a chain of servos, until a\n"
+        "signal. Prints the path of its pty, one line a robot, when it can be opened; where there\n"
+        "are no ptys (Windows) that of its TCP port. The robot is honest at register level and bytes take their time on the\n"
         "wire; programs may come and go, it stays as they left it.\n"
         "\n"
         "With --strict each offence of a client is a line on standard error, with --json an\n"

@@ -1,0 +1,147 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Robots other than GR001: --robot, files, the key robot of the configuration.
+. tests/support/cli.sh
+unset GRCTL_ROBOT
+
+# ---- which ----------------------------------------------------------------------------------
+
+check "those that come with it" both exits 0 "$GRCTL" robot list --- says '^pan-tilt  *feetech'
+check "one of them" both exits 0 "$GRCTL" robot show koch --- says 'family dynamixel2'
+check "its joints" both exits 0 "$GRCTL" --robot so101 joints arm --- says '^wrist_roll .* -157 '
+in_environment() {
+    exits 0 env GRCTL_ROBOT=pan-tilt "$GRCTL" joints && says '^tilt '
+}
+check "in the environment" in_environment
+check "GR001 else" both exits 0 "$GRCTL" joints --- says '^R_KNEE_P '
+check "a name nearly right" fails 2 "no robot called 'so10'; did you mean so101?" \
+    "$GRCTL" --robot so10 joints
+check "another name" fails 2 "a file is named with its folder: ./spider.yaml" \
+    "$GRCTL" --robot spider joints
+check "another robot's joint" fails 2 'as wrist_flex, m4 or j3, groups are all arm' \
+    "$GRCTL" --robot so101 -d sim move R_KNEE_P 3
+check "servos that no board takes" fails 2 'cannot be behind GR001' \
+    "$GRCTL" --robot so101 --wiring board joints
+completes() {
+    "$GRCTL" __complete --robot so101 move wr >"$work/out" && says '^wrist_flex$' &&
+        "$GRCTL" __complete --robot k >"$work/out" && says '^koch-leader'
+}
+check "completion knows both" completes
+
+# ---- a file ---------------------------------------------------------------------------------
+
+cat >"$work/arm.yaml" <<'END'
+name: crane
+family: dynamixel2
+line: {baud: 57600}
+joints:
+  - {name: turn, id: 3, servo: XL430-W250, limits_deg: [-90, 90]}
+  - {name: lift, id: 4, servo: XL330-M288, limits_deg: [-20, 60], init_deg: 10, sign: -1}
+END
+check "a file" fails 0 'crane.*2 joints, nothing wrong\|crane: 2 joints' \
+    "$GRCTL" robot check "$work/arm.yaml"
+check "moves in its simulator" fails 0 'there; largest error 0\.[0-4]' \
+    "$GRCTL" --robot "$work/arm.yaml" -d sim init
+check "joint by joint" fails 0 '(lift)\|(turn)' \
+    "$GRCTL" --robot "$work/arm.yaml" -d sim move lift 50
+check "within its limits" fails 4 'lift (motor 4) to 61.0 deg is outside its limits -20 to 60' \
+    "$GRCTL" --robot "$work/arm.yaml" -d sim move lift 61
+sed 's/limits_deg: \[-90, 90\]/limit_deg: [-90, 90]/' "$work/arm.yaml" >"$work/wrong.yaml"
+check "a mistake has line and column" fails 3 "wrong.yaml:5:44: no key .* called 'limit_deg'" \
+    "$GRCTL" --robot "$work/wrong.yaml" joints
+check "and is found" both exits 3 "$GRCTL" robot check "$work/wrong.yaml" --- \
+    says "5:5: a joint has no 'limits_deg'"
+check "no file" fails 3 'none.yaml: no such file' "$GRCTL" --robot "$work/none.yaml" joints
+check "a folder" fails 3 'is a folder' "$GRCTL" --robot "$work/" joints
+
+# ---- motions --------------------------------------------------------------------------------
+
+arm() {
+    "$GRCTL" --robot so101 -d sim "$@"
+}
+# plays COMMAND...: to the end.
+plays() {
+    exits 0 "$@" && says '^largest error at the end'
+}
+check "an arm waves" plays arm play motions/so101-wave.yaml
+check "and is rehearsed" both exits 0 "$GRCTL" --robot so101 play --dry-run --table \
+    motions/so101-wave.yaml --- says .
+check "its motion is looked at for it" fails 0 'nothing wrong' \
+    "$GRCTL" check motions/so101-wave.yaml
+check "and drawn" both exits 0 "$GRCTL" plot -o "$work/wave.svg" motions/so101-wave.yaml --- \
+    grep -q wrist_flex "$work/wave.svg"
+check "a humanoid's is refused" fails 3 'greet.pseq: has 20 joints, so101 has 6' \
+    arm play motions/greet.pseq
+check "motions of the board too" fails 2 'slot: so101 has no board here' arm slot 1
+check "torque by group" fails 0 'torque of 5 joints is on' arm servo on arm
+
+# ---- its simulator, its configuration -------------------------------------------------------
+
+own_sim
+start_told_sim --robot so101 || { echo "Bail out! the simulator did not start"; exit 1; }
+check "served to another program" both exits 0 on_robot --robot so101 status --- \
+    says '^ *6  gripper '
+check "it plays there" plays on_robot --robot so101 play --speed 200 \
+    motions/so101-wave.yaml
+shell_moves() {
+    echo 'move gripper 40' | "$GRCTL" -d "$robot" --robot so101 shell >"$work/out" 2>"$work/err"
+    grep -q 'there; largest error' "$work/err"
+}
+check "in a shell" shell_moves
+mkdir -p "$work/config/grctl"
+cat >"$work/config/grctl/config.yaml" <<END
+robots:
+  desk: {device: "$robot", robot: so101, trim: {wrist_flex: 2}}
+  other: {device: sim, robot: ../../arm.yaml}
+  wrong: {device: sim, trim: {R_KNEE_P: 2}, robot: so101}
+END
+check "trim before robot" fails 3 'robot stands before trim and offset' "$GRCTL" -d desk status
+sed -i.old /wrong:/d "$work/config/grctl/config.yaml"
+check "a configured robot says which it is" fails 0 'there; ' "$GRCTL" -d desk move wrist_flex 20
+check "its trims are its own" both exits 0 on_robot --robot so101 status m4 --- \
+    says 'wrist_flex  *2[12]\.'
+check "a file beside the configuration" fails 0 'there; ' "$GRCTL" -d other move lift 30
+check "not two robots at once" fails 2 'is another robot' "$GRCTL" -d desk --robot koch status
+records() {
+    : >"$work/recording"
+    "$GRCTL" --robot so101 -d "$robot" record -o "$work/taught.yaml" >"$work/out" \
+        2>"$work/recording" &
+    recorder=$!
+    written "$work/recording" . || return 1
+    for deg in 10 20 30; do
+        tell turn 1 "$deg" 300 || return 1
+        wait_for sim_shows 1 " $deg\.[0-9] deg" || return 1
+    done
+    kill -s INT $recorder
+    wait $recorder
+    [ -s "$work/taught.yaml" ]
+}
+check "a hand is recorded" records
+check "the record is the arm's" both exits 0 "$GRCTL" --robot so101 show -j shoulder_pan \
+    "$work/taught.yaml" --- says shoulder_pan
+check "and plays back" plays on_robot --robot so101 play "$work/taught.yaml"
+
+# ---- its guard ------------------------------------------------------------------------------
+
+# A killed program leaves nothing moving: the guard makes the same driver, from the file too.
+guarded() {
+    exits 0 on_robot --robot "$1" init || return 1
+    : >"$work/moving"
+    "$GRCTL" -d "$robot" --robot "$1" -v move shoulder_pan 100 20000 >"$work/moved" \
+        2>"$work/moving" &
+    mover=$!
+    written "$work/moving" 'robot found' && wait_for sim_shows 1 ' [2-9][0-9]\.[0-9] .*, moving' ||
+        return 1
+    kill -s KILL $mover
+    wait $mover 2>/dev/null
+    written "$work/moving" 'its guard stopped the robot' && wait_for stands
+}
+stands() {
+    sim_shows 1 'torque on .* C$'
+}
+if [ -z "${NATIVE_GRCTL:-}" ]; then
+    check "killed: its guard stops it" guarded so101
+    check "of a file too" guarded ./src/robots/so101.yaml
+fi
+stop_sim
+done_testing
