@@ -102,4 +102,24 @@ check "the rate" both exits 0 of koch servo-set 6 baud 57600 --- \
 check "and back" exits 0 of koch -b 57600 servo-set 6 baud 1000000
 check "doctor" both exits 0 of koch doctor --- says 'all 6 answer'
 stop_sim
+
+# ---- whoever is there --------------------------------------------------------------------------
+
+start_sim --servo 1=XL330-M288,2=STS3215,3=AX-12A,5=SCS0009 -b 1000000
+on_line() {
+    "$GRCTL" -d "$robot" --timeout 100 scan "$@"
+}
+check "every family is found" exits 0 on_line --family all --last 6
+check "DYNAMIXEL 2.0" says '^  1  XL330-M288  firmware  52  1000000 bps  dxl2$'
+check "Feetech STS" says '^  2  STS3215   firmware   3  1000000 bps  sts$'
+check "DYNAMIXEL 1.0" says '^  3  AX-12A    firmware  24  1000000 bps  dxl1$'
+check "Feetech SCS" says '^  5  SCS0009   firmware   3  1000000 bps  scs$'
+check "and nobody twice" [ "$(grep -c ' bps  ' "$work/out")" -eq 4 ]
+check "one family" both exits 0 on_line --family dxl2 -b 1000000 --last 3 --- \
+    said '^1 servo; 3 silent; '
+check "nobody there" exits 1 on_line --family rs30x --last 3
+check_json "in JSON" '[(s["id"], s["family"], s["joint"]) for s in lines[0]["servos"]] ==
+    [(1, "dxl2", None)]' on_line --json --family dxl2 --last 2
+check "without a line" fails 2 '--family needs a line' "$GRCTL" -d sim scan --family dxl2 --last 2
+stop_sim
 done_testing
