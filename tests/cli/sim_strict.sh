@@ -113,4 +113,19 @@ read -r line <&6
 printf '%s\n' "$line" >"$work/out"
 check 'as JSON' says '^{"offence":"sum","robot":1,"time_ms":[0-9.]*,"bytes":"FA AF 01 [^"]*25",'
 stop_sim
+# ---- other families
+
+chain='--robot so101'
+# shellcheck disable=SC2086 # options are words
+strict $chain --- 'FF FF 01 04 02 38 02 BE' 'wait 30' 'FF FF 01 05 03 2A 00 08 C4'
+check "Feetech: a read and a goal" faultless
+t 'Feetech: a wrong sum' sum 'FF FF 01 04 02 38 02 BF$' 'FF FF 01 04 02 38 02 BF'
+t 'Feetech: a read-only register' range 'FF FF 01 05 03 38 00 08 B6$' 'FF FF 01 05 03 38 00 08 B6'
+t 'Feetech: an unknown instruction' request 'FF FF 01 02 77 85$' 'FF FF 01 02 77 85'
+t 'Feetech: no frame' rubbish 'FF FF 01 01 00$' 'FF FF 01 01 00'
+chain='--robot koch'
+t 'DYNAMIXEL: a value out of range' range 'FF FF FD 00 01 06 00 03 40 00 09 .*$' \
+    'FF FF FD 00 01 06 00 03 40 00 09 E8 E6'
+check "two families on a line" fails 2 'knows one family on a line' \
+    "$GRCTL" sim --strict --servo 1=XL330-M288,2=STS3215
 done_testing

@@ -12,7 +12,7 @@
 #include "tools/grctl/doctor/checkup.h"
 #include "tools/grctl/servo/family.h"
 
-enum { READ_BYTES = 30 /* the longest */ };
+enum { READ_BYTES = 30 /* the longest */, REQUEST_BYTES = 8 /* the shortest that is asked here */ };
 enum { NAME_BYTES = 16, FIX_BYTES = 512 };
 
 typedef struct patient {
@@ -23,9 +23,6 @@ typedef struct patient {
     int32_t low_mv, high_mv;
     int hottest_c;
 } patient;
-
-/* Bits a second that robots are found at; the usual one first is asked for already. */
-static const int usual_bauds[] = {9600, 19200, 38400, 57600, 115200, 230400, 460800};
 
 static bool is_path(const char *device)
 {
@@ -59,26 +56,28 @@ static void set_baud(app *a, int baud_bps)
 static int find_answer(patient *p, int asked_bps)
 {
     app *a = p->k.a;
-    const size_t n_bauds = sizeof usual_bauds / sizeof usual_bauds[0];
+    const grobo_driver *driver = app_driver(a);
+    const grobo_servo_table *table = family_servo(driver, -1)->table;
     char said[APP_LINE_BYTES];
     progress bar;
     progress_start(&bar, a);
-    for (size_t i = 0; i < n_bauds && !p->c.signal; i++) {
-        if (usual_bauds[i] == asked_bps) {
+    for (int i = 0; i < table->rate_count && !p->c.signal; i++) {
+        int baud_bps = table->rates[i].bps;
+        if (baud_bps == asked_bps) {
             continue;
         }
-        set_baud(a, usual_bauds[i]);
-        snprintf(said, sizeof said, "no reply at %d bps; asking at %d", asked_bps, usual_bauds[i]);
-        progress_draw(&bar, (double)i / (double)n_bauds, said);
+        set_baud(a, baud_bps);
+        snprintf(said, sizeof said, "no reply at %d bps; asking at %d", asked_bps, baud_bps);
+        progress_draw(&bar, (double)i / table->rate_count, said);
         bool found = ask(p, said);
         progress_clear(&bar);
         if (found) {
-            return usual_bauds[i];
+            return baud_bps;
         }
     }
     set_baud(a, asked_bps);
     a->line.global[GLOBAL_WIRING].choice = !a->line.global[GLOBAL_WIRING].choice;
-    return ask(p, said) ? asked_bps : 0;
+    return app_driver(a) != driver && ask(p, said) ? asked_bps : 0;
 }
 
 static bool check_reply(patient *p, const char *device)
@@ -130,7 +129,7 @@ static void check_echo(patient *p, const char *device)
     char fix[FIX_BYTES + GROBO_DEVICE_MAX_BYTES];
     if (app_global(a, GLOBAL_WIRING)->choice == GROBO_WIRING_BOARD ||
         app_global(a, GLOBAL_ECHO)->given || n->replies == 0 ||
-        n->resync_bytes < n->replies * GROBO_RS30X_OVERHEAD_BYTES / 2) {
+        n->resync_bytes < n->replies * REQUEST_BYTES / 2) {
         return;
     }
     snprintf(fix, sizeof fix, "grctl -d %s --wiring bus --echo ...", device);
@@ -161,19 +160,26 @@ static bool check_state(patient *p, const char *name, int joint, const grobo_joi
 {
     const grobo_driver *driver = grobo_robot_driver(p->c.robot);
     const grobo_joint *j = &p->model->joints[joint];
+    bool rs30x = family_is(driver, "rs30x");
     char fix[FIX_BYTES];
     snprintf(fix, sizeof fix, "let it cool down: grctl servo off m%d", j->motor);
-    if (s->flags & GROBO_RS30X_STATUS_OVERHEATED) {
+    if (s->overheated) {
         checkup_found(&p->k, name, fix, "%s has cut its torque for heat (%d C)", j->name,
                       s->temperature_c);
-    } else if ((s->flags & GROBO_RS30X_STATUS_HOT) ||
+    } else if ((rs30x && (s->flags & GROBO_RS30X_STATUS_HOT)) ||
                s->temperature_c > driver->limits.temperature_c) {
         checkup_found(&p->k, name, fix, "%s is hot: %d C, at most %d are good for it", j->name,
                       s->temperature_c, driver->limits.temperature_c);
-    } else if (s->flags & GROBO_RS30X_STATUS_FLASH_ERROR) {
+    } else if (rs30x && (s->flags & GROBO_RS30X_STATUS_FLASH_ERROR)) {
         snprintf(fix, sizeof fix, "write its settings again: grctl servo-set %d id %d --flash",
                  j->motor, j->motor);
         checkup_found(&p->k, name, fix, "%s lost power while it wrote its flash", j->name);
+    } else if (!rs30x && s->flags) {
+        const grobo_servo_register *error =
+            grobo_servo_register_of(family_servo(driver, j->motor), GROBO_ROLE_ERROR);
+        snprintf(fix, sizeof fix, "see what: grctl servo-get %d%s%s", j->motor, error ? " " : "",
+                 error ? error->name : "");
+        checkup_found(&p->k, name, fix, "%s reports errors (%02Xh)", j->name, s->flags);
     } else {
         return false;
     }

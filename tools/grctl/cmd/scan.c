@@ -9,7 +9,7 @@
 #include "tools/grctl/conn/wire.h"
 #include "tools/grctl/servo/family.h"
 
-enum { OPT_ALL_BAUD, OPT_FIRST, OPT_LAST };
+enum { OPT_ALL_BAUD, OPT_FAMILY, OPT_FIRST, OPT_LAST };
 enum { IDS = 256, FEW = 4 };
 
 /* Looks at all ids that are missing, at most so many; a line is quiet after LISTEN_US without a
@@ -19,6 +19,8 @@ enum { LOOKS_MAX = 4, LISTEN_US = 150000, LISTEN_MAX_US = 2000000 };
 static const cli_option options[] = {
     [OPT_ALL_BAUD] =
         OPTION_FLAG("all-baud", 0, "at every baud rate that servos know (with --wiring bus)"),
+    [OPT_FAMILY] = OPTION_CHOICE("family", 0, "all|rs30x|dxl2|dxl1|sts|scs",
+                                 "look for these servos on a line, at their usual rates"),
     [OPT_FIRST] = OPTION_WHOLE("first", 0, "ID", 0, IDS - 1, "begin with this id (the lowest)"),
     [OPT_LAST] = OPTION_WHOLE("last", 0, "ID", 0, IDS - 1, "end with this id (the highest)"),
 };
@@ -26,6 +28,8 @@ static const cli_option options[] = {
 typedef struct found {
     const app *a;
     const grobo_driver *driver;
+    const family *family;  /* what is looked for; NULL: the robot's servos */
+    bool guessing;         /* whatever there is: only models that are known count */
     json_t *list, *failed; /* NULL: as text */
     int n, silent;
     bool unsure;              /* the line was disturbed, or an id answers in no way that fits */
@@ -36,7 +40,8 @@ typedef struct found {
 
 /* What the registers of family_identity() say. */
 typedef struct identity {
-    const char *model;
+    const char *model, *family;
+    bool known;
     int32_t firmware; /* -1: not told */
 } identity;
 
@@ -44,11 +49,14 @@ static identity identity_of(const grobo_driver *driver, const uint8_t *bytes)
 {
     const grobo_servo_model *any = family_servo(driver, -1);
     const grobo_servo_register *reg = grobo_servo_register_of(any, GROBO_ROLE_MODEL);
-    identity is = {.model = any->table->name, .firmware = -1};
+    identity is = {
+        .model = any->table->name, .family = family_of(any), .known = true, .firmware = -1};
     uint16_t from = 0;
     (void)family_identity(any, &from);
     if (reg) {
         const grobo_servo_model *model = family_identify(driver, bytes + (reg->address - from));
+        is.known = model != NULL;
+        is.family = family_of(model ? model : any);
         is.model = model ? model->name : "unknown model";
     }
     reg = grobo_servo_register_of(any, GROBO_ROLE_FIRMWARE);
@@ -61,16 +69,17 @@ static identity identity_of(const grobo_driver *driver, const uint8_t *bytes)
 /* The name of the joint that this id moves, NULL for none. */
 static const char *joint_name(const found *f, int id)
 {
-    int joint = grobo_model_joint_of_motor(f->driver->model, id);
+    int joint = f->family ? -1 : grobo_model_joint_of_motor(f->driver->model, id);
     return joint < 0 ? NULL : f->driver->model->joints[joint].name;
 }
 
 /* One that answers with its identity, or (NULL) wrongly, or not at all where it should. */
 static json_t *servo_json(const found *f, int id, int baud_bps, const identity *is, int error)
 {
-    int joint = grobo_model_joint_of_motor(f->driver->model, id);
-    return json_pack("{s:i,s:o?,s:s?,s:o*,s:o*,s:i,s:o*}", "id", id, "joint",
-                     joint < 0 ? NULL : json_integer(joint), "name", joint_name(f, id), "model",
+    int joint = joint_name(f, id) ? grobo_model_joint_of_motor(f->driver->model, id) : -1;
+    return json_pack("{s:i,s:o?,s:s?,s:s*,s:o*,s:o*,s:i,s:o*}", "id", id, "joint",
+                     joint < 0 ? NULL : json_integer(joint), "name", joint_name(f, id), "family",
+                     f->family && is ? is->family : NULL, "model",
                      is ? json_string(is->model) : NULL, "firmware",
                      is && is->firmware >= 0 ? json_integer(is->firmware) : NULL, "baud_bps",
                      baud_bps, "status", is ? NULL : app_json_code(grobo_error_name(error)));
@@ -79,8 +88,11 @@ static json_t *servo_json(const found *f, int id, int baud_bps, const identity *
 static void report(found *f, int id, int baud_bps, const uint8_t *bytes)
 {
     const identity is = identity_of(f->driver, bytes);
-    const char *name = joint_name(f, id);
+    const char *name = f->family ? is.family : joint_name(f, id);
     char firmware[24] = "";
+    if (f->guessing && !is.known) {
+        return;
+    }
     f->n++;
     if (is.firmware >= 0) {
         snprintf(firmware, sizeof firmware, "firmware %3d", (int)is.firmware);
@@ -263,7 +275,7 @@ static int look(conn *c, pass *p, uint32_t margin_us)
 static bool misses_joint(const conn *c, const pass *p)
 {
     const grobo_model *model = grobo_robot_driver(c->robot)->model;
-    for (int joint = 0; joint < model->n_joints && p->heard_us; joint++) {
+    for (int joint = 0; joint < model->n_joints && p->heard_us && !p->f->family; joint++) {
         int id = grobo_model_motor_of_joint(model, joint);
         if (id >= p->first && id <= p->last && !p->there[id]) {
             return true;
@@ -396,6 +408,26 @@ static int scan_all_bauds(conn *c, found *f)
     return GROBO_OK;
 }
 
+/* Prints what was found, and returns the exit status. */
+static int conclude(app *a, const found *f)
+{
+    if (a->json) {
+        app_print_json(json_pack("{s:o,s:o,s:i,s:b,s:o,s:o}", "servos", f->list, "failed",
+                                 f->failed, "silent", f->silent, "sure", !f->unsure, "took_ms",
+                                 app_json_number((double)f->took_us / 1e3, 1), "wire_ms",
+                                 app_json_number((double)f->wire_us / 1e3, 1)));
+    } else {
+        app_note(a, "%d servo%s; %d silent; %.0f ms, of which the wire took %.0f", f->n,
+                 f->n == 1 ? "" : "s", f->silent, (double)f->took_us / 1e3,
+                 (double)f->wire_us / 1e3);
+    }
+    if (f->unsure) {
+        app_note(a, "not sure: bytes came that are of no whole reply; scan again, see "
+                    "'grctl doctor'");
+    }
+    return f->n && !f->unsure ? EXIT_DONE : EXIT_ROBOT;
+}
+
 static int scan(conn *c)
 {
     bool all = app_option(c->a, OPT_ALL_BAUD)->given > 0;
@@ -411,25 +443,92 @@ static int scan(conn *c)
         json_decref(f.failed);
         return conn_fail(c, error, "scan");
     }
-    if (c->a->json) {
-        app_print_json(json_pack("{s:o,s:o,s:i,s:b,s:o,s:o}", "servos", f.list, "failed", f.failed,
-                                 "silent", f.silent, "sure", !f.unsure, "took_ms",
-                                 app_json_number((double)f.took_us / 1e3, 1), "wire_ms",
-                                 app_json_number((double)f.wire_us / 1e3, 1)));
-    } else {
-        app_note(c->a, "%d servo%s; %d silent; %.0f ms, of which the wire took %.0f", f.n,
-                 f.n == 1 ? "" : "s", f.silent, (double)f.took_us / 1e3, (double)f.wire_us / 1e3);
+    return conclude(c->a, &f);
+}
+
+/* ---- families ------------------------------------------------------------------------------- */
+
+/* One family at one rate: the line is opened for it. */
+static int look_for(app *a, found *f, int baud_bps)
+{
+    conn c;
+    cli_value *baud = &a->line.global[GLOBAL_BAUD];
+    const cli_value before = *baud;
+    *baud = (cli_value){.given = 1, .number = baud_bps};
+    a->driver = f->driver;
+    int status = conn_open_unchecked(&c, a);
+    if (!status && grobo_session_sim(c.session)) {
+        status = app_fail(a, EXIT_USAGE, "ARG",
+                          "scan: --family needs a line; 'grctl sim --servo' makes one");
     }
-    if (f.unsure) {
-        app_note(c->a, "not sure: bytes came that are of no whole reply; scan again, see "
-                       "'grctl doctor'");
+    int error = status ? 0 : scan_ids(&c, f, baud_bps);
+    if (error) {
+        status = conn_fail(&c, error, "scan");
     }
-    return f.n && !f.unsure ? EXIT_DONE : EXIT_ROBOT;
+    status = conn_close(&c, status);
+    *baud = before;
+    return status;
+}
+
+/* At the rate of -b, or where such servos are found usually; with --all-baud at all they know. */
+static int look_at_rates(app *a, found *f)
+{
+    const cli_value *asked = app_global(a, GLOBAL_BAUD);
+    const cli_value *device = app_global(a, GLOBAL_DEVICE);
+    const grobo_servo_table *table = f->family->table;
+    bool all = app_option(a, OPT_ALL_BAUD)->given > 0;
+    bool one = asked->given || (device->given && strncmp(device->text, "tcp:", 4) == 0);
+    int n = one ? 1 : all ? table->rate_count : (int)(sizeof f->family->usual_bps / sizeof(int));
+    int status = 0;
+    f->n_rates = n;
+    for (int i = 0; i < n && !status; i++) {
+        int baud_bps = asked->given ? (int)asked->number
+                       : all        ? table->rates[i].bps
+                                    : f->family->usual_bps[i];
+        f->rate = i;
+        status = baud_bps > 0 ? look_for(a, f, baud_bps) : 0;
+    }
+    return status;
+}
+
+/* SCS talk as STS do, and are found with them. */
+static int scan_families(app *a)
+{
+    const char *name = app_option(a, OPT_FAMILY)->text;
+    found f = {.a = a,
+               .guessing = strcmp(name, "all") == 0,
+               .list = a->json ? json_array() : NULL,
+               .failed = a->json ? json_array() : NULL};
+    const grobo_driver *driver = a->driver;
+    const config_robot *robot = a->robot;
+    int status = 0;
+    a->robot = NULL; /* its trims are of other joints */
+    progress_start(&f.bar, a);
+    for (size_t i = 0; (f.family = family_row(i)) != NULL && !status; i++) {
+        bool twin = f.guessing && strcmp(f.family->name, "scs") == 0;
+        f.driver = family_driver(f.family);
+        if (f.driver && !twin && (f.guessing || strcmp(f.family->name, name) == 0)) {
+            status = look_at_rates(a, &f);
+        }
+    }
+    a->driver = driver;
+    a->robot = robot;
+    if (status) {
+        json_decref(f.list);
+        json_decref(f.failed);
+        return status;
+    }
+    return conclude(a, &f);
 }
 
 static int run_scan(app *a)
 {
     conn c;
+    if (app_option(a, OPT_FAMILY)->given) {
+        return a->link ? app_fail(a, EXIT_USAGE, "ARG",
+                                  "scan: --family opens the line for itself; not in a shell")
+                       : scan_families(a);
+    }
     if (app_option(a, OPT_ALL_BAUD)->given && app_driver(a)->protocol->relay) {
         return app_fail(a, EXIT_USAGE, "ARG",
                         "scan: --all-baud needs --wiring bus: the board knows one rate only");
@@ -509,12 +608,17 @@ const cli_command cmd_scan = {
     .name = "scan",
     .arguments = "",
     .summary = "which servo ids answer",
-    .details = "Asks every id for its model and prints those that answer, however late. A silent\n"
-               "id costs 4 ms beside the wire's time. Where something comes late or broken, or\n"
-               "where a joint of the robot is missing, ids that are missing are asked again with\n"
-               "patience. --timeout MS gives each more time. Exit status 1 if none answers, or if\n"
-               "it is not sure who does. Nothing moves.\n",
-    .example = "  grctl scan --last 20\n  grctl scan --wiring bus --all-baud\n",
+    .details =
+        "Asks every id for its model and prints those that answer, however late. A silent\n"
+        "id costs 4 ms beside the wire's time. Where something comes late or broken, or\n"
+        "where a joint of the robot is missing, ids that are missing are asked again with\n"
+        "patience. --timeout MS gives each more time. Exit status 1 if none answers, or if\n"
+        "it is not sure who does. Nothing moves.\n"
+        "--family looks for servos of a family instead of the robot's, at the rates where\n"
+        "they are found usually, at that of -b, or with --all-baud at all; 'all' tries every\n"
+        "family and counts models that it knows.\n",
+    .example = "  grctl scan --last 20\n  grctl scan --wiring bus --all-baud\n"
+               "  grctl scan --family all --last 10\n",
     COMMAND_OPTIONS(options),
     .run = run_scan,
 };

@@ -11,6 +11,7 @@
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/trace.h"
 #include "tools/grctl/os/os.h"
+#include "tools/grctl/servo/family.h"
 #include "tools/grctl/sim/chain.h"
 #include "tools/grctl/sim/console.h"
 #include "tools/grctl/sim/state.h"
@@ -158,6 +159,19 @@ static grobo_sim_config sim_config(const farm *f, int robot)
     return config;
 }
 
+/* How the servos talk, where all are of one family that is not RS30x; else NULL. */
+static const dialect *dialect_of(const farm *f)
+{
+    const grobo_sim_config config = sim_config(f, 0);
+    const grobo_servo_model *first = config.servos ? config.servos[0] : NULL;
+    for (int i = 0; first && i < config.model->n_joints; i++) {
+        if (!config.servos[i] || config.servos[i]->table != first->table) {
+            return NULL;
+        }
+    }
+    return first ? dialect_named(family_of(first)) : NULL;
+}
+
 static int open_trace(farm *f, int robot)
 {
     grobo_sim_config sim = sim_config(f, robot);
@@ -243,7 +257,7 @@ static int add_robot(farm *f, int robot)
     sim.hook = on_sim;
     sim.hook_ctx = &f->watched[robot];
     if (app_option(f->a, OPT_STRICT)->given) {
-        sim_strict_start(&f->watched[robot].strict, f->a, robot + 1, sim.wiring, grobo_now_us());
+        sim_strict_start(&f->watched[robot].strict, f->a, robot + 1, sim.wiring, dialect_of(f));
     }
     error = grobo_sim_server_new(&config, &f->server[robot], &cause);
     if (error) {
@@ -348,10 +362,9 @@ static int check_families(const farm *f)
     if (app_option(a, OPT_SERVO)->given ? f->chain.only_rs30x : !f->robot.config.servos) {
         return 0;
     }
-    if (app_option(a, OPT_STRICT)->given) {
+    if (app_option(a, OPT_STRICT)->given && !dialect_of(f)) {
         return app_fail(f->a, EXIT_USAGE, "UNSUPPORTED",
-                        "sim: --strict: knows the protocol of RS30x only; use it without other "
-                        "servos");
+                        "sim: --strict: knows one family on a line; use it with servos of one");
     }
     if (app_option(a, OPT_STATE)->given) {
         return app_fail(f->a, EXIT_USAGE, "UNSUPPORTED",

@@ -284,6 +284,44 @@ void explain_shares(text *t, const telegram *said)
     }
 }
 
+/* ---- what is wrong --------------------------------------------------------------------------- */
+
+static bool wrong_item(const item *i, char *why, size_t capacity)
+{
+    if (!i->whole) {
+        return false;
+    }
+    if ((i->reg->flags & GROBO_REGISTER_W) == 0) {
+        snprintf(why, capacity, "it writes %s, which is read-only", i->reg->name);
+        return true;
+    }
+    if (i->value < i->reg->min || i->value > i->reg->max) {
+        snprintf(why, capacity, "%s %d is outside %d..%d", i->reg->name, (int)i->value,
+                 (int)i->reg->min, (int)i->reg->max);
+        return true;
+    }
+    return false;
+}
+
+const char *explain_offence(const talk *who, const telegram *said, char *why, size_t capacity)
+{
+    if (!said->action || *said->trouble) {
+        snprintf(why, capacity, "%s", said->action ? said->trouble : "no servo has this command");
+        return "request";
+    }
+    for (size_t k = 0; k < said->n_parts; k++) {
+        const telegram_part *part = &said->part[k];
+        for (int at = 0; part->data && part->address >= 0 && at < part->length;) {
+            const item i = item_at(who, part, at);
+            if (wrong_item(&i, why, capacity)) {
+                return "range";
+            }
+            at += i.bytes;
+        }
+    }
+    return NULL;
+}
+
 /* ---- JSON ---------------------------------------------------------------------------------- */
 
 static json_t *part_json(const talk *who, const telegram_part *part)

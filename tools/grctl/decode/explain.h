@@ -12,6 +12,10 @@
 void explain_say(text *t, const frame *f, const telegram *said);
 void explain_shares(text *t, const telegram *said);
 
+/* What no servo can do with a whole command of a good sum: a code ("request", "range") and why, or
+ * NULL. */
+const char *explain_offence(const talk *who, const telegram *said, char *why, size_t capacity);
+
 /* The same for scripts: members of the frame's object, as words_json() has them. */
 json_t *explain_packet(const frame *f, const telegram *said);
 

@@ -8,12 +8,29 @@
 
 #include "tools/grctl/servo/family.h"
 
+static int rs30x_driver(grobo_driver *driver, const grobo_model *model)
+{
+    return grobo_rs30x_driver_init(driver, model, &grobo_rs30x_protocol);
+}
+
 static const family families[] = {
-    {"rs30x", &grobo_rs30x_protocol, &grobo_rs30x_table},
-    {"dxl2", &grobo_dxl2_protocol, &grobo_dxl2_table},
-    {"dxl1", &grobo_dxl1_protocol, &grobo_dxl1_table},
-    {"sts", &grobo_feetech_protocol, &grobo_sts_table},
-    {"scs", &grobo_feetech_protocol, &grobo_scs_table},
+    {"rs30x", &grobo_rs30x_protocol, &grobo_rs30x_table, {115200}, rs30x_driver},
+    {"dxl2",
+     &grobo_dxl2_protocol,
+     &grobo_dxl2_table,
+     {57600, 1000000, 3000000},
+     grobo_dxl2_driver_init},
+    {"dxl1", &grobo_dxl1_protocol, &grobo_dxl1_table, {1000000, 57600}, grobo_dxl1_driver_init},
+    {"sts",
+     &grobo_feetech_protocol,
+     &grobo_sts_table,
+     {1000000, 115200},
+     grobo_feetech_driver_init},
+    {"scs",
+     &grobo_feetech_protocol,
+     &grobo_scs_table,
+     {1000000, 115200},
+     grobo_feetech_driver_init},
 };
 
 enum { FAMILIES = sizeof families / sizeof *families };
@@ -90,12 +107,33 @@ int family_identity(const grobo_servo_model *servo, uint16_t *address)
     return end - *address;
 }
 
-const char *family_name(const grobo_driver *driver)
+const char *family_of(const grobo_servo_model *servo)
 {
-    const grobo_servo_model *servo = family_servo(driver, driver->model->joints[0].motor);
     size_t i = 0;
     while (i < FAMILIES - 1 && (!servo || families[i].table != servo->table)) {
         i++;
     }
     return families[i].name;
+}
+
+const char *family_name(const grobo_driver *driver)
+{
+    return family_of(family_servo(driver, driver->model->joints[0].motor));
+}
+
+const grobo_driver *family_driver(const family *f)
+{
+    static grobo_driver driver;
+    static grobo_joint joint;
+    static const grobo_group all = {.name = "all", .joints = 1};
+    static const grobo_model model = {
+        .name = "any", .joints = &joint, .groups = &all, .n_joints = 1, .n_groups = 1};
+    joint = (grobo_joint){.name = "any",
+                          .min_rad = -0.1,
+                          .max_rad = 0.1,
+                          .max_speed_rad_s = 1,
+                          .servo_model = f->table->models[0].number,
+                          .motor = f->protocol->id_max,
+                          .mirror_sign = 1};
+    return f->driver(&driver, &model) < 0 ? NULL : &driver;
 }

@@ -10,13 +10,25 @@ typedef struct family {
     const char *name;               /* "sts", as --family takes it */
     const grobo_protocol *protocol; /* of its own bus */
     const grobo_servo_table *table; /* of its registers */
+    int usual_bps[3];               /* rates at which they are found; 0: no more */
+    /* The driver of a robot of such servos. */
+    int (*driver)(grobo_driver *driver, const grobo_model *model);
 } family;
 
 /* Family number i; NULL behind the last. */
 const family *family_row(size_t i);
 
+/*
+ * A driver to look for servos of a family with: its one joint has the highest id and is nobody's.
+ * Static: until the next call.
+ */
+const grobo_driver *family_driver(const family *f);
+
 /* Whether a driver's servos may be of the family of this name; behind a board are RS30x. */
 bool family_is(const grobo_driver *driver, const char *name);
+
+/* The family of a servo. */
+const char *family_of(const grobo_servo_model *servo);
 
 /* The family of a driver's servos: of its first joint, where it has several. */
 const char *family_name(const grobo_driver *driver);

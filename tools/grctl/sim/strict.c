@@ -4,6 +4,7 @@
 
 #include <grobo/serial.h>
 
+#include "tools/grctl/decode/explain.h"
 #include "tools/grctl/os/os.h"
 #include "tools/grctl/sim/strict.h"
 
@@ -114,8 +115,34 @@ static bool wrong_relay(const frame *f, char *why)
     return true;
 }
 
+/* The same for servos that are no RS30x; NULL: nothing. */
+static const char *wrong_telegram(const sim_strict *s, const uint8_t *bytes, size_t n,
+                                  const telegram **said, char *why)
+{
+    static telegram told;
+    const dialect_frame as = {.sum_ok = true};
+    memset(&told, 0, sizeof told);
+    s->talk.dialect->explain(bytes, n, &as, &told);
+    *said = &told;
+    return explain_offence(&s->talk, &told, why, WHY_BYTES);
+}
+
+static void on_telegram(sim_strict *s, const frame *f)
+{
+    char why[WHY_BYTES] = "the sum is wrong";
+    const telegram *said;
+    const char *code = f->sum_ok ? wrong_telegram(s, f->bytes, f->size, &said, why) : "sum";
+    if (code) {
+        report(s, code, f->end_us, f->bytes, f->size, why);
+    }
+}
+
 static void on_whole(sim_strict *s, const frame *f)
 {
+    if (s->talk.dialect) {
+        on_telegram(s, f);
+        return;
+    }
     char why[WHY_BYTES] = "";
     const uint8_t *bytes = f->kind == FRAME_BOARD ? f->board.packet : f->bytes;
     if (f->has_packet && !f->sum_ok) {
@@ -164,7 +191,15 @@ static void on_refused(sim_strict *s, const grobo_sim_event *event)
 {
     char why[WHY_BYTES];
     grobo_rs30x_packet packet;
+    const telegram *said;
     bool sum_ok;
+    if (s->talk.dialect) {
+        if (!s->told && !wrong_telegram(s, s->packet, s->n_packet, &said, why)) {
+            s->told = true;
+            report(s, "refused", event->time_us, s->packet, s->n_packet, "the servo cannot do it");
+        }
+        return;
+    }
     int size = grobo_rs30x_peek(s->packet, s->n_packet, GROBO_ACCEPT_COMMANDS, &packet, &sum_ok);
     if (s->told || size <= 0 || wrong_packet(&packet, s->packet, s->n_packet, why)) {
         return;
@@ -174,10 +209,21 @@ static void on_refused(sim_strict *s, const grobo_sim_event *event)
     report(s, "refused", event->time_us, s->packet, s->n_packet, why);
 }
 
+static bool is_order(const sim_strict *s, const grobo_sim_event *event)
+{
+    char why[WHY_BYTES];
+    const telegram *said;
+    if (!s->talk.dialect) {
+        return event->bytes[2] == 0 || (event->bytes[3] & 0xF0) != 0 || event->n_bytes > 8;
+    }
+    (void)wrong_telegram(s, event->bytes, event->n_bytes, &said, why);
+    return !said->action || (!strstr(said->action, "read") && strcmp(said->action, "ping") != 0);
+}
+
 /* To ask whether a servo is back is no offence, to tell it something is: nobody hears it. */
 static void on_missed(sim_strict *s, const grobo_sim_event *event)
 {
-    bool writes = event->bytes[2] == 0 || (event->bytes[3] & 0xF0) != 0 || event->n_bytes > 8;
+    bool writes = is_order(s, event);
     if (s->told || !writes) {
         return;
     }
@@ -220,12 +266,17 @@ void sim_strict_event(sim_strict *s, const grobo_sim_event *event)
 
 /* ---- from begin to end ----------------------------------------------------------------------- */
 
-void sim_strict_start(sim_strict *s, app *a, int robot, grobo_wiring wiring, int64_t now_us)
+void sim_strict_start(sim_strict *s, app *a, int robot, grobo_wiring wiring, const dialect *d)
 {
-    *s = (sim_strict){.a = a, .robot = robot, .wiring = wiring, .start_us = now_us};
+    *s = (sim_strict){.a = a,
+                      .robot = robot,
+                      .wiring = wiring,
+                      .start_us = grobo_now_us(),
+                      .talk = {.dialect = d}};
     frames_init(&s->host, FRAMES_HOST,
                 wiring == GROBO_WIRING_BUS ? (unsigned)FRAMES_BUS : (unsigned)FRAMES_BOARD,
                 on_frame, s);
+    frames_set_talk(&s->host, &s->talk);
 }
 
 void sim_strict_bytes(sim_strict *s, int64_t now_us, const uint8_t *bytes, size_t n)

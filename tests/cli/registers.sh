@@ -1,0 +1,125 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# scan, info, servo-get, servo-set and doctor with servos of other families: by the names of their
+# own registers, kept as the family keeps them.
+. tests/support/cli.sh
+
+said() {
+    grep -q -e "$1" "$work/err" || { echo "no '$1' in:"; cat "$work/err"; return 1; }
+}
+# of ROBOT COMMAND...
+of() {
+    of_robot=$1
+    shift
+    "$GRCTL" --robot "$of_robot" -d "$robot" --timeout 200 "$@"
+}
+# restarted ID: its power goes and comes.
+restarted() {
+    tell cable "$1" out
+    tell cable "$1" in
+}
+
+# ---- Feetech: a lock -------------------------------------------------------------------------
+
+start_told_sim --robot so101 || { echo "Bail out! the simulator did not start"; exit 1; }
+check "scan names model, firmware and joint" both exits 0 of so101 scan --last 8 --- \
+    says '^  3  STS3215   firmware   3  1000000 bps  elbow_flex$'
+check "info" both exits 0 of so101 info --- says '^  6  STS3215 .* gripper$'
+check "servo-get by the joint's name" both exits 0 of so101 servo-get wrist_roll --- \
+    says '^ 42  goal_position  *2048  *0.0 deg$'
+check "bits are bits" says '^ 18  phase  *12  *0Ch$'
+check "its rate" says '^  6  baud  *0  *1000000 bps$'
+check "another family's register" fails 2 "no register 'delay'; STS3215 has: firmware" \
+    of so101 servo-get 1 delay
+check "a setting without --flash" both exits 0 of so101 servo-set 1 position_p 20 --- \
+    said '^servo 1: position_p 32 -> 20; lost at power-off without --flash$'
+restarted 1
+check "is lost at power-off" wait_for both exits 0 of so101 servo-get 1 position_p --- \
+    says '^ 21  position_p  *32$'
+check "with --flash" both exits 0 of so101 servo-set 1 position_p 20 --flash --- \
+    said '^servo 1: position_p 32 -> 20, kept$'
+check "the lock is closed again" both exits 0 of so101 servo-get 1 lock --- says '^ 55  lock  *1$'
+restarted 1
+check "is kept" wait_for both exits 0 of so101 servo-get 1 position_p --- \
+    says '^ 21  position_p  *20$'
+check "a goal" fails 4 "goal_position moves the motor; use 'grctl move'" \
+    of so101 servo-set 1 goal_position 2000
+check "torque" fails 4 "torque moves the motor; use 'grctl servo'" of so101 servo-set 1 torque 1
+check "a speed goes with a goal" fails 4 "goal_speed moves the motor" \
+    of so101 servo-set 1 goal_speed 100
+check "what has no lock is not kept" fails 2 'flash does not keep register torque_limit' \
+    of so101 servo-set 1 torque_limit 500 --flash
+exits 0 of so101 servo on shoulder_lift
+check "an id of a servo that holds" fails 4 'servo 2 holds, and would jump with another id' \
+    of so101 servo-set 2 id 9 --flash
+check "its offset" fails 4 'servo 2 holds, and would jump with another offset' \
+    of so101 servo-set 2 offset 100
+exits 0 of so101 servo off shoulder_lift
+check "an id that another has" fails 4 'a servo with the id 3 is there already' \
+    of so101 servo-set 2 id 3 --flash
+check "one that nobody has" both exits 0 of so101 servo-set 2 id 9 --flash --- \
+    said '^servo 9: id 2 -> 9, kept$'
+check "which is no joint" both exits 0 of so101 scan --first 9 --last 9 --- \
+    says '^  9  STS3215 .*bps  $'
+check "and has registers all the same" both exits 0 of so101 servo-get 9 id --- says '^  5  id  *9$'
+check "and back" exits 0 of so101 servo-set 9 id 2 --flash
+check "another rate" both exits 0 of so101 servo-set 4 baud 115200 --flash --- \
+    said 'baud 0 (1000000 bps) -> 4 (115200 bps), kept; it answers at 115200 bps$'
+check "where it is found" both exits 0 of so101 scan --all-baud --first 4 --last 4 --- \
+    says '^  4  STS3215   firmware   3  115200 bps  wrist_flex$'
+check "and back from there" both exits 0 of so101 -b 115200 servo-set 4 baud 1000000 --flash --- \
+    said 'it answers at 1000000 bps$'
+check "doctor" both exits 0 of so101 doctor --- says 'all 6 answer'
+tell temperature 5 90
+check "doctor names one that is too hot" both exits 1 of so101 doctor --- \
+    says 'wrist_roll .*\(is hot\|cut its torque for heat\)'
+check_json "registers in JSON" 'lines[0]["model"] == "STS3215" and lines[0]["registers"] == [
+    {"name": "max_position", "address": 11, "value": 4095, "unit": "0.088 deg",
+     "max_position_deg": 179.9}]' of so101 --json servo-get 3 max_position
+stop_sim
+
+# ---- DYNAMIXEL: kept at once, without torque only ----------------------------------------------
+
+start_told_sim --robot koch || { echo "Bail out! the simulator did not start"; exit 1; }
+check "two models on a line" both exits 0 of koch scan --last 4 --- \
+    both says '^  2  XL430-W250  firmware  52  1000000 bps  shoulder_lift$' --- \
+    says '^  3  XL330-M288  firmware  52  1000000 bps  elbow_flex$'
+check "each has its own registers" both exits 0 of koch servo-get 1 present_load --- \
+    fails 2 "no register 'present_load'; XL330-M288 has: model" of koch servo-get 3 present_load
+check "a setting is kept" both exits 0 of koch servo-set 3 return_delay 0 --- \
+    said '^servo 3: return_delay 250 (500 us) -> 0 (0 us), kept$'
+restarted 3
+check "over power-off" wait_for both exits 0 of koch servo-get 3 return_delay --- \
+    says '^  9  return_delay  *0  *0 us$'
+exits 0 of koch servo on elbow_flex
+check "not of a servo that holds" fails 4 'servo 3 holds, and would jump with another return_delay' \
+    of koch servo-set 3 return_delay 10
+check "what is no setting" both exits 0 of koch servo-set 3 led 1 --- \
+    said '^servo 3: led 0 -> 1; lost at power-off$'
+exits 0 of koch servo off elbow_flex
+check "the rate" both exits 0 of koch servo-set 6 baud 57600 --- \
+    said 'baud 3 (1000000 bps) -> 1 (57600 bps), kept; it answers at 57600 bps$'
+check "and back" exits 0 of koch -b 57600 servo-set 6 baud 1000000
+check "doctor" both exits 0 of koch doctor --- says 'all 6 answer'
+stop_sim
+
+# ---- whoever is there --------------------------------------------------------------------------
+
+start_sim --servo 1=XL330-M288,2=STS3215,3=AX-12A,5=SCS0009 -b 1000000
+on_line() {
+    "$GRCTL" -d "$robot" --timeout 100 scan "$@"
+}
+check "every family is found" exits 0 on_line --family all --last 6
+check "DYNAMIXEL 2.0" says '^  1  XL330-M288  firmware  52  1000000 bps  dxl2$'
+check "Feetech STS" says '^  2  STS3215   firmware   3  1000000 bps  sts$'
+check "DYNAMIXEL 1.0" says '^  3  AX-12A    firmware  24  1000000 bps  dxl1$'
+check "Feetech SCS" says '^  5  SCS0009   firmware   3  1000000 bps  scs$'
+check "and nobody twice" [ "$(grep -c ' bps  ' "$work/out")" -eq 4 ]
+check "one family" both exits 0 on_line --family dxl2 -b 1000000 --last 3 --- \
+    said '^1 servo; 3 silent; '
+check "nobody there" exits 1 on_line --family rs30x --last 3
+check_json "in JSON" '[(s["id"], s["family"], s["joint"]) for s in lines[0]["servos"]] ==
+    [(1, "dxl2", None)]' on_line --json --family dxl2 --last 2
+check "without a line" fails 2 '--family needs a line' "$GRCTL" -d sim scan --family dxl2 --last 2
+stop_sim
+done_testing
