@@ -226,6 +226,10 @@ have_fuzzer() {
         clang -x c -fsanitize=fuzzer -o /dev/null - 2>/dev/null
 }
 
+have_cffi() {
+    python3 -c 'import cffi' 2>/dev/null
+}
+
 have_mdoc() {
     have_command groff && [ -e /usr/share/groff/current/tmac/doc.tmac ]
 }
@@ -236,6 +240,8 @@ look_wanted() {
     reasons=
     need Python 'to check JSON' have_command python3 -- \
         python3 python3 python python3 python3
+    need cffi 'to check the Python package' have_cffi -- \
+        python3-cffi python3-cffi python-cffi py3-cffi python3-cffi
     need tmux 'to check the shell at a terminal' have_command tmux -- \
         tmux tmux tmux tmux tmux
     need zsh 'to check completion' have_command zsh -- zsh zsh zsh zsh zsh
