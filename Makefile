@@ -160,7 +160,7 @@ include tools/baremetal/baremetal.mk
 # ---- targets -------------------------------------------------------------------------------
 
 .PHONY: help all lib demo check lint lint-quick format test check-san check-tsan check-memcheck install uninstall
-.PHONY: clean sources wrap python wheel deb check-deb release tidy fuzz soak cov dist bench plots captures cross check-cross check-drivers
+.PHONY: clean sources wrap python wheel check-wheel deb check-deb release tidy fuzz soak cov dist bench plots captures cross check-cross check-drivers
 .PHONY: check-families check-ports check-long check-mutants check-map install-lib FORCE
 .PHONY: firmware size check-firmware
 
@@ -248,6 +248,7 @@ check-cross: cross ## the tests of that build, under an emulator; RING= chooses
 check-long: ## all machines, packages, sabotage, fuzzing, the soak, scans of all lines: hours
 	@$(MAKE) --no-print-directory check-ports
 	@$(MAKE) --no-print-directory check-deb
+	@$(MAKE) --no-print-directory check-wheel
 	@$(MAKE) --no-print-directory check-mutants COUNT=300
 	@$(MAKE) --no-print-directory check-map COUNT=
 	@$(MAKE) --no-print-directory fuzz FUZZ_S=300
@@ -380,6 +381,10 @@ $(PYTHON_DIR)/grobo/_abi.py: tools/python/generate.py src/libgrobo.map $(wildcar
 
 wheel: ## a wheel with the library inside, for x86_64 or PROCESSOR=aarch64, in build/wheel
 	@tools/python/wheel.sh "$(BUILD)" $(PROCESSOR)
+
+check-wheel: ## both wheels; this machine's is installed and plays a motion
+	-@tools/setup.sh --cross musl
+	@BUILD="$(BUILD)" TEST_TIMEOUT_S=3600 TEST_LOGS="$(BUILD)/logs/wheel" tests/run.sh tests/package/wheel.sh
 
 ARCH ?=
 deb: ## Debian packages in build/deb, for this machine or ARCH=arm64

@@ -158,6 +158,9 @@ look_cross() {
         ;;
     packages)
         need_debian debhelper 'to build packages' have_command dh -- debhelper
+        need_debian dh-python 'to build packages' have_command dh_python3 -- dh-python
+        need_debian python3-cffi 'to build packages' [ -e /usr/share/doc/python3-cffi ] -- \
+            python3-cffi
         need_debian lintian 'to check packages' have_command lintian -- lintian
         need_debian debootstrap 'to try packages' have_command /usr/sbin/debootstrap -- debootstrap
         need_debian "Ubuntu's keys" 'to try packages' \

@@ -33,7 +33,7 @@ export PYTHONPATH CC
 # Each test is a line of its own.
 run() {
     name=$1
-    "$python" -X dev -W error::ResourceWarning "tests/package/python/$name.py" -v >"$work/$name" 2>&1
+    "$python" -X dev "tests/package/python/$name.py" -v >"$work/$name" 2>&1
     status=$?
     awk -v name="$name" -v status=$status '
         /^test_.* \.\.\. / || /^test_[a-z_0-9]* \(/ { test = $1 }
@@ -65,7 +65,8 @@ done
 check 'what its README shows' shown tools/python/README.md '^-45\.8'
 check 'what its guide shows' shown docs/guide/python.md '^R_ELBOW_P '
 if "$python" -m mypy --version >/dev/null 2>&1; then
-    check 'its types' "$python" -m mypy --strict "$work/built/python/grobo"
+    check 'its types' sh -c 'cd "$2" && "$1" -m mypy --strict -p grobo' sh "$python" \
+        "$work/built/python"
 else
     skip 'its types' 'no mypy'
 fi

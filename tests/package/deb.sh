@@ -102,6 +102,14 @@ compiles() {
         [ "$(in_root /consumer)" = 'no reply in time' ]
 }
 
+python_runs() {
+    in_root python3 -c 'import grobo
+with grobo.connect("sim") as robot:
+    robot.init()
+    print(len(robot.joints), grobo.__version__)' >"$work/python" 2>&1 &&
+        grep -q "^20 [0-9]" "$work/python" || { cat "$work/python"; return 1; }
+}
+
 owns() {
     for file in /usr/bin/grctl /usr/share/man/man1/grctl.1.gz /usr/share/man/man5/grctl-json.5.gz \
         /usr/lib/udev/rules.d/60-grobo.rules /usr/share/bash-completion/completions/grctl \
@@ -140,6 +148,7 @@ for suite in ${SUITES:-bookworm noble}; do
     check "$suite: installed" installs
     check "$suite: grctl -d sim status" runs
     check "$suite: a program is compiled" compiles
+    check "$suite: Python moves a robot" python_runs
     check "$suite: man pages, completion, udev rule" owns
     check "$suite: purged without a trace" purges
     rm -rf "$root"

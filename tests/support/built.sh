@@ -7,11 +7,12 @@ copy_build() {
     mkdir -p "$2" && cp -Rp "$1/src" "$1/ports" "$2" && cp -p "$1/.flags" "$2"
 }
 
-# make_in_copy DIR TARGET...: without what the make above was told; compiler and flags are the copy's.
+# make_in_copy DIR TARGET...: with the compiler and the flags of the copy, whatever the make above
+# was told.
 make_in_copy() {
     copy=$1
     shift
-    flags=$(sed -n 's/^\([A-Z]*\) = .*/\1/p' "$copy/.flags")
+    flags=$(sed -n 's/^\([A-Z]*\) = ..*/\1/p' "$copy/.flags")
     (
         unset MAKEFLAGS MAKELEVEL MFLAGS
         for variable in $flags; do

@@ -2,12 +2,12 @@
 """The library and what cffi knows of it."""
 
 import ctypes
+import importlib
 import os
 from pathlib import Path
 from typing import Any
 
-from grobo._abi import ffi  # type: ignore[import-not-found]
-
+ffi: Any = importlib.import_module("grobo._abi").ffi  # generate.py makes it
 NAME = "libgrobo.so.0"
 
 

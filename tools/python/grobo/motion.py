@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Postures and motions. Arrays are numpy's where numpy is installed, else lists."""
 
+import importlib
 import math
 import os
 from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Union
@@ -8,10 +9,11 @@ from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Union
 from grobo._lib import ffi, lib, new, us
 from grobo.errors import check, error
 
+numpy: Any = None
 try:
-    import numpy
+    numpy = importlib.import_module("numpy")
 except ImportError:
-    numpy = None  # type: ignore[assignment]
+    pass
 
 KINDS = ("postures", "keys", "steps", "frames")
 
@@ -212,6 +214,6 @@ def _first_error(found: Any) -> Optional[str]:
     for i in range(lib.grobo_diagnostics_count(found)):
         lib.grobo_diagnostics_get(found, i, problem)
         if problem.severity == lib.GROBO_SEVERITY_ERROR:
-            line = f"line {problem.line}: " if problem.line else ""
-            return line + ffi.string(problem.message).decode()
+            text: str = ffi.string(problem.message).decode()
+            return f"line {problem.line}: {text}" if problem.line else text
     return None
