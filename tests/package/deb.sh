@@ -54,7 +54,9 @@ same_needs() {
 
 # make_root SUITE: kept as a tarball; unpacked into $root.
 make_root() {
-    tarball=$work/roots/$1.tar
+    # What a program is compiled with, and what Python itself leaves behind, is there before.
+    tools=gcc,libc6-dev,pkg-config,python3-cffi-backend
+    tarball=$work/roots/$1-$tools.tar
     rm -rf "$root"
     if [ ! -s "$tarball" ]; then
         case $1 in
@@ -62,7 +64,7 @@ make_root() {
         *) set -- "$1" "$root" http://deb.debian.org/debian ;;
         esac
         PATH=$PATH:/usr/sbin:/sbin debootstrap --variant=minbase \
-            --include=gcc,libc6-dev,pkg-config "$@" >"$work/debootstrap" 2>&1 ||
+            --include="$tools" "$@" >"$work/debootstrap" 2>&1 ||
             { tail -n 5 "$work/debootstrap"; return 1; }
         tar -C "$root" -cf "$tarball.new" --exclude='./proc/*' --exclude='./sys/*' . &&
             mv "$tarball.new" "$tarball" || return 1
