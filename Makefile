@@ -160,7 +160,7 @@ include tools/baremetal/baremetal.mk
 # ---- targets -------------------------------------------------------------------------------
 
 .PHONY: help all lib demo check lint lint-quick format test check-san check-tsan check-memcheck install uninstall
-.PHONY: clean sources wrap python wheel check-wheel deb check-deb release tidy fuzz soak cov dist bench plots captures cross check-cross check-drivers
+.PHONY: clean tidy fuzz soak cov dist bench plots captures cross check-cross check-drivers
 .PHONY: check-families check-ports check-long check-mutants check-map install-lib FORCE
 .PHONY: firmware size check-firmware
 
@@ -367,6 +367,7 @@ wrap: ## build/subprojects, for the Meson projects that take TARBALL=build/libgr
 	@sed -e 's|@VERSION@|$(VERSION)|' -e "s|@SHA256@|$$(sha256sum <$(TARBALL) | cut -d ' ' -f 1)|" \
 	    tools/package/meson/grobo.wrap.in >$(BUILD)/subprojects/grobo.wrap
 
+.PHONY: sources wrap python wheel check-wheel deb check-deb release
 # The Python package as it is used from here (PYTHONPATH=build/python) and packed.
 PYTHON ?= python3
 PYTHON_DIR := $(BUILD)/python

@@ -261,12 +261,12 @@ look_wanted() {
     [ "$manager" != apt-get ] ||
         need clang-format 'to check the formatting' have_command clang-format-14 -- clang-format-14
     [ $level -ge 3 ] || return
-    need valgrind 'to check memory' have_command valgrind -- \
-        valgrind valgrind valgrind valgrind valgrind
     need cmake 'to check the build files for it' have_command cmake -- \
         cmake cmake cmake cmake cmake
     need meson 'to check the build files for it' have_command meson -- \
         meson meson meson meson meson
+    need valgrind 'to check memory' have_command valgrind -- \
+        valgrind valgrind valgrind valgrind valgrind
     need 'clang with libFuzzer' 'to fuzz' have_fuzzer -- \
         'clang libclang-rt-dev' 'clang compiler-rt' 'clang compiler-rt' 'clang compiler-rt' clang
 }
