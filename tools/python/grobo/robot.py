@@ -177,11 +177,14 @@ class Robot:
         events: int = 0,
     ) -> None:
         config = new("grobo_control_config")
+        session = config.session
+        if ffi.typeof(session).kind == "pointer":
+            session = config.session = new("grobo_session_config")
         robot_config = new("grobo_robot_config")
         name = ffi.new("char[]", os.fsencode(device))
-        config.session.device = name
-        config.session.reconnect = reconnect
-        config.session.robot = robot_config
+        session.device = name
+        session.reconnect = reconnect
+        session.robot = robot_config
         robot_config.on_exit = exit or Exit.DEFAULT
         config.skip_exit = exit is None
         config.timeout_us = us(timeout)
@@ -191,7 +194,7 @@ class Robot:
                 raise errors.error(lib.GROBO_ERR_UNSUPPORTED, "events")
             config.events = events
         self.device = device
-        self._control = _Control(config, [name, robot_config])
+        self._control = _Control(config, [name, robot_config, session])
         try:
             with self._control.use() as control:
                 self.joints = joint_names(lib.grobo_robot_driver(self._control.robot).model)
