@@ -253,6 +253,7 @@ check-cross: cross ## the tests of that build, under an emulator; RING= chooses
 check-long: ## all machines, packages, sabotage, fuzzing, the soak, scans of all lines: hours
 	@$(MAKE) --no-print-directory check-ports
 	@$(MAKE) --no-print-directory check-deb
+	@$(MAKE) --no-print-directory check-wheel
 	@$(MAKE) --no-print-directory check-mutants COUNT=300
 	@$(MAKE) --no-print-directory check-map COUNT=
 	@$(MAKE) --no-print-directory fuzz FUZZ_S=300
@@ -381,6 +382,26 @@ wrap: ## build/subprojects, for the Meson projects that take TARBALL=build/libgr
 	@sed -e 's|@VERSION@|$(VERSION)|' -e "s|@SHA256@|$$(sha256sum <$(TARBALL) | cut -d ' ' -f 1)|" \
 	    tools/package/meson/grobo.wrap.in >$(BUILD)/subprojects/grobo.wrap
 
+.PHONY: sources wrap python wheel check-wheel deb check-deb release
+# The Python package as it is used from here (PYTHONPATH=build/python) and packed.
+PYTHON ?= python3
+PYTHON_DIR := $(BUILD)/python
+python: $(SHARED_LIB) $(PYTHON_DIR)/grobo/_abi.py ## the Python package, in build/python
+	@cp -R tools/python/. $(PYTHON_DIR)
+	@cp $(SHARED_LIB) $(PYTHON_DIR)/grobo
+	@echo "VERSION = '$(VERSION)'" >$(PYTHON_DIR)/grobo/_version.py
+
+$(PYTHON_DIR)/grobo/_abi.py: tools/python/generate.py src/libgrobo.map $(wildcard include/grobo/*.h)
+	@mkdir -p $(@D)
+	@$(PYTHON) tools/python/generate.py . "$(CC)" $@ >/dev/null
+
+wheel: ## a wheel with the library inside, for x86_64 or PROCESSOR=aarch64, in build/wheel
+	@tools/python/wheel.sh "$(BUILD)" $(PROCESSOR)
+
+check-wheel: ## both wheels; this machine's is installed and plays a motion
+	-@tools/setup.sh --cross musl
+	@BUILD="$(BUILD)" TEST_TIMEOUT_S=3600 TEST_LOGS="$(BUILD)/logs/wheel" tests/run.sh tests/package/wheel.sh
+
 ARCH ?=
 deb: ## Debian packages in build/deb, for this machine or ARCH=arm64
 	@tools/setup.sh --packages
@@ -500,13 +521,13 @@ $(STATIC_LIB) $(CORE_LIB) $(SUPPORT_LIB) $(TOOL_LIB): $(BUILD)/.flags
 	$(Q)$(AR) rcs $@ $(filter %.o,$^)
 
 # The library knows where the command is installed, which is its guard's program.
-$(BUILD)/ports/posix/guard.o: CPPFLAGS += -DGROBO_GUARD_PROGRAM='"$(BINDIR)/grctl"'
+$(BUILD)/ports/posix/guard.o: override CPPFLAGS += -DGROBO_GUARD_PROGRAM='"$(BINDIR)/grctl"'
 $(BUILD)/ports/posix/guard.o: $(BUILD)/.bindir
 $(BUILD)/.bindir: FORCE
 	$(call keep,$(call quote,$(BINDIR)))
 
 # The command knows where its files are installed.
-$(BUILD)/tools/grctl/os/posix/node.o: CPPFLAGS += -DGRCTL_DATADIR='"$(DATADIR)"'
+$(BUILD)/tools/grctl/os/posix/node.o: override CPPFLAGS += -DGRCTL_DATADIR='"$(DATADIR)"'
 $(BUILD)/tools/grctl/os/posix/node.o: $(BUILD)/.datadir
 $(BUILD)/.datadir: FORCE
 	$(call keep,$(call quote,$(DATADIR)))

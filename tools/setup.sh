@@ -159,6 +159,9 @@ look_cross() {
         ;;
     packages)
         need_debian debhelper 'to build packages' have_command dh -- debhelper
+        need_debian dh-python 'to build packages' have_command dh_python3 -- dh-python
+        need_debian python3-cffi 'to build packages' [ -e /usr/share/doc/python3-cffi ] -- \
+            python3-cffi
         need_debian lintian 'to check packages' have_command lintian -- lintian
         need_debian debootstrap 'to try packages' have_command /usr/sbin/debootstrap -- debootstrap
         need_debian "Ubuntu's keys" 'to try packages' \
@@ -227,6 +230,10 @@ have_fuzzer() {
         clang -x c -fsanitize=fuzzer -o /dev/null - 2>/dev/null
 }
 
+have_cffi() {
+    python3 -c 'import cffi' 2>/dev/null
+}
+
 have_mdoc() {
     have_command groff && [ -e /usr/share/groff/current/tmac/doc.tmac ]
 }
@@ -237,6 +244,8 @@ look_wanted() {
     reasons=
     need Python 'to check JSON' have_command python3 -- \
         python3 python3 python python3 python3
+    need cffi 'to check the Python package' have_cffi -- \
+        python3-cffi python3-cffi python-cffi py3-cffi python3-cffi
     need tmux 'to check the shell at a terminal' have_command tmux -- \
         tmux tmux tmux tmux tmux
     need zsh 'to check completion' have_command zsh -- zsh zsh zsh zsh zsh
@@ -253,12 +262,12 @@ look_wanted() {
     [ "$manager" != apt-get ] ||
         need clang-format 'to check the formatting' have_command clang-format-14 -- clang-format-14
     [ $level -ge 3 ] || return
-    need valgrind 'to check memory' have_command valgrind -- \
-        valgrind valgrind valgrind valgrind valgrind
     need cmake 'to check the build files for it' have_command cmake -- \
         cmake cmake cmake cmake cmake
     need meson 'to check the build files for it' have_command meson -- \
         meson meson meson meson meson
+    need valgrind 'to check memory' have_command valgrind -- \
+        valgrind valgrind valgrind valgrind valgrind
     [ "$manager" != apt-get ] ||
         need abidiff 'to compare binary interfaces' have_command abidiff -- abigail-tools
     need 'clang with libFuzzer' 'to fuzz' have_fuzzer -- \

@@ -6,11 +6,11 @@
 set -u
 
 . tests/support/tap.sh
+. tests/support/built.sh
 here=$(pwd)
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
-built=$here/${BUILD:-build}
-case ${BUILD:-} in /*) built=$BUILD ;; esac
+built=${BUILD:-build}
 unset BUILD MAKEFLAGS MAKELEVEL MFLAGS
 CFLAGS=-O0
 CXXFLAGS=-O0
@@ -34,8 +34,9 @@ says() {
 }
 
 installs() {
-    make --no-print-directory -C "$here" install-lib BUILD="$built" DESTDIR="$work/stage" \
-        PREFIX=/opt/grobo && mv "$work/stage/opt/grobo" "$work/moved"
+    copy_build "$built" "$work/built" &&
+        make_in_copy "$work/built" install-lib DESTDIR="$work/stage" PREFIX=/opt/grobo &&
+        mv "$work/stage/opt/grobo" "$work/moved"
 }
 
 # project FOLDER: an empty one with both programs.

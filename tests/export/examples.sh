@@ -14,6 +14,42 @@ WRIST    motor 14   -50.0 deg'
 }
 check "a robot of one's own: reaches, with the gripper level" own_robot
 
+# short NAME LINE...: the program ends well, prints these lines among others (patterns), and has at
+# most 40 lines itself.
+short() {
+    name=$1
+    shift
+    output=$(${EMULATOR:-} "$BUILD/docs/examples/$name") || return 1
+    for line in "$@"; do
+        printf '%s\n' "$output" | grep -q -x -e "$line" || { printf '%s\n' "$output"; return 1; }
+    done
+    [ "$(wc -l <"docs/examples/$name.c")" -le 40 ]
+}
+# idea NAME LINE...
+idea() {
+    check "example: $1" short "$@"
+    ideas="${ideas:-} $1"
+}
+idea read_joints 'R_ELBOW_P *-20\.0 deg' 'R_SHOULDER_P *20\.0 deg'
+idea move_two 'move: success'
+idea play '10 postures' 'play: success'
+idea watch_events 'line sim: up, success' 'job [0-9]*: success' 'safety stop: emergency stop'
+idea two_robots 'robot 1: success' 'robot 2: success'
+idea own_loop 'torque of joint 0: success'
+idea threads 'move: success' 'looked 5 times'
+idea follow followed
+idea own_model 'HEAD: success'
+idea pump 'there after [0-9]* ms'
+no_other() {
+    for file in docs/examples/*.c; do
+        case "$ideas own_robot " in
+        *" $(basename "$file" .c) "*) ;;
+        *) echo "$file is not run"; return 1 ;;
+        esac
+    done
+}
+check 'every example is run' no_other
+
 # guide_is_true PROGRAM GUIDE: each C block of the guide stands in the program, word for word.
 guide_is_true() {
     awk '

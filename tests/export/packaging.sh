@@ -93,6 +93,12 @@ installs_what_was_built() {
         "$work/d e/opt/grobo/include/grobo/grobo.h"
 }
 
+# What the file needs itself is beside what is asked for.
+takes_cppflags() {
+    make_in "$here" -n "$work/n/ports/posix/guard.o" BUILD="$work/n" CPPFLAGS=-DMINE V=1 |
+        grep -q -e '-DMINE.*-DGROBO_GUARD_PROGRAM'
+}
+
 compiles_again_for_other_flags() {
     make_in "$here" -n install-lib BUILD="$work/b u" CFLAGS=-O1 PREFIX=/opt/grobo |
         grep -q -e ' -O1 .*error\.c'
@@ -133,5 +139,6 @@ check 'the libraries alone need libevent and libyaml' needs_no_more
 check 'blanks in BUILD and DESTDIR; nothing is compiled again' installs_what_was_built
 check 'grobo.pc: the tree may be moved' moved
 check 'uninstalled there, no file is left' uninstalls
+check 'CPPFLAGS of the command line reach the files that add some' takes_cppflags
 check 'other flags, when they are given, are used' compiles_again_for_other_flags
 done_testing

@@ -54,7 +54,9 @@ same_needs() {
 
 # make_root SUITE: kept as a tarball; unpacked into $root.
 make_root() {
-    tarball=$work/roots/$1.tar
+    # What a program is compiled with, and what Python itself leaves behind, is there before.
+    tools=gcc,libc6-dev,pkg-config,python3-cffi-backend
+    tarball=$work/roots/$1-$tools.tar
     rm -rf "$root"
     if [ ! -s "$tarball" ]; then
         case $1 in
@@ -62,7 +64,7 @@ make_root() {
         *) set -- "$1" "$root" http://deb.debian.org/debian ;;
         esac
         PATH=$PATH:/usr/sbin:/sbin debootstrap --variant=minbase \
-            --include=gcc,libc6-dev,pkg-config "$@" >"$work/debootstrap" 2>&1 ||
+            --include="$tools" "$@" >"$work/debootstrap" 2>&1 ||
             { tail -n 5 "$work/debootstrap"; return 1; }
         tar -C "$root" -cf "$tarball.new" --exclude='./proc/*' --exclude='./sys/*' . &&
             mv "$tarball.new" "$tarball" || return 1
@@ -100,6 +102,14 @@ compiles() {
     cat >"$root/consumer.c" <tests/export/consumer.c
     in_root sh -c 'cc -o /consumer /consumer.c $(pkg-config --cflags --libs grobo)' &&
         [ "$(in_root /consumer)" = 'no reply in time' ]
+}
+
+python_runs() {
+    in_root python3 -c 'import grobo
+with grobo.connect("sim") as robot:
+    robot.init()
+    print(len(robot.joints), grobo.__version__)' >"$work/python" 2>&1 &&
+        grep -q "^20 [0-9]" "$work/python" || { cat "$work/python"; return 1; }
 }
 
 owns() {
@@ -140,6 +150,7 @@ for suite in ${SUITES:-bookworm noble}; do
     check "$suite: installed" installs
     check "$suite: grctl -d sim status" runs
     check "$suite: a program is compiled" compiles
+    check "$suite: Python moves a robot" python_runs
     check "$suite: man pages, completion, udev rule" owns
     check "$suite: purged without a trace" purges
     rm -rf "$root"

@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: MIT */
+/* Moves both elbows at the same time, and waits until they are there. */
+#include <stdio.h>
+
+#include <grobo/grobo.h>
+
+int main(int argc, char **argv)
+{
+    const grobo_control_config config = {.session = {.device = argc > 1 ? argv[1] : "sim"}};
+    const grobo_model *model = &grobo_gr001_model;
+    grobo_control *control;
+    grobo_posture target;
+    if (grobo_control_new(&config, &control) < 0) {
+        return 1;
+    }
+    (void)grobo_posture_init(&target, model->n_joints);
+    (void)grobo_posture_set_deg(&target, grobo_model_find_joint(model, "R_ELBOW_P", 9), -45);
+    (void)grobo_posture_set_deg(&target, grobo_model_find_joint(model, "L_ELBOW_P", 9), -45);
+    (void)grobo_posture_set_time_ms(&target, 600);
+    int result = grobo_control_connect(control, 0);
+    if (result >= 0) {
+        int job = grobo_robot_move(grobo_control_robot(control), &target);
+        result = grobo_control_wait_job(control, job, GROBO_NEVER_US);
+    }
+    printf("move: %s\n", grobo_error_text(result));
+    grobo_control_free(control);
+    return result < 0;
+}

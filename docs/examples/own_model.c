@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: MIT */
+/* A robot of two RS30x servos on a bare bus, described in a table; simulated here. */
+#include <stdio.h>
+
+#include <grobo/grobo.h>
+
+/* Name, limits and speed in radians, initial angle, ..., number of the servo (grobo/model.h). */
+static const grobo_joint joints[] = {
+    {"PAN", -1.5, 1.5, 6.5, 0, 0, 0, 1, 0, 1, 1, false, 0, 1},
+    {"TILT", -0.8, 0.8, 6.5, 0, 0, 0, 2, 1, 1, 1, false, 0, 1},
+};
+static const grobo_model model = {.name = "HEAD", .joints = joints, .n_joints = 2};
+
+int main(int argc, char **argv)
+{
+    grobo_driver driver;
+    grobo_posture target;
+    grobo_control *control;
+    const grobo_control_config config = {
+        .session = {.device = argc > 1 ? argv[1] : "sim", .driver = &driver}};
+    if (grobo_rs30x_driver_init(&driver, &model, &grobo_rs30x_protocol) < 0 ||
+        grobo_control_new(&config, &control) < 0) {
+        return 1;
+    }
+    (void)grobo_posture_init(&target, model.n_joints);
+    (void)grobo_posture_set_deg(&target, 0, 30);
+    (void)grobo_posture_set_deg(&target, 1, -20);
+    int result = grobo_control_connect(control, 0);
+    if (result >= 0) {
+        int job = grobo_robot_move(grobo_control_robot(control), &target);
+        result = grobo_control_wait_job(control, job, 0);
+    }
+    printf("%s: %s\n", grobo_control_name(control), grobo_error_text(result));
+    (void)grobo_control_free(control);
+    return result < 0;
+}

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: MIT */
+/* Connects to a robot and prints the angle of each joint. The robot does not move. */
+#include <stdio.h>
+
+#include <grobo/grobo.h>
+
+int main(int argc, char **argv)
+{
+    const grobo_control_config config = {
+        .session = {.device = argc > 1 ? argv[1] : "sim"},
+        .skip_exit = true,
+    };
+    grobo_control *control;
+    grobo_posture posture;
+    if (grobo_control_new(&config, &control) < 0) {
+        return 1;
+    }
+    int result = grobo_control_connect(control, 0);
+    if (result >= 0) {
+        result = grobo_control_read_posture(control, &posture, 0);
+    }
+    const grobo_model *model = grobo_robot_driver(grobo_control_robot(control))->model;
+    for (int j = 0; result >= 0 && j < model->n_joints; j++) {
+        double angle_deg;
+        if (grobo_posture_get_deg(&posture, j, &angle_deg) >= 0) {
+            printf("%-12s %7.1f deg\n", model->joints[j].name, angle_deg);
+        }
+    }
+    if (result < 0) {
+        fprintf(stderr, "read: %s\n", grobo_error_text(result));
+    }
+    grobo_control_free(control);
+    return result < 0;
+}

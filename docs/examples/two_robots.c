@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: MIT */
+/* Two robots play the same motion in step: both begin at one time of the same clock. */
+#include <stdio.h>
+
+#include <grobo/grobo.h>
+
+int main(int argc, char **argv)
+{
+    grobo_control *robots[2] = {NULL, NULL};
+    int result = GROBO_OK;
+    for (int i = 0; result >= 0 && i < 2; i++) {
+        const grobo_control_config config = {
+            .session = {.device = argc > i + 1 ? argv[i + 1] : "sim"}, .motion_dir = "motions"};
+        result = grobo_control_new(&config, &robots[i]);
+        if (result >= 0) {
+            result = grobo_control_start_thread(robots[i]);
+        }
+        if (result >= 0) {
+            result = grobo_control_connect(robots[i], 0);
+        }
+        if (result >= 0) {
+            result = grobo_control_load_motion(robots[i], "greet", NULL);
+        }
+    }
+    /* Each approaches its first posture by then, and waits. */
+    const grobo_play_options options = {.start_us = grobo_now_us() + 2000000, .speed_pct = 300};
+    for (int i = 0; result >= 0 && i < 2; i++) {
+        result = grobo_control_play_motion(robots[i], &options);
+    }
+    for (int i = 0; result >= 0 && i < 2; i++) {
+        result = grobo_control_wait(robots[i], GROBO_NEVER_US);
+        printf("robot %d: %s\n", i + 1, grobo_error_text(result));
+    }
+    for (int i = 0; i < 2; i++) {
+        (void)grobo_control_free(robots[i]);
+    }
+    return result < 0;
+}

@@ -1,0 +1,73 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# The Python package, as make python makes it, against simulators: tests/package/python; and what
+# its README and its guide show.
+set -u
+
+. tests/support/tap.sh
+. tests/support/built.sh
+build=${BUILD:-build}
+python=${PYTHON:-python3}
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+
+leave() {
+    skip 'Python' "$1"
+    done_testing
+    exit 0
+}
+[ -z "${CROSS:-}${EMULATOR:-}" ] || leave 'only for this machine'
+command -v "$python" >/dev/null || leave 'no python3'
+"$python" -c 'import cffi, sys; sys.exit(sys.version_info < (3, 9))' 2>/dev/null ||
+    leave 'no cffi for Python 3.9 or later (python3-cffi; tools/setup.sh --check installs it)'
+nm "$build/libgrobo.so.0" 2>/dev/null | grep -q -e __asan_init -e __tsan_init &&
+    leave 'the library is instrumented'
+
+made() {
+    copy_build "$build" "$work/built" && make_in_copy "$work/built" python PYTHON="$python"
+}
+PYTHONPATH=$work/built/python
+CC=${CC:-cc}
+export PYTHONPATH CC
+
+# Each test is a line of its own.
+run() {
+    name=$1
+    "$python" -X dev "tests/package/python/$name.py" -v >"$work/$name" 2>&1
+    status=$?
+    awk -v name="$name" -v status=$status '
+        /^test_.* \.\.\. / || /^test_[a-z_0-9]* \(/ { test = $1 }
+        / \.\.\. (ok|FAIL|ERROR|skipped)/ || /^(ok|FAIL|ERROR|skipped .*)$/ {
+            match($0, /(ok|FAIL|ERROR|skipped.*)$/)
+            print substr($0, RSTART) "|" test
+        }
+        END { if (status != 0) print "FAIL|" name " ends well" }' "$work/$name" >"$work/results"
+    while IFS='|' read -r verdict test; do
+        case $verdict in
+        ok) check "$name: $test" true ;;
+        skipped*) skip "$name: $test" "${verdict#skipped }" ;;
+        *) check "$name: $test" sh -c 'cat "$1"; exit 1' sh "$work/$name" ;;
+        esac
+    done <"$work/results"
+}
+
+# shown DOCUMENT TEXT: what its first block prints has the text.
+shown() {
+    awk '/^```python/ && !n { open = 1; n++; next } /^```/ { open = 0 } open' "$1" \
+        >"$work/shown.py" && "$python" "$work/shown.py" >"$work/out" && grep -q -e "$2" "$work/out"
+}
+
+check 'the package is made' made
+for file in tests/package/python/test_*.py; do
+    name=${file##*/}
+    run "${name%.py}"
+done
+check 'what its README shows' shown tools/python/README.md '^-45\.8'
+check 'what its guide shows' shown docs/guide/python.md '^R_ELBOW_P '
+if "$python" -m mypy --version >/dev/null 2>&1; then
+    check 'its types' sh -c 'cd "$2" && "$1" -m mypy --strict -p grobo' sh "$python" \
+        "$work/built/python"
+else
+    skip 'its types' 'no mypy'
+fi
+done_testing

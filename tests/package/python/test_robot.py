@@ -1,0 +1,243 @@
+# SPDX-License-Identifier: MIT
+"""The blocking face, against simulators in this process and one behind a pty."""
+
+import _thread
+import gc
+import os
+import subprocess
+import tempfile
+import threading
+import time
+import unittest
+import warnings
+from pathlib import Path
+
+import grobo
+from grobo import errors
+from grobo.robot import Torque
+
+GREET = "motions/greet.pseq"
+
+
+def until(condition):
+    """Polls; the tests' own limit ends one that waits in vain."""
+    while not condition():
+        time.sleep(0.005)
+
+
+class Moving(unittest.TestCase):
+    def setUp(self):
+        self.robot = grobo.connect("sim")
+        self.addCleanup(self.robot.close)
+
+    def test_a_move_ends_where_it_was_sent(self):
+        self.robot.init()
+        self.robot.move({"R_ELBOW_P": -0.8, "L_ELBOW_P": -0.4}, time=0.2)
+        angles = self.robot.angles(["R_ELBOW_P", "L_ELBOW_P"])
+        self.assertAlmostEqual(angles["R_ELBOW_P"], -0.8, delta=0.01)
+        self.assertAlmostEqual(angles["L_ELBOW_P"], -0.4, delta=0.01)
+        self.assertEqual(len(self.robot.angles()), 20)
+
+    def test_a_joint_moves_and_is_read_by_itself(self):
+        self.robot["R_ELBOW_P"].move(deg=-30, time=0.2)
+        self.assertAlmostEqual(self.robot["R_ELBOW_P"].deg, -30, delta=0.5)
+        with self.assertRaises(TypeError):
+            self.robot["R_ELBOW_P"].move()
+
+    def test_angles_may_come_in_joint_order(self):
+        angles = [float("nan")] * 20
+        angles[self.robot.joints.index("R_ELBOW_P")] = -0.5
+        self.robot.move(angles, time=0.2)
+        self.assertAlmostEqual(self.robot["R_ELBOW_P"].angle, -0.5, delta=0.01)
+        with self.assertRaises(ValueError):
+            self.robot.move([0.0] * 21)
+
+    def test_status_says_what_was_read(self):
+        self.robot.torque(True)
+        self.robot.move({"R_ELBOW_P": -0.5}, time=0.2)
+        self.robot.angles()
+        status = self.robot.status()
+        joint = status.joints["R_ELBOW_P"]
+        self.assertTrue(status.connected)
+        self.assertFalse(status.latched)
+        self.assertIsNone(status.trip)
+        self.assertEqual(joint.torque, Torque.ON)
+        self.assertAlmostEqual(joint.angle, -0.5, delta=0.01)
+        self.assertAlmostEqual(joint.target, -0.5)
+        self.assertGreaterEqual(joint.age, 0)
+        self.assertTrue(6000 < joint.voltage_mv < 9000)
+
+    def test_torque_of_some_joints(self):
+        self.robot.torque(True)
+        self.robot.torque(Torque.BRAKE, ["R_ELBOW_P"])
+        joints = self.robot.status().joints
+        self.assertEqual(joints["R_ELBOW_P"].torque, Torque.BRAKE)
+        self.assertEqual(joints["L_ELBOW_P"].torque, Torque.ON)
+
+    def test_a_motion_is_played_from_file_and_memory(self):
+        self.robot.play(GREET, speed=5.0)
+        self.assertFalse(self.robot.status().playing)
+        motion = grobo.Motion.of([0.2, 0.4], [posture_row(self.robot, 0.0), posture_row(self.robot, -0.6)])
+        self.robot.play(motion)
+        self.assertAlmostEqual(self.robot["R_ELBOW_P"].angle, -0.6, delta=0.02)
+        self.robot.play(motion, reverse=True)
+        self.assertAlmostEqual(self.robot["R_ELBOW_P"].angle, 0.0, delta=0.02)
+
+    def test_a_stop_of_another_thread_ends_a_play(self):
+        def stop():
+            until(lambda: self.robot.status().playing)
+            self.robot.stop()
+
+        thread = threading.Thread(target=stop)
+        thread.start()
+        with self.assertRaises(errors.Canceled):
+            self.robot.play(GREET)
+        thread.join()
+
+    def test_ctrl_c_ends_a_move_and_stops_it(self):
+        def interrupt():
+            until(lambda: self.robot.status().moving)
+            _thread.interrupt_main()
+
+        thread = threading.Thread(target=interrupt)
+        thread.start()
+        with self.assertRaises(KeyboardInterrupt):
+            self.robot.move({"R_ELBOW_P": -1.0}, time=20)
+        thread.join()
+        until(lambda: not self.robot.status().moving)
+        self.assertGreater(self.robot["R_ELBOW_P"].angle, -0.9)
+
+    def test_an_emergency_stop_is_latched_until_reset(self):
+        self.robot.estop()
+        self.assertTrue(self.robot.status().latched)
+        with self.assertRaises(errors.Latched) as caught:
+            self.robot.move({"R_ELBOW_P": 0.0})
+        self.assertEqual(caught.exception.reason, "emergency stop")
+        self.assertIn("emergency stop", str(caught.exception))
+        self.robot.reset()
+        self.robot.move({"R_ELBOW_P": -0.2}, time=0.2)
+
+    def test_what_is_refused_says_which_joint_and_which_value(self):
+        with self.assertRaises(errors.Limit) as caught:
+            self.robot.move({"R_ELBOW_P": 3.0})
+        self.assertEqual(caught.exception.joint, "R_ELBOW_P")
+        self.assertAlmostEqual(caught.exception.value, 171.887, places=2)
+        self.assertIsInstance(caught.exception, ValueError)
+        with self.assertRaises(errors.Nan):
+            self.robot.move({"R_ELBOW_P": float("inf")})
+        with self.assertRaises(LookupError) as caught:
+            self.robot.move({"NOSE": 0.0})
+        self.assertEqual(caught.exception.joint, "NOSE")
+        with self.assertRaises(LookupError):
+            self.robot["NOSE"]
+
+
+class Leaving(unittest.TestCase):
+    def test_a_closed_robot_refuses_everything(self):
+        with grobo.connect("sim") as robot:
+            pass
+        robot.close()
+        for verb in (robot.status, robot.init, robot.stop, robot.estop, robot.angles):
+            with self.assertRaises(ConnectionError):
+                verb()
+
+    def test_closing_ends_what_another_thread_waits_for(self):
+        robot = grobo.connect("sim")
+        ended = []
+
+        def play():
+            try:
+                robot.play(GREET)
+            except grobo.Error as error:
+                ended.append(error)
+
+        thread = threading.Thread(target=play)
+        thread.start()
+        until(lambda: robot.status().playing)
+        robot.close()
+        thread.join()
+        self.assertEqual(len(ended), 1)
+
+    def test_a_robot_that_is_not_closed_warns(self):
+        robot = grobo.connect("sim")
+        control = robot._control
+        with self.assertWarns(ResourceWarning):
+            del robot
+            gc.collect()
+        control.close()
+
+    def test_a_forked_child_is_refused(self):
+        with grobo.connect("sim") as robot:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # of newer versions, of a fork beside threads
+                child = os.fork()
+            if child == 0:
+                try:
+                    robot.status()
+                except errors.State:
+                    os._exit(7)
+                os._exit(1)
+            self.assertEqual(os.waitpid(child, 0)[1] >> 8, 7)
+
+    def test_many_robots_leave_no_thread_and_no_descriptor(self):
+        def count():
+            return len(os.listdir("/proc/self/task")), len(os.listdir("/proc/self/fd"))
+
+        with grobo.connect("sim"):
+            pass
+        before = count()
+        for _ in range(20):
+            with grobo.connect("sim"):
+                pass
+        self.assertEqual(count(), before)
+
+    def test_no_robot(self):
+        with self.assertRaises(FileNotFoundError) as caught:
+            grobo.connect("/dev/no-such-port")
+        self.assertIn("/dev/no-such-port", str(caught.exception))
+
+
+@unittest.skipUnless(os.environ.get("GRCTL"), "needs $GRCTL")
+class Exiting(unittest.TestCase):
+    """A robot that stays when the program has left it."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.link = Path(folder.name, "gr001")
+        command = [os.environ["GRCTL"], "sim", "--link", str(self.link)]
+        sim = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.addCleanup(sim.wait)
+        self.addCleanup(sim.terminate)
+        until(self.link.exists)
+
+    def torque_after(self, policy, after=None):
+        with grobo.connect(str(self.link), exit=policy) as robot:
+            robot.torque(True)
+        with grobo.connect(str(self.link), exit=None) as robot:
+            robot.angles()
+            return {joint.torque for joint in robot.status().joints.values()}
+
+    def test_each_exit_policy_is_carried_out(self):
+        self.assertEqual(self.torque_after(grobo.Exit.OFF), {Torque.OFF})
+        self.assertEqual(self.torque_after(grobo.Exit.HOLD), {Torque.ON})
+        self.assertEqual(self.torque_after(None), {Torque.ON})
+
+    def test_it_is_carried_out_where_an_exception_leaves(self):
+        with self.assertRaises(ZeroDivisionError):
+            with grobo.connect(str(self.link), exit=grobo.Exit.OFF) as robot:
+                robot.torque(True)
+                1 / 0
+        with grobo.connect(str(self.link), exit=None) as robot:
+            robot.angles()
+            self.assertEqual(robot.status().joints["R_ELBOW_P"].torque, Torque.OFF)
+
+
+def posture_row(robot, elbow):
+    row = [float("nan")] * len(robot.joints)
+    row[robot.joints.index("R_ELBOW_P")] = elbow
+    return row
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,72 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# The wheels: made for manylinux2014, the same twice, installed in an environment of their own, and
+# a motion is played. Takes minutes and a network: `make check-wheel`.
+# environment: BUILD; PROCESSORS="x86_64 aarch64", of which this machine's is run
+set -u
+
+. tests/support/tap.sh
+build=${BUILD:-build}
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+
+for command in cmake python3 apt-get; do
+    command -v $command >/dev/null || {
+        skip 'wheels' "no $command"
+        done_testing
+        exit 0
+    }
+done
+
+made() {
+    env -u MAKEFLAGS -u MAKELEVEL tools/python/wheel.sh "$build" "$1" >"$work/name-$1" &&
+        [ -s "$(tail -n 1 "$work/name-$1")" ]
+}
+
+same_again() {
+    wheel=$(tail -n 1 "$work/name-$1")
+    before=$(sha256sum <"$wheel")
+    rm -rf "$build/wheel/$1" "$wheel"
+    made "$1" && [ "$(sha256sum <"$wheel")" = "$before" ]
+}
+
+# Another libevent in the same process must not be mixed up with ours.
+hides_the_rest() {
+    nm -D --defined-only "$build/wheel/$1/libgrobo.so.0" | grep -v -e ' grobo_' -e ' A GROBO_0$'
+    [ $? -eq 1 ]
+}
+
+machine() {
+    readelf -h "$build/wheel/$1/libgrobo.so.0" | grep -i -e "Machine:.*$2"
+}
+
+installs() {
+    python3 -m venv "$work/venv" && "$work/venv/bin/pip" install -q \
+        --disable-pip-version-check "$(tail -n 1 "$work/name-$1")"
+}
+
+plays() {
+    cat >"$work/five.py" <<'P'
+import grobo
+with grobo.connect("sim") as robot:
+    robot.init()
+    robot.play("motions/greet.pseq", speed=2.0)
+    print(grobo.version(), len(robot.joints), robot.status().playing)
+P
+    [ "$(env -u PYTHONPATH "$work/venv/bin/python" "$work/five.py")" = "$version 20 False" ]
+}
+
+version=$(sed -n 's/.*GROBO_VERSION_STRING "\(.*\)"/\1/p' include/grobo/version.h)
+for processor in ${PROCESSORS:-x86_64 aarch64}; do
+    check "$processor: made" made "$processor"
+    check "$processor: shows the names of the map alone" hides_the_rest "$processor"
+    if [ "$processor" = "$(uname -m)" ]; then
+        check "$processor: the same again" same_again "$processor"
+        check "$processor: installed" installs "$processor"
+        check "$processor: plays a motion" plays
+    else
+        check "$processor: of that machine" machine "$processor" \
+            "$(echo "$processor" | sed 's/_/-/')"
+    fi
+done
+done_testing

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: MIT
+"""An exception for each error of the library: grobo.errors.Timeout for GROBO_ERR_TIMEOUT.
+
+Where Python has an exception of that meaning, ours is one of it too, so that `except TimeoutError`
+and `except FileNotFoundError` do what they say.
+"""
+
+import typing
+
+from grobo._lib import ffi, lib
+
+
+class Error(Exception):
+    """What the library refused, or could not do.
+
+    `code` is the number of error.h, `joint` and `value` say what it is about where that is known:
+    for a limit the joint's name and the angle in degrees, for a safety stop the joint and the value
+    in the unit of the reason.
+    """
+
+    code = 0
+
+    def __init__(
+        self,
+        what: str,
+        joint: typing.Optional[str] = None,
+        value: typing.Optional[float] = None,
+        reason: typing.Optional[str] = None,
+    ) -> None:
+        self.what = what
+        self.joint = joint
+        self.value = value
+        self.reason = reason
+        super().__init__(what, joint, value, reason)
+
+    def __str__(self) -> str:
+        text = ffi.string(lib.grobo_error_text(self.code)).decode()
+        about = [part for part in (self.reason, self.joint) if part]
+        if self.value is not None:
+            about.append(f"{self.value:g}")
+        return f"{self.what}: {text}" + (f" ({', '.join(about)})" if about else "")
+
+
+_ALSO: typing.Dict[str, typing.Tuple[type, ...]] = {
+    "ARG": (ValueError,),
+    "NOMEM": (MemoryError,),
+    "LIMIT": (ValueError,),
+    "SPEED": (ValueError,),
+    "NAN": (ValueError,),
+    "TIMEOUT": (TimeoutError,),
+    "NOENT": (FileNotFoundError,),
+    "PERM": (PermissionError,),
+    "UNPLUGGED": (ConnectionError,),
+    "CLOSED": (ConnectionError,),
+    "SYNTAX": (ValueError,),
+    "NOTFOUND": (LookupError,),
+    "EXISTS": (FileExistsError,),
+    "ISDIR": (IsADirectoryError,),
+}
+
+BY_CODE: typing.Dict[int, typing.Type[Error]] = {}
+for _code, _symbol in ffi.typeof("grobo_error").elements.items():
+    if _code < 0:
+        _name = _symbol[len("GROBO_ERR_") :]
+        _class = type(
+            _name.capitalize(),
+            (Error, *_ALSO.get(_name, ())),
+            {"code": _code, "__module__": __name__, "__doc__": ffi.string(
+                lib.grobo_error_text(_code)).decode()},
+        )
+        BY_CODE[_code] = _class
+        globals()[_name.capitalize()] = _class
+
+
+def error(
+    code: int,
+    what: str,
+    joint: typing.Optional[str] = None,
+    value: typing.Optional[float] = None,
+    reason: typing.Optional[str] = None,
+) -> Error:
+    """The exception of a result below 0."""
+    return BY_CODE.get(code, Error)(what, joint, value, reason)
+
+
+def check(result: int, what: str) -> int:
+    """The result, or its exception."""
+    if result < 0:
+        raise error(result, what)
+    return result
+
+
+def __getattr__(name: str) -> typing.Type[Error]:
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

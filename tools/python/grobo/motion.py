@@ -1,0 +1,219 @@
+# SPDX-License-Identifier: MIT
+"""Postures and motions. Arrays are numpy's where numpy is installed, else lists."""
+
+import importlib
+import math
+import os
+from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Union
+
+from grobo._lib import ffi, lib, new, us
+from grobo.errors import check, error
+
+numpy: Any = None
+try:
+    numpy = importlib.import_module("numpy")
+except ImportError:
+    pass
+
+KINDS = ("postures", "keys", "steps", "frames")
+
+
+def _array(rows: List[Any]) -> Any:
+    return rows if numpy is None else numpy.array(rows, dtype=float)
+
+
+def joint_names(model: Any) -> List[str]:
+    return [ffi.string(model.joints[j].name).decode() for j in range(model.n_joints)]
+
+
+GR001 = lib.grobo_gr001_model
+
+
+class Posture(Mapping[str, float]):
+    """Angles in radians by joint name; joints that it does not set are not in it."""
+
+    def __init__(self, struct: Any, model: Any = None) -> None:
+        self._struct = struct
+        self._names = joint_names(model or GR001)
+
+    @property
+    def time(self) -> float:
+        """Seconds to reach it; 0: the default time."""
+        return int(self._struct.time_us) / 1e6
+
+    @property
+    def degrees(self) -> Dict[str, float]:
+        return {name: math.degrees(angle) for name, angle in self.items()}
+
+    @property
+    def angles(self) -> Any:
+        """By joint order; NaN where it is not set."""
+        return _array(
+            [
+                self._struct.angle_rad[j] if self._struct.set >> j & 1 else math.nan
+                for j in range(self._struct.n_joints)
+            ]
+        )
+
+    def __getitem__(self, name: str) -> float:
+        joint = self._names.index(name) if name in self._names else -1
+        if joint < 0 or not self._struct.set >> joint & 1:
+            raise KeyError(name)
+        return float(self._struct.angle_rad[joint])
+
+    def __iter__(self) -> Iterator[str]:
+        return (n for j, n in enumerate(self._names) if self._struct.set >> j & 1)
+
+    def __len__(self) -> int:
+        return bin(self._struct.set).count("1")
+
+    def __repr__(self) -> str:
+        return f"Posture({ {n: round(a, 4) for n, a in self.items()} }, time={self.time})"
+
+
+def posture(
+    angles: Union[Mapping[str, float], Sequence[float]], time: Optional[float], model: Any
+) -> Any:
+    """A C posture of names and angles, or of angles in joint order (NaN: not set)."""
+    made = ffi.new("grobo_posture *")
+    check(lib.grobo_posture_init(made, model.n_joints), "posture")
+    made.time_us = us(time) if time is not None else 0
+    names = joint_names(model)
+    if not isinstance(angles, Mapping):
+        if len(angles) > len(names):
+            raise ValueError(f"{len(angles)} angles for {len(names)} joints")
+        angles = {n: a for n, a in zip(names, angles) if not math.isnan(a)}
+    for name, angle in angles.items():
+        if name not in names:
+            raise error(lib.GROBO_ERR_NOTFOUND, "joint", name)
+        result = lib.grobo_posture_set_rad(made, names.index(name), angle)
+        if result < 0:
+            raise error(result, "posture", name)
+    return made
+
+
+class Motion:
+    """A motion in memory: postures, each reached some time after the one before."""
+
+    def __init__(self, kind: str = "postures", joints: int = 20, _owned: Any = None) -> None:
+        if _owned is None:
+            made = ffi.new("grobo_motion **")
+            check(lib.grobo_motion_new(made, KINDS.index(kind), joints, ffi.NULL), "motion")
+            _owned = made[0]
+        self._c = ffi.gc(_owned, lib.grobo_motion_free)
+
+    @classmethod
+    def load(cls, path: Union[str, "os.PathLike[str]"]) -> "Motion":
+        """Reads .m, .pseq, .mseq, .yaml or .seq; for anything wrong names the line."""
+        made = ffi.new("grobo_motion **")
+        problems = ffi.new("grobo_diagnostics **")
+        check(lib.grobo_diagnostics_new(problems, ffi.NULL), "motion")
+        found = ffi.gc(problems[0], lib.grobo_diagnostics_free)
+        options = new("grobo_read_options")
+        options.model = ffi.addressof(GR001)
+        name = os.fspath(path)
+        result = lib.grobo_motion_read_file(os.fsencode(name), options, found, made)
+        if result < 0:
+            raise error(result, name, reason=_first_error(found))
+        return cls(_owned=made[0])
+
+    @classmethod
+    def of(
+        cls, times: Sequence[float], angles: Sequence[Sequence[float]], kind: str = "postures"
+    ) -> "Motion":
+        """A motion of arrays: `times` in seconds from the beginning, not falling, and for each a
+        row of angles in radians by joint order (NaN: this posture does not set the joint)."""
+        if len(times) != len(angles):
+            raise ValueError(f"{len(times)} times for {len(angles)} postures")
+        motion = cls(kind, max((len(row) for row in angles), default=0))
+        before = 0.0
+        for time, row in zip(times, angles):
+            motion.append(row, float(time) - before)
+            before = float(time)
+        return motion
+
+    def append(self, angles: Union[Mapping[str, float], Sequence[float]], time: float) -> None:
+        """Appends a posture that is reached `time` seconds after the last one."""
+        check(lib.grobo_motion_append(self._c, posture(angles, time, GR001)), "append")
+
+    def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
+        """Writes the file whose format its extension names."""
+        options = new("grobo_write_options")
+        options.model = ffi.addressof(GR001)
+        name = os.fspath(path)
+        result = lib.grobo_motion_save(
+            self._c, lib.grobo_files_os(), os.fsencode(name), options, ffi.NULL
+        )
+        check(result, name)
+
+    @property
+    def kind(self) -> str:
+        return KINDS[lib.grobo_motion_get_kind(self._c)]
+
+    @property
+    def length(self) -> float:
+        """Seconds until the last posture is reached."""
+        return int(lib.grobo_motion_length_us(self._c, -1)) / 1e6
+
+    @property
+    def times(self) -> Any:
+        """When each posture is reached, in seconds from the beginning."""
+        reached, now = [], 0.0
+        for one in self:
+            now += one.time
+            reached.append(now)
+        return _array(reached)
+
+    @property
+    def angles(self) -> Any:
+        """Radians, a row for each posture and a column for each joint; NaN where it is not set."""
+        return _array([list(one.angles) for one in self])
+
+    def mirror(self) -> "Motion":
+        """A copy with left and right exchanged."""
+        copy = self.copy()
+        check(lib.grobo_motion_mirror(copy._c, ffi.addressof(GR001)), "mirror")
+        return copy
+
+    def reverse(self) -> "Motion":
+        """A copy that runs backwards."""
+        copy = self.copy()
+        check(lib.grobo_motion_reverse(copy._c), "reverse")
+        return copy
+
+    def crop(self, begin: float, end: float) -> "Motion":
+        """A copy of what lies between two times."""
+        copy = self.copy()
+        check(lib.grobo_motion_crop(copy._c, us(begin), us(end)), "crop")
+        return copy
+
+    def copy(self) -> "Motion":
+        made = ffi.new("grobo_motion **")
+        check(lib.grobo_motion_dup(self._c, made), "copy")
+        return Motion(_owned=made[0])
+
+    def __len__(self) -> int:
+        return int(lib.grobo_motion_size(self._c))
+
+    def __getitem__(self, n: int) -> Posture:
+        n += len(self) if n < 0 else 0
+        made = ffi.new("grobo_posture *")
+        if n < 0 or lib.grobo_motion_get(self._c, n, made) < 0:
+            raise IndexError(f"posture {n} of {len(self)}")
+        return Posture(made)
+
+    def __iter__(self) -> Iterator[Posture]:
+        return (self[n] for n in range(len(self)))
+
+    def __repr__(self) -> str:
+        return f"<Motion of {len(self)} {self.kind}, {self.length:g} s>"
+
+
+def _first_error(found: Any) -> Optional[str]:
+    problem = ffi.new("grobo_diagnostic *")
+    for i in range(lib.grobo_diagnostics_count(found)):
+        lib.grobo_diagnostics_get(found, i, problem)
+        if problem.severity == lib.GROBO_SEVERITY_ERROR:
+            text: str = ffi.string(problem.message).decode()
+            return f"line {problem.line}: {text}" if problem.line else text
+    return None

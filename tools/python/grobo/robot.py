@@ -1,0 +1,452 @@
+# SPDX-License-Identifier: MIT
+"""A robot, with verbs that return when they are done."""
+
+import atexit
+import enum
+import logging
+import math
+import os
+import threading
+import warnings
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import (
+    Any, Callable, Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Set, Type, Union,
+)
+
+from grobo import errors
+from grobo._lib import ffi, has, lib, new, quick, us
+from grobo.motion import Motion, Posture, joint_names, posture
+
+log = logging.getLogger("grobo")
+
+SLICE = 0.1  # seconds of one wait in C, so that Ctrl-C is heard
+Angles = Union[Mapping[str, float], Sequence[float]]
+
+
+class Torque(enum.IntEnum):
+    OFF = lib.GROBO_TORQUE_OFF
+    ON = lib.GROBO_TORQUE_ON
+    BRAKE = lib.GROBO_TORQUE_BRAKE
+
+
+class Exit(enum.IntEnum):
+    """What the servos do when the robot is closed."""
+
+    DEFAULT = lib.GROBO_EXIT_DEFAULT
+    OFF = lib.GROBO_EXIT_OFF
+    HOLD = lib.GROBO_EXIT_HOLD
+    SIT = lib.GROBO_EXIT_SIT
+
+
+@dataclass(frozen=True)
+class JointStatus:
+    """One joint as the library knows it; None: never read."""
+
+    name: str
+    angle: Optional[float]
+    age: Optional[float]
+    target: Optional[float]
+    torque: Optional[Torque]
+    temperature_c: Optional[int]
+    current_ma: Optional[int]
+    voltage_mv: Optional[int]
+
+    @property
+    def degrees(self) -> Optional[float]:
+        return None if self.angle is None else math.degrees(self.angle)
+
+
+@dataclass(frozen=True)
+class Status:
+    """The robot at one moment."""
+
+    connected: bool
+    moving: bool
+    playing: bool
+    latched: bool
+    trip: Optional[str]
+    joints: Mapping[str, JointStatus]
+
+
+class _Control:
+    """The C side, and what must live as long as it."""
+
+    def __init__(self, config: Any, keep: List[Any]) -> None:
+        made = ffi.new("grobo_control **")
+        errors.check(lib.grobo_control_new(config, made), "robot")
+        self.handle = made[0]
+        self.robot = lib.grobo_control_robot(self.handle)
+        self.keep = keep
+        self.process = os.getpid()
+        self.users = 0
+        self.closing = False
+        self.idle = threading.Condition()
+        _open.add(self)
+
+    @contextmanager
+    def use(self) -> Iterator[Any]:
+        """The handle, which is not freed meanwhile."""
+        with self.idle:
+            if self.process != os.getpid():
+                raise errors.error(lib.GROBO_ERR_STATE, "robot of a parent process")
+            if self.closing:
+                raise errors.error(lib.GROBO_ERR_CLOSED, "robot")
+            self.users += 1
+        try:
+            yield self.handle
+        finally:
+            with self.idle:
+                self.users -= 1
+                self.idle.notify_all()
+
+    def close(self) -> int:
+        with self.idle:
+            if self.closing or self.process != os.getpid():
+                return 0
+            self.closing = True
+            self.idle.wait_for(lambda: self.users == 0)
+        _open.discard(self)
+        result: int = lib.grobo_control_close_port(self.handle, 0)
+        lib.grobo_control_free(self.handle)
+        return result
+
+
+_open: Set[_Control] = set()
+
+
+@atexit.register
+def _close_all() -> None:
+    for control in list(_open):
+        control.close()
+
+
+class Joint:
+    """One joint of a robot: robot["R_ELBOW_P"]."""
+
+    def __init__(self, robot: "Robot", name: str) -> None:
+        self._robot = robot
+        self.name = name
+
+    @property
+    def status(self) -> JointStatus:
+        return self._robot.status().joints[self.name]
+
+    @property
+    def angle(self) -> float:
+        """Read now, in radians."""
+        return self._robot.angles([self.name])[self.name]
+
+    @property
+    def deg(self) -> float:
+        return math.degrees(self.angle)
+
+    def move(
+        self, angle: Optional[float] = None, *, deg: Optional[float] = None,
+        time: Optional[float] = None
+    ) -> None:
+        if (angle is None) == (deg is None):
+            raise TypeError("move() takes an angle, or deg=")
+        self._robot.move(
+            {self.name: angle if angle is not None else math.radians(deg or 0.0)}, time=time
+        )
+
+    def torque(self, state: Union[bool, Torque]) -> None:
+        self._robot.torque(state, [self.name])
+
+
+class Robot:
+    """A robot that is connected; close it, or use it in a `with` statement.
+
+    `device`: a serial port, "tcp:HOST:PORT", "sim" (a simulator in this process), or "auto", the
+    first port on which a robot answers. `exit` says what the servos do when it is closed; None
+    leaves them as they are. `owner_timeout`: after so many seconds without a call of this program
+    the exit policy is carried out; 0: never. `events`: how many events are kept, see grobo.aio.
+    """
+
+    def __init__(
+        self,
+        device: str = "auto",
+        *,
+        exit: Optional[Exit] = Exit.DEFAULT,
+        timeout: float = 5.0,
+        owner_timeout: float = 0.0,
+        reconnect: bool = False,
+        events: int = 0,
+    ) -> None:
+        config = new("grobo_control_config")
+        session = config.session
+        if ffi.typeof(session).kind == "pointer":
+            session = config.session = new("grobo_session_config")
+        robot_config = new("grobo_robot_config")
+        name = ffi.new("char[]", os.fsencode(device))
+        session.device = name
+        session.reconnect = reconnect
+        session.robot = robot_config
+        robot_config.on_exit = exit or Exit.DEFAULT
+        config.skip_exit = exit is None
+        config.timeout_us = us(timeout)
+        config.owner_timeout_us = us(owner_timeout)
+        if events:
+            if not has("grobo_control_next_event"):
+                raise errors.error(lib.GROBO_ERR_UNSUPPORTED, "events")
+            config.events = events
+        self.device = device
+        self._control = _Control(config, [name, robot_config, session])
+        try:
+            with self._control.use() as control:
+                self.joints = joint_names(lib.grobo_robot_driver(self._control.robot).model)
+                self._model = lib.grobo_robot_driver(self._control.robot).model
+                errors.check(lib.grobo_control_start_thread(control), "control thread")
+                errors.check(lib.grobo_control_connect(control, us(timeout)), device)
+        except BaseException:
+            self._control.close()
+            raise
+        log.info("%s: connected, %d joints", device, len(self.joints))
+
+    # ---- leaving ---------------------------------------------------------------------------
+
+    def close(self) -> None:
+        """Carries out the exit policy and closes. Any thread; a second time nothing happens."""
+        was_open = not self._control.closing
+        result = self._control.close()
+        if was_open:
+            log.info("%s: closed", self.device)
+        errors.check(result, f"{self.device}: exit policy")
+
+    def __enter__(self) -> "Robot":
+        return self
+
+    def __exit__(
+        self,
+        kind: Optional[Type[BaseException]],
+        value: Optional[BaseException],
+        trace: Optional[TracebackType],
+    ) -> None:
+        try:
+            self.close()
+        except errors.Error:
+            if kind is None:
+                raise
+            log.exception("%s: the exit policy failed", self.device)
+
+    def __del__(self) -> None:
+        control = getattr(self, "_control", None)
+        if control is not None and not control.closing and control.process == os.getpid():
+            warnings.warn(f"robot {self.device} was not closed", ResourceWarning, source=self)
+            # Freed at exit: this may be any thread, which must not wait here.
+            lib.grobo_control_post_exit(control.handle, Exit.DEFAULT)
+
+    # ---- asking ----------------------------------------------------------------------------
+
+    def status(self) -> Status:
+        """What is known, without asking the robot: never waits."""
+        info = ffi.new("grobo_joint_info *")
+        trip = ffi.new("grobo_trip_info *")
+        joints: Dict[str, JointStatus] = {}
+        with self._control.use() as control:
+            robot = self._control.robot
+            for j, name in enumerate(self.joints):
+                errors.check(quick("grobo_robot_joint", robot, j, info), name)
+                joints[name] = _joint_status(name, info)
+            quick("grobo_robot_tripped", robot, trip)
+            return Status(
+                connected=bool(quick("grobo_control_is_connected", control) & 1),
+                moving=bool(quick("grobo_robot_moving", robot) & 1),
+                playing=bool(quick("grobo_robot_is_playing", robot) & 1),
+                latched=bool(quick("grobo_control_is_latched", control) & 1),
+                trip=_trip_name(trip),
+                joints=joints,
+            )
+
+    def angles(self, joints: Optional[Iterable[str]] = None) -> Dict[str, float]:
+        """Reads joints now, in radians; those that stay silent are missing."""
+        if joints is not None:
+            angle = ffi.new("double *")
+            read = {}
+            for name in joints:
+                with self._control.use() as control:
+                    number = self._number(name)
+                    result = lib.grobo_control_read_angle(control, number, angle, 0)
+                    self._check(result, "read", name)
+                read[name] = float(angle[0])
+            return read
+        made = ffi.new("grobo_posture *")
+        with self._control.use() as control:
+            self._check(lib.grobo_control_read_posture(control, made, 0), "read")
+        return dict(Posture(made, self._model))
+
+    def __getitem__(self, name: str) -> Joint:
+        self._number(name)
+        return Joint(self, name)
+
+    # ---- moving ----------------------------------------------------------------------------
+
+    def init(self, time: Optional[float] = None) -> None:
+        """Moves to the initial posture."""
+        target = ffi.new("grobo_posture *")
+        lib.grobo_posture_init_pose(target, self._model)
+        target.time_us = us(time) if time is not None else 0
+        self._interruptible(lambda: self._wait_job(self._move(target), "init"))
+
+    def move(self, angles: Angles, *, time: Optional[float] = None) -> None:
+        """Moves joints: angles in radians by name, or in joint order; returns when they are there.
+
+        `time`: seconds; without one as fast as the robot's default allows.
+        """
+        target = posture(angles, time, self._model)
+        self._interruptible(lambda: self._wait_job(self._move(target), "move"))
+
+    def _move(self, target: Any) -> int:
+        with self._control.use():
+            return self._check(lib.grobo_robot_move(self._control.robot, target), "move")
+
+    def play(
+        self,
+        motion: Union[Motion, str, "os.PathLike[str]"],
+        *,
+        speed: float = 1.0,
+        repeat: int = 1,
+        reverse: bool = False,
+        mirror: bool = False,
+        rate: Optional[int] = None,
+    ) -> None:
+        """Plays a motion or a motion file; returns when it has ended, raises what stopped it.
+
+        `rate`: frames a second; without one a frame for each posture, and the servos fill the time.
+        """
+        if not isinstance(motion, Motion):
+            motion = Motion.load(Path(motion))
+        options = new("grobo_play_options")
+        options.speed_pct = round(speed * 100)
+        options.mirror = mirror
+        if rate is not None:
+            options.mode = lib.GROBO_PLAY_RATE
+            options.rate_hz = rate
+        with self._control.use() as control:
+            self._check(lib.grobo_control_set_motion(control, motion._c), "play")
+            lib.grobo_control_set_motion_count(control, repeat)
+            lib.grobo_control_set_reverse(control, reverse)
+        self._interruptible(lambda: self._play(options))
+
+    def _play(self, options: Any) -> None:
+        with self._control.use() as control:
+            self._check(lib.grobo_control_play_motion(control, options), "play")
+        while True:
+            with self._control.use() as control:
+                result = lib.grobo_control_wait(control, us(SLICE))
+                if result == lib.GROBO_ERR_TIMEOUT and lib.grobo_control_is_moving(control) == 1:
+                    continue
+                if result == lib.GROBO_ERR_TIMEOUT:
+                    result = lib.grobo_control_wait(control, 0)
+                self._check(result, "play")
+                return
+
+    def torque(
+        self, state: Union[bool, Torque], joints: Optional[Iterable[str]] = None
+    ) -> None:
+        """Switches the torque of joints, all without a list, and reads it back."""
+        mask = (1 << len(self.joints)) - 1
+        if joints is not None:
+            mask = sum(1 << self._number(name) for name in set(joints))
+        with self._control.use() as control:
+            result = lib.grobo_control_set_servo_states(control, mask, int(state), 0)
+            self._check(result, "torque")
+
+    # ---- stopping --------------------------------------------------------------------------
+
+    def stop(self, at_once: bool = False) -> None:
+        """Ends what moves, smoothly; nothing happens where nothing moves. Any thread."""
+        with self._control.use() as control:
+            errors.check(lib.grobo_control_post_stop(control, at_once), "stop")
+
+    def estop(self) -> None:
+        """Emergency stop; the robot stays stopped until reset(). Any thread; never waits."""
+        with self._control.use() as control:
+            errors.check(lib.grobo_control_estop(control), "estop")
+        log.warning("%s: emergency stop", self.device)
+
+    def reset(self) -> None:
+        """Releases a safety stop."""
+        with self._control.use() as control:
+            lib.grobo_control_wait(control, 0)  # until the stop has been carried out
+            errors.check(lib.grobo_control_reset(control), "reset")
+
+    # ---- inside ----------------------------------------------------------------------------
+
+    def _number(self, name: str) -> int:
+        if name not in self.joints:
+            raise errors.error(lib.GROBO_ERR_NOTFOUND, "joint", name)
+        return self.joints.index(name)
+
+    def _interruptible(self, verb: Callable[[], None]) -> None:
+        """Ctrl-C stops what it has begun."""
+        try:
+            verb()
+        except KeyboardInterrupt:
+            self.stop()
+            raise
+
+    def _wait_job(self, job: int, what: str) -> None:
+        while True:
+            with self._control.use() as control:
+                result = lib.grobo_control_wait_job(control, job, us(SLICE))
+                if result == lib.GROBO_ERR_TIMEOUT:
+                    if lib.grobo_robot_is_pending(self._control.robot, job):
+                        continue
+                    result = lib.grobo_control_wait_job(control, job, us(SLICE))
+                self._check(result, what)
+                return
+
+    def _check(self, result: int, what: str, joint: Optional[str] = None) -> int:
+        """The result, or its exception with joint and value where the library names them."""
+        if result >= 0:
+            return result
+        value, reason = None, None
+        if result in (lib.GROBO_ERR_LIMIT, lib.GROBO_ERR_NAN):
+            at = ffi.new("double *")
+            number = lib.grobo_robot_fault(self._control.robot, at)
+            if number >= 0:
+                joint, value = self.joints[number], float(at[0])
+        elif result in (lib.GROBO_ERR_LATCHED, lib.GROBO_ERR_CANCELED):
+            trip = ffi.new("grobo_trip_info *")
+            lib.grobo_robot_tripped(self._control.robot, trip)
+            reason = _trip_name(trip)
+            if reason and trip.latched:
+                result = lib.GROBO_ERR_LATCHED  # what it has canceled is stopped as well
+            if trip.joint >= 0 and reason:
+                joint, value = self.joints[trip.joint], float(trip.value)
+        raise errors.error(result, what, joint, value, reason)
+
+
+def _trip_name(trip: Any) -> Optional[str]:
+    if trip.trip == lib.GROBO_TRIP_NONE:
+        return None
+    text: str = ffi.string(lib.grobo_trip_name(trip.trip)).decode()
+    return text
+
+
+def _joint_status(name: str, info: Any) -> JointStatus:
+    state = info.state
+
+    def known(bit: int, value: Any) -> Any:
+        return value if state.valid & bit else None
+
+    never = info.angle_age_us == 0x7FFFFFFFFFFFFFFF
+    return JointStatus(
+        name=name,
+        angle=None if never else state.angle_rad,
+        age=None if never else info.angle_age_us / 1e6,
+        target=info.target_rad if info.has_target else None,
+        torque=Torque(state.torque) if info.torque_known else None,
+        temperature_c=known(lib.GROBO_FIELD_TEMPERATURE, state.temperature_c),
+        current_ma=known(lib.GROBO_FIELD_CURRENT, state.current_ma),
+        voltage_mv=known(lib.GROBO_FIELD_VOLTAGE, state.voltage_mv),
+    )
+
+
+def connect(device: str = "auto", **options: Any) -> Robot:
+    """Opens a robot: see Robot."""
+    return Robot(device, **options)
