@@ -159,7 +159,7 @@ include tools/baremetal/baremetal.mk
 # ---- targets -------------------------------------------------------------------------------
 
 .PHONY: help all lib demo check lint lint-quick format test check-san check-tsan check-memcheck install uninstall
-.PHONY: clean tidy fuzz soak cov dist bench plots captures cross check-cross check-drivers
+.PHONY: clean tidy fuzz soak cov dist bench bench-peers bench-count plots captures cross check-cross check-drivers
 .PHONY: check-families check-ports check-long check-mutants check-map install-lib FORCE
 .PHONY: firmware size check-firmware
 
@@ -185,6 +185,7 @@ check: ## set up what is missing, build, lint, run every test
 	@$(MAKE) --no-print-directory lint
 	@echo 'left out: other machines, firmware and real drivers (make check-ports)'
 	@$(MAKE) --no-print-directory test
+	@$(MAKE) --no-print-directory bench-count
 
 lint: all ## check the rules of the house: sources, objects, headers, symbols
 	@tools/lint/run.sh --all $(BUILD)
@@ -277,9 +278,15 @@ check-firmware: $(GRCTL) ## these examples in QEMU, grctl or a simulated robot a
 	@GRCTL="$(call whole,$(GRCTL))" FIRMWARE="$(BARE_DIR)" BARE_PREFIX=$(BARE_PREFIX) \
 	    TEST_TIMEOUT_S=300 TEST_LOGS="$(BUILD)/logs/firmware" tests/run.sh tests/firmware/machines.sh
 
-bench: $(BENCHES) $(GRCTL) ## speed and punctuality; fails where a promise is not kept
-	@status=0; for program in $(BENCHES); do \
-	    GRCTL="$(call whole,$(GRCTL))" $$program || status=1; done; exit $$status
+bench: $(BENCHES) $(GRCTL) ## speed beside peers and floors, in build/bench.json too; below 4 minutes
+	@GRCTL="$(call whole,$(GRCTL))" CXX="$(CXX)" tests/bench/run.sh $(BUILD)
+
+bench-peers: ## bring libmodbus, rustypot, dynamixel-sdk, pyserial and yaml-cpp into build/peers
+	@tests/bench/peers.sh $(BUILD)/peers
+
+# Work whose instructions are counted is compiled as everybody does it.
+bench-count: $(BUILD)/tests/bench/bench_work ## instructions against tests/bench/instructions; UPDATE=1 keeps them
+	@CC="$(CC)" FLAGS="$(CFLAGS) $(SAN)" tests/bench/count.sh $(BUILD) $(if $(UPDATE),--update,--gate)
 
 plots: $(BUILD)/grctl ## draw motions/plots/*.svg again
 	@tools/plots.sh "$(call whole,$(BUILD)/grctl)"

@@ -1,17 +1,38 @@
 /* SPDX-License-Identifier: MIT */
-/* A minute of `grctl play` at 50 Hz on a pty: when frames arrive, against one grid of 20 ms. Ends
- * with 1 where they drift or scatter more than promised of an idle machine; on a busy one,
- * `chrt -f 50 make bench` measures the program instead of its neighbours. */
+/*
+ * Playing at 50 and 100 Hz on simulated servos behind a pty at 460800 bps, while another process keeps a core
+ * busy: how late frames leave, and the processor time of each, beside two bare loops that write as
+ * many bytes: clock_nanosleep() alone, and a timer of libevent.
+ */
+#include <fcntl.h>
 #include <math.h>
+#include <signal.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
-#include "tests/support/spy.h"
+#include <event2/event.h>
 
-enum { PERIOD_US = 20000, SECOND = 50, LIMIT_S = 90 };
+#include <grobo/loop.h>
+#include <grobo/session.h>
+#include <grobo/sim_server.h>
 
-static const double drift_allowed_us = 1000, median_allowed_us = 100;
+#include "tests/bench/bench.h"
+
+enum { SPAN_S = 5, LATE_MAX = 4096, POSE_BYTES = 108, BAUD_BPS = 460800 };
+
+static double late_us[LATE_MAX];
+static int n_late;
+static int64_t period_us;
+
+static void note_late(int64_t us)
+{
+    if (n_late < LATE_MAX) {
+        late_us[n_late++] = (double)us;
+    }
+}
 
 static int by_value(const void *a, const void *b)
 {
@@ -19,56 +40,259 @@ static int by_value(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static double quantile(const double *values, size_t n, double part)
+static void row(const char *what, const char *who, double value)
 {
-    static double sorted[SPY_FRAMES];
-    memcpy(sorted, values, n * sizeof *sorted);
-    qsort(sorted, n, sizeof *sorted, by_value);
-    return sorted[(size_t)(part * (double)(n - 1))];
+    char measure[96];
+
+    (void)snprintf(measure, sizeof measure, "%d Hz, a core busy: %s", (int)(1000000 / period_us),
+                   what);
+    bench_row("S7", measure, who, value);
 }
 
-/* How far each frame is from its place in the grid that begins with the first; 0: the middle. */
-static void deviations(const spy_frame *frames, size_t n, double *deviation_us)
+static void report(const char *who, double cpu_us, int frames)
 {
-    double middle;
-    for (size_t i = 0; i < n; i++) {
-        const double since_us = (double)(frames[i].at_us - frames[0].at_us);
-        deviation_us[i] = since_us - PERIOD_US * round(since_us / PERIOD_US);
+    qsort(late_us, (size_t)n_late, sizeof late_us[0], by_value);
+    row("lateness p50, us", who, n_late > 0 ? late_us[n_late / 2] : NAN);
+    row("lateness p99, us", who, n_late > 0 ? late_us[n_late * 99 / 100] : NAN);
+    row("CPU a frame, us", who, cpu_us / frames);
+    n_late = 0;
+}
+
+/* As many bytes as a pose has, which mean nothing to a servo. */
+static uint8_t filler[POSE_BYTES];
+
+static void write_filler(int fd)
+{
+    if (write(fd, filler, sizeof filler) < 0) {
+        perror("bench_play");
     }
-    middle = quantile(deviation_us, n, 0.5);
-    for (size_t i = 0; i < n; i++) {
-        deviation_us[i] -= middle;
+}
+
+static void sleep_loop(int fd)
+{
+    const int frames = (int)(SPAN_S * 1000000 / period_us);
+    const double begin_us = bench_cpu_us();
+    int64_t due_us = grobo_now_us();
+
+    for (int i = 0; i < frames; i++) {
+        due_us += period_us;
+        const struct timespec at = {due_us / 1000000, due_us % 1000000 * 1000};
+
+        (void)clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &at, NULL);
+        note_late(grobo_now_us() - due_us);
+        write_filler(fd);
+    }
+    report("floor clock_nanosleep", bench_cpu_us() - begin_us, frames);
+}
+
+static struct {
+    struct event_base *base;
+    struct event *timer;
+    int fd, left;
+    int64_t due_us;
+} bare;
+
+static void on_bare(evutil_socket_t fd, short what, void *ctx)
+{
+    (void)fd;
+    (void)what;
+    (void)ctx;
+    note_late(grobo_now_us() - bare.due_us);
+    write_filler(bare.fd);
+    bare.due_us += period_us;
+    if (--bare.left <= 0) {
+        (void)event_base_loopbreak(bare.base);
+        return;
+    }
+    int64_t span_us = bare.due_us - grobo_now_us();
+    const struct timeval span = {0, (int)(span_us > 0 ? span_us : 0)};
+    (void)event_add(bare.timer, &span);
+}
+
+static void libevent_loop(int fd)
+{
+    const int frames = (int)(SPAN_S * 1000000 / period_us);
+    const double begin_us = bench_cpu_us();
+
+    bare.base = grobo_loop_new();
+    bare.timer = event_new(bare.base, -1, 0, on_bare, NULL);
+    bare.fd = fd;
+    bare.left = frames;
+    bare.due_us = grobo_now_us() + period_us;
+    (void)event_add(bare.timer, &(const struct timeval){0, (int)period_us});
+    (void)event_base_dispatch(bare.base);
+    report("libevent", bench_cpu_us() - begin_us, frames);
+    event_free(bare.timer);
+    event_base_free(bare.base);
+}
+
+/* ---- ours ----------------------------------------------------------------------------------- */
+
+static int wave_sample(void *ctx, int64_t t_us, grobo_posture *posture)
+{
+    (void)ctx;
+    int r = grobo_posture_init(posture, 20);
+    double by_deg = (double)llabs(t_us % 4000000 - 2000000) / 200000.0;
+
+    for (int j = 0; j < 20; j++) {
+        double init_deg = grobo_deg_from_rad(grobo_gr001_model.joints[j].init_rad);
+
+        (void)grobo_posture_set_deg(posture, j, j == 12 ? init_deg - by_deg : init_deg + by_deg);
+    }
+    return r;
+}
+
+static int wave_key(void *ctx, size_t i, grobo_posture *posture, int64_t *at_us)
+{
+    *at_us = (int64_t)i * 1000000;
+    return wave_sample(ctx, *at_us, posture);
+}
+
+typedef struct playing {
+    struct event_base *base;
+    grobo_session *session;
+    double begin_us, cpu_us;
+    uint64_t frames, frames_before;
+    bool failed;
+} playing;
+
+static void on_line(grobo_session *session, grobo_session_event event, int error, void *ctx)
+{
+    playing *p = ctx;
+    const grobo_clip clip = {.key = wave_key,
+                             .sample = wave_sample,
+                             .length_us = (SPAN_S + 1) * INT64_C(1000000),
+                             .n_keys = SPAN_S + 2,
+                             .n_joints = 20};
+    const grobo_play_options options = {.mode = GROBO_PLAY_RATE,
+                                        .rate_hz = (uint16_t)(1000000 / period_us),
+                                        .unwatched = true};
+
+    (void)error;
+    if (event != GROBO_SESSION_EVENT_UP ||
+        grobo_robot_play(grobo_session_robot(session), &clip, &options) < 0) {
+        p->failed = true;
+        (void)event_base_loopbreak(p->base);
+    }
+}
+
+static void on_robot(void *ctx, const grobo_event *event)
+{
+    playing *p = ctx;
+    const grobo_robot *robot = grobo_session_robot(p->session);
+
+    if (event->kind != GROBO_EVENT_PLAY) {
+        return;
+    }
+    const uint64_t frames = grobo_robot_get_counters(robot)->motion_frames;
+
+    if (event->u.play.to == GROBO_SEQUENCER_PLAYING) {
+        p->begin_us = bench_cpu_us();
+        p->frames_before = frames;
+    } else if (event->u.play.from == GROBO_SEQUENCER_PLAYING) {
+        p->cpu_us = bench_cpu_us() - p->begin_us;
+        p->frames = frames - p->frames_before;
+        (void)event_base_loopbreak(p->base);
+    }
+}
+
+static bool session_loop(const char *device)
+{
+    const grobo_robot_config robot = {.sense_interval_us = GROBO_SENSE_NEVER};
+    playing p = {.base = grobo_loop_new()};
+    const grobo_session_config config = {.base = p.base,
+                                         .device = device,
+                                         .baud_bps = BAUD_BPS,
+                                         .driver = grobo_gr001_driver(GROBO_WIRING_BUS),
+                                         .robot = &robot,
+                                         .on_event = on_line,
+                                         .on_robot = on_robot,
+                                         .ctx = &p};
+    grobo_jitter jitter;
+
+    if (grobo_session_new(&config, &p.session) < 0 || grobo_session_open(p.session) < 0) {
+        return false;
+    }
+    (void)event_base_dispatch(p.base);
+    if (!p.failed && p.frames > 0) {
+        grobo_robot_jitter(grobo_session_robot(p.session), &jitter);
+        row("lateness p50, us", "grobo", (double)jitter.p50_us);
+        row("lateness p99, us", "grobo", (double)jitter.p99_us);
+        row("CPU a frame, us", "grobo", p.cpu_us / (double)p.frames);
+        row("frames skipped", "grobo",
+            (double)grobo_robot_get_counters(grobo_session_robot(p.session))->late_frames);
+    }
+    grobo_session_free(p.session);
+    event_base_free(p.base);
+    return !p.failed && p.frames > 0;
+}
+
+/* ---- the far end ---------------------------------------------------------------------------- */
+
+/* Serves a simulated robot until it is killed, and writes where. */
+static void serve(int fd)
+{
+    struct event_base *base = grobo_loop_new();
+    const grobo_sim_config sim = {.wiring = GROBO_WIRING_BUS, .baud_bps = BAUD_BPS};
+    const grobo_sim_server_config config = {.base = base, .sim = &sim};
+    grobo_sim_server *server = NULL;
+
+    if (grobo_sim_server_new(&config, &server, NULL) >= 0) {
+        const char *device = grobo_sim_server_device(server);
+
+        if (write(fd, device, strlen(device) + 1) > 0) {
+            (void)event_base_dispatch(base);
+        }
+    }
+    _exit(1);
+}
+
+static void keep_busy(void)
+{
+    for (;;) {
+        __asm__ volatile("");
     }
 }
 
 int main(void)
 {
-    /* Five seconds made sixty. The posture of the torque comes first, then the motion. */
-    const char *const arguments[] = {
-        "-q", "--json", "play", "--rate=50", "--speed=8", "motions/greet.pseq", NULL};
-    static double deviation_us[SPY_FRAMES], size_us[SPY_FRAMES];
-    double drift_us, median_us;
-    size_t n;
-    spy s;
-    int status = spy_open(&s, NULL) ? spy_run(&s, arguments, LIMIT_S) : -1;
-    if (status != 0 || s.n_poses < 60 * SECOND) {
-        fprintf(stderr, "bench_play: grctl ended with %d after %zu frames\n", status, s.n_poses);
-        spy_close(&s);
+    char device[128] = "";
+    int ends[2];
+
+    if (pipe(ends) != 0) {
         return 1;
     }
-    n = s.n_poses - 1;
-    deviations(s.poses + 1, n, deviation_us);
-    for (size_t i = 0; i < n; i++) {
-        size_us[i] = fabs(deviation_us[i]);
+    pid_t server = fork();
+
+    if (server == 0) {
+        serve(ends[1]);
     }
-    drift_us =
-        quantile(deviation_us + n - SECOND, SECOND, 0.5) - quantile(deviation_us, SECOND, 0.5);
-    median_us = quantile(size_us, n, 0.5);
-    printf("%zu frames in %.2f s: drift %.0f us (promised below %.0f), off their places by %.0f us "
-           "in the median (%.0f), %.0f us p99, %.0f us at most\n",
-           n, (double)(s.poses[n].at_us - s.poses[1].at_us) / 1e6, drift_us, drift_allowed_us,
-           median_us, median_allowed_us, quantile(size_us, n, 0.99), quantile(size_us, n, 1));
-    printf("the command's own account: %s", strstr(s.out, "{\"done\""));
-    spy_close(&s);
-    return fabs(drift_us) < drift_allowed_us && median_us < median_allowed_us ? 0 : 1;
+    (void)close(ends[1]);
+    if (read(ends[0], device, sizeof device - 1) <= 0) {
+        fputs("bench_play: no simulated robot\n", stderr);
+        return 1;
+    }
+    pid_t busy = fork();
+
+    if (busy == 0) {
+        keep_busy();
+    }
+    bool good = true;
+
+    for (period_us = 20000; period_us >= 10000; period_us -= 10000) {
+        int fd = open(device, O_RDWR | O_NOCTTY | O_NONBLOCK);
+
+        sleep_loop(fd);
+        libevent_loop(fd);
+        (void)close(fd);
+        good = session_loop(device) && good;
+    }
+    (void)kill(busy, SIGKILL);
+    (void)kill(server, SIGKILL);
+    (void)waitpid(busy, NULL, 0);
+    (void)waitpid(server, NULL, 0);
+    if (!good) {
+        fputs("bench_play: it does not play\n", stderr);
+    }
+    return good ? 0 : 1;
 }

@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: MIT */
+/* Memory of a robot engine, of a session on a port, of a simulated robot. */
+#include <event2/event.h>
+
+#include <grobo/loop.h>
+#include <grobo/session.h>
+#include <grobo/sim_server.h>
+#include <grobo/static.h>
+
+#include "tests/bench/bench.h"
+#include "tests/support/counted_mem.h"
+
+static const double KIB = 1024;
+
+int main(void)
+{
+    struct event_base *base = grobo_loop_new();
+    counted_mem served = {0}, used = {0};
+    const grobo_mem served_mem = counted_mem_of(&served), used_mem = counted_mem_of(&used);
+    const grobo_sim_server_config far_end = {.base = base, .mem = &served_mem};
+    grobo_sim_server *server = NULL;
+    grobo_session *session = NULL;
+
+    if (base == NULL || grobo_sim_server_new(&far_end, &server, NULL) < 0) {
+        fputs("bench_memory: no simulated robot behind a pseudo-terminal\n", stderr);
+        return 1;
+    }
+    const grobo_session_config config = {
+        .base = base, .device = grobo_sim_server_device(server), .mem = &used_mem};
+
+    if (grobo_session_new(&config, &session) < 0 || grobo_session_open(session) < 0) {
+        fputs("bench_memory: no session\n", stderr);
+        return 1;
+    }
+    bench_row("S8", "a robot engine, KiB", "grobo", (double)sizeof(grobo_robot) / KIB);
+    bench_row("S8", "a pty session, KiB", "grobo", (double)used.bytes / KIB);
+    bench_row("S8", "a simulated robot, KiB", "grobo", (double)sizeof(grobo_sim) / KIB);
+    bench_row("S8", "a simulated robot behind a pty, KiB", "grobo", (double)served.bytes / KIB);
+    grobo_session_free(session);
+    grobo_sim_server_free(server);
+    event_base_free(base);
+    return 0;
+}

@@ -1,0 +1,373 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Pieces of work that are the same in each run, without a clock, a line or another process: their
+ * instructions are counted (tests/bench/count.sh), and gated by tests/bench/instructions.
+ *
+ * usage: bench_work PIECE N   does the piece N times, prints nanoseconds of processor time of each
+ *        bench_work           prints rows of all pieces
+ */
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <grobo/board.h>
+#include <grobo/body_motion.h>
+#include <grobo/motion_io.h>
+#include <grobo/rs30x.h>
+#include <grobo/sim.h>
+#include <grobo/static.h>
+
+#include "tests/bench/bench.h"
+
+#define SECOND_US 1000000
+
+/* ---- the codec: a pose of 20 joints ------------------------------------------------------- */
+
+static grobo_target target;
+static grobo_exchange pose;
+
+static void prepare_codec(void)
+{
+    const grobo_driver *driver = grobo_gr001_driver(GROBO_WIRING_BOARD);
+
+    (void)grobo_posture_init(&target.posture, driver->model->n_joints);
+    for (int j = 0; j < driver->model->n_joints; j++) {
+        (void)grobo_posture_set_rad(&target.posture, j, driver->model->joints[j].init_rad);
+        target.joint_time_us[j] = 20000;
+    }
+    (void)driver->posture(driver, NULL, &target, 0, &pose);
+}
+
+static void goals(long n)
+{
+    grobo_rs30x_goal goal[20];
+
+    for (int j = 0; j < 20; j++) {
+        goal[j] = (grobo_rs30x_goal){.id = (uint8_t)(j + 1), .pos_ddeg = (int16_t)j, .time_cs = 2};
+    }
+    for (; n > 0; n--) {
+        pose.frame_bytes = (uint16_t)grobo_frame_goals(&grobo_board_protocol, goal, 20, pose.frame,
+                                                       sizeof pose.frame);
+    }
+}
+
+/* The same from angles, as the engine has it done. */
+static void build(long n)
+{
+    const grobo_driver *driver = grobo_gr001_driver(GROBO_WIRING_BOARD);
+
+    for (; n > 0; n--) {
+        pose.frame_bytes = 0;
+        (void)driver->posture(driver, NULL, &target, 0, &pose);
+    }
+}
+
+static void parse(long n)
+{
+    grobo_rs30x_parser parser;
+    grobo_rs30x_packet packet;
+
+    grobo_rs30x_parser_init(&parser, GROBO_ACCEPT_COMMANDS);
+    for (; n > 0; n--) {
+        /* Without what the board puts around it: S, the size. */
+        (void)grobo_rs30x_parser_feed(&parser, pose.frame + 2, pose.frame_bytes - 2u);
+        (void)grobo_rs30x_parser_next(&parser, &packet);
+    }
+}
+
+/* ---- the engine and a simulated robot, in virtual time ------------------------------------ */
+
+static struct {
+    grobo_robot robot;
+    grobo_sim sim;
+    int64_t now_us;
+    double to_deg;
+} rig;
+
+static int64_t rig_clock(void *ctx)
+{
+    (void)ctx;
+    return rig.now_us;
+}
+
+static void pump(void)
+{
+    uint8_t bytes[GROBO_FRAME_MAX_BYTES];
+    size_t got;
+    int size;
+
+    while ((got = grobo_sim_tx(&rig.sim, bytes, sizeof bytes, rig.now_us)) > 0) {
+        grobo_robot_rx(&rig.robot, bytes, got, rig.now_us);
+    }
+    grobo_robot_step(&rig.robot, rig.now_us);
+    while ((size = grobo_robot_tx(&rig.robot, bytes, sizeof bytes, rig.now_us)) > 0) {
+        (void)grobo_sim_rx(&rig.sim, bytes, (size_t)size, rig.now_us);
+    }
+}
+
+static void run_us(int64_t span_us)
+{
+    int64_t end_us = rig.now_us + span_us;
+
+    pump();
+    while (rig.now_us < end_us) {
+        int64_t robot_us = grobo_robot_deadline(&rig.robot, rig.now_us);
+        int64_t sim_us = grobo_sim_packet_deadline(&rig.sim);
+        int64_t at_us = robot_us < sim_us ? robot_us : sim_us;
+
+        at_us = at_us < end_us ? at_us : end_us;
+        rig.now_us = at_us > rig.now_us ? at_us : rig.now_us;
+        pump();
+    }
+}
+
+static void start(int64_t sense_interval_us)
+{
+    const grobo_robot_config config = {.sense_interval_us = sense_interval_us};
+    const grobo_sim_config sim = {0};
+    const grobo_robot_host host = {.clock = rig_clock};
+
+    rig.now_us = SECOND_US;
+    (void)grobo_sim_init(&rig.sim, &sim, rig.now_us);
+    (void)grobo_robot_init(&rig.robot, grobo_gr001_driver(GROBO_WIRING_BOARD), NULL, &config,
+                           rig.now_us);
+    grobo_robot_set_host(&rig.robot, &host);
+    grobo_robot_link_up(&rig.robot, rig.now_us);
+    run_us(SECOND_US);
+}
+
+static void prepare_sense(void)
+{
+    start(SECOND_US);
+}
+
+static void prepare_wire(void)
+{
+    start(1);
+}
+
+static void seconds(long n)
+{
+    run_us(n * SECOND_US);
+}
+
+/* A wave of the elbows, ten minutes long. */
+static int wave_sample(void *ctx, int64_t t_us, grobo_posture *posture)
+{
+    (void)ctx;
+    int r = grobo_posture_init(posture, 20);
+
+    for (int j = 0; j < 20; j++) {
+        double init_deg = grobo_deg_from_rad(grobo_gr001_model.joints[j].init_rad);
+        double by_deg = (double)llabs(t_us % 4000000 - 2000000) / 200000.0;
+
+        (void)grobo_posture_set_deg(posture, j, j == 12 ? init_deg - by_deg : init_deg + by_deg);
+    }
+    return r;
+}
+
+static int wave_key(void *ctx, size_t i, grobo_posture *posture, int64_t *at_us)
+{
+    *at_us = (int64_t)i * SECOND_US;
+    return wave_sample(ctx, *at_us, posture);
+}
+
+static void prepare_play(void)
+{
+    const grobo_clip clip = {.key = wave_key,
+                             .sample = wave_sample,
+                             .length_us = INT64_C(3600) * SECOND_US,
+                             .n_keys = 3601,
+                             .n_joints = 20};
+    const grobo_play_options options = {
+        .mode = GROBO_PLAY_RATE, .rate_hz = 50, .unwatched = true};
+
+    start(SECOND_US);
+    (void)grobo_robot_play(&rig.robot, &clip, &options);
+    run_us(5 * SECOND_US);
+    if (grobo_robot_play_state(&rig.robot) != GROBO_SEQUENCER_PLAYING) {
+        fputs("bench_work: it does not play\n", stderr);
+        exit(1);
+    }
+}
+
+/* Simulated robots alone, each told a pose 30 times a second. */
+static void prepare_poses(void)
+{
+    const grobo_sim_config config = {0};
+
+    prepare_codec();
+    rig.now_us = SECOND_US;
+    (void)grobo_sim_init(&rig.sim, &config, rig.now_us);
+}
+
+static void poses(long n)
+{
+    uint8_t bytes[64];
+
+    for (long i = 0; i < n * 30; i++) {
+        (void)grobo_sim_rx(&rig.sim, pose.frame, pose.frame_bytes, rig.now_us);
+        rig.now_us += SECOND_US / 30;
+        while (grobo_sim_tx(&rig.sim, bytes, sizeof bytes, rig.now_us) > 0) {
+        }
+    }
+}
+
+/* ---- files and the whole body -------------------------------------------------------------- */
+
+static struct {
+    char data[4 << 20];
+    size_t size;
+} text;
+
+static int take(void *ctx, const void *data, size_t size)
+{
+    (void)ctx;
+    if (size > sizeof text.data - text.size) {
+        return GROBO_ERR_SPACE;
+    }
+    memcpy(text.data + text.size, data, size);
+    text.size += size;
+    return 0;
+}
+
+/* A motion of 1000 postures in memory. */
+static void prepare_file(grobo_motion_kind kind)
+{
+    grobo_motion *motion = NULL;
+    grobo_posture posture;
+
+    (void)grobo_motion_new(&motion, kind, 20, NULL);
+    if (kind == GROBO_MOTION_FRAMES) {
+        (void)grobo_motion_set_frame_rate(motion, 100);
+    }
+    for (int i = 0; i < 1000; i++) {
+        (void)wave_sample(NULL, i * 10000, &posture);
+        posture.time_us = 20000;
+        (void)grobo_motion_append(motion, &posture);
+    }
+    text.size = 0;
+    (void)grobo_motion_write(motion, GROBO_FORMAT_AUTO, NULL, &(grobo_sink){take, NULL}, NULL);
+    grobo_motion_free(motion);
+}
+
+static void prepare_yaml(void)
+{
+    prepare_file(GROBO_MOTION_FRAMES);
+}
+
+static void prepare_pseq(void)
+{
+    prepare_file(GROBO_MOTION_KEYS);
+}
+
+static void prepare_m(void)
+{
+    prepare_file(GROBO_MOTION_POSTURES);
+}
+
+static void read_file(long n)
+{
+    for (; n > 0; n--) {
+        grobo_motion *motion = NULL;
+
+        (void)grobo_motion_read_memory(text.data, text.size, NULL, NULL, &motion);
+        grobo_motion_free(motion);
+    }
+}
+
+static grobo_motion *step;
+
+static void prepare_walk(void)
+{
+    if (grobo_motion_read_file("motions/step.pseq", NULL, NULL, &step) < 0) {
+        fputs("bench_work: cannot read motions/step.pseq; run it in the top folder\n", stderr);
+        exit(1);
+    }
+}
+
+static void walk(long n)
+{
+    const grobo_body_options options = {.balance = GROBO_BODY_BALANCE_ON, .rate_hz = 100};
+
+    for (; n > 0; n--) {
+        grobo_body *body = NULL;
+        double q_rad[GROBO_JOINTS_MAX];
+
+        if (grobo_body_new(&body, &grobo_gr001_body, step, &options, NULL) >= 0) {
+            for (int i = 0; i < grobo_body_frame_count(body); i++) {
+                (void)grobo_body_frame(body, i, q_rad, NULL);
+            }
+            grobo_body_free(body);
+        }
+    }
+}
+
+/* ---- all of it ------------------------------------------------------------------------------ */
+
+static const struct piece {
+    const char *name, *scenario, *measure;
+    void (*prepare)(void);
+    void (*work)(long n);
+    long n;
+    double seconds; /* > 0: rows tell seconds of virtual time in a second, else ns a piece */
+} pieces[] = {
+    {"goals", "S10", "build a pose frame, ns", prepare_codec, goals, 200000, 0},
+    {"build", "S10", "build a pose frame from angles, ns", prepare_codec, build, 200000, 0},
+    {"parse", "S10", "parse a pose frame, ns", prepare_codec, parse, 200000, 0},
+    {"sense", "S11", "1 Hz sensing, s simulated a s", prepare_sense, seconds, 400, 1},
+    {"play", "S11", "50 Hz play, s simulated a s", prepare_play, seconds, 200, 1},
+    {"wire", "S11", "wire-rate sensing, s simulated a s", prepare_wire, seconds, 200, 1},
+    {"poses", "S12", "simulated robots a core at 30 Hz", prepare_poses, poses, 100, 1},
+    {"yaml", "S9", "read 1000 frames of yaml, ns", prepare_yaml, read_file, 20, 0},
+    {"pseq", "S9", "read 1000 keys of pseq, ns", prepare_pseq, read_file, 20, 0},
+    {"m", "S9", "read 1000 postures of m, ns", prepare_m, read_file, 50, 0},
+    {"walk", "S15", "solve step.pseq with balancer at 100 Hz, ns", prepare_walk, walk, 20, 0},
+};
+
+enum { PIECES = sizeof pieces / sizeof pieces[0], ROUNDS = 5 };
+
+/* The one function whose instructions are counted, with what it calls. */
+__attribute__((noinline)) void bench_counted(const struct piece *piece, long n);
+
+void bench_counted(const struct piece *piece, long n)
+{
+    piece->work(n);
+}
+
+/* Least of several rounds. */
+static double ns_each(const struct piece *piece, long n)
+{
+    double least_us = 0;
+
+    for (int round = 0; round < ROUNDS; round++) {
+        piece->prepare();
+        const double begin_us = bench_cpu_us();
+        bench_counted(piece, n);
+        const double took_us = bench_cpu_us() - begin_us;
+
+        least_us = round == 0 || took_us < least_us ? took_us : least_us;
+    }
+    return least_us * 1000 / (double)n;
+}
+
+int main(int argc, char **argv)
+{
+    for (size_t i = 0; i < PIECES; i++) {
+        const struct piece *piece = &pieces[i];
+
+        if (argc == 1) {
+            double ns = ns_each(piece, piece->n);
+
+            bench_row(piece->scenario, piece->measure, "grobo",
+                      piece->seconds > 0 ? piece->seconds * 1e9 / ns : ns);
+        } else if (argc == 3 && strcmp(argv[1], piece->name) == 0) {
+            long n = atol(argv[2]);
+
+            piece->prepare();
+            bench_counted(piece, n);
+            return 0;
+        }
+    }
+    return argc == 1 ? 0 : 2;
+}

@@ -1,0 +1,57 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Counts the instructions of the pieces of work of bench_work, by callgrind.
+#
+# usage: tests/bench/count.sh BUILD [--gate | --update]
+#   prints a line a piece: its name, instructions of one. --gate fails where one is more than 3 %
+#   off tests/bench/instructions, either way: a gain is to be kept there too. --update writes them.
+#   The figures are of one compiler and one processor, named there; elsewhere nothing is compared.
+set -u
+LC_ALL=C
+export LC_ALL
+
+build=$1
+do=${2:-}
+kept=tests/bench/instructions
+compiler="$(${CC:-gcc} --version 2>/dev/null | head -n 1), $(uname -m)"
+
+if ! command -v valgrind >/dev/null; then
+    echo 'count: no valgrind here; nothing is counted' >&2
+    exit 0
+fi
+if [ "${FLAGS:--O2 -g }" != '-O2 -g ' ]; then
+    echo "count: skipped: the figures are of -O2 -g, not of $FLAGS" >&2
+    exit 0
+fi
+if [ "$do" = --gate ] && [ "# $compiler" != "$(sed -n 2p $kept)" ]; then
+    echo "count: skipped: the figures are of another compiler: $(sed -n '2s/^# //p' $kept)" >&2
+    exit 0
+fi
+
+# PIECE SCENARIO N FIGURE
+figures=$(grep -v '^#' $kept | while read -r piece scenario n figure; do
+    total=$(valgrind --tool=callgrind --callgrind-out-file=/dev/null \
+        --toggle-collect=bench_counted "$build/tests/bench/bench_work" "$piece" "$n" 2>&1 |
+        awk '/Collected/ { print $4 }')
+    echo "$piece $scenario $n $((${total:-0} / n)) $figure"
+done)
+
+case $do in
+--gate)
+    echo "$figures" | awk '
+        $4 > $5 * 1.03 { printf "count: %s: %d instructions, %d are kept: slower by %.1f %%\n", $1, $4, $5, ($4 / $5 - 1) * 100; bad = 1 }
+        $4 < $5 * 0.97 { printf "count: %s: %d instructions, %d are kept: faster by %.1f %%; make bench-count UPDATE=1 keeps it\n", $1, $4, $5, (1 - $4 / $5) * 100; bad = 1 }
+        { n++ }
+        END { if (!bad) { printf "count: %d pieces of work within 3 %% of %s\n", n, "'$kept'" } exit bad }'
+    ;;
+--update)
+    {
+        sed -n 1p $kept
+        echo "# $compiler"
+        echo "$figures" | awk '{ print $1, $2, $3, $4 }'
+    } >"$build/instructions.new" && mv "$build/instructions.new" $kept
+    ;;
+*)
+    echo "$figures" | awk '{ print $1, $4 }'
+    ;;
+esac

@@ -1,0 +1,189 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Prints the table of speeds: ours, the floor, the peers, the ratio of ours to the floor; and writes
+# it as JSON. Nothing of it is a gate but what the programs promise of memory (their exit status).
+#
+# usage: GRCTL=build/grctl tests/bench/run.sh BUILD
+#
+# Instructions are those of callgrind: of two runs, by the difference, so that starting counts for
+# nothing. System calls are strace's, in the same way. Without either the rows are missing, and a
+# line says so. `make bench-peers` brings the peers.
+set -u
+LC_ALL=C
+export LC_ALL
+
+build=$1
+bin=$build/tests/bench
+peers=$build/peers
+line=$bin/bench_line
+python=$peers/python/bin/python
+GROBO_LIBMODBUS=$(ls "$peers"/usr/lib/*/libmodbus.so.5 2>/dev/null | head -n 1)
+export GROBO_LIBMODBUS
+rows=$build/bench.rows
+status=0
+: >"$rows"
+
+have() {
+    command -v "$1" >/dev/null 2>&1
+}
+
+say() {
+    echo "bench: $1" >&2
+}
+
+# row SCENARIO MEASURE WHO VALUE
+row() {
+    [ -z "$4" ] || printf '%s\t%s\t%s\t%s\n' "$1" "$2" "$3" "$4" >>"$rows"
+}
+
+# How a client is called, without its number of transactions.
+client() {
+    case $1 in
+    pyserial | dynamixel-sdk | rustypot) echo "$python tests/bench/peer.py $1" ;;
+    *) echo "$line $1" ;;
+    esac
+}
+
+who_of() {
+    case $1 in
+    session) echo grobo ;;
+    libevent) echo floor libevent ;;
+    sensing) echo grobo in the background ;;
+    *) echo "$1" ;;
+    esac
+}
+
+is_there() {
+    case $1 in
+    pyserial | dynamixel-sdk | rustypot) [ -x "$python" ] ;;
+    libmodbus) [ -n "$GROBO_LIBMODBUS" ] ;;
+    esac
+}
+
+# difference FEW MANY COMMAND: what a transaction costs. COMMAND N prints a total.
+difference() {
+    few=$("$3" "$1") many=$("$3" "$2")
+    [ -n "$few" ] && [ -n "$many" ] && echo "$few $many $1 $2" | awk '{ print ($2 - $1) / ($4 - $3) }'
+}
+
+# What the next two are asked about.
+who=session bps=0 lines=1
+
+instructions() {
+    # shellcheck disable=SC2046
+    $line serve "$bps" 0 0 $lines valgrind --tool=callgrind --callgrind-out-file=/dev/null \
+        $(client $who) "$1" 2>&1 | awk '/Collected/ { print $4 }'
+}
+
+system_calls() {
+    # shellcheck disable=SC2046
+    $line serve "$bps" 0 0 $lines strace -f -c -o "$build/bench.strace" $(client $who) "$1" \
+        >/dev/null 2>&1
+    awk '$NF == "total" { print ($(NF - 1) ~ /^[0-9]+$/ && NF > 5) ? $4 : $(NF - 1) }' \
+        "$build/bench.strace"
+}
+
+# timing N LATE_PERCENT LATE_US: "rate cpu_us p99_us"
+timing() {
+    # shellcheck disable=SC2046
+    $line serve "$bps" "$2" "$3" $lines $(client $who) "$1" 2>/dev/null
+}
+
+clients='session sensing libevent'
+for peer in libmodbus rustypot dynamixel-sdk pyserial; do
+    if is_there $peer; then
+        clients="$clients $peer"
+    fi
+done
+
+# ---- S1, S2: a transaction -------------------------------------------------------------------
+
+if have valgrind; then
+    bps=0
+    for who in $clients; do
+        row S1 'user instructions a transaction' "$(who_of $who)" "$(difference 300 900 instructions)"
+    done
+else
+    say 'no valgrind: no instructions are counted'
+fi
+if have strace; then
+    for bps in 115200 1000000; do
+        for who in $clients; do
+            row S1 "$bps bps: system calls a transaction" "$(who_of $who)" \
+                "$(difference 100 300 system_calls)"
+        done
+    done
+else
+    say 'no strace: no system calls are counted'
+fi
+# Medians of rounds, each of all clients, so that all of them see the same machine.
+for bps in 115200 1000000 0; do
+    n=400
+    [ $bps != 0 ] || n=5000
+    for round in 1 2 3; do
+        for who in $clients; do
+            # shellcheck disable=SC2046
+            set -- $(timing $n 0 0)
+            [ $# = 3 ] || continue
+            [ $bps = 0 ] || row S1 "$bps bps: CPU a transaction, us" "$(who_of $who)" "$2"
+            [ $bps != 0 ] || row S2 'no wire time: transactions a second' "$(who_of $who)" "$1"
+        done
+    done
+done
+
+# ---- S3: late replies ------------------------------------------------------------------------
+
+bps=1000000
+for late_us in 3000 8000 20000; do
+    for who in session libevent; do
+        # shellcheck disable=SC2046
+        set -- $(timing 1000 1 $late_us)
+        [ $# = 3 ] && row S3 "one reply in 100 late by $((late_us / 1000)) ms: transactions a second" \
+            "$(who_of $who)" "$1"
+    done
+done
+
+# ---- S5: robots in one thread ----------------------------------------------------------------
+
+bps=0
+for lines in 1 8 64 512; do
+    for who in session libevent; do
+        if have valgrind; then
+            row S5 "$lines robots: user instructions a transaction" "$(who_of $who)" \
+                "$(difference 1000 3000 instructions)"
+        fi
+        # shellcheck disable=SC2046
+        set -- $(timing 10000 0 0)
+        [ $# = 3 ] && row S5 "$lines robots: p99 lateness of a 10 ms timer, us" "$(who_of $who)" "$3"
+    done
+done
+
+# ---- S9: a peer ------------------------------------------------------------------------------
+
+if [ -e "$peers/libyaml-cpp-dev.there" ] && have "${CXX:-g++}"; then
+    printf '%s\n' '#include <yaml-cpp/yaml.h>' '#include <cstdio>' '#include <ctime>' \
+        'int main(int, char **v) { std::clock_t b = std::clock(); YAML::Node n = YAML::LoadFile(v[1]);' \
+        'std::printf("%g\n", (std::clock() - b) * 1e3 / CLOCKS_PER_SEC); return n.IsNull(); }' \
+        >"$build/bench_yaml_cpp.cpp"
+    library=$(echo "$peers"/usr/lib/*/libyaml-cpp.a)
+    if ${CXX:-g++} -O2 -I"$peers/usr/include" -o "$build/bench_yaml_cpp" \
+        "$build/bench_yaml_cpp.cpp" "$library" && "$bin/bench_motion" "$build/bench.yaml" 10000; then
+        row S9 'read 3 MB of yaml, ms' yaml-cpp "$("$build/bench_yaml_cpp" "$build/bench.yaml")"
+    fi
+fi
+
+# ---- what programs of ours measure by themselves ---------------------------------------------
+
+for program in work motion body memory play start; do
+    "$bin/bench_$program" >>"$rows" || status=1
+done
+
+if have valgrind; then
+    tests/bench/count.sh "$build" | while read -r piece count; do
+        row "$(awk -v piece="$piece" '$1 == piece { print $2 }' tests/bench/instructions)" \
+            "$piece: user instructions" grobo "$count"
+    done
+fi
+
+sort -s -t "$(printf "\t")" -k 1.2,1n "$rows" | awk -f tests/bench/table.awk -v json="$build/bench.json"
+exit $status
