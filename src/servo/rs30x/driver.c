@@ -35,25 +35,22 @@ static int finish_part(const grobo_driver *self, int size, grobo_exchange *excha
 static int joints_of_part(const grobo_model *model, grobo_joint_mask joints, int part, int capacity,
                           uint8_t *list)
 {
-    uint8_t sorted[GROBO_JOINTS_MAX];
-    int n = 0;
+    uint8_t joint_of[GROBO_SERVO_ID_MAX + 1]; /* by motor, the joint + 1; 0: none */
+    int highest = -1, skip = part * capacity, n = 0;
+    memset(joint_of, 0, sizeof joint_of);
     for (int j = 0; j < model->n_joints; j++) {
-        if ((joints & GROBO_JOINT_BIT(j)) == 0) {
-            continue;
+        if ((joints & GROBO_JOINT_BIT(j)) != 0) {
+            int motor = model->joints[j].motor;
+            joint_of[motor] = (uint8_t)(j + 1);
+            highest = motor > highest ? motor : highest;
         }
-        int at = n++;
-        for (; at > 0 && model->joints[sorted[at - 1]].motor > model->joints[j].motor; at--) {
-            sorted[at] = sorted[at - 1];
+    }
+    for (int motor = 0; motor <= highest && n < capacity; motor++) {
+        if (joint_of[motor] != 0 && skip-- <= 0) {
+            list[n++] = (uint8_t)(joint_of[motor] - 1);
         }
-        sorted[at] = (uint8_t)j;
     }
-    int first = part * capacity;
-    int count = n - first < capacity ? n - first : capacity;
-    if (count <= 0) {
-        return 0;
-    }
-    memcpy(list, &sorted[first], (size_t)count);
-    return count;
+    return n;
 }
 
 int grobo_i_rs30x_check(const grobo_driver *self, void *ctx, int part, grobo_exchange *exchange)
