@@ -54,12 +54,17 @@ const grobo_rs30x_register *grobo_rs30x_register_named(const char *name)
 
 const grobo_rs30x_register *grobo_rs30x_register_at(uint8_t address)
 {
-    for (size_t i = 0; i < grobo_rs30x_register_count(); i++) {
-        if (address >= rows[i].address && address < rows[i].address + rows[i].bytes) {
-            return &rows[i];
+    size_t low = 0, high = grobo_rs30x_register_count(); /* rows are in the order of addresses */
+    while (high - low > 1) {
+        size_t middle = (low + high) / 2;
+        if (rows[middle].address <= address) {
+            low = middle;
+        } else {
+            high = middle;
         }
     }
-    return NULL;
+    const grobo_rs30x_register *reg = &rows[low];
+    return address >= reg->address && address < reg->address + reg->bytes ? reg : NULL;
 }
 
 int32_t grobo_rs30x_register_get(const grobo_rs30x_register *reg, const uint8_t *bytes)
