@@ -19,6 +19,17 @@ static const grobo_rs30x_register rows[] = {GROBO_RS30X_REGISTER_LIST(ROW)};
 
 #undef ROW
 
+#define NUMBER(name, text, address, bytes, sign, access, unit, min, max, kept) NUMBER_##name,
+#define FIRST(name, text, address, bytes, sign, access, unit, min, max, kept)                      \
+    [address] = NUMBER_##name + 1,
+
+/* By the address of a register's first byte, its row + 1; 0: none begins there. */
+enum { GROBO_RS30X_REGISTER_LIST(NUMBER) };
+static const uint8_t row_from[UINT8_MAX + 1] = {GROBO_RS30X_REGISTER_LIST(FIRST)};
+
+#undef NUMBER
+#undef FIRST
+
 static const int32_t bauds_bps[] = {9600,  14400,  19200,  28800,  38400, 57600,
                                     76800, 115200, 153600, 230400, 460800};
 
@@ -54,17 +65,12 @@ const grobo_rs30x_register *grobo_rs30x_register_named(const char *name)
 
 const grobo_rs30x_register *grobo_rs30x_register_at(uint8_t address)
 {
-    size_t low = 0, high = grobo_rs30x_register_count(); /* rows are in the order of addresses */
-    while (high - low > 1) {
-        size_t middle = (low + high) / 2;
-        if (rows[middle].address <= address) {
-            low = middle;
-        } else {
-            high = middle;
-        }
+    int row = row_from[address];
+    if (row == 0 && address > 0 && row_from[address - 1] != 0 &&
+        rows[row_from[address - 1] - 1].bytes == 2) {
+        row = row_from[address - 1];
     }
-    const grobo_rs30x_register *reg = &rows[low];
-    return address >= reg->address && address < reg->address + reg->bytes ? reg : NULL;
+    return row > 0 ? &rows[row - 1] : NULL;
 }
 
 int32_t grobo_rs30x_register_get(const grobo_rs30x_register *reg, const uint8_t *bytes)
