@@ -143,6 +143,23 @@ for late_us in 3000 8000 20000; do
     done
 done
 
+# ---- S4: GR001's cycle -----------------------------------------------------------------------
+
+rm -f "$build/bench.pty"
+"$GRCTL" -q sim --link "$build/bench.pty" >/dev/null 2>&1 &
+robot=$!
+for _ in 1 2 3 4 5 6 7 8 9 10; do
+    [ -e "$build/bench.pty" ] || sleep 0.2
+done
+# shellcheck disable=SC2046
+set -- $($line cycle 5 "$build/bench.pty")
+kill $robot
+wait $robot 2>/dev/null
+if [ $# = 2 ]; then
+    row S4 'GR001: pose and 20 full states, cycles a second' grobo "$1"
+    row S4 'GR001: pose and 20 full states, cycles a second' 'floor wire' "$2"
+fi
+
 # ---- S5: robots in one thread ----------------------------------------------------------------
 
 bps=0
