@@ -92,7 +92,7 @@ static size_t answer_dxl1(const uint8_t *p, size_t n, uint8_t *reply)
 
         memcpy(to, header, sizeof header);
         memset(to + 5, 1, data);
-        to[5 + data] = (uint8_t)~(to[2] + to[3] + data);
+        to[5 + data] = (uint8_t) ~(to[2] + to[3] + data);
         size += 6 + data;
     }
     return size;
@@ -222,10 +222,10 @@ static int serve(char **argv)
     char *args[ARGS_MAX + LINES_MAX + 1];
     int ends[2], status = 0, n = 0;
 
-    far_end.bps = atol(argv[0]);
-    far_end.late_percent = atol(argv[1]);
-    far_end.late_us = atol(argv[2]);
-    far_end.lines = atoi(argv[3]);
+    far_end.bps = bench_number(argv[0]);
+    far_end.late_percent = bench_number(argv[1]);
+    far_end.late_us = bench_number(argv[2]);
+    far_end.lines = (int)bench_number(argv[3]);
     for (argv += 4; *argv != NULL && n < ARGS_MAX; argv++) {
         args[n++] = *argv;
     }
@@ -413,7 +413,9 @@ static void on_robot(void *ctx, const grobo_event *event)
     grobo_session **session = ctx;
 
     if (event->kind == (in_background ? GROBO_EVENT_JOINT : GROBO_EVENT_JOB) &&
-        next_transaction((in_background ? event->u.joint.result : event->u.job.result) == GROBO_OK) && !in_background) {
+        next_transaction((in_background ? event->u.joint.result : event->u.job.result) ==
+                         GROBO_OK) &&
+        !in_background) {
         sense(*session);
     }
 }
@@ -469,7 +471,7 @@ static int run_sessions(int lines, char **path)
     return report(begin_us, begin_cpu_us);
 }
 
-/* ---- a robot's whole cycle ---------------------------------------------------------------------- */
+/* ---- a robot's whole cycle ------------------------------------------------------------------ */
 
 /* A pose, then all joints in full, through the board, for some seconds. */
 static struct {
@@ -535,8 +537,7 @@ static int run_cycle(long seconds, const char *path)
                                          .on_event = on_cycle_line,
                                          .on_robot = on_cycle};
 
-    if (grobo_session_new(&config, &cycle.session) < 0 ||
-        grobo_session_open(cycle.session) < 0) {
+    if (grobo_session_new(&config, &cycle.session) < 0 || grobo_session_open(cycle.session) < 0) {
         return 1;
     }
     (void)event_base_dispatch(run.base);
@@ -545,8 +546,7 @@ static int run_cycle(long seconds, const char *path)
         fputs("bench_line: no cycle\n", stderr);
         return 1;
     }
-    printf("%.3f %.3f\n",
-           (double)cycle.count * 1e6 / (double)(grobo_now_us() - cycle.begin_us),
+    printf("%.3f %.3f\n", (double)cycle.count * 1e6 / (double)(grobo_now_us() - cycle.begin_us),
            1e6 / (double)(budget.motion_us + 20 * budget.reading_us));
     grobo_session_free(cycle.session);
     return 0;
@@ -593,7 +593,7 @@ int main(int argc, char **argv)
     if (argc < 4) {
         return argc == 1 ? 0 : 2;
     }
-    run.wanted = atol(argv[2]);
+    run.wanted = bench_number(argv[2]);
     if (strcmp(argv[1], "libmodbus") == 0) {
         return run_libmodbus(argv + 3);
     }
@@ -602,5 +602,5 @@ int main(int argc, char **argv)
     }
     in_background = strcmp(argv[1], "sensing") == 0;
     return in_background || strcmp(argv[1], "session") == 0 ? run_sessions(argc - 3, argv + 3)
-                                           : run_libevent(argc - 3, argv + 3);
+                                                            : run_libevent(argc - 3, argv + 3);
 }

@@ -209,9 +209,8 @@ static void bench_growth(size_t frames)
     text file = {0};
     char measure[96];
 
-    if (motion != NULL &&
-        grobo_motion_write(motion, GROBO_FORMAT_AUTO, NULL, &(grobo_sink){take, &file}, NULL) >=
-            0) {
+    if (motion != NULL && grobo_motion_write(motion, GROBO_FORMAT_AUTO, NULL,
+                                             &(grobo_sink){take, &file}, NULL) >= 0) {
         const double begin_ms = now_ms();
         read_it(&file);
         (void)snprintf(measure, sizeof measure, "read yaml of %zu frames, us a frame", frames);
@@ -329,7 +328,7 @@ static int write_sample(const char *path, size_t frames)
 int main(int argc, char **argv)
 {
     if (argc == 3) {
-        return write_sample(argv[1], (size_t)atol(argv[2]));
+        return write_sample(argv[1], (size_t)bench_number(argv[2]));
     }
     bool kept = bench_memory(); /* first: what was freed would hide what is taken */
 

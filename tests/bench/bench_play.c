@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Playing at 50 and 100 Hz on simulated servos behind a pty at 460800 bps, while another process keeps a core
- * busy: how late frames leave, and the processor time of each, beside two bare loops that write as
- * many bytes: clock_nanosleep() alone, and a timer of libevent.
+ * Playing at 50 and 100 Hz on simulated servos behind a pty at 460800 bps, while another process
+ * keeps a core busy: how late frames leave, and the processor time of each, beside two bare loops
+ * that write as many bytes: clock_nanosleep() alone, and a timer of libevent.
  */
 #include <fcntl.h>
 #include <math.h>
@@ -164,9 +164,8 @@ static void on_line(grobo_session *session, grobo_session_event event, int error
                              .length_us = (SPAN_S + 1) * INT64_C(1000000),
                              .n_keys = SPAN_S + 2,
                              .n_joints = 20};
-    const grobo_play_options options = {.mode = GROBO_PLAY_RATE,
-                                        .rate_hz = (uint16_t)(1000000 / period_us),
-                                        .unwatched = true};
+    const grobo_play_options options = {
+        .mode = GROBO_PLAY_RATE, .rate_hz = (uint16_t)(1000000 / period_us), .unwatched = true};
 
     (void)error;
     if (event != GROBO_SESSION_EVENT_UP ||

@@ -55,7 +55,8 @@ static bool measure(const char *who, const char *command)
     posix_spawn_file_actions_destroy(&files);
     qsort(took_us, RUNS, sizeof took_us[0], compare);
     bench_row("S14", "start of grctl version, median, ms", who, (double)took_us[RUNS / 2] / 1e3);
-    bench_row("S14", "start of grctl version, p99, ms", who, (double)took_us[RUNS * 99 / 100] / 1e3);
+    bench_row("S14", "start of grctl version, p99, ms", who,
+              (double)took_us[RUNS * 99 / 100] / 1e3);
     return true;
 }
 

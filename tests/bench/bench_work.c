@@ -217,8 +217,7 @@ static void prepare_play(void)
                              .length_us = INT64_C(3600) * SECOND_US,
                              .n_keys = 3601,
                              .n_joints = 20};
-    const grobo_play_options options = {
-        .mode = GROBO_PLAY_RATE, .rate_hz = 50, .unwatched = true};
+    const grobo_play_options options = {.mode = GROBO_PLAY_RATE, .rate_hz = 50, .unwatched = true};
 
     start(SECOND_US);
     (void)grobo_robot_play(&rig.robot, &clip, &options);
@@ -400,7 +399,7 @@ int main(int argc, char **argv)
             bench_row(piece->scenario, piece->measure, "grobo",
                       piece->seconds > 0 ? piece->seconds * 1e9 / ns : ns);
         } else if (argc == 3 && strcmp(argv[1], piece->name) == 0) {
-            long n = atol(argv[2]);
+            long n = bench_number(argv[2]);
 
             piece->prepare();
             bench_counted(piece, n);
