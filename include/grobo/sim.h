@@ -363,7 +363,8 @@ typedef struct grobo_sim {
     grobo_sim_ear ear[GROBO_SIM_FAMILIES_MAX];
     uint8_t n_ears;
     int64_t bus_heard_ns;                     /* end of the last byte they heard */
-    grobo_sim_talk talk[GROBO_SIM_TALKS_MAX]; /* used 0: free */
+    grobo_sim_talk talk[GROBO_SIM_TALKS_MAX]; /* n_talks of them, in the order they began */
+    uint16_t n_talks;
 } grobo_sim;
 
 /**

@@ -271,6 +271,13 @@ GROBO_CORE int grobo_robot_tx(grobo_robot *robot, uint8_t *buf, size_t capacity,
 GROBO_CORE void grobo_robot_step(grobo_robot *robot, int64_t now_us);
 
 /**
+ * grobo_robot_rx() and grobo_robot_step() at once, for bytes that are all that had come by now_us.
+ * Events are told behind both, so that no callback keeps time from passing at now_us.
+ */
+GROBO_CORE void grobo_robot_rx_step(grobo_robot *robot, const uint8_t *bytes, size_t size,
+                                    int64_t now_us);
+
+/**
  * True if a frame that stops the robot (a halt, an emergency stop) could leave now, as far as the
  * wire is concerned. Where the line still holds bytes of an earlier frame back they are late, and
  * the owner of the line should drop them if it can.

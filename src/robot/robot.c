@@ -173,6 +173,17 @@ int grobo_robot_tx(grobo_robot *robot, uint8_t *buf, size_t capacity, int64_t no
     return size;
 }
 
+static void step(grobo_robot *robot)
+{
+    grobo_bus_step(&robot->bus, robot->now_us);
+    grobo_i_segments_step(robot);
+    grobo_i_play_step(robot);
+    grobo_i_play_reserve(robot);
+    grobo_i_job_run(robot);
+    grobo_i_queue_step(robot);
+    grobo_i_sense_step(robot);
+}
+
 void grobo_robot_step(grobo_robot *robot, int64_t now_us)
 {
     if (robot == NULL) {
@@ -180,13 +191,20 @@ void grobo_robot_step(grobo_robot *robot, int64_t now_us)
     }
     grobo_i_enter(robot, now_us);
     if (robot->link) {
-        grobo_bus_step(&robot->bus, robot->now_us);
-        grobo_i_segments_step(robot);
-        grobo_i_play_step(robot);
-        grobo_i_play_reserve(robot);
-        grobo_i_job_run(robot);
-        grobo_i_queue_step(robot);
-        grobo_i_sense_step(robot);
+        step(robot);
+    }
+    grobo_i_leave(robot);
+}
+
+void grobo_robot_rx_step(grobo_robot *robot, const uint8_t *bytes, size_t size, int64_t now_us)
+{
+    if (robot == NULL || (bytes == NULL && size > 0)) {
+        return;
+    }
+    grobo_i_enter(robot, now_us);
+    if (robot->link) {
+        grobo_bus_rx(&robot->bus, robot->now_us, bytes, size);
+        step(robot);
     }
     grobo_i_leave(robot);
 }

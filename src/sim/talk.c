@@ -15,9 +15,6 @@
 static bool clash(grobo_sim *sim, grobo_sim_talk *talk, int64_t from_ns, uint8_t *byte)
 {
     const int64_t byte_ns = sim->bus_byte_ns;
-    if (talk->used == 0) {
-        return false;
-    }
     int64_t to_ns = from_ns + byte_ns;
     int64_t first = (from_ns - talk->start_ns) / byte_ns;
     bool clashed = false;
@@ -63,7 +60,7 @@ static void collided(grobo_sim *sim, bool with_master)
 bool grobo_i_sim_talk_into(grobo_sim *sim, uint8_t *byte, int64_t t_ns)
 {
     bool clashed = false;
-    for (size_t i = 0; i < GROBO_SIM_TALKS_MAX; i++) {
+    for (size_t i = 0; i < sim->n_talks; i++) {
         clashed |= clash(sim, &sim->talk[i], t_ns - sim->bus_byte_ns, byte);
     }
     if (clashed) {
@@ -87,20 +84,17 @@ static void join(grobo_sim *sim, grobo_sim_talk *talk, const uint8_t *bytes, siz
 void grobo_i_sim_talk(grobo_sim *sim, const uint8_t *bytes, size_t n, int64_t start_ns)
 {
     GROBO_ASSERT(n > 0 && n <= sizeof sim->talk[0].byte);
-    grobo_sim_talk *spare = NULL;
-    for (size_t i = 0; i < GROBO_SIM_TALKS_MAX; i++) {
-        grobo_sim_talk *talk = &sim->talk[i];
-        if (talk->used == 0) {
-            spare = spare == NULL ? talk : spare;
-        } else if (talk->start_ns == start_ns) {
-            join(sim, talk, bytes, n);
+    for (size_t i = 0; i < sim->n_talks; i++) {
+        if (sim->talk[i].start_ns == start_ns) {
+            join(sim, &sim->talk[i], bytes, n);
             return;
         }
     }
-    if (spare == NULL) {
+    if (sim->n_talks == GROBO_SIM_TALKS_MAX) {
         sim->stats.overflows += (uint32_t)n;
         return;
     }
+    grobo_sim_talk *spare = &sim->talk[sim->n_talks++];
     spare->start_ns = start_ns;
     spare->said = 0;
     spare->used = (uint16_t)n;
@@ -114,11 +108,9 @@ static int64_t byte_end_ns(const grobo_sim *sim, const grobo_sim_talk *talk)
 
 static int next_talk(const grobo_sim *sim)
 {
-    int first = -1;
-    for (int i = 0; i < GROBO_SIM_TALKS_MAX; i++) {
-        const grobo_sim_talk *talk = &sim->talk[i];
-        if (talk->used > 0 &&
-            (first < 0 || byte_end_ns(sim, talk) < byte_end_ns(sim, &sim->talk[first]))) {
+    int first = sim->n_talks > 0 ? 0 : -1;
+    for (int i = 1; i < sim->n_talks; i++) {
+        if (byte_end_ns(sim, &sim->talk[i]) < byte_end_ns(sim, &sim->talk[first])) {
             first = i;
         }
     }
@@ -134,10 +126,10 @@ int64_t grobo_i_sim_talk_next(const grobo_sim *sim)
 int64_t grobo_i_sim_talks_end(const grobo_sim *sim)
 {
     int64_t end_ns = GROBO_NEVER_US;
-    for (int i = 0; i < GROBO_SIM_TALKS_MAX; i++) {
+    for (int i = 0; i < sim->n_talks; i++) {
         const grobo_sim_talk *talk = &sim->talk[i];
         int64_t its_ns = talk->start_ns + talk->used * sim->bus_byte_ns;
-        end_ns = talk->used > 0 && its_ns < end_ns ? its_ns : end_ns;
+        end_ns = its_ns < end_ns ? its_ns : end_ns;
     }
     return end_ns;
 }
@@ -149,7 +141,7 @@ bool grobo_i_sim_talk_take(grobo_sim *sim, int64_t t_ns, uint8_t *taken)
     grobo_sim_talk *talk = &sim->talk[first];
     uint8_t byte = talk->byte[talk->said++];
     bool with_master = clash_with_master(sim, t_ns, &byte), clashed = with_master;
-    for (int i = 0; i < GROBO_SIM_TALKS_MAX; i++) {
+    for (int i = 0; i < sim->n_talks; i++) {
         if (i != first) {
             clashed |= clash(sim, &sim->talk[i], t_ns - sim->bus_byte_ns, &byte);
         }
@@ -158,7 +150,8 @@ bool grobo_i_sim_talk_take(grobo_sim *sim, int64_t t_ns, uint8_t *taken)
         collided(sim, with_master);
     }
     if (talk->said == talk->used) {
-        talk->used = 0;
+        sim->n_talks--;
+        memmove(talk, talk + 1, (size_t)(sim->n_talks - first) * sizeof *talk);
     }
     *taken = byte;
     return !clashed || !sim->parity;

@@ -8,6 +8,7 @@
 
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <time.h>
 
 /* `who` is "grobo" for us; the floor of a measure has a name that begins with "floor ". */
@@ -16,6 +17,19 @@ static inline void bench_row(const char *scenario, const char *measure, const ch
 {
     printf("%s\t%s\t%s\t%.6g\n", scenario, measure, who, value);
     (void)fflush(stdout);
+}
+
+/* A number of the command line; ends the program where it is none. */
+static inline long bench_number(const char *text)
+{
+    char *end;
+    long number = strtol(text, &end, 10);
+
+    if (*text == '\0' || *end != '\0' || number < 0) {
+        fprintf(stderr, "bench: '%s' is not a number\n", text);
+        exit(2);
+    }
+    return number;
 }
 
 /* Processor time of this process. */

@@ -11,6 +11,9 @@
  *   makes N transactions in all, one at a time on each line; prints transactions a second,
  *   microseconds of processor time of each, and the p99 of the lateness of a timer of 10 ms beside
  *   them.
+ *        bench_line cycle SECONDS PATH
+ *   sends GR001 a pose and reads 20 full states, over and over: cycles a second, and those that the
+ *   wire has time for.
  */
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -219,10 +222,10 @@ static int serve(char **argv)
     char *args[ARGS_MAX + LINES_MAX + 1];
     int ends[2], status = 0, n = 0;
 
-    far_end.bps = atol(argv[0]);
-    far_end.late_percent = atol(argv[1]);
-    far_end.late_us = atol(argv[2]);
-    far_end.lines = atoi(argv[3]);
+    far_end.bps = bench_number(argv[0]);
+    far_end.late_percent = bench_number(argv[1]);
+    far_end.late_us = bench_number(argv[2]);
+    far_end.lines = (int)bench_number(argv[3]);
     for (argv += 4; *argv != NULL && n < ARGS_MAX; argv++) {
         args[n++] = *argv;
     }
@@ -426,8 +429,7 @@ static int run_sessions(int lines, char **path)
                                       .motor = 1,
                                       .mirror_sign = 1};
     static const grobo_model model = {.name = "one servo", .joints = &joint, .n_joints = 1};
-    const grobo_robot_config robot = {GROBO_ROBOT_CONFIG_INIT,
-                                      .sense_interval_us = in_background ? 1 : GROBO_SENSE_NEVER,
+    const grobo_robot_config robot = {.sense_interval_us = in_background ? 1 : GROBO_SENSE_NEVER,
                                       .sense_position_only = true};
     grobo_driver driver;
 
@@ -441,10 +443,14 @@ static int run_sessions(int lines, char **path)
         return 1;
     }
     for (int i = 0; i < lines; i++) {
-        const grobo_session_config config = {
-            GROBO_SESSION_CONFIG_INIT, .base = run.base,     .device = path[i],
-            .driver = &driver,         .robot = &robot,      .skip_check = true,
-            .on_event = on_line,       .on_robot = on_robot, .ctx = &sessions[i]};
+        const grobo_session_config config = {.base = run.base,
+                                             .device = path[i],
+                                             .driver = &driver,
+                                             .robot = &robot,
+                                             .skip_check = true,
+                                             .on_event = on_line,
+                                             .on_robot = on_robot,
+                                             .ctx = &sessions[i]};
 
         if (grobo_session_new(&config, &sessions[i]) < 0 || grobo_session_open(sessions[i]) < 0) {
             fputs("bench_line: cannot open a session\n", stderr);
@@ -463,6 +469,87 @@ static int run_sessions(int lines, char **path)
     }
     turn();
     return report(begin_us, begin_cpu_us);
+}
+
+/* ---- a robot's whole cycle ------------------------------------------------------------------ */
+
+/* A pose, then all joints in full, through the board, for some seconds. */
+static struct {
+    grobo_session *session;
+    grobo_posture pose;
+    int64_t end_us, begin_us;
+    long count;
+    bool holds;
+} cycle;
+
+static void on_cycle(void *ctx, const grobo_event *event)
+{
+    grobo_robot *robot = grobo_session_robot(cycle.session);
+    int64_t now_us = grobo_now_us();
+    int r = 0;
+
+    (void)ctx;
+    if (event->kind != GROBO_EVENT_JOB) {
+        return;
+    }
+    if (event->u.job.kind == GROBO_JOB_CHECK) {
+        return;
+    }
+    if (event->u.job.kind == GROBO_JOB_TORQUE) {
+        cycle.begin_us = now_us;
+        cycle.end_us += now_us;
+    } else {
+        cycle.count++;
+    }
+    if (event->u.job.result < 0 || now_us >= cycle.end_us ||
+        (r = grobo_robot_send(robot, &cycle.pose)) < 0 ||
+        (r = grobo_robot_sense(robot, GROBO_JOINTS_ALL(20), GROBO_SENSE_FULL)) < 0) {
+        run.failed += r < 0 || event->u.job.result < 0;
+        (void)event_base_loopbreak(run.base);
+    }
+}
+
+static void on_cycle_line(grobo_session *session, grobo_session_event event, int error, void *ctx)
+{
+    (void)error;
+    (void)ctx;
+    if (event != GROBO_SESSION_EVENT_UP ||
+        grobo_robot_torque(grobo_session_robot(session), GROBO_JOINTS_ALL(20), GROBO_TORQUE_ON) <
+            0) {
+        run.failed++;
+        (void)event_base_loopbreak(run.base);
+    }
+}
+
+/* Prints cycles a second, and how many the wire allows. */
+static int run_cycle(long seconds, const char *path)
+{
+    const grobo_robot_config robot = {.sense_interval_us = GROBO_SENSE_NEVER};
+    grobo_budget budget;
+
+    begin_run();
+    cycle.end_us = seconds * 1000000;
+    (void)grobo_posture_init_pose(&cycle.pose, &grobo_gr001_model);
+    cycle.pose.time_us = 200000;
+    const grobo_session_config config = {.base = run.base,
+                                         .device = path,
+                                         .robot = &robot,
+                                         .on_event = on_cycle_line,
+                                         .on_robot = on_cycle};
+
+    if (grobo_session_new(&config, &cycle.session) < 0 || grobo_session_open(cycle.session) < 0) {
+        return 1;
+    }
+    (void)event_base_dispatch(run.base);
+    if (run.failed > 0 || cycle.count == 0 ||
+        grobo_robot_budget(grobo_session_robot(cycle.session), &budget) < 0) {
+        fputs("bench_line: no cycle\n", stderr);
+        return 1;
+    }
+    printf("%.3f %.3f\n", (double)cycle.count * 1e6 / (double)(grobo_now_us() - cycle.begin_us),
+           1e6 / (double)(budget.motion_us + 20 * budget.reading_us));
+    grobo_session_free(cycle.session);
+    return 0;
 }
 
 /* A peer, where GROBO_LIBMODBUS names it: no header of it is needed. */
@@ -506,9 +593,12 @@ int main(int argc, char **argv)
     if (argc < 4) {
         return argc == 1 ? 0 : 2;
     }
-    run.wanted = atol(argv[2]);
+    run.wanted = bench_number(argv[2]);
     if (strcmp(argv[1], "libmodbus") == 0) {
         return run_libmodbus(argv + 3);
+    }
+    if (strcmp(argv[1], "cycle") == 0) {
+        return run_cycle(run.wanted, argv[3]);
     }
     in_background = strcmp(argv[1], "sensing") == 0;
     return in_background || strcmp(argv[1], "session") == 0 ? run_sessions(argc - 3, argv + 3)

@@ -328,7 +328,7 @@ static int write_sample(const char *path, size_t frames)
 int main(int argc, char **argv)
 {
     if (argc == 3) {
-        return write_sample(argv[1], (size_t)atol(argv[2]));
+        return write_sample(argv[1], (size_t)bench_number(argv[2]));
     }
     bool kept = bench_memory(); /* first: what was freed would hide what is taken */
 

@@ -123,8 +123,7 @@ static void run_us(int64_t span_us)
 
 static void start(int64_t sense_interval_us)
 {
-    const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT,
-                                       .sense_interval_us = sense_interval_us};
+    const grobo_robot_config config = {.sense_interval_us = sense_interval_us};
     const grobo_sim_config sim = {0};
     const grobo_robot_host host = {.clock = rig_clock};
 
@@ -152,7 +151,45 @@ static void seconds(long n)
     run_us(n * SECOND_US);
 }
 
-/* A wave of the elbows, ten minutes long. */
+/* ---- a servo that falls silent, in virtual time ---------------------------------------------- */
+
+static int ended;
+
+static void on_end(void *ctx, const grobo_event *event)
+{
+    (void)ctx;
+    ended = event->kind == GROBO_EVENT_JOB ? event->u.job.number : ended;
+}
+
+/* How long a reading of these joints takes, in milliseconds. */
+static double reading_ms(grobo_joint_mask joints)
+{
+    const int64_t begin_us = rig.now_us;
+    const int job = grobo_robot_sense(&rig.robot, joints, GROBO_SENSE_FULL);
+
+    pump();
+    while (ended != job && rig.now_us < begin_us + 60 * SECOND_US) {
+        run_us(100);
+    }
+    return (double)(rig.now_us - begin_us) / 1000;
+}
+
+/* The line's latency has been learnt by then: it has none. */
+static void silence_rows(void)
+{
+    start(GROBO_SENSE_NEVER);
+    grobo_robot_on_event(&rig.robot, on_end, NULL);
+    for (int i = 0; i < 20; i++) {
+        (void)reading_ms(GROBO_JOINTS_ALL(20));
+    }
+    for (int j = 0; j < 20; j++) {
+        (void)grobo_sim_set_cable(&rig.sim, j, GROBO_SIM_CABLE_OUT);
+    }
+    bench_row("S6", "silent servo: time to its error, ms", "grobo", reading_ms(1));
+    bench_row("S6", "reading of 20 silent servos, ms", "grobo", reading_ms(GROBO_JOINTS_ALL(20)));
+}
+
+/* A wave of all joints. */
 static int wave_sample(void *ctx, int64_t t_us, grobo_posture *posture)
 {
     (void)ctx;
@@ -362,12 +399,15 @@ int main(int argc, char **argv)
             bench_row(piece->scenario, piece->measure, "grobo",
                       piece->seconds > 0 ? piece->seconds * 1e9 / ns : ns);
         } else if (argc == 3 && strcmp(argv[1], piece->name) == 0) {
-            long n = atol(argv[2]);
+            long n = bench_number(argv[2]);
 
             piece->prepare();
             bench_counted(piece, n);
             return 0;
         }
+    }
+    if (argc == 1) {
+        silence_rows();
     }
     return argc == 1 ? 0 : 2;
 }

@@ -63,7 +63,8 @@ is_there() {
 # difference FEW MANY COMMAND: what a transaction costs. COMMAND N prints a total.
 difference() {
     few=$("$3" "$1") many=$("$3" "$2")
-    [ -n "$few" ] && [ -n "$many" ] && echo "$few $many $1 $2" | awk '{ print ($2 - $1) / ($4 - $3) }'
+    [ -n "$few" ] && [ -n "$many" ] &&
+        echo "$few $many $1 $2" | awk '{ print ($2 - $1) / ($4 - $3) }'
 }
 
 # What the next two are asked about.
@@ -101,7 +102,8 @@ done
 if have valgrind; then
     bps=0
     for who in $clients; do
-        row S1 'user instructions a transaction' "$(who_of $who)" "$(difference 300 900 instructions)"
+        row S1 'user instructions a transaction' "$(who_of $who)" \
+            "$(difference 300 900 instructions)"
     done
 else
     say 'no valgrind: no instructions are counted'
@@ -138,10 +140,27 @@ for late_us in 3000 8000 20000; do
     for who in session libevent; do
         # shellcheck disable=SC2046
         set -- $(timing 1000 1 $late_us)
-        [ $# = 3 ] && row S3 "one reply in 100 late by $((late_us / 1000)) ms: transactions a second" \
-            "$(who_of $who)" "$1"
+        late="one reply in 100 late by $((late_us / 1000)) ms"
+        [ $# = 3 ] && row S3 "$late: transactions a second" "$(who_of $who)" "$1"
     done
 done
+
+# ---- S4: GR001's cycle -----------------------------------------------------------------------
+
+rm -f "$build/bench.pty"
+"$GRCTL" -q sim --link "$build/bench.pty" >/dev/null 2>&1 &
+robot=$!
+for _ in 1 2 3 4 5 6 7 8 9 10; do
+    [ -e "$build/bench.pty" ] || sleep 0.2
+done
+# shellcheck disable=SC2046
+set -- $($line cycle 5 "$build/bench.pty")
+kill $robot
+wait $robot 2>/dev/null
+if [ $# = 2 ]; then
+    row S4 'GR001: pose and 20 full states, cycles a second' grobo "$1"
+    row S4 'GR001: pose and 20 full states, cycles a second' 'floor wire' "$2"
+fi
 
 # ---- S5: robots in one thread ----------------------------------------------------------------
 
@@ -154,7 +173,8 @@ for lines in 1 8 64 512; do
         fi
         # shellcheck disable=SC2046
         set -- $(timing 10000 0 0)
-        [ $# = 3 ] && row S5 "$lines robots: p99 lateness of a 10 ms timer, us" "$(who_of $who)" "$3"
+        [ $# = 3 ] &&
+            row S5 "$lines robots: p99 lateness of a 10 ms timer, us" "$(who_of $who)" "$3"
     done
 done
 
@@ -162,12 +182,14 @@ done
 
 if [ -e "$peers/libyaml-cpp-dev.there" ] && have "${CXX:-g++}"; then
     printf '%s\n' '#include <yaml-cpp/yaml.h>' '#include <cstdio>' '#include <ctime>' \
-        'int main(int, char **v) { std::clock_t b = std::clock(); YAML::Node n = YAML::LoadFile(v[1]);' \
+        'int main(int, char **v) { std::clock_t b = std::clock();' \
+        'YAML::Node n = YAML::LoadFile(v[1]);' \
         'std::printf("%g\n", (std::clock() - b) * 1e3 / CLOCKS_PER_SEC); return n.IsNull(); }' \
         >"$build/bench_yaml_cpp.cpp"
     library=$(echo "$peers"/usr/lib/*/libyaml-cpp.a)
     if ${CXX:-g++} -O2 -I"$peers/usr/include" -o "$build/bench_yaml_cpp" \
-        "$build/bench_yaml_cpp.cpp" "$library" && "$bin/bench_motion" "$build/bench.yaml" 10000; then
+        "$build/bench_yaml_cpp.cpp" "$library" &&
+        "$bin/bench_motion" "$build/bench.yaml" 10000; then
         row S9 'read 3 MB of yaml, ms' yaml-cpp "$("$build/bench_yaml_cpp" "$build/bench.yaml")"
     fi
 fi
@@ -185,5 +207,14 @@ if have valgrind; then
     done
 fi
 
-sort -s -t "$(printf "\t")" -k 1.2,1n "$rows" | awk -f tests/bench/table.awk -v json="$build/bench.json"
+sort -s -t "$(printf '\t')" -k 1.2,1n "$rows" |
+    awk -f tests/bench/table.awk -v json="$build/bench.json"
+
+# plot FILE SCENARIO PART X TITLE
+plot() {
+    awk -f tests/bench/plot.awk -v scenario="$2" -v part="$3" -v x="$4" -v title="$5" "$rows" \
+        >"$build/bench-$1.svg"
+}
+plot robots S5 'robots: user instructions' 'robots in one thread' 'User instructions a transaction'
+plot frames S9 'us a frame' 'frames of 20 joints' 'Reading yaml, us a frame'
 exit $status

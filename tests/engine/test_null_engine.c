@@ -153,6 +153,8 @@ static void robot_refuses_null_in_its_first_functions(void **state)
     REFUSES(grobo_robot_tx(NULL, bytes, sizeof bytes, 1000));
     REFUSES(grobo_robot_tx(&robot, NULL, sizeof bytes, 1000));
     grobo_robot_step(NULL, 1000);
+    grobo_robot_rx_step(NULL, bytes, 1, 1000);
+    grobo_robot_rx_step(&robot, NULL, 1, 1000);
     assert_false(grobo_robot_stops(NULL, 1000));
     assert_true(grobo_robot_deadline(NULL, 1000) == GROBO_NEVER_US);
     grobo_robot_link_up(NULL, 1000);

@@ -92,10 +92,8 @@ static void pause_until(grobo_serial *serial, int64_t end_us, int64_t now_us)
     }
 }
 
-static void spend(grobo_serial *serial, int size)
+static void spend(grobo_serial *serial, int size, int64_t now_us)
 {
-    int64_t now_us = grobo_now_us();
-
     if (serial->spent_us < now_us - READ_BUDGET_US) {
         serial->spent_us = now_us - READ_BUDGET_US;
     }
@@ -107,10 +105,12 @@ static void spend(grobo_serial *serial, int size)
 
 int grobo_i_serial_take(grobo_serial *serial, void *buf, size_t size)
 {
+    serial->read_us = grobo_now_us();
     int got = serial->ops->read(serial->port, buf, size, &serial->cause);
 
+    serial->more = got > 0 && (size_t)got == size;
     if (got > 0) {
-        spend(serial, got);
+        spend(serial, got, serial->read_us);
         note_bytes(serial, GROBO_DIR_RX, buf, (size_t)got);
     }
     return got < 0 ? grobo_i_serial_lose(serial, got) : got;

@@ -15,6 +15,7 @@ struct grobo_timer {
     void *ctx;
     const grobo_mem *mem;
     int64_t deadline_us;
+    int64_t armed_us; /* when the event comes, at the latest then; GROBO_NEVER_US: not added */
 };
 
 struct timeval grobo_i_link_timeval(int64_t span_us)
@@ -54,7 +55,9 @@ static int arm(grobo_timer *timer)
     int64_t span_us = timer->deadline_us - grobo_now_us();
     struct timeval tv = grobo_i_link_timeval(span_us < SPAN_MAX_US ? span_us : SPAN_MAX_US);
 
-    return event_add(timer->event, &tv) == 0 ? GROBO_OK : GROBO_ERR_NOMEM;
+    bool added = event_add(timer->event, &tv) == 0;
+    timer->armed_us = added ? timer->deadline_us : GROBO_NEVER_US;
+    return added ? GROBO_OK : GROBO_ERR_NOMEM;
 }
 
 static void on_time(evutil_socket_t fd, short what, void *arg)
@@ -69,7 +72,7 @@ static void on_time(evutil_socket_t fd, short what, void *arg)
         (void)arm(timer);
         return;
     }
-    timer->deadline_us = GROBO_NEVER_US;
+    timer->deadline_us = timer->armed_us = GROBO_NEVER_US;
     timer->fn(timer, late_us, timer->ctx);
 }
 
@@ -93,7 +96,7 @@ int grobo_timer_new(struct event_base *base, grobo_timer_fn fn, void *ctx, const
     made->fn = fn;
     made->ctx = ctx;
     made->mem = mem;
-    made->deadline_us = GROBO_NEVER_US;
+    made->deadline_us = made->armed_us = GROBO_NEVER_US;
     *timer = made;
     return GROBO_OK;
 }
@@ -117,7 +120,12 @@ int grobo_timer_set(grobo_timer *timer, int64_t deadline_us)
     /* The clock is never negative: what was before it has passed, however long ago. */
     timer->deadline_us = deadline_us < 0 ? 0 : deadline_us;
     if (deadline_us == GROBO_NEVER_US) {
+        timer->armed_us = GROBO_NEVER_US;
         (void)event_del(timer->event);
+        return GROBO_OK;
+    }
+    /* One that comes sooner is left: it is set anew then, once for many deadlines put off. */
+    if (timer->armed_us <= timer->deadline_us && timer->armed_us > now_us) {
         return GROBO_OK;
     }
     /*

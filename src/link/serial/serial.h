@@ -48,6 +48,8 @@ struct grobo_serial {
     struct event *resume; /* the end of a pause */
     bool paused;          /* nothing is read: the budget is spent */
     int64_t spent_us;     /* up to this time the budget is spent */
+    int64_t read_us;      /* just before the last read */
+    bool more;            /* that read filled its buffer: there may be more */
     struct event *tell;   /* made active when there is something to tell */
     unsigned to_tell;
     int lost_error; /* of TELL_LOST */

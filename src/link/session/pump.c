@@ -2,6 +2,7 @@
 /* The bytes of a session: engine to line, line to engine, and when to look again. */
 #include "src/base/assert.h"
 #include "src/base/instant.h"
+#include "src/link/serial/serial.h"
 #include "src/link/session/session.h"
 
 /* How long to leave a line alone that takes no more bytes; it also tells when it does. */
@@ -24,10 +25,14 @@ void grobo_i_session_on_data(grobo_serial *serial, const uint8_t *bytes, size_t 
 {
     grobo_session *session = ctx;
 
-    (void)serial;
     grobo_i_session_enter(session);
-    grobo_robot_rx(&session->robot, bytes, size, grobo_now_us());
-    (void)grobo_i_session_step(session);
+    if (serial->more) {
+        grobo_robot_rx(&session->robot, bytes, size, serial->read_us);
+        (void)grobo_i_session_step(session);
+    } else {
+        /* All that had come by then: another read would find nothing. */
+        grobo_robot_rx_step(&session->robot, bytes, size, serial->read_us);
+    }
     grobo_i_session_leave(session);
 }
 
@@ -61,17 +66,43 @@ static void take_back(grobo_session *session)
     session->line->take_back(session, size, session->given_behind);
 }
 
-/* When to look again. */
-static int64_t deadline_of(const grobo_session *session, bool busy)
+/* The line takes a frame; what it holds back for one that stops the robot is taken back. */
+static bool make_room(grobo_session *session, bool stops)
 {
-    int64_t now_us = grobo_now_us();
-    int64_t deadline_us = grobo_robot_deadline(&session->robot, now_us);
+    bool has_room = session->line->has_room(session);
 
-    /* The engine's frame cannot leave yet, however long it has been due. */
-    if (busy && deadline_us < now_us + BUSY_US) {
-        deadline_us = now_us + BUSY_US;
+    if (!has_room && stops && session->given_bytes > 0) {
+        take_back(session);
+        has_room = session->line->has_room(session);
     }
-    return grobo_i_sooner(deadline_us, session->line->deadline(session));
+    return has_room;
+}
+
+/* Gives what the engine wants to send now; when to look again. The line is asked only where there
+ * is something for it: that is a call of the system. */
+static int64_t give_all(grobo_session *session)
+{
+    for (;;) {
+        uint8_t frame[GROBO_FRAME_MAX_BYTES];
+        int64_t now_us = grobo_now_us();
+        int64_t deadline_us = grobo_robot_deadline(&session->robot, now_us);
+
+        if (deadline_us > now_us || grobo_i_session_has_asked(session) ||
+            now_us >= grobo_i_session_estop_deadline(session)) {
+            return deadline_us;
+        }
+        bool stops = grobo_robot_stops(&session->robot, now_us);
+
+        if (grobo_i_session_guard_has_it(session) || !make_room(session, stops)) {
+            return now_us + BUSY_US; /* it cannot leave yet, however long it has been due */
+        }
+        int size = grobo_robot_tx(&session->robot, frame, sizeof frame, now_us);
+
+        if (size <= 0) {
+            return deadline_us;
+        }
+        give(session, frame, (size_t)size, stops);
+    }
 }
 
 void grobo_i_session_send(grobo_session *session)
@@ -80,33 +111,12 @@ void grobo_i_session_send(grobo_session *session)
 
     switch (session->state) {
     case GROBO_SESSION_CHECKING:
-    case GROBO_SESSION_UP: {
-        bool guarded = grobo_i_session_guard_has_it(session);
-        bool free = !guarded && session->line->has_room(session);
-
-        if (!guarded && !free && session->given_bytes > 0 &&
-            grobo_robot_stops(&session->robot, grobo_now_us())) {
-            take_back(session);
-            free = session->line->has_room(session);
-        }
-        while (free && !grobo_i_session_has_asked(session) &&
-               grobo_now_us() < grobo_i_session_estop_deadline(session)) {
-            uint8_t frame[GROBO_FRAME_MAX_BYTES];
-            int64_t now_us = grobo_now_us();
-            bool stops = grobo_robot_stops(&session->robot, now_us);
-            int size = grobo_robot_tx(&session->robot, frame, sizeof frame, now_us);
-
-            if (size <= 0) {
-                break;
-            }
-            give(session, frame, (size_t)size, stops);
-            free = !grobo_i_session_guard_has_it(session) && session->line->has_room(session);
-        }
+    case GROBO_SESSION_UP:
+        deadline_us = give_all(session);
         grobo_i_session_guard_tell(session);
-        deadline_us =
-            grobo_i_sooner(deadline_of(session, !free), grobo_i_session_estop_deadline(session));
+        deadline_us = grobo_i_sooner(deadline_us, session->line->deadline(session));
+        deadline_us = grobo_i_sooner(deadline_us, grobo_i_session_estop_deadline(session));
         break;
-    }
     case GROBO_SESSION_WAITING:
         deadline_us = grobo_i_sooner(session->retry_us, grobo_i_session_estop_deadline(session));
         break;
