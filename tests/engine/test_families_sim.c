@@ -11,7 +11,7 @@
 
 #include <grobo/dxl2.h>
 #include <grobo/feetech.h>
-#include <grobo/sim.h>
+#include <grobo/sim_static.h>
 #include <grobo/static.h>
 
 #include "src/base/instant.h"
