@@ -9,7 +9,7 @@
  */
 #include <stdio.h>
 
-#include <grobo/sim.h>
+#include <grobo/sim_static.h>
 #include <grobo/static.h>
 
 #define RAD(deg) ((deg)*0.017453292519943295)

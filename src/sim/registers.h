@@ -3,7 +3,7 @@
 #ifndef GROBO_SIM_REGISTERS_H
 #define GROBO_SIM_REGISTERS_H
 
-#include <grobo/sim.h>
+#include <grobo/sim_static.h>
 
 /* An RS30x as its register MODEL says; one that is not known is the first of the table. */
 const grobo_servo_model *grobo_i_sim_rs30x_model(const grobo_sim_servo *servo);

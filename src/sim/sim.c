@@ -386,9 +386,10 @@ static void use_defaults(grobo_sim_config *config)
     }
 }
 
-int grobo_sim_init(grobo_sim *sim, const grobo_sim_config *config, int64_t now_us)
+int grobo_sim_init_sized(grobo_sim *sim, size_t sim_bytes, const grobo_sim_config *config,
+                         int64_t now_us)
 {
-    if (sim == NULL) {
+    if (sim == NULL || sim_bytes != sizeof *sim) {
         return GROBO_ERR_ARG;
     }
     grobo_sim_config with;

@@ -11,6 +11,7 @@
 
 #include <grobo/dxl2.h>
 #include <grobo/feetech.h>
+#include <grobo/sim_static.h>
 
 #include "tests/support/chain_kit.h"
 

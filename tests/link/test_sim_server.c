@@ -17,6 +17,8 @@
 #include <cmocka.h>
 #include <event2/event.h>
 
+#include <grobo/sim_static.h>
+
 #include "tests/support/counted_mem.h"
 #include "tests/support/folder.h"
 #include "tests/support/loop.h"

@@ -11,6 +11,7 @@
 
 #include <grobo/grobo.h>
 #include <grobo/loop.h>
+#include <grobo/sim_static.h>
 #include <grobo/static.h>
 
 /* What takes a structure; each returns GROBO_OK and frees what it made. */

@@ -6,6 +6,7 @@
 
 #include <grobo/estop.h>
 #include <grobo/sim_server.h>
+#include <grobo/sim_static.h>
 
 #include "src/base/sized.h"
 #include "src/link/serial/loop.h"

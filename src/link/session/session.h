@@ -12,6 +12,7 @@
 #include <event2/event.h>
 
 #include <grobo/session.h>
+#include <grobo/sim_static.h>
 #include <grobo/static.h>
 
 #include "src/link/guard/estop.h"

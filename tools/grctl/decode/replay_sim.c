@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* A trace against a fresh simulator: chunks as they were, at their times, in virtual time. */
-#include <grobo/sim.h>
+#include <grobo/sim_static.h>
 
 #include "tools/grctl/decode/replay.h"
 

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include <grobo/session.h>
+#include <grobo/sim_static.h>
 #include <grobo/static.h>
 
 #include "tools/grctl/conn/conn.h"
