@@ -153,6 +153,7 @@ struct grobo_driver {
     const void *family; /**< for the table's own functions */
     bool all_first;     /**< a joint's first reading is always a GROBO_SENSE_ALL, in which parse()
                              looks at how its servo is set up */
+    bool no_speed;      /**< its servos tell no speed: the engine takes that between two angles */
 
     /** Is the robot there? Parts are tried one after the other until one is answered. */
     int (*check)(const grobo_driver *self, void *ctx, int part, grobo_exchange *exchange);
@@ -165,6 +166,11 @@ struct grobo_driver {
     /** Asks one joint for its state. @return 0 or an error. */
     int (*sense)(const grobo_driver *self, void *ctx, int joint, grobo_sense_kind kind,
                  grobo_exchange *exchange);
+    /** What a reading takes besides the exchange of sense(), where one exchange reads one value:
+     *  parts 1, 2... are asked when the part before is answered, and parse() gets each reply. What
+     *  shows the servo's setup comes before its angle. NULL: one exchange is all. */
+    int (*sense_more)(const grobo_driver *self, void *ctx, int joint, grobo_sense_kind kind,
+                      int part, grobo_exchange *exchange);
     /** Asks several joints for their state in one exchange: each answers with a packet of its id,
      *  or one packet that has an id of no servo answers for all. NULL: they are asked one by one.
      *  @return 0 or an error. */
@@ -257,6 +263,17 @@ GROBO_API int grobo_dxl1_driver_init(grobo_driver *driver, const grobo_model *mo
  * there is another goal or torque was off; it counts neither as heat nor as torque lost.
  */
 GROBO_API int grobo_feetech_driver_init(grobo_driver *driver, const grobo_model *model);
+
+/**
+ * The same for LewanSoul's and Hiwonder's LX and HTS servos (lx16a.h). grobo_joint.servo_model is a
+ * number of grobo_lx16a_table. Goals have a time in ms. One frame moves or reads one servo, and
+ * writes are not answered: at most 32 joints. Servos measure neither
+ * speed nor current: the engine takes the speed of two angles. A goal switches the torque on.
+ * A register is named by its address in the table; GROBO_SERVO_FLASH keeps the offset.
+ * @return 0, or GROBO_ERR_ARG: a bad model, a servo that is not known, a joint beyond its reach or
+ *         of several turns.
+ */
+GROBO_API int grobo_lx16a_driver_init(grobo_driver *driver, const grobo_model *model);
 
 /**
  * The table of HPI's GR001.

@@ -13,6 +13,7 @@
 #define GROBO_LX16A_H
 
 #include <grobo/protocol.h>
+#include <grobo/registers.h>
 
 GROBO_BEGIN_DECLS
 
@@ -85,6 +86,18 @@ GROBO_CORE int grobo_lx16a_parse(const uint8_t *frame, size_t n, grobo_lx16a_pac
 /** Puts a frame together. packet->data may lie in buf at offset 5. @return size, or GROBO_ERR_ARG
  *  (an id that is none), GROBO_ERR_CAP (more data than a frame has), GROBO_ERR_SPACE. */
 GROBO_CORE int grobo_lx16a_build(const grobo_lx16a_packet *packet, uint8_t *buf, size_t cap);
+
+/** The protocol, for the bus. The maker prints no return delay: 500 us is assumed. */
+GROBO_API extern const grobo_protocol grobo_lx16a_protocol;
+
+/**
+ * Their values, and models. The servos know no addresses and do not tell their model: both numbers
+ * are this library's. Values that go in one frame stand side by side, and are read and written
+ * together only: min_position with max_position, min_voltage with max_voltage, mode with
+ * mode_speed (from mode to the end of mode_speed), goal_position with goal_time, next_position
+ * with next_time.
+ */
+GROBO_API extern const grobo_servo_table grobo_lx16a_table;
 
 /** Data bytes of the reply to a command; 0: it is never answered. */
 GROBO_CORE size_t grobo_lx16a_reply_bytes(uint8_t command);

@@ -137,6 +137,8 @@ GROBO_API extern const grobo_sim_family grobo_sim_rs30x;
 GROBO_API extern const grobo_sim_family grobo_sim_dxl2;
 /** Models of grobo_dxl1_table, grobo_sts_table and grobo_scs_table. */
 GROBO_API extern const grobo_sim_family grobo_sim_dxl1;
+/** Models of grobo_lx16a_table. */
+GROBO_API extern const grobo_sim_family grobo_sim_lx16a;
 
 /* ---- configuration -------------------------------------------------------------------------- */
 
@@ -154,10 +156,10 @@ typedef struct grobo_sim_config {
     const grobo_servo_model *const *servos;  /**< bus: of each joint, NULL: an RS30x, the joint's
                                                  servo_model; NULL: all are RS30x. Borrowed */
     const grobo_sim_family *const *families; /**< of those servos, NULL behind the last. Borrowed */
-    uint32_t baud_bps;         /**< board: its host port; bus: the servos' line. 115200; 1000000
-                                    where the first servo is no RS30x */
-    bool unpaced;              /**< bytes take no time on any wire */
-    uint32_t seed;             /**< of every random choice */
+    uint32_t baud_bps; /**< board: its host port; bus: the servos' line. 115200, or what servos of
+                            the first one's family have as a rule */
+    bool unpaced;      /**< bytes take no time on any wire */
+    uint32_t seed;     /**< of every random choice */
     grobo_sim_start start;     /**< posture at power-up */
     uint32_t board_silence_us; /**< board gives up a reply after this much silence. 2000 */
     uint32_t board_stall_us;   /**< board forgets a frame that stalls. GROBO_BOARD_STALL_US */

@@ -28,8 +28,10 @@ GROBO_BEGIN_DECLS
 
 /* ---- what is in an engine ------------------------------------------------------------------- */
 
-/** Frames that the engine may have under way at a time. */
-#define GROBO_ROBOT_SLOTS 12
+/** Frames that the engine may have under way at a time: some families need one for each joint. */
+#ifndef GROBO_ROBOT_SLOTS
+#define GROBO_ROBOT_SLOTS (GROBO_JOINTS_MAX > 20 ? 44 : 12)
+#endif
 /** Events that may wait for the callback at a time. */
 #define GROBO_ROBOT_EVENTS 32
 /** Bins of the jitter histogram: four an octave, from 1 us to 65 ms. */
@@ -90,6 +92,7 @@ typedef struct grobo_robot_slot {
     bool many;        /* it asks where several are */
     uint8_t use;      /* 0: free */
     uint8_t joint;
+    uint8_t kind, part;      /* of a reading: grobo_sense_kind, exchanges before this one */
     grobo_joint_mask unread; /* of a reading of many joints, those that have not answered */
 } grobo_robot_slot;
 

@@ -47,6 +47,14 @@ static int reading_cost(const grobo_bus *bus, const grobo_driver *driver, void *
         grobo_exchange exchange = {0};
         result = driver->sense(driver, ctx, j, GROBO_SENSE_FULL, &exchange);
         uint32_t one_us = result < 0 ? 0 : cost_of(bus, &exchange);
+        for (int part = 1; result >= 0 && driver->sense_more != NULL; part++) {
+            exchange = (grobo_exchange){0};
+            result = driver->sense_more(driver, ctx, j, GROBO_SENSE_FULL, part, &exchange);
+            if (result == 0) {
+                break;
+            }
+            one_us += result < 0 ? 0 : cost_of(bus, &exchange);
+        }
         *us = one_us > *us ? one_us : *us;
     }
     return result;

@@ -223,6 +223,7 @@ static int keep_reading(grobo_robot *robot)
     slot->reads = true;
     bool first = driver->all_first && !robot->axes[slot->joint].sensed;
     grobo_sense_kind kind = first ? GROBO_SENSE_ALL : job->sense;
+    slot->kind = (uint8_t)kind;
     int result = driver->sense(driver, robot->driver_ctx, slot->joint, kind, &slot->exchange);
     if (result < 0) {
         grobo_i_slot_drop(slot);

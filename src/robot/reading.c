@@ -128,6 +128,24 @@ static void take_place(grobo_robot *robot, int joint, int64_t asked_us,
     }
 }
 
+/* Between angles so far apart lies a speed. */
+#define SPEED_LEAST_US 10000
+#define SPEED_MOST_US 500000
+
+/* The mean speed since the angle before, of a servo that tells none. */
+static void take_speed(const grobo_robot *robot, int joint, grobo_joint_state *got)
+{
+    const grobo_robot_axis *axis = &robot->axes[joint];
+    int64_t us = axis->angle_us == GROBO_NEVER_US ? 0 : robot->now_us - axis->angle_us;
+    const unsigned both = GROBO_FIELD_ANGLE | GROBO_FIELD_SPEED;
+    if (robot->driver->no_speed && (got->valid & both) == GROBO_FIELD_ANGLE &&
+        us >= SPEED_LEAST_US && us <= SPEED_MOST_US) {
+        double way_deg = grobo_deg_from_rad(got->angle_rad - axis->state.angle_rad);
+        got->speed_dps = (int32_t)(way_deg * 1e6 / (double)us);
+        got->valid |= GROBO_FIELD_SPEED;
+    }
+}
+
 /* asked_us: when the joint was asked first. A late answer may be of before a frame that has left
  * meanwhile: it restores nothing of what that frame has made unknown. */
 static void take_reading(grobo_robot *robot, int joint, int64_t asked_us, grobo_joint_state *got)
@@ -136,6 +154,7 @@ static void take_reading(grobo_robot *robot, int joint, int64_t asked_us, grobo_
     if ((got->valid & GROBO_FIELD_ANGLE) != 0) {
         got->angle_rad += correction(robot, joint);
     }
+    take_speed(robot, joint, got);
     merge(axis, got);
     axis->status = GROBO_OK;
     axis->lost = 0;

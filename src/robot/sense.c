@@ -227,7 +227,8 @@ static int ask_next(grobo_robot *robot, grobo_robot_slot *slot)
     const grobo_driver *driver = robot->driver;
     slot->joint = (uint8_t)next_reading(robot);
     slot->reads = true;
-    return driver->sense(driver, robot->driver_ctx, slot->joint, kind_of(robot, slot->joint),
+    slot->kind = (uint8_t)kind_of(robot, slot->joint);
+    return driver->sense(driver, robot->driver_ctx, slot->joint, (grobo_sense_kind)slot->kind,
                          &slot->exchange);
 }
 

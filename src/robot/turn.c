@@ -6,7 +6,36 @@
 #include "src/base/assert.h"
 #include "src/robot/robot.h"
 
-/* Takes what a slot has read of its joint, or the reason why there is nothing, and judges it. */
+/* A reading that takes several exchanges asks for its next part. @return 1 if there is one. */
+static int read_on(const grobo_robot_slot *before)
+{
+    grobo_robot *robot = before->robot;
+    const grobo_driver *driver = robot->driver;
+    if (driver->sense_more == NULL || !before->reads ||
+        (before->use == GROBO_I_USE_JOB && !grobo_i_job_has(before))) {
+        return 0;
+    }
+    grobo_robot_slot *slot = grobo_i_slot_take(robot, (grobo_i_use)before->use);
+    if (slot == NULL) {
+        return GROBO_ERR_FULL;
+    }
+    slot->reads = true;
+    slot->joint = before->joint;
+    slot->job = before->job;
+    slot->kind = before->kind;
+    slot->part = (uint8_t)(before->part + 1);
+    int more = driver->sense_more(driver, robot->driver_ctx, slot->joint,
+                                  (grobo_sense_kind)slot->kind, slot->part, &slot->exchange);
+    if (more <= 0) {
+        grobo_i_slot_drop(slot);
+        return more;
+    }
+    more = grobo_i_slot_send(slot, before->txn.priority);
+    return more < 0 ? more : 1;
+}
+
+/* Takes what a slot has read of its joint, or the reason why there is nothing, and judges it.
+ * @return 1 where the reading goes on. */
 static int take_reading(const grobo_robot_slot *slot, int result, const grobo_packet *reply)
 {
     GROBO_ASSERT((slot->reads || slot->many) && slot->joint < slot->robot->driver->model->n_joints);
@@ -18,6 +47,11 @@ static int take_reading(const grobo_robot_slot *slot, int result, const grobo_pa
     } else if (grobo_i_is_loss(taken)) {
         grobo_i_watch_lost(robot, slot->joint);
     }
+    int more = taken >= 0 ? read_on(slot) : taken;
+    if (more > 0) {
+        return more;
+    }
+    taken = more;
     grobo_event event = {.kind = GROBO_EVENT_JOINT};
     event.u.joint.joint = slot->joint;
     event.u.joint.result = taken;
@@ -61,7 +95,9 @@ void grobo_i_frame_over(grobo_robot_slot *slot, int result, const grobo_packet *
     case GROBO_I_USE_JOB:
         if (grobo_i_job_has(slot)) {
             result = slot->reads ? take_reading(slot, result, reply) : result;
-            grobo_i_job_done(slot, result, reply);
+            if (result <= 0) {
+                grobo_i_job_done(slot, result, reply);
+            }
         }
         break;
     case GROBO_I_USE_SENSE:
@@ -71,7 +107,9 @@ void grobo_i_frame_over(grobo_robot_slot *slot, int result, const grobo_packet *
             } else {
                 result = take_reading(slot, result, reply);
             }
-            grobo_i_sense_done(slot, result);
+            if (result <= 0) {
+                grobo_i_sense_done(slot, result);
+            }
         }
         break;
     case GROBO_I_USE_SEGMENT:

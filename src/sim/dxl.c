@@ -28,7 +28,7 @@ int32_t grobo_i_dxl_get(const grobo_sim_servo *servo, grobo_register_role role)
     return reg == NULL ? 0 : grobo_servo_register_get(servo->model, reg, &servo->reg[reg->address]);
 }
 
-static void hold(grobo_sim_servo *servo, const grobo_servo_register *reg, int64_t value)
+void grobo_i_dxl_hold(grobo_sim_servo *servo, const grobo_servo_register *reg, int64_t value)
 {
     int64_t held = value < reg->min ? reg->min : value > reg->max ? reg->max : value;
     (void)grobo_servo_register_put(servo->model, reg, (int32_t)held, &servo->reg[reg->address]);
@@ -38,7 +38,7 @@ void grobo_i_dxl_put(grobo_sim_servo *servo, grobo_register_role role, int64_t v
 {
     const grobo_servo_register *reg = row_of(servo, role);
     if (reg != NULL) {
-        hold(servo, reg, value);
+        grobo_i_dxl_hold(servo, reg, value);
     }
 }
 
@@ -55,7 +55,7 @@ static void to_factory(grobo_sim_servo *servo, bool kept)
     for (size_t i = 0; (reg = grobo_servo_register_row(servo->model, i)) != NULL; i++) {
         GROBO_ASSERT(reg->address + reg->bytes <= GROBO_SIM_REGISTER_BYTES);
         if (((reg->flags & GROBO_REGISTER_KEPT) != 0) == kept) {
-            hold(servo, reg, reg->factory);
+            grobo_i_dxl_hold(servo, reg, reg->factory);
         }
     }
 }

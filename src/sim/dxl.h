@@ -9,6 +9,7 @@
 int32_t grobo_i_dxl_get(const grobo_sim_servo *servo, grobo_register_role role);
 /* Sets it, to the end of its range where the value is beyond; nothing where there is none. */
 void grobo_i_dxl_put(grobo_sim_servo *servo, grobo_register_role role, int64_t value);
+void grobo_i_dxl_hold(grobo_sim_servo *servo, const grobo_servo_register *reg, int64_t value);
 /* The register of this name, which the model has. */
 const grobo_servo_register *grobo_i_dxl_row(const grobo_sim_servo *servo, const char *name);
 

@@ -476,7 +476,8 @@ static int set(grobo_sim *sim, int index, int address, int32_t value)
     return 0;
 }
 
-const grobo_sim_family grobo_sim_rs30x = {.measure = measure,
+const grobo_sim_family grobo_sim_rs30x = {.usual_bps = 115200,
+                                          .measure = measure,
                                           .packet = packet,
                                           .factory = factory,
                                           .boot = boot,

@@ -305,6 +305,19 @@ static int32_t start_mdeg(grobo_sim *sim, const grobo_sim_servo *servo, double i
            (int32_t)grobo_i_sim_random(sim, GROBO_I_SIM_CHANCE, (uint32_t)span_mdeg + 1);
 }
 
+static const grobo_sim_family *family_of(const grobo_sim_config *config, int index)
+{
+    const grobo_servo_model *model = config->servos != NULL ? config->servos[index] : NULL;
+    if (model == NULL) {
+        return &grobo_sim_rs30x;
+    }
+    const grobo_sim_family *const *family = config->families;
+    while (family != NULL && *family != NULL && !(*family)->knows(model)) {
+        family++;
+    }
+    return family != NULL ? *family : NULL;
+}
+
 /* The ear of the family of a servo; none where no family that was given has it. */
 static grobo_sim_ear *ear_of(grobo_sim *sim, const grobo_sim_family *family)
 {
@@ -318,19 +331,6 @@ static grobo_sim_ear *ear_of(grobo_sim *sim, const grobo_sim_family *family)
     }
     sim->ear[sim->n_ears].family = family;
     return &sim->ear[sim->n_ears++];
-}
-
-static const grobo_sim_family *family_of(const grobo_sim_config *config, int index)
-{
-    const grobo_servo_model *model = config->servos != NULL ? config->servos[index] : NULL;
-    if (model == NULL) {
-        return &grobo_sim_rs30x;
-    }
-    const grobo_sim_family *const *family = config->families;
-    while (family != NULL && *family != NULL && !(*family)->knows(model)) {
-        family++;
-    }
-    return family != NULL ? *family : NULL;
 }
 
 static int init_servo(grobo_sim *sim, int index)
@@ -364,8 +364,8 @@ static void use_defaults(grobo_sim_config *config)
 {
     config->model = config->model == NULL ? &grobo_gr001_model : config->model;
     if (config->baud_bps == 0) {
-        config->baud_bps =
-            config->servos != NULL && config->servos[0] != NULL ? OTHERS_BPS : 115200;
+        const grobo_sim_family *first = family_of(config, 0);
+        config->baud_bps = first == NULL || first->usual_bps == 0 ? OTHERS_BPS : first->usual_bps;
     }
     config->supply_mv = config->supply_mv == 0 ? SUPPLY_MV : config->supply_mv;
     config->ambient_c = config->ambient_c == 0 ? AMBIENT_C : config->ambient_c;

@@ -38,11 +38,11 @@ static void put_behind_the_slots(const grobo_robot_slot *image)
     memcpy(robot.events, &ghost, sizeof ghost);
 }
 
-static void expect_used(unsigned be)
+static void expect_used(uint64_t be)
 {
-    unsigned used = 0;
+    uint64_t used = 0;
     for (int i = 0; i < SLOTS; i++) {
-        used |= robot.slots[i].use != GROBO_I_USE_FREE ? 1U << i : 0;
+        used |= robot.slots[i].use != GROBO_I_USE_FREE ? UINT64_C(1) << i : 0;
     }
     assert_int_equal(used, be);
 }
@@ -267,7 +267,7 @@ static void every_slot_is_looked_at(void **state)
             grobo_i_slots_cancel(&robot, GROBO_I_USE_MOTION);
             break;
         }
-        expect_used(((1U << SLOTS) - 1) & ~(1U << at));
+        expect_used(((UINT64_C(1) << SLOTS) - 1) & ~(UINT64_C(1) << at));
     }
 }
 

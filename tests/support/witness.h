@@ -14,13 +14,14 @@
 #include <grobo/bus.h>
 #include <grobo/driver.h>
 #include <grobo/sim.h>
+#include <grobo/static.h>
 
 enum {
     WITNESS_BYTES = 64,
     WITNESS_SENT = 128,
     WITNESS_SAID = 64,
     WITNESS_SEEN = 16,
-    WITNESS_QUESTIONS = 16
+    WITNESS_QUESTIONS = GROBO_ROBOT_SLOTS + 4
 };
 
 /* A packet: sent by the host, said by a servo, or seen to arrive whole at the host. */

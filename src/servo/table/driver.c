@@ -3,8 +3,6 @@
 #include <math.h>
 #include <string.h>
 
-#include <grobo/sequencer.h>
-
 #include "src/servo/table/family.h"
 
 /* A run of registers. */
@@ -15,8 +13,6 @@ typedef struct span {
 #define MS_US 1000
 /* Rebooting, or taking factory settings. */
 #define RESTART_US 2000000
-/* A family without times keeps its unit all the same: it is what a speed is computed of. */
-#define TIME_STEP_US 1000
 /* A register this far from the goal is not written with it. */
 #define NEAR_BYTES 8
 
@@ -350,15 +346,6 @@ static int command(const grobo_driver *self, void *ctx, int id, grobo_servo_comm
 
 /* ---- the table ------------------------------------------------------------------------------- */
 
-/* Within the range that the goal's register has, and within one turn where it counts no turns. */
-static bool reaches(const grobo_joint *joint, const grobo_servo_model *servo, double angle_rad)
-{
-    int32_t ticks = grobo_i_table_ticks(joint, servo, angle_rad);
-    const grobo_servo_register *goal = grobo_servo_register_of(servo, GROBO_ROLE_GOAL);
-    bool turn = ticks >= 0 && ticks < servo->span_ticks;
-    return ticks >= goal->min && ticks <= goal->max && (joint->turns || turn);
-}
-
 /* Whether one frame can ask all joints. */
 static bool reads_alike(const grobo_driver *self)
 {
@@ -374,38 +361,10 @@ static bool reads_alike(const grobo_driver *self)
     return family_of(self)->sync_read(grobo_i_table_servo(self, 0));
 }
 
-static double coarsest_rad(const grobo_driver *self)
-{
-    double step_rad = 0;
-    for (int j = 0; j < self->model->n_joints; j++) {
-        const grobo_joint *joint = &self->model->joints[j];
-        const grobo_servo_model *servo = grobo_i_table_servo(self, j);
-        double own_rad =
-            fabs(grobo_i_table_angle(joint, servo, 1) - grobo_i_table_angle(joint, servo, 0));
-        step_rad = fmax(step_rad, own_rad);
-    }
-    return step_rad;
-}
-
 int grobo_i_table_driver(grobo_driver *driver, const grobo_model *model,
                          const grobo_protocol *protocol, const grobo_i_family *family)
 {
-    if (driver == NULL || model == NULL || grobo_model_check(model) < 0) {
-        return GROBO_ERR_ARG;
-    }
     grobo_driver made = {
-        .name = model->name,
-        .model = model,
-        .protocol = protocol,
-        .time_step_us = TIME_STEP_US,
-        .time_max_us = (int64_t)family->time_max_ms * MS_US,
-        .limits = {.temperature_c = 65,
-                   .lost_replies = 5,
-                   .approach_rad_s = grobo_rad_from_deg(GROBO_PLAY_APPROACH_DEG_S)},
-        .on_exit = GROBO_EXIT_HOLD,
-        .arm = true,
-        .all_first = true,
-        .family = family,
         .check = check,
         .posture = posture,
         .torque = torque,
@@ -416,16 +375,11 @@ int grobo_i_table_driver(grobo_driver *driver, const grobo_model *model,
         .command = command,
         .inspect = grobo_i_table_inspect,
     };
-    for (int j = 0; j < model->n_joints; j++) {
-        const grobo_joint *joint = &model->joints[j];
-        const grobo_servo_model *servo = grobo_i_table_servo(&made, j);
-        if (servo == NULL || !reaches(joint, servo, joint->min_rad) ||
-            !reaches(joint, servo, joint->max_rad)) {
-            return GROBO_ERR_ARG;
-        }
+    int result = grobo_i_table_make(&made, model, protocol, family);
+    if (result < 0 || driver == NULL) {
+        return result < 0 ? result : GROBO_ERR_ARG;
     }
-    made.angle_step_rad = coarsest_rad(&made);
     made.sense_many = reads_alike(&made) ? sense_many : NULL;
     *driver = made;
-    return grobo_driver_check(driver);
+    return GROBO_OK;
 }

@@ -45,6 +45,11 @@ typedef struct grobo_i_family {
 int grobo_i_table_driver(grobo_driver *driver, const grobo_model *model,
                          const grobo_protocol *protocol, const grobo_i_family *family);
 
+/* Fills in all of a table but the functions and what is not the same everywhere. @return as
+ * above */
+int grobo_i_table_make(grobo_driver *made, const grobo_model *model, const grobo_protocol *protocol,
+                       const grobo_i_family *family);
+
 /* The servo of a joint, NULL: in no table. */
 const grobo_servo_model *grobo_i_table_servo(const grobo_driver *self, int joint);
 
@@ -63,6 +68,9 @@ double grobo_i_table_unit(const grobo_servo_register *reg);
 double grobo_i_table_angle(const grobo_joint *joint, const grobo_servo_model *servo, int32_t ticks);
 int32_t grobo_i_table_ticks(const grobo_joint *joint, const grobo_servo_model *servo,
                             double angle_rad);
+
+/* The coarsest count of a joint's servo. */
+double grobo_i_table_step_rad(const grobo_driver *self);
 
 /* Of grobo_driver; inspect.c */
 grobo_write_kind grobo_i_table_write_kind(const grobo_driver *self, const grobo_register_io *io);

@@ -73,3 +73,16 @@ bool grobo_i_table_within(const grobo_joint *joint, const grobo_servo_model *ser
     int32_t b = grobo_i_table_ticks(joint, servo, joint->max_rad);
     return a >= min && a <= max && b >= min && b <= max;
 }
+
+double grobo_i_table_step_rad(const grobo_driver *self)
+{
+    double step_rad = 0;
+    for (int j = 0; j < self->model->n_joints; j++) {
+        const grobo_joint *joint = &self->model->joints[j];
+        const grobo_servo_model *servo = grobo_i_table_servo(self, j);
+        double own_rad =
+            fabs(grobo_i_table_angle(joint, servo, 1) - grobo_i_table_angle(joint, servo, 0));
+        step_rad = fmax(step_rad, own_rad);
+    }
+    return step_rad;
+}

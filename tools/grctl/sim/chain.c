@@ -3,6 +3,7 @@
 
 #include <grobo/dxl2.h>
 #include <grobo/feetech.h>
+#include <grobo/lx16a.h>
 #include <grobo/posture.h>
 
 #include "tools/grctl/sim/chain.h"
@@ -12,11 +13,12 @@
 /* The others turn around; a model needs an end. */
 #define TURNS_DEG 360000.0
 
-static const grobo_servo_table *const tables[] = {&grobo_dxl2_table, &grobo_dxl1_table,
-                                                  &grobo_sts_table, &grobo_scs_table};
+static const grobo_servo_table *const tables[] = {
+    &grobo_dxl2_table, &grobo_dxl1_table, &grobo_sts_table, &grobo_scs_table, &grobo_lx16a_table};
 enum { TABLES = (int)(sizeof tables / sizeof *tables) };
 
-static const grobo_sim_family *const families[] = {&grobo_sim_dxl2, &grobo_sim_dxl1, NULL};
+static const grobo_sim_family *const families[] = {&grobo_sim_dxl2, &grobo_sim_dxl1,
+                                                   &grobo_sim_lx16a, NULL};
 
 static int refuse(app *a, const char *item, size_t length, const char *why)
 {

@@ -1,0 +1,330 @@
+/* SPDX-License-Identifier: MIT */
+/* Robots of LewanSoul and Hiwonder servos: one frame for one servo, one value a frame. */
+#include <math.h>
+
+#include <grobo/driver.h>
+
+#include "src/base/bytes.h"
+#include "src/servo/lx16a/items.h"
+#include "src/servo/table/family.h"
+
+#define MS_US 1000
+#define TIME_MAX_MS 30000
+/* Saving takes as long as writing the id (lx16a.md: some 10 ms). */
+#define SAVE_US 20000
+/* A shaft may stand a little outside of its range. */
+enum { OUTSIDE_TICKS = 100, HEAT_MAX_C = 120 };
+
+static const grobo_i_family family = {.tables = {&grobo_lx16a_table}, .time_max_ms = TIME_MAX_MS};
+
+/* ---- frames ---------------------------------------------------------------------------------- */
+
+static int finish(const grobo_driver *self, uint8_t id, uint8_t command, const uint8_t *data,
+                  size_t n, grobo_exchange *exchange)
+{
+    const grobo_lx16a_packet packet = {id, command, data, n};
+    int size = grobo_lx16a_build(&packet, exchange->frame, sizeof exchange->frame);
+    if (size < 0) {
+        return size;
+    }
+    exchange->frame_bytes = (uint16_t)size;
+    int reply = self->protocol->reply_to(exchange->frame, (size_t)size, &exchange->reply);
+    return reply < 0 ? reply : GROBO_OK;
+}
+
+/* The joint number `part` of a set, -1 behind the last. */
+static int joint_of_part(const grobo_driver *self, grobo_joint_mask joints, int part)
+{
+    for (int j = 0; j < self->model->n_joints; j++) {
+        if ((joints & GROBO_JOINT_BIT(j)) != 0 && part-- == 0) {
+            return j;
+        }
+    }
+    return -1;
+}
+
+static int posture(const grobo_driver *self, void *ctx, const grobo_target *target, int part,
+                   grobo_exchange *exchange)
+{
+    (void)ctx;
+    int j = joint_of_part(self, target->posture.set, part);
+    if (j < 0) {
+        return 0;
+    }
+    const grobo_joint *joint = &self->model->joints[j];
+    int64_t ms = (target->joint_time_us[j] + MS_US / 2) / MS_US;
+    int32_t ticks =
+        grobo_i_table_ticks(joint, grobo_i_table_servo(self, j), target->posture.angle_rad[j]);
+    uint8_t data[4];
+    grobo_i_put_u16(data, (uint16_t)fmin(fmax(ticks, 0), 1000));
+    grobo_i_put_u16(data + 2, (uint16_t)(ms < 1 ? 1 : ms > TIME_MAX_MS ? TIME_MAX_MS : ms));
+    int result = finish(self, joint->motor, GROBO_LX16A_MOVE, data, sizeof data, exchange);
+    return result < 0 ? result : 1;
+}
+
+static int torque(const grobo_driver *self, void *ctx, grobo_joint_mask joints, grobo_torque mode,
+                  int part, grobo_exchange *exchange)
+{
+    (void)ctx;
+    int j = joint_of_part(self, joints, part);
+    const uint8_t on = mode == GROBO_TORQUE_ON;
+    if (mode == GROBO_TORQUE_BRAKE || j < 0) {
+        return j < 0 ? 0 : GROBO_ERR_UNSUPPORTED;
+    }
+    int result =
+        finish(self, self->model->joints[j].motor, GROBO_LX16A_LOAD, &on, sizeof on, exchange);
+    return result < 0 ? result : 1;
+}
+
+/* ---- reading --------------------------------------------------------------------------------- */
+
+static int check(const grobo_driver *self, void *ctx, int part, grobo_exchange *exchange)
+{
+    (void)ctx;
+    if (part >= self->model->n_joints) {
+        return 0;
+    }
+    int result =
+        finish(self, self->model->joints[part].motor, GROBO_LX16A_ID_READ, NULL, 0, exchange);
+    return result < 0 ? result : 1;
+}
+
+/* What each kind reads, one value after the other; the setup before the angle, so that a joint
+ * whose servo is set up otherwise is never sensed. */
+static int read_part(const grobo_driver *self, int joint, grobo_sense_kind kind, int part,
+                     grobo_exchange *exchange)
+{
+    static const uint8_t full[] = {GROBO_LX16A_LOAD_READ, GROBO_LX16A_POSITION_READ,
+                                   GROBO_LX16A_TEMPERATURE_READ, GROBO_LX16A_VOLTAGE_READ, 0};
+    static const uint8_t position[] = {GROBO_LX16A_POSITION_READ, 0};
+    static const uint8_t goal[] = {GROBO_LX16A_LOAD_READ, GROBO_LX16A_POSITION_READ,
+                                   GROBO_LX16A_MOVE_READ, 0};
+    static const uint8_t all[] = {GROBO_LX16A_MODE_READ,    GROBO_LX16A_LIMITS_READ,
+                                  GROBO_LX16A_LOAD_READ,    GROBO_LX16A_POSITION_READ,
+                                  GROBO_LX16A_VOLTAGE_READ, GROBO_LX16A_TEMPERATURE_READ,
+                                  GROBO_LX16A_MOVE_READ,    0};
+    static const uint8_t *const kinds[] = {[GROBO_SENSE_FULL] = full,
+                                           [GROBO_SENSE_POSITION] = position,
+                                           [GROBO_SENSE_GOAL] = goal,
+                                           [GROBO_SENSE_ALL] = all};
+    uint8_t command = kinds[kind][part]; /* a part comes after the one before it */
+    if (command == 0) {
+        return 0;
+    }
+    int result = finish(self, self->model->joints[joint].motor, command, NULL, 0, exchange);
+    return result < 0 ? result : 1;
+}
+
+static int sense(const grobo_driver *self, void *ctx, int joint, grobo_sense_kind kind,
+                 grobo_exchange *exchange)
+{
+    (void)ctx;
+    int result = read_part(self, joint, kind, 0, exchange);
+    return result < 0 ? result : GROBO_OK;
+}
+
+static int sense_more(const grobo_driver *self, void *ctx, int joint, grobo_sense_kind kind,
+                      int part, grobo_exchange *exchange)
+{
+    (void)ctx;
+    return read_part(self, joint, kind, part, exchange);
+}
+
+/* Two bytes that are swapped pass the sum: what no servo says is not believed. */
+static int take_position(const grobo_joint *joint, const grobo_servo_model *servo, int32_t ticks,
+                         grobo_joint_state *state)
+{
+    if (ticks < -OUTSIDE_TICKS || ticks > servo->span_ticks + OUTSIDE_TICKS) {
+        return GROBO_ERR_MISMATCH;
+    }
+    state->angle_rad = grobo_i_table_angle(joint, servo, ticks);
+    state->valid |= GROBO_FIELD_ANGLE;
+    return GROBO_OK;
+}
+
+static int take_goal(const grobo_joint *joint, const grobo_servo_model *servo, const uint8_t *data,
+                     grobo_joint_state *state)
+{
+    int32_t ticks = grobo_i_get_u16(data), ms = grobo_i_get_u16(data + 2);
+    if (ticks > servo->span_ticks || ms > TIME_MAX_MS) {
+        return GROBO_ERR_MISMATCH;
+    }
+    state->goal_rad = grobo_i_table_angle(joint, servo, ticks);
+    state->goal_time_us = (int64_t)ms * MS_US;
+    state->valid |= GROBO_FIELD_GOAL;
+    return GROBO_OK;
+}
+
+/* Servo mode, and limits that hold all of the joint's range. */
+static int judge_setup(const grobo_joint *joint, const grobo_servo_model *servo,
+                       const grobo_packet *reply)
+{
+    if (reply->address == grobo_i_lx16a_item_of(GROBO_LX16A_MODE)->address) {
+        return reply->data[0] == 0 ? GROBO_OK : GROBO_ERR_SETUP;
+    }
+    return grobo_i_table_within(joint, servo, grobo_i_get_u16(reply->data),
+                                grobo_i_get_u16(reply->data + 2))
+               ? GROBO_OK
+               : GROBO_ERR_SETUP;
+}
+
+static int parse(const grobo_driver *self, void *ctx, int joint, const grobo_packet *reply,
+                 grobo_joint_state *state)
+{
+    (void)ctx;
+    const grobo_joint *moved = &self->model->joints[joint];
+    const grobo_servo_model *servo = grobo_i_table_servo(self, joint);
+    const grobo_i_lx16a_item *item =
+        grobo_i_lx16a_item_at(reply->address, (unsigned)reply->data_bytes);
+    const uint8_t *data = reply->data;
+    const uint8_t read = item == NULL ? 0 : item->read;
+    switch (read) {
+    case GROBO_LX16A_MODE_READ:
+    case GROBO_LX16A_LIMITS_READ:
+        return judge_setup(moved, servo, reply);
+    case GROBO_LX16A_POSITION_READ:
+        return take_position(moved, servo, grobo_i_get_i16(data), state);
+    case GROBO_LX16A_MOVE_READ:
+        return take_goal(moved, servo, data, state);
+    case GROBO_LX16A_LOAD_READ:
+        state->torque = data[0] == 1 ? GROBO_TORQUE_ON : GROBO_TORQUE_OFF;
+        state->valid = GROBO_FIELD_TORQUE;
+        return data[0] <= 1 ? GROBO_OK : GROBO_ERR_MISMATCH;
+    case GROBO_LX16A_TEMPERATURE_READ:
+        state->temperature_c = data[0];
+        state->valid = GROBO_FIELD_TEMPERATURE;
+        return data[0] <= HEAT_MAX_C ? GROBO_OK : GROBO_ERR_MISMATCH;
+    case GROBO_LX16A_VOLTAGE_READ:
+        state->voltage_mv = grobo_i_get_u16(data);
+        state->valid = GROBO_FIELD_VOLTAGE;
+        return GROBO_OK;
+    default:
+        return GROBO_ERR_MISMATCH;
+    }
+}
+
+/* ---- values, and frames that a user hands in ------------------------------------------------- */
+
+static grobo_write_kind kind_of(uint8_t command, const uint8_t *data)
+{
+    switch (command) {
+    case GROBO_LX16A_LED:
+    case GROBO_LX16A_ALARM:
+        return GROBO_WRITE_HARMLESS;
+    case GROBO_LX16A_MODE: /* a wheel turns at once */
+        return data != NULL && data[0] != 0 ? GROBO_WRITE_MOTOR : GROBO_WRITE_SETTING;
+    case GROBO_LX16A_ID:
+    case GROBO_LX16A_OFFSET:
+    case GROBO_LX16A_LIMITS:
+    case GROBO_LX16A_VOLTAGES:
+    case GROBO_LX16A_HEAT:
+        return GROBO_WRITE_SETTING;
+    default:
+        return GROBO_WRITE_MOTOR;
+    }
+}
+
+static grobo_write_kind write_kind(const grobo_driver *self, const grobo_register_io *io)
+{
+    (void)self;
+    const grobo_i_lx16a_item *item = grobo_i_lx16a_item_at(io->address, io->length);
+    return item == NULL ? GROBO_WRITE_MOTOR : kind_of(item->write, io->data);
+}
+
+static int registers(const grobo_driver *self, void *ctx, const grobo_register_io *io,
+                     grobo_exchange *exchange)
+{
+    (void)ctx;
+    const grobo_i_lx16a_item *item = grobo_i_lx16a_item_at(io->address, io->length);
+    if (item == NULL || (io->data != NULL && item->write == 0)) {
+        return GROBO_ERR_ARG;
+    }
+    return io->data == NULL ? finish(self, io->id, item->read, NULL, 0, exchange)
+                            : finish(self, io->id, item->write, io->data, io->length, exchange);
+}
+
+/* The offset is the one value that is not kept by itself. */
+static int command(const grobo_driver *self, void *ctx, int id, grobo_servo_command what,
+                   grobo_exchange *exchange)
+{
+    (void)ctx;
+    if (what != GROBO_SERVO_FLASH) {
+        return GROBO_ERR_UNSUPPORTED;
+    }
+    exchange->settle_us = SAVE_US;
+    return finish(self, (uint8_t)id, GROBO_LX16A_OFFSET_SAVE, NULL, 0, exchange);
+}
+
+/* A goal or a torque for each joint of the id; anything else that moves is not understood: START
+ * and STOP are of what was told before. */
+static int inspect_joint(const grobo_driver *self, const grobo_lx16a_packet *packet, int joint,
+                         grobo_target *target, grobo_joint_mask *torqued)
+{
+    grobo_joint_state state = {.valid = 0};
+    grobo_joint_mask bit = GROBO_JOINT_BIT(joint);
+    if (packet->command == GROBO_LX16A_LOAD && packet->data_bytes == 1 && packet->data[0] <= 1) {
+        torqued[packet->data[0] == 1 ? GROBO_TORQUE_ON : GROBO_TORQUE_OFF] |= bit;
+        return GROBO_OK;
+    }
+    if (packet->command != GROBO_LX16A_MOVE || packet->data_bytes != 4 ||
+        take_goal(&self->model->joints[joint], grobo_i_table_servo(self, joint), packet->data,
+                  &state) < 0) {
+        return GROBO_ERR_UNSUPPORTED;
+    }
+    target->posture.angle_rad[joint] = state.goal_rad;
+    target->posture.set |= bit;
+    target->joint_time_us[joint] = state.goal_time_us;
+    return GROBO_OK;
+}
+
+static int inspect(const grobo_driver *self, void *ctx, const uint8_t *frame, size_t size,
+                   grobo_target *target, grobo_joint_mask *torqued)
+{
+    (void)ctx;
+    grobo_lx16a_packet packet;
+    int result = GROBO_ERR_UNSUPPORTED;
+    if (grobo_lx16a_parse(frame, size, &packet) < 0) {
+        return GROBO_ERR_UNSUPPORTED;
+    }
+    bool reads = packet.data_bytes == 0 && grobo_lx16a_reply_bytes(packet.command) > 0;
+    if (reads || kind_of(packet.command, packet.data) == GROBO_WRITE_HARMLESS) {
+        return GROBO_OK;
+    }
+    for (int j = 0; j < self->model->n_joints; j++) {
+        if (packet.id == GROBO_LX16A_ID_ALL || packet.id == self->model->joints[j].motor) {
+            result = inspect_joint(self, &packet, j, target, torqued);
+            if (result < 0) {
+                return result;
+            }
+        }
+    }
+    return result;
+}
+
+/* ---- the table ------------------------------------------------------------------------------- */
+
+int grobo_lx16a_driver_init(grobo_driver *driver, const grobo_model *model)
+{
+    grobo_driver made = {
+        .no_speed = true,
+        .check = check,
+        .posture = posture,
+        .torque = torque,
+        .sense = sense,
+        .sense_more = sense_more,
+        .parse = parse,
+        .write_kind = write_kind,
+        .registers = registers,
+        .command = command,
+        .inspect = inspect,
+    };
+    int result = grobo_i_table_make(&made, model, &grobo_lx16a_protocol, &family);
+    for (int j = 0; result >= 0 && j < model->n_joints; j++) {
+        result = model->joints[j].turns ? GROBO_ERR_ARG : result;
+    }
+    if (result < 0 || driver == NULL) {
+        return result < 0 ? result : GROBO_ERR_ARG;
+    }
+    *driver = made;
+    return GROBO_OK;
+}

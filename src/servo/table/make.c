@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: MIT */
+/* What the tables of all families have in common that name their servos by a table of registers. */
+#include <grobo/sequencer.h>
+
+#include "src/servo/table/family.h"
+
+#define MS_US 1000
+
+/* Within the range that the goal's register has, and within one turn where it counts no turns. */
+static bool reaches(const grobo_joint *joint, const grobo_servo_model *servo, double angle_rad)
+{
+    int32_t ticks = grobo_i_table_ticks(joint, servo, angle_rad);
+    const grobo_servo_register *goal = grobo_servo_register_of(servo, GROBO_ROLE_GOAL);
+    bool turn = ticks >= 0 && ticks < servo->span_ticks;
+    return ticks >= goal->min && ticks <= goal->max && (joint->turns || turn);
+}
+
+/* A family without times keeps its unit all the same: it is what a speed is computed of. */
+int grobo_i_table_make(grobo_driver *made, const grobo_model *model, const grobo_protocol *protocol,
+                       const grobo_i_family *family)
+{
+    if (model == NULL || grobo_model_check(model) < 0) {
+        return GROBO_ERR_ARG;
+    }
+    made->name = model->name;
+    made->model = model;
+    made->protocol = protocol;
+    made->family = family;
+    made->time_step_us = MS_US;
+    made->time_max_us = (int64_t)family->time_max_ms * MS_US;
+    made->limits =
+        (grobo_safety_limits){.temperature_c = 65,
+                              .lost_replies = 5,
+                              .approach_rad_s = grobo_rad_from_deg(GROBO_PLAY_APPROACH_DEG_S)};
+    made->on_exit = GROBO_EXIT_HOLD;
+    made->arm = made->all_first = true;
+    for (int j = 0; j < model->n_joints; j++) {
+        const grobo_joint *joint = &model->joints[j];
+        const grobo_servo_model *servo = grobo_i_table_servo(made, j);
+        if (servo == NULL || !reaches(joint, servo, joint->min_rad) ||
+            !reaches(joint, servo, joint->max_rad)) {
+            return GROBO_ERR_ARG;
+        }
+    }
+    made->angle_step_rad = grobo_i_table_step_rad(made);
+    return grobo_driver_check(made);
+}
