@@ -276,6 +276,18 @@ GROBO_API int grobo_feetech_driver_init(grobo_driver *driver, const grobo_model 
 GROBO_API int grobo_lx16a_driver_init(grobo_driver *driver, const grobo_model *model);
 
 /**
+ * The same for Kondo's KRS servos with ICS 3.6 (ics.h), on a line with even parity, mostly with an
+ * echo. grobo_joint.servo_model is a number of grobo_ics_table. Goals have no time: the servo's
+ * speed is set before each goal, and taken for a part of its top speed. One frame moves or reads
+ * one servo: a robot may have at most 18 joints. A goal is answered with where the joint is, and
+ * switches the torque on. Servos tell neither speed nor goal.
+ * @return 0, GROBO_ERR_ARG: a bad model, a servo that is not known, a joint beyond its reach or of
+ *         several turns; GROBO_ERR_UNSUPPORTED: a servo with ICS 3.5, which cannot tell where it is
+ *         but by being moved or let go.
+ */
+GROBO_API int grobo_ics_driver_init(grobo_driver *driver, const grobo_model *model);
+
+/**
  * The table of HPI's GR001.
  * @param wiring through its board, or its servos straight on a bus.
  * @return a static table, or NULL for an unknown wiring. Thread safe.

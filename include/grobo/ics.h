@@ -14,6 +14,7 @@
 #define GROBO_ICS_H
 
 #include <grobo/protocol.h>
+#include <grobo/registers.h>
 
 GROBO_BEGIN_DECLS
 
@@ -80,6 +81,20 @@ GROBO_CORE int grobo_ics_parse(const uint8_t *sent, size_t sent_bytes, const uin
 /** Puts a frame together. @return size, or GROBO_ERR_ARG (an id, item or value that is none),
  *  GROBO_ERR_SPACE. */
 GROBO_CORE int grobo_ics_build(const grobo_ics_packet *packet, uint8_t *buf, size_t cap);
+
+/** The protocol, for the bus. The maker prints no return delay: 500 us is assumed. */
+GROBO_API extern const grobo_protocol grobo_ics_protocol;
+
+/**
+ * Their values, and models. The servos know no addresses and do not tell their model: both numbers
+ * are this library's. 0 to 31 are the EEPROM, whose nibbles are put together; it is read and
+ * written as a whole, and reserved bytes go back as they were read. The others are read or written
+ * one by one.
+ */
+GROBO_API extern const grobo_servo_table grobo_ics_table;
+
+/** True for servos with ICS 3.6, which tell their position without being moved. */
+GROBO_CORE bool grobo_ics_tells_position(const grobo_servo_model *servo);
 
 GROBO_END_DECLS
 

@@ -139,6 +139,8 @@ GROBO_API extern const grobo_sim_family grobo_sim_dxl2;
 GROBO_API extern const grobo_sim_family grobo_sim_dxl1;
 /** Models of grobo_lx16a_table. */
 GROBO_API extern const grobo_sim_family grobo_sim_lx16a;
+/** Models of grobo_ics_table. */
+GROBO_API extern const grobo_sim_family grobo_sim_ics;
 
 /* ---- configuration -------------------------------------------------------------------------- */
 
@@ -339,6 +341,7 @@ typedef struct grobo_sim {
     uint32_t fault_below[GROBO_SIM_FAULTS]; /* a fault strikes when its generator gives less */
     uint32_t random[GROBO_SIM_FAULTS + 1];  /* one generator a fault, one for the rest */
     bool gone;                              /* hung up */
+    bool parity;                            /* a byte has 11 bits, and is lost with one wrong */
     uint8_t n_servos;
     grobo_sim_servo servo[GROBO_SIM_SERVOS_MAX];
     grobo_sim_wire in, out; /* from the host, to the host */

@@ -138,6 +138,8 @@ void grobo_i_slots_cancel_job(grobo_robot *robot, int number);
 /* Takes back targets that have not left and move one of these joints; `played`: and those of the
  * motion that is played. */
 void grobo_i_slots_cancel_goals(grobo_robot *robot, grobo_joint_mask joints, bool played);
+/* Takes back the parts of an order that wait behind this one, which has failed. */
+void grobo_i_slots_cancel_rest(const grobo_robot_slot *before);
 /* Takes back frames that would switch the torque of one of these joints on. */
 void grobo_i_slots_keep_off(grobo_robot *robot, grobo_joint_mask joints);
 /* True if a frame that does this to the joint waits for the line; `torque` OFF for another deed. */

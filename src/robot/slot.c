@@ -143,6 +143,18 @@ void grobo_i_slots_cancel_goals(grobo_robot *robot, grobo_joint_mask joints, boo
     }
 }
 
+void grobo_i_slots_cancel_rest(const grobo_robot_slot *before)
+{
+    const grobo_robot_order *order = &before->order;
+    for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
+        grobo_robot_slot *slot = &before->robot->slots[i];
+        if (slot->use == before->use && waits(slot) && slot->given_us == before->given_us &&
+            slot->order.joints == order->joints && slot->order.part > order->part) {
+            cancel(slot);
+        }
+    }
+}
+
 void grobo_i_slots_keep_off(grobo_robot *robot, grobo_joint_mask joints)
 {
     for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {

@@ -38,7 +38,7 @@ static int read_on(const grobo_robot_slot *before)
  * @return 1 where the reading goes on. */
 static int take_reading(const grobo_robot_slot *slot, int result, const grobo_packet *reply)
 {
-    GROBO_ASSERT((slot->reads || slot->many) && slot->joint < slot->robot->driver->model->n_joints);
+    GROBO_ASSERT(slot->joint < slot->robot->driver->model->n_joints);
     grobo_robot *robot = slot->robot;
     grobo_joint_state got;
     int taken = grobo_i_reading_take(slot, result, reply, &got);
@@ -82,11 +82,28 @@ static void take_unread(grobo_robot_slot *slot, int result, const grobo_packet *
     }
 }
 
+/* Of a frame that moves or switches one joint: some servos answer it with where they are. Where it
+ * is lost, what its order has for that joint besides is not sent: a goal without its speed. */
+static void take_told(grobo_robot_slot *slot, int result, const grobo_packet *reply)
+{
+    if (slot->reads || slot->many || slot->use == GROBO_I_USE_JOB ||
+        grobo_joints_count(slot->order.joints) != 1) {
+        return;
+    }
+    if (result < 0) {
+        grobo_i_slots_cancel_rest(slot);
+    } else if (reply != NULL && reply->data_bytes > 0) {
+        slot->joint = (uint8_t)grobo_i_lowest(slot->order.joints);
+        (void)take_reading(slot, result, reply);
+    }
+}
+
 void grobo_i_frame_over(grobo_robot_slot *slot, int result, const grobo_packet *reply)
 {
     if (slot->txn.sent_us < 0) {
         grobo_i_gate_unwait(slot->robot, &slot->order);
     }
+    take_told(slot, result, reply);
     switch ((grobo_i_use)slot->use) {
     case GROBO_I_USE_FREE:
     case GROBO_I_USE_PLAIN:

@@ -73,7 +73,9 @@ static void listen(grobo_sim *sim, grobo_sim_ear *ear, uint8_t byte)
 
 void grobo_i_sim_bus_hear(grobo_sim *sim, uint8_t byte, int64_t t_ns)
 {
-    grobo_i_sim_talk_into(sim, &byte, t_ns);
+    if (!grobo_i_sim_talk_into(sim, &byte, t_ns)) {
+        return;
+    }
     if (sim->config.echo) {
         grobo_i_sim_to_host(sim, byte, t_ns);
     }

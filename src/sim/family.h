@@ -12,6 +12,7 @@
 struct grobo_sim_family {
     /* Rate of the line where nothing else is asked for; 0: 1 Mbps. */
     uint32_t usual_bps;
+    bool parity; /* of the line where the first servo is of this family */
     /* Whether a model is one of its; NULL for RS30x, which have none. */
     bool (*knows)(const grobo_servo_model *model);
     /* Size of the command packet that n > 0 bytes start with, whatever its sum; 0: more is needed;

@@ -78,6 +78,9 @@ bool grobo_i_sim_crosses(grobo_sim *sim, uint8_t *byte)
         return false;
     }
     if (grobo_i_sim_strikes(sim, GROBO_SIM_FAULT_FLIP, -1)) {
+        if (sim->parity) {
+            return false; /* whoever receives it drops it */
+        }
         *byte = (uint8_t)(*byte ^ 1u << grobo_i_sim_random(sim, GROBO_SIM_FAULT_FLIP, 8));
     }
     return true;

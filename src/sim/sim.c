@@ -34,7 +34,8 @@
 
 static int64_t byte_ns(const grobo_sim *sim, uint32_t bps)
 {
-    return sim->config.unpaced ? 1 : 10000000000 / bps;
+    int64_t bits = sim->parity ? 11 : 10;
+    return sim->config.unpaced ? 1 : bits * 1000000000 / bps;
 }
 
 static void arrive(grobo_sim *sim, int64_t t_ns)
@@ -53,7 +54,10 @@ static void arrive(grobo_sim *sim, int64_t t_ns)
 /* A byte of a servo is over. */
 static void said(grobo_sim *sim, int64_t t_ns)
 {
-    uint8_t byte = grobo_i_sim_talk_take(sim, t_ns);
+    uint8_t byte;
+    if (!grobo_i_sim_talk_take(sim, t_ns, &byte)) {
+        return;
+    }
     if (sim->config.wiring == GROBO_WIRING_BUS) {
         grobo_i_sim_to_host(sim, byte, t_ns);
     } else {
@@ -397,6 +401,8 @@ int grobo_sim_init(grobo_sim *sim, const grobo_sim_config *config, int64_t now_u
     sim->in.free_ns = sim->out.free_ns = sim->bus_heard_ns = sim->hand_over_ns = sim->now_ns;
     sim->supply_mv = with.supply_mv;
     sim->n_servos = with.model->n_joints;
+    const grobo_sim_family *first = family_of(&with, 0);
+    sim->parity = first != NULL && first->parity;
     sim->bus_bps = BUS_BPS;
     sim->bus_byte_ns = byte_ns(sim, sim->bus_bps);
     (void)grobo_sim_set_line_bps(sim, with.baud_bps);

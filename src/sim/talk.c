@@ -60,7 +60,7 @@ static void collided(grobo_sim *sim, bool with_master)
     grobo_i_sim_note(sim, GROBO_SIM_COLLISION, -1, with_master);
 }
 
-void grobo_i_sim_talk_into(grobo_sim *sim, uint8_t *byte, int64_t t_ns)
+bool grobo_i_sim_talk_into(grobo_sim *sim, uint8_t *byte, int64_t t_ns)
 {
     bool clashed = false;
     for (size_t i = 0; i < GROBO_SIM_TALKS_MAX; i++) {
@@ -69,6 +69,7 @@ void grobo_i_sim_talk_into(grobo_sim *sim, uint8_t *byte, int64_t t_ns)
     if (clashed) {
         collided(sim, true);
     }
+    return !clashed || !sim->parity;
 }
 
 /* ---- what servos say ------------------------------------------------------------------------- */
@@ -141,7 +142,7 @@ int64_t grobo_i_sim_talks_end(const grobo_sim *sim)
     return end_ns;
 }
 
-uint8_t grobo_i_sim_talk_take(grobo_sim *sim, int64_t t_ns)
+bool grobo_i_sim_talk_take(grobo_sim *sim, int64_t t_ns, uint8_t *taken)
 {
     int first = next_talk(sim);
     GROBO_ASSERT(first >= 0 && sim->talk[first].said < sim->talk[first].used);
@@ -159,5 +160,6 @@ uint8_t grobo_i_sim_talk_take(grobo_sim *sim, int64_t t_ns)
     if (talk->said == talk->used) {
         talk->used = 0;
     }
-    return byte;
+    *taken = byte;
+    return !clashed || !sim->parity;
 }

@@ -237,7 +237,7 @@ static void a_reading_without_room_does_not_spin(void **state)
     assert_true(grobo_robot_deadline(&rig.robot, rig.now_us) <= rig.now_us);
     assert_int_equal(grobo_sim_set_fault(&rig.sim, GROBO_SIM_FAULT_SILENT, 0), 0);
     rig_forget(&rig);
-    rig_run(&rig, 300000);
+    rig_run(&rig, 3000000);
     assert_true(rig_count(&rig, GROBO_EVENT_JOINT) > 10); /* then it is read */
 }
 

@@ -8,11 +8,12 @@
 
 #include <grobo/dxl2.h>
 #include <grobo/feetech.h>
+#include <grobo/ics.h>
 
 #include "tests/support/chain_kit.h"
 
 static const grobo_sim_family *const families[] = {&grobo_sim_dxl2, &grobo_sim_dxl1,
-                                                   &grobo_sim_lx16a, NULL};
+                                                   &grobo_sim_lx16a, &grobo_sim_ics, NULL};
 
 void chain_start(chain_kit *chain, const grobo_servo_model *servo, int n,
                  const grobo_sim_config *config)

@@ -8,6 +8,7 @@
 
 #include <grobo/dxl2.h>
 #include <grobo/feetech.h>
+#include <grobo/ics.h>
 #include <grobo/lx16a.h>
 
 #include "src/base/instant.h"
@@ -23,6 +24,7 @@ static const family families[] = {
     {"scs", &grobo_scs_table, "SCS0009", grobo_feetech_driver_init, 1, 1000000, false},
     {"dxl1", &grobo_dxl1_table, "AX-12A", grobo_dxl1_driver_init, 1, 1000000, false},
     {"lx16a", &grobo_lx16a_table, "LX-16A", grobo_lx16a_driver_init, 0.5, 115200, true},
+    {"ics", &grobo_ics_table, "KRS-3301", grobo_ics_driver_init, 0.5, 115200, true},
 };
 
 const family *family_row(size_t index)
@@ -90,7 +92,7 @@ void family_start(family_kit *kit, const family *f, const grobo_robot_config *co
                   const grobo_sim_config *sim)
 {
     static const grobo_sim_family *const known[] = {&grobo_sim_dxl2, &grobo_sim_dxl1,
-                                                    &grobo_sim_lx16a, NULL};
+                                                    &grobo_sim_lx16a, &grobo_sim_ics, NULL};
     grobo_robot_config used = *config;
     grobo_sim_config with = sim != NULL ? *sim : (grobo_sim_config){.seed = 7};
     memset(kit, 0, sizeof *kit);
@@ -168,7 +170,10 @@ void family_run(family_kit *kit, int64_t us)
 
 int family_wait(family_kit *kit, int number)
 {
-    assert_true(number > 0);
+    if (number <= 0) {
+        fail_msg("%s: refused: %s, trip %d", kit->family->name, grobo_error_name(number),
+                 kit->n_trips > 0 ? (int)kit->trips[0] : 0);
+    }
     for (int64_t end_us = kit->now_us + 60 * (int64_t)S; kit->now_us < end_us;
          family_run(kit, MS)) {
         for (unsigned i = 0; i < kit->n_done && i < FAMILY_EVENTS; i++) {

@@ -269,6 +269,9 @@ static void driver_refuses_null(void **state)
     assert_int_equal(grobo_driver_wiring(NULL), GROBO_WIRING_BOARD);
     REFUSES(grobo_dxl2_driver_init(NULL, &grobo_gr001_model));
     REFUSES(grobo_dxl2_driver_init(&made_driver, NULL));
+    assert_false(grobo_ics_tells_position(NULL));
+    REFUSES(grobo_ics_driver_init(NULL, &grobo_gr001_model));
+    REFUSES(grobo_ics_driver_init(&made_driver, NULL));
     REFUSES(grobo_lx16a_driver_init(NULL, &grobo_gr001_model));
     REFUSES(grobo_lx16a_driver_init(&made_driver, NULL));
     REFUSES(grobo_dxl1_driver_init(NULL, &grobo_gr001_model));

@@ -41,9 +41,10 @@ simulator='servo/gr001/parser sim/board sim/bus sim/fault sim/inspect sim/note s
 families='bus/several servo/dxl1/driver servo/dxl1/packet servo/dxl1/protocol servo/dxl1/table
     servo/dxl2/driver servo/dxl2/packet servo/dxl2/protocol servo/dxl2/table
     servo/feetech/driver servo/feetech/protocol servo/feetech/scs servo/feetech/sts
-    servo/ics/packet servo/lx16a/driver servo/lx16a/packet servo/lx16a/protocol servo/lx16a/table
-    servo/registers servo/table/driver servo/table/inspect
-    servo/table/make servo/table/reading servo/table/values sim/dxl sim/dxl1 sim/dxl2 sim/lx16a'
+    servo/ics/driver servo/ics/packet servo/ics/protocol servo/ics/table servo/lx16a/driver
+    servo/lx16a/packet servo/lx16a/protocol servo/lx16a/table servo/registers
+    servo/table/driver servo/table/inspect servo/table/make servo/table/reading
+    servo/table/values sim/dxl sim/dxl1 sim/dxl2 sim/ics sim/lx16a'
 
 # figure CPU NAME BYTES: notes it, and prints it beside the one that was kept.
 figure() {

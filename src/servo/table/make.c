@@ -11,7 +11,7 @@ static bool reaches(const grobo_joint *joint, const grobo_servo_model *servo, do
 {
     int32_t ticks = grobo_i_table_ticks(joint, servo, angle_rad);
     const grobo_servo_register *goal = grobo_servo_register_of(servo, GROBO_ROLE_GOAL);
-    bool turn = ticks >= 0 && ticks < servo->span_ticks;
+    bool turn = servo->span_deg < 360 || (ticks >= 0 && ticks < servo->span_ticks);
     return ticks >= goal->min && ticks <= goal->max && (joint->turns || turn);
 }
 

@@ -3,6 +3,7 @@
 
 #include <grobo/dxl2.h>
 #include <grobo/feetech.h>
+#include <grobo/ics.h>
 #include <grobo/lx16a.h>
 #include <grobo/posture.h>
 
@@ -13,12 +14,13 @@
 /* The others turn around; a model needs an end. */
 #define TURNS_DEG 360000.0
 
-static const grobo_servo_table *const tables[] = {
-    &grobo_dxl2_table, &grobo_dxl1_table, &grobo_sts_table, &grobo_scs_table, &grobo_lx16a_table};
+static const grobo_servo_table *const tables[] = {&grobo_dxl2_table,  &grobo_dxl1_table,
+                                                  &grobo_sts_table,   &grobo_scs_table,
+                                                  &grobo_lx16a_table, &grobo_ics_table};
 enum { TABLES = (int)(sizeof tables / sizeof *tables) };
 
 static const grobo_sim_family *const families[] = {&grobo_sim_dxl2, &grobo_sim_dxl1,
-                                                   &grobo_sim_lx16a, NULL};
+                                                   &grobo_sim_lx16a, &grobo_sim_ics, NULL};
 
 static int refuse(app *a, const char *item, size_t length, const char *why)
 {
@@ -91,7 +93,9 @@ static bool id_fits(int id, const grobo_servo_model *model)
     if (!model) {
         return id >= 1 && id <= GROBO_RS30X_ID_MAX;
     }
-    return id <= (model->table == &grobo_dxl2_table ? GROBO_DXL2_ID_MAX : GROBO_DXL1_ID_MAX);
+    return id <= (model->table == &grobo_dxl2_table  ? GROBO_DXL2_ID_MAX
+                  : model->table == &grobo_ics_table ? GROBO_ICS_ID_MAX
+                                                     : GROBO_DXL1_ID_MAX);
 }
 
 /* One ID=TYPE of the list. */
@@ -116,7 +120,7 @@ static int read_one(app *a, sim_chain *chain, const char *item, size_t length)
     }
     if (!id_fits(id, model)) {
         return refuse(a, item, length,
-                      model ? "the id must be from 0 to 252 (AX, MX, Feetech: 253)"
+                      model ? "the id must be from 0 to 252 (AX, MX, Feetech, LX: 253; KRS: 31)"
                             : "the id must be from 1 to 127");
     }
     if (chain->model.n_joints == GROBO_SIM_SERVOS_MAX) {

@@ -1,0 +1,353 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Robots of Kondo KRS servos. A goal has no time: the servo's speed is set before each, for the way
+ * that is to be gone. Each goal is answered with where the servo is, and switches the torque on;
+ * whether it has torque stands in the EEPROM. No servo tells its goal: the answer to one shows that
+ * it was taken.
+ */
+#include <math.h>
+
+#include <grobo/driver.h>
+
+#include "src/base/bytes.h"
+#include "src/servo/ics/items.h"
+#include "src/servo/table/family.h"
+
+/* Speeds are 1 to 127, the last of them the servo's own: so they are taken for parts of it. The
+ * manual does not say. */
+#define SPEED_FULL 127
+/* A shaft may stand a little outside of its range. */
+enum { OUTSIDE_TICKS = 300, MA_OF_COUNT = 100, CURRENT_BITS = 0x3F };
+/* What clients wait after writing the EEPROM. */
+#define EEPROM_US 600000
+
+static const grobo_i_family family = {.tables = {&grobo_ics_table}, .time_max_ms = 65535};
+
+/* ---- frames ---------------------------------------------------------------------------------- */
+
+static int finish(const grobo_driver *self, const grobo_ics_packet *packet,
+                  grobo_exchange *exchange)
+{
+    int size = grobo_ics_build(packet, exchange->frame, sizeof exchange->frame);
+    if (size < 0) {
+        return size;
+    }
+    exchange->frame_bytes = (uint16_t)size;
+    int reply = self->protocol->reply_to(exchange->frame, (size_t)size, &exchange->reply);
+    return reply < 0 ? reply : GROBO_OK;
+}
+
+static int send_position(const grobo_driver *self, int joint, int32_t position,
+                         grobo_exchange *exchange)
+{
+    const grobo_ics_packet packet = {.command = GROBO_ICS_POSITION,
+                                     .id = self->model->joints[joint].motor,
+                                     .value = (uint16_t)position};
+    return finish(self, &packet, exchange);
+}
+
+static int read_item(const grobo_driver *self, uint8_t id, uint8_t item, grobo_exchange *exchange)
+{
+    const grobo_ics_packet packet = {.command = GROBO_ICS_READ, .id = id, .item = item};
+    return finish(self, &packet, exchange);
+}
+
+/* The joint number `part` of a set, -1 behind the last. */
+static int joint_of_part(const grobo_driver *self, grobo_joint_mask joints, int part)
+{
+    for (int j = 0; j < self->model->n_joints; j++) {
+        if ((joints & GROBO_JOINT_BIT(j)) != 0 && part-- == 0) {
+            return j;
+        }
+    }
+    return -1;
+}
+
+/* The least speed that leads there in time. */
+static uint16_t speed_of(const grobo_driver *self, const grobo_target *target, int joint)
+{
+    const grobo_joint *moved = &self->model->joints[joint];
+    double way_rad = grobo_joint_to_servo(moved, target->posture.angle_rad[joint]) -
+                     grobo_joint_to_servo(moved, target->from_rad[joint]);
+    int64_t us = target->joint_time_us[joint] > 0 ? target->joint_time_us[joint] : 1;
+    double part = grobo_deg_from_rad(fabs(way_rad)) * 1e6 / (double)us /
+                  grobo_i_table_servo(self, joint)->speed_dps;
+    return (uint16_t)fmin(fmax(ceil(part * SPEED_FULL), 1), SPEED_FULL);
+}
+
+/* Two frames a joint: the second leaves when the first was answered. */
+static int posture(const grobo_driver *self, void *ctx, const grobo_target *target, int part,
+                   grobo_exchange *exchange)
+{
+    (void)ctx;
+    int j = joint_of_part(self, target->posture.set, part / 2);
+    if (j < 0) {
+        return 0;
+    }
+    const grobo_joint *joint = &self->model->joints[j];
+    int32_t ticks =
+        grobo_i_table_ticks(joint, grobo_i_table_servo(self, j), target->posture.angle_rad[j]);
+    const grobo_ics_packet speed = {.command = GROBO_ICS_WRITE,
+                                    .id = joint->motor,
+                                    .item = GROBO_ICS_SPEED,
+                                    .value = speed_of(self, target, j)};
+    ticks = ticks < GROBO_ICS_POSITION_MIN   ? GROBO_ICS_POSITION_MIN
+            : ticks > GROBO_ICS_POSITION_MAX ? GROBO_ICS_POSITION_MAX
+                                             : ticks;
+    int result =
+        part % 2 == 0 ? finish(self, &speed, exchange) : send_position(self, j, ticks, exchange);
+    return result < 0 ? result : 1;
+}
+
+/* The goal where it stands has switched it on already: to read the speed does nothing. */
+static int torque(const grobo_driver *self, void *ctx, grobo_joint_mask joints, grobo_torque mode,
+                  int part, grobo_exchange *exchange)
+{
+    (void)ctx;
+    int j = joint_of_part(self, joints, part);
+    if (mode == GROBO_TORQUE_BRAKE || j < 0) {
+        return j < 0 ? 0 : GROBO_ERR_UNSUPPORTED;
+    }
+    int result = mode == GROBO_TORQUE_OFF
+                     ? send_position(self, j, GROBO_ICS_FREE, exchange)
+                     : read_item(self, self->model->joints[j].motor, GROBO_ICS_SPEED, exchange);
+    return result < 0 ? result : 1;
+}
+
+/* ---- reading --------------------------------------------------------------------------------- */
+
+static int check(const grobo_driver *self, void *ctx, int part, grobo_exchange *exchange)
+{
+    (void)ctx;
+    if (part >= self->model->n_joints) {
+        return 0;
+    }
+    int result = read_item(self, self->model->joints[part].motor, GROBO_ICS_SPEED, exchange);
+    return result < 0 ? result : 1;
+}
+
+/* What each kind reads, one item after the other; the setup before the angle. */
+static int read_part(const grobo_driver *self, int joint, grobo_sense_kind kind, int part,
+                     grobo_exchange *exchange)
+{
+    enum { END = 0xFF };
+    static const uint8_t all[] = {GROBO_ICS_EEPROM, GROBO_ICS_POSITION_ITEM, GROBO_ICS_CURRENT,
+                                  GROBO_ICS_TEMPERATURE, END};
+    static const uint8_t position[] = {GROBO_ICS_POSITION_ITEM, END};
+    static const uint8_t goal[] = {GROBO_ICS_EEPROM, GROBO_ICS_POSITION_ITEM, END};
+    static const uint8_t *const kinds[] = {[GROBO_SENSE_FULL] = all,
+                                           [GROBO_SENSE_POSITION] = position,
+                                           [GROBO_SENSE_GOAL] = goal,
+                                           [GROBO_SENSE_ALL] = all};
+    uint8_t item = kinds[kind][part]; /* a part comes after the one before it */
+    if (item == END) {
+        return 0;
+    }
+    int result = read_item(self, self->model->joints[joint].motor, item, exchange);
+    return result < 0 ? result : 1;
+}
+
+static int sense(const grobo_driver *self, void *ctx, int joint, grobo_sense_kind kind,
+                 grobo_exchange *exchange)
+{
+    (void)ctx;
+    int result = read_part(self, joint, kind, 0, exchange);
+    return result < 0 ? result : GROBO_OK;
+}
+
+static int sense_more(const grobo_driver *self, void *ctx, int joint, grobo_sense_kind kind,
+                      int part, grobo_exchange *exchange)
+{
+    (void)ctx;
+    return read_part(self, joint, kind, part, exchange);
+}
+
+/* Who it is, which way its positions go, how far, and whether it has torque. */
+static int take_eeprom(const grobo_joint *joint, const grobo_servo_model *servo,
+                       const uint8_t *data, grobo_joint_state *state)
+{
+    const unsigned others = GROBO_I_ICS_REVERSE | GROBO_I_ICS_ROTATION | GROBO_I_ICS_SLAVE;
+    unsigned flags = data[GROBO_I_ICS_AT_FLAGS];
+    if (data[0] != GROBO_I_ICS_FIXED || data[GROBO_I_ICS_AT_ID] != joint->motor) {
+        return GROBO_ERR_MISMATCH;
+    }
+    int32_t max, min;
+    (void)grobo_i_table_value(servo, GROBO_ROLE_MAX_POSITION, 0, data, GROBO_I_ICS_EEPROM_BYTES,
+                              &max);
+    (void)grobo_i_table_value(servo, GROBO_ROLE_MIN_POSITION, 0, data, GROBO_I_ICS_EEPROM_BYTES,
+                              &min);
+    if ((flags & others) != 0 || !grobo_i_table_within(joint, servo, min, max)) {
+        return GROBO_ERR_SETUP;
+    }
+    state->torque = (flags & GROBO_I_ICS_FREE) != 0 ? GROBO_TORQUE_OFF : GROBO_TORQUE_ON;
+    state->valid = GROBO_FIELD_TORQUE;
+    return GROBO_OK;
+}
+
+static int take_position(const grobo_joint *joint, const grobo_servo_model *servo,
+                         const uint8_t *data, grobo_joint_state *state)
+{
+    int32_t ticks = grobo_i_ics_value(data);
+    if (ticks < GROBO_ICS_POSITION_MIN - OUTSIDE_TICKS ||
+        ticks > GROBO_ICS_POSITION_MAX + OUTSIDE_TICKS) {
+        return GROBO_ERR_MISMATCH;
+    }
+    state->angle_rad = grobo_i_table_angle(joint, servo, ticks);
+    state->valid |= GROBO_FIELD_ANGLE;
+    return GROBO_OK;
+}
+
+/* What a position has done, which the servo has answered. */
+static void take_goal(const grobo_joint *joint, const grobo_servo_model *servo, unsigned goal,
+                      grobo_joint_state *state)
+{
+    state->torque = goal == GROBO_ICS_FREE ? GROBO_TORQUE_OFF : GROBO_TORQUE_ON;
+    state->valid |= GROBO_FIELD_TORQUE;
+    if (goal != GROBO_ICS_FREE) {
+        state->goal_rad = grobo_i_table_angle(joint, servo, (int32_t)goal);
+        state->valid |= GROBO_FIELD_GOAL;
+    }
+}
+
+static int parse(const grobo_driver *self, void *ctx, int joint, const grobo_packet *reply,
+                 grobo_joint_state *state)
+{
+    (void)ctx;
+    const grobo_joint *moved = &self->model->joints[joint];
+    const grobo_servo_model *servo = grobo_i_table_servo(self, joint);
+    const uint8_t *data = reply->data;
+    if (reply->address >= GROBO_I_ICS_AT_GOAL) {
+        take_goal(moved, servo, reply->address - (unsigned)GROBO_I_ICS_AT_GOAL, state);
+        return take_position(moved, servo, data, state);
+    }
+    const grobo_i_ics_item *item = grobo_i_ics_item_at(reply->address, (unsigned)reply->data_bytes);
+    if (item == NULL) {
+        return GROBO_ERR_MISMATCH;
+    }
+    switch ((grobo_ics_item)item->item) {
+    case GROBO_ICS_EEPROM:
+        return take_eeprom(moved, servo, data, state);
+    case GROBO_ICS_POSITION_ITEM:
+        return take_position(moved, servo, data, state);
+    case GROBO_ICS_CURRENT:
+        state->current_ma = (data[0] & CURRENT_BITS) * MA_OF_COUNT;
+        state->valid = item->read ? GROBO_FIELD_CURRENT : 0;
+        return GROBO_OK;
+    case GROBO_ICS_TEMPERATURE:
+        state->temperature_c = (int16_t)lround(grobo_i_ics_celsius(data[0]));
+        state->valid = item->read ? GROBO_FIELD_TEMPERATURE : 0;
+        return GROBO_OK;
+    case GROBO_ICS_STRETCH:
+    case GROBO_ICS_SPEED:
+        return GROBO_OK; /* tells nothing of the joint */
+    }
+    return GROBO_ERR_MISMATCH;
+}
+
+/* ---- values, and frames that a user hands in ------------------------------------------------- */
+
+static grobo_write_kind write_kind(const grobo_driver *self, const grobo_register_io *io)
+{
+    (void)self;
+    const grobo_i_ics_item *item = grobo_i_ics_item_at(io->address, io->length);
+    if (item == NULL || item->item == GROBO_ICS_SPEED) {
+        return GROBO_WRITE_MOTOR;
+    }
+    return item->item == GROBO_ICS_STRETCH ? GROBO_WRITE_HARMLESS : GROBO_WRITE_SETTING;
+}
+
+/* The EEPROM goes back as it was read but for what is changed: its first byte never is. */
+static int write_eeprom(const grobo_driver *self, const grobo_register_io *io,
+                        grobo_exchange *exchange)
+{
+    uint8_t nibbles[GROBO_ICS_EEPROM_BYTES];
+    if (io->data[0] != GROBO_I_ICS_FIXED) {
+        return GROBO_ERR_ARG;
+    }
+    for (size_t i = 0; i < GROBO_I_ICS_EEPROM_BYTES; i++) {
+        nibbles[2 * i] = io->data[i] >> 4;
+        nibbles[2 * i + 1] = io->data[i] & 0x0F;
+    }
+    const grobo_ics_packet packet = {
+        .command = GROBO_ICS_WRITE, .id = io->id, .item = GROBO_ICS_EEPROM, .data = nibbles};
+    exchange->settle_us = EEPROM_US;
+    return finish(self, &packet, exchange);
+}
+
+static int registers(const grobo_driver *self, void *ctx, const grobo_register_io *io,
+                     grobo_exchange *exchange)
+{
+    (void)ctx;
+    const grobo_i_ics_item *item = grobo_i_ics_item_at(io->address, io->length);
+    if (item == NULL || (io->data == NULL ? !item->read : !item->write)) {
+        return GROBO_ERR_ARG;
+    }
+    if (io->data == NULL) {
+        return read_item(self, io->id, item->item, exchange);
+    }
+    if (item->item == GROBO_ICS_EEPROM) {
+        return write_eeprom(self, io, exchange);
+    }
+    const grobo_ics_packet packet = {
+        .command = GROBO_ICS_WRITE, .id = io->id, .item = item->item, .value = io->data[0]};
+    return finish(self, &packet, exchange);
+}
+
+/* Of a goal nobody knows how fast the servo would go. */
+static int inspect(const grobo_driver *self, void *ctx, const uint8_t *frame, size_t size,
+                   grobo_target *target, grobo_joint_mask *torqued)
+{
+    (void)ctx;
+    grobo_ics_packet packet;
+    if (grobo_ics_parse(NULL, 0, frame, size, &packet) < 0) {
+        return GROBO_ERR_UNSUPPORTED;
+    }
+    if (packet.command == GROBO_ICS_READ ||
+        (packet.command == GROBO_ICS_WRITE && packet.item == GROBO_ICS_STRETCH)) {
+        return GROBO_OK;
+    }
+    int joint = grobo_model_joint_of_motor(self->model, packet.id);
+    if (packet.command != GROBO_ICS_POSITION || joint < 0) {
+        return GROBO_ERR_UNSUPPORTED;
+    }
+    if (packet.value == GROBO_ICS_FREE) {
+        torqued[GROBO_TORQUE_OFF] |= GROBO_JOINT_BIT(joint);
+        return GROBO_OK;
+    }
+    target->posture.angle_rad[joint] = grobo_i_table_angle(
+        &self->model->joints[joint], grobo_i_table_servo(self, joint), packet.value);
+    target->posture.set |= GROBO_JOINT_BIT(joint);
+    target->joint_time_us[joint] = 0;
+    return GROBO_OK;
+}
+
+/* ---- the table ------------------------------------------------------------------------------- */
+
+int grobo_ics_driver_init(grobo_driver *driver, const grobo_model *model)
+{
+    grobo_driver made = {
+        .no_speed = true,
+        .check = check,
+        .posture = posture,
+        .torque = torque,
+        .sense = sense,
+        .sense_more = sense_more,
+        .parse = parse,
+        .write_kind = write_kind,
+        .registers = registers,
+        .inspect = inspect,
+    };
+    int result = grobo_i_table_make(&made, model, &grobo_ics_protocol, &family);
+    for (int j = 0; result >= 0 && j < model->n_joints; j++) {
+        if (model->joints[j].turns) {
+            result = GROBO_ERR_ARG;
+        } else if (!grobo_ics_tells_position(grobo_i_table_servo(&made, j))) {
+            result = GROBO_ERR_UNSUPPORTED;
+        }
+    }
+    if (result < 0 || driver == NULL) {
+        return result < 0 ? result : GROBO_ERR_ARG;
+    }
+    *driver = made;
+    return GROBO_OK;
+}

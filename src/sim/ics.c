@@ -1,0 +1,351 @@
+/* SPDX-License-Identifier: MIT */
+/* Kondo's KRS servos: what the commands of ICS 3.5 and 3.6 do to the values they keep. */
+#include <math.h>
+#include <string.h>
+
+#include <grobo/ics.h>
+
+#include "src/servo/ics/items.h"
+#include "src/sim/dxl.h"
+#include "src/sim/family.h"
+#include "src/sim/note.h"
+#include "src/sim/power.h"
+#include "src/sim/servo.h"
+#include "src/sim/shaft.h"
+
+enum { EEPROM = GROBO_I_ICS_EEPROM_BYTES, SPEED_FULL = 127, CURRENT_FULL = 63, MA_OF_COUNT = 100 };
+/* Before a reply. The maker prints none; an assumption. */
+#define THINK_NS 300000
+/* A servo hears nothing while it writes its EEPROM. Clients wait 500 ms and more. */
+#define BUSY_US 400000
+/* A servo that is hot has less power until it is cooler: it does not let go. */
+#define NEVER_CUTS_C 1000
+
+static int32_t rate_of(int32_t code)
+{
+    return code == 10 ? 115200 : code == 1 ? 625000 : code == 0 ? 1250000 : GROBO_ERR_ARG;
+}
+
+/* ---- positions ------------------------------------------------------------------------------- */
+
+static unsigned flags_of(const grobo_sim_servo *servo)
+{
+    return servo->reg[GROBO_I_ICS_AT_FLAGS];
+}
+
+static int32_t reversed(const grobo_sim_servo *servo, int32_t position)
+{
+    bool reverse = (flags_of(servo) & GROBO_I_ICS_REVERSE) != 0;
+    return reverse ? 2 * servo->model->middle - position : position;
+}
+
+static int32_t position_at(const grobo_sim_servo *servo, int32_t angle_mdeg)
+{
+    return reversed(servo, grobo_i_dxl_ticks(servo, false, angle_mdeg)) -
+           grobo_i_dxl_get(servo, GROBO_ROLE_OFFSET);
+}
+
+static int32_t goal_mdeg(const grobo_sim_servo *servo)
+{
+    int32_t position =
+        grobo_i_dxl_get(servo, GROBO_ROLE_GOAL) + grobo_i_dxl_get(servo, GROBO_ROLE_OFFSET);
+    return (int32_t)lround((reversed(servo, position) - servo->model->middle) *
+                           grobo_i_dxl_tick_mdeg(servo));
+}
+
+/* ---- the shaft's side ------------------------------------------------------------------------ */
+
+static void follow(grobo_sim *sim, int index)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    grobo_sim_plant *plant = &servo->plant;
+    grobo_i_dxl_follow(sim, index);
+    plant->cap_mdeg_s = (int32_t)((int64_t)plant->speed_mdeg_s *
+                                  grobo_i_dxl_get(servo, GROBO_ROLE_SPEED) / SPEED_FULL);
+    plant->most_ma =
+        plant->stall_ma * grobo_i_dxl_get(servo, GROBO_ROLE_TORQUE_LIMIT) / CURRENT_FULL;
+    plant->limit_c = NEVER_CUTS_C;
+}
+
+static bool starts(grobo_sim *sim, int index, int32_t here_mdeg)
+{
+    (void)here_mdeg;
+    sim->servo[index].plant.goal_mdeg = goal_mdeg(&sim->servo[index]);
+    return true;
+}
+
+/* The torque is what the value says now. */
+static void go(grobo_sim *sim, int index)
+{
+    grobo_torque before = (grobo_torque)sim->servo[index].plant.torque;
+    follow(sim, index);
+    grobo_i_sim_torque(sim, index, before);
+}
+
+static void cut(grobo_sim *sim, int index, bool hot)
+{
+    (void)hot;
+    grobo_i_dxl_put(&sim->servo[index], GROBO_ROLE_TORQUE, 0);
+    follow(sim, index);
+}
+
+static void refresh(grobo_sim *sim, int index)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    grobo_i_sim_settle(sim, index);
+    bool limp = servo->plant.torque != GROBO_TORQUE_ON;
+    unsigned flags = flags_of(servo) & ~(unsigned)GROBO_I_ICS_FREE;
+    servo->reg[GROBO_I_ICS_AT_FLAGS] = (uint8_t)(flags | (limp ? GROBO_I_ICS_FREE : 0));
+    grobo_i_dxl_put(servo, GROBO_ROLE_TEMPERATURE, grobo_i_ics_raw_heat(servo->temperature_c));
+    grobo_i_dxl_put(servo, GROBO_ROLE_CURRENT,
+                    lround(grobo_i_dxl_effort(sim, index) * servo->plant.stall_ma / MA_OF_COUNT));
+    grobo_i_dxl_put(servo, GROBO_ROLE_POSITION,
+                    position_at(servo, grobo_i_sim_angle_mdeg(servo, sim->now_us)));
+}
+
+/* ---- restart --------------------------------------------------------------------------------- */
+
+static int32_t bps(const grobo_sim *sim, int index)
+{
+    return rate_of(grobo_i_dxl_get(&sim->servo[index], GROBO_ROLE_BAUD));
+}
+
+static bool knows(const grobo_servo_model *model)
+{
+    return model->table == &grobo_ics_table;
+}
+
+static void put(grobo_sim_servo *servo, const char *name, int32_t value)
+{
+    grobo_i_dxl_hold(servo, grobo_i_dxl_row(servo, name), value);
+}
+
+/* What is set now begins as the EEPROM has it. */
+static void restart(grobo_sim *sim, int index)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    grobo_i_dxl_boot(sim, index);
+    memcpy(servo->reg, servo->flash, EEPROM); /* reserved bytes too */
+    put(servo, "stretch_now", servo->reg[1] / 2);
+    put(servo, "speed_now", servo->reg[2]);
+    put(servo, "temperature_limit_now", servo->reg[14]);
+    put(servo, "current_limit_now", servo->reg[15]);
+    follow(sim, index);
+}
+
+static bool factory(grobo_sim *sim, int index, uint8_t id, uint32_t baud_bps)
+{
+    static const uint8_t codes[] = {10, 1, 0};
+    grobo_sim_servo *servo = &sim->servo[index];
+    for (size_t i = 0; i < sizeof codes; i++) {
+        if ((uint32_t)rate_of(codes[i]) == baud_bps && id <= GROBO_ICS_ID_MAX) {
+            grobo_i_dxl_factory(servo);
+            grobo_i_dxl_put(servo, GROBO_ROLE_ID, id);
+            grobo_i_dxl_put(servo, GROBO_ROLE_BAUD, codes[i]);
+            memcpy(servo->flash, servo->reg, sizeof servo->flash);
+            return true;
+        }
+    }
+    return false;
+}
+
+/* ---- commands -------------------------------------------------------------------------------- */
+
+static void answer(grobo_sim *sim, int index, grobo_ics_packet reply)
+{
+    uint8_t bytes[GROBO_ICS_FRAME_MAX_BYTES];
+    const grobo_sim_servo *servo = &sim->servo[index];
+    reply.reply = true;
+    int size = grobo_ics_build(&reply, bytes, sizeof bytes);
+    if (size <= 0 || (flags_of(servo) & GROBO_I_ICS_SLAVE) != 0) {
+        return; /* a slave takes commands and is silent */
+    }
+    if (reply.command == GROBO_ICS_POSITION && reply.id == 0 && bps(sim, index) == 115200) {
+        bytes[0] = GROBO_ICS_POSITION; /* as ICS 2.0 did */
+    }
+    grobo_i_sim_speak(sim, index, bytes, (size_t)size, THINK_NS);
+}
+
+/* The answer is where it was before. 0 lets go; what is outside of the limits is drawn to them. */
+static void position(grobo_sim *sim, int index, const grobo_ics_packet *packet)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    int32_t min = grobo_i_dxl_get(servo, GROBO_ROLE_MIN_POSITION);
+    int32_t max = grobo_i_dxl_get(servo, GROBO_ROLE_MAX_POSITION);
+    int32_t goal = packet->value;
+    refresh(sim, index);
+    grobo_ics_packet reply = *packet;
+    reply.value = (uint16_t)grobo_i_dxl_get(servo, GROBO_ROLE_POSITION);
+    answer(sim, index, reply);
+    bool on = goal != GROBO_ICS_FREE;
+    if (on) {
+        grobo_i_dxl_put(servo, GROBO_ROLE_GOAL, goal < min ? min : goal > max ? max : goal);
+    }
+    bool was_on = servo->plant.torque == GROBO_TORQUE_ON;
+    grobo_i_dxl_put(servo, GROBO_ROLE_TORQUE, on);
+    go(sim, index);
+    if (on && was_on) {
+        servo->due_us = sim->now_us;
+        servo->plant.goal_mdeg = goal_mdeg(servo);
+        if (!servo->by_hand) {
+            grobo_i_sim_drive(sim, index);
+        }
+        servo->begun_us = sim->now_us;
+    }
+    if (on) {
+        grobo_i_sim_tell(sim, &(grobo_sim_event){.kind = GROBO_SIM_GOAL,
+                                                 .time_us = sim->now_us,
+                                                 .servo = index,
+                                                 .value = grobo_i_dxl_get(servo, GROBO_ROLE_GOAL)});
+    }
+}
+
+static void read_eeprom(grobo_sim *sim, int index, const grobo_ics_packet *packet)
+{
+    uint8_t nibbles[GROBO_ICS_EEPROM_BYTES];
+    const grobo_sim_servo *servo = &sim->servo[index];
+    grobo_ics_packet reply = *packet;
+    for (size_t i = 0; i < EEPROM; i++) {
+        nibbles[2 * i] = servo->reg[i] >> 4;
+        nibbles[2 * i + 1] = servo->reg[i] & 0x0F;
+    }
+    reply.data = nibbles;
+    answer(sim, index, reply);
+}
+
+static void read(grobo_sim *sim, int index, const grobo_ics_packet *packet)
+{
+    const grobo_sim_servo *servo = &sim->servo[index];
+    const grobo_i_ics_item *item = grobo_i_ics_item_of(packet->item, false);
+    bool lacks = packet->item == GROBO_ICS_POSITION_ITEM && !grobo_ics_tells_position(servo->model);
+    if (item == NULL || lacks) {
+        grobo_i_sim_note(sim, GROBO_SIM_REFUSED, index, packet->item);
+        return;
+    }
+    refresh(sim, index);
+    if (packet->item == GROBO_ICS_EEPROM) {
+        read_eeprom(sim, index, packet);
+        return;
+    }
+    grobo_ics_packet reply = *packet;
+    const uint8_t *at = &servo->reg[item->address];
+    reply.value = (uint16_t)(item->bytes == 2 ? at[0] << 8 | at[1] : at[0]);
+    answer(sim, index, reply);
+}
+
+static void write_eeprom(grobo_sim *sim, int index, const uint8_t *nibbles)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    for (size_t i = 0; i < EEPROM; i++) {
+        servo->reg[i] = (uint8_t)(nibbles[2 * i] << 4 | (nibbles[2 * i + 1] & 0x0F));
+    }
+    memcpy(servo->flash, servo->reg, EEPROM);
+    servo->deaf_until_us = sim->now_us + BUSY_US;
+    go(sim, index);
+}
+
+static void write(grobo_sim *sim, int index, const grobo_ics_packet *packet)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    const grobo_i_ics_item *item = grobo_i_ics_item_of(packet->item, true);
+    if (packet->item == GROBO_ICS_EEPROM) {
+        if (packet->data[0] << 4 != (GROBO_I_ICS_FIXED & 0xF0)) {
+            grobo_i_sim_note(sim, GROBO_SIM_REFUSED, index, packet->item);
+            return;
+        }
+        answer(sim, index, *packet); /* with the old id */
+        write_eeprom(sim, index, packet->data);
+        return;
+    }
+    grobo_i_dxl_hold(servo, grobo_servo_register_at(servo->model, item->address), packet->value);
+    answer(sim, index, *packet);
+    go(sim, index);
+    grobo_i_sim_tell(sim, &(grobo_sim_event){.kind = GROBO_SIM_REGISTER,
+                                             .time_us = sim->now_us,
+                                             .servo = index,
+                                             .value = item->address,
+                                             .value2 = packet->value});
+}
+
+/* All servos take it: it is for a line with one. */
+static void identity(grobo_sim *sim, int index, const grobo_ics_packet *packet)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    grobo_ics_packet reply = *packet;
+    if (packet->item != 0) {
+        grobo_i_dxl_put(servo, GROBO_ROLE_ID, packet->id);
+        servo->flash[GROBO_I_ICS_AT_ID] = servo->reg[GROBO_I_ICS_AT_ID];
+        follow(sim, index);
+    }
+    reply.id = servo->plant.id;
+    answer(sim, index, reply);
+    servo->deaf_until_us = sim->now_us + BUSY_US;
+}
+
+static void carry_out(grobo_sim *sim, int index, const grobo_ics_packet *packet)
+{
+    switch ((grobo_ics_command)packet->command) {
+    case GROBO_ICS_POSITION:
+        position(sim, index, packet);
+        break;
+    case GROBO_ICS_READ:
+        read(sim, index, packet);
+        break;
+    case GROBO_ICS_WRITE:
+        write(sim, index, packet);
+        break;
+    case GROBO_ICS_ID:
+        identity(sim, index, packet);
+        break;
+    }
+}
+
+static void packet(grobo_sim *sim, const grobo_sim_event *raw)
+{
+    grobo_ics_packet found;
+    (void)grobo_ics_parse(NULL, 0, raw->bytes, raw->n_bytes, &found);
+    for (int i = 0; i < sim->n_servos; i++) {
+        const grobo_sim_servo *servo = &sim->servo[i];
+        bool meant = found.command == GROBO_ICS_ID || servo->plant.id == found.id;
+        if (servo->family == &grobo_sim_ics && meant && grobo_i_sim_hears(sim, i, raw)) {
+            carry_out(sim, i, &found);
+        }
+    }
+}
+
+static int measure(const uint8_t *bytes, size_t n, bool good)
+{
+    (void)good;
+    return grobo_ics_measure(bytes, n);
+}
+
+/* ---- inspection ------------------------------------------------------------------------------ */
+
+static int set(grobo_sim *sim, int index, int address, int32_t value)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    uint8_t bytes[4];
+    int n = grobo_i_dxl_bytes(servo, address, value, bytes);
+    if (n > 0) {
+        memcpy(&servo->reg[address], bytes, (size_t)n);
+        if (address < EEPROM) {
+            memcpy(&servo->flash[address], bytes, (size_t)n);
+        }
+        go(sim, index);
+    }
+    return n < 0 ? n : GROBO_OK;
+}
+
+const grobo_sim_family grobo_sim_ics = {.usual_bps = 115200,
+                                        .parity = true,
+                                        .knows = knows,
+                                        .measure = measure,
+                                        .packet = packet,
+                                        .factory = factory,
+                                        .boot = restart,
+                                        .cut = cut,
+                                        .starts = starts,
+                                        .refresh = refresh,
+                                        .bps = bps,
+                                        .get = grobo_i_dxl_look,
+                                        .set = set};
