@@ -150,10 +150,13 @@ struct grobo_driver {
     const double *rest_rad; /**< resting posture by joint for GROBO_EXIT_SIT; NULL: initial one */
     const grobo_readback *readback; /**< n_readback corrections, used if the engine is told to */
     uint8_t n_readback;
-    const void *family; /**< for the table's own functions */
-    bool all_first;     /**< a joint's first reading is always a GROBO_SENSE_ALL, in which parse()
+    const void *family;  /**< for the table's own functions */
+    bool all_first;      /**< a joint's first reading is always a GROBO_SENSE_ALL, in which parse()
                              looks at how its servo is set up */
-    bool no_speed;      /**< its servos tell no speed: the engine takes that between two angles */
+    int64_t watchdog_us; /**< what watchdog() is told whenever joints are to move, until the engine
+                              leaves, or twice the interval of readings where that is longer; not
+                              where there are none. 0: nothing */
+    bool no_speed;       /**< its servos tell no speed: the engine takes that between two angles */
 
     /** Is the robot there? Parts are tried one after the other until one is answered. */
     int (*check)(const grobo_driver *self, void *ctx, int part, grobo_exchange *exchange);
@@ -163,6 +166,11 @@ struct grobo_driver {
     /** Sets the torque of `joints`. NULL: it cannot be switched, and an emergency stop halts. */
     int (*torque)(const grobo_driver *self, void *ctx, grobo_joint_mask joints, grobo_torque mode,
                   int part, grobo_exchange *exchange);
+    /** Has servos stop by themselves once nothing was sent to them for time_us while they have
+     *  torque, also where they have done so before; 0: never, also where the time is longer than
+     *  they can count. Moves nothing. NULL: they cannot. */
+    int (*watchdog)(const grobo_driver *self, void *ctx, grobo_joint_mask joints, int64_t time_us,
+                    int part, grobo_exchange *exchange);
     /** Asks one joint for its state. @return 0 or an error. */
     int (*sense)(const grobo_driver *self, void *ctx, int joint, grobo_sense_kind kind,
                  grobo_exchange *exchange);
@@ -243,6 +251,8 @@ GROBO_API int grobo_rs30x_driver_init(grobo_driver *driver, const grobo_model *m
  * where it stands; whether it keeps an old goal depends on its firmware, so that the engine always
  * sets it. An error of its register shutdown cuts the torque until a reboot. No brake: torque is on
  * or off, and an emergency stop holds unless it is to let go.
+ * Its bus watchdog is the dead-man: a servo that nothing was sent to for watchdog_us, 0.5 s, stops
+ * where it is and keeps its torque; a move, a play or a torque on clears that.
  * Limits: 65 deg C, 5 lost replies, 60 deg/s for the first move; exit policy hold; an arm.
  * @param[out] driver the caller's table; change what is different in it afterwards.
  * @param model borrowed.

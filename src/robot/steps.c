@@ -194,6 +194,44 @@ static int step_pick_off(grobo_robot *robot)
     return job->pending == 0 || may ? GROBO_I_NEXT : GROBO_ERR_STATE;
 }
 
+/* The servos' own dead-man. What one of these frames does is not read back: a lost one costs the
+ * dead-man of a motion, or has goals refused and so sent again from the begin of the script. */
+static int tell_watchdog(grobo_robot *robot, int64_t time_us)
+{
+    const grobo_driver *driver = robot->driver;
+    int more = driver->watchdog != NULL && driver->watchdog_us > 0;
+    for (int part = 0; more > 0; part++) {
+        grobo_robot_slot *slot = grobo_i_slot_take(robot, GROBO_I_USE_PLAIN);
+        if (slot == NULL) {
+            break; /* as if it was lost */
+        }
+        more = driver->watchdog(driver, robot->driver_ctx, robot->job->joints, time_us, part,
+                                &slot->exchange);
+        if (more > 0) {
+            more = grobo_i_slot_send(slot, robot->job->priority) < 0 ? 0 : 1;
+        } else {
+            grobo_i_slot_drop(slot);
+        }
+    }
+    return GROBO_I_DRAIN;
+}
+
+/* One that has gone off refuses goals until it is cleared. */
+static int step_watchdog_clear(grobo_robot *robot)
+{
+    return tell_watchdog(robot, 0);
+}
+
+/* It must not go off between two readings: a whole goal is followed by nothing else. */
+static int step_watchdog_set(grobo_robot *robot)
+{
+    int64_t interval_us = robot->config.sense_interval_us;
+    if (interval_us == GROBO_SENSE_NEVER) {
+        return GROBO_I_NEXT;
+    }
+    return tell_watchdog(robot, grobo_i_later(robot->driver->watchdog_us, 2 * interval_us));
+}
+
 static int step_hold(grobo_robot *robot)
 {
     grobo_robot_task *job = robot->job;
@@ -544,8 +582,8 @@ static int step_aim_rest(grobo_robot *robot)
 /* ---- scripts --------------------------------------------------------------------------------- */
 
 #define SWITCH_ON                                                                                  \
-    step_pick_off, step_hold, step_read_pending, step_hold_check, step_torque, step_read_pending,  \
-        step_torque_check
+    step_pick_off, step_watchdog_clear, step_hold, step_read_pending, step_hold_check,             \
+        step_torque, step_read_pending, step_torque_check, step_watchdog_set
 #define SWITCH step_pick_all, step_torque, step_read_pending, step_torque_check
 #define MOVE step_send, step_arrive, step_read_back, step_arrived
 
@@ -562,11 +600,14 @@ const grobo_robot_step_fn grobo_i_script_play[] = {
 const grobo_robot_step_fn grobo_i_script_settle[] = {step_aim_last, step_read_pending, step_missed,
                                                      MOVE, NULL};
 const grobo_robot_step_fn grobo_i_script_ask[] = {step_ask, step_settle, NULL};
-const grobo_robot_step_fn grobo_i_script_exit_off[] = {step_quiet, SWITCH, NULL};
-const grobo_robot_step_fn grobo_i_script_exit_hold[] = {step_quiet, step_read, step_strays, NULL};
+const grobo_robot_step_fn grobo_i_script_exit_off[] = {step_quiet, step_watchdog_clear, SWITCH,
+                                                       NULL};
+const grobo_robot_step_fn grobo_i_script_exit_hold[] = {step_quiet, step_read, step_strays,
+                                                        step_watchdog_clear, NULL};
 const grobo_robot_step_fn grobo_i_script_exit_sit[] = {
-    step_quiet,    step_read, step_read_again, step_require, step_from_here,
-    step_aim_rest, MOVE,      step_require,    SWITCH,       NULL};
+    step_quiet,    step_read, step_read_again, step_require,        step_from_here,
+    step_aim_rest, MOVE,      step_require,    step_watchdog_clear, SWITCH,
+    NULL};
 
 /* ---- another target -------------------------------------------------------------------------- */
 

@@ -5,6 +5,9 @@
 /* Bits of the drive mode that say what a goal means: its sense, and that it comes with a time. */
 #define DRIVE_BITS (GROBO_DXL2_DRIVE_REVERSE | GROBO_DXL2_DRIVE_TIME)
 
+/* Longer than the time between two readings of a joint that moves: GROBO_WATCH_US / 2 at most. */
+#define WATCHDOG_US 500000
+
 /* Goals are within one turn in mode 3 and 5 and count turns in mode 4; 5 bounds the current, as a
  * gripper needs it. Without the bit of time a duration would be taken for a velocity
  * (emanual drive_mode, opmode_six_2). */
@@ -42,6 +45,7 @@ static const grobo_i_family family = {
     .build = grobo_dxl2_build,
     .parse = grobo_dxl2_parse,
     .setup = setup,
+    .watchdog_us = 20000,
     .frame_max_bytes = GROBO_DXL2_FRAME_MAX_BYTES,
     .time_max_ms = 32737,
     .overheated = GROBO_DXL2_OVERHEATED,
@@ -56,5 +60,9 @@ static const grobo_i_family family = {
 
 int grobo_dxl2_driver_init(grobo_driver *driver, const grobo_model *model)
 {
-    return grobo_i_table_driver(driver, model, &grobo_dxl2_protocol, &family);
+    int result = grobo_i_table_driver(driver, model, &grobo_dxl2_protocol, &family);
+    if (result >= 0) {
+        driver->watchdog_us = WATCHDOG_US;
+    }
+    return result;
 }

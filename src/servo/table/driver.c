@@ -265,6 +265,34 @@ static int torque(const grobo_driver *self, void *ctx, grobo_joint_mask joints, 
     return write_part(self, joints, s, &mode, put_torque, exchange);
 }
 
+/* ---- watchdog -------------------------------------------------------------------------------- */
+
+static span watchdog_span(const grobo_servo_model *servo)
+{
+    span s = {0, 0};
+    widen(&s, servo, GROBO_ROLE_WATCHDOG);
+    return s;
+}
+
+static void put_watchdog(const grobo_driver *self, int joint, const void *what, span s, uint8_t *to)
+{
+    const grobo_i_family *family = self->family;
+    const int64_t *time_us = what;
+    const grobo_servo_model *servo = grobo_i_table_servo(self, joint);
+    double counts = ceil((double)*time_us / family->watchdog_us);
+    bool fits = counts <= grobo_servo_register_of(servo, GROBO_ROLE_WATCHDOG)->max;
+    put_role(servo, GROBO_ROLE_WATCHDOG, fits ? counts : 0, s, to);
+}
+
+static int watchdog(const grobo_driver *self, void *ctx, grobo_joint_mask joints, int64_t time_us,
+                    int part, grobo_exchange *exchange)
+{
+    (void)ctx;
+    span s = {0, 0};
+    joints = joints_of_part(self, joints, part, watchdog_span, &s);
+    return write_part(self, joints, s, &time_us, put_watchdog, exchange);
+}
+
 /* ---- reading --------------------------------------------------------------------------------- */
 
 static int check(const grobo_driver *self, void *ctx, int part, grobo_exchange *exchange)
@@ -379,6 +407,7 @@ int grobo_i_table_driver(grobo_driver *driver, const grobo_model *model,
     if (result < 0 || driver == NULL) {
         return result < 0 ? result : GROBO_ERR_ARG;
     }
+    made.watchdog = family->watchdog_us > 0 ? watchdog : NULL;
     made.sense_many = reads_alike(&made) ? sense_many : NULL;
     *driver = made;
     return GROBO_OK;

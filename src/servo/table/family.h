@@ -29,6 +29,7 @@ typedef struct grobo_i_family {
      * @return 0 or GROBO_ERR_SETUP */
     int (*setup)(const grobo_joint *joint, const grobo_servo_model *servo, uint16_t address,
                  const uint8_t *data, size_t n);
+    uint32_t watchdog_us;          /* a count of WATCHDOG; 0: it has none */
     uint16_t frame_max_bytes;      /* of one frame, any id */
     uint16_t time_max_ms;          /* longest time of a move */
     uint8_t overheated;            /* bits of the register ERROR */
