@@ -6,7 +6,8 @@
 
 int main(int argc, char **argv)
 {
-    const grobo_control_config config = {.session = {.device = argc > 1 ? argv[1] : "sim"}};
+    const grobo_control_config config = {GROBO_CONTROL_CONFIG_INIT,
+                                         .session = {.device = argc > 1 ? argv[1] : "sim"}};
     const grobo_model *model = &grobo_gr001_model;
     grobo_control *control;
     grobo_posture target;

@@ -17,6 +17,7 @@ int main(int argc, char **argv)
     grobo_posture target;
     grobo_control *control;
     const grobo_control_config config = {
+        GROBO_CONTROL_CONFIG_INIT,
         .session = {.device = argc > 1 ? argv[1] : "sim", .driver = &driver}};
     if (grobo_rs30x_driver_init(&driver, &model, &grobo_rs30x_protocol) < 0 ||
         grobo_control_new(&config, &control) < 0) {

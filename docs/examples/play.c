@@ -7,6 +7,7 @@
 int main(int argc, char **argv)
 {
     const grobo_control_config config = {
+        GROBO_CONTROL_CONFIG_INIT,
         .session = {.device = argc > 2 ? argv[2] : "sim"},
         .motion_dir = "motions",
     };

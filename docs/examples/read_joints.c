@@ -7,6 +7,7 @@
 int main(int argc, char **argv)
 {
     const grobo_control_config config = {
+        GROBO_CONTROL_CONFIG_INIT,
         .session = {.device = argc > 1 ? argv[1] : "sim"},
         .skip_exit = true,
     };

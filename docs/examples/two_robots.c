@@ -10,7 +10,8 @@ int main(int argc, char **argv)
     int result = GROBO_OK;
     for (int i = 0; result >= 0 && i < 2; i++) {
         const grobo_control_config config = {
-            .session = {.device = argc > i + 1 ? argv[i + 1] : "sim"}, .motion_dir = "motions"};
+            GROBO_CONTROL_CONFIG_INIT, .session = {.device = argc > i + 1 ? argv[i + 1] : "sim"},
+            .motion_dir = "motions"};
         result = grobo_control_new(&config, &robots[i]);
         if (result >= 0) {
             result = grobo_control_start_thread(robots[i]);

@@ -23,7 +23,8 @@ static void on_line(grobo_session *session, grobo_session_event event, int error
 
 int main(int argc, char **argv)
 {
-    grobo_control_config config = {.session = {.on_robot = on_robot, .on_event = on_line}};
+    grobo_control_config config = {GROBO_CONTROL_CONFIG_INIT,
+                                   .session = {.on_robot = on_robot, .on_event = on_line}};
     config.session.device = argc > 1 ? argv[1] : "sim";
     grobo_control *control;
     if (grobo_control_new(&config, &control) < 0) {

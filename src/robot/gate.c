@@ -133,6 +133,9 @@ static int judge_joints(grobo_robot *robot, grobo_joint_mask joints)
     if (!grobo_i_all_sensed(robot, joints, &robot->fault_joint)) {
         return GROBO_ERR_STALE;
     }
+    if (robot->driver->goal_wakes && !grobo_i_all_on(robot, joints)) {
+        return GROBO_ERR_STATE;
+    }
     /* A joint in free mode is moved by a person; one adrift by somebody else. */
     bool others = (joints & robot->free_joints) != 0 || grobo_i_adrift(robot, joints);
     return others ? GROBO_ERR_STATE : GROBO_OK;
@@ -183,7 +186,8 @@ static int judge_halt(grobo_robot *robot, const grobo_robot_order *order, grobo_
     int64_t rest_us = grobo_i_later(order->asked_us + HALT_AHEAD_US, robot->now_us + HALT_LEAST_US);
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
-        bool moves = axis->sensed && grobo_i_axis_moves(axis, robot->now_us);
+        bool moves = axis->sensed && grobo_i_axis_moves(axis, robot->now_us) &&
+                     (!robot->driver->goal_wakes || axis->wants_torque || grobo_i_axis_is_on(axis));
         if (grobo_i_has(order->joints, j) && moves) {
             target->posture.angle_rad[j] = grobo_i_axis_commanded(axis, rest_us);
             target->joint_time_us[j] = HALT_TIME_US;

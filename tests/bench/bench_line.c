@@ -429,7 +429,8 @@ static int run_sessions(int lines, char **path)
                                       .motor = 1,
                                       .mirror_sign = 1};
     static const grobo_model model = {.name = "one servo", .joints = &joint, .n_joints = 1};
-    const grobo_robot_config robot = {.sense_interval_us = in_background ? 1 : GROBO_SENSE_NEVER,
+    const grobo_robot_config robot = {GROBO_ROBOT_CONFIG_INIT,
+                                      .sense_interval_us = in_background ? 1 : GROBO_SENSE_NEVER,
                                       .sense_position_only = true};
     grobo_driver driver;
 
@@ -443,14 +444,10 @@ static int run_sessions(int lines, char **path)
         return 1;
     }
     for (int i = 0; i < lines; i++) {
-        const grobo_session_config config = {.base = run.base,
-                                             .device = path[i],
-                                             .driver = &driver,
-                                             .robot = &robot,
-                                             .skip_check = true,
-                                             .on_event = on_line,
-                                             .on_robot = on_robot,
-                                             .ctx = &sessions[i]};
+        const grobo_session_config config = {
+            GROBO_SESSION_CONFIG_INIT, .base = run.base,     .device = path[i],
+            .driver = &driver,         .robot = &robot,      .skip_check = true,
+            .on_event = on_line,       .on_robot = on_robot, .ctx = &sessions[i]};
 
         if (grobo_session_new(&config, &sessions[i]) < 0 || grobo_session_open(sessions[i]) < 0) {
             fputs("bench_line: cannot open a session\n", stderr);
@@ -524,18 +521,17 @@ static void on_cycle_line(grobo_session *session, grobo_session_event event, int
 /* Prints cycles a second, and how many the wire allows. */
 static int run_cycle(long seconds, const char *path)
 {
-    const grobo_robot_config robot = {.sense_interval_us = GROBO_SENSE_NEVER};
+    const grobo_robot_config robot = {GROBO_ROBOT_CONFIG_INIT,
+                                      .sense_interval_us = GROBO_SENSE_NEVER};
     grobo_budget budget;
 
     begin_run();
     cycle.end_us = seconds * 1000000;
     (void)grobo_posture_init_pose(&cycle.pose, &grobo_gr001_model);
     cycle.pose.time_us = 200000;
-    const grobo_session_config config = {.base = run.base,
-                                         .device = path,
-                                         .robot = &robot,
-                                         .on_event = on_cycle_line,
-                                         .on_robot = on_cycle};
+    const grobo_session_config config = {
+        GROBO_SESSION_CONFIG_INIT, .base = run.base,          .device = path,
+        .robot = &robot,           .on_event = on_cycle_line, .on_robot = on_cycle};
 
     if (grobo_session_new(&config, &cycle.session) < 0 || grobo_session_open(cycle.session) < 0) {
         return 1;

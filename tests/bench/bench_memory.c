@@ -17,7 +17,8 @@ int main(void)
     struct event_base *base = grobo_loop_new();
     counted_mem served = {0}, used = {0};
     const grobo_mem served_mem = counted_mem_of(&served), used_mem = counted_mem_of(&used);
-    const grobo_sim_server_config far_end = {.base = base, .mem = &served_mem};
+    const grobo_sim_server_config far_end = {GROBO_SIM_SERVER_CONFIG_INIT, .base = base,
+                                             .mem = &served_mem};
     grobo_sim_server *server = NULL;
     grobo_session *session = NULL;
 
@@ -25,8 +26,9 @@ int main(void)
         fputs("bench_memory: no simulated robot behind a pseudo-terminal\n", stderr);
         return 1;
     }
-    const grobo_session_config config = {
-        .base = base, .device = grobo_sim_server_device(server), .mem = &used_mem};
+    const grobo_session_config config = {GROBO_SESSION_CONFIG_INIT, .base = base,
+                                         .device = grobo_sim_server_device(server),
+                                         .mem = &used_mem};
 
     if (grobo_session_new(&config, &session) < 0 || grobo_session_open(session) < 0) {
         fputs("bench_memory: no session\n", stderr);

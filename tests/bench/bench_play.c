@@ -197,9 +197,11 @@ static void on_robot(void *ctx, const grobo_event *event)
 
 static bool session_loop(const char *device)
 {
-    const grobo_robot_config robot = {.sense_interval_us = GROBO_SENSE_NEVER};
+    const grobo_robot_config robot = {GROBO_ROBOT_CONFIG_INIT,
+                                      .sense_interval_us = GROBO_SENSE_NEVER};
     playing p = {.base = grobo_loop_new()};
-    const grobo_session_config config = {.base = p.base,
+    const grobo_session_config config = {GROBO_SESSION_CONFIG_INIT,
+                                         .base = p.base,
                                          .device = device,
                                          .baud_bps = BAUD_BPS,
                                          .driver = grobo_gr001_driver(GROBO_WIRING_BUS),
@@ -232,8 +234,10 @@ static bool session_loop(const char *device)
 static void serve(int fd)
 {
     struct event_base *base = grobo_loop_new();
-    const grobo_sim_config sim = {.wiring = GROBO_WIRING_BUS, .baud_bps = BAUD_BPS};
-    const grobo_sim_server_config config = {.base = base, .sim = &sim};
+    const grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT, .wiring = GROBO_WIRING_BUS,
+                                  .baud_bps = BAUD_BPS};
+    const grobo_sim_server_config config = {GROBO_SIM_SERVER_CONFIG_INIT, .base = base,
+                                            .sim = &sim};
     grobo_sim_server *server = NULL;
 
     if (grobo_sim_server_new(&config, &server, NULL) >= 0) {

@@ -123,7 +123,8 @@ static void run_us(int64_t span_us)
 
 static void start(int64_t sense_interval_us)
 {
-    const grobo_robot_config config = {.sense_interval_us = sense_interval_us};
+    const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT,
+                                       .sense_interval_us = sense_interval_us};
     const grobo_sim_config sim = {0};
     const grobo_robot_host host = {.clock = rig_clock};
 

@@ -123,6 +123,36 @@ static void heat_stops_for_safety(void **state)
     }
 }
 
+/* Of some families a goal switches torque on: none leaves for a joint that was let go. */
+static void a_limp_joint_is_not_sent_anywhere(void **state)
+{
+    (void)state;
+    for (const family *f = family_row(0); f != NULL;
+         f = family_row((size_t)(f - family_row(0)) + 1)) {
+        family_start(&kit, f, &watched, NULL);
+        assert_int_equal(family_move(&kit, 20, 1000), GROBO_OK);
+        int number = grobo_robot_torque(&kit.robot, GROBO_JOINTS_ALL(JOINTS), GROBO_TORQUE_OFF);
+        assert_int_equal(family_wait(&kit, number), GROBO_OK);
+        grobo_posture p = family_posture(&kit, -40, 500);
+        (void)grobo_robot_send(&kit.robot, &p);
+        family_run(&kit, S);
+        family_at(&kit, 20);
+        grobo_target target = {.posture = family_posture(&kit, 10, 500)};
+        for (int j = 0; j < JOINTS; j++) {
+            target.joint_time_us[j] = S;
+            target.from_rad[j] = target.posture.angle_rad[j] + 0.17;
+        }
+        for (int part = 0; part < 2; part++) { /* the second of KRS is the goal */
+            grobo_exchange raw = {.frame_bytes = 0};
+            if (kit.driver.posture(&kit.driver, NULL, &target, part, &raw) > 0) {
+                (void)grobo_robot_raw(&kit.robot, raw.frame, raw.frame_bytes);
+            }
+            family_run(&kit, S);
+        }
+        family_at(&kit, 20);
+    }
+}
+
 static void a_drive_mode_without_time_is_refused(void **state)
 {
     (void)state;
@@ -140,6 +170,7 @@ int main(void)
         cmocka_unit_test(an_emergency_stop_stops),
         cmocka_unit_test(without_its_host_an_arm_stops),
         cmocka_unit_test(heat_stops_for_safety),
+        cmocka_unit_test(a_limp_joint_is_not_sent_anywhere),
         cmocka_unit_test(a_drive_mode_without_time_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

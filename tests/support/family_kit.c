@@ -131,13 +131,14 @@ double family_angle_deg(family_kit *kit, int joint)
 
 static void look(family_kit *kit)
 {
+    if (kit->on_look != NULL) {
+        kit->on_look(kit);
+        return;
+    }
     for (int j = 0; j < FAMILY_JOINTS; j++) {
         grobo_sim_view view;
         assert_int_equal(grobo_sim_look(&kit->sim, j, &view), GROBO_OK);
         kit->most_dps = fmax(kit->most_dps, view.speed_dps);
-    }
-    if (kit->on_look != NULL) {
-        kit->on_look(kit);
     }
 }
 

@@ -79,5 +79,9 @@ static const grobo_i_family family = {
 
 int grobo_dxl1_driver_init(grobo_driver *driver, const grobo_model *model)
 {
-    return grobo_i_table_driver(driver, model, &grobo_dxl1_protocol, &family);
+    int result = grobo_i_table_driver(driver, model, &grobo_dxl1_protocol, &family);
+    if (result >= 0) {
+        driver->goal_wakes = true; /* common in forums; the maker does not say */
+    }
+    return result;
 }

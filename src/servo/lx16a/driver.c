@@ -306,6 +306,7 @@ static int inspect(const grobo_driver *self, void *ctx, const uint8_t *frame, si
 int grobo_lx16a_driver_init(grobo_driver *driver, const grobo_model *model)
 {
     grobo_driver made = {
+        .goal_wakes = true,
         .no_speed = true,
         .check = check,
         .posture = posture,

@@ -1,0 +1,486 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * A restless user on a bad line with servos of each family: random requests under faults of every
+ * kind, with the rules of safety that need no knowledge of a family held at every step:
+ *   - no servo that has torque is sent outside its joint's limits;
+ *   - none turns faster than its joint may, where nothing was lost lately;
+ *   - torque comes on only where the servo's goal is near its shaft;
+ *   - an emergency stop is carried out within its bound, nothing moves after it, and nothing is
+ *     accepted that moves;
+ *   - each job ends once, within its bound;
+ *   - on a line that is good again each joint is where it is read to be.
+ * A broken rule prints the command that repeats it.
+ *
+ * tests/engine/test_robot_soak.c does the same with RS30x, and knows its packets.
+ *
+ * Environment (make soak sets it): GROBO_SOAK=6 seeds of half an hour for each line,
+ * GROBO_SOAK_FROM, GROBO_SOAK_LINE, GROBO_SOAK_MINUTES as there; GROBO_SOAK_FAMILY one family
+ * alone. Without GROBO_SOAK: seed 1, a minute for each family.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "tests/support/family_kit.h"
+#include "tests/support/next_random.h"
+
+#define RAD(deg) ((deg)*0.017453292519943295)
+
+enum { MS = 1000, S = 1000000, OPEN_MAX = 64, RUNS_MAX = 4096 };
+
+static const char *const lines[] = {
+    "drop=0",
+    "drop=0.01",
+    "flip=0.01",
+    "duplicate=0.01,delay=0.01,split=0.01",
+    "rubbish=0.02,silent=0.02",
+    "brownout=0.0005",
+    "drop=0.002,flip=0.002,split=0.01,rubbish=0.01,silent=0.01",
+};
+enum { LINES = sizeof lines / sizeof lines[0] };
+
+/* What was lost makes the engine's picture of a joint wrong until it was read again. */
+enum { DOUBT_US = 1500 * MS };
+/* Of the steps of goals and of their times, and of a servo that catches up. */
+#define SPEED_SLACK 1.3
+#define LIMIT_SLACK_DEG 1.2
+#define HOLD_DEG 3.5
+/* A ramp that comes to its end. */
+#define REST_DEG 1.0
+
+typedef struct run {
+    const family *family;
+    uint32_t seed;
+    int line;
+    bool over;
+    char name[120];
+} run;
+
+static family_kit kit;
+static struct {
+    uint32_t random;
+    int open[OPEN_MAX]; /* jobs that have not ended */
+    int64_t open_us[OPEN_MAX];
+    unsigned n_open, seen;
+    uint32_t injected; /* faults so far */
+    int64_t doubt_until_us;
+    int64_t hand_until_us[FAMILY_JOINTS]; /* a hand turns it, or did lately */
+    int estop;                            /* its job, 0 when it is over */
+    bool latched, stands;
+    int64_t stands_us;
+} user;
+static struct {
+    unsigned runs, moves, torque_on, estops, jobs, refused, checked;
+    int64_t virtual_us;
+} total;
+static struct CMUnitTest tests[RUNS_MAX];
+static run runs[RUNS_MAX];
+static double minutes = 1;
+
+static uint32_t pick(uint32_t n)
+{
+    return next_random(&user.random) % n;
+}
+
+static double angle_deg(void)
+{
+    return (double)pick(2000) / 10 - 100; /* sometimes beyond the limits */
+}
+
+/* ---- rules ----------------------------------------------------------------------------------- */
+
+static bool doubtful(int joint)
+{
+    return kit.now_us < user.doubt_until_us || kit.now_us < user.hand_until_us[joint];
+}
+
+static void look_at_faults(void)
+{
+    uint32_t injected = 0;
+    for (int i = 0; i < (int)GROBO_SIM_FAULTS; i++) {
+        injected += kit.sim.stats.injected[i];
+    }
+    if (injected != user.injected) {
+        user.injected = injected;
+        user.doubt_until_us = kit.now_us + DOUBT_US;
+    }
+}
+
+static void on_look(family_kit *k)
+{
+    look_at_faults();
+    for (int j = 0; j < FAMILY_JOINTS; j++) {
+        grobo_sim_view view;
+        assert_int_equal(grobo_sim_look(&k->sim, j, &view), GROBO_OK);
+        double sign = k->joints[j].sign < 0 ? -1 : 1;
+        double to_deg = sign * view.target_mdeg / 1000.0;
+        bool on = view.torque == GROBO_TORQUE_ON;
+        if (on && view.moving && fabs(to_deg) > 90 + LIMIT_SLACK_DEG &&
+            k->now_us >= user.hand_until_us[j]) {
+            fail_msg("joint %d is sent to %.2f deg", j, to_deg);
+        }
+        double most_dps = k->joints[j].max_speed_rad_s / RAD(1) * SPEED_SLACK + 5;
+        const grobo_sim_servo *servo = &k->sim.servo[j];
+        bool goes = abs(servo->to_mdeg - servo->from_mdeg) > 500; /* not a step of the wire */
+        if (on && goes && !doubtful(j) && view.speed_dps > most_dps) {
+            fail_msg("joint %d turns by %d deg/s, and may by %.0f", j, (int)view.speed_dps,
+                     most_dps);
+        }
+        bool far = fabs(to_deg - sign * view.angle_mdeg / 1000.0) > REST_DEG;
+        if (user.stands && k->now_us > user.stands_us && view.moving && far && on && !doubtful(j)) {
+            fail_msg("joint %d moves after an emergency stop: %d deg/s, from %.1f to %.1f deg", j,
+                     (int)view.speed_dps, view.angle_mdeg / 1000.0, view.target_mdeg / 1000.0);
+        }
+    }
+}
+
+static void on_sim(family_kit *k, const grobo_sim_event *event)
+{
+    if (event->kind != GROBO_SIM_TORQUE || event->value != GROBO_TORQUE_ON) {
+        return;
+    }
+    const grobo_sim_servo *servo = &k->sim.servo[event->servo];
+    grobo_sim_view view;
+    assert_int_equal(grobo_sim_look(&k->sim, event->servo, &view), GROBO_OK);
+    double off_deg = (servo->plant.goal_mdeg - view.angle_mdeg) / 1000.0;
+    total.torque_on++;
+    /* Where a goal brings the torque, the next one on a way does so after a dip of the supply. */
+    bool dipped = k->driver.goal_wakes && k->sim.stats.injected[GROBO_SIM_FAULT_BROWN_OUT] > 0 &&
+                  k->now_us < user.doubt_until_us;
+    if (k->now_us >= user.hand_until_us[event->servo] && fabs(off_deg) > HOLD_DEG && !dipped) {
+        fail_msg("torque of joint %d comes on %.1f deg away from its goal", event->servo, off_deg);
+    }
+}
+
+/* ---- jobs ------------------------------------------------------------------------------------ */
+
+static void began(int number)
+{
+    if (number <= 0) {
+        total.refused++;
+        return;
+    }
+    assert_true(user.n_open < OPEN_MAX);
+    user.open[user.n_open] = number;
+    user.open_us[user.n_open++] = kit.now_us;
+}
+
+static void ended(const grobo_event_job *job)
+{
+    unsigned i = 0;
+    while (i < user.n_open && user.open[i] != job->number) {
+        i++;
+    }
+    if (job->number == user.estop) {
+        total.estops++;
+        user.stands = job->result == GROBO_OK;
+        user.stands_us = kit.now_us + 100 * MS;
+        user.estop = 0;
+    }
+    if (i == user.n_open) {
+        return; /* the engine's own, or it ended within its request */
+    }
+    user.n_open--;
+    user.open[i] = user.open[user.n_open];
+    user.open_us[i] = user.open_us[user.n_open];
+    total.jobs++;
+    total.moves += job->kind == GROBO_JOB_MOVE && job->result == GROBO_OK;
+}
+
+static void look_at_jobs(void)
+{
+    for (; user.seen < kit.n_done; user.seen++) {
+        ended(&kit.done[user.seen % FAMILY_EVENTS]);
+    }
+    for (unsigned i = 0; i < user.n_open; i++) {
+        if (kit.now_us - user.open_us[i] > 60 * (int64_t)S) {
+            fail_msg("job %d does not end", user.open[i]);
+        }
+    }
+}
+
+/* ---- requests -------------------------------------------------------------------------------- */
+
+static grobo_joint_mask some_joints(void)
+{
+    return 1 + pick((1U << FAMILY_JOINTS) - 1);
+}
+
+static grobo_posture some_posture(void)
+{
+    grobo_posture p;
+    assert_int_equal(grobo_posture_init(&p, FAMILY_JOINTS), 0);
+    for (int j = 0; j < FAMILY_JOINTS; j++) {
+        p.angle_rad[j] = RAD(angle_deg() * (pick(3) == 0 ? 1 : 0.85));
+    }
+    p.set = some_joints();
+    p.time_us = pick(3000) * (int64_t)MS;
+    return p;
+}
+
+static void ask_move(void)
+{
+    grobo_posture p = some_posture();
+    int result = grobo_robot_move(&kit.robot, &p);
+    assert_true(!user.latched || result < 0);
+    began(result);
+}
+
+static void ask_send(void)
+{
+    grobo_posture p = some_posture();
+    int result = grobo_robot_send(&kit.robot, &p);
+    assert_true(!user.latched || result < 0);
+}
+
+static void ask_torque(void)
+{
+    static const grobo_torque modes[] = {GROBO_TORQUE_ON, GROBO_TORQUE_OFF, GROBO_TORQUE_BRAKE};
+    began(grobo_robot_torque(&kit.robot, some_joints(), modes[pick(3)]));
+}
+
+static void ask_reading(void)
+{
+    began(grobo_robot_sense(&kit.robot, some_joints(), (grobo_sense_kind)pick(4)));
+}
+
+/* Frames as the driver builds them for anything, and rubbish. */
+static void ask_raw(void)
+{
+    grobo_exchange exchange = {.frame_bytes = 0};
+    grobo_target target = {.posture = some_posture()};
+    for (int j = 0; j < FAMILY_JOINTS; j++) {
+        target.joint_time_us[j] = (1 + pick(2000)) * (int64_t)MS;
+    }
+    uint32_t what = pick(4);
+    int part = (int)pick(2);
+    if (what == 0) {
+        exchange.frame_bytes = (uint16_t)(1 + pick(12));
+        for (int i = 0; i < exchange.frame_bytes; i++) {
+            exchange.frame[i] = (uint8_t)next_random(&user.random);
+        }
+    } else if (what == 1) {
+        (void)kit.driver.torque(&kit.driver, NULL, some_joints(), (grobo_torque)pick(2), part,
+                                &exchange);
+    } else {
+        (void)kit.driver.posture(&kit.driver, NULL, &target, part, &exchange);
+    }
+    if (exchange.frame_bytes > 0) {
+        began(grobo_robot_raw(&kit.robot, exchange.frame, exchange.frame_bytes));
+    }
+}
+
+/* Any register: those that are guarded must be refused, what is a setting lasts. Only values that
+ * it had before, so that the robot remains one. */
+static void ask_registers(void)
+{
+    int servo = (int)pick(FAMILY_JOINTS);
+    const grobo_servo_register *reg =
+        grobo_servo_register_row(kit.servos[servo], pick(kit.family->table->register_count));
+    uint8_t data[64];
+    uint8_t n = 0;
+    if (reg == NULL) {
+        return;
+    }
+    n = reg->bytes;
+    memcpy(data, &kit.sim.servo[servo].reg[reg->address], n);
+    const grobo_register_io io = {(uint8_t)(servo + 1), reg->address, n,
+                                  pick(2) == 0 ? NULL : data};
+    began(grobo_robot_registers(&kit.robot, &io));
+}
+
+static void ask_estop(void)
+{
+    int result = grobo_robot_estop(&kit.robot);
+    user.latched = user.latched || result > 0;
+    user.estop = result > 0 ? result : user.estop;
+    began(result);
+}
+
+static void ask_exit(void)
+{
+    began(grobo_robot_exit(&kit.robot, GROBO_EXIT_HOLD));
+}
+
+static void ask_free(void)
+{
+    (void)grobo_robot_free(&kit.robot, some_joints(), pick(3) == 0);
+}
+
+/* A hand turns a joint that is limp. */
+static void turn_by_hand(void)
+{
+    int j = (int)pick(FAMILY_JOINTS);
+    grobo_sim_view view;
+    assert_int_equal(grobo_sim_look(&kit.sim, j, &view), GROBO_OK);
+    if (view.torque == GROBO_TORQUE_OFF) {
+        int32_t to_mdeg = (int32_t)(angle_deg() * 800);
+        assert_int_equal(grobo_sim_set_angle(&kit.sim, j, to_mdeg, 300 * MS), GROBO_OK);
+        user.hand_until_us[j] = kit.now_us + 3 * (int64_t)S;
+    }
+}
+
+/* After a stop for safety a person resets after a while. */
+static void reset_some_time(void)
+{
+    grobo_trip_info trip;
+    grobo_robot_tripped(&kit.robot, &trip);
+    user.latched = trip.latched;
+    if (trip.latched && user.estop == 0 && pick(3) == 0 && grobo_robot_reset(&kit.robot) >= 0) {
+        user.latched = user.stands = false;
+    }
+}
+
+static void ask(void)
+{
+    static void (*const requests[])(void) = {
+        ask_move,   ask_move,     ask_move, ask_send,  ask_send,   ask_torque,
+        ask_torque, ask_raw,      ask_raw,  ask_estop, ask_exit,   ask_registers,
+        ask_free,   turn_by_hand, ask_move, ask_move,  ask_reading};
+    reset_some_time();
+    if (user.n_open < OPEN_MAX - 1) {
+        requests[pick(sizeof requests / sizeof requests[0])]();
+    }
+    if (pick(20) == 0) {
+        (void)grobo_robot_stop(&kit.robot, pick(2) == 0);
+    }
+    if (pick(30) == 0) {
+        (void)grobo_robot_cancel(&kit.robot);
+    }
+}
+
+/* ---- a run ----------------------------------------------------------------------------------- */
+
+static void start(const run *r)
+{
+    static const int64_t intervals_us[] = {1, 50 * MS, 150 * MS};
+    const char *faults = lines[r->line];
+    const grobo_robot_config config = {
+        GROBO_ROBOT_CONFIG_INIT,
+        .sense_interval_us = intervals_us[(r->seed + (unsigned)r->line) % 3],
+        .limit_policy = r->seed % 3 == 0 ? GROBO_LIMIT_CLAMP : 0,
+        .estop_torque = r->seed % 2 == 0 ? GROBO_ESTOP_OFF : 0, .lost_replies = 30};
+    const grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT, .seed = r->seed * 7 + 1, .no_stops = true};
+    memset(&user, 0, sizeof user);
+    user.random = (r->seed * 100 + (uint32_t)r->line) * 2654435761u + 17;
+    family_start(&kit, r->family, &config, &sim);
+    kit.on_look = on_look;
+    kit.on_sim = on_sim;
+    assert_true(grobo_sim_set_faults(&kit.sim, faults, strlen(faults)) > 0);
+}
+
+/* The line is good again, and everybody waits: jobs end, and what is read is true. */
+static void calm_down(void)
+{
+    assert_true(grobo_sim_set_faults(&kit.sim, "all=0,hangup=0", 14) > 0);
+    (void)grobo_robot_free(&kit.robot, GROBO_JOINTS_ALL(FAMILY_JOINTS), false);
+    for (int i = 0; i < 70 && user.n_open > 0; i++) {
+        family_run(&kit, S);
+        look_at_jobs();
+    }
+    assert_int_equal(user.n_open, 0);
+    family_run(&kit, 4 * (int64_t)S);
+    for (int j = 0; j < FAMILY_JOINTS; j++) {
+        grobo_joint_info info;
+        assert_int_equal(grobo_robot_joint(&kit.robot, j, &info), GROBO_OK);
+        double read_deg = info.state.angle_rad / RAD(1);
+        if (info.status == GROBO_OK && fabs(read_deg - family_angle_deg(&kit, j)) > 1) {
+            fail_msg("joint %d is read at %.1f deg and stands at %.1f", j, read_deg,
+                     family_angle_deg(&kit, j));
+        }
+        total.checked += info.status == GROBO_OK;
+    }
+}
+
+static void rules_hold(void **state)
+{
+    run *r = *state;
+    start(r);
+    for (int64_t end_us = kit.now_us + (int64_t)(minutes * 60e6); kit.now_us < end_us;) {
+        family_run(&kit, (1 + (int64_t)pick(pick(4) == 0 ? 2000 : 200)) * MS);
+        look_at_jobs();
+        ask();
+    }
+    calm_down();
+    total.virtual_us += kit.now_us;
+    total.runs++;
+    r->over = true;
+}
+
+static int tell_if_broken(void **state)
+{
+    const run *r = *state;
+    if (!r->over) {
+        print_message(
+            "# A rule is broken at %.6f s. It is repeated by: make soak FAMILY=%s SEEDS=1 "
+            "FROM=%u LINE=%d MINUTES=%g\n",
+            (double)kit.now_us / 1e6, r->family->name, (unsigned)r->seed, r->line, minutes);
+    }
+    return 0;
+}
+
+/* It was a soak and not a stall. */
+static void everything_was_done(void **state)
+{
+    (void)state;
+    print_message("# %u runs, %.1f virtual minutes: %u jobs, %u moves done, %u torques on, %u "
+                  "emergency stops, %u requests refused, %u joints true at the end\n",
+                  total.runs, (double)total.virtual_us / 60e6, total.jobs, total.moves,
+                  total.torque_on, total.estops, total.refused, total.checked);
+    assert_true(total.moves > 0 && total.torque_on > 0 && total.checked > 0);
+    assert_true(total.estops > 0 && total.refused > 0);
+}
+
+static uint32_t number(const char *name, uint32_t otherwise)
+{
+    const char *text = getenv(name);
+    return text != NULL && text[0] != '\0' ? (uint32_t)strtoul(text, NULL, 10) : otherwise;
+}
+
+static size_t add_runs(size_t n, const family *f, uint32_t seed, uint32_t only)
+{
+    for (int line = 0; line < LINES; line++) {
+        if ((only < LINES && (int)only != line) || n + 1 >= RUNS_MAX) {
+            continue;
+        }
+        run *r = &runs[n];
+        *r = (run){.family = f, .seed = seed, .line = line};
+        (void)snprintf(r->name, sizeof r->name, "%s, seed %u, line %d: %s", f->name, (unsigned)seed,
+                       line, lines[line]);
+        tests[n++] = (struct CMUnitTest){r->name, rules_hold, NULL, tell_if_broken, r};
+    }
+    return n;
+}
+
+int main(void)
+{
+    const char *only_family = getenv("GROBO_SOAK_FAMILY");
+    bool is_long = getenv("GROBO_SOAK") != NULL;
+    uint32_t seeds = number("GROBO_SOAK", 1);
+    uint32_t first = number("GROBO_SOAK_FROM", is_long ? 0 : 1);
+    uint32_t only = number("GROBO_SOAK_LINE", LINES);
+    const char *length = getenv("GROBO_SOAK_MINUTES");
+    const family *f;
+    size_t n = 0;
+    minutes = length != NULL && length[0] != '\0' ? strtod(length, NULL)
+              : is_long                           ? 30
+                                                  : 1.0 / LINES;
+    for (size_t i = 0; (f = family_row(i)) != NULL; i++) {
+        bool meant =
+            only_family == NULL || only_family[0] == '\0' || strcmp(only_family, f->name) == 0;
+        for (uint32_t seed = first; meant && seed < first + seeds; seed++) {
+            n = add_runs(n, f, seed, only);
+        }
+    }
+    if (n == 0) {
+        print_message("# no such family: %s\n", only_family);
+        return 1;
+    }
+    tests[n++] = (struct CMUnitTest){"everything was done", everything_was_done, NULL, NULL, NULL};
+    return _cmocka_run_group_tests("family_soak", tests, n, NULL, NULL);
+}
