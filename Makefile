@@ -161,7 +161,7 @@ include tools/baremetal/baremetal.mk
 
 .PHONY: help all lib demo check lint lint-quick format test check-san check-tsan check-memcheck install uninstall
 .PHONY: clean tidy fuzz soak cov dist bench plots captures cross check-cross check-drivers
-.PHONY: check-families check-ports check-long check-mutants check-map install-lib FORCE
+.PHONY: check-abi check-families check-ports check-long check-mutants check-map install-lib FORCE
 .PHONY: firmware size check-firmware
 
 help: ## this list
@@ -339,6 +339,10 @@ check-map: ## sabotage the function of each row of docs/seed-map.md; COUNT=40 ro
 	    --sources "$(CORE_SRCS) $(OTHER_SRCS)" --objects $(MUTANT_DIR)/tests \
 	    --compile '$(CC) $(ALL_CPPFLAGS) $(SRC_INCLUDE) $(OS_FLAGS) $(EVENT_CFLAGS) $(YAML_CFLAGS) -std=c11 -fPIC -O2' \
 	    --link '$(CC)' --libs '$(MUTANT_LIBS) $(CMOCKA_LIBS) $(TOOL_LIBS) $(LIBS)' $(if $(JOBS),--jobs $(JOBS))
+
+ABI_TAG ?= $(shell git describe --tags --abbrev=0 2>/dev/null)
+check-abi: ## compare the shared library with that of the last tag, by abidiff
+	@MAKE='$(MAKE)' BUILD='$(call whole,$(BUILD))/abi' tools/check-abi.sh '$(ABI_TAG)'
 
 cov: ## which lines the tests reach, by file
 	@$(MAKE) --no-print-directory test BUILD=$(BUILD)/cov COV_FLAGS=--coverage CFLAGS='-O0 -g' \

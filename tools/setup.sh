@@ -6,7 +6,8 @@
 #                        --mutants | --packages] [--dry-run]
 #   --demo     what a build and the demo need (default)
 #   --check    that, what `make check` needs, and the programs without which it skips checks
-#   --ci       that, and what the other stages of .ci/run need: clang with libFuzzer, valgrind
+#   --ci       that, and what the other stages of .ci/run need: clang with libFuzzer, valgrind,
+#              abidiff
 #   --cross    what `make cross TARGET=...` needs (Debian only)
 #   --drivers  what --check needs, and `make check-drivers`
 #   --mutants  what --check needs, and `make check-mutants`
@@ -267,6 +268,8 @@ look_wanted() {
         meson meson meson meson meson
     need valgrind 'to check memory' have_command valgrind -- \
         valgrind valgrind valgrind valgrind valgrind
+    [ "$manager" != apt-get ] ||
+        need abidiff 'to compare binary interfaces' have_command abidiff -- abigail-tools
     need 'clang with libFuzzer' 'to fuzz' have_fuzzer -- \
         'clang libclang-rt-dev' 'clang compiler-rt' 'clang compiler-rt' 'clang compiler-rt' clang
 }

@@ -9,7 +9,7 @@
  */
 #include <stdio.h>
 
-#include <grobo/sim.h>
+#include <grobo/sim_static.h>
 #include <grobo/static.h>
 
 #define RAD(deg) ((deg)*0.017453292519943295)
@@ -92,7 +92,8 @@ static int finish(int job)
 int main(void)
 {
     grobo_driver driver;
-    grobo_sim_config sim_config = {.model = &model, .wiring = GROBO_WIRING_BUS};
+    grobo_sim_config sim_config = {GROBO_SIM_CONFIG_INIT, .model = &model,
+                                   .wiring = GROBO_WIRING_BUS};
     if (grobo_rs30x_driver_init(&driver, &model, &grobo_rs30x_protocol) < 0) {
         return 1;
     }

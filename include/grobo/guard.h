@@ -54,6 +54,7 @@ typedef struct grobo_guard grobo_guard;
 
 /** What a guard is made of. Zero means default. */
 typedef struct grobo_guard_config {
+    size_t size; /**< GROBO_GUARD_CONFIG_INIT */
     /** A path, or a name to be looked up in PATH; borrowed during the call. NULL: the grctl that
      *  was installed with the library. */
     const char *program;
@@ -62,6 +63,8 @@ typedef struct grobo_guard_config {
     const char *const *arguments;
     const grobo_mem *mem; /**< borrowed allocator; NULL: the C library's */
 } grobo_guard_config;
+/** Begins an initializer of one. */
+#define GROBO_GUARD_CONFIG_INIT GROBO_SIZED(grobo_guard_config)
 
 /**
  * Starts a guard and waits until it is ready: some milliseconds, 2 s at most. Before threads,
@@ -93,6 +96,7 @@ typedef enum grobo_guard_cause {
 
 /** What runs a guard. Zero means default. */
 typedef struct grobo_guard_program {
+    size_t size; /**< GROBO_GUARD_PROGRAM_INIT */
     /**
      * The driver of that name and wiring, or NULL: there is none, and the program is told.
      * `data` and `bytes` are grobo_session_config.guard_data; *driver_ctx is NULL when called and
@@ -108,6 +112,8 @@ typedef struct grobo_guard_program {
     void (*on_stop)(void *ctx, grobo_guard_cause cause, int result);
     void *ctx; /**< borrowed, handed to these */
 } grobo_guard_program;
+/** Begins an initializer of one. */
+#define GROBO_GUARD_PROGRAM_INIT GROBO_SIZED(grobo_guard_program)
 
 /**
  * Is the guard, until the program that started it has ended or has freed it: the only call of a

@@ -57,6 +57,7 @@ typedef enum grobo_goals {
 
 /** Configuration. All zero is the default; a negative number where 0 means a limit: no limit. */
 typedef struct grobo_robot_config {
+    size_t size;                     /**< GROBO_ROBOT_CONFIG_INIT */
     grobo_limit_policy limit_policy; /**< targets outside limits; default refuse */
     int speed_limit_pct;             /**< 1..100 of each joint's speed; default 100 */
     double approach_dps;             /**< deg/s of the first move, > 0; default the driver's */
@@ -85,6 +86,8 @@ typedef struct grobo_robot_config {
     uint32_t timeout_us;             /**< reply timeout; default computed, see bus.h */
     int retries;                     /**< of a lost reply, the last patient; default 2; -1 none */
 } grobo_robot_config;
+/** Begins an initializer of one. */
+#define GROBO_ROBOT_CONFIG_INIT GROBO_SIZED(grobo_robot_config)
 
 /* ---- the budget of the line ------------------------------------------------------------------ */
 

@@ -95,6 +95,7 @@ typedef void (*grobo_serial_tap_fn)(grobo_direction direction, int64_t now_us, c
 
 /** What a port is made of. All zero is a valid one: synchronous, no device yet. */
 typedef struct grobo_serial_config {
+    size_t size;              /**< GROBO_SERIAL_CONFIG_INIT */
     const char *device;       /**< copied; NULL: none yet (grobo_serial_set_device) */
     int baud_bps;             /**< 0: GROBO_BAUD_DEFAULT_BPS; any positive rate, standard or not */
     grobo_line_format format; /**< set when the port is opened; zero: 8N1. What the device cannot is
@@ -110,6 +111,8 @@ typedef struct grobo_serial_config {
     const grobo_mem *mem;           /**< borrowed allocator; NULL: the C library's */
     const grobo_port_ops *ops;      /**< borrowed; NULL: chosen by the device's name */
 } grobo_serial_config;
+/** Begins an initializer of one. */
+#define GROBO_SERIAL_CONFIG_INIT GROBO_SIZED(grobo_serial_config)
 
 /**
  * Makes a port, closed. config is copied, NULL stands for all zero.

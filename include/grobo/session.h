@@ -81,6 +81,7 @@ typedef void (*grobo_session_event_fn)(grobo_session *session, grobo_session_eve
 
 /** What a session is made of. Zero means default. */
 typedef struct grobo_session_config {
+    size_t size;                     /**< GROBO_SESSION_CONFIG_INIT */
     struct event_base *base;         /**< borrowed; needed */
     const char *device;              /**< copied; needed: a serial port, "tcp:HOST:PORT",
                                           GROBO_DEVICE_SIM or GROBO_DEVICE_AUTO */
@@ -108,6 +109,8 @@ typedef struct grobo_session_config {
     size_t guard_bytes;              /**< of it, at most GROBO_GUARD_DATA_BYTES */
     const grobo_mem *mem;            /**< borrowed allocator; NULL: the C library's */
 } grobo_session_config;
+/** Begins an initializer of one. */
+#define GROBO_SESSION_CONFIG_INIT GROBO_SIZED(grobo_session_config)
 
 /**
  * Makes a session, closed.
@@ -176,7 +179,8 @@ GROBO_API void grobo_session_bytes(const grobo_session *session, uint64_t *tx_by
  * noted in an atomic word, and the loop is woken. It is kept until the loop has carried it out, and
  * nothing else leaves before: the next frame on the wire is the stop. Where the loop does not turn,
  * because a callback holds it or no thread runs it, the request waits. Requests of the same
- * kind that the loop finds together are one. All return GROBO_OK, or GROBO_ERR_ARG. */
+ * kind that the loop finds together are one. What other threads ask of the engine meanwhile is
+ * stopped as well. All return GROBO_OK, or GROBO_ERR_ARG. */
 
 /**
  * grobo_robot_estop(), by the loop. The stop counts as latched from the return of this call on;

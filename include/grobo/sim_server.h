@@ -24,6 +24,7 @@ typedef struct grobo_sim_server grobo_sim_server;
 
 /** What a server is made of. Zero means default. */
 typedef struct grobo_sim_server_config {
+    size_t size;                 /**< GROBO_SIM_SERVER_CONFIG_INIT */
     struct event_base *base;     /**< borrowed; needed */
     const grobo_sim_config *sim; /**< copied; NULL: all defaults */
     bool no_pty;                 /**< serve by TCP only */
@@ -34,6 +35,8 @@ typedef struct grobo_sim_server_config {
     void *ctx;                   /**< borrowed, handed to on_tap */
     const grobo_mem *mem;        /**< borrowed allocator; NULL: the C library's */
 } grobo_sim_server_config;
+/** Begins an initializer of one. */
+#define GROBO_SIM_SERVER_CONFIG_INIT GROBO_SIZED(grobo_sim_server_config)
 
 /**
  * Makes a server and opens what it serves.

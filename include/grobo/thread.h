@@ -25,13 +25,12 @@
  *
  * Stopping does not depend on a turn: grobo_control_estop(), grobo_control_post_stop() and
  * grobo_control_post_exit() are safe in signal handlers and leave a request that is kept until it
- * has been carried out; grobo_control_stop_motion() and grobo_control_exit() leave it where they
- * cannot wait. What delays it is a callback, or a function of grobo_control_call() or
- * grobo_control_post(), that does not return: while it holds the loop, nothing is read, nothing is
- * watched and nothing is sent, so joints go on to the posture they were sent to last, and a motion
- * that is late by stall_us ends. A callback must not wait for a lock whose owner calls here and
- * waits. One that takes longer than GROBO_CALLBACK_SLOW_US is reported by the event
- * GROBO_EVENT_SLOW_CALLBACK.
+ * has been carried out; grobo_control_exit() leaves it where it cannot wait. What delays it is a
+ * callback, or a function of grobo_control_call() or grobo_control_post(), that does not return:
+ * while it holds the loop, nothing is read, nothing is watched and nothing is sent, so joints go on
+ * to the posture they were sent to last, and a motion that is late by stall_us ends. A callback
+ * must not wait for a lock whose owner calls here and waits. One that takes longer than
+ * GROBO_CALLBACK_SLOW_US is reported by the event GROBO_EVENT_SLOW_CALLBACK.
  *
  * Besides what is said at each, handed-over and waiting calls may return GROBO_ERR_FULL
  * (GROBO_CONTROL_CALLS_MAX are under way; some more for a stop or an exit), GROBO_ERR_CLOSED
@@ -65,6 +64,8 @@ GROBO_BEGIN_DECLS
 #define GROBO_CONTROL_TIMEOUT_US INT64_C(5000000)
 /** Control period where none is given. */
 #define GROBO_CONTROL_PERIOD_US 10000
+/** Events that a control keeps at most. */
+#define GROBO_CONTROL_EVENTS_MAX 4096
 /** Bytes of the command buffer, and of the buffer of received bytes. */
 #define GROBO_CONTROL_COMMAND_BYTES GROBO_FRAME_MAX_BYTES
 #define GROBO_CONTROL_RECEIVE_BYTES 512
@@ -77,9 +78,11 @@ typedef int (*grobo_control_fn)(grobo_control *control, void *arg);
 
 /** What a control is made of. Zero means default. */
 typedef struct grobo_control_config {
-    /** The session; `device` is needed, `base` must be NULL. Its callbacks are called on the thread
-     *  that runs the loop; its allocator must be safe to call from every thread. */
-    grobo_session_config session;
+    size_t size; /**< GROBO_CONTROL_CONFIG_INIT */
+    /** The session, needed, copied; its `device` is needed, `base` must be NULL. Its callbacks are
+     *  called on the thread that runs the loop; its allocator must be safe to call from every
+     *  thread. */
+    const grobo_session_config *session;
     const char *name;          /**< copied; NULL: the driver's */
     const char *motion_dir;    /**< copied; NULL: "." */
     int64_t control_period_us; /**< 1000..1000000; 0: GROBO_CONTROL_PERIOD_US */
@@ -87,10 +90,14 @@ typedef struct grobo_control_config {
                                     the exit policy is carried out, once until the next call */
     bool skip_exit;            /**< leave the robot as it is */
     grobo_control_fn on_svc;   /**< called once each control period while the loop runs, arg being
-                                    session.ctx; its result is ignored; or NULL */
+                                    session->ctx; its result is ignored; or NULL */
     int64_t timeout_us;        /**< of calls that are given none, and of those handed over; 0:
                                     GROBO_CONTROL_TIMEOUT_US */
+    size_t events;             /**< events kept for grobo_control_next_event(), at most
+                                    GROBO_CONTROL_EVENTS_MAX; each takes some 2.5 kB; 0: none */
 } grobo_control_config;
+/** Begins an initializer of one. */
+#define GROBO_CONTROL_CONFIG_INIT GROBO_SIZED(grobo_control_config)
 
 /* ---- making and freeing ------------------------------------------------------------------- */
 
@@ -189,6 +196,68 @@ GROBO_API grobo_session *grobo_control_session(grobo_control *control);
 /** The serial port; as grobo_control_session(). */
 GROBO_API grobo_serial *grobo_control_serial(grobo_control *control);
 
+/* ---- looking on ------------------------------------------------------------------------------
+ * For programs that want no code of theirs on the loop: other languages, event loops of their own.
+ * Events are kept in a ring, and a descriptor tells that there are some; a snapshot says all that
+ * is known. */
+
+/** An event as it is kept. */
+typedef struct grobo_control_event {
+    size_t size;              /**< GROBO_CONTROL_EVENT_INIT */
+    uint64_t lost;            /**< events lost between the one taken before and this one */
+    bool of_line;             /**< true: `line` and `error`; false: `event` */
+    grobo_session_event line; /**< of the line: as grobo_session_event_fn is told */
+    int error;                /**< of the line */
+    grobo_event event;        /**< of the engine; job.data is in `data` below */
+    uint8_t data[GROBO_FRAME_MAX_BYTES]; /**< job.size bytes of it are set */
+} grobo_control_event;
+/** Begins an initializer of one. */
+#define GROBO_CONTROL_EVENT_INIT GROBO_SIZED(grobo_control_event)
+
+/**
+ * Takes the oldest event. `grobo_control_config.events` are kept of jobs, plays, trips and the
+ * line, and as many readings and rounds besides; where either is full its oldest makes way and is
+ * counted, so that a flood of readings displaces nothing else, and the newest are always there.
+ * What happened before a close can be taken until grobo_control_free(). At once.
+ * @param[in,out] event its `size` is set; job.data points into it.
+ * @return 1; 0 where there is none; GROBO_ERR_ARG (NULL, size), GROBO_ERR_STATE (none are kept).
+ */
+GROBO_API int grobo_control_next_event(grobo_control *control, grobo_control_event *event);
+
+/**
+ * A descriptor that is readable while there are events, for poll(), epoll or a loop; on Win32 a
+ * SOCKET, for select() and WSAPoll(). Only waited on: it is read, and closed, by the control. A
+ * forked child does not use it; a program that is executed does not get it. At once.
+ * @return GROBO_SOCKET_NULL where no events are kept. Valid as long as the control.
+ */
+GROBO_API grobo_socket grobo_control_event_socket(const grobo_control *control);
+
+/** What is known of the robot, all at one moment. */
+typedef struct grobo_snapshot {
+    size_t size;                   /**< GROBO_SNAPSHOT_INIT */
+    int64_t now_us;                /**< when, by grobo_now_us() */
+    bool connected;                /**< as grobo_control_is_connected() */
+    bool latched;                  /**< as grobo_control_is_latched() */
+    bool moving;                   /**< as grobo_robot_moving() */
+    bool settling;                 /**< as grobo_robot_settling() */
+    grobo_job_kind job;            /**< as grobo_robot_job() */
+    grobo_trip_info trip;          /**< as grobo_robot_tripped() */
+    grobo_play_progress play;      /**< as grobo_robot_progress() */
+    grobo_robot_counters counters; /**< as grobo_robot_get_counters() */
+    int n_joints;
+    grobo_joint_info joints[GROBO_JOINTS_MAX]; /**< as grobo_robot_joint(): angle, goal, torque,
+                                                    temperature..., and the ages of readings */
+} grobo_snapshot;
+/** Begins an initializer of one. */
+#define GROBO_SNAPSHOT_INIT GROBO_SIZED(grobo_snapshot)
+
+/**
+ * Takes a snapshot, without waiting for the loop. At once.
+ * @param[in,out] snapshot its `size` is set.
+ * @return number of joints, GROBO_ERR_ARG (NULL, size).
+ */
+GROBO_API int grobo_control_snapshot(grobo_control *control, grobo_snapshot *snapshot);
+
 /* ---- facts and settings: all at once unless said otherwise ---------------------------------- */
 
 /** The robot's name. Valid as long as the control. */
@@ -254,10 +323,10 @@ GROBO_API int grobo_control_get_cause(grobo_control *control, grobo_os_cause *ca
 
 /* ---- servos --------------------------------------------------------------------------------- */
 
-/** Torque of a joint as last known. Handed over. @return a grobo_torque, GROBO_ERR_EMPTY (not
+/** Torque of a joint as last known. At once. @return a grobo_torque, GROBO_ERR_EMPTY (not
  *  known), GROBO_ERR_ARG. */
 GROBO_API int grobo_control_get_servo_state(grobo_control *control, int joint);
-/** Torque of all joints: as grobo_control_get_servo_state() for each. Handed over. @return
+/** Torque of all joints: as grobo_control_get_servo_state() for each. At once. @return
  *  number of joints, GROBO_ERR_SPACE. */
 GROBO_API int grobo_control_get_servo_states(grobo_control *control, int *states, size_t capacity);
 /** Switches the torque of a joint, and reads it back. Waits. @return the state, or as
@@ -271,7 +340,7 @@ GROBO_API int grobo_control_set_servo_states(grobo_control *control, grobo_joint
 
 /* ---- postures ------------------------------------------------------------------------------- */
 
-/** The posture sensed last; joints never sensed are not set. Handed over. @return joints set. */
+/** The posture sensed last; joints never sensed are not set. At once. @return joints set. */
 GROBO_API int grobo_control_get_current_posture(grobo_control *control, grobo_posture *posture);
 /** Reads all joints. Those that stay silent are not set. Waits. @return joints read; when none
  *  was, why. */
@@ -298,22 +367,21 @@ GROBO_API int grobo_control_set_joint(grobo_control *control, int joint, double 
 GROBO_API int grobo_control_set_motion_time_us(grobo_control *control, int64_t time_us);
 
 /**
- * Has the target posture sent, once: the loop takes the target as it is then, as soon as the
- * robot has done what it is doing. A target that was sent before by this call does not delay it:
- * the robot leaves for the new one from where it is by then, so that a program may set targets at
- * its own rate. Only the first after torque came on is awaited, and one whose joints the new one
- * does not set. A target that still waits is replaced. How the last one ends is told by
- * grobo_control_wait() and by the job event. At once.
- * @return GROBO_OK, GROBO_ERR_CLOSED, GROBO_ERR_EMPTY (no joint is set).
+ * Has the robot move to the target posture: grobo_robot_retarget() of the move under way, so that a
+ * program may set targets at its own rate, or where that has other joints grobo_robot_move(), which
+ * waits behind what it cannot run beside. How it ends is told by grobo_control_wait() and by the
+ * job event. At once.
+ * @return GROBO_OK, GROBO_ERR_CLOSED, GROBO_ERR_EMPTY (no joint is set), or as grobo_robot_move():
+ *   GROBO_ERR_STATE where a motion is played that sets these joints, GROBO_ERR_LATCHED.
  */
 GROBO_API int grobo_control_start_motion(grobo_control *control);
 /** Makes the initial posture the target, and grobo_control_start_motion(). At once. */
 GROBO_API int grobo_control_init_position(grobo_control *control);
-/** Postures still to be sent: 1 for a target that waits, and those of the motion in this pass and
- *  the repetitions after it (at a rate: its frames). Handed over. @return the number, INT_MAX for
- *  more than that. */
+/** Postures still to be reached: 1 for a target, and those of the motion in this pass and the
+ *  repetitions after it (at a rate: its frames). At once. @return the number, INT_MAX for more than
+ *  that. */
 GROBO_API int grobo_control_command_count(grobo_control *control);
-/** Whether postures are still to be sent or under way. Handed over. @return 1 or 0. */
+/** Whether postures are still to be sent or under way. At once. @return 1 or 0. */
 GROBO_API int grobo_control_is_moving(grobo_control *control);
 /** Waits until nothing moves, nothing is asked of the robot, and the last posture of a motion has
  *  been read back. @return how the last motion or target ended: GROBO_OK, GROBO_ERR_CANCELED
@@ -338,7 +406,7 @@ GROBO_API int grobo_control_get_motion(grobo_control *control, grobo_motion **mo
 GROBO_API size_t grobo_control_motion_size(grobo_control *control);
 /** Makes it an empty motion of postures. What is being played goes on. At once. */
 GROBO_API void grobo_control_clear_motion(grobo_control *control);
-/** Appends the posture sensed last, with the default time. Handed over. @return postures,
+/** Appends the posture sensed last, with the default time. At once. @return postures,
  *  GROBO_ERR_STALE (nothing was sensed), or as grobo_motion_append(). */
 GROBO_API int grobo_control_append_current_posture(grobo_control *control);
 /** Appends the posture sensed last, with a time from 0 (the default time) to below
@@ -383,22 +451,18 @@ GROBO_API int grobo_control_get_last_posture(grobo_control *control, grobo_postu
 GROBO_API int grobo_control_do_nth_motion(grobo_control *control, size_t n);
 
 /**
- * Has the motion as it is now played, as soon as the robot has done what it is doing, with the
- * count, direction and default time that are set. How it ends is told by grobo_control_wait()
- * and by events. At once.
- * @param options the rest (mode, rate, speed, mirror, ...), copied; NULL: by keys, as it is. A
- *   rate at which the joints are not watched makes grobo_control_wait() return
- *   GROBO_ERR_UNWATCHED, as grobo_robot_play() does.
- * @return GROBO_OK, GROBO_ERR_CLOSED, GROBO_ERR_EMPTY (no posture), GROBO_ERR_STATE (a motion
- *   waits or is played), GROBO_ERR_NOMEM, or as grobo_motion_clip().
+ * Has the motion as it is now played, with the count, direction and default time that are set. How
+ * it ends is told by grobo_control_wait() and by events. At once.
+ * @param options the rest (mode, rate, speed, mirror, ...), copied; NULL: by keys, as it is.
+ * @return GROBO_OK, GROBO_ERR_CLOSED, GROBO_ERR_EMPTY (no posture), GROBO_ERR_NOMEM, or as
+ *   grobo_motion_clip() and grobo_robot_play(): GROBO_ERR_STATE where a motion is played or a move
+ *   under way (grobo_control_wait() before), GROBO_ERR_UNWATCHED.
  */
 GROBO_API int grobo_control_play_motion(grobo_control *control, const grobo_play_options *options);
 /**
- * Ends whatever moves the robot, and cancels what has not begun. Handed over. The request is never
- * dropped: where its turn cannot be awaited, it is carried out as grobo_control_post_stop() says.
+ * Ends whatever moves the robot, and cancels what has not begun: grobo_robot_stop(). At once.
  * @param at_once false: smoothly.
- * @return GROBO_OK; GROBO_ERR_STATE where there is nothing to stop; GROBO_ERR_TIMEOUT,
- *   GROBO_ERR_FULL: its turn was not awaited.
+ * @return GROBO_OK; GROBO_ERR_STATE where there is nothing to stop.
  */
 GROBO_API int grobo_control_stop_motion(grobo_control *control, bool at_once);
 /** Whether a motion is played or about to be. At once. */

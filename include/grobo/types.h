@@ -17,6 +17,22 @@
 #include <grobo/error.h>
 #include <grobo/limits.h>
 
+/**
+ * The first member of a structure that a later version may lengthen, as the program was compiled:
+ * a GROBO_..._INIT of each such structure is `GROBO_SIZED(type)`. The library takes a shorter
+ * structure of an older program for one whose missing fields are zero, and refuses with
+ * GROBO_ERR_ARG a `size` that no version had (0: not initialised) and a field set that it does not
+ * know.
+ * @code
+ *   grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .speed_limit_pct = 50};
+ * @endcode
+ */
+#ifdef __cplusplus
+#define GROBO_SIZED(type) sizeof(type)
+#else
+#define GROBO_SIZED(type) .size = sizeof(type)
+#endif
+
 /** No deadline: later than any time. */
 #define GROBO_NEVER_US INT64_MAX
 

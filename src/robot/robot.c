@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "src/base/instant.h"
+#include "src/base/sized.h"
 #include "src/robot/robot.h"
 
 #define STALL_US 250000
@@ -61,7 +62,11 @@ static void config_fill(grobo_robot_config *c, const grobo_driver *driver)
     c->bus.protocol = driver->protocol;
 }
 
-static const grobo_robot_config defaults;
+static int config_take(grobo_robot_config *to, const grobo_robot_config *from)
+{
+    int result = grobo_i_sized_take(to, sizeof *to, from);
+    return result < 0 || config_sound(to) ? result : GROBO_ERR_ARG;
+}
 
 int grobo_robot_init_sized(grobo_robot *robot, size_t robot_bytes, const grobo_driver *driver,
                            void *driver_ctx, const grobo_robot_config *config, int64_t now_us)
@@ -69,8 +74,8 @@ int grobo_robot_init_sized(grobo_robot *robot, size_t robot_bytes, const grobo_d
     if (robot == NULL || robot_bytes != sizeof *robot) {
         return GROBO_ERR_ARG;
     }
-    const grobo_robot_config *c = config == NULL ? &defaults : config;
-    if (grobo_driver_check(driver) < 0 || !config_sound(c)) {
+    grobo_robot_config taken;
+    if (grobo_driver_check(driver) < 0 || config_take(&taken, config) < 0) {
         return GROBO_ERR_ARG;
     }
     memset(robot, 0, sizeof *robot);
@@ -80,7 +85,7 @@ int grobo_robot_init_sized(grobo_robot *robot, size_t robot_bytes, const grobo_d
     robot->leave = grobo_i_gate_leave;
     robot->over = grobo_i_frame_over;
     robot->each = grobo_i_reply_came;
-    robot->config = *c;
+    robot->config = taken;
     config_fill(&robot->config, driver);
     if (grobo_bus_init(&robot->bus, &robot->config.bus) < 0) {
         return GROBO_ERR_ARG;
@@ -119,13 +124,13 @@ int grobo_robot_configure(grobo_robot *robot, const grobo_robot_config *config)
     if (robot == NULL) {
         return GROBO_ERR_ARG;
     }
-    const grobo_robot_config *c = config == NULL ? &defaults : config;
-    if (!config_sound(c)) {
+    grobo_robot_config taken;
+    if (config_take(&taken, config) < 0) {
         return GROBO_ERR_ARG;
     }
     grobo_i_lock(robot);
     grobo_bus_config bus = robot->config.bus;
-    robot->config = *c;
+    robot->config = taken;
     config_fill(&robot->config, robot->driver);
     robot->config.bus = bus; /* the line stays what it is */
     grobo_i_unlock(robot);

@@ -7,7 +7,7 @@
 #ifndef GROBO_SIM_FAMILY_H
 #define GROBO_SIM_FAMILY_H
 
-#include <grobo/sim.h>
+#include <grobo/sim_static.h>
 
 struct grobo_sim_family {
     /* Whether a model is one of its; NULL for RS30x, which have none. */

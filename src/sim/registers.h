@@ -3,7 +3,7 @@
 #ifndef GROBO_SIM_REGISTERS_H
 #define GROBO_SIM_REGISTERS_H
 
-#include <grobo/sim.h>
+#include <grobo/sim_static.h>
 
 int32_t grobo_i_sim_value(const grobo_sim_servo *servo, uint8_t address);
 /* Sets a register, to the end of its range where the value is beyond. */

@@ -3,7 +3,7 @@
 #ifndef GROBO_SIM_SERVO_H
 #define GROBO_SIM_SERVO_H
 
-#include <grobo/sim.h>
+#include <grobo/sim_static.h>
 
 /* Whether a servo that a packet is for hears it now; tells of those that miss it. */
 bool grobo_i_sim_hears(grobo_sim *sim, int servo, const grobo_sim_event *raw);

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "src/base/instant.h"
+#include "src/base/sized.h"
 #include "src/sim/board.h"
 #include "src/sim/bus.h"
 #include "src/sim/family.h"
@@ -374,12 +375,16 @@ static void use_defaults(grobo_sim_config *config)
     }
 }
 
-int grobo_sim_init(grobo_sim *sim, const grobo_sim_config *config, int64_t now_us)
+int grobo_sim_init_sized(grobo_sim *sim, size_t sim_bytes, const grobo_sim_config *config,
+                         int64_t now_us)
 {
-    if (sim == NULL) {
+    if (sim == NULL || sim_bytes != sizeof *sim) {
         return GROBO_ERR_ARG;
     }
-    grobo_sim_config with = config == NULL ? (grobo_sim_config){0} : *config;
+    grobo_sim_config with;
+    if (grobo_i_sized_take(&with, sizeof with, config) < 0) {
+        return GROBO_ERR_ARG;
+    }
     use_defaults(&with);
     if (grobo_model_check(with.model) < 0 || with.baud_bps < LOWEST_BPS || with.ambient_c < -40 ||
         with.ambient_c > 60 ||

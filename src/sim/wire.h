@@ -3,7 +3,7 @@
 #ifndef GROBO_SIM_WIRE_H
 #define GROBO_SIM_WIRE_H
 
-#include <grobo/sim.h>
+#include <grobo/sim_static.h>
 
 /* A byte that is over at at_ns; false when there is no room for it. */
 bool grobo_i_sim_wire_put(grobo_sim_wire *wire, uint8_t byte, int64_t at_ns);

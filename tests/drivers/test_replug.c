@@ -135,11 +135,9 @@ static void an_adapter_pulled_out_in_a_motion_and_put_back(void **state)
     uint64_t frames;
 
     (void)state;
-    session_kit_make((grobo_session_config){.device = device,
-                                            .reconnect = true,
-                                            .guard = guard,
-                                            .guard_data = "known",
-                                            .guard_bytes = 5});
+    session_kit_make((grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = device,
+                                            .reconnect = true, .guard = guard,
+                                            .guard_data = "known", .guard_bytes = 5});
     assert_int_equal(grobo_session_open(session), GROBO_OK);
     loop_run_until(base, &seen.ups, 1);
     lose_it(set_going());

@@ -140,7 +140,8 @@ static void one_alone_is_switched_on_where_it_is(void **state)
 {
     (void)state;
     for (int j = 0; j < JOINTS; j++) {
-        grobo_sim_config limp = {.seed = (uint32_t)j, .start = GROBO_SIM_START_LIMP};
+        grobo_sim_config limp = {GROBO_SIM_CONFIG_INIT, .seed = (uint32_t)j,
+                                 .start = GROBO_SIM_START_LIMP};
         rig_start(&rig, &quiet, &limp);
         rig_expect(&rig, grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(j), GROBO_TORQUE_ON),
                    GROBO_OK);
@@ -315,11 +316,10 @@ static void what_is_at_its_bound_is_within(void **state)
     grobo_robot_config cold = quiet; /* the least that there is */
     cold.temperature_c = 1;
     assert_int_equal(tripped_by(&cold), GROBO_TRIP_TEMPERATURE);
-    const grobo_robot_config nothing = {.sense_interval_us = GROBO_SENSE_NEVER,
-                                        .current_ma = -1,
-                                        .voltage_mv = -1,
-                                        .temperature_c = -1,
-                                        .lost_replies = -1};
+    const grobo_robot_config nothing = {
+        GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = GROBO_SENSE_NEVER,
+        .current_ma = -1,        .voltage_mv = -1,
+        .temperature_c = -1,     .lost_replies = -1};
     assert_int_equal(grobo_sim_set_load(&rig.sim, R_KNEE, 900), 0);
     assert_int_equal(grobo_sim_set_temperature(&rig.sim, R_KNEE, 69), 0);
     assert_int_equal(tripped_by(&nothing), GROBO_TRIP_NONE);
@@ -399,7 +399,8 @@ static void a_trip_names_the_joint(void **state)
         for (int what = 0; what < 3; what++) {
             static const grobo_trip reasons[] = {GROBO_TRIP_TEMPERATURE, GROBO_TRIP_TORQUE_LOST,
                                                  GROBO_TRIP_LOST_REPLIES};
-            static const grobo_robot_config watching = {.sense_interval_us = 100000};
+            static const grobo_robot_config watching = {GROBO_ROBOT_CONFIG_INIT,
+                                                        .sense_interval_us = 100000};
             rig_start(&rig, &watching, NULL);
             rig_power(&rig);
             if (what == 0) {

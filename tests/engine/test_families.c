@@ -51,7 +51,8 @@ static const family families[] = {
 };
 enum { FAMILIES = sizeof families / sizeof families[0] };
 
-static const grobo_robot_config quiet = {.sense_interval_us = GROBO_SENSE_NEVER};
+static const grobo_robot_config quiet = {GROBO_ROBOT_CONFIG_INIT,
+                                         .sense_interval_us = GROBO_SENSE_NEVER};
 static table_bus bus;
 static const family *now;
 
@@ -151,7 +152,7 @@ static void a_whole_robot_is_read_in_one_frame(void **state)
 {
     (void)state;
     for (int i = 0; i < FAMILIES; i++) {
-        const grobo_robot_config busy = {.sense_interval_us = 10 * MS};
+        const grobo_robot_config busy = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 10 * MS};
         start(&families[i], &busy);
         table_turn(&bus, 2, 33);
         table_run(&bus, S);
@@ -176,7 +177,7 @@ static void a_whole_robot_is_read_in_one_frame(void **state)
 static void the_wire_sets_the_rate_of_readings(void **state)
 {
     (void)state;
-    static const grobo_robot_config fast = {.sense_interval_us = 1};
+    static const grobo_robot_config fast = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 1};
     for (int i = 0; i < FAMILIES; i++) {
         if (!families[i].many) {
             continue;
@@ -206,7 +207,7 @@ static void a_silent_joint_trips_a_motion_and_hides_no_other(void **state)
 {
     (void)state;
     for (int i = 0; i < FAMILIES; i++) {
-        const grobo_robot_config busy = {.sense_interval_us = 20 * MS};
+        const grobo_robot_config busy = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 20 * MS};
         start(&families[i], &busy);
         grobo_posture p = posture(0, 0, 0, 500);
         assert_int_equal(table_wait(&bus, grobo_robot_move(&bus.robot, &p)), GROBO_OK);
@@ -230,7 +231,7 @@ static void heat_stops_for_safety(void **state)
 {
     (void)state;
     for (int i = 0; i < FAMILIES; i++) {
-        const grobo_robot_config busy = {.sense_interval_us = 20 * MS};
+        const grobo_robot_config busy = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 20 * MS};
         start(&families[i], &busy);
         grobo_posture p = posture(0, 0, 0, 500);
         assert_int_equal(table_wait(&bus, grobo_robot_move(&bus.robot, &p)), GROBO_OK);

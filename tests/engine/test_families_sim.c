@@ -11,7 +11,7 @@
 
 #include <grobo/dxl2.h>
 #include <grobo/feetech.h>
-#include <grobo/sim.h>
+#include <grobo/sim_static.h>
 #include <grobo/static.h>
 
 #include "src/base/instant.h"
@@ -87,7 +87,8 @@ static void start(const family *f, const grobo_robot_config *config)
                                   .sign = j == 1 ? -1 : 1};
     }
     model = (grobo_model){.name = f->servo, .joints = joints, .n_joints = JOINTS};
-    const grobo_sim_config with = {.model = &model,
+    const grobo_sim_config with = {GROBO_SIM_CONFIG_INIT,
+                                   .model = &model,
                                    .wiring = GROBO_WIRING_BUS,
                                    .servos = servos,
                                    .families = known,
@@ -191,7 +192,7 @@ static void at(const family *f, double deg)
     }
 }
 
-static const grobo_robot_config watched = {.sense_interval_us = 50 * MS};
+static const grobo_robot_config watched = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 50 * MS};
 
 static void postures_are_played(void **state)
 {

@@ -467,7 +467,7 @@ static void times_are_what_speeds_make_them(void **state)
     } rows[] = {{100, 60, false}, {10, 60, false}, {99, 60, false}, {1, 60, false},
                 {100, 60, true},  {100, 7, true},  {10, 60, true},  {10, 500, true}};
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-        const grobo_robot_config config = {.speed_limit_pct = rows[i].pct,
+        const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .speed_limit_pct = rows[i].pct,
                                            .approach_dps = rows[i].approach_dps};
         for (int j = 0; j < N; j++) {
             grobo_robot_order order = {.each = true, .soft = rows[i].soft};
@@ -552,7 +552,7 @@ static void a_time_longer_than_the_wire_has_is_refused(void **state)
         const double most_deg = 0.5 * (double)GROBO_PLAY_TIME_MAX_US / 1e6 + 0.1;
         for (int beyond = 0; beyond < 2; beyond++) {
             grobo_target target = {0};
-            start_with(&(grobo_robot_config){.approach_dps = 0.5});
+            start_with(&(grobo_robot_config){GROBO_ROBOT_CONFIG_INIT, .approach_dps = 0.5});
             robot.axes[j].way.to_rad = RAD(-40);
             assert_int_equal(grobo_posture_init(&target.posture, N), 0);
             target.posture.set = bits(j, other_of(j));
@@ -686,7 +686,8 @@ static void a_target_is_checked_for_numbers_and_limits(void **state)
     for (int j = 0; j < N; j++) {
         for (int clamp = 0; clamp < 2; clamp++) {
             grobo_posture target;
-            start_with(&(grobo_robot_config){.limit_policy =
+            start_with(&(grobo_robot_config){GROBO_ROBOT_CONFIG_INIT,
+                                             .limit_policy =
                                                  clamp ? GROBO_LIMIT_CLAMP : GROBO_LIMIT_REFUSE});
             assert_int_equal(grobo_posture_init(&target, N), 0);
             target.set = bits(j, other_of(j));

@@ -225,7 +225,8 @@ static void a_goal_in_segments_is_noted_of_its_joints_alone(void **state)
     for (int j = 0; j < N; j++) {
         for (int whole = 0; whole < 2; whole++) {
             const int64_t time_us = whole ? GROBO_SEGMENT_US : GROBO_SEGMENT_US * 2;
-            start_with(&(grobo_robot_config){.goals = GROBO_GOALS_SEGMENTS});
+            start_with(
+                &(grobo_robot_config){GROBO_ROBOT_CONFIG_INIT, .goals = GROBO_GOALS_SEGMENTS});
             robot.renewed_us = NOW - 1;
             await(j, 10, time_us);
             await(other_of(j), 5, GROBO_SEGMENT_US);

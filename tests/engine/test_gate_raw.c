@@ -237,7 +237,8 @@ static void a_raw_frame_that_nobody_can_read_is_refused_unless_asked(void **stat
         for (int can_read = 0; can_read < 2; can_read++) {
             uint8_t packet[GROBO_RS30X_PACKET_MAX_BYTES];
             grobo_robot_order order;
-            start_with(&(grobo_robot_config){.accept_unknown_raw = accept});
+            start_with(
+                &(grobo_robot_config){GROBO_ROBOT_CONFIG_INIT, .accept_unknown_raw = accept});
             inspected = GROBO_ERR_UNSUPPORTED;
             driver.inspect = can_read ? driver.inspect : NULL;
             int size = grobo_rs30x_read(2, 42, 2, packet, sizeof packet);
@@ -252,7 +253,7 @@ static void a_raw_frame_that_nobody_can_read_is_refused_unless_asked(void **stat
     }
     for (int at_once = 0; at_once < 2; at_once++) { /* any other error is what it is */
         grobo_robot_order order;
-        start_with(&(grobo_robot_config){.accept_unknown_raw = true});
+        start_with(&(grobo_robot_config){GROBO_ROBOT_CONFIG_INIT, .accept_unknown_raw = true});
         inspected = at_once ? GROBO_ERR_FRAME : GROBO_OK;
         assert_int_equal(raw_goal_of(1, 0, 1000, &order), inspected);
         if (!at_once) {

@@ -238,7 +238,7 @@ static void a_short_reading_changes_nothing_else(void **state)
 static void a_reading_of_the_first_moment_is_of_then(void **state)
 {
     (void)state;
-    const grobo_robot_config config = {.sense_interval_us = 1};
+    const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 1};
     grobo_joint_info info;
     rig_epoch_us = 0;
     rig_start(&rig, &config, NULL);

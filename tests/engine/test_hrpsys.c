@@ -285,7 +285,7 @@ static void lost_replies_in_motion_are_an_emergency(void **state)
 {
     (void)state;
     int joint = 0;
-    grobo_robot_config config = {.sense_interval_us = 200000};
+    grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 200000};
     rig_start(&rig, &config, NULL);
     grobo_hrpsys_init(&hrpsys, &rig.robot);
     rig_power(&rig);

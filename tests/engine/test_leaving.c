@@ -246,9 +246,9 @@ static void an_exit_is_carried_out_as_it_is_asked_for(void **state)
     };
     static const int64_t bounds_us[] = {5 * S, INT64_MAX};
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-        const grobo_robot_config config = {.sense_interval_us = GROBO_SENSE_NEVER,
-                                           .on_exit = rows[i].config,
-                                           .exit_bound_us = bounds_us[i % 2]};
+        const grobo_robot_config config = {
+            GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = GROBO_SENSE_NEVER,
+            .on_exit = rows[i].config, .exit_bound_us = bounds_us[i % 2]};
         rig_start(&rig, &config, NULL);
         rig_power(&rig);
         if (rows[i].latched) {
@@ -374,8 +374,8 @@ static void an_emergency_stop_is_for_all_joints_and_bounded(void **state)
 {
     (void)state;
     for (int off = 0; off < 2; off++) {
-        start_with(
-            &(grobo_robot_config){.estop_torque = off ? GROBO_ESTOP_OFF : GROBO_ESTOP_BRAKE});
+        start_with(&(grobo_robot_config){
+            GROBO_ROBOT_CONFIG_INIT, .estop_torque = off ? GROBO_ESTOP_OFF : GROBO_ESTOP_BRAKE});
         latch(GROBO_TRIP_ESTOP);
         robot.holds_at_stop = true;
         int number = grobo_i_estop_start(&robot);

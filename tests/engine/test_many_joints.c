@@ -18,7 +18,7 @@
 enum { LAST = GROBO_JOINTS_MAX - 1 };
 
 static grobo_test_rig rig;
-static const grobo_robot_config reading = {.sense_interval_us = 500000};
+static const grobo_robot_config reading = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 500000};
 
 static void start(bool arm, const grobo_robot_config *config)
 {

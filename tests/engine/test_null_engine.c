@@ -11,7 +11,7 @@
 
 #include <grobo/board.h>
 #include <grobo/hrpsys.h>
-#include <grobo/sim.h>
+#include <grobo/sim_static.h>
 #include <grobo/static.h>
 
 #define REFUSES(call) assert_int_equal(call, GROBO_ERR_ARG)
@@ -33,7 +33,7 @@ static grobo_play_options play_options;
 static grobo_hrpsys hrpsys;
 static grobo_joint_mask joints;
 static const char *const names[] = {"CHEST", NULL};
-static grobo_robot_config robot_config;
+static grobo_robot_config robot_config = {GROBO_ROBOT_CONFIG_INIT};
 static grobo_register_io io;
 static grobo_joint_info joint_info;
 static grobo_trip_info trip;
@@ -42,7 +42,7 @@ static grobo_budget budget;
 static grobo_jitter jitter;
 static grobo_sequencer seq;
 static grobo_play_frame frame;
-static grobo_sim_config sim_config;
+static grobo_sim_config sim_config = {GROBO_SIM_CONFIG_INIT};
 static grobo_sim sim;
 static grobo_sim_view view;
 
@@ -264,6 +264,7 @@ static void sim_refuses_null_in_its_first_functions(void **state)
     (void)state;
     REFUSES(grobo_sim_fault_find(NULL, 4));
     assert_null(grobo_sim_type_named(NULL, 4));
+    REFUSES(grobo_sim_init_sized(&sim, sizeof sim - 1, NULL, 0));
     REFUSES(grobo_sim_init(NULL, &sim_config, 1000));
     assert_int_equal(grobo_sim_rx(NULL, bytes, 1, 1000), 0);
     assert_int_equal(grobo_sim_rx(&sim, NULL, 1, 1000), 0);

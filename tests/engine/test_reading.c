@@ -579,7 +579,8 @@ static void a_reading_is_corrected_where_that_is_wanted(void **state)
                                           {.joint = (uint8_t)((j + 1) % N), .add_rad = RAD(9)},
                                           {.joint = (uint8_t)j, .add_rad = RAD(-0.5)},
                                           {.joint = (uint8_t)j, .add_rad = RAD(5)}};
-            start_with(&(grobo_robot_config){.readback_correction = wanted});
+            start_with(
+                &(grobo_robot_config){GROBO_ROBOT_CONFIG_INIT, .readback_correction = wanted});
             made.readback = add;
             made.n_readback = 3; /* the fourth is none of its own */
             double by_rad = wanted ? RAD(2) + RAD(-0.5) : 0;

@@ -38,7 +38,7 @@ static void one_job_at_a_time(void **state)
 static void all_joints_are_sensed(void **state)
 {
     (void)state;
-    grobo_sim_config limp = {.start = GROBO_SIM_START_LIMP, .seed = 7};
+    grobo_sim_config limp = {GROBO_SIM_CONFIG_INIT, .start = GROBO_SIM_START_LIMP, .seed = 7};
     rig_start(&rig, &quiet, &limp);
     int number = grobo_robot_sense(&rig.robot, rig_all(&rig), GROBO_SENSE_FULL);
     const grobo_event_job *job = rig_expect(&rig, number, GROBO_OK);
@@ -60,7 +60,8 @@ static void all_joints_are_sensed(void **state)
 static void torque_comes_on_where_the_joints_are(void **state)
 {
     (void)state;
-    grobo_sim_config limp = {.start = GROBO_SIM_START_LIMP, .seed = 3, .jump_on_torque = true};
+    grobo_sim_config limp = {GROBO_SIM_CONFIG_INIT, .start = GROBO_SIM_START_LIMP, .seed = 3,
+                             .jump_on_torque = true};
     double before_deg[20];
     rig_start(&rig, &quiet, &limp);
     for (int j = 0; j < 20; j++) {
@@ -190,7 +191,7 @@ static void a_move_that_could_not_be_read_back_is_read_again(void **state)
 static void a_target_that_waits_for_the_line_is_no_faster(void **state)
 {
     (void)state;
-    grobo_robot_config busy = {.sense_interval_us = 1};
+    grobo_robot_config busy = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 1};
     rig_start(&rig, &busy, NULL);
     rig_power(&rig);
     for (int i = 0; i < 300; i++) {

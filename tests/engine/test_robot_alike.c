@@ -147,8 +147,9 @@ static void request(void)
 /* Requests come between the engine's own times: the host's clock has gone on since. */
 static void live(uint32_t seed, int64_t epoch_us)
 {
-    grobo_robot_config config = {.sense_interval_us = (int64_t)(1 + seed % 3 * 150000)};
-    grobo_sim_config sim = {.seed = 7, .start = GROBO_SIM_START_LIMP};
+    grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT,
+                                 .sense_interval_us = (int64_t)(1 + seed % 3 * 150000)};
+    grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT, .seed = 7, .start = GROBO_SIM_START_LIMP};
     random_state = seed * 2654435761u + 17;
     rig_epoch_us = epoch_us;
     rig_start(&rig, &config, &sim);

@@ -71,8 +71,8 @@ static void on_event(grobo_test_rig *r, const grobo_event *event)
 
 static void start(const use *u)
 {
-    grobo_robot_config config = {
-        .sense_interval_us = 1, .sense_position_only = u->position_only, .lost_replies = -1};
+    grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 1,
+                                 .sense_position_only = u->position_only, .lost_replies = -1};
     rig_start_driver(&rig, grobo_gr001_driver(u->wiring), &config, NULL);
     rig_clip_init(&clip, sway, sizeof sway / sizeof *sway);
     rig.on_event = on_event;
@@ -177,7 +177,7 @@ static void expect_free_rate(grobo_wiring wiring, grobo_joint_mask joints, int n
     const use full = {wiring, false, 0};
     double free_us = reading_us(&full) + (wiring == GROBO_WIRING_BOARD ? 12 : 6) * 10e6 / 115200;
     double allowed_hz = (1 - (JOINTS - n) * reading_us(&full) / 1e6) * 1e6 / free_us / n;
-    grobo_robot_config config = {.sense_interval_us = GROBO_SENSE_NEVER};
+    grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = GROBO_SENSE_NEVER};
     rig_start_driver(&rig, grobo_gr001_driver(wiring), &config, NULL);
     rig.on_event = on_event;
     rig_power(&rig);

@@ -183,7 +183,7 @@ static void every_function_gets_the_context(void **state)
     (void)state;
     static const rig_key nod[] = {{0, {{NECK, 10}}}, {500, {{NECK, 0}}}};
     uint8_t frame[GROBO_RS30X_PACKET_MAX_BYTES];
-    const grobo_robot_config config = {.sense_interval_us = 200000};
+    const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 200000};
     start(&config);
     rig_expect(&rig, grobo_robot_check(&rig.robot), GROBO_OK);
     rig_power(&rig);

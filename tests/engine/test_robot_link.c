@@ -244,7 +244,8 @@ static void measure_silence(const grobo_robot_config *config, int64_t costs_us[2
 static void nineteen_of_twenty_are_delivered_and_silence_costs_its_timeout(void **state)
 {
     (void)state;
-    static const grobo_robot_config once = {.sense_interval_us = GROBO_SENSE_NEVER, .retries = -1};
+    static const grobo_robot_config once = {GROBO_ROBOT_CONFIG_INIT,
+                                            .sense_interval_us = GROBO_SENSE_NEVER, .retries = -1};
     int64_t costs_us[2];
     measure_silence(&once, costs_us);
     assert_in_range(costs_us[0], 3000, 3000 + 1000 + 1000);
@@ -301,7 +302,7 @@ static void broken_replies_are_retried_and_never_believed(void **state)
 static void a_servo_that_stays_silent_is_asked_once_a_round(void **state)
 {
     (void)state;
-    grobo_robot_config config = {.sense_interval_us = 200000};
+    grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 200000};
     rig_start(&rig, &config, NULL);
     assert_int_equal(grobo_sim_set_cable(&rig.sim, R_KNEE, GROBO_SIM_CABLE_MUTE), 0);
     rig_run(&rig, 1000000);

@@ -133,7 +133,7 @@ static void gaps_between_frames_are_read_in(void **state)
 {
     (void)state;
     grobo_play_options options = {.mode = GROBO_PLAY_RATE, .rate_hz = 30, .repeat = 5};
-    grobo_robot_config busy = {.sense_interval_us = 1};
+    grobo_robot_config busy = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 1};
     start(&busy);
     play(&options);
     rig_wait_play(&rig, GROBO_SEQUENCER_PLAYING);
@@ -151,7 +151,7 @@ static void first_move_is_slow_and_from_where_the_robot_is(void **state)
 {
     (void)state;
     static rig_frame frames[16];
-    grobo_sim_config limp = {.start = GROBO_SIM_START_LIMP, .seed = 5};
+    grobo_sim_config limp = {GROBO_SIM_CONFIG_INIT, .start = GROBO_SIM_START_LIMP, .seed = 5};
     rig_start(&rig, &quiet, &limp);
     rig_clip_init(&clip, nod, sizeof nod / sizeof nod[0]);
     double most_deg = 0;

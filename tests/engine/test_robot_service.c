@@ -84,7 +84,7 @@ static void flash_and_reboot_wait(void **state)
 static void a_reboot_that_was_asked_for_is_no_loss_of_torque(void **state)
 {
     (void)state;
-    grobo_robot_config config = {.sense_interval_us = 200000};
+    grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 200000};
     rig_start(&rig, &config, NULL);
     rig_power(&rig);
     rig_expect(&rig, grobo_robot_command(&rig.robot, NECK_ID, GROBO_SERVO_REBOOT), 0);
@@ -221,7 +221,8 @@ static void a_joint_that_gave_way_is_not_gripped_at_once(void **state)
 static void limp_joints_hold_in_free_mode_where_they_are(void **state)
 {
     (void)state;
-    grobo_sim_config limp = {.start = GROBO_SIM_START_LIMP, .seed = 9, .jump_on_torque = true};
+    grobo_sim_config limp = {GROBO_SIM_CONFIG_INIT, .start = GROBO_SIM_START_LIMP, .seed = 9,
+                             .jump_on_torque = true};
     rig_start(&rig, &quiet, &limp);
     assert_int_equal(grobo_robot_free(&rig.robot, rig_all(&rig), true), GROBO_OK);
     rig_run(&rig, 1500000);
@@ -231,8 +232,8 @@ static void limp_joints_hold_in_free_mode_where_they_are(void **state)
 static void free_mode_believes_no_goal_read_before(void **state)
 {
     (void)state;
-    grobo_robot_config config = {.sense_interval_us = 1};
-    grobo_sim_config jumpy = {.jump_on_torque = true};
+    grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 1};
+    grobo_sim_config jumpy = {GROBO_SIM_CONFIG_INIT, .jump_on_torque = true};
     for (int i = 0; i < 20; i++) { /* whatever reading is under way when it begins */
         rig_start(&rig, &config, &jumpy);
         rig_power(&rig);
@@ -254,12 +255,17 @@ static void configurations_are_checked(void **state)
 {
     (void)state;
     static const grobo_robot_config bad[] = {
-        {.speed_limit_pct = 101},   {.speed_limit_pct = -1},
-        {.approach_dps = -1},       {.retries = -2},
-        {.stall_us = -1},           {.sense_interval_us = -2},
-        {.retries = 256},           {.on_exit = (grobo_exit_policy)9},
-        {.default_time_us = -1},    {.exit_bound_us = -1},
-        {.approach_dps = INFINITY},
+        {GROBO_ROBOT_CONFIG_INIT, .speed_limit_pct = 101},
+        {GROBO_ROBOT_CONFIG_INIT, .speed_limit_pct = -1},
+        {GROBO_ROBOT_CONFIG_INIT, .approach_dps = -1},
+        {GROBO_ROBOT_CONFIG_INIT, .retries = -2},
+        {GROBO_ROBOT_CONFIG_INIT, .stall_us = -1},
+        {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = -2},
+        {GROBO_ROBOT_CONFIG_INIT, .retries = 256},
+        {GROBO_ROBOT_CONFIG_INIT, .on_exit = (grobo_exit_policy)9},
+        {GROBO_ROBOT_CONFIG_INIT, .default_time_us = -1},
+        {GROBO_ROBOT_CONFIG_INIT, .exit_bound_us = -1},
+        {GROBO_ROBOT_CONFIG_INIT, .approach_dps = INFINITY},
     };
     const grobo_driver *driver = grobo_gr001_driver(GROBO_WIRING_BOARD);
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
@@ -276,7 +282,8 @@ static void configurations_are_checked(void **state)
 static void limits_may_be_switched_off(void **state)
 {
     (void)state;
-    grobo_robot_config config = {.sense_interval_us = 200000, .temperature_c = -1};
+    grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 200000,
+                                 .temperature_c = -1};
     rig_start(&rig, &config, NULL);
     rig_power(&rig);
     assert_int_equal(grobo_sim_set_temperature(&rig.sim, NECK, 68), 0);
@@ -305,7 +312,7 @@ static void a_corrected_joint_is_held_where_its_servo_says(void **state)
 {
     (void)state;
     grobo_robot_config config = quiet;
-    grobo_sim_config jumpy = {.jump_on_torque = true};
+    grobo_sim_config jumpy = {GROBO_SIM_CONFIG_INIT, .jump_on_torque = true};
     config.readback_correction = true;
     rig_start(&rig, &config, &jumpy);
     for (int i = 0; i < 5; i++) {

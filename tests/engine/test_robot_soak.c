@@ -116,13 +116,14 @@ static void start(const run *r, int part, uint32_t random)
     static const int64_t intervals_us[] = {1, 150000, 300000, GROBO_SENSE_NEVER};
     uint32_t variant = r->seed + (uint32_t)r->line;
     const char *faults = lines[r->line];
-    grobo_robot_config config = {.sense_interval_us = intervals_us[(variant + (unsigned)part) % 4],
+    grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT,
+                                 .sense_interval_us = intervals_us[(variant + (unsigned)part) % 4],
                                  .accept_unknown_raw = part == 2,
                                  .limit_policy = variant % 3 == 0 ? GROBO_LIMIT_CLAMP : 0,
                                  .estop_torque = variant % 2 == 0 ? GROBO_ESTOP_OFF : 0,
                                  .lost_replies = 30};
-    grobo_sim_config sim = {
-        .seed = random, .start = GROBO_SIM_START_LIMP, .jump_on_torque = part >= 2};
+    grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT, .seed = random, .start = GROBO_SIM_START_LIMP,
+                            .jump_on_torque = part >= 2};
     rig_start_driver(&rig,
                      grobo_gr001_driver(part % 2 == 0 ? GROBO_WIRING_BOARD : GROBO_WIRING_BUS),
                      &config, &sim);

@@ -13,7 +13,7 @@
 
 static grobo_test_rig rig;
 static rig_clip clip;
-static const grobo_robot_config watching = {.sense_interval_us = 200000};
+static const grobo_robot_config watching = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 200000};
 static const rig_key sway[] = {
     {0, {{NECK, 0}}}, {1000, {{NECK, 30}}}, {3000, {{NECK, -30}}}, {4000, {{NECK, 0}}}};
 
@@ -476,7 +476,7 @@ static void nothing_is_switched_on_after_a_trip(void **state)
 {
     (void)state;
     for (int ms = 100; ms < 400; ms++) {
-        grobo_sim_config limp = {.start = GROBO_SIM_START_LIMP};
+        grobo_sim_config limp = {GROBO_SIM_CONFIG_INIT, .start = GROBO_SIM_START_LIMP};
         rig_start(&rig, &quiet, &limp);
         assert_int_equal(grobo_robot_free(&rig.robot, rig_all(&rig), true), 0);
         rig_run(&rig, ms * 1000);

@@ -212,7 +212,7 @@ static void a_raw_target_that_never_left_is_not_where_a_joint_is(void **state)
 static void torque_switched_off_by_a_raw_frame_is_no_loss(void **state)
 {
     (void)state;
-    grobo_robot_config config = {.sense_interval_us = 200000};
+    grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 200000};
     rig_start(&rig, &config, NULL);
     rig_power(&rig);
     rig_expect(&rig, raw("\x53\x09\xFA\xAF\x02\x00\x24\x01\x01\x00\x26", 11), GROBO_OK);
@@ -273,7 +273,7 @@ static void settings_that_move_a_holding_servo_are_refused(void **state)
 static void flash_has_the_silence_it_needs(void **state)
 {
     (void)state;
-    grobo_robot_config config = {.sense_interval_us = 1};
+    grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 1};
     rig_start(&rig, &config, NULL);
     rig_run(&rig, 100000);
     int number = grobo_robot_command(&rig.robot, NECK_ID, GROBO_SERVO_FLASH);
@@ -398,7 +398,7 @@ static void leaving_stops_though_the_first_frame_is_lost(void **state)
 static void a_trip_stops_what_was_only_sent(void **state)
 {
     (void)state;
-    grobo_robot_config config = {.sense_interval_us = 200000};
+    grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 200000};
     rig_start(&rig, &config, NULL);
     rig_power(&rig);
     grobo_posture target = rig_posture(&rig, NECK, 40, 30000);
@@ -415,7 +415,7 @@ static void a_trip_stops_what_was_only_sent(void **state)
 static void lost_replies_stop_what_was_only_sent(void **state)
 {
     (void)state;
-    grobo_robot_config config = {.sense_interval_us = 200000};
+    grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 200000};
     rig_start(&rig, &config, NULL);
     rig_power(&rig);
     assert_int_equal(grobo_sim_set_cable(&rig.sim, R_KNEE, GROBO_SIM_CABLE_MUTE), 0);

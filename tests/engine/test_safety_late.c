@@ -195,7 +195,7 @@ static void torque_comes_on_where_the_joint_was_read_last(void **state)
 {
     (void)state;
     for (int64_t after_us = 0; after_us < 40000; after_us += 250) {
-        const grobo_robot_config reads = {.sense_interval_us = 1};
+        const grobo_robot_config reads = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 1};
         grobo_joint_info info;
         int number = switch_neck_on(&reads, after_us);
         if (grobo_robot_job(&rig.robot) == GROBO_JOB_NONE) {
@@ -248,7 +248,7 @@ static bool hold_waits(void)
 /* The neck is in free mode; a hand has let go of it, and it is about to hold again. */
 static void let_go_of_neck_until(bool (*waits)(void))
 {
-    const grobo_robot_config reads = {.sense_interval_us = 1};
+    const grobo_robot_config reads = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 1};
     rig_start(&rig, &reads, NULL);
     rig_power(&rig);
     grobo_posture target = rig_posture(&rig, NECK, 0, 100); /* the slow first move is behind */

@@ -200,7 +200,7 @@ static void refuse_both(void)
  * fails where torque comes on away from the goal. */
 static void push_and_ask(int64_t after_us, void (*ask)(void))
 {
-    const grobo_sim_config jumps = {.jump_on_torque = true};
+    const grobo_sim_config jumps = {GROBO_SIM_CONFIG_INIT, .jump_on_torque = true};
     rig_start(&rig, NULL, &jumps);
     rig_power(&rig);
     assert_int_equal(grobo_robot_free(&rig.robot, rig_all(&rig), true), GROBO_OK);
@@ -304,7 +304,8 @@ static bool neck_is_being_read(void)
 static void what_is_unknown_is_noted_when_the_frame_leaves(void **state)
 {
     (void)state;
-    const grobo_robot_config config = {.sense_interval_us = 1, .accept_unknown_raw = true};
+    const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 1,
+                                       .accept_unknown_raw = true};
     for (size_t i = 0; i < sizeof unsettling / sizeof unsettling[0]; i++) {
         if (unsettling[i].by_board && rig_wiring != GROBO_WIRING_BOARD) {
             continue;
@@ -333,7 +334,7 @@ static void what_is_unknown_is_noted_when_the_frame_leaves(void **state)
 static void a_late_answer_restores_nothing(void **state)
 {
     (void)state;
-    const grobo_robot_config config = {.sense_interval_us = 1};
+    const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 1};
     rig_start(&rig, &config, NULL);
     rig_power(&rig);
     while (!neck_is_being_read()) {

@@ -19,9 +19,8 @@ static void scan(grobo_wiring wiring, int baud_bps)
     const grobo_driver *driver = grobo_gr001_driver(wiring);
     uint32_t wire_us = 0;
     assert_int_equal(wire_read_us(driver, baud_bps, IDENTITY_BYTES, &wire_us), 0);
-    grobo_robot_config config = {.sense_interval_us = GROBO_SENSE_NEVER,
-                                 .retries = -1,
-                                 .timeout_us = wire_us + WIRE_SILENT_MARGIN_US,
+    grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = GROBO_SENSE_NEVER,
+                                 .retries = -1, .timeout_us = wire_us + WIRE_SILENT_MARGIN_US,
                                  .bus.baud_bps = (uint32_t)baud_bps};
     rig_start_driver(&rig, driver, &config, NULL);
     int64_t begun_us = rig.now_us;

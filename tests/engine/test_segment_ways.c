@@ -170,7 +170,7 @@ static void a_way_is_told_in_parts_where_that_is_wanted(void **state)
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         const grobo_robot_order order = {.stops = rows[i].stops};
-        start_with(&(grobo_robot_config){.goals = rows[i].goals});
+        start_with(&(grobo_robot_config){GROBO_ROBOT_CONFIG_INIT, .goals = rows[i].goals});
         driver.arm = rows[i].arm;
         driver.time_step_us = rows[i].step_us;
         if (grobo_i_segments_wanted(&robot, &order, rows[i].time_us) != rows[i].wanted) {
@@ -186,7 +186,7 @@ static void the_first_frame_asks_for_a_segment(void **state)
     for (int j = 0; j < N; j++) {
         grobo_target whole = {0};
         grobo_target part;
-        start_with(&(grobo_robot_config){.goals = GROBO_GOALS_SEGMENTS});
+        start_with(&(grobo_robot_config){GROBO_ROBOT_CONFIG_INIT, .goals = GROBO_GOALS_SEGMENTS});
         set_going(j); /* it is 10 degrees on, and goes back to where it was */
         assert_int_equal(grobo_posture_init(&whole.posture, N), 0);
         whole.posture.set = bits(j, other_of(j));

@@ -122,7 +122,7 @@ static void a_dead_host_stops_it_on_a_line_that_loses_bytes(void **state)
 {
     (void)state;
     for (uint32_t seed = 1; seed <= 20; seed++) {
-        grobo_sim_config sim = {.seed = seed};
+        grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT, .seed = seed};
         start(&quiet, &sim);
         assert_int_equal(grobo_sim_set_fault(&rig.sim, GROBO_SIM_FAULT_DROP, 0.003), 0);
         (void)begin_move();
@@ -138,7 +138,8 @@ static void a_dead_host_stops_all_joints(void **state)
 {
     (void)state;
     for (uint32_t seed = 1; seed <= 8; seed++) {
-        grobo_sim_config limp = {.start = GROBO_SIM_START_LIMP, .seed = seed};
+        grobo_sim_config limp = {GROBO_SIM_CONFIG_INIT, .start = GROBO_SIM_START_LIMP,
+                                 .seed = seed};
         grobo_posture init;
         arm = *grobo_gr001_driver(rig_wiring);
         arm.arm = true;
@@ -192,7 +193,8 @@ static void a_humanoid_finishes_its_move_unless_asked(void **state)
     static const grobo_goals asked[] = {GROBO_GOALS_DEFAULT, GROBO_GOALS_WHOLE,
                                         GROBO_GOALS_SEGMENTS};
     for (int i = 0; i < 6; i++) {
-        grobo_robot_config config = {.sense_interval_us = GROBO_SENSE_NEVER, .goals = asked[i % 3]};
+        grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT,
+                                     .sense_interval_us = GROBO_SENSE_NEVER, .goals = asked[i % 3]};
         bool is_arm = i >= 3;
         start(&config, NULL);
         if (!is_arm) {
@@ -276,8 +278,8 @@ static void compare(const char *what)
 static void segments_lie_on_the_way_of_the_whole(void **state)
 {
     (void)state;
-    static const grobo_robot_config watched = {0};
-    static const grobo_robot_config busy = {.sense_interval_us = 1};
+    static const grobo_robot_config watched = {GROBO_ROBOT_CONFIG_INIT};
+    static const grobo_robot_config busy = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 1};
     run_move(&whole, &quiet, GROBO_GOALS_WHOLE, -1);
     run_move(&parts, &quiet, GROBO_GOALS_DEFAULT, -1);
     compare("alone");
@@ -308,7 +310,7 @@ static void lost_frames_are_made_good(void **state)
 {
     (void)state;
     for (uint32_t seed = 1; seed <= 10; seed++) {
-        grobo_sim_config sim = {.seed = seed};
+        grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT, .seed = seed};
         start(NULL, &sim);
         assert_int_equal(grobo_sim_set_fault(&rig.sim, GROBO_SIM_FAULT_DROP, 0.003), 0);
         rig_expect(&rig, begin_move(), GROBO_OK);
@@ -417,7 +419,7 @@ static void what_stops_a_move_stops_its_segments(void **state)
     void (*const ways[])(void) = {stop_move, cancel_move, trip_move, estop_move, leave_move};
     for (int i = 0; i < 5; i++) {
         for (int64_t at_us = 400000; at_us < 800000; at_us += 33000) {
-            grobo_robot_config config = {.sense_interval_us = 1};
+            grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 1};
             start(&config, NULL);
             (void)begin_move();
             wait_for_move();
@@ -455,7 +457,8 @@ static void a_motion_takes_the_place_of_its_approach(void **state)
     static const rig_key far[] = {{0, {{NECK, 0}}}, {2000, {{NECK, 40}}}, {4000, {{NECK, -40}}}};
     static double deg[2][LOOKS];
     for (int i = 0; i < 2; i++) {
-        grobo_robot_config config = {.goals = i == 0 ? GROBO_GOALS_WHOLE : GROBO_GOALS_DEFAULT};
+        grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT,
+                                     .goals = i == 0 ? GROBO_GOALS_WHOLE : GROBO_GOALS_DEFAULT};
         grobo_play_options options = {.mode = GROBO_PLAY_RATE};
         start(&config, NULL);
         rig_clip_init(&clip, far, 3);

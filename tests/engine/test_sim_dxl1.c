@@ -11,6 +11,7 @@
 
 #include <grobo/dxl2.h>
 #include <grobo/feetech.h>
+#include <grobo/sim_static.h>
 
 #include "tests/support/chain_kit.h"
 
@@ -27,7 +28,7 @@ static void start(const char *name, int n)
     for (int i = 0; i < 3 && model == NULL; i++) {
         model = grobo_servo_model_named(tables[i], name);
     }
-    chain_start(&chain, model, n, &(grobo_sim_config){.no_stops = true});
+    chain_start(&chain, model, n, &(grobo_sim_config){GROBO_SIM_CONFIG_INIT, .no_stops = true});
 }
 
 static int32_t value(int servo, grobo_register_role role)

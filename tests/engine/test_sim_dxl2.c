@@ -181,7 +181,8 @@ static void a_stream_of_goals_flows(void **state)
 static void modes_have_their_own_goals(void **state)
 {
     (void)state;
-    chain_start(&chain, model("XL330-M288"), 1, &(grobo_sim_config){.no_stops = true});
+    chain_start(&chain, model("XL330-M288"), 1,
+                &(grobo_sim_config){GROBO_SIM_CONFIG_INIT, .no_stops = true});
     assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_MODE, 1), 0);
     assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_TORQUE, 1), 0);
     assert_int_equal(chain_write(&chain, 1, GROBO_ROLE_MODE, 3), GROBO_DXL2_NO_ACCESS);

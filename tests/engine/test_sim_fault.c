@@ -17,7 +17,7 @@ static const char bus_read_1[] = "FA AF 01 0F 24 12 00 38";
 
 static void start(simkit *k, grobo_wiring wiring, int fault, double rate)
 {
-    const grobo_sim_config config = {.wiring = wiring, .seed = 42};
+    const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .wiring = wiring, .seed = 42};
     simkit_start(k, &config);
     assert_int_equal(grobo_sim_set_fault(&k->sim, fault, rate), 0);
 }
@@ -238,7 +238,8 @@ static void a_fault_strikes_as_often_as_its_rate_says(void **state)
 /* Reads all servos in turn under every fault; both kits must see the same. */
 static void drive(simkit *k, uint32_t seed, grobo_wiring wiring)
 {
-    const grobo_sim_config config = {.wiring = wiring, .seed = seed, .start = GROBO_SIM_START_LIMP};
+    const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .wiring = wiring, .seed = seed,
+                                     .start = GROBO_SIM_START_LIMP};
     simkit_start(k, &config);
     static const char rates[] = "all=2%,hangup=0.005";
     assert_true(grobo_sim_set_faults(&k->sim, rates, strlen(rates)) > 0);
@@ -284,7 +285,7 @@ static void the_same_seed_gives_the_same_again(void **state)
 static void the_pump_may_come_late_or_often(void **state)
 {
     (void)state;
-    const grobo_sim_config config = {.seed = 5};
+    const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .seed = 5};
     static const char rates[] = "rubbish=1,split=1,flip=1%";
     static const int64_t steps_us[] = {1, 7, 333, 40000};
     uint8_t first[64] = {0};

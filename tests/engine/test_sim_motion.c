@@ -59,7 +59,7 @@ static void a_goal_time_is_kept(void **state)
 static void full_speed_is_that_of_the_servo(void **state)
 {
     (void)state;
-    const grobo_sim_config fresh = {.supply_mv = 8140};
+    const grobo_sim_config fresh = {GROBO_SIM_CONFIG_INIT, .supply_mv = 8140};
     start_with_torque(NULL);
     simkit_packet(&kit, "FA AF 00 00 1E 05 02 03 20 03 00 00 0A 20 03 00 00", 0);
     simkit_run(&kit, 80000);
@@ -227,7 +227,7 @@ static void time_runs_at_a_stop_and_while_blocked(void **state)
 static void without_stops_a_servo_goes_to_its_limits(void **state)
 {
     (void)state;
-    const grobo_sim_config config = {.no_stops = true};
+    const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .no_stops = true};
     start_with_torque(&config);
     assert_int_equal(angle(R_HIP_P), 20000);
     simkit_packet(&kit, "FA AF 0A 00 1E 02 01 DC 05", 0);
@@ -258,7 +258,7 @@ static void torque_on_holds_the_present_position(void **state)
 static void torque_on_may_jump_by_configuration(void **state)
 {
     (void)state;
-    const grobo_sim_config config = {.jump_on_torque = true};
+    const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .jump_on_torque = true};
     simkit_start(&kit, &config);
     simkit_packet(&kit, "FA AF 03 00 1E 04 01 84 03 64 00", 0);
     simkit_packet(&kit, "FA AF 03 00 24 01 01 01", 0);

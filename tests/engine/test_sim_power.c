@@ -44,8 +44,10 @@ static void limp_start_is_within_stops_and_of_the_seed(void **state)
 {
     (void)state;
     static simkit other;
-    const grobo_sim_config config = {.start = GROBO_SIM_START_LIMP, .seed = 7};
-    const grobo_sim_config third = {.start = GROBO_SIM_START_LIMP, .seed = 8};
+    const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .start = GROBO_SIM_START_LIMP,
+                                     .seed = 7};
+    const grobo_sim_config third = {GROBO_SIM_CONFIG_INIT, .start = GROBO_SIM_START_LIMP,
+                                    .seed = 8};
     simkit_start(&kit, &config);
     simkit_start(&other, &config);
     int differ = 0;
@@ -79,7 +81,8 @@ static void a_start_at_zero_keeps_the_stops(void **state)
                                   .mirror = i,
                                   .mirror_sign = 1};
     }
-    const grobo_sim_config config = {.model = &bent, .start = GROBO_SIM_START_ZERO};
+    const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .model = &bent,
+                                     .start = GROBO_SIM_START_ZERO};
     simkit_start(&kit, &config);
     assert_int_equal(simkit_look(&kit, 0).angle_mdeg, -28648);
     assert_int_equal(simkit_look(&kit, 1).angle_mdeg, 0);
@@ -102,10 +105,11 @@ static void bad_configurations_are_refused(void **state)
     (void)state;
     static grobo_sim sim;
     const grobo_model none = {.name = "none"};
-    const grobo_sim_config bad_model = {.model = &none};
-    const grobo_sim_config slow = {.baud_bps = 10};
-    const grobo_sim_config hot = {.ambient_c = 100};
-    const grobo_sim_config odd = {.wiring = GROBO_WIRING_BUS, .baud_bps = 100000};
+    const grobo_sim_config bad_model = {GROBO_SIM_CONFIG_INIT, .model = &none};
+    const grobo_sim_config slow = {GROBO_SIM_CONFIG_INIT, .baud_bps = 10};
+    const grobo_sim_config hot = {GROBO_SIM_CONFIG_INIT, .ambient_c = 100};
+    const grobo_sim_config odd = {GROBO_SIM_CONFIG_INIT, .wiring = GROBO_WIRING_BUS,
+                                  .baud_bps = 100000};
     assert_int_equal(grobo_sim_init(&sim, &bad_model, 0), GROBO_ERR_ARG);
     assert_int_equal(grobo_sim_init(&sim, &slow, 0), GROBO_ERR_ARG);
     assert_int_equal(grobo_sim_init(&sim, &hot, 0), GROBO_ERR_ARG);
@@ -269,7 +273,7 @@ static void factory_reset_in_both_spellings(void **state)
 static void a_rate_takes_effect_at_the_restart(void **state)
 {
     (void)state;
-    const grobo_sim_config config = {.wiring = GROBO_WIRING_BUS};
+    const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .wiring = GROBO_WIRING_BUS};
     simkit_start(&kit, &config);
     simkit_packet(&kit, "FA AF 01 00 06 01 01 0A", 0);
     assert_int_equal(simkit_register(&kit, CHEST, GROBO_RS30X_BAUD), 10);
@@ -298,7 +302,7 @@ static void a_rate_takes_effect_at_the_restart(void **state)
 static void a_restart_without_flash_loses_the_rate(void **state)
 {
     (void)state;
-    const grobo_sim_config config = {.wiring = GROBO_WIRING_BUS};
+    const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .wiring = GROBO_WIRING_BUS};
     simkit_start(&kit, &config);
     simkit_packet(&kit, "FA AF 01 00 06 01 01 0A", 0);
     simkit_packet(&kit, "FA AF 01 20 FF 00 00", 0);
@@ -310,7 +314,8 @@ static void a_restart_without_flash_loses_the_rate(void **state)
 static void another_rate_is_not_understood_until_the_line_has_it(void **state)
 {
     (void)state;
-    const grobo_sim_config config = {.wiring = GROBO_WIRING_BUS, .baud_at_once = true};
+    const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .wiring = GROBO_WIRING_BUS,
+                                     .baud_at_once = true};
     simkit_start(&kit, &config);
     assert_true(answers("FA AF 01 01 FF 00 00"));
     simkit_packet(&kit, "FA AF 01 00 06 01 01 0A", 0);
@@ -330,7 +335,7 @@ static void another_rate_is_not_understood_until_the_line_has_it(void **state)
 static void the_board_loses_a_servo_of_another_rate(void **state)
 {
     (void)state;
-    const grobo_sim_config config = {.baud_at_once = true};
+    const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .baud_at_once = true};
     simkit_start(&kit, &config);
     simkit_ask(&kit, "53 09 FA AF 01 00 06 01 01 0A 0D", 10000);
     assert_false(answers("FA AF 01 01 FF 00 00"));
@@ -376,7 +381,7 @@ static void a_brown_out_makes_servos_limp(void **state)
 static void an_empty_battery_powers_nothing_up(void **state)
 {
     (void)state;
-    const grobo_sim_config config = {.supply_mv = 4000};
+    const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .supply_mv = 4000};
     simkit_start(&kit, &config);
     assert_true(simkit_look(&kit, CHEST).deaf);
     assert_false(answers("FA AF 01 01 FF 00 00"));

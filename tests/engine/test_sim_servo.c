@@ -54,8 +54,9 @@ static bool send_vector(const vector *v)
         return false;
     }
     memset(&last, 0, sizeof last);
-    const grobo_sim_config config = {
-        .wiring = servo ? GROBO_WIRING_BUS : GROBO_WIRING_BOARD, .hook = hear, .hook_ctx = &last};
+    const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT,
+                                     .wiring = servo ? GROBO_WIRING_BUS : GROBO_WIRING_BOARD,
+                                     .hook = hear, .hook_ctx = &last};
     assert_int_equal(grobo_sim_init(&sim, &config, 0), 0);
     assert_int_equal(grobo_sim_rx(&sim, v->bytes, v->n, 0), v->n);
     uint8_t got[256];
@@ -149,7 +150,7 @@ static const grobo_model late_robot = {.name = "late", .joints = &late_joint, .n
 static void later_models_have_more(void **state)
 {
     (void)state;
-    const grobo_sim_config config = {.model = &late_robot};
+    const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .model = &late_robot};
     simkit_start(&kit, &config);
     simkit_packet(&kit, "FA AF 07 0D 00 00 01", 76);
     assert_int_equal(kit.n_got, 76);
@@ -225,8 +226,8 @@ static void values_out_of_range_are_refused(void **state)
 static void some_values_out_of_range_become_others(void **state)
 {
     (void)state;
-    const grobo_sim_config config = {
-        .wiring = GROBO_WIRING_BUS, .baud_bps = 9600, .baud_at_once = true};
+    const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .wiring = GROBO_WIRING_BUS,
+                                     .baud_bps = 9600, .baud_at_once = true};
     simkit_start(&kit, &config);
     simkit_packet(&kit, "FA AF 01 01 23 01 01 C8", 1);
     simkit_expect(&kit, "07");
@@ -278,7 +279,7 @@ static void acks_come_when_asked_for(void **state)
     simkit_expect(&kit, "07");
     simkit_packet(&kit, "FA AF 01 01 24 01 01 09", 1);
     simkit_expect(&kit, "");
-    const grobo_sim_config nack = {.nack = true};
+    const grobo_sim_config nack = {GROBO_SIM_CONFIG_INIT, .nack = true};
     simkit_start(&kit, &nack);
     simkit_packet(&kit, "FA AF 01 01 24 01 01 09", 1);
     simkit_expect(&kit, "08");
@@ -314,7 +315,8 @@ static void all_are_meant_by_255_and_none_replies(void **state)
 static void a_later_model_answers_what_all_are_asked(void **state)
 {
     (void)state;
-    const grobo_sim_config config = {.model = &late_robot, .wiring = GROBO_WIRING_BUS};
+    const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .model = &late_robot,
+                                     .wiring = GROBO_WIRING_BUS};
     simkit_start(&kit, &config);
     simkit_packet(&kit, "FA AF FF 0F 04 04 00", 12);
     simkit_expect(&kit, "FD DF 07 00 04 04 01 07 00 07 00 06");
@@ -403,7 +405,8 @@ static void every_type_is_what_its_row_says(void **state)
     grobo_joint joints[GROBO_SIM_SERVOS_MAX];
     char names[GROBO_SIM_SERVOS_MAX][8];
     grobo_model model = {.name = "chain", .joints = joints};
-    const grobo_sim_config config = {.model = &model, .wiring = GROBO_WIRING_BUS, .no_stops = true};
+    const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .model = &model,
+                                     .wiring = GROBO_WIRING_BUS, .no_stops = true};
     const grobo_sim_type *type;
     for (; (type = grobo_sim_type_row(model.n_joints)) != NULL; model.n_joints++) {
         int i = model.n_joints;

@@ -103,9 +103,10 @@ static int turns(deadline_fn deadline, const char *hex)
 static void a_reading_takes_a_turn_for_each_packet(void **state)
 {
     (void)state;
-    static const grobo_sim_config bus = {.wiring = GROBO_WIRING_BUS};
-    static const grobo_sim_config echo = {.wiring = GROBO_WIRING_BUS, .echo = true};
-    static const grobo_sim_config ftdi = {.latency_us = 16000};
+    static const grobo_sim_config bus = {GROBO_SIM_CONFIG_INIT, .wiring = GROBO_WIRING_BUS};
+    static const grobo_sim_config echo = {GROBO_SIM_CONFIG_INIT, .wiring = GROBO_WIRING_BUS,
+                                          .echo = true};
+    static const grobo_sim_config ftdi = {GROBO_SIM_CONFIG_INIT, .latency_us = 16000};
     static const struct {
         const grobo_sim_config *config;
         const char *hex;
@@ -174,7 +175,7 @@ static void a_flooded_board_loses_bytes_and_counts_them(void **state)
     uint8_t flood[GROBO_SIM_WIRE_BYTES + 100];
     memset(flood, 0x41, sizeof flood);
     /* A read from a servo that is away keeps the board busy while the flood comes. */
-    const grobo_sim_config patient = {.board_silence_us = 1000000};
+    const grobo_sim_config patient = {GROBO_SIM_CONFIG_INIT, .board_silence_us = 1000000};
     simkit_start(&kit, &patient);
     assert_int_equal(grobo_sim_set_cable(&kit.sim, 12, GROBO_SIM_CABLE_OUT), 0);
     simkit_send(&kit, "54 09 FA AF 01 0F 24 12 00 38 1A");
@@ -193,7 +194,7 @@ static void a_flooded_board_loses_bytes_and_counts_them(void **state)
 static void a_silent_servo_makes_a_reply_short(void **state)
 {
     (void)state;
-    const grobo_sim_config config = {.board_silence_us = 3000};
+    const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .board_silence_us = 3000};
     simkit_start(&kit, &config);
     assert_int_equal(grobo_sim_set_cable(&kit.sim, 12, GROBO_SIM_CABLE_MUTE), 0);
     int64_t t0 = kit.now_us;
@@ -249,7 +250,7 @@ static void slots_and_scenarios_are_noted(void **state)
 static void a_stalled_frame_is_forgotten(void **state)
 {
     (void)state;
-    const grobo_sim_config config = {.board_stall_us = 10000};
+    const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .board_stall_us = 10000};
     simkit_start(&kit, &config);
     simkit_ask(&kit, "53 09 FA AF 01 00", 5000);
     simkit_run(&kit, 9000);
@@ -268,7 +269,8 @@ static void bus_read_costs_34_bytes_and_the_delay(void **state)
     (void)state;
     static const uint32_t rates[] = {9600, 38400, 115200, 460800};
     for (size_t i = 0; i < sizeof rates / sizeof *rates; i++) {
-        const grobo_sim_config config = {.wiring = GROBO_WIRING_BUS, .baud_bps = rates[i]};
+        const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .wiring = GROBO_WIRING_BUS,
+                                         .baud_bps = rates[i]};
         simkit_start(&kit, &config);
         int64_t t0 = kit.now_us;
         simkit_packet(&kit, "FA AF 01 0F 24 12 00", 26);
@@ -281,7 +283,7 @@ static void bus_read_costs_34_bytes_and_the_delay(void **state)
 static void board_frames_mean_nothing_to_servos(void **state)
 {
     (void)state;
-    const grobo_sim_config config = {.wiring = GROBO_WIRING_BUS};
+    const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .wiring = GROBO_WIRING_BUS};
     simkit_start(&kit, &config);
     simkit_ask(&kit, "41 00", 100000);
     simkit_expect(&kit, "");
@@ -292,7 +294,7 @@ static void board_frames_mean_nothing_to_servos(void **state)
 static void a_stalled_packet_is_forgotten(void **state)
 {
     (void)state;
-    const grobo_sim_config config = {.wiring = GROBO_WIRING_BUS};
+    const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .wiring = GROBO_WIRING_BUS};
     simkit_start(&kit, &config);
     simkit_ask(&kit, "FA AF 01 00 24", 5000);
     simkit_run(&kit, 5000);
@@ -311,7 +313,7 @@ static void a_stalled_packet_is_forgotten(void **state)
 static void talking_over_a_reply_spoils_both(void **state)
 {
     (void)state;
-    const grobo_sim_config config = {.wiring = GROBO_WIRING_BUS};
+    const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .wiring = GROBO_WIRING_BUS};
     simkit_start(&kit, &config);
     simkit_send(&kit, "FA AF 01 0F 24 12 00 38");
     simkit_run(&kit, bytes_us(8, 115200) + 500);
@@ -330,7 +332,7 @@ static void talking_over_a_reply_spoils_both(void **state)
 static void replies_that_overlap_spoil_each_other(void **state)
 {
     (void)state;
-    const grobo_sim_config config = {.wiring = GROBO_WIRING_BUS};
+    const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .wiring = GROBO_WIRING_BUS};
     simkit_start(&kit, &config);
     assert_int_equal(grobo_sim_set_register(&kit.sim, 12, GROBO_RS30X_ID, 2), 0);
     assert_int_equal(grobo_sim_set_register(&kit.sim, 12, GROBO_RS30X_DELAY, 2), 0);
@@ -359,7 +361,7 @@ static void the_board_too_may_talk_over_a_reply(void **state)
 static void a_crowd_of_one_id_is_only_heard_in_part(void **state)
 {
     (void)state;
-    const grobo_sim_config config = {.wiring = GROBO_WIRING_BUS};
+    const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .wiring = GROBO_WIRING_BUS};
     simkit_start(&kit, &config);
     for (int i = 0; i < 20; i++) {
         assert_int_equal(grobo_sim_set_register(&kit.sim, i, GROBO_RS30X_ID, 5), 0);
@@ -378,7 +380,8 @@ static void a_crowd_of_one_id_is_only_heard_in_part(void **state)
 static void an_adapter_may_return_what_it_sends(void **state)
 {
     (void)state;
-    const grobo_sim_config config = {.wiring = GROBO_WIRING_BUS, .echo = true};
+    const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .wiring = GROBO_WIRING_BUS,
+                                     .echo = true};
     simkit_start(&kit, &config);
     int64_t t0 = kit.now_us;
     simkit_ask(&kit, "FA AF 01 0F 24 01 00 2B", 100000);
@@ -394,14 +397,15 @@ static void an_adapter_may_return_what_it_sends(void **state)
 static void an_echo_is_of_what_was_on_the_line(void **state)
 {
     (void)state;
-    const grobo_sim_config config = {.wiring = GROBO_WIRING_BUS, .echo = true};
+    const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .wiring = GROBO_WIRING_BUS,
+                                     .echo = true};
     simkit_start(&kit, &config);
     simkit_send(&kit, "FA AF 01 0F 24 01 00 2B");
     simkit_run(&kit, bytes_us(8, 115200) + 100 + 10);
     simkit_ask(&kit, "00 00", 100000);
     assert_true(kit.sim.stats.collisions > 0);
     assert_true(kit.got[0] == 0);
-    const grobo_sim_config board = {.echo = true};
+    const grobo_sim_config board = {GROBO_SIM_CONFIG_INIT, .echo = true};
     assert_int_equal(grobo_sim_init(&kit.sim, &board, 0), GROBO_ERR_ARG);
 }
 
@@ -410,7 +414,7 @@ static void an_echo_is_of_what_was_on_the_line(void **state)
 static void an_adapter_hands_over_what_came_together(void **state)
 {
     (void)state;
-    const grobo_sim_config config = {.latency_us = 16000};
+    const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .latency_us = 16000};
     simkit_start(&kit, &config);
     int64_t t0 = kit.now_us;
     simkit_ask(&kit, "54 09 FA AF 01 0F 24 12 00 38 1A", 100000);
@@ -427,7 +431,7 @@ static void an_adapter_hands_over_what_came_together(void **state)
 static void unpaced_takes_only_the_return_delay(void **state)
 {
     (void)state;
-    const grobo_sim_config config = {.unpaced = true};
+    const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .unpaced = true};
     simkit_start(&kit, &config);
     int64_t t0 = kit.now_us;
     simkit_ask(&kit, "54 09 FA AF 01 0F 24 12 00 38 1A", 100000);

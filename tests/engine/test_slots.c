@@ -116,7 +116,8 @@ static void what_the_bus_is_told_of_a_frame(void **state)
     };
     for (int j = 0; j < N; j++) {
         for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-            start_with(&(grobo_robot_config){.retries = rows[i].retries, .timeout_us = 1234});
+            start_with(&(grobo_robot_config){GROBO_ROBOT_CONFIG_INIT, .retries = rows[i].retries,
+                                             .timeout_us = 1234});
             robot.axes[j].lost = (uint16_t)rows[i].lost;
             grobo_robot_slot *slot = grobo_i_slot_take(&robot, rows[i].use);
             slot->joint = (uint8_t)j;
@@ -441,7 +442,7 @@ static void a_target_gets_the_time_that_it_asks_for(void **state)
                 {INT64_MAX, 163830000}};
     for (int j = 0; j < N; j++) {
         for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-            start_with(&(grobo_robot_config){.default_time_us = 1234567});
+            start_with(&(grobo_robot_config){GROBO_ROBOT_CONFIG_INIT, .default_time_us = 1234567});
             const grobo_posture target = target_of(j, 0.1, rows[i].asked_us);
             robot.motion = i == 0 ? UINT32_MAX : 41;
             robot.motion_us = 7;

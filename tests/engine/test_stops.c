@@ -259,7 +259,7 @@ static void a_smooth_stop_is_no_longer_after_a_reset(void **state)
 static void a_joint_sent_while_torque_comes_on_is_stopped_where_it_is(void **state)
 {
     (void)state;
-    const grobo_sim_config limp = {.start = GROBO_SIM_START_LIMP, .seed = 7};
+    const grobo_sim_config limp = {GROBO_SIM_CONFIG_INIT, .start = GROBO_SIM_START_LIMP, .seed = 7};
     rig_start(&rig, NULL, &limp);
     int number = grobo_robot_torque(&rig.robot, rig_all(&rig), GROBO_TORQUE_ON);
     double here_deg = rig_angle_deg(&rig, HIP);
@@ -330,7 +330,7 @@ static void a_trip_ends_a_raw_job(void **state)
     (void)state;
     int ended = 0;
     for (int us = 0; us < 60000; us += 1000) {
-        grobo_robot_config config = {.sense_interval_us = 1};
+        grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 1};
         rig_start(&rig, &config, NULL);
         rig_power(&rig);
         rig_run(&rig, 100000 + us);
@@ -396,7 +396,8 @@ static void a_trip_does_not_end_torque_that_goes_off(void **state)
 static void a_raw_goal_is_refused_for_a_joint_that_others_move(void **state)
 {
     (void)state;
-    grobo_robot_config config = {.sense_interval_us = 20000, .lost_replies = -1};
+    grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 20000,
+                                 .lost_replies = -1};
     rig_start(&rig, &config, NULL);
     rig_power(&rig);
     grobo_event_fn on_event = rig.robot.on_event;
@@ -444,7 +445,7 @@ static void a_move_begins_when_its_frame_leaves(void **state)
     (void)state;
     grobo_robot_config config = quiet;
     bool by_board = rig_wiring == GROBO_WIRING_BOARD;
-    grobo_sim_config sim = {.baud_bps = by_board ? 1200 : 9600};
+    grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT, .baud_bps = by_board ? 1200 : 9600};
     config.bus.baud_bps = sim.baud_bps;
     rig_start(&rig, &config, &sim);
     rig_power(&rig);

@@ -220,7 +220,7 @@ static void a_stop_after_a_motion_is_not_undone_by_its_end(void **state)
 static void a_stop_moves_no_joint_that_lost_its_frame(void **state)
 {
     (void)state;
-    const grobo_robot_config reading = {.sense_interval_us = 200000};
+    const grobo_robot_config reading = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 200000};
     rig_start_at(&rig, -45, &reading);
     grobo_posture target = rig_posture(&rig, NECK, 45, 3000);
     assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_MUTE), 0);
@@ -582,7 +582,7 @@ static void a_trip_ends_a_raw_job_that_waits_for_the_end_of_a_motion(void **stat
 {
     (void)state;
     const bool by_board = rig_wiring == GROBO_WIRING_BOARD;
-    const grobo_robot_config config = {.sense_interval_us = 100000};
+    const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 100000};
     const grobo_play_options options = {
         .mode = GROBO_PLAY_RATE, .rate_hz = by_board ? 33 : 66, .repeat = 100, .unwatched = true};
     uint8_t frame[GROBO_RS30X_PACKET_MAX_BYTES];
@@ -663,7 +663,7 @@ static void torque_that_waited_long_comes_on_for_nobody(void **state)
     (void)state;
     int overtaken = 0;
     for (int ms = 1; ms < 400; ms += 3) {
-        const grobo_sim_config jumps = {.jump_on_torque = true};
+        const grobo_sim_config jumps = {GROBO_SIM_CONFIG_INIT, .jump_on_torque = true};
         rig_start(&rig, &quiet, &jumps);
         int number = grobo_robot_torque(&rig.robot, GROBO_JOINT_BIT(NECK) | GROBO_JOINT_BIT(CHEST),
                                         GROBO_TORQUE_ON);

@@ -10,8 +10,9 @@
 
 #include "tests/support/axes_kit.h"
 
-static const grobo_robot_config watching = {
-    .temperature_c = 60, .current_ma = 500, .voltage_mv = 6000, .lost_replies = 3};
+static const grobo_robot_config watching = {GROBO_ROBOT_CONFIG_INIT, .temperature_c = 60,
+                                            .current_ma = 500, .voltage_mv = 6000,
+                                            .lost_replies = 3};
 
 /* What trips, trips latched, now and of this joint; GROBO_TRIP_NONE: nothing has. */
 static void expect_trip(grobo_trip reason, int joint, double value)

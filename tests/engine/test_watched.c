@@ -104,7 +104,7 @@ static void each_joint_is_read_at_the_default_rate(void **state)
     (void)state;
     static const int64_t intervals_us[] = {0, 1, 2 * SECOND_US, 60LL * SECOND_US};
     for (int i = 0; i < 4; i++) {
-        grobo_robot_config config = {.sense_interval_us = intervals_us[i]};
+        grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = intervals_us[i]};
         grobo_jitter jitter;
         start_playing(&config, NULL, &at_default);
         int64_t unread_us = longest_unread(10 * SECOND_US);
@@ -159,8 +159,8 @@ static void check_rule(const grobo_budget *budget, int n)
 
 static void play_at_watched_rate(uint32_t baud_bps, const grobo_budget *budget)
 {
-    grobo_robot_config config = {.bus.baud_bps = baud_bps};
-    grobo_sim_config sim = {.baud_bps = baud_bps};
+    grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .bus.baud_bps = baud_bps};
+    grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT, .baud_bps = baud_bps};
     grobo_play_options options = {.mode = GROBO_PLAY_RATE, .rate_hz = budget->watched_hz};
     rig_start_driver(&rig, driver, &config, &sim);
     grobo_clip nod = {.key = nod_key,
@@ -204,7 +204,7 @@ static void on_too_slow_a_line_no_rate_is_watched(void **state)
     (void)state;
     grobo_bus_config line = {.baud_bps = 2400};
     grobo_budget budget;
-    grobo_robot_config config = {.bus = line};
+    grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .bus = line};
     driver = many_joints(rig_wiring, JOINTS);
     assert_int_equal(grobo_budget_init(&budget, driver, NULL, &line), 0);
     assert_int_equal(budget.watched_hz, 0);
@@ -227,7 +227,7 @@ static void a_slow_adapter_hides_no_joint(void **state)
     (void)state;
     static const uint32_t latencies_us[] = {500, 2000, 16000};
     for (int i = 0; i < 3; i++) {
-        grobo_sim_config sim = {.latency_us = latencies_us[i]};
+        grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT, .latency_us = latencies_us[i]};
         grobo_jitter jitter;
         start_playing(NULL, &sim, &at_default);
         int64_t unread_us = longest_unread(10 * SECOND_US);
@@ -330,8 +330,8 @@ static void a_silent_servo_delays_little(void **state)
     (void)state;
     static const uint32_t latencies_us[] = {0, 2000};
     for (int i = 0; i < 2; i++) {
-        grobo_robot_config config = {.lost_replies = -1};
-        grobo_sim_config sim = {.latency_us = latencies_us[i]};
+        grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .lost_replies = -1};
+        grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT, .latency_us = latencies_us[i]};
         grobo_jitter jitter;
         start_playing(&config, &sim, &at_default);
         rig_run(&rig, GROBO_WATCH_US);
@@ -348,7 +348,7 @@ static void a_silent_servo_delays_little(void **state)
 static void a_reading_that_may_not_leave_delays_no_frame(void **state)
 {
     (void)state;
-    grobo_robot_config config = {.lost_replies = -1};
+    grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .lost_replies = -1};
     grobo_jitter jitter;
     start_playing(&config, NULL, &at_default);
     assert_int_equal(grobo_sim_set_cable(&rig.sim, R_KNEE, GROBO_SIM_CABLE_MUTE), 0);
@@ -479,8 +479,9 @@ static void permission_alone_changes_nothing(void **state)
 static void without_full_readings_a_motion_says_that_it_is_unwatched(void **state)
 {
     (void)state;
-    static const grobo_robot_config configs[] = {{.sense_interval_us = GROBO_SENSE_NEVER},
-                                                 {.sense_position_only = true}};
+    static const grobo_robot_config configs[] = {
+        {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = GROBO_SENSE_NEVER},
+        {GROBO_ROBOT_CONFIG_INIT, .sense_position_only = true}};
     for (int i = 0; i < 2; i++) {
         start_playing(&configs[i], NULL, i == 0 ? NULL : &at_default);
         assert_int_equal(rig_count(&rig, GROBO_EVENT_UNWATCHED), 1);

@@ -88,6 +88,44 @@ C
         grep -q 'grobo_[a-z_]*_20' "$work/said"
 }
 
+# Takes the last two fields of each structure with a size out of the installed headers.
+yesterdays_headers() {
+    mkdir -p "$work/yesterday/grobo"
+    for header in "$tree"/opt/grobo/include/grobo/*.h; do
+        awk '
+        /size_t size; .*_CONFIG_INIT/ { print; n = 0; inside = 1; next }
+        inside && /^}/ {
+            for (i = 1; i <= n - 2; i++) {
+                print field[i]
+            }
+            inside = 0
+        }
+        inside { # a field begins behind the end of the one before, with the comment above it
+            text = text == "" ? $0 : text "\n" $0
+            if (text ~ /;/ && $0 ~ /(;|\*\/)$/) {
+                field[++n] = text
+                text = ""
+            }
+            next
+        }
+        { print }' "$header" >"$work/yesterday/grobo/${header##*/}"
+    done
+    ! cmp -s "$work/yesterday/grobo/session.h" "$tree/opt/grobo/include/grobo/session.h"
+}
+
+# A program of yesterday, whose structures are shorter, does what it did with the library of today.
+yesterdays_program() {
+    for headers in "$work/yesterday" "$tree/opt/grobo/include"; do
+        builds "${CC:-gcc} $c11 -Wno-missing-field-initializers -I $headers" \
+            tests/export/yesterday.c &&
+            LD_LIBRARY_PATH=$library $emulator "$work/program" >"$work/sizes" || return 1
+        tr ' ' '\n' <"$work/sizes" >"$work/sizes.${headers##*/}"
+    done
+    paste "$work/sizes.yesterday" "$work/sizes.include"
+    paste "$work/sizes.yesterday" "$work/sizes.include" |
+        awk '$1 >= $2 { bad = 1 } END { exit bad }'
+}
+
 # by_each OPTION...: by each compiler a program, with these options for pkg-config.
 by_each() {
     mode=${1:-shared}
@@ -120,6 +158,8 @@ check 'pkg-config tells the version of the headers' same_version
 compilers >"$work/compilers"
 by_each
 check 'another GROBO_JOINTS_MAX fails to link' other_cap
+check 'headers with shorter structures' yesterdays_headers
+check 'a program of yesterday runs with the library of today' yesterdays_program
 rm -f "$library"/libgrobo.so*
 by_each --static
 check 'another GROBO_JOINTS_MAX fails to link statically' other_cap --static

@@ -195,12 +195,9 @@ static void check(grobo_serial *serial, int r)
 static void try_one(fate what, int n)
 {
     grobo_port_ops ops = *real;
-    grobo_serial_config config = {.device = line.device,
-                                  .base = base,
-                                  .mode = GROBO_SERIAL_ASYNC,
-                                  .on_data = on_data,
-                                  .on_event = on_event,
-                                  .ops = &ops};
+    grobo_serial_config config = {
+        GROBO_SERIAL_CONFIG_INIT, .device = line.device, .base = base, .mode = GROBO_SERIAL_ASYNC,
+        .on_data = on_data,       .on_event = on_event,  .ops = &ops};
     grobo_serial *serial;
     grobo_timer *guard;
 

@@ -37,14 +37,13 @@ static void on_robot(void *ctx, const grobo_event *event)
 
 static void make(void)
 {
-    static const grobo_robot_config robot = {.on_exit = GROBO_EXIT_OFF};
-    const grobo_control_config config = {.session = {.device = GROBO_DEVICE_SIM,
-                                                     .baud_bps = 1000000,
-                                                     .robot = &robot,
-                                                     .on_robot = on_robot,
-                                                     .ctx = &rounds},
-                                         .control_period_us = 2000,
-                                         .on_svc = on_svc};
+    static const grobo_robot_config robot = {GROBO_ROBOT_CONFIG_INIT, .on_exit = GROBO_EXIT_OFF};
+    const grobo_control_config config = {
+        GROBO_CONTROL_CONFIG_INIT,
+        .session = &(grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = GROBO_DEVICE_SIM,
+                                           .baud_bps = 1000000, .robot = &robot,
+                                           .on_robot = on_robot, .ctx = &rounds},
+        .control_period_us = 2000, .on_svc = on_svc};
     rounds = exits = inside = together = calls = 0;
     assert_int_equal(grobo_control_new(&config, &control), GROBO_OK);
 }

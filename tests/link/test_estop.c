@@ -75,7 +75,8 @@ static int set_up(void **state)
     memset(&at, 0, sizeof at);
     base = grobo_loop_new();
     assert_non_null(base);
-    server = loop_serve(base, (grobo_sim_server_config){.no_pty = true, .tcp = "tcp:127.0.0.1:0"});
+    server = loop_serve(base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT,
+                                                        .no_pty = true, .tcp = "tcp:127.0.0.1:0"});
     snprintf(device, sizeof device, "%s", grobo_sim_server_device(server));
     return 0;
 }
@@ -91,13 +92,9 @@ static int tear_down(void **state)
 
 static grobo_session *open_session(void)
 {
-    const grobo_session_config config = {.base = base,
-                                         .device = device,
-                                         .reconnect = true,
-                                         .on_event = on_event,
-                                         .on_robot = on_robot,
-                                         .on_tap = on_tap,
-                                         .ctx = &at};
+    const grobo_session_config config = {
+        GROBO_SESSION_CONFIG_INIT, .base = base,         .device = device, .reconnect = true,
+        .on_event = on_event,      .on_robot = on_robot, .on_tap = on_tap, .ctx = &at};
     grobo_session *session = NULL;
     int ups = at.ups;
 
@@ -234,7 +231,10 @@ static void a_reset_obeys_a_mark_that_was_just_set(void **state)
 static void a_control_obeys_it_too(void **state)
 {
     /* The simulator runs on this thread's loop, not while this thread waits. */
-    const grobo_control_config config = {.session = {.device = device}, .skip_exit = true};
+    const grobo_control_config config = {
+        GROBO_CONTROL_CONFIG_INIT,
+        .session = &(grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = device},
+        .skip_exit = true};
     grobo_control *control;
     grobo_estop stop;
 
@@ -363,7 +363,7 @@ static void without_a_line_it_is_carried_out_when_that_is_back(void **state)
 static void who_looks_uses_no_processor(void **state)
 {
     grobo_session *session = open_session();
-    grobo_robot_config config = {.sense_interval_us = GROBO_SENSE_NEVER};
+    grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = GROBO_SENSE_NEVER};
     int64_t before_us;
     int64_t used_us;
 

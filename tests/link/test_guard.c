@@ -74,9 +74,9 @@ static void on_word(evutil_socket_t fd, short what, void *ctx)
 
 static void serve(bool tcp)
 {
-    grobo_sim_config sim = {.baud_bps = GUARDED_BPS};
-    grobo_sim_server_config config = {
-        .sim = &sim, .no_pty = tcp, .tcp = tcp ? "tcp:127.0.0.1:0" : NULL, .on_tap = on_tap};
+    grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT, .baud_bps = GUARDED_BPS};
+    grobo_sim_server_config config = {GROBO_SIM_SERVER_CONFIG_INIT, .sim = &sim, .no_pty = tcp,
+                                      .tcp = tcp ? "tcp:127.0.0.1:0" : NULL, .on_tap = on_tap};
 
     snprintf(device, sizeof device, "%s", in_folder("robot"));
     config.link = tcp ? NULL : device;
@@ -177,7 +177,8 @@ static void assert_it_stopped_on_its_way(grobo_torque torque)
 /* Can the next program have the port? */
 static bool is_free(void)
 {
-    const grobo_serial_config config = {.device = device, .baud_bps = GUARDED_BPS};
+    const grobo_serial_config config = {GROBO_SERIAL_CONFIG_INIT, .device = device,
+                                        .baud_bps = GUARDED_BPS};
     grobo_serial *serial;
     int r;
 
@@ -481,7 +482,7 @@ static void what_is_no_guard(void **state)
 {
     const char *const nothing[] = {NULL};
     const char *many[20] = {0};
-    grobo_guard_config config = {.program = "true", .arguments = nothing};
+    grobo_guard_config config = {GROBO_GUARD_CONFIG_INIT, .program = "true", .arguments = nothing};
     grobo_guard *guard = NULL;
 
     (void)state;
@@ -501,7 +502,8 @@ static void what_is_no_guard(void **state)
 static void what_the_caller_gets_wrong(void **state)
 {
     static const uint8_t data[GROBO_GUARD_DATA_BYTES + 1];
-    grobo_session_config config = {.base = base, .device = "/dev/null", .guard_data = data};
+    grobo_session_config config = {GROBO_SESSION_CONFIG_INIT, .base = base, .device = "/dev/null",
+                                   .guard_data = data};
     grobo_session *session = NULL;
     grobo_guard *guard = NULL;
 

@@ -39,24 +39,28 @@ static grobo_robot robot;
 static grobo_posture posture;
 static FILE *stream;
 static grobo_play_options play_options;
-static grobo_guard_config guard_config;
+static grobo_guard_config guard_config = {GROBO_GUARD_CONFIG_INIT};
 static struct event_base *base;
 static grobo_timer *timer;
 static grobo_timer *made_timer;
 static grobo_diagnostics *list;
 static grobo_thread thread;
-static grobo_robot_config robot_config;
+static grobo_robot_config robot_config = {GROBO_ROBOT_CONFIG_INIT};
 static grobo_register_io io;
-static grobo_serial_config serial_config;
+static grobo_serial_config serial_config = {GROBO_SERIAL_CONFIG_INIT};
 static grobo_serial *serial;
 static grobo_serial_counters counters;
-static grobo_session_config session_config;
+static grobo_session_config session_config = {GROBO_SESSION_CONFIG_INIT};
 static grobo_session *session;
 static grobo_session *made_session;
-static grobo_sim_server_config server_config;
+static grobo_sim_server_config server_config = {GROBO_SIM_SERVER_CONFIG_INIT};
 static grobo_sim_server *made_server;
-static grobo_control_config control_config;
+static grobo_control_config control_config = {GROBO_CONTROL_CONFIG_INIT};
+static const grobo_session_config control_session = {GROBO_SESSION_CONFIG_INIT,
+                                                     .device = GROBO_DEVICE_SIM};
 static grobo_control *control;
+static grobo_control_event control_event = {GROBO_CONTROL_EVENT_INIT};
+static grobo_snapshot snapshot = {GROBO_SNAPSHOT_INIT};
 static grobo_control *made_control;
 
 static void on_timer(grobo_timer *from, int64_t late_us, void *ctx)
@@ -80,9 +84,10 @@ static int set_up(void **state)
     assert_non_null(base);
     assert_int_equal(grobo_timer_new(base, on_timer, NULL, NULL, &timer), GROBO_OK);
     assert_int_equal(grobo_serial_new(NULL, &serial), GROBO_OK);
-    session_config = (grobo_session_config){.base = base, .device = GROBO_DEVICE_SIM};
+    session_config =
+        (grobo_session_config){GROBO_SESSION_CONFIG_INIT, .base = base, .device = GROBO_DEVICE_SIM};
     assert_int_equal(grobo_session_new(&session_config, &session), GROBO_OK);
-    control_config.session.device = GROBO_DEVICE_SIM;
+    control_config.session = &control_session;
     assert_int_equal(grobo_control_new(&control_config, &control), GROBO_OK);
     assert_int_equal(grobo_motion_new(&motion, GROBO_MOTION_POSTURES, 20, NULL), GROBO_OK);
     assert_int_equal(
@@ -301,6 +306,11 @@ static void thread_refuses_null_in_its_first_functions(void **state)
     REFUSES(grobo_control_thread(control, NULL));
     REFUSES(grobo_control_svc(NULL));
     REFUSES(grobo_control_run(NULL));
+    REFUSES(grobo_control_next_event(NULL, &control_event));
+    REFUSES(grobo_control_next_event(control, NULL));
+    assert_true(grobo_control_event_socket(NULL) == GROBO_SOCKET_NULL);
+    REFUSES(grobo_control_snapshot(NULL, &snapshot));
+    REFUSES(grobo_control_snapshot(control, NULL));
     REFUSES(grobo_control_call(NULL, on_control, NULL));
     REFUSES(grobo_control_call(control, NULL, NULL));
     REFUSES(grobo_control_post(NULL, on_control, NULL));

@@ -31,12 +31,12 @@ static const int init_ddeg[MOTORS] = {0, 0,    200,  0, -200, -200, 0, 200, 0,  
                                       0, -400, -200, 0, 0,    -200, 0, 400, 200, 0};
 
 static spy s;
-static grobo_sim_config sim;
+static grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT};
 
 static int set_up(void **state)
 {
     (void)state;
-    memset(&sim, 0, sizeof sim);
+    sim = (grobo_sim_config){GROBO_SIM_CONFIG_INIT};
     memset(&s, 0, sizeof s);
     return 0;
 }
@@ -256,7 +256,8 @@ static void test_limp_robot(void **state)
     (void)state;
     memset(goal_set, 0, sizeof goal_set);
     torque_on = 0;
-    sim = (grobo_sim_config){.start = GROBO_SIM_START_LIMP, .seed = 7, .hook = on_sim};
+    sim = (grobo_sim_config){GROBO_SIM_CONFIG_INIT, .start = GROBO_SIM_START_LIMP, .seed = 7,
+                             .hook = on_sim};
     assert_true(spy_open(&s, &sim));
     for (int servo = 0; servo < MOTORS; servo++) {
         grobo_sim_view view;

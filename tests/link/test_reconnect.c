@@ -55,8 +55,8 @@ static void on_sim(const grobo_sim_event *event, void *ctx)
 
 static int set_up(void **state)
 {
-    static const grobo_robot_config robot = {.sense_interval_us = 300000};
-    grobo_sim_config sim = {.hook = on_sim};
+    static const grobo_robot_config robot = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = 300000};
+    grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT, .hook = on_sim};
     const char *link;
 
     (void)folder_set_up(state);
@@ -66,9 +66,10 @@ static int set_up(void **state)
     play_error = 0;
     session_kit_begin();
     seen.then_robot = on_robot;
-    server =
-        loop_serve(base, (grobo_sim_server_config){.sim = &sim, .link = link, .replug_ms = -1});
-    session_kit_make((grobo_session_config){.device = link, .reconnect = true, .robot = &robot});
+    server = loop_serve(base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT, .sim = &sim,
+                                                        .link = link, .replug_ms = -1});
+    session_kit_make((grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = link,
+                                            .reconnect = true, .robot = &robot});
     assert_int_equal(grobo_session_open(session), GROBO_OK);
     return 0;
 }

@@ -104,13 +104,9 @@ static void run_until_event(grobo_serial_event event)
 static int set_up(void **state)
 {
     const grobo_serial_config config = {
-        .device = line.device,
-        .mode = GROBO_SERIAL_ASYNC,
-        .silence_ms = SILENCE_MS,
-        .on_data = on_data,
-        .on_event = on_event,
-        .on_tap = on_tap,
-        .ctx = &seen,
+        GROBO_SERIAL_CONFIG_INIT, .device = line.device, .mode = GROBO_SERIAL_ASYNC,
+        .silence_ms = SILENCE_MS, .on_data = on_data,    .on_event = on_event,
+        .on_tap = on_tap,         .ctx = &seen,
     };
     grobo_serial_config with_base = config;
 
@@ -439,11 +435,9 @@ static void each_lack_of_memory_is_told_and_leaks_nothing(void **state)
 {
     counted_mem few;
     const grobo_mem few_mem = counted_mem_of(&few);
-    const grobo_serial_config config = {.device = line.device,
-                                        .base = base,
-                                        .mode = GROBO_SERIAL_ASYNC,
-                                        .on_data = on_data,
-                                        .mem = &few_mem};
+    const grobo_serial_config config = {
+        GROBO_SERIAL_CONFIG_INIT,   .device = line.device, .base = base,
+        .mode = GROBO_SERIAL_ASYNC, .on_data = on_data,    .mem = &few_mem};
     int failures = 0;
     int r = GROBO_ERR_NOMEM;
 

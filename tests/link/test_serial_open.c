@@ -25,7 +25,7 @@
 /* Opens a device; returns the result, leaves the cause's text. */
 static int try_open(const char *device, char *text, size_t text_bytes)
 {
-    const grobo_serial_config config = {.device = device};
+    const grobo_serial_config config = {GROBO_SERIAL_CONFIG_INIT, .device = device};
     grobo_serial *serial;
     int r;
 
@@ -88,7 +88,7 @@ static pid_t start_holder(const char *device)
     pid = fork();
     assert_true(pid >= 0);
     if (pid == 0) {
-        const grobo_serial_config config = {.device = device};
+        const grobo_serial_config config = {GROBO_SERIAL_CONFIG_INIT, .device = device};
         grobo_serial *serial;
 
         if (grobo_serial_new(&config, &serial) == GROBO_OK &&
@@ -175,7 +175,7 @@ static void the_line_is_raw_8n1(void **state)
     grobo_serial *serial;
     struct termios tio;
     uint8_t byte = 0;
-    grobo_serial_config config = {.device = line.device};
+    grobo_serial_config config = {GROBO_SERIAL_CONFIG_INIT, .device = line.device};
 
     (void)state;
     test_line_open(&line);

@@ -62,20 +62,21 @@ static void a_port_without_a_device_waits_for_one(void **state)
 static void bad_configurations_are_refused(void **state)
 {
     char long_name[GROBO_DEVICE_MAX_BYTES + 1];
-    grobo_serial_config config = {.baud_bps = -1};
+    grobo_serial_config config = {GROBO_SERIAL_CONFIG_INIT, .baud_bps = -1};
     grobo_serial *made = NULL;
 
     (void)state;
     memset(long_name, 'x', sizeof long_name - 1);
     long_name[sizeof long_name - 1] = '\0';
     assert_int_equal(grobo_serial_new(&config, &made), GROBO_ERR_ARG);
-    config = (grobo_serial_config){.silence_ms = -1};
+    config = (grobo_serial_config){GROBO_SERIAL_CONFIG_INIT, .silence_ms = -1};
     assert_int_equal(grobo_serial_new(&config, &made), GROBO_ERR_ARG);
-    config = (grobo_serial_config){.mode = GROBO_SERIAL_ASYNC};
+    config = (grobo_serial_config){GROBO_SERIAL_CONFIG_INIT, .mode = GROBO_SERIAL_ASYNC};
     assert_int_equal(grobo_serial_new(&config, &made), GROBO_ERR_ARG);
-    config = (grobo_serial_config){.tx_queue_bytes = GROBO_SERIAL_QUEUE_BYTES + 1};
+    config = (grobo_serial_config){GROBO_SERIAL_CONFIG_INIT,
+                                   .tx_queue_bytes = GROBO_SERIAL_QUEUE_BYTES + 1};
     assert_int_equal(grobo_serial_new(&config, &made), GROBO_ERR_CAP);
-    config = (grobo_serial_config){.device = long_name};
+    config = (grobo_serial_config){GROBO_SERIAL_CONFIG_INIT, .device = long_name};
     assert_int_equal(grobo_serial_new(&config, &made), GROBO_ERR_CAP);
     assert_int_equal(grobo_serial_new(NULL, NULL), GROBO_ERR_ARG);
     assert_null(made);
@@ -198,7 +199,8 @@ static int read_slowly(grobo_port *port, void *buf, size_t size, grobo_os_cause 
 static void a_trickle_does_not_stretch_a_receive(void **state)
 {
     grobo_port_ops ops = *grobo_port_serial_ops();
-    const grobo_serial_config config = {.device = line.device, .ops = &ops};
+    const grobo_serial_config config = {GROBO_SERIAL_CONFIG_INIT, .device = line.device,
+                                        .ops = &ops};
     grobo_serial_counters counters;
     uint8_t buf[400];
     int64_t start_us;
@@ -242,7 +244,8 @@ static int read_and_hold_up(grobo_port *port, void *buf, size_t size, grobo_os_c
 static void what_has_come_is_read_before_there_is_silence(void **state)
 {
     grobo_port_ops ops = *grobo_port_serial_ops();
-    const grobo_serial_config config = {.device = line.device, .silence_ms = 30, .ops = &ops};
+    const grobo_serial_config config = {GROBO_SERIAL_CONFIG_INIT, .device = line.device,
+                                        .silence_ms = 30, .ops = &ops};
     uint8_t byte = 0;
 
     (void)state;
@@ -271,7 +274,7 @@ static void await_bytes(int count)
 
 static void silence_is_100_ms_where_nothing_else_is_said(void **state)
 {
-    const grobo_serial_config config = {.device = line.device};
+    const grobo_serial_config config = {GROBO_SERIAL_CONFIG_INIT, .device = line.device};
     uint8_t byte = 0;
     int64_t start_us;
 

@@ -88,11 +88,9 @@ static void on_event(grobo_serial *serial, grobo_serial_event event, int error, 
 
 static int open_async(const char *name, grobo_serial **serial)
 {
-    const grobo_serial_config config = {.device = name,
-                                        .base = base,
-                                        .mode = GROBO_SERIAL_ASYNC,
-                                        .on_data = on_data,
-                                        .on_event = on_event};
+    const grobo_serial_config config = {
+        GROBO_SERIAL_CONFIG_INIT,   .device = name,     .base = base,
+        .mode = GROBO_SERIAL_ASYNC, .on_data = on_data, .on_event = on_event};
 
     assert_int_equal(grobo_serial_new(&config, serial), GROBO_OK);
     return grobo_serial_open(*serial);
@@ -143,7 +141,8 @@ static void a_refused_connection_is_told(void **state)
 
 static void a_synchronous_port_waits_for_its_connection(void **state)
 {
-    const grobo_serial_config config = {.device = device, .silence_ms = 2000};
+    const grobo_serial_config config = {GROBO_SERIAL_CONFIG_INIT, .device = device,
+                                        .silence_ms = 2000};
     grobo_serial *serial;
     test_line peer;
     uint8_t back[4];
@@ -171,7 +170,7 @@ static void malformed_names_are_refused(void **state)
 
     (void)state;
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
-        const grobo_serial_config config = {.device = names[i]};
+        const grobo_serial_config config = {GROBO_SERIAL_CONFIG_INIT, .device = names[i]};
         grobo_serial *serial;
 
         assert_int_equal(grobo_serial_new(&config, &serial), GROBO_OK);
@@ -183,7 +182,8 @@ static void malformed_names_are_refused(void **state)
 
 static void names_are_looked_up_beforehand_only(void **state)
 {
-    const grobo_serial_config config = {.device = "tcp:no-such-host.invalid:80"};
+    const grobo_serial_config config = {GROBO_SERIAL_CONFIG_INIT,
+                                        .device = "tcp:no-such-host.invalid:80"};
     char numeric[GROBO_DEVICE_MAX_BYTES] = "";
     grobo_os_cause cause;
     grobo_serial *serial;

@@ -100,7 +100,7 @@ static void assert_it_works(void)
 static void a_simulator_in_the_process(void **state)
 {
     (void)state;
-    session_kit_make((grobo_session_config){.device = "sim"});
+    session_kit_make((grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = "sim"});
     assert_null(grobo_session_sim(session));
     come_up();
     assert_non_null(grobo_session_sim(session));
@@ -120,7 +120,7 @@ static void a_simulator_keeps_its_state_while_closed(void **state)
     grobo_sim_view view;
 
     (void)state;
-    session_kit_make((grobo_session_config){.device = "sim"});
+    session_kit_make((grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = "sim"});
     come_up();
     assert_int_equal(session_kit_await(grobo_robot_torque(grobo_session_robot(session),
                                                           GROBO_JOINT_BIT(3), GROBO_TORQUE_ON)),
@@ -134,10 +134,12 @@ static void a_simulator_keeps_its_state_while_closed(void **state)
 
 static void a_pseudo_terminal(void **state)
 {
-    grobo_sim_server *server = loop_serve(base, (grobo_sim_server_config){0});
+    grobo_sim_server *server =
+        loop_serve(base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT});
 
     (void)state;
-    session_kit_make((grobo_session_config){.device = grobo_sim_server_device(server)});
+    session_kit_make((grobo_session_config){GROBO_SESSION_CONFIG_INIT,
+                                            .device = grobo_sim_server_device(server)});
     come_up();
     assert_string_equal(grobo_session_device(session), grobo_sim_server_device(server));
     assert_it_works();
@@ -147,10 +149,12 @@ static void a_pseudo_terminal(void **state)
 static void a_connection(void **state)
 {
     grobo_sim_server *server =
-        loop_serve(base, (grobo_sim_server_config){.no_pty = true, .tcp = "tcp:127.0.0.1:0"});
+        loop_serve(base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT, .no_pty = true,
+                                                   .tcp = "tcp:127.0.0.1:0"});
 
     (void)state;
-    session_kit_make((grobo_session_config){.device = grobo_sim_server_device(server)});
+    session_kit_make((grobo_session_config){GROBO_SESSION_CONFIG_INIT,
+                                            .device = grobo_sim_server_device(server)});
     come_up();
     assert_it_works();
     grobo_sim_server_free(server);
@@ -158,8 +162,10 @@ static void a_connection(void **state)
 
 static void auto_takes_the_first_port_that_answers(void **state)
 {
-    grobo_sim_server *server = loop_serve(base, (grobo_sim_server_config){0});
-    grobo_sim_server *another = loop_serve(base, (grobo_sim_server_config){0});
+    grobo_sim_server *server =
+        loop_serve(base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT});
+    grobo_sim_server *another =
+        loop_serve(base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT});
     test_line silent;
     const char *scan[5] = {"/dev/no-such-port", NULL, NULL, NULL, NULL};
 
@@ -168,7 +174,8 @@ static void auto_takes_the_first_port_that_answers(void **state)
     scan[1] = silent.device;
     scan[2] = grobo_sim_server_device(server);
     scan[3] = grobo_sim_server_device(another);
-    session_kit_make((grobo_session_config){.device = "auto", .scan = scan});
+    session_kit_make(
+        (grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = "auto", .scan = scan});
     come_up();
     assert_string_equal(grobo_session_device(session), grobo_sim_server_device(server));
     assert_it_works();
@@ -187,12 +194,14 @@ static void what_cannot_be_opened_is_told_at_once(void **state)
     const char *none[1] = {NULL};
 
     (void)state;
-    session_kit_make((grobo_session_config){.device = "/dev/no-such-port"});
+    session_kit_make(
+        (grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = "/dev/no-such-port"});
     assert_int_equal(grobo_session_open(session), GROBO_ERR_NOENT);
     assert_true(strlen(grobo_session_cause(session)->text) > 0);
     assert_int_equal(grobo_session_get_state(session), GROBO_SESSION_CLOSED);
     grobo_session_free(session);
-    session_kit_make((grobo_session_config){.device = "auto", .scan = none});
+    session_kit_make(
+        (grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = "auto", .scan = none});
     assert_int_equal(grobo_session_open(session), GROBO_ERR_NOTFOUND);
     assert_int_equal(grobo_session_get_state(session), GROBO_SESSION_CLOSED);
     assert_true(loop_run(base, 10000));
@@ -207,7 +216,8 @@ static void nobody_answers(void **state)
 
     (void)state;
     test_line_open(&silent);
-    session_kit_make((grobo_session_config){.device = silent.device, .reconnect = true});
+    session_kit_make((grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = silent.device,
+                                            .reconnect = true});
     assert_int_equal(grobo_session_open(session), GROBO_OK);
     loop_run_until(base, &seen.fails, 1);
     assert_int_equal(seen.error, GROBO_ERR_TIMEOUT);
@@ -217,7 +227,8 @@ static void nobody_answers(void **state)
     assert_int_equal(seen.robot, 0);
     grobo_session_free(session);
 
-    session_kit_make((grobo_session_config){.device = "auto", .scan = scan});
+    session_kit_make(
+        (grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = "auto", .scan = scan});
     assert_int_equal(grobo_session_open(session), GROBO_OK);
     loop_run_until(base, &seen.fails, 2);
     assert_int_equal(seen.error, GROBO_ERR_NOTFOUND);
@@ -234,7 +245,7 @@ static void only_the_check_is_sent_before_somebody_answers(void **state)
 
     (void)state;
     test_line_open(&silent);
-    session_kit_make((grobo_session_config){.device = silent.device});
+    session_kit_make((grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = silent.device});
     assert_int_equal(grobo_session_open(session), GROBO_OK);
     loop_run_until(base, &seen.fails, 1);
     size = test_line_read_some(&silent, bytes, sizeof bytes);
@@ -252,7 +263,8 @@ static void nobody_needs_to_answer_if_so_configured(void **state)
 
     (void)state;
     test_line_open(&silent);
-    session_kit_make((grobo_session_config){.device = silent.device, .skip_check = true});
+    session_kit_make((grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = silent.device,
+                                            .skip_check = true});
     come_up();
     test_line_close(&silent);
     loop_run_until(base, &seen.losts, 1);
@@ -264,7 +276,7 @@ static void requests_need_a_robot(void **state)
     grobo_trip_info trip;
 
     (void)state;
-    session_kit_make((grobo_session_config){.device = "sim"});
+    session_kit_make((grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = "sim"});
     assert_int_equal(grobo_robot_check(grobo_session_robot(session)), GROBO_ERR_CLOSED);
     assert_int_equal(grobo_robot_sense(grobo_session_robot(session), 1, GROBO_SENSE_FULL),
                      GROBO_ERR_CLOSED);
@@ -293,8 +305,10 @@ static void a_lost_port_is_found_again(void **state)
 
     (void)folder_set_up(state);
     link = in_folder("gr001");
-    server = loop_serve(base, (grobo_sim_server_config){.link = link});
-    session_kit_make((grobo_session_config){.device = link, .reconnect = true});
+    server =
+        loop_serve(base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT, .link = link});
+    session_kit_make(
+        (grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = link, .reconnect = true});
     come_up();
     assert_int_equal(
         session_kit_await(grobo_robot_torque(grobo_session_robot(session), 1, GROBO_TORQUE_ON)),
@@ -321,7 +335,8 @@ static void a_lost_port_is_found_again(void **state)
 static void a_simulator_that_hung_up_is_plugged_in_again(void **state)
 {
     (void)state;
-    session_kit_make((grobo_session_config){.device = "sim", .reconnect = true});
+    session_kit_make(
+        (grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = "sim", .reconnect = true});
     come_up();
     grobo_sim_plug(grobo_session_sim(session), false, grobo_now_us());
     /* The engine finds out when it next looks. */
@@ -343,7 +358,8 @@ static grobo_torque torque_of(int servo)
 static void an_emergency_stop_reaches_a_robot_that_is_lost_or_just_found(void **state)
 {
     (void)state;
-    session_kit_make((grobo_session_config){.device = "sim", .reconnect = true});
+    session_kit_make(
+        (grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = "sim", .reconnect = true});
     come_up();
     assert_int_equal(session_kit_await(grobo_robot_torque(grobo_session_robot(session),
                                                           GROBO_JOINTS_ALL(20), GROBO_TORQUE_ON)),
@@ -374,10 +390,12 @@ static void an_emergency_stop_reaches_a_robot_that_is_lost_or_just_found(void **
 
 static void without_reconnect_a_lost_port_is_closed(void **state)
 {
-    grobo_sim_server *server = loop_serve(base, (grobo_sim_server_config){0});
+    grobo_sim_server *server =
+        loop_serve(base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT});
 
     (void)state;
-    session_kit_make((grobo_session_config){.device = grobo_sim_server_device(server)});
+    session_kit_make((grobo_session_config){GROBO_SESSION_CONFIG_INIT,
+                                            .device = grobo_sim_server_device(server)});
     come_up();
     assert_int_equal(grobo_sim_server_plug(server, false), GROBO_OK);
     loop_run_until(base, &seen.losts, 1);
@@ -395,7 +413,8 @@ static void it_may_be_freed_in_its_event(void **state)
     const grobo_mem mem = counted_mem_of(&counter);
 
     (void)state;
-    session_kit_make((grobo_session_config){.device = "sim", .mem = &mem});
+    session_kit_make(
+        (grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = "sim", .mem = &mem});
     seen.then_line = free_it;
     assert_int_equal(grobo_session_open(session), GROBO_OK);
     loop_run_until(base, &seen.ups, 1);
@@ -407,7 +426,7 @@ static void it_may_be_freed_in_its_event(void **state)
 static void it_may_be_freed_in_an_event_of_the_engine(void **state)
 {
     (void)state;
-    session_kit_make((grobo_session_config){.device = "sim"});
+    session_kit_make((grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = "sim"});
     come_up();
     seen.then_robot = free_it_then;
     assert_true(grobo_robot_sense(grobo_session_robot(session), 3, GROBO_SENSE_FULL) > 0);
@@ -419,7 +438,7 @@ static void it_may_be_freed_in_an_event_of_the_engine(void **state)
 static void it_may_be_closed_in_its_event(void **state)
 {
     (void)state;
-    session_kit_make((grobo_session_config){.device = "sim"});
+    session_kit_make((grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = "sim"});
     seen.then_line = grobo_session_close;
     assert_int_equal(grobo_session_open(session), GROBO_OK);
     loop_run_until(base, &seen.ups, 1);
@@ -432,7 +451,7 @@ static void it_may_be_closed_in_its_event(void **state)
 static void it_may_be_opened_again_when_lost(void **state)
 {
     (void)state;
-    session_kit_make((grobo_session_config){.device = "sim"});
+    session_kit_make((grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = "sim"});
     come_up();
     seen.then_line = open_it;
     grobo_sim_plug(grobo_session_sim(session), false, grobo_now_us());
@@ -448,8 +467,9 @@ static void bad_configurations_and_lack_of_memory(void **state)
 {
     counted_mem counter;
     const grobo_mem mem = counted_mem_of(&counter);
-    static const grobo_robot_config bad_robot = {.speed_limit_pct = 200};
-    grobo_session_config config = {.base = base, .device = "sim", .mem = &mem};
+    static const grobo_robot_config bad_robot = {GROBO_ROBOT_CONFIG_INIT, .speed_limit_pct = 200};
+    grobo_session_config config = {GROBO_SESSION_CONFIG_INIT, .base = base, .device = "sim",
+                                   .mem = &mem};
     grobo_session *made = NULL;
     size_t failures = 0;
     int r = GROBO_ERR_NOMEM;
@@ -480,7 +500,7 @@ static void bad_configurations_and_lack_of_memory(void **state)
     assert_int_equal(grobo_session_new(&config, &made), GROBO_ERR_ARG);
     assert_int_equal(grobo_session_new(NULL, &made), GROBO_ERR_ARG);
     assert_int_equal(counter.bytes, 0);
-    session_kit_make((grobo_session_config){.device = GROBO_DEVICE_SIM});
+    session_kit_make((grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = GROBO_DEVICE_SIM});
     assert_int_equal(grobo_session_configure(session, &bad_robot), GROBO_ERR_ARG);
     assert_int_equal(grobo_session_configure(session, NULL), GROBO_OK);
     assert_int_equal(grobo_session_set_device(session, NULL), GROBO_ERR_ARG);

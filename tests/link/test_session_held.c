@@ -21,7 +21,8 @@
 
 enum { NECK = 13, GOALS = 110, TORQUES = 50, UNLIMITED = 1 << 30 };
 
-static const grobo_robot_config quiet = {.sense_interval_us = GROBO_SENSE_NEVER};
+static const grobo_robot_config quiet = {GROBO_ROBOT_CONFIG_INIT,
+                                         .sense_interval_us = GROBO_SENSE_NEVER};
 static far_robot far;
 static const grobo_port_ops *true_ops;
 static grobo_port_ops slow_ops;
@@ -66,8 +67,8 @@ static int set_up(void **state)
     assert_int_equal(folder_set_up(state), 0);
     far_robot_start(&far, in_folder("robot"));
     session_kit_begin();
-    session_kit_make(
-        (grobo_session_config){.device = far.link, .baud_bps = FAR_ROBOT_BPS, .robot = &quiet});
+    session_kit_make((grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = far.link,
+                                            .baud_bps = FAR_ROBOT_BPS, .robot = &quiet});
     assert_int_equal(grobo_session_open(session), GROBO_OK);
     loop_run_until(base, &seen.ups, 1);
     assert_int_equal(

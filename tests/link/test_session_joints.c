@@ -42,8 +42,9 @@ static void move_all(const grobo_model *model, grobo_wiring wiring)
     grobo_driver driver;
     grobo_posture target;
     grobo_session *session;
-    const grobo_sim_config sim = {.unpaced = true};
-    const grobo_session_config config = {.base = base,
+    const grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT, .unpaced = true};
+    const grobo_session_config config = {GROBO_SESSION_CONFIG_INIT,
+                                         .base = base,
                                          .device = GROBO_DEVICE_SIM,
                                          .driver = &driver,
                                          .on_event = on_event,

@@ -70,8 +70,9 @@ static void on_answer(grobo_timer *timer, int64_t late_us, void *ctx)
 static void what_has_come_is_read_before_time_is_up(void **state)
 {
     /* No smaller than what a loaded machine may take between the request and on_request(). */
-    const grobo_robot_config robot = {.bus.margin_us = 1000000};
-    grobo_session_config config = {.on_event = on_event, .robot = &robot};
+    const grobo_robot_config robot = {GROBO_ROBOT_CONFIG_INIT, .bus.margin_us = 1000000};
+    grobo_session_config config = {GROBO_SESSION_CONFIG_INIT, .on_event = on_event,
+                                   .robot = &robot};
     const grobo_bus_stats *stats;
     struct event *request;
 

@@ -78,10 +78,10 @@ static int on_svc(grobo_control *from, void *ctx)
 static void start(bool threaded)
 {
     const grobo_control_config config = {
-        .session = {.device = GROBO_DEVICE_SIM, .baud_bps = 1000000},
-        .control_period_us = 1000,
-        .skip_exit = true,
-        .on_svc = on_svc};
+        GROBO_CONTROL_CONFIG_INIT,
+        .session = &(grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = GROBO_DEVICE_SIM,
+                                           .baud_bps = 1000000},
+        .control_period_us = 1000, .skip_exit = true, .on_svc = on_svc};
 
     hold_init(&gate);
     assert_int_equal(grobo_control_new(&config, &control), GROBO_OK);
@@ -235,7 +235,8 @@ static int set_up(void **state)
 {
     (void)state;
     session_kit_begin();
-    session_kit_make((grobo_session_config){.device = GROBO_DEVICE_SIM, .baud_bps = 1000000});
+    session_kit_make((grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = GROBO_DEVICE_SIM,
+                                            .baud_bps = 1000000});
     return 0;
 }
 
@@ -308,7 +309,8 @@ static GROBO_THREAD_FUNC post_from_far(void *arg)
 /* Nothing else wakes this loop. */
 static void another_thread_wakes_the_loop(void **state)
 {
-    static const grobo_robot_config still = {.sense_interval_us = GROBO_SENSE_NEVER};
+    static const grobo_robot_config still = {GROBO_ROBOT_CONFIG_INIT,
+                                             .sense_interval_us = GROBO_SENSE_NEVER};
     grobo_thread other;
     int result = 1;
 
@@ -329,7 +331,8 @@ static void another_thread_wakes_the_loop(void **state)
 /* As where another thread posts between the last look for requests and the sending. */
 static void nothing_is_sent_before_a_posted_stop(void **state)
 {
-    static const grobo_robot_config still = {.sense_interval_us = GROBO_SENSE_NEVER};
+    static const grobo_robot_config still = {GROBO_ROBOT_CONFIG_INIT,
+                                             .sense_interval_us = GROBO_SENSE_NEVER};
     size_t sent;
 
     (void)state;
@@ -461,14 +464,12 @@ static int ask_reports(grobo_control *from, void *arg)
 
 static void a_slow_callback_is_reported(void **state)
 {
-    const grobo_control_config config = {.session = {.device = GROBO_DEVICE_SIM,
-                                                     .baud_bps = 1000000,
-                                                     .on_event = slow_event,
-                                                     .on_robot = slow_robot,
-                                                     .on_tap = slow_tap},
-                                         .control_period_us = 1000,
-                                         .skip_exit = true,
-                                         .on_svc = slow_svc};
+    const grobo_control_config config = {
+        GROBO_CONTROL_CONFIG_INIT,
+        .session = &(grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = GROBO_DEVICE_SIM,
+                                           .baud_bps = 1000000, .on_event = slow_event,
+                                           .on_robot = slow_robot, .on_tap = slow_tap},
+        .control_period_us = 1000, .skip_exit = true, .on_svc = slow_svc};
 
     (void)state;
     for (int c = GROBO_CALLBACK_EVENT; c <= GROBO_CALLBACK_CALL; c++) {

@@ -17,6 +17,8 @@
 #include <cmocka.h>
 #include <event2/event.h>
 
+#include <grobo/sim_static.h>
+
 #include "tests/support/counted_mem.h"
 #include "tests/support/folder.h"
 #include "tests/support/loop.h"
@@ -67,13 +69,9 @@ static void on_event(grobo_serial *serial, grobo_serial_event event, int error, 
 
 static void client_open(client *c, const char *device, int baud_bps)
 {
-    const grobo_serial_config config = {.device = device,
-                                        .baud_bps = baud_bps,
-                                        .base = base,
-                                        .mode = GROBO_SERIAL_ASYNC,
-                                        .on_data = on_data,
-                                        .on_event = on_event,
-                                        .ctx = c};
+    const grobo_serial_config config = {
+        GROBO_SERIAL_CONFIG_INIT,   .device = device,   .baud_bps = baud_bps, .base = base,
+        .mode = GROBO_SERIAL_ASYNC, .on_data = on_data, .on_event = on_event, .ctx = c};
 
     memset(c, 0, sizeof *c);
     assert_int_equal(grobo_serial_new(&config, &c->serial), GROBO_OK);
@@ -127,7 +125,8 @@ static int tear_down(void **state)
 
 static void the_board_answers_in_its_own_time(void **state)
 {
-    grobo_sim_server *server = loop_serve(base, (grobo_sim_server_config){0});
+    grobo_sim_server *server =
+        loop_serve(base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT});
     client c;
     int64_t start_us;
     int64_t took_us;
@@ -147,7 +146,8 @@ static void the_board_answers_in_its_own_time(void **state)
 
 static void programs_come_and_go_and_the_robot_stays(void **state)
 {
-    grobo_sim_server *server = loop_serve(base, (grobo_sim_server_config){0});
+    grobo_sim_server *server =
+        loop_serve(base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT});
     client c;
 
     (void)state;
@@ -166,7 +166,8 @@ static void programs_come_and_go_and_the_robot_stays(void **state)
 
 static void a_program_at_another_speed_is_not_understood(void **state)
 {
-    grobo_sim_server *server = loop_serve(base, (grobo_sim_server_config){0});
+    grobo_sim_server *server =
+        loop_serve(base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT});
     client c;
 
     (void)state;
@@ -180,8 +181,10 @@ static void a_program_at_another_speed_is_not_understood(void **state)
 
 static void many_robots_live_in_one_process(void **state)
 {
-    grobo_sim_server *one = loop_serve(base, (grobo_sim_server_config){0});
-    grobo_sim_server *two = loop_serve(base, (grobo_sim_server_config){0});
+    grobo_sim_server *one =
+        loop_serve(base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT});
+    grobo_sim_server *two =
+        loop_serve(base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT});
     client a;
     client b;
 
@@ -202,7 +205,7 @@ static void the_link_follows_the_terminal(void **state)
 {
     const char *link;
     char target[64] = "";
-    grobo_sim_server_config config = {.base = base};
+    grobo_sim_server_config config = {GROBO_SIM_SERVER_CONFIG_INIT, .base = base};
     grobo_sim_server *server;
     grobo_os_cause cause = {0};
     client c;
@@ -212,7 +215,8 @@ static void the_link_follows_the_terminal(void **state)
     link = in_folder("gr001");
     config.link = link;
     /* As a simulator that was killed leaves it: no such terminal any more. */
-    server = loop_serve(base, (grobo_sim_server_config){.base = base});
+    server =
+        loop_serve(base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT, .base = base});
     assert_int_equal(symlink(grobo_sim_server_device(server), link), 0);
     grobo_sim_server_free(server);
     server = loop_serve(base, config);
@@ -249,7 +253,8 @@ static void the_link_follows_the_terminal(void **state)
 
 static void a_fault_hangs_up_and_the_port_comes_back(void **state)
 {
-    grobo_sim_server *server = loop_serve(base, (grobo_sim_server_config){.replug_ms = 30});
+    grobo_sim_server *server =
+        loop_serve(base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT, .replug_ms = 30});
     client c;
 
     (void)state;
@@ -273,7 +278,8 @@ static void a_fault_hangs_up_and_the_port_comes_back(void **state)
 static void tcp_serves_one_caller_at_a_time(void **state)
 {
     grobo_sim_server *server =
-        loop_serve(base, (grobo_sim_server_config){.tcp = "tcp:127.0.0.1:0", .no_pty = true});
+        loop_serve(base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT,
+                                                   .tcp = "tcp:127.0.0.1:0", .no_pty = true});
     client a;
     client b;
 
@@ -296,8 +302,8 @@ static void tcp_serves_one_caller_at_a_time(void **state)
 
 static void both_ends_reach_one_board(void **state)
 {
-    grobo_sim_server *server =
-        loop_serve(base, (grobo_sim_server_config){.tcp = "tcp:localhost:0"});
+    grobo_sim_server *server = loop_serve(
+        base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT, .tcp = "tcp:localhost:0"});
     char tcp[64];
     client a;
     client b;
@@ -319,9 +325,10 @@ static void both_ends_reach_one_board(void **state)
 static void a_flood_leaves_the_loop_to_others(void **state)
 {
     static const uint8_t flood[4096] = {0};
-    const grobo_sim_config sim = {.unpaced = true};
-    grobo_sim_server *server = loop_serve(
-        base, (grobo_sim_server_config){.sim = &sim, .no_pty = true, .tcp = "tcp:127.0.0.1:0"});
+    const grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT, .unpaced = true};
+    grobo_sim_server *server =
+        loop_serve(base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT, .sim = &sim,
+                                                   .no_pty = true, .tcp = "tcp:127.0.0.1:0"});
     const grobo_sim_stats *stats = &grobo_sim_server_sim(server)->stats;
     size_t sent = 0;
     client c;
@@ -349,7 +356,8 @@ static void a_flood_leaves_the_loop_to_others(void **state)
 static void nobody_can_be_let_in(void **state)
 {
     grobo_sim_server *server =
-        loop_serve(base, (grobo_sim_server_config){.no_pty = true, .tcp = "tcp:127.0.0.1:0"});
+        loop_serve(base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT, .no_pty = true,
+                                                   .tcp = "tcp:127.0.0.1:0"});
     struct rlimit before;
     struct rlimit none;
     int64_t cpu_before_us;
@@ -378,7 +386,8 @@ static void nobody_can_be_let_in(void **state)
 static void a_flood_is_taken_at_the_wires_pace_and_idle_is_idle(void **state)
 {
     static uint8_t flood[4096];
-    grobo_sim_server *server = loop_serve(base, (grobo_sim_server_config){0});
+    grobo_sim_server *server =
+        loop_serve(base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT});
     client c;
     int64_t start_us = grobo_now_us();
     int64_t cpu_before_us;
@@ -438,8 +447,9 @@ static int connect_raw(const grobo_sim_server *server)
 
 static grobo_sim_server *serve_slowly(void)
 {
-    const grobo_sim_config sim = {.baud_bps = FLOODED_BPS};
-    return loop_serve(base, (grobo_sim_server_config){.sim = &sim, .tcp = "tcp:127.0.0.1:0"});
+    const grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT, .baud_bps = FLOODED_BPS};
+    return loop_serve(base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT, .sim = &sim,
+                                                      .tcp = "tcp:127.0.0.1:0"});
 }
 
 /* The next program, there or here, is answered as if nobody had been there. */
@@ -520,8 +530,8 @@ static void run_until_heard(grobo_sim_server *server, uint32_t frames)
 
 static void all_that_was_written_before_a_close_is_heard(void **state)
 {
-    grobo_sim_server *server =
-        loop_serve(base, (grobo_sim_server_config){.tcp = "tcp:127.0.0.1:0"});
+    grobo_sim_server *server = loop_serve(
+        base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT, .tcp = "tcp:127.0.0.1:0"});
     int fd = open_raw(server);
 
     (void)state;
@@ -539,8 +549,8 @@ static void all_that_was_written_before_a_close_is_heard(void **state)
 /* A caller at the door costs the one that is there nothing, however far ahead it writes. */
 static void who_waits_takes_nothing_from_who_is_there(void **state)
 {
-    grobo_sim_server *server =
-        loop_serve(base, (grobo_sim_server_config){.tcp = "tcp:127.0.0.1:0"});
+    grobo_sim_server *server = loop_serve(
+        base, (grobo_sim_server_config){GROBO_SIM_SERVER_CONFIG_INIT, .tcp = "tcp:127.0.0.1:0"});
     int fd = connect_raw(server);
     int waits;
 
@@ -562,8 +572,8 @@ static void refusals_leave_nothing_behind(void **state)
 {
     counted_mem counter;
     const grobo_mem mem = counted_mem_of(&counter);
-    const grobo_sim_config bad_sim = {.baud_bps = 1};
-    grobo_sim_server_config config = {.base = base, .mem = &mem};
+    const grobo_sim_config bad_sim = {GROBO_SIM_CONFIG_INIT, .baud_bps = 1};
+    grobo_sim_server_config config = {GROBO_SIM_SERVER_CONFIG_INIT, .base = base, .mem = &mem};
     grobo_sim_server *server = NULL;
     grobo_os_cause cause = {0};
     int r = GROBO_ERR_NOMEM;

@@ -64,7 +64,10 @@ static void fill_line(grobo_control *control)
 
 static void a_command_that_took_too_long_does_not_leave(void **state)
 {
-    grobo_control_config config = {.session = {.device = GROBO_DEVICE_SIM, .on_tap = on_tap},
+    grobo_control_config config = {GROBO_CONTROL_CONFIG_INIT,
+                                   .session = &(grobo_session_config){GROBO_SESSION_CONFIG_INIT,
+                                                                      .device = GROBO_DEVICE_SIM,
+                                                                      .on_tap = on_tap},
                                    .skip_exit = true};
     grobo_control *control;
 

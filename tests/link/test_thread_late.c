@@ -41,15 +41,16 @@ static int hold_up(grobo_control *control, void *arg)
 static grobo_control *ask(grobo_control_fn on_svc)
 {
     /* Nobody but the test asks, and nobody stops waiting for the answer. */
-    const grobo_robot_config robot = {
-        .bus.margin_us = 60000000, .retries = -1, .sense_interval_us = GROBO_SENSE_NEVER};
-    grobo_control_config config = {
-        .session = {.robot = &robot, .skip_check = true}, .on_svc = on_svc, .skip_exit = true};
+    const grobo_robot_config robot = {GROBO_ROBOT_CONFIG_INIT, .bus.margin_us = 60000000,
+                                      .retries = -1, .sense_interval_us = GROBO_SENSE_NEVER};
+    grobo_session_config session = {GROBO_SESSION_CONFIG_INIT, .robot = &robot, .skip_check = true};
+    grobo_control_config config = {GROBO_CONTROL_CONFIG_INIT, .session = &session, .on_svc = on_svc,
+                                   .skip_exit = true};
     grobo_control *control;
     uint8_t got[2] = {0, 0};
 
     test_line_open(&line);
-    config.session.device = line.device;
+    session.device = line.device;
     assert_int_equal(grobo_control_new(&config, &control), GROBO_OK);
     assert_int_equal(grobo_control_connect(control, 0), GROBO_OK);
     assert_int_equal(grobo_control_send_command(control, CHECK, sizeof CHECK, PATIENCE_US),

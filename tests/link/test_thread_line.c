@@ -16,7 +16,7 @@
 #include "tests/support/far_robot.h"
 #include "tests/support/folder.h"
 
-static const grobo_robot_config leave_off = {.on_exit = GROBO_EXIT_OFF};
+static const grobo_robot_config leave_off = {GROBO_ROBOT_CONFIG_INIT, .on_exit = GROBO_EXIT_OFF};
 static far_robot robot;
 static char device[128];
 
@@ -44,10 +44,16 @@ static int tear_down(void **state)
 
 static void make(grobo_control_config config, bool threaded)
 {
-    config.session.device = device;
-    config.session.baud_bps = FAR_ROBOT_BPS;
-    if (config.session.robot == NULL) {
-        config.session.robot = &leave_off;
+    grobo_session_config session = {GROBO_SESSION_CONFIG_INIT};
+
+    if (config.session != NULL) {
+        session = *config.session;
+    }
+    config.session = &session;
+    session.device = device;
+    session.baud_bps = FAR_ROBOT_BPS;
+    if (session.robot == NULL) {
+        session.robot = &leave_off;
     }
     assert_int_equal(grobo_control_new(&config, &control), GROBO_OK);
     if (threaded) {
@@ -111,7 +117,7 @@ static void nobody_waits_for_a_robot_that_is_gone(void **state)
     for (int threaded = 0; threaded < 2; threaded++) {
         int64_t begin_us;
 
-        make((grobo_control_config){.skip_exit = false}, threaded != 0);
+        make((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = false}, threaded != 0);
         control_have_motion(4);
         (void)grobo_control_set_motion_count(control, 1000000);
         assert_int_equal(grobo_control_play_motion(control, NULL), GROBO_OK);
@@ -157,7 +163,10 @@ static void who_waits_for_its_return_is_told(void **state)
     waiter self = {0};
 
     (void)state;
-    make((grobo_control_config){.session.reconnect = true}, true);
+    make((grobo_control_config){GROBO_CONTROL_CONFIG_INIT,
+                                .session = &(grobo_session_config){GROBO_SESSION_CONFIG_INIT,
+                                                                   .reconnect = true}},
+         true);
     far_robot_plug(&robot, false);
     while (grobo_control_is_connected(control)) {
         (void)grobo_control_svc(control);
@@ -175,7 +184,7 @@ static void who_waits_for_its_return_is_told(void **state)
 static void every_way_out_leaves_the_robot_well(void **state)
 {
     (void)state;
-    make((grobo_control_config){0}, true);
+    make((grobo_control_config){GROBO_CONTROL_CONFIG_INIT}, true);
     have_torque();
     assert_int_equal(grobo_control_stop_thread(control), GROBO_OK);
     assert_int_equal(far_robot_torqued(&robot), 0);
@@ -188,7 +197,7 @@ static void every_way_out_leaves_the_robot_well(void **state)
     assert_int_equal(grobo_control_free(control), GROBO_OK);
     assert_int_equal(far_robot_torqued(&robot), 0);
 
-    make((grobo_control_config){0}, true);
+    make((grobo_control_config){GROBO_CONTROL_CONFIG_INIT}, true);
     have_torque();
     assert_int_equal(grobo_control_free(control), GROBO_OK);
     assert_int_equal(far_robot_torqued(&robot), 0);
@@ -197,7 +206,7 @@ static void every_way_out_leaves_the_robot_well(void **state)
 static void a_robot_is_left_as_it_is_if_so_configured(void **state)
 {
     (void)state;
-    make((grobo_control_config){.skip_exit = true}, true);
+    make((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true}, true);
     have_torque();
     assert_int_equal(grobo_control_stop_thread(control), GROBO_OK);
     assert_int_equal(grobo_control_close_port(control, 0), GROBO_OK);
@@ -224,7 +233,9 @@ static void a_robot_whose_owner_is_gone_is_left_well(void **state)
     assert_int_equal(evutil_socketpair(AF_UNIX, SOCK_STREAM, 0, pair), 0);
     make(
         (grobo_control_config){
-            .session = {.on_robot = on_robot, .ctx = &pair[1]},
+            GROBO_CONTROL_CONFIG_INIT,
+            .session = &(grobo_session_config){GROBO_SESSION_CONFIG_INIT, .on_robot = on_robot,
+                                               .ctx = &pair[1]},
             .owner_timeout_us = 200000,
         },
         true);
@@ -259,7 +270,9 @@ static void free_it(void)
 static void be_a_program(int until)
 {
     grobo_control_config config = {
-        .session = {.device = device, .baud_bps = FAR_ROBOT_BPS, .robot = &leave_off}};
+        GROBO_CONTROL_CONFIG_INIT,
+        .session = &(grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = device,
+                                           .baud_bps = FAR_ROBOT_BPS, .robot = &leave_off}};
     char go;
     bool well = read(until, &go, 1) == 1 && atexit(free_it) == 0 &&
                 grobo_control_new(&config, &control) >= 0 &&

@@ -90,7 +90,7 @@ static void each_target_of_a_stream_is_sent(void **state)
             assert_in_range(rounds, 0, 1000); /* 10 s */
             (void)grobo_control_svc(control);
         }
-        assert_int_equal(grobo_control_command_count(control), 0);
+        assert_int_equal(grobo_control_command_count(control), 1);
         assert_int_equal(grobo_control_is_moving(control), 1);
     }
     assert_int_equal(grobo_control_set_motion_time_us(control, 100000), GROBO_OK);
@@ -440,7 +440,8 @@ static void a_negative_count_plays_in_reverse(void **state)
     assert_int_equal(grobo_control_call(control, passes_of, NULL), 2);
     control_assert_elbow_at(2);
     assert_int_equal(grobo_control_set_motion_count(control, 1), GROBO_OK);
-    assert_int_equal(grobo_control_play_motion(control, &too_fast), GROBO_OK);
+    assert_int_equal(grobo_control_play_motion(control, &too_fast), GROBO_ERR_UNWATCHED);
+    assert_false(grobo_control_is_playing(control));
     assert_int_equal(grobo_control_wait(control, 0), GROBO_ERR_UNWATCHED);
     control_assert_elbow_at(2);
     assert_int_equal(grobo_control_play_motion(control, &at_a_rate), GROBO_OK);
@@ -474,6 +475,30 @@ static void playing_is_stopped(void **state)
     assert_false(grobo_control_is_playing(control));
 }
 
+/* What cannot be done now is refused now, and changes nothing. */
+static void what_the_engine_refuses_is_told_at_once(void **state)
+{
+    (void)state;
+    control_come_up();
+    control_have_motion(4);
+    assert_int_equal(grobo_control_set_motion_count(control, 10000), GROBO_OK);
+    assert_int_equal(grobo_control_play_motion(control, NULL), GROBO_OK);
+    assert_int_equal(grobo_control_play_motion(control, NULL), GROBO_ERR_STATE);
+    const grobo_robot *robot = grobo_control_robot(control);
+    for (int rounds = 0; grobo_robot_job(robot) != GROBO_JOB_NONE; rounds++) {
+        assert_in_range(rounds, 0, 1000); /* 10 s of preparing */
+        (void)grobo_control_svc(control);
+    }
+    assert_int_equal(grobo_control_init_position(control), GROBO_ERR_STATE); /* it sets them all */
+    assert_int_equal(grobo_control_is_playing(control), 1);
+    assert_int_equal(grobo_control_stop_motion(control, true), GROBO_OK);
+    assert_int_equal(grobo_control_wait(control, 0), GROBO_ERR_CANCELED);
+    assert_int_equal(grobo_control_init_position(control), GROBO_OK);
+    assert_int_equal(grobo_control_play_motion(control, NULL), GROBO_ERR_STATE); /* it moves */
+    assert_int_equal(grobo_control_wait(control, 0), GROBO_OK);
+    assert_int_equal(grobo_control_play_motion(control, NULL), GROBO_OK);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -490,6 +515,7 @@ int main(void)
         WITH_AND_WITHOUT_THREAD(every_repetition_is_counted),
         WITH_AND_WITHOUT_THREAD(a_negative_count_plays_in_reverse),
         WITH_AND_WITHOUT_THREAD(playing_is_stopped),
+        WITH_AND_WITHOUT_THREAD(what_the_engine_refuses_is_told_at_once),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

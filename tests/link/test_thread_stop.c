@@ -14,7 +14,7 @@
 static void an_emergency_stop_stands_while_a_callback_blocks(void **state)
 {
     (void)state;
-    stop_kit_start((grobo_control_config){.skip_exit = true});
+    stop_kit_start((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true});
     move_for_long();
     hold_begin(&gate);
     assert_false(grobo_control_is_latched(control));
@@ -35,7 +35,7 @@ static void an_emergency_stop_stands_while_a_callback_blocks(void **state)
 static void an_emergency_stop_needs_no_lock_of_the_programs(void **state)
 {
     (void)state;
-    stop_kit_start((grobo_control_config){.skip_exit = true});
+    stop_kit_start((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true});
     move_for_long();
     grobo_mutex_lock(&users);
     assert_int_equal(grobo_control_estop(control), GROBO_OK); /* on_svc waits, or soon will */
@@ -48,7 +48,7 @@ static void an_emergency_stop_needs_no_lock_of_the_programs(void **state)
 static void several_emergency_stops_are_one(void **state)
 {
     (void)state;
-    stop_kit_start((grobo_control_config){.skip_exit = true});
+    stop_kit_start((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true});
     move_for_long();
     hold_begin(&gate);
     for (int i = 0; i < 1000; i++) {
@@ -65,7 +65,7 @@ static void the_next_frame_is_the_stop(void **state)
 {
     (void)state;
     for (int round = 0; round < 5; round++) {
-        stop_kit_start((grobo_control_config){.skip_exit = true});
+        stop_kit_start((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true});
         play_for_long();
         hold_begin(&gate);
         saw.listen = true;
@@ -99,7 +99,9 @@ static void stop_when_up(grobo_session *session, grobo_session_event event, int 
 static void no_frame_leaves_before_a_posted_stop(void **state)
 {
     (void)state;
-    stop_kit_make((grobo_control_config){.skip_exit = true, .session.on_event = stop_when_up});
+    stop_kit_make((grobo_control_config){
+        GROBO_CONTROL_CONFIG_INIT, .skip_exit = true,
+        .session = &(grobo_session_config){GROBO_SESSION_CONFIG_INIT, .on_event = stop_when_up}});
     control_come_up();
     assert_stopped(1);
     assert_int_equal(told.first, TORQUE);
@@ -109,7 +111,7 @@ static void no_frame_leaves_before_a_posted_stop(void **state)
 static void without_a_thread_the_next_call_stops_first(void **state)
 {
     (void)state;
-    stop_kit_make((grobo_control_config){.skip_exit = true});
+    stop_kit_make((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true});
     assert_int_equal(grobo_control_estop(control), GROBO_OK); /* nothing is open yet */
     assert_true(grobo_control_is_latched(control));
     assert_int_equal(grobo_control_call(control, tripped, NULL), 1);
@@ -139,7 +141,7 @@ static int stop_twice(grobo_control *from)
 static void a_callback_may_stop(void **state)
 {
     (void)state;
-    stop_kit_start((grobo_control_config){.skip_exit = true});
+    stop_kit_start((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true});
     move_for_long();
     hold_begin(&gate);
     in_callback = stop_twice;
@@ -156,7 +158,7 @@ static void a_callback_may_stop(void **state)
 static void an_emergency_stop_waits_for_the_line(void **state)
 {
     (void)state;
-    stop_kit_start((grobo_control_config){.skip_exit = true});
+    stop_kit_start((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true});
     assert_int_equal(grobo_control_close_port(control, 0), GROBO_OK);
     assert_int_equal(grobo_control_estop(control), GROBO_OK);
     assert_true(grobo_control_is_latched(control));
@@ -170,7 +172,7 @@ static void a_program_that_ends_is_stopped_before(void **state)
 {
     (void)state;
     for (int threaded = 0; threaded < 2; threaded++) {
-        stop_kit_start((grobo_control_config){.skip_exit = true});
+        stop_kit_start((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true});
         if (!threaded) {
             assert_int_equal(grobo_control_stop_thread(control), GROBO_OK);
         }
@@ -188,7 +190,8 @@ static void a_reset_does_not_clear_a_later_stop(void **state)
     caller other;
 
     (void)state;
-    stop_kit_start((grobo_control_config){.skip_exit = true, .timeout_us = LONG_US});
+    stop_kit_start((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true,
+                                          .timeout_us = LONG_US});
     assert_int_equal(grobo_control_close_port(control, 0), GROBO_OK); /* it stays latched then */
     assert_int_equal(grobo_control_estop(control), GROBO_OK);
     hold_begin(&gate);
@@ -212,7 +215,8 @@ static void nor_one_that_a_callback_made(void **state)
     caller other;
 
     (void)state;
-    stop_kit_start((grobo_control_config){.skip_exit = true, .timeout_us = LONG_US});
+    stop_kit_start((grobo_control_config){GROBO_CONTROL_CONFIG_INIT, .skip_exit = true,
+                                          .timeout_us = LONG_US});
     assert_int_equal(grobo_control_close_port(control, 0), GROBO_OK);
     hold_begin(&gate);
     begin_call(&other, grobo_control_reset, 1);

@@ -19,8 +19,12 @@ static grobo_hrpsys hrpsys;
 
 static int set_up(void **state)
 {
-    static const grobo_robot_config robot = {.sense_interval_us = GROBO_SENSE_NEVER};
-    static const grobo_control_config config = {.session = {.device = "sim", .robot = &robot}};
+    static const grobo_robot_config robot = {GROBO_ROBOT_CONFIG_INIT,
+                                             .sense_interval_us = GROBO_SENSE_NEVER};
+    const grobo_control_config config = {
+        GROBO_CONTROL_CONFIG_INIT,
+        .session =
+            &(grobo_session_config){GROBO_SESSION_CONFIG_INIT, .device = "sim", .robot = &robot}};
     (void)state;
     assert_int_equal(grobo_control_new(&config, &control), GROBO_OK);
     assert_int_equal(grobo_control_start_thread(control), GROBO_OK);

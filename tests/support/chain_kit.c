@@ -16,7 +16,7 @@ static const grobo_sim_family *const families[] = {&grobo_sim_dxl2, &grobo_sim_d
 void chain_start(chain_kit *chain, const grobo_servo_model *servo, int n,
                  const grobo_sim_config *config)
 {
-    grobo_sim_config with = config != NULL ? *config : (grobo_sim_config){0};
+    grobo_sim_config with = config != NULL ? *config : (grobo_sim_config){GROBO_SIM_CONFIG_INIT};
     assert_true(n <= CHAIN_MAX);
     assert_non_null(servo);
     memset(chain, 0, sizeof *chain);

@@ -15,16 +15,16 @@ grobo_control *control;
 
 static void make(grobo_control_config config)
 {
-    config.session.device = GROBO_DEVICE_SIM;
-    if (config.session.baud_bps == 0) {
-        config.session.baud_bps = 1000000;
-    }
+    const grobo_session_config session = {GROBO_SESSION_CONFIG_INIT, .device = GROBO_DEVICE_SIM,
+                                          .baud_bps = 1000000};
+
+    config.session = &session;
     assert_int_equal(grobo_control_new(&config, &control), GROBO_OK);
 }
 
 int control_set_up(void **state)
 {
-    grobo_control_config config = {.motion_dir = "/nowhere"};
+    grobo_control_config config = {GROBO_CONTROL_CONFIG_INIT, .motion_dir = "/nowhere"};
 
     (void)folder_set_up(state);
     make(config);

@@ -76,8 +76,8 @@ static unsigned char order(far_robot *robot, char what)
 
 void far_robot_start(far_robot *robot, const char *link)
 {
-    const grobo_sim_config sim = {.baud_bps = FAR_ROBOT_BPS};
-    grobo_sim_server_config config = {.sim = &sim, .replug_ms = -1};
+    const grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT, .baud_bps = FAR_ROBOT_BPS};
+    grobo_sim_server_config config = {GROBO_SIM_SERVER_CONFIG_INIT, .sim = &sim, .replug_ms = -1};
     grobo_os_cause cause;
     evutil_socket_t pair[2];
 

@@ -16,7 +16,8 @@ const char guarded_again[] = "exec ${EMULATOR:-} \"$0\" \"$@\"";
 int guarded_new(const char *program, grobo_guard **guard)
 {
     const char *const arguments[] = {"-c", guarded_again, program, "guard", NULL};
-    const grobo_guard_config config = {.program = "/bin/sh", .arguments = arguments};
+    const grobo_guard_config config = {GROBO_GUARD_CONFIG_INIT, .program = "/bin/sh",
+                                       .arguments = arguments};
 
     return grobo_guard_new(&config, guard);
 }
@@ -35,7 +36,7 @@ static const grobo_driver *find(void *ctx, const char *name, grobo_wiring wiring
 
 static int be_guard(void)
 {
-    static const grobo_guard_program program = {.driver = find};
+    static const grobo_guard_program program = {GROBO_GUARD_PROGRAM_INIT, .driver = find};
 
     return grobo_guard_run(&program) == GROBO_OK ? 0 : 1;
 }
@@ -166,8 +167,9 @@ static void on_tick(evutil_socket_t fd, short what, void *ctx)
 static int be_program(const char *self, const char *device)
 {
     struct timeval period = {0, TICK_US};
-    grobo_robot_config robot = {.sense_interval_us = GROBO_SENSE_NEVER};
-    grobo_session_config config = {.device = device,
+    grobo_robot_config robot = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = GROBO_SENSE_NEVER};
+    grobo_session_config config = {GROBO_SESSION_CONFIG_INIT,
+                                   .device = device,
                                    .baud_bps = GUARDED_BPS,
                                    .robot = &robot,
                                    .reconnect = !is_mode("halt"),

@@ -75,7 +75,8 @@ void test_line_open(test_line *line)
 
 grobo_serial *test_line_open_serial(test_line *line, int silence_ms)
 {
-    const grobo_serial_config config = {.device = line->device, .silence_ms = silence_ms};
+    const grobo_serial_config config = {GROBO_SERIAL_CONFIG_INIT, .device = line->device,
+                                        .silence_ms = silence_ms};
     grobo_serial *serial;
 
     test_line_open(line);

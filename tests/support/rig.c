@@ -11,7 +11,7 @@
 
 #include "tests/support/rig.h"
 
-const grobo_robot_config quiet = {.sense_interval_us = GROBO_SENSE_NEVER};
+const grobo_robot_config quiet = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = GROBO_SENSE_NEVER};
 grobo_wiring rig_wiring = GROBO_WIRING_BOARD;
 int64_t rig_epoch_us = 1000000;
 
@@ -280,7 +280,7 @@ void rig_host(grobo_test_rig *rig)
 void rig_start_driver(grobo_test_rig *rig, const grobo_driver *driver,
                       const grobo_robot_config *config, const grobo_sim_config *sim)
 {
-    grobo_sim_config sim_config = {0};
+    grobo_sim_config sim_config = {GROBO_SIM_CONFIG_INIT};
     memset(rig, 0, sizeof *rig);
     if (sim != NULL) {
         sim_config = *sim;
@@ -519,7 +519,7 @@ void rig_start_narrow(grobo_test_rig *rig)
     static grobo_joint joints[GROBO_JOINTS_MAX];
     static grobo_model model;
     static grobo_driver driver;
-    grobo_sim_config sim = {.model = &grobo_gr001_model};
+    grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT, .model = &grobo_gr001_model};
     model = grobo_gr001_model;
     memcpy(joints, model.joints, (size_t)model.n_joints * sizeof *joints);
     joints[NECK].max_rad = grobo_rad_from_deg(20);

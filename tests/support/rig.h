@@ -7,7 +7,7 @@
 #define GROBO_TEST_RIG_H
 
 #include <grobo/board.h>
-#include <grobo/sim.h>
+#include <grobo/sim_static.h>
 #include <grobo/static.h>
 
 #include "tests/support/witness.h"

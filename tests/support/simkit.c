@@ -21,7 +21,7 @@ static void note(const grobo_sim_event *event, void *ctx)
 
 void simkit_start(simkit *kit, const grobo_sim_config *config)
 {
-    grobo_sim_config with = {0};
+    grobo_sim_config with = {GROBO_SIM_CONFIG_INIT};
     if (config != NULL) {
         with = *config;
     }

@@ -74,7 +74,8 @@ static void on_child(evutil_socket_t number, short what, void *ctx)
 
 bool spy_open(spy *s, const grobo_sim_config *sim)
 {
-    grobo_sim_server_config config = {.sim = sim, .on_tap = on_tap, .ctx = s};
+    grobo_sim_server_config config = {GROBO_SIM_SERVER_CONFIG_INIT, .sim = sim, .on_tap = on_tap,
+                                      .ctx = s};
     grobo_os_cause cause;
     memset(s, 0, sizeof *s);
     s->poses = calloc(SPY_FRAMES, sizeof *s->poses);

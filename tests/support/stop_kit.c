@@ -72,10 +72,16 @@ static void on_tap(grobo_direction direction, int64_t now_us, const uint8_t *byt
 
 void stop_kit_make(grobo_control_config config)
 {
-    config.session.device = GROBO_DEVICE_SIM;
-    config.session.baud_bps = 1000000;
-    config.session.on_robot = on_robot;
-    config.session.on_tap = on_tap;
+    grobo_session_config session = {GROBO_SESSION_CONFIG_INIT};
+
+    if (config.session != NULL) {
+        session = *config.session;
+    }
+    config.session = &session;
+    session.device = GROBO_DEVICE_SIM;
+    session.baud_bps = 1000000;
+    session.on_robot = on_robot;
+    session.on_tap = on_tap;
     config.control_period_us = 1000;
     config.on_svc = on_svc;
     memset(&saw, 0, sizeof saw);

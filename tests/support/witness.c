@@ -7,6 +7,8 @@
 
 #include <cmocka.h>
 
+#include <grobo/sim_static.h>
+
 #include "tests/support/witness.h"
 
 /* A reply later than this is nobody's any more. */

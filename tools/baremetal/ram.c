@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What things take in memory, as the sizes of symbols: tools/baremetal/size.sh reads them. */
-#include <grobo/sim.h>
+#include <grobo/sim_static.h>
 #include <grobo/static.h>
 
 enum {

@@ -36,11 +36,11 @@ for header in include/grobo/*.h ports/*/include/grobo/*.h; do
     fi
 done
 # The umbrella is for those who do not want to know which header; export.h comes with any of them,
-# and static.h is for those who keep an engine themselves.
+# and static.h, sim_static.h are for those who keep an engine or a simulator themselves.
 if [ -f include/grobo/grobo.h ]; then
     for header in include/grobo/*.h; do
         name=${header##*/}
-        case $name in grobo.h | export.h | static.h) continue ;; esac
+        case $name in grobo.h | export.h | static.h | sim_static.h) continue ;; esac
         grep -q "<grobo/$name>" include/grobo/grobo.h && continue
         echo "include/grobo/grobo.h:1: headers: does not include <grobo/$name>"
         bad=1

@@ -2,6 +2,7 @@
 /* A guard, seen from the program: started, given a port, ended. */
 #include <string.h>
 
+#include "src/base/sized.h"
 #include "src/link/guard/guard.h"
 #include "src/link/serial/loop.h"
 
@@ -38,23 +39,21 @@ static int await_hello(const grobo_guard *guard)
 
 int grobo_guard_new(const grobo_guard_config *config, grobo_guard **guard)
 {
-    static const grobo_guard_config defaults = {0};
     static const char *const word[] = {"guard", NULL};
-    const grobo_guard_config *from = config != NULL ? config : &defaults;
-    const char *program = from->program != NULL ? from->program : grobo_i_guard_default();
+    grobo_guard_config from;
     grobo_guard *made;
     int r;
 
-    if (guard == NULL) {
+    if (guard == NULL || grobo_i_sized_take(&from, sizeof from, config) < 0) {
         return GROBO_ERR_ARG;
     }
-    made = grobo_i_new(from->mem, sizeof *made);
+    made = grobo_i_new(from.mem, sizeof *made);
     if (made == NULL) {
         return GROBO_ERR_NOMEM;
     }
-    made->mem = from->mem;
-    r = grobo_i_guard_spawn(program, from->arguments != NULL ? from->arguments : word,
-                            &made->process);
+    made->mem = from.mem;
+    r = grobo_i_guard_spawn(from.program != NULL ? from.program : grobo_i_guard_default(),
+                            from.arguments != NULL ? from.arguments : word, &made->process);
     if (r >= 0) {
         r = await_hello(made);
         if (r < 0) {
@@ -62,7 +61,7 @@ int grobo_guard_new(const grobo_guard_config *config, grobo_guard **guard)
         }
     }
     if (r < 0) {
-        grobo_i_free(from->mem, made, sizeof *made);
+        grobo_i_free(from.mem, made, sizeof *made);
         return r;
     }
     *guard = made;

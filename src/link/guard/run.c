@@ -10,6 +10,7 @@
 #include <grobo/serial.h>
 #include <grobo/static.h>
 
+#include "src/base/sized.h"
 #include "src/link/guard/guard.h"
 #include "src/link/serial/loop.h"
 
@@ -355,15 +356,18 @@ static size_t port_bytes(void)
 
 int grobo_guard_run(const grobo_guard_program *program)
 {
-    static const grobo_guard_program defaults = {0};
+    grobo_guard_program taken;
     const guard_hello hello = {GUARD_MAGIC, sizeof(guard_message)};
-    guard_run *run = grobo_i_new(NULL, sizeof *run);
-    int r;
+    int r = grobo_i_sized_take(&taken, sizeof taken, program);
 
+    if (r < 0) {
+        return r;
+    }
+    guard_run *run = grobo_i_new(NULL, sizeof *run);
     if (run == NULL) {
         return GROBO_ERR_NOMEM;
     }
-    run->program = program != NULL ? program : &defaults;
+    run->program = &taken;
     run->came = GROBO_HANDLE_NULL;
     forget(run);
     run->port = grobo_i_new(NULL, port_bytes());

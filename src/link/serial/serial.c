@@ -2,6 +2,7 @@
 /* A serial port's life: made, opened, what the loop brings, what it tells. */
 #include <string.h>
 
+#include "src/base/sized.h"
 #include "src/link/serial/loop.h"
 #include "src/link/serial/serial.h"
 
@@ -188,11 +189,14 @@ static void fill_defaults(grobo_serial_config *config)
 
 int grobo_serial_new(const grobo_serial_config *config, grobo_serial **serial)
 {
-    static const grobo_serial_config zero = {0};
-    const grobo_serial_config *from = config != NULL ? config : &zero;
+    grobo_serial_config taken;
+    const grobo_serial_config *from = &taken;
     grobo_serial *made;
-    int r = serial != NULL ? check(from) : GROBO_ERR_ARG;
+    int r = serial != NULL ? grobo_i_sized_take(&taken, sizeof taken, config) : GROBO_ERR_ARG;
 
+    if (r >= 0) {
+        r = check(from);
+    }
     if (r < 0) {
         return r;
     }

@@ -6,7 +6,9 @@
 
 #include <grobo/estop.h>
 #include <grobo/sim_server.h>
+#include <grobo/sim_static.h>
 
+#include "src/base/sized.h"
 #include "src/link/serial/loop.h"
 
 /* How often one end is read before others have their turn: a wire without pace never is full. */
@@ -472,11 +474,11 @@ static int copy_name(char *to, const char *name)
 
 static int fill(grobo_sim_server *server, const grobo_sim_server_config *config)
 {
-    grobo_sim_config sim = {0};
-    int r;
+    grobo_sim_config sim;
+    int r = grobo_i_sized_take(&sim, sizeof sim, config->sim);
 
-    if (config->sim != NULL) {
-        sim = *config->sim;
+    if (r < 0) {
+        return r;
     }
     server->config = *config;
     server->config.sim = NULL;
@@ -526,13 +528,15 @@ int grobo_sim_server_new(const grobo_sim_server_config *config, grobo_sim_server
                          grobo_os_cause *cause)
 {
     grobo_os_cause unheard = {0};
+    grobo_sim_server_config taken;
     grobo_sim_server *made;
     int r;
 
-    if (config == NULL || server == NULL || config->base == NULL ||
-        (config->no_pty && config->tcp == NULL)) {
+    if (server == NULL || grobo_i_sized_take(&taken, sizeof taken, config) < 0 ||
+        taken.base == NULL || (taken.no_pty && taken.tcp == NULL)) {
         return GROBO_ERR_ARG;
     }
+    config = &taken;
     made = grobo_i_new(config->mem, sizeof *made);
     if (made == NULL) {
         return GROBO_ERR_NOMEM;

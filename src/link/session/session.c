@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "src/base/sized.h"
 #include "src/link/guard/guard.h"
 #include "src/link/serial/loop.h"
 #include "src/link/session/session.h"
@@ -489,14 +490,13 @@ static int fill(grobo_session *session, const grobo_session_config *config)
     session->config.device = NULL;
     session->config.robot = NULL;
     session->config.sim = NULL;
-    if (config->robot != NULL) {
-        session->robot_config = *config->robot;
+    if (grobo_i_sized_take(&session->robot_config, sizeof session->robot_config, config->robot) <
+            0 ||
+        grobo_i_sized_take(&session->sim_config, sizeof session->sim_config, config->sim) < 0) {
+        return GROBO_ERR_ARG;
     }
     if (session->robot_config.bus.baud_bps == 0) {
         session->robot_config.bus.baud_bps = (uint32_t)baud_bps;
-    }
-    if (config->sim != NULL) {
-        session->sim_config = *config->sim;
     }
     session->sim_config.wiring = grobo_driver_wiring(driver);
     session->sim_config.echo = session->robot_config.bus.echo;
@@ -515,6 +515,7 @@ static int fill(grobo_session *session, const grobo_session_config *config)
 static int make_parts(grobo_session *session)
 {
     const grobo_serial_config serial = {
+        GROBO_SERIAL_CONFIG_INIT,
         .baud_bps = session->config.baud_bps,
         .format = {.parity = session->robot.driver->protocol->parity,
                    .stop_bits = session->config.format.stop_bits,
@@ -541,13 +542,15 @@ static int make_parts(grobo_session *session)
 
 int grobo_session_new(const grobo_session_config *config, grobo_session **session)
 {
+    grobo_session_config taken;
     grobo_session *made;
     int r;
 
-    if (config == NULL || session == NULL || config->base == NULL || config->device == NULL ||
-        config->baud_bps < 0) {
+    if (session == NULL || grobo_i_sized_take(&taken, sizeof taken, config) < 0 ||
+        taken.base == NULL || taken.device == NULL || taken.baud_bps < 0) {
         return GROBO_ERR_ARG;
     }
+    config = &taken;
     made = grobo_i_new(config->mem, sizeof *made);
     if (made == NULL) {
         return GROBO_ERR_NOMEM;
@@ -638,13 +641,13 @@ int grobo_session_configure(grobo_session *session, const grobo_robot_config *co
     if (session == NULL) {
         return GROBO_ERR_ARG;
     }
-    static const grobo_robot_config defaults;
     int r = grobo_robot_configure(&session->robot, config);
 
     if (r >= 0) {
         grobo_bus_config bus = session->robot_config.bus;
 
-        session->robot_config = config != NULL ? *config : defaults;
+        /* Cannot fail: the engine has taken it. */
+        (void)grobo_i_sized_take(&session->robot_config, sizeof session->robot_config, config);
         session->robot_config.bus = bus;
         configure(session, session->state == GROBO_SESSION_UP);
         grobo_session_pump(session);

@@ -12,12 +12,10 @@
 #include <event2/event.h>
 
 #include <grobo/session.h>
+#include <grobo/sim_static.h>
 #include <grobo/static.h>
 
 #include "src/link/guard/estop.h"
-
-/* The bits of grobo_session.asked that are requests; above them their number is counted. */
-#define SESSION_ASK_BITS 0x3Fu
 
 /* Serial ports found for GROBO_DEVICE_AUTO. */
 typedef struct session_scan {
@@ -95,7 +93,6 @@ struct grobo_session {
     grobo_socket wake_socket[2]; /* a byte from 1 to 0 wakes the loop */
     struct event *wake;
     bool always_listens; /* also while closed */
-    unsigned obeyed;     /* number of requests, when the last one was carried out */
     bool exit_owed;      /* asked for while an emergency stop is carried out */
     grobo_exit_policy exit_policy;
 
@@ -138,9 +135,6 @@ void grobo_i_session_tell_tap(grobo_direction direction, int64_t now_us, const u
 /* Any thread, signal handlers: has the loop make a round. */
 void grobo_i_session_wake(grobo_session *session);
 
-/* Any thread: the number of requests posted, in steps of SESSION_ASK_BITS + 1; wraps around. */
-unsigned grobo_i_session_asked(const grobo_session *session);
-
 /* Any thread: true while a posted request has not been looked at. */
 bool grobo_i_session_has_asked(const grobo_session *session);
 
@@ -152,6 +146,10 @@ void grobo_i_session_attend(grobo_session *session);
 
 /* Notes for grobo_session_is_latched() what the engine says. */
 void grobo_i_session_note_latch(grobo_session *session);
+
+/* Two sockets that hear each other; GROBO_SOCKET_NULL before. GROBO_OK, GROBO_ERR_NOMEM. */
+int grobo_i_session_pair_new(grobo_socket pair[2]);
+void grobo_i_session_pair_free(const grobo_socket pair[2]);
 
 /* Makes and ends the wake-up socket. */
 int grobo_i_session_wake_new(grobo_session *session);

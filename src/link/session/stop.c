@@ -3,11 +3,11 @@
  * Requests to stop: those that any thread and any signal handler may make, and the emergency stops
  * of other programs (grobo/estop.h).
  *
- * `asked` is one atomic word: the number of requests made so far, and below it a bit for each kind
- * of request that the loop has not looked at. The poster sets both at once and writes a byte to the
- * wake-up socket. The loop takes the bits in grobo_i_session_obey(), which every way out of the
- * session passes before bytes leave; grobo_i_session_send() sends nothing while a bit is set. So
- * the first frame after a request is the stop, wherever the loop was.
+ * `asked` is one atomic word: a bit for each kind of request that the loop has not looked at. The
+ * poster sets it and writes a byte to the wake-up socket. The loop takes the bits in
+ * grobo_i_session_obey(), which every way out of the session passes before bytes leave;
+ * grobo_i_session_send() sends nothing while a bit is set. So the first frame after a request is
+ * the stop, wherever the loop was.
  *
  * An exit waits in `exit_owed` while an emergency stop is carried out. An emergency stop without a
  * line is the engine's to keep (grobo_robot_estop()).
@@ -27,10 +27,8 @@ enum {
     ASK_STOP_AT_ONCE = 4,
     ASK_EXIT = 8,
     ASK_POLICY_SHIFT = 4,
-    ASK_POLICY = 3 << ASK_POLICY_SHIFT,
-    ASK_COUNT_ONE = SESSION_ASK_BITS + 1
+    ASK_POLICY = 3 << ASK_POLICY_SHIFT
 };
-_Static_assert((ASK_POLICY | (ASK_EXIT * 2 - 1)) == SESSION_ASK_BITS, "all bits of a request");
 
 /* ---- any thread, signal handlers ---------------------------------------------------------- */
 
@@ -47,8 +45,7 @@ static int ask(grobo_session *session, unsigned what, unsigned instead_of)
 {
     unsigned old = atomic_load(&session->asked);
 
-    while (!atomic_compare_exchange_weak(&session->asked, &old,
-                                         ((old & ~instead_of) | what) + ASK_COUNT_ONE)) {
+    while (!atomic_compare_exchange_weak(&session->asked, &old, (old & ~instead_of) | what)) {
     }
     grobo_i_session_wake(session);
     return GROBO_OK;
@@ -85,14 +82,9 @@ bool grobo_session_is_latched(const grobo_session *session)
     return (atomic_load(&session->asked) & ASK_ESTOP) != 0 || atomic_load(&session->latched);
 }
 
-unsigned grobo_i_session_asked(const grobo_session *session)
-{
-    return atomic_load(&session->asked) & ~SESSION_ASK_BITS;
-}
-
 bool grobo_i_session_has_asked(const grobo_session *session)
 {
-    return (atomic_load(&session->asked) & SESSION_ASK_BITS) != 0;
+    return atomic_load(&session->asked) != 0;
 }
 
 /* ---- on the loop -------------------------------------------------------------------------- */
@@ -105,7 +97,7 @@ void grobo_i_session_note_latch(grobo_session *session)
     atomic_store(&session->latched, trip.latched);
 }
 
-/* Takes the bits, and the number of requests with them. */
+/* Takes the bits. */
 static unsigned take(grobo_session *session)
 {
     unsigned asked = atomic_load(&session->asked);
@@ -114,8 +106,7 @@ static unsigned take(grobo_session *session)
         if ((asked & ASK_ESTOP) != 0) {
             atomic_store(&session->latched, true);
         }
-    } while (!atomic_compare_exchange_weak(&session->asked, &asked,
-                                           asked & ~(unsigned)SESSION_ASK_BITS));
+    } while (!atomic_compare_exchange_weak(&session->asked, &asked, 0));
     return asked;
 }
 
@@ -149,9 +140,6 @@ void grobo_i_session_obey(grobo_session *session)
 {
     unsigned asked = take(session);
 
-    if ((asked & SESSION_ASK_BITS) != 0) {
-        session->obeyed = asked & ~SESSION_ASK_BITS;
-    }
     if ((asked & ASK_ESTOP) != 0) {
         (void)estop(session);
     } else if ((asked & (ASK_STOP | ASK_STOP_AT_ONCE)) != 0 && session->state == GROBO_SESSION_UP) {
@@ -250,7 +238,7 @@ void grobo_i_session_estop_ended(grobo_session *session, int result)
 
 /* ---- making and freeing ------------------------------------------------------------------- */
 
-static int make_pair(grobo_socket pair[2])
+int grobo_i_session_pair_new(grobo_socket pair[2])
 {
     evutil_socket_t made[2];
 
@@ -270,6 +258,15 @@ static int make_pair(grobo_socket pair[2])
     return GROBO_OK;
 }
 
+void grobo_i_session_pair_free(const grobo_socket pair[2])
+{
+    for (int i = 0; i < 2; i++) {
+        if (pair[i] != GROBO_SOCKET_NULL) {
+            evutil_closesocket(pair[i]);
+        }
+    }
+}
+
 int grobo_i_session_listen(grobo_session *session, bool always)
 {
     session->always_listens = session->always_listens || always;
@@ -285,7 +282,7 @@ void grobo_i_session_rest(grobo_session *session)
 
 int grobo_i_session_wake_new(grobo_session *session)
 {
-    int r = make_pair(session->wake_socket);
+    int r = grobo_i_session_pair_new(session->wake_socket);
 
     if (r >= 0) {
         session->wake = event_new(session->config.base, session->wake_socket[0],
@@ -300,9 +297,5 @@ void grobo_i_session_wake_free(grobo_session *session)
     if (session->wake != NULL) {
         event_free(session->wake);
     }
-    for (int i = 0; i < 2; i++) {
-        if (session->wake_socket[i] != GROBO_SOCKET_NULL) {
-            evutil_closesocket(session->wake_socket[i]);
-        }
-    }
+    grobo_i_session_pair_free(session->wake_socket);
 }

@@ -32,19 +32,6 @@ static void hand_over(grobo_control *control, control_slot *slot, grobo_control_
     grobo_i_control_wake(control);
 }
 
-int grobo_i_control_post(grobo_control *control, grobo_control_fn fn, void *arg, bool users)
-{
-    control_slot *slot = take_slot(control, GROBO_CONTROL_CALLS_MAX);
-
-    if (control->freeing || slot == NULL) {
-        return control->freeing ? GROBO_ERR_CLOSED : GROBO_ERR_FULL;
-    }
-    slot->posted = true;
-    hand_over(control, slot, fn, arg);
-    slot->users = users;
-    return GROBO_OK;
-}
-
 /* ---- on the loop -------------------------------------------------------------------------- */
 
 /* The oldest call after a ticket. */
@@ -80,13 +67,6 @@ static void settle(grobo_control *control, control_slot *slot, int result)
     }
 }
 
-/* What was posted by grobo_session_post_estop() and its like goes before every call. */
-static void attend(grobo_control *control)
-{
-    grobo_i_session_attend(control->session);
-    grobo_i_control_forget_stopped(control);
-}
-
 static int call_user(grobo_control *control, grobo_control_fn fn, void *arg)
 {
     int64_t since_us = grobo_i_session_enter_callback(control->session);
@@ -96,6 +76,7 @@ static int call_user(grobo_control *control, grobo_control_fn fn, void *arg)
     return r;
 }
 
+/* What was posted by grobo_session_post_estop() and its like goes before every call. */
 static void serve(grobo_control *control)
 {
     control_slot *slot;
@@ -114,13 +95,13 @@ static void serve(grobo_control *control)
         after = slot->ticket;
         slot->state = CALL_RUNNING;
         grobo_mutex_unlock(&control->lock);
-        attend(control);
+        grobo_i_session_attend(control->session);
         result = users ? call_user(control, fn, arg) : fn(control, arg);
         grobo_mutex_lock(&control->lock);
         settle(control, slot, result);
     }
     grobo_mutex_unlock(&control->lock);
-    attend(control);
+    grobo_i_session_attend(control->session);
 }
 
 /* ---- a round ------------------------------------------------------------------------------ */
@@ -167,7 +148,6 @@ void grobo_i_control_end_calls(grobo_control *control)
     grobo_i_control_lock(control);
     control->freeing = true;
     grobo_i_control_unlock(control);
-    (void)grobo_i_control_forget(control);
     serve(control);
     grobo_i_control_end_round(&frame);
 }
@@ -255,20 +235,13 @@ static int call(grobo_control *control, const call_wish *wish)
     if (!grobo_i_control_inside(control)) {
         return call_and_wait(control, wish);
     }
-    attend(control);
+    grobo_i_session_attend(control->session);
     return wish->fn(control, wish->arg);
 }
 
 int grobo_i_control_call(grobo_control *control, grobo_control_fn fn, void *arg)
 {
     const call_wish wish = {.fn = fn, .arg = arg};
-
-    return call(control, &wish);
-}
-
-int grobo_i_control_urgent_call(grobo_control *control, grobo_control_fn fn, void *arg)
-{
-    const call_wish wish = {.fn = fn, .arg = arg, .urgent = true};
 
     return call(control, &wish);
 }
@@ -285,16 +258,15 @@ int grobo_i_control_wait(grobo_control *control, grobo_control_fn fn, void *arg,
 /* On the loop: how a job has ended. */
 static int result_of(grobo_control *control, int number)
 {
-    for (int i = 0; i < GROBO_CONTROL_ENDS; i++) {
-        if (control->job_ends[i].number == number) {
-            return control->job_ends[i].result;
-        }
-    }
-    return grobo_robot_is_pending(control_robot(control), number) ? CALL_PENDING
-                                                                  : GROBO_ERR_NOTFOUND;
+    grobo_i_control_lock(control);
+    int r = grobo_i_control_end_of_job(control, number);
+    grobo_i_control_unlock(control);
+    return r != CALL_PENDING || grobo_robot_is_pending(control_robot(control), number)
+               ? r
+               : GROBO_ERR_NOTFOUND;
 }
 
-int grobo_i_control_poll_job(grobo_control *control, void *arg)
+static int poll_job(grobo_control *control, void *arg)
 {
     control_job *job = arg;
 
@@ -312,9 +284,9 @@ int grobo_i_control_poll_job(grobo_control *control, void *arg)
         }
         job->number = r;
     }
-    job->result = result_of(control, job->number);
-    job->ended = job->result != CALL_PENDING;
-    return job->result;
+    int result = result_of(control, job->number);
+    job->ended = result != CALL_PENDING;
+    return result;
 }
 
 static int poll_number(grobo_control *control, void *arg)
@@ -332,14 +304,10 @@ int grobo_control_wait_job(grobo_control *control, int job, int64_t timeout_us)
     return job < 0 ? job : grobo_i_control_wait(control, poll_number, &job, timeout_us);
 }
 
-int grobo_i_control_job(grobo_control *control, control_job *job, grobo_control_fn fn,
-                        int64_t timeout_us)
+int grobo_i_control_job(grobo_control *control, control_job *job, int64_t timeout_us)
 {
-    const call_wish wish = {.fn = fn != NULL ? fn : grobo_i_control_poll_job,
-                            .arg = job,
-                            .job = job,
-                            .timeout_us = timeout_us,
-                            .urgent = job->urgent};
+    const call_wish wish = {
+        .fn = poll_job, .arg = job, .job = job, .timeout_us = timeout_us, .urgent = job->urgent};
 
     return wait_outside(control, &wish);
 }
@@ -353,17 +321,24 @@ int grobo_control_call(grobo_control *control, grobo_control_fn fn, void *arg)
     return fn != NULL ? call(control, &wish) : GROBO_ERR_ARG;
 }
 
+/* With the lock: hands over without waiting. */
+static int post(grobo_control *control, grobo_control_fn fn, void *arg)
+{
+    control_slot *slot = take_slot(control, GROBO_CONTROL_CALLS_MAX);
+
+    if (control->freeing || slot == NULL) {
+        return control->freeing ? GROBO_ERR_CLOSED : GROBO_ERR_FULL;
+    }
+    slot->posted = true;
+    hand_over(control, slot, fn, arg);
+    slot->users = true;
+    return GROBO_OK;
+}
+
 int grobo_control_post(grobo_control *control, grobo_control_fn fn, void *arg)
 {
-    if (control == NULL) {
+    if (control == NULL || fn == NULL) {
         return GROBO_ERR_ARG;
     }
-    int r = GROBO_ERR_ARG;
-
-    if (fn != NULL) {
-        grobo_i_control_lock(control);
-        r = grobo_i_control_post(control, fn, arg, true);
-        grobo_i_control_unlock(control);
-    }
-    return r;
+    RETURN_LOCKED(control, int, post(control, fn, arg));
 }

@@ -35,6 +35,8 @@ void grobo_i_control_on_event(grobo_session *session, grobo_session_event event,
     case GROBO_SESSION_EVENT_UNGUARDED:
         break;
     }
+    const grobo_control_event kept = {.of_line = true, .line = event, .error = error};
+    grobo_i_control_keep(control, &kept);
     if (control->user.on_event != NULL) {
         control->user.on_event(session, event, error, control->user.ctx);
     }
@@ -52,24 +54,6 @@ bool grobo_i_control_has_exited(grobo_control *control)
     return control->exited && control->exit_frames == frames_sent(control);
 }
 
-/* Tells a job's end to who waits for it. */
-static void end_job(grobo_control *control, const grobo_event_job *ended)
-{
-    control->job_ends[control->next_end++ % GROBO_CONTROL_ENDS] = *ended;
-    grobo_i_control_lock(control);
-    if (control->move_job == ended->number) {
-        control->motion_result = ended->result;
-    }
-    grobo_i_control_unlock(control);
-    if (control->move_job == ended->number) {
-        control->move_job = 0;
-    }
-    if (control->play_job == ended->number) {
-        control->play_job = 0;
-        control->play_error = ended->result;
-    }
-}
-
 static void on_job(grobo_control *control, const grobo_event_job *ended)
 {
     control->exited = ended->kind == GROBO_JOB_EXIT && ended->result >= 0;
@@ -78,7 +62,9 @@ static void on_job(grobo_control *control, const grobo_event_job *ended)
         control->recording = false;
         control->raw_bytes = 0;
     }
-    end_job(control, ended);
+    grobo_i_control_lock(control);
+    grobo_i_control_end_job(control, ended);
+    grobo_i_control_unlock(control);
 }
 
 void grobo_i_control_on_robot(void *ctx, const grobo_event *event)
@@ -88,6 +74,8 @@ void grobo_i_control_on_robot(void *ctx, const grobo_event *event)
     if (event->kind == GROBO_EVENT_JOB) {
         on_job(control, &event->u.job);
     }
+    const grobo_control_event kept = {.event = *event};
+    grobo_i_control_keep(control, &kept);
     if (control->user.on_robot != NULL) {
         control->user.on_robot(control->user.ctx, event);
     }

@@ -95,14 +95,13 @@ static int leave_job(grobo_control *control, control_job *job)
     if (!up || control->skip_exit || grobo_i_control_has_exited(control)) {
         return GROBO_OK;
     }
-    (void)grobo_i_control_forget(control);
     return grobo_robot_exit(grobo_session_robot(control->session), GROBO_EXIT_DEFAULT);
 }
 
 int grobo_i_control_leave(grobo_control *control, int64_t timeout_us, bool *looked)
 {
     control_job job = {.start = leave_job, .urgent = true};
-    int r = grobo_i_control_job(control, &job, NULL, timeout_us);
+    int r = grobo_i_control_job(control, &job, timeout_us);
 
     *looked = job.looked || (r != GROBO_ERR_TIMEOUT && r != GROBO_ERR_FULL);
     if (!*looked && !control->skip_exit) {
@@ -208,23 +207,17 @@ int grobo_control_check_connection(grobo_control *control, int64_t timeout_us)
 {
     control_job job = {.start = check_job};
 
-    return grobo_i_control_job(control, &job, NULL, timeout_us);
+    return grobo_i_control_job(control, &job, timeout_us);
 }
 
 /* ---- servos ------------------------------------------------------------------------------- */
 
-static int get_states(grobo_control *control, void *arg)
+int grobo_control_get_servo_state(grobo_control *control, int joint)
 {
-    int *state = arg;
-    int n_joints = control->driver->model->n_joints;
+    grobo_joint_info info;
+    int r = grobo_robot_joint(grobo_control_robot(control), joint, &info);
 
-    for (int j = 0; j < n_joints; j++) {
-        grobo_joint_info info;
-        int r = grobo_robot_joint(control_robot(control), j, &info);
-
-        state[j] = r >= 0 && info.torque_known ? (int)info.state.torque : GROBO_ERR_EMPTY;
-    }
-    return n_joints;
+    return r < 0 ? r : info.torque_known ? (int)info.state.torque : GROBO_ERR_EMPTY;
 }
 
 int grobo_control_get_servo_states(grobo_control *control, int *states, size_t capacity)
@@ -232,31 +225,15 @@ int grobo_control_get_servo_states(grobo_control *control, int *states, size_t c
     if (control == NULL || states == NULL) {
         return GROBO_ERR_ARG;
     }
-    int state[GROBO_JOINTS_MAX];
-    int r = GROBO_ERR_SPACE;
+    int n_joints = grobo_control_joints(control);
 
-    if (capacity >= control->driver->model->n_joints) {
-        r = grobo_i_control_call(control, get_states, state);
+    if (capacity < (size_t)n_joints) {
+        return GROBO_ERR_SPACE;
     }
-    if (r > 0) {
-        memcpy(states, state, (size_t)r * sizeof *states);
+    for (int j = 0; j < n_joints; j++) {
+        states[j] = grobo_control_get_servo_state(control, j);
     }
-    return r;
-}
-
-int grobo_control_get_servo_state(grobo_control *control, int joint)
-{
-    if (control == NULL) {
-        return GROBO_ERR_ARG;
-    }
-    int state[GROBO_JOINTS_MAX];
-    int r;
-
-    if (joint < 0 || joint >= control->driver->model->n_joints) {
-        return GROBO_ERR_ARG;
-    }
-    r = grobo_i_control_call(control, get_states, state);
-    return r < 0 ? r : state[joint];
+    return n_joints;
 }
 
 static int torque_job(grobo_control *control, control_job *job)
@@ -269,7 +246,7 @@ int grobo_control_set_servo_states(grobo_control *control, grobo_joint_mask join
 {
     control_job job = {.start = torque_job, .joints = joints, .torque = state};
 
-    return grobo_i_control_job(control, &job, NULL, timeout_us);
+    return grobo_i_control_job(control, &job, timeout_us);
 }
 
 int grobo_control_set_servo_state(grobo_control *control, int joint, grobo_torque state,
@@ -288,23 +265,9 @@ int grobo_control_set_servo_state(grobo_control *control, int joint, grobo_torqu
 
 /* ---- readings ----------------------------------------------------------------------------- */
 
-static int get_posture(grobo_control *control, void *arg)
-{
-    return grobo_robot_posture(control_robot(control), GROBO_NEVER_US, arg);
-}
-
 int grobo_control_get_current_posture(grobo_control *control, grobo_posture *posture)
 {
-    if (posture == NULL) {
-        return GROBO_ERR_ARG;
-    }
-    grobo_posture sensed;
-    int r = grobo_i_control_call(control, get_posture, &sensed);
-
-    if (r >= 0) {
-        *posture = sensed;
-    }
-    return r;
+    return grobo_robot_posture(grobo_control_robot(control), GROBO_NEVER_US, posture);
 }
 
 static int sense_job(grobo_control *control, control_job *job)
@@ -312,21 +275,24 @@ static int sense_job(grobo_control *control, control_job *job)
     return grobo_robot_sense(grobo_session_robot(control->session), job->joints, job->sense);
 }
 
-/* A reading, and then the joints that have been read since it began. */
-static int sense(grobo_control *control, void *arg)
+/* Reads, and gives the joints that have been read since it began. @return their number, or why. */
+static int sense(grobo_control *control, grobo_joint_mask joints, grobo_sense_kind kind,
+                 grobo_posture *posture, int64_t timeout_us)
 {
-    control_job *job = arg;
-    int r = grobo_i_control_poll_job(control, job);
-    int64_t now_us = grobo_now_us();
-    int n;
+    control_job job = {.start = sense_job, .joints = joints, .sense = kind};
+    int r = grobo_i_control_job(control, &job, timeout_us);
+    grobo_posture sensed;
 
-    if (!job->ended || r == GROBO_ERR_UNPLUGGED || r == GROBO_ERR_CANCELED) {
+    if (!job.ended || r == GROBO_ERR_UNPLUGGED || r == GROBO_ERR_CANCELED) {
         return r;
     }
-    (void)grobo_robot_posture(control_robot(control), now_us - job->begun_us, job->posture);
-    job->posture->set &= job->joints;
-    n = grobo_joints_count(job->posture->set);
-    return n > 0 ? n : r;
+    (void)grobo_robot_posture(control_robot(control), grobo_now_us() - job.begun_us, &sensed);
+    sensed.set &= joints;
+    if (sensed.set == 0 && r < 0) {
+        return r;
+    }
+    *posture = sensed;
+    return grobo_joints_count(sensed.set);
 }
 
 int grobo_control_read_posture(grobo_control *control, grobo_posture *posture, int64_t timeout_us)
@@ -334,36 +300,20 @@ int grobo_control_read_posture(grobo_control *control, grobo_posture *posture, i
     if (control == NULL || posture == NULL) {
         return GROBO_ERR_ARG;
     }
-    grobo_posture sensed;
-    control_job job = {
-        .start = sense_job,
-        .joints = GROBO_JOINTS_ALL(control->driver->model->n_joints),
-        .sense = GROBO_SENSE_FULL,
-        .posture = &sensed,
-    };
-    int r = grobo_i_control_job(control, &job, sense, timeout_us);
-
-    if (r >= 0) {
-        *posture = sensed;
-    }
-    return r;
+    return sense(control, GROBO_JOINTS_ALL(grobo_control_joints(control)), GROBO_SENSE_FULL,
+                 posture, timeout_us);
 }
 
 int grobo_control_read_angle(grobo_control *control, int joint, double *angle_rad,
                              int64_t timeout_us)
 {
-    if (angle_rad == NULL || control == NULL) {
-        return GROBO_ERR_ARG;
-    }
     grobo_posture sensed;
-    control_job job = {.start = sense_job, .sense = GROBO_SENSE_POSITION, .posture = &sensed};
-    int r;
 
-    if (joint < 0 || joint >= control->driver->model->n_joints) {
+    if (angle_rad == NULL || control == NULL || joint < 0 ||
+        joint >= grobo_control_joints(control)) {
         return GROBO_ERR_ARG;
     }
-    job.joints = GROBO_JOINT_BIT(joint);
-    r = grobo_i_control_job(control, &job, sense, timeout_us);
+    int r = sense(control, GROBO_JOINT_BIT(joint), GROBO_SENSE_POSITION, &sensed, timeout_us);
     return r > 0 ? grobo_posture_get_rad(&sensed, joint, angle_rad) : r;
 }
 
@@ -442,7 +392,7 @@ int grobo_control_send_command(grobo_control *control, const void *packet, size_
     }
     r = grobo_control_connect(control, timeout_us);
     if (r >= 0) {
-        r = grobo_i_control_job(control, &job, NULL, timeout_us);
+        r = grobo_i_control_job(control, &job, timeout_us);
         r = r == GROBO_ERR_STALE && grobo_now_us() >= job.end_us - 1 ? GROBO_ERR_TIMEOUT : r;
     }
     return r < 0 ? r : (int)job.size;
@@ -529,7 +479,6 @@ int grobo_control_reset(grobo_control *control)
 
 static int exit_job(grobo_control *control, control_job *job)
 {
-    (void)grobo_i_control_forget(control);
     return grobo_robot_exit(grobo_session_robot(control->session), job->policy);
 }
 
@@ -542,7 +491,7 @@ int grobo_control_exit(grobo_control *control, grobo_exit_policy policy, int64_t
         r = grobo_control_post_exit(control, policy);
         return r < 0 ? r : GROBO_ERR_STATE;
     }
-    r = grobo_i_control_job(control, &job, NULL, timeout_us);
+    r = grobo_i_control_job(control, &job, timeout_us);
     if (job.number == 0 && (r == GROBO_ERR_TIMEOUT || r == GROBO_ERR_FULL)) {
         (void)grobo_control_post_exit(control, policy); /* nobody waits, the exit stands */
     }

@@ -95,23 +95,18 @@ void grobo_control_clear_motion(grobo_control *control)
 
 /* ---- sent and played ---------------------------------------------------------------------- */
 
-/* With the lock: posts the sending of the target. */
-static int want_move(grobo_control *control)
+/* Sends the target, which may have been replaced before: by `instead`. */
+static int send_target(grobo_control *control, const grobo_posture *instead)
 {
-    int r = GROBO_OK;
-
-    if (!control->up) {
+    grobo_i_control_lock(control);
+    control->target = instead != NULL ? *instead : control->target;
+    grobo_posture target = control->target;
+    bool up = control->up;
+    grobo_i_control_unlock(control);
+    if (!up) {
         return GROBO_ERR_CLOSED;
     }
-    if (control->target.set == 0) {
-        return GROBO_ERR_EMPTY;
-    }
-    if (!control->move_wanted) {
-        r = grobo_i_control_post(control, grobo_i_control_send_target, NULL, false);
-        control->move_wanted = r >= 0;
-    }
-    control->move_after = grobo_i_session_asked(control->session);
-    return r;
+    return target.set == 0 ? GROBO_ERR_EMPTY : grobo_i_control_move(control, &target);
 }
 
 int grobo_control_start_motion(grobo_control *control)
@@ -119,30 +114,23 @@ int grobo_control_start_motion(grobo_control *control)
     if (control == NULL) {
         return GROBO_ERR_ARG;
     }
-    RETURN_LOCKED(control, int, want_move(control));
+    return send_target(control, NULL);
 }
 
 int grobo_control_init_position(grobo_control *control)
 {
+    grobo_posture init;
+
     if (control == NULL) {
         return GROBO_ERR_ARG;
     }
-    int r;
-
-    grobo_i_control_lock(control);
-    control->target = control->init;
-    r = want_move(control);
-    grobo_i_control_unlock(control);
-    return r;
+    grobo_control_get_init_posture(control, &init);
+    return send_target(control, &init);
 }
 
-/* With the lock: a copy of the motion, to be played. */
-static int want_play(grobo_control *control, const grobo_play_options *options)
+/* With the lock: a copy of the motion, and how it shall be played. */
+static int prepare_play(grobo_control *control, grobo_play_options *options)
 {
-    static const grobo_play_options defaults;
-    grobo_play_options wanted = options != NULL ? *options : defaults;
-    int r;
-
     if (!control->up) {
         return GROBO_ERR_CLOSED;
     }
@@ -152,31 +140,32 @@ static int want_play(grobo_control *control, const grobo_play_options *options)
     if (control->play != PLAY_NONE) {
         return GROBO_ERR_STATE;
     }
-    wanted.repeat = control->motion_count;
-    wanted.reverse = control->reverse;
-    wanted.default_time_us = grobo_i_control_default_us(control);
-    r = grobo_motion_dup(control->motion, &control->playing);
+    options->repeat = control->motion_count;
+    options->reverse = control->reverse;
+    options->default_time_us = grobo_i_control_default_us(control);
+    int r = grobo_motion_dup(control->motion, &control->playing);
     if (r >= 0) {
-        r = grobo_i_control_post(control, grobo_i_control_start_play, NULL, false);
-        if (r < 0) {
-            grobo_motion_free(control->playing);
-            control->playing = NULL;
-        }
-    }
-    if (r >= 0) {
-        control->play_options = wanted;
-        control->play = PLAY_WANTED;
-        control->play_after = grobo_i_session_asked(control->session);
+        control->play = PLAY_ASKED;
+        control->play_postures =
+            grobo_motion_size(control->playing) * (uint64_t)grobo_play_passes(options->repeat);
     }
     return r;
 }
 
 int grobo_control_play_motion(grobo_control *control, const grobo_play_options *options)
 {
+    grobo_play_options wanted = {.repeat = 0};
+
     if (control == NULL) {
         return GROBO_ERR_ARG;
     }
-    RETURN_LOCKED(control, int, want_play(control, options));
+    if (options != NULL) {
+        wanted = *options;
+    }
+    grobo_i_control_lock(control);
+    int r = prepare_play(control, &wanted);
+    grobo_i_control_unlock(control);
+    return r < 0 ? r : grobo_i_control_play(control, &wanted);
 }
 
 bool grobo_control_is_playing(grobo_control *control)
@@ -189,23 +178,9 @@ bool grobo_control_is_playing(grobo_control *control)
 
 /* ---- stopping, waiting -------------------------------------------------------------------- */
 
-static int stop_motion(grobo_control *control, void *arg)
-{
-    const bool *at_once = arg;
-    bool stopped = grobo_i_control_forget(control);
-
-    stopped = grobo_robot_stop(grobo_session_robot(control->session), *at_once) >= 0 || stopped;
-    return stopped ? GROBO_OK : GROBO_ERR_STATE;
-}
-
 int grobo_control_stop_motion(grobo_control *control, bool at_once)
 {
-    int r = grobo_i_control_urgent_call(control, stop_motion, &at_once);
-
-    if (r == GROBO_ERR_TIMEOUT || r == GROBO_ERR_FULL) {
-        (void)grobo_control_post_stop(control, at_once); /* nobody waits, the stop stands */
-    }
-    return r;
+    return grobo_robot_stop(grobo_control_robot(control), at_once);
 }
 
 int grobo_control_post_stop(grobo_control *control, bool at_once)
@@ -226,56 +201,40 @@ static uint64_t frames_left(grobo_control *control)
            progress.steps * (uint64_t)(progress.passes - progress.pass);
 }
 
-static int count_commands(grobo_control *control, void *arg)
+int grobo_control_command_count(grobo_control *control)
 {
+    if (control == NULL) {
+        return GROBO_ERR_ARG;
+    }
     bool sequencing = grobo_robot_is_playing(control_robot(control));
     uint64_t count = sequencing ? frames_left(control) : 0;
 
-    (void)arg;
     grobo_i_control_lock(control);
-    count += control->move_wanted;
-    if (control->play == PLAY_WANTED || (control->play_job != 0 && !sequencing)) {
-        /* it waits, or is being prepared */
-        count += grobo_motion_size(control->playing) *
-                 (uint64_t)grobo_play_passes(control->play_options.repeat);
-    }
+    count += control->move_job != 0;
+    count += !sequencing && control->play_job != 0 ? control->play_postures : 0;
     grobo_i_control_unlock(control);
     return count < INT_MAX ? (int)count : INT_MAX;
 }
 
-int grobo_control_command_count(grobo_control *control)
-{
-    return grobo_i_control_call(control, count_commands, NULL);
-}
-
-static int is_moving(grobo_control *control, void *arg)
-{
-    bool wanted;
-
-    (void)arg;
-    grobo_i_control_lock(control);
-    wanted = control->move_wanted || control->play != PLAY_NONE;
-    grobo_i_control_unlock(control);
-    return wanted || control->move_job != 0 || grobo_robot_moving(control_robot(control));
-}
-
 int grobo_control_is_moving(grobo_control *control)
 {
-    return grobo_i_control_call(control, is_moving, NULL);
+    if (control == NULL) {
+        return GROBO_ERR_ARG;
+    }
+    grobo_i_control_lock(control);
+    bool asked = control->play != PLAY_NONE || control->move_job != 0;
+    grobo_i_control_unlock(control);
+    return asked || grobo_robot_moving(control_robot(control));
 }
 
 static int await_rest(grobo_control *control, void *arg)
 {
-    int result;
-
-    if (is_moving(control, arg) || grobo_robot_settling(control_robot(control)) ||
+    (void)arg;
+    if (grobo_control_is_moving(control) || grobo_robot_settling(control_robot(control)) ||
         grobo_robot_job(control_robot(control)) != GROBO_JOB_NONE) {
         return CALL_PENDING;
     }
-    grobo_i_control_lock(control);
-    result = control->motion_result;
-    grobo_i_control_unlock(control);
-    return result;
+    RETURN_LOCKED(control, int, control->motion_result);
 }
 
 int grobo_control_wait(grobo_control *control, int64_t timeout_us)
@@ -352,24 +311,14 @@ int grobo_control_get_last_posture(grobo_control *control, grobo_posture *postur
 
 int grobo_control_do_nth_motion(grobo_control *control, size_t n)
 {
-    if (control == NULL) {
-        return GROBO_ERR_ARG;
-    }
     grobo_posture posture;
-    int r;
+    int r = control == NULL ? GROBO_ERR_ARG : grobo_control_get_nth_posture(control, n, &posture);
 
-    grobo_i_control_lock(control);
-    r = get_nth(control, n, &posture);
     if (r >= 0) {
         posture.time_us = 0; /* the default */
-        r = grobo_i_control_check_posture(control, &posture);
+        r = grobo_control_set_target_posture(control, &posture);
     }
-    if (r >= 0) {
-        control->target = posture;
-        r = want_move(control);
-    }
-    grobo_i_control_unlock(control);
-    return r;
+    return r < 0 ? r : send_target(control, &posture);
 }
 
 /* ---- reading files ------------------------------------------------------------------------ */

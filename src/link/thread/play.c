@@ -1,63 +1,65 @@
 /* SPDX-License-Identifier: MIT */
-/* What a control has the robot do, on the loop: the target posture, the current motion. */
-#include "src/link/session/session.h"
+/*
+ * What a control has the engine do, and how that ended. A request is made without the lock, so its
+ * end may be told before its number is noted: then the end is found among those that were told.
+ */
 #include "src/link/thread/thread.h"
 
-/* True while the robot does something that has to be over before it is sent somewhere. */
-static bool is_at_work(grobo_control *control)
+int grobo_i_control_end_of_job(const grobo_control *control, int number)
 {
-    return grobo_robot_job(control_robot(control)) != GROBO_JOB_NONE ||
-           grobo_robot_is_playing(control_robot(control));
+    for (int i = 0; i < GROBO_CONTROL_ENDS; i++) {
+        if (control->job_ends[i].number == number) {
+            return control->job_ends[i].result;
+        }
+    }
+    return CALL_PENDING;
 }
 
-static void set_result(grobo_control *control, int result)
+/* With the lock: a job that may be the target's or the motion's has ended. */
+static void take_end(grobo_control *control, int number, int result)
+{
+    if (control->move_job == number) {
+        control->move_job = 0;
+        control->motion_result = result;
+    }
+    if (control->play_job == number) {
+        control->play_job = 0;
+        control->play_error = result;
+    }
+}
+
+void grobo_i_control_end_job(grobo_control *control, const grobo_event_job *ended)
+{
+    control->job_ends[control->next_end++ % GROBO_CONTROL_ENDS] = *ended;
+    take_end(control, ended->number, ended->result);
+}
+
+/* Notes the number of a request in one of the two places. */
+static void note(grobo_control *control, int *place, int number)
 {
     grobo_i_control_lock(control);
-    control->motion_result = result;
+    *place = number;
+    int r = grobo_i_control_end_of_job(control, number);
+    if (r != CALL_PENDING) {
+        take_end(control, number, r);
+    }
     grobo_i_control_unlock(control);
-}
-
-static bool is_up(const grobo_control *control)
-{
-    return grobo_session_get_state(control->session) == GROBO_SESSION_UP;
 }
 
 /* ---- the target --------------------------------------------------------------------------- */
 
-/* On the loop: sends the target when the robot is free for it. */
-int grobo_i_control_send_target(grobo_control *control, void *arg)
+int grobo_i_control_move(grobo_control *control, const grobo_posture *target)
 {
-    grobo_posture target;
-    bool wanted;
-    int r;
+    grobo_robot *robot = control_robot(control);
+    int number = grobo_robot_retarget(robot, target);
 
-    (void)arg;
-    grobo_i_control_lock(control);
-    wanted = control->move_wanted;
-    target = control->target;
-    grobo_i_control_unlock(control);
-    if (!wanted) {
-        return GROBO_OK;
+    if (number < 0) { /* no move is under way, or it has other joints */
+        number = grobo_robot_move(robot, target);
     }
-    if (is_up(control) && is_at_work(control)) {
-        /* The target before it makes way once it was sent; anything else comes to its end. */
-        r = control->move_job != 0
-                ? grobo_robot_retarget(grobo_session_robot(control->session), &target)
-                : GROBO_ERR_STATE;
-        if (r < 0) {
-            return CALL_PENDING;
-        }
-    } else {
-        r = is_up(control) ? grobo_robot_move(grobo_session_robot(control->session), &target)
-                           : GROBO_ERR_UNPLUGGED;
+    if (number < 0) {
+        return number;
     }
-    if (r > 0) {
-        control->move_job = r;
-    }
-    grobo_i_control_lock(control);
-    control->move_wanted = false;
-    control->motion_result = r < 0 ? r : control->motion_result;
-    grobo_i_control_unlock(control);
+    note(control, &control->move_job, number);
     return GROBO_OK;
 }
 
@@ -74,7 +76,6 @@ void grobo_i_control_release_clip(grobo_control *control)
 
 static void end_play(grobo_control *control, int result)
 {
-    control->play_job = 0;
     grobo_i_control_release_clip(control);
     grobo_i_control_lock(control);
     control->play = PLAY_NONE;
@@ -82,53 +83,30 @@ static void end_play(grobo_control *control, int result)
     grobo_i_control_unlock(control);
 }
 
-static int begin_play(grobo_control *control)
+int grobo_i_control_play(grobo_control *control, const grobo_play_options *options)
 {
+    grobo_robot *robot = control_robot(control);
+    grobo_clip_options clip_options = {.default_us = options->default_time_us};
     grobo_posture start;
-    grobo_clip_options options = {.default_us = control->play_options.default_time_us};
-    int r;
 
     /* By keys the sequencer counts a motion of increments from where the robot is then. */
-    if (control->play_options.mode == GROBO_PLAY_RATE &&
-        grobo_robot_posture(control_robot(control), GROBO_NEVER_US, &start) > 0) {
-        options.start = &start;
+    if (options->mode == GROBO_PLAY_RATE &&
+        grobo_robot_posture(robot, GROBO_NEVER_US, &start) > 0) {
+        clip_options.start = &start;
     }
-    r = grobo_motion_clip(control->playing, &options, &control->clip);
-    if (r >= 0) {
-        control->play_error = GROBO_OK;
-        r = grobo_robot_play(grobo_session_robot(control->session), &control->clip,
-                             &control->play_options);
+    control->play_error = GROBO_OK;
+    int number = grobo_motion_clip(control->playing, &clip_options, &control->clip);
+    if (number >= 0) {
+        number = grobo_robot_play(robot, &control->clip, options);
     }
-    if (r > 0) {
-        control->play_job = r;
+    if (number < 0) {
+        end_play(control, number);
+        return number;
     }
-    return r;
-}
-
-/* On the loop: begins to play when the robot is free for it. */
-int grobo_i_control_start_play(grobo_control *control, void *arg)
-{
-    bool wanted;
-    int r;
-
-    (void)arg;
-    grobo_i_control_lock(control);
-    wanted = control->play == PLAY_WANTED;
-    grobo_i_control_unlock(control);
-    if (!wanted) {
-        return GROBO_OK;
-    }
-    if (is_up(control) && is_at_work(control)) {
-        return CALL_PENDING;
-    }
-    /* From here on a callback that stops the robot must not free what is played. */
+    note(control, &control->play_job, number);
     grobo_i_control_lock(control);
     control->play = PLAY_BEGUN;
     grobo_i_control_unlock(control);
-    r = is_up(control) ? begin_play(control) : GROBO_ERR_UNPLUGGED;
-    if (r < 0) {
-        end_play(control, r);
-    }
     return GROBO_OK;
 }
 
@@ -155,56 +133,11 @@ static int play_result(grobo_control *control)
 
 void grobo_i_control_look_at_play(grobo_control *control)
 {
-    bool begun;
-
     grobo_i_control_lock(control);
-    begun = control->play == PLAY_BEGUN;
+    bool prepared = control->play == PLAY_BEGUN && control->play_job == 0;
+    int error = control->play_error;
     grobo_i_control_unlock(control);
-    if (begun && control->play_job == 0 && !grobo_robot_is_playing(control_robot(control))) {
-        end_play(control, control->play_error < 0 ? control->play_error : play_result(control));
-    }
-}
-
-/* ---- stopping, waiting -------------------------------------------------------------------- */
-
-static bool forget(grobo_control *control, bool move, bool play)
-{
-    grobo_i_control_lock(control);
-    move = move && control->move_wanted;
-    play = play && control->play == PLAY_WANTED;
-    control->move_wanted = control->move_wanted && !move;
-    grobo_i_control_unlock(control);
-    if (play) {
-        end_play(control, GROBO_ERR_CANCELED);
-    } else if (move) {
-        set_result(control, GROBO_ERR_CANCELED);
-    }
-    return move || play;
-}
-
-bool grobo_i_control_forget(grobo_control *control)
-{
-    return forget(control, true, true);
-}
-
-/* The counts wrap around. */
-static bool is_before(unsigned asked, unsigned obeyed)
-{
-    return (int)(obeyed - asked) > 0;
-}
-
-void grobo_i_control_forget_stopped(grobo_control *control)
-{
-    unsigned obeyed = control->session->obeyed;
-    bool move;
-    bool play;
-
-    if (obeyed != control->obeyed) {
-        control->obeyed = obeyed;
-        grobo_i_control_lock(control);
-        move = is_before(control->move_after, obeyed);
-        play = is_before(control->play_after, obeyed);
-        grobo_i_control_unlock(control);
-        (void)forget(control, move, play);
+    if (prepared && !grobo_robot_is_playing(control_robot(control))) {
+        end_play(control, error < 0 ? error : play_result(control));
     }
 }

@@ -79,7 +79,7 @@ static int configure(grobo_control *control, void *arg)
 
 int grobo_control_set_default_time_us(grobo_control *control, int64_t time_us)
 {
-    grobo_robot_config change = {.default_time_us = time_us};
+    grobo_robot_config change = {GROBO_ROBOT_CONFIG_INIT, .default_time_us = time_us};
 
     return time_us < TIME_MIN_US || time_us > GROBO_PLAY_TIME_MAX_US
                ? GROBO_ERR_ARG
@@ -103,7 +103,7 @@ int64_t grobo_control_get_default_time_us(grobo_control *control)
 
 int grobo_control_set_sense_interval_us(grobo_control *control, int64_t interval_us)
 {
-    grobo_robot_config change = {.sense_interval_us = interval_us};
+    grobo_robot_config change = {GROBO_ROBOT_CONFIG_INIT, .sense_interval_us = interval_us};
 
     return interval_us <= 0 && interval_us != GROBO_SENSE_NEVER
                ? GROBO_ERR_ARG

@@ -2,6 +2,7 @@
 /* The life of a control, and its thread. */
 #include <string.h>
 
+#include "src/base/sized.h"
 #include "src/link/serial/loop.h"
 #include "src/link/session/session.h"
 #include "src/link/thread/thread.h"
@@ -34,7 +35,6 @@ static void look_for_owner(grobo_control *control, int64_t now_us)
     }
     grobo_i_control_unlock(control);
     if (lost && !grobo_i_control_has_exited(control)) {
-        (void)grobo_i_control_forget(control);
         (void)grobo_session_post_exit(control->session, GROBO_EXIT_DEFAULT);
     }
 }
@@ -320,6 +320,9 @@ static int make_parts(grobo_control *control, const grobo_control_config *config
         r = copy_names(control, config);
     }
     if (r >= 0) {
+        r = grobo_i_control_ring_new(control, config->events);
+    }
+    if (r >= 0) {
         set_postures(control);
         r = grobo_motion_new(&control->motion, GROBO_MOTION_POSTURES,
                              control->driver->model->n_joints, control->mem);
@@ -329,13 +332,9 @@ static int make_parts(grobo_control *control, const grobo_control_config *config
 
 static void fill(grobo_control *control, const grobo_control_config *config)
 {
-    control->user = config->session;
-    control->mem = config->session.mem;
-    control->driver = config->session.driver != NULL ? config->session.driver
-                                                     : grobo_gr001_driver(GROBO_WIRING_BOARD);
-    if (config->session.robot != NULL) {
-        control->robot_config = *config->session.robot;
-    }
+    control->mem = control->user.mem;
+    control->driver = control->user.driver != NULL ? control->user.driver
+                                                   : grobo_gr001_driver(GROBO_WIRING_BOARD);
     control->on_svc = config->on_svc;
     control->owner_timeout_us = config->owner_timeout_us;
     control->skip_exit = config->skip_exit;
@@ -344,6 +343,7 @@ static void fill(grobo_control *control, const grobo_control_config *config)
         config->control_period_us != 0 ? config->control_period_us : GROBO_CONTROL_PERIOD_US;
     control->tick_us = GROBO_NEVER_US;
     control->called_us = grobo_now_us();
+    control->event_socket[0] = control->event_socket[1] = GROBO_SOCKET_NULL;
 }
 
 static void destroy(grobo_control *control)
@@ -355,6 +355,7 @@ static void destroy(grobo_control *control)
     }
     grobo_i_control_release_clip(control);
     grobo_motion_free(control->motion);
+    grobo_i_control_ring_free(control);
     grobo_cond_deinit(&control->changed);
     grobo_mutex_deinit(&control->lock);
     grobo_mutex_deinit(&control->engine);
@@ -381,25 +382,38 @@ static int make_locks(grobo_control *control)
     return GROBO_ERR_NOMEM;
 }
 
+static bool is_sound(const grobo_control_config *config)
+{
+    return config->owner_timeout_us >= 0 && config->timeout_us >= 0 &&
+           config->events <= GROBO_CONTROL_EVENTS_MAX &&
+           (config->control_period_us == 0 || is_period(config->control_period_us));
+}
+
 int grobo_control_new(const grobo_control_config *config, grobo_control **control)
 {
+    grobo_control_config taken;
+    grobo_session_config session;
+    grobo_robot_config robot;
     grobo_control *made;
     int r;
 
-    if (config == NULL || control == NULL || config->session.base != NULL ||
-        config->owner_timeout_us < 0 || config->timeout_us < 0 ||
-        (config->control_period_us != 0 && !is_period(config->control_period_us))) {
+    if (control == NULL || grobo_i_sized_take(&taken, sizeof taken, config) < 0 ||
+        !is_sound(&taken) || grobo_i_sized_take(&session, sizeof session, taken.session) < 0 ||
+        session.base != NULL || grobo_i_sized_take(&robot, sizeof robot, session.robot) < 0) {
         return GROBO_ERR_ARG;
     }
-    made = grobo_i_new(config->session.mem, sizeof *made);
+    made = grobo_i_new(session.mem, sizeof *made);
     if (made == NULL) {
         return GROBO_ERR_NOMEM;
     }
     r = make_locks(made);
     if (r < 0) {
-        grobo_i_free(config->session.mem, made, sizeof *made);
+        grobo_i_free(session.mem, made, sizeof *made);
         return r;
     }
+    config = &taken;
+    made->user = session;
+    made->robot_config = robot;
     fill(made, config);
     r = make_parts(made, config);
     made->user.device = NULL;

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The inside of a grobo_control, each file below the next: wake.c the lock and who is in a round,
- * events.c what the loop is told, play.c what it has the robot do, call.c its rounds and the calls
- * of threads, state.c, line.c and motion.c the functions, thread.c its life.
+ * ring.c what is kept for who looks on, play.c what it has the engine do, events.c what the loop is
+ * told, call.c its rounds and the calls of threads, state.c, line.c and motion.c the functions,
+ * thread.c its life.
  *
  * `lock` guards what several threads touch; it is never held while anything is called that may
  * call back. What is marked 'loop' belongs to the thread that is in a round (`looping`), and goes
@@ -33,11 +34,10 @@ typedef enum call_state {
 /* A job of the engine that a thread waits for. */
 typedef struct control_job {
     int (*start)(grobo_control *control, struct control_job *job);
-    bool urgent;          /* must not be refused because too much is under way */
-    int number;           /* 0: not begun */
-    bool looked;          /* the loop has had its turn */
-    bool ended;           /* then: */
-    int result;           /* how */
+    bool urgent; /* must not be refused because too much is under way */
+    int number;  /* 0: not begun */
+    bool looked; /* the loop has had its turn */
+    bool ended;
     uint64_t seen_losses; /* of the line, when the call was made */
     int64_t begun_us;
     int64_t end_us;          /* when its caller stops waiting */
@@ -45,7 +45,6 @@ typedef struct control_job {
     grobo_sense_kind sense;
     grobo_torque torque;
     grobo_exit_policy policy;
-    grobo_posture *posture; /* SENSE: where the reading goes */
     size_t size;
     uint8_t frame[GROBO_CONTROL_COMMAND_BYTES];
 } control_job;
@@ -62,8 +61,14 @@ typedef struct control_slot {
     bool impatient; /* the caller wants to know when fn comes back */
 } control_slot;
 
-/* What is played. */
-typedef enum play_stage { PLAY_NONE = 0, PLAY_WANTED, PLAY_BEGUN } play_stage;
+/* Events of one sort, the oldest first. */
+typedef struct control_ring {
+    struct control_kept *kept; /* capacity of them */
+    size_t head, n;
+} control_ring;
+
+/* What is played; asked for: the engine has not taken it yet. */
+typedef enum play_stage { PLAY_NONE = 0, PLAY_ASKED, PLAY_BEGUN } play_stage;
 
 struct grobo_control {
     const grobo_mem *mem;
@@ -107,26 +112,31 @@ struct grobo_control {
 
     /* under lock, written on the loop or by who asks */
     bool up;
-    uint64_t losses; /* times the line was lost or closed */
-    bool move_wanted;
+    uint64_t losses;                              /* times the line was lost or closed */
+    grobo_event_job job_ends[GROBO_CONTROL_ENDS]; /* a ring */
+    unsigned next_end;
+    int move_job; /* number, 0 none */
     play_stage play;
-    unsigned move_after, play_after; /* grobo_i_session_asked() when these were asked for */
-    int motion_result;               /* of the last target or motion */
+    int play_job, play_error;
+    grobo_motion *playing; /* what the clip reads */
+    grobo_clip clip;
+    uint64_t play_postures; /* of all its passes */
+    int motion_result;      /* of the last target or motion */
+
+    /* under lock: what is kept for who looks on */
+    size_t capacity;             /* of each ring; 0: nothing is kept */
+    control_ring told, readings; /* the others, and JOINT and ROUND */
+    uint64_t event_number;       /* of the last event */
+    uint64_t taken_number;       /* of the last event taken */
+    bool readable;               /* the socket has its byte */
+    grobo_socket event_socket[2];
 
     /* loop */
     struct event_base *base;
     grobo_timer *timer;
-    int64_t tick_us;                              /* end of the control period */
-    grobo_session *session;                       /* set by grobo_control_new() for good */
-    unsigned obeyed;                              /* of the session, as of the last look at it */
-    int line_error;                               /* of the last event of the line */
-    grobo_event_job job_ends[GROBO_CONTROL_ENDS]; /* a ring */
-    unsigned next_end;
-    int move_job; /* number, 0 none */
-    int play_job, play_error;
-    grobo_motion *playing;           /* what the clip reads; under lock while PLAY_WANTED */
-    grobo_play_options play_options; /* as `playing` */
-    grobo_clip clip;
+    int64_t tick_us;                          /* end of the control period */
+    grobo_session *session;                   /* set by grobo_control_new() for good */
+    int line_error;                           /* of the last event of the line */
     bool exited;                              /* the exit policy is carried out */
     uint64_t exit_frames;                     /* and nothing was sent since these */
     uint8_t raw[GROBO_CONTROL_COMMAND_BYTES]; /* the command that is under way */
@@ -183,6 +193,15 @@ void grobo_i_control_sleep(grobo_control *control, int64_t end_us);
 /* With the lock: wakes everybody who sleeps. */
 void grobo_i_control_wake_all(grobo_control *control);
 
+/* ---- ring.c ---- */
+
+/* Makes and frees what keeps events. */
+int grobo_i_control_ring_new(grobo_control *control, size_t capacity);
+void grobo_i_control_ring_free(grobo_control *control);
+
+/* On the loop: keeps an event, where any are. */
+void grobo_i_control_keep(grobo_control *control, const grobo_control_event *event);
+
 /* ---- events.c ---- */
 
 /* The session's callbacks; their ctx is the control. */
@@ -200,18 +219,18 @@ bool grobo_i_control_has_exited(grobo_control *control);
 
 /* ---- play.c ---- */
 
-/* On the loop, posted: sends the target, begins to play, when the robot is free for it. */
-int grobo_i_control_send_target(grobo_control *control, void *arg);
-int grobo_i_control_start_play(grobo_control *control, void *arg);
+/* With the lock: how a job has ended; CALL_PENDING: its end was not told, or is forgotten. */
+int grobo_i_control_end_of_job(const grobo_control *control, int number);
+
+/* With the lock: a job has ended. */
+void grobo_i_control_end_job(grobo_control *control, const grobo_event_job *ended);
+
+/* Has the engine move to a posture, or play the motion that is `playing`. */
+int grobo_i_control_move(grobo_control *control, const grobo_posture *target);
+int grobo_i_control_play(grobo_control *control, const grobo_play_options *options);
 
 /* On the loop: looks whether what is played is over. */
 void grobo_i_control_look_at_play(grobo_control *control);
-
-/* On the loop: forgets what has not begun: it is canceled. @return true if there was something. */
-bool grobo_i_control_forget(grobo_control *control);
-
-/* The same of what was asked for before the requests to stop that the session has carried out. */
-void grobo_i_control_forget_stopped(grobo_control *control);
 
 /* Frees what was played. */
 void grobo_i_control_release_clip(grobo_control *control);
@@ -230,22 +249,12 @@ void grobo_i_control_end_calls(grobo_control *control);
 /* Hands over. */
 int grobo_i_control_call(grobo_control *control, grobo_control_fn fn, void *arg);
 
-/* The same, for what must not be refused because too much is under way. */
-int grobo_i_control_urgent_call(grobo_control *control, grobo_control_fn fn, void *arg);
-
 /* Hands over and waits; refused in a callback. */
 int grobo_i_control_wait(grobo_control *control, grobo_control_fn fn, void *arg,
                          int64_t timeout_us);
 
-/* With the lock: hands over without waiting. `users`: fn is the user's. */
-int grobo_i_control_post(grobo_control *control, grobo_control_fn fn, void *arg, bool users);
-
-/* Hands over a job, after those before it, and waits for its end. `fn` NULL: nothing besides. */
-int grobo_i_control_job(grobo_control *control, control_job *job, grobo_control_fn fn,
-                        int64_t timeout_us);
-
-/* On the loop: the function of a job. */
-int grobo_i_control_poll_job(grobo_control *control, void *arg);
+/* Hands over a job, after those before it, and waits for its end. */
+int grobo_i_control_job(grobo_control *control, control_job *job, int64_t timeout_us);
 
 /* ---- state.c ---- */
 

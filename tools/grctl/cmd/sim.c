@@ -137,6 +137,7 @@ static grobo_sim_config sim_config(const farm *f, int robot)
     const cli_value *baud = app_global(a, GLOBAL_BAUD), *wiring = app_global(a, GLOBAL_WIRING);
     bool bus = app_option(a, OPT_SERVO)->given && !wiring->given;
     grobo_sim_config config = {
+        GROBO_SIM_CONFIG_INIT,
         .model = f->model,
         .wiring = bus ? GROBO_WIRING_BUS : (grobo_wiring)wiring->choice,
         .servos = app_option(a, OPT_SERVO)->given && !f->chain.only_rs30x ? f->chain.servos : NULL,
@@ -227,8 +228,8 @@ static int add_robot(farm *f, int robot)
 {
     const char *faults = app_option(f->a, OPT_FAULT)->text;
     grobo_sim_config sim = sim_config(f, robot);
-    grobo_sim_server_config config = {
-        .base = f->base, .sim = &sim, .on_tap = on_tap, .ctx = &f->watched[robot]};
+    grobo_sim_server_config config = {GROBO_SIM_SERVER_CONFIG_INIT, .base = f->base, .sim = &sim,
+                                      .on_tap = on_tap, .ctx = &f->watched[robot]};
     grobo_os_cause cause = {0};
     place at;
     int error = find_place(f->a, robot, &at, &config);

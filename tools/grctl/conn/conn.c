@@ -373,7 +373,8 @@ uint32_t conn_baud(const app *a)
 
 grobo_robot_config conn_robot_config(const app *a)
 {
-    grobo_robot_config config = {.readback_correction = a->robot && a->robot->offsets,
+    grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT,
+                                 .readback_correction = a->robot && a->robot->offsets,
                                  .sense_interval_us = GROBO_SENSE_NEVER};
     const cli_value *timeout = app_global(a, GLOBAL_TIMEOUT);
     const cli_value *retries = app_global(a, GLOBAL_RETRIES);
@@ -425,20 +426,16 @@ static int make_session(conn *c, const char *device, bool check)
     if (a->robot) {
         driver = trims_driver(&c->link->trims, driver, a->robot);
     }
-    grobo_session_config config = {.base = c->link->base,
-                                   .device = device,
-                                   .baud_bps = baud->given ? (int)baud->number : 0,
-                                   .driver = driver,
-                                   .driver_ctx = a->robot ? &c->link->trims : NULL,
-                                   .robot = &robot,
-                                   .scan = ports_of_auto(a),
-                                   .skip_check = !check,
-                                   .reconnect = a->reconnects,
-                                   .on_event = on_session,
-                                   .on_robot = on_robot,
-                                   .on_tap = on_tap,
-                                   .ctx = c->link,
-                                   .guard = guard_started()};
+    grobo_session_config config = {
+        GROBO_SESSION_CONFIG_INIT, .base = c->link->base,
+        .device = device,          .baud_bps = baud->given ? (int)baud->number : 0,
+        .driver = driver,          .driver_ctx = a->robot ? &c->link->trims : NULL,
+        .robot = &robot,           .scan = ports_of_auto(a),
+        .skip_check = !check,      .reconnect = a->reconnects,
+        .on_event = on_session,    .on_robot = on_robot,
+        .on_tap = on_tap,          .ctx = c->link,
+        .guard = guard_started(),
+    };
     config.guard_data = guard_data(a->robot, &config.guard_bytes);
     return grobo_session_new(&config, &c->link->session);
 }

@@ -63,7 +63,8 @@ static void on_stop(void *ctx, grobo_guard_cause cause, int result)
 
 int guard_main(void)
 {
-    static const grobo_guard_program program = {.driver = find_driver, .on_stop = on_stop};
+    static const grobo_guard_program program = {GROBO_GUARD_PROGRAM_INIT, .driver = find_driver,
+                                                .on_stop = on_stop};
     int error = grobo_guard_run(&program);
     if (error == GROBO_ERR_ARG || error == GROBO_ERR_UNSUPPORTED) {
         fprintf(stderr, "grctl: guard: is started by grctl itself, to stop a robot\n");
@@ -85,7 +86,8 @@ void guard_note_program(const char *argv0)
 void guard_start(const app *a, const char *device)
 {
     const char *chosen = getenv("GRCTL_GUARD");
-    grobo_guard_config config = {.program = chosen ? chosen : os_own_program(called)};
+    grobo_guard_config config = {GROBO_GUARD_CONFIG_INIT,
+                                 .program = chosen ? chosen : os_own_program(called)};
     if (guard || strcmp(device, GROBO_DEVICE_SIM) == 0 || !*config.program) {
         return;
     }

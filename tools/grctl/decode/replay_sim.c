@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* A trace against a fresh simulator: chunks as they were, at their times, in virtual time. */
-#include <grobo/sim.h>
+#include <grobo/sim_static.h>
 
 #include "tools/grctl/decode/replay.h"
 
@@ -82,7 +82,8 @@ static int on_chunk(void *ctx, const pcapng_chunk *chunk)
 int replay_to_sim(replay *r)
 {
     static stage s;
-    grobo_sim_config config = {.wiring = r->wiring, .baud_bps = (uint32_t)r->baud_bps};
+    grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .wiring = r->wiring,
+                               .baud_bps = (uint32_t)r->baud_bps};
     int error = grobo_sim_init(&s.sim, &config, 0);
     if (error) {
         return app_fail(r->a, EXIT_FILE, grobo_error_name(error),

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include <grobo/session.h>
+#include <grobo/sim_static.h>
 #include <grobo/static.h>
 
 #include "tools/grctl/conn/conn.h"
@@ -132,10 +133,10 @@ int play_dry_run(playlist *list, app *a)
 {
     static rehearsal r;
     grobo_wiring wiring = (grobo_wiring)app_global(a, GLOBAL_WIRING)->choice;
-    grobo_sim_config sim = {.wiring = wiring, .baud_bps = conn_baud(a)};
-    grobo_robot_config config = {.limit_policy = a->clamps ? GROBO_LIMIT_CLAMP : GROBO_LIMIT_REFUSE,
-                                 .sense_interval_us = GROBO_SENSE_NEVER,
-                                 .bus = {.baud_bps = conn_baud(a)}};
+    grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT, .wiring = wiring, .baud_bps = conn_baud(a)};
+    grobo_robot_config config = {
+        GROBO_ROBOT_CONFIG_INIT, .limit_policy = a->clamps ? GROBO_LIMIT_CLAMP : GROBO_LIMIT_REFUSE,
+        .sense_interval_us = GROBO_SENSE_NEVER, .bus = {.baud_bps = conn_baud(a)}};
     trace_line line = {.device = GROBO_DEVICE_SIM, .wiring = wiring};
     grobo_posture start;
     memset(&r, 0, sizeof r);

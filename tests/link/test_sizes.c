@@ -1,0 +1,210 @@
+/* SPDX-License-Identifier: MIT */
+/* Structures with a size: shorter ones of older programs, longer ones of newer, and nonsense. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+#include <event2/event.h>
+
+#include <grobo/grobo.h>
+#include <grobo/loop.h>
+#include <grobo/sim_static.h>
+#include <grobo/static.h>
+
+/* What takes a structure; each returns GROBO_OK and frees what it made. */
+static grobo_robot engine;
+static grobo_sim sim;
+static struct event_base *base;
+
+static int make_robot(const void *config)
+{
+    return grobo_robot_init(&engine, grobo_gr001_driver(GROBO_WIRING_BOARD), NULL, config, 0);
+}
+
+static int configure(const void *config)
+{
+    return grobo_robot_configure(&engine, config);
+}
+
+static int make_sim(const void *config)
+{
+    return grobo_sim_init(&sim, config, 0);
+}
+
+static int make_serial(const void *config)
+{
+    grobo_serial *made = NULL;
+    int r = grobo_serial_new(config, &made);
+    grobo_serial_free(made);
+    return r;
+}
+
+static int make_session(const void *config)
+{
+    grobo_session *made = NULL;
+    int r = grobo_session_new(config, &made);
+    grobo_session_free(made);
+    return r;
+}
+
+static int make_control(const void *config)
+{
+    grobo_control *made = NULL;
+    int r = grobo_control_new(config, &made);
+    (void)grobo_control_free(made);
+    return r;
+}
+
+static int make_server(const void *config)
+{
+    grobo_sim_server *made = NULL;
+    grobo_os_cause cause;
+    int r = grobo_sim_server_new(config, &made, &cause);
+    grobo_sim_server_free(made);
+    return r;
+}
+
+static int with_robot(const void *config)
+{
+    const grobo_session_config session = {GROBO_SESSION_CONFIG_INIT, .base = base,
+                                          .device = GROBO_DEVICE_SIM, .robot = config};
+    return make_session(&session);
+}
+
+static int with_sim(const void *config)
+{
+    const grobo_session_config session = {GROBO_SESSION_CONFIG_INIT, .base = base,
+                                          .device = GROBO_DEVICE_SIM, .sim = config};
+    return make_session(&session);
+}
+
+/* There is no such program, which is found out when the structure was taken. */
+static int start_guard(const void *config)
+{
+    grobo_guard *made = NULL;
+    int r = grobo_guard_new(config, &made);
+    grobo_guard_free(made);
+    return r == GROBO_ERR_NOENT || r == GROBO_ERR_UNSUPPORTED ? GROBO_OK : r;
+}
+
+static const grobo_session_config good_session = {GROBO_SESSION_CONFIG_INIT,
+                                                  .device = GROBO_DEVICE_SIM};
+
+static int for_each(void (*look)(int (*take)(const void *config), const void *good, size_t bytes))
+{
+    const grobo_robot_config robot = {GROBO_ROBOT_CONFIG_INIT};
+    const grobo_sim_config of_sim = {GROBO_SIM_CONFIG_INIT};
+    const grobo_serial_config serial = {GROBO_SERIAL_CONFIG_INIT};
+    const grobo_session_config session = {GROBO_SESSION_CONFIG_INIT, .base = base,
+                                          .device = GROBO_DEVICE_SIM};
+    const grobo_control_config control = {GROBO_CONTROL_CONFIG_INIT, .session = &good_session};
+    const grobo_sim_server_config server = {GROBO_SIM_SERVER_CONFIG_INIT, .base = base,
+                                            .no_pty = true, .tcp = "tcp:127.0.0.1:0"};
+    const grobo_guard_config guard = {GROBO_GUARD_CONFIG_INIT, .program = "/nowhere/guard"};
+
+    look(make_robot, &robot, sizeof robot);
+    look(configure, &robot, sizeof robot);
+    look(make_sim, &of_sim, sizeof of_sim);
+    look(make_serial, &serial, sizeof serial);
+    look(make_session, &session, sizeof session);
+    look(with_robot, &robot, sizeof robot);
+    look(with_sim, &of_sim, sizeof of_sim);
+    look(make_control, &control, sizeof control);
+    look(make_server, &server, sizeof server);
+    look(start_guard, &guard, sizeof guard);
+    return 10;
+}
+
+/* Room for a structure that is longer than today's. */
+static union {
+    size_t size;
+    int64_t aligned;
+    uint8_t bytes[4096];
+} own;
+
+static void put(const void *good, size_t bytes, size_t size)
+{
+    memset(&own, 0, sizeof own);
+    memcpy(&own, good, bytes);
+    own.size = size;
+}
+
+static void look_at_nonsense(int (*take)(const void *config), const void *good, size_t bytes)
+{
+    static const size_t sizes[] = {0, 1, sizeof(size_t), SIZE_MAX, SIZE_MAX / 2, 1u << 20};
+    for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
+        put(good, bytes, sizes[i]);
+        assert_int_equal(take(&own), GROBO_ERR_ARG);
+    }
+    put(good, bytes, bytes);
+    assert_int_equal(take(&own), GROBO_OK);
+}
+
+static void nonsense_is_refused(void **state)
+{
+    (void)state;
+    assert_int_equal(for_each(look_at_nonsense), 10);
+}
+
+static void look_at_longer(int (*take)(const void *config), const void *good, size_t bytes)
+{
+    put(good, bytes, bytes + 64);
+    assert_int_equal(take(&own), GROBO_OK);
+    own.bytes[bytes + 63] = 1;
+    assert_int_equal(take(&own), GROBO_ERR_ARG);
+    own.size = bytes + 63;
+    assert_int_equal(take(&own), GROBO_OK);
+}
+
+static void what_a_newer_program_sets_is_refused(void **state)
+{
+    (void)state;
+    assert_int_equal(for_each(look_at_longer), 10);
+}
+
+/* What is behind a shorter structure is not looked at. */
+static void fields_that_an_older_program_lacks_are_zero(void **state)
+{
+    grobo_robot_config robot = {GROBO_ROBOT_CONFIG_INIT, .speed_limit_pct = 50, .retries = 1000};
+    (void)state;
+    assert_int_equal(make_robot(&robot), GROBO_ERR_ARG); /* retries */
+    robot.size = offsetof(grobo_robot_config, retries);
+    assert_int_equal(make_robot(&robot), GROBO_OK);
+    assert_int_equal(engine.config.speed_limit_pct, 50);
+    robot.size = offsetof(grobo_robot_config, speed_limit_pct);
+    assert_int_equal(grobo_robot_configure(&engine, &robot), GROBO_OK);
+    assert_int_equal(engine.config.speed_limit_pct, 100);
+
+    grobo_control_config control = {GROBO_CONTROL_CONFIG_INIT, .session = &good_session};
+    control.events = SIZE_MAX;
+    assert_int_equal(make_control(&control), GROBO_ERR_ARG);
+    control.size = offsetof(grobo_control_config, events);
+    assert_int_equal(make_control(&control), GROBO_OK);
+}
+
+static int set_up(void **state)
+{
+    (void)state;
+    base = grobo_loop_new();
+    return base == NULL;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    event_base_free(base);
+    return 0;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(nonsense_is_refused),
+        cmocka_unit_test(what_a_newer_program_sets_is_refused),
+        cmocka_unit_test(fields_that_an_older_program_lacks_are_zero),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
