@@ -2,7 +2,7 @@
 /* The engine as firmware runs it: bytes and the time in, bytes and the next deadline out. */
 #include <stdio.h>
 
-#include <grobo/sim.h>
+#include <grobo/sim_static.h>
 #include <grobo/static.h>
 
 static grobo_robot robot; /* storage of the program: there is no heap */
@@ -22,7 +22,7 @@ static int64_t pump(int64_t now_us)
 
 int main(void)
 {
-    const grobo_sim_config config = {.model = &grobo_gr001_model};
+    const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT, .model = &grobo_gr001_model};
     grobo_posture target;
     grobo_posture_init_pose(&target, &grobo_gr001_model);
     if (grobo_sim_init(&sim, &config, 0) < 0 ||
