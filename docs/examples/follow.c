@@ -18,8 +18,9 @@ int main(int argc, char **argv)
     grobo_control *robots[2] = {NULL, NULL};
     int result = GROBO_OK;
     for (int i = 0; result >= 0 && i < 2; i++) {
-        const grobo_control_config config = {
-            GROBO_CONTROL_CONFIG_INIT, .session = {.device = argc > i + 1 ? argv[i + 1] : "sim"}};
+        const grobo_session_config session = {GROBO_SESSION_CONFIG_INIT,
+                                              .device = argc > i + 1 ? argv[i + 1] : "sim"};
+        const grobo_control_config config = {GROBO_CONTROL_CONFIG_INIT, .session = &session};
         result = grobo_control_new(&config, &robots[i]);
         result = result < 0 ? result : grobo_control_start_thread(robots[i]);
         result = result < 0 ? result : grobo_control_connect(robots[i], 0);

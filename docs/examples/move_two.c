@@ -6,8 +6,9 @@
 
 int main(int argc, char **argv)
 {
-    const grobo_control_config config = {GROBO_CONTROL_CONFIG_INIT,
-                                         .session = {.device = argc > 1 ? argv[1] : "sim"}};
+    const grobo_session_config session = {GROBO_SESSION_CONFIG_INIT,
+                                          .device = argc > 1 ? argv[1] : "sim"};
+    const grobo_control_config config = {GROBO_CONTROL_CONFIG_INIT, .session = &session};
     const grobo_model *model = &grobo_gr001_model;
     grobo_control *control;
     grobo_posture target;

@@ -26,8 +26,8 @@ static void on_robot(void *ctx, const grobo_event *event)
 int main(void)
 {
     struct event_base *base = grobo_loop_new();
-    grobo_session_config config = {GROBO_SESSION_CONFIG_INIT, .base = base, .ctx = base,
-                                   .device = "sim"};
+    grobo_session_config config = {GROBO_SESSION_CONFIG_INIT, .base = base, .ctx = base};
+    config.device = "sim";
     config.on_event = on_line;
     config.on_robot = on_robot;
     grobo_session *session = NULL;

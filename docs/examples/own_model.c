@@ -16,9 +16,9 @@ int main(int argc, char **argv)
     grobo_driver driver;
     grobo_posture target;
     grobo_control *control;
-    const grobo_control_config config = {
-        GROBO_CONTROL_CONFIG_INIT,
-        .session = {.device = argc > 1 ? argv[1] : "sim", .driver = &driver}};
+    const grobo_session_config session = {GROBO_SESSION_CONFIG_INIT,
+                                          .device = argc > 1 ? argv[1] : "sim", .driver = &driver};
+    const grobo_control_config config = {GROBO_CONTROL_CONFIG_INIT, .session = &session};
     if (grobo_rs30x_driver_init(&driver, &model, &grobo_rs30x_protocol) < 0 ||
         grobo_control_new(&config, &control) < 0) {
         return 1;

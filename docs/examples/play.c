@@ -6,11 +6,10 @@
 
 int main(int argc, char **argv)
 {
-    const grobo_control_config config = {
-        GROBO_CONTROL_CONFIG_INIT,
-        .session = {.device = argc > 2 ? argv[2] : "sim"},
-        .motion_dir = "motions",
-    };
+    const grobo_session_config session = {GROBO_SESSION_CONFIG_INIT,
+                                          .device = argc > 2 ? argv[2] : "sim"};
+    const grobo_control_config config = {GROBO_CONTROL_CONFIG_INIT, .session = &session,
+                                         .motion_dir = "motions"};
     const grobo_play_options options = {.speed_pct = 200};
     grobo_control *control;
     if (grobo_control_new(&config, &control) < 0) {

@@ -2,7 +2,7 @@
 /* The engine as firmware runs it: bytes and the time in, bytes and the next deadline out. */
 #include <stdio.h>
 
-#include <grobo/sim.h>
+#include <grobo/sim_static.h>
 #include <grobo/static.h>
 
 static grobo_robot robot; /* storage of the program: there is no heap */

@@ -6,11 +6,10 @@
 
 int main(int argc, char **argv)
 {
-    const grobo_control_config config = {
-        GROBO_CONTROL_CONFIG_INIT,
-        .session = {.device = argc > 1 ? argv[1] : "sim"},
-        .skip_exit = true,
-    };
+    const grobo_session_config session = {GROBO_SESSION_CONFIG_INIT,
+                                          .device = argc > 1 ? argv[1] : "sim"};
+    const grobo_control_config config = {GROBO_CONTROL_CONFIG_INIT, .session = &session,
+                                         .skip_exit = true};
     grobo_control *control;
     grobo_posture posture;
     if (grobo_control_new(&config, &control) < 0) {

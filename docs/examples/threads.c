@@ -16,8 +16,9 @@ static GROBO_THREAD_FUNC move(void *arg)
 
 int main(int argc, char **argv)
 {
-    const grobo_control_config config = {GROBO_CONTROL_CONFIG_INIT,
-                                         .session = {.device = argc > 1 ? argv[1] : "sim"}};
+    const grobo_session_config session = {GROBO_SESSION_CONFIG_INIT,
+                                          .device = argc > 1 ? argv[1] : "sim"};
+    const grobo_control_config config = {GROBO_CONTROL_CONFIG_INIT, .session = &session};
     grobo_control *control;
     grobo_thread mover;
     if (grobo_control_new(&config, &control) < 0) {

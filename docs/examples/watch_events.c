@@ -21,21 +21,19 @@ static void on_line(grobo_session *session, grobo_session_event event, int error
            event == GROBO_SESSION_EVENT_UP ? "up, " : "", grobo_error_text(error));
 }
 
-int main(int argc, char **argv)
+int main(void)
 {
-    grobo_control_config config = {GROBO_CONTROL_CONFIG_INIT,
-                                   .session = {.on_robot = on_robot, .on_event = on_line}};
-    config.session.device = argc > 1 ? argv[1] : "sim";
+    const grobo_session_config session = {GROBO_SESSION_CONFIG_INIT, .device = "sim",
+                                          .on_robot = on_robot, .on_event = on_line};
+    const grobo_control_config config = {GROBO_CONTROL_CONFIG_INIT, .session = &session};
     grobo_control *control;
     if (grobo_control_new(&config, &control) < 0) {
         return 1;
     }
-    int result = grobo_control_connect(control, 0);
-    if (result >= 0 && grobo_control_init_position(control) >= 0) {
+    if (grobo_control_connect(control, 0) >= 0 && grobo_control_init_position(control) >= 0) {
         (void)grobo_control_wait(control, 0);
-        result = grobo_control_estop(control);
+        (void)grobo_control_estop(control);
         (void)grobo_control_wait(control, 0);
     }
-    grobo_control_free(control);
-    return result < 0;
+    return grobo_control_free(control) < 0;
 }

@@ -14,9 +14,14 @@ int main(void)
         fprintf(stderr, "headers are %s, library is %s\n", GROBO_VERSION_STRING, grobo_version());
         return 1;
     }
+    grobo_session_config session;
     grobo_control_config config;
+    memset(&session, 0, sizeof session);
     memset(&config, 0, sizeof config);
-    config.session.device = "sim";
+    session.size = sizeof session;
+    session.device = "sim";
+    config.size = sizeof config;
+    config.session = &session;
     grobo_control *control = NULL;
     int result = grobo_control_new(&config, &control);
     if (result < 0 || grobo_control_free(control) < 0) {

@@ -45,7 +45,7 @@ refused() {
 }
 released() {
     release || { cat "$work/out"; return 1; }
-    [ "$(paste -sd ' ' "$work/make.log")" = 'check size dist dist' ] &&
+    [ "$(paste -sd ' ' "$work/make.log")" = 'check size check-abi dist dist' ] &&
         grep -q "sha256 $(sha256sum <"$work/build/libgrobo-$version.tar.gz" | cut -d ' ' -f 1)" \
             "$work/out"
 }
@@ -71,7 +71,7 @@ check 'refused: no section of the version' refused "CHANGELOG.md: no section \"#
 printf '\n## [%s] - 2026-01-01\n\n- A change.\n' "$version" >>CHANGELOG.md
 check 'refused: what is not committed' refused 'the tree has changes'
 commit 'a section'
-for step in check size; do
+for step in check size check-abi; do
     check "refused: make $step fails" env FAILS=$step sh -c \
         'MAKE=$1/make BUILD=$1/build sh tools/package/release.sh 2>&1 |
             grep "^release: make $FAILS failed" && [ ! -e "$1/build" ]' sh "$work"

@@ -64,7 +64,7 @@ refuse_if_missing
 
 # ---- what takes its time -------------------------------------------------------------------
 
-for step in check size; do
+for step in check size check-abi; do
     "$make" "$step" || misses "make $step failed"
     refuse_if_missing
 done
