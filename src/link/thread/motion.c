@@ -146,6 +146,7 @@ static int prepare_play(grobo_control *control, grobo_play_options *options)
     int r = grobo_motion_dup(control->motion, &control->playing);
     if (r >= 0) {
         control->play = PLAY_ASKED;
+        control->play_error = GROBO_OK;
         control->play_postures =
             grobo_motion_size(control->playing) * (uint64_t)grobo_play_passes(options->repeat);
     }

@@ -94,7 +94,6 @@ int grobo_i_control_play(grobo_control *control, const grobo_play_options *optio
         grobo_robot_posture(robot, GROBO_NEVER_US, &start) > 0) {
         clip_options.start = &start;
     }
-    control->play_error = GROBO_OK;
     int number = grobo_motion_clip(control->playing, &clip_options, &control->clip);
     if (number >= 0) {
         number = grobo_robot_play(robot, &control->clip, options);
