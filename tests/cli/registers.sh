@@ -73,6 +73,16 @@ check "doctor" both exits 0 of so101 doctor --- says 'all 6 answer'
 tell temperature 5 90
 check "doctor names one that is too hot" both exits 1 of so101 doctor --- \
     says 'wrist_roll .*\(is hot\|cut its torque for heat\)'
+check "a servo that is not there, and how long that took" fails 1 \
+    'no reply from servo 77 in [0-9.]* ms after 2 retries' of so101 servo-get 77
+check "decode knows the robot's servos and joints" both exits 0 \
+    "$GRCTL" --robot so101 decode FFFF0304023802BC FFFF0304000008F0 --- \
+    says '^servo 3 (elbow_flex) returns present_position 0.0 deg; sum F0 right$'
+of so101 --trace "$work/line" scan --last 2 >"$work/out" 2>"$work/err"
+check "also out of a trace" both exits 0 "$GRCTL" --robot so101 decode "$work/line" --- \
+    says 'robot    servo 1 (shoulder_pan) returns firmware 3, .*model STS3215; .*its request$'
+check "replay says that it cannot" fails 2 'replay: knows the frames of RS30x only' \
+    "$GRCTL" --robot so101 replay "$work/line"
 check_json "registers in JSON" 'lines[0]["model"] == "STS3215" and lines[0]["registers"] == [
     {"name": "max_position", "address": 11, "value": 4095, "unit": "0.088 deg",
      "max_position_deg": 179.9}]' of so101 --json servo-get 3 max_position

@@ -6,6 +6,7 @@
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/trace.h"
 #include "tools/grctl/decode/replay.h"
+#include "tools/grctl/servo/family.h"
 
 /* Line and clock of the trace, as its first chunk has them; options go before. */
 static void take_line(replay *r, const pcapng_chunk *chunk)
@@ -40,6 +41,12 @@ static int run(app *a)
     r.first_us = -1;
     if (strcmp(r.path, "-") == 0) {
         return app_fail(a, EXIT_USAGE, "ARG", "replay: a trace is read twice: name a file");
+    }
+    if (!family_is(app_driver(a), "rs30x")) {
+        return app_fail(a, EXIT_USAGE, "UNSUPPORTED",
+                        "replay: knows the frames of RS30x only, not those of %s; 'grctl decode' "
+                        "shows them",
+                        app_model(a)->name);
     }
     int status = replay_read(&r, take_first, &r);
     if (status > 0) {

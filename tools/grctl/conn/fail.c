@@ -102,7 +102,8 @@ bool conn_is_of_reply(int error)
 /* "no reply from WHO in 4.2 ms after 2 retries; ADVICE", and with -v the bytes. */
 static int fail_reply(conn *c, int error, int id, const char *prefix, const char *who)
 {
-    last_try last = last_frames_to(&c->last, id, grobo_now_us());
+    last_try last =
+        last_frames_to(&c->last, grobo_robot_driver(c->robot)->protocol, id, grobo_now_us());
     char took[48] = "", bytes[8 * LAST_FRAME_BYTES];
     int status;
     if (last.frame) {

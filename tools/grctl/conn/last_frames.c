@@ -37,9 +37,15 @@ const last_frame *last_frames_newest(const last_frames *all)
     return all->n > 0 ? &all->frame[(all->n - 1) % LAST_FRAMES] : NULL;
 }
 
-/* A packet to one servo, bare or in a frame of the board: FA AF ID. */
-static bool is_to(const last_frame *frame, int id)
+/* A request to one servo. Of RS30x those that want an ACK, too: FA AF ID, bare or in a frame of the
+ * board. */
+static bool is_to(const last_frame *frame, const grobo_protocol *protocol, int id)
 {
+    grobo_reply reply = {.kind = GROBO_REPLY_NONE};
+    if (protocol->reply_to(frame->sent, frame->n_sent, &reply) >= 0 &&
+        reply.kind == GROBO_REPLY_RETURN) {
+        return reply.id == id;
+    }
     for (size_t i = 0; i + 2 < frame->n_sent; i++) {
         if (frame->sent[i] == 0xfa && frame->sent[i + 1] == 0xaf) {
             return frame->sent[i + 2] == id;
@@ -53,7 +59,8 @@ static bool is_same(const last_frame *a, const last_frame *b)
     return a->n_sent == b->n_sent && memcmp(a->sent, b->sent, a->n_sent) == 0;
 }
 
-last_try last_frames_to(const last_frames *all, int id, int64_t now_us)
+last_try last_frames_to(const last_frames *all, const grobo_protocol *protocol, int id,
+                        int64_t now_us)
 {
     last_try found = {0};
     unsigned known = all->n < LAST_FRAMES ? all->n : LAST_FRAMES;
@@ -63,7 +70,7 @@ last_try last_frames_to(const last_frames *all, int id, int64_t now_us)
         if (found.frame && !is_same(frame, found.frame)) {
             break;
         }
-        if (!found.frame && is_to(frame, id)) {
+        if (!found.frame && is_to(frame, protocol, id)) {
             found.frame = frame;
             found.took_us = end_us - frame->at_us;
         }

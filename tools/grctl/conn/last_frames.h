@@ -33,7 +33,8 @@ void last_frames_note(last_frames *all, grobo_direction direction, int64_t now_u
 const last_frame *last_frames_newest(const last_frames *all);
 
 /* The last request to a servo of this id. */
-last_try last_frames_to(const last_frames *all, int id, int64_t now_us);
+last_try last_frames_to(const last_frames *all, const grobo_protocol *protocol, int id,
+                        int64_t now_us);
 
 /* "sent 53 0C FA AF ...; received nothing" */
 void last_frames_text(const last_frame *frame, char *text, size_t capacity);
