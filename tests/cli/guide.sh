@@ -17,7 +17,7 @@ awk -v desk="$work/desk" -v commands="$work/commands" -v python=$python '
     /^<!-- run python3 -->/ && python { file = commands }
     /^```/ { open = !open && file != ""; if (!open) { close(file); file = "" }; next }
     open { print >>file }' docs/guide/motions.md docs/guide/whole-body.md \
-    docs/guide/scripts.md
+    docs/guide/scripts.md docs/guide/own-robot.md
 
 check "the guide has commands and a file" [ -s "$work/commands" ] && [ -s "$work/desk/no.pseq" ]
 PATH=$work/bin:$PATH

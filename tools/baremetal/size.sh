@@ -44,7 +44,8 @@ families='bus/several servo/dxl1/driver servo/dxl1/packet servo/dxl1/protocol se
     servo/ics/packet servo/lx16a/packet servo/registers servo/table/driver servo/table/inspect
     servo/table/reading servo/table/values robots/driver robots/family_dxl1 robots/family_dxl2
     robots/family_feetech robots/family_rs30x robots/koch robots/koch_leader
-    robots/openmanipulator_x robots/pan_tilt robots/shipped robots/so101 robots/so101_leader sim/dxl sim/dxl1 sim/dxl2'
+    robots/openmanipulator_x robots/pan_tilt robots/shipped robots/so101 robots/so101_leader
+    sim/dxl sim/dxl1 sim/dxl2'
 
 # figure CPU NAME BYTES: notes it, and prints it beside the one that was kept.
 figure() {

@@ -32,7 +32,7 @@ typedef struct config_robot {
     char name[CONFIG_NAME_BYTES]; /* "": none is configured */
     char path[CONFIG_PATH_BYTES]; /* the file that has it */
     char device[GROBO_DEVICE_MAX_BYTES];
-    char def[CONFIG_PATH_BYTES]; /* "": it says nothing of which robot it is */
+    char def[CONFIG_PATH_BYTES];           /* "": it says nothing of which robot it is */
     cli_value wiring, echo, baud, on_exit; /* as options of the command line */
     double trim_deg[GROBO_JOINTS_MAX];
     double offset_deg[GROBO_JOINTS_MAX];

@@ -124,25 +124,38 @@ static int make_driver(app *a, const char *name)
     return error ? app_fail_error(a, EXIT_FILE, error, "%s", name) : 0;
 }
 
-int robot_choose(app *a)
+/* What the robot is called, and by whom: "" where that is said already. */
+static const char *name_of(const app *a, const char **whose)
 {
     const cli_value *option = app_global(a, GLOBAL_ROBOT);
     const char *fallback = getenv("GRCTL_ROBOT");
-    const char *configured = a->robot && *a->robot->def ? a->robot->def : NULL;
-    const char *name = option->given                  ? option->text
-                       : configured                   ? configured
-                       : fallback && *fallback        ? fallback
-                                                      : "gr001";
-    char complaint[APP_LINE_BYTES];
+    *whose = "";
+    if (option->given) {
+        return option->text;
+    }
+    if (a->robot && *a->robot->def) {
+        return a->robot->def;
+    }
+    if (!fallback || !*fallback) {
+        return grobo_robot_defs[0]->name;
+    }
+    *whose = "$GRCTL_ROBOT: ";
+    return fallback;
+}
+
+int robot_choose(app *a)
+{
+    char complaint[APP_LINE_BYTES - 32];
+    const char *whose, *name = name_of(a, &whose);
+    const char *configured = a->robot && *a->robot->def ? a->robot->def : grobo_robot_defs[0]->name;
     a->def = robot_find(name, complaint, sizeof complaint);
     if (!a->def) {
         return app_fail(a, is_path(name) ? EXIT_FILE : EXIT_USAGE,
-                        is_path(name) ? "SYNTAX" : "NOTFOUND", "%s%s",
-                        option->given || is_path(name) ? "" : "$GRCTL_ROBOT: ", complaint);
+                        is_path(name) ? "SYNTAX" : "NOTFOUND", "%s%s", whose, complaint);
     }
-    if (a->robot && option->given && strcmp(name, configured ? configured : "gr001") != 0) {
+    if (a->robot && app_global(a, GLOBAL_ROBOT)->given && strcmp(name, configured) != 0) {
         return app_fail(a, EXIT_USAGE, "ARG", "--robot %s: %s of %s is another robot: %s", name,
-                        a->robot->name, a->robot->path, configured ? configured : "gr001");
+                        a->robot->name, a->robot->path, configured);
     }
     a->def_name = name;
     return make_driver(a, name);
@@ -179,8 +192,7 @@ const char *robot_path(const app *a)
 void robot_sim(const app *a, grobo_robot_sim *sim)
 {
     const cli_value *baud = app_global(a, GLOBAL_BAUD);
-    (void)grobo_robot_def_sim(robot_of(a), (grobo_wiring)app_global(a, GLOBAL_WIRING)->choice,
-                              sim);
+    (void)grobo_robot_def_sim(robot_of(a), (grobo_wiring)app_global(a, GLOBAL_WIRING)->choice, sim);
     if (baud->given) {
         sim->config.baud_bps = (uint32_t)baud->number;
     }

@@ -47,6 +47,17 @@ static bool is_echo_alone(const app *a)
     return app_global(a, GLOBAL_ECHO)->given && app_global(a, GLOBAL_WIRING)->choice == 0;
 }
 
+/* By configuration and options. A stop goes on with what could be found. */
+static int find_robot(app *a)
+{
+    int status = config_apply(a);
+    if (!status || a->hushed) {
+        int chosen = robot_choose(a);
+        status = status ? status : chosen;
+    }
+    return status;
+}
+
 /* The first signal to a command that stops the robot. */
 static volatile sig_atomic_t noted;
 static volatile sig_atomic_t is_over;
@@ -83,10 +94,7 @@ static int stop_first(app *a, const char *complaint, int (*prepare)(void *ctx, a
         suspend_by(SIG_IGN);
     }
     a->hushed = hushed;
-    int later = a->link ? EXIT_DONE : config_apply(a);
-    if (!a->link && robot_choose(a) && !later) {
-        later = EXIT_USAGE;
-    }
+    int later = a->link ? EXIT_DONE : find_robot(a);
     if (prepare && !later) {
         later = prepare(ctx, a);
     }
@@ -134,7 +142,7 @@ static int run_without_robot(app *a)
 static int run_command(app *a, int (*prepare)(void *ctx, app *a), void *ctx)
 {
     int status;
-    if (!a->link && ((status = config_apply(a)) != 0 || (status = robot_choose(a)) != 0)) {
+    if (!a->link && (status = find_robot(a)) != 0) {
         return status;
     }
     if (is_echo_alone(a)) {

@@ -160,6 +160,7 @@ const cli_command cmd_calibrate = {
         "  robots:\n"
         "    kitchen:\n"
         "      device: /dev/serial/by-id/usb-FTDI_FT232R-if00-port0\n"
+        "      robot: gr001           # or another name, or a file\n"
         "      wiring: board          # or bus; and echo: true if its adapter has one\n"
         "      baud: 115200\n"
         "      on_exit: hold          # or off, sit: where a motion is cut short\n"

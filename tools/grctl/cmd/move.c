@@ -219,10 +219,11 @@ const cli_command cmd_pose = {
     .name = "pose",
     COMMAND_ARGUMENTS("DEG... | JOINT=DEG... | @FILE[:N]", 1, -1, CLI_ARG_JOINT),
     .summary = "move many joints at once",
-    .details = "Moves all joints (an angle each in the order of the motors, of GR001 20, as a line of a .m\n"
-               "file has them), those named, or to posture N of a motion file (the first). All\n"
-               "start and arrive together. An angle outside a joint's limits is refused with\n"
-               "exit status 4, and nothing moves.\n",
+    .details =
+        "Moves all joints (an angle each in the order of the motors, as a line of a .m file\n"
+        "has them), those named, or to posture N of a motion file (the first). All\n"
+        "start and arrive together. An angle outside a joint's limits is refused with\n"
+        "exit status 4, and nothing moves.\n",
     .example = "  grctl pose R_ELBOW_P=-45 L_ELBOW_P=45\n"
                "  grctl pose --time 3000 @motions/greet.pseq:2\n",
     COMMAND_OPTIONS(pose_options),

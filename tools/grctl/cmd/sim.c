@@ -80,7 +80,7 @@ typedef struct farm {
     grobo_sim_server *server[ROBOTS_MAX];
     watched watched[ROBOTS_MAX];
     sim_console console;
-    sim_chain chain; /* of --servo */
+    sim_chain chain;       /* of --servo */
     grobo_robot_sim robot; /* where it is no chain */
     const grobo_model *model;
     int n;
@@ -399,10 +399,11 @@ const cli_command cmd_sim = {
     .arguments = "",
     .summary = "a simulated robot behind a pty, for any program",
     .details =
-        "Runs a simulated robot (GR001, or that of --robot), or a chain of servos, until a signal.\n"
-        "Prints the path of its pty, one line a robot, when it can be opened; where there are no ptys (Windows) that of\n"
-        "its TCP port. The robot is honest at register level and bytes take their time on the\n"
-        "wire; programs may come and go, it stays as they left it.\n"
+        "Runs a simulated robot (GR001, or that of --robot), or a chain of servos, until a\n"
+        "signal. Prints the path of its pty, one line a robot, when it can be opened; where\n"
+        "there are no ptys (Windows) that of its TCP port. The robot is honest at register\n"
+        "level and bytes take their time on the wire; programs may come and go, it stays as\n"
+        "they left it.\n"
         "\n"
         "With --strict each offence of a client is a line on standard error, with --json an\n"
         "object on standard output: a wrong sum, a value out of range or a read-only register,\n"

@@ -50,8 +50,8 @@ static const grobo_driver *find_driver(void *ctx, const char *name, grobo_wiring
         memcpy(&given, data, sizeof given);
         given.robot[sizeof given.robot - 1] = '\0';
     }
-    const grobo_driver *inner = *given.robot ? make_driver(&given, wiring)
-                                             : grobo_gr001_driver(wiring);
+    const grobo_driver *inner =
+        *given.robot ? make_driver(&given, wiring) : grobo_gr001_driver(wiring);
     if (!inner || strcmp(name, inner->name) != 0) {
         return NULL;
     }

@@ -6,9 +6,9 @@
 #include <grobo/port.h>
 
 #include "tools/grctl/cli/config.h"
-#include "tools/grctl/cli/robot.h"
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/joints.h"
+#include "tools/grctl/cli/robot.h"
 #include "tools/grctl/shell/shell.h"
 
 enum { CAPTURE_MS = 100, LONGEST_MS = 3600000, KNOWN_US = 2000000 };

@@ -36,7 +36,8 @@ void shell_begin(shell *s)
 
 static int prepare(void *ctx, app *a)
 {
-    static const int lines[] = {GLOBAL_DEVICE, GLOBAL_ROBOT, GLOBAL_BAUD, GLOBAL_WIRING, GLOBAL_ECHO};
+    static const int lines[] = {GLOBAL_DEVICE, GLOBAL_ROBOT, GLOBAL_BAUD, GLOBAL_WIRING,
+                                GLOBAL_ECHO};
     shell *s = ctx;
     bool touches = false;
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
