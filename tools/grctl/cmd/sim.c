@@ -414,9 +414,10 @@ const cli_command cmd_sim = {
     .summary = "a simulated robot behind a pty, for any program",
     .details =
         "Runs a simulated robot (GR001, or that of --robot), or a chain of servos, until a\n"
-        "signal. Prints the path of its pty, one line a robot, when it can be opened; where there\n"
-        "are no ptys (Windows) that of its TCP port. The robot is honest at register level and bytes take their time on the\n"
-        "wire; programs may come and go, it stays as they left it.\n"
+        "signal. Prints the path of its pty, one line a robot, when it can be opened; where\n"
+        "there are no ptys (Windows) that of its TCP port. The robot is honest at register\n"
+        "level and bytes take their time on the wire; programs may come and go, it stays as\n"
+        "they left it.\n"
         "\n"
         "With --strict each offence of a client is a line on standard error, with --json an\n"
         "object on standard output: a wrong sum, a value out of range or a read-only register,\n"
