@@ -640,6 +640,10 @@ int grobo_i_gate_leave(grobo_robot_slot *slot)
     bool again = slot->txn.sent_us >= 0;
     saying says;
     GROBO_ASSERT(slot->use != GROBO_I_USE_FREE && robot->link);
+    if (slot->order.deed == GROBO_I_DEED_NONE && slot->order.joints == 0) {
+        GROBO_ASSERT(slot->exchange.frame_bytes > 0);
+        return GROBO_OK; /* a reading: it tells no joint anything */
+    }
     int result = is_passed(robot, slot) ? GROBO_ERR_STALE
                                         : judge(robot, &slot->order, &slot->exchange, again, &says);
     if (result >= 0 && is_built(&slot->order)) {

@@ -104,10 +104,11 @@ bool grobo_robot_stops(const grobo_robot *robot, int64_t now_us)
     grobo_i_lock(robot);
     for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
         const grobo_robot_slot *slot = &robot->slots[i];
-        bool stops = slot->order.stops || (slot->txn.priority == GROBO_PRIORITY_STOP &&
-                                           slot->order.deed != GROBO_I_DEED_NONE);
-        waits =
-            waits || (slot->use != GROBO_I_USE_FREE && grobo_txn_is_pending(&slot->txn) && stops);
+        if (slot->use != GROBO_I_USE_FREE && grobo_txn_is_pending(&slot->txn)) {
+            waits = waits || slot->order.stops ||
+                    (slot->txn.priority == GROBO_PRIORITY_STOP &&
+                     slot->order.deed != GROBO_I_DEED_NONE);
+        }
     }
     waits = waits && robot->bus.active == NULL && grobo_bus_free_at(&robot->bus, now_us) <= now_us;
     grobo_i_unlock(robot);
