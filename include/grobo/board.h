@@ -107,6 +107,7 @@ typedef struct grobo_board_parser {
     /* private */
     uint32_t stall_us;
     int64_t last_us;
+    size_t whole; /* bytes with which the frame that has begun is whole; 0: not known */
 } grobo_board_parser;
 
 /** Makes a parser ready; stall_us 0: GROBO_BOARD_STALL_US. */

@@ -12,6 +12,16 @@ static int measure(const uint8_t *bytes, size_t n, unsigned accept)
     return grobo_board_peek(bytes, n, &frame);
 }
 
+/* Once a relay frame's payload starts like a packet, nothing but its end is looked for: whoever
+ * feeds it byte by byte need not have it measured each time. */
+static size_t whole_of(const grobo_framer *framer)
+{
+    bool relays = framer->buf[0] == 'S' || framer->buf[0] == 'T';
+    return relays && framer->used >= GROBO_BOARD_HEADER_BYTES + 2
+               ? (size_t)GROBO_BOARD_HEADER_BYTES + framer->buf[1]
+               : 0;
+}
+
 void grobo_board_parser_init(grobo_board_parser *parser, uint32_t stall_us)
 {
     if (parser == NULL) {
@@ -21,6 +31,7 @@ void grobo_board_parser_init(grobo_board_parser *parser, uint32_t stall_us)
     parser->stalls = 0;
     parser->stall_us = stall_us != 0 ? stall_us : GROBO_BOARD_STALL_US;
     parser->last_us = 0;
+    parser->whole = 0;
 }
 
 static void abandon_what_stands_still(grobo_board_parser *parser, int64_t now_us)
@@ -51,7 +62,12 @@ int grobo_board_parser_next(grobo_board_parser *parser, int64_t now_us, grobo_bo
         return GROBO_ERR_ARG;
     }
     abandon_what_stands_still(parser, now_us);
+    const grobo_framer *framer = &parser->framer;
+    if (!framer->ending && grobo_i_framer_pending(framer) < parser->whole) {
+        return 0;
+    }
     size_t size = grobo_i_framer_next(&parser->framer, measure, 0);
+    parser->whole = size == 0 ? whole_of(framer) : 0;
     if (size == 0) {
         return 0;
     }
@@ -70,5 +86,6 @@ void grobo_board_parser_reset(grobo_board_parser *parser)
 {
     if (parser != NULL) {
         grobo_i_framer_reset(&parser->framer);
+        parser->whole = 0;
     }
 }
