@@ -5,7 +5,7 @@
 #define GROBO_TEST_FAMILY_KIT_H
 
 #include <grobo/registers.h>
-#include <grobo/sim.h>
+#include <grobo/sim_static.h>
 #include <grobo/static.h>
 
 enum { FAMILY_JOINTS = 4, FAMILY_EVENTS = 64 };
