@@ -14,7 +14,7 @@
 #include <grobo/body_motion.h>
 #include <grobo/motion_io.h>
 #include <grobo/rs30x.h>
-#include <grobo/sim.h>
+#include <grobo/sim_static.h>
 #include <grobo/static.h>
 
 #include "tests/bench/bench.h"

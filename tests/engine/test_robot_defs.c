@@ -10,6 +10,7 @@
 #include <cmocka.h>
 
 #include <grobo/robot_file.h>
+#include <grobo/sim_static.h>
 #include <grobo/static.h>
 
 enum { S = 1000000 };

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include <grobo/robot_file.h>
+#include <grobo/sim_static.h>
 
 #define MUST(condition)                                                                            \
     do {                                                                                           \
