@@ -15,6 +15,9 @@ cat >"$work/rows" <<'END'
 0|len(lines[0]["servos"]) == 20|-d sim scan
 0|lines[0]["robot"] == "GR001"|-d sim info
 0|lines[0]["joints"][3]["name"] == "R_KNEE_P"|joints
+0|lines[0]["robots"][1]["name"] == "so101"|robot list
+0|lines[0]["safety"]["voltage_mv"] == 6000|robot show
+3|lines[0]["diagnostics"][0]["line"] == 3|robot check motions/greet.pseq
 0|lines[0]["joints"][0]["joint"] == 16 and lines[0]["joints"][0]["status"] == "ok"|-d sim status m5
 0|{"id": 5, "joint": 16, "name": "R_ELBOW_P"}.items() <= lines[0]["servos"][4].items()|-d sim scan
 0|len(lines[0]["joints"]) == 20 and "tx_frames" in lines[0]["link"]|-d sim status

@@ -4,7 +4,7 @@
 
 #include <grobo/version.h>
 
-#include "tools/grctl/cli/app.h"
+#include "tools/grctl/cli/robot.h"
 #include "tools/grctl/cli/run.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/guard.h"
@@ -24,6 +24,7 @@ int main(int argc, char **argv)
         return guard_main();
     }
     if (argc > 1 && strcmp(argv[1], "__complete") == 0) { /* by the script of a shell */
+        robot_of_words(&a, argc - 2, argv + 2);
         cli_print_completions(stdout, app_model(&a), argc - 2, argv + 2);
         return EXIT_DONE;
     }

@@ -49,7 +49,7 @@ const cli_value *app_global(const app *a, int i)
 
 const grobo_driver *app_driver(const app *a)
 {
-    return grobo_gr001_driver((grobo_wiring)app_global(a, GLOBAL_WIRING)->choice);
+    return a->driver ? a->driver : grobo_gr001_driver((grobo_wiring)app_global(a, GLOBAL_WIRING)->choice);
 }
 
 const grobo_model *app_model(const app *a)

@@ -16,6 +16,7 @@
 enum { APP_LINE_BYTES = 1024 };
 
 struct config_robot;
+struct grobo_robot_def;
 struct conn_link;
 
 typedef struct app {
@@ -23,6 +24,9 @@ typedef struct app {
     struct conn_link *link; /* the shell's, NULL: every command opens and closes its own */
     const struct grobo_motion *record; /* the shell's @record, or NULL */
     const struct config_robot *robot;  /* the configured one, or NULL */
+    const struct grobo_robot_def *def; /* see robot.h; NULL: not chosen yet, GR001 */
+    const grobo_driver *driver;        /* its; NULL: GR001's */
+    const char *def_name;              /* what names it */
     const char *nearest_device;        /* to a name that no robot has: a robot or word, or NULL */
     char place[128];                   /* "FILE:LINE: " of a script, for messages */
     bool json;

@@ -78,7 +78,8 @@ typedef enum cli_argument {
     CLI_ARG_JOINT,
     CLI_ARG_FILE,
     CLI_ARG_WORD,
-    CLI_ARG_DEVICE
+    CLI_ARG_DEVICE,
+    CLI_ARG_ROBOT
 } cli_argument;
 
 /* Its arguments: as help has them, how many (-1: any number), and what they are. */
@@ -105,6 +106,7 @@ typedef struct cli_command {
 /* Global options, in the order of cli_global_options[]. */
 enum {
     GLOBAL_DEVICE,
+    GLOBAL_ROBOT,
     GLOBAL_BAUD,
     GLOBAL_WIRING,
     GLOBAL_ECHO,

@@ -2,7 +2,7 @@
 /* What may stand next on a command line, by the tables of cli.h. */
 #include <string.h>
 
-#include <grobo/model.h>
+#include <grobo/robot_file.h>
 
 #include "tools/grctl/cli/cli.h"
 
@@ -53,6 +53,11 @@ void cli_offer_kind(const cli_offer *to, cli_argument kind)
         }
         for (int i = 0; i < model->n_joints; i++) {
             cli_offer_word(to, model->joints[i].name, "");
+        }
+        break;
+    case CLI_ARG_ROBOT:
+        for (int i = 0; grobo_robot_defs[i]; i++) {
+            cli_offer_word(to, grobo_robot_defs[i]->name, grobo_robot_defs[i]->title);
         }
         break;
     case CLI_ARG_DEVICE:
@@ -130,9 +135,10 @@ static cli_argument value_kind(const cli_option *option)
             return CLI_ARG_FILE;
         }
     }
-    return strcmp(option->value, "DEV") == 0    ? CLI_ARG_DEVICE
-           : strcmp(option->value, "LIST") == 0 ? CLI_ARG_JOINT
-                                                : CLI_ARG_NONE;
+    return strcmp(option->value, "DEV") == 0     ? CLI_ARG_DEVICE
+           : strcmp(option->value, "ROBOT") == 0 ? CLI_ARG_ROBOT
+           : strcmp(option->value, "LIST") == 0  ? CLI_ARG_JOINT
+                                                 : CLI_ARG_NONE;
 }
 
 /* The length of the words that the first argument is one of ("on|off|brake"), or 0. */
@@ -217,7 +223,7 @@ void cli_print_completions(FILE *to, const grobo_model *model, int n, char *cons
     }
     cli_offer offer = {.prefix = p.word + p.lead, .model = model, .found = print_found, .ctx = &p};
     cli_argument kind = cli_offer_at(&offer, &place);
-    if (kind == CLI_ARG_FILE || kind == CLI_ARG_DEVICE) {
+    if (kind == CLI_ARG_FILE || kind == CLI_ARG_DEVICE || kind == CLI_ARG_ROBOT) {
         fputs(":files\n", to);
     }
 }

@@ -11,6 +11,7 @@
 #include "tools/grctl/cli/config.h"
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/joints.h"
+#include "tools/grctl/cli/robot.h"
 #include "tools/grctl/os/node.h"
 #include "tools/grctl/os/os.h"
 
@@ -25,6 +26,7 @@ typedef struct reader {
     bool wants_default;
     char default_path[CONFIG_PATH_BYTES]; /* of the file that names the default */
     config_robot *robot;
+    const grobo_model *model; /* of the robot that is read */
     bool has_warn_fall, warn_fall;
     cli_guess guess; /* the robot whose name is nearest to the wanted one */
     char nearest[CONFIG_NAME_BYTES];
@@ -139,7 +141,7 @@ static int take_text(reader *r, char *text, size_t capacity)
 static int unknown_joint(reader *r, const char *name)
 {
     char text[2 * CONFIG_NAME_BYTES];
-    const char *nearest = joints_nearest(app_model(r->a), name, strlen(name), false);
+    const char *nearest = joints_nearest(r->model, name, strlen(name), false);
     snprintf(text, sizeof text, "no joint called '%.*s'%s%s%s", CONFIG_NAME_BYTES, name,
              nearest ? "; did you mean " : "", nearest ? nearest : "", nearest ? "?" : "");
     return complain(r, &r->event.start_mark, "%s", text);
@@ -158,7 +160,7 @@ static int take_degrees(reader *r, double *deg, size_t *at, size_t *at_end)
     *at = *at_end = r->event.start_mark.index;
     while (next(r) == 0 && r->event.type != YAML_MAPPING_END_EVENT) {
         const char *name = scalar(r);
-        int joint = name ? grobo_model_find_joint(app_model(r->a), name, strlen(name)) : -1;
+        int joint = name ? grobo_model_find_joint(r->model, name, strlen(name)) : -1;
         if (joint < 0) {
             return unknown_joint(r, name ? name : "");
         }
@@ -177,6 +179,33 @@ static int take_degrees(reader *r, double *deg, size_t *at, size_t *at_end)
     return r->status;
 }
 
+/* Which robot it is; a file may be named from the folder of the configuration. */
+static int take_def(reader *r)
+{
+    config_robot *robot = r->robot;
+    char complaint[APP_LINE_BYTES], name[CONFIG_PATH_BYTES];
+    if (take_text(r, name, sizeof name)) {
+        return r->status;
+    }
+    if (robot->trimmed || robot->offsets) {
+        return complain(r, &r->event.start_mark, "%s",
+                        "robot stands before trim and offset, which name its joints");
+    }
+    size_t folder = strcspn(name, "/\\.") < strlen(name) && name[0] != '/'
+                        ? (size_t)(strrchr(r->path, '/') ? strrchr(r->path, '/') + 1 - r->path : 0)
+                        : 0;
+    if ((size_t)snprintf(robot->def, sizeof robot->def, "%.*s%s", (int)folder, r->path, name) >=
+        sizeof robot->def) {
+        return complain(r, &r->event.start_mark, "%s", "a path that is too long");
+    }
+    const grobo_robot_def *def = robot_find(robot->def, complaint, sizeof complaint);
+    if (!def) {
+        return complain(r, &r->event.start_mark, "%s", complaint);
+    }
+    r->model = def->model;
+    return 0;
+}
+
 static int take_field(reader *r, const char *key)
 {
     config_robot *robot = r->robot;
@@ -187,6 +216,9 @@ static int take_field(reader *r, const char *key)
     }
     if (strcmp(key, "device") == 0) {
         return take_text(r, robot->device, sizeof robot->device);
+    }
+    if (strcmp(key, "robot") == 0) {
+        return take_def(r);
     }
     if (strcmp(key, "wiring") == 0) {
         return take_option(r, GLOBAL_WIRING, &robot->wiring);
@@ -208,9 +240,9 @@ static int take_field(reader *r, const char *key)
         robot->offsets = true;
         return take_degrees(r, robot->offset_deg, &at, &end);
     }
-    return complain(r, &r->event.start_mark,
-                    "no key '%s'; there are device, wiring, echo, baud, on_exit, trim, offset",
-                    key);
+    return complain(
+        r, &r->event.start_mark,
+        "no key '%s'; there are device, robot, wiring, echo, baud, on_exit, trim, offset", key);
 }
 
 /* The name of a robot lives no longer than its event: the nearest one is copied. */
@@ -233,6 +265,7 @@ static int take_robot(reader *r, const char *name)
     config_robot *kept = r->robot;
     yaml_mark_t at = r->event.start_mark;
     memset(&one, 0, sizeof one);
+    r->model = app_model(r->a);
     if (next(r)) {
         return r->status;
     }
@@ -331,9 +364,9 @@ static int find(reader *r)
 /* Commands that speak to no robot: a bad configuration does not keep them from working. */
 static bool is_offline(const cli_command *command)
 {
-    static const char *const names[] = {"ports",      "check",   "show",   "plot",
-                                        "convert",    "decode",  "sim",    "help",
-                                        "completion", "version", "budget", "joints"};
+    static const char *const names[] = {"ports",  "check",  "show", "plot",       "convert",
+                                        "decode", "sim",    "help", "completion", "version",
+                                        "budget", "joints", "robot"};
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         if (strcmp(command->name, names[i]) == 0) {
             return true;

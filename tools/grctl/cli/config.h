@@ -7,6 +7,7 @@
  *   robots:
  *     kitchen:
  *       device: /dev/serial/by-id/usb-...
+ *       robot: so101           # or a file; before trim and offset. Else gr001
  *       wiring: board          # or bus
  *       echo: false            # true: the bus's adapter returns what is sent
  *       baud: 115200
@@ -31,6 +32,7 @@ typedef struct config_robot {
     char name[CONFIG_NAME_BYTES]; /* "": none is configured */
     char path[CONFIG_PATH_BYTES]; /* the file that has it */
     char device[GROBO_DEVICE_MAX_BYTES];
+    char def[CONFIG_PATH_BYTES]; /* "": it says nothing of which robot it is */
     cli_value wiring, echo, baud, on_exit; /* as options of the command line */
     double trim_deg[GROBO_JOINTS_MAX];
     double offset_deg[GROBO_JOINTS_MAX];

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include <grobo/files.h>
+#include <grobo/robot_file.h>
 
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/os/os.h"
@@ -27,7 +28,15 @@ const char *file_error_text(int error)
 
 const grobo_model *file_model(const app *a, const grobo_motion *motion)
 {
-    return grobo_motion_is_for(motion, app_model(a)) ? app_model(a) : NULL;
+    if (grobo_motion_is_for(motion, app_model(a))) {
+        return app_model(a);
+    }
+    for (int i = 0; grobo_robot_defs[i] && !app_global(a, GLOBAL_ROBOT)->given; i++) {
+        if (grobo_motion_is_for(motion, grobo_robot_defs[i]->model)) {
+            return grobo_robot_defs[i]->model;
+        }
+    }
+    return NULL;
 }
 
 int file_fits(app *a, const char *path, const grobo_motion *motion)

@@ -16,7 +16,8 @@ int file_load(app *a, const char *path, const grobo_read_options *options, grobo
 
 /*
  * The model whose joints a motion's are: the robot's, unless the motion names another body or,
- * naming none, has more joints. NULL: none we know.
+ * naming none, has more joints; without --robot also that of a robot which the motion names. NULL:
+ * none we know.
  */
 const grobo_model *file_model(const app *a, const grobo_motion *motion);
 

@@ -15,6 +15,12 @@ const char *joints_nearest(const grobo_model *model, const char *name, size_t le
     return guess.best;
 }
 
+/* A joint to name in a message: of GR001 the right knee. */
+static int an_example(const grobo_model *model)
+{
+    return model->n_joints > 3 ? 3 : 0;
+}
+
 static int unknown(app *a, const char *what, const char *name, size_t length, bool groups)
 {
     const char *nearest = joints_nearest(app_model(a), name, length, groups);
@@ -22,10 +28,18 @@ static int unknown(app *a, const char *what, const char *name, size_t length, bo
         return app_fail(a, EXIT_USAGE, "NOTFOUND", "no %s called '%.*s'; did you mean %s?", what,
                         (int)length, name, nearest);
     }
+    const grobo_model *model = app_model(a);
+    char known[512] = "";
+    size_t used = 0;
+    for (int i = 0; i < model->n_groups && used < sizeof known; i++) {
+        used += (size_t)snprintf(known + used, sizeof known - used, "%s%s",
+                                 i ? " " : ", groups are ", model->groups[i].name);
+    }
+    int joint = an_example(model);
     return app_fail(a, EXIT_USAGE, "NOTFOUND",
-                    "no %s called '%.*s'; joints are named as R_KNEE_P, m12 or j3, groups are all "
-                    "body right_arm left_arm arms right_leg left_leg legs; see 'grctl joints'",
-                    what, (int)length, name);
+                    "no %s called '%.*s'; joints are named as %s, m%d or j%d%s; see 'grctl joints'",
+                    what, (int)length, name, model->joints[joint].name, model->joints[joint].motor,
+                    joint, known);
 }
 
 int joints_parse_all(app *a, int n, const char *const *names, grobo_joint_mask *joints)
@@ -86,14 +100,15 @@ int joints_parse_motion(app *a, const char *list, const grobo_model *model, int 
 int joints_parse_one(app *a, const char *name, size_t length, int *status)
 {
     int joint = grobo_model_find_joint(app_model(a), name, length);
+    const grobo_joint *like = &app_model(a)->joints[an_example(app_model(a))];
     grobo_joint_mask group;
     if (joint >= 0) {
         return joint;
     }
     if (grobo_model_find_joints(app_model(a), name, length, &group) >= 0) {
         *status = app_fail(a, EXIT_USAGE, "NOTFOUND",
-                           "'%.*s' is a group; one joint is wanted, named as R_KNEE_P, m12 or j3",
-                           (int)length, name);
+                           "'%.*s' is a group; one joint is wanted, named as %s, m%d or j%d",
+                           (int)length, name, like->name, like->motor, an_example(app_model(a)));
     } else {
         *status = unknown(a, "joint", name, length, false);
     }

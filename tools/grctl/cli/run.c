@@ -5,6 +5,7 @@
 
 #include "tools/grctl/cli/config.h"
 #include "tools/grctl/cli/output.h"
+#include "tools/grctl/cli/robot.h"
 #include "tools/grctl/cli/run.h"
 #include "tools/grctl/os/os.h"
 
@@ -83,6 +84,9 @@ static int stop_first(app *a, const char *complaint, int (*prepare)(void *ctx, a
     }
     a->hushed = hushed;
     int later = a->link ? EXIT_DONE : config_apply(a);
+    if (!a->link && robot_choose(a) && !later) {
+        later = EXIT_USAGE;
+    }
     if (prepare && !later) {
         later = prepare(ctx, a);
     }
@@ -130,7 +134,7 @@ static int run_without_robot(app *a)
 static int run_command(app *a, int (*prepare)(void *ctx, app *a), void *ctx)
 {
     int status;
-    if (!a->link && (status = config_apply(a)) != 0) {
+    if (!a->link && ((status = config_apply(a)) != 0 || (status = robot_choose(a)) != 0)) {
         return status;
     }
     if (is_echo_alone(a)) {

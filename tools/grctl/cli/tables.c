@@ -9,8 +9,10 @@ const cli_option cli_global_options[GLOBAL_COUNT] = {
     [GLOBAL_DEVICE] =
         OPTION_TEXT("device", 'd', "DEV",
                     "a port, auto, sim, tcp:HOST:PORT or a configured name; else $GRCTL_DEVICE"),
-    [GLOBAL_BAUD] =
-        OPTION_WHOLE("baud", 'b', "N", 9600, 4000000, "bits per second of the line (115200)"),
+    [GLOBAL_ROBOT] = OPTION_TEXT("robot", 0, "ROBOT",
+                                 "which robot, by its name or file (gr001); see 'grctl robot list'"),
+    [GLOBAL_BAUD] = OPTION_WHOLE("baud", 'b', "N", 9600, 4000000,
+                                 "bits per second of the line (the robot's)"),
     [GLOBAL_WIRING] = OPTION_CHOICE("wiring", 0, "board|bus",
                                     "through GR001's board, or servos straight on a bus"),
     [GLOBAL_ECHO] =

@@ -58,7 +58,8 @@ static void check_file(const app *a, const char *path, const order *o, grobo_dia
     size_t before = grobo_diagnostics_total(list, GROBO_SEVERITY_ERROR);
     int error = file_read(path, &read, list, &motion);
     if (!error) {
-        error = grobo_motion_check(motion, app_model(a), &check, list);
+        const grobo_model *model = file_model(a, motion);
+        error = grobo_motion_check(motion, model ? model : app_model(a), &check, list);
         if (error >= 0) {
             error = check_whole(a, motion, &o->body, &how, list);
         }

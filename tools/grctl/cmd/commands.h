@@ -12,6 +12,7 @@
     X(scan)                                                                                        \
     X(info)                                                                                        \
     X(joints)                                                                                      \
+    X(robot)                                                                                       \
     X(status)                                                                                      \
     X(monitor)                                                                                     \
     X(servo)                                                                                       \

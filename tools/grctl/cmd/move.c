@@ -162,12 +162,24 @@ static bool all_numbers(const app *a)
     return true;
 }
 
+/* The joint of the i-th motor, by their numbers. */
+static int joint_in_order(const grobo_model *model, int i)
+{
+    int motor = -1;
+    for (; i >= 0 && motor <= GROBO_SERVO_ID_MAX; i--) {
+        do {
+            motor++;
+        } while (motor <= GROBO_SERVO_ID_MAX && grobo_model_joint_of_motor(model, motor) < 0);
+    }
+    return grobo_model_joint_of_motor(model, motor);
+}
+
 /* Angles of all motors, in the order of their numbers, as a line of a .m file has them. */
 static int pose_of_motors(app *a, grobo_posture *target)
 {
     for (int i = 0; i < a->line.n_arguments; i++) {
         double deg;
-        int joint = grobo_model_joint_of_motor(app_model(a), i + 1);
+        int joint = joint_in_order(app_model(a), i);
         if (joint < 0 || !cli_read_number(a->line.argument[i], &deg)) {
             return app_fail(a, EXIT_USAGE, "ARG", "pose: '%s' is not an angle in degrees",
                             a->line.argument[i]);
@@ -205,9 +217,9 @@ static int run_pose(app *a)
 
 const cli_command cmd_pose = {
     .name = "pose",
-    COMMAND_ARGUMENTS("DEG x20 | JOINT=DEG... | @FILE[:N]", 1, -1, CLI_ARG_JOINT),
+    COMMAND_ARGUMENTS("DEG... | JOINT=DEG... | @FILE[:N]", 1, -1, CLI_ARG_JOINT),
     .summary = "move many joints at once",
-    .details = "Moves all joints (20 angles in the order of the motors 1..20, as a line of a .m\n"
+    .details = "Moves all joints (an angle each in the order of the motors, of GR001 20, as a line of a .m\n"
                "file has them), those named, or to posture N of a motion file (the first). All\n"
                "start and arrive together. An angle outside a joint's limits is refused with\n"
                "exit status 4, and nothing moves.\n",

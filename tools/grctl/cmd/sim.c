@@ -7,6 +7,7 @@
 
 #include "tools/grctl/cli/app.h"
 #include "tools/grctl/cli/output.h"
+#include "tools/grctl/cli/robot.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/trace.h"
 #include "tools/grctl/os/os.h"
@@ -80,6 +81,7 @@ typedef struct farm {
     watched watched[ROBOTS_MAX];
     sim_console console;
     sim_chain chain; /* of --servo */
+    grobo_robot_sim robot; /* where it is no chain */
     const grobo_model *model;
     int n;
     int signal;
@@ -135,21 +137,23 @@ static grobo_sim_config sim_config(const farm *f, int robot)
 {
     const app *a = f->a;
     const cli_value *baud = app_global(a, GLOBAL_BAUD), *wiring = app_global(a, GLOBAL_WIRING);
-    bool bus = app_option(a, OPT_SERVO)->given && !wiring->given;
-    grobo_sim_config config = {
-        .model = f->model,
-        .wiring = bus ? GROBO_WIRING_BUS : (grobo_wiring)wiring->choice,
-        .servos = app_option(a, OPT_SERVO)->given && !f->chain.only_rs30x ? f->chain.servos : NULL,
-        .families = f->chain.families,
-        .no_stops = app_option(a, OPT_NO_STOPS)->given > 0,
-        .baud_bps = baud->given ? (uint32_t)baud->number : 0,
-        .latency_us = (uint32_t)app_number(a, OPT_LATENCY, 0) * 1000,
-        .echo = app_global(a, GLOBAL_ECHO)->given > 0,
-        .unpaced = app_option(a, OPT_NO_PACING)->given > 0,
-        .seed = (uint32_t)app_number(a, OPT_SEED, 0) + (uint32_t)robot,
-        .baud_at_once = app_option(a, OPT_BAUD_AT_ONCE)->given > 0,
-        .start = (grobo_sim_start)app_option(a, OPT_START)->choice,
-    };
+    grobo_sim_config config = f->robot.config;
+    if (app_option(a, OPT_SERVO)->given) {
+        config = (grobo_sim_config){
+            .model = f->model,
+            .wiring = wiring->given ? (grobo_wiring)wiring->choice : GROBO_WIRING_BUS,
+            .servos = f->chain.only_rs30x ? NULL : f->chain.servos,
+            .families = f->chain.families,
+            .baud_bps = baud->given ? (uint32_t)baud->number : 0,
+        };
+    }
+    config.no_stops = app_option(a, OPT_NO_STOPS)->given > 0;
+    config.latency_us = (uint32_t)app_number(a, OPT_LATENCY, 0) * 1000;
+    config.echo = app_global(a, GLOBAL_ECHO)->given > 0;
+    config.unpaced = app_option(a, OPT_NO_PACING)->given > 0;
+    config.seed = (uint32_t)app_number(a, OPT_SEED, 0) + (uint32_t)robot;
+    config.baud_at_once = app_option(a, OPT_BAUD_AT_ONCE)->given > 0;
+    config.start = (grobo_sim_start)app_option(a, OPT_START)->choice;
     return config;
 }
 
@@ -340,7 +344,7 @@ static int serve(farm *f)
 static int check_families(const farm *f)
 {
     const app *a = f->a;
-    if (!app_option(a, OPT_SERVO)->given || f->chain.only_rs30x) {
+    if (app_option(a, OPT_SERVO)->given ? f->chain.only_rs30x : !f->robot.config.servos) {
         return 0;
     }
     if (app_option(a, OPT_STRICT)->given) {
@@ -373,6 +377,7 @@ static int run(app *a)
         status = app_fail_error(a, EXIT_ROBOT, GROBO_ERR_NOMEM, "sim");
     }
     f.model = app_model(a);
+    robot_sim(a, &f.robot);
     if (app_option(a, OPT_SERVO)->given && !status) {
         f.model = &f.chain.model;
         status = sim_chain_read(a, &f.chain, app_option(a, OPT_SERVO)->text);
@@ -394,8 +399,8 @@ const cli_command cmd_sim = {
     .arguments = "",
     .summary = "a simulated robot behind a pty, for any program",
     .details =
-        "Runs a simulated GR001, or a chain of servos, until a signal. Prints the path of its\n"
-        "pty, one line a robot, when it can be opened; where there are no ptys (Windows) that of\n"
+        "Runs a simulated robot (GR001, or that of --robot), or a chain of servos, until a signal.\n"
+        "Prints the path of its pty, one line a robot, when it can be opened; where there are no ptys (Windows) that of\n"
         "its TCP port. The robot is honest at register level and bytes take their time on the\n"
         "wire; programs may come and go, it stays as they left it.\n"
         "\n"
@@ -410,6 +415,7 @@ const cli_command cmd_sim = {
         "SERVO is a motor's number, a joint or a group; angles are the shaft's.\n"
         "\n" SIM_CONSOLE_HELP,
     .example = "  grctl sim --link /tmp/gr001\n"
+               "  grctl sim --robot so101 --link /tmp/arm\n"
                "  grctl sim --wiring bus --fault drop=0.01,flip=0.001 --seed 7\n"
                "  grctl sim --servo 1=RS304MD,2=RS302CD --no-stops --state servos.state\n",
     COMMAND_OPTIONS(options),

@@ -13,6 +13,11 @@ static int start(app *a, grobo_stored_kind kind, const char *what)
         number != (double)(int)number) {
         return app_fail(a, EXIT_USAGE, "ARG", "%s: '%s' is not a number from 0 to 255", what, text);
     }
+    if (!app_driver(a)->stored) {
+        return app_fail(a, EXIT_USAGE, grobo_error_name(GROBO_ERR_UNSUPPORTED),
+                        "%s: %s has no board here that keeps motions; 'grctl play' plays files",
+                        what, app_model(a)->name);
+    }
     int status = conn_open_to_move(&c, a);
     if (!status) {
         error =

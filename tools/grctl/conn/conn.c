@@ -368,7 +368,7 @@ static int fail_open(conn *c, int error)
 uint32_t conn_baud(const app *a)
 {
     const cli_value *baud = app_global(a, GLOBAL_BAUD);
-    return baud->given ? (uint32_t)baud->number : GROBO_BAUD_DEFAULT_BPS;
+    return baud->given ? (uint32_t)baud->number : robot_of(a)->baud_bps;
 }
 
 grobo_robot_config conn_robot_config(const app *a)
@@ -417,7 +417,7 @@ static int make_session(conn *c, const char *device, bool check)
     if (error) {
         return error;
     }
-    const cli_value *baud = app_global(a, GLOBAL_BAUD);
+    robot_sim(a, &c->link->sim);
     grobo_robot_config robot = conn_robot_config(a);
     robot.bus.echo = app_global(a, GLOBAL_ECHO)->given > 0;
     const grobo_driver *driver = app_driver(a);
@@ -426,10 +426,11 @@ static int make_session(conn *c, const char *device, bool check)
     }
     grobo_session_config config = {.base = c->link->base,
                                    .device = device,
-                                   .baud_bps = baud->given ? (int)baud->number : 0,
+                                   .baud_bps = (int)conn_baud(a),
                                    .driver = driver,
                                    .driver_ctx = a->robot ? &c->link->trims : NULL,
                                    .robot = &robot,
+                                   .sim = &c->link->sim.config,
                                    .scan = ports_of_auto(a),
                                    .skip_check = !check,
                                    .reconnect = a->reconnects,
@@ -438,7 +439,7 @@ static int make_session(conn *c, const char *device, bool check)
                                    .on_tap = on_tap,
                                    .ctx = c->link,
                                    .guard = guard_started()};
-    config.guard_data = guard_data(a->robot, &config.guard_bytes);
+    config.guard_data = guard_data(a, &config.guard_bytes);
     return grobo_session_new(&config, &c->link->session);
 }
 

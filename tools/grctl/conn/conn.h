@@ -10,7 +10,7 @@
 
 #include <grobo/session.h>
 
-#include "tools/grctl/cli/app.h"
+#include "tools/grctl/cli/robot.h"
 #include "tools/grctl/conn/last_frames.h"
 #include "tools/grctl/conn/trace.h"
 #include "tools/grctl/conn/trims.h"
@@ -36,6 +36,7 @@ typedef struct conn_link {
     int n_signals;
     grobo_session *session;
     trims trims;    /* its driver, for a configured robot */
+    grobo_robot_sim sim; /* of GROBO_DEVICE_SIM */
     conn *user;     /* the command that has it now, NULL between two */
     int signal;     /* the first signal that came between two commands, 0 none */
     int link_error; /* why the link is lost, 0 while it stands */

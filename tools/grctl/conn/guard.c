@@ -5,6 +5,7 @@
 #include <grobo/port.h>
 #include <grobo/session.h>
 
+#include "tools/grctl/cli/robot.h"
 #include "tools/grctl/conn/guard.h"
 #include "tools/grctl/conn/trims.h"
 #include "tools/grctl/os/os.h"
@@ -13,30 +14,50 @@
 static grobo_guard *guard;
 static const char *called = "grctl";
 
-/* Of a configured robot, as it goes to the guard. */
+/* Of a configured robot, or of another than GR001, as it goes to the guard. */
 typedef struct guard_robot {
+    char robot[ROBOT_PATH_BYTES - 64]; /* what robot_find() takes; "": GR001 */
+    bool trimmed;
     double trim_deg[GROBO_JOINTS_MAX];
     double offset_deg[GROBO_JOINTS_MAX];
     bool offsets;
 } guard_robot;
 
+_Static_assert(sizeof(guard_robot) <= GROBO_GUARD_DATA_BYTES, "the guard takes less");
+
 /* ---- its own process ------------------------------------------------------------------------ */
+
+/* Of a robot that is not GR001. */
+static const grobo_driver *make_driver(const guard_robot *given, grobo_wiring wiring)
+{
+    static grobo_driver made;
+    char complaint[APP_LINE_BYTES];
+    const grobo_robot_def *def = robot_find(given->robot, complaint, sizeof complaint);
+    return def && grobo_robot_def_driver(def, wiring, &made) == GROBO_OK ? &made : NULL;
+}
 
 static const grobo_driver *find_driver(void *ctx, const char *name, grobo_wiring wiring,
                                        const void *data, size_t bytes, void **driver_ctx)
 {
     static trims t;
     static config_robot robot;
-    guard_robot given;
-    const grobo_driver *inner = grobo_gr001_driver(wiring);
+    guard_robot given = {.trimmed = false};
     (void)ctx;
-    if (!inner || strcmp(name, inner->name) != 0 || (bytes && bytes != sizeof given)) {
+    if (bytes && bytes != sizeof given) {
         return NULL;
     }
-    if (!bytes) {
+    if (bytes) {
+        memcpy(&given, data, sizeof given);
+        given.robot[sizeof given.robot - 1] = '\0';
+    }
+    const grobo_driver *inner = *given.robot ? make_driver(&given, wiring)
+                                             : grobo_gr001_driver(wiring);
+    if (!inner || strcmp(name, inner->name) != 0) {
+        return NULL;
+    }
+    if (!given.trimmed) {
         return inner;
     }
-    memcpy(&given, data, sizeof given);
     memcpy(robot.trim_deg, given.trim_deg, sizeof robot.trim_deg);
     memcpy(robot.offset_deg, given.offset_deg, sizeof robot.offset_deg);
     robot.offsets = given.offsets;
@@ -104,17 +125,23 @@ grobo_guard *guard_started(void)
     return guard;
 }
 
-const void *guard_data(const config_robot *robot, size_t *bytes)
+const void *guard_data(const app *a, size_t *bytes)
 {
     static guard_robot given;
-    *bytes = robot ? sizeof given : 0;
-    if (!robot) {
+    const config_robot *robot = a->robot;
+    const char *path = robot_path(a);
+    *bytes = robot || *path ? sizeof given : 0;
+    if (*bytes == 0) {
         return NULL;
     }
     memset(&given, 0, sizeof given);
-    memcpy(given.trim_deg, robot->trim_deg, sizeof given.trim_deg);
-    memcpy(given.offset_deg, robot->offset_deg, sizeof given.offset_deg);
-    given.offsets = robot->offsets;
+    snprintf(given.robot, sizeof given.robot, "%s", path);
+    given.trimmed = robot != NULL;
+    if (robot) {
+        memcpy(given.trim_deg, robot->trim_deg, sizeof given.trim_deg);
+        memcpy(given.offset_deg, robot->offset_deg, sizeof given.offset_deg);
+        given.offsets = robot->offsets;
+    }
     return &given;
 }
 

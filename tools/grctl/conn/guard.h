@@ -27,7 +27,7 @@ void guard_start(const app *a, const char *device);
 grobo_guard *guard_started(void);
 
 /* What it needs to make the driver of a configured robot; *bytes 0 for one without trims. */
-const void *guard_data(const config_robot *robot, size_t *bytes);
+const void *guard_data(const app *a, size_t *bytes);
 
 /* After the session that has it was freed. */
 void guard_end(void);

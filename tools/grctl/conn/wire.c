@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include <math.h>
+#include <stdio.h>
 
 #include "tools/grctl/conn/wire.h"
 
@@ -90,7 +91,9 @@ int wire_measure(const grobo_driver *driver, int baud_bps, wire_cost *costs)
     if (error) {
         return error;
     }
-    costs[WIRE_MOTION] = (wire_cost){.name = "motion, 20 joints"};
+    costs[WIRE_MOTION] = (wire_cost){.name = ""};
+    snprintf(costs[WIRE_MOTION].name, sizeof costs[WIRE_MOTION].name, "motion, %d joint%s",
+             driver->model->n_joints, driver->model->n_joints == 1 ? "" : "s");
     costs[WIRE_READ_FULL] = (wire_cost){.name = "one joint, full"};
     costs[WIRE_READ_ANGLE] = (wire_cost){.name = "one joint, angle only"};
     measure_motion(&bus, driver, &costs[WIRE_MOTION]);

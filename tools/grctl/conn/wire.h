@@ -6,7 +6,7 @@
 #include <grobo/robot.h>
 
 typedef struct wire_cost {
-    const char *name;
+    char name[24];
     int frame_bytes, reply_bytes;
     uint32_t total_us; /* from the first byte until the line is free again */
 } wire_cost;

@@ -132,7 +132,7 @@ int play_dry_run(playlist *list, app *a)
 {
     static rehearsal r;
     grobo_wiring wiring = (grobo_wiring)app_global(a, GLOBAL_WIRING)->choice;
-    grobo_sim_config sim = {.wiring = wiring, .baud_bps = conn_baud(a)};
+    static grobo_robot_sim sim;
     grobo_robot_config config = {.limit_policy = a->clamps ? GROBO_LIMIT_CLAMP : GROBO_LIMIT_REFUSE,
                                  .sense_interval_us = GROBO_SENSE_NEVER,
                                  .bus = {.baud_bps = conn_baud(a)}};
@@ -140,6 +140,7 @@ int play_dry_run(playlist *list, app *a)
     grobo_posture start;
     memset(&r, 0, sizeof r);
     r.a = a;
+    robot_sim(a, &sim);
     r.start_us = -1;
     grobo_posture_init_pose(&start, app_model(a));
     int status = playlist_prepare(list, a, &start);
@@ -149,7 +150,7 @@ int play_dry_run(playlist *list, app *a)
     if (status) {
         return status;
     }
-    int error = grobo_sim_init(&r.sim, &sim, 0);
+    int error = grobo_sim_init(&r.sim, &sim.config, 0);
     if (!error) {
         error = grobo_robot_init(&r.robot, app_driver(a), NULL, &config, 0);
     }

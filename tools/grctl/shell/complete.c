@@ -136,7 +136,7 @@ static void offer_next(const search *s, int n, char *const *words)
     if (kind == CLI_ARG_FILE) {
         cli_offer_word(&s->to, "@record", "");
     }
-    if (kind == CLI_ARG_FILE || kind == CLI_ARG_DEVICE) {
+    if (kind == CLI_ARG_FILE || kind == CLI_ARG_DEVICE || kind == CLI_ARG_ROBOT) {
         offer_files(s);
     }
     if (is_argument && strstr(w->arguments, "NAME")) {

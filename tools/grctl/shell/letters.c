@@ -6,6 +6,7 @@
 #include <grobo/port.h>
 
 #include "tools/grctl/cli/config.h"
+#include "tools/grctl/cli/robot.h"
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/joints.h"
 #include "tools/grctl/shell/shell.h"
@@ -351,6 +352,7 @@ static int do_connect(shell *s, int n, char **words)
         s->a->line.global[GLOBAL_DEVICE] = (cli_value){.given = 1, .text = s->device};
         s->a->robot = NULL;
         status = config_apply(s->a);
+        status = status ? status : robot_choose(s->a);
     }
     if (status) {
         return status;

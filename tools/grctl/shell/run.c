@@ -15,6 +15,9 @@ void shell_inherit(shell *s)
         }
     }
     s->one.robot = s->a->robot;
+    s->one.def = s->a->def;
+    s->one.def_name = s->a->def_name;
+    s->one.driver = s->a->driver;
     s->one.nearest_device = s->a->nearest_device;
     s->one.moves = true;
     s->one.tty_in = s->a->tty_in && !s->file;
@@ -33,7 +36,7 @@ void shell_begin(shell *s)
 
 static int prepare(void *ctx, app *a)
 {
-    static const int lines[] = {GLOBAL_DEVICE, GLOBAL_BAUD, GLOBAL_WIRING, GLOBAL_ECHO};
+    static const int lines[] = {GLOBAL_DEVICE, GLOBAL_ROBOT, GLOBAL_BAUD, GLOBAL_WIRING, GLOBAL_ECHO};
     shell *s = ctx;
     bool touches = false;
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {

@@ -1,0 +1,187 @@
+/* SPDX-License-Identifier: MIT */
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "tools/grctl/cli/config.h"
+#include "tools/grctl/cli/file.h"
+#include "tools/grctl/cli/robot.h"
+#include "tools/grctl/os/node.h"
+#include "tools/grctl/os/os.h"
+
+/* Read files; they live as long as the process. */
+typedef struct kept {
+    char path[ROBOT_PATH_BYTES];
+    grobo_robot_def *def;
+    struct kept *next;
+} kept;
+static kept *all;
+
+static int read_stream(void *ctx, void *buffer, size_t size)
+{
+    size_t n = fread(buffer, 1, size, ctx);
+    return n == 0 && ferror((FILE *)ctx) ? GROBO_ERR_IO : (int)n;
+}
+
+int robot_read(const char *path, grobo_diagnostics *list, grobo_robot_def **def)
+{
+    FILE *file = os_is_folder(path) ? NULL : fopen(path, "rb");
+    if (!file) {
+        return os_is_folder(path) ? GROBO_ERR_ISDIR
+               : errno == EACCES  ? GROBO_ERR_PERM
+                                  : GROBO_ERR_NOENT;
+    }
+    int error = grobo_robot_def_read(&(grobo_source){read_stream, file}, path, list, NULL, def);
+    fclose(file);
+    return error;
+}
+
+static bool is_path(const char *name)
+{
+    return strpbrk(name, "/\\.") != NULL;
+}
+
+static const grobo_robot_def *find_file(const char *path, char *complaint, size_t capacity)
+{
+    grobo_diagnostics *list = NULL;
+    grobo_diagnostic d;
+    for (const kept *k = all; k; k = k->next) {
+        if (strcmp(k->path, path) == 0) {
+            return k->def;
+        }
+    }
+    kept *one = calloc(1, sizeof *one);
+    int error = one && strlen(path) < sizeof one->path ? grobo_diagnostics_new(&list, NULL)
+                                                       : GROBO_ERR_NOMEM;
+    if (!error) {
+        error = robot_read(path, list, &one->def);
+    }
+    if (!error) {
+        snprintf(one->path, sizeof one->path, "%s", path);
+        one->next = all;
+        all = one;
+    } else if (list && grobo_diagnostics_get(list, 0, &d) == 0) {
+        file_format(&d, false, complaint, capacity);
+    } else {
+        snprintf(complaint, capacity, "%s: %s", path,
+                 error == GROBO_ERR_ISDIR ? "is a folder, not a robot's file"
+                                          : file_error_text(error));
+    }
+    grobo_diagnostics_free(list);
+    if (error) {
+        free(one);
+        return NULL;
+    }
+    return one->def;
+}
+
+const grobo_robot_def *robot_find(const char *name, char *complaint, size_t capacity)
+{
+    cli_guess guess = {.name = name, .length = strlen(name)};
+    if (is_path(name)) {
+        return find_file(name, complaint, capacity);
+    }
+    for (int i = 0; grobo_robot_defs[i]; i++) {
+        if (strcmp(grobo_robot_defs[i]->name, name) == 0) {
+            return grobo_robot_defs[i];
+        }
+        cli_guess_try(&guess, grobo_robot_defs[i]->name);
+    }
+    if (guess.best) {
+        snprintf(complaint, capacity, "no robot called '%s'; did you mean %s?", name, guess.best);
+    } else {
+        snprintf(complaint, capacity,
+                 "no robot called '%s'; 'grctl robot list' has them, and a file is named with its "
+                 "folder: ./%s.yaml",
+                 name, name);
+    }
+    return NULL;
+}
+
+const grobo_robot_def *robot_of(const app *a)
+{
+    return a->def ? a->def : grobo_robot_defs[0];
+}
+
+/* GR001's driver is there for either wiring; any other is made. */
+static int make_driver(app *a, const char *name)
+{
+    static grobo_driver made;
+    cli_value *wiring = &a->line.global[GLOBAL_WIRING];
+    a->driver = NULL;
+    if (!wiring->given) {
+        wiring->choice = a->def->wiring;
+    }
+    if (a->def == grobo_robot_defs[0]) {
+        return 0;
+    }
+    int error = grobo_robot_def_driver(a->def, (grobo_wiring)wiring->choice, &made);
+    if (error == GROBO_ERR_UNSUPPORTED) {
+        return app_fail(a, EXIT_USAGE, grobo_error_name(error),
+                        "--wiring board: the servos of %s cannot be behind GR001's board", name);
+    }
+    a->driver = &made;
+    return error ? app_fail_error(a, EXIT_FILE, error, "%s", name) : 0;
+}
+
+int robot_choose(app *a)
+{
+    const cli_value *option = app_global(a, GLOBAL_ROBOT);
+    const char *fallback = getenv("GRCTL_ROBOT");
+    const char *configured = a->robot && *a->robot->def ? a->robot->def : NULL;
+    const char *name = option->given                  ? option->text
+                       : configured                   ? configured
+                       : fallback && *fallback        ? fallback
+                                                      : "gr001";
+    char complaint[APP_LINE_BYTES];
+    a->def = robot_find(name, complaint, sizeof complaint);
+    if (!a->def) {
+        return app_fail(a, is_path(name) ? EXIT_FILE : EXIT_USAGE,
+                        is_path(name) ? "SYNTAX" : "NOTFOUND", "%s%s",
+                        option->given || is_path(name) ? "" : "$GRCTL_ROBOT: ", complaint);
+    }
+    if (a->robot && option->given && strcmp(name, configured ? configured : "gr001") != 0) {
+        return app_fail(a, EXIT_USAGE, "ARG", "--robot %s: %s of %s is another robot: %s", name,
+                        a->robot->name, a->robot->path, configured ? configured : "gr001");
+    }
+    a->def_name = name;
+    return make_driver(a, name);
+}
+
+void robot_of_words(app *a, int n, char *const *words)
+{
+    char hushed[APP_LINE_BYTES];
+    cli_value *option = &a->line.global[GLOBAL_ROBOT];
+    for (int i = 0; i + 1 < n; i++) {
+        bool alone = strcmp(words[i], "--robot") == 0;
+        if (alone || strncmp(words[i], "--robot=", strlen("--robot=")) == 0) {
+            const char *name = alone ? words[i + 1] : words[i] + strlen("--robot=");
+            *option = (cli_value){.given = 1, .text = name};
+        }
+    }
+    a->hushed = hushed;
+    (void)robot_choose(a);
+    a->hushed = NULL;
+}
+
+const char *robot_path(const app *a)
+{
+    static char path[ROBOT_PATH_BYTES];
+    if (robot_of(a) == grobo_robot_defs[0]) {
+        return "";
+    }
+    if (!is_path(a->def_name) || !node_true_path(a->def_name, path, sizeof path)) {
+        return a->def_name;
+    }
+    return path;
+}
+
+void robot_sim(const app *a, grobo_robot_sim *sim)
+{
+    const cli_value *baud = app_global(a, GLOBAL_BAUD);
+    (void)grobo_robot_def_sim(robot_of(a), (grobo_wiring)app_global(a, GLOBAL_WIRING)->choice,
+                              sim);
+    if (baud->given) {
+        sim->config.baud_bps = (uint32_t)baud->number;
+    }
+}

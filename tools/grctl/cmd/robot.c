@@ -1,0 +1,189 @@
+/* SPDX-License-Identifier: MIT */
+/* robot: the robots there are, and what is wrong with a file of one. Offline. */
+#include <string.h>
+
+#include "tools/grctl/cli/file.h"
+#include "tools/grctl/cli/robot.h"
+#include "tools/grctl/cmd/commands.h"
+
+static int run_list(const app *a)
+{
+    json_t *list = json_array();
+    for (int i = 0; grobo_robot_defs[i]; i++) {
+        const grobo_robot_def *def = grobo_robot_defs[i];
+        if (!a->json) {
+            app_print("%-18s %-12s %2d joints  %s\n", def->name, def->family->name,
+                      def->model->n_joints, def->title);
+        }
+        json_array_append_new(list, json_pack("{s:s,s:s,s:s,s:i}", "name", def->name, "title",
+                                              def->title, "family", def->family->name, "n_joints",
+                                              def->model->n_joints));
+    }
+    if (a->json) {
+        app_print_json(json_pack("{s:o}", "robots", list));
+    } else {
+        json_decref(list);
+    }
+    return EXIT_DONE;
+}
+
+/* ---- one ------------------------------------------------------------------------------------ */
+
+static const char *exit_name(grobo_exit_policy policy)
+{
+    switch (policy) {
+    case GROBO_EXIT_OFF:
+        return "off";
+    case GROBO_EXIT_SIT:
+        return "sit";
+    case GROBO_EXIT_DEFAULT:
+    case GROBO_EXIT_HOLD:
+        break;
+    }
+    return "hold";
+}
+
+static json_t *usb_json(const grobo_robot_def *def)
+{
+    json_t *list = json_array();
+    for (int i = 0; i < def->n_usb; i++) {
+        char text[16];
+        snprintf(text, sizeof text, "%04x:%04x", def->usb[i].vendor, def->usb[i].product);
+        json_array_append_new(list, json_string(text));
+    }
+    return list;
+}
+
+static double mass_kg(const grobo_robot_def *def)
+{
+    double sum = 0;
+    for (int i = 0; i < def->n_links; i++) {
+        sum += def->links[i].mass_kg;
+    }
+    return sum;
+}
+
+static json_t *robot_json(const grobo_robot_def *def)
+{
+    const grobo_safety_limits *limits = &def->limits;
+    return json_pack(
+        "{s:s,s:s,s:s,s:s,s:s,s:I,s:o,s:{s:i,s:i,s:I,s:I,s:I,s:o},s:s,s:b,s:i,s:i,s:o}", "name",
+        def->name, "title", def->title, "model", def->model->name, "family", def->family->name,
+        "wiring", def->wiring == GROBO_WIRING_BOARD ? "board" : "bus", "baud_bps",
+        (json_int_t)def->baud_bps, "usb", usb_json(def), "safety", "temperature_c",
+        limits->temperature_c, "lost_replies", limits->lost_replies, "current_ma",
+        (json_int_t)limits->current_ma, "current_ms", (json_int_t)(limits->current_us / 1000),
+        "voltage_mv", (json_int_t)limits->voltage_mv, "approach_dps",
+        app_json_number(grobo_deg_from_rad(limits->approach_rad_s), 1), "exit",
+        exit_name(def->on_exit), "arm", def->arm, "n_joints", def->model->n_joints, "n_links",
+        def->n_links, "mass_kg", app_json_number(mass_kg(def), 3));
+}
+
+static void print_robot(const grobo_robot_def *def)
+{
+    const grobo_safety_limits *limits = &def->limits;
+    app_print("%s: %s\n", def->name, def->title);
+    app_print("servos     %d of family %s\n", def->model->n_joints, def->family->name);
+    app_print("line       %lu bps, %s", (unsigned long)def->baud_bps,
+              def->wiring == GROBO_WIRING_BOARD ? "through its board" : "servos on a bus");
+    for (int i = 0; i < def->n_usb; i++) {
+        app_print("%s%04x:%04x", i ? " " : ", USB ", def->usb[i].vendor, def->usb[i].product);
+    }
+    app_print("\nstops at   %d deg C, %d lost replies", limits->temperature_c,
+              limits->lost_replies);
+    if (limits->current_ma) {
+        app_print(", %ld mA for %ld ms", (long)limits->current_ma,
+                  (long)(limits->current_us / 1000));
+    }
+    if (limits->voltage_mv) {
+        app_print(", %.1f V", limits->voltage_mv / 1e3);
+    }
+    app_print("\nat exit    %s\n", exit_name(def->on_exit));
+    if (def->n_links) {
+        app_print("geometry   %d parts, %.2f kg\n", def->n_links, mass_kg(def));
+    } else {
+        app_print("geometry   not in its file\n");
+    }
+    app_print("joints     grctl --robot %s joints\n", def->name);
+}
+
+static int run_show(app *a, const char *name)
+{
+    char complaint[APP_LINE_BYTES];
+    const grobo_robot_def *def = name ? robot_find(name, complaint, sizeof complaint) : robot_of(a);
+    if (!def) {
+        return app_fail(a, EXIT_FILE, "NOTFOUND", "%s", complaint);
+    }
+    if (a->json) {
+        app_print_json(robot_json(def));
+    } else {
+        print_robot(def);
+    }
+    return EXIT_DONE;
+}
+
+/* ---- what is wrong -------------------------------------------------------------------------- */
+
+static int run_check(app *a, const char *path)
+{
+    grobo_diagnostics *list = NULL;
+    grobo_robot_def *def = NULL;
+    grobo_diagnostic d;
+    int error = grobo_diagnostics_new(&list, NULL);
+    if (!error) {
+        error = robot_read(path, list, &def);
+    }
+    if (error && grobo_diagnostics_count(list) == 0) {
+        grobo_diagnostics_free(list);
+        return app_fail(a, EXIT_FILE, grobo_error_name(error), "%s: %s", path,
+                        file_error_text(error));
+    }
+    for (size_t i = 0; !a->json && grobo_diagnostics_get(list, i, &d) == 0; i++) {
+        char text[APP_LINE_BYTES];
+        file_format(&d, true, text, sizeof text);
+        app_print("%s\n", text);
+    }
+    if (a->json) {
+        app_print_json(json_pack("{s:b,s:o}", "ok", !error, "diagnostics", file_json(list)));
+    } else if (!error) {
+        app_note(a, "%s: %d joints, nothing wrong", def->name, def->model->n_joints);
+    }
+    grobo_robot_def_free(def);
+    grobo_diagnostics_free(list);
+    return error ? EXIT_FILE : EXIT_DONE;
+}
+
+static int run(app *a)
+{
+    const char *what = a->line.argument[0];
+    const char *name = a->line.n_arguments > 1 ? a->line.argument[1] : NULL;
+    if (strcmp(what, "list") == 0 && !name) {
+        return run_list(a);
+    }
+    if (strcmp(what, "show") == 0) {
+        return run_show(a, name);
+    }
+    if (strcmp(what, "check") == 0 && name) {
+        return run_check(a, name);
+    }
+    return app_fail(a, EXIT_USAGE, "ARG",
+                    "robot takes list, show [NAME|FILE] or check FILE; see 'grctl help robot'");
+}
+
+const cli_command cmd_robot = {
+    .name = "robot",
+    COMMAND_ARGUMENTS("list|show|check [NAME|FILE]", 1, 2, CLI_ARG_ROBOT),
+    .summary = "robots that are known, and files of others",
+    .details =
+        "list: the robots that come with grctl. show: what one of them is, or a file says, or the\n"
+        "robot of --robot. check: everything that is wrong with a file, with line and column; the\n"
+        "exit status is 3 then. No robot is asked.\n"
+        "\n"
+        "A robot is a YAML file: its joints with id, servo and limits, its line, what is safe.\n"
+        "docs/guide/own-robot.md describes one, docs/robot.schema.json tells an editor its keys.\n"
+        "Every command takes --robot NAME or --robot FILE; GRCTL_ROBOT and the key robot of a\n"
+        "configured robot say the same.\n",
+    .example = "  grctl robot list\n  grctl robot check ./arm.yaml\n"
+               "  grctl --robot ./arm.yaml -d sim init\n",
+    .run = run,
+};
