@@ -14,7 +14,7 @@
 #include "tools/grctl/conn/conn.h"
 
 enum { OPT_RATE, OPT_FOR };
-enum { LOST_US = 200000, RATE_HZ = 100, MAX_HZ = 200, LATE_BIN_US = 20, LATE_BINS = 1000 };
+enum { LOST_US = 200000, ALL_US = 1000000, RATE_HZ = 100, MAX_HZ = 200, LATE_BIN_US = 20, LATE_BINS = 1000 };
 
 /* The follower is there where all joints are as near; left so far behind it comes softly again. */
 static const double there_deg = 1.5, behind_deg = 20;
@@ -44,6 +44,8 @@ typedef struct pair {
     int of[GROBO_JOINTS_MAX]; /* the leader's joint for each of the follower's, -1: none */
     grobo_joint_mask joints;  /* of the follower, that have one */
     grobo_posture now;        /* what the follower is to be */
+    int64_t moved_us[GROBO_JOINTS_MAX]; /* when that last was another angle */
+    int64_t all_us;                     /* when all of it was sent */
     following state;
     int limp_job; /* switches the leader's torque off, 0: none is under way */
     bool limp;    /* it is off, as was read back since the leader was there */
@@ -151,10 +153,39 @@ static double go_on(pair *p, const grobo_posture *wanted)
         }
         double step_rad = dps * (double)p->period_us / 1e6;
         double rest_rad = wanted->angle_rad[j] - p->now.angle_rad[j];
-        p->now.angle_rad[j] += fmax(-step_rad, fmin(step_rad, rest_rad));
+        if (rest_rad != 0) {
+            p->now.angle_rad[j] += fmax(-step_rad, fmin(step_rad, rest_rad));
+            p->moved_us[j] = grobo_now_us();
+        }
         most_rad = fmax(most_rad, fabs(wanted->angle_rad[j] - p->now.angle_rad[j]));
     }
     return grobo_deg_from_rad(most_rad);
+}
+
+/*
+ * A servo that is told a speed would take the last bit of its way at none if it were told where it
+ * is to be again. So a joint that rests is told once more, and with all others from time to time: a
+ * frame may be lost.
+ */
+static int send_moved(pair *p)
+{
+    grobo_posture target = p->now;
+    int64_t now_us = grobo_now_us();
+    bool all = now_us - p->all_us >= ALL_US;
+    for (int j = 0; j < target.n_joints; j++) {
+        if (!all && now_us - p->moved_us[j] > 3 * p->period_us / 2) {
+            target.set &= ~GROBO_JOINT_BIT(j);
+        }
+    }
+    if (target.set == 0) {
+        return 0;
+    }
+    p->all_us = all ? now_us : p->all_us;
+    target.time_us = 2 * p->period_us;
+    int error = grobo_robot_send(grobo_session_robot(p->follower.c.session), &target);
+    grobo_session_pump(p->follower.c.session);
+    p->sent += error >= 0;
+    return error;
 }
 
 static void follow(pair *p, const grobo_posture *wanted)
@@ -168,14 +199,7 @@ static void follow(pair *p, const grobo_posture *wanted)
     } else if (rest_deg > behind_deg) {
         become(p, APPROACHES);
     }
-    p->now.time_us = 2 * p->period_us;
-    int error = grobo_robot_send(grobo_session_robot(p->follower.c.session), &p->now);
-    grobo_session_pump(p->follower.c.session);
-    if (error < 0) {
-        p->error = error;
-    } else {
-        p->sent++;
-    }
+    p->error = send_moved(p);
 }
 
 /* A leader that was away may come back with torque. */
