@@ -173,7 +173,8 @@ static int send_moved(pair *p)
     int64_t now_us = grobo_now_us();
     bool all = now_us - p->all_us >= ALL_US;
     for (int j = 0; j < target.n_joints; j++) {
-        if (!all && now_us - p->moved_us[j] > 3 * p->period_us / 2) {
+        int64_t rests_us = now_us - p->moved_us[j];
+        if (rests_us > 3 * p->period_us / 2 && !(all && rests_us >= ALL_US / 2)) {
             target.set &= ~GROBO_JOINT_BIT(j);
         }
     }
