@@ -70,7 +70,8 @@ check "the shoulder goes to one end" goes shoulder_pan 90 '20[0-9]* to 284[34]'
 check "and to the other" goes shoulder_pan -60 '113[67] to 284[34]'
 rest() {
     for joint in shoulder_lift elbow_flex wrist_flex wrist_roll; do
-        goes $joint 95 '20[0-9]* to 31[23][0-9]' && goes $joint -85 '108[01] to 31' || return 1
+        goes $joint 95 '20[0-9]* to 31[23][0-9]' && goes $joint -85 '108[01] to 31' &&
+            turned $joint 0 || return 1
     done
     turned shoulder_pan 20
 }
