@@ -128,6 +128,17 @@ static void take_place(grobo_robot *robot, int joint, int64_t asked_us,
     }
 }
 
+/* A servo that is not set up for its joint tells its torque alone: it may be made limp. */
+static void take_no_more_than_torque(grobo_robot *robot, int joint, int64_t asked_us,
+                                     grobo_joint_state *got)
+{
+    got->valid &= GROBO_FIELD_TORQUE;
+    merge(&robot->axes[joint], got);
+    if (asked_us >= robot->axes[joint].told_us) {
+        take_place(robot, joint, asked_us, got);
+    }
+}
+
 /* Between angles so far apart lies a speed. */
 #define SPEED_LEAST_US 10000
 #define SPEED_MOST_US 500000
@@ -205,6 +216,9 @@ int grobo_i_reading_take(const grobo_robot_slot *slot, int result, const grobo_p
     } else {
         robot->axes[joint].status = result;
         robot->axes[joint].lost += grobo_i_is_loss(result);
+        if (result == GROBO_ERR_SETUP) {
+            take_no_more_than_torque(robot, joint, slot->asked_us, got);
+        }
     }
     return result;
 }

@@ -291,11 +291,28 @@ static bool torque_taken(const grobo_robot *robot, int joint)
            (robot->job->kind == GROBO_JOB_ESTOP && has == GROBO_TORQUE_OFF);
 }
 
+/* A servo that is not set up for its joint tells its torque all the same. */
+static void excuse_setup(grobo_robot *robot)
+{
+    grobo_robot_task *job = robot->job;
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        const grobo_robot_axis *axis = &robot->axes[j];
+        if (grobo_i_has(job->failed & job->pending, j) && axis->status == GROBO_ERR_SETUP &&
+            axis->torque_known && axis->torque_us >= axis->told_us) {
+            job->failed &= ~GROBO_JOINT_BIT(j);
+        }
+    }
+    job->result = job->failed == 0 ? GROBO_OK : job->result;
+}
+
 static int step_torque_check(grobo_robot *robot)
 {
     grobo_robot_task *job = robot->job;
     grobo_joint_mask bad = 0;
     bool on = job->torque == GROBO_TORQUE_ON;
+    if (!on) {
+        excuse_setup(robot);
+    }
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         if (!grobo_i_has(job->pending, j)) {
             continue;

@@ -11,13 +11,20 @@ ln -s "$here/motions" "$work/desk/motions"
 # Files after "<!-- file NAME -->" and commands after "<!-- run -->", in the order of the guide.
 python=
 have_json && python=yes
-awk -v desk="$work/desk" -v commands="$work/commands" -v python=$python '
+# parts COMMANDS GUIDE...
+parts() {
+    parts_commands=$1
+    shift
+    awk -v desk="$work/desk" -v commands="$parts_commands" -v python=$python '
     /^<!-- file / { file = desk "/" $3 }
     /^<!-- run -->/ { file = commands }
     /^<!-- run python3 -->/ && python { file = commands }
     /^```/ { open = !open && file != ""; if (!open) { close(file); file = "" }; next }
-    open { print >>file }' docs/guide/motions.md docs/guide/whole-body.md \
-    docs/guide/scripts.md docs/guide/own-robot.md
+    open { print >>file }' "$@"
+}
+parts "$work/commands" docs/guide/motions.md docs/guide/whole-body.md docs/guide/scripts.md \
+    docs/guide/own-robot.md
+parts "$work/arm-commands" docs/guide/arm.md # with an SO-101
 
 check "the guide has commands and a file" [ -s "$work/commands" ] && [ -s "$work/desk/no.pseq" ]
 PATH=$work/bin:$PATH
@@ -28,6 +35,11 @@ run() {
 while read -r command; do
     check "$command" run "$command" 3<&-
 done <"$work/commands"
+export GRCTL_ROBOT=so101
+while read -r command; do
+    check "$command" run "$command" 3<&-
+done <"$work/arm-commands"
+unset GRCTL_ROBOT
 drawn() {
     [ -s "$work/desk/greet.svg" ] && [ -s "$work/desk/no.svg" ] && [ -s "$work/desk/step.svg" ] &&
         [ -s "$work/desk/greet.m" ]

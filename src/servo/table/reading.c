@@ -124,9 +124,6 @@ int grobo_i_table_parse(const grobo_driver *self, void *ctx, int joint, const gr
                      .data = reply->data,
                      .n = reply->data_bytes};
     int result = family->setup(moved, b.servo, b.address, b.data, b.n);
-    if (result < 0) {
-        return result;
-    }
     if (!plausible(family, moved, &b, reply->flags)) {
         return GROBO_ERR_MISMATCH;
     }
@@ -134,5 +131,9 @@ int grobo_i_table_parse(const grobo_driver *self, void *ctx, int joint, const gr
     take_angles(self, joint, &b, state);
     take_measures(&b, state);
     take_torque(family, &b, state);
+    if (result < 0) { /* its angles mean something else, its torque does not */
+        state->valid &= GROBO_FIELD_TORQUE;
+        return result;
+    }
     return state->valid != 0 ? GROBO_OK : GROBO_ERR_MISMATCH;
 }

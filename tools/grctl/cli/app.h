@@ -22,10 +22,12 @@ struct conn_link;
 typedef struct app {
     cli_line line;
     struct conn_link *link; /* the shell's, NULL: every command opens and closes its own */
+    struct conn_link *beside; /* the link whose loop this command uses too, or NULL */
     const struct grobo_motion *record; /* the shell's @record, or NULL */
     const struct config_robot *robot;  /* the configured one, or NULL */
     const struct grobo_robot_def *def; /* see robot.h; NULL: not chosen yet, GR001 */
     const grobo_driver *driver;        /* its; NULL: GR001's */
+    grobo_driver made;                 /* that of a robot that is not GR001 */
     const char *def_name;              /* what names it */
     const char *nearest_device;        /* to a name that no robot has: a robot or word, or NULL */
     char place[128];                   /* "FILE:LINE: " of a script, for messages */

@@ -106,7 +106,6 @@ const grobo_robot_def *robot_of(const app *a)
 /* GR001's driver is there for either wiring; any other is made. */
 static int make_driver(app *a, const char *name)
 {
-    static grobo_driver made;
     cli_value *wiring = &a->line.global[GLOBAL_WIRING];
     a->driver = NULL;
     if (!wiring->given) {
@@ -115,12 +114,12 @@ static int make_driver(app *a, const char *name)
     if (a->def == grobo_robot_defs[0]) {
         return 0;
     }
-    int error = grobo_robot_def_driver(a->def, (grobo_wiring)wiring->choice, &made);
+    int error = grobo_robot_def_driver(a->def, (grobo_wiring)wiring->choice, &a->made);
     if (error == GROBO_ERR_UNSUPPORTED) {
         return app_fail(a, EXIT_USAGE, grobo_error_name(error),
                         "--wiring board: the servos of %s cannot be behind GR001's board", name);
     }
-    a->driver = &made;
+    a->driver = &a->made;
     return error ? app_fail_error(a, EXIT_FILE, error, "%s", name) : 0;
 }
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* calibrate: writes the trims of a configured robot. */
+/* calibrate: what a robot of its kind does not have alike: offsets and ranges that servos keep, or
+ * the trims of a configured robot. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -9,11 +10,16 @@
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/conn.h"
+#include "tools/grctl/homing/homing.h"
 
-enum { OPT_DRY_RUN };
+enum { OPT_DRY_RUN, OPT_FROM, OPT_RESTORE, OPT_OUT };
 
 static const cli_option options[] = {
-    [OPT_DRY_RUN] = OPTION_FLAG("dry-run", 0, "show the trims, write nothing"),
+    [OPT_DRY_RUN] = OPTION_FLAG("dry-run", 0, "show what would be written, write nothing"),
+    [OPT_FROM] = OPTION_TEXT("from", 0, "FILE", "take a calibration of LeRobot's form"),
+    [OPT_RESTORE] = OPTION_TEXT("restore", 0, "FILE", "write back what the servos held before"),
+    [OPT_OUT] = OPTION_TEXT("out", 'o', "FILE",
+                            "keep the calibration there (ROBOT-calibration.json)"),
 };
 
 static void show(const app *a, const config_robot *before, const config_robot *after)
@@ -120,6 +126,18 @@ static int run(app *a)
 {
     double deg;
     int status = 0;
+    const homing_orders orders = {.from = app_option(a, OPT_FROM)->text,
+                                  .restore = app_option(a, OPT_RESTORE)->text,
+                                  .out = app_option(a, OPT_OUT)->text,
+                                  .dry_run = app_option(a, OPT_DRY_RUN)->given > 0};
+    if (a->line.n_arguments == 0 && homing_fits(a)) {
+        return homing_run(a, &orders);
+    }
+    if (orders.from || orders.restore || orders.out) {
+        return app_fail(a, EXIT_USAGE, "UNSUPPORTED",
+                        "calibrate: the servos of %s keep no calibration; it has trims",
+                        robot_of(a)->name);
+    }
     if (!a->robot) {
         return app_fail(a, EXIT_USAGE, "ARG",
                         "calibrate: -d must name a robot of ~/.config/grctl/config.yaml; see "
@@ -149,9 +167,15 @@ static int run(app *a)
 const cli_command cmd_calibrate = {
     .name = "calibrate",
     COMMAND_ARGUMENTS("[JOINT DEG]", 0, 2, CLI_ARG_JOINT),
-    .summary = "write the trims of a configured robot",
+    .summary = "tell servos where their middle is, or write trims",
     .details =
-        "Switch torque off, put the robot by hand into its initial posture, and run it: what the\n"
+        "Servos of Feetech (STS) and DYNAMIXEL (X) keep where their middle is. Torque goes off; put\n"
+        "every joint into the middle of its range and press enter, then move every joint to both\n"
+        "of its ends and press enter. The offset and the limits go to the servos, and the ranges\n"
+        "to a file of LeRobot's form, which --from reads. A servo's limits hold at least what the\n"
+        "robot's file lets its joint do. What the servos held before is written to a file first;\n"
+        "--restore writes it back, as it would any file of that form.\n\n"
+        "Other robots have trims. Switch torque off, put the robot by hand into its initial posture, and run it: what the\n"
         "joints read beside that posture becomes their trims. With JOINT and DEG it sets the trim\n"
         "of one joint and speaks to no robot. A trim is added to every angle that goes to the\n"
         "servo and taken from every angle it reports; limits hold for both.\n\n"
@@ -168,7 +192,9 @@ const cli_command cmd_calibrate = {
         "      offset: {m12: 2}       # added to what is read only\n\n"
         "Only the trims change in the file: it is replaced as a whole when the new one is safely\n"
         "stored.\n",
-    .example = "  grctl -d kitchen servo off\n  grctl -d kitchen calibrate\n"
+    .example = "  grctl --robot so101 -d /dev/ttyACM0 calibrate\n"
+               "  grctl --robot so101 -d /dev/ttyACM0 calibrate --from lerobot.json\n"
+               "  grctl -d kitchen servo off\n  grctl -d kitchen calibrate\n"
                "  grctl -d kitchen calibrate R_KNEE_P 1.5\n",
     COMMAND_OPTIONS(options),
     .run = run,

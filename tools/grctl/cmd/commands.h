@@ -24,6 +24,7 @@
     X(estop)                                                                                       \
     X(record)                                                                                      \
     X(teach)                                                                                       \
+    X(follow)                                                                                      \
     X(check)                                                                                       \
     X(show)                                                                                        \
     X(plot)                                                                                        \

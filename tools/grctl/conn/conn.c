@@ -440,7 +440,7 @@ static int make_session(conn *c, const char *device, bool check)
                                    .on_robot = on_robot,
                                    .on_tap = on_tap,
                                    .ctx = c->link,
-                                   .guard = guard_started()};
+                                   .guard = c->link->borrows ? NULL : guard_started()};
     config.guard_data = guard_data(a, &config.guard_bytes);
     return grobo_session_new(&config, &c->link->session);
 }
@@ -472,6 +472,11 @@ static void take(conn *c, app *a)
     if (c->link->session && c->link->link_error) { /* lost: the next command opens it again */
         grobo_session_free(c->link->session);
         c->link->session = NULL;
+    }
+    if (a->beside) {
+        c->own.base = a->beside->base;
+        c->own.borrows = true;
+        a->beside->beside = &c->own;
     }
     if (!c->link->session) {
         c->link->link_error = 0;
@@ -618,6 +623,12 @@ int conn_open(conn *c, app *a)
 int conn_open_unchecked(conn *c, app *a)
 {
     return open_device(c, a, false);
+}
+
+int conn_open_beside(conn *c, app *a, conn *first)
+{
+    a->beside = first->link;
+    return conn_open(c, a);
 }
 
 void conn_watch(conn *c, bool on)
@@ -786,6 +797,9 @@ int conn_close(conn *c, int status)
     } else {
         grobo_session_free(c->session);
         c->link->session = NULL;
+        if (c->a->beside) {
+            c->a->beside->beside = NULL;
+        }
         conn_link_deinit(c->link);
         if (!c->a->stops) { /* it may be an attempt that is repeated */
             app_attach(c->a);
@@ -833,12 +847,15 @@ int conn_link_close(conn_link *link, app *a, int status)
 
 void conn_link_deinit(conn_link *link)
 {
+    bool borrows = link->borrows;
     conn_signals_deinit(link);
-    if (link->base) {
+    if (link->base && !borrows) {
         event_base_free(link->base);
     }
     memset(link, 0, sizeof *link);
-    guard_end();
+    if (!borrows) {
+        guard_end();
+    }
 }
 
 void conn_counters(const conn *c, grobo_robot_counters *counters)

@@ -49,6 +49,8 @@ typedef struct conn_link {
     grobo_joint_mask free_joints; /* in free mode */
     app *owner;                   /* of the shell */
     bool kept;                    /* conn_close() leaves it open */
+    struct conn_link *beside;     /* of a command with two robots: the other one, */
+    bool borrows;                 /* whose loop this is */
 } conn_link;
 
 struct conn {
@@ -94,6 +96,12 @@ int conn_open_unchecked(conn *c, app *a);
  * joints are watched, see conn_watch().
  */
 int conn_open_to_move(conn *c, app *a);
+
+/*
+ * The same as conn_open() for a second robot beside the first one: they have one loop, and a signal
+ * is told to both. Closed before the first; signals are caught by the first.
+ */
+int conn_open_beside(conn *c, app *a, conn *first);
 
 /* Where an emergency stop is being carried out: until it is verified. Returns as conn_wait(). */
 int conn_end_estop(conn *c);

@@ -140,6 +140,13 @@ int conn_fail_job(conn *c, int error, const char *prefix)
     if (conn_is_of_reply(error)) {
         return fail_reply(c, error, model->joints[joint].motor, prefix, who);
     }
+    if (error == GROBO_ERR_SETUP) {
+        return app_fail(c->a, app_status_of(error), grobo_error_name(error),
+                        "%s: %s%s: %s: its limits, mode or direction; 'grctl calibrate' sets "
+                        "limits, 'grctl servo-get %s' shows all",
+                        conn_device(c), prefix, who, grobo_error_text(error),
+                        model->joints[joint].name);
+    }
     return app_fail_error(c->a, app_status_of(error), error, "%s: %s%s", conn_device(c), prefix,
                           who);
 }

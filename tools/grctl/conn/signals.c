@@ -6,13 +6,21 @@
 #include "tools/grctl/os/keys.h"
 #include "tools/grctl/screen/screen.h"
 
+static void note(conn_link *link, int number)
+{
+    int *signal = link->user ? &link->user->signal : &link->signal;
+    if (!*signal) {
+        *signal = number;
+    }
+}
+
 static void on_signal(evutil_socket_t number, short what, void *ctx)
 {
     conn_link *link = ctx;
-    int *signal = link->user ? &link->user->signal : &link->signal;
     (void)what;
-    if (!*signal) {
-        *signal = (int)number;
+    note(link, (int)number);
+    if (link->beside) {
+        note(link->beside, (int)number);
     }
 }
 

@@ -1,0 +1,176 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# grctl calibrate: a simulated SO-101 is calibrated by hand, by a file, and as it was again.
+. tests/support/cli.sh
+own_sim
+by_tcp && { echo "1..0 # SKIP needs a hand at the simulator beside the command"; exit; }
+GRCTL=$(cd "$(dirname "$GRCTL")" && pwd)/${GRCTL##*/}
+simulator=$GRCTL
+GRCTL_ROBOT=so101
+export GRCTL_ROBOT
+
+start_told_sim || { echo "Bail out! the simulator did not start"; exit 1; }
+mkfifo "$work/keys"
+calibrate_pid=
+end_calibrate_test() {
+    kill ${calibrate_pid:+"$calibrate_pid"} 2>/dev/null
+    end_cli_test
+}
+trap end_calibrate_test EXIT
+
+# in_folder COMMAND...: where files are written.
+in_folder() (
+    cd "$work" && "$@"
+)
+# turned JOINT DEG: its shaft, by hand.
+turned() {
+    tell turn "$1" "$2" && sim_shows "$1" " $2\.0 deg"
+}
+# by_hand: begins it; enter is a line to descriptor 7.
+by_hand() {
+    (cd "$work" && exec "$GRCTL" -v -d "$robot" --timeout 500 calibrate -o so101.json) \
+        <"$work/keys" >"$work/told" 2>"$work/said" &
+    calibrate_pid=$!
+    exec 7>"$work/keys"
+}
+# ended: waits for its end.
+ended() {
+    wait "$calibrate_pid"
+    calibrate_got=$?
+    calibrate_pid=
+    exec 7>&-
+}
+with_status() {
+    [ "$calibrate_got" -eq "$1" ] && return
+    echo "status $calibrate_got, not $1"
+    cat "$work/told" "$work/said"
+    return 1
+}
+# register ID NAME VALUE: the servo holds that.
+register() {
+    exits 0 on_robot servo-get "$1" "$2" && grep -q " $2  *$3 " "$work/out" && return
+    cat "$work/out"
+    return 1
+}
+
+# The arm is put together 20 degrees off in the shoulder: 228 counts.
+check "as it came" register 1 offset 0
+check "it had torque" exits 0 on_robot servo on
+by_hand
+check "it asks for the middle" written "$work/said" 'the middle of its range, then press enter'
+check "the arm is limp" sim_shows shoulder_pan 'torque off'
+check "the shoulder is off" turned shoulder_pan 20
+echo >&7
+check "then for the ends" written "$work/said" 'both of its ends'
+# A joint goes so far, and the command has seen it.
+goes() {
+    turned "$1" "$2" && written "$work/said" "$1: $3"
+}
+check "the shoulder goes to one end" goes shoulder_pan 90 '20[0-9]* to 284[34]'
+check "and to the other" goes shoulder_pan -60 '113[67] to 284[34]'
+rest() {
+    for joint in shoulder_lift elbow_flex wrist_flex wrist_roll; do
+        goes $joint 95 '20[0-9]* to 31[23][0-9]' && goes $joint -85 '108[01] to 31' &&
+            turned $joint 0 || return 1
+    done
+    turned shoulder_pan 20
+}
+check "so do others" rest
+echo >&7
+ended
+check "but the gripper was not moved" with_status 2
+check "that is said" grep -q 'gripper was not moved' "$work/said"
+
+by_hand
+check "once more" written "$work/said" 'the middle of its range, then press enter'
+check "the shoulder is off again" turned shoulder_pan 20
+echo >&7
+check "it asks for the ends" written "$work/said" 'both of its ends'
+all() {
+    for joint in shoulder_pan shoulder_lift elbow_flex wrist_flex wrist_roll gripper; do
+        goes $joint 95 '[0-9]* to [23][0-9]*' && goes $joint -5 '[12][0-9]* to [23]' || return 1
+    done
+    turned shoulder_pan 20
+}
+check "all joints go" all
+echo >&7
+ended
+check "it is calibrated" with_status 0
+check "the servo keeps the offset" register 1 offset 22[78]
+check "its limits are the robot's at least" register 1 min_position 796
+check "and wider where the hand was" grep -q 'gripper goes from' "$work/said"
+check "what it was is kept" grep -q '"homing_offset": 0' "$work/so101-before.json"
+check "what it is, too" grep -q '"homing_offset": 22[78]' "$work/so101.json"
+check_json "the joint reads 0 there" 'abs(lines[0]["joints"][0]["angle_deg"]) < 0.2' \
+    on_robot --json status shoulder_pan
+check "it moves" exits 0 on_robot move shoulder_pan 5 500
+check "it is let go" exits 0 on_robot servo off
+
+# Whose servos are set up otherwise than its file says.
+check "limits that are narrower" exits 0 on_robot --yes servo-set 3 max_position 3000 --flash
+check "it is not moved, and the fix is named" fails 1 "elbow_flex.*'grctl calibrate'" \
+    on_robot move elbow_flex 5
+check "nor anything with it" fails 1 'elbow_flex' on_robot init
+check "it is read" exits 1 on_robot status
+check "its registers, too" register 3 max_position 3000
+check "it is made limp" both exits 0 on_robot servo off --- true
+check "it can be put right by hand" exits 0 on_robot --yes servo-set 3 max_position 3150 --flash
+check "or it is broken again" exits 0 on_robot --yes servo-set 3 max_position 3000 --flash
+check_json "a calibration is shown" \
+    'lines[0]["written"] is False and lines[0]["joints"][2]["before_range"][1] == 3000' \
+    on_robot --json calibrate --from "$work/so101.json" --dry-run
+check "nothing was written" register 3 max_position 3000
+check "a calibration is taken" in_folder exits 0 on_robot calibrate --from so101.json
+check "it moves again" exits 0 on_robot move elbow_flex 5 500
+check "all is as it came" in_folder exits 0 on_robot calibrate --restore so101-before.json
+check "its offset" register 1 offset 0
+check "its limits" register 1 max_position 4095
+
+# Files that do not fit.
+spoiled() {
+    spoiled_want=$1
+    shift
+    sed "$@" "$work/so101.json" >"$work/bad.json"
+    fails 3 "bad.json:.*$spoiled_want" on_robot calibrate --from "$work/bad.json"
+}
+check "another name" spoiled 'elbow: so101 has no such joint' 's/elbow_flex/elbow/'
+check "another id" spoiled 'wrist_flex: id is 9; it is 4 in so101' 's/"id": 4/"id": 9/'
+check "a range without the middle" spoiled 'shoulder_pan: range 2100 to' \
+    '0,/"range_min": [0-9]*/s//"range_min": 2100/'
+check "an offset too large" spoiled 'shoulder_pan: homing_offset' \
+    '0,/"homing_offset": [0-9]*/s//"homing_offset": 2048/'
+check "a word for a number" spoiled 'gripper: needs whole numbers' 's/"id": 6/"id": "6"/'
+check "a mirrored joint" spoiled 'gripper: drive_mode' \
+    '/"gripper"/,$s/"drive_mode": 0/"drive_mode": 1/'
+check "no JSON" spoiled '[0-9]*:[0-9]*: ' 's/{/[/'
+check "a joint is missing" spoiled 'gripper: needs' '/"gripper"/,$d;/"wrist_roll"/,$s/},$/}}/'
+check "no file" fails 3 'none.json' on_robot calibrate --from "$work/none.json"
+check "nobody presses enter" in_folder exits 2 on_robot calibrate
+check "that is said" grep -q 'needs a person who presses enter' "$work/err"
+check "another robot has trims" fails 2 'keep no calibration' \
+    "$GRCTL" --robot gr001 -d sim calibrate --from "$work/so101.json"
+
+# A DYNAMIXEL adds its offset.
+start_dxl() {
+    stop_sim
+    exec 5>&- 6<&-
+    GRCTL_ROBOT=koch
+    start_told_sim
+}
+dxl_calibrated() {
+    (cd "$work" && "$GRCTL" -d "$robot" --timeout 500 calibrate) <"$work/keys" >"$work/told" \
+        2>"$work/said" &
+    calibrate_pid=$!
+    exec 7>"$work/keys"
+    tell turn shoulder_pan 20
+    written "$work/said" 'then press enter' || return 1
+    echo >&7
+    written "$work/said" 'both of its ends' || { cat "$work/said"; return 1; }
+    exec 7>&-
+    wait $calibrate_pid
+    register 1 homing_offset -22[78]
+}
+start_dxl
+check "a Koch arm takes a calibration" dxl_calibrated
+stop_sim
+done_testing

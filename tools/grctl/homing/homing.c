@@ -1,0 +1,449 @@
+/* SPDX-License-Identifier: MIT */
+#include <math.h>
+#include <string.h>
+
+#include <grobo/dxl2.h>
+#include <grobo/feetech.h>
+
+#include "tools/grctl/cli/progress.h"
+#include "tools/grctl/conn/conn.h"
+#include "tools/grctl/conn/servos.h"
+#include "tools/grctl/homing/file.h"
+#include "tools/grctl/homing/homing.h"
+#include "tools/grctl/os/keys.h"
+#include "tools/grctl/servo/family.h"
+
+enum { PATH_BYTES = 1024, LOOK_US = 50000, NEAR_TICKS = 12 };
+
+typedef struct calibration {
+    app *a;
+    const homing_orders *orders;
+    conn c;
+    keys input;
+    progress line;
+    struct event *look;
+    homing before[GROBO_JOINTS_MAX], wanted[GROBO_JOINTS_MAX];
+    int32_t now[GROBO_JOINTS_MAX]; /* positions read last */
+    bool is_due, pressed, has_ended;
+    char kept[PATH_BYTES], saved[PATH_BYTES];
+} calibration;
+
+/* DYNAMIXEL add their offset to a position, Feetech take it away (emanual homing_offset, LeRobot).
+ * 0: this one keeps none that is large enough. */
+static int sign_of_offset(const grobo_servo_model *servo)
+{
+    return servo->table == &grobo_sts_table ? -1 : servo->table == &grobo_dxl2_table ? 1 : 0;
+}
+
+static const grobo_servo_model *servo_of(const app *a, int joint)
+{
+    return family_servo(app_driver(a), app_model(a)->joints[joint].motor);
+}
+
+bool homing_fits(const app *a)
+{
+    for (int j = 0; j < app_model(a)->n_joints; j++) {
+        const grobo_servo_model *servo = servo_of(a, j);
+        if (!servo || sign_of_offset(servo) == 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* ---- registers ------------------------------------------------------------------------------- */
+
+static int read_role(calibration *k, int joint, grobo_register_role role, int32_t *value)
+{
+    const grobo_servo_model *servo = servo_of(k->a, joint);
+    const grobo_servo_register *reg = grobo_servo_register_of(servo, role);
+    uint8_t bytes[4] = {0};
+    int error = servos_read(&k->c, app_model(k->a)->joints[joint].motor, reg->address, reg->bytes,
+                            bytes);
+    if (!error) {
+        *value = grobo_servo_register_get(servo, reg, bytes);
+    }
+    return error;
+}
+
+static int put_role(calibration *k, int joint, grobo_register_role role, int32_t value)
+{
+    const grobo_servo_model *servo = servo_of(k->a, joint);
+    const grobo_servo_register *reg = grobo_servo_register_of(servo, role);
+    uint8_t bytes[4] = {0};
+    grobo_register_io io = {.id = app_model(k->a)->joints[joint].motor,
+                            .address = reg->address,
+                            .length = reg->bytes,
+                            .data = bytes};
+    int error = grobo_servo_register_put(servo, reg, value, bytes);
+    return error < 0
+               ? error
+               : conn_wait(&k->c, grobo_robot_registers(grobo_session_robot(k->c.session), &io));
+}
+
+/* The engine knows a joint's torque before each write: a setting makes it unknown. */
+static int know_torque(calibration *k, int joint)
+{
+    int error = conn_wait(&k->c, grobo_robot_sense(grobo_session_robot(k->c.session),
+                                                   GROBO_JOINT_BIT(joint), GROBO_SENSE_GOAL));
+    return error == GROBO_ERR_SETUP ? GROBO_OK : error;
+}
+
+/* Written where it is another value only (the memory wears out), and read back. */
+static int write_role(calibration *k, int joint, grobo_register_role role, int32_t value)
+{
+    bool locks = servo_of(k->a, joint)->table->keeps == GROBO_KEEPS_LOCK;
+    int32_t is;
+    int error = read_role(k, joint, role, &is);
+    if (error || is == value) {
+        return error;
+    }
+    error = know_torque(k, joint);
+    if (!error && locks) {
+        error = put_role(k, joint, GROBO_ROLE_LOCK, 0);
+    }
+    if (!error) {
+        error = put_role(k, joint, role, value);
+    }
+    if (locks) {
+        int locked = put_role(k, joint, GROBO_ROLE_LOCK, 1);
+        error = error ? error : locked;
+    }
+    if (!error) {
+        error = read_role(k, joint, role, &is);
+    }
+    return error ? error : is == value ? GROBO_OK : GROBO_ERR_MISMATCH;
+}
+
+static int fail(calibration *k, int error, int joint)
+{
+    return conn_fail_servo(&k->c, error, app_model(k->a)->joints[joint].motor);
+}
+
+static int read_before(calibration *k)
+{
+    for (int j = 0; j < app_model(k->a)->n_joints; j++) {
+        int error = read_role(k, j, GROBO_ROLE_OFFSET, &k->before[j].offset);
+        if (!error) {
+            error = read_role(k, j, GROBO_ROLE_MIN_POSITION, &k->before[j].min);
+        }
+        if (!error) {
+            error = read_role(k, j, GROBO_ROLE_MAX_POSITION, &k->before[j].max);
+        }
+        if (error) {
+            return fail(k, error, j);
+        }
+    }
+    return 0;
+}
+
+/* A servo must reach wherever the robot's file lets its joint go, or the joint would never move. */
+static homing with_limits(const calibration *k, int joint)
+{
+    const grobo_joint *moved = &app_model(k->a)->joints[joint];
+    const grobo_servo_model *servo = servo_of(k->a, joint);
+    homing h = k->wanted[joint];
+    const double ends_rad[] = {moved->min_rad, moved->max_rad};
+    if (k->orders->restore || moved->turns) {
+        return h;
+    }
+    for (int i = 0; i < 2; i++) {
+        double deg = grobo_deg_from_rad(grobo_joint_to_servo(moved, ends_rad[i]));
+        int32_t ticks = servo->middle + (int32_t)floor(deg * servo->span_ticks / servo->span_deg + 0.5);
+        h.min = ticks < h.min ? ticks : h.min;
+        h.max = ticks > h.max ? ticks : h.max;
+    }
+    return h;
+}
+
+static int write_all(calibration *k)
+{
+    for (int j = 0; j < app_model(k->a)->n_joints; j++) {
+        homing h = with_limits(k, j);
+        int error = write_role(k, j, GROBO_ROLE_OFFSET, h.offset);
+        if (!error) {
+            error = write_role(k, j, GROBO_ROLE_MIN_POSITION, h.min);
+        }
+        if (!error) {
+            error = write_role(k, j, GROBO_ROLE_MAX_POSITION, h.max);
+        }
+        if (error) {
+            return fail(k, error, j);
+        }
+        if (!k->orders->restore && (h.min < k->wanted[j].min || h.max > k->wanted[j].max)) {
+            app_note(k->a,
+                     "%s goes from %d to %d only, not as far as the robot file lets it (%d to %d); "
+                     "limits_deg of a file of your own can be narrower",
+                     app_model(k->a)->joints[j].name, (int)k->wanted[j].min, (int)k->wanted[j].max,
+                     (int)h.min, (int)h.max);
+        }
+    }
+    return 0;
+}
+
+/* ---- by hand --------------------------------------------------------------------------------- */
+
+static void on_key(void *ctx, int key)
+{
+    calibration *k = ctx;
+    k->pressed |= key == '\n' || key == '\r';
+    k->has_ended |= key == KEYS_END;
+}
+
+static bool is_due(conn *c)
+{
+    const calibration *k = c->ctx;
+    return k->is_due || k->pressed || k->has_ended;
+}
+
+static int look(calibration *k)
+{
+    k->is_due = false;
+    for (int j = 0; j < app_model(k->a)->n_joints; j++) {
+        int error = read_role(k, j, GROBO_ROLE_POSITION, &k->now[j]);
+        if (error) {
+            return fail(k, error, j);
+        }
+    }
+    return 0;
+}
+
+/* A joint that jumps by half a turn goes all the way round. */
+static void widen(calibration *k, const int32_t *last)
+{
+    for (int j = 0; j < app_model(k->a)->n_joints; j++) {
+        homing *h = &k->wanted[j];
+        homing before = *h;
+        int32_t span = servo_of(k->a, j)->span_ticks;
+        h->min = k->now[j] < h->min ? k->now[j] : h->min;
+        h->max = k->now[j] > h->max ? k->now[j] : h->max;
+        if (k->now[j] - last[j] > span / 2 || last[j] - k->now[j] > span / 2) {
+            h->min = 0;
+            h->max = span - 1;
+        }
+        if (h->min != before.min || h->max != before.max) {
+            app_detail(k->a, "%s: %d to %d", app_model(k->a)->joints[j].name, (int)h->min,
+                       (int)h->max);
+        }
+    }
+}
+
+static void draw(calibration *k)
+{
+    char text[512];
+    size_t at = 0;
+    for (int j = 0; j < app_model(k->a)->n_joints && at < sizeof text - 1; j++) {
+        int n = snprintf(text + at, sizeof text - at, "%s%s %d<%d<%d", at ? "  " : "",
+                         app_model(k->a)->joints[j].name, (int)k->wanted[j].min, (int)k->now[j],
+                         (int)k->wanted[j].max);
+        at += n > 0 ? (size_t)n : 0;
+    }
+    progress_draw(&k->line, -1, text);
+}
+
+/* Until enter is pressed. */
+static int watch(calibration *k, bool ranges)
+{
+    int status = 0;
+    k->pressed = false;
+    while (!k->pressed && !status) {
+        int32_t last[GROBO_JOINTS_MAX];
+        int error = conn_wait_until(&k->c, is_due);
+        if (error) {
+            status = conn_fail(&k->c, error, "calibrate");
+        } else if (k->has_ended && !k->pressed) {
+            status = app_fail(k->a, EXIT_USAGE, "CANCELED",
+                              "calibrate: needs a person who presses enter, or --from FILE");
+        } else {
+            memcpy(last, k->now, sizeof last);
+            status = look(k);
+        }
+        if (!status && ranges) {
+            widen(k, last);
+            draw(k);
+        }
+    }
+    progress_clear(&k->line);
+    return status;
+}
+
+/* Where the joints stand becomes the middle of their servos. */
+static int home(calibration *k)
+{
+    for (int j = 0; j < app_model(k->a)->n_joints; j++) {
+        const grobo_servo_model *servo = servo_of(k->a, j);
+        const grobo_servo_register *reg = grobo_servo_register_of(servo, GROBO_ROLE_OFFSET);
+        int sign = sign_of_offset(servo);
+        /* DYNAMIXEL within one turn take no more than a quarter (emanual homing_offset). */
+        int32_t most = sign > 0 && !app_model(k->a)->joints[j].turns ? servo->span_ticks / 4 : reg->max;
+        int error = write_role(k, j, GROBO_ROLE_OFFSET, 0);
+        if (!error) {
+            error = read_role(k, j, GROBO_ROLE_POSITION, &k->now[j]);
+        }
+        if (error) {
+            return fail(k, error, j);
+        }
+        int32_t offset = sign * (servo->middle - k->now[j]);
+        if (offset < -most || offset > most) {
+            return app_fail(k->a, EXIT_SAFETY, "LIMIT",
+                            "calibrate: %s is %d counts off its middle, more than its servo can "
+                            "take (%d); does its horn sit right?",
+                            app_model(k->a)->joints[j].name, (int)offset, (int)most);
+        }
+        error = write_role(k, j, GROBO_ROLE_OFFSET, offset);
+        if (!error) {
+            error = read_role(k, j, GROBO_ROLE_POSITION, &k->now[j]);
+        }
+        if (error) {
+            return fail(k, error, j);
+        }
+        if (k->now[j] < servo->middle - NEAR_TICKS || k->now[j] > servo->middle + NEAR_TICKS) {
+            return app_fail(k->a, EXIT_ROBOT, "MISMATCH",
+                            "calibrate: %s reads %d and not %d, its middle: hold it still",
+                            app_model(k->a)->joints[j].name, (int)k->now[j], servo->middle);
+        }
+        k->wanted[j] = (homing){offset, k->now[j], k->now[j]};
+    }
+    return 0;
+}
+
+static int check_ranges(calibration *k)
+{
+    for (int j = 0; j < app_model(k->a)->n_joints; j++) {
+        const homing *h = &k->wanted[j];
+        if (h->max - h->min < servo_of(k->a, j)->span_ticks / 36) {
+            return app_fail(k->a, EXIT_USAGE, "EMPTY", "calibrate: %s was not moved",
+                            app_model(k->a)->joints[j].name);
+        }
+    }
+    return 0;
+}
+
+static int by_hand(calibration *k)
+{
+    if (!keys_start(&k->input, k->c.base, true, on_key, k)) {
+        return app_fail(k->a, EXIT_USAGE, "CANCELED",
+                        "calibrate: needs a person who presses enter, or --from FILE");
+    }
+    k->look = conn_every(&k->c, LOOK_US, conn_note, &k->is_due);
+    progress_start(&k->line, k->a);
+    app_note(k->a, "put every joint into the middle of its range, then press enter");
+    int status = watch(k, false);
+    if (!status) {
+        status = home(k);
+    }
+    if (!status) {
+        app_note(k->a, "that is the middle; now move every joint to both of its ends, then press "
+                       "enter");
+        status = watch(k, true);
+    }
+    if (!status) {
+        status = check_ranges(k);
+    }
+    conn_forget(k->look);
+    keys_stop(&k->input);
+    return status;
+}
+
+/* ---- from the beginning to the end ----------------------------------------------------------- */
+
+static void report(const calibration *k)
+{
+    json_t *list = json_array();
+    for (int j = 0; j < app_model(k->a)->n_joints; j++) {
+        const grobo_joint *moved = &app_model(k->a)->joints[j];
+        const homing *is = &k->wanted[j], *was = &k->before[j];
+        if (!k->a->json) {
+            app_print("%5d  %-14s  offset %5d -> %5d  range %4d..%4d -> %4d..%4d\n", moved->motor,
+                      moved->name, (int)was->offset, (int)is->offset, (int)was->min, (int)was->max,
+                      (int)is->min, (int)is->max);
+        }
+        json_array_append_new(
+            list, json_pack("{s:i,s:i,s:s,s:i,s:[i,i],s:i,s:[i,i]}", "joint", j, "motor",
+                            moved->motor, "name", moved->name, "before_offset", (int)was->offset,
+                            "before_range", (int)was->min, (int)was->max, "offset",
+                            (int)is->offset, "range", (int)is->min, (int)is->max));
+    }
+    if (k->a->json) {
+        app_print_json(json_pack("{s:s,s:o*,s:o*,s:b,s:o}", "robot", robot_of(k->a)->name,
+                                 "before_file", *k->kept ? app_json_text(k->kept) : NULL, "file",
+                                 *k->saved ? app_json_text(k->saved) : NULL, "written",
+                                 !k->orders->dry_run, "joints", list));
+    } else {
+        json_decref(list);
+    }
+}
+
+static int save(calibration *k)
+{
+    char path[PATH_BYTES];
+    if (k->orders->from || k->orders->restore) {
+        return 0;
+    }
+    snprintf(path, sizeof path, "%s-calibration.json", robot_of(k->a)->name);
+    int status = homing_write(k->a, k->orders->out ? k->orders->out : path, k->wanted, k->saved,
+                              sizeof k->saved);
+    if (!status) {
+        app_note(k->a, "calibration written to %s", k->saved);
+    }
+    return status;
+}
+
+static int let_limp(calibration *k)
+{
+    grobo_joint_mask all = GROBO_JOINTS_ALL(app_model(k->a)->n_joints);
+    app_note(k->a, "torque goes off: hold the robot; what is raised falls");
+    return conn_wait(&k->c, grobo_robot_torque(grobo_session_robot(k->c.session), all,
+                                               GROBO_TORQUE_OFF));
+}
+
+static int calibrate(calibration *k)
+{
+    conn *c = &k->c;
+    bool by_file = k->orders->from || k->orders->restore;
+    c->ctx = k;
+    int error = k->orders->dry_run ? GROBO_OK : let_limp(k);
+    int status = error ? conn_fail(c, error, "calibrate") : read_before(k);
+    if (!status && !k->orders->dry_run) {
+        status = homing_write(k->a, NULL, k->before, k->kept, sizeof k->kept);
+        if (!status) {
+            app_note(k->a, "what the servos hold is in %s; 'grctl calibrate --restore %s' undoes "
+                           "this",
+                     k->kept, k->kept);
+        }
+    }
+    if (!status && !by_file) {
+        status = by_hand(k);
+    }
+    if (!status && !k->orders->dry_run) {
+        status = write_all(k);
+    }
+    if (!status) {
+        status = save(k);
+    }
+    if (!status) {
+        report(k);
+    }
+    return status;
+}
+
+int homing_run(app *a, const homing_orders *orders)
+{
+    static calibration k;
+    int status = 0;
+    memset(&k, 0, sizeof k);
+    k.a = a;
+    k.orders = orders;
+    if (orders->dry_run && !orders->from && !orders->restore) {
+        return app_fail(a, EXIT_USAGE, "ARG", "calibrate: --dry-run needs --from or --restore");
+    }
+    if (orders->from || orders->restore) {
+        status = homing_read(a, orders->from ? orders->from : orders->restore,
+                             orders->restore != NULL, k.wanted);
+    }
+    if (status) {
+        return status;
+    }
+    status = conn_open(&k.c, a);
+    return conn_close(&k.c, status ? status : calibrate(&k));
+}
