@@ -30,7 +30,7 @@ cat >"$work/rows" <<'END'
 4|lines[0]["error"]["code"] == "unwatched"|-d sim play --rate 50 motions/greet.pseq
 0|len(lines) == 10|play --dry-run --key motions/greet.pseq
 0|lines[0]["state"] == "approach" and lines[-1]["done"]|follow so101-leader@sim so101@sim --for 0.3
-0|lines[0]["joints"][0]["offset"] == 25|--robot so101 -d sim calibrate --dry-run --from WORK/arm.json
+0|lines[0]["joints"][0]["offset"] == 25|--robot so101 -d sim calibrate --dry-run --from WORK/a.json
 0|lines[0]["done"]|-d sim stop
 0|lines[0]["done"]|-d sim estop
 0|lines[0]["ok"] and lines[0]["diagnostics"] == []|check motions/greet.pseq
@@ -61,7 +61,7 @@ cat >"$work/rows" <<'END'
 END
 mkdir -p "$work/config/grctl"
 awk '/^<!-- file lerobot.json/ { on = 1; next } on && /^```$/ { exit } on && !/^```/' \
-    docs/guide/arm.md >"$work/arm.json"
+    docs/guide/arm.md >"$work/a.json"
 echo 'robots: {here: {device: sim}}' >"$work/config/grctl/config.yaml"
 "$GRCTL" --trace "$work/trace" -d sim status >/dev/null
 
