@@ -9,6 +9,8 @@ extern const grobo_robot_family grobo_i_family_rs30x;
 extern const grobo_robot_family grobo_i_family_dynamixel2;
 extern const grobo_robot_family grobo_i_family_dynamixel1;
 extern const grobo_robot_family grobo_i_family_feetech;
+extern const grobo_robot_family grobo_i_family_lx16a;
+extern const grobo_robot_family grobo_i_family_ics;
 
 /* By wiring. */
 extern const grobo_driver grobo_i_gr001_drivers[];

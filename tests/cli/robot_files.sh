@@ -139,6 +139,22 @@ guarded() {
 stands() {
     sim_shows 1 'torque on .* C$'
 }
+# ---- servos without registers ---------------------------------------------------------------
+
+for family in lx16a:LX-16A ics:KRS-3301; do
+    cat >"$work/pair.yaml" <<END
+name: pair
+family: ${family%%:*}
+joints:
+  - {name: pan, id: 1, servo: ${family##*:}, limits_deg: [-60, 60]}
+  - {name: tilt, id: 2, servo: ${family##*:}, limits_deg: [-60, 60], sign: -1}
+END
+    check "$family moves" both exits 0 "$GRCTL" --robot "$work/pair.yaml" -d sim move tilt 20 --- \
+        written "$work/err" 'there; largest error 0\.[01] deg'
+    check "$family has no registers" fails 4 'scan: servos of pair have no registers' \
+        "$GRCTL" --robot "$work/pair.yaml" -d sim scan
+done
+
 if [ -z "${NATIVE_GRCTL:-}" ]; then
     check "killed: its guard stops it" guarded so101
     check "of a file too" guarded ./src/robots/so101.yaml

@@ -521,6 +521,16 @@ static int scan_families(app *a)
     return conclude(a, &f);
 }
 
+/* 0 where the robot's servos tell what they are. */
+static int need_registers(app *a)
+{
+    const grobo_driver *driver = app_driver(a);
+    return family_servo(driver, driver->model->joints[0].motor)
+               ? 0
+               : app_fail(a, EXIT_SAFETY, "UNSUPPORTED", "%s: servos of %s have no registers",
+                          a->line.command->name, driver->model->name);
+}
+
 static int run_scan(app *a)
 {
     conn c;
@@ -536,7 +546,11 @@ static int run_scan(app *a)
     if (first_id(a, app_driver(a)) > last_id(a, app_driver(a))) {
         return app_fail(a, EXIT_USAGE, "ARG", "scan: --first is behind --last");
     }
-    int status = conn_open_unchecked(&c, a);
+    int status = need_registers(a);
+    if (status) {
+        return status;
+    }
+    status = conn_open_unchecked(&c, a);
     if (!status && app_option(a, OPT_ALL_BAUD)->given && grobo_session_sim(c.session)) {
         status = app_fail(a, EXIT_USAGE, "ARG",
                           "scan: --all-baud needs a line; 'grctl sim --wiring bus' makes one");
@@ -597,7 +611,11 @@ static int info(conn *c)
 static int run_info(app *a)
 {
     conn c;
-    int status = conn_open(&c, a);
+    int status = need_registers(a);
+    if (status) {
+        return status;
+    }
+    status = conn_open(&c, a);
     if (!status) {
         status = info(&c);
     }
