@@ -30,7 +30,7 @@ cat >"$work/rows" <<'END'
 4|lines[0]["error"]["code"] == "unwatched"|-d sim play --rate 50 motions/greet.pseq
 0|len(lines) == 10|play --dry-run --key motions/greet.pseq
 0|lines[0]["state"] == "approach" and lines[-1]["done"]|follow so101-leader@sim so101@sim --for 0.3
-0|lines[0]["joints"][0]["offset"] == 25|--robot so101 -d sim calibrate --dry-run --from WORK/arm.json
+0|lines[0]["written"] is False|--robot so101 -d sim calibrate --dry-run --from WORK/arm.json
 0|lines[0]["done"]|-d sim stop
 0|lines[0]["done"]|-d sim estop
 0|lines[0]["ok"] and lines[0]["diagnostics"] == []|check motions/greet.pseq

@@ -21,7 +21,7 @@ struct conn_link;
 
 typedef struct app {
     cli_line line;
-    struct conn_link *link; /* the shell's, NULL: every command opens and closes its own */
+    struct conn_link *link;   /* the shell's, NULL: every command opens and closes its own */
     struct conn_link *beside; /* the link whose loop this command uses too, or NULL */
     const struct grobo_motion *record; /* the shell's @record, or NULL */
     const struct config_robot *robot;  /* the configured one, or NULL */

@@ -18,8 +18,8 @@ static const cli_option options[] = {
     [OPT_DRY_RUN] = OPTION_FLAG("dry-run", 0, "show what would be written, write nothing"),
     [OPT_FROM] = OPTION_TEXT("from", 0, "FILE", "take a calibration of LeRobot's form"),
     [OPT_RESTORE] = OPTION_TEXT("restore", 0, "FILE", "write back what the servos held before"),
-    [OPT_OUT] = OPTION_TEXT("out", 'o', "FILE",
-                            "keep the calibration there (ROBOT-calibration.json)"),
+    [OPT_OUT] =
+        OPTION_TEXT("out", 'o', "FILE", "keep the calibration there (ROBOT-calibration.json)"),
 };
 
 static void show(const app *a, const config_robot *before, const config_robot *after)
@@ -169,16 +169,17 @@ const cli_command cmd_calibrate = {
     COMMAND_ARGUMENTS("[JOINT DEG]", 0, 2, CLI_ARG_JOINT),
     .summary = "tell servos where their middle is, or write trims",
     .details =
-        "Servos of Feetech (STS) and DYNAMIXEL (X) keep where their middle is. Torque goes off; put\n"
-        "every joint into the middle of its range and press enter, then move every joint to both\n"
-        "of its ends and press enter. The offset and the limits go to the servos, and the ranges\n"
-        "to a file of LeRobot's form, which --from reads. A servo's limits hold at least what the\n"
-        "robot's file lets its joint do. What the servos held before is written to a file first;\n"
-        "--restore writes it back, as it would any file of that form.\n\n"
-        "Other robots have trims. Switch torque off, put the robot by hand into its initial posture, and run it: what the\n"
-        "joints read beside that posture becomes their trims. With JOINT and DEG it sets the trim\n"
-        "of one joint and speaks to no robot. A trim is added to every angle that goes to the\n"
-        "servo and taken from every angle it reports; limits hold for both.\n\n"
+        "Servos of Feetech (STS) and DYNAMIXEL (X) keep where their middle is. Torque goes off;\n"
+        "put every joint into the middle of its range and press enter, then move every joint to\n"
+        "both of its ends and press enter. The offset and the limits go to the servos, and the\n"
+        "ranges to a file of LeRobot's form, which --from reads. A servo's limits hold at least\n"
+        "what the robot's file lets its joint do. What the servos held before is written to a\n"
+        "file first; --restore writes it back, as it would any file of that form.\n\n"
+        "Other robots have trims. Switch torque off, put the robot by hand into its initial\n"
+        "posture, and run it: what the joints read beside that posture becomes their trims. With\n"
+        "JOINT and DEG it sets the trim of one joint and speaks to no robot. A trim is added to\n"
+        "every angle that goes to the servo and taken from every angle it reports; limits hold\n"
+        "for both.\n\n"
         "The robot is one of ~/.config/grctl/config.yaml or /etc/grctl/config.yaml:\n\n"
         "  default: kitchen\n"
         "  robots:\n"

@@ -14,7 +14,14 @@
 #include "tools/grctl/conn/conn.h"
 
 enum { OPT_RATE, OPT_FOR };
-enum { LOST_US = 200000, ALL_US = 1000000, RATE_HZ = 100, MAX_HZ = 200, LATE_BIN_US = 20, LATE_BINS = 1000 };
+enum {
+    LOST_US = 200000,
+    ALL_US = 1000000,
+    RATE_HZ = 100,
+    MAX_HZ = 200,
+    LATE_BIN_US = 20,
+    LATE_BINS = 1000
+};
 
 /* The follower is there where all joints are as near; left so far behind it comes softly again. */
 static const double there_deg = 1.5, behind_deg = 20;
@@ -63,8 +70,7 @@ static void say_state(const pair *p)
 {
     static const char *const names[] = {"lost", "approach", "follow"};
     static const char *const texts[] = {"the leader is lost: the follower holds",
-                                        "the follower goes to the leader",
-                                        "the follower follows"};
+                                        "the follower goes to the leader", "the follower follows"};
     if (p->a->json) {
         app_print_json(json_pack("{s:s,s:I}", "state", names[p->state], "t_ms",
                                  (json_int_t)((grobo_now_us() - p->began_us) / 1000)));
@@ -101,13 +107,14 @@ static void report(const pair *p)
     double rate_hz = s > 0 ? (double)p->periods / s : 0;
     int64_t p50 = late_us(p, 50), p99 = late_us(p, 99);
     if (p->a->json) {
-        app_print_json(json_pack(
-            "{s:b,s:I,s:I,s:o,s:{s:I,s:I,s:I}}", "done", 1, "targets", (json_int_t)p->sent,
-            "clamped", (json_int_t)p->clamped, "rate_hz", app_json_number(rate_hz, 1), "late_us",
-            "p50", (json_int_t)p50, "p99", (json_int_t)p99, "max", (json_int_t)p->late_max_us));
+        app_print_json(json_pack("{s:b,s:I,s:I,s:o,s:{s:I,s:I,s:I}}", "done", 1, "targets",
+                                 (json_int_t)p->sent, "clamped", (json_int_t)p->clamped, "rate_hz",
+                                 app_json_number(rate_hz, 1), "late_us", "p50", (json_int_t)p50,
+                                 "p99", (json_int_t)p99, "max", (json_int_t)p->late_max_us));
     } else {
-        app_note(p->a, "%llu targets at %.1f Hz; late by %lld us (median), %lld us (99 %%), %lld us "
-                       "at most; %llu beyond the follower's limits",
+        app_note(p->a,
+                 "%llu targets at %.1f Hz; late by %lld us (median), %lld us (99 %%), %lld us "
+                 "at most; %llu beyond the follower's limits",
                  (unsigned long long)p->sent, rate_hz, (long long)p50, (long long)p99,
                  (long long)p->late_max_us, (unsigned long long)p->clamped);
     }
@@ -208,8 +215,8 @@ static void let_limp(pair *p)
 {
     if (p->leader.c.up && !p->limp && !p->limp_job) {
         grobo_joint_mask all = GROBO_JOINTS_ALL(model_of(&p->leader)->n_joints);
-        int job = grobo_robot_torque(grobo_session_robot(p->leader.c.session), all,
-                                     GROBO_TORQUE_OFF);
+        int job =
+            grobo_robot_torque(grobo_session_robot(p->leader.c.session), all, GROBO_TORQUE_OFF);
         p->limp_job = job > 0 ? job : 0;
     }
 }
@@ -335,8 +342,8 @@ static int open_follower(pair *p)
         return status;
     }
     c->ctx = p;
-    int error = conn_wait(c, grobo_robot_sense(grobo_session_robot(c->session), p->joints,
-                                               GROBO_SENSE_ALL));
+    int error = conn_wait(
+        c, grobo_robot_sense(grobo_session_robot(c->session), p->joints, GROBO_SENSE_ALL));
     return error ? conn_fail(c, error, "follow") : 0;
 }
 
@@ -447,7 +454,7 @@ const cli_command cmd_follow = {
         "\n"
         "The torque of the leader goes off. The follower goes softly to where the leader is, then\n"
         "it is sent where to be a hundred times a second: within its own limits, and no faster\n"
-        "than its joints can. A leader that is suddenly somewhere else is approached softly again.\n"
+        "than its joints can. A leader that is suddenly elsewhere is approached softly again.\n"
         "While nothing was read of the leader for 0.2 s the follower holds; the leader may be\n"
         "unplugged and plugged in again. A safety stop of the follower ends it. Ctrl-C ends it,\n"
         "and leaves both by their exit policies.\n",

@@ -58,8 +58,8 @@ static int read_role(calibration *k, int joint, grobo_register_role role, int32_
     const grobo_servo_model *servo = servo_of(k->a, joint);
     const grobo_servo_register *reg = grobo_servo_register_of(servo, role);
     uint8_t bytes[4] = {0};
-    int error = servos_read(&k->c, app_model(k->a)->joints[joint].motor, reg->address, reg->bytes,
-                            bytes);
+    int error =
+        servos_read(&k->c, app_model(k->a)->joints[joint].motor, reg->address, reg->bytes, bytes);
     if (!error) {
         *value = grobo_servo_register_get(servo, reg, bytes);
     }
@@ -149,7 +149,8 @@ static homing with_limits(const calibration *k, int joint)
     }
     for (int i = 0; i < 2; i++) {
         double deg = grobo_deg_from_rad(grobo_joint_to_servo(moved, ends_rad[i]));
-        int32_t ticks = servo->middle + (int32_t)floor(deg * servo->span_ticks / servo->span_deg + 0.5);
+        int32_t ticks =
+            servo->middle + (int32_t)floor(deg * servo->span_ticks / servo->span_deg + 0.5);
         h.min = ticks < h.min ? ticks : h.min;
         h.max = ticks > h.max ? ticks : h.max;
     }
@@ -275,7 +276,8 @@ static int home(calibration *k)
         const grobo_servo_register *reg = grobo_servo_register_of(servo, GROBO_ROLE_OFFSET);
         int sign = sign_of_offset(servo);
         /* DYNAMIXEL within one turn take no more than a quarter (emanual homing_offset). */
-        int32_t most = sign > 0 && !app_model(k->a)->joints[j].turns ? servo->span_ticks / 4 : reg->max;
+        int32_t most =
+            sign > 0 && !app_model(k->a)->joints[j].turns ? servo->span_ticks / 4 : reg->max;
         int error = write_role(k, j, GROBO_ROLE_OFFSET, 0);
         if (!error) {
             error = read_role(k, j, GROBO_ROLE_POSITION, &k->now[j]);
@@ -361,8 +363,8 @@ static void report(const calibration *k)
         json_array_append_new(
             list, json_pack("{s:i,s:i,s:s,s:i,s:[i,i],s:i,s:[i,i]}", "joint", j, "motor",
                             moved->motor, "name", moved->name, "before_offset", (int)was->offset,
-                            "before_range", (int)was->min, (int)was->max, "offset",
-                            (int)is->offset, "range", (int)is->min, (int)is->max));
+                            "before_range", (int)was->min, (int)was->max, "offset", (int)is->offset,
+                            "range", (int)is->min, (int)is->max));
     }
     if (k->a->json) {
         app_print_json(json_pack("{s:s,s:o*,s:o*,s:b,s:o}", "robot", robot_of(k->a)->name,
@@ -393,8 +395,8 @@ static int let_limp(calibration *k)
 {
     grobo_joint_mask all = GROBO_JOINTS_ALL(app_model(k->a)->n_joints);
     app_note(k->a, "torque goes off: hold the robot; what is raised falls");
-    return conn_wait(&k->c, grobo_robot_torque(grobo_session_robot(k->c.session), all,
-                                               GROBO_TORQUE_OFF));
+    return conn_wait(&k->c,
+                     grobo_robot_torque(grobo_session_robot(k->c.session), all, GROBO_TORQUE_OFF));
 }
 
 static int calibrate(calibration *k)
@@ -407,8 +409,9 @@ static int calibrate(calibration *k)
     if (!status && !k->orders->dry_run) {
         status = homing_write(k->a, NULL, k->before, k->kept, sizeof k->kept);
         if (!status) {
-            app_note(k->a, "what the servos hold is in %s; 'grctl calibrate --restore %s' undoes "
-                           "this",
+            app_note(k->a,
+                     "what the servos hold is in %s; 'grctl calibrate --restore %s' undoes "
+                     "this",
                      k->kept, k->kept);
         }
     }
