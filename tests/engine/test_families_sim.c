@@ -144,9 +144,9 @@ static void a_servo_set_up_otherwise_is_made_limp(void **state)
         family_set_up(&kit, 2, GROBO_ROLE_TORQUE, 1);
         assert_int_equal(grobo_sim_look(&kit.sim, 2, &view), GROBO_OK);
         assert_int_equal(view.torque, GROBO_TORQUE_ON);
-        assert_int_equal(family_wait(&kit, grobo_robot_torque(&kit.robot, GROBO_JOINT_BIT(2),
-                                                              GROBO_TORQUE_OFF)),
-                         GROBO_OK);
+        assert_int_equal(
+            family_wait(&kit, grobo_robot_torque(&kit.robot, GROBO_JOINT_BIT(2), GROBO_TORQUE_OFF)),
+            GROBO_OK);
         assert_int_equal(grobo_sim_look(&kit.sim, 2, &view), GROBO_OK);
         assert_int_equal(view.torque, GROBO_TORQUE_OFF);
         assert_true(family_wait(&kit, grobo_robot_torque(&kit.robot, GROBO_JOINT_BIT(2),
