@@ -162,9 +162,35 @@ static void a_drive_mode_without_time_is_refused(void **state)
     assert_true(fabs(family_angle_deg(&kit, 0)) < 0.2);
 }
 
+/* What its angles mean is not known; its torque is. */
+static void a_servo_set_up_otherwise_is_made_limp(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"dxl2", "dxl1", "feetech", "scs"};
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        grobo_sim_view view;
+        family_start(&kit, family_named(names[i]), &watched, NULL);
+        family_set_up(&kit, 2, GROBO_ROLE_MAX_POSITION, kit.servos[2]->middle);
+        family_set_up(&kit, 2, GROBO_ROLE_TORQUE, 1);
+        assert_int_equal(grobo_sim_look(&kit.sim, 2, &view), GROBO_OK);
+        assert_int_equal(view.torque, GROBO_TORQUE_ON);
+        assert_int_equal(
+            family_wait(&kit, grobo_robot_torque(&kit.robot, GROBO_JOINT_BIT(2), GROBO_TORQUE_OFF)),
+            GROBO_OK);
+        assert_int_equal(grobo_sim_look(&kit.sim, 2, &view), GROBO_OK);
+        assert_int_equal(view.torque, GROBO_TORQUE_OFF);
+        assert_true(family_wait(&kit, grobo_robot_torque(&kit.robot, GROBO_JOINT_BIT(2),
+                                                         GROBO_TORQUE_ON)) < 0);
+        assert_true(family_move(&kit, 20, 1000) < 0);
+        assert_int_equal(grobo_sim_look(&kit.sim, 2, &view), GROBO_OK);
+        assert_int_equal(view.torque, GROBO_TORQUE_OFF);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_servo_set_up_otherwise_is_made_limp),
         cmocka_unit_test(postures_are_played),
         cmocka_unit_test(a_faulty_line_moves_nothing_wrong),
         cmocka_unit_test(an_emergency_stop_stops),
