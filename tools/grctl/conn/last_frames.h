@@ -3,6 +3,7 @@
 #ifndef GRCTL_LAST_FRAMES_H
 #define GRCTL_LAST_FRAMES_H
 
+#include <grobo/protocol.h>
 #include <grobo/serial.h>
 
 enum { LAST_FRAMES = 80, LAST_FRAME_BYTES = 64 };
