@@ -102,7 +102,7 @@ restarted 3
 check "over power-off" wait_for both exits 0 of koch servo-get 3 return_delay --- \
     says '^  9  return_delay  *0  *0 us$'
 exits 0 of koch servo on elbow_flex
-check "not of a servo that holds" fails 4 'servo 3 holds, and would jump with another .*' \
+check "not of a servo that holds" fails 4 'servo 3 holds, and .* another return_delay' \
     of koch servo-set 3 return_delay 10
 check "what is no setting" both exits 0 of koch servo-set 3 led 1 --- \
     said '^servo 3: led 0 -> 1; lost at power-off$'

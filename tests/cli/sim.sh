@@ -157,7 +157,7 @@ others() {
         timeout 20 "$GRCTL" sim --servo 1=XL330-M288,2=sts3215 >"$work/out" 2>&1
 }
 check "servos of other families" both others --- says 'SERVO_2  *45\.0 deg'
-for wrong in '--strict' "--state $work/other.state" '--wiring board'; do
+for wrong in "--state $work/other.state" '--wiring board'; do
     # shellcheck disable=SC2086
     check "$wrong is for RS30x" fails 2 "^grctl: sim: ${wrong%% "$work"*}: " \
         timeout 5 "$GRCTL" sim --servo 1=STS3215 $wrong
