@@ -11,8 +11,5 @@ static int init(grobo_driver *driver, const grobo_model *model, grobo_wiring wir
 
 static const grobo_servo_table *const tables[] = {&grobo_ics_table, NULL};
 
-const grobo_robot_family grobo_i_family_ics = {.name = "ics",
-                                                   .tables = tables,
-                                                   .baud_bps = 115200,
-                                                   .wiring = GROBO_WIRING_BUS,
-                                                   .init = init};
+const grobo_robot_family grobo_i_family_ics = {
+    .name = "ics", .tables = tables, .baud_bps = 115200, .wiring = GROBO_WIRING_BUS, .init = init};

@@ -2,6 +2,8 @@
 /* Register tables of any family: looked up, values taken from bytes and put into them. */
 #include <grobo/registers.h>
 
+enum { BYTES_MAX = 4 };
+
 static bool same_text(const char *a, const char *b)
 {
     for (; *a != '\0' && *a == *b; a++, b++) {
@@ -64,14 +66,30 @@ const grobo_servo_register *grobo_servo_register_named(const grobo_servo_model *
     return reg;
 }
 
+/* Of a model no two registers share a byte, so that whichever row holds it is the one. */
 const grobo_servo_register *grobo_servo_register_at(const grobo_servo_model *model,
                                                     uint16_t address)
 {
-    const grobo_servo_register *reg = next(model, NULL);
-    while (reg != NULL && (address < reg->address || address >= reg->address + reg->bytes)) {
-        reg = next(model, reg);
+    if (model == NULL) {
+        return NULL;
     }
-    return reg;
+    const grobo_servo_register *rows = model->table->registers;
+    size_t low = 0, high = model->table->register_count;
+    while (low < high) { /* rows before low begin at the address or before it */
+        size_t middle = low + (high - low) / 2;
+        if (rows[middle].address <= address) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    for (; low > 0 && address < rows[low - 1].address + BYTES_MAX; low--) {
+        const grobo_servo_register *reg = &rows[low - 1];
+        if ((reg->groups & model->group) != 0 && address < reg->address + reg->bytes) {
+            return reg;
+        }
+    }
+    return NULL;
 }
 
 const grobo_servo_register *grobo_servo_register_of(const grobo_servo_model *model,

@@ -125,7 +125,7 @@ static void start(int64_t sense_interval_us)
 {
     const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT,
                                        .sense_interval_us = sense_interval_us};
-    const grobo_sim_config sim = {0};
+    const grobo_sim_config sim = {GROBO_SIM_CONFIG_INIT};
     const grobo_robot_host host = {.clock = rig_clock};
 
     rig.now_us = SECOND_US;
@@ -232,7 +232,7 @@ static void prepare_play(void)
 /* Simulated robots alone, each told a pose 30 times a second. */
 static void prepare_poses(void)
 {
-    const grobo_sim_config config = {0};
+    const grobo_sim_config config = {GROBO_SIM_CONFIG_INIT};
 
     prepare_codec();
     rig.now_us = SECOND_US;

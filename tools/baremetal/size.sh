@@ -45,8 +45,9 @@ families='bus/several servo/dxl1/driver servo/dxl1/packet servo/dxl1/protocol se
      servo/lx16a/packet servo/lx16a/protocol servo/lx16a/table servo/registers
      servo/table/driver servo/table/inspect servo/table/make servo/table/reading
      servo/table/values robots/driver robots/family_dxl1 robots/family_dxl2
-     robots/family_feetech robots/family_ics robots/family_lx16a robots/family_rs30x robots/koch robots/koch_leader
-     robots/openmanipulator_x robots/pan_tilt robots/shipped robots/so101 robots/so101_leader
+     robots/family_feetech robots/family_ics robots/family_lx16a robots/family_rs30x robots/koch
+     robots/koch_leader robots/openmanipulator_x robots/pan_tilt robots/shipped robots/so101
+     robots/so101_leader
      sim/dxl sim/dxl1 sim/dxl2 sim/ics sim/lx16a'
 
 # figure CPU NAME BYTES: notes it, and prints it beside the one that was kept.

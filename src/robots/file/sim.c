@@ -5,7 +5,7 @@
 #include "src/robots/file/families.h"
 
 static const grobo_sim_family *const sim_families[] = {&grobo_sim_dxl2, &grobo_sim_dxl1,
-                                                        &grobo_sim_lx16a, &grobo_sim_ics, NULL};
+                                                       &grobo_sim_lx16a, &grobo_sim_ics, NULL};
 
 int grobo_robot_def_sim(const grobo_robot_def *def, grobo_wiring wiring, grobo_robot_sim *sim)
 {
