@@ -26,12 +26,16 @@ in_folder() (
 turned() {
     tell turn "$1" "$2" && sim_shows "$1" " $2\.0 deg"
 }
-# by_hand: begins it; enter is a line to descriptor 7.
+# by_hand TORQUE: begins it, and lets the torque go that there is; enter is a line to descriptor 7.
 by_hand() {
     (cd "$work" && exec "$GRCTL" -v -d "$robot" --timeout 500 calibrate -o so101.json) \
         <"$work/keys" >"$work/told" 2>"$work/said" &
     calibrate_pid=$!
     exec 7>"$work/keys"
+    held=no
+    written "$work/said" 'torque goes off when you press enter' >&2 &&
+        sim_shows shoulder_pan "torque $1" >&2 && held=yes
+    echo >&7
 }
 # ended: waits for its end.
 ended() {
@@ -56,7 +60,8 @@ register() {
 # The arm is put together 20 degrees off in the shoulder: 228 counts.
 check "as it came" register 1 offset 0
 check "it had torque" exits 0 on_robot servo on
-by_hand
+by_hand on
+check "nothing falls before enter" [ $held = yes ]
 check "it asks for the middle" written "$work/said" 'the middle of its range, then press enter'
 check "the arm is limp" sim_shows shoulder_pan 'torque off'
 check "the shoulder is off" turned shoulder_pan 20
@@ -81,7 +86,7 @@ ended
 check "but the gripper was not moved" with_status 2
 check "that is said" grep -q 'gripper was not moved' "$work/said"
 
-by_hand
+by_hand off
 check "once more" written "$work/said" 'the middle of its range, then press enter'
 check "the shoulder is off again" turned shoulder_pan 20
 echo >&7
@@ -162,6 +167,7 @@ dxl_calibrated() {
         2>"$work/said" &
     calibrate_pid=$!
     exec 7>"$work/keys"
+    echo >&7
     tell turn shoulder_pan 20
     written "$work/said" 'then press enter' || return 1
     echo >&7

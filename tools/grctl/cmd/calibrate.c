@@ -169,13 +169,13 @@ const cli_command cmd_calibrate = {
     COMMAND_ARGUMENTS("[JOINT DEG]", 0, 2, CLI_ARG_JOINT),
     .summary = "tell servos where their middle is, or write trims",
     .details =
-        "Servos of Feetech (STS) and DYNAMIXEL (X) keep where their middle is. Torque goes\n"
-        "off; put every joint into the middle of its range and press enter, then move every\n"
-        "joint to both of its ends and press enter. The offset and the limits go to the\n"
-        "servos, and the ranges to a file of LeRobot's form, which --from reads. A servo's\n"
-        "limits hold at least what the robot's file lets its joint do. What the servos held\n"
-        "before is written to a file first; --restore writes it back, as it would any file\n"
-        "of that form.\n"
+        "Servos of Feetech (STS) and DYNAMIXEL (X) keep where their middle is. Press enter,\n"
+        "and torque goes off; put every joint into the middle of its range and press enter,\n"
+        "then move every joint to both of its ends and press enter. The offset and the limits\n"
+        "go to the servos, and the ranges to a file of LeRobot's form, which --from reads. A\n"
+        "servo's limits hold at least what the robot's file lets its joint do. What the\n"
+        "servos held before is written to a file first; --restore writes it back, as it would\n"
+        "any file of that form.\n"
         "\n"
         "Other robots have trims. Switch torque off, put the robot by hand into its initial\n"
         "posture, and run it: what the joints read beside that posture becomes their trims. With\n"

@@ -24,7 +24,7 @@ typedef struct calibration {
     struct event *look;
     homing before[GROBO_JOINTS_MAX], wanted[GROBO_JOINTS_MAX];
     int32_t now[GROBO_JOINTS_MAX]; /* positions read last */
-    bool is_due, pressed, has_ended;
+    bool is_due, pressed, has_ended, listens;
     char kept[PATH_BYTES], saved[PATH_BYTES];
 } calibration;
 
@@ -321,14 +321,30 @@ static int check_ranges(calibration *k)
     return 0;
 }
 
-static int by_hand(calibration *k)
+/* A person is there before torque goes off. */
+static int hear_enter(calibration *k)
 {
     if (!keys_start(&k->input, k->c.base, true, on_key, k)) {
         return app_fail(k->a, EXIT_USAGE, "CANCELED",
                         "calibrate: needs a person who presses enter, or --from FILE");
     }
+    k->listens = true;
     k->look = conn_every(&k->c, LOOK_US, conn_note, &k->is_due);
     progress_start(&k->line, k->a);
+    app_note(k->a, "hold the robot, what is raised falls: torque goes off when you press enter");
+    return watch(k, false);
+}
+
+static void hear_no_more(calibration *k)
+{
+    if (k->listens) {
+        conn_forget(k->look);
+        keys_stop(&k->input);
+    }
+}
+
+static int by_hand(calibration *k)
+{
     app_note(k->a, "put every joint into the middle of its range, then press enter");
     int status = watch(k, false);
     if (!status) {
@@ -339,12 +355,7 @@ static int by_hand(calibration *k)
                        "enter");
         status = watch(k, true);
     }
-    if (!status) {
-        status = check_ranges(k);
-    }
-    conn_forget(k->look);
-    keys_stop(&k->input);
-    return status;
+    return status ? status : check_ranges(k);
 }
 
 /* ---- from the beginning to the end ----------------------------------------------------------- */
@@ -394,27 +405,40 @@ static int save(calibration *k)
 static int let_limp(calibration *k)
 {
     grobo_joint_mask all = GROBO_JOINTS_ALL(app_model(k->a)->n_joints);
-    app_note(k->a, "torque goes off: hold the robot; what is raised falls");
+    if (!k->listens) {
+        app_note(k->a, "torque goes off: what is raised falls");
+    }
     return conn_wait(&k->c,
                      grobo_robot_torque(grobo_session_robot(k->c.session), all, GROBO_TORQUE_OFF));
 }
 
+/* The robot is limp, and what its servos hold is in a file. */
+static int prepare(calibration *k, bool by_file)
+{
+    int status = by_file ? 0 : hear_enter(k);
+    if (!status && !k->orders->dry_run) {
+        int error = let_limp(k);
+        status = error ? conn_fail(&k->c, error, "calibrate") : 0;
+    }
+    if (!status) {
+        status = read_before(k);
+    }
+    if (status || k->orders->dry_run) {
+        return status;
+    }
+    status = homing_write(k->a, NULL, k->before, k->kept, sizeof k->kept);
+    if (!status) {
+        app_note(k->a, "what the servos hold is in %s; 'grctl calibrate --restore %s' undoes this",
+                 k->kept, k->kept);
+    }
+    return status;
+}
+
 static int calibrate(calibration *k)
 {
-    conn *c = &k->c;
     bool by_file = k->orders->from || k->orders->restore;
-    c->ctx = k;
-    int error = k->orders->dry_run ? GROBO_OK : let_limp(k);
-    int status = error ? conn_fail(c, error, "calibrate") : read_before(k);
-    if (!status && !k->orders->dry_run) {
-        status = homing_write(k->a, NULL, k->before, k->kept, sizeof k->kept);
-        if (!status) {
-            app_note(k->a,
-                     "what the servos hold is in %s; 'grctl calibrate --restore %s' undoes "
-                     "this",
-                     k->kept, k->kept);
-        }
-    }
+    k->c.ctx = k;
+    int status = prepare(k, by_file);
     if (!status && !by_file) {
         status = by_hand(k);
     }
@@ -427,6 +451,7 @@ static int calibrate(calibration *k)
     if (!status) {
         report(k);
     }
+    hear_no_more(k);
     return status;
 }
 
