@@ -186,8 +186,8 @@ check: ## set up what is missing, build, lint, run every test
 	@$(MAKE) --no-print-directory all
 	@$(MAKE) --no-print-directory lint
 	@echo 'left out: other machines, firmware and real drivers (make check-ports)'
-	@$(MAKE) --no-print-directory test
-	@$(MAKE) --no-print-directory bench-count
+	@$(MAKE) --no-print-directory bench-count; counted=$$?; \
+	    $(MAKE) --no-print-directory test && exit $$counted
 
 lint: all $(ROBOTS) ## check the rules of the house: sources, objects, headers, symbols
 	@tools/lint/run.sh --all $(BUILD)

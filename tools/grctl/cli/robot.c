@@ -109,7 +109,7 @@ static int make_driver(app *a, const char *name)
     cli_value *wiring = &a->line.global[GLOBAL_WIRING];
     a->driver = NULL;
     if (!wiring->given) {
-        wiring->choice = a->def->wiring;
+        wiring->choice = (int)a->def->wiring;
     }
     if (a->def == grobo_robot_defs[0]) {
         return 0;
