@@ -21,8 +21,8 @@ GROBO_BEGIN_DECLS
 /** A family of servos: one way to talk, and the models that talk so. */
 typedef struct grobo_robot_family {
     const char *name;                       /**< "feetech": as a file names it */
-    const grobo_servo_table *const *tables; /**< NULL behind the last; NULL: RS30x, which have
-                                                 registers of their own (rs30x.h) */
+    const grobo_servo_table *const *tables; /**< NULL behind the last; NULL: RS30x, which the
+                                                 simulator has by grobo_sim_type_row() */
     uint32_t baud_bps;                      /**< of a file that says nothing */
     grobo_wiring wiring;                    /**< of a file that says nothing */
     /** Fills a driver, as grobo_feetech_driver_init() does.
