@@ -108,7 +108,7 @@ LIBS = $(call once,LIBS,$(call flags,--libs,yaml-0.1 libevent_core) $(OS_LIBS))
 CORE_FOLDERS := base model play bus servo servo/* robot robots sim
 HEAP := src/base/memory.c
 CORE_SRCS := $(filter-out $(HEAP),$(sort $(wildcard $(CORE_FOLDERS:%=src/%/*.c))))
-OTHER_SRCS := $(sort $(HEAP) $(wildcard src/motion/*/*.c src/robots/file/*.c src/body/*.c src/link/*/*.c ports/common/*.c \
+OTHER_SRCS := $(sort $(HEAP) $(wildcard src/team/*.c) $(wildcard src/motion/*/*.c src/robots/file/*.c src/body/*.c src/link/*/*.c ports/common/*.c \
     ports/$(PORT)/*.c))
 TOOL_SRCS := $(if $(wildcard tools/grctl/main.c),$(sort $(filter-out tools/grctl/edit/% tools/grctl/screen/%,\
     $(wildcard tools/grctl/*.c tools/grctl/*/*.c tools/grctl/os/$(PORT)/*.c)) tools/grctl/edit/$(EDIT).c \

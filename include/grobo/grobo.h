@@ -45,6 +45,7 @@
 #include <grobo/session.h>
 #include <grobo/sim.h>
 #include <grobo/sim_server.h>
+#include <grobo/team.h>
 #include <grobo/thread.h>
 #include <grobo/types.h>
 #include <grobo/version.h>

@@ -217,6 +217,15 @@ GROBO_API int grobo_robot_play(grobo_robot *robot, const grobo_clip *clip,
 GROBO_API int grobo_robot_enqueue(grobo_robot *robot, const grobo_clip *clip,
                                   const grobo_play_options *options);
 
+/** True while a motion with GROBO_START_LATER (sequencer.h) has approached and waits. */
+GROBO_API bool grobo_robot_is_ready(const grobo_robot *robot);
+/**
+ * Tells such a motion when to begin, on the clock of grobo_play_options.start_us.
+ * @return 0, GROBO_ERR_ARG, GROBO_ERR_STATE (it is not ready), GROBO_ERR_LATCHED, or
+ *         GROBO_ERR_STALE: that time is over, and it goes on waiting.
+ */
+GROBO_API int grobo_robot_start_at(grobo_robot *robot, int64_t start_us);
+
 /** @name While playing: return 0, or GROBO_ERR_STATE if there is nothing to do that to. */
 /**@{*/
 GROBO_API int grobo_robot_pause(grobo_robot *robot);

@@ -72,6 +72,9 @@ typedef enum grobo_play_mode {
     GROBO_PLAY_RATE = 1 /**< frames at a fixed rate */
 } grobo_play_mode;
 
+/** grobo_play_options.start_us of a motion whose start is told after its approach. */
+#define GROBO_START_LATER (GROBO_NEVER_US / 2)
+
 /** How to play a clip. All zero: once, by keys, forward, at its own speed. */
 typedef struct grobo_play_options {
     grobo_play_mode mode;
@@ -84,7 +87,8 @@ typedef struct grobo_play_options {
     int64_t from_us;         /**< position at which the first pass begins, 0..total */
     int64_t start_us;        /**< when it begins, on the clock of the caller: what has approached
                                   sooner waits, what is late begins at once. 0: at once. So several
-                                  robots on one clock begin together */
+                                  robots on one clock begin together. GROBO_START_LATER: it waits
+                                  for grobo_robot_start_at() */
     int64_t default_time_us; /**< KEY: time of keys that give none, 0: 100 ms */
     int64_t stop_us;         /**< time for pausing and stopping smoothly, 0: 200 ms */
     int64_t late_us;         /**< a frame taken later than this after its time is late, 0: 5 ms */
@@ -241,6 +245,16 @@ GROBO_CORE int grobo_sequencer_seek(grobo_sequencer *seq, int64_t pos_us, int64_
  * @return 0, GROBO_ERR_STATE, GROBO_ERR_ARG, or what the clip said (then FAILED).
  */
 GROBO_CORE int grobo_sequencer_set_speed(grobo_sequencer *seq, int speed_pct, int64_t now_us);
+
+/** True while a motion with GROBO_START_LATER has approached, and waits for its start. */
+GROBO_CORE bool grobo_sequencer_is_ready(const grobo_sequencer *seq);
+
+/**
+ * Tells such a motion when to begin.
+ * @return 0, GROBO_ERR_ARG, GROBO_ERR_STATE (it is not ready), or GROBO_ERR_STALE: that time is
+ *         over, and it goes on waiting.
+ */
+GROBO_CORE int grobo_sequencer_start_at(grobo_sequencer *seq, int64_t start_us, int64_t now_us);
 
 /** Gives up with a reason < 0: a frame was refused, the link is gone. Not from IDLE. */
 GROBO_CORE int grobo_sequencer_fail(grobo_sequencer *seq, int error);

@@ -135,7 +135,7 @@ static bool settle_options(grobo_play_options *o)
     fill_number(&o->rate_hz, GROBO_PLAY_RATE_HZ);
     fill_number(&o->approach_deg_s, GROBO_PLAY_APPROACH_DEG_S);
     return (o->mode == GROBO_PLAY_KEY || o->mode == GROBO_PLAY_RATE) && o->from_us >= 0 &&
-           o->start_us >= 0 && o->start_us <= GROBO_NEVER_US / 2 &&
+           o->start_us >= 0 && o->start_us <= GROBO_START_LATER &&
            o->speed_pct <= GROBO_PLAY_SPEED_MAX_PCT && o->rate_hz <= GROBO_PLAY_RATE_MAX_HZ &&
            settle_times(o);
 }

@@ -13,6 +13,7 @@
 #include <grobo/hrpsys.h>
 #include <grobo/sim_static.h>
 #include <grobo/static.h>
+#include <grobo/team.h>
 
 #define REFUSES(call) assert_int_equal(call, GROBO_ERR_ARG)
 
@@ -306,6 +307,37 @@ static void sim_refuses_null_in_its_second_functions(void **state)
     REFUSES(grobo_sim_set_faults(&sim, NULL, 4));
 }
 
+static void a_team_refuses_null(void **state)
+{
+    (void)state;
+    grobo_team *team = NULL;
+    grobo_team_member member;
+    const grobo_clip *one = &clip;
+    const grobo_event event = {.kind = GROBO_EVENT_TRIP};
+    REFUSES(grobo_team_new(NULL, NULL));
+    assert_int_equal(grobo_team_new(NULL, &team), GROBO_OK);
+    REFUSES(grobo_team_add(NULL, &robot));
+    REFUSES(grobo_team_add(team, NULL));
+    REFUSES(grobo_team_play(NULL, &one, true, &play_options, 0));
+    REFUSES(grobo_team_play(team, NULL, true, &play_options, 0));
+    REFUSES(grobo_team_pause(NULL));
+    REFUSES(grobo_team_resume(NULL));
+    REFUSES(grobo_team_stop(NULL, true));
+    REFUSES(grobo_team_estop(NULL));
+    REFUSES(grobo_team_get(NULL, 0, &member));
+    REFUSES(grobo_team_get(team, 0, NULL));
+    assert_int_equal(grobo_team_get_state(NULL), GROBO_TEAM_IDLE);
+    assert_true(grobo_team_step(NULL, 0) == GROBO_NEVER_US);
+    grobo_team_event(NULL, 0, &event);
+    grobo_team_event(team, 0, NULL);
+    grobo_team_free(NULL);
+    grobo_team_free(team);
+    REFUSES(grobo_robot_start_at(NULL, 0));
+    assert_false(grobo_robot_is_ready(NULL));
+    REFUSES(grobo_sequencer_start_at(NULL, 0, 0));
+    assert_false(grobo_sequencer_is_ready(NULL));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -318,6 +350,7 @@ int main(void)
         cmocka_unit_test(sequencer_refuses_null),
         cmocka_unit_test(sim_refuses_null_in_its_first_functions),
         cmocka_unit_test(sim_refuses_null_in_its_second_functions),
+        cmocka_unit_test(a_team_refuses_null),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
