@@ -16,6 +16,7 @@
 enum { APP_LINE_BYTES = 1024 };
 
 struct config_robot;
+struct config_group;
 struct grobo_robot_def;
 struct conn_link;
 
@@ -25,6 +26,7 @@ typedef struct app {
     struct conn_link *beside; /* the link whose loop this command uses too, or NULL */
     const struct grobo_motion *record; /* the shell's @record, or NULL */
     const struct config_robot *robot;  /* the configured one, or NULL */
+    const struct config_group *group;  /* the robots that the line names, or NULL: one */
     const struct grobo_robot_def *def; /* see robot.h; NULL: not chosen yet, GR001 */
     const grobo_driver *driver;        /* its; NULL: GR001's */
     grobo_driver made;                 /* that of a robot that is not GR001 */

@@ -89,6 +89,13 @@ typedef enum cli_argument {
 #define COMMAND_OPTIONS(table) .options = (table), .n_options = sizeof(table) / sizeof(table)[0]
 
 struct app;
+/* What a command does where -d names a group of robots. */
+typedef enum cli_group {
+    CLI_GROUP_NEVER = 0, /* it has one robot */
+    CLI_GROUP_EACH,      /* each robot has a grctl of its own, all at the same time */
+    CLI_GROUP_TOGETHER   /* it looks at app.group itself */
+} cli_group;
+
 typedef struct cli_command {
     const char *name;
     const char *arguments; /* "JOINT DEG [MS]" */
@@ -100,6 +107,7 @@ typedef struct cli_command {
     int min_arguments, max_arguments;
     cli_argument argument;
     bool stops; /* it stops the robot: done first, and mistakes are reported after it */
+    cli_group group;
     int (*run)(struct app *app);
 } cli_command;
 

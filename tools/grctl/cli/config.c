@@ -26,6 +26,7 @@ typedef struct reader {
     bool wants_default;
     char default_path[CONFIG_PATH_BYTES]; /* of the file that names the default */
     config_robot *robot;
+    config_group *group;      /* where it is wanted, or NULL */
     const grobo_model *model; /* of the robot that is read */
     bool has_warn_fall, warn_fall;
     cli_guess guess; /* the robot whose name is nearest to the wanted one */
@@ -286,9 +287,50 @@ static int take_robot(reader *r, const char *name)
     return r->status;
 }
 
+/* Every group is checked; the one that is wanted is kept. */
+static int take_group(reader *r, const char *name)
+{
+    static config_group one;
+    yaml_mark_t at = r->event.start_mark;
+    memset(&one, 0, sizeof one);
+    if (next(r)) {
+        return r->status;
+    }
+    if (r->event.type != YAML_SEQUENCE_START_EVENT) {
+        return complain(r, &r->event.start_mark, "%s", "a list of robots is wanted here");
+    }
+    while (next(r) == 0 && r->event.type != YAML_SEQUENCE_END_EVENT) {
+        if (!scalar(r) || !*scalar(r) || r->event.data.scalar.length >= sizeof one.robot[0]) {
+            return complain(r, &r->event.start_mark, "%s", "the name of a robot is wanted here");
+        }
+        for (int i = 0; i < one.n; i++) {
+            if (strcmp(one.robot[i], scalar(r)) == 0) {
+                return complain(r, &r->event.start_mark, "%s is in the group already", scalar(r));
+            }
+        }
+        if (one.n == CONFIG_GROUP_MAX) {
+            return complain(r, &r->event.start_mark, "group %s has more than 64 robots", name);
+        }
+        snprintf(one.robot[one.n++], sizeof one.robot[0], "%s", scalar(r));
+    }
+    if (!r->status && one.n == 0) {
+        return complain(r, &at, "group %s has no robots", name);
+    }
+    if (!r->status && r->group && strcmp(name, r->wanted) == 0) {
+        *r->group = one;
+        snprintf(r->group->name, sizeof r->group->name, "%s", name);
+        snprintf(r->group->path, sizeof r->group->path, "%s", r->path);
+    }
+    try_name(r, name);
+    return r->status;
+}
+
 static int take_top(reader *r, const char *key)
 {
     char name[CONFIG_NAME_BYTES];
+    if (strcmp(key, "groups") == 0) {
+        return next(r) ? r->status : each_key(r, take_group);
+    }
     if (strcmp(key, "robots") == 0) {
         return next(r) ? r->status : each_key(r, take_robot);
     }
@@ -298,7 +340,7 @@ static int take_top(reader *r, const char *key)
     }
     if (strcmp(key, "default") != 0) {
         return complain(r, &r->event.start_mark,
-                        "no key '%s'; there are default, robots, warn_fall", key);
+                        "no key '%s'; there are default, robots, groups, warn_fall", key);
     }
     if (take_text(r, name, sizeof name) == 0 && r->wants_default) {
         if (*r->robot->name == '\0' && *r->wanted == '\0') {
@@ -409,31 +451,59 @@ static int no_robot(reader *r, bool asked)
                     *nearest ? "'?" : "");
 }
 
-int config_apply(app *a)
+/* group: NULL where none is wanted. */
+static int apply(app *a, config_robot *robot, config_group *group)
 {
-    static config_robot robot;
     const cli_value *device = app_global(a, GLOBAL_DEVICE);
     const char *fallback = getenv("GRCTL_DEVICE");
     const char *asked = device->given ? device->text : fallback && *fallback ? fallback : NULL;
-    reader r = {.a = a, .robot = &robot, .wants_default = asked == NULL};
+    reader r = {.a = a, .robot = robot, .group = group, .wants_default = asked == NULL};
     a->nearest_device = NULL;
     if (is_offline(a->line.command) || (asked && !may_be_name(asked))) {
         return 0;
     }
-    memset(&robot, 0, sizeof robot);
+    memset(robot, 0, sizeof *robot);
     if (asked) {
         snprintf(r.wanted, sizeof r.wanted, "%s", asked);
     }
     find(&r);
-    if (!*robot.name) {
+    if (group && *group->name && *robot->name) {
+        return app_fail(a, EXIT_FILE, "ARG", "%s: a robot and a group are called %s", group->path,
+                        group->name);
+    }
+    if (group && *group->name) {
+        a->group = group;
+        return r.status;
+    }
+    if (!*robot->name) {
         return r.status ? r.status : no_robot(&r, asked != NULL);
     }
-    a->line.global[GLOBAL_DEVICE] = (cli_value){.given = 1, .text = robot.device};
-    set_option(a, GLOBAL_WIRING, &robot.wiring);
-    set_option(a, GLOBAL_ECHO, &robot.echo);
-    set_option(a, GLOBAL_BAUD, &robot.baud);
-    a->robot = &robot;
+    a->line.global[GLOBAL_DEVICE] = (cli_value){.given = 1, .text = robot->device};
+    set_option(a, GLOBAL_WIRING, &robot->wiring);
+    set_option(a, GLOBAL_ECHO, &robot->echo);
+    set_option(a, GLOBAL_BAUD, &robot->baud);
+    a->robot = robot;
     return r.status;
+}
+
+int config_apply(app *a)
+{
+    static config_robot robot;
+    static config_group group;
+    memset(&group, 0, sizeof group);
+    a->group = NULL;
+    return apply(a, &robot, &group);
+}
+
+int config_apply_member(app *a, const char *name, config_robot *robot)
+{
+    a->group = NULL;
+    a->line.global[GLOBAL_DEVICE] = (cli_value){.given = 1, .text = name};
+    int status = apply(a, robot, NULL);
+    if (!status && !*robot->name && may_be_name(name)) {
+        return app_fail(a, EXIT_FILE, "NOTFOUND", "no robot of that name is configured");
+    }
+    return status;
 }
 
 bool config_is_unknown_name(const app *a, const char *device)

@@ -3,6 +3,7 @@
  * Named robots: $XDG_CONFIG_HOME/grctl/config.yaml (~/.config), then /etc/grctl/config.yaml.
  *
  *   default: kitchen
+ *   groups: {stage: [kitchen, cellar]}  # robots that act together: grctl -d stage play ...
  *   warn_fall: false         # play and check do not say that the robot would fall
  *   robots:
  *     kitchen:
@@ -23,7 +24,12 @@
 
 #include "tools/grctl/cli/app.h"
 
-enum { CONFIG_PATH_BYTES = 1024, CONFIG_NAME_BYTES = 64, CONFIG_FILE_MAX_BYTES = 1 << 20 };
+enum {
+    CONFIG_PATH_BYTES = 1024,
+    CONFIG_NAME_BYTES = 64,
+    CONFIG_FILE_MAX_BYTES = 1 << 20,
+    CONFIG_GROUP_MAX = 64
+};
 
 /* No trim is larger: more is a servo horn that sits a tooth off. */
 #define CONFIG_TRIM_MAX_DEG 20
@@ -42,12 +48,24 @@ typedef struct config_robot {
     bool flow; /* the robot is written as { ... } */
 } config_robot;
 
+/* Robots that act together. */
+typedef struct config_group {
+    char name[CONFIG_NAME_BYTES];
+    char path[CONFIG_PATH_BYTES]; /* the file that has it */
+    char robot[CONFIG_GROUP_MAX][CONFIG_NAME_BYTES];
+    int n;
+} config_group;
+
 /*
  * Finds the robot that the command line names, or the default one where it names no device, and
  * sets the options that were not given. Returns 0, or the exit status with the reason said; the
- * robot is applied then too where it stands before the mistake of the file.
+ * robot is applied then too where it stands before the mistake of the file. Where a group is named,
+ * app.group is set, and nothing else.
  */
 int config_apply(app *a);
+
+/* The same for one robot of a group, which has a command line of its own. */
+int config_apply_member(app *a, const char *name, config_robot *robot);
 
 /* After config_apply(): a name that neither the configuration nor the system has. */
 bool config_is_unknown_name(const app *a, const char *device);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "tools/grctl/cli/config.h"
+#include "tools/grctl/cli/each.h"
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/cli/robot.h"
 #include "tools/grctl/cli/run.h"
@@ -51,11 +52,38 @@ static bool is_echo_alone(const app *a)
 static int find_robot(app *a)
 {
     int status = config_apply(a);
+    if (a->group) { /* each of its robots is found by itself */
+        return status;
+    }
     if (!status || a->hushed) {
         int chosen = robot_choose(a);
         status = status ? status : chosen;
     }
     return status;
+}
+
+/* What a line that names a group cannot ask for. */
+static int refuse_group(app *a)
+{
+    const cli_command *command = a->line.command;
+    const config_group *group = a->group;
+    if (command->group == CLI_GROUP_NEVER) {
+        return app_fail(a, EXIT_USAGE, "UNSUPPORTED",
+                        "%s is a group of robots; '%s' works with one of them, such as -d %s",
+                        group->name, command->name, group->robot[0]);
+    }
+    if (app_global(a, GLOBAL_TRACE)->given) {
+        return app_fail(a, EXIT_USAGE, "UNSUPPORTED",
+                        "--trace: %s is a group of robots; a trace is of one of them", group->name);
+    }
+    return 0;
+}
+
+/* The command of the line, for one robot or a group. */
+static int run_it(app *a, int argc, char *const *argv)
+{
+    bool each = a->group && a->line.command->group == CLI_GROUP_EACH;
+    return each ? each_run(a, argc, argv) : a->line.command->run(a);
 }
 
 /* The first signal to a command that stops the robot. */
@@ -85,7 +113,8 @@ static void suspend_by(void (*handler)(int number))
  * from that, nor a signal. They are reported after it; the status is that of a signal, or of the
  * stop where that failed.
  */
-static int stop_first(app *a, const char *complaint, int (*prepare)(void *ctx, app *a), void *ctx)
+static int stop_first(app *a, int argc, char *const *argv, const char *complaint,
+                      int (*prepare)(void *ctx, app *a), void *ctx)
 {
     char hushed[APP_LINE_BYTES] = "";
     if (!a->link) {
@@ -99,12 +128,14 @@ static int stop_first(app *a, const char *complaint, int (*prepare)(void *ctx, a
         later = prepare(ctx, a);
     }
     a->hushed = NULL;
-    if (is_echo_alone(a)) {
+    if (a->group) { /* each says it itself */
+        complaint = NULL;
+    } else if (is_echo_alone(a)) {
         complaint = complaint ? complaint : echo_alone;
         a->line.global[GLOBAL_ECHO].given = 0;
     }
     a->stops = true;
-    int status = a->line.command->run(a);
+    int status = run_it(a, argc, argv);
     a->stops = false;
     is_over = true;
     if (!a->link) {
@@ -139,19 +170,23 @@ static int run_without_robot(app *a)
     return EXIT_USAGE;
 }
 
-static int run_command(app *a, int (*prepare)(void *ctx, app *a), void *ctx)
+static int run_command(app *a, int argc, char *const *argv, int (*prepare)(void *ctx, app *a),
+                       void *ctx)
 {
     int status;
     if (!a->link && (status = find_robot(a)) != 0) {
         return status;
     }
-    if (is_echo_alone(a)) {
+    if (a->group && (status = refuse_group(a)) != 0) {
+        return status;
+    }
+    if (!a->group && is_echo_alone(a)) {
         return fail(a, echo_alone);
     }
     if (prepare && (status = prepare(ctx, a)) != 0) {
         return status;
     }
-    status = a->line.command->run(a);
+    status = run_it(a, argc, argv);
     if (status == EXIT_DONE && app_global(a, GLOBAL_TRACE)->given && !a->traced) {
         app_note(a, "nothing was traced: no robot was spoken to");
     }
@@ -170,11 +205,11 @@ int run_line(app *a, int argc, char **argv, int (*prepare)(void *ctx, app *a), v
     }
     if (command && command->stops && !app_global(a, GLOBAL_VERSION)->given &&
         !app_global(a, GLOBAL_HELP)->given) {
-        return stop_first(a, ok ? NULL : complaint, prepare, ctx);
+        return stop_first(a, argc, argv, ok ? NULL : complaint, prepare, ctx);
     }
     if (!ok) {
         return fail(a, complaint);
     }
     int status = run_without_robot(a);
-    return status < 0 ? run_command(a, prepare, ctx) : status;
+    return status < 0 ? run_command(a, argc, argv, prepare, ctx) : status;
 }

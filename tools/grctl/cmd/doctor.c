@@ -378,5 +378,6 @@ const cli_command cmd_doctor = {
         "comes with the line that mends it, and makes the exit status 1. Nothing moves. -v shows\n"
         "every servo, also those that are well.\n",
     .example = "  grctl doctor\n  grctl -d /dev/ttyUSB0 doctor -v\n",
+    .group = CLI_GROUP_EACH,
     .run = run,
 };

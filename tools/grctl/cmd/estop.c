@@ -383,5 +383,6 @@ const cli_command cmd_estop = {
     .example = "  grctl estop\n  grctl estop --reset\n",
     COMMAND_OPTIONS(estop_options),
     .stops = true,
+    .group = CLI_GROUP_EACH,
     .run = run_estop,
 };

@@ -238,6 +238,7 @@ const cli_command cmd_init = {
                "where the joints are. The first move from an unknown posture is slow.\n",
     .example = "  grctl init\n  grctl init --time 5000\n",
     COMMAND_OPTIONS(init_options),
+    .group = CLI_GROUP_EACH,
     .run = run_init,
 };
 

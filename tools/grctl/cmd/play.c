@@ -27,6 +27,8 @@ static const cli_option options[PLAY_OPTIONS] = {
     [PLAY_FORCE] = OPTION_FLAG("force", 0, "do not warn of a fall"),
     [PLAY_DRY_RUN] = OPTION_FLAG("dry-run", 0, "print 'time_ms hex' a frame; touch no port"),
     [PLAY_TABLE] = OPTION_FLAG("table", 0, "at the end, target, reached and error of every joint"),
+    [PLAY_IF_LOST] = OPTION_CHOICE("if-lost", 0, "stop|pause|continue",
+                                   "what the others of a group do when a robot falls out (stop)"),
     BODY_OPTION_ROWS(PLAY_BODY),
 };
 
@@ -315,6 +317,9 @@ static int run(app *a)
 {
     static show s;
     conn c;
+    if (a->group) {
+        return play_together(a);
+    }
     memset(&s, 0, sizeof s);
     a->clamps = app_option(a, PLAY_CLAMP)->given > 0;
     int status = playlist_load(&s.list, a);
@@ -357,6 +362,9 @@ const cli_command cmd_play = {
         "higher one needs --unwatched. 'grctl budget' computes it: 39 through the board at\n"
         "115200 bps.\n"
         "\n"
+        "Where -d names a group of the configuration, its robots approach, wait for each other\n"
+        "and begin together; --if-lost says what the others do when one trips or loses its line.\n"
+        "\n"
         "On a terminal it takes keys:\n"
         "\n" PLAY_KEYS_HELP,
     .example = "  grctl play motions/greet.pseq\n"
@@ -364,5 +372,6 @@ const cli_command cmd_play = {
                "  grctl play --dry-run --key greet.pseq | head\n",
     .options = options,
     .n_options = PLAY_OPTIONS,
+    .group = CLI_GROUP_TOGETHER,
     .run = run,
 };

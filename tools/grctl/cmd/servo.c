@@ -82,5 +82,6 @@ const cli_command cmd_servo = {
                "torque comes on, each joint's target is set to where the joint is: nothing jumps.\n"
                "Hold the robot when you switch it off: it falls.\n",
     .example = "  grctl servo on\n  grctl servo off right_arm\n  grctl servo brake legs\n",
+    .group = CLI_GROUP_EACH,
     .run = run,
 };

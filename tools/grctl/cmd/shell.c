@@ -208,7 +208,7 @@ static int run(app *a)
     a->link = &s.link;
     os_catch_endings(on_signal);
     a->moves = true;
-    guard_start(a, conn_requested(a));
+    guard_start(a, conn_requested(a), &s.link.guard);
     if (conn_link_init(&s.link) != GROBO_OK) {
         status = app_fail_error(a, EXIT_ROBOT, GROBO_ERR_NOMEM, "shell");
     } else {

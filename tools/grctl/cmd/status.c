@@ -80,5 +80,6 @@ const cli_command cmd_status = {
     .example = "  grctl status\n  grctl status right_arm --json\n"
                "  grctl status --watch --interval 200\n",
     COMMAND_OPTIONS(options),
+    .group = CLI_GROUP_EACH,
     .run = run,
 };

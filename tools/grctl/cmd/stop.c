@@ -28,5 +28,6 @@ const cli_command cmd_stop = {
                "command line, a bad configuration and a trace that cannot be written are reported\n"
                "after the stop, and signals wait for it.\n",
     .stops = true,
+    .group = CLI_GROUP_EACH,
     .run = run_stop,
 };

@@ -440,8 +440,9 @@ static int make_session(conn *c, const char *device, bool check)
                                    .on_robot = on_robot,
                                    .on_tap = on_tap,
                                    .ctx = c->link,
-                                   .guard = c->link->borrows ? NULL : guard_started()};
-    config.guard_data = guard_data(a, &config.guard_bytes);
+                                   .guard = c->link->guard,
+                                   .guard_data = &c->link->guarded,
+                                   .guard_bytes = guard_data(a, &c->link->guarded)};
     return grobo_session_new(&config, &c->link->session);
 }
 
@@ -476,6 +477,7 @@ static void take(conn *c, app *a)
     if (a->beside) {
         c->own.base = a->beside->base;
         c->own.borrows = true;
+        c->own.beside = a->beside->beside;
         a->beside->beside = &c->own;
     }
     if (!c->link->session) {
@@ -586,7 +588,7 @@ static int open_device(conn *c, app *a, bool check)
                         *cause.text ? cause.text : grobo_error_text(error));
     }
     if (a->moves) {
-        guard_start(a, device);
+        guard_start(a, device, &c->link->guard);
     }
     error = open_traces(c, device);
     if (error) {
@@ -629,6 +631,12 @@ int conn_open_beside(conn *c, app *a, conn *first)
 {
     a->beside = first->link;
     return conn_open(c, a);
+}
+
+int conn_open_to_move_beside(conn *c, app *a, conn *first)
+{
+    a->beside = first->link;
+    return conn_open_to_move(c, a);
 }
 
 void conn_watch(conn *c, bool on)
@@ -777,6 +785,16 @@ static void await_quiet(conn *c)
     }
 }
 
+/* Signals are for it no more. */
+static void leave_others(conn *c)
+{
+    for (conn_link *link = c->a->beside; link; link = link->beside) {
+        if (link->beside == c->link) {
+            link->beside = c->link->beside;
+        }
+    }
+}
+
 int conn_close(conn *c, int status)
 {
     int failed = EXIT_DONE;
@@ -797,9 +815,7 @@ int conn_close(conn *c, int status)
     } else {
         grobo_session_free(c->session);
         c->link->session = NULL;
-        if (c->a->beside) {
-            c->a->beside->beside = NULL;
-        }
+        leave_others(c);
         conn_link_deinit(c->link);
         if (!c->a->stops) { /* it may be an attempt that is repeated */
             app_attach(c->a);
@@ -852,10 +868,8 @@ void conn_link_deinit(conn_link *link)
     if (link->base && !borrows) {
         event_base_free(link->base);
     }
+    grobo_guard_free(link->guard);
     memset(link, 0, sizeof *link);
-    if (!borrows) {
-        guard_end();
-    }
 }
 
 void conn_counters(const conn *c, grobo_robot_counters *counters)

@@ -11,6 +11,7 @@
 #include <grobo/session.h>
 
 #include "tools/grctl/cli/robot.h"
+#include "tools/grctl/conn/guard.h"
 #include "tools/grctl/conn/last_frames.h"
 #include "tools/grctl/conn/trace.h"
 #include "tools/grctl/conn/trims.h"
@@ -49,8 +50,10 @@ typedef struct conn_link {
     grobo_joint_mask free_joints; /* in free mode */
     app *owner;                   /* of the shell */
     bool kept;                    /* conn_close() leaves it open */
-    struct conn_link *beside;     /* of a command with two robots: the other one, */
-    bool borrows;                 /* whose loop this is */
+    struct conn_link *beside;     /* of a command with several robots: the next one, */
+    bool borrows;                 /* with the loop of the first */
+    grobo_guard *guard;           /* NULL: none */
+    guard_robot guarded;          /* what it needs */
 } conn_link;
 
 struct conn {
@@ -102,6 +105,8 @@ int conn_open_to_move(conn *c, app *a);
  * is told to both. Closed before the first; signals are caught by the first.
  */
 int conn_open_beside(conn *c, app *a, conn *first);
+/* The same for one that moves too: conn_open_to_move(). */
+int conn_open_to_move_beside(conn *c, app *a, conn *first);
 
 /* Where an emergency stop is being carried out: until it is verified. Returns as conn_wait(). */
 int conn_end_estop(conn *c);

@@ -10,18 +10,7 @@
 #include "tools/grctl/conn/trims.h"
 #include "tools/grctl/os/os.h"
 
-/* A process has one. */
-static grobo_guard *guard;
 static const char *called = "grctl";
-
-/* Of a configured robot, or of another than GR001, as it goes to the guard. */
-typedef struct guard_robot {
-    char robot[ROBOT_PATH_BYTES - 64]; /* what robot_find() takes; "": GR001 */
-    bool trimmed;
-    double trim_deg[GROBO_JOINTS_MAX];
-    double offset_deg[GROBO_JOINTS_MAX];
-    bool offsets;
-} guard_robot;
 
 _Static_assert(sizeof(guard_robot) <= GROBO_GUARD_DATA_BYTES, "the guard takes less");
 
@@ -104,17 +93,17 @@ void guard_note_program(const char *argv0)
     }
 }
 
-void guard_start(const app *a, const char *device)
+void guard_start(const app *a, const char *device, grobo_guard **guard)
 {
     const char *chosen = getenv("GRCTL_GUARD");
     grobo_guard_config config = {GROBO_GUARD_CONFIG_INIT,
                                  .program = chosen ? chosen : os_own_program(called)};
-    if (guard || strcmp(device, GROBO_DEVICE_SIM) == 0 || !*config.program) {
+    if (*guard || strcmp(device, GROBO_DEVICE_SIM) == 0 || !*config.program) {
         return;
     }
-    int error = grobo_guard_new(&config, &guard);
+    int error = grobo_guard_new(&config, guard);
     if (!error) {
-        app_detail(a, "guarded by process %d", grobo_guard_pid(guard));
+        app_detail(a, "guarded by process %d", grobo_guard_pid(*guard));
     }
     if (error && error != GROBO_ERR_UNSUPPORTED) {
         app_note(a, "no guard: %s; if grctl is killed, joints go on to their goals",
@@ -122,35 +111,22 @@ void guard_start(const app *a, const char *device)
     }
 }
 
-grobo_guard *guard_started(void)
+size_t guard_data(const app *a, guard_robot *given)
 {
-    return guard;
-}
-
-const void *guard_data(const app *a, size_t *bytes)
-{
-    static guard_robot given;
     const config_robot *robot = a->robot;
     const char *path = robot_path(a);
-    *bytes = robot || *path ? sizeof given : 0;
-    if (*bytes == 0) {
-        return NULL;
+    if (!robot && !*path) {
+        return 0;
     }
-    memset(&given, 0, sizeof given);
-    snprintf(given.robot, sizeof given.robot, "%s", path);
-    given.trimmed = robot != NULL;
+    memset(given, 0, sizeof *given);
+    snprintf(given->robot, sizeof given->robot, "%s", path);
+    given->trimmed = robot != NULL;
     if (robot) {
-        memcpy(given.trim_deg, robot->trim_deg, sizeof given.trim_deg);
-        memcpy(given.offset_deg, robot->offset_deg, sizeof given.offset_deg);
-        given.offsets = robot->offsets;
+        memcpy(given->trim_deg, robot->trim_deg, sizeof given->trim_deg);
+        memcpy(given->offset_deg, robot->offset_deg, sizeof given->offset_deg);
+        given->offsets = robot->offsets;
     }
-    return &given;
-}
-
-void guard_end(void)
-{
-    grobo_guard_free(guard);
-    guard = NULL;
+    return sizeof *given;
 }
 
 /* ---- the guard of another, that has the port ------------------------------------------------ */

@@ -16,11 +16,9 @@ static void note(conn_link *link, int number)
 
 static void on_signal(evutil_socket_t number, short what, void *ctx)
 {
-    conn_link *link = ctx;
     (void)what;
-    note(link, (int)number);
-    if (link->beside) {
-        note(link->beside, (int)number);
+    for (conn_link *link = ctx; link; link = link->beside) {
+        note(link, (int)number);
     }
 }
 

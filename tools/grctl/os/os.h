@@ -52,8 +52,14 @@ const char *os_own_program(const char *argv0);
 /* Suspends this process, as Ctrl-Z does without a handler; returns when it continues. */
 void os_suspend(void);
 
-/* Runs a program, words ending with NULL. Returns its exit status, or -1: it is not here. */
-int os_run(const char *const *words, FILE *in, FILE *out);
+/*
+ * Starts a program, words ending with NULL, that reads and writes these; in NULL: what this process
+ * reads, err NULL: where this process complains. Returns what os_wait() wants, or -1: it is not
+ * here.
+ */
+intptr_t os_begin(const char *const *words, FILE *in, FILE *out, FILE *err);
+/* Waits for its end. Returns its exit status, 128 where it has none, or -1. */
+int os_wait(intptr_t program);
 
 /* ---- signals -------------------------------------------------------------------------------- */
 

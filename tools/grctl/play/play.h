@@ -40,6 +40,7 @@ enum {
     PLAY_FORCE,
     PLAY_DRY_RUN,
     PLAY_TABLE,
+    PLAY_IF_LOST,
     PLAY_BODY,
     PLAY_OPTIONS = PLAY_BODY + BODY_OPTIONS
 };
@@ -54,6 +55,9 @@ int playlist_load(playlist *list, app *a);
 int playlist_prepare(playlist *list, app *a, const grobo_posture *start);
 
 void playlist_free(playlist *list);
+
+/* `play` for the robots of app.group: they begin together. Returns the exit status. */
+int play_together(app *a);
 
 /* Prints "time_ms hex" a frame; touches no port. Returns the exit status. */
 int play_dry_run(playlist *list, app *a);

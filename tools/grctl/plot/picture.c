@@ -98,12 +98,12 @@ static const char *rasterise(const app *a, FILE *in, FILE *out, const char **tri
             return NULL;
         }
         rewind(out);
-        int status = os_run(rasterisers[i], in, out);
-        if (status == 0 && is_png(out)) {
-            return rasterisers[i][0];
-        }
-        if (status < 0) {
+        intptr_t program = os_begin(rasterisers[i], in, out, NULL);
+        if (program < 0) {
             continue; /* it is not here */
+        }
+        if (os_wait(program) == 0 && is_png(out)) {
+            return rasterisers[i][0];
         }
         *tried = rasterisers[i][0];
         app_detail(a, "%s did not draw it", *tried);

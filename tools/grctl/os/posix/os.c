@@ -122,27 +122,32 @@ char *os_printed(void (*print)(FILE *to))
     return fclose(memory) == 0 ? text : NULL;
 }
 
-int os_run(const char *const *words, FILE *in, FILE *out)
+intptr_t os_begin(const char *const *words, FILE *in, FILE *out, FILE *err)
 {
+    FILE *const streams[] = {in, out, err};
     posix_spawn_file_actions_t actions;
     pid_t child;
-    int status = -1;
     if (posix_spawn_file_actions_init(&actions) != 0) {
         return -1;
     }
-    int error = posix_spawn_file_actions_adddup2(&actions, fileno(in), STDIN_FILENO);
-    if (!error) {
-        error = posix_spawn_file_actions_adddup2(&actions, fileno(out), STDOUT_FILENO);
+    int error = 0;
+    for (int fd = STDIN_FILENO; fd <= STDERR_FILENO && !error; fd++) {
+        if (streams[fd]) {
+            error = posix_spawn_file_actions_adddup2(&actions, fileno(streams[fd]), fd);
+        }
     }
     if (!error) { /* it does not write to the words */
         error =
             posix_spawnp(&child, words[0], &actions, NULL, (char *const *)(intptr_t)words, environ);
     }
     posix_spawn_file_actions_destroy(&actions);
-    if (error) {
-        return -1;
-    }
-    while (waitpid(child, &status, 0) < 0) {
+    return error ? -1 : child;
+}
+
+int os_wait(intptr_t program)
+{
+    int status = -1;
+    while (waitpid((pid_t)program, &status, 0) < 0) {
         if (errno != EINTR) {
             return -1;
         }

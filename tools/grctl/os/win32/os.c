@@ -154,28 +154,35 @@ static HANDLE lend(FILE *stream)
     return lent;
 }
 
-int os_run(const char *const *words, FILE *in, FILE *out)
+intptr_t os_begin(const char *const *words, FILE *in, FILE *out, FILE *err)
 {
     STARTUPINFOA start = {.cb = sizeof start, .dwFlags = STARTF_USESTDHANDLES};
     PROCESS_INFORMATION child;
-    char line[1024];
-    DWORD status = 128;
+    char line[4096];
     BOOL begun = FALSE;
-    start.hStdInput = lend(in);
+    start.hStdInput = lend(in ? in : stdin);
     start.hStdOutput = lend(out);
-    start.hStdError = handle_of(stderr);
+    start.hStdError = lend(err ? err : stderr);
     if (start.hStdInput && start.hStdOutput && join_words(words, line, sizeof line)) {
         begun = CreateProcessA(NULL, line, NULL, NULL, TRUE, 0, NULL, NULL, &start, &child);
     }
     if (begun) {
-        WaitForSingleObject(child.hProcess, INFINITE);
-        GetExitCodeProcess(child.hProcess, &status);
         CloseHandle(child.hThread);
-        CloseHandle(child.hProcess);
     }
     CloseHandle(start.hStdInput);
     CloseHandle(start.hStdOutput);
-    return begun ? (int)(status & 0x7fffffff) : -1;
+    CloseHandle(start.hStdError);
+    return begun ? (intptr_t)child.hProcess : -1;
+}
+
+int os_wait(intptr_t program)
+{
+    HANDLE child = (HANDLE)program;
+    DWORD status = 128;
+    WaitForSingleObject(child, INFINITE);
+    GetExitCodeProcess(child, &status);
+    CloseHandle(child);
+    return (int)(status & 0x7fffffff);
 }
 
 /* ---- signals -------------------------------------------------------------------------------- */
