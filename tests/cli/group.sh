@@ -63,8 +63,8 @@ check "but the others are asked" grep -q '^a: .*R_SHOULDER_P' "$work/out"
 
 # ---- together ------------------------------------------------------------------------------------
 
-check "a motion of all" both exits 0 "$GRCTL" -d stage --timeout 500 play -s 400 motions/greet.pseq \
-    --- each_says 'frames, ' out
+check "a motion of all" both exits 0 \
+    "$GRCTL" -d stage --timeout 500 play -s 400 motions/greet.pseq --- each_says 'frames, ' out
 check_json "as JSON: a start, then the three" \
     'lines[0]["starts"] and [l["name"] for l in lines[1:]] == ["a", "b", "c"] and
      all(l["frames"] > 20 and l["done"] for l in lines[1:])' \
@@ -84,7 +84,10 @@ begins() { # how it goes on is in $work/played
 ended() {
     wait "$program"
     status_ended=$?
-    [ $status_ended -eq "$1" ] || { echo "status $status_ended, not $1"; cat "$work/said"; return 1; }
+    [ $status_ended -eq "$1" ] && return
+    echo "status $status_ended, not $1"
+    cat "$work/said"
+    return 1
 }
 holds() {
     exits 0 "$GRCTL" -d "$1" --timeout 500 status && ! grep -q 'moving' "$work/out"
@@ -127,7 +130,8 @@ rm -f "$work/c"
 simulates c
 pid_c=$pid
 all_stop() {
-    loses_c && ended 1 && grep -q 'a: play: stopped with the others' "$work/said" && ! grep -q '"done":true' "$work/played" && holds a && holds b
+    loses_c && ended 1 && grep -q 'a: play: stopped with the others' "$work/said" &&
+        ! grep -q '"done":true' "$work/played" && holds a && holds b
 }
 check "else they stop" all_stop
 

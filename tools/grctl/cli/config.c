@@ -287,6 +287,25 @@ static int take_robot(reader *r, const char *name)
     return r->status;
 }
 
+/* One more robot of a group. */
+static int take_member(reader *r, config_group *one)
+{
+    const char *robot = scalar(r);
+    if (!robot || !*robot || r->event.data.scalar.length >= sizeof one->robot[0]) {
+        return complain(r, &r->event.start_mark, "%s", "the name of a robot is wanted here");
+    }
+    for (int i = 0; i < one->n; i++) {
+        if (strcmp(one->robot[i], robot) == 0) {
+            return complain(r, &r->event.start_mark, "%s is in the group already", robot);
+        }
+    }
+    if (one->n == CONFIG_GROUP_MAX) {
+        return complain(r, &r->event.start_mark, "%s", "a group has 64 robots at most");
+    }
+    snprintf(one->robot[one->n++], sizeof one->robot[0], "%s", robot);
+    return 0;
+}
+
 /* Every group is checked; the one that is wanted is kept. */
 static int take_group(reader *r, const char *name)
 {
@@ -299,19 +318,8 @@ static int take_group(reader *r, const char *name)
     if (r->event.type != YAML_SEQUENCE_START_EVENT) {
         return complain(r, &r->event.start_mark, "%s", "a list of robots is wanted here");
     }
-    while (next(r) == 0 && r->event.type != YAML_SEQUENCE_END_EVENT) {
-        if (!scalar(r) || !*scalar(r) || r->event.data.scalar.length >= sizeof one.robot[0]) {
-            return complain(r, &r->event.start_mark, "%s", "the name of a robot is wanted here");
-        }
-        for (int i = 0; i < one.n; i++) {
-            if (strcmp(one.robot[i], scalar(r)) == 0) {
-                return complain(r, &r->event.start_mark, "%s is in the group already", scalar(r));
-            }
-        }
-        if (one.n == CONFIG_GROUP_MAX) {
-            return complain(r, &r->event.start_mark, "group %s has more than 64 robots", name);
-        }
-        snprintf(one.robot[one.n++], sizeof one.robot[0], "%s", scalar(r));
+    while (!r->status && next(r) == 0 && r->event.type != YAML_SEQUENCE_END_EVENT) {
+        take_member(r, &one);
     }
     if (!r->status && one.n == 0) {
         return complain(r, &at, "group %s has no robots", name);
