@@ -126,7 +126,7 @@ static bool is_over(const troupe *t)
     return grobo_team_get_state(t->team) == GROBO_TEAM_ENDED;
 }
 
-/* A signal is told to all; it ends the motion smoothly, and conn_close() leaves each as it should. */
+/* A signal is told to all: it ends the motion smoothly, and conn_close() leaves each robot. */
 static int watch(troupe *t)
 {
     conn *first = &t->seats[0].c;
