@@ -333,37 +333,44 @@ static grobo_write_kind kind_of(const app *a, const change *what)
     return app_driver(a)->write_kind(app_driver(a), &io);
 }
 
+/* Whether a servo holds; of a joint its reading too, without which the engine refuses a setting. */
+static int read_torque(conn *c, const change *what, const grobo_servo_register *reg,
+                       int32_t *torque)
+{
+    int joint = grobo_model_joint_of_motor(grobo_robot_driver(c->robot)->model, what->id);
+    int error = servos_get(c, what->id, what->servo, reg, torque);
+    bool told = error != GROBO_ERR_UNSUPPORTED;
+    if ((error && told) || joint < 0) {
+        return error;
+    }
+    error = conn_wait(c, grobo_robot_sense(grobo_session_robot(c->session), GROBO_JOINT_BIT(joint),
+                                           GROBO_SENSE_FULL));
+    grobo_joint_info i;
+    if (!told && grobo_robot_joint(c->robot, joint, &i) == 0) {
+        *torque = i.state.valid & GROBO_FIELD_TORQUE ? (int32_t)i.state.torque : GROBO_TORQUE_ON;
+    }
+    return error == GROBO_ERR_SETUP ? GROBO_OK : error; /* what this may put right */
+}
+
 /* After a setting a goal may mean another angle: it is written to a servo without torque only. The
  * engine refuses it to a joint too, and to one that it has not read. */
 static int expect_loose(conn *c, const change *what)
 {
-    int joint = grobo_model_joint_of_motor(grobo_robot_driver(c->robot)->model, what->id);
     const grobo_servo_register *reg = grobo_servo_register_of(what->servo, GROBO_ROLE_TORQUE);
     int32_t torque = GROBO_TORQUE_OFF;
     bool restarts = needs_command(what) && changes_rate(c, what);
     if ((kind_of(c->a, what) != GROBO_WRITE_SETTING && !restarts) || !reg) {
         return EXIT_DONE;
     }
-    uint16_t from;
-    bool told = family_run(grobo_robot_driver(c->robot), what->servo, reg, &from) > 0;
-    if (!told && joint < 0) {
-        return app_fail(c->a, EXIT_SAFETY, "UNSUPPORTED",
+    int error = read_torque(c, what, reg, &torque);
+    if (error == GROBO_ERR_UNSUPPORTED) {
+        return app_fail(c->a, EXIT_SAFETY, grobo_error_name(error),
                         "servo-set: servo %d does not tell whether it holds; name it in a robot's "
                         "file, which can make it limp",
                         what->id);
     }
-    int error = told ? servos_get(c, what->id, what->servo, reg, &torque) : GROBO_OK;
-    if (!error && joint >= 0) {
-        error = conn_wait(c, grobo_robot_sense(grobo_session_robot(c->session),
-                                               GROBO_JOINT_BIT(joint), GROBO_SENSE_FULL));
-        error = error == GROBO_ERR_SETUP ? GROBO_OK : error; /* what this may put right */
-    }
     if (error) {
         return conn_fail_servo(c, error, what->id);
-    }
-    grobo_joint_info i;
-    if (!told && grobo_robot_joint(c->robot, joint, &i) == 0) {
-        torque = i.state.valid & GROBO_FIELD_TORQUE ? (int32_t)i.state.torque : GROBO_TORQUE_ON;
     }
     if (torque != GROBO_TORQUE_ON) {
         return EXIT_DONE;
