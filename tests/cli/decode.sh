@@ -68,7 +68,8 @@ TEXT
 check 'a wrong CRC' faulty --family dynamixel2 FFFFFD000309000374000008000069C8 <<'TEXT'
 write servo 3: goal_position 0.0 deg; CRC C869 wrong, should be C969
 TEXT
-check 'a length that there is not' decodes --family dynamixel2 FFFFFD000102005500A60000008CC0 <<'TEXT'
+check 'a length that there is not' decodes --family dynamixel2 \
+    FFFFFD000102005500A60000008CC0 <<'TEXT'
 rubbish: FF FF FD 00 01 02 00 55 00 A6 00 00 00 8C C0 (no frame has this length)
 TEXT
 check 'parameters that are missing' decodes --family dynamixel2 \

@@ -129,7 +129,8 @@ check "LX: scan" both exits 0 of "$work/lx.yaml" scan --last 4 --- says '^  1  H
 check "info" both exits 0 of "$work/lx.yaml" info --- says '^  2  Hiwonder LX .* lift$'
 check "all of its values" both exits 0 of "$work/lx.yaml" servo-get lift --- \
     says '^ 30  voltage  *7[0-9]*  *7\.[0-9]* V$'
-check "one of two that go together" both exits 0 of "$work/lx.yaml" servo-set 1 max_position 900 --- \
+check "one of two that go together" both exits 0 of "$work/lx.yaml" \
+    servo-set 1 max_position 900 --- \
     said '^servo 1: max_position 1000 (120.0 deg) -> 900 (96.0 deg), kept$'
 check "the other stays" both exits 0 of "$work/lx.yaml" servo-get 1 min_position --- \
     says '^  2  min_position  *0  *-120.0 deg$'
@@ -164,7 +165,8 @@ check "doctor tells no voltage" both exits 0 of "$work/krs.yaml" doctor -v --- \
     says 'do not tell their voltage'
 stop_sim
 check "ICS 3.5 does not tell where it stands" both \
-    exits 3 "$GRCTL" robot check "$work/krs35.yaml" --- says '4:.*turn: a KRS-2552RHV does not tell where it stands'
+    exits 3 "$GRCTL" robot check "$work/krs35.yaml" --- \
+    says '4:.*turn: a KRS-2552RHV does not tell where it stands'
 
 # ---- whoever is there --------------------------------------------------------------------------
 
