@@ -41,7 +41,8 @@ refuses() {
 
 # ---- other families
 
-check 'DYNAMIXEL 2.0: which registers a reply brings, its request says' decodes --family dynamixel2 \
+check 'DYNAMIXEL 2.0: which registers a reply brings, its request says' \
+    decodes --family dynamixel2 \
     FFFFFD000107000284000400 1D15 FFFFFD000108005500A60000008CC0 <<'TEXT'
 read present_position of servo 1; CRC 151D right; reply: 15 bytes
 servo 1 returns present_position -165.4 deg; CRC C08C right

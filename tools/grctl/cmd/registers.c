@@ -98,7 +98,7 @@ static void show(conn *c, const grobo_servo_model *servo, const grobo_servo_regi
 static int show_block(conn *c, int id, const grobo_servo_model *servo, size_t first, json_t *list)
 {
     const grobo_servo_register *begin = grobo_servo_register_row(servo, first), *reg;
-    uint8_t bytes[FAMILY_RUN_BYTES] = {0};
+    uint8_t bytes[FAMILY_PIECE_BYTES] = {0};
     int n = family_block(grobo_robot_driver(c->robot), servo, first, BLOCK_BYTES);
     if (n == 0) { /* it can be written only */
         return 1;
@@ -323,9 +323,9 @@ static void report(const conn *c, const change *what, int32_t before, int baud_b
 
 static grobo_write_kind kind_of(const app *a, const change *what)
 {
-    const uint8_t bytes[FAMILY_RUN_BYTES] = {0};
+    const uint8_t bytes[FAMILY_PIECE_BYTES] = {0};
     uint16_t from = what->reg->address;
-    int length = family_run(app_driver(a), what->servo, what->reg, &from);
+    int length = family_piece(app_driver(a), what->servo, what->reg, &from);
     const grobo_register_io io = {.id = (uint8_t)what->id,
                                   .address = from,
                                   .length = (uint16_t)(length ? length : what->reg->bytes),

@@ -120,7 +120,7 @@ typedef struct pass {
     found *f;
     bool there[IDS];
     int why[IDS]; /* the error of one that answered in no way that fits, or 0 */
-    uint8_t identity[IDS][FAMILY_RUN_BYTES];
+    uint8_t identity[IDS][FAMILY_PIECE_BYTES];
     int64_t asked_us[IDS];
     uint16_t address; /* of the registers that tell the identity */
     int bytes;        /* of them */
@@ -223,7 +223,7 @@ static int listen_on(conn *c, pass *p)
 
 static int ask(conn *c, pass *p, int id)
 {
-    uint8_t bytes[FAMILY_RUN_BYTES];
+    uint8_t bytes[FAMILY_PIECE_BYTES];
     p->asking = id;
     int error = servos_read(c, id, p->address, p->bytes, bytes);
     bool silent = error == GROBO_ERR_TIMEOUT || error == GROBO_ERR_SHORT;
@@ -589,7 +589,7 @@ static int info(conn *c)
                   board ? "through its board, which answers" : "servos straight on the bus");
     }
     for (int motor = 0; motor <= GROBO_SERVO_ID_MAX; motor++) {
-        uint8_t bytes[FAMILY_RUN_BYTES];
+        uint8_t bytes[FAMILY_PIECE_BYTES];
         if (!joint_name(&f, motor)) {
             continue;
         }

@@ -23,9 +23,9 @@ int servos_read(conn *c, int id, int address, int length, uint8_t *data)
 int servos_get(conn *c, int id, const grobo_servo_model *servo, const grobo_servo_register *reg,
                int32_t *value)
 {
-    uint8_t bytes[FAMILY_RUN_BYTES] = {0};
+    uint8_t bytes[FAMILY_PIECE_BYTES] = {0};
     uint16_t from = 0;
-    int length = family_run(grobo_robot_driver(c->robot), servo, reg, &from);
+    int length = family_piece(grobo_robot_driver(c->robot), servo, reg, &from);
     int error = length ? servos_read(c, id, from, length, bytes) : GROBO_ERR_UNSUPPORTED;
     if (!error) {
         *value = grobo_servo_register_get(servo, reg, bytes + (reg->address - from));
@@ -36,9 +36,9 @@ int servos_get(conn *c, int id, const grobo_servo_model *servo, const grobo_serv
 int servos_put(conn *c, int id, const grobo_servo_model *servo, const grobo_servo_register *reg,
                int32_t value)
 {
-    uint8_t bytes[FAMILY_RUN_BYTES] = {0};
+    uint8_t bytes[FAMILY_PIECE_BYTES] = {0};
     uint16_t from = reg->address;
-    int length = family_run(grobo_robot_driver(c->robot), servo, reg, &from);
+    int length = family_piece(grobo_robot_driver(c->robot), servo, reg, &from);
     int error = length > reg->bytes ? servos_read(c, id, from, length, bytes) : GROBO_OK;
     if (!error) {
         error = grobo_servo_register_put(servo, reg, value, bytes + (reg->address - from));

@@ -13,7 +13,7 @@ const grobo_servo_table *family_table(const grobo_robot_family *family, size_t i
     return family->tables[i];
 }
 
-const grobo_robot_family *family_named(const char *name)
+const grobo_robot_family *family_called(const char *name)
 {
     for (size_t i = 0; grobo_robot_families[i]; i++) {
         if (strcmp(grobo_robot_families[i]->name, name) == 0) {
@@ -155,12 +155,12 @@ static bool can_read(const grobo_driver *driver, int address, int length)
                                   .address = (uint16_t)address,
                                   .length = (uint16_t)length};
     grobo_exchange exchange = {0};
-    return driver->registers && length > 0 && length <= FAMILY_RUN_BYTES &&
+    return driver->registers && length > 0 && length <= FAMILY_PIECE_BYTES &&
            driver->registers(driver, NULL, &io, &exchange) >= 0;
 }
 
-int family_run(const grobo_driver *driver, const grobo_servo_model *servo,
-               const grobo_servo_register *reg, uint16_t *address)
+int family_piece(const grobo_driver *driver, const grobo_servo_model *servo,
+                 const grobo_servo_register *reg, uint16_t *address)
 {
     const grobo_servo_register *from, *to;
     int end = 0;
@@ -199,7 +199,7 @@ int family_identity(const grobo_driver *driver, const grobo_servo_model *servo, 
     const grobo_servo_register *b = grobo_servo_register_of(servo, GROBO_ROLE_FIRMWARE);
     const grobo_servo_register *id = grobo_servo_register_of(servo, GROBO_ROLE_ID);
     if (!a || !b) {
-        return a || id ? family_run(driver, servo, a ? a : id, address) : 0;
+        return a || id ? family_piece(driver, servo, a ? a : id, address) : 0;
     }
     int end = a->address + a->bytes > b->address + b->bytes ? a->address + a->bytes
                                                             : b->address + b->bytes;

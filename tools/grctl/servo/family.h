@@ -11,7 +11,7 @@
 const grobo_servo_table *family_table(const grobo_robot_family *family, size_t i);
 
 /* The family that a file names so, NULL: none. */
-const grobo_robot_family *family_named(const char *name);
+const grobo_robot_family *family_called(const char *name);
 
 /* Rate number i at which servos of a family are looked for, the factory's first; 0 behind the
  * last. */
@@ -46,11 +46,11 @@ const grobo_servo_model *family_numbered(const grobo_driver *driver, uint16_t nu
 
 /*
  * The registers that are read together with one: some families read several in one piece only.
- * From *address on; returns their bytes, at most FAMILY_RUN_BYTES; 0: it cannot be read.
+ * From *address on; returns their bytes, at most FAMILY_PIECE_BYTES; 0: it cannot be read.
  */
-enum { FAMILY_RUN_BYTES = 64 };
-int family_run(const grobo_driver *driver, const grobo_servo_model *servo,
-               const grobo_servo_register *reg, uint16_t *address);
+enum { FAMILY_PIECE_BYTES = 64 };
+int family_piece(const grobo_driver *driver, const grobo_servo_model *servo,
+                 const grobo_servo_register *reg, uint16_t *address);
 
 /*
  * How many registers, from number `first` on, are read at once: as many as fit into `most` bytes,
@@ -60,7 +60,7 @@ int family_block(const grobo_driver *driver, const grobo_servo_model *servo, siz
                  int most);
 
 /* The run of registers that tells what a servo is: model and firmware; where a family has none, the
- * id. As family_run(). */
+ * id. As family_piece(). */
 int family_identity(const grobo_driver *driver, const grobo_servo_model *servo, uint16_t *address);
 
 /* As family_numbered(), of the bytes in register MODEL, whose order the series decides. */
