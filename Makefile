@@ -91,7 +91,7 @@ CMOCKA_CFLAGS = $(call once,CMOCKA_CFLAGS,$(call flags,--cflags,cmocka))
 CMOCKA_LIBS = $(call once,CMOCKA_LIBS,$(call flags,--libs,cmocka))
 JSON_CFLAGS = $(call once,JSON_CFLAGS,$(call flags,--cflags,jansson))
 JSON_LIBS = $(call once,JSON_LIBS,$(call flags,--libs,jansson))
-TOOL_LIBS = $(call once,TOOL_LIBS,$(JSON_LIBS) $(EDIT_LIBS) $(SCREEN_LIBS))
+TOOL_LIBS = $(call once,TOOL_LIBS,$(JSON_LIBS) $(XML_LIBS) $(EDIT_LIBS) $(SCREEN_LIBS))
 # The shell edits lines where libedit is there, else it reads them plainly.
 EDIT := $(if $(shell $(PKG_CONFIG) --exists libedit 2>/dev/null && echo yes),libedit,plain)
 EDIT_CFLAGS = $(if $(filter libedit,$(EDIT)),$(call once,EDIT_CFLAGS_FOUND,$(call flags,--cflags,libedit)))
@@ -100,6 +100,10 @@ EDIT_LIBS = $(if $(filter libedit,$(EDIT)),$(call flags,--libs,libedit))
 SCREEN := $(if $(shell $(PKG_CONFIG) --exists ncursesw 2>/dev/null && echo yes),ncurses,none)
 SCREEN_CFLAGS = $(if $(filter ncurses,$(SCREEN)),$(call once,SCREEN_CFLAGS_FOUND,$(filter -I%,$(call flags,--cflags,ncursesw))))
 SCREEN_LIBS = $(if $(filter ncurses,$(SCREEN)),$(call flags,--libs,ncursesw))
+# URDF is read by expat where it is there, else not at all.
+XML := $(if $(shell $(PKG_CONFIG) --exists expat 2>/dev/null && echo yes),expat,none)
+XML_CFLAGS = $(if $(filter expat,$(XML)),$(call once,XML_CFLAGS_FOUND,$(call flags,--cflags,expat)))
+XML_LIBS = $(if $(filter expat,$(XML)),$(call flags,--libs,expat))
 LIBS = $(call once,LIBS,$(call flags,--libs,yaml-0.1 libevent_core) $(OS_LIBS))
 
 # ---- sources, by folder: a folder may be empty or missing ----------------------------------
@@ -110,9 +114,10 @@ HEAP := src/base/memory.c
 CORE_SRCS := $(filter-out $(HEAP),$(sort $(wildcard $(CORE_FOLDERS:%=src/%/*.c))))
 OTHER_SRCS := $(sort $(HEAP) $(wildcard src/team/*.c) $(wildcard src/motion/*/*.c src/robots/file/*.c src/body/*.c src/link/*/*.c ports/common/*.c \
     ports/$(PORT)/*.c))
-TOOL_SRCS := $(if $(wildcard tools/grctl/main.c),$(sort $(filter-out tools/grctl/edit/% tools/grctl/screen/%,\
+CHOSEN := tools/grctl/edit/% tools/grctl/screen/% tools/grctl/xml/%
+TOOL_SRCS := $(if $(wildcard tools/grctl/main.c),$(sort $(filter-out $(CHOSEN),\
     $(wildcard tools/grctl/*.c tools/grctl/*/*.c tools/grctl/os/$(PORT)/*.c)) tools/grctl/edit/$(EDIT).c \
-    tools/grctl/screen/$(SCREEN).c))
+    tools/grctl/screen/$(SCREEN).c tools/grctl/xml/$(XML).c))
 # LEFT_OUT, of a target: tests that its system cannot run, and what only they use.
 SUPPORT_SRCS := $(sort $(filter-out %/replay_main.c $(LEFT_OUT),$(wildcard tests/support/*.c)) \
     tests/support/os/$(PORT).c)
@@ -217,7 +222,7 @@ $(BUILD)/left_out.sh: FORCE
 chosen = $(call in_rings,$(BUILD)/,$(TEST_PROGRAMS)) $(if $(filter fuzz,$(RING)),$(FUZZ_REPLAYS)) \
     $(if $(filter port,$(RING)),$(DRIVER_PROGRAMS)) $(if $(filter export,$(RING)),$(EXAMPLES))
 test: all $(chosen) $(CROSS_TOOLS) $(left_out) ## the tests alone; RING="unit engine" chooses
-	@$(TEST_BEGIN) GRCTL="$(call whole,$(GRCTL_RUN))" BUILD="$(BUILD)" CC="$(CC)" TEST_LOGS="$(BUILD)/logs" EDIT=$(EDIT) SCREEN=$(SCREEN) \
+	@$(TEST_BEGIN) GRCTL="$(call whole,$(GRCTL_RUN))" BUILD="$(BUILD)" CC="$(CC)" TEST_LOGS="$(BUILD)/logs" EDIT=$(EDIT) SCREEN=$(SCREEN) XML=$(XML) \
 	    $(cross_env) tests/run.sh \
 	    $(call in_rings,$(BUILD)/,$(TEST_PROGRAMS)) $(call in_rings,,$(TEST_SCRIPTS)) \
 	    $(if $(filter fuzz,$(RING)),$(corpora)) $(left_out) $(TEST_END)
@@ -510,7 +515,7 @@ $(eval $(call compile,src/link,SRC_INCLUDE OS_FLAGS EVENT_CFLAGS))
 $(eval $(call compile,ports/common,SRC_INCLUDE))
 $(eval $(call compile,ports/$(PORT),SRC_INCLUDE OS_FLAGS))
 $(eval $(call compile,tools/robots,TOOL_INCLUDE))
-$(eval $(call compile,tools/grctl,TOOL_INCLUDE OS_FLAGS EVENT_CFLAGS YAML_CFLAGS JSON_CFLAGS EDIT_CFLAGS SCREEN_CFLAGS))
+$(eval $(call compile,tools/grctl,TOOL_INCLUDE OS_FLAGS EVENT_CFLAGS YAML_CFLAGS JSON_CFLAGS EDIT_CFLAGS SCREEN_CFLAGS XML_CFLAGS))
 $(eval $(call compile,docs/examples,WHOLE OS_FLAGS EVENT_CFLAGS))
 $(eval $(call compile,tests,TEST_INCLUDE OS_FLAGS EVENT_CFLAGS YAML_CFLAGS CMOCKA_CFLAGS JSON_CFLAGS))
 
@@ -557,7 +562,7 @@ $(BUILD)/run/grctl: $(GRCTL)
 
 $(sort $(TEST_PROGRAMS) $(DRIVER_PROGRAMS)): $(BUILD)/%$(EXE): $(BUILD)/%.o $(SUPPORT_LIB) $(TOOL_LIB) $(STATIC_LIB)
 	$(say) LD $@
-	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(CMOCKA_LIBS) $(JSON_LIBS) $(LIBS)
+	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(CMOCKA_LIBS) $(JSON_LIBS) $(XML_LIBS) $(LIBS)
 
 $(FUZZ_REPLAYS): $(BUILD)/%$(EXE): $(BUILD)/%.o $(BUILD)/tests/support/replay_main.o $(TOOL_LIB) \
     $(STATIC_LIB)

@@ -218,6 +218,8 @@ look() {
         libedit-dev libedit-devel libedit libedit-dev libedit-devel
     need ncurses 'to draw in grctl monitor' have_library ncursesw -- \
         libncurses-dev ncurses-devel ncurses ncurses-dev ncurses-devel
+    need expat 'to read URDF in grctl robot import' have_library expat -- \
+        libexpat1-dev expat-devel expat expat-dev libexpat-devel
     [ $level -ge 2 ] || return
     need cmocka 'for the tests' have_library cmocka -- \
         libcmocka-dev libcmocka-devel cmocka cmocka-dev libcmocka-devel

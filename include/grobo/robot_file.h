@@ -30,6 +30,9 @@ typedef struct grobo_robot_family {
     int (*init)(grobo_driver *driver, const grobo_model *model, grobo_wiring wiring);
 } grobo_robot_family;
 
+/** The families that a file may name, NULL behind the last. */
+GROBO_API extern const grobo_robot_family *const grobo_robot_families[];
+
 /** A USB adapter by its numbers. */
 typedef struct grobo_usb_id {
     uint16_t vendor;

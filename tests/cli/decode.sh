@@ -41,21 +41,22 @@ refuses() {
 
 # ---- other families
 
-check 'DYNAMIXEL 2.0: which registers a reply brings, its request says' decodes --family dxl2 \
+check 'DYNAMIXEL 2.0: which registers a reply brings, its request says' \
+    decodes --family dynamixel2 \
     FFFFFD000107000284000400 1D15 FFFFFD000108005500A60000008CC0 <<'TEXT'
 read present_position of servo 1; CRC 151D right; reply: 15 bytes
 servo 1 returns present_position -165.4 deg; CRC C08C right
 TEXT
-check 'without it, in bytes' decodes --family dxl2 FFFFFD000108005500A60000008CC0 <<'TEXT'
+check 'without it, in bytes' decodes --family dynamixel2 FFFFFD000108005500A60000008CC0 <<'TEXT'
 servo 1 returns 4 bytes A6 00 00 00; CRC C08C right
 TEXT
-check 'a ping tells the model, whose registers are told from then on' decodes --family dxl2 \
+check 'a ping tells the model, whose registers are told from then on' decodes --family dynamixel2 \
     FFFFFD0001030001194E FFFFFD00010700550006042665 5D FFFFFD00010700027E0002003549 <<'TEXT'
 ping servo 1; CRC 4E19 right; reply: 14 bytes
 servo 1 returns model XM430-W210, firmware 38; CRC 5D65 right
 read present_current of servo 1; CRC 4935 right; reply: 13 bytes
 TEXT
-check 'a servo a line' decodes --family dxl2 \
+check 'a servo a line' decodes --family dynamixel2 \
     FFFFFD00FE130083400001000100020003000400050006 0056FD <<'TEXT'
 sync write 6 servos: torque; CRC FD56 right; no reply
     servo 1: torque off
@@ -65,21 +66,22 @@ sync write 6 servos: torque; CRC FD56 right; no reply
     servo 5: torque off
     servo 6: torque off
 TEXT
-check 'a wrong CRC' faulty --family dxl2 FFFFFD000309000374000008000069C8 <<'TEXT'
+check 'a wrong CRC' faulty --family dynamixel2 FFFFFD000309000374000008000069C8 <<'TEXT'
 write servo 3: goal_position 0.0 deg; CRC C869 wrong, should be C969
 TEXT
-check 'a length that there is not' decodes --family dxl2 FFFFFD000102005500A60000008CC0 <<'TEXT'
+check 'a length that there is not' decodes --family dynamixel2 \
+    FFFFFD000102005500A60000008CC0 <<'TEXT'
 rubbish: FF FF FD 00 01 02 00 55 00 A6 00 00 00 8C C0 (no frame has this length)
 TEXT
-check 'parameters that are missing' decodes --family dxl2 \
+check 'parameters that are missing' decodes --family dynamixel2 \
     FFFFFD00FE0E00837400040001000000000200C346 <<'TEXT'
 sync write 1 servos: goal_position; its last servo is cut; CRC 46C3 right; no reply
     servo 1: goal_position -180.0 deg
 TEXT
-check 'DYNAMIXEL 1.0: a value out of range' decodes --family dxl1 FFFF0105031E0004D4 <<'TEXT'
+check 'DYNAMIXEL 1.0: a value out of range' decodes --family dynamixel1 FFFF0105031E0004D4 <<'TEXT'
 write servo 1: goal_position 150.1 deg, 1024 is outside 0..1023; sum D4 right; reply: 6 bytes
 TEXT
-check 'Feetech, and what a servo reports' decodes --family sts \
+check 'Feetech, and what a servo reports' decodes --family feetech \
     FFFF0104023802BE FFFF01042400 08CE <<'TEXT'
 read present_position of servo 1; sum BE right; reply: 8 bytes
 servo 1 returns present_position 0.0 deg; too hot, overload; sum CE right
@@ -102,10 +104,10 @@ TEXT
 check 'a family that is none' refuses 2 'is none of rs30x' --family futaba 00
 check_json 'a request in JSON' 'lines[0]["packet"]["action"] == "read" and
     lines[0]["packet"]["servos"][0]["address"] == 132 and lines[0]["reply"]["bytes"] == 15' \
-    "$GRCTL" decode --json --family dxl2 FFFFFD00010700028400 04001D15
+    "$GRCTL" decode --json --family dynamixel2 FFFFFD00010700028400 04001D15
 check_json 'and a reply' 'lines[1]["packet"]["servos"] == [{"id": 1, "name": None,
     "registers": {"present_position_deg": -165.4}}] and lines[1]["asked_for"]' \
-    "$GRCTL" decode --json --family dxl2 FFFFFD00010700028400 04001D15 \
+    "$GRCTL" decode --json --family dynamixel2 FFFFFD00010700028400 04001D15 \
     FFFFFD000108005500A60000008CC0
 
 # ---- frames in words

@@ -17,6 +17,8 @@ cat >"$work/rows" <<'END'
 0|lines[0]["joints"][3]["name"] == "R_KNEE_P"|joints
 0|lines[0]["robots"][1]["name"] == "so101"|robot list
 0|lines[0]["safety"]["voltage_mv"] == 6000|robot show
+0|lines[0]["servos"][0]["model"] == "LX-16A"|robot servos lx16a
+0|lines[0]["n_joints"] == 1 and "STS3215" in lines[0]["text"]|robot import WORK/one.body
 3|lines[0]["diagnostics"][0]["line"] == 3|robot check motions/greet.pseq
 0|lines[0]["joints"][0]["joint"] == 16 and lines[0]["joints"][0]["status"] == "ok"|-d sim status m5
 0|{"id": 5, "joint": 16, "name": "R_ELBOW_P"}.items() <= lines[0]["servos"][4].items()|-d sim scan
@@ -58,6 +60,10 @@ cat >"$work/rows" <<'END'
 2|lines[0]["error"]["code"] == "arg"|status --nonsense
 3|lines[0]["error"]["message"]|play /dev/null
 4|lines[0]["error"]["code"] == "limit"|-d sim move m5 120
+END
+cat >"$work/one.body" <<'END'
+format: ChoreonoidBody
+links: [{name: a}, {name: b, parent: a, jointType: revolute, jointAxis: X, jointRange: 90}]
 END
 mkdir -p "$work/config/grctl"
 awk '/^<!-- file lerobot.json/ { on = 1; next } on && /^```$/ { exit } on && !/^```/' \

@@ -23,7 +23,7 @@ make_in() {
 # Only the development files of libevent and libyaml are on this machine.
 cat >"$work/pkg-config" <<'S'
 #!/bin/sh
-case "$*" in *jansson* | *cmocka* | *libedit* | *ncurses*) exit 1 ;; esac
+case "$*" in *jansson* | *cmocka* | *libedit* | *ncurses* | *expat*) exit 1 ;; esac
 exec pkg-config "$@"
 S
 chmod +x "$work/pkg-config"

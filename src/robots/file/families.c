@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 #include "src/robots/file/families.h"
 
-const grobo_robot_family *const grobo_i_families[] = {&grobo_i_family_rs30x,
-                                                      &grobo_i_family_dynamixel2,
-                                                      &grobo_i_family_dynamixel1,
-                                                      &grobo_i_family_feetech,
-                                                      &grobo_i_family_lx16a,
-                                                      &grobo_i_family_ics,
-                                                      NULL};
+const grobo_robot_family *const grobo_robot_families[] = {&grobo_i_family_rs30x,
+                                                          &grobo_i_family_dynamixel2,
+                                                          &grobo_i_family_dynamixel1,
+                                                          &grobo_i_family_feetech,
+                                                          &grobo_i_family_lx16a,
+                                                          &grobo_i_family_ics,
+                                                          NULL};
 
 bool grobo_i_family_row(const grobo_robot_family *family, size_t index, grobo_i_servo *servo)
 {

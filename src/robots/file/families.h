@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* Every family, for files that name one. */
+/* Servos of the families, for files that name one. */
 #ifndef GROBO_ROBOTS_FAMILIES_H
 #define GROBO_ROBOTS_FAMILIES_H
 
 #include "src/robots/robots.h"
-
-/* NULL behind the last. */
-extern const grobo_robot_family *const grobo_i_families[];
 
 /* A servo as a file names it. */
 typedef struct grobo_i_servo {

@@ -66,15 +66,15 @@ static void make_family(maker *m)
 {
     static const char *const wirings[] = {"board", "bus", NULL};
     const char *names[8] = {NULL};
-    for (int i = 0; grobo_i_families[i] != NULL; i++) {
-        names[i] = grobo_i_families[i]->name;
+    for (int i = 0; grobo_robot_families[i] != NULL; i++) {
+        names[i] = grobo_robot_families[i]->name;
     }
     int family = word_of(m, "family", m->draft->family, names);
     if (family < 0) {
         return;
     }
     grobo_robot_def *def = &m->file->def;
-    def->family = grobo_i_families[family];
+    def->family = grobo_robot_families[family];
     def->wiring = def->family->wiring;
     def->baud_bps = def->family->baud_bps;
     if (*m->draft->wiring != '\0') {
@@ -266,6 +266,12 @@ static void check_servos(maker *m)
         joint.mirror = 0;
         const grobo_model one = {.name = m->file->model_name, .joints = &joint, .n_joints = 1};
         int result = def->family->init(&m->driver, &one, def->wiring);
+        if (result == GROBO_ERR_UNSUPPORTED && def->wiring == GROBO_WIRING_BUS) {
+            (void)grobo_i_complain(m->reader, GROBO_ERR_SYNTAX, "servo", joint_place(m, j, "servo"),
+                                   "%s: a %s does not tell where it stands", joint.name,
+                                   m->draft->joint[j].servo);
+            continue;
+        }
         if (result == GROBO_ERR_UNSUPPORTED) {
             (void)complain(m, place_of(m, "wiring"), "wiring",
                            "servos of family %s cannot be wired so", def->family->name);

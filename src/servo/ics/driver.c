@@ -187,7 +187,7 @@ static int take_eeprom(const grobo_joint *joint, const grobo_servo_model *servo,
 static int take_position(const grobo_joint *joint, const grobo_servo_model *servo,
                          const uint8_t *data, grobo_joint_state *state)
 {
-    int32_t ticks = grobo_i_ics_value(data);
+    int32_t ticks = data[0] << 8 | data[1];
     if (ticks < GROBO_ICS_POSITION_MIN - OUTSIDE_TICKS ||
         ticks > GROBO_ICS_POSITION_MAX + OUTSIDE_TICKS) {
         return GROBO_ERR_MISMATCH;

@@ -79,6 +79,11 @@ static void unpack(uint8_t *bytes, size_t n, grobo_packet *packet)
             bytes[2 + i] = (uint8_t)(bytes[2 + 2 * i] << 4 | bytes[3 + 2 * i]);
         }
         packet->data_bytes = GROBO_I_ICS_EEPROM_BYTES;
+    } else if (packet->data_bytes == 2) { /* so are the halves of a position */
+        uint8_t *data = bytes + (position ? 1 : 2);
+        uint16_t value = grobo_i_ics_value(data);
+        data[0] = (uint8_t)(value >> 8);
+        data[1] = (uint8_t)value;
     }
 }
 

@@ -56,12 +56,16 @@ static const grobo_servo_model models[] = {
 
 #undef MODEL
 
+static const grobo_servo_rate rates[] = {{0, ALL, 1250000}, {1, ALL, 625000}, {10, ALL, 115200}};
+
 const grobo_servo_table grobo_ics_table = {
     .name = "Kondo KRS",
     .registers = rows,
     .models = models,
+    .rates = rates,
     .register_count = sizeof rows / sizeof rows[0],
     .model_count = sizeof models / sizeof models[0],
+    .rate_count = sizeof rates / sizeof rates[0],
     .big_endian = true,
 };
 

@@ -10,12 +10,13 @@
 enum { HEX_BYTES = 65536 };
 enum { OPT_FAMILY };
 
-static const cli_option options[] = {
-    [OPT_FAMILY] = OPTION_CHOICE("family", 0, "rs30x|dxl2|dxl1|sts|scs|lx16a|ics",
-                                 "what the servos are, where the robot's are others"),
-};
+/* SCS are of the family feetech, with the bytes of a number the other way round. */
+#define FAMILIES "rs30x|dynamixel2|dynamixel1|feetech|scs|lx16a|ics"
 
-static const char *const families[] = {"rs30x", "dxl2", "dxl1", "sts", "scs", "lx16a", "ics"};
+static const cli_option options[] = {
+    [OPT_FAMILY] =
+        OPTION_CHOICE("family", 0, FAMILIES, "what the servos are, where the robot's are others"),
+};
 
 static unsigned wiring_of(const app *a)
 {
@@ -167,12 +168,17 @@ static int decode_arguments(decoder *d)
     return decoder_status(d);
 }
 
+static int first_id(const app *a)
+{
+    return app_model(a)->joints[0].motor;
+}
+
 static int run(app *a)
 {
     static decoder d;
     const cli_value *given = app_option(a, OPT_FAMILY);
-    decoder_init(&d, a, wiring_of(a),
-                 given->given ? families[given->choice] : family_name(app_driver(a)));
+    const dialect *own = dialect_of_servo(family_servo(app_driver(a), first_id(a)));
+    decoder_init(&d, a, wiring_of(a), given->given ? given->text : own ? own->name : "rs30x");
     if (a->line.n_arguments == 0) {
         return decode_file(&d, "-");
     }
@@ -186,8 +192,9 @@ const cli_command cmd_decode = {
     .details =
         "Says what bytes mean: frames of the board, packets to servos and from them, registers by\n"
         "name and in their units, whether the sum is right, what will be answered. --family says\n"
-        "whose packets: Futaba's (rs30x), DYNAMIXEL 2.0 and 1.0 (dxl2, dxl1), Feetech's (sts,\n"
-        "scs), Hiwonder's (lx16a), Kondo's (ics); without it they are those of the robot. Replies\n"
+        "whose packets: Futaba's (rs30x), DYNAMIXEL 2.0 and 1.0 (dynamixel2,\n"
+        "dynamixel1), Feetech's STS and SMS (feetech) and SCS (scs), Hiwonder's (lx16a), Kondo's\n"
+        "(ics); without it they are those of the robot. Replies\n"
         "of most families do not say which registers they bring: the request before does.\n"
         "Registers are those of the servo's model, where the robot or the bytes tell it, else of\n"
         "the first model of the family. Bytes that are\n"
@@ -200,7 +207,7 @@ const cli_command cmd_decode = {
     .example = "  grctl decode 53 0C FA AF 03 00 1E 04 01 F6 FF 00 00 11\n"
                "  grctl play --dry-run motions/greet.pseq | grctl decode\n"
                "  grctl decode walk.pcapng\n"
-               "  grctl decode --family dxl2 FF FF FD 00 01 03 00 01 19 4E\n",
+               "  grctl decode --family dynamixel2 FF FF FD 00 01 03 00 01 19 4E\n",
     COMMAND_OPTIONS(options),
     .run = run,
 };

@@ -189,6 +189,9 @@ static bool check_state(patient *p, const char *name, int joint, const grobo_joi
 static void keep_extremes(patient *p, const grobo_joint_state *s)
 {
     p->answered++;
+    if (!(s->valid & GROBO_FIELD_VOLTAGE)) {
+        return; /* it tells none */
+    }
     if (p->low_mv == 0 || s->voltage_mv < p->low_mv) {
         p->low_mv = s->voltage_mv;
     }
@@ -212,8 +215,12 @@ static void check_model(patient *p, const char *name, int joint, const grobo_ser
                       "%s is %s, not %s", j->name, type ? type->name : "of an unknown model",
                       expected ? expected->name : "that");
     } else {
-        checkup_found(&p->k, name, "", "%s: %s, %d C, %.2f V", j->name,
-                      type ? type->name : "a servo", s->temperature_c, s->voltage_mv / 1e3);
+        char volts[24] = "";
+        if (s->valid & GROBO_FIELD_VOLTAGE) {
+            snprintf(volts, sizeof volts, ", %.2f V", s->voltage_mv / 1e3);
+        }
+        checkup_found(&p->k, name, "", "%s: %s, %d C%s", j->name, type ? type->name : "a servo",
+                      s->temperature_c, volts);
     }
 }
 
@@ -267,7 +274,9 @@ static void check_servos(patient *p)
         return;
     }
     int32_t least_mv = grobo_robot_driver(p->c.robot)->limits.voltage_mv * 11 / 10;
-    if (p->low_mv < least_mv) {
+    if (p->high_mv == 0) {
+        checkup_found(&p->k, "voltage", "", "these servos do not tell their voltage");
+    } else if (p->low_mv < least_mv) {
         checkup_found(&p->k, "voltage", "charge the battery",
                       "%.2f V at the servos: low; at %.1f V every motion is stopped",
                       p->low_mv / 1e3, grobo_robot_driver(p->c.robot)->limits.voltage_mv / 1e3);

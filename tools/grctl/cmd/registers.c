@@ -84,17 +84,6 @@ static json_t *value_json(const grobo_servo_model *servo, const grobo_servo_regi
     return o;
 }
 
-static int read_one(conn *c, int id, const grobo_servo_model *servo,
-                    const grobo_servo_register *reg, int32_t *value)
-{
-    uint8_t bytes[4] = {0};
-    int error = servos_read(c, id, reg->address, reg->bytes, bytes);
-    if (!error) {
-        *value = grobo_servo_register_get(servo, reg, bytes);
-    }
-    return error;
-}
-
 static void show(conn *c, const grobo_servo_model *servo, const grobo_servo_register *reg,
                  int32_t value, json_t *list)
 {
@@ -105,17 +94,18 @@ static void show(conn *c, const grobo_servo_model *servo, const grobo_servo_regi
     }
 }
 
-/* Registers from number `first` on that fit in a block. Returns how many, or the error. */
+/* Registers from number `first` on that are read at once. Returns how many, or the error. */
 static int show_block(conn *c, int id, const grobo_servo_model *servo, size_t first, json_t *list)
 {
-    const grobo_servo_register *begin = grobo_servo_register_row(servo, first), *reg = begin;
-    uint8_t bytes[BLOCK_BYTES] = {0};
-    int length = 0, n = 0;
-    while (reg && reg->address + reg->bytes <= begin->address + BLOCK_BYTES) {
-        length = reg->address + reg->bytes - begin->address;
-        reg = grobo_servo_register_row(servo, first + (size_t)++n);
+    const grobo_servo_register *begin = grobo_servo_register_row(servo, first), *reg;
+    uint8_t bytes[FAMILY_PIECE_BYTES] = {0};
+    int n = family_block(grobo_robot_driver(c->robot), servo, first, BLOCK_BYTES);
+    if (n == 0) { /* it can be written only */
+        return 1;
     }
-    int error = servos_read(c, id, begin->address, length, bytes);
+    reg = grobo_servo_register_row(servo, first + (size_t)n - 1);
+    int error =
+        servos_read(c, id, begin->address, reg->address + reg->bytes - begin->address, bytes);
     for (int i = 0; i < n && !error; i++) {
         reg = grobo_servo_register_row(servo, first + (size_t)i);
         show(c, servo, reg,
@@ -152,7 +142,7 @@ static int get(conn *c, int id, const char *only)
     json_t *list = json_array();
     if (!reg) {
         error = show_all(c, id, servo, list);
-    } else if (!(error = read_one(c, id, servo, reg, &value))) {
+    } else if (!(error = servos_get(c, id, servo, reg, &value))) {
         show(c, servo, reg, value, list);
     }
     if (!error && c->a->json) {
@@ -266,22 +256,12 @@ static bool confirmed(conn *c, const change *what, int32_t before)
     return fgets(answer, sizeof answer, stdin) && (answer[0] == 'y' || answer[0] == 'Y');
 }
 
-static int write_one(conn *c, const change *what, int id, const grobo_servo_register *reg,
-                     int32_t value)
-{
-    uint8_t bytes[4] = {0};
-    grobo_register_io io = {
-        .id = (uint8_t)id, .address = reg->address, .length = reg->bytes, .data = bytes};
-    grobo_servo_register_put(what->servo, reg, value, bytes);
-    return conn_wait(c, grobo_robot_registers(grobo_session_robot(c->session), &io));
-}
-
 /* Opens or closes what survives power-off, where the servo has a lock for that. */
 static int set_lock(conn *c, const change *what, int id, int closed)
 {
     bool locks = what->flash && keeps_as(what, GROBO_KEEPS_LOCK);
-    return locks ? write_one(c, what, id, grobo_servo_register_of(what->servo, GROBO_ROLE_LOCK),
-                             closed)
+    return locks ? servos_put(c, id, what->servo,
+                              grobo_servo_register_of(what->servo, GROBO_ROLE_LOCK), closed)
                  : GROBO_OK;
 }
 
@@ -293,7 +273,7 @@ static int write_it(conn *c, const change *what)
     if (error) {
         return error;
     }
-    error = write_one(c, what, what->id, what->reg, what->value);
+    error = servos_put(c, what->id, what->servo, what->reg, what->value);
     if (moves && conn_is_of_reply(error)) {
         return GROBO_OK;
     }
@@ -343,30 +323,51 @@ static void report(const conn *c, const change *what, int32_t before, int baud_b
 
 static grobo_write_kind kind_of(const app *a, const change *what)
 {
-    const uint8_t bytes[4] = {0};
+    const uint8_t bytes[FAMILY_PIECE_BYTES] = {0};
+    uint16_t from = what->reg->address;
+    int length = family_piece(app_driver(a), what->servo, what->reg, &from);
     const grobo_register_io io = {.id = (uint8_t)what->id,
-                                  .address = what->reg->address,
-                                  .length = what->reg->bytes,
+                                  .address = from,
+                                  .length = (uint16_t)(length ? length : what->reg->bytes),
                                   .data = bytes};
     return app_driver(a)->write_kind(app_driver(a), &io);
+}
+
+/* Whether a servo holds; of a joint its reading too, without which the engine refuses a setting. */
+static int read_torque(conn *c, const change *what, const grobo_servo_register *reg,
+                       int32_t *torque)
+{
+    int joint = grobo_model_joint_of_motor(grobo_robot_driver(c->robot)->model, what->id);
+    int error = servos_get(c, what->id, what->servo, reg, torque);
+    bool told = error != GROBO_ERR_UNSUPPORTED;
+    if ((error && told) || joint < 0) {
+        return error;
+    }
+    error = conn_wait(c, grobo_robot_sense(grobo_session_robot(c->session), GROBO_JOINT_BIT(joint),
+                                           GROBO_SENSE_FULL));
+    grobo_joint_info i;
+    if (!told && grobo_robot_joint(c->robot, joint, &i) == 0) {
+        *torque = i.state.valid & GROBO_FIELD_TORQUE ? (int32_t)i.state.torque : GROBO_TORQUE_ON;
+    }
+    return error == GROBO_ERR_SETUP ? GROBO_OK : error; /* what this may put right */
 }
 
 /* After a setting a goal may mean another angle: it is written to a servo without torque only. The
  * engine refuses it to a joint too, and to one that it has not read. */
 static int expect_loose(conn *c, const change *what)
 {
-    int joint = grobo_model_joint_of_motor(grobo_robot_driver(c->robot)->model, what->id);
     const grobo_servo_register *reg = grobo_servo_register_of(what->servo, GROBO_ROLE_TORQUE);
     int32_t torque = GROBO_TORQUE_OFF;
     bool restarts = needs_command(what) && changes_rate(c, what);
     if ((kind_of(c->a, what) != GROBO_WRITE_SETTING && !restarts) || !reg) {
         return EXIT_DONE;
     }
-    int error = read_one(c, what->id, what->servo, reg, &torque);
-    if (!error && joint >= 0) {
-        error = conn_wait(c, grobo_robot_sense(grobo_session_robot(c->session),
-                                               GROBO_JOINT_BIT(joint), GROBO_SENSE_FULL));
-        error = error == GROBO_ERR_SETUP ? GROBO_OK : error; /* what this may put right */
+    int error = read_torque(c, what, reg, &torque);
+    if (error == GROBO_ERR_UNSUPPORTED) {
+        return app_fail(c->a, EXIT_SAFETY, grobo_error_name(error),
+                        "servo-set: servo %d does not tell whether it holds; name it in a robot's "
+                        "file, which can make it limp",
+                        what->id);
     }
     if (error) {
         return conn_fail_servo(c, error, what->id);
@@ -387,7 +388,7 @@ static int expect_free_id(conn *c, const change *what)
     if (what->reg->role != GROBO_ROLE_ID || what->value == what->id) {
         return EXIT_DONE;
     }
-    int error = read_one(c, what->value, what->servo, what->reg, &id);
+    int error = servos_get(c, what->value, what->servo, what->reg, &id);
     if (error == GROBO_ERR_TIMEOUT) {
         return EXIT_DONE;
     }
@@ -420,7 +421,7 @@ static int find_rate(conn *c, const change *what, int first_bps, int second_bps,
     for (int i = 0; i < 2; i++) {
         error = tune(c, rates_bps[i]);
         if (!error) {
-            error = read_one(c, what->id, what->servo, what->reg, code);
+            error = servos_get(c, what->id, what->servo, what->reg, code);
         }
         if (!error) {
             return rates_bps[i];
@@ -505,7 +506,7 @@ static int write_and_verify(conn *c, const change *what, int32_t before)
         error = keep_it(c, what);
     }
     if (!error) {
-        error = read_one(c, new_id(what), what->servo, what->reg, &after);
+        error = servos_get(c, new_id(what), what->servo, what->reg, &after);
     }
     if (error) {
         return conn_fail_servo(c, error, new_id(what));
@@ -528,7 +529,7 @@ static int set(conn *c, const change *what)
     if (error) {
         return error;
     }
-    error = read_one(c, what->id, what->servo, what->reg, &before);
+    error = servos_get(c, what->id, what->servo, what->reg, &before);
     if (error) {
         return conn_fail_servo(c, error, what->id);
     }

@@ -5,6 +5,20 @@
 #include "tools/grctl/cli/file.h"
 #include "tools/grctl/cli/robot.h"
 #include "tools/grctl/cmd/commands.h"
+#include "tools/grctl/servo/family.h"
+#include "tools/grctl/sketch/make.h"
+
+enum { OPT_FAMILY, OPT_SERVO, OPT_IDS, OPT_NAME, OPT_OUT };
+
+static const cli_option options[] = {
+    [OPT_FAMILY] = OPTION_CHOICE("family", 0, "rs30x|dynamixel2|dynamixel1|feetech|lx16a|ics",
+                                 "import: how its servos talk (feetech, to be filled in)"),
+    [OPT_SERVO] = OPTION_TEXT("servo", 0, "MODEL[,MODEL]...",
+                              "import: its servos, one for all or for each joint"),
+    [OPT_IDS] = OPTION_TEXT("ids", 0, "1-4,7", "import: ids of the joints, in order (1, 2, 3...)"),
+    [OPT_NAME] = OPTION_TEXT("name", 0, "NAME", "import: what the robot is called"),
+    [OPT_OUT] = OPTION_TEXT("out", 'o', "FILE", "import: the robot's file (standard output)"),
+};
 
 static int run_list(const app *a)
 {
@@ -153,6 +167,45 @@ static int run_check(app *a, const char *path)
     return error ? EXIT_FILE : EXIT_DONE;
 }
 
+/* ---- servos --------------------------------------------------------------------------------- */
+
+static void list_servos(const app *a, const grobo_robot_family *family, json_t *list)
+{
+    const grobo_servo_table *table;
+    for (size_t i = 0; (table = family_table(family, i)) != NULL; i++) {
+        for (int m = 0; m < table->model_count; m++) {
+            const grobo_servo_model *servo = &table->models[m];
+            if (!a->json) {
+                app_print("%-12s %-13s %4d deg  %4d deg/s  %.1f V\n", family->name, servo->name,
+                          servo->span_deg, servo->speed_dps, servo->voltage_mv / 1e3);
+            }
+            json_array_append_new(list, json_pack("{s:s,s:s,s:i,s:i,s:i}", "family", family->name,
+                                                  "model", servo->name, "span_deg", servo->span_deg,
+                                                  "speed_dps", servo->speed_dps, "voltage_mv",
+                                                  servo->voltage_mv));
+        }
+    }
+}
+
+static int run_servos(app *a, const char *name)
+{
+    json_t *list = json_array();
+    int known = 0;
+    for (size_t i = 0; grobo_robot_families[i]; i++) {
+        if (!name || strcmp(grobo_robot_families[i]->name, name) == 0) {
+            list_servos(a, grobo_robot_families[i], list);
+            known++;
+        }
+    }
+    if (a->json && known) {
+        app_print_json(json_pack("{s:O}", "servos", list));
+    }
+    json_decref(list);
+    return known ? EXIT_DONE
+                 : app_fail(a, EXIT_USAGE, "NOTFOUND",
+                            "no family '%s'; 'grctl robot servos' has them", name);
+}
+
 static int run(app *a)
 {
     const char *what = a->line.argument[0];
@@ -166,24 +219,44 @@ static int run(app *a)
     if (strcmp(what, "check") == 0 && name) {
         return run_check(a, name);
     }
+    if (strcmp(what, "servos") == 0) {
+        return run_servos(a, name);
+    }
+    if (strcmp(what, "import") == 0 && name) {
+        const sketch_orders orders = {.family = app_option(a, OPT_FAMILY)->text,
+                                      .servos = app_option(a, OPT_SERVO)->text,
+                                      .ids = app_option(a, OPT_IDS)->text,
+                                      .name = app_option(a, OPT_NAME)->text,
+                                      .out = app_option(a, OPT_OUT)->text};
+        return sketch_import(a, name, &orders);
+    }
     return app_fail(a, EXIT_USAGE, "ARG",
-                    "robot takes list, show [NAME|FILE] or check FILE; see 'grctl help robot'");
+                    "robot takes list, show [NAME|FILE], check FILE, servos [FAMILY] or import "
+                    "FILE; see 'grctl help robot'");
 }
 
 const cli_command cmd_robot = {
     .name = "robot",
-    COMMAND_ARGUMENTS("list|show|check [NAME|FILE]", 1, 2, CLI_ARG_ROBOT),
+    COMMAND_ARGUMENTS("list|show|check|servos|import [NAME|FILE]", 1, 2, CLI_ARG_ROBOT),
     .summary = "robots that are known, and files of others",
     .details =
         "list: the robots that come with grctl. show: what one of them is, or a file says, or the\n"
         "robot of --robot. check: everything that is wrong with a file, with line and column; the\n"
-        "exit status is 3 then. No robot is asked.\n"
+        "exit status is 3 then. servos: the servos that a file may name, of all families or of\n"
+        "one. No robot is asked.\n"
+        "\n"
+        "import: a robot's file of a URDF or of a body of Choreonoid: joints, limits, speeds,\n"
+        "parts with their masses. What these do not tell (servos, ids, which way each turns) is\n"
+        "guessed, and said in a comment, unless --family, --servo and --ids tell. Limits that the\n"
+        "servo does not reach are cut; joints that slide or follow another are taken as fixed.\n"
         "\n"
         "A robot is a YAML file: its joints with id, servo and limits, its line, what is safe.\n"
         "docs/guide/own-robot.md describes one, docs/robot.schema.json tells an editor its keys.\n"
         "Every command takes --robot NAME or --robot FILE; GRCTL_ROBOT and the key robot of a\n"
         "configured robot say the same.\n",
     .example = "  grctl robot list\n  grctl robot check ./arm.yaml\n"
-               "  grctl --robot ./arm.yaml -d sim init\n",
+               "  grctl --robot ./arm.yaml -d sim init\n"
+               "  grctl robot import arm.urdf --family feetech --servo STS3215 -o arm.yaml\n",
+    COMMAND_OPTIONS(options),
     .run = run,
 };

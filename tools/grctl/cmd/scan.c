@@ -19,7 +19,7 @@ enum { LOOKS_MAX = 4, LISTEN_US = 150000, LISTEN_MAX_US = 2000000 };
 static const cli_option options[] = {
     [OPT_ALL_BAUD] =
         OPTION_FLAG("all-baud", 0, "at every baud rate that servos know (with --wiring bus)"),
-    [OPT_FAMILY] = OPTION_CHOICE("family", 0, "all|rs30x|dxl2|dxl1|sts|scs",
+    [OPT_FAMILY] = OPTION_CHOICE("family", 0, "all|rs30x|dynamixel2|dynamixel1|feetech|lx16a|ics",
                                  "look for these servos on a line, at their usual rates"),
     [OPT_FIRST] = OPTION_WHOLE("first", 0, "ID", 0, IDS - 1, "begin with this id (the lowest)"),
     [OPT_LAST] = OPTION_WHOLE("last", 0, "ID", 0, IDS - 1, "end with this id (the highest)"),
@@ -28,9 +28,9 @@ static const cli_option options[] = {
 typedef struct found {
     const app *a;
     const grobo_driver *driver;
-    const family *family;  /* what is looked for; NULL: the robot's servos */
-    bool guessing;         /* whatever there is: only models that are known count */
-    json_t *list, *failed; /* NULL: as text */
+    const grobo_robot_family *family; /* what is looked for; NULL: the robot's servos */
+    bool guessing;                    /* whatever there is: only models that are known count */
+    json_t *list, *failed;            /* NULL: as text */
     int n, silent;
     bool unsure;              /* the line was disturbed, or an id answers in no way that fits */
     int64_t took_us, wire_us; /* of asking */
@@ -49,14 +49,15 @@ static identity identity_of(const grobo_driver *driver, const uint8_t *bytes)
 {
     const grobo_servo_model *any = family_servo(driver, -1);
     const grobo_servo_register *reg = grobo_servo_register_of(any, GROBO_ROLE_MODEL);
-    identity is = {
-        .model = any->table->name, .family = family_of(any), .known = true, .firmware = -1};
+    identity is = {.model = any->table->name,
+                   .family = family_of_servo(any)->name,
+                   .known = true,
+                   .firmware = -1};
     uint16_t from = 0;
-    (void)family_identity(any, &from);
+    (void)family_identity(driver, any, &from);
     if (reg) {
         const grobo_servo_model *model = family_identify(driver, bytes + (reg->address - from));
         is.known = model != NULL;
-        is.family = family_of(model ? model : any);
         is.model = model ? model->name : "unknown model";
     }
     reg = grobo_servo_register_of(any, GROBO_ROLE_FIRMWARE);
@@ -119,7 +120,7 @@ typedef struct pass {
     found *f;
     bool there[IDS];
     int why[IDS]; /* the error of one that answered in no way that fits, or 0 */
-    uint8_t identity[IDS][FAMILY_IDENTITY_BYTES];
+    uint8_t identity[IDS][FAMILY_PIECE_BYTES];
     int64_t asked_us[IDS];
     uint16_t address; /* of the registers that tell the identity */
     int bytes;        /* of them */
@@ -222,10 +223,14 @@ static int listen_on(conn *c, pass *p)
 
 static int ask(conn *c, pass *p, int id)
 {
-    uint8_t bytes[FAMILY_IDENTITY_BYTES];
+    uint8_t bytes[FAMILY_PIECE_BYTES];
     p->asking = id;
     int error = servos_read(c, id, p->address, p->bytes, bytes);
     bool silent = error == GROBO_ERR_TIMEOUT || error == GROBO_ERR_SHORT;
+    if (!error) {
+        p->there[id] = true;
+        memcpy(p->identity[id], bytes, (size_t)p->bytes);
+    }
     p->why[id] = silent ? 0 : error;
     return c->signal || c->link_error ? error : GROBO_OK;
 }
@@ -372,7 +377,7 @@ static int last_id(const app *a, const grobo_driver *driver)
 static int scan_ids(conn *c, found *f, int baud_bps)
 {
     pass p = {.f = f, .baud_bps = baud_bps, .protocol = f->driver->protocol};
-    p.bytes = family_identity(family_servo(f->driver, -1), &p.address);
+    p.bytes = family_identity(f->driver, family_servo(f->driver, -1), &p.address);
     p.first = first_id(c->a, f->driver);
     p.last = last_id(c->a, f->driver);
     int error = ask_all(c, f, &p);
@@ -475,23 +480,25 @@ static int look_at_rates(app *a, found *f)
 {
     const cli_value *asked = app_global(a, GLOBAL_BAUD);
     const cli_value *device = app_global(a, GLOBAL_DEVICE);
-    const grobo_servo_table *table = f->family->table;
+    const grobo_servo_table *table = family_table(f->family, 0);
     bool all = app_option(a, OPT_ALL_BAUD)->given > 0;
     bool one = asked->given || (device->given && strncmp(device->text, "tcp:", 4) == 0);
-    int n = one ? 1 : all ? table->rate_count : (int)(sizeof f->family->usual_bps / sizeof(int));
-    int status = 0;
+    int n = 0, status = 0;
+    while (!one && (all ? n < table->rate_count : family_usual_bps(f->family, (size_t)n) > 0)) {
+        n++;
+    }
+    n = one ? 1 : n;
     f->n_rates = n;
     for (int i = 0; i < n && !status; i++) {
         int baud_bps = asked->given ? (int)asked->number
                        : all        ? table->rates[i].bps
-                                    : f->family->usual_bps[i];
+                                    : family_usual_bps(f->family, (size_t)i);
         f->rate = i;
-        status = baud_bps > 0 ? look_for(a, f, baud_bps) : 0;
+        status = look_for(a, f, baud_bps);
     }
     return status;
 }
 
-/* SCS talk as STS do, and are found with them. */
 static int scan_families(app *a)
 {
     const char *name = app_option(a, OPT_FAMILY)->text;
@@ -504,10 +511,9 @@ static int scan_families(app *a)
     int status = 0;
     a->robot = NULL; /* its trims are of other joints */
     progress_start(&f.bar, a);
-    for (size_t i = 0; (f.family = family_row(i)) != NULL && !status; i++) {
-        bool twin = f.guessing && strcmp(f.family->name, "scs") == 0;
+    for (size_t i = 0; (f.family = grobo_robot_families[i]) != NULL && !status; i++) {
         f.driver = family_driver(f.family);
-        if (f.driver && !twin && (f.guessing || strcmp(f.family->name, name) == 0)) {
+        if (f.driver && (f.guessing || strcmp(f.family->name, name) == 0)) {
             status = look_at_rates(a, &f);
         }
     }
@@ -571,7 +577,8 @@ static int info(conn *c)
     const grobo_model *model = grobo_robot_driver(c->robot)->model;
     bool board = grobo_driver_wiring(grobo_robot_driver(c->robot)) == GROBO_WIRING_BOARD;
     uint16_t address = 0;
-    int length = family_identity(family_servo(grobo_robot_driver(c->robot), -1), &address);
+    const grobo_driver *driver = grobo_robot_driver(c->robot);
+    int length = family_identity(driver, family_servo(driver, -1), &address);
     found f = {.a = c->a,
                .driver = grobo_robot_driver(c->robot),
                .list = c->a->json ? json_array() : NULL,
@@ -582,7 +589,7 @@ static int info(conn *c)
                   board ? "through its board, which answers" : "servos straight on the bus");
     }
     for (int motor = 0; motor <= GROBO_SERVO_ID_MAX; motor++) {
-        uint8_t bytes[FAMILY_IDENTITY_BYTES];
+        uint8_t bytes[FAMILY_PIECE_BYTES];
         if (!joint_name(&f, motor)) {
             continue;
         }

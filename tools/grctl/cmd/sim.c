@@ -169,7 +169,7 @@ static const dialect *dialect_of(const farm *f)
             return NULL;
         }
     }
-    return first ? dialect_named(family_of(first)) : NULL;
+    return dialect_of_servo(first);
 }
 
 static int open_trace(farm *f, int robot)

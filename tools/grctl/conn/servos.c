@@ -20,6 +20,39 @@ int servos_read(conn *c, int id, int address, int length, uint8_t *data)
     return error;
 }
 
+int servos_get(conn *c, int id, const grobo_servo_model *servo, const grobo_servo_register *reg,
+               int32_t *value)
+{
+    uint8_t bytes[FAMILY_PIECE_BYTES] = {0};
+    uint16_t from = 0;
+    int length = family_piece(grobo_robot_driver(c->robot), servo, reg, &from);
+    int error = length ? servos_read(c, id, from, length, bytes) : GROBO_ERR_UNSUPPORTED;
+    if (!error) {
+        *value = grobo_servo_register_get(servo, reg, bytes + (reg->address - from));
+    }
+    return error;
+}
+
+int servos_put(conn *c, int id, const grobo_servo_model *servo, const grobo_servo_register *reg,
+               int32_t value)
+{
+    uint8_t bytes[FAMILY_PIECE_BYTES] = {0};
+    uint16_t from = reg->address;
+    int length = family_piece(grobo_robot_driver(c->robot), servo, reg, &from);
+    int error = length > reg->bytes ? servos_read(c, id, from, length, bytes) : GROBO_OK;
+    if (!error) {
+        error = grobo_servo_register_put(servo, reg, value, bytes + (reg->address - from));
+    }
+    if (error < 0) {
+        return error;
+    }
+    grobo_register_io io = {.id = (uint8_t)id,
+                            .address = from,
+                            .length = (uint16_t)(length ? length : reg->bytes),
+                            .data = bytes};
+    return conn_wait(c, grobo_robot_registers(grobo_session_robot(c->session), &io));
+}
+
 int servos_model(conn *c, int id, const grobo_servo_model **servo)
 {
     const grobo_driver *driver = grobo_robot_driver(c->robot);

@@ -17,6 +17,17 @@ int servos_read(conn *c, int id, int address, int length, uint8_t *data);
  */
 int servos_model(conn *c, int id, const grobo_servo_model **servo);
 
+/* The value of one register, in its counts; as above. */
+int servos_get(conn *c, int id, const grobo_servo_model *servo, const grobo_servo_register *reg,
+               int32_t *value);
+
+/*
+ * Writes it, where several are written in one piece with the others as they are. As above; a value
+ * that the register does not take is GROBO_ERR_LIMIT.
+ */
+int servos_put(conn *c, int id, const grobo_servo_model *servo, const grobo_servo_register *reg,
+               int32_t value);
+
 /* Beyond the wire's time, where a reply is sure to be wanted and the host may be busy. */
 enum { SERVOS_PATIENT_US = 30000 };
 

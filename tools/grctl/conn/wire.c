@@ -54,13 +54,14 @@ int wire_budget(const grobo_driver *driver, int baud_bps, grobo_budget *budget)
 
 int wire_read_us(const grobo_driver *driver, int baud_bps, int length, uint32_t *time_us)
 {
-    grobo_register_io io = {.id = 1, .length = (uint8_t)length};
+    grobo_register_io io = {.id = 1, .length = (uint16_t)length};
     grobo_exchange exchange = {0};
     wire_cost cost = {0};
     grobo_bus bus;
     int error = make_bus(driver, baud_bps, &bus);
-    if (!error) {
-        error = driver->registers(driver, NULL, &io, &exchange);
+    if (!error && driver->registers(driver, NULL, &io, &exchange) < 0) {
+        /* One of those that are read in pieces as they are: the whole joint takes longest. */
+        error = driver->sense(driver, NULL, 0, GROBO_SENSE_FULL, &exchange);
     }
     if (error < 0) {
         return error;

@@ -124,13 +124,15 @@ talk decoder_talk(const app *a, const char *name)
 {
     const grobo_driver *driver = app_driver(a);
     talk t = {.dialect = dialect_named(name)};
-    if (!family_is(driver, name)) {
+    if (!family_is(driver, t.dialect ? t.dialect->family : name)) {
         return t;
     }
     t.model = driver->model;
     for (int j = 0; j < t.model->n_joints; j++) {
         int id = t.model->joints[j].motor;
-        t.servo[id] = family_servo(driver, id);
+        const grobo_servo_model *servo = family_servo(driver, id);
+        bool told = !t.dialect || !servo || servo->table == t.dialect->table;
+        t.servo[id] = told ? servo : NULL;
     }
     return t;
 }

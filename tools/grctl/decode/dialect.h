@@ -68,7 +68,8 @@ typedef struct dialect_frame {
 } dialect_frame;
 
 typedef struct dialect {
-    const char *name; /* of --family */
+    const char *name;   /* of --family */
+    const char *family; /* as a robot's file names it */
     const char *title;
     const grobo_servo_table *table;
     /* The frame that look->bytes begin with, whatever its sum: its size, 0 when more bytes are
@@ -87,8 +88,11 @@ typedef struct dialect {
 extern const dialect dialect_dxl2, dialect_dxl1, dialect_sts, dialect_scs, dialect_lx16a,
     dialect_ics;
 
-/* The family's row by its name; NULL for RS30x, whose frames are a line's without a dialect. */
+/* The row of this name; NULL for RS30x, whose frames are a line's without a dialect. */
 const dialect *dialect_named(const char *name);
+
+/* How a servo talks; NULL as above. */
+const dialect *dialect_of_servo(const grobo_servo_model *servo);
 
 /* ---- who talks ------------------------------------------------------------------------------- */
 

@@ -327,7 +327,8 @@ static void dxl2_explain(const uint8_t *bytes, size_t n, const dialect_frame *as
 }
 
 const dialect dialect_dxl2 = {
-    .name = "dxl2",
+    .name = "dynamixel2",
+    .family = "dynamixel2",
     .title = "DYNAMIXEL 2.0",
     .table = &grobo_dxl2_table,
     .peek = dxl2_peek,
@@ -499,12 +500,14 @@ static void scs_explain(const uint8_t *bytes, size_t n, const dialect_frame *as,
     refuse(to, "sync read");
 }
 
-#define OLD(name_, title_, table_, explain_)                                                       \
+#define OLD(name_, family_, title_, table_, explain_)                                              \
     {                                                                                              \
-        .name = (name_), .title = (title_), .table = (table_), .peek = old_peek, .why = old_why,   \
-        .reply_to = old_reply_to, .answers = old_answers, .explain = (explain_)                    \
+        .name = (name_), .family = (family_), .title = (title_), .table = (table_),                \
+        .peek = old_peek, .why = old_why, .reply_to = old_reply_to, .answers = old_answers,        \
+        .explain = (explain_)                                                                      \
     }
 
-const dialect dialect_dxl1 = OLD("dxl1", "DYNAMIXEL 1.0", &grobo_dxl1_table, dxl1_explain);
-const dialect dialect_sts = OLD("sts", "Feetech STS", &grobo_sts_table, sts_explain);
-const dialect dialect_scs = OLD("scs", "Feetech SCS", &grobo_scs_table, scs_explain);
+const dialect dialect_dxl1 =
+    OLD("dynamixel1", "dynamixel1", "DYNAMIXEL 1.0", &grobo_dxl1_table, dxl1_explain);
+const dialect dialect_sts = OLD("feetech", "feetech", "Feetech STS", &grobo_sts_table, sts_explain);
+const dialect dialect_scs = OLD("scs", "feetech", "Feetech SCS", &grobo_scs_table, scs_explain);

@@ -204,6 +204,7 @@ static void explain(const uint8_t *bytes, size_t n, const dialect_frame *as, tel
 }
 
 const dialect dialect_ics = {.name = "ics",
+                             .family = "ics",
                              .title = "Kondo ICS",
                              .table = &table,
                              .peek = peek,

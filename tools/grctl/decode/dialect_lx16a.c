@@ -172,6 +172,7 @@ static void explain(const uint8_t *bytes, size_t n, const dialect_frame *as, tel
 }
 
 const dialect dialect_lx16a = {.name = "lx16a",
+                               .family = "lx16a",
                                .title = "Hiwonder LX",
                                .table = &table,
                                .peek = peek,

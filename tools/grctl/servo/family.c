@@ -1,127 +1,54 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
 
-#include <grobo/board.h>
-#include <grobo/dxl2.h>
-#include <grobo/feetech.h>
 #include <grobo/rs30x.h>
 
 #include "tools/grctl/servo/family.h"
 
-static int rs30x_driver(grobo_driver *driver, const grobo_model *model)
+const grobo_servo_table *family_table(const grobo_robot_family *family, size_t i)
 {
-    return grobo_rs30x_driver_init(driver, model, &grobo_rs30x_protocol);
+    if (!family->tables) { /* RS30x */
+        return i == 0 ? &grobo_rs30x_table : NULL;
+    }
+    return family->tables[i];
 }
 
-static const family families[] = {
-    {"rs30x", &grobo_rs30x_protocol, &grobo_rs30x_table, {115200}, rs30x_driver},
-    {"dxl2",
-     &grobo_dxl2_protocol,
-     &grobo_dxl2_table,
-     {57600, 1000000, 3000000},
-     grobo_dxl2_driver_init},
-    {"dxl1", &grobo_dxl1_protocol, &grobo_dxl1_table, {1000000, 57600}, grobo_dxl1_driver_init},
-    {"sts",
-     &grobo_feetech_protocol,
-     &grobo_sts_table,
-     {1000000, 115200},
-     grobo_feetech_driver_init},
-    {"scs",
-     &grobo_feetech_protocol,
-     &grobo_scs_table,
-     {1000000, 115200},
-     grobo_feetech_driver_init},
-};
-
-enum { FAMILIES = sizeof families / sizeof *families };
-
-const family *family_row(size_t i)
+const grobo_robot_family *family_called(const char *name)
 {
-    return i < FAMILIES ? &families[i] : NULL;
+    for (size_t i = 0; grobo_robot_families[i]; i++) {
+        if (strcmp(grobo_robot_families[i]->name, name) == 0) {
+            return grobo_robot_families[i];
+        }
+    }
+    return NULL;
 }
 
-/* Behind a board are RS30x. */
-static bool speaks(const family *f, const grobo_driver *driver)
+static bool has_rate(const grobo_robot_family *family, int32_t bps)
 {
-    return f->protocol == (driver->protocol->relay ? &grobo_rs30x_protocol : driver->protocol);
-}
-
-bool family_is(const grobo_driver *driver, const char *name)
-{
-    for (size_t i = 0; i < FAMILIES; i++) {
-        if (strcmp(families[i].name, name) == 0) {
-            return speaks(&families[i], driver);
+    const grobo_servo_table *table = family_table(family, 0);
+    for (int i = 0; i < table->rate_count; i++) {
+        if (table->rates[i].bps == bps) {
+            return true;
         }
     }
     return false;
 }
 
-const grobo_servo_model *family_numbered(const grobo_driver *driver, uint16_t number)
+int family_usual_bps(const grobo_robot_family *family, size_t i)
 {
-    const grobo_servo_model *found = NULL;
-    for (size_t i = 0; i < FAMILIES && !found; i++) {
-        if (speaks(&families[i], driver)) {
-            found = grobo_servo_model_numbered(families[i].table, number);
+    static const int32_t usual[] = {1000000, 57600, 115200, 3000000};
+    if (i == 0) {
+        return (int)family->baud_bps;
+    }
+    for (size_t k = 0; k < sizeof usual / sizeof *usual; k++) {
+        if (usual[k] != (int32_t)family->baud_bps && has_rate(family, usual[k]) && --i == 0) {
+            return usual[k];
         }
     }
-    return found;
+    return 0;
 }
 
-const grobo_servo_model *family_servo(const grobo_driver *driver, int id)
-{
-    int joint = grobo_model_joint_of_motor(driver->model, id);
-    const grobo_servo_model *found =
-        joint < 0 ? NULL : family_numbered(driver, driver->model->joints[joint].servo_model);
-    for (size_t i = 0; i < FAMILIES && !found; i++) {
-        found = speaks(&families[i], driver) ? &families[i].table->models[0] : NULL;
-    }
-    return found;
-}
-
-const grobo_servo_model *family_identify(const grobo_driver *driver, const uint8_t *bytes)
-{
-    const grobo_servo_model *found = NULL;
-    for (size_t i = 0; i < FAMILIES && !found; i++) {
-        if (speaks(&families[i], driver)) {
-            const grobo_servo_model *any = &families[i].table->models[0];
-            const grobo_servo_register *model = grobo_servo_register_of(any, GROBO_ROLE_MODEL);
-            int32_t number = grobo_servo_register_get(any, model, bytes);
-            found = grobo_servo_model_numbered(families[i].table, (uint16_t)number);
-        }
-    }
-    return found;
-}
-
-int family_identity(const grobo_servo_model *servo, uint16_t *address)
-{
-    const grobo_servo_register *a = grobo_servo_register_of(servo, GROBO_ROLE_MODEL);
-    const grobo_servo_register *b = grobo_servo_register_of(servo, GROBO_ROLE_FIRMWARE);
-    a = a ? a : grobo_servo_register_of(servo, GROBO_ROLE_ID);
-    b = b ? b : a;
-    if (!a) {
-        return 0;
-    }
-    int end = a->address + a->bytes > b->address + b->bytes ? a->address + a->bytes
-                                                            : b->address + b->bytes;
-    *address = a->address < b->address ? a->address : b->address;
-    return end - *address;
-}
-
-const char *family_of(const grobo_servo_model *servo)
-{
-    size_t i = 0;
-    while (i < FAMILIES - 1 && (!servo || families[i].table != servo->table)) {
-        i++;
-    }
-    return families[i].name;
-}
-
-const char *family_name(const grobo_driver *driver)
-{
-    return family_of(family_servo(driver, driver->model->joints[0].motor));
-}
-
-const grobo_driver *family_driver(const family *f)
+const grobo_driver *family_driver(const grobo_robot_family *family)
 {
     static grobo_driver driver;
     static grobo_joint joint;
@@ -132,8 +59,150 @@ const grobo_driver *family_driver(const family *f)
                           .min_rad = -0.1,
                           .max_rad = 0.1,
                           .max_speed_rad_s = 1,
-                          .servo_model = f->table->models[0].number,
-                          .motor = f->protocol->id_max,
+                          .servo_model = family_table(family, 0)->models[0].number,
                           .mirror_sign = 1};
-    return f->driver(&driver, &model) < 0 ? NULL : &driver;
+    if (family->init(&driver, &model, GROBO_WIRING_BUS) < 0) {
+        return NULL;
+    }
+    joint.motor = driver.protocol->id_max;
+    return family->init(&driver, &model, GROBO_WIRING_BUS) < 0 ? NULL : &driver;
+}
+
+const grobo_robot_family *family_of_driver(const grobo_driver *driver)
+{
+    static const grobo_protocol *known[16]; /* of the families */
+    const grobo_protocol *wanted =
+        driver->protocol->relay ? &grobo_rs30x_protocol : driver->protocol;
+    for (size_t i = 0; grobo_robot_families[i] && i < sizeof known / sizeof *known; i++) {
+        const grobo_driver *any = known[i] ? NULL : family_driver(grobo_robot_families[i]);
+        known[i] = any ? any->protocol : known[i];
+        if (known[i] == wanted) {
+            return grobo_robot_families[i];
+        }
+    }
+    return NULL;
+}
+
+const grobo_robot_family *family_of_servo(const grobo_servo_model *servo)
+{
+    const grobo_servo_table *table;
+    for (size_t f = 0; grobo_robot_families[f]; f++) {
+        for (size_t i = 0; (table = family_table(grobo_robot_families[f], i)) != NULL; i++) {
+            if (table == servo->table) {
+                return grobo_robot_families[f];
+            }
+        }
+    }
+    return NULL;
+}
+
+bool family_is(const grobo_driver *driver, const char *name)
+{
+    const grobo_robot_family *family = family_of_driver(driver);
+    return family && strcmp(family->name, name) == 0;
+}
+
+const grobo_servo_model *family_model(const grobo_robot_family *family, const char *name)
+{
+    const grobo_servo_table *table;
+    for (size_t i = 0; (table = family_table(family, i)) != NULL; i++) {
+        for (int m = 0; m < table->model_count; m++) {
+            if (strcmp(table->models[m].name, name) == 0) {
+                return &table->models[m];
+            }
+        }
+    }
+    return NULL;
+}
+
+const grobo_servo_model *family_numbered(const grobo_driver *driver, uint16_t number)
+{
+    const grobo_robot_family *family = family_of_driver(driver);
+    const grobo_servo_model *found = NULL;
+    const grobo_servo_table *table;
+    for (size_t i = 0; family && !found && (table = family_table(family, i)) != NULL; i++) {
+        found = grobo_servo_model_numbered(table, number);
+    }
+    return found;
+}
+
+const grobo_servo_model *family_servo(const grobo_driver *driver, int id)
+{
+    int joint = grobo_model_joint_of_motor(driver->model, id);
+    const grobo_robot_family *family = family_of_driver(driver);
+    const grobo_servo_model *found =
+        joint < 0 ? NULL : family_numbered(driver, driver->model->joints[joint].servo_model);
+    return found || !family ? found : &family_table(family, 0)->models[0];
+}
+
+const grobo_servo_model *family_identify(const grobo_driver *driver, const uint8_t *bytes)
+{
+    const grobo_robot_family *family = family_of_driver(driver);
+    const grobo_servo_model *found = NULL;
+    const grobo_servo_table *table;
+    for (size_t i = 0; family && !found && (table = family_table(family, i)) != NULL; i++) {
+        const grobo_servo_model *any = &table->models[0];
+        const grobo_servo_register *model = grobo_servo_register_of(any, GROBO_ROLE_MODEL);
+        int32_t number = grobo_servo_register_get(any, model, bytes);
+        found = grobo_servo_model_numbered(table, (uint16_t)number);
+    }
+    return found;
+}
+
+static bool can_read(const grobo_driver *driver, int address, int length)
+{
+    const grobo_register_io io = {.id = driver->model->joints[0].motor,
+                                  .address = (uint16_t)address,
+                                  .length = (uint16_t)length};
+    grobo_exchange exchange = {0};
+    return driver->registers && length > 0 && length <= FAMILY_PIECE_BYTES &&
+           driver->registers(driver, NULL, &io, &exchange) >= 0;
+}
+
+int family_piece(const grobo_driver *driver, const grobo_servo_model *servo,
+                 const grobo_servo_register *reg, uint16_t *address)
+{
+    const grobo_servo_register *from, *to;
+    int end = 0;
+    for (size_t i = 0; (from = grobo_servo_register_row(servo, i)) != NULL; i++) {
+        int begin = from->address > reg->address ? reg->address : from->address;
+        for (size_t k = 0; (to = grobo_servo_register_row(servo, k)) != NULL; k++) {
+            int this_end = to->address + to->bytes;
+            bool holds = this_end >= reg->address + reg->bytes;
+            bool shorter = end == 0 || this_end - begin < end - *address;
+            if (holds && shorter && can_read(driver, begin, this_end - begin)) {
+                *address = (uint16_t)begin;
+                end = this_end;
+            }
+        }
+    }
+    return end ? end - *address : 0;
+}
+
+int family_block(const grobo_driver *driver, const grobo_servo_model *servo, size_t first, int most)
+{
+    const grobo_servo_register *begin = grobo_servo_register_row(servo, first), *reg = begin;
+    int n = 0;
+    for (int k = 1; reg; k++) {
+        int length = reg->address + reg->bytes - begin->address;
+        if ((length <= most || n == 0) && can_read(driver, begin->address, length)) {
+            n = k;
+        }
+        reg = grobo_servo_register_row(servo, first + (size_t)k);
+    }
+    return n;
+}
+
+int family_identity(const grobo_driver *driver, const grobo_servo_model *servo, uint16_t *address)
+{
+    const grobo_servo_register *a = grobo_servo_register_of(servo, GROBO_ROLE_MODEL);
+    const grobo_servo_register *b = grobo_servo_register_of(servo, GROBO_ROLE_FIRMWARE);
+    const grobo_servo_register *id = grobo_servo_register_of(servo, GROBO_ROLE_ID);
+    if (!a || !b) {
+        return a || id ? family_piece(driver, servo, a ? a : id, address) : 0;
+    }
+    int end = a->address + a->bytes > b->address + b->bytes ? a->address + a->bytes
+                                                            : b->address + b->bytes;
+    *address = a->address < b->address ? a->address : b->address;
+    return end - *address;
 }

@@ -1,37 +1,36 @@
 /* SPDX-License-Identifier: MIT */
-/* Families of servos: their names, registers, and where a servo of one is looked for. */
+/* Families of servos by their drivers: what a servo is, its registers, where it is looked for. */
 #ifndef GRCTL_FAMILY_H
 #define GRCTL_FAMILY_H
 
 #include <grobo/driver.h>
 #include <grobo/registers.h>
+#include <grobo/robot_file.h>
 
-typedef struct family {
-    const char *name;               /* "sts", as --family takes it */
-    const grobo_protocol *protocol; /* of its own bus */
-    const grobo_servo_table *table; /* of its registers */
-    int usual_bps[3];               /* rates at which they are found; 0: no more */
-    /* The driver of a robot of such servos. */
-    int (*driver)(grobo_driver *driver, const grobo_model *model);
-} family;
+/* Series number i of a family; NULL behind the last. */
+const grobo_servo_table *family_table(const grobo_robot_family *family, size_t i);
 
-/* Family number i; NULL behind the last. */
-const family *family_row(size_t i);
+/* The family that a file names so, NULL: none. */
+const grobo_robot_family *family_called(const char *name);
+
+/* Rate number i at which servos of a family are looked for, the factory's first; 0 behind the
+ * last. */
+int family_usual_bps(const grobo_robot_family *family, size_t i);
 
 /*
  * A driver to look for servos of a family with: its one joint has the highest id and is nobody's.
  * Static: until the next call.
  */
-const grobo_driver *family_driver(const family *f);
+const grobo_driver *family_driver(const grobo_robot_family *family);
 
-/* Whether a driver's servos may be of the family of this name; behind a board are RS30x. */
+/* The family of a driver's servos; behind a board are RS30x. NULL: one of the driver's own. */
+const grobo_robot_family *family_of_driver(const grobo_driver *driver);
+
+/* The family that has a servo; NULL: none. */
+const grobo_robot_family *family_of_servo(const grobo_servo_model *servo);
+
+/* Whether a driver's servos are of the family of this name. */
 bool family_is(const grobo_driver *driver, const char *name);
-
-/* The family of a servo. */
-const char *family_of(const grobo_servo_model *servo);
-
-/* The family of a driver's servos: of its first joint, where it has several. */
-const char *family_name(const grobo_driver *driver);
 
 /*
  * The servo of a driver's joint by its id; of an id that is no joint's, and of a joint whose servo
@@ -39,13 +38,30 @@ const char *family_name(const grobo_driver *driver);
  */
 const grobo_servo_model *family_servo(const grobo_driver *driver, int id);
 
+/* The servo of this name in a family, NULL: none. */
+const grobo_servo_model *family_model(const grobo_robot_family *family, const char *name);
+
 /* The servo of this number; NULL: not known. */
 const grobo_servo_model *family_numbered(const grobo_driver *driver, uint16_t number);
 
+/*
+ * The registers that are read together with one: some families read several in one piece only.
+ * From *address on; returns their bytes, at most FAMILY_PIECE_BYTES; 0: it cannot be read.
+ */
+enum { FAMILY_PIECE_BYTES = 64 };
+int family_piece(const grobo_driver *driver, const grobo_servo_model *servo,
+                 const grobo_servo_register *reg, uint16_t *address);
+
+/*
+ * How many registers, from number `first` on, are read at once: as many as fit into `most` bytes,
+ * or into the one piece that they are read in. 0: number `first` cannot be read.
+ */
+int family_block(const grobo_driver *driver, const grobo_servo_model *servo, size_t first,
+                 int most);
+
 /* The run of registers that tells what a servo is: model and firmware; where a family has none, the
- * id. Returns its bytes, at most FAMILY_IDENTITY_BYTES; 0: there is none. */
-enum { FAMILY_IDENTITY_BYTES = 16 };
-int family_identity(const grobo_servo_model *servo, uint16_t *address);
+ * id. As family_piece(). */
+int family_identity(const grobo_driver *driver, const grobo_servo_model *servo, uint16_t *address);
 
 /* As family_numbered(), of the bytes in register MODEL, whose order the series decides. */
 const grobo_servo_model *family_identify(const grobo_driver *driver, const uint8_t *bytes);

@@ -1,0 +1,91 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# grctl robot import and servos: robots as other programs describe them.
+. tests/support/cli.sh
+unset GRCTL_ROBOT
+
+check "servos of all families" both exits 0 "$GRCTL" robot servos --- says '^ics  *KRS-3301 '
+only_lx() {
+    exits 0 "$GRCTL" robot servos lx16a &&
+        [ "$(grep -cv '^lx16a ' "$work/out")" -eq 0 ] && says HTS-35H
+}
+check "of one" only_lx
+check "of none" fails 2 "no family 'sts'" "$GRCTL" robot servos sts
+
+# ---- Choreonoid -----------------------------------------------------------------------------
+
+cat >"$work/arm.body" <<'END'
+format: ChoreonoidBody
+name: crane
+links:
+  - {name: BASE, mass: 0.2}
+  - {name: TURN, parent: BASE, jointType: revolute, jointId: 0, jointAxis: Z,
+     jointRange: [-90, 90]}
+  - {name: LIFT, parent: TURN, jointType: revolute, jointId: 1, jointAxis: -Y,
+     jointRange: [-20, 60], translation: [0, 0, 0.05]}
+END
+take() {
+    "$GRCTL" robot import "$@"
+}
+check "a body" both exits 0 take "$work/arm.body" -o "$work/arm.yaml" --family dynamixel2 \
+    --servo XL430-W250,XL330-M288 --ids 11-12 --- grep -q "^name: crane$" "$work/arm.yaml"
+check "its file is a robot" fails 0 'crane: 2 joints, nothing wrong' \
+    "$GRCTL" robot check "$work/arm.yaml"
+check "with the servos and ids that were told" \
+    grep -q 'name: LIFT, id: 12, servo: XL330-M288, limits_deg: \[-20, 60\]}' "$work/arm.yaml"
+check "which moves in its simulator" both exits 0 \
+    "$GRCTL" --robot "$work/arm.yaml" -d sim move LIFT 45 --- true
+check "a file is not replaced" fails 2 'arm.yaml is there already; --yes replaces it' \
+    take "$work/arm.body" -o "$work/arm.yaml"
+check "unless that is wanted" exits 0 take "$work/arm.body" -o "$work/arm.yaml" --yes
+check "what is not known is said" both exits 0 take "$work/arm.body" --- \
+    says 'to be filled in .* ids,'
+check_json "as JSON" 'lines[0]["name"] == "crane" and lines[0]["file"] is None and
+    "STS3215" in lines[0]["text"] and lines[0]["n_joints"] == 2' take "$work/arm.body" --json
+check "another name" both exits 0 take "$work/arm.body" --name lift-1 --- says '^name: lift-1$'
+check "too few ids" fails 2 '2 ids are wanted' take "$work/arm.body" --ids 1
+check "too many" fails 2 '2 ids are wanted' take "$work/arm.body" --ids 1-3
+check "ids that are none" fails 2 '2 ids are wanted' take "$work/arm.body" --ids 1,x
+check "the same id twice" fails 3 'has the id of another joint' take "$work/arm.body" --ids 4,4
+check "an id that the family has not" fails 2 'id 32: servos of family ics have 0 to 31' \
+    take "$work/arm.body" --family ics --servo KRS-3301 --ids 31,32
+check "a servo that is none" fails 2 "no servo of family feetech is called 'XL430-W250'" \
+    take "$work/arm.body" --servo XL430-W250
+check "a list that is too short" fails 2 'one for each of 2 joints' \
+    take "$work/arm.body" --servo STS3215,
+check "no such file" fails 3 'none.urdf: no such file' take "$work/none.urdf"
+check "a folder" fails 3 'is a folder' take "$work"
+check "nothing" fails 3 'neither a URDF nor a body' take /dev/null
+check "no end of it" fails 3 'longer than 4 MiB' take /dev/zero
+check "no folder" fails 3 'no such folder' take "$work/arm.body" -o "$work/none/arm.yaml"
+
+# ---- URDF -----------------------------------------------------------------------------------
+
+urdf=tests/cli/urdf/so101.urdf
+if [ "${XML:-expat}" = none ]; then
+    check "URDF needs expat" fails 3 'built without expat' take "$urdf"
+    done_testing
+    exit
+fi
+check "a URDF" both exits 0 take "$urdf" -o "$work/so101.yaml" --family feetech --servo STS3215 \
+    --ids 1-6 --- true
+check "plays what was made for the robot that comes with grctl" both exits 0 \
+    "$GRCTL" --robot "$work/so101.yaml" -d sim play motions/so101-wave.yaml --- \
+    says '^largest error'
+check_json "and has its joints" \
+    '[(j["name"], j["id"], round(j["limits_deg"][0])) for j in lines[0]["joints"]] ==
+     [("shoulder_pan", 1, -110), ("shoulder_lift", 2, -100), ("elbow_flex", 3, -97),
+      ("wrist_flex", 4, -95), ("wrist_roll", 5, -157), ("gripper", 6, -10)]' \
+    "$GRCTL" --robot "$work/so101.yaml" joints --json
+check_json "and its parts" 'lines[0]["n_links"] == 8 and lines[0]["mass_kg"] == 0.632' \
+    "$GRCTL" robot show "$work/so101.yaml" --json
+sed 's/<axis/<axes>/' "$urdf" >"$work/broken.urdf"
+check "one that is broken" fails 3 'broken.urdf:[0-9]*:[0-9]*: mismatched tag' \
+    take "$work/broken.urdf"
+{
+    echo '<!DOCTYPE r [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;&a;&a;">]>'
+    echo '<robot name="&b;"/>'
+} >"$work/laughs.urdf"
+check "entities" fails 3 'laughs.urdf:1:13: a document type is not read' \
+    take "$work/laughs.urdf"
+done_testing

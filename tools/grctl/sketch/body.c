@@ -1,0 +1,310 @@
+/* SPDX-License-Identifier: MIT */
+/* Choreonoid's body (YAML): links with their parents. Source: choreonoid, src/Body/StdBodyLoader.cpp,
+ * whose angles are degrees unless angleUnit says radian. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <yaml.h>
+
+#include "tools/grctl/sketch/sketch.h"
+
+enum { KEYS_MAX = 256 /* of a link: an alias may name one again and again */ };
+
+typedef struct reader {
+    sketch *s;
+    yaml_document_t document;
+    double unit_rad; /* of an angle */
+    char *complaint;
+    size_t capacity;
+    const char *path;
+} reader;
+
+static bool complain(reader *r, const yaml_node_t *at, const char *what)
+{
+    snprintf(r->complaint, r->capacity, "%s:%u: %s", r->path, (unsigned)at->start_mark.line + 1,
+             what);
+    return false;
+}
+
+/* The value of a key, or NULL. */
+static yaml_node_t *find(reader *r, const yaml_node_t *map, const char *key)
+{
+    const yaml_node_pair_t *pair;
+    if (map->type != YAML_MAPPING_NODE) {
+        return NULL;
+    }
+    for (pair = map->data.mapping.pairs.start; pair < map->data.mapping.pairs.top; pair++) {
+        const yaml_node_t *name = yaml_document_get_node(&r->document, pair->key);
+        if (name->type == YAML_SCALAR_NODE &&
+            strcmp((const char *)name->data.scalar.value, key) == 0) {
+            return yaml_document_get_node(&r->document, pair->value);
+        }
+    }
+    return NULL;
+}
+
+static const char *text_of(const yaml_node_t *node)
+{
+    return node && node->type == YAML_SCALAR_NODE ? (const char *)node->data.scalar.value : NULL;
+}
+
+static bool take_text(reader *r, const yaml_node_t *map, const char *key, char *to)
+{
+    const yaml_node_t *node = find(r, map, key);
+    const char *text = text_of(node);
+    if (node && (!text || strlen(text) >= SKETCH_TEXT_BYTES)) {
+        return complain(r, node, "a text of at most 95 bytes is wanted");
+    }
+    snprintf(to, SKETCH_TEXT_BYTES, "%s", text ? text : "");
+    return true;
+}
+
+static int length_of(const yaml_node_t *node)
+{
+    return node->type == YAML_SEQUENCE_NODE
+               ? (int)(node->data.sequence.items.top - node->data.sequence.items.start)
+               : -1;
+}
+
+static yaml_node_t *item(reader *r, const yaml_node_t *list, int i)
+{
+    return yaml_document_get_node(&r->document, list->data.sequence.items.start[i]);
+}
+
+/* n numbers, or -1 that there are none; false with the complaint. */
+static bool take_numbers(reader *r, const yaml_node_t *node, int n, double *to)
+{
+    if (!node) {
+        return true;
+    }
+    if (n == 1) {
+        const char *text = text_of(node);
+        return (text && cli_read_number(text, to)) || complain(r, node, "a number is wanted");
+    }
+    if (length_of(node) != n) {
+        char what[64];
+        snprintf(what, sizeof what, "%d numbers are wanted", n);
+        return complain(r, node, what);
+    }
+    for (int i = 0; i < n; i++) {
+        if (!take_numbers(r, item(r, node, i), 1, &to[i])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* ---- rotations ------------------------------------------------------------------------------ */
+
+static void multiply(double a[3][3], double b[3][3])
+{
+    double made[3][3];
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) {
+            made[i][k] = a[i][0] * b[0][k] + a[i][1] * b[1][k] + a[i][2] * b[2][k];
+        }
+    }
+    memcpy(a, made, sizeof made);
+}
+
+/* About an axis, which need not be of length 1. */
+static void turn(double m[3][3], const double *axis, double angle_rad)
+{
+    double length = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
+    double c = cos(angle_rad), s = sin(angle_rad), u[3], one[3][3];
+    for (int i = 0; i < 3; i++) {
+        u[i] = length > 0 ? axis[i] / length : 0;
+    }
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) {
+            int other = 3 - i - k; /* where i and k differ */
+            double cross = i == k ? 0 : ((i + 1) % 3 == k ? -1 : 1) * u[other] * s;
+            one[i][k] = u[i] * u[k] * (1 - c) + (i == k ? c : 0) + cross;
+        }
+    }
+    if (length > 0) {
+        multiply(m, one);
+    }
+}
+
+/* "rotation": an axis and an angle, or several, one in the frame of the one before; else "rpy". */
+static bool take_rotation(reader *r, const yaml_node_t *map, double *rpy_rad)
+{
+    const yaml_node_t *node = find(r, map, "rotation");
+    double m[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, rpy[3] = {0, 0, 0};
+    if (!node) {
+        bool fine = take_numbers(r, find(r, map, "rpy"), 3, rpy);
+        for (int k = 0; k < 3; k++) {
+            rpy_rad[k] = rpy[k] * r->unit_rad;
+        }
+        return fine;
+    }
+    bool several = length_of(node) > 0 && length_of(item(r, node, 0)) >= 0;
+    int n = several ? length_of(node) : 1;
+    if (n > KEYS_MAX) {
+        return complain(r, node, "too many rotations");
+    }
+    for (int i = 0; i < n; i++) {
+        double one[4];
+        if (!take_numbers(r, several ? item(r, node, i) : node, 4, one)) {
+            return false;
+        }
+        turn(m, one, one[3] * r->unit_rad);
+    }
+    rpy_rad[0] = atan2(m[2][1], m[2][2]);
+    rpy_rad[1] = asin(fmax(-1, fmin(1, -m[2][0])));
+    rpy_rad[2] = atan2(m[1][0], m[0][0]);
+    return true;
+}
+
+/* ---- joints --------------------------------------------------------------------------------- */
+
+static bool take_axis(reader *r, const yaml_node_t *link, sketch_part *part)
+{
+    const yaml_node_t *node = find(r, link, "jointAxis");
+    const char *text = text_of(node);
+    static const char names[] = "XYZ";
+    if (!node) {
+        return complain(r, link, "a joint that turns has no jointAxis");
+    }
+    if (!text) {
+        return take_numbers(r, node, 3, part->axis);
+    }
+    bool negative = *text == '-';
+    char letter = text[negative];
+    letter = letter >= 'x' && letter <= 'z' ? (char)(letter - 'x' + 'X') : letter;
+    const char *at = letter ? strchr(names, letter) : NULL;
+    if (!at || text[negative + 1]) {
+        return complain(r, node, "jointAxis: X, Y, Z, -X, -Y, -Z or three numbers are wanted");
+    }
+    memset(part->axis, 0, sizeof part->axis);
+    part->axis[at - names] = negative ? -1 : 1;
+    return true;
+}
+
+/* Two of them, or one for both sides; "unlimited" is none. */
+static bool take_range(reader *r, const yaml_node_t *link, sketch_part *part)
+{
+    const yaml_node_t *node = find(r, link, "jointRange");
+    double *limits = part->limits_rad;
+    if (!node) {
+        return true;
+    }
+    bool both = length_of(node) == 2;
+    for (int i = 0; i < 2; i++) {
+        const yaml_node_t *one = both ? item(r, node, i) : node;
+        const char *text = text_of(one);
+        if (text && strcmp(text, "unlimited") == 0) {
+            return true;
+        }
+        if (!take_numbers(r, one, 1, &limits[i])) {
+            return false;
+        }
+        limits[i] *= r->unit_rad * (!both && i == 0 ? -1 : 1);
+    }
+    part->limited = true;
+    return true;
+}
+
+static bool take_joint(reader *r, const yaml_node_t *link, sketch_part *part)
+{
+    const yaml_node_t *type_node = find(r, link, "jointType");
+    const char *type = text_of(type_node);
+    double number = SKETCH_PARTS_MAX, speed = 0;
+    if (!type || strcmp(type, "fixed") == 0 || strcmp(type, "free") == 0) {
+        return true;
+    }
+    if (strcmp(type, "revolute") != 0) {
+        part->motion = SKETCH_WITHOUT;
+        snprintf(part->note, sizeof part->note, "%.40s is %.20s", part->name, type);
+        return true;
+    }
+    part->motion = SKETCH_TURNS;
+    if (!take_numbers(r, find(r, link, "jointId"), 1, &number) ||
+        !take_numbers(r, find(r, link, "maxJointVelocity"), 1, &speed) ||
+        !take_text(r, link, "joint_name", part->joint)) {
+        return false;
+    }
+    part->order = number >= 0 && number < SKETCH_PARTS_MAX ? (int)number : SKETCH_PARTS_MAX;
+    part->speed_rad_s = speed * r->unit_rad;
+    return take_axis(r, link, part) && take_range(r, link, part);
+}
+
+static bool take_link(reader *r, const yaml_node_t *link)
+{
+    const char *type = text_of(find(r, link, "type"));
+    if (link->type != YAML_MAPPING_NODE ||
+        link->data.mapping.pairs.top - link->data.mapping.pairs.start > KEYS_MAX) {
+        return complain(r, link, "a link is a mapping of some keys");
+    }
+    if (type && strcmp(type, "Skip") == 0) {
+        return true;
+    }
+    if (type && strcmp(type, "Link") != 0) {
+        return complain(r, link, "only links of type Link are read");
+    }
+    sketch_part *part = sketch_add(r->s);
+    if (!part) {
+        return complain(r, link, "too many links");
+    }
+    return take_text(r, link, "name", part->name) && take_text(r, link, "parent", part->parent) &&
+           (*part->name || complain(r, link, "a link has no name")) &&
+           take_numbers(r, find(r, link, "translation"), 3, part->origin_m) &&
+           take_numbers(r, find(r, link, "mass"), 1, &part->mass_kg) &&
+           take_rotation(r, link, part->origin_rad) && take_joint(r, link, part);
+}
+
+static bool take_robot(reader *r)
+{
+    const yaml_node_t *root = yaml_document_get_root_node(&r->document);
+    if (!root || root->type != YAML_MAPPING_NODE) {
+        snprintf(r->complaint, r->capacity, "%s: is neither a URDF nor a body of Choreonoid",
+                 r->path);
+        return false;
+    }
+    const char *format = text_of(find(r, root, "format"));
+    const char *unit = text_of(find(r, root, "angleUnit"));
+    const yaml_node_t *links = find(r, root, "links");
+    if (!format || strcmp(format, "ChoreonoidBody") != 0) {
+        return complain(r, root,
+                        "is neither a URDF nor a body of Choreonoid (format: "
+                        "ChoreonoidBody)");
+    }
+    if (!links || length_of(links) < 0) {
+        return complain(r, links ? links : root, "a list of links is wanted");
+    }
+    r->unit_rad = unit && strcmp(unit, "radian") == 0 ? 1 : grobo_rad_from_deg(1);
+    if (!take_text(r, root, "name", r->s->name)) {
+        return false;
+    }
+    for (int i = 0; i < length_of(links); i++) {
+        if (!take_link(r, item(r, links, i))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+bool sketch_read_body(sketch *s, const char *path, const char *bytes, size_t size, char *complaint,
+                      size_t capacity)
+{
+    reader r = {.s = s, .path = path, .complaint = complaint, .capacity = capacity};
+    yaml_parser_t parser;
+    if (!yaml_parser_initialize(&parser)) {
+        snprintf(complaint, capacity, "%s: not enough memory", path);
+        return false;
+    }
+    yaml_parser_set_input_string(&parser, (const unsigned char *)bytes, size);
+    bool fine = yaml_parser_load(&parser, &r.document) != 0;
+    if (fine) {
+        fine = take_robot(&r);
+        yaml_document_delete(&r.document);
+    } else {
+        snprintf(complaint, capacity, "%s:%u:%u: %s", path, (unsigned)parser.problem_mark.line + 1,
+                 (unsigned)parser.problem_mark.column + 1,
+                 parser.problem ? parser.problem : "is not YAML");
+    }
+    yaml_parser_delete(&parser);
+    return fine;
+}

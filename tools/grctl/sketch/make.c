@@ -1,0 +1,267 @@
+/* SPDX-License-Identifier: MIT */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "tools/grctl/cli/file.h"
+#include "tools/grctl/os/os.h"
+#include "tools/grctl/servo/family.h"
+#include "tools/grctl/sketch/make.h"
+
+/* ---- what the command line knows ------------------------------------------------------------- */
+
+/* Number i of words with commas between them: its length, 0 behind the last. */
+static size_t word_of(const char *list, int i, const char **word)
+{
+    for (; i > 0 && *list; i--) {
+        list += strcspn(list, ",");
+        list += *list == ',';
+    }
+    *word = list;
+    return strcspn(list, ",");
+}
+
+static int give_servos(app *a, sketch *s, const sketch_orders *orders)
+{
+    const grobo_servo_table *table = family_table(s->family, 0);
+    bool one = orders->servos && !strchr(orders->servos, ',');
+    for (int i = 0; i < sketch_joints(s); i++) {
+        const char *word = table->models[0].name;
+        char name[GROBO_NAME_MAX_BYTES] = "";
+        size_t n = orders->servos ? word_of(orders->servos, one ? 0 : i, &word) : strlen(word);
+        snprintf(name, sizeof name, "%.*s", (int)(n < sizeof name ? n : sizeof name - 1), word);
+        sketch_joint(s, i)->servo = family_model(s->family, name);
+        if (!sketch_joint(s, i)->servo) {
+            return *name ? app_fail(a, EXIT_USAGE, "NOTFOUND",
+                                    "no servo of family %s is called '%s'; 'grctl robot servos' "
+                                    "lists them",
+                                    s->family->name, name)
+                         : app_fail(a, EXIT_USAGE, "ARG",
+                                    "--servo: one for all, or one for each of %d joints is wanted",
+                                    sketch_joints(s));
+        }
+    }
+    return EXIT_DONE;
+}
+
+/* A number at *text, which is moved behind it; -1: there is none. */
+static long take_id(const char **text)
+{
+    char *end;
+    if (**text < '0' || **text > '9') {
+        return -1;
+    }
+    long id = strtol(*text, &end, 10);
+    *text = end;
+    return id > GROBO_SERVO_ID_MAX ? -1 : id;
+}
+
+/* "1,2,5-8": as many as there are joints. */
+static bool read_ids(sketch *s, const char *text)
+{
+    int n = 0, wanted = sketch_joints(s);
+    while (n < wanted) {
+        long first = take_id(&text), last = first;
+        if (first >= 0 && *text == '-') {
+            text++;
+            last = take_id(&text);
+        }
+        if (first < 0 || last < first) {
+            return false;
+        }
+        for (long id = first; id <= last; id++) {
+            if (n == wanted) {
+                return false;
+            }
+            sketch_joint(s, n++)->id = (int)id;
+        }
+        if (*text != ',') {
+            break;
+        }
+        text++;
+    }
+    return n == wanted && *text == '\0';
+}
+
+static int give_ids(app *a, sketch *s, const sketch_orders *orders)
+{
+    for (int i = 0; i < sketch_joints(s); i++) {
+        sketch_joint(s, i)->id = i + 1;
+    }
+    if (orders->ids && !read_ids(s, orders->ids)) {
+        return app_fail(a, EXIT_USAGE, "ARG",
+                        "--ids %s: %d ids are wanted, one for each joint: 1-4,7", orders->ids,
+                        sketch_joints(s));
+    }
+    const grobo_protocol *protocol = family_driver(s->family)->protocol;
+    for (int i = 0; i < sketch_joints(s); i++) {
+        int id = sketch_joint(s, i)->id;
+        if (id < protocol->id_min || id > protocol->id_max) {
+            return app_fail(a, EXIT_USAGE, "LIMIT", "id %d: servos of family %s have %d to %d", id,
+                            s->family->name, protocol->id_min, protocol->id_max);
+        }
+    }
+    return EXIT_DONE;
+}
+
+/* ---- out ------------------------------------------------------------------------------------ */
+
+typedef struct text_source {
+    const char *at;
+} text_source;
+
+static int read_text(void *ctx, void *buffer, size_t size)
+{
+    text_source *source = ctx;
+    size_t left = strlen(source->at), n = left < size ? left : size;
+    memcpy(buffer, source->at, n);
+    source->at += n;
+    return (int)n;
+}
+
+/* What the reader of robot files says of it. Returns 0, or the exit status with that said. */
+static int check_text(app *a, const char *text)
+{
+    grobo_diagnostics *list = NULL;
+    grobo_robot_def *def = NULL;
+    grobo_diagnostic d = {.message = "not enough memory"};
+    text_source source = {text};
+    int error = grobo_diagnostics_new(&list, NULL);
+    if (!error) {
+        error =
+            grobo_robot_def_read(&(grobo_source){read_text, &source}, "robot", list, NULL, &def);
+    }
+    if (error) {
+        (void)grobo_diagnostics_get(list, 0, &d);
+        error =
+            app_fail(a, EXIT_FILE, "SYNTAX", "no robot's file can be made of this: %s", d.message);
+    }
+    grobo_robot_def_free(def);
+    grobo_diagnostics_free(list);
+    return error;
+}
+
+static bool is_there(const char *path)
+{
+    FILE *file = fopen(path, "rb");
+    if (file) {
+        fclose(file);
+    }
+    return file != NULL;
+}
+
+static int save(app *a, const char *out, const char *text)
+{
+    if (is_there(out) && !app_global(a, GLOBAL_YES)->given) {
+        return app_fail(a, EXIT_USAGE, "EXISTS", "%s is there already; --yes replaces it", out);
+    }
+    int error = file_save(out, text, strlen(text));
+    return error ? app_fail(a, EXIT_FILE, grobo_error_name(error), "%s: %s", out,
+                            file_write_error_text(error))
+                 : EXIT_DONE;
+}
+
+int sketch_write(app *a, sketch *s, const char *out)
+{
+    char *text = sketch_text(s);
+    if (!text) {
+        return app_fail_error(a, EXIT_ROBOT, GROBO_ERR_NOMEM, "%s", a->line.command->name);
+    }
+    int status = check_text(a, text);
+    if (!status && out) {
+        status = save(a, out, text);
+    }
+    if (!status && a->json) {
+        app_print_json(json_pack("{s:s,s:o?,s:i,s:o?}", "name", s->name, "file",
+                                 out ? app_json_text(out) : NULL, "n_joints", sketch_joints(s),
+                                 "text", out ? NULL : json_string(text)));
+    } else if (!status && out) {
+        app_note(a, "%s: %d joints; check it, then: grctl --robot %s -d sim init", out,
+                 sketch_joints(s), out);
+    } else if (!status) {
+        app_print("%s", text);
+    }
+    free(text);
+    return status;
+}
+
+/* ---- in ------------------------------------------------------------------------------------- */
+
+/* All of a file, to be freed; NULL with the reason said. */
+static char *read_file(app *a, const char *path, size_t *size, int *status)
+{
+    FILE *file = os_is_folder(path) ? NULL : fopen(path, "rb");
+    char *bytes = file ? malloc(SKETCH_FILE_MAX_BYTES + 1) : NULL;
+    if (!file) {
+        *status = app_fail(a, EXIT_FILE, "IO", "%s: %s", path,
+                           os_is_folder(path) ? "is a folder" : app_cause_text(errno));
+        return NULL;
+    }
+    *size = bytes ? fread(bytes, 1, SKETCH_FILE_MAX_BYTES + 1, file) : 0;
+    bool failed = ferror(file) != 0;
+    fclose(file);
+    if (bytes && !failed && *size <= SKETCH_FILE_MAX_BYTES) {
+        return bytes;
+    }
+    *status = app_fail(a, EXIT_FILE, bytes && !failed ? "CAP" : "IO", "%s: %s", path,
+                       bytes && !failed ? "is longer than 4 MiB" : "cannot be read");
+    free(bytes);
+    return NULL;
+}
+
+static bool is_xml(const char *bytes, size_t size)
+{
+    size_t i = size >= 3 && memcmp(bytes, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
+    while (i < size && strchr(" \t\r\n", bytes[i])) {
+        i++;
+    }
+    return i < size && bytes[i] == '<';
+}
+
+static int describe(app *a, sketch *s, const char *path, const sketch_orders *orders)
+{
+    char complaint[APP_LINE_BYTES];
+    if (!sketch_order(s, complaint, sizeof complaint)) {
+        return app_fail(a, EXIT_FILE, "SYNTAX", "%s: %s", path, complaint);
+    }
+    s->family = family_called(orders->family ? orders->family : "feetech");
+    s->guessed_servos = !orders->family || !orders->servos;
+    s->guessed_ids = !orders->ids;
+    int status = give_servos(a, s, orders);
+    if (!status) {
+        status = give_ids(a, s, orders);
+    }
+    if (status) {
+        return status;
+    }
+    sketch_fit(s);
+    return sketch_write(a, s, orders->out);
+}
+
+int sketch_import(app *a, const char *path, const sketch_orders *orders)
+{
+    static sketch s;
+    char complaint[APP_LINE_BYTES];
+    size_t size = 0;
+    int status = 0;
+    char *bytes = read_file(a, path, &size, &status);
+    if (!bytes) {
+        return status;
+    }
+    s.n = 0;
+    s.bare = false;
+    s.name[0] = '\0';
+    snprintf(s.source, sizeof s.source, "%s", path);
+    bool xml = is_xml(bytes, size);
+    bool fine = xml ? sketch_read_urdf(&s, path, bytes, size, complaint, sizeof complaint)
+                    : sketch_read_body(&s, path, bytes, size, complaint, sizeof complaint);
+    free(bytes);
+    if (!fine) {
+        return app_fail(a, EXIT_FILE, "SYNTAX", "%s", complaint);
+    }
+    if (orders->name || !*s.name) {
+        snprintf(s.name, sizeof s.name, "%s", orders->name ? orders->name : "robot");
+    }
+    return describe(a, &s, path, orders);
+}
