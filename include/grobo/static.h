@@ -202,6 +202,7 @@ struct grobo_robot {
     grobo_robot_slot slots[GROBO_ROBOT_SLOTS];
     grobo_event events[GROBO_ROBOT_EVENTS]; /* ring */
     unsigned events_head, events_n;
+    int slots_end; /* from this one on slots are free */
     grobo_robot_counters counters;
     grobo_trip_info trip;
     uint64_t late_bins[GROBO_ROBOT_JITTER_BINS];

@@ -235,6 +235,7 @@ static void every_slot_is_looked_at(void **state)
     (void)state;
     for (int at = 0; at < SLOTS; at++) {
         start();
+        robot.slots_end = SLOTS;
         for (int i = 0; i < SLOTS; i++) {
             grobo_i_use use = i == at ? GROBO_I_USE_MOTION : GROBO_I_USE_SENSE;
             grobo_robot_slot *slot = &robot.slots[i];
@@ -558,6 +559,7 @@ static void a_target_that_is_refused_does_not_wait(void **state)
             stabilized = result == GROBO_ERR_SPACE ? GROBO_ERR_SPACE : GROBO_OK;
             for (int k = 0; rows[i].full && k < SLOTS; k++) {
                 robot.slots[k].use = GROBO_I_USE_PLAIN;
+                robot.slots_end = SLOTS;
             }
             assert_int_equal(grobo_i_gate_send(&robot, &target, &how), result);
             bool waits = result == GROBO_OK;
