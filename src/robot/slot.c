@@ -97,11 +97,21 @@ static void on_each(void *ctx, grobo_txn *txn, const grobo_packet *reply)
     slot->robot->each(slot, reply);
 }
 
+/* A reply with a name, to the first attempt: not to one that may have been asked twice. */
+static void note_answer(grobo_robot *robot, const grobo_txn *txn, int result,
+                        const grobo_packet *reply)
+{
+    robot->answered = robot->answered ||
+                      (result >= 0 && reply != NULL && reply->kind == GROBO_PACKET_RETURN &&
+                       txn->attempts_ == 1 && txn->sent_us == robot->left_us);
+}
+
 static void on_done(void *ctx, grobo_txn *txn, int result, const grobo_packet *reply)
 {
     grobo_robot_slot slot = *(grobo_robot_slot *)ctx;
     GROBO_ASSERT(slot.use != GROBO_I_USE_FREE && txn == &((grobo_robot_slot *)ctx)->txn);
     grobo_i_slot_drop(ctx);
+    note_answer(slot.robot, txn, result, reply);
     slot.robot->over(&slot, result, reply);
 }
 

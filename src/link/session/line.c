@@ -46,7 +46,11 @@ static int port_take(grobo_session *session, int64_t *until_us)
 
 static bool port_has_room(grobo_session *session)
 {
-    return grobo_serial_is_open(session->serial) && grobo_serial_unsent(session->serial) == 0;
+    /* What was answered has left; only of other frames the system must be asked. */
+    size_t unsent = session->robot.answered ? grobo_serial_pending(session->serial)
+                                            : grobo_serial_unsent(session->serial);
+
+    return grobo_serial_is_open(session->serial) && unsent == 0;
 }
 
 static void port_give(grobo_session *session, const uint8_t *frame, size_t size)
