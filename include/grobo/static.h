@@ -202,11 +202,13 @@ struct grobo_robot {
     grobo_robot_slot slots[GROBO_ROBOT_SLOTS];
     grobo_event events[GROBO_ROBOT_EVENTS]; /* ring */
     unsigned events_head, events_n;
+    int slots_end; /* from this one on slots are free */
     grobo_robot_counters counters;
     grobo_trip_info trip;
     uint64_t late_bins[GROBO_ROBOT_JITTER_BINS];
     int64_t late_max_us;
     int64_t now_us;         /* of the call that runs */
+    int64_t left_us;        /* when the last frame was given out */
     int64_t soft_us;        /* grobo_robot_send(): when its first target is reached */
     int64_t sense_us;       /* when the background reads next */
     uint32_t motion;        /* number of the last target */
@@ -227,6 +229,7 @@ struct grobo_robot {
     int acting;            /* number of the job whose step runs; 0: none */
     bool other_read;       /* in free mode: the last reading was of a joint that is not free */
     bool link;
+    bool answered;      /* the last frame given out was: none of it waits any more */
     bool queue_may_go;  /* a job has ended since the queue was looked at */
     bool settling;      /* a motion is over, its end not yet looked at */
     bool soft;          /* the next move is the first from a sensed posture */

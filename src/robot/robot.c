@@ -169,6 +169,10 @@ int grobo_robot_tx(grobo_robot *robot, uint8_t *buf, size_t capacity, int64_t no
         robot->now_us = now_us;
     }
     int size = robot->link ? grobo_bus_tx(&robot->bus, robot->now_us, buf, capacity) : 0;
+    if (size > 0) {
+        robot->left_us = robot->now_us;
+        robot->answered = false;
+    }
     grobo_i_unlock(robot);
     return size;
 }
@@ -246,6 +250,7 @@ void grobo_robot_link_up(grobo_robot *robot, int64_t now_us)
     grobo_i_enter(robot, now_us);
     if (!robot->link) {
         robot->link = true;
+        robot->answered = false;
         grobo_i_gate_soften(robot);
         robot->sense_us = robot->now_us;
         robot->round = grobo_i_all_joints(robot);

@@ -129,7 +129,7 @@ static bool is_turn_of_the_others(const grobo_robot *robot)
 /* The index of the slot of the background reading that waits for the line, or -1. */
 static int find_waiting(const grobo_robot *robot)
 {
-    for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
+    for (int i = 0; i < robot->slots_end; i++) {
         const grobo_robot_slot *slot = &robot->slots[i];
         if (slot->use == GROBO_I_USE_SENSE && robot->bus.active != &slot->txn &&
             slot->txn.priority == GROBO_PRIORITY_SENSE) {

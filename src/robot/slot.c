@@ -8,11 +8,16 @@
 /* Slots that only a halt may take: there is always room for what stops the robot. */
 #define SLOTS_TO_HALT 3
 
+/* On a line that answers so soon, as learnt from so many replies none of which was late, a reading
+ * is given this time above that of the wire, each time it is asked for. */
+enum { QUICK_LATENCY_US = 1000, QUICK_REPLIES = 16, QUICK_MARGIN_US = 4000 };
+
 int grobo_i_slot_find(const grobo_robot *robot, grobo_i_use use)
 {
     int to_leave = use == GROBO_I_USE_HALT ? 0 : SLOTS_TO_HALT;
     int found = -1;
-    for (int i = 0; i < GROBO_ROBOT_SLOTS && (found < 0 || to_leave > 0); i++) {
+    int end = robot->slots_end;
+    for (int i = 0; i < end; i++) {
         const grobo_robot_slot *slot = &robot->slots[i];
         if (slot->use == GROBO_I_USE_FREE && found < 0) {
             found = i;
@@ -20,6 +25,10 @@ int grobo_i_slot_find(const grobo_robot *robot, grobo_i_use use)
             to_leave--;
         }
     }
+    if (found < 0 && end < GROBO_ROBOT_SLOTS) {
+        found = end++;
+    }
+    to_leave -= GROBO_ROBOT_SLOTS - end;
     return to_leave > 0 ? -1 : found;
 }
 
@@ -32,6 +41,7 @@ grobo_robot_slot *grobo_i_slot_take(grobo_robot *robot, grobo_i_use use)
     grobo_robot_slot *found = &robot->slots[at];
     GROBO_ASSERT(use != GROBO_I_USE_FREE && !grobo_txn_is_pending(&found->txn));
     memset(found, 0, sizeof *found);
+    robot->slots_end = at < robot->slots_end ? robot->slots_end : at + 1;
     found->robot = robot;
     found->due_us = GROBO_NEVER_US;
     found->use = (uint8_t)use;
@@ -42,7 +52,27 @@ grobo_robot_slot *grobo_i_slot_take(grobo_robot *robot, grobo_i_use use)
 void grobo_i_slot_drop(grobo_robot_slot *slot)
 {
     GROBO_ASSERT(!grobo_txn_is_pending(&slot->txn));
+    grobo_robot *robot = slot->robot;
     slot->use = GROBO_I_USE_FREE;
+    while (robot->slots_end > 0 && robot->slots[robot->slots_end - 1].use == GROBO_I_USE_FREE) {
+        robot->slots_end--;
+    }
+}
+
+/* Who is silent there does not answer. Elsewhere an adapter, or the other end, may hold bytes back:
+ * the margin grows with each attempt. */
+static bool is_quick(const grobo_bus *bus)
+{
+    return bus->stats.replies >= QUICK_REPLIES && bus->stats.late_frames == 0 &&
+           bus->overhead_us + 4 * bus->deviation_us < QUICK_LATENCY_US;
+}
+
+static uint32_t margin_of(const grobo_robot_slot *slot)
+{
+    const grobo_robot *robot = slot->robot;
+    uint32_t margin_us = robot->config.bus.margin_us;
+    bool reads = slot->reads || slot->many;
+    return margin_us == 0 && reads && is_quick(&robot->bus) ? QUICK_MARGIN_US : margin_us;
 }
 
 static int on_leave(void *ctx, grobo_txn *txn)
@@ -51,6 +81,7 @@ static int on_leave(void *ctx, grobo_txn *txn)
     int result = slot->robot->leave(slot);
     slot->refused = result < 0;
     if (result >= 0) {
+        slot->robot->bus.config.margin_us = margin_of(slot); /* of this frame: it leaves now */
         GROBO_ASSERT(slot->exchange.frame_bytes > 0);
         slot->asked_us = txn->sent_us < 0 ? slot->robot->now_us : slot->asked_us;
         txn->frame_bytes = slot->exchange.frame_bytes;
@@ -66,11 +97,21 @@ static void on_each(void *ctx, grobo_txn *txn, const grobo_packet *reply)
     slot->robot->each(slot, reply);
 }
 
+/* A reply with a name, to the first attempt: not to one that may have been asked twice. */
+static void note_answer(grobo_robot *robot, const grobo_txn *txn, int result,
+                        const grobo_packet *reply)
+{
+    robot->answered = robot->answered ||
+                      (result >= 0 && reply != NULL && reply->kind == GROBO_PACKET_RETURN &&
+                       txn->attempts_ == 1 && txn->sent_us == robot->left_us);
+}
+
 static void on_done(void *ctx, grobo_txn *txn, int result, const grobo_packet *reply)
 {
     grobo_robot_slot slot = *(grobo_robot_slot *)ctx;
     GROBO_ASSERT(slot.use != GROBO_I_USE_FREE && txn == &((grobo_robot_slot *)ctx)->txn);
     grobo_i_slot_drop(ctx);
+    note_answer(slot.robot, txn, result, reply);
     slot.robot->over(&slot, result, reply);
 }
 
@@ -113,7 +154,7 @@ static void cancel(grobo_robot_slot *slot)
 
 void grobo_i_slots_cancel(grobo_robot *robot, grobo_i_use use)
 {
-    for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
+    for (int i = 0; i < robot->slots_end; i++) {
         if (robot->slots[i].use == use) {
             cancel(&robot->slots[i]);
         }
@@ -122,7 +163,7 @@ void grobo_i_slots_cancel(grobo_robot *robot, grobo_i_use use)
 
 void grobo_i_slots_cancel_job(grobo_robot *robot, int number)
 {
-    for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
+    for (int i = 0; i < robot->slots_end; i++) {
         grobo_robot_slot *slot = &robot->slots[i];
         if (slot->use != GROBO_I_USE_FREE && slot->job == number) {
             cancel(slot);
@@ -132,7 +173,7 @@ void grobo_i_slots_cancel_job(grobo_robot *robot, int number)
 
 void grobo_i_slots_cancel_goals(grobo_robot *robot, grobo_joint_mask joints, bool played)
 {
-    for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
+    for (int i = 0; i < robot->slots_end; i++) {
         grobo_robot_slot *slot = &robot->slots[i];
         bool goal = slot->use == GROBO_I_USE_MOTION || slot->use == GROBO_I_USE_SEGMENT;
         bool meant =
@@ -146,7 +187,7 @@ void grobo_i_slots_cancel_goals(grobo_robot *robot, grobo_joint_mask joints, boo
 void grobo_i_slots_cancel_rest(const grobo_robot_slot *before)
 {
     const grobo_robot_order *order = &before->order;
-    for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
+    for (int i = 0; i < before->robot->slots_end; i++) {
         grobo_robot_slot *slot = &before->robot->slots[i];
         if (slot->use == before->use && waits(slot) && slot->given_us == before->given_us &&
             slot->order.joints == order->joints && slot->order.part > order->part) {
@@ -157,7 +198,7 @@ void grobo_i_slots_cancel_rest(const grobo_robot_slot *before)
 
 void grobo_i_slots_keep_off(grobo_robot *robot, grobo_joint_mask joints)
 {
-    for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
+    for (int i = 0; i < robot->slots_end; i++) {
         grobo_robot_slot *slot = &robot->slots[i];
         bool on = slot->order.deed == GROBO_I_DEED_TORQUE && slot->order.torque == GROBO_TORQUE_ON;
         if (on && waits(slot) && (slot->order.joints & joints) != 0) {
@@ -169,7 +210,7 @@ void grobo_i_slots_keep_off(grobo_robot *robot, grobo_joint_mask joints)
 bool grobo_i_slots_wait(const grobo_robot *robot, grobo_joint_mask joint, grobo_i_deed deed,
                         grobo_torque torque)
 {
-    for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
+    for (int i = 0; i < robot->slots_end; i++) {
         const grobo_robot_slot *slot = &robot->slots[i];
         const grobo_robot_order *order = &slot->order;
         if (waits(slot) && order->deed == deed && order->torque == torque &&
@@ -182,7 +223,7 @@ bool grobo_i_slots_wait(const grobo_robot *robot, grobo_joint_mask joint, grobo_
 
 bool grobo_i_slots_busy(const grobo_robot *robot, grobo_i_use use)
 {
-    for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
+    for (int i = 0; i < robot->slots_end; i++) {
         if (robot->slots[i].use == use) {
             return true;
         }

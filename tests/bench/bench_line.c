@@ -40,7 +40,7 @@ enum { LINES_MAX = 512, FRAME_MAX = 256, PROBE_US = 10000, PROBES = 4096, TIMEOU
 typedef struct servo_line {
     uint8_t got[FRAME_MAX], reply[4 * FRAME_MAX];
     size_t used, size; /* of both */
-    int64_t due_us;    /* of the reply */
+    int64_t due_us;    /* of the replies that wait */
 } servo_line;
 
 static struct {
@@ -131,23 +131,28 @@ static void hear(int at)
         return;
     }
     line->used += (size_t)got;
-    if (line->used < 6) {
+    if (line->used < 6 || line->size > sizeof line->reply - FRAME_MAX) {
         return;
     }
-    line->size = line->got[0] == 0xFA   ? answer_rs30x(line->got, line->used, line->reply)
-                 : line->got[0] == 0xFF ? answer_dxl1(line->got, line->used, line->reply)
-                                        : answer_modbus(line->got, line->used, line->reply);
-    if (line->size == 0) {
+    uint8_t *reply = line->reply + line->size;
+    size_t size = line->got[0] == 0xFA   ? answer_rs30x(line->got, line->used, reply)
+                  : line->got[0] == 0xFF ? answer_dxl1(line->got, line->used, reply)
+                                         : answer_modbus(line->got, line->used, reply);
+    if (size == 0) {
         return;
     }
-    line->due_us = grobo_now_us();
+    int64_t due_us = grobo_now_us();
     if (far_end.bps > 0) {
-        line->due_us += (int64_t)(line->used + line->size) * 10000000 / far_end.bps;
+        due_us += (int64_t)(line->used + size) * 10000000 / far_end.bps;
     }
     far_end.replies++;
     if (far_end.late_percent > 0 && far_end.replies % (100 / far_end.late_percent) == 0) {
-        line->due_us += far_end.late_us;
+        due_us += far_end.late_us;
     }
+    if (line->size == 0 || due_us > line->due_us) { /* behind one that is late they wait, too */
+        line->due_us = due_us;
+    }
+    line->size += size;
     line->used = 0;
 }
 

@@ -5,6 +5,7 @@
 #include <grobo/loop.h>
 #include <grobo/session.h>
 #include <grobo/sim_server.h>
+#include <grobo/sim_static.h>
 #include <grobo/static.h>
 
 #include "tests/bench/bench.h"

@@ -179,6 +179,51 @@ static void a_frame_is_asked_for_when_its_first_attempt_leaves(void **state)
     }
 }
 
+static void do_nothing(grobo_robot_slot *slot, int result, const grobo_packet *reply)
+{
+    (void)slot;
+    (void)result;
+    (void)reply;
+}
+
+/* Only a named reply to the first attempt of the last frame says that the frame has left. */
+static void an_answer_says_that_its_frame_has_left(void **state)
+{
+    (void)state;
+    enum { ONE_ATTEMPT = 1 };
+    static const struct {
+        int result;
+        int attempts;
+        int left_later_us;
+        int kind; /* -1: no packet */
+        bool answered;
+    } rows[] = {
+        {GROBO_OK, ONE_ATTEMPT, 0, GROBO_PACKET_RETURN, true},
+        {GROBO_ERR_NACK, ONE_ATTEMPT, 0, GROBO_PACKET_RETURN, false},
+        {GROBO_OK, ONE_ATTEMPT + 1, 0, GROBO_PACKET_RETURN, false},
+        {GROBO_OK, ONE_ATTEMPT, 1, GROBO_PACKET_RETURN, false},
+        {GROBO_OK, ONE_ATTEMPT, 0, GROBO_PACKET_ACK, false},
+        {GROBO_OK, ONE_ATTEMPT, 0, -1, false},
+        {GROBO_ERR_TIMEOUT, ONE_ATTEMPT, 0, -1, false},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        const grobo_packet reply = {.kind = (grobo_packet_kind)rows[i].kind};
+        uint8_t frame[GROBO_FRAME_MAX_BYTES];
+        start();
+        robot.answered = true;
+        grobo_robot_slot *slot = submit(0, GROBO_I_USE_JOB, (grobo_robot_order){0});
+        assert_true(grobo_robot_tx(&robot, frame, sizeof frame, NOW + 5) > 0);
+        assert_false(robot.answered);
+        robot.left_us += rows[i].left_later_us;
+        slot->txn.attempts_ = (uint8_t)rows[i].attempts;
+        robot.over = do_nothing;
+        slot->txn.pending_ = false;
+        slot->txn.done(slot->txn.ctx, &slot->txn, rows[i].result,
+                       rows[i].kind < 0 ? NULL : &reply);
+        assert_int_equal(robot.answered, rows[i].answered);
+    }
+}
+
 /* ---- taking back ----------------------------------------------------------------------------- */
 
 static const grobo_i_use uses[] = {GROBO_I_USE_JOB,     GROBO_I_USE_SENSE, GROBO_I_USE_MOTION,
@@ -235,6 +280,7 @@ static void every_slot_is_looked_at(void **state)
     (void)state;
     for (int at = 0; at < SLOTS; at++) {
         start();
+        robot.slots_end = SLOTS;
         for (int i = 0; i < SLOTS; i++) {
             grobo_i_use use = i == at ? GROBO_I_USE_MOTION : GROBO_I_USE_SENSE;
             grobo_robot_slot *slot = &robot.slots[i];
@@ -558,6 +604,7 @@ static void a_target_that_is_refused_does_not_wait(void **state)
             stabilized = result == GROBO_ERR_SPACE ? GROBO_ERR_SPACE : GROBO_OK;
             for (int k = 0; rows[i].full && k < SLOTS; k++) {
                 robot.slots[k].use = GROBO_I_USE_PLAIN;
+                robot.slots_end = SLOTS;
             }
             assert_int_equal(grobo_i_gate_send(&robot, &target, &how), result);
             bool waits = result == GROBO_OK;
@@ -860,6 +907,7 @@ int main(void)
         cmocka_unit_test(torque_that_may_not_come_on_is_refused_by_name),
         cmocka_unit_test(small_frames_have_four_joints),
         cmocka_unit_test(a_halt_goes_to_what_moves),
+        cmocka_unit_test(an_answer_says_that_its_frame_has_left),
         cmocka_unit_test(a_halt_of_what_stands_is_not_sent),
         cmocka_unit_test(what_a_frame_was_for_decides_what_its_end_counts),
         cmocka_unit_test(a_stop_takes_back_what_waits_and_halts_what_is_not_played),

@@ -28,6 +28,7 @@ static const grobo_port_ops *true_ops;
 static grobo_port_ops slow_ops;
 static int budget_bytes; /* what the line still takes */
 static int unsent_bytes; /* what it says of what it took */
+static int questions;    /* how often it was asked for that */
 static uint8_t written[4096];
 static size_t n_written;
 
@@ -51,6 +52,7 @@ static int write_slowly(grobo_port *port, const void *buf, size_t size, grobo_os
 static int say_unsent(const grobo_port *port)
 {
     (void)port;
+    questions++;
     return unsent_bytes;
 }
 
@@ -218,6 +220,23 @@ static void no_frame_is_taken_behind_one_that_has_not_left(void **state)
     assert_int_equal(n_written, 2 * GOALS);
 }
 
+/* A frame that was answered has left: nothing is asked, until one goes that nothing answers. */
+static void the_line_is_not_asked_about_what_was_answered(void **state)
+{
+    (void)state;
+    (void)neck_deg();
+    questions = 0;
+    (void)neck_deg();
+    (void)neck_deg();
+    assert_int_equal(questions, 0);
+    n_written = 0;
+    send_goals(GOALS);
+    assert_int_equal(questions, 0);
+    budget_bytes = UNLIMITED;
+    (void)neck_deg();
+    assert_true(questions > 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -225,6 +244,8 @@ int main(void)
                                         tear_down),
         cmocka_unit_test_setup_teardown(a_torn_frame_is_spoilt_by_a_stop, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_stop_is_not_taken_back, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(the_line_is_not_asked_about_what_was_answered, set_up,
+                                        tear_down),
         cmocka_unit_test_setup_teardown(no_frame_is_taken_behind_one_that_has_not_left, set_up,
                                         tear_down),
     };

@@ -46,7 +46,11 @@ static int port_take(grobo_session *session, int64_t *until_us)
 
 static bool port_has_room(grobo_session *session)
 {
-    return grobo_serial_is_open(session->serial) && grobo_serial_unsent(session->serial) == 0;
+    /* What was answered has left; only of other frames the system must be asked. */
+    size_t unsent = session->robot.answered ? grobo_serial_pending(session->serial)
+                                            : grobo_serial_unsent(session->serial);
+
+    return grobo_serial_is_open(session->serial) && unsent == 0;
 }
 
 static void port_give(grobo_session *session, const uint8_t *frame, size_t size)
@@ -77,20 +81,34 @@ const session_line grobo_i_session_port = {
 
 /* ---- the simulator ------------------------------------------------------------------------ */
 
+struct session_sim {
+    grobo_sim sim;
+    uint8_t backlog[GROBO_FRAME_MAX_BYTES]; /* of a frame that it took in part */
+};
+
+void grobo_i_session_sim_free(grobo_session *session)
+{
+    grobo_i_free(session->config.mem, session->simulated, sizeof *session->simulated);
+    session->simulated = NULL;
+    session->sim = NULL;
+}
+
 static int sim_open(grobo_session *session, const char *name)
 {
     int64_t now_us = grobo_now_us();
 
     (void)name;
     if (session->sim == NULL) {
-        grobo_sim *sim = grobo_i_new(session->config.mem, sizeof *sim);
-        int r = sim != NULL ? grobo_sim_init(sim, &session->sim_config, now_us) : GROBO_ERR_NOMEM;
+        session->simulated = grobo_i_new(session->config.mem, sizeof *session->simulated);
+        int r = session->simulated != NULL
+                    ? grobo_sim_init(&session->simulated->sim, &session->sim_config, now_us)
+                    : GROBO_ERR_NOMEM;
 
         if (r < 0) {
-            grobo_i_free(session->config.mem, sim, sizeof *sim);
+            grobo_i_session_sim_free(session);
             return r;
         }
-        session->sim = sim;
+        session->sim = &session->simulated->sim;
     }
     if (grobo_sim_hung_up(session->sim)) {
         grobo_sim_plug(session->sim, true, now_us);
@@ -126,15 +144,15 @@ static void sim_give(grobo_session *session, const uint8_t *frame, size_t size)
     if (taken > 0) {
         grobo_i_session_tell_tap(GROBO_DIR_TX, now_us, frame, taken, session);
     }
-    GROBO_ASSERT(taken <= size && size - taken <= sizeof session->backlog);
+    GROBO_ASSERT(taken <= size && size - taken <= sizeof session->simulated->backlog);
     session->backlog_bytes = size - taken;
-    memmove(session->backlog, frame + taken, session->backlog_bytes);
+    memmove(session->simulated->backlog, frame + taken, session->backlog_bytes);
 }
 
 static bool sim_has_room(grobo_session *session)
 {
     if (session->backlog_bytes > 0) {
-        sim_give(session, session->backlog, session->backlog_bytes);
+        sim_give(session, session->simulated->backlog, session->backlog_bytes);
     }
     return session->backlog_bytes == 0;
 }
@@ -145,7 +163,7 @@ static void sim_take_back(grobo_session *session, size_t size, size_t behind)
     if (session->backlog_bytes == size) {
         session->backlog_bytes = 0;
     } else if (session->backlog_bytes > behind) {
-        session->backlog[session->backlog_bytes - 1 - behind] ^= 0xFF;
+        session->simulated->backlog[session->backlog_bytes - 1 - behind] ^= 0xFF;
     }
 }
 

@@ -4,6 +4,7 @@
 #include "src/base/instant.h"
 #include "src/link/serial/serial.h"
 #include "src/link/session/session.h"
+#include "src/robot/robot.h"
 
 /* How long to leave a line alone that takes no more bytes; it also tells when it does. */
 #define BUSY_US 1000
@@ -78,19 +79,26 @@ static bool make_room(grobo_session *session, bool stops)
     return has_room;
 }
 
+/* A frame may leave now, as far as the engine is concerned. */
+static bool has_frame(const grobo_session *session, int64_t now_us)
+{
+    const grobo_bus *bus = &session->robot.bus;
+
+    grobo_i_lock(&session->robot);
+    bool has = bus->waiting > 0 && bus->active == NULL && grobo_bus_deadline(bus, now_us) <= now_us;
+    grobo_i_unlock(&session->robot);
+    return has && !grobo_i_session_has_asked(session) &&
+           now_us < grobo_i_session_estop_deadline(session);
+}
+
 /* Gives what the engine wants to send now; when to look again. The line is asked only where there
- * is something for it: that is a call of the system. */
+ * is something for it: that may be a call of the system. */
 static int64_t give_all(grobo_session *session)
 {
-    for (;;) {
-        uint8_t frame[GROBO_FRAME_MAX_BYTES];
-        int64_t now_us = grobo_now_us();
-        int64_t deadline_us = grobo_robot_deadline(&session->robot, now_us);
+    int64_t now_us = grobo_now_us();
 
-        if (deadline_us > now_us || grobo_i_session_has_asked(session) ||
-            now_us >= grobo_i_session_estop_deadline(session)) {
-            return deadline_us;
-        }
+    while (has_frame(session, now_us)) {
+        uint8_t frame[GROBO_FRAME_MAX_BYTES];
         bool stops = grobo_robot_stops(&session->robot, now_us);
 
         if (grobo_i_session_guard_has_it(session) || !make_room(session, stops)) {
@@ -99,10 +107,12 @@ static int64_t give_all(grobo_session *session)
         int size = grobo_robot_tx(&session->robot, frame, sizeof frame, now_us);
 
         if (size <= 0) {
-            return deadline_us;
+            break;
         }
         give(session, frame, (size_t)size, stops);
+        now_us = grobo_now_us();
     }
+    return grobo_robot_deadline(&session->robot, now_us);
 }
 
 void grobo_i_session_send(grobo_session *session)

@@ -55,7 +55,7 @@ static void destroy(grobo_session *session)
     grobo_serial_free(session->serial);
     grobo_i_estop_watch_end(&session->estop);
     grobo_i_session_scan_end(session);
-    grobo_i_free(mem, session->sim, sizeof *session->sim);
+    grobo_i_session_sim_free(session);
     grobo_i_free(mem, session, sizeof *session);
 }
 
@@ -522,6 +522,7 @@ static int make_parts(grobo_session *session)
                    .rs485 = session->config.format.rs485},
         .base = session->config.base,
         .mode = GROBO_SERIAL_ASYNC,
+        .tx_queue_bytes = GROBO_FRAME_MAX_BYTES, /* a frame is sent when nothing waits */
         .on_data = grobo_i_session_on_data,
         .on_event = on_serial,
         .on_tap = session->config.on_tap != NULL ? grobo_i_session_tell_tap : NULL,

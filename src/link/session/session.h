@@ -67,10 +67,10 @@ struct grobo_session {
     grobo_timer *timer;
 
     grobo_sim_config sim_config;
-    grobo_sim *sim;
+    struct session_sim *simulated; /* the simulator and what it did not take; NULL: none yet */
+    grobo_sim *sim;                /* the one in there */
     const session_line *line;
-    uint8_t backlog[GROBO_FRAME_MAX_BYTES]; /* of a frame that the simulator took in part */
-    size_t backlog_bytes;
+    size_t backlog_bytes; /* of a frame that the simulator took in part, see line.c */
     size_t given_bytes;  /* of the frame given to the line last; 0: it may not be taken back */
     size_t given_behind; /* bytes of it behind its sum */
     uint64_t sim_tx_bytes, sim_rx_bytes;
@@ -202,6 +202,9 @@ bool grobo_i_session_guard_has_it(grobo_session *session);
 void grobo_i_session_guard_tell(grobo_session *session);
 
 /* ---- line.c ---- */
+
+/* Frees the simulator, where there is one. */
+void grobo_i_session_sim_free(grobo_session *session);
 
 /* Lists the ports to try; GROBO_ERR_NOTFOUND where there are none. */
 int grobo_i_session_scan_begin(grobo_session *session);
