@@ -139,8 +139,7 @@ void grobo_i_sim_board_hear(grobo_sim *sim, uint8_t byte, int64_t t_ns)
 bool grobo_i_sim_board_listens(const grobo_sim *sim)
 {
     const grobo_framer *heard = &sim->board.framer;
-    return sim->board_state == GROBO_SIM_BOARD_IDLE && sim->fifo_used == 0 &&
-           heard->used == heard->taken;
+    return sim->board_state == GROBO_SIM_BOARD_IDLE && heard->used == heard->taken;
 }
 
 void grobo_i_sim_board_hear_frame(grobo_sim *sim, const uint8_t *bytes, size_t n, int64_t t_ns)

@@ -40,7 +40,7 @@ static int64_t byte_ns(const grobo_sim *sim, uint32_t bps)
 }
 
 /*
- * How many bytes of the host make a frame whose end is all that matters: it comes in one piece,
+ * How many bytes of the host make a frame whose end is all that matters: it is all on the line,
  * undamaged, and nothing else goes on. The board or the servos get it whole then, which costs a
  * third of what its bytes do one by one. 1: byte by byte.
  */
@@ -55,11 +55,7 @@ static size_t frame_run(const grobo_sim *sim)
     grobo_board_frame frame;
     int size = board ? grobo_board_peek(bytes, in->used, &frame)
                      : (int)grobo_i_sim_bus_packet(sim, bytes, in->used);
-    if (size < 2) {
-        return 1;
-    }
-    const int64_t *at_ns = &in->at_ns[in->head];
-    return at_ns[size - 1] - at_ns[0] == (size - 1) * sim->line_byte_ns ? (size_t)size : 1;
+    return size > 1 ? (size_t)size : 1;
 }
 
 static void arrive(grobo_sim *sim, size_t run, int64_t t_ns)
@@ -132,10 +128,8 @@ static bool step_once(grobo_sim *sim, int64_t limit_ns)
     if (t_ns > limit_ns) {
         return false;
     }
-    if (t_ns > sim->now_ns) { /* bytes of a frame that is none any more are older */
-        sim->now_ns = t_ns;
-        sim->now_us = grobo_i_sim_us(t_ns);
-    }
+    sim->now_ns = t_ns;
+    sim->now_us = grobo_i_sim_us(t_ns);
     if (talk_ns == t_ns) {
         for (; said_run > 0; said_run--) {
             said(sim, t_ns - (said_run - 1) * sim->bus_byte_ns);
