@@ -190,7 +190,7 @@ void grobo_i_job_goto(grobo_robot *robot, grobo_robot_step_fn step)
 /* True if a frame of this job is under way; `asks`: one whose answer goes to the job. */
 static bool has_frame(const grobo_robot *robot, const grobo_robot_task *job, bool asks)
 {
-    for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
+    for (int i = 0; i < robot->slots_end; i++) {
         const grobo_robot_slot *slot = &robot->slots[i];
         if (slot->use != GROBO_I_USE_FREE && slot->job == job->number &&
             (!asks || slot->use == GROBO_I_USE_JOB)) {

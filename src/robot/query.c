@@ -102,7 +102,7 @@ bool grobo_robot_stops(const grobo_robot *robot, int64_t now_us)
     }
     bool waits = false;
     grobo_i_lock(robot);
-    for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
+    for (int i = 0; i < robot->slots_end; i++) {
         const grobo_robot_slot *slot = &robot->slots[i];
         if (slot->use != GROBO_I_USE_FREE && grobo_txn_is_pending(&slot->txn)) {
             waits = waits || slot->order.stops ||

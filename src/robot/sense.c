@@ -129,7 +129,7 @@ static bool is_turn_of_the_others(const grobo_robot *robot)
 /* The index of the slot of the background reading that waits for the line, or -1. */
 static int find_waiting(const grobo_robot *robot)
 {
-    for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
+    for (int i = 0; i < robot->slots_end; i++) {
         const grobo_robot_slot *slot = &robot->slots[i];
         if (slot->use == GROBO_I_USE_SENSE && robot->bus.active != &slot->txn &&
             slot->txn.priority == GROBO_PRIORITY_SENSE) {
@@ -147,8 +147,8 @@ static int find_waiting(const grobo_robot *robot)
 static int64_t hurry_at(const grobo_robot *robot)
 {
     int at = find_waiting(robot);
-    bool moves = grobo_i_in_motion(robot) || grobo_i_moving(robot, robot->now_us);
-    if (at < 0 || !moves || grobo_i_play_unwatched(robot)) {
+    if (at < 0 || grobo_i_play_unwatched(robot) ||
+        !(grobo_i_in_motion(robot) || grobo_i_moving(robot, robot->now_us))) {
         return GROBO_NEVER_US;
     }
     const grobo_robot_slot *slot = &robot->slots[at];

@@ -36,13 +36,18 @@ grobo_robot_slot *grobo_i_slot_take(grobo_robot *robot, grobo_i_use use)
     found->due_us = GROBO_NEVER_US;
     found->use = (uint8_t)use;
     found->job = use == GROBO_I_USE_HALT ? 0 : robot->acting; /* a halt outlives its job */
+    robot->slots_end = at < robot->slots_end ? robot->slots_end : at + 1;
     return found;
 }
 
 void grobo_i_slot_drop(grobo_robot_slot *slot)
 {
     GROBO_ASSERT(!grobo_txn_is_pending(&slot->txn));
+    grobo_robot *robot = slot->robot;
     slot->use = GROBO_I_USE_FREE;
+    while (robot->slots_end > 0 && robot->slots[robot->slots_end - 1].use == GROBO_I_USE_FREE) {
+        robot->slots_end--;
+    }
 }
 
 static int on_leave(void *ctx, grobo_txn *txn)
@@ -113,7 +118,7 @@ static void cancel(grobo_robot_slot *slot)
 
 void grobo_i_slots_cancel(grobo_robot *robot, grobo_i_use use)
 {
-    for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
+    for (int i = 0; i < robot->slots_end; i++) {
         if (robot->slots[i].use == use) {
             cancel(&robot->slots[i]);
         }
@@ -122,7 +127,7 @@ void grobo_i_slots_cancel(grobo_robot *robot, grobo_i_use use)
 
 void grobo_i_slots_cancel_job(grobo_robot *robot, int number)
 {
-    for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
+    for (int i = 0; i < robot->slots_end; i++) {
         grobo_robot_slot *slot = &robot->slots[i];
         if (slot->use != GROBO_I_USE_FREE && slot->job == number) {
             cancel(slot);
@@ -132,7 +137,7 @@ void grobo_i_slots_cancel_job(grobo_robot *robot, int number)
 
 void grobo_i_slots_cancel_goals(grobo_robot *robot, grobo_joint_mask joints, bool played)
 {
-    for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
+    for (int i = 0; i < robot->slots_end; i++) {
         grobo_robot_slot *slot = &robot->slots[i];
         bool goal = slot->use == GROBO_I_USE_MOTION || slot->use == GROBO_I_USE_SEGMENT;
         bool meant =
@@ -146,7 +151,7 @@ void grobo_i_slots_cancel_goals(grobo_robot *robot, grobo_joint_mask joints, boo
 void grobo_i_slots_cancel_rest(const grobo_robot_slot *before)
 {
     const grobo_robot_order *order = &before->order;
-    for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
+    for (int i = 0; i < before->robot->slots_end; i++) {
         grobo_robot_slot *slot = &before->robot->slots[i];
         if (slot->use == before->use && waits(slot) && slot->given_us == before->given_us &&
             slot->order.joints == order->joints && slot->order.part > order->part) {
@@ -157,7 +162,7 @@ void grobo_i_slots_cancel_rest(const grobo_robot_slot *before)
 
 void grobo_i_slots_keep_off(grobo_robot *robot, grobo_joint_mask joints)
 {
-    for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
+    for (int i = 0; i < robot->slots_end; i++) {
         grobo_robot_slot *slot = &robot->slots[i];
         bool on = slot->order.deed == GROBO_I_DEED_TORQUE && slot->order.torque == GROBO_TORQUE_ON;
         if (on && waits(slot) && (slot->order.joints & joints) != 0) {
@@ -169,7 +174,7 @@ void grobo_i_slots_keep_off(grobo_robot *robot, grobo_joint_mask joints)
 bool grobo_i_slots_wait(const grobo_robot *robot, grobo_joint_mask joint, grobo_i_deed deed,
                         grobo_torque torque)
 {
-    for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
+    for (int i = 0; i < robot->slots_end; i++) {
         const grobo_robot_slot *slot = &robot->slots[i];
         const grobo_robot_order *order = &slot->order;
         if (waits(slot) && order->deed == deed && order->torque == torque &&
@@ -182,7 +187,7 @@ bool grobo_i_slots_wait(const grobo_robot *robot, grobo_joint_mask joint, grobo_
 
 bool grobo_i_slots_busy(const grobo_robot *robot, grobo_i_use use)
 {
-    for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
+    for (int i = 0; i < robot->slots_end; i++) {
         if (robot->slots[i].use == use) {
             return true;
         }

@@ -243,28 +243,35 @@ static void took_effect(grobo_sim *sim, int index, const grobo_servo_register *r
                                              .value2 = value});
 }
 
-/* Where the register that has this address is over; NULL: the next address. */
-static int behind(const grobo_servo_register *reg, int address)
+/* What a write hits: registers, found once. Bytes of none are reserved, and may be written. */
+typedef struct hits {
+    const grobo_servo_register *reg[GROBO_REGISTERS];
+    int n;
+} hits;
+
+static void find_hits(const grobo_sim_servo *servo, int address, size_t n, hits *hit)
 {
-    return reg == NULL ? address + 1 : reg->address + reg->bytes;
+    const grobo_servo_model *model = grobo_i_sim_rs30x_model(servo);
+    hit->n = 0;
+    for (int a = address; a < address + (int)n;) {
+        const grobo_servo_register *reg = grobo_servo_register_at(model, (uint16_t)a);
+        a = reg == NULL ? a + 1 : reg->address + reg->bytes;
+        if (reg != NULL) {
+            hit->reg[hit->n++] = reg;
+        }
+    }
 }
 
-/* True if every register hit may be written and every value is in range. Reserved ones may. */
-static bool may_write(const grobo_sim_servo *servo, int address, const uint8_t *bytes, size_t n)
+/* True if every register hit may be written and every value is in range. */
+static bool may_write(const grobo_sim_servo *servo, const hits *hit, int address,
+                      const uint8_t *bytes, size_t n)
 {
     const grobo_servo_model *model = grobo_i_sim_rs30x_model(servo);
     uint8_t after[GROBO_REGISTERS];
-    if (address + (int)n > GROBO_REGISTERS) {
-        return false;
-    }
     memcpy(after, servo->reg, sizeof after);
     memcpy(&after[address], bytes, n);
-    const grobo_servo_register *reg;
-    for (int a = address; a < address + (int)n; a = behind(reg, a)) {
-        reg = row_at(servo, a);
-        if (reg == NULL) {
-            continue;
-        }
+    for (int i = 0; i < hit->n; i++) {
+        const grobo_servo_register *reg = hit->reg[i];
         int32_t value = grobo_servo_register_get(model, reg, &after[reg->address]);
         if ((reg->flags & GROBO_REGISTER_W) == 0 ||
             (!bends(reg) && (value < reg->min || value > reg->max))) {
@@ -274,36 +281,36 @@ static bool may_write(const grobo_sim_servo *servo, int address, const uint8_t *
     return true;
 }
 
-static void store(grobo_sim *sim, int index, int address, const uint8_t *bytes, size_t n)
+static void store(grobo_sim *sim, int index, const hits *hit, int address, const uint8_t *bytes,
+                  size_t n)
 {
     grobo_sim_servo *servo = &sim->servo[index];
     const grobo_servo_model *model = grobo_i_sim_rs30x_model(servo);
+    const int end = address + (int)n;
     uint8_t before[GROBO_REGISTERS];
     memcpy(before, servo->reg, sizeof before);
-    const int end = address + (int)n;
-    const grobo_servo_register *reg;
-    for (int a = address; a < end; a = behind(reg, a)) {
-        reg = row_at(servo, a);
-        int to = behind(reg, a) < end ? behind(reg, a) : end;
-        if (reg != NULL) {
-            memcpy(&servo->reg[a], &bytes[a - address], (size_t)(to - a));
-        }
+    for (int i = 0; i < hit->n; i++) {
+        const grobo_servo_register *reg = hit->reg[i];
+        int from = reg->address > address ? reg->address : address;
+        int to = reg->address + reg->bytes < end ? reg->address + reg->bytes : end;
+        memcpy(&servo->reg[from], &bytes[from - address], (size_t)(to - from));
     }
-    for (int a = address; a < end; a = behind(reg, a)) {
-        reg = row_at(servo, a);
-        if (reg != NULL) {
-            took_effect(sim, index, reg,
-                        grobo_servo_register_get(model, reg, &before[reg->address]));
-        }
+    for (int i = 0; i < hit->n; i++) {
+        const grobo_servo_register *reg = hit->reg[i];
+        took_effect(sim, index, reg, grobo_servo_register_get(model, reg, &before[reg->address]));
     }
 }
 
 static bool write(grobo_sim *sim, int index, int address, const uint8_t *bytes, size_t n)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    if (may_write(servo, address, bytes, n)) {
-        store(sim, index, address, bytes, n);
-        return true;
+    hits hit;
+    if (address + (int)n <= GROBO_REGISTERS) {
+        find_hits(servo, address, n, &hit);
+        if (may_write(servo, &hit, address, bytes, n)) {
+            store(sim, index, &hit, address, bytes, n);
+            return true;
+        }
     }
     servo->status |= GROBO_RS30X_STATUS_REFUSED;
     grobo_i_sim_note(sim, GROBO_SIM_REFUSED, index, address);
@@ -487,7 +494,9 @@ static int set(grobo_sim *sim, int index, int address, int32_t value)
     if (n < 0) {
         return n;
     }
-    store(sim, index, address, bytes, (size_t)n);
+    hits hit;
+    find_hits(&sim->servo[index], address, (size_t)n, &hit);
+    store(sim, index, &hit, address, bytes, (size_t)n);
     return 0;
 }
 
