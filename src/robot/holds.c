@@ -43,6 +43,7 @@ static void assert_axis(const grobo_robot *robot, int joint)
     GROBO_ASSERT(!axis->held || axis->sensed);
     GROBO_ASSERT(!axis->torque_known || (axis->state.valid & GROBO_FIELD_TORQUE) != 0);
     GROBO_ASSERT(!grobo_i_way_is_short(axis) || axis->told_to_us > axis->way.from_us);
+    GROBO_ASSERT(!axis->in_segments || robot->in_segments);
 }
 
 static void assert_slot(const grobo_robot *robot, const grobo_robot_slot *slot)

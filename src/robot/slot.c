@@ -46,6 +46,7 @@ grobo_robot_slot *grobo_i_slot_take(grobo_robot *robot, grobo_i_use use)
     found->due_us = GROBO_NEVER_US;
     found->use = (uint8_t)use;
     found->job = use == GROBO_I_USE_HALT ? 0 : robot->acting; /* a halt outlives its job */
+    robot->slots_end = at < robot->slots_end ? robot->slots_end : at + 1;
     return found;
 }
 
