@@ -153,6 +153,7 @@ GRCTL := $(if $(TOOL_SRCS),$(BUILD)/grctl$(EXE))
 GRCTL_RUN := $(if $(EMULATOR),$(BUILD)/run/grctl,$(GRCTL))
 SUPPORT_LIB := $(BUILD)/libsupport.a
 ROBOTS := $(BUILD)/tools/robots/robots
+PICTURE := $(BUILD)/tools/picture/picture$(EXE)
 
 VERSION = $(shell sed -n 's/.*GROBO_VERSION_STRING "\(.*\)"/\1/p' include/grobo/version.h)
 
@@ -163,7 +164,7 @@ include tools/baremetal/baremetal.mk
 .PHONY: help all lib demo check robots lint lint-quick format test check-san check-tsan check-memcheck install uninstall
 .PHONY: clean tidy fuzz soak cov dist bench bench-peers bench-count plots captures cross check-cross check-drivers
 .PHONY: check-abi sources wrap deb check-deb release check-families check-ports check-long check-mutants check-map install-lib FORCE
-.PHONY: firmware size check-firmware
+.PHONY: firmware size check-firmware picture
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-15s %s\n", $$1, $$2 }' Makefile
@@ -215,7 +216,7 @@ $(BUILD)/left_out.sh: FORCE
 	    done_testing >$@
 
 chosen = $(call in_rings,$(BUILD)/,$(TEST_PROGRAMS)) $(if $(filter fuzz,$(RING)),$(FUZZ_REPLAYS)) \
-    $(if $(filter port,$(RING)),$(DRIVER_PROGRAMS)) $(if $(filter export,$(RING)),$(EXAMPLES))
+    $(if $(filter port,$(RING)),$(DRIVER_PROGRAMS)) $(if $(filter export,$(RING)),$(EXAMPLES) $(PICTURE))
 test: all $(chosen) $(CROSS_TOOLS) $(left_out) ## the tests alone; RING="unit engine" chooses
 	@$(TEST_BEGIN) GRCTL="$(call whole,$(GRCTL_RUN))" BUILD="$(BUILD)" CC="$(CC)" TEST_LOGS="$(BUILD)/logs" EDIT=$(EDIT) SCREEN=$(SCREEN) \
 	    $(cross_env) tests/run.sh \
@@ -297,6 +298,9 @@ bench-count: $(BUILD)/tests/bench/bench_work ## instructions against tests/bench
 
 plots: $(BUILD)/grctl ## draw motions/plots/*.svg again
 	@tools/plots.sh "$(call whole,$(BUILD)/grctl)"
+
+picture: $(PICTURE) ## draw docs/robot.svg again: a simulated GR001 plays
+	@tools/picture.sh "$(call whole,$(PICTURE))"
 
 captures: $(BUILD)/grctl ## make the screens of docs/guide/tour.md and the table of safety.md again
 	@GRCTL="$(call whole,$(GRCTL))" TOUR_WRITE=yes sh tests/cli/tour.sh
@@ -510,6 +514,7 @@ $(eval $(call compile,src/link,SRC_INCLUDE OS_FLAGS EVENT_CFLAGS))
 $(eval $(call compile,ports/common,SRC_INCLUDE))
 $(eval $(call compile,ports/$(PORT),SRC_INCLUDE OS_FLAGS))
 $(eval $(call compile,tools/robots,TOOL_INCLUDE))
+$(eval $(call compile,tools/picture,TOOL_INCLUDE))
 $(eval $(call compile,tools/grctl,TOOL_INCLUDE OS_FLAGS EVENT_CFLAGS YAML_CFLAGS JSON_CFLAGS EDIT_CFLAGS SCREEN_CFLAGS))
 $(eval $(call compile,docs/examples,WHOLE OS_FLAGS EVENT_CFLAGS))
 $(eval $(call compile,tests,TEST_INCLUDE OS_FLAGS EVENT_CFLAGS YAML_CFLAGS CMOCKA_CFLAGS JSON_CFLAGS))
@@ -547,6 +552,8 @@ $(BUILD)/grctl$(EXE): $(filter %/main.o,$(TOOL_OBJS)) $(TOOL_LIB) $(STATIC_LIB)
 
 # Of the reader alone: it makes the tables that the library has.
 $(ROBOTS): $(BUILD)/tools/robots/main.o $(STATIC_LIB)
+$(PICTURE): $(BUILD)/tools/picture/main.o $(STATIC_LIB)
+$(ROBOTS) $(PICTURE):
 	$(say) LD $@
 	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
 
