@@ -11,7 +11,8 @@ picture="${EMULATOR:-} $BUILD/tools/picture/picture"
 # A picture with one number changed by a pixel, and one with a word changed, are others.
 notices() {
     mkdir -p "$work/docs" && ln -sf "$PWD/tools" "$PWD/motions" "$work" || return 1
-    cp docs/robot.svg "$work/docs" && (cd "$work" && tools/picture.sh "$absolute" --check) || return 1
+    cp docs/robot.svg "$work/docs" &&
+        (cd "$work" && tools/picture.sh "$absolute" --check) || return 1
     for change in 's/M1\([0-9.]*\) /M2\1 /' 's/NECK_Y/NECK_P/' '/NECK_Y/d'; do
         sed "$change" docs/robot.svg >"$work/docs/robot.svg"
         (cd "$work" && tools/picture.sh "$absolute" --check) 2>/dev/null && return 1
