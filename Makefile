@@ -255,6 +255,7 @@ check-long: ## all machines, packages, sabotage, fuzzing, the soak, scans of all
 	@$(MAKE) --no-print-directory check-ports
 	@$(MAKE) --no-print-directory check-deb
 	@$(MAKE) --no-print-directory check-wheel
+	@$(MAKE) --no-print-directory check-roots
 	@$(MAKE) --no-print-directory check-mutants COUNT=300
 	@$(MAKE) --no-print-directory check-map COUNT=
 	@$(MAKE) --no-print-directory fuzz FUZZ_S=300
@@ -390,7 +391,7 @@ wrap: ## build/subprojects, for the Meson projects that take TARBALL=build/libgr
 	@sed -e 's|@VERSION@|$(VERSION)|' -e "s|@SHA256@|$$(sha256sum <$(TARBALL) | cut -d ' ' -f 1)|" \
 	    tools/package/meson/grobo.wrap.in >$(BUILD)/subprojects/grobo.wrap
 
-.PHONY: sources wrap python wheel check-wheel deb check-deb release
+.PHONY: sources wrap python wheel check-wheel deb check-deb check-roots release
 # The Python package as it is used from here (PYTHONPATH=build/python) and packed.
 PYTHON ?= python3
 PYTHON_DIR := $(BUILD)/python
@@ -418,6 +419,10 @@ deb: ## Debian packages in build/deb, for this machine or ARCH=arm64
 check-deb: ## these for amd64 and arm64: lintian, and installed and purged in fresh Debian and Ubuntu roots
 	-@tools/setup.sh --packages
 	@BUILD="$(BUILD)" TEST_TIMEOUT_S=3600 TEST_LOGS="$(BUILD)/logs/deb" tests/run.sh tests/package/deb.sh
+
+check-roots: ## README's commands, packages, CMake, Meson and pip in fresh Debian and Ubuntu roots
+	-@tools/setup.sh --packages
+	@BUILD="$(BUILD)" TEST_TIMEOUT_S=10800 TEST_LOGS="$(BUILD)/logs/roots" tests/run.sh tests/package/roots.sh
 
 release: ## refuse where a step of a release is missing, else make the tarball
 	@GRCTL="$(GRCTL)" BUILD="$(BUILD)" tools/package/release.sh
