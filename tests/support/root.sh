@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# For tests that need a fresh Debian or Ubuntu: a root of its own, made by debootstrap. It takes root
-# and a network.
+# For tests that need a fresh Debian or Ubuntu: a root of its own, made by debootstrap. It takes
+# root rights and a network.
 # set before: work, a directory that keeps $work/roots; root, where it is to stand
 
 # make_root SUITE PACKAGES: kept as a tarball; unpacked into $root, with its lists of packages.
