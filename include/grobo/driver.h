@@ -18,6 +18,7 @@
 #include <grobo/model.h>
 #include <grobo/posture.h>
 #include <grobo/protocol.h>
+#include <grobo/registers.h>
 
 GROBO_BEGIN_DECLS
 
@@ -50,8 +51,17 @@ typedef enum grobo_field {
     GROBO_FIELD_TEMPERATURE = 1 << 4,
     GROBO_FIELD_VOLTAGE = 1 << 5,
     GROBO_FIELD_TORQUE = 1 << 6,
-    GROBO_FIELD_GOAL = 1 << 7
+    GROBO_FIELD_GOAL = 1 << 7,
+    GROBO_FIELD_RANGE = 1 << 8
 } grobo_field;
+
+/** What of a servo is not as its joint needs it. */
+typedef struct grobo_setup_fault {
+    const grobo_servo_register *reg; /**< NULL: nothing, as far as was read */
+    int32_t found;                   /**< its counts */
+    int32_t low, high;               /**< what would do, in counts; low > high: the servo is as it
+                                          left its factory, and the joint is a calibrated one */
+} grobo_setup_fault;
 
 /** One reading of one joint. Plain data; a field means something only where `valid` has its bit. */
 typedef struct grobo_joint_state {
@@ -67,6 +77,9 @@ typedef struct grobo_joint_state {
     grobo_torque torque;   /**< as read, not as asked */
     bool overheated;       /**< the servo says that it was too hot and has cut its torque */
     uint8_t flags;         /**< of the reply, in bits of its family (GROBO_RS30X_STATUS_...) */
+    double low_rad;        /**< range of a calibrated joint, by the limits that its servo keeps */
+    double high_rad;
+    grobo_setup_fault setup; /**< of a joint that was read with GROBO_ERR_SETUP */
 } grobo_joint_state;
 
 /* ---- the table ----------------------------------------------------------------------------- */

@@ -30,6 +30,10 @@ typedef struct grobo_joint {
     bool turns;               /**< the servo counts several turns; else its angle is within one */
     double zero_rad;          /**< angle of the servo, from its middle, where the joint is at 0 */
     double gear;              /**< turns of the servo for one of the joint; 0: 1 */
+    bool calibrated;          /**< its servo keeps a middle and a range that were found by hand: one
+                                   as it left its factory is not moved, and a narrower range narrows
+                                   the limits. Else the middle must be the factory's, and the servo
+                                   must reach the limits */
 } grobo_joint;
 
 /** The angle of a joint's servo, from the middle of its range, where the joint is at an angle. */

@@ -280,9 +280,7 @@ static bool factory(grobo_sim *sim, int index, uint8_t id, uint32_t baud_bps)
     if (code < 0 || id > GROBO_DXL2_ID_MAX) {
         return false;
     }
-    grobo_i_dxl_factory(servo);
-    grobo_i_dxl_put(servo, GROBO_ROLE_ID, id);
-    grobo_i_dxl_put(servo, GROBO_ROLE_BAUD, code);
+    grobo_i_dxl_sold(sim, index, id, code);
     if (sim->config.mounted) {
         bool turns = sim->config.model->joints[index].turns;
         grobo_i_dxl_put(servo, GROBO_ROLE_DIRECTION, GROBO_DXL2_DRIVE_TIME);

@@ -62,7 +62,7 @@ typedef struct grobo_i_draft {
     grobo_i_place place, at[GROBO_I_KEYS_MAX];
     grobo_i_name name, title, model, family, wiring, exit;
     double limit_slack_deg;
-    bool arm;
+    bool arm, calibrated;
     grobo_i_line_draft line;
     grobo_i_safety_draft safety;
     int n_joints, n_groups, n_links, n_usb;

@@ -221,6 +221,7 @@ static void make_joint(const maker *m, int j)
                            .mirror_sign = (int8_t)draft->mirror_sign,
                            .sign = draft->sign < 0 ? -1 : 0,
                            .turns = draft->turns,
+                           .calibrated = m->draft->calibrated,
                            .zero_rad = grobo_rad_from_deg(draft->zero_deg),
                            .gear = draft->gear};
     if (draft->sign == 0 || draft->mirror_sign == 0) {

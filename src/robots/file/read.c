@@ -86,6 +86,7 @@ static const key_row robot_keys[] = {
     CALL("safety", read_safety),
     NAME("exit", ROBOT, exit),
     {.name = "arm", .kind = KEY_TRUTH, .offset = offsetof(ROBOT, arm)},
+    {.name = "calibrated", .kind = KEY_TRUTH, .offset = offsetof(ROBOT, calibrated)},
     NUMBER("limit_slack_deg", ROBOT, limit_slack_deg, 0, GROBO_LIMIT_SLACK_MAX_DEG),
     {.name = "joints", .kind = KEY_CALL, .needed = true, .read = read_joints},
     CALL("groups", read_groups),

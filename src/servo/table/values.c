@@ -66,14 +66,6 @@ int32_t grobo_i_table_ticks(const grobo_joint *joint, const grobo_servo_model *s
     return (int32_t)floor(ticks + 0.5);
 }
 
-bool grobo_i_table_within(const grobo_joint *joint, const grobo_servo_model *servo, int32_t min,
-                          int32_t max)
-{
-    int32_t a = grobo_i_table_ticks(joint, servo, joint->min_rad);
-    int32_t b = grobo_i_table_ticks(joint, servo, joint->max_rad);
-    return a >= min && a <= max && b >= min && b <= max;
-}
-
 double grobo_i_table_step_rad(const grobo_driver *self)
 {
     double step_rad = 0;
