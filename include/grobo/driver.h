@@ -52,7 +52,8 @@ typedef enum grobo_field {
     GROBO_FIELD_VOLTAGE = 1 << 5,
     GROBO_FIELD_TORQUE = 1 << 6,
     GROBO_FIELD_GOAL = 1 << 7,
-    GROBO_FIELD_RANGE = 1 << 8
+    GROBO_FIELD_RANGE = 1 << 8,
+    GROBO_FIELD_TORQUE_LIMIT = 1 << 9
 } grobo_field;
 
 /** What of a servo is not as its joint needs it. */
@@ -77,6 +78,7 @@ typedef struct grobo_joint_state {
     grobo_torque torque;   /**< as read, not as asked */
     bool overheated;       /**< the servo says that it was too hot and has cut its torque */
     uint8_t flags;         /**< of the reply, in bits of its family (GROBO_RS30X_STATUS_...) */
+    bool torque_limited;   /**< its torque limit is its joint's, or lower */
     double low_rad;        /**< range of a calibrated joint, by the limits that its servo keeps */
     double high_rad;
     grobo_setup_fault setup; /**< of a joint that was read with GROBO_ERR_SETUP */
@@ -185,6 +187,10 @@ struct grobo_driver {
      *  they can count. Moves nothing. NULL: they cannot. */
     int (*watchdog)(const grobo_driver *self, void *ctx, grobo_joint_mask joints, int64_t time_us,
                     int part, grobo_exchange *exchange);
+    /** Sets the torque limits of joints that have one, and moves nothing; a reading says whether it
+     *  took. NULL: they have none, and a model with one is refused. */
+    int (*torque_limit)(const grobo_driver *self, void *ctx, grobo_joint_mask joints, int part,
+                        grobo_exchange *exchange);
     /** Asks one joint for its state. @return 0 or an error. */
     int (*sense)(const grobo_driver *self, void *ctx, int joint, grobo_sense_kind kind,
                  grobo_exchange *exchange);

@@ -53,6 +53,13 @@ grobo_i_limits grobo_i_joint_limits(const grobo_robot *robot, int joint)
     return limits;
 }
 
+bool grobo_i_torque_is_limited(const grobo_robot *robot, int joint)
+{
+    const grobo_joint_state *state = &robot->axes[joint].state;
+    return robot->driver->model->joints[joint].torque_limit_pct == 0 ||
+           ((state->valid & GROBO_FIELD_TORQUE_LIMIT) != 0 && state->torque_limited);
+}
+
 double grobo_i_axis_target(const grobo_robot_axis *axis)
 {
     return axis->next != 0 ? axis->next_rad : axis->way.to_rad;

@@ -159,6 +159,16 @@ int grobo_i_gate_time(grobo_robot *robot, const grobo_robot_order *order, grobo_
 
 /* ---- judging --------------------------------------------------------------------------------- */
 
+static bool all_limited(const grobo_robot *robot, grobo_joint_mask joints)
+{
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if (grobo_i_has(joints, j) && !grobo_i_torque_is_limited(robot, j)) {
+            return false;
+        }
+    }
+    return true;
+}
+
 /* May these joints be sent anywhere? */
 static int judge_joints(grobo_robot *robot, grobo_joint_mask joints)
 {
@@ -170,7 +180,7 @@ static int judge_joints(grobo_robot *robot, grobo_joint_mask joints)
     }
     /* A joint in free mode is moved by a person; one adrift by somebody else. */
     bool others = (joints & robot->free_joints) != 0 || grobo_i_adrift(robot, joints);
-    return others ? GROBO_ERR_STATE : GROBO_OK;
+    return others || !all_limited(robot, joints) ? GROBO_ERR_STATE : GROBO_OK;
 }
 
 /* Where the end of a motion brings a joint to rest: at most half of what it could do in that time
@@ -243,7 +253,8 @@ static int judge_hold(const grobo_robot *robot, const grobo_robot_order *order,
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
         double hold_rad = grobo_i_hold_rad(robot, j);
-        if (grobo_i_has(order->joints, j) && axis->sensed && !isnan(hold_rad) &&
+        bool limited = !robot->driver->goal_wakes || grobo_i_torque_is_limited(robot, j);
+        if (grobo_i_has(order->joints, j) && axis->sensed && !isnan(hold_rad) && limited &&
             !grobo_i_axis_is_on(axis)) {
             target->posture.angle_rad[j] = hold_rad;
             target->joint_time_us[j] = robot->driver->time_step_us;
@@ -271,7 +282,8 @@ static int judge_torque(const grobo_robot *robot, const grobo_robot_order *order
     grobo_joint_mask may = order->joints;
     for (int j = 0; on && j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
-        bool holds = !stale && axis->held && grobo_i_goal_holds(robot, j);
+        bool holds = !stale && axis->held && grobo_i_goal_holds(robot, j) &&
+                     grobo_i_torque_is_limited(robot, j);
         if (!holds && !grobo_i_axis_is_on(axis)) {
             may &= ~GROBO_JOINT_BIT(j);
         }

@@ -76,6 +76,7 @@ static const grobo_joint joints[] = {
      .motor = 6,
      .mirror = 5,
      .mirror_sign = 1,
+     .torque_limit_pct = 50,
      .calibrated = true},
 };
 

@@ -90,8 +90,15 @@ void grobo_i_dxl_sold(grobo_sim *sim, int index, uint8_t id, int baud_code)
     grobo_i_dxl_factory(servo);
     grobo_i_dxl_put(servo, GROBO_ROLE_ID, id);
     grobo_i_dxl_put(servo, GROBO_ROLE_BAUD, baud_code);
-    if (sim->config.mounted && sim->config.model->joints[index].calibrated) {
-        calibrate(servo, &sim->config.model->joints[index]);
+    const grobo_joint *joint = &sim->config.model->joints[index];
+    if (sim->config.mounted && joint->calibrated) {
+        calibrate(servo, joint);
+    }
+    const grobo_servo_register *most = row_of(servo, GROBO_ROLE_MAX_TORQUE);
+    bool kept = most != NULL && row_of(servo, GROBO_ROLE_TORQUE_LIMIT) == NULL &&
+                row_of(servo, GROBO_ROLE_GOAL_PWM) == NULL; /* the one limit that it has */
+    if (sim->config.mounted && joint->torque_limit_pct > 0 && kept) {
+        grobo_i_dxl_put(servo, GROBO_ROLE_MAX_TORQUE, most->max * joint->torque_limit_pct / 100);
     }
     memcpy(servo->flash, servo->reg, sizeof servo->flash);
 }

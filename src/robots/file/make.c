@@ -221,6 +221,7 @@ static void make_joint(const maker *m, int j)
                            .mirror_sign = (int8_t)draft->mirror_sign,
                            .sign = draft->sign < 0 ? -1 : 0,
                            .turns = draft->turns,
+                           .torque_limit_pct = (uint8_t)draft->torque_limit_pct,
                            .calibrated = m->draft->calibrated,
                            .zero_rad = grobo_rad_from_deg(draft->zero_deg),
                            .gear = draft->gear};
@@ -267,6 +268,14 @@ static void check_servos(maker *m)
         joint.mirror = 0;
         const grobo_model one = {.name = m->file->model_name, .joints = &joint, .n_joints = 1};
         int result = def->family->init(&m->driver, &one, def->wiring);
+        bool limited = joint.torque_limit_pct > 0;
+        joint.torque_limit_pct = 0;
+        if (result == GROBO_ERR_ARG && limited &&
+            def->family->init(&m->driver, &one, def->wiring) == GROBO_OK) {
+            (void)complain(m, joint_place(m, j, "torque_limit_pct"), "range",
+                           "%s: its servo has no limit of torque", joint.name);
+            continue;
+        }
         if (result == GROBO_ERR_UNSUPPORTED) {
             (void)complain(m, place_of(m, "wiring"), "wiring",
                            "servos of family %s cannot be wired so", def->family->name);

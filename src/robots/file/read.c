@@ -123,6 +123,7 @@ static const key_row joint_keys[] = {
     NUMBER("init_deg", JOINT, init_deg, -360000, 360000),
     NUMBER("rest_deg", JOINT, rest_deg, -360000, 360000),
     NUMBER("speed_deg_s", JOINT, speed_deg_s, 1, 10000),
+    WHOLE("torque_limit_pct", JOINT, torque_limit_pct, 1, 100),
     WHOLE("free_ma", JOINT, free_ma, 0, 60000),
     WHOLE("sign", JOINT, sign, -1, 1),
     NUMBER("zero_deg", JOINT, zero_deg, -360, 360),

@@ -14,13 +14,14 @@
 static int32_t wants(const grobo_joint *joint, const grobo_servo_model *servo,
                      grobo_register_role role, int32_t found)
 {
-    (void)servo;
+    bool grips = joint->torque_limit_pct > 0 &&
+                 grobo_servo_register_of(servo, GROBO_ROLE_GOAL_CURRENT) != NULL;
     if (role == GROBO_ROLE_DIRECTION) {
         return (found & ~(int32_t)DRIVE_BITS) | (int32_t)GROBO_DXL2_DRIVE_TIME;
     }
-    return found == GROBO_DXL2_MODE_GRIP ? found
-           : joint->turns                ? GROBO_DXL2_MODE_EXTENDED
-                                         : GROBO_DXL2_MODE_POSITION;
+    return grips || found == GROBO_DXL2_MODE_GRIP ? GROBO_DXL2_MODE_GRIP
+           : joint->turns                         ? GROBO_DXL2_MODE_EXTENDED
+                                                  : GROBO_DXL2_MODE_POSITION;
 }
 
 static bool sync_read(const grobo_servo_model *servo)

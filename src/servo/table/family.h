@@ -74,6 +74,11 @@ typedef struct grobo_i_block {
 int grobo_i_table_setup(const grobo_i_family *family, const grobo_joint *joint,
                         const grobo_i_block *block, grobo_joint_state *state);
 
+/* The register that limits the torque of a joint, and its counts: of a servo that loses it at
+ * power-off, else one that it keeps. NULL: it has none. */
+const grobo_servo_register *grobo_i_table_limit(const grobo_joint *joint,
+                                                const grobo_servo_model *servo, int32_t *counts);
+
 /* What one count of a register is worth, in deg/s, mA, mV or whatever its unit says. */
 double grobo_i_table_unit(const grobo_servo_register *reg);
 

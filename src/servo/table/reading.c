@@ -88,6 +88,17 @@ static void take_torque(const grobo_i_family *family, const grobo_i_block *b,
     state->valid |= GROBO_FIELD_TORQUE;
 }
 
+static void take_limit(const grobo_joint *joint, const grobo_i_block *b, grobo_joint_state *state)
+{
+    int32_t most, found;
+    const grobo_servo_register *reg = grobo_i_table_limit(joint, b->servo, &most);
+    if (joint->torque_limit_pct > 0 && reg != NULL &&
+        value_of(b, (grobo_register_role)reg->role, &found)) {
+        state->torque_limited = found >= -most && found <= most;
+        state->valid |= GROBO_FIELD_TORQUE_LIMIT;
+    }
+}
+
 /* A sum of bytes does not notice what two faults make up for: what no servo says is not believed.
  * Where a status and a register tell the same errors, both must. */
 static bool plausible(const grobo_i_family *family, const grobo_joint *joint,
@@ -126,5 +137,6 @@ int grobo_i_table_parse(const grobo_driver *self, void *ctx, int joint, const gr
     take_angles(self, joint, &b, state);
     take_measures(&b, state);
     take_torque(family, &b, state);
+    take_limit(moved, &b, state);
     return result < 0 || state->valid != 0 ? result : GROBO_ERR_MISMATCH;
 }

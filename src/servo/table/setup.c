@@ -93,6 +93,12 @@ static int judge_values(const grobo_i_family *family, const grobo_joint *joint,
             }
         }
     }
+    int32_t most, limit;
+    const grobo_servo_register *reg = grobo_i_table_limit(joint, b->servo, &most);
+    if (joint->torque_limit_pct > 0 && reg != NULL && (reg->flags & GROBO_REGISTER_KEPT) != 0 &&
+        value_of(b, (grobo_register_role)reg->role, &limit) && limit > most) {
+        return refuse(b, (grobo_register_role)reg->role, limit, most, most, state);
+    }
     if (joint->calibrated && is_new(b)) {
         int32_t found = 0;
         bool offset = value_of(b, GROBO_ROLE_OFFSET, &found);

@@ -29,6 +29,20 @@ bool grobo_i_table_value(const grobo_servo_model *servo, grobo_register_role rol
     return true;
 }
 
+/* The current of DYNAMIXEL X that measure it, the PWM of the others. */
+const grobo_servo_register *grobo_i_table_limit(const grobo_joint *joint,
+                                                const grobo_servo_model *servo, int32_t *counts)
+{
+    static const grobo_register_role roles[] = {GROBO_ROLE_TORQUE_LIMIT, GROBO_ROLE_GOAL_CURRENT,
+                                                GROBO_ROLE_GOAL_PWM, GROBO_ROLE_MAX_TORQUE};
+    const grobo_servo_register *reg = NULL;
+    for (size_t i = 0; reg == NULL && i < sizeof roles / sizeof roles[0]; i++) {
+        reg = grobo_servo_register_of(servo, roles[i]);
+    }
+    *counts = reg == NULL ? 0 : (int32_t)((int64_t)reg->max * joint->torque_limit_pct / 100);
+    return reg;
+}
+
 /* The number, and what it is of: of "0.229 rpm" 6 * 0.229 deg/s, of "0.1 V" 100 mV. */
 double grobo_i_table_unit(const grobo_servo_register *reg)
 {
