@@ -6,8 +6,20 @@
 
 /* Name, limits and speed in radians, initial angle, ..., number of the servo (grobo/model.h). */
 static const grobo_joint joints[] = {
-    {"PAN", -1.5, 1.5, 6.5, 0, 0, 0, 1, 0, 1, 1, false, 0, 1},
-    {"TILT", -0.8, 0.8, 6.5, 0, 0, 0, 2, 1, 1, 1, false, 0, 1},
+    {.name = "PAN",
+     .min_rad = -1.5,
+     .max_rad = 1.5,
+     .max_speed_rad_s = 6.5,
+     .motor = 1,
+     .mirror = 0,
+     .mirror_sign = 1},
+    {.name = "TILT",
+     .min_rad = -0.8,
+     .max_rad = 0.8,
+     .max_speed_rad_s = 6.5,
+     .motor = 2,
+     .mirror = 1,
+     .mirror_sign = 1},
 };
 static const grobo_model model = {.name = "HEAD", .joints = joints, .n_joints = 2};
 

@@ -18,11 +18,18 @@
 
 enum { BASE, SHOULDER, ELBOW, WRIST, JOINTS };
 
+#define JOINT(name_, index, id, low_deg, high_deg, init_deg)                                       \
+    {                                                                                              \
+        .name = (name_), .motor = (id), .servo_model = 0x3030, .min_rad = RAD(low_deg),            \
+        .max_rad = RAD(high_deg), .init_rad = RAD(init_deg), .max_speed_rad_s = RAD(375),          \
+        .mirror = (index), .mirror_sign = 1                                                        \
+    }
+
 static const grobo_joint joints[JOINTS] = {
-    {"BASE", RAD(-150), RAD(150), RAD(375), 0, 0x3030, 0, 11, BASE, 1, 1, false, 0, 1},
-    {"SHOULDER", RAD(-90), RAD(90), RAD(375), RAD(-30), 0x3030, 0, 12, SHOULDER, 1, 1, false, 0, 1},
-    {"ELBOW", RAD(-120), RAD(120), RAD(375), RAD(60), 0x3030, 0, 13, ELBOW, 1, 1, false, 0, 1},
-    {"WRIST", RAD(-100), RAD(100), RAD(375), RAD(-30), 0x3030, 0, 14, WRIST, 1, 1, false, 0, 1},
+    JOINT("BASE", BASE, 11, -150, 150, 0),
+    JOINT("SHOULDER", SHOULDER, 12, -90, 90, -30),
+    JOINT("ELBOW", ELBOW, 13, -120, 120, 60),
+    JOINT("WRIST", WRIST, 14, -100, 100, -30),
 };
 static const grobo_group groups[] = {{"all", 0xF}, {"arm", 0x7}};
 static const grobo_model model = {"ARM", joints, groups, JOINTS, 2, 0};

@@ -18,6 +18,7 @@
 #include <grobo/model.h>
 #include <grobo/posture.h>
 #include <grobo/protocol.h>
+#include <grobo/registers.h>
 
 GROBO_BEGIN_DECLS
 
@@ -50,8 +51,18 @@ typedef enum grobo_field {
     GROBO_FIELD_TEMPERATURE = 1 << 4,
     GROBO_FIELD_VOLTAGE = 1 << 5,
     GROBO_FIELD_TORQUE = 1 << 6,
-    GROBO_FIELD_GOAL = 1 << 7
+    GROBO_FIELD_GOAL = 1 << 7,
+    GROBO_FIELD_RANGE = 1 << 8,
+    GROBO_FIELD_TORQUE_LIMIT = 1 << 9
 } grobo_field;
+
+/** What of a servo is not as its joint needs it. */
+typedef struct grobo_setup_fault {
+    const grobo_servo_register *reg; /**< NULL: nothing, as far as was read */
+    int32_t found;                   /**< its counts */
+    int32_t low, high;               /**< what would do, in counts; low > high: the servo is as it
+                                          left its factory, and the joint is a calibrated one */
+} grobo_setup_fault;
 
 /** One reading of one joint. Plain data; a field means something only where `valid` has its bit. */
 typedef struct grobo_joint_state {
@@ -67,6 +78,10 @@ typedef struct grobo_joint_state {
     grobo_torque torque;   /**< as read, not as asked */
     bool overheated;       /**< the servo says that it was too hot and has cut its torque */
     uint8_t flags;         /**< of the reply, in bits of its family (GROBO_RS30X_STATUS_...) */
+    bool torque_limited;   /**< its torque limit is its joint's, or lower */
+    double low_rad;        /**< range of a calibrated joint, by the limits that its servo keeps */
+    double high_rad;
+    grobo_setup_fault setup; /**< of a joint that was read with GROBO_ERR_SETUP */
 } grobo_joint_state;
 
 /* ---- the table ----------------------------------------------------------------------------- */
@@ -172,6 +187,10 @@ struct grobo_driver {
      *  they can count. Moves nothing. NULL: they cannot. */
     int (*watchdog)(const grobo_driver *self, void *ctx, grobo_joint_mask joints, int64_t time_us,
                     int part, grobo_exchange *exchange);
+    /** Sets the torque limits of joints that have one, and moves nothing; a reading says whether it
+     *  took. NULL: they have none, and a model with one is refused. */
+    int (*torque_limit)(const grobo_driver *self, void *ctx, grobo_joint_mask joints, int part,
+                        grobo_exchange *exchange);
     /** Asks one joint for its state. @return 0 or an error. */
     int (*sense)(const grobo_driver *self, void *ctx, int joint, grobo_sense_kind kind,
                  grobo_exchange *exchange);

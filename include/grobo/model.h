@@ -30,6 +30,12 @@ typedef struct grobo_joint {
     bool turns;               /**< the servo counts several turns; else its angle is within one */
     double zero_rad;          /**< angle of the servo, from its middle, where the joint is at 0 */
     double gear;              /**< turns of the servo for one of the joint; 0: 1 */
+    bool calibrated;          /**< its servo keeps a middle and a range that were found by hand: one
+                                   as it left its factory is not moved, and a narrower range narrows
+                                   the limits. Else the middle must be the factory's, and the servo
+                                   must reach the limits */
+    uint8_t
+        torque_limit_pct; /**< of what its servo can, 1..100: set before it gets torque; 0: all */
 } grobo_joint;
 
 /** The angle of a joint's servo, from the middle of its range, where the joint is at an angle. */
@@ -62,7 +68,7 @@ typedef struct grobo_model {
  * Checks a table: counts within caps, names present and unique, motors unique and within
  * 0..GROBO_SERVO_ID_MAX (its family may have fewer: grobo_driver_check()), limits finite with
  * min <= init <= max, speed > 0, mirrors pairing up with equal signs, a finite zero, a gear that is
- * not negative, a slack within its range.
+ * not negative, a torque limit of at most 100, a slack within its range.
  * @return 0, or GROBO_ERR_ARG. Pure; thread safe.
  */
 GROBO_API int grobo_model_check(const grobo_model *model);

@@ -55,7 +55,8 @@ double grobo_joint_from_servo(const grobo_joint *joint, double servo_rad)
 
 static bool is_mount_good(const grobo_joint *joint)
 {
-    return isfinite(joint->zero_rad) && joint->gear >= 0 && isfinite(joint->gear);
+    return joint->torque_limit_pct <= 100 && isfinite(joint->zero_rad) && joint->gear >= 0 &&
+           isfinite(joint->gear);
 }
 
 static bool is_joint_good(const grobo_model *model, int j)

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Where a joint is, by what it was sent to and by what was read last. */
+#include <math.h>
+
 #include "src/base/assert.h"
 #include "src/base/instant.h"
 #include "src/robot/robot.h"
@@ -37,6 +39,25 @@ double grobo_i_axis_commanded(const grobo_robot_axis *axis, int64_t now_us)
 int64_t grobo_i_axis_until(const grobo_robot_axis *axis)
 {
     return axis->off_way ? axis->own_until_us : axis->way.to_us;
+}
+
+grobo_i_limits grobo_i_joint_limits(const grobo_robot *robot, int joint)
+{
+    const grobo_joint *model = &robot->driver->model->joints[joint];
+    const grobo_joint_state *state = &robot->axes[joint].state;
+    grobo_i_limits limits = {model->min_rad, model->max_rad};
+    if ((state->valid & GROBO_FIELD_RANGE) != 0) {
+        limits.min_rad = fmax(limits.min_rad, state->low_rad);
+        limits.max_rad = fmin(limits.max_rad, state->high_rad);
+    }
+    return limits;
+}
+
+bool grobo_i_torque_is_limited(const grobo_robot *robot, int joint)
+{
+    const grobo_joint_state *state = &robot->axes[joint].state;
+    return robot->driver->model->joints[joint].torque_limit_pct == 0 ||
+           ((state->valid & GROBO_FIELD_TORQUE_LIMIT) != 0 && state->torque_limited);
 }
 
 double grobo_i_axis_target(const grobo_robot_axis *axis)

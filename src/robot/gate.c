@@ -26,13 +26,45 @@ typedef struct saying {
 
 /* ---- numbers and limits ---------------------------------------------------------------------- */
 
+/* Draws joints in that go further than their servos let them: how many. *joint: the first. */
+static int draw_in(const grobo_robot *robot, grobo_posture *target, int *joint)
+{
+    int found = 0;
+    for (int j = target->n_joints - 1; j >= 0; j--) {
+        const grobo_i_limits limits = grobo_i_joint_limits(robot, j);
+        double angle_rad = target->angle_rad[j];
+        double inside_rad = fmin(fmax(angle_rad, limits.min_rad), limits.max_rad);
+        if (grobo_i_has(target->set, j) &&
+            grobo_ddeg_from_rad(angle_rad) != grobo_ddeg_from_rad(inside_rad)) {
+            target->angle_rad[j] = inside_rad;
+            *joint = j;
+            found++;
+        }
+    }
+    return found;
+}
+
+/* As grobo_posture_check() and _clamp(), of the limits that hold. */
+static int check_target(const grobo_robot *robot, const grobo_posture *target, int *joint)
+{
+    grobo_posture inside = *target;
+    int result = grobo_posture_check(target, robot->driver->model, joint);
+    return result >= 0 && draw_in(robot, &inside, joint) > 0 ? GROBO_ERR_LIMIT : result;
+}
+
+static int clamp_target(const grobo_robot *robot, grobo_posture *target)
+{
+    int joint;
+    int clamped = grobo_posture_clamp(target, robot->driver->model);
+    return clamped < 0 ? clamped : clamped + draw_in(robot, target, &joint);
+}
+
 int grobo_i_gate_target(grobo_robot *robot, grobo_posture *target)
 {
-    const grobo_model *model = robot->driver->model;
     int joint = -1;
-    int result = grobo_posture_check(target, model, &joint);
+    int result = check_target(robot, target, &joint);
     if (result == GROBO_ERR_LIMIT && robot->config.limit_policy == GROBO_LIMIT_CLAMP) {
-        int clamped = grobo_posture_clamp(target, model);
+        int clamped = clamp_target(robot, target);
         if (clamped >= 0) {
             robot->counters.clamped += (unsigned)clamped;
             return GROBO_OK;
@@ -143,6 +175,16 @@ int grobo_i_gate_time(grobo_robot *robot, const grobo_robot_order *order, grobo_
 
 /* ---- judging --------------------------------------------------------------------------------- */
 
+static bool all_limited(const grobo_robot *robot, grobo_joint_mask joints)
+{
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        if (grobo_i_has(joints, j) && !grobo_i_torque_is_limited(robot, j)) {
+            return false;
+        }
+    }
+    return true;
+}
+
 /* May these joints be sent anywhere? */
 static int judge_joints(grobo_robot *robot, grobo_joint_mask joints)
 {
@@ -154,7 +196,7 @@ static int judge_joints(grobo_robot *robot, grobo_joint_mask joints)
     }
     /* A joint in free mode is moved by a person; one adrift by somebody else. */
     bool others = (joints & robot->free_joints) != 0 || grobo_i_adrift(robot, joints);
-    return others ? GROBO_ERR_STATE : GROBO_OK;
+    return others || !all_limited(robot, joints) ? GROBO_ERR_STATE : GROBO_OK;
 }
 
 /* Where the end of a motion brings a joint to rest: at most half of what it could do in that time
@@ -188,7 +230,7 @@ static int judge_goal(grobo_robot *robot, const grobo_robot_order *order, grobo_
     if (target->posture.set == 0) {
         return GROBO_ERR_STALE;
     }
-    (void)grobo_posture_clamp(&target->posture, robot->driver->model); /* one may rest outside */
+    (void)clamp_target(robot, &target->posture); /* one may rest outside */
     int result = judge_joints(robot, target->posture.set);
     return result < 0 ? result : grobo_i_gate_time(robot, order, target);
 }
@@ -213,7 +255,7 @@ static int judge_halt(grobo_robot *robot, const grobo_robot_order *order, grobo_
     if (target->posture.set == 0) {
         return GROBO_ERR_EMPTY;
     }
-    (void)grobo_posture_clamp(&target->posture, robot->driver->model); /* one may stand outside */
+    (void)clamp_target(robot, &target->posture); /* one may stand outside */
     return grobo_i_gate_time(robot, order, target);
 }
 
@@ -227,7 +269,8 @@ static int judge_hold(const grobo_robot *robot, const grobo_robot_order *order,
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
         double hold_rad = grobo_i_hold_rad(robot, j);
-        if (grobo_i_has(order->joints, j) && axis->sensed && !isnan(hold_rad) &&
+        bool limited = !robot->driver->goal_wakes || grobo_i_torque_is_limited(robot, j);
+        if (grobo_i_has(order->joints, j) && axis->sensed && !isnan(hold_rad) && limited &&
             !grobo_i_axis_is_on(axis)) {
             target->posture.angle_rad[j] = hold_rad;
             target->joint_time_us[j] = robot->driver->time_step_us;
@@ -255,7 +298,8 @@ static int judge_torque(const grobo_robot *robot, const grobo_robot_order *order
     grobo_joint_mask may = order->joints;
     for (int j = 0; on && j < robot->driver->model->n_joints; j++) {
         const grobo_robot_axis *axis = &robot->axes[j];
-        bool holds = !stale && axis->held && grobo_i_goal_holds(robot, j);
+        bool holds = !stale && axis->held && grobo_i_goal_holds(robot, j) &&
+                     grobo_i_torque_is_limited(robot, j);
         if (!holds && !grobo_i_axis_is_on(axis)) {
             may &= ~GROBO_JOINT_BIT(j);
         }
@@ -297,7 +341,7 @@ static int judge_raw(grobo_robot *robot, const grobo_exchange *exchange, saying 
     int result = driver->inspect(driver, robot->driver_ctx, exchange->frame, exchange->frame_bytes,
                                  &says->target, says->torqued);
     if (result >= 0) {
-        result = grobo_posture_check(&target->posture, driver->model, &robot->fault_joint);
+        result = check_target(robot, &target->posture, &robot->fault_joint);
     }
     if (result < 0) {
         return result;
@@ -641,9 +685,10 @@ static void assert_leaving(const grobo_robot_slot *slot, const saying *says)
     const grobo_robot_order *order = &slot->order;
     const grobo_posture *to = &says->target.posture;
     grobo_joint_mask on = says->torqued[GROBO_TORQUE_ON];
+    int joint = -1;
     GROBO_ASSERT(slot->exchange.frame_bytes > 0);
     GROBO_ASSERT((to->set & ~grobo_i_all_joints(robot)) == 0 && (on & ~order->joints) == 0);
-    GROBO_ASSERT(to->set == 0 || grobo_posture_check(to, robot->driver->model, NULL) == GROBO_OK);
+    GROBO_ASSERT(to->set == 0 || check_target(robot, to, &joint) == GROBO_OK);
     GROBO_ASSERT(!robot->trip.latched || on == 0);
     GROBO_ASSERT(!robot->trip.latched || to->set == 0 || order->stops);
     GROBO_ASSERT((to->set & robot->free_joints) == 0 || order->deed == GROBO_I_DEED_HOLD ||

@@ -25,6 +25,9 @@ static void merge(grobo_robot_axis *axis, const grobo_joint_state *got)
     KEEP(GROBO_FIELD_TEMPERATURE, temperature_c)
     KEEP(GROBO_FIELD_VOLTAGE, voltage_mv)
     KEEP(GROBO_FIELD_TORQUE, torque)
+    KEEP(GROBO_FIELD_TORQUE_LIMIT, torque_limited)
+    KEEP(GROBO_FIELD_RANGE, low_rad)
+    KEEP(GROBO_FIELD_RANGE, high_rad)
 #undef KEEP
 }
 
@@ -40,12 +43,12 @@ static double correction(const grobo_robot *robot, int joint)
 
 double grobo_i_hold_rad(const grobo_robot *robot, int joint)
 {
-    const grobo_joint *limits = &robot->driver->model->joints[joint];
+    const grobo_i_limits limits = grobo_i_joint_limits(robot, joint);
     double angle_rad = robot->axes[joint].state.angle_rad - correction(robot, joint);
     double outside_rad = grobo_rad_from_deg(GROBO_I_HOLD_OUTSIDE_DEG);
     bool near =
-        angle_rad >= limits->min_rad - outside_rad && angle_rad <= limits->max_rad + outside_rad;
-    return near ? fmin(fmax(angle_rad, limits->min_rad), limits->max_rad) : (double)NAN;
+        angle_rad >= limits.min_rad - outside_rad && angle_rad <= limits.max_rad + outside_rad;
+    return near ? fmin(fmax(angle_rad, limits.min_rad), limits.max_rad) : (double)NAN;
 }
 
 /* Where a servo is going, if it told: its angle was read. One that has time left creeps there,
@@ -128,11 +131,12 @@ static void take_place(grobo_robot *robot, int joint, int64_t asked_us,
     }
 }
 
-/* A servo that is not set up for its joint tells its torque alone: it may be made limp. */
-static void take_no_more_than_torque(grobo_robot *robot, int joint, int64_t asked_us,
-                                     grobo_joint_state *got)
+/* A servo that is not set up for its joint tells its torque, so that it may be made limp, and what
+ * it measures of itself; what its angles mean is not known. */
+static void take_no_angles(grobo_robot *robot, int joint, int64_t asked_us, grobo_joint_state *got)
 {
-    got->valid &= GROBO_FIELD_TORQUE;
+    got->valid &= (uint16_t) ~(GROBO_FIELD_ANGLE | GROBO_FIELD_GOAL | GROBO_FIELD_SPEED |
+                               GROBO_FIELD_TIME | GROBO_FIELD_RANGE);
     merge(&robot->axes[joint], got);
     if (asked_us >= robot->axes[joint].told_us) {
         take_place(robot, joint, asked_us, got);
@@ -217,7 +221,7 @@ int grobo_i_reading_take(const grobo_robot_slot *slot, int result, const grobo_p
         robot->axes[joint].status = result;
         robot->axes[joint].lost += grobo_i_is_loss(result);
         if (result == GROBO_ERR_SETUP) {
-            take_no_more_than_torque(robot, joint, slot->asked_us, got);
+            take_no_angles(robot, joint, slot->asked_us, got);
         }
     }
     return result;

@@ -68,6 +68,13 @@ double grobo_i_axis_target(const grobo_robot_axis *axis);
 void grobo_i_axis_rest(grobo_robot_axis *axis, int64_t now_us);
 /* Takes what was read for where a joint is: at the angle, or on the move the servo told of. */
 void grobo_i_axis_here(grobo_robot_axis *axis, int64_t now_us);
+/* The limits of a joint: those of the model, or the narrower ones that its servo keeps. */
+typedef struct grobo_i_limits {
+    double min_rad, max_rad;
+} grobo_i_limits;
+grobo_i_limits grobo_i_joint_limits(const grobo_robot *robot, int joint);
+/* False where a joint has a torque limit that its servo was not read to keep. */
+bool grobo_i_torque_is_limited(const grobo_robot *robot, int joint);
 /* True if it is known to have torque. */
 bool grobo_i_axis_is_on(const grobo_robot_axis *axis);
 /* True while a joint is on the way it was sent on, or a target waits for the line. */

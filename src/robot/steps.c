@@ -177,6 +177,57 @@ static grobo_joint_mask joints_with(const grobo_robot *robot, grobo_joint_mask j
     return found;
 }
 
+/* Frames that move nothing, to these joints. One that finds no room is as one that is lost. */
+static void tell_plain(grobo_robot *robot, grobo_joint_mask joints, int64_t time_us,
+                       int (*build)(const grobo_driver *driver, void *ctx, grobo_joint_mask joints,
+                                    int64_t time_us, int part, grobo_exchange *exchange))
+{
+    int more = joints != 0;
+    for (int part = 0; more > 0; part++) {
+        grobo_robot_slot *slot = grobo_i_slot_take(robot, GROBO_I_USE_PLAIN);
+        if (slot == NULL) {
+            break;
+        }
+        more = build(robot->driver, robot->driver_ctx, joints, time_us, part, &slot->exchange);
+        if (more > 0) {
+            more = grobo_i_slot_send(slot, robot->job->priority) < 0 ? 0 : 1;
+        } else {
+            grobo_i_slot_drop(slot);
+        }
+    }
+}
+
+/* The joints that are to get torque, or have it, without the limit of theirs. */
+static grobo_joint_mask unlimited(const grobo_robot *robot)
+{
+    grobo_joint_mask found = 0;
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        bool is = grobo_i_has(robot->job->joints & ~robot->job->failed, j);
+        found |= is && !grobo_i_torque_is_limited(robot, j) ? GROBO_JOINT_BIT(j) : 0;
+    }
+    return found;
+}
+
+static int build_limit(const grobo_driver *driver, void *ctx, grobo_joint_mask joints,
+                       int64_t time_us, int part, grobo_exchange *exchange)
+{
+    (void)time_us;
+    return driver->torque_limit(driver, ctx, joints, part, exchange);
+}
+
+static int step_limit(grobo_robot *robot)
+{
+    grobo_robot_task *job = robot->job;
+    job->pending = unlimited(robot);
+    tell_plain(robot, job->pending, 0, build_limit);
+    return GROBO_I_DRAIN;
+}
+
+static int step_limit_check(grobo_robot *robot)
+{
+    return again(robot, (unlimited(robot) | robot->job->failed) & robot->job->pending, step_limit);
+}
+
 static int step_pick_off(grobo_robot *robot)
 {
     grobo_robot_task *job = robot->job;
@@ -196,23 +247,17 @@ static int step_pick_off(grobo_robot *robot)
 
 /* The servos' own dead-man. What one of these frames does is not read back: a lost one costs the
  * dead-man of a motion, or has goals refused and so sent again from the begin of the script. */
+static int build_watchdog(const grobo_driver *driver, void *ctx, grobo_joint_mask joints,
+                          int64_t time_us, int part, grobo_exchange *exchange)
+{
+    return driver->watchdog(driver, ctx, joints, time_us, part, exchange);
+}
+
 static int tell_watchdog(grobo_robot *robot, int64_t time_us)
 {
     const grobo_driver *driver = robot->driver;
-    int more = driver->watchdog != NULL && driver->watchdog_us > 0;
-    for (int part = 0; more > 0; part++) {
-        grobo_robot_slot *slot = grobo_i_slot_take(robot, GROBO_I_USE_PLAIN);
-        if (slot == NULL) {
-            break; /* as if it was lost */
-        }
-        more = driver->watchdog(driver, robot->driver_ctx, robot->job->joints, time_us, part,
-                                &slot->exchange);
-        if (more > 0) {
-            more = grobo_i_slot_send(slot, robot->job->priority) < 0 ? 0 : 1;
-        } else {
-            grobo_i_slot_drop(slot);
-        }
-    }
+    bool has_one = driver->watchdog != NULL && driver->watchdog_us > 0;
+    tell_plain(robot, has_one ? robot->job->joints : 0, time_us, build_watchdog);
     return GROBO_I_DRAIN;
 }
 
@@ -599,8 +644,9 @@ static int step_aim_rest(grobo_robot *robot)
 /* ---- scripts --------------------------------------------------------------------------------- */
 
 #define SWITCH_ON                                                                                  \
-    step_pick_off, step_watchdog_clear, step_hold, step_read_pending, step_hold_check,             \
-        step_torque, step_read_pending, step_torque_check, step_watchdog_set
+    step_limit, step_read_pending, step_limit_check, step_pick_off, step_watchdog_clear,           \
+        step_hold, step_read_pending, step_hold_check, step_torque, step_read_pending,             \
+        step_torque_check, step_watchdog_set
 #define SWITCH step_pick_all, step_torque, step_read_pending, step_torque_check
 #define MOVE step_send, step_arrive, step_read_back, step_arrived
 

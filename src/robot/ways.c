@@ -30,8 +30,8 @@ static int64_t next_us(const grobo_robot *robot, int64_t left_us)
 /* Where a way is after so much of its time, and never outside the limits: it may begin there. */
 static double place(const grobo_robot *robot, int joint, const grobo_robot_way *way, int64_t at_us)
 {
-    const grobo_joint *limits = &robot->driver->model->joints[joint];
-    return fmin(fmax(grobo_i_way_at(way, at_us), limits->min_rad), limits->max_rad);
+    const grobo_i_limits limits = grobo_i_joint_limits(robot, joint);
+    return fmin(fmax(grobo_i_way_at(way, at_us), limits.min_rad), limits.max_rad);
 }
 
 bool grobo_i_way_is_short(const grobo_robot_axis *axis)

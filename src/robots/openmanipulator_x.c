@@ -55,7 +55,8 @@ static const grobo_joint joints[] = {
      .free_current_ma = 0,
      .motor = 15,
      .mirror = 4,
-     .mirror_sign = 1},
+     .mirror_sign = 1,
+     .torque_limit_pct = 17},
 };
 
 static const grobo_group groups[] = {

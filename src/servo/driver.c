@@ -51,11 +51,13 @@ static bool times_sound(const grobo_driver *driver)
            isfinite(driver->angle_step_rad) && driver->angle_step_rad > 0;
 }
 
-static bool ids_sound(const grobo_driver *driver)
+static bool joints_sound(const grobo_driver *driver)
 {
     for (int j = 0; j < driver->model->n_joints; j++) {
         uint8_t id = driver->model->joints[j].motor;
-        if (id < driver->protocol->id_min || id > driver->protocol->id_max) {
+        bool limits = driver->model->joints[j].torque_limit_pct > 0;
+        if ((limits && driver->torque_limit == NULL) || id < driver->protocol->id_min ||
+            id > driver->protocol->id_max) {
             return false;
         }
     }
@@ -70,7 +72,7 @@ int grobo_driver_check(const grobo_driver *driver)
     }
     bool policy = driver->on_exit == GROBO_EXIT_OFF || driver->on_exit == GROBO_EXIT_HOLD ||
                   driver->on_exit == GROBO_EXIT_SIT;
-    if (!policy || driver->protocol == NULL || !ids_sound(driver) || !times_sound(driver) ||
+    if (!policy || driver->protocol == NULL || !joints_sound(driver) || !times_sound(driver) ||
         !functions_present(driver) || !limits_sound(&driver->limits) || !rest_sound(driver) ||
         !readback_sound(driver)) {
         return GROBO_ERR_ARG;

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include <grobo/posture.h>
+
 #include "src/base/assert.h"
 #include "src/sim/dxl.h"
 #include "src/sim/family.h"
@@ -65,6 +67,39 @@ void grobo_i_dxl_factory(grobo_sim_servo *servo)
     to_factory(servo, true);
     grobo_i_dxl_put(servo, GROBO_ROLE_MODEL, servo->model->number);
     grobo_i_dxl_put(servo, GROBO_ROLE_FIRMWARE, servo->model->firmware);
+    memcpy(servo->flash, servo->reg, sizeof servo->flash);
+}
+
+/* Not the factory's range: it would not be a calibrated one. */
+static void calibrate(grobo_sim_servo *servo, const grobo_joint *joint)
+{
+    double ends[] = {grobo_joint_to_servo(joint, joint->min_rad),
+                     grobo_joint_to_servo(joint, joint->max_rad)};
+    double tick_deg = (double)servo->model->span_deg / servo->model->span_ticks;
+    long low = lround(grobo_deg_from_rad(fmin(ends[0], ends[1])) / tick_deg);
+    long high = lround(grobo_deg_from_rad(fmax(ends[0], ends[1])) / tick_deg);
+    const grobo_servo_register *max = row_of(servo, GROBO_ROLE_MAX_POSITION);
+    high += servo->model->middle;
+    grobo_i_dxl_put(servo, GROBO_ROLE_MIN_POSITION, low + servo->model->middle);
+    grobo_i_dxl_put(servo, GROBO_ROLE_MAX_POSITION, high >= max->factory ? max->factory - 1 : high);
+}
+
+void grobo_i_dxl_sold(grobo_sim *sim, int index, uint8_t id, int baud_code)
+{
+    grobo_sim_servo *servo = &sim->servo[index];
+    grobo_i_dxl_factory(servo);
+    grobo_i_dxl_put(servo, GROBO_ROLE_ID, id);
+    grobo_i_dxl_put(servo, GROBO_ROLE_BAUD, baud_code);
+    const grobo_joint *joint = &sim->config.model->joints[index];
+    if (sim->config.mounted && joint->calibrated) {
+        calibrate(servo, joint);
+    }
+    const grobo_servo_register *most = row_of(servo, GROBO_ROLE_MAX_TORQUE);
+    bool kept = most != NULL && row_of(servo, GROBO_ROLE_TORQUE_LIMIT) == NULL &&
+                row_of(servo, GROBO_ROLE_GOAL_PWM) == NULL; /* the one limit that it has */
+    if (sim->config.mounted && joint->torque_limit_pct > 0 && kept) {
+        grobo_i_dxl_put(servo, GROBO_ROLE_MAX_TORQUE, most->max * joint->torque_limit_pct / 100);
+    }
     memcpy(servo->flash, servo->reg, sizeof servo->flash);
 }
 

@@ -15,6 +15,9 @@ const grobo_servo_register *grobo_i_dxl_row(const grobo_sim_servo *servo, const 
 
 /* Every register as from the factory. */
 void grobo_i_dxl_factory(grobo_sim_servo *servo);
+/* The same with an id and the code of a rate, and with the range of a calibrated joint where servos
+ * are mounted; kept. */
+void grobo_i_dxl_sold(grobo_sim *sim, int servo, uint8_t id, int baud_code);
 /* Registers in RAM as after a restart, those of EEPROM from where they are kept. */
 void grobo_i_dxl_boot(grobo_sim *sim, int servo);
 /* What the registers say of the plant, beside what a series has of its own: speeds and mode. */

@@ -396,15 +396,11 @@ static void restart(grobo_sim *sim, int index)
 
 static bool factory(grobo_sim *sim, int index, uint8_t id, uint32_t baud_bps)
 {
-    grobo_sim_servo *servo = &sim->servo[index];
-    int code = grobo_servo_baud_code(servo->model, (int32_t)baud_bps);
+    int code = grobo_servo_baud_code(sim->servo[index].model, (int32_t)baud_bps);
     if (code < 0 || id > GROBO_DXL1_ID_MAX) {
         return false;
     }
-    grobo_i_dxl_factory(servo);
-    grobo_i_dxl_put(servo, GROBO_ROLE_ID, id);
-    grobo_i_dxl_put(servo, GROBO_ROLE_BAUD, code);
-    memcpy(servo->flash, servo->reg, sizeof servo->flash);
+    grobo_i_dxl_sold(sim, index, id, code);
     return true;
 }
 

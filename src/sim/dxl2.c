@@ -273,6 +273,14 @@ static void restart(grobo_sim *sim, int index)
     follow(sim, index);
 }
 
+static bool has_mode(const grobo_sim_servo *servo, int32_t mode)
+{
+    bool by_current = mode == GROBO_DXL2_MODE_CURRENT || mode == GROBO_DXL2_MODE_GRIP;
+    return by_current
+               ? grobo_servo_register_of(servo->model, GROBO_ROLE_GOAL_CURRENT) != NULL
+               : places(mode) || mode == GROBO_DXL2_MODE_VELOCITY || mode == GROBO_DXL2_MODE_PWM;
+}
+
 static bool factory(grobo_sim *sim, int index, uint8_t id, uint32_t baud_bps)
 {
     grobo_sim_servo *servo = &sim->servo[index];
@@ -280,14 +288,15 @@ static bool factory(grobo_sim *sim, int index, uint8_t id, uint32_t baud_bps)
     if (code < 0 || id > GROBO_DXL2_ID_MAX) {
         return false;
     }
-    grobo_i_dxl_factory(servo);
-    grobo_i_dxl_put(servo, GROBO_ROLE_ID, id);
-    grobo_i_dxl_put(servo, GROBO_ROLE_BAUD, code);
+    grobo_i_dxl_sold(sim, index, id, code);
     if (sim->config.mounted) {
-        bool turns = sim->config.model->joints[index].turns;
+        const grobo_joint *joint = &sim->config.model->joints[index];
+        bool grips = joint->torque_limit_pct > 0 && has_mode(servo, GROBO_DXL2_MODE_GRIP);
         grobo_i_dxl_put(servo, GROBO_ROLE_DIRECTION, GROBO_DXL2_DRIVE_TIME);
         grobo_i_dxl_put(servo, GROBO_ROLE_MODE,
-                        turns ? GROBO_DXL2_MODE_EXTENDED : GROBO_DXL2_MODE_POSITION);
+                        grips          ? GROBO_DXL2_MODE_GRIP
+                        : joint->turns ? GROBO_DXL2_MODE_EXTENDED
+                                       : GROBO_DXL2_MODE_POSITION);
     }
     memcpy(servo->flash, servo->reg, sizeof servo->flash);
     return true;
@@ -319,14 +328,6 @@ static bool is_goal(const grobo_servo_register *reg)
 {
     return reg->role == GROBO_ROLE_GOAL || reg->role == GROBO_ROLE_GOAL_SPEED ||
            reg->role == GROBO_ROLE_GOAL_CURRENT || reg->role == GROBO_ROLE_GOAL_PWM;
-}
-
-static bool has_mode(const grobo_sim_servo *servo, int32_t mode)
-{
-    bool by_current = mode == GROBO_DXL2_MODE_CURRENT || mode == GROBO_DXL2_MODE_GRIP;
-    return by_current
-               ? grobo_servo_register_of(servo->model, GROBO_ROLE_GOAL_CURRENT) != NULL
-               : places(mode) || mode == GROBO_DXL2_MODE_VELOCITY || mode == GROBO_DXL2_MODE_PWM;
 }
 
 /* Whether a register may get a value. */

@@ -136,13 +136,9 @@ static void restart(grobo_sim *sim, int index)
 static bool factory(grobo_sim *sim, int index, uint8_t id, uint32_t baud_bps)
 {
     static const uint8_t codes[] = {10, 1, 0};
-    grobo_sim_servo *servo = &sim->servo[index];
     for (size_t i = 0; i < sizeof codes; i++) {
         if ((uint32_t)rate_of(codes[i]) == baud_bps && id <= GROBO_ICS_ID_MAX) {
-            grobo_i_dxl_factory(servo);
-            grobo_i_dxl_put(servo, GROBO_ROLE_ID, id);
-            grobo_i_dxl_put(servo, GROBO_ROLE_BAUD, codes[i]);
-            memcpy(servo->flash, servo->reg, sizeof servo->flash);
+            grobo_i_dxl_sold(sim, index, id, codes[i]);
             return true;
         }
     }

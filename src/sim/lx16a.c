@@ -149,13 +149,10 @@ static void restart(grobo_sim *sim, int index)
 
 static bool factory(grobo_sim *sim, int index, uint8_t id, uint32_t baud_bps)
 {
-    grobo_sim_servo *servo = &sim->servo[index];
     if (baud_bps != BPS || id > GROBO_LX16A_ID_MAX) {
         return false;
     }
-    grobo_i_dxl_factory(servo);
-    grobo_i_dxl_put(servo, GROBO_ROLE_ID, id);
-    memcpy(servo->flash, servo->reg, sizeof servo->flash);
+    grobo_i_dxl_sold(sim, index, id, 0); /* its rate is in no register */
     return true;
 }
 

@@ -102,34 +102,53 @@ echo >&7
 ended
 check "it is calibrated" with_status 0
 check "the servo keeps the offset" register 1 offset 22[78]
-check "its limits are the robot's at least" register 1 min_position 796
-check "and wider where the hand was" grep -q 'gripper goes from' "$work/said"
+check "its limits are where the hand was" register 1 min_position '17[67][0-9]'
 check "what it was is kept" grep -q '"homing_offset": 0' "$work/so101-before.json"
 check "what it is, too" grep -q '"homing_offset": 22[78]' "$work/so101.json"
 check_json "the joint reads 0 there" 'abs(lines[0]["joints"][0]["angle_deg"]) < 0.2' \
     on_robot --json status shoulder_pan
 check "it moves" exits 0 on_robot move shoulder_pan 5 500
+check "no further than the hand" fails 4 'shoulder_pan.*go from -25 to 75 deg' \
+    on_robot move shoulder_pan -60 500
 check "it is let go" exits 0 on_robot servo off
 
 # Whose servos are set up otherwise than its file says.
-check "limits that are narrower" exits 0 on_robot --yes servo-set 3 max_position 3000 --flash
-check "it is not moved, and the fix is named" fails 1 "elbow_flex.*'grctl calibrate'" \
+check "another mode" exits 0 on_robot --yes servo-set 3 mode 3 --flash
+check "it is not moved, and the fix is named" fails 1 \
+    "elbow_flex.*mode is 3, 0 is wanted; 'grctl servo-set 3 mode 0 --flash'" \
     on_robot move elbow_flex 5
 check "nor anything with it" fails 1 'elbow_flex' on_robot init
 check "it is read" exits 1 on_robot status
-check "its registers, too" register 3 max_position 3000
+check "its registers, too" exits 0 on_robot servo-get 3 mode
+check "as they are" grep -q ' mode  *3$' "$work/out"
 check "it is made limp" both exits 0 on_robot servo off --- true
-check "it can be put right by hand" exits 0 on_robot --yes servo-set 3 max_position 3150 --flash
-check "or it is broken again" exits 0 on_robot --yes servo-set 3 max_position 3000 --flash
+check "it is put right as was said" exits 0 on_robot --yes servo-set 3 mode 0 --flash
+check "it moves again" exits 0 on_robot move elbow_flex 5 500
+# as_new: the calibration of servos as they left the factory.
+as_new() {
+    sed 's/_offset": [-0-9]*/_offset": 0/;s/_min": [0-9]*/_min": 0/;s/_max": [0-9]*/_max": 4095/' \
+        "$work/so101.json" >"$work/new.json"
+    exits 0 on_robot calibrate --restore "$work/new.json"
+}
+check "as it came from its factory" in_folder as_new
+check "its offset is none" register 1 offset 0
+check "its limits, too" register 1 max_position 4095
+check "it was never calibrated" fails 1 "never calibrated, offset is 0.*'grctl calibrate'" \
+    on_robot move shoulder_pan 5
+check "it is not switched on" fails 1 "never calibrated" on_robot servo on
+check "it is made limp" exits 0 on_robot servo off
+check "it is shown" exits 1 on_robot --json status
+check "with its heat, without an angle" \
+    grep -q '"angle_deg":null.*"torque":"off".*"temperature_c":[23]' "$work/out"
 check_json "a calibration is shown" \
-    'lines[0]["written"] is False and lines[0]["joints"][2]["before_range"][1] == 3000' \
+    'lines[0]["written"] is False and lines[0]["joints"][2]["before_range"][1] == 4095' \
     on_robot --json calibrate --from "$work/so101.json" --dry-run
-check "nothing was written" register 3 max_position 3000
+check "nothing was written" register 3 max_position 4095
 check "a calibration is taken" in_folder exits 0 on_robot calibrate --from so101.json
 check "it moves again" exits 0 on_robot move elbow_flex 5 500
 check "all is as it came" in_folder exits 0 on_robot calibrate --restore so101-before.json
 check "its offset" register 1 offset 0
-check "its limits" register 1 max_position 4095
+check "its limits" register 1 max_position 3300
 
 # Files that do not fit.
 spoiled() {
@@ -152,6 +171,7 @@ check "a joint is missing" spoiled 'gripper: needs' '/"gripper"/,$d;/"wrist_roll
 check "no file" fails 3 'none.json' on_robot calibrate --from "$work/none.json"
 check "nobody presses enter" in_folder exits 2 on_robot calibrate
 check "that is said" grep -q 'needs a person who presses enter' "$work/err"
+check "the file must say so" fails 2 "calibrated: true" "$GRCTL" --robot pan-tilt -d sim calibrate
 check "another robot has trims" fails 2 'keep no calibration' \
     "$GRCTL" --robot gr001 -d sim calibrate --from "$work/so101.json"
 

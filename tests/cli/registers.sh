@@ -84,8 +84,8 @@ check "also out of a trace" both exits 0 "$GRCTL" --robot so101 decode "$work/li
 check "replay says that it cannot" fails 2 'replay: knows the frames of RS30x only' \
     "$GRCTL" --robot so101 replay "$work/line"
 check_json "registers in JSON" 'lines[0]["model"] == "STS3215" and lines[0]["registers"] == [
-    {"name": "max_position", "address": 11, "value": 4095, "unit": "0.088 deg",
-     "max_position_deg": 179.9}]' of so101 --json servo-get 3 max_position
+    {"name": "max_position", "address": 11, "value": 3150, "unit": "0.088 deg",
+     "max_position_deg": 96.9}]' of so101 --json servo-get 3 max_position
 stop_sim
 
 # ---- DYNAMIXEL: kept at once, without torque only ----------------------------------------------

@@ -10,6 +10,8 @@
 
 #include <cmocka.h>
 
+#include <grobo/rs30x.h>
+
 #include "tests/support/table_bus.h"
 
 #define RAD(deg) ((deg)*0.017453292519943295)
@@ -314,6 +316,205 @@ static void what_is_set_up_otherwise_does_not_move(void **state)
     refused(ax, 1, GROBO_ROLE_MAX_POSITION, 0);
 }
 
+/* The same arm, of joints whose middle and range are found by hand, or whose first is a gripper. */
+static void begin_with(const family *f, bool calibrated, uint8_t torque_limit_pct)
+{
+    static grobo_joint joints[JOINTS];
+    static grobo_model model;
+    begin(f);
+    memcpy(joints, f->model->joints, sizeof joints);
+    for (int j = 0; j < JOINTS; j++) {
+        joints[j].calibrated = calibrated;
+    }
+    joints[0].torque_limit_pct = torque_limit_pct;
+    model = *f->model;
+    model.joints = joints;
+    assert_int_equal(f->init(&bus.driver, &model), GROBO_OK);
+    table_start(&bus, &quiet);
+}
+
+static void begin_calibrated(const family *f)
+{
+    begin_with(f, true, 0);
+}
+
+static int moved_to(double a_deg, double b_deg, double c_deg)
+{
+    grobo_posture p = posture(a_deg, b_deg, c_deg, 500);
+    int job = grobo_robot_move(&bus.robot, &p);
+    return job < 0 ? job : table_wait(&bus, job);
+}
+
+/* It may be read, and made limp; the fault says which register shows it. */
+static void a_joint_that_was_never_calibrated_does_not_move(void **state)
+{
+    (void)state;
+    for (int i = 0; i < FAMILIES; i++) {
+        begin_calibrated(&families[i]);
+        assert_int_equal(moved_to(10, 10, 10), GROBO_ERR_SETUP);
+        assert_int_equal(table_count(&bus, GROBO_DXL2_SYNC_WRITE), 0);
+        grobo_joint_info got;
+        assert_int_equal(grobo_robot_joint(&bus.robot, 0, &got), GROBO_OK);
+        const grobo_setup_fault *fault = &got.state.setup;
+        assert_non_null(fault->reg);
+        bool offset = grobo_servo_register_of(bus.servo[0].servo, GROBO_ROLE_OFFSET) != NULL;
+        assert_int_equal(fault->reg->role, offset ? GROBO_ROLE_OFFSET : GROBO_ROLE_MIN_POSITION);
+        assert_true(fault->low > fault->high);
+        table_put(&bus, 1, GROBO_ROLE_TORQUE, 1);
+        int job = grobo_robot_torque(&bus.robot, GROBO_JOINTS_ALL(JOINTS), GROBO_TORQUE_OFF);
+        assert_int_equal(table_wait(&bus, job), GROBO_OK);
+        assert_int_equal(table_get(&bus, 1, GROBO_ROLE_TORQUE), 0);
+    }
+}
+
+/* Its limits are those of its servo, where they are narrower than the robot's. */
+static void a_calibrated_joint_goes_as_far_as_its_servo(void **state)
+{
+    (void)state;
+    for (int i = 0; i < FAMILIES; i++) {
+        begin_calibrated(&families[i]);
+        for (int j = 0; j < JOINTS; j++) {
+            const grobo_servo_model *servo = bus.servo[j].servo;
+            int32_t ticks_of_deg = servo->span_ticks / servo->span_deg;
+            table_put(&bus, j, GROBO_ROLE_MIN_POSITION, servo->middle - 30 * ticks_of_deg);
+            table_put(&bus, j, GROBO_ROLE_MAX_POSITION, servo->middle + 50 * ticks_of_deg);
+        }
+        assert_int_equal(moved_to(40, 20, 10), GROBO_OK);
+        at(0, 40);
+        at(1, 20);
+        assert_int_equal(moved_to(60, 20, 10), GROBO_ERR_LIMIT);
+        assert_int_equal(moved_to(40, 40, 10), GROBO_ERR_LIMIT); /* mounted the other way round */
+        assert_int_equal(moved_to(40, -40, 10), GROBO_OK);
+        at(0, 40);
+        table_put(&bus, 0, GROBO_ROLE_MIN_POSITION, bus.servo[0].servo->middle);
+        table_put(&bus, 0, GROBO_ROLE_MAX_POSITION, bus.servo[0].servo->middle);
+        grobo_robot_link_down(&bus.robot, bus.now_us);
+        grobo_robot_link_up(&bus.robot, bus.now_us);
+        assert_int_equal(moved_to(10, 10, 10), GROBO_ERR_SETUP);
+    }
+}
+
+/* Families whose servos forget their limit of torque, and where it is. */
+static const struct {
+    int family;
+    grobo_register_role role;
+    int32_t wanted; /* for 30 % */
+} limits[] = {{0, GROBO_ROLE_GOAL_CURRENT, 525},
+              {1, GROBO_ROLE_TORQUE_LIMIT, 300},
+              {3, GROBO_ROLE_TORQUE_LIMIT, 306}};
+
+static void begin_gripper(size_t i)
+{
+    begin_with(&families[limits[i].family], false, 30);
+    if (limits[i].role == GROBO_ROLE_GOAL_CURRENT) {
+        table_put(&bus, 0, GROBO_ROLE_MODE, GROBO_DXL2_MODE_GRIP);
+        table_put(&bus, 0, GROBO_ROLE_GOAL_CURRENT, 1750);
+    }
+}
+
+/* It is there before the torque is, and again where another program has raised it. */
+static void a_gripper_has_its_limit_before_its_torque(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof limits / sizeof limits[0]; i++) {
+        begin_gripper(i);
+        assert_int_equal(moved_to(20, 20, 20), GROBO_OK);
+        assert_int_equal(table_get(&bus, 0, limits[i].role), limits[i].wanted);
+        at(0, 20);
+        table_put(&bus, 0, limits[i].role, 1000);
+        assert_int_equal(moved_to(10, 20, 20), GROBO_OK);
+        assert_int_equal(table_get(&bus, 0, limits[i].role), limits[i].wanted);
+        table_put(&bus, 0, limits[i].role, limits[i].wanted / 2); /* less is not more */
+        assert_int_equal(moved_to(20, 20, 20), GROBO_OK);
+        assert_int_equal(table_get(&bus, 0, limits[i].role), limits[i].wanted / 2);
+        const grobo_servo_register *reg =
+            grobo_servo_register_of(bus.servo[0].servo, limits[i].role);
+        static const uint8_t zeros[4];
+        const grobo_register_io io = {1, reg->address, reg->bytes, zeros};
+        assert_int_equal(grobo_robot_registers(&bus.robot, &io),
+                         limits[i].role == GROBO_ROLE_TORQUE_LIMIT ? GROBO_ERR_STATE
+                                                                   : GROBO_ERR_UNSUPPORTED);
+    }
+}
+
+static void a_gripper_that_takes_no_limit_gets_no_torque(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof limits / sizeof limits[0]; i++) {
+        begin_gripper(i);
+        bus.servo[0].frozen = grobo_servo_register_of(bus.servo[0].servo, limits[i].role)->address;
+        assert_int_equal(moved_to(20, 20, 20), GROBO_ERR_MISMATCH);
+        assert_int_equal(table_get(&bus, 0, GROBO_ROLE_TORQUE), 0);
+        assert_int_equal(table_get(&bus, 0, GROBO_ROLE_GOAL), 0); /* a goal may wake it */
+        table_put(&bus, 0, GROBO_ROLE_TORQUE, 1);
+        assert_int_equal(moved_to(20, 20, 20), GROBO_ERR_MISMATCH);
+        assert_int_equal(table_get(&bus, 0, GROBO_ROLE_GOAL), 0);
+    }
+}
+
+/* One that keeps its limit over power-off is set up by hand; one that has none is refused. */
+static void a_limit_that_is_kept_is_a_setup(void **state)
+{
+    (void)state;
+    begin_with(&families[2], false, 30);
+    assert_int_equal(moved_to(20, 20, 20), GROBO_ERR_SETUP);
+    grobo_joint_info got;
+    assert_int_equal(grobo_robot_joint(&bus.robot, 0, &got), GROBO_OK);
+    assert_int_equal(got.state.setup.reg->role, GROBO_ROLE_MAX_TORQUE);
+    assert_int_equal(got.state.setup.high, 300);
+    begin_with(&families[2], false, 30);
+    table_put(&bus, 0, GROBO_ROLE_MAX_TORQUE, 300);
+    assert_int_equal(moved_to(20, 20, 20), GROBO_OK);
+    begin_with(&families[0], false, 30); /* a current is bounded in mode 5 alone */
+    assert_int_equal(moved_to(20, 20, 20), GROBO_ERR_SETUP);
+    grobo_driver driver;
+    grobo_joint joint = {.name = "A",
+                         .min_rad = -1,
+                         .max_rad = 1,
+                         .max_speed_rad_s = 3,
+                         .motor = 1,
+                         .mirror_sign = 1,
+                         .servo_model = 16,
+                         .torque_limit_pct = 30};
+    const grobo_model one = {.name = "ONE", .joints = &joint, .n_joints = 1};
+    assert_int_equal(grobo_lx16a_driver_init(&driver, &one), GROBO_ERR_ARG);
+    joint.servo_model = 3301;
+    assert_int_equal(grobo_ics_driver_init(&driver, &one), GROBO_ERR_ARG);
+    assert_int_equal(grobo_rs30x_driver_init(&driver, &one, &grobo_rs30x_protocol), GROBO_ERR_ARG);
+}
+
+/* Which register, what it holds, what it should. */
+static void a_fault_says_what_is_wanted(void **state)
+{
+    (void)state;
+    static const struct {
+        int family;
+        grobo_register_role role;
+        int32_t found, low, high;
+    } faults[] = {
+        {0, GROBO_ROLE_DIRECTION, 1, 4, 4},
+        {0, GROBO_ROLE_MODE, 4, 3, 3},
+        {0, GROBO_ROLE_MODEL, 1190, 1200, 1200},
+        {0, GROBO_ROLE_OFFSET, -7, 0, 0},
+        {0, GROBO_ROLE_MAX_POSITION, 2900, 2958, 4095},
+        {1, GROBO_ROLE_DIRECTION, 0x18, 0x0C, 0x0C},
+        {1, GROBO_ROLE_OFFSET, 25, 0, 0},
+        {1, GROBO_ROLE_MIN_POSITION, 1200, -32767, 1138},
+        {2, GROBO_ROLE_DIRECTION, 1, 0, 0},
+        {3, GROBO_ROLE_MODEL, 18, 12, 12},
+    };
+    for (size_t i = 0; i < sizeof faults / sizeof faults[0]; i++) {
+        grobo_joint_info got;
+        refused(&families[faults[i].family], 0, faults[i].role, faults[i].found);
+        assert_int_equal(grobo_robot_joint(&bus.robot, 0, &got), GROBO_OK);
+        assert_non_null(got.state.setup.reg);
+        assert_int_equal(got.state.setup.reg->role, faults[i].role);
+        assert_int_equal(got.state.setup.found, faults[i].found);
+        assert_int_equal(got.state.setup.low, faults[i].low);
+        assert_int_equal(got.state.setup.high, faults[i].high);
+    }
+}
+
 static int write_register(grobo_register_role role)
 {
     const grobo_servo_register *reg = grobo_servo_register_of(bus.servo[0].servo, role);
@@ -428,6 +629,12 @@ int main(void)
         cmocka_unit_test(heat_stops_for_safety),
         cmocka_unit_test(an_emergency_stop_holds_or_lets_go),
         cmocka_unit_test(what_is_set_up_otherwise_does_not_move),
+        cmocka_unit_test(a_joint_that_was_never_calibrated_does_not_move),
+        cmocka_unit_test(a_calibrated_joint_goes_as_far_as_its_servo),
+        cmocka_unit_test(a_fault_says_what_is_wanted),
+        cmocka_unit_test(a_gripper_has_its_limit_before_its_torque),
+        cmocka_unit_test(a_gripper_that_takes_no_limit_gets_no_torque),
+        cmocka_unit_test(a_limit_that_is_kept_is_a_setup),
         cmocka_unit_test(guarded_registers_are_refused),
         cmocka_unit_test(raw_frames_are_judged),
         cmocka_unit_test(what_a_servo_cannot_reach_is_no_robot),

@@ -10,9 +10,27 @@
 #include "tests/support/sample_clip.h"
 
 static const grobo_joint joints[SAMPLE_JOINTS] = {
-    {"LEFT", -3, 3, 6, 0, 0, 0, 1, 1, -1, 1, false, 0, 1},
-    {"RIGHT", -3, 3, 6, 0, 0, 0, 2, 0, -1, 1, false, 0, 1},
-    {"MIDDLE", -3, 3, 6, 0, 0, 0, 3, 2, 1, 1, false, 0, 1},
+    {.name = "LEFT",
+     .min_rad = -3,
+     .max_rad = 3,
+     .max_speed_rad_s = 6,
+     .motor = 1,
+     .mirror = 1,
+     .mirror_sign = -1},
+    {.name = "RIGHT",
+     .min_rad = -3,
+     .max_rad = 3,
+     .max_speed_rad_s = 6,
+     .motor = 2,
+     .mirror = 0,
+     .mirror_sign = -1},
+    {.name = "MIDDLE",
+     .min_rad = -3,
+     .max_rad = 3,
+     .max_speed_rad_s = 6,
+     .motor = 3,
+     .mirror = 2,
+     .mirror_sign = 1},
 };
 
 const grobo_model sample_model = {"SAMPLE", joints, NULL, SAMPLE_JOINTS, 0, 0};

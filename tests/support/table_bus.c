@@ -117,7 +117,9 @@ static void write_bytes(table_bus *bus, table_servo *s, uint16_t address, const 
     int32_t torque = get(s, GROBO_ROLE_TORQUE);
     const grobo_servo_register *goal = grobo_servo_register_of(s->servo, GROBO_ROLE_GOAL);
     assert_true(address + n <= TABLE_MEMORY);
-    memcpy(s->memory + address, data, n);
+    if (s->frozen == 0 || address != s->frozen) {
+        memcpy(s->memory + address, data, n);
+    }
     if (address <= goal->address && address + n > goal->address) {
         start_move(bus, s);
     } else if (torque != get(s, GROBO_ROLE_TORQUE)) {

@@ -18,7 +18,8 @@ typedef struct table_servo {
     double from_ticks, to_ticks;
     int64_t from_us, to_us;
     bool silent;
-    unsigned jumps; /* goals that asked for more than the servo can do */
+    uint16_t frozen; /* writing here does nothing; 0: nowhere */
+    unsigned jumps;  /* goals that asked for more than the servo can do */
 } table_servo;
 
 typedef struct table_frame {

@@ -241,8 +241,20 @@ static grobo_model two;
 
 static void make_two(void)
 {
-    arm[0] = (grobo_joint){"LEFT", -1, 1, 5, 0, 0, 0, 1, 1, -1, 1, false, 0, 1};
-    arm[1] = (grobo_joint){"RIGHT", -1, 1, 5, 0, 0, 0, 2, 0, -1, 1, false, 0, 1};
+    arm[0] = (grobo_joint){.name = "LEFT",
+                           .min_rad = -1,
+                           .max_rad = 1,
+                           .max_speed_rad_s = 5,
+                           .motor = 1,
+                           .mirror = 1,
+                           .mirror_sign = -1};
+    arm[1] = (grobo_joint){.name = "RIGHT",
+                           .min_rad = -1,
+                           .max_rad = 1,
+                           .max_speed_rad_s = 5,
+                           .motor = 2,
+                           .mirror = 0,
+                           .mirror_sign = -1};
     arm_groups[0] = (grobo_group){"both", 3};
     arm_groups[1] = (grobo_group){"one", 1};
     two = (grobo_model){"TWO", arm, arm_groups, 2, 2, 0};

@@ -225,6 +225,10 @@ static const mistake mistakes[] = {
      "is not a number", 0},
     {HEAD "  - {name: x, id: 1, servo: STS3215, limits_deg: [-270, 9]}\n", 4, 50,
      "x: its servo does not reach these limits", 0},
+    {"name: a\nfamily: lx16a\njoints:\n  - {name: x, id: 1, servo: LX-16A, limits_deg: [-9, 9], "
+     "torque_limit_pct: 40}\n",
+     4, 76, "x: its servo has no limit of torque", 0},
+    {WITH("torque_limit_pct: 0"), 4, 77, "from 1 to 100", 0},
     {WITH("init_deg: 10"), 4, 69, "x: its initial angle is outside its limits", 0},
     {WITH("rest_deg: -10"), 4, 69, "x: its resting angle is outside its limits", 0},
     {WITH("speed_deg_s: 0"), 4, 72, "from 1 to 10000", 0},

@@ -44,7 +44,7 @@ families='bus/several servo/dxl1/driver servo/dxl1/packet servo/dxl1/protocol se
      servo/ics/driver servo/ics/packet servo/ics/protocol servo/ics/table servo/lx16a/driver
      servo/lx16a/packet servo/lx16a/protocol servo/lx16a/table servo/registers
      servo/table/driver servo/table/inspect servo/table/make servo/table/reading
-     servo/table/values robots/driver robots/family_dxl1 robots/family_dxl2
+     servo/table/setup servo/table/values robots/driver robots/family_dxl1 robots/family_dxl2
      robots/family_feetech robots/family_ics robots/family_lx16a robots/family_rs30x robots/koch
      robots/koch_leader robots/openmanipulator_x robots/pan_tilt robots/shipped robots/so101
      robots/so101_leader

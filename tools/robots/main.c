@@ -62,6 +62,12 @@ static void print_joints(const grobo_model *model)
         if (j->gear != 0) {
             printf(", .gear = %.17g", j->gear);
         }
+        if (j->torque_limit_pct > 0) {
+            printf(", .torque_limit_pct = %u", j->torque_limit_pct);
+        }
+        if (j->calibrated) {
+            printf(", .calibrated = true");
+        }
         printf("},\n");
     }
     printf("};\n\n");

@@ -29,8 +29,8 @@ bool grobo_i_robot_key_needed(grobo_i_block block, size_t index);
 typedef struct grobo_i_joint_draft {
     grobo_i_place place, at[GROBO_I_KEYS_MAX];
     grobo_i_name name, servo, mirror;
-    double id, limits_deg[2], init_deg, rest_deg, speed_deg_s, free_ma, sign, zero_deg, gear,
-        mirror_sign, readback_deg;
+    double id, limits_deg[2], init_deg, rest_deg, speed_deg_s, torque_limit_pct, free_ma, sign,
+        zero_deg, gear, mirror_sign, readback_deg;
     bool turns;
 } grobo_i_joint_draft;
 
@@ -62,7 +62,7 @@ typedef struct grobo_i_draft {
     grobo_i_place place, at[GROBO_I_KEYS_MAX];
     grobo_i_name name, title, model, family, wiring, exit;
     double limit_slack_deg;
-    bool arm;
+    bool arm, calibrated;
     grobo_i_line_draft line;
     grobo_i_safety_draft safety;
     int n_joints, n_groups, n_links, n_usb;

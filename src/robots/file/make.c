@@ -221,6 +221,8 @@ static void make_joint(const maker *m, int j)
                            .mirror_sign = (int8_t)draft->mirror_sign,
                            .sign = draft->sign < 0 ? -1 : 0,
                            .turns = draft->turns,
+                           .torque_limit_pct = (uint8_t)draft->torque_limit_pct,
+                           .calibrated = m->draft->calibrated,
                            .zero_rad = grobo_rad_from_deg(draft->zero_deg),
                            .gear = draft->gear};
     if (draft->sign == 0 || draft->mirror_sign == 0) {
@@ -270,6 +272,14 @@ static void check_servos(maker *m)
             (void)grobo_i_complain(m->reader, GROBO_ERR_SYNTAX, "servo", joint_place(m, j, "servo"),
                                    "%s: a %s does not tell where it stands", joint.name,
                                    m->draft->joint[j].servo);
+            continue;
+        }
+        bool limited = joint.torque_limit_pct > 0;
+        joint.torque_limit_pct = 0;
+        if (result == GROBO_ERR_ARG && limited &&
+            def->family->init(&m->driver, &one, def->wiring) == GROBO_OK) {
+            (void)complain(m, joint_place(m, j, "torque_limit_pct"), "range",
+                           "%s: its servo has no limit of torque", joint.name);
             continue;
         }
         if (result == GROBO_ERR_UNSUPPORTED) {

@@ -4,6 +4,11 @@
 
 #include "src/servo/dxl1/driver.h"
 
+/* MX count turns with both limits there; both 0 make a wheel (emanual mx_angle_limit). */
+#define TURNS_LIMITS 4095
+/* Of the register drive_mode (emanual mx_drive_mode); its other bit has a second servo follow. */
+#define DRIVE_REVERSE 1
+
 static grobo_dxl1_packet to_old(const grobo_dxl2_packet *packet)
 {
     return (grobo_dxl1_packet){.id = packet->id,
@@ -39,21 +44,13 @@ int grobo_i_dxl1_parse_as(const uint8_t *frame, size_t n, uint8_t *data, size_t 
     return result;
 }
 
-/* Both limits 0: a wheel; both at the end: MX count turns (emanual mx_angle_limit). */
-static int setup(const grobo_joint *joint, const grobo_servo_model *servo, uint16_t address,
-                 const uint8_t *data, size_t n)
+/* Only MX-106 may be told to turn the other way round, and it and MX-64 to keep a torque. */
+static int32_t wants(const grobo_joint *joint, const grobo_servo_model *servo,
+                     grobo_register_role role, int32_t found)
 {
-    int32_t model, min, max;
-    if (!grobo_i_table_value(servo, GROBO_ROLE_MODEL, address, data, n, &model)) {
-        return GROBO_OK; /* not a reading of the setup */
-    }
-    if (!grobo_i_table_value(servo, GROBO_ROLE_MIN_POSITION, address, data, n, &min) ||
-        !grobo_i_table_value(servo, GROBO_ROLE_MAX_POSITION, address, data, n, &max)) {
-        return GROBO_ERR_SETUP;
-    }
-    bool turns = min == max && min == servo->span_ticks - 1;
-    bool range = joint->turns ? turns : !turns && grobo_i_table_within(joint, servo, min, max);
-    return model == servo->number && range ? GROBO_OK : GROBO_ERR_SETUP;
+    (void)joint;
+    (void)servo;
+    return role == GROBO_ROLE_MODE ? 0 : found & ~DRIVE_REVERSE;
 }
 
 static bool sync_read(const grobo_servo_model *servo)
@@ -68,7 +65,8 @@ static const grobo_i_family family = {
     .tables = {&grobo_dxl1_table},
     .build = grobo_i_dxl1_build_as,
     .parse = grobo_i_dxl1_parse_as,
-    .setup = setup,
+    .wants = wants,
+    .turns_limits = TURNS_LIMITS,
     .frame_max_bytes = GROBO_DXL1_FRAME_MAX_BYTES,
     .time_max_ms = 65535,
     .overheated = GROBO_DXL1_OVERHEATED,

@@ -11,23 +11,17 @@
 /* Goals are within one turn in mode 3 and 5 and count turns in mode 4; 5 bounds the current, as a
  * gripper needs it. Without the bit of time a duration would be taken for a velocity
  * (emanual drive_mode, opmode_six_2). */
-static int setup(const grobo_joint *joint, const grobo_servo_model *servo, uint16_t address,
-                 const uint8_t *data, size_t n)
+static int32_t wants(const grobo_joint *joint, const grobo_servo_model *servo,
+                     grobo_register_role role, int32_t found)
 {
-    int32_t model, mode, drive, min, max;
-    if (!grobo_i_table_value(servo, GROBO_ROLE_MODEL, address, data, n, &model)) {
-        return GROBO_OK; /* not a reading of the setup */
+    bool grips = joint->torque_limit_pct > 0 &&
+                 grobo_servo_register_of(servo, GROBO_ROLE_GOAL_CURRENT) != NULL;
+    if (role == GROBO_ROLE_DIRECTION) {
+        return (found & ~(int32_t)DRIVE_BITS) | (int32_t)GROBO_DXL2_DRIVE_TIME;
     }
-    bool modes = grobo_i_table_value(servo, GROBO_ROLE_MODE, address, data, n, &mode) &&
-                 (mode == (joint->turns ? GROBO_DXL2_MODE_EXTENDED : GROBO_DXL2_MODE_POSITION) ||
-                  mode == GROBO_DXL2_MODE_GRIP);
-    bool drives = grobo_i_table_value(servo, GROBO_ROLE_DIRECTION, address, data, n, &drive) &&
-                  (drive & (int)DRIVE_BITS) == (int)GROBO_DXL2_DRIVE_TIME;
-    bool limits =
-        grobo_i_table_value(servo, GROBO_ROLE_MIN_POSITION, address, data, n, &min) &&
-        grobo_i_table_value(servo, GROBO_ROLE_MAX_POSITION, address, data, n, &max) &&
-        (mode != GROBO_DXL2_MODE_POSITION || grobo_i_table_within(joint, servo, min, max));
-    return model == servo->number && modes && drives && limits ? GROBO_OK : GROBO_ERR_SETUP;
+    return grips || found == GROBO_DXL2_MODE_GRIP ? GROBO_DXL2_MODE_GRIP
+           : joint->turns                         ? GROBO_DXL2_MODE_EXTENDED
+                                                  : GROBO_DXL2_MODE_POSITION;
 }
 
 static bool sync_read(const grobo_servo_model *servo)
@@ -44,7 +38,8 @@ static const grobo_i_family family = {
     .tables = {&grobo_dxl2_table},
     .build = grobo_dxl2_build,
     .parse = grobo_dxl2_parse,
-    .setup = setup,
+    .wants = wants,
+    .limits_mode = GROBO_DXL2_MODE_POSITION,
     .watchdog_us = 20000,
     .frame_max_bytes = GROBO_DXL2_FRAME_MAX_BYTES,
     .time_max_ms = 32737,

@@ -21,7 +21,18 @@ enum { OUTSIDE_TICKS = 300, MA_OF_COUNT = 100, CURRENT_BITS = 0x3F };
 /* What clients wait after writing the EEPROM. */
 #define EEPROM_US 600000
 
-static const grobo_i_family family = {.tables = {&grobo_ics_table}, .time_max_ms = 65535};
+static int32_t wants(const grobo_joint *joint, const grobo_servo_model *servo,
+                     grobo_register_role role, int32_t found)
+{
+    const unsigned others = GROBO_I_ICS_REVERSE | GROBO_I_ICS_ROTATION | GROBO_I_ICS_SLAVE;
+    (void)joint;
+    (void)servo;
+    (void)role; /* the flags alone */
+    return found & ~(int32_t)others;
+}
+
+static const grobo_i_family family = {
+    .tables = {&grobo_ics_table}, .wants = wants, .offset_trims = true, .time_max_ms = 65535};
 
 /* ---- frames ---------------------------------------------------------------------------------- */
 
@@ -166,22 +177,15 @@ static int sense_more(const grobo_driver *self, void *ctx, int joint, grobo_sens
 static int take_eeprom(const grobo_joint *joint, const grobo_servo_model *servo,
                        const uint8_t *data, grobo_joint_state *state)
 {
-    const unsigned others = GROBO_I_ICS_REVERSE | GROBO_I_ICS_ROTATION | GROBO_I_ICS_SLAVE;
+    const grobo_i_block block = {servo, 0, data, GROBO_I_ICS_EEPROM_BYTES};
     unsigned flags = data[GROBO_I_ICS_AT_FLAGS];
     if (data[0] != GROBO_I_ICS_FIXED || data[GROBO_I_ICS_AT_ID] != joint->motor) {
         return GROBO_ERR_MISMATCH;
     }
-    int32_t max, min;
-    (void)grobo_i_table_value(servo, GROBO_ROLE_MAX_POSITION, 0, data, GROBO_I_ICS_EEPROM_BYTES,
-                              &max);
-    (void)grobo_i_table_value(servo, GROBO_ROLE_MIN_POSITION, 0, data, GROBO_I_ICS_EEPROM_BYTES,
-                              &min);
-    if ((flags & others) != 0 || !grobo_i_table_within(joint, servo, min, max)) {
-        return GROBO_ERR_SETUP;
-    }
+    int result = grobo_i_table_setup(&family, joint, &block, state);
     state->torque = (flags & GROBO_I_ICS_FREE) != 0 ? GROBO_TORQUE_OFF : GROBO_TORQUE_ON;
-    state->valid = GROBO_FIELD_TORQUE;
-    return GROBO_OK;
+    state->valid |= GROBO_FIELD_TORQUE;
+    return result;
 }
 
 static int take_position(const grobo_joint *joint, const grobo_servo_model *servo,

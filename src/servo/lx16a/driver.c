@@ -15,7 +15,20 @@
 /* A shaft may stand a little outside of its range. */
 enum { OUTSIDE_TICKS = 100, HEAT_MAX_C = 120 };
 
-static const grobo_i_family family = {.tables = {&grobo_lx16a_table}, .time_max_ms = TIME_MAX_MS};
+static int32_t wants(const grobo_joint *joint, const grobo_servo_model *servo,
+                     grobo_register_role role, int32_t found)
+{
+    (void)joint;
+    (void)servo;
+    (void)role; /* the mode alone: no wheel */
+    (void)found;
+    return 0;
+}
+
+static const grobo_i_family family = {.tables = {&grobo_lx16a_table},
+                                      .wants = wants,
+                                      .offset_trims = true,
+                                      .time_max_ms = TIME_MAX_MS};
 
 /* ---- frames ---------------------------------------------------------------------------------- */
 
@@ -99,8 +112,8 @@ static int read_part(const grobo_driver *self, int joint, grobo_sense_kind kind,
     static const uint8_t position[] = {GROBO_LX16A_POSITION_READ, 0};
     static const uint8_t goal[] = {GROBO_LX16A_LOAD_READ, GROBO_LX16A_POSITION_READ,
                                    GROBO_LX16A_MOVE_READ, 0};
-    static const uint8_t all[] = {GROBO_LX16A_MODE_READ,    GROBO_LX16A_LIMITS_READ,
-                                  GROBO_LX16A_LOAD_READ,    GROBO_LX16A_POSITION_READ,
+    static const uint8_t all[] = {GROBO_LX16A_LOAD_READ,    GROBO_LX16A_MODE_READ,
+                                  GROBO_LX16A_LIMITS_READ,  GROBO_LX16A_POSITION_READ,
                                   GROBO_LX16A_VOLTAGE_READ, GROBO_LX16A_TEMPERATURE_READ,
                                   GROBO_LX16A_MOVE_READ,    0};
     static const uint8_t *const kinds[] = {[GROBO_SENSE_FULL] = full,
@@ -155,19 +168,6 @@ static int take_goal(const grobo_joint *joint, const grobo_servo_model *servo, c
     return GROBO_OK;
 }
 
-/* Servo mode, and limits that hold all of the joint's range. */
-static int judge_setup(const grobo_joint *joint, const grobo_servo_model *servo,
-                       const grobo_packet *reply)
-{
-    if (reply->address == grobo_i_lx16a_item_of(GROBO_LX16A_MODE)->address) {
-        return reply->data[0] == 0 ? GROBO_OK : GROBO_ERR_SETUP;
-    }
-    return grobo_i_table_within(joint, servo, grobo_i_get_u16(reply->data),
-                                grobo_i_get_u16(reply->data + 2))
-               ? GROBO_OK
-               : GROBO_ERR_SETUP;
-}
-
 static int parse(const grobo_driver *self, void *ctx, int joint, const grobo_packet *reply,
                  grobo_joint_state *state)
 {
@@ -181,7 +181,9 @@ static int parse(const grobo_driver *self, void *ctx, int joint, const grobo_pac
     switch (read) {
     case GROBO_LX16A_MODE_READ:
     case GROBO_LX16A_LIMITS_READ:
-        return judge_setup(moved, servo, reply);
+        return grobo_i_table_setup(&family, moved,
+                                   &(grobo_i_block){servo, reply->address, data, reply->data_bytes},
+                                   state);
     case GROBO_LX16A_POSITION_READ:
         return take_position(moved, servo, grobo_i_get_i16(data), state);
     case GROBO_LX16A_MOVE_READ:

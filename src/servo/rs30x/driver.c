@@ -419,6 +419,11 @@ int grobo_rs30x_driver_init(grobo_driver *driver, const grobo_model *model,
     if (driver == NULL || model == NULL || protocol == NULL || grobo_model_check(model) < 0) {
         return GROBO_ERR_ARG;
     }
+    for (int j = 0; j < model->n_joints; j++) {
+        if (model->joints[j].torque_limit_pct > 0) {
+            return GROBO_ERR_ARG; /* a reading does not show it */
+        }
+    }
     *driver = (grobo_driver){
         .name = model->name,
         .model = model,

@@ -265,6 +265,44 @@ static int torque(const grobo_driver *self, void *ctx, grobo_joint_mask joints, 
     return write_part(self, joints, s, &mode, put_torque, exchange);
 }
 
+/* ---- torque limits --------------------------------------------------------------------------- */
+
+/* Nothing of a servo that keeps its limit over power-off: that is its setup. */
+static span limit_span(const grobo_servo_model *servo)
+{
+    int32_t counts;
+    span s = {0, 0};
+    const grobo_joint any = {.torque_limit_pct = 100};
+    const grobo_servo_register *reg = grobo_i_table_limit(&any, servo, &counts);
+    if (reg != NULL && (reg->flags & GROBO_REGISTER_KEPT) == 0) {
+        s = (span){reg->address, reg->address + reg->bytes};
+    }
+    return s;
+}
+
+static void put_limit(const grobo_driver *self, int joint, const void *what, span s, uint8_t *to)
+{
+    int32_t counts;
+    const grobo_servo_model *servo = grobo_i_table_servo(self, joint);
+    const grobo_servo_register *reg =
+        grobo_i_table_limit(&self->model->joints[joint], servo, &counts);
+    (void)what;
+    put_role(servo, (grobo_register_role)reg->role, counts, s, to);
+}
+
+static int torque_limit(const grobo_driver *self, void *ctx, grobo_joint_mask joints, int part,
+                        grobo_exchange *exchange)
+{
+    (void)ctx;
+    span s = {0, 0};
+    for (int j = 0; j < self->model->n_joints; j++) {
+        span own = limit_span(grobo_i_table_servo(self, j));
+        joints &= own.to > 0 ? joints : ~GROBO_JOINT_BIT(j);
+    }
+    joints = joints_of_part(self, joints, part, limit_span, &s);
+    return write_part(self, joints, s, NULL, put_limit, exchange);
+}
+
 /* ---- watchdog -------------------------------------------------------------------------------- */
 
 static span watchdog_span(const grobo_servo_model *servo)
@@ -396,6 +434,7 @@ int grobo_i_table_driver(grobo_driver *driver, const grobo_model *model,
         .check = check,
         .posture = posture,
         .torque = torque,
+        .torque_limit = torque_limit,
         .sense = sense,
         .parse = grobo_i_table_parse,
         .write_kind = grobo_i_table_write_kind,

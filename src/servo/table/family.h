@@ -25,10 +25,13 @@ typedef struct grobo_i_family {
     int (*build)(const grobo_dxl2_packet *packet, uint8_t *buf, size_t cap);
     int (*parse)(const uint8_t *frame, size_t n, uint8_t *data, size_t cap,
                  grobo_dxl2_packet *packet);
-    /* Is this servo set up as the joint needs it, as far as these registers tell?
-     * @return 0 or GROBO_ERR_SETUP */
-    int (*setup)(const grobo_joint *joint, const grobo_servo_model *servo, uint16_t address,
-                 const uint8_t *data, size_t n);
+    /* What the register of a role must hold for the joint, which holds this: the same, where that
+     * will do. Asked of MODE and DIRECTION. */
+    int32_t (*wants)(const grobo_joint *joint, const grobo_servo_model *servo,
+                     grobo_register_role role, int32_t found);
+    int32_t limits_mode;           /* the MODE in which a servo keeps within its limits */
+    int32_t turns_limits;          /* there, both limits of a joint of several turns */
+    bool offset_trims;             /* OFFSET is but a trim, whatever the joint */
     uint32_t watchdog_us;          /* a count of WATCHDOG; 0: it has none */
     uint16_t frame_max_bytes;      /* of one frame, any id */
     uint16_t time_max_ms;          /* longest time of a move */
@@ -58,9 +61,23 @@ const grobo_servo_model *grobo_i_table_servo(const grobo_driver *self, int joint
 bool grobo_i_table_value(const grobo_servo_model *servo, grobo_register_role role, uint16_t address,
                          const uint8_t *data, size_t n, int32_t *value);
 
-/* Whether a servo that goes from min to max only gets wherever the joint may go. */
-bool grobo_i_table_within(const grobo_joint *joint, const grobo_servo_model *servo, int32_t min,
-                          int32_t max);
+/* Registers of one servo. */
+typedef struct grobo_i_block {
+    const grobo_servo_model *servo;
+    uint16_t address;
+    const uint8_t *data;
+    size_t n;
+} grobo_i_block;
+
+/* Whether the servo is set up as the joint needs it, as far as these registers tell; the range of a
+ * calibrated joint into state. @return 0, or GROBO_ERR_SETUP and the reason in state->setup. */
+int grobo_i_table_setup(const grobo_i_family *family, const grobo_joint *joint,
+                        const grobo_i_block *block, grobo_joint_state *state);
+
+/* The register that limits the torque of a joint, and its counts: of a servo that loses it at
+ * power-off, else one that it keeps. NULL: it has none. */
+const grobo_servo_register *grobo_i_table_limit(const grobo_joint *joint,
+                                                const grobo_servo_model *servo, int32_t *counts);
 
 /* What one count of a register is worth, in deg/s, mA, mV or whatever its unit says. */
 double grobo_i_table_unit(const grobo_servo_register *reg);

@@ -26,6 +26,7 @@ static grobo_write_kind kind_of_register(const grobo_servo_register *reg)
     case GROBO_ROLE_MODE: /* of some series it does not survive power-off */
     case GROBO_ROLE_REPLY_LEVEL:
     case GROBO_ROLE_WATCHDOG:
+    case GROBO_ROLE_TORQUE_LIMIT: /* a gripper would pinch harder */
         return GROBO_WRITE_SETTING;
     case GROBO_ROLE_NONE:
     case GROBO_ROLE_MODEL:
@@ -45,7 +46,6 @@ static grobo_write_kind kind_of_register(const grobo_servo_register *reg)
     case GROBO_ROLE_CURRENT_LIMIT:
     case GROBO_ROLE_SPEED_LIMIT:
     case GROBO_ROLE_SHUTDOWN:
-    case GROBO_ROLE_TORQUE_LIMIT:
     case GROBO_ROLE_ERROR:
     case GROBO_ROLE_REGISTERED:
     case GROBO_ROLE_MOVING:

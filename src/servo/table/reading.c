@@ -9,21 +9,13 @@
 /* What a servo may say. A shaft may stand a little outside of its turn. */
 enum { OUTSIDE_TICKS = 256, VOLTAGE_MAX_MV = 30000, HEAT_MAX_C = 120, TORQUE_MAX = 2 };
 
-/* A block of registers of one servo. */
-typedef struct block {
-    const grobo_servo_model *servo;
-    uint16_t address;
-    const uint8_t *data;
-    size_t n;
-} block;
-
-static bool value_of(const block *b, grobo_register_role role, int32_t *value)
+static bool value_of(const grobo_i_block *b, grobo_register_role role, int32_t *value)
 {
     return grobo_i_table_value(b->servo, role, b->address, b->data, b->n, value);
 }
 
 /* In the unit of the register's table. */
-static bool measure_of(const block *b, grobo_register_role role, double *value)
+static bool measure_of(const grobo_i_block *b, grobo_register_role role, double *value)
 {
     int32_t counts;
     if (!value_of(b, role, &counts)) {
@@ -33,7 +25,7 @@ static bool measure_of(const block *b, grobo_register_role role, double *value)
     return true;
 }
 
-static void take_angles(const grobo_driver *self, int joint, const block *b,
+static void take_angles(const grobo_driver *self, int joint, const grobo_i_block *b,
                         grobo_joint_state *state)
 {
     const grobo_i_family *family = self->family;
@@ -58,7 +50,7 @@ static void take_angles(const grobo_driver *self, int joint, const block *b,
     }
 }
 
-static void take_measures(const block *b, grobo_joint_state *state)
+static void take_measures(const grobo_i_block *b, grobo_joint_state *state)
 {
     double value;
     if (measure_of(b, GROBO_ROLE_CURRENT, &value)) {
@@ -77,7 +69,8 @@ static void take_measures(const block *b, grobo_joint_state *state)
 }
 
 /* A servo that has cut its torque for an error may still have the switch on. */
-static void take_torque(const grobo_i_family *family, const block *b, grobo_joint_state *state)
+static void take_torque(const grobo_i_family *family, const grobo_i_block *b,
+                        grobo_joint_state *state)
 {
     int32_t torque, limit, error = 0, shutdown = 0;
     (void)value_of(b, GROBO_ROLE_ERROR, &error);
@@ -95,10 +88,21 @@ static void take_torque(const grobo_i_family *family, const block *b, grobo_join
     state->valid |= GROBO_FIELD_TORQUE;
 }
 
+static void take_limit(const grobo_joint *joint, const grobo_i_block *b, grobo_joint_state *state)
+{
+    int32_t most, found;
+    const grobo_servo_register *reg = grobo_i_table_limit(joint, b->servo, &most);
+    if (joint->torque_limit_pct > 0 && reg != NULL &&
+        value_of(b, (grobo_register_role)reg->role, &found)) {
+        state->torque_limited = found >= -most && found <= most;
+        state->valid |= GROBO_FIELD_TORQUE_LIMIT;
+    }
+}
+
 /* A sum of bytes does not notice what two faults make up for: what no servo says is not believed.
  * Where a status and a register tell the same errors, both must. */
-static bool plausible(const grobo_i_family *family, const grobo_joint *joint, const block *b,
-                      uint8_t flags)
+static bool plausible(const grobo_i_family *family, const grobo_joint *joint,
+                      const grobo_i_block *b, uint8_t flags)
 {
     int32_t ticks = b->servo->middle, torque = 0, error = 0, celsius = 0;
     double mv = 0;
@@ -119,21 +123,20 @@ int grobo_i_table_parse(const grobo_driver *self, void *ctx, int joint, const gr
     (void)ctx;
     const grobo_i_family *family = self->family;
     const grobo_joint *moved = &self->model->joints[joint];
-    const block b = {.servo = grobo_i_table_servo(self, joint),
-                     .address = reply->address,
-                     .data = reply->data,
-                     .n = reply->data_bytes};
-    int result = family->setup(moved, b.servo, b.address, b.data, b.n);
+    const grobo_i_block b = {.servo = grobo_i_table_servo(self, joint),
+                             .address = reply->address,
+                             .data = reply->data,
+                             .n = reply->data_bytes};
+    int32_t model;
     if (!plausible(family, moved, &b, reply->flags)) {
         return GROBO_ERR_MISMATCH;
     }
+    bool whole = value_of(&b, GROBO_ROLE_MODEL, &model); /* the first reading of all */
+    int result = whole ? grobo_i_table_setup(family, moved, &b, state) : GROBO_OK;
     state->flags = reply->flags;
     take_angles(self, joint, &b, state);
     take_measures(&b, state);
     take_torque(family, &b, state);
-    if (result < 0) { /* its angles mean something else, its torque does not */
-        state->valid &= GROBO_FIELD_TORQUE;
-        return result;
-    }
-    return state->valid != 0 ? GROBO_OK : GROBO_ERR_MISMATCH;
+    take_limit(moved, &b, state);
+    return result < 0 || state->valid != 0 ? result : GROBO_ERR_MISMATCH;
 }

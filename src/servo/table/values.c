@@ -29,6 +29,20 @@ bool grobo_i_table_value(const grobo_servo_model *servo, grobo_register_role rol
     return true;
 }
 
+/* The current of DYNAMIXEL X that measure it, the PWM of the others. */
+const grobo_servo_register *grobo_i_table_limit(const grobo_joint *joint,
+                                                const grobo_servo_model *servo, int32_t *counts)
+{
+    static const grobo_register_role roles[] = {GROBO_ROLE_TORQUE_LIMIT, GROBO_ROLE_GOAL_CURRENT,
+                                                GROBO_ROLE_GOAL_PWM, GROBO_ROLE_MAX_TORQUE};
+    const grobo_servo_register *reg = NULL;
+    for (size_t i = 0; reg == NULL && i < sizeof roles / sizeof roles[0]; i++) {
+        reg = grobo_servo_register_of(servo, roles[i]);
+    }
+    *counts = reg == NULL ? 0 : (int32_t)((int64_t)reg->max * joint->torque_limit_pct / 100);
+    return reg;
+}
+
 /* The number, and what it is of: of "0.229 rpm" 6 * 0.229 deg/s, of "0.1 V" 100 mV. */
 double grobo_i_table_unit(const grobo_servo_register *reg)
 {
@@ -64,14 +78,6 @@ int32_t grobo_i_table_ticks(const grobo_joint *joint, const grobo_servo_model *s
 {
     double ticks = grobo_joint_to_servo(joint, angle_rad) / tick_rad(servo) + servo->middle;
     return (int32_t)floor(ticks + 0.5);
-}
-
-bool grobo_i_table_within(const grobo_joint *joint, const grobo_servo_model *servo, int32_t min,
-                          int32_t max)
-{
-    int32_t a = grobo_i_table_ticks(joint, servo, joint->min_rad);
-    int32_t b = grobo_i_table_ticks(joint, servo, joint->max_rad);
-    return a >= min && a <= max && b >= min && b <= max;
 }
 
 double grobo_i_table_step_rad(const grobo_driver *self)

@@ -130,10 +130,12 @@ static int run(app *a)
                                   .restore = app_option(a, OPT_RESTORE)->text,
                                   .out = app_option(a, OPT_OUT)->text,
                                   .dry_run = app_option(a, OPT_DRY_RUN)->given > 0};
-    if (a->line.n_arguments == 0 && homing_fits(a)) {
+    bool files = orders.from || orders.restore || orders.out;
+    bool has_trims = a->robot && !app_model(a)->joints[0].calibrated;
+    if (a->line.n_arguments == 0 && homing_fits(a) && (files || !has_trims)) {
         return homing_run(a, &orders);
     }
-    if (orders.from || orders.restore || orders.out) {
+    if (files) {
         return app_fail(a, EXIT_USAGE, "UNSUPPORTED",
                         "calibrate: the servos of %s keep no calibration; it has trims",
                         robot_of(a)->name);
@@ -172,10 +174,11 @@ const cli_command cmd_calibrate = {
         "Servos of Feetech (STS) and DYNAMIXEL (X) keep where their middle is. Press enter,\n"
         "and torque goes off; put every joint into the middle of its range and press enter,\n"
         "then move every joint to both of its ends and press enter. The offset and the limits\n"
-        "go to the servos, and the ranges to a file of LeRobot's form, which --from reads. A\n"
-        "servo's limits hold at least what the robot's file lets its joint do. What the\n"
-        "servos held before is written to a file first; --restore writes it back, as it would\n"
-        "any file of that form.\n"
+        "go to the servos, and to a file of LeRobot's form, which --from reads. From then on a\n"
+        "joint goes as far as its servo, and no further than the robot's file says. AX and SCS\n"
+        "keep no offset, but their limits. What the servos held before is written to a file\n"
+        "first; --restore writes it back, as it would any file of that form. The robot's file\n"
+        "says 'calibrated: true'; its servos move only once they are.\n"
         "\n"
         "Other robots have trims. Switch torque off, put the robot by hand into its initial\n"
         "posture, and run it: what the joints read beside that posture becomes their trims. With\n"

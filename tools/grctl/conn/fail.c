@@ -5,6 +5,7 @@
  */
 #include "tools/grctl/cli/output.h"
 #include "tools/grctl/conn/conn.h"
+#include "tools/grctl/servo/family.h"
 
 enum { HEX_BYTES = 1024 };
 
@@ -121,6 +122,69 @@ static int fail_reply(conn *c, int error, int id, const char *prefix, const char
     return status;
 }
 
+/* What is wrong with a servo, and what puts it right. */
+static void setup_text(const grobo_driver *driver, int joint, const grobo_setup_fault *fault,
+                       char *text, size_t capacity)
+{
+    const int id = driver->model->joints[joint].motor;
+    const char *name = fault->reg->name;
+    const bool calibrates = driver->model->joints[joint].calibrated;
+    const bool is_min = fault->reg->role == GROBO_ROLE_MIN_POSITION;
+    const bool is_max = fault->reg->role == GROBO_ROLE_MAX_POSITION;
+    const grobo_servo_model *servo = family_servo(driver, id);
+    if (fault->low > fault->high) {
+        snprintf(text, capacity,
+                 "its servo was never calibrated, %s is %d as from the factory; "
+                 "'grctl calibrate' does it",
+                 name, (int)fault->found);
+    } else if (fault->reg->role == GROBO_ROLE_MODEL) {
+        const grobo_servo_model *other = family_numbered(driver, (uint16_t)fault->found);
+        snprintf(text, capacity, "its servo is %s (%d), not %s (%d); say so in the robot file",
+                 other ? other->name : "another", (int)fault->found, servo->name, servo->number);
+    } else {
+        snprintf(text, capacity, "%s is %d, %d%s is wanted; 'grctl servo-set %d %s %d%s'%s", name,
+                 (int)fault->found, (int)(is_min ? fault->high : fault->low),
+                 fault->low == fault->high ? ""
+                 : is_min                  ? " or less"
+                                           : " or more",
+                 id, name, (int)(is_min ? fault->high : fault->low),
+                 servo->table->keeps == GROBO_KEEPS_LIMP ? "" : " --flash",
+                 calibrates && (is_min || is_max) ? " or 'grctl calibrate' sets it"
+                 : is_min || is_max               ? " sets it, or narrow limits_deg"
+                 : fault->reg->role == GROBO_ROLE_OFFSET
+                     ? " sets it, or say 'calibrated: true' in the robot file"
+                     : " sets it");
+    }
+}
+
+static int fail_setup(conn *c, int joint, const char *prefix, const char *who)
+{
+    grobo_joint_info info;
+    char text[256] = "";
+    const char *name = grobo_error_name(GROBO_ERR_SETUP);
+    if (grobo_robot_joint(c->robot, joint, &info) < 0 || !info.state.setup.reg) {
+        return app_fail(c->a, app_status_of(GROBO_ERR_SETUP), name, "%s: %s%s: %s", conn_device(c),
+                        prefix, who, grobo_error_text(GROBO_ERR_SETUP));
+    }
+    setup_text(grobo_robot_driver(c->robot), joint, &info.state.setup, text, sizeof text);
+    return app_fail(c->a, app_status_of(GROBO_ERR_SETUP), name, "%s: %s%s: %s", conn_device(c),
+                    prefix, who, text);
+}
+
+/* Where its servo keeps a narrower range than the robot's file, the file is not what was hit. */
+static int fail_limit(conn *c, int joint, const char *prefix, const char *who)
+{
+    grobo_joint_info info;
+    if (grobo_robot_joint(c->robot, joint, &info) < 0 || !(info.state.valid & GROBO_FIELD_RANGE)) {
+        return app_fail_error(c->a, app_status_of(GROBO_ERR_LIMIT), GROBO_ERR_LIMIT, "%s: %s%s",
+                              conn_device(c), prefix, who);
+    }
+    return app_fail(c->a, app_status_of(GROBO_ERR_LIMIT), grobo_error_name(GROBO_ERR_LIMIT),
+                    "%s: %s%s: outside its limits; it was calibrated to go from %.0f to %.0f deg",
+                    conn_device(c), prefix, who, grobo_deg_from_rad(info.state.low_rad),
+                    grobo_deg_from_rad(info.state.high_rad));
+}
+
 int conn_fail_job(conn *c, int error, const char *prefix)
 {
     const grobo_model *model = grobo_robot_driver(c->robot)->model;
@@ -141,11 +205,10 @@ int conn_fail_job(conn *c, int error, const char *prefix)
         return fail_reply(c, error, model->joints[joint].motor, prefix, who);
     }
     if (error == GROBO_ERR_SETUP) {
-        return app_fail(c->a, app_status_of(error), grobo_error_name(error),
-                        "%s: %s%s: %s: its limits, mode or direction; 'grctl calibrate' sets "
-                        "limits, 'grctl servo-get %s' shows all",
-                        conn_device(c), prefix, who, grobo_error_text(error),
-                        model->joints[joint].name);
+        return fail_setup(c, joint, prefix, who);
+    }
+    if (error == GROBO_ERR_LIMIT) {
+        return fail_limit(c, joint, prefix, who);
     }
     return app_fail_error(c->a, app_status_of(error), error, "%s: %s%s", conn_device(c), prefix,
                           who);

@@ -29,6 +29,10 @@ static int parse(const grobo_driver *self, void *ctx, int joint, const grobo_pac
     if (state->valid & GROBO_FIELD_GOAL) {
         state->goal_rad -= t->trim_rad[joint];
     }
+    if (state->valid & GROBO_FIELD_RANGE) {
+        state->low_rad -= t->trim_rad[joint];
+        state->high_rad -= t->trim_rad[joint];
+    }
     return error;
 }
 

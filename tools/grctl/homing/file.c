@@ -47,7 +47,8 @@ static int read_joint(app *a, const char *path, const json_t *one, int joint, bo
         return complain(a, path, moved->name,
                         "drive_mode is not 0; say sign: -1 in the robot file");
     }
-    if (!holds(grobo_servo_register_of(servo, GROBO_ROLE_OFFSET), h->offset)) {
+    const grobo_servo_register *offset = grobo_servo_register_of(servo, GROBO_ROLE_OFFSET);
+    if (offset ? !holds(offset, h->offset) : h->offset != 0) {
         return complain(a, path, moved->name, "homing_offset is more than its servo takes");
     }
     if (!holds(grobo_servo_register_of(servo, GROBO_ROLE_MIN_POSITION), h->min) ||

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include <grobo/dxl1.h>
 #include <grobo/dxl2.h>
 #include <grobo/feetech.h>
 
@@ -28,23 +29,36 @@ typedef struct calibration {
     char kept[PATH_BYTES], saved[PATH_BYTES];
 } calibration;
 
-/* DYNAMIXEL add their offset to a position, Feetech take it away (emanual homing_offset, LeRobot).
- * 0: this one keeps none that is large enough. */
-static int sign_of_offset(const grobo_servo_model *servo)
+/* DYNAMIXEL add their offset to a position, MX where they count turns (emanual homing_offset,
+ * mx_multi_turn_offset), STS take it away (LeRobot). 0: this one keeps none; its range alone. */
+static int sign_of_offset(const grobo_joint *joint, const grobo_servo_model *servo)
 {
-    return servo->table == &grobo_sts_table ? -1 : servo->table == &grobo_dxl2_table ? 1 : 0;
+    bool adds = servo->table == &grobo_dxl2_table ||
+                (joint->turns && grobo_servo_register_of(servo, GROBO_ROLE_OFFSET));
+    return servo->table == &grobo_sts_table ? -1 : adds ? 1 : 0;
+}
+
+static const grobo_joint *joint_of(const app *a, int joint)
+{
+    return &app_model(a)->joints[joint];
 }
 
 static const grobo_servo_model *servo_of(const app *a, int joint)
 {
-    return family_servo(app_driver(a), app_model(a)->joints[joint].motor);
+    return family_servo(app_driver(a), joint_of(a, joint)->motor);
+}
+
+/* Each of its limits is a register of its own. */
+static bool keeps_range(const grobo_servo_model *servo)
+{
+    return servo && (servo->table == &grobo_sts_table || servo->table == &grobo_scs_table ||
+                     servo->table == &grobo_dxl1_table || servo->table == &grobo_dxl2_table);
 }
 
 bool homing_fits(const app *a)
 {
     for (int j = 0; j < app_model(a)->n_joints; j++) {
-        const grobo_servo_model *servo = servo_of(a, j);
-        if (!servo || sign_of_offset(servo) == 0) {
+        if (!keeps_range(servo_of(a, j))) {
             return false;
         }
     }
@@ -52,6 +66,11 @@ bool homing_fits(const app *a)
 }
 
 /* ---- registers ------------------------------------------------------------------------------- */
+
+static bool keeps_offset(const calibration *k, int joint)
+{
+    return sign_of_offset(joint_of(k->a, joint), servo_of(k->a, joint)) != 0;
+}
 
 static int read_role(calibration *k, int joint, grobo_register_role role, int32_t *value)
 {
@@ -123,7 +142,8 @@ static int fail(calibration *k, int error, int joint)
 static int read_before(calibration *k)
 {
     for (int j = 0; j < app_model(k->a)->n_joints; j++) {
-        int error = read_role(k, j, GROBO_ROLE_OFFSET, &k->before[j].offset);
+        int error = keeps_offset(k, j) ? read_role(k, j, GROBO_ROLE_OFFSET, &k->before[j].offset)
+                                       : GROBO_OK;
         if (!error) {
             error = read_role(k, j, GROBO_ROLE_MIN_POSITION, &k->before[j].min);
         }
@@ -137,31 +157,21 @@ static int read_before(calibration *k)
     return 0;
 }
 
-/* A servo must reach wherever the robot's file lets its joint go, or the joint would never move. */
-static homing with_limits(const calibration *k, int joint)
+/* A range that is the factory's, with an offset that is none, would look like no calibration. */
+static homing not_as_new(const calibration *k, int joint)
 {
-    const grobo_joint *moved = &app_model(k->a)->joints[joint];
-    const grobo_servo_model *servo = servo_of(k->a, joint);
     homing h = k->wanted[joint];
-    const double ends_rad[] = {moved->min_rad, moved->max_rad};
-    if (k->orders->restore || moved->turns) {
-        return h;
-    }
-    for (int i = 0; i < 2; i++) {
-        double deg = grobo_deg_from_rad(grobo_joint_to_servo(moved, ends_rad[i]));
-        int32_t ticks =
-            servo->middle + (int32_t)floor(deg * servo->span_ticks / servo->span_deg + 0.5);
-        h.min = ticks < h.min ? ticks : h.min;
-        h.max = ticks > h.max ? ticks : h.max;
-    }
+    int32_t factory =
+        grobo_servo_register_of(servo_of(k->a, joint), GROBO_ROLE_MAX_POSITION)->factory;
+    h.max = !k->orders->restore && h.offset == 0 && h.max == factory ? factory - 1 : h.max;
     return h;
 }
 
 static int write_all(calibration *k)
 {
     for (int j = 0; j < app_model(k->a)->n_joints; j++) {
-        homing h = with_limits(k, j);
-        int error = write_role(k, j, GROBO_ROLE_OFFSET, h.offset);
+        const homing h = k->wanted[j] = not_as_new(k, j);
+        int error = keeps_offset(k, j) ? write_role(k, j, GROBO_ROLE_OFFSET, h.offset) : GROBO_OK;
         if (!error) {
             error = write_role(k, j, GROBO_ROLE_MIN_POSITION, h.min);
         }
@@ -170,13 +180,6 @@ static int write_all(calibration *k)
         }
         if (error) {
             return fail(k, error, j);
-        }
-        if (!k->orders->restore && (h.min < k->wanted[j].min || h.max > k->wanted[j].max)) {
-            app_note(k->a,
-                     "%s goes from %d to %d only, not as far as the robot file lets it (%d to %d); "
-                     "limits_deg of a file of your own can be narrower",
-                     app_model(k->a)->joints[j].name, (int)k->wanted[j].min, (int)k->wanted[j].max,
-                     (int)h.min, (int)h.max);
         }
     }
     return 0;
@@ -268,45 +271,58 @@ static int watch(calibration *k, bool ranges)
     return status;
 }
 
-/* Where the joints stand becomes the middle of their servos. */
+static int read_here(calibration *k, int joint, int error)
+{
+    error = error ? error : read_role(k, joint, GROBO_ROLE_POSITION, &k->now[joint]);
+    return error ? fail(k, error, joint) : 0;
+}
+
+/* Where a joint stands becomes the middle of its servo. */
+static int home_joint(calibration *k, int j)
+{
+    const grobo_servo_model *servo = servo_of(k->a, j);
+    const grobo_joint *joint = joint_of(k->a, j);
+    int sign = sign_of_offset(joint, servo);
+    /* DYNAMIXEL X within one turn take no more than a quarter (emanual homing_offset). */
+    int32_t most = servo->table == &grobo_dxl2_table && !joint->turns
+                       ? servo->span_ticks / 4
+                       : grobo_servo_register_of(servo, GROBO_ROLE_OFFSET)->max;
+    int status = read_here(k, j, write_role(k, j, GROBO_ROLE_OFFSET, 0));
+    if (status) {
+        return status;
+    }
+    int32_t offset = sign * (servo->middle - k->now[j]);
+    if (offset < -most || offset > most) {
+        return app_fail(k->a, EXIT_SAFETY, "LIMIT",
+                        "calibrate: %s is %d counts off its middle, more than its servo can "
+                        "take (%d); does its horn sit right?",
+                        joint->name, (int)offset, (int)most);
+    }
+    status = read_here(k, j, write_role(k, j, GROBO_ROLE_OFFSET, offset));
+    if (status) {
+        return status;
+    }
+    if (k->now[j] < servo->middle - NEAR_TICKS || k->now[j] > servo->middle + NEAR_TICKS) {
+        return app_fail(k->a, EXIT_ROBOT, "MISMATCH",
+                        "calibrate: %s reads %d and not %d, its middle: hold it still", joint->name,
+                        (int)k->now[j], servo->middle);
+    }
+    k->wanted[j] = (homing){offset, k->now[j], k->now[j]};
+    return 0;
+}
+
 static int home(calibration *k)
 {
-    for (int j = 0; j < app_model(k->a)->n_joints; j++) {
-        const grobo_servo_model *servo = servo_of(k->a, j);
-        const grobo_servo_register *reg = grobo_servo_register_of(servo, GROBO_ROLE_OFFSET);
-        int sign = sign_of_offset(servo);
-        /* DYNAMIXEL within one turn take no more than a quarter (emanual homing_offset). */
-        int32_t most =
-            sign > 0 && !app_model(k->a)->joints[j].turns ? servo->span_ticks / 4 : reg->max;
-        int error = write_role(k, j, GROBO_ROLE_OFFSET, 0);
-        if (!error) {
-            error = read_role(k, j, GROBO_ROLE_POSITION, &k->now[j]);
+    int status = 0;
+    for (int j = 0; j < app_model(k->a)->n_joints && !status; j++) {
+        if (keeps_offset(k, j)) {
+            status = home_joint(k, j);
+        } else {
+            status = read_here(k, j, GROBO_OK);
+            k->wanted[j] = (homing){0, k->now[j], k->now[j]};
         }
-        if (error) {
-            return fail(k, error, j);
-        }
-        int32_t offset = sign * (servo->middle - k->now[j]);
-        if (offset < -most || offset > most) {
-            return app_fail(k->a, EXIT_SAFETY, "LIMIT",
-                            "calibrate: %s is %d counts off its middle, more than its servo can "
-                            "take (%d); does its horn sit right?",
-                            app_model(k->a)->joints[j].name, (int)offset, (int)most);
-        }
-        error = write_role(k, j, GROBO_ROLE_OFFSET, offset);
-        if (!error) {
-            error = read_role(k, j, GROBO_ROLE_POSITION, &k->now[j]);
-        }
-        if (error) {
-            return fail(k, error, j);
-        }
-        if (k->now[j] < servo->middle - NEAR_TICKS || k->now[j] > servo->middle + NEAR_TICKS) {
-            return app_fail(k->a, EXIT_ROBOT, "MISMATCH",
-                            "calibrate: %s reads %d and not %d, its middle: hold it still",
-                            app_model(k->a)->joints[j].name, (int)k->now[j], servo->middle);
-        }
-        k->wanted[j] = (homing){offset, k->now[j], k->now[j]};
     }
-    return 0;
+    return status;
 }
 
 static int check_ranges(calibration *k)
@@ -343,16 +359,28 @@ static void hear_no_more(calibration *k)
     }
 }
 
+static bool any_offset(const calibration *k)
+{
+    bool any = false;
+    for (int j = 0; j < app_model(k->a)->n_joints; j++) {
+        any |= keeps_offset(k, j);
+    }
+    return any;
+}
+
 static int by_hand(calibration *k)
 {
-    app_note(k->a, "put every joint into the middle of its range, then press enter");
-    int status = watch(k, false);
+    int status = 0;
+    if (any_offset(k)) {
+        app_note(k->a, "put every joint into the middle of its range, then press enter");
+        status = watch(k, false);
+    }
     if (!status) {
         status = home(k);
     }
     if (!status) {
-        app_note(k->a, "that is the middle; now move every joint to both of its ends, then press "
-                       "enter");
+        app_note(k->a, "%smove every joint to both of its ends, then press enter",
+                 any_offset(k) ? "that is the middle; now " : "");
         status = watch(k, true);
     }
     return status ? status : check_ranges(k);
@@ -462,6 +490,13 @@ int homing_run(app *a, const homing_orders *orders)
     memset(&k, 0, sizeof k);
     k.a = a;
     k.orders = orders;
+    if (!app_model(a)->joints[0].calibrated && !orders->restore) {
+        return app_fail(
+            a, EXIT_USAGE, "UNSUPPORTED",
+            "calibrate: the file of %s does not say 'calibrated: true': its servos must "
+            "have the middle of their factory; --restore writes what they held before",
+            robot_of(a)->name);
+    }
     if (orders->dry_run && !orders->from && !orders->restore) {
         return app_fail(a, EXIT_USAGE, "ARG", "calibrate: --dry-run needs --from or --restore");
     }

@@ -15,7 +15,7 @@ typedef struct homing_orders {
     bool dry_run;
 } homing_orders;
 
-/* Whether the servos of the robot can be told where their middle is. */
+/* Whether the servos of the robot keep how far they go. */
 bool homing_fits(const app *a);
 
 /* Carries it out. Returns the exit status. */
