@@ -143,6 +143,7 @@ struct grobo_sim {
     uint16_t fifo_head, fifo_used;
     uint8_t send[GROBO_RELAY_MAX_BYTES]; /* the payload being relayed */
     uint8_t send_used, sent;
+    uint8_t sending;        /* bytes behind those that are over at board_at_ns */
     uint8_t want;           /* bytes asked for by T; 0 for S */
     uint8_t got[UINT8_MAX]; /* of the reply */
     uint8_t got_used;

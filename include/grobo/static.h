@@ -198,11 +198,11 @@ struct grobo_robot {
     grobo_robot_task *job;                     /* of jobs: whose step runs, else the first */
     grobo_robot_wish queue[GROBO_ROBOT_QUEUE]; /* the first is the oldest */
     unsigned queued;
+    int slots_end; /* from here on all slots are free */
     grobo_robot_axis axes[GROBO_JOINTS_MAX];
     grobo_robot_slot slots[GROBO_ROBOT_SLOTS];
     grobo_event events[GROBO_ROBOT_EVENTS]; /* ring */
     unsigned events_head, events_n;
-    int slots_end; /* from this one on slots are free */
     grobo_robot_counters counters;
     grobo_trip_info trip;
     uint64_t late_bins[GROBO_ROBOT_JITTER_BINS];
@@ -235,6 +235,7 @@ struct grobo_robot {
     bool soft;          /* the next move is the first from a sensed posture */
     bool stop_owed;     /* an emergency stop that no line has carried yet */
     bool holds_at_stop; /* the driver switches no torque: an emergency stop halts */
+    bool in_segments;   /* a joint may be: whoever looks for one need not where none is */
 };
 
 /* ---- its life and its pump ------------------------------------------------------------------ */

@@ -235,6 +235,9 @@ int grobo_posture_mirror(grobo_posture *posture, const grobo_model *model)
 /* On the wire's grid: a limit read from a file in degrees is kept however it was rounded. */
 static bool within_limits(const grobo_joint *joint, double angle_rad)
 {
+    if (angle_rad >= joint->min_rad && angle_rad <= joint->max_rad) {
+        return true; /* most are: rounding keeps the order */
+    }
     int16_t ddeg = grobo_ddeg_from_rad(angle_rad);
     return ddeg >= grobo_ddeg_from_rad(joint->min_rad) &&
            ddeg <= grobo_ddeg_from_rad(joint->max_rad);
@@ -272,7 +275,7 @@ int grobo_posture_clamp(grobo_posture *posture, const grobo_model *model)
         return GROBO_ERR_ARG;
     }
     int result = grobo_posture_check(posture, model, NULL);
-    if (result == GROBO_ERR_ARG) {
+    if (result == GROBO_ERR_ARG || result == GROBO_OK) {
         return result;
     }
     for (int j = 0; j < model->n_joints; j++) {

@@ -43,6 +43,7 @@ static void assert_axis(const grobo_robot *robot, int joint)
     GROBO_ASSERT(!axis->held || axis->sensed);
     GROBO_ASSERT(!axis->torque_known || (axis->state.valid & GROBO_FIELD_TORQUE) != 0);
     GROBO_ASSERT(!grobo_i_way_is_short(axis) || axis->told_to_us > axis->way.from_us);
+    GROBO_ASSERT(!axis->in_segments || robot->in_segments);
 }
 
 static void assert_slot(const grobo_robot *robot, const grobo_robot_slot *slot)
@@ -102,7 +103,7 @@ void grobo_i_robot_assert(const grobo_robot *robot)
     for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
         assert_slot(robot, &robot->slots[i]);
         used += robot->slots[i].use != GROBO_I_USE_FREE;
-        GROBO_ASSERT(i < robot->slots_end || robot->slots[i].use == GROBO_I_USE_FREE);
+        GROBO_ASSERT(robot->slots[i].use == GROBO_I_USE_FREE || i < robot->slots_end);
     }
     GROBO_ASSERT(used == grobo_bus_pending(&robot->bus));
     for (int j = 0; j < robot->driver->model->n_joints; j++) {

@@ -14,6 +14,12 @@ static bool has_stopped(const grobo_robot_axis *axis, int64_t now_us)
     return grobo_i_way_is_short(axis) && axis->told_to_us <= now_us;
 }
 
+static bool is_in_segments(const grobo_robot_axis *axis, int64_t now_us)
+{
+    (void)now_us;
+    return axis->in_segments;
+}
+
 static bool goes_on(const grobo_robot_task *job)
 {
     return job->kind == GROBO_JOB_MOVE || job->kind == GROBO_JOB_PLAY ||
@@ -45,6 +51,10 @@ static void give_up(grobo_robot *robot)
 
 void grobo_i_segments_step(grobo_robot *robot)
 {
+    if (!robot->in_segments) {
+        return;
+    }
+    robot->in_segments = grobo_i_joints_that(robot, is_in_segments) != 0;
     if (grobo_i_joints_that(robot, has_stopped) != 0) {
         give_up(robot);
     }
@@ -58,6 +68,9 @@ void grobo_i_segments_step(grobo_robot *robot)
 
 int64_t grobo_i_segments_deadline(const grobo_robot *robot)
 {
+    if (!robot->in_segments) {
+        return GROBO_NEVER_US;
+    }
     int64_t at_us = grobo_i_slots_busy(robot, GROBO_I_USE_SEGMENT) ? GROBO_NEVER_US
                                                                    : grobo_i_segments_due(robot);
     for (int j = 0; j < robot->driver->model->n_joints; j++) {

@@ -147,8 +147,8 @@ static int find_waiting(const grobo_robot *robot)
 static int64_t hurry_at(const grobo_robot *robot)
 {
     int at = find_waiting(robot);
-    bool moves = grobo_i_in_motion(robot) || grobo_i_moving(robot, robot->now_us);
-    if (at < 0 || !moves || grobo_i_play_unwatched(robot)) {
+    if (at < 0 || grobo_i_play_unwatched(robot) ||
+        !(grobo_i_in_motion(robot) || grobo_i_moving(robot, robot->now_us))) {
         return GROBO_NEVER_US;
     }
     const grobo_robot_slot *slot = &robot->slots[at];

@@ -41,11 +41,11 @@ grobo_robot_slot *grobo_i_slot_take(grobo_robot *robot, grobo_i_use use)
     grobo_robot_slot *found = &robot->slots[at];
     GROBO_ASSERT(use != GROBO_I_USE_FREE && !grobo_txn_is_pending(&found->txn));
     memset(found, 0, GROBO_I_SLOT_HEAD_BYTES);
-    robot->slots_end = at < robot->slots_end ? robot->slots_end : at + 1;
     found->robot = robot;
     found->due_us = GROBO_NEVER_US;
     found->use = (uint8_t)use;
     found->job = use == GROBO_I_USE_HALT ? 0 : robot->acting; /* a halt outlives its job */
+    robot->slots_end = at < robot->slots_end ? robot->slots_end : at + 1;
     return found;
 }
 

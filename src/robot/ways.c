@@ -89,7 +89,7 @@ grobo_joint_mask grobo_i_joints_that(const grobo_robot *robot,
 
 grobo_joint_mask grobo_i_ways_renewed(const grobo_robot *robot)
 {
-    return grobo_i_joints_that(robot, is_renewed);
+    return robot->in_segments ? grobo_i_joints_that(robot, is_renewed) : 0;
 }
 
 void grobo_i_segments_begin(grobo_robot *robot, int joint)
@@ -99,7 +99,7 @@ void grobo_i_segments_begin(grobo_robot *robot, int joint)
         robot->renewed_us = robot->now_us;
     }
     GROBO_ASSERT(axis->has_target);
-    axis->in_segments = true;
+    axis->in_segments = robot->in_segments = true;
     axis->told_to_us = robot->now_us + most_us(robot);
 }
 

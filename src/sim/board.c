@@ -33,6 +33,35 @@ static void reply(grobo_sim *sim, const uint8_t *bytes, size_t n, int64_t t_ns)
 
 /* ---- frames -------------------------------------------------------------------------------- */
 
+/* The next byte, or all of them where they are a packet that nobody disturbs. */
+static void send_on(grobo_sim *sim, int64_t t_ns)
+{
+    bool whole =
+        sim->sent == 0 && grobo_i_sim_bus_packet(sim, sim->send, sim->send_used) == sim->send_used;
+    sim->sending = whole ? sim->send_used : 1;
+    sim->board_at_ns = t_ns + sim->sending * sim->bus_byte_ns;
+}
+
+/* What was being sent is over. */
+static void sent(grobo_sim *sim, int64_t t_ns)
+{
+    GROBO_ASSERT(sim->sent + sim->sending <= sim->send_used);
+    if (sim->sending > 1) {
+        grobo_i_sim_bus_hear_packet(sim, sim->send, sim->sending, t_ns);
+    } else {
+        grobo_i_sim_bus_hear(sim, sim->send[sim->sent], t_ns);
+    }
+    sim->sent = (uint8_t)(sim->sent + sim->sending);
+    if (sim->sent < sim->send_used) {
+        send_on(sim, t_ns);
+    } else if (sim->want > 0) {
+        sim->board_state = GROBO_SIM_BOARD_WAITING;
+        sim->board_at_ns = t_ns + (int64_t)sim->config.board_silence_us * 1000;
+    } else {
+        sim->board_state = GROBO_SIM_BOARD_IDLE;
+    }
+}
+
 static void relay(grobo_sim *sim, const grobo_board_frame *frame, int64_t t_ns)
 {
     GROBO_ASSERT(frame->packet_bytes > 0 && frame->packet_bytes <= sizeof sim->send);
@@ -42,7 +71,7 @@ static void relay(grobo_sim *sim, const grobo_board_frame *frame, int64_t t_ns)
     sim->want = frame->kind == GROBO_BOARD_ASK ? frame->reply_bytes : 0;
     sim->got_used = 0;
     sim->board_state = GROBO_SIM_BOARD_SENDING;
-    sim->board_at_ns = t_ns + sim->bus_byte_ns;
+    send_on(sim, t_ns);
 }
 
 static void take_frame(grobo_sim *sim, const grobo_board_frame *frame, int64_t t_ns)
@@ -107,6 +136,19 @@ void grobo_i_sim_board_hear(grobo_sim *sim, uint8_t byte, int64_t t_ns)
     listen(sim, t_ns);
 }
 
+bool grobo_i_sim_board_listens(const grobo_sim *sim)
+{
+    const grobo_framer *heard = &sim->board.framer;
+    return sim->board_state == GROBO_SIM_BOARD_IDLE && heard->used == heard->taken;
+}
+
+void grobo_i_sim_board_hear_frame(grobo_sim *sim, const uint8_t *bytes, size_t n, int64_t t_ns)
+{
+    GROBO_ASSERT(grobo_i_sim_board_listens(sim));
+    (void)grobo_board_parser_feed(&sim->board, sim->now_us, bytes, n);
+    listen(sim, t_ns);
+}
+
 void grobo_i_sim_board_got(grobo_sim *sim, uint8_t byte, int64_t t_ns)
 {
     if (sim->board_state != GROBO_SIM_BOARD_WAITING) {
@@ -138,17 +180,7 @@ void grobo_i_sim_board_act(grobo_sim *sim, int64_t t_ns)
     case GROBO_SIM_BOARD_IDLE:
         break;
     case GROBO_SIM_BOARD_SENDING:
-        GROBO_ASSERT(sim->sent < sim->send_used);
-        grobo_i_sim_bus_hear(sim, sim->send[sim->sent], t_ns);
-        sim->sent++;
-        if (sim->sent < sim->send_used) {
-            sim->board_at_ns = t_ns + sim->bus_byte_ns;
-        } else if (sim->want > 0) {
-            sim->board_state = GROBO_SIM_BOARD_WAITING;
-            sim->board_at_ns = t_ns + (int64_t)sim->config.board_silence_us * 1000;
-        } else {
-            sim->board_state = GROBO_SIM_BOARD_IDLE;
-        }
+        sent(sim, t_ns);
         break;
     case GROBO_SIM_BOARD_WAITING:
         sim->stats.short_replies++;

@@ -7,6 +7,10 @@
 
 /* A byte of the host has arrived. */
 void grobo_i_sim_board_hear(grobo_sim *sim, uint8_t byte, int64_t t_ns);
+/* A whole frame of the host's has arrived, at a board that listens and has heard nothing else. */
+void grobo_i_sim_board_hear_frame(grobo_sim *sim, const uint8_t *bytes, size_t n, int64_t t_ns);
+/* True where it does. */
+bool grobo_i_sim_board_listens(const grobo_sim *sim);
 /* A byte of a servo has arrived. */
 void grobo_i_sim_board_got(grobo_sim *sim, uint8_t byte, int64_t t_ns);
 /* When the board does something on its own, or GROBO_NEVER_US; and doing it. */

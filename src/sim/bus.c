@@ -52,10 +52,8 @@ static void stalled(grobo_sim *sim, grobo_sim_ear *ear)
 }
 
 /* After a false start goes on with the byte behind it, which may start a true packet. */
-static void listen(grobo_sim *sim, grobo_sim_ear *ear, uint8_t byte)
+static void listen(grobo_sim *sim, grobo_sim_ear *ear)
 {
-    GROBO_ASSERT(ear->used < sizeof ear->byte);
-    ear->byte[ear->used++] = byte;
     while (ear->used > 0) {
         int size = ear->family->measure(ear->byte, ear->used, true);
         if (size == 0 && ear->used < sizeof ear->byte) {
@@ -85,6 +83,28 @@ void grobo_i_sim_bus_hear(grobo_sim *sim, uint8_t byte, int64_t t_ns)
         if (still && sim->ear[i].used > 0) {
             stalled(sim, &sim->ear[i]);
         }
-        listen(sim, &sim->ear[i], byte);
+        GROBO_ASSERT(sim->ear[i].used < sizeof sim->ear[i].byte);
+        sim->ear[i].byte[sim->ear[i].used++] = byte;
+        listen(sim, &sim->ear[i]);
     }
+}
+
+size_t grobo_i_sim_bus_packet(const grobo_sim *sim, const uint8_t *bytes, size_t n)
+{
+    const grobo_sim_ear *ear = &sim->ear[0];
+    if (sim->n_ears != 1 || sim->n_talks > 0 || ear->used > 0 || sim->config.echo) {
+        return 0;
+    }
+    int size = ear->family->measure(bytes, n, true);
+    return size > 0 && size <= (int)sizeof ear->byte ? (size_t)size : 0;
+}
+
+void grobo_i_sim_bus_hear_packet(grobo_sim *sim, const uint8_t *bytes, size_t n, int64_t t_ns)
+{
+    grobo_sim_ear *ear = &sim->ear[0];
+    GROBO_ASSERT(sim->n_ears == 1 && ear->used == 0 && n <= sizeof ear->byte);
+    sim->bus_heard_ns = t_ns;
+    memcpy(ear->byte, bytes, n);
+    ear->used = (uint16_t)n;
+    listen(sim, ear);
 }

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "src/base/bytes.h"
 #include "src/sim/family.h"
 #include "src/sim/note.h"
 #include "src/sim/power.h"
@@ -17,6 +18,13 @@
 
 /* ---- the shaft's side ---------------------------------------------------------------------- */
 
+/* A register of two bytes with a sign; the table knows of the others. These are read at each goal,
+ * where looking them up takes most of the simulator's time. */
+static int32_t wide(const grobo_sim_servo *servo, uint8_t address)
+{
+    return grobo_i_get_i16(&servo->reg[address]);
+}
+
 static int32_t ddeg_of_mdeg(const grobo_sim_servo *servo, int32_t mdeg)
 {
     int32_t ddeg = (mdeg < 0 ? mdeg - 50 : mdeg + 50) / 100;
@@ -27,14 +35,14 @@ static int32_t ddeg_of_mdeg(const grobo_sim_servo *servo, int32_t mdeg)
 static void follow(grobo_sim_servo *servo)
 {
     const grobo_sim_type *type = grobo_i_sim_type_of(servo);
-    int32_t goal_ddeg = grobo_i_sim_value(servo, GROBO_RS30X_GOAL);
+    int32_t goal_ddeg = wide(servo, GROBO_RS30X_GOAL);
     servo->plant = (grobo_sim_plant){
         .heat_c_per_ma2 = HEAT_C_PER_MA2,
         .goal_mdeg = (servo->reg[GROBO_RS30X_REVERSE] ? -goal_ddeg : goal_ddeg) * 100,
         .speed_mdeg_s = type->speed_mdeg_s,
         .stall_ma = type->stall_ma,
         .most_ma = type->stall_ma * servo->reg[GROBO_RS30X_MAX_TORQUE] / 100,
-        .limit_c = grobo_i_sim_value(servo, GROBO_RS30X_TEMPERATURE_LIMIT),
+        .limit_c = wide(servo, GROBO_RS30X_TEMPERATURE_LIMIT),
         .nominal_mv = 7400,
         .torque = servo->reg[GROBO_RS30X_TORQUE],
         .id = servo->reg[GROBO_RS30X_ID]};
@@ -171,14 +179,14 @@ static bool flash_fits(const uint8_t *flash)
 static void goal_written(grobo_sim *sim, int index)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    int32_t goal_ddeg = grobo_i_sim_value(servo, GROBO_RS30X_GOAL);
-    int32_t cw_ddeg = grobo_i_sim_value(servo, GROBO_RS30X_CW_LIMIT);
-    int32_t ccw_ddeg = grobo_i_sim_value(servo, GROBO_RS30X_CCW_LIMIT);
+    int32_t goal_ddeg = wide(servo, GROBO_RS30X_GOAL);
+    int32_t cw_ddeg = wide(servo, GROBO_RS30X_CW_LIMIT);
+    int32_t ccw_ddeg = wide(servo, GROBO_RS30X_CCW_LIMIT);
     goal_ddeg = goal_ddeg > cw_ddeg ? cw_ddeg : goal_ddeg;
     goal_ddeg = goal_ddeg < ccw_ddeg ? ccw_ddeg : goal_ddeg;
-    grobo_i_sim_hold(servo, GROBO_RS30X_GOAL, goal_ddeg);
+    grobo_i_put_i16(&servo->reg[GROBO_RS30X_GOAL], (int16_t)goal_ddeg);
     follow(servo);
-    int32_t time_cs = grobo_i_sim_value(servo, GROBO_RS30X_GOAL_TIME);
+    int32_t time_cs = wide(servo, GROBO_RS30X_GOAL_TIME);
     if (servo->reg[GROBO_RS30X_TORQUE] == GROBO_TORQUE_ON) {
         servo->due_us = sim->now_us + (int64_t)time_cs * 10000;
         grobo_i_sim_drive(sim, index);
@@ -201,10 +209,9 @@ static bool bends(const grobo_servo_register *reg)
 /* The manual on those beside the goal: over 100 % is 100 %, an unknown rate is 115200 bps. */
 static void bend(grobo_sim_servo *servo, const grobo_servo_register *reg)
 {
-    int32_t value = grobo_i_sim_value(servo, (uint8_t)reg->address);
     if (reg->address == GROBO_RS30X_MAX_TORQUE) {
-        grobo_i_sim_hold(servo, GROBO_RS30X_MAX_TORQUE, value);
-    } else if (reg->address == GROBO_RS30X_BAUD && value > reg->max) {
+        grobo_i_sim_hold(servo, GROBO_RS30X_MAX_TORQUE, servo->reg[GROBO_RS30X_MAX_TORQUE]);
+    } else if (reg->address == GROBO_RS30X_BAUD && servo->reg[GROBO_RS30X_BAUD] > reg->max) {
         grobo_i_sim_hold(servo, GROBO_RS30X_BAUD, GROBO_RS30X_BAUD_CODE_DEFAULT);
     }
 }
@@ -213,20 +220,20 @@ static void bend(grobo_sim_servo *servo, const grobo_servo_register *reg)
 static void took_effect(grobo_sim *sim, int index, const grobo_servo_register *reg, int32_t before)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    bend(servo, reg);
-    follow(servo);
-    int32_t value = grobo_i_sim_value(servo, (uint8_t)reg->address);
     if (reg->address == GROBO_RS30X_GOAL) {
         goal_written(sim, index);
         return;
     }
+    bend(servo, reg);
+    follow(servo);
+    int32_t value = grobo_i_sim_value(servo, (uint8_t)reg->address);
     if (reg->address == GROBO_RS30X_TORQUE) {
         servo->status &= (uint8_t)~GROBO_RS30X_STATUS_OVERHEATED;
         grobo_i_sim_torque(sim, index, (grobo_torque)before);
         return;
     }
     if (reg->address == GROBO_RS30X_REVERSE && value != before) {
-        grobo_i_sim_hold(servo, GROBO_RS30X_GOAL, -grobo_i_sim_value(servo, GROBO_RS30X_GOAL));
+        grobo_i_sim_hold(servo, GROBO_RS30X_GOAL, -wide(servo, GROBO_RS30X_GOAL));
         follow(servo);
     }
     grobo_i_sim_tell(sim, &(grobo_sim_event){.kind = GROBO_SIM_REGISTER,
@@ -236,21 +243,35 @@ static void took_effect(grobo_sim *sim, int index, const grobo_servo_register *r
                                              .value2 = value});
 }
 
-/* True if every register hit may be written and every value is in range. Reserved ones may. */
-static bool may_write(const grobo_sim_servo *servo, int address, const uint8_t *bytes, size_t n)
+/* What a write hits: registers, found once. Bytes of none are reserved, and may be written. */
+typedef struct hits {
+    const grobo_servo_register *reg[GROBO_REGISTERS];
+    int n;
+} hits;
+
+static void find_hits(const grobo_sim_servo *servo, int address, size_t n, hits *hit)
+{
+    const grobo_servo_model *model = grobo_i_sim_rs30x_model(servo);
+    hit->n = 0;
+    for (int a = address; a < address + (int)n;) {
+        const grobo_servo_register *reg = grobo_servo_register_at(model, (uint16_t)a);
+        a = reg == NULL ? a + 1 : reg->address + reg->bytes;
+        if (reg != NULL) {
+            hit->reg[hit->n++] = reg;
+        }
+    }
+}
+
+/* True if every register hit may be written and every value is in range. */
+static bool may_write(const grobo_sim_servo *servo, const hits *hit, int address,
+                      const uint8_t *bytes, size_t n)
 {
     const grobo_servo_model *model = grobo_i_sim_rs30x_model(servo);
     uint8_t after[GROBO_REGISTERS];
-    if (address + (int)n > GROBO_REGISTERS) {
-        return false;
-    }
     memcpy(after, servo->reg, sizeof after);
     memcpy(&after[address], bytes, n);
-    for (int a = address; a < address + (int)n; a++) {
-        const grobo_servo_register *reg = row_at(servo, a);
-        if (reg == NULL) {
-            continue;
-        }
+    for (int i = 0; i < hit->n; i++) {
+        const grobo_servo_register *reg = hit->reg[i];
         int32_t value = grobo_servo_register_get(model, reg, &after[reg->address]);
         if ((reg->flags & GROBO_REGISTER_W) == 0 ||
             (!bends(reg) && (value < reg->min || value > reg->max))) {
@@ -260,33 +281,36 @@ static bool may_write(const grobo_sim_servo *servo, int address, const uint8_t *
     return true;
 }
 
-static void store(grobo_sim *sim, int index, int address, const uint8_t *bytes, size_t n)
+static void store(grobo_sim *sim, int index, const hits *hit, int address, const uint8_t *bytes,
+                  size_t n)
 {
     grobo_sim_servo *servo = &sim->servo[index];
     const grobo_servo_model *model = grobo_i_sim_rs30x_model(servo);
+    const int end = address + (int)n;
     uint8_t before[GROBO_REGISTERS];
     memcpy(before, servo->reg, sizeof before);
-    for (size_t i = 0; i < n; i++) {
-        if (row_at(servo, address + (int)i) != NULL) {
-            servo->reg[address + (int)i] = bytes[i];
-        }
+    for (int i = 0; i < hit->n; i++) {
+        const grobo_servo_register *reg = hit->reg[i];
+        int from = reg->address > address ? reg->address : address;
+        int to = reg->address + reg->bytes < end ? reg->address + reg->bytes : end;
+        memcpy(&servo->reg[from], &bytes[from - address], (size_t)(to - from));
     }
-    for (int a = address; a < address + (int)n; a++) {
-        const grobo_servo_register *reg = row_at(servo, a);
-        bool told = reg != NULL && reg->address != a && a > address;
-        if (reg != NULL && !told) {
-            took_effect(sim, index, reg,
-                        grobo_servo_register_get(model, reg, &before[reg->address]));
-        }
+    for (int i = 0; i < hit->n; i++) {
+        const grobo_servo_register *reg = hit->reg[i];
+        took_effect(sim, index, reg, grobo_servo_register_get(model, reg, &before[reg->address]));
     }
 }
 
 static bool write(grobo_sim *sim, int index, int address, const uint8_t *bytes, size_t n)
 {
     grobo_sim_servo *servo = &sim->servo[index];
-    if (may_write(servo, address, bytes, n)) {
-        store(sim, index, address, bytes, n);
-        return true;
+    hits hit;
+    if (address + (int)n <= GROBO_REGISTERS) {
+        find_hits(servo, address, n, &hit);
+        if (may_write(servo, &hit, address, bytes, n)) {
+            store(sim, index, &hit, address, bytes, n);
+            return true;
+        }
     }
     servo->status |= GROBO_RS30X_STATUS_REFUSED;
     grobo_i_sim_note(sim, GROBO_SIM_REFUSED, index, address);
@@ -297,7 +321,7 @@ static bool write(grobo_sim *sim, int index, int address, const uint8_t *bytes, 
 
 static uint8_t status_flags(const grobo_sim_servo *servo)
 {
-    int32_t limit_c = grobo_i_sim_value(servo, GROBO_RS30X_TEMPERATURE_LIMIT);
+    int32_t limit_c = wide(servo, GROBO_RS30X_TEMPERATURE_LIMIT);
     bool hot = servo->temperature_c >= limit_c - ALARM_BELOW_LIMIT_C;
     return (uint8_t)(servo->status | (hot ? GROBO_RS30X_STATUS_HOT : 0));
 }
@@ -395,27 +419,29 @@ static void long_packet(grobo_sim *sim, int index, const grobo_rs30x_packet *pac
     }
 }
 
-static bool speaks_to(const grobo_rs30x_packet *packet, uint8_t id)
+/* The ids that a packet speaks to. */
+static void note_ids(const grobo_rs30x_packet *packet, bool *ids)
 {
+    bool all = packet->kind == GROBO_RS30X_SHORT && packet->id == GROBO_RS30X_ID_ALL;
+    memset(ids, all, UINT8_MAX + 1);
     if (packet->kind == GROBO_RS30X_SHORT) {
-        return packet->id == id || packet->id == GROBO_RS30X_ID_ALL;
+        ids[packet->id] = true;
+        return;
     }
     for (size_t i = 0; i < packet->count; i++) {
-        if (packet->data[i * packet->length] == id) {
-            return true;
-        }
+        ids[packet->data[i * packet->length]] = true;
     }
-    return false;
 }
 
 static void packet(grobo_sim *sim, const grobo_sim_event *raw)
 {
     grobo_rs30x_packet parts;
-    bool sum_ok;
+    bool sum_ok, ids[UINT8_MAX + 1];
     (void)grobo_rs30x_peek(raw->bytes, raw->n_bytes, GROBO_ACCEPT_COMMANDS, &parts, &sum_ok);
+    note_ids(&parts, ids);
     for (int i = 0; i < sim->n_servos; i++) {
         grobo_sim_servo *servo = &sim->servo[i];
-        if (servo->family != &grobo_sim_rs30x || !speaks_to(&parts, servo->reg[GROBO_RS30X_ID]) ||
+        if (servo->family != &grobo_sim_rs30x || !ids[servo->reg[GROBO_RS30X_ID]] ||
             !grobo_i_sim_hears(sim, i, raw)) {
             continue;
         }
@@ -468,7 +494,9 @@ static int set(grobo_sim *sim, int index, int address, int32_t value)
     if (n < 0) {
         return n;
     }
-    store(sim, index, address, bytes, (size_t)n);
+    hits hit;
+    find_hits(&sim->servo[index], address, (size_t)n, &hit);
+    store(sim, index, &hit, address, bytes, (size_t)n);
     return 0;
 }
 

@@ -39,9 +39,39 @@ static int64_t byte_ns(const grobo_sim *sim, uint32_t bps)
     return sim->config.unpaced ? 1 : bits * 1000000000 / bps;
 }
 
-static void arrive(grobo_sim *sim, int64_t t_ns)
+/*
+ * How many bytes of the host make a frame whose end is all that matters: it is all on the line,
+ * undamaged, and nothing else goes on. The board or the servos get it whole then, which costs a
+ * third of what its bytes do one by one. 1: byte by byte.
+ */
+static size_t frame_run(const grobo_sim *sim)
+{
+    const grobo_sim_wire *in = &sim->in;
+    bool board = sim->config.wiring == GROBO_WIRING_BOARD;
+    const uint8_t *bytes = grobo_i_sim_sound(sim);
+    if (bytes == NULL || in->used < 2 || (board && !grobo_i_sim_board_listens(sim))) {
+        return 1;
+    }
+    grobo_board_frame frame;
+    int size = board ? grobo_board_peek(bytes, in->used, &frame)
+                     : (int)grobo_i_sim_bus_packet(sim, bytes, in->used);
+    return size > 1 ? (size_t)size : 1;
+}
+
+static void arrive(grobo_sim *sim, size_t run, int64_t t_ns)
 {
     uint8_t byte;
+    if (run > 1) {
+        const uint8_t *bytes = grobo_i_sim_sound(sim);
+        sim->stats.rx_bytes += (uint32_t)run;
+        grobo_i_sim_wire_drop(&sim->in, run);
+        if (sim->config.wiring == GROBO_WIRING_BUS) {
+            grobo_i_sim_bus_hear_packet(sim, bytes, run, t_ns);
+        } else {
+            grobo_i_sim_board_hear_frame(sim, bytes, run, t_ns);
+        }
+        return;
+    }
     if (!grobo_i_sim_from_host(sim, &byte)) {
         return;
     }
@@ -50,6 +80,18 @@ static void arrive(grobo_sim *sim, int64_t t_ns)
     } else {
         grobo_i_sim_board_hear(sim, byte, t_ns);
     }
+}
+
+/* How many bytes of a servo the board gets before anything else goes on. */
+static int reply_run(const grobo_sim *sim)
+{
+    int left = sim->n_talks == 1 ? sim->talk[0].used - sim->talk[0].said : 1;
+    if (sim->board_state != GROBO_SIM_BOARD_WAITING || left < 2 ||
+        grobo_i_sim_talk_next(sim) > sim->board_at_ns ||
+        sim->bus_byte_ns > (int64_t)sim->config.board_silence_us * 1000) {
+        return 1;
+    }
+    return left < sim->want - sim->got_used ? left : sim->want - sim->got_used;
 }
 
 /* A byte of a servo is over. */
@@ -73,6 +115,15 @@ static bool step_once(grobo_sim *sim, int64_t limit_ns)
 {
     int64_t talk_ns = grobo_i_sim_talk_next(sim), in_ns = grobo_i_sim_wire_next(&sim->in);
     int64_t board_ns = grobo_i_sim_board_next(sim);
+    int said_run = sim->n_talks > 0 ? reply_run(sim) : 0;
+    size_t come_run = in_ns <= limit_ns ? frame_run(sim) : 0;
+    if (said_run > 1) {
+        talk_ns += (said_run - 1) * sim->bus_byte_ns;
+        board_ns = GROBO_NEVER_US; /* each byte puts its patience off */
+    }
+    if (come_run > 1) {
+        in_ns = sim->in.at_ns[sim->in.head + come_run - 1];
+    }
     int64_t t_ns = grobo_i_sooner(talk_ns, grobo_i_sooner(in_ns, board_ns));
     if (t_ns > limit_ns) {
         return false;
@@ -80,9 +131,11 @@ static bool step_once(grobo_sim *sim, int64_t limit_ns)
     sim->now_ns = t_ns;
     sim->now_us = grobo_i_sim_us(t_ns);
     if (talk_ns == t_ns) {
-        said(sim, t_ns);
+        for (; said_run > 0; said_run--) {
+            said(sim, t_ns - (said_run - 1) * sim->bus_byte_ns);
+        }
     } else if (in_ns == t_ns) {
-        arrive(sim, t_ns);
+        arrive(sim, come_run, t_ns);
     } else {
         grobo_i_sim_board_act(sim, t_ns);
     }
@@ -141,6 +194,10 @@ static int64_t next_whole_ns(const grobo_sim *sim)
     if (sim->in.used == 0) {
         return GROBO_NEVER_US;
     }
+    size_t run = frame_run(sim);
+    if (run > 1) {
+        return sim->in.at_ns[sim->in.head + run - 1];
+    }
     if (sim->config.wiring == GROBO_WIRING_BOARD) {
         return whole_ns(sim, NULL);
     }
@@ -155,7 +212,8 @@ static int64_t board_step_ns(const grobo_sim *sim)
 {
     switch (sim->board_state) {
     case GROBO_SIM_BOARD_SENDING: /* a payload acts when it is over */
-        return sim->board_at_ns + (sim->send_used - sim->sent - 1) * sim->bus_byte_ns;
+        return sim->board_at_ns +
+               (sim->send_used - sim->sent - sim->sending) * sim->bus_byte_ns;
     case GROBO_SIM_BOARD_WAITING: /* bytes that come put its patience off */
         if (grobo_i_sim_talk_next(sim) <= sim->board_at_ns) {
             return GROBO_NEVER_US;

@@ -2,6 +2,7 @@
 /* The servos that can be simulated: what tells one from another is a row of this table. */
 #include <string.h>
 
+#include "src/base/bytes.h"
 #include "src/sim/registers.h"
 
 /*
@@ -52,7 +53,7 @@ const grobo_sim_type *grobo_sim_type_named(const char *name, size_t length)
 
 const grobo_sim_type *grobo_i_sim_type_of(const grobo_sim_servo *servo)
 {
-    int32_t model = grobo_i_sim_value(servo, GROBO_RS30X_MODEL);
+    uint16_t model = grobo_i_get_u16(&servo->reg[GROBO_RS30X_MODEL]);
     for (size_t i = 1; i < TYPES; i++) {
         if (types[i].model == model) {
             return &types[i];

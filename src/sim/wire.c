@@ -30,10 +30,15 @@ int64_t grobo_i_sim_wire_next(const grobo_sim_wire *wire)
     return wire->used > 0 ? wire->at_ns[wire->head] : GROBO_NEVER_US;
 }
 
+static bool at_rate(const grobo_sim *sim)
+{
+    return sim->config.wiring == GROBO_WIRING_BUS || sim->line_bps == sim->config.baud_bps;
+}
+
 /* A byte as it arrives at another rate than it was sent. */
 static void misread(grobo_sim *sim, uint8_t *byte)
 {
-    if (sim->config.wiring == GROBO_WIRING_BOARD && sim->line_bps != sim->config.baud_bps) {
+    if (!at_rate(sim)) {
         *byte = (uint8_t)grobo_i_sim_random(sim, GROBO_I_SIM_CHANCE, 256);
     }
 }
@@ -58,6 +63,21 @@ void grobo_i_sim_to_host(grobo_sim *sim, uint8_t byte, int64_t at_ns)
         sim->stats.overflows++;
     }
     sim->out.free_ns = at_ns; /* the adapter waits, the line does not */
+}
+
+const uint8_t *grobo_i_sim_sound(const grobo_sim *sim)
+{
+    const grobo_sim_wire *in = &sim->in;
+    bool sound = at_rate(sim) && sim->fault_below[GROBO_SIM_FAULT_DROP] == 0 &&
+                 sim->fault_below[GROBO_SIM_FAULT_FLIP] == 0;
+    return sound && in->head + in->used <= GROBO_SIM_WIRE_BYTES ? &in->byte[in->head] : NULL;
+}
+
+void grobo_i_sim_wire_drop(grobo_sim_wire *wire, size_t n)
+{
+    GROBO_ASSERT(n <= wire->used);
+    wire->head = (uint16_t)((wire->head + n) % GROBO_SIM_WIRE_BYTES);
+    wire->used = (uint16_t)(wire->used - n);
 }
 
 bool grobo_i_sim_from_host(grobo_sim *sim, uint8_t *byte)

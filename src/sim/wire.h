@@ -12,6 +12,10 @@ uint8_t grobo_i_sim_wire_take(grobo_sim_wire *wire);
 int64_t grobo_i_sim_wire_next(const grobo_sim_wire *wire);
 /* The next byte of the host as it arrives; false when it is lost. */
 bool grobo_i_sim_from_host(grobo_sim *sim, uint8_t *byte);
+/* The bytes on the host's line, where each arrives as it was sent and they stand in one piece; NULL
+ * else. They are taken with grobo_i_sim_wire_drop(). */
+const uint8_t *grobo_i_sim_sound(const grobo_sim *sim);
+void grobo_i_sim_wire_drop(grobo_sim_wire *wire, size_t n);
 /* A byte for the host that is over at at_ns. */
 void grobo_i_sim_to_host(grobo_sim *sim, uint8_t byte, int64_t at_ns);
 /* The host's cable is out: what is on the line is lost. */

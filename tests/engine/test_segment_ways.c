@@ -290,6 +290,7 @@ static void ways_are_told_on_until_they_end(void **state)
             const told_way *row = &told_ways[i / 3];
             grobo_robot_axis *axis = start_on(j, row);
             axis->in_segments = i % 3 != 1;
+            robot.in_segments = true;
             axis->has_target = i % 3 != 2;
             bool is_short = i % 3 == 0 && row->told_us < row->left_us;
             bool again = is_short || (i % 3 == 0 && row->left_us >= 100000);
@@ -332,7 +333,7 @@ static void the_first_way_sets_the_time_for_the_others(void **state)
 static void set_going_in_segments(int joint)
 {
     set_going(joint);
-    robot.axes[joint].in_segments = true;
+    robot.axes[joint].in_segments = robot.in_segments = true;
     robot.axes[joint].told_to_us = NOW + 200 * MS;
 }
 
@@ -375,6 +376,24 @@ static void more_is_asked_for_on_a_grid(void **state)
                 assert_true(grobo_i_segments_deadline(&robot) == NOW + 200 * MS);
             }
         }
+    }
+}
+
+/* Where no joint goes in segments any more, none is looked at. */
+static void where_none_is_told_its_way_nobody_looks(void **state)
+{
+    (void)state;
+    for (int j = 0; j < N; j++) {
+        start();
+        set_going_in_segments(j);
+        grobo_i_segments_step(&robot);
+        assert_true(robot.in_segments);
+        robot.axes[j].in_segments = false;
+        grobo_i_segments_step(&robot);
+        assert_false(robot.in_segments);
+        assert_true(grobo_i_segments_deadline(&robot) == GROBO_NEVER_US);
+        grobo_i_segments_begin(&robot, j);
+        assert_true(robot.in_segments);
     }
 }
 
@@ -469,6 +488,7 @@ int main(void)
         cmocka_unit_test(ways_are_told_on_until_they_end),
         cmocka_unit_test(the_first_way_sets_the_time_for_the_others),
         cmocka_unit_test(more_is_asked_for_on_a_grid),
+        cmocka_unit_test(where_none_is_told_its_way_nobody_looks),
         cmocka_unit_test(a_way_that_was_not_told_on_is_looked_at_when_it_is_over),
         cmocka_unit_test(a_way_that_was_not_told_on_is_given_up),
     };

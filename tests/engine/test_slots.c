@@ -79,6 +79,28 @@ static void three_slots_are_kept_for_halts(void **state)
     assert_int_equal(grobo_i_slot_find(&robot, GROBO_I_USE_HALT), SLOTS - 1);
 }
 
+/* Behind the last one that is taken nobody looks. */
+static void the_end_of_the_slots_is_known(void **state)
+{
+    (void)state;
+    start();
+    assert_int_equal(robot.slots_end, 0);
+    for (int i = 0; i < 4; i++) {
+        (void)grobo_i_slot_take(&robot, GROBO_I_USE_PLAIN);
+        assert_int_equal(robot.slots_end, i + 1);
+    }
+    grobo_i_slot_drop(&robot.slots[1]);
+    grobo_i_slot_drop(&robot.slots[2]);
+    assert_int_equal(robot.slots_end, 4);
+    (void)grobo_i_slot_take(&robot, GROBO_I_USE_PLAIN);
+    assert_int_equal(robot.slots_end, 4);
+    grobo_i_slot_drop(&robot.slots[3]);
+    assert_int_equal(robot.slots_end, 2);
+    grobo_i_slot_drop(&robot.slots[0]);
+    grobo_i_slot_drop(&robot.slots[1]);
+    assert_int_equal(robot.slots_end, 0);
+}
+
 static void a_slot_is_taken_clean(void **state)
 {
     (void)state;
@@ -886,6 +908,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(three_slots_are_kept_for_halts),
+        cmocka_unit_test(the_end_of_the_slots_is_known),
         cmocka_unit_test(a_slot_is_taken_clean),
         cmocka_unit_test(what_the_bus_is_told_of_a_frame),
         cmocka_unit_test(what_the_bus_does_not_take_is_free_again),
