@@ -34,10 +34,10 @@ typedef enum grobo_sense_kind {
 
 /** One frame to send and the reply it waits for. Plain data. */
 typedef struct grobo_exchange {
-    uint8_t frame[GROBO_FRAME_MAX_BYTES]; /**< what is sent */
-    uint16_t frame_bytes;                 /**< how much of it */
+    uint16_t frame_bytes;                 /**< how much of frame is sent */
     grobo_reply reply;                    /**< what must come back */
     int64_t settle_us;                    /**< silence the device needs afterwards, 0: none */
+    uint8_t frame[GROBO_FRAME_MAX_BYTES]; /**< what is sent */
 } grobo_exchange;
 
 /* ---- what a joint reports ------------------------------------------------------------------ */
@@ -148,7 +148,7 @@ typedef struct grobo_driver grobo_driver;
  *
  * Functions with a `part` may give several frames: they are called with part 0, 1, 2... They
  * return 1 with *exchange filled, 0 when part is past the last frame, or an error. *exchange
- * comes zeroed.
+ * comes zeroed, but for the bytes of its frame.
  */
 struct grobo_driver {
     const char *name;               /**< "GR001" */

@@ -80,7 +80,6 @@ typedef struct grobo_robot_order {
 typedef struct grobo_robot_slot {
     /* private */
     grobo_txn txn;
-    grobo_exchange exchange;
     grobo_robot_order order;
     struct grobo_robot *robot;
     int64_t due_us;   /* when it should leave; GROBO_NEVER_US: as soon as may be */
@@ -94,6 +93,7 @@ typedef struct grobo_robot_slot {
     uint8_t joint;
     uint8_t kind, part;      /* of a reading: grobo_sense_kind, exchanges before this one */
     grobo_joint_mask unread; /* of a reading of many joints, those that have not answered */
+    grobo_exchange exchange; /* last, its frame behind all else: see GROBO_I_SLOT_HEAD_BYTES */
 } grobo_robot_slot;
 
 /** A move of a joint, straight in time. Private. */
@@ -203,7 +203,6 @@ struct grobo_robot {
     grobo_robot_slot slots[GROBO_ROBOT_SLOTS];
     grobo_event events[GROBO_ROBOT_EVENTS]; /* ring */
     unsigned events_head, events_n;
-    int slots_end; /* from this one on slots are free */
     grobo_robot_counters counters;
     grobo_trip_info trip;
     uint64_t late_bins[GROBO_ROBOT_JITTER_BINS];

@@ -477,7 +477,7 @@ static int make_frame(const grobo_robot *robot, const grobo_robot_order *order, 
 {
     const grobo_driver *driver = robot->driver;
     grobo_target target = says->target;
-    memset(exchange, 0, sizeof *exchange);
+    memset(exchange, 0, offsetof(grobo_exchange, frame));
     if (order->deed == GROBO_I_DEED_GOAL) {
         (void)grobo_i_segments_cut(robot, order, &says->target, &target);
     }

@@ -103,7 +103,7 @@ void grobo_i_robot_assert(const grobo_robot *robot)
     for (int i = 0; i < GROBO_ROBOT_SLOTS; i++) {
         assert_slot(robot, &robot->slots[i]);
         used += robot->slots[i].use != GROBO_I_USE_FREE;
-        GROBO_ASSERT(i < robot->slots_end || robot->slots[i].use == GROBO_I_USE_FREE);
+        GROBO_ASSERT(robot->slots[i].use == GROBO_I_USE_FREE || i < robot->slots_end);
     }
     GROBO_ASSERT(used == grobo_bus_pending(&robot->bus));
     for (int j = 0; j < robot->driver->model->n_joints; j++) {

@@ -31,6 +31,8 @@
 #ifndef GROBO_CORE_ROBOT_H
 #define GROBO_CORE_ROBOT_H
 
+#include <stddef.h>
+
 #include <grobo/static.h>
 
 /* ---- event.c --------------------------------------------------------------------------------- */
@@ -130,9 +132,14 @@ typedef enum grobo_i_deed {
     GROBO_I_DEED_COMMAND   /* a servo is busy with itself; `joints` restart without torque */
 } grobo_i_deed;
 
+/* A slot without the bytes of its frame, which nobody looks at before they are written, or when it
+ * is over. To clear and to copy them too would take most of the memory that a transaction touches. */
+#define GROBO_I_SLOT_HEAD_BYTES                                                                    \
+    (offsetof(grobo_robot_slot, exchange) + offsetof(grobo_exchange, frame))
+
 /* The index of a free slot, or -1; there is always one for a halt. */
 int grobo_i_slot_find(const grobo_robot *robot, grobo_i_use use);
-/* Takes it, with a zeroed exchange and order, or NULL. */
+/* Takes it, with a zeroed exchange (but for the bytes of the frame) and order, or NULL. */
 grobo_robot_slot *grobo_i_slot_take(grobo_robot *robot, grobo_i_use use);
 /* Gives the slot's exchange to the bus; on error the slot is free again. */
 int grobo_i_slot_send(grobo_robot_slot *slot, grobo_priority priority);

@@ -40,8 +40,7 @@ grobo_robot_slot *grobo_i_slot_take(grobo_robot *robot, grobo_i_use use)
     }
     grobo_robot_slot *found = &robot->slots[at];
     GROBO_ASSERT(use != GROBO_I_USE_FREE && !grobo_txn_is_pending(&found->txn));
-    memset(found, 0, sizeof *found);
-    robot->slots_end = at < robot->slots_end ? robot->slots_end : at + 1;
+    memset(found, 0, GROBO_I_SLOT_HEAD_BYTES);
     found->robot = robot;
     found->due_us = GROBO_NEVER_US;
     found->use = (uint8_t)use;
@@ -109,7 +108,8 @@ static void note_answer(grobo_robot *robot, const grobo_txn *txn, int result,
 
 static void on_done(void *ctx, grobo_txn *txn, int result, const grobo_packet *reply)
 {
-    grobo_robot_slot slot = *(grobo_robot_slot *)ctx;
+    grobo_robot_slot slot;
+    memcpy(&slot, ctx, GROBO_I_SLOT_HEAD_BYTES);
     GROBO_ASSERT(slot.use != GROBO_I_USE_FREE && txn == &((grobo_robot_slot *)ctx)->txn);
     grobo_i_slot_drop(ctx);
     note_answer(slot.robot, txn, result, reply);

@@ -3,6 +3,8 @@
  * The end of a call, and of a frame: what was read is judged, what waited for it goes on, a motion
  * that is over is settled, and events are told.
  */
+#include <string.h>
+
 #include "src/base/assert.h"
 #include "src/robot/robot.h"
 
@@ -66,7 +68,8 @@ void grobo_i_reply_came(grobo_robot_slot *slot, const grobo_packet *reply)
         return;
     }
     slot->unread &= ~GROBO_JOINT_BIT(joint);
-    grobo_robot_slot one = *slot; /* what is read may end the frame */
+    grobo_robot_slot one; /* what is read may end the frame */
+    memcpy(&one, slot, GROBO_I_SLOT_HEAD_BYTES);
     one.joint = (uint8_t)joint;
     (void)take_reading(&one, reply->refused ? GROBO_ERR_NACK : GROBO_OK, reply);
 }

@@ -377,9 +377,28 @@ static void a_record_is_made_by_hand_and_played(void **state)
     grobo_motion_free(motion);
 }
 
+/* The driver says what answers its readings without looking at the frame again. */
+static void a_reading_is_answered_as_its_frame_says(void **state)
+{
+    (void)state;
+    for (int wiring = 0; wiring < 2; wiring++) {
+        const grobo_driver *driver = grobo_gr001_driver((grobo_wiring)wiring);
+        for (int i = 0; i < 4 * driver->model->n_joints; i++) {
+            grobo_exchange exchange = {.frame_bytes = 0};
+            grobo_reply reply;
+            assert_int_equal(
+                driver->sense(driver, NULL, i / 4, (grobo_sense_kind)(i % 4), &exchange), GROBO_OK);
+            assert_true(driver->protocol->reply_to(exchange.frame, exchange.frame_bytes, &reply) >
+                        0);
+            assert_memory_equal(&exchange.reply, &reply, sizeof reply);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_reading_is_answered_as_its_frame_says),
         cmocka_unit_test(a_motor_is_switched_by_its_number),
         cmocka_unit_test(groups_are_switched_by_their_number),
         cmocka_unit_test(a_motor_is_moved_by_a_short_packet),

@@ -31,11 +31,12 @@ static void count(const grobo_driver *self, void *ctx, int what)
     calls[what]++;
 }
 
-/* So it comes to a driver, which need not say what it does not want. */
+/* So it comes to a driver, which need not say what it does not want; the bytes of the frame it
+ * writes all. */
 static void expect_zeroed(const grobo_exchange *exchange)
 {
     static const grobo_exchange zeroed;
-    assert_memory_equal(exchange, &zeroed, sizeof zeroed);
+    assert_memory_equal(exchange, &zeroed, offsetof(grobo_exchange, frame));
 }
 
 static int check(const grobo_driver *self, void *ctx, int part, grobo_exchange *exchange)

@@ -139,10 +139,28 @@ int grobo_i_rs30x_sense(const grobo_driver *self, void *ctx, int joint, grobo_se
                         grobo_exchange *exchange)
 {
     (void)ctx;
-    int size =
-        grobo_frame_read(self->protocol, self->model->joints[joint].motor, blocks[kind].address,
-                         blocks[kind].length, exchange->frame, sizeof exchange->frame);
-    return finish(self, size, exchange);
+    uint8_t id = self->model->joints[joint].motor;
+    uint8_t address = blocks[kind].address;
+    uint8_t length = blocks[kind].length;
+    const grobo_relay *relay = self->protocol->relay;
+    uint8_t *buf = exchange->frame;
+    int size = grobo_rs30x_read(id, address, length, buf, sizeof exchange->frame);
+    if (size > 0 && relay != NULL) {
+        size = relay->wrap(buf, (size_t)size, buf, sizeof exchange->frame);
+    }
+    if (size < 0) {
+        return size;
+    }
+    exchange->frame_bytes = (uint16_t)size;
+    /* What reply_to() would find in the frame, in 300 instructions. */
+    exchange->reply = (grobo_reply){.kind = GROBO_REPLY_RETURN,
+                                    .count = 1,
+                                    .id = id,
+                                    .tag = address,
+                                    .address = address,
+                                    .length = length,
+                                    .bytes = (uint32_t)length + GROBO_RS30X_OVERHEAD_BYTES};
+    return GROBO_OK;
 }
 
 /* The bits of both lists, side by side. */
