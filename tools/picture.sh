@@ -3,8 +3,8 @@
 # Draws the moving picture of README.md, docs/robot.svg.
 #
 # usage: tools/picture.sh PICTURE [--check]
-#   --check  touch nothing; fail where the picture is not what PICTURE draws now. Numbers may differ by
-#            0.35: a goal that another machine rounds to the next 0.1 degree moves a hand by that
+#   --check  touch nothing; fail where the picture is not what PICTURE draws now. Numbers may differ
+#            by 0.35: a goal that another machine rounds to the next 0.1 degree moves a hand so far
 set -u
 
 drawn=$(mktemp) || exit 1
