@@ -25,7 +25,8 @@ check "and finds the robot" both exits 0 "$GRCTL" --robot "$work/arm.yaml" -d "$
 check_json "JSON" 'lines[0]["fits"] == ["koch"] and lines[0]["n_joints"] == 6' \
     new --json --family dynamixel2 -b 1000000
 check "nobody of that family" fails 1 'no servo answers' new --family lx16a -b 115200
-check "a file is not replaced" both exits 2 new --family dynamixel2 -b 1000000 -o "$work/arm.yaml" --- \
+check "a file is not replaced" both \
+    exits 2 new --family dynamixel2 -b 1000000 -o "$work/arm.yaml" --- \
     said 'arm.yaml is there already'
 check "no folder" both exits 3 new --family dynamixel2 -b 1000000 -o "$work/none/a.yaml" --- \
     said 'no such folder'

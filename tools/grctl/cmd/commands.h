@@ -7,6 +7,7 @@
 
 /* In the order of the overview: finding a robot, its state, moving it, files, servos, the rest. */
 #define GRCTL_COMMANDS(X)                                                                          \
+    X(setup)                                                                                       \
     X(ports)                                                                                       \
     X(doctor)                                                                                      \
     X(scan)                                                                                        \

@@ -26,7 +26,8 @@ typedef struct found_servos {
 
 /*
  * Looks at the line of -d for servos of a family, NULL: of all, at their usual rates or that of
- * -b, and asks each for its limits. All ids are asked where the first FOUND_IDS have none. Returns 0, or the exit status with the reason said.
+ * -b, and asks each for its limits. All ids are asked where the first FOUND_IDS have none.
+ * Returns 0, or the exit status with the reason said.
  */
 int found_look(app *a, const char *family, found_servos *all);
 
