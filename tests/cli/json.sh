@@ -13,6 +13,7 @@ cat >"$work/rows" <<'END'
 0|"ports" in lines[0]|ports
 0|lines[0]["name"] == "so101" and lines[0]["n_read"] == 6|-d sim --robot so101 --yes setup
 0|lines[0]["undone"]|setup --undo
+0|len(lines[0]["servos"]) == 2|-d sim --robot pan-tilt --yes first-contact -o WORK/fc
 0|lines[0]["ok"] and lines[0]["checks"]|-d sim doctor
 0|len(lines[0]["servos"]) == 20|-d sim scan
 0|lines[0]["robot"] == "GR001"|-d sim info

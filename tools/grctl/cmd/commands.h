@@ -10,6 +10,7 @@
     X(setup)                                                                                       \
     X(ports)                                                                                       \
     X(doctor)                                                                                      \
+    X(first_contact)                                                                               \
     X(scan)                                                                                        \
     X(info)                                                                                        \
     X(joints)                                                                                      \
