@@ -11,6 +11,9 @@ fi
 # Status, what the lines must be, the command line. A command has a row for each way it goes.
 cat >"$work/rows" <<'END'
 0|"ports" in lines[0]|ports
+0|lines[0]["name"] == "so101" and lines[0]["n_read"] == 6|-d sim --robot so101 --yes setup
+0|lines[0]["undone"]|setup --undo
+0|len(lines[0]["servos"]) == 2|-d sim --robot pan-tilt --yes first-contact -o WORK/fc
 0|lines[0]["ok"] and lines[0]["checks"]|-d sim doctor
 0|len(lines[0]["servos"]) == 20|-d sim scan
 0|lines[0]["robot"] == "GR001"|-d sim info
@@ -68,7 +71,7 @@ END
 mkdir -p "$work/config/grctl"
 awk '/^<!-- file lerobot.json/ { on = 1; next } on && /^```$/ { exit } on && !/^```/' \
     docs/guide/arm.md >"$work/a.json"
-echo 'robots: {here: {device: sim}}' >"$work/config/grctl/config.yaml"
+printf 'robots:\n  here: {device: sim}\n' >"$work/config/grctl/config.yaml"
 "$GRCTL" --trace "$work/trace" -d sim status >/dev/null
 
 # fits COMMAND: every line of the last output is as docs/grctl.schema.json says, which knows every

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Any bytes as a URDF or a body of Choreonoid: refused with a word, or the text of a robot's file. */
+/* Any bytes as a URDF or a body of Choreonoid: refused, or the text of a robot's file. */
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>

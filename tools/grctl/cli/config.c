@@ -416,7 +416,7 @@ static bool is_offline(const cli_command *command)
 {
     static const char *const names[] = {"ports",  "check",  "show",  "plot",       "convert",
                                         "decode", "sim",    "help",  "completion", "version",
-                                        "budget", "joints", "robot", "follow"};
+                                        "budget", "joints", "robot", "follow",     "setup"};
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         if (strcmp(command->name, names[i]) == 0) {
             return true;
@@ -457,6 +457,26 @@ static int no_robot(reader *r, bool asked)
     return app_fail(r->a, EXIT_FILE, "NOTFOUND", "%s: default '%s' is no robot of the file%s%s%s",
                     r->default_path, r->wanted, *nearest ? "; did you mean '" : "", nearest,
                     *nearest ? "'?" : "");
+}
+
+int config_check_name(app *a, const char *name)
+{
+    static config_robot robot;
+    reader r = {.a = a, .robot = &robot};
+    bool fits = strspn(name, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-") ==
+                strlen(name);
+    if (!may_be_name(name) || !fits) {
+        return app_fail(a, EXIT_USAGE, "ARG", "'%s': a name of letters, digits, _ and - is wanted",
+                        name);
+    }
+    memset(&robot, 0, sizeof robot);
+    snprintf(r.wanted, sizeof r.wanted, "%s", name);
+    find(&r);
+    if (!r.status && *robot.name) {
+        return app_fail(a, EXIT_USAGE, "EXISTS", "%s has a robot called %s already", robot.path,
+                        name);
+    }
+    return r.status;
 }
 
 /* group: NULL where none is wanted. */

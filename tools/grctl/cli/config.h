@@ -76,6 +76,27 @@ bool config_is_unknown_name(const app *a, const char *device);
  */
 bool config_warns_of_falls(const app *a);
 
+/* A robot for the user's file. */
+typedef struct config_entry {
+    const char *name, *device;
+    const char *def;    /* a name, or a path that holds in any folder */
+    int baud_bps;       /* 0: says nothing */
+    const char *wiring; /* NULL: says nothing */
+} config_entry;
+
+/* Whether a robot may be called so: 0, or the exit status with the reason said. */
+int config_check_name(app *a, const char *name);
+
+/*
+ * Adds a robot to the user's file, which is made where there is none; what was there before is
+ * kept for config_undo(). Returns 0, with the file's path, or the exit status with the reason said.
+ */
+int config_add(app *a, const config_entry *entry, char *path, size_t capacity);
+
+/* Puts the file back as it was before the last config_add(), unless it has changed since. As
+ * above. */
+int config_undo(app *a, char *path, size_t capacity);
+
 /* Writes the trims of the robot into its file: a temporary one takes its place. As above. */
 int config_write_trims(app *a, const config_robot *robot);
 

@@ -8,6 +8,7 @@
 
 #include "tools/grctl/cli/config.h"
 #include "tools/grctl/cli/file.h"
+#include "tools/grctl/os/os.h"
 
 static int fail(app *a, const char *path, const char *cause)
 {
@@ -118,5 +119,206 @@ int config_write_trims(app *a, const config_robot *robot)
     }
     free(made.text);
     free(text);
+    return status;
+}
+
+/* ---- another robot --------------------------------------------------------------------------- */
+
+static void put_text(draft *to, const char *text)
+{
+    put(to, text, strlen(text));
+}
+
+/* A scalar in double quotes. */
+static void put_quoted(draft *to, const char *text)
+{
+    put_text(to, "\"");
+    for (; *text; text++) {
+        if (*text == '"' || *text == '\\') {
+            put_text(to, "\\");
+        }
+        put(to, text, 1);
+    }
+    put_text(to, "\"");
+}
+
+static void put_entry(draft *to, const config_entry *entry, size_t indent)
+{
+    char number[32];
+    for (size_t i = 0; i < indent; i++) {
+        put_text(to, " ");
+    }
+    put_text(to, entry->name);
+    put_text(to, ": {device: ");
+    put_quoted(to, entry->device);
+    put_text(to, ", robot: ");
+    put_quoted(to, entry->def);
+    if (entry->baud_bps) {
+        snprintf(number, sizeof number, ", baud: %d", entry->baud_bps);
+        put_text(to, number);
+    }
+    if (entry->wiring) {
+        put_text(to, ", wiring: ");
+        put_text(to, entry->wiring);
+    }
+    put_text(to, "}\n");
+}
+
+static const char *line_behind(const char *line)
+{
+    line += strcspn(line, "\n");
+    return *line ? line + 1 : line;
+}
+
+/* What stands in front of the first robot of the list that begins here; 2 where there is none. */
+static size_t indent_of(const char *line)
+{
+    for (; *line; line = line_behind(line)) {
+        size_t indent = strspn(line, " ");
+        if (line[indent] != '#' && line[indent] != '\n' && line[indent] != '\r' && line[indent]) {
+            return indent ? indent : 2;
+        }
+    }
+    return 2;
+}
+
+/* The list of robots, one below another: where its first one stands. NULL: it is none. */
+static const char *find_robots(const char *text, bool *has)
+{
+    for (const char *line = text; *line; line = line_behind(line)) {
+        if (strncmp(line, "robots:", strlen("robots:")) != 0) {
+            continue;
+        }
+        const char *rest = line + strlen("robots:");
+        rest += strspn(rest, " \t\r");
+        *has = true;
+        return *rest == '\n' || *rest == '#' || *rest == '\0' ? line_behind(line) : NULL;
+    }
+    *has = false;
+    return NULL;
+}
+
+/* False: robots stand there in braces. */
+static bool put_added(draft *to, const char *text, const config_entry *entry)
+{
+    bool has;
+    const char *at = find_robots(text, &has);
+    if (has && !at) {
+        return false;
+    }
+    if (!*text) {
+        put_text(to, "default: ");
+        put_text(to, entry->name);
+        put_text(to, "\n");
+    }
+    if (at) {
+        put(to, text, (size_t)(at - text));
+    } else {
+        put_text(to, text);
+    }
+    if (to->used > 0 && to->used <= to->capacity && to->text[to->used - 1] != '\n') {
+        put_text(to, "\n");
+    }
+    if (!at) {
+        put_text(to, "robots:\n");
+    }
+    put_entry(to, entry, at ? indent_of(at) : 2);
+    put_text(to, at ? at : "");
+    return true;
+}
+
+static const char undo_name[] = "setup-undo";
+
+/* What config_undo() goes by. before NULL: there was no file. */
+static int keep_undo(app *a, const char *path, const char *before, const char *after)
+{
+    char kept[CONFIG_PATH_BYTES];
+    json_t *record = json_pack("{s:s,s:s?,s:s}", "path", path, "before", before, "after", after);
+    char *text = record ? json_dumps(record, JSON_COMPACT) : NULL;
+    int error = GROBO_ERR_NOENT;
+    if (text && os_state_path(undo_name, kept, sizeof kept)) {
+        error = file_save(kept, text, strlen(text));
+    }
+    free(text);
+    json_decref(record);
+    return error ? fail(a, path, "what it was before cannot be kept") : 0;
+}
+
+/* The folder of the user's file, made where it is not there. */
+static bool find_file(char *path, size_t capacity)
+{
+    return os_config_path(0, path, capacity) && os_make_folders(path);
+}
+
+int config_add(app *a, const config_entry *entry, char *path, size_t capacity)
+{
+    draft made = {.capacity = CONFIG_FILE_MAX_BYTES};
+    if (!find_file(path, capacity)) {
+        return app_fail(a, EXIT_FILE, "NOENT",
+                        "there is no folder for a configuration: HOME is "
+                        "not set");
+    }
+    errno = 0;
+    char *before = read_all(path);
+    if (!before && errno != ENOENT) {
+        return fail(a, path, app_cause_text(errno));
+    }
+    made.text = calloc(1, made.capacity + 1);
+    bool fits = made.text && put_added(&made, before ? before : "", entry);
+    int status = 0;
+    if (!made.text || made.full) {
+        status = fail(a, path, made.text ? "too long" : "not enough memory");
+    } else if (!fits) {
+        status = fail(a, path, "its robots stand in braces; add the robot by hand");
+    } else {
+        status = keep_undo(a, path, before, made.text);
+    }
+    if (!status) {
+        int error = file_save(path, made.text, made.used);
+        status = error ? fail(a, path, file_error_text(error)) : 0;
+    }
+    free(made.text);
+    free(before);
+    return status;
+}
+
+static int put_back(app *a, const char *path, const char *before, const char *after)
+{
+    char *now = read_all(path);
+    if (!now || strcmp(now, after) != 0) {
+        free(now);
+        return app_fail(a, EXIT_FILE, "STATE",
+                        "%s has changed since setup wrote it; nothing is "
+                        "undone",
+                        path);
+    }
+    free(now);
+    if (!before) {
+        return remove(path) == 0 ? 0 : fail(a, path, app_cause_text(errno));
+    }
+    int error = file_save(path, before, strlen(before));
+    return error ? fail(a, path, file_error_text(error)) : 0;
+}
+
+int config_undo(app *a, char *path, size_t capacity)
+{
+    char kept[CONFIG_PATH_BYTES];
+    json_t *record = os_state_path(undo_name, kept, sizeof kept)
+                         ? json_load_file(kept, JSON_REJECT_DUPLICATES, NULL)
+                         : NULL;
+    const char *where = json_string_value(json_object_get(record, "path"));
+    const char *before = json_string_value(json_object_get(record, "before"));
+    const char *after = json_string_value(json_object_get(record, "after"));
+    if (!where || !after) {
+        json_decref(record);
+        return app_fail(a, EXIT_USAGE, "NOENT",
+                        "setup --undo: setup has written nothing that could be undone");
+    }
+    snprintf(path, capacity, "%s", where);
+    int status = put_back(a, where, before, after);
+    if (!status) {
+        (void)remove(kept);
+    }
+    json_decref(record);
     return status;
 }

@@ -80,7 +80,7 @@ void cli_print_overview(FILE *to)
           "usage: grctl [GLOBAL OPTIONS] COMMAND [OPTIONS] [ARGUMENTS]\n\nCommands:\n",
           to);
     for (size_t i = 0; i < cli_n_commands; i++) {
-        fprintf(to, "  %-12s%s\n", cli_commands[i]->name, cli_commands[i]->summary);
+        fprintf(to, "  %-15s%s\n", cli_commands[i]->name, cli_commands[i]->summary);
     }
     print_global_options(to);
     putc('\n', to);

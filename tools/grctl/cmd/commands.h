@@ -7,8 +7,10 @@
 
 /* In the order of the overview: finding a robot, its state, moving it, files, servos, the rest. */
 #define GRCTL_COMMANDS(X)                                                                          \
+    X(setup)                                                                                       \
     X(ports)                                                                                       \
     X(doctor)                                                                                      \
+    X(first_contact)                                                                               \
     X(scan)                                                                                        \
     X(info)                                                                                        \
     X(joints)                                                                                      \

@@ -6,18 +6,18 @@
 #include "tools/grctl/cli/robot.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/servo/family.h"
-#include "tools/grctl/sketch/make.h"
+#include "tools/grctl/setup/found.h"
 
 enum { OPT_FAMILY, OPT_SERVO, OPT_IDS, OPT_NAME, OPT_OUT };
 
 static const cli_option options[] = {
     [OPT_FAMILY] = OPTION_CHOICE("family", 0, "rs30x|dynamixel2|dynamixel1|feetech|lx16a|ics",
-                                 "import: how its servos talk (feetech, to be filled in)"),
+                                 "how its servos talk (import: feetech; new: all)"),
     [OPT_SERVO] = OPTION_TEXT("servo", 0, "MODEL[,MODEL]...",
                               "import: its servos, one for all or for each joint"),
     [OPT_IDS] = OPTION_TEXT("ids", 0, "1-4,7", "import: ids of the joints, in order (1, 2, 3...)"),
-    [OPT_NAME] = OPTION_TEXT("name", 0, "NAME", "import: what the robot is called"),
-    [OPT_OUT] = OPTION_TEXT("out", 'o', "FILE", "import: the robot's file (standard output)"),
+    [OPT_NAME] = OPTION_TEXT("name", 0, "NAME", "import, new: what the robot is called"),
+    [OPT_OUT] = OPTION_TEXT("out", 'o', "FILE", "import, new: the robot's file (standard output)"),
 };
 
 static int run_list(const app *a)
@@ -230,14 +230,18 @@ static int run(app *a)
                                       .out = app_option(a, OPT_OUT)->text};
         return sketch_import(a, name, &orders);
     }
+    if (strcmp(what, "new") == 0 && !name) {
+        return found_new(a, app_option(a, OPT_FAMILY)->text, app_option(a, OPT_NAME)->text,
+                         app_option(a, OPT_OUT)->text);
+    }
     return app_fail(a, EXIT_USAGE, "ARG",
-                    "robot takes list, show [NAME|FILE], check FILE, servos [FAMILY] or import "
-                    "FILE; see 'grctl help robot'");
+                    "robot takes list, show [NAME|FILE], check FILE, servos [FAMILY], import "
+                    "FILE or new; see 'grctl help robot'");
 }
 
 const cli_command cmd_robot = {
     .name = "robot",
-    COMMAND_ARGUMENTS("list|show|check|servos|import [NAME|FILE]", 1, 2, CLI_ARG_ROBOT),
+    COMMAND_ARGUMENTS("list|show|check|servos|import|new [NAME|FILE]", 1, 2, CLI_ARG_ROBOT),
     .summary = "robots that are known, and files of others",
     .details =
         "list: the robots that come with grctl. show: what one of them is, or a file says, or the\n"
@@ -250,13 +254,19 @@ const cli_command cmd_robot = {
         "guessed, and said in a comment, unless --family, --servo and --ids tell. Limits that the\n"
         "servo does not reach are cut; joints that slide or follow another are taken as fixed.\n"
         "\n"
+        "new: a robot's file of the servos that answer on the line of -d, of every family at its\n"
+        "usual rates, or of --family, or at the rate of -b. Joints are called joint1 and so on;\n"
+        "limits are those that the servos hold. Robots that come with grctl and have these ids\n"
+        "and servos are named.\n"
+        "\n"
         "A robot is a YAML file: its joints with id, servo and limits, its line, what is safe.\n"
         "docs/guide/own-robot.md describes one, docs/robot.schema.json tells an editor its keys.\n"
         "Every command takes --robot NAME or --robot FILE; GRCTL_ROBOT and the key robot of a\n"
         "configured robot say the same.\n",
     .example = "  grctl robot list\n  grctl robot check ./arm.yaml\n"
                "  grctl --robot ./arm.yaml -d sim init\n"
-               "  grctl robot import arm.urdf --family feetech --servo STS3215 -o arm.yaml\n",
+               "  grctl robot import arm.urdf --family feetech --servo STS3215 -o arm.yaml\n"
+               "  grctl -d /dev/ttyACM0 robot new -o arm.yaml\n",
     COMMAND_OPTIONS(options),
     .run = run,
 };

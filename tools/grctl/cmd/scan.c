@@ -6,23 +6,18 @@
 #include "tools/grctl/cli/progress.h"
 #include "tools/grctl/cmd/commands.h"
 #include "tools/grctl/conn/servos.h"
-#include "tools/grctl/conn/wire.h"
-#include "tools/grctl/servo/family.h"
+#include "tools/grctl/scan/scan.h"
 
 enum { OPT_ALL_BAUD, OPT_FAMILY, OPT_FIRST, OPT_LAST };
-enum { IDS = 256, FEW = 4 };
-
-/* Looks at all ids that are missing, at most so many; a line is quiet after LISTEN_US without a
- * byte, or twice the worst lateness seen, and is not listened to for longer than LISTEN_MAX_US. */
-enum { LOOKS_MAX = 4, LISTEN_US = 150000, LISTEN_MAX_US = 2000000 };
 
 static const cli_option options[] = {
     [OPT_ALL_BAUD] =
         OPTION_FLAG("all-baud", 0, "at every baud rate that servos know (with --wiring bus)"),
     [OPT_FAMILY] = OPTION_CHOICE("family", 0, "all|rs30x|dynamixel2|dynamixel1|feetech|lx16a|ics",
                                  "look for these servos on a line, at their usual rates"),
-    [OPT_FIRST] = OPTION_WHOLE("first", 0, "ID", 0, IDS - 1, "begin with this id (the lowest)"),
-    [OPT_LAST] = OPTION_WHOLE("last", 0, "ID", 0, IDS - 1, "end with this id (the highest)"),
+    [OPT_FIRST] =
+        OPTION_WHOLE("first", 0, "ID", 0, SCAN_IDS - 1, "begin with this id (the lowest)"),
+    [OPT_LAST] = OPTION_WHOLE("last", 0, "ID", 0, SCAN_IDS - 1, "end with this id (the highest)"),
 };
 
 typedef struct found {
@@ -38,35 +33,6 @@ typedef struct found {
     int rate, n_rates; /* the rate that is asked at, of so many */
 } found;
 
-/* What the registers of family_identity() say. */
-typedef struct identity {
-    const char *model, *family;
-    bool known;
-    int32_t firmware; /* -1: not told */
-} identity;
-
-static identity identity_of(const grobo_driver *driver, const uint8_t *bytes)
-{
-    const grobo_servo_model *any = family_servo(driver, -1);
-    const grobo_servo_register *reg = grobo_servo_register_of(any, GROBO_ROLE_MODEL);
-    identity is = {.model = any->table->name,
-                   .family = family_of_servo(any)->name,
-                   .known = true,
-                   .firmware = -1};
-    uint16_t from = 0;
-    (void)family_identity(driver, any, &from);
-    if (reg) {
-        const grobo_servo_model *model = family_identify(driver, bytes + (reg->address - from));
-        is.known = model != NULL;
-        is.model = model ? model->name : "unknown model";
-    }
-    reg = grobo_servo_register_of(any, GROBO_ROLE_FIRMWARE);
-    if (reg) {
-        is.firmware = grobo_servo_register_get(any, reg, bytes + (reg->address - from));
-    }
-    return is;
-}
-
 /* The name of the joint that this id moves, NULL for none. */
 static const char *joint_name(const found *f, int id)
 {
@@ -75,7 +41,7 @@ static const char *joint_name(const found *f, int id)
 }
 
 /* One that answers with its identity, or (NULL) wrongly, or not at all where it should. */
-static json_t *servo_json(const found *f, int id, int baud_bps, const identity *is, int error)
+static json_t *servo_json(const found *f, int id, int baud_bps, const scan_identity *is, int error)
 {
     int joint = joint_name(f, id) ? grobo_model_joint_of_motor(f->driver->model, id) : -1;
     return json_pack("{s:i,s:o?,s:s?,s:s*,s:o*,s:o*,s:i,s:o*}", "id", id, "joint",
@@ -88,7 +54,7 @@ static json_t *servo_json(const found *f, int id, int baud_bps, const identity *
 
 static void report(found *f, int id, int baud_bps, const uint8_t *bytes)
 {
-    const identity is = identity_of(f->driver, bytes);
+    const scan_identity is = scan_identity_of(f->driver, bytes);
     const char *name = f->family ? is.family : joint_name(f, id);
     char firmware[24] = "";
     if (f->guessing && !is.known) {
@@ -113,255 +79,36 @@ static void report_failed(found *f, int id, int baud_bps, int error)
     }
 }
 
-/* ---- what comes ------------------------------------------------------------------------------ */
-
-/* One baud rate. Every whole reply on the line counts for its servo, whenever it comes. */
-typedef struct pass {
-    found *f;
-    bool there[IDS];
-    int why[IDS]; /* the error of one that answered in no way that fits, or 0 */
-    uint8_t identity[IDS][FAMILY_PIECE_BYTES];
-    int64_t asked_us[IDS];
-    uint16_t address; /* of the registers that tell the identity */
-    int bytes;        /* of them */
-    int baud_bps, first, last, asking;
-    int64_t heard_us;             /* when the last byte came, 0: none has */
-    int64_t worst_us;             /* the longest that a reply took */
-    uint32_t rubbish;             /* bytes of this look that are of no whole packet */
-    int n;                        /* servos found */
-    bool late;                    /* a reply came after its time */
-    uint32_t wire_us, timeout_us; /* of a reply: its time on the wire, and what it is given */
-    const grobo_protocol *protocol;
-    uint8_t kept[GROBO_FRAME_MAX_BYTES]; /* of what came, from where a packet may begin */
-    size_t n_kept;
-} pass;
-
-static void take_reply(pass *p, const grobo_packet *packet, int64_t now_us)
-{
-    int id = packet->id;
-    if (packet->kind != GROBO_PACKET_RETURN || packet->refused || p->asked_us[id] == 0 ||
-        packet->data_bytes != (size_t)p->bytes) {
-        return;
-    }
-    int64_t took_us = now_us - p->asked_us[id];
-    if (took_us > p->worst_us) {
-        p->worst_us = took_us;
-    }
-    p->late |= took_us > p->timeout_us;
-    p->there[id] = true;
-    memcpy(p->identity[id], packet->data, packet->data_bytes);
-}
-
-static void drop(pass *p, size_t n)
-{
-    p->n_kept -= n;
-    memmove(p->kept, p->kept + n, p->n_kept);
-}
-
-/* Packets of those that came, as far as they are whole; end: nothing more comes. */
-static void take_replies(pass *p, int64_t now_us, bool end)
-{
-    while (p->n_kept > 0) {
-        grobo_packet packet;
-        uint8_t bytes[GROBO_FRAME_MAX_BYTES];
-        int size =
-            p->protocol->measure(p->kept, p->n_kept, GROBO_ACCEPT_COMMANDS | GROBO_ACCEPT_RETURNS);
-        if (size == 0 && !end && p->n_kept < sizeof p->kept) {
-            return;
-        }
-        if (size <= 0) {
-            p->rubbish++;
-            drop(p, 1);
-            continue;
-        }
-        memcpy(bytes, p->kept, (size_t)size); /* it may be changed */
-        p->protocol->unpack(bytes, (size_t)size, &packet);
-        take_reply(p, &packet, now_us);
-        drop(p, (size_t)size);
-    }
-}
-
-static void on_bytes(conn *c, grobo_direction direction, int64_t now_us, const uint8_t *bytes,
-                     size_t size)
-{
-    pass *p = c->ctx;
-    if (direction == GROBO_DIR_TX) {
-        p->asked_us[p->asking] = now_us;
-        return;
-    }
-    p->heard_us = now_us;
-    while (size > 0) {
-        size_t room = sizeof p->kept - p->n_kept, took = size < room ? size : room;
-        memcpy(p->kept + p->n_kept, bytes, took);
-        p->n_kept += took;
-        take_replies(p, now_us, false);
-        bytes += took;
-        size -= took;
-    }
-}
-
-static int64_t quiet_at(const pass *p, int64_t since_us)
-{
-    int64_t quiet_us = 2 * p->worst_us > LISTEN_US ? 2 * p->worst_us : LISTEN_US;
-    return (p->heard_us > since_us ? p->heard_us : since_us) + quiet_us;
-}
-
-/* Until the line is quiet: nothing that was asked can be answered any more. */
-static int listen_on(conn *c, pass *p)
-{
-    int64_t since_us = grobo_now_us(), at_us;
-    int error;
-    do {
-        at_us = quiet_at(p, since_us);
-        error = conn_sleep_until(c, at_us);
-    } while (!error && quiet_at(p, since_us) > at_us && grobo_now_us() < since_us + LISTEN_MAX_US);
-    take_replies(p, grobo_now_us(), true); /* none of the bytes of a packet that is cut follow */
-    return error;
-}
-
 /* ---- scan ------------------------------------------------------------------------------------ */
 
-static int ask(conn *c, pass *p, int id)
-{
-    uint8_t bytes[FAMILY_PIECE_BYTES];
-    p->asking = id;
-    int error = servos_read(c, id, p->address, p->bytes, bytes);
-    bool silent = error == GROBO_ERR_TIMEOUT || error == GROBO_ERR_SHORT;
-    if (!error) {
-        p->there[id] = true;
-        memcpy(p->identity[id], bytes, (size_t)p->bytes);
-    }
-    p->why[id] = silent ? 0 : error;
-    return c->signal || c->link_error ? error : GROBO_OK;
-}
-
-/* So long that nothing is asked while a reply to the question before may come. */
-static uint32_t patience(const pass *p)
-{
-    return (uint32_t)(2 * p->worst_us) + SERVOS_PATIENT_US;
-}
-
 /* On a terminal only: 127 silent ids take a second, and eleven rates more than ten. */
-static void show_progress(const pass *p, int id)
+static void show_progress(const scan_pass *p, int id)
 {
+    found *f = p->ctx;
     char text[48];
     double part = (double)(id - p->first) / (p->last - p->first + 1);
-    if (!p->f->bar.shown) {
+    if (!f->bar.shown) {
         return;
     }
     snprintf(text, sizeof text, "%d bps, id %d", p->baud_bps, id);
-    progress_draw(&p->f->bar, (p->f->rate + part) / p->f->n_rates, text);
+    progress_draw(&f->bar, (f->rate + part) / f->n_rates, text);
 }
 
-/* Asks all ids that are missing, and listens to what is still on its way. */
-static int look(conn *c, pass *p, uint32_t margin_us)
+static void report_pass(found *f, const scan_pass *p)
 {
-    int error = servos_wait(c, p->baud_bps, p->bytes, margin_us, -1, &p->timeout_us);
-    p->late = false;
-    p->rubbish = 0;
-    for (int id = p->first; id <= p->last && !error; id++) {
-        show_progress(p, id);
-        if (!p->there[id]) {
-            error = ask(c, p, id);
-        }
-    }
-    progress_clear(&p->f->bar);
-    if (!error) {
-        error = listen_on(c, p);
-    }
-    p->n = 0;
+    progress_clear(&f->bar);
     for (int id = p->first; id <= p->last; id++) {
-        p->n += p->there[id];
-    }
-    return error;
-}
-
-/* One that the robot should have is missing, though others answer. */
-static bool misses_joint(const conn *c, const pass *p)
-{
-    const grobo_model *model = grobo_robot_driver(c->robot)->model;
-    for (int joint = 0; joint < model->n_joints && p->heard_us && !p->f->family; joint++) {
-        int id = grobo_model_motor_of_joint(model, joint);
-        if (id >= p->first && id <= p->last && !p->there[id]) {
-            return true;
+        if (p->there[id]) {
+            report(f, id, p->baud_bps, p->identity[id]);
+        } else if (p->why[id]) {
+            report_failed(f, id, p->baud_bps, p->why[id]);
+        } else {
+            f->silent++;
         }
     }
-    return false;
-}
-
-static bool has_suspects(const pass *p)
-{
-    for (int id = p->first; id <= p->last; id++) {
-        if (p->why[id] && !p->there[id]) {
-            return true;
-        }
-    }
-    return false;
-}
-
-/*
- * The first look is quick: it takes a servo for silent after milliseconds. Where anything came late
- * or broken, or where a joint is missing, those that are missing are asked again with patience,
- * until a look finds nothing more and hears no rubbish.
- */
-static int look_until_sure(conn *c, pass *p, bool *sure)
-{
-    bool few = p->last - p->first < FEW;
-    int error = GROBO_OK, looks = 0;
-    *sure = false;
-    for (; !error && !*sure && looks < LOOKS_MAX; looks++) {
-        int before = p->n;
-        error = look(c, p,
-                     looks > 1      ? patience(p)
-                     : looks || few ? SERVOS_PATIENT_US
-                                    : WIRE_SILENT_MARGIN_US);
-        bool clean = p->rubbish == 0 && !has_suspects(p);
-        *sure = p->n == p->last - p->first + 1 ||
-                (clean && (looks ? p->n == before : !p->late && !misses_joint(c, p)));
-    }
-    return error;
-}
-
-/* Nobody is accused but by an answer to a question on a quiet line, with all the time it may take.
- * One that is silent then is silent. */
-static int question_suspects(conn *c, pass *p, bool *sure)
-{
-    int error = servos_wait(c, p->baud_bps, p->bytes, patience(p), -1, NULL);
-    for (int id = p->first; id <= p->last && !error; id++) {
-        if (!p->why[id] || p->there[id]) {
-            continue;
-        }
-        error = ask(c, p, id);
-        if (!error) {
-            error = listen_on(c, p);
-        }
-        if (p->why[id] && !p->there[id] && !error) {
-            app_note(c->a, "id %d answers, but: %s (two servos with one id?)", id,
-                     grobo_error_text(p->why[id]));
-        }
-    }
-    *sure = *sure && !has_suspects(p);
-    return error;
-}
-
-static int ask_all(conn *c, found *f, pass *p)
-{
-    int64_t began_us = grobo_now_us();
-    bool sure = false;
-    int error = wire_read_us(grobo_robot_driver(c->robot), p->baud_bps, p->bytes, &p->wire_us);
-    c->ctx = p;
-    c->on_bytes = on_bytes;
-    if (!error) {
-        error = look_until_sure(c, p, &sure);
-    }
-    if (!error) {
-        error = question_suspects(c, p, &sure);
-    }
-    c->on_bytes = NULL;
-    f->unsure |= !sure;
-    f->took_us += grobo_now_us() - began_us;
+    f->unsure |= !p->sure;
+    f->took_us += p->took_us;
     f->wire_us += (int64_t)p->wire_us * (p->last - p->first + 1);
-    return error;
 }
 
 static int first_id(const app *a, const grobo_driver *driver)
@@ -371,25 +118,22 @@ static int first_id(const app *a, const grobo_driver *driver)
 
 static int last_id(const app *a, const grobo_driver *driver)
 {
-    return (int)fmin(app_number(a, OPT_LAST, IDS), driver->protocol->id_max);
+    return (int)fmin(app_number(a, OPT_LAST, SCAN_IDS), driver->protocol->id_max);
 }
 
 static int scan_ids(conn *c, found *f, int baud_bps)
 {
-    pass p = {.f = f, .baud_bps = baud_bps, .protocol = f->driver->protocol};
-    p.bytes = family_identity(f->driver, family_servo(f->driver, -1), &p.address);
+    static scan_pass p;
+    memset(&p, 0, sizeof p);
+    p.driver = f->driver;
+    p.baud_bps = baud_bps;
     p.first = first_id(c->a, f->driver);
     p.last = last_id(c->a, f->driver);
-    int error = ask_all(c, f, &p);
-    for (int id = p.first; id <= p.last; id++) {
-        if (p.there[id]) {
-            report(f, id, baud_bps, p.identity[id]);
-        } else if (p.why[id]) {
-            report_failed(f, id, baud_bps, p.why[id]);
-        } else {
-            f->silent++;
-        }
-    }
+    p.own = true;
+    p.progress = show_progress;
+    p.ctx = f;
+    int error = scan_line(c, &p);
+    report_pass(f, &p);
     return error;
 }
 
@@ -453,72 +197,40 @@ static int scan(conn *c)
 
 /* ---- families ------------------------------------------------------------------------------- */
 
-/* One family at one rate: the line is opened for it. */
-static int look_for(app *a, found *f, int baud_bps)
+static void begin_rate(scan_search *s, scan_pass *p, int rate, int n_rates)
 {
-    conn c;
-    cli_value *baud = &a->line.global[GLOBAL_BAUD];
-    const cli_value before = *baud;
-    *baud = (cli_value){.given = 1, .number = baud_bps};
-    a->driver = f->driver;
-    int status = conn_open_unchecked(&c, a);
-    if (!status && grobo_session_sim(c.session)) {
-        status = app_fail(a, EXIT_USAGE, "ARG",
-                          "scan: --family needs a line; 'grctl sim --servo' makes one");
-    }
-    int error = status ? 0 : scan_ids(&c, f, baud_bps);
-    if (error) {
-        status = conn_fail(&c, error, "scan");
-    }
-    status = conn_close(&c, status);
-    *baud = before;
-    return status;
+    found *f = s->ctx;
+    f->rate = rate;
+    f->n_rates = n_rates;
+    p->progress = show_progress;
+    p->ctx = f;
 }
 
-/* At the rate of -b, or where such servos are found usually; with --all-baud at all they know. */
-static int look_at_rates(app *a, found *f)
+static void end_rate(scan_search *s, const grobo_robot_family *family, conn *c, const scan_pass *p)
 {
-    const cli_value *asked = app_global(a, GLOBAL_BAUD);
-    const cli_value *device = app_global(a, GLOBAL_DEVICE);
-    const grobo_servo_table *table = family_table(f->family, 0);
-    bool all = app_option(a, OPT_ALL_BAUD)->given > 0;
-    bool one = asked->given || (device->given && strncmp(device->text, "tcp:", 4) == 0);
-    int n = 0, status = 0;
-    while (!one && (all ? n < table->rate_count : family_usual_bps(f->family, (size_t)n) > 0)) {
-        n++;
-    }
-    n = one ? 1 : n;
-    f->n_rates = n;
-    for (int i = 0; i < n && !status; i++) {
-        int baud_bps = asked->given ? (int)asked->number
-                       : all        ? table->rates[i].bps
-                                    : family_usual_bps(f->family, (size_t)i);
-        f->rate = i;
-        status = look_for(a, f, baud_bps);
-    }
-    return status;
+    found *f = s->ctx;
+    (void)c;
+    f->family = family;
+    f->driver = p->driver;
+    report_pass(f, p);
 }
 
-static int scan_families(app *a)
+static int run_families(app *a)
 {
-    const char *name = app_option(a, OPT_FAMILY)->text;
     found f = {.a = a,
-               .guessing = strcmp(name, "all") == 0,
+               .guessing = strcmp(app_option(a, OPT_FAMILY)->text, "all") == 0,
                .list = a->json ? json_array() : NULL,
                .failed = a->json ? json_array() : NULL};
-    const grobo_driver *driver = a->driver;
-    const config_robot *robot = a->robot;
-    int status = 0;
-    a->robot = NULL; /* its trims are of other joints */
+    scan_search search = {.family = app_option(a, OPT_FAMILY)->text,
+                          .all_rates = app_option(a, OPT_ALL_BAUD)->given > 0,
+                          .first = (int)app_number(a, OPT_FIRST, 0),
+                          .last = (int)app_number(a, OPT_LAST, SCAN_IDS - 1),
+                          .who = "scan: --family needs a line",
+                          .begins = begin_rate,
+                          .ends = end_rate,
+                          .ctx = &f};
     progress_start(&f.bar, a);
-    for (size_t i = 0; (f.family = grobo_robot_families[i]) != NULL && !status; i++) {
-        f.driver = family_driver(f.family);
-        if (f.driver && (f.guessing || strcmp(f.family->name, name) == 0)) {
-            status = look_at_rates(a, &f);
-        }
-    }
-    a->driver = driver;
-    a->robot = robot;
+    int status = scan_families(a, &search);
     if (status) {
         json_decref(f.list);
         json_decref(f.failed);
@@ -543,7 +255,7 @@ static int run_scan(app *a)
     if (app_option(a, OPT_FAMILY)->given) {
         return a->link ? app_fail(a, EXIT_USAGE, "ARG",
                                   "scan: --family opens the line for itself; not in a shell")
-                       : scan_families(a);
+                       : run_families(a);
     }
     if (app_option(a, OPT_ALL_BAUD)->given && app_driver(a)->protocol->relay) {
         return app_fail(a, EXIT_USAGE, "ARG",

@@ -95,6 +95,8 @@ FILE *os_create(const char *path, bool waits);
 bool os_is_folder(const char *path);
 /* The configuration file: 0 the user's, 1 the machine's. False where there is none. */
 bool os_config_path(int which, char *path, size_t capacity);
+/* Makes the folders of a file that are not there. False: it cannot. */
+bool os_make_folders(char *path);
 /* A file of the user's state ($XDG_STATE_HOME/grctl), its folders made. False: there is none. */
 bool os_state_path(const char *name, char *path, size_t capacity);
 

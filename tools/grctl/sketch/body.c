@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Choreonoid's body (YAML): links with their parents. Source: choreonoid, src/Body/StdBodyLoader.cpp,
- * whose angles are degrees unless angleUnit says radian. */
+/* Choreonoid's body (YAML): links with their parents. Source: choreonoid,
+ * src/Body/StdBodyLoader.cpp, whose angles are degrees unless angleUnit says radian. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

@@ -162,7 +162,7 @@ static int save(app *a, const char *out, const char *text)
                  : EXIT_DONE;
 }
 
-int sketch_write(app *a, sketch *s, const char *out)
+int sketch_write(app *a, sketch *s, const char *out, json_t *fits)
 {
     char *text = sketch_text(s);
     if (!text) {
@@ -173,9 +173,9 @@ int sketch_write(app *a, sketch *s, const char *out)
         status = save(a, out, text);
     }
     if (!status && a->json) {
-        app_print_json(json_pack("{s:s,s:o?,s:i,s:o?}", "name", s->name, "file",
+        app_print_json(json_pack("{s:s,s:o?,s:i,s:o?,s:O*}", "name", s->name, "file",
                                  out ? app_json_text(out) : NULL, "n_joints", sketch_joints(s),
-                                 "text", out ? NULL : json_string(text)));
+                                 "text", out ? NULL : json_string(text), "fits", fits));
     } else if (!status && out) {
         app_note(a, "%s: %d joints; check it, then: grctl --robot %s -d sim init", out,
                  sketch_joints(s), out);
@@ -236,7 +236,7 @@ static int describe(app *a, sketch *s, const char *path, const sketch_orders *or
         return status;
     }
     sketch_fit(s);
-    return sketch_write(a, s, orders->out);
+    return sketch_write(a, s, orders->out, NULL);
 }
 
 int sketch_import(app *a, const char *path, const sketch_orders *orders)
@@ -251,7 +251,7 @@ int sketch_import(app *a, const char *path, const sketch_orders *orders)
     }
     s.n = 0;
     s.bare = false;
-    s.name[0] = '\0';
+    s.name[0] = s.usb[0] = '\0';
     snprintf(s.source, sizeof s.source, "%s", path);
     bool xml = is_xml(bytes, size);
     bool fine = xml ? sketch_read_urdf(&s, path, bytes, size, complaint, sizeof complaint)

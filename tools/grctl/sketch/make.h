@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* From a sketch to a robot's file: servos and ids of the command line, the file checked, written. */
+/* From a sketch to a robot's file: servos and ids of the command line; checked and written. */
 #ifndef GRCTL_SKETCH_MAKE_H
 #define GRCTL_SKETCH_MAKE_H
 
@@ -17,7 +17,8 @@ typedef struct sketch_orders {
 int sketch_import(app *a, const char *path, const sketch_orders *orders);
 
 /* Writes the file of a sketch whose joints have servos and ids, once its reader has nothing against
- * it. A file that is there is replaced with --yes only. Returns the exit status. */
-int sketch_write(app *a, sketch *s, const char *out);
+ * it. A file that is there is replaced with --yes only. fits: names of robots for JSON, borrowed,
+ * or NULL. Returns the exit status. */
+int sketch_write(app *a, sketch *s, const char *out, json_t *fits);
 
 #endif

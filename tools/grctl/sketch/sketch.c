@@ -251,6 +251,7 @@ static bool reaches(const sketch *s, const sketch_part *part)
                                .servo_model = part->servo->number,
                                .motor = 1,
                                .mirror_sign = 1,
+                               .turns = part->turns,
                                .zero_rad = part->zero_rad};
     const grobo_model one = {.name = "one", .joints = &joint, .n_joints = 1};
     grobo_driver driver;

@@ -37,6 +37,7 @@ typedef struct sketch_part {
     double origin_m[3], origin_rad[3], axis[3], mass_kg;
     /* of a joint, set by who knows */
     int id;
+    bool turns; /* its servo counts several turns */
     const grobo_servo_model *servo;
     /* set by sketch_order() and sketch_fit() */
     int above;      /* index of its parent, -1 none */
@@ -50,6 +51,7 @@ typedef struct sketch {
     char name[SKETCH_TEXT_BYTES];
     char source[SKETCH_TEXT_BYTES]; /* what it was made of, for the first line */
     const grobo_robot_family *family;
+    char usb[16];                     /* its adapter, "1a86:55d3", or "" */
     int baud_bps;                     /* 0: the factory's */
     bool guessed_servos, guessed_ids; /* nobody told them */
     bool bare;                        /* parts are joints alone, and have no geometry */

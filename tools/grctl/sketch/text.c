@@ -66,7 +66,7 @@ static void put_joint(paper *to, const sketch_part *part)
     if (speed_dps >= 1 && speed_dps < 0.8 * part->servo->speed_dps) {
         put(to, ", speed_deg_s: %.6g", speed_dps);
     }
-    put(to, "}");
+    put(to, part->turns ? ", turns: true}" : "}");
     const char *name = *part->joint ? part->joint : part->name;
     if (strcmp(name, part->called) != 0) {
         put(to, " # '%s'", plain(name));
@@ -130,7 +130,10 @@ char *sketch_text(sketch *s)
     if (s->baud_bps) {
         put(&to, "line: {baud: %d}\n", s->baud_bps);
     }
-    put(&to, "exit: %s\n\njoints:\n", s->bare ? "off" : "hold");
+    if (*s->usb) {
+        put(&to, "usb: [\"%s\"]\n", s->usb);
+    }
+    put(&to, "\njoints:\n");
     for (int i = 0; i < s->n_joints; i++) {
         put_joint(&to, sketch_joint(s, i));
     }

@@ -243,11 +243,8 @@ static bool user_path(const char *variable, const char *usual, const char *name,
     return n > 0 && (size_t)n < capacity;
 }
 
-bool os_state_path(const char *name, char *path, size_t capacity)
+bool os_make_folders(char *path)
 {
-    if (!user_path("XDG_STATE_HOME", ".local/state", name, path, capacity)) {
-        return false;
-    }
     for (char *slash = strchr(path + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
         *slash = '\0';
         if (mkdir(path, 0700) < 0 && errno != EEXIST) {
@@ -256,6 +253,12 @@ bool os_state_path(const char *name, char *path, size_t capacity)
         *slash = '/';
     }
     return true;
+}
+
+bool os_state_path(const char *name, char *path, size_t capacity)
+{
+    return user_path("XDG_STATE_HOME", ".local/state", name, path, capacity) &&
+           os_make_folders(path);
 }
 
 bool os_config_path(int which, char *path, size_t capacity)

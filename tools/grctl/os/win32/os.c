@@ -341,6 +341,21 @@ bool os_state_path(const char *name, char *path, size_t capacity)
     return n > 0 && (size_t)n < capacity;
 }
 
+bool os_make_folders(char *path)
+{
+    for (char *slash = path; (slash = strpbrk(slash + 1, "/\\")) != NULL;) {
+        char kept = *slash;
+        *slash = '\0';
+        bool made = slash[-1] == ':' || CreateDirectoryA(path, NULL) ||
+                    GetLastError() == ERROR_ALREADY_EXISTS;
+        *slash = kept;
+        if (!made) {
+            return false;
+        }
+    }
+    return true;
+}
+
 bool os_config_path(int which, char *path, size_t capacity)
 {
     const char *config = getenv("XDG_CONFIG_HOME"); /* of a shell that came from elsewhere */

@@ -1,0 +1,96 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# grctl first-contact: what is assumed of a robot, tested on simulated ones of every family.
+. tests/support/cli.sh
+unset GRCTL_ROBOT
+said() {
+    grep -q -e "$1" "$work/err" || { echo "no '$1' in:"; cat "$work/err"; return 1; }
+}
+# contact STATUS ANSWERS PREFIX ARGUMENTS...: lines of standard input, \n between them.
+contact() {
+    contact_want=$1
+    printf '%b' "$2" >"$work/answers"
+    contact_out=$work/$3
+    shift 3
+    "$GRCTL" "$@" first-contact --yes -o "$contact_out" \
+        <"$work/answers" >"$work/out" 2>"$work/err"
+    status_was "$contact_want" "$@"
+}
+describe() {
+    printf 'name: t\nfamily: %s\njoints:\n' "$1"
+    printf '  - {name: turn, id: 1, servo: %s, limits_deg: [-90, 90]}\n' "$2"
+    printf '  - {name: lift, id: 2, servo: %s, limits_deg: [-20, 60], init_deg: 59}\n' "$2"
+}
+
+check "nobody to ask" fails 2 "asks a person at a terminal" "$GRCTL" -d sim first-contact
+
+for one in feetech:STS3215 feetech:SCS0009 dynamixel2:XL430-W250 dynamixel1:AX-12A rs30x:RS302CD \
+    lx16a:LX-16A ics:KRS-3301; do
+    describe "${one%:*}" "${one#*:}" >"$work/arm.yaml"
+    start_sim --robot "$work/arm.yaml" || { echo "Bail out! the simulator did not start"; exit 1; }
+    check "$one, to the end" contact 0 'y\ny\nyes\n' "${one#*:}" --robot "$work/arm.yaml" \
+        -d "$robot" --timeout 500
+    check "turns back where its limit is near" \
+        grep -q '^as assumed  *move .* by -2 deg to 5[67]\.' "$work/${one#*:}.txt"
+    check "and is as it was found" both exits 0 \
+        "$GRCTL" --robot "$work/arm.yaml" -d "$robot" --timeout 500 status --- \
+        says '^ *2  lift  *\(58.[89]\|59.[01]\) .* off '
+    stop_sim
+done
+
+start_sim
+check "without a yes it reads only" contact 0 '\n' shy -d "$robot" --timeout 500
+check "a board that stores and forwards" said '^as assumed  *board .*stores a frame'
+check "all servos" said '^as assumed  *ping .*20 of 20 servos answer'
+check "the rest is not done" \
+    [ "$(grep -c '^not done  *\(torque_on\|move\) ' "$work/shy.txt")" -eq 2 ]
+traced() { # on a busy machine a reply may be cut
+    "$GRCTL" decode "$work/shy-read.pcapng" 2>/dev/null | grep -q 'servo 8 (L_ELBOW_P) returns'
+}
+check "there is a trace of the reading" traced
+check "and of nothing else" [ ! -e "$work/shy-move.pcapng" ]
+check "a report is not written over" contact 2 '\n' shy -d "$robot"
+if have_json; then
+    check_json "the report as JSON" \
+        'lines[0]["robot"] == "gr001" and len(lines[0]["servos"]) == 20 and
+        lines[0]["servos"][3]["registers"]["id"] == 12 and lines[0]["not_as_assumed"] == 0 and
+        {s["name"] for s in lines[0]["steps"]} > {"ping", "models", "latency", "board", "echo"}' \
+        on_robot --json first-contact --yes -o "$work/told"
+fi
+stop_sim
+
+start_sim --latency 20
+check "late replies are told" contact 1 '' late -d "$robot" --timeout 500
+check "as what they are" said '^NOT as assumed  *latency '
+stop_sim
+start_sim --wiring bus --echo
+check "an echo that nobody expected" contact 1 '' echo --wiring bus -d "$robot" --timeout 500
+check "is told" said '^NOT as assumed  *echo .*--echo'
+stop_sim
+start_told_sim --robot so101
+tell cable 3 out
+check "a servo that is silent" contact 1 '' silent --robot so101 -d "$robot"
+check "is told too" said '^NOT as assumed  *ping .*5 of 6'
+tell cable 3 in
+
+# Ended while the joint has torque: the exit policy, and the report of what was found until then.
+cut_short() {
+    printf 'y\ny\n' >"$work/answers"
+    "$GRCTL" --robot so101 -d "$robot" --timeout 500 first-contact --yes -o "$work/short" \
+        elbow_flex <"$work/answers" >"$work/out" 2>"$work/err" &
+    cut_pid=$!
+    wait_for [ -s "$work/short-move.pcapng" ] && wait_for sim_shows elbow_flex 'torque on'
+    kill -TERM $cut_pid
+    wait $cut_pid
+    cut_got=$?
+    [ $cut_got -eq 143 ] && return
+    echo "status $cut_got"
+    cat "$work/err"
+    return 1
+}
+check "ended while it moves" cut_short
+check "has a report all the same" grep -q 'torque_on' "$work/short.txt"
+check "and holds" both exits 0 "$GRCTL" --robot so101 -d "$robot" --timeout 500 status elbow_flex \
+    --- says '^ *3 .* on '
+stop_sim
+done_testing

@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: MIT */
+#include <string.h>
+
+#include "tools/grctl/cli/joints.h"
+#include "tools/grctl/cmd/commands.h"
+#include "tools/grctl/setup/contact.h"
+
+enum { OPT_OUT };
+
+static const cli_option options[] = {
+    [OPT_OUT] = OPTION_TEXT("out", 'o', "PREFIX",
+                            "how the names of report and traces begin (first-contact-ROBOT)"),
+};
+
+static int run(app *a)
+{
+    contact_orders orders = {.joint = -1, .out = app_option(a, OPT_OUT)->text};
+    int status = 0;
+    if (a->line.n_arguments > 0) {
+        const char *name = a->line.argument[0];
+        orders.joint = joints_parse_one(a, name, strlen(name), &status);
+        if (orders.joint < 0) {
+            return status;
+        }
+    }
+    return contact_run(a, &orders);
+}
+
+const cli_command cmd_first_contact = {
+    .name = "first-contact",
+    COMMAND_ARGUMENTS("[JOINT]", 0, 1, CLI_ARG_JOINT),
+    .summary = "test what grctl assumes of a real robot, step by step",
+    .details =
+        "For whoever connects a robot that nobody has connected before. First it is only read:\n"
+        "who answers, models and firmware, all registers, how late replies are, whether an\n"
+        "adapter echoes, whether GR001's board stores a frame before it forwards it. Then, each\n"
+        "confirmed by you: the torque of JOINT (the last one) comes on, which should not make it\n"
+        "jump, and it moves by 2 degrees and back. A joint that was limp is limp again.\n"
+        "\n"
+        "It writes PREFIX.txt and PREFIX.json, what was found and whether it is as assumed, and\n"
+        "a trace of each part, to be sent to the authors. The exit status is 1 where something\n"
+        "is not as assumed. Answers may be lines of standard input, with --yes.\n",
+    .example = "  grctl first-contact gripper\n  grctl -d sim --robot so101 first-contact\n",
+    COMMAND_OPTIONS(options),
+    .run = run,
+};

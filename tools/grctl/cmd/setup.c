@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: MIT */
+#include "tools/grctl/cmd/commands.h"
+#include "tools/grctl/setup/setup.h"
+
+enum { OPT_UNDO };
+
+static const cli_option options[] = {
+    [OPT_UNDO] = OPTION_FLAG("undo", 0, "put the configuration back as it was before"),
+};
+
+static int run(app *a)
+{
+    return app_option(a, OPT_UNDO)->given ? setup_undo(a) : setup_run(a);
+}
+
+const cli_command cmd_setup = {
+    .name = "setup",
+    .arguments = "",
+    .summary = "find a robot and give it a name: for the first time",
+    .details =
+        "Asks its way through: finds the adapter, and says what mends it where it may not be\n"
+        "opened; looks who answers; takes the robot of grctl that has these servos, or writes a\n"
+        "file of them; names it in ~/.config/grctl/config.yaml; reads its joints once; and\n"
+        "offers to calibrate it. Nothing moves, and nothing is done as root. Each step says what\n"
+        "it has changed; --undo puts the configuration back. -d sim shows how it goes.\n"
+        "\n"
+        "It needs a terminal. With --yes the answers are lines of standard input, and what is\n"
+        "missing is as it stands in the brackets; no calibration then.\n",
+    .example = "  grctl setup\n  grctl -d sim --robot so101 setup\n  grctl setup --undo\n",
+    COMMAND_OPTIONS(options),
+    .run = run,
+};

@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: MIT */
+#include <stdio.h>
+#include <string.h>
+
+#include "tools/grctl/cli/output.h"
+#include "tools/grctl/setup/ask.h"
+
+bool ask_can(app *a, const char *instead, int *status)
+{
+    if (a->tty_in || app_global(a, GLOBAL_YES)->given) {
+        return true;
+    }
+    *status = app_fail(a, EXIT_USAGE, "ARG",
+                       "%s asks a person at a terminal; without one: %s, or --yes with an answer a "
+                       "line on standard input",
+                       a->line.command->name, instead);
+    return false;
+}
+
+bool ask_line(const app *a, const char *question, const char *usual, char *answer)
+{
+    output_flush();
+    output_complain("%s [%s] ", question, usual);
+    bool came = fgets(answer, ASK_BYTES, stdin) != NULL;
+    if (came && !strchr(answer, '\n')) { /* longer than any answer */
+        for (int c = getchar(); c != '\n' && c != EOF;) {
+            c = getchar();
+        }
+    }
+    if (came) {
+        answer[strcspn(answer, "\r\n")] = '\0';
+    }
+    if (!a->tty_in || !came) {
+        output_complain("%s\n", came ? answer : "");
+    }
+    if (!came || !*answer) {
+        snprintf(answer, ASK_BYTES, "%s", usual);
+    }
+    return came || !a->tty_in;
+}
+
+bool ask_yes(const app *a, const char *question)
+{
+    char answer[ASK_BYTES];
+    return ask_line(a, question, "n", answer) && (answer[0] == 'y' || answer[0] == 'Y');
+}

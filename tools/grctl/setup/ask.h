@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: MIT */
+/* Questions to a person, while no line is open: at a terminal, or answered beforehand by --yes and
+ * lines of standard input. */
+#ifndef GRCTL_ASK_H
+#define GRCTL_ASK_H
+
+#include "tools/grctl/cli/app.h"
+
+enum { ASK_BYTES = 256 };
+
+/* True: there is a person, or --yes. Else says in one line what to run instead. */
+bool ask_can(app *a, const char *instead, int *status);
+
+/*
+ * Asks; an empty line, and the end of standard input, is the answer that stands in the brackets.
+ * A person who ends the input (Ctrl-D) means to end it all: false.
+ */
+bool ask_line(const app *a, const char *question, const char *usual, char *answer);
+
+/* Whether the answer is yes; no by itself. */
+bool ask_yes(const app *a, const char *question);
+
+#endif

@@ -1,0 +1,458 @@
+/* SPDX-License-Identifier: MIT */
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <grobo/version.h>
+
+#include "tools/grctl/cli/file.h"
+#include "tools/grctl/cli/output.h"
+#include "tools/grctl/conn/conn.h"
+#include "tools/grctl/conn/servos.h"
+#include "tools/grctl/conn/wire.h"
+#include "tools/grctl/scan/scan.h"
+#include "tools/grctl/servo/registers.h"
+#include "tools/grctl/setup/ask.h"
+#include "tools/grctl/setup/contact.h"
+
+enum { READS = 50, LOOKS = 5, LOOK_US = 100000, MOVE_US = 1000000, PATH_BYTES = 1024 };
+enum {
+    REPORT_BYTES = 65536,
+    BLOCK_BYTES = 30,
+    REQUEST_BYTES = 6 /* no request is shorter, but ICS */
+};
+
+#define STEP_DEG 2.0
+#define NEAR_DEG 1.0 /* of the gears' play and the servo's dead band */
+
+typedef struct contact {
+    app *a;
+    conn c;
+    char prefix[PATH_BYTES], trace[PATH_BYTES];
+    char text[REPORT_BYTES];
+    size_t used;
+    json_t *steps, *servos;
+    int joint, n_bad;
+    double before_deg;
+    bool was_on;
+    int64_t sent_us, came_us; /* of the last exchange */
+} contact;
+
+/* ---- the report ------------------------------------------------------------------------------ */
+
+typedef enum verdict { AS_ASSUMED, NOT_AS_ASSUMED, NOT_DONE } verdict;
+
+static const char *const verdicts[] = {"as assumed", "NOT as assumed", "not done"};
+static const char *const words[] = {"as_assumed", "not_as_assumed", "not_done"};
+
+__attribute__((format(printf, 4, 5))) static void note(contact *k, const char *name, verdict v,
+                                                       const char *format, ...)
+{
+    char message[APP_LINE_BYTES];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(message, sizeof message, format, list);
+    va_end(list);
+    app_make_one_line(message);
+    k->n_bad += v == NOT_AS_ASSUMED;
+    app_note(k->a, "%-14s  %-14s  %s", verdicts[v], name, message);
+    int n = snprintf(k->text + k->used, sizeof k->text - k->used, "%-14s  %-14s  %s\n", verdicts[v],
+                     name, message);
+    k->used += n > 0 && (size_t)n < sizeof k->text - k->used ? (size_t)n : 0;
+    json_array_append_new(k->steps, json_pack("{s:s,s:s,s:o}", "name", name, "verdict", words[v],
+                                              "message", app_json_text(message)));
+}
+
+static int save(contact *k, const char *end, const char *text, size_t size)
+{
+    char path[PATH_BYTES + 8];
+    snprintf(path, sizeof path, "%s%s", k->prefix, end);
+    int error = file_save(path, text, size);
+    return error ? app_fail(k->a, EXIT_FILE, grobo_error_name(error), "%s: %s", path,
+                            file_write_error_text(error))
+                 : 0;
+}
+
+static int write_report(contact *k)
+{
+    json_t *all = json_pack("{s:s,s:s,s:s,s:s,s:i,s:i,s:O,s:O}", "version", GROBO_VERSION_STRING,
+                            "robot", robot_of(k->a)->name, "family", robot_of(k->a)->family->name,
+                            "wiring", app_driver(k->a)->protocol->relay ? "board" : "bus",
+                            "baud_bps", (int)conn_baud(k->a), "not_as_assumed", k->n_bad, "steps",
+                            k->steps, "servos", k->servos);
+    char *text = all ? json_dumps(all, JSON_INDENT(1) | JSON_REAL_PRECISION(12)) : NULL;
+    int status = text ? save(k, ".json", text, strlen(text))
+                      : app_fail_error(k->a, EXIT_ROBOT, GROBO_ERR_NOMEM, "first-contact");
+    if (!status) {
+        status = save(k, ".txt", k->text, k->used);
+    }
+    if (!status && k->a->json) {
+        app_print_json(json_incref(all));
+    }
+    if (!status) {
+        app_note(k->a, "report: %s.txt and .json, traces: %s-*.pcapng; please send them to us",
+                 k->prefix, k->prefix);
+    }
+    free(text);
+    json_decref(all);
+    return status;
+}
+
+/* ---- a line for each part -------------------------------------------------------------------- */
+
+static void on_bytes(conn *c, grobo_direction direction, int64_t now_us, const uint8_t *bytes,
+                     size_t size)
+{
+    contact *k = c->ctx;
+    (void)bytes;
+    (void)size;
+    *(direction == GROBO_DIR_TX ? &k->sent_us : &k->came_us) = now_us;
+}
+
+/* Questions are asked while no line is open: each part opens it, with a trace of its own. */
+static int open_part(contact *k, const char *part, bool moves)
+{
+    snprintf(k->trace, sizeof k->trace, "%.900s-%s.pcapng", k->prefix, part);
+    k->a->line.global[GLOBAL_TRACE] = (cli_value){.given = 1, .text = k->trace};
+    int status = moves ? conn_open_to_move(&k->c, k->a) : conn_open(&k->c, k->a);
+    k->c.ctx = k;
+    k->c.on_bytes = on_bytes;
+    return status;
+}
+
+static int close_part(contact *k, int status)
+{
+    k->c.on_bytes = NULL;
+    return conn_close(&k->c, status);
+}
+
+/* ---- reading --------------------------------------------------------------------------------- */
+
+static json_t *read_registers(contact *k, int id, const grobo_servo_model *servo, int *n_read)
+{
+    json_t *all = json_object();
+    const grobo_driver *driver = grobo_robot_driver(k->c.robot);
+    const grobo_servo_register *first, *reg;
+    int n;
+    for (size_t i = 0; (first = grobo_servo_register_row(servo, i)) != NULL; i += (size_t)n) {
+        uint8_t bytes[FAMILY_PIECE_BYTES] = {0};
+        n = family_block(driver, servo, i, BLOCK_BYTES);
+        reg = grobo_servo_register_row(servo, i + (size_t)(n ? n - 1 : 0));
+        int length = reg->address + reg->bytes - first->address;
+        int error = n ? servos_read(&k->c, id, first->address, length, bytes) : GROBO_OK;
+        for (int r = 0; r < n && !error; r++) {
+            reg = grobo_servo_register_row(servo, i + (size_t)r);
+            json_object_set_new(all, reg->name,
+                                json_integer(grobo_servo_register_get(
+                                    servo, reg, bytes + (reg->address - first->address))));
+            *n_read += 1;
+        }
+        n = n ? n : 1;
+    }
+    return all;
+}
+
+static void read_servos(contact *k)
+{
+    const grobo_driver *driver = grobo_robot_driver(k->c.robot);
+    const grobo_model *model = driver->model;
+    uint16_t address;
+    int n_there = 0, n_other = 0, n_registers = 0;
+    for (int j = 0; j < model->n_joints && !k->c.signal && !k->c.link_error; j++) {
+        uint8_t bytes[FAMILY_PIECE_BYTES];
+        int id = model->joints[j].motor;
+        const grobo_servo_model *servo = family_servo(driver, id);
+        int length = family_identity(driver, servo, &address);
+        int error = servos_read(&k->c, id, address, length, bytes);
+        json_t *one = json_pack("{s:i,s:s}", "id", id, "joint", model->joints[j].name);
+        if (error) {
+            json_object_set_new(one, "status", app_json_code(grobo_error_name(error)));
+        } else {
+            const scan_identity is = scan_identity_of(driver, bytes);
+            bool tells = grobo_servo_register_of(servo, GROBO_ROLE_MODEL) != NULL;
+            n_there++;
+            n_other += tells && (!is.servo || is.servo->number != servo->number);
+            json_object_set_new(one, "model", json_string(is.model));
+            json_object_set_new(one, "firmware", json_integer(is.firmware));
+            json_object_set_new(one, "registers", read_registers(k, id, servo, &n_registers));
+        }
+        json_array_append_new(k->servos, one);
+    }
+    note(k, "ping", n_there == model->n_joints ? AS_ASSUMED : NOT_AS_ASSUMED,
+         "%d of %d servos answer", n_there, model->n_joints);
+    note(k, "models", n_other == 0 ? AS_ASSUMED : NOT_AS_ASSUMED,
+         "%d servos are of another model than the robot's file has", n_other);
+    note(k, "registers", n_registers > 0 ? AS_ASSUMED : NOT_AS_ASSUMED, "%d values were read",
+         n_registers);
+}
+
+static int by_size(const void *a, const void *b)
+{
+    int64_t x = *(const int64_t *)a, y = *(const int64_t *)b;
+    return (x > y) - (x < y);
+}
+
+/* Round trips of one request, from when it was given out until its reply was whole. */
+static void measure_times(contact *k)
+{
+    const grobo_driver *driver = grobo_robot_driver(k->c.robot);
+    int id = driver->model->joints[k->joint].motor, n = 0;
+    uint8_t bytes[FAMILY_PIECE_BYTES];
+    int64_t took_us[READS];
+    uint16_t address;
+    uint32_t wire_us = 0;
+    int length = family_identity(driver, family_servo(driver, id), &address);
+    int error = wire_read_us(driver, (int)conn_baud(k->a), length, &wire_us);
+    for (int i = 0; i < READS && !error && !k->c.signal && !k->c.link_error; i++) {
+        if (servos_read(&k->c, id, address, length, bytes) == GROBO_OK) {
+            took_us[n++] = k->came_us - k->sent_us;
+        }
+    }
+    if (n == 0) {
+        note(k, "latency", NOT_DONE, "nobody answers");
+        return;
+    }
+    qsort(took_us, (size_t)n, sizeof *took_us, by_size);
+    note(k, "latency", took_us[n / 2] - wire_us < 5000 ? AS_ASSUMED : NOT_AS_ASSUMED,
+         "%d replies of %d; from %.2f to %.2f ms, half within %.2f ms; the wire takes %.2f ms", n,
+         READS, (double)took_us[0] / 1e3, (double)took_us[n - 1] / 1e3,
+         (double)took_us[n / 2] / 1e3, wire_us / 1e3);
+    if (!driver->protocol->relay) {
+        note(k, "board", NOT_DONE, "there is none: servos are straight on the line");
+        return;
+    }
+    /* One that forwards bytes as they come would be done before that. */
+    note(k, "board", (double)took_us[0] > 0.95 * wire_us ? AS_ASSUMED : NOT_AS_ASSUMED,
+         "stores a frame and then forwards it: the quickest reply took %.2f ms, by reckoning %.2f",
+         (double)took_us[0] / 1e3, wire_us / 1e3);
+}
+
+static void look_for_echo(contact *k)
+{
+    const grobo_bus_stats *n = grobo_robot_get_bus_stats(k->c.robot);
+    bool told = app_global(k->a, GLOBAL_ECHO)->given > 0;
+    bool comes = n->replies > 0 && n->resync_bytes >= n->replies * REQUEST_BYTES / 2;
+    note(k, "echo", comes ? NOT_AS_ASSUMED : AS_ASSUMED,
+         told    ? "requests come back, and were expected to"
+         : comes ? "requests come back, which nobody expected: --wiring bus --echo"
+                 : "requests do not come back");
+    /* One in fifty may be lost to a busy machine. */
+    bool good = n->bad_sums == 0 && n->timeouts <= n->tx_frames / 50;
+    note(k, "line", good ? AS_ASSUMED : NOT_AS_ASSUMED,
+         "%u frames, %u replies, %u came too late or not, %u had a wrong sum, %u bytes of rubbish",
+         (unsigned)n->tx_frames, (unsigned)n->replies, (unsigned)n->timeouts, (unsigned)n->bad_sums,
+         (unsigned)n->resync_bytes);
+}
+
+static int read_only(contact *k)
+{
+    app_note(k->a, "reading; nothing moves");
+    int status = open_part(k, "read", false);
+    if (!status) {
+        read_servos(k);
+        measure_times(k);
+        look_for_echo(k);
+    }
+    return close_part(k, status);
+}
+
+/* ---- one joint ------------------------------------------------------------------------------- */
+
+static int sense(contact *k, grobo_joint_info *is)
+{
+    int error = conn_wait(&k->c, grobo_robot_sense(grobo_session_robot(k->c.session),
+                                                   GROBO_JOINT_BIT(k->joint), GROBO_SENSE_FULL));
+    return error ? error : grobo_robot_joint(k->c.robot, k->joint, is);
+}
+
+static int switch_torque(contact *k, grobo_torque torque)
+{
+    return conn_wait(&k->c, grobo_robot_torque(grobo_session_robot(k->c.session),
+                                               GROBO_JOINT_BIT(k->joint), torque));
+}
+
+static int go_to(contact *k, double deg, double *reached_deg)
+{
+    grobo_posture target;
+    grobo_joint_info is;
+    grobo_posture_init(&target, app_model(k->a)->n_joints);
+    grobo_posture_set_deg(&target, k->joint, deg);
+    target.time_us = MOVE_US;
+    int error = conn_wait(&k->c, grobo_robot_move(grobo_session_robot(k->c.session), &target));
+    if (!error) {
+        error = sense(k, &is);
+    }
+    *reached_deg = error ? 0 : grobo_deg_from_rad(is.state.angle_rad);
+    return error;
+}
+
+/* Reads where it stands; from here on every way out carries out the exit policy. */
+static int begin_joint(contact *k)
+{
+    grobo_joint_info is;
+    int error = sense(k, &is);
+    if (!error) {
+        k->before_deg = grobo_deg_from_rad(is.state.angle_rad);
+        k->was_on = is.state.torque != GROBO_TORQUE_OFF;
+        k->c.moving = true;
+        error = switch_torque(k, GROBO_TORQUE_ON);
+    }
+    return error;
+}
+
+/* As it was found: one that was limp is limp again. */
+static int end_joint(contact *k, int error)
+{
+    int let_go = error || k->was_on ? GROBO_OK : switch_torque(k, GROBO_TORQUE_OFF);
+    error = error ? error : let_go;
+    k->c.moving = error != 0;
+    return error ? conn_fail(&k->c, error, "first-contact") : EXIT_DONE;
+}
+
+static int test_torque(contact *k)
+{
+    double most_deg = 0;
+    int status = open_part(k, "torque", true);
+    if (status) {
+        return close_part(k, status);
+    }
+    int error = begin_joint(k);
+    for (int i = 0; i < LOOKS && !error; i++) {
+        grobo_joint_info is;
+        error = conn_sleep_until(&k->c, grobo_now_us() + LOOK_US);
+        error = error ? error : sense(k, &is);
+        if (!error) {
+            double off_deg = grobo_deg_from_rad(is.state.angle_rad) - k->before_deg;
+            most_deg = fabs(off_deg) > fabs(most_deg) ? off_deg : most_deg;
+        }
+    }
+    status = end_joint(k, error);
+    if (!status) {
+        note(k, "torque_on", fabs(most_deg) < NEAR_DEG ? AS_ASSUMED : NOT_AS_ASSUMED,
+             "does not jump: %+.2f deg at most in %.1f s", most_deg, LOOKS * LOOK_US / 1e6);
+    }
+    return close_part(k, status);
+}
+
+static int test_move(contact *k, double *step_deg)
+{
+    const grobo_joint *joint = &app_model(k->a)->joints[k->joint];
+    double there_deg = 0, back_deg = 0;
+    int status = open_part(k, "move", true);
+    if (status) {
+        return close_part(k, status);
+    }
+    int error = begin_joint(k);
+    *step_deg =
+        k->before_deg + STEP_DEG <= grobo_deg_from_rad(joint->max_rad) ? STEP_DEG : -STEP_DEG;
+    error = error ? error : go_to(k, k->before_deg + *step_deg, &there_deg);
+    error = error ? error : go_to(k, k->before_deg, &back_deg);
+    status = end_joint(k, error);
+    if (!status) {
+        bool near = fabs(there_deg - k->before_deg - *step_deg) < NEAR_DEG &&
+                    fabs(back_deg - k->before_deg) < NEAR_DEG;
+        note(k, "move", near ? AS_ASSUMED : NOT_AS_ASSUMED,
+             "from %.2f by %+.0f deg to %.2f, and back to %.2f", k->before_deg, *step_deg,
+             there_deg, back_deg);
+    }
+    return close_part(k, status);
+}
+
+static void ask_direction(contact *k, double step_deg)
+{
+    char answer[ASK_BYTES];
+    if (!ask_line(k->a, "did it turn, and to where its angle grows first (yes, no, other way)?",
+                  "not seen", answer)) {
+        return;
+    }
+    bool fine = answer[0] == 'y' || answer[0] == 'Y';
+    bool unseen = answer[0] == 'n' && strncmp(answer, "not", 3) == 0;
+    note(k, "seen",
+         fine     ? AS_ASSUMED
+         : unseen ? NOT_DONE
+                  : NOT_AS_ASSUMED,
+         "the person says of %+.0f deg: %.80s", step_deg, answer);
+}
+
+static int try_joint(contact *k)
+{
+    const char *name = app_model(k->a)->joints[k->joint].name;
+    char question[APP_LINE_BYTES];
+    double step_deg = STEP_DEG;
+    snprintf(question, sizeof question,
+             "hold the robot. Switch the torque of %s on for a second? It should not move", name);
+    if (!ask_yes(k->a, question)) {
+        note(k, "torque_on", NOT_DONE, "the person did not want it");
+        note(k, "move", NOT_DONE, "the person did not want it");
+        return EXIT_DONE;
+    }
+    int status = test_torque(k);
+    if (status) {
+        return status;
+    }
+    snprintf(question, sizeof question, "keep your hands off. Move %s by %.0f degrees and back?",
+             name, STEP_DEG);
+    if (k->n_bad > 0) {
+        app_note(k->a, "something was not as assumed; better send the report first");
+    }
+    if (!ask_yes(k->a, question)) {
+        note(k, "move", NOT_DONE, "the person did not want it");
+        return EXIT_DONE;
+    }
+    status = test_move(k, &step_deg);
+    if (!status) {
+        ask_direction(k, step_deg);
+    }
+    return status;
+}
+
+/* ---- all of it ------------------------------------------------------------------------------- */
+
+static int begin(contact *k, const contact_orders *orders)
+{
+    char path[PATH_BYTES + 8];
+    snprintf(k->prefix, sizeof k->prefix, orders->out ? "%.900s" : "first-contact-%.900s",
+             orders->out ? orders->out : robot_of(k->a)->name);
+    snprintf(path, sizeof path, "%s.txt", k->prefix);
+    FILE *there = fopen(path, "rb");
+    if (there) {
+        fclose(there);
+        return app_fail(k->a, EXIT_USAGE, "EXISTS", "%s is there already; -o names another", path);
+    }
+    k->joint = orders->joint >= 0 ? orders->joint : app_model(k->a)->n_joints - 1;
+    k->steps = json_array();
+    k->servos = json_array();
+    return 0;
+}
+
+int contact_run(app *a, const contact_orders *orders)
+{
+    static contact k;
+    int status = 0;
+    memset(&k, 0, sizeof k);
+    k.a = a;
+    if (a->link) {
+        return app_fail(a, EXIT_USAGE, "ARG",
+                        "first-contact opens the line for itself; not in a shell");
+    }
+    if (app_global(a, GLOBAL_TRACE)->given) {
+        return app_fail(a, EXIT_USAGE, "ARG", "first-contact has traces of its own: -o names them");
+    }
+    if (!ask_can(a, "'grctl doctor' and 'grctl status'", &status)) {
+        return status;
+    }
+    status = begin(&k, orders);
+    if (!status) {
+        status = read_only(&k);
+    }
+    if (!status) {
+        status = try_joint(&k);
+    }
+    int written = k.steps && json_array_size(k.steps) > 0 ? write_report(&k) : 0;
+    json_decref(k.steps);
+    json_decref(k.servos);
+    status = status ? status : written;
+    return status ? status : k.n_bad ? EXIT_ROBOT : EXIT_DONE;
+}

@@ -1,0 +1,420 @@
+/* SPDX-License-Identifier: MIT */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "tools/grctl/cli/config.h"
+#include "tools/grctl/cli/output.h"
+#include "tools/grctl/conn/auto_ports.h"
+#include "tools/grctl/conn/conn.h"
+#include "tools/grctl/doctor/checkup.h"
+#include "tools/grctl/homing/homing.h"
+#include "tools/grctl/os/node.h"
+#include "tools/grctl/os/os.h"
+#include "tools/grctl/setup/ask.h"
+#include "tools/grctl/setup/found.h"
+#include "tools/grctl/setup/setup.h"
+
+enum { TRIES = 5 };
+
+typedef struct guide {
+    app *a;
+    char device[GROBO_DEVICE_MAX_BYTES]; /* as the configuration gets it */
+    char robot[ROBOT_PATH_BYTES];        /* a name, or the path of a file */
+    char file[ROBOT_PATH_BYTES];         /* of a robot that was made, or "" */
+    char name[ASK_BYTES];
+    char config[CONFIG_PATH_BYTES];
+    int baud_bps; /* 0: the robot's own */
+    int n_read;   /* joints that answered */
+} guide;
+
+static void set_global(app *a, int global, const char *text)
+{
+    a->line.global[global] = (cli_value){.given = 1, .text = text};
+}
+
+static int gave_up(const guide *g)
+{
+    return app_fail(g->a, EXIT_USAGE, "CANCELED", "setup: ended; nothing more was changed");
+}
+
+/* ---- the port -------------------------------------------------------------------------------- */
+
+static void list_ports(const guide *g, const choice *all)
+{
+    for (int i = 0; i < all->n_usb; i++) {
+        const grobo_port_info *info = &all->usb[i];
+        app_note(g->a, "  %d  %s  %04x:%04x %s", i + 1, info->path,
+                 (unsigned)info->usb_vendor & 0xffff, (unsigned)info->usb_product & 0xffff,
+                 info->product);
+    }
+}
+
+/* One of several adapters. */
+static int choose_port(guide *g, const choice *all)
+{
+    char answer[ASK_BYTES];
+    double number = 0;
+    list_ports(g, all);
+    for (int i = 0; i < TRIES; i++) {
+        if (!ask_line(g->a, "which of these is the robot's?", "1", answer)) {
+            return gave_up(g);
+        }
+        if (cli_read_number(answer, &number) && number >= 1 && number <= all->n_usb &&
+            number == (int)number) {
+            const grobo_port_info *info = &all->usb[(int)number - 1];
+            /* The name that stays when it is plugged in elsewhere. */
+            snprintf(g->device, sizeof g->device, "%s", *info->by_id ? info->by_id : info->path);
+            return 0;
+        }
+    }
+    return app_fail(g->a, EXIT_USAGE, "ARG", "setup: '%s' is none of them", answer);
+}
+
+static int find_port(guide *g)
+{
+    static choice all;
+    if (!conn_is_auto(g->a)) {
+        snprintf(g->device, sizeof g->device, "%s", conn_requested(g->a));
+        return 0;
+    }
+    int error = auto_ports(&all);
+    if (error < 0) {
+        return app_fail_error(g->a, EXIT_ROBOT, error, "cannot list serial ports");
+    }
+    auto_report(g->a, &all);
+    if (all.n_usb == 0) {
+        return app_fail(g->a, EXIT_ROBOT, "NOENT",
+                        all.n_blocked ? "setup: no adapter may be opened; mend that and run it "
+                                        "again"
+                                      : "setup: no USB adapter is here; plug the robot's cable in "
+                                        "and run it again, or try it with -d sim");
+    }
+    if (all.n_usb == 1) {
+        snprintf(g->device, sizeof g->device, "%s",
+                 *all.usb[0].by_id ? all.usb[0].by_id : all.usb[0].path);
+        return 0;
+    }
+    return choose_port(g, &all);
+}
+
+static bool is_port(const char *device)
+{
+    return strcmp(device, GROBO_DEVICE_SIM) != 0 && strncmp(device, "tcp:", 4) != 0;
+}
+
+/* May it be opened, is it quick: what is wrong comes with the line that mends it. */
+static int check_port(guide *g)
+{
+    checkup k;
+    app quiet = *g->a;
+    quiet.json = false;
+    checkup_start(&k, &quiet);
+    set_global(g->a, GLOBAL_DEVICE, g->device);
+    if (!is_port(g->device)) {
+        return 0;
+    }
+    app_note(g->a, "the port: %s", g->device);
+    return checkup_port(&k, g->device)
+               ? 0
+               : app_fail(g->a, EXIT_ROBOT, "PERM", "setup: mend that, and run it again");
+}
+
+/* ---- the robot ------------------------------------------------------------------------------- */
+
+/* Whether a robot of the library answers as it usually does. */
+static bool answers(guide *g, const char *name)
+{
+    char said[APP_LINE_BYTES];
+    conn c;
+    app one = *g->a;
+    one.hushed = said;
+    one.json = false;
+    set_global(&one, GLOBAL_ROBOT, name);
+    if (robot_choose(&one) != 0) {
+        return false;
+    }
+    int status = conn_open(&c, &one);
+    return conn_close(&c, status) == EXIT_DONE;
+}
+
+/* A path beside the configuration that nothing has. */
+static bool free_path(const char *name, char *path, size_t capacity)
+{
+    char config[CONFIG_PATH_BYTES];
+    if (!os_config_path(0, config, sizeof config) || !os_make_folders(config)) {
+        return false;
+    }
+    char *end = config + strlen(config);
+    while (end > config && end[-1] != '/' && end[-1] != '\\') {
+        end--;
+    }
+    *end = '\0';
+    for (int number = 1; number < 100; number++) {
+        char behind[8] = "";
+        snprintf(behind, sizeof behind, number > 1 ? "%d" : "", number);
+        int n = snprintf(path, capacity, "%s%s%s.yaml", config, name, behind);
+        FILE *there = n > 0 && (size_t)n < capacity ? fopen(path, "rb") : NULL;
+        if (!there) {
+            return n > 0 && (size_t)n < capacity;
+        }
+        fclose(there);
+    }
+    return false;
+}
+
+static int write_robot(guide *g, const found_servos *all)
+{
+    static sketch s;
+    char complaint[APP_LINE_BYTES], name[ASK_BYTES];
+    app plain = *g->a;
+    if (!ask_line(g->a, "no robot that is known; a file is written. What is it called?", "robot",
+                  name)) {
+        return gave_up(g);
+    }
+    found_sketch(g->a, all, name, &s);
+    if (!sketch_order(&s, complaint, sizeof complaint)) {
+        return app_fail(g->a, EXIT_ROBOT, "CAP", "setup: %s", complaint);
+    }
+    sketch_fit(&s);
+    if (!free_path(s.name, g->file, sizeof g->file)) {
+        return app_fail(g->a, EXIT_FILE, "NOENT", "setup: there is no place for a robot's file");
+    }
+    plain.json = false;
+    int status = sketch_write(&plain, &s, g->file, NULL);
+    snprintf(g->robot, sizeof g->robot, "%s", g->file);
+    return status;
+}
+
+/* The robots of the library with these servos: one of them, or a file. */
+static int choose_robot(guide *g, const found_servos *all)
+{
+    char question[APP_LINE_BYTES] = "these may be", answer[ASK_BYTES], complaint[APP_LINE_BYTES];
+    const char *first = NULL;
+    size_t n = strlen(question);
+    for (int i = 0; grobo_robot_defs[i]; i++) {
+        if (found_fits(all, grobo_robot_defs[i])) {
+            first = first ? first : grobo_robot_defs[i]->name;
+            n += (size_t)snprintf(question + n, sizeof question - n, " %s,",
+                                  grobo_robot_defs[i]->name);
+        }
+    }
+    if (!first) {
+        return write_robot(g, all);
+    }
+    snprintf(question + n, sizeof question - n, " or another (new). Which?");
+    for (int i = 0; i < TRIES; i++) {
+        if (!ask_line(g->a, question, first, answer)) {
+            return gave_up(g);
+        }
+        if (strcmp(answer, "new") == 0) {
+            return write_robot(g, all);
+        }
+        if (robot_find(answer, complaint, sizeof complaint)) {
+            snprintf(g->robot, sizeof g->robot, "%s", answer);
+            return 0;
+        }
+        app_note(g->a, "%s", complaint);
+    }
+    return app_fail(g->a, EXIT_USAGE, "NOTFOUND", "setup: %s", complaint);
+}
+
+static int find_robot(guide *g)
+{
+    static found_servos all;
+    app *a = g->a;
+    if (app_global(a, GLOBAL_ROBOT)->given || strcmp(g->device, GROBO_DEVICE_SIM) == 0) {
+        const char *path = robot_path(a);
+        snprintf(g->robot, sizeof g->robot, "%s", *path ? path : robot_of(a)->name);
+        return 0;
+    }
+    app_note(a, "who answers? Nothing moves.");
+    if (answers(g, "gr001")) {
+        snprintf(g->robot, sizeof g->robot, "gr001");
+        app_note(a, "GR001's board answers");
+        return 0;
+    }
+    int status = found_look(a, NULL, &all);
+    if (status) {
+        return status;
+    }
+    found_choose(a, &all);
+    if (all.n == 0) {
+        return app_fail(a, EXIT_ROBOT, "NOTFOUND",
+                        "setup: nobody answers on %s: switch the robot on, push its cables in, and "
+                        "run it again",
+                        g->device);
+    }
+    for (int i = 0; i < all.n; i++) {
+        app_note(a, "  %3d  %-12s %7d bps  %s", all.servo[i].id, all.servo[i].servo->name,
+                 all.servo[i].baud_bps, all.servo[i].family->name);
+    }
+    status = choose_robot(g, &all);
+    if (!status) {
+        char complaint[APP_LINE_BYTES];
+        const grobo_robot_def *def = robot_find(g->robot, complaint, sizeof complaint);
+        g->baud_bps =
+            def && (int)def->baud_bps != all.servo[0].baud_bps ? all.servo[0].baud_bps : 0;
+    }
+    return status;
+}
+
+/* ---- its name -------------------------------------------------------------------------------- */
+
+/* A name that the configuration does not have, from the robot's. */
+static void propose(const guide *g, char *name)
+{
+    char hushed[APP_LINE_BYTES];
+    app quiet = *g->a;
+    const char *from = robot_of(g->a)->name;
+    quiet.hushed = hushed;
+    for (int number = 1; number < 100; number++) {
+        char behind[8] = "";
+        snprintf(behind, sizeof behind, number > 1 ? "%d" : "", number);
+        snprintf(name, ASK_BYTES, "%.40s%s", from, behind);
+        for (char *c = name; *c; c++) {
+            *c = *c == '.' ? '-' : *c;
+        }
+        if (config_check_name(&quiet, name) == 0) {
+            return;
+        }
+    }
+}
+
+static int give_name(guide *g)
+{
+    char usual[ASK_BYTES], answer[ASK_BYTES];
+    int status = 0;
+    propose(g, usual);
+    for (int i = 0; i < TRIES; i++) {
+        if (!ask_line(g->a, "the name of this one, for -d?", usual, answer)) {
+            return gave_up(g);
+        }
+        status = config_check_name(g->a, answer);
+        if (!status) {
+            memcpy(g->name, answer, strlen(answer) + 1); /* it fits: it was checked */
+            break;
+        }
+    }
+    if (status) {
+        return status;
+    }
+    const cli_value *wiring = app_global(g->a, GLOBAL_WIRING);
+    const config_entry entry = {.name = g->name,
+                                .device = g->device,
+                                .def = g->robot,
+                                .baud_bps = g->baud_bps,
+                                .wiring = (grobo_wiring)wiring->choice == robot_of(g->a)->wiring
+                                              ? NULL
+                                          : wiring->choice ? "bus"
+                                                           : "board"};
+    status = config_add(g->a, &entry, g->config, sizeof g->config);
+    if (!status) {
+        app_note(g->a, "%s names it %s now; 'grctl setup --undo' takes that back", g->config,
+                 g->name);
+    }
+    return status;
+}
+
+/* ---- the joints ------------------------------------------------------------------------------ */
+
+static int read_joints(guide *g)
+{
+    conn c;
+    app *a = g->a;
+    const grobo_model *model = app_model(a);
+    int status = conn_open(&c, a);
+    if (!status) {
+        (void)conn_wait(&c, grobo_robot_sense(grobo_session_robot(c.session),
+                                              GROBO_JOINTS_ALL(model->n_joints), GROBO_SENSE_FULL));
+    }
+    for (int j = 0; j < model->n_joints && !status; j++) {
+        grobo_joint_info i;
+        bool read =
+            grobo_robot_joint(c.robot, j, &i) == 0 && (i.state.valid & GROBO_FIELD_ANGLE) != 0;
+        g->n_read += read;
+        if (read) {
+            app_note(a, "  %-16s %7.1f deg", model->joints[j].name,
+                     grobo_deg_from_rad(i.state.angle_rad));
+        } else {
+            app_note(a, "  %-16s does not answer as it should; see 'grctl -d %s doctor'",
+                     model->joints[j].name, g->name);
+        }
+    }
+    return conn_close(&c, status);
+}
+
+static int offer_calibration(guide *g)
+{
+    const homing_orders orders = {0};
+    if (!homing_fits(g->a)) {
+        app_note(g->a, "its servos keep no calibration; trims: grctl -d %s calibrate", g->name);
+        return 0;
+    }
+    if (!g->a->tty_in ||
+        !ask_yes(g->a, "calibrate it now? Torque goes off, and you move each joint "
+                       "by hand; it can be undone")) {
+        app_note(g->a, "later: grctl -d %s calibrate", g->name);
+        return 0;
+    }
+    return homing_run(g->a, &orders);
+}
+
+/* From here on the command speaks to the robot that was found. */
+static int take_robot(guide *g)
+{
+    set_global(g->a, GLOBAL_ROBOT, g->robot);
+    if (g->baud_bps) {
+        g->a->line.global[GLOBAL_BAUD] = (cli_value){.given = 1, .number = g->baud_bps};
+    }
+    return robot_choose(g->a);
+}
+
+static void report(const guide *g)
+{
+    if (g->a->json) {
+        app_print_json(json_pack("{s:o,s:o,s:o?,s:s,s:o,s:i,s:i}", "device",
+                                 app_json_text(g->device), "robot", app_json_text(g->robot), "file",
+                                 *g->file ? app_json_text(g->file) : NULL, "name", g->name,
+                                 "config", app_json_text(g->config), "n_joints",
+                                 app_model(g->a)->n_joints, "n_read", g->n_read));
+        return;
+    }
+    app_note(g->a, "done. From now on: grctl -d %s status --watch", g->name);
+}
+
+int setup_run(app *a)
+{
+    static guide g;
+    int status = 0;
+    memset(&g, 0, sizeof g);
+    g.a = a;
+    if (a->link) {
+        return app_fail(a, EXIT_USAGE, "ARG", "setup opens the line for itself; not in a shell");
+    }
+    if (!ask_can(a, "'grctl ports', 'grctl doctor', 'grctl robot new'", &status)) {
+        return status;
+    }
+    int (*const steps[])(guide *) = {find_port, check_port,  find_robot,       take_robot,
+                                     give_name, read_joints, offer_calibration};
+    for (size_t i = 0; i < sizeof steps / sizeof *steps && !status; i++) {
+        status = steps[i](&g);
+    }
+    if (!status) {
+        report(&g);
+    } else if (*g.file) {
+        app_note(a, "the robot's file %s stays", g.file);
+    }
+    return status;
+}
+
+int setup_undo(app *a)
+{
+    char path[CONFIG_PATH_BYTES];
+    int status = config_undo(a, path, sizeof path);
+    if (!status) {
+        app_report(a, json_pack("{s:o,s:b}", "config", app_json_text(path), "undone", 1),
+                   "%s is as it was before", path);
+    }
+    return status;
+}
