@@ -143,7 +143,7 @@ int main(void)
     memset(&count, 0, sizeof count);
     run_us(SECOND_US);
     if (grobo_robot_play_state(&robot) != GROBO_SEQUENCER_PLAYING || count.sent == 0) {
-        say("it does not play\n");
+        say("it does not play.\n");
         return 1;
     }
     say("pumps");
@@ -154,6 +154,6 @@ int main(void)
     say_number(count.frames / count.sent);
     say(" most");
     say_number(count.most);
-    say("\n");
+    say(".\n");
     return 0;
 }
