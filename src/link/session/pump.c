@@ -95,7 +95,7 @@ static bool has_frame(const grobo_session *session, int64_t now_us)
  * is something for it: that may be a call of the system. */
 static int64_t give_all(grobo_session *session)
 {
-    int64_t now_us = grobo_now_us();
+    const int64_t now_us = grobo_now_us();
 
     while (has_frame(session, now_us)) {
         uint8_t frame[GROBO_FRAME_MAX_BYTES];
@@ -110,7 +110,6 @@ static int64_t give_all(grobo_session *session)
             break;
         }
         give(session, frame, (size_t)size, stops);
-        now_us = grobo_now_us();
     }
     return grobo_robot_deadline(&session->robot, now_us);
 }
