@@ -96,9 +96,9 @@ static void on_each(void *ctx, grobo_txn *txn, const grobo_packet *reply)
 static void note_answer(grobo_robot *robot, const grobo_txn *txn, int result,
                         const grobo_packet *reply)
 {
-    robot->answered = robot->answered ||
-                      (result >= 0 && reply != NULL && reply->kind == GROBO_PACKET_RETURN &&
-                       txn->attempts_ == 1 && txn->sent_us == robot->left_us);
+    robot->answered =
+        robot->answered || (result >= 0 && reply != NULL && reply->kind == GROBO_PACKET_RETURN &&
+                            txn->attempts_ == 1 && txn->sent_us == robot->left_us);
 }
 
 static void on_done(void *ctx, grobo_txn *txn, int result, const grobo_packet *reply)
