@@ -109,7 +109,7 @@ static bool is_ample(const grobo_robot *robot, int joint, double to_rad, double 
     return fabs(to_rad - from_rad) <= most_rad_s * time_s;
 }
 
-/* What is_ample() takes for it, mostly the same for all joints: the part of the speed limit in it. */
+/* What is_ample() takes for a time: the part of it that a lower speed limit leaves. */
 static double ample_s(const grobo_robot *robot, int64_t time_us)
 {
     const double rounding = 1 - 1e-6;
