@@ -172,7 +172,7 @@ include tools/baremetal/baremetal.mk
 # ---- targets -------------------------------------------------------------------------------
 
 .PHONY: help all lib demo check robots lint lint-quick format test check-san check-tsan check-memcheck install uninstall
-.PHONY: clean tidy fuzz soak cov dist bench bench-peers bench-count plots captures cross check-cross check-drivers
+.PHONY: clean tidy fuzz soak cov dist bench bench-peers bench-count bench-pump plots captures cross check-cross check-drivers
 .PHONY: check-abi sources wrap deb check-deb release check-families check-ports check-long check-mutants check-map install-lib FORCE
 .PHONY: firmware size check-firmware picture site check-site
 
@@ -306,6 +306,11 @@ bench-peers: ## bring libmodbus, rustypot, dynamixel-sdk, pyserial and yaml-cpp 
 # Work whose instructions are counted is compiled as everybody does it.
 bench-count: $(BUILD)/tests/bench/bench_work ## instructions against tests/bench/instructions; UPDATE=1 keeps them
 	@CC="$(CC)" FLAGS="$(CFLAGS) $(SAN)" tests/bench/count.sh $(BUILD) $(if $(UPDATE),--update,--gate)
+
+bench-pump: ## instructions of the engine on a Cortex-M0 and M4, counted by QEMU
+	-@tools/setup.sh --cross baremetal
+	+@if command -v $(BARE_PREFIX)gcc >/dev/null; then $(MAKE) --no-print-directory $(PUMPS); fi
+	@tests/bench/pump.sh $(BARE_DIR)
 
 plots: $(BUILD)/grctl ## draw motions/plots/*.svg again
 	@tools/plots.sh "$(call whole,$(BUILD)/grctl)"

@@ -84,8 +84,8 @@ typedef struct grobo_robot_config {
     grobo_estop_torque estop_torque; /**< default brake */
     grobo_bus_config bus;            /**< the line's physics; `wiring` is taken from the driver */
     uint32_t timeout_us;             /**< reply timeout; default computed, see bus.h */
-    int retries;                     /**< of a lost reply, the last patient, but on a line where none
-                                          ever came late; default 2; -1 none */
+    int retries;                     /**< of a lost reply, the last patient where the line was ever
+                                          late; default 2; -1 none */
 } grobo_robot_config;
 /** Begins an initializer of one. */
 #define GROBO_ROBOT_CONFIG_INIT GROBO_SIZED(grobo_robot_config)

@@ -45,7 +45,11 @@ static double ratio_of(const grobo_joint *joint)
 
 double grobo_joint_to_servo(const grobo_joint *joint, double angle_rad)
 {
-    return joint == NULL ? 0 : angle_rad * ratio_of(joint) + joint->zero_rad;
+    if (joint == NULL) {
+        return 0;
+    }
+    double turned_rad = joint->gear > 0 ? angle_rad * joint->gear : angle_rad;
+    return (joint->sign < 0 ? -turned_rad : turned_rad) + joint->zero_rad;
 }
 
 double grobo_joint_from_servo(const grobo_joint *joint, double servo_rad)

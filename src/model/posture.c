@@ -19,8 +19,26 @@ double grobo_rad_from_deg(double angle_deg)
     return angle_deg * PI / 180.0;
 }
 
+/* Rounds by integers, in 1/65536 of the unit, what has room there and is no tie: a fifth of the
+ * instructions where doubles are emulated. False: it is something else. */
+static bool round_small(double angle_rad, int16_t *ddeg)
+{
+    if (!(angle_rad > -50 && angle_rad < 50)) {
+        return false;
+    }
+    int32_t fine = (int32_t)(angle_rad * (1800.0 / PI * 65536)) + 0x8000;
+    uint32_t above_least = (uint32_t)fine + (UINT32_C(1) << 31);
+    uint32_t rest = above_least & 0xFFFF;
+    *ddeg = (int16_t)((int32_t)(above_least >> 16) - 0x8000);
+    return rest > 1 && rest < 0xFFFE;
+}
+
 int16_t grobo_ddeg_from_rad(double angle_rad)
 {
+    int16_t small;
+    if (round_small(angle_rad, &small)) {
+        return small;
+    }
     double ddeg = round(angle_rad * 1800.0 / PI);
     if (isnan(ddeg)) {
         return 0;

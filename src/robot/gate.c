@@ -134,14 +134,19 @@ static int64_t time_needed(const grobo_robot *robot, int joint, double to_rad, b
 /* True where this time, a multiple of the wire's unit, is surely enough at full speed: without the
  * divisions of time_needed(), which are most of what a frame costs a processor that has none. What
  * is closer than the rounding of both is left to that. */
-static bool is_ample(const grobo_robot *robot, int joint, double to_rad, int64_t time_us)
+static bool is_ample(const grobo_robot *robot, int joint, double to_rad, double time_s)
 {
-    const double rounding = 1 + 1e-6;
     double most_rad_s = robot->driver->model->joints[joint].max_speed_rad_s;
     double from_rad = grobo_i_axis_commanded(&robot->axes[joint], robot->now_us);
-    double most = most_rad_s * robot->config.speed_limit_pct * (double)time_us;
-    return time_us >= robot->driver->time_step_us && time_us <= robot->driver->time_max_us &&
-           fabs(to_rad - from_rad) * (rounding * 1e8) <= most;
+    return fabs(to_rad - from_rad) <= most_rad_s * time_s;
+}
+
+/* What is_ample() takes for a time: the part of it that a lower speed limit leaves. */
+static double ample_s(const grobo_robot *robot, int64_t time_us)
+{
+    const double rounding = 1 - 1e-6;
+    bool on_wire = time_us >= robot->driver->time_step_us && time_us <= robot->driver->time_max_us;
+    return on_wire ? (double)time_us * robot->config.speed_limit_pct * (rounding * 1e-8) : -1;
 }
 
 int grobo_i_gate_time(grobo_robot *robot, const grobo_robot_order *order, grobo_target *target)
@@ -149,13 +154,18 @@ int grobo_i_gate_time(grobo_robot *robot, const grobo_robot_order *order, grobo_
     bool soft = robot->soft || order->soft;
     bool on_grid = order->deed == GROBO_I_DEED_GOAL; /* its times, as they were asked for */
     bool stretched = false;
-    int64_t longest_us = 0;
+    int64_t longest_us = 0, asked_us = -1;
+    double asked_s = -1;
     for (int j = 0; j < robot->driver->model->n_joints; j++) {
         if (!grobo_i_has(target->posture.set, j)) {
             continue;
         }
         double to_rad = target->posture.angle_rad[j];
-        bool ample = on_grid && !soft && is_ample(robot, j, to_rad, target->joint_time_us[j]);
+        if (target->joint_time_us[j] != asked_us) {
+            asked_us = target->joint_time_us[j];
+            asked_s = on_grid && !soft ? ample_s(robot, asked_us) : -1;
+        }
+        bool ample = asked_s > 0 && is_ample(robot, j, to_rad, asked_s);
         int64_t needed_us = ample ? 0 : time_needed(robot, j, to_rad, soft);
         if (needed_us == GROBO_NEVER_US) {
             robot->fault_joint = j;
@@ -471,23 +481,29 @@ int grobo_i_gate_raw(grobo_robot *robot, const grobo_exchange *exchange, grobo_r
 
 /* ---- frames ---------------------------------------------------------------------------------- */
 
-/* Part `part` of what an order says; the only calls of these two functions of a driver. */
+/* What the frames of an order ask for. */
+static void aim(const grobo_robot *robot, const grobo_robot_order *order, const saying *says,
+                grobo_target *target)
+{
+    *target = says->target;
+    if (order->deed == GROBO_I_DEED_GOAL) {
+        (void)grobo_i_segments_cut(robot, order, &says->target, target);
+    }
+    for (int j = 0; j < robot->driver->model->n_joints; j++) {
+        target->from_rad[j] = grobo_i_axis_commanded(&robot->axes[j], robot->now_us);
+    }
+}
+
+/* Part `part` of it; the only calls of these two functions of a driver. */
 static int make_frame(const grobo_robot *robot, const grobo_robot_order *order, const saying *says,
-                      int part, grobo_exchange *exchange)
+                      const grobo_target *target, int part, grobo_exchange *exchange)
 {
     const grobo_driver *driver = robot->driver;
-    grobo_target target = says->target;
     memset(exchange, 0, offsetof(grobo_exchange, frame));
-    if (order->deed == GROBO_I_DEED_GOAL) {
-        (void)grobo_i_segments_cut(robot, order, &says->target, &target);
-    }
-    for (int j = 0; j < driver->model->n_joints; j++) {
-        target.from_rad[j] = grobo_i_axis_commanded(&robot->axes[j], robot->now_us);
-    }
     return order->deed == GROBO_I_DEED_TORQUE
                ? driver->torque(driver, robot->driver_ctx, says->torqued[order->torque],
                                 (grobo_torque)order->torque, part, exchange)
-               : driver->posture(driver, robot->driver_ctx, &target, part, exchange);
+               : driver->posture(driver, robot->driver_ctx, target, part, exchange);
 }
 
 /* What waits takes the room of all its joints: one that has no part in it yet may have one by the
@@ -509,14 +525,16 @@ static void says_all(const grobo_robot *robot, const grobo_robot_order *order, s
 int grobo_i_gate_build(grobo_robot *robot, const grobo_robot_order *order, grobo_exchange *exchange)
 {
     saying says;
+    grobo_target target;
     grobo_exchange next;
     int result = judge(robot, order, NULL, false, &says);
     if (result >= 0) {
         says_all(robot, order, &says);
-        result = make_frame(robot, order, &says, order->part, exchange);
+        aim(robot, order, &says, &target);
+        result = make_frame(robot, order, &says, &target, order->part, exchange);
     }
     bool several = order->part == 0 && grobo_joints_count(order->joints) > 1;
-    if (result > 0 && several && make_frame(robot, order, &says, 1, &next) > 0) {
+    if (result > 0 && several && make_frame(robot, order, &says, &target, 1, &next) > 0) {
         return GROBO_ERR_CAP;
     }
     return result;
@@ -712,7 +730,9 @@ int grobo_i_gate_leave(grobo_robot_slot *slot)
     int result = is_passed(robot, slot) ? GROBO_ERR_STALE
                                         : judge(robot, &slot->order, &slot->exchange, again, &says);
     if (result >= 0 && is_built(&slot->order)) {
-        result = make_frame(robot, &slot->order, &says, slot->order.part, &slot->exchange);
+        grobo_target target;
+        aim(robot, &slot->order, &says, &target);
+        result = make_frame(robot, &slot->order, &says, &target, slot->order.part, &slot->exchange);
         result = result == 0 ? GROBO_ERR_EMPTY : result;
     }
     if (result < 0) {

@@ -157,13 +157,24 @@ int grobo_i_play_start(grobo_robot *robot)
 
 /* ---- lateness -------------------------------------------------------------------------------- */
 
+/* Four an octave: where the highest bit is, and how far the number is on the way to the next. */
+static int bin_of(int64_t late_us)
+{
+    static const uint32_t edges[] = {0x9837F052, 0xB504F334, 0xD744FCCB}; /* 2^(31 + k/4) */
+    uint32_t rest = late_us < 1 ? 1 : late_us < UINT32_MAX ? (uint32_t)late_us : UINT32_MAX;
+    int bin = 4 * 31;
+    for (; rest < UINT32_C(1) << 31; rest <<= 1) {
+        bin -= 4;
+    }
+    for (int k = 0; k < 3; k++) {
+        bin += rest >= edges[k];
+    }
+    return bin < GROBO_ROBOT_JITTER_BINS ? bin : GROBO_ROBOT_JITTER_BINS - 1;
+}
+
 static void note_lateness(grobo_robot *robot, int64_t late_us)
 {
-    int bin = late_us <= 1 ? 0 : (int)(4 * log2((double)late_us));
-    if (bin >= GROBO_ROBOT_JITTER_BINS) {
-        bin = GROBO_ROBOT_JITTER_BINS - 1;
-    }
-    robot->late_bins[bin]++;
+    robot->late_bins[bin_of(late_us)]++;
     if (late_us > robot->late_max_us) {
         robot->late_max_us = late_us;
     }

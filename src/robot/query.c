@@ -22,6 +22,15 @@ int64_t grobo_i_now(const grobo_robot *robot)
     return now_us > robot->now_us ? now_us : robot->now_us;
 }
 
+bool grobo_i_has_frame(const grobo_robot *robot, int64_t now_us)
+{
+    const grobo_bus *bus = &robot->bus;
+    grobo_i_lock(robot);
+    bool has = bus->waiting > 0 && bus->active == NULL && grobo_bus_deadline(bus, now_us) <= now_us;
+    grobo_i_unlock(robot);
+    return has;
+}
+
 static int64_t age(int64_t read_us, int64_t now_us)
 {
     return read_us == GROBO_NEVER_US ? GROBO_NEVER_US : now_us - read_us;

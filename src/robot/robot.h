@@ -97,6 +97,9 @@ void grobo_i_unlock(const grobo_robot *robot);
 /* The time of a request or a question. */
 int64_t grobo_i_now(const grobo_robot *robot);
 
+/* True if a frame waits that the wire has time for now. */
+bool grobo_i_has_frame(const grobo_robot *robot, int64_t now_us);
+
 /* True while joints are being moved, by a job or by the sequencer. */
 bool grobo_i_in_motion(const grobo_robot *robot);
 
@@ -133,7 +136,7 @@ typedef enum grobo_i_deed {
 } grobo_i_deed;
 
 /* A slot without the bytes of its frame, which nobody looks at before they are written, or when it
- * is over. To clear and to copy them too would take most of the memory that a transaction touches. */
+ * is over. To clear and to copy them too would be most of the memory that a transaction touches. */
 #define GROBO_I_SLOT_HEAD_BYTES                                                                    \
     (offsetof(grobo_robot_slot, exchange) + offsetof(grobo_exchange, frame))
 

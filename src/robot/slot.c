@@ -8,9 +8,9 @@
 /* Slots that only a halt may take: there is always room for what stops the robot. */
 #define SLOTS_TO_HALT 3
 
-/* On a line that answers so soon, as learnt from so many replies none of which was late, a reading
- * is given this time above that of the wire, each time it is asked for. */
-enum { QUICK_LATENCY_US = 1000, QUICK_REPLIES = 16, QUICK_MARGIN_US = 4000 };
+/* On a line whose worst lateness is below this a reading is given so much time above that of the
+ * wire, each time it is asked for. */
+enum { QUICK_LATENCY_US = 1000, QUICK_MARGIN_US = 4000 };
 
 int grobo_i_slot_find(const grobo_robot *robot, grobo_i_use use)
 {
@@ -59,20 +59,15 @@ void grobo_i_slot_drop(grobo_robot_slot *slot)
     }
 }
 
-/* Who is silent there does not answer. Elsewhere an adapter, or the other end, may hold bytes back:
+/* The bus takes a thousand replies to believe that of a line, and one that was late to forget it.
+ * Who is silent there does not answer. Elsewhere an adapter, or the other end, may hold bytes back:
  * the margin grows with each attempt. */
-static bool is_quick(const grobo_bus *bus)
-{
-    return bus->stats.replies >= QUICK_REPLIES && bus->stats.late_frames == 0 &&
-           bus->overhead_us + 4 * bus->deviation_us < QUICK_LATENCY_US;
-}
-
 static uint32_t margin_of(const grobo_robot_slot *slot)
 {
     const grobo_robot *robot = slot->robot;
     uint32_t margin_us = robot->config.bus.margin_us;
-    bool reads = slot->reads || slot->many;
-    return margin_us == 0 && reads && is_quick(&robot->bus) ? QUICK_MARGIN_US : margin_us;
+    bool quick = (slot->reads || slot->many) && robot->bus.worst_us < QUICK_LATENCY_US;
+    return margin_us == 0 && quick ? QUICK_MARGIN_US : margin_us;
 }
 
 static int on_leave(void *ctx, grobo_txn *txn)
@@ -101,9 +96,9 @@ static void on_each(void *ctx, grobo_txn *txn, const grobo_packet *reply)
 static void note_answer(grobo_robot *robot, const grobo_txn *txn, int result,
                         const grobo_packet *reply)
 {
-    robot->answered = robot->answered ||
-                      (result >= 0 && reply != NULL && reply->kind == GROBO_PACKET_RETURN &&
-                       txn->attempts_ == 1 && txn->sent_us == robot->left_us);
+    robot->answered =
+        robot->answered || (result >= 0 && reply != NULL && reply->kind == GROBO_PACKET_RETURN &&
+                            txn->attempts_ == 1 && txn->sent_us == robot->left_us);
 }
 
 static void on_done(void *ctx, grobo_txn *txn, int result, const grobo_packet *reply)

@@ -212,8 +212,7 @@ static int64_t board_step_ns(const grobo_sim *sim)
 {
     switch (sim->board_state) {
     case GROBO_SIM_BOARD_SENDING: /* a payload acts when it is over */
-        return sim->board_at_ns +
-               (sim->send_used - sim->sent - sim->sending) * sim->bus_byte_ns;
+        return sim->board_at_ns + (sim->send_used - sim->sent - sim->sending) * sim->bus_byte_ns;
     case GROBO_SIM_BOARD_WAITING: /* bytes that come put its patience off */
         if (grobo_i_sim_talk_next(sim) <= sim->board_at_ns) {
             return GROBO_NEVER_US;

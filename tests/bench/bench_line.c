@@ -481,7 +481,8 @@ static struct {
     grobo_posture pose;
     int64_t end_us, begin_us;
     long count;
-    bool holds;
+    long lost; /* cycles in which a servo of a busy machine did not answer in time */
+    int error; /* of the last of them */
 } cycle;
 
 static void on_cycle(void *ctx, const grobo_event *event)
@@ -500,13 +501,16 @@ static void on_cycle(void *ctx, const grobo_event *event)
     if (event->u.job.kind == GROBO_JOB_TORQUE) {
         cycle.begin_us = now_us;
         cycle.end_us += now_us;
-    } else {
+    } else if (event->u.job.result >= 0) {
         cycle.count++;
+    } else {
+        cycle.lost++;
+        cycle.error = event->u.job.result;
     }
-    if (event->u.job.result < 0 || now_us >= cycle.end_us ||
-        (r = grobo_robot_send(robot, &cycle.pose)) < 0 ||
+    if (now_us >= cycle.end_us || (r = grobo_robot_send(robot, &cycle.pose)) < 0 ||
         (r = grobo_robot_sense(robot, GROBO_JOINTS_ALL(20), GROBO_SENSE_FULL)) < 0) {
-        run.failed += r < 0 || event->u.job.result < 0;
+        run.failed += r < 0;
+        cycle.error = r < 0 ? r : cycle.error;
         (void)event_base_loopbreak(run.base);
     }
 }
@@ -542,9 +546,10 @@ static int run_cycle(long seconds, const char *path)
         return 1;
     }
     (void)event_base_dispatch(run.base);
-    if (run.failed > 0 || cycle.count == 0 ||
+    if (run.failed > 0 || cycle.count == 0 || cycle.lost * 10 > cycle.count ||
         grobo_robot_budget(grobo_session_robot(cycle.session), &budget) < 0) {
-        fputs("bench_line: no cycle\n", stderr);
+        fprintf(stderr, "bench_line: no cycle: %s, after %ld\n", grobo_error_text(cycle.error),
+                cycle.count);
         return 1;
     }
     printf("%.3f %.3f\n", (double)cycle.count * 1e6 / (double)(grobo_now_us() - cycle.begin_us),

@@ -180,7 +180,7 @@ static void silence_rows(void)
 {
     start(GROBO_SENSE_NEVER);
     grobo_robot_on_event(&rig.robot, on_end, NULL);
-    for (int i = 0; i < 20; i++) {
+    for (int i = 0; i < 60; i++) {
         (void)reading_ms(GROBO_JOINTS_ALL(20));
     }
     for (int j = 0; j < 20; j++) {

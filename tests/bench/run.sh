@@ -145,13 +145,19 @@ for late_us in 3000 8000 20000; do
     done
 done
 
-# ---- S4: GR001's cycle -----------------------------------------------------------------------
+# ---- S4, S6: GR001's cycle, and a scan -----------------------------------------------------------
 
 rm -f "$build/bench.pty"
 "$GRCTL" -q sim --link "$build/bench.pty" >/dev/null 2>&1 &
 robot=$!
 for _ in 1 2 3 4 5 6 7 8 9 10; do
     [ -e "$build/bench.pty" ] || sleep 0.2
+done
+# S6: none of these ids is there. The wire's part is told, too.
+scanned=$("$GRCTL" -q --json -d "$build/bench.pty" scan --first 30 --last 49 2>/dev/null)
+for field in took wire; do
+    row S6 'scan of 20 silent ids, ms' "$([ $field = took ] && echo grobo || echo floor wire)" \
+        "$(echo "$scanned" | sed -n "s/.*\"${field}_ms\": *\([0-9.]*\).*/\1/p")"
 done
 # shellcheck disable=SC2046
 set -- $($line cycle 5 "$build/bench.pty")

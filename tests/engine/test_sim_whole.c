@@ -13,6 +13,7 @@
 #include <string.h>
 
 #include <cmocka.h>
+
 #include <grobo/board.h>
 #include <grobo/rs30x.h>
 
@@ -161,9 +162,8 @@ static void nobody_sees_a_difference(void **state)
     };
     uint32_t replies = 0;
     for (size_t i = 0; i < sizeof configs / sizeof *configs; i++) {
-        const grobo_protocol *protocol = configs[i].wiring == GROBO_WIRING_BUS
-                                             ? &grobo_rs30x_protocol
-                                             : &grobo_board_protocol;
+        const grobo_protocol *protocol =
+            configs[i].wiring == GROBO_WIRING_BUS ? &grobo_rs30x_protocol : &grobo_board_protocol;
         for (uint32_t seed = 0; seed < 60; seed++) {
             start_both(&configs[i]);
             if (seed % 8 == 0) { /* not the rate of the board: each byte arrives as another one */

@@ -240,8 +240,7 @@ static void an_answer_says_that_its_frame_has_left(void **state)
         slot->txn.attempts_ = (uint8_t)rows[i].attempts;
         robot.over = do_nothing;
         slot->txn.pending_ = false;
-        slot->txn.done(slot->txn.ctx, &slot->txn, rows[i].result,
-                       rows[i].kind < 0 ? NULL : &reply);
+        slot->txn.done(slot->txn.ctx, &slot->txn, rows[i].result, rows[i].kind < 0 ? NULL : &reply);
         assert_int_equal(robot.answered, rows[i].answered);
     }
 }

@@ -17,6 +17,7 @@ BARE_SIZES := $(BARE_CPUS) cortex-m0-default
 BARE_DIR := $(BUILD)/bare
 FIRMWARE_DIR := docs/examples/firmware
 FIRMWARES := $(foreach cpu,$(BARE_CPUS),$(BARE_DIR)/$(cpu)/gr001.elf $(BARE_DIR)/$(cpu)/player.elf)
+PUMPS := $(BARE_CPUS:%=$(BARE_DIR)/%/pump.elf)
 BARE_LIBS := $(BARE_SIZES:%=$(BARE_DIR)/%/libgrobo-core.a)
 BARE_RAM := $(BARE_SIZES:%=$(BARE_DIR)/%/tools/baremetal/ram.o)
 
@@ -39,6 +40,15 @@ $(BARE_DIR)/$(1)/%.elf: $(BARE_DIR)/$(1)/$(FIRMWARE_DIR)/%.o \
 	$$(say) LD $$@
 	$$(Q)$(BARE_PREFIX)gcc -mcpu=$(2) -mthumb --specs=nano.specs -nostartfiles -Wl,--gc-sections \
 	    -Wl,-Map=$$(@:.elf=.map) -T $(FIRMWARE_DIR)/mps2.ld -o $$@ $$(filter %.o %.a,$$^) -lm
+
+# The engine and a simulated robot in one: more than a small microcontroller has room for.
+$(BARE_DIR)/$(1)/pump.elf: $(BARE_DIR)/$(1)/tests/bench/pump.o \
+    $(BARE_DIR)/$(1)/$(FIRMWARE_DIR)/mps2.o $(BARE_DIR)/$(1)/libgrobo-core.a $(FIRMWARE_DIR)/mps2.ld
+	$$(say) LD $$@
+	@sed 's/LENGTH = .*/LENGTH = 1M/; s/^stack_bytes = .*/stack_bytes = 64K;/' \
+	    $(FIRMWARE_DIR)/mps2.ld >$$(@D)/pump.ld
+	$$(Q)$(BARE_PREFIX)gcc -mcpu=$(2) -mthumb --specs=nano.specs -nostartfiles -Wl,--gc-sections \
+	    -T $$(@D)/pump.ld -o $$@ $$(filter %.o %.a,$$^) -lm
 endef
 $(foreach cpu,$(BARE_CPUS),$(eval $(call bare,$(cpu),$(cpu),$(BARE_CAPS))))
 $(eval $(call bare,cortex-m0-default,cortex-m0,$(BARE_FRAME)))

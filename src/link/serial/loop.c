@@ -124,8 +124,10 @@ int grobo_timer_set(grobo_timer *timer, int64_t deadline_us)
         (void)event_del(timer->event);
         return GROBO_OK;
     }
-    /* One that comes sooner is left: it is set anew then, once for many deadlines put off. */
-    if (timer->armed_us <= timer->deadline_us && timer->armed_us > now_us) {
+    /* One that comes sooner is left, where that is not soon: a deadline that is put off again and
+     * again is set anew now and then, and the loop does not wake up for what is over. */
+    if (timer->armed_us <= timer->deadline_us && timer->armed_us > now_us &&
+        timer->armed_us - now_us >= (timer->deadline_us - now_us) / 2) {
         return GROBO_OK;
     }
     /*

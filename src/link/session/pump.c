@@ -79,15 +79,10 @@ static bool make_room(grobo_session *session, bool stops)
     return has_room;
 }
 
-/* A frame may leave now, as far as the engine is concerned. */
+/* A frame may leave now, as far as engine and marks are concerned. */
 static bool has_frame(const grobo_session *session, int64_t now_us)
 {
-    const grobo_bus *bus = &session->robot.bus;
-
-    grobo_i_lock(&session->robot);
-    bool has = bus->waiting > 0 && bus->active == NULL && grobo_bus_deadline(bus, now_us) <= now_us;
-    grobo_i_unlock(&session->robot);
-    return has && !grobo_i_session_has_asked(session) &&
+    return grobo_i_has_frame(&session->robot, now_us) && !grobo_i_session_has_asked(session) &&
            now_us < grobo_i_session_estop_deadline(session);
 }
 
@@ -95,7 +90,7 @@ static bool has_frame(const grobo_session *session, int64_t now_us)
  * is something for it: that may be a call of the system. */
 static int64_t give_all(grobo_session *session)
 {
-    int64_t now_us = grobo_now_us();
+    const int64_t now_us = grobo_now_us();
 
     while (has_frame(session, now_us)) {
         uint8_t frame[GROBO_FRAME_MAX_BYTES];
@@ -110,7 +105,6 @@ static int64_t give_all(grobo_session *session)
             break;
         }
         give(session, frame, (size_t)size, stops);
-        now_us = grobo_now_us();
     }
     return grobo_robot_deadline(&session->robot, now_us);
 }

@@ -71,8 +71,8 @@ struct grobo_session {
     grobo_sim *sim;                /* the one in there */
     const session_line *line;
     size_t backlog_bytes; /* of a frame that the simulator took in part, see line.c */
-    size_t given_bytes;  /* of the frame given to the line last; 0: it may not be taken back */
-    size_t given_behind; /* bytes of it behind its sum */
+    size_t given_bytes;   /* of the frame given to the line last; 0: it may not be taken back */
+    size_t given_behind;  /* bytes of it behind its sum */
     uint64_t sim_tx_bytes, sim_rx_bytes;
 
     grobo_i_estop_watch estop; /* the marks of the device */

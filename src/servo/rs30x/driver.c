@@ -71,16 +71,21 @@ int grobo_i_rs30x_check(const grobo_driver *self, void *ctx, int part, grobo_exc
     return finish_part(self, size, exchange);
 }
 
+/* In the wire's unit. */
+static uint16_t steps_of(const grobo_driver *self, int64_t time_us)
+{
+    int64_t steps = (time_us + self->time_step_us / 2) / self->time_step_us;
+    int64_t most = self->time_max_us / self->time_step_us;
+    return (uint16_t)(steps > most ? most : steps);
+}
+
 static void fill_goal(const grobo_driver *self, const grobo_target *target, int joint,
                       grobo_rs30x_goal *goal)
 {
-    int64_t steps = (target->joint_time_us[joint] + self->time_step_us / 2) / self->time_step_us;
-    int64_t most = self->time_max_us / self->time_step_us;
     const grobo_joint *moved = &self->model->joints[joint];
     goal->id = moved->motor;
     goal->pos_ddeg =
         grobo_ddeg_from_rad(grobo_joint_to_servo(moved, target->posture.angle_rad[joint]));
-    goal->time_cs = (uint16_t)(steps > most ? most : steps);
 }
 
 int grobo_i_rs30x_posture(const grobo_driver *self, void *ctx, const grobo_target *target, int part,
@@ -95,6 +100,9 @@ int grobo_i_rs30x_posture(const grobo_driver *self, void *ctx, const grobo_targe
     }
     for (int i = 0; i < n; i++) {
         fill_goal(self, target, list[i], &goals[i]);
+        bool same = i > 0 && target->joint_time_us[list[i]] == target->joint_time_us[list[i - 1]];
+        goals[i].time_cs =
+            same ? goals[i - 1].time_cs : steps_of(self, target->joint_time_us[list[i]]);
     }
     uint8_t *buf = exchange->frame;
     int size =
