@@ -145,7 +145,7 @@ static bool is_ample(const grobo_robot *robot, int joint, double to_rad, double 
 static double ample_s(const grobo_robot *robot, int64_t time_us)
 {
     const double rounding = 1 - 1e-6;
-    bool on_wire = time_us >= robot->driver->time_step_us && time_us <= robot->driver->time_max_us;
+    bool on_wire = time_us <= robot->driver->time_max_us;
     return on_wire ? (double)time_us * robot->config.speed_limit_pct * (rounding * 1e-8) : -1;
 }
 

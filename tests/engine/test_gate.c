@@ -501,6 +501,59 @@ static void times_are_what_speeds_make_them(void **state)
     }
 }
 
+/* What is long enough stays, each joint by itself; a unit less is stretched by it. */
+static void a_goal_keeps_a_time_that_is_long_enough(void **state)
+{
+    (void)state;
+    static const int pcts[] = {100, 50, 1};
+    for (int i = 0; i < 3 * N; i++) {
+        const int j = i / 3, pct = pcts[i % 3];
+        const grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .speed_limit_pct = pct};
+        const grobo_robot_order order = {.deed = GROBO_I_DEED_GOAL, .each = true};
+        const int64_t be_us = steps_up((50.037 - 0.1) / (speed_dps(j) * pct / 100) * 1e6);
+        for (int64_t more_us = -10000; more_us <= 10000; more_us += 10000) {
+            grobo_target target = {0};
+            start_with(&config);
+            robot.soft = false;
+            assert_int_equal(grobo_posture_init(&target.posture, N), 0);
+            target.posture.set = bits(j, other_of(j));
+            target.posture.angle_rad[j] = here_rad(j) + RAD(j < 20 ? 50.037 : -50.037);
+            target.posture.angle_rad[other_of(j)] = here_rad(other_of(j));
+            target.joint_time_us[j] = be_us + more_us;
+            target.joint_time_us[other_of(j)] = 100 * (int64_t)S;
+            assert_int_equal(grobo_i_gate_time(&robot, &order, &target), GROBO_OK);
+            assert_true(target.joint_time_us[j] == be_us + (more_us < 0 ? 0 : more_us));
+            assert_true(target.joint_time_us[other_of(j)] == 100 * (int64_t)S);
+            assert_int_equal(robot.counters.stretched, more_us < 0);
+        }
+    }
+}
+
+/* A time off the wire's grid would be rounded down there, and one past its end cut. */
+static void a_time_that_the_wire_does_not_have_is_no_long_enough_one(void **state)
+{
+    (void)state;
+    grobo_target target = {0};
+    start();
+    robot.soft = false;
+    const grobo_driver kept = driver;
+    assert_int_equal(grobo_posture_init(&target.posture, N), 0);
+    target.posture.set = 1;
+    driver.time_step_us = 30000;
+    target.posture.angle_rad[0] = here_rad(0) + RAD(speed_dps(0) * 0.095);
+    target.joint_time_us[0] = 100000;
+    const grobo_robot_order halt = {.deed = GROBO_I_DEED_HALT, .each = true};
+    assert_int_equal(grobo_i_gate_time(&robot, &halt, &target), GROBO_OK);
+    assert_int_equal(target.joint_time_us[0], 120000);
+    driver.time_step_us = 10000;
+    driver.time_max_us = 105000; /* ten units, and half of one */
+    target.posture.angle_rad[0] = here_rad(0) + RAD(speed_dps(0) * 0.104 + 0.1);
+    target.joint_time_us[0] = 110000;
+    const grobo_robot_order goal = {.deed = GROBO_I_DEED_GOAL, .each = true};
+    assert_int_equal(grobo_i_gate_time(&robot, &goal, &target), GROBO_ERR_SPEED);
+    driver = kept;
+}
+
 /* Of an odd number of joints, too, and of none beyond them. */
 static void all_joints_of_a_move_get_its_time(void **state)
 {
@@ -800,6 +853,8 @@ int main(void)
         cmocka_unit_test(what_waits_has_room_for_all_its_joints),
         cmocka_unit_test(only_the_target_of_that_number_waits_no_more),
         cmocka_unit_test(times_are_what_speeds_make_them),
+        cmocka_unit_test(a_goal_keeps_a_time_that_is_long_enough),
+        cmocka_unit_test(a_time_that_the_wire_does_not_have_is_no_long_enough_one),
         cmocka_unit_test(all_joints_of_a_move_get_its_time),
         cmocka_unit_test(a_goal_that_leaves_late_gets_the_time_from_there),
         cmocka_unit_test(a_time_longer_than_the_wire_has_is_refused),

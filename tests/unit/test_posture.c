@@ -55,6 +55,24 @@ static void angles_round_to_the_nearest_unit_of_the_wire(void **state)
     assert_near(grobo_rad_from_ddeg(-300), -PI / 6, 1e-15);
 }
 
+/* To the bit what one division and round() give, around each tie and far beyond the wire. */
+static void however_an_angle_is_rounded_it_is_the_same(void **state)
+{
+    (void)state;
+    for (int k = -70000; k <= 70000; k++) {
+        const double tie_rad = k * 0.5 * PI / 1800.0;
+        const double near_rad[] = {
+            tie_rad,        nextafter(tie_rad, 100), nextafter(tie_rad, -100),
+            tie_rad + 2e-8, tie_rad - 2e-8,          k * 0.05 / 180.0 * PI};
+        for (size_t i = 0; i < sizeof near_rad / sizeof *near_rad; i++) {
+            double ddeg = fmax(fmin(round(near_rad[i] * 1800.0 / PI), INT16_MAX), INT16_MIN);
+            if (grobo_ddeg_from_rad(near_rad[i]) != (int16_t)ddeg) {
+                fail_msg("%.17g rad: %d", near_rad[i], grobo_ddeg_from_rad(near_rad[i]));
+            }
+        }
+    }
+}
+
 static void a_fresh_posture_sets_nothing(void **state)
 {
     (void)state;
@@ -371,6 +389,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(angles_round_to_the_nearest_unit_of_the_wire),
+        cmocka_unit_test(however_an_angle_is_rounded_it_is_the_same),
         cmocka_unit_test(a_fresh_posture_sets_nothing),
         cmocka_unit_test(degrees_and_radians_are_one_truth),
         cmocka_unit_test(all_angles_come_with_nan_for_those_not_set),
