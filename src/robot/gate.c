@@ -243,6 +243,15 @@ static int judge_halt(grobo_robot *robot, const grobo_robot_order *order, grobo_
     return grobo_i_gate_time(robot, order, target);
 }
 
+/* One that stands outside its limits is drawn in once it has torque: softly. */
+static int64_t hold_time_us(const grobo_robot *robot, int joint, double hold_rad)
+{
+    int64_t step_us = robot->driver->time_step_us;
+    double way_rad = fabs(hold_rad - robot->axes[joint].state.angle_rad);
+    double steps = ceil(way_rad / speed_limit(robot, joint, true) * 1e6 / (double)step_us);
+    return grobo_i_sooner((int64_t)fmax(steps, 1) * step_us, robot->driver->time_max_us);
+}
+
 /* The goal of joints without torque to where each was seen last; not of one too far outside. */
 static int judge_hold(const grobo_robot *robot, const grobo_robot_order *order,
                       grobo_target *target)
@@ -257,7 +266,7 @@ static int judge_hold(const grobo_robot *robot, const grobo_robot_order *order,
         if (grobo_i_has(order->joints, j) && axis->sensed && !isnan(hold_rad) && limited &&
             !grobo_i_axis_is_on(axis)) {
             target->posture.angle_rad[j] = hold_rad;
-            target->joint_time_us[j] = robot->driver->time_step_us;
+            target->joint_time_us[j] = hold_time_us(robot, j, hold_rad);
             target->posture.set |= GROBO_JOINT_BIT(j);
         }
     }

@@ -152,7 +152,7 @@ static void a_stop_reaches_a_joint_of_the_clip_before(void **state)
     (void)state;
     static const rig_key leap[] = {{0, {{SHOULDER, 100}}}, {100, {{SHOULDER, -100}}}};
     static rig_clip next;
-    for (int way = 0; way < PAUSE; way++) {
+    for (int way = 0; way <= PAUSE; way++) {
         const grobo_play_options options = {.also = GROBO_JOINT_BIT(NECK)};
         rig_start_at(&rig, -45, &quiet);
         rig_clip_init(&clip, leap, 2);

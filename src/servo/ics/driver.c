@@ -74,15 +74,10 @@ static int joint_of_part(const grobo_driver *self, grobo_joint_mask joints, int 
     return -1;
 }
 
-/* The least speed that leads there in time. */
 static uint16_t speed_of(const grobo_driver *self, const grobo_target *target, int joint)
 {
-    const grobo_joint *moved = &self->model->joints[joint];
-    double way_rad = grobo_joint_to_servo(moved, target->posture.angle_rad[joint]) -
-                     grobo_joint_to_servo(moved, target->from_rad[joint]);
-    int64_t us = target->joint_time_us[joint] > 0 ? target->joint_time_us[joint] : 1;
-    double part = grobo_deg_from_rad(fabs(way_rad)) * 1e6 / (double)us /
-                  grobo_i_table_servo(self, joint)->speed_dps;
+    double part =
+        grobo_i_table_speed_dps(self, target, joint) / grobo_i_table_servo(self, joint)->speed_dps;
     return (uint16_t)fmin(fmax(ceil(part * SPEED_FULL), 1), SPEED_FULL);
 }
 

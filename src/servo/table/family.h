@@ -79,6 +79,10 @@ int grobo_i_table_setup(const grobo_i_family *family, const grobo_joint *joint,
 const grobo_servo_register *grobo_i_table_limit(const grobo_joint *joint,
                                                 const grobo_servo_model *servo, int32_t *counts);
 
+/* The least speed of a servo that leads its joint to a target in time, in deg/s. One that was told
+ * this goal already may lag behind it: that of a first move, or it would crawl there. */
+double grobo_i_table_speed_dps(const grobo_driver *self, const grobo_target *target, int joint);
+
 /* What one count of a register is worth, in deg/s, mA, mV or whatever its unit says. */
 double grobo_i_table_unit(const grobo_servo_register *reg);
 
