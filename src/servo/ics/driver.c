@@ -63,17 +63,6 @@ static int read_item(const grobo_driver *self, uint8_t id, uint8_t item, grobo_e
     return finish(self, &packet, exchange);
 }
 
-/* The joint number `part` of a set, -1 behind the last. */
-static int joint_of_part(const grobo_driver *self, grobo_joint_mask joints, int part)
-{
-    for (int j = 0; j < self->model->n_joints; j++) {
-        if ((joints & GROBO_JOINT_BIT(j)) != 0 && part-- == 0) {
-            return j;
-        }
-    }
-    return -1;
-}
-
 static uint16_t speed_of(const grobo_driver *self, const grobo_target *target, int joint)
 {
     double part =
@@ -86,7 +75,7 @@ static int posture(const grobo_driver *self, void *ctx, const grobo_target *targ
                    grobo_exchange *exchange)
 {
     (void)ctx;
-    int j = joint_of_part(self, target->posture.set, part / 2);
+    int j = grobo_i_table_joint_of_part(self, target->posture.set, part / 2);
     if (j < 0) {
         return 0;
     }
@@ -110,7 +99,7 @@ static int torque(const grobo_driver *self, void *ctx, grobo_joint_mask joints, 
                   int part, grobo_exchange *exchange)
 {
     (void)ctx;
-    int j = joint_of_part(self, joints, part);
+    int j = grobo_i_table_joint_of_part(self, joints, part);
     if (mode == GROBO_TORQUE_BRAKE || j < 0) {
         return j < 0 ? 0 : GROBO_ERR_UNSUPPORTED;
     }
@@ -339,11 +328,8 @@ int grobo_ics_driver_init(grobo_driver *driver, const grobo_model *model)
     };
     int result = grobo_i_table_make(&made, model, &grobo_ics_protocol, &family);
     for (int j = 0; result >= 0 && j < model->n_joints; j++) {
-        if (model->joints[j].turns) {
-            result = GROBO_ERR_ARG;
-        } else if (!grobo_ics_tells_position(grobo_i_table_servo(&made, j))) {
-            result = GROBO_ERR_UNSUPPORTED;
-        }
+        bool tells = grobo_ics_tells_position(grobo_i_table_servo(&made, j));
+        result = tells ? result : GROBO_ERR_UNSUPPORTED;
     }
     if (result < 0 || driver == NULL) {
         return result < 0 ? result : GROBO_ERR_ARG;

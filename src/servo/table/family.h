@@ -54,6 +54,9 @@ int grobo_i_table_driver(grobo_driver *driver, const grobo_model *model,
 int grobo_i_table_make(grobo_driver *made, const grobo_model *model, const grobo_protocol *protocol,
                        const grobo_i_family *family);
 
+/* The joint number `part` of a set, -1 behind the last: of families that tell one in a frame. */
+int grobo_i_table_joint_of_part(const grobo_driver *self, grobo_joint_mask joints, int part);
+
 /* The servo of a joint, NULL: in no table. */
 const grobo_servo_model *grobo_i_table_servo(const grobo_driver *self, int joint);
 

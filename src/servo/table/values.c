@@ -17,6 +17,16 @@ const grobo_servo_model *grobo_i_table_servo(const grobo_driver *self, int joint
     return found;
 }
 
+int grobo_i_table_joint_of_part(const grobo_driver *self, grobo_joint_mask joints, int part)
+{
+    for (int j = 0; j < self->model->n_joints; j++) {
+        if ((joints & GROBO_JOINT_BIT(j)) != 0 && part-- == 0) {
+            return j;
+        }
+    }
+    return -1;
+}
+
 bool grobo_i_table_value(const grobo_servo_model *servo, grobo_register_role role, uint16_t address,
                          const uint8_t *data, size_t n, int32_t *value)
 {
