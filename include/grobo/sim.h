@@ -170,7 +170,8 @@ typedef struct grobo_sim_config {
     bool echo;                 /**< bus: the host's adapter returns what is sent on one wire */
     bool nack;                 /**< a servo that cannot process an ACK request answers 08 */
     bool mounted;              /**< servos of other families are set up as the model's joints need
-                                    them: mode, sense of goals; else as from the factory */
+                                    them: mode, sense of goals, and the range of a calibrated joint;
+                                    else as from the factory */
     bool no_stops;             /**< nothing but its limit registers keeps a servo from turning */
     bool baud_at_once;         /**< register BAUD takes effect when written, not at a restart */
     bool jump_on_torque;       /**< torque on runs to the goal register instead of holding */

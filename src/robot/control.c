@@ -19,7 +19,13 @@ int grobo_robot_pause(grobo_robot *robot)
         return GROBO_ERR_ARG;
     }
     grobo_i_begin(robot);
-    return controlled(robot, grobo_sequencer_pause(&robot->sequencer, robot->now_us));
+    int result = grobo_sequencer_pause(&robot->sequencer, robot->now_us);
+    /* A clip before may have left joints on their way that this one does not move. */
+    grobo_joint_mask left = robot->played_joints & ~robot->sequencer.to.set;
+    if (result >= 0 && left != 0) {
+        grobo_i_gate_halt(robot, left);
+    }
+    return controlled(robot, result);
 }
 
 int grobo_robot_resume(grobo_robot *robot)

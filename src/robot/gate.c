@@ -26,37 +26,40 @@ typedef struct saying {
 
 /* ---- numbers and limits ---------------------------------------------------------------------- */
 
-/* Draws joints in that go further than their servos let them: how many. *joint: the first. */
-static int draw_in(const grobo_robot *robot, grobo_posture *target, int *joint)
+/* Draws a joint in that would go further than its servo lets it. */
+static bool draw_in(const grobo_robot *robot, int joint, double *angle_rad)
 {
-    int found = 0;
-    for (int j = target->n_joints - 1; j >= 0; j--) {
-        const grobo_i_limits limits = grobo_i_joint_limits(robot, j);
-        double angle_rad = target->angle_rad[j];
-        double inside_rad = fmin(fmax(angle_rad, limits.min_rad), limits.max_rad);
-        if (grobo_i_has(target->set, j) &&
-            grobo_ddeg_from_rad(angle_rad) != grobo_ddeg_from_rad(inside_rad)) {
-            target->angle_rad[j] = inside_rad;
-            *joint = j;
-            found++;
-        }
+    if ((robot->axes[joint].state.valid & GROBO_FIELD_RANGE) == 0) {
+        return false;
     }
-    return found;
+    const grobo_i_limits limits = grobo_i_joint_limits(robot, joint);
+    double inside_rad = fmin(fmax(*angle_rad, limits.min_rad), limits.max_rad);
+    bool beyond = grobo_ddeg_from_rad(*angle_rad) != grobo_ddeg_from_rad(inside_rad);
+    *angle_rad = beyond ? inside_rad : *angle_rad;
+    return beyond;
 }
 
 /* As grobo_posture_check() and _clamp(), of the limits that hold. */
 static int check_target(const grobo_robot *robot, const grobo_posture *target, int *joint)
 {
-    grobo_posture inside = *target;
     int result = grobo_posture_check(target, robot->driver->model, joint);
-    return result >= 0 && draw_in(robot, &inside, joint) > 0 ? GROBO_ERR_LIMIT : result;
+    for (int j = 0; result >= 0 && j < target->n_joints; j++) {
+        double angle_rad = target->angle_rad[j];
+        if (grobo_i_has(target->set, j) && draw_in(robot, j, &angle_rad)) {
+            *joint = j;
+            result = GROBO_ERR_LIMIT;
+        }
+    }
+    return result;
 }
 
 static int clamp_target(const grobo_robot *robot, grobo_posture *target)
 {
-    int joint;
     int clamped = grobo_posture_clamp(target, robot->driver->model);
-    return clamped < 0 ? clamped : clamped + draw_in(robot, target, &joint);
+    for (int j = 0; clamped >= 0 && j < target->n_joints; j++) {
+        clamped += grobo_i_has(target->set, j) && draw_in(robot, j, &target->angle_rad[j]);
+    }
+    return clamped;
 }
 
 int grobo_i_gate_target(grobo_robot *robot, grobo_posture *target)
@@ -269,6 +272,15 @@ static int judge_halt(grobo_robot *robot, const grobo_robot_order *order, grobo_
     return grobo_i_gate_time(robot, order, target);
 }
 
+/* One that stands outside its limits is drawn in once it has torque: softly. */
+static int64_t hold_time_us(const grobo_robot *robot, int joint, double hold_rad)
+{
+    int64_t step_us = robot->driver->time_step_us;
+    double way_rad = fabs(hold_rad - robot->axes[joint].state.angle_rad);
+    double steps = ceil(way_rad / speed_limit(robot, joint, true) * 1e6 / (double)step_us);
+    return grobo_i_sooner((int64_t)fmax(steps, 1) * step_us, robot->driver->time_max_us);
+}
+
 /* The goal of joints without torque to where each was seen last; not of one too far outside. */
 static int judge_hold(const grobo_robot *robot, const grobo_robot_order *order,
                       grobo_target *target)
@@ -283,7 +295,7 @@ static int judge_hold(const grobo_robot *robot, const grobo_robot_order *order,
         if (grobo_i_has(order->joints, j) && axis->sensed && !isnan(hold_rad) && limited &&
             !grobo_i_axis_is_on(axis)) {
             target->posture.angle_rad[j] = hold_rad;
-            target->joint_time_us[j] = robot->driver->time_step_us;
+            target->joint_time_us[j] = hold_time_us(robot, j, hold_rad);
             target->posture.set |= GROBO_JOINT_BIT(j);
         }
     }

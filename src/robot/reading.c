@@ -56,18 +56,19 @@ double grobo_i_hold_rad(const grobo_robot *robot, int joint)
 static void take_move(grobo_robot *robot, int joint, const grobo_joint_state *got)
 {
     const unsigned move = GROBO_FIELD_GOAL | GROBO_FIELD_TIME;
-    const unsigned pace = GROBO_FIELD_SPEED | GROBO_FIELD_TORQUE;
     grobo_robot_axis *axis = &robot->axes[joint];
-    if ((got->valid & pace) != pace) {
+    bool torque = (got->valid & GROBO_FIELD_TORQUE) != 0 || axis->torque_known; /* in parts */
+    if ((got->valid & GROBO_FIELD_SPEED) == 0 || !torque) {
         return;
     }
-    bool moves = got->torque == GROBO_TORQUE_ON && abs(got->speed_dps) >= GROBO_I_SLOW_DPS;
+    bool on = axis->state.torque == GROBO_TORQUE_ON;
+    bool moves = on && abs(got->speed_dps) >= GROBO_I_SLOW_DPS;
     if ((got->valid & move) == move) {
         double most_rad_s = robot->driver->model->joints[joint].max_speed_rad_s;
         double way_rad = fabs(got->goal_rad - got->angle_rad);
         int64_t least_us = (int64_t)(way_rad / most_rad_s * 1e6);
         int64_t left_us = got->goal_time_us - got->time_us;
-        bool creeps = got->torque == GROBO_TORQUE_ON && got->speed_dps != 0 && left_us > 0;
+        bool creeps = on && got->speed_dps != 0 && left_us > 0;
         left_us = left_us > least_us ? left_us : least_us;
         axis->own_until_us = robot->now_us + (moves || creeps ? left_us : 0);
     }

@@ -17,6 +17,9 @@
 #define DEAF_US 2500000
 /* A servo starts when its frame has passed board and bus, and settles. */
 #define ARRIVAL_US 40000
+/* Between two looks at a joint lies a way that shows whether it moves: a count of a coarse servo
+ * that flickers is no speed yet. */
+#define TWICE_US 80000
 /* How often a quieting robot is looked at. */
 #define QUIET_US 5000
 static grobo_i_chunk chunk_of(const grobo_robot *robot)
@@ -143,10 +146,42 @@ static int step_read_pending(grobo_robot *robot)
     return GROBO_I_READ;
 }
 
+/* Who leaves sees a joint once at least that he has told to stand; an emergency stop asks anyhow
+ * until all do. */
+static int step_hear_all(grobo_robot *robot)
+{
+    return robot->job->kind == GROBO_JOB_EXIT ? step_read_again(robot) : GROBO_I_NEXT;
+}
+
 /* From here on every joint is needed. */
 static int step_require(grobo_robot *robot)
 {
     return robot->job->failed == 0 ? GROBO_I_NEXT : robot->job->result;
+}
+
+/* Servos that tell no speed are read twice before they are sent anywhere: another program may have
+ * sent them on their way. */
+static grobo_joint_mask of_unknown_speed(const grobo_robot *robot)
+{
+    grobo_joint_mask found = 0;
+    for (int j = 0; robot->driver->no_speed && j < robot->driver->model->n_joints; j++) {
+        bool is = grobo_i_has(robot->job->joints & ~robot->job->failed, j);
+        bool known = (robot->axes[j].state.valid & GROBO_FIELD_SPEED) != 0;
+        found |= is && !known ? GROBO_JOINT_BIT(j) : 0;
+    }
+    return found;
+}
+
+static int step_look_twice(grobo_robot *robot)
+{
+    robot->job->until_us = robot->now_us + TWICE_US;
+    return of_unknown_speed(robot) == 0 ? GROBO_I_NEXT : GROBO_I_WAIT;
+}
+
+static int step_read_twice(grobo_robot *robot)
+{
+    robot->job->todo = of_unknown_speed(robot);
+    return GROBO_I_READ;
 }
 
 /* Motions begin where the joints were just seen, not where they were told to be; those that are on
@@ -647,26 +682,27 @@ static int step_aim_rest(grobo_robot *robot)
     step_limit, step_read_pending, step_limit_check, step_pick_off, step_watchdog_clear,           \
         step_hold, step_read_pending, step_hold_check, step_torque, step_read_pending,             \
         step_torque_check, step_watchdog_set
+#define TWICE step_look_twice, step_read_twice
 #define SWITCH step_pick_all, step_torque, step_read_pending, step_torque_check
 #define MOVE step_send, step_arrive, step_read_back, step_arrived
 
 const grobo_robot_step_fn grobo_i_script_check[] = {step_check, step_check_next, NULL};
 const grobo_robot_step_fn grobo_i_script_sense[] = {step_read, NULL};
-const grobo_robot_step_fn grobo_i_script_torque_on[] = {step_read, SWITCH_ON, NULL};
+const grobo_robot_step_fn grobo_i_script_torque_on[] = {step_read, TWICE, SWITCH_ON, NULL};
 const grobo_robot_step_fn grobo_i_script_torque_off[] = {SWITCH, NULL};
 const grobo_robot_step_fn grobo_i_script_move[] = {
-    step_read,      step_read_again, step_require, SWITCH_ON, step_require,
-    step_from_here, step_aim,        MOVE,         NULL};
+    step_read,    TWICE,          step_read_again, step_require, SWITCH_ON,
+    step_require, step_from_here, step_aim,        MOVE,         NULL};
 const grobo_robot_step_fn grobo_i_script_play[] = {
-    step_read,      step_read_again, step_require,   SWITCH_ON,       step_require,
-    step_from_here, step_play,       step_read_back, step_approached, NULL};
+    step_read,      TWICE,     step_read_again, step_require,    SWITCH_ON, step_require,
+    step_from_here, step_play, step_read_back,  step_approached, NULL};
 const grobo_robot_step_fn grobo_i_script_settle[] = {step_aim_last, step_read_pending, step_missed,
                                                      MOVE, NULL};
 const grobo_robot_step_fn grobo_i_script_ask[] = {step_ask, step_settle, NULL};
 const grobo_robot_step_fn grobo_i_script_exit_off[] = {step_quiet, step_watchdog_clear, SWITCH,
                                                        NULL};
-const grobo_robot_step_fn grobo_i_script_exit_hold[] = {step_quiet, step_read, step_strays,
-                                                        step_watchdog_clear, NULL};
+const grobo_robot_step_fn grobo_i_script_exit_hold[] = {
+    step_quiet, step_read, step_hear_all, step_strays, step_watchdog_clear, NULL};
 const grobo_robot_step_fn grobo_i_script_exit_sit[] = {
     step_quiet,    step_read, step_read_again, step_require,        step_from_here,
     step_aim_rest, MOVE,      step_require,    step_watchdog_clear, SWITCH,

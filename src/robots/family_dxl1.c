@@ -1,18 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <grobo/dxl1.h>
 
-#include "src/robots/robots.h"
+#include "src/robots/bus_family.h"
 
-static int init(grobo_driver *driver, const grobo_model *model, grobo_wiring wiring)
-{
-    return wiring == GROBO_WIRING_BUS ? grobo_dxl1_driver_init(driver, model)
-                                      : GROBO_ERR_UNSUPPORTED;
-}
-
-static const grobo_servo_table *const tables[] = {&grobo_dxl1_table, NULL};
-
-const grobo_robot_family grobo_i_family_dynamixel1 = {.name = "dynamixel1",
-                                                      .tables = tables,
-                                                      .baud_bps = 1000000,
-                                                      .wiring = GROBO_WIRING_BUS,
-                                                      .init = init};
+GROBO_I_BUS_FAMILY(grobo_i_family_dynamixel1, "dynamixel1", grobo_dxl1_driver_init, 1000000,
+                   &grobo_dxl1_table);

@@ -515,6 +515,44 @@ static void a_fault_says_what_is_wanted(void **state)
     }
 }
 
+/* A joint that lags behind its goal is not left to crawl there by the next frame with that goal: it
+ * gets the speed of a first move. */
+static void the_same_goal_again_is_no_crawl(void **state)
+{
+    (void)state;
+    static const int by_speed[] = {1, 3};
+    for (size_t i = 0; i < sizeof by_speed / sizeof by_speed[0]; i++) {
+        start(&families[by_speed[i]], &quiet);
+        assert_int_equal(moved_to(20, 20, 20), GROBO_OK);
+        bus.servo[0].from_ticks = bus.servo[0].servo->middle; /* it lags */
+        bus.servo[0].from_us = bus.servo[0].to_us = bus.now_us;
+        grobo_posture p = posture(20, 20, 20, 100);
+        assert_int_equal(grobo_robot_send(&bus.robot, &p), GROBO_OK);
+        table_run(&bus, 50 * MS);
+        const grobo_servo_register *speed =
+            grobo_servo_register_of(bus.servo[0].servo, GROBO_ROLE_SPEED);
+        double rpm = strcmp(speed->unit, "0.111 rpm") == 0 ? 6 * 0.111 : 0.088;
+        double dps = table_get(&bus, 0, GROBO_ROLE_SPEED) * rpm;
+        assert_true(dps > 40 && dps <= 60.7);
+    }
+}
+
+/* Outside its limits by a little, it is drawn in as it gets torque, and not at once. */
+static void a_joint_is_drawn_in_softly(void **state)
+{
+    (void)state;
+    for (int i = 0; i < FAMILIES; i++) {
+        start(&families[i], &quiet);
+        table_turn(&bus, 0, 82.5);
+        grobo_joint_mask one = GROBO_JOINT_BIT(0);
+        assert_int_equal(table_wait(&bus, grobo_robot_torque(&bus.robot, one, GROBO_TORQUE_ON)),
+                         GROBO_OK);
+        assert_true(bus.servo[0].to_us - bus.servo[0].from_us >= 2400 * MS / 61);
+        table_run(&bus, 100 * MS);
+        at(0, 80);
+    }
+}
+
 static int write_register(grobo_register_role role)
 {
     const grobo_servo_register *reg = grobo_servo_register_of(bus.servo[0].servo, role);
@@ -632,6 +670,8 @@ int main(void)
         cmocka_unit_test(a_joint_that_was_never_calibrated_does_not_move),
         cmocka_unit_test(a_calibrated_joint_goes_as_far_as_its_servo),
         cmocka_unit_test(a_fault_says_what_is_wanted),
+        cmocka_unit_test(the_same_goal_again_is_no_crawl),
+        cmocka_unit_test(a_joint_is_drawn_in_softly),
         cmocka_unit_test(a_gripper_has_its_limit_before_its_torque),
         cmocka_unit_test(a_gripper_that_takes_no_limit_gets_no_torque),
         cmocka_unit_test(a_limit_that_is_kept_is_a_setup),

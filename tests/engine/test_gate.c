@@ -151,7 +151,8 @@ static void a_hold_is_refused_by_name(void **state)
             robot.axes[j].state.angle_rad = end * RAD(70 + j + 2.99);
             robot.axes[j].state.torque = GROBO_TORQUE_OFF;
             assert_int_equal(leave(order), GROBO_OK);
-            expect_goals(order.joints, end * (70 + j) - (j - 20), driver.time_step_us);
+            /* at 60 deg/s, in steps of 10 ms */
+            expect_goals(order.joints, end * (70 + j) - (j - 20), 5 * driver.time_step_us);
             drop();
         }
         latch(GROBO_TRIP_LIMIT);

@@ -18,7 +18,7 @@ static rig_clip clip;
 /* ---- steps ----------------------------------------------------------------------------------- */
 
 /* The steps of a script that are looked at. */
-enum { QUIET = 0, STRAYS = 2, AIM_REST = 5 };
+enum { QUIET = 0, STRAYS = 3, AIM_REST = 5 };
 
 /* A job is about to take this step of its script. */
 static void begin_job(grobo_job_kind kind, const grobo_robot_step_fn *script, unsigned at)

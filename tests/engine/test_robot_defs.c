@@ -9,9 +9,12 @@
 
 #include <cmocka.h>
 
+#include <grobo/dxl2.h>
 #include <grobo/robot_file.h>
 #include <grobo/sim_static.h>
 #include <grobo/static.h>
+
+#include "src/robots/robots.h"
 
 enum { S = 1000000 };
 
@@ -44,6 +47,18 @@ static void start(const grobo_robot_def *def, grobo_wiring wiring)
     grobo_robot_link_up(&robot, now_us);
 }
 
+/* Time on the wire of the sync reads that left, with their replies: 10 us a byte at 1 Mbps. */
+static int64_t read_us;
+
+static void note_sync_read(const uint8_t *bytes, int n)
+{
+    enum { INSTRUCTION = 4, LENGTH = 6, HEAD_BYTES = 8, STATUS_BYTES = 6 };
+    if (n > HEAD_BYTES && bytes[INSTRUCTION] == GROBO_DXL2_SYNC_READ) {
+        int servos = n - HEAD_BYTES;
+        read_us += 10 * (n + servos * (STATUS_BYTES + bytes[LENGTH]));
+    }
+}
+
 static void pump(void)
 {
     uint8_t bytes[GROBO_FRAME_MAX_BYTES];
@@ -54,6 +69,7 @@ static void pump(void)
     grobo_robot_step(&robot, now_us);
     int n;
     while ((n = grobo_robot_tx(&robot, bytes, sizeof bytes, now_us)) > 0) {
+        note_sync_read(bytes, n);
         (void)grobo_sim_rx(&sim, bytes, (size_t)n, now_us);
     }
     int64_t next_us = grobo_robot_deadline(&robot, now_us);
@@ -148,6 +164,25 @@ static void servos_stand_as_they_are_mounted(void **state)
     }
 }
 
+/* Six STS3215 are read as fast as their wire goes: at least 95 % of it. */
+static void an_arm_is_read_as_fast_as_its_wire(void **state)
+{
+    (void)state;
+    start(&grobo_i_robot_so101, GROBO_WIRING_BUS);
+    grobo_robot_config config = {GROBO_ROBOT_CONFIG_INIT, .bus = {.baud_bps = 1000000},
+                                 .sense_interval_us = 1};
+    assert_int_equal(grobo_robot_configure(&robot, &config), GROBO_OK);
+    finish(grobo_robot_sense(&robot, GROBO_JOINTS_ALL(6), GROBO_SENSE_FULL));
+    read_us = 0;
+    int64_t from_us = now_us;
+    while (now_us < from_us + S) {
+        pump();
+    }
+    print_message("%.1f %% of the wire\n", (double)read_us * 100 / (double)(now_us - from_us));
+    assert_true(read_us * 100 >= 95 * (now_us - from_us));
+    assert_true(read_us <= now_us - from_us);
+}
+
 static void gr001_is_on_a_bus_too(void **state)
 {
     (void)state;
@@ -164,6 +199,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_moves_in_its_simulator),
         cmocka_unit_test(servos_stand_as_they_are_mounted),
+        cmocka_unit_test(an_arm_is_read_as_fast_as_its_wire),
         cmocka_unit_test(gr001_is_on_a_bus_too),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

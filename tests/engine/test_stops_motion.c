@@ -152,7 +152,7 @@ static void a_stop_reaches_a_joint_of_the_clip_before(void **state)
     (void)state;
     static const rig_key leap[] = {{0, {{SHOULDER, 100}}}, {100, {{SHOULDER, -100}}}};
     static rig_clip next;
-    for (int way = 0; way < PAUSE; way++) {
+    for (int way = 0; way <= PAUSE; way++) {
         const grobo_play_options options = {.also = GROBO_JOINT_BIT(NECK)};
         rig_start_at(&rig, -45, &quiet);
         rig_clip_init(&clip, leap, 2);
@@ -357,6 +357,32 @@ static void a_stop_reaches_a_servo_that_was_deaf(void **state)
         rig_expect(&rig, number, GROBO_OK);
         assert_int_not_equal(rig_torque(&rig, NECK), GROBO_TORQUE_ON);
     }
+}
+
+/* One that is deaf when it is to halt and mute when it is read is read again, and halted. */
+static void leaving_looks_again_at_who_was_not_heard(void **state)
+{
+    (void)state;
+    rig_start_at(&rig, -45, &quiet);
+    grobo_posture target = rig_posture(&rig, NECK, 45, 3000);
+    assert_int_equal(grobo_robot_send(&rig.robot, &target), GROBO_OK);
+    rig_run(&rig, 500000);
+    assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_MUTE), 0);
+    int number = grobo_robot_exit(&rig.robot, GROBO_EXIT_HOLD);
+    for (int silent = 0; silent < 2000; silent++) { /* until its reading has failed */
+        grobo_joint_info info;
+        assert_int_equal(grobo_robot_joint(&rig.robot, NECK, &info), GROBO_OK);
+        if (info.status == GROBO_ERR_TIMEOUT) {
+            break;
+        }
+        rig_run(&rig, 1000);
+    }
+    assert_int_equal(grobo_sim_set_cable(&rig.sim, NECK, GROBO_SIM_CABLE_IN), 0);
+    rig_expect(&rig, number, GROBO_OK);
+    double left_deg = rig_angle_deg(&rig, NECK);
+    rig_run(&rig, 500000);
+    assert_true(fabs(rig_angle_deg(&rig, NECK) - left_deg) < 0.01);
+    assert_true(left_deg < 30);
 }
 
 /* A robot that moves is let go when it stands: else its joints would fly on. */
@@ -699,6 +725,7 @@ int main(void)
         cmocka_unit_test(a_halt_makes_no_reading_of_others_stale),
         cmocka_unit_test(a_stop_reaches_a_joint_that_was_to_let_go),
         cmocka_unit_test(a_stop_reaches_a_servo_that_was_deaf),
+        cmocka_unit_test(leaving_looks_again_at_who_was_not_heard),
         cmocka_unit_test(leaving_lets_go_when_the_joints_stand),
         cmocka_unit_test(what_is_stopped_says_that_it_was_canceled),
         cmocka_unit_test(a_stop_is_dated_by_its_call),

@@ -28,4 +28,6 @@ against rustypot 1=XL330-M288,2=XL330-M288,3=XL330-M288 rustypot_x
 against rustypot 1=STS3215,2=STS3215,3=STS3215 rustypot_sts
 against scservo_sdk 1=STS3215,2=STS3215,3=STS3215 feetech
 against scservo_sdk 1=SCS0009 feetech_scs
+against feetech_cli 1=STS3215,2=STS3215,3=STS3215 feetech_cli
+against lerobot 1=STS3215,2=STS3215,3=STS3215,4=STS3215,5=STS3215,6=STS3215 lerobot_so101
 done_testing

@@ -63,26 +63,10 @@ static int read_item(const grobo_driver *self, uint8_t id, uint8_t item, grobo_e
     return finish(self, &packet, exchange);
 }
 
-/* The joint number `part` of a set, -1 behind the last. */
-static int joint_of_part(const grobo_driver *self, grobo_joint_mask joints, int part)
-{
-    for (int j = 0; j < self->model->n_joints; j++) {
-        if ((joints & GROBO_JOINT_BIT(j)) != 0 && part-- == 0) {
-            return j;
-        }
-    }
-    return -1;
-}
-
-/* The least speed that leads there in time. */
 static uint16_t speed_of(const grobo_driver *self, const grobo_target *target, int joint)
 {
-    const grobo_joint *moved = &self->model->joints[joint];
-    double way_rad = grobo_joint_to_servo(moved, target->posture.angle_rad[joint]) -
-                     grobo_joint_to_servo(moved, target->from_rad[joint]);
-    int64_t us = target->joint_time_us[joint] > 0 ? target->joint_time_us[joint] : 1;
-    double part = grobo_deg_from_rad(fabs(way_rad)) * 1e6 / (double)us /
-                  grobo_i_table_servo(self, joint)->speed_dps;
+    double part =
+        grobo_i_table_speed_dps(self, target, joint) / grobo_i_table_servo(self, joint)->speed_dps;
     return (uint16_t)fmin(fmax(ceil(part * SPEED_FULL), 1), SPEED_FULL);
 }
 
@@ -91,7 +75,7 @@ static int posture(const grobo_driver *self, void *ctx, const grobo_target *targ
                    grobo_exchange *exchange)
 {
     (void)ctx;
-    int j = joint_of_part(self, target->posture.set, part / 2);
+    int j = grobo_i_table_joint_of_part(self, target->posture.set, part / 2);
     if (j < 0) {
         return 0;
     }
@@ -115,7 +99,7 @@ static int torque(const grobo_driver *self, void *ctx, grobo_joint_mask joints, 
                   int part, grobo_exchange *exchange)
 {
     (void)ctx;
-    int j = joint_of_part(self, joints, part);
+    int j = grobo_i_table_joint_of_part(self, joints, part);
     if (mode == GROBO_TORQUE_BRAKE || j < 0) {
         return j < 0 ? 0 : GROBO_ERR_UNSUPPORTED;
     }
@@ -344,11 +328,8 @@ int grobo_ics_driver_init(grobo_driver *driver, const grobo_model *model)
     };
     int result = grobo_i_table_make(&made, model, &grobo_ics_protocol, &family);
     for (int j = 0; result >= 0 && j < model->n_joints; j++) {
-        if (model->joints[j].turns) {
-            result = GROBO_ERR_ARG;
-        } else if (!grobo_ics_tells_position(grobo_i_table_servo(&made, j))) {
-            result = GROBO_ERR_UNSUPPORTED;
-        }
+        bool tells = grobo_ics_tells_position(grobo_i_table_servo(&made, j));
+        result = tells ? result : GROBO_ERR_UNSUPPORTED;
     }
     if (result < 0 || driver == NULL) {
         return result < 0 ? result : GROBO_ERR_ARG;

@@ -45,22 +45,11 @@ static int finish(const grobo_driver *self, uint8_t id, uint8_t command, const u
     return reply < 0 ? reply : GROBO_OK;
 }
 
-/* The joint number `part` of a set, -1 behind the last. */
-static int joint_of_part(const grobo_driver *self, grobo_joint_mask joints, int part)
-{
-    for (int j = 0; j < self->model->n_joints; j++) {
-        if ((joints & GROBO_JOINT_BIT(j)) != 0 && part-- == 0) {
-            return j;
-        }
-    }
-    return -1;
-}
-
 static int posture(const grobo_driver *self, void *ctx, const grobo_target *target, int part,
                    grobo_exchange *exchange)
 {
     (void)ctx;
-    int j = joint_of_part(self, target->posture.set, part);
+    int j = grobo_i_table_joint_of_part(self, target->posture.set, part);
     if (j < 0) {
         return 0;
     }
@@ -79,7 +68,7 @@ static int torque(const grobo_driver *self, void *ctx, grobo_joint_mask joints, 
                   int part, grobo_exchange *exchange)
 {
     (void)ctx;
-    int j = joint_of_part(self, joints, part);
+    int j = grobo_i_table_joint_of_part(self, joints, part);
     const uint8_t on = mode == GROBO_TORQUE_ON;
     if (mode == GROBO_TORQUE_BRAKE || j < 0) {
         return j < 0 ? 0 : GROBO_ERR_UNSUPPORTED;
@@ -322,9 +311,6 @@ int grobo_lx16a_driver_init(grobo_driver *driver, const grobo_model *model)
         .inspect = inspect,
     };
     int result = grobo_i_table_make(&made, model, &grobo_lx16a_protocol, &family);
-    for (int j = 0; result >= 0 && j < model->n_joints; j++) {
-        result = model->joints[j].turns ? GROBO_ERR_ARG : result;
-    }
     if (result < 0 || driver == NULL) {
         return result < 0 ? result : GROBO_ERR_ARG;
     }

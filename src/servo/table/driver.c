@@ -193,16 +193,6 @@ static void put_role(const grobo_servo_model *servo, grobo_register_role role, d
     }
 }
 
-/* The least speed that leads there in time. 0 would mean the fastest. */
-static double speed_counts(const grobo_joint *joint, const grobo_servo_model *servo, double way_rad,
-                           int64_t time_us)
-{
-    double servo_rad = grobo_joint_to_servo(joint, way_rad) - grobo_joint_to_servo(joint, 0);
-    double deg_s = grobo_deg_from_rad(fabs(servo_rad)) * 1e6 / (double)time_us;
-    const grobo_servo_register *reg = grobo_servo_register_of(servo, GROBO_ROLE_SPEED);
-    return fmax(ceil(deg_s / grobo_i_table_unit(reg)), 1);
-}
-
 static void put_goal(const grobo_driver *self, int joint, const void *what, span s, uint8_t *to)
 {
     const grobo_target *target = what;
@@ -219,9 +209,10 @@ static void put_goal(const grobo_driver *self, int joint, const void *what, span
                grobo_servo_register_of(servo, GROBO_ROLE_GOAL_TIME) != NULL) {
         put_role(servo, GROBO_ROLE_GOAL_TIME, fmax(ms, 1), s, to);
     } else {
-        double way_rad = angle_rad - target->from_rad[joint];
-        put_role(servo, GROBO_ROLE_SPEED, speed_counts(moved, servo, way_rad, time_us), s, to);
-        put_role(servo, GROBO_ROLE_ACCELERATION, INT32_MAX, s, to); /* the way is straight */
+        const grobo_servo_register *speed = grobo_servo_register_of(servo, GROBO_ROLE_SPEED);
+        double counts = grobo_i_table_speed_dps(self, target, joint) / grobo_i_table_unit(speed);
+        put_role(servo, GROBO_ROLE_SPEED, fmax(ceil(counts), 1), s, to); /* 0 is the fastest */
+        put_role(servo, GROBO_ROLE_ACCELERATION, INT32_MAX, s, to);      /* the way is straight */
     }
 }
 

@@ -54,6 +54,9 @@ int grobo_i_table_driver(grobo_driver *driver, const grobo_model *model,
 int grobo_i_table_make(grobo_driver *made, const grobo_model *model, const grobo_protocol *protocol,
                        const grobo_i_family *family);
 
+/* The joint number `part` of a set, -1 behind the last: of families that tell one in a frame. */
+int grobo_i_table_joint_of_part(const grobo_driver *self, grobo_joint_mask joints, int part);
+
 /* The servo of a joint, NULL: in no table. */
 const grobo_servo_model *grobo_i_table_servo(const grobo_driver *self, int joint);
 
@@ -78,6 +81,10 @@ int grobo_i_table_setup(const grobo_i_family *family, const grobo_joint *joint,
  * power-off, else one that it keeps. NULL: it has none. */
 const grobo_servo_register *grobo_i_table_limit(const grobo_joint *joint,
                                                 const grobo_servo_model *servo, int32_t *counts);
+
+/* The least speed of a servo that leads its joint to a target in time, in deg/s. One that was told
+ * this goal already may lag behind it: that of a first move, or it would crawl there. */
+double grobo_i_table_speed_dps(const grobo_driver *self, const grobo_target *target, int joint);
 
 /* What one count of a register is worth, in deg/s, mA, mV or whatever its unit says. */
 double grobo_i_table_unit(const grobo_servo_register *reg);

@@ -11,8 +11,9 @@ static bool reaches(const grobo_joint *joint, const grobo_servo_model *servo, do
 {
     int32_t ticks = grobo_i_table_ticks(joint, servo, angle_rad);
     const grobo_servo_register *goal = grobo_servo_register_of(servo, GROBO_ROLE_GOAL);
-    bool turn = servo->span_deg < 360 || (ticks >= 0 && ticks < servo->span_ticks);
-    return ticks >= goal->min && ticks <= goal->max && (joint->turns || turn);
+    bool around = servo->span_deg >= 360;
+    bool turn = !around || (ticks >= 0 && ticks < servo->span_ticks);
+    return ticks >= goal->min && ticks <= goal->max && (joint->turns ? around : turn);
 }
 
 /* A family without times keeps its unit all the same: it is what a speed is computed of. */

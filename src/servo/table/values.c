@@ -17,6 +17,16 @@ const grobo_servo_model *grobo_i_table_servo(const grobo_driver *self, int joint
     return found;
 }
 
+int grobo_i_table_joint_of_part(const grobo_driver *self, grobo_joint_mask joints, int part)
+{
+    for (int j = 0; j < self->model->n_joints; j++) {
+        if ((joints & GROBO_JOINT_BIT(j)) != 0 && part-- == 0) {
+            return j;
+        }
+    }
+    return -1;
+}
+
 bool grobo_i_table_value(const grobo_servo_model *servo, grobo_register_role role, uint16_t address,
                          const uint8_t *data, size_t n, int32_t *value)
 {
@@ -27,6 +37,18 @@ bool grobo_i_table_value(const grobo_servo_model *servo, grobo_register_role rol
     }
     *value = grobo_servo_register_get(servo, reg, data + (reg->address - address));
     return true;
+}
+
+double grobo_i_table_speed_dps(const grobo_driver *self, const grobo_target *target, int joint)
+{
+    const grobo_joint *moved = &self->model->joints[joint];
+    double ratio = grobo_joint_to_servo(moved, 1) - grobo_joint_to_servo(moved, 0);
+    double way_rad = fabs(target->posture.angle_rad[joint] - target->from_rad[joint]);
+    int64_t us = target->joint_time_us[joint] > 0 ? target->joint_time_us[joint] : 1;
+    double rad_s = way_rad < self->angle_step_rad
+                       ? fmin(self->limits.approach_rad_s, moved->max_speed_rad_s)
+                       : way_rad * 1e6 / (double)us;
+    return grobo_deg_from_rad(fabs(rad_s * ratio));
 }
 
 /* The current of DYNAMIXEL X that measure it, the PWM of the others. */
