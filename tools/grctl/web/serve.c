@@ -341,6 +341,7 @@ static int run(serve *s)
     if (status) {
         return status;
     }
+    on_tick(-1, 0, s); /* there is a state from the first request on */
     announce(s);
     error = conn_wait_until(c, never);
     c->moving = c->up && serve_is_moving(s);
