@@ -324,7 +324,6 @@ static void finish(serve *s)
     http_free(s->http);
     conn_forget(s->tick);
     s->http = NULL;
-    player_free(s);
     events_free(&s->events);
 }
 
@@ -352,6 +351,9 @@ static int run(serve *s)
 int web_run(app *a, const web_options *options)
 {
     static serve s;
+    if (!os_is_folder(options->folder)) {
+        return app_fail(a, EXIT_FILE, "NOENT", "serve: %s: no such folder", options->folder);
+    }
     memset(&s, 0, sizeof s);
     s.a = a;
     s.options = options;
@@ -362,6 +364,7 @@ int web_run(app *a, const web_options *options)
     }
     finish(&s);
     status = conn_close(&s.c, status);
+    player_free(&s); /* not before: the motion was played until then */
     a->reconnects = false;
     return status;
 }
