@@ -241,6 +241,24 @@ def raw(port, request, timeout_s=PATIENCE_S):
             got += more
 
 
+def beside(*calls):
+    """These beside each other; what each raised, or None."""
+    raised = [None] * len(calls)
+
+    def run(i):
+        try:
+            calls[i][0](*calls[i][1:])
+        except BaseException as error:
+            raised[i] = error
+
+    threads = [threading.Thread(target=run, args=(i,)) for i in range(len(calls))]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    return raised
+
+
 # ---- who may ask what --------------------------------------------------------------------------
 
 def refusals():
@@ -644,24 +662,29 @@ def lost_in_jog():
         same(other.state()["lease"]["holder"], None)
 
 
+def lost_with(on_lost, message, end):
+    with Server() as server:
+        page, other = Page(server).take(), Page(server)
+        how = {"on_lost": on_lost} if on_lost else {}
+        page.target("play", motion="greet.pseq", repeat=2, **how)
+        last_ms = page.state()["time_ms"]
+        took = other.wait_event(message)["time_ms"] - last_ms
+        assert 2500 < took < 6000, f"{on_lost}: {took} ms"
+        state = other.wait_played(end)
+        same(state["lease"]["holder"], None)
+        if on_lost != "finish":
+            other.wait("it stands", lambda s: not s["moving"] and s["job"] is None)
+        same(set(other.state()["torque"]), {"on"}, on_lost)
+
+
 def lost_in_motion():
     """Stop softly by default, finish, or the exit policy."""
-    for on_lost, message, end in ((None, "the motion stops", "idle"),
-                                  ("stop", "the motion stops", "idle"),
-                                  ("finish", "the motion goes on", "finished"),
-                                  ("exit", "exit policy", "idle")):
-        with Server() as server:
-            page, other = Page(server).take(), Page(server)
-            how = {"on_lost": on_lost} if on_lost else {}
-            page.target("play", motion="greet.pseq", repeat=2, **how)
-            last_ms = page.state()["time_ms"]
-            took = other.wait_event(message)["time_ms"] - last_ms
-            assert 2500 < took < 6000, f"{on_lost}: {took} ms"
-            state = other.wait_played(end)
-            same(state["lease"]["holder"], None)
-            if on_lost != "finish":
-                other.wait("it stands", lambda s: not s["moving"] and s["job"] is None)
-            same(set(other.state()["torque"]), {"on"}, on_lost)
+    for each in beside((lost_with, None, "the motion stops", "idle"),
+                       (lost_with, "stop", "the motion stops", "idle"),
+                       (lost_with, "finish", "the motion goes on", "finished"),
+                       (lost_with, "exit", "exit policy", "idle")):
+        if each:
+            raise each
 
 
 def killed():

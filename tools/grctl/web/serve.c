@@ -10,7 +10,7 @@
 #include "tools/grctl/web/serve.h"
 
 /* Each joint is read so often: what a picture needs that is drawn between two readings. */
-enum { SENSE_US = 200000, COMMENT_US = 900000 };
+enum { SENSE_US = 200000, COMMENT_US = 900000, TOKEN_LEAST = 16 };
 
 int64_t serve_ms(const serve *s, int64_t at_us)
 {
@@ -282,6 +282,10 @@ static int start(serve *s)
                           .rule = serve_rule,
                           .serve = serve_request,
                           .ctx = s};
+    if (config.token && (strlen(token) < TOKEN_LEAST || strlen(token) >= WALL_TOKEN_BYTES)) {
+        return app_fail(s->a, EXIT_USAGE, "ARG", "serve: GRCTL_TOKEN has %d to %d characters",
+                        TOKEN_LEAST, WALL_TOKEN_BYTES - 1);
+    }
     int error = http_new(&config, &s->http, &complaint);
     if (error) {
         return app_fail(s->a, EXIT_ROBOT, grobo_error_name(error), "serve: port %u: %s",
