@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* serve: the loop, the robot's events, who drives. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -153,6 +154,8 @@ static void on_event(conn *c, const grobo_event *event)
         events_tell(s, "log", "warning", NULL, "this motion is played unwatched");
         break;
     case GROBO_EVENT_JOINT:
+        s->readings++;
+        break;
     case GROBO_EVENT_ROUND:
     case GROBO_EVENT_PLAY:
     case GROBO_EVENT_SLOW_CALLBACK:
@@ -230,7 +233,8 @@ static void look_after_jog(serve *s)
 static void send_state(serve *s)
 {
     static const char head[] = "event: state\ndata: ";
-    char *data = json_dumps(serve_state_json(s), JSON_COMPACT | JSON_REAL_PRECISION(12));
+    json_t *state = serve_state_json(s);
+    char *data = json_dumps(state, JSON_COMPACT | JSON_REAL_PRECISION(12));
     size_t n = data ? strlen(data) : 0;
     char *text = malloc(sizeof head + n + 2);
     if (data && text) {
@@ -241,6 +245,26 @@ static void send_state(serve *s)
     }
     free(text);
     free(data);
+    json_decref(state);
+}
+
+/* Bytes and readings since a second ago. */
+static void measure_load(serve *s, int64_t now_us)
+{
+    uint64_t tx_bytes, rx_bytes;
+    int64_t passed_us = now_us - s->load_us;
+    if (passed_us < 1000000) {
+        return;
+    }
+    grobo_session_bytes(s->c.session, &tx_bytes, &rx_bytes);
+    double bits = 10.0 * (double)(tx_bytes + rx_bytes - s->load_bytes); /* with start and stop */
+    if (s->load_us > 0) {
+        s->load_pct = 1e8 * bits / (double)conn_baud(s->a) / (double)passed_us;
+        s->load_hz = 1e6 * s->readings / (double)passed_us;
+    }
+    s->load_us = now_us;
+    s->load_bytes = tx_bytes + rx_bytes;
+    s->readings = 0;
 }
 
 static void on_tick(evutil_socket_t fd, short what, void *ctx)
@@ -252,6 +276,7 @@ static void on_tick(evutil_socket_t fd, short what, void *ctx)
     (void)what;
     s->sequence++;
     s->sequence_us[s->sequence % SERVE_SEQUENCES] = now_us;
+    measure_load(s, now_us);
     stops_look(s);
     look_after_lease(s);
     look_after_jog(s);
@@ -338,6 +363,7 @@ static int run(serve *s)
     c->on_event = on_event;
     s->model = grobo_robot_driver(c->robot)->model;
     s->began_us = grobo_now_us();
+    s->load_pct = s->load_hz = NAN;
     grobo_robot_config config = serve_config(s);
     int error = grobo_session_configure(c->session, &config);
     int status = error ? conn_fail(c, error, "serve") : start(s);

@@ -52,9 +52,14 @@ struct serve {
     /* jogging: the newest target */
     grobo_posture jog;
     bool jogs, jog_waits;
-    bool moves;       /* a move of the lease's holder is under way */
-    int64_t quiet_us; /* when the last text went to the streams */
-    bool ending;      /* a signal came: nothing more is begun */
+    bool moves; /* a move of the lease's holder is under way */
+    /* the load of the line, over the last second */
+    int64_t load_us;
+    uint64_t load_bytes;
+    unsigned readings;
+    double load_pct, load_hz; /* NAN: not known yet */
+    int64_t quiet_us;         /* when the last text went to the streams */
+    bool ending;              /* a signal came: nothing more is begun */
 };
 
 /* Milliseconds of the server's clock. */

@@ -65,12 +65,13 @@ static json_t *line_json(serve *s)
     grobo_session_bytes(s->c.session, &tx_bytes, &rx_bytes);
     grobo_robot_jitter(s->c.robot, &jitter);
     json_t *more = json_pack(
-        "{s:I,s:I,s:I,s:I,s:I,s:I,s:I,s:{s:I,s:I,s:I,s:I},s:n,s:n}", "tx_bytes",
+        "{s:I,s:I,s:I,s:I,s:I,s:I,s:I,s:{s:I,s:I,s:I,s:I},s:o,s:o}", "tx_bytes",
         (json_int_t)tx_bytes, "rx_bytes", (json_int_t)rx_bytes, "motion_frames",
         (json_int_t)n.motion_frames, "late_frames", (json_int_t)n.late_frames, "clamped",
         (json_int_t)n.clamped, "stretched", (json_int_t)n.stretched, "stalls", (json_int_t)n.stalls,
         "jitter_us", "frames", (json_int_t)jitter.frames, "p50", (json_int_t)jitter.p50_us, "p99",
-        (json_int_t)jitter.p99_us, "max", (json_int_t)jitter.max_us, "load_pct", "load_hz");
+        (json_int_t)jitter.p99_us, "max", (json_int_t)jitter.max_us, "load_pct",
+        app_json_number(s->load_pct, 1), "load_hz", app_json_number(s->load_hz, 1));
     json_object_update_new(line, more);
     return line;
 }
