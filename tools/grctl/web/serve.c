@@ -10,37 +10,9 @@
 
 #include "tools/grctl/web/serve.h"
 
-/* Each joint is read so often: what a picture needs that is drawn between two readings. */
-enum { SENSE_US = 200000, COMMENT_US = 900000, TOKEN_LEAST = 16 };
-
-int64_t serve_ms(const serve *s, int64_t at_us)
-{
-    return (at_us - s->began_us) / 1000;
-}
-
-grobo_robot_config serve_config(const serve *s)
-{
-    grobo_robot_config config = conn_robot_config(s->a);
-    config.sense_interval_us = SENSE_US;
-    return config;
-}
+enum { COMMENT_US = 900000, TOKEN_LEAST = 16 };
 
 /* ---- jobs ------------------------------------------------------------------------------------ */
-
-int serve_note_job(serve *s, int job, const char *doing)
-{
-    serve_job *slot = &s->jobs[0];
-    for (int i = 0; job > 0 && i < SERVE_JOBS; i++) {
-        if (s->jobs[i].number == 0 || s->jobs[i].number == job) {
-            slot = &s->jobs[i];
-            break;
-        }
-    }
-    if (job > 0 && slot->number != job) {
-        *slot = (serve_job){.number = job, .doing = doing};
-    }
-    return job;
-}
 
 static json_t *result_json(const serve *s, const grobo_event_job *job)
 {
@@ -165,22 +137,6 @@ static void on_event(conn *c, const grobo_event *event)
 
 /* ---- who drives ------------------------------------------------------------------------------ */
 
-bool serve_is_moving(const serve *s)
-{
-    return s->c.up && (grobo_robot_moving(s->c.robot) || grobo_robot_is_playing(s->c.robot) ||
-                       grobo_robot_job(s->c.robot) == GROBO_JOB_PLAY);
-}
-
-void serve_halt(serve *s)
-{
-    s->jogs = s->jog_waits = s->moves = false;
-    player_forget(s);
-    if (s->c.up) {
-        (void)grobo_robot_stop(grobo_session_robot(s->c.session), false);
-        grobo_session_pump(s->c.session);
-    }
-}
-
 /* What was declared when the motion began. */
 static void lose_motion(serve *s)
 {
@@ -194,7 +150,7 @@ static void lose_motion(serve *s)
     bool leaves = plays && s->player.on_lost == PLAYER_EXIT;
     events_tell(s, "lease", "warning", NULL, "the page that drives is lost: %s",
                 leaves ? "the exit policy is carried out" : "the motion stops");
-    serve_halt(s);
+    stops_halt(s);
     if (leaves) {
         int job = grobo_robot_exit(grobo_session_robot(s->c.session), GROBO_EXIT_DEFAULT);
         serve_note_job(s, job, "exit");
@@ -206,7 +162,7 @@ static void look_after_lease(serve *s)
     int64_t silent_us = lease_silent_us(&s->lease, grobo_now_us());
     if (silent_us > SERVE_JOG_LOST_US && s->jogs) {
         events_tell(s, "lease", "warning", NULL, "the page that drives is silent: jogging stops");
-        serve_halt(s);
+        stops_halt(s);
     }
     if (silent_us <= SERVE_PLAY_LOST_US) {
         return;
