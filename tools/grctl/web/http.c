@@ -24,7 +24,6 @@ enum {
     EVENT_BYTES = 65536, /* and the next event */
     DROP_US = 3000000,   /* so long without reading */
     SWEEP_US = 100000,
-    WRONG_US = 300000, /* what a wrong token waits for its answer */
     LISTENERS = 2,
     SPARE = 8, /* accepted before the door is closed */
     GUESTS = 2 * (HTTP_CONNECTIONS_MAX + SPARE)
@@ -574,7 +573,7 @@ static void judge(http_request *r)
     if (!no.status && (rule == WALL_ACT || rule == WALL_SAVE) && is_flood(h)) {
         no = (wall_answer){429, "too_many", "more than 100 requests a second"};
     }
-    if (no.status == 401) { /* who guesses has to wait */
+    if (no.status == 401 && h->config.wrong_us > 0) { /* who guesses has to wait */
         r->refused_us = grobo_now_us();
         r->refusal = no;
     } else if (no.status) {
@@ -624,7 +623,7 @@ static void answer_late(http *h)
     http_request *r = h->waiting;
     while (r) {
         http_request *next = r->next;
-        if (r->refused_us && now_us - r->refused_us > WRONG_US) {
+        if (r->refused_us && now_us - r->refused_us > h->config.wrong_us) {
             refuse(r, r->refusal);
         }
         r = next;

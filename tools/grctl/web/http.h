@@ -56,6 +56,7 @@ typedef struct http_config {
     uint16_t port;       /* 0: any two that are free; else the second is port + 1 */
     const char *name;    /* what else it may be called, or NULL */
     const char *token;   /* NULL: one is made */
+    int64_t wrong_us;    /* who brings a wrong token waits so long for the answer */
     http_rule_fn rule;
     http_serve_fn serve;
     void *ctx;

@@ -10,7 +10,7 @@
 
 #include "tools/grctl/web/serve.h"
 
-enum { COMMENT_US = 900000, TOKEN_LEAST = 16 };
+enum { COMMENT_US = 900000, TOKEN_LEAST = 16, WRONG_US = 300000 };
 
 /* ---- jobs ------------------------------------------------------------------------------------ */
 
@@ -260,6 +260,7 @@ static int start(serve *s)
                           .port = s->options->port,
                           .name = s->options->name,
                           .token = token && *token ? token : NULL,
+                          .wrong_us = WRONG_US,
                           .rule = serve_rule,
                           .serve = serve_request,
                           .ctx = s};
