@@ -56,6 +56,7 @@ typedef struct http_config {
     uint16_t port;       /* 0: any two that are free; else the second is port + 1 */
     const char *name;    /* what else it may be called, or NULL */
     const char *token;   /* NULL: one is made */
+    int64_t wrong_us;    /* who brings a wrong token waits so long for the answer */
     http_rule_fn rule;
     http_serve_fn serve;
     void *ctx;
@@ -85,6 +86,8 @@ wall_answer http_check_token(const http_request *r, const char *token);
 
 /* Takes the reference. */
 void http_reply_json(http_request *r, int status, json_t *body);
+/* The same of JSON that is text already; NULL: there was no memory for it. */
+void http_reply_text(http_request *r, int status, const char *text, size_t size);
 /* {"error": {"code": ..., "message": ...}}. */
 void http_refuse(http_request *r, int status, const char *code, const char *format, ...)
     __attribute__((format(printf, 4, 5)));

@@ -12,9 +12,8 @@
 /* What a verb asks for. */
 enum {
     NEEDS_LEASE = 1,
-    NEEDS_SEQUENCE = 2, /* it has a target */
-    NEEDS_LINE = 4,
-    MOVES = 8 /* refused after a stop */
+    NEEDS_LINE = 2,
+    MOVES = 4 /* refused after a stop, and without the state it is based on */
 };
 
 typedef struct verb {
@@ -24,106 +23,21 @@ typedef struct verb {
 } verb;
 
 static const verb verbs[] = {
-    {"/api/play", verb_play, NEEDS_LEASE | NEEDS_SEQUENCE | NEEDS_LINE | MOVES},
-    {"/api/queue", verb_queue, NEEDS_LEASE | NEEDS_SEQUENCE | NEEDS_LINE | MOVES},
+    {"/api/play", verb_play, NEEDS_LEASE | NEEDS_LINE | MOVES},
+    {"/api/queue", verb_queue, NEEDS_LEASE | NEEDS_LINE | MOVES},
     {"/api/pause", verb_pause, NEEDS_LEASE | NEEDS_LINE},
-    {"/api/resume", verb_resume, NEEDS_LEASE | NEEDS_LINE | MOVES},
-    {"/api/seek", verb_seek, NEEDS_LEASE | NEEDS_SEQUENCE | NEEDS_LINE | MOVES},
+    {"/api/resume", verb_resume, NEEDS_LEASE | NEEDS_LINE},
+    {"/api/seek", verb_seek, NEEDS_LEASE | NEEDS_LINE | MOVES},
     {"/api/speed", verb_speed, NEEDS_LEASE | NEEDS_LINE},
     {"/api/halt", verb_halt, NEEDS_LEASE | NEEDS_LINE},
-    {"/api/move", verb_move, NEEDS_LEASE | NEEDS_SEQUENCE | NEEDS_LINE | MOVES},
-    {"/api/jog", verb_jog, NEEDS_LEASE | NEEDS_SEQUENCE | NEEDS_LINE | MOVES},
+    {"/api/move", verb_move, NEEDS_LEASE | NEEDS_LINE | MOVES},
+    {"/api/jog", verb_jog, NEEDS_LEASE | NEEDS_LINE | MOVES},
     {"/api/torque", verb_torque, NEEDS_LEASE | NEEDS_LINE},
     {"/api/capture", verb_capture, NEEDS_LINE},
     {"/api/reset", verb_reset, 0},
 };
 
-/* ---- refusals -------------------------------------------------------------------------------- */
-
-static int status_of(int error)
-{
-    switch (error) {
-    case GROBO_ERR_ARG:
-    case GROBO_ERR_SYNTAX:
-        return 400;
-    case GROBO_ERR_NOENT:
-    case GROBO_ERR_NOTFOUND:
-        return 404;
-    case GROBO_ERR_LIMIT:
-    case GROBO_ERR_NAN:
-    case GROBO_ERR_SPEED:
-    case GROBO_ERR_UNREACHABLE:
-    case GROBO_ERR_UNWATCHED:
-    case GROBO_ERR_UNSUPPORTED:
-    case GROBO_ERR_EMPTY:
-        return 422;
-    case GROBO_ERR_CLOSED:
-    case GROBO_ERR_UNPLUGGED:
-    case GROBO_ERR_NOMEM:
-    case GROBO_ERR_TIMEOUT:
-    case GROBO_ERR_IO:
-        return 503;
-    }
-    return 409;
-}
-
-void serve_refuse(serve *s, http_request *r, int error, const char *doing)
-{
-    json_t *refusal = json_pack("{s:o,s:o}", "code", app_json_code(grobo_error_name(error)),
-                                "message", json_sprintf("%s: %s", doing, grobo_error_text(error)));
-    double value = 0;
-    int joint = error == GROBO_ERR_LIMIT || error == GROBO_ERR_NAN
-                    ? grobo_robot_fault(s->c.robot, &value)
-                    : -1;
-    if (joint >= 0 && joint < s->model->n_joints) {
-        json_object_set_new(refusal, "joint", json_integer(joint));
-        json_object_set_new(refusal, "name", json_string(s->model->joints[joint].name));
-        json_object_set_new(refusal, "value", app_json_number(value, 3));
-    }
-    if (error == GROBO_ERR_LATCHED && s->c.trip.trip != GROBO_TRIP_NONE) {
-        json_object_set_new(refusal, "trip", app_json_code(grobo_trip_name(s->c.trip.trip)));
-    }
-    http_reply_json(r, status_of(error), json_pack("{s:o}", "error", refusal));
-}
-
-void serve_refuse_said(http_request *r, int status, const app *a)
-{
-    static const int statuses[] = {200, 409, 400, 422, 422};
-    json_t *refusal = json_pack("{s:o,s:o}", "code", app_json_code(a->failed), "message",
-                                app_json_text(a->hushed));
-    http_reply_json(r, status > 0 && status <= EXIT_SAFETY ? statuses[status] : 409,
-                    json_pack("{s:o}", "error", refusal));
-}
-
-void serve_accept(serve *s, http_request *r, int result, const char *doing)
-{
-    if (result < 0) {
-        serve_refuse(s, r, result, doing);
-        return;
-    }
-    json_t *body = json_pack("{s:b,s:I}", "done", result == 0, "sequence", (json_int_t)s->sequence);
-    if (result > 0) {
-        json_object_set_new(body, "job", json_integer(result));
-    }
-    grobo_session_pump(s->c.session);
-    http_reply_json(r, 200, body);
-}
-
 /* ---- bodies ---------------------------------------------------------------------------------- */
-
-json_t *serve_body(http_request *r)
-{
-    size_t size;
-    json_error_t error;
-    const char *text = http_body(r, &size);
-    json_t *body = size ? json_loadb(text, size, JSON_REJECT_DUPLICATES, &error) : json_object();
-    if (!json_is_object(body)) {
-        json_decref(body);
-        http_refuse(r, 400, "syntax", "the body is no JSON object");
-        return NULL;
-    }
-    return body;
-}
 
 static const char *text_of(const json_t *body, const char *key)
 {
@@ -166,17 +80,6 @@ static void refuse_lease(serve *s, http_request *r)
     http_reply_json(r, 409, json_pack("{s:o}", "error", refusal));
 }
 
-/* The state that a target is based on was told less than a second ago. */
-static bool is_fresh(const serve *s, const json_t *sequence)
-{
-    json_int_t n = json_integer_value(sequence);
-    if (!json_is_integer(sequence) || n <= 0 || (uint64_t)n > s->sequence ||
-        s->sequence - (uint64_t)n >= SERVE_SEQUENCES) {
-        return false;
-    }
-    return grobo_now_us() - s->sequence_us[n % SERVE_SEQUENCES] <= SERVE_STALE_US;
-}
-
 static bool is_granted(serve *s, http_request *r, const json_t *body, unsigned needs)
 {
     if ((needs & NEEDS_LINE) && !s->c.up) {
@@ -184,12 +87,8 @@ static bool is_granted(serve *s, http_request *r, const json_t *body, unsigned n
     } else if ((needs & NEEDS_LEASE) &&
                !lease_is_holder(&s->lease, http_header(r, "X-Grobo-Lease"))) {
         refuse_lease(s, r);
-    } else if ((needs & MOVES) && stops_is_latched(s)) {
-        serve_refuse(s, r, GROBO_ERR_LATCHED, "robot");
-    } else if ((needs & NEEDS_SEQUENCE) && !is_fresh(s, json_object_get(body, "sequence"))) {
-        http_refuse(r, 409, "stale", "sequence is not that of a state told less than a second ago");
     } else {
-        return true;
+        return !(needs & MOVES) || stops_may_move(s, r, body);
     }
     return false;
 }
@@ -217,7 +116,7 @@ static void take(serve *s, http_request *r, const json_t *body)
     }
     if (was_held) { /* what the one before was doing with a finger */
         if (s->jogs) {
-            serve_halt(s);
+            stops_halt(s);
         }
     }
     events_tell(s, "lease", "info", NULL, "%s drives", s->lease.holder.name);
@@ -251,7 +150,7 @@ static void serve_lease(serve *s, http_request *r, const json_t *body)
     } else if (strcmp(action, "give") == 0 || strcmp(action, "deny") == 0) {
         bool gives = *action == 'g';
         if (gives && lease_is_holder(&s->lease, secret) && s->jogs) {
-            serve_halt(s);
+            stops_halt(s);
         }
         if (!(gives ? lease_give(&s->lease, secret, grobo_now_us())
                     : lease_deny(&s->lease, secret))) {
@@ -293,7 +192,7 @@ static void serve_heartbeat(serve *s, http_request *r, const json_t *body)
     const char *secret = text_of(body, "lease");
     if (!lease_is_holder(&s->lease, secret)) {
         refuse_lease(s, r);
-    } else if (!is_fresh(s, json_object_get(body, "drawn"))) {
+    } else if (!serve_is_fresh(s, json_object_get(body, "drawn"))) {
         http_refuse(r, 409, "stale", "the page draws nothing: this counts as no heartbeat");
     } else {
         lease_beat(&s->lease, secret, grobo_now_us());
@@ -335,7 +234,15 @@ static void serve_events(serve *s, http_request *r, const json_t *body)
     free(text);
 }
 
+static void serve_motions(serve *s, http_request *r, const json_t *body)
+{
+    (void)body;
+    library_list(s, r);
+}
+
 static const plain plains[] = {
+    {"/api/motions", WALL_READ, false, serve_motions},
+    {"/api/preview", WALL_ACT, false, library_preview},
     {"/api/ik", WALL_ACT, false, pose_ik},
     {"/api/robot", WALL_READ, false, serve_robot},
     {"/api/state", WALL_READ, false, serve_state},
@@ -368,10 +275,60 @@ static const verb *find_verb(const http_request *r)
     return NULL;
 }
 
+/* "/api/motions/NAME" or "/api/motions/NAME/file"; false: neither. */
+static bool find_motion(const http_request *r, char name[LIBRARY_NAME_BYTES], bool *file)
+{
+    static const char folder[] = "/api/motions/", tail[] = "/file";
+    size_t n = strlen(r->path);
+    if (r->second || strncmp(r->path, folder, sizeof folder - 1) != 0) {
+        return false;
+    }
+    const char *begin = r->path + sizeof folder - 1;
+    n -= sizeof folder - 1;
+    *file = n > sizeof tail - 1 && strcmp(begin + n - (sizeof tail - 1), tail) == 0;
+    n -= *file ? sizeof tail - 1 : 0;
+    if (n == 0 || n >= LIBRARY_NAME_BYTES) {
+        return false;
+    }
+    memcpy(name, begin, n);
+    name[n] = '\0';
+    return true;
+}
+
+/* "rate=50" of a query; 0: it is none. */
+static double rate_of(const http_request *r)
+{
+    double rate_hz = 30;
+    if (strncmp(r->query, "rate=", 5) == 0 && !cli_read_number(r->query + 5, &rate_hz)) {
+        return 0;
+    }
+    return rate_hz >= 1 && rate_hz <= 100 ? rate_hz : 0;
+}
+
+static void serve_motion(serve *s, http_request *r, const char *name, bool file)
+{
+    double rate_hz = rate_of(r);
+    if (strcmp(r->method, "PUT") == 0) {
+        library_put(s, r, name, file);
+    } else if (file) {
+        library_get_file(s, r, name);
+    } else if (rate_hz > 0) {
+        library_get(s, r, name, rate_hz);
+    } else {
+        http_refuse(r, 400, "arg", "rate is 1 to 100");
+    }
+}
+
 bool serve_rule(void *ctx, const http_request *r, wall_rule *rule)
 {
     const plain *p = find_plain(r);
+    char name[LIBRARY_NAME_BYTES];
+    bool file;
     (void)ctx;
+    if (find_motion(r, name, &file)) {
+        *rule = strcmp(r->method, "PUT") == 0 ? WALL_SAVE : WALL_READ;
+        return true;
+    }
     if (p) {
         *rule = p->rule;
         return true;
@@ -385,6 +342,12 @@ void serve_request(void *ctx, http_request *r)
     serve *s = ctx;
     const plain *p = find_plain(r);
     const verb *v = find_verb(r);
+    char name[LIBRARY_NAME_BYTES];
+    bool file;
+    if (find_motion(r, name, &file)) {
+        serve_motion(s, r, name, file);
+        return;
+    }
     if (!p && !v) {
         page_serve(r);
         return;

@@ -7,6 +7,7 @@
 #include "tools/grctl/web/events.h"
 #include "tools/grctl/web/http.h"
 #include "tools/grctl/web/lease.h"
+#include "tools/grctl/web/library.h"
 #include "tools/grctl/web/player.h"
 #include "tools/grctl/web/stops.h"
 #include "tools/grctl/web/web.h"
@@ -44,15 +45,21 @@ struct serve {
     lease lease;
     stops stops;
     worker *worker;
+    library *library;
     player player;
     serve_job jobs[SERVE_JOBS];
     grobo_joint_mask limp; /* in free mode */
     /* jogging: the newest target */
     grobo_posture jog;
     bool jogs, jog_waits;
-    bool moves;       /* a move of the lease's holder is under way */
-    int64_t quiet_us; /* when the last text went to the streams */
-    bool ending;      /* a signal came: nothing more is begun */
+    bool moves; /* a move of the lease's holder is under way */
+    /* the load of the line, over the last second */
+    int64_t load_us;
+    uint64_t load_bytes;
+    unsigned readings;
+    double load_pct, load_hz; /* NAN: not known yet */
+    int64_t quiet_us;         /* when the last text went to the streams */
+    bool ending;              /* a signal came: nothing more is begun */
 };
 
 /* Milliseconds of the server's clock. */
@@ -67,8 +74,8 @@ bool serve_is_moving(const serve *s);
 /* The engine's configuration while it serves. */
 grobo_robot_config serve_config(const serve *s);
 
-/* Ends jogging; what moves stops softly. */
-void serve_halt(serve *s);
+/* A state was told less than a second ago under this number. */
+bool serve_is_fresh(const serve *s, const json_t *sequence);
 
 /* ---- requests: by path ----------------------------------------------------------------------- */
 
