@@ -101,8 +101,35 @@ function solids(body) {
             const to = m.length(link.com) > body.thick ? link.com : fingertip(body, link);
             link.solid.push(...strut([0, 0, 0], to, thick * 0.6));
         }
-        const round = Math.min(body.thick * 1.15, half ? Math.max(...half) : Infinity);
-        link.hub = link.joint < 0 ? [] : hub([0, 0, 0], link.axis, round, round * 0.95);
+    });
+    body.links.forEach((link) => {
+        link.hub = link.joint < 0 ? [] : servo(body, link);
+    });
+}
+
+/** The servo of a joint: a disc on its axis, long enough to be seen on both sides of its links. */
+function servo(body, link) {
+    const most = body.thick * 3, ends = [body.thick, body.thick];
+    const parent = link.parent < 0 ? null : body.links[link.parent];
+    const back = m.rigidInverse(link.frame);
+    const solids = [link.solid, ...parent ? [parent.solid.map(({ points, normal }) => ({
+        points: points.map((p) => m.place(back, p)), normal: m.turn(back, normal) }))] : []];
+    for (const { points, normal } of solids.flat()) {
+        const slope = m.dot(link.axis, normal);
+        const t = Math.abs(slope) < 1e-9 ? Infinity : m.dot(points[0], normal) / slope;
+        if (Math.abs(t) < most && inside(m.scale(link.axis, t), points, normal)) {
+            ends[t > 0 ? 0 : 1] = Math.max(ends[t > 0 ? 0 : 1], Math.abs(t));
+        }
+    }
+    const middle = m.scale(link.axis, (ends[0] - ends[1]) / 2);
+    return hub(middle, link.axis, body.thick * 1.1, (ends[0] + ends[1]) / 2 + body.thick * 0.16);
+}
+
+/** Whether a point of a polygon's plane is inside it; its corners go round anticlockwise. */
+export function inside(p, points, normal) {
+    return points.every((from, n) => {
+        const edge = m.sub(points[(n + 1) % points.length], from);
+        return m.dot(m.cross(edge, m.sub(p, from)), normal) >= 0;
     });
 }
 

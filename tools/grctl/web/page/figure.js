@@ -3,7 +3,7 @@
 // something that it shows has changed. The renderer is gl.js, or flat.js where there is no WebGL.
 
 import * as m from './mat.js';
-import { forward, stand } from './body.js';
+import { forward, inside, stand } from './body.js';
 import { ball } from './shape.js';
 import { makeGl } from './gl.js';
 import { makeFlat } from './flat.js';
@@ -29,19 +29,28 @@ export class Camera {
         this.pan = [0, 0, 0];
     }
 
-    /** @param low, high the box to be seen whole */
-    look(low, high, aspect) {
+    /**
+     * @param low, high the box to be seen whole
+     * @param room { top, bottom } what is covered, as parts of the height
+     */
+    look(low, high, aspect, room) {
         const middle = m.scale(m.add(low, high), 0.5);
         const r = m.length(m.sub(high, low)) / 2;
-        const fit = r / Math.sin(FOV / 2) / Math.min(1, aspect * 1.15);
-        this.distance = fit * 0.98 / this.zoom;
+        const fill = Math.min(1 - room.top - room.bottom, aspect * 1.1);
+        this.place(middle, r * 0.86 / Math.sin(FOV / 2) / fill, aspect, room.bottom - room.top);
+    }
+
+    place(middle, distance, aspect, shift = 0) {
+        this.shift = shift;
+        this.distance = distance / this.zoom;
         const c = Math.cos(this.pitch);
         const back = [Math.cos(this.yaw) * c, Math.sin(this.yaw) * c, Math.sin(this.pitch)];
         const centre = m.add(middle, this.pan);
         this.eye = m.add(centre, m.scale(back, this.distance));
         this.back = back;
         const view = m.lookAt(this.eye, centre, [0, 0, 1]);
-        this.matrix = m.mul(m.perspective(FOV, aspect, this.distance * 0.05, this.distance * 8), view);
+        const lens = m.perspective(FOV, aspect, this.distance * 0.05, this.distance * 8);
+        this.matrix = m.mul(m.mul(m.translation([0, shift, 0]), lens), view);
     }
 
     orbit(dx, dy) {
@@ -72,14 +81,7 @@ function hit(from, along, points, normal) {
         return Infinity;
     }
     const t = m.dot(m.sub(points[0], from), normal) / slope;
-    const p = m.add(from, m.scale(along, t));
-    for (let n = 0; n < points.length; n++) {
-        const edge = m.sub(points[(n + 1) % points.length], points[n]);
-        if (m.dot(m.cross(edge, m.sub(p, points[n])), normal) < 0) {
-            return Infinity;
-        }
-    }
-    return t > 0 ? t : Infinity;
+    return t > 0 && inside(m.add(from, m.scale(along, t)), points, normal) ? t : Infinity;
 }
 
 /** A flat ring, as triangles. */
@@ -106,7 +108,8 @@ function band(a, b, width) {
 export class Figure {
     /**
      * @param host the element that holds the canvas and the labels
-     * @param options { flat: never use WebGL, onPick: called with a joint or -1, onDrawn }
+     * @param options { flat: never use WebGL, onPick: called with a joint or -1, onTouch: called when
+     * there is something to draw, above, below: elements that cover the figure }
      */
     constructor(host, options) {
         this.host = host;
@@ -228,7 +231,10 @@ export class Figure {
             this.canvas.height = h;
         }
         this.dirty = false;
-        this.camera.look(this.low, this.high, w / h);
+        const part = (pixels) => Math.min(0.25, pixels / this.host.clientHeight);
+        this.camera.look(this.low, this.high, w / h, {
+            top: part(this.options.above.offsetHeight + 14),
+            bottom: part(this.options.below.offsetHeight + 14) });
         this.renderer.draw(this.scene(), this.camera);
         this.writeLabels();
         this.frames++;
@@ -267,15 +273,14 @@ export class Figure {
         return scene;
     }
 
-    /** The hub tells torque by its shape too: full with torque, small without, long when braked. */
+    /** The servo tells torque by its size too: full with torque, small without. */
     addHub(parts, link, n, look) {
         const { theme, pose } = this;
         const chosen = link.joint === this.selected;
-        const k = { on: 1, off: 0.62, brake: 1 }[look.shape] || 0.62;
-        const long = look.shape === 'brake' ? 1.5 : 1.12;
+        const k = { on: 1, off: 0.62, brake: 0.8 }[look.shape] || 0.62;
         const z = link.axis, x = m.normalTo(z), y = m.cross(z, x);
         const axes = m.fromAxes(x, y, z, [0, 0, 0]);
-        const size = [k, 0, 0, 0, 0, k, 0, 0, 0, 0, long, 0, 0, 0, 0, 1];
+        const size = [k, 0, 0, 0, 0, k, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
         const shape = m.mul(axes, m.mul(size, m.rigidInverse(axes)));
         const faded = pose.faded || look.unknown;
         const colour = chosen ? theme.accent : faded ? theme.faded : look.colour;
@@ -298,9 +303,18 @@ export class Figure {
             const base = ghost.bad ? theme.danger : ghost.preview ? theme.accent : theme.ghost;
             const colour = [...base.slice(0, 3), ghost.preview ? 0.5 : 0.34];
             body.links.forEach((link, n) => {
-                parts.push({ solid: link.solid, at: this.ghostAt[n], colour, ghost: true });
+                if (ghost.preview || this.apart(n)) {
+                    parts.push({ solid: link.solid, at: this.ghostAt[n], colour, ghost: true });
+                }
             });
         }
+    }
+
+    /** Whether the ghost of a link is far enough from it to be worth drawing. */
+    apart(n) {
+        const r = this.body.reach;
+        return [[0, 0, 0], [r / 8, 0, 0], [0, r / 8, 0], [0, 0, r / 8]].some((p) => m.length(
+            m.sub(m.place(this.at[n], p), m.place(this.ghostAt[n], p))) > r * 0.012);
     }
 
     addBalance(scene, balance) {
@@ -324,7 +338,7 @@ export class Figure {
         if (com) {
             const foot = [com[0], com[1], z * 2];
             scene.parts.push({ solid: this.ballSolid, at: m.translation(com), colour: theme.com,
-                               joint: -1, flat: 0.3, light: true });
+                               joint: -1, flat: 0.3, through: true });
             scene.lines.push({ points: [com, foot], colour: theme.com });
             scene.tops.push({ points: ring(foot, x, y, r * 0.65, r), colour: theme.com });
         }
@@ -388,6 +402,10 @@ export class Figure {
             say('ghost', m.add(m.origin(this.ghostAt[0]), [0, 0, this.body.reach * 0.6]),
                 this.ghost.note, this.ghost.bad ? 'bad' : 'plain');
         }
+        const top = this.options.above.offsetHeight + 34;
+        for (const label of wanted) {
+            label.y = Math.max(label.y, top);
+        }
         wanted.sort((a, b) => a.y - b.y);
         wanted.forEach((label, n) => {
             for (const before of wanted.slice(0, n)) {
@@ -407,11 +425,10 @@ export class Figure {
             }
             node.textContent = label.text;
             node.className = label.kind;
-            const right = label.x < this.host.clientWidth / 2;
-            node.classList.toggle('left', right);
-            node.style.transform = `translate(${Math.round(label.x)}px, ${Math.round(label.y)}px)` +
-                                   (right ? ' translate(calc(-100% - 18px), -50%)'
-                                          : ' translate(18px, -50%)');
+            const width = this.host.clientWidth, wide = node.offsetWidth;
+            const x = label.x < width / 2 ? label.x - 18 - wide : label.x + 18;
+            const inside = Math.max(4, Math.min(width - wide - 4, x));
+            node.style.transform = `translate(${Math.round(inside)}px, ${Math.round(label.y - 12)}px)`;
         });
     }
 
@@ -422,7 +439,7 @@ export class Figure {
         }
         const w = this.host.clientWidth, h = this.host.clientHeight;
         const fx = (x / w * 2 - 1) * Math.tan(FOV / 2) * w / h;
-        const fy = (1 - y / h * 2) * Math.tan(FOV / 2);
+        const fy = (1 - y / h * 2 - this.camera.shift) * Math.tan(FOV / 2);
         const { eye, back } = this.camera;
         const right = m.unit(m.cross([0, 0, 1], back)), up = m.cross(back, right);
         const along = m.unit(m.add(m.scale(back, -1), m.add(m.scale(right, fx), m.scale(up, fy))));

@@ -4,7 +4,7 @@
 
 import { dot, place, project, scale, sub, turn, unit } from './mat.js';
 
-const LIGHT = unit([0.45, -0.55, 0.9]);
+const LIGHT = unit([0.8, -0.2, 0.8]);
 
 function css(colour, k = 1) {
     const [r, g, b] = colour.map((v) => Math.round(Math.min(1, Math.max(0, v * k)) * 255));
@@ -82,7 +82,7 @@ class Flat {
             this.solids(scene.parts.filter((part) => Boolean(part.ghost) === ghost), camera);
         }
         this.lines(scene.lines.filter((l) => !l.below), camera);
-        this.flats(scene.tops || [], camera);
+        this.flats(scene.tops, camera);
     }
 
     solids(parts, camera) {

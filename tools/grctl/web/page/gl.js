@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The scene by WebGL 1. A scene is { parts: [{ solid, at, colour, pick, ghost }], flats:
-// [{ points, colour }], lines: [{ points, colour }] }; colours are [r, g, b, a] of 0..1. Solids are
+// [{ points, colour }], lines and tops alike }; colours are [r, g, b, a] of 0..1. Solids are
 // lists of polygons (shape.js) and keep their buffer as long as the renderer lives.
 
 import { mul, unit } from './mat.js';
@@ -49,7 +49,7 @@ void main() {
     gl_FragColor = vec4(tint.rgb * tint.a, tint.a);
 }`;
 
-const LIGHT = unit([0.45, -0.55, 0.9]);
+const LIGHT = unit([0.8, -0.2, 0.8]);
 
 function program(gl, vertex, fragment) {
     const made = gl.createProgram();
@@ -123,10 +123,8 @@ class Gl {
         this.ribbons(scene.lines.filter((l) => l.below), camera, gl.LINES);
         this.begin(camera);
         this.shadow(scene);
-        this.ribbons(scene.flats, camera, gl.TRIANGLES);
-        this.begin(camera);
         for (const part of scene.parts) {
-            if (!part.ghost) {
+            if (!part.ghost && !part.through) {
                 gl.uniform1f(this.at.flatness, part.flat || 0);
                 gl.uniform4fv(this.at.colour, part.colour);
                 this.part(part);
@@ -134,7 +132,24 @@ class Gl {
         }
         this.ghosts(scene);
         this.ribbons(scene.lines.filter((l) => !l.below), camera, gl.LINES);
-        this.ribbons(scene.tops || [], camera, gl.TRIANGLES);
+        this.marks(scene, camera);
+    }
+
+    /** What must be seen through the robot: pale where something is before it. */
+    marks(scene, camera) {
+        const gl = this.gl;
+        for (const [test, k] of [[false, 0.5], [true, 1]]) {
+            (test ? gl.enable : gl.disable).call(gl, gl.DEPTH_TEST);
+            const pale = (c) => [c[0], c[1], c[2], c[3] * k];
+            this.begin(camera);
+            gl.uniform1f(this.at.flatness, 0.4);
+            for (const part of scene.parts.filter((p) => p.through)) {
+                gl.uniform4fv(this.at.colour, pale(part.colour));
+                this.part(part);
+            }
+            this.ribbons([...scene.tops, ...scene.flats].map(({ points, colour }) => (
+                { points, colour: pale(colour) })), camera, gl.TRIANGLES);
+        }
     }
 
     begin(camera) {
@@ -158,7 +173,7 @@ class Gl {
         gl.uniform1f(this.at.flatness, 1);
         gl.uniform4fv(this.at.colour, scene.shadow);
         for (const part of scene.parts) {
-            if (!part.ghost && !part.light) {
+            if (!part.ghost && !part.through) {
                 this.part(part, mul(flat, part.at));
             }
         }
@@ -170,6 +185,8 @@ class Gl {
     ghosts(scene) {
         const gl = this.gl, ghosts = scene.parts.filter((part) => part.ghost);
         gl.uniform1f(this.at.flatness, 0.35);
+        gl.enable(gl.POLYGON_OFFSET_FILL); // where ghost and robot are one, the robot is seen
+        gl.polygonOffset(3, 12);
         for (const colour of [false, true]) {
             gl.colorMask(colour, colour, colour, colour);
             for (const part of ghosts) {
@@ -177,6 +194,7 @@ class Gl {
                 this.part(part);
             }
         }
+        gl.disable(gl.POLYGON_OFFSET_FILL);
     }
 
     ribbons(list, camera, mode) {

@@ -51,6 +51,7 @@ class App {
             flat: new URLSearchParams(location.search).has('flat'),
             onPick: (joint) => this.select(joint === this.selected ? -1 : joint, true),
             onTouch: () => this.schedule(),
+            above: id('look'), below: id('legend'),
         });
         this.see = new See(this);
         this.joints = new Joints(this);
@@ -306,6 +307,11 @@ class App {
         document.addEventListener('visibilitychange', () => document.hidden && this.giveBack(true));
         addEventListener('pagehide', () => this.giveBack(true));
         this.listenSettings();
+        const narrow = matchMedia('(max-width: 820px)');
+        const move = () => (narrow.matches ? id('motions').prepend : id('stage').append).call(
+            narrow.matches ? id('motions') : id('stage'), id('transport'));
+        narrow.addEventListener('change', move);
+        move();
     }
 
     listenSettings() {
@@ -473,6 +479,10 @@ class App {
         if (this.look === 'torque') {
             base.colour = theme[state.torque[n]] || theme.faded;
             base.tint = state.torque[n] === 'on' ? 0.06 : 0.3;
+            const without = state.torque.filter((v) => v !== 'on').length;
+            if (state.torque[n] && state.torque[n] !== 'on' && without <= 6 && !base.note) {
+                base.note = this.t(state.torque[n]);
+            }
         } else if (this.look === 'heat' && heat !== null) {
             const k = Math.max(0, Math.min(1, (heat - 25) / ((this.robot.safety.temperature_c || 70) - 25)));
             base.colour = this.ramp(k);

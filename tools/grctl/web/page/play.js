@@ -127,7 +127,7 @@ export class Play {
 
     picture(canvas, thumbnail, body, theme) {
         const parts = [], r = body.reach, poses = thumbnail.angle_deg, n = poses.length;
-        const gap = r * 0.62;
+        const gap = r * 0.7, yaw = 0.5;
         poses.forEach((pose, i) => {
             const q = pose.map((v) => v === null ? 0 : v * DEG);
             const root = thumbnail.root ? this.app.toMatrix(thumbnail.root[i]) : stand(body, q);
@@ -137,19 +137,19 @@ export class Play {
             const colour = theme.part.map((v, c) => c < 3 ? theme.card[c] + (v - theme.card[c]) * k : 1);
             body.links.forEach((link, l) => {
                 const here = at[l].slice();
-                here[12] += -x - move * 0.55;
-                here[13] += -y + move;
+                here[12] -= x + move * Math.sin(yaw);
+                here[13] -= y - move * Math.cos(yaw);
                 parts.push({ solid: link.solid, at: here, colour });
             });
         });
         const camera = new Camera();
-        camera.yaw = 0.5;
+        camera.yaw = yaw;
         camera.pitch = 0.12;
-        const wide = gap * (n - 1) / 2;
-        const { low, high } = this.app.figure;
-        camera.look([0, -wide * 0.5, low[2]], [0, wide * 0.5, high[2]], canvas.width / canvas.height);
-        camera.distance *= 1.15;
-        makeFlat(canvas).draw({ parts, flats: [], lines: [] }, camera);
+        const aspect = canvas.width / canvas.height, { low, high } = this.app.figure;
+        const wide = gap * (n - 1) + r * 0.85, tall = (high[2] - low[2]) * 1.12;
+        camera.place([0, 0, (low[2] + high[2]) / 2], Math.max(tall, wide / aspect) / 2 /
+                                                     Math.tan(15 * DEG), aspect);
+        makeFlat(canvas).draw({ parts, flats: [], lines: [], tops: [] }, camera);
     }
 
     async choose(name) {
@@ -299,9 +299,12 @@ export class Play {
                                       : `▶ ${t('Play')}`);
         this.id('play').disabled = !may || !live && (!this.look || Boolean(refused));
         setText(this.id('preview'), this.previewing ? `❚❚ ${t('Preview')}` : `▷ ${t('Preview')}`);
-        this.id('preview').disabled = Boolean(live) || !this.look;
-        this.id('queue').disabled = !may || !live || !this.name;
-        this.id('halt').disabled = !may || !live;
+        this.id('preview').disabled = !this.look;
+        this.id('preview').hidden = Boolean(live);
+        for (const name of ['queue', 'halt']) {
+            this.id(name).hidden = !live;
+            this.id(name).disabled = !may;
+        }
         const speed = this.id('speed');
         if (live && document.activeElement !== speed && Number(speed.value) !== live.speed_pct) {
             speed.value = live.speed_pct;

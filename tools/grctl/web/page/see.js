@@ -87,7 +87,7 @@ export class See {
         const limit = this.app.robot.safety.temperature_c;
         if (hot) {
             card(limit && hot.v >= limit - 5 ? 'bad' : limit && hot.v >= limit - 15 ? 'warn' : '',
-                 t('Hottest'), `${this.app.name(hot.n)} ${hot.v} °C`);
+                 t('Hottest'), `${this.app.name(hot.n)} ${hot.v}\u00a0°C`);
         }
         const volts = state.voltage_v.filter((v) => v !== null);
         if (volts.length) {
