@@ -91,7 +91,7 @@ CMOCKA_CFLAGS = $(call once,CMOCKA_CFLAGS,$(call flags,--cflags,cmocka))
 CMOCKA_LIBS = $(call once,CMOCKA_LIBS,$(call flags,--libs,cmocka))
 JSON_CFLAGS = $(call once,JSON_CFLAGS,$(call flags,--cflags,jansson))
 JSON_LIBS = $(call once,JSON_LIBS,$(call flags,--libs,jansson))
-TOOL_LIBS = $(call once,TOOL_LIBS,$(JSON_LIBS) $(EDIT_LIBS) $(SCREEN_LIBS))
+TOOL_LIBS = $(call once,TOOL_LIBS,$(JSON_LIBS) $(EDIT_LIBS) $(SCREEN_LIBS) $(WEB_LIBS))
 # The shell edits lines where libedit is there, else it reads them plainly.
 EDIT := $(if $(shell $(PKG_CONFIG) --exists libedit 2>/dev/null && echo yes),libedit,plain)
 EDIT_CFLAGS = $(if $(filter libedit,$(EDIT)),$(call once,EDIT_CFLAGS_FOUND,$(call flags,--cflags,libedit)))
@@ -100,6 +100,9 @@ EDIT_LIBS = $(if $(filter libedit,$(EDIT)),$(call flags,--libs,libedit))
 SCREEN := $(if $(shell $(PKG_CONFIG) --exists ncursesw 2>/dev/null && echo yes),ncurses,none)
 SCREEN_CFLAGS = $(if $(filter ncurses,$(SCREEN)),$(call once,SCREEN_CFLAGS_FOUND,$(filter -I%,$(call flags,--cflags,ncursesw))))
 SCREEN_LIBS = $(if $(filter ncurses,$(SCREEN)),$(call flags,--libs,ncursesw))
+# The cockpit is served by evhttp where it is there, else a line says that it is not.
+WEB := $(if $(shell $(PKG_CONFIG) --exists libevent_extra 2>/dev/null && echo yes),evhttp,none)
+WEB_LIBS = $(if $(filter evhttp,$(WEB)),$(call flags,--libs,libevent_extra))
 LIBS = $(call once,LIBS,$(call flags,--libs,yaml-0.1 libevent_core) $(OS_LIBS))
 
 # ---- sources, by folder: a folder may be empty or missing ----------------------------------
@@ -110,9 +113,10 @@ HEAP := src/base/memory.c
 CORE_SRCS := $(filter-out $(HEAP),$(sort $(wildcard $(CORE_FOLDERS:%=src/%/*.c))))
 OTHER_SRCS := $(sort $(HEAP) $(wildcard src/motion/*/*.c src/robots/file/*.c src/body/*.c src/link/*/*.c ports/common/*.c \
     ports/$(PORT)/*.c))
-TOOL_SRCS := $(if $(wildcard tools/grctl/main.c),$(sort $(filter-out tools/grctl/edit/% tools/grctl/screen/%,\
-    $(wildcard tools/grctl/*.c tools/grctl/*/*.c tools/grctl/os/$(PORT)/*.c)) tools/grctl/edit/$(EDIT).c \
-    tools/grctl/screen/$(SCREEN).c))
+TOOL_SRCS := $(if $(wildcard tools/grctl/main.c),$(sort $(filter-out tools/grctl/edit/% tools/grctl/screen/% \
+    tools/grctl/web/%,$(wildcard tools/grctl/*.c tools/grctl/*/*.c tools/grctl/os/$(PORT)/*.c)) tools/grctl/edit/$(EDIT).c \
+    tools/grctl/screen/$(SCREEN).c $(if $(filter none,$(WEB)),tools/grctl/web/none.c,\
+    $(filter-out tools/grctl/web/none.c,$(wildcard tools/grctl/web/*.c)))))
 # LEFT_OUT, of a target: tests that its system cannot run, and what only they use.
 SUPPORT_SRCS := $(sort $(filter-out %/replay_main.c $(LEFT_OUT),$(wildcard tests/support/*.c)) \
     tests/support/os/$(PORT).c)
@@ -131,7 +135,8 @@ EXAMPLE_SRCS := $(sort $(wildcard docs/examples/*.c))
 objects = $(patsubst %.c,$(BUILD)/%.o,$(1))
 CORE_OBJS := $(call objects,$(CORE_SRCS))
 LIB_OBJS := $(CORE_OBJS) $(call objects,$(OTHER_SRCS))
-TOOL_OBJS := $(call objects,$(TOOL_SRCS))
+PAGE_OBJ := $(if $(filter evhttp,$(WEB)),$(BUILD)/tools/grctl/web/page_files.o)
+TOOL_OBJS := $(call objects,$(TOOL_SRCS)) $(if $(TOOL_SRCS),$(PAGE_OBJ))
 TOOL_LIB := $(BUILD)/libgrctl.a
 SUPPORT_OBJS := $(call objects,$(SUPPORT_SRCS))
 TEST_PROGRAMS := $(patsubst %.c,$(BUILD)/%$(EXE),$(TEST_SRCS))
@@ -514,6 +519,15 @@ $(eval $(call compile,tools/grctl,TOOL_INCLUDE OS_FLAGS EVENT_CFLAGS YAML_CFLAGS
 $(eval $(call compile,docs/examples,WHOLE OS_FLAGS EVENT_CFLAGS))
 $(eval $(call compile,tests,TEST_INCLUDE OS_FLAGS EVENT_CFLAGS YAML_CFLAGS CMOCKA_CFLAGS JSON_CFLAGS))
 
+# The page of the cockpit, inside the command.
+PAGE_FILES := $(wildcard tools/grctl/web/page/* tools/grctl/web/page/*/*)
+$(BUILD)/tools/grctl/web/page_files.c: tools/grctl/web/embed.sh $(PAGE_FILES)
+	@mkdir -p $(@D)
+	@tools/grctl/web/embed.sh tools/grctl/web/page >$@
+$(PAGE_OBJ): %.o: %.c $(BUILD)/.flags
+	$(say) CC $<
+	$(Q)$(CC) $(ALL_CPPFLAGS) $(TOOL_INCLUDE) $(ALL_CFLAGS) -MMD -MP -c -o $@ $<
+
 $(STATIC_LIB): $(LIB_OBJS)
 $(CORE_LIB): $(CORE_OBJS)
 $(SUPPORT_LIB): $(SUPPORT_OBJS)
@@ -557,7 +571,7 @@ $(BUILD)/run/grctl: $(GRCTL)
 
 $(sort $(TEST_PROGRAMS) $(DRIVER_PROGRAMS)): $(BUILD)/%$(EXE): $(BUILD)/%.o $(SUPPORT_LIB) $(TOOL_LIB) $(STATIC_LIB)
 	$(say) LD $@
-	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(CMOCKA_LIBS) $(JSON_LIBS) $(LIBS)
+	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(CMOCKA_LIBS) $(JSON_LIBS) $(WEB_LIBS) $(LIBS)
 
 $(FUZZ_REPLAYS): $(BUILD)/%$(EXE): $(BUILD)/%.o $(BUILD)/tests/support/replay_main.o $(TOOL_LIB) \
     $(STATIC_LIB)

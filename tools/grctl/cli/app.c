@@ -79,6 +79,7 @@ static int fail(app *a, int status, const char *code, grobo_trip trip, const cha
     int n = snprintf(text, sizeof text, "%s", a->place);
     vsnprintf(text + n, sizeof text - (size_t)n, format, list);
     app_make_one_line(text);
+    snprintf(a->failed, sizeof a->failed, "%s", code);
     if (a->hushed) {
         memcpy(a->hushed, text, sizeof text);
         return status;
@@ -92,6 +93,14 @@ static int fail(app *a, int status, const char *code, grobo_trip trip, const cha
                                  "message", app_json_text(text), "trip", word));
     }
     return status;
+}
+
+void app_hush(app *a, char *text)
+{
+    *text = '\0';
+    a->hushed = text;
+    a->verbosity = -1;
+    a->json = false;
 }
 
 int app_fail(app *a, int status, const char *code, const char *format, ...)

@@ -41,6 +41,7 @@ typedef struct app {
     bool traced;     /* --trace was begun, or could not be; else there was no line to trace */
     bool clamps;     /* targets outside limits go to the limit, and are no failure */
     char *hushed;    /* not NULL: app_fail() puts its line here, APP_LINE_BYTES, and says nothing */
+    char failed[32]; /* the code of the last app_fail() */
 } app;
 
 /* Sets what follows from the parsed line: verbosity, colours, terminals. */
@@ -65,6 +66,8 @@ double app_number(const app *a, int i, double otherwise);
  */
 int app_fail(app *a, int status, const char *code, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
+/* From now on nothing is said: what app_fail() says goes to `text`, of APP_LINE_BYTES. */
+void app_hush(app *a, char *text);
 /* The same for an error of the library; its text stands behind a colon. */
 int app_fail_error(app *a, int status, int error, const char *format, ...)
     __attribute__((format(printf, 4, 5)));

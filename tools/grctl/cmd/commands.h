@@ -15,6 +15,7 @@
     X(robot)                                                                                       \
     X(status)                                                                                      \
     X(monitor)                                                                                     \
+    X(serve)                                                                                       \
     X(servo)                                                                                       \
     X(init)                                                                                        \
     X(move)                                                                                        \

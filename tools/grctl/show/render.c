@@ -29,11 +29,7 @@ const char *render_torque(const grobo_joint_info *info)
     return "?";
 }
 
-/*
- * Where the joint was sent: by this process, or as its servo reports. A servo without torque keeps
- * an old goal that it does not go to.
- */
-static bool target_of(const grobo_joint_info *info, double *target_rad)
+bool render_target(const grobo_joint_info *info, double *target_rad)
 {
     bool told =
         has(info, GROBO_FIELD_GOAL) && info->torque_known && info->state.torque == GROBO_TORQUE_ON;
@@ -55,7 +51,7 @@ static json_t *joint_json(const conn *c, int joint)
     if (grobo_robot_joint(c->robot, joint, &i) < 0) {
         return json_pack("{s:i,s:i,s:s}", "joint", joint, "motor", j->motor, "name", j->name);
     }
-    bool fresh = i.angle_age_us != GROBO_NEVER_US, targeted = target_of(&i, &target_rad);
+    bool fresh = i.angle_age_us != GROBO_NEVER_US, targeted = render_target(&i, &target_rad);
     return json_pack(
         "{s:i,s:i,s:s,s:o,s:o,s:s?,s:o?,s:o?,s:o?,s:o,s:o?,s:o}", "joint", joint, "motor", j->motor,
         "name", j->name, "angle_deg",
@@ -105,7 +101,7 @@ void render_status(const conn *c, grobo_joint_mask joints)
         bool known = i.angle_age_us != GROBO_NEVER_US;
         app_print("%5d  %-12s", model->joints[k].motor, model->joints[k].name);
         cell(known, 5, 1, grobo_deg_from_rad(i.state.angle_rad));
-        bool targeted = target_of(&i, &target_rad);
+        bool targeted = render_target(&i, &target_rad);
         cell(targeted, 6, 1, grobo_deg_from_rad(target_rad));
         app_print("  %-6s", render_torque(&i));
         cell(has(&i, GROBO_FIELD_SPEED), 5, 0, i.state.speed_dps);

@@ -16,6 +16,12 @@ void render_reached(const conn *c);
 /* The largest error among them in degrees, its joint in *joint (-1: none is known). */
 double render_worst_error(const conn *c, int *joint);
 
+/*
+ * Where the joint was sent: by this process, or as its servo reports. A servo without torque keeps
+ * an old goal that it does not go to. False: it is not known.
+ */
+bool render_target(const grobo_joint_info *info, double *target_rad);
+
 /* "on", "off", "brake" or "?". */
 const char *render_torque(const grobo_joint_info *info);
 

@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: MIT */
+#include "tools/grctl/cmd/commands.h"
+#include "tools/grctl/web/web.h"
+
+enum { OPT_PORT, OPT_LISTEN, OPT_NAME, OPT_OPERATOR };
+
+static const cli_option options[] = {
+    [OPT_PORT] = OPTION_WHOLE("port", 'p', "PORT", 0, 65534,
+                              "port of the page; stop has the next one; 0: any two (8717)"),
+    [OPT_LISTEN] = OPTION_TEXT("listen", 0, "ADDRESS",
+                               "listen there, not on this machine alone; then all needs the token"),
+    [OPT_NAME] = OPTION_TEXT("name", 0, "HOST", "a name that browsers may use for this machine"),
+    [OPT_OPERATOR] = OPTION_FLAG("operator", 0, "a page that asks for control gets it at once"),
+};
+
+static int run(app *a)
+{
+    web_options o = {.folder = a->line.n_arguments ? a->line.argument[0] : ".",
+                     .listen = app_option(a, OPT_LISTEN)->text,
+                     .name = app_option(a, OPT_NAME)->text,
+                     .port = (uint16_t)app_number(a, OPT_PORT, WEB_PORT),
+                     .takes_over = app_option(a, OPT_OPERATOR)->given > 0};
+    return web_run(a, &o);
+}
+
+const cli_command cmd_serve = {
+    .name = "serve",
+    COMMAND_ARGUMENTS("[DIR]", 0, 1, CLI_ARG_FILE),
+    .summary = "the cockpit: see and move the robot in a browser",
+    .details =
+        "Prints a link: its page shows the robot in 3-D, live, plays the motions of DIR (the\n"
+        "present directory), edits poses, and has a STOP that is always visible. Nothing moves\n"
+        "until a page says so. One page drives at a time, the others watch; whoever sees the\n"
+        "robot may stop it. Who drives and is silent for a second jogs no more; after three its\n"
+        "motion stops softly.\n"
+        "\n"
+        "Only this machine is listened to. The link has a token, without which nothing moves; it\n"
+        "is new at each start, or that of $GRCTL_TOKEN. Programs use the same as the page:\n"
+        "docs/serve.md. With --listen the token is needed to see, too; HTTP is not encrypted:\n"
+        "'ssh -L' or a proxy with TLS is.\n",
+    .example = "  grctl serve -d sim motions\n  grctl serve --listen 0.0.0.0 --name robot.local\n",
+    COMMAND_OPTIONS(options),
+    .run = run,
+};

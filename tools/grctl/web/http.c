@@ -1,0 +1,708 @@
+/* SPDX-License-Identifier: MIT */
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <event2/buffer.h>
+#include <event2/bufferevent.h>
+#include <event2/event.h>
+#include <event2/http.h>
+#include <event2/http_struct.h>
+#include <event2/keyvalq_struct.h>
+#include <event2/listener.h>
+
+#include <grobo/port.h>
+
+#include "tools/grctl/os/net.h"
+#include "tools/grctl/web/http.h"
+
+enum {
+    IDLE_S = 5,          /* a silent connection, or half a request */
+    SEND_BYTES = 32768,  /* of the system for a stream: what a client may lag behind unseen */
+    SKIP_BYTES = 16384,  /* waiting for a stream's client: it misses the next state */
+    EVENT_BYTES = 65536, /* and the next event */
+    DROP_US = 3000000,   /* so long without reading */
+    SWEEP_US = 100000,
+    WRONG_US = 300000, /* what a wrong token waits for its answer */
+    LISTENERS = 2
+};
+
+/* One of the two ports. */
+typedef struct port {
+    http *of;
+    struct evhttp *server;
+    struct evconnlistener *listeners[LISTENERS];
+    int n_listeners;
+    wall wall;
+} port;
+
+/* A connection. We hold a reference: it is gone where libevent has taken its callbacks back. */
+typedef struct guest {
+    struct bufferevent *bev;
+    port *at;
+    char address[64]; /* "" on loopback, and until it is known */
+    bool looked_at;
+} guest;
+
+typedef struct stream {
+    struct stream *next;
+    http *of;
+    struct evhttp_request *raw;
+    struct evbuffer_cb_entry *ear; /* of what it sends, which is nothing */
+    char address[64];
+    int64_t behind_us; /* since when it does not read, 0: it does */
+    bool ends;
+} stream;
+
+struct http {
+    http_config config;
+    port first, second;
+    guest guests[2 * HTTP_CONNECTIONS_MAX];
+    stream *streams;
+    http_request *waiting;
+    struct event *sweep, *reap;
+    int64_t second_us; /* the second in which changes are counted */
+    int changes;
+};
+
+/* ---- connections ----------------------------------------------------------------------------- */
+
+static void name_guest(guest *g)
+{
+    g->looked_at = true;
+    net_peer(bufferevent_getfd(g->bev), g->address, sizeof g->address);
+}
+
+static bool is_gone(const guest *g)
+{
+    bufferevent_data_cb read, write;
+    bufferevent_event_cb event;
+    void *ctx;
+    bufferevent_getcb(g->bev, &read, &write, &event, &ctx);
+    return event == NULL;
+}
+
+static int guests_of(const port *p, const char *address)
+{
+    int n = 0;
+    for (size_t i = 0; i < sizeof p->of->guests / sizeof p->of->guests[0]; i++) {
+        const guest *g = &p->of->guests[i];
+        n += g->bev && g->at == p && (!address || strcmp(g->address, address) == 0);
+    }
+    return n;
+}
+
+static void open_door(port *p, bool open)
+{
+    for (int i = 0; i < p->n_listeners; i++) {
+        (void)(open ? evconnlistener_enable(p->listeners[i])
+                    : evconnlistener_disable(p->listeners[i]));
+    }
+}
+
+/* Forgets connections that have ended; ends those of an address that has too many. */
+static void sweep_guests(http *h)
+{
+    for (size_t i = 0; i < sizeof h->guests / sizeof h->guests[0]; i++) {
+        guest *g = &h->guests[i];
+        if (!g->bev) {
+            continue;
+        }
+        if (is_gone(g)) {
+            bufferevent_decref(g->bev);
+            memset(g, 0, sizeof *g);
+        } else if (!g->looked_at) {
+            name_guest(g);
+            if (*g->address && guests_of(g->at, g->address) > HTTP_ADDRESS_CONNECTIONS_MAX) {
+                /* libevent sees its end, and frees it */
+                net_end(bufferevent_getfd(g->bev));
+            }
+        }
+    }
+    open_door(&h->first, guests_of(&h->first, NULL) < HTTP_CONNECTIONS_MAX);
+    open_door(&h->second, guests_of(&h->second, NULL) < HTTP_CONNECTIONS_MAX);
+}
+
+/* At each connection that is accepted. Who comes when all places are taken waits in the system. */
+static struct bufferevent *on_connection(struct event_base *base, void *ctx)
+{
+    port *p = ctx;
+    http *h = p->of;
+    struct bufferevent *bev = bufferevent_socket_new(base, -1, 0);
+    for (size_t i = 0; bev && i < sizeof h->guests / sizeof h->guests[0]; i++) {
+        guest *g = &h->guests[i];
+        if (!g->bev) {
+            bufferevent_incref(bev);
+            *g = (guest){.bev = bev, .at = p};
+            break;
+        }
+    }
+    if (guests_of(p, NULL) >= HTTP_CONNECTIONS_MAX) {
+        open_door(p, false);
+    }
+    return bev;
+}
+
+/* ---- replies --------------------------------------------------------------------------------- */
+
+static void drop_request(http_request *r)
+{
+    http_request **link = &r->server->waiting;
+    while (*link != r) {
+        link = &(*link)->next;
+    }
+    *link = r->next;
+    free(r);
+}
+
+static port *port_of(const http_request *r)
+{
+    return r->second ? &r->server->second : &r->server->first;
+}
+
+static wall_request as_wall(const http_request *r)
+{
+    return (wall_request){.method = *r->method ? r->method : NULL,
+                          .uri = evhttp_request_get_uri(r->raw),
+                          .headers = evhttp_request_get_input_headers(r->raw)};
+}
+
+static void add(const http_request *r, const char *name, const char *value)
+{
+    evhttp_add_header(evhttp_request_get_output_headers(r->raw), name, value);
+}
+
+static void add_policy(const http_request *r)
+{
+    char text[640];
+    wall_request q = as_wall(r);
+    const char *host = wall_host(&port_of(r)->wall, &q);
+    snprintf(text, sizeof text,
+             "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; "
+             "connect-src 'self' http://%s:%u; worker-src 'self'; manifest-src 'self'; "
+             "base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+             host ? host : "127.0.0.1", http_stop_port(r->server));
+    add(r, "Content-Security-Policy", text);
+}
+
+/* What every reply has. */
+static void add_headers(const http_request *r)
+{
+    add(r, "X-Content-Type-Options", "nosniff");
+    add(r, "Referrer-Policy", "no-referrer");
+    add(r, "X-Frame-Options", "DENY");
+    add(r, "Cross-Origin-Opener-Policy", "same-origin");
+    add(r, "Cross-Origin-Resource-Policy", r->second ? "same-site" : "same-origin");
+}
+
+static const char *reason_of(int status)
+{
+    static const struct {
+        int status;
+        const char *reason;
+    } reasons[] = {{200, "OK"},
+                   {204, "No Content"},
+                   {304, "Not Modified"},
+                   {400, "Bad Request"},
+                   {401, "Unauthorized"},
+                   {403, "Forbidden"},
+                   {404, "Not Found"},
+                   {405, "Method Not Allowed"},
+                   {409, "Conflict"},
+                   {413, "Content Too Large"},
+                   {415, "Unsupported Media Type"},
+                   {422, "Unprocessable Content"},
+                   {428, "Precondition Required"},
+                   {429, "Too Many Requests"},
+                   {503, "Service Unavailable"}};
+    for (size_t i = 0; i < sizeof reasons / sizeof reasons[0]; i++) {
+        if (reasons[i].status == status) {
+            return reasons[i].reason;
+        }
+    }
+    return "Error";
+}
+
+static void send_reply(http_request *r, int status, const void *bytes, size_t size)
+{
+    struct evbuffer *body = evbuffer_new();
+    if (body && size) {
+        evbuffer_add(body, bytes, size);
+    }
+    evhttp_send_reply(r->raw, status, reason_of(status), body);
+    if (body) {
+        evbuffer_free(body);
+    }
+    drop_request(r);
+}
+
+void http_reply_json(http_request *r, int status, json_t *body)
+{
+    char *text = json_dumps(body, JSON_COMPACT | JSON_REAL_PRECISION(12));
+    json_decref(body);
+    add_headers(r);
+    add(r, "Cache-Control", "no-store");
+    if (!text) {
+        send_reply(r, 503, NULL, 0);
+        return;
+    }
+    add(r, "Content-Type", "application/json");
+    send_reply(r, status, text, strlen(text));
+    free(text);
+}
+
+void http_refuse(http_request *r, int status, const char *code, const char *format, ...)
+{
+    char text[512];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(text, sizeof text, format, list);
+    va_end(list);
+    http_reply_json(r, status, json_pack("{s:{s:s,s:s}}", "error", "code", code, "message", text));
+}
+
+void http_reply_empty(http_request *r)
+{
+    add_headers(r);
+    add(r, "Cache-Control", "no-store");
+    send_reply(r, 204, NULL, 0);
+}
+
+void http_reply_content(http_request *r, const http_content *content)
+{
+    const char *known = http_header(r, "If-None-Match");
+    add_headers(r);
+    add(r, "Cache-Control", "no-cache");
+    if (content->page) {
+        add_policy(r);
+    }
+    if (content->etag) {
+        add(r, "ETag", content->etag);
+    }
+    if (content->etag && known && strstr(known, content->etag)) {
+        send_reply(r, 304, NULL, 0);
+        return;
+    }
+    add(r, "Content-Type", content->type);
+    add(r, "Vary", "Accept-Encoding");
+    if (content->gzip) {
+        add(r, "Content-Encoding", "gzip");
+    }
+    send_reply(r, 200, content->bytes, content->size);
+}
+
+/* ---- streams --------------------------------------------------------------------------------- */
+
+static struct evbuffer *waiting_bytes(const stream *s)
+{
+    return bufferevent_get_output(
+        evhttp_connection_get_bufferevent(evhttp_request_get_connection(s->raw)));
+}
+
+/* By the client, or by us: see reap_streams(). */
+static void on_stream_closed(struct evhttp_connection *connection, void *ctx)
+{
+    stream *s = ctx, **link = &s->of->streams;
+    (void)connection;
+    while (*link != s) {
+        link = &(*link)->next;
+    }
+    *link = s->next;
+    if (!evhttp_request_get_connection(s->raw)) { /* libevent gave it to us */
+        evhttp_request_free(s->raw);
+    }
+    free(s);
+}
+
+/* Nobody sends anything on a stream, and nobody would read it. */
+static void on_stream_input(struct evbuffer *input, const struct evbuffer_cb_info *info, void *ctx)
+{
+    stream *s = ctx;
+    (void)input;
+    if (info->n_added > 0) {
+        s->ends = true;
+        event_active(s->of->reap, 0, 0);
+    }
+}
+
+/* Ends those that are to end: not from within their own callbacks. */
+static void reap_streams(http *h)
+{
+    stream *s = h->streams;
+    while (s) {
+        stream *next = s->next;
+        if (s->ends) {
+            struct evhttp_connection *connection = evhttp_request_get_connection(s->raw);
+            if (s->ear) {
+                evbuffer_remove_cb_entry(
+                    bufferevent_get_input(evhttp_connection_get_bufferevent(connection)), s->ear);
+            }
+            evhttp_connection_free(connection);
+        }
+        s = next;
+    }
+}
+
+static void on_reap(evutil_socket_t fd, short what, void *ctx)
+{
+    (void)fd;
+    (void)what;
+    reap_streams(ctx);
+}
+
+static int streams_of(const http *h, const char *address)
+{
+    int n = 0;
+    for (const stream *s = h->streams; s; s = s->next) {
+        n += !address || strcmp(s->address, address) == 0;
+    }
+    return n;
+}
+
+int http_streams(const http *server)
+{
+    return streams_of(server, NULL);
+}
+
+static void send_chunk(stream *s, const char *text, size_t size)
+{
+    struct evbuffer *chunk = evbuffer_new();
+    if (chunk) {
+        evbuffer_add(chunk, text, size);
+        evhttp_send_reply_chunk(s->raw, chunk);
+        evbuffer_free(chunk);
+    }
+}
+
+void http_reply_stream(http_request *r, const char *first)
+{
+    http *h = r->server;
+    struct evhttp_connection *connection = evhttp_request_get_connection(r->raw);
+    stream *s = connection ? calloc(1, sizeof *s) : NULL;
+    if (!s) {
+        http_refuse(r, 503, "nomem", "no memory for a stream");
+        return;
+    }
+    struct bufferevent *bev = evhttp_connection_get_bufferevent(connection);
+    net_peer(bufferevent_getfd(bev), s->address, sizeof s->address);
+    if (http_streams(h) >= HTTP_STREAMS_MAX ||
+        (*s->address && streams_of(h, s->address) >= HTTP_ADDRESS_STREAMS_MAX)) {
+        free(s);
+        http_refuse(r, 503, "too_many", "too many streams are open");
+        return;
+    }
+    s->of = h;
+    s->raw = r->raw;
+    s->next = h->streams;
+    h->streams = s;
+    add_headers(r);
+    add(r, "Cache-Control", "no-store");
+    add(r, "Content-Type", "text/event-stream");
+    net_keep_little(bufferevent_getfd(bev), SEND_BYTES); /* what waits there is the past */
+    evhttp_connection_set_closecb(connection, on_stream_closed, s);
+    s->ear = evbuffer_add_cb(bufferevent_get_input(bev), on_stream_input, s);
+    evhttp_send_reply_start(r->raw, 200, reason_of(200));
+    if (evbuffer_get_length(bufferevent_get_input(bev)) > 0) { /* it came with the request */
+        s->ends = true;
+        event_active(h->reap, 0, 0);
+    }
+    send_chunk(s, first, strlen(first));
+    drop_request(r);
+}
+
+void http_send(http *server, const char *text, size_t size, bool may_miss)
+{
+    int64_t now_us = grobo_now_us();
+    for (stream *s = server->streams; s; s = s->next) {
+        size_t waits = evbuffer_get_length(waiting_bytes(s));
+        if (waits <= (may_miss ? SKIP_BYTES : EVENT_BYTES)) {
+            send_chunk(s, text, size);
+        }
+        if (waits <= SKIP_BYTES) {
+            s->behind_us = 0;
+        } else if (s->behind_us == 0) {
+            s->behind_us = now_us;
+        } else if (now_us - s->behind_us > DROP_US) {
+            s->ends = true;
+            event_active(server->reap, 0, 0);
+        }
+    }
+}
+
+/* ---- requests -------------------------------------------------------------------------------- */
+
+const char *http_header(const http_request *r, const char *name)
+{
+    return evhttp_find_header(evhttp_request_get_input_headers(r->raw), name);
+}
+
+const char *http_body(const http_request *r, size_t *size)
+{
+    struct evbuffer *body = evhttp_request_get_input_buffer(r->raw);
+    *size = evbuffer_get_length(body);
+    return *size ? (const char *)evbuffer_pullup(body, -1) : "";
+}
+
+wall_answer http_check_token(const http_request *r, const char *token)
+{
+    return wall_check_token(&port_of(r)->wall, token);
+}
+
+/* Path and query of the URI; false where they are too long or no text. */
+static bool split(http_request *r)
+{
+    const char *uri = evhttp_request_get_uri(r->raw);
+    size_t length = strcspn(uri, "?#");
+    char raw[HTTP_PATH_BYTES];
+    size_t decoded = 0;
+    if (length >= sizeof raw) {
+        return false;
+    }
+    memcpy(raw, uri, length);
+    raw[length] = '\0';
+    char *path = evhttp_uridecode(raw, 0, &decoded);
+    bool fits = path && decoded < sizeof r->path && strlen(path) == decoded;
+    if (fits) {
+        memcpy(r->path, path, decoded + 1);
+        snprintf(r->query, sizeof r->query, "%s", uri[length] == '?' ? uri + length + 1 : "");
+    }
+    free(path);
+    return fits;
+}
+
+static const char *method_of(struct evhttp_request *raw)
+{
+    switch ((int)evhttp_request_get_command(raw)) {
+    case EVHTTP_REQ_GET:
+        return "GET";
+    case EVHTTP_REQ_POST:
+        return "POST";
+    case EVHTTP_REQ_PUT:
+        return "PUT";
+    }
+    return "";
+}
+
+/* One that changes something, and is one too many in this second? */
+static bool is_flood(http *h)
+{
+    int64_t now_us = grobo_now_us();
+    if (now_us - h->second_us >= 1000000) {
+        h->second_us = now_us;
+        h->changes = 0;
+    }
+    return ++h->changes > HTTP_CHANGES_PER_S;
+}
+
+static void refuse(http_request *r, wall_answer no)
+{
+    http_refuse(r, no.status, no.code, "%s", no.message);
+}
+
+static void judge(http_request *r)
+{
+    http *h = r->server;
+    wall_rule rule = WALL_PAGE;
+    wall_request q = as_wall(r);
+    wall_answer no = wall_check_source(&port_of(r)->wall, &q);
+    if (!no.status && !split(r)) {
+        no = (wall_answer){404, "notfound", "there is no such path"};
+    }
+    if (!no.status && !h->config.rule(h->config.ctx, r, &rule)) {
+        no = (wall_answer){404, "notfound", "there is no such path"};
+    }
+    if (!no.status) {
+        no = wall_check_right(&port_of(r)->wall, &q, rule);
+    }
+    size_t size;
+    http_body(r, &size);
+    if (!no.status && size > HTTP_BODY_BYTES && strcmp(r->method, "PUT") != 0) {
+        no = (wall_answer){413, "too_large", "the body is larger than 64 kB"};
+    }
+    if (!no.status && rule == WALL_ACT && is_flood(h)) {
+        no = (wall_answer){429, "too_many", "more than 100 requests a second"};
+    }
+    if (no.status == 401) { /* who guesses has to wait */
+        r->refused_us = grobo_now_us();
+        r->refusal = no;
+    } else if (no.status) {
+        refuse(r, no);
+    } else {
+        h->config.serve(h->config.ctx, r);
+    }
+}
+
+static void on_request(struct evhttp_request *raw, void *ctx)
+{
+    port *p = ctx;
+    http_request *r = calloc(1, sizeof *r);
+    if (!r) {
+        evhttp_send_reply(raw, 503, reason_of(503), NULL);
+        return;
+    }
+    r->server = p->of;
+    r->raw = raw;
+    r->second = p == &p->of->second;
+    r->next = p->of->waiting;
+    p->of->waiting = r;
+    snprintf(r->method, sizeof r->method, "%s", method_of(raw));
+    judge(r);
+}
+
+/* ---- the whole of it ------------------------------------------------------------------------- */
+
+/* Tells those whose token was wrong. */
+static void answer_late(http *h)
+{
+    int64_t now_us = grobo_now_us();
+    http_request *r = h->waiting;
+    while (r) {
+        http_request *next = r->next;
+        if (r->refused_us && now_us - r->refused_us > WRONG_US) {
+            refuse(r, r->refusal);
+        }
+        r = next;
+    }
+}
+
+static void on_sweep(evutil_socket_t fd, short what, void *ctx)
+{
+    (void)fd;
+    (void)what;
+    answer_late(ctx);
+    sweep_guests(ctx);
+}
+
+static bool listen_at(port *p, const char *address, uint16_t number)
+{
+    struct evhttp_bound_socket *bound = evhttp_bind_socket_with_handle(p->server, address, number);
+    if (!bound) {
+        return false;
+    }
+    p->wall.port = net_port(evhttp_bound_socket_get_fd(bound));
+    p->listeners[p->n_listeners++] = evhttp_bound_socket_get_listener(bound);
+    return true;
+}
+
+static bool open_port(http *h, port *p, uint16_t number)
+{
+    p->of = h;
+    p->server = evhttp_new(h->config.base);
+    if (!p->server) {
+        return false;
+    }
+    evhttp_set_bevcb(p->server, on_connection, p);
+    evhttp_set_gencb(p->server, on_request, p);
+    evhttp_set_allowed_methods(p->server, 0xffff); /* the wall has its own answer to others */
+    evhttp_set_max_headers_size(p->server, HTTP_HEADER_BYTES);
+    evhttp_set_max_body_size(p->server, p == &h->first ? HTTP_UPLOAD_BYTES : HTTP_BODY_BYTES);
+    evhttp_set_timeout(p->server, IDLE_S);
+    evhttp_set_default_content_type(p->server, NULL);
+    if (h->config.address) {
+        return listen_at(p, h->config.address, number);
+    }
+    bool open = listen_at(p, "127.0.0.1", number);
+    if (open) {
+        (void)listen_at(p, "::1", p->wall.port); /* where there is IPv6 */
+    }
+    return open;
+}
+
+static void set_walls(http *h)
+{
+    const char *names[WALL_HOSTS] = {"127.0.0.1", "[::1]", "localhost", h->config.name};
+    wall *w = &h->first.wall;
+    w->open = h->config.address && !net_is_loopback(h->config.address);
+    w->page_port = w->port;
+    for (int i = 0; i < WALL_HOSTS && names[i]; i++) {
+        snprintf(w->hosts[w->n_hosts++], WALL_NAME_BYTES, "%s", names[i]);
+    }
+    if (h->config.token) {
+        snprintf(w->token, sizeof w->token, "%s", h->config.token);
+    } else {
+        wall_make_secret(w->token);
+    }
+    uint16_t number = h->second.wall.port;
+    h->second.wall = *w;
+    h->second.wall.port = number;
+}
+
+int http_new(const http_config *config, http **server, const char **complaint)
+{
+    const struct timeval period = {0, SWEEP_US};
+    http *h = calloc(1, sizeof *h);
+    *complaint = "no memory";
+    if (!h) {
+        return GROBO_ERR_NOMEM;
+    }
+    h->config = *config;
+    h->sweep = event_new(config->base, -1, EV_PERSIST, on_sweep, h);
+    h->reap = event_new(config->base, -1, 0, on_reap, h);
+    if (!h->sweep || !h->reap) {
+        http_free(h);
+        return GROBO_ERR_NOMEM;
+    }
+    *complaint = "the port is in use, or is not ours; --port chooses another";
+    if (!open_port(h, &h->first, config->port) ||
+        !open_port(h, &h->second, config->port ? (uint16_t)(config->port + 1) : 0)) {
+        http_free(h);
+        return GROBO_ERR_BUSY;
+    }
+    set_walls(h);
+    event_add(h->sweep, &period);
+    *server = h;
+    return GROBO_OK;
+}
+
+void http_free(http *server)
+{
+    if (!server) {
+        return;
+    }
+    for (stream *s = server->streams; s; s = s->next) {
+        s->ends = true;
+    }
+    reap_streams(server);
+    if (server->first.server) {
+        evhttp_free(server->first.server);
+    }
+    if (server->second.server) {
+        evhttp_free(server->second.server);
+    }
+    for (size_t i = 0; i < sizeof server->guests / sizeof server->guests[0]; i++) {
+        if (server->guests[i].bev) {
+            bufferevent_decref(server->guests[i].bev);
+        }
+    }
+    while (server->waiting) {
+        drop_request(server->waiting);
+    }
+    if (server->sweep) {
+        event_free(server->sweep);
+    }
+    if (server->reap) {
+        event_free(server->reap);
+    }
+    free(server);
+}
+
+uint16_t http_port(const http *server)
+{
+    return server->first.wall.port;
+}
+
+uint16_t http_stop_port(const http *server)
+{
+    return server->second.wall.port;
+}
+
+const char *http_token(const http *server)
+{
+    return server->first.wall.token;
+}
+
+bool http_is_open(const http *server)
+{
+    return server->first.wall.open;
+}

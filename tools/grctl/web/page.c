@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: MIT */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "tools/grctl/web/http.h"
+#include "tools/grctl/web/page.h"
+
+enum { DISK_BYTES = 1024 * 1024 };
+
+static const page_file *find(const char *path)
+{
+    const char *name = strcmp(path, "/") == 0 ? "/index.html" : path;
+    for (const page_file *f = page_files; f->path; f++) {
+        if (strcmp(f->path, name) == 0) {
+            return f;
+        }
+    }
+    return NULL;
+}
+
+bool page_has(const char *path)
+{
+    return find(path) != NULL;
+}
+
+/* While the page is written: as it is on the disk, by the same names. */
+static bool serve_from(const char *folder, http_request *r, const page_file *file)
+{
+    char path[4096];
+    char *bytes = malloc(DISK_BYTES);
+    snprintf(path, sizeof path, "%s%s", folder, file->path);
+    FILE *from = fopen(path, "rb");
+    bool read = from && bytes;
+    if (read) {
+        size_t size = fread(bytes, 1, DISK_BYTES, from);
+        http_reply_content(
+            r, &(http_content){.type = file->type, .bytes = bytes, .size = size, .page = true});
+    }
+    if (from) {
+        fclose(from);
+    }
+    free(bytes);
+    return read;
+}
+
+void page_serve(http_request *r)
+{
+    const page_file *f = find(r->path);
+    const char *folder = getenv("GRCTL_WEB_DIR");
+    if (folder && *folder && serve_from(folder, r, f)) {
+        return;
+    }
+    http_reply_content(r, &(http_content){.type = f->type,
+                                          .bytes = f->bytes,
+                                          .size = f->size,
+                                          .etag = f->etag,
+                                          .gzip = true,
+                                          .page = true});
+}

@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: MIT */
+/* The page: files of web/page, compressed in the program, or with GRCTL_WEB_DIR from there. */
+#ifndef GRCTL_WEB_PAGE_H
+#define GRCTL_WEB_PAGE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+typedef struct http_request http_request;
+
+/* A file; made by embed.sh. */
+typedef struct page_file {
+    const char *path; /* "/index.html" */
+    const char *type;
+    const char *etag;
+    const unsigned char *bytes; /* gzip */
+    size_t size;
+} page_file;
+extern const page_file page_files[]; /* path NULL behind the last */
+
+bool page_has(const char *path);
+void page_serve(http_request *r);
+
+#endif

@@ -1,0 +1,400 @@
+/* SPDX-License-Identifier: MIT */
+/* Which path is what, and what every request has to bring along. */
+#include <stdio.h>
+#include <string.h>
+
+#include <grobo/port.h>
+
+#include "tools/grctl/web/page.h"
+#include "tools/grctl/web/serve.h"
+
+/* What a verb asks for. */
+enum {
+    NEEDS_LEASE = 1,
+    NEEDS_SEQUENCE = 2, /* it has a target */
+    NEEDS_LINE = 4,
+    MOVES = 8 /* refused after a stop */
+};
+
+typedef struct verb {
+    const char *path;
+    serve_verb_fn run;
+    unsigned needs;
+} verb;
+
+static const verb verbs[] = {
+    {"/api/play", verb_play, NEEDS_LEASE | NEEDS_SEQUENCE | NEEDS_LINE | MOVES},
+    {"/api/queue", verb_queue, NEEDS_LEASE | NEEDS_SEQUENCE | NEEDS_LINE | MOVES},
+    {"/api/pause", verb_pause, NEEDS_LEASE | NEEDS_LINE},
+    {"/api/resume", verb_resume, NEEDS_LEASE | NEEDS_LINE | MOVES},
+    {"/api/seek", verb_seek, NEEDS_LEASE | NEEDS_SEQUENCE | NEEDS_LINE | MOVES},
+    {"/api/speed", verb_speed, NEEDS_LEASE | NEEDS_LINE},
+    {"/api/halt", verb_halt, NEEDS_LEASE | NEEDS_LINE},
+    {"/api/move", verb_move, NEEDS_LEASE | NEEDS_SEQUENCE | NEEDS_LINE | MOVES},
+    {"/api/jog", verb_jog, NEEDS_LEASE | NEEDS_SEQUENCE | NEEDS_LINE | MOVES},
+    {"/api/torque", verb_torque, NEEDS_LEASE | NEEDS_LINE},
+    {"/api/capture", verb_capture, NEEDS_LINE},
+    {"/api/reset", verb_reset, 0},
+};
+
+/* ---- refusals -------------------------------------------------------------------------------- */
+
+static int status_of(int error)
+{
+    switch (error) {
+    case GROBO_ERR_ARG:
+    case GROBO_ERR_SYNTAX:
+        return 400;
+    case GROBO_ERR_NOENT:
+    case GROBO_ERR_NOTFOUND:
+        return 404;
+    case GROBO_ERR_LIMIT:
+    case GROBO_ERR_NAN:
+    case GROBO_ERR_SPEED:
+    case GROBO_ERR_UNREACHABLE:
+    case GROBO_ERR_UNWATCHED:
+    case GROBO_ERR_UNSUPPORTED:
+    case GROBO_ERR_EMPTY:
+        return 422;
+    case GROBO_ERR_CLOSED:
+    case GROBO_ERR_UNPLUGGED:
+    case GROBO_ERR_NOMEM:
+    case GROBO_ERR_TIMEOUT:
+    case GROBO_ERR_IO:
+        return 503;
+    }
+    return 409;
+}
+
+void serve_refuse(serve *s, http_request *r, int error, const char *doing)
+{
+    json_t *refusal = json_pack("{s:o,s:o}", "code", app_json_code(grobo_error_name(error)),
+                                "message", json_sprintf("%s: %s", doing, grobo_error_text(error)));
+    double value = 0;
+    int joint = error == GROBO_ERR_LIMIT || error == GROBO_ERR_NAN
+                    ? grobo_robot_fault(s->c.robot, &value)
+                    : -1;
+    if (joint >= 0 && joint < s->model->n_joints) {
+        json_object_set_new(refusal, "joint", json_integer(joint));
+        json_object_set_new(refusal, "name", json_string(s->model->joints[joint].name));
+        json_object_set_new(refusal, "value", app_json_number(value, 3));
+    }
+    if (error == GROBO_ERR_LATCHED && s->c.trip.trip != GROBO_TRIP_NONE) {
+        json_object_set_new(refusal, "trip", app_json_code(grobo_trip_name(s->c.trip.trip)));
+    }
+    http_reply_json(r, status_of(error), json_pack("{s:o}", "error", refusal));
+}
+
+void serve_refuse_said(http_request *r, int status, const app *a)
+{
+    static const int statuses[] = {200, 409, 400, 422, 422};
+    json_t *refusal = json_pack("{s:o,s:o}", "code", app_json_code(a->failed), "message",
+                                app_json_text(a->hushed));
+    http_reply_json(r, status > 0 && status <= EXIT_SAFETY ? statuses[status] : 409,
+                    json_pack("{s:o}", "error", refusal));
+}
+
+void serve_accept(serve *s, http_request *r, int result, const char *doing)
+{
+    if (result < 0) {
+        serve_refuse(s, r, result, doing);
+        return;
+    }
+    json_t *body = json_pack("{s:b,s:I}", "done", result == 0, "sequence", (json_int_t)s->sequence);
+    if (result > 0) {
+        json_object_set_new(body, "job", json_integer(result));
+    }
+    grobo_session_pump(s->c.session);
+    http_reply_json(r, 200, body);
+}
+
+/* ---- bodies ---------------------------------------------------------------------------------- */
+
+json_t *serve_body(http_request *r)
+{
+    size_t size;
+    json_error_t error;
+    const char *text = http_body(r, &size);
+    json_t *body = size ? json_loadb(text, size, JSON_REJECT_DUPLICATES, &error) : json_object();
+    if (!json_is_object(body)) {
+        json_decref(body);
+        http_refuse(r, 400, "syntax", "the body is no JSON object");
+        return NULL;
+    }
+    return body;
+}
+
+static const char *text_of(const json_t *body, const char *key)
+{
+    const char *text = json_string_value(json_object_get(body, key));
+    return text ? text : "";
+}
+
+/* Of a header, or, where a page cannot set one, of the body. */
+static const char *header_or_body(const http_request *r, const json_t *body, const char *header,
+                                  const char *key)
+{
+    const char *value = http_header(r, header);
+    return value ? value : text_of(body, key);
+}
+
+static bool has_token(http_request *r, const json_t *body)
+{
+    wall_answer no = http_check_token(r, header_or_body(r, body, "X-Grobo-Token", "token"));
+    if (no.status) {
+        http_refuse(r, no.status, no.code, "%s", no.message);
+    }
+    return !no.status;
+}
+
+/* ---- what a verb needs ----------------------------------------------------------------------- */
+
+static void refuse_lease(serve *s, http_request *r)
+{
+    const lease_page *holder = &s->lease.holder;
+    json_t *refusal;
+    if (!lease_is_held(&s->lease)) {
+        http_refuse(r, 409, "lease", "this needs the lease: POST /api/lease");
+        return;
+    }
+    refusal = json_pack("{s:s,s:o,s:{s:o,s:s,s:I}}", "code", "lease", "message",
+                        json_sprintf("%s drives since %lld s", holder->name,
+                                     (long long)((grobo_now_us() - holder->since_us) / 1000000)),
+                        "holder", "name", app_json_text(holder->name), "id", holder->id, "since_ms",
+                        (json_int_t)serve_ms(s, holder->since_us));
+    http_reply_json(r, 409, json_pack("{s:o}", "error", refusal));
+}
+
+/* The state that a target is based on was told less than a second ago. */
+static bool is_fresh(const serve *s, const json_t *sequence)
+{
+    json_int_t n = json_integer_value(sequence);
+    if (!json_is_integer(sequence) || n <= 0 || (uint64_t)n > s->sequence ||
+        s->sequence - (uint64_t)n >= SERVE_SEQUENCES) {
+        return false;
+    }
+    return grobo_now_us() - s->sequence_us[n % SERVE_SEQUENCES] <= SERVE_STALE_US;
+}
+
+static bool is_granted(serve *s, http_request *r, const json_t *body, unsigned needs)
+{
+    if ((needs & NEEDS_LINE) && !s->c.up) {
+        serve_refuse(s, r, GROBO_ERR_CLOSED, "robot");
+    } else if ((needs & NEEDS_LEASE) &&
+               !lease_is_holder(&s->lease, http_header(r, "X-Grobo-Lease"))) {
+        refuse_lease(s, r);
+    } else if ((needs & MOVES) && stops_is_latched(s)) {
+        serve_refuse(s, r, GROBO_ERR_LATCHED, "robot");
+    } else if ((needs & NEEDS_SEQUENCE) && !is_fresh(s, json_object_get(body, "sequence"))) {
+        http_refuse(r, 409, "stale", "sequence is not that of a state told less than a second ago");
+    } else {
+        return true;
+    }
+    return false;
+}
+
+/* ---- lease and stop -------------------------------------------------------------------------- */
+
+static const char *name_of(const json_t *body)
+{
+    const char *name = text_of(body, "name");
+    return *name ? name : "a script";
+}
+
+static json_t *lease_answer(const lease_page *page, bool held)
+{
+    return json_pack("{s:b,s:s,s:s}", "held", held, "lease", page->secret, "id", page->id);
+}
+
+static void take(serve *s, http_request *r, const json_t *body)
+{
+    const char *secret = header_or_body(r, body, "X-Grobo-Lease", "lease");
+    bool was_held = lease_is_held(&s->lease);
+    if (!lease_take(&s->lease, name_of(body), secret, s->options->takes_over, grobo_now_us())) {
+        refuse_lease(s, r);
+        return;
+    }
+    if (was_held) { /* what the one before was doing with a finger */
+        if (s->jogs) {
+            serve_halt(s);
+        }
+    }
+    events_tell(s, "lease", "info", NULL, "%s drives", s->lease.holder.name);
+    http_reply_json(r, 200, lease_answer(&s->lease.holder, true));
+}
+
+static void ask(serve *s, http_request *r, const json_t *body)
+{
+    if (!lease_ask(&s->lease, name_of(body), grobo_now_us())) {
+        http_refuse(r, 409, "state", "nobody drives: take it");
+        return;
+    }
+    events_tell(s, "lease", "info", NULL, "%s asks to drive", s->lease.asker.name);
+    json_t *answer = lease_answer(&s->lease.asker, false);
+    json_object_set_new(answer, "granted_ms",
+                        json_integer(serve_ms(s, s->lease.asker.since_us + LEASE_ASK_US)));
+    http_reply_json(r, 200, answer);
+}
+
+static void serve_lease(serve *s, http_request *r, const json_t *body)
+{
+    const char *action = text_of(body, "action");
+    const char *secret = header_or_body(r, body, "X-Grobo-Lease", "lease");
+    if (!has_token(r, body)) {
+        return;
+    }
+    if (strcmp(action, "take") == 0) {
+        take(s, r, body);
+    } else if (strcmp(action, "ask") == 0) {
+        ask(s, r, body);
+    } else if (strcmp(action, "give") == 0 || strcmp(action, "deny") == 0) {
+        bool gives = *action == 'g';
+        if (gives && lease_is_holder(&s->lease, secret) && s->jogs) {
+            serve_halt(s);
+        }
+        if (!(gives ? lease_give(&s->lease, secret, grobo_now_us())
+                    : lease_deny(&s->lease, secret))) {
+            refuse_lease(s, r);
+            return;
+        }
+        events_tell(s, "lease", "info", NULL, "%s",
+                    !gives                     ? "to drive was refused"
+                    : lease_is_held(&s->lease) ? "the lease was handed over"
+                                               : "nobody drives");
+        http_reply_json(r, 200, json_pack("{s:b}", "held", !gives));
+    } else {
+        http_refuse(r, 400, "arg", "lease: action is take, ask, give or deny");
+    }
+}
+
+/* From anybody; beyond loopback from who has the token. */
+static void serve_stop(serve *s, http_request *r, const json_t *body)
+{
+    bool estop = strstr(r->path, "estop") != NULL;
+    if (http_is_open(r->server) && !has_token(r, body)) {
+        return;
+    }
+    int result = stops_ask(s, name_of(body), estop);
+    if (result < 0 && result != GROBO_ERR_CLOSED) {
+        serve_refuse(s, r, result, estop ? "estop" : "stop");
+    } else if (r->second) {
+        http_reply_empty(r);
+    } else {
+        serve_accept(s, r, result > 0 ? result : 0, "stop");
+    }
+}
+
+static void serve_heartbeat(serve *s, http_request *r, const json_t *body)
+{
+    if (http_is_open(r->server) && !has_token(r, body)) {
+        return;
+    }
+    const char *secret = text_of(body, "lease");
+    if (!lease_is_holder(&s->lease, secret)) {
+        refuse_lease(s, r);
+    } else if (!is_fresh(s, json_object_get(body, "drawn"))) {
+        http_refuse(r, 409, "stale", "the page draws nothing: this counts as no heartbeat");
+    } else {
+        lease_beat(&s->lease, secret, grobo_now_us());
+        http_reply_empty(r);
+    }
+}
+
+/* ---- paths ----------------------------------------------------------------------------------- */
+
+typedef struct plain {
+    const char *path;
+    wall_rule rule;
+    bool second; /* on the second port */
+    void (*run)(serve *s, http_request *r, const json_t *body);
+} plain;
+
+static void serve_robot(serve *s, http_request *r, const json_t *body)
+{
+    (void)body;
+    http_reply_json(r, 200, serve_robot_json(s));
+}
+
+static void serve_state(serve *s, http_request *r, const json_t *body)
+{
+    (void)body;
+    http_reply_json(r, 200, serve_state_json(s));
+}
+
+static void serve_events(serve *s, http_request *r, const json_t *body)
+{
+    const char *last = http_header(r, "Last-Event-ID");
+    double id = -1;
+    (void)body;
+    if (last && (!cli_read_number(last, &id) || !(id >= 0 && id <= 1e9))) {
+        id = -1;
+    }
+    char *text = events_since(&s->events, (int)id);
+    http_reply_stream(r, text && *text ? text : ": hello\n\n");
+    free(text);
+}
+
+static const plain plains[] = {
+    {"/api/robot", WALL_READ, false, serve_robot},
+    {"/api/state", WALL_READ, false, serve_state},
+    {"/api/events", WALL_READ, false, serve_events},
+    {"/api/lease", WALL_PLAIN, false, serve_lease},
+    {"/api/stop", WALL_STOP, false, serve_stop},
+    {"/api/estop", WALL_STOP, false, serve_stop},
+    {"/stop", WALL_STOP, true, serve_stop},
+    {"/estop", WALL_STOP, true, serve_stop},
+    {"/heartbeat", WALL_PLAIN, true, serve_heartbeat},
+};
+
+static const plain *find_plain(const http_request *r)
+{
+    for (size_t i = 0; i < sizeof plains / sizeof plains[0]; i++) {
+        if (plains[i].second == r->second && strcmp(plains[i].path, r->path) == 0) {
+            return &plains[i];
+        }
+    }
+    return NULL;
+}
+
+static const verb *find_verb(const http_request *r)
+{
+    for (size_t i = 0; !r->second && i < sizeof verbs / sizeof verbs[0]; i++) {
+        if (strcmp(verbs[i].path, r->path) == 0) {
+            return &verbs[i];
+        }
+    }
+    return NULL;
+}
+
+bool serve_rule(void *ctx, const http_request *r, wall_rule *rule)
+{
+    const plain *p = find_plain(r);
+    (void)ctx;
+    if (p) {
+        *rule = p->rule;
+        return true;
+    }
+    *rule = find_verb(r) ? WALL_ACT : WALL_PAGE;
+    return *rule == WALL_ACT || (!r->second && page_has(r->path));
+}
+
+void serve_request(void *ctx, http_request *r)
+{
+    serve *s = ctx;
+    const plain *p = find_plain(r);
+    const verb *v = find_verb(r);
+    if (!p && !v) {
+        page_serve(r);
+        return;
+    }
+    json_t *body = serve_body(r);
+    if (!body) {
+        return;
+    }
+    if (p) {
+        p->run(s, r, body);
+    } else if (is_granted(s, r, body, v->needs)) {
+        v->run(s, r, body);
+    }
+    json_decref(body);
+}

@@ -1,0 +1,363 @@
+/* SPDX-License-Identifier: MIT */
+/* serve: the loop, the robot's events, who drives. */
+#include <stdlib.h>
+#include <string.h>
+
+#include <event2/http.h>
+
+#include <grobo/port.h>
+
+#include "tools/grctl/web/serve.h"
+
+/* Each joint is read so often: what a picture needs that is drawn between two readings. */
+enum { SENSE_US = 200000, COMMENT_US = 900000 };
+
+int64_t serve_ms(const serve *s, int64_t at_us)
+{
+    return (at_us - s->began_us) / 1000;
+}
+
+grobo_robot_config serve_config(const serve *s)
+{
+    grobo_robot_config config = conn_robot_config(s->a);
+    config.sense_interval_us = SENSE_US;
+    return config;
+}
+
+/* ---- jobs ------------------------------------------------------------------------------------ */
+
+int serve_note_job(serve *s, int job, const char *doing)
+{
+    serve_job *slot = &s->jobs[0];
+    for (int i = 0; job > 0 && i < SERVE_JOBS; i++) {
+        if (s->jobs[i].number == 0 || s->jobs[i].number == job) {
+            slot = &s->jobs[i];
+            break;
+        }
+    }
+    if (job > 0 && slot->number != job) {
+        *slot = (serve_job){.number = job, .doing = doing};
+    }
+    return job;
+}
+
+static json_t *result_json(const serve *s, const grobo_event_job *job)
+{
+    json_t *more = json_pack("{s:i,s:o}", "job", job->number, "result",
+                             app_json_code(grobo_error_name(job->result)));
+    if (job->result < 0 && job->joint >= 0 && job->joint < s->model->n_joints) {
+        json_object_set_new(more, "joint", json_integer(job->joint));
+    }
+    return more;
+}
+
+/* The words of the command for how a job failed. */
+static void say_end(serve *s, const serve_job *j, const grobo_event_job *job)
+{
+    char said[APP_LINE_BYTES] = "";
+    app *a = s->c.a, quiet = *a;
+    bool ours = job->result == GROBO_ERR_CANCELED || job->result == GROBO_ERR_SUPERSEDED;
+    if (job->result >= 0 || ours) {
+        events_tell(s, "job", "info", result_json(s, job), "%s: %s", j->doing,
+                    ours ? "stopped" : "done");
+        return;
+    }
+    app_hush(&quiet, said);
+    s->c.a = &quiet;
+    s->c.job = *job;
+    (void)conn_fail(&s->c, job->result, j->doing);
+    s->c.a = a;
+    events_tell(s, "job", "error", result_json(s, job), "%s", said);
+}
+
+static void answer_capture(serve *s, const serve_job *j, const grobo_event_job *job)
+{
+    grobo_posture posture;
+    json_t *angles = json_array();
+    if (job->result < 0 && job->failed == 0) {
+        json_decref(angles);
+        serve_refuse(s, j->waiting, job->result, "capture");
+        return;
+    }
+    grobo_robot_posture(s->c.robot, GROBO_NEVER_US, &posture);
+    for (int k = 0; k < s->model->n_joints; k++) {
+        bool read = (j->joints & posture.set & ~job->failed & GROBO_JOINT_BIT(k)) != 0;
+        json_array_append_new(angles,
+                              read ? app_json_number(grobo_deg_from_rad(posture.angle_rad[k]), 2)
+                                   : json_null());
+    }
+    http_reply_json(
+        j->waiting, 200,
+        json_pack("{s:I,s:o}", "sequence", (json_int_t)s->sequence, "angle_deg", angles));
+}
+
+static void end_job(serve *s, const grobo_event_job *job)
+{
+    for (int i = 0; i < SERVE_JOBS; i++) {
+        serve_job j = s->jobs[i];
+        if (j.number != job->number) {
+            continue;
+        }
+        memset(&s->jobs[i], 0, sizeof s->jobs[i]);
+        if (j.waiting) {
+            answer_capture(s, &j, job);
+        } else if (j.doing) {
+            say_end(s, &j, job);
+        }
+    }
+}
+
+/* ---- what comes from the robot --------------------------------------------------------------- */
+
+static void say_trip(serve *s)
+{
+    char said[APP_LINE_BYTES] = "";
+    app *a = s->c.a, quiet = *a;
+    if (s->stops.latched) { /* by us: it was told */
+        return;
+    }
+    app_hush(&quiet, said);
+    s->c.a = &quiet;
+    (void)conn_fail(&s->c, GROBO_ERR_LATCHED, "robot");
+    s->c.a = a;
+    json_t *more = json_pack("{s:o}", "trip", app_json_code(grobo_trip_name(s->c.trip.trip)));
+    if (s->c.trip.joint >= 0) {
+        json_object_set_new(more, "joint", json_integer(s->c.trip.joint));
+    }
+    s->jogs = s->jog_waits = false;
+    events_tell(s, "trip", "error", more, "%s", said);
+}
+
+static void on_event(conn *c, const grobo_event *event)
+{
+    serve *s = c->ctx;
+    stops_on_event(s, event);
+    player_on_event(s, event);
+    switch (event->kind) {
+    case GROBO_EVENT_JOB:
+        end_job(s, &event->u.job);
+        verb_jog_on(s);
+        break;
+    case GROBO_EVENT_TRIP:
+        say_trip(s);
+        break;
+    case GROBO_EVENT_LINK_DOWN:
+        s->jogs = s->jog_waits = s->moves = false;
+        s->limp = 0;
+        events_tell(s, "link", "error", NULL, "the line is lost");
+        break;
+    case GROBO_EVENT_LINK_UP:
+        events_tell(s, "link", "info", NULL, "the line is up: %s", conn_device(c));
+        break;
+    case GROBO_EVENT_UNWATCHED:
+        events_tell(s, "log", "warning", NULL, "this motion is played unwatched");
+        break;
+    case GROBO_EVENT_JOINT:
+    case GROBO_EVENT_ROUND:
+    case GROBO_EVENT_PLAY:
+    case GROBO_EVENT_SLOW_CALLBACK:
+        break;
+    }
+}
+
+/* ---- who drives ------------------------------------------------------------------------------ */
+
+bool serve_is_moving(const serve *s)
+{
+    return s->c.up && (grobo_robot_moving(s->c.robot) || grobo_robot_is_playing(s->c.robot) ||
+                       grobo_robot_job(s->c.robot) == GROBO_JOB_PLAY);
+}
+
+void serve_halt(serve *s)
+{
+    s->jogs = s->jog_waits = s->moves = false;
+    player_forget(s);
+    if (s->c.up) {
+        (void)grobo_robot_stop(grobo_session_robot(s->c.session), false);
+        grobo_session_pump(s->c.session);
+    }
+}
+
+/* What was declared when the motion began. */
+static void lose_motion(serve *s)
+{
+    bool plays =
+        grobo_robot_is_playing(s->c.robot) || grobo_robot_job(s->c.robot) == GROBO_JOB_PLAY;
+    if (plays && s->player.on_lost == PLAYER_FINISH) {
+        events_tell(s, "lease", "warning", NULL,
+                    "the page that drives is lost: the motion goes on");
+        return;
+    }
+    bool leaves = plays && s->player.on_lost == PLAYER_EXIT;
+    events_tell(s, "lease", "warning", NULL, "the page that drives is lost: %s",
+                leaves ? "the exit policy is carried out" : "the motion stops");
+    serve_halt(s);
+    if (leaves) {
+        int job = grobo_robot_exit(grobo_session_robot(s->c.session), GROBO_EXIT_DEFAULT);
+        serve_note_job(s, job, "exit");
+    }
+}
+
+static void look_after_lease(serve *s)
+{
+    int64_t silent_us = lease_silent_us(&s->lease, grobo_now_us());
+    if (silent_us > SERVE_JOG_LOST_US && s->jogs) {
+        events_tell(s, "lease", "warning", NULL, "the page that drives is silent: jogging stops");
+        serve_halt(s);
+    }
+    if (silent_us <= SERVE_PLAY_LOST_US) {
+        return;
+    }
+    if (serve_is_moving(s)) {
+        lose_motion(s);
+    } else {
+        events_tell(s, "lease", "info", NULL, "the page that drove is gone");
+    }
+    lease_end(&s->lease);
+}
+
+/* Jogging is over when its last target is reached. */
+static void look_after_jog(serve *s)
+{
+    verb_jog_on(s);
+    if (!serve_is_moving(s) && !s->jog_waits) {
+        s->jogs = false;
+    }
+}
+
+/* ---- the loop -------------------------------------------------------------------------------- */
+
+static void send_state(serve *s)
+{
+    static const char head[] = "event: state\ndata: ";
+    char *data = json_dumps(serve_state_json(s), JSON_COMPACT | JSON_REAL_PRECISION(12));
+    size_t n = data ? strlen(data) : 0;
+    char *text = malloc(sizeof head + n + 2);
+    if (data && text) {
+        memcpy(text, head, sizeof head - 1);
+        memcpy(text + sizeof head - 1, data, n);
+        memcpy(text + sizeof head - 1 + n, "\n\n", 2);
+        http_send(s->http, text, sizeof head - 1 + n + 2, true);
+    }
+    free(text);
+    free(data);
+}
+
+static void on_tick(evutil_socket_t fd, short what, void *ctx)
+{
+    static const char comment[] = ": alive\n\n";
+    serve *s = ctx;
+    int64_t now_us = grobo_now_us();
+    (void)fd;
+    (void)what;
+    s->sequence++;
+    s->sequence_us[s->sequence % SERVE_SEQUENCES] = now_us;
+    stops_look(s);
+    look_after_lease(s);
+    look_after_jog(s);
+    if (http_streams(s->http) > 0) {
+        send_state(s);
+        if (now_us - s->quiet_us > COMMENT_US) {
+            s->quiet_us = now_us;
+            http_send(s->http, comment, sizeof comment - 1, false);
+        }
+    }
+}
+
+static bool never(conn *c)
+{
+    (void)c;
+    return false;
+}
+
+static int start(serve *s)
+{
+    const char *complaint = NULL, *token = getenv("GRCTL_TOKEN");
+    http_config config = {.base = s->c.base,
+                          .address = s->options->listen,
+                          .port = s->options->port,
+                          .name = s->options->name,
+                          .token = token && *token ? token : NULL,
+                          .rule = serve_rule,
+                          .serve = serve_request,
+                          .ctx = s};
+    int error = http_new(&config, &s->http, &complaint);
+    if (error) {
+        return app_fail(s->a, EXIT_ROBOT, grobo_error_name(error), "serve: port %u: %s",
+                        s->options->port, complaint);
+    }
+    s->tick = conn_every(&s->c, SERVE_STATE_US, on_tick, s);
+    s->worker = worker_new(s->c.base);
+    if (!s->tick || !s->worker) {
+        return app_fail_error(s->a, EXIT_ROBOT, GROBO_ERR_NOMEM, "serve");
+    }
+    return EXIT_DONE;
+}
+
+static void announce(const serve *s)
+{
+    const char *host = s->options->name     ? s->options->name
+                       : s->options->listen ? s->options->listen
+                                            : "127.0.0.1";
+    char url[256], stop_url[256];
+    snprintf(url, sizeof url, "http://%s:%u/", host, http_port(s->http));
+    snprintf(stop_url, sizeof stop_url, "http://%s:%u/", host, http_stop_port(s->http));
+    if (s->a->json) {
+        app_print_json(json_pack("{s:s,s:s,s:s}", "url", url, "stop_url", stop_url, "token",
+                                 http_token(s->http)));
+        return;
+    }
+    if (http_is_open(s->http)) {
+        app_note(s->a, "serve: plain HTTP beyond this machine: whoever listens on that network "
+                       "reads the token; 'ssh -L' or a proxy with TLS is safer");
+    }
+    app_print("%s#token=%s\n", url, http_token(s->http));
+}
+
+static void finish(serve *s)
+{
+    s->ending = true;
+    worker_free(s->worker);
+    http_free(s->http);
+    conn_forget(s->tick);
+    s->http = NULL;
+    player_free(s);
+    events_free(&s->events);
+}
+
+static int run(serve *s)
+{
+    conn *c = &s->c;
+    c->ctx = s;
+    c->on_event = on_event;
+    s->model = grobo_robot_driver(c->robot)->model;
+    s->began_us = grobo_now_us();
+    grobo_robot_config config = serve_config(s);
+    int error = grobo_session_configure(c->session, &config);
+    int status = error ? conn_fail(c, error, "serve") : start(s);
+    if (status) {
+        return status;
+    }
+    announce(s);
+    error = conn_wait_until(c, never);
+    c->moving = c->up && serve_is_moving(s);
+    c->on_event = NULL; /* nobody is told any more */
+    return error ? conn_fail(c, error, "serve") : EXIT_DONE;
+}
+
+int web_run(app *a, const web_options *options)
+{
+    static serve s;
+    memset(&s, 0, sizeof s);
+    s.a = a;
+    s.options = options;
+    a->moves = a->reconnects = true;
+    int status = conn_open(&s.c, a);
+    if (!status) {
+        status = run(&s);
+    }
+    finish(&s);
+    status = conn_close(&s.c, status);
+    a->reconnects = false;
+    return status;
+}

@@ -1,0 +1,111 @@
+/* SPDX-License-Identifier: MIT */
+/* What the parts of `serve` share: the robot, who drives it, what was told. */
+#ifndef GRCTL_WEB_SERVE_H
+#define GRCTL_WEB_SERVE_H
+
+#include "tools/grctl/conn/conn.h"
+#include "tools/grctl/web/events.h"
+#include "tools/grctl/web/http.h"
+#include "tools/grctl/web/lease.h"
+#include "tools/grctl/web/player.h"
+#include "tools/grctl/web/stops.h"
+#include "tools/grctl/web/web.h"
+#include "tools/grctl/web/worker.h"
+
+/* How often a state is told; what is based on an older one than STALE is refused. */
+#define SERVE_STATE_US INT64_C(33333)
+#define SERVE_STALE_US INT64_C(1000000)
+/* Silence of who drives: jogging ends; a motion ends, and the lease. */
+#define SERVE_JOG_LOST_US INT64_C(1000000)
+#define SERVE_PLAY_LOST_US INT64_C(3000000)
+
+enum { SERVE_SEQUENCES = 64, SERVE_JOBS = 16, SERVE_HEARTBEAT_MS = 200 };
+
+/* A job of the engine's that a request began. */
+typedef struct serve_job {
+    int number; /* 0: none */
+    const char *doing;
+    bool told;             /* nobody asked for it: its end is no news */
+    http_request *waiting; /* for the angles it reads, or NULL */
+    grobo_joint_mask joints;
+} serve_job;
+
+struct serve {
+    conn c;
+    app *a;
+    const web_options *options;
+    const grobo_model *model;
+    http *http;
+    struct event *tick;
+    int64_t began_us;
+    uint64_t sequence;
+    int64_t sequence_us[SERVE_SEQUENCES]; /* when the last ones were told */
+    events events;
+    lease lease;
+    stops stops;
+    worker *worker;
+    player player;
+    serve_job jobs[SERVE_JOBS];
+    grobo_joint_mask limp; /* in free mode */
+    /* jogging: the newest target */
+    grobo_posture jog;
+    bool jogs, jog_waits;
+    bool moves;       /* a move of the lease's holder is under way */
+    int64_t quiet_us; /* when the last text went to the streams */
+    bool ending;      /* a signal came: nothing more is begun */
+};
+
+/* Milliseconds of the server's clock. */
+int64_t serve_ms(const serve *s, int64_t at_us);
+
+/* Notes a job: its end becomes an event. Returns the number, or the error. */
+int serve_note_job(serve *s, int job, const char *doing);
+
+/* Whether something moves, or is about to. */
+bool serve_is_moving(const serve *s);
+
+/* The engine's configuration while it serves. */
+grobo_robot_config serve_config(const serve *s);
+
+/* Ends jogging; what moves stops softly. */
+void serve_halt(serve *s);
+
+/* ---- requests: by path ----------------------------------------------------------------------- */
+
+bool serve_rule(void *ctx, const http_request *r, wall_rule *rule);
+void serve_request(void *ctx, http_request *r);
+
+/* ---- JSON ------------------------------------------------------------------------------------ */
+
+json_t *serve_robot_json(serve *s);
+json_t *serve_state_json(serve *s);
+
+/* The body of a request as an object; NULL: it was refused. *body is to be freed. */
+json_t *serve_body(http_request *r);
+
+/* ---- refusals -------------------------------------------------------------------------------- */
+
+/* By an error of the library: "move: ...". */
+void serve_refuse(serve *s, http_request *r, int error, const char *doing);
+/* By what app_fail() said to an app that is hushed, and the exit status it gave. */
+void serve_refuse_said(http_request *r, int status, const app *a);
+/* {"done": ..., "job": ...} for what a request to the engine returned, or why not. */
+void serve_accept(serve *s, http_request *r, int result, const char *doing);
+
+/* ---- verbs ----------------------------------------------------------------------------------- */
+
+typedef void (*serve_verb_fn)(serve *s, http_request *r, json_t *body);
+void verb_pause(serve *s, http_request *r, json_t *body);
+void verb_resume(serve *s, http_request *r, json_t *body);
+void verb_seek(serve *s, http_request *r, json_t *body);
+void verb_speed(serve *s, http_request *r, json_t *body);
+void verb_halt(serve *s, http_request *r, json_t *body);
+void verb_move(serve *s, http_request *r, json_t *body);
+void verb_jog(serve *s, http_request *r, json_t *body);
+void verb_torque(serve *s, http_request *r, json_t *body);
+void verb_capture(serve *s, http_request *r, json_t *body);
+void verb_reset(serve *s, http_request *r, json_t *body);
+/* Again and again while jogging: the newest target goes out when the engine takes it. */
+void verb_jog_on(serve *s);
+
+#endif

@@ -1,0 +1,223 @@
+/* SPDX-License-Identifier: MIT */
+/* The robot as it is, and as it is made. */
+#include <math.h>
+#include <string.h>
+
+#include <grobo/port.h>
+#include <grobo/version.h>
+
+#include "tools/grctl/show/render.h"
+#include "tools/grctl/web/serve.h"
+
+/* ---- as it is -------------------------------------------------------------------------------- */
+
+static bool has(const grobo_joint_info *i, grobo_field field)
+{
+    return (i->state.valid & field) != 0;
+}
+
+static json_t *whole_or_null(bool known, long value)
+{
+    return known ? json_integer(value) : json_null();
+}
+
+/* Lists by joint: {"angle_deg": [...], ...}. */
+static void add_joints(serve *s, json_t *state)
+{
+    static const char *const names[] = {"angle_deg",  "target_deg",    "torque",
+                                        "current_ma", "temperature_c", "voltage_v",
+                                        "speed_dps",  "age_ms",        "status"};
+    enum { N = sizeof names / sizeof names[0] };
+    json_t *lists[N];
+    for (int k = 0; k < N; k++) {
+        lists[k] = json_array();
+        json_object_set_new(state, names[k], lists[k]);
+    }
+    for (int j = 0; j < s->model->n_joints; j++) {
+        grobo_joint_info i;
+        double target_rad;
+        grobo_robot_joint(s->c.robot, j, &i);
+        bool fresh = i.angle_age_us != GROBO_NEVER_US, targeted = render_target(&i, &target_rad);
+        json_t *values[N] = {
+            app_json_number(fresh ? grobo_deg_from_rad(i.state.angle_rad) : NAN, 1),
+            app_json_number(targeted ? grobo_deg_from_rad(target_rad) : NAN, 1),
+            i.torque_known ? json_string(render_torque(&i)) : json_null(),
+            whole_or_null(has(&i, GROBO_FIELD_CURRENT), i.state.current_ma),
+            whole_or_null(has(&i, GROBO_FIELD_TEMPERATURE), i.state.temperature_c),
+            app_json_number(has(&i, GROBO_FIELD_VOLTAGE) ? i.state.voltage_mv / 1e3 : NAN, 2),
+            whole_or_null(has(&i, GROBO_FIELD_SPEED), i.state.speed_dps),
+            whole_or_null(fresh, fresh ? (long)(i.angle_age_us / 1000) : 0),
+            app_json_code(grobo_error_name(i.status))};
+        for (int k = 0; k < N; k++) {
+            json_array_append_new(lists[k], values[k]);
+        }
+    }
+}
+
+static json_t *line_json(serve *s)
+{
+    grobo_robot_counters n;
+    grobo_jitter jitter;
+    uint64_t tx_bytes, rx_bytes;
+    json_t *line = conn_link_json(&s->c);
+    conn_counters(&s->c, &n);
+    grobo_session_bytes(s->c.session, &tx_bytes, &rx_bytes);
+    grobo_robot_jitter(s->c.robot, &jitter);
+    json_t *more = json_pack(
+        "{s:I,s:I,s:I,s:I,s:I,s:I,s:I,s:{s:I,s:I,s:I,s:I},s:n,s:n}", "tx_bytes",
+        (json_int_t)tx_bytes, "rx_bytes", (json_int_t)rx_bytes, "motion_frames",
+        (json_int_t)n.motion_frames, "late_frames", (json_int_t)n.late_frames, "clamped",
+        (json_int_t)n.clamped, "stretched", (json_int_t)n.stretched, "stalls", (json_int_t)n.stalls,
+        "jitter_us", "frames", (json_int_t)jitter.frames, "p50", (json_int_t)jitter.p50_us, "p99",
+        (json_int_t)jitter.p99_us, "max", (json_int_t)jitter.max_us, "load_pct", "load_hz");
+    json_object_update_new(line, more);
+    return line;
+}
+
+static json_t *page_json(serve *s, const lease_page *page)
+{
+    return *page->secret ? json_pack("{s:o,s:s,s:I}", "name", app_json_text(page->name), "id",
+                                     page->id, "since_ms", (json_int_t)serve_ms(s, page->since_us))
+                         : json_null();
+}
+
+static const char *job_word(grobo_job_kind kind)
+{
+    static const char *const words[] = {NULL,   "check", "sense",     "torque",  "move",
+                                        "play", "raw",   "registers", "command", "stored",
+                                        "exit", "estop", NULL};
+    return words[kind];
+}
+
+static const char *link_word(const serve *s)
+{
+    return s->c.up                                                          ? "up"
+           : grobo_session_get_state(s->c.session) == GROBO_SESSION_WAITING ? "lost"
+                                                                            : "opening";
+}
+
+json_t *serve_state_json(serve *s)
+{
+    json_t *limp = json_array();
+    json_t *state = json_pack("{s:I,s:I,s:s}", "sequence", (json_int_t)s->sequence, "time_ms",
+                              (json_int_t)serve_ms(s, grobo_now_us()), "link", link_word(s));
+    const char *job = job_word(grobo_robot_job(s->c.robot));
+    add_joints(s, state);
+    for (int j = 0; j < s->model->n_joints; j++) {
+        if (s->limp & GROBO_JOINT_BIT(j)) {
+            json_array_append_new(limp, json_integer(j));
+        }
+    }
+    json_t *more = json_pack("{s:o,s:b,s:s?,s:o,s:o,s:o,s:n,s:{s:o,s:o},s:i}", "limp", limp,
+                             "moving", grobo_robot_moving(s->c.robot), "job", job, "play",
+                             player_json(s), "stop", stops_json(s), "line", line_json(s), "body",
+                             "lease", "holder", page_json(s, &s->lease.holder), "asked",
+                             page_json(s, &s->lease.asker), "clients", http_streams(s->http));
+    json_object_update_new(state, more);
+    return state;
+}
+
+/* ---- as it is made --------------------------------------------------------------------------- */
+
+static json_t *number(double value)
+{
+    return app_json_number(value, 6);
+}
+
+static json_t *joint_json(const grobo_model *model, int j)
+{
+    const grobo_joint *joint = &model->joints[j];
+    json_t *groups = json_array();
+    for (int g = 0; g < model->n_groups; g++) {
+        if (model->groups[g].joints & GROBO_JOINT_BIT(j)) {
+            json_array_append_new(groups, json_string(model->groups[g].name));
+        }
+    }
+    return json_pack(
+        "{s:i,s:i,s:s,s:[o,o],s:o,s:o,s:o,s:i,s:i}", "joint", j, "motor", joint->motor, "name",
+        joint->name, "limits_deg", app_json_number(grobo_deg_from_rad(joint->min_rad), 3),
+        app_json_number(grobo_deg_from_rad(joint->max_rad), 3), "init_deg",
+        app_json_number(grobo_deg_from_rad(joint->init_rad), 3), "max_speed_dps",
+        app_json_number(grobo_deg_from_rad(joint->max_speed_rad_s), 1), "groups", groups, "mirror",
+        joint->mirror, "mirror_sign", joint->mirror_sign < 0 ? -1 : 1);
+}
+
+static json_t *joints_json(const grobo_model *model)
+{
+    json_t *list = json_array();
+    for (int j = 0; j < model->n_joints; j++) {
+        json_array_append_new(list, joint_json(model, j));
+    }
+    return list;
+}
+
+static json_t *groups_json(const grobo_model *model)
+{
+    json_t *list = json_array();
+    for (int g = 0; g < model->n_groups; g++) {
+        json_t *joints = json_array();
+        for (int j = 0; j < model->n_joints; j++) {
+            if (model->groups[g].joints & GROBO_JOINT_BIT(j)) {
+                json_array_append_new(joints, json_integer(j));
+            }
+        }
+        json_array_append_new(
+            list, json_pack("{s:s,s:o}", "name", model->groups[g].name, "joints", joints));
+    }
+    return list;
+}
+
+static json_t *safety_json(const grobo_safety_limits *l)
+{
+    return json_pack("{s:o,s:o,s:o,s:o,s:o,s:o}", "temperature_c", number(l->temperature_c),
+                     "current_ma", number(l->current_ma), "current_ms",
+                     number((double)l->current_us / 1e3), "voltage_mv", number(l->voltage_mv),
+                     "lost_replies", number(l->lost_replies), "approach_dps",
+                     number(grobo_deg_from_rad(l->approach_rad_s)));
+}
+
+static json_t *budget_json(serve *s)
+{
+    grobo_budget budget = {0};
+    (void)grobo_robot_budget(s->c.robot, &budget);
+    return json_pack("{s:i,s:i,s:i}", "default_hz", budget.default_hz, "watched_hz",
+                     budget.watched_hz, "max_hz",
+                     budget.motion_us ? (int)(1000000 / budget.motion_us) : 0);
+}
+
+static const char *wiring_word(const serve *s)
+{
+    const cli_value *asked = app_global(s->a, GLOBAL_WIRING);
+    int wiring = asked->given ? asked->choice : (int)robot_of(s->a)->wiring;
+    return wiring == GROBO_WIRING_BUS ? "bus" : "board";
+}
+
+static const char *exit_word(const serve *s)
+{
+    static const char *const words[] = {"hold", "off", "hold", "sit"};
+    const cli_value *asked = app_global(s->a, GLOBAL_ON_EXIT);
+    return words[asked->given ? asked->choice + GROBO_EXIT_OFF
+                              : (int)grobo_robot_driver(s->c.robot)->on_exit];
+}
+
+json_t *serve_robot_json(serve *s)
+{
+    const grobo_robot_def *def = robot_of(s->a);
+    const grobo_driver *driver = grobo_robot_driver(s->c.robot);
+    json_t *robot =
+        json_pack("{s:i,s:s,s:s,s:s,s:s,s:s,s:o,s:b,s:b,s:s,s:i}", "interface", 1, "version",
+                  grobo_version(), "name", def->name, "title", def->title, "model", s->model->name,
+                  "family", def->family->name, "device", app_json_text(conn_device(&s->c)),
+                  "simulator", grobo_session_sim(s->c.session) != NULL, "arm", def->arm, "wiring",
+                  wiring_word(s), "baud_bps", (int)conn_baud(s->a));
+    json_t *more = json_pack(
+        "{s:o,s:o,s:o,s:n,s:o,s:s,s:o,s:i,s:o,s:b,s:{s:i,s:i,s:i,s:i,s:i}}", "joints",
+        joints_json(s->model), "groups", groups_json(s->model), "links", json_array(), "body",
+        "safety", safety_json(&driver->limits), "exit", exit_word(s), "budget", budget_json(s),
+        "stop_port", http_stop_port(s->http), "state_hz", number(30), "token",
+        http_is_open(s->http), "lease", "heartbeat_ms", SERVE_HEARTBEAT_MS, "jog_lost_ms",
+        (int)(SERVE_JOG_LOST_US / 1000), "play_lost_ms", (int)(SERVE_PLAY_LOST_US / 1000), "ask_ms",
+        (int)(LEASE_ASK_US / 1000), "stale_ms", (int)(SERVE_STALE_US / 1000));
+    json_object_update_new(robot, more);
+    return robot;
+}

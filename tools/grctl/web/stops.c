@@ -1,0 +1,173 @@
+/* SPDX-License-Identifier: MIT */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <grobo/estop.h>
+#include <grobo/port.h>
+
+#include "tools/grctl/web/serve.h"
+
+/* A reading that was on the line when the stop left tells nothing of it; a frame of all joints
+ * takes 10 ms at 115200 bps. */
+#define STOPS_ON_ITS_WAY_US INT64_C(20000)
+/* As in free mode: below that a joint stands. */
+enum { STOPS_SLOW_DPS = 8 };
+static const double stops_near_deg = 3;
+
+static const char *word_of(stops_joint joint)
+{
+    switch (joint) {
+    case STOPS_SENT:
+        return "sent";
+    case STOPS_STOPPED:
+        return "stopped";
+    case STOPS_MOVING:
+        return "moving";
+    case STOPS_LIMP:
+        return "limp";
+    case STOPS_SILENT:
+        return "silent";
+    }
+    return "sent";
+}
+
+static bool is_over(stops_joint joint)
+{
+    return joint == STOPS_STOPPED || joint == STOPS_LIMP;
+}
+
+static grobo_joint_mask unconfirmed(const serve *s)
+{
+    grobo_joint_mask joints = 0;
+    for (int j = 0; j < s->model->n_joints; j++) {
+        joints |= is_over(s->stops.joints[j]) ? 0 : GROBO_JOINT_BIT(j);
+    }
+    return joints;
+}
+
+int stops_ask(serve *s, const char *by, bool estop)
+{
+    stops *t = &s->stops;
+    bool news = !t->latched || (estop && !t->estop);
+    int result = GROBO_OK;
+    s->jogs = s->jog_waits = s->moves = false;
+    if (news) {
+        t->latched = true;
+        t->estop = estop;
+        t->held = false;
+        t->at_us = grobo_now_us();
+        snprintf(t->by, sizeof t->by, "%s", by);
+        memset(t->joints, 0, sizeof t->joints);
+    }
+    if (estop && news) {
+        result = grobo_robot_estop(grobo_session_robot(s->c.session));
+    } else if (!t->estop) { /* again: a frame may have been lost */
+        (void)grobo_robot_stop(grobo_session_robot(s->c.session), true);
+    }
+    grobo_session_pump(s->c.session);
+    if (news) {
+        lease_end(&s->lease);
+        player_forget(s);
+        events_tell(s, "stop", "warning", NULL, "%s by %s", estop ? "emergency stop" : "stop", by);
+    }
+    stops_look(s);
+    return result;
+}
+
+static stops_joint judge(const serve *s, int joint)
+{
+    grobo_joint_info i;
+    if (grobo_robot_joint(s->c.robot, joint, &i) < 0 || i.status != GROBO_OK) {
+        return STOPS_SILENT;
+    }
+    if ((i.torque_known && i.state.torque != GROBO_TORQUE_ON) ||
+        (s->limp & GROBO_JOINT_BIT(joint))) {
+        return STOPS_LIMP;
+    }
+    if (i.state.valid & GROBO_FIELD_SPEED) {
+        return i.state.speed_dps <= STOPS_SLOW_DPS && i.state.speed_dps >= -STOPS_SLOW_DPS
+                   ? STOPS_STOPPED
+                   : STOPS_MOVING;
+    }
+    return !i.has_target ||
+                   fabs(grobo_deg_from_rad(i.state.angle_rad - i.target_rad)) < stops_near_deg
+               ? STOPS_STOPPED
+               : STOPS_MOVING;
+}
+
+void stops_on_event(serve *s, const grobo_event *event)
+{
+    stops *t = &s->stops;
+    if (event->kind == GROBO_EVENT_JOB && event->u.job.number == t->reading) {
+        t->reading = 0;
+    }
+    if (!t->latched) {
+        return;
+    }
+    if (event->kind == GROBO_EVENT_JOINT && event->now_us - t->at_us > STOPS_ON_ITS_WAY_US) {
+        bool was = unconfirmed(s) != 0;
+        t->joints[event->u.joint.joint] = judge(s, event->u.joint.joint);
+        if (was && unconfirmed(s) == 0) {
+            events_tell(s, "stop", "info", NULL, "every joint stands");
+        }
+    }
+    if (event->kind == GROBO_EVENT_LINK_UP) { /* whatever happened meanwhile */
+        t->held = false;
+        memset(t->joints, 0, sizeof t->joints);
+    }
+}
+
+void stops_look(serve *s)
+{
+    stops *t = &s->stops;
+    grobo_joint_mask missing = t->latched ? unconfirmed(s) : 0;
+    if (!t->latched || !s->c.up) {
+        return;
+    }
+    if (!t->held && !t->estop) { /* the engine refuses too, from when it stands */
+        t->held = grobo_robot_latch(s->c.robot) == GROBO_OK;
+    }
+    if (missing && !t->reading && grobo_now_us() - t->at_us > STOPS_ON_ITS_WAY_US) {
+        int job = grobo_robot_sense(grobo_session_robot(s->c.session), missing, GROBO_SENSE_FULL);
+        t->reading = job > 0 ? job : 0;
+    }
+}
+
+int stops_reset(serve *s)
+{
+    int error = s->c.up ? grobo_robot_reset(grobo_session_robot(s->c.session)) : GROBO_OK;
+    if (error) {
+        return error;
+    }
+    memset(&s->stops, 0, sizeof s->stops);
+    s->c.trip = (grobo_trip_info){.trip = GROBO_TRIP_NONE, .joint = -1};
+    return GROBO_OK;
+}
+
+bool stops_is_latched(serve *s)
+{
+    return s->stops.latched || grobo_session_is_latched(s->c.session) ||
+           grobo_estop_stands(conn_device(&s->c));
+}
+
+json_t *stops_json(serve *s)
+{
+    const stops *t = &s->stops;
+    grobo_trip_info trip;
+    json_t *joints = json_array();
+    grobo_robot_tripped(s->c.robot, &trip);
+    bool tripped = trip.trip != GROBO_TRIP_NONE && trip.latched;
+    bool own = tripped && !t->latched;
+    for (int j = 0; t->latched && j < s->model->n_joints; j++) {
+        json_array_append_new(joints, json_string(word_of(t->joints[j])));
+    }
+    const char *kind = t->estop ? "estop" : t->latched ? "stop" : tripped ? "trip" : NULL;
+    return json_pack("{s:b,s:s?,s:o?,s:o?,s:o?,s:o?,s:o?,s:b,s:o}", "latched", kind != NULL, "kind",
+                     kind, "trip", own ? app_json_code(grobo_trip_name(trip.trip)) : NULL, "joint",
+                     own && trip.joint >= 0 ? json_integer(trip.joint) : NULL, "value",
+                     own ? app_json_number(trip.value, 3) : NULL, "by",
+                     t->latched ? app_json_text(t->by) : NULL, "age_ms",
+                     t->latched ? json_integer((grobo_now_us() - t->at_us) / 1000) : NULL,
+                     "confirmed", t->latched && unconfirmed(s) == 0, "joints", joints);
+}

@@ -1,0 +1,301 @@
+/* SPDX-License-Identifier: MIT */
+/* What a page may ask of the robot. */
+#include <math.h>
+#include <string.h>
+
+#include <grobo/port.h>
+
+#include "tools/grctl/cli/joints.h"
+#include "tools/grctl/web/serve.h"
+
+enum { MOVE_MS = 1000, JOG_MS = 300, LONGEST_MS = 163830 };
+
+/* ---- what a body has ------------------------------------------------------------------------- */
+
+/* The joints that are named; false: refused. All where none is. */
+static bool read_joints(serve *s, http_request *r, const json_t *body, grobo_joint_mask *joints)
+{
+    const json_t *list = json_object_get(body, "joints");
+    const char *names[CLI_ARGUMENTS_MAX];
+    char said[APP_LINE_BYTES];
+    app quiet = *s->a;
+    size_t n = json_array_size(list);
+    app_hush(&quiet, said);
+    for (size_t i = 0; i < n && i < CLI_ARGUMENTS_MAX; i++) {
+        names[i] = json_string_value(json_array_get(list, i));
+        if (!names[i]) {
+            http_refuse(r, 400, "arg", "joints: a name is no text");
+            return false;
+        }
+    }
+    int status =
+        n > CLI_ARGUMENTS_MAX ? EXIT_USAGE : joints_parse_all(&quiet, (int)n, names, joints);
+    if (status) {
+        serve_refuse_said(r, status, &quiet);
+    }
+    return status == 0;
+}
+
+/* {"R_KNEE_P": -40}; false: refused. */
+static bool read_angles(serve *s, http_request *r, const json_t *angles, const char *doing,
+                        grobo_posture *target)
+{
+    char said[APP_LINE_BYTES];
+    const char *name;
+    json_t *value;
+    app quiet = *s->a;
+    int status = 0;
+    app_hush(&quiet, said);
+    grobo_posture_init(target, s->model->n_joints);
+    if (json_object_size(angles) == 0) {
+        http_refuse(r, 400, "arg", "%s: angle_deg names no joint", doing);
+        return false;
+    }
+    json_object_foreach((json_t *)angles, name, value)
+    {
+        int joint = joints_parse_one(&quiet, name, strlen(name), &status);
+        if (joint >= 0 && !json_is_number(value)) {
+            http_refuse(r, 400, "arg", "%s: the angle of %s is no number", doing, name);
+            return false;
+        }
+        if (joint < 0) {
+            serve_refuse_said(r, status, &quiet);
+            return false;
+        }
+        grobo_posture_set_deg(target, joint, json_number_value(value));
+    }
+    status = joints_check_limits(&quiet, target, doing);
+    if (status) {
+        int joint = -1;
+        grobo_posture_check(target, s->model, &joint);
+        json_t *error = json_pack("{s:o,s:o}", "code", app_json_code(quiet.failed), "message",
+                                  app_json_text(said));
+        if (joint >= 0) {
+            json_object_set_new(error, "joint", json_integer(joint));
+            json_object_set_new(error, "name", json_string(s->model->joints[joint].name));
+            json_object_set_new(error, "value",
+                                app_json_number(grobo_deg_from_rad(target->angle_rad[joint]), 3));
+        }
+        http_reply_json(r, 422, json_pack("{s:o}", "error", error));
+    }
+    return status == 0;
+}
+
+static bool read_time(http_request *r, const json_t *body, double otherwise, grobo_posture *target)
+{
+    const json_t *time = json_object_get(body, "time_ms");
+    double ms = time ? json_number_value(time) : otherwise;
+    if ((time && !json_is_number(time)) || !(ms >= 0 && ms <= LONGEST_MS)) {
+        http_refuse(r, 400, "arg", "time_ms is 0 to %d", LONGEST_MS);
+        return false;
+    }
+    grobo_posture_set_time_ms(target, ms);
+    return true;
+}
+
+/* ---- a motion -------------------------------------------------------------------------------- */
+
+void verb_pause(serve *s, http_request *r, json_t *body)
+{
+    (void)body;
+    serve_accept(s, r, grobo_robot_pause(grobo_session_robot(s->c.session)), "pause");
+}
+
+void verb_resume(serve *s, http_request *r, json_t *body)
+{
+    (void)body;
+    serve_accept(s, r, grobo_robot_resume(grobo_session_robot(s->c.session)), "resume");
+}
+
+void verb_seek(serve *s, http_request *r, json_t *body)
+{
+    const json_t *t = json_object_get(body, "t_ms");
+    double ms = json_number_value(t);
+    if (!json_is_number(t) || !(ms >= 0 && ms <= 1e10)) {
+        http_refuse(r, 400, "arg", "seek: t_ms is no time");
+        return;
+    }
+    serve_accept(s, r, grobo_robot_seek(grobo_session_robot(s->c.session), (int64_t)(ms * 1000)),
+                 "seek");
+}
+
+void verb_speed(serve *s, http_request *r, json_t *body)
+{
+    const json_t *speed = json_object_get(body, "speed_pct");
+    double pct = json_number_value(speed);
+    if (!json_is_number(speed) || !(pct >= 1 && pct <= GROBO_PLAY_SPEED_MAX_PCT)) {
+        http_refuse(r, 400, "arg", "speed: speed_pct is 1 to %d", GROBO_PLAY_SPEED_MAX_PCT);
+        return;
+    }
+    int result = grobo_robot_speed(grobo_session_robot(s->c.session), (int)pct);
+    if (result >= 0) {
+        s->player.speed_pct = (uint16_t)pct;
+    }
+    serve_accept(s, r, result, "speed");
+}
+
+void verb_halt(serve *s, http_request *r, json_t *body)
+{
+    (void)body;
+    serve_halt(s);
+    serve_accept(s, r, GROBO_OK, "halt");
+}
+
+/* ---- joints ---------------------------------------------------------------------------------- */
+
+void verb_move(serve *s, http_request *r, json_t *body)
+{
+    const json_t *pose = json_object_get(body, "pose"),
+                 *angles = json_object_get(body, "angle_deg");
+    grobo_posture target;
+    if (pose && !angles && json_is_string(pose) && strcmp(json_string_value(pose), "init") == 0) {
+        grobo_posture_init_pose(&target, s->model);
+    } else if (pose) {
+        http_refuse(r, 400, "arg", "move: pose is \"init\", and without angle_deg");
+        return;
+    } else if (!read_angles(s, r, angles, "move", &target)) {
+        return;
+    }
+    if (!read_time(r, body, MOVE_MS, &target)) {
+        return;
+    }
+    s->jogs = s->jog_waits = false;
+    int job = grobo_robot_move(grobo_session_robot(s->c.session), &target);
+    s->moves |= job > 0;
+    serve_accept(s, r, serve_note_job(s, job, "move"), "move");
+}
+
+/* The newest target: into the move that is under way, else a new one. Later where neither goes. */
+void verb_jog_on(serve *s)
+{
+    if (!s->jog_waits || !s->c.up) {
+        return;
+    }
+    grobo_robot *robot = grobo_session_robot(s->c.session);
+    int job = grobo_robot_retarget(robot, &s->jog);
+    if (job == GROBO_ERR_STATE && grobo_robot_job(robot) != GROBO_JOB_MOVE &&
+        grobo_robot_job(robot) != GROBO_JOB_PLAY) {
+        job = grobo_robot_move(robot, &s->jog);
+        if (job > 0) {
+            serve_note_job(s, job, NULL);
+        }
+    }
+    if (job >= 0) {
+        s->jog_waits = false;
+    } else if (job != GROBO_ERR_STATE && job != GROBO_ERR_FULL) {
+        s->jogs = s->jog_waits = false;
+        events_tell(s, "job", "error",
+                    json_pack("{s:o}", "result", app_json_code(grobo_error_name(job))), "jog: %s",
+                    grobo_error_text(job));
+    }
+}
+
+void verb_jog(serve *s, http_request *r, json_t *body)
+{
+    grobo_posture target;
+    if (!read_angles(s, r, json_object_get(body, "angle_deg"), "jog", &target) ||
+        !read_time(r, body, JOG_MS, &target)) {
+        return;
+    }
+    if (!s->jogs && serve_is_moving(s)) {
+        serve_refuse(s, r, GROBO_ERR_STATE, "jog");
+        return;
+    }
+    /* What a target sets must include what the one before has set. */
+    if (s->jogs && grobo_robot_job(s->c.robot) == GROBO_JOB_MOVE) {
+        grobo_posture before = s->jog;
+        int64_t time_us = target.time_us;
+        grobo_posture_merge(&before, &target);
+        target = before;
+        target.time_us = time_us;
+    }
+    s->jog = target;
+    s->jogs = s->jog_waits = true;
+    verb_jog_on(s);
+    if (!s->jogs) {
+        serve_refuse(s, r, GROBO_ERR_STATE, "jog");
+        return;
+    }
+    serve_accept(s, r, GROBO_OK, "jog");
+}
+
+/* Less torque does not wait for a move to end: it ends the move. */
+static int switch_torque(serve *s, grobo_joint_mask joints, grobo_torque mode)
+{
+    grobo_robot *robot = grobo_session_robot(s->c.session);
+    int result = grobo_robot_torque(robot, joints, mode);
+    if (result == GROBO_ERR_STATE && mode != GROBO_TORQUE_ON &&
+        grobo_robot_cancel(robot) == GROBO_OK) {
+        result = grobo_robot_torque(robot, joints, mode);
+    }
+    if (result >= 0) {
+        s->limp &= ~joints;
+    }
+    return result;
+}
+
+/* Free mode begins at once, and ends as a job. */
+static int set_limp(serve *s, grobo_joint_mask joints, bool on)
+{
+    int result = grobo_robot_free(grobo_session_robot(s->c.session), joints, on);
+    if (result >= 0) {
+        s->limp = on ? s->limp | joints : s->limp & ~joints;
+    }
+    return result;
+}
+
+void verb_torque(serve *s, http_request *r, json_t *body)
+{
+    static const struct {
+        const char *word;
+        bool limp, on;
+        grobo_torque mode;
+    } modes[] = {{"on", false, true, GROBO_TORQUE_ON},
+                 {"off", false, false, GROBO_TORQUE_OFF},
+                 {"brake", false, false, GROBO_TORQUE_BRAKE},
+                 {"limp", true, true, GROBO_TORQUE_OFF},
+                 {"hold", true, false, GROBO_TORQUE_ON}};
+    const char *word = json_string_value(json_object_get(body, "mode"));
+    grobo_joint_mask joints;
+    if (!read_joints(s, r, body, &joints)) {
+        return;
+    }
+    for (size_t i = 0; word && i < sizeof modes / sizeof modes[0]; i++) {
+        if (strcmp(word, modes[i].word) == 0) {
+            int result = modes[i].limp ? set_limp(s, joints, modes[i].on)
+                                       : switch_torque(s, joints, modes[i].mode);
+            serve_accept(s, r, serve_note_job(s, result, "torque"), "torque");
+            return;
+        }
+    }
+    http_refuse(r, 400, "arg", "torque: mode is on, off, brake, limp or hold");
+}
+
+void verb_capture(serve *s, http_request *r, json_t *body)
+{
+    grobo_joint_mask joints;
+    if (!read_joints(s, r, body, &joints)) {
+        return;
+    }
+    int job = grobo_robot_sense(grobo_session_robot(s->c.session), joints, GROBO_SENSE_FULL);
+    if (serve_note_job(s, job, NULL) < 0) {
+        serve_refuse(s, r, job, "capture");
+        return;
+    }
+    for (int i = 0; i < SERVE_JOBS; i++) {
+        if (s->jobs[i].number == job) {
+            s->jobs[i].waiting = r;
+            s->jobs[i].joints = joints;
+        }
+    }
+}
+
+void verb_reset(serve *s, http_request *r, json_t *body)
+{
+    (void)body;
+    int error = stops_reset(s);
+    if (!error) {
+        events_tell(s, "stop", "info", NULL, "stop taken back; nothing moves by itself");
+    }
+    serve_accept(s, r, error, "reset");
+}

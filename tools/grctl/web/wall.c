@@ -1,0 +1,164 @@
+/* SPDX-License-Identifier: MIT */
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+#include <event2/http.h>
+#include <event2/keyvalq_struct.h>
+#include <event2/util.h>
+
+#include "tools/grctl/web/wall.h"
+
+static const wall_answer fine = {0};
+
+static wall_answer refuse(int status, const char *code, const char *message)
+{
+    return (wall_answer){.status = status, .code = code, .message = message};
+}
+
+/* The one value of a header; NULL: none. *n: how often it is there. */
+static const char *header(const wall_request *r, const char *name, int *n)
+{
+    const char *found = NULL;
+    const struct evkeyval *h;
+    int count = 0;
+    for (h = r->headers->tqh_first; h; h = h->next.tqe_next) {
+        if (strcasecmp(h->key, name) == 0) {
+            found = h->value;
+            count++;
+        }
+    }
+    if (n) {
+        *n = count;
+    }
+    return found;
+}
+
+/* Which of our hosts stands before :port, in any case; NULL: none. */
+static const char *own_host(const wall *w, const char *text, uint16_t port)
+{
+    char whole[WALL_NAME_BYTES + 8];
+    for (int i = 0; i < w->n_hosts; i++) {
+        snprintf(whole, sizeof whole, "%s:%u", w->hosts[i], port);
+        /* A browser leaves the port of http away. */
+        if (strcasecmp(text, whole) == 0 || (port == 80 && strcasecmp(text, w->hosts[i]) == 0)) {
+            return w->hosts[i];
+        }
+    }
+    return NULL;
+}
+
+const char *wall_host(const wall *w, const wall_request *r)
+{
+    const char *host = header(r, "Host", NULL);
+    return host ? own_host(w, host, w->port) : NULL;
+}
+
+static bool is_own_origin(const wall *w, const char *origin)
+{
+    static const char scheme[] = "http://";
+    return strncasecmp(origin, scheme, sizeof scheme - 1) == 0 &&
+           own_host(w, origin + sizeof scheme - 1, w->page_port) != NULL;
+}
+
+/* A browser says where a request comes from; what says nothing is no browser. */
+static wall_answer check_origin(const wall *w, const wall_request *r)
+{
+    int n_origins, n_sites;
+    const char *origin = header(r, "Origin", &n_origins);
+    const char *site = header(r, "Sec-Fetch-Site", &n_sites);
+    bool second = w->port != w->page_port;
+    bool reads = r->method && strcmp(r->method, "GET") == 0;
+    if (n_origins > 1 || n_sites > 1 || (origin && !is_own_origin(w, origin))) {
+        return refuse(403, "forbidden", "the request comes from another page");
+    }
+    if (!site || strcmp(site, "same-origin") == 0) {
+        return fine;
+    }
+    if (second && strcmp(site, "same-site") == 0) {
+        return fine;
+    }
+    /* Typed into the address bar, or a bookmark. */
+    if (reads && strcmp(site, "none") == 0) {
+        return fine;
+    }
+    return refuse(403, "forbidden", "the request comes from another site");
+}
+
+wall_answer wall_check_source(const wall *w, const wall_request *r)
+{
+    int n_hosts;
+    const char *host = header(r, "Host", &n_hosts);
+    if (!r->uri || r->uri[0] != '/' || r->uri[1] == '/') {
+        return refuse(403, "forbidden", "the request names a host in its URI");
+    }
+    if (n_hosts != 1 || !own_host(w, host, w->port)) {
+        return refuse(403, "forbidden",
+                      "the header Host is not the address of this server; --name allows another");
+    }
+    return check_origin(w, r);
+}
+
+bool wall_equal(const char *a, const char *b)
+{
+    size_t n = strlen(a), m = strlen(b);
+    unsigned differ = n != m;
+    for (size_t i = 0; i < n; i++) {
+        differ |= (unsigned)(a[i] ^ b[m ? i % m : 0]) & 0xffU;
+    }
+    return differ == 0 && n > 0;
+}
+
+wall_answer wall_check_token(const wall *w, const char *token)
+{
+    if (token && wall_equal(token, w->token)) {
+        return fine;
+    }
+    return refuse(401, "token",
+                  "the token is missing or wrong: it stands in the link that serve printed");
+}
+
+static bool is_type(const char *type, const char *wanted)
+{
+    size_t n = strlen(wanted);
+    return type && strncasecmp(type, wanted, n) == 0 &&
+           (type[n] == '\0' || type[n] == ';' || type[n] == ' ');
+}
+
+/* A foreign form or no-cors fetch cannot send JSON: a browser asks first, and is refused. */
+static bool is_type_allowed(const wall_request *r, wall_rule rule)
+{
+    const char *type = header(r, "Content-Type", NULL);
+    if (is_type(type, "application/json")) {
+        return true;
+    }
+    if (rule == WALL_ACT) {
+        return strcmp(r->method, "PUT") == 0 && is_type(type, "application/octet-stream");
+    }
+    return is_type(type, "text/plain") || (rule == WALL_STOP && !type);
+}
+
+wall_answer wall_check_right(const wall *w, const wall_request *r, wall_rule rule)
+{
+    bool reads = rule == WALL_PAGE || rule == WALL_READ;
+    const char *token = header(r, "X-Grobo-Token", NULL);
+    if (!r->method || reads != (strcmp(r->method, "GET") == 0)) {
+        return refuse(405, "method", "this method is not for this path");
+    }
+    if (!reads && !is_type_allowed(r, rule)) {
+        return refuse(415, "forbidden", "the header Content-Type is not application/json");
+    }
+    if (rule == WALL_PAGE || rule == WALL_PLAIN || (!w->open && rule != WALL_ACT)) {
+        return fine;
+    }
+    return wall_check_token(w, token);
+}
+
+void wall_make_secret(char secret[WALL_SECRET_BYTES])
+{
+    unsigned char bits[16];
+    evutil_secure_rng_get_bytes(bits, sizeof bits);
+    for (size_t i = 0; i < sizeof bits; i++) {
+        snprintf(secret + 2 * i, 3, "%02x", bits[i]);
+    }
+}
