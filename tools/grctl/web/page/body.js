@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: MIT
 // The robot as rigid links: where they are at given angles, where the mass is, what it stands on,
 // and solids to draw them by. Lengths are metres, angles radians, masses kilograms. A robot without
-// links is drawn as a row of pointers, one a joint.
+// links is drawn as rows of pointers, one a joint.
 
 import * as m from './mat.js';
 import { box, hub, strut } from './shape.js';
 
-/** A row of pointers for a robot of which only the joints are known. */
+/** Rows of pointers for a robot of which only the joints are known. */
 function pointers(joints) {
-    const gap = 0.05, span = (joints.length - 1) * gap;
+    const gap = 0.07, wide = Math.ceil(Math.sqrt(joints.length * 1.4));
+    const rows = Math.ceil(joints.length / wide);
     const links = [{ name: 'base', parent: -1, joint: -1, axis: [0, 0, 1], frame: m.identity(),
-                     mass: 0, com: [0, 0, 0], half: [0.015, span / 2 + 0.03, 0.005] }];
+                     mass: 0, com: [0, 0, 0],
+                     half: [(rows - 1) * gap / 2 + 0.03, (wide - 1) * gap / 2 + 0.03, 0.005] }];
     joints.forEach((joint, n) => {
+        const x = Math.floor(n / wide) - (rows - 1) / 2, y = n % wide - (wide - 1) / 2;
         links.push({ name: joint.name, parent: 0, joint: n, axis: [0, 1, 0], mass: 0,
-                     frame: m.translation([0, n * gap - span / 2, 0.06]), com: [0, 0, 0.016],
+                     frame: m.translation([-x * gap, -y * gap, 0.03]), com: [0, 0, 0.016],
                      half: [0.006, 0.006, 0.022] });
     });
     return links;
@@ -58,7 +61,7 @@ export function makeBody(links, feet, joints) {
         }
     });
     body.reach = Math.max(m.length(m.sub(high, low)), 0.05);
-    body.thick = body.reach * 0.028;
+    body.thick = known ? body.reach * 0.028 : 0.009;
     solids(body);
     body.ground = body.feet.length ? 0 : lowest(body, zero);
     return body;

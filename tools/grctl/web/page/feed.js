@@ -13,7 +13,7 @@ export class EventParser {
     }
 
     push(text) {
-        const parts = (this.rest + text.replace(/\r\n?/g, '\n')).split('\n\n');
+        const parts = (this.rest + text).replace(/\r\n/g, '\n').split('\n\n');
         this.rest = parts.pop();
         for (const part of parts) {
             const event = { type: 'message', id: null, data: '' };
