@@ -131,6 +131,43 @@ GROBO_CORE int grobo_body_leg_exact(const grobo_body_model *model, int foot,
                                     const grobo_transform *target,
                                     double q_rad[GROBO_BODY_LEG_JOINTS]);
 
+/* ---- a pose on the ground ------------------------------------------------------------------ */
+
+/** A pose of which only the angles are known, on level ground at z 0. */
+typedef struct grobo_body_stand {
+    grobo_transform root;   /**< the waist in the world */
+    double com_m[3];        /**< centre of mass */
+    double sole_m[2][4][3]; /**< corners of the right and the left sole */
+    double support_m[8][2]; /**< corners of the convex hull of the standing soles, counter-clockwise
+                                 seen from above */
+    int n_support;          /**< how many, 0: no foot stands */
+    int foot;               /**< the foot it stands on: 0 right, 1 left */
+    bool standing[2];       /**< all corners are within 4 mm of the ground: right, left */
+} grobo_body_stand;
+
+/**
+ * Stands a pose on its lower foot: that sole lies flat on the ground, its centre below where it is
+ * with straight legs.
+ * @param q_rad n_joints angles
+ * @param root where the waist is; NULL: as the lower foot has it
+ * @param[out] stand untouched on error
+ * @return 0, GROBO_ERR_ARG or GROBO_ERR_NAN. Thread safe.
+ */
+GROBO_CORE int grobo_body_stand_pose(const grobo_body_model *model, const double *q_rad,
+                                     const grobo_transform *root, grobo_body_stand *stand);
+
+/** How far a point of the ground is inside the support polygon, in metres; negative: outside,
+ *  -INFINITY where no foot stands. */
+GROBO_CORE double grobo_body_stand_margin(const grobo_body_stand *stand, const double *point_m);
+
+/**
+ * Zero-moment point at the second of three poses of a motion that are dt_s apart, on the ground.
+ * @param root the waist in each @param q_rad n_joints angles of each @param[out] zmp_m z is 0
+ * @return 0, or GROBO_ERR_ARG.
+ */
+GROBO_CORE int grobo_body_zmp_of_poses(const grobo_body_model *model, const grobo_transform root[3],
+                                       const double *const q_rad[3], double dt_s, double zmp_m[3]);
+
 /* ---- a motion being solved --------------------------------------------------------------- */
 
 /** Where a link shall be at a key pose. */

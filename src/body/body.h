@@ -53,6 +53,24 @@ void grobo_i_step_down(const grobo_body_link *link, double angle_rad, const grob
 void grobo_i_step_up(const grobo_body_link *link, double angle_rad, const grobo_transform *child,
                      grobo_transform *out);
 
+/* Corners of a sole whose foot is there: counter-clockwise, seen from above. */
+void grobo_i_sole_corners(const grobo_body_foot *foot, const grobo_transform *at,
+                          double corner_m[4][3]);
+
+/* Corners of the convex hull of the standing soles; hull has room for 17. Returns how many. */
+int grobo_i_support(const bool standing[2], double (*sole_m)[4][3], double (*hull)[2]);
+
+/* A pose, and the links that grobo_body_forward() gave for it. */
+struct grobo_i_pose {
+    const double *q_rad;
+    const grobo_transform *links;
+};
+
+/* Momentum while moving from one pose to the next, in the former. */
+void grobo_i_momentum_between(const grobo_body_model *model, const struct grobo_i_pose *at,
+                              const struct grobo_i_pose *next, double rate_hz,
+                              grobo_momentum *momentum);
+
 /* R = Rz(yaw) Ry(pitch) Rx(roll) and back; rpy = roll, pitch, yaw. */
 void grobo_i_rotation_of_rpy(double r[9], const double rpy[3]);
 void grobo_i_rpy_of_rotation(double rpy[3], const double r[9]);

@@ -119,21 +119,6 @@ static void check_joints(struct checking *now, const struct moment *at, const st
     }
 }
 
-static void sole_corners(const grobo_body_foot *foot, const grobo_transform *at,
-                         double corner_m[4][3])
-{
-    static const double sign[4][2] = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
-
-    for (int i = 0; i < 4; i++) {
-        const double local[3] = {foot->sole_m[0] + sign[i][0] * foot->half_m[0],
-                                 foot->sole_m[1] + sign[i][1] * foot->half_m[1], foot->sole_m[2]};
-        double arm[3];
-
-        mat_vec(arm, at->r, local);
-        vec_add_scaled(corner_m[i], at->p_m, 1, arm);
-    }
-}
-
 /* The largest way of a corner since the foot came to stand. */
 static void check_slip(struct checking *now, int foot, const grobo_body_balance_frame *frame)
 {
@@ -172,20 +157,12 @@ static double ground_m(const grobo_body_balance_frame *frame)
 }
 
 /* ZMP inside the convex hull of the standing soles. */
-static double support_margin(const grobo_body_balance_frame *frame)
+static double support_margin(grobo_body_balance_frame *frame)
 {
-    double points[8][2], hull[17][2];
-    int n = 0;
+    double hull[17][2];
+    const int n = grobo_i_support(frame->standing, frame->sole_m, hull);
 
-    for (int foot = 0; foot < 2; foot++) {
-        for (int i = 0; i < 4 && frame->standing[foot]; i++) {
-            memcpy(points[n++], frame->sole_m[foot][i], sizeof points[0]);
-        }
-    }
-    if (n == 0) {
-        return -INFINITY;
-    }
-    return grobo_i_polygon_margin(hull, grobo_i_convex_hull(points, n, hull), frame->zmp_m);
+    return n == 0 ? -INFINITY : grobo_i_polygon_margin(hull, n, frame->zmp_m);
 }
 
 static bool feet_have_targets(const grobo_body *body)
@@ -207,7 +184,7 @@ static void fill_frame(const struct checking *now, const struct moment *at,
     memcpy(frame->desired_m, at->report.zmp_m, sizeof frame->desired_m);
     for (int foot = 0; foot < 2; foot++) {
         frame->standing[foot] = at->report.touching[foot];
-        sole_corners(&model->feet[foot], &at->links[model->feet[foot].link], frame->sole_m[foot]);
+        grobo_i_sole_corners(&model->feet[foot], &at->links[model->feet[foot].link], frame->sole_m[foot]);
     }
     mass_kg = grobo_body_com(model, at->links, frame->com_m);
     frame->zmp_m[2] = ground_m(frame);
@@ -227,27 +204,6 @@ static void check_balance(struct checking *now, const grobo_body_balance_frame *
     for (int foot = 0; foot < 2; foot++) {
         check_slip(now, foot, frame);
     }
-}
-
-/* Momentum while moving from one frame to the next, in the pose of the former. */
-static void momentum_between(const struct checking *now, const struct moment *at,
-                             const struct moment *next, grobo_momentum *momentum)
-{
-    const double rate_hz = now->rate_hz;
-    double joint_rad_s[GROBO_JOINTS_MAX], turn[9], w[3];
-    grobo_body_velocity velocity = {{0, 0, 0}, {0, 0, 0}, joint_rad_s};
-
-    for (int j = 0; j < now->body->model->n_joints; j++) {
-        joint_rad_s[j] = (next->q_rad[j] - at->q_rad[j]) * rate_hz;
-    }
-    mat_t_mul(turn, at->report.root.r, next->report.root.r);
-    grobo_i_rotation_vector(w, turn);
-    mat_vec(velocity.angular_rad_s, at->report.root.r, w);
-    for (int k = 0; k < 3; k++) {
-        velocity.linear_m_s[k] = (next->report.root.p_m[k] - at->report.root.p_m[k]) * rate_hz;
-        velocity.angular_rad_s[k] *= rate_hz;
-    }
-    grobo_body_momentum(now->body->model, at->links, &velocity, momentum);
 }
 
 static void take_moment(const struct checking *now, int frame, struct moment *moment)
@@ -276,7 +232,10 @@ static void check_frame(struct checking *now, const struct moment *at, const str
     grobo_body_balance_frame frame;
 
     if (next != NULL) {
-        momentum_between(now, at, next, &momentum);
+        const struct grobo_i_pose here = {at->q_rad, at->links};
+        const struct grobo_i_pose there = {next->q_rad, next->links};
+
+        grobo_i_momentum_between(now->body->model, &here, &there, rate_hz, &momentum);
     }
     for (int k = 0; k < 3; k++) {
         rate.p_kgm_s[k] = (momentum.p_kgm_s[k] - last->p_kgm_s[k]) * rate_hz;

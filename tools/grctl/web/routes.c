@@ -6,6 +6,7 @@
 #include <grobo/port.h>
 
 #include "tools/grctl/web/page.h"
+#include "tools/grctl/web/pose.h"
 #include "tools/grctl/web/serve.h"
 
 /* What a verb asks for. */
@@ -335,6 +336,7 @@ static void serve_events(serve *s, http_request *r, const json_t *body)
 }
 
 static const plain plains[] = {
+    {"/api/ik", WALL_ACT, false, pose_ik},
     {"/api/robot", WALL_READ, false, serve_robot},
     {"/api/state", WALL_READ, false, serve_state},
     {"/api/events", WALL_READ, false, serve_events},

@@ -7,6 +7,7 @@
 #include <grobo/version.h>
 
 #include "tools/grctl/show/render.h"
+#include "tools/grctl/web/pose.h"
 #include "tools/grctl/web/serve.h"
 
 /* ---- as it is -------------------------------------------------------------------------------- */
@@ -108,11 +109,12 @@ json_t *serve_state_json(serve *s)
             json_array_append_new(limp, json_integer(j));
         }
     }
-    json_t *more = json_pack("{s:o,s:b,s:s?,s:o,s:o,s:o,s:n,s:{s:o,s:o},s:i}", "limp", limp,
-                             "moving", grobo_robot_moving(s->c.robot), "job", job, "play",
-                             player_json(s), "stop", stops_json(s), "line", line_json(s), "body",
-                             "lease", "holder", page_json(s, &s->lease.holder), "asked",
-                             page_json(s, &s->lease.asker), "clients", http_streams(s->http));
+    json_t *more =
+        json_pack("{s:o,s:b,s:s?,s:o,s:o,s:o,s:o,s:{s:o,s:o},s:i}", "limp", limp, "moving",
+                  grobo_robot_moving(s->c.robot), "job", job, "play", player_json(s), "stop",
+                  stops_json(s), "line", line_json(s), "body", pose_state_json(s), "lease",
+                  "holder", page_json(s, &s->lease.holder), "asked", page_json(s, &s->lease.asker),
+                  "clients", http_streams(s->http));
     json_object_update_new(state, more);
     return state;
 }
@@ -211,11 +213,11 @@ json_t *serve_robot_json(serve *s)
                   "simulator", grobo_session_sim(s->c.session) != NULL, "arm", def->arm, "wiring",
                   wiring_word(s), "baud_bps", (int)conn_baud(s->a));
     json_t *more = json_pack(
-        "{s:o,s:o,s:o,s:n,s:o,s:s,s:o,s:i,s:o,s:b,s:{s:i,s:i,s:i,s:i,s:i}}", "joints",
-        joints_json(s->model), "groups", groups_json(s->model), "links", json_array(), "body",
-        "safety", safety_json(&driver->limits), "exit", exit_word(s), "budget", budget_json(s),
-        "stop_port", http_stop_port(s->http), "state_hz", number(30), "token",
-        http_is_open(s->http), "lease", "heartbeat_ms", SERVE_HEARTBEAT_MS, "jog_lost_ms",
+        "{s:o,s:o,s:o,s:o,s:o,s:s,s:o,s:i,s:o,s:b,s:{s:i,s:i,s:i,s:i,s:i}}", "joints",
+        joints_json(s->model), "groups", groups_json(s->model), "links", pose_links_json(s->a),
+        "body", pose_feet_json(s->a), "safety", safety_json(&driver->limits), "exit", exit_word(s),
+        "budget", budget_json(s), "stop_port", http_stop_port(s->http), "state_hz", number(30),
+        "token", http_is_open(s->http), "lease", "heartbeat_ms", SERVE_HEARTBEAT_MS, "jog_lost_ms",
         (int)(SERVE_JOG_LOST_US / 1000), "play_lost_ms", (int)(SERVE_PLAY_LOST_US / 1000), "ask_ms",
         (int)(LEASE_ASK_US / 1000), "stale_ms", (int)(SERVE_STALE_US / 1000));
     json_object_update_new(robot, more);
