@@ -545,7 +545,7 @@ class App {
         let ready = Boolean(this.state) && !this.age();
         const askMs = this.robot ? this.robot.lease.ask_ms : 10000;
         if (status === 'asked') {
-            const left = askMs - (performance.now() - lease.askedAt);
+            const left = askMs + 300 - (performance.now() - lease.askedAt); // clocks differ a little
             ready = ready && left <= 0;
             action = left > 0 ? t('Asked, {0} s', Math.ceil(left / 1000)) : t('Take over');
         }

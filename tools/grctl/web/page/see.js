@@ -63,7 +63,7 @@ export class See {
         if (now - this.drawnAt > 66 || this.plots.cursor !== null) {
             this.plots.draw();
         }
-        if (now - this.drawnAt > 240) {
+        if (now - this.drawnAt > 240 && this.history.length) {
             this.drawnAt = now;
             this.writeBalance(state);
             this.writeLine(state);
