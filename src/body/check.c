@@ -184,7 +184,8 @@ static void fill_frame(const struct checking *now, const struct moment *at,
     memcpy(frame->desired_m, at->report.zmp_m, sizeof frame->desired_m);
     for (int foot = 0; foot < 2; foot++) {
         frame->standing[foot] = at->report.touching[foot];
-        grobo_i_sole_corners(&model->feet[foot], &at->links[model->feet[foot].link], frame->sole_m[foot]);
+        grobo_i_sole_corners(&model->feet[foot], &at->links[model->feet[foot].link],
+                             frame->sole_m[foot]);
     }
     mass_kg = grobo_body_com(model, at->links, frame->com_m);
     frame->zmp_m[2] = ground_m(frame);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Codecs, models, motions and bodies refuse NULL for each thing that must be there. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -33,6 +34,8 @@ static bool flag;
 static grobo_board_frame board_frame;
 static grobo_board_parser board_parser;
 static grobo_transform transforms[GROBO_BODY_LINKS_MAX];
+static grobo_body_stand stand;
+static const double *const poses[3] = {reals, reals, reals};
 static grobo_body_velocity velocity;
 static grobo_momentum momentum;
 static grobo_body_setup setup;
@@ -157,6 +160,15 @@ static void body_refuses_null(void **state)
     assert_true(grobo_body_com(NULL, transforms, reals) == 0);
     assert_true(grobo_body_com(&grobo_gr001_body, NULL, reals) == 0);
     assert_true(grobo_body_com(&grobo_gr001_body, transforms, NULL) == 0);
+    REFUSES(grobo_body_stand_pose(NULL, reals, NULL, &stand));
+    REFUSES(grobo_body_stand_pose(&grobo_gr001_body, NULL, NULL, &stand));
+    REFUSES(grobo_body_stand_pose(&grobo_gr001_body, reals, NULL, NULL));
+    assert_true(grobo_body_stand_margin(NULL, reals) == -INFINITY);
+    assert_true(grobo_body_stand_margin(&stand, NULL) == -INFINITY);
+    REFUSES(grobo_body_zmp_of_poses(NULL, transforms, poses, 1, reals));
+    REFUSES(grobo_body_zmp_of_poses(&grobo_gr001_body, NULL, poses, 1, reals));
+    REFUSES(grobo_body_zmp_of_poses(&grobo_gr001_body, transforms, NULL, 1, reals));
+    REFUSES(grobo_body_zmp_of_poses(&grobo_gr001_body, transforms, poses, 1, NULL));
     grobo_body_momentum(NULL, transforms, &velocity, &momentum);
     grobo_body_momentum(&grobo_gr001_body, NULL, &velocity, &momentum);
     grobo_body_momentum(&grobo_gr001_body, transforms, NULL, &momentum);

@@ -6,8 +6,6 @@
 
 /* Nearer to the edge real feet, floors and servos decide. */
 static const double margin_least_m = 0.005;
-/* Feet that are taken to stand and move more than this do not stand: such a motion steps. */
-static const double step_least_m = 0.005;
 
 /* Frames and postures that are looked at unasked: a few hundredths of a second. */
 enum { FALL_RATE_HZ = 100, FALL_FRAMES_MOST = 10000, FALL_POSTURES_MOST = 10000 };
@@ -120,7 +118,7 @@ static void note_fall(finder *f, const grobo_body_finding *finding)
     bool jumps = finding->problem == GROBO_BODY_NO_SUPPORT;
     f->too_fast = f->too_fast || finding->problem == GROBO_BODY_JOINT_SPEED;
     if (finding->problem == GROBO_BODY_FOOT_SLIP) {
-        f->steps = f->steps || finding->worst > step_least_m;
+        f->steps = f->steps || finding->worst > CHECK_STEP_LEAST_M;
     }
     if (!jumps && (finding->problem != GROBO_BODY_ZMP_MARGIN || finding->worst >= 0)) {
         return;

@@ -14,6 +14,9 @@ enum {
     CHECK_FALL = 4     /* one warning where the robot would fall, where that is certain */
 };
 
+/* Feet that are taken to stand and move more than this do not stand: such a motion steps. */
+#define CHECK_STEP_LEAST_M 0.005
+
 typedef struct check_whole_how {
     const char *path;   /* for diagnostics */
     unsigned what;      /* CHECK_... */

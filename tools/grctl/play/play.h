@@ -50,6 +50,9 @@ enum {
  */
 int playlist_load(playlist *list, app *a);
 
+/* The same of one motion, which is the list's from then on; path: borrowed, for messages. */
+int playlist_take(playlist *list, app *a, const char *path, grobo_motion *motion);
+
 /* Makes the clips; start: the sensed posture, what increments count from. 0 or the exit status. */
 int playlist_prepare(playlist *list, app *a, const grobo_posture *start);
 

@@ -151,6 +151,39 @@ static void widen(const app *a, grobo_motion *motion)
     }
 }
 
+/* The next of the list, with the line's budget. */
+static int take(playlist *list, app *a, const char *path, grobo_motion *motion,
+                const grobo_budget *line)
+{
+    int i = list->n++;
+    list->path[i] = path;
+    list->motion[i] = motion;
+    int status = file_fits(a, path, motion);
+    if (status) {
+        return status;
+    }
+    widen(a, motion);
+    if (grobo_motion_size(motion) == 0) {
+        return app_fail(a, EXIT_FILE, "EMPTY", "%s: has no postures", path);
+    }
+    set_options(&list->options[i], a, grobo_motion_get_kind(motion));
+    return solve_and_check(a, list, i, line);
+}
+
+int playlist_take(playlist *list, app *a, const char *path, grobo_motion *motion)
+{
+    grobo_budget line;
+    memset(list, 0, sizeof *list);
+    int status = find_rate(a, &line);
+    if (status) {
+        grobo_motion_free(motion);
+        return status;
+    }
+    status = take(list, a, path, motion, &line);
+    list->options[0].from_us = (int64_t)(app_number(a, PLAY_FROM, 0) * 1000);
+    return status;
+}
+
 int playlist_load(playlist *list, app *a)
 {
     grobo_budget line;
@@ -162,33 +195,16 @@ int playlist_load(playlist *list, app *a)
         return app_fail(a, EXIT_USAGE, "ARG", "play: more than %d files", PLAY_FILES_MAX);
     }
     int status = find_rate(a, &line);
-    if (status) {
-        return status;
-    }
-    for (int i = 0; i < a->line.n_arguments; i++) {
+    for (int i = 0; !status && i < a->line.n_arguments; i++) {
         grobo_read_options read = {.model = app_model(a), .keep_positions = true};
-        list->path[i] = a->line.argument[i];
-        status = file_load(a, list->path[i], &read, &list->motion[i]);
-        if (status) {
-            return status;
-        }
-        list->n = i + 1;
-        status = file_fits(a, list->path[i], list->motion[i]);
-        if (status) {
-            return status;
-        }
-        widen(a, list->motion[i]);
-        if (grobo_motion_size(list->motion[i]) == 0) {
-            return app_fail(a, EXIT_FILE, "EMPTY", "%s: has no postures", list->path[i]);
-        }
-        set_options(&list->options[i], a, grobo_motion_get_kind(list->motion[i]));
-        status = solve_and_check(a, list, i, &line);
-        if (status) {
-            return status;
+        grobo_motion *motion = NULL;
+        status = file_load(a, a->line.argument[i], &read, &motion);
+        if (!status) {
+            status = take(list, a, a->line.argument[i], motion, &line);
         }
     }
     list->options[0].from_us = (int64_t)(app_number(a, PLAY_FROM, 0) * 1000);
-    return 0;
+    return status;
 }
 
 /* Files behind the first may move other joints. */

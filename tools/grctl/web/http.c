@@ -237,18 +237,21 @@ static void send_reply(http_request *r, int status, const void *bytes, size_t si
     drop_request(r);
 }
 
+void http_reply_text(http_request *r, int status, const char *text, size_t size)
+{
+    add_headers(r);
+    add(r, "Cache-Control", "no-store");
+    if (text) {
+        add(r, "Content-Type", "application/json");
+    }
+    send_reply(r, text ? status : 503, text, size);
+}
+
 void http_reply_json(http_request *r, int status, json_t *body)
 {
     char *text = json_dumps(body, JSON_COMPACT | JSON_REAL_PRECISION(12));
     json_decref(body);
-    add_headers(r);
-    add(r, "Cache-Control", "no-store");
-    if (!text) {
-        send_reply(r, 503, NULL, 0);
-        return;
-    }
-    add(r, "Content-Type", "application/json");
-    send_reply(r, status, text, strlen(text));
+    http_reply_text(r, status, text, text ? strlen(text) : 0);
     free(text);
 }
 
@@ -517,10 +520,10 @@ static void judge(http_request *r)
     }
     size_t size;
     http_body(r, &size);
-    if (!no.status && size > HTTP_BODY_BYTES && strcmp(r->method, "PUT") != 0) {
+    if (!no.status && size > HTTP_BODY_BYTES && rule != WALL_SAVE) {
         no = (wall_answer){413, "too_large", "the body is larger than 64 kB"};
     }
-    if (!no.status && rule == WALL_ACT && is_flood(h)) {
+    if (!no.status && (rule == WALL_ACT || rule == WALL_SAVE) && is_flood(h)) {
         no = (wall_answer){429, "too_many", "more than 100 requests a second"};
     }
     if (no.status == 401) { /* who guesses has to wait */

@@ -85,6 +85,8 @@ wall_answer http_check_token(const http_request *r, const char *token);
 
 /* Takes the reference. */
 void http_reply_json(http_request *r, int status, json_t *body);
+/* The same of JSON that is text already; NULL: there was no memory for it. */
+void http_reply_text(http_request *r, int status, const char *text, size_t size);
 /* {"error": {"code": ..., "message": ...}}. */
 void http_refuse(http_request *r, int status, const char *code, const char *format, ...)
     __attribute__((format(printf, 4, 5)));

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "tools/grctl/cli/file.h"
 #include "tools/grctl/play/play.h"
 #include "tools/grctl/web/library.h"
 #include "tools/grctl/web/serve.h"
@@ -22,7 +23,6 @@ typedef struct load {
     http_request *request;
     app app; /* its own, for the words of the command */
     char said[APP_LINE_BYTES];
-    char path[LIBRARY_PATH_BYTES];
     player_item *item;
     int status;
     unsigned epoch;
@@ -73,8 +73,8 @@ static bool read_options(load *l, const json_t *body)
         int option;
     } flags[] = {{"mirror", PLAY_MIRROR}, {"reverse", PLAY_REVERSE}, {"by_keys", PLAY_KEY}};
     double speed_pct = 100, repeat = 1, from_ms = 0;
-    l->app.line =
-        (cli_line){.command = cli_find_command("play"), .argument = {l->path}, .n_arguments = 1};
+    l->app.line = (cli_line){
+        .command = cli_find_command("play"), .argument = {l->item->name}, .n_arguments = 1};
     memcpy(l->app.line.global, l->s->a->line.global, sizeof l->app.line.global);
     for (size_t i = 0; i < sizeof flags / sizeof flags[0]; i++) {
         if (json_is_true(json_object_get(body, flags[i].name))) {
@@ -110,7 +110,18 @@ static void free_items(player *p)
 static void work(worker_task *task)
 {
     load *l = (load *)task;
-    l->status = playlist_load(&l->item->list, &l->app);
+    grobo_read_options read = {
+        .model = app_model(&l->app), .name = l->item->name, .keep_positions = true};
+    grobo_motion *motion = NULL;
+    library_file file;
+    int error = library_read(l->s->library, l->item->name, &file);
+    if (!error) {
+        error = grobo_motion_read_memory(file.bytes, file.size, &read, NULL, &motion);
+    }
+    library_drop(&file);
+    l->status = error ? app_fail(&l->app, EXIT_FILE, grobo_error_name(error), "%s: %s",
+                                 l->item->name, file_error_text(error))
+                      : playlist_take(&l->item->list, &l->app, l->item->name, motion);
 }
 
 /* Is it still what is wanted? Time has passed. */
@@ -208,7 +219,7 @@ static void load_motion(serve *s, http_request *r, json_t *body, bool queued)
     app_hush(&l->app, l->said);
     snprintf(item->name, sizeof item->name, "%s", name ? name : "");
     snprintf(l->secret, sizeof l->secret, "%s", s->lease.holder.secret);
-    if (!name || !library_path(s, name, l->path, sizeof l->path)) {
+    if (!name || !library_is_name(name)) {
         http_refuse(r, 404, "noent", "play: there is no motion of this name");
     } else if (!read_options(l, body)) {
         http_refuse(r, 400, "arg", "play: an option is out of its range");

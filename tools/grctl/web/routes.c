@@ -12,9 +12,8 @@
 /* What a verb asks for. */
 enum {
     NEEDS_LEASE = 1,
-    NEEDS_SEQUENCE = 2, /* it has a target */
-    NEEDS_LINE = 4,
-    MOVES = 8 /* refused after a stop */
+    NEEDS_LINE = 2,
+    MOVES = 4 /* refused after a stop, and without the state it is based on */
 };
 
 typedef struct verb {
@@ -24,15 +23,15 @@ typedef struct verb {
 } verb;
 
 static const verb verbs[] = {
-    {"/api/play", verb_play, NEEDS_LEASE | NEEDS_SEQUENCE | NEEDS_LINE | MOVES},
-    {"/api/queue", verb_queue, NEEDS_LEASE | NEEDS_SEQUENCE | NEEDS_LINE | MOVES},
+    {"/api/play", verb_play, NEEDS_LEASE | NEEDS_LINE | MOVES},
+    {"/api/queue", verb_queue, NEEDS_LEASE | NEEDS_LINE | MOVES},
     {"/api/pause", verb_pause, NEEDS_LEASE | NEEDS_LINE},
-    {"/api/resume", verb_resume, NEEDS_LEASE | NEEDS_LINE | MOVES},
-    {"/api/seek", verb_seek, NEEDS_LEASE | NEEDS_SEQUENCE | NEEDS_LINE | MOVES},
+    {"/api/resume", verb_resume, NEEDS_LEASE | NEEDS_LINE},
+    {"/api/seek", verb_seek, NEEDS_LEASE | NEEDS_LINE | MOVES},
     {"/api/speed", verb_speed, NEEDS_LEASE | NEEDS_LINE},
     {"/api/halt", verb_halt, NEEDS_LEASE | NEEDS_LINE},
-    {"/api/move", verb_move, NEEDS_LEASE | NEEDS_SEQUENCE | NEEDS_LINE | MOVES},
-    {"/api/jog", verb_jog, NEEDS_LEASE | NEEDS_SEQUENCE | NEEDS_LINE | MOVES},
+    {"/api/move", verb_move, NEEDS_LEASE | NEEDS_LINE | MOVES},
+    {"/api/jog", verb_jog, NEEDS_LEASE | NEEDS_LINE | MOVES},
     {"/api/torque", verb_torque, NEEDS_LEASE | NEEDS_LINE},
     {"/api/capture", verb_capture, NEEDS_LINE},
     {"/api/reset", verb_reset, 0},
@@ -177,6 +176,19 @@ static bool is_fresh(const serve *s, const json_t *sequence)
     return grobo_now_us() - s->sequence_us[n % SERVE_SEQUENCES] <= SERVE_STALE_US;
 }
 
+bool serve_may_move(serve *s, http_request *r, const json_t *body)
+{
+    if (stops_is_latched(s)) {
+        serve_refuse(s, r, GROBO_ERR_LATCHED, "robot");
+        return false;
+    }
+    if (!is_fresh(s, json_object_get(body, "sequence"))) {
+        http_refuse(r, 409, "stale", "sequence is not that of a state told less than a second ago");
+        return false;
+    }
+    return true;
+}
+
 static bool is_granted(serve *s, http_request *r, const json_t *body, unsigned needs)
 {
     if ((needs & NEEDS_LINE) && !s->c.up) {
@@ -184,12 +196,8 @@ static bool is_granted(serve *s, http_request *r, const json_t *body, unsigned n
     } else if ((needs & NEEDS_LEASE) &&
                !lease_is_holder(&s->lease, http_header(r, "X-Grobo-Lease"))) {
         refuse_lease(s, r);
-    } else if ((needs & MOVES) && stops_is_latched(s)) {
-        serve_refuse(s, r, GROBO_ERR_LATCHED, "robot");
-    } else if ((needs & NEEDS_SEQUENCE) && !is_fresh(s, json_object_get(body, "sequence"))) {
-        http_refuse(r, 409, "stale", "sequence is not that of a state told less than a second ago");
     } else {
-        return true;
+        return !(needs & MOVES) || serve_may_move(s, r, body);
     }
     return false;
 }
@@ -335,7 +343,15 @@ static void serve_events(serve *s, http_request *r, const json_t *body)
     free(text);
 }
 
+static void serve_motions(serve *s, http_request *r, const json_t *body)
+{
+    (void)body;
+    library_list(s, r);
+}
+
 static const plain plains[] = {
+    {"/api/motions", WALL_READ, false, serve_motions},
+    {"/api/preview", WALL_ACT, false, library_preview},
     {"/api/ik", WALL_ACT, false, pose_ik},
     {"/api/robot", WALL_READ, false, serve_robot},
     {"/api/state", WALL_READ, false, serve_state},
@@ -368,10 +384,60 @@ static const verb *find_verb(const http_request *r)
     return NULL;
 }
 
+/* "/api/motions/NAME" or "/api/motions/NAME/file"; false: neither. */
+static bool find_motion(const http_request *r, char name[LIBRARY_NAME_BYTES], bool *file)
+{
+    static const char folder[] = "/api/motions/", tail[] = "/file";
+    size_t n = strlen(r->path);
+    if (r->second || strncmp(r->path, folder, sizeof folder - 1) != 0) {
+        return false;
+    }
+    const char *begin = r->path + sizeof folder - 1;
+    n -= sizeof folder - 1;
+    *file = n > sizeof tail - 1 && strcmp(begin + n - (sizeof tail - 1), tail) == 0;
+    n -= *file ? sizeof tail - 1 : 0;
+    if (n == 0 || n >= LIBRARY_NAME_BYTES) {
+        return false;
+    }
+    memcpy(name, begin, n);
+    name[n] = '\0';
+    return true;
+}
+
+/* "rate=50" of a query; 0: it is none. */
+static double rate_of(const http_request *r)
+{
+    double rate_hz = 30;
+    if (strncmp(r->query, "rate=", 5) == 0 && !cli_read_number(r->query + 5, &rate_hz)) {
+        return 0;
+    }
+    return rate_hz >= 1 && rate_hz <= 100 ? rate_hz : 0;
+}
+
+static void serve_motion(serve *s, http_request *r, const char *name, bool file)
+{
+    double rate_hz = rate_of(r);
+    if (strcmp(r->method, "PUT") == 0) {
+        library_put(s, r, name, file);
+    } else if (file) {
+        library_get_file(s, r, name);
+    } else if (rate_hz > 0) {
+        library_get(s, r, name, rate_hz);
+    } else {
+        http_refuse(r, 400, "arg", "rate is 1 to 100");
+    }
+}
+
 bool serve_rule(void *ctx, const http_request *r, wall_rule *rule)
 {
     const plain *p = find_plain(r);
+    char name[LIBRARY_NAME_BYTES];
+    bool file;
     (void)ctx;
+    if (find_motion(r, name, &file)) {
+        *rule = strcmp(r->method, "PUT") == 0 ? WALL_SAVE : WALL_READ;
+        return true;
+    }
     if (p) {
         *rule = p->rule;
         return true;
@@ -385,6 +451,12 @@ void serve_request(void *ctx, http_request *r)
     serve *s = ctx;
     const plain *p = find_plain(r);
     const verb *v = find_verb(r);
+    char name[LIBRARY_NAME_BYTES];
+    bool file;
+    if (find_motion(r, name, &file)) {
+        serve_motion(s, r, name, file);
+        return;
+    }
     if (!p && !v) {
         page_serve(r);
         return;

@@ -256,6 +256,7 @@ static void on_tick(evutil_socket_t fd, short what, void *ctx)
     look_after_lease(s);
     look_after_jog(s);
     if (http_streams(s->http) > 0) {
+        library_look(s);
         send_state(s);
         if (now_us - s->quiet_us > COMMENT_US) {
             s->quiet_us = now_us;
@@ -288,7 +289,8 @@ static int start(serve *s)
     }
     s->tick = conn_every(&s->c, SERVE_STATE_US, on_tick, s);
     s->worker = worker_new(s->c.base);
-    if (!s->tick || !s->worker) {
+    s->library = library_new(s->a, s->options->folder);
+    if (!s->tick || !s->worker || !s->library) {
         return app_fail_error(s->a, EXIT_ROBOT, GROBO_ERR_NOMEM, "serve");
     }
     return EXIT_DONE;
@@ -318,6 +320,7 @@ static void finish(serve *s)
 {
     s->ending = true;
     worker_free(s->worker);
+    library_free(s->library);
     http_free(s->http);
     conn_forget(s->tick);
     s->http = NULL;

@@ -7,6 +7,7 @@
 #include "tools/grctl/web/events.h"
 #include "tools/grctl/web/http.h"
 #include "tools/grctl/web/lease.h"
+#include "tools/grctl/web/library.h"
 #include "tools/grctl/web/player.h"
 #include "tools/grctl/web/stops.h"
 #include "tools/grctl/web/web.h"
@@ -44,6 +45,7 @@ struct serve {
     lease lease;
     stops stops;
     worker *worker;
+    library *library;
     player player;
     serve_job jobs[SERVE_JOBS];
     grobo_joint_mask limp; /* in free mode */
@@ -91,6 +93,9 @@ void serve_refuse(serve *s, http_request *r, int error, const char *doing);
 void serve_refuse_said(http_request *r, int status, const app *a);
 /* {"done": ..., "job": ...} for what a request to the engine returned, or why not. */
 void serve_accept(serve *s, http_request *r, int result, const char *doing);
+
+/* For what moves: no stop stands, and it is based on a fresh state; else it is refused. */
+bool serve_may_move(serve *s, http_request *r, const json_t *body);
 
 /* ---- verbs ----------------------------------------------------------------------------------- */
 

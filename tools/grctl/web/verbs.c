@@ -262,6 +262,11 @@ void verb_torque(serve *s, http_request *r, json_t *body)
     }
     for (size_t i = 0; word && i < sizeof modes / sizeof modes[0]; i++) {
         if (strcmp(word, modes[i].word) == 0) {
+            if (modes[i].mode == GROBO_TORQUE_ON || modes[i].limp) {
+                if (!serve_may_move(s, r, body)) {
+                    return;
+                }
+            }
             int result = modes[i].limp ? set_limp(s, joints, modes[i].on)
                                        : switch_torque(s, joints, modes[i].mode);
             serve_accept(s, r, serve_note_job(s, result, "torque"), "torque");

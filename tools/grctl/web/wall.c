@@ -78,8 +78,9 @@ static wall_answer check_origin(const wall *w, const wall_request *r)
     if (second && strcmp(site, "same-site") == 0) {
         return fine;
     }
-    /* Typed into the address bar, or a bookmark. */
-    if (reads && strcmp(site, "none") == 0) {
+    /* Typed into the address bar, or a link that was clicked: what it opens is our own page. */
+    const char *mode = header(r, "Sec-Fetch-Mode", NULL), *to = header(r, "Sec-Fetch-Dest", NULL);
+    if (reads && mode && to && strcmp(mode, "navigate") == 0 && strcmp(to, "document") == 0) {
         return fine;
     }
     return refuse(403, "forbidden", "the request comes from another site");
@@ -132,26 +133,40 @@ static bool is_type_allowed(const wall_request *r, wall_rule rule)
     if (is_type(type, "application/json")) {
         return true;
     }
-    if (rule == WALL_ACT) {
-        return strcmp(r->method, "PUT") == 0 && is_type(type, "application/octet-stream");
+    switch (rule) {
+    case WALL_PAGE:
+    case WALL_READ:
+        return true;
+    case WALL_STOP:
+        return !type || is_type(type, "text/plain");
+    case WALL_PLAIN:
+        return is_type(type, "text/plain");
+    case WALL_ACT:
+        return false;
+    case WALL_SAVE:
+        return is_type(type, "application/octet-stream");
     }
-    return is_type(type, "text/plain") || (rule == WALL_STOP && !type);
+    return false;
+}
+
+static const char *method_of(wall_rule rule)
+{
+    return rule == WALL_PAGE || rule == WALL_READ ? "GET" : rule == WALL_SAVE ? "PUT" : "POST";
 }
 
 wall_answer wall_check_right(const wall *w, const wall_request *r, wall_rule rule)
 {
-    bool reads = rule == WALL_PAGE || rule == WALL_READ;
-    const char *token = header(r, "X-Grobo-Token", NULL);
-    if (!r->method || reads != (strcmp(r->method, "GET") == 0)) {
+    if (!r->method || strcmp(r->method, method_of(rule)) != 0) {
         return refuse(405, "method", "this method is not for this path");
     }
-    if (!reads && !is_type_allowed(r, rule)) {
+    if (!is_type_allowed(r, rule)) {
         return refuse(415, "forbidden", "the header Content-Type is not application/json");
     }
-    if (rule == WALL_PAGE || rule == WALL_PLAIN || (!w->open && rule != WALL_ACT)) {
+    if (rule == WALL_PAGE || rule == WALL_STOP || rule == WALL_PLAIN ||
+        (rule == WALL_READ && !w->open)) {
         return fine;
     }
-    return wall_check_token(w, token);
+    return wall_check_token(w, header(r, "X-Grobo-Token", NULL));
 }
 
 void wall_make_secret(char secret[WALL_SECRET_BYTES])

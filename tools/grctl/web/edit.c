@@ -1,0 +1,312 @@
+/* SPDX-License-Identifier: MIT */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "tools/grctl/web/edit.h"
+#include "tools/grctl/web/pose.h"
+
+/* What is made, and of what. */
+typedef struct making {
+    const grobo_model *model;
+    const grobo_motion *base;
+    grobo_motion *motion;
+    double before_s; /* time of the key before */
+    edit_result *result;
+    size_t key; /* the one that is read */
+} making;
+
+static int complain(const making *m, int error, const char *what)
+{
+    snprintf(m->result->complaint, sizeof m->result->complaint, "key %zu: %s", m->key, what);
+    return error;
+}
+
+/* ---- what a key gives ------------------------------------------------------------------------ */
+
+static int read_angles(const making *m, const json_t *angles, grobo_posture *posture)
+{
+    const char *name;
+    json_t *value;
+    json_object_foreach((json_t *)angles, name, value)
+    {
+        int joint = grobo_model_find_joint(m->model, name, strlen(name));
+        if (joint < 0) {
+            return complain(m, GROBO_ERR_NOTFOUND, "angle_deg names a joint that is none");
+        }
+        if (json_is_null(value)) {
+            posture->set &= ~GROBO_JOINT_BIT(joint);
+        } else if (!json_is_number(value) ||
+                   grobo_posture_set_deg(posture, joint, json_number_value(value)) < 0) {
+            return complain(m, GROBO_ERR_ARG, "an angle is no number");
+        }
+    }
+    return GROBO_OK;
+}
+
+static int read_stationary(const making *m, const json_t *list, grobo_key_info *info)
+{
+    size_t i;
+    json_t *value;
+    if (!list) {
+        return GROBO_OK;
+    }
+    info->stationary = 0;
+    json_array_foreach((json_t *)list, i, value)
+    {
+        json_int_t joint = json_integer_value(value);
+        if (!json_is_integer(value) || joint < 0 || joint >= m->model->n_joints) {
+            return complain(m, GROBO_ERR_ARG, "stationary names a joint that is none");
+        }
+        info->stationary |= GROBO_JOINT_BIT(joint);
+    }
+    return GROBO_OK;
+}
+
+static bool read_vector(const json_t *list, double *values)
+{
+    grobo_transform at = {{0}, {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    bool fine = list && pose_read_placement(list, NULL, &at);
+    if (fine) {
+        memcpy(values, at.p_m, sizeof at.p_m);
+    }
+    return fine;
+}
+
+static int read_info(const making *m, const json_t *key, grobo_key_info *info)
+{
+    const json_t *zmp = json_object_get(key, "zmp_m");
+    const json_t *transition = json_object_get(key, "max_transition_ms");
+    if (zmp && !json_is_null(zmp) && !read_vector(zmp, info->zmp_m)) {
+        return complain(m, GROBO_ERR_ARG, "zmp_m is three numbers or null");
+    }
+    if (zmp) {
+        info->zmp_stationary = info->zmp_stationary || (!info->has_zmp && !json_is_null(zmp));
+        info->has_zmp = !json_is_null(zmp);
+    }
+    if (transition) {
+        info->max_transition_s = json_number_value(transition) / 1e3;
+    }
+    return read_stationary(m, json_object_get(key, "stationary"), info);
+}
+
+static int read_link(const making *m, const json_t *from, grobo_ik_link *link)
+{
+    const char *name = json_string_value(json_object_get(from, "link"));
+    grobo_transform at = {{0}, {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    memset(link, 0, sizeof *link);
+    link->index = -1;
+    if (!name || !json_object_get(from, "p_m") ||
+        !pose_read_placement(json_object_get(from, "p_m"), json_object_get(from, "rotation"),
+                             &at)) {
+        return complain(m, GROBO_ERR_ARG, "a link has its name, p_m and rotation");
+    }
+    snprintf(link->name, sizeof link->name, "%s", name);
+    memcpy(link->translation_m, at.p_m, sizeof at.p_m);
+    memcpy(link->rotation, at.r, sizeof at.r);
+    link->is_base = json_is_true(json_object_get(from, "base"));
+    link->is_stationary = json_is_true(json_object_get(from, "stationary"));
+    link->is_touching = json_is_true(json_object_get(from, "touching"));
+    link->is_slave = json_is_true(json_object_get(from, "slave"));
+    return GROBO_OK;
+}
+
+static int set_links(const making *m, const json_t *list, size_t n)
+{
+    grobo_ik_link links[GROBO_IK_LINKS_MAX];
+    size_t count = json_array_size(list);
+    if (count > GROBO_IK_LINKS_MAX) {
+        return complain(m, GROBO_ERR_CAP, "too many links");
+    }
+    for (size_t i = 0; i < count; i++) {
+        int error = read_link(m, json_array_get(list, i), &links[i]);
+        if (error) {
+            return error;
+        }
+    }
+    return grobo_motion_set_ik_links(m->motion, n, links, count);
+}
+
+/* ---- a key ----------------------------------------------------------------------------------- */
+
+/* Links and the keys of other programs, as they are; those of links go where links are new. */
+static int copy_rest(const making *m, size_t from, size_t to, bool links)
+{
+    size_t n_links;
+    const grobo_ik_link *link = grobo_motion_ik_links(m->base, from, &n_links);
+    grobo_kept kept;
+    int error = links ? grobo_motion_set_ik_links(m->motion, to, link, n_links) : GROBO_OK;
+    for (size_t i = 0; !error && grobo_motion_get_kept(m->base, from, i, &kept) == 0; i++) {
+        if (links || kept.level != GROBO_KEPT_LINK) {
+            error = grobo_motion_keep(m->motion, to, &kept);
+        }
+    }
+    return error;
+}
+
+/* Its number in base; SIZE_MAX: it is new. False: there is none such. */
+static bool find_base(const making *m, const json_t *key, size_t *from)
+{
+    const json_t *number = json_object_get(key, "from");
+    json_int_t n = json_integer_value(number);
+    *from = SIZE_MAX;
+    if (!number) {
+        return true;
+    }
+    if (!json_is_integer(number) || !m->base || n < 0 || (size_t)n >= grobo_motion_size(m->base)) {
+        return false;
+    }
+    *from = (size_t)n;
+    return true;
+}
+
+static int append(making *m, const json_t *key, const grobo_posture *posture, double time_s)
+{
+    bool keys = grobo_motion_get_kind(m->motion) == GROBO_MOTION_KEYS;
+    if (!(time_s >= m->before_s)) {
+        return complain(m, GROBO_ERR_ARG, "it is earlier than the one before");
+    }
+    m->before_s = time_s;
+    if (!keys && json_object_get(key, "links")) {
+        return complain(m, GROBO_ERR_UNSUPPORTED, "this format has no links");
+    }
+    int error = grobo_motion_append_at(m->motion, time_s, posture);
+    return error ? complain(m, error, grobo_error_text(error)) : GROBO_OK;
+}
+
+static int set_rest(making *m, const json_t *key, size_t from, const grobo_key_info *info)
+{
+    size_t n = grobo_motion_size(m->motion) - 1;
+    const json_t *name = json_object_get(key, "name"), *links = json_object_get(key, "links");
+    const char *text = name              ? json_string_value(name)
+                       : from < SIZE_MAX ? grobo_motion_key_name(m->base, from)
+                                         : "";
+    int error = text && *text ? grobo_motion_set_key_name(m->motion, n, text) : GROBO_OK;
+    if (!error) {
+        error = grobo_motion_set_key(m->motion, n, info);
+    }
+    if (!error && from < SIZE_MAX) {
+        error = copy_rest(m, from, n, !links);
+    }
+    if (!error && links) {
+        return set_links(m, links, n);
+    }
+    return error ? complain(m, error, grobo_error_text(error)) : GROBO_OK;
+}
+
+static int add_key(making *m, const json_t *key)
+{
+    const json_t *time = json_object_get(key, "time_ms");
+    grobo_posture posture;
+    grobo_key_info info = {0};
+    double time_s = json_number_value(time) / 1e3;
+    size_t from;
+    if (!json_is_object(key) || !find_base(m, key, &from)) {
+        return complain(m, GROBO_ERR_ARG, "from is no key of the file");
+    }
+    if (from == SIZE_MAX) {
+        grobo_posture_init(&posture, m->model->n_joints);
+    } else {
+        grobo_motion_get(m->base, from, &posture);
+        grobo_motion_get_key(m->base, from, &info);
+        posture.n_joints = m->model->n_joints;
+    }
+    if (!time && from < SIZE_MAX) {
+        grobo_motion_time_s(m->base, from, &time_s);
+    } else if (!json_is_number(time)) {
+        return complain(m, GROBO_ERR_ARG, "it has no time_ms");
+    }
+    int error = read_angles(m, json_object_get(key, "angle_deg"), &posture);
+    if (!error) {
+        error = read_info(m, key, &info);
+    }
+    if (!error) {
+        error = append(m, key, &posture, time_s);
+    }
+    return error ? error : set_rest(m, key, from, &info);
+}
+
+/* An empty motion with what base has as a whole. */
+static int begin(making *m, grobo_motion_format format)
+{
+    int error;
+    if (!m->base) {
+        return grobo_motion_new(&m->motion, grobo_motion_format_kind(format), m->model->n_joints,
+                                NULL);
+    }
+    error = grobo_motion_dup(m->base, &m->motion);
+    if (!error) {
+        grobo_motion_clear(m->motion);
+        error = grobo_motion_joints(m->motion) < m->model->n_joints
+                    ? grobo_motion_set_joints(m->motion, m->model->n_joints)
+                    : 0;
+    }
+    return error < 0 ? error : GROBO_OK;
+}
+
+int edit_apply(const json_t *edit, const grobo_model *model, const grobo_motion *base,
+               grobo_motion_format format, edit_result *result)
+{
+    const json_t *keys = json_object_get(edit, "keys");
+    making m = {.model = model, .base = base, .before_s = -INFINITY, .result = result};
+    if (json_array_size(keys) == 0) {
+        snprintf(result->complaint, sizeof result->complaint, "keys is no list of key poses");
+        return GROBO_ERR_EMPTY;
+    }
+    if (base && grobo_motion_get_kind(base) == GROBO_MOTION_FRAMES) {
+        snprintf(result->complaint, sizeof result->complaint,
+                 "frames at a rate are not edited by keys");
+        return GROBO_ERR_UNSUPPORTED;
+    }
+    int error = begin(&m, format);
+    for (m.key = 0; !error && m.key < json_array_size(keys); m.key++) {
+        error = add_key(&m, json_array_get(keys, m.key));
+    }
+    if (error) {
+        grobo_motion_free(m.motion);
+        return error;
+    }
+    result->motion = m.motion;
+    return GROBO_OK;
+}
+
+/* ---- as a file ------------------------------------------------------------------------------- */
+
+typedef struct heap {
+    char *bytes;
+    size_t size, room;
+} heap;
+
+static int put(void *ctx, const void *bytes, size_t size)
+{
+    heap *h = ctx;
+    if (h->size + size > h->room) {
+        size_t room = 2 * (h->size + size);
+        char *more = realloc(h->bytes, room);
+        if (!more) {
+            return GROBO_ERR_NOMEM;
+        }
+        h->bytes = more;
+        h->room = room;
+    }
+    memcpy(h->bytes + h->size, bytes, size);
+    h->size += size;
+    return GROBO_OK;
+}
+
+int edit_write(const grobo_motion *motion, grobo_motion_format format, const grobo_model *model,
+               char **bytes, size_t *size)
+{
+    heap h = {0};
+    grobo_sink sink = {.write = put, .ctx = &h};
+    grobo_write_options how = {.model = model, .exact = format == GROBO_FORMAT_M};
+    int error = grobo_motion_write(motion, format, &how, &sink, NULL);
+    if (error < 0) {
+        free(h.bytes);
+        return error;
+    }
+    *bytes = h.bytes;
+    *size = h.size;
+    return GROBO_OK;
+}

@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: MIT */
+/* Key poses as a page edits them: what it does not give stays as it is in the file. */
+#ifndef GRCTL_WEB_EDIT_H
+#define GRCTL_WEB_EDIT_H
+
+#include <jansson.h>
+
+#include <grobo/motion_io.h>
+
+typedef struct edit_result {
+    grobo_motion *motion; /* the caller's */
+    char complaint[256];  /* one line, where there is an error */
+} edit_result;
+
+/*
+ * A motion of the key poses that `edit` lists, which refer to those of `base`; base NULL: a new one
+ * of this format. Returns 0 or an error.
+ */
+int edit_apply(const json_t *edit, const grobo_model *model, const grobo_motion *base,
+               grobo_motion_format format, edit_result *result);
+
+/* A motion as a file, to be freed with free(). */
+int edit_write(const grobo_motion *motion, grobo_motion_format format, const grobo_model *model,
+               char **bytes, size_t *size);
+
+#endif
