@@ -119,43 +119,43 @@ await test('the pauses before another attempt grow and end', () => {
 });
 
 const { Lease } = await page('lease');
-const holder = (name, since) => ({ holder: { name, since_ms: since }, asked: null });
-await test('a lease is mine while the state names this page', () => {
+const state = (holder, asked = null) => ({ holder: holder && { id: holder, name: 'Anna' },
+                                         asked: asked && { id: asked, name: 'Ben' } });
+await test('a lease is mine while the state names its id', () => {
     const lease = new Lease();
     same(lease.status(), 'free');
-    lease.taken('id', 'Anna', 0);
-    same(lease.see({ holder: null, asked: null }, 30), false); // the state is older than the answer
-    same(lease.see(holder('Anna', 500), 60), false);
-    same(lease.see(holder('Anna', 500), 9000), false);
-    same(lease.status(), 'mine');
-});
-await test('a lease is lost to another page of the same name', () => {
-    const lease = new Lease();
-    lease.taken('id', 'Anna', 0);
-    lease.see(holder('Anna', 500), 10);
-    same(lease.see(holder('Anna', 900), 20), true);
-    same(lease.status(), 'other');
-    same(lease.id, null);
+    lease.taken({ lease: 'secret', id: 'a' }, 0);
+    same(lease.see(state(null), 30), null); // the state is older than the answer
+    same(lease.see(state('a'), 60), null);
+    same(lease.see(state('a'), 9000), null);
+    same([lease.status(), lease.secret()], ['mine', 'secret']);
+    same(lease.see(state('b'), 9030), 'lost');
+    same([lease.status(), lease.secret()], ['other', null]);
 });
 await test('a lease is lost when nobody holds it, and when it never came', () => {
     const lease = new Lease();
-    lease.taken('id', 'Anna', 0);
-    lease.see(holder('Anna', 500), 10);
-    same(lease.see({ holder: null, asked: null }, 20), true);
+    lease.taken({ lease: 'secret', id: 'a' }, 0);
+    lease.see(state('a'), 10);
+    same(lease.see(state(null), 20), 'lost');
     same(lease.status(), 'free');
-    lease.taken('id', 'Anna', 100);
-    same(lease.see({ holder: null, asked: null }, 1900), false);
-    same(lease.see({ holder: null, asked: null }, 2200), true);
+    lease.taken({ lease: 'secret', id: 'a' }, 100);
+    same(lease.see(state(null), 1900), null);
+    same(lease.see(state(null), 2200), 'lost');
 });
-await test('who asked waits until the lease is free', () => {
+await test('who asked drives when it is given, and asks no more when it is denied', () => {
     const lease = new Lease();
-    lease.see(holder('Ben', 5), 0);
+    lease.see(state('a'), 0);
     same(lease.status(), 'other');
-    lease.asked(10);
-    lease.see(holder('Ben', 5), 20);
+    lease.asked({ lease: 'mine', id: 'b' }, 10);
+    same(lease.see(state('a', 'b'), 3000), null);
     same(lease.status(), 'asked');
-    lease.see({ holder: null, asked: null }, 30);
-    same(lease.status(), 'free');
+    same(lease.see(state('b'), 3030), 'got');
+    same([lease.status(), lease.secret()], ['mine', 'mine']);
+    lease.see(state('c'), 3060);
+    lease.asked({ lease: 'other', id: 'd' }, 4000);
+    lease.see(state('c', 'd'), 4030);
+    lease.see(state('c'), 7000);
+    same(lease.status(), 'other');
 });
 
 const { Stopper, stopWords } = await page('stop');

@@ -52,7 +52,7 @@ export class Joints {
         this.buttons = [
             button('Torque on', () => this.app.command('/api/torque', { joints: one(), mode: 'on' }, true)),
             button('Torque off', () => this.app.command('/api/torque', { joints: one(), mode: 'off' })),
-            button('Limp', () => this.app.command('/api/torque', { joints: one(), mode: 'limp' })),
+            button('Limp', () => this.app.command('/api/torque', { joints: one(), mode: 'limp' }, true)),
             button('Hold', () => this.app.command('/api/torque', { joints: one(), mode: 'hold' }, true)),
         ];
         this.slider.addEventListener('input', () => this.drag());

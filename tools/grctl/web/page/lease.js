@@ -1,69 +1,68 @@
 // SPDX-License-Identifier: MIT
-// Who drives, seen from this page. The server tells all pages the holder's name and since when; this
-// page's own lease is the one that appeared after it was taken, and is lost when that holder changes.
+// Who drives, seen from this page. The server tells all pages the holder's id; this page's own lease is
+// the one whose id it was told. It is lost when the state names another holder, or none.
 //
-//   free --take--> hoped --state names us--> mine --state names another, or nobody--> lost (free, other)
-//   other --ask--> asked --10 s, take--> hoped
+//   free --take--> hoped --state names us--> mine --state names another, or nobody--> free, other
+//   other --ask--> asked --given: the state names us--> mine
+//                  asked --10 s, take--> hoped
 
 const HOPE_MS = 2000;
 
 export class Lease {
     constructor() {
-        this.id = null;
-        this.name = null;
-        this.since = null;
-        this.tookAt = 0;
-        this.askedAt = null;
+        this.mine = null;
+        this.ask = null;
         this.holder = null;
         this.asker = null;
     }
 
-    /** The server gave a lease. */
-    taken(id, name, now) {
-        Object.assign(this, { id, name, since: null, tookAt: now, askedAt: null });
+    /** The server gave a lease: { lease, id }. */
+    taken({ lease, id }, now) {
+        this.mine = { lease, id, at: now, seen: false };
+        this.ask = null;
     }
 
     /** This page gave it back. */
     given() {
-        this.id = null;
-        this.since = null;
+        this.mine = null;
     }
 
-    /** This page asks; take works askMs later. */
-    asked(now) {
-        this.askedAt = now;
+    /** The server took note that this page asks: { lease, id }. */
+    asked({ lease, id }, now) {
+        this.ask = { lease, id, at: now };
     }
 
-    /** A state came. @returns true: the lease of this page was lost just now */
+    /** For X-Grobo-Lease; null: this page does not drive. */
+    secret() {
+        return this.mine && this.mine.lease;
+    }
+
+    /** A state came. @returns 'got' or 'lost' when this page's part changed by it, else null */
     see({ holder, asked }, now) {
         this.holder = holder;
         this.asker = asked;
-        if (!holder) {
-            this.askedAt = null;
+        if (this.ask && holder && holder.id === this.ask.id) {
+            this.mine = { ...this.ask, seen: true };
+            this.ask = null;
+            return 'got';
         }
-        if (!this.id) {
-            return false;
+        if (this.ask && !(asked && asked.id === this.ask.id) && now - this.ask.at > HOPE_MS) {
+            this.ask = null; // denied, or the asker is another now
         }
-        const named = holder && holder.name === this.name;
-        if (named && this.since === null) {
-            this.since = holder.since_ms;
+        if (!this.mine) {
+            return null;
         }
-        const ours = named && holder.since_ms === this.since;
-        if (ours || this.since === null && now - this.tookAt < HOPE_MS) {
-            return false;
+        if (holder && holder.id === this.mine.id) {
+            this.mine.seen = true;
+        } else if (this.mine.seen || now - this.mine.at > HOPE_MS) {
+            this.mine = null;
+            return 'lost';
         }
-        this.given();
-        return true;
+        return null;
     }
 
     /** 'mine', 'free', 'other' (another drives) or 'asked' (and this page asked to). */
     status() {
-        if (this.id) {
-            return 'mine';
-        }
-        if (!this.holder) {
-            return 'free';
-        }
-        return this.askedAt === null ? 'other' : 'asked';
+        return this.mine ? 'mine' : this.ask ? 'asked' : this.holder ? 'other' : 'free';
     }
 }

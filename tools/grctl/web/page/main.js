@@ -119,9 +119,11 @@ class App {
         this.state = state;
         this.arrived = performance.now();
         this.stopper.see(state.stop);
-        if (this.lease.see(state.lease, this.arrived)) {
-            this.api.lease = null;
-            this.say(this.t('This page does not drive any more.'), true);
+        const changed = this.lease.see(state.lease, this.arrived);
+        this.api.lease = this.lease.secret();
+        if (changed) {
+            this.say(this.t(changed === 'got' ? 'This page drives.'
+                                              : 'This page does not drive any more.'), true);
         }
         if (again) { // another server: its robot may be another too
             this.loadRobot();
@@ -191,6 +193,7 @@ class App {
     }
 
     fail(error) {
+        console.error(`${error.code || error.name}: ${error.message}`);
         this.notice(error.message);
         this.schedule();
     }
@@ -233,12 +236,13 @@ class App {
             if (status === 'mine') {
                 this.giveBack();
             } else if (status === 'other') {
-                await this.api.post('/api/lease', { action: 'ask', name });
-                this.lease.asked(performance.now());
+                this.lease.asked(await this.api.post('/api/lease', { action: 'ask', name }),
+                                 performance.now());
             } else {
-                const { lease } = await this.api.post('/api/lease', { action: 'take', name });
-                this.lease.taken(lease, name, performance.now());
-                this.api.lease = lease;
+                const ask = this.lease.ask ? { lease: this.lease.ask.lease } : {};
+                this.lease.taken(await this.api.post('/api/lease', { action: 'take', name, ...ask }),
+                                 performance.now());
+                this.api.lease = this.lease.secret();
                 this.beat();
                 this.say(this.t('This page drives.'));
             }
@@ -249,9 +253,9 @@ class App {
     }
 
     giveBack(leaving) {
-        if (this.lease.id) {
+        if (this.lease.mine) {
             this.joints.cancel();
-            const body = { action: 'give', lease: this.lease.id };
+            const body = { action: 'give', lease: this.lease.secret() };
             if (leaving) {
                 this.api.beacon('/api/lease', body);
             } else {
@@ -264,8 +268,8 @@ class App {
 
     /** 5 times a second, with what was drawn last: a page that draws nothing is lost too. */
     beat() {
-        if (this.lease.id && this.api.stopPort) {
-            this.api.aside('/heartbeat', { lease: this.lease.id, drawn: this.drawn }).catch(() => {});
+        if (this.lease.mine && this.api.stopPort) {
+            this.api.aside('/heartbeat', { lease: this.lease.secret(), drawn: this.drawn }).catch(() => {});
         }
     }
 
@@ -545,7 +549,7 @@ class App {
         let ready = Boolean(this.state) && !this.age();
         const askMs = this.robot ? this.robot.lease.ask_ms : 10000;
         if (status === 'asked') {
-            const left = askMs + 300 - (performance.now() - lease.askedAt); // clocks differ a little
+            const left = askMs + 300 - (performance.now() - lease.ask.at); // clocks differ a little
             ready = ready && left <= 0;
             action = left > 0 ? t('Asked, {0} s', Math.ceil(left / 1000)) : t('Take over');
         }
