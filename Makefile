@@ -122,13 +122,15 @@ SUPPORT_SRCS := $(sort $(filter-out %/replay_main.c $(LEFT_OUT),$(wildcard tests
     tests/support/os/$(PORT).c)
 # Tests of one port's own are named after it.
 OTHER_PORTS := $(filter-out tests/port/test_$(PORT)_%,$(foreach p,posix win32,$(wildcard tests/port/test_$(p)_*.c)))
-TEST_SRCS := $(sort $(filter-out $(LEFT_OUT) $(OTHER_PORTS),\
+# What needs evhttp.
+WEB_TESTS := tests/fuzz/fuzz_serve.c $(wildcard tests/unit/test_web_*.c)
+TEST_SRCS := $(sort $(filter-out $(LEFT_OUT) $(OTHER_PORTS) $(if $(filter none,$(WEB)),$(WEB_TESTS)),\
     $(foreach ring,unit engine link fault port,$(wildcard tests/$(ring)/test_*.c))))
 # Built wherever they can be, run by check-drivers.
 DRIVER_SRCS := $(if $(filter posixLinux,$(PORT)$(shell uname)),$(sort $(wildcard tests/drivers/test_*.c)))
 TEST_SCRIPTS := $(sort $(filter-out $(LEFT_OUT),\
     $(foreach ring,cli lint export wine,$(wildcard tests/$(ring)/*.sh))))
-FUZZ_SRCS := $(sort $(wildcard tests/fuzz/fuzz_*.c))
+FUZZ_SRCS := $(sort $(filter-out $(if $(filter none,$(WEB)),$(WEB_TESTS)),$(wildcard tests/fuzz/fuzz_*.c)))
 BENCH_SRCS := $(sort $(wildcard tests/bench/bench_*.c))
 EXAMPLE_SRCS := $(sort $(wildcard docs/examples/*.c))
 
@@ -165,7 +167,7 @@ include tools/baremetal/baremetal.mk
 
 # ---- targets -------------------------------------------------------------------------------
 
-.PHONY: help all lib demo check robots lint lint-quick format test check-san check-tsan check-memcheck install uninstall
+.PHONY: help all lib demo cockpit check robots lint lint-quick format test check-san check-tsan check-memcheck install uninstall
 .PHONY: clean tidy fuzz soak cov dist bench bench-peers bench-count plots captures cross check-cross check-drivers
 .PHONY: check-abi sources wrap deb check-deb release check-families check-ports check-long check-mutants check-map install-lib FORCE
 .PHONY: firmware size check-firmware
@@ -185,6 +187,11 @@ demo: ## play MOTION=motions/greet.pseq on a simulated robot behind a pty
 	@tools/setup.sh --demo
 	@$(MAKE) --no-print-directory $(BUILD)/grctl
 	@tools/demo.sh $(BUILD)/grctl $(MOTION)
+
+cockpit: ## the cockpit of a simulated robot: a link for the browser
+	@tools/setup.sh --demo
+	@$(MAKE) --no-print-directory $(BUILD)/grctl
+	@$(BUILD)/grctl -d sim serve motions
 
 check: ## set up what is missing, build, lint, run every test
 	@tools/setup.sh --check
@@ -462,7 +469,7 @@ install: all install-lib $(JSON_PAGE) ## into $(DESTDIR)$(PREFIX)
 	install -d "$(DESTDIR)$(DATADIR)/man/man5" "$(DESTDIR)$(DATADIR)/grobo/udev" \
 	    "$(DESTDIR)$(DATADIR)/grobo/wireshark"
 	install -m 644 $(JSON_PAGE) "$(DESTDIR)$(DATADIR)/man/man5"
-	install -m 644 docs/grctl.schema.json docs/robot.schema.json "$(DESTDIR)$(DATADIR)/grobo"
+	install -m 644 docs/grctl.schema.json docs/robot.schema.json docs/serve.openapi.json "$(DESTDIR)$(DATADIR)/grobo"
 	install -m 644 tools/udev/60-grobo.rules "$(DESTDIR)$(DATADIR)/grobo/udev"
 	install -m 644 tools/wireshark/grobo.lua "$(DESTDIR)$(DATADIR)/grobo/wireshark"
 

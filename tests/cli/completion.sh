@@ -132,7 +132,7 @@ if command -v bash >/dev/null 2>&1; then
     check "bash: a joint" completes 'R_KNEE_P' status R_KN
     check "bash: a group" completes 'left_arm left_leg legs' servo on le
     check "bash: the words of an argument" completes 'brake' servo b
-    check "bash: a command as an argument" completes 'servo servo-get servo-set' help serv
+    check "bash: a command as an argument" completes 'serve servo servo-get servo-set' help serv
     check "bash: a file" completes 'walk.pseq' play w
     check "bash: files with blanks" completes 'two words.m' play t
     check "bash: a file for an option" completes 'walk.pseq' plot -o wal

@@ -182,6 +182,8 @@ check "--json status --watch" both speaks INT 130 -d sim status --watch --- json
 check "as the schema says" fits status
 check "--json sim" both speaks TERM 143 sim --tcp 0 --- json 'lines[0]["simulated"]'
 check "as the schema says" fits sim
+check "--json serve" both speaks TERM 143 -d sim serve --port 0 --- json 'lines[0]["token"]'
+check "as the schema says" fits serve
 records() {
     printf ' s' | exits_with_keys "$GRCTL" --json -d sim record --key -o "$work/taught.m" &&
         json 'lines[0]["postures"] == 1'
@@ -207,7 +209,7 @@ check "as the schema says" fits shell,version
 rows names | sort -u >"$work/names"
 every_command() {
     for command in $("$GRCTL" help | sed -n '/^Commands:/,/^$/s/^  \([a-z-]*\) .*/\1/p'); do
-        case " sim shell monitor record teach " in
+        case " sim shell monitor serve record teach " in
         *" $command "*) ;; # above
         *) grep -qx -e "$command" "$work/names" || { echo "$command has no row"; return 1; } ;;
         esac

@@ -25,8 +25,12 @@ enum {
     DROP_US = 3000000,   /* so long without reading */
     SWEEP_US = 100000,
     WRONG_US = 300000, /* what a wrong token waits for its answer */
-    LISTENERS = 2
+    LISTENERS = 2,
+    SPARE = 8, /* accepted before the door is closed */
+    GUESTS = 2 * (HTTP_CONNECTIONS_MAX + SPARE)
 };
+/* A whole request comes within this time, however slowly. */
+#define REQUEST_US INT64_C(20000000)
 
 /* One of the two ports. */
 typedef struct port {
@@ -37,19 +41,27 @@ typedef struct port {
     wall wall;
 } port;
 
-/* A connection. We hold a reference: it is gone where libevent has taken its callbacks back. */
+/*
+ * A connection. libevent does not tell when one ends that never made a request: such a one is known
+ * by its buffer alone, which is compared and not used, and is taken for gone when it was silent for
+ * longer than evhttp lets it be.
+ */
 typedef struct guest {
-    struct bufferevent *bev;
-    port *at;
-    char address[64]; /* "" on loopback, and until it is known */
-    bool looked_at;
+    port *at;                /* NULL: this place is free */
+    struct bufferevent *bev; /* for when it is heard, as it is there then */
+    const struct evbuffer *input;
+    const struct evhttp_connection *connection; /* from the first request on */
+    char address[64];                           /* "" on loopback, and until it is known */
+    int64_t heard_us;                           /* when it sent something, or came */
+    int64_t began_us;                           /* a request that is not whole, 0: none */
+    bool named;
 } guest;
 
 typedef struct stream {
     struct stream *next;
     http *of;
     struct evhttp_request *raw;
-    struct evbuffer_cb_entry *ear; /* of what it sends, which is nothing */
+    struct evhttp_connection *connection;
     char address[64];
     int64_t behind_us; /* since when it does not read, 0: it does */
     bool ends;
@@ -58,7 +70,7 @@ typedef struct stream {
 struct http {
     http_config config;
     port first, second;
-    guest guests[2 * HTTP_CONNECTIONS_MAX];
+    guest guests[GUESTS];
     stream *streams;
     http_request *waiting;
     struct event *sweep, *reap;
@@ -68,29 +80,27 @@ struct http {
 
 /* ---- connections ----------------------------------------------------------------------------- */
 
-static void name_guest(guest *g)
-{
-    g->looked_at = true;
-    net_peer(bufferevent_getfd(g->bev), g->address, sizeof g->address);
-}
-
-static bool is_gone(const guest *g)
-{
-    bufferevent_data_cb read, write;
-    bufferevent_event_cb event;
-    void *ctx;
-    bufferevent_getcb(g->bev, &read, &write, &event, &ctx);
-    return event == NULL;
-}
-
 static int guests_of(const port *p, const char *address)
 {
     int n = 0;
-    for (size_t i = 0; i < sizeof p->of->guests / sizeof p->of->guests[0]; i++) {
+    for (int i = 0; i < GUESTS; i++) {
         const guest *g = &p->of->guests[i];
-        n += g->bev && g->at == p && (!address || strcmp(g->address, address) == 0);
+        n += g->at == p && (!address || strcmp(g->address, address) == 0);
     }
     return n;
+}
+
+static guest *find_guest(http *h, const struct evbuffer *input,
+                         const struct evhttp_connection *connection)
+{
+    for (int i = 0; i < GUESTS; i++) {
+        guest *g = &h->guests[i];
+        if (g->at &&
+            ((input && g->input == input) || (connection && g->connection == connection))) {
+            return g;
+        }
+    }
+    return NULL;
 }
 
 static void open_door(port *p, bool open)
@@ -101,42 +111,73 @@ static void open_door(port *p, bool open)
     }
 }
 
-/* Forgets connections that have ended; ends those of an address that has too many. */
+/* Forgets those that have gone without a word. */
 static void sweep_guests(http *h)
 {
-    for (size_t i = 0; i < sizeof h->guests / sizeof h->guests[0]; i++) {
+    int64_t now_us = grobo_now_us();
+    for (int i = 0; i < GUESTS; i++) {
         guest *g = &h->guests[i];
-        if (!g->bev) {
-            continue;
-        }
-        if (is_gone(g)) {
-            bufferevent_decref(g->bev);
-            memset(g, 0, sizeof *g);
-        } else if (!g->looked_at) {
-            name_guest(g);
-            if (*g->address && guests_of(g->at, g->address) > HTTP_ADDRESS_CONNECTIONS_MAX) {
-                /* libevent sees its end, and frees it */
-                net_end(bufferevent_getfd(g->bev));
-            }
+        if (g->at && !g->connection && now_us - g->heard_us > (IDLE_S + 1) * INT64_C(1000000)) {
+            g->at = NULL;
         }
     }
     open_door(&h->first, guests_of(&h->first, NULL) < HTTP_CONNECTIONS_MAX);
     open_door(&h->second, guests_of(&h->second, NULL) < HTTP_CONNECTIONS_MAX);
 }
 
+static guest *take_place(port *p, const struct evbuffer *input)
+{
+    guest *g = find_guest(p->of, input, NULL); /* of one that has gone: its memory is used again */
+    for (int i = 0; !g && i < GUESTS; i++) {
+        g = p->of->guests[i].at ? NULL : &p->of->guests[i];
+    }
+    if (g) {
+        *g = (guest){.at = p, .input = input, .heard_us = grobo_now_us()};
+    }
+    return g;
+}
+
+/* Whose request never gets whole, or whose address has too many connections. */
+static bool is_rude(port *p, guest *g)
+{
+    g->heard_us = grobo_now_us();
+    if (!g->named) {
+        g->named = true;
+        net_peer(bufferevent_getfd(g->bev), g->address, sizeof g->address);
+        if (*g->address && guests_of(p, g->address) > HTTP_ADDRESS_CONNECTIONS_MAX) {
+            return true;
+        }
+    }
+    if (g->began_us == 0) {
+        g->began_us = g->heard_us;
+    }
+    return g->heard_us - g->began_us > REQUEST_US;
+}
+
+static void end_stream_of(http *h, const struct evhttp_connection *connection);
+
+/* A connection has sent something. */
+static void on_input(struct evbuffer *input, const struct evbuffer_cb_info *info, void *ctx)
+{
+    port *p = ctx;
+    guest *g = info->n_added > 0 ? find_guest(p->of, input, NULL) : NULL;
+    if (g && is_rude(p, g)) {
+        net_end(bufferevent_getfd(g->bev)); /* libevent sees that, and frees it */
+    }
+    if (g && g->connection) {
+        end_stream_of(p->of, g->connection); /* nobody would read it there */
+    }
+}
+
 /* At each connection that is accepted. Who comes when all places are taken waits in the system. */
 static struct bufferevent *on_connection(struct event_base *base, void *ctx)
 {
     port *p = ctx;
-    http *h = p->of;
     struct bufferevent *bev = bufferevent_socket_new(base, -1, 0);
-    for (size_t i = 0; bev && i < sizeof h->guests / sizeof h->guests[0]; i++) {
-        guest *g = &h->guests[i];
-        if (!g->bev) {
-            bufferevent_incref(bev);
-            *g = (guest){.bev = bev, .at = p};
-            break;
-        }
+    guest *g = bev ? take_place(p, bufferevent_get_input(bev)) : NULL;
+    if (g) {
+        g->bev = bev;
+        evbuffer_add_cb(bufferevent_get_input(bev), on_input, p);
     }
     if (guests_of(p, NULL) >= HTTP_CONNECTIONS_MAX) {
         open_door(p, false);
@@ -301,49 +342,59 @@ void http_reply_content(http_request *r, const http_content *content)
 
 static struct evbuffer *waiting_bytes(const stream *s)
 {
-    return bufferevent_get_output(
-        evhttp_connection_get_bufferevent(evhttp_request_get_connection(s->raw)));
+    return bufferevent_get_output(evhttp_connection_get_bufferevent(s->connection));
 }
 
-/* By the client, or by us: see reap_streams(). */
-static void on_stream_closed(struct evhttp_connection *connection, void *ctx)
+/* A stream whose connection is gone, by the client or by us. */
+static void forget_stream(http *h, const struct evhttp_connection *connection)
 {
-    stream *s = ctx, **link = &s->of->streams;
-    (void)connection;
-    while (*link != s) {
-        link = &(*link)->next;
+    for (stream **link = &h->streams; *link; link = &(*link)->next) {
+        stream *s = *link;
+        if (s->connection == connection) {
+            *link = s->next;
+            if (!evhttp_request_get_connection(s->raw)) { /* libevent gave it to us */
+                evhttp_request_free(s->raw);
+            }
+            free(s);
+            return;
+        }
     }
-    *link = s->next;
-    if (!evhttp_request_get_connection(s->raw)) { /* libevent gave it to us */
-        evhttp_request_free(s->raw);
-    }
-    free(s);
 }
 
-/* Nobody sends anything on a stream, and nobody would read it. */
-static void on_stream_input(struct evbuffer *input, const struct evbuffer_cb_info *info, void *ctx)
+/* Of every connection that has made a request. */
+static void on_closed(struct evhttp_connection *connection, void *ctx)
 {
-    stream *s = ctx;
-    (void)input;
-    if (info->n_added > 0) {
-        s->ends = true;
-        event_active(s->of->reap, 0, 0);
+    http *h = ctx;
+    guest *g = find_guest(h, NULL, connection);
+    if (g) {
+        g->at = NULL;
+    }
+    forget_stream(h, connection);
+}
+
+/* Not from within its own callbacks. */
+static void end_stream(stream *s)
+{
+    s->ends = true;
+    event_active(s->of->reap, 0, 0);
+}
+
+static void end_stream_of(http *h, const struct evhttp_connection *connection)
+{
+    for (stream *s = h->streams; s; s = s->next) {
+        if (s->connection == connection) {
+            end_stream(s);
+        }
     }
 }
 
-/* Ends those that are to end: not from within their own callbacks. */
 static void reap_streams(http *h)
 {
     stream *s = h->streams;
     while (s) {
         stream *next = s->next;
         if (s->ends) {
-            struct evhttp_connection *connection = evhttp_request_get_connection(s->raw);
-            if (s->ear) {
-                evbuffer_remove_cb_entry(
-                    bufferevent_get_input(evhttp_connection_get_bufferevent(connection)), s->ear);
-            }
-            evhttp_connection_free(connection);
+            evhttp_connection_free(s->connection); /* which calls on_closed() */
         }
         s = next;
     }
@@ -399,18 +450,16 @@ void http_reply_stream(http_request *r, const char *first)
     }
     s->of = h;
     s->raw = r->raw;
+    s->connection = connection;
     s->next = h->streams;
     h->streams = s;
     add_headers(r);
     add(r, "Cache-Control", "no-store");
     add(r, "Content-Type", "text/event-stream");
     net_keep_little(bufferevent_getfd(bev), SEND_BYTES); /* what waits there is the past */
-    evhttp_connection_set_closecb(connection, on_stream_closed, s);
-    s->ear = evbuffer_add_cb(bufferevent_get_input(bev), on_stream_input, s);
     evhttp_send_reply_start(r->raw, 200, reason_of(200));
     if (evbuffer_get_length(bufferevent_get_input(bev)) > 0) { /* it came with the request */
-        s->ends = true;
-        event_active(h->reap, 0, 0);
+        end_stream(s);
     }
     send_chunk(s, first, strlen(first));
     drop_request(r);
@@ -429,8 +478,7 @@ void http_send(http *server, const char *text, size_t size, bool may_miss)
         } else if (s->behind_us == 0) {
             s->behind_us = now_us;
         } else if (now_us - s->behind_us > DROP_US) {
-            s->ends = true;
-            event_active(server->reap, 0, 0);
+            end_stream(s);
         }
     }
 }
@@ -538,9 +586,23 @@ static void judge(http_request *r)
     }
 }
 
+/* The connection has a whole request; from now on libevent tells when it ends. */
+static void know_guest(port *p, struct evhttp_connection *connection)
+{
+    const struct evbuffer *input =
+        bufferevent_get_input(evhttp_connection_get_bufferevent(connection));
+    guest *g = find_guest(p->of, input, NULL);
+    if (g) {
+        g->connection = connection;
+        g->began_us = 0;
+    }
+    evhttp_connection_set_closecb(connection, on_closed, p->of);
+}
+
 static void on_request(struct evhttp_request *raw, void *ctx)
 {
     port *p = ctx;
+    know_guest(p, evhttp_request_get_connection(raw));
     http_request *r = calloc(1, sizeof *r);
     if (!r) {
         evhttp_send_reply(raw, 503, reason_of(503), NULL);
@@ -674,11 +736,6 @@ void http_free(http *server)
     }
     if (server->second.server) {
         evhttp_free(server->second.server);
-    }
-    for (size_t i = 0; i < sizeof server->guests / sizeof server->guests[0]; i++) {
-        if (server->guests[i].bev) {
-            bufferevent_decref(server->guests[i].bev);
-        }
     }
     while (server->waiting) {
         drop_request(server->waiting);

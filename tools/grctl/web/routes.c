@@ -88,10 +88,11 @@ void serve_refuse(serve *s, http_request *r, int error, const char *doing)
 void serve_refuse_said(http_request *r, int status, const app *a)
 {
     static const int statuses[] = {200, 409, 400, 422, 422};
+    bool missing = strcmp(a->failed, grobo_error_name(GROBO_ERR_NOENT)) == 0;
     json_t *refusal = json_pack("{s:o,s:o}", "code", app_json_code(a->failed), "message",
                                 app_json_text(a->hushed));
-    http_reply_json(r, status > 0 && status <= EXIT_SAFETY ? statuses[status] : 409,
-                    json_pack("{s:o}", "error", refusal));
+    int found = status > 0 && status <= EXIT_SAFETY ? statuses[status] : 409;
+    http_reply_json(r, missing ? 404 : found, json_pack("{s:o}", "error", refusal));
 }
 
 void serve_accept(serve *s, http_request *r, int result, const char *doing)

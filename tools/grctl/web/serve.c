@@ -10,7 +10,7 @@
 #include "tools/grctl/web/serve.h"
 
 /* Each joint is read so often: what a picture needs that is drawn between two readings. */
-enum { SENSE_US = 200000, COMMENT_US = 900000 };
+enum { SENSE_US = 200000, COMMENT_US = 900000, TOKEN_LEAST = 16 };
 
 int64_t serve_ms(const serve *s, int64_t at_us)
 {
@@ -282,6 +282,10 @@ static int start(serve *s)
                           .rule = serve_rule,
                           .serve = serve_request,
                           .ctx = s};
+    if (config.token && (strlen(token) < TOKEN_LEAST || strlen(token) >= WALL_TOKEN_BYTES)) {
+        return app_fail(s->a, EXIT_USAGE, "ARG", "serve: GRCTL_TOKEN has %d to %d characters",
+                        TOKEN_LEAST, WALL_TOKEN_BYTES - 1);
+    }
     int error = http_new(&config, &s->http, &complaint);
     if (error) {
         return app_fail(s->a, EXIT_ROBOT, grobo_error_name(error), "serve: port %u: %s",
@@ -324,7 +328,6 @@ static void finish(serve *s)
     http_free(s->http);
     conn_forget(s->tick);
     s->http = NULL;
-    player_free(s);
     events_free(&s->events);
 }
 
@@ -341,6 +344,7 @@ static int run(serve *s)
     if (status) {
         return status;
     }
+    on_tick(-1, 0, s); /* there is a state from the first request on */
     announce(s);
     error = conn_wait_until(c, never);
     c->moving = c->up && serve_is_moving(s);
@@ -351,6 +355,9 @@ static int run(serve *s)
 int web_run(app *a, const web_options *options)
 {
     static serve s;
+    if (!os_is_folder(options->folder)) {
+        return app_fail(a, EXIT_FILE, "NOENT", "serve: %s: no such folder", options->folder);
+    }
     memset(&s, 0, sizeof s);
     s.a = a;
     s.options = options;
@@ -361,6 +368,7 @@ int web_run(app *a, const web_options *options)
     }
     finish(&s);
     status = conn_close(&s.c, status);
+    player_free(&s); /* not before: the motion was played until then */
     a->reconnects = false;
     return status;
 }

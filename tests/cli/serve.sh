@@ -1,0 +1,58 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# The cockpit's server: who may ask what, streams, motions, poses. Its clients are those of
+# tests/support/cockpit.py.
+. tests/support/cli.sh
+
+if "$GRCTL" -d sim serve nowhere 2>&1 | grep -q 'without evhttp'; then
+    echo "1..0 # SKIP this grctl has no evhttp"
+    exit
+fi
+if ! have_json; then
+    echo "1..0 # SKIP no python3 to ask the server with"
+    exit
+fi
+
+pages() {
+    python3 tests/support/cockpit.py "$1"
+}
+
+has_jsonschema() {
+    python3 -c 'import jsonschema' 2>/dev/null
+}
+
+check "hosts, origins, tokens, methods that are refused" pages refusals
+check "what is too large or never whole is refused" pages sizes
+check "no path leads out of the folder" pages escapes
+check "beyond loopback everything needs the token" pages beyond_loopback
+check "the page: compressed, known by its hash, under a policy" pages page_files
+check "states come 30 times a second, events are kept" pages stream
+check "a stream that sends something is dropped" pages greedy
+check "a stream that does not read is dropped, the others miss nothing" pages slow
+check "a stop comes through where all places are taken" pages crowd
+check "motions are listed, previewed, edited to the bit" pages motions
+check "a motion that would fall says when" pages falls
+check "feet and waist are dragged" pages ik
+check "a robot that is no humanoid" pages other_robot
+if has_jsonschema; then
+    check "what is answered is what the OpenAPI file tells" pages schema
+else
+    skip "what is answered is what the OpenAPI file tells" "no python3-jsonschema"
+fi
+
+# A port that somebody has is an error, and no other is taken.
+taken() {
+    python3 -c '
+import socket, subprocess, sys
+s = socket.socket()
+s.bind(("127.0.0.1", 0))
+s.listen()
+sys.exit(subprocess.run([sys.argv[1], "-d", "sim", "serve", "--port",
+                         str(s.getsockname()[1])]).returncode)
+' "$GRCTL"
+}
+check "a port in use is an error" fails 1 'port [0-9]*: the port is in use' taken
+check "a folder that is none is an error" fails 3 'nowhere: no such folder' \
+    "$GRCTL" -d sim serve --port 0 nowhere
+
+done_testing

@@ -1,0 +1,29 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# The cockpit's server: who drives, what a stop does, what becomes of a page that is lost.
+. tests/support/cli.sh
+
+if "$GRCTL" -d sim serve nowhere 2>&1 | grep -q 'without evhttp'; then
+    echo "1..0 # SKIP this grctl has no evhttp"
+    exit
+fi
+if ! have_json; then
+    echo "1..0 # SKIP no python3 to ask the server with"
+    exit
+fi
+
+pages() {
+    python3 tests/support/cockpit.py "$1"
+}
+
+check "move, play, pause, seek, speed, queue, limp, capture" pages driving
+check "what is based on an old state is refused" pages stale
+check "a stop latches, is confirmed by each joint, is taken back" pages stopping
+check "a stop beside streams that stand still" pages latency
+check "jogging stops when the page is silent" pages lost_in_jog
+check "a motion whose page is lost does what was declared" pages lost_in_motion
+check "a page that is killed is lost" pages killed
+check "the lease is asked for, refused, given, taken" pages takeover
+check "a server that ends leaves the robot as the exit policy says" pages left
+
+done_testing

@@ -1,0 +1,996 @@
+# SPDX-License-Identifier: MIT
+"""Clients of `grctl serve`, good and bad. usage: cockpit.py SCENARIO [GRCTL]; each scenario is a
+function below, starts a server of its own on the simulator, and ends with an exception where
+something is not as docs/serve.md tells."""
+import http.client
+import json
+import os
+import re
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+
+GRCTL = os.environ["GRCTL"]
+MOTIONS = "motions"
+PATIENCE_S = 30  # where something is waited for; a busy machine is no failure
+
+
+class Refused(Exception):
+    def __init__(self, status, error):
+        super().__init__(f"{status} {error}")
+        self.status = status
+        self.code = error.get("code")
+        self.error = error
+
+
+class Server:
+    """`grctl serve`, until the end of the with statement."""
+
+    def __init__(self, *words, motions=MOTIONS, device="sim", env=None):
+        self.words = [GRCTL, "--json", "-d", device, "serve", "--port", "0", *words, motions]
+        self.env = dict(os.environ, **(env or {}))
+
+    def __enter__(self):
+        self.process = subprocess.Popen(self.words, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                        env=self.env, text=True)
+        line = self.process.stdout.readline()
+        if not line.startswith("{"):
+            raise AssertionError(f"no line of JSON: {line} {self.process.stderr.read()}")
+        told = json.loads(line)
+        if "url" not in told:
+            raise AssertionError(f"did not start: {told}")
+        self.token = told["token"]
+        self.port = int(re.search(r":(\d+)/", told["url"]).group(1))
+        self.stop_port = int(re.search(r":(\d+)/", told["stop_url"]).group(1))
+        return self
+
+    def __exit__(self, kind, value, trace):
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGTERM)
+        self.status = self.process.wait(PATIENCE_S)
+        self.said = self.process.stderr.read()
+        if kind is None and self.status != 128 + signal.SIGTERM:
+            raise AssertionError(f"the server ended with {self.status}: {self.said}")
+
+    def rss_kb(self):
+        with open(f"/proc/{self.process.pid}/status", encoding="ascii") as status:
+            return int(re.search(r"VmRSS:\s+(\d+)", status.read()).group(1))
+
+
+class Page:
+    """A page: one connection for requests, perhaps the lease."""
+
+    def __init__(self, server, name="test"):
+        self.server = server
+        self.name = name
+        self.lease = None
+        self.beating = None
+
+    def ask(self, method, path, body=None, headers=None, port=None):
+        """Status, headers, body as bytes."""
+        connection = http.client.HTTPConnection("127.0.0.1", port or self.server.port,
+                                                timeout=PATIENCE_S)
+        sent = {"X-Grobo-Token": self.server.token, **(headers or {})}
+        if self.lease:
+            sent.setdefault("X-Grobo-Lease", self.lease)
+        if body is not None and not isinstance(body, bytes):
+            body = json.dumps(body).encode()
+            sent.setdefault("Content-Type", "application/json")
+        connection.request(method, path, body, {k: v for k, v in sent.items() if v is not None})
+        answer = connection.getresponse()
+        got = answer.read()
+        connection.close()
+        return answer.status, answer.headers, got
+
+    def call(self, method, path, body=None, headers=None):
+        status, _, got = self.ask(method, path, body, headers)
+        told = json.loads(got) if got else None
+        if status >= 400:
+            raise Refused(status, told["error"])
+        return told
+
+    def get(self, path):
+        return self.call("GET", path)
+
+    def post(self, path, **body):
+        return self.call("POST", "/api/" + path, body)
+
+    def target(self, path, **body):
+        """A request that is based on the present state."""
+        return self.post(path, sequence=self.state()["sequence"], **body)
+
+    def state(self):
+        return self.get("/api/state")
+
+    def take(self):
+        self.lease = self.post("lease", action="take", name=self.name)["lease"]
+        return self
+
+    def beat(self, drawn=None, lease=None):
+        body = {"lease": lease or self.lease, "token": self.server.token,
+                "drawn": self.state()["sequence"] if drawn is None else drawn}
+        return self.ask("POST", "/heartbeat", json.dumps(body).encode(),
+                        {"Content-Type": "text/plain", "X-Grobo-Token": None,
+                         "X-Grobo-Lease": None}, self.server.stop_port)[0]
+
+    def keep_beating(self):
+        stop = threading.Event()
+
+        def beat():
+            while not stop.wait(0.2):
+                self.beat()
+
+        thread = threading.Thread(target=beat, daemon=True)
+        thread.start()
+        self.beating = (stop, thread)
+        return self
+
+    def fall_silent(self):
+        if self.beating:
+            self.beating[0].set()
+            self.beating[1].join()
+            self.beating = None
+
+    def wait(self, what, holds):
+        until = time.monotonic() + PATIENCE_S
+        while True:
+            state = self.state()
+            if holds(state):
+                return state
+            if time.monotonic() > until:
+                raise AssertionError(f"{what}: not so: {json.dumps(state)[:3000]}")
+            time.sleep(0.02)
+
+    def wait_played(self, *states):
+        return self.wait(" or ".join(states), lambda s: s["play"]["state"] in states)
+
+    def events(self):
+        """All events that are kept."""
+        stream = Stream(self.server, {"Last-Event-ID": "0"})
+        found = []
+        while True:
+            kind, data = stream.next()
+            if kind == "state":
+                stream.close()
+                return found
+            if kind == "event":
+                found.append(data)
+
+    def wait_event(self, pattern):
+        until = time.monotonic() + PATIENCE_S
+        while True:
+            events = self.events()
+            found = [e for e in events if re.search(pattern, e["message"])]
+            if found:
+                return found[-1]
+            if time.monotonic() > until:
+                raise AssertionError(f"no event like {pattern}: {events}")
+            time.sleep(0.05)
+
+
+class Stream:
+    """The raw stream of server-sent events."""
+
+    def __init__(self, server, headers=None, buffer_bytes=None):
+        self.socket = socket.socket()
+        if buffer_bytes:
+            self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, buffer_bytes)
+        self.socket.settimeout(PATIENCE_S)
+        self.socket.connect(("127.0.0.1", server.port))
+        lines = [f"{k}: {v}" for k, v in (headers or {}).items()]
+        self.socket.sendall("\r\n".join(
+            ["GET /api/events HTTP/1.0", f"Host: 127.0.0.1:{server.port}", *lines, "", ""]).encode())
+        self.text = b""
+        while b"\r\n\r\n" not in self.text:
+            self.read()
+        head, self.text = self.text.split(b"\r\n\r\n", 1)
+        self.head = head.decode()
+        if " 200 " not in self.head.splitlines()[0]:
+            raise Refused(int(self.head.split()[1]), {"code": "?"})
+
+    def read(self):
+        got = self.socket.recv(65536)
+        if not got:
+            raise EOFError
+        self.text += got
+
+    def next(self):
+        """("state" or "event", data) or ("comment", text)."""
+        while b"\n\n" not in self.text:
+            self.read()
+        block, self.text = self.text.split(b"\n\n", 1)
+        lines = block.decode().split("\n")
+        if lines[0].startswith(":"):
+            return "comment", lines[0]
+        fields = dict(line.split(": ", 1) for line in lines)
+        return fields["event"], json.loads(fields["data"])
+
+    def close(self):
+        self.socket.close()
+
+
+def expect(status, code, call, *words, **body):
+    try:
+        call(*words, **body)
+    except Refused as no:
+        if (no.status, no.code) != (status, code):
+            raise AssertionError(f"{no}, not {status} {code}") from no
+        return no
+    raise AssertionError(f"not refused: {words} {body}")
+
+
+def same(got, wanted, what=""):
+    if got != wanted:
+        raise AssertionError(f"{what}: {got!r}, not {wanted!r}")
+
+
+def raw(port, request, timeout_s=PATIENCE_S):
+    """What comes for these bytes until the other side closes, as text."""
+    with socket.create_connection(("127.0.0.1", port), timeout_s) as s:
+        s.sendall(request)
+        got = b""
+        while True:
+            more = s.recv(65536)
+            if not more:
+                return got.decode(errors="replace")
+            got += more
+
+
+def beside(*calls):
+    """These beside each other; what each raised, or None."""
+    raised = [None] * len(calls)
+
+    def run(i):
+        try:
+            calls[i][0](*calls[i][1:])
+        except BaseException as error:
+            raised[i] = error
+
+    threads = [threading.Thread(target=run, args=(i,)) for i in range(len(calls))]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    return raised
+
+
+# ---- who may ask what --------------------------------------------------------------------------
+
+def refusals():
+    with Server() as server:
+        page = Page(server)
+        host = f"127.0.0.1:{server.port}"
+
+        def status(lines, port=server.port):
+            text = raw(port, "\r\n".join([*lines, "Connection: close", "", ""]).encode())
+            head = text.split("\r\n\r\n")[0].lower()
+            assert "access-control" not in head, head
+            return int(text.split()[1])
+
+        same(status([f"GET /api/state HTTP/1.1", f"Host: {host}"]), 200, "as it should be")
+        for own in (f"localhost:{server.port}", f"LOCALHOST:{server.port}", f"[::1]:{server.port}"):
+            same(status(["GET /api/state HTTP/1.1", f"Host: {own}"]), 200, own)
+        for foreign in ("evil.example", f"evil.example:{server.port}", "127.0.0.1",
+                        f"127.0.0.1:{server.stop_port}", f"127.0.0.1.evil.example:{server.port}",
+                        f"{host}.", f"user@{host}", ""):
+            same(status(["GET /api/state HTTP/1.1", f"Host: {foreign}"]), 403, f"Host {foreign!r}")
+            same(status(["GET / HTTP/1.1", f"Host: {foreign}"]), 403, f"page, Host {foreign!r}")
+        same(status(["GET /api/state HTTP/1.1"]), 403, "no Host")
+        same(status(["GET /api/state HTTP/1.1", f"Host: {host}", f"Host: {host}"]), 403, "two")
+        same(status([f"GET http://{host}/api/state HTTP/1.1", f"Host: {host}"]), 403, "absolute")
+        same(status([f"GET http://evil.example/api/state HTTP/1.1", f"Host: {host}"]), 403, "URI")
+        same(status([f"GET //evil.example/api/state HTTP/1.1", f"Host: {host}"]), 403, "two /")
+
+        def foreign_page(headers, path="/api/stop", port=server.port):
+            return status([f"POST {path} HTTP/1.1", f"Host: 127.0.0.1:{port}",
+                           "Content-Type: application/json", "Content-Length: 2",
+                           *headers, "", "{}"], port)
+
+        def post(headers, path, port=server.port, body="{}"):
+            text = raw(port, "\r\n".join([f"POST {path} HTTP/1.1", f"Host: 127.0.0.1:{port}",
+                                          f"Content-Length: {len(body)}", "Connection: close",
+                                          *headers, "", body]).encode())
+            return int(text.split()[1])
+
+        json_type = "Content-Type: application/json"
+        own = f"Origin: http://{host}"
+        token = f"X-Grobo-Token: {server.token}"
+        for port, path in ((server.port, "/api/stop"), (server.stop_port, "/stop")):
+            for origin in ("http://evil.example", "null", f"https://{host}", "http://127.0.0.1",
+                           f"http://127.0.0.1:{server.stop_port}", f"http://{host}.evil.example"):
+                same(post([json_type, f"Origin: {origin}"], path, port), 403, f"{path} {origin}")
+            same(post([json_type, own, own], path, port), 403, "two Origins")
+            same(post([json_type, "Sec-Fetch-Site: cross-site"], path, port), 403, "cross-site")
+            same(post([json_type, own, "Sec-Fetch-Site: cross-site"], path, port), 403, "both")
+            same(post(["Content-Type: application/x-www-form-urlencoded"], path, port), 415, "form")
+            same(post(["Content-Type: multipart/form-data; boundary=x"], path, port), 415, "form")
+        same(post([json_type, "Sec-Fetch-Site: same-site"], "/api/stop"), 403, "another port's page")
+        assert not page.state()["stop"]["latched"], "one of these stopped the robot"
+        for path in ("/api/play", "/api/torque", "/api/reset", "/api/preview"):
+            same(post(["Content-Type: text/plain", token], path), 415, path)
+            same(post([json_type], path), 401, path + " without token")
+        for method in ("OPTIONS", "DELETE", "PATCH", "TRACE", "FOO", "PUT"):
+            same(status([f"{method} /api/play HTTP/1.1", f"Host: {host}", "Content-Length: 0"]), 405,
+                 method)
+        same(status(["GET /api/play HTTP/1.1", f"Host: {host}"]), 405, "GET of a verb")
+        same(post([json_type, token], "/api/state"), 405, "POST of data")
+        same(status(["OPTIONS /api/play HTTP/1.1", f"Host: {host}", "Origin: http://evil.example",
+                     "Access-Control-Request-Method: POST"]), 403, "preflight")
+        began = time.monotonic()
+        same(post([json_type, "X-Grobo-Token: " + "0" * 32], "/api/reset"), 401, "a wrong token")
+        assert time.monotonic() - began > 0.2, "a wrong token is answered at once"
+        expect(409, "lease", page.post, "pause")
+        page.lease = "0" * 32
+        expect(409, "lease", page.target, "play", motion="greet.pseq")
+        same(post([json_type, token], "/api/ik", body="[]"), 400, "no object")
+        same(post([json_type, token], "/api/ik", body='{"a":1,"a":2}'), 400, "a key twice")
+        same(post([json_type, token], "/api/ik", body="{" * 60000), 400, "deep")
+        same(post([own, json_type], "/api/stop"), 200, "our own page stops")
+        same(post([own, "Content-Type: text/plain", "Sec-Fetch-Site: same-site"], "/stop",
+                  server.stop_port), 204, "and by the second port")
+        same(post([], "/stop", server.stop_port), 204, "and curl, with no content type")
+
+
+def sizes():
+    with Server() as server:
+        host = f"Host: 127.0.0.1:{server.port}"
+        text = raw(server.port, f"GET /api/state HTTP/1.1\r\n{host}\r\nX: {'y' * 9000}\r\n\r\n".encode())
+        same(text.split()[1], "400", "9 kB of header")
+        for path, size, wanted in (("/api/ik", 65 * 1024, 413), ("/api/ik", 2 * 1024 * 1024, 413)):
+            body = b" " * size
+            with socket.create_connection(("127.0.0.1", server.port), PATIENCE_S) as s:
+                s.sendall(f"POST {path} HTTP/1.1\r\n{host}\r\nX-Grobo-Token: {server.token}\r\n"
+                          f"Content-Type: application/json\r\nContent-Length: {size}\r\n\r\n".encode())
+                try:
+                    s.sendall(body)
+                except OSError:
+                    pass  # refused before all was sent
+                same(s.recv(4096).split()[1], str(wanted).encode(), f"{size} bytes to {path}")
+        both = raw(server.port, f"POST /api/stop HTTP/1.1\r\n{host}\r\nContent-Length: 2\r\n"
+                                "Transfer-Encoding: chunked\r\nConnection: close\r\n\r\n{}".encode())
+        assert both == "" or int(both.split()[1]) >= 400, both
+        began = time.monotonic()
+        raw(server.port, f"GET /api/state HTTP/1.1\r\n{host}\r\n".encode())  # and no more
+        took = time.monotonic() - began
+        assert 4 < took < PATIENCE_S, f"half a request lived {took} s"
+        Page(server).state()
+
+
+def escapes():
+    folder = tempfile.mkdtemp()
+    outside = os.path.join(folder, "secret.pseq")
+    inside = os.path.join(folder, "motions")
+    os.mkdir(inside)
+    shutil.copy("motions/greet.pseq", outside)
+    shutil.copy("motions/greet.pseq", inside)
+    os.symlink(outside, os.path.join(inside, "link.pseq"))
+    with Server(motions=inside) as server:
+        page = Page(server).take()
+        same([m["name"] for m in page.get("/api/motions")["motions"]], ["greet.pseq"], "list")
+        for name in ("../secret.pseq", "..%2fsecret.pseq", "%2e%2e%2fsecret.pseq", "link.pseq",
+                     "..%5csecret.pseq", outside, outside.replace("/", "%2f"), "greet.pseq%00",
+                     ".", "..", "%00", "greet.pseq/../../secret.pseq"):
+            for tail in ("", "/file"):
+                status = page.ask("GET", "/api/motions/" + name + tail)[0]
+                assert status in (400, 403, 404), f"{name}{tail}: {status}"
+                status = page.ask("PUT", "/api/motions/" + name + tail, {"keys": []},
+                                  {"If-None-Match": "*"})[0]
+                assert status >= 400, f"PUT {name}{tail}: {status}"
+            try:
+                page.target("play", motion=name)
+                raise AssertionError(f"played {name}")
+            except Refused as no:
+                assert no.code in ("noent", "arg"), no
+    same(sorted(os.listdir(folder)), ["motions", "secret.pseq"], "files")
+    same(sorted(os.listdir(inside)), ["greet.pseq", "link.pseq"], "files")
+    shutil.rmtree(folder)
+
+
+def beyond_loopback():
+    """Listening on all addresses: reading needs the token, and so does a stop."""
+    with Server("--listen", "0.0.0.0", "--name", "robot.local") as server:
+        page = Page(server)
+
+        def status(headers, path="/api/state"):
+            return page.ask("GET", path, headers=headers)[0]
+
+        same(status({}), 200, "with token")
+        same(status({"X-Grobo-Token": None}), 401, "without")
+        same(status({"X-Grobo-Token": None}, "/"), 200, "the page itself")
+        same(status({"Host": f"robot.local:{server.port}"}), 200, "its name")
+        same(status({"Host": f"other.local:{server.port}"}), 403, "another name")
+        same(page.ask("POST", "/stop", b"{}", {"X-Grobo-Token": None}, server.stop_port)[0], 401,
+             "stop without token")
+        same(page.ask("POST", "/stop", json.dumps({"token": server.token}).encode(),
+                      {"X-Grobo-Token": None, "Content-Type": "text/plain"}, server.stop_port)[0],
+             204, "stop with the token in its body")
+        assert page.state()["stop"]["latched"]
+
+
+def page_files():
+    with Server() as server:
+        page = Page(server)
+        status, headers, body = page.ask("GET", "/")
+        same(status, 200)
+        same(headers["Content-Encoding"], "gzip")
+        same(body[:2], b"\x1f\x8b")
+        policy = headers["Content-Security-Policy"]
+        for part in ("default-src 'none'", "script-src 'self'", "frame-ancestors 'none'",
+                     f"connect-src 'self' http://127.0.0.1:{server.stop_port};"):
+            assert part in policy, policy
+        for name, value in (("X-Content-Type-Options", "nosniff"),
+                            ("Referrer-Policy", "no-referrer"),
+                            ("Cross-Origin-Resource-Policy", "same-origin"),
+                            ("Cross-Origin-Opener-Policy", "same-origin"),
+                            ("Cache-Control", "no-cache")):
+            same(headers[name], value, name)
+        assert "unsafe" not in policy
+        same(page.ask("GET", "/", headers={"If-None-Match": headers["ETag"]})[0], 304)
+        same(page.ask("GET", "/index.html")[0], 200)
+        for path in ("/nothing", "/../Makefile", "/%2e%2e/Makefile", "/index.html/"):
+            status, headers, _ = page.ask("GET", path)
+            assert status in (403, 404), f"{path}: {status}"
+            same(headers["X-Content-Type-Options"], "nosniff")
+        same(page.ask("GET", "/stop", port=server.stop_port)[0], 405)
+        same(page.ask("GET", "/", port=server.stop_port)[0], 404)
+        same(page.ask("POST", "/stop", {})[0], 404)
+
+
+# ---- streams -----------------------------------------------------------------------------------
+
+def stream():
+    """States come 30 times a second and are complete; events have ids, and are told again."""
+    with Server() as server:
+        s = Stream(server)
+        assert "text/event-stream" in s.head
+        states, comments = [], 0
+        while len(states) < 60:
+            kind, data = s.next()
+            if kind == "state":
+                states.append(data)
+            comments += kind == "comment"
+        s.close()
+        same([b["sequence"] - a["sequence"] for a, b in zip(states, states[1:])], [1] * 59)
+        took_ms = states[-1]["time_ms"] - states[0]["time_ms"]
+        assert took_ms >= 59 * 30, f"59 states in {took_ms} ms"
+        assert comments >= 1
+        page = Page(server).take()
+        events = page.events()
+        same([e["id"] for e in events], list(range(1, len(events) + 1)))
+        assert any("test drives" in e["message"] for e in events), events
+
+
+def greedy():
+    """A stream that sends something is dropped, and costs nothing."""
+    with Server() as server:
+        page = Page(server)
+        before_kb = server.rss_kb()
+        s = Stream(server)
+        s.next()
+        sent = 0
+        try:
+            for _ in range(2000):
+                s.socket.sendall(b"x" * 65536)
+                sent += 65536
+        except OSError:
+            pass
+        assert sent < 50e6, f"it took {sent} bytes"
+        page.wait("no stream is left", lambda state: state["clients"] == 0)
+        assert server.rss_kb() - before_kb < 20000, f"{server.rss_kb()} kB, {before_kb} before"
+        early = socket.create_connection(("127.0.0.1", server.port), PATIENCE_S)
+        early.sendall(f"GET /api/events HTTP/1.1\r\nHost: 127.0.0.1:{server.port}\r\n\r\nGET / ".encode())
+        page.wait("nor one whose bytes came at once", lambda state: state["clients"] == 0)
+        early.close()
+
+
+def slow():
+    """Who does not read is dropped within seconds; the others get all states meanwhile."""
+    with Server() as server:
+        page = Page(server)
+        before_kb = server.rss_kb()
+        deaf = Stream(server, buffer_bytes=4096)
+        other = Stream(server)
+        states, clients = [], 2
+        until = time.monotonic() + PATIENCE_S
+        while clients > 1 and time.monotonic() < until:
+            kind, data = other.next()
+            if kind == "state":
+                states.append(data["sequence"])
+                clients = data["clients"]
+        same(clients, 1, "clients at last")
+        same([b - a for a, b in zip(states, states[1:])], [1] * (len(states) - 1), "the other")
+        assert server.rss_kb() - before_kb < 20000
+        deaf.close()
+        other.close()
+        page.state()
+
+
+def crowd():
+    """32 streams and no more; the port's places are taken, and a stop comes through all the same."""
+    with Server() as server:
+        page = Page(server)
+        streams = [Stream(server) for _ in range(32)]
+        expect(503, "?", Stream, server)
+        idle = [socket.create_connection(("127.0.0.1", server.port), PATIENCE_S) for _ in range(40)]
+        began = time.monotonic()
+        same(page.ask("POST", "/stop", b"{}", {}, server.stop_port)[0], 204)
+        print(f"# stop beside 72 connections: {(time.monotonic() - began) * 1e3:.1f} ms")
+        for s in idle:
+            s.close()
+        for s in streams:
+            s.close()
+        page.wait("all are gone", lambda state: state["clients"] == 0)
+        assert page.state()["stop"]["latched"]
+
+
+# ---- driving -----------------------------------------------------------------------------------
+
+def driving():
+    with Server() as server:
+        page = Page(server).take().keep_beating()
+        job = page.target("move", angle_deg={"R_ELBOW_P": -45}, time_ms=300)
+        assert not job["done"]
+        page.wait_event("move: done")
+        page.wait("the elbow is there", lambda s: abs(s["angle_deg"][16] + 45) < 1)
+        no = expect(422, "limit", page.target, "move", angle_deg={"R_ELBOW_P": 120})
+        same((no.error["joint"], no.error["name"], no.error["value"]), (16, "R_ELBOW_P", 120.0))
+        expect(404, "noent", page.target, "play", motion="nothing.pseq")
+        expect(400, "notfound", page.target, "move", angle_deg={"R_ELBOW": 1})
+        expect(400, "arg", page.target, "play", motion="greet.pseq", speed_pct=0)
+        page.target("play", motion="greet.pseq", speed_pct=200, mirror=True)
+        state = page.wait_played("playing")
+        same((state["play"]["motion"], state["play"]["mirror"]), ("greet.pseq", True))
+        same(len(state["play"]["ghost_deg"]), 20)
+        page.target("queue", motion="bow.pseq")
+        same(page.state()["play"]["queue"], ["bow.pseq"])
+        page.post("pause")
+        page.wait_played("paused")
+        page.target("seek", t_ms=2000)
+        page.post("resume")
+        state = page.wait_played("playing")
+        page.post("speed", speed_pct=1000)
+        page.wait("bow is played", lambda s: s["play"]["motion"] == "bow.pseq")
+        page.wait_played("finished")
+        page.target("torque", joints=["right_arm"], mode="limp")
+        arm = [j["joint"] for j in page.get("/api/robot")["joints"] if "right_arm" in j["groups"]]
+        same(page.state()["limp"], arm)
+        angles = page.post("capture", joints=["right_arm"])["angle_deg"]
+        same([j for j, a in enumerate(angles) if a is not None], arm)
+        page.target("torque", joints=["right_arm"], mode="hold")
+        page.wait("the arm holds", lambda s: s["limp"] == [] and s["torque"][16] == "on")
+        page.fall_silent()
+
+
+def stale():
+    with Server() as server:
+        page = Page(server).take().keep_beating()
+        old = page.state()["sequence"]
+        for bad in (0, -1, 10 ** 9, "7", None, 1.5):
+            expect(409, "stale", page.post, "move", pose="init", sequence=bad)
+        page.wait("a second has passed", lambda s: s["sequence"] > old + 45)
+        expect(409, "stale", page.post, "move", pose="init", sequence=old)
+        same(page.beat(drawn=old), 409, "a page that draws nothing")
+        same(page.beat(lease="0" * 32), 409, "a lease that is none")
+        page.fall_silent()
+
+
+def stopping():
+    """A stop latches, is confirmed joint by joint, takes the lease, and is taken back."""
+    with Server() as server:
+        page, other = Page(server).take().keep_beating(), Page(server, "other")
+        page.target("move", pose="init", time_ms=300)
+        page.wait_event("move: done")
+        page.target("play", motion="greet.pseq", loop=True)
+        page.wait_played("playing")
+        other.post("stop", name="other")
+        state = other.wait("confirmed", lambda s: s["stop"]["confirmed"])
+        same((state["stop"]["kind"], state["stop"]["by"]), ("stop", "other"))
+        same(set(state["stop"]["joints"]), {"stopped"})
+        same(set(state["torque"]), {"on"}, "it holds")
+        same(state["lease"]["holder"], None)
+        where = state["angle_deg"]
+        expect(409, "lease", page.target, "play", motion="greet.pseq")
+        page.fall_silent()
+        page.take().keep_beating()
+        for verb, body in (("play", {"motion": "greet.pseq"}), ("move", {"pose": "init"}),
+                           ("jog", {"angle_deg": {"R_ELBOW_P": -10}}),
+                           ("torque", {"joints": ["all"], "mode": "on"})):
+            expect(409, "latched", page.target, verb, **body)
+        other.post("stop", name="again")
+        same(other.state()["stop"]["by"], "other", "it is one stop")
+        page.fall_silent()
+        other.post("reset")
+        state = other.state()
+        assert not state["stop"]["latched"] and not state["moving"], state["stop"]
+        assert max(abs(a - b) for a, b in zip(where, state["angle_deg"])) < 1, "it moved by itself"
+        page.take().keep_beating()
+        page.target("move", angle_deg={"R_ELBOW_P": -20}, time_ms=300)
+        page.wait_event("move: done")
+        page.post("estop")
+        state = page.wait("torque is gone", lambda s: "on" not in s["torque"])
+        same(state["stop"]["kind"], "estop")
+        page.wait("confirmed", lambda s: s["stop"]["confirmed"])
+        page.fall_silent()
+
+
+def latency():
+    """From a stop to the last servo's standing goal, beside streams that do not read."""
+    with Server() as server:
+        page = Page(server).take().keep_beating()
+        deaf = [Stream(server, buffer_bytes=4096) for _ in range(4)]
+        times = []
+        for _ in range(20):
+            page.take()
+            page.target("play", motion="greet.pseq", loop=True)
+            page.wait_played("playing")
+            began = time.monotonic()
+            same(page.ask("POST", "/stop", b"{}", {}, server.stop_port)[0], 204)
+            times.append((time.monotonic() - began) * 1e3)
+            state = page.wait("confirmed", lambda s: s["stop"]["confirmed"])
+            assert not state["moving"]
+            page.post("reset")
+        times.sort()
+        print(f"# stop, request to answer: median {times[10]:.1f} ms, worst {times[-1]:.1f} ms")
+        for s in deaf:
+            s.close()
+        page.fall_silent()
+
+
+# ---- a page that is lost -----------------------------------------------------------------------
+
+def lost_in_jog():
+    with Server() as server:
+        page, other = Page(server).take(), Page(server)
+        page.target("move", pose="init", time_ms=300)
+        page.keep_beating()
+        page.wait_event("move: done")
+        for angle in range(-20, -60, -2):
+            page.target("jog", angle_deg={"R_ELBOW_P": angle}, time_ms=3000)
+        page.fall_silent()
+        last_ms = page.state()["time_ms"]
+        took = other.wait_event("jogging stops")["time_ms"] - last_ms
+        assert 500 < took < 3000, f"{took} ms"
+        state = other.wait("it stands", lambda s: not s["moving"])
+        assert -57 < state["angle_deg"][16] < -1, f"not on its way: {state['angle_deg'][16]}"
+        same(set(state["torque"]), {"on"}, "it holds")
+        other.wait_event("page that drove is gone")
+        same(other.state()["lease"]["holder"], None)
+
+
+def lost_with(on_lost, message, end):
+    with Server() as server:
+        page, other = Page(server).take(), Page(server)
+        how = {"on_lost": on_lost} if on_lost else {}
+        page.target("play", motion="greet.pseq", repeat=2, **how)
+        last_ms = page.state()["time_ms"]
+        took = other.wait_event(message)["time_ms"] - last_ms
+        assert 2500 < took < 6000, f"{on_lost}: {took} ms"
+        state = other.wait_played(end)
+        same(state["lease"]["holder"], None)
+        if on_lost != "finish":
+            other.wait("it stands", lambda s: not s["moving"] and s["job"] is None)
+        same(set(other.state()["torque"]), {"on"}, on_lost)
+
+
+def lost_in_motion():
+    """Stop softly by default, finish, or the exit policy."""
+    for each in beside((lost_with, None, "the motion stops", "idle"),
+                       (lost_with, "stop", "the motion stops", "idle"),
+                       (lost_with, "finish", "the motion goes on", "finished"),
+                       (lost_with, "exit", "exit policy", "idle")):
+        if each:
+            raise each
+
+
+def killed():
+    """The process of the page that drives is killed: as silence."""
+    with Server() as server:
+        other = Page(server)
+        child = os.fork()
+        if child == 0:
+            page = Page(server, "doomed").take()
+            page.target("play", motion="greet.pseq", loop=True)
+            while True:
+                page.beat()
+                time.sleep(0.2)
+        other.wait_played("playing")
+        os.kill(child, signal.SIGKILL)
+        os.waitpid(child, 0)
+        other.wait_event("page that drives is lost: the motion stops")
+        other.wait_played("idle")
+        same(other.state()["lease"]["holder"], None)
+
+
+def takeover():
+    with Server() as server:
+        anna, ben = Page(server, "Anna").take().keep_beating(), Page(server, "Ben")
+        no = expect(409, "lease", ben.post, "lease", action="take", name="Ben")
+        same(no.error["holder"]["name"], "Anna")
+        asked = ben.post("lease", action="ask", name="Ben")
+        same(asked["held"], False)
+        same(anna.state()["lease"]["asked"]["name"], "Ben")
+        ben.lease = asked["lease"]
+        expect(409, "lease", ben.post, "lease", action="take", name="Ben")
+        expect(409, "lease", ben.post, "pause")
+        anna.post("lease", action="deny")
+        same(anna.state()["lease"]["asked"], None)
+        ben.lease = ben.post("lease", action="ask", name="Ben")["lease"]
+        anna.fall_silent()
+        anna.beat()
+        anna.post("lease", action="give")
+        same(anna.state()["lease"]["holder"]["name"], "Ben")
+        expect(409, "lease", anna.post, "pause")
+        expect(409, "state", ben.post, "pause")
+        ben.post("lease", action="give")
+        same(anna.state()["lease"]["holder"], None)
+        anna.take().keep_beating()
+        ben.lease = ben.post("lease", action="ask", name="Ben")["lease"]
+        began = time.monotonic()
+        while True:  # nobody answers
+            try:
+                ben.post("lease", action="take", name="Ben")
+                break
+            except Refused as refused:
+                same(refused.code, "lease")
+            time.sleep(0.2)
+        assert time.monotonic() - began > 9, "it was not asked for 10 s"
+        same(anna.state()["lease"]["holder"]["name"], "Ben")
+        anna.fall_silent()
+    with Server("--operator") as server:
+        Page(server, "Anna").take()
+        Page(server, "Ben").take()
+        same(Page(server).state()["lease"]["holder"]["name"], "Ben")
+
+
+def left():
+    """The server is asked to end while something moves: the exit policy, as from any command."""
+    with Server() as server:
+        page = Page(server).take()
+        page.target("play", motion="greet.pseq", loop=True)
+        page.wait_played("playing")
+    same(server.status, 128 + signal.SIGTERM)
+    assert "the servos hold where they are" in server.said, server.said
+
+
+# ---- motions -----------------------------------------------------------------------------------
+
+def motions():
+    folder = tempfile.mkdtemp()
+    for name in ("greet.pseq", "greet.m", "step.pseq"):
+        shutil.copy(os.path.join("motions", name), folder)
+    with open(os.path.join(folder, "bad.pseq"), "w", encoding="ascii") as bad:
+        bad.write("components: [\n")
+    with open(os.path.join(folder, "notes.txt"), "w", encoding="ascii") as notes:
+        notes.write("none\n")
+    with Server(motions=folder) as server:
+        page = Page(server)
+
+        def listed():
+            return {m["name"]: m for m in page.get("/api/motions")["motions"]}
+
+        same(sorted(listed()), ["bad.pseq", "greet.m", "greet.pseq", "step.pseq"])
+        until = time.monotonic() + PATIENCE_S
+        while any(m["state"] == "pending" for m in listed().values()):
+            assert time.monotonic() < until
+            time.sleep(0.05)
+        all_of = listed()
+        same(all_of["bad.pseq"]["state"], "unreadable")
+        assert all_of["bad.pseq"]["check"]["message"]
+        greet = all_of["greet.pseq"]
+        same((greet["kind"], greet["length_ms"], greet["keys"], greet["check"]["ok"]),
+             ("keys", 5000.0, 10, True))
+        same(len(greet["thumbnail"]["angle_deg"]), 5)
+        whole = page.get("/api/motions/greet.pseq?rate=10")
+        same((len(whole["frames"]["angle_deg"]), whole["etag"]), (51, greet["etag"]))
+        # What a preview says of a motion at ten times its speed, and of one nobody has saved.
+        fast = page.post("preview", motion="greet.pseq", speed_pct=1000)
+        same(fast["length_ms"], 5000.0)
+        edit = {"keys": [{"from": 0}, {"from": 1, "angle_deg": {"R_ELBOW_P": -170}}]}
+        beyond = page.post("preview", motion="greet.pseq", edit=edit)
+        same((beyond["check"]["ok"], beyond["check"]["refused"]["code"]), (False, "limit"))
+
+        def put(name, body, **headers):
+            named = {k.replace("_", "-"): v for k, v in headers.items()}
+            return page.call("PUT", "/api/motions/" + name, body, named)
+
+        with open("motions/greet.pseq", "rb") as f:
+            before = f.read()
+        same(put("greet.pseq", {"keys": [{"from": i} for i in range(10)]},
+                 If_Match=greet["etag"])["etag"], greet["etag"], "nothing was touched")
+        edit = {"keys": [{"from": i} for i in range(10)]}
+        edit["keys"][4]["angle_deg"] = {"R_ELBOW_P": -51.5}
+        saved = put("greet.pseq", edit, If_Match=greet["etag"])
+        with open(os.path.join(folder, "greet.pseq"), "rb") as f:
+            after = f.read()
+        differ = [(a, b) for a, b in zip(before.split(b"\n"), after.split(b"\n")) if a != b]
+        same(len(differ), 1, f"lines that differ: {differ}")
+        expect(409, "changed", put, "greet.pseq", edit, If_Match=greet["etag"])
+        expect(428, "changed", put, "greet.pseq", edit)
+        expect(409, "changed", put, "greet.pseq", edit | {"keys": [{"time_ms": 0}]},
+               If_None_Match="*")
+        keys = page.get("/api/motions/greet.pseq")["keys"]
+        same((len(keys), keys[4]["angle_deg"][16]), (10, -51.5))
+        copies = {"keys": [{"from": 0}, {"from": 0, "time_ms": 250}, {"from": 2, "time_ms": 700}]}
+        put("greet.pseq", copies, If_Match=saved["etag"])
+        same([k["time_ms"] for k in page.get("/api/motions/greet.pseq")["keys"]], [0, 250, 700])
+        # Legs, ZMP and kept keys go along with `from`.
+        step = page.get("/api/motions/step.pseq")
+        put("step.pseq", {"keys": [{"from": i} for i in range(len(step["keys"]))]},
+            If_Match=step["etag"])
+        same(page.get("/api/motions/step.pseq")["keys"], step["keys"])
+        new = put("new.pseq", {"keys": [{"time_ms": 0, "angle_deg": {"CHEST_P": 5}},
+                                        {"time_ms": 400.5, "angle_deg": {"CHEST_P": 0},
+                                         "name": "end"}]}, If_None_Match="*")
+        same((new["keys"], new["length_ms"]), (2, 400.5))
+        for bad in ({}, {"keys": []}, {"keys": [{"from": 99}]}, {"keys": [{}]}, {"keys": [7]},
+                    {"keys": [{"from": 1}, {"from": 0}]},
+                    {"keys": [{"time_ms": 0, "angle_deg": {"NOBODY": 1}}]},
+                    {"keys": [{"time_ms": 0, "angle_deg": {"CHEST_P": "x"}}]}):
+            try:
+                put("new.pseq", bad, If_Match=new["etag"])
+                raise AssertionError(f"taken: {bad}")
+            except Refused as no:
+                same(no.status, 400, str(no))
+        status, headers, bytes_ = page.ask("GET", "/api/motions/new.pseq/file")
+        same((status, headers["ETag"]), (200, new["etag"]))
+        octets = {"Content-Type": "application/octet-stream", "If-None-Match": "*"}
+        same(page.ask("PUT", "/api/motions/copy.pseq/file", bytes_, octets)[0], 200)
+        with open(os.path.join(folder, "copy.pseq"), "rb") as f:
+            same(f.read(), bytes_)
+        same(page.ask("PUT", "/api/motions/junk.pseq/file", b"junk: [", octets)[0], 422)
+        assert not os.path.exists(os.path.join(folder, "junk.pseq"))
+        os.unlink(os.path.join(folder, "copy.pseq"))
+        assert "copy.pseq" not in listed()
+    shutil.rmtree(folder)
+
+
+def falls():
+    """A motion that would fall says when; the robot is not asked."""
+    folder = tempfile.mkdtemp()
+    shutil.copy("motions/bow.pseq", folder)
+    with Server(motions=folder) as server:
+        page = Page(server)
+        bow = page.get("/api/motions/bow.pseq")
+        edit = {"keys": [{"from": i} for i in range(len(bow["keys"]))]}
+        for key in edit["keys"][1:]:
+            key["angle_deg"] = {"R_ANKLE_P": -60, "L_ANKLE_P": 60}
+        told = page.post("preview", motion="bow.pseq", edit=edit)
+        falls_ms = told["check"]["falls_ms"]
+        assert falls_ms is not None and 0 <= falls_ms <= told["length_ms"], told["check"]
+        assert "would fall at" in told["check"]["message"]
+        worst = min(m for m in told["balance"]["margin_mm"] if m is not None)
+        assert worst < 0, worst
+        same(page.get("/api/motions/bow.pseq")["check"]["falls_ms"], None)
+    shutil.rmtree(folder)
+
+
+def ik():
+    with Server() as server:
+        page = Page(server)
+        state = page.wait("all was read", lambda s: None not in s["angle_deg"])
+        same(state["body"]["margin_m"] > 0, True)
+        root = state["body"]["root"]
+        lower = [root["p_m"][0], root["p_m"][1], root["p_m"][2] - 0.01]
+        pose = page.post("ik", angle_deg=state["angle_deg"], handle="waist", p_m=lower)
+        assert pose["reached"], pose
+        same(pose["root"]["p_m"], [round(v, 5) for v in lower])
+        again = page.post("ik", angle_deg=pose["angle_deg"], root=pose["root"], handle="waist",
+                          p_m=root["p_m"])
+        worst = max(abs(a - b) for a, b in zip(again["angle_deg"], state["angle_deg"]))
+        assert worst < 0.2, f"there and back: {worst} degrees"
+        foot = pose["feet"][0]["p_m"]
+        lifted = page.post("ik", angle_deg=state["angle_deg"], handle="right_foot",
+                           p_m=[foot[0], foot[1], foot[2] + 0.02])
+        assert lifted["reached"]
+        same([s["standing"] for s in lifted["body"]["soles"]], [False, True])
+        far = page.post("ik", angle_deg=state["angle_deg"], handle="waist", p_m=[0, 0, 5])
+        same((far["reached"], far["angle_deg"]), (False, [round(a, 4) for a in state["angle_deg"]]))
+        for bad in ({"handle": "nose"}, {"p_m": [0, 0]}, {"p_m": [0, 0, 1e9]},
+                    {"rotation": [1] * 9}, {"angle_deg": [0]}, {"angle_deg": ["x"] * 20}):
+            expect(400, "arg", page.post, "ik", **{"angle_deg": state["angle_deg"],
+                                                   "handle": "waist", "p_m": lower, **bad})
+
+
+# ---- the interface -----------------------------------------------------------------------------
+
+def schema():
+    """What is answered is what serve.openapi.json tells, and every path of it is there."""
+    import jsonschema
+    with open("docs/serve.openapi.json", encoding="utf-8") as f:
+        api = json.load(f)
+
+    def strict(node):
+        """Nothing is answered that is not told."""
+        if isinstance(node, dict):
+            if node.get("type") == "object" and node.get("properties"):
+                node.setdefault("additionalProperties", False)
+            for value in node.values():
+                strict(value)
+        elif isinstance(node, list):
+            for value in node:
+                strict(value)
+
+    strict(api["components"]["schemas"])
+
+    def fits(name, value):
+        try:
+            jsonschema.validate(value, {"$ref": "#/components/schemas/" + name,
+                                        "components": api["components"]})
+        except jsonschema.ValidationError as error:
+            raise AssertionError(f"{name}: {error.json_path}: {error.message[:500]}") from error
+
+    folder = tempfile.mkdtemp()
+    for name in ("greet.pseq", "greet.yaml", "step.pseq"):
+        shutil.copy(os.path.join("motions", name), folder)
+    with Server(motions=folder) as server:
+        page = Page(server)
+        for path, methods in api["paths"].items():
+            port = server.stop_port if "servers" in methods else server.port
+            real = path.replace("{name}", "greet.pseq")
+            for method in methods:
+                if method in ("get", "post", "put") and path != "/api/events":
+                    status, _, _ = page.ask(method.upper(), real, {}, port=port)
+                    assert status not in (404, 405), f"{method} {path}: {status}"
+        page.post("reset")
+        fits("robot", page.get("/api/robot"))
+        fits("state", page.state())
+        fits("motions", page.get("/api/motions"))
+        for name in ("greet.pseq", "greet.yaml", "step.pseq"):
+            fits("motion_whole", page.get("/api/motions/" + name))
+        fits("motions", page.get("/api/motions"))
+        fits("preview", page.post("preview", motion="step.pseq", speed_pct=50))
+        page.take().keep_beating()
+        page.fall_silent()
+        taken = page.post("lease", action="take", name="again")
+        fits("lease", taken)
+        page.lease = taken["lease"]
+        page.keep_beating()
+        fits("accepted", page.target("play", motion="step.pseq"))
+        fits("state", page.wait_played("playing"))
+        fits("lease", Page(server).post("lease", action="ask", name="x"))
+        fits("state", page.state())
+        fits("accepted", page.post("halt"))
+        fits("captured", page.post("capture"))
+        state = page.wait("it stands", lambda s: not s["moving"])
+        fits("pose", page.post("ik", angle_deg=state["angle_deg"], handle="waist",
+                               p_m=state["body"]["root"]["p_m"]))
+        fits("refusal", {"error": expect(422, "limit", page.target, "move",
+                                         angle_deg={"m5": 170}).error})
+        page.fall_silent()
+        page.post("stop", name="x")
+        fits("state", page.wait("confirmed", lambda s: s["stop"]["confirmed"]))
+        for event in page.events():
+            fits("event", event)
+    shutil.rmtree(folder)
+    with Server(motions=MOTIONS, env={}, device="sim") as server:
+        fits("state", Page(server).state())
+
+
+def other_robot():
+    """A robot without a body: links of its file, no balance."""
+    server = Server(motions="motions")
+    server.words.insert(1, "--robot")
+    server.words.insert(2, "so101")
+    with server:
+        page = Page(server)
+        robot = page.get("/api/robot")
+        same((robot["name"], robot["body"]), ("so101", None))
+        same(len(robot["joints"]), len(page.state()["angle_deg"]))
+        same(page.state()["body"], None)
+        assert robot["links"] and robot["links"][0]["parent"] == -1, robot["links"]
+        wave = page.get("/api/motions/so101-wave.yaml")
+        same((wave["check"]["ok"], wave["balance"], wave["frames"]["root"]), (True, None, None))
+        page.take().keep_beating()
+        page.target("play", motion="so101-wave.yaml")
+        page.wait_played("playing")
+        page.post("stop")
+        page.wait("confirmed", lambda s: s["stop"]["confirmed"])
+        page.fall_silent()
+
+
+globals()[sys.argv[1]]()
