@@ -148,10 +148,10 @@ class Browser:
         self.contexts = []
 
 
-def until(page, script, argument=None):
+def until(page, script, argument=None, limit_ms=LIMIT_MS):
     """Waits until an expression is true. Playwright's own wait evaluates text, which the page's
     content security policy forbids."""
-    end = time.monotonic() + LIMIT_MS / 1000
+    end = time.monotonic() + limit_ms / 1000
     while not page.evaluate(script, argument):
         assert time.monotonic() < end, f'{script} did not come true'
         page.wait_for_timeout(15)
@@ -423,7 +423,7 @@ def a_page_that_does_not_answer_is_taken_over(browser, server):
     until(two, "document.getElementById('lease').disabled")
     begin = time.monotonic()
     until(two, "document.getElementById('lease').textContent === 'Take over'"
-               " && !document.getElementById('lease').disabled")
+               " && !document.getElementById('lease').disabled", limit_ms=20000)
     note(f'taking over was possible after {time.monotonic() - begin:.1f} s')
     drive(two)
     until(one, "cockpit.lease.status() === 'other'")
@@ -570,6 +570,9 @@ def space_pauses_a_slider_seeks_and_the_rest_is_played(browser, server):
     page.keyboard.press(' ')
     page.wait_for_timeout(200)
     assert server.state()['play']['state'] not in ('playing', 'approaching'), 'a key began a motion'
+    until(page, "!document.getElementById('play').disabled"
+                " || !document.getElementById('verdict').textContent")
+    note(page.locator('#verdict').inner_text())
     page.click('#play')
     server.wait(lambda s: s['play']['state'] == 'playing' and s['play']['t_ms'] > 100, 'playing')
     page.evaluate('document.activeElement.blur()')
