@@ -534,6 +534,19 @@ def a_foreign_page_moves_and_stops_nothing(browser, server):
 
 
 @test
+def a_page_keeps_control_while_it_paints_the_list(browser, server):
+    page = browser.page(server.link)
+    drive(page)
+    page.evaluate("""self.worst = 0; self.last = performance.now(); setInterval(() => {
+        const now = performance.now(); worst = Math.max(worst, now - last); last = now; }, 10)""")
+    page.click('#tab-play')
+    until(page, "document.querySelectorAll('.file canvas[data-painted]').length >= 7",
+          limit_ms=30000)
+    note(f'the page was busy for {page.evaluate("worst"):.0f} ms at most')
+    assert page.evaluate('cockpit.lease.status()') == 'mine'
+
+
+@test
 def a_motion_is_chosen_previewed_played_and_ended(browser, server):
     page = browser.page(server.link)
     page.click('#tab-play')

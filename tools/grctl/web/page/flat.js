@@ -11,8 +11,9 @@ function css(colour, k = 1) {
     return `rgba(${r},${g},${b},${colour[3]})`;
 }
 
+/** A canvas in the processor's memory: a thousand small polygons are slow to hand to a card. */
 export function makeFlat(canvas) {
-    const pen = canvas.getContext('2d');
+    const pen = canvas.getContext('2d', { willReadFrequently: true });
     return pen ? new Flat(pen, canvas) : null;
 }
 

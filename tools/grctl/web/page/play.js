@@ -111,26 +111,30 @@ export class Play {
         return { file, canvas, button, item: element('li', {}, button) };
     }
 
-    /** Small pictures: the first, the middle and the last pose, side by side. */
+    /** Paints small pictures, one at a time: states and heartbeats come between them. */
     paint() {
         const { body, theme } = this.app.figure;
+        clearTimeout(this.painting);
         if (!body || !theme || !this.pictures || this.id('motions').hidden) {
             return;
         }
-        for (const { file, canvas } of this.pictures) {
-            if (file.thumbnail && canvas.dataset.painted !== this.app.themeName) {
-                canvas.dataset.painted = this.app.themeName;
-                this.picture(canvas, file.thumbnail, body, theme);
-            }
+        const next = this.pictures.find(({ file, canvas }) => file.thumbnail &&
+                                        canvas.dataset.painted !== this.app.themeName);
+        if (next) {
+            next.canvas.dataset.painted = this.app.themeName;
+            this.picture(next.canvas, next.file.thumbnail, body, theme);
+            this.painting = setTimeout(() => this.paint(), 25);
         }
     }
 
+    /** The first, the middle and the last pose, side by side. */
     picture(canvas, thumbnail, body, theme) {
-        const parts = [], r = body.reach, poses = thumbnail.angle_deg, n = poses.length;
+        const parts = [], r = body.reach, last = thumbnail.angle_deg.length - 1;
+        const chosen = [...new Set([0, Math.round(last / 2), last])], n = chosen.length;
         const gap = r * 0.7, yaw = 0.5;
-        poses.forEach((pose, i) => {
-            const q = pose.map((v) => v === null ? 0 : v * DEG);
-            const root = thumbnail.root ? this.app.toMatrix(thumbnail.root[i]) : stand(body, q);
+        chosen.forEach((from, i) => {
+            const q = thumbnail.angle_deg[from].map((v) => v === null ? 0 : v * DEG);
+            const root = thumbnail.root ? this.app.toMatrix(thumbnail.root[from]) : stand(body, q);
             const at = forward(body, q, root), move = (i - (n - 1) / 2) * gap;
             const [x, y] = [at[0][12], at[0][13]];
             const k = 0.35 + 0.65 * (i + 1) / n;
