@@ -1,11 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# The cockpit's page: its pure modules in node, and all of it in Chromium against `grctl serve -d sim`.
+# The cockpit's page: its pure modules in node, all of it in Chromium against `grctl serve -d sim`.
 # PYTHON has Playwright installed, AXE is axe-core's axe.min.js; what is missing is skipped.
 . tests/support/tap.sh
 
 PYTHON=${PYTHON:-python3}
-CHROMIUM=${CHROMIUM:-$(command -v chromium || command -v chromium-browser || command -v google-chrome)}
+CHROMIUM=${CHROMIUM:-$(command -v chromium || command -v chromium-browser)}
 scratch=$(mktemp -d) || exit 1
 trap 'rm -rf "$scratch"' EXIT
 
@@ -24,7 +24,8 @@ if [ -z "$CHROMIUM" ]; then
 elif ! "$PYTHON" -c 'import playwright' 2>/dev/null; then
     skip 'the page in a browser' 'the package playwright is not installed'
 else
-    CHROMIUM=$CHROMIUM FIRST=$tap_count "$PYTHON" tests/cockpit/browser.py "$@" >"$scratch/browser.tap"
+    export CHROMIUM
+    FIRST=$tap_count "$PYTHON" tests/cockpit/browser.py "$@" >"$scratch/browser.tap"
     cat "$scratch/browser.tap"
     found=$(grep -Ec '^(not )?ok ' "$scratch/browser.tap")
     tap_count=$((tap_count + found))
