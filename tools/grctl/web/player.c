@@ -329,11 +329,6 @@ void player_on_event(serve *s, const grobo_event *event)
                 event->u.play.error ? grobo_error_text(event->u.play.error) : "");
 }
 
-void player_forget(serve *s)
-{
-    s->player.epoch++;
-}
-
 void player_free(serve *s)
 {
     free_items(&s->player);

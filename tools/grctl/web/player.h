@@ -36,8 +36,6 @@ bool player_at(const serve *s, int64_t offset_us, grobo_posture *posture);
 
 /* Frees what has been played. */
 void player_on_event(serve *s, const grobo_event *event);
-/* What was asked for and has not begun is not begun any more. */
-void player_forget(serve *s);
 /* When nothing plays any more. */
 void player_free(serve *s);
 

@@ -6,8 +6,6 @@
 #include "tools/grctl/web/pose.h"
 #include "tools/grctl/web/serve.h"
 
-/* The poses from which a motion's ZMP is taken are so far apart. */
-#define ZMP_STEP_US INT64_C(20000)
 enum { METRE_DECIMALS = 5, TURN_DECIMALS = 6, INERTIA_DECIMALS = 9 };
 
 static const char *const sides[] = {"right", "left"};
@@ -202,7 +200,7 @@ json_t *pose_stand_json(const grobo_body_stand *stand, const double *zmp_m)
         app_json_number(grobo_body_stand_margin(stand, zmp_m ? zmp_m : stand->com_m), 5));
 }
 
-static bool stand(const app *a, const grobo_posture *posture, grobo_body_stand *stood)
+bool pose_stand(const app *a, const grobo_posture *posture, grobo_body_stand *stood)
 {
     const grobo_body_model *body = pose_body(a);
     double q_rad[GROBO_JOINTS_MAX];
@@ -216,42 +214,7 @@ static bool stand(const app *a, const grobo_posture *posture, grobo_body_stand *
 json_t *pose_root_json(const app *a, const grobo_posture *posture)
 {
     grobo_body_stand stood;
-    return stand(a, posture, &stood) ? pose_placement_json(&stood.root) : json_null();
-}
-
-/* Of the motion that is played: at its angles, on one and the same foot. */
-static bool zmp_of_motion(serve *s, const grobo_body_stand *now, double zmp_m[3])
-{
-    grobo_transform root[3];
-    double angles[3][GROBO_JOINTS_MAX];
-    const double *const q_rad[3] = {angles[0], angles[1], angles[2]};
-    for (int i = 0; i < 3; i++) {
-        grobo_posture posture;
-        grobo_body_stand stood;
-        if (!player_at(s, (i - 1) * ZMP_STEP_US, &posture) || !stand(s->a, &posture, &stood) ||
-            stood.foot != now->foot) {
-            return false;
-        }
-        for (int j = 0; j < s->model->n_joints; j++) {
-            bool set = (posture.set & GROBO_JOINT_BIT(j)) != 0;
-            angles[i][j] = set ? posture.angle_rad[j] : s->model->joints[j].init_rad;
-        }
-        root[i] = stood.root;
-    }
-    return grobo_body_zmp_of_poses(pose_body(s->a), root, q_rad, (double)ZMP_STEP_US / 1e6,
-                                   zmp_m) == GROBO_OK;
-}
-
-json_t *pose_state_json(serve *s)
-{
-    grobo_posture posture;
-    grobo_body_stand stood;
-    double zmp_m[3];
-    grobo_robot_posture(s->c.robot, GROBO_NEVER_US, &posture);
-    if (posture.set != GROBO_JOINTS_ALL(s->model->n_joints) || !stand(s->a, &posture, &stood)) {
-        return json_null();
-    }
-    return pose_stand_json(&stood, zmp_of_motion(s, &stood, zmp_m) ? zmp_m : NULL);
+    return pose_stand(a, posture, &stood) ? pose_placement_json(&stood.root) : json_null();
 }
 
 /* ---- a handle that is dragged ---------------------------------------------------------------- */

@@ -19,10 +19,9 @@ const grobo_body_model *pose_body(const app *a);
 /* Of /api/robot. */
 json_t *pose_links_json(const app *a);
 json_t *pose_feet_json(const app *a);
-/* Of the state; null where there is no body or an angle is not known. */
-json_t *pose_state_json(serve *s);
-
-/* Where the root is, for angles of which those not set are the initial ones; null: no body. */
+/* Stands a posture: joints that it does not set are at their initial angles. False: no body. */
+bool pose_stand(const app *a, const grobo_posture *posture, grobo_body_stand *stood);
+/* Where the root is then; null: no body. */
 json_t *pose_root_json(const app *a, const grobo_posture *posture);
 json_t *pose_placement_json(const grobo_transform *at);
 /* Of a body; point: the ZMP, or NULL. */

@@ -37,93 +37,7 @@ static const verb verbs[] = {
     {"/api/reset", verb_reset, 0},
 };
 
-/* ---- refusals -------------------------------------------------------------------------------- */
-
-static int status_of(int error)
-{
-    switch (error) {
-    case GROBO_ERR_ARG:
-    case GROBO_ERR_SYNTAX:
-        return 400;
-    case GROBO_ERR_NOENT:
-    case GROBO_ERR_NOTFOUND:
-        return 404;
-    case GROBO_ERR_LIMIT:
-    case GROBO_ERR_NAN:
-    case GROBO_ERR_SPEED:
-    case GROBO_ERR_UNREACHABLE:
-    case GROBO_ERR_UNWATCHED:
-    case GROBO_ERR_UNSUPPORTED:
-    case GROBO_ERR_EMPTY:
-        return 422;
-    case GROBO_ERR_CLOSED:
-    case GROBO_ERR_UNPLUGGED:
-    case GROBO_ERR_NOMEM:
-    case GROBO_ERR_TIMEOUT:
-    case GROBO_ERR_IO:
-        return 503;
-    }
-    return 409;
-}
-
-void serve_refuse(serve *s, http_request *r, int error, const char *doing)
-{
-    json_t *refusal = json_pack("{s:o,s:o}", "code", app_json_code(grobo_error_name(error)),
-                                "message", json_sprintf("%s: %s", doing, grobo_error_text(error)));
-    double value = 0;
-    int joint = error == GROBO_ERR_LIMIT || error == GROBO_ERR_NAN
-                    ? grobo_robot_fault(s->c.robot, &value)
-                    : -1;
-    if (joint >= 0 && joint < s->model->n_joints) {
-        json_object_set_new(refusal, "joint", json_integer(joint));
-        json_object_set_new(refusal, "name", json_string(s->model->joints[joint].name));
-        json_object_set_new(refusal, "value", app_json_number(value, 3));
-    }
-    if (error == GROBO_ERR_LATCHED && s->c.trip.trip != GROBO_TRIP_NONE) {
-        json_object_set_new(refusal, "trip", app_json_code(grobo_trip_name(s->c.trip.trip)));
-    }
-    http_reply_json(r, status_of(error), json_pack("{s:o}", "error", refusal));
-}
-
-void serve_refuse_said(http_request *r, int status, const app *a)
-{
-    static const int statuses[] = {200, 409, 400, 422, 422};
-    bool missing = strcmp(a->failed, grobo_error_name(GROBO_ERR_NOENT)) == 0;
-    json_t *refusal = json_pack("{s:o,s:o}", "code", app_json_code(a->failed), "message",
-                                app_json_text(a->hushed));
-    int found = status > 0 && status <= EXIT_SAFETY ? statuses[status] : 409;
-    http_reply_json(r, missing ? 404 : found, json_pack("{s:o}", "error", refusal));
-}
-
-void serve_accept(serve *s, http_request *r, int result, const char *doing)
-{
-    if (result < 0) {
-        serve_refuse(s, r, result, doing);
-        return;
-    }
-    json_t *body = json_pack("{s:b,s:I}", "done", result == 0, "sequence", (json_int_t)s->sequence);
-    if (result > 0) {
-        json_object_set_new(body, "job", json_integer(result));
-    }
-    grobo_session_pump(s->c.session);
-    http_reply_json(r, 200, body);
-}
-
 /* ---- bodies ---------------------------------------------------------------------------------- */
-
-json_t *serve_body(http_request *r)
-{
-    size_t size;
-    json_error_t error;
-    const char *text = http_body(r, &size);
-    json_t *body = size ? json_loadb(text, size, JSON_REJECT_DUPLICATES, &error) : json_object();
-    if (!json_is_object(body)) {
-        json_decref(body);
-        http_refuse(r, 400, "syntax", "the body is no JSON object");
-        return NULL;
-    }
-    return body;
-}
 
 static const char *text_of(const json_t *body, const char *key)
 {
@@ -166,30 +80,6 @@ static void refuse_lease(serve *s, http_request *r)
     http_reply_json(r, 409, json_pack("{s:o}", "error", refusal));
 }
 
-/* The state that a target is based on was told less than a second ago. */
-static bool is_fresh(const serve *s, const json_t *sequence)
-{
-    json_int_t n = json_integer_value(sequence);
-    if (!json_is_integer(sequence) || n <= 0 || (uint64_t)n > s->sequence ||
-        s->sequence - (uint64_t)n >= SERVE_SEQUENCES) {
-        return false;
-    }
-    return grobo_now_us() - s->sequence_us[n % SERVE_SEQUENCES] <= SERVE_STALE_US;
-}
-
-bool serve_may_move(serve *s, http_request *r, const json_t *body)
-{
-    if (stops_is_latched(s)) {
-        serve_refuse(s, r, GROBO_ERR_LATCHED, "robot");
-        return false;
-    }
-    if (!is_fresh(s, json_object_get(body, "sequence"))) {
-        http_refuse(r, 409, "stale", "sequence is not that of a state told less than a second ago");
-        return false;
-    }
-    return true;
-}
-
 static bool is_granted(serve *s, http_request *r, const json_t *body, unsigned needs)
 {
     if ((needs & NEEDS_LINE) && !s->c.up) {
@@ -198,7 +88,7 @@ static bool is_granted(serve *s, http_request *r, const json_t *body, unsigned n
                !lease_is_holder(&s->lease, http_header(r, "X-Grobo-Lease"))) {
         refuse_lease(s, r);
     } else {
-        return !(needs & MOVES) || serve_may_move(s, r, body);
+        return !(needs & MOVES) || stops_may_move(s, r, body);
     }
     return false;
 }
@@ -226,7 +116,7 @@ static void take(serve *s, http_request *r, const json_t *body)
     }
     if (was_held) { /* what the one before was doing with a finger */
         if (s->jogs) {
-            serve_halt(s);
+            stops_halt(s);
         }
     }
     events_tell(s, "lease", "info", NULL, "%s drives", s->lease.holder.name);
@@ -260,7 +150,7 @@ static void serve_lease(serve *s, http_request *r, const json_t *body)
     } else if (strcmp(action, "give") == 0 || strcmp(action, "deny") == 0) {
         bool gives = *action == 'g';
         if (gives && lease_is_holder(&s->lease, secret) && s->jogs) {
-            serve_halt(s);
+            stops_halt(s);
         }
         if (!(gives ? lease_give(&s->lease, secret, grobo_now_us())
                     : lease_deny(&s->lease, secret))) {
@@ -302,7 +192,7 @@ static void serve_heartbeat(serve *s, http_request *r, const json_t *body)
     const char *secret = text_of(body, "lease");
     if (!lease_is_holder(&s->lease, secret)) {
         refuse_lease(s, r);
-    } else if (!is_fresh(s, json_object_get(body, "drawn"))) {
+    } else if (!serve_is_fresh(s, json_object_get(body, "drawn"))) {
         http_refuse(r, 409, "stale", "the page draws nothing: this counts as no heartbeat");
     } else {
         lease_beat(&s->lease, secret, grobo_now_us());

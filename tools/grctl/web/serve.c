@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* serve: the loop, the robot's events, who drives. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,37 +10,9 @@
 
 #include "tools/grctl/web/serve.h"
 
-/* Each joint is read so often: what a picture needs that is drawn between two readings. */
-enum { SENSE_US = 200000, COMMENT_US = 900000, TOKEN_LEAST = 16 };
-
-int64_t serve_ms(const serve *s, int64_t at_us)
-{
-    return (at_us - s->began_us) / 1000;
-}
-
-grobo_robot_config serve_config(const serve *s)
-{
-    grobo_robot_config config = conn_robot_config(s->a);
-    config.sense_interval_us = SENSE_US;
-    return config;
-}
+enum { COMMENT_US = 900000, TOKEN_LEAST = 16 };
 
 /* ---- jobs ------------------------------------------------------------------------------------ */
-
-int serve_note_job(serve *s, int job, const char *doing)
-{
-    serve_job *slot = &s->jobs[0];
-    for (int i = 0; job > 0 && i < SERVE_JOBS; i++) {
-        if (s->jobs[i].number == 0 || s->jobs[i].number == job) {
-            slot = &s->jobs[i];
-            break;
-        }
-    }
-    if (job > 0 && slot->number != job) {
-        *slot = (serve_job){.number = job, .doing = doing};
-    }
-    return job;
-}
 
 static json_t *result_json(const serve *s, const grobo_event_job *job)
 {
@@ -153,6 +126,8 @@ static void on_event(conn *c, const grobo_event *event)
         events_tell(s, "log", "warning", NULL, "this motion is played unwatched");
         break;
     case GROBO_EVENT_JOINT:
+        s->readings++;
+        break;
     case GROBO_EVENT_ROUND:
     case GROBO_EVENT_PLAY:
     case GROBO_EVENT_SLOW_CALLBACK:
@@ -161,22 +136,6 @@ static void on_event(conn *c, const grobo_event *event)
 }
 
 /* ---- who drives ------------------------------------------------------------------------------ */
-
-bool serve_is_moving(const serve *s)
-{
-    return s->c.up && (grobo_robot_moving(s->c.robot) || grobo_robot_is_playing(s->c.robot) ||
-                       grobo_robot_job(s->c.robot) == GROBO_JOB_PLAY);
-}
-
-void serve_halt(serve *s)
-{
-    s->jogs = s->jog_waits = s->moves = false;
-    player_forget(s);
-    if (s->c.up) {
-        (void)grobo_robot_stop(grobo_session_robot(s->c.session), false);
-        grobo_session_pump(s->c.session);
-    }
-}
 
 /* What was declared when the motion began. */
 static void lose_motion(serve *s)
@@ -191,7 +150,7 @@ static void lose_motion(serve *s)
     bool leaves = plays && s->player.on_lost == PLAYER_EXIT;
     events_tell(s, "lease", "warning", NULL, "the page that drives is lost: %s",
                 leaves ? "the exit policy is carried out" : "the motion stops");
-    serve_halt(s);
+    stops_halt(s);
     if (leaves) {
         int job = grobo_robot_exit(grobo_session_robot(s->c.session), GROBO_EXIT_DEFAULT);
         serve_note_job(s, job, "exit");
@@ -203,7 +162,7 @@ static void look_after_lease(serve *s)
     int64_t silent_us = lease_silent_us(&s->lease, grobo_now_us());
     if (silent_us > SERVE_JOG_LOST_US && s->jogs) {
         events_tell(s, "lease", "warning", NULL, "the page that drives is silent: jogging stops");
-        serve_halt(s);
+        stops_halt(s);
     }
     if (silent_us <= SERVE_PLAY_LOST_US) {
         return;
@@ -230,7 +189,8 @@ static void look_after_jog(serve *s)
 static void send_state(serve *s)
 {
     static const char head[] = "event: state\ndata: ";
-    char *data = json_dumps(serve_state_json(s), JSON_COMPACT | JSON_REAL_PRECISION(12));
+    json_t *state = serve_state_json(s);
+    char *data = json_dumps(state, JSON_COMPACT | JSON_REAL_PRECISION(12));
     size_t n = data ? strlen(data) : 0;
     char *text = malloc(sizeof head + n + 2);
     if (data && text) {
@@ -241,6 +201,26 @@ static void send_state(serve *s)
     }
     free(text);
     free(data);
+    json_decref(state);
+}
+
+/* Bytes and readings since a second ago. */
+static void measure_load(serve *s, int64_t now_us)
+{
+    uint64_t tx_bytes, rx_bytes;
+    int64_t passed_us = now_us - s->load_us;
+    if (passed_us < 1000000) {
+        return;
+    }
+    grobo_session_bytes(s->c.session, &tx_bytes, &rx_bytes);
+    double bits = 10.0 * (double)(tx_bytes + rx_bytes - s->load_bytes); /* with start and stop */
+    if (s->load_us > 0) {
+        s->load_pct = 1e8 * bits / (double)conn_baud(s->a) / (double)passed_us;
+        s->load_hz = 1e6 * s->readings / (double)passed_us;
+    }
+    s->load_us = now_us;
+    s->load_bytes = tx_bytes + rx_bytes;
+    s->readings = 0;
 }
 
 static void on_tick(evutil_socket_t fd, short what, void *ctx)
@@ -252,6 +232,7 @@ static void on_tick(evutil_socket_t fd, short what, void *ctx)
     (void)what;
     s->sequence++;
     s->sequence_us[s->sequence % SERVE_SEQUENCES] = now_us;
+    measure_load(s, now_us);
     stops_look(s);
     look_after_lease(s);
     look_after_jog(s);
@@ -338,6 +319,7 @@ static int run(serve *s)
     c->on_event = on_event;
     s->model = grobo_robot_driver(c->robot)->model;
     s->began_us = grobo_now_us();
+    s->load_pct = s->load_hz = NAN;
     grobo_robot_config config = serve_config(s);
     int error = grobo_session_configure(c->session, &config);
     int status = error ? conn_fail(c, error, "serve") : start(s);

@@ -52,9 +52,14 @@ struct serve {
     /* jogging: the newest target */
     grobo_posture jog;
     bool jogs, jog_waits;
-    bool moves;       /* a move of the lease's holder is under way */
-    int64_t quiet_us; /* when the last text went to the streams */
-    bool ending;      /* a signal came: nothing more is begun */
+    bool moves; /* a move of the lease's holder is under way */
+    /* the load of the line, over the last second */
+    int64_t load_us;
+    uint64_t load_bytes;
+    unsigned readings;
+    double load_pct, load_hz; /* NAN: not known yet */
+    int64_t quiet_us;         /* when the last text went to the streams */
+    bool ending;              /* a signal came: nothing more is begun */
 };
 
 /* Milliseconds of the server's clock. */
@@ -69,8 +74,8 @@ bool serve_is_moving(const serve *s);
 /* The engine's configuration while it serves. */
 grobo_robot_config serve_config(const serve *s);
 
-/* Ends jogging; what moves stops softly. */
-void serve_halt(serve *s);
+/* A state was told less than a second ago under this number. */
+bool serve_is_fresh(const serve *s, const json_t *sequence);
 
 /* ---- requests: by path ----------------------------------------------------------------------- */
 
@@ -93,9 +98,6 @@ void serve_refuse(serve *s, http_request *r, int error, const char *doing);
 void serve_refuse_said(http_request *r, int status, const app *a);
 /* {"done": ..., "job": ...} for what a request to the engine returned, or why not. */
 void serve_accept(serve *s, http_request *r, int result, const char *doing);
-
-/* For what moves: no stop stands, and it is based on a fresh state; else it is refused. */
-bool serve_may_move(serve *s, http_request *r, const json_t *body);
 
 /* ---- verbs ----------------------------------------------------------------------------------- */
 

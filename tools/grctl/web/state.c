@@ -10,6 +10,9 @@
 #include "tools/grctl/web/pose.h"
 #include "tools/grctl/web/serve.h"
 
+/* The poses from which a motion's ZMP is taken are so far apart. */
+#define ZMP_STEP_US INT64_C(20000)
+
 /* ---- as it is -------------------------------------------------------------------------------- */
 
 static bool has(const grobo_joint_info *i, grobo_field field)
@@ -65,14 +68,51 @@ static json_t *line_json(serve *s)
     grobo_session_bytes(s->c.session, &tx_bytes, &rx_bytes);
     grobo_robot_jitter(s->c.robot, &jitter);
     json_t *more = json_pack(
-        "{s:I,s:I,s:I,s:I,s:I,s:I,s:I,s:{s:I,s:I,s:I,s:I},s:n,s:n}", "tx_bytes",
+        "{s:I,s:I,s:I,s:I,s:I,s:I,s:I,s:{s:I,s:I,s:I,s:I},s:o,s:o}", "tx_bytes",
         (json_int_t)tx_bytes, "rx_bytes", (json_int_t)rx_bytes, "motion_frames",
         (json_int_t)n.motion_frames, "late_frames", (json_int_t)n.late_frames, "clamped",
         (json_int_t)n.clamped, "stretched", (json_int_t)n.stretched, "stalls", (json_int_t)n.stalls,
         "jitter_us", "frames", (json_int_t)jitter.frames, "p50", (json_int_t)jitter.p50_us, "p99",
-        (json_int_t)jitter.p99_us, "max", (json_int_t)jitter.max_us, "load_pct", "load_hz");
+        (json_int_t)jitter.p99_us, "max", (json_int_t)jitter.max_us, "load_pct",
+        app_json_number(s->load_pct, 1), "load_hz", app_json_number(s->load_hz, 1));
     json_object_update_new(line, more);
     return line;
+}
+
+/* Of the motion that is played: at its angles, on one and the same foot. */
+static bool zmp_of_motion(serve *s, const grobo_body_stand *now, double zmp_m[3])
+{
+    grobo_transform root[3];
+    double angles[3][GROBO_JOINTS_MAX];
+    const double *const q_rad[3] = {angles[0], angles[1], angles[2]};
+    for (int i = 0; i < 3; i++) {
+        grobo_posture posture;
+        grobo_body_stand stood;
+        if (!player_at(s, (i - 1) * ZMP_STEP_US, &posture) || !pose_stand(s->a, &posture, &stood) ||
+            stood.foot != now->foot) {
+            return false;
+        }
+        for (int j = 0; j < s->model->n_joints; j++) {
+            bool set = (posture.set & GROBO_JOINT_BIT(j)) != 0;
+            angles[i][j] = set ? posture.angle_rad[j] : s->model->joints[j].init_rad;
+        }
+        root[i] = stood.root;
+    }
+    return grobo_body_zmp_of_poses(pose_body(s->a), root, q_rad, (double)ZMP_STEP_US / 1e6,
+                                   zmp_m) == GROBO_OK;
+}
+
+static json_t *body_json(serve *s)
+{
+    grobo_posture posture;
+    grobo_body_stand stood;
+    double zmp_m[3];
+    grobo_robot_posture(s->c.robot, GROBO_NEVER_US, &posture);
+    if (posture.set != GROBO_JOINTS_ALL(s->model->n_joints) ||
+        !pose_stand(s->a, &posture, &stood)) {
+        return json_null();
+    }
+    return pose_stand_json(&stood, zmp_of_motion(s, &stood, zmp_m) ? zmp_m : NULL);
 }
 
 static json_t *page_json(serve *s, const lease_page *page)
@@ -112,9 +152,9 @@ json_t *serve_state_json(serve *s)
     json_t *more =
         json_pack("{s:o,s:b,s:s?,s:o,s:o,s:o,s:o,s:{s:o,s:o},s:i}", "limp", limp, "moving",
                   grobo_robot_moving(s->c.robot), "job", job, "play", player_json(s), "stop",
-                  stops_json(s), "line", line_json(s), "body", pose_state_json(s), "lease",
-                  "holder", page_json(s, &s->lease.holder), "asked", page_json(s, &s->lease.asker),
-                  "clients", http_streams(s->http));
+                  stops_json(s), "line", line_json(s), "body", body_json(s), "lease", "holder",
+                  page_json(s, &s->lease.holder), "asked", page_json(s, &s->lease.asker), "clients",
+                  http_streams(s->http));
     json_object_update_new(state, more);
     return state;
 }

@@ -68,7 +68,7 @@ int stops_ask(serve *s, const char *by, bool estop)
     grobo_session_pump(s->c.session);
     if (news) {
         lease_end(&s->lease);
-        player_forget(s);
+        s->player.epoch++; /* what was asked for and has not begun does not begin */
         events_tell(s, "stop", "warning", NULL, "%s by %s", estop ? "emergency stop" : "stop", by);
     }
     stops_look(s);
@@ -149,6 +149,29 @@ bool stops_is_latched(serve *s)
 {
     return s->stops.latched || grobo_session_is_latched(s->c.session) ||
            grobo_estop_stands(conn_device(&s->c));
+}
+
+void stops_halt(serve *s)
+{
+    s->jogs = s->jog_waits = s->moves = false;
+    s->player.epoch++;
+    if (s->c.up) {
+        (void)grobo_robot_stop(grobo_session_robot(s->c.session), false);
+        grobo_session_pump(s->c.session);
+    }
+}
+
+bool stops_may_move(serve *s, http_request *r, const json_t *body)
+{
+    if (stops_is_latched(s)) {
+        serve_refuse(s, r, GROBO_ERR_LATCHED, "robot");
+        return false;
+    }
+    if (!serve_is_fresh(s, json_object_get(body, "sequence"))) {
+        http_refuse(r, 409, "stale", "sequence is not that of a state told less than a second ago");
+        return false;
+    }
+    return true;
 }
 
 json_t *stops_json(serve *s)

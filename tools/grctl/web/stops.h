@@ -10,6 +10,7 @@
 #include "tools/grctl/web/lease.h"
 
 typedef struct serve serve;
+typedef struct http_request http_request;
 
 typedef enum stops_joint {
     STOPS_SENT,    /* not read since */
@@ -38,6 +39,10 @@ void stops_look(serve *s);
 int stops_reset(serve *s);
 /* Ours, an emergency stop of another program, or the engine's own. */
 bool stops_is_latched(serve *s);
+/* For what moves: no stop stands, and it is based on a fresh state; else it is refused. */
+bool stops_may_move(serve *s, http_request *r, const json_t *body);
+/* Ends jogging; what moves stops softly. Latches nothing. */
+void stops_halt(serve *s);
 json_t *stops_json(serve *s);
 
 #endif

@@ -137,7 +137,7 @@ void verb_speed(serve *s, http_request *r, json_t *body)
 void verb_halt(serve *s, http_request *r, json_t *body)
 {
     (void)body;
-    serve_halt(s);
+    stops_halt(s);
     serve_accept(s, r, GROBO_OK, "halt");
 }
 
@@ -263,7 +263,7 @@ void verb_torque(serve *s, http_request *r, json_t *body)
     for (size_t i = 0; word && i < sizeof modes / sizeof modes[0]; i++) {
         if (strcmp(word, modes[i].word) == 0) {
             if (modes[i].mode == GROBO_TORQUE_ON || modes[i].limp) {
-                if (!serve_may_move(s, r, body)) {
+                if (!stops_may_move(s, r, body)) {
                     return;
                 }
             }

@@ -408,7 +408,6 @@ class App {
             node.title = node.matches('button') ? this.t(node.dataset.tLabel) : '';
         }
         document.querySelector('#view canvas').setAttribute('aria-label', this.t('The robot'));
-        id('stop').setAttribute('aria-label', this.t('STOP: all joints stop and hold'));
     }
 
     // ---- drawing -------------------------------------------------------------------------------

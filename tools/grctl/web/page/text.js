@@ -22,7 +22,7 @@ export const JA = {
     'Release the stop': '停止を解除',
     'Software stop: the joints stop and hold. The switch is on the robot.':
         'ソフトウェアによる停止です。関節は止まって姿勢を保ちます。電源スイッチはロボット本体にあります。',
-    'STOP: all joints stop and hold': 'STOP: すべての関節が止まり、姿勢を保ちます', 'The robot': 'ロボット',
+    'The robot': 'ロボット',
     'Angle and target': '角度と目標', Temperature: '温度', Voltage: '電圧', 'no joint chosen': '関節が未選択',
     now: '今', right: '右足', left: '左足', Balance: 'バランス', unknown: '不明',
     '✕ {0} mm outside': '✕ {0} mm 外側', '✓ {0} mm inside': '✓ {0} mm 内側', 'Stands on': '支持',

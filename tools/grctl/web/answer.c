@@ -1,0 +1,142 @@
+/* SPDX-License-Identifier: MIT */
+/* What every part of `serve` says to a request, and asks of the robot. */
+#include <stdlib.h>
+#include <string.h>
+
+#include <grobo/port.h>
+
+#include "tools/grctl/web/serve.h"
+
+/* Each joint is read so often: what a picture needs that is drawn between two readings. */
+enum { SENSE_US = 200000 };
+
+int64_t serve_ms(const serve *s, int64_t at_us)
+{
+    return (at_us - s->began_us) / 1000;
+}
+
+grobo_robot_config serve_config(const serve *s)
+{
+    grobo_robot_config config = conn_robot_config(s->a);
+    config.sense_interval_us = SENSE_US;
+    return config;
+}
+
+bool serve_is_moving(const serve *s)
+{
+    return s->c.up && (grobo_robot_moving(s->c.robot) || grobo_robot_is_playing(s->c.robot) ||
+                       grobo_robot_job(s->c.robot) == GROBO_JOB_PLAY);
+}
+
+bool serve_is_fresh(const serve *s, const json_t *sequence)
+{
+    json_int_t n = json_integer_value(sequence);
+    if (!json_is_integer(sequence) || n <= 0 || (uint64_t)n > s->sequence ||
+        s->sequence - (uint64_t)n >= SERVE_SEQUENCES) {
+        return false;
+    }
+    return grobo_now_us() - s->sequence_us[n % SERVE_SEQUENCES] <= SERVE_STALE_US;
+}
+
+int serve_note_job(serve *s, int job, const char *doing)
+{
+    serve_job *slot = &s->jobs[0];
+    for (int i = 0; job > 0 && i < SERVE_JOBS; i++) {
+        if (s->jobs[i].number == 0 || s->jobs[i].number == job) {
+            slot = &s->jobs[i];
+            break;
+        }
+    }
+    if (job > 0 && slot->number != job) {
+        *slot = (serve_job){.number = job, .doing = doing};
+    }
+    return job;
+}
+
+/* ---- refusals -------------------------------------------------------------------------------- */
+
+static int status_of(int error)
+{
+    switch (error) {
+    case GROBO_ERR_ARG:
+    case GROBO_ERR_SYNTAX:
+        return 400;
+    case GROBO_ERR_NOENT:
+    case GROBO_ERR_NOTFOUND:
+        return 404;
+    case GROBO_ERR_LIMIT:
+    case GROBO_ERR_NAN:
+    case GROBO_ERR_SPEED:
+    case GROBO_ERR_UNREACHABLE:
+    case GROBO_ERR_UNWATCHED:
+    case GROBO_ERR_UNSUPPORTED:
+    case GROBO_ERR_EMPTY:
+        return 422;
+    case GROBO_ERR_CLOSED:
+    case GROBO_ERR_UNPLUGGED:
+    case GROBO_ERR_NOMEM:
+    case GROBO_ERR_TIMEOUT:
+    case GROBO_ERR_IO:
+        return 503;
+    }
+    return 409;
+}
+
+void serve_refuse(serve *s, http_request *r, int error, const char *doing)
+{
+    json_t *refusal = json_pack("{s:o,s:o}", "code", app_json_code(grobo_error_name(error)),
+                                "message", json_sprintf("%s: %s", doing, grobo_error_text(error)));
+    double value = 0;
+    int joint = error == GROBO_ERR_LIMIT || error == GROBO_ERR_NAN
+                    ? grobo_robot_fault(s->c.robot, &value)
+                    : -1;
+    if (joint >= 0 && joint < s->model->n_joints) {
+        json_object_set_new(refusal, "joint", json_integer(joint));
+        json_object_set_new(refusal, "name", json_string(s->model->joints[joint].name));
+        json_object_set_new(refusal, "value", app_json_number(value, 3));
+    }
+    if (error == GROBO_ERR_LATCHED && s->c.trip.trip != GROBO_TRIP_NONE) {
+        json_object_set_new(refusal, "trip", app_json_code(grobo_trip_name(s->c.trip.trip)));
+    }
+    http_reply_json(r, status_of(error), json_pack("{s:o}", "error", refusal));
+}
+
+void serve_refuse_said(http_request *r, int status, const app *a)
+{
+    static const int statuses[] = {200, 409, 400, 422, 422};
+    bool missing = strcmp(a->failed, grobo_error_name(GROBO_ERR_NOENT)) == 0;
+    json_t *refusal = json_pack("{s:o,s:o}", "code", app_json_code(a->failed), "message",
+                                app_json_text(a->hushed));
+    int found = status > 0 && status <= EXIT_SAFETY ? statuses[status] : 409;
+    http_reply_json(r, missing ? 404 : found, json_pack("{s:o}", "error", refusal));
+}
+
+void serve_accept(serve *s, http_request *r, int result, const char *doing)
+{
+    if (result < 0) {
+        serve_refuse(s, r, result, doing);
+        return;
+    }
+    json_t *body = json_pack("{s:b,s:I}", "done", result == 0, "sequence", (json_int_t)s->sequence);
+    if (result > 0) {
+        json_object_set_new(body, "job", json_integer(result));
+    }
+    grobo_session_pump(s->c.session);
+    http_reply_json(r, 200, body);
+}
+
+/* ---- bodies ---------------------------------------------------------------------------------- */
+
+json_t *serve_body(http_request *r)
+{
+    size_t size;
+    json_error_t error;
+    const char *text = http_body(r, &size);
+    json_t *body = size ? json_loadb(text, size, JSON_REJECT_DUPLICATES, &error) : json_object();
+    if (!json_is_object(body)) {
+        json_decref(body);
+        http_refuse(r, 400, "syntax", "the body is no JSON object");
+        return NULL;
+    }
+    return body;
+}
